@@ -1,0 +1,143 @@
+//! Bounds that hold for every motion, from its energy alone.
+
+use crate::equal_rods::EqualRods;
+use crate::error::{Error, Parameter};
+use crate::hamiltonian::Pendulum;
+use crate::modes::Modes;
+use crate::params::Parameters;
+use crate::real::Real;
+use crate::state::State;
+use crate::trig::SinCos;
+
+/// The greatest magnitudes that a motion of given energy can reach; each is reached by some motion of that energy.
+///
+/// With K the energy above hanging rest (J), all of it kinetic at best: T >= m1 v1^2/2, T >= m2 v2^2/2, and by completing
+/// squares in T the same for each w and p alone. Exact up to the rounding of K (test `bounds`).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Bounds<R> {
+    /// |w1| <= sqrt(2 K/m1)/l1, rad/s.
+    pub w1: R,
+    /// |w2| <= sqrt(2 K (m1 + m2)/(m1 m2))/l2, rad/s.
+    pub w2: R,
+    /// |p1| <= l1 sqrt(2 (m1 + m2) K), kg m^2/s.
+    pub p1: R,
+    /// |p2| <= l2 sqrt(2 m2 K), kg m^2/s.
+    pub p2: R,
+    /// The speed of bob 1, v1 <= sqrt(2 K/m1), m/s.
+    pub v1: R,
+    /// The speed of bob 2, v2 <= sqrt(2 K/m2), m/s.
+    pub v2: R,
+}
+
+impl<R: Real> Bounds<R> {
+    fn new(parameters: &Parameters<R>, energy_above_rest: R) -> Self {
+        let &Parameters { m1, m2, l1, l2, .. } = parameters;
+        let twice = R::TWO * energy_above_rest;
+        let v1 = (twice / m1).sqrt();
+        let v2 = (twice / m2).sqrt();
+        Self {
+            w1: v1 / l1,
+            w2: v2 * ((m1 + m2) / m1).sqrt() / l2,
+            p1: l1 * ((m1 + m2) * twice).sqrt(),
+            p2: l2 * (m2 * twice).sqrt(),
+            v1,
+            v2,
+        }
+    }
+}
+
+impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
+    /// The bounds of the motion through `state`.
+    ///
+    /// ```
+    /// use double_pendulum::{Parameters, Pendulum, State};
+    ///
+    /// let pendulum = Pendulum::new(Parameters { m1: 1.0, m2: 1.0, l1: 1.0, l2: 1.0, g: 9.8 })?;
+    /// let bounds = pendulum.bounds(&State::at_rest(0.0, core::f64::consts::PI)); // K = 2 m2 g l2
+    /// assert!((bounds.w1 - 39.2_f64.sqrt()).abs() < 1e-14);
+    /// # Ok::<(), double_pendulum::Error>(())
+    /// ```
+    pub fn bounds(&self, state: &State<R>) -> Bounds<R> {
+        Bounds::new(self.parameters(), self.energy_above_rest(state))
+    }
+
+    /// The least energy above rest with which a rod can turn over, J: 2 g min((m1 + m2) l1, m2 l2).
+    ///
+    /// It is the lower of the two saddles V(pi, 0) and V(0, pi), above min V.
+    pub fn turnover_energy(&self) -> R {
+        let [torque1, torque2] = self.torque();
+        R::TWO * least(torque1, torque2)
+    }
+
+    /// Whether it is certain that neither rod ever turns over: K below [`turnover_energy`](Self::turnover_energy).
+    ///
+    /// `false` says nothing. Energies within [`ROUNDING_MARGIN`] roundings of the limit are not certified.
+    pub fn cannot_turn_over(&self, state: &State<R>) -> bool {
+        clearly_below(self.energy_above_rest(state), self.turnover_energy())
+    }
+}
+
+impl<R: Real, T: SinCos<R>> EqualRods<R, T> {
+    /// The bounds of the motion through `state`, in the units of the equal-rod form.
+    pub fn bounds(&self, state: &State<R>) -> Bounds<R> {
+        Bounds::new(&self.parameters(), self.energy_above_rest(state))
+    }
+
+    /// Whether it is certain that neither rod ever turns over: K < 2 min(1 + mu, mu) = 2 mu.
+    ///
+    /// From rest that is (1 + mu) cos a1 + mu cos a2 > 1. `false` says nothing.
+    pub fn cannot_turn_over(&self, state: &State<R>) -> bool {
+        clearly_below(self.energy_above_rest(state), R::TWO * self.mass_ratio())
+    }
+}
+
+impl<R: Real> Modes<R> {
+    /// The longest step with which RK4 is stable on the fast mode, s: 2 sqrt(2)/w1 (`[Hairer II]`, section IV.2).
+    ///
+    /// A limit, not advice: the phase is useless long before it.
+    pub fn step_limit(&self) -> R {
+        R::of(8.0).sqrt() / self.fast.frequency
+    }
+
+    /// Refuses a step that is NaN, infinite, zero, negative or above [`step_limit`](Self::step_limit).
+    pub fn check_step(&self, dt: R) -> Result<(), Error> {
+        check_forward(dt)?;
+        let limit = self.step_limit();
+        if dt > limit {
+            return Err(Error::TooLarge { parameter: Parameter::Dt, value: dt.to_f64(), limit: limit.to_f64() });
+        }
+        Ok(())
+    }
+}
+
+impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
+    /// As [`Modes::check_step`]; without gravity there are no modes and every step forward is accepted.
+    pub fn check_step(&self, dt: R) -> Result<(), Error> {
+        if self.parameters().g == R::ZERO { check_forward(dt) } else { self.modes()?.check_step(dt) }
+    }
+}
+
+/// Refuses a step that is NaN, infinite, zero or negative.
+fn check_forward<R: Real>(dt: R) -> Result<(), Error> {
+    let (parameter, value) = (Parameter::Dt, dt.to_f64());
+    if !dt.is_finite() {
+        Err(Error::NotFinite { parameter, value })
+    } else if dt <= R::ZERO {
+        Err(Error::NotPositive { parameter, value })
+    } else {
+        Ok(())
+    }
+}
+
+/// How many roundings, relative to K, a certificate keeps clear of its limit: more than the evaluation of K makes
+/// when no kinetic term cancels.
+pub const ROUNDING_MARGIN: f64 = 16.0;
+
+fn clearly_below<R: Real>(energy: R, limit: R) -> bool {
+    energy * (R::ONE + R::of(ROUNDING_MARGIN) * R::EPSILON) < limit
+}
+
+fn least<R: Real>(a: R, b: R) -> R {
+    if a < b { a } else { b }
+}

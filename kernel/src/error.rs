@@ -1,0 +1,167 @@
+//! What the kernel refuses, and why.
+
+use core::fmt;
+
+use crate::real::Real;
+
+/// A quantity the caller chooses. Displays as the book's symbol.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum Parameter {
+    /// Mass of bob 1, kg.
+    M1,
+    /// Mass of bob 2, kg.
+    M2,
+    /// Length of rod 1, m.
+    L1,
+    /// Length of rod 2, m.
+    L2,
+    /// Gravitational acceleration, m/s^2.
+    G,
+    /// Mass ratio m2/m1.
+    Mu,
+    /// Angle of rod 1, rad.
+    A1,
+    /// Angle of rod 2, rad.
+    A2,
+    /// Angular velocity of rod 1, rad/s.
+    W1,
+    /// Angular velocity of rod 2, rad/s.
+    W2,
+    /// Momentum conjugate to `a1`, kg m^2/s.
+    P1,
+    /// Momentum conjugate to `a2`, kg m^2/s.
+    P2,
+    /// Step of time, s.
+    Dt,
+    /// Ratio of the normal frequencies, fast over slow.
+    FrequencyRatio,
+}
+
+impl fmt::Display for Parameter {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Parameter::M1 => "m1",
+            Parameter::M2 => "m2",
+            Parameter::L1 => "l1",
+            Parameter::L2 => "l2",
+            Parameter::G => "g",
+            Parameter::Mu => "mu",
+            Parameter::A1 => "a1",
+            Parameter::A2 => "a2",
+            Parameter::W1 => "w1",
+            Parameter::W2 => "w2",
+            Parameter::P1 => "p1",
+            Parameter::P2 => "p2",
+            Parameter::Dt => "dt",
+            Parameter::FrequencyRatio => "frequency ratio",
+        })
+    }
+}
+
+/// Why an input is refused: the parameter and the value it had.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum Error {
+    /// NaN or infinite.
+    NotFinite {
+        /// The offending parameter.
+        parameter: Parameter,
+        /// Its value.
+        value: f64,
+    },
+    /// Must be greater than zero.
+    NotPositive {
+        /// The offending parameter.
+        parameter: Parameter,
+        /// Its value.
+        value: f64,
+    },
+    /// Must not be less than zero.
+    Negative {
+        /// The offending parameter.
+        parameter: Parameter,
+        /// Its value.
+        value: f64,
+    },
+    /// Must not exceed a limit that the other parameters set.
+    TooLarge {
+        /// The offending parameter.
+        parameter: Parameter,
+        /// Its value.
+        value: f64,
+        /// The greatest value allowed.
+        limit: f64,
+    },
+    /// Must not fall below a limit that the other parameters set.
+    TooSmall {
+        /// The offending parameter.
+        parameter: Parameter,
+        /// Its value.
+        value: f64,
+        /// The least value allowed.
+        limit: f64,
+    },
+    /// The equal-rod form was asked for, but the rods differ; names rod 2.
+    UnequalRods {
+        /// Length of rod 1, m.
+        l1: f64,
+        /// Length of rod 2, m.
+        l2: f64,
+    },
+    /// Each value alone is fine, but a product of them leaves the range of the arithmetic;
+    /// names the value farthest from 1.
+    OutOfRange {
+        /// The offending parameter.
+        parameter: Parameter,
+        /// Its value.
+        value: f64,
+    },
+}
+
+impl Error {
+    /// The offending parameter.
+    pub const fn parameter(&self) -> Parameter {
+        match *self {
+            Error::NotFinite { parameter, .. }
+            | Error::NotPositive { parameter, .. }
+            | Error::Negative { parameter, .. }
+            | Error::TooLarge { parameter, .. }
+            | Error::TooSmall { parameter, .. }
+            | Error::OutOfRange { parameter, .. } => parameter,
+            Error::UnequalRods { .. } => Parameter::L2,
+        }
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Error::NotFinite { parameter, value } => write!(f, "{parameter} = {value:?}: must be a finite number"),
+            Error::NotPositive { parameter, value } => write!(f, "{parameter} = {value:?}: must be greater than zero"),
+            Error::Negative { parameter, value } => write!(f, "{parameter} = {value:?}: must not be negative"),
+            Error::TooLarge { parameter, value, limit } => {
+                write!(f, "{parameter} = {value:?}: must not exceed {limit:?}")
+            }
+            Error::TooSmall { parameter, value, limit } => {
+                write!(f, "{parameter} = {value:?}: must be at least {limit:?}")
+            }
+            Error::UnequalRods { l1, l2 } => write!(f, "l2 = {l2:?}: the equal-rod form needs l2 = l1 = {l1:?}"),
+            Error::OutOfRange { parameter, value } => {
+                write!(f, "{parameter} = {value:?}: too extreme for this arithmetic in combination with the others")
+            }
+        }
+    }
+}
+
+impl core::error::Error for Error {}
+
+/// Refuses the first of `values` that is NaN or infinite.
+pub(crate) fn check_finite<R: Real>(values: impl IntoIterator<Item = (Parameter, R)>) -> Result<(), Error> {
+    match values.into_iter().find(|(_, value)| !value.is_finite()) {
+        Some((parameter, value)) => Err(Error::NotFinite { parameter, value: value.to_f64() }),
+        None => Ok(()),
+    }
+}

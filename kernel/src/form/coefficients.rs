@@ -1,0 +1,151 @@
+//! Hamilton's equations in the units of the step, and the way there and back.
+
+use crate::error::{Error, Parameter};
+use crate::params::Parameters;
+use crate::real::Real;
+use crate::state::State;
+
+/// The equations of motion with time counted in tau, half a step, and momenta scaled to leave no needless factor.
+///
+/// With nu = l1/l2, (S, C) = nu (sin D, cos D), P = tau p/(m2 l2^2), and the constants
+/// m = (m1/m2) nu^2, K = ((m1 + m2)/m2) nu^2, G2 = tau^2 g/l1, G1 = K G2:
+///
+/// - r = 1/(m + S^2); u = a1' = (P1 - C P2) r; v = a2' = (K P2 - C P1) r; F = u v S
+/// - P1' = -G1 sin a1 - F; P2' = -G2 nu sin a2 + F, where nu sin a2 = C sin a1 - S cos a1
+///
+/// Rods of any lengths cost what equal rods do, and no rate is multiplied by dt.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Coefficients<R> {
+    /// nu.
+    pub norm: R,
+    /// m.
+    pub inertia: R,
+    /// K.
+    total: R,
+    /// G1 and G2.
+    gravity: [R; 2],
+}
+
+/// The time derivatives, in the units of the step.
+#[derive(Clone, Copy)]
+pub(crate) struct Rates<R> {
+    /// u and v.
+    pub angles: [R; 2],
+    /// P1' and P2'.
+    pub momenta: [R; 2],
+}
+
+impl<R: Real> Rates<R> {
+    /// Twice these.
+    #[inline(always)]
+    pub fn doubled(self) -> Self {
+        Self { angles: self.angles.map(|rate| rate + rate), momenta: self.momenta.map(|rate| rate + rate) }
+    }
+}
+
+impl<R: Real> Coefficients<R> {
+    /// The rates where `upper` is (sin a1, cos a1), `elbow` is (S, C), `momenta` is (P1, P2), and `inverse` is r.
+    #[inline(always)]
+    pub fn rates(&self, upper: [R; 2], elbow: [R; 2], momenta: [R; 2], inverse: R) -> Rates<R> {
+        let [sin1, cos1] = upper;
+        let [s, c] = elbow;
+        let [p1, p2] = momenta;
+        let [gravity1, gravity2] = self.gravity;
+        let u = (p1 - c * p2) * inverse;
+        let v = (self.total * p2 - c * p1) * inverse;
+        let force = u * v * s;
+        Rates { angles: [u, v], momenta: [-(gravity1 * sin1) - force, force - gravity2 * (sin1 * c - cos1 * s)] }
+    }
+
+    /// m + S^2, whose inverse is r.
+    #[inline(always)]
+    pub fn denominator(&self, s: R) -> R {
+        self.inertia + s * s
+    }
+}
+
+/// A third, by which k1 + 2 k2 + 2 k3 + k4 becomes the increment of a step.
+#[inline(always)]
+pub(crate) fn third<R: Real>() -> R {
+    R::of(1.0 / 3.0)
+}
+
+/// How the units of the step translate to SI. In `f64`; used at input and output only.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Scale {
+    /// tau, s.
+    time: f64,
+    /// P per p, s/(kg m^2).
+    momentum: f64,
+    /// dt less what a step truly advances, s, for its constants are rounded.
+    lag: f64,
+}
+
+/// Checks and prepares a pendulum and a step of `dt` seconds; a negative one runs backwards.
+pub(crate) fn prepare<R: Real>(parameters: &Parameters<R>, dt: R) -> Result<(Coefficients<R>, Scale), Error> {
+    parameters.check()?;
+    let (parameter, value) = (Parameter::Dt, dt.to_f64());
+    if !dt.is_finite() {
+        return Err(Error::NotFinite { parameter, value });
+    }
+    if !dt.is_normal() {
+        return Err(Error::OutOfRange { parameter, value });
+    }
+    let &Parameters { m1, m2, l1, l2, g } = parameters;
+    let [m1, m2, l1, l2, g, dt] = [m1, m2, l1, l2, g, dt].map(R::to_f64);
+    let norm = l1 / l2;
+    let [inertia, total] = [m1, m1 + m2].map(|mass| R::of(mass / m2 * norm * norm));
+
+    let half_step = 0.5 * dt;
+    let wished = half_step * half_step * g / l1;
+    let gravity2 = factor_near::<R>(wished, total);
+    let time = if g == 0.0 { half_step } else { half_step * libm::sqrt(gravity2.to_f64() / wished) };
+
+    let coefficients = Coefficients { norm: R::of(norm), inertia, total, gravity: [total * gravity2, gravity2] };
+    let scale = Scale { time, momentum: time / (m2 * l2 * l2), lag: dt - 6.0 * time * third::<R>().to_f64() };
+    let in_range = |constant: R| constant.is_normal() && (R::ONE / constant).is_normal();
+    let gravity_in_range = g == 0.0 || coefficients.gravity.into_iter().all(R::is_normal);
+    if [coefficients.norm, inertia, total].into_iter().all(in_range) && gravity_in_range {
+        Ok((coefficients, scale))
+    } else {
+        Err(parameters.out_of_range())
+    }
+}
+
+/// Of the 65 numbers about `value`, 1 ulp apart, the one whose product with `factor` loses least by rounding.
+///
+/// G2 may be a little off, for that only alters the unit of time, which is known. The ratio of G1 = K G2 to it may not.
+fn factor_near<R: Real>(value: f64, factor: R) -> R {
+    let lost = |candidate: R| {
+        let exact = candidate.to_f64() * factor.to_f64();
+        (R::of(exact).to_f64() - exact).abs()
+    };
+    let centre = R::of(value);
+    let ulp = centre * R::EPSILON;
+    (-32..=32_i32)
+        .map(|i| centre + R::of(f64::from(i)) * ulp)
+        .fold(centre, |best, candidate| if lost(candidate) < lost(best) { candidate } else { best })
+}
+
+impl Scale {
+    /// (P1, P2) of `state`.
+    pub fn momenta<R: Real>(&self, state: &State<R>) -> Result<[f64; 2], Error> {
+        let scaled = [state.p1, state.p2].map(|p| p.to_f64() * self.momentum);
+        for (i, parameter) in [Parameter::P1, Parameter::P2].into_iter().enumerate() {
+            if !R::of(scaled[i]).is_finite() {
+                return Err(Error::OutOfRange { parameter, value: scaled[i] / self.momentum });
+            }
+        }
+        Ok(scaled)
+    }
+
+    /// The state in SI units at the time that `steps` steps were meant to reach.
+    ///
+    /// The `angles` (rad) and `momenta` (P) stand a little beside that time; `rates` carry them over.
+    pub fn state<R: Real>(&self, angles: [f64; 2], momenta: [f64; 2], rates: Rates<R>, steps: u64) -> State<f64> {
+        let behind = steps as f64 * self.lag / self.time;
+        let [a1, a2] = [0, 1].map(|i| angles[i] + rates.angles[i].to_f64() * behind);
+        let [p1, p2] = [0, 1].map(|i| (momenta[i] + rates.momenta[i].to_f64() * behind) / self.momentum);
+        State { a1, a2, p1, p2 }
+    }
+}

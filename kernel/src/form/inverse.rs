@@ -1,0 +1,46 @@
+//! How the picture form comes by r = 1/(m + S^2).
+
+use core::fmt::Debug;
+
+use crate::real::Real;
+
+/// A way to follow r = 1/(m + S^2) through a step.
+pub trait Inverse<R: Real>: Copy + Debug + 'static {
+    /// r at a stage where it is to have fallen by `fall` since the start of the step, and m + S^2 is `denominator`.
+    fn at_stage(start: R, fall: R, denominator: R) -> R;
+    /// r at the end of the step; `last` was the one of the fourth stage.
+    fn at_end(last: R, m: R, s: R) -> R;
+}
+
+/// By division at each stage.
+#[derive(Clone, Copy, Debug)]
+pub struct Divided;
+
+impl<R: Real> Inverse<R> for Divided {
+    #[inline(always)]
+    fn at_stage(_: R, _: R, denominator: R) -> R {
+        R::ONE / denominator
+    }
+    #[inline(always)]
+    fn at_end(_: R, m: R, s: R) -> R {
+        R::ONE / (m + s * s)
+    }
+}
+
+/// As one more quantity of the motion, r' = -2 S S' r^2: no division at all.
+///
+/// The last stage's r, off by the third power of the step, is put right by one Newton step, r + r (1 - (m + S^2) r). A
+/// step that changes r by a third or more makes no sense with it, nor with RK4.
+#[derive(Clone, Copy, Debug)]
+pub struct Followed;
+
+impl<R: Real> Inverse<R> for Followed {
+    #[inline(always)]
+    fn at_stage(start: R, fall: R, _: R) -> R {
+        start - fall
+    }
+    #[inline(always)]
+    fn at_end(last: R, m: R, s: R) -> R {
+        last + last * ((R::ONE - m * last) - (s * last) * s)
+    }
+}

@@ -1,0 +1,84 @@
+//! The pendulum in forms that step fast at a fixed step: on its angles, or on the directions of its rods alone.
+//!
+//! [`Pendulum::step`](crate::Pendulum::step) is the classical method as one writes it down. The forms here do the same
+//! in the units of the step, with fewer operations, and carry the rounding error of their additions along unless told
+//! otherwise. Cost of a step on a Cortex-M4F (estimated cycles, equal rods or not) and largest error in rad after 10 s
+//! and 100 s of regular motion (0.5 rad, dt = 1/256 s, method's own error 1e-8 and 1e-7):
+//!
+//! | form | cycles | 10 s | 100 s |
+//! |---|---|---|---|
+//! | [`AngleForm`] compensated, `f32` | 375 | 4e-8 | 4e-7 |
+//! | [`PictureForm`] compensated, `f32` | 211 | 3e-8 | 2e-7 |
+//! | [`PictureForm`] plain, `f32` | 181 | 2e-6 | 2e-5 |
+//!
+//! ```
+//! use double_pendulum::form::{Form, PictureForm};
+//! use double_pendulum::{Parameters, State};
+//!
+//! let form = PictureForm::<f32>::new(&Parameters::equal_rods(1.0, 1.0, 9.81), 1.0 / 256.0)?;
+//! let mut carried = form.start(&State::at_rest(0.5, 0.5))?;
+//! form.advance(&mut carried, 256);
+//! let [[sin1, cos1], [sin2, cos2]] = form.directions(&carried); // enough to draw both rods
+//! assert!((sin1 * sin1 + cos1 * cos1 - 1.0).abs() < 1e-6 && (sin2 * sin2 + cos2 * cos2 - 1.0).abs() < 1e-6);
+//! # Ok::<(), double_pendulum::Error>(())
+//! ```
+
+mod angle;
+mod coefficients;
+mod inverse;
+mod picture;
+mod sum;
+mod turn;
+mod winding;
+
+pub use angle::{AngleForm, Angles};
+pub use inverse::{Divided, Followed, Inverse};
+pub use picture::{Picture, PictureForm};
+pub use sum::{Compensated, Plain, Sum};
+pub use winding::Winding;
+
+use crate::error::Error;
+use crate::params::Parameters;
+use crate::real::Real;
+use crate::state::State;
+
+/// (sin, cos) of an angle from the downward vertical.
+pub type Direction<R> = [R; 2];
+
+/// A pendulum and a step size, prepared: configuration that drives any number of motions.
+pub trait Form<R: Real>: Copy + core::fmt::Debug {
+    /// A motion: what is carried from step to step.
+    type Carried: Copy + core::fmt::Debug;
+
+    /// Checks the parameters and prepares steps of `dt` seconds; a negative one runs backwards.
+    ///
+    /// Refuses what [`Pendulum::new`](crate::Pendulum::new) refuses, and a step that is NaN, infinite, zero or subnormal.
+    fn new(parameters: &Parameters<R>, dt: R) -> Result<Self, Error>;
+
+    /// The motion that starts from `state`.
+    ///
+    /// Refuses NaN and infinite values and momenta out of range; the angle form also angles beyond 800,000 rad.
+    fn start(&self, state: &State<R>) -> Result<Self::Carried, Error>;
+
+    /// Makes `steps` steps. How they are dealt out to calls makes no difference to any bit.
+    fn advance(&self, carried: &mut Self::Carried, steps: u32);
+
+    /// The directions of the two rods, all that a drawing needs; no trigonometry.
+    fn directions(&self, carried: &Self::Carried) -> [Direction<R>; 2];
+
+    /// The canonical state in SI units, to the last digit carried.
+    ///
+    /// It is the state at the number of steps times dt: what the rounding of a step's constants does to the time is
+    /// taken back here, at no cost to the step.
+    fn state(&self, carried: &Self::Carried) -> State<f64>;
+
+    /// Gives `feed` the bit patterns of all that is carried, to compare machines by.
+    fn bits(carried: &Self::Carried, feed: impl FnMut(u64));
+}
+
+/// The direction of rod 2 from that of rod 1 and (S, C) = `norm` (sin D, cos D), a2 = a1 - D.
+#[inline]
+fn lower_direction<R: Real>([sin1, cos1]: Direction<R>, [s, c]: [R; 2], norm: R) -> Direction<R> {
+    let inverse = R::ONE / norm;
+    [(sin1 * c - cos1 * s) * inverse, (cos1 * c + sin1 * s) * inverse]
+}

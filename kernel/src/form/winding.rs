@@ -1,0 +1,45 @@
+//! Whole turns, for those who ask a form that knows directions only.
+
+use super::Direction;
+use crate::real::Real;
+
+/// Counts how often a direction passes the upward vertical.
+///
+/// Show it the direction at least once every half turn; then [`angle`](Self::angle) is the unwrapped angle.
+#[derive(Clone, Copy, Debug)]
+pub struct Winding<R> {
+    turns: i32,
+    last: Direction<R>,
+}
+
+impl<R: Real> Winding<R> {
+    /// For an angle of `start` rad.
+    pub fn new(start: R) -> Self {
+        let angle = start.to_f64();
+        let turns = libm::rint(angle / core::f64::consts::TAU);
+        let rest = angle - turns * core::f64::consts::TAU;
+        Self { turns: turns as i32, last: [R::of(libm::sin(rest)), R::of(libm::cos(rest))] }
+    }
+
+    /// Takes note of the direction (sin, cos) the angle has now.
+    #[inline]
+    pub fn observe(&mut self, now: Direction<R>) {
+        let above = now[1] < R::ZERO && self.last[1] < R::ZERO;
+        let [before, after] = [self.last[0] < R::ZERO, now[0] < R::ZERO];
+        if above && before != after {
+            self.turns = self.turns.wrapping_add(if after { 1 } else { -1 });
+        }
+        self.last = now;
+    }
+
+    /// Whole turns, counted from the downward vertical.
+    pub fn turns(&self) -> i32 {
+        self.turns
+    }
+
+    /// The unwrapped angle, rad, as of the last direction observed.
+    pub fn angle(&self) -> f64 {
+        let [s, c] = self.last;
+        f64::from(self.turns) * core::f64::consts::TAU + libm::atan2(s.to_f64(), c.to_f64())
+    }
+}

@@ -1,0 +1,69 @@
+//! The planar double pendulum: Hamilton's equations, stepped by the classical Runge-Kutta method.
+//!
+//! Bob 1 hangs on rod 1 from a fixed pivot, bob 2 on rod 2 from bob 1; rods are rigid and massless, pivots frictionless.
+//! Angles are measured from the downward vertical, counter-clockwise positive; y points up; SI units throughout.
+//!
+//! | the book says | here |
+//! |---|---|
+//! | Lagrange's equations | [`Pendulum::lagrangian`], [`Pendulum::accelerations`] |
+//! | Legendre transformation | [`Pendulum::state`], [`Pendulum::motion`] |
+//! | Hamilton's equations, H | [`Pendulum::derivatives`], [`Pendulum::energy`]; equal rods: [`EqualRods`] |
+//! | Runge-Kutta method | [`Pendulum::step`], [`rk4::step`] |
+//! | small oscillations | [`Modes`], [`SmallOscillations`] |
+//! | coordinates | [`Pendulum::positions`], [`Pendulum::velocities`] |
+//! | (not in the book) bounds from the energy | [`Bounds`], [`Pendulum::cannot_turn_over`], [`Modes::step_limit`] |
+//!
+//! Everything is generic over `f32` and `f64` ([`Real`]), uses no heap, never panics, and gives the same bits on
+//! every machine.
+//!
+//! ```
+//! use double_pendulum::{Parameters, Pendulum, State};
+//!
+//! let pendulum = Pendulum::new(Parameters { m1: 1.0, m2: 2.0, l1: 1.0, l2: 0.5, g: 9.81 })?;
+//! let mut state = State::at_rest(0.5_f64, 1.0);
+//! let energy = pendulum.energy(&state);
+//! for _ in 0..1024 {
+//!     state = pendulum.step(&state, 1.0 / 1024.0);
+//! }
+//! assert!((pendulum.energy(&state) - energy).abs() < 1e-9);
+//! # Ok::<(), double_pendulum::Error>(())
+//! ```
+//!
+//! # References
+//!
+//! - `[math24]` "Double Pendulum", math24.net, 23 August 2021: the book of this crate. Three of its formulas are
+//!   misprinted and corrected here: p2's second term ([`Pendulum::state`]), the sign of the quadratic Lagrangian's last
+//!   term, and the equal-rod form's second equation ([`EqualRods::derivatives`]).
+//! - `[Landau]` L. D. Landau, E. M. Lifshitz, *Mechanics*, 3rd ed., Pergamon 1976.
+//! - `[Hairer I]` E. Hairer, S. P. Norsett, G. Wanner, *Solving Ordinary Differential Equations I*, 2nd ed.,
+//!   Springer 1993.
+//! - `[Hairer II]` E. Hairer, G. Wanner, *Solving Ordinary Differential Equations II*, 2nd ed., Springer 1996.
+#![no_std]
+#![forbid(unsafe_code)]
+
+mod bounds;
+mod equal_rods;
+mod error;
+pub mod form;
+mod geometry;
+mod hamiltonian;
+mod lagrangian;
+mod legendre;
+mod modes;
+mod params;
+mod real;
+pub mod rk4;
+mod small_oscillations;
+mod state;
+pub mod trig;
+
+pub use bounds::{Bounds, ROUNDING_MARGIN};
+pub use equal_rods::{EqualRods, Units};
+pub use error::{Error, Parameter};
+pub use geometry::Vector;
+pub use hamiltonian::Pendulum;
+pub use modes::{Mode, Modes, periodic_mass_ratio};
+pub use params::Parameters;
+pub use real::Real;
+pub use small_oscillations::{Oscillation, SmallOscillations};
+pub use state::{Motion, State};

@@ -1,0 +1,112 @@
+//! The motion of small oscillations in closed form: both angles at any time without a step.
+
+use core::marker::PhantomData;
+
+use crate::modes::{Mode, Modes};
+use crate::real::Real;
+use crate::state::Motion;
+use crate::trig::{DefaultTrig, SinCos};
+
+/// What one mode contributes to the angle of rod 1: C cos wt + S sin wt.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Oscillation<R> {
+    /// C, rad.
+    pub cosine: R,
+    /// S, rad.
+    pub sine: R,
+}
+
+impl<R: Real> Oscillation<R> {
+    /// The amplitude sqrt(C^2 + S^2) of rod 1, rad; that of rod 2 is the mode's shape times this.
+    pub fn amplitude(&self) -> R {
+        (self.cosine * self.cosine + self.sine * self.sine).sqrt()
+    }
+
+    /// The phase, rad, in [-pi, pi]: C cos wt + S sin wt = amplitude cos(wt + phase).
+    pub fn phase(&self) -> R {
+        (-self.sine).atan2(self.cosine)
+    }
+}
+
+/// The linear motion of a pendulum from given angles and velocities (`[math24]`, "Small oscillations").
+///
+/// With r1, r2 the shapes of the fast mode w1 and the slow mode w2,
+///
+/// - a1(t) = C1 cos w1 t + S1 sin w1 t + C2 cos w2 t + S2 sin w2 t
+/// - a2(t) = r1 (C1 cos w1 t + S1 sin w1 t) + r2 (C2 cos w2 t + S2 sin w2 t)
+///
+/// It is the exact motion's limit for small angles; at 30 degrees and equal masses the two are 1 degree apart after
+/// 0.07 s, at 5 degrees they stay within 0.4 pixels of a 240-pixel display for 10 s.
+///
+/// ```
+/// use double_pendulum::{Modes, Motion, Parameters, SmallOscillations};
+///
+/// let modes = Modes::new(&Parameters::equal_rods(1.0, 0.25, 9.8))?;
+/// let motion = SmallOscillations::new(modes, &Motion::at_rest(0.0_f64, 0.1));
+/// assert!((motion.at(0.0).a2 - 0.1).abs() < 1e-15);
+/// # Ok::<(), double_pendulum::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct SmallOscillations<R, T = DefaultTrig> {
+    modes: Modes<R>,
+    fast: Oscillation<R>,
+    slow: Oscillation<R>,
+    trig: PhantomData<T>,
+}
+
+impl<R: Real> SmallOscillations<R> {
+    /// The motion that starts as `start`, with the default source of sine and cosine.
+    pub fn new(modes: Modes<R>, start: &Motion<R>) -> Self {
+        Self::with_trig(modes, start)
+    }
+}
+
+impl<R: Real, T: SinCos<R>> SmallOscillations<R, T> {
+    /// As [`SmallOscillations::new`], with the source of sine and cosine given by the type.
+    ///
+    /// C1 = (r2 a1 - a2)/(r2 - r1), C2 = (a2 - r1 a1)/(r2 - r1); w1 S1 and w2 S2 are the same with velocities.
+    pub fn with_trig(modes: Modes<R>, start: &Motion<R>) -> Self {
+        let Modes { fast: Mode { frequency: fast, shape: r1 }, slow: Mode { frequency: slow, shape: r2 }, .. } = modes;
+        let split = |x1: R, x2: R| [(r2 * x1 - x2) / (r2 - r1), (x2 - r1 * x1) / (r2 - r1)];
+        let [c1, c2] = split(start.a1, start.a2);
+        let [v1, v2] = split(start.w1, start.w2);
+        Self {
+            modes,
+            fast: Oscillation { cosine: c1, sine: v1 / fast },
+            slow: Oscillation { cosine: c2, sine: v2 / slow },
+            trig: PhantomData,
+        }
+    }
+
+    /// The fast mode's part.
+    pub fn fast(&self) -> Oscillation<R> {
+        self.fast
+    }
+
+    /// The slow mode's part.
+    pub fn slow(&self) -> Oscillation<R> {
+        self.slow
+    }
+
+    /// Angles and angular velocities a time `t` (s) after the start; `t` may be negative.
+    ///
+    /// The phase w t is rounded once, so the error grows as one rounding of w t: with `f32` 1e-3 rad at w t = 1e4.
+    pub fn at(&self, t: R) -> Motion<R> {
+        let (a_fast, w_fast) = evaluate::<R, T>(&self.modes.fast, &self.fast, t);
+        let (a_slow, w_slow) = evaluate::<R, T>(&self.modes.slow, &self.slow, t);
+        let (r1, r2) = (self.modes.fast.shape, self.modes.slow.shape);
+        Motion {
+            a1: a_fast + a_slow,
+            a2: r1 * a_fast + r2 * a_slow,
+            w1: w_fast + w_slow,
+            w2: r1 * w_fast + r2 * w_slow,
+        }
+    }
+}
+
+/// C cos wt + S sin wt and its time derivative.
+fn evaluate<R: Real, T: SinCos<R>>(mode: &Mode<R>, part: &Oscillation<R>, t: R) -> (R, R) {
+    let (sin, cos) = T::sin_cos(mode.frequency * t);
+    (part.cosine * cos + part.sine * sin, mode.frequency * (part.sine * cos - part.cosine * sin))
+}

@@ -1,0 +1,91 @@
+//! The two ways to say where the pendulum is and how it moves: by momenta and by velocities.
+
+use crate::error::{Error, Parameter, check_finite};
+use crate::real::Real;
+
+/// Angles and canonical momenta: a point of the phase space.
+///
+/// Angles are measured from the downward vertical, positive counter-clockwise, and are not wrapped.
+/// [`Pendulum::motion`](crate::Pendulum::motion) turns it into angular velocities.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct State<R> {
+    /// Angle of rod 1, rad.
+    pub a1: R,
+    /// Angle of rod 2, rad.
+    pub a2: R,
+    /// Momentum conjugate to `a1`, kg m^2/s.
+    pub p1: R,
+    /// Momentum conjugate to `a2`, kg m^2/s.
+    pub p2: R,
+}
+
+impl<R: Real> State<R> {
+    /// Held still at the angles `a1`, `a2` (rad): both momenta are zero.
+    pub fn at_rest(a1: R, a2: R) -> Self {
+        Self { a1, a2, p1: R::ZERO, p2: R::ZERO }
+    }
+
+    /// Refuses NaN and infinite values.
+    pub fn check(&self) -> Result<(), Error> {
+        let &Self { a1, a2, p1, p2 } = self;
+        check_finite([(Parameter::A1, a1), (Parameter::A2, a2), (Parameter::P1, p1), (Parameter::P2, p2)])
+    }
+}
+
+/// In the book's order: a1, a2, p1, p2.
+impl<R> From<[R; 4]> for State<R> {
+    fn from([a1, a2, p1, p2]: [R; 4]) -> Self {
+        Self { a1, a2, p1, p2 }
+    }
+}
+
+/// In the book's order: a1, a2, p1, p2.
+impl<R> From<State<R>> for [R; 4] {
+    fn from(State { a1, a2, p1, p2 }: State<R>) -> Self {
+        [a1, a2, p1, p2]
+    }
+}
+
+/// Angles and angular velocities: the Lagrangian's variables, w = da/dt.
+///
+/// Angles as in [`State`]; [`Pendulum::state`](crate::Pendulum::state) turns it into canonical momenta.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Motion<R> {
+    /// Angle of rod 1, rad.
+    pub a1: R,
+    /// Angle of rod 2, rad.
+    pub a2: R,
+    /// Angular velocity of rod 1, rad/s.
+    pub w1: R,
+    /// Angular velocity of rod 2, rad/s.
+    pub w2: R,
+}
+
+impl<R: Real> Motion<R> {
+    /// Held still at the angles `a1`, `a2` (rad).
+    pub fn at_rest(a1: R, a2: R) -> Self {
+        Self { a1, a2, w1: R::ZERO, w2: R::ZERO }
+    }
+
+    /// Refuses NaN and infinite values.
+    pub fn check(&self) -> Result<(), Error> {
+        let &Self { a1, a2, w1, w2 } = self;
+        check_finite([(Parameter::A1, a1), (Parameter::A2, a2), (Parameter::W1, w1), (Parameter::W2, w2)])
+    }
+}
+
+/// In the book's order: a1, a2, w1, w2.
+impl<R> From<[R; 4]> for Motion<R> {
+    fn from([a1, a2, w1, w2]: [R; 4]) -> Self {
+        Self { a1, a2, w1, w2 }
+    }
+}
+
+/// In the book's order: a1, a2, w1, w2.
+impl<R> From<Motion<R>> for [R; 4] {
+    fn from(Motion { a1, a2, w1, w2 }: Motion<R>) -> Self {
+        [a1, a2, w1, w2]
+    }
+}
