@@ -1,0 +1,287 @@
+//! The application: reads the buttons, moves the scene, draws it and sends it, tick by tick.
+
+use double_pendulum::Error;
+use embedded_io::Write;
+
+use crate::canvas::Canvas;
+use crate::command::{Command, Order};
+use crate::config::{MOST_MESSAGES_PER_TICK, MOST_TICKS_PER_FRAME, TICK_RATE};
+use crate::controls::{Buttons, Controls};
+use crate::display::Display;
+use crate::job::Field;
+use crate::player::Player;
+use crate::protocol::{Done, Frame, LinkError, MAX_WIRE, Message, Refused, encode};
+use crate::scenes::SceneName;
+use crate::service::{Received, Service};
+use crate::settings::Settings;
+
+/// What is worth a line in the log.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Event<Panel, Link> {
+    /// A scene starts with these settings.
+    Started(SceneName, Settings),
+    /// This is not possible because of this; all goes on as it was.
+    Refused(Command, Field),
+    /// Ticks passed without a picture. Said at most once a second, so that saying it does not make it worse.
+    Dropped {
+        /// Since this was last said.
+        ticks: u32,
+        /// Since reset.
+        total: u32,
+    },
+    /// Damaged messages came over the link. Said at most once a second, too.
+    Damaged {
+        /// Since this was last said.
+        messages: u32,
+        /// Since reset.
+        total: u32,
+        /// What was wrong with the last one.
+        last: LinkError,
+    },
+    /// A picture did not reach the panel, though the one before did.
+    Panel(Panel),
+    /// A frame did not reach the link, though the one before did.
+    Link(Link),
+    /// A motion is asked for over the link.
+    Asked,
+}
+
+/// The same on a board and in a test: a panel, a byte sink and buttons are all it needs.
+#[derive(Debug)]
+pub struct App<Panel, Link, Keys> {
+    panel: Panel,
+    link: Link,
+    keys: Keys,
+    controls: Controls,
+    player: Player,
+    service: Service,
+    canvas: Canvas,
+    /// Ticks done since reset.
+    ticks: u32,
+    /// Pictures drawn since reset.
+    frames: u32,
+    /// Ticks without a picture since reset.
+    dropped: u32,
+    dropped_logged: Logged,
+    /// Damaged messages since reset, and what was wrong with the last one.
+    damaged: (u32, Option<LinkError>),
+    damaged_logged: Logged,
+    panel_failed: bool,
+    link_failed: bool,
+    stopwatch: fn() -> u32,
+    /// Processor cycles of the picture before, from the first tick to the end of its sending.
+    busy_cycles: u32,
+}
+
+impl<Panel: Display, Link: Write, Keys: Buttons> App<Panel, Link, Keys> {
+    /// Starts with `settings`, at tick 0; the kernel's error if they describe no pendulum.
+    pub fn new(settings: Settings, panel: Panel, link: Link, keys: Keys) -> Result<Self, Error> {
+        Ok(Self {
+            panel,
+            link,
+            keys,
+            controls: Controls::default(),
+            player: Player::new(settings)?,
+            service: Service::default(),
+            canvas: Canvas::default(),
+            ticks: 0,
+            frames: 0,
+            dropped: 0,
+            dropped_logged: Logged::default(),
+            damaged: (0, None),
+            damaged_logged: Logged::default(),
+            panel_failed: false,
+            link_failed: false,
+            stopwatch: || 0,
+            busy_cycles: 0,
+        })
+    }
+
+    /// Counts costs by `stopwatch`, which reads processor cycles and may wrap.
+    pub fn use_stopwatch(&mut self, stopwatch: fn() -> u32) {
+        self.stopwatch = stopwatch;
+    }
+
+    /// Catches up with the clock, which counts ticks since reset and may wrap, then draws and sends once.
+    ///
+    /// Every tick is integrated, however late; the state after n ticks does not depend on how often this is called.
+    /// At most [`MOST_TICKS_PER_FRAME`] are done per call; the rest are done by the next calls. Returns whether the
+    /// clock is caught up with; if not, call again without waiting for the next tick.
+    pub fn run_to(&mut self, clock: u32, mut log: impl FnMut(Event<Panel::Error, Link::Error>)) -> bool {
+        let late = clock.wrapping_sub(self.ticks);
+        let ticks = late.min(MOST_TICKS_PER_FRAME);
+        if ticks == 0 {
+            return true;
+        }
+        let start = (self.stopwatch)();
+        for _ in 0..ticks {
+            self.tick(&mut log);
+        }
+        self.dropped = self.dropped.wrapping_add(ticks - 1);
+        self.log_dropped(&mut log);
+        self.player.draw(&mut self.canvas);
+        let scene_cycles = (self.stopwatch)().wrapping_sub(start);
+        self.show(scene_cycles, &mut log);
+        self.busy_cycles = (self.stopwatch)().wrapping_sub(start);
+        ticks == late
+    }
+
+    /// Takes bytes received over the link, obeys and answers. Stops after [`MOST_MESSAGES_PER_TICK`] messages, so that no
+    /// flood of them delays the picture; what is left in `bytes` waits for the next call.
+    pub fn receive(
+        &mut self,
+        bytes: impl IntoIterator<Item = u8>,
+        mut log: impl FnMut(Event<Panel::Error, Link::Error>),
+    ) {
+        let mut left = MOST_MESSAGES_PER_TICK;
+        for byte in bytes {
+            let Some(received) = self.service.receive(byte) else { continue };
+            match received {
+                Received::Accepted => log(Event::Asked),
+                Received::Order(order) => self.follow(order, &mut log),
+                Received::Refused(refused) => self.send(&refused, &mut log),
+                Received::Damaged(error) => self.damaged = (self.damaged.0.wrapping_add(1), Some(error)),
+            }
+            left -= 1;
+            if left == 0 {
+                break;
+            }
+        }
+        self.log_damaged(&mut log);
+    }
+
+    /// Does a bounded piece of the work asked for over the link, a step at most; whether there is more.
+    pub fn work(&mut self, mut log: impl FnMut(Event<Panel::Error, Link::Error>)) -> bool {
+        if let Some(sample) = self.service.work() {
+            self.send(&sample, &mut log);
+        }
+        self.service.is_busy()
+    }
+
+    /// What is played.
+    pub fn player(&self) -> &Player {
+        &self.player
+    }
+
+    /// The last picture drawn.
+    pub fn canvas(&self) -> &Canvas {
+        &self.canvas
+    }
+
+    /// The byte sink.
+    pub fn link(&self) -> &Link {
+        &self.link
+    }
+
+    /// The panel.
+    pub fn panel(&self) -> &Panel {
+        &self.panel
+    }
+
+    fn tick(&mut self, log: &mut impl FnMut(Event<Panel::Error, Link::Error>)) {
+        self.ticks = self.ticks.wrapping_add(1);
+        for command in self.controls.tick(self.keys.read()) {
+            if let Err(field) = self.obey(command, log) {
+                log(Event::Refused(command, field));
+            }
+        }
+        self.player.tick();
+    }
+
+    fn obey(&mut self, command: Command, log: &mut impl FnMut(Event<Panel::Error, Link::Error>)) -> Result<(), Field> {
+        if self.player.obey(command)? {
+            log(Event::Started(self.player.name(), *self.player.settings()));
+        }
+        Ok(())
+    }
+
+    /// Obeys an order that came over the link, and answers it.
+    fn follow(&mut self, Order { request, command }: Order, log: &mut impl FnMut(Event<Panel::Error, Link::Error>)) {
+        match self.obey(command, log) {
+            Ok(()) if command == Command::Ask => self.send(&self.player.status(request), log),
+            Ok(()) => self.send(&Done { request }, log),
+            Err(field) => self.send(&Refused { request, field: field.code() }, log),
+        }
+    }
+
+    fn log_dropped(&mut self, log: &mut impl FnMut(Event<Panel::Error, Link::Error>)) {
+        if let Some(ticks) = self.dropped_logged.news(self.dropped, self.ticks) {
+            log(Event::Dropped { ticks, total: self.dropped });
+        }
+    }
+
+    fn log_damaged(&mut self, log: &mut impl FnMut(Event<Panel::Error, Link::Error>)) {
+        if let (total, Some(last)) = self.damaged
+            && let Some(messages) = self.damaged_logged.news(total, self.ticks)
+        {
+            log(Event::Damaged { messages, total, last });
+        }
+    }
+
+    fn show(&mut self, scene_cycles: u32, log: &mut impl FnMut(Event<Panel::Error, Link::Error>)) {
+        let shown = self.panel.flush(&self.canvas);
+        report(shown, &mut self.panel_failed, |error| log(Event::Panel(error)));
+        let frame = self.frame(scene_cycles);
+        self.send(&frame, log);
+        self.frames = self.frames.wrapping_add(1);
+    }
+
+    fn frame(&self, scene_cycles: u32) -> Frame {
+        let settings = self.player.settings();
+        let report = self.player.report();
+        let [start_angle, _] = settings.angles();
+        Frame {
+            sequence: self.frames,
+            dropped: self.dropped,
+            scene: self.player.name().code(),
+            paused: self.player.is_paused().into(),
+            step: report.step,
+            time: report.time,
+            mass_ratio: settings.mass_ratio(),
+            start_angle,
+            state: report.state.into(),
+            energy_error: report.energy_error,
+            trusted_until: report.trusted_until,
+            scene_cycles,
+            busy_cycles: self.busy_cycles,
+        }
+    }
+
+    /// Sends a message; a delimiter first if the receiver may be in the middle of something else.
+    fn send<M: Message>(&mut self, message: &M, log: &mut impl FnMut(Event<Panel::Error, Link::Error>)) {
+        let opening: &[u8] = if self.frames == 0 || self.link_failed { &[0] } else { &[] };
+        let sent = self.link.write_all(opening).and_then(|()| self.link.write_all(encode(message, &mut [0; MAX_WIRE])));
+        report(sent, &mut self.link_failed, |error| log(Event::Link(error)));
+    }
+}
+
+/// Says how a count has grown, at most once a second.
+#[derive(Clone, Copy, Debug, Default)]
+struct Logged {
+    /// The count when last said.
+    count: u32,
+    /// The tick when last said.
+    tick: u32,
+}
+
+impl Logged {
+    /// By how much `count` has grown, if it has and it is time to say so.
+    fn news(&mut self, count: u32, tick: u32) -> Option<u32> {
+        let grown = count.wrapping_sub(self.count);
+        let is_time = grown != 0 && tick.wrapping_sub(self.tick) >= TICK_RATE;
+        is_time.then(|| {
+            *self = Self { count, tick };
+            grown
+        })
+    }
+}
+
+/// Notes whether something failed, and says so only if it did not fail before.
+fn report<E>(result: Result<(), E>, failed: &mut bool, log: impl FnOnce(E)) {
+    let failed_before = core::mem::replace(failed, result.is_err());
+    if let Err(error) = result
+        && !failed_before
+    {
+        log(error);
+    }
+}

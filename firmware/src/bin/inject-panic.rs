@@ -1,0 +1,11 @@
+//! Panics on purpose, for the test of the report.
+#![no_std]
+#![no_main]
+
+use firmware as _;
+
+#[cortex_m_rt::entry]
+fn main() -> ! {
+    defmt::info!("boot: about to panic");
+    panic!("injected with the number {}", 42)
+}

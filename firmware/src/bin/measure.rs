@@ -1,0 +1,45 @@
+//! Runs one [`Request`] from the semihosting command line and prints its outcome, and the ticks it took, as one line.
+#![no_std]
+#![no_main]
+
+use core::fmt::Write;
+
+use cortex_m::peripheral::{Peripherals, SYST, syst::SystClkSource};
+use cortex_m_semihosting::{debug, hio};
+use firmware::board::semihosting;
+use firmware::measure::{Outcome, Request};
+
+/// SysTick counts down from here; a run must take fewer ticks.
+const FULL: u32 = 0x00ff_ffff;
+
+#[cortex_m_rt::entry]
+fn main() -> ! {
+    let mut buffer = [0; 256];
+    match run(&mut buffer) {
+        Ok(()) => debug::exit(debug::EXIT_SUCCESS),
+        Err(()) => debug::exit(debug::EXIT_FAILURE),
+    }
+    loop {
+        cortex_m::asm::wfi();
+    }
+}
+
+fn run(buffer: &mut [u8]) -> Result<(), ()> {
+    let mut output = hio::hstdout()?;
+    let mut peripherals = Peripherals::take().ok_or(())?;
+    start_clock(&mut peripherals.SYST);
+    let outcome =
+        Request::parse(semihosting::command_line(buffer).ok_or(())?).and_then(|request| Outcome::of(&request));
+    let ticks = FULL - SYST::get_current();
+    match outcome {
+        Ok(outcome) => writeln!(output, "{outcome} {ticks}").map_err(|_| ()),
+        Err(error) => writeln!(output, "{error}").map_err(|_| ()).and(Err(())),
+    }
+}
+
+fn start_clock(clock: &mut SYST) {
+    clock.set_clock_source(SystClkSource::Core);
+    clock.set_reload(FULL);
+    clock.clear_current();
+    clock.enable_counter();
+}

@@ -1,0 +1,72 @@
+//! The tick: SysTick, which every Cortex-M has, counted by its interrupt.
+
+use core::sync::atomic::{AtomicU32, Ordering};
+
+use cortex_m::peripheral::SYST;
+use cortex_m::peripheral::syst::SystClkSource;
+use cortex_m_rt::exception;
+
+use crate::config::TICK_RATE;
+
+/// Ticks since [`Clock::start`].
+static TICKS: AtomicU32 = AtomicU32::new(0);
+/// Processor cycles per tick.
+static PERIOD: AtomicU32 = AtomicU32::new(0);
+
+#[exception]
+fn SysTick() {
+    TICKS.fetch_add(1, Ordering::Relaxed);
+}
+
+/// A running clock of [`TICK_RATE`] ticks per second.
+#[derive(Debug)]
+pub struct Clock(());
+
+impl Clock {
+    /// Starts it from the processor's clock of `hertz`. The period is rounded down to whole processor cycles: at
+    /// 50 MHz 833,333 instead of 833,333.3, which is 0.4 parts per million fast.
+    pub fn start(mut systick: SYST, hertz: u32) -> Self {
+        systick.set_clock_source(SystClkSource::Core);
+        PERIOD.store(hertz / TICK_RATE, Ordering::Relaxed);
+        systick.set_reload((hertz / TICK_RATE).saturating_sub(1));
+        systick.clear_current();
+        systick.enable_interrupt();
+        systick.enable_counter();
+        Self(())
+    }
+
+    /// Ticks since the start; wraps after 2^32 of them, 828 days.
+    pub fn ticks(&self) -> u32 {
+        TICKS.load(Ordering::Relaxed)
+    }
+
+    /// Sleeps until the tick after `last`; returns at once if it has passed already.
+    pub fn wait_after(&self, last: u32) -> u32 {
+        // An interrupt between the test and the sleep stays pending only while interrupts are masked: with them
+        // masked `wfi` still wakes, so no tick is slept through.
+        loop {
+            let now = cortex_m::interrupt::free(|_| {
+                if self.ticks() == last {
+                    cortex_m::asm::wfi();
+                }
+                self.ticks()
+            });
+            if now != last {
+                return now;
+            }
+        }
+    }
+}
+
+/// Processor cycles since the clock's start; wraps.
+pub fn cycles() -> u32 {
+    let period = PERIOD.load(Ordering::Relaxed);
+    loop {
+        let ticks = TICKS.load(Ordering::Relaxed);
+        let left = SYST::get_current();
+        // No tick came between the two readings.
+        if TICKS.load(Ordering::Relaxed) == ticks {
+            return ticks.wrapping_mul(period).wrapping_add(period.wrapping_sub(1).wrapping_sub(left));
+        }
+    }
+}

@@ -1,0 +1,87 @@
+//! General-purpose pins (PL061).
+
+use core::convert::Infallible;
+
+use embedded_hal::digital::{ErrorType, OutputPin};
+
+use crate::board::register::Register;
+
+/// A port, by its base address.
+#[derive(Clone, Copy, Debug)]
+pub struct Port(usize);
+
+/// Port A: serial port and panel.
+pub const A: Port = Port(0x4000_4000);
+const C: Port = Port(0x4000_6000);
+const D: Port = Port(0x4000_7000);
+/// Port E: four buttons.
+pub const E: Port = Port(0x4002_4000);
+/// Port F: the fifth button.
+pub const F: Port = Port(0x4002_5000);
+
+impl Port {
+    const fn register(self, offset: usize) -> Register {
+        // SAFETY: the ports above are those of the data sheet, chapter 8, and the offsets below lie within a port;
+        // pins cannot break memory safety.
+        unsafe { Register::at(self.0 + offset) }
+    }
+
+    /// Reads and writes only the pins of `pins`: the address carries the mask.
+    const fn data(self, pins: u8) -> Register {
+        self.register((pins as usize) << 2)
+    }
+
+    /// Hands `pins` over to the port's serial device.
+    pub fn use_for_device(self, pins: u8) {
+        self.register(0x420).modify(0, pins.into()); // alternate function
+        self.register(0x51C).modify(0, pins.into()); // digital
+    }
+
+    /// Makes `pins` inputs, held high unless something pulls them low.
+    pub fn use_for_input(self, pins: u8) {
+        self.register(0x400).modify(pins.into(), 0); // direction
+        self.register(0x510).modify(0, pins.into()); // pull-up
+        self.register(0x51C).modify(0, pins.into());
+    }
+
+    fn use_for_output(self, pins: u8) -> Output {
+        self.register(0x400).modify(0, pins.into());
+        self.register(0x51C).modify(0, pins.into());
+        Output(self.data(pins))
+    }
+
+    /// Which of `pins` are high.
+    pub fn read(self, pins: u8) -> u8 {
+        self.data(pins).read() as u8
+    }
+}
+
+/// PC7: the panel's data (high) or command (low).
+pub fn data_not_command() -> Output {
+    C.use_for_output(1 << 7)
+}
+
+/// PD0: low selects the memory card, which shares the panel's bus.
+pub fn card_select() -> Output {
+    D.use_for_output(1 << 0)
+}
+
+/// An output pin.
+#[derive(Debug)]
+pub struct Output(Register);
+
+impl ErrorType for Output {
+    type Error = Infallible;
+}
+
+impl OutputPin for Output {
+    fn set_low(&mut self) -> Result<(), Infallible> {
+        self.0.write(0);
+        Ok(())
+    }
+
+    fn set_high(&mut self) -> Result<(), Infallible> {
+        self.0.write(u32::MAX); // The address lets only this pin change.
+        Ok(())
+    }
+}

@@ -1,0 +1,68 @@
+//! Stellaris LM3S6965 evaluation board: Cortex-M3 at 50 MHz, 128 x 64 OLED panel, five buttons, a serial port.
+//!
+//! Source: LM3S6965 data sheet; the wiring is that of the board, which QEMU's `lm3s6965evb` follows.
+//!
+//! | part | pins |
+//! |---|---|
+//! | panel | SSI0: PA2 clock, PA3 select, PA5 data; PC7 data/command |
+//! | memory card, unused | PD0 select, kept high |
+//! | buttons | PE0 up, PE1 down, PE2 left, PE3 right, PF1 select; pressed reads 0 |
+//! | serial link | UART0: PA0 in, PA1 out |
+
+mod buttons;
+mod gpio;
+mod ssi;
+mod system;
+mod uart;
+
+use cortex_m::Peripherals;
+use embedded_hal::digital::OutputPin;
+use embedded_hal_bus::spi::{ExclusiveDevice, NoDelay};
+
+use super::{Clock, Receiver};
+use crate::display::Ssd0323;
+
+pub use buttons::Keys;
+pub use gpio::Output;
+pub use ssi::{NoSelect, Ssi};
+pub use uart::Uart;
+
+/// The board's panel.
+pub type Panel = Ssd0323<ExclusiveDevice<Ssi, NoSelect, NoDelay>, Output>;
+
+/// The board, set up and running.
+pub struct Board {
+    /// The OLED panel, not yet initialised.
+    pub panel: Panel,
+    /// The serial link outwards.
+    pub link: Uart,
+    /// The serial link inwards.
+    pub receiver: Receiver,
+    /// The five buttons.
+    pub keys: Keys,
+    /// The tick.
+    pub clock: Clock,
+    /// The processor's clock, Hz.
+    pub hertz: u32,
+}
+
+impl Board {
+    /// Sets the board up; `None` the second time.
+    pub fn take() -> Option<Self> {
+        let core = Peripherals::take()?;
+        let hertz = system::start();
+        let Ok(()) = gpio::card_select().set_high();
+        let link = Uart::start(hertz);
+        let receiver = Receiver::new(uart::PORT)?;
+        uart::enable_receiver();
+        let Ok(panel) = ExclusiveDevice::new_no_delay(Ssi::start(hertz), NoSelect);
+        Some(Self {
+            panel: Ssd0323::new(panel, gpio::data_not_command()),
+            link,
+            receiver,
+            keys: Keys::start(),
+            clock: Clock::start(core.SYST, hertz),
+            hertz,
+        })
+    }
+}

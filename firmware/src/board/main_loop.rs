@@ -1,0 +1,43 @@
+//! The main loop of every board, and its log.
+
+use core::fmt::Debug;
+
+use defmt::Debug2Format;
+use embedded_io::Write;
+
+use super::{Clock, Receiver, cycles};
+use crate::app::{App, Event};
+use crate::controls::Buttons;
+use crate::display::Display;
+
+/// Runs the application for ever; between ticks it works for the host, or sleeps.
+pub fn run<Panel, Link, Keys>(mut app: App<Panel, Link, Keys>, mut receiver: Receiver, clock: Clock) -> !
+where
+    Panel: Display<Error: Debug>,
+    Link: Write,
+    Keys: Buttons,
+{
+    app.use_stopwatch(cycles);
+    let mut now = clock.ticks();
+    loop {
+        while !app.run_to(now, log) {}
+        app.receive(&mut receiver, log);
+        while clock.ticks() == now && app.work(log) {}
+        now = clock.wait_after(now);
+    }
+}
+
+/// Writes one event to the log.
+fn log<Panel: Debug, Link: Debug>(event: Event<Panel, Link>) {
+    match event {
+        Event::Started(scene, settings) => defmt::info!("start: {} with {}", scene, settings),
+        Event::Refused(command, field) => defmt::warn!("refused {}: {}", command, field),
+        Event::Dropped { ticks, total } => defmt::warn!("dropped {} pictures, {} since reset", ticks, total),
+        Event::Panel(error) => defmt::error!("panel: {}", Debug2Format(&error)),
+        Event::Damaged { messages, total, last } => {
+            defmt::warn!("{} damaged messages, {} since reset, the last: {}", messages, total, last);
+        }
+        Event::Asked => defmt::info!("computing a motion on request"),
+        Event::Link(error) => defmt::error!("serial link: {}", Debug2Format(&error)),
+    }
+}

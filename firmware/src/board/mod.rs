@@ -1,0 +1,20 @@
+//! The boards: the only place for registers, clocks, interrupts and `unsafe`.
+
+pub mod lm3s6965evb;
+pub mod mps2_an386;
+pub mod semihosting;
+#[cfg(feature = "stm32f405")]
+pub mod stm32f405;
+
+mod clock;
+mod crash;
+mod main_loop;
+mod receiver;
+mod register;
+
+#[cfg(not(feature = "stm32f405"))] // which has a log of its own
+use defmt_semihosting as _; // where the log goes
+
+pub use clock::{Clock, cycles};
+pub use main_loop::run;
+pub use receiver::Receiver;

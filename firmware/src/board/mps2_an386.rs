@@ -1,0 +1,121 @@
+//! ARM MPS2 with image AN386: Cortex-M4F at 25 MHz, serial port only.
+//!
+//! Source: ARM DAI 0386; the serial port is the CMSDK UART of ARM DDI 0479.
+
+use cortex_m::Peripherals;
+use cortex_m::interrupt::InterruptNumber;
+use cortex_m::peripheral::NVIC;
+use embedded_io::{Error, ErrorKind, ErrorType, Write};
+
+use super::receiver::Port;
+use super::register::Register;
+use super::{Clock, Receiver};
+use crate::config::BAUD;
+
+/// The processor's clock, Hz.
+const HERTZ: u32 = 25_000_000;
+/// A byte leaves in 10/460,800 s = 22 us or 543 cycles, and a try takes at least 4.
+const TRIES: u32 = 10_000;
+
+// SAFETY: UART0 registers; without DMA they cannot break memory safety.
+const DATA: Register = unsafe { Register::at(0x4000_4000) };
+const STATE: Register = unsafe { Register::at(0x4000_4004) };
+const CONTROL: Register = unsafe { Register::at(0x4000_4008) };
+const INTERRUPT_CLEAR: Register = unsafe { Register::at(0x4000_400C) };
+const DIVISOR: Register = unsafe { Register::at(0x4000_4010) };
+
+const TRANSMITTER_FULL: u32 = 1 << 0;
+const RECEIVER_FULL: u32 = 1 << 1;
+/// Transmitter, receiver and the receiver's interrupt on.
+const ENABLE: u32 = 1 << 3 | 1 << 1 | 1 << 0;
+const RECEIVED: u32 = 1 << 1;
+
+/// The board, set up and running.
+pub struct Board {
+    /// The serial link outwards.
+    pub link: Uart,
+    /// The serial link inwards.
+    pub receiver: Receiver,
+    /// The tick.
+    pub clock: Clock,
+    /// The processor's clock, Hz.
+    pub hertz: u32,
+}
+
+impl Board {
+    /// Sets the board up; `None` the second time.
+    pub fn take() -> Option<Self> {
+        let core = Peripherals::take()?;
+        let receiver = Receiver::new(PORT)?;
+        Some(Self { link: Uart::start(), receiver, clock: Clock::start(core.SYST, HERTZ), hertz: HERTZ })
+    }
+}
+
+/// The outward direction of the serial port.
+#[derive(Debug)]
+pub struct Uart(());
+
+/// The port did not take a byte in time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Timeout;
+
+impl Uart {
+    fn start() -> Self {
+        DIVISOR.write(HERTZ / BAUD);
+        CONTROL.write(ENABLE);
+        // SAFETY: no critical section relies on this interrupt being masked.
+        unsafe { NVIC::unmask(Interrupt) };
+        Self(())
+    }
+}
+
+impl core::fmt::Display for Timeout {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str("the serial port did not take a byte in time")
+    }
+}
+
+impl core::error::Error for Timeout {}
+
+impl Error for Timeout {
+    fn kind(&self) -> ErrorKind {
+        ErrorKind::TimedOut
+    }
+}
+
+impl ErrorType for Uart {
+    type Error = Timeout;
+}
+
+impl Write for Uart {
+    fn write(&mut self, bytes: &[u8]) -> Result<usize, Timeout> {
+        for &byte in bytes {
+            if !STATE.wait(TRANSMITTER_FULL, 0, TRIES) {
+                return Err(Timeout);
+            }
+            DATA.write(byte.into());
+        }
+        Ok(bytes.len())
+    }
+
+    /// Bytes leave by themselves; there is nothing to wait for.
+    fn flush(&mut self) -> Result<(), Timeout> {
+        Ok(())
+    }
+}
+
+/// The inward direction.
+const PORT: Port = Port {
+    clear: || INTERRUPT_CLEAR.write(RECEIVED),
+    take: || if STATE.read() & RECEIVER_FULL != 0 { Some(DATA.read() as u8) } else { None },
+};
+
+#[derive(Clone, Copy)]
+struct Interrupt;
+
+// SAFETY: 0 is the number of UART0's receiver on this board.
+unsafe impl InterruptNumber for Interrupt {
+    fn number(self) -> u16 {
+        0
+    }
+}

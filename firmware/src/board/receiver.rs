@@ -1,0 +1,72 @@
+//! Received bytes: an interrupt puts them into a queue, the application takes them out.
+
+use core::cell::Cell;
+use core::sync::atomic::{AtomicU32, Ordering};
+
+use cortex_m::interrupt::Mutex;
+use cortex_m_rt::exception;
+use heapless::spsc::{Consumer, Producer, Queue};
+
+use crate::config::RECEIVE_QUEUE;
+
+/// A serial port as the interrupt sees it.
+#[derive(Clone, Copy)]
+pub(super) struct Port {
+    /// Ends the interrupt. Done before the bytes are taken, so that one that comes meanwhile interrupts anew.
+    pub clear: fn(),
+    /// Takes the next byte out; `None` once there is none.
+    pub take: fn() -> Option<u8>,
+}
+
+/// How the interrupt gets at the bytes, and where it puts them.
+struct Source {
+    port: Port,
+    queue: Producer<'static, u8>,
+}
+
+static SOURCE: Mutex<Cell<Option<Source>>> = Mutex::new(Cell::new(None));
+static LOST: AtomicU32 = AtomicU32::new(0);
+
+// SAFETY: of the exceptions that come here only the receiver's interrupt is ever enabled.
+#[exception]
+unsafe fn DefaultHandler(_number: i16) {
+    let source = cortex_m::interrupt::free(|token| SOURCE.borrow(token).take());
+    if let Some(mut source) = source {
+        (source.port.clear)();
+        while let Some(byte) = (source.port.take)() {
+            if source.queue.enqueue(byte).is_err() {
+                LOST.fetch_add(1, Ordering::Relaxed);
+            }
+        }
+        cortex_m::interrupt::free(|token| SOURCE.borrow(token).set(Some(source)));
+    }
+}
+
+/// The bytes received so far and not yet taken.
+pub struct Receiver {
+    queue: Consumer<'static, u8>,
+}
+
+impl Receiver {
+    /// Lets the interrupt fill a queue from `port`; `None` the second time.
+    pub(super) fn new(port: Port) -> Option<Self> {
+        let queue = cortex_m::singleton!(: Queue<u8, RECEIVE_QUEUE> = Queue::new())?;
+        let (producer, consumer) = queue.split();
+        cortex_m::interrupt::free(|token| SOURCE.borrow(token).set(Some(Source { port, queue: producer })));
+        Some(Self { queue: consumer })
+    }
+
+    /// Bytes lost since reset because nobody took them in time.
+    pub fn lost(&self) -> u32 {
+        LOST.load(Ordering::Relaxed)
+    }
+}
+
+impl Iterator for Receiver {
+    type Item = u8;
+
+    /// The next byte, if one has come.
+    fn next(&mut self) -> Option<u8> {
+        self.queue.dequeue()
+    }
+}

@@ -1,0 +1,105 @@
+//! STM32F405 (or F407): Cortex-M4F at 168 MHz, an SSD1306 panel on I2C1, one button, serial port USART3.
+//!
+//! The same image runs on the chip and in QEMU's `netduinoplus2`, where there are the processor, the memory and the
+//! serial ports, but neither clock control nor pins nor I2C: their registers read 0 and forget what is written.
+//!
+//! Source: ST RM0090, reference manual of the STM32F405 and F407; pins as on the Adafruit Feather STM32F405 Express.
+//!
+//! | what | pins |
+//! |---|---|
+//! | panel | I2C1: PB6 clock, PB7 data; address 0x3C or 0x3D |
+//! | button | PC7, pulls low |
+//! | serial link | USART3: PB10 out, PB11 in |
+
+mod i2c;
+mod log;
+mod uart;
+
+use stm32f4xx_hal::gpio::PC7;
+use stm32f4xx_hal::pac::{self, RCC};
+use stm32f4xx_hal::prelude::*;
+use stm32f4xx_hal::rcc::{Config, Rcc};
+
+use super::{Clock, Receiver};
+use crate::controls::{Buttons, Pressed};
+use crate::display::Ssd1306;
+
+pub use i2c::{Bus, BusError};
+pub use uart::Uart;
+
+/// The processor's clock, Hz: the fastest of this chip, and the fixed one of the emulated machine.
+const HERTZ: u32 = 168_000_000;
+
+/// Where the image runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, defmt::Format)]
+pub enum Place {
+    /// On the chip.
+    Chip,
+    /// In QEMU.
+    Emulator,
+}
+
+/// The board, set up and running.
+pub struct Board {
+    /// The OLED panel, not yet initialised; it may be absent.
+    pub panel: Ssd1306<Bus>,
+    /// The serial link outwards.
+    pub link: Uart,
+    /// The serial link inwards.
+    pub receiver: Receiver,
+    /// The one button.
+    pub keys: Keys,
+    /// The tick.
+    pub clock: Clock,
+    /// The processor's clock, Hz.
+    pub hertz: u32,
+    /// Where the image runs.
+    pub place: Place,
+}
+
+impl Board {
+    /// Sets the board up; `None` the second time.
+    pub fn take() -> Option<Self> {
+        let core = cortex_m::Peripherals::take()?;
+        let chip = pac::Peripherals::take()?;
+        let (mut rcc, place) = start_clock(chip.RCC);
+        log::start(place);
+        let (b, c) = (chip.GPIOB.split(&mut rcc), chip.GPIOC.split(&mut rcc));
+        // There is a divisor for this baud rate at either clock, so this does not fail.
+        let link = Uart::start(chip.USART3, (b.pb10, b.pb11), &mut rcc).ok()?;
+        let receiver = Receiver::new(uart::PORT)?;
+        uart::enable_receiver();
+        Some(Self {
+            panel: Ssd1306::new(Bus::start(chip.I2C1, b.pb6, b.pb7, &mut rcc)),
+            link,
+            receiver,
+            keys: Keys(c.pc7.into_pull_up_input()),
+            clock: Clock::start(core.SYST, HERTZ),
+            hertz: HERTZ,
+            place,
+        })
+    }
+}
+
+/// The one button is the select button: a tap starts again, held it goes to the next scene.
+pub struct Keys(PC7);
+
+impl Buttons for Keys {
+    fn read(&mut self) -> Pressed {
+        Pressed { select: self.0.is_low(), ..Pressed::default() }
+    }
+}
+
+/// Starts the clock, and finds out where it is doing so.
+///
+/// The source is the chip's own oscillator, true to 1 % at room temperature, which is near enough for the eye and for
+/// the serial port. So the image fits boards with any crystal (8, 12 and 25 MHz are in use), and none can fail to start.
+fn start_clock(rcc: RCC) -> (Rcc, Place) {
+    // A chip comes out of reset running from this oscillator.
+    if rcc.cr().read().hsirdy().bit_is_set() {
+        (rcc.freeze(Config::hsi().sysclk(HERTZ.Hz())), Place::Chip)
+    } else {
+        // There is no PLL to wait for, either.
+        (rcc.freeze(Config::hsi()), Place::Emulator)
+    }
+}

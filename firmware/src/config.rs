@@ -1,0 +1,84 @@
+//! Every number that may be tuned, with its unit and the arithmetic behind it.
+
+// ---- Time -----------------------------------------------------------------------------------------------------------
+
+/// Ticks per second: one tick moves the pendulum by one picture's worth of time.
+pub const TICK_RATE: u32 = 60;
+/// Integration steps per tick. At dt = 1/240 s the RK4 step error of a metre-long pendulum stays far below a pixel
+/// for as long as its motion can be predicted at all.
+pub const STEPS_PER_TICK: u32 = 4;
+/// Integration steps per simulated second: 60 x 4 = 240.
+pub const STEP_RATE: u32 = TICK_RATE * STEPS_PER_TICK;
+/// The integration step dt, s: 1/240, rounded to `f32`.
+pub const STEP: f32 = 1.0 / STEP_RATE as f32;
+/// The most ticks integrated before a picture is drawn: a board too slow for every picture still shows
+/// 60/15 = 4 per second. Ticks beyond it wait for the next picture; none is ever skipped.
+pub const MOST_TICKS_PER_FRAME: u32 = 15;
+
+/// The slowest and the fastest a scene may be played, simulated time per real time.
+pub const LEAST_SPEED: f64 = 0.01;
+/// At 4 ticks of the scene per tick even the Cortex-M3 still shows most pictures.
+pub const GREATEST_SPEED: f64 = 4.0;
+
+// ---- The pendulum ---------------------------------------------------------------------------------------------------
+
+/// Length of either rod, m: a period of about 2 s, which is pleasant to watch.
+pub const ROD: f32 = 1.0;
+/// Gravitational acceleration, m/s^2.
+pub const GRAVITY: f32 = 9.81;
+/// Mass ratio mu = m2/m1 at power-on.
+pub const FIRST_MASS_RATIO: f32 = 1.0;
+/// Start angle of both rods at power-on, degrees: well into the chaotic regime.
+pub const FIRST_ANGLE: f32 = 120.0;
+/// The mass ratios the buttons step through: the Renard series R10 (ISO 3), geometric with ratio 10^(1/10) = 1.26 and
+/// rounded so that every label is short, over two decades either side of 1.
+pub const MASS_RATIOS: [f32; 41] = [
+    0.01, 0.0125, 0.016, 0.02, 0.025, 0.0315, 0.04, 0.05, 0.063, 0.08, //
+    0.1, 0.125, 0.16, 0.2, 0.25, 0.315, 0.4, 0.5, 0.63, 0.8, //
+    1.0, 1.25, 1.6, 2.0, 2.5, 3.15, 4.0, 5.0, 6.3, 8.0, //
+    10.0, 12.5, 16.0, 20.0, 25.0, 31.5, 40.0, 50.0, 63.0, 80.0, 100.0,
+];
+/// The step of the start angle, degrees.
+pub const ANGLE_STEP: f32 = 1.0;
+/// The greatest start angle, degrees: straight up. The least is its mirror image.
+pub const GREATEST_ANGLE: f32 = 180.0;
+
+// ---- Buttons, in ticks of 1/60 s ------------------------------------------------------------------------------------
+
+/// A level must be read this often in a row to count: 2 readings are 17 ms apart, longer than contacts bounce.
+pub const DEBOUNCE_TICKS: u8 = 2;
+/// A held button repeats for the first time after 24/60 = 0.4 s,
+pub const REPEAT_DELAY_TICKS: u8 = 24;
+/// and then every 4/60 s: 15 steps per second.
+pub const REPEAT_PERIOD_TICKS: u8 = 4;
+
+/// Select held alone for 48/60 = 0.8 s changes the scene.
+pub const HOLD_TICKS: u8 = 48;
+
+// ---- The picture, in pixels -----------------------------------------------------------------------------------------
+
+/// Where the pivot sits, from the panel's top left corner: its middle, so that the motion has the full height.
+pub const PIVOT: (f32, f32) = (64.0, 32.0);
+/// Both rods stretched out reach this far: half the height less the largest bob and its soft edge, 32 - 3 - 0.5.
+pub const REACH: f32 = 28.5;
+/// Radius of the heavier bob. The lighter one's follows by volume.
+pub const GREATEST_RADIUS: f32 = 3.0;
+/// No bob is drawn smaller than this, whatever its mass.
+pub const LEAST_RADIUS: f32 = 1.5;
+/// Half the width of a rod.
+pub const ROD_HALF_WIDTH: f32 = 0.6;
+/// Bob 2's trail has one point every 2 ticks: at its fastest bob 2 moves 3 pixels in that time, short enough for a
+/// line of straight pieces to look curved.
+pub const TRAIL_PERIOD_TICKS: u8 = 2;
+/// Points of the trail: 60 x 2/60 = 2 s of motion.
+pub const TRAIL_POINTS: usize = 60;
+
+// ---- The serial link ------------------------------------------------------------------------------------------------
+
+/// Bits per second. A frame of 70 bytes takes 70 x 10/460,800 = 1.5 ms of the tick's 16.7 ms.
+pub const BAUD: u32 = 460_800;
+/// Received bytes waiting for the application; one tick brings at most 460,800/10/60 = 768 (the queue holds one less
+/// than its size).
+pub const RECEIVE_QUEUE: usize = 1024;
+/// Messages obeyed per tick at most; more wait in the queue, and when that is full are lost and never answered.
+pub const MOST_MESSAGES_PER_TICK: usize = 4;

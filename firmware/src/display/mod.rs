@@ -1,0 +1,34 @@
+//! Panels: they take a finished picture, and only that can fail.
+
+use core::convert::Infallible;
+
+use crate::canvas::Canvas;
+
+mod ssd0323;
+#[cfg(feature = "stm32f405")]
+mod ssd1306;
+
+pub use ssd0323::{PanelError, Ssd0323};
+#[cfg(feature = "stm32f405")]
+pub use ssd1306::{Ssd1306, Ssd1306Error};
+
+/// A panel.
+pub trait Display {
+    /// Why a picture did not reach the panel.
+    type Error;
+
+    /// Sends the picture.
+    fn flush(&mut self, canvas: &Canvas) -> Result<(), Self::Error>;
+}
+
+/// For a board without a panel.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct NoDisplay;
+
+impl Display for NoDisplay {
+    type Error = Infallible;
+
+    fn flush(&mut self, _: &Canvas) -> Result<(), Infallible> {
+        Ok(())
+    }
+}

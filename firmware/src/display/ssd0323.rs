@@ -1,0 +1,84 @@
+//! The SSD0323 controller of a 128 x 64 OLED panel with 16 greys, over four-wire SPI.
+//!
+//! Source: Solomon Systech, SSD0323 data sheet; register values from the panel's application note (OSRAM AN018).
+
+use embedded_hal::digital::OutputPin;
+use embedded_hal::spi::SpiDevice;
+
+use super::Display;
+use crate::canvas::{Canvas, HEIGHT, WIDTH};
+
+const LAST_COLUMN: u8 = (WIDTH / 2 - 1) as u8;
+const LAST_ROW: u8 = (HEIGHT - 1) as u8;
+
+/// The whole panel as the window that data goes to, which also sets the address to its corner: columns (of two pixels
+/// each) 0 to 63, rows 0 to 63.
+const WHOLE_PANEL: [u8; 6] = [0x15, 0, LAST_COLUMN, 0x75, 0, LAST_ROW];
+
+/// What wakes the panel, one command a row.
+#[rustfmt::skip]
+const WAKE: [&[u8]; 18] = [
+    &[0xAE],                    // display off
+    &[0x81, 50],                // contrast, of 127
+    &[0x85],                    // half current range
+    &[0xA0, 0x52],              // wiring of this panel: nibbles swapped, rows from the bottom and split odd/even
+    &[0xA1, 0],                 // first row shown
+    &[0xA2, 0x4C],              // shift of the rows by the wiring
+    &[0xA4],                    // show what is in memory
+    &[0xA8, LAST_ROW],          // rows driven, less one
+    &[0xB1, 0x22],              // phase lengths, 2 and 2 clocks
+    &[0xB2, 70],                // row period, clocks
+    &[0xB3, 0xF1],              // oscillator fastest, divided by 2
+    &[0xB8, 0x01, 0x11, 0x22, 0x32, 0x43, 0x54, 0x65, 0x76], // steps between the greys
+    &[0xBC, 0x10],              // precharge voltage
+    &[0xBE, 0x02],              // voltage of rows not driven
+    &[0xBF, 0x0D],              // low level of the segments
+    &[0xAD, 0x03],              // DC-DC converter on
+    &WHOLE_PANEL,
+    &[0xAF],                    // display on
+];
+
+/// Why bytes did not reach the panel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PanelError<Spi, Pin> {
+    /// The bus failed.
+    Spi(Spi),
+    /// The data/command pin failed.
+    Pin(Pin),
+}
+
+/// The panel: an SPI device and the pin that tells data (high) from commands (low).
+#[derive(Debug)]
+pub struct Ssd0323<Spi, Pin> {
+    spi: Spi,
+    data_not_command: Pin,
+}
+
+impl<Spi: SpiDevice, Pin: OutputPin> Ssd0323<Spi, Pin> {
+    /// Takes the panel's wires; nothing is sent yet.
+    pub fn new(spi: Spi, data_not_command: Pin) -> Self {
+        Self { spi, data_not_command }
+    }
+
+    /// Configures the controller, blanks its memory and switches the panel on.
+    pub fn init(&mut self) -> Result<(), PanelError<Spi::Error, Pin::Error>> {
+        self.flush(&Canvas::default())?;
+        WAKE.iter().try_for_each(|command| self.command(command))
+    }
+
+    /// Sends a command; this controller takes the arguments as commands, too.
+    fn command(&mut self, bytes: &[u8]) -> Result<(), PanelError<Spi::Error, Pin::Error>> {
+        self.data_not_command.set_low().map_err(PanelError::Pin)?;
+        self.spi.write(bytes).map_err(PanelError::Spi)
+    }
+}
+
+impl<Spi: SpiDevice, Pin: OutputPin> Display for Ssd0323<Spi, Pin> {
+    type Error = PanelError<Spi::Error, Pin::Error>;
+
+    fn flush(&mut self, canvas: &Canvas) -> Result<(), Self::Error> {
+        self.command(&WHOLE_PANEL)?;
+        self.data_not_command.set_high().map_err(PanelError::Pin)?;
+        self.spi.write(canvas.bytes()).map_err(PanelError::Spi)
+    }
+}

@@ -1,0 +1,20 @@
+//! A motion computed on request: the same code answers `cargo simulate` on the host and over the serial link.
+
+mod choice;
+mod request;
+mod run;
+
+pub use choice::{Arithmetic, Model};
+pub use request::{Field, Request};
+pub use run::Job;
+
+/// What one row of the answer holds, SI units; `f32` results are widened, which loses nothing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reading {
+    /// a1, a2 (rad), p1, p2 (kg m^2/s).
+    pub state: [f64; 4],
+    /// w1, w2, rad/s.
+    pub velocities: [f64; 2],
+    /// Energy, J; zero potential at the pivot.
+    pub energy: f64,
+}

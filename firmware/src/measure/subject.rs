@@ -1,0 +1,124 @@
+//! The table of arithmetics under measurement.
+
+use double_pendulum::trig::{Libm, Micromath, Own, SinCos};
+use double_pendulum::{Error, Parameters, Pendulum, Real, State};
+
+use super::textbook::Separate;
+use super::{Request, RequestError, Textbook};
+
+/// An arithmetic that can be measured.
+#[derive(Clone, Copy, Debug)]
+pub struct Subject {
+    /// What a request calls it: precision, form, source of sine and cosine.
+    pub name: &'static str,
+    run: fn(&Request, Each) -> Result<(), Error>,
+}
+
+/// Is given every sampled state.
+type Each<'a> = &'a mut dyn FnMut(&State<f64>);
+
+/// A name stands for one arithmetic.
+impl PartialEq for Subject {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
+
+/// Every arithmetic there is, the page's own first.
+pub const SUBJECTS: &[Subject] = &[
+    Subject { name: "f32-textbook-libm", run: run::<Plain<f32, Textbook<f32>>> },
+    Subject { name: "f32-libm", run: run::<Plain<f32, Pendulum<f32, Libm>>> },
+    Subject { name: "f32-micromath", run: run::<Plain<f32, Pendulum<f32, Micromath>>> },
+    Subject { name: "f32-own", run: run::<Plain<f32, Pendulum<f32, Own>>> },
+    Subject { name: "f64-textbook-libm", run: run::<Plain<f64, Textbook<f64>>> },
+    Subject { name: "f64-libm", run: run::<Plain<f64, Pendulum<f64, Libm>>> },
+    Subject { name: "f64-own", run: run::<Plain<f64, Pendulum<f64, Own>>> },
+];
+
+impl Request<'_> {
+    /// Runs the request and calls `each` with every sampled state.
+    pub fn run(&self, each: Each) -> Result<(), RequestError> {
+        let subject = SUBJECTS.iter().find(|subject| subject.name == self.subject);
+        (subject.ok_or(RequestError::UnknownSubject)?.run)(self, each).map_err(RequestError::Refused)
+    }
+}
+
+/// A pendulum with all that its arithmetic carries along. The one trait a new arithmetic implements to be measured.
+trait Stepper: Copy {
+    /// At the start of the request.
+    fn start(request: &Request) -> Result<Self, Error>;
+    /// One step on.
+    fn step(&mut self);
+    /// The canonical state, SI units.
+    fn state(&self) -> State<f64>;
+}
+
+fn run<S: Stepper>(request: &Request, each: Each) -> Result<(), Error> {
+    let mut stepper = S::start(request)?;
+    for _ in 0..request.samples {
+        counted_steps(&mut stepper, request.steps);
+        each(&stepper.state());
+    }
+    Ok(())
+}
+
+/// What the counter counts, from this function's first instruction to its return; it finds it by this name.
+#[inline(never)]
+fn counted_steps<S: Stepper>(stepper: &mut S, steps: u32) {
+    let mut local = *stepper;
+    for _ in 0..steps {
+        local.step();
+    }
+    *stepper = local;
+}
+
+/// Equations of motion for the state (a1, a2, p1, p2) in SI units.
+trait Equations<R>: Copy {
+    fn prepare(parameters: Parameters<R>) -> Result<Self, Error>;
+    fn step(&self, state: &State<R>, dt: R) -> State<R>;
+}
+
+impl<R: Separate> Equations<R> for Textbook<R> {
+    fn prepare(parameters: Parameters<R>) -> Result<Self, Error> {
+        Ok(Textbook::new(parameters))
+    }
+    fn step(&self, state: &State<R>, dt: R) -> State<R> {
+        Textbook::step(self, state, dt)
+    }
+}
+
+impl<R: Real, T: SinCos<R>> Equations<R> for Pendulum<R, T> {
+    fn prepare(parameters: Parameters<R>) -> Result<Self, Error> {
+        Pendulum::with_trig(parameters)
+    }
+    fn step(&self, state: &State<R>, dt: R) -> State<R> {
+        Pendulum::step(self, state, dt)
+    }
+}
+
+/// Classical RK4 on `E` with nothing carried along but the state.
+#[derive(Clone, Copy)]
+struct Plain<R, E> {
+    equations: E,
+    state: State<R>,
+    dt: R,
+}
+
+impl<R: Real, E: Equations<R>> Stepper for Plain<R, E> {
+    fn start(request: &Request) -> Result<Self, Error> {
+        let Parameters { m1, m2, l1, l2, g } = request.parameters;
+        let [a1, a2] = request.angles;
+        let parameters = Parameters { m1: R::of(m1), m2: R::of(m2), l1: R::of(l1), l2: R::of(l2), g: R::of(g) };
+        let equations = E::prepare(parameters)?;
+        Ok(Self { equations, state: State::at_rest(R::of(a1), R::of(a2)), dt: R::of(request.dt) })
+    }
+
+    fn step(&mut self) {
+        self.state = self.equations.step(&self.state, self.dt);
+    }
+
+    fn state(&self) -> State<f64> {
+        let State { a1, a2, p1, p2 } = self.state;
+        State { a1: a1.to_f64(), a2: a2.to_f64(), p1: p1.to_f64(), p2: p2.to_f64() }
+    }
+}

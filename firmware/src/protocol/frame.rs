@@ -1,0 +1,35 @@
+//! The telemetry frame.
+
+crate::message! {
+    /// One drawn frame, sent as soon as it is on the panel.
+    Frame = 0x01 {
+        /// Drawn frames since reset; a gap is a frame lost on the way.
+        sequence: u32,
+        /// Ticks whose picture was never drawn, since reset.
+        dropped: u32,
+        /// The scene, by its [`code`](crate::scenes::SceneName::code).
+        scene: u8,
+        /// 1 if the scene's time stands still, else 0.
+        paused: u8,
+        /// Integration steps since the last restart.
+        step: u32,
+        /// Simulated time since the last restart, s: `step` times the step size.
+        time: f64,
+        /// Mass ratio mu = m2/m1.
+        mass_ratio: f32,
+        /// Start angle of rod 1, rad; on the page that of both.
+        start_angle: f32,
+        /// The canonical state a1, a2 (rad), p1, p2 (kg m^2/s), to the bit.
+        state: [f32; 4],
+        /// (E - E0)/(E0 - Emin): the energy error relative to the energy at the start above hanging at rest.
+        energy_error: f32,
+        /// Until when the picture is right to half a pixel, s since the last restart; infinity as long as that is not
+        /// known.
+        trusted_until: f32,
+        /// Counts of the processor clock that the scene took for this picture, moving and drawing: cycles on a chip; QEMU
+        /// does not model cycles, there they say how much of the tick its own clock let pass.
+        scene_cycles: u32,
+        /// The same for all of the picture before, sending it to the panel and over the link included.
+        busy_cycles: u32,
+    }
+}

@@ -1,0 +1,130 @@
+//! Beats that close: where the frequencies are as whole numbers, small oscillations come back to their start after a
+//! few periods and their Lissajous figure closes; the exact motion from the same start does not.
+
+use double_pendulum::{Error, Oscillation, Parameters, SmallOscillations, State};
+
+use crate::brush::{Spot, Stroke};
+use crate::canvas::{Canvas, WIDTH};
+use crate::config::{GRAVITY, ROD};
+use crate::ink::Ink;
+use crate::label;
+use crate::scene::{Report, Scene};
+use crate::settings::Settings;
+use crate::simulation::Simulation;
+use crate::text::{self, Anchor, LINE};
+use crate::trust::{self, Trust};
+
+/// The middles of the two figures, and how far a mode reaches in them, pixels.
+const MIDDLES: [(f32, f32); 2] = [(25.0, 36.0), (103.0, 36.0)];
+const REACH: f32 = 23.0;
+/// Half the width of the line, and the radius of the moving spot, subpixels.
+const HALF_WIDTH: u8 = 36;
+const SPOT_RADIUS: u8 = 120;
+/// The amplitude of angle 2 in each mode, degrees.
+const AMPLITUDE: f32 = 12.0;
+
+/// Equal rods with the slow mode at its turning point and the fast mode on its way through rest, both with one
+/// amplitude of angle 2.
+pub fn closing(mass_ratio: f32) -> Settings {
+    let parameters = Parameters::equal_rods(mass_ratio, ROD, GRAVITY);
+    let shape = libm::sqrtf((1.0 + mass_ratio) / mass_ratio);
+    let root = libm::sqrtf((1.0 + mass_ratio) * mass_ratio);
+    let fast = libm::sqrtf(GRAVITY / ROD * (1.0 + mass_ratio + root));
+    let velocity = fast * AMPLITUDE.to_radians();
+    Settings { parameters, degrees: [AMPLITUDE / shape, AMPLITUDE], velocities: [-velocity / shape, velocity] }
+}
+
+/// The fast mode's share of angle 2 over the slow mode's: the linear motion on the left, the exact one on the right.
+#[derive(Clone, Debug)]
+pub struct Beats {
+    settings: Settings,
+    simulation: Simulation,
+    linear: SmallOscillations<f32>,
+    /// The slow mode's shape.
+    shape: [f32; 2],
+    /// Pixels per radian.
+    scale: f32,
+    spots: [Spot; 2],
+    ink: Ink,
+    trust: Trust,
+}
+
+impl Beats {
+    /// Where the linear motion is in its figure, pixels.
+    fn linear_place(&self) -> (f32, f32) {
+        let motion = self.linear.at(self.simulation.time() as f32);
+        self.place(MIDDLES[0], motion.a1, motion.a2)
+    }
+
+    /// Where the exact motion is in its figure in a state, pixels.
+    fn exact_place(&self, state: &State<f32>) -> (f32, f32) {
+        self.place(MIDDLES[1], state.a1, state.a2)
+    }
+
+    /// The slow mode's share of angle 2 across, the fast mode's upwards.
+    fn place(&self, (x, y): (f32, f32), a1: f32, a2: f32) -> (f32, f32) {
+        let [fast_shape, slow_shape] = self.shape;
+        let across = slow_shape * (a2 - fast_shape * a1) / (slow_shape - fast_shape);
+        let up = a2 - across;
+        (x + self.scale * across, y - self.scale * up)
+    }
+
+    fn spots(&self) -> [Spot; 2] {
+        [self.linear_place(), self.exact_place(&self.simulation.state())].map(|(x, y)| Spot::at(x, y))
+    }
+}
+
+impl Scene for Beats {
+    fn new(settings: &Settings) -> Result<Self, Error> {
+        let simulation = Simulation::new(settings)?;
+        let modes = simulation.pendulum().modes()?;
+        let linear = SmallOscillations::new(modes, &settings.motion());
+        let amplitude = |part: Oscillation<f32>, shape: f32| part.amplitude() * shape.abs();
+        let shape = [modes.fast.shape, modes.slow.shape];
+        let greatest = amplitude(linear.fast(), shape[0]).max(amplitude(linear.slow(), shape[1]));
+        let scale = if greatest > 0.0 { REACH / greatest } else { 0.0 };
+        let (spots, ink) = ([Spot::default(); 2], Ink::default());
+        let trust = Trust::new(simulation.state());
+        let mut scene = Self { settings: *settings, simulation, linear, shape, scale, spots, ink, trust };
+        scene.spots = scene.spots();
+        Ok(scene)
+    }
+
+    fn tick(&mut self) {
+        self.simulation.tick();
+        let spots = self.spots();
+        for (from, to) in self.spots.into_iter().zip(spots) {
+            self.ink.add(Stroke { from, to, radius: HALF_WIDTH });
+        }
+        self.spots = spots;
+        self.ink.tick();
+        let pendulum = self.simulation.pendulum();
+        let shown = [self.linear_place(), self.exact_place(&self.simulation.state())];
+        let mut trust = self.trust;
+        trust.tick(
+            self.simulation.time(),
+            shown,
+            |z| pendulum.derivatives(z),
+            |state| [shown[0], self.exact_place(state)],
+        );
+        self.trust = trust;
+    }
+
+    fn draw(&self, canvas: &mut Canvas) {
+        canvas.clone_from(self.ink.picture());
+        for spot in self.spots {
+            Stroke::disc(spot, 2 * HALF_WIDTH + SPOT_RADIUS / 2).erase(canvas);
+            Stroke::disc(spot, SPOT_RADIUS).lighten(canvas, u8::MAX);
+        }
+        text::write(canvas, "linear", Anchor::TopLeft);
+        text::write(canvas, "exact", Anchor::TopRight);
+        let middle = |row| Anchor::Centred(WIDTH as i32 / 2, row);
+        text::write(canvas, &label::mass_ratio(self.settings.mass_ratio()), middle(0));
+        let (time, until) = (self.simulation.time(), self.trust.until());
+        trust::draw_clock(canvas, time, until, middle(3 * LINE), middle(5 * LINE));
+    }
+
+    fn report(&self) -> Report {
+        Report::of(&self.simulation, self.trust.until())
+    }
+}

@@ -1,0 +1,104 @@
+//! Figure 2: the two frequencies of small oscillations over the mass ratio, with the present one marked.
+
+use double_pendulum::{Error, Modes, Parameters, State};
+
+use crate::brush::{Spot, Stroke};
+use crate::canvas::{Canvas, HEIGHT, WIDTH};
+use crate::config::TICK_RATE;
+use crate::label;
+use crate::plot::{self, Strip};
+use crate::scene::{Report, Scene};
+use crate::settings::Settings;
+use crate::text::{self, Anchor, LINE};
+
+/// The least range of mass ratios across the picture, that of the figure; a heavier bob 2 widens it.
+const LEAST_RANGE: f32 = 5.0;
+/// The mark is at most this far across.
+const FARTHEST_MARK: f32 = 0.8;
+/// The row of frequency 0 and how far the greatest is above it, pixels.
+const ZERO_ROW: f32 = 55.0;
+const RISE: f32 = 44.0;
+const COLUMNS_PER_TICK: u32 = 2;
+const MARK_RADIUS: u8 = 112;
+const CURVE: u8 = 200;
+const AXIS_GREY: u8 = 4;
+
+/// Both frequencies in sqrt(g/l), so that the mass ratio is all that matters; the curves grow from the left.
+#[derive(Clone, Debug)]
+pub struct Frequencies {
+    /// The mass ratio across the whole picture.
+    range: f32,
+    /// Pixels per sqrt(g/l).
+    scale: f32,
+    mass_ratio: f32,
+    /// At the mass ratio, fast and slow.
+    marked: [f32; 2],
+    curves: Strip<2>,
+    ticks: u32,
+    drawn: u32,
+}
+
+/// The fast and the slow frequency of equal rods, in sqrt(g/l).
+fn frequencies(mass_ratio: f32) -> Result<[f32; 2], Error> {
+    let modes = Modes::new(&Parameters::equal_rods(mass_ratio, 1.0, 1.0))?;
+    Ok([modes.fast.frequency, modes.slow.frequency])
+}
+
+impl Frequencies {
+    fn push(&mut self) {
+        // The middle of the column; mass ratio 0 itself has no modes.
+        let mass_ratio = (self.drawn as f32 + 0.5) * self.range / WIDTH as f32;
+        if let Ok(frequencies) = frequencies(mass_ratio) {
+            self.curves.push(frequencies.map(|frequency| plot::height(frequency, ZERO_ROW, self.scale)));
+            self.drawn += 1;
+        }
+    }
+}
+
+impl Scene for Frequencies {
+    fn new(settings: &Settings) -> Result<Self, Error> {
+        let mass_ratio = settings.mass_ratio();
+        let marked = frequencies(mass_ratio)?;
+        let range = (mass_ratio / FARTHEST_MARK).max(LEAST_RANGE);
+        let [greatest, _] = frequencies(range)?;
+        let curves = Strip::default();
+        Ok(Self { range, scale: RISE / greatest, mass_ratio, marked, curves, ticks: 0, drawn: 0 })
+    }
+
+    fn tick(&mut self) {
+        self.ticks = self.ticks.wrapping_add(1);
+        for _ in 0..COLUMNS_PER_TICK.min(WIDTH as u32 - self.drawn) {
+            self.push();
+        }
+    }
+
+    fn draw(&self, canvas: &mut Canvas) {
+        canvas.clear();
+        let (width, zero) = (WIDTH as i32, ZERO_ROW as i32);
+        plot::axis(canvas, 0, width, zero, AXIS_GREY);
+        self.curves.each(self.drawn as i32 - 1, |x, &[fast, slow], &[fast_before, slow_before]| {
+            plot::column(canvas, x, fast_before, fast, CURVE);
+            plot::column(canvas, x, slow_before, slow, CURVE);
+        });
+        let x = self.mass_ratio / self.range * WIDTH as f32;
+        for y in (zero - RISE as i32..zero).step_by(2) {
+            canvas.update(x as i32, y, |grey| grey.max(AXIS_GREY));
+        }
+        for frequency in self.marked {
+            let mark = Spot::at(x, ZERO_ROW - self.scale * frequency);
+            Stroke::disc(mark, 2 * MARK_RADIUS).erase(canvas);
+            Stroke::disc(mark, MARK_RADIUS).lighten(canvas, u8::MAX);
+        }
+        let [fast, slow] = self.marked;
+        text::write(canvas, &label::frequency(fast), Anchor::TopLeft);
+        text::write(canvas, &label::frequency(slow), Anchor::Centred(width / 2, 0));
+        text::write(canvas, &label::mass_ratio(self.mass_ratio), Anchor::TopRight);
+        text::write(canvas, "0", Anchor::At(0, HEIGHT as i32 - LINE));
+        text::write(canvas, &label::mass_ratio(self.range), Anchor::BottomRight);
+    }
+
+    fn report(&self) -> Report {
+        let time = f64::from(self.ticks) / f64::from(TICK_RATE);
+        Report { step: self.ticks, time, state: State::default(), energy_error: 0.0, trusted_until: f32::INFINITY }
+    }
+}

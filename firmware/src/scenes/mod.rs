@@ -1,0 +1,102 @@
+//! The catalogue of scenes: one row each gives the name, the code on the wire, what it is and what it starts with.
+
+mod beats;
+mod butterfly;
+mod figure7;
+mod frequencies;
+mod page;
+mod small;
+mod upright;
+
+use double_pendulum::Error;
+
+use crate::canvas::Canvas;
+use crate::choice::choice;
+use crate::scene::{Report, Scene};
+use crate::settings::Settings;
+
+macro_rules! catalogue {
+    ($($(#[$doc:meta])* $row:ident = $code:literal, $name:literal, $scene:ty, $first:expr;)*) => {
+        choice! {
+            /// A scene of the catalogue.
+            SceneName { $($(#[$doc])* $row = $code, $name;)* }
+        }
+
+        impl SceneName {
+            /// What it starts with when it is chosen.
+            pub fn first_settings(self) -> Settings {
+                match self { $(Self::$row => $first,)* }
+            }
+        }
+
+        /// A scene of the catalogue, playing.
+        #[derive(Clone, Debug)]
+        pub enum AnyScene { $($(#[$doc])* $row($scene),)* }
+
+        impl AnyScene {
+            /// The scene `name` at the start; the error of a scene that cannot show `settings`.
+            pub fn new(name: SceneName, settings: &Settings) -> Result<Self, Error> {
+                match name { $(SceneName::$row => <$scene>::new(settings).map(Self::$row),)* }
+            }
+
+            /// As [`Scene::tick`].
+            pub fn tick(&mut self) {
+                match self { $(Self::$row(scene) => scene.tick(),)* }
+            }
+
+            /// As [`Scene::draw`].
+            pub fn draw(&self, canvas: &mut Canvas) {
+                match self { $(Self::$row(scene) => scene.draw(canvas),)* }
+            }
+
+            /// As [`Scene::report`].
+            pub fn report(&self) -> Report {
+                match self { $(Self::$row(scene) => scene.report(),)* }
+            }
+        }
+    };
+}
+
+catalogue! {
+    /// The page's animation.
+    Page = 0, "page", page::Page, Settings::default();
+    /// Figure 3: small oscillations, mass ratio 0.2.
+    SmallLight = 1, "small-0.2", small::Small, small::example(0.2);
+    /// Figure 4: small oscillations, mass ratio 1.
+    SmallEqual = 2, "small-1", small::Small, small::example(1.0);
+    /// Figure 5: small oscillations, mass ratio 5.
+    SmallHeavy = 3, "small-5", small::Small, small::example(5.0);
+    /// Figure 2: frequencies over the mass ratio.
+    Frequencies = 4, "frequencies", frequencies::Frequencies, Settings::default();
+    /// Frequencies as 3 to 2: mass ratio 25/144.
+    Beats3To2 = 5, "beats-3-2", beats::Beats, beats::closing(25.0 / 144.0);
+    /// Frequencies as 2 to 1: mass ratio 9/16.
+    Beats2To1 = 6, "beats-2-1", beats::Beats, beats::closing(9.0 / 16.0);
+    /// Frequencies as 5 to 2: mass ratio 441/400.
+    Beats5To2 = 7, "beats-5-2", beats::Beats, beats::closing(441.0 / 400.0);
+    /// Frequencies as 3 to 1: mass ratio 16/9.
+    Beats3To1 = 8, "beats-3-1", beats::Beats, beats::closing(16.0 / 9.0);
+    /// Figure 7: the right equations and the misprinted ones.
+    Figure7 = 9, "figure-7", figure7::Figure7, figure7::figure();
+    /// Twins a millionth of a radian apart.
+    Butterfly = 10, "butterfly", butterfly::Butterfly, Settings::default();
+    /// Both rods at exactly 180 degrees.
+    Upright = 11, "upright", upright::Upright, upright::straight_up();
+}
+
+impl SceneName {
+    /// The next one in the catalogue; after the last the first.
+    pub fn next(self) -> Self {
+        self.turned(1)
+    }
+
+    /// The one before; before the first the last.
+    pub fn previous(self) -> Self {
+        self.turned(Self::ALL.len() - 1)
+    }
+
+    fn turned(self, by: usize) -> Self {
+        let place = Self::ALL.iter().position(|&name| name == self).unwrap_or_default();
+        Self::ALL.iter().copied().cycle().nth(place + by).unwrap_or(self)
+    }
+}

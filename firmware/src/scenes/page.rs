@@ -1,0 +1,71 @@
+//! The page's animation: one pendulum with bob 2's trail.
+
+use double_pendulum::Error;
+
+use crate::brush::Spot;
+use crate::canvas::{Canvas, HEIGHT};
+use crate::label;
+use crate::scene::{Report, Scene};
+use crate::settings::Settings;
+use crate::simulation::Simulation;
+use crate::text::{self, Anchor, LINE};
+use crate::trail::Trail;
+use crate::trust::{self, Trust};
+use crate::view::{Place, View};
+
+/// One pendulum, bob 2's trail, and settings and time in the corners, the one place the motion never reaches.
+#[derive(Clone, Debug)]
+pub struct Page {
+    settings: Settings,
+    simulation: Simulation,
+    trust: Trust,
+    view: View,
+    trail: Trail,
+}
+
+impl Page {
+    fn bobs(&self) -> [(f32, f32); 2] {
+        self.view.bobs(self.simulation.pendulum(), &self.simulation.state())
+    }
+
+    fn spots(&self) -> [Spot; 2] {
+        self.bobs().map(|(x, y)| Spot::at(x, y))
+    }
+}
+
+impl Scene for Page {
+    fn new(settings: &Settings) -> Result<Self, Error> {
+        let simulation = Simulation::new(settings)?;
+        let view = View::new(&settings.parameters, Place::WHOLE);
+        let [_, bob2] = view.spots(simulation.pendulum(), &simulation.state());
+        let trust = Trust::new(simulation.state());
+        Ok(Self { settings: *settings, simulation, trust, view, trail: Trail::new(bob2) })
+    }
+
+    fn tick(&mut self) {
+        self.simulation.tick();
+        let shown = self.bobs();
+        let [_, (x, y)] = shown;
+        self.trail.push(Spot::at(x, y));
+        let pendulum = self.simulation.pendulum();
+        let places = |state: &_| self.view.bobs(pendulum, state);
+        self.trust.tick(self.simulation.time(), shown, |z| pendulum.derivatives(z), places);
+    }
+
+    fn draw(&self, canvas: &mut Canvas) {
+        canvas.clear();
+        self.trail.draw(canvas);
+        self.view.draw(canvas, self.spots(), u8::MAX);
+        let [degrees1, degrees2] = self.settings.degrees;
+        text::write(canvas, &label::mass_ratio(self.settings.mass_ratio()), Anchor::TopLeft);
+        text::write(canvas, &label::degrees(degrees1), Anchor::BottomLeft);
+        if degrees1 != degrees2 {
+            text::write(canvas, &label::degrees(degrees2), Anchor::At(0, HEIGHT as i32 - 2 * LINE));
+        }
+        trust::draw_clock(canvas, self.simulation.time(), self.trust.until(), Anchor::TopRight, Anchor::BottomRight);
+    }
+
+    fn report(&self) -> Report {
+        Report::of(&self.simulation, self.trust.until())
+    }
+}

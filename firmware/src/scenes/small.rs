@@ -1,0 +1,153 @@
+//! Figures 3 to 5: small oscillations, both angles as scrolling curves within their envelopes, in closed form.
+
+use double_pendulum::trig::{DefaultTrig, SinCos};
+use double_pendulum::{Error, Modes, Oscillation, Parameters, Pendulum, SmallOscillations};
+
+use crate::canvas::{Canvas, WIDTH};
+use crate::config::TICK_RATE;
+use crate::label;
+use crate::plot::{self, Strip};
+use crate::scene::{Report, Scene};
+use crate::settings::Settings;
+use crate::text::{self, Anchor};
+use crate::trust::{self, HALF_PIXEL};
+
+/// The rows of rest of angle 1 and angle 2, pixels from the top, and the greatest swing about them.
+const ROWS: [f32; 2] = [22.0, 50.0];
+const SWING: f32 = 12.5;
+/// An exchange of energy between the rods and back takes about this many columns.
+const COLUMNS_PER_EXCHANGE: f32 = 60.0;
+/// Roundings, each half an epsilon, in a phase w t: up to 8 in the frequency (4 units in the last place, see
+/// [`Modes::new`]), one in the time and one in the product. In epsilons:
+const PHASE_ROUNDINGS: f32 = 5.0;
+const CURVE: u8 = 255;
+const ENVELOPE_GREY: u8 = 5;
+const REST_GREY: u8 = 2;
+
+/// The page's worked example: equal rods of 0.25 m, g = 9.8 m/s^2, a1 = 0, a2 = 30 degrees, let go from rest.
+pub fn example(mass_ratio: f32) -> Settings {
+    Settings { parameters: Parameters::equal_rods(mass_ratio, 0.25, 9.8), degrees: [0.0, 30.0], velocities: [0.0; 2] }
+}
+
+/// Until when a curve of amplitude `swing` (pixels) is right to half a pixel, s: the greatest phase w1 t is off by at
+/// most [`PHASE_ROUNDINGS`] of its roundings, which moves the curve by swing times that.
+pub fn trusted_until(modes: &Modes<f32>, swing: f32) -> f32 {
+    HALF_PIXEL / (swing * modes.fast.frequency * PHASE_ROUNDINGS * f32::EPSILON)
+}
+
+/// Both angles over time.
+#[derive(Clone, Debug)]
+pub struct Small {
+    settings: Settings,
+    pendulum: Pendulum<f32>,
+    motion: SmallOscillations<f32>,
+    envelopes: Envelopes,
+    /// Pixels per radian.
+    scale: f32,
+    ticks_per_column: u32,
+    ticks: u32,
+    trusted_until: f32,
+    strip: Strip<4>,
+}
+
+impl Small {
+    fn time(&self) -> f64 {
+        f64::from(self.ticks) / f64::from(TICK_RATE)
+    }
+
+    fn push(&mut self) {
+        let time = self.time() as f32;
+        let motion = self.motion.at(time);
+        let [envelope1, envelope2] = self.envelopes.at(time);
+        let height = |rod: usize, angle: f32| plot::height(angle, ROWS[rod], self.scale);
+        self.strip.push([height(0, motion.a1), height(1, motion.a2), height(0, envelope1), height(1, envelope2)]);
+    }
+}
+
+impl Scene for Small {
+    fn new(settings: &Settings) -> Result<Self, Error> {
+        let pendulum = settings.pendulum()?;
+        settings.start(&pendulum)?;
+        let modes = pendulum.modes()?;
+        let motion = SmallOscillations::new(modes, &settings.motion());
+        let envelopes = Envelopes::new(&modes, &motion);
+        let greatest = envelopes.greatest().into_iter().fold(0.0, f32::max);
+        let exchange = core::f32::consts::TAU / modes.exchange();
+        let ticks_per_column = (exchange * TICK_RATE as f32 / COLUMNS_PER_EXCHANGE) as u32;
+        let mut scene = Self {
+            settings: *settings,
+            pendulum,
+            motion,
+            envelopes,
+            scale: if greatest > 0.0 { SWING / greatest } else { 0.0 },
+            ticks_per_column: ticks_per_column.max(1),
+            ticks: 0,
+            trusted_until: trusted_until(&modes, SWING),
+            strip: Strip::default(),
+        };
+        scene.push();
+        Ok(scene)
+    }
+
+    fn tick(&mut self) {
+        self.ticks = self.ticks.wrapping_add(1);
+        if self.ticks.is_multiple_of(self.ticks_per_column) {
+            self.push();
+        }
+    }
+
+    fn draw(&self, canvas: &mut Canvas) {
+        canvas.clear();
+        for row in ROWS {
+            plot::axis(canvas, 0, WIDTH as i32, row as i32, REST_GREY);
+        }
+        let mirrored = |rod: usize, envelope: i16| plot::height(0.0, 2.0 * ROWS[rod], 0.0).saturating_sub(envelope);
+        self.strip.each(WIDTH as i32 - 1, |x, &[a1, a2, e1, e2], &[b1, b2, ..]| {
+            for envelope in [e1, mirrored(0, e1), e2, mirrored(1, e2)] {
+                plot::dot(canvas, x, envelope, ENVELOPE_GREY);
+            }
+            plot::column(canvas, x, b1, a1, CURVE);
+            plot::column(canvas, x, b2, a2, CURVE);
+        });
+        text::write(canvas, &label::mass_ratio(self.settings.mass_ratio()), Anchor::TopLeft);
+        let middle = Anchor::Centred(WIDTH as i32 / 2, 0);
+        trust::draw_clock(canvas, self.time(), self.trusted_until, Anchor::TopRight, middle);
+    }
+
+    fn report(&self) -> Report {
+        let state = self.pendulum.state(&self.motion.at(self.time() as f32));
+        Report { step: self.ticks, time: self.time(), state, energy_error: 0.0, trusted_until: self.trusted_until }
+    }
+}
+
+/// How far each angle can swing while its two modes beat: of C1 cos(w1 t + f1) + C2 cos(w2 t + f2) the amplitude is
+/// sqrt(C1^2 + C2^2 + 2 C1 C2 cos((w1 - w2) t + f1 - f2)).
+#[derive(Clone, Copy, Debug)]
+struct Envelopes {
+    /// Amplitudes of the fast and the slow mode in angle 1 and in angle 2, rad; of one sign if the modes are in phase.
+    amplitudes: [[f32; 2]; 2],
+    /// w1 - w2, rad/s.
+    exchange: f32,
+    /// f1 - f2, rad.
+    phase: f32,
+}
+
+impl Envelopes {
+    fn new(modes: &Modes<f32>, motion: &SmallOscillations<f32>) -> Self {
+        let (fast, slow) = (motion.fast(), motion.slow());
+        let [c1, c2] = [fast, slow].map(|part: Oscillation<f32>| part.amplitude());
+        let amplitudes = [[c1, c2], [modes.fast.shape * c1, modes.slow.shape * c2]];
+        Self { amplitudes, exchange: modes.exchange(), phase: fast.phase() - slow.phase() }
+    }
+
+    /// The amplitudes of angle 1 and angle 2 at time `t`, rad.
+    fn at(&self, t: f32) -> [f32; 2] {
+        let (_, cos) = DefaultTrig::sin_cos(self.exchange * t + self.phase);
+        self.amplitudes.map(|[c1, c2]| libm::sqrtf((c1 * c1 + c2 * c2 + 2.0 * c1 * c2 * cos).max(0.0)))
+    }
+
+    /// The greatest they become, rad.
+    fn greatest(&self) -> [f32; 2] {
+        self.amplitudes.map(|[c1, c2]| c1.abs() + c2.abs())
+    }
+}

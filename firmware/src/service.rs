@@ -1,0 +1,83 @@
+//! Messages that come over the serial link: commands are passed on, motions computed in the time that the picture
+//! leaves free.
+
+use crate::command::Order;
+use crate::job::{Field, Job, Request};
+use crate::protocol::{Decoder, LinkError, Message, Refused, Sample, Simulate};
+
+/// What a received message came to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Received {
+    /// A motion is asked for; its samples follow.
+    Accepted,
+    /// A command to be obeyed and answered.
+    Order(Order),
+    /// The message is answered with a refusal; nothing was changed.
+    Refused(Refused),
+    /// Damaged bytes; nothing was changed, and there is nobody to answer.
+    Damaged(LinkError),
+}
+
+/// Cuts messages out of the received bytes and computes the last motion asked for.
+#[derive(Debug, Default)]
+pub struct Service {
+    decoder: Decoder,
+    work: Option<Work>,
+}
+
+#[derive(Debug)]
+struct Work {
+    request: u16,
+    /// Samples given so far.
+    index: u32,
+    job: Job,
+}
+
+impl Service {
+    /// Takes one received byte; what it came to, if it ends a message.
+    pub fn receive(&mut self, byte: u8) -> Option<Received> {
+        let (kind, fields) = match self.decoder.push(byte)? {
+            Ok(message) => message,
+            Err(error) => return Some(Received::Damaged(error)),
+        };
+        Some(match (kind == Simulate::KIND).then(|| Simulate::read(fields)).flatten() {
+            Some(message) => self.accept(&message),
+            None => Order::read(kind, fields).map_or_else(Received::Refused, Received::Order),
+        })
+    }
+
+    fn accept(&mut self, message: &Simulate) -> Received {
+        let request = message.request;
+        let job = Request::from_message(message).and_then(|request| Job::new(&request).map_err(Field::from));
+        match job {
+            Ok(job) => {
+                self.work = Some(Work { request, index: 0, job });
+                Received::Accepted
+            }
+            Err(field) => Received::Refused(Refused { request, field: field.code() }),
+        }
+    }
+
+    /// Whether there is work to do.
+    pub fn is_busy(&self) -> bool {
+        self.work.is_some()
+    }
+
+    /// Computes at most one step; the sample, when one is due.
+    pub fn work(&mut self) -> Option<Sample> {
+        let work = self.work.as_mut()?;
+        let reading = work.job.advance();
+        let sample = reading.map(|reading| Sample {
+            request: work.request,
+            index: work.index,
+            state: reading.state,
+            velocities: reading.velocities,
+            energy: reading.energy,
+        });
+        work.index = work.index.wrapping_add(u32::from(sample.is_some()));
+        if work.job.is_finished() {
+            self.work = None;
+        }
+        sample
+    }
+}

@@ -1,0 +1,86 @@
+//! What a motion starts from: the pendulum, and where it is let go.
+
+use double_pendulum::{Error, Motion, Parameters, Pendulum, State};
+
+use crate::config::{ANGLE_STEP, FIRST_ANGLE, FIRST_MASS_RATIO, GRAVITY, GREATEST_ANGLE, MASS_RATIOS, ROD};
+
+/// A double pendulum and its start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(target_os = "none", derive(defmt::Format))]
+pub struct Settings {
+    /// Masses, lengths, gravity.
+    pub parameters: Parameters<f32>,
+    /// Start angles of rod 1 and rod 2, degrees from the downward vertical.
+    pub degrees: [f32; 2],
+    /// Angular velocities of rod 1 and rod 2 at the start, rad/s.
+    pub velocities: [f32; 2],
+}
+
+/// At power-on.
+impl Default for Settings {
+    fn default() -> Self {
+        Self::equal_rods(FIRST_MASS_RATIO, FIRST_ANGLE)
+    }
+}
+
+impl Settings {
+    /// The page's pendulum: equal rods, let go from rest with both rods at one angle.
+    pub fn equal_rods(mass_ratio: f32, degrees: f32) -> Self {
+        let parameters = Parameters::equal_rods(mass_ratio, ROD, GRAVITY);
+        Self { parameters, degrees: [degrees; 2], velocities: [0.0; 2] }
+    }
+
+    /// Mass ratio mu = m2/m1.
+    pub fn mass_ratio(&self) -> f32 {
+        self.parameters.mass_ratio()
+    }
+
+    /// With bob 2 of another mass, so that the mass ratio is `mass_ratio`.
+    pub fn with_mass_ratio(self, mass_ratio: f32) -> Self {
+        Self { parameters: Parameters { m2: self.parameters.m1 * mass_ratio, ..self.parameters }, ..self }
+    }
+
+    /// With the next larger mass ratio of [`MASS_RATIOS`]; the largest stays.
+    pub fn heavier(self) -> Self {
+        let next = MASS_RATIOS.into_iter().find(|&ratio| ratio > self.mass_ratio());
+        next.map_or(self, |ratio| self.with_mass_ratio(ratio))
+    }
+
+    /// With the next smaller mass ratio of [`MASS_RATIOS`]; the smallest stays.
+    pub fn lighter(self) -> Self {
+        let next = MASS_RATIOS.into_iter().rev().find(|&ratio| ratio < self.mass_ratio());
+        next.map_or(self, |ratio| self.with_mass_ratio(ratio))
+    }
+
+    /// Both rods turned by one [`ANGLE_STEP`], counter-clockwise if `steps` is 1, clockwise if it is -1; each stops at
+    /// straight up.
+    pub fn turned(self, steps: i8) -> Self {
+        let turn = |degrees: f32| (degrees + f32::from(steps) * ANGLE_STEP).clamp(-GREATEST_ANGLE, GREATEST_ANGLE);
+        Self { degrees: self.degrees.map(turn), ..self }
+    }
+
+    /// Start angles of rod 1 and rod 2, rad: pi/180 times the degrees.
+    pub fn angles(&self) -> [f32; 2] {
+        self.degrees.map(f32::to_radians)
+    }
+
+    /// The pendulum; the kernel's error if the parameters describe none.
+    pub fn pendulum(&self) -> Result<Pendulum<f32>, Error> {
+        Pendulum::new(self.parameters)
+    }
+
+    /// Where it starts, by angles and angular velocities.
+    pub fn motion(&self) -> Motion<f32> {
+        let ([a1, a2], [w1, w2]) = (self.angles(), self.velocities);
+        Motion { a1, a2, w1, w2 }
+    }
+
+    /// Where `pendulum` starts, by angles and momenta; the kernel's error if they are not finite.
+    pub fn start(&self, pendulum: &Pendulum<f32>) -> Result<State<f32>, Error> {
+        let motion = self.motion();
+        motion.check()?;
+        let state = pendulum.state(&motion);
+        state.check()?;
+        Ok(state)
+    }
+}
