@@ -1,0 +1,55 @@
+//! `cargo flash-f4`: the firmware of the STM32F405, built, flashed by `probe-rs` and its log shown.
+
+use std::os::unix::process::CommandExt;
+use std::process::{Command, ExitCode};
+use std::time::Duration;
+
+use clap::Parser;
+use host_tests::board::STM32F405;
+use host_tests::process::{self, ProcessError};
+use host_tests::{cli, toolchain};
+
+/// The program that speaks to debug probes.
+const PROBE_RS: &str = "probe-rs";
+/// For it to say its version.
+const LIMIT: Duration = Duration::from_secs(30);
+
+/// Builds the firmware of the STM32F405, flashes it through a debug probe and shows its log until Ctrl-C.
+#[derive(Debug, Parser)]
+#[command(name = "cargo flash-f4")]
+struct Arguments {
+    /// The chip, by probe-rs's name: an STM32F405 or F407
+    #[arg(long, default_value = "STM32F405RGTx")]
+    chip: String,
+}
+
+fn main() -> ExitCode {
+    let arguments: Arguments = match cli::parse() {
+        Ok(arguments) => arguments,
+        Err(code) => return code,
+    };
+    // Before the build, which takes its time.
+    match process::run(Command::new(PROBE_RS).arg("--version"), LIMIT) {
+        Ok(_) => {}
+        Err(ProcessError::NotStarted { .. }) => {
+            let where_from = "https://probe.rs/docs/getting-started/installation";
+            return cli::refuse(format!("error: flashing needs {PROBE_RS}, which is not installed; see {where_from}"));
+        }
+        Err(error) => return cli::refuse(format!("error: {error}")),
+    }
+    let toolchain = match toolchain::ready() {
+        Ok(toolchain) => toolchain,
+        Err(missing) => return cli::refuse(missing),
+    };
+    match toolchain.build_for(&STM32F405) {
+        Ok(elf) => {
+            // It takes the place of this process, so that the terminal, Ctrl-C and the exit code are its own.
+            let error = Command::new(PROBE_RS).args(["run", "--chip", &arguments.chip]).arg(elf).exec();
+            cli::refuse(format!("error: cannot start {PROBE_RS}: {error}"))
+        }
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::FAILURE
+        }
+    }
+}

@@ -1,0 +1,90 @@
+//! `cargo fw`: builds and runs any firmware binary; also cargo's own runner for the ARM targets.
+
+use std::fs;
+use std::io::stdout;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::Duration;
+
+use clap::Parser;
+use host_tests::board::BOARDS;
+use host_tests::firmware_run::{board_for, run};
+use host_tests::qemu::{Clock, QemuError, Settings};
+use host_tests::toolchain::{self, BuildError, SetupError};
+use host_tests::{cli, process};
+
+/// Builds a firmware binary, runs it in QEMU and prints its log; exits as the firmware does.
+#[derive(Debug, Parser)]
+#[command(name = "cargo fw")]
+struct Arguments {
+    /// A binary of the firmware, or the path of an ELF file that is built already
+    #[arg(value_name = "BIN", required_unless_present = "check")]
+    binary: Option<PathBuf>,
+    /// The board to run it on; else the first that it is made for
+    #[arg(long, value_name = "NAME")]
+    board: Option<String>,
+    /// End it after this long
+    #[arg(long, value_name = "N", default_value_t = 3600)]
+    seconds: u32,
+    /// Only check that all binaries compile for all targets without a warning
+    #[arg(long, conflicts_with = "binary")]
+    check: bool,
+}
+
+/// Why a firmware did not run.
+#[derive(Debug, thiserror::Error)]
+enum Failure {
+    #[error(transparent)]
+    Setup(#[from] SetupError),
+    #[error(transparent)]
+    Build(#[from] BuildError),
+    #[error("error: {0}")]
+    Qemu(#[from] QemuError),
+    #[error("error: no board {0}; there are {names}", names = BOARDS.map(|board| board.name).join(", "))]
+    Board(String),
+    #[error("error: no binary {0}; there are {names}", names = binaries().join(", "))]
+    Binary(String),
+}
+
+fn main() -> ExitCode {
+    let arguments = match cli::parse() {
+        Ok(arguments) => arguments,
+        Err(code) => return code,
+    };
+    match execute(&arguments) {
+        Ok(code) => code,
+        Err(failure @ (Failure::Setup(_) | Failure::Board(_) | Failure::Binary(_))) => cli::refuse(failure),
+        Err(failure) => {
+            eprintln!("{failure}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn execute(arguments: &Arguments) -> Result<ExitCode, Failure> {
+    let Some(binary) = &arguments.binary else {
+        toolchain::set_up()?.0.check()?;
+        return Ok(ExitCode::SUCCESS);
+    };
+    let unknown = || Failure::Board(arguments.board.clone().unwrap_or_default());
+    let board = board_for(arguments.board.as_deref(), binary).ok_or_else(unknown)?;
+    let name = binary.to_string_lossy();
+    let is_path = name.contains('/');
+    if !is_path && !binaries().contains(&name.to_string()) {
+        return Err(Failure::Binary(name.into_owned()));
+    }
+    let (toolchain, _) = toolchain::set_up()?;
+    let elf = if is_path { binary.clone() } else { toolchain.build(&name, board.target)? };
+    let limit = Duration::from_secs(arguments.seconds.into());
+    let settings = Settings { qemu: toolchain.qemu(), board, elf: &elf, clock: Clock::Real, window: None, limit };
+    Ok(process::exit_code(run(&settings, &mut stdout().lock())?))
+}
+
+/// The names of the firmware's binaries, sorted.
+fn binaries() -> Vec<String> {
+    let Ok(files) = fs::read_dir(toolchain::workspace().join("firmware/src/bin")) else { return Vec::new() };
+    let stem = |file: fs::DirEntry| Some(file.path().file_stem()?.to_string_lossy().into_owned());
+    let mut names: Vec<_> = files.flatten().filter_map(stem).collect();
+    names.sort();
+    names
+}

@@ -1,0 +1,47 @@
+//! `cargo report`: writes the tables and pictures of cost against error.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::Parser;
+use host_tests::count::Target;
+use host_tests::report::{self, Extent};
+use host_tests::{cli, toolchain};
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// Measures every arithmetic's cost on the target and its error, and writes tables, pictures and a page.
+#[derive(Debug, Parser)]
+#[command(name = "cargo report")]
+struct Options {
+    /// Two scenes and shorter runs, in under two minutes
+    #[arg(long)]
+    quick: bool,
+    /// Where to write
+    #[arg(long, default_value = concat!(env!("CARGO_MANIFEST_DIR"), "/report"))]
+    folder: PathBuf,
+}
+
+fn main() -> ExitCode {
+    let options: Options = match cli::parse() {
+        Ok(options) => options,
+        Err(code) => return code,
+    };
+    match run(&options) {
+        Ok(()) => {
+            println!("{}", options.folder.join("index.html").display());
+            ExitCode::SUCCESS
+        }
+        Err(error) => cli::refuse(format!("{error:#}")),
+    }
+}
+
+fn run(options: &Options) -> anyhow::Result<()> {
+    let (toolchain, _) = toolchain::set_up()?;
+    let targets = Target::build_all(&toolchain)?;
+    let extent = if options.quick { Extent::QUICK } else { Extent::FULL };
+    let bar = ProgressBar::new(extent.runs(targets.len()) as u64);
+    bar.set_style(ProgressStyle::with_template("{bar:40} {pos}/{len} {elapsed} {msg}")?);
+    let written = report::write(&extent, &targets, &options.folder, &bar);
+    bar.finish_and_clear();
+    written
+}

@@ -1,0 +1,45 @@
+//! A board with the program that measures.
+
+use std::path::PathBuf;
+
+use super::timing::Core;
+use super::{CountError, Image};
+use crate::board::{BOARDS, Board};
+use crate::toolchain::Toolchain;
+
+/// The firmware's binary that runs a request.
+const PROGRAM: &str = "measure";
+
+/// An emulated board and the program that measures, built for it.
+#[derive(Debug)]
+pub struct Target {
+    /// The board.
+    pub board: &'static Board,
+    pub(super) qemu: PathBuf,
+    pub(super) elf: PathBuf,
+    image: Image,
+}
+
+impl Target {
+    /// Builds the program for `board`.
+    pub fn build(toolchain: &Toolchain, board: &'static Board) -> Result<Self, CountError> {
+        let elf = toolchain.build(PROGRAM, board.target)?;
+        let image = Image::read(&elf)?;
+        Ok(Self { board, qemu: toolchain.qemu().to_owned(), elf, image })
+    }
+
+    /// One board for each kind of core: the same machine with a Cortex-M3 and with a Cortex-M4F.
+    pub fn build_all(toolchain: &Toolchain) -> Result<Vec<Self>, CountError> {
+        BOARDS.iter().filter(|board| board.has_panel).map(|board| Self::build(toolchain, board)).collect()
+    }
+
+    /// The program's code and symbols.
+    pub fn image(&self) -> &Image {
+        &self.image
+    }
+
+    /// Whose timings hold.
+    pub fn core(&self) -> Core {
+        if self.board.cpu == "cortex-m3" { Core::M3 } else { Core::M4F }
+    }
+}

@@ -1,0 +1,128 @@
+//! Picture files: what the panel showed as an animation (GIF) or one picture of it (PNG).
+
+use std::fs::File;
+use std::io::BufWriter;
+use std::path::Path;
+
+use anyhow::Context;
+use firmware::config::TICK_RATE;
+use gif::{DisposalMethod, Encoder, Frame, Repeat};
+
+use super::tint;
+use crate::qemu::{HEIGHT, Picture, WIDTH};
+
+/// Every pixel of the panel becomes a square of this many by as many.
+const SCALE: usize = 3;
+/// The board's ticks from one picture to the next: 60/2 = 30 pictures per second.
+pub const TICKS_PER_PICTURE: u32 = TICK_RATE / 30;
+/// GIF counts time in hundredths of a second.
+const GIF_RATE: u64 = 100;
+
+/// An animation being written.
+pub struct Recording {
+    encoder: Encoder<BufWriter<File>>,
+    /// The picture to be shown next, and since which tick; it is written when its end is known.
+    pending: Option<(Picture, u32)>,
+    /// The picture that the file shows so far.
+    shown: Option<Picture>,
+    /// The tick of the first picture.
+    start: u32,
+}
+
+impl Recording {
+    /// Begins the file.
+    pub fn create(path: &Path) -> anyhow::Result<Self> {
+        let file = File::create(path).with_context(|| format!("cannot write {}", path.display()))?;
+        let size = |pixels: usize| (pixels * SCALE) as u16;
+        let mut encoder = Encoder::new(BufWriter::new(file), size(WIDTH), size(HEIGHT), &tint::palette())?;
+        encoder.set_repeat(Repeat::Infinite)?;
+        Ok(Self { encoder, pending: None, shown: None, start: 0 })
+    }
+
+    /// Takes the picture that the panel shows from `tick` on; one that comes too soon after the last is left out.
+    pub fn add(&mut self, picture: Picture, tick: u32) -> anyhow::Result<()> {
+        match &self.pending {
+            None => self.start = tick,
+            Some((_, since)) if tick.wrapping_sub(*since) < TICKS_PER_PICTURE => return Ok(()),
+            Some(_) => {}
+        }
+        self.flush(tick)?;
+        self.pending = Some((picture, tick));
+        Ok(())
+    }
+
+    /// Writes the last picture, shown as long as the others, and completes the file.
+    pub fn finish(mut self) -> anyhow::Result<()> {
+        let end = self.pending.as_ref().map_or(0, |(_, since)| since.wrapping_add(TICKS_PER_PICTURE));
+        self.flush(end)
+    }
+
+    /// Writes the pending picture, whose time ends at `tick`: only the rectangle that has changed.
+    fn flush(&mut self, tick: u32) -> anyhow::Result<()> {
+        let Some((picture, since)) = self.pending.take() else { return Ok(()) };
+        let hundredths = |tick: u32| {
+            let ticks = u64::from(tick.wrapping_sub(self.start));
+            (ticks * GIF_RATE + u64::from(TICK_RATE) / 2) / u64::from(TICK_RATE)
+        };
+        let delay = u16::try_from(hundredths(tick) - hundredths(since)).unwrap_or(u16::MAX);
+        let area = Area::changed(self.shown.as_ref(), &picture);
+        let frame = Frame {
+            delay,
+            dispose: DisposalMethod::Keep,
+            left: (area.left * SCALE) as u16,
+            top: (area.top * SCALE) as u16,
+            width: (area.width * SCALE) as u16,
+            height: (area.height * SCALE) as u16,
+            buffer: area.magnified(&picture).into(),
+            ..Frame::default()
+        };
+        self.encoder.write_frame(&frame)?;
+        self.shown = Some(picture);
+        Ok(())
+    }
+}
+
+/// A rectangle of the panel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Area {
+    left: usize,
+    top: usize,
+    width: usize,
+    height: usize,
+}
+
+impl Area {
+    const WHOLE: Self = Self { left: 0, top: 0, width: WIDTH, height: HEIGHT };
+
+    /// The smallest that holds every difference; a single pixel if there is none.
+    fn changed(before: Option<&Picture>, after: &Picture) -> Self {
+        let Some(before) = before else { return Self::WHOLE };
+        let differs = |x: usize, y: usize| before.grey(x, y) != after.grey(x, y);
+        let mut columns = (0..WIDTH).filter(|&x| (0..HEIGHT).any(|y| differs(x, y)));
+        let mut rows = (0..HEIGHT).filter(|&y| (0..WIDTH).any(|x| differs(x, y)));
+        let (left, top) = (columns.next().unwrap_or(0), rows.next().unwrap_or(0));
+        let (right, bottom) = (columns.next_back().unwrap_or(left), rows.next_back().unwrap_or(top));
+        Self { left, top, width: right - left + 1, height: bottom - top + 1 }
+    }
+
+    /// Its greys, magnified, row by row.
+    fn magnified(self, picture: &Picture) -> Vec<u8> {
+        let at = |index: usize| {
+            let (x, y) = (index % (self.width * SCALE), index / (self.width * SCALE));
+            picture.grey(self.left + x / SCALE, self.top + y / SCALE)
+        };
+        (0..self.width * SCALE * self.height * SCALE).map(at).collect()
+    }
+}
+
+/// Writes one picture as a PNG file.
+pub fn save(picture: &Picture, path: &Path) -> anyhow::Result<()> {
+    let file = File::create(path).with_context(|| format!("cannot write {}", path.display()))?;
+    let size = |pixels: usize| (pixels * SCALE) as u32;
+    let mut encoder = png::Encoder::new(BufWriter::new(file), size(WIDTH), size(HEIGHT));
+    encoder.set_color(png::ColorType::Indexed);
+    encoder.set_palette(tint::palette());
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(&Area::WHOLE.magnified(picture))?;
+    Ok(writer.finish()?)
+}

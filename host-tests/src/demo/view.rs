@@ -1,0 +1,106 @@
+//! The terminal's layout: the panel, numbers beside it, the log below, and a line of keys.
+
+use ratatui::Frame;
+use ratatui::layout::{Constraint, Layout, Rect};
+use ratatui::style::{Style, Stylize};
+use ratatui::text::{Line, Text};
+use ratatui::widgets::{Block, Paragraph, Sparkline};
+
+use super::panel::{Depth, Panel};
+use super::readings::Readings;
+use crate::qemu::{LogLine, Picture, WIDTH};
+
+/// Columns for the numbers, their frame included.
+const SIDE: u16 = 20;
+/// Rows for the log, its frame included; more if there is room.
+const LOG: u16 = 5;
+/// Rows for the keys.
+const KEYS: u16 = 1;
+/// Rows for the numbers, their frame and the smallest sparkline included.
+const NUMBERS: u16 = 14;
+/// The panel's widths, columns: no wider than it has pixels, no narrower than makes sense.
+const WIDEST: u16 = WIDTH as u16;
+const NARROWEST: u16 = 32;
+/// A frame takes a column or row on either side.
+const FRAME: u16 = 2;
+
+/// Draws everything.
+pub fn draw(frame: &mut Frame, title: &str, picture: &Picture, readings: &Readings, depth: Depth) {
+    let area = frame.area();
+    let Some(width) = panel_width(area) else {
+        let least = (NARROWEST + FRAME + SIDE, NUMBERS + LOG + KEYS);
+        let text = format!("terminal too small: {} x {}\nneeded: {} x {}", area.width, area.height, least.0, least.1);
+        frame.render_widget(Paragraph::new(text), area);
+        return;
+    };
+    let top = (width / 4 + FRAME).max(NUMBERS);
+    let [top, log, keys] =
+        Layout::vertical([Constraint::Length(top), Constraint::Min(LOG), Constraint::Length(KEYS)]).areas(area);
+    let [left, side] = Layout::horizontal([Constraint::Length(width + FRAME), Constraint::Min(SIDE)]).areas(top);
+
+    let panel = Block::bordered().title(title.bold());
+    let inside = panel.inner(left);
+    frame.render_widget(panel, left);
+    let inside = Rect { width, height: (width / 4).min(inside.height), ..inside };
+    frame.render_widget(Panel { picture, depth }, inside);
+
+    numbers(frame, side, readings);
+    let block = Block::bordered().title("log");
+    let rows = usize::from(log.height.saturating_sub(FRAME));
+    let lines = readings.lines.iter().skip(readings.lines.len().saturating_sub(rows)).map(styled);
+    frame.render_widget(Paragraph::new(lines.collect::<Text>()).block(block), log);
+    let help = " ↑ ↓ mass ratio  ← → angle  space restart  tab scene  p pause  . step  q quit";
+    frame.render_widget(Line::from(help).dim(), keys);
+}
+
+/// The widest panel that leaves room for the rest, in steps that keep its shape; `None` if there is none.
+fn panel_width(area: Rect) -> Option<u16> {
+    let columns = area.width.checked_sub(SIDE + FRAME)?;
+    let rows = area.height.checked_sub(LOG + KEYS + FRAME)?;
+    let width = columns.min(4 * rows).min(WIDEST) / 4 * 4;
+    (width >= NARROWEST && area.height >= NUMBERS + LOG + KEYS).then_some(width)
+}
+
+fn numbers(frame: &mut Frame, area: Rect, readings: &Readings) {
+    let now = &readings.frame;
+    let [a1, a2, ..] = now.state.map(f32::to_degrees);
+    let rows = [
+        ("mass ratio", format!("{}", now.mass_ratio)),
+        ("start", format!("{:.1}°", now.start_angle.to_degrees())),
+        ("angle 1", format!("{a1:.1}°")),
+        ("angle 2", format!("{a2:.1}°")),
+        ("time", format!("{:.2} s", now.time)),
+        ("frames/s", format!("{}", readings.rate())),
+        ("dropped", format!("{}", now.dropped)),
+        ("CRC errors", format!("{}", readings.counts.damaged)),
+        ("energy err", format!("{:+.1e}", now.energy_error)),
+    ];
+    let block = Block::bordered().title("now");
+    let inside = block.inner(area);
+    frame.render_widget(block, area);
+    let heights = [Constraint::Length(rows.len() as u16), Constraint::Min(1)];
+    let [table, spark] = Layout::vertical(heights).areas(inside);
+    let width = usize::from(SIDE - FRAME);
+    let lines = rows.iter().map(|(name, value)| {
+        let space = width.saturating_sub(name.chars().count());
+        Line::from(vec![(*name).dim(), format!("{value:>space$}").bold()])
+    });
+    frame.render_widget(Paragraph::new(lines.collect::<Text>()), table);
+
+    let errors = &readings.energy_errors;
+    let shown = errors.iter().skip(errors.len().saturating_sub(usize::from(spark.width)));
+    let greatest = errors.iter().copied().fold(f32::MIN_POSITIVE, f32::max);
+    const HEIGHT: f32 = 1000.0;
+    let bars = shown.map(|error| (error / greatest * HEIGHT) as u64).collect::<Vec<_>>();
+    let sparkline = Sparkline::default().data(bars).max(HEIGHT as u64).style(Style::new().yellow());
+    frame.render_widget(sparkline, spark);
+}
+
+fn styled(line: &LogLine) -> Line<'_> {
+    let text = Line::from(line.to_string());
+    match line.level.as_deref() {
+        None | Some("error") => text.red(),
+        Some("warn") => text.yellow(),
+        _ => text,
+    }
+}

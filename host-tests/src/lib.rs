@@ -1,0 +1,20 @@
+//! What the host's commands and tests share.
+
+pub mod board;
+pub mod cli;
+pub mod count;
+pub mod demo;
+pub mod firmware_run;
+pub mod known_answers;
+pub mod page;
+pub mod process;
+pub mod progress;
+pub mod qemu;
+pub mod random;
+pub mod reference;
+pub mod report;
+pub mod simulate;
+pub mod snapshot;
+pub mod tolerance;
+pub mod toolchain;
+pub mod trial;

@@ -1,0 +1,160 @@
+//! The live process groups of this process, and the two that look after them all: the guardian thread, which ends those
+//! whose time is up, and the handler of interrupts, which ends every one of them and then this process.
+
+use std::io;
+use std::os::unix::process::CommandExt;
+use std::process::{Child, Command, ExitStatus};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, Once, PoisonError};
+use std::thread::{self, sleep};
+use std::time::{Duration, Instant};
+
+use nix::sys::signal::{Signal, killpg};
+use nix::unistd::Pid;
+
+use super::{POLL, Pipes};
+
+/// How long a group may take to stop when asked, before it is killed.
+const GRACE: Duration = Duration::from_secs(3);
+/// The same when this process is itself interrupted; shorter, so that the one who interrupts need not kill us.
+const INTERRUPTED_GRACE: Duration = Duration::from_secs(1);
+/// How often the guardian looks at the time limits.
+const GUARD: Duration = Duration::from_millis(20);
+/// The shell's exit code for a command ended by Ctrl-C.
+const INTERRUPTED: i32 = 130;
+
+static LIVE: Mutex<Vec<Arc<Group>>> = Mutex::new(Vec::new());
+static HOOK: Mutex<Option<Hook>> = Mutex::new(None);
+static SUPERVISION: Once = Once::new();
+
+type Hook = Box<dyn FnOnce() + Send>;
+
+/// A child and the process group it leads.
+#[derive(Debug)]
+pub(super) struct Group {
+    program: String,
+    pid: u32,
+    started: Instant,
+    limit: Duration,
+    timed_out: AtomicBool,
+    child: Mutex<Child>,
+}
+
+impl Group {
+    pub(super) fn id(&self) -> u32 {
+        self.pid
+    }
+
+    pub(super) fn program(&self) -> &str {
+        &self.program
+    }
+
+    pub(super) fn limit(&self) -> Duration {
+        self.limit
+    }
+
+    pub(super) fn timed_out(&self) -> bool {
+        self.timed_out.load(Ordering::Acquire)
+    }
+
+    pub(super) fn try_wait(&self) -> io::Result<Option<ExitStatus>> {
+        lock(&self.child).try_wait()
+    }
+
+    /// Sends `signal` to every process of the group, or only asks whether there is one; `false` if there is none.
+    fn signal(&self, signal: impl Into<Option<Signal>>) -> bool {
+        i32::try_from(self.pid).is_ok_and(|pid| killpg(Pid::from_raw(pid), signal.into()).is_ok())
+    }
+
+    /// Whether any process of the group is left. Reaps the leader.
+    fn is_alive(&self) -> bool {
+        let leader_runs = matches!(self.try_wait(), Ok(None));
+        leader_runs || self.signal(None)
+    }
+}
+
+/// Starts and registers a child.
+pub(super) fn start(command: &mut Command, limit: Duration) -> io::Result<(Arc<Group>, Pipes)> {
+    SUPERVISION.call_once(supervise);
+    let program = command.get_program().to_string_lossy().into_owned();
+    // Held while the child starts: an interrupt finds either no child or a registered one.
+    let mut live = lock(&LIVE);
+    let mut child = command.process_group(0).spawn()?;
+    let pipes = Pipes::of(&mut child);
+    let group = Arc::new(Group {
+        program,
+        pid: child.id(),
+        started: Instant::now(),
+        limit,
+        timed_out: AtomicBool::new(false),
+        child: Mutex::new(child),
+    });
+    live.push(Arc::clone(&group));
+    Ok((group, pipes))
+}
+
+/// Ends what is left of the group and forgets it.
+pub(super) fn finish(group: &Arc<Group>) {
+    let registered = |live: &[Arc<Group>]| live.iter().any(|other| Arc::ptr_eq(other, group));
+    if registered(&lock(&LIVE)) {
+        end(std::slice::from_ref(group), GRACE);
+        lock(&LIVE).retain(|other| !Arc::ptr_eq(other, group));
+    }
+}
+
+/// Runs `hook` when this process is interrupted, after its children have gone and before it exits with code 130:
+/// for what must be put back, such as the terminal's mode. A later hook replaces an earlier one.
+pub fn on_interrupt(hook: impl FnOnce() + Send + 'static) {
+    SUPERVISION.call_once(supervise);
+    *lock(&HOOK) = Some(Box::new(hook));
+}
+
+/// Asks the groups to stop, and kills those that are still there after `grace`.
+fn end(groups: &[Arc<Group>], grace: Duration) {
+    let mut left: Vec<_> = groups.iter().filter(|group| group.is_alive()).collect();
+    for group in &left {
+        group.signal(Signal::SIGTERM);
+        group.signal(Signal::SIGCONT);
+    }
+    let deadline = Instant::now() + grace;
+    while !left.is_empty() && Instant::now() < deadline {
+        sleep(POLL);
+        left.retain(|group| group.is_alive());
+    }
+    for group in &left {
+        group.signal(Signal::SIGKILL);
+        // The leader cannot refuse, so this returns; an error only means that it was already reaped.
+        let _ = lock(&group.child).wait();
+    }
+}
+
+/// Starts the guardian and sets the handler of interrupts; once per process.
+fn supervise() {
+    thread::spawn(|| {
+        loop {
+            sleep(GUARD);
+            let late: Vec<_> =
+                lock(&LIVE).iter().filter(|group| group.started.elapsed() >= group.limit).cloned().collect();
+            let late: Vec<_> = late.into_iter().filter(|group| !group.timed_out() && group.is_alive()).collect();
+            for group in &late {
+                group.timed_out.store(true, Ordering::Release);
+            }
+            end(&late, GRACE);
+        }
+    });
+    // Fails only if the program has a handler of its own already, which then has the say.
+    let _ = ctrlc::set_handler(|| {
+        // Never released: no child starts from here on.
+        let live = lock(&LIVE);
+        end(&live, INTERRUPTED_GRACE);
+        if let Some(hook) = lock(&HOOK).take() {
+            hook();
+        }
+        std::process::exit(INTERRUPTED);
+    });
+}
+
+/// A panic elsewhere must not keep children alive, so a poisoned lock is as good as any.
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}

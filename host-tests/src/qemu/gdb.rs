@@ -1,0 +1,84 @@
+//! The few packets of GDB's remote protocol that stop a machine whenever its processor is about to sleep.
+//!
+//! Source: GDB manual, appendix E (Remote Serial Protocol): `$text#checksum`, each acknowledged with `+`.
+
+use std::io::{BufRead, BufReader, Read, Write};
+use std::os::unix::net::UnixStream;
+
+use super::QemuError;
+
+/// The size of the instruction `wfi`, bytes.
+const WFI_SIZE: u32 = 2;
+/// GDB's number of the program counter.
+const PC: &str = "f";
+
+/// Asks what registers there are; until then QEMU gives access to none.
+const DESCRIBE: &str = "qXfer:features:read:target.xml:0,10";
+
+/// A connection to QEMU's debugger port. The machine stands still except inside [`run_to_sleep`](Self::run_to_sleep).
+#[derive(Debug)]
+pub(super) struct Debugger {
+    reader: BufReader<UnixStream>,
+    writer: UnixStream,
+    /// The machine stands at this `wfi`.
+    asleep_at: Option<u32>,
+}
+
+impl Debugger {
+    /// Will stop at the instructions `wfi` at these addresses.
+    pub(super) fn new(socket: UnixStream, sleeps: &[u32]) -> Result<Self, QemuError> {
+        let writer = socket.try_clone().map_err(broken)?;
+        let mut debugger = Self { reader: BufReader::new(socket), writer, asleep_at: None };
+        debugger.ask(DESCRIBE)?;
+        for address in sleeps {
+            debugger.expect(&format!("Z0,{address:x},{WFI_SIZE}"), "OK")?;
+        }
+        Ok(debugger)
+    }
+
+    /// Lets the machine run until its processor is about to sleep.
+    ///
+    /// The `wfi` it stands at is passed over: the architecture lets it wake at any time, and while the machine stood
+    /// still QEMU has put its clock forward to the next event, which is just what sleeping does.
+    pub(super) fn run_to_sleep(&mut self) -> Result<(), QemuError> {
+        if let Some(address) = self.asleep_at.take() {
+            let next = (address + WFI_SIZE).swap_bytes();
+            self.expect(&format!("P{PC}={next:08x}"), "OK")?;
+        }
+        self.expect("c", "T05")?;
+        let answer = self.ask(&format!("p{PC}"))?;
+        let address = u32::from_str_radix(&answer, 16).map_err(|_| unexpected("p", &answer))?;
+        self.asleep_at = Some(address.swap_bytes());
+        Ok(())
+    }
+
+    /// Sends a packet whose answer must begin with `answer`.
+    fn expect(&mut self, packet: &str, answer: &str) -> Result<(), QemuError> {
+        let reply = self.ask(packet)?;
+        if reply.starts_with(answer) { Ok(()) } else { Err(unexpected(packet, &reply)) }
+    }
+
+    fn ask(&mut self, packet: &str) -> Result<String, QemuError> {
+        self.exchange(packet).map_err(broken)
+    }
+
+    fn exchange(&mut self, packet: &str) -> std::io::Result<String> {
+        let checksum = packet.bytes().fold(0, u8::wrapping_add);
+        write!(self.writer, "${packet}#{checksum:02x}")?;
+        self.reader.skip_until(b'$')?;
+        let mut reply = Vec::new();
+        self.reader.read_until(b'#', &mut reply)?;
+        self.reader.read_exact(&mut [0; 2])?;
+        self.writer.write_all(b"+")?;
+        reply.pop();
+        Ok(String::from_utf8_lossy(&reply).into_owned())
+    }
+}
+
+fn unexpected(packet: &str, reply: &str) -> QemuError {
+    QemuError::Refused { command: "the debugger", reason: format!("{packet} was answered with {reply:?}") }
+}
+
+fn broken(source: std::io::Error) -> QemuError {
+    QemuError::Connection { name: "debugger port", source }
+}

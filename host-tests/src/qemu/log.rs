@@ -1,0 +1,124 @@
+//! What the firmware and QEMU say: defmt's lines decoded with level, file and line, and plain text as it is.
+
+use std::fmt;
+use std::io::{BufRead, BufReader, Read};
+use std::path::Path;
+use std::process::{ChildStderr, ChildStdout};
+use std::sync::mpsc::{self, Receiver, Sender};
+use std::thread;
+
+use defmt_decoder::{DecodeError, Frame, Locations, Table};
+
+use super::QemuError;
+
+/// What QEMU says at every start of this machine and nobody needs to read.
+const CHATTER: [&str; 2] = ["Timer with period zero, disabling", "has no peer"];
+
+/// One line.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LogLine {
+    /// defmt's level in lower case; `None` for plain text, in which QEMU speaks and the firmware reports a crash.
+    pub level: Option<String>,
+    /// What is said.
+    pub text: String,
+    /// The file name and line number of the statement, where they are known.
+    pub place: Option<(String, u64)>,
+}
+
+impl LogLine {
+    fn plain(text: &str) -> Self {
+        Self { level: None, text: text.to_owned(), place: None }
+    }
+
+    /// Whether something went wrong: a defmt error, or a crash report or complaint in plain text.
+    pub fn is_bad(&self) -> bool {
+        self.level.as_deref().is_none_or(|level| level == "error")
+    }
+}
+
+impl fmt::Display for LogLine {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(level) = &self.level {
+            write!(f, "{level:5} ")?;
+        }
+        write!(f, "{}", self.text)?;
+        match &self.place {
+            Some((file, line)) => write!(f, " [{file}:{line}]"),
+            None => Ok(()),
+        }
+    }
+}
+
+/// The lines as they come. Threads of its own always read, for QEMU stands still while nobody does.
+#[derive(Debug)]
+pub struct Log {
+    lines: Receiver<LogLine>,
+}
+
+impl Log {
+    /// Of the firmware in the file `elf`: defmt on `stdout`, plain text on `stderr`.
+    pub(super) fn new(elf: &Path, stdout: Option<ChildStdout>, stderr: Option<ChildStderr>) -> Result<Self, QemuError> {
+        let unusable = |reason: String| QemuError::Firmware { path: elf.to_owned(), reason };
+        let program = std::fs::read(elf).map_err(|error| unusable(error.to_string()))?;
+        let table = Table::parse(&program).map_err(|error| unusable(error.to_string()))?;
+        let (sender, lines) = mpsc::channel();
+        if let (Some(table), Some(stdout)) = (table, stdout) {
+            let locations = table.get_locations(&program).map_err(|error| unusable(error.to_string()))?;
+            let sender = sender.clone();
+            thread::spawn(move || decode(&table, &locations, stdout, &sender));
+        }
+        if let Some(stderr) = stderr {
+            thread::spawn(move || {
+                for line in BufReader::new(stderr).lines().map_while(Result::ok) {
+                    if !CHATTER.iter().any(|chatter| line.contains(chatter)) {
+                        // Nobody listens any more; still read on, or QEMU would stand still.
+                        let _ = sender.send(LogLine::plain(&line));
+                    }
+                }
+            });
+        }
+        Ok(Self { lines })
+    }
+
+    /// The lines that have arrived since the last call, without waiting.
+    pub fn arrived(&self) -> impl Iterator<Item = LogLine> {
+        self.lines.try_iter()
+    }
+
+    /// The lines up to QEMU's end, waiting for it.
+    pub fn rest(&self) -> impl Iterator<Item = LogLine> {
+        self.lines.iter()
+    }
+}
+
+/// Sends on each line of defmt's stream, to its end.
+fn decode(table: &Table, locations: &Locations, mut stream: impl Read, lines: &Sender<LogLine>) {
+    let mut decoder = table.new_stream_decoder();
+    let mut buffer = [0; 4096];
+    while let Ok(count @ 1..) = stream.read(&mut buffer) {
+        decoder.received(&buffer[..count]);
+        loop {
+            match decoder.decode() {
+                Ok(frame) => {
+                    let _ = lines.send(line(&frame, locations));
+                }
+                Err(DecodeError::UnexpectedEof) => break,
+                Err(DecodeError::Malformed) => {
+                    let _ = lines.send(LogLine::plain("a line of the log was damaged"));
+                    if !table.encoding().can_recover() {
+                        break;
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn line(frame: &Frame, locations: &Locations) -> LogLine {
+    let place = locations.get(&frame.index()).and_then(|location| {
+        let file = location.file.file_name()?.to_string_lossy().into_owned();
+        Some((file, location.line))
+    });
+    let level = frame.level().map_or_else(|| "print".to_owned(), |level| level.as_str().to_owned());
+    LogLine { level: Some(level), text: frame.display_message().to_string(), place }
+}

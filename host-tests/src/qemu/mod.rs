@@ -1,0 +1,22 @@
+//! The emulated board as an instrument: a machine started with a firmware, its serial link, log, buttons and panel.
+//!
+//! Every wait ends: at the latest when the machine's time limit ends QEMU, which closes all its connections.
+
+mod error;
+mod gdb;
+mod lockstep;
+mod log;
+mod machine;
+mod qmp;
+mod screen;
+mod serial;
+mod window;
+
+pub use error::QemuError;
+pub use lockstep::Lockstep;
+pub use log::{Log, LogLine};
+pub use machine::{Clock, Machine, Settings};
+pub use qmp::Key;
+pub use screen::{HEIGHT, Picture, WIDTH};
+pub use serial::{Counts, Received, Serial};
+pub use window::{NoWindow, Window};

@@ -1,0 +1,201 @@
+//! The serial link: UART0's bytes to messages, and bytes the other way.
+
+use std::fs::File;
+use std::io::{ErrorKind, Read, Write};
+use std::os::fd::AsFd;
+use std::os::unix::fs::OpenOptionsExt;
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{self, Receiver, Sender};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread;
+
+use firmware::protocol::{Decoder, Frame, MAX_WIRE, Message, encode};
+use nix::errno::Errno;
+use nix::fcntl::OFlag;
+use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
+use nix::sys::stat::Mode;
+use nix::unistd::mkfifo;
+
+use super::QemuError;
+
+/// What the link has been through.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Intact messages.
+    pub messages: u64,
+    /// Messages damaged on the way: wrong CRC, framing, length or version.
+    pub damaged: u64,
+    /// Frames whose sequence number was never seen.
+    pub lost: u64,
+}
+
+/// An intact message of any kind.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Received {
+    /// Tells which message it is.
+    pub kind: u8,
+    /// Its fields as they came.
+    pub fields: Vec<u8>,
+}
+
+impl Received {
+    /// The message, if it is an `M`.
+    pub fn read<M: Message>(&self) -> Option<M> {
+        if self.kind == M::KIND { M::read(&self.fields) } else { None }
+    }
+}
+
+/// The host's end of UART0. A thread of its own always reads, for QEMU stands still while nobody does.
+///
+/// It is a pair of named pipes: they hold a second's worth of single bytes, where a socket holds a few frames, and not
+/// every emulated board stands still by itself when its bytes are not taken.
+#[derive(Debug)]
+pub struct Serial {
+    sender: File,
+    messages: Receiver<Received>,
+    reader: Arc<Mutex<Reader>>,
+}
+
+/// The pipes, made and ready to receive before QEMU runs.
+pub(super) struct Pipes {
+    receiver: File,
+    sender: PathBuf,
+}
+
+impl Pipes {
+    /// For QEMU's `-chardev pipe` of this path: QEMU reads `path.in` and writes `path.out`.
+    pub(super) fn make(path: &Path) -> Result<Self, QemuError> {
+        let (sender, receiver) = (path.with_extension("in"), path.with_extension("out"));
+        for pipe in [&sender, &receiver] {
+            mkfifo(pipe, Mode::S_IRUSR | Mode::S_IWUSR).map_err(|error| broken(error.into()))?;
+        }
+        let receiver =
+            File::options().read(true).custom_flags(OFlag::O_NONBLOCK.bits()).open(receiver).map_err(broken)?;
+        Ok(Self { receiver, sender })
+    }
+}
+
+impl Serial {
+    /// To be called once QEMU has opened its ends.
+    pub(super) fn new(pipes: Pipes) -> Result<Self, QemuError> {
+        let sender = File::options().write(true).open(pipes.sender).map_err(broken)?;
+        let watched = pipes.receiver.try_clone().map_err(broken)?;
+        let (channel, messages) = mpsc::channel();
+        let reader = Reader {
+            pipe: pipes.receiver,
+            decoder: Decoder::default(),
+            counts: Counts::default(),
+            expected: None,
+            channel: Some(channel),
+        };
+        let reader = Arc::new(Mutex::new(reader));
+        let shared = Arc::downgrade(&reader);
+        thread::spawn(move || {
+            let mut open = true;
+            while open && is_readable(&watched) {
+                open = shared.upgrade().is_some_and(|reader| lock(&reader).read());
+            }
+        });
+        Ok(Self { sender, messages, reader })
+    }
+
+    /// The next message; `None` once QEMU has ended.
+    pub fn receive(&self) -> Option<Received> {
+        self.messages.recv().ok()
+    }
+
+    /// The next message of one kind; others on the way to it are passed over. `None` once QEMU has ended.
+    pub fn next<M: Message>(&self) -> Option<M> {
+        self.messages.iter().find_map(|message| message.read())
+    }
+
+    /// The messages of one kind that QEMU has sent since the last call, without waiting; others are passed over.
+    pub fn arrived<M: Message>(&self) -> impl Iterator<Item = M> {
+        lock(&self.reader).read();
+        self.messages.try_iter().filter_map(|message| message.read())
+    }
+
+    /// What the link has been through.
+    pub fn counts(&self) -> Counts {
+        lock(&self.reader).counts
+    }
+
+    /// Sends a message to the board.
+    pub fn send<M: Message>(&mut self, message: &M) -> Result<(), QemuError> {
+        self.send_bytes(encode(message, &mut [0; MAX_WIRE]))
+    }
+
+    /// Sends any bytes to the board, sense or nonsense.
+    pub fn send_bytes(&mut self, bytes: &[u8]) -> Result<(), QemuError> {
+        self.sender.write_all(bytes).map_err(broken)
+    }
+}
+
+/// Cuts what arrives into messages.
+#[derive(Debug)]
+struct Reader {
+    pipe: File,
+    decoder: Decoder,
+    counts: Counts,
+    /// The sequence number the next frame should have.
+    expected: Option<u32>,
+    /// Gone once QEMU has ended, which ends the messages.
+    channel: Option<Sender<Received>>,
+}
+
+impl Reader {
+    /// Takes all that is there, without waiting; whether the connection is still open.
+    fn read(&mut self) -> bool {
+        let mut buffer = [0; 4096];
+        loop {
+            match self.pipe.read(&mut buffer) {
+                Ok(count @ 1..) => buffer[..count].iter().for_each(|&byte| self.take(byte)),
+                Err(error) if error.kind() == ErrorKind::Interrupted => {}
+                Err(error) if error.kind() == ErrorKind::WouldBlock => return true,
+                Ok(_) | Err(_) => {
+                    self.channel = None;
+                    return false;
+                }
+            }
+        }
+    }
+
+    fn take(&mut self, byte: u8) {
+        let message = match self.decoder.push(byte) {
+            None => return,
+            Some(Err(_)) => {
+                self.counts.damaged += 1;
+                return;
+            }
+            Some(Ok((kind, fields))) => Received { kind, fields: fields.to_vec() },
+        };
+        self.counts.messages += 1;
+        if let Some(Frame { sequence, .. }) = message.read() {
+            self.counts.lost += u64::from(self.expected.map_or(0, |expected| sequence.wrapping_sub(expected)));
+            self.expected = Some(sequence.wrapping_add(1));
+        }
+        if let Some(channel) = &self.channel {
+            // Fails only while the machine is being dropped.
+            let _ = channel.send(message);
+        }
+    }
+}
+
+/// Waits until there is something to read, or the end of the connection.
+fn is_readable(pipe: &File) -> bool {
+    loop {
+        match poll(&mut [PollFd::new(pipe.as_fd(), PollFlags::POLLIN)], PollTimeout::NONE) {
+            Err(Errno::EINTR) => {}
+            result => return result.is_ok(),
+        }
+    }
+}
+
+fn broken(source: std::io::Error) -> QemuError {
+    QemuError::Connection { name: "serial port", source }
+}
+
+/// A panic elsewhere must not stop the reading, so a poisoned lock is as good as any.
+fn lock(reader: &Mutex<Reader>) -> MutexGuard<'_, Reader> {
+    reader.lock().unwrap_or_else(PoisonError::into_inner)
+}

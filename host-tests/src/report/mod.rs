@@ -1,0 +1,105 @@
+//! `cargo report`: every arithmetic's cost on the target against its error, as tables, pictures and one page.
+//!
+//! Costs are counted on the emulated targets, errors are computed on the host, which is allowed because the bits are the
+//! same ([`identity`]). Nothing is timed, so two runs write the same files.
+
+pub mod accuracy;
+pub mod chart;
+pub mod costs;
+pub mod energy;
+pub mod identity;
+mod page;
+pub mod peers;
+pub mod scene;
+pub mod speed;
+pub mod table;
+
+use anyhow::{Context, ensure};
+use firmware::measure::SUBJECTS;
+use indicatif::ProgressBar;
+use std::fs;
+use std::path::Path;
+
+use crate::count::Target;
+use scene::SCENES;
+
+/// How much is computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Extent {
+    /// Scenes, from the first on.
+    pub scenes: usize,
+    /// The finest step is 2^-`finest` s; the coarsest is 2^-4 s.
+    pub finest: u32,
+    /// Steps of the energy runs.
+    pub energy_steps: u32,
+    /// Steps of the comparison of bits.
+    pub identity_steps: u32,
+    /// Whether other integrators are counted, which first have to be compiled.
+    pub peers: bool,
+}
+
+impl Extent {
+    /// All of it: some ten minutes.
+    pub const FULL: Self =
+        Self { scenes: SCENES.len(), finest: 13, energy_steps: 1_000_000, identity_steps: 100_000, peers: true };
+    /// The first two scenes and shorter runs: under two minutes.
+    pub const QUICK: Self = Self { scenes: 2, finest: 13, energy_steps: 100_000, identity_steps: 2_000, peers: false };
+
+    fn halvings(&self) -> impl Iterator<Item = u32> + Clone {
+        4..=self.finest
+    }
+
+    /// The runs of everything, for the progress bar.
+    pub fn runs(&self, targets: usize) -> usize {
+        let survey = self.scenes * SUBJECTS.len() * self.halvings().count();
+        survey + energy::RUNS + if self.peers { peers::RUNS } else { 0 } + 2 * targets * SUBJECTS.len()
+    }
+}
+
+/// Computes the report and writes it into `folder`. Costs are counted on `targets`.
+pub fn write(extent: &Extent, targets: &[Target], folder: &Path, bar: &ProgressBar) -> anyhow::Result<()> {
+    let tick = || bar.inc(1);
+    bar.set_message("comparing bits");
+    let (identity, agree) = identity::table(targets, &SCENES[1], extent.identity_steps, &tick)?;
+    ensure!(
+        agree,
+        "host and target differ, so errors from the host would not be the target's:\n{}",
+        identity.markdown()
+    );
+    bar.set_message("counting");
+    let costs = costs::count(targets, &SCENES[0], &tick)?;
+    bar.set_message("comparing with the reference");
+    let points = accuracy::survey(extent.scenes, extent.halvings(), &tick);
+    bar.set_message("following the energy");
+    let energy = energy::table(extent.energy_steps, &tick);
+
+    bar.set_message("counting other integrators");
+    let peers = peers::table(extent.peers, &tick)?;
+
+    bar.set_message("writing");
+    let priced = speed::priced(&points, &costs);
+    let tables =
+        [costs::table(&costs, &SCENES[0]), speed::floors(&points), energy, peers, identity, speed::table(&priced)];
+    let mut charts = Vec::new();
+    for scene in &SCENES[..extent.scenes] {
+        for target in targets {
+            let board = target.board;
+            let name = format!("speed-{}-{}.svg", scene.name, board.cpu);
+            let svg = chart::speed_against_error(&priced, scene, board);
+            charts.push((name, svg.map_err(|error| anyhow::anyhow!("cannot draw: {error}"))?));
+        }
+    }
+    fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
+    let save = |name: &str, text: &str| {
+        let path = folder.join(name);
+        fs::write(&path, text).with_context(|| format!("cannot write {}", path.display()))
+    };
+    for table in &tables {
+        save(&format!("{}.csv", table.name), &table.csv())?;
+        save(&format!("{}.md", table.name), &table.markdown())?;
+    }
+    for (name, svg) in &charts {
+        save(name, svg)?;
+    }
+    save("index.html", &page::html(&tables, &charts))
+}

@@ -1,0 +1,69 @@
+//! A table of the report, in three notations.
+
+use std::fmt::Write;
+
+/// Columns with their headings, rows of as many cells.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Table {
+    /// File name without ending, and anchor on the page.
+    pub name: &'static str,
+    /// Heading.
+    pub title: String,
+    /// What the columns mean and where the numbers come from.
+    pub note: String,
+    /// Headings of the columns, with units.
+    pub columns: Vec<&'static str>,
+    /// Cells.
+    pub rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    /// Comma-separated; no cell contains a comma or a quote.
+    pub fn csv(&self) -> String {
+        let mut text = self.columns.join(",");
+        text.push('\n');
+        for row in &self.rows {
+            text.push_str(&row.join(","));
+            text.push('\n');
+        }
+        text
+    }
+
+    /// With heading and note.
+    pub fn markdown(&self) -> String {
+        let line = |cells: String| format!("| {cells} |\n");
+        let mut text = format!("## {}\n\n{}\n\n", self.title, self.note);
+        text.push_str(&line(self.columns.join(" | ")));
+        text.push_str(&line(vec!["---"; self.columns.len()].join(" | ")));
+        self.rows.iter().for_each(|row| text.push_str(&line(row.join(" | "))));
+        text
+    }
+
+    /// With heading and note.
+    pub fn html(&self) -> String {
+        let cells = |tag: &str, cells: &mut dyn Iterator<Item = &str>| {
+            let mut row = String::from("<tr>");
+            for cell in cells {
+                // Writing to a string cannot fail.
+                let _ = write!(row, "<{tag}>{}</{tag}>", escaped(cell));
+            }
+            row + "</tr>\n"
+        };
+        let mut text =
+            format!("<h2 id=\"{}\">{}</h2>\n<p>{}</p>\n", self.name, escaped(&self.title), escaped(&self.note));
+        text.push_str("<table>\n");
+        text.push_str(&cells("th", &mut self.columns.iter().copied()));
+        self.rows.iter().for_each(|row| text.push_str(&cells("td", &mut row.iter().map(String::as_str))));
+        text + "</table>\n"
+    }
+}
+
+/// Text as HTML shows it.
+pub fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+}
+
+/// An error or a drift: two digits, or what it is not.
+pub fn small(value: f64) -> String {
+    if value.is_finite() { format!("{value:.1e}") } else { String::from("none") }
+}

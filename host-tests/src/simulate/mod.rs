@@ -1,0 +1,35 @@
+//! `cargo simulate`: any motion as a table, computed here or by the firmware on a board.
+
+mod board;
+mod number;
+mod options;
+mod request;
+mod table;
+
+use std::io;
+
+use firmware::job::{Job, Reading};
+use indicatif::{ProgressBar, ProgressStyle};
+
+pub use board::on_board;
+pub use number::{Number, NumberError};
+pub use options::{Options, Pair, Place};
+pub use request::{Plan, plan};
+pub use table::Table;
+
+/// Computes the motion on the host and gives each reading to `row`.
+pub fn on_host(plan: &Plan, mut row: impl FnMut(&Reading) -> io::Result<()>) -> anyhow::Result<()> {
+    let mut job = Job::new(&plan.request)?;
+    while !job.is_finished() {
+        if let Some(reading) = job.advance() {
+            row(&reading)?;
+        }
+    }
+    Ok(())
+}
+
+/// A bar on stderr for long work; invisible when stderr is no terminal.
+pub fn progress(rows: u64) -> ProgressBar {
+    let style = ProgressStyle::with_template("{elapsed} {wide_bar} {pos}/{len} rows, {eta} left");
+    ProgressBar::new(rows).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+}

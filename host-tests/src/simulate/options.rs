@@ -1,0 +1,101 @@
+//! The command line of `cargo simulate`.
+
+use clap::Parser;
+use clap::builder::PossibleValuesParser;
+use clap::builder::TypedValueParser;
+use firmware::job::{Arithmetic, Model};
+
+use super::Number;
+use crate::board::{BOARDS, Board};
+
+/// Two numbers separated by a comma: one for each bob or rod.
+#[derive(Clone, Debug)]
+pub struct Pair(pub Number, pub Number);
+
+impl std::str::FromStr for Pair {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (first, second) = text.split_once(',').ok_or("write two numbers with a comma between them")?;
+        let number = |text: &str| text.trim().parse().map_err(|error| format!("'{text}': {error}"));
+        Ok(Pair(number(first)?, number(second)?))
+    }
+}
+
+/// Where the motion is computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// By this program.
+    Host,
+    /// By the firmware on an emulated board.
+    Board(&'static Board),
+}
+
+impl Place {
+    const HOST: &str = "host";
+
+    fn names() -> impl Iterator<Item = &'static str> {
+        std::iter::once(Self::HOST).chain(BOARDS.iter().map(|board| board.name))
+    }
+
+    fn named(name: &str) -> Self {
+        BOARDS.iter().find(|board| board.name == name).map_or(Place::Host, Place::Board)
+    }
+}
+
+/// Computes a motion of the double pendulum and prints it as CSV: t,a1,a2,p1,p2,w1,w2,energy in SI units.
+///
+/// Numbers are decimals (0.25, 1e-3) or fractions (1/256).
+#[derive(Debug, Parser)]
+#[command(name = "cargo simulate", bin_name = "cargo simulate")]
+pub struct Options {
+    /// Masses of the bobs, kg
+    #[arg(long, value_name = "M1,M2", default_value = "1,1", allow_hyphen_values = true)]
+    pub masses: Pair,
+    /// Lengths of the rods, m
+    #[arg(long, value_name = "L1,L2", default_value = "1,1", allow_hyphen_values = true)]
+    pub lengths: Pair,
+    /// Gravitational acceleration, m/s^2
+    #[arg(long, value_name = "G", default_value = "9.8", allow_hyphen_values = true)]
+    pub gravity: Number,
+    /// Angles at the start from hanging, rad (see --degrees)
+    #[arg(long, value_name = "A1,A2", default_value = "0,0", allow_hyphen_values = true)]
+    pub angles: Pair,
+    /// Angular velocities at the start, rad/s (see --degrees)
+    #[arg(long, value_name = "W1,W2", default_value = "0,0", allow_hyphen_values = true)]
+    pub velocities: Pair,
+    /// Read angles in degrees and velocities in degrees per second; the output stays in radians
+    #[arg(long)]
+    pub degrees: bool,
+    /// Step size, s
+    #[arg(long, value_name = "DT", default_value = "1/1024", allow_hyphen_values = true)]
+    pub step: Number,
+    /// Time of the last row, s
+    #[arg(long, value_name = "T", default_value = "10", allow_hyphen_values = true)]
+    pub until: Number,
+    /// Time from row to row, s; one step if not given
+    #[arg(long, value_name = "T", allow_hyphen_values = true)]
+    pub every: Option<Number>,
+    /// The numbers it is computed in
+    #[arg(long, value_name = "NAME", default_value = Arithmetic::F64.name(), value_parser = choice(Arithmetic::ALL, Arithmetic::name))]
+    pub arithmetic: Arithmetic,
+    /// The equations of motion
+    #[arg(long, value_name = "NAME", default_value = Model::General.name(), value_parser = choice(Model::ALL, Model::name))]
+    pub model: Model,
+    /// Where it is computed: here, or by the firmware on an emulated board
+    #[arg(long = "on", value_name = "PLACE", default_value = Place::HOST,
+          value_parser = PossibleValuesParser::new(Place::names()).map(|name| Place::named(&name)))]
+    pub place: Place,
+    /// Add the bit patterns of a1, a2, p1, p2 in hexadecimal
+    #[arg(long)]
+    pub bits: bool,
+}
+
+/// Accepts the names of a closed set of choices, and no others.
+fn choice<Choice>(all: &'static [Choice], name: fn(Choice) -> &'static str) -> impl TypedValueParser<Value = Choice>
+where
+    Choice: Copy + Send + Sync + 'static,
+{
+    PossibleValuesParser::new(all.iter().map(move |&choice| name(choice)))
+        .try_map(move |text| all.iter().copied().find(|&choice| name(choice) == text).ok_or("unknown"))
+}

@@ -1,0 +1,75 @@
+//! From options to a request that the kernel accepts, and the times of its rows.
+
+use std::f64::consts::PI;
+
+use anyhow::{Context, anyhow, ensure};
+use double_pendulum::Parameters;
+use firmware::job::{Field, Job, Request};
+
+use super::{Number, Options, Pair};
+
+/// A checked request and the time from row to row.
+#[derive(Debug)]
+pub struct Plan {
+    /// What to compute.
+    pub request: Request,
+    /// Row n is at n times this.
+    pub every: Number,
+}
+
+/// Checks everything there is to check before the first row; an error is one line that names the option and the value.
+pub fn plan(options: &Options) -> anyhow::Result<Plan> {
+    let Options { step, until, .. } = options;
+    let every = options.every.as_ref().unwrap_or(step);
+    for (option, time) in [("--step", step), ("--every", every)] {
+        ensure!(time.is_positive(), "{option} {time}: must be greater than zero");
+    }
+    ensure!(!until.is_negative(), "--until {until}: must not be negative");
+    let steps = |option, time: &Number| {
+        let count = time
+            .whole_multiple_of(step)
+            .with_context(|| format!("{option} {time}: must be a whole multiple of --step {step}"))?;
+        u32::try_from(count).with_context(|| format!("{option} {time}: more than {} steps", u32::MAX))
+    };
+    let total = steps("--until", until)?;
+    let stride = steps("--every", every)?;
+    ensure!(total % stride == 0, "--until {until}: must be a whole multiple of --every {every}");
+
+    let angle = |number: &Number| if options.degrees { number.value() * (PI / 180.0) } else { number.value() };
+    let both = |Pair(first, second): &Pair| [angle(first), angle(second)];
+    let (Pair(m1, m2), Pair(l1, l2)) = (&options.masses, &options.lengths);
+    let request = Request {
+        arithmetic: options.arithmetic,
+        model: options.model,
+        parameters: Parameters {
+            m1: m1.value(),
+            m2: m2.value(),
+            l1: l1.value(),
+            l2: l2.value(),
+            g: options.gravity.value(),
+        },
+        angles: both(&options.angles),
+        velocities: both(&options.velocities),
+        step_size: step.value(),
+        stride,
+        samples: total / stride,
+    };
+    Job::new(&request).map_err(|error| anyhow!("{}: {error}", option_of(error.into())))?;
+    Ok(Plan { request, every: every.clone() })
+}
+
+/// The option that sets a field of the request.
+fn option_of(field: Field) -> &'static str {
+    match field {
+        Field::Arithmetic => "--arithmetic",
+        Field::Model => "--model",
+        Field::M1 | Field::M2 => "--masses",
+        Field::L1 | Field::L2 => "--lengths",
+        Field::G => "--gravity",
+        Field::A1 | Field::A2 => "--angles",
+        Field::W1 | Field::W2 => "--velocities",
+        Field::StepSize => "--step",
+        // What only a command has.
+        other => other.name(),
+    }
+}

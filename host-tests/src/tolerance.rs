@@ -1,0 +1,136 @@
+//! The one table of budgets: how far a number may be off in a test, and why just so far.
+
+use double_pendulum::{Parameters, Real, State};
+
+use crate::known_answers::KnownAnswer;
+
+/// The same budget for both precisions.
+#[derive(Clone, Copy, Debug)]
+pub struct PerPrecision {
+    /// With `f32`.
+    pub single: f64,
+    /// With `f64`.
+    pub double: f64,
+}
+
+impl PerPrecision {
+    /// The budget for `R`.
+    pub fn of<R: Real>(&self) -> f64 {
+        if R::EPSILON.to_f64() > f64::EPSILON { self.single } else { self.double }
+    }
+}
+
+/// Each derivative against the page's own form and against the gradient of H, relative to its largest term: some twenty
+/// roundings (6e-8 and 1.1e-16 each), and the momenta of unlike bobs multiply those of the velocities.
+pub const DERIVATIVES: PerPrecision = PerPrecision { single: 2e-6, double: 1e-13 };
+
+/// Energies, momenta and velocities that two formulas give for one state, relative to the sum of the terms' magnitudes:
+/// some thirty roundings, the kinetic energy being divided by den.
+pub const FORMULAS: PerPrecision = PerPrecision { single: 4e-6, double: 8e-15 };
+
+/// The divergence of the phase flow by central differences with a step of 2^-17, relative to its largest term:
+/// truncation 1e-11, rounding 1e-16 / 2^-17 = 1e-11, times the curvature of 1/den for masses 100 : 1.
+pub const DIVERGENCE: f64 = 1e-7;
+
+/// A motion run for a second and back: RK4's own error, twice (measured 6e-12), with a factor of ten.
+pub const RETURN: f64 = 1e-10;
+
+/// Normal frequencies, in units in the last place: what the issue asks; nine roundings, halved by the square root.
+pub const FREQUENCY_ULP: f64 = 4.0;
+
+/// Mode shapes and the exchange frequency, units in the last place: up to ten roundings each.
+pub const MODE_ULP: f64 = 10.0;
+
+/// Linear against exact motion at 1e-6 rad, relative to the amplitude: the neglected cubic term, 1e-12, times the
+/// radians swung in the ten seconds (up to 200).
+pub const LINEAR: f64 = 1e-9;
+
+/// Bounds along a motion by RK4 with 0.05 rad per step: its energy error over 100 steps (measured: no excess at all).
+pub const BOUNDS_DRIFT: f64 = 1e-6;
+
+/// How close to its bounds a chaotic motion comes in 600 s (measured 0.3 %).
+pub const BOUNDS_REACHED: f64 = 0.01;
+
+/// The measured order of the method: 4, give or take the next order's share at the steps used.
+pub const ORDER: std::ops::RangeInclusive<f64> = 3.9..=4.1;
+
+/// The reference against the table of known answers, to be multiplied by the growth of a small error: the 33 digits of
+/// the table, and the roundings (1e-32) of some hundred steps of double-double arithmetic (measured: up to 1.1e-31, and
+/// 1.4e-30 where the angles reach 80 rad).
+pub const REFERENCE: f64 = 4e-30;
+
+/// The misprinted form's mean energy at figure 7, J, about -18.7: what 32 chaotic runs of 100 s differ by (measured -18.3
+/// over 0..100 s, -18.9 over 5..100 s, falling on in longer runs).
+pub const MISPRINT_ENERGY: f64 = 2.0;
+
+/// The share of its time that the misprinted form's bob 2 may be above the pivot (measured 8.4 %).
+pub const MISPRINT_ABOVE: f64 = 0.12;
+
+/// The right form's energy error at figure 7 with 512 steps per second for 100 s, J (measured 2.4e-3 of 127).
+pub const FIGURE_7_ENERGY: f64 = 0.01;
+
+/// The right form's share above the pivot, about 50.7 %: what 32 chaotic runs of 100 s differ by (measured 52.0 %).
+pub const FIGURE_7_ABOVE: f64 = 0.03;
+
+/// Figure 7 in f64 with 4096 steps per second after 5 s, rad and kg m^2/s: what the issue asks.
+pub const FIGURE_7: f64 = 1e-7;
+
+/// Regular motion in plain f32 with 256 steps per second after 10 s, rad: measured 2e-6, rounding walks at random.
+pub const PLAIN_SINGLE: f64 = 1e-5;
+
+/// The kernel against a known answer, in the norm of the table: growth of a small error times the errors made on the way.
+///
+/// - Truncation: RK4 misses an oscillation of rate W by (W dt)^5/120 in each step, W being the larger of the fast normal
+///   frequency and the greatest angular velocity the energy allows: W^5 dt^4 t/120 in all.
+/// - Rounding: each step rounds angles of size A by A epsilon/2 at most, n steps walk at random to A epsilon sqrt(n),
+///   doubled because increments near rest are rounded alike; A is 4 (pi, up to its binade) or the angle itself.
+/// - Evaluation: the velocities are off by epsilon W sqrt((m1 + m2)/m1), because w1 is a difference of momenta that are
+///   this much larger; as large is the change of all rates by the rounding of the parameters.
+///
+/// Beyond the horizon of trust it exceeds 1 and claims nothing; [`KNOWN_ANSWERS_CLAIMED`] counts the rows before it.
+pub fn known_answer<R: Real>(row: &KnownAnswer, steps_per_second: f64) -> f64 {
+    let rate = row.fastest_rate();
+    let epsilon = R::EPSILON.to_f64();
+    let truncation = rate.powi(5) / steps_per_second.powi(4) * row.time / 120.0;
+    let State { a1, a2, .. } = row.answer();
+    let angle = a1.abs().max(a2.abs()).max(4.0);
+    let rounding = angle * epsilon * (row.time * steps_per_second).sqrt();
+    let Parameters { m1, m2, .. } = row.parameters();
+    let evaluation = epsilon * rate * row.time * ((m1 + m2) / m1).sqrt();
+    row.growth * (truncation + rounding + evaluation)
+}
+
+/// How many rows of the table must have a budget below 1, so that the test says something: the rest is chaos.
+pub const KNOWN_ANSWERS_CLAIMED: PerPrecision = PerPrecision { single: 36.0, double: 45.0 };
+
+/// The growth about the inverted rest in 1 s from a push of 1e-10 rad, relative: what the cubic term and the other mode,
+/// excited by the rounding of the shape, add.
+pub const INVERTED_GROWTH: f64 = 1e-9;
+
+/// A linear motion of 0.5 rad after a whole period, rad: the roundings of w t, 40 rad, in both modes.
+pub const PERIOD: f64 = 1e-13;
+
+/// The honest clock: the time it shows over the time at which the picture really ceases to be right, at most; what the
+/// issue asks.
+pub const TRUST_LATE: f64 = 1.2;
+
+/// How far off the honest clock is typically (median), relative to the true time.
+pub const TRUST_TYPICAL: f64 = 0.1;
+
+/// The angle form against the classical step as one writes it down, both in `f64`, rad over 100 s of regular motion
+/// (measured: 1e-13): the roundings of each.
+pub const SAME_METHOD: f64 = 1e-12;
+
+/// Compensated `f32` forms on the regular scene (0.5 rad, dt = 1/256 s) after 10 s and 100 s, rad: the method's own error
+/// (1.1e-8 and 1.0e-7), and its evaluations' roundings, 6e-8 each, which add up like sqrt(time) (measured over 24
+/// starts: angle form 6e-8 and 4e-7, picture form 4e-8 and 3e-7 root mean square; on this one 6.2e-8 and 3.2e-7, 2.7e-8
+/// and 1.7e-7). Plain sums miss it by far.
+pub const ANGLE_FORM: [f64; 2] = [7e-8, 4e-7];
+/// See [`ANGLE_FORM`].
+pub const PICTURE_FORM: [f64; 2] = [5e-8, 2.5e-7];
+
+/// How much better a compensated form is than a plain one on the regular scene in 10 s, at least (measured: 30 to 70).
+pub const COMPENSATION_GAIN: f64 = 10.0;
+
+/// Picture against angle form: the ratio of their methods' own errors (measured: 0.13 to 2.6, on all scenes tried).
+pub const PICTURE_AGAINST_ANGLE: f64 = 3.0;

@@ -1,0 +1,99 @@
+//! What the firmware needs from outside, found or brought: the ARM core library and `qemu-system-arm`.
+//!
+//! [`ready`] only looks. [`set_up`] brings what is missing: the core library by `rustup target add`, or else from
+//! Debian's source packages; QEMU from Debian's packages. Both ways build the same firmware with the same flags.
+//! All of the world outside is reached through one small trait, so that every decision is tested without it.
+
+mod build;
+mod detect;
+mod error;
+mod install;
+mod lock;
+mod system;
+#[cfg(test)]
+mod tests;
+
+pub use build::BuildError;
+pub use error::SetupError;
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+use lock::Lock;
+use system::Host;
+
+/// The compiler's targets, one for each kind of core.
+pub const TARGETS: [&str; 2] = ["thumbv7m-none-eabi", "thumbv7em-none-eabihf"];
+
+/// Everything that builds and runs the firmware.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Toolchain {
+    core: ArmCore,
+    qemu: Qemu,
+}
+
+/// Where the ARM core library comes from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum ArmCore {
+    /// Ready-made, beside the compiler in use.
+    ReadyMade,
+    /// Built from the sources that Debian's compiler carries, by that compiler.
+    FromSource {
+        /// Debian's compiler.
+        version: String,
+        /// The folder that holds `rust-lld`.
+        linker: PathBuf,
+    },
+}
+
+/// The emulator.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Qemu {
+    path: PathBuf,
+    version: String,
+}
+
+/// The tools, if all are there; installs nothing. Looks once per process.
+pub fn ready() -> Result<Toolchain, SetupError> {
+    static READY: OnceLock<Result<Toolchain, SetupError>> = OnceLock::new();
+    let look = || detect::toolchain(&Host).map_err(|error| SetupError { tried: false, ..error });
+    READY.get_or_init(look).clone()
+}
+
+/// The tools, brought if need be; and a line for each thing that was done for it.
+///
+/// Two set-ups at once take turns. Nothing is begun that is known to fail.
+pub fn set_up() -> Result<(Toolchain, Vec<String>), SetupError> {
+    if let Ok(toolchain) = detect::toolchain(&Host) {
+        return Ok((toolchain, Vec::new()));
+    }
+    let _turn = Lock::take(&workspace().join("target/setup.lock"))?;
+    install::set_up(&Host)
+}
+
+/// The workspace's folder.
+pub fn workspace() -> &'static Path {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    here.parent().unwrap_or(here)
+}
+
+impl Toolchain {
+    /// The emulator's program.
+    pub fn qemu(&self) -> &Path {
+        &self.qemu.path
+    }
+}
+
+impl fmt::Display for Toolchain {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.core {
+            ArmCore::ReadyMade => writeln!(f, "ARM core library: ready-made, for {}", TARGETS.join(" and "))?,
+            ArmCore::FromSource { version, linker } => {
+                let linker = linker.display();
+                writeln!(f, "ARM core library: from Debian's sources, by {version}, linked by rust-lld of {linker}")?;
+            }
+        }
+        write!(f, "QEMU: {} at {}", self.qemu.version, self.qemu.path.display())
+    }
+}

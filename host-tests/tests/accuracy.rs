@@ -1,0 +1,109 @@
+//! The kernel's motion against the reference, and the order of its method.
+
+use double_pendulum::{EqualRods, Motion, Parameters, Pendulum, State, Units, rk4};
+use host_tests::reference::{self, Reference};
+use host_tests::tolerance;
+
+/// Regular motions, in which an error grows no faster than the time: masses and lengths alike and unlike.
+fn regular() -> [(Parameters<f64>, Motion<f64>); 3] {
+    let half = 30_f64.to_radians();
+    [
+        (Parameters { m1: 1.0, m2: 1.0, l1: 1.0, l2: 1.0, g: 9.8 }, Motion::at_rest(half, half)),
+        (Parameters { m1: 0.7, m2: 1.3, l1: 0.6, l2: 1.1, g: 9.81 }, Motion { a1: 0.3, a2: -0.2, w1: 0.4, w2: -0.5 }),
+        (Parameters { m1: 3.0, m2: 0.5, l1: 1.0, l2: 0.4, g: 1.62 }, Motion { a1: -0.4, a2: 0.6, w1: 0.0, w2: 1.0 }),
+    ]
+}
+
+/// The largest difference of the angles in 20 s, looked at every second.
+fn error(parameters: &Parameters<f64>, start: &Motion<f64>, steps_per_second: u32) -> f64 {
+    let pendulum = Pendulum::new(*parameters).expect("valid parameters");
+    let mut reference = Reference::new(parameters, start);
+    let mut state = pendulum.state(start);
+    let mut largest = 0.0_f64;
+    for second in 1..=20 {
+        for _ in 0..steps_per_second {
+            state = pendulum.step(&state, 1.0 / f64::from(steps_per_second));
+        }
+        reference.advance_to(f64::from(second));
+        let exact = reference.motion();
+        largest = largest.max((state.a1 - exact.a1).abs()).max((state.a2 - exact.a2).abs());
+    }
+    largest
+}
+
+#[test]
+fn order_is_4() {
+    // fine enough that the next order is small, coarse enough that rounding is
+    for ((parameters, start), steps) in regular().into_iter().zip([128, 1024, 256]) {
+        let errors = [steps, 2 * steps, 4 * steps].map(|steps| error(&parameters, &start, steps));
+        let orders: Vec<f64> = errors.windows(2).map(|pair| (pair[0] / pair[1]).log2()).collect();
+        for order in orders {
+            assert!(tolerance::ORDER.contains(&order), "order {order} for {parameters:?}");
+        }
+    }
+}
+
+#[test]
+fn plain_f32_stays_within_its_roundings() {
+    for (parameters, start) in regular() {
+        let Parameters { m1, m2, l1, l2, g } = parameters;
+        let single = host_tests::random::single(&parameters);
+        let pendulum = Pendulum::new(single).expect("valid parameters");
+        let Motion { a1, a2, w1, w2 } = start;
+        let start = Motion { a1: a1 as f32, a2: a2 as f32, w1: w1 as f32, w2: w2 as f32 };
+        let mut state = pendulum.state(&start);
+        for _ in 0..10 * 256 {
+            state = pendulum.step(&state, 1.0 / 256.0);
+        }
+        // the motion of the very numbers that f32 holds
+        let [m1, m2, l1, l2, g] = [m1, m2, l1, l2, g].map(|x| f64::from(x as f32));
+        let start = Motion::from(<[f32; 4]>::from(start).map(f64::from));
+        let exact = reference::states(&Parameters { m1, m2, l1, l2, g }, &start, &[10.0])[0];
+        let error = (f64::from(state.a1) - exact.a1).abs().max((f64::from(state.a2) - exact.a2).abs());
+        assert!(error < tolerance::PLAIN_SINGLE, "{error:e} rad after 10 s for {parameters:?}");
+    }
+}
+
+/// The equal-rod form, in its own units, converges to the same motion at the same order.
+#[test]
+fn equal_rods_follow_the_reference() {
+    let parameters = Parameters { m1: 0.5, m2: 0.8, l1: 0.25, l2: 0.25, g: 9.8 };
+    let units = Units::of(&parameters).expect("equal rods");
+    let rods = EqualRods::new(parameters.mass_ratio()).expect("a valid ratio");
+    let start = Motion::at_rest(0.5, -0.3);
+    let exact = reference::states(&parameters, &start, &[2.0])[0];
+    let error = |steps: u32| {
+        let dt = 2.0 / f64::from(steps) / units.time;
+        let start = State::at_rest(start.a1, start.a2);
+        let end = units.to_si(&(0..steps).fold(start, |state, _| rods.step(&state, dt)));
+        (end.a1 - exact.a1).abs().max((end.a2 - exact.a2).abs())
+    };
+    let order = (error(2048) / error(4096)).log2();
+    assert!(tolerance::ORDER.contains(&order), "order {order}");
+}
+
+/// The method itself, on an equation whose solution is known: z' = z from 1.
+#[test]
+fn order_is_4_for_the_exponential() {
+    let error = |steps: u32| {
+        let end = (0..steps).fold([1.0], |z, _| rk4::step(|&z: &[f64; 1]| z, &z, 1.0 / f64::from(steps)));
+        (end[0] - std::f64::consts::E).abs()
+    };
+    let order = (error(64) / error(128)).log2();
+    assert!(tolerance::ORDER.contains(&order), "order {order}");
+}
+
+/// What `cargo simulate` must show for figure 7: 113-bit results, to 1e-7 in each of the four numbers after 5 s.
+#[test]
+fn figure_7_after_five_seconds() {
+    let pendulum = Pendulum::new(Parameters::equal_rods(2.75, 1.0, 9.8)).expect("valid parameters");
+    let angle = 171_f64.to_radians();
+    let mut state = State::at_rest(angle, angle);
+    for _ in 0..5 * 4096 {
+        state = pendulum.step(&state, 1.0 / 4096.0);
+    }
+    let exact = [2.639210761945575, 9.313387543618361, 3.230631394279675, 4.470030045274851];
+    for (value, exact) in <[f64; 4]>::from(state).into_iter().zip(exact) {
+        assert!((value - exact).abs() < tolerance::FIGURE_7, "{value} instead of {exact}");
+    }
+}

@@ -1,0 +1,189 @@
+//! The bounds: never exceeded, reached, and the certificate against turning over.
+
+use std::f64::consts::PI;
+
+use double_pendulum::{Bounds, EqualRods, Modes, Motion, Parameters, Pendulum, Real, State};
+use fastrand::Rng;
+use host_tests::{random, tolerance};
+
+/// |w1|, |w2|, |p1|, |p2|, v1, v2 of a state, each divided by its bound.
+fn shares<R: Real>(pendulum: &Pendulum<R>, bounds: &Bounds<R>, state: &State<R>) -> [f64; 6] {
+    let motion = pendulum.motion(state);
+    let [v1, v2] = pendulum.velocities(&motion).map(|v| (v.x * v.x + v.y * v.y).sqrt());
+    let reached = [motion.w1.abs(), motion.w2.abs(), state.p1.abs(), state.p2.abs(), v1, v2];
+    let Bounds { w1, w2, p1, p2, v1, v2 } = *bounds;
+    let bounds = [w1, w2, p1, p2, v1, v2];
+    std::array::from_fn(|i| (reached[i] / bounds[i]).to_f64())
+}
+
+fn largest_shares<R: Real>(pendulum: &Pendulum<R>, start: State<R>, dt: R, steps: usize) -> [f64; 6] {
+    let bounds = pendulum.bounds(&start);
+    let mut state = start;
+    let mut largest = [0.0_f64; 6];
+    for _ in 0..steps {
+        state = pendulum.step(&state, dt);
+        let now = shares(pendulum, &bounds, &state);
+        largest = std::array::from_fn(|i| largest[i].max(now[i]));
+    }
+    largest
+}
+
+fn never_exceeded<R: Real>() {
+    let mut rng = Rng::with_seed(1);
+    for _ in 0..10_000 {
+        let given @ Parameters { m1, m2, l1, l2, g } = random::parameters(&mut rng);
+        let parameters = Parameters { m1: R::of(m1), m2: R::of(m2), l1: R::of(l1), l2: R::of(l2), g: R::of(g) };
+        let pendulum = Pendulum::new(parameters).expect("valid parameters");
+        let z: [f64; 4] = random::state(&mut rng, &given).into();
+        let start = State::from(z.map(R::of));
+        let bounds = pendulum.bounds(&start);
+        let dt = R::of(0.05) / (bounds.w1 + bounds.w2);
+        for (i, share) in largest_shares(&pendulum, start, dt, 100).into_iter().enumerate() {
+            assert!(share <= 1.0 + tolerance::BOUNDS_DRIFT, "bound {i} exceeded: {share} for {given:?} from {start:?}");
+        }
+    }
+}
+
+#[test]
+fn never_exceeded_f32() {
+    never_exceeded::<f32>();
+}
+
+#[test]
+fn never_exceeded_f64() {
+    never_exceeded::<f64>();
+}
+
+#[test]
+fn reached_by_chaotic_motion() {
+    for (mu, degrees) in [(2.75, 171_f64), (1.0, 150.0)] {
+        let pendulum = Pendulum::new(Parameters::equal_rods(mu, 1.0, 9.8)).expect("valid parameters");
+        let start = State::at_rest(degrees.to_radians(), degrees.to_radians());
+        let shares = largest_shares(&pendulum, start, 1.0 / 512.0, 600 * 512);
+        for share in shares {
+            assert!(share >= 1.0 - tolerance::BOUNDS_REACHED, "mu = {mu}, {degrees} degrees: {shares:.4?}");
+        }
+    }
+}
+
+/// Hanging straight, one push each that spends all its energy on one quantity.
+#[test]
+fn each_bound_is_reached_by_some_state() {
+    let mut rng = Rng::with_seed(2);
+    for _ in 0..1000 {
+        let pendulum = Pendulum::new(random::parameters(&mut rng)).expect("valid parameters");
+        let &Parameters { m1, m2, l1, l2, .. } = pendulum.parameters();
+        let still2 = Motion { w1: 1.0, w2: -l1 / l2, ..Motion::default() }; // bob 2 at rest: all in w1, v1
+        let opposed = Motion { w1: -m2 * l2 / ((m1 + m2) * l1), w2: 1.0, ..Motion::default() }; // p1 = 0: all in w2
+        let straight = Motion { w1: 1.0, w2: 0.0, ..Motion::default() }; // both bobs alike: all in p1
+        let lower = Motion { w1: 0.0, w2: 1.0, ..Motion::default() }; // bob 1 at rest: all in p2, v2
+        for (motion, reached) in [(still2, [0, 4]), (opposed, [1, 1]), (straight, [2, 2]), (lower, [3, 5])] {
+            let state = pendulum.state(&motion);
+            let shares = shares(&pendulum, &pendulum.bounds(&state), &state);
+            for i in reached {
+                let error = (shares[i] - 1.0).abs() * m1 / (m1 + m2);
+                assert!(error < tolerance::FORMULAS.double, "bound {i}: {shares:?}");
+            }
+        }
+    }
+}
+
+/// No certified motion turns over.
+#[test]
+fn certified_motions_do_not_turn_over() {
+    let mut rng = Rng::with_seed(3);
+    let mut certified = 0;
+    for _ in 0..2000 {
+        let pendulum = Pendulum::new(random::parameters(&mut rng)).expect("valid parameters");
+        let start = State::at_rest(PI * random::symmetric(&mut rng), PI * random::symmetric(&mut rng));
+        if pendulum.cannot_turn_over(&start) {
+            certified += 1;
+            let bounds = pendulum.bounds(&start);
+            let dt = 0.05 / (bounds.w1 + bounds.w2);
+            let mut state = start;
+            for _ in 0..2000 {
+                state = pendulum.step(&state, dt);
+                assert!(state.a1.abs() < PI && state.a2.abs() < PI, "{:?} from {start:?}", pendulum.parameters());
+            }
+        }
+    }
+    assert!(certified > 200, "only {certified} of 2000 certified");
+}
+
+/// A rod held at its lower saddle has exactly the limit's energy: a little less is certified, a little more turns over.
+#[test]
+fn certificate_is_sharp() {
+    for parameters in [
+        Parameters { m1: 1.0, m2: 0.5, l1: 1.0, l2: 0.7, g: 9.8 }, // rod 2 turns over first
+        Parameters { m1: 0.5, m2: 3.0, l1: 0.3, l2: 2.0, g: 9.8 }, // rod 1 turns over first
+    ] {
+        let pendulum = Pendulum::new(parameters).expect("valid parameters");
+        let Parameters { m1, m2, l1, l2, .. } = parameters;
+        let first = if (m1 + m2) * l1 < m2 * l2 { 0 } else { 1 };
+        let saddle = |share: f64| {
+            let mut angles = [0.0, 0.0];
+            angles[first] = PI;
+            let kick = (2.0 * pendulum.turnover_energy() * share).sqrt();
+            let [[m11, _], [_, m22]] = pendulum.mass_matrix(-1.0);
+            let velocity = [kick / m11.sqrt(), kick / m22.sqrt()][first];
+            let mut velocities = [0.0, 0.0];
+            velocities[first] = velocity;
+            pendulum.state(&Motion { a1: angles[0], a2: angles[1], w1: velocities[0], w2: velocities[1] })
+        };
+        let limit = pendulum.turnover_energy();
+        assert!((pendulum.energy_above_rest(&saddle(0.0)) / limit - 1.0).abs() < tolerance::FORMULAS.double);
+        assert!(!pendulum.cannot_turn_over(&saddle(1e-6)), "past the saddle, yet certified");
+        let mut below = saddle(0.0);
+        [&mut below.a1, &mut below.a2][first].clone_from(&(PI - 1e-3));
+        assert!(pendulum.cannot_turn_over(&below), "short of the saddle, yet not certified");
+    }
+}
+
+/// Equal rods from rest: certified exactly where (1 + mu) cos a1 + mu cos a2 > 1.
+#[test]
+fn equal_rods_certificate_is_the_cosine_rule() {
+    let mut rng = Rng::with_seed(4);
+    for _ in 0..10_000 {
+        let mu = random::log_uniform(&mut rng, 0.01, 100.0);
+        let (a1, a2) = (PI * random::symmetric(&mut rng), PI * random::symmetric(&mut rng));
+        let certain = EqualRods::new(mu).expect("a valid ratio").cannot_turn_over(&State::at_rest(a1, a2));
+        let general = Pendulum::new(Parameters::equal_rods(mu, 0.3, 9.8)).expect("valid parameters");
+        assert_eq!(certain, (1.0 + mu) * a1.cos() + mu * a2.cos() > 1.0, "mu = {mu}, {a1}, {a2}");
+        assert_eq!(certain, general.cannot_turn_over(&State::at_rest(a1, a2)), "mu = {mu}, {a1}, {a2}");
+    }
+}
+
+#[test]
+fn equal_rods_have_the_general_bounds_in_their_own_units() {
+    let state = State { a1: 0.3, a2: -2.0, p1: 0.7, p2: 1.1 };
+    let general = Pendulum::new(Parameters::equal_rods(0.8, 1.0, 1.0)).expect("valid parameters");
+    assert_eq!(EqualRods::new(0.8).expect("a valid ratio").bounds(&state), general.bounds(&state));
+}
+
+/// The fast mode decays just below the step limit and blows up just above.
+fn step_limit<R: Real>() {
+    let parameters = Parameters { m1: R::ONE, m2: R::of(2.0), l1: R::of(0.5), l2: R::ONE, g: R::of(9.8) };
+    let pendulum = Pendulum::new(parameters).expect("valid parameters");
+    let modes = Modes::new(&parameters).expect("valid parameters");
+    let tiny = R::of(1e-6);
+    let start = State::at_rest(tiny, tiny * modes.fast.shape);
+    let after = |share: f64| {
+        let dt = modes.step_limit() * R::of(share);
+        (0..300).fold(start, |state, _| pendulum.step(&state, dt)).a1.abs()
+    };
+    assert!(after(0.99) < tiny, "grows below the limit");
+    assert!(after(1.01) > tiny * R::of(10.0), "does not grow above the limit");
+    assert_eq!(modes.check_step(modes.step_limit()), Ok(()));
+    assert!(modes.check_step(modes.step_limit() * R::of(1.01)).is_err());
+    assert!(modes.check_step(R::ZERO).is_err() && modes.check_step(R::of(f64::NAN)).is_err());
+}
+
+#[test]
+fn step_limit_f32() {
+    step_limit::<f32>();
+}
+
+#[test]
+fn step_limit_f64() {
+    step_limit::<f64>();
+}

@@ -1,0 +1,63 @@
+//! The counter against a second way of counting, and the bits of the target against the host's.
+
+use double_pendulum::Parameters;
+use firmware::measure::{Outcome, Request, SUBJECTS};
+use host_tests::count::{Target, affordable_steps, step_cost};
+use host_tests::toolchain;
+
+/// A tick of the board's clock, 12.5 MHz after reset, under `-icount`, where an instruction takes 1 ns.
+const INSTRUCTIONS_PER_TICK: f64 = 80.0;
+
+fn targets() -> Vec<Target> {
+    let toolchain = toolchain::ready().unwrap_or_else(|error| panic!("{error}"));
+    Target::build_all(&toolchain).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn request(subject: &str, steps: u32) -> Request<'_> {
+    let parameters = Parameters::equal_rods(1.0, 1.0, 9.81);
+    Request { subject, samples: 1, steps, parameters, angles: [2.0, 2.0], dt: 1.0 / 256.0 }
+}
+
+#[test]
+fn the_log_counts_as_many_instructions_as_the_clock() {
+    let steps = 400;
+    for target in targets().iter().filter(|target| target.board.cpu == "cortex-m4") {
+        let logged = step_cost(target, &request("f32-own", steps)).unwrap_or_else(|error| panic!("{error}"));
+        let ticks = |steps| {
+            let (_, ticks) = target.run(&request("f32-own", steps)).unwrap_or_else(|error| panic!("{error}"));
+            ticks as f64
+        };
+        let clocked = (ticks(2 * steps) - ticks(steps)) * INSTRUCTIONS_PER_TICK / f64::from(steps);
+        // Either reading of the clock may be off by a tick.
+        let tolerance = 2.0 * INSTRUCTIONS_PER_TICK / f64::from(steps);
+        let logged = logged.instructions;
+        assert!((logged - clocked).abs() <= tolerance, "{logged} logged, {clocked} by the clock");
+    }
+}
+
+#[test]
+fn the_book_by_the_libm_crate_costs_what_the_trial_found() {
+    // 23,692 instructions a step, averaged over other states of the motion and with another version of the compiler.
+    let expected = 23_000.0..25_000.0;
+    for target in targets().iter().filter(|target| target.board.cpu == "cortex-m4") {
+        let request = request("f32-textbook-libm", 16);
+        let steps = affordable_steps(target, &request).unwrap_or_else(|error| panic!("{error}"));
+        let cost = step_cost(target, &Request { steps, ..request }).unwrap_or_else(|error| panic!("{error}"));
+        assert!(expected.contains(&cost.instructions), "{cost:?}");
+        assert!(cost.cycles_low <= cost.cycles_high && cost.instructions < cost.cycles_low, "{cost:?}");
+        assert!(cost.hot_bytes <= cost.code_bytes && cost.stack_bytes > 0, "{cost:?}");
+    }
+}
+
+#[test]
+fn host_and_targets_compute_the_same_bits() {
+    let targets = targets();
+    for subject in SUBJECTS {
+        let request = Request { samples: 8, ..request(subject.name, 64) };
+        let host = Outcome::of(&request).unwrap_or_else(|error| panic!("{error}"));
+        for target in &targets {
+            let (outcome, _) = target.run(&request).unwrap_or_else(|error| panic!("{error}"));
+            assert_eq!(outcome, host, "{} on {}", subject.name, target.board.name);
+        }
+    }
+}

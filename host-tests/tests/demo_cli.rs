@@ -1,0 +1,112 @@
+//! `cargo demo` from outside: exit codes, summary, and the files it saves.
+
+mod support;
+
+use std::fs::File;
+use std::io::BufReader;
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use host_tests::process::{Output, run, spawn};
+use support::{LIMIT, toolchain};
+
+const DEMO: &str = env!("CARGO_BIN_EXE_demo");
+/// Seconds recorded, and what that makes: 30 pictures per second, 3 x 3 dots for each of 128 x 64 pixels.
+const SECONDS: u32 = 2;
+const PICTURES: usize = 60;
+const SIZE: (u32, u32) = (384, 192);
+
+fn demo(arguments: &[&str]) -> Output {
+    run(Command::new(DEMO).args(arguments), LIMIT).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// The pictures of an animation, one palette index per dot, and the hundredths of a second it takes.
+fn pictures(path: &Path) -> (Vec<Vec<u8>>, u32) {
+    let mut options = gif::DecodeOptions::new();
+    options.set_color_output(gif::ColorOutput::Indexed);
+    let mut decoder = options.read_info(File::open(path).expect("a file")).expect("a GIF file");
+    let (width, height) = (decoder.width(), decoder.height());
+    assert_eq!((u32::from(width), u32::from(height)), SIZE);
+    let mut shown = vec![0; usize::from(width) * usize::from(height)];
+    let (mut pictures, mut time) = (Vec::new(), 0);
+    while let Some(frame) = decoder.read_next_frame().expect("an intact frame") {
+        time += u32::from(frame.delay);
+        for (row, dots) in frame.buffer.chunks(frame.width.into()).enumerate() {
+            let start = (usize::from(frame.top) + row) * usize::from(width) + usize::from(frame.left);
+            shown[start..start + dots.len()].copy_from_slice(dots);
+        }
+        pictures.push(shown.clone());
+    }
+    (pictures, time)
+}
+
+#[test]
+fn a_recording_shows_a_swinging_pendulum_and_is_the_same_every_time() {
+    toolchain();
+    let folder = tempfile::tempdir().expect("a folder");
+    let record = |name: &str| {
+        let (animation, last) = (folder.path().join(format!("{name}.gif")), folder.path().join(format!("{name}.png")));
+        let arguments = ["--headless", "--seconds", &SECONDS.to_string(), "--record"];
+        let mut command = Command::new(DEMO);
+        command.args(arguments).arg(&animation).arg("--screenshot").arg(&last);
+        let output = run(&mut command, LIMIT).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(output.status.code(), Some(0), "{output:?}");
+        (animation, last, output.stdout)
+    };
+    let (animation, last, summary) = record("first");
+    for line in ["frames                120\n", "simulated time        2.000 s", "CRC errors            0"] {
+        assert!(summary.contains(line), "no {line:?} in\n{summary}");
+    }
+    assert!(summary.contains("dropped frames        0"), "{summary}");
+
+    let (pictures, time) = pictures(&animation);
+    assert_eq!((pictures.len(), time), (PICTURES, 100 * SECONDS));
+    let moved = pictures.windows(2).filter(|pair| pair[0] != pair[1]).count();
+    assert_eq!(moved, PICTURES - 1, "every picture differs from the one before");
+
+    let screenshot = png::Decoder::new(BufReader::new(File::open(last).expect("a file")));
+    let screenshot = screenshot.read_info().expect("a PNG file");
+    assert_eq!((screenshot.info().width, screenshot.info().height), SIZE);
+
+    let (again, ..) = record("second");
+    let bytes = |path: &Path| std::fs::read(path).expect("a file");
+    assert!(bytes(&animation) == bytes(&again), "two recordings differ");
+}
+
+#[test]
+fn a_closed_output_is_no_failure() {
+    toolchain();
+    let mut command = Command::new(DEMO);
+    command.args(["--headless", "--seconds", "0.5"]).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::null());
+    let mut child = spawn(&mut command, LIMIT).unwrap_or_else(|error| panic!("{error}"));
+    drop(child.stdout.take());
+    assert_eq!(child.wait().unwrap_or_else(|error| panic!("{error}")).code(), Some(0));
+}
+
+#[test]
+fn bad_arguments_are_refused_in_one_line() {
+    let cases: [&[&str]; 7] = [
+        &["--board", "arduino"],
+        &["--board", "mps2-an386"],
+        &["--seconds", "0"],
+        &["--seconds", "NaN"],
+        &["--seconds", "soon"],
+        &["--headless", "--window"],
+        &["--colour"],
+    ];
+    for arguments in cases {
+        let output = demo(arguments);
+        assert_eq!((output.status.code(), output.stdout.as_str()), (Some(2), ""), "{arguments:?}");
+        assert_eq!(output.stderr.lines().count(), 1, "{arguments:?}: {}", output.stderr);
+        let named = arguments.iter().all(|argument| output.stderr.contains(argument));
+        assert!(named, "{arguments:?} are not named in {}", output.stderr);
+    }
+}
+
+#[test]
+fn a_file_that_cannot_be_written_is_refused() {
+    toolchain();
+    let output = demo(&["--headless", "--seconds", "0.1", "--record", "/nowhere/swing.gif"]);
+    assert_eq!(output.status.code(), Some(2), "{output:?}");
+    assert!(output.stderr.contains("/nowhere/swing.gif"), "{}", output.stderr);
+}

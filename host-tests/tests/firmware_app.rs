@@ -1,0 +1,248 @@
+//! The application as it runs on the boards, with a panel in memory, a growing byte vector and scripted buttons.
+
+use std::cell::Cell;
+use std::convert::Infallible;
+
+use double_pendulum::{Parameters, Pendulum, State};
+use embedded_io::{ErrorKind, ErrorType, Write};
+use firmware::app::{App, Event};
+use firmware::canvas::Canvas;
+use firmware::config::{GRAVITY, MOST_TICKS_PER_FRAME, ROD, STEP, STEPS_PER_TICK};
+use firmware::controls::{Buttons, NoButtons, Pressed};
+use firmware::display::{Display, NoDisplay};
+use firmware::protocol::{Decoder, Frame, LinkError, Message};
+use firmware::scenes::SceneName;
+use firmware::settings::Settings;
+use firmware::view::{Place, View};
+
+type Plain = App<NoDisplay, Vec<u8>, NoButtons>;
+
+fn app() -> Plain {
+    App::new(Settings::default(), NoDisplay, Vec::new(), NoButtons).expect("the first settings are good")
+}
+
+/// Runs to each of the clock's readings in turn.
+fn run(clock: impl IntoIterator<Item = u32>) -> Plain {
+    let mut app = app();
+    for now in clock {
+        while !app.run_to(now, |_| ()) {}
+    }
+    app
+}
+
+fn messages(bytes: &[u8]) -> Vec<Result<Frame, LinkError>> {
+    let mut decoder = Decoder::default();
+    let mut messages = Vec::new();
+    for &byte in bytes {
+        if let Some(message) = decoder.push(byte) {
+            messages.push(message.map(|(kind, fields)| {
+                assert_eq!(kind, Frame::KIND);
+                Frame::read(fields).expect("all fields")
+            }));
+        }
+    }
+    messages
+}
+
+fn frames(bytes: &[u8]) -> Vec<Frame> {
+    messages(bytes).into_iter().map(|message| message.expect("undamaged")).collect()
+}
+
+#[test]
+fn the_state_and_the_picture_after_n_ticks_are_the_same_at_any_frame_rate() {
+    let steady = run(1..=600);
+    for (name, other) in [
+        ("every third", run((1..=200).map(|n| 3 * n))),
+        ("uneven", run((0..600).filter(|n| n * n % 7 < 2).chain([600]))),
+        ("all at once", run([600])),
+    ] {
+        assert_eq!(other.player().report(), steady.player().report(), "{name}");
+        assert_eq!(other.canvas(), steady.canvas(), "{name}");
+    }
+}
+
+#[test]
+fn every_frame_carries_the_kernels_state_to_the_bit() {
+    let app = run(1..=600);
+    let frames = frames(app.link());
+    assert_eq!(frames.len(), 600);
+
+    let pendulum = Pendulum::new(Parameters::equal_rods(1.0, ROD, GRAVITY)).expect("good");
+    let start_angle = 120.0_f32.to_radians();
+    let mut state = State::at_rest(start_angle, start_angle);
+    let start_energy = pendulum.energy(&state);
+    for (sequence, frame) in (0..).zip(frames) {
+        for _ in 0..STEPS_PER_TICK {
+            state = pendulum.step(&state, STEP);
+        }
+        assert_eq!(frame.state.map(f32::to_bits), <[f32; 4]>::from(state).map(f32::to_bits), "frame {sequence}");
+        let step = (sequence + 1) * STEPS_PER_TICK;
+        assert_eq!((frame.sequence, frame.dropped, frame.step), (sequence, 0, step));
+        assert_eq!(frame.time, f64::from(step) / 240.0);
+        assert_eq!((frame.mass_ratio, frame.start_angle), (1.0, start_angle));
+        let error = (pendulum.energy(&state) - start_energy) / (start_energy - pendulum.least_energy());
+        assert_eq!(frame.energy_error, error);
+    }
+}
+
+#[test]
+fn dropped_pictures_are_counted_and_no_tick_is_lost() {
+    let mut app = app();
+    let mut events = Vec::new();
+    let late = MOST_TICKS_PER_FRAME * 2 + 1;
+    assert!(!app.run_to(late, |event| events.push(event)));
+    assert!(!app.run_to(late, |event| events.push(event)));
+    assert!(app.run_to(late, |event| events.push(event)), "caught up");
+    assert!(app.run_to(late, |event| events.push(event)), "nothing to do");
+    assert_eq!(events, [], "at most one line a second");
+    assert!(app.run_to(late + 2, |event| events.push(event)));
+    while !app.run_to(90, |event| events.push(event)) {}
+
+    let frames = frames(app.link());
+    let shown: Vec<_> = frames.iter().map(|frame| (frame.step / STEPS_PER_TICK, frame.dropped)).collect();
+    let most = MOST_TICKS_PER_FRAME - 1;
+    assert_eq!(shown, [(15, most), (30, 2 * most), (31, 2 * most), (33, 29), (48, 43), (63, 57), (78, 71), (90, 82)]);
+    assert_eq!(events, [Event::Dropped { ticks: 57, total: 57 }]);
+}
+
+#[test]
+fn hanging_at_rest_has_no_energy_error() {
+    let settings = Settings::equal_rods(1.0, 0.0);
+    let mut app = App::new(settings, NoDisplay, Vec::new(), NoButtons).expect("good");
+    app.run_to(10, |_: Event<Infallible, Infallible>| ());
+    assert_eq!(frames(app.link()).iter().map(|frame| frame.energy_error).collect::<Vec<_>>(), [0.0]);
+}
+
+/// Presses up at tick 10 and select at tick 50 for three ticks each.
+#[derive(Default)]
+struct Script(u32);
+
+impl Buttons for Script {
+    fn read(&mut self) -> Pressed {
+        self.0 += 1;
+        Pressed { up: (10..13).contains(&self.0), select: (50..53).contains(&self.0), ..Pressed::default() }
+    }
+}
+
+#[test]
+fn buttons_restart_with_the_new_settings() {
+    let mut app = App::new(Settings::default(), NoDisplay, Vec::new(), Script::default()).expect("good");
+    let mut started = Vec::new();
+    for now in 1..=60 {
+        app.run_to(now, |event| started.push((now, event)));
+    }
+    let heavier = Settings::equal_rods(1.25, 120.0);
+    assert_eq!(
+        started,
+        [(11, Event::Started(SceneName::Page, heavier)), (54, Event::Started(SceneName::Page, heavier))]
+    );
+    let frames = frames(app.link());
+    assert_eq!(frames[9].mass_ratio, 1.0);
+    assert_eq!((frames[10].mass_ratio, frames[10].step), (1.25, STEPS_PER_TICK));
+    assert_eq!((frames[53].step, frames[53].sequence), (STEPS_PER_TICK, 53));
+}
+
+#[test]
+fn impossible_settings_are_refused() {
+    for mass_ratio in [0.0, -1.0, f32::NAN, f32::INFINITY] {
+        let settings = Settings::equal_rods(mass_ratio, 120.0);
+        let message = App::new(settings, NoDisplay, Vec::new(), NoButtons).expect_err("refused").to_string();
+        assert!(message.starts_with("m2 = "), "{message}");
+    }
+}
+
+/// Fails for the writes from 5 to 9, each time after half of the bytes.
+#[derive(Default)]
+struct Faulty {
+    bytes: Vec<u8>,
+    writes: u32,
+}
+
+impl ErrorType for Faulty {
+    type Error = ErrorKind;
+}
+
+impl Write for Faulty {
+    fn write(&mut self, bytes: &[u8]) -> Result<usize, ErrorKind> {
+        self.writes += 1;
+        let fails = (5..10).contains(&self.writes);
+        let sent = if fails { &bytes[..bytes.len() / 2] } else { bytes };
+        self.bytes.extend_from_slice(sent);
+        if fails { Err(ErrorKind::TimedOut) } else { Ok(bytes.len()) }
+    }
+
+    fn flush(&mut self) -> Result<(), ErrorKind> {
+        Ok(())
+    }
+}
+
+#[test]
+fn a_failing_link_is_reported_once_and_loses_only_its_own_frames() {
+    let mut app = App::new(Settings::default(), NoDisplay, Faulty::default(), NoButtons).expect("good");
+    let mut events = Vec::new();
+    for now in 1..=20 {
+        app.run_to(now, |event| events.push(event));
+    }
+    assert_eq!(events, [Event::Link(ErrorKind::TimedOut)]);
+    // Writes: a delimiter, frames 0 to 2 (2 to 4), frame 3 broken (5), delimiters refused (6 to 9), then all is well.
+    let received: Vec<_> = messages(&app.link().bytes).iter().map(|m| m.map(|frame| frame.sequence).ok()).collect();
+    let expected: Vec<_> = [Some(0), Some(1), Some(2), None].into_iter().chain((8..20).map(Some)).collect();
+    assert_eq!(received, expected);
+}
+
+struct BrokenPanel<'a>(&'a Cell<bool>);
+
+impl Display for BrokenPanel<'_> {
+    type Error = &'static str;
+
+    fn flush(&mut self, _: &Canvas) -> Result<(), &'static str> {
+        if self.0.get() { Err("bus") } else { Ok(()) }
+    }
+}
+
+#[test]
+fn a_failing_panel_is_reported_once_and_does_not_stop_the_rest() {
+    let broken = Cell::new(true);
+    let mut app = App::new(Settings::default(), BrokenPanel(&broken), Vec::new(), NoButtons).expect("good");
+    let mut events = Vec::new();
+    for now in 1..=30 {
+        broken.set(!(10..20).contains(&now));
+        app.run_to(now, |event| events.push((now, event)));
+    }
+    assert_eq!(events, [(1, Event::Panel("bus")), (20, Event::Panel("bus"))]);
+    assert_eq!(frames(app.link()).len(), 30);
+}
+
+#[test]
+fn bobs_are_drawn_where_the_state_puts_them() {
+    let mut app = app();
+    for now in 1..=1200 {
+        app.run_to(now, |_| ());
+        let view = View::new(&app.player().settings().parameters, Place::WHOLE);
+        let pendulum = app.player().settings().pendulum().expect("good");
+        for (x, y) in view.bobs(&pendulum, &app.player().report().state) {
+            let grey = app.canvas().get(x as i32, y as i32);
+            assert_eq!(grey, Some(15), "tick {now}: ({x}, {y})");
+        }
+    }
+}
+
+#[test]
+fn the_motion_never_touches_the_labels() {
+    let mut app = App::new(Settings::equal_rods(0.0125, -179.0), NoDisplay, Vec::new(), NoButtons).expect("good");
+    // Boxes of the three labels at their longest in use: 8 and 7 characters of 5 pixels, and a time below 1000 s.
+    let boxes = [(0..40, 0..8), (0..35, 56..64), (93..128, 0..8)];
+    for now in 1..=3600 {
+        app.run_to(now, |_| ());
+        let view = View::new(&app.player().settings().parameters, Place::WHOLE);
+        let pendulum = app.player().settings().pendulum().expect("good");
+        let radii = view.radii().map(|radius| f32::from(radius) / 64.0 + 0.5);
+        for ((x, y), radius) in view.bobs(&pendulum, &app.player().report().state).into_iter().zip(radii) {
+            for (columns, rows) in &boxes {
+                let dx = x - x.clamp(columns.start as f32, columns.end as f32);
+                let dy = y - y.clamp(rows.start as f32, rows.end as f32);
+                assert!(dx.hypot(dy) > radius, "tick {now}: ({x}, {y}) on {columns:?} {rows:?}");
+            }
+        }
+    }
+}

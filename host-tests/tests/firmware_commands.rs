@@ -1,0 +1,227 @@
+//! Commands over the serial link, answered by the very application that runs on the boards.
+
+use std::f64::consts::PI;
+
+use fastrand::Rng;
+use firmware::app::{App, Event};
+use firmware::config::{MOST_MESSAGES_PER_TICK, TICK_RATE};
+use firmware::controls::NoButtons;
+use firmware::display::NoDisplay;
+use firmware::job::Field;
+use firmware::protocol::{
+    Ask, Choose, Decoder, Done, Frame, MAX_WIRE, Message, Pause, Refused, Restart, Set, Status, Step, encode,
+};
+use firmware::scenes::SceneName;
+use firmware::settings::Settings;
+use firmware::unit::Unit;
+
+type Plain = App<NoDisplay, Vec<u8>, NoButtons>;
+
+fn app() -> Plain {
+    App::new(Settings::default(), NoDisplay, Vec::new(), NoButtons).expect("the first settings are good")
+}
+
+fn wire<M: Message>(message: &M) -> Vec<u8> {
+    encode(message, &mut [0; MAX_WIRE]).to_vec()
+}
+
+/// Every message sent so far, undamaged: kind and fields.
+fn sent(app: &Plain) -> Vec<(u8, Vec<u8>)> {
+    let mut decoder = Decoder::default();
+    let mut messages = Vec::new();
+    for &byte in app.link() {
+        match decoder.push(byte) {
+            Some(Ok((kind, fields))) => messages.push((kind, fields.to_vec())),
+            Some(Err(error)) => panic!("damaged: {error:?}"),
+            None => {}
+        }
+    }
+    messages
+}
+
+fn all<M: Message>(app: &Plain) -> Vec<M> {
+    sent(app).into_iter().filter(|(kind, _)| *kind == M::KIND).filter_map(|(_, fields)| M::read(&fields)).collect()
+}
+
+fn last<M: Message>(app: &Plain) -> M {
+    let (kind, fields) = sent(app).pop().expect("an answer");
+    assert_eq!(kind, M::KIND);
+    M::read(&fields).expect("all fields")
+}
+
+fn status(app: &mut Plain) -> Status {
+    app.receive(wire(&Ask { request: 0 }), |_| ());
+    last(app)
+}
+
+fn set(field: Field, value: f64, unit: Unit) -> Set {
+    Set { request: 9, field: field.code(), unit: unit.code(), value }
+}
+
+#[test]
+fn every_parameter_is_set_in_any_unit_of_its_own() {
+    for (field, value, unit, read, expected) in [
+        (Field::M1, 2.0, Unit::Kilogram, (|s| s.parameters[0]) as fn(&Status) -> f32, 2.0),
+        (Field::M2, 500.0, Unit::Gram, |s| s.parameters[1], 0.5),
+        (Field::L1, 80.0, Unit::Centimetre, |s| s.parameters[2], 0.8),
+        (Field::L2, 0.7, Unit::Metre, |s| s.parameters[3], 0.7),
+        (Field::G, 1.62, Unit::MetrePerSecondSquared, |s| s.parameters[4], 1.62),
+        (Field::A1, PI / 2.0, Unit::Radian, |s| s.degrees[0], 90.0),
+        (Field::A2, -30.0, Unit::Degree, |s| s.degrees[1], -30.0),
+        (Field::Angle, 171.0, Unit::Degree, |s| s.degrees[0], 171.0),
+        (Field::W1, 180.0, Unit::DegreePerSecond, |s| s.velocities[0], PI as f32),
+        (Field::W2, -1.5, Unit::RadianPerSecond, |s| s.velocities[1], -1.5),
+        (Field::MassRatio, 2.75, Unit::One, |s| s.parameters[1], 2.75),
+        (Field::Speed, 50.0, Unit::Percent, |s| s.speed, 0.5),
+    ] {
+        let mut app = app();
+        app.receive(wire(&set(field, value, unit)), |_| ());
+        assert_eq!(last::<Done>(&app), Done { request: 9 }, "{field:?}");
+        assert_eq!(read(&status(&mut app)), expected, "{field:?}");
+    }
+}
+
+#[test]
+fn a_bad_command_is_answered_with_the_field_and_changes_nothing() {
+    let mut app = app();
+    app.run_to(30, |_| ());
+    let before = (status(&mut app), app.player().report());
+    let good = set(Field::M1, 1.0, Unit::Kilogram);
+    for (message, field) in [
+        (set(Field::M1, 0.0, Unit::Kilogram), Field::M1),
+        (set(Field::M2, -1.0, Unit::Gram), Field::M2),
+        (set(Field::M2, 1e300, Unit::Kilogram), Field::M2),
+        (set(Field::L1, f64::NAN, Unit::Metre), Field::L1),
+        (set(Field::L2, f64::INFINITY, Unit::Metre), Field::L2),
+        (set(Field::L1, 1e-6, Unit::Metre), Field::L1), // too quick for the step
+        (set(Field::G, -9.81, Unit::MetrePerSecondSquared), Field::G),
+        (set(Field::A1, 181.0, Unit::Degree), Field::A1),
+        (set(Field::A2, 4.0, Unit::Radian), Field::A2),
+        (set(Field::Angle, f64::NAN, Unit::Degree), Field::Angle),
+        (set(Field::W1, f64::INFINITY, Unit::RadianPerSecond), Field::W1),
+        (set(Field::MassRatio, 0.0, Unit::One), Field::MassRatio),
+        (set(Field::Speed, 0.0, Unit::One), Field::Speed),
+        (set(Field::Speed, 5.0, Unit::One), Field::Speed),
+        (set(Field::M1, 1.0, Unit::Metre), Field::Unit),
+        (set(Field::A1, 1.0, Unit::RadianPerSecond), Field::Unit),
+        (Set { unit: 0xEE, ..good }, Field::Unit),
+        (Set { field: 0xEE, ..good }, Field::Field),
+        (set(Field::Scene, 1.0, Unit::One), Field::Field),
+    ] {
+        app.receive(wire(&message), |_| ());
+        assert_eq!(last::<Refused>(&app), Refused { request: 9, field: field.code() }, "{message:?}");
+    }
+    app.receive(wire(&Choose { request: 9, scene: 0xEE }), |_| ());
+    assert_eq!(last::<Refused>(&app), Refused { request: 9, field: Field::Scene.code() });
+    assert_eq!((status(&mut app), app.player().report()), before);
+}
+
+firmware::message! {
+    /// A message of no known kind.
+    Stranger = 0xEE {
+        /// As in every message to the chip.
+        request: u16,
+        /// Anything.
+        rest: [u8; 3],
+    }
+}
+
+#[test]
+fn an_intact_message_of_unknown_kind_is_answered_too() {
+    let mut app = app();
+    app.receive(wire(&Stranger { request: 77, rest: [1, 2, 3] }), |_| ());
+    assert_eq!(last::<Refused>(&app), Refused { request: 77, field: Field::Message.code() });
+}
+
+#[test]
+fn every_scene_can_be_chosen_restarts_pauses_and_steps() {
+    for &name in SceneName::ALL {
+        let mut app = app();
+        let mut clock = 0;
+        let mut run = |app: &mut Plain, ticks| {
+            for _ in 0..ticks {
+                clock += 1;
+                app.run_to(clock, |_| ());
+            }
+            app.player().report()
+        };
+        app.receive(wire(&Choose { request: 1, scene: name.code() }), |_| ());
+        assert_eq!(app.player().name(), name);
+        let one = run(&mut app, 1);
+        let ten = run(&mut app, 9);
+        app.receive(wire(&Pause { request: 2, paused: 1 }), |_| ());
+        assert_eq!(run(&mut app, 5), ten, "{}: paused", name.name());
+        app.receive(wire(&Step { request: 3, ticks: 2 }), |_| ());
+        let twelve = run(&mut app, 5);
+        assert_eq!(twelve.step, 12 * one.step, "{}: two steps", name.name());
+        app.receive(wire(&Restart { request: 4 }), |_| ());
+        assert_eq!(run(&mut app, 3).step, 0, "{}: restarted, still paused", name.name());
+        app.receive(wire(&Pause { request: 5, paused: 0 }), |_| ());
+        assert_eq!(run(&mut app, 12), twelve, "{}: the same again", name.name());
+        assert_eq!(all::<Done>(&app).iter().map(|done| done.request).collect::<Vec<_>>(), [1, 2, 3, 4, 5]);
+        assert!(all::<Frame>(&app).iter().all(|frame| frame.scene == name.code()));
+    }
+}
+
+#[test]
+fn speed_is_exact_in_the_long_run() {
+    for (percent, ticks) in [(1.0, 6), (25.0, 150), (99.0, 594), (100.0, 600), (250.0, 1500), (400.0, 2400)] {
+        let mut app = app();
+        app.receive(wire(&set(Field::Speed, percent, Unit::Percent)), |_| ());
+        (1..=600).for_each(|clock| assert!(app.run_to(clock, |_| ())));
+        assert_eq!(app.player().report().time, f64::from(ticks) / f64::from(TICK_RATE), "{percent} %");
+    }
+}
+
+/// What arrives in one tick at most: 460,800 bits per second.
+const BYTES_PER_TICK: usize = 768;
+
+/// Feeds `bytes` as fast as the link can bring them, one picture per tick; checks that every tick has its intact frame
+/// and that the log stays short. The application afterwards.
+fn flood(mut bytes: impl Iterator<Item = u8>, seconds: u32) -> Plain {
+    let mut app = app();
+    let mut lines = 0;
+    let mut waiting = std::collections::VecDeque::new();
+    for clock in 1..=seconds * TICK_RATE {
+        assert!(app.run_to(clock, |_| lines += 1));
+        waiting.extend(bytes.by_ref().take(BYTES_PER_TICK));
+        waiting.truncate(1023); // the queue of the boards
+        let mut counted = |event: Event<_, _>| lines += u32::from(!matches!(event, Event::Started(..) | Event::Asked));
+        app.receive(std::iter::from_fn(|| waiting.pop_front()), &mut counted);
+    }
+    let frames = all::<Frame>(&app);
+    assert_eq!(frames.len(), (seconds * TICK_RATE) as usize);
+    assert!((0..).zip(&frames).all(|(sequence, frame)| frame.sequence == sequence && frame.dropped == 0));
+    assert!(lines <= seconds, "{lines} lines of log in {seconds} s");
+    app
+}
+
+#[test]
+fn noise_half_commands_and_floods_do_not_disturb_the_stream() {
+    let mut rng = Rng::with_seed(5);
+    let noise = flood(std::iter::repeat_with(move || rng.u8(..)), 60);
+    assert_eq!(all::<Done>(&noise), [], "noise is obeyed");
+    assert_eq!(noise.player().report(), flood(std::iter::empty(), 60).player().report(), "and changes nothing");
+
+    flood(std::iter::repeat(0), 10);
+    flood(std::iter::repeat(1), 10); // one line without an end
+    let half = wire(&set(Field::Angle, 10.0, Unit::Degree));
+    let half = half[..half.len() / 2].to_vec();
+    let halves = flood(half.into_iter().chain([0]).collect::<Vec<_>>().into_iter().cycle(), 10);
+    assert_eq!(all::<Done>(&halves), []);
+
+    let restarts = flood(wire(&Restart { request: 6 }).into_iter().cycle(), 10);
+    let (answered, most) = (all::<Done>(&restarts).len(), MOST_MESSAGES_PER_TICK * (10 * TICK_RATE) as usize);
+    assert!((most / 2..=most).contains(&answered), "{answered}: of more than can wait, the rest is lost");
+}
+
+#[test]
+fn a_command_after_noise_is_obeyed() {
+    let mut app = app();
+    let mut rng = Rng::with_seed(6);
+    app.receive(std::iter::repeat_with(|| rng.u8(1..)).take(5000), |_| ());
+    // The delimiter ends the noise; a command's own bytes must not be taken for its tail.
+    app.receive([0], |_| ());
+    app.receive(wire(&Choose { request: 3, scene: SceneName::Figure7.code() }), |_| ());
+    assert_eq!((last::<Done>(&app), app.player().name()), (Done { request: 3 }, SceneName::Figure7));
+}

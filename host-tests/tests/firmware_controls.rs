@@ -1,0 +1,126 @@
+//! Buttons to commands, commands to settings, settings to labels.
+
+use firmware::command::Command;
+use firmware::config::{DEBOUNCE_TICKS, HOLD_TICKS, MASS_RATIOS, REPEAT_DELAY_TICKS, REPEAT_PERIOD_TICKS};
+use firmware::controls::{Controls, Pressed};
+use firmware::label;
+use firmware::settings::Settings;
+
+const NONE: Pressed = Pressed { up: false, down: false, left: false, right: false, select: false };
+const UP: Pressed = Pressed { up: true, ..NONE };
+const SELECT: Pressed = Pressed { select: true, ..NONE };
+
+/// The ticks, counted from 0, at which commands come.
+fn commands(controls: &mut Controls, readings: impl IntoIterator<Item = Pressed>) -> Vec<(usize, Command)> {
+    let each = |(tick, pressed)| controls.tick(pressed).map(move |command| (tick, command)).collect::<Vec<_>>();
+    readings.into_iter().enumerate().flat_map(each).collect()
+}
+
+/// Controls that have seen every button released.
+fn proven() -> Controls {
+    let mut controls = Controls::default();
+    assert_eq!(commands(&mut controls, [NONE; 10]), []);
+    controls
+}
+
+#[test]
+fn a_button_held_since_reset_counts_only_once_released() {
+    let mut controls = Controls::default();
+    let arrows = Pressed { up: true, down: true, left: true, right: true, select: false };
+    let all = Pressed { select: true, ..arrows };
+    assert_eq!(commands(&mut controls, [all; 200]), []);
+    assert_eq!(commands(&mut controls, [NONE; 10]), []);
+    let fired: Vec<_> = commands(&mut controls, [arrows; 10]).into_iter().map(|(_, command)| command).collect();
+    assert_eq!(fired, [Command::Heavier, Command::Lighter, Command::TurnLeft, Command::TurnRight]);
+}
+
+#[test]
+fn bounces_do_not_count() {
+    let mut controls = proven();
+    assert_eq!(commands(&mut controls, [UP, NONE, UP, NONE, UP, NONE]), []);
+    let first = usize::from(DEBOUNCE_TICKS) - 1;
+    assert_eq!(commands(&mut controls, [UP; 10]), [(first, Command::Heavier)]);
+    assert_eq!(commands(&mut controls, [NONE, UP, NONE, UP, UP, UP]), [], "bouncing while let go");
+}
+
+#[test]
+fn a_held_button_repeats() {
+    let first = usize::from(DEBOUNCE_TICKS) - 1;
+    let (delay, period) = (usize::from(REPEAT_DELAY_TICKS), usize::from(REPEAT_PERIOD_TICKS));
+    let expected = [first, first + delay, first + delay + period, first + delay + 2 * period];
+    let fired = commands(&mut proven(), [UP; 36]);
+    assert_eq!(fired, expected.map(|tick| (tick, Command::Heavier)));
+}
+
+#[test]
+fn select_restarts_when_let_go_and_changes_the_scene_when_held() {
+    let (tap, debounce) = (10, usize::from(DEBOUNCE_TICKS) - 1);
+    let readings = [SELECT; 10].into_iter().chain([NONE; 10]);
+    assert_eq!(commands(&mut proven(), readings), [(tap + debounce, Command::Restart)]);
+    let held = debounce + usize::from(HOLD_TICKS) - 1;
+    let readings = [SELECT; 200].into_iter().chain([NONE; 10]);
+    assert_eq!(commands(&mut proven(), readings), [(held, Command::NextScene)], "once, and no restart after it");
+}
+
+#[test]
+fn arrows_mean_something_else_while_select_is_held() {
+    for (arrow, command) in [
+        (Pressed { up: true, ..SELECT }, Command::TogglePause),
+        (Pressed { down: true, ..SELECT }, Command::Step(1)),
+        (Pressed { left: true, ..SELECT }, Command::PreviousScene),
+        (Pressed { right: true, ..SELECT }, Command::NextScene),
+    ] {
+        let readings = [SELECT; 10].into_iter().chain([arrow; 100]).chain([SELECT; 100]).chain([NONE; 10]);
+        let fired = [(10 + usize::from(DEBOUNCE_TICKS) - 1, command)];
+        assert_eq!(commands(&mut proven(), readings), fired, "neither repeats nor restarts");
+    }
+}
+
+#[test]
+fn buttons_visit_every_mass_ratio_and_stop_at_the_ends() {
+    let mut settings = Settings::equal_rods(MASS_RATIOS[0], 120.0);
+    for ratio in MASS_RATIOS {
+        assert_eq!(settings.mass_ratio(), ratio);
+        assert!(settings.pendulum().is_ok());
+        settings = settings.heavier();
+    }
+    for ratio in MASS_RATIOS.into_iter().rev() {
+        assert_eq!(settings.mass_ratio(), ratio);
+        settings = settings.lighter();
+    }
+    assert_eq!(settings.mass_ratio(), MASS_RATIOS[0]);
+    let between = Settings::equal_rods(2.75, 120.0);
+    assert_eq!((between.lighter().mass_ratio(), between.heavier().mass_ratio()), (2.5, 3.15));
+}
+
+#[test]
+fn angles_stop_at_straight_up() {
+    let mut settings = Settings::equal_rods(1.0, 170.5);
+    for _ in 0..20 {
+        settings = settings.turned(1);
+    }
+    assert_eq!((settings.degrees, settings.angles()), ([180.0; 2], [std::f32::consts::PI; 2]));
+    for _ in 0..400 {
+        settings = settings.turned(-1);
+    }
+    assert_eq!(settings.degrees, [-180.0; 2]);
+}
+
+#[test]
+fn labels_show_what_is_set() {
+    let ratios = [0.01, 0.0125, 0.1, 0.315, 1.0, 2.75, 9.0 / 16.0, 12.5, 31.5, 100.0].map(label::mass_ratio);
+    let expected = ["0.0100", "0.0125", "0.100", "0.315", "1.00", "2.75", "0.563", "12.5", "31.5", "100"];
+    assert_eq!(ratios.map(|label| label.to_string()), expected.map(|text| format!("μ {text}")));
+    let angles = [0.0, 120.0, -7.0, 171.5, -0.5].map(label::degrees);
+    let expected = ["α 0°", "α 120°", "α -7°", "α 171.5°", "α -0.5°"];
+    assert_eq!(angles.map(|label| label.to_string()), expected);
+    let times = [0.0, 0.099, 59.96, 3600.0].map(label::time);
+    assert_eq!(times.map(|label| label.to_string()), ["0.0 s", "0.0 s", "59.9 s", "3600.0 s"]);
+}
+
+#[test]
+fn labels_of_any_numbers_are_safe() {
+    for number in [f32::NAN, f32::INFINITY, f32::MAX, -f32::MAX, 1e-30] {
+        let _ = (label::mass_ratio(number), label::degrees(number), label::time(number.into()));
+    }
+}

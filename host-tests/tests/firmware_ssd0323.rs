@@ -1,0 +1,181 @@
+//! The panel's driver against a controller that is stricter than the real one.
+
+use std::cell::RefCell;
+use std::collections::VecDeque;
+use std::convert::Infallible;
+
+use embedded_hal::digital::{self, OutputPin};
+use embedded_hal::spi::{self, Operation, SpiDevice};
+use firmware::app::App;
+use firmware::canvas::Canvas;
+use firmware::controls::NoButtons;
+use firmware::display::{Display, PanelError, Ssd0323};
+use firmware::settings::Settings;
+
+/// Commands and how many arguments each takes, from the data sheet's command table.
+const COMMANDS: [(u8, usize); 21] = [
+    (0x15, 2),
+    (0x75, 2),
+    (0x81, 1),
+    (0x84, 0),
+    (0x85, 0),
+    (0x86, 0),
+    (0xA0, 1),
+    (0xA1, 1),
+    (0xA2, 1),
+    (0xA4, 0),
+    (0xA8, 1),
+    (0xAD, 1),
+    (0xAE, 0),
+    (0xAF, 0),
+    (0xB1, 1),
+    (0xB2, 1),
+    (0xB3, 1),
+    (0xB8, 8),
+    (0xBC, 1),
+    (0xBE, 1),
+    (0xBF, 1),
+];
+
+/// An SSD0323: panics on anything that the data sheet does not allow.
+#[derive(Default)]
+struct Controller {
+    /// The data/command pin, unknown until driven.
+    data: Option<bool>,
+    columns: Option<(u8, u8)>,
+    rows: Option<(u8, u8)>,
+    at: (u8, u8),
+    memory: Vec<Option<u8>>,
+    on: bool,
+    fails: bool,
+}
+
+impl Controller {
+    fn new() -> Self {
+        Self { memory: vec![None; 64 * 64], ..Self::default() }
+    }
+
+    fn receive(&mut self, bytes: &[u8]) {
+        match self.data.expect("data or command must be chosen first") {
+            false => self.commands(&mut bytes.iter().copied().collect()),
+            true => bytes.iter().for_each(|&byte| self.store(byte)),
+        }
+    }
+
+    fn commands(&mut self, bytes: &mut VecDeque<u8>) {
+        while let Some(command) = bytes.pop_front() {
+            let (_, count) = COMMANDS.iter().find(|(code, _)| *code == command).expect("a known command");
+            let mut arguments = bytes.drain(..*count);
+            match command {
+                0x15 => self.columns = Some(window(&mut arguments, 63)),
+                0x75 => self.rows = Some(window(&mut arguments, 63)),
+                0xAE => self.on = false,
+                0xAF => {
+                    assert!(self.memory.iter().all(Option::is_some), "switched on with noise in memory");
+                    self.on = true;
+                }
+                _ => {}
+            }
+            if let (Some((column, _)), Some((row, _))) = (self.columns, self.rows)
+                && matches!(command, 0x15 | 0x75)
+            {
+                self.at = (column, row);
+            }
+        }
+    }
+
+    /// Along the row, then to the next; beyond the last row is an error here.
+    fn store(&mut self, byte: u8) {
+        let ((first, last), (_, last_row)) = (self.columns.expect("columns first"), self.rows.expect("rows first"));
+        let (column, row) = self.at;
+        assert!(row <= last_row, "more data than the window holds");
+        self.memory[usize::from(row) * 64 + usize::from(column)] = Some(byte);
+        self.at = if column == last { (first, row + 1) } else { (column + 1, row) };
+    }
+}
+
+fn window(arguments: &mut impl Iterator<Item = u8>, most: u8) -> (u8, u8) {
+    let (first, last) = (arguments.next().expect("first"), arguments.next().expect("last"));
+    assert!(first <= last && last <= most);
+    (first, last)
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct BusError;
+
+impl spi::Error for BusError {
+    fn kind(&self) -> spi::ErrorKind {
+        spi::ErrorKind::Other
+    }
+}
+
+struct Bus<'a>(&'a RefCell<Controller>);
+
+impl spi::ErrorType for Bus<'_> {
+    type Error = BusError;
+}
+
+impl SpiDevice for Bus<'_> {
+    fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), BusError> {
+        let mut controller = self.0.borrow_mut();
+        for operation in operations {
+            match operation {
+                _ if controller.fails => return Err(BusError),
+                Operation::Write(bytes) => controller.receive(bytes),
+                other => panic!("the panel has no data to give: {other:?}"),
+            }
+        }
+        Ok(())
+    }
+}
+
+struct Pin<'a>(&'a RefCell<Controller>);
+
+impl digital::ErrorType for Pin<'_> {
+    type Error = Infallible;
+}
+
+impl OutputPin for Pin<'_> {
+    fn set_low(&mut self) -> Result<(), Infallible> {
+        self.0.borrow_mut().data = Some(false);
+        Ok(())
+    }
+
+    fn set_high(&mut self) -> Result<(), Infallible> {
+        self.0.borrow_mut().data = Some(true);
+        Ok(())
+    }
+}
+
+fn shown(controller: &RefCell<Controller>) -> Vec<u8> {
+    controller.borrow().memory.iter().map(|byte| byte.expect("written")).collect()
+}
+
+#[test]
+fn switches_on_with_a_black_picture() {
+    let controller = RefCell::new(Controller::new());
+    Ssd0323::new(Bus(&controller), Pin(&controller)).init().expect("the bus works");
+    assert!(controller.borrow().on);
+    assert_eq!(shown(&controller), [0; 4096]);
+}
+
+#[test]
+fn shows_exactly_the_picture() {
+    let controller = RefCell::new(Controller::new());
+    let mut panel = Ssd0323::new(Bus(&controller), Pin(&controller));
+    panel.init().expect("the bus works");
+    let mut app = App::new(Settings::default(), panel, Vec::new(), NoButtons).expect("good");
+    for now in 1..=20 {
+        app.run_to(now, |event| panic!("{event:?}"));
+        assert_eq!(shown(&controller), app.canvas().bytes());
+    }
+    assert!(app.canvas().bytes().iter().any(|byte| *byte != 0));
+}
+
+#[test]
+fn hands_on_the_error_of_the_bus() {
+    let controller = RefCell::new(Controller { fails: true, ..Controller::new() });
+    let mut panel = Ssd0323::new(Bus(&controller), Pin(&controller));
+    assert_eq!(panel.init(), Err(PanelError::Spi(BusError)));
+    assert_eq!(panel.flush(&Canvas::default()), Err(PanelError::Spi(BusError)));
+}

@@ -1,0 +1,85 @@
+//! The page's equal-rod form as printed, against the right one, at the settings of its figure 7.
+
+use double_pendulum::{Parameters, Pendulum, State, rk4};
+use host_tests::{page, tolerance};
+
+const MU: f64 = 2.75;
+const STEPS_PER_SECOND: usize = 512;
+const SECONDS: usize = 100;
+/// Either system is chaotic, so one run says little: the start is varied by as many millionths of a radian.
+const RUNS: usize = 32;
+
+/// The average over all runs.
+struct Summary {
+    mean_energy: f64,
+    largest_energy_error: f64,
+    share_above_pivot: f64,
+}
+
+fn figure_7() -> (Pendulum<f64>, State<f64>) {
+    let pendulum = Pendulum::new(Parameters::equal_rods(MU, 1.0, 9.8)).expect("figure 7's parameters are valid");
+    (pendulum, State::at_rest(171_f64.to_radians(), 171_f64.to_radians()))
+}
+
+fn run(rhs: impl Fn(&[f64; 4]) -> [f64; 4]) -> Summary {
+    let (pendulum, figure_7) = figure_7();
+    let (mut energy, mut error, mut above) = (0.0, 0.0_f64, 0.0);
+    for run in 0..RUNS {
+        let angle = figure_7.a1 + 1e-6 * run as f64;
+        let start = State::at_rest(angle, angle);
+        let start_energy = pendulum.energy(&start);
+        let mut z = start.into();
+        for _ in 0..SECONDS * STEPS_PER_SECOND {
+            z = rk4::step(&rhs, &z, 1.0 / STEPS_PER_SECOND as f64);
+            let state = State::from(z);
+            let [_, bob2] = pendulum.positions(state.a1, state.a2);
+            energy += pendulum.energy(&state);
+            error = error.max((pendulum.energy(&state) - start_energy).abs());
+            above += f64::from(u8::from(bob2.y > 0.0));
+        }
+    }
+    let samples = (RUNS * SECONDS * STEPS_PER_SECOND) as f64;
+    Summary { mean_energy: energy / samples, largest_energy_error: error, share_above_pivot: above / samples }
+}
+
+#[test]
+fn both_start_at_62_9_joules() {
+    let (pendulum, start) = figure_7();
+    assert!((pendulum.energy(&start) - 62.9).abs() < 0.05);
+}
+
+#[test]
+fn printed_form_loses_the_energy_and_hangs_below_the_pivot() {
+    let summary = run(|z| page::misprinted_equal_rods(MU, 1.0, 9.8, z));
+    assert!((summary.mean_energy + 18.7).abs() < tolerance::MISPRINT_ENERGY, "mean energy {} J", summary.mean_energy);
+    assert!(summary.share_above_pivot < tolerance::MISPRINT_ABOVE, "{} above the pivot", summary.share_above_pivot);
+}
+
+#[test]
+fn right_form_keeps_the_energy_and_spends_half_its_time_above_the_pivot() {
+    let (pendulum, _) = figure_7();
+    let summary = run(|z| pendulum.derivatives(z));
+    assert!(
+        summary.largest_energy_error < tolerance::FIGURE_7_ENERGY,
+        "energy error {} J",
+        summary.largest_energy_error
+    );
+    assert!(
+        (summary.share_above_pivot - 0.507).abs() < tolerance::FIGURE_7_ABOVE,
+        "{} above the pivot",
+        summary.share_above_pivot
+    );
+}
+
+#[test]
+fn with_equal_masses_the_printed_form_is_right() {
+    let pendulum = Pendulum::new(Parameters::equal_rods(1.0, 0.5, 9.8)).expect("valid parameters");
+    let z = [0.7, -1.9, 0.3, -0.4];
+    let printed = page::misprinted_equal_rods(1.0, 0.5, 9.8, &z);
+    for (printed, right) in printed.into_iter().zip(pendulum.derivatives(&z)) {
+        assert!(
+            (printed - right).abs() < tolerance::DERIVATIVES.double * right.abs().max(1.0),
+            "{printed} instead of {right}"
+        );
+    }
+}

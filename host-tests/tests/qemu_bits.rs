@@ -1,0 +1,58 @@
+//! What a board streams is what the host's kernel computes, bit for bit.
+
+mod support;
+
+use double_pendulum::{Parameters, Pendulum, State};
+use firmware::config::{GRAVITY, ROD, STEP, STEPS_PER_TICK};
+use firmware::protocol::Frame;
+use host_tests::board::{BOARDS, Board};
+use host_tests::qemu::{Counts, Lockstep, Machine, QemuError};
+use support::{application, settings, toolchain};
+
+/// 12 s of the board's time: the motion has turned over and become chaotic long before.
+const FRAMES: u32 = 720;
+
+#[test]
+fn every_board_streams_the_kernels_bits() -> Result<(), QemuError> {
+    BOARDS.iter().try_for_each(streams_the_kernels_bits)
+}
+
+fn streams_the_kernels_bits(board: &Board) -> Result<(), QemuError> {
+    let (toolchain, elf) = (toolchain(), application(board));
+    let mut machine = Machine::start(&settings(&toolchain, board, &elf))?;
+    let mut expected: Option<(Pendulum<f32>, State<f32>)> = None;
+    for sequence in 0..FRAMES {
+        let Some(frame) = machine.serial.next::<Frame>() else { return Err(machine.silence()) };
+        let (pendulum, state) = expected.get_or_insert_with(|| {
+            let parameters = Parameters::equal_rods(frame.mass_ratio, ROD, GRAVITY);
+            let pendulum = Pendulum::new(parameters).expect("the board simulates it");
+            (pendulum, State::at_rest(frame.start_angle, frame.start_angle))
+        });
+        for _ in 0..STEPS_PER_TICK {
+            *state = pendulum.step(state, STEP);
+        }
+        let bits = |state: [f32; 4]| state.map(f32::to_bits);
+        assert_eq!(bits(frame.state), bits((*state).into()), "{}, frame {sequence}", board.name);
+        assert_eq!((frame.sequence, frame.dropped), (sequence, 0), "{}", board.name);
+        assert_eq!(frame.step, (sequence + 1) * STEPS_PER_TICK, "{}", board.name);
+    }
+    let Counts { damaged, lost, .. } = machine.serial.counts();
+    assert_eq!((damaged, lost), (0, 0), "{}", board.name);
+    machine.quit()
+}
+
+#[test]
+fn standing_still_between_frames_changes_nothing() -> Result<(), QemuError> {
+    const FRAMES: usize = 120;
+    let (toolchain, board) = (toolchain(), &BOARDS[0]);
+    let elf = application(board);
+    let settings = settings(&toolchain, board, &elf);
+    let mut stopped = Lockstep::start(&settings)?;
+    let running = Machine::start(&settings)?;
+    for _ in 0..FRAMES {
+        let frame = stopped.next_frame()?;
+        stopped.picture()?;
+        assert_eq!(Some(frame), running.serial.next());
+    }
+    Ok(())
+}

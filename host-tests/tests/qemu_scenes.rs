@@ -1,0 +1,135 @@
+//! The scenes on the emulated boards: the panel shows what the host draws, within the budgets, garbage or not.
+
+mod support;
+
+use fastrand::Rng;
+use firmware::canvas::{Canvas, HEIGHT, WIDTH};
+use firmware::config::TICK_RATE;
+use firmware::protocol::{Choose, Done, Frame};
+use firmware::scenes::{AnyScene, SceneName};
+use host_tests::board::{BOARDS, Board};
+use host_tests::qemu::{Lockstep, Machine, QemuError};
+use support::{application, settings, toolchain};
+
+/// Pictures compared for each scene, and frames from one to the next.
+const PICTURES: usize = 3;
+const EVERY: u32 = 25;
+
+/// What QEMU's clock takes for an instruction when it counts them, and a cycle of the board's processor at 50 MHz, ns.
+const INSTRUCTION: f64 = 32.0;
+const CYCLE: f64 = 20.0;
+/// A frame of a 50 MHz processor, cycles.
+const FRAME: f64 = 50e6 / 60.0;
+/// What a scene may cost of it, and what those may that move a pendulum without a floating-point unit: the motion in
+/// software and its twin for the honest clock are dearer than the half that is aimed at.
+const HALF: f64 = 0.5;
+const IN_SOFTWARE: f64 = 0.75;
+const MOVE_PENDULUMS: [SceneName; 4] = [SceneName::Page, SceneName::Figure7, SceneName::Butterfly, SceneName::Upright];
+/// Cycles that a Cortex-M3 takes for an instruction, on average over firmware like this: loads, stores and taken
+/// branches take 2 or 3. `cargo count` estimates 1.5 for a step in software floating point.
+const CYCLES_PER_INSTRUCTION: f64 = 1.5;
+
+fn panels() -> impl Iterator<Item = &'static Board> {
+    BOARDS.iter().filter(|board| board.has_panel)
+}
+
+/// Chooses a scene; the first frame of it.
+fn choose(machine: &mut Lockstep, name: SceneName) -> Result<Frame, QemuError> {
+    machine.machine().serial.send(&Choose { request: 1, scene: name.code() })?;
+    loop {
+        let frame = machine.next_frame()?;
+        if frame.scene == name.code() && frame.time < 0.1 {
+            return Ok(frame);
+        }
+    }
+}
+
+#[test]
+fn the_panel_shows_what_the_host_draws() -> Result<(), QemuError> {
+    panels().try_for_each(|board| {
+        let (toolchain, elf) = (toolchain(), application(board));
+        let mut machine = Lockstep::start(&settings(&toolchain, board, &elf))?;
+        for &name in SceneName::ALL {
+            let mut scene = AnyScene::new(name, &name.first_settings()).expect("a scene of the catalogue");
+            let mut frame = choose(&mut machine, name)?;
+            for _ in 0..PICTURES {
+                for _ in 0..EVERY {
+                    frame = machine.next_frame()?;
+                }
+                let ticks = (frame.time * f64::from(TICK_RATE)).round() as u32;
+                while scene.report().time < f64::from(ticks) / f64::from(TICK_RATE) - 1e-9 {
+                    scene.tick();
+                }
+                let mut canvas = Canvas::default();
+                scene.draw(&mut canvas);
+                let picture = machine.picture()?;
+                let differing = (0..WIDTH * HEIGHT)
+                    .filter(|&i| canvas.get((i % WIDTH) as i32, (i / WIDTH) as i32) != picture.greys().get(i).copied());
+                assert_eq!(differing.count(), 0, "{}: {} at {} s\n{picture:?}", board.name, name.name(), frame.time);
+            }
+        }
+        Ok(())
+    })
+}
+
+#[test]
+fn every_scene_keeps_within_its_share_of_a_frame() -> Result<(), QemuError> {
+    let mut too_dear: Vec<String> = Vec::new();
+    panels().try_for_each(|board| {
+        let (toolchain, elf) = (toolchain(), application(board));
+        let mut machine = Machine::start(&settings(&toolchain, board, &elf))?;
+        for &name in SceneName::ALL {
+            machine.serial.send(&Choose { request: 1, scene: name.code() })?;
+            let (mut seen, mut scene, mut busy) = (0, 0, 0);
+            while seen < 3 * TICK_RATE {
+                let frame: Frame = machine.serial.next().ok_or_else(|| machine.silence())?;
+                // The first pictures pay for the start.
+                if frame.scene == name.code() && frame.time > 0.1 {
+                    seen += 1;
+                    scene = scene.max(frame.scene_cycles);
+                    busy = busy.max(frame.busy_cycles);
+                    assert_eq!(frame.dropped, 0, "{}: {}", board.name, name.name());
+                }
+            }
+            let [scene, busy] = [scene, busy].map(|cycles| f64::from(cycles) * CYCLE / INSTRUCTION);
+            let share = |instructions: f64| instructions * CYCLES_PER_INSTRUCTION / FRAME;
+            let has_fpu = board.target.ends_with("hf");
+            let limit = if !has_fpu && MOVE_PENDULUMS.contains(&name) { IN_SOFTWARE } else { HALF };
+            println!(
+                "{:15} {:12} scene {scene:7.0} instructions, about {:3.0} % of a frame; all {busy:7.0}, idle {:3.0} %",
+                board.name,
+                name.name(),
+                100.0 * share(scene),
+                100.0 * (1.0 - share(busy)),
+            );
+            if share(scene) > limit {
+                too_dear.push(format!("{}: {} takes {:.2} of a frame", board.name, name.name(), share(scene)));
+            }
+        }
+        machine.quit()
+    })?;
+    assert!(too_dear.is_empty(), "{too_dear:#?}");
+    Ok(())
+}
+
+#[test]
+fn garbage_on_the_link_disturbs_nothing() -> Result<(), QemuError> {
+    let board = &BOARDS[0];
+    let (toolchain, elf) = (toolchain(), application(board));
+    let mut machine = Machine::start(&settings(&toolchain, board, &elf))?;
+    let mut rng = Rng::with_seed(7);
+    for frame in 0..60 * TICK_RATE {
+        let length = rng.usize(..600);
+        let garbage: Vec<u8> = std::iter::repeat_with(|| rng.u8(..)).take(length).collect();
+        machine.serial.send_bytes(&garbage)?;
+        let received: Frame = machine.serial.next().ok_or_else(|| machine.silence())?;
+        assert_eq!((received.sequence, received.dropped), (frame, 0));
+    }
+    assert_eq!((machine.serial.counts().damaged, machine.serial.counts().lost), (0, 0));
+    // Two delimiters: what the garbage left unfinished must not swallow the command.
+    machine.serial.send_bytes(&[0, 0])?;
+    machine.serial.send(&Choose { request: 5, scene: SceneName::Figure7.code() })?;
+    let done = machine.serial.next::<Done>().ok_or_else(|| machine.silence())?;
+    assert_eq!(done.request, 5);
+    machine.quit()
+}

@@ -1,0 +1,99 @@
+//! Requests over the serial link, answered by the very application that runs on the boards.
+
+use double_pendulum::Parameters;
+use firmware::job::{Arithmetic, Field, Job, Model, Reading, Request};
+use firmware::protocol::{LinkError, MAX_WIRE, Refused, Sample, Simulate, encode};
+use firmware::service::{Received, Service};
+
+const REQUEST: Request = Request {
+    arithmetic: Arithmetic::F32,
+    model: Model::General,
+    parameters: Parameters { m1: 1.0, m2: 2.75, l1: 1.0, l2: 0.5, g: 9.8 },
+    angles: [2.0, -1.0],
+    velocities: [0.5, 0.25],
+    step_size: 1.0 / 256.0,
+    stride: 16,
+    samples: 5,
+};
+
+fn send(service: &mut Service, message: &Simulate) -> Vec<Received> {
+    let mut wire = [0; MAX_WIRE];
+    encode(message, &mut wire).iter().filter_map(|&byte| service.receive(byte)).collect()
+}
+
+fn samples(service: &mut Service) -> Vec<Sample> {
+    std::iter::from_fn(|| service.is_busy().then(|| service.work())).flatten().collect()
+}
+
+fn readings(request: &Request) -> Vec<Reading> {
+    let mut job = Job::new(request).unwrap_or_else(|error| panic!("{error}"));
+    std::iter::from_fn(|| (!job.is_finished()).then(|| job.advance())).flatten().collect()
+}
+
+#[test]
+fn every_arithmetic_and_model_is_answered_in_full() {
+    for &arithmetic in Arithmetic::ALL {
+        for &model in Model::ALL {
+            let parameters = Parameters { l2: 1.0, ..REQUEST.parameters };
+            let request = Request { arithmetic, model, parameters, ..REQUEST };
+            let mut service = Service::default();
+            assert_eq!(send(&mut service, &request.message(7)), [Received::Accepted]);
+            let samples = samples(&mut service);
+            assert_eq!(samples.iter().map(|sample| sample.index).collect::<Vec<_>>(), [0, 1, 2, 3, 4, 5]);
+            for (sample, reading) in samples.iter().zip(readings(&request)) {
+                assert_eq!(sample.request, 7);
+                assert_eq!(
+                    (sample.state, sample.velocities, sample.energy),
+                    (reading.state, reading.velocities, reading.energy)
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn a_refusal_names_the_field_and_leaves_the_work_alone() {
+    let good = REQUEST.message(1);
+    for (message, field) in [
+        (Simulate { arithmetic: 0xFF, ..good }, Field::Arithmetic),
+        (Simulate { model: 0xFF, ..good }, Field::Model),
+        (Simulate { parameters: [0.0, 1.0, 1.0, 1.0, 9.8], ..good }, Field::M1),
+        (Simulate { parameters: [1.0, -1.0, 1.0, 1.0, 9.8], ..good }, Field::M2),
+        (Simulate { parameters: [1.0, 1.0, f64::NAN, 1.0, 9.8], ..good }, Field::L1),
+        (Simulate { parameters: [1.0, 1.0, 1.0, f64::INFINITY, 9.8], ..good }, Field::L2),
+        (Simulate { parameters: [1.0, 1.0, 1.0, 1.0, -9.8], ..good }, Field::G),
+        (Simulate { angles: [f64::NAN, 0.0], ..good }, Field::A1),
+        (Simulate { velocities: [0.0, f64::INFINITY], ..good }, Field::W2),
+        (Simulate { step_size: 0.0, ..good }, Field::StepSize),
+        (Simulate { step_size: 9.0, ..good }, Field::StepSize),
+    ] {
+        let mut service = Service::default();
+        send(&mut service, &good);
+        let answer = send(&mut service, &Simulate { request: 2, ..message });
+        assert_eq!(answer, [Received::Refused(Refused { request: 2, field: field.code() })]);
+        let samples = samples(&mut service);
+        assert_eq!(samples.len(), 6, "{field:?}");
+        assert!(samples.iter().all(|sample| sample.request == 1));
+    }
+}
+
+#[test]
+fn a_new_request_replaces_the_one_under_way() {
+    let mut service = Service::default();
+    send(&mut service, &REQUEST.message(1));
+    service.work();
+    send(&mut service, &REQUEST.message(2));
+    assert!(samples(&mut service).iter().all(|sample| sample.request == 2));
+}
+
+#[test]
+fn damage_is_reported_and_the_next_request_is_answered() {
+    let mut wire = [0; MAX_WIRE];
+    let mut damaged = encode(&REQUEST.message(1), &mut wire).to_vec();
+    damaged[2] ^= 0x10; // the kind
+    let mut service = Service::default();
+    let received: Vec<_> = damaged.iter().filter_map(|&byte| service.receive(byte)).collect();
+    assert_eq!(received, [Received::Damaged(LinkError::Checksum)]);
+    assert!(!service.is_busy());
+    assert_eq!(send(&mut service, &REQUEST.message(3)), [Received::Accepted]);
+}

@@ -1,0 +1,54 @@
+//! `cargo simulate --on BOARD` gives the same rows as on the host, to the bit.
+
+use std::process::Command;
+
+use host_tests::board::BOARDS;
+
+fn simulate(arguments: &str) -> String {
+    let output = Command::new(env!("CARGO_BIN_EXE_simulate"))
+        .args(arguments.split_whitespace())
+        .output()
+        .unwrap_or_else(|error| panic!("simulate {arguments}: {error}"));
+    assert!(output.status.success(), "{arguments}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+fn same_everywhere(options: &str) {
+    let host = simulate(&format!("{options} --bits"));
+    assert!(host.lines().count() > 2);
+    for board in &BOARDS {
+        assert_eq!(simulate(&format!("{options} --bits --on {}", board.name)), host, "{options} on {}", board.name);
+    }
+}
+
+/// Chaotic, and long enough for one wrong bit to show everywhere.
+const FIGURE_7: &str = "--masses 1,2.75 --angles 171,171 --degrees --until 5 --every 1";
+
+#[test]
+fn single_precision() {
+    same_everywhere(&format!("{FIGURE_7} --step 1/4096 --arithmetic f32"));
+}
+
+#[test]
+fn double_precision() {
+    same_everywhere(&format!("{FIGURE_7} --step 1/512 --arithmetic f64"));
+}
+
+#[test]
+fn equal_rods() {
+    same_everywhere(&format!("{FIGURE_7} --step 1/512 --arithmetic f32 --model equal-rods"));
+}
+
+#[test]
+fn unequal_rods_with_velocities() {
+    same_everywhere(
+        "--masses 2,0.5 --lengths 0.3,1.1 --velocities 3,-4 --step 1/256 --until 4 --every 1/2 --arithmetic f32",
+    );
+}
+
+#[test]
+fn closed_form() {
+    same_everywhere(
+        "--angles 0.1,-0.05 --velocities 0.2,0 --step 1/64 --until 10 --every 1 --arithmetic f64 --model linear",
+    );
+}

@@ -1,0 +1,27 @@
+//! What the tests on emulated boards share. Not every test uses all of it.
+#![allow(dead_code)]
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use host_tests::board::Board;
+use host_tests::qemu::{Clock, Settings};
+use host_tests::toolchain::{self, Toolchain};
+
+/// Far more than any of these runs takes, on a busy machine.
+pub const LIMIT: Duration = Duration::from_secs(120);
+
+/// The tools; a test without them fails and says what brings them.
+pub fn toolchain() -> Toolchain {
+    toolchain::ready().unwrap_or_else(|missing| panic!("{missing}"))
+}
+
+/// A board's application.
+pub fn application(board: &Board) -> PathBuf {
+    toolchain().build_for(board).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Repeatable to the bit.
+pub fn settings<'a>(toolchain: &'a Toolchain, board: &'a Board, elf: &'a Path) -> Settings<'a> {
+    Settings { qemu: toolchain.qemu(), board, elf, clock: Clock::Counted, window: None, limit: LIMIT }
+}
