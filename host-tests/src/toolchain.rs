@@ -1,7 +1,8 @@
 //! What the firmware needs from outside, found or brought: the ARM core library and `qemu-system-arm`.
 //!
 //! [`ready`] only looks. [`set_up`] brings what is missing: the core library by `rustup target add`, or else from
-//! Debian's source packages; QEMU from Debian's packages. Both ways build the same firmware with the same flags.
+//! Debian's source packages; QEMU from Debian's packages, installed, or unpacked into `target/qemu` where installing it
+//! would remove another package. Both ways build the same firmware with the same flags.
 //! All of the world outside is reached through one small trait, so that every decision is tested without it.
 
 mod build;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::process::Command;
 use std::time::Duration;
 
-use super::error::{CORE_PACKAGES, MANAGERS, Manager, Part, SetupError};
+use super::error::{CORE_PACKAGES, MANAGERS, Manager, Part, QEMU_PACKAGE, SetupError};
 use super::system::System;
 use super::{ArmCore, Qemu, TARGETS, Toolchain, workspace};
 
@@ -88,9 +88,16 @@ pub(super) enum QemuTrouble {
     Broken { path: PathBuf, reason: String },
 }
 
-/// The emulator, if it runs.
+/// Where the set-up unpacks an emulator for this project alone.
+pub(super) fn own_qemu_folder() -> PathBuf {
+    workspace().join("target/qemu")
+}
+
+/// The emulator, if it runs: the system's, else this project's own.
 pub(super) fn qemu(system: &impl System) -> Result<Qemu, QemuTrouble> {
-    let path = system.find("qemu-system-arm").ok_or(QemuTrouble::Absent)?;
+    let folder = own_qemu_folder();
+    let own = || system.list(&folder).iter().any(|name| name == QEMU_PACKAGE).then(|| folder.join(QEMU_PACKAGE));
+    let path = system.find(QEMU_PACKAGE).or_else(own).ok_or(QemuTrouble::Absent)?;
     match says(system, Command::new(&path).arg("--version")) {
         Ok(version) => {
             let version = version.strip_prefix("QEMU emulator version ").unwrap_or(&version).to_owned();

@@ -17,6 +17,10 @@ const UPDATE: Duration = Duration::from_secs(300);
 const INSTALL: Duration = Duration::from_secs(1200);
 /// For finishing what an interrupted dpkg left.
 const CONFIGURE: Duration = Duration::from_secs(300);
+/// What apt-get says instead of removing a package.
+const WOULD_REMOVE: &str = "Packages need to be removed";
+/// Unpacks QEMU's packages, in the workspace.
+const UNPACK_QEMU: &str = "host-tests/src/toolchain/unpack-qemu.sh";
 /// How much of a failed command's own words is passed on, in characters.
 const LONGEST_REASON: usize = 120;
 
@@ -56,11 +60,13 @@ pub(super) fn set_up(system: &impl System) -> Result<(Toolchain, Vec<String>), S
     }
     if !packages.is_empty() {
         let reinstall = matches!(qemu_trouble, Some(QemuTrouble::Broken { .. }));
-        if let Err(failure) = install_packages(system, &packages, reinstall) {
-            let reason = rustup_failure.into_iter().chain([failure]).collect::<Vec<_>>().join("; ");
-            return refuse(&missing_now(system), reason);
+        match bring_packages(system, &packages, reinstall) {
+            Ok(lines) => done.extend(lines),
+            Err(failure) => {
+                let reason = rustup_failure.into_iter().chain([failure]).collect::<Vec<_>>().join("; ");
+                return refuse(&missing_now(system), reason);
+            }
         }
-        done.push(format!("apt-get installed {}", packages.join(", ")));
         done.extend(rustup_failure.map(|failure| format!("because {failure}")));
     }
     Ok((detect::toolchain(system)?, done))
@@ -96,6 +102,28 @@ fn add_targets(system: &impl System) -> Result<(), String> {
     }
 }
 
+/// Installs the packages; where QEMU's would cost the user another package, it is unpacked for this project alone.
+fn bring_packages(system: &impl System, packages: &[&str], reinstall: bool) -> Result<Vec<String>, String> {
+    let installed = |packages: &[&str]| format!("apt-get installed {}", packages.join(", "));
+    match install_packages(system, packages, reinstall) {
+        Ok(()) => Ok(vec![installed(packages)]),
+        Err(failure) if failure.contains(WOULD_REMOVE) && packages.contains(&QEMU_PACKAGE) => {
+            let others: Vec<_> = packages.iter().copied().filter(|&package| package != QEMU_PACKAGE).collect();
+            let mut done = Vec::new();
+            if !others.is_empty() {
+                install_packages(system, &others, false)?;
+                done.push(installed(&others));
+            }
+            let mut unpack = Command::new("sh");
+            unpack.arg(workspace().join(UNPACK_QEMU)).arg(detect::own_qemu_folder()).env("LC_ALL", "C");
+            attempt(system, &mut unpack, INSTALL, "installing QEMU would remove a package; it is unpacked instead")?;
+            done.push(format!("{QEMU_PACKAGE} unpacked into {}", detect::own_qemu_folder().display()));
+            Ok(done)
+        }
+        Err(failure) => Err(failure),
+    }
+}
+
 /// Installs from what Debian's lists say; if that fails, heals an interrupted dpkg, renews the lists and tries again.
 fn install_packages(system: &impl System, packages: &[&str], reinstall: bool) -> Result<(), String> {
     let names = packages.join(", ");
@@ -105,6 +133,9 @@ fn install_packages(system: &impl System, packages: &[&str], reinstall: bool) ->
         attempt(system, command.args(packages), INSTALL, &format!("{doing} {names}"))
     };
     let Err(first) = install("apt-get installs") else { return Ok(()) };
+    if first.contains(WOULD_REMOVE) {
+        return Err(first);
+    }
     if first.contains("dpkg was interrupted") {
         let mut configure = Command::new("dpkg");
         configure.args(["--configure", "-a"]).env("DEBIAN_FRONTEND", "noninteractive").env("LC_ALL", "C");

@@ -45,6 +45,9 @@ struct World {
     lists_are_there: Cell<bool>,
     dpkg_is_interrupted: Cell<bool>,
     emulator: Cell<Emulator>,
+    /// Another package is in the way of QEMU's.
+    emulator_is_in_conflict: bool,
+    emulator_is_unpacked: Cell<bool>,
     reinstall_helps: bool,
     has_package: fn(&str) -> bool,
     targets: Cell<bool>,
@@ -64,6 +67,8 @@ fn fresh_debian() -> World {
         lists_are_there: Cell::new(false),
         dpkg_is_interrupted: Cell::new(false),
         emulator: Cell::new(Emulator::Absent),
+        emulator_is_in_conflict: false,
+        emulator_is_unpacked: Cell::new(false),
         reinstall_helps: true,
         has_package: |_| true,
         targets: Cell::new(false),
@@ -102,6 +107,9 @@ impl World {
         }
         if !self.network {
             return fails("E: Failed to fetch: Temporary failure resolving 'deb.debian.org'");
+        }
+        if self.emulator_is_in_conflict && packages.contains(&"qemu-system-arm") {
+            return fails("E: Packages need to be removed but remove is disabled.");
         }
         self.debian_packages.borrow_mut().extend(packages.iter().map(|&package| package.to_owned()));
         if packages.contains(&"qemu-system-arm") && (self.emulator.get() == Emulator::Absent || self.reinstall_helps) {
@@ -144,6 +152,11 @@ impl System for World {
                 let names = words[2..].iter().filter(|word| !word.starts_with('-') && !word.contains("::"));
                 self.apt_installs(&names.copied().collect::<Vec<_>>())
             }
+            ["sh", script, folder] => {
+                assert!(script.ends_with("unpack-qemu.sh") && Path::new(folder) == detect::own_qemu_folder());
+                self.emulator_is_unpacked.set(self.network);
+                if self.network { says("") } else { fails("E: Failed to fetch") }
+            }
             ["dpkg", "--configure", "-a"] => {
                 self.dpkg_is_interrupted.set(false);
                 says("")
@@ -155,6 +168,9 @@ impl System for World {
                 Emulator::Runs => says("QEMU emulator version 7.2.22\nCopyright"),
                 _ => fails("error while loading shared libraries: libfdt.so.1"),
             },
+            [own, "--version"] if Path::new(own).starts_with(detect::own_qemu_folder()) => {
+                says("QEMU emulator version 7.2.22")
+            }
             _ => panic!("an unknown command: {words:?}"),
         }
     }
@@ -169,6 +185,9 @@ impl System for World {
     }
 
     fn list(&self, folder: &Path) -> Vec<String> {
+        if folder == detect::own_qemu_folder() && self.emulator_is_unpacked.get() {
+            return vec!["qemu-system-arm".to_owned()];
+        }
         let folder = folder.to_str().unwrap();
         let is_target = TARGETS.iter().any(|target| folder == format!("/sysroot/lib/rustlib/{target}/lib"));
         let is_linker = folder == "/sysroot/lib/rustlib/x86_64-unknown-linux-gnu/bin";
@@ -260,6 +279,18 @@ fn whatever_keeps_rustup_from_adding_leads_to_debians_sources() {
     for rustup in [Rustup::Absent, Rustup::Hangs, Rustup::Refuses, Rustup::SkipsInSilence] {
         let world = World { rustup, ..fresh_debian() };
         assert!(is_from_source(&set_up(&world).0));
+    }
+}
+
+#[test]
+fn where_installing_would_remove_a_package_the_emulator_is_unpacked() {
+    for rustup in [Rustup::Hangs, Rustup::Adds] {
+        let world = World { rustup, emulator_is_in_conflict: true, ..fresh_debian() };
+        let (toolchain, _) = set_up(&world);
+        assert_eq!(toolchain.qemu(), detect::own_qemu_folder().join("qemu-system-arm"));
+        assert_eq!(is_from_source(&toolchain), rustup == Rustup::Hangs);
+        world.changes();
+        assert_eq!((set_up(&world).0, world.changes().len()), (toolchain, 0));
     }
 }
 
