@@ -50,7 +50,7 @@ pub(super) fn arm_core(system: &impl System) -> Result<ArmCore, String> {
     if TARGETS.iter().all(|target| has_core(target)) {
         return Ok(ArmCore::ReadyMade);
     }
-    let version = debian_rustc(system).ok_or("neither rustup nor Debian has brought one")?;
+    let version = debian_rustc(system)?;
     Ok(ArmCore::FromSource { version, linker: compiler.linker(system)? })
 }
 
@@ -61,17 +61,22 @@ pub(super) fn linker(system: &impl System) -> Result<PathBuf, String> {
 
 /// Debian's compiler, if it comes with all that builds the core library and is not too old for this workspace.
 /// A package that dpkg had to leave half-installed does not count.
-fn debian_rustc(system: &impl System) -> Option<String> {
+fn debian_rustc(system: &impl System) -> Result<String, String> {
+    let absent = |_| "neither rustup nor Debian has brought one".to_owned();
     let mut query = Command::new("dpkg-query");
     query.args(["--show", "--showformat=${db:Status-Status}\\n"]).args(CORE_PACKAGES);
-    let states = output(system, &mut query).ok()?;
+    let states = output(system, &mut query).map_err(absent)?;
     if states.lines().any(|state| state != "installed") {
-        return None;
+        return Err(format!("dpkg has not finished installing {}", CORE_PACKAGES.join(", ")));
     }
-    says(system, Command::new(DEBIAN_CARGO).arg("--version")).ok()?;
-    let version = says(system, Command::new(DEBIAN_RUSTC).arg("--version")).ok()?;
-    let number = version.split(' ').nth(1)?;
-    (minor_version(number)? >= minor_version(env!("CARGO_PKG_RUST_VERSION"))?).then(|| format!("rustc {number}"))
+    says(system, Command::new(DEBIAN_CARGO).arg("--version")).map_err(absent)?;
+    let version = says(system, Command::new(DEBIAN_RUSTC).arg("--version")).map_err(absent)?;
+    let number = version.split(' ').nth(1).unwrap_or_default();
+    let least = env!("CARGO_PKG_RUST_VERSION");
+    if minor_version(number) < minor_version(least) {
+        return Err(format!("Debian's {version:?} is older than {least}"));
+    }
+    Ok(format!("rustc {number}"))
 }
 
 /// 88 of `1.88.0`.

@@ -124,28 +124,30 @@ fn bring_packages(system: &impl System, packages: &[&str], reinstall: bool) -> R
     }
 }
 
-/// Installs from what Debian's lists say; if that fails, heals an interrupted dpkg, renews the lists and tries again.
+/// Installs the newest that Debian has: old lists may name packages that are gone, or a compiler that is too old. Heals an
+/// interrupted dpkg.
 fn install_packages(system: &impl System, packages: &[&str], reinstall: bool) -> Result<(), String> {
-    let names = packages.join(", ");
-    let install = |doing: &str| {
-        let mut command = apt_get("install");
-        command.args(["--no-install-recommends", "--no-remove"]).args(reinstall.then_some("--reinstall"));
-        attempt(system, command.args(packages), INSTALL, &format!("{doing} {names}"))
-    };
-    let Err(first) = install("apt-get installs") else { return Ok(()) };
-    if first.contains(WOULD_REMOVE) {
-        return Err(first);
-    }
-    if first.contains("dpkg was interrupted") {
-        let mut configure = Command::new("dpkg");
-        configure.args(["--configure", "-a"]).env("DEBIAN_FRONTEND", "noninteractive").env("LC_ALL", "C");
-        attempt(system, &mut configure, CONFIGURE, "dpkg finishes what was interrupted")?;
-    }
     let mut update = apt_get("update");
     update.args(["-o", "APT::Update::Error-Mode=any"]);
     let updated = attempt(system, &mut update, UPDATE, "apt-get fetches the lists of packages");
-    // One bad source of many does not stop the install; if that fails too, the earlier failure is the cause.
-    install("apt-get tries again, with fresh lists:").map_err(|failure| updated.err().unwrap_or(failure))
+    let install = || {
+        let mut command = apt_get("install");
+        command.args(["--no-install-recommends", "--no-remove"]).args(reinstall.then_some("--reinstall"));
+        attempt(system, command.args(packages), INSTALL, &format!("apt-get installs {}", packages.join(", ")))
+    };
+    let mut installed = install();
+    if installed.as_ref().is_err_and(|failure| failure.contains("dpkg was interrupted")) {
+        let mut configure = Command::new("dpkg");
+        configure.args(["--configure", "-a"]).env("DEBIAN_FRONTEND", "noninteractive").env("LC_ALL", "C");
+        attempt(system, &mut configure, CONFIGURE, "dpkg finishes what was interrupted")?;
+        installed = install();
+    }
+    // One bad source of many does not stop the install; if that fails too, the earlier failure is the cause, except for
+    // one that no list would change.
+    installed.map_err(|failure| match updated {
+        Err(earlier) if !failure.contains(WOULD_REMOVE) => earlier,
+        _ => failure,
+    })
 }
 
 /// `apt-get` that asks nothing, waits its turn and does not wait for a dead network.
