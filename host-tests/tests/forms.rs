@@ -2,10 +2,12 @@
 
 use std::f64::consts::{PI, TAU};
 
-use double_pendulum::form::{AngleForm, Angles, Compensated, Divided, Form, Picture, PictureForm, Plain, Winding};
+use double_pendulum::form::{
+    AngleForm, Angles, Compensated, Divided, Form, Picture, PictureForm, PictureForm8, Plain, Winding,
+};
 use double_pendulum::{Error, Parameter, Parameters, Pendulum, Real, State};
 use host_tests::tolerance;
-use host_tests::trial::{Trial, largest_difference};
+use host_tests::trial::{self, Trial, largest_difference};
 
 /// 0.5 rad, at rest: no chaos.
 fn regular(seconds: f64) -> Trial {
@@ -70,6 +72,32 @@ fn the_order_is_4() -> Result<(), Error> {
 }
 
 #[test]
+fn the_order_of_order_8_is_8() -> Result<(), Error> {
+    for (trial, steps) in trial::slow() {
+        let dt = 1.0 / f64::from(steps);
+        let order = |error: fn(&Trial, f64) -> Result<f64, Error>| -> Result<f64, Error> {
+            Ok((error(&trial, dt)? / error(&trial, 0.5 * dt)?).log2())
+        };
+        for order in
+            [order(Trial::error::<f64, PictureForm8<f64>>)?, order(Trial::error::<f64, PictureForm8<f64, Plain>>)?]
+        {
+            assert!(tolerance::ORDER_8.contains(&order), "order {order} for {trial:?}");
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn steps_of_order_8_keep_their_promise() -> Result<(), Error> {
+    for (steps, budget) in tolerance::PICTURE_OF_ORDER_8 {
+        let error = regular(10.0).error::<f64, PictureForm8<f64>>(1.0 / f64::from(steps))?;
+        println!("{steps} steps a second: {error:.2e} rad");
+        assert!(error < budget, "{error:e} rad with {steps} steps a second");
+    }
+    Ok(())
+}
+
+#[test]
 fn the_picture_forms_method_is_as_good_as_the_angle_forms() -> Result<(), Error> {
     for (trial, dt) in [(regular(10.0), 1.0 / 256.0), (chaotic(5.0), 1.0 / 512.0), (unlike(10.0), 1.0 / 512.0)] {
         let ratio = trial.error::<f64, PictureForm<f64>>(dt)? / trial.error::<f64, AngleForm<f64>>(dt)?;
@@ -116,7 +144,8 @@ fn backwards_is_forwards_undone() -> Result<(), Error> {
         Ok(())
     }
     there_and_back::<AngleForm<f64>>()?;
-    there_and_back::<PictureForm<f64>>()
+    there_and_back::<PictureForm<f64>>()?;
+    there_and_back::<PictureForm8<f64>>()
 }
 
 #[test]
@@ -134,7 +163,8 @@ fn how_steps_are_dealt_out_changes_nothing() -> Result<(), Error> {
     same::<f32, AngleForm<f32>>()?;
     same::<f32, PictureForm<f32>>()?;
     same::<f64, AngleForm<f64, Plain>>()?;
-    same::<f64, PictureForm<f64, Plain, Divided>>()
+    same::<f64, PictureForm<f64, Plain, Divided>>()?;
+    same::<f64, PictureForm8<f64>>()
 }
 
 fn bits<R: Real, F: Form<R>>(carried: &F::Carried) -> Vec<u64> {
@@ -164,6 +194,8 @@ fn directions_are_those_of_the_angles() -> Result<(), Error> {
         agree::<f32, PictureForm<f32>>(&trial)?;
         agree::<f64, AngleForm<f64>>(&trial)?;
         agree::<f64, PictureForm<f64>>(&trial)?;
+        agree::<f32, PictureForm8<f32>>(&trial)?;
+        agree::<f64, PictureForm8<f64>>(&trial)?;
     }
     Ok(())
 }

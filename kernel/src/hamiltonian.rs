@@ -6,6 +6,7 @@ use crate::error::Error;
 use crate::params::Parameters;
 use crate::real::Real;
 use crate::rk4;
+use crate::rk8;
 use crate::state::State;
 use crate::trig::{DefaultTrig, SinCos};
 
@@ -102,6 +103,15 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     #[inline]
     pub fn step(&self, state: &State<R>, dt: R) -> State<R> {
         rk4::step(|z| self.derivatives(z), &(*state).into(), dt).into()
+    }
+
+    /// The state a time `dt` (s) after `state`, by one step of order 8 ([`rk8::step`]).
+    ///
+    /// In `f64`, 20 steps a second keep a regular motion of 1 m rods to 1e-9 rad over 20 s, 40 to 1e-12 (test
+    /// `accuracy`).
+    #[inline]
+    pub fn step_of_order_8(&self, state: &State<R>, dt: R) -> State<R> {
+        rk8::step(|z| self.derivatives(z), &(*state).into(), dt).into()
     }
 
     /// The Hamiltonian H = T + V, J, as a function of the canonical state; zero where both bobs are level with the pivot.

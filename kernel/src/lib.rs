@@ -11,6 +11,7 @@
 //! | Runge-Kutta method | [`Pendulum::step`], [`rk4::step`] |
 //! | small oscillations | [`Modes`], [`SmallOscillations`] |
 //! | coordinates | [`Pendulum::positions`], [`Pendulum::velocities`] |
+//! | (not in the book) a step of order 8 | [`Pendulum::step_of_order_8`], [`rk8::step`] |
 //! | (not in the book) bounds from the energy | [`Bounds`], [`Pendulum::cannot_turn_over`], [`Modes::step_limit`] |
 //!
 //! Everything is generic over `f32` and `f64` ([`Real`]), uses no heap, never panics, and gives the same bits on
@@ -53,6 +54,7 @@ mod modes;
 mod params;
 mod real;
 pub mod rk4;
+pub mod rk8;
 mod small_oscillations;
 mod state;
 pub mod trig;

@@ -2,7 +2,7 @@
 
 use core::marker::PhantomData;
 
-use super::coefficients::{Coefficients, Rates, Scale, prepare, third};
+use super::coefficients::{Coefficients, Rates, Scale, Span, prepare, third};
 use super::sum::{Compensated, Sum};
 use super::turn::{LARGEST, SMALL, Turn, angle, turned};
 use super::{Direction, Form, lower_direction};
@@ -49,7 +49,7 @@ impl<R: Real, S: Sum<R>> Form<R> for AngleForm<R, S> {
     type Carried = Angles<R, S>;
 
     fn new(parameters: &Parameters<R>, dt: R) -> Result<Self, Error> {
-        let (coefficients, scale) = prepare(parameters, dt)?;
+        let (coefficients, scale) = prepare(parameters, dt, Span::classical::<R>())?;
         Ok(Self { coefficients, scale, sum: PhantomData })
     }
 

@@ -5,7 +5,8 @@ use crate::params::Parameters;
 use crate::real::Real;
 use crate::state::State;
 
-/// The equations of motion with time counted in tau, half a step, and momenta scaled to leave no needless factor.
+/// The equations of motion with time counted in tau, a step or half of one ([`Span`]), and momenta scaled to leave no
+/// needless factor.
 ///
 /// With nu = l1/l2, (S, C) = nu (sin D, cos D), P = tau p/(m2 l2^2), and the constants
 /// m = (m1/m2) nu^2, K = ((m1 + m2)/m2) nu^2, G2 = tau^2 g/l1, G1 = K G2:
@@ -70,6 +71,22 @@ pub(crate) fn third<R: Real>() -> R {
     R::of(1.0 / 3.0)
 }
 
+/// How far a step goes, tau: the sum of the weights of its slopes, times a factor as rounded.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Span {
+    pub weights: f64,
+    pub factor: f64,
+}
+
+impl Span {
+    /// The classical method's (k1 + 2 k2 + 2 k3 + k4) times a third: tau is half a step.
+    pub fn classical<R: Real>() -> Self {
+        Self { weights: 6.0, factor: third::<R>().to_f64() }
+    }
+    /// One tau.
+    pub const STEP: Self = Self { weights: 1.0, factor: 1.0 };
+}
+
 /// How the units of the step translate to SI. In `f64`; used at input and output only.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Scale {
@@ -81,8 +98,12 @@ pub(crate) struct Scale {
     lag: f64,
 }
 
-/// Checks and prepares a pendulum and a step of `dt` seconds; a negative one runs backwards.
-pub(crate) fn prepare<R: Real>(parameters: &Parameters<R>, dt: R) -> Result<(Coefficients<R>, Scale), Error> {
+/// Checks and prepares a pendulum and a step of `dt` seconds, which are `span`; a negative one runs backwards.
+pub(crate) fn prepare<R: Real>(
+    parameters: &Parameters<R>,
+    dt: R,
+    span: Span,
+) -> Result<(Coefficients<R>, Scale), Error> {
     parameters.check()?;
     let (parameter, value) = (Parameter::Dt, dt.to_f64());
     if !dt.is_finite() {
@@ -96,13 +117,13 @@ pub(crate) fn prepare<R: Real>(parameters: &Parameters<R>, dt: R) -> Result<(Coe
     let norm = l1 / l2;
     let [inertia, total] = [m1, m1 + m2].map(|mass| R::of(mass / m2 * norm * norm));
 
-    let half_step = 0.5 * dt;
-    let wished = half_step * half_step * g / l1;
+    let unit = dt / libm::rint(span.weights * span.factor);
+    let wished = unit * unit * g / l1;
     let gravity2 = factor_near::<R>(wished, total);
-    let time = if g == 0.0 { half_step } else { half_step * libm::sqrt(gravity2.to_f64() / wished) };
+    let time = if g == 0.0 { unit } else { unit * libm::sqrt(gravity2.to_f64() / wished) };
 
     let coefficients = Coefficients { norm: R::of(norm), inertia, total, gravity: [total * gravity2, gravity2] };
-    let scale = Scale { time, momentum: time / (m2 * l2 * l2), lag: dt - 6.0 * time * third::<R>().to_f64() };
+    let scale = Scale { time, momentum: time / (m2 * l2 * l2), lag: dt - span.weights * time * span.factor };
     let in_range = |constant: R| constant.is_normal() && (R::ONE / constant).is_normal();
     let gravity_in_range = g == 0.0 || coefficients.gravity.into_iter().all(R::is_normal);
     if [coefficients.norm, inertia, total].into_iter().all(in_range) && gravity_in_range {

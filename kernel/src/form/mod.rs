@@ -11,6 +11,8 @@
 //! | [`PictureForm`] compensated, `f32` | 211 | 3e-8 | 2e-7 |
 //! | [`PictureForm`] plain, `f32` | 181 | 2e-6 | 2e-5 |
 //!
+//! In `f64`, where an error of 1e-9 or less is wanted, [`PictureForm8`] takes far fewer steps, of order 8.
+//!
 //! ```
 //! use double_pendulum::form::{Form, PictureForm};
 //! use double_pendulum::{Parameters, State};
@@ -27,6 +29,7 @@ mod angle;
 mod coefficients;
 mod inverse;
 mod picture;
+mod picture8;
 mod sum;
 mod turn;
 mod winding;
@@ -34,6 +37,7 @@ mod winding;
 pub use angle::{AngleForm, Angles};
 pub use inverse::{Divided, Followed, Inverse};
 pub use picture::{Picture, PictureForm};
+pub use picture8::PictureForm8;
 pub use sum::{Compensated, Plain, Sum};
 pub use winding::Winding;
 

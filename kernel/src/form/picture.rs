@@ -2,7 +2,7 @@
 
 use core::marker::PhantomData;
 
-use super::coefficients::{Coefficients, Rates, Scale, prepare, third};
+use super::coefficients::{Coefficients, Rates, Scale, Span, prepare, third};
 use super::inverse::{Followed, Inverse};
 use super::sum::{Compensated, Sum};
 use super::{Direction, Form, lower_direction};
@@ -20,7 +20,7 @@ use crate::trig::{Own, SinCos};
 /// the turns for those who ask.
 #[derive(Clone, Copy, Debug)]
 pub struct PictureForm<R, S = Compensated<R>, I = Followed> {
-    coefficients: Coefficients<R>,
+    pub(super) coefficients: Coefficients<R>,
     scale: Scale,
     /// 1/(2 nu^2).
     half_inverse_square: R,
@@ -31,10 +31,10 @@ pub struct PictureForm<R, S = Compensated<R>, I = Followed> {
 #[derive(Clone, Copy, Debug)]
 pub struct Picture<R, S> {
     /// sin a1, cos a1, S, C, P1, P2.
-    z: [R; 6],
-    sums: [S; 6],
-    inverse: R,
-    steps: u64,
+    pub(super) z: [R; 6],
+    pub(super) sums: [S; 6],
+    pub(super) inverse: R,
+    pub(super) steps: u64,
 }
 
 /// Steps from one restoring of the lengths to the next.
@@ -44,9 +44,7 @@ impl<R: Real, S: Sum<R>, I: Inverse<R>> Form<R> for PictureForm<R, S, I> {
     type Carried = Picture<R, S>;
 
     fn new(parameters: &Parameters<R>, dt: R) -> Result<Self, Error> {
-        let (coefficients, scale) = prepare(parameters, dt)?;
-        let half_inverse_square = R::HALF / (coefficients.norm * coefficients.norm);
-        Ok(Self { coefficients, scale, half_inverse_square, ways: PhantomData })
+        Self::with_span(parameters, dt, Span::classical::<R>())
     }
 
     fn start(&self, state: &State<R>) -> Result<Self::Carried, Error> {
@@ -93,6 +91,12 @@ impl<R: Real, S: Sum<R>, I: Inverse<R>> Form<R> for PictureForm<R, S, I> {
 }
 
 impl<R: Real, S: Sum<R>, I: Inverse<R>> PictureForm<R, S, I> {
+    pub(super) fn with_span(parameters: &Parameters<R>, dt: R, span: Span) -> Result<Self, Error> {
+        let (coefficients, scale) = prepare(parameters, dt, span)?;
+        let half_inverse_square = R::HALF / (coefficients.norm * coefficients.norm);
+        Ok(Self { coefficients, scale, half_inverse_square, ways: PhantomData })
+    }
+
     #[inline(always)]
     fn step(&self, carried: &mut Picture<R, S>) {
         let Picture { z, inverse, .. } = *carried;
@@ -125,7 +129,7 @@ impl<R: Real, S: Sum<R>, I: Inverse<R>> PictureForm<R, S, I> {
 
     /// Makes sin^2 a1 + cos^2 a1 = 1 and S^2 + C^2 = nu^2 again, to first order in what they miss.
     #[inline(always)]
-    fn restore_lengths(&self, carried: &mut Picture<R, S>) {
+    pub(super) fn restore_lengths(&self, carried: &mut Picture<R, S>) {
         for (i, length, gain) in [(0, R::ONE, R::HALF), (2, self.coefficients.norm, self.half_inverse_square)] {
             let [s, c] = [carried.z[i], carried.z[i + 1]];
             let lost = s * carried.sums[i].lost() + c * carried.sums[i + 1].lost();
@@ -136,14 +140,14 @@ impl<R: Real, S: Sum<R>, I: Inverse<R>> PictureForm<R, S, I> {
     }
 
     #[inline(always)]
-    fn rates(&self, &[sin1, cos1, s, c, p1, p2]: &[R; 6], inverse: R) -> Rates<R> {
+    pub(super) fn rates(&self, &[sin1, cos1, s, c, p1, p2]: &[R; 6], inverse: R) -> Rates<R> {
         self.coefficients.rates([sin1, cos1], [s, c], [p1, p2], inverse)
     }
 }
 
 /// The rates of the six quantities.
 #[inline(always)]
-fn increments<R: Real>(z: &[R; 6], Rates { angles: [u, v], momenta: [p1, p2] }: Rates<R>) -> [R; 6] {
+pub(super) fn increments<R: Real>(z: &[R; 6], Rates { angles: [u, v], momenta: [p1, p2] }: Rates<R>) -> [R; 6] {
     let &[sin1, cos1, s, c, ..] = z;
     let w = u - v;
     [cos1 * u, -(sin1 * u), c * w, -(s * w), p1, p2]
