@@ -4,6 +4,7 @@ pub mod board;
 pub mod cli;
 pub mod count;
 pub mod demo;
+pub mod figures;
 pub mod firmware_run;
 pub mod known_answers;
 pub mod page;

@@ -51,15 +51,15 @@ fn terms(
 ///
 /// Unless mu = 1 they are not Hamilton's equations of anything, and they lose or gain energy.
 pub fn misprinted_equal_rods(mu: f64, l: f64, g: f64, &[a1, a2, p1, p2]: &[f64; 4]) -> [f64; 4] {
-    let (sin_d, cos_d) = (a1 - a2).sin_cos();
+    let (sin_d, cos_d) = libm::sincos(a1 - a2);
     let den = 1.0 + mu * sin_d * sin_d;
     let term_a1 = p1 * p2 * sin_d / (l * l * den);
     let bracket = p1 * p1 * mu - 2.0 * p1 * p2 * mu * cos_d + p2 * p2 * (1.0 + mu);
-    let term_a2 = bracket * (2.0 * (a1 - a2)).sin() / (2.0 * l * l * den * den);
+    let term_a2 = bracket * libm::sin(2.0 * (a1 - a2)) / (2.0 * l * l * den * den);
     [
         (p1 - p2 * cos_d) / (l * l * den),
         (p2 * (1.0 + mu) - p1 * mu * cos_d) / (l * l * den),
-        -(1.0 + mu) * g * l * a1.sin() - term_a1 + term_a2,
-        -mu * g * l * a2.sin() + term_a1 - term_a2,
+        -(1.0 + mu) * g * l * libm::sin(a1) - term_a1 + term_a2,
+        -mu * g * l * libm::sin(a2) + term_a1 - term_a2,
     ]
 }

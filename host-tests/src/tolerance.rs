@@ -145,3 +145,15 @@ pub const COMPENSATION_GAIN: f64 = 10.0;
 
 /// Picture against angle form: the ratio of their methods' own errors (measured: 0.13 to 2.6, on all scenes tried).
 pub const PICTURE_AGAINST_ANGLE: f64 = 3.0;
+
+/// A frequency or period read off a plotted curve where it crosses a level, relative: half of the last digit given of the
+/// shortest, 1.3e-6, and the shift of a crossing by joining the points with straight lines, (w dt)^3/16 of a radian or
+/// 2e-5 for the fastest curve, over the 23 rad shown at least.
+pub const PLOTTED_FREQUENCY: f64 = 3e-6;
+
+/// The greatest of a plotted curve's points, relative to that of the curve: between two points it is at most
+/// (w dt/2)^2/2 higher, 4e-4 for the fastest envelope.
+pub const PLOTTED_AMPLITUDE: f64 = 5e-4;
+
+/// Figure 7's paths, m: a hundredth of the width of its lines (measured: 3e-6).
+pub const FIGURE_7_PATH: f64 = 1e-4;

@@ -1,0 +1,157 @@
+//! A figure on paper: one drawing, an SVG and a PNG file of it, the same bytes every time.
+
+use anyhow::{Context, Result};
+use plotters::coord::Shift;
+use plotters::coord::types::RangedCoordf64;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+use resvg::tiny_skia::{Pixmap, Transform};
+use resvg::usvg;
+
+/// Plotters draws on whole dots. A unit of length of a figure, as wide as a pixel of a common screen, is this many.
+const DOTS: u32 = 8;
+/// Pixels of the PNG file to a unit.
+const PIXELS: u32 = 2;
+/// The typeface. An SVG file leaves the choice to its reader; for the PNG file DejaVu Sans comes as a crate, so that
+/// nothing depends on what is installed.
+const TYPEFACE: &str = "sans-serif";
+
+/// Black is hard on white.
+pub const TEXT: RGBColor = RGBColor(34, 34, 34);
+/// Lines behind the curves.
+pub const GRID: RGBColor = RGBColor(225, 225, 225);
+/// Two colours that anybody can tell apart.
+pub const BLUE: RGBColor = RGBColor(0, 95, 175);
+/// See [`BLUE`].
+pub const ORANGE: RGBColor = RGBColor(205, 85, 15);
+
+/// Where a figure, or a part of it, is drawn.
+pub type Area<Backend> = DrawingArea<Backend, Shift>;
+/// An area with axes.
+pub type Axes<'a, Backend> = ChartContext<'a, Backend, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+/// Whether drawing went well.
+pub type Drawn<T, Backend> = std::result::Result<T, DrawingAreaErrorKind<<Backend as DrawingBackend>::ErrorType>>;
+
+/// Something to be drawn, whatever on.
+pub trait Drawing {
+    /// Width and height, units.
+    const SIZE: (u32, u32);
+
+    /// Draws it on white.
+    fn draw<Backend: DrawingBackend>(&self, area: &Area<Backend>) -> Drawn<(), Backend>;
+}
+
+/// A length in units as dots.
+pub const fn units(length: u32) -> u32 {
+    length * DOTS
+}
+
+/// A line `width` tenths of a unit wide.
+pub fn line(colour: RGBColor, width: u32) -> ShapeStyle {
+    colour.stroke_width(units(width).div_ceil(10))
+}
+
+/// Text `height` units high.
+pub fn text(height: u32) -> TextStyle<'static> {
+    (TYPEFACE, units(height)).into_font().color(&TEXT)
+}
+
+/// Writes a line in `style` above the rest, which it gives.
+pub fn headed<Backend: DrawingBackend>(
+    area: &Area<Backend>,
+    line: &str,
+    style: TextStyle<'_>,
+) -> Drawn<Area<Backend>, Backend> {
+    let (head, rest) = area.split_vertically(units(23));
+    let (width, height) = head.dim_in_pixel();
+    let centred = style.pos(Pos::new(HPos::Center, VPos::Bottom));
+    head.draw_text(line, &centred, (width as i32 / 2, height as i32))?;
+    Ok(rest)
+}
+
+/// What the axes of a chart are.
+#[derive(Clone, Debug)]
+pub struct Frame<'a> {
+    /// The quantity across with its unit (empty: the chart below names it), and its range.
+    pub across: (&'a str, [f64; 2]),
+    /// The quantity upwards.
+    pub upwards: (&'a str, [f64; 2]),
+    /// At most so many numbers along each.
+    pub ticks: [usize; 2],
+}
+
+impl Frame<'_> {
+    /// Draws the axes with their numbers and names.
+    pub fn draw<'a, Backend: DrawingBackend>(&self, area: &Area<Backend>) -> Drawn<Axes<'a, Backend>, Backend> {
+        let ((across, [left, right]), (upwards, [bottom, top])) = (self.across, self.upwards);
+        let mut chart = ChartBuilder::on(area)
+            .margin(units(6))
+            .margin_right(units(16))
+            .x_label_area_size(units(if across.is_empty() { 20 } else { 40 }))
+            .y_label_area_size(units(54))
+            .build_cartesian_2d(left..right, bottom..top)?;
+        let [columns, rows] = self.ticks;
+        let mut mesh = chart.configure_mesh();
+        if !across.is_empty() {
+            mesh.x_desc(across);
+        }
+        mesh.y_desc(upwards)
+            .x_labels(columns)
+            .y_labels(rows)
+            .x_label_formatter(&plain)
+            .y_label_formatter(&plain)
+            .label_style(text(12))
+            .axis_desc_style(text(13))
+            .set_all_tick_mark_size(units(5))
+            .axis_style(line(TEXT, 10))
+            .bold_line_style(line(GRID, 10))
+            .light_line_style(TRANSPARENT)
+            .draw()?;
+        Ok(chart)
+    }
+}
+
+/// A number of an axis without needless digits.
+fn plain(number: &f64) -> String {
+    // The ticks are multiples of a round number, give or take a rounding; -0 would be shown as such.
+    let rounded = (number * 1e6).round() / 1e6 + 0.0;
+    rounded.to_string().replace('-', "−")
+}
+
+/// The figure as an SVG file.
+pub fn svg<D: Drawing>(drawing: &D) -> Result<String> {
+    let (width, height) = D::SIZE;
+    let mut file = String::new();
+    {
+        let area = SVGBackend::with_string(&mut file, (units(width), units(height))).into_drawing_area();
+        area.fill(&WHITE)?;
+        drawing.draw(&area)?;
+        area.present()?;
+    }
+    // It is shown in its own size; its coordinates stay dots.
+    let in_dots = format!("<svg width=\"{}\" height=\"{}\"", units(width), units(height));
+    Ok(file.replacen(&in_dots, &format!("<svg width=\"{width}\" height=\"{height}\""), 1))
+}
+
+/// An SVG file made here as a PNG file.
+pub fn png(svg: &str) -> Result<Vec<u8>> {
+    let mut options = usvg::Options::default();
+    let fonts = options.fontdb_mut();
+    fonts.load_font_data(dejavu::sans::regular().to_vec());
+    fonts.set_sans_serif_family("DejaVu Sans");
+    let tree = usvg::Tree::from_str(svg, &options)?;
+    let size = tree.size().to_int_size();
+    let mut pixels = Pixmap::new(PIXELS * size.width(), PIXELS * size.height()).context("the figure is empty")?;
+    let scale = Transform::from_scale(PIXELS as f32, PIXELS as f32);
+    resvg::render(&tree, scale, &mut pixels.as_mut());
+    // Nothing is transparent, so the fourth byte of each pixel says nothing.
+    let colours: Vec<u8> = pixels.data().chunks(4).flat_map(|pixel| pixel.iter().copied().take(3)).collect();
+    let mut file = Vec::new();
+    let mut encoder = png::Encoder::new(&mut file, pixels.width(), pixels.height());
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_compression(png::Compression::High);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(&colours)?;
+    writer.finish()?;
+    Ok(file)
+}

@@ -1,0 +1,87 @@
+//! Figures 3 to 5: both angles of small oscillations over time, within their envelopes.
+
+use std::f64::consts::{FRAC_PI_6, TAU};
+
+use double_pendulum::{Error, Modes, Motion, Parameters, SmallOscillations};
+use plotters::prelude::*;
+
+use super::sheet::{Area, BLUE, Drawing, Drawn, Frame, ORANGE, headed, line, text, units};
+
+/// The book's rods, m, and its gravity, m/s^2.
+const ROD: f64 = 0.25;
+const GRAVITY: f64 = 9.8;
+/// How long the motion is shown, s, and how finely.
+const DURATION: f64 = 5.0;
+const POINTS: u32 = 1500;
+
+/// One of the figures.
+#[derive(Clone, Debug)]
+pub struct Small {
+    number: u32,
+    mass_ratio: f64,
+    modes: Modes<f64>,
+    /// The curves' points.
+    pub points: Vec<Point>,
+}
+
+/// What a figure shows of one moment.
+#[derive(Clone, Copy, Debug)]
+pub struct Point {
+    /// Since the start, s.
+    pub time: f64,
+    /// Both angles, degrees.
+    pub angles: [f64; 2],
+    /// How far each could swing now while the modes go in and out of step, degrees.
+    pub envelopes: [f64; 2],
+}
+
+impl Small {
+    /// Computes figure `number` with its mass ratio: a1 = 0, a2 = 30 degrees, let go from rest.
+    pub fn new(number: u32, mass_ratio: f64) -> Result<Self, Error> {
+        let modes = Modes::new(&Parameters::equal_rods(mass_ratio, ROD, GRAVITY))?;
+        let motion = SmallOscillations::new(modes, &Motion::at_rest(0.0, FRAC_PI_6));
+        let point = |i: u32| {
+            let time = DURATION * f64::from(i) / f64::from(POINTS);
+            let now = motion.at(time);
+            let envelopes = envelopes(&modes, &motion, time);
+            Point { time, angles: [now.a1, now.a2].map(f64::to_degrees), envelopes: envelopes.map(f64::to_degrees) }
+        };
+        Ok(Self { number, mass_ratio, modes, points: (0..=POINTS).map(point).collect() })
+    }
+}
+
+/// The amplitudes of C1 cos w1 t + C2 cos w2 t in either angle: sqrt(C1^2 + C2^2 + 2 C1 C2 cos (w1 - w2) t), rad.
+fn envelopes(modes: &Modes<f64>, motion: &SmallOscillations<f64>, time: f64) -> [f64; 2] {
+    let [fast, slow] = [motion.fast().cosine, motion.slow().cosine];
+    let cos = libm::cos(modes.exchange() * time);
+    let amplitude = |c1: f64, c2: f64| (c1 * c1 + c2 * c2 + 2.0 * c1 * c2 * cos).max(0.0).sqrt();
+    [amplitude(fast, slow), amplitude(modes.fast.shape * fast, modes.slow.shape * slow)]
+}
+
+impl Drawing for Small {
+    const SIZE: (u32, u32) = (720, 480);
+
+    fn draw<Backend: DrawingBackend>(&self, area: &Area<Backend>) -> Drawn<(), Backend> {
+        let Modes { fast, slow, .. } = &self.modes;
+        let title = format!("Figure {}: small oscillations, mass ratio {}", self.number, self.mass_ratio);
+        let particulars = format!(
+            "l = {ROD} m, g = {GRAVITY} m/s²; ω₁ = {:.3} rad/s, ω₂ = {:.3} rad/s; the envelope repeats every {:.3} s",
+            fast.frequency,
+            slow.frequency,
+            TAU / self.modes.exchange()
+        );
+        let area = headed(&headed(area, &title, text(15))?, &particulars, text(12))?;
+        let (upper, lower) = area.split_vertically((area.dim_in_pixel().1 - units(20)) / 2);
+        let rods = [(upper, "", "angle α₁, degrees", BLUE), (lower, "time, s", "angle α₂, degrees", ORANGE)];
+        for (rod, (area, across, upwards, colour)) in rods.into_iter().enumerate() {
+            let frame = Frame { across: (across, [0.0, DURATION]), upwards: (upwards, [-32.0, 32.0]), ticks: [11, 7] };
+            let mut chart = frame.draw(&area)?;
+            let edge = |sign: f64| self.points.iter().map(move |point| (point.time, sign * point.envelopes[rod]));
+            let band: Vec<_> = edge(1.0).chain(edge(-1.0).rev()).collect();
+            chart.draw_series([Polygon::new(band, colour.mix(0.15))])?;
+            let curve = self.points.iter().map(|point| (point.time, point.angles[rod]));
+            chart.draw_series(LineSeries::new(curve, line(colour, 16)))?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,139 @@
+//! `cargo figures`: the curves against what is known of them, and the committed files against the kernel.
+
+use std::f64::consts::PI;
+use std::fs;
+use std::path::Path;
+
+use double_pendulum::{Motion, Pendulum, State};
+use host_tests::figures::chaos::{self, Chaos};
+use host_tests::figures::frequencies::Frequencies;
+use host_tests::figures::small::{Point, Small};
+use host_tests::figures::{FOLDER, files};
+use host_tests::reference::Reference;
+use host_tests::tolerance;
+
+/// Figures 3 to 5: number, mu, w1, w2 (rad/s), the envelope's period (s), the largest |a1| (degrees).
+const SMALL: [(u32, [f64; 5]); 3] = [
+    (3, [0.2, 8.139042, 5.275983, 2.194571, 12.2474]),
+    (4, [1.0, 11.568802, 4.791955, 0.927155, 21.2132]),
+    (5, [5.0, 21.211017, 4.526893, 0.376597, 27.3861]),
+];
+/// The angle 2 that they start with, degrees, which is also the largest.
+const START: f64 = 30.0;
+
+#[test]
+fn the_committed_files_are_what_the_kernel_gives() {
+    let wrong: Vec<_> = files()
+        .expect("the figures can be drawn")
+        .into_iter()
+        .filter(|(name, bytes)| fs::read(Path::new(FOLDER).join(name)).ok().as_ref() != Some(bytes))
+        .map(|(name, _)| name)
+        .collect();
+    assert!(wrong.is_empty(), "accept by `cargo figures`: {wrong:?}");
+}
+
+/// The mean time from one crossing of zero to the next, s.
+fn between_crossings(points: &[Point], value: impl Fn(&Point) -> f64) -> f64 {
+    let crossings: Vec<_> = points
+        .windows(2)
+        .filter_map(|pair| {
+            let [(t, before), (later, after)] = [&pair[0], &pair[1]].map(|point| (point.time, value(point)));
+            ((before < 0.0) != (after < 0.0)).then(|| t + (later - t) * before / (before - after))
+        })
+        .collect();
+    let [first, .., last] = crossings[..] else { panic!("{crossings:?}") };
+    (last - first) / (crossings.len() - 1) as f64
+}
+
+fn assert_close(value: f64, expected: f64, relative: f64, what: &str) {
+    assert!((value / expected - 1.0).abs() < relative, "{what}: {value} instead of {expected}");
+}
+
+#[test]
+fn figures_3_to_5_show_the_frequencies_envelopes_and_amplitudes_of_the_table() {
+    for (number, [mu, w1, w2, envelope, largest_a1]) in SMALL {
+        let Small { points, .. } = Small::new(number, mu).expect("a pendulum");
+        // a2 - r a1 is the fast mode alone, a2 + r a1 the slow one.
+        let r = ((1.0 + mu) / mu).sqrt();
+        for (w, r) in [(w1, -r), (w2, r)] {
+            let half_period = between_crossings(&points, |point| point.angles[1] + r * point.angles[0]);
+            assert_close(PI / half_period, w, tolerance::PLOTTED_FREQUENCY, "frequency");
+        }
+        for (rod, largest) in [largest_a1, START].into_iter().enumerate() {
+            // Its square is a cosine about half its maximum.
+            let half_period = between_crossings(&points, |point| point.envelopes[rod].powi(2) - largest.powi(2) / 2.0);
+            assert_close(2.0 * half_period, envelope, tolerance::PLOTTED_FREQUENCY, "envelope");
+            let highest = points.iter().map(|point| point.envelopes[rod]).fold(0.0, f64::max);
+            assert_close(highest, largest, tolerance::PLOTTED_AMPLITUDE, "amplitude");
+        }
+    }
+}
+
+#[test]
+fn the_curves_of_figures_3_to_5_touch_their_envelopes_and_never_leave_them() {
+    for (number, [mu, ..]) in SMALL {
+        let Small { points, .. } = Small::new(number, mu).expect("a pendulum");
+        for rod in 0..2 {
+            let beyond = |point: &Point| point.angles[rod].abs() - point.envelopes[rod];
+            let farthest = points.iter().map(beyond).fold(f64::NEG_INFINITY, f64::max);
+            assert!(farthest < tolerance::FORMULAS.double * START, "figure {number}, rod {rod}: {farthest} beyond");
+            let highest = points.iter().map(|point| point.envelopes[rod]).fold(0.0, f64::max);
+            let touches = points.iter().filter(|point| {
+                point.envelopes[rod] > highest / 2.0 && beyond(point) > -tolerance::PLOTTED_AMPLITUDE * highest
+            });
+            assert!(touches.count() > 2, "figure {number}, rod {rod}");
+        }
+    }
+}
+
+/// In sqrt(g/l) the squares of the frequencies of equal rods solve x^2 - 2 (1 + mu) x + (1 + mu) = 0.
+#[test]
+fn figure_2_solves_the_auxiliary_equation() {
+    let Frequencies { points, .. } = Frequencies::new().expect("pendulums");
+    assert_eq!(points.last().map(|point| point[0]), Some(5.0));
+    for [mu, fast, slow] in points {
+        assert!(fast > slow, "mu = {mu}");
+        assert_close(fast.powi(2) + slow.powi(2), 2.0 * (1.0 + mu), tolerance::FORMULAS.double, "sum");
+        assert_close(fast.powi(2) * slow.powi(2), 1.0 + mu, tolerance::FORMULAS.double, "product");
+    }
+}
+
+/// Where bob 2 is, m.
+fn bob_2(pendulum: &Pendulum<f64>, a1: f64, a2: f64) -> [f64; 2] {
+    let [_, bob2] = pendulum.positions(a1, a2);
+    [bob2.x, bob2.y]
+}
+
+fn distance([x, y]: [f64; 2], [other_x, other_y]: [f64; 2]) -> f64 {
+    (x - other_x).hypot(y - other_y)
+}
+
+#[test]
+fn the_right_path_of_figure_7_is_the_exact_one() {
+    let (pendulum, State { a1, a2, .. }) = (chaos::pendulum().expect("a pendulum"), chaos::start());
+    let mut exact = Reference::new(pendulum.parameters(), &Motion::at_rest(a1, a2));
+    let [right, _] = Chaos::new(1).expect("a pendulum").paths;
+    let last = right.points.len() - 1;
+    for (i, point) in right.points.into_iter().enumerate() {
+        exact.advance_to(f64::from(chaos::DURATION) * i as f64 / last as f64);
+        let Motion { a1, a2, .. } = exact.motion();
+        let off = distance(point, bob_2(&pendulum, a1, a2));
+        assert!(off < tolerance::FIGURE_7_PATH, "{off} m off at point {i} of {last}");
+    }
+    let [first, after] = right.energies;
+    assert!((after - first).abs() < tolerance::FIGURE_7_ENERGY, "{after} J after {first} J");
+}
+
+/// There is no exact solution of a misprint at hand, so its path is compared with one of half the step.
+#[test]
+fn the_printed_path_of_figure_7_does_not_depend_on_the_step() {
+    let [coarse, fine] = [1, 2].map(|refinement| Chaos::new(refinement).expect("a pendulum").paths);
+    let [[_, coarse], [_, fine]] = [coarse, fine];
+    assert_eq!(coarse.points.len(), fine.points.len());
+    for (i, (&point, &finer)) in coarse.points.iter().zip(&fine.points).enumerate() {
+        let off = distance(point, finer);
+        assert!(off < tolerance::FIGURE_7_PATH, "{off} m off at point {i}");
+    }
+    let [first, after] = coarse.energies;
+    assert!(after < 0.0 && first > 60.0, "from {first} J to {after} J");
+}
