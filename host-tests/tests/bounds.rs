@@ -1,25 +1,29 @@
 //! The bounds: never exceeded, reached, and the certificate against turning over.
 
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
-use double_pendulum::{Bounds, EqualRods, Modes, Motion, Parameters, Pendulum, Real, State};
+use double_pendulum::form::{AngleForm, Form, PictureForm};
+use double_pendulum::{Bounds, EqualRods, Error, Modes, Motion, Parameters, Pendulum, Real, State};
 use fastrand::Rng;
+use host_tests::reference::Reference;
+use host_tests::trial::Trial;
 use host_tests::{random, tolerance};
 
-/// |w1|, |w2|, |p1|, |p2|, v1, v2 of a state, each divided by its bound.
-fn shares<R: Real>(pendulum: &Pendulum<R>, bounds: &Bounds<R>, state: &State<R>) -> [f64; 6] {
+/// |w1|, |w2|, |w1 - w2|, |p1|, |p2|, v1, v2 of a state, each divided by its bound.
+fn shares<R: Real>(pendulum: &Pendulum<R>, bounds: &Bounds<R>, state: &State<R>) -> [f64; 7] {
     let motion = pendulum.motion(state);
     let [v1, v2] = pendulum.velocities(&motion).map(|v| (v.x * v.x + v.y * v.y).sqrt());
-    let reached = [motion.w1.abs(), motion.w2.abs(), state.p1.abs(), state.p2.abs(), v1, v2];
-    let Bounds { w1, w2, p1, p2, v1, v2 } = *bounds;
-    let bounds = [w1, w2, p1, p2, v1, v2];
+    let bending = (motion.w1 - motion.w2).abs();
+    let reached = [motion.w1.abs(), motion.w2.abs(), bending, state.p1.abs(), state.p2.abs(), v1, v2];
+    let Bounds { w1, w2, elbow, p1, p2, v1, v2 } = *bounds;
+    let bounds = [w1, w2, elbow, p1, p2, v1, v2];
     std::array::from_fn(|i| (reached[i] / bounds[i]).to_f64())
 }
 
-fn largest_shares<R: Real>(pendulum: &Pendulum<R>, start: State<R>, dt: R, steps: usize) -> [f64; 6] {
+fn largest_shares<R: Real>(pendulum: &Pendulum<R>, start: State<R>, dt: R, steps: usize) -> [f64; 7] {
     let bounds = pendulum.bounds(&start);
     let mut state = start;
-    let mut largest = [0.0_f64; 6];
+    let mut largest = [0.0_f64; 7];
     for _ in 0..steps {
         state = pendulum.step(&state, dt);
         let now = shares(pendulum, &bounds, &state);
@@ -77,7 +81,9 @@ fn each_bound_is_reached_by_some_state() {
         let opposed = Motion { w1: -m2 * l2 / ((m1 + m2) * l1), w2: 1.0, ..Motion::default() }; // p1 = 0: all in w2
         let straight = Motion { w1: 1.0, w2: 0.0, ..Motion::default() }; // both bobs alike: all in p1
         let lower = Motion { w1: 0.0, w2: 1.0, ..Motion::default() }; // bob 1 at rest: all in p2, v2
-        for (motion, reached) in [(still2, [0, 4]), (opposed, [1, 1]), (straight, [2, 2]), (lower, [3, 5])] {
+        let bending = Motion { w1: m2 * l2 * (l1 + l2), w2: -l1 * (m2 * l2 + (m1 + m2) * l1), ..Motion::default() };
+        let motions = [(still2, [0, 5]), (opposed, [1, 1]), (bending, [2, 2]), (straight, [3, 3]), (lower, [4, 6])];
+        for (motion, reached) in motions {
             let state = pendulum.state(&motion);
             let shares = shares(&pendulum, &pendulum.bounds(&state), &state);
             for i in reached {
@@ -186,4 +192,123 @@ fn step_limit_f32() {
 #[test]
 fn step_limit_f64() {
     step_limit::<f64>();
+}
+
+/// Masses within a factor of a million, lengths within a hundred, now and then without gravity.
+fn extreme_parameters(rng: &mut Rng) -> Parameters<f64> {
+    Parameters {
+        m1: 1.0,
+        m2: random::log_uniform(rng, 1e-6, 1e6),
+        l1: random::log_uniform(rng, 0.1, 10.0),
+        l2: random::log_uniform(rng, 0.1, 10.0),
+        g: if rng.u8(..4) == 0 { 0.0 } else { 9.81 },
+    }
+}
+
+/// Any angles and velocities, half of them near the straight position, where a light bob 1 is fastest.
+fn lively_motion(rng: &mut Rng, &Parameters { m1, m2, l1, l2, .. }: &Parameters<f64>) -> Motion<f64> {
+    let a1 = PI * random::symmetric(rng);
+    let snap = if rng.bool() { (m1 / (m1 + m2)).sqrt() } else { PI };
+    let speed = random::log_uniform(rng, 0.01, 100.0) * (9.81 * (l1 + l2)).sqrt();
+    let w1 = speed / l1 * random::symmetric(rng);
+    let w2 = if rng.bool() { -w1 * l1 / l2 } else { speed / l2 * random::symmetric(rng) };
+    Motion { a1, a2: a1 - snap * random::symmetric(rng), w1, w2 }
+}
+
+/// What `next` misses of the exact motion from `start` after `dt`: of the angles, and of the velocities per `rate`.
+fn miss(pendulum: &Pendulum<f64>, start: &Motion<f64>, next: &State<f64>, dt: f64, rate: f64) -> f64 {
+    let mut reference = Reference::new(pendulum.parameters(), start);
+    reference.advance_to(dt);
+    let (exact, next) = (reference.motion(), pendulum.motion(next));
+    let turn = |angle: f64| angle - (angle / TAU).round() * TAU;
+    let misses = [turn(next.a1 - exact.a1), turn(next.a2 - exact.a2), next.w1 - exact.w1, next.w2 - exact.w2];
+    let [a1, a2, w1, w2] = misses.map(f64::abs);
+    a1.max(a2).max(w1 / rate).max(w2 / rate)
+}
+
+/// From anywhere a step misses no more than the fastest rate allows; and not much less, or the limit would be timid.
+#[test]
+fn an_admissible_step_resolves_every_motion() -> Result<(), Error> {
+    let mut rng = Rng::with_seed(5);
+    let mut largest = [0.0_f64; 3];
+    for _ in 0..3000 {
+        let parameters = extreme_parameters(&mut rng);
+        let pendulum = Pendulum::new(parameters)?;
+        let start = lively_motion(&mut rng, &parameters);
+        let state = pendulum.state(&start);
+        let (rate, dt) = (pendulum.fastest_rate(&state)?, pendulum.admissible_step(&state)?);
+        let after = [
+            pendulum.step(&state, dt),
+            after_a_step(&AngleForm::<f64>::new(&parameters, dt)?, &state)?,
+            after_a_step(&PictureForm::<f64>::new(&parameters, dt)?, &state)?,
+        ];
+        for (i, next) in after.iter().enumerate() {
+            let miss = miss(&pendulum, &start, next, dt, rate) / (rate * dt);
+            assert!(miss <= tolerance::ADMISSIBLE[i], "form {i}: {miss:e} for {parameters:?} from {start:?}");
+            largest[i] = largest[i].max(miss);
+        }
+    }
+    println!("classical step, angle form, picture form miss at most {largest:?}");
+    for (largest, allowed) in largest.into_iter().zip(tolerance::ADMISSIBLE) {
+        assert!(largest >= allowed / 3.0, "never above {largest:e}: the limit is timid");
+    }
+    Ok(())
+}
+
+fn after_a_step<F: Form<f64>>(form: &F, state: &State<f64>) -> Result<State<f64>, Error> {
+    let mut carried = form.start(state)?;
+    form.advance(&mut carried, 1);
+    Ok(form.state(&carried))
+}
+
+/// Mass ratio 1000, chaotic: with a step of 1/1000 s the motion is lost within 0.6 s, in any precision; not with the
+/// admissible one.
+#[test]
+fn a_light_elbow_needs_a_far_shorter_step() -> Result<(), Error> {
+    let trial = Trial::at_rest(1000.0, 2.0, 1.0, 0.625);
+    let dt = Pendulum::new(trial.parameters)?.admissible_step(&trial.start)?;
+    let steps = 16.0 * (trial.seconds / dt / 16.0).ceil();
+    let [short, long] = [trial.seconds / steps, 1.0 / 1024.0];
+    for (name, lost, right) in [
+        ("angle form", trial.error::<f64, AngleForm<f64>>(long)?, trial.error::<f64, AngleForm<f64>>(short)?),
+        ("picture form", trial.error::<f64, PictureForm<f64>>(long)?, trial.error::<f64, PictureForm<f64>>(short)?),
+    ] {
+        println!("{name}: {lost:.1e} with 1/1024 s, {right:.1e} with {short:e} s");
+        assert!(lost > tolerance::UNRESOLVED, "{name}: {lost:e}");
+        assert!(right < tolerance::RESOLVED, "{name}: {right:e}");
+    }
+    Ok(())
+}
+
+/// In either precision; without energy every step will do, and without gravity only the speed counts.
+fn admissible_step<R: Real>() -> Result<(), Error> {
+    let mut rng = Rng::with_seed(6);
+    for _ in 0..1000 {
+        let given = random::parameters(&mut rng);
+        let state = random::state(&mut rng, &given);
+        let Parameters { m1, m2, l1, l2, g } = given;
+        let parameters = Parameters { m1: R::of(m1), m2: R::of(m2), l1: R::of(l1), l2: R::of(l2), g: R::of(g) };
+        let exact = Pendulum::new(given)?.admissible_step(&state)?;
+        let step = Pendulum::new(parameters)?.admissible_step(&State::from(<[f64; 4]>::from(state).map(R::of)))?;
+        let error = (step.to_f64() / exact - 1.0).abs();
+        assert!(error <= tolerance::FORMULAS.of::<R>(), "{error:e} for {given:?} from {state:?}");
+    }
+    let free = Pendulum::new(Parameters::equal_rods(R::ONE, R::ONE, R::ZERO))?;
+    let hanging = State::at_rest(R::ZERO, R::ZERO);
+    assert!(!free.admissible_step(&hanging)?.is_finite());
+    let [once, twice] = [R::ONE, R::TWO].map(|p1| free.admissible_step(&State { p1, ..hanging }));
+    assert_eq!(once?, twice? + twice?);
+    let hung = Pendulum::new(Parameters::equal_rods(R::ONE, R::ONE, R::of(9.81)))?;
+    assert!(hung.admissible_step(&hanging)? < hung.modes()?.step_limit());
+    Ok(())
+}
+
+#[test]
+fn admissible_step_f32() -> Result<(), Error> {
+    admissible_step::<f32>()
+}
+
+#[test]
+fn admissible_step_f64() -> Result<(), Error> {
+    admissible_step::<f64>()
 }

@@ -107,6 +107,25 @@ fn bad_input_gets_one_line_and_exit_code_2() {
 }
 
 #[test]
+fn a_step_too_long_for_the_energy_is_computed_and_warned_of() {
+    let lively = "--masses 1,1000 --angles 2,1 --until 1/2 --every 1/2";
+    for (arguments, warned) in [
+        (format!("{lively} --step 1/1024"), true),
+        (format!("{lively} --step 1/65536"), false),
+        (format!("{lively} --step 1/1024 --model linear"), false),
+        (String::from("--angles 2,1 --step 1/1024"), false),
+        (String::from("--angles 2,1 --step 1/64 --until 1/64 --arithmetic f32"), true),
+        (String::from("--gravity 0 --velocities 0,1000 --step 1/1024 --until 0"), true),
+    ] {
+        let output = simulate(&arguments);
+        let report = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success() && !output.stdout.is_empty(), "{arguments}: {report}");
+        assert_eq!(report.lines().count(), usize::from(warned), "{arguments}: {report}");
+        assert!(!warned || report.starts_with("warning: --step 1/"), "{arguments}: {report}");
+    }
+}
+
+#[test]
 fn decimals_divide_exactly() {
     let rows = rows("--angles 1,1 --step 0.1 --until 10 --every 0.1");
     assert_eq!(rows.len(), 1 + 101);

@@ -12,7 +12,7 @@
 //! | small oscillations | [`Modes`], [`SmallOscillations`] |
 //! | coordinates | [`Pendulum::positions`], [`Pendulum::velocities`] |
 //! | (not in the book) a step of order 8 | [`Pendulum::step_of_order_8`], [`rk8::step`] |
-//! | (not in the book) bounds from the energy | [`Bounds`], [`Pendulum::cannot_turn_over`], [`Modes::step_limit`] |
+//! | (not in the book) bounds from the energy | [`Bounds`], [`Pendulum::cannot_turn_over`], [`Pendulum::admissible_step`], [`Modes::step_limit`] |
 //!
 //! Everything is generic over `f32` and `f64` ([`Real`]), uses no heap, never panics, and gives the same bits on
 //! every machine.

@@ -1,6 +1,6 @@
 //! What is asked for, checked.
 
-use double_pendulum::{Error, Parameter, Parameters};
+use double_pendulum::{Error, Motion, Parameter, Parameters, Pendulum};
 
 use super::{Arithmetic, Model};
 use crate::choice::choice;
@@ -28,6 +28,14 @@ pub struct Request {
 }
 
 impl Request {
+    /// The longest step, s, that resolves every motion of this energy: [`Pendulum::admissible_step`]. None for the closed
+    /// form, which takes any, and for what [`Job::new`](super::Job::new) refuses.
+    pub fn admissible_step(&self) -> Option<f64> {
+        let ([a1, a2], [w1, w2]) = (self.angles, self.velocities);
+        let pendulum = Pendulum::<f64>::new(self.parameters).ok().filter(|_| self.model != Model::Linear)?;
+        pendulum.admissible_step(&pendulum.state(&Motion { a1, a2, w1, w2 })).ok()
+    }
+
     /// The message that carries it.
     pub fn message(&self, request: u16) -> Simulate {
         let Parameters { m1, m2, l1, l2, g } = self.parameters;

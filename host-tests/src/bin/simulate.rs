@@ -16,6 +16,9 @@ fn main() -> ExitCode {
         Ok(plan) => plan,
         Err(reason) => return cli::refuse(format_args!("error: {reason}")),
     };
+    if let Some(warning) = plan.warning(&options) {
+        eprintln!("warning: {warning}");
+    }
     match run(&options, &plan) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) if is_closed_output(&error) => ExitCode::SUCCESS,

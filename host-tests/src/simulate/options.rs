@@ -67,7 +67,7 @@ pub struct Options {
     /// Read angles in degrees and velocities in degrees per second; the output stays in radians
     #[arg(long)]
     pub degrees: bool,
-    /// Step size, s
+    /// Step size, s; a warning says when it is too long to resolve every motion of this energy
     #[arg(long, value_name = "DT", default_value = "1/1024", allow_hyphen_values = true)]
     pub step: Number,
     /// Time of the last row, s

@@ -17,6 +17,18 @@ pub struct Plan {
     pub every: Number,
 }
 
+impl Plan {
+    /// What the user should know: the step is too long for some motion of this energy.
+    pub fn warning(&self, options: &Options) -> Option<String> {
+        let admissible = self.request.admissible_step()?;
+        let too_long = self.request.step_size > admissible;
+        too_long.then(|| {
+            let step = &options.step;
+            format!("--step {step}: too long to resolve every motion of this energy; {admissible:.1e} s would do")
+        })
+    }
+}
+
 /// Checks everything there is to check before the first row; an error is one line that names the option and the value.
 pub fn plan(options: &Options) -> anyhow::Result<Plan> {
     let Options { step, until, .. } = options;
