@@ -81,7 +81,7 @@ enum Wish {
 
 impl Show<'_> {
     fn run(&mut self, mut terminal: DefaultTerminal) -> anyhow::Result<()> {
-        let title = format!(" {} ", self.stage.options.board.name);
+        let board = self.stage.options.board.name;
         let last = self.stage.options.seconds.map(|seconds| (seconds * f64::from(TICK_RATE)).ceil() as u32);
         let mut awake = false;
         loop {
@@ -92,7 +92,7 @@ impl Show<'_> {
                 self.play(self.stage.options.scene)?;
                 awake = true;
             }
-            terminal.draw(|frame| draw(frame, &title, &self.picture, &self.readings, self.depth))?;
+            terminal.draw(|frame| draw(frame, board, &self.picture, &self.readings, self.depth))?;
             if last.is_some_and(|last| ticks >= last) || self.obey()? || self.has_ended()? {
                 return Ok(());
             }
@@ -194,5 +194,41 @@ fn wish(event: &Event) -> Option<Wish> {
         KeyCode::Right => Some(Wish::Press(Key::Right)),
         KeyCode::Char(' ') | KeyCode::Enter => Some(Wish::Press(Key::Select)),
         _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn wish_of(code: KeyCode, modifiers: KeyModifiers) -> Option<Wish> {
+        wish(&Event::Key(KeyEvent::new(code, modifiers)))
+    }
+
+    #[test]
+    fn keys_mean_what_the_line_of_keys_says() {
+        let pressed = |code| match wish_of(code, KeyModifiers::NONE) {
+            Some(Wish::Press(key)) => Some(key),
+            _ => None,
+        };
+        assert_eq!(pressed(KeyCode::Up), Some(Key::Up));
+        assert_eq!(pressed(KeyCode::Down), Some(Key::Down));
+        assert_eq!(pressed(KeyCode::Left), Some(Key::Left));
+        assert_eq!(pressed(KeyCode::Right), Some(Key::Right));
+        assert_eq!(pressed(KeyCode::Char(' ')), Some(Key::Select));
+        assert_eq!(pressed(KeyCode::Enter), Some(Key::Select));
+        let scene = |code| match wish_of(code, KeyModifiers::NONE) {
+            Some(Wish::Scene(other)) => Some(other(SceneName::Page)),
+            _ => None,
+        };
+        assert_eq!(scene(KeyCode::Tab), Some(SceneName::Page.next()));
+        assert_eq!(scene(KeyCode::BackTab), Some(SceneName::Page.previous()));
+        assert!(matches!(wish_of(KeyCode::Char('p'), KeyModifiers::NONE), Some(Wish::Pause)));
+        assert!(matches!(wish_of(KeyCode::Char('.'), KeyModifiers::NONE), Some(Wish::Step)));
+        for quit in [KeyCode::Char('q'), KeyCode::Esc] {
+            assert!(matches!(wish_of(quit, KeyModifiers::NONE), Some(Wish::Quit)));
+        }
+        assert!(matches!(wish_of(KeyCode::Char('c'), KeyModifiers::CONTROL), Some(Wish::Quit)));
+        assert!(wish_of(KeyCode::Char('x'), KeyModifiers::NONE).is_none());
     }
 }

@@ -4,6 +4,7 @@ mod headless;
 mod live;
 mod options;
 mod panel;
+mod plot;
 mod readings;
 mod record;
 mod summary;

@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use firmware::config::TICK_RATE;
 use firmware::protocol::Frame;
 
+use super::plot::{self, Moment};
 use super::summary::Summary;
 use crate::qemu::{Counts, LogLine};
 
@@ -27,6 +28,8 @@ pub struct Readings {
     pub counts: Counts,
     /// The largest size of the energy error in each half second, oldest first.
     pub energy_errors: VecDeque<f32>,
+    /// Both angles over the last [`plot::SPAN`], oldest first.
+    pub angles: VecDeque<Moment>,
     /// Lines of the log, oldest first.
     pub lines: VecDeque<LogLine>,
     /// The run so far.
@@ -39,8 +42,9 @@ pub struct Readings {
 impl Readings {
     /// Takes a frame that has just arrived.
     pub fn frame(&mut self, frame: Frame) {
-        if frame.step < self.frame.step {
+        if frame.scene != self.frame.scene || frame.time < self.frame.time {
             self.energy_errors.clear();
+            self.angles.clear();
         }
         self.frame = frame;
         self.summary.frame(&frame);
@@ -53,6 +57,13 @@ impl Readings {
             }
         }
         self.frames_in_bar += 1;
+        let [a1, a2, ..] = frame.state.map(|number| f64::from(number).to_degrees());
+        if self.angles.back().is_none_or(|last| frame.time > last.time) {
+            self.angles.push_back(Moment { time: frame.time, angles: [a1, a2] });
+        }
+        while self.angles.front().is_some_and(|first| frame.time - first.time > plot::SPAN) {
+            self.angles.pop_front();
+        }
         let now = Instant::now();
         self.arrivals.push_back(now);
         while self.arrivals.front().is_some_and(|&arrival| now - arrival > RATE_SPAN) {

@@ -1,5 +1,7 @@
-//! The terminal's layout: the panel, numbers beside it, the log below, and a line of keys.
+//! The terminal's layout: the panel and numbers beside it; both angles and the log below; and a line of keys.
 
+use firmware::protocol::Frame as Reading;
+use firmware::scenes::SceneName;
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::style::{Style, Stylize};
@@ -7,13 +9,16 @@ use ratatui::text::{Line, Text};
 use ratatui::widgets::{Block, Paragraph, Sparkline};
 
 use super::panel::{Depth, Panel};
+use super::plot;
 use super::readings::Readings;
 use crate::qemu::{LogLine, Picture, WIDTH};
 
 /// Columns for the numbers, their frame included.
 const SIDE: u16 = 20;
-/// Rows for the log, its frame included; more if there is room.
-const LOG: u16 = 5;
+/// Rows for the angles and the log, their frame included; more if there is room.
+const LOWER: u16 = 7;
+/// The share of the width that the angles have of that, percent.
+const ANGLES: u16 = 60;
 /// Rows for the keys.
 const KEYS: u16 = 1;
 /// Rows for the numbers, their frame and the smallest sparkline included.
@@ -25,26 +30,28 @@ const NARROWEST: u16 = 32;
 const FRAME: u16 = 2;
 
 /// Draws everything.
-pub fn draw(frame: &mut Frame, title: &str, picture: &Picture, readings: &Readings, depth: Depth) {
+pub fn draw(frame: &mut Frame, board: &str, picture: &Picture, readings: &Readings, depth: Depth) {
     let area = frame.area();
     let Some(width) = panel_width(area) else {
-        let least = (NARROWEST + FRAME + SIDE, NUMBERS + LOG + KEYS);
+        let least = (NARROWEST + FRAME + SIDE, NUMBERS + LOWER + KEYS);
         let text = format!("terminal too small: {} x {}\nneeded: {} x {}", area.width, area.height, least.0, least.1);
         frame.render_widget(Paragraph::new(text), area);
         return;
     };
     let top = (width / 4 + FRAME).max(NUMBERS);
-    let [top, log, keys] =
-        Layout::vertical([Constraint::Length(top), Constraint::Min(LOG), Constraint::Length(KEYS)]).areas(area);
+    let [top, lower, keys] =
+        Layout::vertical([Constraint::Length(top), Constraint::Min(LOWER), Constraint::Length(KEYS)]).areas(area);
     let [left, side] = Layout::horizontal([Constraint::Length(width + FRAME), Constraint::Min(SIDE)]).areas(top);
 
-    let panel = Block::bordered().title(title.bold());
+    let panel = Block::bordered().title(title(board, &readings.frame).bold());
     let inside = panel.inner(left);
     frame.render_widget(panel, left);
     let inside = Rect { width, height: (width / 4).min(inside.height), ..inside };
     frame.render_widget(Panel { picture, depth }, inside);
 
     numbers(frame, side, readings);
+    let [angles, log] = Layout::horizontal([Constraint::Percentage(ANGLES), Constraint::Fill(1)]).areas(lower);
+    plot::draw(frame, angles, &readings.angles);
     let block = Block::bordered().title("log");
     let rows = usize::from(log.height.saturating_sub(FRAME));
     let lines = readings.lines.iter().skip(readings.lines.len().saturating_sub(rows)).map(styled);
@@ -53,12 +60,18 @@ pub fn draw(frame: &mut Frame, title: &str, picture: &Picture, readings: &Readin
     frame.render_widget(Line::from(help).dim(), keys);
 }
 
+/// What is played on which board.
+fn title(board: &str, now: &Reading) -> String {
+    let scene = SceneName::from_code(now.scene).map_or("?", SceneName::name);
+    format!(" {board} · {scene}{} ", if now.paused != 0 { " · paused" } else { "" })
+}
+
 /// The widest panel that leaves room for the rest, in steps that keep its shape; `None` if there is none.
 fn panel_width(area: Rect) -> Option<u16> {
     let columns = area.width.checked_sub(SIDE + FRAME)?;
-    let rows = area.height.checked_sub(LOG + KEYS + FRAME)?;
+    let rows = area.height.checked_sub(LOWER + KEYS + FRAME)?;
     let width = columns.min(4 * rows).min(WIDEST) / 4 * 4;
-    (width >= NARROWEST && area.height >= NUMBERS + LOG + KEYS).then_some(width)
+    (width >= NARROWEST && area.height >= NUMBERS + LOWER + KEYS).then_some(width)
 }
 
 fn numbers(frame: &mut Frame, area: Rect, readings: &Readings) {
@@ -102,5 +115,64 @@ fn styled(line: &LogLine) -> Line<'_> {
         None | Some("error") => text.red(),
         Some("warn") => text.yellow(),
         _ => text,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use ratatui::Terminal;
+    use ratatui::backend::TestBackend;
+
+    use super::*;
+
+    /// What the terminal shows after half a second of a scene, row by row.
+    fn rows(width: u16, height: u16) -> Vec<String> {
+        let mut readings = Readings::default();
+        for tick in 0..30_u32 {
+            let time = f64::from(tick) / 60.0;
+            let state = [0.5 * (6.0 * time).sin() as f32, -2.0, 0.0, 0.0];
+            let scene = SceneName::Figure7.code();
+            readings.frame(Reading {
+                sequence: tick,
+                scene,
+                paused: 1,
+                time,
+                mass_ratio: 2.75,
+                state,
+                ..Reading::default()
+            });
+        }
+        let mut terminal = Terminal::new(TestBackend::new(width, height)).expect("a terminal of characters");
+        let drawn = |frame: &mut Frame| draw(frame, "board", &Picture::blank(), &readings, Depth::True);
+        terminal.draw(drawn).expect("it is drawn");
+        let cells = terminal.backend().buffer().content().chunks(usize::from(width));
+        cells.map(|row| row.iter().map(|cell| cell.symbol()).collect()).collect()
+    }
+
+    /// Characters that draw curves, all rows together.
+    fn braille(rows: &[String]) -> usize {
+        rows.iter().flat_map(|row| row.chars()).filter(|c| ('\u{2801}'..='\u{28FF}').contains(c)).count()
+    }
+
+    #[test]
+    fn scene_numbers_curves_and_keys_are_in_view_on_a_common_terminal() {
+        for (width, height) in [(80, 24), (120, 40), (200, 60)] {
+            let rows = rows(width, height);
+            for text in ["board · figure-7 · paused", "2.75", "-114.6°", "angles, degrees", "180", "5.0 s", "log"] {
+                assert!(rows.iter().any(|row| row.contains(text)), "no {text:?} in\n{rows:#?}");
+            }
+            for key in ["↑ ↓ mass ratio", "← → angle", "space restart", "tab scene", "p pause", ". step", "q quit"]
+            {
+                assert!(rows[usize::from(height) - 1].contains(key), "no {key:?} in {:?}", rows.last());
+            }
+            assert!(braille(&rows) > 3, "{width} x {height}: no curves in\n{rows:#?}");
+        }
+    }
+
+    #[test]
+    fn a_terminal_too_small_is_told_what_is_needed() {
+        let rows = rows(53, 24);
+        assert!(rows[0].contains("too small: 53 x 24") && rows[1].contains("needed: 54 x 22"), "{rows:#?}");
+        assert!(!self::rows(54, 22)[0].contains("too small"));
     }
 }

@@ -1,0 +1,86 @@
+//! Both angles over the last seconds, as a chart of characters.
+
+use std::collections::VecDeque;
+
+use ratatui::Frame;
+use ratatui::layout::Rect;
+use ratatui::style::{Color, Style};
+use ratatui::symbols::Marker;
+use ratatui::text::{Line, Span};
+use ratatui::widgets::{Axis, Block, Chart, Dataset, GraphType};
+
+/// How much simulated time is shown, s.
+pub const SPAN: f64 = 5.0;
+/// The angles that the chart may reach, degrees: the least that holds every angle shown is taken.
+const REACHES: [f64; 5] = [10.0, 30.0, 60.0, 90.0, HALF_TURN];
+const HALF_TURN: f64 = 180.0;
+/// The colours of angle 1 and angle 2.
+const COLOURS: [Color; 2] = [Color::Cyan, Color::Yellow];
+
+/// Both angles at a moment.
+#[derive(Clone, Copy, Debug)]
+pub struct Moment {
+    /// Simulated time, s.
+    pub time: f64,
+    /// Both angles, degrees; turns count.
+    pub angles: [f64; 2],
+}
+
+/// Draws the chart of `past`, oldest first.
+pub fn draw(frame: &mut Frame, area: Rect, past: &VecDeque<Moment>) {
+    let end = past.back().map_or(0.0, |last| last.time).max(SPAN);
+    let strands: Vec<_> = (0..2).flat_map(|rod| strands(past, rod).map(move |strand| (rod, strand))).collect();
+    let largest = strands.iter().flat_map(|(_, strand)| strand).fold(0.0_f64, |most, (_, angle)| most.max(angle.abs()));
+    let reach = REACHES.into_iter().find(|reach| *reach >= largest).unwrap_or(HALF_TURN);
+    let lines = strands.iter().map(|(rod, strand)| {
+        let line = Dataset::default().data(strand).marker(Marker::Braille).graph_type(GraphType::Line);
+        line.style(COLOURS[*rod])
+    });
+    let faint = Style::new().dim();
+    let title = Line::from(vec![
+        Span::raw("angles, degrees: "),
+        Span::styled("1", COLOURS[0]),
+        Span::raw(" and "),
+        Span::styled("2", COLOURS[1]),
+    ]);
+    let across = Axis::default().bounds([end - SPAN, end]).style(faint);
+    let upwards = Axis::default().bounds([-reach, reach]).style(faint);
+    let chart = Chart::new(lines.collect())
+        .block(Block::bordered().title(title))
+        .legend_position(None)
+        .x_axis(across.labels([format!("{:.1} s", end - SPAN), format!("{end:.1} s")]))
+        .y_axis(upwards.labels([format!("{:.0}", -reach), "0".to_owned(), format!("{reach:.0}")]));
+    frame.render_widget(chart, area);
+}
+
+/// An angle over time within half a turn either way, cut where it passes straight up.
+fn strands(past: &VecDeque<Moment>, rod: usize) -> impl Iterator<Item = Vec<(f64, f64)>> {
+    let mut strands: Vec<Vec<(f64, f64)>> = Vec::new();
+    for moment in past {
+        let angle = (moment.angles[rod] + HALF_TURN).rem_euclid(2.0 * HALF_TURN) - HALF_TURN;
+        let point = (moment.time, angle);
+        match strands.last_mut() {
+            Some(strand) if strand.last().is_some_and(|(_, before)| (angle - before).abs() < HALF_TURN) => {
+                strand.push(point);
+            }
+            _ => strands.push(vec![point]),
+        }
+    }
+    strands.into_iter()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_turning_rod_is_cut_where_it_passes_straight_up() {
+        let turning = |tenth: u32| Moment { time: f64::from(tenth) / 10.0, angles: [f64::from(tenth) * 36.0, 0.0] };
+        let past = (0..=20).map(turning).collect();
+        let cut: Vec<_> = strands(&past, 0).collect();
+        // From 0 to 144 degrees, then twice from straight up all around.
+        assert_eq!(cut.iter().map(Vec::len).collect::<Vec<_>>(), [5, 10, 6]);
+        assert!(cut.iter().flatten().all(|(_, angle)| (-HALF_TURN..HALF_TURN).contains(angle)));
+        assert_eq!(strands(&past, 1).count(), 1, "the other rod hangs");
+    }
+}
