@@ -8,8 +8,7 @@ use std::process::{Command, ExitStatus, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
 
-use tempfile::TempDir;
-
+use super::folder::Folder;
 use super::qmp::Monitor;
 use super::serial::Pipes;
 use super::{Key, Log, LogLine, Picture, QemuError, Serial, Window};
@@ -54,7 +53,7 @@ pub struct Machine {
     pub log: Log,
     monitor: Monitor,
     process: Running,
-    folder: TempDir,
+    folder: Folder,
 }
 
 impl fmt::Debug for Machine {
@@ -88,7 +87,7 @@ impl Machine {
             .elf
             .canonicalize()
             .map_err(|error| QemuError::Firmware { path: settings.elf.to_owned(), reason: error.to_string() })?;
-        let folder = tempfile::Builder::new().prefix("double-pendulum-").tempdir().map_err(&unusable)?;
+        let folder = Folder::make().map_err(&unusable)?;
         // QEMU connects to sockets that listen already: none of its bytes can be lost.
         let listen = |name| UnixListener::bind(folder.path().join(name)).map_err(&unusable);
         let (monitor, debugger) = (listen("monitor")?, listen("debugger")?);

@@ -3,6 +3,7 @@
 //! Every wait ends: at the latest when the machine's time limit ends QEMU, which closes all its connections.
 
 mod error;
+mod folder;
 mod gdb;
 mod lockstep;
 mod log;
