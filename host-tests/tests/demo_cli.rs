@@ -33,7 +33,8 @@ fn pictures(path: &Path) -> (Vec<Vec<u8>>, u32) {
         time += u32::from(frame.delay);
         for (row, dots) in frame.buffer.chunks(frame.width.into()).enumerate() {
             let start = (usize::from(frame.top) + row) * usize::from(width) + usize::from(frame.left);
-            shown[start..start + dots.len()].copy_from_slice(dots);
+            let changed = dots.iter().enumerate().filter(|(_, dot)| frame.transparent != Some(**dot));
+            changed.for_each(|(column, &dot)| shown[start + column] = dot);
         }
         pictures.push(shown.clone());
     }

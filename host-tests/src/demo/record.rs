@@ -1,7 +1,7 @@
 //! Picture files: what the panel showed as an animation (GIF) or one picture of it (PNG).
 
 use std::fs::File;
-use std::io::BufWriter;
+use std::io::{BufWriter, Write};
 use std::path::Path;
 
 use anyhow::Context;
@@ -15,6 +15,8 @@ use crate::qemu::{HEIGHT, Picture, WIDTH};
 const SCALE: usize = 3;
 /// The board's ticks from one picture to the next: 60/2 = 30 pictures per second.
 pub const TICKS_PER_PICTURE: u32 = TICK_RATE / 30;
+/// In a picture after the first: as it was. The palette's first colour after the greys.
+const UNCHANGED: u8 = 16;
 /// GIF counts time in hundredths of a second.
 const GIF_RATE: u64 = 100;
 
@@ -34,7 +36,8 @@ impl Recording {
     pub fn create(path: &Path) -> anyhow::Result<Self> {
         let file = File::create(path).with_context(|| format!("cannot write {}", path.display()))?;
         let size = |pixels: usize| (pixels * SCALE) as u16;
-        let mut encoder = Encoder::new(BufWriter::new(file), size(WIDTH), size(HEIGHT), &tint::palette())?;
+        let mut encoder =
+            Encoder::new(BufWriter::new(file), size(WIDTH), size(HEIGHT), &[tint::palette(), vec![0; 3]].concat())?;
         encoder.set_repeat(Repeat::Infinite)?;
         Ok(Self { encoder, pending: None, shown: None, start: 0 })
     }
@@ -57,7 +60,8 @@ impl Recording {
         self.flush(end)
     }
 
-    /// Writes the pending picture, whose time ends at `tick`: only the rectangle that has changed.
+    /// Writes the pending picture, whose time ends at `tick`: only the rectangle that has changed, and of that all
+    /// pixels or only those that have, whichever is shorter: where little has, that leaves long runs of one value.
     fn flush(&mut self, tick: u32) -> anyhow::Result<()> {
         let Some((picture, since)) = self.pending.take() else { return Ok(()) };
         let hundredths = |tick: u32| {
@@ -66,17 +70,30 @@ impl Recording {
         };
         let delay = u16::try_from(hundredths(tick) - hundredths(since)).unwrap_or(u16::MAX);
         let area = Area::changed(self.shown.as_ref(), &picture);
-        let frame = Frame {
-            delay,
-            dispose: DisposalMethod::Keep,
-            left: (area.left * SCALE) as u16,
-            top: (area.top * SCALE) as u16,
-            width: (area.width * SCALE) as u16,
-            height: (area.height * SCALE) as u16,
-            buffer: area.magnified(&picture).into(),
-            ..Frame::default()
+        let encoded = |transparent: Option<u8>, buffer: Vec<u8>| {
+            let mut frame = Frame {
+                delay,
+                dispose: DisposalMethod::Keep,
+                transparent,
+                left: (area.left * SCALE) as u16,
+                top: (area.top * SCALE) as u16,
+                width: (area.width * SCALE) as u16,
+                height: (area.height * SCALE) as u16,
+                buffer: buffer.into(),
+                ..Frame::default()
+            };
+            frame.make_lzw_pre_encoded();
+            frame
         };
-        self.encoder.write_frame(&frame)?;
+        let mut frame = encoded(None, area.magnified(|x, y| picture.grey(x, y)));
+        if let Some(shown) = &self.shown {
+            let unless_shown = |grey: u8, x, y| if shown.grey(x, y) == grey { UNCHANGED } else { grey };
+            let changes = encoded(Some(UNCHANGED), area.magnified(|x, y| unless_shown(picture.grey(x, y), x, y)));
+            if changes.buffer.len() < frame.buffer.len() {
+                frame = changes;
+            }
+        }
+        self.encoder.write_lzw_pre_encoded_frame(&frame)?;
         self.shown = Some(picture);
         Ok(())
     }
@@ -105,24 +122,83 @@ impl Area {
         Self { left, top, width: right - left + 1, height: bottom - top + 1 }
     }
 
-    /// Its greys, magnified, row by row.
-    fn magnified(self, picture: &Picture) -> Vec<u8> {
+    /// The values of its pixels, magnified, row by row.
+    fn magnified(self, value: impl Fn(usize, usize) -> u8) -> Vec<u8> {
         let at = |index: usize| {
             let (x, y) = (index % (self.width * SCALE), index / (self.width * SCALE));
-            picture.grey(self.left + x / SCALE, self.top + y / SCALE)
+            value(self.left + x / SCALE, self.top + y / SCALE)
         };
         (0..self.width * SCALE * self.height * SCALE).map(at).collect()
     }
 }
 
-/// Writes one picture as a PNG file.
+/// Writes one picture to a PNG file.
 pub fn save(picture: &Picture, path: &Path) -> anyhow::Result<()> {
-    let file = File::create(path).with_context(|| format!("cannot write {}", path.display()))?;
+    let unwritable = || format!("cannot write {}", path.display());
+    png(picture, BufWriter::new(File::create(path).with_context(unwritable)?)).with_context(unwritable)
+}
+
+/// Writes one picture as a PNG file.
+pub fn png(picture: &Picture, file: impl Write) -> anyhow::Result<()> {
     let size = |pixels: usize| (pixels * SCALE) as u32;
-    let mut encoder = png::Encoder::new(BufWriter::new(file), size(WIDTH), size(HEIGHT));
+    let mut encoder = png::Encoder::new(file, size(WIDTH), size(HEIGHT));
     encoder.set_color(png::ColorType::Indexed);
     encoder.set_palette(tint::palette());
     let mut writer = encoder.write_header()?;
-    writer.write_image_data(&Area::WHOLE.magnified(picture))?;
+    writer.write_image_data(&Area::WHOLE.magnified(|x, y| picture.grey(x, y)))?;
     Ok(writer.finish()?)
+}
+
+#[cfg(test)]
+mod tests {
+    use fastrand::Rng;
+    use firmware::canvas::Canvas;
+
+    use super::*;
+
+    /// The greys that an animation shows, picture by picture, each with the hundredths of a second it is shown for.
+    fn played(path: &Path) -> Vec<(Vec<u8>, u16)> {
+        let mut options = gif::DecodeOptions::new();
+        options.set_color_output(gif::ColorOutput::Indexed);
+        let mut decoder = options.read_info(File::open(path).expect("a file")).expect("a GIF file");
+        let width = usize::from(decoder.width());
+        let mut shown = vec![0; width * usize::from(decoder.height())];
+        let mut played = Vec::new();
+        while let Some(frame) = decoder.read_next_frame().expect("an intact frame") {
+            for (i, &value) in frame.buffer.iter().enumerate() {
+                let (x, y) = (i % usize::from(frame.width), i / usize::from(frame.width));
+                if frame.transparent != Some(value) {
+                    shown[(usize::from(frame.top) + y) * width + usize::from(frame.left) + x] = value;
+                }
+            }
+            played.push((shown.clone(), frame.delay));
+        }
+        played
+    }
+
+    #[test]
+    fn an_animation_shows_every_picture_as_it_was() {
+        let mut rng = Rng::with_seed(1);
+        let mut canvas = Canvas::default();
+        // None, one, a few and nearly all pixels change.
+        let mut pictures = vec![Picture::from(&canvas)];
+        for changes in [0, 1, 30, 20_000, 5, 20_000, 0] {
+            for _ in 0..changes {
+                canvas.update(rng.i32(0..WIDTH as i32), rng.i32(0..HEIGHT as i32), |_| rng.u8(0..16));
+            }
+            pictures.push(Picture::from(&canvas));
+        }
+        let file = tempfile::NamedTempFile::new().expect("a file");
+        let mut recording = Recording::create(file.path()).expect("it can be written");
+        for (picture, tick) in pictures.iter().zip((0..).step_by(TICKS_PER_PICTURE as usize)) {
+            recording.add(picture.clone(), tick).expect("it can be written");
+        }
+        recording.finish().expect("it can be written");
+        let played = played(file.path());
+        assert_eq!(played.len(), pictures.len());
+        for (number, (picture, (greys, delay))) in pictures.iter().zip(played).enumerate() {
+            assert!(greys == Area::WHOLE.magnified(|x, y| picture.grey(x, y)), "picture {number}");
+            assert!((3..=4).contains(&delay), "picture {number} is shown for {delay}/100 s");
+        }
+    }
 }

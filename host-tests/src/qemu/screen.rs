@@ -1,5 +1,7 @@
 //! The panel's picture, out of QEMU's screen dump.
 
+use firmware::canvas::Canvas;
+
 use super::QemuError;
 
 /// The panel's width, pixels.
@@ -54,6 +56,14 @@ impl Picture {
     /// All greys, row by row.
     pub fn greys(&self) -> &[u8] {
         &self.greys
+    }
+}
+
+/// What the panel shows of a picture drawn here.
+impl From<&Canvas> for Picture {
+    fn from(canvas: &Canvas) -> Self {
+        let grey = |index: usize| canvas.get((index % WIDTH) as i32, (index / WIDTH) as i32).unwrap_or_default();
+        Self { greys: (0..WIDTH * HEIGHT).map(grey).collect() }
     }
 }
 
