@@ -55,7 +55,7 @@ pub fn time(seconds: f64) -> Label {
 
 /// `value` rounded to `decimals` places between two texts.
 fn label(before: &str, value: f32, decimals: u32, after: &str) -> Label {
-    let unit = 10_u32.pow(decimals);
+    let unit = 10_u32.saturating_pow(decimals).max(1);
     let rounded = (value.abs() * unit as f32 + 0.5) as u32;
     let sign = if value < 0.0 { "-" } else { "" };
     let (whole, fraction) = (rounded / unit, rounded % unit);

@@ -21,6 +21,7 @@ pub mod config;
 pub mod controls;
 pub mod display;
 pub mod fault;
+pub mod history;
 pub mod ink;
 pub mod job;
 pub mod label;

@@ -1,9 +1,8 @@
 //! Curves over time or any other quantity: one value per column, drawn with soft edges in integer arithmetic.
 
-use heapless::HistoryBuf;
-
 use crate::brush::SUBPIXELS;
 use crate::canvas::{Canvas, HEIGHT, WIDTH};
+use crate::history::History;
 
 /// Half the thickness of a curve, subpixels.
 const HALF_THICKNESS: i32 = 38;
@@ -47,12 +46,12 @@ pub fn axis(canvas: &mut Canvas, from: i32, to: i32, y: i32, grey: u8) {
 /// The last `COLUMNS` values of `N` curves, scrolling: the newest is the rightmost.
 #[derive(Clone, Debug)]
 pub struct Strip<const N: usize, const COLUMNS: usize = WIDTH> {
-    columns: HistoryBuf<[Height; N], COLUMNS>,
+    columns: History<[Height; N], COLUMNS>,
 }
 
 impl<const N: usize, const COLUMNS: usize> Default for Strip<N, COLUMNS> {
     fn default() -> Self {
-        Self { columns: HistoryBuf::new() }
+        Self { columns: History::new([0; N]) }
     }
 }
 
@@ -72,7 +71,7 @@ impl<const N: usize, const COLUMNS: usize> Strip<N, COLUMNS> {
     pub fn each(&self, right: i32, mut draw: impl FnMut(i32, &[Height; N], &[Height; N])) {
         let first = right + 1 - self.columns();
         let mut before = None;
-        for (x, heights) in (first..).zip(self.columns.oldest_ordered()) {
+        for (x, heights) in (first..).zip(self.columns.oldest_first()) {
             draw(x, heights, before.unwrap_or(heights));
             before = Some(heights);
         }

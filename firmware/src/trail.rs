@@ -2,20 +2,19 @@
 
 use core::iter;
 
-use heapless::HistoryBuf;
-
 use crate::brush::{Spot, Stroke};
 use crate::canvas::Canvas;
 use crate::config::{TRAIL_PERIOD_TICKS, TRAIL_POINTS};
+use crate::history::History;
 
 /// Brightness of the trail, of 255, and half its width, subpixels, at its far end and at the bob.
 const BRIGHTNESS: [u8; 2] = [24, 184];
 const HALF_WIDTH: [u8; 2] = [20, 44];
 
 /// Places of bob 2, one kept every [`TRAIL_PERIOD_TICKS`] whether or not a picture was drawn.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Trail {
-    kept: HistoryBuf<Spot, TRAIL_POINTS>,
+    kept: History<Spot, TRAIL_POINTS>,
     newest: Spot,
     /// Ticks since a place was kept.
     ticks: u8,
@@ -24,7 +23,7 @@ pub struct Trail {
 impl Trail {
     /// A trail that begins at `start`.
     pub fn new(start: Spot) -> Self {
-        let mut kept = HistoryBuf::new();
+        let mut kept = History::new(start);
         kept.write(start);
         Self { kept, newest: start, ticks: 0 }
     }
@@ -41,7 +40,7 @@ impl Trail {
 
     /// The places from the oldest to the newest.
     pub fn spots(&self) -> impl Iterator<Item = Spot> + Clone {
-        self.kept.oldest_ordered().copied().chain(iter::once(self.newest))
+        self.kept.oldest_first().copied().chain(iter::once(self.newest))
     }
 
     /// Draws it, the youngest piece brightest and widest.

@@ -11,6 +11,9 @@ use crate::controls::Buttons;
 use crate::display::Display;
 
 /// Runs the application for ever; between ticks it works for the host, or sleeps.
+///
+/// Kept apart from the start-up code, which may panic; this may not (test `no_panic`).
+#[inline(never)]
 pub fn run<Panel, Link, Keys>(mut app: App<Panel, Link, Keys>, mut receiver: Receiver, clock: Clock) -> !
 where
     Panel: Display<Error: Debug>,

@@ -5,11 +5,9 @@ use core::convert::Infallible;
 use crate::canvas::Canvas;
 
 mod ssd0323;
-#[cfg(feature = "stm32f405")]
 mod ssd1306;
 
 pub use ssd0323::{PanelError, Ssd0323};
-#[cfg(feature = "stm32f405")]
 pub use ssd1306::{Ssd1306, Ssd1306Error};
 
 /// A panel.

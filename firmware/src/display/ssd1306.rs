@@ -1,23 +1,47 @@
-//! The SSD1306 controller of a 128 x 64 OLED panel in one colour, over I2C: commands by the `ssd1306` crate.
+//! The SSD1306 controller of a 128 x 64 OLED panel in one colour, over I2C.
 //!
-//! A whole picture takes 1,152 bytes of 9 bits, 26 ms at the bus's 400 kHz and longer than a tick. So only what has
+//! A whole picture takes 1,120 bytes of 9 bits, 25 ms at the bus's 400 kHz and longer than a tick. So only what has
 //! changed is sent: of each page the columns from the first that did to the last.
+//!
+//! Source: Solomon Systech, SSD1306 data sheet.
 
 use embedded_hal::i2c::{Error, ErrorKind, I2c};
-use ssd1306::command::AddrMode;
-use ssd1306::mode::BasicMode;
-use ssd1306::prelude::{DisplayRotation, DisplaySize128x64, I2CInterface};
-use ssd1306::{I2CDisplayInterface, Ssd1306 as Driver};
 
 use super::Display;
-use crate::bitmap::Bitmap;
-use crate::canvas::{Canvas, WIDTH};
+use crate::bitmap::{Bitmap, PAGES};
+use crate::canvas::{Canvas, HEIGHT, WIDTH};
 use crate::config::TICK_RATE;
 
 /// The two addresses that a panel can be set to.
 const ADDRESSES: [u8; 2] = [0x3C, 0x3D];
-/// A message without effect: one command follows, and it is "no operation".
-const NOTHING: [u8; 2] = [0x00, 0xE3];
+/// First byte of a message: one command follows, with its arguments.
+const COMMAND: u8 = 0x00;
+/// First byte of a message: bytes for the window follow.
+const DATA: u8 = 0x40;
+/// A message without effect.
+const NOTHING: &[u8] = &[COMMAND, 0xE3];
+
+/// What wakes the panel, one message a row; its memory is blanked before the last.
+#[rustfmt::skip]
+const WAKE: [&[u8]; 17] = [
+    &[COMMAND, 0xAE],                       // display off
+    &[COMMAND, 0xD5, 0x80],                 // clock as after reset, not divided
+    &[COMMAND, 0xA8, (HEIGHT - 1) as u8],   // rows driven, less one
+    &[COMMAND, 0xD3, 0],                    // rows not shifted
+    &[COMMAND, 0x40],                       // first row shown
+    &[COMMAND, 0x8D, 0x14],                 // charge pump on
+    &[COMMAND, 0x20, 0],                    // data goes to the right, then to the next page of the window
+    &[COMMAND, 0xDA, 0x12],                 // wiring of this panel's rows: odd and even apart
+    &[COMMAND, 0xA1],                       // columns from the left
+    &[COMMAND, 0xC8],                       // rows from the top
+    &[COMMAND, 0xD9, 0x21],                 // precharge, 1 and 2 clocks
+    &[COMMAND, 0x81, 0x5F],                 // contrast, of 0xFF
+    &[COMMAND, 0xDB, 0x40],                 // voltage of rows not driven
+    &[COMMAND, 0xA4],                       // show what is in memory
+    &[COMMAND, 0xA6],                       // not inverted
+    &[COMMAND, 0x2E],                       // no scrolling
+    &[COMMAND, 0xAF],                       // display on
+];
 /// Pictures between two tries of a panel that does not answer: 1 s.
 const RETRY: u32 = TICK_RATE;
 
@@ -68,14 +92,17 @@ impl<Bus: I2c> Ssd1306<Bus> {
     /// The address at which a panel answers.
     fn find(&mut self) -> Result<u8, Ssd1306Error> {
         let [first, second] = ADDRESSES;
-        let mut answers = |address| self.bus.write(address, &NOTHING).map(|()| address);
+        let mut answers = |address| self.bus.write(address, NOTHING).map(|()| address);
         answers(first).or_else(|_| answers(second)).map_err(|error| Ssd1306Error::Absent(error.kind()))
     }
 
     fn wake(&mut self, address: u8) -> Result<(), Ssd1306Error> {
-        let mut driver = driver(&mut self.bus, address);
-        let woken = driver.clear().and_then(|()| driver.init_with_addr_mode(AddrMode::Horizontal));
-        woken.map_err(|_| Ssd1306Error::Lost)
+        let [settings @ .., on] = WAKE;
+        settings.iter().try_for_each(|message| send(&mut self.bus, address, message))?;
+        for page in 0..PAGES {
+            draw(&mut self.bus, address, page, (0, WIDTH - 1), &[0; WIDTH])?;
+        }
+        send(&mut self.bus, address, on)
     }
 }
 
@@ -93,7 +120,7 @@ impl<Bus: I2c> Display for Ssd1306<Bus> {
         }
         let State::Awake { address } = self.state else { return Ok(()) };
         let picture = Bitmap::from(canvas);
-        let sent = send(&mut driver(&mut self.bus, address), &self.memory, &picture);
+        let sent = update(&mut self.bus, address, &self.memory, &picture);
         match sent {
             Ok(()) => self.memory = picture,
             Err(error) => self.state = State::Absent { error, retry_in: RETRY },
@@ -102,24 +129,34 @@ impl<Bus: I2c> Display for Ssd1306<Bus> {
     }
 }
 
-type Panel<'bus, Bus> = Driver<I2CInterface<&'bus mut Bus>, DisplaySize128x64, BasicMode>;
-
-fn driver<Bus: I2c>(bus: &mut Bus, address: u8) -> Panel<'_, Bus> {
-    let interface = I2CDisplayInterface::new_custom_address(bus, address);
-    Driver::new(interface, DisplaySize128x64, DisplayRotation::Rotate0)
-}
-
 /// Sends what differs between the panel's memory and the picture.
-fn send<Bus: I2c>(driver: &mut Panel<Bus>, memory: &Bitmap, picture: &Bitmap) -> Result<(), Ssd1306Error> {
-    // The driver is made anew for every picture and does not know the mode that the panel is in.
-    let mut sent = driver.set_addr_mode(AddrMode::Horizontal);
+fn update(bus: &mut impl I2c, address: u8, memory: &Bitmap, picture: &Bitmap) -> Result<(), Ssd1306Error> {
     for (page, (old, new)) in memory.pages().iter().zip(picture.pages()).enumerate() {
         let differs = |column: &usize| old.get(*column) != new.get(*column);
-        let (Some(first), Some(last)) = ((0..WIDTH).find(differs), (0..WIDTH).rfind(differs)) else { continue };
-        let (top, bytes) = (8 * page as u8, new.get(first..=last).unwrap_or_default());
-        sent = sent
-            .and_then(|()| driver.set_draw_area((first as u8, top), (last as u8 + 1, top + 8)))
-            .and_then(|()| driver.draw(bytes));
+        if let (Some(first), Some(last)) = ((0..WIDTH).find(differs), (0..WIDTH).rfind(differs)) {
+            draw(bus, address, page, (first, last), new.get(first..=last).unwrap_or_default())?;
+        }
     }
-    sent.map_err(|_| Ssd1306Error::Lost)
+    Ok(())
+}
+
+/// Sends the columns from `first` to `last` of a page.
+fn draw(
+    bus: &mut impl I2c,
+    address: u8,
+    page: usize,
+    (first, last): (usize, usize),
+    columns: &[u8],
+) -> Result<(), Ssd1306Error> {
+    send(bus, address, &[COMMAND, 0x21, first as u8, last as u8])?;
+    send(bus, address, &[COMMAND, 0x22, page as u8, page as u8])?;
+    let mut message = [DATA; 1 + WIDTH];
+    for (place, byte) in message.iter_mut().skip(1).zip(columns) {
+        *place = *byte;
+    }
+    send(bus, address, message.get(..=columns.len()).unwrap_or_default())
+}
+
+fn send(bus: &mut impl I2c, address: u8, message: &[u8]) -> Result<(), Ssd1306Error> {
+    bus.write(address, message).map_err(|_| Ssd1306Error::Lost)
 }

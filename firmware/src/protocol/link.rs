@@ -1,5 +1,6 @@
 //! Framing and checking: messages to bytes and back.
 
+use cobs::{CobsEncoder, DecodeResult, DecoderState};
 use crc::{CRC_32_ISO_HDLC, Crc, Table};
 
 use super::Message;
@@ -18,17 +19,22 @@ const CRC: Crc<u32, Table<1>> = Crc::<u32, Table<1>>::new(&CRC_32_ISO_HDLC);
 /// The message as it goes over the wire, delimiter included: the front of `wire`.
 pub fn encode<'wire, M: Message>(message: &M, wire: &'wire mut [u8; MAX_WIRE]) -> &'wire [u8] {
     const { assert!(M::SIZE <= MAX_FIELDS) };
-    let mut body = [0; MAX_BODY];
-    body[0] = VERSION;
-    body[1] = M::KIND;
-    let checked = 2 + M::SIZE;
-    let written = message.write(&mut &mut body[2..checked]);
+    let mut fields = [0; MAX_FIELDS];
+    let written = message.write(&mut &mut fields[..]);
     debug_assert!(written.is_some());
-    let crc = CRC.checksum(&body[..checked]).to_le_bytes();
-    body[checked..checked + 4].copy_from_slice(&crc);
-    let framed = cobs::encode(&body[..checked + 4], wire);
-    wire[framed] = 0;
-    &wire[..=framed]
+    let (head, fields) = ([VERSION, M::KIND], fields.get(..M::SIZE).unwrap_or_default());
+    let mut crc = CRC.digest();
+    crc.update(&head);
+    crc.update(fields);
+    let crc = crc.finalize().to_le_bytes();
+    let mut frame = CobsEncoder::new(wire);
+    let framed = [&head, fields, &crc].into_iter().try_for_each(|part| frame.push(part));
+    debug_assert!(framed.is_ok());
+    let end = frame.finalize();
+    if let Some(delimiter) = wire.get_mut(end) {
+        *delimiter = 0;
+    }
+    wire.get(..=end).unwrap_or_default()
 }
 
 /// Why received bytes are not a message.
@@ -48,44 +54,50 @@ pub enum LinkError {
 /// Cuts a byte stream into checked messages; resynchronises at the next delimiter after any damage.
 #[derive(Debug)]
 pub struct Decoder {
-    buffer: [u8; MAX_WIRE],
-    /// Bytes received since the last delimiter; beyond the buffer they are counted but not kept.
+    cobs: DecoderState,
+    body: [u8; MAX_BODY],
+    /// Bytes of the body received since the last delimiter; beyond the longest body they are counted but not kept.
     received: usize,
 }
 
 impl Default for Decoder {
     fn default() -> Self {
-        Self { buffer: [0; MAX_WIRE], received: 0 }
+        Self { cobs: DecoderState::default(), body: [0; MAX_BODY], received: 0 }
     }
 }
 
 impl Decoder {
     /// Takes one byte. At the end of a message: its kind and its fields, or what is wrong with it.
     pub fn push(&mut self, byte: u8) -> Option<Result<(u8, &[u8]), LinkError>> {
-        if byte != 0 {
-            if let Some(slot) = self.buffer.get_mut(self.received) {
-                *slot = byte;
+        match self.cobs.feed(byte) {
+            Ok(DecodeResult::NoData | DecodeResult::DataStart) => None,
+            Ok(DecodeResult::DataContinue(byte)) => {
+                if let Some(place) = self.body.get_mut(self.received) {
+                    *place = byte;
+                }
+                self.received = self.received.saturating_add(1);
+                None
             }
-            self.received = self.received.saturating_add(1);
-            return None;
-        }
-        match core::mem::take(&mut self.received) {
-            0 => None, // Repeated delimiters are idle time, not messages.
-            received => Some(self.open(received)),
+            Ok(DecodeResult::DataComplete) => Some(self.finish().and_then(open)),
+            Err(_) => Some(self.finish().and(Err(LinkError::Malformed))),
         }
     }
 
-    fn open(&mut self, received: usize) -> Result<(u8, &[u8]), LinkError> {
-        let wire = self.buffer.get_mut(..received).ok_or(LinkError::TooLong)?;
-        let body = cobs::decode_in_place(wire).map_err(|_| LinkError::Malformed)?;
-        let (checked, crc) = wire[..body].split_last_chunk().ok_or(LinkError::Malformed)?;
-        if CRC.checksum(checked) != u32::from_le_bytes(*crc) {
-            return Err(LinkError::Checksum);
-        }
-        match checked {
-            [VERSION, kind, fields @ ..] => Ok((*kind, fields)),
-            [version, ..] => Err(LinkError::Version(*version)),
-            [] => Err(LinkError::Malformed),
-        }
+    /// The body that the delimiter ends.
+    fn finish(&mut self) -> Result<&[u8], LinkError> {
+        self.body.get(..core::mem::take(&mut self.received)).ok_or(LinkError::TooLong)
+    }
+}
+
+/// The kind and the fields of a body, if it is intact and of this version.
+fn open(body: &[u8]) -> Result<(u8, &[u8]), LinkError> {
+    let (checked, crc) = body.split_last_chunk().ok_or(LinkError::Malformed)?;
+    if CRC.checksum(checked) != u32::from_le_bytes(*crc) {
+        return Err(LinkError::Checksum);
+    }
+    match checked {
+        [VERSION, kind, fields @ ..] => Ok((*kind, fields)),
+        [version, ..] => Err(LinkError::Version(*version)),
+        [] => Err(LinkError::Malformed),
     }
 }

@@ -1,0 +1,145 @@
+//! No panic on the device: every place in the release images that could panic is found and must be one of a short list.
+//!
+//! Found from the panic handler backwards: what branches to it, what branches to that, through the helpers of the core
+//! library, to the places in other code where a panic begins. A place belongs to the innermost function there that is
+//! not of the core library, inlined ones included.
+
+mod branch;
+mod code;
+#[path = "../support/mod.rs"]
+mod support;
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use addr2line::Loader;
+use host_tests::board::BOARDS;
+
+use code::Code;
+
+/// The code that may contain a panic, by how its name begins, and why none ever begins there.
+const PERMITTED: [(&str, &str); 12] = [
+    ("lm3s6965evb::__cortex_m_rt_main", "start-up: the board is taken once, and the default settings are a pendulum"),
+    ("mps2_an386::__cortex_m_rt_main", "as above"),
+    ("stm32f405::__cortex_m_rt_main", "as above"),
+    ("stm32f4xx_hal::rcc::", "start-up: the clock is set up with constant numbers"),
+    ("stm32f4xx_hal::i2c::", "start-up: the bus is set up with constant numbers"),
+    (
+        "firmware::board::stm32f405::log::",
+        "a line of the log within a line: interrupts are off from its start to its end",
+    ),
+    ("defmt_semihosting::", "as above"),
+    ("semihosting::fd::", "a console that could not be opened: then there is no log, and nothing is written"),
+    ("heapless::spsc::", "a queue of length zero, kept at run time: the receiver's is a constant"),
+    ("core::fmt::float::", "digits of numbers as text: only `measure` prints, and it is no application"),
+    ("core::num::flt2dec::", "as above"),
+    ("core::num::bignum::", "as above"),
+];
+
+/// A place where a panic may begin.
+#[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Place {
+    address: u32,
+    /// Functions and lines, the innermost first; the function that holds the place last.
+    frames: Vec<(String, String)>,
+}
+
+impl Place {
+    /// The innermost function that is not of the core library.
+    fn owner(&self) -> &str {
+        let is_core =
+            |name: &&str| name.starts_with("core::") || name.contains(" core::") || name.starts_with("<core::");
+        let mut names = self.frames.iter().map(|(name, _)| name.as_str());
+        names.clone().find(|name| !is_core(name)).or(names.next_back()).unwrap_or_default()
+    }
+
+    fn permission(&self) -> Option<usize> {
+        PERMITTED.iter().position(|(name, _)| self.owner().trim_start_matches('<').starts_with(name))
+    }
+}
+
+/// The helper functions by which the core library panics.
+fn is_helper(name: &str) -> bool {
+    name.starts_with("core::") && (name.contains("panic") || name.ends_with("_fail") || name.ends_with("_failed"))
+}
+
+/// The places outside of the core library's helpers where a panic begins.
+fn places(elf: &Path) -> Vec<Place> {
+    let code = Code::read(elf).unwrap_or_else(|error| panic!("{}: {error}", elf.display()));
+    let lines = Loader::new(elf).unwrap_or_else(|error| panic!("{}: {error}", elf.display()));
+    let mut panicking: Vec<_> = code.functions_named(|name| name.ends_with("rust_begin_unwind")).collect();
+    assert_eq!(panicking.len(), 1, "one panic handler in {}", elf.display());
+    let mut places = BTreeSet::new();
+    let mut seen = 0;
+    while let Some(&function) = panicking.get(seen) {
+        seen += 1;
+        for address in code.calls_of(function).chain(code.pointers_to(function)) {
+            match code.function_at(address) {
+                Some((helper, name)) if is_helper(name) => {
+                    if !panicking.contains(&helper) {
+                        panicking.push(helper);
+                    }
+                }
+                caller => {
+                    let mut frames = frames(&lines, address);
+                    frames.extend(caller.map(|(_, name)| (name.to_owned(), String::new())));
+                    places.insert(Place { address, frames });
+                }
+            }
+        }
+    }
+    places.into_iter().collect()
+}
+
+fn frames(lines: &Loader, address: u32) -> Vec<(String, String)> {
+    let mut frames = Vec::new();
+    let mut found = lines.find_frames(address.into()).unwrap_or_else(|error| panic!("{address:#x}: {error}"));
+    while let Some(frame) = found.next().unwrap_or_else(|error| panic!("{address:#x}: {error}")) {
+        let name = frame.function.and_then(|function| Some(function.demangle().ok()?.into_owned())).unwrap_or_default();
+        let line = frame.location.and_then(|at| Some(format!("{}:{}", at.file?, at.line?))).unwrap_or_default();
+        frames.push((name, line));
+    }
+    frames
+}
+
+/// The images of all boards, each built once, and the one with every arithmetic.
+fn images() -> Vec<PathBuf> {
+    let toolchain = support::toolchain();
+    let binaries = BOARDS.iter().flat_map(|board| [(board.binary, board.target), ("measure", board.target)]);
+    let binaries: BTreeSet<_> = binaries.collect();
+    let build = |(binary, target)| toolchain.build(binary, target).unwrap_or_else(|error| panic!("{error}"));
+    binaries.into_iter().map(build).collect()
+}
+
+#[test]
+fn only_permitted_code_can_panic() {
+    let mut used = BTreeSet::new();
+    let mut refused = Vec::new();
+    for elf in images() {
+        for place in places(&elf) {
+            match place.permission() {
+                Some(row) => {
+                    used.insert(row);
+                }
+                None => refused.push((elf.clone(), place)),
+            }
+        }
+    }
+    let listed = refused.iter().map(|(elf, place)| {
+        let frames: String = place.frames.iter().map(|(name, line)| format!("    {name}\n        {line}\n")).collect();
+        format!("{} {:#x} {}\n{frames}", elf.display(), place.address, place.owner())
+    });
+    assert!(refused.is_empty(), "these can panic:\n{}", listed.collect::<String>());
+    for (row, (name, _)) in PERMITTED.iter().enumerate() {
+        assert!(used.contains(&row), "nothing of {name} can panic any more: strike it off the list");
+    }
+}
+
+/// The search would find a panic: here is one.
+#[test]
+fn an_injected_panic_is_found() {
+    let toolchain = support::toolchain();
+    let elf = toolchain.build("inject-panic", BOARDS[0].target).unwrap_or_else(|error| panic!("{error}"));
+    let found = places(&elf);
+    assert!(found.iter().any(|place| place.owner().starts_with("inject_panic::")), "{found:#?}");
+}
