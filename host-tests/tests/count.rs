@@ -2,7 +2,8 @@
 
 use double_pendulum::Parameters;
 use firmware::measure::{Outcome, Request, SUBJECTS};
-use host_tests::count::{Target, affordable_steps, step_cost};
+use host_tests::count::goal::GOALS;
+use host_tests::count::{FULL_CYCLE, Target, affordable_steps, step_cost};
 use host_tests::toolchain;
 
 /// A tick of the board's clock, 12.5 MHz after reset, under `-icount`, where an instruction takes 1 ns.
@@ -46,6 +47,20 @@ fn the_book_by_the_libm_crate_costs_what_the_trial_found() {
         assert!(expected.contains(&cost.instructions), "{cost:?}");
         assert!(cost.cycles_low <= cost.cycles_high && cost.instructions < cost.cycles_low, "{cost:?}");
         assert!(cost.hot_bytes <= cost.code_bytes && cost.stack_bytes > 0, "{cost:?}");
+    }
+}
+
+#[test]
+fn a_step_costs_no_more_than_its_goal() {
+    for target in &targets() {
+        for goal in GOALS.iter().filter(|goal| goal.cpu == target.board.cpu) {
+            let request =
+                Request { parameters: goal.parameters(), angles: [0.5, 0.5], ..request(goal.arithmetic, FULL_CYCLE) };
+            let steps = affordable_steps(target, &request).unwrap_or_else(|error| panic!("{error}"));
+            let cost = step_cost(target, &Request { steps, ..request }).unwrap_or_else(|error| panic!("{error}"));
+            println!("{}, {}, l2 = {}: {cost:?}", goal.arithmetic, goal.cpu, goal.l2);
+            assert!(cost.cycles_high <= goal.cycles, "{goal:?}: {cost:?}");
+        }
     }
 }
 

@@ -1,5 +1,6 @@
 //! The table of arithmetics under measurement.
 
+use double_pendulum::form::{AngleForm, Compensated, Divided, Followed, Form, PictureForm, Plain};
 use double_pendulum::trig::{Libm, Micromath, Own, SinCos};
 use double_pendulum::{Error, Parameters, Pendulum, Real, State};
 
@@ -9,7 +10,7 @@ use super::{Request, RequestError, Textbook};
 /// An arithmetic that can be measured.
 #[derive(Clone, Copy, Debug)]
 pub struct Subject {
-    /// What a request calls it: precision, form, source of sine and cosine.
+    /// What a request calls it: precision, form if it is not the canonical state, source of sine and cosine or kind of sum.
     pub name: &'static str,
     run: fn(&Request, Each) -> Result<(), Error>,
 }
@@ -26,13 +27,20 @@ impl PartialEq for Subject {
 
 /// Every arithmetic there is, the page's own first.
 pub const SUBJECTS: &[Subject] = &[
-    Subject { name: "f32-textbook-libm", run: run::<Plain<f32, Textbook<f32>>> },
-    Subject { name: "f32-libm", run: run::<Plain<f32, Pendulum<f32, Libm>>> },
-    Subject { name: "f32-micromath", run: run::<Plain<f32, Pendulum<f32, Micromath>>> },
-    Subject { name: "f32-own", run: run::<Plain<f32, Pendulum<f32, Own>>> },
-    Subject { name: "f64-textbook-libm", run: run::<Plain<f64, Textbook<f64>>> },
-    Subject { name: "f64-libm", run: run::<Plain<f64, Pendulum<f64, Libm>>> },
-    Subject { name: "f64-own", run: run::<Plain<f64, Pendulum<f64, Own>>> },
+    Subject { name: "f32-textbook-libm", run: run::<Canonical<f32, Textbook<f32>>> },
+    Subject { name: "f32-libm", run: run::<Canonical<f32, Pendulum<f32, Libm>>> },
+    Subject { name: "f32-micromath", run: run::<Canonical<f32, Pendulum<f32, Micromath>>> },
+    Subject { name: "f32-own", run: run::<Canonical<f32, Pendulum<f32, Own>>> },
+    Subject { name: "f32-angle-compensated", run: run::<Formed<f32, AngleForm<f32>>> },
+    Subject { name: "f32-picture-compensated", run: run::<Formed<f32, PictureForm<f32>>> },
+    Subject { name: "f32-picture-plain", run: run::<Formed<f32, PictureForm<f32, Plain, Followed>>> },
+    Subject { name: "f32-picture-plain-divided", run: run::<Formed<f32, PictureForm<f32, Plain, Divided>>> },
+    Subject { name: "f64-textbook-libm", run: run::<Canonical<f64, Textbook<f64>>> },
+    Subject { name: "f64-libm", run: run::<Canonical<f64, Pendulum<f64, Libm>>> },
+    Subject { name: "f64-own", run: run::<Canonical<f64, Pendulum<f64, Own>>> },
+    Subject { name: "f64-angle-plain", run: run::<Formed<f64, AngleForm<f64, Plain>>> },
+    Subject { name: "f64-angle-compensated", run: run::<Formed<f64, AngleForm<f64, Compensated<f64>>>> },
+    Subject { name: "f64-picture-plain", run: run::<Formed<f64, PictureForm<f64, Plain>>> },
 ];
 
 impl Request<'_> {
@@ -47,8 +55,8 @@ impl Request<'_> {
 trait Stepper: Copy {
     /// At the start of the request.
     fn start(request: &Request) -> Result<Self, Error>;
-    /// One step on.
-    fn step(&mut self);
+    /// Makes `steps` steps.
+    fn advance(&mut self, steps: u32);
     /// The canonical state, SI units.
     fn state(&self) -> State<f64>;
 }
@@ -66,9 +74,7 @@ fn run<S: Stepper>(request: &Request, each: Each) -> Result<(), Error> {
 #[inline(never)]
 fn counted_steps<S: Stepper>(stepper: &mut S, steps: u32) {
     let mut local = *stepper;
-    for _ in 0..steps {
-        local.step();
-    }
+    local.advance(steps);
     *stepper = local;
 }
 
@@ -98,27 +104,59 @@ impl<R: Real, T: SinCos<R>> Equations<R> for Pendulum<R, T> {
 
 /// Classical RK4 on `E` with nothing carried along but the state.
 #[derive(Clone, Copy)]
-struct Plain<R, E> {
+struct Canonical<R, E> {
     equations: E,
     state: State<R>,
     dt: R,
 }
 
-impl<R: Real, E: Equations<R>> Stepper for Plain<R, E> {
+impl<R: Real, E: Equations<R>> Stepper for Canonical<R, E> {
     fn start(request: &Request) -> Result<Self, Error> {
-        let Parameters { m1, m2, l1, l2, g } = request.parameters;
-        let [a1, a2] = request.angles;
-        let parameters = Parameters { m1: R::of(m1), m2: R::of(m2), l1: R::of(l1), l2: R::of(l2), g: R::of(g) };
-        let equations = E::prepare(parameters)?;
-        Ok(Self { equations, state: State::at_rest(R::of(a1), R::of(a2)), dt: R::of(request.dt) })
+        let (parameters, state, dt) = rounded(request);
+        Ok(Self { equations: E::prepare(parameters)?, state, dt })
     }
 
-    fn step(&mut self) {
-        self.state = self.equations.step(&self.state, self.dt);
+    #[inline(always)]
+    fn advance(&mut self, steps: u32) {
+        for _ in 0..steps {
+            self.state = self.equations.step(&self.state, self.dt);
+        }
     }
 
     fn state(&self) -> State<f64> {
         let State { a1, a2, p1, p2 } = self.state;
         State { a1: a1.to_f64(), a2: a2.to_f64(), p1: p1.to_f64(), p2: p2.to_f64() }
     }
+}
+
+/// A form with what it carries.
+#[derive(Clone, Copy)]
+struct Formed<R: Real, F: Form<R>> {
+    form: F,
+    carried: F::Carried,
+}
+
+impl<R: Real, F: Form<R>> Stepper for Formed<R, F> {
+    fn start(request: &Request) -> Result<Self, Error> {
+        let (parameters, state, dt) = rounded(request);
+        let form = F::new(&parameters, dt)?;
+        Ok(Self { form, carried: form.start(&state)? })
+    }
+
+    #[inline(always)]
+    fn advance(&mut self, steps: u32) {
+        self.form.advance(&mut self.carried, steps);
+    }
+
+    fn state(&self) -> State<f64> {
+        self.form.state(&self.carried)
+    }
+}
+
+/// The request's numbers in `R`, each rounded once: the pendulum, the start, the step.
+fn rounded<R: Real>(request: &Request) -> (Parameters<R>, State<R>, R) {
+    let Parameters { m1, m2, l1, l2, g } = request.parameters;
+    let [a1, a2] = request.angles;
+    let parameters = Parameters { m1: R::of(m1), m2: R::of(m2), l1: R::of(l1), l2: R::of(l2), g: R::of(g) };
+    (parameters, State::at_rest(R::of(a1), R::of(a2)), R::of(request.dt))
 }

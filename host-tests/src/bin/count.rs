@@ -19,7 +19,7 @@ struct Arguments {
     /// Only this board
     #[arg(long)]
     board: Option<String>,
-    /// Steps to average over; else 16, or fewer if they are dear
+    /// Steps to average over; else 256, or fewer if they are dear
     #[arg(long)]
     steps: Option<u32>,
     /// The mass of bob 2, kg; that of bob 1 is 1
@@ -59,7 +59,7 @@ fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if !arguments.listing {
         println!("per step of 2^-{} s; cycles are estimated from the published timings", arguments.halvings);
         println!(
-            "{:20} {:16} {:>12} {:>19} {:>8} {:>9} {:>10} {:>11}",
+            "{:25} {:16} {:>12} {:>19} {:>8} {:>9} {:>10} {:>11}",
             "arithmetic",
             "board",
             "instructions",
@@ -99,7 +99,7 @@ fn run(arguments: &Arguments) -> anyhow::Result<()> {
 fn print_row(name: &str, board: &Board, cost: &StepCost) {
     let cycles = format!("{:.1}..{:.1}", cost.cycles_low, cost.cycles_high);
     println!(
-        "{name:20} {:16} {:12.1} {cycles:>19} {:8.1} {:9} {:10} {:11}",
+        "{name:25} {:16} {:12.1} {cycles:>19} {:8.1} {:9} {:10} {:11}",
         board.name, cost.instructions, cost.stalls, cost.hot_bytes, cost.code_bytes, cost.stack_bytes
     );
 }

@@ -1,6 +1,7 @@
 //! Counts what an arithmetic costs on the target: executed instructions (exact), Cortex-M cycles (an **estimate** from
 //! the published instruction timings), bytes of code and bytes of stack.
 
+pub mod goal;
 mod image;
 mod instruction;
 mod pipeline;
@@ -27,11 +28,14 @@ use crate::toolchain::BuildError;
 /// Name of the function, one per arithmetic, that is counted from its first instruction to its return.
 const COUNTED: &str = "::counted_steps";
 
-/// Steps over which an average is fair to what an arithmetic does only now and then.
-pub const FULL_CYCLE: u32 = 16;
+/// Steps over which an average is fair to what an arithmetic does only now and then: a second of steps of 2^-8 s. In it
+/// the rods of a regular motion pass several marks of the angle form; the picture form restores its lengths eight times.
+pub const FULL_CYCLE: u32 = 256;
+/// The rarest thing that an arithmetic does regularly, it does once in so many steps.
+const REGULAR: u64 = 32;
 /// Fewer would show little but the start, where momenta are zero and soft-float arithmetic takes short cuts.
 const LEAST_STEPS: u64 = 4;
-const AFFORDABLE_INSTRUCTIONS: u64 = 200_000;
+const AFFORDABLE_INSTRUCTIONS: u64 = 300_000;
 
 /// Why something could not be counted.
 #[derive(Debug, thiserror::Error)]
@@ -114,7 +118,7 @@ pub struct StepCost {
 pub fn affordable_steps(target: &Target, request: &Request) -> Result<u32, CountError> {
     let one = Profile::of(target, &Request { steps: 1, ..*request })?.cost().instructions;
     let steps = (AFFORDABLE_INSTRUCTIONS / one.max(1)).clamp(LEAST_STEPS, FULL_CYCLE.into());
-    Ok(steps as u32)
+    Ok(if steps < REGULAR { steps } else { steps - steps % REGULAR } as u32)
 }
 
 /// The cost of one step of `request` on `target`, averaged over its steps.

@@ -1,5 +1,7 @@
 //! Errors against the reference, computed on the host: the bits are those of the target (see `identity`).
 
+use std::f64::consts::TAU;
+
 use double_pendulum::{Motion, State};
 use firmware::measure::{Request, SUBJECTS, Subject};
 
@@ -9,7 +11,7 @@ use crate::reference::Reference;
 /// The largest error over a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Error {
-    /// Of an angle, rad.
+    /// Of an angle, rad, whole turns apart.
     pub angle: f64,
     /// Of a bob's place on the panel, pixels.
     pub pixels: f64,
@@ -48,13 +50,20 @@ pub fn error(subject: &Subject, scene: &Scene, halvings: u32, exact: &[[f64; 2]]
     let mut compare = |state: &State<f64>| {
         if let Some(&exact) = samples.next() {
             let angles = [state.a1, state.a2];
-            let angle = (angles[0] - exact[0]).abs().max((angles[1] - exact[1]).abs());
-            worst.angle = worst.angle.max(if angle.is_finite() { angle } else { f64::INFINITY });
+            let angle = apart(angles[0], exact[0]).max(apart(angles[1], exact[1]));
+            worst.angle = worst.angle.max(angle);
             worst.pixels = worst.pixels.max(pixels(scene, angles, exact));
         }
     };
     request(subject, scene, halvings).run(&mut compare).ok()?;
     Some(worst)
+}
+
+/// How far apart two angles point, rad, at most pi: the picture form knows no whole turns. Infinite if one is no number.
+fn apart(angle: f64, exact: f64) -> f64 {
+    let turns = (angle - exact) / TAU;
+    let apart = (turns - turns.round()).abs() * TAU;
+    if apart.is_finite() { apart } else { f64::INFINITY }
 }
 
 /// The larger distance on the panel between where the bobs are drawn and where they belong.

@@ -38,7 +38,7 @@ pub struct Picture<R, S> {
 }
 
 /// Steps from one restoring of the lengths to the next.
-const RESTORING: u64 = 32;
+const RESTORING: u32 = 32;
 
 impl<R: Real, S: Sum<R>, I: Inverse<R>> Form<R> for PictureForm<R, S, I> {
     type Carried = Picture<R, S>;
@@ -61,10 +61,16 @@ impl<R: Real, S: Sum<R>, I: Inverse<R>> Form<R> for PictureForm<R, S, I> {
 
     #[inline]
     fn advance(&self, carried: &mut Self::Carried, steps: u32) {
-        for _ in 0..steps {
-            self.step(carried);
-            carried.steps += 1;
-            if carried.steps % RESTORING == 0 {
+        let mut left = steps;
+        while left > 0 {
+            let until_restoring = RESTORING - carried.steps as u32 % RESTORING;
+            let run = left.min(until_restoring);
+            for _ in 0..run {
+                self.step(carried);
+            }
+            carried.steps += u64::from(run);
+            left -= run;
+            if run == until_restoring {
                 self.restore_lengths(carried);
             }
         }
