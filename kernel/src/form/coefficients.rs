@@ -9,9 +9,9 @@ use crate::state::State;
 /// needless factor.
 ///
 /// With nu = l1/l2, (S, C) = nu (sin D, cos D), P = tau p/(m2 l2^2), and the constants
-/// m = (m1/m2) nu^2, K = ((m1 + m2)/m2) nu^2, G2 = tau^2 g/l1, G1 = K G2:
+/// m = (m1/m2) nu^2, G2 = tau^2 g/l1, G1 = (m + nu^2) G2:
 ///
-/// - r = 1/(m + S^2); u = a1' = (P1 - C P2) r; v = a2' = (K P2 - C P1) r; F = u v S
+/// - r = 1/(m + S^2); u = a1' = (P1 - C P2) r; v = a2' = P2 - C u; F = u v S
 /// - P1' = -G1 sin a1 - F; P2' = -G2 nu sin a2 + F, where nu sin a2 = C sin a1 - S cos a1
 ///
 /// Rods of any lengths cost what equal rods do, and no rate is multiplied by dt.
@@ -21,8 +21,6 @@ pub(crate) struct Coefficients<R> {
     pub norm: R,
     /// m.
     pub inertia: R,
-    /// K.
-    total: R,
     /// G1 and G2.
     gravity: [R; 2],
 }
@@ -53,7 +51,7 @@ impl<R: Real> Coefficients<R> {
         let [p1, p2] = momenta;
         let [gravity1, gravity2] = self.gravity;
         let u = (p1 - c * p2) * inverse;
-        let v = (self.total * p2 - c * p1) * inverse;
+        let v = p2 - c * u;
         let force = u * v * s;
         Rates { angles: [u, v], momenta: [-(gravity1 * sin1) - force, force - gravity2 * (sin1 * c - cos1 * s)] }
     }
@@ -115,18 +113,19 @@ pub(crate) fn prepare<R: Real>(
     let &Parameters { m1, m2, l1, l2, g } = parameters;
     let [m1, m2, l1, l2, g, dt] = [m1, m2, l1, l2, g, dt].map(R::to_f64);
     let norm = l1 / l2;
-    let [inertia, total] = [m1, m1 + m2].map(|mass| R::of(mass / m2 * norm * norm));
+    let [inertia, total] = [m1, m1 + m2].map(|mass| mass / m2 * norm * norm);
 
     let unit = dt / libm::rint(span.weights * span.factor);
     let wished = unit * unit * g / l1;
     let gravity2 = factor_near::<R>(wished, total);
+    let gravity = [R::of(total * gravity2.to_f64()), gravity2];
     let time = if g == 0.0 { unit } else { unit * libm::sqrt(gravity2.to_f64() / wished) };
 
-    let coefficients = Coefficients { norm: R::of(norm), inertia, total, gravity: [total * gravity2, gravity2] };
+    let coefficients = Coefficients { norm: R::of(norm), inertia: R::of(inertia), gravity };
     let scale = Scale { time, momentum: time / (m2 * l2 * l2), lag: dt - span.weights * time * span.factor };
     let in_range = |constant: R| constant.is_normal() && (R::ONE / constant).is_normal();
     let gravity_in_range = g == 0.0 || coefficients.gravity.into_iter().all(R::is_normal);
-    if [coefficients.norm, inertia, total].into_iter().all(in_range) && gravity_in_range {
+    if [coefficients.norm, coefficients.inertia, R::of(total)].into_iter().all(in_range) && gravity_in_range {
         Ok((coefficients, scale))
     } else {
         Err(parameters.out_of_range())
@@ -135,10 +134,11 @@ pub(crate) fn prepare<R: Real>(
 
 /// Of the 65 numbers about `value`, 1 ulp apart, the one whose product with `factor` loses least by rounding.
 ///
-/// G2 may be a little off, for that only alters the unit of time, which is known. The ratio of G1 = K G2 to it may not.
-fn factor_near<R: Real>(value: f64, factor: R) -> R {
+/// G2 may be a little off, for that only alters the unit of time, which is known. The ratio of G1 to it may not: where
+/// bob 1 is light, the fast oscillation goes by the small difference of G1 and nu^2 G2.
+fn factor_near<R: Real>(value: f64, factor: f64) -> R {
     let lost = |candidate: R| {
-        let exact = candidate.to_f64() * factor.to_f64();
+        let exact = candidate.to_f64() * factor;
         (R::of(exact).to_f64() - exact).abs()
     };
     let centre = R::of(value);

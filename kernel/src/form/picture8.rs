@@ -13,7 +13,7 @@ use crate::state::State;
 
 /// As [`PictureForm`], but each step by [`rk8::step`]; the lengths of the directions are restored after each.
 ///
-/// In 10 s of regular motion (0.5 rad, rods of 1 m) 16 steps a second keep the angles to 2e-10 rad, 32 to 1e-12 (`f64`;
+/// In 10 s of regular motion (0.5 rad, rods of 1 m) 16 steps a second keep the angles to 3e-10 rad, 32 to 2e-12 (`f64`;
 /// asserted with the order by test `forms`).
 #[derive(Clone, Copy, Debug)]
 pub struct PictureForm8<R, S = Compensated<R>> {
