@@ -1,13 +1,14 @@
 //! Requests over the serial link, answered by the very application that runs on the boards.
 
 use double_pendulum::Parameters;
-use firmware::job::{Arithmetic, Field, Job, Model, Reading, Request};
+use firmware::job::{Arithmetic, Field, Form, Job, Model, Reading, Request};
 use firmware::protocol::{LinkError, MAX_WIRE, Refused, Sample, Simulate, encode};
 use firmware::service::{Received, Service};
 
 const REQUEST: Request = Request {
     arithmetic: Arithmetic::F32,
     model: Model::General,
+    form: Form::Canonical,
     parameters: Parameters { m1: 1.0, m2: 2.75, l1: 1.0, l2: 0.5, g: 9.8 },
     angles: [2.0, -1.0],
     velocities: [0.5, 0.25],
@@ -31,22 +32,20 @@ fn readings(request: &Request) -> Vec<Reading> {
 }
 
 #[test]
-fn every_arithmetic_and_model_is_answered_in_full() {
-    for &arithmetic in Arithmetic::ALL {
-        for &model in Model::ALL {
-            let parameters = Parameters { l2: 1.0, ..REQUEST.parameters };
-            let request = Request { arithmetic, model, parameters, ..REQUEST };
-            let mut service = Service::default();
-            assert_eq!(send(&mut service, &request.message(7)), [Received::Accepted]);
-            let samples = samples(&mut service);
-            assert_eq!(samples.iter().map(|sample| sample.index).collect::<Vec<_>>(), [0, 1, 2, 3, 4, 5]);
-            for (sample, reading) in samples.iter().zip(readings(&request)) {
-                assert_eq!(sample.request, 7);
-                assert_eq!(
-                    (sample.state, sample.velocities, sample.energy),
-                    (reading.state, reading.velocities, reading.energy)
-                );
-            }
+fn every_arithmetic_model_and_form_is_answered_in_full() {
+    for &(arithmetic, model, form) in Job::WAYS {
+        let parameters = Parameters { l2: 1.0, ..REQUEST.parameters };
+        let request = Request { arithmetic, model, form, parameters, ..REQUEST };
+        let mut service = Service::default();
+        assert_eq!(send(&mut service, &request.message(7)), [Received::Accepted]);
+        let samples = samples(&mut service);
+        assert_eq!(samples.iter().map(|sample| sample.index).collect::<Vec<_>>(), [0, 1, 2, 3, 4, 5]);
+        for (sample, reading) in samples.iter().zip(readings(&request)) {
+            assert_eq!(sample.request, 7);
+            assert_eq!(
+                (sample.state, sample.velocities, sample.energy),
+                (reading.state, reading.velocities, reading.energy)
+            );
         }
     }
 }
@@ -57,6 +56,8 @@ fn a_refusal_names_the_field_and_leaves_the_work_alone() {
     for (message, field) in [
         (Simulate { arithmetic: 0xFF, ..good }, Field::Arithmetic),
         (Simulate { model: 0xFF, ..good }, Field::Model),
+        (Simulate { form: 0xFF, ..good }, Field::Form),
+        (Simulate { arithmetic: Arithmetic::F32Compensated.code(), ..good }, Field::Form),
         (Simulate { parameters: [0.0, 1.0, 1.0, 1.0, 9.8], ..good }, Field::M1),
         (Simulate { parameters: [1.0, -1.0, 1.0, 1.0, 9.8], ..good }, Field::M2),
         (Simulate { parameters: [1.0, 1.0, f64::NAN, 1.0, 9.8], ..good }, Field::L1),

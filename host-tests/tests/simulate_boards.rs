@@ -47,6 +47,23 @@ fn unequal_rods_with_velocities() {
 }
 
 #[test]
+fn compensated_single_precision_in_angles() {
+    same_everywhere(&format!("{FIGURE_7} --step 1/4096 --arithmetic f32-compensated"));
+}
+
+#[test]
+fn compensated_single_precision_in_directions() {
+    same_everywhere(&format!("{FIGURE_7} --step 1/4096 --arithmetic f32-compensated --form picture"));
+}
+
+#[test]
+fn plain_forms() {
+    for (arithmetic, form) in [("f32", "angle"), ("f32", "picture"), ("f64", "angle"), ("f64", "picture")] {
+        same_everywhere(&format!("{FIGURE_7} --step 1/256 --arithmetic {arithmetic} --form {form}"));
+    }
+}
+
+#[test]
 fn closed_form() {
     same_everywhere(
         "--angles 0.1,-0.05 --velocities 0.2,0 --step 1/64 --until 10 --every 1 --arithmetic f64 --model linear",

@@ -2,6 +2,8 @@
 
 use std::process::{Command, Output};
 
+use host_tests::tolerance;
+
 /// Runs the command and waits; everything here takes milliseconds.
 fn simulate(arguments: &str) -> Output {
     Command::new(env!("CARGO_BIN_EXE_simulate"))
@@ -69,6 +71,40 @@ fn models_agree_where_they_must() {
     }
 }
 
+/// Figure 7 turns over, so this holds the whole turns too.
+#[test]
+fn every_form_moves_as_the_canonical_state_does() {
+    let options = "--masses 1,2.75 --angles 171,171 --degrees --step 1/4096 --until 3 --every 1";
+    let canonical = &rows(&format!("{options} --arithmetic f64"))[4];
+    assert!(number(&canonical[2]) > std::f64::consts::PI, "it does not turn over: {canonical:?}");
+    for (form, difference) in [
+        ("f64 --form angle", 1e-10),  // the same method: its roundings, grown by chaos
+        ("f64 --form picture", 1e-7), // the method's own error, grown by chaos
+        ("f32-compensated", 1e-4),    // roundings of 6e-8, grown by chaos
+        ("f32-compensated --form picture", 1e-4),
+    ] {
+        let other = &rows(&format!("{options} --arithmetic {form}"))[4];
+        for column in 1..3 {
+            let apart = (number(&canonical[column]) - number(&other[column])).abs();
+            println!("{form}, column {column}: {apart:e}");
+            assert!(apart < difference, "{form}, column {column}: {apart:e}");
+        }
+    }
+}
+
+#[test]
+fn compensated_single_precision_is_given_to_its_last_digit() {
+    let options = "--angles 0.5,0.5 --gravity 9.8125 --until 10 --every 10";
+    let exact = &rows(&format!("{options} --arithmetic f64 --step 1/4096"))[2];
+    for form in ["angle", "picture"] {
+        let row = &rows(&format!("{options} --step 1/256 --arithmetic f32-compensated --form {form}"))[2];
+        for column in 1..3 {
+            let error = (number(&row[column]) - number(&exact[column])).abs();
+            assert!(error < tolerance::ANGLE_FORM[0], "{form}, column {column}: {error:e}");
+        }
+    }
+}
+
 #[test]
 fn bad_input_gets_one_line_and_exit_code_2() {
     for (arguments, named) in [
@@ -92,6 +128,12 @@ fn bad_input_gets_one_line_and_exit_code_2() {
         ("--model chaotic", "--model"),
         ("--model equal-rods --lengths 1,2", "l2"),
         ("--model linear --gravity 0", "g"),
+        ("--form round", "--form"),
+        ("--form angle --model linear", "--form angle"),
+        ("--form picture --model equal-rods", "--form picture"),
+        ("--form canonical --arithmetic f32-compensated", "--form canonical"),
+        ("--arithmetic f32-compensated --model linear", "--arithmetic f32-compensated"),
+        ("--form angle --angles 1e9,0", "--angles"),
         ("--on moon", "--on"),
         ("--wind 3", "--wind"),
         ("--masses 1e300,1 --lengths 1e200,1", "m1"),

@@ -9,6 +9,8 @@ choice! {
         F64 = 0x64, "f64";
         /// Single precision.
         F32 = 0x32, "f32";
+        /// Single precision whose sums carry their rounding errors along.
+        F32Compensated = 0x33, "f32-compensated";
     }
 }
 
@@ -21,5 +23,17 @@ choice! {
         EqualRods = 1, "equal-rods";
         /// Small oscillations in closed form.
         Linear = 2, "linear";
+    }
+}
+
+choice! {
+    /// The quantities that are stepped.
+    Form {
+        /// The model's own, as its book writes them down.
+        Canonical = 0, "canonical";
+        /// Angles and momenta in the units of the step: [`AngleForm`](double_pendulum::form::AngleForm).
+        Angle = 1, "angle";
+        /// Directions and momenta: [`PictureForm`](double_pendulum::form::PictureForm), its whole turns counted.
+        Picture = 2, "picture";
     }
 }

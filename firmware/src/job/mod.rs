@@ -4,11 +4,12 @@ mod choice;
 mod request;
 mod run;
 
-pub use choice::{Arithmetic, Model};
+pub use choice::{Arithmetic, Form, Model};
 pub use request::{Field, Request};
-pub use run::Job;
+pub use run::{Job, JobError};
 
-/// What one row of the answer holds, SI units; `f32` results are widened, which loses nothing.
+/// What one row of the answer holds, SI units. `f32` results are widened, which loses nothing; those of the fast forms are
+/// given to the last digit they carry.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reading {
     /// a1, a2 (rad), p1, p2 (kg m^2/s).

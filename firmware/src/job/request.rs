@@ -2,7 +2,7 @@
 
 use double_pendulum::{Error, Motion, Parameter, Parameters, Pendulum};
 
-use super::{Arithmetic, Model};
+use super::{Arithmetic, Form, Model};
 use crate::choice::choice;
 use crate::protocol::Simulate;
 
@@ -13,6 +13,8 @@ pub struct Request {
     pub arithmetic: Arithmetic,
     /// The equations.
     pub model: Model,
+    /// What is stepped.
+    pub form: Form,
     /// Masses, lengths and gravity.
     pub parameters: Parameters<f64>,
     /// a1, a2 at the start, rad.
@@ -43,6 +45,7 @@ impl Request {
             request,
             arithmetic: self.arithmetic.code(),
             model: self.model.code(),
+            form: self.form.code(),
             parameters: [m1, m2, l1, l2, g],
             angles: self.angles,
             velocities: self.velocities,
@@ -52,12 +55,13 @@ impl Request {
         }
     }
 
-    /// What a message asks for; refuses an arithmetic or a model that does not exist.
+    /// What a message asks for; refuses an arithmetic, a model or a form that does not exist.
     pub fn from_message(message: &Simulate) -> Result<Self, Field> {
         let [m1, m2, l1, l2, g] = message.parameters;
         Ok(Self {
             arithmetic: Arithmetic::from_code(message.arithmetic).ok_or(Field::Arithmetic)?,
             model: Model::from_code(message.model).ok_or(Field::Model)?,
+            form: Form::from_code(message.form).ok_or(Field::Form)?,
             parameters: Parameters { m1, m2, l1, l2, g },
             angles: message.angles,
             velocities: message.velocities,
@@ -109,6 +113,8 @@ choice! {
         Scene = 17, "scene";
         /// The message itself: of no known kind, or not of that kind's length.
         Message = 18, "message";
+        /// The form, or that there is none such of the model in the arithmetic.
+        Form = 19, "form";
     }
 }
 

@@ -1,8 +1,12 @@
-//! The ways to compute a motion: one row of a table for each pair of arithmetic and model.
+//! The ways to compute a motion: one row of a table for each arithmetic, model and form that go together.
 
+use core::f64::consts::TAU;
+use core::fmt;
+
+use double_pendulum::form::{self, AngleForm, Compensated, PictureForm, Plain, Winding};
 use double_pendulum::{EqualRods, Error, Modes, Motion, Parameters, Pendulum, Real, SmallOscillations, State, Units};
 
-use super::{Arithmetic, Model, Reading, Request};
+use super::{Arithmetic, Field, Form, Model, Reading, Request};
 
 /// One motion under way. It starts at step 0 with the request's angles and velocities.
 trait Run: Sized {
@@ -13,14 +17,17 @@ trait Run: Sized {
 }
 
 macro_rules! runs {
-    ($($name:ident: $arithmetic:ident, $model:ident => $run:ty;)*) => {
+    ($($name:ident: $arithmetic:ident, $model:ident, $form:ident => $run:ty;)*) => {
         #[derive(Clone, Copy, Debug)]
         enum Kind { $($name($run),)* }
 
         impl Kind {
-            fn start(request: &Request) -> Result<Self, Error> {
-                match (request.arithmetic, request.model) {
-                    $((Arithmetic::$arithmetic, Model::$model) => Ok(Kind::$name(<$run>::start(request)?)),)*
+            fn start(request: &Request) -> Result<Self, JobError> {
+                match (request.arithmetic, request.model, request.form) {
+                    $((Arithmetic::$arithmetic, Model::$model, Form::$form) => {
+                        Ok(Kind::$name(<$run>::start(request).map_err(JobError::Refused)?))
+                    })*
+                    (_, _, form) => Err(JobError::NoSuchForm(form)),
                 }
             }
 
@@ -32,16 +39,54 @@ macro_rules! runs {
                 match self { $(Kind::$name(run) => run.reading(),)* }
             }
         }
+
+        const WAYS: &[(Arithmetic, Model, Form)] =
+            &[$((Arithmetic::$arithmetic, Model::$model, Form::$form),)*];
     };
 }
 
 runs! {
-    GeneralF32: F32, General => General<f32>;
-    GeneralF64: F64, General => General<f64>;
-    EqualRodsF32: F32, EqualRods => Equal<f32>;
-    EqualRodsF64: F64, EqualRods => Equal<f64>;
-    LinearF32: F32, Linear => Linear<f32>;
-    LinearF64: F64, Linear => Linear<f64>;
+    GeneralF32: F32, General, Canonical => General<f32>;
+    GeneralF64: F64, General, Canonical => General<f64>;
+    EqualRodsF32: F32, EqualRods, Canonical => Equal<f32>;
+    EqualRodsF64: F64, EqualRods, Canonical => Equal<f64>;
+    LinearF32: F32, Linear, Canonical => Linear<f32>;
+    LinearF64: F64, Linear, Canonical => Linear<f64>;
+    AngleF32Compensated: F32Compensated, General, Angle => Formed<f32, AngleForm<f32, Compensated<f32>>>;
+    AngleF32: F32, General, Angle => Formed<f32, AngleForm<f32, Plain>>;
+    AngleF64: F64, General, Angle => Formed<f64, AngleForm<f64, Plain>>;
+    PictureF32Compensated: F32Compensated, General, Picture => Wound<f32, PictureForm<f32, Compensated<f32>>>;
+    PictureF32: F32, General, Picture => Wound<f32, PictureForm<f32, Plain>>;
+    PictureF64: F64, General, Picture => Wound<f64, PictureForm<f64, Plain>>;
+}
+
+/// Why a request cannot be computed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum JobError {
+    /// There is no such form of the model in the arithmetic.
+    NoSuchForm(Form),
+    /// The kernel refuses a number.
+    Refused(Error),
+}
+
+impl fmt::Display for JobError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            JobError::NoSuchForm(form) => write!(f, "no {} form of this model in this arithmetic", form.name()),
+            JobError::Refused(error) => write!(f, "{error}"),
+        }
+    }
+}
+
+impl core::error::Error for JobError {}
+
+impl From<JobError> for Field {
+    fn from(error: JobError) -> Self {
+        match error {
+            JobError::NoSuchForm(_) => Field::Form,
+            JobError::Refused(error) => error.into(),
+        }
+    }
 }
 
 /// A request being answered: computes the samples one after the other, a bounded amount of work at a time.
@@ -56,8 +101,16 @@ pub struct Job {
 }
 
 impl Job {
-    /// Refuses parameters, angles, velocities and step sizes that the kernel refuses.
-    pub fn new(request: &Request) -> Result<Self, Error> {
+    /// Every arithmetic, model and form that go together.
+    pub const WAYS: &[(Arithmetic, Model, Form)] = WAYS;
+
+    /// The form taken of a `model` in an `arithmetic` where none is asked for; `None` if there is none.
+    pub fn default_form(arithmetic: Arithmetic, model: Model) -> Option<Form> {
+        Self::WAYS.iter().find(|way| (way.0, way.1) == (arithmetic, model)).map(|way| way.2)
+    }
+
+    /// Refuses what does not go together, and parameters, angles, velocities and step sizes that the kernel refuses.
+    pub fn new(request: &Request) -> Result<Self, JobError> {
         let kind = Kind::start(request)?;
         Ok(Self { kind, stride: request.stride, left: request.samples.saturating_add(1), steps: 0 })
     }
@@ -155,6 +208,71 @@ impl<R: Real> Run for Equal<R> {
         let state = self.units.to_si(&self.state);
         reading(&self.si, &state, &self.si.motion(&state))
     }
+}
+
+/// A form of the kernel's, with what it carries.
+#[derive(Clone, Copy, Debug)]
+struct Formed<R: Real, F: form::Form<R>> {
+    form: F,
+    carried: F::Carried,
+    /// In double precision, for readings hold more digits than an `f32`.
+    pendulum: Pendulum<f64>,
+}
+
+impl<R: Real, F: form::Form<R>> Formed<R, F> {
+    fn read(&self, state: &State<f64>) -> Reading {
+        reading(&self.pendulum, state, &self.pendulum.motion(state))
+    }
+}
+
+impl<R: Real, F: form::Form<R>> Run for Formed<R, F> {
+    fn start(request: &Request) -> Result<Self, Error> {
+        let General { pendulum, step_size, state } = General::<R>::start(request)?;
+        let form = F::new(pendulum.parameters(), step_size)?;
+        let Parameters { m1, m2, l1, l2, g } = *pendulum.parameters();
+        let [m1, m2, l1, l2, g] = [m1, m2, l1, l2, g].map(R::to_f64);
+        let pendulum = Pendulum::new(Parameters { m1, m2, l1, l2, g })?;
+        Ok(Self { form, carried: form.start(&state)?, pendulum })
+    }
+
+    fn step(&mut self) {
+        self.form.advance(&mut self.carried, 1);
+    }
+
+    fn reading(&self) -> Reading {
+        self.read(&self.form.state(&self.carried))
+    }
+}
+
+/// A form that knows directions only, its whole turns counted beside it.
+#[derive(Clone, Copy, Debug)]
+struct Wound<R: Real, F: form::Form<R>> {
+    formed: Formed<R, F>,
+    windings: [Winding<R>; 2],
+}
+
+impl<R: Real, F: form::Form<R>> Run for Wound<R, F> {
+    fn start(request: &Request) -> Result<Self, Error> {
+        let formed = Formed::start(request)?;
+        Ok(Self { formed, windings: request.angles.map(|angle| Winding::new(R::of(angle))) })
+    }
+
+    fn step(&mut self) {
+        self.formed.step();
+        let directions = self.formed.form.directions(&self.formed.carried);
+        self.windings.iter_mut().zip(directions).for_each(|(winding, direction)| winding.observe(direction));
+    }
+
+    fn reading(&self) -> Reading {
+        let State { a1, a2, p1, p2 } = self.formed.form.state(&self.formed.carried);
+        let [winding1, winding2] = self.windings;
+        self.formed.read(&State { a1: unwrapped(a1, &winding1), a2: unwrapped(a2, &winding2), p1, p2 })
+    }
+}
+
+/// The angle, rad, that points where `angle` does and has the turns of `winding`.
+fn unwrapped<R: Real>(angle: f64, winding: &Winding<R>) -> f64 {
+    angle + TAU * libm::rint((winding.angle() - angle) / TAU)
 }
 
 /// The closed form: a step costs nothing, only a reading does.

@@ -9,6 +9,8 @@ crate::message! {
         arithmetic: u8,
         /// The equations, by their [`code`](crate::job::Model::code).
         model: u8,
+        /// What is stepped, by its [`code`](crate::job::Form::code).
+        form: u8,
         /// m1, m2 (kg), l1, l2 (m), g (m/s^2).
         parameters: [f64; 5],
         /// a1, a2 at the start, rad.
@@ -31,7 +33,7 @@ crate::message! {
         request: u16,
         /// Counts the samples of the request.
         index: u32,
-        /// a1, a2 (rad), p1, p2 (kg m^2/s); an f32 result is widened, which loses nothing.
+        /// a1, a2 (rad), p1, p2 (kg m^2/s); to the last digit carried; an f32 is widened, which loses nothing.
         state: [f64; 4],
         /// w1, w2, rad/s.
         velocities: [f64; 2],

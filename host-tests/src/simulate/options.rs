@@ -3,7 +3,7 @@
 use clap::Parser;
 use clap::builder::PossibleValuesParser;
 use clap::builder::TypedValueParser;
-use firmware::job::{Arithmetic, Model};
+use firmware::job::{Arithmetic, Form, Model};
 
 use super::Number;
 use crate::board::{BOARDS, Board};
@@ -82,6 +82,9 @@ pub struct Options {
     /// The equations of motion
     #[arg(long, value_name = "NAME", default_value = Model::General.name(), value_parser = choice(Model::ALL, Model::name))]
     pub model: Model,
+    /// The quantities stepped; if not given, canonical, or angle with f32-compensated
+    #[arg(long, value_name = "NAME", value_parser = choice(Form::ALL, Form::name))]
+    pub form: Option<Form>,
     /// Where it is computed: here, or by the firmware on an emulated board
     #[arg(long = "on", value_name = "PLACE", default_value = Place::HOST,
           value_parser = PossibleValuesParser::new(Place::names()).map(|name| Place::named(&name)))]

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use anyhow::{Context, anyhow, ensure};
 use double_pendulum::Parameters;
-use firmware::job::{Field, Job, Request};
+use firmware::job::{Field, Job, JobError, Request};
 
 use super::{Number, Options, Pair};
 
@@ -50,9 +50,14 @@ pub fn plan(options: &Options) -> anyhow::Result<Plan> {
     let angle = |number: &Number| if options.degrees { number.value() * (PI / 180.0) } else { number.value() };
     let both = |Pair(first, second): &Pair| [angle(first), angle(second)];
     let (Pair(m1, m2), Pair(l1, l2)) = (&options.masses, &options.lengths);
+    let Options { arithmetic, model, .. } = *options;
+    let form = options.form.or_else(|| Job::default_form(arithmetic, model));
+    let form =
+        form.with_context(|| format!("--arithmetic {}: not with --model {}", arithmetic.name(), model.name()))?;
     let request = Request {
-        arithmetic: options.arithmetic,
-        model: options.model,
+        arithmetic,
+        model,
+        form,
         parameters: Parameters {
             m1: m1.value(),
             m2: m2.value(),
@@ -66,7 +71,13 @@ pub fn plan(options: &Options) -> anyhow::Result<Plan> {
         stride,
         samples: total / stride,
     };
-    Job::new(&request).map_err(|error| anyhow!("{}: {error}", option_of(error.into())))?;
+    Job::new(&request).map_err(|error| match error {
+        JobError::NoSuchForm(form) => {
+            let [form, arithmetic, model] = [form.name(), arithmetic.name(), model.name()];
+            anyhow!("--form {form}: not with --arithmetic {arithmetic} and --model {model}")
+        }
+        JobError::Refused(error) => anyhow!("{}: {error}", option_of(error.into())),
+    })?;
     Ok(Plan { request, every: every.clone() })
 }
 
@@ -75,6 +86,7 @@ fn option_of(field: Field) -> &'static str {
     match field {
         Field::Arithmetic => "--arithmetic",
         Field::Model => "--model",
+        Field::Form => "--form",
         Field::M1 | Field::M2 => "--masses",
         Field::L1 | Field::L2 => "--lengths",
         Field::G => "--gravity",

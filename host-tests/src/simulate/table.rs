@@ -50,14 +50,14 @@ impl<W: Write> Table<W> {
     fn shortest(&self, number: f64) -> String {
         match self.arithmetic {
             Arithmetic::F32 => shorter(format!("{}", number as f32), format!("{:e}", number as f32)),
-            Arithmetic::F64 => shortest_f64(number),
+            Arithmetic::F64 | Arithmetic::F32Compensated => shortest_f64(number),
         }
     }
 
     fn pattern(&self, number: f64) -> String {
         match self.arithmetic {
             Arithmetic::F32 => format!("{:08x}", (number as f32).to_bits()),
-            Arithmetic::F64 => format!("{:016x}", number.to_bits()),
+            Arithmetic::F64 | Arithmetic::F32Compensated => format!("{:016x}", number.to_bits()),
         }
     }
 }
