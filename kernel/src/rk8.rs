@@ -69,28 +69,34 @@ fn increment_by<R: Real, const N: usize>(
     dt: R,
 ) -> [R; N] {
     let mut slopes = [[R::ZERO; N]; 12];
-    slopes[0] = f(z);
+    let mut latest = f(z);
     for (i, row) in stages.iter().enumerate() {
-        let slope = row.of(&slopes, i + 1);
-        slopes[i + 1] = f(&core::array::from_fn(|n| z[n] + dt * slope[n]));
+        slopes[i] = latest;
+        let slope = row.of(&slopes, i, &latest);
+        latest = f(&core::array::from_fn(|n| z[n] + dt * slope[n]));
     }
-    weights.of(&slopes, 12).map(|slope| dt * slope)
+    weights.of(&slopes, 11, &latest).map(|slope| dt * slope)
 }
 
 impl Row<'_> {
-    /// The weighted sum of the first `count` slopes.
+    /// The weighted sum of the first `count` slopes and the `latest`, which is not looked up among them: a processor would
+    /// wait for it to come back from memory.
     #[inline(always)]
-    fn of<R: Real, const N: usize>(&self, slopes: &[[R; N]; 12], count: usize) -> [R; N] {
+    fn of<R: Real, const N: usize>(&self, slopes: &[[R; N]; 12], count: usize, latest: &[R; N]) -> [R; N] {
         let first = R::of(self.first);
+        let Some((&last, middle)) = self.latest.split_last() else {
+            return latest.map(|slope| first * slope);
+        };
         let mut sum = slopes[0].map(|slope| first * slope);
-        let zeros = count.saturating_sub(self.latest.len());
-        for (&coefficient, slope) in self.latest.iter().zip(slopes.iter().skip(zeros)) {
+        let zeros = count.saturating_sub(middle.len());
+        for (&coefficient, slope) in middle.iter().zip(slopes.iter().skip(zeros)) {
             let coefficient = R::of(coefficient);
             for n in 0..N {
                 sum[n] += coefficient * slope[n];
             }
         }
-        sum
+        let last = R::of(last);
+        core::array::from_fn(|n| sum[n] + last * latest[n])
     }
 }
 
