@@ -1,76 +1,159 @@
-//! Who takes part: the regular scene, classical RK4 in f64, every state kept by those who always do.
+//! Who takes part: this kernel and two integration libraries, each in f64 and each keeping what it always keeps.
 
 use differential_equations::prelude::{ExplicitRungeKutta, IVP, ODE};
-use double_pendulum::trig::Own;
-use double_pendulum::{Parameters, Pendulum, State};
-use ode_solvers::{Rk4, System, Vector4};
+use double_pendulum::form::{AngleForm, Form, PictureForm, PictureForm8, Plain};
+use double_pendulum::{Motion, State};
+use host_tests::reference::Reference;
+use host_tests::trial::largest_difference;
+use ode_solvers::dop_shared::OutputType;
+use ode_solvers::{Dop853, Rk4, System, Vector4};
 
-/// The step, s.
-const DT: f64 = 1.0 / 256.0;
-const ANGLES: [f64; 2] = [0.5, 0.5];
-const PARAMETERS: Parameters<f64> = Parameters { m1: 1.0, m2: 1.0, l1: 1.0, l2: 1.0, g: 9.81 };
+use crate::equations::{Book, Equations, PARAMETERS, Pendulum};
 
-/// One way to take the steps.
+/// A motion from rest.
+pub struct Scene {
+    pub name: &'static str,
+    /// Both angles, rad.
+    angle: f64,
+    /// s.
+    seconds: u32,
+}
+
+pub const SCENES: [Scene; 2] =
+    [Scene { name: "regular", angle: 0.5, seconds: 10 }, Scene { name: "chaotic", angle: 2.0, seconds: 5 }];
+
+/// A scene is followed in parts, so that errors can be taken within it.
+pub const PARTS: u32 = 8;
+
+impl Scene {
+    /// So many parts of the scene, s.
+    fn time(&self, parts: u32) -> f64 {
+        f64::from(self.seconds * parts) / f64::from(PARTS)
+    }
+
+    fn start(&self) -> [f64; 4] {
+        [self.angle, self.angle, 0.0, 0.0]
+    }
+
+    /// The step that divides a part by `steps`, s.
+    fn step(&self, steps: u32) -> f64 {
+        self.time(1) / f64::from(steps)
+    }
+
+    /// Steps of RK4 in a part: 256 a second.
+    pub fn classical_steps(&self) -> u32 {
+        256 * self.seconds / PARTS
+    }
+
+    /// The exact states after each of the last parts, counted.
+    pub fn exact(&self) -> Vec<(u32, State<f64>)> {
+        let mut reference = Reference::new(&PARAMETERS, &Motion::at_rest(self.angle, self.angle));
+        let mut at = |parts| {
+            reference.advance_to(self.time(parts));
+            (parts, reference.state())
+        };
+        (PARTS / 2 + 1..=PARTS).map(&mut at).collect()
+    }
+}
+
+/// One way to follow a scene.
 pub struct Contestant {
     pub name: &'static str,
-    /// The state after so many steps.
-    pub run: fn(u32) -> [f64; 4],
+    /// This kernel, not a peer.
+    pub own: bool,
+    /// The greatest effort worth trying.
+    pub most: u32,
+    /// The state after so many parts of a scene. The effort, the last argument, is the number of steps to a part, or for
+    /// an integrator that chooses its steps a tolerance of 10^(-effort/8).
+    pub run: Run,
 }
 
-/// This kernel first.
-pub const CONTESTANTS: &[Contestant] = &[
-    Contestant { name: "double-pendulum", run: kernel },
-    Contestant { name: "ode_solvers, the book's equations", run: |steps| ode_solvers_rk4(Book, steps) },
-    Contestant { name: "ode_solvers, this kernel's equations", run: |steps| ode_solvers_rk4(pendulum(), steps) },
-    Contestant { name: "differential-equations, the book's equations", run: |steps| differential_rk4(Book, steps) },
-    Contestant { name: "differential-equations, this kernel's", run: |steps| differential_rk4(pendulum(), steps) },
+impl Contestant {
+    /// The largest error of an angle at the `exact` states, rad.
+    pub fn error(&self, scene: &Scene, exact: &[(u32, State<f64>)], effort: u32) -> f64 {
+        let errors = exact.iter().map(|&(parts, exact)| {
+            let state = (self.run)(scene, parts, effort).into();
+            largest_difference(&[state], &[exact])
+        });
+        errors.fold(0.0, f64::max)
+    }
+}
+
+type Run = fn(&Scene, u32, u32) -> [f64; 4];
+
+const fn own(name: &'static str, run: Run) -> Contestant {
+    Contestant { name, own: true, most: 8192, run }
+}
+
+const fn peer(name: &'static str, run: Run) -> Contestant {
+    Contestant { name, own: false, most: 8192, run }
+}
+
+/// A peer that chooses its steps; below a tolerance of 1e-16 there is nothing.
+const fn adaptive(name: &'static str, run: Run) -> Contestant {
+    Contestant { name, own: false, most: 128, run }
+}
+
+/// Classical RK4; this kernel's plain step first.
+pub const CLASSICAL: &[Contestant] = &[
+    own("double-pendulum", |scene, parts, steps| own_step(scene, parts, steps, Pendulum::step)),
+    own("double-pendulum, angle form", form::<AngleForm<f64, Plain>>),
+    own("double-pendulum, angle form compensated", form::<AngleForm<f64>>),
+    own("double-pendulum, picture form", form::<PictureForm<f64, Plain>>),
+    own("double-pendulum, picture form compensated", form::<PictureForm<f64>>),
+    peer("ode_solvers, the book's equations", |scene, parts, steps| ode_solvers_rk4(Book, scene, parts, steps)),
+    peer("ode_solvers, this kernel's equations", |scene, parts, steps| {
+        ode_solvers_rk4(pendulum(), scene, parts, steps)
+    }),
+    peer("differential-equations, the book's equations", |scene, parts, steps| {
+        differential_rk4(Book, scene, parts, steps)
+    }),
+    peer("differential-equations, this kernel's", |scene, parts, steps| {
+        differential_rk4(pendulum(), scene, parts, steps)
+    }),
 ];
 
-/// Right-hand sides in the order a1, a2, p1, p2.
-trait Equations {
-    fn derivatives(&self, z: &[f64; 4]) -> [f64; 4];
+/// For tight errors: order 8, and this kernel's RK4 beside it.
+pub const TIGHT: &[Contestant] = &[
+    own("double-pendulum, picture form of order 8", form::<PictureForm8<f64>>),
+    own("double-pendulum, picture form of RK4", form::<PictureForm<f64>>),
+    own("double-pendulum, order 8", |scene, parts, steps| own_step(scene, parts, steps, Pendulum::step_of_order_8)),
+    adaptive("ode_solvers DOP853, the book's equations", |scene, parts, effort| {
+        ode_solvers_dop853(Book, scene, parts, effort)
+    }),
+    adaptive("ode_solvers DOP853, this kernel's equations", |scene, parts, effort| {
+        ode_solvers_dop853(pendulum(), scene, parts, effort)
+    }),
+    adaptive("differential-equations DOP853, the book's equations", |scene, parts, effort| {
+        differential_dop853(Book, scene, parts, effort)
+    }),
+    adaptive("differential-equations DOP853, this kernel's", |scene, parts, effort| {
+        differential_dop853(pendulum(), scene, parts, effort)
+    }),
+];
+
+fn pendulum() -> Pendulum {
+    Pendulum::with_trig(PARAMETERS).unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn pendulum() -> Pendulum<f64, Own> {
-    match Pendulum::with_trig(PARAMETERS) {
-        Ok(pendulum) => pendulum,
-        Err(error) => panic!("{error}"),
-    }
+fn own_step(
+    scene: &Scene,
+    parts: u32,
+    steps: u32,
+    step: impl Fn(&Pendulum, &State<f64>, f64) -> State<f64>,
+) -> [f64; 4] {
+    let (pendulum, dt) = (pendulum(), scene.step(steps));
+    (0..parts * steps).fold(scene.start().into(), |state, _| step(&pendulum, &state, dt)).into()
 }
 
-impl Equations for Pendulum<f64, Own> {
-    fn derivatives(&self, z: &[f64; 4]) -> [f64; 4] {
-        Pendulum::derivatives(self, z)
-    }
-}
-
-/// The equations as the book prints them, with the standard library's sine and cosine: what a user would write.
-struct Book;
-
-impl Equations for Book {
-    fn derivatives(&self, &[a1, a2, p1, p2]: &[f64; 4]) -> [f64; 4] {
-        let Parameters { m1, m2, l1, l2, g } = PARAMETERS;
-        let (sin, cos) = ((a1 - a2).sin(), (a1 - a2).cos());
-        let den = m1 + m2 * sin * sin;
-        let squares = p1 * p1 * m2 * l2 * l2 - 2.0 * p1 * p2 * m2 * l1 * l2 * cos + p2 * p2 * (m1 + m2) * l1 * l1;
-        let a_1 = p1 * p2 * sin / (l1 * l2 * den);
-        let a_2 = squares * (2.0 * (a1 - a2)).sin() / (2.0 * l1 * l1 * l2 * l2 * den * den);
-        [
-            (p1 * l2 - p2 * l1 * cos) / (l1 * l1 * l2 * den),
-            (p2 * (m1 + m2) * l1 - p1 * m2 * l2 * cos) / (m2 * l1 * l2 * l2 * den),
-            -(m1 + m2) * g * l1 * a1.sin() - a_1 + a_2,
-            -m2 * g * l2 * a2.sin() + a_1 - a_2,
-        ]
-    }
-}
-
-fn kernel(steps: u32) -> [f64; 4] {
-    let pendulum = pendulum();
-    let mut state = State::at_rest(ANGLES[0], ANGLES[1]);
-    for _ in 0..steps {
-        state = pendulum.step(&state, DT);
-    }
-    state.into()
+fn form<F: Form<f64>>(scene: &Scene, parts: u32, steps: u32) -> [f64; 4] {
+    let end = || {
+        let form = F::new(&PARAMETERS, scene.step(steps))?;
+        let mut carried = form.start(&scene.start().into())?;
+        form.advance(&mut carried, parts * steps);
+        Ok::<_, double_pendulum::Error>(form.state(&carried).into())
+    };
+    end().unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// The same equations for either library.
@@ -88,21 +171,44 @@ impl<E: Equations> ODE<f64, [f64; 4]> for Problem<E> {
     }
 }
 
-fn ode_solvers_rk4(equations: impl Equations, steps: u32) -> [f64; 4] {
-    let start = Vector4::new(ANGLES[0], ANGLES[1], 0.0, 0.0);
-    let mut stepper = Rk4::new(Problem(equations), 0.0, start, f64::from(steps) * DT, DT);
-    match stepper.integrate() {
-        Ok(_) => stepper.y_out().last().map_or([f64::NAN; 4], |z| [z[0], z[1], z[2], z[3]]),
-        Err(error) => panic!("{error}"),
+fn ode_solvers_rk4(equations: impl Equations, scene: &Scene, parts: u32, steps: u32) -> [f64; 4] {
+    let start = Vector4::from(scene.start());
+    let mut stepper = Rk4::new(Problem(equations), 0.0, start, scene.time(parts), scene.step(steps));
+    stepper.integrate().unwrap_or_else(|error| panic!("{error}"));
+    stepper.y_out().last().map_or(LOST, |&z| z.into())
+}
+
+fn differential_rk4(equations: impl Equations, scene: &Scene, parts: u32, steps: u32) -> [f64; 4] {
+    let problem = Problem(equations);
+    let method = ExplicitRungeKutta::rk4(scene.step(steps)).max_steps(usize::MAX);
+    match IVP::ode(&problem, 0.0, scene.time(parts), scene.start()).method(method).solve() {
+        Ok(solution) => solution.last().map_or(LOST, |(_, z)| *z),
+        Err(error) => panic!("{error:?}"),
     }
 }
 
-fn differential_rk4(equations: impl Equations, steps: u32) -> [f64; 4] {
-    let start = [ANGLES[0], ANGLES[1], 0.0, 0.0];
-    let problem = Problem(equations);
-    let method = ExplicitRungeKutta::rk4(DT).max_steps(usize::MAX);
-    match IVP::ode(&problem, 0.0, f64::from(steps) * DT, start).method(method).solve() {
-        Ok(solution) => solution.last().map_or([f64::NAN; 4], |(_, z)| *z),
-        Err(error) => panic!("{error:?}"),
+/// What an integrator has found that gives up, as some do at tolerances near the resolution of f64.
+const LOST: [f64; 4] = [f64::NAN; 4];
+
+fn tolerance(effort: u32) -> f64 {
+    10_f64.powf(-f64::from(effort) / 8.0)
+}
+
+fn ode_solvers_dop853(equations: impl Equations, scene: &Scene, parts: u32, effort: u32) -> [f64; 4] {
+    let (start, end, tolerance) = (Vector4::from(scene.start()), scene.time(parts), tolerance(effort));
+    let mut stepper = Dop853::new(Problem(equations), 0.0, end, end, start, tolerance, tolerance);
+    stepper.set_output(OutputType::Sparse);
+    match stepper.integrate() {
+        Ok(_) => stepper.y_out().last().map_or(LOST, |&z| z.into()),
+        Err(_) => LOST,
+    }
+}
+
+fn differential_dop853(equations: impl Equations, scene: &Scene, parts: u32, effort: u32) -> [f64; 4] {
+    let (problem, tolerance) = (Problem(equations), tolerance(effort));
+    let method = ExplicitRungeKutta::dop853().rtol(tolerance).atol(tolerance);
+    match IVP::ode(&problem, 0.0, scene.time(parts), scene.start()).method(method).solve() {
+        Ok(solution) => solution.last().map_or(LOST, |(_, z)| *z),
+        Err(_) => LOST,
     }
 }

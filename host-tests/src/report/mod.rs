@@ -74,12 +74,19 @@ pub fn write(extent: &Extent, targets: &[Target], folder: &Path, bar: &ProgressB
     let energy = energy::table(extent.energy_steps, &tick);
 
     bar.set_message("counting other integrators");
-    let peers = peers::table(extent.peers, &tick)?;
+    let [peers, tight] = peers::tables(extent.peers, &tick)?;
 
     bar.set_message("writing");
     let priced = speed::priced(&points, &costs);
-    let tables =
-        [costs::table(&costs, &SCENES[0]), speed::floors(&points), energy, peers, identity, speed::table(&priced)];
+    let tables = [
+        costs::table(&costs, &SCENES[0]),
+        speed::floors(&points),
+        energy,
+        peers,
+        tight,
+        identity,
+        speed::table(&priced),
+    ];
     let mut charts = Vec::new();
     for scene in &SCENES[..extent.scenes] {
         for target in targets {
