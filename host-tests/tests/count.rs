@@ -1,7 +1,7 @@
 //! The counter against a second way of counting, and the bits of the target against the host's.
 
 use double_pendulum::Parameters;
-use firmware::measure::{Outcome, Request, SUBJECTS};
+use firmware::measure::{Request, SUBJECTS};
 use host_tests::count::goal::GOALS;
 use host_tests::count::{FULL_CYCLE, Target, affordable_steps, step_cost};
 use host_tests::toolchain;
@@ -69,7 +69,7 @@ fn host_and_targets_compute_the_same_bits() {
     let targets = targets();
     for subject in SUBJECTS {
         let request = Request { samples: 8, ..request(subject.name, 64) };
-        let host = Outcome::of(&request).unwrap_or_else(|error| panic!("{error}"));
+        let host = request.outcome().unwrap_or_else(|error| panic!("{error}"));
         for target in &targets {
             let (outcome, _) = target.run(&request).unwrap_or_else(|error| panic!("{error}"));
             assert_eq!(outcome, host, "{} on {}", subject.name, target.board.name);

@@ -7,7 +7,7 @@ use core::fmt::Write;
 use cortex_m::peripheral::{Peripherals, SYST, syst::SystClkSource};
 use cortex_m_semihosting::{debug, hio};
 use firmware::board::semihosting;
-use firmware::measure::{Outcome, Request};
+use firmware::measure::Request;
 
 /// SysTick counts down from here; a run must take fewer ticks.
 const FULL: u32 = 0x00ff_ffff;
@@ -28,8 +28,7 @@ fn run(buffer: &mut [u8]) -> Result<(), ()> {
     let mut output = hio::hstdout()?;
     let mut peripherals = Peripherals::take().ok_or(())?;
     start_clock(&mut peripherals.SYST);
-    let outcome =
-        Request::parse(semihosting::command_line(buffer).ok_or(())?).and_then(|request| Outcome::of(&request));
+    let outcome = Request::parse(semihosting::command_line(buffer).ok_or(())?).and_then(|request| request.outcome());
     let ticks = FULL - SYST::get_current();
     match outcome {
         Ok(outcome) => writeln!(output, "{outcome} {ticks}").map_err(|_| ()),

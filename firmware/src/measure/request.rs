@@ -4,9 +4,6 @@ use core::fmt;
 
 use double_pendulum::{Parameters, State};
 
-/// The reflected CRC-32 of zip and Ethernet.
-const CRC: crc::Crc<u32, crc::NoTable> = crc::Crc::<u32, crc::NoTable>::new(&crc::CRC_32_ISO_HDLC);
-
 /// One run: which arithmetic, from where, how far.
 ///
 /// As text: the name, the samples, the steps, then m1 m2 l1 l2 g a1 a2 dt as the hexadecimal bits of their `f64`.
@@ -77,24 +74,13 @@ impl fmt::Display for Request<'_> {
 /// What a run came to. Two runs are the same to the bit if their outcomes are equal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outcome {
-    /// CRC-32 of the bits of every sampled state.
+    /// CRC-32 of the bits of all that is carried, at every sample.
     pub crc: u32,
     /// The last state.
     pub state: State<f64>,
 }
 
 impl Outcome {
-    /// What `request` comes to.
-    pub fn of(request: &Request) -> Result<Self, RequestError> {
-        let mut digest = CRC.digest();
-        let mut last = State::default();
-        request.run(&mut |state| {
-            <[f64; 4]>::from(*state).iter().for_each(|real| digest.update(&real.to_le_bytes()));
-            last = *state;
-        })?;
-        Ok(Self { crc: digest.finalize(), state: last })
-    }
-
     /// Reads the text form: the CRC, then a1 a2 p1 p2, all as hexadecimal bits.
     pub fn parse(line: &str) -> Result<Self, RequestError> {
         let mut words = line.split_ascii_whitespace();

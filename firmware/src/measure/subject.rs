@@ -5,7 +5,7 @@ use double_pendulum::trig::{Libm, Micromath, Own, SinCos};
 use double_pendulum::{Error, Parameters, Pendulum, Real, State};
 
 use super::textbook::Separate;
-use super::{Request, RequestError, Textbook};
+use super::{Outcome, Request, RequestError, Textbook};
 
 /// An arithmetic that can be measured.
 #[derive(Clone, Copy, Debug)]
@@ -13,6 +13,11 @@ pub struct Subject {
     /// What a request calls it: precision, form if it is not the canonical state, source of sine and cosine or kind of sum.
     pub name: &'static str,
     run: fn(&Request, Each) -> Result<(), Error>,
+    outcome: fn(&Request) -> Result<Outcome, Error>,
+}
+
+const fn subject<S: Stepper>(name: &'static str) -> Subject {
+    Subject { name, run: run::<S>, outcome: outcome::<S> }
 }
 
 /// Is given every sampled state.
@@ -27,27 +32,35 @@ impl PartialEq for Subject {
 
 /// Every arithmetic there is, the page's own first.
 pub const SUBJECTS: &[Subject] = &[
-    Subject { name: "f32-textbook-libm", run: run::<Canonical<f32, Textbook<f32>>> },
-    Subject { name: "f32-libm", run: run::<Canonical<f32, Pendulum<f32, Libm>>> },
-    Subject { name: "f32-micromath", run: run::<Canonical<f32, Pendulum<f32, Micromath>>> },
-    Subject { name: "f32-own", run: run::<Canonical<f32, Pendulum<f32, Own>>> },
-    Subject { name: "f32-angle-compensated", run: run::<Formed<f32, AngleForm<f32>>> },
-    Subject { name: "f32-picture-compensated", run: run::<Formed<f32, PictureForm<f32>>> },
-    Subject { name: "f32-picture-plain", run: run::<Formed<f32, PictureForm<f32, Plain, Followed>>> },
-    Subject { name: "f32-picture-plain-divided", run: run::<Formed<f32, PictureForm<f32, Plain, Divided>>> },
-    Subject { name: "f64-textbook-libm", run: run::<Canonical<f64, Textbook<f64>>> },
-    Subject { name: "f64-libm", run: run::<Canonical<f64, Pendulum<f64, Libm>>> },
-    Subject { name: "f64-own", run: run::<Canonical<f64, Pendulum<f64, Own>>> },
-    Subject { name: "f64-angle-plain", run: run::<Formed<f64, AngleForm<f64, Plain>>> },
-    Subject { name: "f64-angle-compensated", run: run::<Formed<f64, AngleForm<f64, Compensated<f64>>>> },
-    Subject { name: "f64-picture-plain", run: run::<Formed<f64, PictureForm<f64, Plain>>> },
+    subject::<Canonical<f32, Textbook<f32>>>("f32-textbook-libm"),
+    subject::<Canonical<f32, Pendulum<f32, Libm>>>("f32-libm"),
+    subject::<Canonical<f32, Pendulum<f32, Micromath>>>("f32-micromath"),
+    subject::<Canonical<f32, Pendulum<f32, Own>>>("f32-own"),
+    subject::<Formed<f32, AngleForm<f32>>>("f32-angle-compensated"),
+    subject::<Formed<f32, PictureForm<f32>>>("f32-picture-compensated"),
+    subject::<Formed<f32, PictureForm<f32, Plain, Followed>>>("f32-picture-plain"),
+    subject::<Formed<f32, PictureForm<f32, Plain, Divided>>>("f32-picture-plain-divided"),
+    subject::<Canonical<f64, Textbook<f64>>>("f64-textbook-libm"),
+    subject::<Canonical<f64, Pendulum<f64, Libm>>>("f64-libm"),
+    subject::<Canonical<f64, Pendulum<f64, Own>>>("f64-own"),
+    subject::<Formed<f64, AngleForm<f64, Plain>>>("f64-angle-plain"),
+    subject::<Formed<f64, AngleForm<f64, Compensated<f64>>>>("f64-angle-compensated"),
+    subject::<Formed<f64, PictureForm<f64, Plain>>>("f64-picture-plain"),
 ];
 
 impl Request<'_> {
     /// Runs the request and calls `each` with every sampled state.
     pub fn run(&self, each: Each) -> Result<(), RequestError> {
-        let subject = SUBJECTS.iter().find(|subject| subject.name == self.subject);
-        (subject.ok_or(RequestError::UnknownSubject)?.run)(self, each).map_err(RequestError::Refused)
+        (self.subject()?.run)(self, each).map_err(RequestError::Refused)
+    }
+
+    /// Runs the request and takes the CRC.
+    pub fn outcome(&self) -> Result<Outcome, RequestError> {
+        (self.subject()?.outcome)(self).map_err(RequestError::Refused)
+    }
+
+    fn subject(&self) -> Result<&'static Subject, RequestError> {
+        SUBJECTS.iter().find(|subject| subject.name == self.subject).ok_or(RequestError::UnknownSubject)
     }
 }
 
@@ -59,6 +72,8 @@ trait Stepper: Copy {
     fn advance(&mut self, steps: u32);
     /// The canonical state, SI units.
     fn state(&self) -> State<f64>;
+    /// Gives `feed` the bit patterns of all that is carried from step to step.
+    fn bits(&self, feed: impl FnMut(u64));
 }
 
 fn run<S: Stepper>(request: &Request, each: Each) -> Result<(), Error> {
@@ -68,6 +83,19 @@ fn run<S: Stepper>(request: &Request, each: Each) -> Result<(), Error> {
         each(&stepper.state());
     }
     Ok(())
+}
+
+/// The reflected CRC-32 of zip and Ethernet.
+const CRC: crc::Crc<u32, crc::Table<1>> = crc::Crc::<u32, crc::Table<1>>::new(&crc::CRC_32_ISO_HDLC);
+
+fn outcome<S: Stepper>(request: &Request) -> Result<Outcome, Error> {
+    let mut stepper = S::start(request)?;
+    let mut digest = CRC.digest();
+    for _ in 0..request.samples {
+        counted_steps(&mut stepper, request.steps);
+        stepper.bits(|word| digest.update(&word.to_le_bytes()));
+    }
+    Ok(Outcome { crc: digest.finalize(), state: stepper.state() })
 }
 
 /// What the counter counts, from this function's first instruction to its return; it finds it by this name.
@@ -127,6 +155,10 @@ impl<R: Real, E: Equations<R>> Stepper for Canonical<R, E> {
         let State { a1, a2, p1, p2 } = self.state;
         State { a1: a1.to_f64(), a2: a2.to_f64(), p1: p1.to_f64(), p2: p2.to_f64() }
     }
+
+    fn bits(&self, feed: impl FnMut(u64)) {
+        <[R; 4]>::from(self.state).map(R::bits).into_iter().for_each(feed);
+    }
 }
 
 /// A form with what it carries.
@@ -150,6 +182,10 @@ impl<R: Real, F: Form<R>> Stepper for Formed<R, F> {
 
     fn state(&self) -> State<f64> {
         self.form.state(&self.carried)
+    }
+
+    fn bits(&self, feed: impl FnMut(u64)) {
+        F::bits(&self.carried, feed);
     }
 }
 

@@ -1,5 +1,6 @@
 //! The program as the linker left it: code and symbols.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use object::{Object, ObjectSection, ObjectSymbol, SectionKind, SymbolKind};
@@ -7,12 +8,17 @@ use object::{Object, ObjectSection, ObjectSymbol, SectionKind, SymbolKind};
 use super::CountError;
 use super::instruction::Instruction;
 
+/// Halfwords from here on begin a long instruction.
+const LONG: u16 = 0xe800;
+
 /// Code sections and functions of an ELF file.
 #[derive(Debug)]
 pub struct Image {
     /// Start address and bytes.
     code: Vec<(u32, Vec<u8>)>,
     functions: Vec<Function>,
+    /// Where code begins (`true`) and where data in the midst of it, by the mapping symbols `$t` and `$d`.
+    marks: BTreeMap<u32, bool>,
 }
 
 /// A function: literal pools and paths never taken included.
@@ -46,7 +52,13 @@ impl Image {
             .collect();
         functions.sort();
         functions.dedup_by_key(|function| function.address);
-        Ok(Self { code, functions })
+        let is_code = |name: &str| match name.split('.').next() {
+            Some("$t") => Some(true),
+            Some("$d") => Some(false),
+            _ => None,
+        };
+        let marks = file.symbols().filter_map(|symbol| Some((symbol.address() as u32, is_code(symbol.name().ok()?)?)));
+        Ok(Self { code, functions, marks: marks.collect() })
     }
 
     /// The functions whose demangled name contains `part`.
@@ -58,6 +70,23 @@ impl Image {
     pub fn function_at(&self, address: u32) -> Option<&Function> {
         let index = self.functions.partition_point(|function| function.address <= address).checked_sub(1)?;
         self.functions.get(index).filter(|function| address - function.address < function.size)
+    }
+
+    /// Every instruction there is, as its address and its halfwords, the second 0 if it has only one.
+    pub fn words(&self) -> Vec<(u32, u16, u16)> {
+        let mut words = Vec::new();
+        for (start, bytes) in &self.code {
+            let (halfwords, _) = bytes.as_chunks();
+            let mut halfwords = (*start..).step_by(2).zip(halfwords.iter().map(|half| u16::from_le_bytes(*half)));
+            while let Some((address, first)) = halfwords.next() {
+                if self.marks.range(..=address).next_back().is_some_and(|(_, is_code)| *is_code) {
+                    let is_long = first >= LONG;
+                    let second = if is_long { halfwords.next().map_or(0, |(_, second)| second) } else { 0 };
+                    words.push((address, first, second));
+                }
+            }
+        }
+        words
     }
 
     /// The instruction at `address`.

@@ -1,44 +1,92 @@
 //! Whether the host and the chips compute the same bits: what allows errors to be computed on the host.
 
-use firmware::measure::{Outcome, Request, SUBJECTS};
+use firmware::measure::{Request, RequestError, SUBJECTS, Subject};
 
 use super::accuracy::request;
-use super::scene::Scene;
+use super::scene::{SCENES, Scene};
 use super::table::Table;
 use crate::count::{CountError, Target};
 
 /// The step size compared: 2^-8 s.
 const HALVINGS: u32 = 8;
-/// States that go into the CRC.
-const SAMPLES: u32 = 10;
+/// A regular and a chaotic motion.
+const COMPARED: &[Scene] = SCENES.split_at(2).0;
+/// How many times fewer steps are compared where they are computed in software, at a hundred times the cost.
+const SOFTWARE: u32 = 10;
 
-/// CRCs of every arithmetic on the host and on `targets` after `steps` steps of `scene`; the second value tells whether
-/// all agree. `tick` is called after each run.
-pub fn table(targets: &[Target], scene: &Scene, steps: u32, tick: &dyn Fn()) -> Result<(Table, bool), CountError> {
-    let mut rows = Vec::new();
-    let mut all_agree = true;
-    for subject in SUBJECTS {
-        let request = Request { samples: SAMPLES, steps: steps / SAMPLES, ..request(subject, scene, HALVINGS) };
-        let refused = |reason: firmware::measure::RequestError| CountError::Refused {
-            request: request.to_string(),
-            reason: reason.to_string(),
-        };
-        let host = Outcome::of(&request).map_err(refused)?;
-        let mut row = vec![subject.name.to_owned(), format!("{:08x}", host.crc)];
-        let mut agree = true;
-        for target in targets {
-            let (outcome, _) = target.run(&request)?;
-            agree &= outcome == host;
-            row.push(format!("{:08x}", outcome.crc));
-            tick();
-        }
-        row.push(String::from(if agree { "same bits" } else { "DIFFERENT" }));
-        all_agree &= agree;
-        rows.push(row);
+/// How many comparisons are made on one target.
+pub const RUNS: usize = COMPARED.len() * SUBJECTS.len();
+
+/// One arithmetic through one motion on a target and on this host.
+#[derive(Clone, Copy, Debug)]
+pub struct Comparison<'a> {
+    /// What was run.
+    pub request: Request<'a>,
+    /// The motion.
+    pub scene: &'static Scene,
+    /// The processor.
+    pub cpu: &'static str,
+    /// The CRC over every state on this host.
+    pub host: u32,
+    /// The same on the target.
+    pub target: u32,
+}
+
+impl Comparison<'_> {
+    /// Whether all bits are the same.
+    pub fn agrees(&self) -> bool {
+        self.host == self.target
     }
-    let mut columns = vec!["arithmetic", "this host"];
-    columns.extend(targets.iter().map(|target| target.board.cpu));
-    columns.push("verdict");
-    let note = format!("CRC-32 of {SAMPLES} states over {steps} steps of 2^-{HALVINGS} s, scene {}.", scene.name);
-    Ok((Table { name: "bit-identity", title: String::from("Bit identity"), note, columns, rows }, all_agree))
+}
+
+/// The request whose CRC is over all states of the first `steps` steps of 2^-8 s through `scene`.
+pub fn every_state<'a>(subject: &'a Subject, scene: &Scene, steps: u32) -> Request<'a> {
+    Request { samples: steps, steps: 1, ..request(subject, scene, HALVINGS) }
+}
+
+/// Compares every arithmetic over both motions on `target`, over `steps` steps or, where they are computed in software,
+/// a tenth; `tick` is called after each.
+pub fn compare(target: &Target, steps: u32, tick: &dyn Fn()) -> Result<Vec<Comparison<'static>>, CountError> {
+    let runs = COMPARED.iter().flat_map(|scene| SUBJECTS.iter().map(move |subject| (scene, subject)));
+    let compared = runs.map(|(scene, subject)| {
+        let steps = if is_in_hardware(target, subject) { steps } else { steps / SOFTWARE };
+        let request = every_state(subject, scene, steps);
+        let refused =
+            |reason: RequestError| CountError::Refused { request: request.to_string(), reason: reason.to_string() };
+        let host = request.outcome().map_err(refused)?;
+        let (outcome, _) = target.run(&request)?;
+        tick();
+        Ok(Comparison { request, scene, cpu: target.board.cpu, host: host.crc, target: outcome.crc })
+    });
+    compared.collect()
+}
+
+/// Whether the target's floating-point unit does it all. (The `libm` crate's sine of an `f32` is computed in `f64`.)
+fn is_in_hardware(target: &Target, subject: &Subject) -> bool {
+    target.board.cpu == "cortex-m4" && subject.name.starts_with("f32") && !subject.name.ends_with("libm")
+}
+
+/// The comparisons as a table.
+pub fn table(comparisons: &[Comparison]) -> Table {
+    let row = |one: &Comparison| {
+        vec![
+            one.request.subject.to_owned(),
+            one.scene.name.to_owned(),
+            one.cpu.to_owned(),
+            one.request.samples.to_string(),
+            format!("{:08x}", one.host),
+            format!("{:08x}", one.target),
+            String::from(if one.agrees() { "same bits" } else { "DIFFERENT" }),
+        ]
+    };
+    Table {
+        name: "bit-identity",
+        title: String::from("Bit identity"),
+        note: format!(
+            "CRC-32 of all that is carried from step to step, after every single step of 2^-{HALVINGS} s. Where the \
+             processor computes in software, a tenth of the steps."
+        ),
+        columns: vec!["arithmetic", "scene", "processor", "steps", "this host", "target", "verdict"],
+        rows: comparisons.iter().map(row).collect(),
+    }
 }
