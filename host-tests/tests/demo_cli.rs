@@ -7,6 +7,7 @@ use std::io::BufReader;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
+use host_tests::demo::played;
 use host_tests::process::{Output, run, spawn};
 use support::{LIMIT, toolchain};
 
@@ -18,27 +19,6 @@ const SIZE: (u32, u32) = (384, 192);
 
 fn demo(arguments: &[&str]) -> Output {
     run(Command::new(DEMO).args(arguments), LIMIT).unwrap_or_else(|error| panic!("{error}"))
-}
-
-/// The pictures of an animation, one palette index per dot, and the hundredths of a second it takes.
-fn pictures(path: &Path) -> (Vec<Vec<u8>>, u32) {
-    let mut options = gif::DecodeOptions::new();
-    options.set_color_output(gif::ColorOutput::Indexed);
-    let mut decoder = options.read_info(File::open(path).expect("a file")).expect("a GIF file");
-    let (width, height) = (decoder.width(), decoder.height());
-    assert_eq!((u32::from(width), u32::from(height)), SIZE);
-    let mut shown = vec![0; usize::from(width) * usize::from(height)];
-    let (mut pictures, mut time) = (Vec::new(), 0);
-    while let Some(frame) = decoder.read_next_frame().expect("an intact frame") {
-        time += u32::from(frame.delay);
-        for (row, dots) in frame.buffer.chunks(frame.width.into()).enumerate() {
-            let start = (usize::from(frame.top) + row) * usize::from(width) + usize::from(frame.left);
-            let changed = dots.iter().enumerate().filter(|(_, dot)| frame.transparent != Some(**dot));
-            changed.for_each(|(column, &dot)| shown[start + column] = dot);
-        }
-        pictures.push(shown.clone());
-    }
-    (pictures, time)
 }
 
 #[test]
@@ -60,9 +40,11 @@ fn a_recording_shows_a_swinging_pendulum_and_is_the_same_every_time() {
     }
     assert!(summary.contains("dropped frames        0"), "{summary}");
 
-    let (pictures, time) = pictures(&animation);
+    let pictures = played(&animation).expect("a GIF file");
+    let time: u32 = pictures.iter().map(|(_, delay)| u32::from(*delay)).sum();
     assert_eq!((pictures.len(), time), (PICTURES, 100 * SECONDS));
-    let moved = pictures.windows(2).filter(|pair| pair[0] != pair[1]).count();
+    assert!(pictures.iter().all(|(dots, _)| dots.len() == (SIZE.0 * SIZE.1) as usize));
+    let moved = pictures.windows(2).filter(|pair| pair[0].0 != pair[1].0).count();
     assert_eq!(moved, PICTURES - 1, "every picture differs from the one before");
 
     let screenshot = png::Decoder::new(BufReader::new(File::open(last).expect("a file")));

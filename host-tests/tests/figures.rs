@@ -5,10 +5,13 @@ use std::fs;
 use std::path::Path;
 
 use double_pendulum::{Motion, Pendulum, State};
+use firmware::canvas::{Canvas, HEIGHT, WIDTH};
+use firmware::scenes::{AnyScene, SceneName};
+use host_tests::demo::played;
 use host_tests::figures::chaos::{self, Chaos};
 use host_tests::figures::frequencies::Frequencies;
 use host_tests::figures::small::{Point, Small};
-use host_tests::figures::{FOLDER, files};
+use host_tests::figures::{FOLDER, files, panel};
 use host_tests::reference::Reference;
 use host_tests::tolerance;
 
@@ -30,6 +33,45 @@ fn the_committed_files_are_what_the_kernel_gives() {
         .map(|(name, _)| name)
         .collect();
     assert!(wrong.is_empty(), "accept by `cargo figures`: {wrong:?}");
+}
+
+/// Every so many pictures of an animation are compared; two ticks pass from one to the next.
+const EVERY: usize = 30;
+const TICKS_PER_PICTURE: usize = 2;
+
+/// The host's pictures are the emulated panel's (test `qemu_scenes`), so neither may be older than the firmware.
+#[test]
+fn the_committed_animations_show_what_the_host_draws() {
+    let outdated: Vec<_> = SceneName::ALL.iter().filter(|name| !is_shown(**name)).map(|name| name.name()).collect();
+    assert!(outdated.is_empty(), "accept by `cargo figures --animations`: {outdated:?}");
+}
+
+fn is_shown(name: SceneName) -> bool {
+    let Ok(pictures) = played(&Path::new(FOLDER).join(panel::file(name, "gif"))) else { return false };
+    // A recording starts with the first picture that was drawn, at most two ticks after the start.
+    !pictures.is_empty() && (0..=2).any(|late| is_shown_from(late, name, &pictures))
+}
+
+fn is_shown_from(late: usize, name: SceneName, pictures: &[(Vec<u8>, u16)]) -> bool {
+    let mut scene = AnyScene::new(name, &name.first_settings()).expect("a scene of the catalogue");
+    (0..late).for_each(|_| scene.tick());
+    pictures.iter().enumerate().all(|(number, (dots, _))| {
+        if number > 0 {
+            (0..TICKS_PER_PICTURE).for_each(|_| scene.tick());
+        }
+        !number.is_multiple_of(EVERY) || is_shown_as(&scene, dots)
+    })
+}
+
+/// Whether the dots, a square of them for each pixel, are what the scene draws.
+fn is_shown_as(scene: &AnyScene, dots: &[u8]) -> bool {
+    let mut canvas = Canvas::default();
+    scene.draw(&mut canvas);
+    let scale = (dots.len() / (WIDTH * HEIGHT)).isqrt();
+    dots.iter().enumerate().all(|(i, &dot)| {
+        let (x, y) = (i % (WIDTH * scale) / scale, i / (WIDTH * scale) / scale);
+        canvas.get(x as i32, y as i32) == Some(dot)
+    })
 }
 
 /// The mean time from one crossing of zero to the next, s.

@@ -1,17 +1,21 @@
-//! `cargo figures`: writes the book's figures.
+//! `cargo figures`: writes the book's figures and what the panel shows in every scene.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Context;
 use clap::Parser;
+use firmware::scenes::SceneName;
 use host_tests::{cli, figures};
 
-/// Draws the book's figures 2 to 5 and 7 from the kernel, as SVG and PNG.
+/// Draws the book's figures 2 to 5 and 7 from the kernel, as SVG and PNG, and the panel's picture of every scene.
 #[derive(Debug, Parser)]
 #[command(name = "cargo figures")]
 struct Options {
+    /// Also records an animation of every scene, as `cargo demo --scene NAME --headless --record NAME.gif` does
+    #[arg(long)]
+    animations: bool,
     /// Where to write
     #[arg(long, default_value = figures::FOLDER)]
     folder: PathBuf,
@@ -22,7 +26,7 @@ fn main() -> ExitCode {
         Ok(options) => options,
         Err(code) => return code,
     };
-    match write(&options.folder) {
+    match write(&options) {
         Ok(()) => {
             println!("{}", options.folder.display());
             ExitCode::SUCCESS
@@ -31,12 +35,13 @@ fn main() -> ExitCode {
     }
 }
 
-fn write(folder: &Path) -> anyhow::Result<()> {
+fn write(Options { animations, folder }: &Options) -> anyhow::Result<()> {
     for (name, bytes) in figures::files()? {
         let path = folder.join(name);
         let unwritable = || format!("cannot write {}", path.display());
         path.parent().map_or(Ok(()), fs::create_dir_all).with_context(unwritable)?;
         fs::write(&path, bytes).with_context(unwritable)?;
     }
-    Ok(())
+    let recorded = if *animations { SceneName::ALL } else { &[] };
+    recorded.iter().try_for_each(|&scene| figures::panel::record(scene, folder))
 }

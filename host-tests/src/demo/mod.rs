@@ -4,14 +4,16 @@ mod headless;
 mod live;
 mod options;
 mod panel;
+mod play;
 mod plot;
 mod readings;
-mod record;
+pub(crate) mod record;
 mod summary;
 mod tint;
 mod view;
 
 pub use options::Options;
+pub use play::played;
 
 use std::io::{IsTerminal, stdin, stdout};
 use std::path::PathBuf;

@@ -155,26 +155,7 @@ mod tests {
     use firmware::canvas::Canvas;
 
     use super::*;
-
-    /// The greys that an animation shows, picture by picture, each with the hundredths of a second it is shown for.
-    fn played(path: &Path) -> Vec<(Vec<u8>, u16)> {
-        let mut options = gif::DecodeOptions::new();
-        options.set_color_output(gif::ColorOutput::Indexed);
-        let mut decoder = options.read_info(File::open(path).expect("a file")).expect("a GIF file");
-        let width = usize::from(decoder.width());
-        let mut shown = vec![0; width * usize::from(decoder.height())];
-        let mut played = Vec::new();
-        while let Some(frame) = decoder.read_next_frame().expect("an intact frame") {
-            for (i, &value) in frame.buffer.iter().enumerate() {
-                let (x, y) = (i % usize::from(frame.width), i / usize::from(frame.width));
-                if frame.transparent != Some(value) {
-                    shown[(usize::from(frame.top) + y) * width + usize::from(frame.left) + x] = value;
-                }
-            }
-            played.push((shown.clone(), frame.delay));
-        }
-        played
-    }
+    use crate::demo::played;
 
     #[test]
     fn an_animation_shows_every_picture_as_it_was() {
@@ -194,7 +175,7 @@ mod tests {
             recording.add(picture.clone(), tick).expect("it can be written");
         }
         recording.finish().expect("it can be written");
-        let played = played(file.path());
+        let played = played(file.path()).expect("a GIF file");
         assert_eq!(played.len(), pictures.len());
         for (number, (picture, (greys, delay))) in pictures.iter().zip(played).enumerate() {
             assert!(greys == Area::WHOLE.magnified(|x, y| picture.grey(x, y)), "picture {number}");

@@ -1,13 +1,15 @@
-//! `cargo figures`: the book's figures 2 to 5 and 7 from the kernel.
+//! `cargo figures`: the book's figures 2 to 5 and 7 from the kernel, and what the panel shows in every scene.
 //!
-//! Nothing in them depends on the machine, so two runs write the same files.
+//! Nothing in these files depends on the machine, so two runs write the same files.
 
 pub mod chaos;
 pub mod frequencies;
+pub mod panel;
 mod sheet;
 pub mod small;
 
 use anyhow::Result;
+use firmware::scenes::SceneName;
 use sheet::Drawing;
 
 /// The folder in which they are kept.
@@ -24,6 +26,9 @@ pub fn files() -> Result<Vec<File>> {
         files.extend(both(&format!("figures/figure-{number}"), &small::Small::new(number, mass_ratio)?)?);
     }
     files.extend(both("figures/figure-7", &chaos::Chaos::new(1)?)?);
+    for &scene in SceneName::ALL {
+        files.push((panel::file(scene, "png"), panel::picture(scene)?));
+    }
     Ok(files)
 }
 
