@@ -9,6 +9,7 @@ pub mod firmware_run;
 pub mod hard_case;
 pub mod known_answers;
 pub mod page;
+pub mod planning;
 pub mod process;
 pub mod progress;
 pub mod qemu;

@@ -37,6 +37,16 @@ pub enum Parameter {
     Dt,
     /// Ratio of the normal frequencies, fast over slow.
     FrequencyRatio,
+    /// Height of the display, pixels.
+    Height,
+    /// How long a scene is shown, s.
+    Duration,
+    /// Pictures per second.
+    Rate,
+    /// What a step costs, cycles.
+    Cost,
+    /// What may be spent, cycles.
+    Budget,
 }
 
 impl fmt::Display for Parameter {
@@ -56,6 +66,11 @@ impl fmt::Display for Parameter {
             Parameter::P2 => "p2",
             Parameter::Dt => "dt",
             Parameter::FrequencyRatio => "frequency ratio",
+            Parameter::Height => "height",
+            Parameter::Duration => "duration",
+            Parameter::Rate => "rate",
+            Parameter::Cost => "cost",
+            Parameter::Budget => "budget",
         })
     }
 }

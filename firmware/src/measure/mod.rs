@@ -6,5 +6,5 @@ mod subject;
 mod textbook;
 
 pub use request::{Outcome, Request, RequestError};
-pub use subject::{SUBJECTS, Subject};
+pub use subject::{CLOSED_FORM, SUBJECTS, Subject};
 pub use textbook::Textbook;

@@ -1,8 +1,8 @@
 //! The table of arithmetics under measurement.
 
-use double_pendulum::form::{AngleForm, Compensated, Divided, Followed, Form, PictureForm, Plain};
+use double_pendulum::form::{AngleForm, Compensated, Divided, Followed, Form, PictureForm, PictureForm8, Plain};
 use double_pendulum::trig::{Libm, Micromath, Own, SinCos};
-use double_pendulum::{Error, Parameters, Pendulum, Real, State};
+use double_pendulum::{Error, Modes, Motion, Parameters, Pendulum, Real, SmallOscillations, State};
 
 use super::textbook::Separate;
 use super::{Outcome, Request, RequestError, Textbook};
@@ -46,7 +46,11 @@ pub const SUBJECTS: &[Subject] = &[
     subject::<Formed<f64, AngleForm<f64, Plain>>>("f64-angle-plain"),
     subject::<Formed<f64, AngleForm<f64, Compensated<f64>>>>("f64-angle-compensated"),
     subject::<Formed<f64, PictureForm<f64, Plain>>>("f64-picture-plain"),
+    subject::<Formed<f64, PictureForm8<f64>>>("f64-picture8-compensated"),
 ];
+
+/// Small oscillations in closed form: a step is a picture, at any time. Right for small angles alone.
+pub const CLOSED_FORM: Subject = subject::<ClosedForm>("f32-closed-form");
 
 impl Request<'_> {
     /// Runs the request and calls `each` with every sampled state.
@@ -60,7 +64,11 @@ impl Request<'_> {
     }
 
     fn subject(&self) -> Result<&'static Subject, RequestError> {
-        SUBJECTS.iter().find(|subject| subject.name == self.subject).ok_or(RequestError::UnknownSubject)
+        SUBJECTS
+            .iter()
+            .chain([&CLOSED_FORM])
+            .find(|subject| subject.name == self.subject)
+            .ok_or(RequestError::UnknownSubject)
     }
 }
 
@@ -186,6 +194,41 @@ impl<R: Real, F: Form<R>> Stepper for Formed<R, F> {
 
     fn bits(&self, feed: impl FnMut(u64)) {
         F::bits(&self.carried, feed);
+    }
+}
+
+/// The directions of the rods, drawn at one time after the other.
+#[derive(Clone, Copy)]
+struct ClosedForm {
+    motion: SmallOscillations<f32>,
+    step: u32,
+    dt: f32,
+    directions: [[f32; 2]; 2],
+}
+
+impl Stepper for ClosedForm {
+    fn start(request: &Request) -> Result<Self, Error> {
+        let (parameters, state, dt) = rounded(request);
+        let motion = SmallOscillations::new(Modes::new(&parameters)?, &Motion::at_rest(state.a1, state.a2));
+        Ok(Self { motion, step: 0, dt, directions: motion.directions(0.0) })
+    }
+
+    #[inline(always)]
+    fn advance(&mut self, steps: u32) {
+        for _ in 0..steps {
+            self.step += 1;
+            self.directions = self.motion.directions(self.step as f32 * self.dt);
+        }
+    }
+
+    /// Without momenta.
+    fn state(&self) -> State<f64> {
+        let [a1, a2] = self.directions.map(|[sin, cos]| Real::atan2(sin, cos).to_f64());
+        State::at_rest(a1, a2)
+    }
+
+    fn bits(&self, mut feed: impl FnMut(u64)) {
+        self.directions.iter().flatten().for_each(|x| feed(x.bits()));
     }
 }
 

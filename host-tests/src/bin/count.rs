@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use double_pendulum::Parameters;
-use firmware::measure::{Request, SUBJECTS};
+use firmware::measure::{CLOSED_FORM, Request, SUBJECTS};
 use host_tests::board::{BOARDS, Board};
 use host_tests::count::{CountError, FULL_CYCLE, Profile, StepCost, Target, affordable_steps, step_cost};
 use host_tests::{cli, toolchain};
@@ -72,7 +72,9 @@ fn run(arguments: &Arguments) -> anyhow::Result<()> {
     }
     for board in boards {
         let target = Target::build(&toolchain, board)?;
-        for subject in SUBJECTS.iter().filter(|subject| subject.name.contains(&arguments.arithmetic)) {
+        for subject in
+            SUBJECTS.iter().chain([&CLOSED_FORM]).filter(|subject| subject.name.contains(&arguments.arithmetic))
+        {
             let request = Request {
                 subject: subject.name,
                 samples: 1,

@@ -1,0 +1,95 @@
+//! A plan carried out, beside the reference.
+
+use double_pendulum::form::{AngleForm, Direction, Form, PictureForm, PictureForm8, Plain};
+use double_pendulum::plan::{HALF_PIXEL, Plan, Scene, Way};
+use double_pendulum::{Error, Modes, Motion, Parameters, Pendulum, Real, SmallOscillations, State};
+
+use crate::reference::Reference;
+
+/// The directions of both rods.
+type Picture = [Direction<f64>; 2];
+
+/// What became of a plan.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Verdict {
+    /// The last time until which every picture was right to half a pixel, s; the scene's duration if all were.
+    pub horizon: f64,
+    /// The largest error until the horizon that was promised, pixels.
+    pub error: f64,
+}
+
+/// Carries out `plan` and compares each picture with the exact motion, until one is wrong and the promise is over.
+///
+/// The reference is given the scene's own numbers, the plan those that its arithmetic can hold.
+pub fn judge(scene: &Scene, plan: &Plan) -> Result<Verdict, Error> {
+    let mut pictures = pictures(scene, plan)?;
+    let mut reference = Reference::new(&scene.pendulum, &scene.start);
+    let mut verdict = Verdict { horizon: scene.duration, error: 0.0 };
+    let mut right = true;
+    for frame in 1..=scene.frames() {
+        let time = scene.time(frame);
+        let promised = time <= plan.horizon;
+        if !right && !promised {
+            break;
+        }
+        reference.advance_to(time);
+        let Motion { a1, a2, .. } = reference.motion();
+        let error = distance(scene, &pictures(), &[a1, a2].map(|a| [libm::sin(a), libm::cos(a)]));
+        if promised {
+            verdict.error = verdict.error.max(error);
+        }
+        if right && error > f64::from(HALF_PIXEL) {
+            right = false;
+            verdict.horizon = scene.time(frame - 1);
+        }
+    }
+    Ok(verdict)
+}
+
+/// The pictures as the plan's way gives them, one after the other.
+fn pictures(scene: &Scene, plan: &Plan) -> Result<Box<dyn FnMut() -> Picture>, Error> {
+    match plan.way {
+        Way::ClosedForm => closed_form(scene),
+        Way::PicturePlain => stepped::<f32, PictureForm<f32, Plain>>(scene, plan),
+        Way::Picture => stepped::<f32, PictureForm<f32>>(scene, plan),
+        Way::Angle => stepped::<f32, AngleForm<f32>>(scene, plan),
+        Way::Picture8 => stepped::<f64, PictureForm8<f64>>(scene, plan),
+    }
+}
+
+fn stepped<R: Real, F: Form<R> + 'static>(scene: &Scene, plan: &Plan) -> Result<Box<dyn FnMut() -> Picture>, Error> {
+    let state = Pendulum::new(scene.pendulum)?.state(&scene.start);
+    let state: State<R> = <[f64; 4]>::from(state).map(R::of).into();
+    let form = F::new(&rounded(&scene.pendulum), R::of(plan.step))?;
+    let mut carried = form.start(&state)?;
+    let steps = plan.steps;
+    Ok(Box::new(move || {
+        form.advance(&mut carried, steps);
+        form.directions(&carried).map(|direction| direction.map(R::to_f64))
+    }))
+}
+
+fn closed_form(scene: &Scene) -> Result<Box<dyn FnMut() -> Picture>, Error> {
+    let start = <[f64; 4]>::from(scene.start).map(|x| x as f32).into();
+    let motion = SmallOscillations::new(Modes::new(&rounded(&scene.pendulum))?, &start);
+    let (scene, mut frame) = (*scene, 0);
+    Ok(Box::new(move || {
+        frame += 1;
+        motion.directions(scene.time(frame) as f32).map(|direction| direction.map(f64::from))
+    }))
+}
+
+fn rounded<R: Real>(&Parameters { m1, m2, l1, l2, g }: &Parameters<f64>) -> Parameters<R> {
+    let [m1, m2, l1, l2, g] = [m1, m2, l1, l2, g].map(R::of);
+    Parameters { m1, m2, l1, l2, g }
+}
+
+/// How far the farther of the two bobs is off, pixels; infinite if anything is not a number.
+fn distance(scene: &Scene, shown: &Picture, exact: &Picture) -> f64 {
+    let Parameters { l1, l2, .. } = scene.pendulum;
+    let scale = 0.5 * scene.height / (l1 + l2);
+    let off = |length: f64, rod: usize| [0, 1].map(|axis| scale * length * (shown[rod][axis] - exact[rod][axis]));
+    let ([x1, y1], [x2, y2]) = (off(l1, 0), off(l2, 1));
+    let (elbow, tip) = (x1.hypot(y1), (x1 + x2).hypot(y1 + y2));
+    if elbow.is_finite() && tip.is_finite() { elbow.max(tip) } else { f64::INFINITY }
+}
