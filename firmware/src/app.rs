@@ -44,6 +44,9 @@ pub enum Event<Panel, Link> {
     Link(Link),
     /// A motion is asked for over the link.
     Asked,
+    /// The step is too long for the scene's motion, which has left the finite numbers; it stands at its last good
+    /// picture until it is started again.
+    Stopped(Error),
 }
 
 /// The same on a board and in a test: a panel, a byte sink and buttons are all it needs.
@@ -119,6 +122,9 @@ impl<Panel: Display, Link: Write, Keys: Buttons> App<Panel, Link, Keys> {
         }
         self.dropped = self.dropped.wrapping_add(ticks - 1);
         self.log_dropped(&mut log);
+        if let Err(error) = self.player.check() {
+            log(Event::Stopped(error));
+        }
         self.player.draw(&mut self.canvas);
         let scene_cycles = (self.stopwatch)().wrapping_sub(start);
         self.show(scene_cycles, &mut log);
@@ -152,8 +158,10 @@ impl<Panel: Display, Link: Write, Keys: Buttons> App<Panel, Link, Keys> {
 
     /// Does a bounded piece of the work asked for over the link, a step at most; whether there is more.
     pub fn work(&mut self, mut log: impl FnMut(Event<Panel::Error, Link::Error>)) -> bool {
-        if let Some(sample) = self.service.work() {
-            self.send(&sample, &mut log);
+        match self.service.work() {
+            Some(Ok(sample)) => self.send(&sample, &mut log),
+            Some(Err(refused)) => self.send(&refused, &mut log),
+            None => {}
         }
         self.service.is_busy()
     }
@@ -247,10 +255,9 @@ impl<Panel: Display, Link: Write, Keys: Buttons> App<Panel, Link, Keys> {
         }
     }
 
-    /// Sends a message; a delimiter first if the receiver may be in the middle of something else.
+    /// Sends a message, or the part of it that the link takes in time.
     fn send<M: Message>(&mut self, message: &M, log: &mut impl FnMut(Event<Panel::Error, Link::Error>)) {
-        let opening: &[u8] = if self.frames == 0 || self.link_failed { &[0] } else { &[] };
-        let sent = self.link.write_all(opening).and_then(|()| self.link.write_all(encode(message, &mut [0; MAX_WIRE])));
+        let sent = write_whole(&mut self.link, encode(message, &mut [0; MAX_WIRE]));
         report(sent, &mut self.link_failed, |error| log(Event::Link(error)));
     }
 }
@@ -274,6 +281,15 @@ impl Logged {
             grown
         })
     }
+}
+
+/// As [`Write::write_all`], but a link that takes nothing and says so is no reason to panic: the byte counts as sent.
+fn write_whole<Link: Write>(link: &mut Link, mut bytes: &[u8]) -> Result<(), Link::Error> {
+    while !bytes.is_empty() {
+        let sent = link.write(bytes)?;
+        bytes = bytes.get(sent.max(1)..).unwrap_or_default();
+    }
+    Ok(())
 }
 
 /// Notes whether something failed, and says so only if it did not fail before.

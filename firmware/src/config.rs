@@ -75,7 +75,7 @@ pub const TRAIL_POINTS: usize = 60;
 
 // ---- The serial link ------------------------------------------------------------------------------------------------
 
-/// Bits per second. A frame of 70 bytes takes 70 x 10/460,800 = 1.5 ms of the tick's 16.7 ms.
+/// Bits per second. A frame of 71 bytes takes 71 x 10/460,800 = 1.5 ms of the tick's 16.7 ms.
 pub const BAUD: u32 = 460_800;
 /// Received bytes waiting for the application; one tick brings at most 460,800/10/60 = 768 (the queue holds one less
 /// than its size).

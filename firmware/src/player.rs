@@ -1,5 +1,7 @@
 //! What is played: a scene with its settings, and how its time goes.
 
+use double_pendulum::Error;
+
 use crate::canvas::Canvas;
 use crate::command::Command;
 use crate::config::{GREATEST_ANGLE, GREATEST_SPEED, LEAST_SPEED};
@@ -20,13 +22,19 @@ pub struct Player {
     settings: Settings,
     scene: AnyScene,
     pace: Pace,
+    /// As of the last check.
+    report: Report,
+    /// The motion has left the finite numbers.
+    stopped: bool,
 }
 
 impl Player {
     /// Plays the page with `settings`; the kernel's error if they describe no pendulum.
-    pub fn new(settings: Settings) -> Result<Self, double_pendulum::Error> {
+    pub fn new(settings: Settings) -> Result<Self, Error> {
         let name = SceneName::Page;
-        Ok(Self { name, settings, scene: AnyScene::new(name, &settings)?, pace: Pace::default() })
+        let scene = AnyScene::new(name, &settings)?;
+        let report = scene.report();
+        Ok(Self { name, settings, scene, pace: Pace::default(), report, stopped: false })
     }
 
     /// Does what is asked; if that cannot be, nothing is changed and the error names what is wrong. Whether the scene
@@ -54,15 +62,32 @@ impl Player {
 
     /// Advances by one tick of the clock, which may be any number of the scene's.
     pub fn tick(&mut self) {
+        if self.stopped {
+            return;
+        }
         for _ in 0..self.pace.tick() {
             self.scene.tick();
         }
     }
 
-    /// Draws the scene, and a mark if its time stands still.
+    /// Takes the scene's numbers if they are finite; else stops its time for good and says why, once. To be asked
+    /// before each picture: what is drawn and reported stays at the last good one.
+    pub fn check(&mut self) -> Result<(), Error> {
+        if self.stopped {
+            return Ok(());
+        }
+        let report = self.scene.report();
+        report.state.finite().inspect_err(|_| self.stopped = true)?;
+        self.report = report;
+        Ok(())
+    }
+
+    /// Draws the scene over the canvas that holds its last picture, and a mark if its time stands still.
     pub fn draw(&self, canvas: &mut Canvas) {
-        self.scene.draw(canvas);
-        if self.pace.paused {
+        if !self.stopped {
+            self.scene.draw(canvas);
+        }
+        if self.is_paused() {
             text::pause_mark(canvas);
         }
     }
@@ -77,14 +102,14 @@ impl Player {
         &self.settings
     }
 
-    /// The scene in numbers.
+    /// The scene in numbers, as of the last check.
     pub fn report(&self) -> Report {
-        self.scene.report()
+        self.report
     }
 
     /// Whether the scene's time stands still.
     pub fn is_paused(&self) -> bool {
-        self.pace.paused
+        self.pace.paused || self.stopped
     }
 
     /// The answer to [`Command::Ask`].
@@ -93,7 +118,7 @@ impl Player {
         Status {
             request,
             scene: self.name.code(),
-            paused: self.pace.paused.into(),
+            paused: self.is_paused().into(),
             steps: self.pace.steps,
             speed: self.pace.speed as f32 / WHOLE_TICK as f32,
             parameters: [parameters.m1, parameters.m2, parameters.l1, parameters.l2, parameters.g],
@@ -108,6 +133,8 @@ impl Player {
 
     fn start(&mut self, name: SceneName, settings: Settings) -> Result<bool, Field> {
         self.scene = AnyScene::new(name, &settings)?;
+        self.report = self.scene.report();
+        self.stopped = false;
         self.name = name;
         self.settings = settings;
         Ok(true)

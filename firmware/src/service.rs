@@ -2,7 +2,7 @@
 //! leaves free.
 
 use crate::command::Order;
-use crate::job::{Field, Job, Request};
+use crate::job::{Field, Job, Reading, Request};
 use crate::protocol::{Decoder, LinkError, Message, Refused, Sample, Simulate};
 
 /// What a received message came to.
@@ -63,21 +63,21 @@ impl Service {
         self.work.is_some()
     }
 
-    /// Computes at most one step; the sample, when one is due.
-    pub fn work(&mut self) -> Option<Sample> {
-        let work = self.work.as_mut()?;
-        let reading = work.job.advance();
-        let sample = reading.map(|reading| Sample {
-            request: work.request,
-            index: work.index,
-            state: reading.state,
-            velocities: reading.velocities,
-            energy: reading.energy,
-        });
-        work.index = work.index.wrapping_add(u32::from(sample.is_some()));
-        if work.job.is_finished() {
+    /// Computes at most one step; the sample, when one is due. A refusal ends the work: the step is too long for the
+    /// motion, which has left the finite numbers.
+    pub fn work(&mut self) -> Option<Result<Sample, Refused>> {
+        let Work { request, index, job } = self.work.as_mut()?;
+        let (request, number) = (*request, *index);
+        let reading = job.advance();
+        *index = index.wrapping_add(u32::from(matches!(reading, Ok(Some(_)))));
+        if job.is_finished() {
             self.work = None;
         }
-        sample
+        match reading {
+            Ok(reading) => reading.map(|Reading { state, velocities, energy }| {
+                Ok(Sample { request, index: number, state, velocities, energy })
+            }),
+            Err(error) => Some(Err(Refused { request, field: Field::from(error).code() })),
+        }
     }
 }

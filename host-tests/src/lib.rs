@@ -6,6 +6,7 @@ pub mod count;
 pub mod demo;
 pub mod figures;
 pub mod firmware_run;
+pub mod fuzz;
 pub mod hard_case;
 pub mod known_answers;
 pub mod page;

@@ -23,12 +23,15 @@ fn send(service: &mut Service, message: &Simulate) -> Vec<Received> {
 }
 
 fn samples(service: &mut Service) -> Vec<Sample> {
-    std::iter::from_fn(|| service.is_busy().then(|| service.work())).flatten().collect()
+    std::iter::from_fn(|| service.is_busy().then(|| service.work()))
+        .flatten()
+        .map(|sample| sample.expect("a finite motion"))
+        .collect()
 }
 
 fn readings(request: &Request) -> Vec<Reading> {
     let mut job = Job::new(request).unwrap_or_else(|error| panic!("{error}"));
-    std::iter::from_fn(|| (!job.is_finished()).then(|| job.advance())).flatten().collect()
+    std::iter::from_fn(|| (!job.is_finished()).then(|| job.advance().expect("a finite motion"))).flatten().collect()
 }
 
 #[test]
@@ -91,7 +94,7 @@ fn a_new_request_replaces_the_one_under_way() {
 fn damage_is_reported_and_the_next_request_is_answered() {
     let mut wire = [0; MAX_WIRE];
     let mut damaged = encode(&REQUEST.message(1), &mut wire).to_vec();
-    damaged[2] ^= 0x10; // the kind
+    damaged[3] ^= 0x10; // the kind
     let mut service = Service::default();
     let received: Vec<_> = damaged.iter().filter_map(|&byte| service.receive(byte)).collect();
     assert_eq!(received, [Received::Damaged(LinkError::Checksum)]);

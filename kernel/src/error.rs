@@ -47,6 +47,8 @@ pub enum Parameter {
     Cost,
     /// What may be spent, cycles.
     Budget,
+    /// The energy, J.
+    Energy,
 }
 
 impl fmt::Display for Parameter {
@@ -71,6 +73,7 @@ impl fmt::Display for Parameter {
             Parameter::Rate => "rate",
             Parameter::Cost => "cost",
             Parameter::Budget => "budget",
+            Parameter::Energy => "energy",
         })
     }
 }
@@ -126,6 +129,13 @@ pub enum Error {
         /// Length of rod 2, m.
         l2: f64,
     },
+    /// Every input was good, but a step was too long for the motion and led out of the finite numbers.
+    Diverged {
+        /// The first quantity that is no longer finite.
+        parameter: Parameter,
+        /// Its value: infinite or NaN.
+        value: f64,
+    },
     /// Each value alone is fine, but a product of them leaves the range of the arithmetic;
     /// names the value farthest from 1.
     OutOfRange {
@@ -145,8 +155,19 @@ impl Error {
             | Error::Negative { parameter, .. }
             | Error::TooLarge { parameter, .. }
             | Error::TooSmall { parameter, .. }
+            | Error::Diverged { parameter, .. }
             | Error::OutOfRange { parameter, .. } => parameter,
             Error::UnequalRods { .. } => Parameter::L2,
+        }
+    }
+}
+
+impl Error {
+    /// The same of a result, where it was of an input.
+    pub(crate) fn diverged(self) -> Self {
+        match self {
+            Error::NotFinite { parameter, value } => Error::Diverged { parameter, value },
+            other => other,
         }
     }
 }
@@ -162,6 +183,12 @@ impl fmt::Display for Error {
             }
             Error::TooSmall { parameter, value, limit } => {
                 write!(f, "{parameter} = {value:?}: must be at least {limit:?}")
+            }
+            Error::Diverged { parameter, value } => {
+                write!(
+                    f,
+                    "{parameter} = {value:?}: the motion has left the finite numbers; the step is too long for it"
+                )
             }
             Error::UnequalRods { l1, l2 } => write!(f, "l2 = {l2:?}: the equal-rod form needs l2 = l1 = {l1:?}"),
             Error::OutOfRange { parameter, value } => {

@@ -51,7 +51,8 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
             trig: PhantomData,
         };
         let [inverse_l1, inverse_l2] = pendulum.inverse_length;
-        let products = [m1 + m2, inverse_l1, inverse_l2, pendulum.total_over_m2, pendulum.coupling];
+        // 1/m1 is the greatest that 1/den becomes.
+        let products = [R::ONE / m1, m1 + m2, inverse_l1, inverse_l2, pendulum.total_over_m2, pendulum.coupling];
         let torque_in_range = |torque: R| g == R::ZERO || torque.is_normal();
         if products.into_iter().all(R::is_normal) && pendulum.torque.into_iter().all(torque_in_range) {
             Ok(pendulum)

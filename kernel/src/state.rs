@@ -31,6 +31,30 @@ impl<R: Real> State<R> {
         let &Self { a1, a2, p1, p2 } = self;
         check_finite([(Parameter::A1, a1), (Parameter::A2, a2), (Parameter::P1, p1), (Parameter::P2, p2)])
     }
+
+    /// The state itself if all its numbers are finite, else [`Error::Diverged`]: to be asked after a step.
+    ///
+    /// A step from a good state is finite whenever it resolves the motion; one too long for it may lead anywhere
+    /// ([`Modes::step_limit`](crate::Modes::step_limit) holds for small motions only). Once a number is not finite none
+    /// ever is again, so it is enough to ask before the state is used.
+    ///
+    /// ```
+    /// use double_pendulum::{Error, Parameters, Pendulum, State};
+    ///
+    /// let pendulum = Pendulum::new(Parameters { m1: 1.0, m2: 1.0, l1: 1.0, l2: 1.0, g: 9.8 })?;
+    /// let mut state = State::at_rest(3.0, 1.0);
+    /// let stopped = loop {
+    ///     match pendulum.step(&state, 1e3).finite() {
+    ///         Ok(next) => state = next,
+    ///         Err(error) => break error, // and `state` is the last good one
+    ///     }
+    /// };
+    /// assert!(matches!(stopped, Error::Diverged { .. }) && state.check().is_ok());
+    /// # Ok::<(), Error>(())
+    /// ```
+    pub fn finite(self) -> Result<Self, Error> {
+        self.check().map(|()| self).map_err(Error::diverged)
+    }
 }
 
 /// In the book's order: a1, a2, p1, p2.

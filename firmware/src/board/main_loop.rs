@@ -40,6 +40,7 @@ fn log<Panel: Debug, Link: Debug>(event: Event<Panel, Link>) {
         Event::Damaged { messages, total, last } => {
             defmt::warn!("{} damaged messages, {} since reset, the last: {}", messages, total, last);
         }
+        Event::Stopped(error) => defmt::error!("stopped: {}", error),
         Event::Asked => defmt::info!("computing a motion on request"),
         Event::Link(error) => defmt::error!("serial link: {}", Debug2Format(&error)),
     }

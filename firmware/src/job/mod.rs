@@ -4,6 +4,8 @@ mod choice;
 mod request;
 mod run;
 
+use double_pendulum::{Error, Parameter};
+
 pub use choice::{Arithmetic, Form, Model};
 pub use request::{Field, Request};
 pub use run::{Job, JobError};
@@ -18,4 +20,24 @@ pub struct Reading {
     pub velocities: [f64; 2],
     /// Energy, J; zero potential at the pivot.
     pub energy: f64,
+}
+
+impl Reading {
+    /// The reading itself if all its numbers are finite, else [`Error::Diverged`].
+    fn finite(self) -> Result<Self, Error> {
+        let ([a1, a2, p1, p2], [w1, w2]) = (self.state, self.velocities);
+        let numbers = [
+            (Parameter::A1, a1),
+            (Parameter::A2, a2),
+            (Parameter::P1, p1),
+            (Parameter::P2, p2),
+            (Parameter::W1, w1),
+            (Parameter::W2, w2),
+            (Parameter::Energy, self.energy),
+        ];
+        match numbers.into_iter().find(|(_, value)| !value.is_finite()) {
+            None => Ok(self),
+            Some((parameter, value)) => Err(Error::Diverged { parameter, value }),
+        }
+    }
 }

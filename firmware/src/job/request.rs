@@ -120,6 +120,9 @@ choice! {
 
 impl From<Error> for Field {
     fn from(error: Error) -> Self {
+        if let Error::Diverged { .. } = error {
+            return Field::StepSize;
+        }
         match error.parameter() {
             Parameter::M1 => Field::M1,
             Parameter::M2 | Parameter::Mu => Field::M2,

@@ -121,20 +121,22 @@ impl Job {
     }
 
     /// Computes at most one step; the reading, when a sample is due.
-    pub fn advance(&mut self) -> Option<Reading> {
+    ///
+    /// Ends with [`Error::Diverged`] instead of a reading that is not finite: every one given before it is.
+    pub fn advance(&mut self) -> Result<Option<Reading>, Error> {
         if self.is_finished() {
-            return None;
+            return Ok(None);
         }
         if self.steps > 0 {
             self.kind.step();
             self.steps -= 1;
         }
         if self.steps > 0 {
-            return None;
+            return Ok(None);
         }
         self.left -= 1;
         self.steps = self.stride;
-        Some(self.kind.reading())
+        self.kind.reading().finite().map(Some).inspect_err(|_| self.left = 0)
     }
 }
 

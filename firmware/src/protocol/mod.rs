@@ -1,6 +1,6 @@
 //! What travels over the serial link, both ways: the chip and the host use this same code.
 //!
-//! A message on the wire is `COBS(version, kind, fields, CRC)` followed by one zero byte. The version and the kind are
+//! A message on the wire is `COBS(version, kind, fields, CRC)` between two zero bytes. The version and the kind are
 //! one byte each; the fields of each kind are listed in the tables here, little-endian and without padding; the CRC is
 //! CRC-32/ISO-HDLC over everything before it, little-endian.
 
@@ -13,5 +13,5 @@ mod simulate;
 pub use command::{Ask, Choose, Done, Pause, Restart, Set, Status, Step};
 pub use frame::Frame;
 pub use layout::{Field, Message};
-pub use link::{Decoder, LinkError, MAX_WIRE, VERSION, encode};
+pub use link::{Decoder, LinkError, MAX_FIELDS, MAX_WIRE, VERSION, encode, frame};
 pub use simulate::{Refused, Sample, Simulate};

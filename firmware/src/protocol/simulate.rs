@@ -43,7 +43,7 @@ crate::message! {
 }
 
 crate::message! {
-    /// Chip to host: the request cannot be computed, or the command not obeyed; nothing was changed.
+    /// Chip to host: the request cannot be computed, or not to its end, or the command not obeyed; nothing was changed.
     Refused = 0x03 {
         /// The request it answers.
         request: u16,

@@ -21,7 +21,7 @@ pub use table::Table;
 pub fn on_host(plan: &Plan, mut row: impl FnMut(&Reading) -> io::Result<()>) -> anyhow::Result<()> {
     let mut job = Job::new(&plan.request)?;
     while !job.is_finished() {
-        if let Some(reading) = job.advance() {
+        if let Some(reading) = job.advance()? {
             row(&reading)?;
         }
     }

@@ -41,7 +41,7 @@ pub use picture8::PictureForm8;
 pub use sum::{Compensated, Plain, Sum};
 pub use winding::Winding;
 
-use crate::error::Error;
+use crate::error::{Error, Parameter, check_finite};
 use crate::params::Parameters;
 use crate::real::Real;
 use crate::state::State;
@@ -66,6 +66,22 @@ pub trait Form<R: Real>: Copy + core::fmt::Debug {
 
     /// Makes `steps` steps. How they are dealt out to calls makes no difference to any bit.
     fn advance(&self, carried: &mut Self::Carried, steps: u32);
+
+    /// As [`advance`](Self::advance), but all or nothing: [`Error::Diverged`] if the steps led out of the finite numbers,
+    /// and `carried` stays as it was.
+    ///
+    /// Asked once for all the steps, at the cost of one [`state`](Self::state) and [`directions`](Self::directions).
+    fn try_advance(&self, carried: &mut Self::Carried, steps: u32) -> Result<(), Error> {
+        let mut next = *carried;
+        self.advance(&mut next, steps);
+        self.state(&next).finite()?;
+        // A lost motion may have an angle and yet no direction: the picture form's lengths overflow first.
+        let [[sin1, cos1], [sin2, cos2]] = self.directions(&next);
+        check_finite([(Parameter::A1, sin1), (Parameter::A1, cos1), (Parameter::A2, sin2), (Parameter::A2, cos2)])
+            .map_err(Error::diverged)?;
+        *carried = next;
+        Ok(())
+    }
 
     /// The directions of the two rods, all that a drawing needs; no trigonometry.
     fn directions(&self, carried: &Self::Carried) -> [Direction<R>; 2];

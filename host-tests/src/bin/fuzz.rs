@@ -1,0 +1,113 @@
+//! `cargo fuzz-all`: random input for everything that takes input, and a serial link that flips bits.
+
+use std::io::{IsTerminal, stderr};
+use std::process::ExitCode;
+
+use anyhow::{Context, bail};
+use clap::Parser;
+use host_tests::cli;
+use host_tests::fuzz::{Flips, Search, TARGETS, Tally, Target};
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// The target that is no search: frames through a link that flips bits.
+const FLIPS: &str = "flips";
+/// Executions between two looks at the bar.
+const BATCH: u64 = 1000;
+
+/// Runs random input through everything that takes input from outside; nothing may panic, hang or break its promise.
+#[derive(Debug, Parser)]
+#[command(name = "cargo fuzz-all")]
+struct Arguments {
+    /// Executions of each target
+    #[arg(long, default_value_t = 1_000_000)]
+    executions: u64,
+    /// Only this target; `flips` sends frames through a link that flips bits
+    #[arg(long)]
+    target: Option<String>,
+    /// The chance that a bit is flipped
+    #[arg(long, default_value_t = 1e-4)]
+    chance: f64,
+    /// Keep an input for each new outcome in host-tests/corpus
+    #[arg(long)]
+    keep: bool,
+}
+
+fn main() -> ExitCode {
+    let arguments: Arguments = match cli::parse() {
+        Ok(arguments) => arguments,
+        Err(code) => return code,
+    };
+    let wanted = |name: &str| arguments.target.as_deref().is_none_or(|target| target == name);
+    if !TARGETS.iter().map(|target| target.name).chain([FLIPS]).any(wanted) {
+        let names: Vec<_> = TARGETS.iter().map(|target| target.name).chain([FLIPS]).collect();
+        return cli::refuse(format!("error: no such target; there are {}", names.join(", ")));
+    }
+    if !(0.0..1.0).contains(&arguments.chance) {
+        return cli::refuse("error: --chance must be at least 0 and below 1");
+    }
+    let mut done = Ok(());
+    for target in TARGETS.iter().filter(|target| wanted(target.name)) {
+        done = done.and_then(|()| search(*target, &arguments));
+    }
+    if wanted(FLIPS) {
+        done = done.and_then(|()| flips(&arguments));
+    }
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn search(target: Target, arguments: &Arguments) -> anyhow::Result<()> {
+    let mut search = Search::new(target).context("the corpus")?;
+    let bar = bar(target.name, arguments.executions);
+    for done in 0..arguments.executions {
+        if let Err(found) = search.step() {
+            bail!("{}: a promise is broken after {done} executions by {:02x?}", target.name, found.input);
+        }
+        if done % BATCH == 0 {
+            bar.set_position(done);
+        }
+    }
+    bar.finish_and_clear();
+    println!(
+        "{:10} {:>10} executions, {:>4} outcomes, nothing found",
+        target.name,
+        arguments.executions,
+        search.outcomes()
+    );
+    if arguments.keep {
+        search.keep().context("the corpus")?;
+    }
+    Ok(())
+}
+
+fn flips(arguments: &Arguments) -> anyhow::Result<()> {
+    let mut link = Flips::new(1, arguments.chance);
+    let bar = bar(FLIPS, arguments.executions);
+    for done in 0..arguments.executions {
+        link.send();
+        if done % BATCH == 0 {
+            bar.set_position(done);
+        }
+    }
+    bar.finish_and_clear();
+    let Tally { sent, damaged, received, forged, missed, lost } = link.tally();
+    println!("{FLIPS:10} {sent:>10} frames, {damaged} damaged, {received} received, {lost} missing by their numbers");
+    if forged + missed > 0 || lost != damaged || received + damaged != sent {
+        bail!("{forged} damaged frames were taken for good, {missed} good ones were missed");
+    }
+    Ok(())
+}
+
+fn bar(name: &'static str, executions: u64) -> ProgressBar {
+    if !stderr().is_terminal() {
+        eprintln!("{name} ...");
+    }
+    let style = ProgressStyle::with_template("{prefix:10} {elapsed} {wide_bar} {pos}/{len}, {eta} left");
+    let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
+    ProgressBar::new(executions).with_style(style).with_prefix(name)
+}

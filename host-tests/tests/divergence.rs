@@ -1,0 +1,141 @@
+//! A step that is too long for a motion: a typed error, and the last good state is kept. Never NaN.
+
+use std::fmt::Debug;
+
+use double_pendulum::form::{AngleForm, Form, PictureForm, PictureForm8};
+use double_pendulum::{Error, Parameters, Pendulum, Real, State};
+use firmware::app::{App, Event};
+use firmware::controls::NoButtons;
+use firmware::display::NoDisplay;
+use firmware::job::{Arithmetic, Field, Form as Stepped, Model, Request};
+use firmware::protocol::{Refused, Sample};
+use firmware::service::Service;
+use firmware::settings::Settings;
+
+/// Far beyond the stability limit of 0.5 s; it leads out of the finite numbers within a few hundred steps.
+const TOO_LONG: f64 = 50.0;
+/// More than enough of them.
+const MANY: usize = 100_000;
+
+fn parameters<R: Real>() -> Parameters<R> {
+    Parameters { m1: R::ONE, m2: R::ONE, l1: R::ONE, l2: R::ONE, g: R::of(9.8) }
+}
+
+fn start<R: Real>() -> State<R> {
+    State::at_rest(R::of(3.0), R::of(1.0))
+}
+
+fn plain_steps_stop<R: Real>() {
+    let pendulum = Pendulum::new(parameters::<R>()).unwrap_or_else(|error| panic!("{error}"));
+    let mut state = start();
+    let stopped = (0..MANY).find_map(|_| match pendulum.step(&state, R::of(TOO_LONG)).finite() {
+        Ok(next) => {
+            state = next;
+            None
+        }
+        Err(error) => Some(error),
+    });
+    assert!(matches!(stopped, Some(Error::Diverged { .. })), "{stopped:?}");
+    assert_eq!(state.check(), Ok(()), "the last good state is kept");
+}
+
+fn form_stops<R: Real, F: Form<R>>() {
+    let form = F::new(&parameters(), R::of(TOO_LONG)).unwrap_or_else(|error| panic!("{error}"));
+    let mut carried = form.start(&start()).unwrap_or_else(|error| panic!("{error}"));
+    let bits = |carried: &F::Carried| {
+        let mut bits = Vec::new();
+        F::bits(carried, |word| bits.push(word));
+        bits
+    };
+    let mut before = bits(&carried);
+    let stopped = (0..MANY).find_map(|_| {
+        let advanced = form.try_advance(&mut carried, 1);
+        if advanced.is_ok() {
+            before = bits(&carried);
+        }
+        advanced.err()
+    });
+    assert!(matches!(stopped, Some(Error::Diverged { .. })), "{stopped:?} of {}", std::any::type_name::<F>());
+    assert_eq!(bits(&carried), before, "what is carried stays as it was");
+    assert_eq!(form.state(&carried).check(), Ok(()));
+}
+
+#[test]
+fn every_stepper_stops_at_its_last_good_state() {
+    plain_steps_stop::<f32>();
+    plain_steps_stop::<f64>();
+    form_stops::<f32, AngleForm<f32>>();
+    form_stops::<f64, AngleForm<f64>>();
+    form_stops::<f32, PictureForm<f32>>();
+    form_stops::<f64, PictureForm<f64>>();
+    form_stops::<f64, PictureForm8<f64>>();
+}
+
+/// Within the limit for small motions, which is all that can be known beforehand, but too long for this one.
+fn too_quick() -> Request {
+    let parameters = Parameters { m1: 1.0, m2: 100.0, ..parameters() };
+    let (angles, velocities) = ([3.0, 1.0], [3000.0, -3000.0]);
+    let (arithmetic, model, form) = (Arithmetic::F32, Model::General, Stepped::Canonical);
+    Request {
+        arithmetic,
+        model,
+        form,
+        parameters,
+        angles,
+        velocities,
+        step_size: 0.06,
+        stride: 1,
+        samples: MANY as u32,
+    }
+}
+
+#[test]
+fn a_job_is_refused_when_its_motion_is_lost() {
+    let mut service = Service::default();
+    let mut wire = [0; firmware::protocol::MAX_WIRE];
+    for byte in firmware::protocol::encode(&too_quick().message(5), &mut wire) {
+        service.receive(*byte);
+    }
+    let answers: Vec<Result<Sample, Refused>> =
+        std::iter::from_fn(|| service.is_busy().then(|| service.work())).flatten().collect();
+    let (last, samples) = answers.split_last().expect("answers");
+    assert_eq!(*last, Err(Refused { request: 5, field: Field::StepSize.code() }), "after {} samples", samples.len());
+    let is_finite = |answer: &Result<Sample, Refused>| {
+        answer.is_ok_and(|sample| sample.state.iter().chain(&sample.velocities).all(|number| number.is_finite()))
+    };
+    assert!(!samples.is_empty() && samples.iter().all(is_finite));
+    assert!(!service.is_busy());
+}
+
+/// A pendulum so short that the scenes' step only just suits its small motions.
+fn too_short() -> Settings {
+    let parameters = Parameters { m1: 1.0, m2: 1.0, l1: 1e-4, l2: 1e-4, g: 9.8 };
+    Settings { parameters, degrees: [179.0, 60.0], velocities: [3e4, -3e4] }
+}
+
+#[test]
+fn a_scene_stands_at_its_last_good_picture() {
+    let mut app = App::new(too_short(), NoDisplay, Vec::new(), NoButtons).unwrap_or_else(|error| panic!("{error}"));
+    let mut stops = Vec::new();
+    let mut last_good = None;
+    for tick in 1..=600 {
+        let report = app.player().report();
+        app.run_to(tick, |event| {
+            if let Event::Stopped(error) = event {
+                stops.push(error);
+                last_good = Some(report);
+            }
+        });
+        assert_eq!(app.player().report().state.check(), Ok(()), "at tick {tick}");
+    }
+    assert!(matches!(*stops, [Error::Diverged { .. }]), "said once: {stops:?}");
+    assert_eq!(Some(app.player().report()), last_good);
+    assert!(app.player().is_paused());
+    let picture = app.canvas().clone();
+    app.run_to(601, |event: Event<_, _>| no_news(event));
+    assert_eq!(*app.canvas(), picture);
+}
+
+fn no_news<Panel: Debug, Link: Debug>(event: Event<Panel, Link>) {
+    panic!("{event:?}");
+}

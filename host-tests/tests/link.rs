@@ -1,0 +1,77 @@
+//! What the check of a message detects.
+
+use std::collections::HashSet;
+
+use firmware::protocol::{Decoder, LinkError, MAX_FIELDS, MAX_WIRE, VERSION, frame};
+
+/// What the decoder says of a wire.
+fn decoded(wire: &[u8]) -> Option<Result<(u8, Vec<u8>), LinkError>> {
+    let mut decoder = Decoder::default();
+    let own = |message: Result<(u8, &[u8]), LinkError>| message.map(|(kind, fields)| (kind, fields.to_vec()));
+    wire.iter().fold(None, |last, &byte| decoder.push(byte).map(own).or(last))
+}
+
+fn wire(kind: u8, fields: &[u8]) -> Vec<u8> {
+    frame(kind, fields, &mut [0; MAX_WIRE]).to_vec()
+}
+
+/// The four bytes of the check, found by what the decoder takes: the body is version, kind, fields, CRC.
+fn crc(kind: u8, fields: &[u8]) -> u32 {
+    let wire = wire(kind, fields);
+    let body = cobs::decode_vec(&wire[1..wire.len() - 1]).expect("a COBS encoding");
+    let (_, crc) = body.split_last_chunk().expect("a body");
+    u32::from_le_bytes(*crc)
+}
+
+/// Every change of up to four bits of a body is detected, in the longest message and so in every shorter one.
+///
+/// A CRC is linear: the change that a flipped bit makes in it does not depend on the message. Four flips go unseen if their
+/// changes cancel, that is if two pairs of flips make the same change, or a single one that of three.
+#[test]
+fn every_change_of_four_bits_is_detected() {
+    let bits = 8 * (MAX_FIELDS + 2);
+    let clean = crc(0, &[0; MAX_FIELDS]);
+    // The longest message there is has 93 bytes of fields, so that its version lies where a flip here still reaches. A flip
+    // in the CRC changes one bit of it.
+    let mut changes: Vec<u32> = (8..bits)
+        .map(|bit| {
+            let mut message = [0; MAX_FIELDS + 1];
+            message[(bit - 8) / 8] ^= 1 << (bit % 8);
+            crc(message[0], &message[1..]) ^ clean
+        })
+        .collect();
+    changes.extend((0..32).map(|bit| 1_u32 << bit));
+    let mut pairs = HashSet::new();
+    for (index, one) in changes.iter().enumerate() {
+        assert_ne!(*one, 0);
+        assert!(changes[..index].iter().all(|other| pairs.insert(one ^ other)), "two pairs of flips cancel");
+    }
+    assert!(changes.iter().all(|one| !pairs.contains(one)), "three flips cancel");
+    assert!(!pairs.contains(&0), "two flips cancel");
+}
+
+/// Each single flipped bit on the wire, delimiters included, costs the message and nothing else.
+#[test]
+fn every_flipped_bit_on_the_wire_is_detected() {
+    let (kind, fields) = (0x82, [7, 0, 0, 255, 0, 1, 2, 0, 0, 3]);
+    let (good, next) = (wire(kind, &fields), wire(3, &[9; 96]));
+    assert_eq!(decoded(&good), Some(Ok((kind, fields.to_vec()))));
+    for bit in 0..8 * good.len() {
+        let mut bad = good.clone();
+        bad[bit / 8] ^= 1 << (bit % 8);
+        assert!(!matches!(decoded(&bad), Some(Ok(_))), "bit {bit}");
+        assert_eq!(decoded(&[bad, next.clone()].concat()), Some(Ok((3, vec![9; 96]))), "after bit {bit}");
+    }
+}
+
+/// The check itself: a message whose CRC is wrong is refused although its framing is right.
+#[test]
+fn a_wrong_check_is_refused() {
+    let body = [VERSION, 1, 2, 3];
+    let sealed = |crc: u32| [&[0], &*cobs::encode_vec(&[&body[..], &crc.to_le_bytes()].concat()), &[0]].concat();
+    let right = crc(1, &[2, 3]);
+    assert_eq!(decoded(&sealed(right)), Some(Ok((1, vec![2, 3]))));
+    for wrong in [right ^ 1, !right, 0] {
+        assert_eq!(decoded(&sealed(wrong)), Some(Err(LinkError::Checksum)));
+    }
+}
