@@ -31,6 +31,11 @@
 //! # Ok::<(), double_pendulum::Error>(())
 //! ```
 //!
+//! # Versions
+//!
+//! Semantic versioning. [`Error`] and [`Parameter`] may get new variants, and [`Real`] is sealed, so that it may get new
+//! methods; both are minor versions, as is a higher least Rust (1.88 now). A change of any result's bits is a major one.
+//!
 //! # References
 //!
 //! - `[math24]` "Double Pendulum", math24.net, 23 August 2021: the book of this crate. Three of its formulas are
