@@ -5,7 +5,7 @@ use embedded_io::Write;
 
 use crate::canvas::Canvas;
 use crate::command::{Command, Order};
-use crate::config::{MOST_MESSAGES_PER_TICK, MOST_TICKS_PER_FRAME, TICK_RATE};
+use crate::config::{MOST_MESSAGES_PER_TICK, MOST_TICKS_PER_FRAME, STEP, TICK_RATE};
 use crate::controls::{Buttons, Controls};
 use crate::display::Display;
 use crate::job::Field;
@@ -47,6 +47,9 @@ pub enum Event<Panel, Link> {
     /// The step is too long for the scene's motion, which has left the finite numbers; it stands at its last good
     /// picture until it is started again.
     Stopped(Error),
+    /// The step is longer than this, s, the longest that resolves every motion of the energy of what was started or asked
+    /// for.
+    Coarse(f64),
 }
 
 /// The same on a board and in a test: a panel, a byte sink and buttons are all it needs.
@@ -144,6 +147,11 @@ impl<Panel: Display, Link: Write, Keys: Buttons> App<Panel, Link, Keys> {
             let Some(received) = self.service.receive(byte) else { continue };
             match received {
                 Received::Accepted => log(Event::Asked),
+                Received::Coarse(coarse) => {
+                    log(Event::Asked);
+                    log(Event::Coarse(coarse.admissible_step));
+                    self.send(&coarse, &mut log);
+                }
                 Received::Order(order) => self.follow(order, &mut log),
                 Received::Refused(refused) => self.send(&refused, &mut log),
                 Received::Damaged(error) => self.damaged = (self.damaged.0.wrapping_add(1), Some(error)),
@@ -198,7 +206,11 @@ impl<Panel: Display, Link: Write, Keys: Buttons> App<Panel, Link, Keys> {
 
     fn obey(&mut self, command: Command, log: &mut impl FnMut(Event<Panel::Error, Link::Error>)) -> Result<(), Field> {
         if self.player.obey(command)? {
-            log(Event::Started(self.player.name(), *self.player.settings()));
+            let settings = *self.player.settings();
+            log(Event::Started(self.player.name(), settings));
+            if let Some(admissible) = settings.admissible_step().filter(|&admissible| STEP > admissible) {
+                log(Event::Coarse(admissible.into()));
+            }
         }
         Ok(())
     }

@@ -3,13 +3,15 @@
 
 use crate::command::Order;
 use crate::job::{Field, Job, Reading, Request};
-use crate::protocol::{Decoder, LinkError, Message, Refused, Sample, Simulate};
+use crate::protocol::{Coarse, Decoder, LinkError, Message, Refused, Sample, Simulate};
 
 /// What a received message came to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Received {
     /// A motion is asked for; its samples follow.
     Accepted,
+    /// The same, with a step too long for its energy: what to answer before the samples.
+    Coarse(Coarse),
     /// A command to be obeyed and answered.
     Order(Order),
     /// The message is answered with a refusal; nothing was changed.
@@ -48,11 +50,16 @@ impl Service {
 
     fn accept(&mut self, message: &Simulate) -> Received {
         let request = message.request;
-        let job = Request::from_message(message).and_then(|request| Job::new(&request).map_err(Field::from));
-        match job {
-            Ok(job) => {
+        let asked = Request::from_message(message);
+        match asked.and_then(|asked| Ok((Job::new(&asked)?, asked.admissible_step()))) {
+            Ok((job, admissible)) => {
                 self.work = Some(Work { request, index: 0, job });
-                Received::Accepted
+                match admissible {
+                    Some(admissible_step) if message.step_size > admissible_step => {
+                        Received::Coarse(Coarse { request, admissible_step })
+                    }
+                    _ => Received::Accepted,
+                }
             }
             Err(field) => Received::Refused(Refused { request, field: field.code() }),
         }

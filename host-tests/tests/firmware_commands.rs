@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use fastrand::Rng;
 use firmware::app::{App, Event};
-use firmware::config::{MOST_MESSAGES_PER_TICK, TICK_RATE};
+use firmware::config::{MOST_MESSAGES_PER_TICK, STEP, TICK_RATE};
 use firmware::controls::NoButtons;
 use firmware::display::NoDisplay;
 use firmware::job::Field;
@@ -79,6 +79,17 @@ fn every_parameter_is_set_in_any_unit_of_its_own() {
         assert_eq!(last::<Done>(&app), Done { request: 9 }, "{field:?}");
         assert_eq!(read(&status(&mut app)), expected, "{field:?}");
     }
+}
+
+#[test]
+fn settings_too_lively_for_the_step_are_played_and_logged() {
+    let coarse = |value| {
+        let mut events = Vec::new();
+        app().receive(wire(&set(Field::MassRatio, value, Unit::One)), |event| events.push(event));
+        events.iter().any(|event| matches!(event, Event::Coarse(step) if *step < f64::from(STEP)))
+    };
+    assert!(!coarse(1.0));
+    assert!(coarse(100.0));
 }
 
 #[test]

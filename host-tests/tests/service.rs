@@ -2,7 +2,7 @@
 
 use double_pendulum::Parameters;
 use firmware::job::{Arithmetic, Field, Form, Job, Model, Reading, Request};
-use firmware::protocol::{LinkError, MAX_WIRE, Refused, Sample, Simulate, encode};
+use firmware::protocol::{Coarse, LinkError, MAX_WIRE, Refused, Sample, Simulate, encode};
 use firmware::service::{Received, Service};
 
 const REQUEST: Request = Request {
@@ -12,7 +12,7 @@ const REQUEST: Request = Request {
     parameters: Parameters { m1: 1.0, m2: 2.75, l1: 1.0, l2: 0.5, g: 9.8 },
     angles: [2.0, -1.0],
     velocities: [0.5, 0.25],
-    step_size: 1.0 / 256.0,
+    step_size: 1.0 / 1024.0,
     stride: 16,
     samples: 5,
 };
@@ -51,6 +51,21 @@ fn every_arithmetic_model_and_form_is_answered_in_full() {
             );
         }
     }
+}
+
+#[test]
+fn a_step_too_long_for_the_energy_is_obeyed_and_told() {
+    let lively = Request { parameters: Parameters { m2: 1000.0, ..REQUEST.parameters }, ..REQUEST };
+    let mut service = Service::default();
+    let answer = send(&mut service, &lively.message(4));
+    let [Received::Coarse(Coarse { request: 4, admissible_step })] = answer[..] else { panic!("{answer:?}") };
+    assert_eq!(Some(admissible_step), lively.admissible_step());
+    assert!(admissible_step < lively.step_size / 10.0);
+    assert_eq!(samples(&mut service).len(), 6);
+    let fine = Request { step_size: admissible_step, ..lively };
+    assert_eq!(send(&mut service, &fine.message(5)), [Received::Accepted]);
+    let closed_form = Request { model: Model::Linear, ..lively };
+    assert_eq!(send(&mut service, &closed_form.message(6)), [Received::Accepted]);
 }
 
 #[test]

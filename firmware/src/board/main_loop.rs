@@ -41,6 +41,7 @@ fn log<Panel: Debug, Link: Debug>(event: Event<Panel, Link>) {
             defmt::warn!("{} damaged messages, {} since reset, the last: {}", messages, total, last);
         }
         Event::Stopped(error) => defmt::error!("stopped: {}", error),
+        Event::Coarse(step) => defmt::warn!("the step is too long for this energy, {} s would do", step),
         Event::Asked => defmt::info!("computing a motion on request"),
         Event::Link(error) => defmt::error!("serial link: {}", Debug2Format(&error)),
     }

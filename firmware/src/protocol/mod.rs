@@ -14,4 +14,4 @@ pub use command::{Ask, Choose, Done, Pause, Restart, Set, Status, Step};
 pub use frame::Frame;
 pub use layout::{Field, Message};
 pub use link::{Decoder, LinkError, MAX_FIELDS, MAX_WIRE, VERSION, encode, frame};
-pub use simulate::{Refused, Sample, Simulate};
+pub use simulate::{Coarse, Refused, Sample, Simulate};

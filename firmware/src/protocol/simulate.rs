@@ -43,6 +43,16 @@ crate::message! {
 }
 
 crate::message! {
+    /// Chip to host: the motion asked for follows, but its step is too long to resolve every motion of its energy.
+    Coarse = 0x06 {
+        /// The request it answers.
+        request: u16,
+        /// The longest step that would, s.
+        admissible_step: f64,
+    }
+}
+
+crate::message! {
     /// Chip to host: the request cannot be computed, or not to its end, or the command not obeyed; nothing was changed.
     Refused = 0x03 {
         /// The request it answers.

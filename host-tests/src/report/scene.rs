@@ -1,6 +1,6 @@
 //! The motions that the report measures on.
 
-use double_pendulum::Parameters;
+use double_pendulum::{Parameters, Pendulum, State};
 use firmware::config::REACH;
 
 /// A motion from rest. Every number is one that an `f32` holds, so that all arithmetics are given the same pendulum.
@@ -57,6 +57,13 @@ impl Scene {
     /// a1, a2 at the start, rad.
     pub fn angles(&self) -> [f64; 2] {
         [self.a1, self.a2].map(f64::from)
+    }
+
+    /// The longest step, s, that resolves every motion of the scene's energy.
+    pub fn admissible_step(&self) -> f64 {
+        let [a1, a2] = self.angles();
+        let step = |pendulum: Pendulum<f64>| pendulum.admissible_step(&State::at_rest(a1, a2));
+        Pendulum::new(self.parameters()).and_then(step).unwrap_or(f64::NAN)
     }
 
     /// Pixels of the panel per metre.
