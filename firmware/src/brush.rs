@@ -1,5 +1,7 @@
 //! Soft-edged strokes in integer arithmetic: the one shape that rods, bobs and trail are all made of.
 
+use core::ops::Range;
+
 use crate::canvas::{Canvas, HEIGHT, WIDTH};
 
 /// Subpixels in a pixel.
@@ -77,8 +79,10 @@ impl Stroke {
         let line = Line::new(self.from, self.to);
         let columns = pixels(self.from.x, self.to.x, WIDTH);
         for y in pixels(self.from.y, self.to.y, HEIGHT) {
+            let near = line.columns(y * SUBPIXELS + HALF, outer);
+            let columns = columns.start.max(near.start)..columns.end.min(near.end);
             let mut probe = line.probe(columns.start * SUBPIXELS + HALF, y * SUBPIXELS + HALF);
-            for x in columns.clone() {
+            for x in columns {
                 if let Some(distance) = line.distance(&probe, outer) {
                     paint(x, y, (outer - distance).min(SUBPIXELS) as u32);
                 }
@@ -110,6 +114,17 @@ impl Line {
         let along = from.to(to);
         let length_squared = dot(along, along);
         Self { from, along, length_squared, length: root(length_squared) }
+    }
+
+    /// The pixels of the row whose middle is at `y` that can be nearer than `limit`: those about as near the line
+    /// made infinitely long. On a slope they are few.
+    fn columns(&self, y: i32, limit: i32) -> Range<i32> {
+        let (along, across) = (self.along.0 * (y - i32::from(self.from.y)), limit * (self.length + 1));
+        let place = |product: i32| product.checked_div(self.along.1).map(|x| i32::from(self.from.x) + x - HALF);
+        match (place(along - across), place(along + across)) {
+            (Some(a), Some(b)) => (a.min(b) - 1).div_euclid(SUBPIXELS)..(a.max(b) + 1).div_euclid(SUBPIXELS) + 1,
+            _ => 0..WIDTH as i32,
+        }
     }
 
     fn probe(&self, x: i32, y: i32) -> Probe {

@@ -39,11 +39,12 @@ pub struct Report {
 impl Report {
     /// Of a scene whose first pendulum is `simulation`.
     pub fn of(simulation: &Simulation, trusted_until: f32) -> Self {
+        let state = simulation.state();
         Self {
             step: simulation.step(),
             time: simulation.time(),
-            state: simulation.state(),
-            energy_error: simulation.energy_error(),
+            state,
+            energy_error: simulation.energy().error(&state),
             trusted_until,
         }
     }

@@ -1,18 +1,19 @@
 //! The motion itself, apart from any picture of it: the state after n steps, and what its energy has become.
 
+use double_pendulum::form::Winding;
 use double_pendulum::{Error, Pendulum, State};
 
 use crate::config::{STEP, STEP_RATE, STEPS_PER_TICK};
 use crate::settings::Settings;
+use crate::swing::{Directions, Swing};
 
 /// A pendulum in motion since its last restart.
 #[derive(Clone, Debug)]
 pub struct Simulation {
-    pendulum: Pendulum<f32>,
-    state: State<f32>,
+    energy: Energy,
+    swing: Swing,
+    windings: [Winding<f32>; 2],
     step: u32,
-    /// Energy at the start, J.
-    start_energy: f32,
 }
 
 impl Simulation {
@@ -20,27 +21,41 @@ impl Simulation {
     pub fn new(settings: &Settings) -> Result<Self, Error> {
         let pendulum = settings.pendulum()?;
         pendulum.check_step(STEP)?;
-        let state = settings.start(&pendulum)?;
-        let start_energy = pendulum.energy(&state);
-        Ok(Self { pendulum, state, step: 0, start_energy })
+        let start = settings.start(&pendulum)?;
+        Ok(Self {
+            energy: Energy::new(pendulum, &start),
+            swing: Swing::new(&settings.parameters, &start, STEP)?,
+            windings: [start.a1, start.a2].map(Winding::new),
+            step: 0,
+        })
     }
 
     /// Advances by one tick: [`STEPS_PER_TICK`] steps of [`STEP`] seconds.
     pub fn tick(&mut self) {
         for _ in 0..STEPS_PER_TICK {
-            self.state = self.pendulum.step(&self.state, STEP);
+            self.swing.advance(1);
+            for (winding, direction) in self.windings.iter_mut().zip(self.swing.directions()) {
+                winding.observe(direction);
+            }
         }
         self.step = self.step.wrapping_add(STEPS_PER_TICK);
     }
 
-    /// The equations of motion it follows.
-    pub fn pendulum(&self) -> &Pendulum<f32> {
-        &self.pendulum
+    /// Where the rods point: all that most pictures need.
+    pub fn directions(&self) -> Directions {
+        self.swing.directions()
     }
 
-    /// The canonical state now.
+    /// The canonical state now, rounded to `f32`, its angles unwrapped.
     pub fn state(&self) -> State<f32> {
-        self.state
+        let State { a1, a2, p1, p2 } = self.swing.state();
+        let [winding1, winding2] = &self.windings;
+        [winding1.unwrap(a1), winding2.unwrap(a2), p1, p2].map(|number| number as f32).into()
+    }
+
+    /// The canonical state to the last digit carried, each angle within half a turn of hanging.
+    pub fn precise_state(&self) -> State<f64> {
+        self.swing.state()
     }
 
     /// Steps since the start; begins again at 0 after 2^32 of them, 207 days.
@@ -53,10 +68,35 @@ impl Simulation {
         f64::from(self.step) / f64::from(STEP_RATE)
     }
 
+    /// What its energy is measured by.
+    pub fn energy(&self) -> &Energy {
+        &self.energy
+    }
+}
+
+/// The energy a motion started with, to hold what it has become against.
+#[derive(Clone, Debug)]
+pub struct Energy {
+    pendulum: Pendulum<f32>,
+    /// J.
+    start: f32,
+}
+
+impl Energy {
+    /// Of a motion of `pendulum` that starts at `start`.
+    pub fn new(pendulum: Pendulum<f32>, start: &State<f32>) -> Self {
+        Self { pendulum, start: pendulum.energy(start) }
+    }
+
+    /// The equations of motion it belongs to.
+    pub fn pendulum(&self) -> &Pendulum<f32> {
+        &self.pendulum
+    }
+
     /// (E - E0)/(E0 - Emin), with E0 the energy at the start and Emin that of hanging at rest; 0 if the start is
     /// hanging at rest, which it never leaves.
-    pub fn energy_error(&self) -> f32 {
-        let scale = self.start_energy - self.pendulum.least_energy();
-        if scale > 0.0 { (self.pendulum.energy(&self.state) - self.start_energy) / scale } else { 0.0 }
+    pub fn error(&self, state: &State<f32>) -> f32 {
+        let scale = self.start - self.pendulum.least_energy();
+        if scale > 0.0 { (self.pendulum.energy(state) - self.start) / scale } else { 0.0 }
     }
 }

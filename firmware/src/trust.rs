@@ -1,11 +1,11 @@
 //! The honest clock: until when the picture of a motion is right to half a pixel.
 
-use double_pendulum::State;
+use double_pendulum::{Error, Parameters, State};
 
 use crate::canvas::Canvas;
-use crate::compensated::Compensated;
-use crate::config::{STEP, STEPS_PER_TICK};
+use crate::config::{STEPS_PER_TICK, TICK_RATE};
 use crate::label;
+use crate::swing::{Directions, Swing};
 use crate::text::{self, Anchor};
 
 /// A place on the picture, pixels right and down.
@@ -14,42 +14,40 @@ type Place = (f32, f32);
 /// A picture that is farther off than this, pixels, is not to be trusted.
 pub const HALF_PIXEL: f32 = 0.5;
 
-/// The twin may be half as far off: it is a little wrong itself, and the first moment beyond half a pixel is short.
+/// The twin may be half as far off: where both are as wrong, they may by chance be wrong in the same way.
 const TWIN_LIMIT: f32 = 0.5 * HALF_PIXEL;
 
-/// A twin that runs beside the motion shown, in compensated arithmetic and with twice the step.
+/// The twin's steps in a tick, where the motion shown makes four.
+const TWIN_STEPS: u32 = 3;
+const TWIN_STEP: f32 = 1.0 / (TICK_RATE * TWIN_STEPS) as f32;
+const _: () = assert!(STEPS_PER_TICK == 4);
+
+/// A twin that runs beside the motion shown and differs in all that makes it wrong.
 ///
-/// A plain `f32` motion at [`STEP`] is wrong above all by rounding, of which the twin makes next to none: so the two
-/// part as far as the motion shown is wrong. Where the step itself is what makes it wrong, the twin is 16 times as
-/// wrong, and the clock is early rather than late. Test `trust` compares it with the exact motion.
+/// Its steps are 4/3 as long, which makes it (4/3)^4 = 3.2 times as wrong: where the steps are what is wrong, the two part
+/// 2.2 times as far as the motion shown is off. Its roundings are others, of the same size. And its m2 is the next larger
+/// number, for the constants of the motion shown are rounded, too. Test `trust` compares it with the exact motion.
 #[derive(Clone, Copy, Debug)]
 pub struct Trust {
-    twin: Compensated,
+    twin: Swing,
     until: Option<f64>,
 }
 
 impl Trust {
-    /// Beside a motion that starts at `start`.
-    pub fn new(start: State<f32>) -> Self {
-        Self { twin: Compensated::new(start), until: None }
+    /// Beside a motion that starts at `start`; the kernel's error if it takes no such motion.
+    pub fn new(parameters: &Parameters<f32>, start: &State<f32>) -> Result<Self, Error> {
+        let beside = Parameters { m2: parameters.m2.next_up(), ..*parameters };
+        Ok(Self { twin: Swing::new(&beside, start, TWIN_STEP)?, until: None })
     }
 
     /// Moves on to `time` (s) and compares: `shown` is where the two bobs are shown, `places` says where they would be
-    /// shown in another state. Once parted, nothing more is computed.
-    pub fn tick(
-        &mut self,
-        time: f64,
-        shown: [Place; 2],
-        derivatives: impl Fn(&[f32; 4]) -> [f32; 4],
-        places: impl FnOnce(&State<f32>) -> [Place; 2],
-    ) {
+    /// shown with the rods in other directions. Once parted, nothing more is computed.
+    pub fn tick(&mut self, time: f64, shown: [Place; 2], places: impl FnOnce(Directions) -> [Place; 2]) {
         if self.until.is_some() {
             return;
         }
-        for _ in 0..STEPS_PER_TICK / 2 {
-            self.twin = self.twin.step(&derivatives, 2.0 * STEP);
-        }
-        if are_apart(shown, places(&self.twin.state()), TWIN_LIMIT) {
+        self.twin.advance(TWIN_STEPS);
+        if are_apart(shown, places(self.twin.directions()), TWIN_LIMIT) {
             self.until = Some(time);
         }
     }

@@ -1,10 +1,11 @@
 //! From metres to pixels: where a pendulum is on the picture, and how it looks.
 
-use double_pendulum::{Parameters, Pendulum, State};
+use double_pendulum::Parameters;
 
 use crate::brush::{SUBPIXELS, Spot, Stroke};
 use crate::canvas::Canvas;
 use crate::config::{GREATEST_RADIUS, LEAST_RADIUS, PIVOT, REACH, ROD_HALF_WIDTH};
+use crate::swing::Directions;
 
 /// Brightness of a rod, of 255: between the trail and the bobs.
 const ROD_BRIGHTNESS: u8 = 190;
@@ -32,8 +33,8 @@ impl Place {
 #[derive(Clone, Copy, Debug)]
 pub struct View {
     pivot: (f32, f32),
-    /// Pixels per metre.
-    scale: f32,
+    /// The rods' lengths, pixels.
+    rods: [f32; 2],
     /// Bob radii, subpixels.
     radii: [u8; 2],
 }
@@ -50,21 +51,21 @@ impl View {
             let pixels = greatest * libm::cbrtf(mass / m1.max(m2));
             (pixels.max(LEAST_RADIUS) * SUBPIXELS as f32) as u8
         };
-        Self { pivot: place.pivot, scale: place.reach / (l1 + l2), radii: [radius(m1), radius(m2)] }
+        let scale = place.reach / (l1 + l2);
+        Self { pivot: place.pivot, rods: [scale * l1, scale * l2], radii: [radius(m1), radius(m2)] }
     }
 
-    /// The centres of bob 1 and bob 2, in pixels right and down from the panel's top left corner: the pivot's place
-    /// plus the positions in metres times the scale, y turned round. Pixel i covers i to i + 1.
-    pub fn bobs(&self, pendulum: &Pendulum<f32>, state: &State<f32>) -> [(f32, f32); 2] {
-        let (x, y) = self.pivot;
-        pendulum
-            .positions(state.a1, state.a2)
-            .map(|position| (x + self.scale * position.x, y - self.scale * position.y))
+    /// The centres of bob 1 and bob 2, in pixels right and down from the panel's top left corner: a rod that points to
+    /// (sin a, cos a) from the downward vertical leads that far right and down. Pixel i covers i to i + 1.
+    pub fn bobs(&self, [[sin1, cos1], [sin2, cos2]]: Directions) -> [(f32, f32); 2] {
+        let ((x, y), [rod1, rod2]) = (self.pivot, self.rods);
+        let (x1, y1) = (x + rod1 * sin1, y + rod1 * cos1);
+        [(x1, y1), (x1 + rod2 * sin2, y1 + rod2 * cos2)]
     }
 
     /// As [`bobs`](Self::bobs), as spots.
-    pub fn spots(&self, pendulum: &Pendulum<f32>, state: &State<f32>) -> [Spot; 2] {
-        self.bobs(pendulum, state).map(|(x, y)| Spot::at(x, y))
+    pub fn spots(&self, directions: Directions) -> [Spot; 2] {
+        self.bobs(directions).map(|(x, y)| Spot::at(x, y))
     }
 
     /// The radii of bob 1 and bob 2, subpixels.

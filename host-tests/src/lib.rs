@@ -19,6 +19,7 @@ pub mod reference;
 pub mod report;
 pub mod simulate;
 pub mod snapshot;
+pub mod stream;
 pub mod tolerance;
 pub mod toolchain;
 pub mod trial;

@@ -7,13 +7,15 @@ use double_pendulum::{Parameters, Pendulum, State};
 use embedded_io::{ErrorKind, ErrorType, Write};
 use firmware::app::{App, Event};
 use firmware::canvas::Canvas;
-use firmware::config::{GRAVITY, MOST_TICKS_PER_FRAME, ROD, STEP, STEPS_PER_TICK};
+use firmware::config::{GRAVITY, MOST_TICKS_PER_FRAME, ROD, STEPS_PER_TICK};
 use firmware::controls::{Buttons, NoButtons, Pressed};
 use firmware::display::{Display, NoDisplay};
 use firmware::protocol::{Decoder, Frame, LinkError, Message};
 use firmware::scenes::SceneName;
 use firmware::settings::Settings;
+use firmware::swing::Directions;
 use firmware::view::{Place, View};
+use host_tests::stream::Expected;
 
 type Plain = App<NoDisplay, Vec<u8>, NoButtons>;
 
@@ -69,18 +71,17 @@ fn every_frame_carries_the_kernels_state_to_the_bit() {
 
     let pendulum = Pendulum::new(Parameters::equal_rods(1.0, ROD, GRAVITY)).expect("good");
     let start_angle = 120.0_f32.to_radians();
-    let mut state = State::at_rest(start_angle, start_angle);
-    let start_energy = pendulum.energy(&state);
+    let start_energy = pendulum.energy(&State::at_rest(start_angle, start_angle));
+    let mut expected = Expected::new(1.0, start_angle);
     for (sequence, frame) in (0..).zip(frames) {
-        for _ in 0..STEPS_PER_TICK {
-            state = pendulum.step(&state, STEP);
-        }
-        assert_eq!(frame.state.map(f32::to_bits), <[f32; 4]>::from(state).map(f32::to_bits), "frame {sequence}");
+        expected.advance(STEPS_PER_TICK);
+        let state = expected.state();
+        assert_eq!(frame.state.map(f32::to_bits), state.map(f32::to_bits), "frame {sequence}");
         let step = (sequence + 1) * STEPS_PER_TICK;
         assert_eq!((frame.sequence, frame.dropped, frame.step), (sequence, 0, step));
         assert_eq!(frame.time, f64::from(step) / 240.0);
         assert_eq!((frame.mass_ratio, frame.start_angle), (1.0, start_angle));
-        let error = (pendulum.energy(&state) - start_energy) / (start_energy - pendulum.least_energy());
+        let error = (pendulum.energy(&state.into()) - start_energy) / (start_energy - pendulum.least_energy());
         assert_eq!(frame.energy_error, error);
     }
 }
@@ -213,14 +214,19 @@ fn a_failing_panel_is_reported_once_and_does_not_stop_the_rest() {
     assert_eq!(frames(app.link()).len(), 30);
 }
 
+/// Where the rods point, by the state reported.
+fn directions(app: &Plain) -> Directions {
+    let State { a1, a2, .. } = app.player().report().state;
+    [a1, a2].map(|angle| angle.sin_cos().into())
+}
+
 #[test]
 fn bobs_are_drawn_where_the_state_puts_them() {
     let mut app = app();
     for now in 1..=1200 {
         app.run_to(now, |_| ());
         let view = View::new(&app.player().settings().parameters, Place::WHOLE);
-        let pendulum = app.player().settings().pendulum().expect("good");
-        for (x, y) in view.bobs(&pendulum, &app.player().report().state) {
+        for (x, y) in view.bobs(directions(&app)) {
             let grey = app.canvas().get(x as i32, y as i32);
             assert_eq!(grey, Some(15), "tick {now}: ({x}, {y})");
         }
@@ -235,9 +241,8 @@ fn the_motion_never_touches_the_labels() {
     for now in 1..=3600 {
         app.run_to(now, |_| ());
         let view = View::new(&app.player().settings().parameters, Place::WHOLE);
-        let pendulum = app.player().settings().pendulum().expect("good");
         let radii = view.radii().map(|radius| f32::from(radius) / 64.0 + 0.5);
-        for ((x, y), radius) in view.bobs(&pendulum, &app.player().report().state).into_iter().zip(radii) {
+        for ((x, y), radius) in view.bobs(directions(&app)).into_iter().zip(radii) {
             for (columns, rows) in &boxes {
                 let dx = x - x.clamp(columns.start as f32, columns.end as f32);
                 let dy = y - y.clamp(rows.start as f32, rows.end as f32);

@@ -20,11 +20,8 @@ const INSTRUCTION: f64 = 32.0;
 const CYCLE: f64 = 20.0;
 /// A frame of a 50 MHz processor, cycles.
 const FRAME: f64 = 50e6 / 60.0;
-/// What a scene may cost of it, and what those may that move a pendulum without a floating-point unit: the motion in
-/// software and its twin for the honest clock are dearer than the half that is aimed at.
+/// What a scene may cost of it, on either processor: the other half is left for commands and motions asked for.
 const HALF: f64 = 0.5;
-const IN_SOFTWARE: f64 = 0.75;
-const MOVE_PENDULUMS: [SceneName; 4] = [SceneName::Page, SceneName::Figure7, SceneName::Butterfly, SceneName::Upright];
 /// Cycles that a Cortex-M3 takes for an instruction, on average over firmware like this: loads, stores and taken
 /// branches take 2 or 3. `cargo count` estimates 1.5 for a step in software floating point.
 const CYCLES_PER_INSTRUCTION: f64 = 1.5;
@@ -93,8 +90,6 @@ fn every_scene_keeps_within_its_share_of_a_frame() -> Result<(), QemuError> {
             }
             let [scene, busy] = [scene, busy].map(|cycles| f64::from(cycles) * CYCLE / INSTRUCTION);
             let share = |instructions: f64| instructions * CYCLES_PER_INSTRUCTION / FRAME;
-            let has_fpu = board.target.ends_with("hf");
-            let limit = if !has_fpu && MOVE_PENDULUMS.contains(&name) { IN_SOFTWARE } else { HALF };
             println!(
                 "{:15} {:12} scene {scene:7.0} instructions, about {:3.0} % of a frame; all {busy:7.0}, idle {:3.0} %",
                 board.name,
@@ -102,7 +97,7 @@ fn every_scene_keeps_within_its_share_of_a_frame() -> Result<(), QemuError> {
                 100.0 * share(scene),
                 100.0 * (1.0 - share(busy)),
             );
-            if share(scene) > limit {
+            if share(scene) > HALF {
                 too_dear.push(format!("{}: {} takes {:.2} of a frame", board.name, name.name(), share(scene)));
             }
         }

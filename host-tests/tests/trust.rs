@@ -90,7 +90,7 @@ fn the_clock_is_never_late_and_typically_close() {
         threads.into_iter().flat_map(|thread| thread.join().expect("no panic")).collect()
     });
 
-    let mut passed = Vec::new();
+    let (mut passed, mut late) = (Vec::new(), Vec::new());
     for Horizon { case, shown, exact } in &horizons {
         println!(
             "{:10} shown {shown:8.3} exact {exact:8.3}  {:?} {:?}",
@@ -98,11 +98,14 @@ fn the_clock_is_never_late_and_typically_close() {
             case.settings.mass_ratio(),
             case.settings.degrees
         );
-        assert!(*shown <= TRUST_LATE * exact, "late: {case:?}: shown {shown}, exact {exact}");
+        if *shown > TRUST_LATE * exact {
+            late.push(format!("{case:?}: shown {shown}, exact {exact}"));
+        }
         if exact.is_finite() {
             passed.push((shown / exact - 1.0).abs());
         }
     }
+    assert!(late.is_empty(), "{late:#?}");
     passed.sort_by(f64::total_cmp);
     assert!(
         horizons.len() >= 50 && passed.len() >= 40,

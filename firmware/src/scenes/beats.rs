@@ -1,7 +1,7 @@
 //! Beats that close: where the frequencies are as whole numbers, small oscillations come back to their start after a
 //! few periods and their Lissajous figure closes; the exact motion from the same start does not.
 
-use double_pendulum::{Error, Oscillation, Parameters, SmallOscillations, State};
+use double_pendulum::{Error, Oscillation, Parameters, SmallOscillations};
 
 use crate::brush::{Spot, Stroke};
 use crate::canvas::{Canvas, WIDTH};
@@ -11,6 +11,7 @@ use crate::label;
 use crate::scene::{Report, Scene};
 use crate::settings::Settings;
 use crate::simulation::Simulation;
+use crate::swing::Directions;
 use crate::text::{self, Anchor, LINE};
 use crate::trust::{self, Trust};
 
@@ -56,9 +57,10 @@ impl Beats {
         self.place(MIDDLES[0], motion.a1, motion.a2)
     }
 
-    /// Where the exact motion is in its figure in a state, pixels.
-    fn exact_place(&self, state: &State<f32>) -> (f32, f32) {
-        self.place(MIDDLES[1], state.a1, state.a2)
+    /// Where the exact motion is in its figure with the rods in some directions, pixels.
+    fn exact_place(&self, directions: Directions) -> (f32, f32) {
+        let [a1, a2] = directions.map(|[sin, cos]| libm::atan2f(sin, cos));
+        self.place(MIDDLES[1], a1, a2)
     }
 
     /// The slow mode's share of angle 2 across, the fast mode's upwards.
@@ -69,22 +71,26 @@ impl Beats {
         (x + self.scale * across, y - self.scale * up)
     }
 
+    fn places(&self) -> [(f32, f32); 2] {
+        [self.linear_place(), self.exact_place(self.simulation.directions())]
+    }
+
     fn spots(&self) -> [Spot; 2] {
-        [self.linear_place(), self.exact_place(&self.simulation.state())].map(|(x, y)| Spot::at(x, y))
+        self.places().map(|(x, y)| Spot::at(x, y))
     }
 }
 
 impl Scene for Beats {
     fn new(settings: &Settings) -> Result<Self, Error> {
         let simulation = Simulation::new(settings)?;
-        let modes = simulation.pendulum().modes()?;
+        let modes = simulation.energy().pendulum().modes()?;
         let linear = SmallOscillations::new(modes, &settings.motion());
         let amplitude = |part: Oscillation<f32>, shape: f32| part.amplitude() * shape.abs();
         let shape = [modes.fast.shape, modes.slow.shape];
         let greatest = amplitude(linear.fast(), shape[0]).max(amplitude(linear.slow(), shape[1]));
         let scale = if greatest > 0.0 { REACH / greatest } else { 0.0 };
         let (spots, ink) = ([Spot::default(); 2], Ink::default());
-        let trust = Trust::new(simulation.state());
+        let trust = Trust::new(&settings.parameters, &simulation.state())?;
         let mut scene = Self { settings: *settings, simulation, linear, shape, scale, spots, ink, trust };
         scene.spots = scene.spots();
         Ok(scene)
@@ -92,21 +98,16 @@ impl Scene for Beats {
 
     fn tick(&mut self) {
         self.simulation.tick();
-        let spots = self.spots();
+        let places = self.places();
+        let spots = places.map(|(x, y)| Spot::at(x, y));
         for (from, to) in self.spots.into_iter().zip(spots) {
             self.ink.add(Stroke { from, to, radius: HALF_WIDTH });
         }
         self.spots = spots;
         self.ink.tick();
-        let pendulum = self.simulation.pendulum();
-        let shown = [self.linear_place(), self.exact_place(&self.simulation.state())];
         let mut trust = self.trust;
-        trust.tick(
-            self.simulation.time(),
-            shown,
-            |z| pendulum.derivatives(z),
-            |state| [shown[0], self.exact_place(state)],
-        );
+        let [linear, _] = places;
+        trust.tick(self.simulation.time(), places, |directions| [linear, self.exact_place(directions)]);
         self.trust = trust;
     }
 

@@ -1,7 +1,6 @@
 //! Figure 7: the page's chaotic motion by the right equations and by the ones it prints, side by side.
 
-use double_pendulum::trig::{DefaultTrig, SinCos};
-use double_pendulum::{Error, Parameters, Pendulum, State, rk4};
+use double_pendulum::{Error, Parameters, State, rk4};
 
 use crate::brush::{Spot, Stroke};
 use crate::canvas::{Canvas, HEIGHT, WIDTH};
@@ -11,6 +10,7 @@ use crate::label;
 use crate::scene::{Report, Scene};
 use crate::settings::Settings;
 use crate::simulation::Simulation;
+use crate::swing::Directions;
 use crate::text::{self, Anchor, LINE};
 use crate::trust::{self, Trust};
 use crate::view::{Place, View};
@@ -27,7 +27,7 @@ pub fn figure() -> Settings {
 #[derive(Clone, Debug)]
 pub struct Figure7 {
     right: Simulation,
-    misprinted: State<f32>,
+    misprinted: Misprinted,
     views: [View; 2],
     /// The bobs of both pendulums.
     bobs: [[Spot; 2]; 2],
@@ -38,9 +38,8 @@ pub struct Figure7 {
 impl Figure7 {
     /// Where the bobs of both pendulums are, pixels.
     fn places(&self) -> [[(f32, f32); 2]; 2] {
-        let pendulum = self.right.pendulum();
         let [left_view, right_view] = &self.views;
-        [left_view.bobs(pendulum, &self.right.state()), right_view.bobs(pendulum, &self.misprinted)]
+        [left_view.bobs(self.right.directions()), right_view.bobs(self.misprinted.directions())]
     }
 }
 
@@ -56,8 +55,9 @@ impl Scene for Figure7 {
         }
         let right = Simulation::new(settings)?;
         let views = Place::HALVES.map(|place| View::new(&settings.parameters, place));
-        let misprinted = right.state();
-        let trust = Trust::new(misprinted);
+        let start = right.state();
+        let misprinted = Misprinted::new(settings.parameters, &start);
+        let trust = Trust::new(&settings.parameters, &start)?;
         let mut scene = Self { right, misprinted, views, bobs: Default::default(), ink: Ink::default(), trust };
         scene.bobs = spots(scene.places());
         Ok(scene)
@@ -65,15 +65,11 @@ impl Scene for Figure7 {
 
     fn tick(&mut self) {
         self.right.tick();
-        for _ in 0..STEPS_PER_TICK {
-            let state = rk4::step(|z| misprinted(self.right.pendulum(), z), &self.misprinted.into(), STEP);
-            self.misprinted = state.into();
-        }
+        self.misprinted.tick();
         let places = self.places();
         let [shown, _] = places;
-        let (pendulum, [view, _]) = (self.right.pendulum(), &self.views);
-        let places_of = |state: &_| view.bobs(pendulum, state);
-        self.trust.tick(self.right.time(), shown, |z| pendulum.derivatives(z), places_of);
+        let [view, _] = &self.views;
+        self.trust.tick(self.right.time(), shown, |directions| view.bobs(directions));
         let bobs = spots(places);
         for ([_, from], [_, to]) in self.bobs.into_iter().zip(bobs) {
             self.ink.add(Stroke { from, to, radius: HALF_WIDTH });
@@ -87,7 +83,8 @@ impl Scene for Figure7 {
         for (view, bobs) in self.views.iter().zip(self.bobs) {
             view.draw(canvas, bobs, u8::MAX);
         }
-        let energies = [self.right.state(), self.misprinted].map(|state| self.right.pendulum().energy(&state));
+        let states = [self.right.state(), self.misprinted.state()];
+        let energies = states.map(|state| self.right.energy().pendulum().energy(&state));
         let [right, misprinted] = energies.map(|energy| label::tenths(energy, " J"));
         text::write(canvas, &right, Anchor::TopLeft);
         text::write(canvas, &misprinted, Anchor::TopRight);
@@ -100,24 +97,68 @@ impl Scene for Figure7 {
     }
 }
 
-/// The equal-rod equations exactly as the page prints them: the denominator of a2' lacks the factor mu = m2/m1. Unless
-/// mu = 1 they are not Hamilton's equations of anything, and what should be the energy is not kept. Nothing but this
-/// scene uses them.
-fn misprinted(pendulum: &Pendulum<f32>, &[a1, a2, p1, p2]: &[f32; 4]) -> [f32; 4] {
-    let &Parameters { m1, m2, l1: l, g, .. } = pendulum.parameters();
-    let mu = m2 / m1;
-    let (sin1, cos1) = DefaultTrig::sin_cos(a1);
-    let (sin2, cos2) = DefaultTrig::sin_cos(a2);
-    let sin_d = sin1 * cos2 - cos1 * sin2;
-    let cos_d = cos1 * cos2 + sin1 * sin2;
-    let den = m1 * l * l * (1.0 + mu * sin_d * sin_d);
-    let term1 = p1 * p2 * sin_d / den;
-    let bracket = p1 * p1 * mu - 2.0 * p1 * p2 * mu * cos_d + p2 * p2 * (1.0 + mu);
-    let term2 = m1 * l * l * bracket * sin_d * cos_d / (den * den);
-    [
-        (p1 - p2 * cos_d) / den,
-        (p2 * (1.0 + mu) - p1 * mu * cos_d) / den,
-        -m1 * (1.0 + mu) * g * l * sin1 - term1 + term2,
-        -m1 * mu * g * l * sin2 + term1 - term2,
-    ]
+/// A motion by the equal-rod equations exactly as the page prints them: the denominator of a2' lacks the factor
+/// mu = m2/m1. Unless mu = 1 they are not Hamilton's equations of anything, and what should be the energy is not kept.
+/// Nothing but this scene uses them.
+#[derive(Clone, Copy, Debug)]
+struct Misprinted {
+    parameters: Parameters<f32>,
+    /// sin a1, cos a1, sin D, cos D, p1, p2 with D = a1 - a2: nothing here needs an angle.
+    z: [f32; 6],
+}
+
+impl Misprinted {
+    fn new(parameters: Parameters<f32>, start: &State<f32>) -> Self {
+        let (sin1, cos1) = libm::sincosf(start.a1);
+        let (sin_d, cos_d) = libm::sincosf(start.a1 - start.a2);
+        Self { parameters, z: [sin1, cos1, sin_d, cos_d, start.p1, start.p2] }
+    }
+
+    fn tick(&mut self) {
+        for _ in 0..STEPS_PER_TICK {
+            self.z = rk4::step(|z| self.derivatives(z), &self.z, STEP);
+        }
+        let [sin1, cos1, sin_d, cos_d, p1, p2] = self.z;
+        let ([sin1, cos1], [sin_d, cos_d]) = (unit([sin1, cos1]), unit([sin_d, cos_d]));
+        self.z = [sin1, cos1, sin_d, cos_d, p1, p2];
+    }
+
+    fn directions(&self) -> Directions {
+        let [sin1, cos1, sin_d, cos_d, ..] = self.z;
+        [[sin1, cos1], [sin1 * cos_d - cos1 * sin_d, cos1 * cos_d + sin1 * sin_d]]
+    }
+
+    fn state(&self) -> State<f32> {
+        let [.., p1, p2] = self.z;
+        let [a1, a2] = self.directions().map(|[sin, cos]| libm::atan2f(sin, cos));
+        State { a1, a2, p1, p2 }
+    }
+
+    fn derivatives(&self, &[sin1, cos1, sin_d, cos_d, p1, p2]: &[f32; 6]) -> [f32; 6] {
+        let Parameters { m1, m2, l1: l, g, .. } = self.parameters;
+        let mu = m2 / m1;
+        let inertia = m1 * l * l;
+        let sin2 = sin1 * cos_d - cos1 * sin_d;
+        let inverse = 1.0 / (inertia * (1.0 + mu * sin_d * sin_d));
+        let w1 = (p1 - p2 * cos_d) * inverse;
+        let w2 = (p2 * (1.0 + mu) - p1 * mu * cos_d) * inverse;
+        let term1 = p1 * p2 * sin_d * inverse;
+        let bracket = p1 * p1 * mu - 2.0 * p1 * p2 * mu * cos_d + p2 * p2 * (1.0 + mu);
+        let term2 = inertia * bracket * sin_d * cos_d * inverse * inverse;
+        let w = w1 - w2;
+        [
+            cos1 * w1,
+            -sin1 * w1,
+            cos_d * w,
+            -sin_d * w,
+            -m1 * (1.0 + mu) * g * l * sin1 - term1 + term2,
+            -m1 * mu * g * l * sin2 + term1 - term2,
+        ]
+    }
+}
+
+/// A direction made as long as 1 again, to first order in what it misses.
+fn unit([sin, cos]: [f32; 2]) -> [f32; 2] {
+    let gain = 1.5 - 0.5 * (sin * sin + cos * cos);
+    [gain * sin, gain * cos]
 }

@@ -25,7 +25,7 @@ pub struct Page {
 
 impl Page {
     fn bobs(&self) -> [(f32, f32); 2] {
-        self.view.bobs(self.simulation.pendulum(), &self.simulation.state())
+        self.view.bobs(self.simulation.directions())
     }
 
     fn spots(&self) -> [Spot; 2] {
@@ -37,8 +37,8 @@ impl Scene for Page {
     fn new(settings: &Settings) -> Result<Self, Error> {
         let simulation = Simulation::new(settings)?;
         let view = View::new(&settings.parameters, Place::WHOLE);
-        let [_, bob2] = view.spots(simulation.pendulum(), &simulation.state());
-        let trust = Trust::new(simulation.state());
+        let [_, bob2] = view.spots(simulation.directions());
+        let trust = Trust::new(&settings.parameters, &simulation.state())?;
         Ok(Self { settings: *settings, simulation, trust, view, trail: Trail::new(bob2) })
     }
 
@@ -47,9 +47,7 @@ impl Scene for Page {
         let shown = self.bobs();
         let [_, (x, y)] = shown;
         self.trail.push(Spot::at(x, y));
-        let pendulum = self.simulation.pendulum();
-        let places = |state: &_| self.view.bobs(pendulum, state);
-        self.trust.tick(self.simulation.time(), shown, |z| pendulum.derivatives(z), places);
+        self.trust.tick(self.simulation.time(), shown, |directions| self.view.bobs(directions));
     }
 
     fn draw(&self, canvas: &mut Canvas) {

@@ -1,15 +1,16 @@
 //! Upright: both rods at exactly 180 degrees, where the pendulum would stand for ever if the number pi could be held.
 
-use double_pendulum::Error;
+use double_pendulum::trig::{DefaultTrig, SinCos};
+use double_pendulum::{Error, State};
 
 use crate::brush::{Spot, Stroke};
 use crate::canvas::{Canvas, HEIGHT, WIDTH};
-use crate::compensated::Compensated;
-use crate::config::{STEP, STEPS_PER_TICK};
+use crate::config::{STEP, STEP_RATE, STEPS_PER_TICK};
 use crate::ink::Ink;
 use crate::scene::{Report, Scene};
 use crate::settings::Settings;
-use crate::simulation::Simulation;
+use crate::simulation::Energy;
+use crate::swing::{Directions, Swing};
 use crate::text::{self, Anchor, LINE};
 use crate::trust::{self, HALF_PIXEL};
 use crate::view::{Place, View};
@@ -31,8 +32,10 @@ pub fn straight_up() -> Settings {
 /// state on the right is just what was dropped.
 #[derive(Clone, Debug)]
 pub struct Upright {
-    plain: Simulation,
-    compensated: Compensated,
+    plain: State<f32>,
+    compensated: Swing,
+    energy: Energy,
+    step: u32,
     views: [View; 2],
     bobs: [[Spot; 2]; 2],
     ink: Ink,
@@ -41,37 +44,48 @@ pub struct Upright {
 
 impl Upright {
     fn places(&self) -> [[Spot; 2]; 2] {
-        let pendulum = self.plain.pendulum();
         let [left, right] = &self.views;
-        [left.spots(pendulum, &self.plain.state()), right.spots(pendulum, &self.compensated.state())]
+        [left.spots(self.plain_directions()), right.spots(self.compensated.directions())]
+    }
+
+    fn plain_directions(&self) -> Directions {
+        [self.plain.a1, self.plain.a2].map(|angle| DefaultTrig::sin_cos(angle).into())
+    }
+
+    fn time(&self) -> f64 {
+        f64::from(self.step) / f64::from(STEP_RATE)
     }
 
     /// Whether the plain motion is no longer shown where the compensated one is.
     fn have_parted(&self) -> bool {
         let [left, _] = &self.views;
-        let bobs = |state| left.bobs(self.plain.pendulum(), &state);
-        trust::are_apart(bobs(self.plain.state()), bobs(self.compensated.state()), HALF_PIXEL)
+        let [plain, compensated] = [self.plain_directions(), self.compensated.directions()].map(|to| left.bobs(to));
+        trust::are_apart(plain, compensated, HALF_PIXEL)
     }
 }
 
 impl Scene for Upright {
     fn new(settings: &Settings) -> Result<Self, Error> {
-        let plain = Simulation::new(settings)?;
+        let pendulum = settings.pendulum()?;
+        pendulum.check_step(STEP)?;
+        let plain = settings.start(&pendulum)?;
         let views = Place::HALVES.map(|place| View::new(&settings.parameters, place));
-        let compensated = Compensated::new(plain.state());
+        let compensated = Swing::new(&settings.parameters, &plain, STEP)?;
+        let (energy, step) = (Energy::new(pendulum, &plain), 0);
         let (bobs, ink) = (Default::default(), Ink::default());
-        let mut scene = Self { plain, compensated, views, bobs, ink, trusted_until: f32::INFINITY };
+        let mut scene = Self { plain, compensated, energy, step, views, bobs, ink, trusted_until: f32::INFINITY };
         scene.bobs = scene.places();
         Ok(scene)
     }
 
     fn tick(&mut self) {
-        self.plain.tick();
         for _ in 0..STEPS_PER_TICK {
-            self.compensated = self.compensated.step(|z| self.plain.pendulum().derivatives(z), STEP);
+            self.plain = self.energy.pendulum().step(&self.plain, STEP);
         }
+        self.compensated.advance(STEPS_PER_TICK);
+        self.step = self.step.wrapping_add(STEPS_PER_TICK);
         if self.trusted_until.is_infinite() && self.have_parted() {
-            self.trusted_until = self.plain.time() as f32;
+            self.trusted_until = self.time() as f32;
         }
         let places = self.places();
         for ([_, from], [_, to]) in self.bobs.into_iter().zip(places) {
@@ -89,11 +103,17 @@ impl Scene for Upright {
         text::write(canvas, "plain", Anchor::TopLeft);
         text::write(canvas, "compensated", Anchor::TopRight);
         let middle = |row| Anchor::Centred(WIDTH as i32 / 2, row);
-        let (time, until) = (self.plain.time(), self.trusted_until);
+        let (time, until) = (self.time(), self.trusted_until);
         trust::draw_clock(canvas, time, until, middle(LINE), middle(HEIGHT as i32 - LINE));
     }
 
     fn report(&self) -> Report {
-        Report::of(&self.plain, self.trusted_until)
+        Report {
+            step: self.step,
+            time: self.time(),
+            state: self.plain,
+            energy_error: self.energy.error(&self.plain),
+            trusted_until: self.trusted_until,
+        }
     }
 }

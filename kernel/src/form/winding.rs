@@ -5,7 +5,7 @@ use crate::real::Real;
 
 /// Counts how often a direction passes the upward vertical.
 ///
-/// Show it the direction at least once every half turn; then [`angle`](Self::angle) is the unwrapped angle.
+/// Show it the direction at least once every quarter turn; then [`angle`](Self::angle) is the unwrapped angle.
 #[derive(Clone, Copy, Debug)]
 pub struct Winding<R> {
     turns: i32,
@@ -41,5 +41,11 @@ impl<R: Real> Winding<R> {
     pub fn angle(&self) -> f64 {
         let [s, c] = self.last;
         f64::from(self.turns) * core::f64::consts::TAU + libm::atan2(s.to_f64(), c.to_f64())
+    }
+
+    /// `angle`, known but for whole turns, as many turns on as bring it nearest to [`angle`](Self::angle), rad: the
+    /// digits of [`Form::state`](super::Form::state) and the turns from here.
+    pub fn unwrap(&self, angle: f64) -> f64 {
+        angle + core::f64::consts::TAU * libm::rint((self.angle() - angle) / core::f64::consts::TAU)
     }
 }
