@@ -56,7 +56,7 @@ impl Scene for Figure7 {
         let right = Simulation::new(settings)?;
         let views = Place::HALVES.map(|place| View::new(&settings.parameters, place));
         let start = right.state();
-        let misprinted = Misprinted::new(settings.parameters, &start);
+        let misprinted = Misprinted::new(&settings.parameters, &start);
         let trust = Trust::new(&settings.parameters, &start)?;
         let mut scene = Self { right, misprinted, views, bobs: Default::default(), ink: Ink::default(), trust };
         scene.bobs = spots(scene.places());
@@ -97,30 +97,49 @@ impl Scene for Figure7 {
     }
 }
 
-/// A motion by the equal-rod equations exactly as the page prints them: the denominator of a2' lacks the factor
-/// mu = m2/m1. Unless mu = 1 they are not Hamilton's equations of anything, and what should be the energy is not kept.
-/// Nothing but this scene uses them.
+/// A motion by the equal-rod equations that the page prints: the denominator of a2' lacks the factor mu = m2/m1. Unless
+/// mu = 1 they are not Hamilton's equations of anything, and what should be the energy is not kept. Nothing but this
+/// scene uses them.
+///
+/// With q = p/(m1 l^2), r = 1/(1 + mu sin^2 D), D = a1 - a2:
+///
+/// - a1' = u = (q1 - q2 cos D) r; a2' = v = (q2 (1 + mu) - q1 mu cos D) r
+/// - q1' = -(1 + mu) g/l sin a1 - F; q2' = -mu g/l sin a2 + F
+///
+/// F = u v sin D is, term by term, the two long fractions of the page in one.
 #[derive(Clone, Copy, Debug)]
 struct Misprinted {
-    parameters: Parameters<f32>,
-    /// sin a1, cos a1, sin D, cos D, p1, p2 with D = a1 - a2: nothing here needs an angle.
+    /// mu and 1 + mu.
+    masses: [f32; 2],
+    /// (1 + mu) g/l and mu g/l.
+    gravity: [f32; 2],
+    /// m1 l^2.
+    inertia: f32,
+    /// sin a1, cos a1, sin D, cos D, q1, q2: nothing here needs an angle.
     z: [f32; 6],
 }
 
 impl Misprinted {
-    fn new(parameters: Parameters<f32>, start: &State<f32>) -> Self {
+    fn new(parameters: &Parameters<f32>, start: &State<f32>) -> Self {
+        let &Parameters { m1, m2, l1: l, g, .. } = parameters;
+        let (mu, inertia) = (m2 / m1, m1 * l * l);
         let (sin1, cos1) = libm::sincosf(start.a1);
         let (sin_d, cos_d) = libm::sincosf(start.a1 - start.a2);
-        Self { parameters, z: [sin1, cos1, sin_d, cos_d, start.p1, start.p2] }
+        Self {
+            masses: [mu, 1.0 + mu],
+            gravity: [(1.0 + mu) * g / l, mu * g / l],
+            inertia,
+            z: [sin1, cos1, sin_d, cos_d, start.p1 / inertia, start.p2 / inertia],
+        }
     }
 
     fn tick(&mut self) {
         for _ in 0..STEPS_PER_TICK {
             self.z = rk4::step(|z| self.derivatives(z), &self.z, STEP);
         }
-        let [sin1, cos1, sin_d, cos_d, p1, p2] = self.z;
+        let [sin1, cos1, sin_d, cos_d, q1, q2] = self.z;
         let ([sin1, cos1], [sin_d, cos_d]) = (unit([sin1, cos1]), unit([sin_d, cos_d]));
-        self.z = [sin1, cos1, sin_d, cos_d, p1, p2];
+        self.z = [sin1, cos1, sin_d, cos_d, q1, q2];
     }
 
     fn directions(&self) -> Directions {
@@ -129,31 +148,20 @@ impl Misprinted {
     }
 
     fn state(&self) -> State<f32> {
-        let [.., p1, p2] = self.z;
+        let [.., q1, q2] = self.z;
         let [a1, a2] = self.directions().map(|[sin, cos]| libm::atan2f(sin, cos));
-        State { a1, a2, p1, p2 }
+        State { a1, a2, p1: q1 * self.inertia, p2: q2 * self.inertia }
     }
 
-    fn derivatives(&self, &[sin1, cos1, sin_d, cos_d, p1, p2]: &[f32; 6]) -> [f32; 6] {
-        let Parameters { m1, m2, l1: l, g, .. } = self.parameters;
-        let mu = m2 / m1;
-        let inertia = m1 * l * l;
+    fn derivatives(&self, &[sin1, cos1, sin_d, cos_d, q1, q2]: &[f32; 6]) -> [f32; 6] {
+        let ([mu, total], [gravity1, gravity2]) = (self.masses, self.gravity);
+        let r = 1.0 / (1.0 + mu * sin_d * sin_d);
+        let u = (q1 - q2 * cos_d) * r;
+        let v = (q2 * total - q1 * mu * cos_d) * r;
+        let force = u * v * sin_d;
         let sin2 = sin1 * cos_d - cos1 * sin_d;
-        let inverse = 1.0 / (inertia * (1.0 + mu * sin_d * sin_d));
-        let w1 = (p1 - p2 * cos_d) * inverse;
-        let w2 = (p2 * (1.0 + mu) - p1 * mu * cos_d) * inverse;
-        let term1 = p1 * p2 * sin_d * inverse;
-        let bracket = p1 * p1 * mu - 2.0 * p1 * p2 * mu * cos_d + p2 * p2 * (1.0 + mu);
-        let term2 = inertia * bracket * sin_d * cos_d * inverse * inverse;
-        let w = w1 - w2;
-        [
-            cos1 * w1,
-            -sin1 * w1,
-            cos_d * w,
-            -sin_d * w,
-            -m1 * (1.0 + mu) * g * l * sin1 - term1 + term2,
-            -m1 * mu * g * l * sin2 + term1 - term2,
-        ]
+        let w = u - v;
+        [cos1 * u, -sin1 * u, cos_d * w, -sin_d * w, -gravity1 * sin1 - force, force - gravity2 * sin2]
     }
 }
 
