@@ -1,8 +1,10 @@
 //! The counter against a second way of counting, and the bits of the target against the host's.
 
 use double_pendulum::Parameters;
+use double_pendulum::plan::{Costs, Way};
 use firmware::measure::{Request, SUBJECTS};
 use host_tests::count::goal::GOALS;
+use host_tests::count::timing::Core;
 use host_tests::count::{FULL_CYCLE, Target, affordable_steps, step_cost};
 use host_tests::toolchain;
 
@@ -60,6 +62,28 @@ fn a_step_costs_no_more_than_its_goal() {
             let cost = step_cost(target, &Request { steps, ..request }).unwrap_or_else(|error| panic!("{error}"));
             println!("{}, {}, l2 = {}: {cost:?}", goal.arithmetic, goal.cpu, goal.l2);
             assert!(cost.cycles_high <= goal.cycles, "{goal:?}: {cost:?}");
+        }
+    }
+}
+
+/// The planner's price list; soft float depends on the numbers, compilers on their version.
+#[test]
+fn a_step_costs_what_the_planner_thinks() {
+    let within = 0.9..=1.1;
+    for target in &targets() {
+        let costs = if target.core() == Core::M3 { Costs::CORTEX_M3 } else { Costs::CORTEX_M4F };
+        for (way, subject) in [
+            (Way::ClosedForm, "f32-closed-form"),
+            (Way::PicturePlain, "f32-picture-plain"),
+            (Way::Picture, "f32-picture-compensated"),
+            (Way::Angle, "f32-angle-compensated"),
+            (Way::Picture8, "f64-picture8-compensated"),
+        ] {
+            let request = Request { angles: [0.5, 0.5], ..request(subject, FULL_CYCLE) };
+            let steps = affordable_steps(target, &request).unwrap_or_else(|error| panic!("{error}"));
+            let cost = step_cost(target, &Request { steps, ..request }).unwrap_or_else(|error| panic!("{error}"));
+            let share = f64::from(costs.of_frame(way, 1)) / cost.cycles_high;
+            assert!(within.contains(&share), "{subject} on {}: {share} of {cost:?}", target.board.name);
         }
     }
 }

@@ -26,6 +26,9 @@ pub struct Case {
 /// For how long the chip may look ahead, s of its time.
 pub const PLANNING: f32 = 2.0;
 
+/// How long the scenes of a study last, s.
+pub const DURATIONS: Range<f64> = 2.0..30.0;
+
 /// More than this, pixels, no picture may be wrong before its promised horizon.
 pub const GROSS: f64 = 2.0;
 

@@ -21,6 +21,7 @@ use std::fs;
 use std::path::Path;
 
 use crate::count::Target;
+use crate::planning;
 use scene::SCENES;
 
 /// How much is computed.
@@ -36,14 +37,23 @@ pub struct Extent {
     pub identity_steps: u32,
     /// Whether other integrators are counted, which first have to be compiled.
     pub peers: bool,
+    /// Scenes planned and carried out.
+    pub plans: usize,
 }
 
 impl Extent {
-    /// All of it: some ten minutes.
-    pub const FULL: Self =
-        Self { scenes: SCENES.len(), finest: 13, energy_steps: 1_000_000, identity_steps: 1_000_000, peers: true };
+    /// All of it: some twenty minutes.
+    pub const FULL: Self = Self {
+        scenes: SCENES.len(),
+        finest: 13,
+        energy_steps: 1_000_000,
+        identity_steps: 1_000_000,
+        peers: true,
+        plans: 2_000,
+    };
     /// The first two scenes and shorter runs: under two minutes.
-    pub const QUICK: Self = Self { scenes: 2, finest: 13, energy_steps: 100_000, identity_steps: 10_000, peers: false };
+    pub const QUICK: Self =
+        Self { scenes: 2, finest: 13, energy_steps: 100_000, identity_steps: 10_000, peers: false, plans: 60 };
 
     fn halvings(&self) -> impl Iterator<Item = u32> + Clone {
         4..=self.finest
@@ -52,9 +62,13 @@ impl Extent {
     /// The runs of everything, for the progress bar.
     pub fn runs(&self, targets: usize) -> usize {
         let survey = self.scenes * SUBJECTS.len() * self.halvings().count();
-        survey + energy::RUNS + if self.peers { peers::RUNS } else { 0 } + targets * (identity::RUNS + SUBJECTS.len())
+        let peers = if self.peers { peers::RUNS } else { 0 };
+        survey + energy::RUNS + peers + self.plans + targets * (identity::RUNS + SUBJECTS.len())
     }
 }
+
+/// The seed of the scenes that are planned; the test draws others.
+const PLANS_SEED: u64 = 1;
 
 /// Computes the report and writes it into `folder`. Costs are counted on `targets`.
 pub fn write(extent: &Extent, targets: &[Target], folder: &Path, bar: &ProgressBar) -> anyhow::Result<()> {
@@ -78,6 +92,10 @@ pub fn write(extent: &Extent, targets: &[Target], folder: &Path, bar: &ProgressB
     bar.set_message("counting other integrators");
     let [peers, tight] = peers::tables(extent.peers, &tick)?;
 
+    bar.set_message("carrying out plans");
+    let chip = &planning::M4F;
+    let plans = planning::study(PLANS_SEED, extent.plans, planning::DURATIONS, chip, tick)?;
+
     bar.set_message("writing");
     let priced = speed::priced(&points, &costs);
     let tables = [
@@ -87,6 +105,8 @@ pub fn write(extent: &Extent, targets: &[Target], folder: &Path, bar: &ProgressB
         peers,
         tight,
         identity,
+        planning::classes(&plans, chip)?,
+        planning::broken(&plans),
         speed::table(&priced),
     ];
     let mut charts = Vec::new();

@@ -1,0 +1,49 @@
+//! `cargo plan`: what it says, and what it refuses.
+
+use std::process::{Command, Output};
+
+fn plan(arguments: &str) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_plan")).args(arguments.split_whitespace()).output().expect("it runs")
+}
+
+fn said(arguments: &str) -> String {
+    let output = plan(arguments);
+    assert!(output.status.success(), "{output:?}");
+    String::from_utf8(output.stdout).expect("text")
+}
+
+#[test]
+fn it_says_the_way_the_step_and_the_horizon() {
+    let small = said("--angles 3,3 --degrees --height 64 --duration 10");
+    assert!(small.contains("normal modes in closed form") && small.contains("until 10.00 s of 10 s"), "{small}");
+    let large = said("--angles 90,90 --degrees --duration 10 --target m4f");
+    assert!(large.contains("plain f32") && large.contains("1/60 s, one to a picture"), "{large}");
+    let figure7 = said("--masses 1,2.75 --angles 171,171 --degrees --duration 30");
+    assert!(figure7.contains("errors grow until they show") && figure7.contains("of 30 s"), "{figure7}");
+    let light = said("--masses 1,1000 --angles 30,30 --degrees --duration 1");
+    assert!(light.contains("no rod can turn over"), "{light}");
+}
+
+#[test]
+fn bad_input_is_refused_in_one_line_that_names_option_and_value() {
+    for (arguments, option, value) in [
+        ("--masses 0,1", "--masses", "0"),
+        ("--lengths 1,-2", "--lengths", "-2"),
+        ("--gravity -1", "--gravity", "-1"),
+        ("--height 0", "--height", "0"),
+        ("--height tall", "--height", "tall"),
+        ("--duration -1", "--duration", "-1"),
+        ("--duration 1e12", "--duration", "1000000000000"),
+        ("--rate 0", "--rate", "0"),
+        ("--rate 0.5", "--rate", "0.5"),
+        ("--rate 70000", "--rate", "70000"),
+        ("--planning 0", "--planning", "0"),
+        ("--target m7", "--target", "m7"),
+    ] {
+        let output = plan(arguments);
+        let error = String::from_utf8(output.stderr).expect("text");
+        assert_eq!(output.status.code(), Some(2), "{arguments}: {error}");
+        assert!(error.lines().count() == 1 && error.contains(option) && error.contains(value), "{arguments}: {error}");
+        assert!(output.stdout.is_empty(), "{arguments}");
+    }
+}
