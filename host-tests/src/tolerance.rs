@@ -189,6 +189,5 @@ pub const FIGURE_7_PATH: f64 = 1e-4;
 /// The share of scenes in which half a pixel is kept until the planner's promised horizon: what the issue asks.
 pub const PLAN_KEPT: f64 = 0.999;
 
-/// The promised over the true horizon, in the median over the scenes that are not right to their end: what the issue asks
-/// of all scenes.
+/// The promised over the true horizon, in the median over all scenes: what the issue asks.
 pub const PLAN_SHARE: f64 = 0.7;
