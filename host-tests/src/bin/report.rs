@@ -4,8 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
-use host_tests::count::Target;
-use host_tests::report::{self, Extent};
+use host_tests::report::{self, Extent, headline};
 use host_tests::{cli, toolchain};
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -16,6 +15,9 @@ struct Options {
     /// Two scenes and shorter runs, in under two minutes
     #[arg(long)]
     quick: bool,
+    /// Puts the main table and chart into the README
+    #[arg(long)]
+    readme: bool,
     /// Where to write
     #[arg(long, default_value = concat!(env!("CARGO_MANIFEST_DIR"), "/report"))]
     folder: PathBuf,
@@ -37,11 +39,16 @@ fn main() -> ExitCode {
 
 fn run(options: &Options) -> anyhow::Result<()> {
     let (toolchain, _) = toolchain::set_up()?;
-    let targets = Target::build_all(&toolchain)?;
     let extent = if options.quick { Extent::QUICK } else { Extent::FULL };
-    let bar = ProgressBar::new(extent.runs(targets.len()) as u64);
+    let bar = ProgressBar::no_length();
     bar.set_style(ProgressStyle::with_template("{bar:40} {pos}/{len} {elapsed} {msg}")?);
-    let written = report::write(&extent, &targets, &options.folder, &bar);
+    let written = report::write(&extent, &toolchain, &options.folder, &bar);
     bar.finish_and_clear();
-    written
+    let (table, chart) = written?;
+    if options.readme {
+        headline::put_into_readme(&table, &chart)?;
+    } else if !headline::is_in_readme(&table)? {
+        println!("the README shows other figures; cargo report --readme puts these there");
+    }
+    Ok(())
 }

@@ -26,7 +26,7 @@ use crate::process::ProcessError;
 use crate::toolchain::BuildError;
 
 /// Name of the function, one per arithmetic, that is counted from its first instruction to its return.
-const COUNTED: &str = "::counted_steps";
+const COUNTED: &str = "counted_steps";
 
 /// Steps over which an average is fair to what an arithmetic does only now and then: a second of steps of 2^-8 s. In it
 /// the rods of a regular motion pass several marks of the angle form; the picture form restores its lengths eight times.

@@ -43,10 +43,15 @@ impl Target {
     /// Runs `request` at full speed: its outcome, and the ticks of the board's clock under `-icount`, where an
     /// instruction takes 1 ns.
     pub fn run(&self, request: &Request) -> Result<(Outcome, u64), CountError> {
-        let output = process::run(self.emulator(request).args(["-icount", "shift=0"]), LIMIT)?;
-        let refused = || CountError::Refused { request: request.to_string(), reason: output.stdout.trim().to_owned() };
-        let (outcome, ticks) = output.stdout.trim().rsplit_once(' ').ok_or_else(refused)?;
+        let output = self.output(request)?;
+        let refused = || CountError::Refused { request: request.to_string(), reason: output.trim().to_owned() };
+        let (outcome, ticks) = output.trim().rsplit_once(' ').ok_or_else(refused)?;
         Ok((Outcome::parse(outcome).map_err(|_| refused())?, ticks.parse().map_err(|_| refused())?))
+    }
+
+    /// Runs `request` at full speed: what it prints.
+    pub fn output(&self, request: &Request) -> Result<String, CountError> {
+        Ok(process::run(self.emulator(request).args(["-icount", "shift=0"]), LIMIT)?.stdout)
     }
 
     /// Runs `request` and calls `each` before every instruction, in order.

@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use double_pendulum::{Motion, State};
 use firmware::measure::{Request, SUBJECTS, Subject};
 
+use super::parallel;
 use super::scene::{SAMPLES, SCENES, Scene};
 use crate::reference::Reference;
 
@@ -45,18 +46,20 @@ pub fn request<'a>(subject: &'a Subject, scene: &Scene, halvings: u32) -> Reques
 
 /// The error of `subject`; `None` if it does not apply to the scene. A motion that was lost has an infinite error.
 pub fn error(subject: &Subject, scene: &Scene, halvings: u32, exact: &[[f64; 2]]) -> Option<Error> {
+    let mut states = Vec::new();
+    request(subject, scene, halvings).run(&mut |state: &State<f64>| states.push([state.a1, state.a2])).ok()?;
+    Some(worst(scene, &states, exact))
+}
+
+/// The largest error of the angles a1, a2 at the scene's samples.
+pub fn worst(scene: &Scene, angles: &[[f64; 2]], exact: &[[f64; 2]]) -> Error {
     let mut worst = Error { angle: 0.0, pixels: 0.0 };
-    let mut samples = exact.iter();
-    let mut compare = |state: &State<f64>| {
-        if let Some(&exact) = samples.next() {
-            let angles = [state.a1, state.a2];
-            let angle = apart(angles[0], exact[0]).max(apart(angles[1], exact[1]));
-            worst.angle = worst.angle.max(angle);
-            worst.pixels = worst.pixels.max(pixels(scene, angles, exact));
-        }
-    };
-    request(subject, scene, halvings).run(&mut compare).ok()?;
-    Some(worst)
+    for (&angles, &exact) in angles.iter().zip(exact) {
+        let angle = apart(angles[0], exact[0]).max(apart(angles[1], exact[1]));
+        worst.angle = worst.angle.max(angle);
+        worst.pixels = worst.pixels.max(pixels(scene, angles, exact));
+    }
+    worst
 }
 
 /// How far apart two angles point, rad, at most pi: the picture form knows no whole turns. Infinite if one is no number.
@@ -92,11 +95,16 @@ pub struct Point {
     pub error: Error,
 }
 
-/// Every arithmetic on the first `scenes` scenes with every step size in `halvings`; `tick` is called after each run.
-pub fn survey(scenes: usize, halvings: impl Iterator<Item = u32> + Clone, tick: &dyn Fn()) -> Vec<Point> {
-    let mut points = Vec::new();
-    for scene in SCENES.iter().take(scenes) {
+/// Every arithmetic on the first `scenes` scenes with every step size in `halvings`, the scenes on threads of their own;
+/// `tick` is called after each run.
+pub fn survey(
+    scenes: usize,
+    halvings: impl Iterator<Item = u32> + Clone + Sync,
+    tick: &(dyn Fn() + Sync),
+) -> Vec<Point> {
+    let through = |scene: &'static Scene| {
         let exact = exact(scene);
+        let mut points = Vec::new();
         for subject in SUBJECTS {
             for halvings in halvings.clone() {
                 let error = error(subject, scene, halvings, &exact);
@@ -104,6 +112,8 @@ pub fn survey(scenes: usize, halvings: impl Iterator<Item = u32> + Clone, tick: 
                 tick();
             }
         }
-    }
-    points
+        points
+    };
+    let scenes: Vec<_> = SCENES.iter().take(scenes).collect();
+    parallel(&scenes, |scene| through(scene)).concat()
 }

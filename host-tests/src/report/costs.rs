@@ -3,6 +3,7 @@
 use firmware::measure::{Request, SUBJECTS, Subject};
 
 use super::accuracy::request;
+use super::parallel;
 use super::scene::Scene;
 use super::table::Table;
 use crate::board::Board;
@@ -26,26 +27,20 @@ pub struct Cost {
 pub fn count(targets: &[Target], scene: &Scene, tick: &(dyn Fn() + Sync)) -> Result<Vec<Cost>, CountError> {
     let on_target = |target: &Target| {
         let counted = SUBJECTS.iter().map(|subject| {
-            let whole = Request { samples: 1, steps: FULL_CYCLE, ..request(subject, scene, HALVINGS) };
-            let steps = affordable_steps(target, &whole)?;
-            let step = step_cost(target, &Request { steps, ..whole })?;
+            let step = one(target, &request(subject, scene, HALVINGS))?;
             tick();
             Ok(Cost { subject, board: target.board, step })
         });
         counted.collect::<Result<Vec<_>, CountError>>()
     };
-    let on_target = &on_target;
-    std::thread::scope(|scope| {
-        let running: Vec<_> = targets.iter().map(|target| scope.spawn(move || on_target(target))).collect();
-        let mut costs = Vec::new();
-        for thread in running {
-            match thread.join() {
-                Ok(counted) => costs.extend(counted?),
-                Err(panic) => std::panic::resume_unwind(panic),
-            }
-        }
-        Ok(costs)
-    })
+    Ok(parallel(targets, on_target).into_iter().collect::<Result<Vec<_>, _>>()?.concat())
+}
+
+/// What a step of `request` costs on `target`, over as many steps as can be afforded.
+pub fn one(target: &Target, request: &Request) -> Result<StepCost, CountError> {
+    let whole = Request { samples: 1, steps: FULL_CYCLE, ..*request };
+    let steps = affordable_steps(target, &whole)?;
+    step_cost(target, &Request { steps, ..whole })
 }
 
 /// The table of costs.

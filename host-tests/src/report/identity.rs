@@ -46,7 +46,7 @@ pub fn every_state<'a>(subject: &'a Subject, scene: &Scene, steps: u32) -> Reque
 
 /// Compares every arithmetic over both motions on `target`, over `steps` steps or, where they are computed in software,
 /// a tenth; `tick` is called after each.
-pub fn compare(target: &Target, steps: u32, tick: &dyn Fn()) -> Result<Vec<Comparison<'static>>, CountError> {
+pub fn compare(target: &Target, steps: u32, tick: &(dyn Fn() + Sync)) -> Result<Vec<Comparison<'static>>, CountError> {
     let runs = COMPARED.iter().flat_map(|scene| SUBJECTS.iter().map(move |subject| (scene, subject)));
     let compared = runs.map(|(scene, subject)| {
         let steps = if is_in_hardware(target, subject) { steps } else { steps / SOFTWARE };

@@ -4,9 +4,11 @@
 //! same ([`identity`]). Nothing is timed, so two runs write the same files.
 
 pub mod accuracy;
+mod c_peers;
 pub mod chart;
 pub mod costs;
 pub mod energy;
+pub mod headline;
 pub mod identity;
 mod page;
 pub mod peers;
@@ -22,7 +24,9 @@ use std::path::Path;
 
 use crate::count::Target;
 use crate::planning;
+use crate::toolchain::Toolchain;
 use scene::SCENES;
+use table::Table;
 
 /// How much is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,12 +74,21 @@ impl Extent {
 /// The seed of the scenes that are planned; the test draws others.
 const PLANS_SEED: u64 = 1;
 
-/// Computes the report and writes it into `folder`. Costs are counted on `targets`.
-pub fn write(extent: &Extent, targets: &[Target], folder: &Path, bar: &ProgressBar) -> anyhow::Result<()> {
+/// Computes the report and writes it into `folder`. Costs are counted on one board for each kind of core.
+///
+/// Gives the README's table and chart too.
+pub fn write(
+    extent: &Extent,
+    toolchain: &Toolchain,
+    folder: &Path,
+    bar: &ProgressBar,
+) -> anyhow::Result<(Table, String)> {
+    let targets = &Target::build_all(toolchain)?[..];
+    bar.set_length(extent.runs(targets.len()) as u64);
     let tick = || bar.inc(1);
     bar.set_message("comparing bits");
-    let compared = targets.iter().map(|target| identity::compare(target, extent.identity_steps, &tick));
-    let compared = compared.collect::<Result<Vec<_>, _>>()?.concat();
+    let compared = parallel(targets, |target| identity::compare(target, extent.identity_steps, &tick));
+    let compared = compared.into_iter().collect::<Result<Vec<_>, _>>()?.concat();
     let identity = identity::table(&compared);
     ensure!(
         compared.iter().all(identity::Comparison::agrees),
@@ -84,6 +97,11 @@ pub fn write(extent: &Extent, targets: &[Target], folder: &Path, bar: &ProgressB
     );
     bar.set_message("counting");
     let costs = costs::count(targets, &SCENES[0], &tick)?;
+    bar.set_message("compiling and counting C");
+    let exact = headline::FOLLOWED.map(accuracy::exact);
+    let exact = exact.each_ref().map(Vec::as_slice);
+    let c = c_peers::count(toolchain, targets, headline::FOLLOWED, exact)?;
+    let headline = headline::table(&costs, &c.0, exact);
     bar.set_message("comparing with the reference");
     let points = accuracy::survey(extent.scenes, extent.halvings(), &tick);
     bar.set_message("following the energy");
@@ -99,6 +117,8 @@ pub fn write(extent: &Extent, targets: &[Target], folder: &Path, bar: &ProgressB
     bar.set_message("writing");
     let priced = speed::priced(&points, &costs);
     let tables = [
+        headline.clone(),
+        c_peers::table(&c, &points, &costs),
         costs::table(&costs, &SCENES[0]),
         speed::floors(&points),
         energy,
@@ -130,5 +150,18 @@ pub fn write(extent: &Extent, targets: &[Target], folder: &Path, bar: &ProgressB
     for (name, svg) in &charts {
         save(name, svg)?;
     }
-    save("index.html", &page::html(&tables, &charts))
+    save("index.html", &page::html(&tables, &charts))?;
+    let name = format!("speed-{}-cortex-m4.svg", SCENES[0].name);
+    let chart = charts.into_iter().find(|(chart, _)| *chart == name);
+    Ok((headline, chart.context("no chart of the first scene")?.1))
+}
+
+/// What `work` makes of each item, every item on a thread of its own.
+fn parallel<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<R> {
+    let work = &work;
+    std::thread::scope(|scope| {
+        let running: Vec<_> = items.iter().map(|item| scope.spawn(move || work(item))).collect();
+        let results = running.into_iter().map(|thread| thread.join());
+        results.map(|result| result.unwrap_or_else(|panic| std::panic::resume_unwind(panic))).collect()
+    })
 }

@@ -47,6 +47,11 @@ pub const SCENES: &[Scene] = &[
     scene("unequal-rods",  "unequal rods: 1 m, 0.5 m; mu = 2",  2.0,   [1.0, 0.5],   9.81, [0.5, 0.5], 10),
 ];
 
+/// The regular motion for ten times as long.
+#[rustfmt::skip]
+pub const LONG: Scene =
+    scene("regular-long", "regular: 0.5/0.5 rad, 100 s",       1.0,   [1.0, 1.0],   9.81, [0.5, 0.5], 100);
+
 impl Scene {
     /// Masses, lengths and gravity.
     pub fn parameters(&self) -> Parameters<f64> {

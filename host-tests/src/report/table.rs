@@ -31,8 +31,13 @@ impl Table {
 
     /// With heading and note.
     pub fn markdown(&self) -> String {
+        format!("## {}\n\n{}\n\n{}", self.title, self.note, self.markdown_rows())
+    }
+
+    /// The columns' headings and the rows.
+    pub fn markdown_rows(&self) -> String {
         let line = |cells: String| format!("| {cells} |\n");
-        let mut text = format!("## {}\n\n{}\n\n", self.title, self.note);
+        let mut text = String::new();
         text.push_str(&line(self.columns.join(" | ")));
         text.push_str(&line(vec!["---"; self.columns.len()].join(" | ")));
         self.rows.iter().for_each(|row| text.push_str(&line(row.join(" | "))));
