@@ -7,9 +7,9 @@
 //!
 //! | form | cycles | 10 s | 100 s |
 //! |---|---|---|---|
-//! | [`AngleForm`] compensated, `f32` | 365 | 4e-8 | 4e-7 |
-//! | [`PictureForm`] compensated, `f32` | 218 | 3e-8 | 2e-7 |
-//! | [`PictureForm`] plain, `f32` | 169 | 2e-6 | 2e-5 |
+//! | [`AngleForm`] compensated, `f32` | 382 | 2e-8 | 4e-7 |
+//! | [`PictureForm`] compensated, `f32` | 214 | 4e-8 | 2.5e-7 |
+//! | [`PictureForm`] plain, `f32` | 160 | 2e-6 | 2e-5 |
 //!
 //! In `f64`, where an error of 1e-9 or less is wanted, [`PictureForm8`] takes far fewer steps, of order 8.
 //!
