@@ -131,6 +131,8 @@ impl Player {
         self.start(name, name.first_settings())
     }
 
+    /// Never inlined: the new scene stands on the stack beside the old one, and must do so only while it is made.
+    #[inline(never)]
     fn start(&mut self, name: SceneName, settings: Settings) -> Result<bool, Field> {
         self.scene = AnyScene::new(name, &settings)?;
         self.report = self.scene.report();
