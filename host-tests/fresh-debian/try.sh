@@ -1,0 +1,199 @@
+#!/bin/bash
+# The set-up on a fresh Debian where things go wrong: it says so in clear words, and the next run heals it.
+#
+#   sudo host-tests/fresh-debian/try.sh [TRIAL ...]    all trials, or those named; exit code 1 if one fails
+#
+# Needs root, debootstrap, e2fsprogs, a Debian with network, rustup's stable toolchain, 6 GB and a quarter of an hour.
+# Changes nothing but a folder of its own: the Debian is made there once, and each trial runs in a layer over it. In there
+# rustup has no targets and reaches no server, so that Debian's packages must do.
+set -euo pipefail
+
+here=$(cd "$(dirname "$0")" && pwd)
+repository=$(cd "$here/../.." && pwd)
+folder=${TMPDIR:-/tmp}/double-pendulum-fresh-debian
+base=$folder/base
+toolchain=stable-x86_64-unknown-linux-gnu
+trials=(interrupted-while-fetching interrupted-while-unpacking interrupted-while-configuring killed-while-unpacking
+    killed-while-configuring twice-at-once without-root without-network broken-qemu full-disk)
+
+# ---- The Debian -------------------------------------------------------------------------------------------------------
+
+make_base() {
+    rm -rf "$folder"
+    mkdir -p "$folder"
+    debootstrap --variant=minbase --include=gcc,libc6-dev,ca-certificates,git bookworm "$base" > "$folder/debootstrap.log"
+    cp -a /etc/apt/. "$base/etc/apt/"
+    cp -L /etc/resolv.conf "$base/etc/"
+    cp -L /etc/ssl/certs/ca-certificates.crt "$base/etc/ssl/certs/"
+    mkdir -p "$base/opt/rustup/toolchains" "$base/opt/cargo"
+    cp -a "${CARGO_HOME:-$HOME/.cargo}/bin" "$base/opt/cargo/"
+    cp -a "${RUSTUP_HOME:-$HOME/.rustup}/settings.toml" "$base/opt/rustup/"
+    cp -a "${RUSTUP_HOME:-$HOME/.rustup}/toolchains/$toolchain" "$base/opt/rustup/toolchains/"
+    forget_targets "$base/opt/rustup/toolchains/$toolchain/lib/rustlib"
+    # Every trial would fetch these: they are fetched once.
+    enter "$base" > "$folder/fetched.log" 2>&1 <<'END'
+        set -e
+        apt-get update
+        apt-get install --yes --no-install-recommends --download-only rustc-web cargo-web rust-web-src qemu-system-arm
+END
+    touch "$folder/made"
+}
+
+# Brings what is committed into the Debian, its set-up compiled.
+bring_project() {
+    rm -rf "$base/opt/new"
+    git clone --quiet "$repository" "$base/opt/new"
+    [ ! -e "$base/opt/double-pendulum/target" ] || mv "$base/opt/double-pendulum/target" "$base/opt/new/"
+    rm -rf "$base/opt/double-pendulum"
+    mv "$base/opt/new" "$base/opt/double-pendulum"
+    echo 'cargo build --quiet --package host-tests --bin setup' | enter "$base"
+}
+
+# Makes rustup believe that no ARM target was ever added.
+forget_targets() {
+    rm -rf "$1"/thumb* "$1"/manifest-rust-std-thumb*
+    sed -i '/thumb/d' "$1/components"
+    awk 'BEGIN { RS = "\\[\\[components\\]\\]"; ORS = "" } !/thumb/ { print (NR > 1 ? "[[components]]" : "") $0 }' \
+        "$1/multirust-config.toml" > "$1/multirust-config.new"
+    mv "$1/multirust-config.new" "$1/multirust-config.toml"
+}
+
+# Runs the script on standard input in the root folder $1, as process 1 of its own; $2... are options of unshare.
+enter() {
+    local root=$1
+    shift
+    timeout 1500 unshare --mount --pid --fork --kill-child "$@" sh -c '
+        mount -t proc proc "$1/proc"
+        mount --rbind /dev "$1/dev"
+        exec chroot "$1" /usr/bin/env -i HOME=/root TERM=dumb LC_ALL=C \
+            PATH=/opt/cargo/bin:/usr/sbin:/usr/bin:/sbin:/bin CARGO_HOME=/opt/cargo RUSTUP_HOME=/opt/rustup \
+            RUSTUP_AUTO_INSTALL=0 RUSTUP_DIST_SERVER=http://127.0.0.1:9 \
+            bash -c "cd /opt/double-pendulum 2> /dev/null; . /dev/stdin"' - "$root"
+}
+
+# ---- A trial ----------------------------------------------------------------------------------------------------------
+
+# Lays a fresh layer over the Debian, on a disk of $1 megabytes.
+lay() {
+    truncate --size="$1M" "$folder/disk"
+    mkfs.ext4 -q -F -m 0 "$folder/disk"
+    mount_layer
+}
+
+mount_layer() {
+    mkdir -p "$folder/layer" "$folder/root"
+    mount -o loop "$folder/disk" "$folder/layer"
+    mkdir -p "$folder/layer/upper" "$folder/layer/work"
+    mount -t overlay overlay -o "lowerdir=$base,upperdir=$folder/layer/upper,workdir=$folder/layer/work" "$folder/root"
+}
+
+unmount() {
+    for mounted in root layer; do
+        ! mountpoint --quiet "$folder/$mounted" || umount "$folder/$mounted"
+    done
+}
+
+lift() {
+    unmount
+    rm -f "$folder/disk"
+}
+
+fail() {
+    echo "FAILED: $*"
+    sed 's/^/    /' "$folder/said"
+    return 1
+}
+
+# What the set-up said must hold $1.
+said() { grep --quiet -- "$1" "$folder/said" || fail "it does not say: $1"; }
+
+# The next run ends well, the one after it finds nothing to do, and dpkg has no complaint.
+heals() {
+    enter "$folder/root" > "$folder/said" 2>&1 <<'END' || fail "the next run does not heal it"
+        set -e
+        target/debug/setup
+        target/debug/setup
+        test -z "$(dpkg --audit)"
+END
+    said "nothing had to be done"
+}
+
+# The set-up ends with exit code $1; the rest are options of unshare.
+set_up() {
+    local expected=$1 status=0
+    shift
+    echo 'target/debug/setup' | enter "$folder/root" "$@" > "$folder/said" 2>&1 || status=$?
+    [ "$status" = "$expected" ] || fail "exit code $status, not $expected"
+}
+
+# Stops the set-up by the signal $1 at the moment when a process runs whose command line holds $2.
+stop_at() {
+    {
+        echo "signal=$1 moment='$2'"
+        cat <<'END'
+        runs() { cat /proc/[0-9]*/cmdline 2> /dev/null | tr '\0' ' ' | grep --quiet -- "$moment"; }
+        target/debug/setup &
+        until runs || ! kill -0 $! 2> /dev/null; do sleep 0.01; done
+        sleep 0.3
+        # The signal KILL strikes everything at once, as a loss of power would.
+        if [ $signal = KILL ]; then kill -KILL -1; else kill -$signal $!; fi
+        wait $!
+        echo "ended with exit code $?"
+END
+    } | enter "$folder/root" > "$folder/said" 2>&1 || fail "the trial itself did not run"
+    said "ended with exit code $3"
+}
+
+# ---- The trials -------------------------------------------------------------------------------------------------------
+
+interrupted-while-fetching() { stop_at INT "apt-get update" 130 && heals; }
+interrupted-while-unpacking() { stop_at INT "dpkg .*--unpack" 130 && heals; }
+interrupted-while-configuring() { stop_at INT "dpkg .*--configure" 130 && heals; }
+killed-while-unpacking() { stop_at KILL "dpkg .*--unpack" 137 && heals; }
+killed-while-configuring() { stop_at KILL "dpkg .*--configure" 137 && heals; }
+
+twice-at-once() {
+    enter "$folder/root" > "$folder/said" 2>&1 <<'END' || fail "one of the two failed"
+        target/debug/setup &
+        target/debug/setup && wait $!
+END
+    said "waiting for another set-up" && heals
+}
+
+without-root() {
+    set_up 2 --map-users=65534,0,1 --map-groups=65534,0,1 --user
+    said "only root may install packages" && said "sudo apt-get install" && heals
+}
+
+without-network() {
+    set_up 2 --net
+    said "apt-get: " && said "sudo apt-get install" && heals
+}
+
+broken-qemu() {
+    set_up 0
+    truncate --size=100000 "$folder/root/usr/bin/qemu-system-arm"
+    heals
+}
+
+full-disk() {
+    set_up 2 && said "No space left on device\|enough free space" || return
+    unmount
+    truncate --size=4G "$folder/disk"
+    resize2fs "$folder/disk" > "$folder/resize.log" 2>&1
+    mount_layer && heals
+}
+
+# ---- All of it --------------------------------------------------------------------------------------------------------
+
+trap lift EXIT
+lift
+[ -e "$folder/made" ] || make_base
+bring_project
+failures=0
+for trial in "${@:-${trials[@]}}"; do
+    case $trial in full-disk) lay 300 ;; *) lay 4096 ;; esac
+    if "$trial"; then echo "$trial: healed"; else failures=$((failures + 1)); fi
+    lift
+done
+exit $((failures > 0))
