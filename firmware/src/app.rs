@@ -14,6 +14,7 @@ use crate::protocol::{Done, Frame, LinkError, MAX_WIRE, Message, Refused, encode
 use crate::scenes::SceneName;
 use crate::service::{Received, Service};
 use crate::settings::Settings;
+use crate::sheets::Sheets;
 
 /// What is worth a line in the log.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,14 +55,14 @@ pub enum Event<Panel, Link> {
 
 /// The same on a board and in a test: a panel, a byte sink and buttons are all it needs.
 #[derive(Debug)]
-pub struct App<Panel, Link, Keys> {
+pub struct App<'a, Panel, Link, Keys> {
     panel: Panel,
     link: Link,
     keys: Keys,
     controls: Controls,
-    player: Player,
+    player: Player<'a>,
     service: Service,
-    canvas: Canvas,
+    canvas: &'a mut Canvas,
     /// Ticks done since reset.
     ticks: u32,
     /// Pictures drawn since reset.
@@ -79,17 +80,23 @@ pub struct App<Panel, Link, Keys> {
     busy_cycles: u32,
 }
 
-impl<Panel: Display, Link: Write, Keys: Buttons> App<Panel, Link, Keys> {
+impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> {
     /// Starts with `settings`, at tick 0; the kernel's error if they describe no pendulum.
-    pub fn new(settings: Settings, panel: Panel, link: Link, keys: Keys) -> Result<Self, Error> {
+    pub fn new(
+        settings: Settings,
+        Sheets { canvas, ink }: &'a mut Sheets,
+        panel: Panel,
+        link: Link,
+        keys: Keys,
+    ) -> Result<Self, Error> {
         Ok(Self {
             panel,
             link,
             keys,
             controls: Controls::default(),
-            player: Player::new(settings)?,
+            player: Player::new(settings, ink)?,
             service: Service::default(),
-            canvas: Canvas::default(),
+            canvas,
             ticks: 0,
             frames: 0,
             dropped: 0,
@@ -128,7 +135,7 @@ impl<Panel: Display, Link: Write, Keys: Buttons> App<Panel, Link, Keys> {
         if let Err(error) = self.player.check() {
             log(Event::Stopped(error));
         }
-        self.player.draw(&mut self.canvas);
+        self.player.draw(self.canvas);
         let scene_cycles = (self.stopwatch)().wrapping_sub(start);
         self.show(scene_cycles, &mut log);
         self.busy_cycles = (self.stopwatch)().wrapping_sub(start);
@@ -175,13 +182,13 @@ impl<Panel: Display, Link: Write, Keys: Buttons> App<Panel, Link, Keys> {
     }
 
     /// What is played.
-    pub fn player(&self) -> &Player {
+    pub fn player(&self) -> &Player<'a> {
         &self.player
     }
 
     /// The last picture drawn.
     pub fn canvas(&self) -> &Canvas {
-        &self.canvas
+        self.canvas
     }
 
     /// The byte sink.
@@ -239,7 +246,7 @@ impl<Panel: Display, Link: Write, Keys: Buttons> App<Panel, Link, Keys> {
     }
 
     fn show(&mut self, scene_cycles: u32, log: &mut impl FnMut(Event<Panel::Error, Link::Error>)) {
-        let shown = self.panel.flush(&self.canvas);
+        let shown = self.panel.flush(self.canvas);
         report(shown, &mut self.panel_failed, |error| log(Event::Panel(error)));
         let frame = self.frame(scene_cycles);
         self.send(&frame, log);

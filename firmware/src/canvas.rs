@@ -24,11 +24,14 @@ pub struct Canvas {
 
 impl Default for Canvas {
     fn default() -> Self {
-        Self { bytes: [0; BYTES] }
+        Self::BLACK
     }
 }
 
 impl Canvas {
+    /// Every pixel black.
+    pub const BLACK: Self = Self { bytes: [0; BYTES] };
+
     /// Makes every pixel black.
     pub fn clear(&mut self) {
         self.bytes.fill(0);

@@ -7,7 +7,7 @@ use crate::canvas::{Canvas, HEIGHT, WIDTH};
 const LAST_GREY: u8 = 4;
 
 /// A picture that fades: every row loses one grey in [`HEIGHT`] ticks, about a second.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Ink {
     picture: Canvas,
     /// The row that pales next.
@@ -15,6 +15,15 @@ pub struct Ink {
 }
 
 impl Ink {
+    /// Nothing has been drawn.
+    pub const NONE: Self = Self { picture: Canvas::BLACK, row: 0 };
+
+    /// Wipes it all out.
+    pub fn clear(&mut self) {
+        self.picture.clear();
+        self.row = 0;
+    }
+
     /// Adds a stroke at full brightness.
     pub fn add(&mut self, stroke: Stroke) {
         stroke.lighten(&mut self.picture, u8::MAX);

@@ -32,6 +32,7 @@ pub mod scene;
 pub mod scenes;
 pub mod service;
 pub mod settings;
+pub mod sheets;
 pub mod simulation;
 pub mod swing;
 pub mod text;

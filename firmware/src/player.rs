@@ -5,6 +5,7 @@ use double_pendulum::Error;
 use crate::canvas::Canvas;
 use crate::command::Command;
 use crate::config::{GREATEST_ANGLE, GREATEST_SPEED, LEAST_SPEED};
+use crate::ink::Ink;
 use crate::job::Field;
 use crate::protocol::Status;
 use crate::scene::Report;
@@ -16,11 +17,12 @@ use crate::text;
 const WHOLE_TICK: u32 = 100;
 
 /// A scene under way.
-#[derive(Clone, Debug)]
-pub struct Player {
+#[derive(Debug)]
+pub struct Player<'a> {
     name: SceneName,
     settings: Settings,
     scene: AnyScene,
+    ink: &'a mut Ink,
     pace: Pace,
     /// As of the last check.
     report: Report,
@@ -28,13 +30,14 @@ pub struct Player {
     stopped: bool,
 }
 
-impl Player {
+impl<'a> Player<'a> {
     /// Plays the page with `settings`; the kernel's error if they describe no pendulum.
-    pub fn new(settings: Settings) -> Result<Self, Error> {
+    pub fn new(settings: Settings, ink: &'a mut Ink) -> Result<Self, Error> {
         let name = SceneName::Page;
         let scene = AnyScene::new(name, &settings)?;
         let report = scene.report();
-        Ok(Self { name, settings, scene, pace: Pace::default(), report, stopped: false })
+        ink.clear();
+        Ok(Self { name, settings, scene, ink, pace: Pace::default(), report, stopped: false })
     }
 
     /// Does what is asked; if that cannot be, nothing is changed and the error names what is wrong. Whether the scene
@@ -66,7 +69,7 @@ impl Player {
             return;
         }
         for _ in 0..self.pace.tick() {
-            self.scene.tick();
+            self.scene.tick(self.ink);
         }
     }
 
@@ -85,7 +88,7 @@ impl Player {
     /// Draws the scene over the canvas that holds its last picture, and a mark if its time stands still.
     pub fn draw(&self, canvas: &mut Canvas) {
         if !self.stopped {
-            self.scene.draw(canvas);
+            self.scene.draw(self.ink, canvas);
         }
         if self.is_paused() {
             text::pause_mark(canvas);
@@ -131,10 +134,9 @@ impl Player {
         self.start(name, name.first_settings())
     }
 
-    /// Never inlined: the new scene stands on the stack beside the old one, and must do so only while it is made.
-    #[inline(never)]
     fn start(&mut self, name: SceneName, settings: Settings) -> Result<bool, Field> {
-        self.scene = AnyScene::new(name, &settings)?;
+        self.scene.start(name, &settings)?;
+        self.ink.clear();
         self.report = self.scene.report();
         self.stopped = false;
         self.name = name;

@@ -3,6 +3,7 @@
 use double_pendulum::{Error, State};
 
 use crate::canvas::Canvas;
+use crate::ink::Ink;
 use crate::settings::Settings;
 use crate::simulation::Simulation;
 
@@ -11,10 +12,11 @@ pub trait Scene: Sized {
     /// At the start; the kernel's error if the settings describe no pendulum, or none that this scene can show.
     fn new(settings: &Settings) -> Result<Self, Error>;
 
-    /// Advances by one tick. The picture after n ticks does not depend on which of them were drawn.
-    fn tick(&mut self);
+    /// Advances by one tick and adds to the ink what shall stay. The picture after n ticks does not depend on which of
+    /// them were drawn.
+    fn tick(&mut self, ink: &mut Ink);
 
-    /// Draws the whole picture over whatever was there.
+    /// Draws over the ink.
     fn draw(&self, canvas: &mut Canvas);
 
     /// What is to be told about it in numbers.

@@ -17,6 +17,7 @@ pub mod qemu;
 pub mod random;
 pub mod reference;
 pub mod report;
+pub mod show;
 pub mod simulate;
 pub mod snapshot;
 pub mod stream;

@@ -11,6 +11,7 @@ use firmware::job::{Arithmetic, Field, Form as Stepped, Model, Request};
 use firmware::protocol::{Refused, Sample};
 use firmware::service::Service;
 use firmware::settings::Settings;
+use host_tests::show::sheets;
 
 /// Far beyond the stability limit of 0.5 s; it leads out of the finite numbers within a few hundred steps.
 const TOO_LONG: f64 = 50.0;
@@ -115,7 +116,8 @@ fn too_short() -> Settings {
 
 #[test]
 fn a_scene_stands_at_its_last_good_picture() {
-    let mut app = App::new(too_short(), NoDisplay, Vec::new(), NoButtons).unwrap_or_else(|error| panic!("{error}"));
+    let mut app =
+        App::new(too_short(), sheets(), NoDisplay, Vec::new(), NoButtons).unwrap_or_else(|error| panic!("{error}"));
     let mut stops = Vec::new();
     let mut last_good = None;
     for tick in 1..=600 {

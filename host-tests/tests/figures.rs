@@ -5,14 +5,15 @@ use std::fs;
 use std::path::Path;
 
 use double_pendulum::{Motion, Pendulum, State};
-use firmware::canvas::{Canvas, HEIGHT, WIDTH};
-use firmware::scenes::{AnyScene, SceneName};
+use firmware::canvas::{HEIGHT, WIDTH};
+use firmware::scenes::SceneName;
 use host_tests::demo::played;
 use host_tests::figures::chaos::{self, Chaos};
 use host_tests::figures::frequencies::Frequencies;
 use host_tests::figures::small::{Point, Small};
 use host_tests::figures::{FOLDER, files, panel};
 use host_tests::reference::Reference;
+use host_tests::show::Show;
 use host_tests::tolerance;
 
 /// Figures 3 to 5: number, mu, w1, w2 (rad/s), the envelope's period (s), the largest |a1| (degrees).
@@ -53,7 +54,7 @@ fn is_shown(name: SceneName) -> bool {
 }
 
 fn is_shown_from(late: usize, name: SceneName, pictures: &[(Vec<u8>, u16)]) -> bool {
-    let mut scene = AnyScene::new(name, &name.first_settings()).expect("a scene of the catalogue");
+    let mut scene = Show::new(name, &name.first_settings()).expect("a scene of the catalogue");
     (0..late).for_each(|_| scene.tick());
     pictures.iter().enumerate().all(|(number, (dots, _))| {
         if number > 0 {
@@ -64,9 +65,8 @@ fn is_shown_from(late: usize, name: SceneName, pictures: &[(Vec<u8>, u16)]) -> b
 }
 
 /// Whether the dots, a square of them for each pixel, are what the scene draws.
-fn is_shown_as(scene: &AnyScene, dots: &[u8]) -> bool {
-    let mut canvas = Canvas::default();
-    scene.draw(&mut canvas);
+fn is_shown_as(scene: &Show, dots: &[u8]) -> bool {
+    let canvas = scene.picture();
     let scale = (dots.len() / (WIDTH * HEIGHT)).isqrt();
     dots.iter().enumerate().all(|(i, &dot)| {
         let (x, y) = (i % (WIDTH * scale) / scale, i / (WIDTH * scale) / scale);

@@ -15,12 +15,13 @@ use firmware::scenes::SceneName;
 use firmware::settings::Settings;
 use firmware::swing::Directions;
 use firmware::view::{Place, View};
+use host_tests::show::sheets;
 use host_tests::stream::Expected;
 
-type Plain = App<NoDisplay, Vec<u8>, NoButtons>;
+type Plain = App<'static, NoDisplay, Vec<u8>, NoButtons>;
 
 fn app() -> Plain {
-    App::new(Settings::default(), NoDisplay, Vec::new(), NoButtons).expect("the first settings are good")
+    App::new(Settings::default(), sheets(), NoDisplay, Vec::new(), NoButtons).expect("the first settings are good")
 }
 
 /// Runs to each of the clock's readings in turn.
@@ -109,7 +110,7 @@ fn dropped_pictures_are_counted_and_no_tick_is_lost() {
 #[test]
 fn hanging_at_rest_has_no_energy_error() {
     let settings = Settings::equal_rods(1.0, 0.0);
-    let mut app = App::new(settings, NoDisplay, Vec::new(), NoButtons).expect("good");
+    let mut app = App::new(settings, sheets(), NoDisplay, Vec::new(), NoButtons).expect("good");
     app.run_to(10, |_: Event<Infallible, Infallible>| ());
     assert_eq!(frames(app.link()).iter().map(|frame| frame.energy_error).collect::<Vec<_>>(), [0.0]);
 }
@@ -127,7 +128,7 @@ impl Buttons for Script {
 
 #[test]
 fn buttons_restart_with_the_new_settings() {
-    let mut app = App::new(Settings::default(), NoDisplay, Vec::new(), Script::default()).expect("good");
+    let mut app = App::new(Settings::default(), sheets(), NoDisplay, Vec::new(), Script::default()).expect("good");
     let mut started = Vec::new();
     for now in 1..=60 {
         app.run_to(now, |event| started.push((now, event)));
@@ -147,7 +148,7 @@ fn buttons_restart_with_the_new_settings() {
 fn impossible_settings_are_refused() {
     for mass_ratio in [0.0, -1.0, f32::NAN, f32::INFINITY] {
         let settings = Settings::equal_rods(mass_ratio, 120.0);
-        let message = App::new(settings, NoDisplay, Vec::new(), NoButtons).expect_err("refused").to_string();
+        let message = App::new(settings, sheets(), NoDisplay, Vec::new(), NoButtons).expect_err("refused").to_string();
         assert!(message.starts_with("m2 = "), "{message}");
     }
 }
@@ -179,7 +180,7 @@ impl Write for Faulty {
 
 #[test]
 fn a_failing_link_is_reported_once_and_loses_only_its_own_frames() {
-    let mut app = App::new(Settings::default(), NoDisplay, Faulty::default(), NoButtons).expect("good");
+    let mut app = App::new(Settings::default(), sheets(), NoDisplay, Faulty::default(), NoButtons).expect("good");
     let mut events = Vec::new();
     for now in 1..=20 {
         app.run_to(now, |event| events.push(event));
@@ -204,7 +205,7 @@ impl Display for BrokenPanel<'_> {
 #[test]
 fn a_failing_panel_is_reported_once_and_does_not_stop_the_rest() {
     let broken = Cell::new(true);
-    let mut app = App::new(Settings::default(), BrokenPanel(&broken), Vec::new(), NoButtons).expect("good");
+    let mut app = App::new(Settings::default(), sheets(), BrokenPanel(&broken), Vec::new(), NoButtons).expect("good");
     let mut events = Vec::new();
     for now in 1..=30 {
         broken.set(!(10..20).contains(&now));
@@ -235,7 +236,8 @@ fn bobs_are_drawn_where_the_state_puts_them() {
 
 #[test]
 fn the_motion_never_touches_the_labels() {
-    let mut app = App::new(Settings::equal_rods(0.0125, -179.0), NoDisplay, Vec::new(), NoButtons).expect("good");
+    let mut app =
+        App::new(Settings::equal_rods(0.0125, -179.0), sheets(), NoDisplay, Vec::new(), NoButtons).expect("good");
     // Boxes of the three labels at their longest in use: 8 and 7 characters of 5 pixels, and a time below 1000 s.
     let boxes = [(0..40, 0..8), (0..35, 56..64), (93..128, 0..8)];
     for now in 1..=3600 {

@@ -14,11 +14,12 @@ use firmware::protocol::{
 use firmware::scenes::SceneName;
 use firmware::settings::Settings;
 use firmware::unit::Unit;
+use host_tests::show::sheets;
 
-type Plain = App<NoDisplay, Vec<u8>, NoButtons>;
+type Plain = App<'static, NoDisplay, Vec<u8>, NoButtons>;
 
 fn app() -> Plain {
-    App::new(Settings::default(), NoDisplay, Vec::new(), NoButtons).expect("the first settings are good")
+    App::new(Settings::default(), sheets(), NoDisplay, Vec::new(), NoButtons).expect("the first settings are good")
 }
 
 fn wire<M: Message>(message: &M) -> Vec<u8> {

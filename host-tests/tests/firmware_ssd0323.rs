@@ -11,6 +11,7 @@ use firmware::canvas::Canvas;
 use firmware::controls::NoButtons;
 use firmware::display::{Display, PanelError, Ssd0323};
 use firmware::settings::Settings;
+use host_tests::show::sheets;
 
 /// Commands and how many arguments each takes, from the data sheet's command table.
 const COMMANDS: [(u8, usize); 21] = [
@@ -164,7 +165,7 @@ fn shows_exactly_the_picture() {
     let controller = RefCell::new(Controller::new());
     let mut panel = Ssd0323::new(Bus(&controller), Pin(&controller));
     panel.init().expect("the bus works");
-    let mut app = App::new(Settings::default(), panel, Vec::new(), NoButtons).expect("good");
+    let mut app = App::new(Settings::default(), sheets(), panel, Vec::new(), NoButtons).expect("good");
     for now in 1..=20 {
         app.run_to(now, |event| panic!("{event:?}"));
         assert_eq!(shown(&controller), app.canvas().bytes());

@@ -9,6 +9,7 @@ use firmware::config::TICK_RATE;
 use firmware::display::{Display, Ssd1306, Ssd1306Error};
 use firmware::player::Player;
 use firmware::settings::Settings;
+use firmware::sheets::Sheets;
 
 /// Commands and how many arguments each takes, from the data sheet's command table; their arguments follow them in the
 /// same message.
@@ -133,9 +134,9 @@ impl I2c for Bus<'_> {
 
 /// The application's first scene after some ticks.
 fn scene(ticks: u32) -> Canvas {
-    let mut player = Player::new(Settings::default()).expect("the default settings are a pendulum");
+    let Sheets { mut canvas, mut ink } = Sheets::default();
+    let mut player = Player::new(Settings::default(), &mut ink).expect("the default settings are a pendulum");
     (0..ticks).for_each(|_| player.tick());
-    let mut canvas = Canvas::default();
     player.draw(&mut canvas);
     canvas
 }

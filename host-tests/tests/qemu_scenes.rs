@@ -3,12 +3,13 @@
 mod support;
 
 use fastrand::Rng;
-use firmware::canvas::{Canvas, HEIGHT, WIDTH};
+use firmware::canvas::{HEIGHT, WIDTH};
 use firmware::config::TICK_RATE;
 use firmware::protocol::{Choose, Done, Frame};
-use firmware::scenes::{AnyScene, SceneName};
+use firmware::scenes::SceneName;
 use host_tests::board::{BOARDS, Board};
 use host_tests::qemu::{Lockstep, Machine, QemuError};
+use host_tests::show::Show;
 use support::{application, settings, toolchain};
 
 /// Pictures compared for each scene, and frames from one to the next.
@@ -51,7 +52,7 @@ fn the_panel_shows_what_the_host_draws() -> Result<(), QemuError> {
         let (toolchain, elf) = (toolchain(), application(board));
         let mut machine = Lockstep::start(&settings(&toolchain, board, &elf))?;
         for &name in SceneName::ALL {
-            let mut scene = AnyScene::new(name, &name.first_settings()).expect("a scene of the catalogue");
+            let mut scene = Show::new(name, &name.first_settings()).expect("a scene of the catalogue");
             let mut frame = choose(&mut machine, name)?;
             for _ in 0..PICTURES {
                 for _ in 0..EVERY {
@@ -61,8 +62,7 @@ fn the_panel_shows_what_the_host_draws() -> Result<(), QemuError> {
                 while scene.report().time < f64::from(ticks) / f64::from(TICK_RATE) - 1e-9 {
                     scene.tick();
                 }
-                let mut canvas = Canvas::default();
-                scene.draw(&mut canvas);
+                let canvas = scene.picture();
                 let picture = machine.picture()?;
                 let differing = (0..WIDTH * HEIGHT)
                     .filter(|&i| canvas.get((i % WIDTH) as i32, (i / WIDTH) as i32) != picture.greys().get(i).copied());

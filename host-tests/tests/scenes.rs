@@ -1,26 +1,21 @@
 //! Every scene of the catalogue, on the host: its picture to the pixel, and what all scenes have in common.
 
 use firmware::canvas::{Canvas, HEIGHT, WIDTH};
-use firmware::scenes::{AnyScene, SceneName};
+use firmware::scenes::SceneName;
+use host_tests::show::Show;
 use host_tests::snapshot;
 
 /// The ticks after which each scene is pictured: one second, when all is in view, and four.
 const PICTURED: [u32; 2] = [60, 240];
 
-fn scene(name: SceneName) -> AnyScene {
-    AnyScene::new(name, &name.first_settings()).unwrap_or_else(|error| panic!("{}: {error}", name.name()))
+fn scene(name: SceneName) -> Show {
+    Show::new(name, &name.first_settings()).unwrap_or_else(|error| panic!("{}: {error}", name.name()))
 }
 
-fn after(name: SceneName, ticks: u32) -> AnyScene {
+fn after(name: SceneName, ticks: u32) -> Show {
     let mut scene = scene(name);
     (0..ticks).for_each(|_| scene.tick());
     scene
-}
-
-fn picture(scene: &AnyScene) -> Canvas {
-    let mut canvas = Canvas::default();
-    scene.draw(&mut canvas);
-    canvas
 }
 
 fn greys(canvas: &Canvas) -> Vec<u8> {
@@ -31,7 +26,7 @@ fn greys(canvas: &Canvas) -> Vec<u8> {
 #[test]
 fn every_scene_looks_as_it_did() {
     let check = |name: SceneName, ticks| {
-        let picture = snapshot::text(&greys(&picture(&after(name, ticks))), WIDTH);
+        let picture = snapshot::text(&greys(&after(name, ticks).picture()), WIDTH);
         snapshot::check(&format!("{}-{ticks}", name.name()), &picture)
     };
     let differences: Vec<_> = SceneName::ALL
@@ -46,8 +41,8 @@ fn every_scene_looks_as_it_did() {
 fn a_picture_is_drawn_over_whatever_was_there() {
     for &name in SceneName::ALL {
         let scene = after(name, 30);
-        let mut canvas = picture(&after(SceneName::Page, 100));
+        let mut canvas = after(SceneName::Page, 100).picture();
         scene.draw(&mut canvas);
-        assert!(canvas == picture(&scene), "{}", name.name());
+        assert!(canvas == scene.picture(), "{}", name.name());
     }
 }

@@ -4,11 +4,12 @@ use std::thread;
 
 use double_pendulum::{Motion, Parameters, Pendulum};
 use firmware::config::{MASS_RATIOS, REACH, TICK_RATE};
-use firmware::scenes::{AnyScene, SceneName};
+use firmware::scenes::SceneName;
 use firmware::settings::Settings;
 use firmware::trust::HALF_PIXEL;
 use firmware::view::Place;
 use host_tests::reference::Reference;
+use host_tests::show::Show;
 use host_tests::tolerance::{TRUST_LATE, TRUST_TYPICAL};
 
 /// How long each motion is followed, s. Of those that are still right then, the clock must say so, too.
@@ -54,7 +55,7 @@ fn horizon(case: &Case) -> Horizon {
     let motion = Motion { a1, a2, w1: widened(w1), w2: widened(w2) };
     let pendulum = Pendulum::new(parameters).expect("the scene took it");
     let mut reference = Reference::new(&parameters, &motion);
-    let mut scene = AnyScene::new(case.name, &case.settings).expect("good settings");
+    let mut scene = Show::new(case.name, &case.settings).expect("good settings");
     let scale = widened(case.reach) / (parameters.l1 + parameters.l2);
 
     let mut exact = f64::INFINITY;

@@ -2,21 +2,22 @@
 #![no_std]
 #![no_main]
 
+use core::mem::MaybeUninit;
+
 use firmware::app::App;
-use firmware::board::{self, mps2_an386::Board};
+use firmware::board;
+use firmware::board::mps2_an386::{Board, Uart};
 use firmware::controls::NoButtons;
 use firmware::display::NoDisplay;
-use firmware::settings::Settings;
+use firmware::sheets::Sheets;
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
+    static mut SHEETS: Sheets = Sheets::BLANK;
+    static mut APP: MaybeUninit<App<'static, NoDisplay, Uart, NoButtons>> = MaybeUninit::uninit();
+
     let Some(board) = Board::take() else { panic!("the board was taken before") };
     defmt::info!("boot: mps2-an386, {} Hz", board.hertz);
-    match App::new(Settings::default(), NoDisplay, board.link, NoButtons) {
-        Ok(app) => board::run(app, board.receiver, board.clock),
-        Err(error) => {
-            defmt::error!("{}", error);
-            panic!("the first settings describe no pendulum")
-        }
-    }
+    let app = board::application(APP, SHEETS, NoDisplay, board.link, NoButtons);
+    board::run(app, board.receiver, board.clock)
 }

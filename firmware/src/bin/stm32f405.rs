@@ -2,23 +2,24 @@
 #![no_std]
 #![no_main]
 
+use core::mem::MaybeUninit;
+
 use firmware::app::App;
-use firmware::board::{self, stm32f405::Board};
-use firmware::settings::Settings;
+use firmware::board;
+use firmware::board::stm32f405::{Board, Keys, Panel, Uart};
+use firmware::sheets::Sheets;
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
+    static mut SHEETS: Sheets = Sheets::BLANK;
+    static mut APP: MaybeUninit<App<'static, Panel, Uart, Keys>> = MaybeUninit::uninit();
+
     let Some(board) = Board::take() else { panic!("the board was taken before") };
     defmt::info!("boot: stm32f405, {} Hz, {}", board.hertz, board.place);
     let mut panel = board.panel;
     if let Err(error) = panel.init() {
         defmt::warn!("no panel: {}", defmt::Debug2Format(&error));
     }
-    match App::new(Settings::default(), panel, board.link, board.keys) {
-        Ok(app) => board::run(app, board.receiver, board.clock),
-        Err(error) => {
-            defmt::error!("{}", error);
-            panic!("the first settings describe no pendulum")
-        }
-    }
+    let app = board::application(APP, SHEETS, panel, board.link, board.keys);
+    board::run(app, board.receiver, board.clock)
 }

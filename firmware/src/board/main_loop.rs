@@ -1,6 +1,7 @@
-//! The main loop of every board, and its log.
+//! The application of every board, its main loop and its log.
 
 use core::fmt::Debug;
+use core::mem::MaybeUninit;
 
 use defmt::Debug2Format;
 use embedded_io::Write;
@@ -9,12 +10,36 @@ use super::{Clock, Receiver, cycles};
 use crate::app::{App, Event};
 use crate::controls::Buttons;
 use crate::display::Display;
+use crate::settings::Settings;
+use crate::sheets::Sheets;
+
+/// Makes the application as it is switched on, at its place.
+pub fn application<'a, Panel, Link, Keys>(
+    place: &'a mut MaybeUninit<App<'a, Panel, Link, Keys>>,
+    sheets: &'a mut Sheets,
+    panel: Panel,
+    link: Link,
+    keys: Keys,
+) -> &'a mut App<'a, Panel, Link, Keys>
+where
+    Panel: Display,
+    Link: Write,
+    Keys: Buttons,
+{
+    match App::new(Settings::default(), sheets, panel, link, keys) {
+        Ok(app) => place.write(app),
+        Err(error) => {
+            defmt::error!("{}", error);
+            panic!("the first settings describe no pendulum")
+        }
+    }
+}
 
 /// Runs the application for ever; between ticks it works for the host, or sleeps.
 ///
 /// Kept apart from the start-up code, which may panic; this may not (test `no_panic`).
 #[inline(never)]
-pub fn run<Panel, Link, Keys>(mut app: App<Panel, Link, Keys>, mut receiver: Receiver, clock: Clock) -> !
+pub fn run<Panel, Link, Keys>(app: &'static mut App<Panel, Link, Keys>, mut receiver: Receiver, clock: Clock) -> !
 where
     Panel: Display<Error: Debug>,
     Link: Write,

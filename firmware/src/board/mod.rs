@@ -16,5 +16,5 @@ mod register;
 use defmt_semihosting as _; // where the log goes
 
 pub use clock::{Clock, cycles};
-pub use main_loop::run;
+pub use main_loop::{application, run};
 pub use receiver::Receiver;

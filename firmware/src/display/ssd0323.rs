@@ -62,8 +62,19 @@ impl<Spi: SpiDevice, Pin: OutputPin> Ssd0323<Spi, Pin> {
 
     /// Configures the controller, blanks its memory and switches the panel on.
     pub fn init(&mut self) -> Result<(), PanelError<Spi::Error, Pin::Error>> {
-        self.flush(&Canvas::default())?;
+        self.begin()?;
+        (0..HEIGHT).try_for_each(|_| self.data(&[0; WIDTH / 2]))?;
         WAKE.iter().try_for_each(|command| self.command(command))
+    }
+
+    /// What is sent next goes to the panel's top left corner, and on from there.
+    fn begin(&mut self) -> Result<(), PanelError<Spi::Error, Pin::Error>> {
+        self.command(&WHOLE_PANEL)?;
+        self.data_not_command.set_high().map_err(PanelError::Pin)
+    }
+
+    fn data(&mut self, bytes: &[u8]) -> Result<(), PanelError<Spi::Error, Pin::Error>> {
+        self.spi.write(bytes).map_err(PanelError::Spi)
     }
 
     /// Sends a command; this controller takes the arguments as commands, too.
@@ -77,8 +88,7 @@ impl<Spi: SpiDevice, Pin: OutputPin> Display for Ssd0323<Spi, Pin> {
     type Error = PanelError<Spi::Error, Pin::Error>;
 
     fn flush(&mut self, canvas: &Canvas) -> Result<(), Self::Error> {
-        self.command(&WHOLE_PANEL)?;
-        self.data_not_command.set_high().map_err(PanelError::Pin)?;
-        self.spi.write(canvas.bytes()).map_err(PanelError::Spi)
+        self.begin()?;
+        self.data(canvas.bytes())
     }
 }

@@ -46,7 +46,6 @@ pub struct Beats {
     /// Pixels per radian.
     scale: f32,
     spots: [Spot; 2],
-    ink: Ink,
     trust: Trust,
 }
 
@@ -89,22 +88,21 @@ impl Scene for Beats {
         let shape = [modes.fast.shape, modes.slow.shape];
         let greatest = amplitude(linear.fast(), shape[0]).max(amplitude(linear.slow(), shape[1]));
         let scale = if greatest > 0.0 { REACH / greatest } else { 0.0 };
-        let (spots, ink) = ([Spot::default(); 2], Ink::default());
+        let spots = [Spot::default(); 2];
         let trust = Trust::new(&settings.parameters, &simulation.state())?;
-        let mut scene = Self { settings: *settings, simulation, linear, shape, scale, spots, ink, trust };
+        let mut scene = Self { settings: *settings, simulation, linear, shape, scale, spots, trust };
         scene.spots = scene.spots();
         Ok(scene)
     }
 
-    fn tick(&mut self) {
+    fn tick(&mut self, ink: &mut Ink) {
         self.simulation.tick();
         let places = self.places();
         let spots = places.map(|(x, y)| Spot::at(x, y));
         for (from, to) in self.spots.into_iter().zip(spots) {
-            self.ink.add(Stroke { from, to, radius: HALF_WIDTH });
+            ink.add(Stroke { from, to, radius: HALF_WIDTH });
         }
         self.spots = spots;
-        self.ink.tick();
         let mut trust = self.trust;
         let [linear, _] = places;
         trust.tick(self.simulation.time(), places, |directions| [linear, self.exact_place(directions)]);
@@ -112,7 +110,6 @@ impl Scene for Beats {
     }
 
     fn draw(&self, canvas: &mut Canvas) {
-        canvas.clone_from(self.ink.picture());
         for spot in self.spots {
             Stroke::disc(spot, 2 * HALF_WIDTH + SPOT_RADIUS / 2).erase(canvas);
             Stroke::disc(spot, SPOT_RADIUS).lighten(canvas, u8::MAX);

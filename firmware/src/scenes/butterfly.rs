@@ -48,7 +48,6 @@ pub struct Butterfly {
     e_foldings: f32,
     trust: Trust,
     bobs: [Spot; 2],
-    ink: Ink,
     strip: Strip<1, PLOT_COLUMNS>,
 }
 
@@ -82,21 +81,19 @@ impl Scene for Butterfly {
             view,
             apart: f64::from(beside.a1) - f64::from(start.a1),
             e_foldings: 0.0,
-            ink: Ink::default(),
             strip: Strip::default(),
         };
         scene.put_down();
         Ok(scene)
     }
 
-    fn tick(&mut self) {
+    fn tick(&mut self, ink: &mut Ink) {
         self.first.tick();
         self.second.advance(STEPS_PER_TICK);
         let shown = self.view.bobs(self.first.directions());
         let bobs = shown.map(|(x, y)| Spot::at(x, y));
         let ([_, from], [_, to]) = (self.bobs, bobs);
-        self.ink.add(Stroke { from, to, radius: HALF_WIDTH });
-        self.ink.tick();
+        ink.add(Stroke { from, to, radius: HALF_WIDTH });
         self.bobs = bobs;
         self.trust.tick(self.first.time(), shown, |directions| self.view.bobs(directions));
         if self.first.step().is_multiple_of(STEPS_PER_COLUMN) {
@@ -105,7 +102,6 @@ impl Scene for Butterfly {
     }
 
     fn draw(&self, canvas: &mut Canvas) {
-        canvas.clone_from(self.ink.picture());
         self.view.draw(canvas, self.view.spots(self.second.directions()), SECOND);
         self.view.draw(canvas, self.bobs, u8::MAX);
         for e_foldings in [0.0, 5.0, 10.0, 15.0] {

@@ -31,7 +31,6 @@ pub struct Figure7 {
     views: [View; 2],
     /// The bobs of both pendulums.
     bobs: [[Spot; 2]; 2],
-    ink: Ink,
     trust: Trust,
 }
 
@@ -58,12 +57,12 @@ impl Scene for Figure7 {
         let start = right.state();
         let misprinted = Misprinted::new(&settings.parameters, &start);
         let trust = Trust::new(&settings.parameters, &start)?;
-        let mut scene = Self { right, misprinted, views, bobs: Default::default(), ink: Ink::default(), trust };
+        let mut scene = Self { right, misprinted, views, bobs: Default::default(), trust };
         scene.bobs = spots(scene.places());
         Ok(scene)
     }
 
-    fn tick(&mut self) {
+    fn tick(&mut self, ink: &mut Ink) {
         self.right.tick();
         self.misprinted.tick();
         let places = self.places();
@@ -72,14 +71,12 @@ impl Scene for Figure7 {
         self.trust.tick(self.right.time(), shown, |directions| view.bobs(directions));
         let bobs = spots(places);
         for ([_, from], [_, to]) in self.bobs.into_iter().zip(bobs) {
-            self.ink.add(Stroke { from, to, radius: HALF_WIDTH });
+            ink.add(Stroke { from, to, radius: HALF_WIDTH });
         }
         self.bobs = bobs;
-        self.ink.tick();
     }
 
     fn draw(&self, canvas: &mut Canvas) {
-        canvas.clone_from(self.ink.picture());
         for (view, bobs) in self.views.iter().zip(self.bobs) {
             view.draw(canvas, bobs, u8::MAX);
         }

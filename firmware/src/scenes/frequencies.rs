@@ -5,6 +5,7 @@ use double_pendulum::{Error, Modes, Parameters, State};
 use crate::brush::{Spot, Stroke};
 use crate::canvas::{Canvas, HEIGHT, WIDTH};
 use crate::config::TICK_RATE;
+use crate::ink::Ink;
 use crate::label;
 use crate::plot::{self, Strip};
 use crate::scene::{Report, Scene};
@@ -65,7 +66,7 @@ impl Scene for Frequencies {
         Ok(Self { range, scale: RISE / greatest, mass_ratio, marked, curves, ticks: 0, drawn: 0 })
     }
 
-    fn tick(&mut self) {
+    fn tick(&mut self, _: &mut Ink) {
         self.ticks = self.ticks.wrapping_add(1);
         for _ in 0..COLUMNS_PER_TICK.min(WIDTH as u32 - self.drawn) {
             self.push();
@@ -73,7 +74,6 @@ impl Scene for Frequencies {
     }
 
     fn draw(&self, canvas: &mut Canvas) {
-        canvas.clear();
         let (width, zero) = (WIDTH as i32, ZERO_ROW as i32);
         plot::axis(canvas, 0, width, zero, AXIS_GREY);
         self.curves.each(self.drawn as i32 - 1, |x, &[fast, slow], &[fast_before, slow_before]| {

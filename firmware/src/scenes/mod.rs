@@ -12,6 +12,7 @@ use double_pendulum::Error;
 
 use crate::canvas::Canvas;
 use crate::choice::choice;
+use crate::ink::Ink;
 use crate::scene::{Report, Scene};
 use crate::settings::Settings;
 
@@ -39,13 +40,20 @@ macro_rules! catalogue {
                 match name { $(SceneName::$row => <$scene>::new(settings).map(Self::$row),)* }
             }
 
-            /// As [`Scene::tick`].
-            pub fn tick(&mut self) {
-                match self { $(Self::$row(scene) => scene.tick(),)* }
+            /// Starts the scene `name` in the place of this one; if it cannot show `settings`, this one goes on.
+            pub fn start(&mut self, name: SceneName, settings: &Settings) -> Result<(), Error> {
+                match name { $(SceneName::$row => self.become_one(settings, Self::$row),)* }
             }
 
-            /// As [`Scene::draw`].
-            pub fn draw(&self, canvas: &mut Canvas) {
+            /// Advances by one tick, as [`Scene::tick`]; the ink, which was clear at the start, pales.
+            pub fn tick(&mut self, ink: &mut Ink) {
+                match self { $(Self::$row(scene) => scene.tick(ink),)* }
+                ink.tick();
+            }
+
+            /// Draws the whole picture over whatever was there.
+            pub fn draw(&self, ink: &Ink, canvas: &mut Canvas) {
+                canvas.clone_from(ink.picture());
                 match self { $(Self::$row(scene) => scene.draw(canvas),)* }
             }
 
@@ -82,6 +90,15 @@ catalogue! {
     Butterfly = 10, "butterfly", butterfly::Butterfly, Settings::default();
     /// Both rods at exactly 180 degrees.
     Upright = 11, "upright", upright::Upright, upright::straight_up();
+}
+
+impl AnyScene {
+    /// Kept apart, for else the scenes of all the catalogue would stand side by side on the stack of who chooses one.
+    #[inline(never)]
+    fn become_one<S: Scene>(&mut self, settings: &Settings, one: fn(S) -> Self) -> Result<(), Error> {
+        *self = one(S::new(settings)?);
+        Ok(())
+    }
 }
 
 impl SceneName {

@@ -4,6 +4,7 @@ use double_pendulum::Error;
 
 use crate::brush::Spot;
 use crate::canvas::{Canvas, HEIGHT};
+use crate::ink::Ink;
 use crate::label;
 use crate::scene::{Report, Scene};
 use crate::settings::Settings;
@@ -42,7 +43,7 @@ impl Scene for Page {
         Ok(Self { settings: *settings, simulation, trust, view, trail: Trail::new(bob2) })
     }
 
-    fn tick(&mut self) {
+    fn tick(&mut self, _: &mut Ink) {
         self.simulation.tick();
         let shown = self.bobs();
         let [_, (x, y)] = shown;
@@ -51,7 +52,6 @@ impl Scene for Page {
     }
 
     fn draw(&self, canvas: &mut Canvas) {
-        canvas.clear();
         self.trail.draw(canvas);
         self.view.draw(canvas, self.spots(), u8::MAX);
         let [degrees1, degrees2] = self.settings.degrees;

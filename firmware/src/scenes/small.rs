@@ -5,6 +5,7 @@ use double_pendulum::{Error, Modes, Oscillation, Parameters, Pendulum, SmallOsci
 
 use crate::canvas::{Canvas, WIDTH};
 use crate::config::TICK_RATE;
+use crate::ink::Ink;
 use crate::label;
 use crate::plot::{self, Strip};
 use crate::scene::{Report, Scene};
@@ -89,7 +90,7 @@ impl Scene for Small {
         Ok(scene)
     }
 
-    fn tick(&mut self) {
+    fn tick(&mut self, _: &mut Ink) {
         self.ticks = self.ticks.wrapping_add(1);
         if self.ticks.is_multiple_of(self.ticks_per_column) {
             self.push();
@@ -97,7 +98,6 @@ impl Scene for Small {
     }
 
     fn draw(&self, canvas: &mut Canvas) {
-        canvas.clear();
         for row in ROWS {
             plot::axis(canvas, 0, WIDTH as i32, row as i32, REST_GREY);
         }

@@ -38,7 +38,6 @@ pub struct Upright {
     step: u32,
     views: [View; 2],
     bobs: [[Spot; 2]; 2],
-    ink: Ink,
     trusted_until: f32,
 }
 
@@ -72,13 +71,13 @@ impl Scene for Upright {
         let views = Place::HALVES.map(|place| View::new(&settings.parameters, place));
         let compensated = Swing::new(&settings.parameters, &plain, STEP)?;
         let (energy, step) = (Energy::new(pendulum, &plain), 0);
-        let (bobs, ink) = (Default::default(), Ink::default());
-        let mut scene = Self { plain, compensated, energy, step, views, bobs, ink, trusted_until: f32::INFINITY };
+        let bobs = Default::default();
+        let mut scene = Self { plain, compensated, energy, step, views, bobs, trusted_until: f32::INFINITY };
         scene.bobs = scene.places();
         Ok(scene)
     }
 
-    fn tick(&mut self) {
+    fn tick(&mut self, ink: &mut Ink) {
         for _ in 0..STEPS_PER_TICK {
             self.plain = self.energy.pendulum().step(&self.plain, STEP);
         }
@@ -89,14 +88,12 @@ impl Scene for Upright {
         }
         let places = self.places();
         for ([_, from], [_, to]) in self.bobs.into_iter().zip(places) {
-            self.ink.add(Stroke { from, to, radius: HALF_WIDTH });
+            ink.add(Stroke { from, to, radius: HALF_WIDTH });
         }
         self.bobs = places;
-        self.ink.tick();
     }
 
     fn draw(&self, canvas: &mut Canvas) {
-        canvas.clone_from(self.ink.picture());
         for (view, bobs) in self.views.iter().zip(self.bobs) {
             view.draw(canvas, bobs, u8::MAX);
         }

@@ -3,13 +3,13 @@
 use std::path::Path;
 
 use anyhow::{Result, bail};
-use firmware::canvas::Canvas;
 use firmware::config::TICK_RATE;
-use firmware::scenes::{AnyScene, SceneName};
+use firmware::scenes::SceneName;
 
 use crate::board::BOARDS;
 use crate::demo::{self, Options, record};
 use crate::qemu::Picture;
+use crate::show::Show;
 
 /// The moment of the pictures, ticks.
 const MOMENT: u32 = 8 * TICK_RATE;
@@ -21,12 +21,10 @@ pub fn file(scene: SceneName, kind: &str) -> String {
 
 /// The picture of a scene as a PNG file. The panel of the emulated board shows the same (test `qemu_scenes`).
 pub fn picture(name: SceneName) -> Result<Vec<u8>> {
-    let mut scene = AnyScene::new(name, &name.first_settings())?;
+    let mut scene = Show::new(name, &name.first_settings())?;
     (0..MOMENT).for_each(|_| scene.tick());
-    let mut canvas = Canvas::default();
-    scene.draw(&mut canvas);
     let mut file = Vec::new();
-    record::png(&Picture::from(&canvas), &mut file)?;
+    record::png(&Picture::from(&scene.picture()), &mut file)?;
     Ok(file)
 }
 

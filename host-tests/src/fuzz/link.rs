@@ -10,6 +10,7 @@ use firmware::protocol::{
 };
 use firmware::scenes::SceneName;
 use firmware::settings::Settings;
+use firmware::sheets::Sheets;
 
 use super::Outcome;
 use crate::qemu::Received;
@@ -55,7 +56,9 @@ pub fn decoder(input: &[u8]) -> Outcome {
 /// Intact messages of any content to the application, which plays on: each is answered, a refused one changes nothing.
 /// The input is a kind, the length of the fields, the fields, and the next.
 pub fn commands(input: &[u8]) -> Outcome {
-    let mut app = App::new(Settings::default(), NoDisplay, Vec::new(), NoButtons).unwrap_or_else(|e| panic!("{e}"));
+    let mut sheets = Sheets::default();
+    let app = App::new(Settings::default(), &mut sheets, NoDisplay, Vec::new(), NoButtons);
+    let mut app = app.unwrap_or_else(|error| panic!("{error}"));
     let (mut rest, mut tick, mut outcome) = (input, 0, 0);
     for _ in 0..2 {
         let [kind, length, fields @ ..] = rest else { break };

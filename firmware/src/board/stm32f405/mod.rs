@@ -39,10 +39,13 @@ pub enum Place {
     Emulator,
 }
 
+/// The board's panel.
+pub type Panel = Ssd1306<Bus>;
+
 /// The board, set up and running.
 pub struct Board {
     /// The OLED panel, not yet initialised; it may be absent.
-    pub panel: Ssd1306<Bus>,
+    pub panel: Panel,
     /// The serial link outwards.
     pub link: Uart,
     /// The serial link inwards.
