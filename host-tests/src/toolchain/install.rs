@@ -19,6 +19,8 @@ const INSTALL: Duration = Duration::from_secs(1200);
 const CONFIGURE: Duration = Duration::from_secs(300);
 /// What apt-get says instead of removing a package.
 const WOULD_REMOVE: &str = "Packages need to be removed";
+/// What rustup, dpkg and the unpacking say where the disk is full, and what apt-get says beforehand if it can tell.
+const DISK_IS_FULL: [&str; 2] = ["No space left on device", "enough free space"];
 /// Unpacks QEMU's packages, in the workspace.
 const UNPACK_QEMU: &str = "host-tests/src/toolchain/unpack-qemu.sh";
 /// How much of a failed command's own words is passed on, in characters.
@@ -168,7 +170,9 @@ fn attempt(system: &impl System, command: &mut Command, limit: Duration, doing: 
         return Ok(());
     }
     let said = |start: &str| output.stderr.lines().find(|line| line.starts_with(start));
-    let why = said("E: ").or_else(|| said("error: ")).or_else(|| output.stderr.lines().last());
+    // dpkg says it in the middle of a line, and apt-get sums up that dpkg has failed.
+    let full = DISK_IS_FULL.iter().any(|words| output.stderr.contains(words)).then_some("the disk is full");
+    let why = full.or_else(|| said("E: ")).or_else(|| said("error: ")).or_else(|| output.stderr.lines().last());
     let why = why.unwrap_or("it fails without a word").trim_start_matches("E: ").trim_start_matches("error: ");
     let why: String = why.chars().take(LONGEST_REASON).collect();
     Err(format!("{}: {why}", command.get_program().to_string_lossy()))

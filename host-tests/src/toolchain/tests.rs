@@ -40,6 +40,7 @@ struct World {
     root: bool,
     rustup: Rustup,
     network: bool,
+    disk_is_full: Cell<bool>,
     has_linker: bool,
     debian_compiler: &'static str,
     lists_are_there: Cell<bool>,
@@ -62,6 +63,7 @@ fn fresh_debian() -> World {
         root: true,
         rustup: Rustup::Hangs,
         network: true,
+        disk_is_full: Cell::new(false),
         has_linker: true,
         debian_compiler: "rustc 1.96.0 (ac68faa20 2026-05-25)",
         lists_are_there: Cell::new(false),
@@ -107,6 +109,12 @@ impl World {
         }
         if !self.network {
             return fails("E: Failed to fetch: Temporary failure resolving 'deb.debian.org'");
+        }
+        if self.disk_is_full.get() {
+            return fails(
+                "dpkg: error processing archive qemu.deb (--unpack):\n cannot copy extracted data: failed to write (No \
+                 space left on device)\nE: Sub-process /usr/bin/dpkg returned an error code (1)",
+            );
         }
         if self.emulator_is_in_conflict && packages.contains(&"qemu-system-arm") {
             return fails("E: Packages need to be removed but remove is disabled.");
@@ -361,6 +369,16 @@ fn without_network_the_cause_is_named() {
         assert!(error.reason.contains("Temporary failure resolving 'deb.debian.org'"), "{error}");
         assert!(!world.targets.get() && world.debian_packages.borrow().is_empty());
     }
+}
+
+#[test]
+fn a_full_disk_is_named_and_the_next_run_heals_it() {
+    let world = World { disk_is_full: Cell::new(true), ..fresh_debian() };
+    let error = refusal(&world);
+    assert_eq!(error.missing, [Part::ArmCore, Part::Qemu]);
+    assert!(error.reason.ends_with("apt-get: the disk is full"), "{error}");
+    world.disk_is_full.set(false);
+    assert!(is_from_source(&set_up(&world).0));
 }
 
 #[test]
