@@ -17,6 +17,10 @@ const UPDATE: Duration = Duration::from_secs(300);
 const INSTALL: Duration = Duration::from_secs(1200);
 /// For finishing what an interrupted dpkg left.
 const CONFIGURE: Duration = Duration::from_secs(300);
+/// What apt-get says where dpkg was stopped in its work.
+const INTERRUPTED: &str = "dpkg was interrupted";
+/// What apt-get says where packages are there without those that they need.
+const HALF_INSTALLED: &str = "Unmet dependencies";
 /// What apt-get says instead of removing a package.
 const WOULD_REMOVE: &str = "Packages need to be removed";
 /// What rustup, dpkg and the unpacking say where the disk is full, and what apt-get says beforehand if it can tell.
@@ -138,10 +142,17 @@ fn install_packages(system: &impl System, packages: &[&str], reinstall: bool) ->
         attempt(system, command.args(packages), INSTALL, &format!("apt-get installs {}", packages.join(", ")))
     };
     let mut installed = install();
-    if installed.as_ref().is_err_and(|failure| failure.contains("dpkg was interrupted")) {
+    if installed.as_ref().is_err_and(|failure| failure.contains(INTERRUPTED)) {
         let mut configure = Command::new("dpkg");
         configure.args(["--configure", "-a"]).env("DEBIAN_FRONTEND", "noninteractive").env("LC_ALL", "C");
-        attempt(system, &mut configure, CONFIGURE, "dpkg finishes what was interrupted")?;
+        // Fails where a package still lacks another that it needs: that is mended next.
+        let _ = attempt(system, &mut configure, CONFIGURE, "dpkg finishes what was interrupted");
+        installed = install();
+    }
+    if installed.as_ref().is_err_and(|failure| failure.contains(HALF_INSTALLED)) {
+        let mut mend = apt_get("install");
+        mend.args(["--fix-broken", "--no-install-recommends", "--no-remove"]);
+        attempt(system, &mut mend, INSTALL, "apt-get completes what was left half-installed")?;
         installed = install();
     }
     // One bad source of many does not stop the install; if that fails too, the earlier failure is the cause, except for

@@ -45,6 +45,7 @@ struct World {
     debian_compiler: &'static str,
     lists_are_there: Cell<bool>,
     dpkg_is_interrupted: Cell<bool>,
+    dependencies_are_unmet: Cell<bool>,
     emulator: Cell<Emulator>,
     /// Another package is in the way of QEMU's.
     emulator_is_in_conflict: bool,
@@ -68,6 +69,7 @@ fn fresh_debian() -> World {
         debian_compiler: "rustc 1.96.0 (ac68faa20 2026-05-25)",
         lists_are_there: Cell::new(false),
         dpkg_is_interrupted: Cell::new(false),
+        dependencies_are_unmet: Cell::new(false),
         emulator: Cell::new(Emulator::Absent),
         emulator_is_in_conflict: false,
         emulator_is_unpacked: Cell::new(false),
@@ -103,6 +105,10 @@ impl World {
     fn apt_installs(&self, packages: &[&str]) -> Ending {
         if self.dpkg_is_interrupted.get() {
             return fails("E: dpkg was interrupted, you must manually run 'dpkg --configure -a'");
+        }
+        if self.dependencies_are_unmet.get() {
+            self.dependencies_are_unmet.set(!packages.is_empty());
+            return if packages.is_empty() { says("") } else { fails("E: Unmet dependencies. Try ...") };
         }
         if let Some(unknown) = packages.iter().find(|name| !self.lists_are_there.get() || !(self.has_package)(name)) {
             return fails(&format!("Reading package lists...\nE: Unable to locate package {unknown}"));
@@ -167,7 +173,7 @@ impl System for World {
             }
             ["dpkg", "--configure", "-a"] => {
                 self.dpkg_is_interrupted.set(false);
-                says("")
+                if self.dependencies_are_unmet.get() { fails("dpkg: error: rustc-web") } else { says("") }
             }
             ["dpkg-query", "--show", ref query @ ..] => self.dpkg_knows(&query[1..]),
             ["/usr/bin/rustc", "--version"] => says(self.debian_compiler),
@@ -307,6 +313,16 @@ fn an_interrupted_dpkg_is_healed() {
     let world = World { lists_are_there: Cell::new(true), dpkg_is_interrupted: Cell::new(true), ..fresh_debian() };
     set_up(&world);
     assert_eq!(verbs(&world.changes()), ["target", "update", "install", "--configure", "install"]);
+}
+
+#[test]
+fn what_lacks_its_dependencies_is_completed() {
+    let world = World { dpkg_is_interrupted: Cell::new(true), ..fresh_debian() };
+    world.dependencies_are_unmet.set(true);
+    set_up(&world);
+    let changes = world.changes();
+    assert_eq!(verbs(&changes), ["target", "update", "install", "--configure", "install", "install", "install"]);
+    assert!(changes[5].contains("--fix-broken") && changes[5].contains("--no-remove"), "{}", changes[5]);
 }
 
 #[test]
