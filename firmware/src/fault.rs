@@ -1,28 +1,56 @@
 //! What a crashed Cortex-M says about itself, in words.
 
 use core::fmt;
+use core::panic::PanicInfo;
 
 /// The registers that tell why a HardFault was taken.
 ///
-/// Source: ARM DDI 0403 (ARMv7-M Architecture Reference Manual), B3.2.15 and B3.2.16.
+/// Source: ARM DDI 0403 (ARMv7-M Architecture Reference Manual), B3.2.15 to B3.2.18.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fault {
-    /// Program counter: the instruction that failed, or for imprecise bus faults one soon after it.
-    pub pc: u32,
-    /// Link register: where the function that failed returns to.
-    pub lr: u32,
-    /// Program status.
-    pub xpsr: u32,
+    /// The registers that the processor stacked; `None` if the stack could not take them.
+    pub stacked: Option<Stacked>,
+    /// The stack pointer when the fault came.
+    pub sp: u32,
+    /// The last call found on the stack: all there is to go by without the registers.
+    pub last_call: Option<u32>,
     /// Configurable Fault Status Register.
     pub cfsr: u32,
     /// HardFault Status Register.
     pub hfsr: u32,
+    /// MemManage Fault Address Register.
+    pub mmfar: u32,
     /// BusFault Address Register.
     pub bfar: u32,
 }
 
+/// What the processor puts on the stack on its way to the handler, as far as it is of interest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stacked {
+    /// Program counter: the instruction that failed, or for imprecise bus faults one soon after it.
+    pub pc: u32,
+    /// Link register: where the function that failed returns to, unless it has called others meanwhile.
+    pub lr: u32,
+    /// Program status.
+    pub xpsr: u32,
+}
+
+/// Bits of CFSR.
+const DATA_REFUSED: u32 = 1 << 1;
+const ENTRY_REFUSED: u32 = 1 << 4;
+const LAZY_ENTRY_REFUSED: u32 = 1 << 5;
+const ADDRESS_KNOWN: u32 = 1 << 7;
+const ENTRY_FAILED: u32 = 1 << 12;
+const LAZY_ENTRY_FAILED: u32 = 1 << 13;
+/// The stack did not take the registers, or not all of them.
+const NOT_STACKED: u32 = ENTRY_REFUSED | LAZY_ENTRY_REFUSED | ENTRY_FAILED | LAZY_ENTRY_FAILED;
+
+/// The most bytes that one instruction pushes: 16 double-precision registers. Before it is done, the stack pointer still
+/// stands above them.
+const LONGEST_PUSH: u32 = 16 * 8;
+
 /// The causes by bit of CFSR, the most telling first.
-const CAUSES: [(u32, &str); 15] = [
+const CAUSES: [(u32, &str); 13] = [
     (16, "undefined instruction"),
     (17, "invalid state (jump to an even address?)"),
     (18, "invalid return from an exception"),
@@ -32,17 +60,31 @@ const CAUSES: [(u32, &str); 15] = [
     (0, "instruction fetch refused by the memory protection unit"),
     (1, "data access refused by the memory protection unit"),
     (3, "memory protection while returning from an exception"),
-    (4, "memory protection while entering an exception (stack overflow?)"),
     (8, "bus fault on an instruction fetch"),
     (9, "bus fault on a data access"),
     (10, "bus fault on an earlier data write"),
     (11, "bus fault while returning from an exception"),
-    (12, "bus fault while entering an exception (stack overflow?)"),
 ];
 
+impl Stacked {
+    /// The bytes that the processor has stacked, by what the link register held on the way into the handler: with the
+    /// registers of the floating-point unit or without.
+    pub fn size(exception: u32) -> u32 {
+        if exception & (1 << 4) == 0 { 26 * 4 } else { 8 * 4 }
+    }
+}
+
 impl Fault {
+    /// Whether the registers that should be on the stack are there.
+    pub fn has_stacked(cfsr: u32) -> bool {
+        cfsr & NOT_STACKED == 0
+    }
+
     /// The cause in words.
     pub fn cause(&self) -> &'static str {
+        if self.is_stack_overflow() {
+            return "stack overflow";
+        }
         let has = |register: u32, bit: u32| register & (1 << bit) != 0;
         match CAUSES.iter().find(|(bit, _)| has(self.cfsr, *bit)) {
             Some((_, cause)) => cause,
@@ -51,13 +93,56 @@ impl Fault {
             None => "unknown cause",
         }
     }
+
+    /// The stack took no more: not the registers of an exception, or not what was being pushed.
+    fn is_stack_overflow(&self) -> bool {
+        let refused = DATA_REFUSED | ADDRESS_KNOWN;
+        let below = self.sp.wrapping_sub(self.mmfar);
+        !Self::has_stacked(self.cfsr) || self.cfsr & refused == refused && (1..=LONGEST_PUSH).contains(&below)
+    }
 }
 
 impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Fault { pc, lr, xpsr, cfsr, hfsr, bfar } = self;
+        let Fault { sp, cfsr, hfsr, mmfar, bfar, .. } = self;
         writeln!(f, "HARDFAULT: {}", self.cause())?;
-        write!(f, "  pc {pc:#010x}  lr {lr:#010x}  xpsr {xpsr:#010x}  ")?;
-        write!(f, "cfsr {cfsr:#010x}  hfsr {hfsr:#010x}  bfar {bfar:#010x}")
+        match (self.stacked, self.last_call) {
+            (Some(Stacked { pc, lr, xpsr }), _) => writeln!(f, "  pc {pc:#010x}  lr {lr:#010x}  xpsr {xpsr:#010x}")?,
+            (None, Some(call)) => writeln!(f, "  pc and lr are lost; the last call on the stack is at {call:#010x}")?,
+            (None, None) => writeln!(f, "  pc and lr are lost")?,
+        }
+        write!(f, "  sp {sp:#010x}  cfsr {cfsr:#010x}  hfsr {hfsr:#010x}  mmfar {mmfar:#010x}  bfar {bfar:#010x}")
+    }
+}
+
+/// What is known of a panic.
+#[derive(Debug)]
+pub struct Panic<'a> {
+    /// Where and why, in the program's own terms.
+    pub info: &'a PanicInfo<'a>,
+    /// Where the panic handler was called; found on the stack, as the registers hold something else by now.
+    pub pc: Option<u32>,
+    /// Where the function that did so was called, found likewise: where the panic is, unless a helper was between.
+    pub lr: Option<u32>,
+    /// Configurable Fault Status Register: of a fault before, if it is not zero.
+    pub cfsr: u32,
+}
+
+impl fmt::Display for Panic<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Panic { info, pc, lr, cfsr } = self;
+        let [pc, lr] = [pc, lr].map(|address| address.unwrap_or_default());
+        write!(f, "PANIC: {info}\n  pc {pc:#010x}  lr {lr:#010x}  cfsr {cfsr:#010x}")
+    }
+}
+
+/// The bytes of the call, `bl` or `blx`, that ends with these two halfwords; `None` if none does.
+pub fn call_size([first, second]: [u16; 2]) -> Option<u32> {
+    if first & 0xf800 == 0xf000 && second & 0xd000 == 0xd000 {
+        Some(4)
+    } else if second & 0xff87 == 0x4780 {
+        Some(2)
+    } else {
+        None
     }
 }

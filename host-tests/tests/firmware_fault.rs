@@ -1,9 +1,10 @@
 //! A fault's registers in words.
 
-use firmware::fault::Fault;
+use firmware::fault::{Fault, Stacked, call_size};
 
 fn fault(cfsr: u32, hfsr: u32) -> Fault {
-    Fault { pc: 0x456, lr: 0x1234, xpsr: 0x0100_0000, cfsr, hfsr, bfar: 0 }
+    let stacked = Some(Stacked { pc: 0x456, lr: 0x1234, xpsr: 0x0100_0000 });
+    Fault { stacked, sp: 0x2000_8010, last_call: Some(0x788), cfsr, hfsr, mmfar: 0x2000_1234, bfar: 0 }
 }
 
 #[test]
@@ -13,7 +14,11 @@ fn names_the_cause() {
         (0x0200_0000, 0x4000_0000, "division by zero"),
         (0x0008_0000, 0x4000_0000, "no such coprocessor (floating-point unit off?)"),
         (0x0000_8200, 0x4000_0000, "bus fault on a data access"),
-        (0x0000_0092, 0x4000_0000, "data access refused by the memory protection unit"),
+        (0x0000_0082, 0x4000_0000, "data access refused by the memory protection unit"),
+        (0x0000_0092, 0x4000_0000, "stack overflow"),
+        (0x0000_0010, 0x4000_0000, "stack overflow"),
+        (0x0000_0020, 0x4000_0000, "stack overflow"),
+        (0x0000_1000, 0x4000_0000, "stack overflow"),
         (0, 0x0000_0002, "vector table could not be read"),
         (0, 0x8000_0000, "breakpoint without a debugger"),
         (0, 0, "unknown cause"),
@@ -23,11 +28,61 @@ fn names_the_cause() {
 }
 
 #[test]
+fn what_is_refused_just_below_the_stack_is_an_overflow() {
+    let refused = |mmfar| Fault { mmfar, ..fault(0x0000_0082, 0x4000_0000) }.cause();
+    let (overflow, stray) = ("stack overflow", "data access refused by the memory protection unit");
+    for (mmfar, cause) in [
+        (0x2000_8014, stray),
+        (0x2000_8010, stray),
+        (0x2000_800f, overflow),
+        (0x2000_7f90, overflow),
+        (0x2000_7f8f, stray),
+    ] {
+        assert_eq!(refused(mmfar), cause, "{mmfar:#x}");
+    }
+    let unknown = Fault { mmfar: 0x2000_800c, ..fault(0x0000_0002, 0x4000_0000) };
+    assert_eq!(unknown.cause(), stray, "the address is not valid");
+}
+
+#[test]
 fn reads_well() {
     assert_eq!(
         fault(0x0001_0000, 0x4000_0000).to_string(),
         "HARDFAULT: undefined instruction\n  \
-         pc 0x00000456  lr 0x00001234  xpsr 0x01000000  \
-         cfsr 0x00010000  hfsr 0x40000000  bfar 0x00000000"
+         pc 0x00000456  lr 0x00001234  xpsr 0x01000000\n  \
+         sp 0x20008010  cfsr 0x00010000  hfsr 0x40000000  mmfar 0x20001234  bfar 0x00000000"
     );
+}
+
+#[test]
+fn says_what_is_lost_with_the_stack() {
+    let lost = Fault { stacked: None, ..fault(0x0000_0092, 0x4000_0000) };
+    assert_eq!(
+        lost.to_string(),
+        "HARDFAULT: stack overflow\n  \
+         pc and lr are lost; the last call on the stack is at 0x00000788\n  \
+         sp 0x20008010  cfsr 0x00000092  hfsr 0x40000000  mmfar 0x20001234  bfar 0x00000000"
+    );
+    let all_lost = Fault { last_call: None, ..lost }.to_string();
+    assert!(all_lost.contains("\n  pc and lr are lost\n"), "{all_lost}");
+}
+
+#[test]
+fn calls_are_told_from_other_instructions() {
+    for (halfwords, size) in [
+        ([0xf000, 0xf802], Some(4)), // bl forwards
+        ([0xf7ff, 0xfffe], Some(4)), // bl backwards
+        ([0xbf00, 0x4798], Some(2)), // nop; blx r3
+        ([0xf000, 0xb802], None),    // b.w
+        ([0xbf00, 0x4770], None),    // nop; bx lr
+        ([0x4798, 0xbf00], None),    // blx r3; nop
+        ([0xe92d, 0x4ff0], None),    // push
+    ] {
+        assert_eq!(call_size(halfwords), size, "{halfwords:x?}");
+    }
+}
+
+#[test]
+fn the_registers_of_the_floating_point_unit_are_stacked_too() {
+    assert_eq!((Stacked::size(0xffff_fff9), Stacked::size(0xffff_ffe9)), (32, 104));
 }

@@ -7,8 +7,11 @@ use std::path::{Path, PathBuf};
 use host_tests::toolchain::workspace;
 
 /// Lines of code with `unsafe`, by file, and what for.
-const UNSAFE: [(&str, usize, &str); 12] = [
-    ("firmware/src/board/crash.rs", 7, "the fault handler: stacked registers, the control block"),
+const UNSAFE: [(&str, usize, &str); 15] = [
+    ("firmware/src/bin/inject-stack-overflow.rs", 3, "the end of the statics, the last of them; a name to be found by"),
+    ("firmware/src/board/calls.rs", 3, "words of the stack and of the code"),
+    ("firmware/src/board/crash.rs", 10, "the fault handler: its stack, stacked registers, the control block"),
+    ("firmware/src/board/guard.rs", 2, "the end of the statics, the memory protection unit"),
     ("firmware/src/board/lm3s6965evb/gpio.rs", 1, "registers of the data sheet"),
     ("firmware/src/board/lm3s6965evb/ssi.rs", 5, "registers of the data sheet"),
     ("firmware/src/board/lm3s6965evb/system.rs", 4, "registers of the data sheet"),

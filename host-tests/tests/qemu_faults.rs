@@ -4,7 +4,8 @@ mod support;
 
 use host_tests::board::{BOARDS, Board};
 use host_tests::count::Image;
-use host_tests::qemu::{Machine, QemuError};
+use host_tests::qemu::{Machine, Probe, QemuError};
+use object::{Object, ObjectSymbol};
 use support::{settings, toolchain};
 
 /// What the binary says before its end, which must be a failure; and the program itself.
@@ -18,13 +19,27 @@ fn crash(board: &Board, binary: &str) -> Result<(String, Image), QemuError> {
     Ok((report, image))
 }
 
+/// The name of the function at the address that the report gives after `what`.
+fn function_after(what: &str, report: &str, image: &Image) -> String {
+    let digits = report.split_once(what).and_then(|(_, rest)| rest.trim_start().strip_prefix("0x"));
+    let address = digits.and_then(|digits| u32::from_str_radix(digits.get(..8)?, 16).ok());
+    let address = address.unwrap_or_else(|| panic!("no address after {what:?} in\n{report}"));
+    image.function_at(address).map_or(String::new(), |function| function.name.clone())
+}
+
 #[test]
 fn a_panic_tells_where_and_why() -> Result<(), QemuError> {
     for board in &BOARDS {
-        let (report, _) = crash(board, "inject-panic")?;
-        for part in ["boot: about to panic", "PANIC", "inject-panic.rs:", "injected with the number 42"] {
+        let (report, image) = crash(board, "inject-panic")?;
+        for part in
+            ["boot: about to panic", "PANIC", "inject-panic.rs:", "injected with the number 42", "cfsr 0x00000000"]
+        {
             assert!(report.contains(part), "{}: no {part:?} in\n{report}", board.name);
         }
+        let (handlers_caller, its_caller) =
+            (function_after("pc", &report, &image), function_after("lr", &report, &image));
+        assert!(handlers_caller.contains("panic_fmt"), "{}: {handlers_caller}\n{report}", board.name);
+        assert!(its_caller.contains("main"), "{}: {its_caller}\n{report}", board.name);
     }
     Ok(())
 }
@@ -36,11 +51,43 @@ fn a_hard_fault_tells_where_and_why() -> Result<(), QemuError> {
         for part in ["HARDFAULT: undefined instruction", "cfsr 0x00010000", "lr 0x"] {
             assert!(report.contains(part), "{}: no {part:?} in\n{report}", board.name);
         }
-        let pc = report.split_once("pc 0x").and_then(|(_, rest)| u32::from_str_radix(rest.get(..8)?, 16).ok());
-        let pc = pc.unwrap_or_else(|| panic!("no pc in\n{report}"));
-        let function = image.function_at(pc).unwrap_or_else(|| panic!("no function at the pc in\n{report}"));
-        let place = function.name.as_str();
+        let place = function_after("pc", &report, &image);
         assert!(place.contains("main") || place.contains("udf"), "{}: pc in {place}\n{report}", board.name);
+    }
+    Ok(())
+}
+
+#[test]
+fn a_stack_overflow_is_named_as_such() -> Result<(), QemuError> {
+    for board in &BOARDS {
+        let (report, image) = crash(board, "inject-stack-overflow")?;
+        for part in ["HARDFAULT: stack overflow", "pc and lr are lost", "cfsr 0x000000", "mmfar 0x20007f"] {
+            assert!(report.contains(part), "{}: no {part:?} in\n{report}", board.name);
+        }
+        let caller = function_after("stack is at", &report, &image);
+        assert_eq!(caller, "descend", "{}: {report}", board.name);
+    }
+    Ok(())
+}
+
+#[test]
+fn a_stack_overflow_changes_nothing_below_the_stack() -> Result<(), Box<dyn std::error::Error>> {
+    let toolchain = toolchain();
+    for board in &BOARDS {
+        let elf = toolchain.build("inject-stack-overflow", board.target)?;
+        let bytes = std::fs::read(&elf)?;
+        let file = object::File::parse(&*bytes)?;
+        let address = |name: &str| {
+            let symbol = file.symbols().find(|symbol| symbol.name() == Ok(name));
+            symbol.map_or_else(|| panic!("no {name}"), |symbol| symbol.address() as u32 & !1)
+        };
+        let statics = address("_ram_start")..address("__euninit");
+        let mut probe = Probe::start(&settings(&toolchain, board, &elf))?;
+        probe.run_to(address("descend"))?;
+        let before = probe.read(statics.clone())?;
+        probe.run_to(address("HardFault"))?;
+        assert!(before.len() > 1024, "{}: there is something to damage", board.name);
+        assert!(probe.read(statics)? == before, "{}: the statics are damaged", board.name);
     }
     Ok(())
 }

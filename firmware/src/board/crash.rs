@@ -3,7 +3,8 @@
 //! Plain text there, and not a defmt log, because a crash may come in the middle of a log line, and because it shall be
 //! readable without any tool. Without a debugger there is nobody to tell: the board stops.
 
-use core::arch::naked_asm;
+use core::arch::{asm, naked_asm};
+use core::cell::UnsafeCell;
 use core::fmt::{Display, Write};
 use core::panic::PanicInfo;
 use core::sync::atomic::{AtomicBool, Ordering};
@@ -12,23 +13,36 @@ use cortex_m::peripheral::SCB;
 use cortex_m_rt::ExceptionFrame;
 use cortex_m_semihosting::{debug, hio};
 
-use crate::fault::Fault;
+use super::calls::calls;
+use crate::fault::{Fault, Panic, Stacked};
 
 /// A call to the debugger, `bkpt 0xAB`, and its length in bytes.
 const DEBUGGER_CALL: (u16, u32) = (0xBEAB, 2);
+/// The size of [`STACK`], bytes.
+const STACK_SIZE: usize = 2048;
 
 /// Set once a call to the debugger was not answered.
 static ALONE: AtomicBool = AtomicBool::new(false);
 /// Set once a crash is being reported: a crash of the report itself is not.
 static CRASHED: AtomicBool = AtomicBool::new(false);
+/// The stack on which faults are reported: the other one may be the reason.
+static STACK: Stack = Stack(UnsafeCell::new([0; STACK_SIZE]));
+
+#[repr(align(8))]
+struct Stack(#[expect(dead_code, reason = "only its place is used")] UnsafeCell<[u8; STACK_SIZE]>);
+
+// SAFETY: only `HardFault` uses it, which nothing interrupts.
+unsafe impl Sync for Stack {}
 
 #[panic_handler]
 fn panic(info: &PanicInfo) -> ! {
-    crash(&format_args!("PANIC: {info}"))
+    let mut calls = calls(stack_pointer());
+    let (pc, lr) = (calls.next(), calls.next());
+    crash(&Panic { info, pc, lr, cfsr: control().cfsr.read() })
 }
 
-/// Every fault ends here, since none has a handler of its own. Passes on the registers stacked by the processor;
-/// cortex-m-rt's own trampoline is of no use because it cannot return.
+/// Every fault ends here, since none has a handler of its own, on a stack of its own. Passes on where the processor put
+/// the registers, and what tells how many they are; cortex-m-rt's own trampoline is of no use because it cannot return.
 ///
 /// # Safety
 ///
@@ -37,26 +51,46 @@ fn panic(info: &PanicInfo) -> ! {
 #[unsafe(no_mangle)]
 unsafe extern "C" fn HardFault() {
     naked_asm!(
-        "tst lr, #4", // EXC_RETURN tells which stack was in use.
-        "ite eq",
-        "mrseq r0, msp",
-        "mrsne r0, psp",
-        "b {hard_fault}",
+        "mrs r0, msp", // The program and the interrupts have this one stack.
+        "mov r1, lr",
+        "movw r2, #:lower16:{stack}",
+        "movt r2, #:upper16:{stack}",
+        "add r2, r2, #{size}",
+        "mov sp, r2",
+        "push {{r0, r1}}",
+        "bl {hard_fault}",
+        "pop {{r0, r1}}",
+        "mov sp, r0",
+        "bx r1",
+        stack = sym STACK,
+        size = const STACK_SIZE,
         hard_fault = sym hard_fault,
     )
 }
 
-extern "C" fn hard_fault(frame: &mut ExceptionFrame) {
-    // SAFETY: the System Control Block is always there; nothing else uses it in a fault handler of highest priority.
-    let scb = unsafe { &*SCB::PTR };
-    let (cfsr, hfsr, bfar) = (scb.cfsr.read(), scb.hfsr.read(), scb.bfar.read());
-    // A breakpoint is the one fault that leaves CFSR clear. (It also sets HFSR.DEBUGEVT, but not in QEMU.)
-    if cfsr == 0 && step_over_debugger_call(frame) {
-        // SAFETY: writing the bits back only clears them.
-        unsafe { scb.hfsr.write(hfsr) };
-        return;
-    }
-    crash(&Fault { pc: frame.pc(), lr: frame.lr(), xpsr: frame.xpsr(), cfsr, hfsr, bfar })
+/// `exception` is what the link register holds on the way into a handler.
+extern "C" fn hard_fault(frame: *mut ExceptionFrame, exception: u32) {
+    let control = control();
+    let (cfsr, hfsr) = (control.cfsr.read(), control.hfsr.read());
+    // SAFETY: the processor has put the frame there, and nobody else knows of it.
+    let frame = Fault::has_stacked(cfsr).then(|| unsafe { &mut *frame }).ok_or(frame as u32);
+    let (stacked, bottom) = match frame {
+        Ok(frame) => {
+            // A breakpoint is the one fault that leaves CFSR clear. (It also sets HFSR.DEBUGEVT, but not in QEMU.)
+            if cfsr == 0 && step_over_debugger_call(frame) {
+                // SAFETY: writing the bits back only clears them.
+                unsafe { control.hfsr.write(hfsr) };
+                return;
+            }
+            let stacked = Stacked { pc: frame.pc(), lr: frame.lr(), xpsr: frame.xpsr() };
+            (Some(stacked), &raw const *frame as u32)
+        }
+        Err(bottom) => (None, bottom),
+    };
+    let sp = bottom.wrapping_add(Stacked::size(exception));
+    let last_call = calls(sp).next();
+    let (mmfar, bfar) = (control.mmfar.read(), control.bfar.read());
+    crash(&Fault { stacked, sp, last_call, cfsr, hfsr, mmfar, bfar })
 }
 
 /// A call to the debugger with no debugger there fails as if it had answered -1, so that an image with logs runs
@@ -74,6 +108,19 @@ fn step_over_debugger_call(frame: &mut ExceptionFrame) -> bool {
         }
     }
     is_call
+}
+
+/// The System Control Block.
+fn control() -> &'static cortex_m::peripheral::scb::RegisterBlock {
+    // SAFETY: it is always there, and of what crashes use nothing else uses anything.
+    unsafe { &*SCB::PTR }
+}
+
+fn stack_pointer() -> u32 {
+    let sp;
+    // SAFETY: only reads it.
+    unsafe { asm!("mov {}, sp", out(reg) sp, options(nomem, nostack, preserves_flags)) };
+    sp
 }
 
 fn crash(report: &dyn Display) -> ! {

@@ -6,8 +6,10 @@ pub mod semihosting;
 #[cfg(feature = "stm32f405")]
 pub mod stm32f405;
 
+mod calls;
 mod clock;
 mod crash;
+mod guard;
 mod main_loop;
 mod receiver;
 mod register;
@@ -16,5 +18,6 @@ mod register;
 use defmt_semihosting as _; // where the log goes
 
 pub use clock::{Clock, cycles};
+pub use guard::guard_stack;
 pub use main_loop::{application, run};
 pub use receiver::Receiver;

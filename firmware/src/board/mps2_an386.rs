@@ -9,7 +9,7 @@ use embedded_io::{Error, ErrorKind, ErrorType, Write};
 
 use super::receiver::Port;
 use super::register::Register;
-use super::{Clock, Receiver};
+use super::{Clock, Receiver, guard_stack};
 use crate::config::BAUD;
 
 /// The processor's clock, Hz.
@@ -46,6 +46,7 @@ impl Board {
     /// Sets the board up; `None` the second time.
     pub fn take() -> Option<Self> {
         let core = Peripherals::take()?;
+        guard_stack(core.MPU);
         let receiver = Receiver::new(PORT)?;
         Some(Self { link: Uart::start(), receiver, clock: Clock::start(core.SYST, HERTZ), hertz: HERTZ })
     }

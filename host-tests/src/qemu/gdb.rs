@@ -1,21 +1,28 @@
-//! The few packets of GDB's remote protocol that stop a machine whenever its processor is about to sleep.
+//! The few packets of GDB's remote protocol that stop a machine whenever its processor is about to sleep, or anywhere
+//! else, and open its memory.
 //!
 //! Source: GDB manual, appendix E (Remote Serial Protocol): `$text#checksum`, each acknowledged with `+`.
 
 use std::io::{BufRead, BufReader, Read, Write};
+use std::ops::Range;
 use std::os::unix::net::UnixStream;
 
 use super::QemuError;
 
 /// The size of the instruction `wfi`, bytes.
 const WFI_SIZE: u32 = 2;
+/// What a breakpoint is said to take, bytes.
+const BREAKPOINT_SIZE: u32 = 2;
+/// Bytes of memory asked for at once.
+const PIECE: u32 = 512;
 /// GDB's number of the program counter.
 const PC: &str = "f";
 
 /// Asks what registers there are; until then QEMU gives access to none.
 const DESCRIBE: &str = "qXfer:features:read:target.xml:0,10";
 
-/// A connection to QEMU's debugger port. The machine stands still except inside [`run_to_sleep`](Self::run_to_sleep).
+/// A connection to QEMU's debugger port. The machine stands still except inside [`run_to_sleep`](Self::run_to_sleep) and
+/// [`run_to`](Self::run_to).
 #[derive(Debug)]
 pub(super) struct Debugger {
     reader: BufReader<UnixStream>,
@@ -50,6 +57,31 @@ impl Debugger {
         let address = u32::from_str_radix(&answer, 16).map_err(|_| unexpected("p", &answer))?;
         self.asleep_at = Some(address.swap_bytes());
         Ok(())
+    }
+
+    /// Lets the machine run until the instruction at this address is about to be executed.
+    pub(super) fn run_to(&mut self, address: u32) -> Result<(), QemuError> {
+        self.expect(&format!("Z0,{address:x},{BREAKPOINT_SIZE}"), "OK")?;
+        self.expect("c", "T05")?;
+        self.expect(&format!("z0,{address:x},{BREAKPOINT_SIZE}"), "OK")
+    }
+
+    /// The bytes at these addresses.
+    pub(super) fn read(&mut self, addresses: Range<u32>) -> Result<Vec<u8>, QemuError> {
+        let mut bytes = Vec::new();
+        for start in addresses.clone().step_by(PIECE as usize) {
+            let length = (addresses.end - start).min(PIECE);
+            let packet = format!("m{start:x},{length:x}");
+            let answer = self.ask(&packet)?;
+            let (digits, _) = answer.as_bytes().as_chunks::<2>();
+            let byte = |digits: &[u8; 2]| u8::from_str_radix(str::from_utf8(digits).ok()?, 16).ok();
+            let piece: Vec<u8> = digits.iter().map_while(byte).collect();
+            if piece.len() != length as usize {
+                return Err(unexpected(&packet, &answer));
+            }
+            bytes.extend(piece);
+        }
+        Ok(bytes)
     }
 
     /// Sends a packet whose answer must begin with `answer`.

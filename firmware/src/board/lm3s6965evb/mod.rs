@@ -19,7 +19,7 @@ use cortex_m::Peripherals;
 use embedded_hal::digital::OutputPin;
 use embedded_hal_bus::spi::{ExclusiveDevice, NoDelay};
 
-use super::{Clock, Receiver};
+use super::{Clock, Receiver, guard_stack};
 use crate::display::Ssd0323;
 
 pub use buttons::Keys;
@@ -50,6 +50,7 @@ impl Board {
     /// Sets the board up; `None` the second time.
     pub fn take() -> Option<Self> {
         let core = Peripherals::take()?;
+        guard_stack(core.MPU);
         let hertz = system::start();
         let Ok(()) = gpio::card_select().set_high();
         let link = Uart::start(hertz);

@@ -20,7 +20,7 @@ use stm32f4xx_hal::pac::{self, RCC};
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::{Config, Rcc};
 
-use super::{Clock, Receiver};
+use super::{Clock, Receiver, guard_stack};
 use crate::controls::{Buttons, Pressed};
 use crate::display::Ssd1306;
 
@@ -67,6 +67,7 @@ impl Board {
         let chip = pac::Peripherals::take()?;
         let (mut rcc, place) = start_clock(chip.RCC);
         log::start(place);
+        guard_stack(core.MPU);
         let (b, c) = (chip.GPIOB.split(&mut rcc), chip.GPIOC.split(&mut rcc));
         // There is a divisor for this baud rate at either clock, so this does not fail.
         let link = Uart::start(chip.USART3, (b.pb10, b.pb11), &mut rcc).ok()?;

@@ -1,0 +1,65 @@
+//! The stack's guard: a stack that grows too long is stopped before it writes on anything.
+//!
+//! The upper 32 KB of memory are the stack's, and it grows downwards. The statics are at the bottom of the lower 32 KB;
+//! what they leave of it, in eighths of 4 KB, the memory protection unit refuses to everyone. `memory.x` sees to it that
+//! they leave at least 12 KB.
+//!
+//! A thinner guard would do against a creeping stack, but a function that takes kilobytes at once, as those do that make
+//! a scene, could step over it. No function of the firmware takes as much as this guard holds (test `stack_guard`), so the
+//! stack pointer cannot pass it; and wherever it stops within, the next call or interrupt is refused.
+
+use core::ops::Range;
+
+use cortex_m::peripheral::MPU;
+
+/// The part of memory that the unit's one region covers, bytes from the start of memory; the rest is the stack's.
+const REGION: u32 = 32 * 1024;
+/// What the region can be switched off by.
+const EIGHTH: u32 = REGION / 8;
+
+/// Region number 0, given with its base address.
+const REGION_0: u32 = 1 << 4;
+/// No execution, no access (AP = 0); ordinary memory.
+const NO_ACCESS: u32 = 1 << 28 | 1 << 18 | 1 << 17;
+/// A region has 2^(SIZE + 1) bytes.
+const SIZE: u32 = (REGION.ilog2() - 1) << 1;
+const REGION_ON: u32 = 1 << 0;
+/// All other memory stays as it is. Faults are handled with the unit off.
+const UNIT_ON: u32 = 1 << 2 | 1 << 0;
+
+unsafe extern "C" {
+    /// The start of memory.
+    static _ram_start: u8;
+    /// The end of the statics.
+    static __euninit: u8;
+}
+
+/// The addresses that are refused.
+pub fn addresses() -> Range<u32> {
+    let start = &raw const _ram_start as u32;
+    let statics = (&raw const __euninit as u32).wrapping_sub(start);
+    start.wrapping_add(statics.next_multiple_of(EIGHTH).min(REGION))..start.wrapping_add(REGION)
+}
+
+/// Puts the guard up; says so if this processor has no memory protection unit.
+///
+/// Source: ARM DDI 0403, B3.5.
+pub fn guard_stack(unit: MPU) {
+    let regions = unit._type.read() >> 8 & 0xff;
+    if regions == 0 {
+        defmt::warn!("no memory protection unit: the stack has no guard");
+        return;
+    }
+    let Range { start, end } = addresses();
+    let base = end.wrapping_sub(REGION);
+    // A bit for each eighth that is not refused, from the lowest.
+    let statics = (1_u32 << (start.wrapping_sub(base) / EIGHTH)) - 1;
+    // SAFETY: nothing but the stack uses these addresses, and it shall not.
+    unsafe {
+        unit.rbar.write(base | REGION_0);
+        unit.rasr.write(NO_ACCESS | statics << 8 | SIZE | REGION_ON);
+        unit.ctrl.write(UNIT_ON);
+    }
+    cortex_m::asm::dsb();
+    cortex_m::asm::isb();
+}
