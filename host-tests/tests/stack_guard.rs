@@ -63,16 +63,16 @@ fn no_function_steps_over_the_guard() {
     for board in &BOARDS {
         let elf = application(board);
         let image = Image::read(&elf).unwrap_or_else(|error| panic!("{error}"));
-        let mut frames: BTreeMap<&str, u32> = BTreeMap::new();
+        let mut frames = BTreeMap::new();
         for (address, first, second) in image.words() {
             if let Some(bytes) = taken(first, second) {
-                let name = image.function_at(address).map_or("", |function| &function.name);
-                let frame = frames.entry(name).or_default();
+                let frame: &mut u32 = frames.entry(image.function_at(address)).or_default();
                 *frame = frame.saturating_add(bytes);
             }
         }
-        let (largest, frame) = frames.into_iter().max_by_key(|(_, bytes)| *bytes).expect("functions have frames");
+        let (function, frame) = frames.into_iter().max_by_key(|(_, bytes)| *bytes).expect("functions have frames");
         let guard = guard(&std::fs::read(&elf).unwrap_or_else(|error| panic!("{error}")));
+        let largest = function.map_or("", |function| &function.name);
         println!("{}: a guard of {guard} bytes; the largest frame is {frame}, of {largest}", board.name);
         assert!(frame.saturating_add(PUSHED) <= guard, "{}: {largest} takes {frame} of {guard}", board.name);
     }
