@@ -115,6 +115,12 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         self.stopwatch = stopwatch;
     }
 
+    /// Begins the counts of ticks, pictures and ticks without one at `count`, with a clock that stands there too.
+    pub fn count_from(&mut self, count: u32) {
+        (self.ticks, self.frames, self.dropped) = (count, count, count);
+        self.dropped_logged = Logged { count, tick: count };
+    }
+
     /// Catches up with the clock, which counts ticks since reset and may wrap, then draws and sends once.
     ///
     /// Every tick is integrated, however late; the state after n ticks does not depend on how often this is called.
@@ -262,7 +268,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
             dropped: self.dropped,
             scene: self.player.name().code(),
             paused: self.player.is_paused().into(),
-            step: report.step,
+            step: report.step as u32,
             time: report.time,
             mass_ratio: settings.mass_ratio(),
             start_angle,

@@ -27,7 +27,7 @@ pub trait Scene: Sized {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Report {
     /// Integration steps since the start; where nothing is integrated, ticks.
-    pub step: u32,
+    pub step: u64,
     /// Simulated time since the start, s.
     pub time: f64,
     /// The canonical state of the first pendulum shown; zeros where none moves.

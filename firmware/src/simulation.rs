@@ -13,7 +13,7 @@ pub struct Simulation {
     energy: Energy,
     swing: Swing,
     windings: [Winding<f32>; 2],
-    step: u32,
+    step: u64,
 }
 
 impl Simulation {
@@ -38,7 +38,7 @@ impl Simulation {
                 winding.observe(direction);
             }
         }
-        self.step = self.step.wrapping_add(STEPS_PER_TICK);
+        self.step = self.step.wrapping_add(STEPS_PER_TICK.into());
     }
 
     /// Where the rods point: all that most pictures need.
@@ -58,14 +58,14 @@ impl Simulation {
         self.swing.state()
     }
 
-    /// Steps since the start; begins again at 0 after 2^32 of them, 207 days.
-    pub fn step(&self) -> u32 {
+    /// Steps since the start. They never wrap: that would take 2.4 thousand million years.
+    pub fn step(&self) -> u64 {
         self.step
     }
 
     /// Simulated time since the start, s.
     pub fn time(&self) -> f64 {
-        f64::from(self.step) / f64::from(STEP_RATE)
+        self.step as f64 / f64::from(STEP_RATE)
     }
 
     /// What its energy is measured by.

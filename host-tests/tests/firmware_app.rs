@@ -107,6 +107,31 @@ fn dropped_pictures_are_counted_and_no_tick_is_lost() {
     assert_eq!(events, [Event::Dropped { ticks: 57, total: 57 }]);
 }
 
+/// After 828 days the counts of ticks, of pictures and of those dropped begin again at 0: nothing else is to be seen of it.
+#[test]
+fn counts_wrap_unnoticed() {
+    const AHEAD: u32 = 60;
+    let run = |begin: u32| {
+        let mut app = app();
+        let mut events = Vec::new();
+        app.count_from(begin);
+        for tick in (1..=2 * AHEAD).filter(|tick| tick % 3 != 0) {
+            while !app.run_to(begin.wrapping_add(tick), |event| events.push(event)) {}
+        }
+        (frames(app.link()), app.canvas().clone(), events)
+    };
+    let begin = 0_u32.wrapping_sub(AHEAD / 3);
+    let (plain, wrapped) = (run(0), run(begin));
+    assert_eq!((&plain.1, plain.0.len()), (&wrapped.1, wrapped.0.len()));
+    for (mut plain, wrapped) in plain.0.into_iter().zip(wrapped.0) {
+        plain.sequence = plain.sequence.wrapping_add(begin);
+        plain.dropped = plain.dropped.wrapping_add(begin);
+        assert_eq!(plain, wrapped);
+    }
+    assert_eq!(plain.2, [Event::Dropped { ticks: 20, total: 20 }]);
+    assert_eq!(wrapped.2, [Event::Dropped { ticks: 20, total: begin.wrapping_add(20) }]);
+}
+
 #[test]
 fn hanging_at_rest_has_no_energy_error() {
     let settings = Settings::equal_rods(1.0, 0.0);

@@ -11,7 +11,7 @@ crate::message! {
         scene: u8,
         /// 1 if the scene's time stands still, else 0.
         paused: u8,
-        /// Integration steps since the last restart.
+        /// Integration steps since the last restart; their low 32 bits, which last 207 days.
         step: u32,
         /// Simulated time since the last restart, s: `step` times the step size.
         time: f64,

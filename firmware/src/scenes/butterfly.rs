@@ -27,7 +27,7 @@ const SCALE: f32 = 3.0;
 const AXIS_GREY: u8 = 3;
 const CURVE: u8 = 255;
 /// The plot holds 60 columns of a quarter of a second: 15 s.
-const STEPS_PER_COLUMN: u32 = STEP_RATE / 4;
+const STEPS_PER_COLUMN: u64 = STEP_RATE as u64 / 4;
 /// Half the width of the first twin's trace, subpixels.
 const HALF_WIDTH: u8 = 30;
 /// Brightness of the second twin, of 255.

@@ -35,7 +35,7 @@ pub struct Frequencies {
     /// At the mass ratio, fast and slow.
     marked: [f32; 2],
     curves: Strip<2>,
-    ticks: u32,
+    ticks: u64,
     drawn: u32,
 }
 
@@ -98,7 +98,7 @@ impl Scene for Frequencies {
     }
 
     fn report(&self) -> Report {
-        let time = f64::from(self.ticks) / f64::from(TICK_RATE);
+        let time = self.ticks as f64 / f64::from(TICK_RATE);
         Report { step: self.ticks, time, state: State::default(), energy_error: 0.0, trusted_until: f32::INFINITY }
     }
 }

@@ -46,14 +46,14 @@ pub struct Small {
     /// Pixels per radian.
     scale: f32,
     ticks_per_column: u32,
-    ticks: u32,
+    ticks: u64,
     trusted_until: f32,
     strip: Strip<4>,
 }
 
 impl Small {
     fn time(&self) -> f64 {
-        f64::from(self.ticks) / f64::from(TICK_RATE)
+        self.ticks as f64 / f64::from(TICK_RATE)
     }
 
     fn push(&mut self) {
@@ -92,7 +92,7 @@ impl Scene for Small {
 
     fn tick(&mut self, _: &mut Ink) {
         self.ticks = self.ticks.wrapping_add(1);
-        if self.ticks.is_multiple_of(self.ticks_per_column) {
+        if self.ticks.is_multiple_of(self.ticks_per_column.into()) {
             self.push();
         }
     }

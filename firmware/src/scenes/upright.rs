@@ -35,7 +35,7 @@ pub struct Upright {
     plain: State<f32>,
     compensated: Swing,
     energy: Energy,
-    step: u32,
+    step: u64,
     views: [View; 2],
     bobs: [[Spot; 2]; 2],
     trusted_until: f32,
@@ -52,7 +52,7 @@ impl Upright {
     }
 
     fn time(&self) -> f64 {
-        f64::from(self.step) / f64::from(STEP_RATE)
+        self.step as f64 / f64::from(STEP_RATE)
     }
 
     /// Whether the plain motion is no longer shown where the compensated one is.
@@ -82,7 +82,7 @@ impl Scene for Upright {
             self.plain = self.energy.pendulum().step(&self.plain, STEP);
         }
         self.compensated.advance(STEPS_PER_TICK);
-        self.step = self.step.wrapping_add(STEPS_PER_TICK);
+        self.step = self.step.wrapping_add(STEPS_PER_TICK.into());
         if self.trusted_until.is_infinite() && self.have_parted() {
             self.trusted_until = self.time() as f32;
         }
