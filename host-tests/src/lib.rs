@@ -20,6 +20,7 @@ pub mod report;
 pub mod show;
 pub mod simulate;
 pub mod snapshot;
+pub mod soak;
 pub mod stream;
 pub mod tolerance;
 pub mod toolchain;

@@ -1,0 +1,99 @@
+//! `cargo soak`: an hour of scenes on every board, and a day of physics on a Cortex-M4F.
+
+use std::process::ExitCode;
+use std::time::Duration;
+
+use anyhow::Context;
+use clap::Parser;
+use host_tests::board::{BOARDS, Board};
+use host_tests::cli;
+use host_tests::qemu::{Clock, Settings};
+use host_tests::soak::{self, Outcome};
+use host_tests::toolchain::{self, SetupError, Toolchain};
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// The board that computes physics alone: it has no panel.
+const PHYSICS_BOARD: &str = "mps2-an386";
+/// Guards against a hang: the slowest board on a slow host takes a tenth of it.
+const LIMIT: Duration = Duration::from_secs(6 * 3600);
+
+/// Runs every board for long: all scenes twice, the second time as the first, then physics alone.
+#[derive(Debug, Parser)]
+#[command(name = "cargo soak")]
+struct Arguments {
+    /// Seconds of the board's time with scenes, on each board; 0 for none
+    #[arg(long, default_value_t = 3600)]
+    scenes: u32,
+    /// Minutes of a motion's time, in steps of 1/256 s; 0 for none
+    #[arg(long, default_value_t = 24 * 60)]
+    physics: u32,
+    /// Only this board
+    #[arg(long)]
+    board: Option<String>,
+}
+
+fn main() -> ExitCode {
+    let arguments: Arguments = match cli::parse() {
+        Ok(arguments) => arguments,
+        Err(code) => return code,
+    };
+    let wanted = |board: &&Board| arguments.board.as_deref().is_none_or(|name| name == board.name);
+    if !BOARDS.iter().any(|board| wanted(&board)) {
+        return cli::refuse(format!("error: no such board; there are {}", BOARDS.map(|board| board.name).join(", ")));
+    }
+    let boards: Vec<_> = BOARDS.iter().filter(wanted).collect();
+    match run(&arguments, &boards) {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::FAILURE,
+        Err(error) if error.is::<SetupError>() => cli::refuse(error),
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Whether all was well.
+fn run(arguments: &Arguments, boards: &[&'static Board]) -> anyhow::Result<bool> {
+    let (toolchain, _) = toolchain::set_up()?;
+    let mut well = true;
+    let mut say = |board: &Board, what: String, outcome: Outcome| {
+        well &= outcome.faults.is_empty();
+        println!("{:15} {what}: {outcome}", board.name);
+    };
+    for board in boards {
+        if arguments.scenes > 0 {
+            let bar = bar(board, arguments.scenes);
+            let outcome = on(&toolchain, board, |settings| soak::scenes(settings, arguments.scenes, || bar.inc(1)))?;
+            bar.finish_and_clear();
+            say(board, format!("{} s of scenes", arguments.scenes), outcome);
+        }
+        if arguments.physics > 0 && board.name == PHYSICS_BOARD {
+            let bar = bar(board, arguments.physics);
+            let outcome = on(&toolchain, board, |settings| soak::physics(settings, arguments.physics, || bar.inc(1)))?;
+            bar.finish_and_clear();
+            say(board, format!("{} min of physics", arguments.physics), outcome);
+        }
+    }
+    Ok(well)
+}
+
+fn on<T, E>(
+    toolchain: &Toolchain,
+    board: &'static Board,
+    run: impl FnOnce(&Settings) -> Result<T, E>,
+) -> anyhow::Result<T>
+where
+    E: std::error::Error + Send + Sync + 'static,
+{
+    let elf = toolchain.build_for(board)?;
+    let settings =
+        Settings { qemu: toolchain.qemu(), board, elf: &elf, clock: Clock::Counted, window: None, limit: LIMIT };
+    run(&settings).context(board.name)
+}
+
+fn bar(board: &Board, length: u32) -> ProgressBar {
+    let style = ProgressStyle::with_template("{prefix:15} {elapsed} {wide_bar} {pos}/{len}, {eta} left");
+    let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
+    ProgressBar::new(length.into()).with_style(style).with_prefix(board.name)
+}

@@ -1,0 +1,68 @@
+//! A motion computed for a day on request, beside the same on the host.
+
+use double_pendulum::{Parameters, Pendulum, State};
+use firmware::job::{Arithmetic, Form, Job, Model, Request};
+use firmware::protocol::{Frame, Sample};
+
+use super::Outcome;
+use crate::qemu::{Machine, QemuError, Settings};
+
+/// Equal rods let go at 0.5 rad, in compensated `f32`.
+pub const PHYSICS: Request = Request {
+    arithmetic: Arithmetic::F32Compensated,
+    model: Model::General,
+    form: Form::Picture,
+    parameters: Parameters { m1: 1.0, m2: 1.0, l1: 1.0, l2: 1.0, g: 9.81 },
+    angles: [0.5, 0.5],
+    velocities: [0.0, 0.0],
+    step_size: 1.0 / 256.0,
+    stride: 256 * 60,
+    samples: 0,
+};
+/// The largest energy error over a day: RK4's own dissipation at this step is 5.6e-8 in a million steps.
+const GREATEST_ENERGY_ERROR: f64 = 1e-5;
+
+/// Computes `minutes` of the motion on the board, a sample each minute; `alive` hears of each.
+pub fn physics(settings: &Settings, minutes: u32, mut alive: impl FnMut()) -> Result<Outcome, QemuError> {
+    let request = Request { samples: minutes, ..PHYSICS };
+    let mut host = Job::new(&request).expect("a motion that the kernel computes");
+    let mut machine = Machine::start(settings)?;
+    let mut outcome = Outcome::default();
+    outcome.frame(&machine.serial.next::<Frame>().ok_or_else(|| machine.silence())?);
+    machine.serial.send(&request.message(1))?;
+
+    let mut start = None;
+    let mut index = 0;
+    while index <= minutes {
+        let message = machine.serial.receive().ok_or_else(|| machine.silence())?;
+        if let Some(frame) = message.read() {
+            outcome.frame(&frame);
+        }
+        let Some(sample) = message.read::<Sample>() else { continue };
+        let expected = loop {
+            if let Some(reading) = host.advance().expect("the motion stays finite") {
+                break reading;
+            }
+        };
+        if sample.index != index || sample.state.map(f64::to_bits) != expected.state.map(f64::to_bits) {
+            outcome.fault(format!("sample {index} is not the host's"));
+        }
+        let start = *start.get_or_insert(sample.energy);
+        let error = ((sample.energy - start) / (start - least_energy())).abs();
+        outcome.energy_error = outcome.energy_error.max(error);
+        index += 1;
+        alive();
+    }
+    outcome.steps = u64::from(request.stride) * u64::from(minutes);
+    if outcome.energy_error > GREATEST_ENERGY_ERROR {
+        outcome.fault(format!("energy error {:.1e}", outcome.energy_error));
+    }
+    outcome.end(&machine, settings.board);
+    machine.quit()?;
+    Ok(outcome)
+}
+
+/// Of the pendulum hanging at rest, J.
+fn least_energy() -> f64 {
+    Pendulum::new(PHYSICS.parameters).map_or(f64::NAN, |pendulum| pendulum.energy(&State::default()))
+}

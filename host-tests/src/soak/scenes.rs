@@ -1,0 +1,62 @@
+//! All scenes, one after the other, and all of them a second time, which must be the first time over again.
+
+use std::collections::BTreeMap;
+
+use firmware::config::TICK_RATE;
+use firmware::protocol::{Choose, Frame};
+use firmware::scenes::SceneName;
+
+use super::Outcome;
+use crate::qemu::{Machine, QemuError, Settings};
+
+/// How often every scene is played.
+const ROUNDS: usize = 2;
+/// No frame's time may be further than this from its tick, s.
+const ON_TIME: f64 = 1e-9;
+/// The largest energy error of a scene. Step errors are what is seen, and most where the motion is wildest.
+const GREATEST_ENERGY_ERROR: f64 = 1e-3;
+
+/// Plays every scene twice, in `seconds` of the board's time all together; `alive` hears each second's end.
+pub fn scenes(settings: &Settings, seconds: u32, mut alive: impl FnMut()) -> Result<Outcome, QemuError> {
+    let each = (u64::from(seconds) * u64::from(TICK_RATE) / (ROUNDS * SceneName::ALL.len()) as u64).max(1);
+    let mut machine = Machine::start(settings)?;
+    let mut outcome = Outcome::default();
+    let mut first_round = BTreeMap::new();
+    let mut scene = SceneName::Page;
+    for _ in 0..ROUNDS * SceneName::ALL.len() {
+        // Never the one that is on.
+        scene = scene.next();
+        machine.serial.send(&Choose { request: 0, scene: scene.code() })?;
+        let mut tick = 0;
+        let mut played = Vec::new();
+        while tick < each {
+            let frame: Frame = machine.serial.next().ok_or_else(|| machine.silence())?;
+            outcome.frame(&frame);
+            if frame.scene != scene.code() {
+                continue; // not yet obeyed
+            }
+            tick += 1;
+            let late = frame.time - tick as f64 / f64::from(TICK_RATE);
+            if late.abs() > ON_TIME {
+                outcome.fault(format!("{}: tick {tick} is off by {late} s", scene.name()));
+            }
+            let energy_error = f64::from(frame.energy_error.abs());
+            outcome.energy_error = outcome.energy_error.max(energy_error);
+            if energy_error.is_nan() || energy_error > GREATEST_ENERGY_ERROR {
+                outcome.fault(format!("{}: energy error {energy_error:.1e} at {} s", scene.name(), frame.time));
+            }
+            played.push((frame.state.map(f32::to_bits), frame.trusted_until.to_bits()));
+            if tick % u64::from(TICK_RATE) == 0 {
+                alive();
+            }
+        }
+        match first_round.get(scene.name()) {
+            None => drop(first_round.insert(scene.name(), played)),
+            Some(before) if *before == played => {}
+            Some(_) => outcome.fault(format!("{}: not the same the second time", scene.name())),
+        }
+    }
+    outcome.end(&machine, settings.board);
+    machine.quit()?;
+    Ok(outcome)
+}
