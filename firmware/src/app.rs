@@ -115,10 +115,10 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         self.stopwatch = stopwatch;
     }
 
-    /// Begins the counts of ticks, pictures and ticks without one at `count`, with a clock that stands there too.
-    pub fn count_from(&mut self, count: u32) {
-        (self.ticks, self.frames, self.dropped) = (count, count, count);
-        self.dropped_logged = Logged { count, tick: count };
+    /// Goes by a clock that stands at `clock` now, and counts pictures and ticks without one from `pictures` on.
+    pub fn count_from(&mut self, clock: u32, pictures: u32) {
+        (self.ticks, self.frames, self.dropped) = (clock, pictures, pictures);
+        self.dropped_logged = Logged { count: pictures, tick: clock };
     }
 
     /// Catches up with the clock, which counts ticks since reset and may wrap, then draws and sends once.

@@ -114,7 +114,7 @@ fn counts_wrap_unnoticed() {
     let run = |begin: u32| {
         let mut app = app();
         let mut events = Vec::new();
-        app.count_from(begin);
+        app.count_from(begin, begin);
         for tick in (1..=2 * AHEAD).filter(|tick| tick % 3 != 0) {
             while !app.run_to(begin.wrapping_add(tick), |event| events.push(event)) {}
         }

@@ -8,8 +8,11 @@ use cortex_m_rt::exception;
 
 use crate::config::TICK_RATE;
 
-/// Ticks since [`Clock::start`].
-static TICKS: AtomicU32 = AtomicU32::new(0);
+/// Where the ticks are counted from: 5 s before they wrap, so that what goes wrong there does so in every test and not
+/// after 828 days.
+const FIRST: u32 = 0_u32.wrapping_sub(5 * TICK_RATE);
+/// Ticks since [`Clock::start`], and [`FIRST`].
+static TICKS: AtomicU32 = AtomicU32::new(FIRST);
 /// Processor cycles per tick.
 static PERIOD: AtomicU32 = AtomicU32::new(0);
 
@@ -35,7 +38,7 @@ impl Clock {
         Self(())
     }
 
-    /// Ticks since the start; wraps after 2^32 of them, 828 days.
+    /// Counts ticks, from any number on; wraps.
     pub fn ticks(&self) -> u32 {
         TICKS.load(Ordering::Relaxed)
     }

@@ -47,6 +47,7 @@ where
 {
     app.use_stopwatch(cycles);
     let mut now = clock.ticks();
+    app.count_from(now, 0);
     loop {
         while !app.run_to(now, log) {}
         app.receive(&mut receiver, log);

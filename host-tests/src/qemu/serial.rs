@@ -199,3 +199,21 @@ fn broken(source: std::io::Error) -> QemuError {
 fn lock(reader: &Mutex<Reader>) -> MutexGuard<'_, Reader> {
     reader.lock().unwrap_or_else(PoisonError::into_inner)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Frames missing between two are counted, also where the sequence begins again at 0.
+    #[test]
+    fn missing_frames_are_counted_over_the_wrap() {
+        let pipe = File::open("/dev/null").unwrap();
+        let (decoder, counts) = (Decoder::default(), Counts::default());
+        let mut reader = Reader { pipe, decoder, counts, expected: None, channel: None };
+        for sequence in [u32::MAX - 2, u32::MAX - 1, 1, 2, 5] {
+            let frame = Frame { sequence, ..Frame::default() };
+            encode(&frame, &mut [0; MAX_WIRE]).iter().for_each(|&byte| reader.take(byte));
+        }
+        assert_eq!(reader.counts, Counts { messages: 5, damaged: 0, lost: 4 });
+    }
+}
