@@ -54,6 +54,7 @@ fn pictures(scene: &Scene, plan: &Plan) -> Result<Box<dyn FnMut() -> Picture>, E
         Way::Picture => stepped::<f32, PictureForm<f32>>(scene, plan),
         Way::Angle => stepped::<f32, AngleForm<f32>>(scene, plan),
         Way::Picture8 => stepped::<f64, PictureForm8<f64>>(scene, plan),
+        other => panic!("{other:?} is a new way: carry it out here"),
     }
 }
 

@@ -46,6 +46,7 @@ fn way(scene: &Scene, plan: &Plan) -> String {
         }
         Way::Angle => String::from("the picture form loses more than steps on the angles do"),
         Way::Picture8 => String::from("the roundings of f32 would show before; in f64 order 8 is cheapest"),
+        other => other.name().to_owned(),
     }
 }
 
@@ -57,6 +58,7 @@ fn limit(plan: &Plan, frame: f32) -> String {
             format!("errors grow until they show; what goes farther costs more than the {frame:.0} cycles allowed")
         }
         Limit::Planning => String::from("nobody has looked farther: see --planning"),
+        other => other.name().to_owned(),
     }
 }
 

@@ -143,9 +143,11 @@ fn factor_near<R: Real>(value: f64, factor: f64) -> R {
     };
     let centre = R::of(value);
     let ulp = centre * R::EPSILON;
-    (-32..=32_i32)
-        .map(|i| centre + R::of(f64::from(i)) * ulp)
-        .fold(centre, |best, candidate| if lost(candidate) < lost(best) { candidate } else { best })
+    let candidates = (-32..=32_i32).map(|i| centre + R::of(f64::from(i)) * ulp);
+    let (best, _) = candidates
+        .map(|candidate| (candidate, lost(candidate)))
+        .fold((centre, lost(centre)), |best, other| if other.1 < best.1 { other } else { best });
+    best
 }
 
 impl Scale {

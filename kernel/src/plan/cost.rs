@@ -5,6 +5,7 @@ use crate::error::{Error, Parameter};
 /// A way to compute a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
 pub enum Way {
     /// [`SmallOscillations`](crate::SmallOscillations) in `f32`: no steps at all.
     ClosedForm,

@@ -5,6 +5,7 @@ use super::scene::{Scene, Twin};
 use crate::error::Error;
 use crate::form::Form;
 use crate::real::Real;
+use crate::state::State;
 
 /// How much larger than the twins' distance the rounding error may be. Each is a sample of the same spread; that both
 /// fall short k times has a chance of about 1/k^2. Without it one scene of 700 was wrong, with it none was.
@@ -48,21 +49,19 @@ pub(super) struct Judged<R: Real, F: Form<R>> {
 }
 
 impl<R: Real, F: Form<R>> Judged<R, F> {
-    /// With `steps` steps for each picture.
-    pub fn new(scene: &Scene, steps: u32) -> Result<Self, Error> {
-        let [own, twin1, twin2] = [Twin::None, Twin::Opposite, Twin::Alike].map(|twin| scene.rounded::<R>(twin));
-        let (own, twins) = (own?, [twin1?, twin2?]);
+    /// From `start`, with `steps` steps for each picture.
+    pub fn new(scene: &Scene, start: &State<f64>, steps: u32) -> Self {
+        let [own, first, second] = [Twin::None, Twin::Opposite, Twin::Alike].map(|twin| scene.rounded(start, twin));
         // A picture's worth is the longest step there is.
         let (other, share) = if steps > 1 { (steps / 2, SHARE_OF_TWICE) } else { (2, SHARE_OF_HALF) };
-        let run = |start, steps| Run::new(start, scene.rate, steps);
-        Ok(Self {
-            own: run(&own, steps)?,
-            other_step: run(&own, other)?,
+        Self {
+            own: Run::new(&own, scene.rate, steps),
+            other_step: Run::new(&own, scene.rate, other),
             share,
-            twins: [run(&twins[0], steps)?, run(&twins[1], steps)?],
+            twins: [&first, &second].map(|twin| Run::new(twin, scene.rate, steps)),
             runs: 3.0 + other as f32 / steps as f32,
             rods: scene.rods(),
-        })
+        }
     }
 
     /// Steps made for each picture over those of the run itself.
@@ -70,10 +69,16 @@ impl<R: Real, F: Form<R>> Judged<R, F> {
         self.runs
     }
 
-    /// The next picture, and how wrong it is.
-    pub fn advance(&mut self) -> (Picture, Doubt) {
-        let picture = self.own.advance();
-        let apart = |other: &mut Run<R, F>| distance(self.rods, &picture, &other.advance());
+    /// As [`Run::advance`], one of the runs.
+    pub fn advance(&mut self, most: u32) -> Result<bool, Error> {
+        let Self { own, other_step, twins: [first, second], .. } = self;
+        Ok(own.advance(most)? || other_step.advance(most)? || first.advance(most)? || second.advance(most)?)
+    }
+
+    /// The picture that all steps have led to, and how wrong it is.
+    pub fn picture(&mut self) -> (Picture, Doubt) {
+        let picture = self.own.picture();
+        let apart = |other: &mut Run<R, F>| distance(self.rods, &picture, &other.picture());
         let step = self.share * apart(&mut self.other_step);
         let [first, second] = [apart(&mut self.twins[0]), apart(&mut self.twins[1])];
         (picture, Doubt { step, rounding: if first > second { first } else { second } })

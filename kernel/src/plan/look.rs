@@ -8,7 +8,7 @@ use crate::error::Error;
 use crate::form::{AngleForm, PictureForm, PictureForm8, Plain};
 use crate::modes::Modes;
 use crate::small_oscillations::SmallOscillations;
-use crate::state::Motion;
+use crate::state::State;
 
 /// How a way has fared so far.
 #[derive(Clone, Copy, Debug)]
@@ -28,7 +28,8 @@ pub(super) struct Trial {
 }
 
 impl Trial {
-    fn new(way: Way, steps: u32) -> Self {
+    /// At the start.
+    pub fn new(way: Way, steps: u32) -> Self {
         Self { way, steps, right: 0, error: 0.0, failed: false, by_rounding: false }
     }
 
@@ -60,26 +61,35 @@ pub(super) struct Single {
 }
 
 impl Single {
-    /// At the start, with `steps` steps to a picture.
-    pub fn new(scene: &Scene, steps: u32) -> Result<Self, Error> {
-        let start = scene.rounded::<f32>(Twin::None)?;
-        let Motion { a1, a2, w1, w2 } = scene.start;
-        let motion = [a1, a2, w1, w2].map(|x| x as f32).into();
-        let linear = Modes::new(&start.0).ok().map(|modes| SmallOscillations::new(modes, &motion));
+    /// From `start`, with `steps` steps to a picture.
+    pub fn new(scene: &Scene, start: &State<f64>, steps: u32) -> Self {
+        let rounded = scene.rounded::<f32>(start, Twin::None);
+        let (parameters, _) = &rounded;
+        let motion = <[f64; 4]>::from(scene.start).map(|x| x as f32).into();
+        let linear = Modes::new(parameters).ok().map(|modes| SmallOscillations::new(modes, &motion));
         let ways = [Way::Picture, Way::ClosedForm, Way::PicturePlain, Way::Angle];
-        Ok(Self {
-            judged: Judged::new(scene, steps)?,
-            plain: Run::new(&start, scene.rate, steps)?,
-            angle: Run::new(&start, scene.rate, steps)?,
+        Self {
+            judged: Judged::new(scene, start, steps),
+            plain: Run::new(&rounded, scene.rate, steps),
+            angle: Run::new(&rounded, scene.rate, steps),
             linear,
             rods: scene.rods(),
             trials: ways.map(|way| Trial::new(way, steps)),
-        })
+        }
     }
 
-    /// The next picture, at time `t`, s.
-    fn advance(&mut self, t: f64, limit: f32) {
-        let (picture, doubt) = self.judged.advance();
+    /// As [`Look::advance`].
+    fn advance(&mut self, costs: &Costs, cycles: f32) -> Result<bool, Error> {
+        let [_, _, plain, angle] = &self.trials;
+        let most = |way: Way| steps_for(costs, way, cycles);
+        Ok(self.judged.advance(most(Way::Picture))?
+            || !plain.failed && self.plain.advance(most(Way::PicturePlain))?
+            || !angle.failed && self.angle.advance(most(Way::Angle))?)
+    }
+
+    /// As [`Look::compare`].
+    fn compare(&mut self, t: f64, limit: f32) {
+        let (picture, doubt) = self.judged.picture();
         let beside = |other: Picture| distance(self.rods, &picture, &other);
         let [own, closed, plain, angle] = &mut self.trials;
         own.note(0.0, doubt, limit);
@@ -87,10 +97,10 @@ impl Single {
             closed.note(self.linear.map_or(f32::INFINITY, |motion| beside(motion.directions(t as f32))), doubt, limit);
         }
         if !plain.failed {
-            plain.note(beside(self.plain.advance()), doubt, limit);
+            plain.note(beside(self.plain.picture()), doubt, limit);
         }
         if !angle.failed {
-            angle.note(beside(self.angle.advance()), doubt, limit);
+            angle.note(beside(self.angle.picture()), doubt, limit);
         }
     }
 
@@ -110,9 +120,9 @@ pub(super) struct Double {
 }
 
 impl Double {
-    /// At the start, with `steps` steps to a picture.
-    pub fn new(scene: &Scene, steps: u32) -> Result<Self, Error> {
-        Ok(Self { judged: Judged::new(scene, steps)?, trial: Trial::new(Way::Picture8, steps) })
+    /// From `start`, with `steps` steps to a picture.
+    pub fn new(scene: &Scene, start: &State<f64>, steps: u32) -> Self {
+        Self { judged: Judged::new(scene, start, steps), trial: Trial::new(Way::Picture8, steps) }
     }
 }
 
@@ -126,14 +136,31 @@ pub(super) enum Look {
 }
 
 impl Look {
-    /// The next picture, at time `t`, s. A way fails where it may be more than `limit` pixels off.
-    pub fn advance(&mut self, t: f64, limit: f32) {
+    /// Makes steps of one motion towards the next picture, as many as `cycles` pay for and one at least, or prepares
+    /// them. `false` if there is nothing left to do.
+    pub fn advance(&mut self, costs: &Costs, cycles: f32) -> Result<bool, Error> {
         match self {
-            Look::Single(look) => look.advance(t, limit),
+            Look::Single(look) => look.advance(costs, cycles),
+            Look::Double(look) => look.judged.advance(steps_for(costs, look.trial.way, cycles)),
+        }
+    }
+
+    /// Compares the pictures at time `t`, s, when all steps towards them are made. A way fails where it may be more than
+    /// `limit` pixels off.
+    pub fn compare(&mut self, t: f64, limit: f32) {
+        match self {
+            Look::Single(look) => look.compare(t, limit),
             Look::Double(look) => {
-                let (_, doubt) = look.judged.advance();
+                let (_, doubt) = look.judged.picture();
                 look.trial.note(0.0, doubt, limit);
             }
+        }
+    }
+
+    /// Looks at `way` alone, beside what judges it.
+    pub fn only(&mut self, way: Way) {
+        if let Look::Single(look) = self {
+            look.trials.iter_mut().filter(|trial| trial.way != way).for_each(|trial| trial.failed = true);
         }
     }
 
@@ -153,6 +180,13 @@ impl Look {
         }
     }
 
+    /// Cycles of the dearest of the steps that are made.
+    pub fn dearest_step(&self, costs: &Costs) -> f32 {
+        let steps = self.trials().iter().filter(|trial| trial.way != Way::ClosedForm && !trial.failed);
+        let judge = costs.of_frame(self.judge().way, 1);
+        steps.map(|trial| costs.of_frame(trial.way, 1)).fold(judge, f32::max)
+    }
+
     /// Cycles that the next picture takes.
     pub fn cost(&self, costs: &Costs) -> f32 {
         match self {
@@ -160,4 +194,10 @@ impl Look {
             Look::Double(look) => costs.of_frame(look.trial.way, look.trial.steps) * look.judged.runs(),
         }
     }
+}
+
+/// How many steps of `way` these `cycles` pay for, one at least.
+fn steps_for(costs: &Costs, way: Way, cycles: f32) -> u32 {
+    let steps = (cycles / costs.of_frame(way, 1)) as u32;
+    if steps > 0 { steps } else { 1 }
 }

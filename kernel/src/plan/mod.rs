@@ -52,7 +52,7 @@ use crate::error::Error;
 pub fn plan(scene: &Scene, costs: &Costs, budget: &Budget) -> Result<Plan, Error> {
     let mut search = Search::new(scene, costs, budget)?;
     loop {
-        if let Some(plan) = search.advance()? {
+        if let Some(plan) = search.advance(f32::INFINITY)? {
             return Ok(plan);
         }
     }

@@ -1,4 +1,4 @@
-//! One way of computing a scene, picture by picture, and how far two of them are apart on the display.
+//! One way of computing a scene, step by step, and how far two pictures are apart on the display.
 
 use crate::error::Error;
 use crate::form::{Direction, Form};
@@ -12,24 +12,47 @@ pub(super) type Picture = [Direction<f32>; 2];
 /// A motion in the form `F`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Run<R: Real, F: Form<R>> {
-    form: F,
-    carried: F::Carried,
+    parameters: Parameters<R>,
+    start: State<R>,
+    /// The step, s.
+    dt: R,
+    /// Prepared by the first piece of work.
+    motion: Option<(F, F::Carried)>,
     per_frame: u32,
-    precision: core::marker::PhantomData<R>,
+    /// Steps made since the last picture.
+    made: u32,
 }
 
 impl<R: Real, F: Form<R>> Run<R, F> {
     /// With `per_frame` steps for each of the `rate` pictures of a second.
-    pub fn new((parameters, state): &(Parameters<R>, State<R>), rate: u16, per_frame: u32) -> Result<Self, Error> {
-        let form = F::new(parameters, R::of(1.0 / (f64::from(rate) * f64::from(per_frame))))?;
-        let carried = form.start(state)?;
-        Ok(Self { form, carried, per_frame, precision: core::marker::PhantomData })
+    pub fn new(&(parameters, start): &(Parameters<R>, State<R>), rate: u16, per_frame: u32) -> Self {
+        let dt = R::of(1.0 / (f64::from(rate) * f64::from(per_frame)));
+        Self { parameters, start, dt, motion: None, per_frame, made: 0 }
     }
 
-    /// The next picture.
-    pub fn advance(&mut self) -> Picture {
-        self.form.advance(&mut self.carried, self.per_frame);
-        self.form.directions(&self.carried).map(|direction| direction.map(|x| x.to_f64() as f32))
+    /// Makes `most` of the steps towards the next picture, or as many as are left, or prepares them; whether there was
+    /// anything left to do.
+    pub fn advance(&mut self, most: u32) -> Result<bool, Error> {
+        let left = self.per_frame.saturating_sub(self.made);
+        let steps = if most < left { most } else { left };
+        match &mut self.motion {
+            Some((form, carried)) => form.advance(carried, steps),
+            None => {
+                let form = F::new(&self.parameters, self.dt)?;
+                self.motion = Some((form, form.start(&self.start)?));
+                return Ok(true);
+            }
+        }
+        self.made += steps;
+        Ok(steps > 0)
+    }
+
+    /// The picture, when nothing is left to do; the next steps lead to the next.
+    pub fn picture(&mut self) -> Picture {
+        self.made = 0;
+        self.motion.as_ref().map_or([[f32::NAN; 2]; 2], |(form, carried)| {
+            form.directions(carried).map(|direction| direction.map(|x| x.to_f64() as f32))
+        })
     }
 }
 

@@ -1,7 +1,6 @@
 //! What is to be shown.
 
 use crate::error::{Error, Parameter};
-use crate::hamiltonian::Pendulum;
 use crate::params::Parameters;
 use crate::real::Real;
 use crate::state::{Motion, State};
@@ -67,9 +66,9 @@ impl Scene {
         [l1, l2].map(|l| (0.5 * self.height * l / (l1 + l2)) as f32)
     }
 
-    /// The scene in the arithmetic `R`, or a twin of it.
-    pub(super) fn rounded<R: Real>(&self, twin: Twin) -> Result<(Parameters<R>, State<R>), Error> {
-        let State { a1, a2, p1, p2 } = Pendulum::new(self.pendulum)?.state(&self.start);
+    /// The scene, which starts from `start`, in the arithmetic `R`, or a twin of it.
+    pub(super) fn rounded<R: Real>(&self, start: &State<f64>, twin: Twin) -> (Parameters<R>, State<R>) {
+        let &State { a1, a2, p1, p2 } = start;
         let Parameters { m1, m2, l1, l2, g } = self.pendulum;
         let off = |value: f64, by: f64| R::of(value * (1.0 + by * R::EPSILON.to_f64()));
         let [first, second] = match twin {
@@ -80,7 +79,7 @@ impl Scene {
         let parameters =
             Parameters { m1: R::of(m1), m2: off(m2, first), l1: R::of(l1), l2: off(l2, second), g: off(g, second) };
         let state = State { a1: off(a1, first), a2: off(a2, second), p1: off(p1, second), p2: off(p2, first) };
-        Ok((parameters, state))
+        (parameters, state)
     }
 }
 
