@@ -9,6 +9,7 @@ use crate::config::{MOST_MESSAGES_PER_TICK, MOST_TICKS_PER_FRAME, STEP, TICK_RAT
 use crate::controls::{Buttons, Controls};
 use crate::display::Display;
 use crate::job::Field;
+use crate::planner::{Finding, Planner};
 use crate::player::Player;
 use crate::protocol::{Done, Frame, LinkError, MAX_WIRE, Message, Refused, encode};
 use crate::scenes::SceneName;
@@ -51,6 +52,8 @@ pub enum Event<Panel, Link> {
     /// The step is longer than this, s, the longest that resolves every motion of the energy of what was started or asked
     /// for.
     Coarse(f64),
+    /// Looking ahead has found something.
+    Found(Finding),
 }
 
 /// The same on a board and in a test: a panel, a byte sink and buttons are all it needs.
@@ -62,6 +65,7 @@ pub struct App<'a, Panel, Link, Keys> {
     controls: Controls,
     player: Player<'a>,
     service: Service,
+    planner: Planner,
     canvas: &'a mut Canvas,
     /// Ticks done since reset.
     ticks: u32,
@@ -89,13 +93,17 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         link: Link,
         keys: Keys,
     ) -> Result<Self, Error> {
+        let player = Player::new(settings, ink)?;
+        let mut planner = Planner::default();
+        planner.start(player.settings(), player.shown());
         Ok(Self {
             panel,
             link,
             keys,
             controls: Controls::default(),
-            player: Player::new(settings, ink)?,
+            player,
             service: Service::default(),
+            planner,
             canvas,
             ticks: 0,
             frames: 0,
@@ -119,6 +127,11 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     pub fn count_from(&mut self, clock: u32, pictures: u32) {
         (self.ticks, self.frames, self.dropped) = (clock, pictures, pictures);
         self.dropped_logged = Logged { count: pictures, tick: clock };
+    }
+
+    /// Plans for a processor that has `cycles` in a tick.
+    pub fn use_tick(&mut self, cycles: u32) {
+        self.planner.set_tick(cycles);
     }
 
     /// Catches up with the clock, which counts ticks since reset and may wrap, then draws and sends once.
@@ -187,6 +200,16 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         self.service.is_busy()
     }
 
+    /// Looks ahead for the plan of what is played, a piece that fits into the `left` cycles of this tick; whether there
+    /// is more to do that may fit.
+    pub fn plan(&mut self, left: u32, mut log: impl FnMut(Event<Panel::Error, Link::Error>)) -> bool {
+        let (worked, found) = self.planner.work(left);
+        if let Some(found) = found {
+            log(Event::Found(found));
+        }
+        worked
+    }
+
     /// What is played.
     pub fn player(&self) -> &Player<'a> {
         &self.player
@@ -220,6 +243,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     fn obey(&mut self, command: Command, log: &mut impl FnMut(Event<Panel::Error, Link::Error>)) -> Result<(), Field> {
         if self.player.obey(command)? {
             let settings = *self.player.settings();
+            self.planner.start(&settings, self.player.shown());
             log(Event::Started(self.player.name(), settings));
             if let Some(admissible) = settings.admissible_step().filter(|&admissible| STEP > admissible) {
                 log(Event::Coarse(admissible.into()));
@@ -232,6 +256,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     fn follow(&mut self, Order { request, command }: Order, log: &mut impl FnMut(Event<Panel::Error, Link::Error>)) {
         match self.obey(command, log) {
             Ok(()) if command == Command::Ask => self.send(&self.player.status(request), log),
+            Ok(()) if command == Command::AskPlan => self.send(&self.planner.answer(request), log),
             Ok(()) => self.send(&Done { request }, log),
             Err(field) => self.send(&Refused { request, field: field.code() }, log),
         }

@@ -38,8 +38,10 @@ pub enum Command {
     TogglePause,
     /// So many ticks, then stop.
     Step(u32),
-    /// Nothing but an answer.
+    /// Nothing but an answer: what is played.
     Ask,
+    /// Nothing but an answer: what the plan of it is.
+    AskPlan,
 }
 
 /// A command that came as a message.
@@ -82,6 +84,7 @@ impl Order {
                 (request, Ok(Command::Step(ticks)))
             }
             protocol::Ask::KIND => (protocol::Ask::read(fields)?.request, Ok(Command::Ask)),
+            protocol::AskPlan::KIND => (protocol::AskPlan::read(fields)?.request, Ok(Command::AskPlan)),
             _ => return None,
         };
         let order = command.map(|command| Self { request, command });

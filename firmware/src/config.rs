@@ -1,5 +1,7 @@
 //! Every number that may be tuned, with its unit and the arithmetic behind it.
 
+use double_pendulum::plan::Costs;
+
 // ---- Time -----------------------------------------------------------------------------------------------------------
 
 /// Ticks per second: one tick moves the pendulum by one picture's worth of time.
@@ -19,6 +21,20 @@ pub const MOST_TICKS_PER_FRAME: u32 = 15;
 pub const LEAST_SPEED: f64 = 0.01;
 /// At 4 ticks of the scene per tick even the Cortex-M3 still shows most pictures.
 pub const GREATEST_SPEED: f64 = 4.0;
+
+// ---- The plan -------------------------------------------------------------------------------------------------------
+
+/// For how long each scene is planned, s: longer than the motion of the liveliest can be foretold in `f32`.
+pub const PLANNED: f64 = 10.0;
+/// What the search may cost, ticks of the processor's time: 20 s. It has about half of each tick.
+pub const PLANNING_TICKS: f32 = 20.0 * TICK_RATE as f32;
+/// A piece of the search, cycles, unless a single step is more: 0.4 ms of the Cortex-M3. The dearest step, of order 8 in
+/// `f64`, takes it 3.5 ms.
+pub const PLANNING_PIECE: f32 = 20_000.0;
+/// What steps cost on this processor: with a floating-point unit or without.
+pub const COSTS: Costs = if cfg!(target_abi = "eabihf") { Costs::CORTEX_M4F } else { Costs::CORTEX_M3 };
+/// Processor cycles in a tick where no board says otherwise: 50 MHz.
+pub const TICK_CYCLES: u32 = 50_000_000 / TICK_RATE;
 
 // ---- The pendulum ---------------------------------------------------------------------------------------------------
 

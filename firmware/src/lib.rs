@@ -25,6 +25,7 @@ pub mod ink;
 pub mod job;
 pub mod label;
 pub mod measure;
+pub mod planner;
 pub mod player;
 pub mod plot;
 pub mod protocol;

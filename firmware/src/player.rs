@@ -7,6 +7,7 @@ use crate::command::Command;
 use crate::config::{GREATEST_ANGLE, GREATEST_SPEED, LEAST_SPEED};
 use crate::ink::Ink;
 use crate::job::Field;
+use crate::planner::Shown;
 use crate::protocol::Status;
 use crate::scene::Report;
 use crate::scenes::{AnyScene, SceneName};
@@ -58,7 +59,7 @@ impl<'a> Player<'a> {
             Command::Pause(paused) => self.pace.pause(paused),
             Command::TogglePause => self.pace.pause(!self.pace.paused),
             Command::Step(ticks) => self.pace.step(ticks),
-            Command::Ask => {}
+            Command::Ask | Command::AskPlan => {}
         }
         Ok(false)
     }
@@ -103,6 +104,11 @@ impl<'a> Player<'a> {
     /// What the scene was started with.
     pub fn settings(&self) -> &Settings {
         &self.settings
+    }
+
+    /// How the scene shows its motion, if it shows one.
+    pub fn shown(&self) -> Option<Shown> {
+        self.scene.shown()
     }
 
     /// The scene in numbers, as of the last check.

@@ -1,9 +1,12 @@
 //! What every scene is.
 
+use double_pendulum::plan::Way;
 use double_pendulum::{Error, State};
 
 use crate::canvas::Canvas;
+use crate::config::STEPS_PER_TICK;
 use crate::ink::Ink;
+use crate::planner::Shown;
 use crate::settings::Settings;
 use crate::simulation::Simulation;
 
@@ -21,6 +24,9 @@ pub trait Scene: Sized {
 
     /// What is to be told about it in numbers.
     fn report(&self) -> Report;
+
+    /// How it shows the motion of its settings; `None` if nothing of it moves.
+    fn shown(&self) -> Option<Shown>;
 }
 
 /// A scene in numbers.
@@ -49,5 +55,17 @@ impl Report {
             energy_error: simulation.energy().error(&state),
             trusted_until,
         }
+    }
+}
+
+impl Shown {
+    /// By a [`Swing`](crate::swing::Swing), with rods that together are `reach` pixels long.
+    pub fn swing(reach: f32) -> Option<Self> {
+        Some(Self { way: Way::Picture, steps: STEPS_PER_TICK, height: 2.0 * reach })
+    }
+
+    /// As curves of the angles, `scale` pixels to a radian; the rods of a display that shows as much are as long each.
+    pub fn curves(way: Way, scale: f32) -> Option<Self> {
+        (scale > 0.0).then_some(Self { way, steps: STEPS_PER_TICK, height: 4.0 * scale })
     }
 }

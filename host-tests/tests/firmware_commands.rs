@@ -2,14 +2,17 @@
 
 use std::f64::consts::PI;
 
+use double_pendulum::plan::Way;
 use fastrand::Rng;
 use firmware::app::{App, Event};
-use firmware::config::{MOST_MESSAGES_PER_TICK, STEP, TICK_RATE};
+use firmware::config::{MOST_MESSAGES_PER_TICK, PLANNED, STEP, STEPS_PER_TICK, TICK_RATE};
 use firmware::controls::NoButtons;
 use firmware::display::NoDisplay;
 use firmware::job::Field;
+use firmware::planner::{Finding, way_code};
 use firmware::protocol::{
-    Ask, Choose, Decoder, Done, Frame, MAX_WIRE, Message, Pause, Refused, Restart, Set, Status, Step, encode,
+    Ask, AskPlan, Choose, Decoder, Done, Frame, MAX_WIRE, Message, Pause, Planned, Refused, Restart, Set, Status, Step,
+    encode,
 };
 use firmware::scenes::SceneName;
 use firmware::settings::Settings;
@@ -173,6 +176,51 @@ fn every_scene_can_be_chosen_restarts_pauses_and_steps() {
         assert_eq!(all::<Done>(&app).iter().map(|done| done.request).collect::<Vec<_>>(), [1, 2, 3, 4, 5]);
         assert!(all::<Frame>(&app).iter().all(|frame| frame.scene == name.code()));
     }
+}
+
+/// What an answer says has been found: nothing to plan, nothing yet, all.
+const NOTHING: u8 = 0;
+const NOT_YET: u8 = 1;
+const ALL: u8 = 3;
+
+#[test]
+fn the_plan_is_found_piece_by_piece_and_told_when_asked() {
+    let mut app = app();
+    let asked = |app: &mut Plain| {
+        app.receive(wire(&AskPlan { request: 3 }), |_| ());
+        let answer: Planned = last(app);
+        assert_eq!(answer.request, 3);
+        answer
+    };
+    assert_eq!(asked(&mut app).found, NOT_YET);
+    let mut findings = Vec::new();
+    assert!(!app.plan(0, |event| findings.push(event)), "no time is left in this tick");
+    while app.plan(u32::MAX, |event| findings.push(event)) {}
+    let [Event::Found(Finding::Plan(plan)), Event::Found(Finding::Shown { shown, plan: again })] = findings[..] else {
+        panic!("{findings:?}")
+    };
+    assert_eq!(plan, again);
+    let answer = asked(&mut app);
+    assert_eq!((answer.found, answer.horizon, answer.shown_horizon), (ALL, plan.horizon, shown.horizon));
+    assert_eq!((answer.shown_way, answer.shown_steps), (way_code(Way::Picture), STEPS_PER_TICK));
+    assert!(answer.horizon > answer.shown_horizon, "the page's first motion is chaotic: {answer:?}");
+
+    app.receive(wire(&set(Field::Angle, 20.0, Unit::Degree)), |_| ());
+    assert_eq!(asked(&mut app), Planned { request: 3, found: NOT_YET, ..blank(&answer) });
+    while app.plan(u32::MAX, |_| ()) {}
+    let calm = asked(&mut app);
+    assert_eq!((calm.found, calm.horizon, calm.shown_horizon), (ALL, PLANNED, PLANNED));
+    assert!(calm.cycles < calm.shown_cycles, "{calm:?}");
+
+    app.receive(wire(&Choose { request: 1, scene: SceneName::Frequencies.code() }), |_| ());
+    assert!(!app.plan(u32::MAX, |_| ()));
+    assert_eq!(asked(&mut app), Planned { request: 3, found: NOTHING, ..Planned::default() });
+}
+
+/// What an answer says before anything is found.
+fn blank(answer: &Planned) -> Planned {
+    let &Planned { height, duration, frame_budget, planning_budget, .. } = answer;
+    Planned { height, duration, frame_budget, planning_budget, ..Planned::default() }
 }
 
 #[test]

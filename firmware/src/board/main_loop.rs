@@ -4,12 +4,14 @@ use core::fmt::Debug;
 use core::mem::MaybeUninit;
 
 use defmt::Debug2Format;
+use double_pendulum::plan::Plan;
 use embedded_io::Write;
 
 use super::{Clock, Receiver, cycles};
 use crate::app::{App, Event};
 use crate::controls::Buttons;
 use crate::display::Display;
+use crate::planner::Finding;
 use crate::settings::Settings;
 use crate::sheets::Sheets;
 
@@ -46,12 +48,14 @@ where
     Keys: Buttons,
 {
     app.use_stopwatch(cycles);
+    app.use_tick(clock.period());
     let mut now = clock.ticks();
     app.count_from(now, 0);
     loop {
         while !app.run_to(now, log) {}
         app.receive(&mut receiver, log);
         while clock.ticks() == now && app.work(log) {}
+        while app.plan(clock.left_after(now), log) {}
         now = clock.wait_after(now);
     }
 }
@@ -68,6 +72,25 @@ fn log<Panel: Debug, Link: Debug>(event: Event<Panel, Link>) {
         }
         Event::Stopped(error) => defmt::error!("stopped: {}", error),
         Event::Coarse(step) => defmt::warn!("the step is too long for this energy, {} s would do", step),
+        Event::Found(Finding::Plan(Plan { way, steps, error, cycles, horizon, limit, .. })) => defmt::info!(
+            "plan: {=str}, {} steps to a picture, {} pixels off until {} s ({=str}), {} cycles a picture",
+            way.name(),
+            steps,
+            error,
+            horizon,
+            limit.name(),
+            cycles,
+        ),
+        Event::Found(Finding::Shown { shown: Plan { way, steps, error, cycles, horizon, .. }, plan }) => defmt::info!(
+            "shown: {=str}, {} steps to a picture, {} pixels off until {} s ({=str}), {} cycles a picture",
+            way.name(),
+            steps,
+            error,
+            horizon,
+            if plan.horizon > horizon { "the plan is right for longer" } else { "as long as the plan" },
+            cycles,
+        ),
+        Event::Found(Finding::Refused(error)) => defmt::warn!("no plan: {}", error),
         Event::Asked => defmt::info!("computing a motion on request"),
         Event::Link(error) => defmt::error!("serial link: {}", Debug2Format(&error)),
     }

@@ -8,10 +8,12 @@ mod command;
 mod frame;
 mod layout;
 mod link;
+mod plan;
 mod simulate;
 
 pub use command::{Ask, Choose, Done, Pause, Restart, Set, Status, Step};
 pub use frame::Frame;
 pub use layout::{Field, Message};
 pub use link::{Decoder, LinkError, MAX_FIELDS, MAX_WIRE, VERSION, encode, frame};
+pub use plan::{AskPlan, Planned};
 pub use simulate::{Coarse, Refused, Sample, Simulate};

@@ -1,6 +1,7 @@
 //! Beats that close: where the frequencies are as whole numbers, small oscillations come back to their start after a
 //! few periods and their Lissajous figure closes; the exact motion from the same start does not.
 
+use double_pendulum::plan::Way;
 use double_pendulum::{Error, Oscillation, Parameters, SmallOscillations};
 
 use crate::brush::{Spot, Stroke};
@@ -8,6 +9,7 @@ use crate::canvas::{Canvas, WIDTH};
 use crate::config::{GRAVITY, ROD};
 use crate::ink::Ink;
 use crate::label;
+use crate::planner::Shown;
 use crate::scene::{Report, Scene};
 use crate::settings::Settings;
 use crate::simulation::Simulation;
@@ -124,5 +126,9 @@ impl Scene for Beats {
 
     fn report(&self) -> Report {
         Report::of(&self.simulation, self.trust.until())
+    }
+
+    fn shown(&self) -> Option<Shown> {
+        Shown::curves(Way::Picture, self.scale)
     }
 }

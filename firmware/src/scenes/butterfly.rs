@@ -7,6 +7,7 @@ use crate::canvas::{Canvas, WIDTH};
 use crate::config::{STEP, STEP_RATE, STEPS_PER_TICK};
 use crate::ink::Ink;
 use crate::label;
+use crate::planner::Shown;
 use crate::plot::{self, Strip};
 use crate::scene::{Report, Scene};
 use crate::settings::Settings;
@@ -118,5 +119,9 @@ impl Scene for Butterfly {
 
     fn report(&self) -> Report {
         Report::of(&self.first, self.trust.until())
+    }
+
+    fn shown(&self) -> Option<Shown> {
+        Shown::swing(Place::HALVES[0].reach)
     }
 }

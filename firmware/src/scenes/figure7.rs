@@ -7,6 +7,7 @@ use crate::canvas::{Canvas, HEIGHT, WIDTH};
 use crate::config::{STEP, STEPS_PER_TICK};
 use crate::ink::Ink;
 use crate::label;
+use crate::planner::Shown;
 use crate::scene::{Report, Scene};
 use crate::settings::Settings;
 use crate::simulation::Simulation;
@@ -91,6 +92,10 @@ impl Scene for Figure7 {
 
     fn report(&self) -> Report {
         Report::of(&self.right, self.trust.until())
+    }
+
+    fn shown(&self) -> Option<Shown> {
+        Shown::swing(Place::HALVES[0].reach)
     }
 }
 

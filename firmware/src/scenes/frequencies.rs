@@ -7,6 +7,7 @@ use crate::canvas::{Canvas, HEIGHT, WIDTH};
 use crate::config::TICK_RATE;
 use crate::ink::Ink;
 use crate::label;
+use crate::planner::Shown;
 use crate::plot::{self, Strip};
 use crate::scene::{Report, Scene};
 use crate::settings::Settings;
@@ -100,5 +101,9 @@ impl Scene for Frequencies {
     fn report(&self) -> Report {
         let time = self.ticks as f64 / f64::from(TICK_RATE);
         Report { step: self.ticks, time, state: State::default(), energy_error: 0.0, trusted_until: f32::INFINITY }
+    }
+
+    fn shown(&self) -> Option<Shown> {
+        None
     }
 }

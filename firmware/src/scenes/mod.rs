@@ -13,6 +13,7 @@ use double_pendulum::Error;
 use crate::canvas::Canvas;
 use crate::choice::choice;
 use crate::ink::Ink;
+use crate::planner::Shown;
 use crate::scene::{Report, Scene};
 use crate::settings::Settings;
 
@@ -55,6 +56,11 @@ macro_rules! catalogue {
             pub fn draw(&self, ink: &Ink, canvas: &mut Canvas) {
                 canvas.clone_from(ink.picture());
                 match self { $(Self::$row(scene) => scene.draw(canvas),)* }
+            }
+
+            /// As [`Scene::shown`].
+            pub fn shown(&self) -> Option<Shown> {
+                match self { $(Self::$row(scene) => scene.shown(),)* }
             }
 
             /// As [`Scene::report`].

@@ -6,6 +6,7 @@ use crate::brush::Spot;
 use crate::canvas::{Canvas, HEIGHT};
 use crate::ink::Ink;
 use crate::label;
+use crate::planner::Shown;
 use crate::scene::{Report, Scene};
 use crate::settings::Settings;
 use crate::simulation::Simulation;
@@ -65,5 +66,9 @@ impl Scene for Page {
 
     fn report(&self) -> Report {
         Report::of(&self.simulation, self.trust.until())
+    }
+
+    fn shown(&self) -> Option<Shown> {
+        Shown::swing(Place::WHOLE.reach)
     }
 }

@@ -1,5 +1,6 @@
 //! Figures 3 to 5: small oscillations, both angles as scrolling curves within their envelopes, in closed form.
 
+use double_pendulum::plan::Way;
 use double_pendulum::trig::{DefaultTrig, SinCos};
 use double_pendulum::{Error, Modes, Oscillation, Parameters, Pendulum, SmallOscillations};
 
@@ -7,6 +8,7 @@ use crate::canvas::{Canvas, WIDTH};
 use crate::config::TICK_RATE;
 use crate::ink::Ink;
 use crate::label;
+use crate::planner::Shown;
 use crate::plot::{self, Strip};
 use crate::scene::{Report, Scene};
 use crate::settings::Settings;
@@ -117,6 +119,10 @@ impl Scene for Small {
     fn report(&self) -> Report {
         let state = self.pendulum.state(&self.motion.at(self.time() as f32));
         Report { step: self.ticks, time: self.time(), state, energy_error: 0.0, trusted_until: self.trusted_until }
+    }
+
+    fn shown(&self) -> Option<Shown> {
+        Shown::curves(Way::ClosedForm, self.scale)
     }
 }
 

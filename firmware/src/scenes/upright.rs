@@ -7,6 +7,7 @@ use crate::brush::{Spot, Stroke};
 use crate::canvas::{Canvas, HEIGHT, WIDTH};
 use crate::config::{STEP, STEP_RATE, STEPS_PER_TICK};
 use crate::ink::Ink;
+use crate::planner::Shown;
 use crate::scene::{Report, Scene};
 use crate::settings::Settings;
 use crate::simulation::Energy;
@@ -112,5 +113,9 @@ impl Scene for Upright {
             energy_error: self.energy.error(&self.plain),
             trusted_until: self.trusted_until,
         }
+    }
+
+    fn shown(&self) -> Option<Shown> {
+        Shown::swing(Place::HALVES[0].reach)
     }
 }

@@ -6,7 +6,8 @@ use firmware::controls::NoButtons;
 use firmware::display::NoDisplay;
 use firmware::job::{Arithmetic, Field, Form, Job, Model, Request};
 use firmware::protocol::{
-    Ask, Choose, Decoder, Frame, LinkError, MAX_FIELDS, MAX_WIRE, Message, Pause, Restart, Set, Simulate, Step, frame,
+    Ask, AskPlan, Choose, Decoder, Frame, LinkError, MAX_FIELDS, MAX_WIRE, Message, Pause, Restart, Set, Simulate,
+    Step, frame,
 };
 use firmware::scenes::SceneName;
 use firmware::settings::Settings;
@@ -170,6 +171,7 @@ pub fn commands_seeds() -> Vec<Vec<u8>> {
         one(Pause::KIND, fields(&Pause { request: 4, paused: 1 })),
         one(Step::KIND, fields(&Step { request: 5, ticks: 3 })),
         one(Ask::KIND, fields(&Ask { request: 6 })),
+        one(AskPlan::KIND, fields(&AskPlan { request: 8 })),
         one(Simulate::KIND, fields(&request().message(7))),
     ];
     sets.chain(scenes).chain(others).collect()
