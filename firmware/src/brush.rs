@@ -83,8 +83,8 @@ impl Stroke {
             let columns = columns.start.max(near.start)..columns.end.min(near.end);
             let mut probe = line.probe(columns.start * SUBPIXELS + HALF, y * SUBPIXELS + HALF);
             for x in columns {
-                if let Some(distance) = line.distance(&probe, outer) {
-                    paint(x, y, (outer - distance).min(SUBPIXELS) as u32);
+                if let Some(coverage) = line.coverage(&probe, outer) {
+                    paint(x, y, coverage);
                 }
                 line.advance(&mut probe);
             }
@@ -140,22 +140,30 @@ impl Line {
         probe.across -= self.along.1 * SUBPIXELS;
     }
 
-    /// Distance of a place from the nearest point of the line, subpixels; `None` if it is not below `limit`, which is
-    /// known before any root or division.
+    /// How much of the pixel around a place is covered, of [`SUBPIXELS`]: all of it as far as a pixel inside of `limit`,
+    /// from there to `limit` in proportion; `None` beyond. Only between the two it takes a root or a division.
     ///
     /// Spots lie within one canvas of the canvas, so differences are below 3 x 128 x 64 = 24,576 across and half that
     /// down, and sums of two products below 24,576^2 x 1.25 = 7.6e8: 31 bits hold them.
     #[inline]
-    fn distance(&self, probe: &Probe, limit: i32) -> Option<i32> {
-        if probe.progress > 0 && probe.progress < self.length_squared {
-            let across = probe.across.abs();
-            (across < limit * self.length).then(|| across / self.length.max(1))
+    fn coverage(&self, probe: &Probe, limit: i32) -> Option<u32> {
+        let whole = (limit - SUBPIXELS).max(0);
+        let distance = if probe.progress > 0 && probe.progress < self.length_squared {
+            match probe.across.abs() {
+                across if across >= limit * self.length => return None,
+                across if across < whole * self.length => 0,
+                across => across / self.length.max(1),
+            }
         } else {
             let (dx, dy) = probe.from;
             let end = if probe.progress <= 0 { (dx, dy) } else { (dx - self.along.0, dy - self.along.1) };
-            let squared = dot(end, end);
-            (squared < limit * limit).then(|| root(squared))
-        }
+            match dot(end, end) {
+                squared if squared >= limit * limit => return None,
+                squared if squared < whole * whole => 0,
+                squared => root(squared),
+            }
+        };
+        Some((limit - distance).min(SUBPIXELS) as u32)
     }
 }
 

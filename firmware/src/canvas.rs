@@ -42,6 +42,12 @@ impl Canvas {
         &self.bytes
     }
 
+    /// The pixels of a row from the left, two in a byte; none outside.
+    pub fn row_mut(&mut self, y: usize) -> &mut [u8] {
+        const ROW: usize = WIDTH / 2;
+        self.bytes.chunks_exact_mut(ROW).nth(y).unwrap_or_default()
+    }
+
     /// The grey of a pixel, 0 to 15; `None` outside.
     pub fn get(&self, x: i32, y: i32) -> Option<u8> {
         let byte = self.bytes.get(index(x, y)?)?;

@@ -1,7 +1,7 @@
 //! What has been drawn and stays: a picture of its own that strokes are added to and that slowly pales.
 
 use crate::brush::Stroke;
-use crate::canvas::{Canvas, HEIGHT, WIDTH};
+use crate::canvas::{Canvas, HEIGHT};
 
 /// Grey that ink pales down to and keeps.
 const LAST_GREY: u8 = 4;
@@ -31,9 +31,9 @@ impl Ink {
 
     /// Pales one row.
     pub fn tick(&mut self) {
-        let y = i32::from(self.row);
-        for x in 0..WIDTH as i32 {
-            self.picture.update(x, y, |grey| if grey > LAST_GREY { grey - 1 } else { grey });
+        for pair in self.picture.row_mut(self.row.into()) {
+            let [left, right] = [*pair >> 4, *pair & 0x0F].map(|grey| grey - u8::from(grey > LAST_GREY));
+            *pair = left << 4 | right;
         }
         self.row = (self.row + 1) % HEIGHT as u8;
     }

@@ -89,7 +89,7 @@ impl<'a> Player<'a> {
     /// Draws the scene over the canvas that holds its last picture, and a mark if its time stands still.
     pub fn draw(&self, canvas: &mut Canvas) {
         if !self.stopped {
-            self.scene.draw(self.ink, canvas);
+            self.scene.draw(&self.report, self.ink, canvas);
         }
         if self.is_paused() {
             text::pause_mark(canvas);

@@ -19,8 +19,8 @@ pub trait Scene: Sized {
     /// them were drawn.
     fn tick(&mut self, ink: &mut Ink);
 
-    /// Draws over the ink.
-    fn draw(&self, canvas: &mut Canvas);
+    /// Draws over the ink; `report` is what it has just been told in numbers, which need not be found twice.
+    fn draw(&self, report: &Report, canvas: &mut Canvas);
 
     /// What is to be told about it in numbers.
     fn report(&self) -> Report;

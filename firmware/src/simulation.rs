@@ -14,6 +14,8 @@ pub struct Simulation {
     swing: Swing,
     windings: [Winding<f32>; 2],
     step: u64,
+    /// The precise state now, once it was asked for: it takes as long as a step and a half.
+    precise: Option<State<f64>>,
 }
 
 impl Simulation {
@@ -27,11 +29,13 @@ impl Simulation {
             swing: Swing::new(&settings.parameters, &start, STEP)?,
             windings: [start.a1, start.a2].map(Winding::new),
             step: 0,
+            precise: None,
         })
     }
 
     /// Advances by one tick: [`STEPS_PER_TICK`] steps of [`STEP`] seconds.
     pub fn tick(&mut self) {
+        self.precise = None;
         for _ in 0..STEPS_PER_TICK {
             self.swing.advance(1);
             for (winding, direction) in self.windings.iter_mut().zip(self.swing.directions()) {
@@ -48,14 +52,14 @@ impl Simulation {
 
     /// The canonical state now, rounded to `f32`, its angles unwrapped.
     pub fn state(&self) -> State<f32> {
-        let State { a1, a2, p1, p2 } = self.swing.state();
+        let State { a1, a2, p1, p2 } = self.precise.unwrap_or_else(|| self.swing.state());
         let [winding1, winding2] = &self.windings;
         [winding1.unwrap(a1), winding2.unwrap(a2), p1, p2].map(|number| number as f32).into()
     }
 
     /// The canonical state to the last digit carried, each angle within half a turn of hanging.
-    pub fn precise_state(&self) -> State<f64> {
-        self.swing.state()
+    pub fn precise_state(&mut self) -> State<f64> {
+        *self.precise.get_or_insert_with(|| self.swing.state())
     }
 
     /// Steps since the start. They never wrap: that would take 2.4 thousand million years.

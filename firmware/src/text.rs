@@ -66,7 +66,11 @@ fn put(canvas: &mut Canvas, text: &str, anchor: Anchor, paint: impl Fn(&mut Canv
     };
     let MonoFont { image, glyph_mapping, .. } = FONT_5X8;
     for (character, left) in text.chars().zip((left..).step_by(CHARACTER as usize)) {
-        let index = glyph_mapping.index(character);
+        let index = match character {
+            // The mapping searches; the font begins with these.
+            ' '..='~' => character as usize - ' ' as usize,
+            _ => glyph_mapping.index(character),
+        };
         let (row, column) = (index / IN_A_ROW, index % IN_A_ROW);
         let glyph = Point::new(column as i32 * CHARACTER, row as i32 * LINE);
         for y in 0..LINE {

@@ -5,6 +5,7 @@ use double_pendulum::{Error, Parameters, State};
 use crate::canvas::Canvas;
 use crate::config::{STEPS_PER_TICK, TICK_RATE};
 use crate::label;
+use crate::scene::Report;
 use crate::swing::{Directions, Swing};
 use crate::text::{self, Anchor};
 
@@ -68,7 +69,8 @@ pub fn are_apart(shown: [Place; 2], exact: [Place; 2], limit: f32) -> bool {
 }
 
 /// Writes the time and until when the picture can be trusted; the time stands out once it can no longer.
-pub fn draw_clock(canvas: &mut Canvas, time: f64, until: f32, time_at: Anchor, trust_at: Anchor) {
+pub fn draw_clock(canvas: &mut Canvas, report: &Report, time_at: Anchor, trust_at: Anchor) {
+    let &Report { time, trusted_until: until, .. } = report;
     let passed = time >= f64::from(until);
     let write = if passed { text::write_marked } else { text::write };
     write(canvas, &label::time(time), time_at);

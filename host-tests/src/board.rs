@@ -1,5 +1,7 @@
 //! The emulated boards: one row each, with all that QEMU and the build need to know.
 
+use crate::count::timing::Core;
+
 /// A board that QEMU emulates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Board {
@@ -19,6 +21,13 @@ pub struct Board {
     pub serial_port: usize,
     /// Whether it has the OLED panel and the five buttons.
     pub has_panel: bool,
+}
+
+impl Board {
+    /// Whose timings hold.
+    pub fn core(&self) -> Core {
+        if self.cpu == "cortex-m3" { Core::M3 } else { Core::M4F }
+    }
 }
 
 /// Every board, the default one first.

@@ -1,6 +1,7 @@
 //! What the host's commands and tests share.
 
 pub mod board;
+pub mod budget;
 pub mod cli;
 pub mod count;
 pub mod demo;

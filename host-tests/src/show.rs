@@ -28,7 +28,7 @@ impl Show {
 
     /// Draws the whole picture over whatever was there.
     pub fn draw(&self, canvas: &mut Canvas) {
-        self.scene.draw(&self.ink, canvas);
+        self.scene.draw(&self.report(), &self.ink, canvas);
     }
 
     /// The picture now.

@@ -111,7 +111,7 @@ impl Scene for Beats {
         self.trust = trust;
     }
 
-    fn draw(&self, canvas: &mut Canvas) {
+    fn draw(&self, report: &Report, canvas: &mut Canvas) {
         for spot in self.spots {
             Stroke::disc(spot, 2 * HALF_WIDTH + SPOT_RADIUS / 2).erase(canvas);
             Stroke::disc(spot, SPOT_RADIUS).lighten(canvas, u8::MAX);
@@ -120,8 +120,7 @@ impl Scene for Beats {
         text::write(canvas, "exact", Anchor::TopRight);
         let middle = |row| Anchor::Centred(WIDTH as i32 / 2, row);
         text::write(canvas, &label::mass_ratio(self.settings.mass_ratio()), middle(0));
-        let (time, until) = (self.simulation.time(), self.trust.until());
-        trust::draw_clock(canvas, time, until, middle(3 * LINE), middle(5 * LINE));
+        trust::draw_clock(canvas, report, middle(3 * LINE), middle(5 * LINE));
     }
 
     fn report(&self) -> Report {

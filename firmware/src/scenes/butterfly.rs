@@ -54,7 +54,7 @@ pub struct Butterfly {
 
 impl Butterfly {
     /// The distance of the twins in the plane of the angles, rad; whole turns do not count.
-    fn separation(&self) -> f64 {
+    fn separation(&mut self) -> f64 {
         let ([first, second], turn) = ([self.first.precise_state(), self.second.state()], core::f64::consts::TAU);
         let [d1, d2] =
             [second.a1 - first.a1, second.a2 - first.a2].map(|apart| apart - turn * libm::rint(apart / turn));
@@ -102,7 +102,7 @@ impl Scene for Butterfly {
         }
     }
 
-    fn draw(&self, canvas: &mut Canvas) {
+    fn draw(&self, report: &Report, canvas: &mut Canvas) {
         self.view.draw(canvas, self.view.spots(self.second.directions()), SECOND);
         self.view.draw(canvas, self.bobs, u8::MAX);
         for e_foldings in [0.0, 5.0, 10.0, 15.0] {
@@ -112,7 +112,7 @@ impl Scene for Butterfly {
         self.strip.each(PLOT_LEFT + self.strip.columns() - 1, |x, &[now], &[before]| {
             plot::column(canvas, x, before, now, CURVE);
         });
-        trust::draw_clock(canvas, self.first.time(), self.trust.until(), Anchor::TopLeft, Anchor::At(36, 0));
+        trust::draw_clock(canvas, report, Anchor::TopLeft, Anchor::At(36, 0));
         text::write(canvas, &label::tenths(self.e_foldings, ""), Anchor::TopRight);
         text::write(canvas, "e-folds", Anchor::At(PLOT_LEFT, 0));
     }

@@ -77,17 +77,17 @@ impl Scene for Figure7 {
         self.bobs = bobs;
     }
 
-    fn draw(&self, canvas: &mut Canvas) {
+    fn draw(&self, report: &Report, canvas: &mut Canvas) {
         for (view, bobs) in self.views.iter().zip(self.bobs) {
             view.draw(canvas, bobs, u8::MAX);
         }
-        let states = [self.right.state(), self.misprinted.state()];
+        let states = [report.state, self.misprinted.state()];
         let energies = states.map(|state| self.right.energy().pendulum().energy(&state));
         let [right, misprinted] = energies.map(|energy| label::tenths(energy, " J"));
         text::write(canvas, &right, Anchor::TopLeft);
         text::write(canvas, &misprinted, Anchor::TopRight);
         let middle = |row| Anchor::Centred(WIDTH as i32 / 2, row);
-        trust::draw_clock(canvas, self.right.time(), self.trust.until(), middle(0), middle(HEIGHT as i32 - LINE));
+        trust::draw_clock(canvas, report, middle(0), middle(HEIGHT as i32 - LINE));
     }
 
     fn report(&self) -> Report {

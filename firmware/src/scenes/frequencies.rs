@@ -74,7 +74,7 @@ impl Scene for Frequencies {
         }
     }
 
-    fn draw(&self, canvas: &mut Canvas) {
+    fn draw(&self, _: &Report, canvas: &mut Canvas) {
         let (width, zero) = (WIDTH as i32, ZERO_ROW as i32);
         plot::axis(canvas, 0, width, zero, AXIS_GREY);
         self.curves.each(self.drawn as i32 - 1, |x, &[fast, slow], &[fast_before, slow_before]| {

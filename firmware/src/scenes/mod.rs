@@ -52,10 +52,10 @@ macro_rules! catalogue {
                 ink.tick();
             }
 
-            /// Draws the whole picture over whatever was there.
-            pub fn draw(&self, ink: &Ink, canvas: &mut Canvas) {
+            /// Draws the whole picture over whatever was there; `report` is the scene's, as of now.
+            pub fn draw(&self, report: &Report, ink: &Ink, canvas: &mut Canvas) {
                 canvas.clone_from(ink.picture());
-                match self { $(Self::$row(scene) => scene.draw(canvas),)* }
+                match self { $(Self::$row(scene) => scene.draw(report, canvas),)* }
             }
 
             /// As [`Scene::shown`].

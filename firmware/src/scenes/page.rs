@@ -52,7 +52,7 @@ impl Scene for Page {
         self.trust.tick(self.simulation.time(), shown, |directions| self.view.bobs(directions));
     }
 
-    fn draw(&self, canvas: &mut Canvas) {
+    fn draw(&self, report: &Report, canvas: &mut Canvas) {
         self.trail.draw(canvas);
         self.view.draw(canvas, self.spots(), u8::MAX);
         let [degrees1, degrees2] = self.settings.degrees;
@@ -61,7 +61,7 @@ impl Scene for Page {
         if degrees1 != degrees2 {
             text::write(canvas, &label::degrees(degrees2), Anchor::At(0, HEIGHT as i32 - 2 * LINE));
         }
-        trust::draw_clock(canvas, self.simulation.time(), self.trust.until(), Anchor::TopRight, Anchor::BottomRight);
+        trust::draw_clock(canvas, report, Anchor::TopRight, Anchor::BottomRight);
     }
 
     fn report(&self) -> Report {

@@ -99,7 +99,7 @@ impl Scene for Small {
         }
     }
 
-    fn draw(&self, canvas: &mut Canvas) {
+    fn draw(&self, report: &Report, canvas: &mut Canvas) {
         for row in ROWS {
             plot::axis(canvas, 0, WIDTH as i32, row as i32, REST_GREY);
         }
@@ -113,7 +113,7 @@ impl Scene for Small {
         });
         text::write(canvas, &label::mass_ratio(self.settings.mass_ratio()), Anchor::TopLeft);
         let middle = Anchor::Centred(WIDTH as i32 / 2, 0);
-        trust::draw_clock(canvas, self.time(), self.trusted_until, Anchor::TopRight, middle);
+        trust::draw_clock(canvas, report, Anchor::TopRight, middle);
     }
 
     fn report(&self) -> Report {

@@ -94,15 +94,14 @@ impl Scene for Upright {
         self.bobs = places;
     }
 
-    fn draw(&self, canvas: &mut Canvas) {
+    fn draw(&self, report: &Report, canvas: &mut Canvas) {
         for (view, bobs) in self.views.iter().zip(self.bobs) {
             view.draw(canvas, bobs, u8::MAX);
         }
         text::write(canvas, "plain", Anchor::TopLeft);
         text::write(canvas, "compensated", Anchor::TopRight);
         let middle = |row| Anchor::Centred(WIDTH as i32 / 2, row);
-        let (time, until) = (self.time(), self.trusted_until);
-        trust::draw_clock(canvas, time, until, middle(LINE), middle(HEIGHT as i32 - LINE));
+        trust::draw_clock(canvas, report, middle(LINE), middle(HEIGHT as i32 - LINE));
     }
 
     fn report(&self) -> Report {

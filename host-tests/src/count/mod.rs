@@ -23,6 +23,7 @@ use std::path::PathBuf;
 use firmware::measure::Request;
 
 use crate::process::ProcessError;
+use crate::qemu::QemuError;
 use crate::toolchain::BuildError;
 
 /// Name of the function, one per arithmetic, that is counted from its first instruction to its return.
@@ -90,6 +91,9 @@ pub enum CountError {
     /// The program that measures does not compile.
     #[error(transparent)]
     Build(#[from] BuildError),
+    /// The emulated board did not do what it should.
+    #[error(transparent)]
+    Qemu(#[from] QemuError),
     /// QEMU could not be run.
     #[error(transparent)]
     Process(#[from] ProcessError),

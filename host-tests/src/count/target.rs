@@ -44,6 +44,6 @@ impl Target {
 
     /// Whose timings hold.
     pub fn core(&self) -> Core {
-        if self.board.cpu == "cortex-m3" { Core::M3 } else { Core::M4F }
+        self.board.core()
     }
 }

@@ -32,7 +32,7 @@ pub struct Registers {
 
 impl Registers {
     /// Reads the log's line of registers 12 to 15; `None` for any other line.
-    fn parse(line: &str) -> Option<Self> {
+    pub(super) fn parse(line: &str) -> Option<Self> {
         let mut words = line.strip_prefix("R12=")?.split_ascii_whitespace().skip(1);
         let mut register = |name| u32::from_str_radix(words.next()?.strip_prefix(name)?, 16).ok();
         Some(Self { sp: register("R13=")?, lr: register("R14=")?, pc: register("R15=")? })
@@ -71,7 +71,6 @@ impl Target {
             })
         });
         if let Some(log) = child.stderr.take() {
-            let log = BufReader::with_capacity(1 << 20, log);
             for_each_line(log, |line| Registers::parse(line).map_or(Ok(()), &mut each))?;
         }
         if child.wait()?.success() {
@@ -105,10 +104,12 @@ impl Target {
     }
 }
 
-fn for_each_line(
-    mut log: impl BufRead,
+/// Calls `each` with every line of a log, until it refuses one.
+pub(super) fn for_each_line(
+    log: impl Read,
     mut each: impl FnMut(&str) -> Result<(), CountError>,
 ) -> Result<(), CountError> {
+    let mut log = BufReader::with_capacity(1 << 20, log);
     let mut line = String::new();
     loop {
         line.clear();

@@ -13,6 +13,8 @@ use super::{Picture, QemuError};
 const WFI: u16 = 0xBF30;
 /// A board that sleeps this often without sending a frame sends none.
 const PATIENCE: u32 = 1000;
+/// One instruction per translation block: QEMU's name for it since 8.1, and before.
+const SINGLE_STEP: [&str; 2] = ["one-insn-per-tb", "singlestep"];
 
 /// A machine that is let run from one frame to the next.
 ///
@@ -42,6 +44,24 @@ impl Lockstep {
             }
         }
         Err(QemuError::NoFrame)
+    }
+
+    /// Runs to the next frame while QEMU writes the processor's registers before every instruction to `log`, which may
+    /// be a named pipe: hundreds of bytes each time.
+    pub fn next_frame_logged(&mut self, log: &Path) -> Result<Frame, QemuError> {
+        self.machine.tell(&format!("logfile {}", log.display()))?;
+        self.machine.tell("log cpu,nochain")?;
+        self.single_step("on")?;
+        let frame = self.next_frame();
+        self.single_step("off")?;
+        self.machine.tell("log none")?;
+        self.machine.tell("logfile /dev/null")?;
+        frame
+    }
+
+    fn single_step(&mut self, switch: &str) -> Result<(), QemuError> {
+        let [name, name_before] = SINGLE_STEP.map(|name| format!("{name} {switch}"));
+        self.machine.tell(&name).or_else(|_| self.machine.tell(&name_before))
     }
 
     /// The panel's picture of the last frame.

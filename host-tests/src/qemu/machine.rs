@@ -124,6 +124,17 @@ impl Machine {
         self.monitor.picture(self.folder.path()).map_err(|error| self.explain(error))
     }
 
+    /// Gives QEMU's console a line that it has nothing to say to.
+    pub(super) fn tell(&mut self, line: &str) -> Result<(), QemuError> {
+        let said = self.monitor.console(line).map_err(|error| self.explain(error))?;
+        let reason = said.trim();
+        if reason.is_empty() {
+            Ok(())
+        } else {
+            Err(QemuError::Refused { command: "console", reason: reason.to_owned() })
+        }
+    }
+
     /// Presses a button, or lets go of it.
     pub fn set_key(&mut self, key: Key, down: bool) -> Result<(), QemuError> {
         self.monitor.set_key(key, down).map_err(|error| self.explain(error))

@@ -72,6 +72,14 @@ impl Monitor {
         self.execute(qmp::input_send_event { device: None, head: None, events })
     }
 
+    /// Gives QEMU's own console a line; what it says to that.
+    pub(super) fn console(&mut self, line: &str) -> Result<String, QemuError> {
+        let command = qmp::human_monitor_command { command_line: line.to_owned(), cpu_index: None };
+        let said = self.channel.execute(&command).map_err(refused("human-monitor-command"))?;
+        self.channel.events();
+        Ok(said)
+    }
+
     /// Lets the machine run.
     pub(super) fn resume(&mut self) -> Result<(), QemuError> {
         self.execute(qmp::cont {})

@@ -45,7 +45,12 @@ impl<R: Real> Winding<R> {
 
     /// `angle`, known but for whole turns, as many turns on as bring it nearest to [`angle`](Self::angle), rad: the
     /// digits of [`Form::state`](super::Form::state) and the turns from here.
+    ///
+    /// No trigonometry: a quarter turn to the side of the last direction is within half a turn of it, near enough.
     pub fn unwrap(&self, angle: f64) -> f64 {
-        angle + core::f64::consts::TAU * libm::rint((self.angle() - angle) / core::f64::consts::TAU)
+        use core::f64::consts::{FRAC_PI_2, TAU};
+        let side = if self.last[0] < R::ZERO { -FRAC_PI_2 } else { FRAC_PI_2 };
+        let near = f64::from(self.turns) * TAU + side;
+        angle + TAU * libm::rint((near - angle) / TAU)
     }
 }
