@@ -19,6 +19,8 @@ pub struct Board {
     pub feature: &'static str,
     /// Which of QEMU's serial ports is the link, counted from 0.
     pub serial_port: usize,
+    /// Its processor's clock, Hz.
+    pub hertz: u32,
     /// Whether it has the OLED panel and the five buttons.
     pub has_panel: bool,
 }
@@ -40,6 +42,7 @@ pub const BOARDS: [Board; 4] = [
         binary: "lm3s6965evb",
         feature: "",
         serial_port: 0,
+        hertz: 50_000_000,
         has_panel: true,
     },
     Board {
@@ -50,6 +53,7 @@ pub const BOARDS: [Board; 4] = [
         binary: "lm3s6965evb",
         feature: "",
         serial_port: 0,
+        hertz: 50_000_000,
         has_panel: true,
     },
     Board {
@@ -60,6 +64,7 @@ pub const BOARDS: [Board; 4] = [
         binary: "mps2-an386",
         feature: "",
         serial_port: 0,
+        hertz: 25_000_000,
         has_panel: false,
     },
     STM32F405,
@@ -74,5 +79,6 @@ pub const STM32F405: Board = Board {
     binary: "stm32f405",
     feature: "stm32f405",
     serial_port: 2, // USART3
+    hertz: 168_000_000,
     has_panel: false,
 };

@@ -84,6 +84,16 @@ impl Debugger {
         Ok(bytes)
     }
 
+    /// Writes `byte` at all these addresses.
+    pub(super) fn fill(&mut self, addresses: Range<u32>, byte: u8) -> Result<(), QemuError> {
+        for start in addresses.clone().step_by(PIECE as usize) {
+            let length = (addresses.end - start).min(PIECE);
+            let digits = format!("{byte:02x}").repeat(length as usize);
+            self.expect(&format!("M{start:x},{length:x}:{digits}"), "OK")?;
+        }
+        Ok(())
+    }
+
     /// Sends a packet whose answer must begin with `answer`.
     fn expect(&mut self, packet: &str, answer: &str) -> Result<(), QemuError> {
         let reply = self.ask(packet)?;

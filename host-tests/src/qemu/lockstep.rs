@@ -1,5 +1,6 @@
 //! Frame by frame: the machine stands still at a moment when its panel shows exactly the frame just received.
 
+use std::ops::Range;
 use std::path::Path;
 
 use firmware::protocol::Frame;
@@ -57,6 +58,16 @@ impl Lockstep {
         self.machine.tell("log none")?;
         self.machine.tell("logfile /dev/null")?;
         frame
+    }
+
+    /// Writes `byte` at all these addresses.
+    pub fn fill(&mut self, addresses: Range<u32>, byte: u8) -> Result<(), QemuError> {
+        self.debugger.fill(addresses, byte).map_err(|error| self.machine.explain(error))
+    }
+
+    /// The bytes at these addresses.
+    pub fn read(&mut self, addresses: Range<u32>) -> Result<Vec<u8>, QemuError> {
+        self.debugger.read(addresses).map_err(|error| self.machine.explain(error))
     }
 
     fn single_step(&mut self, switch: &str) -> Result<(), QemuError> {

@@ -1,0 +1,151 @@
+//! What every board's application takes of its memory, and what it leaves of its processor's time.
+//!
+//! The board's clock counts instructions; how many cycles one takes is estimated on a picture of the first scene that QEMU
+//! logs whole. The table in the README is what `cargo test -p host-tests --test budgets -- --nocapture` prints.
+
+mod support;
+
+use std::ops::Range;
+use std::path::Path;
+
+use double_pendulum::Parameters;
+use firmware::config::TICK_RATE;
+use firmware::job::{Field, Job, Request};
+use firmware::protocol::{Ask, Choose, Message, Pause, Restart, Set, Simulate, Step};
+use firmware::scenes::SceneName;
+use firmware::unit::Unit;
+use host_tests::board::{BOARDS, Board};
+use host_tests::budget::{self, Memory};
+use host_tests::count::CountError;
+use host_tests::count::{Cost, Image, Profile};
+use host_tests::qemu::{Lockstep, QemuError};
+use object::elf::{SHF_ALLOC, SHF_WRITE};
+use object::{Object, ObjectSection, ObjectSymbol, SectionFlags, SectionKind};
+use support::{application, settings, toolchain};
+
+/// The stack's share of memory, from its top (`board/guard.rs`).
+const STACK: u32 = 32 * 1024;
+/// What the stack is painted with: no number that is common in memory.
+const PAINT: u8 = 0xA5;
+/// What QEMU's clock takes for an instruction, s.
+const INSTRUCTION: f64 = 32e-9;
+/// Pictures that pay for the start of a scene, or catch up with what it cost.
+const SETTLING: usize = 6;
+/// Pictures of each scene after those, and pictures in which a motion asked for is computed.
+const PICTURES: usize = 40;
+const COMPUTING: usize = 4;
+
+/// Text, data and bss as the linker left them, and where the stack is.
+fn sections(elf: &Path) -> (Memory, Range<u32>) {
+    let bytes = std::fs::read(elf).unwrap_or_else(|error| panic!("{error}"));
+    let file = object::File::parse(&*bytes).unwrap_or_else(|error| panic!("{error}"));
+    let mut memory = Memory { text: 0, data: 0, bss: 0, stack: 0 };
+    for section in file.sections() {
+        let SectionFlags::Elf { sh_flags } = section.flags() else { continue };
+        let (is_loaded, is_written) = (sh_flags & u64::from(SHF_ALLOC) != 0, sh_flags & u64::from(SHF_WRITE) != 0);
+        let part = match (is_loaded, is_written, section.kind()) {
+            (false, ..) => continue,
+            (_, _, SectionKind::UninitializedData) => &mut memory.bss,
+            (_, true, _) => &mut memory.data,
+            _ => &mut memory.text,
+        };
+        *part += section.size() as u32;
+    }
+    let top = file.symbols().find(|symbol| symbol.name() == Ok("_stack_start")).expect("a stack").address() as u32;
+    (memory, top - STACK..top)
+}
+
+/// Lets so many pictures be drawn; the dearest one's cost, counts of the board's clock.
+fn play(board: &mut Lockstep, pictures: usize) -> Result<u32, QemuError> {
+    (0..pictures).try_fold(0, |dearest, _| Ok(dearest.max(board.next_frame()?.busy_cycles)))
+}
+
+fn send<M: Message>(board: &mut Lockstep, message: M) -> Result<(), QemuError> {
+    board.machine().serial.send(&message)
+}
+
+/// Plays every scene and sends every command, good and bad, requests of every kind, and garbage; what the dearest picture
+/// of a scene's own start cost, counts of the board's clock.
+fn exercise(board: &mut Lockstep) -> Result<u32, QemuError> {
+    let mut dearest = 0;
+    for &name in SceneName::ALL {
+        send(board, Choose { request: 1, scene: name.code() })?;
+        play(board, SETTLING)?;
+        dearest = dearest.max(play(board, PICTURES)?);
+    }
+    for field in Field::ALL {
+        let unit = Unit::of(*field).unwrap_or(Unit::One).code();
+        for value in [0.75, f64::NAN, -1e30] {
+            send(board, Set { request: 2, field: field.code(), unit, value })?;
+            play(board, 1)?;
+        }
+    }
+    send(board, Set { request: 3, field: Field::Speed.code(), unit: Unit::One.code(), value: 1.0 })?;
+    send(board, Choose { request: 4, scene: u8::MAX })?;
+    play(board, 1)?;
+    send(board, Pause { request: 5, paused: 1 })?;
+    send(board, Step { request: 6, ticks: 2 })?;
+    send(board, Ask { request: 7 })?;
+    play(board, PICTURES)?;
+    send(board, Restart { request: 8 })?;
+    send(board, Pause { request: 9, paused: 0 })?;
+    for &(arithmetic, model, form) in Job::WAYS {
+        for step_size in [1.0 / 256.0, 0.5, 0.0] {
+            let parameters = Parameters { m1: 1.0, m2: 1.0, l1: 1.0, l2: 1.0, g: 9.81 };
+            let (angles, velocities) = ([2.0, 1.0], [0.5, -0.5]);
+            let (stride, samples) = (4, 20);
+            let request =
+                Request { arithmetic, model, form, parameters, angles, velocities, step_size, stride, samples };
+            send::<Simulate>(board, request.message(10))?;
+            play(board, COMPUTING)?;
+        }
+    }
+    board.machine().serial.send_bytes(&[0x55; 300])?;
+    play(board, PICTURES)?;
+    board.machine().serial.send_bytes(&[0; 2])?;
+    // A line of the log says that pictures were dropped, if any were.
+    play(board, TICK_RATE as usize)?;
+    Ok(dearest)
+}
+
+fn measure(board: &'static Board) -> Result<(Memory, f64), CountError> {
+    let (toolchain, elf) = (toolchain(), application(board));
+    let image = Image::read(&elf)?;
+    let (memory, stack) = sections(&elf);
+    let mut machine = Lockstep::start(&settings(&toolchain, board, &elf))?;
+    machine.fill(stack.clone(), PAINT)?;
+    play(&mut machine, PICTURES)?;
+    let (_, profile) = Profile::of_frame(&mut machine, &image, board.core())?;
+    let Cost { instructions, cycles_high, .. } = profile.cost();
+    let dearest = exercise(&mut machine)?;
+    let untouched = machine.read(stack)?.iter().take_while(|byte| **byte == PAINT).count();
+    let executed = f64::from(dearest) / f64::from(board.hertz) / INSTRUCTION;
+    let cycles = executed * cycles_high as f64 / instructions as f64;
+    let idle = 1.0 - cycles * f64::from(TICK_RATE) / f64::from(board.hertz);
+    Ok((Memory { stack: STACK - untouched as u32, ..memory }, idle))
+}
+
+#[test]
+fn every_board_keeps_within_its_memory_and_its_time() -> Result<(), CountError> {
+    let mut too_much = Vec::new();
+    println!("| board | text | data | bss | stack | idle (estimated) |\n| --- | ---: | ---: | ---: | ---: | ---: |");
+    for (board, (name, budget)) in BOARDS.iter().zip(&budget::MEMORY) {
+        assert_eq!(board.name, *name, "a row for each board");
+        let (Memory { text, data, bss, stack }, idle) = measure(board)?;
+        println!("| `{name}` | {text} | {data} | {bss} | {stack} | {:.0} % |", 100.0 * idle);
+        let parts = [
+            ("text", text, budget.text),
+            ("data", data, budget.data),
+            ("bss", bss, budget.bss),
+            ("stack", stack, budget.stack),
+        ];
+        too_much
+            .extend(parts.into_iter().filter(|(_, bytes, most)| bytes > most).map(|part| format!("{name}: {part:?}")));
+        if idle < budget::IDLE {
+            too_much.push(format!("{name}: idle {idle:.3}"));
+        }
+        assert!(stack > 0, "{name}: the paint was never there");
+    }
+    assert!(too_much.is_empty(), "{too_much:#?}");
+    Ok(())
+}
