@@ -191,3 +191,13 @@ pub const PLAN_KEPT: f64 = 0.999;
 
 /// The promised over the true horizon, in the median over all scenes: what the issue asks.
 pub const PLAN_SHARE: f64 = 0.7;
+
+/// Angles of the scenes in closed form, per rad of amplitude and of the fast mode's phase: the five roundings of `f32`
+/// that the scenes' clock allows for.
+pub const CLOSED_FORM: f64 = 5.0 * f32::EPSILON as f64;
+
+/// What the linear beats miss after their period, of their amplitude: the same for up to five turns.
+pub const CLOSED: f64 = 5.0 * f32::EPSILON as f64 * 2.0 * 5.0 * std::f64::consts::TAU;
+
+/// How far the exact motion is then from its start at the least, pixels: farther than a line is wide.
+pub const NOT_CLOSED: f64 = 1.0;

@@ -1,0 +1,128 @@
+//! The scenes in closed form, as they are played: their angles, where they draw them, and which figures close.
+
+use std::f64::consts::{FRAC_PI_6, PI, TAU};
+
+use double_pendulum::{Parameters, SmallOscillations};
+use firmware::config::TICK_RATE;
+use firmware::scenes::SceneName;
+use firmware::settings::Settings;
+use host_tests::reference::Reference;
+use host_tests::show::Show;
+use host_tests::tolerance::{CLOSED, CLOSED_FORM, NOT_CLOSED};
+
+/// Figures 3 to 5 and their mass ratios.
+const SMALL: [(SceneName, f64); 3] =
+    [(SceneName::SmallLight, 0.2), (SceneName::SmallEqual, 1.0), (SceneName::SmallHeavy, 5.0)];
+/// Beats that close: the mass ratio, and the periods of the fast and of the slow mode after which they do.
+const BEATS: [(SceneName, f64, [f64; 2]); 4] = [
+    (SceneName::Beats3To2, 25.0 / 144.0, [3.0, 2.0]),
+    (SceneName::Beats2To1, 9.0 / 16.0, [2.0, 1.0]),
+    (SceneName::Beats5To2, 441.0 / 400.0, [5.0, 2.0]),
+    (SceneName::Beats3To1, 16.0 / 9.0, [3.0, 1.0]),
+];
+/// The amplitude of angle 2 in each mode of the beats, rad, and how far it reaches in the figures, pixels.
+const AMPLITUDE: f64 = 12.0 / 180.0 * PI;
+const REACH: f64 = 23.0;
+/// The middles of the linear figure and of the exact one, pixels.
+const MIDDLES: [[f64; 2]; 2] = [[25.0, 36.0], [103.0, 36.0]];
+
+fn show(name: SceneName) -> Show {
+    Show::new(name, &name.first_settings()).expect("a scene of the catalogue")
+}
+
+/// w = sqrt(g/l (1 + mu +- sqrt(mu (1 + mu)))) of equal rods, fast and slow, rad/s.
+fn frequencies(mass_ratio: f64, gravity: f64, rod: f64) -> [f64; 2] {
+    let root = (mass_ratio * (1.0 + mass_ratio)).sqrt();
+    [root, -root].map(|root| (gravity / rod * (1.0 + mass_ratio + root)).sqrt())
+}
+
+/// a1 = (pi/12) sqrt(mu/(1 + mu)) (cos w2 t - cos w1 t), a2 = (pi/12)(cos w1 t + cos w2 t), until the clock says that the
+/// picture may be half a pixel off: hours.
+#[test]
+fn small_oscillations_are_played_as_the_theory_has_them() {
+    for (name, mass_ratio) in SMALL {
+        let mut scene = show(name);
+        let [w1, w2] = frequencies(mass_ratio, 9.8, 0.25);
+        let trusted_until = f64::from(scene.report().trusted_until);
+        assert!(trusted_until > 600.0, "{name:?}: {trusted_until} s");
+        let mut worst: f64 = 0.0;
+        for tick in 1..=(trusted_until * f64::from(TICK_RATE)) as u32 {
+            scene.tick();
+            let t = f64::from(tick) / f64::from(TICK_RATE);
+            let report = scene.report();
+            let (slow, fast) = ((w2 * t).cos(), (w1 * t).cos());
+            let a1 = FRAC_PI_6 / 2.0 * (mass_ratio / (1.0 + mass_ratio)).sqrt() * (slow - fast);
+            let a2 = FRAC_PI_6 / 2.0 * (fast + slow);
+            let error = (f64::from(report.state.a1) - a1).abs().max((f64::from(report.state.a2) - a2).abs());
+            let share = error / (FRAC_PI_6 * CLOSED_FORM * (1.0 + w1 * t));
+            assert!(share <= 1.0, "{name:?} at {t} s: off by {error:e} rad");
+            worst = worst.max(share);
+        }
+        println!("{}: {trusted_until:.0} s, at most {worst:.2} of the bound", name.name());
+    }
+}
+
+/// Where the figures of the beats are at angles (a1, a2), pixels.
+fn place([x, y]: [f64; 2], mass_ratio: f64, a1: f64, a2: f64) -> [f64; 2] {
+    // a2/a1 in the modes is -shape (fast) and +shape (slow).
+    let shape = ((1.0 + mass_ratio) / mass_ratio).sqrt();
+    let (slow, fast) = ((a2 + shape * a1) / 2.0, (a2 - shape * a1) / 2.0);
+    [x + REACH / AMPLITUDE * slow, y - REACH / AMPLITUDE * fast]
+}
+
+#[test]
+fn beats_close_when_their_frequencies_say_so_and_the_exact_motion_does_not() {
+    for (name, mass_ratio, [fast, slow]) in BEATS {
+        let settings = name.first_settings();
+        let [w1, w2] = frequencies(mass_ratio, 9.81, 1.0);
+        assert!((w1 / w2 - fast / slow).abs() < 1e-12, "{name:?}: {}", w1 / w2);
+        let period = fast * TAU / w1;
+
+        let modes = settings.pendulum().and_then(|pendulum| pendulum.modes()).expect("a pendulum");
+        let linear = SmallOscillations::new(modes, &settings.motion());
+        let [start, end] = [0.0, period as f32].map(|t| linear.at(t));
+        let parted = |a: f32, b: f32| f64::from((a - b).abs()) / AMPLITUDE;
+        let missed = parted(end.a1, start.a1).max(parted(end.a2, start.a2));
+        assert!(missed < CLOSED, "{name:?}: the linear motion misses its start by {missed:e}");
+
+        let mut exact = reference(&settings);
+        exact.advance_to(period);
+        let [x0, y0] = place([0.0; 2], mass_ratio, settings.angles()[0].into(), settings.angles()[1].into());
+        let [x, y] = place([0.0; 2], mass_ratio, exact.motion().a1, exact.motion().a2);
+        let missed = (x - x0).hypot(y - y0);
+        println!("{}: closes after {period:.3} s; the exact motion misses by {missed:.2} pixels", name.name());
+        assert!(missed > NOT_CLOSED, "{name:?}: the exact motion closes to {missed} pixels");
+    }
+}
+
+fn reference(settings: &Settings) -> Reference {
+    let Parameters { m1, m2, l1, l2, g } = settings.parameters;
+    let [m1, m2, l1, l2, g] = [m1, m2, l1, l2, g].map(f64::from);
+    let ([a1, a2], [w1, w2]) = (settings.angles().map(f64::from), settings.velocities.map(f64::from));
+    Reference::new(&Parameters { m1, m2, l1, l2, g }, &double_pendulum::Motion { a1, a2, w1, w2 })
+}
+
+/// In both figures the spot is drawn where it should be: on the left by cos w2 t and sin w1 t, on the right by the
+/// high-precision motion.
+#[test]
+fn the_spots_of_the_beats_are_where_the_theory_has_them() {
+    for (name, mass_ratio, [fast, _]) in BEATS {
+        let mut scene = show(name);
+        let [w1, w2] = frequencies(mass_ratio, 9.81, 1.0);
+        let mut exact = reference(&name.first_settings());
+        for tick in 1..=(fast * TAU / w1 * f64::from(TICK_RATE)) as u32 {
+            scene.tick();
+            let t = f64::from(tick) / f64::from(TICK_RATE);
+            exact.advance_to(t);
+            let [left, right] = MIDDLES;
+            let places = [
+                [left[0] + REACH * (w2 * t).cos(), left[1] - REACH * (w1 * t).sin()],
+                place(right, mass_ratio, exact.motion().a1, exact.motion().a2),
+            ];
+            let canvas = scene.picture();
+            for [x, y] in places {
+                assert_eq!(canvas.get(x as i32, y as i32), Some(15), "{name:?} at {t} s: ({x:.2}, {y:.2})");
+            }
+        }
+    }
+}
