@@ -13,6 +13,7 @@ mod guard;
 mod main_loop;
 mod receiver;
 mod register;
+mod transmitter;
 
 #[cfg(not(feature = "stm32f405"))] // which has a log of its own
 use defmt_semihosting as _; // where the log goes
@@ -21,3 +22,4 @@ pub use clock::{Clock, cycles};
 pub use guard::guard_stack;
 pub use main_loop::{application, run};
 pub use receiver::Receiver;
+pub use transmitter::{Timeout, Transmitter};

@@ -5,17 +5,15 @@
 use cortex_m::Peripherals;
 use cortex_m::interrupt::InterruptNumber;
 use cortex_m::peripheral::NVIC;
-use embedded_io::{Error, ErrorKind, ErrorType, Write};
 
-use super::receiver::Port;
+use super::receiver::Inlet;
 use super::register::Register;
+use super::transmitter::{Outlet, Transmitter};
 use super::{Clock, Receiver, guard_stack};
 use crate::config::BAUD;
 
 /// The processor's clock, Hz.
 const HERTZ: u32 = 25_000_000;
-/// A byte leaves in 10/460,800 s = 22 us or 543 cycles, and a try takes at least 4.
-const TRIES: u32 = 10_000;
 
 // SAFETY: UART0 registers; without DMA they cannot break memory safety.
 const DATA: Register = unsafe { Register::at(0x4000_4000) };
@@ -47,18 +45,17 @@ impl Board {
     pub fn take() -> Option<Self> {
         let core = Peripherals::take()?;
         guard_stack(core.MPU);
-        let receiver = Receiver::new(PORT)?;
+        let receiver = Receiver::new(INLET)?;
         Some(Self { link: Uart::start(), receiver, clock: Clock::start(core.SYST, HERTZ), hertz: HERTZ })
     }
 }
 
-/// The outward direction of the serial port.
+/// The port, running.
 #[derive(Debug)]
-pub struct Uart(());
+pub struct Port(());
 
-/// The port did not take a byte in time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Timeout;
+/// The outward direction.
+pub type Uart = Transmitter<Port>;
 
 impl Uart {
     fn start() -> Self {
@@ -66,47 +63,22 @@ impl Uart {
         CONTROL.write(ENABLE);
         // SAFETY: no critical section relies on this interrupt being masked.
         unsafe { NVIC::unmask(Interrupt) };
-        Self(())
+        Self(Port(()))
     }
 }
 
-impl core::fmt::Display for Timeout {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str("the serial port did not take a byte in time")
-    }
-}
-
-impl core::error::Error for Timeout {}
-
-impl Error for Timeout {
-    fn kind(&self) -> ErrorKind {
-        ErrorKind::TimedOut
-    }
-}
-
-impl ErrorType for Uart {
-    type Error = Timeout;
-}
-
-impl Write for Uart {
-    fn write(&mut self, bytes: &[u8]) -> Result<usize, Timeout> {
-        for &byte in bytes {
-            if !STATE.wait(TRANSMITTER_FULL, 0, TRIES) {
-                return Err(Timeout);
-            }
-            DATA.write(byte.into());
-        }
-        Ok(bytes.len())
+impl Outlet for Port {
+    fn is_ready(&self) -> bool {
+        STATE.read() & TRANSMITTER_FULL == 0
     }
 
-    /// Bytes leave by themselves; there is nothing to wait for.
-    fn flush(&mut self) -> Result<(), Timeout> {
-        Ok(())
+    fn put(&mut self, byte: u8) {
+        DATA.write(byte.into());
     }
 }
 
 /// The inward direction.
-const PORT: Port = Port {
+const INLET: Inlet = Inlet {
     clear: || INTERRUPT_CLEAR.write(RECEIVED),
     take: || if STATE.read() & RECEIVER_FULL != 0 { Some(DATA.read() as u8) } else { None },
 };

@@ -11,7 +11,7 @@ use crate::config::RECEIVE_QUEUE;
 
 /// A serial port as the interrupt sees it.
 #[derive(Clone, Copy)]
-pub(super) struct Port {
+pub(super) struct Inlet {
     /// Ends the interrupt. Done before the bytes are taken, so that one that comes meanwhile interrupts anew.
     pub clear: fn(),
     /// Takes the next byte out; `None` once there is none.
@@ -20,7 +20,7 @@ pub(super) struct Port {
 
 /// How the interrupt gets at the bytes, and where it puts them.
 struct Source {
-    port: Port,
+    inlet: Inlet,
     queue: Producer<'static, u8>,
 }
 
@@ -32,8 +32,8 @@ static LOST: AtomicU32 = AtomicU32::new(0);
 unsafe fn DefaultHandler(_number: i16) {
     let source = cortex_m::interrupt::free(|token| SOURCE.borrow(token).take());
     if let Some(mut source) = source {
-        (source.port.clear)();
-        while let Some(byte) = (source.port.take)() {
+        (source.inlet.clear)();
+        while let Some(byte) = (source.inlet.take)() {
             if source.queue.enqueue(byte).is_err() {
                 LOST.fetch_add(1, Ordering::Relaxed);
             }
@@ -48,11 +48,11 @@ pub struct Receiver {
 }
 
 impl Receiver {
-    /// Lets the interrupt fill a queue from `port`; `None` the second time.
-    pub(super) fn new(port: Port) -> Option<Self> {
+    /// Lets the interrupt fill a queue from `inlet`; `None` the second time.
+    pub(super) fn new(inlet: Inlet) -> Option<Self> {
         let queue = cortex_m::singleton!(: Queue<u8, RECEIVE_QUEUE> = Queue::new())?;
         let (producer, consumer) = queue.split();
-        cortex_m::interrupt::free(|token| SOURCE.borrow(token).set(Some(Source { port, queue: producer })));
+        cortex_m::interrupt::free(|token| SOURCE.borrow(token).set(Some(Source { inlet, queue: producer })));
         Some(Self { queue: consumer })
     }
 

@@ -54,7 +54,7 @@ impl Board {
         let hertz = system::start();
         let Ok(()) = gpio::card_select().set_high();
         let link = Uart::start(hertz);
-        let receiver = Receiver::new(uart::PORT)?;
+        let receiver = Receiver::new(uart::INLET)?;
         uart::enable_receiver();
         let Ok(panel) = ExclusiveDevice::new_no_delay(Ssi::start(hertz), NoSelect);
         Some(Self {

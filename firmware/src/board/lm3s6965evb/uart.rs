@@ -2,15 +2,12 @@
 
 use cortex_m::interrupt::InterruptNumber;
 use cortex_m::peripheral::NVIC;
-use embedded_io::{Error, ErrorKind, ErrorType, Write};
 
 use super::gpio;
-use crate::board::receiver::Port;
+use crate::board::receiver::Inlet;
 use crate::board::register::Register;
+use crate::board::transmitter::{Outlet, Transmitter};
 use crate::config::BAUD;
-
-/// A byte leaves in 10/460,800 s = 22 us or 1,085 cycles of 50 MHz, and a try takes at least 4.
-const TRIES: u32 = 10_000;
 
 // SAFETY: UART0 registers of the data sheet, chapter 12; without DMA they cannot break memory safety.
 const DATA: Register = unsafe { Register::at(0x4000_C000) };
@@ -28,13 +25,12 @@ const EIGHT_BITS_QUEUED: u32 = 0b11 << 5 | 1 << 4;
 const ENABLE: u32 = 1 << 9 | 1 << 8 | 1 << 0;
 const RECEIVED: u32 = 1 << 6 | 1 << 4;
 
-/// The outward direction.
+/// The port, running.
 #[derive(Debug)]
-pub struct Uart(());
+pub struct Port(());
 
-/// The port did not take a byte in time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Timeout;
+/// The outward direction.
+pub type Uart = Transmitter<Port>;
 
 impl Uart {
     pub(super) fn start(hertz: u32) -> Self {
@@ -46,47 +42,22 @@ impl Uart {
         DIVISOR_FRACTION.write(divisor % 64);
         LINE_CONTROL.write(EIGHT_BITS_QUEUED);
         CONTROL.write(ENABLE);
-        Self(())
+        Self(Port(()))
     }
 }
 
-impl core::fmt::Display for Timeout {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str("the serial port did not take a byte in time")
-    }
-}
-
-impl core::error::Error for Timeout {}
-
-impl Error for Timeout {
-    fn kind(&self) -> ErrorKind {
-        ErrorKind::TimedOut
-    }
-}
-
-impl ErrorType for Uart {
-    type Error = Timeout;
-}
-
-impl Write for Uart {
-    fn write(&mut self, bytes: &[u8]) -> Result<usize, Timeout> {
-        for &byte in bytes {
-            if !FLAGS.wait(TRANSMITTER_FULL, 0, TRIES) {
-                return Err(Timeout);
-            }
-            DATA.write(byte.into());
-        }
-        Ok(bytes.len())
+impl Outlet for Port {
+    fn is_ready(&self) -> bool {
+        FLAGS.read() & TRANSMITTER_FULL == 0
     }
 
-    /// Bytes leave by themselves; there is nothing to wait for.
-    fn flush(&mut self) -> Result<(), Timeout> {
-        Ok(())
+    fn put(&mut self, byte: u8) {
+        DATA.write(byte.into());
     }
 }
 
 /// The inward direction.
-pub(super) const PORT: Port = Port {
+pub(super) const INLET: Inlet = Inlet {
     clear: || INTERRUPT_CLEAR.write(RECEIVED),
     take: || if FLAGS.read() & RECEIVER_EMPTY == 0 { Some(DATA.read() as u8) } else { None },
 };

@@ -71,7 +71,7 @@ impl Board {
         let (b, c) = (chip.GPIOB.split(&mut rcc), chip.GPIOC.split(&mut rcc));
         // There is a divisor for this baud rate at either clock, so this does not fail.
         let link = Uart::start(chip.USART3, (b.pb10, b.pb11), &mut rcc).ok()?;
-        let receiver = Receiver::new(uart::PORT)?;
+        let receiver = Receiver::new(uart::INLET)?;
         uart::enable_receiver();
         Some(Self {
             panel: Ssd1306::new(Bus::start(chip.I2C1, b.pb6, b.pb7, &mut rcc)),

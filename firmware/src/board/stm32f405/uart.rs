@@ -1,6 +1,5 @@
 //! The serial port.
 
-use embedded_io::{Error, ErrorKind, ErrorType, Write};
 use stm32f4xx_hal::gpio::{PB10, PB11};
 use stm32f4xx_hal::pac::{Interrupt, NVIC, USART3};
 use stm32f4xx_hal::prelude::*;
@@ -8,18 +7,12 @@ use stm32f4xx_hal::rcc::Rcc;
 use stm32f4xx_hal::serial::config::{Config, InvalidConfig};
 use stm32f4xx_hal::serial::{Event, Tx};
 
-use crate::board::receiver::Port;
+use crate::board::receiver::Inlet;
+use crate::board::transmitter::{Outlet, Transmitter};
 use crate::config::BAUD;
 
-/// A byte leaves in 10/460,800 s = 22 us or 3,646 cycles of 168 MHz, and a try takes at least 4.
-const TRIES: u32 = 10_000;
-
 /// The outward direction.
-pub struct Uart(Tx<USART3>);
-
-/// The port did not take a byte in time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Timeout;
+pub type Uart = Transmitter<Tx<USART3>>;
 
 impl Uart {
     pub(super) fn start(port: USART3, (out, inwards): (PB10, PB11), rcc: &mut Rcc) -> Result<Self, InvalidConfig> {
@@ -29,43 +22,19 @@ impl Uart {
     }
 }
 
-impl core::fmt::Display for Timeout {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str("the serial port did not take a byte in time")
-    }
-}
-
-impl core::error::Error for Timeout {}
-
-impl Error for Timeout {
-    fn kind(&self) -> ErrorKind {
-        ErrorKind::TimedOut
-    }
-}
-
-impl ErrorType for Uart {
-    type Error = Timeout;
-}
-
-impl Write for Uart {
-    fn write(&mut self, bytes: &[u8]) -> Result<usize, Timeout> {
-        for &byte in bytes {
-            if !(0..TRIES).any(|_| self.0.is_tx_empty()) {
-                return Err(Timeout);
-            }
-            self.0.write(byte).map_err(|_| Timeout)?;
-        }
-        Ok(bytes.len())
+impl Outlet for Tx<USART3> {
+    fn is_ready(&self) -> bool {
+        self.is_tx_empty()
     }
 
-    /// Bytes leave by themselves; there is nothing to wait for.
-    fn flush(&mut self) -> Result<(), Timeout> {
-        Ok(())
+    fn put(&mut self, byte: u8) {
+        // Refused only by a port that is not ready.
+        let _ = self.write(byte);
     }
 }
 
 /// The inward direction.
-pub(super) const PORT: Port = Port { clear: || (), take };
+pub(super) const INLET: Inlet = Inlet { clear: || (), take };
 
 /// The next byte, if there is one. To read it ends its interrupt; there is nothing else to clear.
 fn take() -> Option<u8> {
