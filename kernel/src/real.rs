@@ -51,6 +51,8 @@ pub trait Real:
     fn to_f64(self) -> f64;
     /// The absolute value.
     fn abs(self) -> Self;
+    /// Twice the number: an addition, or a step of the exponent where an addition would be a call of 100 cycles and more.
+    fn twice(self) -> Self;
     /// The square root, correctly rounded; NaN below 0.
     fn sqrt(self) -> Self;
     /// The bit pattern.
@@ -65,8 +67,15 @@ pub trait Real:
     fn libm_sin_cos(self) -> (Self, Self);
     /// Sine and cosine by the kernel's own routine.
     fn own_sin_cos(self) -> (Self, Self);
-    /// (tan(`self`/2), sin `self`) where abs `self` <= 0.09, by short polynomials.
-    fn small_turn(self) -> (Self, Self);
+    /// The vector (s, c), an angle's sine and cosine times any length, for the angle `by` further on, which is to be within
+    /// reach: by short polynomials, 20 operations (13 in `f32`).
+    fn turned(direction: [Self; 2], by: Self) -> [Self; 2];
+    /// How far the turns reach that were shown to [`reach`](Self::reach).
+    type Reach: Copy + Default;
+    /// `so_far` with two more turns, rad.
+    fn reach(so_far: Self::Reach, turns: [Self; 2]) -> Self::Reach;
+    /// Whether all of them are small enough for [`turned`](Self::turned). Not where one is NaN.
+    fn is_in_reach(reach: Self::Reach) -> bool;
     /// The nearest whole number; the nearest `i32` if there is none, 0 for NaN.
     fn nearest(self) -> i32;
     /// Marks k pi/32 + offset in the first eighth of the circle: (offset, sin, cos).
@@ -75,8 +84,32 @@ pub trait Real:
     const PI_OVER_TWO: [Self; 3];
 }
 
+/// `x` + `x`, the same bits, by integers unless `x` is zero, subnormal, NaN or close to overflow.
+macro_rules! twice_by_bits {
+    ($name:ident, $float:ident) => {
+        #[inline(always)]
+        #[cfg_attr(not(target_arch = "arm"), allow(dead_code))]
+        fn $name(x: $float) -> $float {
+            const PLACE: u32 = $float::MANTISSA_DIGITS - 1;
+            const LARGEST: u32 = 2 * $float::MAX_EXP as u32 - 3;
+            let bits = x.to_bits();
+            let exponent = (bits << 1 >> (PLACE + 1)) as u32;
+            // kept apart, or the compiler would make the sum in any case
+            #[cold]
+            #[inline(never)]
+            fn sum(x: $float) -> $float {
+                x + x
+            }
+            if exponent.wrapping_sub(1) < LARGEST { $float::from_bits(bits + (1 << PLACE)) } else { sum(x) }
+        }
+    };
+}
+
+twice_by_bits!(twice_single, f32);
+twice_by_bits!(twice_double, f64);
+
 macro_rules! real {
-    ($float:ident, $rint:path, $sqrt:path, $atan2:path, $sin_cos:path, $own:ident) => {
+    ($float:ident, $twice:ident in software if $software:meta, $rint:path, $sqrt:path, $atan2:path, $sin_cos:path, $own:ident) => {
         impl Real for $float {
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
@@ -96,6 +129,16 @@ macro_rules! real {
             #[inline(always)]
             fn abs(self) -> Self {
                 $float::abs(self)
+            }
+            #[cfg($software)]
+            #[inline(always)]
+            fn twice(self) -> Self {
+                $twice(self)
+            }
+            #[cfg(not($software))]
+            #[inline(always)]
+            fn twice(self) -> Self {
+                self + self
             }
             #[inline]
             fn sqrt(self) -> Self {
@@ -126,8 +169,17 @@ macro_rules! real {
                 trig::$own::sin_cos(self)
             }
             #[inline(always)]
-            fn small_turn(self) -> (Self, Self) {
-                trig::$own::small_turn(self)
+            fn turned(direction: [Self; 2], by: Self) -> [Self; 2] {
+                trig::$own::turned(direction, by)
+            }
+            type Reach = trig::$own::Reach;
+            #[inline(always)]
+            fn reach(so_far: Self::Reach, turns: [Self; 2]) -> Self::Reach {
+                so_far.with(turns)
+            }
+            #[inline(always)]
+            fn is_in_reach(reach: Self::Reach) -> bool {
+                reach.is_small()
             }
             #[inline]
             fn nearest(self) -> i32 {
@@ -139,5 +191,29 @@ macro_rules! real {
     };
 }
 
-real!(f32, libm::rintf, libm::sqrtf, libm::atan2f, libm::sincosf, own_f32);
-real!(f64, libm::rint, libm::sqrt, libm::atan2, libm::sincos, own_f64);
+real!(f32, twice_single in software if all(target_arch = "arm", target_abi = "eabi"), libm::rintf, libm::sqrtf, libm::atan2f, libm::sincosf, own_f32);
+real!(f64, twice_double in software if target_arch = "arm", libm::rint, libm::sqrt, libm::atan2, libm::sincos, own_f64);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every sign and exponent with a spread of fractions, the ends among them.
+    #[test]
+    fn twice_by_bits_is_the_sum() {
+        for high in 0..=u16::MAX {
+            for low in [0, 1, 0x1234, 0x7fff, 0x8000, 0xffff_u32] {
+                let x = f32::from_bits(u32::from(high) << 16 | low);
+                assert!(
+                    twice_single(x).to_bits() == (x + x).to_bits() || x.is_nan() && twice_single(x).is_nan(),
+                    "{x:e}"
+                );
+                let x = f64::from_bits(u64::from(high) << 48 | u64::from(low) << 32 | u64::from(low));
+                assert!(
+                    twice_double(x).to_bits() == (x + x).to_bits() || x.is_nan() && twice_double(x).is_nan(),
+                    "{x:e}"
+                );
+            }
+        }
+    }
+}

@@ -38,7 +38,7 @@ impl<R: Real> Rates<R> {
     /// Twice these.
     #[inline(always)]
     pub fn doubled(self) -> Self {
-        Self { angles: self.angles.map(|rate| rate + rate), momenta: self.momenta.map(|rate| rate + rate) }
+        Self { angles: self.angles.map(R::twice), momenta: self.momenta.map(R::twice) }
     }
 }
 
@@ -46,11 +46,23 @@ impl<R: Real> Coefficients<R> {
     /// The rates where `upper` is (sin a1, cos a1), `elbow` is (S, C), `momenta` is (P1, P2), and `inverse` is r.
     #[inline(always)]
     pub fn rates(&self, upper: [R; 2], elbow: [R; 2], momenta: [R; 2], inverse: R) -> Rates<R> {
+        let [p1, p2] = momenta;
+        self.rates_at(upper, elbow, p2, (p1 - elbow[1] * p2) * inverse)
+    }
+
+    /// The rates, r not being known.
+    #[inline(always)]
+    pub fn rates_by_division(&self, upper: [R; 2], elbow: [R; 2], momenta: [R; 2]) -> Rates<R> {
+        let [p1, p2] = momenta;
+        self.rates_at(upper, elbow, p2, (p1 - elbow[1] * p2) / self.denominator(elbow[0]))
+    }
+
+    /// The rates where rod 1 turns at `u`.
+    #[inline(always)]
+    fn rates_at(&self, upper: [R; 2], elbow: [R; 2], p2: R, u: R) -> Rates<R> {
         let [sin1, cos1] = upper;
         let [s, c] = elbow;
-        let [p1, p2] = momenta;
         let [gravity1, gravity2] = self.gravity;
-        let u = (p1 - c * p2) * inverse;
         let v = p2 - c * u;
         let force = u * v * s;
         Rates { angles: [u, v], momenta: [-(gravity1 * sin1) - force, force - gravity2 * (sin1 * c - cos1 * s)] }

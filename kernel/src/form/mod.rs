@@ -2,13 +2,14 @@
 //!
 //! [`Pendulum::step`](crate::Pendulum::step) is the classical method as one writes it down. The forms here do the same
 //! in the units of the step, with fewer operations, and carry the rounding error of their additions along unless told
-//! otherwise. Cost of a step on a Cortex-M4F (estimated cycles, equal rods or not) and largest error in rad after 10 s
-//! and 100 s of regular motion (0.5 rad, dt = 1/256 s, method's own error 1e-8 and 1e-7):
+//! otherwise. Cost of a step on a Cortex-M4F (estimated cycles, equal rods or not) and largest error in rad within
+//! 10 s and 100 s of regular motion (0.5 rad, dt = 1/256 s; root mean square over neighbouring starts, test `forms`; the
+//! method's own error is 1e-8 and 1e-7):
 //!
 //! | form | cycles | 10 s | 100 s |
 //! |---|---|---|---|
-//! | [`AngleForm`] compensated, `f32` | 382 | 2e-8 | 4e-7 |
-//! | [`PictureForm`] compensated, `f32` | 214 | 4e-8 | 2.5e-7 |
+//! | [`AngleForm`] compensated, `f32` | 376 | 3e-8 | 2.7e-7 |
+//! | [`PictureForm`] compensated, `f32` | 214 | 4e-8 | 4e-7 |
 //! | [`PictureForm`] plain, `f32` | 160 | 2e-6 | 2e-5 |
 //!
 //! In `f64`, where an error of 1e-9 or less is wanted, [`PictureForm8`] takes far fewer steps, of order 8.

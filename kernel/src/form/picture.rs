@@ -109,7 +109,7 @@ impl<R: Real, S: Sum<R>, I: Inverse<R>> PictureForm<R, S, I> {
         let ahead = |k: &[R; 6]| -> [R; 6] { core::array::from_fn(|i| z[i] + k[i]) };
         // The inverse at z + k, where k was found at `from`: it falls by 2 S S' r^2.
         let follow = |k: &[R; 6], from: &[R; 6], r: R, to: &[R; 6]| {
-            I::at_stage(inverse, (k[2] + k[2]) * (from[2] * r) * r, self.coefficients.denominator(to[2]))
+            I::at_stage(inverse, k[2].twice() * (from[2] * r) * r, self.coefficients.denominator(to[2]))
         };
 
         let k1 = increments(&z, self.rates(&z, inverse));
@@ -117,7 +117,7 @@ impl<R: Real, S: Sum<R>, I: Inverse<R>> PictureForm<R, S, I> {
         let r2 = follow(&k1, &z, inverse, &z2);
 
         let k2 = increments(&z2, self.rates(&z2, r2));
-        let sum: [R; 6] = core::array::from_fn(|i| k1[i] + (k2[i] + k2[i]));
+        let sum: [R; 6] = core::array::from_fn(|i| k1[i] + k2[i].twice());
         let z3 = ahead(&k2);
         let r3 = follow(&k2, &z2, r2, &z3);
 

@@ -2,6 +2,7 @@
 
 use core::fmt::Debug;
 
+use super::coefficients::third;
 use crate::real::Real;
 
 /// A running sum: the number itself is kept elsewhere, what its additions lose is kept here.
@@ -10,8 +11,19 @@ pub trait Sum<R: Real>: Copy + Debug + 'static {
     fn new(value: f64) -> Self;
     /// `number` + `increment`.
     fn add(&mut self, number: R, increment: R) -> R;
+    /// `number` + `increment` for a look ahead, what the number lacks included.
+    fn ahead(&self, number: R, increment: R) -> R;
     /// What the number lacks.
     fn lost(&self) -> R;
+    /// What k1 + 2 k2 + 2 k3 + k4 is multiplied by to be the increment of a step, as rounded: a third if slopes are for
+    /// half a step, 1 if they are for a sixth.
+    fn factor() -> f64;
+    /// A `slope` times half a step.
+    fn half_step(slope: R) -> R;
+    /// A `slope` times a step.
+    fn whole_step(slope: R) -> R;
+    /// The increment of a step from k1 + 2 k2 + 2 k3 + k4.
+    fn increment(slopes: R) -> R;
 }
 
 /// Adds. Each addition rounds, and the error of n of them grows at least like sqrt(n).
@@ -28,8 +40,28 @@ impl<R: Real> Sum<R> for Plain {
         number + increment
     }
     #[inline(always)]
+    fn ahead(&self, number: R, increment: R) -> R {
+        number + increment
+    }
+    #[inline(always)]
     fn lost(&self) -> R {
         R::ZERO
+    }
+    #[inline(always)]
+    fn factor() -> f64 {
+        third::<R>().to_f64()
+    }
+    #[inline(always)]
+    fn half_step(slope: R) -> R {
+        slope
+    }
+    #[inline(always)]
+    fn whole_step(slope: R) -> R {
+        slope.twice()
+    }
+    #[inline(always)]
+    fn increment(slopes: R) -> R {
+        slopes * third()
     }
 }
 
@@ -52,7 +84,29 @@ impl<R: Real> Sum<R> for Compensated<R> {
         sum
     }
     #[inline(always)]
+    fn ahead(&self, number: R, increment: R) -> R {
+        number + (increment + self.0)
+    }
+    #[inline(always)]
     fn lost(&self) -> R {
         self.0
+    }
+    // A product with a third is no good here: it errs by up to a quarter of its last place, by the same amount as long as
+    // the increment changes little, and at fine steps that is the largest error of all.
+    #[inline(always)]
+    fn factor() -> f64 {
+        1.0
+    }
+    #[inline(always)]
+    fn half_step(slope: R) -> R {
+        slope * R::of(3.0)
+    }
+    #[inline(always)]
+    fn whole_step(slope: R) -> R {
+        slope * R::of(6.0)
+    }
+    #[inline(always)]
+    fn increment(slopes: R) -> R {
+        slopes
     }
 }

@@ -10,10 +10,6 @@ const MARKS: i32 = 16;
 /// pi/32, rad.
 const SPACING: f64 = core::f64::consts::FRAC_PI_2 / MARKS as f64;
 
-/// The largest abs x, rad, for which [`turned`] is as good as exact: its polynomials err by 4e-8 there in `f32`, by less
-/// than an ulp in `f64`, and by next to nothing at half of it.
-pub(crate) const SMALL: f64 = 0.09;
-
 /// The largest start angle, rad: 262,000 turns. Beyond it the remainder from a mark would lose digits.
 pub(crate) const LARGEST: f64 = 1.647e6;
 
@@ -43,7 +39,7 @@ impl<R: Real, S: Sum<R>> Turn<R, S> {
     /// The direction: `length` (sin, cos).
     #[inline(always)]
     pub fn direction(&self) -> [R; 2] {
-        turned(self.direction, self.rest)
+        R::turned(self.direction, self.rest)
     }
 
     /// The direction of the angle `further` on, by the full routine.
@@ -119,17 +115,6 @@ fn direction<R: Real>(mark: i32, length: R) -> [R; 2] {
     };
     let (s, c) = by_quarters(first, (mark >> 4) as u32);
     [length * s, length * c]
-}
-
-/// The vector (s, c), an angle's sine and cosine times any length, for the angle `by` further on; abs `by` <= [`SMALL`].
-///
-/// A rotation as three shears: 13 operations, tan(`by`/2) and sin `by` included.
-#[inline(always)]
-pub(crate) fn turned<R: Real>([s, c]: [R; 2], by: R) -> [R; 2] {
-    let (tangent, sine) = by.small_turn();
-    let c = c - tangent * s;
-    let s = s + sine * c;
-    [s, c - tangent * s]
 }
 
 #[cfg(test)]
