@@ -10,7 +10,7 @@ use host_tests::report::scene::SCENES;
 use host_tests::toolchain;
 
 /// On the floating-point unit; a tenth in software. `cargo report` compares ten times as many and more.
-const STEPS: u32 = 50_000;
+const STEPS: u32 = 100_000;
 /// Unoptimised code is slow.
 const STEPS_UNOPTIMISED: u32 = 10_000;
 

@@ -3,6 +3,7 @@
 mod board;
 mod number;
 mod options;
+mod order8;
 mod request;
 mod table;
 
@@ -13,12 +14,15 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 pub use board::on_board;
 pub use number::{Number, NumberError};
-pub use options::{Options, Pair, Place};
+pub use options::{Method, Options, Pair, Place};
 pub use request::{Plan, plan};
 pub use table::Table;
 
 /// Computes the motion on the host and gives each reading to `row`.
 pub fn on_host(plan: &Plan, mut row: impl FnMut(&Reading) -> io::Result<()>) -> anyhow::Result<()> {
+    if plan.method == Method::Order8 {
+        return order8::run(plan, row);
+    }
     let mut job = Job::new(&plan.request)?;
     while !job.is_finished() {
         if let Some(reading) = job.advance()? {

@@ -43,6 +43,27 @@ impl Place {
     }
 }
 
+/// How a step is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// The classical method, of order 4.
+    Rk4,
+    /// [`double_pendulum::rk8`], on this computer only.
+    Order8,
+}
+
+impl Method {
+    const ALL: &[Self] = &[Self::Rk4, Self::Order8];
+
+    /// What the command line calls it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Rk4 => "rk4",
+            Self::Order8 => "order-8",
+        }
+    }
+}
+
 /// Computes a motion of the double pendulum and prints it as CSV: t,a1,a2,p1,p2,w1,w2,energy in SI units.
 ///
 /// Numbers are decimals (0.25, 1e-3) or fractions (1/256).
@@ -85,6 +106,9 @@ pub struct Options {
     /// The quantities stepped; if not given, canonical, or angle with f32-compensated
     #[arg(long, value_name = "NAME", value_parser = choice(Form::ALL, Form::name))]
     pub form: Option<Form>,
+    /// How a step is made; order 8 in f64 and here only, for errors of 1e-9 rad and less
+    #[arg(long, value_name = "NAME", default_value = Method::Rk4.name(), value_parser = choice(Method::ALL, Method::name))]
+    pub method: Method,
     /// Where it is computed: here, or by the firmware on an emulated board
     #[arg(long = "on", value_name = "PLACE", default_value = Place::HOST,
           value_parser = PossibleValuesParser::new(Place::names()).map(|name| Place::named(&name)))]

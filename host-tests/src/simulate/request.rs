@@ -6,7 +6,7 @@ use anyhow::{Context, anyhow, ensure};
 use double_pendulum::Parameters;
 use firmware::job::{Field, Job, JobError, Request};
 
-use super::{Number, Options, Pair};
+use super::{Method, Number, Options, Pair, order8};
 
 /// A checked request and the time from row to row.
 #[derive(Debug)]
@@ -15,6 +15,8 @@ pub struct Plan {
     pub request: Request,
     /// Row n is at n times this.
     pub every: Number,
+    /// How its steps are made.
+    pub method: Method,
 }
 
 impl Plan {
@@ -78,7 +80,10 @@ pub fn plan(options: &Options) -> anyhow::Result<Plan> {
         }
         JobError::Refused(error) => anyhow!("{}: {error}", option_of(error.into())),
     })?;
-    Ok(Plan { request, every: every.clone() })
+    if options.method == Method::Order8 {
+        order8::check(options, form)?;
+    }
+    Ok(Plan { request, every: every.clone(), method: options.method })
 }
 
 /// The option that sets a field of the request.
