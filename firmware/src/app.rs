@@ -16,10 +16,13 @@ use crate::scenes::SceneName;
 use crate::service::{Received, Service};
 use crate::settings::Settings;
 use crate::sheets::Sheets;
+use crate::survivor::Survivor;
 
 /// What is worth a line in the log.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Event<Panel, Link> {
+    /// The board has restarted by itself; whether it plays what it played before.
+    Restarted(Survivor, bool),
     /// A scene starts with these settings.
     Started(SceneName, Settings),
     /// This is not possible because of this; all goes on as it was.
@@ -134,6 +137,16 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         self.planner.set_tick(cycles);
     }
 
+    /// Goes on after a restart with what was played before it, and tells the host.
+    pub fn resume(&mut self, survivor: &Survivor, mut log: impl FnMut(Event<Panel::Error, Link::Error>)) {
+        let resumed = survivor.played.is_some_and(|played| self.player.resume(&played).is_ok());
+        if resumed {
+            self.planner.start(self.player.settings(), self.player.shown());
+        }
+        log(Event::Restarted(*survivor, resumed));
+        self.send(&survivor.end, &mut log);
+    }
+
     /// Catches up with the clock, which counts ticks since reset and may wrap, then draws and sends once.
     ///
     /// Every tick is integrated, however late; the state after n ticks does not depend on how often this is called.
@@ -208,6 +221,11 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
             log(Event::Found(found));
         }
         worked
+    }
+
+    /// Pictures drawn and sent since reset; wraps.
+    pub fn frames(&self) -> u32 {
+        self.frames
     }
 
     /// What is played.

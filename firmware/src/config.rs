@@ -17,6 +17,10 @@ pub const STEP: f32 = 1.0 / STEP_RATE as f32;
 /// 60/15 = 4 per second. Ticks beyond it wait for the next picture; none is ever skipped.
 pub const MOST_TICKS_PER_FRAME: u32 = 15;
 
+/// A board that finishes no picture for so long, s, hangs: four times as long as the slowest picture allowed, which is
+/// 15/60 s. The watchdog says so then, and when as much time again has passed it resets the board.
+pub const WATCHDOG_SECONDS: u32 = 1;
+
 /// The slowest and the fastest a scene may be played, simulated time per real time.
 pub const LEAST_SPEED: f64 = 0.01;
 /// At 4 ticks of the scene per tick even the Cortex-M3 still shows most pictures.

@@ -3,6 +3,8 @@
 use core::fmt;
 use core::panic::PanicInfo;
 
+use crate::config::WATCHDOG_SECONDS;
+
 /// The registers that tell why a HardFault was taken.
 ///
 /// Source: ARM DDI 0403 (ARMv7-M Architecture Reference Manual), B3.2.15 to B3.2.18.
@@ -133,6 +135,22 @@ impl fmt::Display for Panic<'_> {
         let Panic { info, pc, lr, cfsr } = self;
         let [pc, lr] = [pc, lr].map(|address| address.unwrap_or_default());
         write!(f, "PANIC: {info}\n  pc {pc:#010x}  lr {lr:#010x}  cfsr {cfsr:#010x}")
+    }
+}
+
+/// What is known of a program that finishes nothing any more.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Hang {
+    /// Program counter: where it is.
+    pub pc: u32,
+    /// Link register.
+    pub lr: u32,
+}
+
+impl fmt::Display for Hang {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Hang { pc, lr } = self;
+        write!(f, "HANG: no picture finished for {WATCHDOG_SECONDS} s\n  pc {pc:#010x}  lr {lr:#010x}")
     }
 }
 

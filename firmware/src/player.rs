@@ -1,6 +1,6 @@
 //! What is played: a scene with its settings, and how its time goes.
 
-use double_pendulum::Error;
+use double_pendulum::{Error, Parameters};
 
 use crate::canvas::Canvas;
 use crate::command::Command;
@@ -134,6 +134,17 @@ impl<'a> Player<'a> {
             degrees,
             velocities,
         }
+    }
+
+    /// Plays what a status tells, from its start; if that cannot be, nothing is changed and the error names what is wrong.
+    pub fn resume(&mut self, status: &Status) -> Result<(), Field> {
+        let name = SceneName::from_code(status.scene).ok_or(Field::Scene)?;
+        let [m1, m2, l1, l2, g] = status.parameters;
+        let parameters = Parameters { m1, m2, l1, l2, g };
+        self.start(name, Settings { parameters, degrees: status.degrees, velocities: status.velocities })?;
+        let speed = ((status.speed * WHOLE_TICK as f32 + 0.5) as u32).clamp(1, GREATEST_SPEED as u32 * WHOLE_TICK);
+        self.pace = Pace { paused: status.paused != 0, steps: status.steps, speed, part: 0 };
+        Ok(())
     }
 
     fn choose(&mut self, name: SceneName) -> Result<bool, Field> {

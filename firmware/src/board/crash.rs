@@ -1,7 +1,9 @@
 //! The end: panics and faults are reported in plain text on the debugger's standard error, then the run fails.
 //!
 //! Plain text there, and not a defmt log, because a crash may come in the middle of a log line, and because it shall be
-//! readable without any tool. Without a debugger there is nobody to tell: the board stops.
+//! readable without any tool. Without a debugger there is nobody to stop for: the board keeps why it crashed and restarts,
+//! and the next run tells. A program that hangs is reported when the watchdog first calls; if it goes on after all,
+//! nothing else comes of it, if not, the watchdog resets the board.
 
 use core::arch::{asm, naked_asm};
 use core::cell::UnsafeCell;
@@ -9,12 +11,14 @@ use core::fmt::{Display, Write};
 use core::panic::PanicInfo;
 use core::sync::atomic::{AtomicBool, Ordering};
 
-use cortex_m::peripheral::SCB;
+use cortex_m::peripheral::{DCB, SCB};
 use cortex_m_rt::ExceptionFrame;
 use cortex_m_semihosting::{debug, hio};
 
 use super::calls::calls;
-use crate::fault::{Fault, Panic, Stacked};
+use super::survival;
+use crate::fault::{Fault, Hang, Panic, Stacked};
+use crate::survivor::{Cause, Scene};
 
 /// A call to the debugger, `bkpt 0xAB`, and its length in bytes.
 const DEBUGGER_CALL: (u16, u32) = (0xBEAB, 2);
@@ -38,7 +42,9 @@ unsafe impl Sync for Stack {}
 fn panic(info: &PanicInfo) -> ! {
     let mut calls = calls(stack_pointer());
     let (pc, lr) = (calls.next(), calls.next());
-    crash(&Panic { info, pc, lr, cfsr: control().cfsr.read() })
+    let cfsr = control().cfsr.read();
+    let [known_pc, known_lr] = [pc, lr].map(Option::unwrap_or_default);
+    crash((Cause::Panic, known_pc, known_lr, cfsr), &Panic { info, pc, lr, cfsr })
 }
 
 /// Every fault ends here, since none has a handler of its own, on a stack of its own. Passes on where the processor put
@@ -90,7 +96,8 @@ extern "C" fn hard_fault(frame: *mut ExceptionFrame, exception: u32) {
     let sp = bottom.wrapping_add(Stacked::size(exception));
     let last_call = calls(sp).next();
     let (mmfar, bfar) = (control.mmfar.read(), control.bfar.read());
-    crash(&Fault { stacked, sp, last_call, cfsr, hfsr, mmfar, bfar })
+    let (pc, lr) = stacked.map_or((0, last_call.unwrap_or_default()), |stacked| (stacked.pc, stacked.lr));
+    crash((Cause::Fault, pc, lr, cfsr), &Fault { stacked, sp, last_call, cfsr, hfsr, mmfar, bfar })
 }
 
 /// A call to the debugger with no debugger there fails as if it had answered -1, so that an image with logs runs
@@ -123,17 +130,40 @@ fn stack_pointer() -> u32 {
     sp
 }
 
-fn crash(report: &dyn Display) -> ! {
-    cortex_m::interrupt::disable();
+/// The program has finished no picture for too long; `interrupted` is where it is.
+pub(super) fn hang(interrupted: &ExceptionFrame) {
+    let (pc, lr) = (interrupted.pc(), interrupted.lr());
+    survival::end(Cause::Hang, pc, lr, 0);
     if !ALONE.load(Ordering::Relaxed) {
-        if !CRASHED.swap(true, Ordering::Relaxed)
-            && let Ok(mut stderr) = hio::hstderr()
-        {
-            let _ = writeln!(stderr, "{report}");
+        say(&Hang { pc, lr });
+    }
+}
+
+/// On a chip a debugger can be recognised, and a call to one that is not there is the better avoided: in a fault handler it
+/// would be the end.
+#[cfg(feature = "stm32f405")]
+pub(super) fn expect_no_debugger() {
+    ALONE.store(true, Ordering::Relaxed);
+}
+
+fn crash((cause, pc, lr, cfsr): (Cause, u32, u32, u32), report: &dyn Display) -> ! {
+    cortex_m::interrupt::disable();
+    let is_first = !CRASHED.swap(true, Ordering::Relaxed);
+    if is_first {
+        survival::end(cause, pc, lr, cfsr);
+    }
+    if !ALONE.load(Ordering::Relaxed) || DCB::is_debugger_attached() {
+        if is_first {
+            say(report);
         }
         debug::exit(debug::EXIT_FAILURE);
     }
-    loop {
-        cortex_m::asm::wfi();
+    SCB::sys_reset()
+}
+
+/// The report, and what was shown last.
+fn say(report: &dyn Display) {
+    if let Ok(mut stderr) = hio::hstderr() {
+        let _ = writeln!(stderr, "{report}\n  {}", Scene(survival::last()));
     }
 }

@@ -7,13 +7,14 @@ use defmt::Debug2Format;
 use double_pendulum::plan::Plan;
 use embedded_io::Write;
 
-use super::{Clock, Receiver, cycles};
+use super::{Clock, Receiver, Watchdog, cycles, survival};
 use crate::app::{App, Event};
 use crate::controls::Buttons;
 use crate::display::Display;
 use crate::planner::Finding;
 use crate::settings::Settings;
 use crate::sheets::Sheets;
+use crate::survivor::{Journal, Survivor};
 
 /// Makes the application as it is switched on, at its place.
 pub fn application<'a, Panel, Link, Keys>(
@@ -41,7 +42,12 @@ where
 ///
 /// Kept apart from the start-up code, which may panic; this may not (test `no_panic`).
 #[inline(never)]
-pub fn run<Panel, Link, Keys>(app: &'static mut App<Panel, Link, Keys>, mut receiver: Receiver, clock: Clock) -> !
+pub fn run<Panel, Link, Keys>(
+    app: &'static mut App<Panel, Link, Keys>,
+    mut receiver: Receiver,
+    clock: Clock,
+    mut watchdog: impl Watchdog,
+) -> !
 where
     Panel: Display<Error: Debug>,
     Link: Write,
@@ -49,10 +55,11 @@ where
 {
     app.use_stopwatch(cycles);
     app.use_tick(clock.period());
+    let mut journal = resume(app, &watchdog);
     let mut now = clock.ticks();
     app.count_from(now, 0);
     loop {
-        while !app.run_to(now, log) {}
+        while !run_to(now, app, &mut journal, &mut watchdog) {}
         app.receive(&mut receiver, log);
         while clock.ticks() == now && app.work(log) {}
         while app.plan(clock.left_after(now), log) {}
@@ -60,9 +67,58 @@ where
     }
 }
 
+/// What was played before a reset that nobody asked for goes on.
+fn resume<Panel, Link, Keys>(app: &mut App<Panel, Link, Keys>, watchdog: &impl Watchdog) -> Journal
+where
+    Panel: Display<Error: Debug>,
+    Link: Write,
+    Keys: Buttons,
+{
+    let survivor = survival::recall(watchdog.has_reset());
+    if let Some(survivor) = &survivor {
+        app.resume(survivor, log);
+    }
+    let mut journal = Journal::new(survivor.as_ref());
+    survival::keep(journal.note(app.player()));
+    journal
+}
+
+/// As [`App::run_to`]; a picture that is finished, drawn and sent, is noted, and feeds the watchdog: nothing else does.
+fn run_to<Panel, Link, Keys>(
+    now: u32,
+    app: &mut App<Panel, Link, Keys>,
+    journal: &mut Journal,
+    watchdog: &mut impl Watchdog,
+) -> bool
+where
+    Panel: Display<Error: Debug>,
+    Link: Write,
+    Keys: Buttons,
+{
+    let before = app.frames();
+    let caught_up = app.run_to(now, log);
+    if app.frames() != before {
+        survival::keep(journal.note(app.player()));
+        watchdog.feed();
+    }
+    caught_up
+}
+
 /// Writes one event to the log.
 fn log<Panel: Debug, Link: Debug>(event: Event<Panel, Link>) {
     match event {
+        Event::Restarted(Survivor { end, cause, .. }, resumed) => {
+            defmt::warn!(
+                "restarted after a {}, {} in a row: pc {:#010x}, lr {:#010x}",
+                cause.name(),
+                end.restarts,
+                end.pc,
+                end.lr
+            );
+            if !resumed {
+                defmt::warn!("too often: now with the first scene");
+            }
+        }
         Event::Started(scene, settings) => defmt::info!("start: {} with {}", scene, settings),
         Event::Refused(command, field) => defmt::warn!("refused {}: {}", command, field),
         Event::Dropped { ticks, total } => defmt::warn!("dropped {} pictures, {} since reset", ticks, total),

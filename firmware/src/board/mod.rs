@@ -10,10 +10,13 @@ mod calls;
 mod clock;
 mod crash;
 mod guard;
+mod interrupt;
 mod main_loop;
 mod receiver;
 mod register;
+mod survival;
 mod transmitter;
+mod watchdog;
 
 #[cfg(not(feature = "stm32f405"))] // which has a log of its own
 use defmt_semihosting as _; // where the log goes
@@ -23,3 +26,4 @@ pub use guard::guard_stack;
 pub use main_loop::{application, run};
 pub use receiver::Receiver;
 pub use transmitter::{Timeout, Transmitter};
+pub use watchdog::{TwoStage, Watchdog};

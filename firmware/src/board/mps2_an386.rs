@@ -9,7 +9,8 @@ use cortex_m::peripheral::NVIC;
 use super::receiver::Inlet;
 use super::register::Register;
 use super::transmitter::{Outlet, Transmitter};
-use super::{Clock, Receiver, guard_stack};
+use super::watchdog::Registers;
+use super::{Clock, Receiver, TwoStage, guard_stack};
 use crate::config::BAUD;
 
 /// The processor's clock, Hz.
@@ -21,6 +22,17 @@ const STATE: Register = unsafe { Register::at(0x4000_4004) };
 const CONTROL: Register = unsafe { Register::at(0x4000_4008) };
 const INTERRUPT_CLEAR: Register = unsafe { Register::at(0x4000_400C) };
 const DIVISOR: Register = unsafe { Register::at(0x4000_4010) };
+
+/// The watchdog of ARM DDI 0479. It interrupts as the NMI; no register tells of a reset.
+// SAFETY: its registers; without DMA they cannot break memory safety.
+const WATCHDOG: Registers = unsafe {
+    Registers {
+        load: Register::at(0x4000_8000),
+        control: Register::at(0x4000_8008),
+        clear: Register::at(0x4000_800C),
+        lock: Register::at(0x4000_8C00),
+    }
+};
 
 const TRANSMITTER_FULL: u32 = 1 << 0;
 const RECEIVER_FULL: u32 = 1 << 1;
@@ -36,6 +48,8 @@ pub struct Board {
     pub receiver: Receiver,
     /// The tick.
     pub clock: Clock,
+    /// What resets it when it hangs.
+    pub watchdog: TwoStage,
     /// The processor's clock, Hz.
     pub hertz: u32,
 }
@@ -46,7 +60,13 @@ impl Board {
         let core = Peripherals::take()?;
         guard_stack(core.MPU);
         let receiver = Receiver::new(INLET)?;
-        Some(Self { link: Uart::start(), receiver, clock: Clock::start(core.SYST, HERTZ), hertz: HERTZ })
+        Some(Self {
+            link: Uart::start(),
+            receiver,
+            clock: Clock::start(core.SYST, HERTZ),
+            watchdog: TwoStage::start(WATCHDOG, HERTZ, || (), false),
+            hertz: HERTZ,
+        })
     }
 }
 

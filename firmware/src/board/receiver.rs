@@ -4,7 +4,6 @@ use core::cell::Cell;
 use core::sync::atomic::{AtomicU32, Ordering};
 
 use cortex_m::interrupt::Mutex;
-use cortex_m_rt::exception;
 use heapless::spsc::{Consumer, Producer, Queue};
 
 use crate::config::RECEIVE_QUEUE;
@@ -27,9 +26,8 @@ struct Source {
 static SOURCE: Mutex<Cell<Option<Source>>> = Mutex::new(Cell::new(None));
 static LOST: AtomicU32 = AtomicU32::new(0);
 
-// SAFETY: of the exceptions that come here only the receiver's interrupt is ever enabled.
-#[exception]
-unsafe fn DefaultHandler(_number: i16) {
+/// Moves what has come into the queue; for the receiver's interrupt.
+pub(super) fn receive() {
     let source = cortex_m::interrupt::free(|token| SOURCE.borrow(token).take());
     if let Some(mut source) = source {
         (source.inlet.clear)();

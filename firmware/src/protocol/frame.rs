@@ -3,7 +3,7 @@
 crate::message! {
     /// One drawn frame, sent as soon as it is on the panel.
     Frame = 0x01 {
-        /// Drawn frames since reset; a gap is a frame lost on the way.
+        /// Drawn frames since reset; a gap is a frame lost on the way, unless the board has [`Restarted`](super::Restarted).
         sequence: u32,
         /// Ticks whose picture was never drawn, since reset.
         dropped: u32,

@@ -9,6 +9,7 @@ mod frame;
 mod layout;
 mod link;
 mod plan;
+mod restarted;
 mod simulate;
 
 pub use command::{Ask, Choose, Done, Pause, Restart, Set, Status, Step};
@@ -16,4 +17,5 @@ pub use frame::Frame;
 pub use layout::{Field, Message};
 pub use link::{Decoder, LinkError, MAX_FIELDS, MAX_WIRE, VERSION, encode, frame};
 pub use plan::{AskPlan, Planned};
+pub use restarted::Restarted;
 pub use simulate::{Coarse, Refused, Sample, Simulate};

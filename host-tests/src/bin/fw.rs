@@ -76,7 +76,8 @@ fn execute(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let (toolchain, _) = toolchain::set_up()?;
     let elf = if is_path { binary.clone() } else { toolchain.build(&name, board.target)? };
     let limit = Duration::from_secs(arguments.seconds.into());
-    let settings = Settings { qemu: toolchain.qemu(), board, elf: &elf, clock: Clock::Real, window: None, limit };
+    let settings =
+        Settings { qemu: toolchain.qemu(), board, elf: &elf, clock: Clock::Real, window: None, debugger: true, limit };
     Ok(process::exit_code(run(&settings, &mut stdout().lock())?))
 }
 

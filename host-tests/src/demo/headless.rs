@@ -26,6 +26,7 @@ pub fn run(stage: &Stage, mut recording: Option<Recording>) -> anyhow::Result<bo
         qemu: stage.toolchain.qemu(),
         board: options.board,
         elf: &stage.elf,
+        debugger: true,
         clock: Clock::Counted,
         window: None,
         limit: LIMIT.0 + Duration::from_secs_f64(LIMIT.1 * seconds),

@@ -32,6 +32,7 @@ pub fn run(stage: &Stage, recording: Option<Recording>) -> anyhow::Result<bool> 
         qemu: stage.toolchain.qemu(),
         board: stage.options.board,
         elf: &stage.elf,
+        debugger: true,
         clock: Clock::Real,
         window: stage.window,
         limit: LIMIT,

@@ -22,7 +22,7 @@ const PC: &str = "f";
 const DESCRIBE: &str = "qXfer:features:read:target.xml:0,10";
 
 /// A connection to QEMU's debugger port. The machine stands still except inside [`run_to_sleep`](Self::run_to_sleep) and
-/// [`run_to`](Self::run_to).
+/// [`run_to`](Self::run_to), and after [`run`](Self::run).
 #[derive(Debug)]
 pub(super) struct Debugger {
     reader: BufReader<UnixStream>,
@@ -59,11 +59,28 @@ impl Debugger {
         Ok(())
     }
 
-    /// Lets the machine run until the instruction at this address is about to be executed.
+    /// Lets the machine run until the instruction at this address is about to be executed, the next time if it stands there.
     pub(super) fn run_to(&mut self, address: u32) -> Result<(), QemuError> {
+        self.expect("s", "T05")?;
         self.expect(&format!("Z0,{address:x},{BREAKPOINT_SIZE}"), "OK")?;
         self.expect("c", "T05")?;
         self.expect(&format!("z0,{address:x},{BREAKPOINT_SIZE}"), "OK")
+    }
+
+    /// Lets the machine run, for good.
+    pub(super) fn run(&mut self) -> Result<(), QemuError> {
+        self.send("c").map_err(broken)
+    }
+
+    /// Puts bytes into the machine's memory.
+    pub(super) fn write(&mut self, address: u32, bytes: &[u8]) -> Result<(), QemuError> {
+        let digits: String = bytes.iter().map(|byte| format!("{byte:02x}")).collect();
+        self.expect(&format!("M{address:x},{:x}:{digits}", bytes.len()), "OK")
+    }
+
+    /// Sets a register of the machine's processor, by GDB's number of it.
+    pub(super) fn set(&mut self, register: u32, value: u32) -> Result<(), QemuError> {
+        self.expect(&format!("P{register:x}={:08x}", value.swap_bytes()), "OK")
     }
 
     /// The bytes at these addresses.
@@ -104,9 +121,13 @@ impl Debugger {
         self.exchange(packet).map_err(broken)
     }
 
-    fn exchange(&mut self, packet: &str) -> std::io::Result<String> {
+    fn send(&mut self, packet: &str) -> std::io::Result<()> {
         let checksum = packet.bytes().fold(0, u8::wrapping_add);
-        write!(self.writer, "${packet}#{checksum:02x}")?;
+        write!(self.writer, "${packet}#{checksum:02x}")
+    }
+
+    fn exchange(&mut self, packet: &str) -> std::io::Result<String> {
+        self.send(packet)?;
         self.reader.skip_until(b'$')?;
         let mut reply = Vec::new();
         self.reader.read_until(b'#', &mut reply)?;

@@ -41,6 +41,8 @@ pub struct Settings<'a> {
     pub clock: Clock,
     /// QEMU's own window, if it is wanted.
     pub window: Option<Window>,
+    /// Whether there is a debugger that answers the firmware's calls and so takes its log.
+    pub debugger: bool,
     /// It is ended at the latest after this long, by the host's clock.
     pub limit: Duration,
 }
@@ -100,10 +102,14 @@ impl Machine {
         command.args(["-serial", "null"].repeat(settings.board.serial_port));
         command.args(["-chardev", "pipe,id=serial,path=serial", "-serial", "chardev:serial"]);
         command.args(["-chardev", "socket,id=monitor,path=monitor", "-mon", "chardev=monitor,mode=control"]);
-        command.args(["-semihosting-config", "enable=on,target=native"]);
-        if settings.clock == Clock::Counted {
-            command.args(["-icount", "shift=5,sleep=off"]);
+        if settings.debugger {
+            command.args(["-semihosting-config", "enable=on,target=native"]);
         }
+        match settings.clock {
+            Clock::Counted => command.args(["-icount", "shift=5,sleep=off"]),
+            // A host that holds QEMU up for seconds is no reason for the board to start again.
+            Clock::Real => command.args(["-action", "watchdog=none"]),
+        };
         command.arg("-S");
         if debugged {
             command.args(["-chardev", "socket,id=debugger,path=debugger", "-gdb", "chardev:debugger"]);

@@ -18,7 +18,7 @@ pub use error::QemuError;
 pub use lockstep::Lockstep;
 pub use log::{Log, LogLine};
 pub use machine::{Clock, Machine, Settings};
-pub use probe::Probe;
+pub use probe::{Probe, Register};
 pub use qmp::Key;
 pub use screen::{HEIGHT, Picture, WIDTH};
 pub use serial::{Counts, Received, Serial};

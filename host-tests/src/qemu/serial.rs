@@ -9,7 +9,7 @@ use std::sync::mpsc::{self, Receiver, Sender};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
 
-use firmware::protocol::{Decoder, Frame, MAX_WIRE, Message, encode};
+use firmware::protocol::{Decoder, Frame, MAX_WIRE, Message, Restarted, encode};
 use nix::errno::Errno;
 use nix::fcntl::OFlag;
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
@@ -109,10 +109,15 @@ impl Serial {
         self.messages.iter().find_map(|message| message.read())
     }
 
-    /// The messages of one kind that QEMU has sent since the last call, without waiting; others are passed over.
-    pub fn arrived<M: Message>(&self) -> impl Iterator<Item = M> {
+    /// The messages that QEMU has sent since the last call, without waiting.
+    pub fn all_arrived(&self) -> impl Iterator<Item = Received> {
         lock(&self.reader).read();
-        self.messages.try_iter().filter_map(|message| message.read())
+        self.messages.try_iter()
+    }
+
+    /// Those of one kind; others are passed over.
+    pub fn arrived<M: Message>(&self) -> impl Iterator<Item = M> {
+        self.all_arrived().filter_map(|message| message.read())
     }
 
     /// What the link has been through.
@@ -173,6 +178,9 @@ impl Reader {
         if let Some(Frame { sequence, .. }) = message.read() {
             self.counts.lost += u64::from(self.expected.map_or(0, |expected| sequence.wrapping_sub(expected)));
             self.expected = Some(sequence.wrapping_add(1));
+        }
+        if message.kind == Restarted::KIND {
+            self.expected = Some(0);
         }
         if let Some(channel) = &self.channel {
             // Fails only while the machine is being dropped.

@@ -23,5 +23,5 @@ pub fn application(board: &Board) -> PathBuf {
 
 /// Repeatable to the bit.
 pub fn settings<'a>(toolchain: &'a Toolchain, board: &'a Board, elf: &'a Path) -> Settings<'a> {
-    Settings { qemu: toolchain.qemu(), board, elf, clock: Clock::Counted, window: None, limit: LIMIT }
+    Settings { qemu: toolchain.qemu(), board, elf, clock: Clock::Counted, window: None, debugger: true, limit: LIMIT }
 }

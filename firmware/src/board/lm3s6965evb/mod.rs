@@ -14,12 +14,13 @@ mod gpio;
 mod ssi;
 mod system;
 mod uart;
+pub(super) mod watchdog;
 
 use cortex_m::Peripherals;
 use embedded_hal::digital::OutputPin;
 use embedded_hal_bus::spi::{ExclusiveDevice, NoDelay};
 
-use super::{Clock, Receiver, guard_stack};
+use super::{Clock, Receiver, TwoStage, guard_stack};
 use crate::display::Ssd0323;
 
 pub use buttons::Keys;
@@ -42,6 +43,8 @@ pub struct Board {
     pub keys: Keys,
     /// The tick.
     pub clock: Clock,
+    /// What resets it when it hangs.
+    pub watchdog: TwoStage,
     /// The processor's clock, Hz.
     pub hertz: u32,
 }
@@ -63,6 +66,7 @@ impl Board {
             receiver,
             keys: Keys::start(),
             clock: Clock::start(core.SYST, hertz),
+            watchdog: watchdog::start(hertz),
             hertz,
         })
     }

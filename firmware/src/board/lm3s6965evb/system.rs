@@ -11,10 +11,13 @@ const LOCK_TRIES: u32 = 10_000;
 
 // SAFETY: system control registers of the data sheet, chapter 6; clocks and power cannot break memory safety.
 const RIS: Register = unsafe { Register::at(0x400F_E050) };
+const RESC: Register = unsafe { Register::at(0x400F_E05C) };
 const RCC: Register = unsafe { Register::at(0x400F_E060) };
+const RCGC0: Register = unsafe { Register::at(0x400F_E100) };
 const RCGC1: Register = unsafe { Register::at(0x400F_E104) };
 const RCGC2: Register = unsafe { Register::at(0x400F_E108) };
 
+const WATCHDOG: u32 = 1 << 3;
 const MAIN_OSCILLATOR_OFF: u32 = 1 << 0;
 const OSCILLATOR_SOURCE: u32 = 0b11 << 4;
 const CRYSTAL_FIELD: u32 = 0xF << 6;
@@ -41,9 +44,17 @@ pub fn start() -> u32 {
     } else {
         CRYSTAL
     };
+    RCGC0.modify(0, WATCHDOG);
     RCGC1.modify(0, 1 << 4 | 1 << 0); // SSI0, UART0
     RCGC2.modify(0, 0b111101); // ports A, C, D, E, F
     let _ = RCGC2.read(); // A peripheral may be used three cycles after its clock is on.
     cortex_m::asm::delay(8);
     hertz
+}
+
+/// Whether the watchdog caused the last reset. To be asked once: the register adds up the causes. QEMU's never says so.
+pub fn reset_by_watchdog() -> bool {
+    let causes = RESC.read();
+    RESC.write(0);
+    causes & WATCHDOG != 0
 }

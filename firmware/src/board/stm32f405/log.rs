@@ -9,6 +9,7 @@ use defmt::Encoder;
 use rtt_target::{ChannelMode, UpChannel, rtt_init};
 
 use super::Place;
+use crate::board::crash;
 
 #[defmt::global_logger]
 struct Logger;
@@ -37,7 +38,10 @@ static PATH: Shared = Shared(UnsafeCell::new(Path { encoder: Encoder::new(), sin
 /// Opens the log; before that, lines are lost.
 pub fn start(place: Place) {
     let sink = match place {
-        Place::Chip => Sink::Memory(rtt_init! { up: { 0: { size: 1024, name: "defmt" } } }.up.0),
+        Place::Chip => {
+            crash::expect_no_debugger();
+            Sink::Memory(rtt_init! { up: { 0: { size: 1024, name: "defmt" } } }.up.0)
+        }
         Place::Emulator => hio::hstdout().map_or(Sink::Nowhere, Sink::Emulator),
     };
     // SAFETY: interrupts are off, and no line is being written.

@@ -14,6 +14,7 @@
 mod i2c;
 mod log;
 mod uart;
+mod watchdog;
 
 use stm32f4xx_hal::gpio::PC7;
 use stm32f4xx_hal::pac::{self, RCC};
@@ -26,6 +27,7 @@ use crate::display::Ssd1306;
 
 pub use i2c::{Bus, BusError};
 pub use uart::Uart;
+pub use watchdog::Watchdog;
 
 /// The processor's clock, Hz: the fastest of this chip, and the fixed one of the emulated machine.
 const HERTZ: u32 = 168_000_000;
@@ -54,6 +56,8 @@ pub struct Board {
     pub keys: Keys,
     /// The tick.
     pub clock: Clock,
+    /// What resets it when it hangs.
+    pub watchdog: Watchdog,
     /// The processor's clock, Hz.
     pub hertz: u32,
     /// Where the image runs.
@@ -79,6 +83,7 @@ impl Board {
             receiver,
             keys: Keys(c.pc7.into_pull_up_input()),
             clock: Clock::start(core.SYST, HERTZ),
+            watchdog: Watchdog::start(chip.IWDG, &chip.DBGMCU, &mut rcc),
             hertz: HERTZ,
             place,
         })

@@ -1,0 +1,39 @@
+//! Every interrupt but the tick's comes here: received bytes, and the first call of a watchdog.
+
+use core::arch::naked_asm;
+
+use cortex_m_rt::ExceptionFrame;
+
+use super::lm3s6965evb::watchdog;
+use super::{crash, receiver};
+
+/// The number that the processor gives to the interrupt that cannot be masked, and to the first of the others.
+const NMI: u32 = 2;
+const FIRST: u32 = 16;
+
+/// Passes on where the processor put the registers of what was interrupted, and the number of the interrupt.
+///
+/// # Safety
+///
+/// Only the processor may call it, through the vector table.
+#[unsafe(naked)]
+#[unsafe(no_mangle)]
+unsafe extern "C" fn DefaultHandler() {
+    naked_asm!(
+        "mrs r0, msp", // The program and the interrupts have this one stack.
+        "mrs r1, ipsr",
+        "b {interrupt}",
+        interrupt = sym interrupt,
+    )
+}
+
+extern "C" fn interrupt(interrupted: &ExceptionFrame, number: u32) {
+    if number == FIRST.wrapping_add(watchdog::INTERRUPT.into()) {
+        watchdog::silence();
+        crash::hang(interrupted);
+    } else if number == NMI {
+        crash::hang(interrupted);
+    } else {
+        receiver::receive();
+    }
+}

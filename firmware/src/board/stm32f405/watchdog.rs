@@ -1,0 +1,37 @@
+//! The watchdog: the independent one, which has an oscillator of its own and no interrupt. In the emulator there is none.
+
+use stm32f4xx_hal::pac::{DBGMCU, IWDG};
+use stm32f4xx_hal::prelude::*;
+use stm32f4xx_hal::rcc::Rcc;
+use stm32f4xx_hal::watchdog::IndependentWatchdog;
+
+use crate::config::WATCHDOG_SECONDS;
+
+/// The chip's watchdog.
+pub struct Watchdog {
+    unit: IndependentWatchdog,
+    has_reset: bool,
+}
+
+impl Watchdog {
+    /// Starts it. Its oscillator is good for a factor of 2 (17 to 47 kHz instead of 32).
+    pub(super) fn start(unit: IWDG, debug: &DBGMCU, rcc: &mut Rcc) -> Self {
+        let has_reset = rcc.csr().read().wdgrstf().bit_is_set();
+        rcc.csr().modify(|_, w| w.rmvf().set_bit());
+        let mut unit = IndependentWatchdog::new(unit);
+        // It stands still while a debugger holds the processor.
+        unit.stop_on_debug(debug, true);
+        unit.start((2 * 1000 * WATCHDOG_SECONDS).millis());
+        Self { unit, has_reset }
+    }
+}
+
+impl crate::board::Watchdog for Watchdog {
+    fn feed(&mut self) {
+        self.unit.feed();
+    }
+
+    fn has_reset(&self) -> bool {
+        self.has_reset
+    }
+}

@@ -1,0 +1,212 @@
+//! Things that go wrong in the running application: what is said of them, and how the board comes back.
+//!
+//! They are injected into the images that are flashed, from outside: a debugger stops the board in the middle of a picture
+//! that is drawn but not yet sent, and sends its processor elsewhere.
+
+#[path = "support/program.rs"]
+mod program;
+mod support;
+
+use std::error::Error;
+
+use firmware::job::Field;
+use firmware::protocol::{Choose, Frame, Restarted, Set};
+use firmware::scenes::SceneName;
+use firmware::survivor::{Cause, MOST_RESTARTS};
+use firmware::unit::Unit;
+use host_tests::board::{BOARDS, Board, STM32F405};
+use host_tests::qemu::{Machine, Probe, QemuError, Register, Settings};
+use program::address;
+use support::{application, settings, toolchain};
+
+/// The lowest addresses of the stack, where it never reaches.
+const UNUSED: u32 = 0x2000_8000;
+/// Two instructions: `b .`, an endless loop, and `udf #0`, which is none.
+const HANG: [u8; 2] = [0xfe, 0xe7];
+const UNDEFINED: [u8; 2] = [0x00, 0xde];
+/// Pictures of the scene that are waited for.
+const PICTURES: usize = 20;
+/// The stopwatch is read when a picture is begun, when it is drawn, and when it is sent.
+const STOPWATCH: &str = "board::clock::cycles";
+/// The mass ratio that the tests set, unlike any scene's own.
+const MASS_RATIO: f32 = 0.7;
+
+/// A board that stands still in the middle of a picture of `scene`, with a mass ratio of its own: the last frame it has
+/// sent.
+fn within(probe: &mut Probe, elf: &std::path::Path, scene: SceneName) -> Result<Frame, QemuError> {
+    // A serial port that is not yet on takes no bytes.
+    let stopwatch = address(elf, STOPWATCH);
+    probe.run_to(stopwatch)?;
+    let serial = &mut probe.machine().serial;
+    serial.send(&Choose { request: 1, scene: scene.code() })?;
+    let (field, unit) = (Field::MassRatio.code(), Unit::One.code());
+    serial.send(&Set { request: 2, field, unit, value: MASS_RATIO.into() })?;
+    // To stop rarely is quicker: a board that stands still takes no bytes.
+    let obey = address(elf, "Player::obey");
+    probe.run_to(obey)?;
+    probe.run_to(obey)?;
+    let mut seen = 0;
+    loop {
+        probe.run_to(stopwatch)?;
+        let frame = probe.machine().serial.arrived::<Frame>().last();
+        let Some(frame) = frame.filter(|frame| frame.scene == scene.code() && frame.mass_ratio == MASS_RATIO) else {
+            continue;
+        };
+        seen += 1;
+        if seen == PICTURES {
+            // This reading was for the end of the frame; the next is for the beginning, then the picture is drawn.
+            probe.run_to(stopwatch)?;
+            probe.run_to(stopwatch)?;
+            return Ok(frame);
+        }
+    }
+}
+
+/// Puts an instruction where it disturbs nobody, and the processor there.
+fn execute(probe: &mut Probe, instruction: [u8; 2]) -> Result<(), QemuError> {
+    probe.write(UNUSED, &instruction)?;
+    probe.divert(&[(Register::Pc, UNUSED)])
+}
+
+/// Everything said until the end, which must be a failure.
+fn last_words(machine: &mut Machine) -> Result<String, QemuError> {
+    let (status, lines) = machine.wait()?;
+    let said = lines.iter().map(|line| format!("{line}\n")).collect::<String>();
+    assert_eq!(status.code(), Some(1), "{said}");
+    Ok(said)
+}
+
+#[test]
+fn a_fault_in_a_picture_tells_the_scene_and_the_step() -> Result<(), Box<dyn Error>> {
+    let toolchain = toolchain();
+    for board in &BOARDS {
+        let elf = application(board);
+        let mut probe = Probe::start(&settings(&toolchain, board, &elf))?;
+        let frame = within(&mut probe, &elf, SceneName::Figure7)?;
+        execute(&mut probe, UNDEFINED)?;
+        let lr = 0x1234_5679;
+        probe.divert(&[(Register::Lr, lr)])?;
+        let report = last_words(probe.run()?)?;
+        for part in [
+            "HARDFAULT: undefined instruction",
+            &format!("pc {UNUSED:#010x}  lr {lr:#010x}"),
+            "cfsr 0x00010000",
+            &format!("scene figure-7, step {}\n", frame.step),
+        ] {
+            assert!(report.contains(part), "{}: no {part:?} in\n{report}", board.name);
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn a_stack_that_overflows_in_a_picture_meets_the_guard() -> Result<(), Box<dyn Error>> {
+    let toolchain = toolchain();
+    for board in &BOARDS {
+        let elf = application(board);
+        let mut probe = Probe::start(&settings(&toolchain, board, &elf))?;
+        let frame = within(&mut probe, &elf, SceneName::Butterfly)?;
+        probe.divert(&[(Register::Sp, UNUSED), (Register::Pc, address(&elf, "Player::obey"))])?;
+        let report = last_words(probe.run()?)?;
+        for part in ["HARDFAULT: stack overflow", &format!("scene butterfly, step {}\n", frame.step)] {
+            assert!(report.contains(part), "{}: no {part:?} in\n{report}", board.name);
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn a_panic_in_a_picture_tells_the_scene_and_the_step() -> Result<(), Box<dyn Error>> {
+    let toolchain = toolchain();
+    for board in &BOARDS {
+        let elf = application(board);
+        let mut probe = Probe::start(&settings(&toolchain, board, &elf))?;
+        let frame = within(&mut probe, &elf, SceneName::Upright)?;
+        // One of the few panics in the image.
+        let panic = address(&elf, "panic_const::panic_const_rem_by_zero");
+        probe.divert(&[(Register::Pc, panic)])?;
+        let report = last_words(probe.run()?)?;
+        let scene = format!("scene upright, step {}\n", frame.step);
+        for part in ["PANIC: panicked at ", "divisor of zero\n", "pc 0x", "lr 0x", "cfsr 0x00000000", &scene] {
+            assert!(report.contains(part), "{}: no {part:?} in\n{report}", board.name);
+        }
+    }
+    Ok(())
+}
+
+/// The boards whose watchdog is emulated.
+fn watched() -> impl Iterator<Item = &'static Board> {
+    BOARDS.iter().filter(|board| **board != STM32F405)
+}
+
+#[test]
+fn a_board_that_hangs_comes_back_where_it_was_and_says_why() -> Result<(), Box<dyn Error>> {
+    let toolchain = toolchain();
+    for board in watched() {
+        let elf = application(board);
+        let mut probe = Probe::start(&settings(&toolchain, board, &elf))?;
+        let before = within(&mut probe, &elf, SceneName::Butterfly)?;
+        execute(&mut probe, HANG)?;
+        let machine = probe.run()?;
+
+        let restarted: Restarted = machine.serial.next().ok_or_else(|| machine.silence())?;
+        let Restarted { cause, restarts, pc, scene, step, .. } = restarted;
+        assert_eq!((Cause::from_code(cause), restarts, pc), (Some(Cause::Hang), 1, UNUSED), "{}", board.name);
+        assert_eq!((scene, step), (SceneName::Butterfly.code(), before.step), "{}", board.name);
+        for sequence in 0..PICTURES as u32 {
+            let frame: Frame = machine.serial.next().ok_or_else(|| machine.silence())?;
+            assert_eq!((frame.sequence, frame.step), (sequence, 4 * (sequence + 1)), "{}", board.name);
+            assert_eq!((frame.scene, frame.mass_ratio), (before.scene, MASS_RATIO), "{}", board.name);
+        }
+        assert_eq!((machine.serial.counts().damaged, machine.serial.counts().lost), (0, 0), "{}", board.name);
+
+        let log: String = machine.log.arrived().map(|line| format!("{line}\n")).collect();
+        for part in [
+            "HANG: no picture finished for 1 s\n",
+            &format!("pc {UNUSED:#010x}"),
+            &format!("scene butterfly, step {}\n", before.step),
+            "restarted after a hang, 1 in a row: pc 0x20008000",
+        ] {
+            assert!(log.contains(part), "{}: no {part:?} in\n{log}", board.name);
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn without_a_debugger_a_fault_restarts_the_board() -> Result<(), Box<dyn Error>> {
+    let toolchain = toolchain();
+    for board in watched() {
+        let elf = application(board);
+        let alone = Settings { debugger: false, ..settings(&toolchain, board, &elf) };
+        let mut probe = Probe::start(&alone)?;
+        let before = within(&mut probe, &elf, SceneName::Figure7)?;
+        for restarts in 1..=MOST_RESTARTS + 1 {
+            execute(&mut probe, UNDEFINED)?;
+            // To the first picture after the restart.
+            let stopwatch = address(&elf, STOPWATCH);
+            let (mut restarted, mut frame) = (None, None);
+            while frame.is_none() {
+                probe.run_to(stopwatch)?;
+                let serial = &probe.machine().serial;
+                for message in serial.all_arrived() {
+                    restarted = restarted.or(message.read::<Restarted>());
+                    frame = frame.or(message.read::<Frame>());
+                }
+            }
+            let restarted = restarted.expect("said before the first frame");
+            assert_eq!(Cause::from_code(restarted.cause), Some(Cause::Fault), "{}", board.name);
+            assert_eq!(
+                (restarted.restarts, restarted.pc, restarted.cfsr),
+                (restarts, UNUSED, 1 << 16),
+                "{}",
+                board.name
+            );
+            assert_eq!(restarted.scene, before.scene, "{}", board.name);
+            // What ends the board each time is given up.
+            let scene = if restarts <= MOST_RESTARTS { SceneName::Figure7 } else { SceneName::Page };
+            assert_eq!(frame.map(|frame| frame.scene), Some(scene.code()), "{}: restart {restarts}", board.name);
+        }
+    }
+    Ok(())
+}
