@@ -90,7 +90,7 @@ impl Journal {
         if self.frames >= SOUND_FRAMES {
             self.restarts = 0;
         }
-        let (scene, step) = (player.name().code(), player.report().step);
+        let (scene, step) = (player.name().code(), player.report().step as u32);
         (player.status(0), Restarted { restarts: self.restarts, scene, step, ..Restarted::default() })
     }
 }

@@ -16,7 +16,7 @@ crate::message! {
         cfsr: u32,
         /// The scene that was shown, by its [`code`](crate::scenes::SceneName::code).
         scene: u8,
-        /// The integration step of the last picture shown.
+        /// The integration step of the last picture shown; its low 32 bits, as in a frame.
         step: u32,
     }
 }

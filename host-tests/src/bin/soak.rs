@@ -87,8 +87,15 @@ where
     E: std::error::Error + Send + Sync + 'static,
 {
     let elf = toolchain.build_for(board)?;
-    let settings =
-        Settings { qemu: toolchain.qemu(), board, elf: &elf, clock: Clock::Counted, window: None, limit: LIMIT };
+    let settings = Settings {
+        qemu: toolchain.qemu(),
+        board,
+        elf: &elf,
+        clock: Clock::Counted,
+        window: None,
+        debugger: true,
+        limit: LIMIT,
+    };
     run(&settings).context(board.name)
 }
 
