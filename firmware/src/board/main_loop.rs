@@ -68,6 +68,7 @@ where
 }
 
 /// What was played before a reset that nobody asked for goes on.
+#[inline(never)]
 fn resume<Panel, Link, Keys>(app: &mut App<Panel, Link, Keys>, watchdog: &impl Watchdog) -> Journal
 where
     Panel: Display<Error: Debug>,

@@ -53,11 +53,13 @@ pub fn keep((played, end): (Status, Restarted)) {
 }
 
 /// Where things stand, if that is known.
+#[inline(never)]
 pub fn last() -> Option<Restarted> {
     read(&END.read())
 }
 
 /// Keeps how it ended.
+#[inline(never)]
 pub fn end(cause: Cause, pc: u32, lr: u32, cfsr: u32) {
     END.write(&Restarted { cause: cause.code(), pc, lr, cfsr, ..last().unwrap_or_default() });
 }
