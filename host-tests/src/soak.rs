@@ -24,6 +24,8 @@ pub struct Outcome {
     pub steps: u64,
     /// The largest energy error, relative to the energy above hanging at rest.
     pub energy_error: f64,
+    /// The most bytes that the stack has held, where that was measured.
+    pub stack: Option<u32>,
     /// What was not as it must be; empty if all was well.
     pub faults: Vec<String>,
 }
@@ -68,8 +70,11 @@ impl Outcome {
 
 impl fmt::Display for Outcome {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { frames, steps, energy_error, faults } = self;
+        let Self { frames, steps, energy_error, stack, faults } = self;
         write!(f, "{frames} frames, {steps} steps on request, largest energy error {energy_error:.1e}, ")?;
+        if let Some(stack) = stack {
+            write!(f, "stack {stack} bytes, ")?;
+        }
         if faults.is_empty() { f.write_str("nothing lost") } else { write!(f, "NOT WELL: {}", faults.join("; ")) }
     }
 }

@@ -5,7 +5,6 @@
 
 mod support;
 
-use std::ops::Range;
 use std::path::Path;
 
 use double_pendulum::Parameters;
@@ -18,15 +17,11 @@ use host_tests::board::{BOARDS, Board};
 use host_tests::budget::{self, Memory};
 use host_tests::count::CountError;
 use host_tests::count::{Cost, Image, Profile};
-use host_tests::qemu::{Lockstep, QemuError};
+use host_tests::qemu::{Lockstep, QemuError, Stack};
 use object::elf::{SHF_ALLOC, SHF_WRITE};
-use object::{Object, ObjectSection, ObjectSymbol, SectionFlags, SectionKind};
+use object::{Object, ObjectSection, SectionFlags, SectionKind};
 use support::{application, settings, toolchain};
 
-/// The stack's share of memory, from its top (`board/guard.rs`).
-const STACK: u32 = 32 * 1024;
-/// What the stack is painted with: no number that is common in memory.
-const PAINT: u8 = 0xA5;
 /// What QEMU's clock takes for an instruction, s.
 const INSTRUCTION: f64 = 32e-9;
 /// Pictures that pay for the start of a scene, or catch up with what it cost.
@@ -35,8 +30,8 @@ const SETTLING: usize = 6;
 const PICTURES: usize = 40;
 const COMPUTING: usize = 4;
 
-/// Text, data and bss as the linker left them, and where the stack is.
-fn sections(elf: &Path) -> (Memory, Range<u32>) {
+/// Text, data and bss as the linker left them.
+fn sections(elf: &Path) -> Memory {
     let bytes = std::fs::read(elf).unwrap_or_else(|error| panic!("{error}"));
     let file = object::File::parse(&*bytes).unwrap_or_else(|error| panic!("{error}"));
     let mut memory = Memory { text: 0, data: 0, bss: 0, stack: 0 };
@@ -51,8 +46,7 @@ fn sections(elf: &Path) -> (Memory, Range<u32>) {
         };
         *part += section.size() as u32;
     }
-    let top = file.symbols().find(|symbol| symbol.name() == Ok("_stack_start")).expect("a stack").address() as u32;
-    (memory, top - STACK..top)
+    memory
 }
 
 /// Lets so many pictures be drawn; the dearest one's cost, counts of the board's clock.
@@ -111,18 +105,18 @@ fn exercise(board: &mut Lockstep) -> Result<u32, QemuError> {
 fn measure(board: &'static Board) -> Result<(Memory, f64), CountError> {
     let (toolchain, elf) = (toolchain(), application(board));
     let image = Image::read(&elf)?;
-    let (memory, stack) = sections(&elf);
+    let stack = Stack::of(&elf)?;
     let mut machine = Lockstep::start(&settings(&toolchain, board, &elf))?;
-    machine.fill(stack.clone(), PAINT)?;
+    stack.paint(&mut machine)?;
     play(&mut machine, PICTURES)?;
     let (_, profile) = Profile::of_frame(&mut machine, &image, board.core())?;
     let Cost { instructions, cycles_high, .. } = profile.cost();
     let dearest = exercise(&mut machine)?;
-    let untouched = machine.read(stack)?.iter().take_while(|byte| **byte == PAINT).count();
+    let stack = stack.reached(&mut machine)?;
     let executed = f64::from(dearest) / f64::from(board.hertz) / INSTRUCTION;
     let cycles = executed * cycles_high as f64 / instructions as f64;
     let idle = 1.0 - cycles * f64::from(TICK_RATE) / f64::from(board.hertz);
-    Ok((Memory { stack: STACK - untouched as u32, ..memory }, idle))
+    Ok((Memory { stack, ..sections(&elf) }, idle))
 }
 
 #[test]
@@ -144,7 +138,7 @@ fn every_board_keeps_within_its_memory_and_its_time() -> Result<(), CountError> 
         if idle < budget::IDLE {
             too_much.push(format!("{name}: idle {idle:.3}"));
         }
-        assert!(stack > 0, "{name}: the paint was never there");
+        assert!(stack > 0, "{name}: nothing is painted any more, or nothing was");
     }
     assert!(too_much.is_empty(), "{too_much:#?}");
     Ok(())

@@ -12,6 +12,7 @@ mod probe;
 mod qmp;
 mod screen;
 mod serial;
+mod stack;
 mod window;
 
 pub use error::QemuError;
@@ -22,4 +23,5 @@ pub use probe::{Probe, Register};
 pub use qmp::Key;
 pub use screen::{HEIGHT, Picture, WIDTH};
 pub use serial::{Counts, Received, Serial};
+pub use stack::Stack;
 pub use window::{NoWindow, Window};

@@ -1,13 +1,14 @@
-//! All scenes, one after the other, and all of them a second time, which must be the first time over again.
+//! All scenes, one after the other, and all of them a second time, which must be the first time over again: state for state,
+//! and the stack no deeper.
 
 use std::collections::BTreeMap;
 
 use firmware::config::TICK_RATE;
-use firmware::protocol::{Choose, Frame};
+use firmware::protocol::Choose;
 use firmware::scenes::SceneName;
 
 use super::Outcome;
-use crate::qemu::{Machine, QemuError, Settings};
+use crate::qemu::{Lockstep, QemuError, Settings, Stack};
 
 /// How often every scene is played.
 const ROUNDS: usize = 2;
@@ -19,18 +20,23 @@ const GREATEST_ENERGY_ERROR: f64 = 1e-3;
 /// Plays every scene twice, in `seconds` of the board's time all together; `alive` hears each second's end.
 pub fn scenes(settings: &Settings, seconds: u32, mut alive: impl FnMut()) -> Result<Outcome, QemuError> {
     let each = (u64::from(seconds) * u64::from(TICK_RATE) / (ROUNDS * SceneName::ALL.len()) as u64).max(1);
-    let mut machine = Machine::start(settings)?;
+    let stack = Stack::of(settings.elf)?;
+    let mut machine = Lockstep::start(settings)?;
+    stack.paint(&mut machine)?;
+    // The link is up once a frame has come.
     let mut outcome = Outcome::default();
+    outcome.frame(&machine.next_frame()?);
     let mut first_round = BTreeMap::new();
     let mut scene = SceneName::Page;
-    for _ in 0..ROUNDS * SceneName::ALL.len() {
+    let mut reached = Vec::new();
+    for turn in 1..=ROUNDS * SceneName::ALL.len() {
         // Never the one that is on.
         scene = scene.next();
-        machine.serial.send(&Choose { request: 0, scene: scene.code() })?;
+        machine.machine().serial.send(&Choose { request: 0, scene: scene.code() })?;
         let mut tick = 0;
         let mut played = Vec::new();
         while tick < each {
-            let frame: Frame = machine.serial.next().ok_or_else(|| machine.silence())?;
+            let frame = machine.next_frame()?;
             outcome.frame(&frame);
             if frame.scene != scene.code() {
                 continue; // not yet obeyed
@@ -55,8 +61,14 @@ pub fn scenes(settings: &Settings, seconds: u32, mut alive: impl FnMut()) -> Res
             Some(before) if *before == played => {}
             Some(_) => outcome.fault(format!("{}: not the same the second time", scene.name())),
         }
+        if turn.is_multiple_of(SceneName::ALL.len()) {
+            reached.push(stack.reached(&mut machine)?);
+        }
     }
-    outcome.end(&machine, settings.board);
-    machine.quit()?;
+    outcome.stack = reached.last().copied();
+    if reached.iter().any(|bytes| Some(*bytes) != outcome.stack) {
+        outcome.fault(format!("the stack reaches ever deeper: {reached:?} bytes"));
+    }
+    outcome.end(machine.machine(), settings.board);
     Ok(outcome)
 }

@@ -1,0 +1,40 @@
+//! How deep a board's stack has reached: it is painted, and where the paint is gone the stack has been.
+
+use std::ops::Range;
+use std::path::Path;
+
+use object::{Object, ObjectSymbol};
+
+use super::{Lockstep, QemuError};
+
+/// The stack's share of memory, from its top (`board/guard.rs`).
+const SIZE: u32 = 32 * 1024;
+/// No byte that is common in memory.
+const PAINT: u8 = 0xA5;
+
+/// The addresses of a program's stack.
+#[derive(Clone, Debug)]
+pub struct Stack(Range<u32>);
+
+impl Stack {
+    /// Of this program, by the linker's name for its top.
+    pub fn of(elf: &Path) -> Result<Self, QemuError> {
+        let unusable = |reason: String| QemuError::Firmware { path: elf.to_owned(), reason };
+        let program = std::fs::read(elf).map_err(|error| unusable(error.to_string()))?;
+        let program = object::File::parse(&*program).map_err(|error| unusable(error.to_string()))?;
+        let top = program.symbols().find(|symbol| symbol.name() == Ok("_stack_start"));
+        let top = top.ok_or_else(|| unusable("it has no stack".to_owned()))?.address() as u32;
+        Ok(Self(top.saturating_sub(SIZE)..top))
+    }
+
+    /// To be done before the board's first instruction.
+    pub fn paint(&self, board: &mut Lockstep) -> Result<(), QemuError> {
+        board.fill(self.0.clone(), PAINT)
+    }
+
+    /// The most bytes that the stack has held since it was painted.
+    pub fn reached(&self, board: &mut Lockstep) -> Result<u32, QemuError> {
+        let untouched = board.read(self.0.clone())?.iter().take_while(|byte| **byte == PAINT).count();
+        Ok(SIZE - untouched as u32)
+    }
+}
