@@ -27,8 +27,8 @@ const INSTRUCTION: f64 = 32e-9;
 /// Pictures that pay for the start of a scene, or catch up with what it cost.
 const SETTLING: usize = 6;
 /// Pictures of each scene after those, and pictures in which a motion asked for is computed.
-const PICTURES: usize = 40;
-const COMPUTING: usize = 4;
+const PICTURES: usize = 24;
+const COMPUTING: usize = 2;
 
 /// Text, data and bss as the linker left them.
 fn sections(elf: &Path) -> Memory {
