@@ -5,11 +5,12 @@ use host_tests::fuzz::{Flips, Search, TARGETS, Tally};
 /// Executions of each target: some seconds of a slow machine.
 const EXECUTIONS: u32 = 10_000;
 /// Outcomes that each target's corpus holds at least: a search that reached fewer would try little.
-const LEAST_OUTCOMES: [(&str, usize); 7] = [
+const LEAST_OUTCOMES: [(&str, usize); 8] = [
     ("decoder", 40),
     ("commands", 30),
     ("parameters", 40),
     ("steppers", 200),
+    ("plans", 60),
     ("requests", 80),
     ("numbers", 6),
     ("options", 12),

@@ -10,6 +10,7 @@ mod flips;
 mod input;
 mod link;
 mod motion;
+mod plan;
 mod search;
 mod text;
 
@@ -31,11 +32,12 @@ pub struct Target {
 }
 
 /// All of them. A new one is a new row.
-pub const TARGETS: [Target; 7] = [
+pub const TARGETS: [Target; 8] = [
     Target { name: "decoder", run: link::decoder, seeds: link::wires },
     Target { name: "commands", run: link::commands, seeds: link::commands_seeds },
     Target { name: "parameters", run: motion::parameters, seeds: motion::seeds },
     Target { name: "steppers", run: motion::steppers, seeds: motion::seeds },
+    Target { name: "plans", run: plan::plan, seeds: plan::seeds },
     Target { name: "requests", run: link::requests, seeds: link::request_seeds },
     Target { name: "numbers", run: text::numbers, seeds: text::number_seeds },
     Target { name: "options", run: text::options, seeds: text::option_seeds },

@@ -9,7 +9,7 @@ use super::input::Input;
 /// Steps are made this often at most, so that an execution stays short.
 const MOST_STEPS: u8 = 12;
 
-fn refusal(error: &Error) -> Outcome {
+pub fn refusal(error: &Error) -> Outcome {
     let kind = match error {
         Error::NotFinite { .. } => 1,
         Error::NotPositive { .. } => 2,

@@ -174,7 +174,7 @@ impl Search {
     /// Cycles of the dearest steps that [`advance`](Self::advance) makes with so many `cycles`.
     pub fn piece(&self, cycles: f32) -> f32 {
         let step = self.look.dearest_step(&self.costs);
-        if step > cycles { step } else { cycles }
+        if cycles > step { cycles } else { step }
     }
 
     /// Takes the best of the trials so far.
