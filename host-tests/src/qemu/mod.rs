@@ -22,6 +22,6 @@ pub use machine::{Clock, Machine, Settings};
 pub use probe::{Probe, Register};
 pub use qmp::Key;
 pub use screen::{HEIGHT, Picture, WIDTH};
-pub use serial::{Counts, Received, Serial};
+pub use serial::{Counts, Received, Serial, Stopped};
 pub use stack::Stack;
 pub use window::{NoWindow, Window};

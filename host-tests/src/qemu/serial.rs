@@ -125,6 +125,11 @@ impl Serial {
         lock(&self.reader).counts
     }
 
+    /// Reads nothing until the result is dropped: what the board sends fills the pipe, and then its port.
+    pub fn stop_reading(&self) -> Stopped<'_> {
+        Stopped(lock(&self.reader))
+    }
+
     /// Sends a message to the board.
     pub fn send<M: Message>(&mut self, message: &M) -> Result<(), QemuError> {
         self.send_bytes(encode(message, &mut [0; MAX_WIRE]))
@@ -135,6 +140,10 @@ impl Serial {
         self.sender.write_all(bytes).map_err(broken)
     }
 }
+
+/// While this lives nobody reads the link.
+#[derive(Debug)]
+pub struct Stopped<'a>(#[expect(dead_code, reason = "held, never used")] MutexGuard<'a, Reader>);
 
 /// Cuts what arrives into messages.
 #[derive(Debug)]

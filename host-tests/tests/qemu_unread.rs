@@ -1,0 +1,55 @@
+//! The host stops reading: the board's motion does not wait for it, and the stream goes on as soon as it reads again.
+
+mod support;
+
+use std::thread::sleep;
+use std::time::Duration;
+
+use firmware::config::STEPS_PER_TICK;
+use firmware::protocol::Frame;
+use host_tests::board::BOARDS;
+use host_tests::qemu::{Machine, QemuError};
+use host_tests::stream::Expected;
+use support::{application, settings, toolchain};
+
+/// How often the log is looked at.
+const POLL: Duration = Duration::from_millis(20);
+/// Frames read after the gap.
+const FRAMES: usize = 120;
+
+/// On the one board whose emulated port says that it is full; the others' stand still with the whole machine.
+#[test]
+fn a_host_that_stops_reading_loses_frames_and_nothing_else() -> Result<(), QemuError> {
+    let board = BOARDS.iter().find(|board| board.name == "mps2-an386").expect("it is a board");
+    let (toolchain, elf) = (toolchain(), application(board));
+    let mut machine = Machine::start(&settings(&toolchain, board, &elf))?;
+    let first: Frame = machine.serial.next().ok_or_else(|| machine.silence())?;
+
+    let stopped = machine.serial.stop_reading();
+    let mut said = Vec::new();
+    while !said.iter().any(|line: &String| line.contains("serial link")) {
+        said.extend(machine.log.arrived().map(|line| line.to_string()));
+        sleep(POLL);
+    }
+    drop(stopped);
+
+    let mut expected = Expected::new(first.mass_ratio, first.start_angle);
+    let (mut steps, mut last, mut after) = (0, first, 0);
+    while after < FRAMES {
+        let frame: Frame = machine.serial.next().ok_or_else(|| machine.silence())?;
+        expected.advance(frame.step - steps);
+        steps = frame.step;
+        assert_eq!(frame.state.map(f32::to_bits), expected.state().map(f32::to_bits), "frame {}", frame.sequence);
+        // No tick is left out, whatever became of its picture.
+        assert_eq!(frame.step, (frame.sequence + 1 + frame.dropped) * STEPS_PER_TICK);
+        after += usize::from(after > 0 || frame.sequence > last.sequence + 1);
+        last = frame;
+    }
+    let counts = machine.serial.counts();
+    assert!(counts.lost > 0, "{counts:?}");
+    assert!(counts.damaged <= 1, "the frame that was cut short, no other: {counts:?}");
+    said.extend(machine.log.arrived().map(|line| line.to_string()));
+    let complaints = said.iter().filter(|line| line.contains("serial link")).count();
+    assert_eq!(complaints, 1, "said once, not for every frame: {said:#?}");
+    machine.quit()
+}
