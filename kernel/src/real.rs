@@ -88,7 +88,6 @@ pub trait Real:
 macro_rules! twice_by_bits {
     ($name:ident, $float:ident) => {
         #[inline(always)]
-        #[cfg_attr(not(target_arch = "arm"), allow(dead_code))]
         fn $name(x: $float) -> $float {
             const PLACE: u32 = $float::MANTISSA_DIGITS - 1;
             const LARGEST: u32 = 2 * $float::MAX_EXP as u32 - 3;
@@ -130,15 +129,9 @@ macro_rules! real {
             fn abs(self) -> Self {
                 $float::abs(self)
             }
-            #[cfg($software)]
             #[inline(always)]
             fn twice(self) -> Self {
-                $twice(self)
-            }
-            #[cfg(not($software))]
-            #[inline(always)]
-            fn twice(self) -> Self {
-                self + self
+                if cfg!($software) { $twice(self) } else { self + self }
             }
             #[inline]
             fn sqrt(self) -> Self {
