@@ -208,3 +208,7 @@ pub const CLOSED: f64 = 5.0 * f32::EPSILON as f64 * 2.0 * 5.0 * std::f64::consts
 
 /// How far the exact motion is then from its start at the least, pixels: farther than a line is wide.
 pub const NOT_CLOSED: f64 = 1.0;
+
+/// How far the planner's promise for what a scene shows is from the honest clock's time, relative, in the median: each is
+/// early by as much as its margin (measured: 2 %; single ones differ by more, where either's twins happen to be close).
+pub const PLAN_AND_CLOCK: f64 = 0.2;

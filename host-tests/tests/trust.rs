@@ -2,15 +2,18 @@
 
 use std::thread;
 
+use double_pendulum::plan::{self, Budget, Costs, Limit, Search};
 use double_pendulum::{Motion, Parameters, Pendulum};
 use firmware::config::{MASS_RATIOS, REACH, TICK_RATE};
-use firmware::scenes::SceneName;
+use firmware::planner::scene;
+use firmware::scenes::{AnyScene, SceneName};
 use firmware::settings::Settings;
 use firmware::trust::HALF_PIXEL;
 use firmware::view::Place;
+use host_tests::planning::median;
 use host_tests::reference::Reference;
 use host_tests::show::Show;
-use host_tests::tolerance::{TRUST_LATE, TRUST_TYPICAL};
+use host_tests::tolerance::{PLAN_AND_CLOCK, PLAN_SHARE, TRUST_LATE, TRUST_TYPICAL};
 
 /// How long each motion is followed, s. Of those that are still right then, the clock must say so, too.
 const FOLLOWED: f64 = 20.0;
@@ -29,6 +32,8 @@ struct Horizon {
     case: Case,
     shown: f64,
     exact: f64,
+    /// Until when the planner, looking ahead, promises it.
+    promised: f64,
 }
 
 /// The page at 54 settings from calm to wild, rods of other lengths, and the other scenes that integrate.
@@ -77,11 +82,30 @@ fn horizon(case: &Case) -> Horizon {
             break;
         }
     }
-    Horizon { case: case.clone(), shown: scene.report().trusted_until.into(), exact }
+    Horizon { case: case.clone(), shown: scene.report().trusted_until.into(), exact, promised: promised(case) }
+}
+
+/// Until when the kernel's planner says that the way is right in which the scene is shown; infinity if all the time.
+fn promised(case: &Case) -> f64 {
+    let playing = AnyScene::new(case.name, &case.settings).expect("good settings");
+    let shown = playing.shown().expect("it shows a motion");
+    let scene = plan::Scene { duration: FOLLOWED, ..scene(&case.settings, &shown) };
+    let budget = Budget { frame: 1e9, planning: 1e12 };
+    let mut search = Search::of(shown.way, shown.steps, &scene, &Costs::CORTEX_M4F, &budget).expect("a good scene");
+    loop {
+        if let Some(plan) = search.advance(f32::INFINITY).expect("a good scene") {
+            return if plan.limit == Limit::Scene { f64::INFINITY } else { plan.horizon };
+        }
+    }
+}
+
+/// The least, the median and the greatest.
+fn spread(values: impl Iterator<Item = f64> + Clone) -> [f64; 3] {
+    [values.clone().fold(f64::INFINITY, f64::min), median(values.clone()), values.fold(0.0, f64::max)]
 }
 
 #[test]
-fn the_clock_is_never_late_and_typically_close() {
+fn the_clock_is_never_late_and_typically_close_and_the_planner_agrees() {
     let cases = cases();
     let workers = thread::available_parallelism().map_or(1, usize::from);
     let horizons: Vec<Horizon> = thread::scope(|scope| {
@@ -91,10 +115,10 @@ fn the_clock_is_never_late_and_typically_close() {
         threads.into_iter().flat_map(|thread| thread.join().expect("no panic")).collect()
     });
 
-    let (mut passed, mut late) = (Vec::new(), Vec::new());
-    for Horizon { case, shown, exact } in &horizons {
+    let (mut passed, mut late, mut ratios) = (Vec::new(), Vec::new(), Vec::new());
+    for Horizon { case, shown, exact, promised } in &horizons {
         println!(
-            "{:10} shown {shown:8.3} exact {exact:8.3}  {:?} {:?}",
+            "{:10} shown {shown:8.3} exact {exact:8.3} promised {promised:8.3}  {:?} {:?}",
             case.name.name(),
             case.settings.mass_ratio(),
             case.settings.degrees
@@ -104,6 +128,10 @@ fn the_clock_is_never_late_and_typically_close() {
         }
         if exact.is_finite() {
             passed.push((shown / exact - 1.0).abs());
+            // The clock of the scene that shows plain sums is theirs, its plan that of the compensated ones.
+            if case.name != SceneName::Upright {
+                ratios.push((promised / exact, promised / shown));
+            }
         }
     }
     assert!(late.is_empty(), "{late:#?}");
@@ -122,4 +150,9 @@ fn the_clock_is_never_late_and_typically_close() {
         100.0 * passed[passed.len() - 1]
     );
     assert!(typical <= TRUST_TYPICAL, "{typical}");
+
+    let (of_exact, of_clock) = (spread(ratios.iter().map(|ratio| ratio.0)), spread(ratios.iter().map(|ratio| ratio.1)));
+    println!("promised over exact {of_exact:.2?}, over the clock {of_clock:.2?} (least, median, greatest)");
+    assert!(of_exact[1] >= PLAN_SHARE && of_exact[2] <= 1.0, "{of_exact:?}");
+    assert!((of_clock[1] - 1.0).abs() <= PLAN_AND_CLOCK, "{of_clock:?}");
 }

@@ -4,7 +4,10 @@ use std::process::ExitCode;
 
 use double_pendulum::Error;
 use host_tests::cli;
-use host_tests::planning::{DURATIONS, Options, broken, classes, study, words};
+use host_tests::planning::{
+    DURATIONS, FOLLOWED, Options, broken, classes, fit, margins, rk4_in_f64, scenes, study, words,
+};
+use host_tests::report::table::Table;
 use host_tests::simulate::progress;
 
 fn main() -> ExitCode {
@@ -12,9 +15,10 @@ fn main() -> ExitCode {
         Ok(options) => options,
         Err(code) => return code,
     };
-    let lines = match options.study {
-        None => options.plan().map(|(scene, plan)| words(&scene, &plan, &options.target)),
-        Some(count) => tables(&options, count).map_err(anyhow::Error::new),
+    let lines = match (options.study, options.fit) {
+        (Some(count), _) => tables(&options, count).map_err(anyhow::Error::new),
+        (None, Some(count)) => fitted(&options, count).map_err(anyhow::Error::new),
+        (None, None) => options.plan().map(|(scene, plan)| words(&scene, &plan, &options.target)),
     };
     match lines {
         Ok(lines) => {
@@ -27,7 +31,17 @@ fn main() -> ExitCode {
 
 fn tables(options: &Options, count: usize) -> Result<Vec<String>, Error> {
     let bar = progress(count as u64);
-    let cases = study(options.seed, count, DURATIONS, &options.target, || bar.inc(1))?;
+    let scenes = scenes(options.seed, DURATIONS).take(count);
+    let cases = study(scenes, &options.target, || bar.inc(1))?;
     bar.finish_and_clear();
-    Ok(vec![classes(&cases, &options.target)?.markdown(), broken(&cases).markdown()])
+    let chip = &options.target;
+    let tables = [classes(&cases, chip)?, broken(&cases), rk4_in_f64(&cases, chip)?];
+    Ok(tables.iter().map(Table::markdown).collect())
+}
+
+fn fitted(options: &Options, count: usize) -> Result<Vec<String>, Error> {
+    let bar = progress(count as u64);
+    let samples = fit(scenes(options.seed, FOLLOWED).take(count), || bar.inc(1))?;
+    bar.finish_and_clear();
+    Ok(vec![margins(&samples).markdown()])
 }

@@ -7,7 +7,7 @@ use double_pendulum::{Error, Modes, Motion, Parameters, Pendulum, Real, SmallOsc
 use crate::reference::Reference;
 
 /// The directions of both rods.
-type Picture = [Direction<f64>; 2];
+pub type Picture = [Direction<f64>; 2];
 
 /// What became of a plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -86,7 +86,7 @@ fn rounded<R: Real>(&Parameters { m1, m2, l1, l2, g }: &Parameters<f64>) -> Para
 }
 
 /// How far the farther of the two bobs is off, pixels; infinite if anything is not a number.
-fn distance(scene: &Scene, shown: &Picture, exact: &Picture) -> f64 {
+pub fn distance(scene: &Scene, shown: &Picture, exact: &Picture) -> f64 {
     let Parameters { l1, l2, .. } = scene.pendulum;
     let scale = 0.5 * scene.height / (l1 + l2);
     let off = |length: f64, rod: usize| [0, 1].map(|axis| scale * length * (shown[rod][axis] - exact[rod][axis]));

@@ -1,16 +1,20 @@
 //! The planner held against the reference, and shown.
 
 mod draw;
+mod fit;
 mod judge;
 mod options;
+mod rival;
 mod study;
 mod tables;
 mod target;
 mod words;
 
 pub use draw::scenes;
+pub use fit::{FOLLOWED, Sample, fit, margins};
 pub use judge::{Verdict, judge};
 pub use options::Options;
+pub use rival::rk4_in_f64;
 pub use study::{Case, Class, DURATIONS, GROSS, PLANNING, median, study};
 pub use tables::{broken, classes};
 pub use target::{CHIPS, Chip, M3, M4F};

@@ -54,8 +54,11 @@ pub struct Options {
     /// Plan this many scenes of all kinds instead, carry them out beside the reference, and print what came of it
     #[arg(long, value_name = "SCENES")]
     pub study: Option<usize>,
+    /// Hold the planner's margins against the exact motion of this many scenes instead
+    #[arg(long, value_name = "SCENES", conflicts_with = "study")]
+    pub fit: Option<usize>,
     /// Which scenes
-    #[arg(long, value_name = "N", default_value_t = 1, requires = "study")]
+    #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
 }
 

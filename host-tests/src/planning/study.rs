@@ -1,12 +1,12 @@
 //! Many scenes, each planned, carried out and compared with the exact motion.
 
 use std::ops::Range;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
 use double_pendulum::plan::{HALF_PIXEL, Plan, Scene, plan};
 use double_pendulum::{Error, Pendulum};
 
-use super::draw::scenes;
 use super::judge::{Verdict, judge};
 use super::target::Chip;
 
@@ -47,21 +47,6 @@ impl Case {
     pub fn ends_early(&self) -> bool {
         self.verdict.horizon < self.scene.duration
     }
-
-    /// What kind of scene it is.
-    pub fn class(&self) -> Result<Class, Error> {
-        let pendulum = Pendulum::new(self.scene.pendulum)?;
-        let start = self.scene.start;
-        Ok(if self.scene.pendulum.mass_ratio() > LIGHT_ELBOW {
-            Class::LightElbow
-        } else if start.a1.abs().max(start.a2.abs()) < SMALL {
-            Class::Small
-        } else if pendulum.cannot_turn_over(&pendulum.state(&start)) {
-            Class::Swinging
-        } else {
-            Class::Free
-        })
-    }
 }
 
 /// From here on m2/m1 makes bob 1 snap through the straight position.
@@ -84,6 +69,21 @@ pub enum Class {
 }
 
 impl Class {
+    /// What kind of scene it is.
+    pub fn of(scene: &Scene) -> Result<Self, Error> {
+        let pendulum = Pendulum::new(scene.pendulum)?;
+        let start = scene.start;
+        Ok(if scene.pendulum.mass_ratio() > LIGHT_ELBOW {
+            Class::LightElbow
+        } else if start.a1.abs().max(start.a2.abs()) < SMALL {
+            Class::Small
+        } else if pendulum.cannot_turn_over(&pendulum.state(&start)) {
+            Class::Swinging
+        } else {
+            Class::Free
+        })
+    }
+
     /// Every class.
     pub const ALL: [Class; 4] = [Class::Small, Class::Swinging, Class::Free, Class::LightElbow];
 
@@ -98,35 +98,36 @@ impl Class {
     }
 }
 
-/// `count` scenes by `seed`, planned for `chip`; `tick` is called after each.
-pub fn study(
-    seed: u64,
-    count: usize,
-    seconds: Range<f64>,
-    chip: &Chip,
-    tick: impl Fn() + Sync,
-) -> Result<Vec<Case>, Error> {
-    let scenes: Vec<_> = scenes(seed, seconds).take(count).enumerate().collect();
-    let case = |&(number, scene): &(usize, Scene)| {
+/// `scenes` planned for `chip` and carried out; `tick` is called after each.
+pub fn study(scenes: impl IntoIterator<Item = Scene>, chip: &Chip, tick: impl Fn() + Sync) -> Result<Vec<Case>, Error> {
+    let scenes: Vec<_> = scenes.into_iter().enumerate().collect();
+    let case = |&(number, scene): &(usize, Scene)| -> Result<Case, Error> {
         let plan = plan(&scene, &chip.costs, &chip.budget(scene.rate, PLANNING))?;
         let verdict = judge(&scene, &plan)?;
         tick();
         Ok(Case { number, scene, plan, verdict })
     };
+    spread(&scenes, case)
+}
+
+/// What `work` makes of each item, in their order, on as many threads as there are processors.
+pub(super) fn spread<T: Sync, R: Send>(
+    items: &[T],
+    work: impl Fn(&T) -> Result<R, Error> + Sync,
+) -> Result<Vec<R>, Error> {
     let workers = thread::available_parallelism().map_or(1, usize::from);
-    thread::scope(|scope| {
-        let every = |first: usize| scenes.iter().skip(first).step_by(workers).map(case).collect::<Vec<_>>();
-        let threads: Vec<_> = (0..workers).map(|first| scope.spawn(move || every(first))).collect();
-        let mut cases = Vec::with_capacity(count);
-        for thread in threads {
-            match thread.join() {
-                Ok(done) => cases.extend(done.into_iter().collect::<Result<Vec<_>, Error>>()?),
-                Err(panic) => std::panic::resume_unwind(panic),
-            }
-        }
-        cases.sort_by_key(|case: &Case| case.number);
-        Ok(cases)
-    })
+    let (next, work) = (&AtomicUsize::new(0), &work);
+    let mut done = thread::scope(|scope| {
+        let every = || {
+            let taken = std::iter::repeat_with(|| next.fetch_add(1, Ordering::Relaxed));
+            taken.map_while(|at| Some((at, work(items.get(at)?)))).collect::<Vec<_>>()
+        };
+        let threads: Vec<_> = (0..workers).map(|_| scope.spawn(every)).collect();
+        let done = threads.into_iter().map(|thread| thread.join());
+        done.flat_map(|done| done.unwrap_or_else(|panic| std::panic::resume_unwind(panic))).collect::<Vec<_>>()
+    });
+    done.sort_by_key(|(at, _)| *at);
+    done.into_iter().map(|(_, result)| result).collect()
 }
 
 /// The middle of `values`; 1 of none.

@@ -13,7 +13,7 @@ pub fn classes(cases: &[Case], chip: &Chip) -> Result<Table, Error> {
     for class in Class::ALL {
         let mut within = Vec::new();
         for case in cases {
-            if case.class()? == class {
+            if Class::of(&case.scene)? == class {
                 within.push(case);
             }
         }

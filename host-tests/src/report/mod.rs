@@ -43,6 +43,8 @@ pub struct Extent {
     pub peers: bool,
     /// Scenes planned and carried out.
     pub plans: usize,
+    /// Scenes that the planner's margin is held against.
+    pub margins: usize,
 }
 
 impl Extent {
@@ -54,10 +56,18 @@ impl Extent {
         identity_steps: 1_000_000,
         peers: true,
         plans: 2_000,
+        margins: 1_000,
     };
     /// The first two scenes and shorter runs: under two minutes.
-    pub const QUICK: Self =
-        Self { scenes: 2, finest: 13, energy_steps: 100_000, identity_steps: 10_000, peers: false, plans: 60 };
+    pub const QUICK: Self = Self {
+        scenes: 2,
+        finest: 13,
+        energy_steps: 100_000,
+        identity_steps: 10_000,
+        peers: false,
+        plans: 60,
+        margins: 20,
+    };
 
     fn halvings(&self) -> impl Iterator<Item = u32> + Clone {
         4..=self.finest
@@ -67,12 +77,14 @@ impl Extent {
     pub fn runs(&self, targets: usize) -> usize {
         let survey = self.scenes * SUBJECTS.len() * self.halvings().count();
         let peers = if self.peers { peers::RUNS } else { 0 };
-        survey + energy::RUNS + peers + self.plans + targets * (identity::RUNS + SUBJECTS.len())
+        survey + energy::RUNS + peers + self.plans + self.margins + targets * (identity::RUNS + SUBJECTS.len())
     }
 }
 
 /// The seed of the scenes that are planned; the test draws others.
 const PLANS_SEED: u64 = 1;
+/// The seed of those that the planner's margin is held against.
+const MARGINS_SEED: u64 = 2;
 
 /// Computes the report and writes it into `folder`. Costs are counted on one board for each kind of core.
 ///
@@ -112,7 +124,12 @@ pub fn write(
 
     bar.set_message("carrying out plans");
     let chip = &planning::M4F;
-    let plans = planning::study(PLANS_SEED, extent.plans, planning::DURATIONS, chip, tick)?;
+    let scenes = planning::scenes(PLANS_SEED, planning::DURATIONS).take(extent.plans);
+    let plans = planning::study(scenes, chip, tick)?;
+
+    bar.set_message("holding the planner's margins");
+    let scenes = planning::scenes(MARGINS_SEED, planning::FOLLOWED).take(extent.margins);
+    let margins = planning::fit(scenes, tick)?;
 
     bar.set_message("writing");
     let priced = speed::priced(&points, &costs);
@@ -127,6 +144,8 @@ pub fn write(
         identity,
         planning::classes(&plans, chip)?,
         planning::broken(&plans),
+        planning::rk4_in_f64(&plans, chip)?,
+        planning::margins(&margins),
         speed::table(&priced),
     ];
     let mut charts = Vec::new();

@@ -23,7 +23,7 @@ pub(super) struct Trial {
     pub error: f32,
     /// Whether it has been wrong.
     pub failed: bool,
-    /// Whether rounding was the greater part of its own error when it failed: finer steps do not help.
+    /// Whether rounding made its bound when it failed: finer steps do not help.
     pub by_rounding: bool,
 }
 
@@ -39,12 +39,12 @@ impl Trial {
             return;
         }
         if beside + doubt.bound() <= limit {
-            let error = beside + doubt.step + doubt.rounding;
+            let error = beside + doubt.error();
             self.error = if error > self.error { error } else { self.error };
             self.right += 1;
         } else {
             self.failed = true;
-            self.by_rounding = doubt.rounding > doubt.step;
+            self.by_rounding = doubt.is_by_rounding();
         }
     }
 }
@@ -69,7 +69,7 @@ impl Single {
         let linear = Modes::new(parameters).ok().map(|modes| SmallOscillations::new(modes, &motion));
         let ways = [Way::Picture, Way::ClosedForm, Way::PicturePlain, Way::Angle];
         Self {
-            judged: Judged::new(scene, start, steps),
+            judged: Judged::from_state(scene, start, steps),
             plain: Run::new(&rounded, scene.rate, steps),
             angle: Run::new(&rounded, scene.rate, steps),
             linear,
@@ -106,7 +106,7 @@ impl Single {
 
     fn cost(&self, costs: &Costs) -> f32 {
         let [own, ..] = self.trials;
-        let judged = costs.of_frame(own.way, own.steps) * self.judged.runs();
+        let judged = costs.of_frame(own.way, own.steps) * Judged::<f32, PictureForm<f32>>::RUNS;
         let others = self.trials.iter().filter(|trial| trial.way != own.way && !trial.failed);
         others.fold(judged, |sum, trial| sum + costs.of_frame(trial.way, trial.steps))
     }
@@ -122,7 +122,7 @@ pub(super) struct Double {
 impl Double {
     /// From `start`, with `steps` steps to a picture.
     pub fn new(scene: &Scene, start: &State<f64>, steps: u32) -> Self {
-        Self { judged: Judged::new(scene, start, steps), trial: Trial::new(Way::Picture8, steps) }
+        Self { judged: Judged::from_state(scene, start, steps), trial: Trial::new(Way::Picture8, steps) }
     }
 }
 
@@ -191,7 +191,9 @@ impl Look {
     pub fn cost(&self, costs: &Costs) -> f32 {
         match self {
             Look::Single(look) => look.cost(costs),
-            Look::Double(look) => costs.of_frame(look.trial.way, look.trial.steps) * look.judged.runs(),
+            Look::Double(look) => {
+                costs.of_frame(look.trial.way, look.trial.steps) * Judged::<f64, PictureForm8<f64>>::RUNS
+            }
         }
     }
 }

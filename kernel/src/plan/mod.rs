@@ -6,7 +6,7 @@
 //!
 //! | error of | is measured by |
 //! |---|---|
-//! | the step | a twin with twice the step |
+//! | the step | a twin with half the step |
 //! | rounding, that of the numbers given too | two twins with the same step, whose given numbers are half an ulp off |
 //! | the closed form, plain `f32`, the angle form | the distance to the compensated picture form, which has the errors above |
 //!
@@ -41,6 +41,8 @@ mod scene;
 mod search;
 
 pub use cost::{Budget, Costs, Way};
+pub use judged::{Doubt, Judged, MARGIN};
+pub use run::Picture;
 pub use scene::{HALF_PIXEL, Scene};
 pub use search::{Limit, Plan, Search};
 

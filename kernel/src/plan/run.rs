@@ -7,7 +7,7 @@ use crate::real::Real;
 use crate::state::State;
 
 /// The directions of both rods as they would be drawn.
-pub(super) type Picture = [Direction<f32>; 2];
+pub type Picture = [Direction<f32>; 2];
 
 /// A motion in the form `F`.
 #[derive(Clone, Copy, Debug)]
