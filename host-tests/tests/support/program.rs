@@ -4,12 +4,13 @@ use std::path::Path;
 
 use object::{Object, ObjectSymbol};
 
-/// The address of a symbol, by its name without the path before it.
+/// The address of a symbol, by its name without the path before it: `Player::obey`, which one version of the compiler calls
+/// `firmware::player::Player::obey` and the next `<firmware::player::Player>::obey`.
 pub fn address(elf: &Path, name: &str) -> u32 {
     let bytes = std::fs::read(elf).unwrap_or_else(|error| panic!("{}: {error}", elf.display()));
     let file = object::File::parse(&*bytes).unwrap_or_else(|error| panic!("{}: {error}", elf.display()));
     let is_it = |mangled: &str| {
-        let whole = format!("{:#}", rustc_demangle::demangle(mangled));
+        let whole = format!("{:#}", rustc_demangle::demangle(mangled)).replace(['<', '>'], "");
         whole == name || whole.ends_with(&format!("::{name}"))
     };
     let symbol = file.symbols().find(|symbol| symbol.name().is_ok_and(is_it));
