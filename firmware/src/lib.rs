@@ -35,6 +35,7 @@ pub mod service;
 pub mod settings;
 pub mod sheets;
 pub mod simulation;
+pub mod soft_float;
 pub mod survivor;
 pub mod swing;
 pub mod text;

@@ -14,6 +14,7 @@ mod interrupt;
 mod main_loop;
 mod receiver;
 mod register;
+mod soft_float;
 mod survival;
 mod transmitter;
 mod watchdog;

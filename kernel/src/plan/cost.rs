@@ -56,10 +56,10 @@ pub struct Costs {
 impl Costs {
     /// Cortex-M3, which has no floating-point unit.
     pub const CORTEX_M3: Self =
-        Self { closed_form: 7_550.0, picture_plain: 15_090.0, picture: 17_080.0, angle: 23_010.0, picture8: 173_100.0 };
+        Self { closed_form: 5_545.0, picture_plain: 9_803.0, picture: 11_265.0, angle: 16_661.0, picture8: 139_600.0 };
     /// Cortex-M4F, whose floating-point unit knows `f32` only. A plain step costs less than the closed form's two sincos.
     pub const CORTEX_M4F: Self =
-        Self { closed_form: 289.0, picture_plain: 160.4, picture: 214.0, angle: 382.0, picture8: 168_800.0 };
+        Self { closed_form: 289.0, picture_plain: 160.4, picture: 214.0, angle: 376.0, picture8: 135_450.0 };
 
     pub(super) fn check(&self) -> Result<(), Error> {
         check_positive(Parameter::Cost, Way::ALL.map(|way| self.of_frame(way, 1)))
