@@ -4,12 +4,7 @@ use core::arch::naked_asm;
 
 use cortex_m_rt::ExceptionFrame;
 
-use super::lm3s6965evb::watchdog;
-use super::{crash, receiver};
-
-/// The number that the processor gives to the interrupt that cannot be masked, and to the first of the others.
-const NMI: u32 = 2;
-const FIRST: u32 = 16;
+use super::{crash, receiver, watchdog};
 
 /// Passes on where the processor put the registers of what was interrupted, and the number of the interrupt.
 ///
@@ -28,10 +23,8 @@ unsafe extern "C" fn DefaultHandler() {
 }
 
 extern "C" fn interrupt(interrupted: &ExceptionFrame, number: u32) {
-    if number == FIRST.wrapping_add(watchdog::INTERRUPT.into()) {
+    if watchdog::is_call(number) {
         watchdog::silence();
-        crash::hang(interrupted);
-    } else if number == NMI {
         crash::hang(interrupted);
     } else {
         receiver::receive();

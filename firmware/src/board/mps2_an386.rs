@@ -9,7 +9,7 @@ use cortex_m::peripheral::NVIC;
 use super::receiver::Inlet;
 use super::register::Register;
 use super::transmitter::{Outlet, Transmitter};
-use super::watchdog::Registers;
+use super::watchdog::{Call, Registers};
 use super::{Clock, Receiver, TwoStage, guard_stack};
 use crate::config::BAUD;
 
@@ -64,7 +64,7 @@ impl Board {
             link: Uart::start(),
             receiver,
             clock: Clock::start(core.SYST, HERTZ),
-            watchdog: TwoStage::start(WATCHDOG, HERTZ, || (), false),
+            watchdog: TwoStage::start(WATCHDOG, HERTZ, Call::Nmi, false),
             hertz: HERTZ,
         })
     }

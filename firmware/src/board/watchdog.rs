@@ -3,6 +3,11 @@
 //! It is fed in one place, by the main loop, when a picture has been drawn and sent (`main_loop.rs`). An interrupt would
 //! be the wrong one to feed it: the tick's goes on for ever while the program turns in circles.
 
+use core::sync::atomic::{AtomicU16, Ordering};
+
+use cortex_m::interrupt::InterruptNumber;
+use cortex_m::peripheral::NVIC;
+
 use super::register::Register;
 use crate::config::WATCHDOG_SECONDS;
 
@@ -21,9 +26,14 @@ pub trait Watchdog {
 pub struct TwoStage {
     clear: Register,
     lock: Register,
-    /// Allows the interrupt again.
-    rearm: fn(),
     has_reset: bool,
+}
+
+/// Its interrupt: one of the chip's own, or the one that cannot be masked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Call {
+    Own(u16),
+    Nmi,
 }
 
 /// Its registers.
@@ -42,12 +52,13 @@ const LOCKED: u32 = 1;
 
 impl TwoStage {
     /// Starts it; it counts at `hertz`.
-    pub(super) fn start(registers: Registers, hertz: u32, rearm: fn(), has_reset: bool) -> Self {
+    pub(super) fn start(registers: Registers, hertz: u32, call: Call, has_reset: bool) -> Self {
         let Registers { load, control, clear, lock } = registers;
+        call.note();
         lock.write(UNLOCK);
         load.write(hertz.saturating_mul(WATCHDOG_SECONDS));
         control.write(ENABLE);
-        let mut watchdog = Self { clear, lock, rearm, has_reset };
+        let mut watchdog = Self { clear, lock, has_reset };
         watchdog.feed();
         watchdog
     }
@@ -58,10 +69,65 @@ impl Watchdog for TwoStage {
         self.lock.write(UNLOCK);
         self.clear.write(1);
         self.lock.write(LOCKED);
-        (self.rearm)();
+        rearm();
     }
 
     fn has_reset(&self) -> bool {
         self.has_reset
+    }
+}
+
+/// What the processor calls the interrupt that cannot be masked, and the first of the chip's own.
+const NMI: u16 = 2;
+const FIRST: u16 = 16;
+
+/// What the processor calls the watchdog's interrupt.
+static CALL: AtomicU16 = AtomicU16::new(NMI);
+
+impl Call {
+    fn note(self) {
+        CALL.store(self.number(), Ordering::Relaxed);
+    }
+
+    fn number(self) -> u16 {
+        match self {
+            Self::Own(interrupt) => interrupt.wrapping_add(FIRST),
+            Self::Nmi => NMI,
+        }
+    }
+
+    fn noted() -> Self {
+        CALL.load(Ordering::Relaxed).checked_sub(FIRST).map_or(Self::Nmi, Self::Own)
+    }
+}
+
+/// Whether the interrupt that the processor calls so is the watchdog's.
+pub(super) fn is_call(number: u32) -> bool {
+    number == Call::noted().number().into()
+}
+
+/// Keeps its interrupt from coming again and again until it is fed; the one that cannot be masked comes once.
+pub(super) fn silence() {
+    if let Call::Own(interrupt) = Call::noted() {
+        NVIC::mask(Interrupt(interrupt));
+    }
+}
+
+/// Lets its interrupt through.
+fn rearm() {
+    if let Call::Own(interrupt) = Call::noted() {
+        NVIC::unpend(Interrupt(interrupt));
+        // SAFETY: no critical section relies on this interrupt being masked.
+        unsafe { NVIC::unmask(Interrupt(interrupt)) };
+    }
+}
+
+#[derive(Clone, Copy)]
+struct Interrupt(u16);
+
+// SAFETY: it is the watchdog's number on its chip.
+unsafe impl InterruptNumber for Interrupt {
+    fn number(self) -> u16 {
+        self.0
     }
 }

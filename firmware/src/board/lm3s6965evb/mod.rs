@@ -14,7 +14,7 @@ mod gpio;
 mod ssi;
 mod system;
 mod uart;
-pub(super) mod watchdog;
+mod watchdog;
 
 use cortex_m::Peripherals;
 use embedded_hal::digital::OutputPin;
