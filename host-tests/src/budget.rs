@@ -22,11 +22,11 @@ pub struct Memory {
 
 /// What each application may take.
 ///
-/// Text: all boards are linked for the 256 KiB of the smallest chip's flash, and it keeps a sixteenth free; the F405 has four
-/// times as much, but is held to the same map. Data: nothing needs a start value but a few words. Bss: the two pictures are 8 KiB, the application and its planner 5, the queue of received
-/// bytes 1, the F405's log and its panel's picture 2 more; a tenth is left to grow. Stack: making a scene takes most of it;
-/// half of the 32 KiB that the guard leaves to the stack is for what no run has met: an interrupt at the deepest place,
-/// the report of a crash.
+/// Text: all boards are linked for the 256 KiB of the smallest chip's flash, and it keeps a sixteenth free; the F405 has
+/// four times as much, but is held to the same map. Data: nothing needs a start value but a few words. Bss: the two
+/// pictures are 8 KiB, the application and its planner 5, the queue of received bytes 1, the F405's log and its panel's
+/// picture 2 more; a tenth is left to grow. Stack: making a scene takes most of it; half of the 32 KiB that the guard
+/// leaves to the stack is for what no run has met: an interrupt at the deepest place, the report of a crash.
 pub const MEMORY: [(&str, Memory); 4] = [
     ("lm3s6965evb", Memory { text: 240 * KIB, data: 256, bss: 16 * KIB, stack: 16 * KIB }),
     ("lm3s6965evb-m4", Memory { text: 240 * KIB, data: 256, bss: 16 * KIB, stack: 16 * KIB }),

@@ -1,4 +1,4 @@
-//! What a command is doing and that it is alive: a spinner on a terminal, plain lines elsewhere.
+//! What a command is doing and that it is alive: a spinner or a bar on a terminal, elsewhere plain lines or nothing.
 
 use std::io::{IsTerminal, stderr};
 use std::time::{Duration, Instant};
@@ -11,6 +11,13 @@ const REMINDER: Duration = Duration::from_secs(15);
 const TURN: Duration = Duration::from_millis(120);
 /// How much of a child's latest line the spinner shows.
 const SHOWN: usize = 60;
+
+/// A bar for work whose length is known; only on a terminal.
+pub fn bar(doing: &str, length: u64) -> ProgressBar {
+    let style = ProgressStyle::with_template("{prefix} {elapsed} {wide_bar} {pos}/{len}, {eta} left {msg}");
+    let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
+    ProgressBar::new(length).with_style(style).with_prefix(doing.to_owned())
+}
 
 /// One piece of work that is going on. Dropping it takes the spinner away.
 #[derive(Debug)]

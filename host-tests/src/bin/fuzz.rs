@@ -1,13 +1,12 @@
 //! `cargo fuzz-all`: random input for everything that takes input, and a serial link that flips bits.
 
-use std::io::{IsTerminal, stderr};
 use std::process::ExitCode;
 
 use anyhow::{Context, bail};
 use clap::Parser;
 use host_tests::cli;
 use host_tests::fuzz::{Flips, Search, TARGETS, Tally, Target};
-use indicatif::{ProgressBar, ProgressStyle};
+use host_tests::progress::bar;
 
 /// The target that is no search: frames through a link that flips bits.
 const FLIPS: &str = "flips";
@@ -101,13 +100,4 @@ fn flips(arguments: &Arguments) -> anyhow::Result<()> {
         bail!("{forged} damaged frames were taken for good, {missed} good ones were missed");
     }
     Ok(())
-}
-
-fn bar(name: &'static str, executions: u64) -> ProgressBar {
-    if !stderr().is_terminal() {
-        eprintln!("{name} ...");
-    }
-    let style = ProgressStyle::with_template("{prefix:10} {elapsed} {wide_bar} {pos}/{len}, {eta} left");
-    let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
-    ProgressBar::new(executions).with_style(style).with_prefix(name)
 }

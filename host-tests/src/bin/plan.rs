@@ -7,8 +7,8 @@ use host_tests::cli;
 use host_tests::planning::{
     DURATIONS, FOLLOWED, Options, broken, classes, fit, margins, rk4_in_f64, scenes, study, words,
 };
+use host_tests::progress::bar;
 use host_tests::report::table::Table;
-use host_tests::simulate::progress;
 
 fn main() -> ExitCode {
     let options = match cli::parse::<Options>() {
@@ -30,7 +30,7 @@ fn main() -> ExitCode {
 }
 
 fn tables(options: &Options, count: usize) -> Result<Vec<String>, Error> {
-    let bar = progress(count as u64);
+    let bar = bar("planning", count as u64);
     let scenes = scenes(options.seed, DURATIONS).take(count);
     let cases = study(scenes, &options.target, || bar.inc(1))?;
     bar.finish_and_clear();
@@ -40,7 +40,7 @@ fn tables(options: &Options, count: usize) -> Result<Vec<String>, Error> {
 }
 
 fn fitted(options: &Options, count: usize) -> Result<Vec<String>, Error> {
-    let bar = progress(count as u64);
+    let bar = bar("fitting", count as u64);
     let samples = fit(scenes(options.seed, FOLLOWED).take(count), || bar.inc(1))?;
     bar.finish_and_clear();
     Ok(vec![margins(&samples).markdown()])

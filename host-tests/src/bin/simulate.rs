@@ -4,7 +4,8 @@ use std::io::{self, BufWriter, ErrorKind};
 use std::process::ExitCode;
 
 use host_tests::cli;
-use host_tests::simulate::{Options, Place, Plan, Table, on_board, on_host, plan, progress};
+use host_tests::progress::bar;
+use host_tests::simulate::{Options, Place, Plan, Table, on_board, on_host, plan};
 use host_tests::toolchain::SetupError;
 
 fn main() -> ExitCode {
@@ -33,7 +34,7 @@ fn main() -> ExitCode {
 fn run(options: &Options, plan: &Plan) -> anyhow::Result<()> {
     let output = BufWriter::new(io::stdout().lock());
     let mut table = Table::new(output, plan.request.arithmetic, plan.every.clone(), options.bits);
-    let bar = progress(u64::from(plan.request.samples) + 1);
+    let bar = bar("rows", u64::from(plan.request.samples) + 1);
     let row = |reading: &_| {
         bar.inc(1);
         table.row(reading)

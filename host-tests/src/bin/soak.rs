@@ -7,10 +7,10 @@ use anyhow::Context;
 use clap::Parser;
 use host_tests::board::{BOARDS, Board};
 use host_tests::cli;
+use host_tests::progress::bar;
 use host_tests::qemu::{Clock, Settings};
 use host_tests::soak::{self, Outcome};
 use host_tests::toolchain::{self, SetupError, Toolchain};
-use indicatif::{ProgressBar, ProgressStyle};
 
 /// The board that computes physics alone: it has no panel.
 const PHYSICS_BOARD: &str = "mps2-an386";
@@ -63,13 +63,13 @@ fn run(arguments: &Arguments, boards: &[&'static Board]) -> anyhow::Result<bool>
     };
     for board in boards {
         if arguments.scenes > 0 {
-            let bar = bar(board, arguments.scenes);
+            let bar = bar(board.name, arguments.scenes.into());
             let outcome = on(&toolchain, board, |settings| soak::scenes(settings, arguments.scenes, || bar.inc(1)))?;
             bar.finish_and_clear();
             say(board, format!("{} s of scenes", arguments.scenes), outcome);
         }
         if arguments.physics > 0 && board.name == PHYSICS_BOARD {
-            let bar = bar(board, arguments.physics);
+            let bar = bar(board.name, arguments.physics.into());
             let outcome = on(&toolchain, board, |settings| soak::physics(settings, arguments.physics, || bar.inc(1)))?;
             bar.finish_and_clear();
             say(board, format!("{} min of physics", arguments.physics), outcome);
@@ -97,10 +97,4 @@ where
         limit: LIMIT,
     };
     run(&settings).context(board.name)
-}
-
-fn bar(board: &Board, length: u32) -> ProgressBar {
-    let style = ProgressStyle::with_template("{prefix:15} {elapsed} {wide_bar} {pos}/{len}, {eta} left");
-    let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
-    ProgressBar::new(length.into()).with_style(style).with_prefix(board.name)
 }

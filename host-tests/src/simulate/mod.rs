@@ -10,7 +10,6 @@ mod table;
 use std::io;
 
 use firmware::job::{Job, Reading};
-use indicatif::{ProgressBar, ProgressStyle};
 
 pub use board::on_board;
 pub use number::{Number, NumberError};
@@ -30,10 +29,4 @@ pub fn on_host(plan: &Plan, mut row: impl FnMut(&Reading) -> io::Result<()>) -> 
         }
     }
     Ok(())
-}
-
-/// A bar on stderr for long work; invisible when stderr is no terminal.
-pub fn progress(rows: u64) -> ProgressBar {
-    let style = ProgressStyle::with_template("{elapsed} {wide_bar} {pos}/{len} rows, {eta} left");
-    ProgressBar::new(rows).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
 }
