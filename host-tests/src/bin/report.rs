@@ -3,10 +3,11 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use anyhow::ensure;
 use clap::Parser;
-use host_tests::report::{self, Extent, headline};
+use host_tests::progress::bar;
+use host_tests::report::{self, Extent, Main, headline};
 use host_tests::{cli, toolchain};
-use indicatif::{ProgressBar, ProgressStyle};
 
 /// Measures every arithmetic's cost on the target and its error, and writes tables, pictures and a page.
 #[derive(Debug, Parser)]
@@ -40,12 +41,15 @@ fn main() -> ExitCode {
 fn run(options: &Options) -> anyhow::Result<()> {
     let (toolchain, _) = toolchain::set_up()?;
     let extent = if options.quick { Extent::QUICK } else { Extent::FULL };
-    let bar = ProgressBar::no_length();
-    bar.set_style(ProgressStyle::with_template("{bar:40} {pos}/{len} {elapsed} {msg}")?);
+    let bar = bar("report", 0);
     let written = report::write(&extent, &toolchain, &options.folder, &bar);
     bar.finish_and_clear();
-    let (table, chart) = written?;
+    let Main { table, chart, absent } = written?;
+    if !absent.is_empty() {
+        println!("{}", absent.trim_start());
+    }
     if options.readme {
+        ensure!(absent.is_empty(), "the README keeps its figures: some are missing in these");
         headline::put_into_readme(&table, &chart)?;
     } else if !headline::is_in_readme(&table)? {
         println!("the README shows other figures; cargo report --readme puts these there");

@@ -81,6 +81,17 @@ impl Extent {
     }
 }
 
+/// What the README shows of it.
+#[derive(Clone, Debug)]
+pub struct Main {
+    /// The table.
+    pub table: Table,
+    /// The chart, SVG.
+    pub chart: String,
+    /// What had to be left out, and why; empty if nothing.
+    pub absent: String,
+}
+
 /// The seed of the scenes that are planned; the test draws others.
 const PLANS_SEED: u64 = 1;
 /// The seed of those that the planner's margin is held against.
@@ -89,12 +100,7 @@ const MARGINS_SEED: u64 = 2;
 /// Computes the report and writes it into `folder`. Costs are counted on one board for each kind of core.
 ///
 /// Gives the README's table and chart too.
-pub fn write(
-    extent: &Extent,
-    toolchain: &Toolchain,
-    folder: &Path,
-    bar: &ProgressBar,
-) -> anyhow::Result<(Table, String)> {
+pub fn write(extent: &Extent, toolchain: &Toolchain, folder: &Path, bar: &ProgressBar) -> anyhow::Result<Main> {
     let targets = &Target::build_all(toolchain)?[..];
     bar.set_length(extent.runs(targets.len()) as u64);
     let tick = || bar.inc(1);
@@ -172,7 +178,7 @@ pub fn write(
     save("index.html", &page::html(&tables, &charts))?;
     let name = format!("speed-{}-cortex-m4.svg", SCENES[0].name);
     let chart = charts.into_iter().find(|(chart, _)| *chart == name);
-    Ok((headline, chart.context("no chart of the first scene")?.1))
+    Ok(Main { table: headline, chart: chart.context("no chart of the first scene")?.1, absent: c.1 })
 }
 
 /// What `work` makes of each item, every item on a thread of its own.
