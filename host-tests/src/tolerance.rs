@@ -81,6 +81,11 @@ pub const PICTURE_OF_ORDER_8: [(u32, f64); 2] = [(16, 3e-10), (32, 2e-12)];
 /// 1.4e-30 where the angles reach 80 rad).
 pub const REFERENCE: f64 = 4e-30;
 
+/// Two references with other steps until a scene ceases to be right in any arithmetic, pixels: what the judge of the
+/// planner may be wrong by. By then the roundings of `f64` have grown to half a pixel at the most, and those of the
+/// reference are 1e-14 of them (measured: 9e-25, where most scenes are planned in `f32`).
+pub const JUDGE: f64 = 1e-12;
+
 /// The misprinted form's mean energy at figure 7, J, about -18.7: what 32 chaotic runs of 100 s differ by (measured -18.3
 /// over 0..100 s, -18.9 over 5..100 s, falling on in longer runs).
 pub const MISPRINT_ENERGY: f64 = 2.0;

@@ -1,8 +1,8 @@
 //! The planner's promises and margins against the exact motion, over scenes of all kinds.
 
 use double_pendulum::plan::Scene;
-use host_tests::planning::{Case, Class, GROSS, M4F, Sample, fit, margins, median, scenes, study};
-use host_tests::tolerance::{PLAN_KEPT, PLAN_SHARE};
+use host_tests::planning::{Case, Class, GROSS, M4F, Sample, doubt, fit, margins, median, scenes, study};
+use host_tests::tolerance::{JUDGE, PLAN_KEPT, PLAN_SHARE};
 
 /// Other scenes than the report's.
 const SEED: u64 = 20;
@@ -38,6 +38,18 @@ fn half_a_pixel_is_kept_until_the_promised_horizon() {
     println!("{} scenes, {} ending early, {} broken, {shares:.2?} promised", cases.len(), ending.len(), broken.len());
     assert!(cases.len() == ALL + LIVELY && ending.len() >= LEAST_ENDING, "{} end early", ending.len());
     assert!(shares.iter().all(|&share| share >= PLAN_SHARE), "{shares:?}");
+}
+
+/// The reference is far more accurate than what it judges, as far as it judges: where errors grow the most.
+#[test]
+fn the_judge_is_right_where_it_judges() {
+    let cases = study(lively(LIVELY), &M4F, || ()).expect("good scenes");
+    let ending: Vec<&Case> = cases.iter().filter(|case| case.ends_early()).take(LEAST_ENDING).collect();
+    assert_eq!(ending.len(), LEAST_ENDING);
+    let doubts = ending.iter().map(|case| doubt(&case.scene, case.verdict.horizon));
+    let worst = doubts.fold(0.0, f64::max);
+    println!("two references differ by {worst:.1e} pixels");
+    assert!(worst <= JUDGE, "{worst:e} pixels");
 }
 
 /// The error of a look is never more than its bound, and the bound not many times the error.
