@@ -124,7 +124,7 @@ fn bench(runner: Option<&str>, arguments: &[&str]) -> anyhow::Result<process::Ou
     if let Some(runner) = runner {
         command.args(["--config", runner]);
     }
-    command.args(["bench", "--quiet", "--package", "host-tests", "--bench", "peers", "--"]);
+    command.args(["bench", "--quiet", "--profile", "tools", "--package", "host-tests", "--bench", "peers", "--"]);
     let output = process::run(command.args(arguments).current_dir(workspace()), LIMIT)?;
     if !output.status.success() {
         bail!("{}: {}", arguments.join(" "), output.stderr.trim());
