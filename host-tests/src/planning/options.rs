@@ -1,40 +1,23 @@
 //! The command line of `cargo plan`.
 
-use std::f64::consts::PI;
-
 use anyhow::{anyhow, ensure};
 use clap::Parser;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use double_pendulum::plan::{Budget, Plan, Scene, plan};
-use double_pendulum::{Error, Motion, Parameter, Parameters};
+use double_pendulum::{Error, Motion, Parameter};
 
 use super::target::{CHIPS, Chip};
-use crate::simulate::{Number, Pair};
+use crate::simulate::{Number, Start};
 
 /// Says how to compute a scene as cheaply as may be, right to half a pixel, and until when it is.
 ///
 /// Numbers are decimals (0.25, 1e-3) or fractions (1/256).
 #[derive(Debug, Parser)]
-#[command(name = "cargo plan", bin_name = "cargo plan")]
+#[command(name = "cargo plan", bin_name = "cargo plan", mut_arg("gravity", |gravity| gravity.default_value("9.81")))]
 pub struct Options {
-    /// Masses of the bobs, kg
-    #[arg(long, value_name = "M1,M2", default_value = "1,1", allow_hyphen_values = true)]
-    pub masses: Pair,
-    /// Lengths of the rods, m
-    #[arg(long, value_name = "L1,L2", default_value = "1,1", allow_hyphen_values = true)]
-    pub lengths: Pair,
-    /// Gravitational acceleration, m/s^2
-    #[arg(long, value_name = "G", default_value = "9.81", allow_hyphen_values = true)]
-    pub gravity: Number,
-    /// Angles at the start from hanging, rad (see --degrees)
-    #[arg(long, value_name = "A1,A2", default_value = "0,0", allow_hyphen_values = true)]
-    pub angles: Pair,
-    /// Angular velocities at the start, rad/s (see --degrees)
-    #[arg(long, value_name = "W1,W2", default_value = "0,0", allow_hyphen_values = true)]
-    pub velocities: Pair,
-    /// Read angles in degrees and velocities in degrees per second
-    #[arg(long)]
-    pub degrees: bool,
+    /// What moves.
+    #[command(flatten)]
+    pub start: Start,
     /// Height of the display, pixels; both rods together are half of it long
     #[arg(long, value_name = "PIXELS", default_value = "64", allow_hyphen_values = true)]
     pub height: Number,
@@ -74,18 +57,10 @@ impl Options {
         ensure!(whole, "--rate {rate}: must be a whole number of pictures per second, at least 1");
         ensure!(rate.value() <= f64::from(u16::MAX), "--rate {rate}: more than {}", u16::MAX);
         ensure!(self.planning.is_positive(), "--planning {}: must be greater than zero", self.planning);
-        let angle = |number: &Number| if self.degrees { number.value() * (PI / 180.0) } else { number.value() };
-        let (Pair(m1, m2), Pair(l1, l2)) = (&self.masses, &self.lengths);
-        let (Pair(a1, a2), Pair(w1, w2)) = (&self.angles, &self.velocities);
+        let ([a1, a2], [w1, w2]) = (self.start.angles(), self.start.velocities());
         let scene = Scene {
-            pendulum: Parameters {
-                m1: m1.value(),
-                m2: m2.value(),
-                l1: l1.value(),
-                l2: l2.value(),
-                g: self.gravity.value(),
-            },
-            start: Motion { a1: angle(a1), a2: angle(a2), w1: angle(w1), w2: angle(w2) },
+            pendulum: self.start.parameters(),
+            start: Motion { a1, a2, w1, w2 },
             height: self.height.value(),
             duration: self.duration.value(),
             rate: rate.value() as u16,

@@ -5,6 +5,7 @@ mod number;
 mod options;
 mod order8;
 mod request;
+mod start;
 mod table;
 
 use std::io;
@@ -13,8 +14,9 @@ use firmware::job::{Job, Reading};
 
 pub use board::on_board;
 pub use number::{Number, NumberError};
-pub use options::{Method, Options, Pair, Place};
+pub use options::{Method, Options, Place};
 pub use request::{Plan, plan};
+pub use start::Start;
 pub use table::Table;
 
 /// Computes the motion on the host and gives each reading to `row`.

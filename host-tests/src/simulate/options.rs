@@ -5,22 +5,8 @@ use clap::builder::PossibleValuesParser;
 use clap::builder::TypedValueParser;
 use firmware::job::{Arithmetic, Form, Model};
 
-use super::Number;
+use super::{Number, Start};
 use crate::board::{BOARDS, Board};
-
-/// Two numbers separated by a comma: one for each bob or rod.
-#[derive(Clone, Debug)]
-pub struct Pair(pub Number, pub Number);
-
-impl std::str::FromStr for Pair {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let (first, second) = text.split_once(',').ok_or("write two numbers with a comma between them")?;
-        let number = |text: &str| text.trim().parse().map_err(|error| format!("'{text}': {error}"));
-        Ok(Pair(number(first)?, number(second)?))
-    }
-}
 
 /// Where the motion is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,24 +56,9 @@ impl Method {
 #[derive(Debug, Parser)]
 #[command(name = "cargo simulate", bin_name = "cargo simulate")]
 pub struct Options {
-    /// Masses of the bobs, kg
-    #[arg(long, value_name = "M1,M2", default_value = "1,1", allow_hyphen_values = true)]
-    pub masses: Pair,
-    /// Lengths of the rods, m
-    #[arg(long, value_name = "L1,L2", default_value = "1,1", allow_hyphen_values = true)]
-    pub lengths: Pair,
-    /// Gravitational acceleration, m/s^2
-    #[arg(long, value_name = "G", default_value = "9.8", allow_hyphen_values = true)]
-    pub gravity: Number,
-    /// Angles at the start from hanging, rad (see --degrees)
-    #[arg(long, value_name = "A1,A2", default_value = "0,0", allow_hyphen_values = true)]
-    pub angles: Pair,
-    /// Angular velocities at the start, rad/s (see --degrees)
-    #[arg(long, value_name = "W1,W2", default_value = "0,0", allow_hyphen_values = true)]
-    pub velocities: Pair,
-    /// Read angles in degrees and velocities in degrees per second; the output stays in radians
-    #[arg(long)]
-    pub degrees: bool,
+    /// What moves.
+    #[command(flatten)]
+    pub start: Start,
     /// Step size, s; a warning says when it is too long to resolve every motion of this energy
     #[arg(long, value_name = "DT", default_value = "1/1024", allow_hyphen_values = true)]
     pub step: Number,

@@ -1,12 +1,9 @@
 //! From options to a request that the kernel accepts, and the times of its rows.
 
-use std::f64::consts::PI;
-
 use anyhow::{Context, anyhow, ensure};
-use double_pendulum::Parameters;
 use firmware::job::{Field, Job, JobError, Request};
 
-use super::{Method, Number, Options, Pair, order8};
+use super::{Method, Number, Options, order8};
 
 /// A checked request and the time from row to row.
 #[derive(Debug)]
@@ -49,9 +46,6 @@ pub fn plan(options: &Options) -> anyhow::Result<Plan> {
     let stride = steps("--every", every)?;
     ensure!(total % stride == 0, "--until {until}: must be a whole multiple of --every {every}");
 
-    let angle = |number: &Number| if options.degrees { number.value() * (PI / 180.0) } else { number.value() };
-    let both = |Pair(first, second): &Pair| [angle(first), angle(second)];
-    let (Pair(m1, m2), Pair(l1, l2)) = (&options.masses, &options.lengths);
     let Options { arithmetic, model, .. } = *options;
     let form = options.form.or_else(|| Job::default_form(arithmetic, model));
     let form =
@@ -60,15 +54,9 @@ pub fn plan(options: &Options) -> anyhow::Result<Plan> {
         arithmetic,
         model,
         form,
-        parameters: Parameters {
-            m1: m1.value(),
-            m2: m2.value(),
-            l1: l1.value(),
-            l2: l2.value(),
-            g: options.gravity.value(),
-        },
-        angles: both(&options.angles),
-        velocities: both(&options.velocities),
+        parameters: options.start.parameters(),
+        angles: options.start.angles(),
+        velocities: options.start.velocities(),
         step_size: step.value(),
         stride,
         samples: total / stride,

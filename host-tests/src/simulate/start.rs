@@ -1,0 +1,73 @@
+//! The options that say what moves: the pendulum and how it starts.
+
+use std::f64::consts::PI;
+
+use clap::Args;
+use double_pendulum::Parameters;
+
+use super::Number;
+
+/// Two numbers separated by a comma: one for each bob or rod.
+#[derive(Clone, Debug)]
+struct Pair(Number, Number);
+
+impl Pair {
+    fn values(&self) -> [f64; 2] {
+        [self.0.value(), self.1.value()]
+    }
+}
+
+impl std::str::FromStr for Pair {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (first, second) = text.split_once(',').ok_or("write two numbers with a comma between them")?;
+        let number = |text: &str| text.trim().parse().map_err(|error| format!("'{text}': {error}"));
+        Ok(Pair(number(first)?, number(second)?))
+    }
+}
+
+/// A pendulum and its start.
+#[derive(Args, Clone, Debug)]
+pub struct Start {
+    /// Masses of the bobs, kg
+    #[arg(long, value_name = "M1,M2", default_value = "1,1", allow_hyphen_values = true)]
+    masses: Pair,
+    /// Lengths of the rods, m
+    #[arg(long, value_name = "L1,L2", default_value = "1,1", allow_hyphen_values = true)]
+    lengths: Pair,
+    /// Gravitational acceleration, m/s^2
+    #[arg(long, value_name = "G", default_value = "9.8", allow_hyphen_values = true)]
+    gravity: Number,
+    /// Angles at the start from hanging, rad (see --degrees)
+    #[arg(long, value_name = "A1,A2", default_value = "0,0", allow_hyphen_values = true)]
+    angles: Pair,
+    /// Angular velocities at the start, rad/s (see --degrees)
+    #[arg(long, value_name = "W1,W2", default_value = "0,0", allow_hyphen_values = true)]
+    velocities: Pair,
+    /// Read angles in degrees and velocities in degrees per second; what is printed stays in radians
+    #[arg(long)]
+    degrees: bool,
+}
+
+impl Start {
+    /// Masses, lengths and gravity, as given.
+    pub fn parameters(&self) -> Parameters<f64> {
+        let [[m1, m2], [l1, l2]] = [&self.masses, &self.lengths].map(Pair::values);
+        Parameters { m1, m2, l1, l2, g: self.gravity.value() }
+    }
+
+    /// a1, a2, rad.
+    pub fn angles(&self) -> [f64; 2] {
+        self.angles.values().map(|angle| self.radians(angle))
+    }
+
+    /// w1, w2, rad/s.
+    pub fn velocities(&self) -> [f64; 2] {
+        self.velocities.values().map(|velocity| self.radians(velocity))
+    }
+
+    fn radians(&self, angle: f64) -> f64 {
+        if self.degrees { angle * (PI / 180.0) } else { angle }
+    }
+}
