@@ -8,6 +8,8 @@ mod program;
 mod support;
 
 use std::error::Error;
+use std::path::Path;
+use std::time::Duration;
 
 use firmware::job::Field;
 use firmware::protocol::{Choose, Frame, Restarted, Set};
@@ -33,7 +35,7 @@ const MASS_RATIO: f32 = 0.7;
 
 /// A board that stands still in the middle of a picture of `scene`, with a mass ratio of its own: the last frame it has
 /// sent.
-fn within(probe: &mut Probe, elf: &std::path::Path, scene: SceneName) -> Result<Frame, QemuError> {
+fn within(probe: &mut Probe, elf: &Path, scene: SceneName) -> Result<Frame, QemuError> {
     // A serial port that is not yet on takes no bytes.
     let stopwatch = address(elf, STOPWATCH);
     probe.run_to(stopwatch)?;
@@ -76,23 +78,21 @@ fn last_words(machine: &mut Machine) -> Result<String, QemuError> {
     Ok(said)
 }
 
-#[test]
-fn a_fault_in_a_picture_tells_the_scene_and_the_step() -> Result<(), Box<dyn Error>> {
+/// Spoils every board in the middle of a picture of `scene`; its last words must hold all `parts`, and where it was.
+fn every_board_says(
+    scene: SceneName,
+    parts: &[&str],
+    spoil: impl Fn(&mut Probe, &Path) -> Result<(), QemuError>,
+) -> Result<(), QemuError> {
     let toolchain = toolchain();
     for board in &BOARDS {
         let elf = application(board);
         let mut probe = Probe::start(&settings(&toolchain, board, &elf))?;
-        let frame = within(&mut probe, &elf, SceneName::Figure7)?;
-        execute(&mut probe, UNDEFINED)?;
-        let lr = 0x1234_5679;
-        probe.divert(&[(Register::Lr, lr)])?;
+        let frame = within(&mut probe, &elf, scene)?;
+        spoil(&mut probe, &elf)?;
         let report = last_words(probe.run()?)?;
-        for part in [
-            "HARDFAULT: undefined instruction",
-            &format!("pc {UNUSED:#010x}  lr {lr:#010x}"),
-            "cfsr 0x00010000",
-            &format!("scene figure-7, step {}\n", frame.step),
-        ] {
+        let place = format!("scene {}, step {}\n", scene.name(), frame.step);
+        for part in parts.iter().chain([&&*place]) {
             assert!(report.contains(part), "{}: no {part:?} in\n{report}", board.name);
         }
     }
@@ -100,39 +100,33 @@ fn a_fault_in_a_picture_tells_the_scene_and_the_step() -> Result<(), Box<dyn Err
 }
 
 #[test]
-fn a_stack_that_overflows_in_a_picture_meets_the_guard() -> Result<(), Box<dyn Error>> {
-    let toolchain = toolchain();
-    for board in &BOARDS {
-        let elf = application(board);
-        let mut probe = Probe::start(&settings(&toolchain, board, &elf))?;
-        let frame = within(&mut probe, &elf, SceneName::Butterfly)?;
-        probe.divert(&[(Register::Sp, UNUSED), (Register::Pc, address(&elf, "Player::obey"))])?;
-        let report = last_words(probe.run()?)?;
-        for part in ["HARDFAULT: stack overflow", &format!("scene butterfly, step {}\n", frame.step)] {
-            assert!(report.contains(part), "{}: no {part:?} in\n{report}", board.name);
-        }
-    }
-    Ok(())
+fn a_fault_in_a_picture_tells_the_scene_and_the_step() -> Result<(), QemuError> {
+    let registers = format!("pc {UNUSED:#010x}  lr 0x12345679");
+    let parts = ["HARDFAULT: undefined instruction", &registers, "cfsr 0x00010000"];
+    every_board_says(SceneName::Figure7, &parts, |probe, _| {
+        execute(probe, UNDEFINED)?;
+        probe.divert(&[(Register::Lr, 0x1234_5679)])
+    })
 }
 
 #[test]
-fn a_panic_in_a_picture_tells_the_scene_and_the_step() -> Result<(), Box<dyn Error>> {
-    let toolchain = toolchain();
-    for board in &BOARDS {
-        let elf = application(board);
-        let mut probe = Probe::start(&settings(&toolchain, board, &elf))?;
-        let frame = within(&mut probe, &elf, SceneName::Upright)?;
+fn a_stack_that_overflows_in_a_picture_meets_the_guard() -> Result<(), QemuError> {
+    every_board_says(SceneName::Butterfly, &["HARDFAULT: stack overflow"], |probe, elf| {
+        probe.divert(&[(Register::Sp, UNUSED), (Register::Pc, address(elf, "Player::obey"))])
+    })
+}
+
+#[test]
+fn a_panic_in_a_picture_tells_the_scene_and_the_step() -> Result<(), QemuError> {
+    let parts = ["PANIC: panicked at ", "divisor of zero\n", "pc 0x", "lr 0x", "cfsr 0x00000000"];
+    every_board_says(SceneName::Upright, &parts, |probe, elf| {
         // One of the few panics in the image.
-        let panic = address(&elf, "panic_const::panic_const_rem_by_zero");
-        probe.divert(&[(Register::Pc, panic)])?;
-        let report = last_words(probe.run()?)?;
-        let scene = format!("scene upright, step {}\n", frame.step);
-        for part in ["PANIC: panicked at ", "divisor of zero\n", "pc 0x", "lr 0x", "cfsr 0x00000000", &scene] {
-            assert!(report.contains(part), "{}: no {part:?} in\n{report}", board.name);
-        }
-    }
-    Ok(())
+        probe.divert(&[(Register::Pc, address(elf, "panic_const::panic_const_rem_by_zero"))])
+    })
 }
+
+/// A board that nothing restarts is given up after this long, by the host's clock: many times what a restart takes.
+const PATIENCE: Duration = Duration::from_secs(120);
 
 /// The boards whose watchdog is emulated.
 fn watched() -> impl Iterator<Item = &'static Board> {
@@ -144,7 +138,7 @@ fn a_board_that_hangs_comes_back_where_it_was_and_says_why() -> Result<(), Box<d
     let toolchain = toolchain();
     for board in watched() {
         let elf = application(board);
-        let mut probe = Probe::start(&settings(&toolchain, board, &elf))?;
+        let mut probe = Probe::start(&Settings { limit: PATIENCE, ..settings(&toolchain, board, &elf) })?;
         let before = within(&mut probe, &elf, SceneName::Butterfly)?;
         execute(&mut probe, HANG)?;
         let machine = probe.run()?;
@@ -178,7 +172,7 @@ fn without_a_debugger_a_fault_restarts_the_board() -> Result<(), Box<dyn Error>>
     let toolchain = toolchain();
     for board in watched() {
         let elf = application(board);
-        let alone = Settings { debugger: false, ..settings(&toolchain, board, &elf) };
+        let alone = Settings { debugger: false, limit: PATIENCE, ..settings(&toolchain, board, &elf) };
         let mut probe = Probe::start(&alone)?;
         let before = within(&mut probe, &elf, SceneName::Figure7)?;
         for restarts in 1..=MOST_RESTARTS + 1 {
