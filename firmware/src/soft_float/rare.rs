@@ -1,7 +1,6 @@
 //! All numbers, as the standard has them: zeros, subnormal numbers, infinities, NaN, and results that become such.
 
-use super::Word;
-use super::{exponent, magnitude};
+use super::{Word, exponent, magnitude};
 
 /// A finite number but 0: its significand, the leading 1 in the topmost bit, and the exponent it would be stored with if
 /// exponents had no ends.
