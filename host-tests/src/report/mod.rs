@@ -65,8 +65,8 @@ impl Extent {
         energy_steps: 100_000,
         identity_steps: 10_000,
         peers: false,
-        plans: 60,
-        margins: 20,
+        plans: 40,
+        margins: 10,
     };
 
     fn halvings(&self) -> impl Iterator<Item = u32> + Clone {
