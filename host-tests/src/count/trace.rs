@@ -15,7 +15,7 @@ use super::{CountError, Target};
 use crate::process;
 
 /// How long one run may take.
-const LIMIT: Duration = Duration::from_secs(600);
+const LIMIT: Duration = Duration::from_secs(1800);
 /// How long QEMU may take to tell its version.
 const VERSION_LIMIT: Duration = Duration::from_secs(10);
 

@@ -11,8 +11,15 @@ use crate::count::{CountError, Target};
 const HALVINGS: u32 = 8;
 /// A regular and a chaotic motion.
 const COMPARED: &[Scene] = SCENES.split_at(2).0;
-/// How many times fewer steps are compared where they are computed in software, at a hundred times the cost.
-const SOFTWARE: u32 = 10;
+
+/// How many steps are compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Steps {
+    /// Where the processor's floating-point unit computes them.
+    pub hardware: u32,
+    /// Where they are computed in software, at a hundred times the cost.
+    pub software: u32,
+}
 
 /// How many comparisons are made on one target.
 pub const RUNS: usize = COMPARED.len() * SUBJECTS.len();
@@ -44,12 +51,15 @@ pub fn every_state<'a>(subject: &'a Subject, scene: &Scene, steps: u32) -> Reque
     Request { samples: steps, steps: 1, ..request(subject, scene, HALVINGS) }
 }
 
-/// Compares every arithmetic over both motions on `target`, over `steps` steps or, where they are computed in software,
-/// a tenth; `tick` is called after each.
-pub fn compare(target: &Target, steps: u32, tick: &(dyn Fn() + Sync)) -> Result<Vec<Comparison<'static>>, CountError> {
+/// Compares every arithmetic over both motions on `target`; `tick` is called after each.
+pub fn compare(
+    target: &Target,
+    steps: Steps,
+    tick: &(dyn Fn() + Sync),
+) -> Result<Vec<Comparison<'static>>, CountError> {
     let runs = COMPARED.iter().flat_map(|scene| SUBJECTS.iter().map(move |subject| (scene, subject)));
     let compared = runs.map(|(scene, subject)| {
-        let steps = if is_in_hardware(target, subject) { steps } else { steps / SOFTWARE };
+        let steps = if is_in_hardware(target, subject) { steps.hardware } else { steps.software };
         let request = every_state(subject, scene, steps);
         let refused =
             |reason: RequestError| CountError::Refused { request: request.to_string(), reason: reason.to_string() };
@@ -82,10 +92,7 @@ pub fn table(comparisons: &[Comparison]) -> Table {
     Table {
         name: "bit-identity",
         title: String::from("Bit identity"),
-        note: format!(
-            "CRC-32 of all that is carried from step to step, after every single step of 2^-{HALVINGS} s. Where the \
-             processor computes in software, a tenth of the steps."
-        ),
+        note: format!("CRC-32 of all that is carried from step to step, after every single step of 2^-{HALVINGS} s."),
         columns: vec!["arithmetic", "scene", "processor", "steps", "this host", "target", "verdict"],
         rows: comparisons.iter().map(row).collect(),
     }
