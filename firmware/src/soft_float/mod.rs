@@ -34,10 +34,10 @@ pub fn add<W: Word>(a: W, b: W) -> W {
     nearest(a & W::SIGN, (exponent + 1).wrapping_sub(zeros), significand)
 }
 
-/// a - b.
+/// -b.
 #[inline(always)]
-pub fn subtract<W: Word>(a: W, b: W) -> W {
-    add(a, b ^ W::SIGN)
+pub fn negative<W: Word>(b: W) -> W {
+    b ^ W::SIGN
 }
 
 /// a b.

@@ -51,7 +51,6 @@ pub fn judge(scene: &Scene, plan: &Plan) -> Result<Verdict, Error> {
 pub fn doubt(scene: &Scene, seconds: f64) -> f64 {
     let [mut one, mut other] = [(); 2].map(|()| Reference::new(&scene.pendulum, &scene.start));
     let Parameters { l1, l2, .. } = scene.pendulum;
-    let scale = 0.5 * scene.height / (l1 + l2);
     let mut worst: f64 = 0.0;
     for frame in 1..=scene.frames() {
         let [before, time] = [frame - 1, frame].map(|frame| scene.time(frame));
@@ -64,7 +63,7 @@ pub fn doubt(scene: &Scene, seconds: f64) -> f64 {
             reference.exact_state()
         });
         let [elbow, rod] = [0, 1].map(|rod| f64::from(one[rod] - other[rod]).abs());
-        worst = worst.max(scale * (l1 * elbow + l2 * rod));
+        worst = worst.max(scale(scene) * (l1 * elbow + l2 * rod));
     }
     worst
 }
@@ -108,10 +107,15 @@ fn rounded<R: Real>(&Parameters { m1, m2, l1, l2, g }: &Parameters<f64>) -> Para
     Parameters { m1, m2, l1, l2, g }
 }
 
+/// Pixels to a metre.
+fn scale(scene: &Scene) -> f64 {
+    0.5 * scene.height / (scene.pendulum.l1 + scene.pendulum.l2)
+}
+
 /// How far the farther of the two bobs is off, pixels; infinite if anything is not a number.
 pub fn distance(scene: &Scene, shown: &Picture, exact: &Picture) -> f64 {
     let Parameters { l1, l2, .. } = scene.pendulum;
-    let scale = 0.5 * scene.height / (l1 + l2);
+    let scale = scale(scene);
     let off = |length: f64, rod: usize| [0, 1].map(|axis| scale * length * (shown[rod][axis] - exact[rod][axis]));
     let ([x1, y1], [x2, y2]) = (off(l1, 0), off(l2, 1));
     let (elbow, tip) = (x1.hypot(y1), (x1 + x2).hypot(y1 + y2));
