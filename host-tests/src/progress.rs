@@ -1,6 +1,7 @@
-//! What a command is doing and that it is alive: a spinner or a bar on a terminal, elsewhere plain lines or nothing.
+//! What a command is doing and that it is alive: a spinner or a bar on a terminal, elsewhere a plain line now and then.
 
 use std::io::{IsTerminal, stderr};
+use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
@@ -12,11 +13,61 @@ const TURN: Duration = Duration::from_millis(120);
 /// How much of a child's latest line the spinner shows.
 const SHOWN: usize = 60;
 
-/// A bar for work whose length is known; only on a terminal.
-pub fn bar(doing: &str, length: u64) -> ProgressBar {
-    let style = ProgressStyle::with_template("{prefix} {elapsed} {wide_bar} {pos}/{len}, {eta} left {msg}");
-    let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
-    ProgressBar::new(length).with_style(style).with_prefix(doing.to_owned())
+/// Work whose length is known: a bar on a terminal. Dropping it takes the bar away.
+#[derive(Debug)]
+pub struct Bar {
+    bar: ProgressBar,
+    reminder: Mutex<Reminder>,
+}
+
+impl Bar {
+    /// Says what begins now, and how many pieces it has.
+    pub fn start(doing: &str, length: u64) -> Self {
+        let style = ProgressStyle::with_template("{prefix} {elapsed} {wide_bar} {pos}/{len}, {eta} left {msg}");
+        let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
+        let bar = ProgressBar::new(length).with_style(style).with_prefix(doing.to_owned());
+        Self { bar, reminder: Mutex::new(Reminder::new()) }
+    }
+
+    /// So many pieces more are done.
+    pub fn advance(&self, pieces: u64) {
+        self.bar.inc(pieces);
+        if self.bar.is_hidden() && self.reminder.lock().is_ok_and(|mut reminder| reminder.is_due()) {
+            self.remind();
+        }
+    }
+
+    /// What turns out to be its length.
+    pub fn set_length(&self, length: u64) {
+        self.bar.set_length(length);
+    }
+
+    /// Says which part of it begins now.
+    pub fn say(&self, part: &'static str) {
+        self.bar.set_message(part);
+        if self.bar.is_hidden() {
+            self.remind();
+        }
+    }
+
+    fn remind(&self) {
+        let Self { bar, .. } = self;
+        let length = bar.length().unwrap_or_default();
+        let line = format!(
+            "{} ... {} of {length}, {} s {}",
+            bar.prefix(),
+            bar.position(),
+            bar.elapsed().as_secs(),
+            bar.message()
+        );
+        eprintln!("{}", line.trim_end());
+    }
+}
+
+impl Drop for Bar {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
 }
 
 /// One piece of work that is going on. Dropping it takes the spinner away.
@@ -24,7 +75,7 @@ pub fn bar(doing: &str, length: u64) -> ProgressBar {
 pub struct Progress {
     doing: String,
     started: Instant,
-    reminded: Instant,
+    reminder: Reminder,
     spinner: Option<ProgressBar>,
 }
 
@@ -41,8 +92,7 @@ impl Progress {
         if spinner.is_none() {
             eprintln!("{doing} ...");
         }
-        let now = Instant::now();
-        Self { doing: doing.to_owned(), started: now, reminded: now, spinner }
+        Self { doing: doing.to_owned(), started: Instant::now(), reminder: Reminder::new(), spinner }
     }
 
     /// To be called often: with the latest line of the one who works, or with `None` while there is none.
@@ -53,8 +103,7 @@ impl Progress {
                     spinner.set_message(line.chars().take(SHOWN).collect::<String>());
                 }
             }
-            None if self.reminded.elapsed() >= REMINDER => {
-                self.reminded = Instant::now();
+            None if self.reminder.is_due() => {
                 eprintln!("{} ... {} s", self.doing, self.started.elapsed().as_secs());
             }
             None => {}
@@ -67,5 +116,24 @@ impl Drop for Progress {
         if let Some(spinner) = &self.spinner {
             spinner.finish_and_clear();
         }
+    }
+}
+
+/// When a plain line was last due.
+#[derive(Debug)]
+struct Reminder(Instant);
+
+impl Reminder {
+    fn new() -> Self {
+        Self(Instant::now())
+    }
+
+    /// Whether one is due again now.
+    fn is_due(&mut self) -> bool {
+        let due = self.0.elapsed() >= REMINDER;
+        if due {
+            self.0 = Instant::now();
+        }
+        due
     }
 }

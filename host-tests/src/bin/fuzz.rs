@@ -6,7 +6,7 @@ use anyhow::{Context, bail};
 use clap::Parser;
 use host_tests::cli;
 use host_tests::fuzz::{Flips, Search, TARGETS, Tally, Target};
-use host_tests::progress::bar;
+use host_tests::progress::Bar;
 
 /// The target that is no search: frames through a link that flips bits.
 const FLIPS: &str = "flips";
@@ -62,16 +62,16 @@ fn main() -> ExitCode {
 
 fn search(target: Target, arguments: &Arguments) -> anyhow::Result<()> {
     let mut search = Search::new(target).context("the corpus")?;
-    let bar = bar(target.name, arguments.executions);
-    for done in 0..arguments.executions {
+    let bar = Bar::start(target.name, arguments.executions);
+    for done in 1..=arguments.executions {
         if let Err(found) = search.step() {
-            bail!("{}: a promise is broken after {done} executions by {:02x?}", target.name, found.input);
+            bail!("{}: a promise is broken by execution {done}: {:02x?}", target.name, found.input);
         }
         if done % BATCH == 0 {
-            bar.set_position(done);
+            bar.advance(BATCH);
         }
     }
-    bar.finish_and_clear();
+    drop(bar);
     println!(
         "{:10} {:>10} executions, {:>4} outcomes, nothing found",
         target.name,
@@ -86,14 +86,14 @@ fn search(target: Target, arguments: &Arguments) -> anyhow::Result<()> {
 
 fn flips(arguments: &Arguments) -> anyhow::Result<()> {
     let mut link = Flips::new(1, arguments.chance);
-    let bar = bar(FLIPS, arguments.executions);
-    for done in 0..arguments.executions {
+    let bar = Bar::start(FLIPS, arguments.executions);
+    for done in 1..=arguments.executions {
         link.send();
         if done % BATCH == 0 {
-            bar.set_position(done);
+            bar.advance(BATCH);
         }
     }
-    bar.finish_and_clear();
+    drop(bar);
     let Tally { sent, damaged, received, forged, missed, lost } = link.tally();
     println!("{FLIPS:10} {sent:>10} frames, {damaged} damaged, {received} received, {lost} missing by their numbers");
     if forged + missed > 0 || lost != damaged || received + damaged != sent {

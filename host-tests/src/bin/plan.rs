@@ -7,7 +7,7 @@ use host_tests::cli;
 use host_tests::planning::{
     DURATIONS, FOLLOWED, Options, broken, classes, fit, margins, rk4_in_f64, scenes, study, words,
 };
-use host_tests::progress::bar;
+use host_tests::progress::Bar;
 use host_tests::report::table::Table;
 
 fn main() -> ExitCode {
@@ -30,18 +30,18 @@ fn main() -> ExitCode {
 }
 
 fn tables(options: &Options, count: usize) -> Result<Vec<String>, Error> {
-    let bar = bar("planning", count as u64);
+    let bar = Bar::start("planning", count as u64);
     let scenes = scenes(options.seed, DURATIONS).take(count);
-    let cases = study(scenes, &options.target, || bar.inc(1))?;
-    bar.finish_and_clear();
+    let cases = study(scenes, &options.target, || bar.advance(1))?;
+    drop(bar);
     let chip = &options.target;
     let tables = [classes(&cases, chip)?, broken(&cases), rk4_in_f64(&cases, chip)?];
     Ok(tables.iter().map(Table::markdown).collect())
 }
 
 fn fitted(options: &Options, count: usize) -> Result<Vec<String>, Error> {
-    let bar = bar("fitting", count as u64);
-    let samples = fit(scenes(options.seed, FOLLOWED).take(count), || bar.inc(1))?;
-    bar.finish_and_clear();
+    let bar = Bar::start("fitting", count as u64);
+    let samples = fit(scenes(options.seed, FOLLOWED).take(count), || bar.advance(1))?;
+    drop(bar);
     Ok(vec![margins(&samples).markdown()])
 }

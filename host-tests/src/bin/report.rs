@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use anyhow::ensure;
 use clap::Parser;
-use host_tests::progress::bar;
+use host_tests::progress::Bar;
 use host_tests::report::{self, Extent, Main, headline};
 use host_tests::{cli, toolchain};
 
@@ -41,9 +41,9 @@ fn main() -> ExitCode {
 fn run(options: &Options) -> anyhow::Result<()> {
     let (toolchain, _) = toolchain::set_up()?;
     let extent = if options.quick { Extent::QUICK } else { Extent::FULL };
-    let bar = bar("report", 0);
+    let bar = Bar::start("report", 0);
     let written = report::write(&extent, &toolchain, &options.folder, &bar);
-    bar.finish_and_clear();
+    drop(bar);
     let Main { table, chart, absent } = written?;
     if !absent.is_empty() {
         println!("{}", absent.trim_start());

@@ -4,7 +4,7 @@ use std::io::{self, BufWriter, ErrorKind};
 use std::process::ExitCode;
 
 use host_tests::cli;
-use host_tests::progress::bar;
+use host_tests::progress::Bar;
 use host_tests::simulate::{Options, Place, Plan, Table, on_board, on_host, plan};
 use host_tests::toolchain::SetupError;
 
@@ -34,16 +34,16 @@ fn main() -> ExitCode {
 fn run(options: &Options, plan: &Plan) -> anyhow::Result<()> {
     let output = BufWriter::new(io::stdout().lock());
     let mut table = Table::new(output, plan.request.arithmetic, plan.every.clone(), options.bits);
-    let bar = bar("rows", u64::from(plan.request.samples) + 1);
+    let bar = Bar::start("rows", u64::from(plan.request.samples) + 1);
     let row = |reading: &_| {
-        bar.inc(1);
+        bar.advance(1);
         table.row(reading)
     };
     match options.place {
         Place::Host => on_host(plan, row)?,
         Place::Board(board) => on_board(plan, board, row)?,
     }
-    bar.finish_and_clear();
+    drop(bar);
     Ok(table.finish()?)
 }
 

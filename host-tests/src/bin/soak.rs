@@ -7,7 +7,7 @@ use anyhow::Context;
 use clap::Parser;
 use host_tests::board::{BOARDS, Board};
 use host_tests::cli;
-use host_tests::progress::bar;
+use host_tests::progress::Bar;
 use host_tests::qemu::{Clock, Settings};
 use host_tests::soak::{self, Outcome};
 use host_tests::toolchain::{self, SetupError, Toolchain};
@@ -63,15 +63,17 @@ fn run(arguments: &Arguments, boards: &[&'static Board]) -> anyhow::Result<bool>
     };
     for board in boards {
         if arguments.scenes > 0 {
-            let bar = bar(board.name, arguments.scenes.into());
-            let outcome = on(&toolchain, board, |settings| soak::scenes(settings, arguments.scenes, || bar.inc(1)))?;
-            bar.finish_and_clear();
+            let bar = Bar::start(board.name, arguments.scenes.into());
+            let outcome =
+                on(&toolchain, board, |settings| soak::scenes(settings, arguments.scenes, || bar.advance(1)))?;
+            drop(bar);
             say(board, format!("{} s of scenes", arguments.scenes), outcome);
         }
         if arguments.physics > 0 && board.name == PHYSICS_BOARD {
-            let bar = bar(board.name, arguments.physics.into());
-            let outcome = on(&toolchain, board, |settings| soak::physics(settings, arguments.physics, || bar.inc(1)))?;
-            bar.finish_and_clear();
+            let bar = Bar::start(board.name, arguments.physics.into());
+            let outcome =
+                on(&toolchain, board, |settings| soak::physics(settings, arguments.physics, || bar.advance(1)))?;
+            drop(bar);
             say(board, format!("{} min of physics", arguments.physics), outcome);
         }
     }

@@ -18,12 +18,12 @@ pub mod table;
 
 use anyhow::{Context, ensure};
 use firmware::measure::SUBJECTS;
-use indicatif::ProgressBar;
 use std::fs;
 use std::path::Path;
 
 use crate::count::Target;
 use crate::planning;
+use crate::progress::Bar;
 use crate::toolchain::Toolchain;
 use scene::SCENES;
 use table::Table;
@@ -100,11 +100,11 @@ const MARGINS_SEED: u64 = 2;
 /// Computes the report and writes it into `folder`. Costs are counted on one board for each kind of core.
 ///
 /// Gives the README's table and chart too.
-pub fn write(extent: &Extent, toolchain: &Toolchain, folder: &Path, bar: &ProgressBar) -> anyhow::Result<Main> {
+pub fn write(extent: &Extent, toolchain: &Toolchain, folder: &Path, bar: &Bar) -> anyhow::Result<Main> {
     let targets = &Target::build_all(toolchain)?[..];
     bar.set_length(extent.runs(targets.len()) as u64);
-    let tick = || bar.inc(1);
-    bar.set_message("comparing bits");
+    let tick = || bar.advance(1);
+    bar.say("comparing bits");
     let compared = parallel(targets, |target| identity::compare(target, extent.identity, &tick));
     let compared = compared.into_iter().collect::<Result<Vec<_>, _>>()?.concat();
     let identity = identity::table(&compared);
@@ -113,31 +113,31 @@ pub fn write(extent: &Extent, toolchain: &Toolchain, folder: &Path, bar: &Progre
         "host and target differ, so errors from the host would not be the target's:\n{}",
         identity.markdown()
     );
-    bar.set_message("counting");
+    bar.say("counting");
     let costs = costs::count(targets, &SCENES[0], &tick)?;
-    bar.set_message("compiling and counting C");
+    bar.say("compiling and counting C");
     let exact = headline::FOLLOWED.map(accuracy::exact);
     let exact = exact.each_ref().map(Vec::as_slice);
     let c = c_peers::count(toolchain, targets, headline::FOLLOWED, exact)?;
     let headline = headline::table(&costs, &c.0, exact);
-    bar.set_message("comparing with the reference");
+    bar.say("comparing with the reference");
     let points = accuracy::survey(extent.scenes, extent.halvings(), &tick);
-    bar.set_message("following the energy");
+    bar.say("following the energy");
     let energy = energy::table(extent.energy_steps, &tick);
 
-    bar.set_message("counting other integrators");
+    bar.say("counting other integrators");
     let [peers, tight] = peers::tables(extent.peers, &tick)?;
 
-    bar.set_message("carrying out plans");
+    bar.say("carrying out plans");
     let chip = &planning::M4F;
     let scenes = planning::scenes(PLANS_SEED, planning::DURATIONS).take(extent.plans);
     let plans = planning::study(scenes, chip, tick)?;
 
-    bar.set_message("holding the planner's margins");
+    bar.say("holding the planner's margins");
     let scenes = planning::scenes(MARGINS_SEED, planning::FOLLOWED).take(extent.margins);
     let margins = planning::fit(scenes, tick)?;
 
-    bar.set_message("writing");
+    bar.say("writing");
     let priced = speed::priced(&points, &costs);
     let tables = [
         headline.clone(),
