@@ -1,5 +1,6 @@
 #!/bin/bash
-# The set-up on a fresh Debian where things go wrong: it says so in clear words, and the next run heals it.
+# The set-up on a fresh Debian where things go wrong: it says so in clear words, and the next run heals it. And the kernel
+# with the oldest Rust that it promises, which that Debian has.
 #
 #   sudo host-tests/fresh-debian/try.sh [TRIAL ...]    all trials, or those named; exit code 1 if one fails
 #
@@ -14,7 +15,7 @@ folder=${TMPDIR:-/tmp}/double-pendulum-fresh-debian
 base=$folder/base
 toolchain=stable-x86_64-unknown-linux-gnu
 trials=(interrupted-while-fetching interrupted-while-unpacking interrupted-while-configuring killed-while-unpacking
-    killed-while-configuring twice-at-once without-root without-network broken-qemu full-disk)
+    killed-while-configuring twice-at-once without-root without-network broken-qemu full-disk oldest-rust)
 
 # ---- The Debian -------------------------------------------------------------------------------------------------------
 
@@ -185,6 +186,19 @@ full-disk() {
     mount_layer && heals
 }
 
+# Debian 12 has had several versions of these packages; its first release keeps the oldest.
+oldest-rust() {
+    enter "$folder/root" > "$folder/said" 2>&1 <<'END' || fail "the kernel's tests do not pass"
+        set -e
+        apt-get update
+        apt-get install --yes --no-install-recommends {rustc-web,cargo-web,libstd-rust-web-dev}/bookworm
+        promised=$(sed -n 's/^rust-version = "\(.*\)".*/\1/p' kernel/Cargo.toml)
+        /usr/bin/rustc --version | grep " $promised\."
+        export RUSTC=/usr/bin/rustc RUSTDOC=/usr/bin/rustdoc
+        /usr/bin/cargo test --package double-pendulum --all-features --target-dir target/oldest-rust
+END
+}
+
 # ---- All of it --------------------------------------------------------------------------------------------------------
 
 trap lift EXIT
@@ -194,7 +208,7 @@ bring_project
 failures=0
 for trial in "${@:-${trials[@]}}"; do
     case $trial in full-disk) lay 300 ;; *) lay 4096 ;; esac
-    if "$trial"; then echo "$trial: healed"; else failures=$((failures + 1)); fi
+    if "$trial"; then echo "$trial: well"; else failures=$((failures + 1)); fi
     lift
 done
 exit $((failures > 0))

@@ -34,7 +34,7 @@
 //! # Versions
 //!
 //! Semantic versioning. [`Error`] and [`Parameter`] may get new variants, and [`Real`] is sealed, so that it may get new
-//! methods; both are minor versions, as is a higher least Rust (1.88 now). A change of any result's bits is a major one.
+//! methods; both are minor versions, as is a higher least Rust (1.85 now). A change of any result's bits is a major one.
 //!
 //! # References
 //!
