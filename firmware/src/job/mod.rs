@@ -3,12 +3,13 @@
 mod choice;
 mod request;
 mod run;
+mod ways;
 
 use double_pendulum::{Error, Parameter};
 
 pub use choice::{Arithmetic, Form, Model};
 pub use request::{Field, Request};
-pub use run::{Job, JobError};
+pub use ways::{Job, JobError};
 
 /// What one row of the answer holds, SI units. `f32` results are widened, which loses nothing; those of the fast forms are
 /// given to the last digit they carry.

@@ -1,143 +1,18 @@
-//! The ways to compute a motion: one row of a table for each arithmetic, model and form that go together.
+//! How each model and form of the kernel's is run for a request, in any arithmetic.
 
 use core::f64::consts::TAU;
-use core::fmt;
 
-use double_pendulum::form::{self, AngleForm, Compensated, PictureForm, Plain, Winding};
+use double_pendulum::form::{self, Winding};
 use double_pendulum::{EqualRods, Error, Modes, Motion, Parameters, Pendulum, Real, SmallOscillations, State, Units};
 
-use super::{Arithmetic, Field, Form, Model, Reading, Request};
+use super::{Reading, Request};
 
 /// One motion under way. It starts at step 0 with the request's angles and velocities.
-trait Run: Sized {
+pub(super) trait Run: Sized {
     fn start(request: &Request) -> Result<Self, Error>;
     /// Moves one step on.
     fn step(&mut self);
     fn reading(&self) -> Reading;
-}
-
-macro_rules! runs {
-    ($($name:ident: $arithmetic:ident, $model:ident, $form:ident => $run:ty;)*) => {
-        #[derive(Clone, Copy, Debug)]
-        enum Kind { $($name($run),)* }
-
-        impl Kind {
-            fn start(request: &Request) -> Result<Self, JobError> {
-                match (request.arithmetic, request.model, request.form) {
-                    $((Arithmetic::$arithmetic, Model::$model, Form::$form) => {
-                        Ok(Kind::$name(<$run>::start(request).map_err(JobError::Refused)?))
-                    })*
-                    (_, _, form) => Err(JobError::NoSuchForm(form)),
-                }
-            }
-
-            fn step(&mut self) {
-                match self { $(Kind::$name(run) => run.step(),)* }
-            }
-
-            fn reading(&self) -> Reading {
-                match self { $(Kind::$name(run) => run.reading(),)* }
-            }
-        }
-
-        const WAYS: &[(Arithmetic, Model, Form)] =
-            &[$((Arithmetic::$arithmetic, Model::$model, Form::$form),)*];
-    };
-}
-
-runs! {
-    GeneralF32: F32, General, Canonical => General<f32>;
-    GeneralF64: F64, General, Canonical => General<f64>;
-    EqualRodsF32: F32, EqualRods, Canonical => Equal<f32>;
-    EqualRodsF64: F64, EqualRods, Canonical => Equal<f64>;
-    LinearF32: F32, Linear, Canonical => Linear<f32>;
-    LinearF64: F64, Linear, Canonical => Linear<f64>;
-    AngleF32Compensated: F32Compensated, General, Angle => Formed<f32, AngleForm<f32, Compensated<f32>>>;
-    AngleF32: F32, General, Angle => Formed<f32, AngleForm<f32, Plain>>;
-    AngleF64: F64, General, Angle => Formed<f64, AngleForm<f64, Plain>>;
-    PictureF32Compensated: F32Compensated, General, Picture => Wound<f32, PictureForm<f32, Compensated<f32>>>;
-    PictureF32: F32, General, Picture => Wound<f32, PictureForm<f32, Plain>>;
-    PictureF64: F64, General, Picture => Wound<f64, PictureForm<f64, Plain>>;
-}
-
-/// Why a request cannot be computed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum JobError {
-    /// There is no such form of the model in the arithmetic.
-    NoSuchForm(Form),
-    /// The kernel refuses a number.
-    Refused(Error),
-}
-
-impl fmt::Display for JobError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            JobError::NoSuchForm(form) => write!(f, "no {} form of this model in this arithmetic", form.name()),
-            JobError::Refused(error) => write!(f, "{error}"),
-        }
-    }
-}
-
-impl core::error::Error for JobError {}
-
-impl From<JobError> for Field {
-    fn from(error: JobError) -> Self {
-        match error {
-            JobError::NoSuchForm(_) => Field::Form,
-            JobError::Refused(error) => error.into(),
-        }
-    }
-}
-
-/// A request being answered: computes the samples one after the other, a bounded amount of work at a time.
-#[derive(Clone, Copy, Debug)]
-pub struct Job {
-    kind: Kind,
-    stride: u32,
-    /// Samples still to come, the one at the start included.
-    left: u32,
-    /// Steps until the next of them.
-    steps: u32,
-}
-
-impl Job {
-    /// Every arithmetic, model and form that go together.
-    pub const WAYS: &[(Arithmetic, Model, Form)] = WAYS;
-
-    /// The form taken of a `model` in an `arithmetic` where none is asked for; `None` if there is none.
-    pub fn default_form(arithmetic: Arithmetic, model: Model) -> Option<Form> {
-        Self::WAYS.iter().find(|way| (way.0, way.1) == (arithmetic, model)).map(|way| way.2)
-    }
-
-    /// Refuses what does not go together, and parameters, angles, velocities and step sizes that the kernel refuses.
-    pub fn new(request: &Request) -> Result<Self, JobError> {
-        let kind = Kind::start(request)?;
-        Ok(Self { kind, stride: request.stride, left: request.samples.saturating_add(1), steps: 0 })
-    }
-
-    /// Whether every sample has been given.
-    pub fn is_finished(&self) -> bool {
-        self.left == 0
-    }
-
-    /// Computes at most one step; the reading, when a sample is due.
-    ///
-    /// Ends with [`Error::Diverged`] instead of a reading that is not finite: every one given before it is.
-    pub fn advance(&mut self) -> Result<Option<Reading>, Error> {
-        if self.is_finished() {
-            return Ok(None);
-        }
-        if self.steps > 0 {
-            self.kind.step();
-            self.steps -= 1;
-        }
-        if self.steps > 0 {
-            return Ok(None);
-        }
-        self.left -= 1;
-        self.steps = self.stride;
-        self.kind.reading().finite().map(Some).inspect_err(|_| self.left = 0)
-    }
 }
 
 /// The request's numbers in the arithmetic `R`, each rounded once.
@@ -157,7 +32,7 @@ fn reading<R: Real>(pendulum: &Pendulum<R>, state: &State<R>, motion: &Motion<R>
 }
 
 #[derive(Clone, Copy, Debug)]
-struct General<R> {
+pub(super) struct General<R> {
     pendulum: Pendulum<R>,
     step_size: R,
     state: State<R>,
@@ -185,7 +60,7 @@ impl<R: Real> Run for General<R> {
 
 /// As [`General`], stepped in the units of the equal-rod form.
 #[derive(Clone, Copy, Debug)]
-struct Equal<R> {
+pub(super) struct Equal<R> {
     rods: EqualRods<R>,
     units: Units<R>,
     state: State<R>,
@@ -214,7 +89,7 @@ impl<R: Real> Run for Equal<R> {
 
 /// A form of the kernel's, with what it carries.
 #[derive(Clone, Copy, Debug)]
-struct Formed<R: Real, F: form::Form<R>> {
+pub(super) struct Formed<R: Real, F: form::Form<R>> {
     form: F,
     carried: F::Carried,
     /// In double precision, for readings hold more digits than an `f32`.
@@ -248,7 +123,7 @@ impl<R: Real, F: form::Form<R>> Run for Formed<R, F> {
 
 /// A form that knows directions only, its whole turns counted beside it.
 #[derive(Clone, Copy, Debug)]
-struct Wound<R: Real, F: form::Form<R>> {
+pub(super) struct Wound<R: Real, F: form::Form<R>> {
     formed: Formed<R, F>,
     windings: [Winding<R>; 2],
 }
@@ -279,7 +154,7 @@ fn unwrapped<R: Real>(angle: f64, winding: &Winding<R>) -> f64 {
 
 /// The closed form: a step costs nothing, only a reading does.
 #[derive(Clone, Copy, Debug)]
-struct Linear<R> {
+pub(super) struct Linear<R> {
     oscillations: SmallOscillations<R>,
     pendulum: Pendulum<R>,
     /// In f64, so that the time is rounded once.

@@ -1,63 +1,27 @@
 //! The application: reads the buttons, moves the scene, draws it and sends it, tick by tick.
 
+mod event;
+mod news;
+
 use double_pendulum::Error;
 use embedded_io::Write;
 
 use crate::canvas::Canvas;
 use crate::command::{Command, Order};
-use crate::config::{MOST_MESSAGES_PER_TICK, MOST_TICKS_PER_FRAME, STEP, TICK_RATE};
+use crate::config::{MOST_MESSAGES_PER_TICK, MOST_TICKS_PER_FRAME, STEP};
 use crate::controls::{Buttons, Controls};
 use crate::display::Display;
 use crate::job::Field;
-use crate::planner::{Finding, Planner};
+use crate::planner::Planner;
 use crate::player::Player;
 use crate::protocol::{Done, Frame, LinkError, MAX_WIRE, Message, Refused, encode};
-use crate::scenes::SceneName;
 use crate::service::{Received, Service};
 use crate::settings::Settings;
 use crate::sheets::Sheets;
 use crate::survivor::Survivor;
+use news::{Failing, Tally};
 
-/// What is worth a line in the log.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Event<Panel, Link> {
-    /// The board has restarted by itself; whether it plays what it played before.
-    Restarted(Survivor, bool),
-    /// A scene starts with these settings.
-    Started(SceneName, Settings),
-    /// This is not possible because of this; all goes on as it was.
-    Refused(Command, Field),
-    /// Ticks passed without a picture. Said at most once a second, so that saying it does not make it worse.
-    Dropped {
-        /// Since this was last said.
-        ticks: u32,
-        /// Since reset.
-        total: u32,
-    },
-    /// Damaged messages came over the link. Said at most once a second, too.
-    Damaged {
-        /// Since this was last said.
-        messages: u32,
-        /// Since reset.
-        total: u32,
-        /// What was wrong with the last one.
-        last: LinkError,
-    },
-    /// A picture did not reach the panel, though the one before did.
-    Panel(Panel),
-    /// A frame did not reach the link, though the one before did.
-    Link(Link),
-    /// A motion is asked for over the link.
-    Asked,
-    /// The step is too long for the scene's motion, which has left the finite numbers; it stands at its last good
-    /// picture until it is started again.
-    Stopped(Error),
-    /// The step is longer than this, s, the longest that resolves every motion of the energy of what was started or asked
-    /// for.
-    Coarse(f64),
-    /// Looking ahead has found something.
-    Found(Finding),
-}
+pub use event::Event;
 
 /// The same on a board and in a test: a panel, a byte sink and buttons are all it needs.
 #[derive(Debug)]
@@ -75,13 +39,13 @@ pub struct App<'a, Panel, Link, Keys> {
     /// Pictures drawn since reset.
     frames: u32,
     /// Ticks without a picture since reset.
-    dropped: u32,
-    dropped_logged: Logged,
-    /// Damaged messages since reset, and what was wrong with the last one.
-    damaged: (u32, Option<LinkError>),
-    damaged_logged: Logged,
-    panel_failed: bool,
-    link_failed: bool,
+    dropped: Tally,
+    /// Damaged messages since reset.
+    damaged: Tally,
+    /// What was wrong with the last of them.
+    last_damage: Option<LinkError>,
+    panel_failing: Failing,
+    link_failing: Failing,
     stopwatch: fn() -> u32,
     /// Processor cycles of the picture before, from the first tick to the end of its sending.
     busy_cycles: u32,
@@ -110,12 +74,11 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
             canvas,
             ticks: 0,
             frames: 0,
-            dropped: 0,
-            dropped_logged: Logged::default(),
-            damaged: (0, None),
-            damaged_logged: Logged::default(),
-            panel_failed: false,
-            link_failed: false,
+            dropped: Tally::default(),
+            damaged: Tally::default(),
+            last_damage: None,
+            panel_failing: Failing::default(),
+            link_failing: Failing::default(),
             stopwatch: || 0,
             busy_cycles: 0,
         })
@@ -128,8 +91,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
 
     /// Goes by a clock that stands at `clock` now, and counts pictures and ticks without one from `pictures` on.
     pub fn count_from(&mut self, clock: u32, pictures: u32) {
-        (self.ticks, self.frames, self.dropped) = (clock, pictures, pictures);
-        self.dropped_logged = Logged { count: pictures, tick: clock };
+        (self.ticks, self.frames, self.dropped) = (clock, pictures, Tally::starting(pictures, clock));
     }
 
     /// Plans for a processor that has `cycles` in a tick.
@@ -162,7 +124,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         for _ in 0..ticks {
             self.tick(&mut log);
         }
-        self.dropped = self.dropped.wrapping_add(ticks - 1);
+        self.dropped.add(ticks - 1);
         self.log_dropped(&mut log);
         if let Err(error) = self.player.check() {
             log(Event::Stopped(error));
@@ -193,7 +155,10 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
                 }
                 Received::Order(order) => self.follow(order, &mut log),
                 Received::Refused(refused) => self.send(&refused, &mut log),
-                Received::Damaged(error) => self.damaged = (self.damaged.0.wrapping_add(1), Some(error)),
+                Received::Damaged(error) => {
+                    self.damaged.add(1);
+                    self.last_damage = Some(error);
+                }
             }
             left -= 1;
             if left == 0 {
@@ -281,22 +246,22 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     }
 
     fn log_dropped(&mut self, log: &mut impl FnMut(Event<Panel::Error, Link::Error>)) {
-        if let Some(ticks) = self.dropped_logged.news(self.dropped, self.ticks) {
-            log(Event::Dropped { ticks, total: self.dropped });
+        if let Some(ticks) = self.dropped.news(self.ticks) {
+            log(Event::Dropped { ticks, total: self.dropped.total() });
         }
     }
 
     fn log_damaged(&mut self, log: &mut impl FnMut(Event<Panel::Error, Link::Error>)) {
-        if let (total, Some(last)) = self.damaged
-            && let Some(messages) = self.damaged_logged.news(total, self.ticks)
+        if let Some(last) = self.last_damage
+            && let Some(messages) = self.damaged.news(self.ticks)
         {
-            log(Event::Damaged { messages, total, last });
+            log(Event::Damaged { messages, total: self.damaged.total(), last });
         }
     }
 
     fn show(&mut self, scene_cycles: u32, log: &mut impl FnMut(Event<Panel::Error, Link::Error>)) {
         let shown = self.panel.flush(self.canvas);
-        report(shown, &mut self.panel_failed, |error| log(Event::Panel(error)));
+        self.panel_failing.note(shown, |error| log(Event::Panel(error)));
         let frame = self.frame(scene_cycles);
         self.send(&frame, log);
         self.frames = self.frames.wrapping_add(1);
@@ -308,7 +273,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         let [start_angle, _] = settings.angles();
         Frame {
             sequence: self.frames,
-            dropped: self.dropped,
+            dropped: self.dropped.total(),
             scene: self.player.name().code(),
             paused: self.player.is_paused().into(),
             step: report.step as u32,
@@ -326,28 +291,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     /// Sends a message, or the part of it that the link takes in time.
     fn send<M: Message>(&mut self, message: &M, log: &mut impl FnMut(Event<Panel::Error, Link::Error>)) {
         let sent = write_whole(&mut self.link, encode(message, &mut [0; MAX_WIRE]));
-        report(sent, &mut self.link_failed, |error| log(Event::Link(error)));
-    }
-}
-
-/// Says how a count has grown, at most once a second.
-#[derive(Clone, Copy, Debug, Default)]
-struct Logged {
-    /// The count when last said.
-    count: u32,
-    /// The tick when last said.
-    tick: u32,
-}
-
-impl Logged {
-    /// By how much `count` has grown, if it has and it is time to say so.
-    fn news(&mut self, count: u32, tick: u32) -> Option<u32> {
-        let grown = count.wrapping_sub(self.count);
-        let is_time = grown != 0 && tick.wrapping_sub(self.tick) >= TICK_RATE;
-        is_time.then(|| {
-            *self = Self { count, tick };
-            grown
-        })
+        self.link_failing.note(sent, |error| log(Event::Link(error)));
     }
 }
 
@@ -358,14 +302,4 @@ fn write_whole<Link: Write>(link: &mut Link, mut bytes: &[u8]) -> Result<(), Lin
         bytes = bytes.get(sent.max(1)..).unwrap_or_default();
     }
     Ok(())
-}
-
-/// Notes whether something failed, and says so only if it did not fail before.
-fn report<E>(result: Result<(), E>, failed: &mut bool, log: impl FnOnce(E)) {
-    let failed_before = core::mem::replace(failed, result.is_err());
-    if let Err(error) = result
-        && !failed_before
-    {
-        log(error);
-    }
 }
