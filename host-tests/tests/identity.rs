@@ -9,7 +9,7 @@ use host_tests::report::identity::{Steps, compare, every_state};
 use host_tests::report::scene::SCENES;
 use host_tests::toolchain;
 
-/// `cargo report` compares ten times as many, and a hundred times in software.
+/// `cargo write-report` compares ten times as many, and a hundred times in software.
 const STEPS: Steps = Steps { hardware: 100_000, software: 10_000 };
 /// Unoptimised code is slow.
 const STEPS_UNOPTIMISED: u32 = 10_000;

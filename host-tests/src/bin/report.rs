@@ -1,4 +1,4 @@
-//! `cargo report`: writes the tables and pictures of cost against error.
+//! `cargo write-report`: writes the tables and pictures of cost against error.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -11,7 +11,7 @@ use host_tests::{cli, toolchain};
 
 /// Measures every arithmetic's cost on the target and its error, and writes tables, pictures and a page.
 #[derive(Debug, Parser)]
-#[command(name = "cargo report")]
+#[command(name = "cargo write-report")]
 struct Options {
     /// Two scenes and shorter runs, in under two minutes
     #[arg(long)]
@@ -52,7 +52,7 @@ fn run(options: &Options) -> anyhow::Result<()> {
         ensure!(absent.is_empty(), "the README keeps its figures: some are missing in these");
         headline::put_into_readme(&table, &chart)?;
     } else if !headline::is_in_readme(&table)? {
-        println!("the README shows other figures; cargo report --readme puts these there");
+        println!("the README shows other figures; cargo write-report --readme puts these there");
     }
     Ok(())
 }

@@ -19,7 +19,7 @@ pub const FOLLOWED: [&Scene; 2] = [&SCENES[0], &LONG];
 /// Where the README's chart is kept, in the workspace.
 const CHART: &str = "host-tests/pictures/report/speed-against-error.svg";
 /// What stands before and after the README's table.
-const MARKS: [&str; 2] = ["<!-- made by cargo report --readme -->\n", "<!-- so far -->\n"];
+const MARKS: [&str; 2] = ["<!-- made by cargo write-report --readme -->\n", "<!-- so far -->\n"];
 
 /// Every arithmetic and every C program; `exact` is the exact motion of the scenes [`FOLLOWED`].
 pub fn table(costs: &[Cost], counted: &[Counted], exact: [&[[f64; 2]]; 2]) -> Table {

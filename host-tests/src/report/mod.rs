@@ -1,4 +1,4 @@
-//! `cargo report`: every arithmetic's cost on the target against its error, as tables, pictures and one page.
+//! `cargo write-report`: every arithmetic's cost on the target against its error, as tables, pictures and one page.
 //!
 //! Costs are counted on the emulated targets, errors are computed on the host, which is allowed because the bits are the
 //! same ([`identity`]). Nothing is timed, so two runs write the same files.
