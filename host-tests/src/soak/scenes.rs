@@ -1,5 +1,5 @@
 //! All scenes, one after the other, and all of them a second time, which must be the first time over again: state for state,
-//! and the stack no deeper.
+//! and the stack no deeper than an interrupt takes it.
 
 use std::collections::BTreeMap;
 
@@ -16,6 +16,10 @@ const ROUNDS: usize = 2;
 const ON_TIME: f64 = 1e-9;
 /// The largest energy error of a scene. Step errors are what is seen, and most where the motion is wildest.
 const GREATEST_ENERGY_ERROR: f64 = 1e-3;
+/// What one interrupt puts on the stack, bytes: 108 by the processor, which saves its floating-point registers too, 96 by the
+/// handler, rounded up. When the host's bytes come is not up to the counted clock, so an interrupt may strike where the stack is
+/// deepest in one round and not in the other.
+const INTERRUPT: u32 = 256;
 
 /// Plays every scene twice, in `seconds` of the board's time all together; `alive` hears each second's end.
 pub fn scenes(settings: &Settings, seconds: u32, mut alive: impl FnMut()) -> Result<Outcome, QemuError> {
@@ -66,7 +70,9 @@ pub fn scenes(settings: &Settings, seconds: u32, mut alive: impl FnMut()) -> Res
         }
     }
     outcome.stack = reached.last().copied();
-    if reached.iter().any(|bytes| Some(*bytes) != outcome.stack) {
+    if let [first, .., last] = reached[..]
+        && last > first + INTERRUPT
+    {
         outcome.fault(format!("the stack reaches ever deeper: {reached:?} bytes"));
     }
     outcome.end(machine.machine(), settings.board);
