@@ -16,10 +16,10 @@ const ROUNDS: usize = 2;
 const ON_TIME: f64 = 1e-9;
 /// The largest energy error of a scene. Step errors are what is seen, and most where the motion is wildest.
 const GREATEST_ENERGY_ERROR: f64 = 1e-3;
-/// What one interrupt puts on the stack, bytes: 108 by the processor, which saves its floating-point registers too, 96 by the
-/// handler, rounded up. When the host's bytes come is not up to the counted clock, so an interrupt may strike where the stack is
-/// deepest in one round and not in the other.
-const INTERRUPT: u32 = 256;
+/// The most that one interrupt puts on the stack, bytes: the processor, which saves its floating-point registers too, and the
+/// handler. No second one comes on top. When the host's bytes come is not up to the counted clock, so an interrupt may strike
+/// where the stack is deepest in one round and not in the other.
+const INTERRUPT: u32 = 108 + 96;
 
 /// Plays every scene twice, in `seconds` of the board's time all together; `alive` hears each second's end.
 pub fn scenes(settings: &Settings, seconds: u32, mut alive: impl FnMut()) -> Result<Outcome, QemuError> {
