@@ -4,35 +4,35 @@ use double_pendulum::plan::Costs;
 
 // ---- Time -----------------------------------------------------------------------------------------------------------
 
-/// Ticks per second: one tick moves the pendulum by one picture's worth of time.
+/// Ticks per second: one tick moves the pendulum by one frame's worth of time.
 pub const TICK_RATE: u32 = 60;
 /// Integration steps per tick. At dt = 1/240 s the RK4 step error of a metre-long pendulum stays far below a pixel
 /// for as long as its motion can be predicted at all.
 pub const STEPS_PER_TICK: u32 = 4;
 /// Integration steps per simulated second: 60 x 4 = 240.
-pub const STEP_RATE: u32 = TICK_RATE * STEPS_PER_TICK;
+pub const STEPS_PER_SECOND: u32 = TICK_RATE * STEPS_PER_TICK;
 /// The integration step dt, s: 1/240, rounded to `f32`.
-pub const STEP: f32 = 1.0 / STEP_RATE as f32;
-/// The most ticks integrated before a picture is drawn: a board too slow for every picture still shows
-/// 60/15 = 4 per second. Ticks beyond it wait for the next picture; none is ever skipped.
+pub const DT: f32 = 1.0 / STEPS_PER_SECOND as f32;
+/// The most ticks integrated before a frame is drawn: a board too slow for every frame still shows
+/// 60/15 = 4 per second. Ticks beyond it wait for the next frame; none is ever skipped.
 pub const MOST_TICKS_PER_FRAME: u32 = 15;
 
-/// A board that finishes no picture for so long, s, hangs: four times as long as the slowest picture allowed, which is
+/// A board that finishes no frame for so long, s, hangs: four times as long as the slowest frame allowed, which is
 /// 15/60 s. The watchdog says so then, and when as much time again has passed it resets the board.
 pub const WATCHDOG_SECONDS: u32 = 1;
 
 /// The slowest and the fastest a scene may be played, simulated time per real time.
 pub const LEAST_SPEED: f64 = 0.01;
-/// At 4 ticks of the scene per tick even the Cortex-M3 still shows most pictures.
+/// At 4 ticks of the scene per tick even the Cortex-M3 still shows most frames.
 pub const GREATEST_SPEED: f64 = 4.0;
 
 // ---- The plan -------------------------------------------------------------------------------------------------------
 
-/// For how long each scene is planned, s: longer than the motion of the liveliest can be foretold in `f32`.
+/// For how long each scene is planned, s: longer than the motion of the liveliest can be predicted in `f32`.
 pub const PLANNED: f64 = 10.0;
 /// What the search may cost, ticks of the processor's time: 20 s. It has about half of each tick.
 pub const PLANNING_TICKS: f32 = 20.0 * TICK_RATE as f32;
-/// A piece of the search, cycles, unless a single step is more: 0.4 ms of the Cortex-M3. The dearest step, of order 8 in
+/// A piece of the search, cycles, unless a single step is more: 0.4 ms of the Cortex-M3. The most expensive step, of order 8 in
 /// `f64`, takes it 3.5 ms.
 pub const PLANNING_PIECE: f32 = 20_000.0;
 /// What steps cost on this processor: with a floating-point unit or without.
@@ -75,7 +75,7 @@ pub const REPEAT_PERIOD_TICKS: u8 = 4;
 /// Select held alone for 48/60 = 0.8 s changes the scene.
 pub const HOLD_TICKS: u8 = 48;
 
-// ---- The picture, in pixels -----------------------------------------------------------------------------------------
+// ---- The frame, in pixels -----------------------------------------------------------------------------------------
 
 /// Where the pivot sits, from the panel's top left corner: its middle, so that the motion has the full height.
 pub const PIVOT: (f32, f32) = (64.0, 32.0);
@@ -100,5 +100,5 @@ pub const BAUD: u32 = 460_800;
 /// Received bytes waiting for the application; one tick brings at most 460,800/10/60 = 768 (the queue holds one less
 /// than its size).
 pub const RECEIVE_QUEUE: usize = 1024;
-/// Messages obeyed per tick at most; more wait in the queue, and when that is full are lost and never answered.
+/// Messages executed per tick at most; more wait in the queue, and when that is full are lost and never answered.
 pub const MOST_MESSAGES_PER_TICK: usize = 4;

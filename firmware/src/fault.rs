@@ -150,7 +150,7 @@ pub struct Hang {
 impl fmt::Display for Hang {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Hang { pc, lr } = self;
-        write!(f, "HANG: no picture finished for {WATCHDOG_SECONDS} s\n  pc {pc:#010x}  lr {lr:#010x}")
+        write!(f, "HANG: no frame finished for {WATCHDOG_SECONDS} s\n  pc {pc:#010x}  lr {lr:#010x}")
     }
 }
 

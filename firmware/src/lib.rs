@@ -1,45 +1,33 @@
-//! The double-pendulum application.
+//! The double-pendulum application for Cortex-M.
 //!
-//! All but `board` is portable: it is built and tested on the host as well as on the chip.
+//! All but `board` is portable: it is built and tested on the host as well as on the chip. A room imports only from
+//! the rooms below it in this table; data flows from the first row to the last and back only as commands.
 //!
-//! Data flows one way: [`controls`] and the serial link give [`command`]s, they choose what the [`player`] plays: one of
-//! the [`scenes`] with its [`settings`]. The [`scene`] moves and draws itself on the [`canvas`], a [`display`] shows that,
-//! and the [`protocol`] carries the numbers to the host; [`app`] does all this once per tick. A [`service`] computes a
-//! [`job`] for the host in the time that is left.
+//! | room | what is in it |
+//! |---|---|
+//! | `board` | the chips: registers, clocks, interrupts, all `unsafe`; one folder a board |
+//! | [`app`] | the run loop: buttons and serial messages become commands, the player executes them, each tick is integrated, drawn, sent; warm restart |
+//! | [`scenes`] | what a scene is, the catalogue, the accuracy horizon |
+//! | [`job`] | motions computed on request: one table of arithmetics |
+//! | [`motion`] | settings, the moving state, the planner |
+//! | [`display`] | panel drivers, generic over `embedded-hal` |
+//! | [`graphics`] | canvas, brush, fade layer, trail, plot, text, frame buffers |
+//! | [`protocol`] | messages on the serial link as tables, units, wire enums |
+//! | [`fault`] | what a crash report says |
+//! | [`config`] | every number that may be tuned |
+//! | [`soft_float`] | IEEE sums and products by integer arithmetic, for processors without a floating-point unit |
 #![cfg_attr(not(test), no_std)]
 
 pub mod app;
-pub mod bitmap;
 #[cfg(target_os = "none")]
 pub mod board;
-pub mod brush;
-pub mod canvas;
-mod choice;
-pub mod command;
 pub mod config;
-pub mod controls;
 pub mod display;
 pub mod fault;
-pub mod history;
-pub mod ink;
+pub mod graphics;
 pub mod job;
-pub mod label;
 pub mod measure;
-pub mod planner;
-pub mod player;
-pub mod plot;
+pub mod motion;
 pub mod protocol;
-pub mod scene;
 pub mod scenes;
-pub mod service;
-pub mod settings;
-pub mod sheets;
-pub mod simulation;
 pub mod soft_float;
-pub mod survivor;
-pub mod swing;
-pub mod text;
-pub mod trail;
-pub mod trust;
-pub mod unit;
-pub mod view;

@@ -1,28 +1,16 @@
-//! What the host's commands and tests share.
+//! The host's side: the commands, and what the tests hold every number against.
+//!
+//! A room imports only from the rooms below it in this table.
+//!
+//! | room | what is in it |
+//! |---|---|
+//! | `bin/` | one file a command: parses its options, calls, prints |
+//! | [`commands`] | what the commands do: demo, simulate, plan, count, report, figures, soak, fuzz |
+//! | [`emulator`] | the emulated boards: QEMU, toolchain and set-up, processes, budgets |
+//! | [`oracle`] | independent references, known answers, hard cases and the one table of tolerances |
+//! | [`console`] | how every command talks: options, errors, progress |
 
-pub mod board;
-pub mod budget;
-pub mod cli;
-pub mod count;
-pub mod demo;
-pub mod figures;
-pub mod firmware_run;
-pub mod fuzz;
-pub mod hard_case;
-pub mod known_answers;
-pub mod page;
-pub mod planning;
-pub mod process;
-pub mod progress;
-pub mod qemu;
-pub mod random;
-pub mod reference;
-pub mod report;
-pub mod show;
-pub mod simulate;
-pub mod snapshot;
-pub mod soak;
-pub mod stream;
-pub mod tolerance;
-pub mod toolchain;
-pub mod trial;
+pub mod commands;
+pub mod console;
+pub mod emulator;
+pub mod oracle;

@@ -1,9 +1,9 @@
 //! The kernel's motion against the reference, and the order of its method.
 
 use double_pendulum::{EqualRods, Motion, Parameters, Pendulum, State, Units, rk4, rk8};
-use host_tests::reference::{self, Reference};
-use host_tests::tolerance;
-use host_tests::trial::{self, Trial};
+use host_tests::oracle::reference::{self, Reference};
+use host_tests::oracle::tolerances;
+use host_tests::oracle::trials::{self, Trial};
 
 /// Regular motions, in which an error grows no faster than the time: masses and lengths alike and unlike.
 fn regular() -> [(Parameters<f64>, Motion<f64>); 3] {
@@ -41,26 +41,26 @@ fn order_is_4() {
         let errors = [steps, 2 * steps, 4 * steps].map(|steps| error(Pendulum::step, &parameters, &start, steps));
         let orders: Vec<f64> = errors.windows(2).map(|pair| (pair[0] / pair[1]).log2()).collect();
         for order in orders {
-            assert!(tolerance::ORDER.contains(&order), "order {order} for {parameters:?}");
+            assert!(tolerances::ORDER.contains(&order), "order {order} for {parameters:?}");
         }
     }
 }
 
 #[test]
 fn order_of_order_8_is_8() {
-    for (trial, steps) in trial::slow() {
+    for (trial, steps) in trials::slow() {
         let Trial { parameters, start: State { a1, a2, .. }, .. } = trial;
         let start = Motion::at_rest(a1, a2);
         let errors = [steps, 2 * steps].map(|steps| error(Pendulum::step_of_order_8, &parameters, &start, steps));
         let order = (errors[0] / errors[1]).log2();
-        assert!(tolerance::ORDER_8.contains(&order), "order {order} for {trial:?}");
+        assert!(tolerances::ORDER_8.contains(&order), "order {order} for {trial:?}");
     }
 }
 
 #[test]
 fn steps_of_order_8_keep_their_promise() {
     let (parameters, start) = (Parameters::equal_rods(1.0, 1.0, 9.81), Motion::at_rest(0.5, 0.5));
-    for (steps, budget) in tolerance::STEPS_OF_ORDER_8 {
+    for (steps, budget) in tolerances::STEPS_OF_ORDER_8 {
         let error = error(Pendulum::step_of_order_8, &parameters, &start, steps);
         assert!(error < budget, "{error:e} rad with {steps} steps a second");
     }
@@ -70,7 +70,7 @@ fn steps_of_order_8_keep_their_promise() {
 fn plain_f32_stays_within_its_roundings() {
     for (parameters, start) in regular() {
         let Parameters { m1, m2, l1, l2, g } = parameters;
-        let single = host_tests::random::single(&parameters);
+        let single = host_tests::oracle::random::single(&parameters);
         let pendulum = Pendulum::new(single).expect("valid parameters");
         let Motion { a1, a2, w1, w2 } = start;
         let start = Motion { a1: a1 as f32, a2: a2 as f32, w1: w1 as f32, w2: w2 as f32 };
@@ -83,7 +83,7 @@ fn plain_f32_stays_within_its_roundings() {
         let start = Motion::from(<[f32; 4]>::from(start).map(f64::from));
         let exact = reference::states(&Parameters { m1, m2, l1, l2, g }, &start, &[10.0])[0];
         let error = (f64::from(state.a1) - exact.a1).abs().max((f64::from(state.a2) - exact.a2).abs());
-        assert!(error < tolerance::PLAIN_SINGLE, "{error:e} rad after 10 s for {parameters:?}");
+        assert!(error < tolerances::PLAIN_SINGLE, "{error:e} rad after 10 s for {parameters:?}");
     }
 }
 
@@ -102,7 +102,7 @@ fn equal_rods_follow_the_reference() {
         (end.a1 - exact.a1).abs().max((end.a2 - exact.a2).abs())
     };
     let order = (error(2048) / error(4096)).log2();
-    assert!(tolerance::ORDER.contains(&order), "order {order}");
+    assert!(tolerances::ORDER.contains(&order), "order {order}");
 }
 
 /// The method itself, on an equation whose solution is known: z' = z from 1.
@@ -113,7 +113,7 @@ fn order_is_4_for_the_exponential() {
         (end[0] - std::f64::consts::E).abs()
     };
     let order = (error(64) / error(128)).log2();
-    assert!(tolerance::ORDER.contains(&order), "order {order}");
+    assert!(tolerances::ORDER.contains(&order), "order {order}");
 }
 
 #[test]
@@ -123,7 +123,7 @@ fn order_of_order_8_is_8_for_the_exponential() {
         (end[0] - 2_f64.exp()).abs()
     };
     let order = (error(6) / error(12)).log2();
-    assert!(tolerance::ORDER_8.contains(&order), "order {order}");
+    assert!(tolerances::ORDER_8.contains(&order), "order {order}");
 }
 
 /// What `cargo simulate` must show for figure 7: 113-bit results, to 1e-7 in each of the four numbers after 5 s.
@@ -137,6 +137,6 @@ fn figure_7_after_five_seconds() {
     }
     let exact = [2.639210761945575, 9.313387543618361, 3.230631394279675, 4.470030045274851];
     for (value, exact) in <[f64; 4]>::from(state).into_iter().zip(exact) {
-        assert!((value - exact).abs() < tolerance::FIGURE_7, "{value} instead of {exact}");
+        assert!((value - exact).abs() < tolerances::FIGURE_7, "{value} instead of {exact}");
     }
 }

@@ -2,12 +2,12 @@
 
 use std::f64::consts::{PI, TAU};
 
-use double_pendulum::form::{AngleForm, Form, PictureForm};
+use double_pendulum::form::{AngleForm, DirectionForm, Form};
 use double_pendulum::{Bounds, EqualRods, Error, Modes, Motion, Parameters, Pendulum, Real, State};
 use fastrand::Rng;
-use host_tests::reference::Reference;
-use host_tests::trial::Trial;
-use host_tests::{random, tolerance};
+use host_tests::oracle::reference::Reference;
+use host_tests::oracle::trials::Trial;
+use host_tests::oracle::{random, tolerances};
 
 /// |w1|, |w2|, |w1 - w2|, |p1|, |p2|, v1, v2 of a state, each divided by its bound.
 fn shares<R: Real>(pendulum: &Pendulum<R>, bounds: &Bounds<R>, state: &State<R>) -> [f64; 7] {
@@ -43,7 +43,10 @@ fn never_exceeded<R: Real>() {
         let bounds = pendulum.bounds(&start);
         let dt = R::of(0.05) / (bounds.w1 + bounds.w2);
         for (i, share) in largest_shares(&pendulum, start, dt, 100).into_iter().enumerate() {
-            assert!(share <= 1.0 + tolerance::BOUNDS_DRIFT, "bound {i} exceeded: {share} for {given:?} from {start:?}");
+            assert!(
+                share <= 1.0 + tolerances::BOUNDS_DRIFT,
+                "bound {i} exceeded: {share} for {given:?} from {start:?}"
+            );
         }
     }
 }
@@ -65,7 +68,7 @@ fn reached_by_chaotic_motion() {
         let start = State::at_rest(degrees.to_radians(), degrees.to_radians());
         let shares = largest_shares(&pendulum, start, 1.0 / 512.0, 600 * 512);
         for share in shares {
-            assert!(share >= 1.0 - tolerance::BOUNDS_REACHED, "mu = {mu}, {degrees} degrees: {shares:.4?}");
+            assert!(share >= 1.0 - tolerances::BOUNDS_REACHED, "mu = {mu}, {degrees} degrees: {shares:.4?}");
         }
     }
 }
@@ -88,7 +91,7 @@ fn each_bound_is_reached_by_some_state() {
             let shares = shares(&pendulum, &pendulum.bounds(&state), &state);
             for i in reached {
                 let error = (shares[i] - 1.0).abs() * m1 / (m1 + m2);
-                assert!(error < tolerance::FORMULAS.double, "bound {i}: {shares:?}");
+                assert!(error < tolerances::FORMULAS.double, "bound {i}: {shares:?}");
             }
         }
     }
@@ -137,7 +140,7 @@ fn certificate_is_sharp() {
             pendulum.state(&Motion { a1: angles[0], a2: angles[1], w1: velocities[0], w2: velocities[1] })
         };
         let limit = pendulum.turnover_energy();
-        assert!((pendulum.energy_above_rest(&saddle(0.0)) / limit - 1.0).abs() < tolerance::FORMULAS.double);
+        assert!((pendulum.energy_above_rest(&saddle(0.0)) / limit - 1.0).abs() < tolerances::FORMULAS.double);
         assert!(!pendulum.cannot_turn_over(&saddle(1e-6)), "past the saddle, yet certified");
         let mut below = saddle(0.0);
         [&mut below.a1, &mut below.a2][first].clone_from(&(PI - 1e-3));
@@ -240,16 +243,16 @@ fn an_admissible_step_resolves_every_motion() -> Result<(), Error> {
         let after = [
             pendulum.step(&state, dt),
             after_a_step(&AngleForm::<f64>::new(&parameters, dt)?, &state)?,
-            after_a_step(&PictureForm::<f64>::new(&parameters, dt)?, &state)?,
+            after_a_step(&DirectionForm::<f64>::new(&parameters, dt)?, &state)?,
         ];
         for (i, next) in after.iter().enumerate() {
             let miss = miss(&pendulum, &start, next, dt, rate) / (rate * dt);
-            assert!(miss <= tolerance::ADMISSIBLE[i], "form {i}: {miss:e} for {parameters:?} from {start:?}");
+            assert!(miss <= tolerances::ADMISSIBLE[i], "form {i}: {miss:e} for {parameters:?} from {start:?}");
             largest[i] = largest[i].max(miss);
         }
     }
-    println!("classical step, angle form, picture form miss at most {largest:?}");
-    for (largest, allowed) in largest.into_iter().zip(tolerance::ADMISSIBLE) {
+    println!("classical step, angle form, direction form miss at most {largest:?}");
+    for (largest, allowed) in largest.into_iter().zip(tolerances::ADMISSIBLE) {
         assert!(largest >= allowed / 3.0, "never above {largest:e}: the limit is timid");
     }
     Ok(())
@@ -271,11 +274,15 @@ fn a_light_elbow_needs_a_far_shorter_step() -> Result<(), Error> {
     let [short, long] = [trial.seconds / steps, 1.0 / 1024.0];
     for (name, lost, right) in [
         ("angle form", trial.error::<f64, AngleForm<f64>>(long)?, trial.error::<f64, AngleForm<f64>>(short)?),
-        ("picture form", trial.error::<f64, PictureForm<f64>>(long)?, trial.error::<f64, PictureForm<f64>>(short)?),
+        (
+            "direction form",
+            trial.error::<f64, DirectionForm<f64>>(long)?,
+            trial.error::<f64, DirectionForm<f64>>(short)?,
+        ),
     ] {
         println!("{name}: {lost:.1e} with 1/1024 s, {right:.1e} with {short:e} s");
-        assert!(lost > tolerance::UNRESOLVED, "{name}: {lost:e}");
-        assert!(right < tolerance::RESOLVED, "{name}: {right:e}");
+        assert!(lost > tolerances::UNRESOLVED, "{name}: {lost:e}");
+        assert!(right < tolerances::RESOLVED, "{name}: {right:e}");
     }
     Ok(())
 }
@@ -291,7 +298,7 @@ fn admissible_step<R: Real>() -> Result<(), Error> {
         let exact = Pendulum::new(given)?.admissible_step(&state)?;
         let step = Pendulum::new(parameters)?.admissible_step(&State::from(<[f64; 4]>::from(state).map(R::of)))?;
         let error = (step.to_f64() / exact - 1.0).abs();
-        assert!(error <= tolerance::FORMULAS.of::<R>(), "{error:e} for {given:?} from {state:?}");
+        assert!(error <= tolerances::FORMULAS.of::<R>(), "{error:e} for {given:?} from {state:?}");
     }
     let free = Pendulum::new(Parameters::equal_rods(R::ONE, R::ONE, R::ZERO))?;
     let hanging = State::at_rest(R::ZERO, R::ZERO);

@@ -1,6 +1,6 @@
 //! What every board's application takes of its memory, and what it leaves of its processor's time.
 //!
-//! The board's clock counts instructions; how many cycles one takes is estimated on a picture of the first scene that QEMU
+//! The board's clock counts instructions; how many cycles one takes is estimated on a frame of the first scene that QEMU
 //! logs whole. The table in the README is what `cargo test -p host-tests --test budgets -- --nocapture` prints.
 
 mod support;
@@ -9,25 +9,26 @@ use std::path::Path;
 
 use double_pendulum::Parameters;
 use firmware::config::TICK_RATE;
-use firmware::job::{Field, Job, Request};
+use firmware::job::{Job, Request};
+use firmware::protocol::Field;
+use firmware::protocol::Unit;
 use firmware::protocol::{Ask, Choose, Message, Pause, Restart, Set, Simulate, Step};
 use firmware::scenes::SceneName;
-use firmware::unit::Unit;
-use host_tests::board::{BOARDS, Board};
-use host_tests::budget::{self, Memory};
-use host_tests::count::CountError;
-use host_tests::count::{Cost, Image, Profile};
-use host_tests::qemu::{Lockstep, QemuError, Stack};
+use host_tests::commands::count::CountError;
+use host_tests::commands::count::{Cost, Image, Profile};
+use host_tests::emulator::boards::{BOARDS, Board};
+use host_tests::emulator::budgets::{self, Memory};
+use host_tests::emulator::qemu::{Lockstep, QemuError, Stack};
 use object::elf::{SHF_ALLOC, SHF_WRITE};
 use object::{Object, ObjectSection, SectionFlags, SectionKind};
 use support::{application, settings, toolchain};
 
 /// What QEMU's clock takes for an instruction, s.
 const INSTRUCTION: f64 = 32e-9;
-/// Pictures that pay for the start of a scene, or catch up with what it cost.
+/// Frames that pay for the start of a scene, or catch up with what it cost.
 const SETTLING: usize = 6;
-/// Pictures of each scene after those, and pictures in which a motion asked for is computed.
-const PICTURES: usize = 24;
+/// Frames of each scene after those, and frames in which a motion asked for is computed.
+const FRAMES: usize = 24;
 const COMPUTING: usize = 2;
 
 /// Text, data and bss as the linker left them.
@@ -49,23 +50,23 @@ fn sections(elf: &Path) -> Memory {
     memory
 }
 
-/// Lets so many pictures be drawn; the dearest one's cost, counts of the board's clock.
-fn play(board: &mut Lockstep, pictures: usize) -> Result<u32, QemuError> {
-    (0..pictures).try_fold(0, |dearest, _| Ok(dearest.max(board.next_frame()?.busy_cycles)))
+/// Lets so many frames be drawn; the highest one's cost, counts of the board's clock.
+fn play(board: &mut Lockstep, frames: usize) -> Result<u32, QemuError> {
+    (0..frames).try_fold(0, |highest, _| Ok(highest.max(board.next_frame()?.busy_cycles)))
 }
 
 fn send<M: Message>(board: &mut Lockstep, message: M) -> Result<(), QemuError> {
     board.machine().serial.send(&message)
 }
 
-/// Plays every scene and sends every command, good and bad, requests of every kind, and garbage; what the dearest picture
+/// Plays every scene and sends every command, good and bad, requests of every kind, and garbage; what the highest frame
 /// of a scene's own start cost, counts of the board's clock.
 fn exercise(board: &mut Lockstep) -> Result<u32, QemuError> {
-    let mut dearest = 0;
+    let mut highest = 0;
     for &name in SceneName::ALL {
         send(board, Choose { request: 1, scene: name.code() })?;
         play(board, SETTLING)?;
-        dearest = dearest.max(play(board, PICTURES)?);
+        highest = highest.max(play(board, FRAMES)?);
     }
     for field in Field::ALL {
         let unit = Unit::of(*field).unwrap_or(Unit::One).code();
@@ -80,26 +81,25 @@ fn exercise(board: &mut Lockstep) -> Result<u32, QemuError> {
     send(board, Pause { request: 5, paused: 1 })?;
     send(board, Step { request: 6, ticks: 2 })?;
     send(board, Ask { request: 7 })?;
-    play(board, PICTURES)?;
+    play(board, FRAMES)?;
     send(board, Restart { request: 8 })?;
     send(board, Pause { request: 9, paused: 0 })?;
     for &(arithmetic, model, form) in Job::WAYS {
-        for step_size in [1.0 / 256.0, 0.5, 0.0] {
+        for dt in [1.0 / 256.0, 0.5, 0.0] {
             let parameters = Parameters { m1: 1.0, m2: 1.0, l1: 1.0, l2: 1.0, g: 9.81 };
             let (angles, velocities) = ([2.0, 1.0], [0.5, -0.5]);
             let (stride, samples) = (4, 20);
-            let request =
-                Request { arithmetic, model, form, parameters, angles, velocities, step_size, stride, samples };
+            let request = Request { arithmetic, model, form, parameters, angles, velocities, dt, stride, samples };
             send::<Simulate>(board, request.message(10))?;
             play(board, COMPUTING)?;
         }
     }
     board.machine().serial.send_bytes(&[0x55; 300])?;
-    play(board, PICTURES)?;
+    play(board, FRAMES)?;
     board.machine().serial.send_bytes(&[0; 2])?;
-    // A line of the log says that pictures were dropped, if any were.
+    // A line of the log says that frames were dropped, if any were.
     play(board, TICK_RATE as usize)?;
-    Ok(dearest)
+    Ok(highest)
 }
 
 fn measure(board: &'static Board) -> Result<(Memory, f64), CountError> {
@@ -108,12 +108,12 @@ fn measure(board: &'static Board) -> Result<(Memory, f64), CountError> {
     let stack = Stack::of(&elf)?;
     let mut machine = Lockstep::start(&settings(&toolchain, board, &elf))?;
     stack.paint(&mut machine)?;
-    play(&mut machine, PICTURES)?;
+    play(&mut machine, FRAMES)?;
     let (_, profile) = Profile::of_frame(&mut machine, &image, board.core())?;
     let Cost { instructions, cycles_high, .. } = profile.cost();
-    let dearest = exercise(&mut machine)?;
+    let highest = exercise(&mut machine)?;
     let stack = stack.reached(&mut machine)?;
-    let executed = f64::from(dearest) / f64::from(board.hertz) / INSTRUCTION;
+    let executed = f64::from(highest) / f64::from(board.hertz) / INSTRUCTION;
     let cycles = executed * cycles_high as f64 / instructions as f64;
     let idle = 1.0 - cycles * f64::from(TICK_RATE) / f64::from(board.hertz);
     Ok((Memory { stack, ..sections(&elf) }, idle))
@@ -123,7 +123,7 @@ fn measure(board: &'static Board) -> Result<(Memory, f64), CountError> {
 fn every_board_keeps_within_its_memory_and_its_time() -> Result<(), CountError> {
     let mut too_much = Vec::new();
     println!("| board | text | data | bss | stack | idle (estimated) |\n| --- | ---: | ---: | ---: | ---: | ---: |");
-    for (board, (name, budget)) in BOARDS.iter().zip(&budget::MEMORY) {
+    for (board, (name, budget)) in BOARDS.iter().zip(&budgets::MEMORY) {
         assert_eq!(board.name, *name, "a row for each board");
         let (Memory { text, data, bss, stack }, idle) = measure(board)?;
         println!("| `{name}` | {text} | {data} | {bss} | {stack} | {:.0} % |", 100.0 * idle);
@@ -135,7 +135,7 @@ fn every_board_keeps_within_its_memory_and_its_time() -> Result<(), CountError> 
         ];
         too_much
             .extend(parts.into_iter().filter(|(_, bytes, most)| bytes > most).map(|part| format!("{name}: {part:?}")));
-        if idle < budget::IDLE {
+        if idle < budgets::IDLE {
             too_much.push(format!("{name}: idle {idle:.3}"));
         }
         assert!(stack > 0, "{name}: nothing is painted any more, or nothing was");

@@ -4,11 +4,11 @@ use std::f64::consts::{FRAC_PI_6, PI, TAU};
 
 use double_pendulum::{Parameters, SmallOscillations};
 use firmware::config::TICK_RATE;
+use firmware::motion::settings::Settings;
 use firmware::scenes::SceneName;
-use firmware::settings::Settings;
-use host_tests::reference::Reference;
-use host_tests::show::Show;
-use host_tests::tolerance::{CLOSED, CLOSED_FORM, NOT_CLOSED};
+use host_tests::emulator::host::Show;
+use host_tests::oracle::reference::Reference;
+use host_tests::oracle::tolerances::{CLOSED, CLOSED_FORM, NOT_CLOSED};
 
 /// Figures 3 to 5 and their mass ratios.
 const SMALL: [(SceneName, f64); 3] =
@@ -37,16 +37,16 @@ fn frequencies(mass_ratio: f64, gravity: f64, rod: f64) -> [f64; 2] {
 }
 
 /// a1 = (pi/12) sqrt(mu/(1 + mu)) (cos w2 t - cos w1 t), a2 = (pi/12)(cos w1 t + cos w2 t), until the clock says that the
-/// picture may be half a pixel off: hours.
+/// frame may be half a pixel off: hours.
 #[test]
 fn small_oscillations_are_played_as_the_theory_has_them() {
     for (name, mass_ratio) in SMALL {
         let mut scene = show(name);
         let [w1, w2] = frequencies(mass_ratio, 9.8, 0.25);
-        let trusted_until = f64::from(scene.report().trusted_until);
-        assert!(trusted_until > 600.0, "{name:?}: {trusted_until} s");
+        let horizon = f64::from(scene.report().horizon);
+        assert!(horizon > 600.0, "{name:?}: {horizon} s");
         let mut worst: f64 = 0.0;
-        for tick in 1..=(trusted_until * f64::from(TICK_RATE)) as u32 {
+        for tick in 1..=(horizon * f64::from(TICK_RATE)) as u32 {
             scene.tick();
             let t = f64::from(tick) / f64::from(TICK_RATE);
             let report = scene.report();
@@ -58,7 +58,7 @@ fn small_oscillations_are_played_as_the_theory_has_them() {
             assert!(share <= 1.0, "{name:?} at {t} s: off by {error:e} rad");
             worst = worst.max(share);
         }
-        println!("{}: {trusted_until:.0} s, at most {worst:.2} of the bound", name.name());
+        println!("{}: {horizon:.0} s, at most {worst:.2} of the bound", name.name());
     }
 }
 
@@ -119,7 +119,7 @@ fn the_spots_of_the_beats_are_where_the_theory_has_them() {
                 [left[0] + REACH * (w2 * t).cos(), left[1] - REACH * (w1 * t).sin()],
                 place(right, mass_ratio, exact.motion().a1, exact.motion().a2),
             ];
-            let canvas = scene.picture();
+            let canvas = scene.frame();
             for [x, y] in places {
                 assert_eq!(canvas.get(x as i32, y as i32), Some(15), "{name:?} at {t} s: ({x:.2}, {y:.2})");
             }

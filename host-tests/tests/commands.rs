@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::process::Command;
 
-use host_tests::toolchain::workspace;
+use host_tests::emulator::toolchain::workspace;
 
 /// Commands that the README names and a user installs.
 const INSTALLED: [&str; 1] = ["deny"];

@@ -1,12 +1,12 @@
 //! The counter against a second way of counting, and the bits of the target against the host's.
 
 use double_pendulum::Parameters;
-use double_pendulum::plan::{Costs, Way};
+use double_pendulum::plan::{Costs, Method};
 use firmware::measure::{Request, SUBJECTS};
-use host_tests::count::goal::GOALS;
-use host_tests::count::timing::Core;
-use host_tests::count::{FULL_CYCLE, Target, affordable_steps, step_cost};
-use host_tests::toolchain;
+use host_tests::commands::count::goal::GOALS;
+use host_tests::commands::count::{FULL_CYCLE, Target, affordable_steps, step_cost};
+use host_tests::emulator::boards::Core;
+use host_tests::emulator::toolchain;
 
 /// A tick of the board's clock, 12.5 MHz after reset, under `-icount`, where an instruction takes 1 ns.
 const INSTRUCTIONS_PER_TICK: f64 = 80.0;
@@ -74,11 +74,11 @@ fn a_step_costs_what_the_planner_thinks() {
     for target in &targets() {
         let costs = if target.core() == Core::M3 { Costs::CORTEX_M3 } else { Costs::CORTEX_M4F };
         for (way, subject) in [
-            (Way::ClosedForm, "f32-closed-form"),
-            (Way::PicturePlain, "f32-picture-plain"),
-            (Way::Picture, "f32-picture-compensated"),
-            (Way::Angle, "f32-angle-compensated"),
-            (Way::Picture8, "f64-picture8-compensated"),
+            (Method::ClosedForm, "f32-closed-form"),
+            (Method::DirectionPlain, "f32-direction-plain"),
+            (Method::Direction, "f32-direction-compensated"),
+            (Method::Angle, "f32-angle-compensated"),
+            (Method::Direction8, "f64-direction8-compensated"),
         ] {
             let request = Request { angles: [0.5, 0.5], ..request(subject, FULL_CYCLE) };
             let steps = affordable_steps(target, &request).unwrap_or_else(|error| panic!("{error}"));

@@ -7,14 +7,14 @@ use std::io::BufReader;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use host_tests::demo::played;
-use host_tests::process::{Output, run, spawn};
+use host_tests::commands::demo::played;
+use host_tests::emulator::process::{Output, run, spawn};
 use support::{LIMIT, toolchain};
 
 const DEMO: &str = env!("CARGO_BIN_EXE_demo");
-/// Seconds recorded, and what that makes: 30 pictures per second, 3 x 3 dots for each of 128 x 64 pixels.
+/// Seconds recorded, and what that makes: 30 frames per second, 3 x 3 dots for each of 128 x 64 pixels.
 const SECONDS: u32 = 2;
-const PICTURES: usize = 60;
+const FRAMES: usize = 60;
 const SIZE: (u32, u32) = (384, 192);
 
 fn demo(arguments: &[&str]) -> Output {
@@ -40,12 +40,12 @@ fn a_recording_shows_a_swinging_pendulum_and_is_the_same_every_time() {
     }
     assert!(summary.contains("dropped frames        0"), "{summary}");
 
-    let pictures = played(&animation).expect("a GIF file");
-    let time: u32 = pictures.iter().map(|(_, delay)| u32::from(*delay)).sum();
-    assert_eq!((pictures.len(), time), (PICTURES, 100 * SECONDS));
-    assert!(pictures.iter().all(|(dots, _)| dots.len() == (SIZE.0 * SIZE.1) as usize));
-    let moved = pictures.windows(2).filter(|pair| pair[0].0 != pair[1].0).count();
-    assert_eq!(moved, PICTURES - 1, "every picture differs from the one before");
+    let frames = played(&animation).expect("a GIF file");
+    let time: u32 = frames.iter().map(|(_, delay)| u32::from(*delay)).sum();
+    assert_eq!((frames.len(), time), (FRAMES, 100 * SECONDS));
+    assert!(frames.iter().all(|(dots, _)| dots.len() == (SIZE.0 * SIZE.1) as usize));
+    let moved = frames.windows(2).filter(|pair| pair[0].0 != pair[1].0).count();
+    assert_eq!(moved, FRAMES - 1, "every frame differs from the one before");
 
     let screenshot = png::Decoder::new(BufReader::new(File::open(last).expect("a file")));
     let screenshot = screenshot.read_info().expect("a PNG file");

@@ -2,16 +2,17 @@
 
 use std::fmt::Debug;
 
-use double_pendulum::form::{AngleForm, Form, PictureForm, PictureForm8};
+use double_pendulum::form::{AngleForm, DirectionForm, DirectionForm8, Form};
 use double_pendulum::{Error, Parameters, Pendulum, Real, State};
+use firmware::app::controls::NoButtons;
+use firmware::app::service::Service;
 use firmware::app::{App, Event};
-use firmware::controls::NoButtons;
 use firmware::display::NoDisplay;
-use firmware::job::{Arithmetic, Field, Form as Stepped, Model, Request};
+use firmware::job::{Arithmetic, Formulation as Stepped, Model, Request};
+use firmware::motion::settings::Settings;
+use firmware::protocol::Field;
 use firmware::protocol::{Refused, Sample};
-use firmware::service::Service;
-use firmware::settings::Settings;
-use host_tests::show::sheets;
+use host_tests::emulator::host::sheets;
 
 /// Far beyond the stability limit of 0.5 s; it leads out of the finite numbers within a few hundred steps.
 const TOO_LONG: f64 = 50.0;
@@ -67,9 +68,9 @@ fn every_stepper_stops_at_its_last_good_state() {
     plain_steps_stop::<f64>();
     form_stops::<f32, AngleForm<f32>>();
     form_stops::<f64, AngleForm<f64>>();
-    form_stops::<f32, PictureForm<f32>>();
-    form_stops::<f64, PictureForm<f64>>();
-    form_stops::<f64, PictureForm8<f64>>();
+    form_stops::<f32, DirectionForm<f32>>();
+    form_stops::<f64, DirectionForm<f64>>();
+    form_stops::<f64, DirectionForm8<f64>>();
 }
 
 /// Within the limit for small motions, which is all that can be known beforehand, but too long for this one.
@@ -77,17 +78,7 @@ fn too_quick() -> Request {
     let parameters = Parameters { m1: 1.0, m2: 100.0, ..parameters() };
     let (angles, velocities) = ([3.0, 1.0], [3000.0, -3000.0]);
     let (arithmetic, model, form) = (Arithmetic::F32, Model::General, Stepped::Canonical);
-    Request {
-        arithmetic,
-        model,
-        form,
-        parameters,
-        angles,
-        velocities,
-        step_size: 0.06,
-        stride: 1,
-        samples: MANY as u32,
-    }
+    Request { arithmetic, model, form, parameters, angles, velocities, dt: 0.06, stride: 1, samples: MANY as u32 }
 }
 
 #[test]
@@ -100,7 +91,7 @@ fn a_job_is_refused_when_its_motion_is_lost() {
     let answers: Vec<Result<Sample, Refused>> =
         std::iter::from_fn(|| service.is_busy().then(|| service.work())).flatten().collect();
     let (last, samples) = answers.split_last().expect("answers");
-    assert_eq!(*last, Err(Refused { request: 5, field: Field::StepSize.code() }), "after {} samples", samples.len());
+    assert_eq!(*last, Err(Refused { request: 5, field: Field::Dt.code() }), "after {} samples", samples.len());
     let is_finite = |answer: &Result<Sample, Refused>| {
         answer.is_ok_and(|sample| sample.state.iter().chain(&sample.velocities).all(|number| number.is_finite()))
     };
@@ -115,7 +106,7 @@ fn too_short() -> Settings {
 }
 
 #[test]
-fn a_scene_stands_at_its_last_good_picture() {
+fn a_scene_stands_at_its_last_good_frame() {
     let mut app =
         App::new(too_short(), sheets(), NoDisplay, Vec::new(), NoButtons).unwrap_or_else(|error| panic!("{error}"));
     let mut stops = Vec::new();
@@ -133,9 +124,9 @@ fn a_scene_stands_at_its_last_good_picture() {
     assert!(matches!(*stops, [Error::Diverged { .. }]), "said once: {stops:?}");
     assert_eq!(Some(app.player().report()), last_good);
     assert!(app.player().is_paused());
-    let picture = app.canvas().clone();
+    let frame = app.canvas().clone();
     app.run_to(601, |event: Event<_, _>| no_news(event));
-    assert_eq!(*app.canvas(), picture);
+    assert_eq!(*app.canvas(), frame);
 }
 
 fn no_news<Panel: Debug, Link: Debug>(event: Event<Panel, Link>) {

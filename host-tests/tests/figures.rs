@@ -5,16 +5,16 @@ use std::fs;
 use std::path::Path;
 
 use double_pendulum::{Motion, Pendulum, State};
-use firmware::canvas::{HEIGHT, WIDTH};
+use firmware::graphics::canvas::{HEIGHT, WIDTH};
 use firmware::scenes::SceneName;
-use host_tests::demo::played;
-use host_tests::figures::chaos::{self, Chaos};
-use host_tests::figures::frequencies::Frequencies;
-use host_tests::figures::small::{Point, Small};
-use host_tests::figures::{FOLDER, files, panel};
-use host_tests::reference::Reference;
-use host_tests::show::Show;
-use host_tests::tolerance;
+use host_tests::commands::demo::played;
+use host_tests::commands::figures::chaos::{self, Chaos};
+use host_tests::commands::figures::frequencies::Frequencies;
+use host_tests::commands::figures::small::{Point, Small};
+use host_tests::commands::figures::{FOLDER, files, panel};
+use host_tests::emulator::host::Show;
+use host_tests::oracle::reference::Reference;
+use host_tests::oracle::tolerances;
 
 /// Figures 3 to 5: number, mu, w1, w2 (rad/s), the envelope's period (s), the largest |a1| (degrees).
 const SMALL: [(u32, [f64; 5]); 3] = [
@@ -36,11 +36,11 @@ fn the_committed_files_are_what_the_kernel_gives() {
     assert!(wrong.is_empty(), "accept by `cargo figures`: {wrong:?}");
 }
 
-/// Every so many pictures of an animation are compared; two ticks pass from one to the next.
+/// Every so many frames of an animation are compared; two ticks pass from one to the next.
 const EVERY: usize = 30;
-const TICKS_PER_PICTURE: usize = 2;
+const TICKS_PER_FRAME: usize = 2;
 
-/// The host's pictures are the emulated panel's (test `qemu_scenes`), so neither may be older than the firmware.
+/// The host's frames are the emulated panel's (test `qemu_scenes`), so neither may be older than the firmware.
 #[test]
 fn the_committed_animations_show_what_the_host_draws() {
     let outdated: Vec<_> = SceneName::ALL.iter().filter(|name| !is_shown(**name)).map(|name| name.name()).collect();
@@ -48,17 +48,17 @@ fn the_committed_animations_show_what_the_host_draws() {
 }
 
 fn is_shown(name: SceneName) -> bool {
-    let Ok(pictures) = played(&Path::new(FOLDER).join(panel::file(name, "gif"))) else { return false };
-    // A recording starts with the first picture that was drawn, at most two ticks after the start.
-    !pictures.is_empty() && (0..=2).any(|late| is_shown_from(late, name, &pictures))
+    let Ok(frames) = played(&Path::new(FOLDER).join(panel::file(name, "gif"))) else { return false };
+    // A recording starts with the first screenshot that was drawn, at most two ticks after the start.
+    !frames.is_empty() && (0..=2).any(|late| is_shown_from(late, name, &frames))
 }
 
-fn is_shown_from(late: usize, name: SceneName, pictures: &[(Vec<u8>, u16)]) -> bool {
+fn is_shown_from(late: usize, name: SceneName, frames: &[(Vec<u8>, u16)]) -> bool {
     let mut scene = Show::new(name, &name.first_settings()).expect("a scene of the catalogue");
     (0..late).for_each(|_| scene.tick());
-    pictures.iter().enumerate().all(|(number, (dots, _))| {
+    frames.iter().enumerate().all(|(number, (dots, _))| {
         if number > 0 {
-            (0..TICKS_PER_PICTURE).for_each(|_| scene.tick());
+            (0..TICKS_PER_FRAME).for_each(|_| scene.tick());
         }
         !number.is_multiple_of(EVERY) || is_shown_as(&scene, dots)
     })
@@ -66,7 +66,7 @@ fn is_shown_from(late: usize, name: SceneName, pictures: &[(Vec<u8>, u16)]) -> b
 
 /// Whether the dots, a square of them for each pixel, are what the scene draws.
 fn is_shown_as(scene: &Show, dots: &[u8]) -> bool {
-    let canvas = scene.picture();
+    let canvas = scene.frame();
     let scale = (dots.len() / (WIDTH * HEIGHT)).isqrt();
     dots.iter().enumerate().all(|(i, &dot)| {
         let (x, y) = (i % (WIDTH * scale) / scale, i / (WIDTH * scale) / scale);
@@ -99,14 +99,14 @@ fn figures_3_to_5_show_the_frequencies_envelopes_and_amplitudes_of_the_table() {
         let r = ((1.0 + mu) / mu).sqrt();
         for (w, r) in [(w1, -r), (w2, r)] {
             let half_period = between_crossings(&points, |point| point.angles[1] + r * point.angles[0]);
-            assert_close(PI / half_period, w, tolerance::PLOTTED_FREQUENCY, "frequency");
+            assert_close(PI / half_period, w, tolerances::PLOTTED_FREQUENCY, "frequency");
         }
         for (rod, largest) in [largest_a1, START].into_iter().enumerate() {
             // Its square is a cosine about half its maximum.
             let half_period = between_crossings(&points, |point| point.envelopes[rod].powi(2) - largest.powi(2) / 2.0);
-            assert_close(2.0 * half_period, envelope, tolerance::PLOTTED_FREQUENCY, "envelope");
+            assert_close(2.0 * half_period, envelope, tolerances::PLOTTED_FREQUENCY, "envelope");
             let highest = points.iter().map(|point| point.envelopes[rod]).fold(0.0, f64::max);
-            assert_close(highest, largest, tolerance::PLOTTED_AMPLITUDE, "amplitude");
+            assert_close(highest, largest, tolerances::PLOTTED_AMPLITUDE, "amplitude");
         }
     }
 }
@@ -118,10 +118,10 @@ fn the_curves_of_figures_3_to_5_touch_their_envelopes_and_never_leave_them() {
         for rod in 0..2 {
             let beyond = |point: &Point| point.angles[rod].abs() - point.envelopes[rod];
             let farthest = points.iter().map(beyond).fold(f64::NEG_INFINITY, f64::max);
-            assert!(farthest < tolerance::FORMULAS.double * START, "figure {number}, rod {rod}: {farthest} beyond");
+            assert!(farthest < tolerances::FORMULAS.double * START, "figure {number}, rod {rod}: {farthest} beyond");
             let highest = points.iter().map(|point| point.envelopes[rod]).fold(0.0, f64::max);
             let touches = points.iter().filter(|point| {
-                point.envelopes[rod] > highest / 2.0 && beyond(point) > -tolerance::PLOTTED_AMPLITUDE * highest
+                point.envelopes[rod] > highest / 2.0 && beyond(point) > -tolerances::PLOTTED_AMPLITUDE * highest
             });
             assert!(touches.count() > 2, "figure {number}, rod {rod}");
         }
@@ -135,8 +135,8 @@ fn figure_2_solves_the_auxiliary_equation() {
     assert_eq!(points.last().map(|point| point[0]), Some(5.0));
     for [mu, fast, slow] in points {
         assert!(fast > slow, "mu = {mu}");
-        assert_close(fast.powi(2) + slow.powi(2), 2.0 * (1.0 + mu), tolerance::FORMULAS.double, "sum");
-        assert_close(fast.powi(2) * slow.powi(2), 1.0 + mu, tolerance::FORMULAS.double, "product");
+        assert_close(fast.powi(2) + slow.powi(2), 2.0 * (1.0 + mu), tolerances::FORMULAS.double, "sum");
+        assert_close(fast.powi(2) * slow.powi(2), 1.0 + mu, tolerances::FORMULAS.double, "product");
     }
 }
 
@@ -160,10 +160,10 @@ fn the_right_path_of_figure_7_is_the_exact_one() {
         exact.advance_to(f64::from(chaos::DURATION) * i as f64 / last as f64);
         let Motion { a1, a2, .. } = exact.motion();
         let off = distance(point, bob_2(&pendulum, a1, a2));
-        assert!(off < tolerance::FIGURE_7_PATH, "{off} m off at point {i} of {last}");
+        assert!(off < tolerances::FIGURE_7_PATH, "{off} m off at point {i} of {last}");
     }
     let [first, after] = right.energies;
-    assert!((after - first).abs() < tolerance::FIGURE_7_ENERGY, "{after} J after {first} J");
+    assert!((after - first).abs() < tolerances::FIGURE_7_ENERGY, "{after} J after {first} J");
 }
 
 /// There is no exact solution of a misprint at hand, so its path is compared with one of half the step.
@@ -174,7 +174,7 @@ fn the_printed_path_of_figure_7_does_not_depend_on_the_step() {
     assert_eq!(coarse.points.len(), fine.points.len());
     for (i, (&point, &finer)) in coarse.points.iter().zip(&fine.points).enumerate() {
         let off = distance(point, finer);
-        assert!(off < tolerance::FIGURE_7_PATH, "{off} m off at point {i}");
+        assert!(off < tolerances::FIGURE_7_PATH, "{off} m off at point {i}");
     }
     let [first, after] = coarse.energies;
     assert!(after < 0.0 && first > 60.0, "from {first} J to {after} J");

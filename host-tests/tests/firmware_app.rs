@@ -5,18 +5,18 @@ use std::convert::Infallible;
 
 use double_pendulum::{Parameters, Pendulum, State};
 use embedded_io::{ErrorKind, ErrorType, Write};
+use firmware::app::controls::{Buttons, NoButtons, Pressed};
 use firmware::app::{App, Event};
-use firmware::canvas::Canvas;
 use firmware::config::{GRAVITY, MOST_TICKS_PER_FRAME, ROD, STEPS_PER_TICK};
-use firmware::controls::{Buttons, NoButtons, Pressed};
 use firmware::display::{Display, NoDisplay};
+use firmware::graphics::canvas::Canvas;
+use firmware::graphics::view::{Place, View};
+use firmware::motion::direction_stepper::Directions;
+use firmware::motion::settings::Settings;
 use firmware::protocol::{Decoder, Frame, LinkError, Message};
 use firmware::scenes::SceneName;
-use firmware::settings::Settings;
-use firmware::swing::Directions;
-use firmware::view::{Place, View};
-use host_tests::show::sheets;
-use host_tests::stream::Expected;
+use host_tests::emulator::host::sheets;
+use host_tests::oracle::stream::Expected;
 
 type Plain = App<'static, NoDisplay, Vec<u8>, NoButtons>;
 
@@ -107,7 +107,7 @@ fn dropped_pictures_are_counted_and_no_tick_is_lost() {
     assert_eq!(events, [Event::Dropped { ticks: 57, total: 57 }]);
 }
 
-/// After 828 days the counts of ticks, of pictures and of those dropped begin again at 0: nothing else is to be seen of it.
+/// After 828 days the counts of ticks, of frames and of those dropped begin again at 0: nothing else is to be seen of it.
 #[test]
 fn counts_wrap_unnoticed() {
     const AHEAD: u32 = 60;

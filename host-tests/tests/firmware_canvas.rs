@@ -4,8 +4,8 @@ use embedded_graphics::geometry::Size;
 use embedded_graphics::pixelcolor::Gray4;
 use embedded_graphics::prelude::{Dimensions, DrawTarget, Drawable, Pixel, Point, Primitive};
 use embedded_graphics::primitives::{PrimitiveStyle, Rectangle};
-use firmware::brush::{SUBPIXELS, Spot, Stroke};
-use firmware::canvas::{Canvas, HEIGHT, WIDTH};
+use firmware::graphics::brush::{SUBPIXELS, Spot, Stroke};
+use firmware::graphics::canvas::{Canvas, HEIGHT, WIDTH};
 
 /// Greys are rounded down to one of 16, which shifts a disc's centre of light by far less than this, pixels.
 const CENTRE_TOLERANCE: f64 = 0.1;
@@ -19,7 +19,7 @@ fn light(canvas: &Canvas) -> u32 {
 }
 
 /// The top left corner, a character per pixel.
-fn picture(canvas: &Canvas, width: i32, height: i32) -> Vec<String> {
+fn frame(canvas: &Canvas, width: i32, height: i32) -> Vec<String> {
     let row = |y| (0..width).map(|x| char::from_digit(grey(canvas, x, y).into(), 16).expect("a grey")).collect();
     (0..height).map(row).collect()
 }
@@ -62,7 +62,7 @@ fn a_disc_has_a_soft_edge() {
         "00000000", //
         "009ee900", "09ffff90", "0effffe0", "0effffe0", "09ffff90", "009ee900", "00000000",
     ];
-    assert_eq!(picture(&canvas, 8, 8), expected);
+    assert_eq!(frame(&canvas, 8, 8), expected);
 }
 
 #[test]

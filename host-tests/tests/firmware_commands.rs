@@ -2,22 +2,22 @@
 
 use std::f64::consts::PI;
 
-use double_pendulum::plan::Way;
+use double_pendulum::plan::Method;
 use fastrand::Rng;
+use firmware::app::controls::NoButtons;
 use firmware::app::{App, Event};
-use firmware::config::{MOST_MESSAGES_PER_TICK, PLANNED, STEP, STEPS_PER_TICK, TICK_RATE};
-use firmware::controls::NoButtons;
+use firmware::config::{DT, MOST_MESSAGES_PER_TICK, PLANNED, STEPS_PER_TICK, TICK_RATE};
 use firmware::display::NoDisplay;
-use firmware::job::Field;
-use firmware::planner::{Finding, way_code};
+use firmware::motion::planner::{Finding, way_code};
+use firmware::motion::settings::Settings;
+use firmware::protocol::Field;
+use firmware::protocol::Unit;
 use firmware::protocol::{
     Ask, AskPlan, Choose, Decoder, Done, Frame, MAX_WIRE, Message, Pause, Planned, Refused, Restart, Set, Status, Step,
     encode,
 };
 use firmware::scenes::SceneName;
-use firmware::settings::Settings;
-use firmware::unit::Unit;
-use host_tests::show::sheets;
+use host_tests::emulator::host::sheets;
 
 type Plain = App<'static, NoDisplay, Vec<u8>, NoButtons>;
 
@@ -90,7 +90,7 @@ fn settings_too_lively_for_the_step_are_played_and_logged() {
     let coarse = |value| {
         let mut events = Vec::new();
         app().receive(wire(&set(Field::MassRatio, value, Unit::One)), |event| events.push(event));
-        events.iter().any(|event| matches!(event, Event::Coarse(step) if *step < f64::from(STEP)))
+        events.iter().any(|event| matches!(event, Event::StepTooLong(step) if *step < f64::from(DT)))
     };
     assert!(!coarse(1.0));
     assert!(coarse(100.0));
@@ -202,7 +202,7 @@ fn the_plan_is_found_piece_by_piece_and_told_when_asked() {
     assert_eq!(plan, again);
     let answer = asked(&mut app);
     assert_eq!((answer.found, answer.horizon, answer.shown_horizon), (ALL, plan.horizon, shown.horizon));
-    assert_eq!((answer.shown_way, answer.shown_steps), (way_code(Way::Picture), STEPS_PER_TICK));
+    assert_eq!((answer.shown_way, answer.shown_steps), (way_code(Method::Direction), STEPS_PER_TICK));
     assert!(answer.horizon > answer.shown_horizon, "the page's first motion is chaotic: {answer:?}");
 
     app.receive(wire(&set(Field::Angle, 20.0, Unit::Degree)), |_| ());
@@ -236,7 +236,7 @@ fn speed_is_exact_in_the_long_run() {
 /// What arrives in one tick at most: 460,800 bits per second.
 const BYTES_PER_TICK: usize = 768;
 
-/// Feeds `bytes` as fast as the link can bring them, one picture per tick; checks that every tick has its intact frame
+/// Feeds `bytes` as fast as the link can bring them, one frame per tick; checks that every tick has its intact frame
 /// and that the log stays short. The application afterwards.
 fn flood(mut bytes: impl Iterator<Item = u8>, seconds: u32) -> Plain {
     let mut app = app();
@@ -260,7 +260,7 @@ fn flood(mut bytes: impl Iterator<Item = u8>, seconds: u32) -> Plain {
 fn noise_half_commands_and_floods_do_not_disturb_the_stream() {
     let mut rng = Rng::with_seed(5);
     let noise = flood(std::iter::repeat_with(move || rng.u8(..)), 60);
-    assert_eq!(all::<Done>(&noise), [], "noise is obeyed");
+    assert_eq!(all::<Done>(&noise), [], "noise is executed");
     assert_eq!(noise.player().report(), flood(std::iter::empty(), 60).player().report(), "and changes nothing");
 
     flood(std::iter::repeat(0), 10);

@@ -7,11 +7,11 @@ use std::convert::Infallible;
 use embedded_hal::digital::{self, OutputPin};
 use embedded_hal::spi::{self, Operation, SpiDevice};
 use firmware::app::App;
-use firmware::canvas::Canvas;
-use firmware::controls::NoButtons;
+use firmware::app::controls::NoButtons;
 use firmware::display::{Display, PanelError, Ssd0323};
-use firmware::settings::Settings;
-use host_tests::show::sheets;
+use firmware::graphics::canvas::Canvas;
+use firmware::motion::settings::Settings;
+use host_tests::emulator::host::sheets;
 
 /// Commands and how many arguments each takes, from the data sheet's command table.
 const COMMANDS: [(u8, usize); 21] = [
@@ -153,7 +153,7 @@ fn shown(controller: &RefCell<Controller>) -> Vec<u8> {
 }
 
 #[test]
-fn switches_on_with_a_black_picture() {
+fn switches_on_with_a_black_frame() {
     let controller = RefCell::new(Controller::new());
     Ssd0323::new(Bus(&controller), Pin(&controller)).init().expect("the bus works");
     assert!(controller.borrow().on);
@@ -161,7 +161,7 @@ fn switches_on_with_a_black_picture() {
 }
 
 #[test]
-fn shows_exactly_the_picture() {
+fn shows_exactly_the_frame() {
     let controller = RefCell::new(Controller::new());
     let mut panel = Ssd0323::new(Bus(&controller), Pin(&controller));
     panel.init().expect("the bus works");

@@ -1,15 +1,15 @@
-//! The one-colour panel: its picture, and its driver against a controller that is stricter than the real one.
+//! The one-colour panel: its frame, and its driver against a controller that is stricter than the real one.
 
 use std::cell::RefCell;
 
 use embedded_hal::i2c::{ErrorKind, ErrorType, I2c, NoAcknowledgeSource, Operation};
-use firmware::bitmap::Bitmap;
-use firmware::canvas::{Canvas, HEIGHT, WIDTH};
+use firmware::app::player::Player;
 use firmware::config::TICK_RATE;
 use firmware::display::{Display, Ssd1306, Ssd1306Error};
-use firmware::player::Player;
-use firmware::settings::Settings;
-use firmware::sheets::Sheets;
+use firmware::graphics::bitmap::Bitmap;
+use firmware::graphics::canvas::{Canvas, HEIGHT, WIDTH};
+use firmware::graphics::frame_buffers::FrameBuffers;
+use firmware::motion::settings::Settings;
 
 /// Commands and how many arguments each takes, from the data sheet's command table; their arguments follow them in the
 /// same message.
@@ -103,8 +103,8 @@ impl Controller {
         }
     }
 
-    fn shows(&self, picture: &Bitmap) -> bool {
-        self.on && self.memory.iter().copied().eq(picture.pages().as_flattened().iter().copied().map(Some))
+    fn shows(&self, frame: &Bitmap) -> bool {
+        self.on && self.memory.iter().copied().eq(frame.pages().as_flattened().iter().copied().map(Some))
     }
 }
 
@@ -134,7 +134,7 @@ impl I2c for Bus<'_> {
 
 /// The application's first scene after some ticks.
 fn scene(ticks: u32) -> Canvas {
-    let Sheets { mut canvas, mut ink } = Sheets::default();
+    let FrameBuffers { mut canvas, mut ink } = FrameBuffers::default();
     let mut player = Player::new(Settings::default(), &mut ink).expect("the default settings are a pendulum");
     (0..ticks).for_each(|_| player.tick());
     player.draw(&mut canvas);

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use std::process::Command;
 use std::time::Duration;
 
-use host_tests::process::{self, Output};
+use host_tests::emulator::process::{self, Output};
 
 /// For a build of the firmware from nothing.
 const LIMIT: Duration = Duration::from_secs(1800);

@@ -3,11 +3,11 @@
 use std::f64::consts::{PI, TAU};
 
 use double_pendulum::form::{
-    AngleForm, Angles, Compensated, Divided, Form, Picture, PictureForm, PictureForm8, Plain, Winding,
+    AngleForm, AngleState, Compensated, DirectionForm, DirectionForm8, DirectionState, Divided, Form, Plain, Winding,
 };
 use double_pendulum::{Error, Parameter, Parameters, Pendulum, Real, State};
-use host_tests::tolerance;
-use host_tests::trial::{self, Trial, largest_difference};
+use host_tests::oracle::tolerances;
+use host_tests::oracle::trials::{self, Trial, largest_difference};
 
 /// 0.5 rad, at rest: no chaos.
 fn regular(seconds: f64) -> Trial {
@@ -40,7 +40,7 @@ fn textbook(trial: &Trial, dt: f64) -> Vec<State<f64>> {
 fn the_angle_form_is_the_classical_method() -> Result<(), Error> {
     for (trial, dt) in [(regular(100.0), 1.0 / 256.0), (unlike(100.0), 1.0 / 256.0), (chaotic(3.0), 1.0 / 64.0)] {
         let difference = largest_difference(&trial.states::<f64, AngleForm<f64>>(dt)?, &textbook(&trial, dt));
-        assert!(difference <= tolerance::SAME_METHOD, "{difference:e} for {trial:?}");
+        assert!(difference <= tolerances::SAME_METHOD, "{difference:e} for {trial:?}");
     }
     Ok(())
 }
@@ -50,7 +50,7 @@ fn the_angle_form_is_the_classical_method() -> Result<(), Error> {
 fn the_angle_form_is_the_classical_method_where_the_guard_acts() -> Result<(), Error> {
     let (trial, dt) = (chaotic(2.0), 1.0 / 16.0);
     let difference = largest_difference(&trial.states::<f64, AngleForm<f64>>(dt)?, &textbook(&trial, dt));
-    assert!(difference <= tolerance::SAME_METHOD, "{difference:e}");
+    assert!(difference <= tolerances::SAME_METHOD, "{difference:e}");
     Ok(())
 }
 
@@ -62,10 +62,10 @@ fn the_order_is_4() -> Result<(), Error> {
         };
         for order in [
             errors(Trial::error::<f64, AngleForm<f64>>)?,
-            errors(Trial::error::<f64, PictureForm<f64>>)?,
-            errors(Trial::error::<f64, PictureForm<f64, Plain, Divided>>)?,
+            errors(Trial::error::<f64, DirectionForm<f64>>)?,
+            errors(Trial::error::<f64, DirectionForm<f64, Plain, Divided>>)?,
         ] {
-            assert!(tolerance::ORDER.contains(&order), "order {order} for {trial:?}");
+            assert!(tolerances::ORDER.contains(&order), "order {order} for {trial:?}");
         }
     }
     Ok(())
@@ -73,15 +73,15 @@ fn the_order_is_4() -> Result<(), Error> {
 
 #[test]
 fn the_order_of_order_8_is_8() -> Result<(), Error> {
-    for (trial, steps) in trial::slow() {
+    for (trial, steps) in trials::slow() {
         let dt = 1.0 / f64::from(steps);
         let order = |error: fn(&Trial, f64) -> Result<f64, Error>| -> Result<f64, Error> {
             Ok((error(&trial, dt)? / error(&trial, 0.5 * dt)?).log2())
         };
         for order in
-            [order(Trial::error::<f64, PictureForm8<f64>>)?, order(Trial::error::<f64, PictureForm8<f64, Plain>>)?]
+            [order(Trial::error::<f64, DirectionForm8<f64>>)?, order(Trial::error::<f64, DirectionForm8<f64, Plain>>)?]
         {
-            assert!(tolerance::ORDER_8.contains(&order), "order {order} for {trial:?}");
+            assert!(tolerances::ORDER_8.contains(&order), "order {order} for {trial:?}");
         }
     }
     Ok(())
@@ -89,8 +89,8 @@ fn the_order_of_order_8_is_8() -> Result<(), Error> {
 
 #[test]
 fn steps_of_order_8_keep_their_promise() -> Result<(), Error> {
-    for (steps, budget) in tolerance::PICTURE_OF_ORDER_8 {
-        let error = regular(10.0).error::<f64, PictureForm8<f64>>(1.0 / f64::from(steps))?;
+    for (steps, budget) in tolerances::PICTURE_OF_ORDER_8 {
+        let error = regular(10.0).error::<f64, DirectionForm8<f64>>(1.0 / f64::from(steps))?;
         println!("{steps} steps a second: {error:.2e} rad");
         assert!(error < budget, "{error:e} rad with {steps} steps a second");
     }
@@ -100,8 +100,8 @@ fn steps_of_order_8_keep_their_promise() -> Result<(), Error> {
 #[test]
 fn the_picture_forms_method_is_as_good_as_the_angle_forms() -> Result<(), Error> {
     for (trial, dt) in [(regular(10.0), 1.0 / 256.0), (chaotic(5.0), 1.0 / 512.0), (unlike(10.0), 1.0 / 512.0)] {
-        let ratio = trial.error::<f64, PictureForm<f64>>(dt)? / trial.error::<f64, AngleForm<f64>>(dt)?;
-        assert!(ratio <= tolerance::PICTURE_AGAINST_ANGLE, "{ratio} for {trial:?}");
+        let ratio = trial.error::<f64, DirectionForm<f64>>(dt)? / trial.error::<f64, AngleForm<f64>>(dt)?;
+        assert!(ratio <= tolerances::PICTURE_AGAINST_ANGLE, "{ratio} for {trial:?}");
     }
     Ok(())
 }
@@ -110,15 +110,15 @@ fn the_picture_forms_method_is_as_good_as_the_angle_forms() -> Result<(), Error>
 fn compensated_single_precision_keeps_its_budget() -> Result<(), Error> {
     for (i, seconds) in [10.0, 100.0].into_iter().enumerate() {
         let angle = regular(seconds).error::<f32, AngleForm<f32>>(1.0 / 256.0)?;
-        let picture = regular(seconds).error::<f32, PictureForm<f32>>(1.0 / 256.0)?;
-        println!("{seconds} s: angle form {angle:.2e}, picture form {picture:.2e}");
-        assert!(angle <= tolerance::ANGLE_FORM[i], "angle form, {seconds} s: {angle:e}");
-        assert!(picture <= tolerance::PICTURE_FORM[i], "picture form, {seconds} s: {picture:e}");
+        let direction = regular(seconds).error::<f32, DirectionForm<f32>>(1.0 / 256.0)?;
+        println!("{seconds} s: angle form {angle:.2e}, direction form {direction:.2e}");
+        assert!(angle <= tolerances::ANGLE_FORM[i], "angle form, {seconds} s: {angle:e}");
+        assert!(direction <= tolerances::DIRECTION_FORM[i], "direction form, {seconds} s: {direction:e}");
     }
     Ok(())
 }
 
-/// Root mean square of the errors over neighbouring starts: angle form and picture form, compensated `f32`. The truth is
+/// Root mean square of the errors over neighbouring starts: angle form and direction form, compensated `f32`. The truth is
 /// order 8 in `f64`, which keeps 1e-11 rad here (`steps_of_order_8_keep_their_promise`) and costs a thousandth of the
 /// reference's time.
 fn typical_errors(seconds: f64) -> Result<[f64; 2], Error> {
@@ -131,9 +131,9 @@ fn typical_errors(seconds: f64) -> Result<[f64; 2], Error> {
         let [m1, m2, l1, l2, g] = [m1, m2, l1, l2, g].map(f64::from);
         let start = <[f32; 4]>::from(start).map(f64::from).into();
         let rounded = Trial { parameters: Parameters { m1, m2, l1, l2, g }, start, seconds };
-        let exact = rounded.states::<f64, PictureForm8<f64>>(1.0 / 64.0)?;
+        let exact = rounded.states::<f64, DirectionForm8<f64>>(1.0 / 64.0)?;
         let dt = 1.0 / 256.0;
-        let states = [trial.states::<f32, AngleForm<f32>>(dt)?, trial.states::<f32, PictureForm<f32>>(dt)?];
+        let states = [trial.states::<f32, AngleForm<f32>>(dt)?, trial.states::<f32, DirectionForm<f32>>(dt)?];
         for (sum, states) in squares.iter_mut().zip(&states) {
             *sum += largest_difference(states, &exact).powi(2);
         }
@@ -144,10 +144,10 @@ fn typical_errors(seconds: f64) -> Result<[f64; 2], Error> {
 #[test]
 fn typical_errors_of_compensated_single_precision() -> Result<(), Error> {
     for (i, seconds) in [10.0, 100.0].into_iter().enumerate() {
-        let [angle, picture] = typical_errors(seconds)?;
-        println!("{seconds} s: angle form {angle:.2e}, picture form {picture:.2e}");
-        assert!(angle <= tolerance::TYPICAL_ANGLE_FORM[i], "angle form, {seconds} s: {angle:e}");
-        assert!(picture <= tolerance::TYPICAL_PICTURE_FORM[i], "picture form, {seconds} s: {picture:e}");
+        let [angle, direction] = typical_errors(seconds)?;
+        println!("{seconds} s: angle form {angle:.2e}, direction form {direction:.2e}");
+        assert!(angle <= tolerances::TYPICAL_ANGLE_FORM[i], "angle form, {seconds} s: {angle:e}");
+        assert!(direction <= tolerances::TYPICAL_DIRECTION_FORM[i], "direction form, {seconds} s: {direction:e}");
     }
     Ok(())
 }
@@ -157,9 +157,10 @@ fn compensation_pays() -> Result<(), Error> {
     for dt in [1.0 / 256.0, 1.0 / 1024.0] {
         let trial = regular(10.0);
         let angle = trial.error::<f32, AngleForm<f32, Plain>>(dt)? / trial.error::<f32, AngleForm<f32>>(dt)?;
-        let picture = trial.error::<f32, PictureForm<f32, Plain>>(dt)? / trial.error::<f32, PictureForm<f32>>(dt)?;
-        assert!(angle >= tolerance::COMPENSATION_GAIN, "angle form: {angle}");
-        assert!(picture >= tolerance::COMPENSATION_GAIN, "picture form: {picture}");
+        let direction =
+            trial.error::<f32, DirectionForm<f32, Plain>>(dt)? / trial.error::<f32, DirectionForm<f32>>(dt)?;
+        assert!(angle >= tolerances::COMPENSATION_GAIN, "angle form: {angle}");
+        assert!(direction >= tolerances::COMPENSATION_GAIN, "direction form: {direction}");
     }
     Ok(())
 }
@@ -174,12 +175,12 @@ fn backwards_is_forwards_undone() -> Result<(), Error> {
         let mut carried = back.start(&forth.state(&carried))?;
         back.advance(&mut carried, 1024);
         let difference = largest_difference(&[back.state(&carried)], &[start]);
-        assert!(difference <= tolerance::RETURN, "{difference:e}");
+        assert!(difference <= tolerances::RETURN, "{difference:e}");
         Ok(())
     }
     there_and_back::<AngleForm<f64>>()?;
-    there_and_back::<PictureForm<f64>>()?;
-    there_and_back::<PictureForm8<f64>>()
+    there_and_back::<DirectionForm<f64>>()?;
+    there_and_back::<DirectionForm8<f64>>()
 }
 
 #[test]
@@ -195,10 +196,10 @@ fn how_steps_are_dealt_out_changes_nothing() -> Result<(), Error> {
         Ok(())
     }
     same::<f32, AngleForm<f32>>()?;
-    same::<f32, PictureForm<f32>>()?;
+    same::<f32, DirectionForm<f32>>()?;
     same::<f64, AngleForm<f64, Plain>>()?;
-    same::<f64, PictureForm<f64, Plain, Divided>>()?;
-    same::<f64, PictureForm8<f64>>()
+    same::<f64, DirectionForm<f64, Plain, Divided>>()?;
+    same::<f64, DirectionForm8<f64>>()
 }
 
 fn bits<R: Real, F: Form<R>>(carried: &F::Carried) -> Vec<u64> {
@@ -225,11 +226,11 @@ fn directions_are_those_of_the_angles() -> Result<(), Error> {
     }
     for trial in [chaotic(1.0), unlike(1.0)] {
         agree::<f32, AngleForm<f32>>(&trial)?;
-        agree::<f32, PictureForm<f32>>(&trial)?;
+        agree::<f32, DirectionForm<f32>>(&trial)?;
         agree::<f64, AngleForm<f64>>(&trial)?;
-        agree::<f64, PictureForm<f64>>(&trial)?;
-        agree::<f32, PictureForm8<f32>>(&trial)?;
-        agree::<f64, PictureForm8<f64>>(&trial)?;
+        agree::<f64, DirectionForm<f64>>(&trial)?;
+        agree::<f32, DirectionForm8<f32>>(&trial)?;
+        agree::<f64, DirectionForm8<f64>>(&trial)?;
     }
     Ok(())
 }
@@ -239,14 +240,14 @@ fn winding_counts_what_the_angle_form_counts() -> Result<(), Error> {
     let (parameters, start) = Trial::at_rest(2.75, 3.0, 3.0, 1.0).rounded::<f64>();
     let dt = 1.0 / 2048.0;
     let angle_form = AngleForm::<f64>::new(&parameters, dt)?;
-    let picture_form = PictureForm::<f64>::new(&parameters, dt)?;
-    let (mut angles, mut picture) = (angle_form.start(&start)?, picture_form.start(&start)?);
+    let direction_form = DirectionForm::<f64>::new(&parameters, dt)?;
+    let (mut angles, mut direction) = (angle_form.start(&start)?, direction_form.start(&start)?);
     let mut windings = [Winding::new(start.a1), Winding::new(start.a2)];
     let mut most = 0.0_f64;
     for _ in 0..10 * 2048 {
         angle_form.advance(&mut angles, 1);
-        picture_form.advance(&mut picture, 1);
-        let directions = picture_form.directions(&picture);
+        direction_form.advance(&mut direction, 1);
+        let directions = direction_form.directions(&direction);
         windings.iter_mut().zip(directions).for_each(|(winding, direction)| winding.observe(direction));
         let State { a1, a2, .. } = angle_form.state(&angles);
         for (winding, angle) in windings.iter().zip([a1, a2]) {
@@ -267,23 +268,23 @@ fn a_start_angle_of_many_turns_is_the_same_motion() -> Result<(), Error> {
         let expected = near.states::<f64, AngleForm<f64>>(1.0 / 256.0)?;
         let difference = largest_difference(&far.states::<f64, AngleForm<f64>>(1.0 / 256.0)?, &expected);
         assert!(difference <= 1e-12, "{difference:e}: 999 rad is given to 1e-13");
-        let difference = largest_difference(&far.states::<f64, PictureForm<f64>>(1.0 / 256.0)?, &expected);
-        assert!(difference <= 1e-7, "the picture form's own error: {difference:e}");
+        let difference = largest_difference(&far.states::<f64, DirectionForm<f64>>(1.0 / 256.0)?, &expected);
+        assert!(difference <= 1e-7, "the direction form's own error: {difference:e}");
     }
     Ok(())
 }
 
 #[test]
 fn what_is_carried_is_small() {
-    assert!(size_of::<Angles<f32, Compensated<f32>>>() <= 128);
-    assert!(size_of::<Picture<f32, Compensated<f32>>>() <= 128);
+    assert!(size_of::<AngleState<f32, Compensated<f32>>>() <= 128);
+    assert!(size_of::<DirectionState<f32, Compensated<f32>>>() <= 128);
 }
 
 #[test]
 fn bad_input_is_refused_by_name() -> Result<(), Error> {
     let good = Parameters { m1: 1.0_f32, m2: 1.0, l1: 1.0, l2: 1.0, g: 9.81 };
     for dt in [f32::NAN, f32::INFINITY] {
-        let refused = PictureForm::<f32>::new(&good, dt);
+        let refused = DirectionForm::<f32>::new(&good, dt);
         assert!(matches!(refused, Err(Error::NotFinite { parameter: Parameter::Dt, .. })));
     }
     for dt in [0.0, 1e-40] {
@@ -292,7 +293,7 @@ fn bad_input_is_refused_by_name() -> Result<(), Error> {
     }
     let refused = AngleForm::<f32>::new(&Parameters { m2: -1.0, ..good }, 0.01);
     assert!(matches!(refused, Err(Error::NotPositive { parameter: Parameter::M2, .. })));
-    let refused = PictureForm::<f32>::new(&Parameters { m1: 1e30, m2: 1e-30, ..good }, 0.01);
+    let refused = DirectionForm::<f32>::new(&Parameters { m1: 1e30, m2: 1e-30, ..good }, 0.01);
     assert!(matches!(refused, Err(Error::OutOfRange { .. })));
 
     let form = AngleForm::<f32>::new(&good, 0.01)?;
@@ -300,7 +301,7 @@ fn bad_input_is_refused_by_name() -> Result<(), Error> {
     assert!(matches!(refused, Err(Error::NotFinite { parameter: Parameter::A1, .. })));
     let refused = form.start(&State::at_rest(0.0, 1e7));
     assert!(matches!(refused, Err(Error::OutOfRange { parameter: Parameter::A2, .. })));
-    let light = PictureForm::<f32>::new(&Parameters { m2: 0.1, l2: 0.1, ..good }, 0.01)?;
+    let light = DirectionForm::<f32>::new(&Parameters { m2: 0.1, l2: 0.1, ..good }, 0.01)?;
     let refused = light.start(&State { p1: 3e38, ..State::at_rest(PI as f32, 0.0) });
     assert!(matches!(refused, Err(Error::OutOfRange { parameter: Parameter::P1, .. })));
     Ok(())

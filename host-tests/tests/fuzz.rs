@@ -1,6 +1,6 @@
 //! The corpus, and a little of the search: `cargo fuzz-all` does more of it.
 
-use host_tests::fuzz::{Flips, Search, TARGETS, Tally};
+use host_tests::commands::fuzz::{Flips, Search, TARGETS, ThrottledCounter};
 
 /// Executions of each target: some seconds of a slow machine.
 const EXECUTIONS: u32 = 10_000;
@@ -45,7 +45,7 @@ fn no_damaged_frame_is_taken_for_good_and_no_good_one_is_missed() {
     for (chance, frames) in [(1e-4, 50_000), (1e-2, 50_000)] {
         let mut link = Flips::new(2, chance);
         (0..frames).for_each(|_| link.send());
-        let Tally { sent, damaged, received, forged, missed, lost } = link.tally();
+        let ThrottledCounter { sent, damaged, received, forged, missed, lost } = link.tally();
         assert!(damaged > frames / 50, "the link is under fire: {damaged} of {sent}");
         assert_eq!((forged, missed, lost, received), (0, 0, damaged, sent - damaged), "at {chance}");
     }

@@ -2,12 +2,12 @@
 
 use std::f64::consts::TAU;
 
-use double_pendulum::form::{AngleForm, Form, PictureForm, Plain};
+use double_pendulum::form::{AngleForm, DirectionForm, Form, Plain};
 use double_pendulum::{Error, Modes, Motion, Parameters, Pendulum, Real, State};
-use host_tests::hard_case::{HALVINGS, HARD_CASES, HardCase};
-use host_tests::reference::Reference;
-use host_tests::tolerance;
-use host_tests::trial::Trial;
+use host_tests::oracle::hard_cases::{HALVINGS, HARD_CASES, HardCase};
+use host_tests::oracle::reference::Reference;
+use host_tests::oracle::tolerances;
+use host_tests::oracle::trials::Trial;
 
 /// Halving the step never makes the typical error much worse, and in the end the error is within its budget.
 fn refining_pays<R: Real>(case: &HardCase, starts: usize) -> Result<(), Error> {
@@ -15,11 +15,11 @@ fn refining_pays<R: Real>(case: &HardCase, starts: usize) -> Result<(), Error> {
     let starts = case.starts().take(starts).map(exact).collect::<Result<Vec<_>, Error>>()?;
     let forms = [
         HardCase::typical_errors::<R, AngleForm<R>>(&starts)?,
-        HardCase::typical_errors::<R, PictureForm<R>>(&starts)?,
+        HardCase::typical_errors::<R, DirectionForm<R>>(&starts)?,
     ];
     for (i, errors) in forms.into_iter().enumerate() {
         let HardCase { name, floor, method, growth, reason, .. } = case;
-        let about = format!("{name} ({reason}), {}: {errors:?}", ["angle form", "picture form"][i]);
+        let about = format!("{name} ({reason}), {}: {errors:?}", ["angle form", "direction form"][i]);
         for pair in errors.windows(2) {
             // beyond a tenth of a radian an error says nothing but that the motion is lost
             assert!(pair[0] > 0.1 || pair[1] <= growth * pair[0].max(method * R::EPSILON.to_f64()), "{about}");
@@ -60,8 +60,8 @@ macro_rules! every_form {
     ($test:ident, $real:ty) => {
         $test::<$real, AngleForm<$real>>()?;
         $test::<$real, AngleForm<$real, Plain>>()?;
-        $test::<$real, PictureForm<$real>>()?;
-        $test::<$real, PictureForm<$real, Plain>>()?;
+        $test::<$real, DirectionForm<$real>>()?;
+        $test::<$real, DirectionForm<$real, Plain>>()?;
     };
 }
 
@@ -99,7 +99,7 @@ fn upright_falls<R: Real, F: Form<R>>() -> Result<(), Error> {
             let [[sine, cosine], _] = form.directions(&carried);
             sine.to_f64().atan2(cosine.to_f64()).rem_euclid(TAU)
         });
-        assert!((falls - exact).abs() <= tolerance::FALL, "2^-{halvings} s: after {falls} s instead of {exact} s");
+        assert!((falls - exact).abs() <= tolerances::FALL, "2^-{halvings} s: after {falls} s instead of {exact} s");
     }
     Ok(())
 }
@@ -126,7 +126,7 @@ fn upright_stays_where_increments_are_lost<R: Real>(error: f64) -> Result<(), Er
             steps += 1;
         }
         let stayed = f64::from(steps) * dt;
-        assert!((stayed / stays - 1.0).abs() <= tolerance::STAYS, "{stayed} s instead of {stays} s");
+        assert!((stayed / stays - 1.0).abs() <= tolerances::STAYS, "{stayed} s instead of {stays} s");
     }
     Ok(())
 }
@@ -149,9 +149,9 @@ fn turns_straight<R: Real, F: Form<R>>() -> Result<(), Error> {
         let State { a1, a2, p1, p2 } = form.state(&carried);
         let turned = |angle: f64| ((angle - 1.0 - 2.0 * f64::from(seconds)) / TAU).rem_euclid(1.0) * TAU;
         let miss = [a1, a2].map(turned).map(|miss| miss.min(TAU - miss)).into_iter().fold(0.0, f64::max);
-        assert!(miss <= tolerance::STRAIGHT.of::<R>(), "{miss:e} rad after {seconds} s");
+        assert!(miss <= tolerances::STRAIGHT.of::<R>(), "{miss:e} rad after {seconds} s");
         let lost = ((p1 + p2) / (state.p1 + state.p2).to_f64() - 1.0).abs();
-        assert!(lost <= tolerance::STRAIGHT.of::<R>(), "angular momentum: {lost:e} after {seconds} s");
+        assert!(lost <= tolerances::STRAIGHT.of::<R>(), "angular momentum: {lost:e} after {seconds} s");
     }
     Ok(())
 }
@@ -200,7 +200,7 @@ fn tiny_swings<R: Real, F: Form<R>>() -> Result<(), Error> {
         form.advance(&mut carried, 4);
         let expected = (slow.frequency.to_f64() * f64::from(step) / 64.0).cos();
         let miss = (form.state(&carried).a1 / tiny - expected).abs();
-        assert!(miss <= tolerance::TINY.of::<R>(), "{miss:e} at step {step}");
+        assert!(miss <= tolerances::TINY.of::<R>(), "{miss:e} at step {step}");
     }
     let mut carried = form.start(&State::at_rest(R::of(subnormal), R::of(subnormal)))?;
     form.advance(&mut carried, 10_000);
@@ -261,14 +261,14 @@ fn the_edge_of_stability_is_where_it_should_be() -> Result<(), Error> {
 fn a_million_steps() -> Result<(), Error> {
     let trial = Trial::at_rest(1.0, 0.5, 0.5, 1_000_000.0 / 8192.0);
     let (single, double) = (trial.exact::<f32>()?, trial.exact::<f64>()?);
-    let error = |states: Vec<State<f64>>, exact| host_tests::trial::largest_difference(&states, exact);
+    let error = |states: Vec<State<f64>>, exact| host_tests::oracle::trials::largest_difference(&states, exact);
     let dt = 1.0 / 8192.0;
-    let [angle, picture] = tolerance::MILLION_STEPS;
+    let [angle, direction] = tolerances::MILLION_STEPS;
     for (form, miss, budget) in [
         ("angle form", error(trial.states::<f32, AngleForm<f32>>(dt)?, &single), angle.single),
-        ("picture form", error(trial.states::<f32, PictureForm<f32>>(dt)?, &single), picture.single),
+        ("direction form", error(trial.states::<f32, DirectionForm<f32>>(dt)?, &single), direction.single),
         ("angle form, f64", error(trial.states::<f64, AngleForm<f64>>(dt)?, &double), angle.double),
-        ("picture form, f64", error(trial.states::<f64, PictureForm<f64>>(dt)?, &double), picture.double),
+        ("direction form, f64", error(trial.states::<f64, DirectionForm<f64>>(dt)?, &double), direction.double),
     ] {
         println!("{form}: {miss:.1e} rad");
         assert!(miss <= budget, "{form}: {miss:e} rad");

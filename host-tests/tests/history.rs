@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use fastrand::Rng;
-use firmware::history::History;
+use firmware::graphics::history::History;
 
 fn follows_a_queue<const N: usize>() {
     let mut rng = Rng::with_seed(7);

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use host_tests::toolchain::workspace;
+use host_tests::emulator::toolchain::workspace;
 
 /// Lines of code with `unsafe`, by file, and what for.
 const UNSAFE: [(&str, usize, &str); 19] = [

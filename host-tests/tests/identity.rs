@@ -4,10 +4,10 @@ use std::io::Write;
 use std::process::{Command, Stdio};
 
 use firmware::measure::{Request, SUBJECTS};
-use host_tests::count::Target;
-use host_tests::report::identity::{Steps, compare, every_state};
-use host_tests::report::scene::SCENES;
-use host_tests::toolchain;
+use host_tests::commands::count::Target;
+use host_tests::commands::report::identity::{Steps, compare, every_state};
+use host_tests::commands::report::scene::SCENES;
+use host_tests::emulator::toolchain;
 
 /// `cargo write-report` compares ten times as many, and a hundred times in software.
 const STEPS: Steps = Steps { hardware: 100_000, software: 10_000 };

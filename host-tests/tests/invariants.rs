@@ -2,9 +2,9 @@
 
 use double_pendulum::{EqualRods, Parameters, Pendulum, Real, State, Units};
 use fastrand::Rng;
-use host_tests::reference::Constants;
-use host_tests::reference::series::{divide, sin_cos};
-use host_tests::{page, random, tolerance};
+use host_tests::oracle::reference::Constants;
+use host_tests::oracle::reference::series::{divide, sin_cos};
+use host_tests::oracle::{random, textbook, tolerances};
 use twofloat::TwoFloat;
 
 const STATES: usize = 100_000;
@@ -33,13 +33,13 @@ fn derivatives<R: Real>(pendulum: &Pendulum<R>, state: &State<f64>) -> [f64; 4] 
 fn assert_close<R: Real>(values: [f64; 4], exact: [f64; 4], largest_terms: [f64; 4], what: &Parameters<f64>) {
     for i in 0..4 {
         let error = (values[i] - exact[i]).abs() / largest_terms[i];
-        assert!(error <= tolerance::DERIVATIVES.of::<R>(), "component {i} is off by {error:e} for {what:?}");
+        assert!(error <= tolerances::DERIVATIVES.of::<R>(), "component {i} is off by {error:e} for {what:?}");
     }
 }
 
 fn derivatives_are_the_pages<R: Real>() {
     each_state::<R>(1, STATES, |parameters, pendulum, state| {
-        let page = page::general_form(parameters, &(*state).into());
+        let page = textbook::general_form(parameters, &(*state).into());
         assert_close::<R>(derivatives(pendulum, state), page.derivatives, page.largest_terms, parameters);
     });
 }
@@ -82,7 +82,7 @@ fn gradient(constants: &Constants, &State { a1, a2, p1, p2 }: &State<f64>) -> [f
 
 fn derivatives_are_the_gradient_of_h<R: Real>() {
     each_state::<R>(2, STATES, |parameters, pendulum, state| {
-        let largest = page::general_form(parameters, &(*state).into()).largest_terms;
+        let largest = textbook::general_form(parameters, &(*state).into()).largest_terms;
         let gradient = gradient(&parameters.into(), state);
         assert_close::<R>(derivatives(pendulum, state), gradient, largest, parameters);
     });
@@ -109,7 +109,7 @@ fn energy_is_h<R: Real>() {
         let error = |energy: R| f64::from(exact - energy.to_f64()).abs() / range;
         let worst =
             error(pendulum.energy(&state)).max(error(pendulum.energy_above_rest(&state) + pendulum.least_energy()));
-        assert!(worst <= tolerance::FORMULAS.of::<R>(), "H is off by {worst:e} for {parameters:?}");
+        assert!(worst <= tolerances::FORMULAS.of::<R>(), "H is off by {worst:e} for {parameters:?}");
     });
 }
 
@@ -128,7 +128,7 @@ fn energy_above_rest_keeps_its_precision_in_the_smallest_motion() {
     let pendulum = Pendulum::new(Parameters { m1: 1.0_f32, m2: 1.0, l1: 1.0, l2: 1.0, g: 9.8 }).expect("valid");
     let above = pendulum.energy_above_rest(&State::at_rest(1e-10, 2e-10));
     let exact = 9.8 * (2.0 * 1e-20 + 4e-20) / 2.0; // K = ((m1 + m2) g l1 a1^2 + m2 g l2 a2^2)/2
-    assert!((f64::from(above) / exact - 1.0).abs() < tolerance::FORMULAS.single, "{above} instead of {exact}");
+    assert!((f64::from(above) / exact - 1.0).abs() < tolerances::FORMULAS.single, "{above} instead of {exact}");
 }
 
 #[test]
@@ -144,7 +144,7 @@ fn phase_flow_has_no_divergence() {
         let slopes: [f64; 4] = std::array::from_fn(|i| (moved(i, h) - moved(i, -h)) / (2.0 * h));
         let largest = slopes.iter().fold(1.0_f64, |largest, slope| largest.max(slope.abs()));
         let divergence = slopes.iter().sum::<f64>().abs() / largest;
-        assert!(divergence < tolerance::DIVERGENCE, "divergence {divergence:e} for {parameters:?}");
+        assert!(divergence < tolerances::DIVERGENCE, "divergence {divergence:e} for {parameters:?}");
     });
 }
 
@@ -184,18 +184,18 @@ fn units_turn_equal_rods_into_si() {
     let mut own = units.from_si(&state);
     let general: Pendulum<f64> = pendulum(&si);
     let energy = rods.energy(&own) * units.energy;
-    assert!((energy - general.energy(&state)).abs() < tolerance::FORMULAS.double * 10.0, "{energy} J");
+    assert!((energy - general.energy(&state)).abs() < tolerances::FORMULAS.double * 10.0, "{energy} J");
     let back = rods.state(&rods.motion(&own));
     let error = (back.p1 - own.p1).abs().max((back.p2 - own.p2).abs());
-    assert!(error < tolerance::FORMULAS.double, "momenta come back {error:e} off");
+    assert!(error < tolerances::FORMULAS.double, "momenta come back {error:e} off");
     let w1 = rods.motion(&own).w1 * units.angular_velocity;
-    assert!((w1 - general.motion(&state).w1).abs() < tolerance::FORMULAS.double * 10.0, "{w1} rad/s");
+    assert!((w1 - general.motion(&state).w1).abs() < tolerances::FORMULAS.double * 10.0, "{w1} rad/s");
     for _ in 0..1024 {
         state = general.step(&state, 1.0 / 1024.0);
         own = rods.step(&own, 1.0 / 1024.0 / units.time);
     }
     let [own, state]: [[f64; 4]; 2] = [units.to_si(&own).into(), state.into()];
     for (own, si) in own.into_iter().zip(state) {
-        assert!((own - si).abs() < tolerance::RETURN, "{own} instead of {si}");
+        assert!((own - si).abs() < tolerances::RETURN, "{own} instead of {si}");
     }
 }

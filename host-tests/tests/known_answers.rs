@@ -1,9 +1,9 @@
 //! The table of known answers: the reference to its last digits, the kernel within each row's budget.
 
 use double_pendulum::{Motion, Parameters, Pendulum, Real, State};
-use host_tests::known_answers::{KnownAnswer, table};
-use host_tests::reference::Reference;
-use host_tests::tolerance;
+use host_tests::oracle::known_answers::{KnownAnswer, table};
+use host_tests::oracle::reference::Reference;
+use host_tests::oracle::tolerances;
 
 const STEPS_PER_SECOND: u32 = 4096;
 
@@ -39,7 +39,7 @@ fn reference_reaches_the_tables_digits() {
         std::array::from_fn(|i| f64::from(state[i] - row.state[i]))
     };
     each_row(KnownAnswer::reference, differences, |row, distance| {
-        let budget = tolerance::REFERENCE * row.growth;
+        let budget = tolerances::REFERENCE * row.growth;
         assert!(distance <= budget, "{} at {} s: {distance:e}, budget {budget:e}", row.scene, row.time);
     });
 }
@@ -69,11 +69,11 @@ fn kernel_keeps_its_budgets<R: Real>() {
     };
     let mut tested = 0_u32;
     each_row(start, differences, |row, distance| {
-        let budget = tolerance::known_answer::<R>(row, f64::from(STEPS_PER_SECOND));
+        let budget = tolerances::known_answer::<R>(row, f64::from(STEPS_PER_SECOND));
         assert!(distance <= budget, "{} at {} s: {distance:e}, budget {budget:e}", row.scene, row.time);
         tested += u32::from(budget < 1.0);
     });
-    let claimed = tolerance::KNOWN_ANSWERS_CLAIMED.of::<R>();
+    let claimed = tolerances::KNOWN_ANSWERS_CLAIMED.of::<R>();
     assert!(f64::from(tested) >= claimed, "only {tested} rows of the table have a budget below 1");
 }
 

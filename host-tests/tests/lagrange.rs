@@ -2,7 +2,7 @@
 
 use double_pendulum::{Motion, Parameters, Pendulum, Real, State};
 use fastrand::Rng;
-use host_tests::{random, tolerance};
+use host_tests::oracle::{random, tolerances};
 
 /// Random pendulums in motion.
 fn each_motion<R: Real>(seed: u64, mut check: impl FnMut(&Pendulum<R>, &Motion<R>)) {
@@ -18,7 +18,7 @@ fn each_motion<R: Real>(seed: u64, mut check: impl FnMut(&Pendulum<R>, &Motion<R
 #[track_caller]
 fn assert_same<R: Real>(value: R, expected: R, scale: R) {
     let error = ((value - expected) / scale).abs().to_f64();
-    assert!(error <= tolerance::FORMULAS.of::<R>(), "{value} instead of {expected}: {error:e} of {scale}");
+    assert!(error <= tolerances::FORMULAS.of::<R>(), "{value} instead of {expected}: {error:e} of {scale}");
 }
 
 /// w -> p -> w, and p = (dL/dw1, dL/dw2): L is quadratic in w, so that a central difference of any step is exact.
@@ -117,7 +117,7 @@ fn bobs_are_where_the_rods_point() {
     let parameters = Parameters { m1: 1.0, m2: 2.0, l1: 3.0, l2: 4.0, g: 9.8 };
     let pendulum = Pendulum::new(parameters).expect("valid parameters");
     let quarter = std::f64::consts::FRAC_PI_2;
-    let near = |x: f64, y: f64| (x - y).abs() < tolerance::FORMULAS.double;
+    let near = |x: f64, y: f64| (x - y).abs() < tolerances::FORMULAS.double;
     let [bob1, bob2] = pendulum.positions(0.0, quarter); // down, then right
     assert!(near(bob1.x, 0.0) && near(bob1.y, -3.0) && near(bob2.x, 4.0) && near(bob2.y, -3.0), "{bob1:?} {bob2:?}");
     let [v1, v2] = pendulum.velocities(&Motion { a1: 0.0, a2: quarter, w1: 1.0, w2: 2.0 });

@@ -1,7 +1,7 @@
 //! The page's equal-rod form as printed, against the right one, at the settings of its figure 7.
 
 use double_pendulum::{Parameters, Pendulum, State, rk4};
-use host_tests::{page, tolerance};
+use host_tests::oracle::{textbook, tolerances};
 
 const MU: f64 = 2.75;
 const STEPS_PER_SECOND: usize = 512;
@@ -50,9 +50,9 @@ fn both_start_at_62_9_joules() {
 
 #[test]
 fn printed_form_loses_the_energy_and_hangs_below_the_pivot() {
-    let summary = run(|z| page::misprinted_equal_rods(MU, 1.0, 9.8, z));
-    assert!((summary.mean_energy + 18.7).abs() < tolerance::MISPRINT_ENERGY, "mean energy {} J", summary.mean_energy);
-    assert!(summary.share_above_pivot < tolerance::MISPRINT_ABOVE, "{} above the pivot", summary.share_above_pivot);
+    let summary = run(|z| textbook::misprinted_equal_rods(MU, 1.0, 9.8, z));
+    assert!((summary.mean_energy + 18.7).abs() < tolerances::MISPRINT_ENERGY, "mean energy {} J", summary.mean_energy);
+    assert!(summary.share_above_pivot < tolerances::MISPRINT_ABOVE, "{} above the pivot", summary.share_above_pivot);
 }
 
 #[test]
@@ -60,12 +60,12 @@ fn right_form_keeps_the_energy_and_spends_half_its_time_above_the_pivot() {
     let (pendulum, _) = figure_7();
     let summary = run(|z| pendulum.derivatives(z));
     assert!(
-        summary.largest_energy_error < tolerance::FIGURE_7_ENERGY,
+        summary.largest_energy_error < tolerances::FIGURE_7_ENERGY,
         "energy error {} J",
         summary.largest_energy_error
     );
     assert!(
-        (summary.share_above_pivot - 0.507).abs() < tolerance::FIGURE_7_ABOVE,
+        (summary.share_above_pivot - 0.507).abs() < tolerances::FIGURE_7_ABOVE,
         "{} above the pivot",
         summary.share_above_pivot
     );
@@ -75,10 +75,10 @@ fn right_form_keeps_the_energy_and_spends_half_its_time_above_the_pivot() {
 fn with_equal_masses_the_printed_form_is_right() {
     let pendulum = Pendulum::new(Parameters::equal_rods(1.0, 0.5, 9.8)).expect("valid parameters");
     let z = [0.7, -1.9, 0.3, -0.4];
-    let printed = page::misprinted_equal_rods(1.0, 0.5, 9.8, &z);
+    let printed = textbook::misprinted_equal_rods(1.0, 0.5, 9.8, &z);
     for (printed, right) in printed.into_iter().zip(pendulum.derivatives(&z)) {
         assert!(
-            (printed - right).abs() < tolerance::DERIVATIVES.double * right.abs().max(1.0),
+            (printed - right).abs() < tolerances::DERIVATIVES.double * right.abs().max(1.0),
             "{printed} instead of {right}"
         );
     }

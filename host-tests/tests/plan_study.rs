@@ -1,8 +1,8 @@
 //! The planner's promises and margins against the exact motion, over scenes of all kinds.
 
-use double_pendulum::plan::Scene;
-use host_tests::planning::{Case, Class, GROSS, M4F, Sample, doubt, fit, margins, median, scenes, study};
-use host_tests::tolerance::{JUDGE, PLAN_KEPT, PLAN_SHARE};
+use double_pendulum::plan::Problem;
+use host_tests::commands::plan::{Case, Class, GROSS, M4F, Sample, doubt, fit, margins, median, scenes, study};
+use host_tests::oracle::tolerances::{JUDGE, PLAN_KEPT, PLAN_SHARE};
 
 /// Other scenes than the report's.
 const SEED: u64 = 20;
@@ -16,12 +16,12 @@ const LEAST_ENDING: usize = 8;
 const FITTED: usize = 12;
 const LEAST_LOOKS: usize = 8;
 
-fn all() -> impl Iterator<Item = Scene> {
+fn all() -> impl Iterator<Item = Problem> {
     scenes(SEED, 2.0..3.0).take(ALL)
 }
 
-fn lively(count: usize) -> impl Iterator<Item = Scene> {
-    let is_lively = |scene: &Scene| Class::of(scene) == Ok(Class::Free) && scene.start.a2.abs() > 1.5;
+fn lively(count: usize) -> impl Iterator<Item = Problem> {
+    let is_lively = |scene: &Problem| Class::of(scene) == Ok(Class::Free) && scene.start.a2.abs() > 1.5;
     scenes(SEED + 1, 8.0..12.0).filter(is_lively).take(count)
 }
 

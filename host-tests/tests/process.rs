@@ -5,7 +5,7 @@ use std::io::{BufRead, BufReader, Read};
 use std::process::{ChildStdout, Command, Stdio};
 use std::time::Duration;
 
-use host_tests::process::{ProcessError, on_interrupt, run, run_watched, spawn};
+use host_tests::emulator::process::{ProcessError, on_interrupt, run, run_watched, spawn};
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 

@@ -4,9 +4,9 @@ mod support;
 
 use firmware::config::STEPS_PER_TICK;
 use firmware::protocol::Frame;
-use host_tests::board::{BOARDS, Board};
-use host_tests::qemu::{Counts, Lockstep, Machine, QemuError};
-use host_tests::stream::Expected;
+use host_tests::emulator::boards::{BOARDS, Board};
+use host_tests::emulator::qemu::{Counts, Lockstep, Machine, QemuError};
+use host_tests::oracle::stream::Expected;
 use support::{application, settings, toolchain};
 
 /// 12 s of the board's time: the motion has turned over and become chaotic long before.
@@ -49,7 +49,7 @@ fn standing_still_between_frames_changes_nothing() -> Result<(), QemuError> {
     let running = Machine::start(&settings)?;
     for _ in 0..FRAMES {
         let frame = stopped.next_frame()?;
-        stopped.picture()?;
+        stopped.screenshot()?;
         assert_eq!(Some(frame), running.serial.next());
     }
     Ok(())

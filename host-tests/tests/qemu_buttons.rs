@@ -5,8 +5,8 @@ mod support;
 use firmware::config::{ANGLE_STEP, MASS_RATIOS, STEPS_PER_TICK};
 use firmware::protocol::{Choose, Frame};
 use firmware::scenes::SceneName;
-use host_tests::board::{BOARDS, Board};
-use host_tests::qemu::{Key, Machine, QemuError};
+use host_tests::emulator::boards::{BOARDS, Board};
+use host_tests::emulator::qemu::{Key, Machine, QemuError};
 use support::{application, settings, toolchain};
 
 /// Frames until the firmware has noticed that a button is released, however late the host's word reaches it.

@@ -2,9 +2,9 @@
 
 mod support;
 
-use host_tests::board::{BOARDS, Board};
-use host_tests::count::Image;
-use host_tests::qemu::{Machine, Probe, QemuError};
+use host_tests::commands::count::Image;
+use host_tests::emulator::boards::{BOARDS, Board};
+use host_tests::emulator::qemu::{Machine, Probe, QemuError};
 use object::{Object, ObjectSymbol};
 use support::{settings, toolchain};
 

@@ -1,14 +1,14 @@
-//! The plan on the emulated boards: found between the pictures without delaying one, logged, answered, and the host's to the bit.
+//! The plan on the emulated boards: found between the frames without delaying one, logged, answered, and the host's to the bit.
 
 mod support;
 
 use double_pendulum::plan::{Budget, Costs, Plan, Search};
 use firmware::config::TICK_RATE;
-use firmware::planner::{limit_code, scene, way_code};
+use firmware::motion::planner::{limit_code, scene, way_code};
 use firmware::protocol::{AskPlan, Choose, Frame, Planned};
 use firmware::scenes::{AnyScene, SceneName};
-use host_tests::board::{BOARDS, Board};
-use host_tests::qemu::{Machine, QemuError};
+use host_tests::emulator::boards::{BOARDS, Board};
+use host_tests::emulator::qemu::{Machine, QemuError};
 use support::{application, settings, toolchain};
 
 /// Frames between two questions.
@@ -85,7 +85,7 @@ fn planned(machine: &mut Machine, board: &Board, name: SceneName) -> Result<(Pla
 }
 
 #[test]
-fn every_scene_is_planned_between_the_pictures() -> Result<(), QemuError> {
+fn every_scene_is_planned_between_the_frames() -> Result<(), QemuError> {
     BOARDS.iter().filter(|board| board.has_panel).try_for_each(|board| {
         let costs = if board.target.ends_with("hf") { Costs::CORTEX_M4F } else { Costs::CORTEX_M3 };
         let (toolchain, elf) = (toolchain(), application(board));

@@ -1,6 +1,6 @@
 //! Things that go wrong in the running application: what is said of them, and how the board comes back.
 //!
-//! They are injected into the images that are flashed, from outside: a debugger stops the board in the middle of a picture
+//! They are injected into the images that are flashed, from outside: a debugger stops the board in the middle of a screenshot
 //! that is drawn but not yet sent, and sends its processor elsewhere.
 
 #[path = "support/program.rs"]
@@ -11,13 +11,13 @@ use std::error::Error;
 use std::path::Path;
 use std::time::Duration;
 
-use firmware::job::Field;
+use firmware::app::warm_restart::{Cause, MOST_RESTARTS};
+use firmware::protocol::Field;
+use firmware::protocol::Unit;
 use firmware::protocol::{Choose, Frame, Restarted, Set};
 use firmware::scenes::SceneName;
-use firmware::survivor::{Cause, MOST_RESTARTS};
-use firmware::unit::Unit;
-use host_tests::board::{BOARDS, Board, STM32F405};
-use host_tests::qemu::{Machine, Probe, QemuError, Register, Settings};
+use host_tests::emulator::boards::{BOARDS, Board, STM32F405};
+use host_tests::emulator::qemu::{Machine, Probe, QemuError, Register, Settings};
 use program::address;
 use support::{application, settings, toolchain};
 
@@ -26,14 +26,14 @@ const UNUSED: u32 = 0x2000_8000;
 /// Two instructions: `b .`, an endless loop, and `udf #0`, which is none.
 const HANG: [u8; 2] = [0xfe, 0xe7];
 const UNDEFINED: [u8; 2] = [0x00, 0xde];
-/// Pictures of the scene that are waited for.
-const PICTURES: usize = 20;
-/// The stopwatch is read when a picture is begun, when it is drawn, and when it is sent.
+/// Frames of the scene that are waited for.
+const FRAMES: usize = 20;
+/// The stopwatch is read when a screenshot is begun, when it is drawn, and when it is sent.
 const STOPWATCH: &str = "board::clock::cycles";
 /// The mass ratio that the tests set, unlike any scene's own.
 const MASS_RATIO: f32 = 0.7;
 
-/// A board that stands still in the middle of a picture of `scene`, with a mass ratio of its own: the last frame it has
+/// A board that stands still in the middle of a screenshot of `scene`, with a mass ratio of its own: the last frame it has
 /// sent.
 fn within(probe: &mut Probe, elf: &Path, scene: SceneName) -> Result<Frame, QemuError> {
     // A serial port that is not yet on takes no bytes.
@@ -44,9 +44,9 @@ fn within(probe: &mut Probe, elf: &Path, scene: SceneName) -> Result<Frame, Qemu
     let (field, unit) = (Field::MassRatio.code(), Unit::One.code());
     serial.send(&Set { request: 2, field, unit, value: MASS_RATIO.into() })?;
     // To stop rarely is quicker: a board that stands still takes no bytes.
-    let obey = address(elf, "Player::obey");
-    probe.run_to(obey)?;
-    probe.run_to(obey)?;
+    let execute = address(elf, "Player::execute");
+    probe.run_to(execute)?;
+    probe.run_to(execute)?;
     let mut seen = 0;
     loop {
         probe.run_to(stopwatch)?;
@@ -55,8 +55,8 @@ fn within(probe: &mut Probe, elf: &Path, scene: SceneName) -> Result<Frame, Qemu
             continue;
         };
         seen += 1;
-        if seen == PICTURES {
-            // This reading was for the end of the frame; the next is for the beginning, then the picture is drawn.
+        if seen == FRAMES {
+            // This reading was for the end of the frame; the next is for the beginning, then the screenshot is drawn.
             probe.run_to(stopwatch)?;
             probe.run_to(stopwatch)?;
             return Ok(frame);
@@ -78,7 +78,7 @@ fn last_words(machine: &mut Machine) -> Result<String, QemuError> {
     Ok(said)
 }
 
-/// Spoils every board in the middle of a picture of `scene`; its last words must hold all `parts`, and where it was.
+/// Spoils every board in the middle of a screenshot of `scene`; its last words must hold all `parts`, and where it was.
 fn every_board_says(
     scene: SceneName,
     parts: &[&str],
@@ -112,7 +112,7 @@ fn a_fault_in_a_picture_tells_the_scene_and_the_step() -> Result<(), QemuError> 
 #[test]
 fn a_stack_that_overflows_in_a_picture_meets_the_guard() -> Result<(), QemuError> {
     every_board_says(SceneName::Butterfly, &["HARDFAULT: stack overflow"], |probe, elf| {
-        probe.divert(&[(Register::Sp, UNUSED), (Register::Pc, address(elf, "Player::obey"))])
+        probe.divert(&[(Register::Sp, UNUSED), (Register::Pc, address(elf, "Player::execute"))])
     })
 }
 
@@ -147,7 +147,7 @@ fn a_board_that_hangs_comes_back_where_it_was_and_says_why() -> Result<(), Box<d
         let Restarted { cause, restarts, pc, scene, step, .. } = restarted;
         assert_eq!((Cause::from_code(cause), restarts, pc), (Some(Cause::Hang), 1, UNUSED), "{}", board.name);
         assert_eq!((scene, step), (SceneName::Butterfly.code(), before.step), "{}", board.name);
-        for sequence in 0..PICTURES as u32 {
+        for sequence in 0..FRAMES as u32 {
             let frame: Frame = machine.serial.next().ok_or_else(|| machine.silence())?;
             assert_eq!((frame.sequence, frame.step), (sequence, 4 * (sequence + 1)), "{}", board.name);
             assert_eq!((frame.scene, frame.mass_ratio), (before.scene, MASS_RATIO), "{}", board.name);
@@ -156,7 +156,7 @@ fn a_board_that_hangs_comes_back_where_it_was_and_says_why() -> Result<(), Box<d
 
         let log: String = machine.log.arrived().map(|line| format!("{line}\n")).collect();
         for part in [
-            "HANG: no picture finished for 1 s\n",
+            "HANG: no screenshot finished for 1 s\n",
             &format!("pc {UNUSED:#010x}"),
             &format!("scene butterfly, step {}\n", before.step),
             "restarted after a hang, 1 in a row: pc 0x20008000",
@@ -177,7 +177,7 @@ fn without_a_debugger_a_fault_restarts_the_board() -> Result<(), Box<dyn Error>>
         let before = within(&mut probe, &elf, SceneName::Figure7)?;
         for restarts in 1..=MOST_RESTARTS + 1 {
             execute(&mut probe, UNDEFINED)?;
-            // To the first picture after the restart.
+            // To the first screenshot after the restart.
             let stopwatch = address(&elf, STOPWATCH);
             let (mut restarted, mut frame) = (None, None);
             while frame.is_none() {

@@ -3,20 +3,20 @@
 mod support;
 
 use fastrand::Rng;
-use firmware::canvas::{HEIGHT, WIDTH};
 use firmware::config::TICK_RATE;
+use firmware::graphics::canvas::{HEIGHT, WIDTH};
 use firmware::protocol::{Choose, Done, Frame};
 use firmware::scenes::SceneName;
-use host_tests::board::{BOARDS, Board};
-use host_tests::budget;
-use host_tests::count::timing::Core;
-use host_tests::count::{Cost, CountError, Image, Profile};
-use host_tests::qemu::{Lockstep, Machine, QemuError};
-use host_tests::show::Show;
+use host_tests::commands::count::{Cost, CountError, Image, Profile};
+use host_tests::emulator::boards::Core;
+use host_tests::emulator::boards::{BOARDS, Board};
+use host_tests::emulator::budgets;
+use host_tests::emulator::host::Show;
+use host_tests::emulator::qemu::{Lockstep, Machine, QemuError};
 use support::{application, settings, toolchain};
 
-/// Pictures compared for each scene, and frames from one to the next.
-const PICTURES: usize = 3;
+/// Frames compared for each scene, and frames from one to the next.
+const FRAMES: usize = 3;
 const EVERY: u32 = 25;
 
 /// What QEMU's clock takes for an instruction when it counts them, and a cycle of the board's processor at 50 MHz, ns.
@@ -24,10 +24,10 @@ const INSTRUCTION: f64 = 32.0;
 const CYCLE: f64 = 20.0;
 /// A frame of a 50 MHz processor, cycles.
 const FRAME: f64 = 50e6 / 60.0;
-/// Pictures after the start that are not watched.
+/// Frames after the start that are not watched.
 const SETTLING: u32 = 6;
 
-/// Pictures of a scene whose cost is watched. On the M3 the butterfly's curve grows, and the dearest picture comes after
+/// Frames of a scene whose cost is watched. On the M3 the butterfly's curve grows, and the most expensive screenshot comes after
 /// 10 s; the M4F is far below its budget.
 fn watched(board: &Board, name: SceneName) -> u32 {
     let seconds = match (board.core(), name) {
@@ -61,7 +61,7 @@ fn the_panel_shows_what_the_host_draws() -> Result<(), QemuError> {
         for &name in SceneName::ALL {
             let mut scene = Show::new(name, &name.first_settings()).expect("a scene of the catalogue");
             let mut frame = choose(&mut machine, name)?;
-            for _ in 0..PICTURES {
+            for _ in 0..FRAMES {
                 for _ in 0..EVERY {
                     frame = machine.next_frame()?;
                 }
@@ -69,19 +69,20 @@ fn the_panel_shows_what_the_host_draws() -> Result<(), QemuError> {
                 while scene.report().time < f64::from(ticks) / f64::from(TICK_RATE) - 1e-9 {
                     scene.tick();
                 }
-                let canvas = scene.picture();
-                let picture = machine.picture()?;
-                let differing = (0..WIDTH * HEIGHT)
-                    .filter(|&i| canvas.get((i % WIDTH) as i32, (i / WIDTH) as i32) != picture.greys().get(i).copied());
-                assert_eq!(differing.count(), 0, "{}: {} at {} s\n{picture:?}", board.name, name.name(), frame.time);
+                let canvas = scene.frame();
+                let screenshot = machine.screenshot()?;
+                let differing = (0..WIDTH * HEIGHT).filter(|&i| {
+                    canvas.get((i % WIDTH) as i32, (i / WIDTH) as i32) != screenshot.greys().get(i).copied()
+                });
+                assert_eq!(differing.count(), 0, "{}: {} at {} s\n{screenshot:?}", board.name, name.name(), frame.time);
             }
         }
         Ok(())
     })
 }
 
-/// The cycles of a scene are estimated: instructions, counted by the board's clock, of the dearest picture, times the
-/// cycles that an instruction takes on average in a picture that QEMU logs whole, by the published timings.
+/// The cycles of a scene are estimated: instructions, counted by the board's clock, of the most expensive screenshot, times the
+/// cycles that an instruction takes on average in a screenshot that QEMU logs whole, by the published timings.
 #[test]
 fn every_scene_keeps_within_its_share_of_a_frame() -> Result<(), CountError> {
     let mut too_dear: Vec<String> = Vec::new();
@@ -91,7 +92,7 @@ fn every_scene_keeps_within_its_share_of_a_frame() -> Result<(), CountError> {
         let mut machine = Lockstep::start(&settings(&toolchain, board, &elf))?;
         for &name in SceneName::ALL {
             choose(&mut machine, name)?;
-            // The first pictures pay for the start.
+            // The first frames pay for the start.
             for _ in 0..SETTLING {
                 machine.next_frame()?;
             }
@@ -115,10 +116,10 @@ fn every_scene_keeps_within_its_share_of_a_frame() -> Result<(), CountError> {
                 100.0 * share(scene),
                 100.0 * (1.0 - share(busy)),
             );
-            if share(scene) > budget::SCENE {
+            if share(scene) > budgets::SCENE {
                 too_dear.push(format!("{}: {} takes {:.3} of a frame", board.name, name.name(), share(scene)));
             }
-            if 1.0 - share(busy) < budget::IDLE {
+            if 1.0 - share(busy) < budgets::IDLE {
                 too_dear.push(format!("{}: {} leaves {:.3} of a frame", board.name, name.name(), 1.0 - share(busy)));
             }
         }

@@ -3,8 +3,8 @@
 mod support;
 
 use firmware::protocol::Frame;
-use host_tests::board::STM32F405;
-use host_tests::qemu::{Machine, QemuError};
+use host_tests::emulator::boards::STM32F405;
+use host_tests::emulator::qemu::{Machine, QemuError};
 use object::{Object, ObjectSegment};
 use support::{application, settings, toolchain};
 

@@ -1,9 +1,9 @@
-//! Every scene of the catalogue, on the host: its picture to the pixel, and what all scenes have in common.
+//! Every scene of the catalogue, on the host: its frame to the pixel, and what all scenes have in common.
 
-use firmware::canvas::{Canvas, HEIGHT, WIDTH};
+use firmware::graphics::canvas::{Canvas, HEIGHT, WIDTH};
 use firmware::scenes::SceneName;
-use host_tests::show::Show;
-use host_tests::snapshot;
+use host_tests::emulator::host::Show;
+use host_tests::oracle::snapshot;
 
 /// The ticks after which each scene is pictured: one second, when all is in view, and four.
 const PICTURED: [u32; 2] = [60, 240];
@@ -26,8 +26,8 @@ fn greys(canvas: &Canvas) -> Vec<u8> {
 #[test]
 fn every_scene_looks_as_it_did() {
     let check = |name: SceneName, ticks| {
-        let picture = snapshot::text(&greys(&after(name, ticks).picture()), WIDTH);
-        snapshot::check(&format!("{}-{ticks}", name.name()), &picture)
+        let frame = snapshot::text(&greys(&after(name, ticks).frame()), WIDTH);
+        snapshot::check(&format!("{}-{ticks}", name.name()), &frame)
     };
     let differences: Vec<_> = SceneName::ALL
         .iter()
@@ -41,8 +41,8 @@ fn every_scene_looks_as_it_did() {
 fn a_picture_is_drawn_over_whatever_was_there() {
     for &name in SceneName::ALL {
         let scene = after(name, 30);
-        let mut canvas = after(SceneName::Page, 100).picture();
+        let mut canvas = after(SceneName::Page, 100).frame();
         scene.draw(&mut canvas);
-        assert!(canvas == scene.picture(), "{}", name.name());
+        assert!(canvas == scene.frame(), "{}", name.name());
     }
 }

@@ -1,18 +1,19 @@
 //! Requests over the serial link, answered by the very application that runs on the boards.
 
 use double_pendulum::Parameters;
-use firmware::job::{Arithmetic, Field, Form, Job, Model, Reading, Request};
-use firmware::protocol::{Coarse, LinkError, MAX_WIRE, Refused, Sample, Simulate, encode};
-use firmware::service::{Received, Service};
+use firmware::app::service::{Received, Service};
+use firmware::job::{Arithmetic, Formulation, Job, Model, Reading, Request};
+use firmware::protocol::Field;
+use firmware::protocol::{LinkError, MAX_WIRE, Refused, Sample, Simulate, StepTooLong, encode};
 
 const REQUEST: Request = Request {
     arithmetic: Arithmetic::F32,
     model: Model::General,
-    form: Form::Canonical,
+    form: Formulation::Canonical,
     parameters: Parameters { m1: 1.0, m2: 2.75, l1: 1.0, l2: 0.5, g: 9.8 },
     angles: [2.0, -1.0],
     velocities: [0.5, 0.25],
-    step_size: 1.0 / 1024.0,
+    dt: 1.0 / 1024.0,
     stride: 16,
     samples: 5,
 };
@@ -58,11 +59,11 @@ fn a_step_too_long_for_the_energy_is_obeyed_and_told() {
     let lively = Request { parameters: Parameters { m2: 1000.0, ..REQUEST.parameters }, ..REQUEST };
     let mut service = Service::default();
     let answer = send(&mut service, &lively.message(4));
-    let [Received::Coarse(Coarse { request: 4, admissible_step })] = answer[..] else { panic!("{answer:?}") };
+    let [Received::StepTooLong(StepTooLong { request: 4, admissible_step })] = answer[..] else { panic!("{answer:?}") };
     assert_eq!(Some(admissible_step), lively.admissible_step());
-    assert!(admissible_step < lively.step_size / 10.0);
+    assert!(admissible_step < lively.dt / 10.0);
     assert_eq!(samples(&mut service).len(), 6);
-    let fine = Request { step_size: admissible_step, ..lively };
+    let fine = Request { dt: admissible_step, ..lively };
     assert_eq!(send(&mut service, &fine.message(5)), [Received::Accepted]);
     let closed_form = Request { model: Model::Linear, ..lively };
     assert_eq!(send(&mut service, &closed_form.message(6)), [Received::Accepted]);
@@ -83,8 +84,8 @@ fn a_refusal_names_the_field_and_leaves_the_work_alone() {
         (Simulate { parameters: [1.0, 1.0, 1.0, 1.0, -9.8], ..good }, Field::G),
         (Simulate { angles: [f64::NAN, 0.0], ..good }, Field::A1),
         (Simulate { velocities: [0.0, f64::INFINITY], ..good }, Field::W2),
-        (Simulate { step_size: 0.0, ..good }, Field::StepSize),
-        (Simulate { step_size: 9.0, ..good }, Field::StepSize),
+        (Simulate { dt: 0.0, ..good }, Field::Dt),
+        (Simulate { dt: 9.0, ..good }, Field::Dt),
     ] {
         let mut service = Service::default();
         send(&mut service, &good);

@@ -2,7 +2,7 @@
 
 use std::process::Command;
 
-use host_tests::board::BOARDS;
+use host_tests::emulator::boards::BOARDS;
 
 fn simulate(arguments: &str) -> String {
     let output = Command::new(env!("CARGO_BIN_EXE_simulate"))
@@ -53,12 +53,12 @@ fn compensated_single_precision_in_angles() {
 
 #[test]
 fn compensated_single_precision_in_directions() {
-    same_everywhere(&format!("{FIGURE_7} --step 1/4096 --arithmetic f32-compensated --form picture"));
+    same_everywhere(&format!("{FIGURE_7} --step 1/4096 --arithmetic f32-compensated --form frame"));
 }
 
 #[test]
 fn plain_forms() {
-    for (arithmetic, form) in [("f32", "angle"), ("f32", "picture"), ("f64", "angle"), ("f64", "picture")] {
+    for (arithmetic, form) in [("f32", "angle"), ("f32", "frame"), ("f64", "angle"), ("f64", "frame")] {
         same_everywhere(&format!("{FIGURE_7} --step 1/256 --arithmetic {arithmetic} --form {form}"));
     }
 }

@@ -6,10 +6,10 @@ use double_pendulum::{
     Error, Mode, Modes, Motion, Parameter, Parameters, Pendulum, Real, SmallOscillations, periodic_mass_ratio,
 };
 use fastrand::Rng;
-use host_tests::random::{log_uniform, symmetric};
-use host_tests::reference::series::divide;
-use host_tests::reference::{Constants, Reference};
-use host_tests::tolerance;
+use host_tests::oracle::random::{log_uniform, symmetric};
+use host_tests::oracle::reference::series::divide;
+use host_tests::oracle::reference::{Constants, Reference};
+use host_tests::oracle::tolerances;
 use twofloat::TwoFloat;
 
 /// Figures 3 to 5: mu, w1, w2, the envelope's period (s), the largest |a1| (degrees), as physics gives them to six digits.
@@ -47,7 +47,7 @@ fn worked_example() {
             let a2 = PI / 12.0 * ((w1 * t).cos() + (w2 * t).cos());
             let now = motion.at(t);
             let error = (now.a1 - a1).abs().max((now.a2 - a2).abs());
-            assert!(error < tolerance::FORMULAS.double, "mu = {mu}, t = {t}: off by {error:e}");
+            assert!(error < tolerances::FORMULAS.double, "mu = {mu}, t = {t}: off by {error:e}");
         }
     }
 }
@@ -59,7 +59,7 @@ fn carrier_modulation_and_exchange() {
     for (value, exact) in
         [(modes.carrier(), (w1 + w2) / 2.0), (modes.modulation(), (w1 - w2) / 2.0), (modes.exchange(), w1 - w2)]
     {
-        assert!((value - exact).abs() < tolerance::FORMULAS.double * exact, "{value} instead of {exact}");
+        assert!((value - exact).abs() < tolerances::FORMULAS.double * exact, "{value} instead of {exact}");
     }
 }
 
@@ -101,7 +101,7 @@ fn modes_to_the_last_places<R: Real>() {
         let values = [modes.fast.frequency, modes.slow.frequency, modes.fast.shape, modes.slow.shape, modes.exchange()];
         for (i, (value, exact)) in values.into_iter().zip(exact_modes(&parameters)).enumerate() {
             let error = ulps(value, exact);
-            let budget = if i < 2 { tolerance::FREQUENCY_ULP } else { tolerance::MODE_ULP };
+            let budget = if i < 2 { tolerances::FREQUENCY_ULP } else { tolerances::MODE_ULP };
             assert!(error <= budget, "number {i} is off by {error} ulp for {parameters:?}");
         }
     }
@@ -122,7 +122,7 @@ fn modes_to_the_last_places_f64() {
 fn modes_solve_the_matrix_equation() {
     let mut rng = Rng::with_seed(2);
     for _ in 0..1000 {
-        let pendulum = Pendulum::new(host_tests::random::parameters(&mut rng)).expect("valid parameters");
+        let pendulum = Pendulum::new(host_tests::oracle::random::parameters(&mut rng)).expect("valid parameters");
         let (mass, stiffness) = (pendulum.mass_matrix(1.0), pendulum.stiffness());
         let modes = pendulum.modes().expect("there is gravity");
         for Mode { frequency, shape } in [modes.fast, modes.slow] {
@@ -131,7 +131,7 @@ fn modes_solve_the_matrix_equation() {
                 let inertia = frequency * frequency * (mass[row][0] + mass[row][1] * shape);
                 let scale = frequency * frequency * (mass[row][0] + mass[row][1] * shape.abs());
                 let error = (force - inertia).abs() / scale;
-                assert!(error < tolerance::FORMULAS.double, "{error:e} for {:?}", pendulum.parameters());
+                assert!(error < tolerances::FORMULAS.double, "{error:e} for {:?}", pendulum.parameters());
             }
         }
     }
@@ -142,7 +142,7 @@ fn modes_solve_the_matrix_equation() {
 fn linear_motion_is_the_limit_of_the_exact_motion() {
     let mut rng = Rng::with_seed(3);
     for _ in 0..20 {
-        let parameters = host_tests::random::parameters(&mut rng);
+        let parameters = host_tests::oracle::random::parameters(&mut rng);
         let modes = Modes::new(&parameters).expect("there is gravity");
         let rate = 1e-6 * modes.slow.frequency;
         let [a1, a2, w1, w2] = [1e-6, 1e-6, rate, rate].map(|size| size * symmetric(&mut rng));
@@ -155,7 +155,7 @@ fn linear_motion_is_the_limit_of_the_exact_motion() {
             let fast = modes.fast.frequency;
             for (i, scale) in [1e-6, 1e-6, 1e-6 * fast, 1e-6 * fast].into_iter().enumerate() {
                 let error = (linear[i] - exact[i]).abs() / scale;
-                assert!(error < tolerance::LINEAR, "component {i} at {t} s: {error:e} for {parameters:?}");
+                assert!(error < tolerances::LINEAR, "component {i} at {t} s: {error:e} for {parameters:?}");
             }
         }
     }
@@ -165,7 +165,7 @@ fn linear_motion_is_the_limit_of_the_exact_motion() {
 fn amplitude_and_phase_are_the_same_oscillation() {
     let mut rng = Rng::with_seed(4);
     for _ in 0..1000 {
-        let modes = Modes::new(&host_tests::random::parameters(&mut rng)).expect("there is gravity");
+        let modes = Modes::new(&host_tests::oracle::random::parameters(&mut rng)).expect("there is gravity");
         let [a1, a2, w1, w2] = [0; 4].map(|_| symmetric(&mut rng));
         let motion = SmallOscillations::<f64>::new(modes, &Motion { a1, a2, w1, w2 });
         let t = 3.0 * rng.f64();
@@ -173,7 +173,7 @@ fn amplitude_and_phase_are_the_same_oscillation() {
         let a1 = fast.amplitude() * (modes.fast.frequency * t + fast.phase()).cos()
             + slow.amplitude() * (modes.slow.frequency * t + slow.phase()).cos();
         let scale = (fast.amplitude() + slow.amplitude()) * (1.0 + modes.fast.frequency * t);
-        assert!((motion.at(t).a1 - a1).abs() < tolerance::FORMULAS.double * scale, "{a1}");
+        assert!((motion.at(t).a1 - a1).abs() < tolerances::FORMULAS.double * scale, "{a1}");
     }
 }
 
@@ -190,11 +190,11 @@ fn periodic_mass_ratios_of_any_rods_repeat() {
         let mu = periodic_mass_ratio(fast, slow, lengths).expect("the ratio is possible");
         let modes = Modes::new(&Parameters { m1: 1.0, m2: mu, l1, l2, g: 9.8 }).expect("valid parameters");
         let ratio = modes.fast.frequency / modes.slow.frequency;
-        assert!((ratio * f64::from(slow) / f64::from(fast) - 1.0).abs() < tolerance::FORMULAS.double, "{ratio}");
+        assert!((ratio * f64::from(slow) / f64::from(fast) - 1.0).abs() < tolerances::FORMULAS.double, "{ratio}");
         let motion = SmallOscillations::new(modes, &Motion { a1: 0.1, a2: -0.2, w1: 0.3, w2: 0.4 });
         let period = TAU * f64::from(fast) / modes.fast.frequency;
         let (start, later) = (motion.at(0.0), motion.at(period));
-        assert!((later.a1 - start.a1).abs() + (later.a2 - start.a2).abs() < tolerance::PERIOD, "{later:?}");
+        assert!((later.a1 - start.a1).abs() + (later.a2 - start.a2).abs() < tolerances::PERIOD, "{later:?}");
     }
 }
 
@@ -223,7 +223,7 @@ fn inverted_rest_falls_at_the_same_two_rates() {
         let growth = [f64::from(a1 - upright) / push, f64::from(a2 - upright) / (push * shape)];
         for growth in growth {
             assert!(
-                (growth / frequency.exp() - 1.0).abs() < tolerance::INVERTED_GROWTH,
+                (growth / frequency.exp() - 1.0).abs() < tolerances::INVERTED_GROWTH,
                 "{growth} instead of {}",
                 frequency.exp()
             );

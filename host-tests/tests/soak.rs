@@ -2,9 +2,9 @@
 
 mod support;
 
-use host_tests::board::{BOARDS, Board};
-use host_tests::qemu::QemuError;
-use host_tests::soak::{self, Outcome};
+use host_tests::commands::soak::{self, Outcome};
+use host_tests::emulator::boards::{BOARDS, Board};
+use host_tests::emulator::qemu::QemuError;
 use support::{application, settings, toolchain};
 
 /// Seconds of the board's time: 1.5 for each scene, twice. Within 1.1 s the stack has been as deep on every board as it gets

@@ -4,8 +4,8 @@ mod support;
 
 use std::collections::BTreeMap;
 
-use host_tests::board::BOARDS;
-use host_tests::count::Image;
+use host_tests::commands::count::Image;
+use host_tests::emulator::boards::BOARDS;
 use object::{Object, ObjectSymbol};
 use support::application;
 

@@ -2,7 +2,7 @@
 
 use double_pendulum::{Parameters, Pendulum, Real, State};
 use fastrand::Rng;
-use host_tests::{random, tolerance};
+use host_tests::oracle::{random, tolerances};
 
 const STEPS: usize = 256;
 
@@ -44,7 +44,7 @@ fn reversed_momenta_bring_the_start_back() {
         let [back, start]: [[f64; 4]; 2] = [back.into(), start.into()];
         for i in 0..4 {
             let error = (back[i] - start[i]).abs() / scale[i];
-            assert!(error < tolerance::RETURN, "component {i} comes back {error:e} off for {parameters:?}");
+            assert!(error < tolerances::RETURN, "component {i} comes back {error:e} off for {parameters:?}");
         }
     });
 }

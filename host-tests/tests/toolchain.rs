@@ -1,7 +1,7 @@
 //! The real tools on this machine build the firmware. Before `cargo setup` this fails and says so.
 
-use host_tests::board::BOARDS;
-use host_tests::toolchain;
+use host_tests::emulator::boards::BOARDS;
+use host_tests::emulator::toolchain;
 
 #[test]
 fn every_board_has_its_firmware() {

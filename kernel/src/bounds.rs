@@ -144,7 +144,7 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     /// [`fastest_rate`](Self::fastest_rate). Infinite where nothing can move.
     ///
     /// Up to it a step errs by at most 3e-5 W dt rad in each angle (0.0072 (W dt)^5, whatever the masses and lengths),
-    /// and by as much of W in each velocity; the picture form by 8e-5. Half the step errs 16 times less (test `bounds`).
+    /// and by as much of W in each velocity; the direction form by 8e-5. Half the step errs 16 times less (test `bounds`).
     /// It is sharp for the liveliest motion of that energy. A regular one, and one with a light bob 2 that never gathers
     /// all of the energy, may do with much longer steps, up to [`Modes::step_limit`].
     ///

@@ -41,7 +41,7 @@ pub enum Parameter {
     Height,
     /// How long a scene is shown, s.
     Duration,
-    /// Pictures per second.
+    /// Frames per second.
     Rate,
     /// What a step costs, cycles.
     Cost,

@@ -2,24 +2,24 @@
 
 use double_pendulum::Error;
 
-use crate::command::Command;
-use crate::job::Field;
-use crate::planner::Finding;
+use crate::app::command::Command;
+use crate::app::warm_restart::WarmRestart;
+use crate::motion::planner::Finding;
+use crate::motion::settings::Settings;
+use crate::protocol::Field;
 use crate::protocol::LinkError;
 use crate::scenes::SceneName;
-use crate::settings::Settings;
-use crate::survivor::Survivor;
 
 /// What is worth a line in the log.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Event<Panel, Link> {
     /// The board has restarted by itself; whether it plays what it played before.
-    Restarted(Survivor, bool),
+    Restarted(WarmRestart, bool),
     /// A scene starts with these settings.
     Started(SceneName, Settings),
     /// This is not possible because of this; all goes on as it was.
     Refused(Command, Field),
-    /// Ticks passed without a picture. Said at most once a second, so that saying it does not make it worse.
+    /// Ticks passed without a frame. Said at most once a second, so that saying it does not make it worse.
     Dropped {
         /// Since this was last said.
         ticks: u32,
@@ -35,18 +35,18 @@ pub enum Event<Panel, Link> {
         /// What was wrong with the last one.
         last: LinkError,
     },
-    /// A picture did not reach the panel, though the one before did.
+    /// A frame did not reach the panel, though the one before did.
     Panel(Panel),
     /// A frame did not reach the link, though the one before did.
     Link(Link),
     /// A motion is asked for over the link.
     Asked,
     /// The step is too long for the scene's motion, which has left the finite numbers; it stands at its last good
-    /// picture until it is started again.
+    /// frame until it is started again.
     Stopped(Error),
     /// The step is longer than this, s, the longest that resolves every motion of the energy of what was started or asked
     /// for.
-    Coarse(f64),
+    StepTooLong(f64),
     /// Looking ahead has found something.
     Found(Finding),
 }

@@ -1,25 +1,30 @@
 //! The application: reads the buttons, moves the scene, draws it and sends it, tick by tick.
 
+pub mod command;
+pub mod controls;
 mod event;
-mod news;
+pub mod player;
+pub mod service;
+mod throttle;
+pub mod warm_restart;
 
 use double_pendulum::Error;
 use embedded_io::Write;
 
-use crate::canvas::Canvas;
-use crate::command::{Command, Order};
-use crate::config::{MOST_MESSAGES_PER_TICK, MOST_TICKS_PER_FRAME, STEP};
-use crate::controls::{Buttons, Controls};
+use crate::app::command::{Command, HostCommand};
+use crate::app::controls::{Buttons, Controls};
+use crate::app::player::Player;
+use crate::app::service::{Received, Service};
+use crate::app::warm_restart::WarmRestart;
+use crate::config::{DT, MOST_MESSAGES_PER_TICK, MOST_TICKS_PER_FRAME};
 use crate::display::Display;
-use crate::job::Field;
-use crate::planner::Planner;
-use crate::player::Player;
+use crate::graphics::canvas::Canvas;
+use crate::graphics::frame_buffers::FrameBuffers;
+use crate::motion::planner::Planner;
+use crate::motion::settings::Settings;
+use crate::protocol::Field;
 use crate::protocol::{Done, Frame, LinkError, MAX_WIRE, Message, Refused, encode};
-use crate::service::{Received, Service};
-use crate::settings::Settings;
-use crate::sheets::Sheets;
-use crate::survivor::Survivor;
-use news::{Failing, Tally};
+use throttle::{FaultEdge, ThrottledCounter};
 
 pub use event::Event;
 
@@ -36,18 +41,18 @@ pub struct App<'a, Panel, Link, Keys> {
     canvas: &'a mut Canvas,
     /// Ticks done since reset.
     ticks: u32,
-    /// Pictures drawn since reset.
+    /// Frames drawn since reset.
     frames: u32,
-    /// Ticks without a picture since reset.
-    dropped: Tally,
+    /// Ticks without a frame since reset.
+    dropped: ThrottledCounter,
     /// Damaged messages since reset.
-    damaged: Tally,
+    damaged: ThrottledCounter,
     /// What was wrong with the last of them.
     last_damage: Option<LinkError>,
-    panel_failing: Failing,
-    link_failing: Failing,
+    panel_failing: FaultEdge,
+    link_failing: FaultEdge,
     stopwatch: fn() -> u32,
-    /// Processor cycles of the picture before, from the first tick to the end of its sending.
+    /// Processor cycles of the frame before, from the first tick to the end of its sending.
     busy_cycles: u32,
 }
 
@@ -55,7 +60,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     /// Starts with `settings`, at tick 0; the kernel's error if they describe no pendulum.
     pub fn new(
         settings: Settings,
-        Sheets { canvas, ink }: &'a mut Sheets,
+        FrameBuffers { canvas, ink }: &'a mut FrameBuffers,
         panel: Panel,
         link: Link,
         keys: Keys,
@@ -74,11 +79,11 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
             canvas,
             ticks: 0,
             frames: 0,
-            dropped: Tally::default(),
-            damaged: Tally::default(),
+            dropped: ThrottledCounter::default(),
+            damaged: ThrottledCounter::default(),
             last_damage: None,
-            panel_failing: Failing::default(),
-            link_failing: Failing::default(),
+            panel_failing: FaultEdge::default(),
+            link_failing: FaultEdge::default(),
             stopwatch: || 0,
             busy_cycles: 0,
         })
@@ -89,9 +94,9 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         self.stopwatch = stopwatch;
     }
 
-    /// Goes by a clock that stands at `clock` now, and counts pictures and ticks without one from `pictures` on.
-    pub fn count_from(&mut self, clock: u32, pictures: u32) {
-        (self.ticks, self.frames, self.dropped) = (clock, pictures, Tally::starting(pictures, clock));
+    /// Goes by a clock that stands at `clock` now, and counts frames and ticks without one from `frames` on.
+    pub fn count_from(&mut self, clock: u32, frames: u32) {
+        (self.ticks, self.frames, self.dropped) = (clock, frames, ThrottledCounter::starting(frames, clock));
     }
 
     /// Plans for a processor that has `cycles` in a tick.
@@ -100,7 +105,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     }
 
     /// Goes on after a restart with what was played before it, and tells the host.
-    pub fn resume(&mut self, survivor: &Survivor, mut log: impl FnMut(Event<Panel::Error, Link::Error>)) {
+    pub fn resume(&mut self, survivor: &WarmRestart, mut log: impl FnMut(Event<Panel::Error, Link::Error>)) {
         let resumed = survivor.played.is_some_and(|played| self.player.resume(&played).is_ok());
         if resumed {
             self.planner.start(self.player.settings(), self.player.shown());
@@ -136,8 +141,8 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         ticks == late
     }
 
-    /// Takes bytes received over the link, obeys and answers. Stops after [`MOST_MESSAGES_PER_TICK`] messages, so that no
-    /// flood of them delays the picture; what is left in `bytes` waits for the next call.
+    /// Takes bytes received over the link, executes and answers. Stops after [`MOST_MESSAGES_PER_TICK`] messages, so that no
+    /// flood of them delays the frame; what is left in `bytes` waits for the next call.
     pub fn receive(
         &mut self,
         bytes: impl IntoIterator<Item = u8>,
@@ -148,12 +153,12 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
             let Some(received) = self.service.receive(byte) else { continue };
             match received {
                 Received::Accepted => log(Event::Asked),
-                Received::Coarse(coarse) => {
+                Received::StepTooLong(coarse) => {
                     log(Event::Asked);
-                    log(Event::Coarse(coarse.admissible_step));
+                    log(Event::StepTooLong(coarse.admissible_step));
                     self.send(&coarse, &mut log);
                 }
-                Received::Order(order) => self.follow(order, &mut log),
+                Received::HostCommand(order) => self.reply(order, &mut log),
                 Received::Refused(refused) => self.send(&refused, &mut log),
                 Received::Damaged(error) => {
                     self.damaged.add(1);
@@ -188,7 +193,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         worked
     }
 
-    /// Pictures drawn and sent since reset; wraps.
+    /// Frames drawn and sent since reset; wraps.
     pub fn frames(&self) -> u32 {
         self.frames
     }
@@ -198,7 +203,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         &self.player
     }
 
-    /// The last picture drawn.
+    /// The last frame drawn.
     pub fn canvas(&self) -> &Canvas {
         self.canvas
     }
@@ -216,28 +221,36 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     fn tick(&mut self, log: &mut impl FnMut(Event<Panel::Error, Link::Error>)) {
         self.ticks = self.ticks.wrapping_add(1);
         for command in self.controls.tick(self.keys.read()) {
-            if let Err(field) = self.obey(command, log) {
+            if let Err(field) = self.execute(command, log) {
                 log(Event::Refused(command, field));
             }
         }
         self.player.tick();
     }
 
-    fn obey(&mut self, command: Command, log: &mut impl FnMut(Event<Panel::Error, Link::Error>)) -> Result<(), Field> {
-        if self.player.obey(command)? {
+    fn execute(
+        &mut self,
+        command: Command,
+        log: &mut impl FnMut(Event<Panel::Error, Link::Error>),
+    ) -> Result<(), Field> {
+        if self.player.execute(command)? {
             let settings = *self.player.settings();
             self.planner.start(&settings, self.player.shown());
             log(Event::Started(self.player.name(), settings));
-            if let Some(admissible) = settings.admissible_step().filter(|&admissible| STEP > admissible) {
-                log(Event::Coarse(admissible.into()));
+            if let Some(admissible) = settings.admissible_step().filter(|&admissible| DT > admissible) {
+                log(Event::StepTooLong(admissible.into()));
             }
         }
         Ok(())
     }
 
     /// Obeys an order that came over the link, and answers it.
-    fn follow(&mut self, Order { request, command }: Order, log: &mut impl FnMut(Event<Panel::Error, Link::Error>)) {
-        match self.obey(command, log) {
+    fn reply(
+        &mut self,
+        HostCommand { request, command }: HostCommand,
+        log: &mut impl FnMut(Event<Panel::Error, Link::Error>),
+    ) {
+        match self.execute(command, log) {
             Ok(()) if command == Command::Ask => self.send(&self.player.status(request), log),
             Ok(()) if command == Command::AskPlan => self.send(&self.planner.answer(request), log),
             Ok(()) => self.send(&Done { request }, log),
@@ -282,7 +295,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
             start_angle,
             state: report.state.into(),
             energy_error: report.energy_error,
-            trusted_until: report.trusted_until,
+            horizon: report.horizon,
             scene_cycles,
             busy_cycles: self.busy_cycles,
         }

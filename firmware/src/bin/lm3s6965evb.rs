@@ -7,11 +7,11 @@ use core::mem::MaybeUninit;
 use firmware::app::App;
 use firmware::board;
 use firmware::board::lm3s6965evb::{Board, Keys, Panel, Uart};
-use firmware::sheets::Sheets;
+use firmware::graphics::frame_buffers::FrameBuffers;
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
-    static mut SHEETS: Sheets = Sheets::BLANK;
+    static mut SHEETS: FrameBuffers = FrameBuffers::BLANK;
     static mut APP: MaybeUninit<App<'static, Panel, Uart, Keys>> = MaybeUninit::uninit();
 
     let Some(board) = Board::take() else { panic!("the board was taken before") };

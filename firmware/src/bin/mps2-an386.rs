@@ -5,15 +5,15 @@
 use core::mem::MaybeUninit;
 
 use firmware::app::App;
+use firmware::app::controls::NoButtons;
 use firmware::board;
 use firmware::board::mps2_an386::{Board, Uart};
-use firmware::controls::NoButtons;
 use firmware::display::NoDisplay;
-use firmware::sheets::Sheets;
+use firmware::graphics::frame_buffers::FrameBuffers;
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
-    static mut SHEETS: Sheets = Sheets::BLANK;
+    static mut SHEETS: FrameBuffers = FrameBuffers::BLANK;
     static mut APP: MaybeUninit<App<'static, NoDisplay, Uart, NoButtons>> = MaybeUninit::uninit();
 
     let Some(board) = Board::take() else { panic!("the board was taken before") };

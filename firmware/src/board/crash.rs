@@ -17,8 +17,8 @@ use cortex_m_semihosting::{debug, hio};
 
 use super::calls::calls;
 use super::survival;
+use crate::app::warm_restart::{Cause, Scene};
 use crate::fault::{Fault, Hang, Panic, Stacked};
-use crate::survivor::{Cause, Scene};
 
 /// A call to the debugger, `bkpt 0xAB`, and its length in bytes.
 const DEBUGGER_CALL: (u16, u32) = (0xBEAB, 2);
@@ -130,7 +130,7 @@ fn stack_pointer() -> u32 {
     sp
 }
 
-/// The program has finished no picture for too long; `interrupted` is where it is.
+/// The program has finished no frame for too long; `interrupted` is where it is.
 pub(super) fn hang(interrupted: &ExceptionFrame) {
     let (pc, lr) = (interrupted.pc(), interrupted.lr());
     survival::end(Cause::Hang, pc, lr, 0);

@@ -8,18 +8,18 @@ use double_pendulum::plan::Plan;
 use embedded_io::Write;
 
 use super::{Clock, Receiver, Watchdog, cycles, survival};
+use crate::app::controls::Buttons;
+use crate::app::warm_restart::{Journal, WarmRestart};
 use crate::app::{App, Event};
-use crate::controls::Buttons;
 use crate::display::Display;
-use crate::planner::Finding;
-use crate::settings::Settings;
-use crate::sheets::Sheets;
-use crate::survivor::{Journal, Survivor};
+use crate::graphics::frame_buffers::FrameBuffers;
+use crate::motion::planner::Finding;
+use crate::motion::settings::Settings;
 
 /// Makes the application as it is switched on, at its place.
 pub fn application<'a, Panel, Link, Keys>(
     place: &'a mut MaybeUninit<App<'a, Panel, Link, Keys>>,
-    sheets: &'a mut Sheets,
+    sheets: &'a mut FrameBuffers,
     panel: Panel,
     link: Link,
     keys: Keys,
@@ -84,7 +84,7 @@ where
     journal
 }
 
-/// As [`App::run_to`]; a picture that is finished, drawn and sent, is noted, and feeds the watchdog: nothing else does.
+/// As [`App::run_to`]; a frame that is finished, drawn and sent, is noted, and feeds the watchdog: nothing else does.
 fn run_to<Panel, Link, Keys>(
     now: u32,
     app: &mut App<Panel, Link, Keys>,
@@ -108,7 +108,7 @@ where
 /// Writes one event to the log.
 fn log<Panel: Debug, Link: Debug>(event: Event<Panel, Link>) {
     match event {
-        Event::Restarted(Survivor { end, cause, .. }, resumed) => {
+        Event::Restarted(WarmRestart { end, cause, .. }, resumed) => {
             defmt::warn!(
                 "restarted after a {}, {} in a row: pc {:#010x}, lr {:#010x}",
                 cause.name(),
@@ -122,15 +122,15 @@ fn log<Panel: Debug, Link: Debug>(event: Event<Panel, Link>) {
         }
         Event::Started(scene, settings) => defmt::info!("start: {} with {}", scene, settings),
         Event::Refused(command, field) => defmt::warn!("refused {}: {}", command, field),
-        Event::Dropped { ticks, total } => defmt::warn!("dropped {} pictures, {} since reset", ticks, total),
+        Event::Dropped { ticks, total } => defmt::warn!("dropped {} frames, {} since reset", ticks, total),
         Event::Panel(error) => defmt::error!("panel: {}", Debug2Format(&error)),
         Event::Damaged { messages, total, last } => {
             defmt::warn!("{} damaged messages, {} since reset, the last: {}", messages, total, last);
         }
         Event::Stopped(error) => defmt::error!("stopped: {}", error),
-        Event::Coarse(step) => defmt::warn!("the step is too long for this energy, {} s would do", step),
+        Event::StepTooLong(step) => defmt::warn!("the step is too long for this energy, {} s would do", step),
         Event::Found(Finding::Plan(Plan { way, steps, error, cycles, horizon, limit, .. })) => defmt::info!(
-            "plan: {=str}, {} steps to a picture, {} pixels off until {} s ({=str}), {} cycles a picture",
+            "plan: {=str}, {} steps to a frame, {} pixels off until {} s ({=str}), {} cycles a frame",
             way.name(),
             steps,
             error,
@@ -139,7 +139,7 @@ fn log<Panel: Debug, Link: Debug>(event: Event<Panel, Link>) {
             cycles,
         ),
         Event::Found(Finding::Shown { shown: Plan { way, steps, error, cycles, horizon, .. }, plan }) => defmt::info!(
-            "shown: {=str}, {} steps to a picture, {} pixels off until {} s ({=str}), {} cycles a picture",
+            "shown: {=str}, {} steps to a frame, {} pixels off until {} s ({=str}), {} cycles a frame",
             way.name(),
             steps,
             error,

@@ -1,10 +1,10 @@
-//! The memory that outlives a reset, and who writes it: the main loop after each picture, a crash at the end.
+//! The memory that outlives a reset, and who writes it: the main loop after each frame, a crash at the end.
 
 use core::cell::UnsafeCell;
 use core::mem::MaybeUninit;
 
+use crate::app::warm_restart::{Cause, Kept, WarmRestart, read};
 use crate::protocol::{MAX_WIRE, Message, Restarted, Status, encode};
-use crate::survivor::{Cause, Kept, Survivor, read};
 
 /// What is played.
 #[unsafe(link_section = ".uninit.played")]
@@ -42,11 +42,11 @@ impl Memory {
 }
 
 /// What outlived the last reset, if that was no planned one.
-pub fn recall(by_watchdog: bool) -> Option<Survivor> {
-    Survivor::recall(&PLAYED.read(), &END.read(), by_watchdog)
+pub fn recall(by_watchdog: bool) -> Option<WarmRestart> {
+    WarmRestart::recall(&PLAYED.read(), &END.read(), by_watchdog)
 }
 
-/// Keeps what is played, in case this picture is the last.
+/// Keeps what is played, in case this frame is the last.
 pub fn keep((played, end): (Status, Restarted)) {
     PLAYED.write(&played);
     END.write(&end);

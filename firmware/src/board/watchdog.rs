@@ -1,6 +1,6 @@
-//! What resets a board whose main loop no longer finishes pictures.
+//! What resets a board whose main loop no longer finishes frames.
 //!
-//! It is fed in one place, by the main loop, when a picture has been drawn and sent (`main_loop.rs`). An interrupt would
+//! It is fed in one place, by the main loop, when a frame has been drawn and sent (`main_loop.rs`). An interrupt would
 //! be the wrong one to feed it: the tick's goes on for ever while the program turns in circles.
 
 use core::sync::atomic::{AtomicU16, Ordering};

@@ -1,8 +1,8 @@
-//! Panels: they take a finished picture, and only that can fail.
+//! Panels: they take a finished frame, and only that can fail.
 
 use core::convert::Infallible;
 
-use crate::canvas::Canvas;
+use crate::graphics::canvas::Canvas;
 
 mod ssd0323;
 mod ssd1306;
@@ -12,10 +12,10 @@ pub use ssd1306::{Ssd1306, Ssd1306Error};
 
 /// A panel.
 pub trait Display {
-    /// Why a picture did not reach the panel.
+    /// Why a frame did not reach the panel.
     type Error;
 
-    /// Sends the picture.
+    /// Sends the frame.
     fn flush(&mut self, canvas: &Canvas) -> Result<(), Self::Error>;
 }
 

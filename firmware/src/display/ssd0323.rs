@@ -6,7 +6,7 @@ use embedded_hal::digital::OutputPin;
 use embedded_hal::spi::SpiDevice;
 
 use super::Display;
-use crate::canvas::{Canvas, HEIGHT, WIDTH};
+use crate::graphics::canvas::{Canvas, HEIGHT, WIDTH};
 
 const LAST_COLUMN: u8 = (WIDTH / 2 - 1) as u8;
 const LAST_ROW: u8 = (HEIGHT - 1) as u8;

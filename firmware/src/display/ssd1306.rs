@@ -1,6 +1,6 @@
 //! The SSD1306 controller of a 128 x 64 OLED panel in one colour, over I2C.
 //!
-//! A whole picture takes 1,120 bytes of 9 bits, 25 ms at the bus's 400 kHz and longer than a tick. So only what has
+//! A whole frame takes 1,120 bytes of 9 bits, 25 ms at the bus's 400 kHz and longer than a tick. So only what has
 //! changed is sent: of each page the columns from the first that did to the last.
 //!
 //! Source: Solomon Systech, SSD1306 data sheet.
@@ -8,9 +8,9 @@
 use embedded_hal::i2c::{Error, ErrorKind, I2c};
 
 use super::Display;
-use crate::bitmap::{Bitmap, PAGES};
-use crate::canvas::{Canvas, HEIGHT, WIDTH};
 use crate::config::TICK_RATE;
+use crate::graphics::bitmap::{Bitmap, PAGES};
+use crate::graphics::canvas::{Canvas, HEIGHT, WIDTH};
 
 /// The two addresses that a panel can be set to.
 const ADDRESSES: [u8; 2] = [0x3C, 0x3D];
@@ -42,10 +42,10 @@ const WAKE: [&[u8]; 17] = [
     &[COMMAND, 0x2E],                       // no scrolling
     &[COMMAND, 0xAF],                       // display on
 ];
-/// Pictures between two tries of a panel that does not answer: 1 s.
+/// Frames between two tries of a panel that does not answer: 1 s.
 const RETRY: u32 = TICK_RATE;
 
-/// Why a picture did not reach the panel.
+/// Why a frame did not reach the panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ssd1306Error {
     /// No panel answers at either address; what the bus said.
@@ -56,7 +56,7 @@ pub enum Ssd1306Error {
 
 /// The panel: an I2C bus that it may be on.
 ///
-/// A panel that does not answer is absent: pictures for it are refused at once. Once a second it is looked for, so that
+/// A panel that does not answer is absent: frames for it are refused at once. Once a second it is looked for, so that
 /// it may be plugged in at any time.
 #[derive(Debug)]
 pub struct Ssd1306<Bus> {
@@ -119,19 +119,19 @@ impl<Bus: I2c> Display for Ssd1306<Bus> {
             State::Awake { .. } => {}
         }
         let State::Awake { address } = self.state else { return Ok(()) };
-        let picture = Bitmap::from(canvas);
-        let sent = update(&mut self.bus, address, &self.memory, &picture);
+        let frame = Bitmap::from(canvas);
+        let sent = update(&mut self.bus, address, &self.memory, &frame);
         match sent {
-            Ok(()) => self.memory = picture,
+            Ok(()) => self.memory = frame,
             Err(error) => self.state = State::Absent { error, retry_in: RETRY },
         }
         sent
     }
 }
 
-/// Sends what differs between the panel's memory and the picture.
-fn update(bus: &mut impl I2c, address: u8, memory: &Bitmap, picture: &Bitmap) -> Result<(), Ssd1306Error> {
-    for (page, (old, new)) in memory.pages().iter().zip(picture.pages()).enumerate() {
+/// Sends what differs between the panel's memory and the frame.
+fn update(bus: &mut impl I2c, address: u8, memory: &Bitmap, frame: &Bitmap) -> Result<(), Ssd1306Error> {
+    for (page, (old, new)) in memory.pages().iter().zip(frame.pages()).enumerate() {
         let differs = |column: &usize| old.get(*column) != new.get(*column);
         if let (Some(first), Some(last)) = ((0..WIDTH).find(differs), (0..WIDTH).rfind(differs)) {
             draw(bus, address, page, (first, last), new.get(first..=last).unwrap_or_default())?;

@@ -1,6 +1,6 @@
 //! What a motion is computed with.
 
-use crate::choice::choice;
+use crate::protocol::choice::choice;
 
 choice! {
     /// The numbers a motion is computed in.
@@ -28,12 +28,12 @@ choice! {
 
 choice! {
     /// The quantities that are stepped.
-    Form {
+    Formulation {
         /// The model's own, as its book writes them down.
         Canonical = 0, "canonical";
         /// Angles and momenta in the units of the step: [`AngleForm`](double_pendulum::form::AngleForm).
         Angle = 1, "angle";
-        /// Directions and momenta: [`PictureForm`](double_pendulum::form::PictureForm), its whole turns counted.
-        Picture = 2, "picture";
+        /// Directions and momenta: [`DirectionForm`](double_pendulum::form::DirectionForm), its whole turns counted.
+        Direction = 2, "direction";
     }
 }

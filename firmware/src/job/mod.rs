@@ -7,8 +7,8 @@ mod ways;
 
 use double_pendulum::{Error, Parameter};
 
-pub use choice::{Arithmetic, Form, Model};
-pub use request::{Field, Request};
+pub use choice::{Arithmetic, Formulation, Model};
+pub use request::Request;
 pub use ways::{Job, JobError};
 
 /// What one row of the answer holds, SI units. `f32` results are widened, which loses nothing; those of the fast forms are

@@ -20,7 +20,7 @@ fn rounded<R: Real>(request: &Request) -> (Parameters<R>, Motion<R>, R) {
     let Parameters { m1, m2, l1, l2, g } = request.parameters;
     let parameters = Parameters { m1: R::of(m1), m2: R::of(m2), l1: R::of(l1), l2: R::of(l2), g: R::of(g) };
     let ([a1, a2], [w1, w2]) = (request.angles.map(R::of), request.velocities.map(R::of));
-    (parameters, Motion { a1, a2, w1, w2 }, R::of(request.step_size))
+    (parameters, Motion { a1, a2, w1, w2 }, R::of(request.dt))
 }
 
 fn reading<R: Real>(pendulum: &Pendulum<R>, state: &State<R>, motion: &Motion<R>) -> Reading {
@@ -34,23 +34,23 @@ fn reading<R: Real>(pendulum: &Pendulum<R>, state: &State<R>, motion: &Motion<R>
 #[derive(Clone, Copy, Debug)]
 pub(super) struct General<R> {
     pendulum: Pendulum<R>,
-    step_size: R,
+    dt: R,
     state: State<R>,
 }
 
 impl<R: Real> Run for General<R> {
     fn start(request: &Request) -> Result<Self, Error> {
-        let (parameters, start, step_size) = rounded(request);
+        let (parameters, start, dt) = rounded(request);
         start.check()?;
         let pendulum = Pendulum::new(parameters)?;
-        pendulum.check_step(step_size)?;
+        pendulum.check_step(dt)?;
         let state = pendulum.state(&start);
         state.check()?;
-        Ok(Self { pendulum, step_size, state })
+        Ok(Self { pendulum, dt, state })
     }
 
     fn step(&mut self) {
-        self.state = self.pendulum.step(&self.state, self.step_size);
+        self.state = self.pendulum.step(&self.state, self.dt);
     }
 
     fn reading(&self) -> Reading {
@@ -65,20 +65,20 @@ pub(super) struct Equal<R> {
     units: Units<R>,
     state: State<R>,
     /// In units of time.
-    step_size: R,
+    dt: R,
     si: Pendulum<R>,
 }
 
 impl<R: Real> Run for Equal<R> {
     fn start(request: &Request) -> Result<Self, Error> {
-        let General { pendulum, step_size, state } = General::<R>::start(request)?;
+        let General { pendulum, dt, state } = General::<R>::start(request)?;
         let units = Units::of(pendulum.parameters())?;
         let rods = EqualRods::new(pendulum.parameters().mass_ratio())?;
-        Ok(Self { rods, units, state: units.from_si(&state), step_size: step_size / units.time, si: pendulum })
+        Ok(Self { rods, units, state: units.from_si(&state), dt: dt / units.time, si: pendulum })
     }
 
     fn step(&mut self) {
-        self.state = self.rods.step(&self.state, self.step_size);
+        self.state = self.rods.step(&self.state, self.dt);
     }
 
     fn reading(&self) -> Reading {
@@ -104,8 +104,8 @@ impl<R: Real, F: form::Form<R>> Formed<R, F> {
 
 impl<R: Real, F: form::Form<R>> Run for Formed<R, F> {
     fn start(request: &Request) -> Result<Self, Error> {
-        let General { pendulum, step_size, state } = General::<R>::start(request)?;
-        let form = F::new(pendulum.parameters(), step_size)?;
+        let General { pendulum, dt, state } = General::<R>::start(request)?;
+        let form = F::new(pendulum.parameters(), dt)?;
         let Parameters { m1, m2, l1, l2, g } = *pendulum.parameters();
         let [m1, m2, l1, l2, g] = [m1, m2, l1, l2, g].map(R::to_f64);
         let pendulum = Pendulum::new(Parameters { m1, m2, l1, l2, g })?;
@@ -158,7 +158,7 @@ pub(super) struct Linear<R> {
     oscillations: SmallOscillations<R>,
     pendulum: Pendulum<R>,
     /// In f64, so that the time is rounded once.
-    step_size: f64,
+    dt: f64,
     steps: u32,
 }
 
@@ -168,7 +168,7 @@ impl<R: Real> Run for Linear<R> {
         start.check()?;
         let pendulum = Pendulum::new(parameters)?;
         let oscillations = SmallOscillations::new(Modes::new(&parameters)?, &start);
-        Ok(Self { oscillations, pendulum, step_size: request.step_size, steps: 0 })
+        Ok(Self { oscillations, pendulum, dt: request.dt, steps: 0 })
     }
 
     fn step(&mut self) {
@@ -176,7 +176,7 @@ impl<R: Real> Run for Linear<R> {
     }
 
     fn reading(&self) -> Reading {
-        let motion = self.oscillations.at(R::of(f64::from(self.steps) * self.step_size));
+        let motion = self.oscillations.at(R::of(f64::from(self.steps) * self.dt));
         reading(&self.pendulum, &self.pendulum.state(&motion), &motion)
     }
 }

@@ -4,10 +4,11 @@
 use core::fmt;
 
 use double_pendulum::Error;
-use double_pendulum::form::{AngleForm, Compensated, PictureForm, Plain};
+use double_pendulum::form::{AngleForm, Compensated, DirectionForm, Plain};
 
 use super::run::{Equal, Formed, General, Linear, Run, Wound};
-use super::{Arithmetic, Field, Form, Model, Reading, Request};
+use super::{Arithmetic, Formulation, Model, Reading, Request};
+use crate::protocol::Field;
 
 macro_rules! runs {
     ($($name:ident: $arithmetic:ident, $model:ident, $form:ident => $run:ty;)*) => {
@@ -17,7 +18,7 @@ macro_rules! runs {
         impl Kind {
             fn start(request: &Request) -> Result<Self, JobError> {
                 match (request.arithmetic, request.model, request.form) {
-                    $((Arithmetic::$arithmetic, Model::$model, Form::$form) => {
+                    $((Arithmetic::$arithmetic, Model::$model, Formulation::$form) => {
                         Ok(Kind::$name(<$run>::start(request).map_err(JobError::Refused)?))
                     })*
                     (_, _, form) => Err(JobError::NoSuchForm(form)),
@@ -33,8 +34,8 @@ macro_rules! runs {
             }
         }
 
-        const WAYS: &[(Arithmetic, Model, Form)] =
-            &[$((Arithmetic::$arithmetic, Model::$model, Form::$form),)*];
+        const WAYS: &[(Arithmetic, Model, Formulation)] =
+            &[$((Arithmetic::$arithmetic, Model::$model, Formulation::$form),)*];
     };
 }
 
@@ -48,16 +49,16 @@ runs! {
     AngleF32Compensated: F32Compensated, General, Angle => Formed<f32, AngleForm<f32, Compensated<f32>>>;
     AngleF32: F32, General, Angle => Formed<f32, AngleForm<f32, Plain>>;
     AngleF64: F64, General, Angle => Formed<f64, AngleForm<f64, Plain>>;
-    PictureF32Compensated: F32Compensated, General, Picture => Wound<f32, PictureForm<f32, Compensated<f32>>>;
-    PictureF32: F32, General, Picture => Wound<f32, PictureForm<f32, Plain>>;
-    PictureF64: F64, General, Picture => Wound<f64, PictureForm<f64, Plain>>;
+    DirectionF32Compensated: F32Compensated, General, Direction => Wound<f32, DirectionForm<f32, Compensated<f32>>>;
+    DirectionF32: F32, General, Direction => Wound<f32, DirectionForm<f32, Plain>>;
+    DirectionF64: F64, General, Direction => Wound<f64, DirectionForm<f64, Plain>>;
 }
 
 /// Why a request cannot be computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum JobError {
     /// There is no such form of the model in the arithmetic.
-    NoSuchForm(Form),
+    NoSuchForm(Formulation),
     /// The kernel refuses a number.
     Refused(Error),
 }
@@ -95,10 +96,10 @@ pub struct Job {
 
 impl Job {
     /// Every arithmetic, model and form that go together.
-    pub const WAYS: &[(Arithmetic, Model, Form)] = WAYS;
+    pub const WAYS: &[(Arithmetic, Model, Formulation)] = WAYS;
 
     /// The form taken of a `model` in an `arithmetic` where none is asked for; `None` if there is none.
-    pub fn default_form(arithmetic: Arithmetic, model: Model) -> Option<Form> {
+    pub fn default_form(arithmetic: Arithmetic, model: Model) -> Option<Formulation> {
         Self::WAYS.iter().find(|way| (way.0, way.1) == (arithmetic, model)).map(|way| way.2)
     }
 

@@ -1,6 +1,6 @@
 //! The table of arithmetics under measurement.
 
-use double_pendulum::form::{AngleForm, Compensated, Divided, Followed, Form, PictureForm, PictureForm8, Plain};
+use double_pendulum::form::{AngleForm, Compensated, DirectionForm, DirectionForm8, Divided, Followed, Form, Plain};
 use double_pendulum::trig::{Libm, Micromath, Own, SinCos};
 use double_pendulum::{Error, Modes, Motion, Parameters, Pendulum, Real, SmallOscillations, State};
 
@@ -37,19 +37,19 @@ pub const SUBJECTS: &[Subject] = &[
     subject::<Canonical<f32, Pendulum<f32, Micromath>>>("f32-micromath"),
     subject::<Canonical<f32, Pendulum<f32, Own>>>("f32-own"),
     subject::<Formed<f32, AngleForm<f32>>>("f32-angle-compensated"),
-    subject::<Formed<f32, PictureForm<f32>>>("f32-picture-compensated"),
-    subject::<Formed<f32, PictureForm<f32, Plain, Followed>>>("f32-picture-plain"),
-    subject::<Formed<f32, PictureForm<f32, Plain, Divided>>>("f32-picture-plain-divided"),
+    subject::<Formed<f32, DirectionForm<f32>>>("f32-direction-compensated"),
+    subject::<Formed<f32, DirectionForm<f32, Plain, Followed>>>("f32-direction-plain"),
+    subject::<Formed<f32, DirectionForm<f32, Plain, Divided>>>("f32-direction-plain-divided"),
     subject::<Canonical<f64, Textbook<f64>>>("f64-textbook-libm"),
     subject::<Canonical<f64, Pendulum<f64, Libm>>>("f64-libm"),
     subject::<Canonical<f64, Pendulum<f64, Own>>>("f64-own"),
     subject::<Formed<f64, AngleForm<f64, Plain>>>("f64-angle-plain"),
     subject::<Formed<f64, AngleForm<f64, Compensated<f64>>>>("f64-angle-compensated"),
-    subject::<Formed<f64, PictureForm<f64, Plain>>>("f64-picture-plain"),
-    subject::<Formed<f64, PictureForm8<f64>>>("f64-picture8-compensated"),
+    subject::<Formed<f64, DirectionForm<f64, Plain>>>("f64-direction-plain"),
+    subject::<Formed<f64, DirectionForm8<f64>>>("f64-direction8-compensated"),
 ];
 
-/// Small oscillations in closed form: a step is a picture, at any time. Right for small angles alone.
+/// Small oscillations in closed form: a step is a frame, at any time. Right for small angles alone.
 pub const CLOSED_FORM: Subject = subject::<ClosedForm>("f32-closed-form");
 
 impl Request<'_> {

@@ -6,9 +6,9 @@ crate::message! {
     Set = 0x82 {
         /// Chosen by the host; the answer repeats it.
         request: u16,
-        /// What to set, by its [`code`](crate::job::Field::code).
+        /// What to set, by its [`code`](crate::protocol::Field::code).
         field: u8,
-        /// The unit of the value, by its [`code`](crate::unit::Unit::code).
+        /// The unit of the value, by its [`code`](crate::protocol::Unit::code).
         unit: u8,
         /// The value.
         value: f64,
@@ -62,7 +62,7 @@ crate::message! {
 }
 
 crate::message! {
-    /// Chip to host: the command has been obeyed.
+    /// Chip to host: the command has been executed.
     Done = 0x04 {
         /// The command it answers.
         request: u16,

@@ -5,7 +5,7 @@ crate::message! {
     Frame = 0x01 {
         /// Drawn frames since reset; a gap is a frame lost on the way, unless the board has [`Restarted`](super::Restarted).
         sequence: u32,
-        /// Ticks whose picture was never drawn, since reset.
+        /// Ticks whose frame was never drawn, since reset.
         dropped: u32,
         /// The scene, by its [`code`](crate::scenes::SceneName::code).
         scene: u8,
@@ -23,13 +23,13 @@ crate::message! {
         state: [f32; 4],
         /// (E - E0)/(E0 - Emin): the energy error relative to the energy at the start above hanging at rest.
         energy_error: f32,
-        /// Until when the picture is right to half a pixel, s since the last restart; infinity as long as that is not
+        /// Until when the frame is right to half a pixel, s since the last restart; infinity as long as that is not
         /// known.
-        trusted_until: f32,
-        /// Counts of the processor clock that the scene took for this picture, moving and drawing: cycles on a chip; QEMU
+        horizon: f32,
+        /// Counts of the processor clock that the scene took for this frame, moving and drawing: cycles on a chip; QEMU
         /// does not model cycles, there they say how much of the tick its own clock let pass.
         scene_cycles: u32,
-        /// The same for all of the picture before, sending it to the panel and over the link included.
+        /// The same for all of the frame before, sending it to the panel and over the link included.
         busy_cycles: u32,
     }
 }

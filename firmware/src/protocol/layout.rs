@@ -1,7 +1,7 @@
 //! Messages as tables: one row per field gives the struct, its length, its encoding and its decoding.
 
 /// A number with a fixed little-endian layout.
-pub trait Field: Copy {
+pub trait WireNumber: Copy {
     /// Bytes on the wire.
     const SIZE: usize;
     /// Takes the field off the front of `bytes`; `None` if there are too few.
@@ -12,7 +12,7 @@ pub trait Field: Copy {
 
 macro_rules! little_endian {
     ($($number:ty),*) => {$(
-        impl Field for $number {
+        impl WireNumber for $number {
             const SIZE: usize = size_of::<$number>();
 
             fn take(bytes: &mut &[u8]) -> Option<Self> {
@@ -32,7 +32,7 @@ macro_rules! little_endian {
 }
 little_endian!(u8, u16, u32, u64, f32, f64);
 
-impl<F: Field + Default, const N: usize> Field for [F; N] {
+impl<F: WireNumber + Default, const N: usize> WireNumber for [F; N] {
     const SIZE: usize = F::SIZE * N;
 
     fn take(bytes: &mut &[u8]) -> Option<Self> {
@@ -70,16 +70,16 @@ macro_rules! message {
 
         impl $crate::protocol::Message for $name {
             const KIND: u8 = $kind;
-            const SIZE: usize = 0 $(+ <$type as $crate::protocol::Field>::SIZE)*;
+            const SIZE: usize = 0 $(+ <$type as $crate::protocol::WireNumber>::SIZE)*;
 
             fn read(mut bytes: &[u8]) -> Option<Self> {
-                use $crate::protocol::Field;
+                use $crate::protocol::WireNumber;
                 let message = Self { $($field: <$type>::take(&mut bytes)?,)* };
                 bytes.is_empty().then_some(message)
             }
 
             fn write(&self, bytes: &mut &mut [u8]) -> Option<()> {
-                use $crate::protocol::Field;
+                use $crate::protocol::WireNumber;
                 $(self.$field.put(bytes)?;)*
                 Some(())
             }

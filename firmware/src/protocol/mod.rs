@@ -4,18 +4,23 @@
 //! one byte each; the fields of each kind are listed in the tables here, little-endian and without padding; the CRC is
 //! CRC-32/ISO-HDLC over everything before it, little-endian.
 
+pub mod choice;
 mod command;
+mod field;
 mod frame;
 mod layout;
 mod link;
 mod plan;
 mod restarted;
 mod simulate;
+mod unit;
 
 pub use command::{Ask, Choose, Done, Pause, Restart, Set, Status, Step};
+pub use field::Field;
 pub use frame::Frame;
-pub use layout::{Field, Message};
+pub use layout::{Message, WireNumber};
 pub use link::{Decoder, LinkError, MAX_FIELDS, MAX_WIRE, VERSION, encode, frame};
 pub use plan::{AskPlan, Planned};
 pub use restarted::Restarted;
-pub use simulate::{Coarse, Refused, Sample, Simulate};
+pub use simulate::{Refused, Sample, Simulate, StepTooLong};
+pub use unit::Unit;

@@ -17,15 +17,15 @@ crate::message! {
         /// plan is found; 3: and so is how long the way that is shown is right.
         found: u8,
         /// The cheapest way, which says form, arithmetic and method, by its place in
-        /// [`Way::ALL`](double_pendulum::plan::Way::ALL).
+        /// [`Method::ALL`](double_pendulum::plan::Method::ALL).
         way: u8,
-        /// Steps to a picture; 0 for the closed form.
+        /// Steps to a frame; 0 for the closed form.
         steps: u32,
         /// The step size, s; 0 for the closed form.
         step: f64,
         /// The largest error expected until the horizon, pixels.
         error: f32,
-        /// Cycles to compute a picture, without drawing it (estimate).
+        /// Cycles to compute a frame, without drawing it (estimate).
         cycles: f32,
         /// Until when it is right to half a pixel, s.
         horizon: f64,
@@ -49,7 +49,7 @@ crate::message! {
         height: f64,
         /// For how long the plan is made, s.
         duration: f64,
-        /// What computing a picture may cost, cycles.
+        /// What computing a frame may cost, cycles.
         frame_budget: f32,
         /// What looking ahead may cost, cycles.
         planning_budget: f32,

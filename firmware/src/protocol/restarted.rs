@@ -4,7 +4,7 @@ crate::message! {
     /// Chip to host: the board has restarted by itself and plays on, from the start of its scene. The frames after it are
     /// counted from 0 again. What is said of the program and the scene is how things stood before.
     Restarted = 0x08 {
-        /// Why, by its [`code`](crate::survivor::Cause::code).
+        /// Why, by its [`code`](crate::app::warm_restart::Cause::code).
         cause: u8,
         /// Restarts in a row, this one included; the board forgets them after a minute without one.
         restarts: u8,
@@ -16,7 +16,7 @@ crate::message! {
         cfsr: u32,
         /// The scene that was shown, by its [`code`](crate::scenes::SceneName::code).
         scene: u8,
-        /// The integration step of the last picture shown; its low 32 bits, as in a frame.
+        /// The integration step of the last frame shown; its low 32 bits, as in a frame.
         step: u32,
     }
 }

@@ -9,7 +9,7 @@ crate::message! {
         arithmetic: u8,
         /// The equations, by their [`code`](crate::job::Model::code).
         model: u8,
-        /// What is stepped, by its [`code`](crate::job::Form::code).
+        /// What is stepped, by its [`code`](crate::job::Formulation::code).
         form: u8,
         /// m1, m2 (kg), l1, l2 (m), g (m/s^2).
         parameters: [f64; 5],
@@ -18,7 +18,7 @@ crate::message! {
         /// w1, w2 at the start, rad/s.
         velocities: [f64; 2],
         /// Step size, s.
-        step_size: f64,
+        dt: f64,
         /// Steps from one sample to the next.
         stride: u32,
         /// Samples after the one at the start.
@@ -44,7 +44,7 @@ crate::message! {
 
 crate::message! {
     /// Chip to host: the motion asked for follows, but its step is too long to resolve every motion of its energy.
-    Coarse = 0x06 {
+    StepTooLong = 0x06 {
         /// The request it answers.
         request: u16,
         /// The longest step that would, s.
@@ -53,11 +53,11 @@ crate::message! {
 }
 
 crate::message! {
-    /// Chip to host: the request cannot be computed, or not to its end, or the command not obeyed; nothing was changed.
+    /// Chip to host: the request cannot be computed, or not to its end, or the command not executed; nothing was changed.
     Refused = 0x03 {
         /// The request it answers.
         request: u16,
-        /// The field that is wrong, by its [`code`](crate::job::Field::code).
+        /// The field that is wrong, by its [`code`](crate::protocol::Field::code).
         field: u8,
     }
 }

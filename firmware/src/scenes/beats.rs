@@ -1,21 +1,21 @@
 //! Beats that close: where the frequencies are as whole numbers, small oscillations come back to their start after a
 //! few periods and their Lissajous figure closes; the exact motion from the same start does not.
 
-use double_pendulum::plan::Way;
+use double_pendulum::plan::Method;
 use double_pendulum::{Error, Oscillation, Parameters, SmallOscillations};
 
-use crate::brush::{Spot, Stroke};
-use crate::canvas::{Canvas, WIDTH};
 use crate::config::{GRAVITY, ROD};
-use crate::ink::Ink;
-use crate::label;
-use crate::planner::Shown;
-use crate::scene::{Report, Scene};
-use crate::settings::Settings;
-use crate::simulation::Simulation;
-use crate::swing::Directions;
-use crate::text::{self, Anchor, LINE};
-use crate::trust::{self, Trust};
+use crate::graphics::brush::{Spot, Stroke};
+use crate::graphics::canvas::{Canvas, WIDTH};
+use crate::graphics::fade_layer::FadeLayer;
+use crate::graphics::label;
+use crate::graphics::text::{self, Anchor, LINE};
+use crate::motion::direction_stepper::Directions;
+use crate::motion::planner::Shown;
+use crate::motion::settings::Settings;
+use crate::motion::simulation::Simulation;
+use crate::scenes::horizon::{self, AccuracyHorizon};
+use crate::scenes::scene::{Report, Scene};
 
 /// The middles of the two figures, and how far a mode reaches in them, pixels.
 const MIDDLES: [(f32, f32); 2] = [(25.0, 36.0), (103.0, 36.0)];
@@ -48,7 +48,7 @@ pub struct Beats {
     /// Pixels per radian.
     scale: f32,
     spots: [Spot; 2],
-    trust: Trust,
+    trust: AccuracyHorizon,
 }
 
 impl Beats {
@@ -91,13 +91,13 @@ impl Scene for Beats {
         let greatest = amplitude(linear.fast(), shape[0]).max(amplitude(linear.slow(), shape[1]));
         let scale = if greatest > 0.0 { REACH / greatest } else { 0.0 };
         let spots = [Spot::default(); 2];
-        let trust = Trust::new(&settings.parameters, &simulation.state())?;
+        let trust = AccuracyHorizon::new(&settings.parameters, &simulation.state())?;
         let mut scene = Self { settings: *settings, simulation, linear, shape, scale, spots, trust };
         scene.spots = scene.spots();
         Ok(scene)
     }
 
-    fn tick(&mut self, ink: &mut Ink) {
+    fn tick(&mut self, ink: &mut FadeLayer) {
         self.simulation.tick();
         let places = self.places();
         let spots = places.map(|(x, y)| Spot::at(x, y));
@@ -120,7 +120,7 @@ impl Scene for Beats {
         text::write(canvas, "exact", Anchor::TopRight);
         let middle = |row| Anchor::Centred(WIDTH as i32 / 2, row);
         text::write(canvas, &label::mass_ratio(self.settings.mass_ratio()), middle(0));
-        trust::draw_clock(canvas, report, middle(3 * LINE), middle(5 * LINE));
+        horizon::draw_clock(canvas, report, middle(3 * LINE), middle(5 * LINE));
     }
 
     fn report(&self) -> Report {
@@ -128,6 +128,6 @@ impl Scene for Beats {
     }
 
     fn shown(&self) -> Option<Shown> {
-        Shown::curves(Way::Picture, self.scale)
+        Shown::curves(Method::Direction, self.scale)
     }
 }

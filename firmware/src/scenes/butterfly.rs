@@ -2,20 +2,20 @@
 
 use double_pendulum::{Error, State};
 
-use crate::brush::{SUBPIXELS, Spot, Stroke};
-use crate::canvas::{Canvas, WIDTH};
-use crate::config::{STEP, STEP_RATE, STEPS_PER_TICK};
-use crate::ink::Ink;
-use crate::label;
-use crate::planner::Shown;
-use crate::plot::{self, Strip};
-use crate::scene::{Report, Scene};
-use crate::settings::Settings;
-use crate::simulation::Simulation;
-use crate::swing::Swing;
-use crate::text::{self, Anchor};
-use crate::trust::{self, Trust};
-use crate::view::{Place, View};
+use crate::config::{DT, STEPS_PER_SECOND, STEPS_PER_TICK};
+use crate::graphics::brush::{SUBPIXELS, Spot, Stroke};
+use crate::graphics::canvas::{Canvas, WIDTH};
+use crate::graphics::fade_layer::FadeLayer;
+use crate::graphics::label;
+use crate::graphics::plot::{self, Strip};
+use crate::graphics::text::{self, Anchor};
+use crate::graphics::view::{Place, View};
+use crate::motion::direction_stepper::DirectionStepper;
+use crate::motion::planner::Shown;
+use crate::motion::settings::Settings;
+use crate::motion::simulation::Simulation;
+use crate::scenes::horizon::{self, AccuracyHorizon};
+use crate::scenes::scene::{Report, Scene};
 
 /// Angle 1 of the second twin ahead of the first's at the start, rad.
 const APART: f32 = 1e-6;
@@ -28,7 +28,7 @@ const SCALE: f32 = 3.0;
 const AXIS_GREY: u8 = 3;
 const CURVE: u8 = 255;
 /// The plot holds 60 columns of a quarter of a second: 15 s.
-const STEPS_PER_COLUMN: u64 = STEP_RATE as u64 / 4;
+const STEPS_PER_COLUMN: u64 = STEPS_PER_SECOND as u64 / 4;
 /// Half the width of the first twin's trace, subpixels.
 const HALF_WIDTH: u8 = 30;
 /// Brightness of the second twin, of 255.
@@ -37,17 +37,17 @@ const SECOND: u8 = 110;
 /// Both pendulums at one pivot, and the e-foldings of their separation over time.
 ///
 /// A millionth of a radian is 4 of the last digits that an `f32` angle of 2 rad has, and rounding would soon hide
-/// it; the picture form carries what each addition loses.
+/// it; the direction form carries what each addition loses.
 #[derive(Clone, Debug)]
 pub struct Butterfly {
     first: Simulation,
-    second: Swing,
+    second: DirectionStepper,
     view: View,
     /// The twins' separation at the start, rad: [`APART`] as far as the digits of an `f32` angle allow.
     apart: f64,
     /// ln(separation/`apart`), as last put down.
     e_foldings: f32,
-    trust: Trust,
+    trust: AccuracyHorizon,
     bobs: [Spot; 2],
     strip: Strip<1, PLOT_COLUMNS>,
 }
@@ -75,8 +75,8 @@ impl Scene for Butterfly {
         let beside = State { a1: start.a1 + APART, ..start };
         let view = View::new(&settings.parameters, Place::HALVES[0]);
         let mut scene = Self {
-            second: Swing::new(&settings.parameters, &beside, STEP)?,
-            trust: Trust::new(&settings.parameters, &start)?,
+            second: DirectionStepper::new(&settings.parameters, &beside, DT)?,
+            trust: AccuracyHorizon::new(&settings.parameters, &start)?,
             bobs: view.spots(first.directions()),
             first,
             view,
@@ -88,7 +88,7 @@ impl Scene for Butterfly {
         Ok(scene)
     }
 
-    fn tick(&mut self, ink: &mut Ink) {
+    fn tick(&mut self, ink: &mut FadeLayer) {
         self.first.tick();
         self.second.advance(STEPS_PER_TICK);
         let shown = self.view.bobs(self.first.directions());
@@ -112,7 +112,7 @@ impl Scene for Butterfly {
         self.strip.each(PLOT_LEFT + self.strip.columns() - 1, |x, &[now], &[before]| {
             plot::column(canvas, x, before, now, CURVE);
         });
-        trust::draw_clock(canvas, report, Anchor::TopLeft, Anchor::At(36, 0));
+        horizon::draw_clock(canvas, report, Anchor::TopLeft, Anchor::At(36, 0));
         text::write(canvas, &label::tenths(self.e_foldings, ""), Anchor::TopRight);
         text::write(canvas, "e-folds", Anchor::At(PLOT_LEFT, 0));
     }

@@ -2,19 +2,19 @@
 
 use double_pendulum::{Error, Parameters, State, rk4};
 
-use crate::brush::{Spot, Stroke};
-use crate::canvas::{Canvas, HEIGHT, WIDTH};
-use crate::config::{STEP, STEPS_PER_TICK};
-use crate::ink::Ink;
-use crate::label;
-use crate::planner::Shown;
-use crate::scene::{Report, Scene};
-use crate::settings::Settings;
-use crate::simulation::Simulation;
-use crate::swing::Directions;
-use crate::text::{self, Anchor, LINE};
-use crate::trust::{self, Trust};
-use crate::view::{Place, View};
+use crate::config::{DT, STEPS_PER_TICK};
+use crate::graphics::brush::{Spot, Stroke};
+use crate::graphics::canvas::{Canvas, HEIGHT, WIDTH};
+use crate::graphics::fade_layer::FadeLayer;
+use crate::graphics::label;
+use crate::graphics::text::{self, Anchor, LINE};
+use crate::graphics::view::{Place, View};
+use crate::motion::direction_stepper::Directions;
+use crate::motion::planner::Shown;
+use crate::motion::settings::Settings;
+use crate::motion::simulation::Simulation;
+use crate::scenes::horizon::{self, AccuracyHorizon};
+use crate::scenes::scene::{Report, Scene};
 
 /// Half the width of a trace, subpixels.
 const HALF_WIDTH: u8 = 30;
@@ -32,7 +32,7 @@ pub struct Figure7 {
     views: [View; 2],
     /// The bobs of both pendulums.
     bobs: [[Spot; 2]; 2],
-    trust: Trust,
+    trust: AccuracyHorizon,
 }
 
 impl Figure7 {
@@ -57,13 +57,13 @@ impl Scene for Figure7 {
         let views = Place::HALVES.map(|place| View::new(&settings.parameters, place));
         let start = right.state();
         let misprinted = Misprinted::new(&settings.parameters, &start);
-        let trust = Trust::new(&settings.parameters, &start)?;
+        let trust = AccuracyHorizon::new(&settings.parameters, &start)?;
         let mut scene = Self { right, misprinted, views, bobs: Default::default(), trust };
         scene.bobs = spots(scene.places());
         Ok(scene)
     }
 
-    fn tick(&mut self, ink: &mut Ink) {
+    fn tick(&mut self, ink: &mut FadeLayer) {
         self.right.tick();
         self.misprinted.tick();
         let places = self.places();
@@ -87,7 +87,7 @@ impl Scene for Figure7 {
         text::write(canvas, &right, Anchor::TopLeft);
         text::write(canvas, &misprinted, Anchor::TopRight);
         let middle = |row| Anchor::Centred(WIDTH as i32 / 2, row);
-        trust::draw_clock(canvas, report, middle(0), middle(HEIGHT as i32 - LINE));
+        horizon::draw_clock(canvas, report, middle(0), middle(HEIGHT as i32 - LINE));
     }
 
     fn report(&self) -> Report {
@@ -137,7 +137,7 @@ impl Misprinted {
 
     fn tick(&mut self) {
         for _ in 0..STEPS_PER_TICK {
-            self.z = rk4::step(|z| self.derivatives(z), &self.z, STEP);
+            self.z = rk4::step(|z| self.derivatives(z), &self.z, DT);
         }
         let [sin1, cos1, sin_d, cos_d, q1, q2] = self.z;
         let ([sin1, cos1], [sin_d, cos_d]) = (unit([sin1, cos1]), unit([sin_d, cos_d]));

@@ -2,18 +2,18 @@
 
 use double_pendulum::{Error, Modes, Parameters, State};
 
-use crate::brush::{Spot, Stroke};
-use crate::canvas::{Canvas, HEIGHT, WIDTH};
 use crate::config::TICK_RATE;
-use crate::ink::Ink;
-use crate::label;
-use crate::planner::Shown;
-use crate::plot::{self, Strip};
-use crate::scene::{Report, Scene};
-use crate::settings::Settings;
-use crate::text::{self, Anchor, LINE};
+use crate::graphics::brush::{Spot, Stroke};
+use crate::graphics::canvas::{Canvas, HEIGHT, WIDTH};
+use crate::graphics::fade_layer::FadeLayer;
+use crate::graphics::label;
+use crate::graphics::plot::{self, Strip};
+use crate::graphics::text::{self, Anchor, LINE};
+use crate::motion::planner::Shown;
+use crate::motion::settings::Settings;
+use crate::scenes::scene::{Report, Scene};
 
-/// The least range of mass ratios across the picture, that of the figure; a heavier bob 2 widens it.
+/// The least range of mass ratios across the frame, that of the figure; a heavier bob 2 widens it.
 const LEAST_RANGE: f32 = 5.0;
 /// The mark is at most this far across.
 const FARTHEST_MARK: f32 = 0.8;
@@ -28,7 +28,7 @@ const AXIS_GREY: u8 = 4;
 /// Both frequencies in sqrt(g/l), so that the mass ratio is all that matters; the curves grow from the left.
 #[derive(Clone, Debug)]
 pub struct Frequencies {
-    /// The mass ratio across the whole picture.
+    /// The mass ratio across the whole frame.
     range: f32,
     /// Pixels per sqrt(g/l).
     scale: f32,
@@ -67,7 +67,7 @@ impl Scene for Frequencies {
         Ok(Self { range, scale: RISE / greatest, mass_ratio, marked, curves, ticks: 0, drawn: 0 })
     }
 
-    fn tick(&mut self, _: &mut Ink) {
+    fn tick(&mut self, _: &mut FadeLayer) {
         self.ticks = self.ticks.wrapping_add(1);
         for _ in 0..COLUMNS_PER_TICK.min(WIDTH as u32 - self.drawn) {
             self.push();
@@ -100,7 +100,7 @@ impl Scene for Frequencies {
 
     fn report(&self) -> Report {
         let time = self.ticks as f64 / f64::from(TICK_RATE);
-        Report { step: self.ticks, time, state: State::default(), energy_error: 0.0, trusted_until: f32::INFINITY }
+        Report { step: self.ticks, time, state: State::default(), energy_error: 0.0, horizon: f32::INFINITY }
     }
 
     fn shown(&self) -> Option<Shown> {

@@ -4,18 +4,20 @@ mod beats;
 mod butterfly;
 mod figure7;
 mod frequencies;
+pub mod horizon;
 mod page;
+pub mod scene;
 mod small;
 mod upright;
 
 use double_pendulum::Error;
 
-use crate::canvas::Canvas;
-use crate::choice::choice;
-use crate::ink::Ink;
-use crate::planner::Shown;
-use crate::scene::{Report, Scene};
-use crate::settings::Settings;
+use crate::graphics::canvas::Canvas;
+use crate::graphics::fade_layer::FadeLayer;
+use crate::motion::planner::Shown;
+use crate::motion::settings::Settings;
+use crate::protocol::choice::choice;
+use crate::scenes::scene::{Report, Scene};
 
 macro_rules! catalogue {
     ($($(#[$doc:meta])* $row:ident = $code:literal, $name:literal, $scene:ty, $first:expr;)*) => {
@@ -47,14 +49,14 @@ macro_rules! catalogue {
             }
 
             /// Advances by one tick, as [`Scene::tick`]; the ink, which was clear at the start, pales.
-            pub fn tick(&mut self, ink: &mut Ink) {
+            pub fn tick(&mut self, ink: &mut FadeLayer) {
                 match self { $(Self::$row(scene) => scene.tick(ink),)* }
                 ink.tick();
             }
 
-            /// Draws the whole picture over whatever was there; `report` is the scene's, as of now.
-            pub fn draw(&self, report: &Report, ink: &Ink, canvas: &mut Canvas) {
-                canvas.clone_from(ink.picture());
+            /// Draws the whole frame over whatever was there; `report` is the scene's, as of now.
+            pub fn draw(&self, report: &Report, ink: &FadeLayer, canvas: &mut Canvas) {
+                canvas.clone_from(ink.frame());
                 match self { $(Self::$row(scene) => scene.draw(report, canvas),)* }
             }
 

@@ -2,25 +2,25 @@
 
 use double_pendulum::Error;
 
-use crate::brush::Spot;
-use crate::canvas::{Canvas, HEIGHT};
-use crate::ink::Ink;
-use crate::label;
-use crate::planner::Shown;
-use crate::scene::{Report, Scene};
-use crate::settings::Settings;
-use crate::simulation::Simulation;
-use crate::text::{self, Anchor, LINE};
-use crate::trail::Trail;
-use crate::trust::{self, Trust};
-use crate::view::{Place, View};
+use crate::graphics::brush::Spot;
+use crate::graphics::canvas::{Canvas, HEIGHT};
+use crate::graphics::fade_layer::FadeLayer;
+use crate::graphics::label;
+use crate::graphics::text::{self, Anchor, LINE};
+use crate::graphics::trail::Trail;
+use crate::graphics::view::{Place, View};
+use crate::motion::planner::Shown;
+use crate::motion::settings::Settings;
+use crate::motion::simulation::Simulation;
+use crate::scenes::horizon::{self, AccuracyHorizon};
+use crate::scenes::scene::{Report, Scene};
 
 /// One pendulum, bob 2's trail, and settings and time in the corners, the one place the motion never reaches.
 #[derive(Clone, Debug)]
 pub struct Page {
     settings: Settings,
     simulation: Simulation,
-    trust: Trust,
+    trust: AccuracyHorizon,
     view: View,
     trail: Trail,
 }
@@ -40,11 +40,11 @@ impl Scene for Page {
         let simulation = Simulation::new(settings)?;
         let view = View::new(&settings.parameters, Place::WHOLE);
         let [_, bob2] = view.spots(simulation.directions());
-        let trust = Trust::new(&settings.parameters, &simulation.state())?;
+        let trust = AccuracyHorizon::new(&settings.parameters, &simulation.state())?;
         Ok(Self { settings: *settings, simulation, trust, view, trail: Trail::new(bob2) })
     }
 
-    fn tick(&mut self, _: &mut Ink) {
+    fn tick(&mut self, _: &mut FadeLayer) {
         self.simulation.tick();
         let shown = self.bobs();
         let [_, (x, y)] = shown;
@@ -61,7 +61,7 @@ impl Scene for Page {
         if degrees1 != degrees2 {
             text::write(canvas, &label::degrees(degrees2), Anchor::At(0, HEIGHT as i32 - 2 * LINE));
         }
-        trust::draw_clock(canvas, report, Anchor::TopRight, Anchor::BottomRight);
+        horizon::draw_clock(canvas, report, Anchor::TopRight, Anchor::BottomRight);
     }
 
     fn report(&self) -> Report {

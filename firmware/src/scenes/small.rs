@@ -1,19 +1,19 @@
 //! Figures 3 to 5: small oscillations, both angles as scrolling curves within their envelopes, in closed form.
 
-use double_pendulum::plan::Way;
+use double_pendulum::plan::Method;
 use double_pendulum::trig::{DefaultTrig, SinCos};
 use double_pendulum::{Error, Modes, Oscillation, Parameters, Pendulum, SmallOscillations};
 
-use crate::canvas::{Canvas, WIDTH};
 use crate::config::TICK_RATE;
-use crate::ink::Ink;
-use crate::label;
-use crate::planner::Shown;
-use crate::plot::{self, Strip};
-use crate::scene::{Report, Scene};
-use crate::settings::Settings;
-use crate::text::{self, Anchor};
-use crate::trust::{self, HALF_PIXEL};
+use crate::graphics::canvas::{Canvas, WIDTH};
+use crate::graphics::fade_layer::FadeLayer;
+use crate::graphics::label;
+use crate::graphics::plot::{self, Strip};
+use crate::graphics::text::{self, Anchor};
+use crate::motion::planner::Shown;
+use crate::motion::settings::Settings;
+use crate::scenes::horizon::{self, HALF_PIXEL};
+use crate::scenes::scene::{Report, Scene};
 
 /// The rows of rest of angle 1 and angle 2, pixels from the top, and the greatest swing about them.
 const ROWS: [f32; 2] = [22.0, 50.0];
@@ -34,7 +34,7 @@ pub fn example(mass_ratio: f32) -> Settings {
 
 /// Until when a curve of amplitude `swing` (pixels) is right to half a pixel, s: the greatest phase w1 t is off by at
 /// most [`PHASE_ROUNDINGS`] of its roundings, which moves the curve by swing times that.
-pub fn trusted_until(modes: &Modes<f32>, swing: f32) -> f32 {
+pub fn horizon(modes: &Modes<f32>, swing: f32) -> f32 {
     HALF_PIXEL / (swing * modes.fast.frequency * PHASE_ROUNDINGS * f32::EPSILON)
 }
 
@@ -49,7 +49,7 @@ pub struct Small {
     scale: f32,
     ticks_per_column: u32,
     ticks: u64,
-    trusted_until: f32,
+    horizon: f32,
     strip: Strip<4>,
 }
 
@@ -85,14 +85,14 @@ impl Scene for Small {
             scale: if greatest > 0.0 { SWING / greatest } else { 0.0 },
             ticks_per_column: ticks_per_column.max(1),
             ticks: 0,
-            trusted_until: trusted_until(&modes, SWING),
+            horizon: horizon(&modes, SWING),
             strip: Strip::default(),
         };
         scene.push();
         Ok(scene)
     }
 
-    fn tick(&mut self, _: &mut Ink) {
+    fn tick(&mut self, _: &mut FadeLayer) {
         self.ticks = self.ticks.wrapping_add(1);
         if self.ticks.is_multiple_of(self.ticks_per_column.into()) {
             self.push();
@@ -113,16 +113,16 @@ impl Scene for Small {
         });
         text::write(canvas, &label::mass_ratio(self.settings.mass_ratio()), Anchor::TopLeft);
         let middle = Anchor::Centred(WIDTH as i32 / 2, 0);
-        trust::draw_clock(canvas, report, Anchor::TopRight, middle);
+        horizon::draw_clock(canvas, report, Anchor::TopRight, middle);
     }
 
     fn report(&self) -> Report {
         let state = self.pendulum.state(&self.motion.at(self.time() as f32));
-        Report { step: self.ticks, time: self.time(), state, energy_error: 0.0, trusted_until: self.trusted_until }
+        Report { step: self.ticks, time: self.time(), state, energy_error: 0.0, horizon: self.horizon }
     }
 
     fn shown(&self) -> Option<Shown> {
-        Shown::curves(Way::ClosedForm, self.scale)
+        Shown::curves(Method::ClosedForm, self.scale)
     }
 }
 

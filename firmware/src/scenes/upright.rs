@@ -3,18 +3,18 @@
 use double_pendulum::trig::{DefaultTrig, SinCos};
 use double_pendulum::{Error, State};
 
-use crate::brush::{Spot, Stroke};
-use crate::canvas::{Canvas, HEIGHT, WIDTH};
-use crate::config::{STEP, STEP_RATE, STEPS_PER_TICK};
-use crate::ink::Ink;
-use crate::planner::Shown;
-use crate::scene::{Report, Scene};
-use crate::settings::Settings;
-use crate::simulation::Energy;
-use crate::swing::{Directions, Swing};
-use crate::text::{self, Anchor, LINE};
-use crate::trust::{self, HALF_PIXEL};
-use crate::view::{Place, View};
+use crate::config::{DT, STEPS_PER_SECOND, STEPS_PER_TICK};
+use crate::graphics::brush::{Spot, Stroke};
+use crate::graphics::canvas::{Canvas, HEIGHT, WIDTH};
+use crate::graphics::fade_layer::FadeLayer;
+use crate::graphics::text::{self, Anchor, LINE};
+use crate::graphics::view::{Place, View};
+use crate::motion::direction_stepper::{DirectionStepper, Directions};
+use crate::motion::planner::Shown;
+use crate::motion::settings::Settings;
+use crate::motion::simulation::Energy;
+use crate::scenes::horizon::{self, HALF_PIXEL};
+use crate::scenes::scene::{Report, Scene};
 
 /// Half the width of a trace, subpixels.
 const HALF_WIDTH: u8 = 30;
@@ -34,12 +34,12 @@ pub fn straight_up() -> Settings {
 #[derive(Clone, Debug)]
 pub struct Upright {
     plain: State<f32>,
-    compensated: Swing,
+    compensated: DirectionStepper,
     energy: Energy,
     step: u64,
     views: [View; 2],
     bobs: [[Spot; 2]; 2],
-    trusted_until: f32,
+    horizon: f32,
 }
 
 impl Upright {
@@ -53,39 +53,39 @@ impl Upright {
     }
 
     fn time(&self) -> f64 {
-        self.step as f64 / f64::from(STEP_RATE)
+        self.step as f64 / f64::from(STEPS_PER_SECOND)
     }
 
     /// Whether the plain motion is no longer shown where the compensated one is.
     fn have_parted(&self) -> bool {
         let [left, _] = &self.views;
         let [plain, compensated] = [self.plain_directions(), self.compensated.directions()].map(|to| left.bobs(to));
-        trust::are_apart(plain, compensated, HALF_PIXEL)
+        horizon::are_apart(plain, compensated, HALF_PIXEL)
     }
 }
 
 impl Scene for Upright {
     fn new(settings: &Settings) -> Result<Self, Error> {
         let pendulum = settings.pendulum()?;
-        pendulum.check_step(STEP)?;
+        pendulum.check_step(DT)?;
         let plain = settings.start(&pendulum)?;
         let views = Place::HALVES.map(|place| View::new(&settings.parameters, place));
-        let compensated = Swing::new(&settings.parameters, &plain, STEP)?;
+        let compensated = DirectionStepper::new(&settings.parameters, &plain, DT)?;
         let (energy, step) = (Energy::new(pendulum, &plain), 0);
         let bobs = Default::default();
-        let mut scene = Self { plain, compensated, energy, step, views, bobs, trusted_until: f32::INFINITY };
+        let mut scene = Self { plain, compensated, energy, step, views, bobs, horizon: f32::INFINITY };
         scene.bobs = scene.places();
         Ok(scene)
     }
 
-    fn tick(&mut self, ink: &mut Ink) {
+    fn tick(&mut self, ink: &mut FadeLayer) {
         for _ in 0..STEPS_PER_TICK {
-            self.plain = self.energy.pendulum().step(&self.plain, STEP);
+            self.plain = self.energy.pendulum().step(&self.plain, DT);
         }
         self.compensated.advance(STEPS_PER_TICK);
         self.step = self.step.wrapping_add(STEPS_PER_TICK.into());
-        if self.trusted_until.is_infinite() && self.have_parted() {
-            self.trusted_until = self.time() as f32;
+        if self.horizon.is_infinite() && self.have_parted() {
+            self.horizon = self.time() as f32;
         }
         let places = self.places();
         for ([_, from], [_, to]) in self.bobs.into_iter().zip(places) {
@@ -101,7 +101,7 @@ impl Scene for Upright {
         text::write(canvas, "plain", Anchor::TopLeft);
         text::write(canvas, "compensated", Anchor::TopRight);
         let middle = |row| Anchor::Centred(WIDTH as i32 / 2, row);
-        trust::draw_clock(canvas, report, middle(LINE), middle(HEIGHT as i32 - LINE));
+        horizon::draw_clock(canvas, report, middle(LINE), middle(HEIGHT as i32 - LINE));
     }
 
     fn report(&self) -> Report {
@@ -110,7 +110,7 @@ impl Scene for Upright {
             time: self.time(),
             state: self.plain,
             energy_error: self.energy.error(&self.plain),
-            trusted_until: self.trusted_until,
+            horizon: self.horizon,
         }
     }
 

@@ -1,10 +1,10 @@
 //! Who takes part: this kernel and two integration libraries, each in f64 and each keeping what it always keeps.
 
 use differential_equations::prelude::{ExplicitRungeKutta, IVP, ODE};
-use double_pendulum::form::{AngleForm, Form, PictureForm, PictureForm8, Plain};
+use double_pendulum::form::{AngleForm, DirectionForm, DirectionForm8, Form, Plain};
 use double_pendulum::{Motion, State};
-use host_tests::reference::Reference;
-use host_tests::trial::largest_difference;
+use host_tests::oracle::reference::Reference;
+use host_tests::oracle::trials::largest_difference;
 use ode_solvers::dop_shared::OutputType;
 use ode_solvers::{Dop853, Rk4, System, Vector4};
 
@@ -99,8 +99,8 @@ pub const CLASSICAL: &[Contestant] = &[
     own("double-pendulum", |scene, parts, steps| own_step(scene, parts, steps, Pendulum::step)),
     own("double-pendulum, angle form", form::<AngleForm<f64, Plain>>),
     own("double-pendulum, angle form compensated", form::<AngleForm<f64>>),
-    own("double-pendulum, picture form", form::<PictureForm<f64, Plain>>),
-    own("double-pendulum, picture form compensated", form::<PictureForm<f64>>),
+    own("double-pendulum, direction form", form::<DirectionForm<f64, Plain>>),
+    own("double-pendulum, direction form compensated", form::<DirectionForm<f64>>),
     peer("ode_solvers, the book's equations", |scene, parts, steps| ode_solvers_rk4(Book, scene, parts, steps)),
     peer("ode_solvers, this kernel's equations", |scene, parts, steps| {
         ode_solvers_rk4(pendulum(), scene, parts, steps)
@@ -115,8 +115,8 @@ pub const CLASSICAL: &[Contestant] = &[
 
 /// For tight errors: order 8, and this kernel's RK4 beside it.
 pub const TIGHT: &[Contestant] = &[
-    own("double-pendulum, picture form of order 8", form::<PictureForm8<f64>>),
-    own("double-pendulum, picture form of RK4", form::<PictureForm<f64>>),
+    own("double-pendulum, direction form of order 8", form::<DirectionForm8<f64>>),
+    own("double-pendulum, direction form of RK4", form::<DirectionForm<f64>>),
     own("double-pendulum, order 8", |scene, parts, steps| own_step(scene, parts, steps, Pendulum::step_of_order_8)),
     adaptive("ode_solvers DOP853, the book's equations", |scene, parts, effort| {
         ode_solvers_dop853(Book, scene, parts, effort)

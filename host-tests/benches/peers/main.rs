@@ -66,7 +66,7 @@ fn compare() -> Option<()> {
         let mut entries = race::at_effort(CLASSICAL, scene, scene.classical_steps());
         race::run(&mut entries, scene);
         show(&format!("{}: RK4, time for 256 steps a second", scene.name), &entries, Entry::time_at_equal_error);
-        for (name, most) in [("angle form", 0.65), ("picture form", 0.45)] {
+        for (name, most) in [("angle form", 0.65), ("direction form", 0.45)] {
             let form = |one: &Contestant| one.name.starts_with("double-pendulum") && one.name.ends_with(name);
             let measured = least(&entries, form, Entry::time_at_equal_error)
                 / least(&entries, |one| !one.own, Entry::time_at_equal_error);

@@ -5,9 +5,10 @@ use std::process::ExitCode;
 use clap::Parser;
 use double_pendulum::Parameters;
 use firmware::measure::{CLOSED_FORM, Request, SUBJECTS};
-use host_tests::board::{BOARDS, Board};
-use host_tests::count::{CountError, FULL_CYCLE, Profile, StepCost, Target, affordable_steps, step_cost};
-use host_tests::{cli, toolchain};
+use host_tests::commands::count::{CountError, FULL_CYCLE, Profile, StepCost, Target, affordable_steps, step_cost};
+use host_tests::console::cli;
+use host_tests::emulator::boards::{BOARDS, Board};
+use host_tests::emulator::toolchain;
 
 /// Counts executed instructions (exact) and Cortex-M cycles (an estimate from the published instruction timings).
 #[derive(Debug, Parser)]

@@ -2,7 +2,8 @@
 
 use std::process::ExitCode;
 
-use host_tests::{cli, demo};
+use host_tests::commands::demo;
+use host_tests::console::cli;
 
 fn main() -> ExitCode {
     let options = match cli::parse::<demo::Options>() {

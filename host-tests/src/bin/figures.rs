@@ -7,9 +7,10 @@ use std::process::ExitCode;
 use anyhow::Context;
 use clap::Parser;
 use firmware::scenes::SceneName;
-use host_tests::{cli, figures};
+use host_tests::commands::figures;
+use host_tests::console::cli;
 
-/// Draws the book's figures 2 to 5 and 7 from the kernel, as SVG and PNG, and the panel's picture of every scene.
+/// Draws the book's figures 2 to 5 and 7 from the kernel, as SVG and PNG, and the panel's frame of every scene.
 #[derive(Debug, Parser)]
 #[command(name = "cargo figures")]
 struct Options {

@@ -5,9 +5,10 @@ use std::process::{Command, ExitCode};
 use std::time::Duration;
 
 use clap::Parser;
-use host_tests::board::STM32F405;
-use host_tests::process::{self, ProcessError};
-use host_tests::{cli, toolchain};
+use host_tests::console::cli;
+use host_tests::emulator::boards::STM32F405;
+use host_tests::emulator::process::{self, ProcessError};
+use host_tests::emulator::toolchain;
 
 /// The program that speaks to debug probes.
 const PROBE_RS: &str = "probe-rs";

@@ -4,9 +4,9 @@ use std::process::ExitCode;
 
 use anyhow::{Context, bail};
 use clap::Parser;
-use host_tests::cli;
-use host_tests::fuzz::{Flips, Search, TARGETS, Tally, Target};
-use host_tests::progress::Bar;
+use host_tests::commands::fuzz::{Flips, Search, TARGETS, Target, ThrottledCounter};
+use host_tests::console::cli;
+use host_tests::console::progress::Bar;
 
 /// The target that is no search: frames through a link that flips bits.
 const FLIPS: &str = "flips";
@@ -94,7 +94,7 @@ fn flips(arguments: &Arguments) -> anyhow::Result<()> {
         }
     }
     drop(bar);
-    let Tally { sent, damaged, received, forged, missed, lost } = link.tally();
+    let ThrottledCounter { sent, damaged, received, forged, missed, lost } = link.tally();
     println!("{FLIPS:10} {sent:>10} frames, {damaged} damaged, {received} received, {lost} missing by their numbers");
     if forged + missed > 0 || lost != damaged || received + damaged != sent {
         bail!("{forged} damaged frames were taken for good, {missed} good ones were missed");

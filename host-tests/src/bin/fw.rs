@@ -7,11 +7,12 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use clap::Parser;
-use host_tests::board::BOARDS;
-use host_tests::firmware_run::{board_for, run};
-use host_tests::qemu::{Clock, QemuError, Settings};
-use host_tests::toolchain::{self, BuildError, SetupError};
-use host_tests::{cli, process};
+use host_tests::console::cli;
+use host_tests::emulator::boards::BOARDS;
+use host_tests::emulator::firmware_run::{board_for, run};
+use host_tests::emulator::process;
+use host_tests::emulator::qemu::{Clock, QemuError, Settings};
+use host_tests::emulator::toolchain::{self, BuildError, SetupError};
 
 /// Builds a firmware binary, runs it in QEMU and prints its log; exits as the firmware does.
 #[derive(Debug, Parser)]

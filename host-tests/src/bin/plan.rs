@@ -3,12 +3,12 @@
 use std::process::ExitCode;
 
 use double_pendulum::Error;
-use host_tests::cli;
-use host_tests::planning::{
+use host_tests::commands::plan::{
     DURATIONS, FOLLOWED, Options, broken, classes, fit, margins, rk4_in_f64, scenes, study, words,
 };
-use host_tests::progress::Bar;
-use host_tests::report::table::Table;
+use host_tests::commands::table::Table;
+use host_tests::console::cli;
+use host_tests::console::progress::Bar;
 
 fn main() -> ExitCode {
     let options = match cli::parse::<Options>() {

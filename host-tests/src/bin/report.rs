@@ -1,15 +1,16 @@
-//! `cargo write-report`: writes the tables and pictures of cost against error.
+//! `cargo write-report`: writes the tables and frames of cost against error.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::ensure;
 use clap::Parser;
-use host_tests::progress::Bar;
-use host_tests::report::{self, Extent, Main, headline};
-use host_tests::{cli, toolchain};
+use host_tests::commands::report::{self, Extent, Main, headline};
+use host_tests::console::cli;
+use host_tests::console::progress::Bar;
+use host_tests::emulator::toolchain;
 
-/// Measures every arithmetic's cost on the target and its error, and writes tables, pictures and a page.
+/// Measures every arithmetic's cost on the target and its error, and writes tables, frames and a page.
 #[derive(Debug, Parser)]
 #[command(name = "cargo write-report")]
 struct Options {

@@ -3,7 +3,8 @@
 use std::process::ExitCode;
 
 use clap::Parser;
-use host_tests::{cli, toolchain};
+use host_tests::console::cli;
+use host_tests::emulator::toolchain;
 
 /// Finds or brings all that builds and runs the firmware: the ARM core library and QEMU.
 #[derive(Debug, Parser)]

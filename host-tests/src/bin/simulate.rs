@@ -3,10 +3,10 @@
 use std::io::{self, BufWriter, ErrorKind};
 use std::process::ExitCode;
 
-use host_tests::cli;
-use host_tests::progress::Bar;
-use host_tests::simulate::{Options, Place, Plan, Table, on_board, on_host, plan};
-use host_tests::toolchain::SetupError;
+use host_tests::commands::simulate::{Options, Place, Plan, Table, on_board, on_host, plan};
+use host_tests::console::cli;
+use host_tests::console::progress::Bar;
+use host_tests::emulator::toolchain::SetupError;
 
 fn main() -> ExitCode {
     let options = match cli::parse::<Options>() {

@@ -5,12 +5,12 @@ use std::time::Duration;
 
 use anyhow::Context;
 use clap::Parser;
-use host_tests::board::{BOARDS, Board};
-use host_tests::cli;
-use host_tests::progress::Bar;
-use host_tests::qemu::{Clock, Settings};
-use host_tests::soak::{self, Outcome};
-use host_tests::toolchain::{self, SetupError, Toolchain};
+use host_tests::commands::soak::{self, Outcome};
+use host_tests::console::cli;
+use host_tests::console::progress::Bar;
+use host_tests::emulator::boards::{BOARDS, Board};
+use host_tests::emulator::qemu::{Clock, Settings};
+use host_tests::emulator::toolchain::{self, SetupError, Toolchain};
 
 /// The board that computes physics alone: it has no panel.
 const PHYSICS_BOARD: &str = "mps2-an386";

@@ -4,7 +4,8 @@ use std::process::{Command, ExitCode, Stdio};
 use std::time::Duration;
 
 use clap::Parser;
-use host_tests::{cli, process, toolchain};
+use host_tests::console::cli;
+use host_tests::emulator::{process, toolchain};
 
 /// For every test, the compiling included, on a slow, busy machine.
 const LIMIT: Duration = Duration::from_secs(3600);

@@ -13,7 +13,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use addr2line::Loader;
-use host_tests::board::BOARDS;
+use host_tests::emulator::boards::BOARDS;
 
 use code::Code;
 

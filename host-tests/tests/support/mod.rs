@@ -4,9 +4,9 @@
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use host_tests::board::Board;
-use host_tests::qemu::{Clock, Settings};
-use host_tests::toolchain::{self, Toolchain};
+use host_tests::emulator::boards::Board;
+use host_tests::emulator::qemu::{Clock, Settings};
+use host_tests::emulator::toolchain::{self, Toolchain};
 
 /// Guards against hanging, nothing else: many times what any of these runs takes, on a slow and busy machine too.
 pub const LIMIT: Duration = Duration::from_secs(900);

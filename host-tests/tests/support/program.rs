@@ -4,8 +4,8 @@ use std::path::Path;
 
 use object::{Object, ObjectSymbol};
 
-/// The address of a symbol, by its name without the path before it: `Player::obey`, which one version of the compiler calls
-/// `firmware::player::Player::obey` and the next `<firmware::player::Player>::obey`.
+/// The address of a symbol, by its name without the path before it: `Player::execute`, which one version of the compiler calls
+/// `firmware::app::player::Player::execute` and the next `<firmware::app::player::Player>::execute`.
 pub fn address(elf: &Path, name: &str) -> u32 {
     let bytes = std::fs::read(elf).unwrap_or_else(|error| panic!("{}: {error}", elf.display()));
     let file = object::File::parse(&*bytes).unwrap_or_else(|error| panic!("{}: {error}", elf.display()));

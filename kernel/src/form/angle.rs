@@ -2,9 +2,9 @@
 
 use core::marker::PhantomData;
 
+use super::angle_accumulator::{AngleAccumulator, LARGEST, angle};
 use super::coefficients::{Coefficients, Rates, Scale, Span, prepare};
 use super::sum::{Compensated, Sum};
-use super::turn::{LARGEST, Turn, angle};
 use super::{Direction, Form, lower_direction};
 use crate::error::{Error, Parameter};
 use crate::params::Parameters;
@@ -30,15 +30,15 @@ pub struct AngleForm<R, S = Compensated<R>> {
 
 /// What the angle form carries from step to step: 64 bytes in compensated `f32`.
 #[derive(Clone, Copy, Debug)]
-pub struct Angles<R, S> {
-    upper: Turn<R, S>,
-    elbow: Turn<R, S>,
+pub struct AngleState<R, S> {
+    upper: AngleAccumulator<R, S>,
+    elbow: AngleAccumulator<R, S>,
     momenta: [R; 2],
     sums: [S; 2],
     steps: u64,
 }
 
-impl<R: Real, S: Sum<R>> Angles<R, S> {
+impl<R: Real, S: Sum<R>> AngleState<R, S> {
     /// Adds the increments of a1, D, P1 and P2.
     #[inline(always)]
     fn add(&mut self, [a1, d, p1, p2]: [R; 4]) {
@@ -49,7 +49,7 @@ impl<R: Real, S: Sum<R>> Angles<R, S> {
 }
 
 impl<R: Real, S: Sum<R>> Form<R> for AngleForm<R, S> {
-    type Carried = Angles<R, S>;
+    type Carried = AngleState<R, S>;
 
     fn new(parameters: &Parameters<R>, dt: R) -> Result<Self, Error> {
         let (coefficients, scale) = prepare(parameters, dt, Span { weights: 6.0, factor: S::factor() })?;
@@ -65,9 +65,9 @@ impl<R: Real, S: Sum<R>> Form<R> for AngleForm<R, S> {
             }
         }
         let momenta = self.scale.momenta(state)?;
-        Ok(Angles {
-            upper: Turn::new(a1, R::ONE),
-            elbow: Turn::new(a1 - a2, self.coefficients.norm),
+        Ok(AngleState {
+            upper: AngleAccumulator::new(a1, R::ONE),
+            elbow: AngleAccumulator::new(a1 - a2, self.coefficients.norm),
             momenta: momenta.map(R::of),
             sums: momenta.map(S::new),
             steps: 0,
@@ -107,7 +107,7 @@ impl<R: Real, S: Sum<R>> Form<R> for AngleForm<R, S> {
 impl<R: Real, S: Sum<R>> AngleForm<R, S> {
     /// One step. Whether all was small is asked once, at its end.
     #[inline(always)]
-    fn step(&self, carried: &mut Angles<R, S>) {
+    fn step(&self, carried: &mut AngleState<R, S>) {
         let upper = carried.upper.direction();
         let elbow = carried.elbow.direction();
         let mut reach = R::Reach::default();
@@ -129,19 +129,19 @@ impl<R: Real, S: Sum<R>> AngleForm<R, S> {
     /// in registers: an array would be written to memory in every step.
     #[cold]
     #[inline(never)]
-    fn careful_step(&self, carried: &mut Angles<R, S>, reach: R::Reach, a1: R, d: R, p1: R, p2: R) {
+    fn careful_step(&self, carried: &mut AngleState<R, S>, reach: R::Reach, a1: R, d: R, p1: R, p2: R) {
         carried.add(if R::is_in_reach(reach) {
             [a1, d, p1, p2]
         } else {
             self.increment(carried, |[a1, d]| [carried.upper.direction_at(a1), carried.elbow.direction_at(d)])
         });
-        carried.upper.settle(R::ONE);
-        carried.elbow.settle(self.coefficients.norm);
+        carried.upper.renormalise(R::ONE);
+        carried.elbow.renormalise(self.coefficients.norm);
     }
 
     /// The increments of a1, D, P1 and P2 over one step; `further` gives both directions some increments of a1 and D on.
     #[inline(always)]
-    fn increment(&self, carried: &Angles<R, S>, mut further: impl FnMut([R; 2]) -> [Direction<R>; 2]) -> [R; 4] {
+    fn increment(&self, carried: &AngleState<R, S>, mut further: impl FnMut([R; 2]) -> [Direction<R>; 2]) -> [R; 4] {
         let [p1, p2] = carried.momenta;
         let [sum1, sum2] = carried.sums;
         let mut stage = |k: [R; 4]| {

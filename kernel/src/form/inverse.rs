@@ -1,4 +1,4 @@
-//! How the picture form comes by r = 1/(m + S^2).
+//! How the direction form comes by r = 1/(m + S^2).
 
 use core::fmt::Debug;
 

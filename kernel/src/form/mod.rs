@@ -9,16 +9,16 @@
 //! | form | cycles | 10 s | 100 s |
 //! |---|---|---|---|
 //! | [`AngleForm`] compensated, `f32` | 376 | 3e-8 | 2.7e-7 |
-//! | [`PictureForm`] compensated, `f32` | 214 | 4e-8 | 4e-7 |
-//! | [`PictureForm`] plain, `f32` | 160 | 2e-6 | 2e-5 |
+//! | [`DirectionForm`] compensated, `f32` | 214 | 4e-8 | 4e-7 |
+//! | [`DirectionForm`] plain, `f32` | 160 | 2e-6 | 2e-5 |
 //!
-//! In `f64`, where an error of 1e-9 or less is wanted, [`PictureForm8`] takes far fewer steps, of order 8.
+//! In `f64`, where an error of 1e-9 or less is wanted, [`DirectionForm8`] takes far fewer steps, of order 8.
 //!
 //! ```
-//! use double_pendulum::form::{Form, PictureForm};
+//! use double_pendulum::form::{Form, DirectionForm};
 //! use double_pendulum::{Parameters, State};
 //!
-//! let form = PictureForm::<f32>::new(&Parameters::equal_rods(1.0, 1.0, 9.81), 1.0 / 256.0)?;
+//! let form = DirectionForm::<f32>::new(&Parameters::equal_rods(1.0, 1.0, 9.81), 1.0 / 256.0)?;
 //! let mut carried = form.start(&State::at_rest(0.5, 0.5))?;
 //! form.advance(&mut carried, 256);
 //! let [[sin1, cos1], [sin2, cos2]] = form.directions(&carried); // enough to draw both rods
@@ -27,18 +27,18 @@
 //! ```
 
 mod angle;
+mod angle_accumulator;
 mod coefficients;
+mod direction;
+mod direction8;
 mod inverse;
-mod picture;
-mod picture8;
 mod sum;
-mod turn;
 mod winding;
 
-pub use angle::{AngleForm, Angles};
+pub use angle::{AngleForm, AngleState};
+pub use direction::{DirectionForm, DirectionState};
+pub use direction8::DirectionForm8;
 pub use inverse::{Divided, Followed, Inverse};
-pub use picture::{Picture, PictureForm};
-pub use picture8::PictureForm8;
 pub use sum::{Compensated, Plain, Sum};
 pub use winding::Winding;
 
@@ -76,7 +76,7 @@ pub trait Form<R: Real>: Copy + core::fmt::Debug {
         let mut next = *carried;
         self.advance(&mut next, steps);
         self.state(&next).finite()?;
-        // A lost motion may have an angle and yet no direction: the picture form's lengths overflow first.
+        // A lost motion may have an angle and yet no direction: the direction form's lengths overflow first.
         let [[sin1, cos1], [sin2, cos2]] = self.directions(&next);
         check_finite([(Parameter::A1, sin1), (Parameter::A1, cos1), (Parameter::A2, sin2), (Parameter::A2, cos2)])
             .map_err(Error::diverged)?;

@@ -6,73 +6,79 @@ use crate::error::{Error, Parameter};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
-pub enum Way {
+pub enum Method {
     /// [`SmallOscillations`](crate::SmallOscillations) in `f32`: no steps at all.
     ClosedForm,
-    /// [`PictureForm`](crate::form::PictureForm), plain `f32`.
-    PicturePlain,
-    /// [`PictureForm`](crate::form::PictureForm), compensated `f32`.
-    Picture,
+    /// [`DirectionForm`](crate::form::DirectionForm), plain `f32`.
+    DirectionPlain,
+    /// [`DirectionForm`](crate::form::DirectionForm), compensated `f32`.
+    Direction,
     /// [`AngleForm`](crate::form::AngleForm), compensated `f32`.
     Angle,
-    /// [`PictureForm8`](crate::form::PictureForm8), compensated `f64`: steps of order 8.
-    Picture8,
+    /// [`DirectionForm8`](crate::form::DirectionForm8), compensated `f64`: steps of order 8.
+    Direction8,
 }
 
-impl Way {
+impl Method {
     /// Every way.
-    pub const ALL: [Way; 5] = [Way::ClosedForm, Way::PicturePlain, Way::Picture, Way::Angle, Way::Picture8];
+    pub const ALL: [Method; 5] =
+        [Method::ClosedForm, Method::DirectionPlain, Method::Direction, Method::Angle, Method::Direction8];
 
     /// Model, arithmetic and method in words.
     pub const fn name(self) -> &'static str {
         match self {
-            Way::ClosedForm => "normal modes in closed form, f32",
-            Way::PicturePlain => "picture form, RK4, plain f32",
-            Way::Picture => "picture form, RK4, compensated f32",
-            Way::Angle => "angle form, RK4, compensated f32",
-            Way::Picture8 => "picture form, order 8, compensated f64",
+            Method::ClosedForm => "normal modes in closed form, f32",
+            Method::DirectionPlain => "direction form, RK4, plain f32",
+            Method::Direction => "direction form, RK4, compensated f32",
+            Method::Angle => "angle form, RK4, compensated f32",
+            Method::Direction8 => "direction form, order 8, compensated f64",
         }
     }
 }
 
-/// Cycles of a step in each way on one target; of a picture for the closed form.
+/// Cycles of a step in each way on one target; of a frame for the closed form.
 ///
 /// The constants are the high estimates of `cargo count` for steps of 1/256 s, masses and lengths alike (test `count` holds
 /// them to within a tenth).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Costs {
-    /// [`Way::ClosedForm`], for each picture.
+    /// [`Method::ClosedForm`], for each frame.
     pub closed_form: f32,
-    /// [`Way::PicturePlain`].
-    pub picture_plain: f32,
-    /// [`Way::Picture`].
-    pub picture: f32,
-    /// [`Way::Angle`].
+    /// [`Method::DirectionPlain`].
+    pub direction_plain: f32,
+    /// [`Method::Direction`].
+    pub direction: f32,
+    /// [`Method::Angle`].
     pub angle: f32,
-    /// [`Way::Picture8`].
-    pub picture8: f32,
+    /// [`Method::Direction8`].
+    pub direction8: f32,
 }
 
 impl Costs {
     /// Cortex-M3, which has no floating-point unit.
-    pub const CORTEX_M3: Self =
-        Self { closed_form: 5_545.0, picture_plain: 9_803.0, picture: 11_265.0, angle: 16_661.0, picture8: 139_600.0 };
+    pub const CORTEX_M3: Self = Self {
+        closed_form: 5_545.0,
+        direction_plain: 9_803.0,
+        direction: 11_265.0,
+        angle: 16_661.0,
+        direction8: 139_600.0,
+    };
     /// Cortex-M4F, whose floating-point unit knows `f32` only. A plain step costs less than the closed form's two sincos.
     pub const CORTEX_M4F: Self =
-        Self { closed_form: 289.0, picture_plain: 160.4, picture: 214.0, angle: 376.0, picture8: 135_450.0 };
+        Self { closed_form: 289.0, direction_plain: 160.4, direction: 214.0, angle: 376.0, direction8: 135_450.0 };
 
     pub(super) fn check(&self) -> Result<(), Error> {
-        check_positive(Parameter::Cost, Way::ALL.map(|way| self.of_frame(way, 1)))
+        check_positive(Parameter::Cost, Method::ALL.map(|way| self.of_frame(way, 1)))
     }
 
-    /// Cycles of a picture computed in `way` with `steps`.
-    pub fn of_frame(&self, way: Way, steps: u32) -> f32 {
+    /// Cycles of a frame computed in `way` with `steps`.
+    pub fn of_frame(&self, way: Method, steps: u32) -> f32 {
         match way {
-            Way::ClosedForm => self.closed_form,
-            Way::PicturePlain => self.picture_plain * steps as f32,
-            Way::Picture => self.picture * steps as f32,
-            Way::Angle => self.angle * steps as f32,
-            Way::Picture8 => self.picture8 * steps as f32,
+            Method::ClosedForm => self.closed_form,
+            Method::DirectionPlain => self.direction_plain * steps as f32,
+            Method::Direction => self.direction * steps as f32,
+            Method::Angle => self.angle * steps as f32,
+            Method::Direction8 => self.direction8 * steps as f32,
         }
     }
 }
@@ -80,14 +86,14 @@ impl Costs {
 /// What may be spent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {
-    /// On computing a picture, cycles.
+    /// On computing a frame, cycles.
     pub frame: f32,
     /// On looking ahead, cycles.
     pub planning: f32,
 }
 
 impl Budget {
-    /// Of a `clock` (Hz) with `rate` pictures per second: half of the time between pictures, the other half is for drawing;
+    /// Of a `clock` (Hz) with `rate` frames per second: half of the time between frames, the other half is for drawing;
     /// `planning` seconds for looking ahead.
     pub fn half_of(clock: f32, rate: u16, planning: f32) -> Self {
         Self { frame: 0.5 * clock / f32::from(rate), planning: planning * clock }

@@ -1,4 +1,4 @@
-//! One way of computing a scene, step by step, and how far two pictures are apart on the display.
+//! One way of computing a scene, step by step, and how far two frames are apart on the display.
 
 use crate::error::Error;
 use crate::form::{Direction, Form};
@@ -7,7 +7,7 @@ use crate::real::Real;
 use crate::state::State;
 
 /// The directions of both rods as they would be drawn.
-pub type Picture = [Direction<f32>; 2];
+pub type Directions = [Direction<f32>; 2];
 
 /// A motion in the form `F`.
 #[derive(Clone, Copy, Debug)]
@@ -19,18 +19,18 @@ pub(super) struct Run<R: Real, F: Form<R>> {
     /// Prepared by the first piece of work.
     motion: Option<(F, F::Carried)>,
     per_frame: u32,
-    /// Steps made since the last picture.
+    /// Steps made since the last frame.
     made: u32,
 }
 
 impl<R: Real, F: Form<R>> Run<R, F> {
-    /// With `per_frame` steps for each of the `rate` pictures of a second.
+    /// With `per_frame` steps for each of the `rate` frames of a second.
     pub fn new(&(parameters, start): &(Parameters<R>, State<R>), rate: u16, per_frame: u32) -> Self {
         let dt = R::of(1.0 / (f64::from(rate) * f64::from(per_frame)));
         Self { parameters, start, dt, motion: None, per_frame, made: 0 }
     }
 
-    /// Makes `most` of the steps towards the next picture, or as many as are left, or prepares them; whether there was
+    /// Makes `most` of the steps towards the next frame, or as many as are left, or prepares them; whether there was
     /// anything left to do.
     pub fn advance(&mut self, most: u32) -> Result<bool, Error> {
         let left = self.per_frame.saturating_sub(self.made);
@@ -47,8 +47,8 @@ impl<R: Real, F: Form<R>> Run<R, F> {
         Ok(steps > 0)
     }
 
-    /// The picture, when nothing is left to do; the next steps lead to the next.
-    pub fn picture(&mut self) -> Picture {
+    /// The frame, when nothing is left to do; the next steps lead to the next.
+    pub fn frame(&mut self) -> Directions {
         self.made = 0;
         self.motion.as_ref().map_or([[f32::NAN; 2]; 2], |(form, carried)| {
             form.directions(carried).map(|direction| direction.map(|x| x.to_f64() as f32))
@@ -57,7 +57,7 @@ impl<R: Real, F: Form<R>> Run<R, F> {
 }
 
 /// How far the farther of the two bobs is off, pixels, where `rods` are as long as given; NaN if anything is.
-pub(super) fn distance(rods: [f32; 2], a: &Picture, b: &Picture) -> f32 {
+pub(super) fn distance(rods: [f32; 2], a: &Directions, b: &Directions) -> f32 {
     let difference = |rod: usize, axis: usize| rods[rod] * (a[rod][axis] - b[rod][axis]);
     let elbow = [difference(0, 0), difference(0, 1)];
     let tip = [elbow[0] + difference(1, 0), elbow[1] + difference(1, 1)];

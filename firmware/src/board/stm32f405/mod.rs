@@ -22,7 +22,7 @@ use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::{Config, Rcc};
 
 use super::{Clock, Receiver, guard_stack};
-use crate::controls::{Buttons, Pressed};
+use crate::app::controls::{Buttons, Pressed};
 use crate::display::Ssd1306;
 
 pub use i2c::{Bus, BusError};

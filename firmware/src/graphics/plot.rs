@@ -1,0 +1,79 @@
+//! Curves over time or any other quantity: one value per column, drawn with soft edges in integer arithmetic.
+
+use crate::graphics::brush::SUBPIXELS;
+use crate::graphics::canvas::{Canvas, HEIGHT, WIDTH};
+use crate::graphics::history::History;
+
+/// Half the thickness of a curve, subpixels.
+const HALF_THICKNESS: i32 = 38;
+
+/// A height on the frame: subpixels down from the top edge.
+pub type Height = i16;
+
+/// The height of `value` where zero is at row `zero` and a unit is `scale` pixels, upwards; held within one canvas of
+/// the canvas.
+pub fn height(value: f32, zero: f32, scale: f32) -> Height {
+    let limit = (2 * HEIGHT as i32 * SUBPIXELS) as f32;
+    ((zero - scale * value) * SUBPIXELS as f32).clamp(-limit, limit) as Height
+}
+
+/// Draws the piece of a curve in column `x` between two heights with a brightness of 0 to 255; where the canvas is
+/// brighter already, it stays.
+pub fn column(canvas: &mut Canvas, x: i32, from: Height, to: Height, brightness: u8) {
+    /// As in [`crate::graphics::brush`]: 255 = 17 x 15.
+    const GREY: i32 = 17 * SUBPIXELS;
+    let top = i32::from(from.min(to)) - HALF_THICKNESS;
+    let bottom = i32::from(from.max(to)) + HALF_THICKNESS;
+    let first = top.div_euclid(SUBPIXELS).max(0);
+    let last = bottom.div_euclid(SUBPIXELS).min(HEIGHT as i32 - 1);
+    for y in first..=last {
+        let covered = bottom.min((y + 1) * SUBPIXELS) - top.max(y * SUBPIXELS);
+        let grey = ((i32::from(brightness) * covered + GREY / 2) / GREY) as u8;
+        canvas.update(x, y, |old| old.max(grey));
+    }
+}
+
+/// Draws a dot of one pixel's size at a height.
+pub fn dot(canvas: &mut Canvas, x: i32, at: Height, grey: u8) {
+    canvas.update(x, i32::from(at).div_euclid(SUBPIXELS), |old| old.max(grey));
+}
+
+/// Draws a line across columns `from` to `to` (exclusive) in row `y`, dotted.
+pub fn axis(canvas: &mut Canvas, from: i32, to: i32, y: i32, grey: u8) {
+    (from..to).step_by(2).for_each(|x| canvas.update(x, y, |old| old.max(grey)));
+}
+
+/// The last `COLUMNS` values of `N` curves, scrolling: the newest is the rightmost.
+#[derive(Clone, Debug)]
+pub struct Strip<const N: usize, const COLUMNS: usize = WIDTH> {
+    columns: History<[Height; N], COLUMNS>,
+}
+
+impl<const N: usize, const COLUMNS: usize> Default for Strip<N, COLUMNS> {
+    fn default() -> Self {
+        Self { columns: History::new([0; N]) }
+    }
+}
+
+impl<const N: usize, const COLUMNS: usize> Strip<N, COLUMNS> {
+    /// Adds the newest column.
+    pub fn push(&mut self, heights: [Height; N]) {
+        self.columns.write(heights);
+    }
+
+    /// How many columns are kept.
+    pub fn columns(&self) -> i32 {
+        self.columns.len() as i32
+    }
+
+    /// Calls `draw` for each column kept, oldest first, with its place from the left when the newest is in column
+    /// `right`, its heights and those of the column before.
+    pub fn each(&self, right: i32, mut draw: impl FnMut(i32, &[Height; N], &[Height; N])) {
+        let first = right + 1 - self.columns();
+        let mut before = None;
+        for (x, heights) in (first..).zip(self.columns.oldest_first()) {
+            draw(x, heights, before.unwrap_or(heights));
+            before = Some(heights);
+        }
+    }
+}

@@ -1,0 +1,6 @@
+//! The motion itself, apart from any frame of it: settings, stepping, planning.
+
+pub mod direction_stepper;
+pub mod planner;
+pub mod settings;
+pub mod simulation;

@@ -1,0 +1,72 @@
+//! What a request or a command is about, and what it can be wrong in.
+
+use double_pendulum::{Error, Parameter};
+
+use super::choice::choice;
+
+choice! {
+    /// What a request or a command can be wrong in.
+    Field {
+        /// The arithmetic.
+        Arithmetic = 0, "arithmetic";
+        /// The model.
+        Model = 1, "model";
+        /// Mass of bob 1.
+        M1 = 2, "m1";
+        /// Mass of bob 2.
+        M2 = 3, "m2";
+        /// Length of rod 1.
+        L1 = 4, "l1";
+        /// Length of rod 2.
+        L2 = 5, "l2";
+        /// Gravity.
+        G = 6, "g";
+        /// Angle of rod 1.
+        A1 = 7, "a1";
+        /// Angle of rod 2.
+        A2 = 8, "a2";
+        /// Velocity of rod 1.
+        W1 = 9, "w1";
+        /// Velocity of rod 2.
+        W2 = 10, "w2";
+        /// Step size.
+        Dt = 11, "step size";
+        /// Mass ratio m2/m1: sets m2.
+        MassRatio = 12, "mu";
+        /// Both angles.
+        Angle = 13, "angle";
+        /// Simulated time per real time.
+        Speed = 14, "speed";
+        /// The field to set.
+        Field = 15, "field";
+        /// The unit of the value.
+        Unit = 16, "unit";
+        /// The scene.
+        Scene = 17, "scene";
+        /// The message itself: of no known kind, or not of that kind's length.
+        Message = 18, "message";
+        /// The form, or that there is none such of the model in the arithmetic.
+        Form = 19, "form";
+    }
+}
+
+impl From<Error> for Field {
+    fn from(error: Error) -> Self {
+        if let Error::Diverged { .. } = error {
+            return Field::Dt;
+        }
+        match error.parameter() {
+            Parameter::M1 => Field::M1,
+            Parameter::M2 | Parameter::Mu => Field::M2,
+            Parameter::L1 => Field::L1,
+            Parameter::L2 => Field::L2,
+            Parameter::G => Field::G,
+            Parameter::A1 => Field::A1,
+            Parameter::A2 => Field::A2,
+            // A momentum at the start is the velocity times masses and lengths.
+            Parameter::W1 | Parameter::P1 => Field::W1,
+            Parameter::W2 | Parameter::P2 => Field::W2,
+            _ => Field::Dt,
+        }
+    }
+}

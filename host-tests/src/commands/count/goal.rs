@@ -1,0 +1,45 @@
+//! What a step may cost: one row for each goal, with its reason.
+
+use double_pendulum::Parameters;
+
+/// The most cycles (estimated, the high figure) that a step of an arithmetic may take on a core.
+#[derive(Clone, Copy, Debug)]
+pub struct Goal {
+    /// The [`Subject`](firmware::measure::Subject)'s name.
+    pub arithmetic: &'static str,
+    /// QEMU's name of the core.
+    pub cpu: &'static str,
+    /// The length of rod 2, m; that of rod 1 is 1.
+    pub l2: f64,
+    /// Estimated cycles.
+    pub cycles: f64,
+    /// Where the number comes from.
+    pub reason: &'static str,
+}
+
+const M3: &str = "cortex-m3";
+const M4F: &str = "cortex-m4";
+
+#[rustfmt::skip]
+const fn goal(arithmetic: &'static str, cpu: &'static str, l2: f64, cycles: f64, reason: &'static str) -> Goal {
+    Goal { arithmetic, cpu, l2, cycles, reason }
+}
+
+/// Every goal, for steps of 1/256 s from rest at 0.5 rad, masses alike.
+#[rustfmt::skip]
+pub const GOALS: &[Goal] = &[
+    goal("f32-angle-compensated",   M4F, 1.0, 380.0,    "the trial's 387..399, which had no guard"),
+    goal("f32-angle-compensated",   M4F, 0.5, 420.0,    "10 % more for rods of any lengths"),
+    goal("f32-direction-compensated", M4F, 1.0, 250.0,    "the trial's 271..277"),
+    goal("f32-direction-plain",       M4F, 1.0, 190.0,    "the trial's 198; no division"),
+    goal("f64-angle-plain",         M4F, 1.0, 33_000.0, "in software; 40,000 was asked, the trial's 57,500 had own sines on the angles"),
+    goal("f64-direction-plain",       M4F, 1.0, 18_000.0, "cheaper still without angles"),
+    goal("f32-direction-plain-divided", M3, 1.0, 10_000.0, "in software; 12,000 was asked. 71 additions of 63 cycles, 62 products of 52, 4 quotients of 122, and 1,000 of its own"),
+];
+
+impl Goal {
+    /// The pendulum that is counted.
+    pub fn parameters(&self) -> Parameters<f64> {
+        Parameters { m1: 1.0, m2: 1.0, l1: 1.0, l2: self.l2, g: 9.81 }
+    }
+}

@@ -1,0 +1,145 @@
+//! Counts what an arithmetic costs on the target: executed instructions (exact), Cortex-M cycles (an **estimate** from
+//! the published instruction timings), bytes of code and bytes of stack.
+
+pub mod goal;
+mod image;
+mod instruction;
+mod pipeline;
+mod profile;
+mod target;
+pub mod timing;
+mod trace;
+
+pub use image::{Function, Image};
+pub use instruction::Instruction;
+pub use pipeline::{Cost, Pipeline};
+pub use profile::{Profile, Spot};
+pub use target::Target;
+pub use trace::Registers;
+
+use std::io;
+use std::path::PathBuf;
+
+use firmware::measure::Request;
+
+use crate::emulator::process::ProcessError;
+use crate::emulator::qemu::QemuError;
+use crate::emulator::toolchain::BuildError;
+
+/// Name of the function, one per arithmetic, that is counted from its first instruction to its return.
+const COUNTED: &str = "counted_steps";
+
+/// Steps over which an average is fair to what an arithmetic does only now and then: a second of steps of 2^-8 s. In it
+/// the rods of a regular motion pass several marks of the angle form; the direction form restores its lengths eight times.
+pub const FULL_CYCLE: u32 = 256;
+/// The rarest thing that an arithmetic does regularly, it does once in so many steps.
+const REGULAR: u64 = 32;
+/// Fewer would show little but the start, where momenta are zero and soft-float arithmetic takes short cuts.
+const LEAST_STEPS: u64 = 4;
+const AFFORDABLE_INSTRUCTIONS: u64 = 300_000;
+
+/// Why something could not be counted.
+#[derive(Debug, thiserror::Error)]
+pub enum CountError {
+    /// The program is not there or not an ELF file.
+    #[error("{}: {reason}", path.display())]
+    Unreadable {
+        /// The program.
+        path: PathBuf,
+        /// What is wrong.
+        reason: String,
+    },
+    /// An executed address lies outside the program.
+    #[error("no code at {address:#x}")]
+    NoCode {
+        /// The address.
+        address: u32,
+    },
+    /// The timing table has no row for an executed instruction.
+    #[error("no timing for the instruction {first:04x} {second:04x} at {address:#x}")]
+    UnknownInstruction {
+        /// Where it is.
+        address: u32,
+        /// Its first halfword.
+        first: u16,
+        /// The halfword after that.
+        second: u16,
+    },
+    /// The program ended before it came to the counted function.
+    #[error("the function {COUNTED} was not executed")]
+    NotReached,
+    /// The program did not accept the request.
+    #[error("{request}: {reason}")]
+    Refused {
+        /// The request.
+        request: String,
+        /// What the program said.
+        reason: String,
+    },
+    /// QEMU's version is needed to know its options.
+    #[error("cannot tell QEMU's version from {version:?}")]
+    UnknownVersion {
+        /// What it said.
+        version: String,
+    },
+    /// QEMU's log broke off.
+    #[error("QEMU's log: {source}")]
+    Log {
+        /// The system's reason.
+        source: io::Error,
+    },
+    /// The program that measures does not compile.
+    #[error(transparent)]
+    Build(#[from] BuildError),
+    /// The emulated board did not do what it should.
+    #[error(transparent)]
+    Qemu(#[from] QemuError),
+    /// QEMU could not be run.
+    #[error(transparent)]
+    Process(#[from] ProcessError),
+}
+
+/// The cost of one step, on average over a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepCost {
+    /// Executed instructions.
+    pub instructions: f64,
+    /// Estimated cycles if neighbouring single loads and stores are always pipelined.
+    pub cycles_low: f64,
+    /// Estimated cycles if they never are.
+    pub cycles_high: f64,
+    /// Those of the cycles that wait for a floating-point result.
+    pub stalls: f64,
+    /// Bytes of the distinct instructions executed; literal pools are not among them.
+    pub hot_bytes: u32,
+    /// Bytes of all functions entered, with their literal pools and the paths not taken.
+    pub code_bytes: u32,
+    /// Bytes of stack from the call of the step loop on.
+    pub stack_bytes: u32,
+}
+
+/// The steps to count so that the counting takes a few seconds: [`FULL_CYCLE`] of a cheap arithmetic, fewer of a dear one.
+pub fn affordable_steps(target: &Target, request: &Request) -> Result<u32, CountError> {
+    let one = Profile::of(target, &Request { steps: 1, ..*request })?.cost().instructions;
+    let steps = (AFFORDABLE_INSTRUCTIONS / one.max(1)).clamp(LEAST_STEPS, FULL_CYCLE.into());
+    Ok(if steps < REGULAR { steps } else { steps - steps % REGULAR } as u32)
+}
+
+/// The cost of one step of `request` on `target`, averaged over its steps.
+///
+/// A run of twice the steps minus a run of once the steps, so that calling and returning cancel.
+pub fn step_cost(target: &Target, request: &Request) -> Result<StepCost, CountError> {
+    let once = Profile::of(target, request)?;
+    let twice = Profile::of(target, &Request { steps: 2 * request.steps, ..*request })?;
+    let cost = twice.cost() - once.cost();
+    let per_step = |total: u64| total as f64 / f64::from(request.steps);
+    Ok(StepCost {
+        instructions: per_step(cost.instructions),
+        cycles_low: per_step(cost.cycles_low),
+        cycles_high: per_step(cost.cycles_high),
+        stalls: per_step(cost.stalls),
+        hot_bytes: twice.hot_bytes(),
+        code_bytes: twice.functions(target.image()).map(|function| function.size).sum(),
+        stack_bytes: twice.stack_bytes(),
+    })
+}

@@ -1,0 +1,49 @@
+//! A board with the program that measures.
+
+use std::path::PathBuf;
+
+use super::{CountError, Image};
+use crate::emulator::boards::Core;
+use crate::emulator::boards::{BOARDS, Board};
+use crate::emulator::toolchain::Toolchain;
+
+/// The firmware's binary that runs a request.
+const PROGRAM: &str = "measure";
+
+/// An emulated board and the program that measures, built for it.
+#[derive(Debug)]
+pub struct Target {
+    /// The board.
+    pub board: &'static Board,
+    pub(super) qemu: PathBuf,
+    pub(super) elf: PathBuf,
+    image: Image,
+}
+
+impl Target {
+    /// Builds the program for `board`.
+    pub fn build(toolchain: &Toolchain, board: &'static Board) -> Result<Self, CountError> {
+        Self::of(toolchain, board, toolchain.build(PROGRAM, board.target)?)
+    }
+
+    /// Another program that takes the same requests and whose steps are made by a function called `counted_steps`.
+    pub fn of(toolchain: &Toolchain, board: &'static Board, elf: PathBuf) -> Result<Self, CountError> {
+        let image = Image::read(&elf)?;
+        Ok(Self { board, qemu: toolchain.qemu().to_owned(), elf, image })
+    }
+
+    /// One board for each kind of core: the same machine with a Cortex-M3 and with a Cortex-M4F.
+    pub fn build_all(toolchain: &Toolchain) -> Result<Vec<Self>, CountError> {
+        BOARDS.iter().filter(|board| board.has_panel).map(|board| Self::build(toolchain, board)).collect()
+    }
+
+    /// The program's code and symbols.
+    pub fn image(&self) -> &Image {
+        &self.image
+    }
+
+    /// Whose timings hold.
+    pub fn core(&self) -> Core {
+        self.board.core()
+    }
+}

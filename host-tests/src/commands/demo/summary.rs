@@ -1,0 +1,85 @@
+//! What a run has shown, and whether all was well.
+
+use std::fmt;
+
+use firmware::config::TICK_RATE;
+use firmware::protocol::Frame;
+
+use crate::emulator::qemu::{Counts, LogLine};
+
+/// An energy error beyond this is no rounding or step error: the motion is wrong.
+const GREATEST_ENERGY_ERROR: f32 = 1e-2;
+
+/// A run so far.
+#[derive(Clone, Debug, Default)]
+pub struct Summary {
+    frames: u64,
+    first: Option<Frame>,
+    last: Option<Frame>,
+    greatest_energy_error: f32,
+    /// Frames whose time is not what their number and restarts allow, or whose numbers are not finite.
+    implausible: u64,
+    complaints: Vec<String>,
+}
+
+impl Summary {
+    /// Takes a frame.
+    pub fn frame(&mut self, frame: &Frame) {
+        let finite = frame.time.is_finite() && frame.state.iter().all(|number| number.is_finite());
+        let waits = frame.paused != 0;
+        let starts = frame.time <= 1.0 / f64::from(TICK_RATE);
+        let advanced = waits || starts || self.last.is_none_or(|last| frame.step > last.step);
+        if !finite || !frame.energy_error.is_finite() || !advanced {
+            self.implausible += 1;
+        }
+        self.frames += 1;
+        self.first.get_or_insert(*frame);
+        self.greatest_energy_error = self.greatest_energy_error.max(frame.energy_error.abs());
+        self.last = Some(*frame);
+    }
+
+    /// Takes a line of the log.
+    pub fn line(&mut self, line: &LogLine) {
+        if line.is_bad() {
+            self.complaints.push(line.to_string());
+        }
+    }
+
+    /// Ticks of the board's clock since its reset.
+    pub fn ticks(&self) -> u32 {
+        self.last.map_or(0, |last| last.sequence.wrapping_add(1).wrapping_add(last.dropped))
+    }
+
+    /// What is not well; empty if all is.
+    pub fn faults(&self, counts: Counts) -> Vec<String> {
+        let dropped = self.last.map_or(0, |last| last.dropped);
+        let findings = [
+            (self.frames == 0, "no frame arrived".to_owned()),
+            (counts.damaged > 0, format!("{} messages arrived damaged", counts.damaged)),
+            (counts.lost > 0, format!("{} frames were lost on the way", counts.lost)),
+            (dropped > 0, format!("{dropped} frames were dropped")),
+            (self.implausible > 0, format!("{} frames are implausible", self.implausible)),
+            (
+                self.greatest_energy_error > GREATEST_ENERGY_ERROR,
+                format!("the energy error exceeds {GREATEST_ENERGY_ERROR}"),
+            ),
+        ];
+        let findings = findings.into_iter().filter_map(|(found, text)| found.then_some(text));
+        findings.chain(self.complaints.iter().cloned()).collect()
+    }
+
+    /// The report at the end.
+    pub fn report(&self, counts: Counts) -> impl fmt::Display {
+        let Self { frames, last, greatest_energy_error, .. } = self;
+        let last = last.unwrap_or_default();
+        format!(
+            "frames                {frames}\n\
+             simulated time        {:.3} s\n\
+             largest energy error  {greatest_energy_error:.1e}\n\
+             CRC errors            {}\n\
+             lost frames           {}\n\
+             dropped frames        {}",
+            last.time, counts.damaged, counts.lost, last.dropped
+        )
+    }
+}

@@ -1,0 +1,98 @@
+//! Figure 7: bob 2's path by the right equations and by the ones that the book prints.
+
+use double_pendulum::{Error, Parameters, Pendulum, State, rk4};
+use plotters::prelude::*;
+
+use super::sheet::{Area, BLUE, Drawing, Drawn, Frame, ORANGE, TEXT, headed, line, text, units};
+use crate::oracle::textbook::misprinted_equal_rods;
+
+/// The figure's mass ratio, start angle of both rods (degrees), rods (m) and gravity (m/s^2).
+const MASS_RATIO: f64 = 2.75;
+const START: f64 = 171.0;
+const ROD: f64 = 1.0;
+const GRAVITY: f64 = 9.8;
+/// How long the motion is followed, s: as long as the frame is right (test `figures`).
+pub const DURATION: u32 = 10;
+/// Integration steps per second, and how many make a point of the path.
+pub const STEPS: u32 = 8192;
+const STEPS_PER_POINT: u32 = 32;
+
+/// The axes are this long either way, m.
+const REACH: f64 = 2.1;
+
+/// Both paths.
+#[derive(Clone, Debug)]
+pub struct Chaos {
+    /// By the right equations and by the printed ones.
+    pub paths: [Path; 2],
+}
+
+/// A path of bob 2.
+#[derive(Clone, Debug)]
+pub struct Path {
+    /// Its points, m right of the pivot and above it.
+    pub points: Vec<[f64; 2]>,
+    /// The energy at the start and at the end, J.
+    pub energies: [f64; 2],
+}
+
+/// Figure 7's pendulum.
+pub fn pendulum() -> Result<Pendulum<f64>, Error> {
+    Pendulum::new(Parameters::equal_rods(MASS_RATIO, ROD, GRAVITY))
+}
+
+/// Its start.
+pub fn start() -> State<f64> {
+    State::at_rest(START.to_radians(), START.to_radians())
+}
+
+impl Chaos {
+    /// Computes the figure with `refinement` times its steps: 1 for the figure itself.
+    pub fn new(refinement: u32) -> Result<Self, Error> {
+        let pendulum = pendulum()?;
+        let right = path(&pendulum, refinement, |z| pendulum.derivatives(z));
+        let printed = path(&pendulum, refinement, |z| misprinted_equal_rods(MASS_RATIO, ROD, GRAVITY, z));
+        Ok(Self { paths: [right, printed] })
+    }
+}
+
+fn path(pendulum: &Pendulum<f64>, refinement: u32, rhs: impl Fn(&[f64; 4]) -> [f64; 4]) -> Path {
+    let mut state = start();
+    let dt = 1.0 / f64::from(STEPS * refinement);
+    let mut points = Vec::new();
+    let energy = pendulum.energy(&state);
+    for step in 0..=DURATION * STEPS * refinement {
+        if step.is_multiple_of(STEPS_PER_POINT * refinement) {
+            let [_, bob2] = pendulum.positions(state.a1, state.a2);
+            points.push([bob2.x, bob2.y]);
+        }
+        state = rk4::step(&rhs, &state.into(), dt).into();
+    }
+    Path { points, energies: [energy, pendulum.energy(&state)] }
+}
+
+impl Drawing for Chaos {
+    const SIZE: (u32, u32) = (800, 445);
+
+    fn draw<Backend: DrawingBackend>(&self, area: &Area<Backend>) -> Drawn<(), Backend> {
+        let title = format!("Figure 7: path of bob 2 in the first {DURATION} s");
+        let particulars = format!(
+            "mass ratio {MASS_RATIO}, both rods let go at {START}°; l = {ROD} m, g = {GRAVITY} m/s², m₁ = 1 kg"
+        );
+        let area = headed(&headed(area, &title, text(15))?, &particulars, text(12))?;
+        let halves = area.split_evenly((1, 2));
+        let names = ["the right equations", "as printed, a factor μ missing"];
+        for (((area, name), colour), path) in halves.iter().zip(names).zip([BLUE, ORANGE]).zip(&self.paths) {
+            let [first, last] = path.energies;
+            let name = format!("{name}; energy {first:.1} J → {last:.1} J").replace('-', "−");
+            let area = headed(area, &name, text(13).color(&colour))?;
+            let range = [-REACH, REACH];
+            let frame = Frame { across: ("x, m", range), upwards: ("y, m", range), ticks: [9, 9] };
+            let mut chart = frame.draw(&area)?;
+            let points = path.points.iter().map(|&[x, y]| (x, y));
+            chart.draw_series(LineSeries::new(points, line(colour, 8)))?;
+            chart.draw_series([Circle::new((0.0, 0.0), units(3), TEXT.filled())])?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,58 @@
+//! What the panel shows in every scene: frames drawn here, and animations recorded in QEMU.
+
+use std::path::Path;
+
+use anyhow::{Result, bail};
+use firmware::config::TICK_RATE;
+use firmware::scenes::SceneName;
+
+use crate::commands::demo::{self, Options, record};
+use crate::emulator::boards::BOARDS;
+use crate::emulator::host::Show;
+use crate::emulator::qemu::Screenshot;
+
+/// The moment of the frames, ticks.
+const MOMENT: u32 = 8 * TICK_RATE;
+
+/// The file of a scene in the folder of frames.
+pub fn file(scene: SceneName, kind: &str) -> String {
+    format!("panel/{}.{kind}", scene.name())
+}
+
+/// The screenshot of a scene as a PNG file. The panel of the emulated board shows the same (test `qemu_scenes`).
+pub fn screenshot(name: SceneName) -> Result<Vec<u8>> {
+    let mut scene = Show::new(name, &name.first_settings())?;
+    (0..MOMENT).for_each(|_| scene.tick());
+    let mut file = Vec::new();
+    record::png(&Screenshot::from(&scene.frame()), &mut file)?;
+    Ok(file)
+}
+
+/// How long the animation of a scene is, s: until all that it has to show has been seen.
+pub fn seconds(scene: SceneName) -> f64 {
+    match scene {
+        SceneName::Figure7 => 20.0,
+        SceneName::SmallLight | SceneName::SmallEqual | SceneName::SmallHeavy => 4.0,
+        SceneName::Frequencies => 3.0,
+        _ => 10.0,
+    }
+}
+
+/// Records the animation of a scene into `folder`, as `cargo demo --headless` does.
+pub fn record(scene: SceneName, folder: &Path) -> Result<()> {
+    let options = Options {
+        board: &BOARDS[0],
+        scene,
+        headless: true,
+        seconds: Some(seconds(scene)),
+        record: Some(folder.join(file(scene, "gif"))),
+        screenshot: None,
+        window: false,
+    };
+    match demo::run(&options) {
+        Ok(Ok(true)) => Ok(()),
+        Ok(Ok(false)) => bail!("not all was well in {}", scene.name()),
+        Ok(Err(error)) => Err(error),
+        Err(unavailable) => bail!("{unavailable}"),
+    }
+}

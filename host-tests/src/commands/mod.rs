@@ -1,0 +1,11 @@
+//! What the commands do, one room each.
+
+pub mod count;
+pub mod demo;
+pub mod figures;
+pub mod fuzz;
+pub mod plan;
+pub mod report;
+pub mod simulate;
+pub mod soak;
+pub mod table;

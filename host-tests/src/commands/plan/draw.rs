@@ -1,0 +1,50 @@
+//! Scenes of all kinds, drawn by a seed.
+
+use std::f64::consts::PI;
+use std::ops::Range;
+
+use double_pendulum::plan::Problem;
+use double_pendulum::{Motion, Parameters};
+use fastrand::Rng;
+
+use crate::oracle::random::{log_uniform, symmetric};
+
+/// The height of the display, pixels.
+pub const HEIGHT: f64 = 64.0;
+/// Frames per second.
+pub const RATE: u16 = 60;
+/// Gravity, m/s^2, and the length of rod 1, m: with them the mass and length ratios are all there is.
+const GRAVITY: f64 = 9.81;
+const ROD: f64 = 1.0;
+/// The least amplitude, rad.
+const LEAST: f64 = 0.01;
+
+/// Any number of scenes that last as long as `seconds` says.
+///
+/// - mass ratio m2/m1 1e-3 .. 1e3, length ratio l2/l1 1e-2 .. 1e2, duration: evenly spread in the logarithm
+/// - amplitude 0.01 .. pi rad: every other one evenly spread in the logarithm, the others evenly
+/// - one angle is as large as the amplitude; the other, too, in every third scene, else anything up to it
+/// - every other scene starts at rest, the others with velocities up to the amplitude times the rods' own sqrt(g/l)
+pub fn scenes(seed: u64, seconds: Range<f64>) -> impl Iterator<Item = Problem> {
+    let mut rng = Rng::with_seed(seed);
+    std::iter::repeat_with(move || scene(&mut rng, &seconds))
+}
+
+fn scene(rng: &mut Rng, seconds: &Range<f64>) -> Problem {
+    let mass_ratio = log_uniform(rng, 1e-3, 1e3);
+    let length_ratio = log_uniform(rng, 1e-2, 1e2);
+    let pendulum = Parameters { m1: 1.0, m2: mass_ratio, l1: ROD, l2: ROD * length_ratio, g: GRAVITY };
+    let amplitude = if rng.bool() { log_uniform(rng, LEAST, PI) } else { LEAST + (PI - LEAST) * rng.f64() };
+    let other = amplitude * symmetric(rng);
+    let [a1, a2] = match rng.u8(0..3) {
+        0 => [amplitude, amplitude],
+        1 => [other, amplitude],
+        _ => [amplitude, other],
+    };
+    let mut start = Motion::at_rest(a1, a2);
+    if rng.bool() {
+        start.w1 = amplitude * symmetric(rng) * (GRAVITY / pendulum.l1).sqrt();
+        start.w2 = amplitude * symmetric(rng) * (GRAVITY / pendulum.l2).sqrt();
+    }
+    Problem { pendulum, start, height: HEIGHT, duration: log_uniform(rng, seconds.start, seconds.end), rate: RATE }
+}

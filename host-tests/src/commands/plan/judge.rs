@@ -1,0 +1,126 @@
+//! A plan carried out, beside the reference.
+
+use double_pendulum::form::{AngleForm, Direction, DirectionForm, DirectionForm8, Form, Plain};
+use double_pendulum::plan::{HALF_PIXEL, Method, Plan, Problem};
+use double_pendulum::{Error, Modes, Motion, Parameters, Pendulum, Real, SmallOscillations, State};
+
+use crate::oracle::reference::Reference;
+
+/// The directions of both rods.
+pub type Directions = [Direction<f64>; 2];
+
+/// What became of a plan.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Verdict {
+    /// The last time until which every frame was right to half a pixel, s; the scene's duration if all were.
+    pub horizon: f64,
+    /// The largest error until the horizon that was promised, pixels.
+    pub error: f64,
+}
+
+/// Carries out `plan` and compares each frame with the exact motion, until one is wrong and the promise is over.
+///
+/// The reference is given the scene's own numbers, the plan those that its arithmetic can hold.
+pub fn judge(scene: &Problem, plan: &Plan) -> Result<Verdict, Error> {
+    let mut frames = frames(scene, plan)?;
+    let mut reference = Reference::new(&scene.pendulum, &scene.start);
+    let mut verdict = Verdict { horizon: scene.duration, error: 0.0 };
+    let mut right = true;
+    for frame in 1..=scene.frames() {
+        let time = scene.time(frame);
+        let promised = time <= plan.horizon;
+        if !right && !promised {
+            break;
+        }
+        reference.advance_to(time);
+        let Motion { a1, a2, .. } = reference.motion();
+        let error = distance(scene, &frames(), &[a1, a2].map(|a| [libm::sin(a), libm::cos(a)]));
+        if promised {
+            verdict.error = verdict.error.max(error);
+        }
+        if right && error > f64::from(HALF_PIXEL) {
+            right = false;
+            verdict.horizon = scene.time(frame - 1);
+        }
+    }
+    Ok(verdict)
+}
+
+/// How far two references of this scene come apart that stop at other times, and so take other steps with other
+/// roundings, pixels: what the judge itself may be wrong by. Until `seconds`.
+pub fn doubt(scene: &Problem, seconds: f64) -> f64 {
+    let [mut one, mut other] = [(); 2].map(|()| Reference::new(&scene.pendulum, &scene.start));
+    let Parameters { l1, l2, .. } = scene.pendulum;
+    let mut worst: f64 = 0.0;
+    for frame in 1..=scene.frames() {
+        let [before, time] = [frame - 1, frame].map(|frame| scene.time(frame));
+        if time > seconds {
+            break;
+        }
+        other.advance_to(before + (time - before) / 3.0);
+        let [one, other] = [&mut one, &mut other].map(|reference| {
+            reference.advance_to(time);
+            reference.exact_state()
+        });
+        let [elbow, rod] = [0, 1].map(|rod| f64::from(one[rod] - other[rod]).abs());
+        worst = worst.max(scale(scene) * (l1 * elbow + l2 * rod));
+    }
+    worst
+}
+
+/// The frames as the plan's way gives them, one after the other.
+fn frames(scene: &Problem, plan: &Plan) -> Result<Box<dyn FnMut() -> Directions>, Error> {
+    match plan.way {
+        Method::ClosedForm => closed_form(scene),
+        Method::DirectionPlain => stepped::<f32, DirectionForm<f32, Plain>>(scene, plan),
+        Method::Direction => stepped::<f32, DirectionForm<f32>>(scene, plan),
+        Method::Angle => stepped::<f32, AngleForm<f32>>(scene, plan),
+        Method::Direction8 => stepped::<f64, DirectionForm8<f64>>(scene, plan),
+        other => panic!("{other:?} is a new way: carry it out here"),
+    }
+}
+
+fn stepped<R: Real, F: Form<R> + 'static>(
+    scene: &Problem,
+    plan: &Plan,
+) -> Result<Box<dyn FnMut() -> Directions>, Error> {
+    let state = Pendulum::new(scene.pendulum)?.state(&scene.start);
+    let state: State<R> = <[f64; 4]>::from(state).map(R::of).into();
+    let form = F::new(&rounded(&scene.pendulum), R::of(plan.step))?;
+    let mut carried = form.start(&state)?;
+    let steps = plan.steps;
+    Ok(Box::new(move || {
+        form.advance(&mut carried, steps);
+        form.directions(&carried).map(|direction| direction.map(R::to_f64))
+    }))
+}
+
+fn closed_form(scene: &Problem) -> Result<Box<dyn FnMut() -> Directions>, Error> {
+    let start = <[f64; 4]>::from(scene.start).map(|x| x as f32).into();
+    let motion = SmallOscillations::new(Modes::new(&rounded(&scene.pendulum))?, &start);
+    let (scene, mut frame) = (*scene, 0);
+    Ok(Box::new(move || {
+        frame += 1;
+        motion.directions(scene.time(frame) as f32).map(|direction| direction.map(f64::from))
+    }))
+}
+
+fn rounded<R: Real>(&Parameters { m1, m2, l1, l2, g }: &Parameters<f64>) -> Parameters<R> {
+    let [m1, m2, l1, l2, g] = [m1, m2, l1, l2, g].map(R::of);
+    Parameters { m1, m2, l1, l2, g }
+}
+
+/// Pixels to a metre.
+fn scale(scene: &Problem) -> f64 {
+    0.5 * scene.height / (scene.pendulum.l1 + scene.pendulum.l2)
+}
+
+/// How far the farther of the two bobs is off, pixels; infinite if anything is not a number.
+pub fn distance(scene: &Problem, shown: &Directions, exact: &Directions) -> f64 {
+    let Parameters { l1, l2, .. } = scene.pendulum;
+    let scale = scale(scene);
+    let off = |length: f64, rod: usize| [0, 1].map(|axis| scale * length * (shown[rod][axis] - exact[rod][axis]));
+    let ([x1, y1], [x2, y2]) = (off(l1, 0), off(l2, 1));
+    let (elbow, tip) = (x1.hypot(y1), (x1 + x2).hypot(y1 + y2));
+    if elbow.is_finite() && tip.is_finite() { elbow.max(tip) } else { f64::INFINITY }
+}

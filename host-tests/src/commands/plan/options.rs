@@ -1,0 +1,92 @@
+//! The command line of `cargo plan`.
+
+use anyhow::{anyhow, ensure};
+use clap::Parser;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use double_pendulum::plan::{Budget, Plan, Problem, plan};
+use double_pendulum::{Error, Motion, Parameter};
+
+use super::target::{CHIPS, Chip};
+use crate::commands::simulate::{Number, Start};
+
+/// Says how to compute a scene as cheaply as may be, right to half a pixel, and until when it is.
+///
+/// Numbers are decimals (0.25, 1e-3) or fractions (1/256).
+#[derive(Debug, Parser)]
+#[command(name = "cargo plan", bin_name = "cargo plan", mut_arg("gravity", |gravity| gravity.default_value("9.81")))]
+pub struct Options {
+    /// What moves.
+    #[command(flatten)]
+    pub start: Start,
+    /// Height of the display, pixels; both rods together are half of it long
+    #[arg(long, value_name = "PIXELS", default_value = "64", allow_hyphen_values = true)]
+    pub height: Number,
+    /// How long the scene lasts, s
+    #[arg(long, value_name = "T", default_value = "10", allow_hyphen_values = true)]
+    pub duration: Number,
+    /// Frames per second, 1 to 65535
+    #[arg(long, value_name = "N", default_value = "60", allow_hyphen_values = true)]
+    pub rate: Number,
+    /// The chip that computes it
+    #[arg(long, value_name = "CHIP", default_value = CHIPS[0].name,
+          value_parser = PossibleValuesParser::new(CHIPS.iter().map(|chip| chip.name)).map(|name| chip(&name)))]
+    pub target: Chip,
+    /// For how long the chip may look ahead, s of its time
+    #[arg(long, value_name = "T", default_value = "60", allow_hyphen_values = true)]
+    pub planning: Number,
+    /// Plan this many scenes of all kinds instead, carry them out beside the reference, and print what came of it
+    #[arg(long, value_name = "SCENES")]
+    pub study: Option<usize>,
+    /// Hold the planner's margins against the exact motion of this many scenes instead
+    #[arg(long, value_name = "SCENES", conflicts_with = "study")]
+    pub fit: Option<usize>,
+    /// Which scenes
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+}
+
+fn chip(name: &str) -> Chip {
+    CHIPS.into_iter().find(|chip| chip.name == name).unwrap_or(CHIPS[0])
+}
+
+impl Options {
+    /// The scene with its plan; an error is one line that names the option and the value.
+    pub fn plan(&self) -> anyhow::Result<(Problem, Plan)> {
+        let rate = &self.rate;
+        let whole = rate.value().fract() == 0.0 && rate.is_positive();
+        ensure!(whole, "--rate {rate}: must be a whole number of frames per second, at least 1");
+        ensure!(rate.value() <= f64::from(u16::MAX), "--rate {rate}: more than {}", u16::MAX);
+        ensure!(self.planning.is_positive(), "--planning {}: must be greater than zero", self.planning);
+        let ([a1, a2], [w1, w2]) = (self.start.angles(), self.start.velocities());
+        let scene = Problem {
+            pendulum: self.start.parameters(),
+            start: Motion { a1, a2, w1, w2 },
+            height: self.height.value(),
+            duration: self.duration.value(),
+            rate: rate.value() as u16,
+        };
+        let budget = self.budget(scene.rate);
+        let plan = plan(&scene, &self.target.costs, &budget);
+        Ok((scene, plan.map_err(|error| anyhow!("{}: {error}", option_of(&error)))?))
+    }
+
+    fn budget(&self, rate: u16) -> Budget {
+        self.target.budget(rate, self.planning.value() as f32)
+    }
+}
+
+/// The option that sets what the kernel refuses.
+fn option_of(error: &Error) -> &'static str {
+    match error.parameter() {
+        Parameter::M1 | Parameter::M2 | Parameter::Mu => "--masses",
+        Parameter::L1 | Parameter::L2 => "--lengths",
+        Parameter::G => "--gravity",
+        Parameter::A1 | Parameter::A2 => "--angles",
+        Parameter::W1 | Parameter::W2 | Parameter::P1 | Parameter::P2 => "--velocities",
+        Parameter::Height => "--height",
+        Parameter::Duration => "--duration",
+        Parameter::Rate => "--rate",
+        Parameter::Budget => "--planning",
+        _ => "the scene",
+    }
+}

@@ -1,0 +1,106 @@
+//! A study as tables.
+
+use double_pendulum::Error;
+use double_pendulum::plan::{Limit, Method};
+
+use super::study::{Case, Class, median};
+use super::target::Chip;
+use crate::commands::table::{Table, small};
+
+/// What the promises are worth, and what planning saves, for each class of scene.
+pub fn classes(cases: &[Case], chip: &Chip) -> Result<Table, Error> {
+    let mut rows = Vec::new();
+    for class in Class::ALL {
+        let mut within = Vec::new();
+        for case in cases {
+            if Class::of(&case.scene)? == class {
+                within.push(case);
+            }
+        }
+        rows.push(row(class.name(), &within, chip));
+    }
+    rows.push(row("all", &cases.iter().collect::<Vec<_>>(), chip));
+    Ok(Table {
+        name: "plans-by-class",
+        title: format!("Plans for a {}: {} scenes", chip.title, cases.len()),
+        note: String::from(
+            "Every scene is planned, carried out and compared with the reference at each frame. Broken: more than half a \
+             pixel off before the promised horizon. Promised: the promised horizon over the true one in the median, over \
+             all scenes and over those whose true horizon is within the scene. Cycles of a frame are medians \
+             (estimates). Always f64: the same steps by RK4 in f64. Always finest: compensated f32 direction form at the \
+             finest step that any scene of the class is planned with in f32.",
+        ),
+        columns: vec![
+            "scenes",
+            "number",
+            "right to their end",
+            "broken",
+            "largest error (pixels)",
+            "promised (all)",
+            "promised (ending early)",
+            "cycles a frame",
+            "always f64",
+            "always finest f32",
+        ],
+        rows,
+    })
+}
+
+fn row(name: &str, cases: &[&Case], chip: &Chip) -> Vec<String> {
+    let finest = cases.iter().filter(|case| case.plan.way != Method::Direction8).map(|case| case.plan.steps).max();
+    let share = |early: bool| {
+        let shares = cases.iter().filter(|case| !early || case.ends_early()).map(|case| case.share());
+        format!("{:.2}", median(shares))
+    };
+    let steps = |case: &Case| case.plan.steps.max(1) as f32;
+    let cycles = |of: &dyn Fn(&Case) -> f32| format!("{:.0}", median(cases.iter().map(|case| of(case).into())));
+    vec![
+        name.to_owned(),
+        cases.len().to_string(),
+        cases.iter().filter(|case| case.plan.limit == Limit::End).count().to_string(),
+        cases.iter().filter(|case| !case.is_kept()).count().to_string(),
+        small(cases.iter().map(|case| case.verdict.error).fold(0.0, f64::max)),
+        share(false),
+        share(true),
+        cycles(&|case| case.plan.cycles),
+        cycles(&|case| chip.rk4_f64 * steps(case)),
+        cycles(&|_| chip.costs.of_frame(Method::Direction, finest.unwrap_or(1).max(1))),
+    ]
+}
+
+/// Every broken promise, none hidden.
+pub fn broken(cases: &[Case]) -> Table {
+    let row = |case: &&Case| {
+        let (pendulum, start) = (case.scene.pendulum, case.scene.start);
+        vec![
+            case.number.to_string(),
+            format!("{:.3e}", pendulum.mass_ratio()),
+            format!("{:.3e}", pendulum.l2 / pendulum.l1),
+            format!("{:.3} {:.3}", start.a1, start.a2),
+            format!("{:.3} {:.3}", start.w1, start.w2),
+            case.plan.way.name().replace(',', ";"),
+            case.plan.steps.to_string(),
+            format!("{:.2}", case.plan.horizon),
+            format!("{:.2}", case.verdict.horizon),
+            small(case.verdict.error),
+        ]
+    };
+    Table {
+        name: "broken-promises",
+        title: String::from("Broken promises"),
+        note: String::from("Scenes in which a frame is more than half a pixel off before the promised horizon."),
+        columns: vec![
+            "scene",
+            "m2/m1",
+            "l2/l1",
+            "angles (rad)",
+            "velocities (rad/s)",
+            "way",
+            "steps to a frame",
+            "promised (s)",
+            "true (s)",
+            "largest error (pixels)",
+        ],
+        rows: cases.iter().filter(|case| !case.is_kept()).collect::<Vec<_>>().iter().map(row).collect(),
+    }
+}

@@ -1,0 +1,220 @@
+//! The page's equations in C on the target, compiled by GCC at -O3: what one would write there without this kernel.
+//!
+//! GCC and newlib are used if they are installed; CMSIS-DSP's sources are fetched from PyPI by pip, once, by version and
+//! hash. What cannot be had is left out, and the table says why.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Duration;
+
+use firmware::measure::{Request, SUBJECTS};
+
+use super::accuracy::{Error, Point, worst};
+use super::costs::{self, Cost, HALVINGS};
+use super::parallel;
+use super::scene::{SCENES, Scene};
+use crate::commands::count::{CountError, StepCost, Target};
+use crate::commands::table::{Table, small};
+use crate::emulator::boards::{BOARDS, Board};
+use crate::emulator::process;
+use crate::emulator::toolchain::{Toolchain, workspace};
+
+const COMPILER: &str = "arm-none-eabi-gcc";
+/// For compiling, and for fetching 2 MB and what pip wants for it.
+const LIMIT: Duration = Duration::from_secs(180);
+/// Our sources, in the workspace.
+const SOURCES: &str = "host-tests/peers-c";
+/// What is made of them.
+const MADE: &str = "target/peers-c";
+/// The folder in CMSIS-DSP's archive, and the archive.
+const CMSIS: &str = "cmsisdsp-1.10.3";
+/// What of it is compiled.
+const CMSIS_SOURCES: [&str; 3] = [
+    "Source/FastMathFunctions/arm_sin_f32.c",
+    "Source/FastMathFunctions/arm_cos_f32.c",
+    "Source/CommonTables/arm_common_tables.c",
+];
+/// Arithmetics of the kernel that stand beside, the one that the others are compared with last.
+const BESIDE: [&str; 4] = ["f32-textbook-libm", "f32-own", "f32-direction-compensated", "f32-angle-compensated"];
+
+/// Where a C program takes its sine from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Sine {
+    Newlib,
+    CmsisDsp,
+}
+
+impl Sine {
+    const ALL: [Self; 2] = [Self::Newlib, Self::CmsisDsp];
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Newlib => "C textbook: newlib's sinf and cosf",
+            Self::CmsisDsp => "C textbook: CMSIS-DSP's arm_sin_f32 and arm_cos_f32",
+        }
+    }
+
+    /// Compiles the program for `board`; the ELF file, or why there is none.
+    fn compile(self, board: &Board) -> Result<PathBuf, String> {
+        let (root, folder) = (workspace(), workspace().join(MADE));
+        fs::create_dir_all(&folder).map_err(|error| format!("cannot make {MADE}: {error}"))?;
+        let elf = folder.join(format!("{self:?}-{}.elf", board.cpu).to_lowercase());
+        let mut command = Command::new(COMPILER);
+        command.current_dir(root).args(["-std=gnu11", "-O3", "-mthumb"]).arg(format!("-mcpu={}", board.cpu));
+        if board.target.ends_with("eabihf") {
+            command.args(["-mfloat-abi=hard", "-mfpu=fpv4-sp-d16"]);
+        }
+        let sources = ["measure.c", "textbook.c"].map(|file| format!("{SOURCES}/{file}"));
+        command.args(sources);
+        match self {
+            Self::Newlib => command.args(["-DSIN=sinf", "-DCOS=cosf"]),
+            Self::CmsisDsp => {
+                let cmsis = cmsis_dsp(&folder)?;
+                command.args(["-DSIN=arm_sin_f32", "-DCOS=arm_cos_f32"]);
+                command.arg("-D__GNUC_PYTHON__"); // the library's name for: without the headers of CMSIS-Core
+                command.args(["Include", "PrivateInclude"].map(|folder| format!("-I{}", cmsis.join(folder).display())));
+                command.args(CMSIS_SOURCES.map(|file| cmsis.join(file)))
+            }
+        };
+        command.args(["-ffunction-sections", "-fdata-sections", "-Wl,--gc-sections"]);
+        command.args(["-nostartfiles", "--specs=nosys.specs", "-T"]).arg(format!("{SOURCES}/link.ld"));
+        run(command.arg("-lm").arg("-o").arg(&elf))?;
+        Ok(elf)
+    }
+}
+
+/// The folder with CMSIS-DSP's sources, fetched if they are not there.
+fn cmsis_dsp(folder: &Path) -> Result<PathBuf, String> {
+    let unpacked = folder.join(CMSIS);
+    if !unpacked.exists() {
+        let mut fetch = Command::new("python3");
+        fetch.args(["-m", "pip", "download", "--quiet", "--retries", "1", "--no-deps", "--no-binary", "cmsisdsp"]);
+        fetch.arg("--requirement").arg(workspace().join(SOURCES).join("cmsis-dsp.txt"));
+        run(fetch.arg("--dest").arg(folder))?;
+        let unpacking = tempfile::tempdir_in(folder).map_err(|error| error.to_string())?;
+        let archive = folder.join(format!("{CMSIS}.tar.gz"));
+        run(Command::new("tar").arg("-xzf").arg(archive).arg("-C").arg(unpacking.path()))?;
+        fs::rename(unpacking.path().join(CMSIS), &unpacked).map_err(|error| error.to_string())?;
+    }
+    Ok(unpacked)
+}
+
+/// Runs a command; the first line of its complaint if it fails.
+fn run(command: &mut Command) -> Result<(), String> {
+    let output = process::run(command, LIMIT).map_err(|error| error.to_string())?;
+    let reason = || output.stderr.trim().lines().next().unwrap_or_default().to_owned();
+    let program = || command.get_program().to_string_lossy().into_owned();
+    if output.status.success() { Ok(()) } else { Err(format!("{} failed: {}", program(), reason())) }
+}
+
+/// One program's steps on one board.
+#[derive(Clone, Copy, Debug)]
+pub struct Counted {
+    /// What it computes with.
+    pub name: &'static str,
+    /// The board.
+    pub board: &'static Board,
+    /// Per step of 2^-8 s.
+    pub step: StepCost,
+    /// The largest error through each scene that was asked for.
+    pub errors: [Error; 2],
+}
+
+/// Counts the C programs on the boards of `targets` through the first scene and compares their states through both;
+/// `exact` is the exact motion. Also says what had to be left out, and why.
+pub fn count(
+    toolchain: &Toolchain,
+    targets: &[Target],
+    scenes: [&Scene; 2],
+    exact: [&[[f64; 2]]; 2],
+) -> Result<(Vec<Counted>, String), CountError> {
+    let mut absent = String::new();
+    let mut programs = Vec::new();
+    for sine in Sine::ALL {
+        for target in targets {
+            match sine.compile(target.board) {
+                Ok(elf) => programs.push((sine, Target::of(toolchain, target.board, elf)?)),
+                Err(reason) => {
+                    absent = format!("{absent} Left out: {} on {} ({reason}).", sine.name(), target.board.cpu);
+                }
+            }
+        }
+    }
+    let counted = parallel(&programs, |(sine, target)| {
+        let step = costs::one(target, &request(scenes[0]))?;
+        let errors = [error(target, scenes[0], exact[0])?, error(target, scenes[1], exact[1])?];
+        Ok(Counted { name: sine.name(), board: target.board, step, errors })
+    });
+    Ok((counted.into_iter().collect::<Result<_, CountError>>()?, absent))
+}
+
+/// The request through `scene` with steps of 2^-8 s, whatever the program calls itself.
+fn request(scene: &Scene) -> Request<'static> {
+    super::accuracy::request(&SUBJECTS[0], scene, HALVINGS)
+}
+
+/// The error of the states that a program prints.
+fn error(target: &Target, scene: &Scene, exact: &[[f64; 2]]) -> Result<Error, CountError> {
+    let request = request(scene);
+    let printed = target.output(&request)?;
+    let mut states = Vec::new();
+    for line in printed.lines() {
+        let bits = line.split_ascii_whitespace().map(|word| u64::from_str_radix(word, 16));
+        if let Ok([a1, a2, ..]) = bits.collect::<Result<Vec<_>, _>>().as_deref() {
+            states.push([*a1, *a2].map(f64::from_bits));
+        }
+    }
+    if states.len() == exact.len() {
+        Ok(worst(scene, &states, exact))
+    } else {
+        Err(CountError::Refused { request: request.to_string(), reason: printed.trim().to_owned() })
+    }
+}
+
+/// The C programs beside some of the kernel's arithmetics.
+pub fn table((counted, absent): &(Vec<Counted>, String), points: &[Point], costs: &[Cost]) -> Table {
+    let scene = &SCENES[0];
+    let mut rows = Vec::new();
+    for board in BOARDS.iter().filter(|board| costs.iter().any(|cost| cost.board == *board)) {
+        let theirs = counted.iter().filter(|one| one.board == board);
+        let theirs = theirs.map(|one| (one.name, one.step, one.errors[0]));
+        let ours = BESIDE.iter().filter_map(|name| {
+            let is_it =
+                |point: &&Point| point.subject.name == *name && point.scene == scene && point.halvings == HALVINGS;
+            let cost = costs.iter().find(|cost| cost.subject.name == *name && cost.board == board)?;
+            Some((*name, cost.step, points.iter().find(is_it)?.error))
+        });
+        let ours: Vec<_> = ours.collect();
+        let unit = ours.last().map_or(f64::NAN, |(_, step, _)| step.cycles_high);
+        for (name, step, error) in theirs.chain(ours) {
+            let mut row = vec![name.to_owned(), board.cpu.to_owned()];
+            row.extend([step.instructions, step.cycles_high].map(|count| format!("{count:.0}")));
+            row.push(format!("{:.2}", step.cycles_high / unit));
+            row.extend([step.code_bytes, step.stack_bytes].map(|count| count.to_string()));
+            row.extend([small(error.angle), small(error.pixels)]);
+            rows.push(row);
+        }
+    }
+    Table {
+        name: "target-peers",
+        title: String::from("The page's equations in C on the target"),
+        note: format!(
+            "Per step; scene {}, step 2^-{HALVINGS} s, error over the scene. GCC at -O3, which may contract multiplication \
+             and addition; counted like all others. Relative: estimated cycles against f32-angle-compensated.{absent}",
+            scene.name,
+        ),
+        columns: vec![
+            "arithmetic",
+            "processor",
+            "instructions",
+            "cycles (estimate)",
+            "relative",
+            "code bytes",
+            "stack bytes",
+            "error (rad)",
+            "error (pixels)",
+        ],
+        rows,
+    }
+}

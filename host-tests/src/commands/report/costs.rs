@@ -1,0 +1,79 @@
+//! What a step costs on the target: counted, never timed.
+
+use firmware::measure::{Request, SUBJECTS, Subject};
+
+use super::accuracy::request;
+use super::parallel;
+use super::scene::Scene;
+use crate::commands::count::{CountError, FULL_CYCLE, StepCost, Target, affordable_steps, step_cost};
+use crate::commands::table::Table;
+use crate::emulator::boards::Board;
+
+/// The step size the counting is done at: 2^-8 s.
+pub const HALVINGS: u32 = 8;
+
+/// One arithmetic on one board.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cost {
+    /// The arithmetic.
+    pub subject: &'static Subject,
+    /// The board.
+    pub board: &'static Board,
+    /// Per step.
+    pub step: StepCost,
+}
+
+/// Counts every arithmetic on `scene`, each target on a thread of its own; `tick` is called after each.
+pub fn count(targets: &[Target], scene: &Scene, tick: &(dyn Fn() + Sync)) -> Result<Vec<Cost>, CountError> {
+    let on_target = |target: &Target| {
+        let counted = SUBJECTS.iter().map(|subject| {
+            let step = one(target, &request(subject, scene, HALVINGS))?;
+            tick();
+            Ok(Cost { subject, board: target.board, step })
+        });
+        counted.collect::<Result<Vec<_>, CountError>>()
+    };
+    Ok(parallel(targets, on_target).into_iter().collect::<Result<Vec<_>, _>>()?.concat())
+}
+
+/// What a step of `request` costs on `target`, over as many steps as can be afforded.
+pub fn one(target: &Target, request: &Request) -> Result<StepCost, CountError> {
+    let whole = Request { samples: 1, steps: FULL_CYCLE, ..*request };
+    let steps = affordable_steps(target, &whole)?;
+    step_cost(target, &Request { steps, ..whole })
+}
+
+/// The table of costs.
+pub fn table(costs: &[Cost], scene: &Scene) -> Table {
+    let row = |cost: &Cost| {
+        let StepCost { instructions, cycles_low, cycles_high, stalls, hot_bytes, code_bytes, stack_bytes } = cost.step;
+        let counts = [instructions, cycles_low, cycles_high, stalls].map(|count| format!("{count:.0}"));
+        let bytes = [hot_bytes, code_bytes, stack_bytes].map(|count| count.to_string());
+        let mut row = vec![cost.subject.name.to_owned(), cost.board.cpu.to_owned()];
+        row.extend(counts.into_iter().chain(bytes));
+        row
+    };
+    Table {
+        name: "costs",
+        title: String::from("Cost of one step"),
+        note: format!(
+            "Scene {}, step 2^-{HALVINGS} s. Instructions are counted in QEMU and exact. Cycles are an estimate: the \
+             published instruction timings applied to the executed stream, memory without wait states; low if \
+             neighbouring loads and stores are always pipelined, high if never. Stalls are those of the cycles that wait \
+             for a floating-point result. Hot bytes: instructions executed. Code bytes: whole functions with constants.",
+            scene.name
+        ),
+        columns: vec![
+            "arithmetic",
+            "processor",
+            "instructions",
+            "cycles low",
+            "cycles high",
+            "stalls",
+            "hot bytes",
+            "code bytes",
+            "stack bytes",
+        ],
+        rows: costs.iter().map(row).collect(),
+    }
+}

@@ -1,0 +1,47 @@
+//! Energy drift over many steps: shows slow losses, says nothing about accuracy.
+
+use double_pendulum::{Pendulum, State};
+use firmware::measure::{Request, SUBJECTS};
+
+use super::accuracy::request;
+use super::scene::SCENES;
+use crate::commands::table::{Table, small};
+
+/// The scenes and step sizes followed.
+const SCENES_FOLLOWED: usize = 2;
+const HALVINGS: [u32; 2] = [8, 10];
+
+/// How many runs [`table`] makes.
+pub const RUNS: usize = SCENES_FOLLOWED * SUBJECTS.len() * HALVINGS.len();
+
+/// The drift of every arithmetic over `steps` steps; `tick` is called after each run.
+pub fn table(steps: u32, tick: &dyn Fn()) -> Table {
+    let mut rows = Vec::new();
+    for scene in &SCENES[..SCENES_FOLLOWED] {
+        let Ok(pendulum) = Pendulum::<f64>::new(scene.parameters()) else { continue };
+        let [a1, a2] = scene.angles();
+        let start = pendulum.energy_above_rest(&State::at_rest(a1, a2));
+        for subject in SUBJECTS {
+            for halvings in HALVINGS {
+                let long = Request { samples: 1, steps, ..request(subject, scene, halvings) };
+                let mut drift = f64::NAN;
+                let run = long.run(&mut |state| drift = (pendulum.energy_above_rest(state) - start) / start);
+                tick();
+                if run.is_ok() {
+                    let (step, drift) = (format!("2^-{halvings}"), small(drift));
+                    rows.push(vec![scene.name.to_owned(), subject.name.to_owned(), step, drift]);
+                }
+            }
+        }
+    }
+    Table {
+        name: "energy-drift",
+        title: format!("Energy after {steps} steps"),
+        note: String::from(
+            "Change of the energy above rest, relative to the energy at the start. The f64 rows show what the method \
+             itself loses.",
+        ),
+        columns: vec!["scene", "arithmetic", "step (s)", "relative drift"],
+        rows,
+    }
+}

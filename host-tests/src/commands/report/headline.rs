@@ -1,0 +1,101 @@
+//! The table and the chart of the README: what a step costs on the chips and how far it is off after 10 s and 100 s.
+
+use std::fs;
+
+use anyhow::{Context, ensure};
+use firmware::measure::SUBJECTS;
+
+use super::accuracy::{Error, error};
+use super::c_peers::Counted;
+use super::costs::{Cost, HALVINGS};
+use super::scene::{LONG, SCENES, Scene};
+use crate::commands::count::StepCost;
+use crate::commands::table::{Table, small};
+use crate::emulator::toolchain::workspace;
+
+/// A regular motion for 10 s and for 100 s.
+pub const FOLLOWED: [&Scene; 2] = [&SCENES[0], &LONG];
+
+/// Where the README's chart is kept, in the workspace.
+const CHART: &str = "host-tests/pictures/report/speed-against-error.svg";
+/// What stands before and after the README's table.
+const MARKS: [&str; 2] = ["<!-- made by cargo write-report --readme -->\n", "<!-- so far -->\n"];
+
+/// Every arithmetic and every C program; `exact` is the exact motion of the scenes [`FOLLOWED`].
+pub fn table(costs: &[Cost], counted: &[Counted], exact: [&[[f64; 2]]; 2]) -> Table {
+    let mut rows = Vec::new();
+    let mut push = |name: &str, step_on: &dyn Fn(&str) -> Option<StepCost>, errors: [Option<Error>; 2]| {
+        let whole = |count: Option<f64>| count.map_or_else(String::new, |count| format!("{count:.0}"));
+        let [m4, m3] = ["cortex-m4", "cortex-m3"].map(step_on);
+        let mut row = vec![name.to_owned(), whole(m4.map(|step| step.cycles_high))];
+        row.push(whole(m4.map(|step| step.instructions)));
+        row.push(whole(m3.map(|step| step.cycles_high)));
+        row.extend(errors.map(|error| error.map_or_else(String::new, |error| small(error.angle))));
+        rows.push(row);
+    };
+    for Counted { name, errors, .. } in counted.iter().filter(|one| one.board.cpu == "cortex-m4") {
+        let step_on = |cpu: &str| Some(counted.iter().find(|one| one.name == *name && one.board.cpu == cpu)?.step);
+        push(name, &step_on, errors.map(Some));
+    }
+    for subject in SUBJECTS {
+        let step_on = |cpu: &str| Some(costs.iter().find(|one| one.subject == subject && one.board.cpu == cpu)?.step);
+        let errors = [0, 1].map(|index| error(subject, FOLLOWED[index], HALVINGS, exact[index]));
+        push(subject.name, &step_on, errors);
+    }
+    Table {
+        name: "headline",
+        title: String::from("Cost and error of a step of 1/256 s"),
+        note: String::from(
+            "The regular scene, equal rods, one step of classical RK4 (of order 8 where the name says so). Instructions \
+             are counted in QEMU; cycles are estimated from the published timings (the high figure). The error is the \
+             largest of an angle until then, against the reference.",
+        ),
+        columns: vec![
+            "arithmetic",
+            "M4F cycles (estimated)",
+            "M4F instructions",
+            "M3 cycles (estimated)",
+            "error in 10 s (rad)",
+            "error in 100 s (rad)",
+        ],
+        rows,
+    }
+}
+
+/// Whether the README shows this table.
+pub fn is_in_readme(table: &Table) -> anyhow::Result<bool> {
+    Ok(fs::read_to_string(workspace().join("README.md")).context("no README.md")?.contains(&table.markdown_rows()))
+}
+
+/// Puts the table and the chart into the README.
+pub fn put_into_readme(table: &Table, chart: &str) -> anyhow::Result<()> {
+    let path = workspace().join("README.md");
+    let old = fs::read_to_string(&path).context("no README.md")?;
+    fs::write(&path, with_table(&old, table)?)?;
+    let chart_path = workspace().join(CHART);
+    chart_path.parent().map_or(Ok(()), fs::create_dir_all)?;
+    Ok(fs::write(chart_path, chart)?)
+}
+
+fn with_table(readme: &str, table: &Table) -> anyhow::Result<String> {
+    let places = MARKS.map(|mark| readme.find(mark));
+    ensure!(matches!(places, [Some(start), Some(end)] if start < end), "the README has no place for the table");
+    let [start, end] = places.map(Option::unwrap_or_default);
+    let (head, tail) = (&readme[..start + MARKS[0].len()], &readme[end..]);
+    Ok(format!("{head}\n{}\n{tail}", table.markdown_rows()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_table_replaces_the_one_between_the_marks() {
+        let table = Table { columns: vec!["a", "b"], rows: vec![vec![String::from("1"); 2]], ..Table::default() };
+        let old = format!("before\n{}old\n{}after\n", MARKS[0], MARKS[1]);
+        let new = with_table(&old, &table).unwrap();
+        assert_eq!(new, format!("before\n{}\n{}\n{}after\n", MARKS[0], table.markdown_rows(), MARKS[1]));
+        assert_eq!(with_table(&new, &table).unwrap(), new);
+        assert!(with_table("no marks", &table).is_err());
+    }
+}

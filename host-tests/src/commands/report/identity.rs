@@ -1,0 +1,99 @@
+//! Whether the host and the chips compute the same bits: what allows errors to be computed on the host.
+
+use firmware::measure::{Request, RequestError, SUBJECTS, Subject};
+
+use super::accuracy::request;
+use super::scene::{SCENES, Scene};
+use crate::commands::count::{CountError, Target};
+use crate::commands::table::Table;
+
+/// The step size compared: 2^-8 s.
+const HALVINGS: u32 = 8;
+/// A regular and a chaotic motion.
+const COMPARED: &[Scene] = SCENES.split_at(2).0;
+
+/// How many steps are compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Steps {
+    /// Where the processor's floating-point unit computes them.
+    pub hardware: u32,
+    /// Where they are computed in software, at a hundred times the cost.
+    pub software: u32,
+}
+
+/// How many comparisons are made on one target.
+pub const RUNS: usize = COMPARED.len() * SUBJECTS.len();
+
+/// One arithmetic through one motion on a target and on this host.
+#[derive(Clone, Copy, Debug)]
+pub struct Comparison<'a> {
+    /// What was run.
+    pub request: Request<'a>,
+    /// The motion.
+    pub scene: &'static Scene,
+    /// The processor.
+    pub cpu: &'static str,
+    /// The CRC over every state on this host.
+    pub host: u32,
+    /// The same on the target.
+    pub target: u32,
+}
+
+impl Comparison<'_> {
+    /// Whether all bits are the same.
+    pub fn agrees(&self) -> bool {
+        self.host == self.target
+    }
+}
+
+/// The request whose CRC is over all states of the first `steps` steps of 2^-8 s through `scene`.
+pub fn every_state<'a>(subject: &'a Subject, scene: &Scene, steps: u32) -> Request<'a> {
+    Request { samples: steps, steps: 1, ..request(subject, scene, HALVINGS) }
+}
+
+/// Compares every arithmetic over both motions on `target`; `tick` is called after each.
+pub fn compare(
+    target: &Target,
+    steps: Steps,
+    tick: &(dyn Fn() + Sync),
+) -> Result<Vec<Comparison<'static>>, CountError> {
+    let runs = COMPARED.iter().flat_map(|scene| SUBJECTS.iter().map(move |subject| (scene, subject)));
+    let compared = runs.map(|(scene, subject)| {
+        let steps = if is_in_hardware(target, subject) { steps.hardware } else { steps.software };
+        let request = every_state(subject, scene, steps);
+        let refused =
+            |reason: RequestError| CountError::Refused { request: request.to_string(), reason: reason.to_string() };
+        let host = request.outcome().map_err(refused)?;
+        let (outcome, _) = target.run(&request)?;
+        tick();
+        Ok(Comparison { request, scene, cpu: target.board.cpu, host: host.crc, target: outcome.crc })
+    });
+    compared.collect()
+}
+
+/// Whether the target's floating-point unit does it all. (The `libm` crate's sine of an `f32` is computed in `f64`.)
+fn is_in_hardware(target: &Target, subject: &Subject) -> bool {
+    target.board.cpu == "cortex-m4" && subject.name.starts_with("f32") && !subject.name.ends_with("libm")
+}
+
+/// The comparisons as a table.
+pub fn table(comparisons: &[Comparison]) -> Table {
+    let row = |one: &Comparison| {
+        vec![
+            one.request.subject.to_owned(),
+            one.scene.name.to_owned(),
+            one.cpu.to_owned(),
+            one.request.samples.to_string(),
+            format!("{:08x}", one.host),
+            format!("{:08x}", one.target),
+            String::from(if one.agrees() { "same bits" } else { "DIFFERENT" }),
+        ]
+    };
+    Table {
+        name: "bit-identity",
+        title: String::from("Bit identity"),
+        note: format!("CRC-32 of all that is carried from step to step, after every single step of 2^-{HALVINGS} s."),
+        columns: vec!["arithmetic", "scene", "processor", "steps", "this host", "target", "verdict"],
+        rows: comparisons.iter().map(row).collect(),
+    }
+}

@@ -1,0 +1,191 @@
+//! `cargo write-report`: every arithmetic's cost on the target against its error, as tables, frames and one page.
+//!
+//! Costs are counted on the emulated targets, errors are computed on the host, which is allowed because the bits are the
+//! same ([`identity`]). Nothing is timed, so two runs write the same files.
+
+pub mod accuracy;
+mod c_peers;
+pub mod chart;
+pub mod costs;
+pub mod energy;
+pub mod headline;
+pub mod identity;
+mod page;
+pub mod peers;
+pub mod scene;
+pub mod speed;
+
+use anyhow::{Context, ensure};
+use firmware::measure::SUBJECTS;
+use std::fs;
+use std::path::Path;
+
+use crate::commands::count::Target;
+use crate::commands::plan;
+use crate::commands::table::Table;
+use crate::console::progress::Bar;
+use crate::emulator::toolchain::Toolchain;
+use scene::SCENES;
+
+/// How much is computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Extent {
+    /// Scenes, from the first on.
+    pub scenes: usize,
+    /// The finest step is 2^-`finest` s; the coarsest is 2^-4 s.
+    pub finest: u32,
+    /// Steps of the energy runs.
+    pub energy_steps: u32,
+    /// Steps of the comparison of bits.
+    pub identity: identity::Steps,
+    /// Whether other integrators are counted, which first have to be compiled.
+    pub peers: bool,
+    /// Scenes planned and carried out.
+    pub plans: usize,
+    /// Scenes that the planner's margin is held against.
+    pub margins: usize,
+}
+
+impl Extent {
+    /// All of it: three quarters of an hour, most of them for the comparison of bits where they are computed in software.
+    pub const FULL: Self = Self {
+        scenes: SCENES.len(),
+        finest: 13,
+        energy_steps: 1_000_000,
+        identity: identity::Steps { hardware: 1_000_000, software: 1_000_000 },
+        peers: true,
+        plans: 2_000,
+        margins: 1_000,
+    };
+    /// The first two scenes and shorter runs: under two minutes.
+    pub const QUICK: Self = Self {
+        scenes: 2,
+        finest: 13,
+        energy_steps: 100_000,
+        identity: identity::Steps { hardware: 10_000, software: 1_000 },
+        peers: false,
+        plans: 40,
+        margins: 10,
+    };
+
+    fn halvings(&self) -> impl Iterator<Item = u32> + Clone {
+        4..=self.finest
+    }
+
+    /// The runs of everything, for the progress bar.
+    pub fn runs(&self, targets: usize) -> usize {
+        let survey = self.scenes * SUBJECTS.len() * self.halvings().count();
+        let peers = if self.peers { peers::RUNS } else { 0 };
+        survey + energy::RUNS + peers + self.plans + self.margins + targets * (identity::RUNS + SUBJECTS.len())
+    }
+}
+
+/// What the README shows of it.
+#[derive(Clone, Debug)]
+pub struct Main {
+    /// The table.
+    pub table: Table,
+    /// The chart, SVG.
+    pub chart: String,
+    /// What had to be left out, and why; empty if nothing.
+    pub absent: String,
+}
+
+/// The seed of the scenes that are planned; the test draws others.
+const PLANS_SEED: u64 = 1;
+/// The seed of those that the planner's margin is held against.
+const MARGINS_SEED: u64 = 2;
+
+/// Computes the report and writes it into `folder`. Costs are counted on one board for each kind of core.
+///
+/// Gives the README's table and chart too.
+pub fn write(extent: &Extent, toolchain: &Toolchain, folder: &Path, bar: &Bar) -> anyhow::Result<Main> {
+    let targets = &Target::build_all(toolchain)?[..];
+    bar.set_length(extent.runs(targets.len()) as u64);
+    let tick = || bar.advance(1);
+    bar.say("comparing bits");
+    let compared = parallel(targets, |target| identity::compare(target, extent.identity, &tick));
+    let compared = compared.into_iter().collect::<Result<Vec<_>, _>>()?.concat();
+    let identity = identity::table(&compared);
+    ensure!(
+        compared.iter().all(identity::Comparison::agrees),
+        "host and target differ, so errors from the host would not be the target's:\n{}",
+        identity.markdown()
+    );
+    bar.say("counting");
+    let costs = costs::count(targets, &SCENES[0], &tick)?;
+    bar.say("compiling and counting C");
+    let exact = headline::FOLLOWED.map(accuracy::exact);
+    let exact = exact.each_ref().map(Vec::as_slice);
+    let c = c_peers::count(toolchain, targets, headline::FOLLOWED, exact)?;
+    let headline = headline::table(&costs, &c.0, exact);
+    bar.say("comparing with the reference");
+    let points = accuracy::survey(extent.scenes, extent.halvings(), &tick);
+    bar.say("following the energy");
+    let energy = energy::table(extent.energy_steps, &tick);
+
+    bar.say("counting other integrators");
+    let [peers, tight] = peers::tables(extent.peers, &tick)?;
+
+    bar.say("carrying out plans");
+    let chip = &plan::M4F;
+    let scenes = plan::scenes(PLANS_SEED, plan::DURATIONS).take(extent.plans);
+    let plans = plan::study(scenes, chip, tick)?;
+
+    bar.say("holding the planner's margins");
+    let scenes = plan::scenes(MARGINS_SEED, plan::FOLLOWED).take(extent.margins);
+    let margins = plan::fit(scenes, tick)?;
+
+    bar.say("writing");
+    let priced = speed::priced(&points, &costs);
+    let tables = [
+        headline.clone(),
+        c_peers::table(&c, &points, &costs),
+        costs::table(&costs, &SCENES[0]),
+        speed::floors(&points),
+        energy,
+        peers,
+        tight,
+        identity,
+        plan::classes(&plans, chip)?,
+        plan::broken(&plans),
+        plan::rk4_in_f64(&plans, chip)?,
+        plan::margins(&margins),
+        speed::table(&priced),
+    ];
+    let mut charts = Vec::new();
+    for scene in &SCENES[..extent.scenes] {
+        for target in targets {
+            let board = target.board;
+            let name = format!("speed-{}-{}.svg", scene.name, board.cpu);
+            let svg = chart::speed_against_error(&priced, scene, board);
+            charts.push((name, svg.map_err(|error| anyhow::anyhow!("cannot draw: {error}"))?));
+        }
+    }
+    fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
+    let save = |name: &str, text: &str| {
+        let path = folder.join(name);
+        fs::write(&path, text).with_context(|| format!("cannot write {}", path.display()))
+    };
+    for table in &tables {
+        save(&format!("{}.csv", table.name), &table.csv())?;
+        save(&format!("{}.md", table.name), &table.markdown())?;
+    }
+    for (name, svg) in &charts {
+        save(name, svg)?;
+    }
+    save("index.html", &page::html(&tables, &charts))?;
+    let name = format!("speed-{}-cortex-m4.svg", SCENES[0].name);
+    let chart = charts.into_iter().find(|(chart, _)| *chart == name);
+    Ok(Main { table: headline, chart: chart.context("no chart of the first scene")?.1, absent: c.1 })
+}
+
+/// What `work` makes of each item, every item on a thread of its own.
+fn parallel<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<R> {
+    let work = &work;
+    std::thread::scope(|scope| {
+        let running: Vec<_> = items.iter().map(|item| scope.spawn(move || work(item))).collect();
+        let results = running.into_iter().map(|thread| thread.join());
+        results.map(|result| result.unwrap_or_else(|panic| std::panic::resume_unwind(panic))).collect()
+    })
+}

@@ -1,0 +1,32 @@
+//! The page that shows it all.
+
+use crate::commands::table::Table;
+
+const HEAD: &str = r#"<!DOCTYPE html>
+<html lang="en">
+<meta charset="utf-8">
+<title>Double pendulum: speed against error</title>
+<style>
+body { font: 15px/1.5 sans-serif; max-width: 60rem; margin: 2rem auto; padding: 0 1rem }
+table { border-collapse: collapse; font-size: 13px }
+th, td { border: 1px solid #ccc; padding: 2px 8px; text-align: right }
+th:first-child, td:first-child { text-align: left }
+svg { max-width: 100%; height: auto }
+</style>
+<h1>Double pendulum: speed against error</h1>
+<p>Costs are counted on emulated boards, errors are computed against the reference. All cycles are estimates from the
+published instruction timings; no silicon was measured.</p>
+"#;
+
+/// The page: frames first, then the tables. It needs no other file.
+pub fn html(tables: &[Table], charts: &[(String, String)]) -> String {
+    let mut page = String::from(HEAD);
+    for (_, svg) in charts {
+        page.push_str(svg);
+    }
+    for table in tables {
+        page.push_str(&table.html());
+    }
+    page.push_str("</html>\n");
+    page
+}

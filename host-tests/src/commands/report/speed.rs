@@ -1,0 +1,153 @@
+//! Speed against error, and where the error stops falling.
+
+use super::accuracy::Point;
+use super::costs::Cost;
+use crate::commands::table::{Table, small};
+use crate::emulator::boards::Board;
+
+/// A point with its price on one board.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Priced {
+    /// Arithmetic, scene, step size and error.
+    pub point: Point,
+    /// The board.
+    pub board: &'static Board,
+    /// Executed instructions per simulated second.
+    pub instructions: f64,
+    /// Estimated cycles per simulated second, the high figure.
+    pub cycles: f64,
+    /// Another point of the scene and board has neither more cycles nor a larger error, and less of one.
+    pub dominated: bool,
+}
+
+/// All points on all boards that the cost is known of.
+pub fn priced(points: &[Point], costs: &[Cost]) -> Vec<Priced> {
+    let mut priced: Vec<_> = costs
+        .iter()
+        .flat_map(|cost| {
+            points.iter().filter(|point| point.subject == cost.subject).map(|&point| {
+                let steps = f64::from(1 << point.halvings);
+                let (instructions, cycles) = (steps * cost.step.instructions, steps * cost.step.cycles_high);
+                Priced { point, board: cost.board, instructions, cycles, dominated: false }
+            })
+        })
+        .collect();
+    let all = priced.clone();
+    for one in &mut priced {
+        one.dominated = all.iter().any(|other| dominates(other, one));
+    }
+    priced
+}
+
+fn dominates(other: &Priced, one: &Priced) -> bool {
+    let same = other.board == one.board && other.point.scene == one.point.scene;
+    let (error, worse) = (other.point.error.angle, one.point.error.angle);
+    same && other.cycles <= one.cycles && error <= worse && (other.cycles < one.cycles || error < worse)
+}
+
+/// Speed against error.
+pub fn table(priced: &[Priced]) -> Table {
+    let row = |one: &Priced| {
+        let Point { scene, subject, halvings, error } = one.point;
+        vec![
+            scene.name.to_owned(),
+            one.board.cpu.to_owned(),
+            subject.name.to_owned(),
+            format!("2^-{halvings}"),
+            format!("{:.0}", one.instructions),
+            format!("{:.0}", one.cycles),
+            small(error.angle),
+            small(error.pixels),
+            String::from(if 0.5_f64.powi(halvings as i32) <= scene.admissible_step() { "yes" } else { "no" }),
+            String::from(if one.dominated { "dominated" } else { "best" }),
+        ]
+    };
+    Table {
+        name: "speed-against-error",
+        title: String::from("Speed against error"),
+        note: String::from(
+            "Largest error of an angle, and of a bob's place on the panel, over 16 states of the scene, against the \
+             reference. Costs per simulated second; cycles are estimated (the high figure). Resolved: the step is at \
+             most the longest that resolves every motion of the scene's energy; a tame one may do with more. Dominated: something else \
+             is at least as good in both.",
+        ),
+        columns: vec![
+            "scene",
+            "processor",
+            "arithmetic",
+            "step (s)",
+            "instructions per s",
+            "cycles per s (estimate)",
+            "error (rad)",
+            "error (pixels)",
+            "resolved",
+            "verdict",
+        ],
+        rows: priced.iter().map(row).collect(),
+    }
+}
+
+/// The error floors: the least error, the step it needs, and what becomes of it as the step shrinks further.
+pub fn floors(points: &[Point]) -> Table {
+    let mut rows = Vec::new();
+    for group in points.chunk_by(|a, b| a.scene == b.scene && a.subject == b.subject) {
+        let least = group.iter().min_by(|a, b| a.error.angle.total_cmp(&b.error.angle));
+        let worst_growth = group.windows(2).map(|pair| pair[1].error.angle / pair[0].error.angle).fold(0.0, f64::max);
+        if let (Some(least), Some(finest)) = (least, group.last()) {
+            rows.push(vec![
+                least.scene.name.to_owned(),
+                least.subject.name.to_owned(),
+                small(least.error.angle),
+                format!("2^-{}", least.halvings),
+                small(finest.error.angle),
+                format!("2^-{}", finest.halvings),
+                format!("{worst_growth:.2}"),
+            ]);
+        }
+    }
+    Table {
+        name: "error-floors",
+        title: String::from("Error floors"),
+        note: String::from(
+            "The least error over all step sizes, where it is reached, the error at the finest step, and the largest \
+             factor by which halving the step made the error grow.",
+        ),
+        columns: vec![
+            "scene",
+            "arithmetic",
+            "least error (rad)",
+            "at step (s)",
+            "error at the finest step (rad)",
+            "finest step (s)",
+            "worst growth on halving",
+        ],
+        rows,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use firmware::measure::SUBJECTS;
+
+    use super::*;
+    use crate::commands::report::accuracy::Error;
+    use crate::commands::report::scene::SCENES;
+    use crate::emulator::boards::BOARDS;
+
+    #[test]
+    fn a_point_is_dominated_by_one_at_least_as_good_in_both() {
+        let one = |cycles, angle| Priced {
+            point: Point { scene: &SCENES[0], subject: &SUBJECTS[0], halvings: 4, error: Error { angle, pixels: 0.0 } },
+            board: &BOARDS[0],
+            instructions: 0.0,
+            cycles,
+            dominated: false,
+        };
+        assert!(dominates(&one(1.0, 1.0), &one(2.0, 1.0)));
+        assert!(dominates(&one(1.0, 1.0), &one(1.0, 2.0)));
+        assert!(!dominates(&one(1.0, 1.0), &one(1.0, 1.0)));
+        assert!(!dominates(&one(1.0, 2.0), &one(2.0, 1.0)));
+        let elsewhere = Priced { board: &BOARDS[1], ..one(0.0, 0.0) };
+        assert!(!dominates(&elsewhere, &one(1.0, 1.0)));
+    }
+}

@@ -1,0 +1,99 @@
+//! The command line of `cargo simulate`.
+
+use clap::Parser;
+use clap::builder::PossibleValuesParser;
+use clap::builder::TypedValueParser;
+use firmware::job::{Arithmetic, Formulation, Model};
+
+use super::{Number, Start};
+use crate::emulator::boards::{BOARDS, Board};
+
+/// Where the motion is computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// By this program.
+    Host,
+    /// By the firmware on an emulated board.
+    Board(&'static Board),
+}
+
+impl Place {
+    const HOST: &str = "host";
+
+    fn names() -> impl Iterator<Item = &'static str> {
+        std::iter::once(Self::HOST).chain(BOARDS.iter().map(|board| board.name))
+    }
+
+    fn named(name: &str) -> Self {
+        BOARDS.iter().find(|board| board.name == name).map_or(Place::Host, Place::Board)
+    }
+}
+
+/// How a step is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// The classical method, of order 4.
+    Rk4,
+    /// [`double_pendulum::rk8`], on this computer only.
+    Order8,
+}
+
+impl Method {
+    const ALL: &[Self] = &[Self::Rk4, Self::Order8];
+
+    /// What the command line calls it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Rk4 => "rk4",
+            Self::Order8 => "order-8",
+        }
+    }
+}
+
+/// Computes a motion of the double pendulum and prints it as CSV: t,a1,a2,p1,p2,w1,w2,energy in SI units.
+///
+/// Numbers are decimals (0.25, 1e-3) or fractions (1/256).
+#[derive(Debug, Parser)]
+#[command(name = "cargo simulate", bin_name = "cargo simulate")]
+pub struct Options {
+    /// What moves.
+    #[command(flatten)]
+    pub start: Start,
+    /// Step size, s; a warning says when it is too long to resolve every motion of this energy
+    #[arg(long, value_name = "DT", default_value = "1/1024", allow_hyphen_values = true)]
+    pub step: Number,
+    /// Time of the last row, s
+    #[arg(long, value_name = "T", default_value = "10", allow_hyphen_values = true)]
+    pub until: Number,
+    /// Time from row to row, s; one step if not given
+    #[arg(long, value_name = "T", allow_hyphen_values = true)]
+    pub every: Option<Number>,
+    /// The numbers it is computed in
+    #[arg(long, value_name = "NAME", default_value = Arithmetic::F64.name(), value_parser = choice(Arithmetic::ALL, Arithmetic::name))]
+    pub arithmetic: Arithmetic,
+    /// The equations of motion
+    #[arg(long, value_name = "NAME", default_value = Model::General.name(), value_parser = choice(Model::ALL, Model::name))]
+    pub model: Model,
+    /// The quantities stepped; if not given, canonical, or angle with f32-compensated
+    #[arg(long, value_name = "NAME", value_parser = choice(Formulation::ALL, Formulation::name))]
+    pub form: Option<Formulation>,
+    /// How a step is made; order 8 in f64 and here only, for errors of 1e-9 rad and less
+    #[arg(long, value_name = "NAME", default_value = Method::Rk4.name(), value_parser = choice(Method::ALL, Method::name))]
+    pub method: Method,
+    /// Where it is computed: here, or by the firmware on an emulated board
+    #[arg(long = "on", value_name = "PLACE", default_value = Place::HOST,
+          value_parser = PossibleValuesParser::new(Place::names()).map(|name| Place::named(&name)))]
+    pub place: Place,
+    /// Add the bit patterns of a1, a2, p1, p2 in hexadecimal
+    #[arg(long)]
+    pub bits: bool,
+}
+
+/// Accepts the names of a closed set of choices, and no others.
+fn choice<Choice>(all: &'static [Choice], name: fn(Choice) -> &'static str) -> impl TypedValueParser<Value = Choice>
+where
+    Choice: Copy + Send + Sync + 'static,
+{
+    PossibleValuesParser::new(all.iter().map(move |&choice| name(choice)))
+        .try_map(move |text| all.iter().copied().find(|&choice| name(choice) == text).ok_or("unknown"))
+}

@@ -1,0 +1,4 @@
+//! How every command talks: its options, its errors, its progress.
+
+pub mod cli;
+pub mod progress;

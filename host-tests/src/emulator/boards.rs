@@ -1,0 +1,91 @@
+//! The emulated boards: one row each, with all that QEMU and the build need to know.
+
+/// A board that QEMU emulates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Board {
+    /// What the user types.
+    pub name: &'static str,
+    /// QEMU's `-machine`.
+    pub machine: &'static str,
+    /// QEMU's `-cpu`.
+    pub cpu: &'static str,
+    /// The compiler's target.
+    pub target: &'static str,
+    /// The firmware binary that runs on it.
+    pub binary: &'static str,
+    /// The cargo feature that this binary needs; empty if none.
+    pub feature: &'static str,
+    /// Which of QEMU's serial ports is the link, counted from 0.
+    pub serial_port: usize,
+    /// Its processor's clock, Hz.
+    pub hertz: u32,
+    /// Whether it has the OLED panel and the five buttons.
+    pub has_panel: bool,
+}
+
+impl Board {
+    /// Whose timings hold.
+    pub fn core(&self) -> Core {
+        if self.cpu == "cortex-m3" { Core::M3 } else { Core::M4F }
+    }
+}
+
+/// Every board, the default one first.
+pub const BOARDS: [Board; 4] = [
+    Board {
+        name: "lm3s6965evb",
+        machine: "lm3s6965evb",
+        cpu: "cortex-m3",
+        target: "thumbv7m-none-eabi",
+        binary: "lm3s6965evb",
+        feature: "",
+        serial_port: 0,
+        hertz: 50_000_000,
+        has_panel: true,
+    },
+    Board {
+        name: "lm3s6965evb-m4",
+        machine: "lm3s6965evb",
+        cpu: "cortex-m4",
+        target: "thumbv7em-none-eabihf",
+        binary: "lm3s6965evb",
+        feature: "",
+        serial_port: 0,
+        hertz: 50_000_000,
+        has_panel: true,
+    },
+    Board {
+        name: "mps2-an386",
+        machine: "mps2-an386",
+        cpu: "cortex-m4",
+        target: "thumbv7em-none-eabihf",
+        binary: "mps2-an386",
+        feature: "",
+        serial_port: 0,
+        hertz: 25_000_000,
+        has_panel: false,
+    },
+    STM32F405,
+];
+
+/// The board that exists: the one ELF file is flashed and emulated. Its panel, button and I2C are not emulated.
+pub const STM32F405: Board = Board {
+    name: "stm32f405",
+    machine: "netduinoplus2",
+    cpu: "cortex-m4",
+    target: "thumbv7em-none-eabihf",
+    binary: "stm32f405",
+    feature: "stm32f405",
+    serial_port: 2, // USART3
+    hertz: 168_000_000,
+    has_panel: false,
+};
+
+/// The processors whose timings are known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Core {
+    /// Cortex-M3, no floating-point unit.
+    M3,
+    /// Cortex-M4 with the single-precision floating-point unit.
+    M4F,
+}

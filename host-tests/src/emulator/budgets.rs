@@ -1,0 +1,37 @@
+//! The one table of budgets: what a board may spend, and why.
+
+/// What a scene may take of a frame of 1/60 s on a 50 MHz Cortex-M3: the other half is for the panel's bus, the serial
+/// link, commands, and motions asked for.
+pub const SCENE: f64 = 0.5;
+/// What is left of a frame when the frame is on the panel and sent: enough for a command a frame, for a log line, and
+/// to compute motions on request in reasonable time. QEMU's buses take no time; see the README for those of a real board.
+pub const IDLE: f64 = 0.4;
+
+/// Bytes of a board's memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Memory {
+    /// Program and constants, in flash.
+    pub text: u32,
+    /// Statics with values to start from: in flash and in memory.
+    pub data: u32,
+    /// Statics that start as zeros or as anything.
+    pub bss: u32,
+    /// The deepest that the stack reaches.
+    pub stack: u32,
+}
+
+/// What each application may take.
+///
+/// Text: all boards are linked for the 256 KiB of the smallest chip's flash, and it keeps a sixteenth free; the F405 has
+/// four times as much, but is held to the same map. Data: nothing needs a start value but a few words. Bss: the two
+/// frames are 8 KiB, the application and its planner 5, the queue of received bytes 1, the F405's log and its panel's
+/// frame 2 more; a tenth is left to grow. Stack: making a scene takes most of it; half of the 32 KiB that the guard
+/// leaves to the stack is for what no run has met: an interrupt at the deepest place, the report of a crash.
+pub const MEMORY: [(&str, Memory); 4] = [
+    ("lm3s6965evb", Memory { text: 240 * KIB, data: 256, bss: 16 * KIB, stack: 16 * KIB }),
+    ("lm3s6965evb-m4", Memory { text: 240 * KIB, data: 256, bss: 16 * KIB, stack: 16 * KIB }),
+    ("mps2-an386", Memory { text: 240 * KIB, data: 256, bss: 16 * KIB, stack: 16 * KIB }),
+    ("stm32f405", Memory { text: 248 * KIB, data: 256, bss: 18 * KIB, stack: 16 * KIB }),
+];
+
+const KIB: u32 = 1024;

@@ -1,0 +1,58 @@
+//! Running one firmware binary in QEMU: which board it is for, and its log as it comes.
+
+use std::io::{self, Write};
+use std::path::Path;
+use std::process::ExitStatus;
+
+use crate::emulator::boards::{BOARDS, Board};
+use crate::emulator::qemu::{Machine, QemuError, Settings};
+
+/// The board for a binary: the one asked for; else the first that has it as its application; else the default one.
+/// Where the file says its target, as in `target/thumbv7m-none-eabi/release/x`, only boards of that target count.
+/// `None` if there is no such board.
+pub fn board_for(name: Option<&str>, binary: &Path) -> Option<&'static Board> {
+    let target = |board: &&Board| {
+        let known = |target: &str| BOARDS.iter().any(|board| board.target == target);
+        let folders = || binary.components().filter_map(|part| part.as_os_str().to_str());
+        folders().all(|folder| !known(folder)) || folders().any(|folder| folder == board.target)
+    };
+    if let Some(name) = name {
+        return BOARDS.iter().find(|board| board.name == name);
+    }
+    let runs_it = |board: &&Board| binary.file_name().is_some_and(|file| file == board.binary);
+    BOARDS.iter().filter(target).find(runs_it).or_else(|| BOARDS.iter().find(target))
+}
+
+/// Runs a firmware to its own end, or to its limit, which is an error; each line of its log goes to `output`.
+pub fn run(settings: &Settings, output: &mut impl Write) -> Result<ExitStatus, QemuError> {
+    let mut machine = Machine::start(settings)?;
+    for line in machine.log.rest() {
+        // Whoever stops reading does not stop the board.
+        let _: io::Result<()> = writeln!(output, "{line}").and_then(|()| output.flush());
+    }
+    Ok(machine.wait()?.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn chosen(name: Option<&str>, binary: &str) -> Option<&'static str> {
+        board_for(name, Path::new(binary)).map(|board| board.name)
+    }
+
+    #[test]
+    fn the_board_follows_from_the_binary() {
+        assert_eq!(chosen(None, "lm3s6965evb"), Some("lm3s6965evb"));
+        assert_eq!(chosen(None, "mps2-an386"), Some("mps2-an386"));
+        assert_eq!(chosen(None, "inject-panic"), Some("lm3s6965evb"));
+        assert_eq!(chosen(None, "target/thumbv7em-none-eabihf/release/lm3s6965evb"), Some("lm3s6965evb-m4"));
+        assert_eq!(chosen(None, "target/thumbv7em-none-eabihf/release/inject-panic"), Some("lm3s6965evb-m4"));
+    }
+
+    #[test]
+    fn a_board_asked_for_is_taken_or_refused() {
+        assert_eq!(chosen(Some("mps2-an386"), "inject-panic"), Some("mps2-an386"));
+        assert_eq!(chosen(Some("toaster"), "inject-panic"), None);
+    }
+}

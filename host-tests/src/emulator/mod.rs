@@ -1,0 +1,9 @@
+//! Where the firmware runs without a board.
+
+pub mod boards;
+pub mod budgets;
+pub mod firmware_run;
+pub mod host;
+pub mod process;
+pub mod qemu;
+pub mod toolchain;

@@ -1,0 +1,101 @@
+//! Frame by frame: the machine stands still at a moment when its panel shows exactly the frame just received.
+
+use std::ops::Range;
+use std::path::Path;
+
+use firmware::protocol::Frame;
+use object::{Object, ObjectSection, SectionKind};
+
+use super::gdb::Debugger;
+use super::machine::{Clock, Machine, Settings};
+use super::{QemuError, Screenshot};
+
+/// The instruction `wfi`: sleep until an interrupt.
+const WFI: u16 = 0xBF30;
+/// A board that sleeps this often without sending a frame sends none.
+const PATIENCE: u32 = 1000;
+/// One instruction per translation block: QEMU's name for it since 8.1, and before.
+const SINGLE_STEP: [&str; 2] = ["one-insn-per-tb", "singlestep"];
+
+/// A machine that is let run from one frame to the next.
+///
+/// It is stopped from outside, through QEMU's debugger port, when the firmware has done its work and goes to sleep:
+/// a frame is then on the panel and sent, and the next not begun. The firmware need not know, and its clock is the
+/// counted one, so nothing it computes depends on how long it stood still.
+#[derive(Debug)]
+pub struct Lockstep {
+    machine: Machine,
+    debugger: Debugger,
+}
+
+impl Lockstep {
+    /// Starts a board with its clock counted, whatever `settings` say of it.
+    pub fn start(settings: &Settings) -> Result<Self, QemuError> {
+        let sleeps = sleeps(settings.elf)?;
+        let (machine, debugger) = Machine::start_stopped(&Settings { clock: Clock::Counted, ..*settings })?;
+        Ok(Self { machine, debugger: Debugger::new(debugger, &sleeps)? })
+    }
+
+    /// Runs to the next frame.
+    pub fn next_frame(&mut self) -> Result<Frame, QemuError> {
+        for _ in 0..PATIENCE {
+            self.debugger.run_to_sleep().map_err(|error| self.machine.explain(error))?;
+            if let Some(frame) = self.machine.serial.arrived().last() {
+                return Ok(frame);
+            }
+        }
+        Err(QemuError::NoFrame)
+    }
+
+    /// Runs to the next frame while QEMU writes the processor's registers before every instruction to `log`, which may
+    /// be a named pipe: hundreds of bytes each time.
+    pub fn next_frame_logged(&mut self, log: &Path) -> Result<Frame, QemuError> {
+        self.machine.tell(&format!("logfile {}", log.display()))?;
+        self.machine.tell("log cpu,nochain")?;
+        self.single_step("on")?;
+        let frame = self.next_frame();
+        self.single_step("off")?;
+        self.machine.tell("log none")?;
+        self.machine.tell("logfile /dev/null")?;
+        frame
+    }
+
+    /// Writes `byte` at all these addresses.
+    pub fn fill(&mut self, addresses: Range<u32>, byte: u8) -> Result<(), QemuError> {
+        self.debugger.fill(addresses, byte).map_err(|error| self.machine.explain(error))
+    }
+
+    /// The bytes at these addresses.
+    pub fn read(&mut self, addresses: Range<u32>) -> Result<Vec<u8>, QemuError> {
+        self.debugger.read(addresses).map_err(|error| self.machine.explain(error))
+    }
+
+    fn single_step(&mut self, switch: &str) -> Result<(), QemuError> {
+        let [name, name_before] = SINGLE_STEP.map(|name| format!("{name} {switch}"));
+        self.machine.tell(&name).or_else(|_| self.machine.tell(&name_before))
+    }
+
+    /// The panel's screenshot of the last frame.
+    pub fn screenshot(&mut self) -> Result<Screenshot, QemuError> {
+        self.machine.screenshot()
+    }
+
+    /// The machine, for its counts and its log.
+    pub fn machine(&mut self) -> &mut Machine {
+        &mut self.machine
+    }
+}
+
+/// The addresses in the program where `wfi` stands, or a constant that looks like it, which is never executed.
+fn sleeps(elf: &Path) -> Result<Vec<u32>, QemuError> {
+    let unusable = |reason: String| QemuError::Firmware { path: elf.to_owned(), reason };
+    let program = std::fs::read(elf).map_err(|error| unusable(error.to_string()))?;
+    let program = object::File::parse(&*program).map_err(|error| unusable(error.to_string()))?;
+    let mut sleeps = Vec::new();
+    for section in program.sections().filter(|section| section.kind() == SectionKind::Text) {
+        let code = section.data().map_err(|error| unusable(error.to_string()))?;
+        let halfwords = (section.address() as u32..).step_by(2).zip(code.as_chunks().0);
+        sleeps.extend(halfwords.filter(|(_, bytes)| u16::from_le_bytes(**bytes) == WFI).map(|(address, _)| address));
+    }
+    Ok(sleeps)
+}

@@ -1,0 +1,233 @@
+//! Starting and ending an emulated board.
+
+use std::fmt;
+use std::io::ErrorKind;
+use std::os::unix::net::{UnixListener, UnixStream};
+use std::path::Path;
+use std::process::{Command, ExitStatus, Stdio};
+use std::thread::sleep;
+use std::time::Duration;
+
+use super::folder::Folder;
+use super::qmp::Monitor;
+use super::serial::Pipes;
+use super::{Key, Log, LogLine, QemuError, Screenshot, Serial, Window};
+use crate::emulator::boards::Board;
+use crate::emulator::process::{self, Running};
+
+/// How often a connection that is not there yet is looked for.
+const POLL: Duration = Duration::from_millis(2);
+
+/// What the board's clock goes by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Clock {
+    /// The host's clock: as fast as the real board, as long as the host keeps up.
+    Real,
+    /// The count of executed instructions, 32 ns each, and no waiting while the board sleeps: repeatable to the bit on
+    /// any host however busy, and several times as fast as the real board.
+    Counted,
+}
+
+/// How a board is started.
+#[derive(Clone, Copy, Debug)]
+pub struct Settings<'a> {
+    /// The program `qemu-system-arm`.
+    pub qemu: &'a Path,
+    /// The board.
+    pub board: &'a Board,
+    /// The firmware's ELF file.
+    pub elf: &'a Path,
+    /// What its clock goes by.
+    pub clock: Clock,
+    /// QEMU's own window, if it is wanted.
+    pub window: Option<Window>,
+    /// Whether there is a debugger that answers the firmware's calls and so takes its log.
+    pub debugger: bool,
+    /// It is ended at the latest after this long, by the host's clock.
+    pub limit: Duration,
+}
+
+/// A running board. Dropping it ends QEMU.
+pub struct Machine {
+    /// The serial link.
+    pub serial: Serial,
+    /// What it says.
+    pub log: Log,
+    monitor: Monitor,
+    process: Running,
+    folder: Folder,
+}
+
+impl fmt::Debug for Machine {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Machine").field("process", &self.process).finish_non_exhaustive()
+    }
+}
+
+impl Machine {
+    /// Starts a board. Its first instruction is executed after the host is attached to it.
+    pub fn start(settings: &Settings) -> Result<Self, QemuError> {
+        let (mut machine, _) = Self::launch(settings, false)?;
+        match machine.monitor.resume() {
+            // A firmware may end QEMU before QEMU can answer.
+            Err(QemuError::Connection { .. }) | Ok(()) => Ok(machine),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// Starts a board that stands still at its first instruction, and gives its debugger port.
+    pub(super) fn start_stopped(settings: &Settings) -> Result<(Self, UnixStream), QemuError> {
+        let (machine, debugger) = Self::launch(settings, true)?;
+        let missing = || QemuError::connection("debugger port")(ErrorKind::NotConnected.into());
+        Ok((machine, debugger.ok_or_else(missing)?))
+    }
+
+    /// A board that stands still at its first instruction, with its debugger port if it is `debugged`.
+    fn launch(settings: &Settings, debugged: bool) -> Result<(Self, Option<UnixStream>), QemuError> {
+        let unusable = QemuError::connection("folder of sockets");
+        let elf = settings
+            .elf
+            .canonicalize()
+            .map_err(|error| QemuError::Firmware { path: settings.elf.to_owned(), reason: error.to_string() })?;
+        let folder = Folder::make().map_err(&unusable)?;
+        // QEMU connects to sockets that listen already: none of its bytes can be lost.
+        let listen = |name| UnixListener::bind(folder.path().join(name)).map_err(&unusable);
+        let (monitor, debugger) = (listen("monitor")?, listen("debugger")?);
+        let pipes = Pipes::make(&folder.path().join("serial"))?;
+
+        let mut command = Command::new(settings.qemu);
+        command.current_dir(folder.path());
+        command.args(["-machine", settings.board.machine, "-cpu", settings.board.cpu]).arg("-kernel").arg(elf);
+        command.args(["-display", settings.window.map_or("none", Window::name)]);
+        command.args(["-serial", "null"].repeat(settings.board.serial_port));
+        command.args(["-chardev", "pipe,id=serial,path=serial", "-serial", "chardev:serial"]);
+        command.args(["-chardev", "socket,id=monitor,path=monitor", "-mon", "chardev=monitor,mode=control"]);
+        if settings.debugger {
+            command.args(["-semihosting-config", "enable=on,target=native"]);
+        }
+        match settings.clock {
+            Clock::Counted => command.args(["-icount", "shift=5,sleep=off"]),
+            // A host that holds QEMU up for seconds is no reason for the board to start again.
+            Clock::Real => command.args(["-action", "watchdog=none"]),
+        };
+        command.arg("-S");
+        if debugged {
+            command.args(["-chardev", "socket,id=debugger,path=debugger", "-gdb", "chardev:debugger"]);
+        }
+        command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+
+        let mut process = process::spawn(&mut command, settings.limit)?;
+        let log = Log::new(settings.elf, process.stdout.take(), process.stderr.take())?;
+        let monitor = accept(&monitor, &mut process, &log)?;
+        let debugger = if debugged { Some(accept(&debugger, &mut process, &log)?) } else { None };
+        // QEMU greets once all its connections are made.
+        let monitor = Monitor::new(monitor)?;
+        Ok((Self { serial: Serial::new(pipes)?, log, monitor, process, folder }, debugger))
+    }
+
+    /// What the panel shows now. While the board runs this may be a mixture of two frames.
+    pub fn screenshot(&mut self) -> Result<Screenshot, QemuError> {
+        self.monitor.screenshot(self.folder.path()).map_err(|error| self.explain(error))
+    }
+
+    /// Gives QEMU's console a line that it has nothing to say to.
+    pub(super) fn tell(&mut self, line: &str) -> Result<(), QemuError> {
+        let said = self.monitor.console(line).map_err(|error| self.explain(error))?;
+        let reason = said.trim();
+        if reason.is_empty() {
+            Ok(())
+        } else {
+            Err(QemuError::Refused { command: "console", reason: reason.to_owned() })
+        }
+    }
+
+    /// Presses a button, or lets go of it.
+    pub fn set_key(&mut self, key: Key, down: bool) -> Result<(), QemuError> {
+        self.monitor.set_key(key, down).map_err(|error| self.explain(error))
+    }
+
+    /// Presses and lets go of every button once, too early for the firmware to take it for a command: only then does
+    /// this board's emulated hardware tell a released button from a pressed one.
+    pub fn wake_keys(&mut self) -> Result<(), QemuError> {
+        Key::ALL.into_iter().try_for_each(|key| {
+            self.set_key(key, true)?;
+            self.set_key(key, false)
+        })
+    }
+
+    /// Whether QEMU has ended by itself, and how.
+    pub fn ended(&mut self) -> Result<Option<ExitStatus>, QemuError> {
+        Ok(self.process.try_wait()?)
+    }
+
+    /// Waits until QEMU ends by itself: how, and what was said until then.
+    pub fn wait(&mut self) -> Result<(ExitStatus, Vec<LogLine>), QemuError> {
+        let status = self.process.wait()?;
+        Ok((status, self.log.rest().collect()))
+    }
+
+    /// Ends QEMU.
+    pub fn quit(mut self) -> Result<(), QemuError> {
+        match self.monitor.quit() {
+            // It may be gone before it has answered.
+            Ok(()) | Err(QemuError::Connection { .. }) => {}
+            Err(error) => return Err(error),
+        }
+        self.process.wait()?;
+        Ok(())
+    }
+
+    /// `error`, or what is behind it if QEMU has ended.
+    pub(super) fn explain(&mut self, error: QemuError) -> QemuError {
+        if matches!(error, QemuError::Connection { .. }) {
+            ended(&mut self.process, &self.log).unwrap_or(error)
+        } else {
+            error
+        }
+    }
+
+    /// Why no message comes any more.
+    pub fn silence(&mut self) -> QemuError {
+        self.explain(QemuError::connection("serial port")(ErrorKind::UnexpectedEof.into()))
+    }
+}
+
+/// The connection that QEMU makes as it starts.
+fn accept(listener: &UnixListener, process: &mut Running, log: &Log) -> Result<UnixStream, QemuError> {
+    let broken = QemuError::connection("socket");
+    listener.set_nonblocking(true).map_err(&broken)?;
+    loop {
+        match listener.accept() {
+            Ok((socket, _)) => {
+                socket.set_nonblocking(false).map_err(&broken)?;
+                return Ok(socket);
+            }
+            Err(error) if error.kind() == ErrorKind::WouldBlock => {}
+            Err(error) => return Err(broken(error)),
+        }
+        if process.try_wait()?.is_some() {
+            return Err(ended(process, log).unwrap_or_else(|| broken(ErrorKind::NotConnected.into())));
+        }
+        sleep(POLL);
+    }
+}
+
+/// How QEMU ended and the last it said; `None` if it runs on.
+fn ended(process: &mut Running, log: &Log) -> Option<QemuError> {
+    /// A broken connection is noticed a moment before the process can be seen to end.
+    const GRACE: Duration = Duration::from_millis(500);
+    let mut waited = Duration::ZERO;
+    let how = loop {
+        match process.try_wait() {
+            Ok(Some(status)) => break status.to_string(),
+            Ok(None) if waited < GRACE => {}
+            Ok(None) => return None,
+            Err(error) => return Some(error.into()),
+        }
+        sleep(POLL);
+        waited += POLL;
+    };
+    let lines: Vec<_> = log.rest().map(|line| line.to_string()).collect();
+    let said = lines[lines.len().saturating_sub(4)..].join("\n");
+    Some(QemuError::Ended { how, said: if said.is_empty() { said } else { format!(":\n{said}") } })
+}

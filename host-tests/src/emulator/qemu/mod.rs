@@ -1,0 +1,27 @@
+//! The emulated board as an instrument: a machine started with a firmware, its serial link, log, buttons and panel.
+//!
+//! Every wait ends: at the latest when the machine's time limit ends QEMU, which closes all its connections.
+
+mod error;
+mod folder;
+mod gdb;
+mod lockstep;
+mod log;
+mod machine;
+mod probe;
+mod qmp;
+mod screenshot;
+mod serial;
+mod stack;
+mod window;
+
+pub use error::QemuError;
+pub use lockstep::Lockstep;
+pub use log::{Log, LogLine};
+pub use machine::{Clock, Machine, Settings};
+pub use probe::{Probe, Register};
+pub use qmp::Key;
+pub use screenshot::{HEIGHT, Screenshot, WIDTH};
+pub use serial::{Counts, Received, Serial, Stopped};
+pub use stack::Stack;
+pub use window::{NoWindow, Window};

@@ -1,0 +1,130 @@
+//! Building the firmware, the same by either way.
+
+use std::env;
+use std::ffi::OsString;
+use std::path::PathBuf;
+use std::process::Command;
+use std::time::Duration;
+
+use super::detect::{DEBIAN_CARGO, DEBIAN_RUSTC};
+use super::system::{Host, System};
+use super::{ArmCore, TARGETS, Toolchain, workspace};
+use crate::emulator::boards::{BOARDS, Board};
+use crate::emulator::process::ProcessError;
+
+/// For a build from nothing on a slow, busy machine, downloads included.
+const LIMIT: Duration = Duration::from_secs(1800);
+
+/// What `cargo run` and `cargo test` leave in the environment, and what a user may have set for host programs:
+/// none of it may reach the firmware's build.
+const FOREIGN: [&str; 12] = [
+    "CARGO",
+    "RUSTC",
+    "RUSTC_WRAPPER",
+    "RUSTC_WORKSPACE_WRAPPER",
+    "RUSTC_BOOTSTRAP",
+    "RUSTFLAGS",
+    "RUSTDOC",
+    "RUSTDOCFLAGS",
+    "RUST_RECURSION_COUNT",
+    "LD_LIBRARY_PATH",
+    "DYLD_FALLBACK_LIBRARY_PATH",
+    "OUT_DIR",
+];
+/// The same, by how the names begin.
+const FOREIGN_PREFIXES: [&str; 9] = [
+    "CARGO_PKG_",
+    "CARGO_MANIFEST_",
+    "CARGO_BIN_",
+    "CARGO_BUILD_",
+    "CARGO_TARGET_",
+    "CARGO_PROFILE_",
+    "CARGO_ENCODED_",
+    "CARGO_UNSTABLE_",
+    "CARGO_CFG_",
+];
+
+/// Why there is no firmware to run.
+#[derive(Debug, thiserror::Error)]
+pub enum BuildError {
+    /// Cargo could not be run to its end.
+    #[error("error: {0}")]
+    Process(#[from] ProcessError),
+    /// The firmware does not compile; what the compiler said.
+    #[error("error: the firmware does not build\n{0}")]
+    Refused(String),
+}
+
+impl Toolchain {
+    /// Cargo as it builds for a chip, in the workspace's folder; its output belongs into [`Self::folder`].
+    pub fn cargo(&self) -> Command {
+        let mut command = match &self.core {
+            ArmCore::ReadyMade => Command::new("cargo"),
+            ArmCore::FromSource { .. } => Command::new(DEBIAN_CARGO),
+        };
+        for (name, _) in env::vars_os() {
+            if is_foreign(&name) {
+                command.env_remove(name);
+            }
+        }
+        command.current_dir(workspace()).env("RUSTUP_AUTO_INSTALL", "0");
+        if let ArmCore::FromSource { linker, .. } = &self.core {
+            // Debian's cargo is a stable one; building core is still called unstable.
+            command.env("RUSTC", DEBIAN_RUSTC).env("RUSTC_BOOTSTRAP", "1").env("CARGO_UNSTABLE_BUILD_STD", "core");
+            command.env("PATH", path_with(linker.clone()));
+        }
+        command
+    }
+
+    /// Where the firmware is built: apart from the host's programs, so that neither waits for the other.
+    pub fn folder() -> PathBuf {
+        workspace().join("target/firmware")
+    }
+
+    /// Builds the board's application; returns the ELF file.
+    pub fn build_for(&self, board: &Board) -> Result<PathBuf, BuildError> {
+        self.build(board.binary, board.target)
+    }
+
+    /// Builds a binary of the firmware with all optimisation; returns the ELF file.
+    ///
+    /// Quick if nothing has changed. Builds at the same time take turns.
+    pub fn build(&self, binary: &str, target: &str) -> Result<PathBuf, BuildError> {
+        let mut command = self.cargo();
+        command.args(["build", "--release", "--package", "firmware", "--bin", binary, "--target", target]);
+        let feature = BOARDS.iter().find(|board| board.binary == binary).map_or("", |board| board.feature);
+        command.args(["--features", feature]);
+        self.finish(command, &format!("building {binary} for {target}"))?;
+        Ok(Self::folder().join(target).join("release").join(binary))
+    }
+
+    /// Checks all of the firmware's binaries for every target; a warning is an error.
+    pub fn check(&self) -> Result<(), BuildError> {
+        for target in TARGETS {
+            let mut command = self.cargo();
+            command.args(["check", "--release", "--package", "firmware", "--bins", "--target", target]);
+            let features = BOARDS.iter().filter(|board| board.target == target).map(|board| board.feature);
+            command.arg("--features").arg(features.collect::<Vec<_>>().join(","));
+            command.env("RUSTFLAGS", "-Dwarnings");
+            self.finish(command, &format!("checking the firmware for {target}"))?;
+        }
+        Ok(())
+    }
+
+    fn finish(&self, mut command: Command, doing: &str) -> Result<(), BuildError> {
+        command.arg("--target-dir").arg(Self::folder());
+        let output = Host.run(&mut command, LIMIT, Some(doing))?;
+        if output.status.success() { Ok(()) } else { Err(BuildError::Refused(output.stderr)) }
+    }
+}
+
+fn is_foreign(name: &OsString) -> bool {
+    let Some(name) = name.to_str() else { return false };
+    FOREIGN.contains(&name) || FOREIGN_PREFIXES.iter().any(|prefix| name.starts_with(prefix))
+}
+
+/// The PATH with one more folder in front.
+fn path_with(folder: PathBuf) -> OsString {
+    let rest = env::var_os("PATH").unwrap_or_default();
+    env::join_paths([folder].into_iter().chain(env::split_paths(&rest))).unwrap_or(rest)
+}

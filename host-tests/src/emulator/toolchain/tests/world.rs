@@ -1,0 +1,230 @@
+//! A machine of stubs: how it takes every command that the set-up may run, and what it has been asked to change.
+
+use std::cell::{Cell, RefCell};
+use std::collections::BTreeSet;
+use std::io;
+use std::os::unix::process::ExitStatusExt;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitStatus};
+use std::time::Duration;
+
+use super::super::system::System;
+use super::super::{TARGETS, detect};
+use crate::emulator::process::{Output, ProcessError};
+
+/// How a stubbed command ends.
+type Ending = Result<Output, ProcessError>;
+
+/// How rustup takes `target add`.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Rustup {
+    Absent,
+    Adds,
+    Hangs,
+    Refuses,
+    SkipsInSilence,
+}
+
+/// How QEMU is.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Emulator {
+    Absent,
+    Broken,
+    Runs,
+}
+
+/// A machine, and what has been asked of it.
+pub struct World {
+    pub manager: Option<&'static str>,
+    pub root: bool,
+    pub rustup: Rustup,
+    pub network: bool,
+    pub disk_is_full: Cell<bool>,
+    pub has_linker: bool,
+    pub debian_compiler: &'static str,
+    pub lists_are_there: Cell<bool>,
+    pub dpkg_is_interrupted: Cell<bool>,
+    pub dependencies_are_unmet: Cell<bool>,
+    pub emulator: Cell<Emulator>,
+    /// Another package is in the way of QEMU's.
+    pub emulator_is_in_conflict: bool,
+    pub emulator_is_unpacked: Cell<bool>,
+    pub reinstall_helps: bool,
+    pub has_package: fn(&str) -> bool,
+    pub targets: Cell<bool>,
+    pub debian_packages: RefCell<BTreeSet<String>>,
+    pub changes: RefCell<Vec<String>>,
+}
+
+/// A Debian with rustup's toolchain and nothing else; rustup can reach no server of its own.
+pub fn fresh_debian() -> World {
+    World {
+        manager: Some("apt-get"),
+        root: true,
+        rustup: Rustup::Hangs,
+        network: true,
+        disk_is_full: Cell::new(false),
+        has_linker: true,
+        debian_compiler: "rustc 1.96.0 (ac68faa20 2026-05-25)",
+        lists_are_there: Cell::new(false),
+        dpkg_is_interrupted: Cell::new(false),
+        dependencies_are_unmet: Cell::new(false),
+        emulator: Cell::new(Emulator::Absent),
+        emulator_is_in_conflict: false,
+        emulator_is_unpacked: Cell::new(false),
+        reinstall_helps: true,
+        has_package: |_| true,
+        targets: Cell::new(false),
+        debian_packages: RefCell::default(),
+        changes: RefCell::default(),
+    }
+}
+
+impl World {
+    pub fn changes(&self) -> Vec<String> {
+        self.changes.take()
+    }
+
+    fn rustup_adds(&self) -> Ending {
+        match self.rustup {
+            Rustup::Absent => not_started("rustup"),
+            Rustup::Adds if self.network => {
+                self.targets.set(true);
+                says("")
+            }
+            Rustup::Adds => fails("error: could not download file"),
+            Rustup::Refuses => fails("info: syncing\nerror: toolchain 'stable' does not contain component 'rust-std'"),
+            Rustup::SkipsInSilence => says(""),
+            Rustup::Hangs => {
+                Err(ProcessError::TimedOut { program: "rustup".to_owned(), limit: Duration::from_secs(60) })
+            }
+        }
+    }
+
+    fn apt_installs(&self, packages: &[&str]) -> Ending {
+        if self.dpkg_is_interrupted.get() {
+            return fails("E: dpkg was interrupted, you must manually run 'dpkg --configure -a'");
+        }
+        if self.dependencies_are_unmet.get() {
+            self.dependencies_are_unmet.set(!packages.is_empty());
+            return if packages.is_empty() { says("") } else { fails("E: Unmet dependencies. Try ...") };
+        }
+        if let Some(unknown) = packages.iter().find(|name| !self.lists_are_there.get() || !(self.has_package)(name)) {
+            return fails(&format!("Reading package lists...\nE: Unable to locate package {unknown}"));
+        }
+        if !self.network {
+            return fails("E: Failed to fetch: Temporary failure resolving 'deb.debian.org'");
+        }
+        if self.disk_is_full.get() {
+            return fails(
+                "dpkg: error processing archive qemu.deb (--unpack):\n cannot copy extracted data: failed to write (No \
+                 space left on device)\nE: Sub-process /usr/bin/dpkg returned an error code (1)",
+            );
+        }
+        if self.emulator_is_in_conflict && packages.contains(&"qemu-system-arm") {
+            return fails("E: Packages need to be removed but remove is disabled.");
+        }
+        self.debian_packages.borrow_mut().extend(packages.iter().map(|&package| package.to_owned()));
+        if packages.contains(&"qemu-system-arm") && (self.emulator.get() == Emulator::Absent || self.reinstall_helps) {
+            self.emulator.set(Emulator::Runs);
+        }
+        says("")
+    }
+
+    fn dpkg_knows(&self, packages: &[&str]) -> Ending {
+        let installed = self.debian_packages.borrow();
+        if !packages.iter().all(|&package| installed.contains(package)) {
+            return fails("dpkg-query: no packages found matching");
+        }
+        let state = if self.dpkg_is_interrupted.get() { "unpacked\n" } else { "installed\n" };
+        says(&state.repeat(packages.len()))
+    }
+
+    fn apt_updates(&self) -> Ending {
+        if !self.network {
+            return fails("E: Failed to fetch: Temporary failure resolving 'deb.debian.org'");
+        }
+        self.lists_are_there.set(true);
+        says("")
+    }
+}
+
+impl System for World {
+    fn run(&self, command: &mut Command, _: Duration, doing: Option<&str>) -> Ending {
+        let words: Vec<_> =
+            [command.get_program()].into_iter().chain(command.get_args()).map(|word| word.to_str().unwrap()).collect();
+        if doing.is_some() {
+            self.changes.borrow_mut().push(words.join(" "));
+        }
+        match words[..] {
+            ["rustc", "--print", "sysroot", ..] => says("/sysroot\nx86_64-unknown-linux-gnu\n"),
+            ["rustup", "target", "add", ..] => self.rustup_adds(),
+            ["apt-get", "update", ..] => self.apt_updates(),
+            ["apt-get", "install", ..] => {
+                assert!(words.contains(&"--no-remove") && self.root, "the set-up must not hurt");
+                let names = words[2..].iter().filter(|word| !word.starts_with('-') && !word.contains("::"));
+                self.apt_installs(&names.copied().collect::<Vec<_>>())
+            }
+            ["sh", script, folder] => {
+                assert!(script.ends_with("unpack-qemu.sh") && Path::new(folder) == detect::own_qemu_folder());
+                self.emulator_is_unpacked.set(self.network);
+                if self.network { says("") } else { fails("E: Failed to fetch") }
+            }
+            ["dpkg", "--configure", "-a"] => {
+                self.dpkg_is_interrupted.set(false);
+                if self.dependencies_are_unmet.get() { fails("dpkg: error: rustc-web") } else { says("") }
+            }
+            ["dpkg-query", "--show", ref query @ ..] => self.dpkg_knows(&query[1..]),
+            ["/usr/bin/rustc", "--version"] => says(self.debian_compiler),
+            ["/usr/bin/cargo", "--version"] => says("cargo 1.96.0"),
+            ["/usr/bin/qemu-system-arm", "--version"] => match self.emulator.get() {
+                Emulator::Runs => says("QEMU emulator version 7.2.22\nCopyright"),
+                _ => fails("error while loading shared libraries: libfdt.so.1"),
+            },
+            [own, "--version"] if Path::new(own).starts_with(detect::own_qemu_folder()) => {
+                says("QEMU emulator version 7.2.22")
+            }
+            _ => panic!("an unknown command: {words:?}"),
+        }
+    }
+
+    fn find(&self, program: &str) -> Option<PathBuf> {
+        let is_there = match program {
+            "rustup" => self.rustup != Rustup::Absent,
+            "qemu-system-arm" => self.emulator.get() != Emulator::Absent,
+            other => self.manager == Some(other),
+        };
+        is_there.then(|| Path::new("/usr/bin").join(program))
+    }
+
+    fn list(&self, folder: &Path) -> Vec<String> {
+        if folder == detect::own_qemu_folder() && self.emulator_is_unpacked.get() {
+            return vec!["qemu-system-arm".to_owned()];
+        }
+        let folder = folder.to_str().unwrap();
+        let is_target = TARGETS.iter().any(|target| folder == format!("/sysroot/lib/rustlib/{target}/lib"));
+        let is_linker = folder == "/sysroot/lib/rustlib/x86_64-unknown-linux-gnu/bin";
+        let name = match () {
+            () if is_target && self.targets.get() => "libcore-0123.rlib",
+            () if is_linker && self.has_linker => "rust-lld",
+            () => return Vec::new(),
+        };
+        vec![name.to_owned()]
+    }
+
+    fn is_root(&self) -> bool {
+        self.root
+    }
+}
+
+fn says(stdout: &str) -> Ending {
+    Ok(Output { status: ExitStatus::from_raw(0), stdout: stdout.to_owned(), stderr: String::new() })
+}
+
+fn fails(stderr: &str) -> Ending {
+    Ok(Output { status: ExitStatus::from_raw(1 << 8), stdout: String::new(), stderr: stderr.to_owned() })
+}
+
+fn not_started(program: &str) -> Ending {
+    Err(ProcessError::NotStarted { program: program.to_owned(), source: io::ErrorKind::NotFound.into() })
+}

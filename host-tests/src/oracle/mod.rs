@@ -1,0 +1,11 @@
+//! What every number is held against.
+
+pub mod hard_cases;
+pub mod known_answers;
+pub mod random;
+pub mod reference;
+pub mod snapshot;
+pub mod stream;
+pub mod textbook;
+pub mod tolerances;
+pub mod trials;

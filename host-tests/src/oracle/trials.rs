@@ -1,0 +1,100 @@
+//! A form of the pendulum run beside the reference.
+
+use std::f64::consts::TAU;
+
+use double_pendulum::form::Form;
+use double_pendulum::{Error, Parameters, Pendulum, Real, State};
+
+use crate::oracle::reference::Reference;
+
+/// A motion to try: everything in SI units.
+#[derive(Clone, Copy, Debug)]
+pub struct Trial {
+    /// Masses, lengths and gravity.
+    pub parameters: Parameters<f64>,
+    /// Where it starts.
+    pub start: State<f64>,
+    /// How long it is followed.
+    pub seconds: f64,
+}
+
+/// Moments at which the errors are taken, evenly spread.
+const SAMPLES: u32 = 16;
+
+impl Trial {
+    /// Held still at (`a1`, `a2`), rad: rods of 1 m, a bob 1 of 1 kg, g = 9.81 m/s^2.
+    pub fn at_rest(mass_ratio: f64, a1: f64, a2: f64, seconds: f64) -> Self {
+        Self { parameters: Parameters::equal_rods(mass_ratio, 1.0, 9.81), start: State::at_rest(a1, a2), seconds }
+    }
+
+    /// The trial as `R` holds it: every number rounded.
+    pub fn rounded<R: Real>(&self) -> (Parameters<R>, State<R>) {
+        let Parameters { m1, m2, l1, l2, g } = self.parameters;
+        let [m1, m2, l1, l2, g] = [m1, m2, l1, l2, g].map(R::of);
+        (Parameters { m1, m2, l1, l2, g }, <[f64; 4]>::from(self.start).map(R::of).into())
+    }
+
+    /// The states of the form `F` at the moments, in steps of `dt`, s.
+    pub fn states<R: Real, F: Form<R>>(&self, dt: f64) -> Result<Vec<State<f64>>, Error> {
+        let (parameters, start) = self.rounded::<R>();
+        let form = F::new(&parameters, R::of(dt))?;
+        let mut carried = form.start(&start)?;
+        let steps = (self.seconds / dt / f64::from(SAMPLES)).round() as u32;
+        let mut next = || {
+            form.advance(&mut carried, steps);
+            form.state(&carried)
+        };
+        Ok((0..SAMPLES).map(|_| next()).collect())
+    }
+
+    /// The exact states at the moments, for the numbers as `R` holds them.
+    pub fn exact<R: Real>(&self) -> Result<Vec<State<f64>>, Error> {
+        let (parameters, start) = self.rounded::<R>();
+        let Parameters { m1, m2, l1, l2, g } = parameters;
+        let [m1, m2, l1, l2, g] = [m1, m2, l1, l2, g].map(R::to_f64);
+        let parameters = Parameters { m1, m2, l1, l2, g };
+        let pendulum = Pendulum::new(parameters)?;
+        let start: State<f64> = <[R; 4]>::from(start).map(R::to_f64).into();
+        let mut reference = Reference::new(&parameters, &pendulum.motion(&start));
+        let mut at = |sample: u32| {
+            reference.advance_to(self.seconds * f64::from(sample) / f64::from(SAMPLES));
+            pendulum.state(&reference.motion())
+        };
+        Ok((1..=SAMPLES).map(&mut at).collect())
+    }
+
+    /// The largest error of an angle, rad, of the form `F` with steps of `dt`, s.
+    pub fn error<R: Real, F: Form<R>>(&self, dt: f64) -> Result<f64, Error> {
+        Ok(largest_difference(&self.states::<R, F>(dt)?, &self.exact::<R>()?))
+    }
+}
+
+/// Motions for measuring an order of 8 in f64, and steps a second to be doubled: fine enough that the next order is small,
+/// coarse enough that rounding is. They swing nearly in the slow mode; in the fast one the step's first error is so small
+/// that it shows orders 9 and 10.
+pub fn slow() -> [(Trial, u32); 4] {
+    let unlike = |m1, m2, l1, l2| Parameters { m1, m2, l1, l2, g: 9.81 };
+    let trial = |parameters, a1, a2| Trial { parameters, start: State::at_rest(a1, a2), seconds: 20.0 };
+    [
+        (trial(unlike(1.0, 1.0, 1.0, 1.0), 0.5, 0.5), 20),
+        (trial(unlike(1.0, 1.0, 1.0, 1.0), 0.2, 0.3), 12),
+        (trial(unlike(0.7, 1.3, 0.6, 1.1), 0.3, 0.3), 24),
+        (trial(unlike(2.0, 1.0, 1.0, 0.7), 0.3, 0.4), 12),
+    ]
+}
+
+/// The largest difference of the angles, rad, whole turns apart; infinite where one is not a number.
+pub fn largest_difference(states: &[State<f64>], others: &[State<f64>]) -> f64 {
+    let apart = |a: f64, b: f64| ((a - b) / TAU - ((a - b) / TAU).round()).abs() * TAU;
+    let pairs = states.iter().zip(others);
+    let differences = pairs.flat_map(|(x, y)| [apart(x.a1, y.a1), apart(x.a2, y.a2)]);
+    differences.fold(0.0, |worst, apart| {
+        if apart <= worst {
+            worst
+        } else if apart.is_finite() {
+            apart
+        } else {
+            f64::INFINITY
+        }
+    })
+}

@@ -1,0 +1,134 @@
+//! What outlives a reset is trusted only if it is intact, and is played again as it was.
+
+use fastrand::Rng;
+use firmware::app::command::Command;
+use firmware::app::player::Player;
+use firmware::app::warm_restart::{Cause, Journal, Kept, MOST_RESTARTS, SOUND_FRAMES, Scene, WarmRestart};
+use firmware::graphics::fade_layer::FadeLayer;
+use firmware::motion::settings::Settings;
+use firmware::protocol::Field;
+use firmware::protocol::{MAX_WIRE, Message, Restarted, Status, encode};
+use firmware::scenes::SceneName;
+
+fn kept<M: Message>(message: &M) -> (Kept, usize) {
+    let mut kept = [0; MAX_WIRE];
+    let length = encode(message, &mut kept).len();
+    (kept, length)
+}
+
+fn status() -> Status {
+    let mut ink = FadeLayer::NONE;
+    let mut player = Player::new(Settings::default(), &mut ink).expect("good");
+    for command in [Command::Choose(SceneName::Butterfly), Command::Set { field: Field::MassRatio, value: 0.7 }] {
+        player.execute(command).expect("possible");
+    }
+    player.status(0)
+}
+
+fn end() -> Restarted {
+    let cause = Cause::Fault.code();
+    Restarted { cause, restarts: 1, pc: 0x456, lr: 0x1234, cfsr: 1 << 16, scene: status().scene, step: 480 }
+}
+
+#[test]
+fn it_is_recalled_as_it_was_kept() {
+    let survivor = WarmRestart::recall(&kept(&status()).0, &kept(&end()).0, false).expect("intact");
+    let expected = WarmRestart { played: Some(status()), end: Restarted { restarts: 2, ..end() }, cause: Cause::Fault };
+    assert_eq!(survivor, expected);
+    assert_eq!(Scene(Some(survivor.end)).to_string(), "scene butterfly, step 480");
+    assert_eq!(Scene(None).to_string(), "no scene yet");
+}
+
+#[test]
+fn any_flipped_bit_is_noticed() {
+    let ((played, played_length), (end, end_length)) = (kept(&status()), kept(&end()));
+    let flipped = |kept: Kept, bit: usize| {
+        let mut flipped = kept;
+        flipped[bit / 8] ^= 1 << (bit % 8);
+        flipped
+    };
+    for bit in 0..8 * played_length {
+        assert_eq!(WarmRestart::recall(&flipped(played, bit), &end, true), None, "bit {bit} of what was played");
+    }
+    for bit in 0..8 * end_length {
+        assert_eq!(WarmRestart::recall(&played, &flipped(end, bit), true), None, "bit {bit} of how it ended");
+    }
+}
+
+#[test]
+fn what_memory_holds_when_it_is_switched_on_is_not_trusted() {
+    let mut rng = Rng::with_seed(11);
+    let mut noise = || std::array::from_fn(|_| rng.u8(..));
+    for byte in [0x00, 0xff, 0xcc, 0x55] {
+        assert_eq!(WarmRestart::recall(&[byte; MAX_WIRE], &[byte; MAX_WIRE], true), None);
+    }
+    for _ in 0..100_000 {
+        let (played, end): (Kept, Kept) = (noise(), noise());
+        assert_eq!(WarmRestart::recall(&played, &end, true), None);
+    }
+    // Each in the other's place is not what it should be, either.
+    assert_eq!(WarmRestart::recall(&kept(&end()).0, &kept(&status()).0, true), None);
+}
+
+#[test]
+fn a_reset_from_outside_starts_anew_and_one_by_the_watchdog_does_not() {
+    let running = kept(&Restarted { cause: 0, ..end() }).0;
+    assert_eq!(WarmRestart::recall(&kept(&status()).0, &running, false), None);
+    let hung = WarmRestart::recall(&kept(&status()).0, &running, true).expect("intact");
+    assert_eq!((hung.cause, hung.end.cause), (Cause::Hang, Cause::Hang.code()));
+    let unknown = kept(&Restarted { cause: 77, ..end() }).0;
+    assert_eq!(WarmRestart::recall(&kept(&status()).0, &unknown, false), None);
+}
+
+#[test]
+fn what_ends_the_board_each_time_is_given_up() {
+    for restarts in [0, 1, MOST_RESTARTS - 1, MOST_RESTARTS, u8::MAX] {
+        let survivor = WarmRestart::recall(&kept(&status()).0, &kept(&Restarted { restarts, ..end() }).0, false);
+        let survivor = survivor.expect("intact");
+        assert_eq!(survivor.end.restarts, restarts.saturating_add(1));
+        assert_eq!(survivor.played.is_some(), restarts < MOST_RESTARTS, "after {restarts}");
+    }
+}
+
+#[test]
+fn a_minute_without_a_restart_forgets_those_before() {
+    let survivor = WarmRestart::recall(&kept(&status()).0, &kept(&end()).0, false).expect("intact");
+    let mut ink = FadeLayer::NONE;
+    let player = Player::new(Settings::default(), &mut ink).expect("good");
+    let mut journal = Journal::new(Some(&survivor));
+    for frame in 1..=SOUND_FRAMES + 10 {
+        let (played, end) = journal.note(&player);
+        let restarts = if frame < SOUND_FRAMES { 2 } else { 0 };
+        assert_eq!((end.cause, end.restarts, end.scene), (0, restarts, SceneName::Page.code()), "frame {frame}");
+        assert_eq!(played, player.status(0));
+    }
+}
+
+#[test]
+fn every_scene_is_resumed_with_its_settings() {
+    for &name in SceneName::ALL {
+        let (mut ink, mut other) = (FadeLayer::NONE, FadeLayer::NONE);
+        let mut player = Player::new(Settings::default(), &mut ink).expect("good");
+        let speed = |value| Command::Set { field: Field::Speed, value };
+        for command in [Command::Choose(name), Command::TurnLeft, speed(0.01), Command::Step(7)] {
+            player.execute(command).expect("possible");
+        }
+        let status = player.status(0);
+        let mut resumed = Player::new(Settings::default(), &mut other).expect("good");
+        resumed.resume(&status).expect("it was possible before");
+        assert_eq!(resumed.status(0), status, "{}", name.name());
+    }
+}
+
+#[test]
+fn what_cannot_be_played_changes_nothing() {
+    let mut ink = FadeLayer::NONE;
+    let mut player = Player::new(Settings::default(), &mut ink).expect("good");
+    let before = player.status(0);
+    let mut massless = status();
+    massless.parameters[0] = -1.0;
+    for impossible in [Status { scene: 200, ..status() }, massless] {
+        assert!(player.resume(&impossible).is_err());
+        assert_eq!(player.status(0), before);
+    }
+}

@@ -1,0 +1,72 @@
+//! The direction form in steps of order 8: the exact motion to the last digits of an `f64`, cheaply.
+
+use super::coefficients::Span;
+use super::direction::{DirectionForm, DirectionState, increments};
+use super::inverse::Divided;
+use super::sum::{Compensated, Sum};
+use super::{Direction, Form};
+use crate::error::Error;
+use crate::params::Parameters;
+use crate::real::Real;
+use crate::rk8;
+use crate::state::State;
+
+/// As [`DirectionForm`], but each step by [`rk8::step`], after which the lengths of the directions are restored and
+/// r = 1/(m + S^2) is computed anew. Within the step r is a seventh quantity, r' = -2 S S' r^2: a division at every stage
+/// would be waited for.
+///
+/// In 10 s of regular motion (0.5 rad, rods of 1 m) 16 steps a second keep the angles to 3e-10 rad, 32 to 2e-12 (`f64`;
+/// asserted with the order by test `forms`).
+#[derive(Clone, Copy, Debug)]
+pub struct DirectionForm8<R, S = Compensated<R>> {
+    direction: DirectionForm<R, S, Divided>,
+}
+
+impl<R: Real, S: Sum<R>> Form<R> for DirectionForm8<R, S> {
+    type Carried = DirectionState<R, S>;
+
+    fn new(parameters: &Parameters<R>, dt: R) -> Result<Self, Error> {
+        Ok(Self { direction: DirectionForm::with_span(parameters, dt, Span::STEP)? })
+    }
+
+    fn start(&self, state: &State<R>) -> Result<Self::Carried, Error> {
+        self.direction.start(state)
+    }
+
+    #[inline]
+    fn advance(&self, carried: &mut Self::Carried, steps: u32) {
+        for _ in 0..steps {
+            let [sin1, cos1, s, c, p1, p2] = carried.z;
+            let start = [sin1, cos1, s, c, p1, p2, carried.inverse];
+            let change = rk8::increment(|z| self.slopes(z), &start, R::ONE);
+            for (n, change) in change.into_iter().take(6).enumerate() {
+                carried.z[n] = carried.sums[n].add(carried.z[n], change);
+            }
+            self.direction.restore_lengths(carried);
+            carried.inverse = R::ONE / self.direction.coefficients.denominator(carried.z[2]);
+        }
+        carried.steps += u64::from(steps);
+    }
+
+    fn directions(&self, carried: &Self::Carried) -> [Direction<R>; 2] {
+        self.direction.directions(carried)
+    }
+
+    fn state(&self, carried: &Self::Carried) -> State<f64> {
+        self.direction.state(carried)
+    }
+
+    fn bits(carried: &Self::Carried, feed: impl FnMut(u64)) {
+        DirectionForm::<R, S, Divided>::bits(carried, feed);
+    }
+}
+
+impl<R: Real, S: Sum<R>> DirectionForm8<R, S> {
+    /// The rates of the six quantities and r.
+    #[inline(always)]
+    fn slopes(&self, &[sin1, cos1, s, c, p1, p2, r]: &[R; 7]) -> [R; 7] {
+        let z = [sin1, cos1, s, c, p1, p2];
+        let [sin1, cos1, s_rate, c_rate, p1, p2] = increments(&z, self.direction.rates(&z, r));
+        [sin1, cos1, s_rate, c_rate, p1, p2, -((s + s) * r * r) * s_rate]
+    }
+}
