@@ -26,7 +26,7 @@ const WOULD_REMOVE: &str = "Packages need to be removed";
 /// What rustup, dpkg and the unpacking say where the disk is full, and what apt-get says beforehand if it can tell.
 const DISK_IS_FULL: [&str; 2] = ["No space left on device", "enough free space"];
 /// Unpacks QEMU's packages, in the workspace.
-const UNPACK_QEMU: &str = "host-tests/src/toolchain/unpack-qemu.sh";
+const UNPACK_QEMU: &str = "host-tests/src/emulator/toolchain/unpack-qemu.sh";
 /// How much of a failed command's own words is passed on, in characters.
 const LONGEST_REASON: usize = 120;
 
