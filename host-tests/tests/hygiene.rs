@@ -9,10 +9,10 @@ use host_tests::emulator::toolchain::workspace;
 /// Lines of code with `unsafe`, by file, and what for.
 const UNSAFE: [(&str, usize, &str); 19] = [
     ("firmware/src/bin/inject-stack-overflow.rs", 3, "the end of the statics, the last of them; a name to be found by"),
-    ("firmware/src/board/calls.rs", 3, "words of the stack and of the code"),
-    ("firmware/src/board/crash.rs", 10, "the fault handler: its stack, stacked registers, the control block"),
-    ("firmware/src/board/guard.rs", 2, "the end of the statics, the memory protection unit"),
-    ("firmware/src/board/interrupt.rs", 3, "the interrupt handler, which sees what it interrupts"),
+    ("firmware/src/board/cortex_m/calls.rs", 3, "words of the stack and of the code"),
+    ("firmware/src/board/cortex_m/crash.rs", 10, "the fault handler: its stack, stacked registers, the control block"),
+    ("firmware/src/board/cortex_m/guard.rs", 2, "the end of the statics, the memory protection unit"),
+    ("firmware/src/board/cortex_m/interrupt.rs", 3, "the interrupt handler, which sees what it interrupts"),
     ("firmware/src/board/lm3s6965evb/gpio.rs", 1, "registers of the data sheet"),
     ("firmware/src/board/lm3s6965evb/ssi.rs", 5, "registers of the data sheet"),
     ("firmware/src/board/lm3s6965evb/system.rs", 6, "registers of the data sheet"),
@@ -20,13 +20,17 @@ const UNSAFE: [(&str, usize, &str); 19] = [
     ("firmware/src/board/lm3s6965evb/watchdog.rs", 5, "registers of the data sheet"),
     ("firmware/src/board/mps2_an386.rs", 8, "registers of the data sheet, an interrupt and its number"),
     ("firmware/src/board/register.rs", 3, "volatile access, the one place where it is done"),
-    ("firmware/src/board/semihosting.rs", 1, "a call to the debugger"),
-    ("firmware/src/board/soft_float.rs", 3, "names of the compiler's library, given to functions that do the same"),
+    ("firmware/src/board/cortex_m/semihosting.rs", 1, "a call to the debugger"),
+    (
+        "firmware/src/board/cortex_m/soft_float.rs",
+        3,
+        "names of the compiler's library, given to functions that do the same",
+    ),
     ("firmware/src/board/stm32f405/i2c.rs", 3, "register values read before and written back"),
     ("firmware/src/board/stm32f405/log.rs", 11, "the log's state, used with interrupts off"),
     ("firmware/src/board/stm32f405/uart.rs", 2, "a register shared by both directions, an interrupt"),
-    ("firmware/src/board/survival.rs", 5, "memory that start-up leaves alone"),
-    ("firmware/src/board/watchdog.rs", 2, "an interrupt and its number"),
+    ("firmware/src/board/cortex_m/retained.rs", 5, "memory that start-up leaves alone"),
+    ("firmware/src/board/cortex_m/watchdog.rs", 2, "an interrupt and its number"),
 ];
 
 fn sources(folder: &Path, found: &mut Vec<PathBuf>) {

@@ -1,6 +1,6 @@
 //! Things that go wrong in the running application: what is said of them, and how the board comes back.
 //!
-//! They are injected into the images that are flashed, from outside: a debugger stops the board in the middle of a screenshot
+//! They are injected into the images that are flashed, from outside: a debugger stops the board in the middle of a frame
 //! that is drawn but not yet sent, and sends its processor elsewhere.
 
 #[path = "support/program.rs"]
@@ -28,12 +28,12 @@ const HANG: [u8; 2] = [0xfe, 0xe7];
 const UNDEFINED: [u8; 2] = [0x00, 0xde];
 /// Frames of the scene that are waited for.
 const FRAMES: usize = 20;
-/// The stopwatch is read when a screenshot is begun, when it is drawn, and when it is sent.
-const STOPWATCH: &str = "board::clock::cycles";
+/// The stopwatch is read when a frame is begun, when it is drawn, and when it is sent.
+const STOPWATCH: &str = "clock::cycles";
 /// The mass ratio that the tests set, unlike any scene's own.
 const MASS_RATIO: f32 = 0.7;
 
-/// A board that stands still in the middle of a screenshot of `scene`, with a mass ratio of its own: the last frame it has
+/// A board that stands still in the middle of a frame of `scene`, with a mass ratio of its own: the last frame it has
 /// sent.
 fn within(probe: &mut Probe, elf: &Path, scene: SceneName) -> Result<Frame, QemuError> {
     // A serial port that is not yet on takes no bytes.
@@ -56,7 +56,7 @@ fn within(probe: &mut Probe, elf: &Path, scene: SceneName) -> Result<Frame, Qemu
         };
         seen += 1;
         if seen == FRAMES {
-            // This reading was for the end of the frame; the next is for the beginning, then the screenshot is drawn.
+            // This reading was for the end of the frame; the next is for the beginning, then the frame is drawn.
             probe.run_to(stopwatch)?;
             probe.run_to(stopwatch)?;
             return Ok(frame);
@@ -78,7 +78,7 @@ fn last_words(machine: &mut Machine) -> Result<String, QemuError> {
     Ok(said)
 }
 
-/// Spoils every board in the middle of a screenshot of `scene`; its last words must hold all `parts`, and where it was.
+/// Spoils every board in the middle of a frame of `scene`; its last words must hold all `parts`, and where it was.
 fn every_board_says(
     scene: SceneName,
     parts: &[&str],
@@ -156,7 +156,7 @@ fn a_board_that_hangs_comes_back_where_it_was_and_says_why() -> Result<(), Box<d
 
         let log: String = machine.log.arrived().map(|line| format!("{line}\n")).collect();
         for part in [
-            "HANG: no screenshot finished for 1 s\n",
+            "HANG: no frame finished for 1 s\n",
             &format!("pc {UNUSED:#010x}"),
             &format!("scene butterfly, step {}\n", before.step),
             "restarted after a hang, 1 in a row: pc 0x20008000",
@@ -177,7 +177,7 @@ fn without_a_debugger_a_fault_restarts_the_board() -> Result<(), Box<dyn Error>>
         let before = within(&mut probe, &elf, SceneName::Figure7)?;
         for restarts in 1..=MOST_RESTARTS + 1 {
             execute(&mut probe, UNDEFINED)?;
-            // To the first screenshot after the restart.
+            // To the first frame after the restart.
             let stopwatch = address(&elf, STOPWATCH);
             let (mut restarted, mut frame) = (None, None);
             while frame.is_none() {

@@ -40,7 +40,7 @@ fn a_host_that_stops_reading_loses_frames_and_nothing_else() -> Result<(), QemuE
         expected.advance(frame.step - steps);
         steps = frame.step;
         assert_eq!(frame.state.map(f32::to_bits), expected.state().map(f32::to_bits), "frame {}", frame.sequence);
-        // No tick is left out, whatever became of its screenshot.
+        // No tick is left out, whatever became of its frame.
         assert_eq!(frame.step, (frame.sequence + 1 + frame.dropped) * STEPS_PER_TICK);
         after += usize::from(after > 0 || frame.sequence > last.sequence + 1);
         last = frame;

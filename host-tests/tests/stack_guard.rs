@@ -9,7 +9,7 @@ use host_tests::emulator::boards::BOARDS;
 use object::{Object, ObjectSymbol};
 use support::application;
 
-/// The part of memory that statics and guard share, and what it can be divided by, as in `board/guard.rs`.
+/// The part of memory that statics and guard share, and what it can be divided by, as in `board/cortex_m/guard.rs`.
 const REGION: u32 = 32 * 1024;
 const EIGHTH: u32 = REGION / 8;
 /// Registers that a function pushes before it takes what it needs: 9 of 4 bytes and 8 of 8, and those that it may be

@@ -7,7 +7,6 @@ use core::hint::black_box;
 use core::mem::MaybeUninit;
 
 use cortex_m_semihosting::debug;
-use firmware::board;
 
 unsafe extern "C" {
     /// The end of the statics.
@@ -23,7 +22,7 @@ static LAST: MaybeUninit<[u8; 2 * DAMAGE]> = MaybeUninit::uninit();
 #[cortex_m_rt::entry]
 fn main() -> ! {
     let Some(core) = cortex_m::Peripherals::take() else { panic!("the core was taken before") };
-    board::guard_stack(core.MPU);
+    firmware::board::cortex_m::guard::guard_stack(core.MPU);
     black_box(&LAST);
     defmt::info!("boot: about to overflow the stack");
     let depth = descend(0, &raw const __euninit as usize - DAMAGE);

@@ -6,7 +6,7 @@ use core::fmt::Write;
 
 use cortex_m::peripheral::{Peripherals, SYST, syst::SystClkSource};
 use cortex_m_semihosting::{debug, hio};
-use firmware::board::semihosting;
+use firmware::board::cortex_m::semihosting;
 use firmware::measure::Request;
 
 /// SysTick counts down from here; a run must take fewer ticks.

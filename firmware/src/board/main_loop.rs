@@ -7,7 +7,10 @@ use defmt::Debug2Format;
 use double_pendulum::plan::Plan;
 use embedded_io::Write;
 
-use super::{Clock, Receiver, Watchdog, cycles, survival};
+use super::cortex_m::clock::{Clock, cycles};
+use super::cortex_m::retained;
+use super::cortex_m::watchdog::Watchdog;
+use super::serial::receiver::Receiver;
 use crate::app::controls::Buttons;
 use crate::app::warm_restart::{Journal, WarmRestart};
 use crate::app::{App, Event};
@@ -75,12 +78,12 @@ where
     Link: Write,
     Keys: Buttons,
 {
-    let survivor = survival::recall(watchdog.has_reset());
+    let survivor = retained::recall(watchdog.has_reset());
     if let Some(survivor) = &survivor {
         app.resume(survivor, log);
     }
     let mut journal = Journal::new(survivor.as_ref());
-    survival::keep(journal.note(app.player()));
+    retained::keep(journal.note(app.player()));
     journal
 }
 
@@ -99,7 +102,7 @@ where
     let before = app.frames();
     let caught_up = app.run_to(now, log);
     if app.frames() != before {
-        survival::keep(journal.note(app.player()));
+        retained::keep(journal.note(app.player()));
         watchdog.feed();
     }
     caught_up

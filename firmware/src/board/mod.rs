@@ -1,30 +1,26 @@
 //! The boards: the only place for registers, clocks, interrupts and `unsafe`.
+//!
+//! A room imports only from those below it in this table.
+//!
+//! | room | what is in it |
+//! |---|---|
+//! | `main_loop` | the application of every board: its main loop, its log |
+//! | [`lm3s6965evb`], [`mps2_an386`], `stm32f405` | one board each: its clocks, pins and devices |
+//! | [`cortex_m`] | what every Cortex-M has: the tick, the stack's guard, crash reports, memory that outlives a reset |
+//! | [`serial`] | bytes in and out of any board's serial port |
+//! | `register` | a device register |
 
+pub mod cortex_m;
 pub mod lm3s6965evb;
 pub mod mps2_an386;
-pub mod semihosting;
+pub mod serial;
 #[cfg(feature = "stm32f405")]
 pub mod stm32f405;
 
-mod calls;
-mod clock;
-mod crash;
-mod guard;
-mod interrupt;
 mod main_loop;
-mod receiver;
 mod register;
-mod soft_float;
-mod survival;
-mod transmitter;
-mod watchdog;
 
 #[cfg(not(feature = "stm32f405"))] // which has a log of its own
 use defmt_semihosting as _; // where the log goes
 
-pub use clock::{Clock, cycles};
-pub use guard::guard_stack;
 pub use main_loop::{application, run};
-pub use receiver::Receiver;
-pub use transmitter::{Timeout, Transmitter};
-pub use watchdog::{TwoStage, Watchdog};

@@ -6,11 +6,12 @@ use cortex_m::Peripherals;
 use cortex_m::interrupt::InterruptNumber;
 use cortex_m::peripheral::NVIC;
 
-use super::receiver::Inlet;
+use super::cortex_m::clock::Clock;
+use super::cortex_m::guard::guard_stack;
+use super::cortex_m::watchdog::{Call, Registers, TwoStage};
 use super::register::Register;
-use super::transmitter::{Outlet, Transmitter};
-use super::watchdog::{Call, Registers};
-use super::{Clock, Receiver, TwoStage, guard_stack};
+use super::serial::receiver::{Inlet, Receiver};
+use super::serial::transmitter::{Outlet, Transmitter};
 use crate::config::BAUD;
 
 /// The processor's clock, Hz.

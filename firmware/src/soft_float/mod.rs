@@ -2,7 +2,7 @@
 //!
 //! IEEE 754, round to nearest, ties to even: to the bit what a processor with such a unit gives (test `soft_float`), of any
 //! numbers, subnormal ones and infinities too; only which NaN comes out is not the same everywhere. A number is its bits,
-//! `u32` or `u64`. The compiler calls these functions by the names that `board/soft_float.rs` gives them.
+//! `u32` or `u64`. The compiler calls these functions by the names that `board/cortex_m/soft_float.rs` gives them.
 //!
 //! Two finite numbers with leading 1 whose result has one too go the short way, here: on a Cortex-M3 63 cycles for a sum
 //! and 52 for a product of `f32`, 117 and 100 of `f64` (estimates; `cargo count --listing`). All else is left to `rare`.

@@ -20,7 +20,10 @@ use cortex_m::Peripherals;
 use embedded_hal::digital::OutputPin;
 use embedded_hal_bus::spi::{ExclusiveDevice, NoDelay};
 
-use super::{Clock, Receiver, TwoStage, guard_stack};
+use crate::board::cortex_m::clock::Clock;
+use crate::board::cortex_m::guard::guard_stack;
+use crate::board::cortex_m::watchdog::TwoStage;
+use crate::board::serial::receiver::Receiver;
 use crate::display::Ssd0323;
 
 pub use buttons::Keys;

@@ -4,9 +4,9 @@ use cortex_m::interrupt::InterruptNumber;
 use cortex_m::peripheral::NVIC;
 
 use super::gpio;
-use crate::board::receiver::Inlet;
 use crate::board::register::Register;
-use crate::board::transmitter::{Outlet, Transmitter};
+use crate::board::serial::receiver::Inlet;
+use crate::board::serial::transmitter::{Outlet, Transmitter};
 use crate::config::BAUD;
 
 // SAFETY: UART0 registers of the data sheet, chapter 12; without DMA they cannot break memory safety.

@@ -1,8 +1,8 @@
 //! The watchdog.
 
 use super::system;
+use crate::board::cortex_m::watchdog::{Call, Registers, TwoStage};
 use crate::board::register::Register;
-use crate::board::watchdog::{Call, Registers, TwoStage};
 
 // SAFETY: the watchdog's registers of the data sheet, chapter 11; without DMA they cannot break memory safety.
 const LOAD: Register = unsafe { Register::at(0x4000_0000) };

@@ -90,7 +90,7 @@ impl Bus {
     /// Waits for a status bit; `refusal` if instead the panel does not acknowledge.
     fn wait(&self, wanted: u16, refusal: BusError) -> Result<(), BusError> {
         for _ in 0..TRIES {
-            let status = self.0.sr1().read().bits() as u16;
+            let status = self.0.sr1().read().bits();
             if status & NOT_ACKNOWLEDGED != 0 {
                 return Err(refusal);
             }

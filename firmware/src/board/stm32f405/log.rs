@@ -9,7 +9,7 @@ use defmt::Encoder;
 use rtt_target::{ChannelMode, UpChannel, rtt_init};
 
 use super::Place;
-use crate::board::crash;
+use crate::board::cortex_m::crash;
 
 #[defmt::global_logger]
 struct Logger;

@@ -21,8 +21,10 @@ use stm32f4xx_hal::pac::{self, RCC};
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::{Config, Rcc};
 
-use super::{Clock, Receiver, guard_stack};
 use crate::app::controls::{Buttons, Pressed};
+use crate::board::cortex_m::clock::Clock;
+use crate::board::cortex_m::guard::guard_stack;
+use crate::board::serial::receiver::Receiver;
 use crate::display::Ssd1306;
 
 pub use i2c::{Bus, BusError};

@@ -7,8 +7,8 @@ use stm32f4xx_hal::rcc::Rcc;
 use stm32f4xx_hal::serial::config::{Config, InvalidConfig};
 use stm32f4xx_hal::serial::{Event, Tx};
 
-use crate::board::receiver::Inlet;
-use crate::board::transmitter::{Outlet, Transmitter};
+use crate::board::serial::receiver::Inlet;
+use crate::board::serial::transmitter::{Outlet, Transmitter};
 use crate::config::BAUD;
 
 /// The outward direction.

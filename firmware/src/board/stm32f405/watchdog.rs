@@ -26,7 +26,7 @@ impl Watchdog {
     }
 }
 
-impl crate::board::Watchdog for Watchdog {
+impl crate::board::cortex_m::watchdog::Watchdog for Watchdog {
     fn feed(&mut self) {
         self.unit.feed();
     }

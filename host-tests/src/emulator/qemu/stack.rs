@@ -7,7 +7,7 @@ use object::{Object, ObjectSymbol};
 
 use super::{Lockstep, QemuError};
 
-/// The stack's share of memory, from its top (`board/guard.rs`).
+/// The stack's share of memory, from its top (`board/cortex_m/guard.rs`).
 const SIZE: u32 = 32 * 1024;
 /// No byte that is common in memory.
 const PAINT: u8 = 0xA5;

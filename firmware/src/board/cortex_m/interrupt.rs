@@ -4,7 +4,8 @@ use core::arch::naked_asm;
 
 use cortex_m_rt::ExceptionFrame;
 
-use super::{crash, receiver, watchdog};
+use super::{crash, watchdog};
+use crate::board::serial::receiver;
 
 /// Passes on where the processor put the registers of what was interrupted, and the number of the interrupt.
 ///

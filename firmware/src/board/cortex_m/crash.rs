@@ -16,7 +16,7 @@ use cortex_m_rt::ExceptionFrame;
 use cortex_m_semihosting::{debug, hio};
 
 use super::calls::calls;
-use super::survival;
+use super::retained;
 use crate::app::warm_restart::{Cause, Scene};
 use crate::fault::{Fault, Hang, Panic, Stacked};
 
@@ -133,7 +133,7 @@ fn stack_pointer() -> u32 {
 /// The program has finished no frame for too long; `interrupted` is where it is.
 pub(super) fn hang(interrupted: &ExceptionFrame) {
     let (pc, lr) = (interrupted.pc(), interrupted.lr());
-    survival::end(Cause::Hang, pc, lr, 0);
+    retained::end(Cause::Hang, pc, lr, 0);
     if !ALONE.load(Ordering::Relaxed) {
         say(&Hang { pc, lr });
     }
@@ -142,7 +142,7 @@ pub(super) fn hang(interrupted: &ExceptionFrame) {
 /// On a chip a debugger can be recognised, and a call to one that is not there is the better avoided: in a fault handler it
 /// would be the end.
 #[cfg(feature = "stm32f405")]
-pub(super) fn expect_no_debugger() {
+pub(in crate::board) fn expect_no_debugger() {
     ALONE.store(true, Ordering::Relaxed);
 }
 
@@ -150,7 +150,7 @@ fn crash((cause, pc, lr, cfsr): (Cause, u32, u32, u32), report: &dyn Display) ->
     cortex_m::interrupt::disable();
     let is_first = !CRASHED.swap(true, Ordering::Relaxed);
     if is_first {
-        survival::end(cause, pc, lr, cfsr);
+        retained::end(cause, pc, lr, cfsr);
     }
     if !ALONE.load(Ordering::Relaxed) || DCB::is_debugger_attached() {
         if is_first {
@@ -164,6 +164,6 @@ fn crash((cause, pc, lr, cfsr): (Cause, u32, u32, u32), report: &dyn Display) ->
 /// The report, and what was shown last.
 fn say(report: &dyn Display) {
     if let Ok(mut stderr) = hio::hstderr() {
-        let _ = writeln!(stderr, "{report}\n  {}", Scene(survival::last()));
+        let _ = writeln!(stderr, "{report}\n  {}", Scene(retained::last()));
     }
 }

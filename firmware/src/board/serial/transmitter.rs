@@ -18,7 +18,7 @@ pub trait Outlet {
 
 /// The outward direction of a serial port.
 #[derive(Debug)]
-pub struct Transmitter<Port>(pub(super) Port);
+pub struct Transmitter<Port>(pub(in crate::board) Port);
 
 /// The port did not take a byte in time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

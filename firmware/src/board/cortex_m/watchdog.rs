@@ -8,7 +8,7 @@ use core::sync::atomic::{AtomicU16, Ordering};
 use cortex_m::interrupt::InterruptNumber;
 use cortex_m::peripheral::NVIC;
 
-use super::register::Register;
+use crate::board::register::Register;
 use crate::config::WATCHDOG_SECONDS;
 
 /// What the main loop needs of it.
@@ -31,13 +31,13 @@ pub struct TwoStage {
 
 /// Its interrupt: one of the chip's own, or the one that cannot be masked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Call {
+pub(in crate::board) enum Call {
     Own(u16),
     Nmi,
 }
 
 /// Its registers.
-pub(super) struct Registers {
+pub(in crate::board) struct Registers {
     pub load: Register,
     pub control: Register,
     pub clear: Register,
@@ -52,7 +52,7 @@ const LOCKED: u32 = 1;
 
 impl TwoStage {
     /// Starts it; it counts at `hertz`.
-    pub(super) fn start(registers: Registers, hertz: u32, call: Call, has_reset: bool) -> Self {
+    pub(in crate::board) fn start(registers: Registers, hertz: u32, call: Call, has_reset: bool) -> Self {
         let Registers { load, control, clear, lock } = registers;
         call.note();
         lock.write(UNLOCK);

@@ -10,7 +10,7 @@ use crate::config::RECEIVE_QUEUE;
 
 /// A serial port as the interrupt sees it.
 #[derive(Clone, Copy)]
-pub(super) struct Inlet {
+pub(in crate::board) struct Inlet {
     /// Ends the interrupt. Done before the bytes are taken, so that one that comes meanwhile interrupts anew.
     pub clear: fn(),
     /// Takes the next byte out; `None` once there is none.
@@ -27,7 +27,7 @@ static SOURCE: Mutex<Cell<Option<Source>>> = Mutex::new(Cell::new(None));
 static LOST: AtomicU32 = AtomicU32::new(0);
 
 /// Moves what has come into the queue; for the receiver's interrupt.
-pub(super) fn receive() {
+pub(in crate::board) fn receive() {
     let source = cortex_m::interrupt::free(|token| SOURCE.borrow(token).take());
     if let Some(mut source) = source {
         (source.inlet.clear)();
@@ -47,7 +47,7 @@ pub struct Receiver {
 
 impl Receiver {
     /// Lets the interrupt fill a queue from `inlet`; `None` the second time.
-    pub(super) fn new(inlet: Inlet) -> Option<Self> {
+    pub(in crate::board) fn new(inlet: Inlet) -> Option<Self> {
         let queue = cortex_m::singleton!(: Queue<u8, RECEIVE_QUEUE> = Queue::new())?;
         let (producer, consumer) = queue.split();
         cortex_m::interrupt::free(|token| SOURCE.borrow(token).set(Some(Source { inlet, queue: producer })));

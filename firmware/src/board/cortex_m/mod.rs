@@ -1,0 +1,13 @@
+//! What every Cortex-M has.
+
+pub mod clock;
+pub mod guard;
+pub mod semihosting;
+pub mod watchdog;
+
+pub(super) mod crash;
+pub(super) mod retained;
+
+mod calls;
+mod interrupt;
+mod soft_float;
