@@ -53,12 +53,12 @@ fn compensated_single_precision_in_angles() {
 
 #[test]
 fn compensated_single_precision_in_directions() {
-    same_everywhere(&format!("{FIGURE_7} --step 1/4096 --arithmetic f32-compensated --form frame"));
+    same_everywhere(&format!("{FIGURE_7} --step 1/4096 --arithmetic f32-compensated --form direction"));
 }
 
 #[test]
 fn plain_forms() {
-    for (arithmetic, form) in [("f32", "angle"), ("f32", "frame"), ("f64", "angle"), ("f64", "frame")] {
+    for (arithmetic, form) in [("f32", "angle"), ("f32", "direction"), ("f64", "angle"), ("f64", "direction")] {
         same_everywhere(&format!("{FIGURE_7} --step 1/256 --arithmetic {arithmetic} --form {form}"));
     }
 }

@@ -79,9 +79,9 @@ fn every_form_moves_as_the_canonical_state_does() {
     assert!(number(&canonical[2]) > std::f64::consts::PI, "it does not turn over: {canonical:?}");
     for (form, difference) in [
         ("f64 --form angle", 1e-10), // the same method: its roundings, grown by chaos
-        ("f64 --form frame", 1e-7),  // the method's own error, grown by chaos
+        ("f64 --form direction", 1e-7),  // the method's own error, grown by chaos
         ("f32-compensated", 1e-4),   // roundings of 6e-8, grown by chaos
-        ("f32-compensated --form frame", 1e-4),
+        ("f32-compensated --form direction", 1e-4),
     ] {
         let other = &rows(&format!("{options} --arithmetic {form}"))[4];
         for column in 1..3 {
@@ -96,7 +96,7 @@ fn every_form_moves_as_the_canonical_state_does() {
 fn order_8_needs_few_steps() {
     let options = "--masses 1,2.75 --angles 171,171 --degrees --until 3 --every 1";
     let exact = &rows(&format!("{options} --step 1/16384"))[4];
-    for form in ["canonical", "frame"] {
+    for form in ["canonical", "direction"] {
         let other = &rows(&format!("{options} --step 1/512 --method order-8 --form {form}"))[4];
         for column in 1..3 {
             let apart = (number(&exact[column]) - number(&other[column])).abs();
@@ -111,7 +111,7 @@ fn order_8_needs_few_steps() {
 fn compensated_single_precision_is_given_to_its_last_digit() {
     let options = "--angles 0.5,0.5 --gravity 9.8125 --until 10 --every 10";
     let exact = &rows(&format!("{options} --arithmetic f64 --step 1/4096"))[2];
-    for form in ["angle", "frame"] {
+    for form in ["angle", "direction"] {
         let row = &rows(&format!("{options} --step 1/256 --arithmetic f32-compensated --form {form}"))[2];
         for column in 1..3 {
             let error = (number(&row[column]) - number(&exact[column])).abs();
@@ -151,7 +151,7 @@ fn bad_input_gets_one_line_and_exit_code_2() {
         ("--method order-8 --form angle", "--method order-8"),
         ("--method order-8 --on lm3s6965evb", "--method order-8"),
         ("--form angle --model linear", "--form angle"),
-        ("--form frame --model equal-rods", "--form frame"),
+        ("--form direction --model equal-rods", "--form direction"),
         ("--form canonical --arithmetic f32-compensated", "--form canonical"),
         ("--arithmetic f32-compensated --model linear", "--arithmetic f32-compensated"),
         ("--form angle --angles 1e9,0", "--angles"),
