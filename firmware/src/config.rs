@@ -11,8 +11,8 @@ pub const TICK_RATE: u32 = 60;
 pub const STEPS_PER_TICK: u32 = 4;
 /// Integration steps per simulated second: 60 x 4 = 240.
 pub const STEPS_PER_SECOND: u32 = TICK_RATE * STEPS_PER_TICK;
-/// The integration step dt, s: 1/240, rounded to `f32`.
-pub const DT: f32 = 1.0 / STEPS_PER_SECOND as f32;
+/// The integration step dt, s: 1/240.
+pub const DT: f64 = 1.0 / STEPS_PER_SECOND as f64;
 /// The most ticks integrated before a frame is drawn: a board too slow for every frame still shows
 /// 60/15 = 4 per second. Ticks beyond it wait for the next frame; none is ever skipped.
 pub const MOST_TICKS_PER_FRAME: u32 = 15;

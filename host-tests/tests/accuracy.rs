@@ -21,7 +21,7 @@ type Step = fn(&Pendulum<f64>, &State<f64>, f64) -> State<f64>;
 fn error(step: Step, parameters: &Parameters<f64>, start: &Motion<f64>, steps_per_second: u32) -> f64 {
     let pendulum = Pendulum::new(*parameters).expect("valid parameters");
     let mut reference = Reference::new(parameters, start);
-    let mut state = pendulum.state(start);
+    let mut state = pendulum.to_state(start);
     let mut largest = 0.0_f64;
     for second in 1..=20 {
         for _ in 0..steps_per_second {
@@ -69,19 +69,15 @@ fn steps_of_order_8_keep_their_promise() {
 #[test]
 fn plain_f32_stays_within_its_roundings() {
     for (parameters, start) in regular() {
-        let Parameters { m1, m2, l1, l2, g } = parameters;
-        let single = host_tests::oracle::random::single(&parameters);
+        let single = parameters.cast::<f32>();
         let pendulum = Pendulum::new(single).expect("valid parameters");
-        let Motion { a1, a2, w1, w2 } = start;
-        let start = Motion { a1: a1 as f32, a2: a2 as f32, w1: w1 as f32, w2: w2 as f32 };
-        let mut state = pendulum.state(&start);
+        let start = start.cast();
+        let mut state = pendulum.to_state(&start);
         for _ in 0..10 * 256 {
             state = pendulum.step(&state, 1.0 / 256.0);
         }
         // the motion of the very numbers that f32 holds
-        let [m1, m2, l1, l2, g] = [m1, m2, l1, l2, g].map(|x| f64::from(x as f32));
-        let start = Motion::from(<[f32; 4]>::from(start).map(f64::from));
-        let exact = reference::states(&Parameters { m1, m2, l1, l2, g }, &start, &[10.0])[0];
+        let exact = reference::states(&single.cast(), &start.cast(), &[10.0])[0];
         let error = (f64::from(state.a1) - exact.a1).abs().max((f64::from(state.a2) - exact.a2).abs());
         assert!(error < tolerances::PLAIN_SINGLE, "{error:e} rad after 10 s for {parameters:?}");
     }

@@ -11,7 +11,7 @@ use host_tests::oracle::{random, tolerances};
 
 /// |w1|, |w2|, |w1 - w2|, |p1|, |p2|, v1, v2 of a state, each divided by its bound.
 fn shares<R: Real>(pendulum: &Pendulum<R>, bounds: &Bounds<R>, state: &State<R>) -> [f64; 7] {
-    let motion = pendulum.motion(state);
+    let motion = pendulum.to_motion(state);
     let [v1, v2] = pendulum.velocities(&motion).map(|v| (v.x * v.x + v.y * v.y).sqrt());
     let bending = (motion.w1 - motion.w2).abs();
     let reached = [motion.w1.abs(), motion.w2.abs(), bending, state.p1.abs(), state.p2.abs(), v1, v2];
@@ -35,13 +35,11 @@ fn largest_shares<R: Real>(pendulum: &Pendulum<R>, start: State<R>, dt: R, steps
 fn never_exceeded<R: Real>() {
     let mut rng = Rng::with_seed(1);
     for _ in 0..10_000 {
-        let given @ Parameters { m1, m2, l1, l2, g } = random::parameters(&mut rng);
-        let parameters = Parameters { m1: R::of(m1), m2: R::of(m2), l1: R::of(l1), l2: R::of(l2), g: R::of(g) };
-        let pendulum = Pendulum::new(parameters).expect("valid parameters");
-        let z: [f64; 4] = random::state(&mut rng, &given).into();
-        let start = State::from(z.map(R::of));
+        let given = random::parameters(&mut rng);
+        let pendulum = Pendulum::new(given.cast()).expect("valid parameters");
+        let start = random::state(&mut rng, &given).cast::<R>();
         let bounds = pendulum.bounds(&start);
-        let dt = R::of(0.05) / (bounds.w1 + bounds.w2);
+        let dt = R::from_f64(0.05) / (bounds.w1 + bounds.w2);
         for (i, share) in largest_shares(&pendulum, start, dt, 100).into_iter().enumerate() {
             assert!(
                 share <= 1.0 + tolerances::BOUNDS_DRIFT,
@@ -87,7 +85,7 @@ fn each_bound_is_reached_by_some_state() {
         let bending = Motion { w1: m2 * l2 * (l1 + l2), w2: -l1 * (m2 * l2 + (m1 + m2) * l1), ..Motion::default() };
         let motions = [(still2, [0, 5]), (opposed, [1, 1]), (bending, [2, 2]), (straight, [3, 3]), (lower, [4, 6])];
         for (motion, reached) in motions {
-            let state = pendulum.state(&motion);
+            let state = pendulum.to_state(&motion);
             let shares = shares(&pendulum, &pendulum.bounds(&state), &state);
             for i in reached {
                 let error = (shares[i] - 1.0).abs() * m1 / (m1 + m2);
@@ -137,7 +135,7 @@ fn certificate_is_sharp() {
             let velocity = [kick / m11.sqrt(), kick / m22.sqrt()][first];
             let mut velocities = [0.0, 0.0];
             velocities[first] = velocity;
-            pendulum.state(&Motion { a1: angles[0], a2: angles[1], w1: velocities[0], w2: velocities[1] })
+            pendulum.to_state(&Motion { a1: angles[0], a2: angles[1], w1: velocities[0], w2: velocities[1] })
         };
         let limit = pendulum.turnover_energy();
         assert!((pendulum.energy_above_rest(&saddle(0.0)) / limit - 1.0).abs() < tolerances::FORMULAS.double);
@@ -171,20 +169,21 @@ fn equal_rods_have_the_general_bounds_in_their_own_units() {
 
 /// The fast mode decays just below the step limit and blows up just above.
 fn step_limit<R: Real>() {
-    let parameters = Parameters { m1: R::ONE, m2: R::of(2.0), l1: R::of(0.5), l2: R::ONE, g: R::of(9.8) };
+    let parameters =
+        Parameters { m1: R::ONE, m2: R::from_f64(2.0), l1: R::from_f64(0.5), l2: R::ONE, g: R::from_f64(9.8) };
     let pendulum = Pendulum::new(parameters).expect("valid parameters");
     let modes = Modes::new(&parameters).expect("valid parameters");
-    let tiny = R::of(1e-6);
+    let tiny = R::from_f64(1e-6);
     let start = State::at_rest(tiny, tiny * modes.fast.shape);
     let after = |share: f64| {
-        let dt = modes.step_limit() * R::of(share);
+        let dt = modes.step_limit() * R::from_f64(share);
         (0..300).fold(start, |state, _| pendulum.step(&state, dt)).a1.abs()
     };
     assert!(after(0.99) < tiny, "grows below the limit");
-    assert!(after(1.01) > tiny * R::of(10.0), "does not grow above the limit");
-    assert_eq!(modes.check_step(modes.step_limit()), Ok(()));
-    assert!(modes.check_step(modes.step_limit() * R::of(1.01)).is_err());
-    assert!(modes.check_step(R::ZERO).is_err() && modes.check_step(R::of(f64::NAN)).is_err());
+    assert!(after(1.01) > tiny * R::from_f64(10.0), "does not grow above the limit");
+    assert_eq!(modes.check_step(modes.step_limit().to_f64()), Ok(()));
+    assert!(modes.check_step(1.01 * modes.step_limit().to_f64()).is_err());
+    assert!(modes.check_step(0.0).is_err() && modes.check_step(f64::NAN).is_err());
 }
 
 #[test]
@@ -222,7 +221,7 @@ fn lively_motion(rng: &mut Rng, &Parameters { m1, m2, l1, l2, .. }: &Parameters<
 fn miss(pendulum: &Pendulum<f64>, start: &Motion<f64>, next: &State<f64>, dt: f64, rate: f64) -> f64 {
     let mut reference = Reference::new(pendulum.parameters(), start);
     reference.advance_to(dt);
-    let (exact, next) = (reference.motion(), pendulum.motion(next));
+    let (exact, next) = (reference.motion(), pendulum.to_motion(next));
     let turn = |angle: f64| angle - (angle / TAU).round() * TAU;
     let misses = [turn(next.a1 - exact.a1), turn(next.a2 - exact.a2), next.w1 - exact.w1, next.w2 - exact.w2];
     let [a1, a2, w1, w2] = misses.map(f64::abs);
@@ -238,7 +237,7 @@ fn an_admissible_step_resolves_every_motion() -> Result<(), Error> {
         let parameters = extreme_parameters(&mut rng);
         let pendulum = Pendulum::new(parameters)?;
         let start = lively_motion(&mut rng, &parameters);
-        let state = pendulum.state(&start);
+        let state = pendulum.to_state(&start);
         let (rate, dt) = (pendulum.fastest_rate(&state)?, pendulum.admissible_step(&state)?);
         let after = [
             pendulum.step(&state, dt),
@@ -293,10 +292,8 @@ fn admissible_step<R: Real>() -> Result<(), Error> {
     for _ in 0..1000 {
         let given = random::parameters(&mut rng);
         let state = random::state(&mut rng, &given);
-        let Parameters { m1, m2, l1, l2, g } = given;
-        let parameters = Parameters { m1: R::of(m1), m2: R::of(m2), l1: R::of(l1), l2: R::of(l2), g: R::of(g) };
         let exact = Pendulum::new(given)?.admissible_step(&state)?;
-        let step = Pendulum::new(parameters)?.admissible_step(&State::from(<[f64; 4]>::from(state).map(R::of)))?;
+        let step = Pendulum::new(given.cast::<R>())?.admissible_step(&state.cast())?;
         let error = (step.to_f64() / exact - 1.0).abs();
         assert!(error <= tolerances::FORMULAS.of::<R>(), "{error:e} for {given:?} from {state:?}");
     }
@@ -305,7 +302,7 @@ fn admissible_step<R: Real>() -> Result<(), Error> {
     assert!(!free.admissible_step(&hanging)?.is_finite());
     let [once, twice] = [R::ONE, R::TWO].map(|p1| free.admissible_step(&State { p1, ..hanging }));
     assert_eq!(once?, twice? + twice?);
-    let hung = Pendulum::new(Parameters::equal_rods(R::ONE, R::ONE, R::of(9.81)))?;
+    let hung = Pendulum::new(Parameters::equal_rods(R::ONE, R::ONE, R::from_f64(9.81)))?;
     assert!(hung.admissible_step(&hanging)? < hung.modes()?.step_limit());
     Ok(())
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_6, PI, TAU};
 
-use double_pendulum::{Parameters, SmallOscillations};
+use double_pendulum::SmallOscillations;
 use firmware::config::TICK_RATE;
 use firmware::motion::settings::Settings;
 use firmware::scenes::SceneName;
@@ -96,10 +96,7 @@ fn beats_close_when_their_frequencies_say_so_and_the_exact_motion_does_not() {
 }
 
 fn reference(settings: &Settings) -> Reference {
-    let Parameters { m1, m2, l1, l2, g } = settings.parameters;
-    let [m1, m2, l1, l2, g] = [m1, m2, l1, l2, g].map(f64::from);
-    let ([a1, a2], [w1, w2]) = (settings.angles().map(f64::from), settings.velocities.map(f64::from));
-    Reference::new(&Parameters { m1, m2, l1, l2, g }, &double_pendulum::Motion { a1, a2, w1, w2 })
+    Reference::new(&settings.parameters.cast(), &settings.motion().cast())
 }
 
 /// In both figures the spot is drawn where it should be: on the left by cos w2 t and sin w1 t, on the right by the

@@ -20,17 +20,17 @@ const TOO_LONG: f64 = 50.0;
 const MANY: usize = 100_000;
 
 fn parameters<R: Real>() -> Parameters<R> {
-    Parameters { m1: R::ONE, m2: R::ONE, l1: R::ONE, l2: R::ONE, g: R::of(9.8) }
+    Parameters { m1: R::ONE, m2: R::ONE, l1: R::ONE, l2: R::ONE, g: R::from_f64(9.8) }
 }
 
 fn start<R: Real>() -> State<R> {
-    State::at_rest(R::of(3.0), R::of(1.0))
+    State::at_rest(R::from_f64(3.0), R::from_f64(1.0))
 }
 
 fn plain_steps_stop<R: Real>() {
     let pendulum = Pendulum::new(parameters::<R>()).unwrap_or_else(|error| panic!("{error}"));
     let mut state = start();
-    let stopped = (0..MANY).find_map(|_| match pendulum.step(&state, R::of(TOO_LONG)).finite() {
+    let stopped = (0..MANY).find_map(|_| match pendulum.step(&state, R::from_f64(TOO_LONG)).finite() {
         Ok(next) => {
             state = next;
             None
@@ -42,7 +42,7 @@ fn plain_steps_stop<R: Real>() {
 }
 
 fn form_stops<R: Real, F: Form<R>>() {
-    let form = F::new(&parameters(), R::of(TOO_LONG)).unwrap_or_else(|error| panic!("{error}"));
+    let form = F::new(&parameters(), TOO_LONG).unwrap_or_else(|error| panic!("{error}"));
     let mut carried = form.start(&start()).unwrap_or_else(|error| panic!("{error}"));
     let bits = |carried: &F::Carried| {
         let mut bits = Vec::new();

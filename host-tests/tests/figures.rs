@@ -142,7 +142,7 @@ fn figure_2_solves_the_auxiliary_equation() {
 
 /// Where bob 2 is, m.
 fn bob_2(pendulum: &Pendulum<f64>, a1: f64, a2: f64) -> [f64; 2] {
-    let [_, bob2] = pendulum.positions(a1, a2);
+    let [_, bob2] = pendulum.positions([a1, a2]);
     [bob2.x, bob2.y]
 }
 

@@ -90,7 +90,7 @@ fn settings_too_lively_for_the_step_are_played_and_logged() {
     let coarse = |value| {
         let mut events = Vec::new();
         app().receive(wire(&set(Field::MassRatio, value, Unit::One)), |event| events.push(event));
-        events.iter().any(|event| matches!(event, Event::StepTooLong(step) if *step < f64::from(DT)))
+        events.iter().any(|event| matches!(event, Event::StepTooLong(step) if *step < DT))
     };
     assert!(!coarse(1.0));
     assert!(coarse(100.0));

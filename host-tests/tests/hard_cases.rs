@@ -67,7 +67,7 @@ macro_rules! every_form {
 
 /// Rods of 1 m and bobs of 1 kg, as `R` holds them.
 fn even<R: Real>(gravity: f64) -> Parameters<R> {
-    Parameters::equal_rods(R::ONE, R::ONE, R::of(gravity))
+    Parameters::equal_rods(R::ONE, R::ONE, R::from_f64(gravity))
 }
 
 /// When rod 1 is a radian from where it started, s; looked at every 1/64 s.
@@ -90,7 +90,7 @@ fn upright_falls<R: Real, F: Form<R>>() -> Result<(), Error> {
     });
     assert!(exact.is_finite());
     for halvings in HALVINGS.skip(2) {
-        let form = F::new(&even(9.81_f64 as f32 as f64), R::of(0.5_f64.powi(halvings)))?;
+        let form = F::new(&even(9.81_f64 as f32 as f64), 0.5_f64.powi(halvings))?;
         let mut carried = form.start(&start)?;
         let mut steps = 0;
         let falls = fall(|| {
@@ -122,7 +122,7 @@ fn upright_stays_where_increments_are_lost<R: Real>(error: f64) -> Result<(), Er
         let mut state = State::at_rest(R::PI, R::PI);
         let mut steps = 0_u32;
         while state.a1 == R::PI && steps < 100 * steps_per_second {
-            state = pendulum.step(&state, R::of(dt));
+            state = pendulum.step(&state, R::from_f64(dt));
             steps += 1;
         }
         let stayed = f64::from(steps) * dt;
@@ -141,8 +141,8 @@ fn upright_stays_as_long_as_theory_says_in_plain_sums() -> Result<(), Error> {
 fn turns_straight<R: Real, F: Form<R>>() -> Result<(), Error> {
     let parameters = Parameters { l2: R::HALF, ..even(0.0) };
     let start = Motion { a1: R::ONE, a2: R::ONE, w1: R::TWO, w2: R::TWO };
-    let state = Pendulum::new(parameters)?.state(&start);
-    let form = F::new(&parameters, R::of(1.0 / 256.0))?;
+    let state = Pendulum::new(parameters)?.to_state(&start);
+    let form = F::new(&parameters, 1.0 / 256.0)?;
     let mut carried = form.start(&state)?;
     for seconds in 1..=20 {
         form.advance(&mut carried, 256);
@@ -166,8 +166,8 @@ fn straight_rods_turn_evenly_without_gravity() -> Result<(), Error> {
 /// Hanging, and without gravity anywhere: what is at rest stays there, to the bit.
 fn rest_stays<R: Real, F: Form<R>>() -> Result<(), Error> {
     for (gravity, a1, a2) in [(9.81, 0.0, 0.0), (0.0, 3.0, -2.0)] {
-        let form = F::new(&even(gravity), R::of(1.0 / 64.0))?;
-        let mut carried = form.start(&State::at_rest(R::of(a1), R::of(a2)))?;
+        let form = F::new(&even(gravity), 1.0 / 64.0)?;
+        let mut carried = form.start(&State::at_rest(R::from_f64(a1), R::from_f64(a2)))?;
         let start = form.state(&carried);
         form.advance(&mut carried, 10_000);
         let now = form.state(&carried);
@@ -194,15 +194,15 @@ fn tiny_swings<R: Real, F: Form<R>>() -> Result<(), Error> {
     } else {
         (2f64.powi(-900), 2f64.powi(-1071))
     };
-    let form = F::new(&parameters, R::of(1.0 / 256.0))?;
-    let mut carried = form.start(&State::at_rest(R::of(tiny), R::of(tiny) * slow.shape))?;
+    let form = F::new(&parameters, 1.0 / 256.0)?;
+    let mut carried = form.start(&State::at_rest(R::from_f64(tiny), R::from_f64(tiny) * slow.shape))?;
     for step in 1..=10 * 64 {
         form.advance(&mut carried, 4);
         let expected = (slow.frequency.to_f64() * f64::from(step) / 64.0).cos();
         let miss = (form.state(&carried).a1 / tiny - expected).abs();
         assert!(miss <= tolerances::TINY.of::<R>(), "{miss:e} at step {step}");
     }
-    let mut carried = form.start(&State::at_rest(R::of(subnormal), R::of(subnormal)))?;
+    let mut carried = form.start(&State::at_rest(R::from_f64(subnormal), R::from_f64(subnormal)))?;
     form.advance(&mut carried, 10_000);
     let State { a1, a2, .. } = form.state(&carried);
     assert!(a1.abs() <= 1000.0 * subnormal && a2.abs() <= 1000.0 * subnormal, "{a1:e}, {a2:e} from {subnormal:e}");
@@ -219,18 +219,20 @@ fn denormals_do_no_harm() -> Result<(), Error> {
 /// The fast mode just below the step limit decays, just above it grows: by 15 % a step, until it is so wide that its
 /// frequency is another, which may be at less than 0.001 rad.
 fn stability_edge<R: Real, F: Form<R>>() -> Result<(), Error> {
-    for parameters in
-        [even::<R>(9.81), Parameters { m2: R::of(1000.0), ..even(9.81) }, Parameters { l2: R::of(0.01), ..even(9.81) }]
-    {
+    for parameters in [
+        even::<R>(9.81),
+        Parameters { m2: R::from_f64(1000.0), ..even(9.81) },
+        Parameters { l2: R::from_f64(0.01), ..even(9.81) },
+    ] {
         let modes = Modes::new(&parameters)?;
-        let small = R::of(1e-5);
+        let small = R::from_f64(1e-5);
         let start = if modes.fast.shape.abs() > R::ONE {
             State::at_rest(small / modes.fast.shape, small)
         } else {
             State::at_rest(small, small * modes.fast.shape)
         };
         let swing = |share: f64| -> Result<f64, Error> {
-            let form = F::new(&parameters, modes.step_limit() * R::of(share))?;
+            let form = F::new(&parameters, modes.step_limit().to_f64() * share)?;
             let mut carried = form.start(&start)?;
             let mut late = 0.0_f64;
             for step in 0..200 {

@@ -3,7 +3,7 @@
 use std::thread;
 
 use double_pendulum::plan::{self, Budget, Costs, Limit, Search};
-use double_pendulum::{Motion, Parameters, Pendulum};
+use double_pendulum::{Parameters, Pendulum};
 use firmware::config::{MASS_RATIOS, REACH, TICK_RATE};
 use firmware::graphics::view::Place;
 use firmware::motion::planner::scene;
@@ -53,11 +53,8 @@ fn cases() -> Vec<Case> {
 
 fn horizon(case: &Case) -> Horizon {
     let widened = |x: f32| f64::from(x);
-    let Settings { parameters, velocities: [w1, w2], .. } = case.settings;
-    let Parameters { m1, m2, l1, l2, g } = parameters;
-    let parameters = Parameters { m1: widened(m1), m2: widened(m2), l1: widened(l1), l2: widened(l2), g: widened(g) };
-    let [a1, a2] = case.settings.angles().map(widened);
-    let motion = Motion { a1, a2, w1: widened(w1), w2: widened(w2) };
+    let parameters = case.settings.parameters.cast();
+    let motion = case.settings.motion().cast();
     let pendulum = Pendulum::new(parameters).expect("the scene took it");
     let mut reference = Reference::new(&parameters, &motion);
     let mut scene = Show::new(case.name, &case.settings).expect("good settings");
@@ -71,8 +68,8 @@ fn horizon(case: &Case) -> Horizon {
         if exact.is_infinite() && tick % 2 == 0 {
             reference.advance_to(time);
             let truth = reference.motion();
-            let bobs = pendulum.positions(truth.a1, truth.a2);
-            let shown = pendulum.positions(widened(report.state.a1), widened(report.state.a2));
+            let bobs = pendulum.positions(truth.angles());
+            let shown = pendulum.positions(report.state.angles().map(widened));
             let distance = |i: usize| scale * (bobs[i].x - shown[i].x).hypot(bobs[i].y - shown[i].y);
             let is_right = distance(0).max(distance(1)) <= widened(HALF_PIXEL);
             if !is_right {

@@ -19,14 +19,13 @@ fn each_state<R: Real>(seed: u64, states: usize, mut check: impl FnMut(&Paramete
     }
 }
 
-fn pendulum<R: Real>(&Parameters { m1, m2, l1, l2, g }: &Parameters<f64>) -> Pendulum<R> {
-    let parameters = Parameters { m1: R::of(m1), m2: R::of(m2), l1: R::of(l1), l2: R::of(l2), g: R::of(g) };
-    Pendulum::new(parameters).expect("random parameters are valid")
+fn pendulum<R: Real>(parameters: &Parameters<f64>) -> Pendulum<R> {
+    Pendulum::new(parameters.cast()).expect("random parameters are valid")
 }
 
 fn derivatives<R: Real>(pendulum: &Pendulum<R>, state: &State<f64>) -> [f64; 4] {
     let z: [f64; 4] = (*state).into();
-    pendulum.derivatives(&z.map(R::of)).map(R::to_f64)
+    pendulum.derivatives(&z.map(R::from_f64)).map(R::to_f64)
 }
 
 /// Each of `values` against `exact`, relative to the largest term.
@@ -104,7 +103,7 @@ fn energy_is_h<R: Real>() {
         let waves = [state.a1, state.a2].map(|a| sin_cos(a.into()));
         let exact = hamiltonian(&parameters.into(), [p1, p2], waves);
         let z: [f64; 4] = (*state).into();
-        let state = State::from(z.map(R::of));
+        let state = State::from(z.map(R::from_f64));
         let range = pendulum.energy_above_rest(&state).to_f64() - pendulum.least_energy().to_f64();
         let error = |energy: R| f64::from(exact - energy.to_f64()).abs() / range;
         let worst =
@@ -153,14 +152,14 @@ fn equal_rods_are_the_general_form<R: Real>() {
     for _ in 0..10_000 {
         let own = Parameters::equal_rods(random::log_uniform(&mut rng, 0.01, 100.0) as f32 as f64, 1.0, 1.0);
         let z: [f64; 4] = random::state(&mut rng, &own).into();
-        let z = z.map(R::of);
-        let rods = EqualRods::new(R::of(own.m2)).expect("a valid mass ratio");
+        let z = z.map(R::from_f64);
+        let rods = EqualRods::new(R::from_f64(own.m2)).expect("a valid mass ratio");
         // in its own units it is the general form to the bit
         assert_eq!(rods.derivatives(&z), pendulum::<R>(&own).derivatives(&z));
         let state = State::from(z);
         assert_eq!(rods.energy(&state), pendulum::<R>(&own).energy(&state));
         assert_eq!(rods.energy_above_rest(&state), pendulum::<R>(&own).energy_above_rest(&state));
-        assert_eq!(rods.motion(&state), pendulum::<R>(&own).motion(&state));
+        assert_eq!(rods.to_motion(&state), pendulum::<R>(&own).to_motion(&state));
         assert_eq!(rods.parameters(), *pendulum::<R>(&own).parameters());
     }
 }
@@ -185,11 +184,11 @@ fn units_turn_equal_rods_into_si() {
     let general: Pendulum<f64> = pendulum(&si);
     let energy = rods.energy(&own) * units.energy;
     assert!((energy - general.energy(&state)).abs() < tolerances::FORMULAS.double * 10.0, "{energy} J");
-    let back = rods.state(&rods.motion(&own));
+    let back = rods.to_state(&rods.to_motion(&own));
     let error = (back.p1 - own.p1).abs().max((back.p2 - own.p2).abs());
     assert!(error < tolerances::FORMULAS.double, "momenta come back {error:e} off");
-    let w1 = rods.motion(&own).w1 * units.angular_velocity;
-    assert!((w1 - general.motion(&state).w1).abs() < tolerances::FORMULAS.double * 10.0, "{w1} rad/s");
+    let w1 = rods.to_motion(&own).w1 * units.angular_velocity;
+    assert!((w1 - general.to_motion(&state).w1).abs() < tolerances::FORMULAS.double * 10.0, "{w1} rad/s");
     for _ in 0..1024 {
         state = general.step(&state, 1.0 / 1024.0);
         own = rods.step(&own, 1.0 / 1024.0 / units.time);

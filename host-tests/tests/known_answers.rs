@@ -1,6 +1,6 @@
 //! The table of known answers: the reference to its last digits, the kernel within each row's budget.
 
-use double_pendulum::{Motion, Parameters, Pendulum, Real, State};
+use double_pendulum::{Pendulum, Real, State};
 use host_tests::oracle::known_answers::{KnownAnswer, table};
 use host_tests::oracle::reference::Reference;
 use host_tests::oracle::tolerances;
@@ -10,7 +10,7 @@ const STEPS_PER_SECOND: u32 = 4096;
 /// The largest difference of the four numbers, momenta relative to the greatest the energy allows.
 fn distance(row: &KnownAnswer, differences: [f64; 4]) -> f64 {
     let pendulum = Pendulum::new(row.parameters()).expect("the table's parameters are valid");
-    let bounds = pendulum.bounds(&pendulum.state(&row.start()));
+    let bounds = pendulum.bounds(&pendulum.to_state(&row.start()));
     let scale = [1.0, 1.0, bounds.p1, bounds.p2];
     (0..4).fold(0.0, |largest, i| (differences[i].abs() / scale[i]).max(largest))
 }
@@ -53,18 +53,15 @@ struct Run<R> {
 
 fn kernel_keeps_its_budgets<R: Real>() {
     let start = |row: &KnownAnswer| {
-        let Parameters { m1, m2, l1, l2, g } = row.parameters();
-        let parameters = Parameters { m1: R::of(m1), m2: R::of(m2), l1: R::of(l1), l2: R::of(l2), g: R::of(g) };
-        let pendulum = Pendulum::new(parameters).expect("the table's parameters are valid");
-        let motion = Motion::from(<[f64; 4]>::from(row.start()).map(R::of));
-        Run { pendulum, state: pendulum.state(&motion), steps: 0 }
+        let pendulum = Pendulum::new(row.parameters().cast()).expect("the table's parameters are valid");
+        Run { pendulum, state: pendulum.to_state(&row.start().cast()), steps: 0 }
     };
     let differences = |run: &mut Run<R>, row: &KnownAnswer| {
         while f64::from(run.steps) < row.time * f64::from(STEPS_PER_SECOND) {
-            run.state = run.pendulum.step(&run.state, R::of(1.0 / f64::from(STEPS_PER_SECOND)));
+            run.state = run.pendulum.step(&run.state, R::from_f64(1.0 / f64::from(STEPS_PER_SECOND)));
             run.steps += 1;
         }
-        let [state, exact]: [[f64; 4]; 2] = [<[R; 4]>::from(run.state).map(R::to_f64), row.answer().into()];
+        let [state, exact]: [[f64; 4]; 2] = [run.state.cast().into(), row.answer().into()];
         std::array::from_fn(|i| state[i] - exact[i])
     };
     let mut tested = 0_u32;

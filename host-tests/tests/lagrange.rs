@@ -8,9 +8,8 @@ use host_tests::oracle::{random, tolerances};
 fn each_motion<R: Real>(seed: u64, mut check: impl FnMut(&Pendulum<R>, &Motion<R>)) {
     let mut rng = Rng::with_seed(seed);
     for _ in 0..20_000 {
-        let Parameters { m1, m2, l1, l2, g } = random::parameters(&mut rng);
-        let parameters = Parameters { m1: R::of(m1), m2: R::of(m2), l1: R::of(l1), l2: R::of(l2), g: R::of(g) };
-        let motion = [0; 4].map(|_| R::of(6.0 * random::symmetric(&mut rng)));
+        let parameters = random::parameters(&mut rng).cast();
+        let motion = [0; 4].map(|_| R::from_f64(6.0 * random::symmetric(&mut rng)));
         check(&Pendulum::new(parameters).expect("valid parameters"), &motion.into());
     }
 }
@@ -24,8 +23,8 @@ fn assert_same<R: Real>(value: R, expected: R, scale: R) {
 /// w -> p -> w, and p = (dL/dw1, dL/dw2): L is quadratic in w, so that a central difference of any step is exact.
 fn legendre_transformation<R: Real>() {
     each_motion::<R>(1, |pendulum, motion| {
-        let state = pendulum.state(motion);
-        let back = pendulum.motion(&state);
+        let state = pendulum.to_state(motion);
+        let back = pendulum.to_motion(&state);
         let &Parameters { m1, m2, l1, l2, .. } = pendulum.parameters();
         let speed = (motion.w1.abs() + motion.w2.abs()) * (m1 + m2) / m1 * (l1 / l2 + l2 / l1);
         assert_same(back.w1, motion.w1, speed);
@@ -39,7 +38,7 @@ fn legendre_transformation<R: Real>() {
         let p2 = slope(Motion { w2: w2 + one, ..*motion }, Motion { w2: w2 - one, ..*motion });
         let [torque1, torque2] = [pendulum.stiffness()[0][0], pendulum.stiffness()[1][1]];
         let scale = pendulum.kinetic_energy(motion) + torque1 + torque2 + (m1 + m2) * l1 * l1 + m2 * l2 * l2;
-        let scale = scale * R::of(8.0);
+        let scale = scale * R::from_f64(8.0);
         assert_same(p1, state.p1, scale);
         assert_same(p2, state.p2, scale);
     });
@@ -48,9 +47,9 @@ fn legendre_transformation<R: Real>() {
 /// H = T + V, and w.p = 2 T.
 fn energies<R: Real>() {
     each_motion::<R>(2, |pendulum, motion| {
-        let state = pendulum.state(motion);
+        let state = pendulum.to_state(motion);
         let kinetic = pendulum.kinetic_energy(motion);
-        let potential = pendulum.potential_energy(motion.a1, motion.a2);
+        let potential = pendulum.potential_energy(motion.angles());
         let &Parameters { m1, m2, .. } = pendulum.parameters();
         let scale =
             (pendulum.energy_above_rest(&state) - pendulum.least_energy()) * (m1 + m2) * (R::ONE / m1 + R::ONE / m2);
@@ -64,13 +63,13 @@ fn energies<R: Real>() {
 /// Lagrange's accelerations against Hamilton's forces: M w' + M' w = p', the time derivative of p = M w.
 fn accelerations<R: Real>() {
     each_motion::<R>(3, |pendulum, motion| {
-        let state = pendulum.state(motion);
+        let state = pendulum.to_state(motion);
         let [_, _, force1, force2] = pendulum.derivatives(&state.into());
         let [acceleration1, acceleration2] = pendulum.accelerations(motion);
         let d = (motion.a1 - motion.a2).to_f64();
-        let [[m11, m12], [m21, m22]] = pendulum.mass_matrix(R::of(d.cos()));
+        let [[m11, m12], [m21, m22]] = pendulum.mass_matrix(R::from_f64(d.cos()));
         let &Parameters { m1, m2, l1, l2, .. } = pendulum.parameters();
-        let m12_rate = -m2 * l1 * l2 * R::of(d.sin()) * (motion.w1 - motion.w2);
+        let m12_rate = -m2 * l1 * l2 * R::from_f64(d.sin()) * (motion.w1 - motion.w2);
         let p1_rate = m11 * acceleration1 + m12 * acceleration2 + m12_rate * motion.w2;
         let p2_rate = m21 * acceleration1 + m22 * acceleration2 + m12_rate * motion.w1;
         let magnitude = (m11 + m12.abs()) * acceleration1.abs() + (m22 + m12.abs()) * acceleration2.abs();
@@ -86,10 +85,10 @@ fn accelerations<R: Real>() {
 fn geometry_gives_the_energies<R: Real>() {
     each_motion::<R>(4, |pendulum, motion| {
         let &Parameters { m1, m2, l1, l2, g } = pendulum.parameters();
-        let [bob1, bob2] = pendulum.positions(motion.a1, motion.a2);
+        let [bob1, bob2] = pendulum.positions(motion.angles());
         let [v1, v2] = pendulum.velocities(motion);
         let scale = (m1 + m2) * g * l1 + m2 * g * l2;
-        assert_same(m1 * g * bob1.y + m2 * g * bob2.y, pendulum.potential_energy(motion.a1, motion.a2), scale);
+        assert_same(m1 * g * bob1.y + m2 * g * bob2.y, pendulum.potential_energy(motion.angles()), scale);
         let kinetic = R::HALF * (m1 * (v1.x * v1.x + v1.y * v1.y) + m2 * (v2.x * v2.x + v2.y * v2.y));
         let speeds = l1 * motion.w1.abs() + l2 * motion.w2.abs();
         assert_same(kinetic, pendulum.kinetic_energy(motion), (m1 + m2) * speeds * speeds);
@@ -118,7 +117,7 @@ fn bobs_are_where_the_rods_point() {
     let pendulum = Pendulum::new(parameters).expect("valid parameters");
     let quarter = std::f64::consts::FRAC_PI_2;
     let near = |x: f64, y: f64| (x - y).abs() < tolerances::FORMULAS.double;
-    let [bob1, bob2] = pendulum.positions(0.0, quarter); // down, then right
+    let [bob1, bob2] = pendulum.positions([0.0, quarter]); // down, then right
     assert!(near(bob1.x, 0.0) && near(bob1.y, -3.0) && near(bob2.x, 4.0) && near(bob2.y, -3.0), "{bob1:?} {bob2:?}");
     let [v1, v2] = pendulum.velocities(&Motion { a1: 0.0, a2: quarter, w1: 1.0, w2: 2.0 });
     assert!(near(v1.x, 3.0) && near(v1.y, 0.0) && near(v2.x, 3.0) && near(v2.y, 8.0), "{v1:?} {v2:?}");
@@ -128,6 +127,6 @@ fn bobs_are_where_the_rods_point() {
 fn at_rest_both_ways() {
     let parameters = Parameters { m1: 1.0, m2: 2.0, l1: 3.0, l2: 4.0, g: 9.8 };
     let pendulum = Pendulum::new(parameters).expect("valid parameters");
-    assert_eq!(pendulum.state(&Motion::at_rest(1.0, 2.0)), State::at_rest(1.0, 2.0));
-    assert_eq!(pendulum.motion(&State::at_rest(1.0, 2.0)), Motion::at_rest(1.0, 2.0));
+    assert_eq!(pendulum.to_state(&Motion::at_rest(1.0, 2.0)), State::at_rest(1.0, 2.0));
+    assert_eq!(pendulum.to_motion(&State::at_rest(1.0, 2.0)), Motion::at_rest(1.0, 2.0));
 }

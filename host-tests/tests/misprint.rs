@@ -32,7 +32,7 @@ fn run(rhs: impl Fn(&[f64; 4]) -> [f64; 4]) -> Summary {
         for _ in 0..SECONDS * STEPS_PER_SECOND {
             z = rk4::step(&rhs, &z, 1.0 / STEPS_PER_SECOND as f64);
             let state = State::from(z);
-            let [_, bob2] = pendulum.positions(state.a1, state.a2);
+            let [_, bob2] = pendulum.positions(state.angles());
             energy += pendulum.energy(&state);
             error = error.max((pendulum.energy(&state) - start_energy).abs());
             above += f64::from(u8::from(bob2.y > 0.0));

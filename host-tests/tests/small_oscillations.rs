@@ -84,7 +84,7 @@ fn ulps<R: Real>(value: R, exact: TwoFloat) -> f64 {
 fn modes_to_the_last_places<R: Real>() {
     let mut rng = Rng::with_seed(1);
     for n in 0..50_000 {
-        let rounded = |x: f64| R::of(x).to_f64();
+        let rounded = |x: f64| R::from_f64(x).to_f64();
         let m1 = rounded(log_uniform(&mut rng, 0.1, 10.0));
         let l1 = rounded(log_uniform(&mut rng, 0.1, 10.0));
         let parameters = Parameters {
@@ -95,9 +95,7 @@ fn modes_to_the_last_places<R: Real>() {
             l2: if n % 2 == 0 { l1 } else { rounded(l1 * log_uniform(&mut rng, 1e-3, 1e3)) },
             g: rounded(log_uniform(&mut rng, 1.0, 20.0)),
         };
-        let Parameters { m1, m2, l1, l2, g } = parameters;
-        let modes = Modes::new(&Parameters { m1: R::of(m1), m2: R::of(m2), l1: R::of(l1), l2: R::of(l2), g: R::of(g) })
-            .expect("valid parameters");
+        let modes = Modes::new(&parameters.cast::<R>()).expect("valid parameters");
         let values = [modes.fast.frequency, modes.slow.frequency, modes.fast.shape, modes.slow.shape, modes.exchange()];
         for (i, (value, exact)) in values.into_iter().zip(exact_modes(&parameters)).enumerate() {
             let error = ulps(value, exact);

@@ -11,10 +11,8 @@ fn each_motion<R: Real>(seed: u64, mut check: impl FnMut(&Parameters<R>, State<R
     let mut rng = Rng::with_seed(seed);
     for _ in 0..200 {
         let parameters = random::parameters(&mut rng);
-        let state: [f64; 4] = random::state(&mut rng, &parameters).into();
-        let Parameters { m1, m2, l1, l2, g } = parameters;
-        let parameters = Parameters { m1: R::of(m1), m2: R::of(m2), l1: R::of(l1), l2: R::of(l2), g: R::of(g) };
-        check(&parameters, state.map(R::of).into());
+        let state = random::state(&mut rng, &parameters);
+        check(&parameters.cast(), state.cast());
     }
 }
 
@@ -26,7 +24,7 @@ fn run<R: Real>(parameters: &Parameters<R>, start: State<R>, dt: R) -> State<R> 
 /// A step in which neither rod can turn by more than a twentieth of a radian.
 fn short_step<R: Real>(parameters: &Parameters<R>, start: &State<R>) -> R {
     let bounds = Pendulum::new(*parameters).expect("valid parameters").bounds(start);
-    R::of(0.05) / (bounds.w1 + bounds.w2)
+    R::from_f64(0.05) / (bounds.w1 + bounds.w2)
 }
 
 fn reversed<R: Real>(State { a1, a2, p1, p2 }: State<R>) -> State<R> {
@@ -72,7 +70,7 @@ fn mirror_image<R: Real>() {
 fn scaling_laws<R: Real>() {
     each_motion::<R>(4, |parameters, start| {
         let &Parameters { m1, m2, l1, l2, g } = parameters;
-        let [two, four, eight] = [2.0, 4.0, 8.0].map(R::of);
+        let [two, four, eight] = [2.0, 4.0, 8.0].map(R::from_f64);
         let dt = short_step(parameters, &start);
         let end = run(parameters, start, dt);
         let stronger = |State { a1, a2, p1, p2 }: State<R>, by: R| State { a1, a2, p1: p1 * by, p2: p2 * by };

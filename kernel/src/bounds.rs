@@ -101,15 +101,16 @@ impl<R: Real> Modes<R> {
     ///
     /// A limit, not advice: the phase is useless long before it.
     pub fn step_limit(&self) -> R {
-        R::of(8.0).sqrt() / self.fast.frequency
+        R::from_f64(8.0).sqrt() / self.fast.frequency
     }
 
-    /// Refuses a step that is NaN, infinite, zero, negative or above [`step_limit`](Self::step_limit).
-    pub fn check_step(&self, dt: R) -> Result<(), Error> {
-        check_forward(dt)?;
-        let limit = self.step_limit();
+    /// Refuses a step `dt` (s) that is NaN, infinite, zero, negative, out of the range of `R`, or above
+    /// [`step_limit`](Self::step_limit).
+    pub fn check_step(&self, dt: f64) -> Result<(), Error> {
+        check_forward::<R>(dt)?;
+        let limit = self.step_limit().to_f64();
         if dt > limit {
-            return Err(Error::TooLarge { parameter: Parameter::Dt, value: dt.to_f64(), limit: limit.to_f64() });
+            return Err(Error::TooLarge { parameter: Parameter::Dt, value: dt, limit });
         }
         Ok(())
     }
@@ -117,8 +118,8 @@ impl<R: Real> Modes<R> {
 
 impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     /// As [`Modes::check_step`]; without gravity there are no modes and every step forward is accepted.
-    pub fn check_step(&self, dt: R) -> Result<(), Error> {
-        if self.parameters().g == R::ZERO { check_forward(dt) } else { self.modes()?.check_step(dt) }
+    pub fn check_step(&self, dt: f64) -> Result<(), Error> {
+        if self.parameters().g == R::ZERO { check_forward::<R>(dt) } else { self.modes()?.check_step(dt) }
     }
 }
 
@@ -160,17 +161,19 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     /// # Ok::<(), double_pendulum::Error>(())
     /// ```
     pub fn admissible_step(&self, state: &State<R>) -> Result<R, Error> {
-        Ok(R::of(RESOLVED) / self.fastest_rate(state)?)
+        Ok(R::from_f64(RESOLVED) / self.fastest_rate(state)?)
     }
 }
 
-/// Refuses a step that is NaN, infinite, zero or negative.
-fn check_forward<R: Real>(dt: R) -> Result<(), Error> {
-    let (parameter, value) = (Parameter::Dt, dt.to_f64());
+/// Refuses a step that is NaN, infinite, zero, negative or out of the range of `R`.
+fn check_forward<R: Real>(dt: f64) -> Result<(), Error> {
+    let (parameter, value) = (Parameter::Dt, dt);
     if !dt.is_finite() {
         Err(Error::NotFinite { parameter, value })
-    } else if dt <= R::ZERO {
+    } else if dt <= 0.0 {
         Err(Error::NotPositive { parameter, value })
+    } else if !R::from_f64(dt).is_normal() {
+        Err(Error::OutOfRange { parameter, value })
     } else {
         Ok(())
     }
@@ -181,7 +184,7 @@ fn check_forward<R: Real>(dt: R) -> Result<(), Error> {
 pub const ROUNDING_MARGIN: f64 = 16.0;
 
 fn clearly_below<R: Real>(energy: R, limit: R) -> bool {
-    energy * (R::ONE + R::of(ROUNDING_MARGIN) * R::EPSILON) < limit
+    energy * (R::ONE + R::from_f64(ROUNDING_MARGIN) * R::EPSILON) < limit
 }
 
 fn least<R: Real>(a: R, b: R) -> R {

@@ -15,7 +15,7 @@ use crate::trig::{DefaultTrig, SinCos};
 /// Time is counted in sqrt(l/g), angular velocity in sqrt(g/l), momenta in m1 l^2 sqrt(g/l), energy in m1 g l. Only the
 /// mass ratio mu = m2/m1 is left, and an evaluation costs four multiplications less than
 /// [`Pendulum`](crate::Pendulum), which gives the same motion.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EqualRods<R, T = DefaultTrig> {
     mu: R,
     /// 1 + mu.
@@ -97,14 +97,14 @@ impl<R: Real, T: SinCos<R>> EqualRods<R, T> {
     }
 
     /// Velocities to momenta: p1 = (1 + mu) w1 + mu w2 cos D, p2 = mu w2 + mu w1 cos D.
-    pub fn state(&self, motion: &Motion<R>) -> State<R> {
+    pub fn to_state(&self, motion: &Motion<R>) -> State<R> {
         let &Motion { a1, a2, w1, w2 } = motion;
         let (_, cos_d) = T::sin_cos(a1 - a2);
         State { a1, a2, p1: self.total * w1 + self.mu * w2 * cos_d, p2: self.mu * (w2 + w1 * cos_d) }
     }
 
     /// Momenta to velocities: the first pair of Hamilton's equations.
-    pub fn motion(&self, state: &State<R>) -> Motion<R> {
+    pub fn to_motion(&self, state: &State<R>) -> Motion<R> {
         let &State { a1, a2, .. } = state;
         let [w1, w2, ..] = self.derivatives(&(*state).into());
         Motion { a1, a2, w1, w2 }

@@ -13,7 +13,7 @@ use crate::trig::{DefaultTrig, SinCos};
 /// A double pendulum: validated parameters and the products of them that the equations use.
 ///
 /// It is configuration only and drives any number of [`State`]s. `T` is the source of sine and cosine.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pendulum<R, T = DefaultTrig> {
     parameters: Parameters<R>,
     /// 1/l1 and 1/l2.

@@ -21,10 +21,10 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
         R::HALF * (m1 + m2) * v1 * v1 + R::HALF * m2 * v2 * v2 + m2 * v1 * v2 * cos_d
     }
 
-    /// The potential energy at the angles `a1`, `a2` (rad), J; zero where both bobs are level with the pivot.
+    /// The potential energy where both rods are at their `angles` (a1, a2), rad; in J, zero where both bobs are level with the pivot.
     ///
     /// V = -(m1 + m2) g l1 cos a1 - m2 g l2 cos a2 (`[math24]`)
-    pub fn potential_energy(&self, a1: R, a2: R) -> R {
+    pub fn potential_energy(&self, [a1, a2]: [R; 2]) -> R {
         let &Parameters { m1, m2, l1, l2, g } = self.parameters();
         let (_, cos1) = T::sin_cos(a1);
         let (_, cos2) = T::sin_cos(a2);
@@ -33,7 +33,7 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
 
     /// The Lagrangian L = T - V, J.
     pub fn lagrangian(&self, motion: &Motion<R>) -> R {
-        self.kinetic_energy(motion) - self.potential_energy(motion.a1, motion.a2)
+        self.kinetic_energy(motion) - self.potential_energy(motion.angles())
     }
 
     /// The angular accelerations (w1', w2'), rad/s^2: Lagrange's two equations solved for them.

@@ -22,7 +22,7 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     /// - p2 = m2 l2^2 w2 + m2 l1 l2 w1 cos D
     ///
     /// (`[math24]`, where the second term of p2 is misprinted with w2.)
-    pub fn state(&self, motion: &Motion<R>) -> State<R> {
+    pub fn to_state(&self, motion: &Motion<R>) -> State<R> {
         let &Motion { a1, a2, w1, w2 } = motion;
         let (_, cos_d) = T::sin_cos(a1 - a2);
         let [[m11, m12], [m21, m22]] = self.mass_matrix(cos_d);
@@ -33,7 +33,7 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     ///
     /// With m2 much greater than m1 and parallel rods p1 l2 and p2 l1 nearly cancel: the relative error of w1 is then
     /// up to m2/m1 roundings, whatever the formula, because the momenta themselves are given to one rounding only.
-    pub fn motion(&self, state: &State<R>) -> Motion<R> {
+    pub fn to_motion(&self, state: &State<R>) -> Motion<R> {
         let &State { a1, a2, .. } = state;
         let [w1, w2, ..] = self.derivatives(&(*state).into());
         Motion { a1, a2, w1, w2 }

@@ -6,7 +6,7 @@
 //! | the book says | here |
 //! |---|---|
 //! | Lagrange's equations | [`Pendulum::lagrangian`], [`Pendulum::accelerations`] |
-//! | Legendre transformation | [`Pendulum::state`], [`Pendulum::motion`] |
+//! | Legendre transformation | [`Pendulum::to_state`], [`Pendulum::to_motion`] |
 //! | Hamilton's equations, H | [`Pendulum::derivatives`], [`Pendulum::energy`]; equal rods: [`EqualRods`] |
 //! | Runge-Kutta method | [`Pendulum::step`], [`rk4::step`] |
 //! | small oscillations | [`Modes`], [`SmallOscillations`] |
@@ -39,7 +39,7 @@
 //! # References
 //!
 //! - `[math24]` "Double Pendulum", math24.net, 23 August 2021: the book of this crate. Three of its formulas are
-//!   misprinted and corrected here: p2's second term ([`Pendulum::state`]), the sign of the quadratic Lagrangian's last
+//!   misprinted and corrected here: p2's second term ([`Pendulum::to_state`]), the sign of the quadratic Lagrangian's last
 //!   term, and the equal-rod form's second equation ([`EqualRods::derivatives`]).
 //! - `[Landau]` L. D. Landau, E. M. Lifshitz, *Mechanics*, 3rd ed., Pergamon 1976.
 //! - `[Hairer I]` E. Hairer, S. P. Norsett, G. Wanner, *Solving Ordinary Differential Equations I*, 2nd ed.,

@@ -125,8 +125,8 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
 pub fn periodic_mass_ratio<R: Real>(fast: u16, slow: u16, lengths: [R; 2]) -> Result<R, Error> {
     let [l1, l2] = lengths;
     Parameters { m1: R::ONE, m2: R::ONE, l1, l2, g: R::ONE }.check()?;
-    let p = R::of(f64::from(fast));
-    let q = R::of(f64::from(slow));
+    let p = R::from_f64(f64::from(fast));
+    let q = R::from_f64(f64::from(slow));
     let numerator1 = p * p * l1 - q * q * l2;
     let numerator2 = p * p * l2 - q * q * l1;
     let denominator = p * q * (l1 + l2);

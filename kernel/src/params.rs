@@ -30,6 +30,16 @@ impl<R: Real> Parameters<R> {
         self.m2 / self.m1
     }
 
+    /// The same numbers in the arithmetic `S`, each rounded once; exact from `f32` to `f64`.
+    ///
+    /// Check them there: what is large in `f64` may be infinite in `f32`.
+    #[must_use]
+    pub fn cast<S: Real>(self) -> Parameters<S> {
+        let Self { m1, m2, l1, l2, g } = self;
+        let [m1, m2, l1, l2, g] = [m1, m2, l1, l2, g].map(R::cast);
+        Parameters { m1, m2, l1, l2, g }
+    }
+
     /// Refuses what no formula could use: NaN, infinite, zero or negative masses and lengths, negative gravity.
     pub(crate) fn check(&self) -> Result<(), Error> {
         for (parameter, value) in self.named() {

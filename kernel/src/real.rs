@@ -46,9 +46,14 @@ pub trait Real:
     const EPSILON: Self;
 
     /// The number nearest to `value`.
-    fn of(value: f64) -> Self;
+    fn from_f64(value: f64) -> Self;
     /// The same number as an `f64`; exact.
     fn to_f64(self) -> f64;
+    /// The number of `S` nearest to this one.
+    #[inline(always)]
+    fn cast<S: Real>(self) -> S {
+        S::from_f64(self.to_f64())
+    }
     /// The absolute value.
     fn abs(self) -> Self;
     /// Twice the number: an addition, or a step of the exponent where an addition would be a call of 100 cycles and more.
@@ -118,7 +123,7 @@ macro_rules! real {
             const EPSILON: Self = $float::EPSILON;
 
             #[inline(always)]
-            fn of(value: f64) -> Self {
+            fn from_f64(value: f64) -> Self {
                 value as $float
             }
             #[inline(always)]

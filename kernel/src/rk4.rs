@@ -15,7 +15,7 @@ pub fn step<R: Real, const N: usize>(f: impl Fn(&[R; N]) -> [R; N], z: &[R; N], 
     let k2 = f(&advanced(z, half, &k1));
     let k3 = f(&advanced(z, half, &k2));
     let k4 = f(&advanced(z, dt, &k3));
-    let sixth = dt / R::of(6.0);
+    let sixth = dt / R::from_f64(6.0);
     core::array::from_fn(|i| z[i] + sixth * (k1[i] + R::TWO * (k2[i] + k3[i]) + k4[i]))
 }
 

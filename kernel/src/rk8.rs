@@ -83,19 +83,19 @@ impl Row<'_> {
     /// wait for it to come back from memory.
     #[inline(always)]
     fn of<R: Real, const N: usize>(&self, slopes: &[[R; N]; 12], count: usize, latest: &[R; N]) -> [R; N] {
-        let first = R::of(self.first);
+        let first = R::from_f64(self.first);
         let Some((&last, middle)) = self.latest.split_last() else {
             return latest.map(|slope| first * slope);
         };
         let mut sum = slopes[0].map(|slope| first * slope);
         let zeros = count.saturating_sub(middle.len());
         for (&coefficient, slope) in middle.iter().zip(slopes.iter().skip(zeros)) {
-            let coefficient = R::of(coefficient);
+            let coefficient = R::from_f64(coefficient);
             for n in 0..N {
                 sum[n] += coefficient * slope[n];
             }
         }
-        let last = R::of(last);
+        let last = R::from_f64(last);
         core::array::from_fn(|n| sum[n] + last * latest[n])
     }
 }

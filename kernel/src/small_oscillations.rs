@@ -48,7 +48,7 @@ impl<R: Real> Oscillation<R> {
 /// assert!((motion.at(0.0).a2 - 0.1).abs() < 1e-15);
 /// # Ok::<(), double_pendulum::Error>(())
 /// ```
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SmallOscillations<R, T = DefaultTrig> {
     modes: Modes<R>,
     fast: Oscillation<R>,
@@ -113,7 +113,7 @@ impl<R: Real, T: SinCos<R>> SmallOscillations<R, T> {
         let Motion { a1, a2, .. } = self.at(t);
         [a1, a2].map(|a| {
             let square = a * a;
-            let [sixth, twelfth] = [R::of(1.0 / 6.0), R::of(1.0 / 12.0)];
+            let [sixth, twelfth] = [R::from_f64(1.0 / 6.0), R::from_f64(1.0 / 12.0)];
             [a - a * square * sixth, R::ONE - R::HALF * square * (R::ONE - square * twelfth)]
         })
     }

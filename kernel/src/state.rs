@@ -6,7 +6,7 @@ use crate::real::Real;
 /// Angles and canonical momenta: a point of the phase space.
 ///
 /// Angles are measured from the downward vertical, positive counter-clockwise, and are not wrapped.
-/// [`Pendulum::motion`](crate::Pendulum::motion) turns it into angular velocities.
+/// [`Pendulum::to_motion`](crate::Pendulum::to_motion) turns it into angular velocities.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct State<R> {
@@ -24,6 +24,18 @@ impl<R: Real> State<R> {
     /// Held still at the angles `a1`, `a2` (rad): both momenta are zero.
     pub fn at_rest(a1: R, a2: R) -> Self {
         Self { a1, a2, p1: R::ZERO, p2: R::ZERO }
+    }
+
+    /// Both angles, rad.
+    #[must_use]
+    pub fn angles(&self) -> [R; 2] {
+        [self.a1, self.a2]
+    }
+
+    /// The same numbers in the arithmetic `S`, each rounded once; exact from `f32` to `f64`.
+    #[must_use]
+    pub fn cast<S: Real>(self) -> State<S> {
+        <[R; 4]>::from(self).map(R::cast).into()
     }
 
     /// Refuses NaN and infinite values.
@@ -73,7 +85,7 @@ impl<R> From<State<R>> for [R; 4] {
 
 /// Angles and angular velocities: the Lagrangian's variables, w = da/dt.
 ///
-/// Angles as in [`State`]; [`Pendulum::state`](crate::Pendulum::state) turns it into canonical momenta.
+/// Angles as in [`State`]; [`Pendulum::to_state`](crate::Pendulum::to_state) turns it into canonical momenta.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Motion<R> {
@@ -91,6 +103,18 @@ impl<R: Real> Motion<R> {
     /// Held still at the angles `a1`, `a2` (rad).
     pub fn at_rest(a1: R, a2: R) -> Self {
         Self { a1, a2, w1: R::ZERO, w2: R::ZERO }
+    }
+
+    /// Both angles, rad.
+    #[must_use]
+    pub fn angles(&self) -> [R; 2] {
+        [self.a1, self.a2]
+    }
+
+    /// The same numbers in the arithmetic `S`, each rounded once; exact from `f32` to `f64`.
+    #[must_use]
+    pub fn cast<S: Real>(self) -> Motion<S> {
+        <[R; 4]>::from(self).map(R::cast).into()
     }
 
     /// Refuses NaN and infinite values.

@@ -237,7 +237,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
             let settings = *self.player.settings();
             self.planner.start(&settings, self.player.shown());
             log(Event::Started(self.player.name(), settings));
-            if let Some(admissible) = settings.admissible_step().filter(|&admissible| DT > admissible) {
+            if let Some(admissible) = settings.admissible_step().filter(|&admissible| DT > f64::from(admissible)) {
                 log(Event::StepTooLong(admissible.into()));
             }
         }

@@ -34,7 +34,7 @@ impl Request {
     pub fn admissible_step(&self) -> Option<f64> {
         let ([a1, a2], [w1, w2]) = (self.angles, self.velocities);
         let pendulum = Pendulum::<f64>::new(self.parameters).ok().filter(|_| self.model != Model::Linear)?;
-        pendulum.admissible_step(&pendulum.state(&Motion { a1, a2, w1, w2 })).ok()
+        pendulum.admissible_step(&pendulum.to_state(&Motion { a1, a2, w1, w2 })).ok()
     }
 
     /// The message that carries it.

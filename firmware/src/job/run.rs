@@ -2,7 +2,7 @@
 
 use core::f64::consts::TAU;
 
-use double_pendulum::form::{self, Winding};
+use double_pendulum::form::{self, Stepper, Winding};
 use double_pendulum::{EqualRods, Error, Modes, Motion, Parameters, Pendulum, Real, SmallOscillations, State, Units};
 
 use super::{Reading, Request};
@@ -17,15 +17,14 @@ pub(super) trait Run: Sized {
 
 /// The request's numbers in the arithmetic `R`, each rounded once.
 fn rounded<R: Real>(request: &Request) -> (Parameters<R>, Motion<R>, R) {
-    let Parameters { m1, m2, l1, l2, g } = request.parameters;
-    let parameters = Parameters { m1: R::of(m1), m2: R::of(m2), l1: R::of(l1), l2: R::of(l2), g: R::of(g) };
-    let ([a1, a2], [w1, w2]) = (request.angles.map(R::of), request.velocities.map(R::of));
-    (parameters, Motion { a1, a2, w1, w2 }, R::of(request.dt))
+    let parameters = request.parameters.cast();
+    let ([a1, a2], [w1, w2]) = (request.angles.map(R::from_f64), request.velocities.map(R::from_f64));
+    (parameters, Motion { a1, a2, w1, w2 }, R::from_f64(request.dt))
 }
 
 fn reading<R: Real>(pendulum: &Pendulum<R>, state: &State<R>, motion: &Motion<R>) -> Reading {
     Reading {
-        state: <[R; 4]>::from(*state).map(R::to_f64),
+        state: state.cast().into(),
         velocities: [motion.w1.to_f64(), motion.w2.to_f64()],
         energy: pendulum.energy(state).to_f64(),
     }
@@ -43,8 +42,8 @@ impl<R: Real> Run for General<R> {
         let (parameters, start, dt) = rounded(request);
         start.check()?;
         let pendulum = Pendulum::new(parameters)?;
-        pendulum.check_step(dt)?;
-        let state = pendulum.state(&start);
+        pendulum.check_step(request.dt)?;
+        let state = pendulum.to_state(&start);
         state.check()?;
         Ok(Self { pendulum, dt, state })
     }
@@ -54,7 +53,7 @@ impl<R: Real> Run for General<R> {
     }
 
     fn reading(&self) -> Reading {
-        reading(&self.pendulum, &self.state, &self.pendulum.motion(&self.state))
+        reading(&self.pendulum, &self.state, &self.pendulum.to_motion(&self.state))
     }
 }
 
@@ -83,41 +82,38 @@ impl<R: Real> Run for Equal<R> {
 
     fn reading(&self) -> Reading {
         let state = self.units.to_si(&self.state);
-        reading(&self.si, &state, &self.si.motion(&state))
+        reading(&self.si, &state, &self.si.to_motion(&state))
     }
 }
 
 /// A form of the kernel's, with what it carries.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Formed<R: Real, F: form::Form<R>> {
-    form: F,
-    carried: F::Carried,
+    stepper: Stepper<R, F>,
     /// In double precision, for readings hold more digits than an `f32`.
     pendulum: Pendulum<f64>,
 }
 
 impl<R: Real, F: form::Form<R>> Formed<R, F> {
     fn read(&self, state: &State<f64>) -> Reading {
-        reading(&self.pendulum, state, &self.pendulum.motion(state))
+        reading(&self.pendulum, state, &self.pendulum.to_motion(state))
     }
 }
 
 impl<R: Real, F: form::Form<R>> Run for Formed<R, F> {
     fn start(request: &Request) -> Result<Self, Error> {
-        let General { pendulum, dt, state } = General::<R>::start(request)?;
-        let form = F::new(pendulum.parameters(), dt)?;
-        let Parameters { m1, m2, l1, l2, g } = *pendulum.parameters();
-        let [m1, m2, l1, l2, g] = [m1, m2, l1, l2, g].map(R::to_f64);
-        let pendulum = Pendulum::new(Parameters { m1, m2, l1, l2, g })?;
-        Ok(Self { form, carried: form.start(&state)?, pendulum })
+        let General { pendulum, state, .. } = General::<R>::start(request)?;
+        let stepper = Stepper::new(pendulum.parameters(), &state, request.dt)?;
+        let pendulum = Pendulum::new(pendulum.parameters().cast())?;
+        Ok(Self { stepper, pendulum })
     }
 
     fn step(&mut self) {
-        self.form.advance(&mut self.carried, 1);
+        self.stepper.advance(1);
     }
 
     fn reading(&self) -> Reading {
-        self.read(&self.form.state(&self.carried))
+        self.read(&self.stepper.state())
     }
 }
 
@@ -131,17 +127,17 @@ pub(super) struct Wound<R: Real, F: form::Form<R>> {
 impl<R: Real, F: form::Form<R>> Run for Wound<R, F> {
     fn start(request: &Request) -> Result<Self, Error> {
         let formed = Formed::start(request)?;
-        Ok(Self { formed, windings: request.angles.map(|angle| Winding::new(R::of(angle))) })
+        Ok(Self { formed, windings: request.angles.map(|angle| Winding::new(R::from_f64(angle))) })
     }
 
     fn step(&mut self) {
         self.formed.step();
-        let directions = self.formed.form.directions(&self.formed.carried);
+        let directions = self.formed.stepper.directions();
         self.windings.iter_mut().zip(directions).for_each(|(winding, direction)| winding.observe(direction));
     }
 
     fn reading(&self) -> Reading {
-        let State { a1, a2, p1, p2 } = self.formed.form.state(&self.formed.carried);
+        let State { a1, a2, p1, p2 } = self.formed.stepper.state();
         let [winding1, winding2] = self.windings;
         self.formed.read(&State { a1: unwrapped(a1, &winding1), a2: unwrapped(a2, &winding2), p1, p2 })
     }
@@ -176,7 +172,7 @@ impl<R: Real> Run for Linear<R> {
     }
 
     fn reading(&self) -> Reading {
-        let motion = self.oscillations.at(R::of(f64::from(self.steps) * self.dt));
-        reading(&self.pendulum, &self.pendulum.state(&motion), &motion)
+        let motion = self.oscillations.at(R::from_f64(f64::from(self.steps) * self.dt));
+        reading(&self.pendulum, &self.pendulum.to_state(&motion), &motion)
     }
 }

@@ -1,5 +1,6 @@
 //! The table of arithmetics under measurement.
 
+use double_pendulum::form::Stepper as Formed;
 use double_pendulum::form::{AngleForm, Compensated, DirectionForm, DirectionForm8, Divided, Followed, Form, Plain};
 use double_pendulum::trig::{Libm, Micromath, Own, SinCos};
 use double_pendulum::{Error, Modes, Motion, Parameters, Pendulum, Real, SmallOscillations, State};
@@ -160,8 +161,7 @@ impl<R: Real, E: Equations<R>> Stepper for Canonical<R, E> {
     }
 
     fn state(&self) -> State<f64> {
-        let State { a1, a2, p1, p2 } = self.state;
-        State { a1: a1.to_f64(), a2: a2.to_f64(), p1: p1.to_f64(), p2: p2.to_f64() }
+        self.state.cast()
     }
 
     fn bits(&self, feed: impl FnMut(u64)) {
@@ -169,31 +169,23 @@ impl<R: Real, E: Equations<R>> Stepper for Canonical<R, E> {
     }
 }
 
-/// A form with what it carries.
-#[derive(Clone, Copy)]
-struct Formed<R: Real, F: Form<R>> {
-    form: F,
-    carried: F::Carried,
-}
-
 impl<R: Real, F: Form<R>> Stepper for Formed<R, F> {
     fn start(request: &Request) -> Result<Self, Error> {
-        let (parameters, state, dt) = rounded(request);
-        let form = F::new(&parameters, dt)?;
-        Ok(Self { form, carried: form.start(&state)? })
+        let (parameters, state, _) = rounded(request);
+        Formed::new(&parameters, &state, request.dt)
     }
 
     #[inline(always)]
     fn advance(&mut self, steps: u32) {
-        self.form.advance(&mut self.carried, steps);
+        Formed::advance(self, steps);
     }
 
     fn state(&self) -> State<f64> {
-        self.form.state(&self.carried)
+        Formed::state(self)
     }
 
     fn bits(&self, feed: impl FnMut(u64)) {
-        F::bits(&self.carried, feed);
+        Formed::bits(self, feed);
     }
 }
 
@@ -234,8 +226,6 @@ impl Stepper for ClosedForm {
 
 /// The request's numbers in `R`, each rounded once: the pendulum, the start, the step.
 fn rounded<R: Real>(request: &Request) -> (Parameters<R>, State<R>, R) {
-    let Parameters { m1, m2, l1, l2, g } = request.parameters;
     let [a1, a2] = request.angles;
-    let parameters = Parameters { m1: R::of(m1), m2: R::of(m2), l1: R::of(l1), l2: R::of(l2), g: R::of(g) };
-    (parameters, State::at_rest(R::of(a1), R::of(a2)), R::of(request.dt))
+    (request.parameters.cast(), State::at_rest(a1, a2).cast(), R::from_f64(request.dt))
 }

@@ -4,8 +4,8 @@
 //! The scene does not wait for it and goes on as it is: the way and the steps of every scene are the same always, so that
 //! its state after n ticks is.
 
+use double_pendulum::Error;
 use double_pendulum::plan::{Budget, Costs, Limit, Method, Plan, Problem, Search};
-use double_pendulum::{Error, Motion, Parameters};
 
 use crate::config::{COSTS, PLANNED, PLANNING_PIECE, PLANNING_TICKS, TICK_CYCLES, TICK_RATE};
 use crate::motion::settings::Settings;
@@ -150,11 +150,9 @@ impl Planner {
 
 /// What the kernel is asked to plan.
 pub fn scene(settings: &Settings, shown: &Shown) -> Problem {
-    let Parameters { m1, m2, l1, l2, g } = settings.parameters;
-    let [m1, m2, l1, l2, g] = [m1, m2, l1, l2, g].map(f64::from);
     Problem {
-        pendulum: Parameters { m1, m2, l1, l2, g },
-        start: Motion::from(<[f32; 4]>::from(settings.motion()).map(f64::from)),
+        pendulum: settings.parameters.cast(),
+        start: settings.motion().cast(),
         height: shown.height.into(),
         duration: PLANNED,
         rate: TICK_RATE as u16,

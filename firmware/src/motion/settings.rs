@@ -85,7 +85,7 @@ impl Settings {
     pub fn start(&self, pendulum: &Pendulum<f32>) -> Result<State<f32>, Error> {
         let motion = self.motion();
         motion.check()?;
-        let state = pendulum.state(&motion);
+        let state = pendulum.to_state(&motion);
         state.check()?;
         Ok(state)
     }

@@ -1,18 +1,16 @@
 //! The motion itself, apart from any frame of it: the state after n steps, and what its energy has become.
 
-use double_pendulum::form::Winding;
 use double_pendulum::{Error, Pendulum, State};
 
 use crate::config::{DT, STEPS_PER_SECOND, STEPS_PER_TICK};
-use crate::motion::direction_stepper::{DirectionStepper, Directions};
+use crate::motion::direction_stepper::{Directions, UnwrappedDirectionStepper};
 use crate::motion::settings::Settings;
 
 /// A pendulum in motion since its last restart.
 #[derive(Clone, Debug)]
 pub struct Simulation {
     energy: Energy,
-    swing: DirectionStepper,
-    windings: [Winding<f32>; 2],
+    swing: UnwrappedDirectionStepper,
     step: u64,
     /// The precise state now, once it was asked for: it takes as long as a step and a half.
     precise: Option<State<f64>>,
@@ -26,8 +24,7 @@ impl Simulation {
         let start = settings.start(&pendulum)?;
         Ok(Self {
             energy: Energy::new(pendulum, &start),
-            swing: DirectionStepper::new(&settings.parameters, &start, DT)?,
-            windings: [start.a1, start.a2].map(Winding::new),
+            swing: UnwrappedDirectionStepper::new(&settings.parameters, &start, DT)?,
             step: 0,
             precise: None,
         })
@@ -36,12 +33,7 @@ impl Simulation {
     /// Advances by one tick: [`STEPS_PER_TICK`] steps of [`DT`] seconds.
     pub fn tick(&mut self) {
         self.precise = None;
-        for _ in 0..STEPS_PER_TICK {
-            self.swing.advance(1);
-            for (winding, direction) in self.windings.iter_mut().zip(self.swing.directions()) {
-                winding.observe(direction);
-            }
-        }
+        self.swing.advance(STEPS_PER_TICK);
         self.step = self.step.wrapping_add(STEPS_PER_TICK.into());
     }
 
@@ -52,14 +44,13 @@ impl Simulation {
 
     /// The canonical state now, rounded to `f32`, its angles unwrapped.
     pub fn state(&self) -> State<f32> {
-        let State { a1, a2, p1, p2 } = self.precise.unwrap_or_else(|| self.swing.state());
-        let [winding1, winding2] = &self.windings;
-        [winding1.unwrap(a1), winding2.unwrap(a2), p1, p2].map(|number| number as f32).into()
+        let state = self.precise.unwrap_or_else(|| self.swing.stepper().state());
+        self.swing.unwrap(state).cast()
     }
 
     /// The canonical state to the last digit carried, each angle within half a turn of hanging.
     pub fn precise_state(&mut self) -> State<f64> {
-        *self.precise.get_or_insert_with(|| self.swing.state())
+        *self.precise.get_or_insert_with(|| self.swing.stepper().state())
     }
 
     /// Steps since the start. They never wrap: that would take 2.4 thousand million years.

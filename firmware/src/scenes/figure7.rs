@@ -137,7 +137,7 @@ impl Misprinted {
 
     fn tick(&mut self) {
         for _ in 0..STEPS_PER_TICK {
-            self.z = rk4::step(|z| self.derivatives(z), &self.z, DT);
+            self.z = rk4::step(|z| self.derivatives(z), &self.z, DT as f32);
         }
         let [sin1, cos1, sin_d, cos_d, q1, q2] = self.z;
         let ([sin1, cos1], [sin_d, cos_d]) = (unit([sin1, cos1]), unit([sin_d, cos_d]));

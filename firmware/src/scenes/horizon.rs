@@ -20,7 +20,7 @@ const TWIN_LIMIT: f32 = 0.5 * HALF_PIXEL;
 
 /// The twin's steps in a tick, where the motion shown makes four.
 const TWIN_STEPS: u32 = 3;
-const TWIN_STEP: f32 = 1.0 / (TICK_RATE * TWIN_STEPS) as f32;
+const TWIN_STEP: f64 = 1.0 / (TICK_RATE * TWIN_STEPS) as f64;
 const _: () = assert!(STEPS_PER_TICK == 4);
 
 /// A twin that runs beside the motion shown and differs in all that makes it wrong.

@@ -117,7 +117,7 @@ impl Scene for Small {
     }
 
     fn report(&self) -> Report {
-        let state = self.pendulum.state(&self.motion.at(self.time() as f32));
+        let state = self.pendulum.to_state(&self.motion.at(self.time() as f32));
         Report { step: self.ticks, time: self.time(), state, energy_error: 0.0, horizon: self.horizon }
     }
 

@@ -80,7 +80,7 @@ impl Scene for Upright {
 
     fn tick(&mut self, ink: &mut FadeLayer) {
         for _ in 0..STEPS_PER_TICK {
-            self.plain = self.energy.pendulum().step(&self.plain, DT);
+            self.plain = self.energy.pendulum().step(&self.plain, DT as f32);
         }
         self.compensated.advance(STEPS_PER_TICK);
         self.step = self.step.wrapping_add(STEPS_PER_TICK.into());

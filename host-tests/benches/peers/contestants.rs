@@ -1,7 +1,7 @@
 //! Who takes part: this kernel and two integration libraries, each in f64 and each keeping what it always keeps.
 
 use differential_equations::prelude::{ExplicitRungeKutta, IVP, ODE};
-use double_pendulum::form::{AngleForm, DirectionForm, DirectionForm8, Form, Plain};
+use double_pendulum::form::{AngleForm, DirectionForm, DirectionForm8, Form, Plain, Stepper};
 use double_pendulum::{Motion, State};
 use host_tests::oracle::reference::Reference;
 use host_tests::oracle::trials::largest_difference;
@@ -148,10 +148,9 @@ fn own_step(
 
 fn form<F: Form<f64>>(scene: &Scene, parts: u32, steps: u32) -> [f64; 4] {
     let end = || {
-        let form = F::new(&PARAMETERS, scene.step(steps))?;
-        let mut carried = form.start(&scene.start().into())?;
-        form.advance(&mut carried, parts * steps);
-        Ok::<_, double_pendulum::Error>(form.state(&carried).into())
+        let mut motion = Stepper::<f64, F>::new(&PARAMETERS, &scene.start().into(), scene.step(steps))?;
+        motion.advance(parts * steps);
+        Ok::<_, double_pendulum::Error>(motion.state().into())
     };
     end().unwrap_or_else(|error| panic!("{error}"))
 }

@@ -38,8 +38,3 @@ pub fn state(rng: &mut Rng, &Parameters { m1, m2, l1, l2, g }: &Parameters<f64>)
     .map(|x| f64::from(x as f32))
     .into()
 }
-
-/// The same parameters in `f32`.
-pub fn single(&Parameters { m1, m2, l1, l2, g }: &Parameters<f64>) -> Parameters<f32> {
-    Parameters { m1: m1 as f32, m2: m2 as f32, l1: l1 as f32, l2: l2 as f32, g: g as f32 }
-}

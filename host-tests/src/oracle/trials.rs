@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use double_pendulum::form::Form;
+use double_pendulum::form::{Form, Stepper};
 use double_pendulum::{Error, Parameters, Pendulum, Real, State};
 
 use crate::oracle::reference::Reference;
@@ -29,20 +29,17 @@ impl Trial {
 
     /// The trial as `R` holds it: every number rounded.
     pub fn rounded<R: Real>(&self) -> (Parameters<R>, State<R>) {
-        let Parameters { m1, m2, l1, l2, g } = self.parameters;
-        let [m1, m2, l1, l2, g] = [m1, m2, l1, l2, g].map(R::of);
-        (Parameters { m1, m2, l1, l2, g }, <[f64; 4]>::from(self.start).map(R::of).into())
+        (self.parameters.cast(), self.start.cast())
     }
 
     /// The states of the form `F` at the moments, in steps of `dt`, s.
     pub fn states<R: Real, F: Form<R>>(&self, dt: f64) -> Result<Vec<State<f64>>, Error> {
         let (parameters, start) = self.rounded::<R>();
-        let form = F::new(&parameters, R::of(dt))?;
-        let mut carried = form.start(&start)?;
+        let mut stepper = Stepper::<R, F>::new(&parameters, &start, dt)?;
         let steps = (self.seconds / dt / f64::from(SAMPLES)).round() as u32;
         let mut next = || {
-            form.advance(&mut carried, steps);
-            form.state(&carried)
+            stepper.advance(steps);
+            stepper.state()
         };
         Ok((0..SAMPLES).map(|_| next()).collect())
     }
@@ -50,15 +47,11 @@ impl Trial {
     /// The exact states at the moments, for the numbers as `R` holds them.
     pub fn exact<R: Real>(&self) -> Result<Vec<State<f64>>, Error> {
         let (parameters, start) = self.rounded::<R>();
-        let Parameters { m1, m2, l1, l2, g } = parameters;
-        let [m1, m2, l1, l2, g] = [m1, m2, l1, l2, g].map(R::to_f64);
-        let parameters = Parameters { m1, m2, l1, l2, g };
-        let pendulum = Pendulum::new(parameters)?;
-        let start: State<f64> = <[R; 4]>::from(start).map(R::to_f64).into();
-        let mut reference = Reference::new(&parameters, &pendulum.motion(&start));
+        let pendulum = Pendulum::new(parameters.cast())?;
+        let mut reference = Reference::new(pendulum.parameters(), &pendulum.to_motion(&start.cast()));
         let mut at = |sample: u32| {
             reference.advance_to(self.seconds * f64::from(sample) / f64::from(SAMPLES));
-            pendulum.state(&reference.motion())
+            pendulum.to_state(&reference.motion())
         };
         Ok((1..=SAMPLES).map(&mut at).collect())
     }

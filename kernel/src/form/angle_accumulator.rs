@@ -17,7 +17,7 @@ pub(crate) const LARGEST: f64 = 1.647e6;
 ///
 /// The remainder is kept near 0.05 rad, so that its last place weighs 4e-9 rad in `f32` whatever the angle, and the
 /// direction follows from that of the mark by a small turn.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct AngleAccumulator<R, S> {
     mark: i32,
     /// `length` (sin, cos) of the mark.
@@ -33,7 +33,7 @@ impl<R: Real, S: Sum<R>> AngleAccumulator<R, S> {
         let [high, middle, low] = f64::PI_OVER_TWO.map(|part| mark * (part / f64::from(MARKS)));
         let mark = mark as i32;
         let rest = ((value - high) - middle) - low - offset::<R>(mark).to_f64();
-        Self { mark, direction: direction(mark, length), rest: R::of(rest), sum: S::new(rest) }
+        Self { mark, direction: direction(mark, length), rest: R::from_f64(rest), sum: S::new(rest) }
     }
 
     /// The direction: `length` (sin, cos).
@@ -64,14 +64,15 @@ impl<R: Real, S: Sum<R>> AngleAccumulator<R, S> {
 
     /// Counts from the nearest mark instead; the angle stays the same.
     pub fn renormalise(&mut self, length: R) {
-        let marks = (self.rest * R::of(1.0 / SPACING)).nearest();
+        let marks = (self.rest * R::from_f64(1.0 / SPACING)).nearest();
         if marks == 0 {
             return;
         }
         let old = offset::<R>(self.mark);
         self.mark = self.mark.wrapping_add(marks);
         self.direction = direction(self.mark, length);
-        let [high, middle, low] = R::PI_OVER_TWO.map(|part| R::of(f64::from(marks)) * (part * R::of(1.0 / 16.0)));
+        let [high, middle, low] =
+            R::PI_OVER_TWO.map(|part| R::from_f64(f64::from(marks)) * (part * R::from_f64(1.0 / 16.0)));
         self.rest = (self.rest - high) - middle; // exact
         for part in [-low, old, -offset::<R>(self.mark)] {
             self.add(part);
@@ -176,7 +177,7 @@ mod tests {
                 let (sine, cosine) = libm::sincos(angle(turn.parts()));
                 let [s, c] = turn.direction().map(R::to_f64);
                 assert!((s / 2.0 - sine).abs().max((c / 2.0 - cosine).abs()) < tolerance, "{start} {step}");
-                turn.add(R::of(step));
+                turn.add(R::from_f64(step));
                 turn.renormalise(R::TWO);
             }
         }

@@ -15,7 +15,7 @@ use crate::state::State;
 /// - P1' = -G1 sin a1 - F; P2' = -G2 nu sin a2 + F, where nu sin a2 = C sin a1 - S cos a1
 ///
 /// Rods of any lengths cost what equal rods do, and no rate is multiplied by dt.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Coefficients<R> {
     /// nu.
     pub norm: R,
@@ -78,11 +78,11 @@ impl<R: Real> Coefficients<R> {
 /// A third, by which k1 + 2 k2 + 2 k3 + k4 becomes the increment of a step.
 #[inline(always)]
 pub(crate) fn third<R: Real>() -> R {
-    R::of(1.0 / 3.0)
+    R::from_f64(1.0 / 3.0)
 }
 
 /// How far a step goes, tau: the sum of the weights of its slopes, times a factor as rounded.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Span {
     pub weights: f64,
     pub factor: f64,
@@ -98,7 +98,7 @@ impl Span {
 }
 
 /// How the units of the step translate to SI. In `f64`; used at input and output only.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Scale {
     /// tau, s.
     time: f64,
@@ -111,33 +111,32 @@ pub(crate) struct Scale {
 /// Checks and prepares a pendulum and a step of `dt` seconds, which are `span`; a negative one runs backwards.
 pub(crate) fn prepare<R: Real>(
     parameters: &Parameters<R>,
-    dt: R,
+    dt: f64,
     span: Span,
 ) -> Result<(Coefficients<R>, Scale), Error> {
     parameters.check()?;
-    let (parameter, value) = (Parameter::Dt, dt.to_f64());
+    let (parameter, value) = (Parameter::Dt, dt);
     if !dt.is_finite() {
         return Err(Error::NotFinite { parameter, value });
     }
-    if !dt.is_normal() {
+    if !R::from_f64(dt).is_normal() {
         return Err(Error::OutOfRange { parameter, value });
     }
-    let &Parameters { m1, m2, l1, l2, g } = parameters;
-    let [m1, m2, l1, l2, g, dt] = [m1, m2, l1, l2, g, dt].map(R::to_f64);
+    let Parameters { m1, m2, l1, l2, g } = parameters.cast::<f64>();
     let norm = l1 / l2;
     let [inertia, total] = [m1, m1 + m2].map(|mass| mass / m2 * norm * norm);
 
     let unit = dt / libm::rint(span.weights * span.factor);
     let wished = unit * unit * g / l1;
     let gravity2 = factor_near::<R>(wished, total);
-    let gravity = [R::of(total * gravity2.to_f64()), gravity2];
+    let gravity = [R::from_f64(total * gravity2.to_f64()), gravity2];
     let time = if g == 0.0 { unit } else { unit * libm::sqrt(gravity2.to_f64() / wished) };
 
-    let coefficients = Coefficients { norm: R::of(norm), inertia: R::of(inertia), gravity };
+    let coefficients = Coefficients { norm: R::from_f64(norm), inertia: R::from_f64(inertia), gravity };
     let scale = Scale { time, momentum: time / (m2 * l2 * l2), lag: dt - span.weights * time * span.factor };
     let in_range = |constant: R| constant.is_normal() && (R::ONE / constant).is_normal();
     let gravity_in_range = g == 0.0 || coefficients.gravity.into_iter().all(R::is_normal);
-    if [coefficients.norm, coefficients.inertia, R::of(total)].into_iter().all(in_range) && gravity_in_range {
+    if [coefficients.norm, coefficients.inertia, R::from_f64(total)].into_iter().all(in_range) && gravity_in_range {
         Ok((coefficients, scale))
     } else {
         Err(parameters.out_of_range())
@@ -151,11 +150,11 @@ pub(crate) fn prepare<R: Real>(
 fn factor_near<R: Real>(value: f64, factor: f64) -> R {
     let lost = |candidate: R| {
         let exact = candidate.to_f64() * factor;
-        (R::of(exact).to_f64() - exact).abs()
+        (R::from_f64(exact).to_f64() - exact).abs()
     };
-    let centre = R::of(value);
+    let centre = R::from_f64(value);
     let ulp = centre * R::EPSILON;
-    let candidates = (-32..=32_i32).map(|i| centre + R::of(f64::from(i)) * ulp);
+    let candidates = (-32..=32_i32).map(|i| centre + R::from_f64(f64::from(i)) * ulp);
     let (best, _) = candidates
         .map(|candidate| (candidate, lost(candidate)))
         .fold((centre, lost(centre)), |best, other| if other.1 < best.1 { other } else { best });
@@ -167,7 +166,7 @@ impl Scale {
     pub fn momenta<R: Real>(&self, state: &State<R>) -> Result<[f64; 2], Error> {
         let scaled = [state.p1, state.p2].map(|p| p.to_f64() * self.momentum);
         for (i, parameter) in [Parameter::P1, Parameter::P2].into_iter().enumerate() {
-            if !R::of(scaled[i]).is_finite() {
+            if !R::from_f64(scaled[i]).is_finite() {
                 return Err(Error::OutOfRange { parameter, value: scaled[i] / self.momentum });
             }
         }

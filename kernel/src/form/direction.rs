@@ -18,7 +18,7 @@ use crate::trig::{Own, SinCos};
 /// within a factor of three, smaller near the upright position. What it does to the length of the directions, a relative
 /// (w dt)^6/72 a step, is undone every 32 steps. AngleState are read off within (-pi, pi]; [`Winding`](super::Winding) counts
 /// the turns for those who ask.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DirectionForm<R, S = Compensated<R>, I = Followed> {
     pub(super) coefficients: Coefficients<R>,
     scale: Scale,
@@ -28,7 +28,7 @@ pub struct DirectionForm<R, S = Compensated<R>, I = Followed> {
 }
 
 /// What the direction form carries from step to step: 64 bytes in compensated `f32`.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DirectionState<R, S> {
     /// sin a1, cos a1, S, C, P1, P2.
     pub(super) z: [R; 6],
@@ -43,7 +43,7 @@ const RESTORING: u32 = 32;
 impl<R: Real, S: Sum<R>, I: Inverse<R>> Form<R> for DirectionForm<R, S, I> {
     type Carried = DirectionState<R, S>;
 
-    fn new(parameters: &Parameters<R>, dt: R) -> Result<Self, Error> {
+    fn new(parameters: &Parameters<R>, dt: f64) -> Result<Self, Error> {
         Self::with_span(parameters, dt, Span::classical::<R>())
     }
 
@@ -55,8 +55,8 @@ impl<R: Real, S: Sum<R>, I: Inverse<R>> Form<R> for DirectionForm<R, S, I> {
         let (sin_d, cos_d) = Own::sin_cos(a1 - a2);
         let [p1, p2] = self.scale.momenta(state)?;
         let z = [sin1, cos1, norm * sin_d, norm * cos_d, p1, p2];
-        let inverse = R::ONE / self.coefficients.denominator(R::of(z[2]));
-        Ok(DirectionState { z: z.map(R::of), sums: z.map(S::new), inverse, steps: 0 })
+        let inverse = R::ONE / self.coefficients.denominator(R::from_f64(z[2]));
+        Ok(DirectionState { z: z.map(R::from_f64), sums: z.map(S::new), inverse, steps: 0 })
     }
 
     #[inline]
@@ -97,7 +97,7 @@ impl<R: Real, S: Sum<R>, I: Inverse<R>> Form<R> for DirectionForm<R, S, I> {
 }
 
 impl<R: Real, S: Sum<R>, I: Inverse<R>> DirectionForm<R, S, I> {
-    pub(super) fn with_span(parameters: &Parameters<R>, dt: R, span: Span) -> Result<Self, Error> {
+    pub(super) fn with_span(parameters: &Parameters<R>, dt: f64, span: Span) -> Result<Self, Error> {
         let (coefficients, scale) = prepare(parameters, dt, span)?;
         let half_inverse_square = R::HALF / (coefficients.norm * coefficients.norm);
         Ok(Self { coefficients, scale, half_inverse_square, ways: PhantomData })

@@ -5,7 +5,7 @@ use core::fmt::Debug;
 use crate::real::Real;
 
 /// A way to follow r = 1/(m + S^2) through a step.
-pub trait Inverse<R: Real>: Copy + Debug + 'static {
+pub trait Inverse<R: Real>: Copy + Debug + PartialEq + 'static {
     /// r at a stage where it is to have fallen by `fall` since the start of the step, and m + S^2 is `denominator`.
     fn at_stage(start: R, fall: R, denominator: R) -> R;
     /// r at the end of the step; `last` was the one of the fourth stage.
@@ -13,7 +13,7 @@ pub trait Inverse<R: Real>: Copy + Debug + 'static {
 }
 
 /// By division at each stage.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Divided;
 
 impl<R: Real> Inverse<R> for Divided {
@@ -31,7 +31,7 @@ impl<R: Real> Inverse<R> for Divided {
 ///
 /// The last stage's r, off by the third power of the step, is put right by one Newton step, r + r (1 - (m + S^2) r). A
 /// step that changes r by a third or more makes no sense with it, nor with RK4.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Followed;
 
 impl<R: Real> Inverse<R> for Followed {

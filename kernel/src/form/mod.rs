@@ -32,6 +32,7 @@ mod coefficients;
 mod direction;
 mod direction8;
 mod inverse;
+mod stepper;
 mod sum;
 mod winding;
 
@@ -39,6 +40,7 @@ pub use angle::{AngleForm, AngleState};
 pub use direction::{DirectionForm, DirectionState};
 pub use direction8::DirectionForm8;
 pub use inverse::{Divided, Followed, Inverse};
+pub use stepper::{Stepper, UnwrappedStepper};
 pub use sum::{Compensated, Plain, Sum};
 pub use winding::Winding;
 
@@ -51,14 +53,14 @@ use crate::state::State;
 pub type Direction<R> = [R; 2];
 
 /// A pendulum and a step size, prepared: configuration that drives any number of motions.
-pub trait Form<R: Real>: Copy + core::fmt::Debug {
+pub trait Form<R: Real>: Copy + core::fmt::Debug + PartialEq {
     /// A motion: what is carried from step to step.
-    type Carried: Copy + core::fmt::Debug;
+    type Carried: Copy + core::fmt::Debug + PartialEq;
 
     /// Checks the parameters and prepares steps of `dt` seconds; a negative one runs backwards.
     ///
     /// Refuses what [`Pendulum::new`](crate::Pendulum::new) refuses, and a step that is NaN, infinite, zero or subnormal.
-    fn new(parameters: &Parameters<R>, dt: R) -> Result<Self, Error>;
+    fn new(parameters: &Parameters<R>, dt: f64) -> Result<Self, Error>;
 
     /// The motion that starts from `state`.
     ///

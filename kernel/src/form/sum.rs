@@ -6,7 +6,7 @@ use super::coefficients::third;
 use crate::real::Real;
 
 /// A running sum: the number itself is kept elsewhere, what its additions lose is kept here.
-pub trait Sum<R: Real>: Copy + Debug + 'static {
+pub trait Sum<R: Real>: Copy + Debug + PartialEq + 'static {
     /// For a sum that starts at `value`, of which the number keeps as many digits as it has.
     fn new(value: f64) -> Self;
     /// `number` + `increment`.
@@ -74,7 +74,7 @@ pub struct Compensated<R>(R);
 impl<R: Real> Sum<R> for Compensated<R> {
     #[inline]
     fn new(value: f64) -> Self {
-        Self(R::of(value - R::of(value).to_f64()))
+        Self(R::from_f64(value - R::from_f64(value).to_f64()))
     }
     #[inline(always)]
     fn add(&mut self, number: R, increment: R) -> R {
@@ -99,11 +99,11 @@ impl<R: Real> Sum<R> for Compensated<R> {
     }
     #[inline(always)]
     fn half_step(slope: R) -> R {
-        slope * R::of(3.0)
+        slope * R::from_f64(3.0)
     }
     #[inline(always)]
     fn whole_step(slope: R) -> R {
-        slope * R::of(6.0)
+        slope * R::from_f64(6.0)
     }
     #[inline(always)]
     fn increment(slopes: R) -> R {

@@ -6,7 +6,7 @@ use crate::real::Real;
 /// Counts how often a direction passes the upward vertical.
 ///
 /// Show it the direction at least once every quarter turn; then [`angle`](Self::angle) is the unwrapped angle.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Winding<R> {
     turns: i32,
     last: Direction<R>,
@@ -18,7 +18,7 @@ impl<R: Real> Winding<R> {
         let angle = start.to_f64();
         let turns = libm::rint(angle / core::f64::consts::TAU);
         let rest = angle - turns * core::f64::consts::TAU;
-        Self { turns: turns as i32, last: [R::of(libm::sin(rest)), R::of(libm::cos(rest))] }
+        Self { turns: turns as i32, last: [R::from_f64(libm::sin(rest)), R::from_f64(libm::cos(rest))] }
     }
 
     /// Takes note of the direction (sin, cos) the angle has now.

@@ -65,7 +65,7 @@ impl Single {
     pub fn new(problem: &Problem, start: &State<f64>, steps: u32) -> Self {
         let rounded = problem.rounded::<f32>(start, Twin::None);
         let (parameters, _) = &rounded;
-        let motion = <[f64; 4]>::from(problem.start).map(|x| x as f32).into();
+        let motion = problem.start.cast();
         let linear = Modes::new(parameters).ok().map(|modes| SmallOscillations::new(modes, &motion));
         let ways = [Method::Direction, Method::ClosedForm, Method::DirectionPlain, Method::Angle];
         Self {

@@ -70,14 +70,19 @@ impl Problem {
     pub(super) fn rounded<R: Real>(&self, start: &State<f64>, twin: Twin) -> (Parameters<R>, State<R>) {
         let &State { a1, a2, p1, p2 } = start;
         let Parameters { m1, m2, l1, l2, g } = self.pendulum;
-        let off = |value: f64, by: f64| R::of(value * (1.0 + by * R::EPSILON.to_f64()));
+        let off = |value: f64, by: f64| R::from_f64(value * (1.0 + by * R::EPSILON.to_f64()));
         let [first, second] = match twin {
             Twin::None => [0.0, 0.0],
             Twin::Alike => [0.5, 0.5],
             Twin::Opposite => [0.5, -0.5],
         };
-        let parameters =
-            Parameters { m1: R::of(m1), m2: off(m2, first), l1: R::of(l1), l2: off(l2, second), g: off(g, second) };
+        let parameters = Parameters {
+            m1: R::from_f64(m1),
+            m2: off(m2, first),
+            l1: R::from_f64(l1),
+            l2: off(l2, second),
+            g: off(g, second),
+        };
         let state = State { a1: off(a1, first), a2: off(a2, second), p1: off(p1, second), p2: off(p2, first) };
         (parameters, state)
     }

@@ -1,7 +1,7 @@
 //! One way of computing a scene, step by step, and how far two frames are apart on the display.
 
 use crate::error::Error;
-use crate::form::{Direction, Form};
+use crate::form::{Direction, Form, Stepper};
 use crate::params::Parameters;
 use crate::real::Real;
 use crate::state::State;
@@ -15,9 +15,9 @@ pub(super) struct Run<R: Real, F: Form<R>> {
     parameters: Parameters<R>,
     start: State<R>,
     /// The step, s.
-    dt: R,
+    dt: f64,
     /// Prepared by the first piece of work.
-    motion: Option<(F, F::Carried)>,
+    motion: Option<Stepper<R, F>>,
     per_frame: u32,
     /// Steps made since the last frame.
     made: u32,
@@ -26,7 +26,7 @@ pub(super) struct Run<R: Real, F: Form<R>> {
 impl<R: Real, F: Form<R>> Run<R, F> {
     /// With `per_frame` steps for each of the `rate` frames of a second.
     pub fn new(&(parameters, start): &(Parameters<R>, State<R>), rate: u16, per_frame: u32) -> Self {
-        let dt = R::of(1.0 / (f64::from(rate) * f64::from(per_frame)));
+        let dt = 1.0 / (f64::from(rate) * f64::from(per_frame));
         Self { parameters, start, dt, motion: None, per_frame, made: 0 }
     }
 
@@ -36,10 +36,9 @@ impl<R: Real, F: Form<R>> Run<R, F> {
         let left = self.per_frame.saturating_sub(self.made);
         let steps = if most < left { most } else { left };
         match &mut self.motion {
-            Some((form, carried)) => form.advance(carried, steps),
+            Some(motion) => motion.advance(steps),
             None => {
-                let form = F::new(&self.parameters, self.dt)?;
-                self.motion = Some((form, form.start(&self.start)?));
+                self.motion = Some(Stepper::new(&self.parameters, &self.start, self.dt)?);
                 return Ok(true);
             }
         }
@@ -50,8 +49,8 @@ impl<R: Real, F: Form<R>> Run<R, F> {
     /// The frame, when nothing is left to do; the next steps lead to the next.
     pub fn frame(&mut self) -> Directions {
         self.made = 0;
-        self.motion.as_ref().map_or([[f32::NAN; 2]; 2], |(form, carried)| {
-            form.directions(carried).map(|direction| direction.map(|x| x.to_f64() as f32))
+        self.motion.as_ref().map_or([[f32::NAN; 2]; 2], |motion| {
+            motion.directions().map(|direction| direction.map(|x| x.to_f64() as f32))
         })
     }
 }

@@ -105,7 +105,7 @@ impl Search {
         costs.check()?;
         budget.check()?;
         let pendulum = Pendulum::new(problem.pendulum)?;
-        let start = pendulum.state(&problem.start);
+        let start = pendulum.to_state(&problem.start);
         let first = first_steps(problem, pendulum.admissible_step(&start)?);
         Ok(Self {
             problem: *problem,

@@ -72,7 +72,7 @@ impl<R: Real, F: Form<R>> ShadowedRun<R, F> {
     /// Refuses a scene that cannot be shown and a pendulum that the kernel refuses.
     pub fn new(problem: &Problem, steps: u32) -> Result<Self, Error> {
         problem.check()?;
-        Ok(Self::from_state(problem, &Pendulum::new(problem.pendulum)?.state(&problem.start), steps))
+        Ok(Self::from_state(problem, &Pendulum::new(problem.pendulum)?.to_state(&problem.start), steps))
     }
 
     /// From `start`, with `steps` steps for each frame.

@@ -15,7 +15,7 @@ use crate::real::Real;
 /// A source of sine and cosine for the reals `R`.
 ///
 /// One run uses one source, on the host and on the chip alike: results agree to the bit only within a source.
-pub trait SinCos<R: Real>: Copy + core::fmt::Debug + 'static {
+pub trait SinCos<R: Real>: Copy + core::fmt::Debug + PartialEq + 'static {
     /// (sin `angle`, cos `angle`), `angle` in rad.
     fn sin_cos(angle: R) -> (R, R);
 }
@@ -28,7 +28,7 @@ pub trait SinCos<R: Real>: Copy + core::fmt::Debug + 'static {
 /// - an infinite argument or a NaN gives NaN for both.
 ///
 /// Asserted by `host-tests/tests/trigonometry.rs`; all floats of [-pi, pi] on demand.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Own;
 
 impl<R: Real> SinCos<R> for Own {
@@ -41,7 +41,7 @@ impl<R: Real> SinCos<R> for Own {
 /// The `libm` crate: a port of musl's routines, at most 1 ulp from the exact value.
 ///
 /// Cost on a Cortex-M is high: the `f32` routine works in `f64`.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Libm;
 
 impl<R: Real> SinCos<R> for Libm {
@@ -53,7 +53,7 @@ impl<R: Real> SinCos<R> for Libm {
 
 /// The `micromath` crate: short, and wrong by up to 1.2e-3. Here for comparison.
 #[cfg(feature = "micromath")]
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Micromath;
 
 #[cfg(feature = "micromath")]

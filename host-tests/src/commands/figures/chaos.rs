@@ -63,7 +63,7 @@ fn path(pendulum: &Pendulum<f64>, refinement: u32, rhs: impl Fn(&[f64; 4]) -> [f
     let energy = pendulum.energy(&state);
     for step in 0..=DURATION * STEPS * refinement {
         if step.is_multiple_of(STEPS_PER_POINT * refinement) {
-            let [_, bob2] = pendulum.positions(state.a1, state.a2);
+            let [_, bob2] = pendulum.positions(state.angles());
             points.push([bob2.x, bob2.y]);
         }
         state = rk4::step(&rhs, &state.into(), dt).into();

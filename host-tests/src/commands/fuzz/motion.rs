@@ -1,6 +1,6 @@
 //! The kernel on any bit patterns: parameters are refused or good for every method, steps are finite or refused.
 
-use double_pendulum::form::{AngleForm, DirectionForm, DirectionForm8, Form, Plain};
+use double_pendulum::form::{AngleForm, DirectionForm, DirectionForm8, Form, Plain, Stepper};
 use double_pendulum::{EqualRods, Error, Modes, Parameters, Pendulum, Real, State, Units};
 
 use super::Outcome;
@@ -26,7 +26,7 @@ pub fn refusal(error: &Error) -> Outcome {
 }
 
 fn rounded<R: Real>([m1, m2, l1, l2, g]: [f64; 5]) -> Parameters<R> {
-    Parameters { m1: R::of(m1), m2: R::of(m2), l1: R::of(l1), l2: R::of(l2), g: R::of(g) }
+    Parameters { m1, m2, l1, l2, g }.cast()
 }
 
 /// Every constructor on five numbers, a step and a state.
@@ -38,7 +38,7 @@ pub fn parameters(input: &[u8]) -> Outcome {
 }
 
 fn constructed<R: Real>(numbers: [f64; 5], dt: f64, state: [f64; 4]) -> Outcome {
-    let (parameters, dt) = (rounded::<R>(numbers), R::of(dt));
+    let parameters = rounded::<R>(numbers);
     let _ = (Units::of(&parameters), EqualRods::<R>::new(parameters.mass_ratio()));
     let modes = Modes::new(&parameters);
     if let Ok(modes) = modes {
@@ -52,8 +52,13 @@ fn constructed<R: Real>(numbers: [f64; 5], dt: f64, state: [f64; 4]) -> Outcome 
     // Hanging still is a motion of every pendulum, and it stays one.
     let still = State::at_rest(R::ZERO, R::ZERO);
     assert_eq!(pendulum.derivatives(&still.into()), [R::ZERO; 4], "{parameters:?}");
-    let state: State<R> = state.map(R::of).into();
-    let _ = (pendulum.bounds(&state), pendulum.energy(&state), pendulum.motion(&state), pendulum.positions(dt, dt));
+    let state = State::from(state).cast::<R>();
+    let _ = (
+        pendulum.bounds(&state),
+        pendulum.energy(&state),
+        pendulum.to_motion(&state),
+        pendulum.positions(state.angles()),
+    );
     let _ = (pendulum.cannot_turn_over(&state), pendulum.least_energy(), pendulum.turnover_energy());
     match pendulum.check_step(dt) {
         Ok(()) => 0x10 + u32::from(modes.is_ok()),
@@ -82,11 +87,11 @@ pub fn steppers(input: &[u8]) -> Outcome {
 
 fn plain<R: Real>(numbers: [f64; 5], dt: f64, state: [f64; 4], steps: u8) -> Result<(), Error> {
     let pendulum = Pendulum::new(rounded::<R>(numbers))?;
-    let (dt, mut state) = (R::of(dt), State::from(state.map(R::of)));
+    let mut state = State::from(state).cast();
     pendulum.check_step(dt)?;
     state.check()?;
     for _ in 0..steps {
-        state = pendulum.step(&state, dt).finite()?;
+        state = pendulum.step(&state, R::from_f64(dt)).finite()?;
         assert_eq!(state.check(), Ok(()));
     }
     Ok(())
@@ -95,22 +100,21 @@ fn plain<R: Real>(numbers: [f64; 5], dt: f64, state: [f64; 4], steps: u8) -> Res
 fn equal<R: Real>(numbers: [f64; 5], dt: f64, state: [f64; 4], steps: u8) -> Result<(), Error> {
     let parameters = rounded::<R>(numbers);
     let (units, rods) = (Units::of(&parameters)?, EqualRods::<R>::new(parameters.mass_ratio())?);
-    let mut state = State::from(state.map(R::of));
+    let mut state = State::from(state).cast();
     state.check()?;
     state = units.from_si(&state).finite()?;
     for _ in 0..steps {
-        state = rods.step(&state, R::of(dt) / units.time).finite()?;
+        state = rods.step(&state, R::from_f64(dt) / units.time).finite()?;
     }
     units.to_si(&state).finite().map(drop)
 }
 
 fn form<R: Real, F: Form<R>>(numbers: [f64; 5], dt: f64, state: [f64; 4], steps: u8) -> Result<(), Error> {
-    let form = F::new(&rounded(numbers), R::of(dt))?;
-    let mut carried = form.start(&state.map(R::of).into())?;
+    let mut stepper = Stepper::<R, F>::new(&rounded(numbers), &State::from(state).cast(), dt)?;
     for _ in 0..steps {
-        form.try_advance(&mut carried, 1)?;
-        assert_eq!(form.state(&carried).check(), Ok(()));
-        let numbers = form.directions(&carried);
+        stepper.try_advance(1)?;
+        assert_eq!(stepper.state().check(), Ok(()));
+        let numbers = stepper.directions();
         assert!(numbers.as_flattened().iter().all(|number| number.is_finite()), "{numbers:?}");
     }
     Ok(())

@@ -59,7 +59,7 @@ pub fn fit(scenes: impl IntoIterator<Item = Problem>, tick: impl Fn() + Sync) ->
 
 fn looks(number: usize, scene: &Problem) -> Result<Vec<Sample>, Error> {
     let pendulum = Pendulum::new(scene.pendulum)?;
-    let admissible = pendulum.admissible_step(&pendulum.state(&scene.start))?;
+    let admissible = pendulum.admissible_step(&pendulum.to_state(&scene.start))?;
     let coarsest = (1.0 / (f64::from(scene.rate) * 4.0 * admissible)).ceil().max(1.0) as u32;
     let mut exact = Exact { scene, reference: Reference::new(&scene.pendulum, &scene.start), frames: Vec::new() };
     let mut samples = Vec::new();

@@ -1,8 +1,8 @@
 //! A plan carried out, beside the reference.
 
-use double_pendulum::form::{AngleForm, Direction, DirectionForm, DirectionForm8, Form, Plain};
+use double_pendulum::form::{AngleForm, Direction, DirectionForm, DirectionForm8, Form, Plain, Stepper};
 use double_pendulum::plan::{HALF_PIXEL, Method, Plan, Problem};
-use double_pendulum::{Error, Modes, Motion, Parameters, Pendulum, Real, SmallOscillations, State};
+use double_pendulum::{Error, Modes, Motion, Parameters, Pendulum, Real, SmallOscillations};
 
 use crate::oracle::reference::Reference;
 
@@ -84,30 +84,22 @@ fn stepped<R: Real, F: Form<R> + 'static>(
     scene: &Problem,
     plan: &Plan,
 ) -> Result<Box<dyn FnMut() -> Directions>, Error> {
-    let state = Pendulum::new(scene.pendulum)?.state(&scene.start);
-    let state: State<R> = <[f64; 4]>::from(state).map(R::of).into();
-    let form = F::new(&rounded(&scene.pendulum), R::of(plan.step))?;
-    let mut carried = form.start(&state)?;
+    let start = Pendulum::new(scene.pendulum)?.to_state(&scene.start);
+    let mut stepper = Stepper::<R, F>::new(&scene.pendulum.cast(), &start.cast(), plan.step)?;
     let steps = plan.steps;
     Ok(Box::new(move || {
-        form.advance(&mut carried, steps);
-        form.directions(&carried).map(|direction| direction.map(R::to_f64))
+        stepper.advance(steps);
+        stepper.directions().map(|direction| direction.map(R::to_f64))
     }))
 }
 
 fn closed_form(scene: &Problem) -> Result<Box<dyn FnMut() -> Directions>, Error> {
-    let start = <[f64; 4]>::from(scene.start).map(|x| x as f32).into();
-    let motion = SmallOscillations::new(Modes::new(&rounded(&scene.pendulum))?, &start);
+    let motion = SmallOscillations::new(Modes::new(&scene.pendulum.cast::<f32>())?, &scene.start.cast());
     let (scene, mut frame) = (*scene, 0);
     Ok(Box::new(move || {
         frame += 1;
         motion.directions(scene.time(frame) as f32).map(|direction| direction.map(f64::from))
     }))
-}
-
-fn rounded<R: Real>(&Parameters { m1, m2, l1, l2, g }: &Parameters<f64>) -> Parameters<R> {
-    let [m1, m2, l1, l2, g] = [m1, m2, l1, l2, g].map(R::of);
-    Parameters { m1, m2, l1, l2, g }
 }
 
 /// Pixels to a metre.

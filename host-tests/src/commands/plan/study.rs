@@ -77,7 +77,7 @@ impl Class {
             Class::LightElbow
         } else if start.a1.abs().max(start.a2.abs()) < SMALL {
             Class::Small
-        } else if pendulum.cannot_turn_over(&pendulum.state(&start)) {
+        } else if pendulum.cannot_turn_over(&pendulum.to_state(&start)) {
             Class::Swinging
         } else {
             Class::Free

@@ -67,7 +67,7 @@ fn limit(plan: &Plan, frame: f32) -> String {
 /// What the proven bounds say.
 fn energy(scene: &Problem) -> Option<String> {
     let pendulum = Pendulum::new(scene.pendulum).ok()?;
-    let state = pendulum.state(&scene.start);
+    let state = pendulum.to_state(&scene.start);
     let turns = if pendulum.cannot_turn_over(&state) { "no rod can turn over" } else { "a rod may turn over" };
     let step = pendulum.admissible_step(&state).ok()?;
     Some(format!("by its energy {turns}, and steps of 1/{:.0} s resolve its liveliest motion", (1.0 / step).ceil()))

@@ -3,7 +3,7 @@
 use std::io;
 
 use anyhow::{anyhow, ensure};
-use double_pendulum::form::{DirectionForm8, Form, Winding};
+use double_pendulum::form::{DirectionForm8, UnwrappedStepper};
 use double_pendulum::{Motion, Pendulum, State};
 use firmware::job::{self, Arithmetic, Model, Reading};
 
@@ -46,22 +46,12 @@ impl Steps for Canonical {
 }
 
 /// The direction form with its turns counted.
-struct Directed {
-    form: DirectionForm8<f64>,
-    carried: <DirectionForm8<f64> as Form<f64>>::Carried,
-    windings: [Winding<f64>; 2],
-}
-
-impl Steps for Directed {
+impl Steps for UnwrappedStepper<f64, DirectionForm8<f64>> {
     fn step(&mut self) {
-        self.form.advance(&mut self.carried, 1);
-        let directions = self.form.directions(&self.carried);
-        self.windings.iter_mut().zip(directions).for_each(|(winding, direction)| winding.observe(direction));
+        self.advance(1);
     }
     fn state(&self) -> State<f64> {
-        let state = self.form.state(&self.carried);
-        let [winding1, winding2] = &self.windings;
-        State { a1: winding1.unwrap(state.a1), a2: winding2.unwrap(state.a2), ..state }
+        UnwrappedStepper::state(self)
     }
 }
 
@@ -70,13 +60,11 @@ pub fn run(plan: &Plan, mut row: impl FnMut(&Reading) -> io::Result<()>) -> anyh
     let request = &plan.request;
     let pendulum = Pendulum::new(request.parameters)?;
     let ([a1, a2], [w1, w2]) = (request.angles, request.velocities);
-    let start = pendulum.state(&Motion { a1, a2, w1, w2 });
+    let start = pendulum.to_state(&Motion { a1, a2, w1, w2 });
     let dt = request.dt;
     let mut steps: Box<dyn Steps> = match request.form {
         job::Formulation::Direction => {
-            let form = DirectionForm8::new(&request.parameters, dt)?;
-            let carried = form.start(&start)?;
-            Box::new(Directed { form, carried, windings: request.angles.map(Winding::new) })
+            Box::new(UnwrappedStepper::<f64, DirectionForm8<f64>>::new(&request.parameters, &start, dt)?)
         }
         _ => Box::new(Canonical { pendulum, state: start, dt }),
     };
@@ -85,7 +73,7 @@ pub fn run(plan: &Plan, mut row: impl FnMut(&Reading) -> io::Result<()>) -> anyh
             (0..request.stride).for_each(|_| steps.step());
         }
         let state = steps.state().finite()?;
-        let motion = pendulum.motion(&state);
+        let motion = pendulum.to_motion(&state);
         let velocities = [motion.w1, motion.w2];
         row(&Reading { state: state.into(), velocities, energy: pendulum.energy(&state) })?;
     }
