@@ -95,8 +95,11 @@ pub const TRAIL_POINTS: usize = 60;
 
 // ---- The serial link ------------------------------------------------------------------------------------------------
 
-/// Bits per second. A frame of 71 bytes takes 71 x 10/460,800 = 1.5 ms of the tick's 16.7 ms.
+/// Bits per second. A frame of 75 bytes takes 75 x 10/460,800 = 1.6 ms of the tick's 16.7 ms.
 pub const BAUD: u32 = 460_800;
+/// How often a bus is asked whether it is done before it counts as stuck. A try takes at least 4 processor cycles, so this is
+/// 0.24 ms of the fastest board; the slowest thing waited for is a byte of the panel's I2C, 9/400,000 s = 23 us.
+pub const BUS_TRIES: u32 = 10_000;
 /// Received bytes waiting for the application; one tick brings at most 460,800/10/60 = 768 (the queue holds one less
 /// than its size).
 pub const RECEIVE_QUEUE: usize = 1024;

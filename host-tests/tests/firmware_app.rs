@@ -7,7 +7,7 @@ use double_pendulum::{Parameters, Pendulum, State};
 use embedded_io::{ErrorKind, ErrorType, Write};
 use firmware::app::controls::{Buttons, NoButtons, Pressed};
 use firmware::app::{App, Event};
-use firmware::config::{GRAVITY, MOST_TICKS_PER_FRAME, ROD, STEPS_PER_TICK};
+use firmware::config::{GRAVITY, MOST_TICKS_PER_FRAME, ROD, STEPS_PER_TICK, TICK_RATE};
 use firmware::display::{Display, NoDisplay};
 use firmware::graphics::canvas::Canvas;
 use firmware::graphics::view::{Place, View};
@@ -105,6 +105,21 @@ fn dropped_pictures_are_counted_and_no_tick_is_lost() {
     let most = MOST_TICKS_PER_FRAME - 1;
     assert_eq!(shown, [(15, most), (30, 2 * most), (31, 2 * most), (33, 29), (48, 43), (63, 57), (78, 71), (90, 82)]);
     assert_eq!(events, [Event::Dropped { ticks: 57, total: 57 }]);
+}
+
+#[test]
+fn lost_bytes_are_said_once_a_second_and_sent_with_each_frame() {
+    let mut app = app();
+    let mut events = Vec::new();
+    // Each tick one more is lost.
+    for tick in 1..=2 * TICK_RATE {
+        app.run_to(tick, |_| ());
+        app.note_lost(tick, |event| events.push((tick, event)));
+    }
+    let said = |tick| (tick, Event::Lost { bytes: TICK_RATE, total: tick });
+    assert_eq!(events, [TICK_RATE, 2 * TICK_RATE].map(said));
+    let counts = frames(app.link()).iter().map(|frame| frame.lost).collect::<Vec<_>>();
+    assert_eq!(counts, (0..2 * TICK_RATE).collect::<Vec<_>>());
 }
 
 /// After 828 days the counts of ticks, of frames and of those dropped begin again at 0: nothing else is to be seen of it.

@@ -2,10 +2,13 @@
 //! end of file comes when the last holder has gone, and one that outlives its owner writes "survived" first.
 
 use std::io::{BufRead, BufReader, Read};
+use std::path::PathBuf;
 use std::process::{ChildStdout, Command, Stdio};
 use std::time::Duration;
 
-use host_tests::emulator::process::{ProcessError, on_interrupt, run, run_watched, spawn};
+use host_tests::emulator::process::{
+    ProcessError, Running, on_interrupt, remove_on_interrupt, run, run_watched, spawn,
+};
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 
@@ -103,22 +106,47 @@ fn what_an_ended_child_leaves_behind_is_ended() {
 #[test]
 fn an_interrupt_ends_the_children_and_then_this_process() {
     for signal in [Signal::SIGINT, Signal::SIGTERM, Signal::SIGHUP] {
-        let mut helper = Command::new(std::env::current_exe().expect("a test has a path"));
-        helper.args(["--exact", "interrupted_helper", "--nocapture"]).env(HELPER, "1");
-        let mut helper = spawn(helper.stdin(Stdio::null()).stdout(Stdio::piped()), AMPLE).expect("it starts");
-        let mut pipe = BufReader::new(helper.stdout.take().expect("piped"));
-        while first_line(&mut pipe) != "ready\n" {}
+        let (mut helper, pipe, folder) = helper();
         kill(Pid::from_raw(helper.id() as i32), signal).expect("it runs");
         assert_eq!(helper.wait().expect("it ends").code(), Some(130), "{signal}");
         assert_eq!(rest(pipe), "hook\n", "{signal}");
+        assert!(!folder.exists(), "{signal}: {} is left", folder.display());
     }
 }
 
-/// Not a test of its own: the process that the test above interrupts.
+#[test]
+fn children_do_not_outlive_a_killed_process() {
+    let (mut helper, pipe, folder) = helper();
+    kill(Pid::from_raw(helper.id() as i32), Signal::SIGKILL).expect("it runs");
+    assert_eq!(rest(pipe), "");
+    helper.wait().expect("it ends");
+    std::fs::remove_dir_all(folder).expect("nobody else could");
+}
+
+/// The process to interrupt, its output after its family is ready, and its folder.
+fn helper() -> (Running, BufReader<ChildStdout>, PathBuf) {
+    let mut helper = Command::new(std::env::current_exe().expect("a test has a path"));
+    helper.args(["--exact", "interrupted_helper", "--nocapture"]).env(HELPER, "1");
+    let mut helper = spawn(helper.stdin(Stdio::null()).stdout(Stdio::piped()), AMPLE).expect("it starts");
+    let mut pipe = BufReader::new(helper.stdout.take().expect("piped"));
+    let mut folder = PathBuf::new();
+    loop {
+        match first_line(&mut pipe) {
+            line if line == "ready\n" => return (helper, pipe, folder),
+            line if line.is_empty() => panic!("it ended too early"),
+            line => folder = line.strip_prefix("folder ").map_or(folder, |path| path.trim_end().into()),
+        }
+    }
+}
+
+/// Not a test of its own: the process that the tests above interrupt.
 #[test]
 fn interrupted_helper() {
     if std::env::var_os(HELPER).is_some() {
         on_interrupt(|| println!("hook"));
+        let folder = tempfile::tempdir().expect("there is room for it");
+        remove_on_interrupt(folder.path());
+        println!("\nfolder {}", folder.path().display());
         let mut child = spawn(shell(FAMILY).stdout(Stdio::inherit()), AMPLE).expect("it starts");
         child.wait().expect("it ends");
     }

@@ -9,6 +9,7 @@ mod support;
 
 use std::error::Error;
 use std::path::Path;
+use std::thread::sleep;
 use std::time::Duration;
 
 use firmware::app::warm_restart::{Cause, MOST_RESTARTS};
@@ -17,7 +18,9 @@ use firmware::protocol::Unit;
 use firmware::protocol::{Choose, Frame, Restarted, Set};
 use firmware::scenes::SceneName;
 use host_tests::emulator::boards::{BOARDS, Board, STM32F405};
-use host_tests::emulator::qemu::{Machine, Probe, QemuError, Register, Settings};
+use host_tests::emulator::qemu::{Clock, Machine, Probe, QemuError, Register, Settings};
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
 use program::address;
 use support::{application, settings, toolchain};
 
@@ -201,6 +204,77 @@ fn without_a_debugger_a_fault_restarts_the_board() -> Result<(), Box<dyn Error>>
             let scene = if restarts <= MOST_RESTARTS { SceneName::Figure7 } else { SceneName::Page };
             assert_eq!(frame.map(|frame| frame.scene), Some(scene.code()), "{}: restart {restarts}", board.name);
         }
+    }
+    Ok(())
+}
+
+/// A host that stops QEMU, or has no time for it, is no fault of the firmware: its clock has not ticked meanwhile.
+#[test]
+fn a_board_whose_emulator_pauses_does_not_take_it_for_a_hang() -> Result<(), Box<dyn Error>> {
+    /// Longer than the watchdog's two stages.
+    const PAUSE: Duration = Duration::from_millis(2500);
+    let toolchain = toolchain();
+    for board in watched() {
+        let elf = application(board);
+        let mut machine = Machine::start(&Settings { clock: Clock::Real, ..settings(&toolchain, board, &elf) })?;
+        let emulator = Pid::from_raw(machine.id().cast_signed());
+        for pause in [true, false] {
+            for _ in 0..FRAMES {
+                machine.serial.next::<Frame>().ok_or_else(|| machine.silence())?;
+            }
+            if pause {
+                kill(emulator, Signal::SIGSTOP)?;
+                sleep(PAUSE);
+                kill(emulator, Signal::SIGCONT)?;
+            }
+        }
+        let log: String = machine.log.arrived().map(|line| format!("{line}\n")).collect();
+        assert!(!log.contains("HANG") && !log.contains("restarted"), "{}: {log}", board.name);
+        machine.quit()?;
+    }
+    Ok(())
+}
+
+/// The watchdog's call that cannot be masked comes in the middle of a report that takes long: the fault stays the reason.
+#[test]
+fn a_report_that_takes_long_is_no_hang() -> Result<(), Box<dyn Error>> {
+    let toolchain = toolchain();
+    for board in watched() {
+        let elf = application(board);
+        let mut probe = Probe::start(&Settings { limit: PATIENCE, ..settings(&toolchain, board, &elf) })?;
+        within(&mut probe, &elf, SceneName::Butterfly)?;
+        execute(&mut probe, UNDEFINED)?;
+        probe.run_to(address(&elf, "crash::say"))?;
+        execute(&mut probe, HANG)?;
+        let machine = probe.run()?;
+        let restarted: Restarted = machine.serial.next().ok_or_else(|| machine.silence())?;
+        assert_eq!(Cause::from_code(restarted.cause), Some(Cause::Fault), "{}", board.name);
+        let log: String = machine.log.arrived().map(|line| format!("{line}\n")).collect();
+        assert!(!log.contains("HANG"), "{}: {log}", board.name);
+    }
+    Ok(())
+}
+
+/// A host that sends faster than the board reads is told how much it has lost.
+#[test]
+fn received_bytes_that_are_lost_are_counted() -> Result<(), Box<dyn Error>> {
+    // Broken messages of a byte each, of which a board takes no more than four a tick: many times what its queue holds.
+    let flood = [0, 1].repeat(10_000);
+    let toolchain = toolchain();
+    for board in &BOARDS {
+        let elf = application(board);
+        let mut machine = Machine::start(&settings(&toolchain, board, &elf))?;
+        let first: Frame = machine.serial.next().ok_or_else(|| machine.silence())?;
+        assert_eq!(first.lost, 0, "{}", board.name);
+        machine.serial.send_bytes(&flood)?;
+        let mut lost = 0;
+        while lost == 0 {
+            lost = machine.serial.next::<Frame>().ok_or_else(|| machine.silence())?.lost;
+        }
+        assert!(lost < flood.len() as u32, "{}: {lost}", board.name);
+        let log: String = machine.log.arrived().map(|line| format!("{line}\n")).collect();
+        assert!(log.contains("received bytes lost"), "{}: {log}", board.name);
+        machine.quit()?;
     }
     Ok(())
 }

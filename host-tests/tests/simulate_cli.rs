@@ -78,9 +78,9 @@ fn every_form_moves_as_the_canonical_state_does() {
     let canonical = &rows(&format!("{options} --arithmetic f64"))[4];
     assert!(number(&canonical[2]) > std::f64::consts::PI, "it does not turn over: {canonical:?}");
     for (form, difference) in [
-        ("f64 --form angle", 1e-10), // the same method: its roundings, grown by chaos
-        ("f64 --form direction", 1e-7),  // the method's own error, grown by chaos
-        ("f32-compensated", 1e-4),   // roundings of 6e-8, grown by chaos
+        ("f64 --form angle", 1e-10),    // the same method: its roundings, grown by chaos
+        ("f64 --form direction", 1e-7), // the method's own error, grown by chaos
+        ("f32-compensated", 1e-4),      // roundings of 6e-8, grown by chaos
         ("f32-compensated --form direction", 1e-4),
     ] {
         let other = &rows(&format!("{options} --arithmetic {form}"))[4];

@@ -35,6 +35,13 @@ pub enum Event<Panel, Link> {
         /// What was wrong with the last one.
         last: LinkError,
     },
+    /// The host sent bytes faster than they were taken. Said at most once a second, too.
+    Lost {
+        /// Since this was last said.
+        bytes: u32,
+        /// Since reset.
+        total: u32,
+    },
     /// A frame did not reach the panel, though the one before did.
     Panel(Panel),
     /// A frame did not reach the link, though the one before did.

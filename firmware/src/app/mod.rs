@@ -47,7 +47,9 @@ pub struct App<'a, Panel, Link, Keys> {
     dropped: ThrottledCounter,
     /// Damaged messages since reset.
     damaged: ThrottledCounter,
-    /// What was wrong with the last of them.
+    /// Received bytes lost since reset.
+    lost: ThrottledCounter,
+    /// What was wrong with the last of the damaged messages.
     last_damage: Option<LinkError>,
     panel_failing: FaultEdge,
     link_failing: FaultEdge,
@@ -81,6 +83,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
             frames: 0,
             dropped: ThrottledCounter::default(),
             damaged: ThrottledCounter::default(),
+            lost: ThrottledCounter::default(),
             last_damage: None,
             panel_failing: FaultEdge::default(),
             link_failing: FaultEdge::default(),
@@ -171,6 +174,14 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
             }
         }
         self.log_damaged(&mut log);
+    }
+
+    /// Takes note of how many received bytes have been lost since reset; may wrap.
+    pub fn note_lost(&mut self, total: u32, mut log: impl FnMut(Event<Panel::Error, Link::Error>)) {
+        self.lost.set(total);
+        if let Some(bytes) = self.lost.news(self.ticks) {
+            log(Event::Lost { bytes, total });
+        }
     }
 
     /// Does a bounded piece of the work asked for over the link, a step at most; whether there is more.
@@ -287,6 +298,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         Frame {
             sequence: self.frames,
             dropped: self.dropped.total(),
+            lost: self.lost.total(),
             scene: self.player.name().code(),
             paused: self.player.is_paused().into(),
             step: report.step as u32,

@@ -22,6 +22,11 @@ impl ThrottledCounter {
         self.total = self.total.wrapping_add(count);
     }
 
+    /// Takes the total from one who counts himself.
+    pub(super) fn set(&mut self, total: u32) {
+        self.total = total;
+    }
+
     pub(super) fn total(&self) -> u32 {
         self.total
     }

@@ -64,6 +64,7 @@ where
     loop {
         while !run_to(now, app, &mut journal, &mut watchdog) {}
         app.receive(&mut receiver, log);
+        app.note_lost(receiver.lost(), log);
         while clock.ticks() == now && app.work(log) {}
         while app.plan(clock.left_after(now), log) {}
         now = clock.wait_after(now);
@@ -130,6 +131,7 @@ fn log<Panel: Debug, Link: Debug>(event: Event<Panel, Link>) {
         Event::Damaged { messages, total, last } => {
             defmt::warn!("{} damaged messages, {} since reset, the last: {}", messages, total, last);
         }
+        Event::Lost { bytes, total } => defmt::warn!("{} received bytes lost, {} since reset", bytes, total),
         Event::Stopped(error) => defmt::error!("stopped: {}", error),
         Event::StepTooLong(step) => defmt::warn!("the step is too long for this energy, {} s would do", step),
         Event::Found(Finding::Plan(Plan { way, steps, error, cycles, horizon, limit, .. })) => defmt::info!(

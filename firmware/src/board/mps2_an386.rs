@@ -9,34 +9,29 @@ use cortex_m::peripheral::NVIC;
 use super::cortex_m::clock::Clock;
 use super::cortex_m::guard::guard_stack;
 use super::cortex_m::watchdog::{Call, Registers, TwoStage};
-use super::register::Register;
-use super::serial::receiver::{Inlet, Receiver};
+use super::register::{Device, Register};
+use super::serial::receiver::{Inlet, Receiver, Taken};
 use super::serial::transmitter::{Outlet, Transmitter};
 use crate::config::BAUD;
 
 /// The processor's clock, Hz.
 const HERTZ: u32 = 25_000_000;
 
-// SAFETY: UART0 registers; without DMA they cannot break memory safety.
-const DATA: Register = unsafe { Register::at(0x4000_4000) };
-const STATE: Register = unsafe { Register::at(0x4000_4004) };
-const CONTROL: Register = unsafe { Register::at(0x4000_4008) };
-const INTERRUPT_CLEAR: Register = unsafe { Register::at(0x4000_400C) };
-const DIVISOR: Register = unsafe { Register::at(0x4000_4010) };
+// SAFETY: UART0; without DMA it cannot break memory safety.
+const UART0: Device = unsafe { Device::at(0x4000_4000) };
+const DATA: Register = UART0.register(0x000);
+const STATE: Register = UART0.register(0x004);
+const CONTROL: Register = UART0.register(0x008);
+const INTERRUPT_CLEAR: Register = UART0.register(0x00c);
+const DIVISOR: Register = UART0.register(0x010);
 
 /// The watchdog of ARM DDI 0479. It interrupts as the NMI; no register tells of a reset.
-// SAFETY: its registers; without DMA they cannot break memory safety.
-const WATCHDOG: Registers = unsafe {
-    Registers {
-        load: Register::at(0x4000_8000),
-        control: Register::at(0x4000_8008),
-        clear: Register::at(0x4000_800C),
-        lock: Register::at(0x4000_8C00),
-    }
-};
+// SAFETY: without DMA it cannot break memory safety.
+const WATCHDOG: Device = unsafe { Device::at(0x4000_8000) };
 
 const TRANSMITTER_FULL: u32 = 1 << 0;
 const RECEIVER_FULL: u32 = 1 << 1;
+const RECEIVER_OVERRUN: u32 = 1 << 3;
 /// Transmitter, receiver and the receiver's interrupt on.
 const ENABLE: u32 = 1 << 3 | 1 << 1 | 1 << 0;
 const RECEIVED: u32 = 1 << 1;
@@ -65,7 +60,7 @@ impl Board {
             link: Uart::start(),
             receiver,
             clock: Clock::start(core.SYST, HERTZ),
-            watchdog: TwoStage::start(WATCHDOG, HERTZ, Call::Nmi, false),
+            watchdog: TwoStage::start(Registers::of(WATCHDOG), HERTZ, Call::Nmi, false),
             hertz: HERTZ,
         })
     }
@@ -101,7 +96,13 @@ impl Outlet for Port {
 /// The inward direction.
 const INLET: Inlet = Inlet {
     clear: || INTERRUPT_CLEAR.write(RECEIVED),
-    take: || if STATE.read() & RECEIVER_FULL != 0 { Some(DATA.read() as u8) } else { None },
+    take: || {
+        let state = STATE.read();
+        if state & RECEIVER_OVERRUN != 0 {
+            STATE.write(RECEIVER_OVERRUN); // Written back, it is cleared.
+        }
+        Taken { byte: (state & RECEIVER_FULL != 0).then(|| DATA.read() as u8), overrun: state & RECEIVER_OVERRUN != 0 }
+    },
 };
 
 #[derive(Clone, Copy)]

@@ -1,31 +1,42 @@
-//! A device register.
+//! Devices and their registers.
+
+/// A device: 4 KiB of addresses with its registers.
+#[derive(Clone, Copy, Debug)]
+pub struct Device(usize);
+
+impl Device {
+    /// The device whose registers begin at `base`.
+    ///
+    /// # Safety
+    ///
+    /// The 4 KiB from `base` must be a device's registers, all of 32 bits, and no value written to them may break memory
+    /// safety: no DMA addresses, no memory protection.
+    pub const unsafe fn at(base: usize) -> Self {
+        Self(base)
+    }
+
+    /// Its register at this offset, of which the lowest two bits and those beyond 4 KiB do not count.
+    pub const fn register(self, offset: usize) -> Register {
+        Register(self.0 + (offset & 0xffc))
+    }
+}
 
 /// A 32-bit device register at a fixed address.
 #[derive(Clone, Copy, Debug)]
 pub struct Register(usize);
 
 impl Register {
-    /// The register at `address`.
-    ///
-    /// # Safety
-    ///
-    /// `address` must be that of a 32-bit device register, and no value written to it may break memory safety: no DMA
-    /// addresses, no memory protection.
-    pub const unsafe fn at(address: usize) -> Self {
-        Self(address)
-    }
-
     /// What it reads.
     #[inline]
     pub fn read(self) -> u32 {
-        // SAFETY: `at`'s caller promised a device register; any 32-bit pattern is a `u32`.
+        // SAFETY: a device's maker promised that this is one; any 32-bit pattern is a `u32`.
         unsafe { (self.0 as *const u32).read_volatile() }
     }
 
     /// Writes it.
     #[inline]
     pub fn write(self, value: u32) {
-        // SAFETY: `at`'s caller promised a device register whose writes do not break memory safety.
+        // SAFETY: a device's maker promised that this is one whose writes do not break memory safety.
         unsafe { (self.0 as *mut u32).write_volatile(value) }
     }
 

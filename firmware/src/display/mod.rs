@@ -4,6 +4,7 @@ use core::convert::Infallible;
 
 use crate::graphics::canvas::Canvas;
 
+pub mod i2c_recovery;
 mod ssd0323;
 mod ssd1306;
 

@@ -7,6 +7,8 @@ crate::message! {
         sequence: u32,
         /// Ticks whose frame was never drawn, since reset.
         dropped: u32,
+        /// Bytes from the host that were lost because they came faster than they were taken, since reset; at least so many.
+        lost: u32,
         /// The scene, by its [`code`](crate::scenes::SceneName::code).
         scene: u8,
         /// 1 if the scene's time stands still, else 0.

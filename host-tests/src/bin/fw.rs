@@ -10,13 +10,16 @@ use clap::Parser;
 use host_tests::console::cli;
 use host_tests::emulator::boards::BOARDS;
 use host_tests::emulator::firmware_run::{board_for, run};
-use host_tests::emulator::process;
+use host_tests::emulator::process::{self, ProcessError};
 use host_tests::emulator::qemu::{Clock, QemuError, Settings};
 use host_tests::emulator::toolchain::{self, BuildError, SetupError};
 
+/// How long a firmware may run of which nobody has said how long it is to run.
+const LIMIT: Duration = Duration::from_secs(3600);
+
 /// Builds a firmware binary, runs it in QEMU and prints its log; exits as the firmware does.
 #[derive(Debug, Parser)]
-#[command(name = "cargo fw")]
+#[command(name = "cargo fw", after_help = runnable())]
 struct Arguments {
     /// A binary of the firmware, or the path of an ELF file that is built already
     #[arg(value_name = "BIN", required_unless_present = "check")]
@@ -24,9 +27,9 @@ struct Arguments {
     /// The board to run it on; else the first that it is made for
     #[arg(long, value_name = "NAME")]
     board: Option<String>,
-    /// End it after this long
-    #[arg(long, value_name = "N", default_value_t = 3600)]
-    seconds: u32,
+    /// End it after this long, successfully; else it is given an hour, and to need more is an error
+    #[arg(long, value_name = "N")]
+    seconds: Option<u32>,
     /// Only check that all binaries compile for all targets without a warning
     #[arg(long, conflicts_with = "binary")]
     check: bool,
@@ -76,10 +79,22 @@ fn execute(arguments: &Arguments) -> Result<ExitCode, Failure> {
     }
     let (toolchain, _) = toolchain::set_up()?;
     let elf = if is_path { binary.clone() } else { toolchain.build(&name, board.target)? };
-    let limit = Duration::from_secs(arguments.seconds.into());
+    let limit = arguments.seconds.map_or(LIMIT, |seconds| Duration::from_secs(seconds.into()));
     let settings =
         Settings { qemu: toolchain.qemu(), board, elf: &elf, clock: Clock::Real, window: None, debugger: true, limit };
-    Ok(process::exit_code(run(&settings, &mut stdout().lock())?))
+    match (run(&settings, &mut stdout().lock()), arguments.seconds) {
+        (Err(QemuError::Process(ProcessError::TimedOut { .. })), Some(seconds)) => {
+            eprintln!("ended after {seconds} s, as told");
+            Ok(ExitCode::SUCCESS)
+        }
+        (ended, _) => Ok(process::exit_code(ended?)),
+    }
+}
+
+/// What can be run, and where.
+fn runnable() -> String {
+    let boards = BOARDS.map(|board| format!("  {:16}{}, {} MHz", board.name, board.cpu, board.hertz / 1_000_000));
+    format!("Binaries:\n  {}\n\nBoards:\n{}", binaries().join("\n  "), boards.join("\n"))
 }
 
 /// The names of the firmware's binaries, sorted.

@@ -1,5 +1,5 @@
 //! Supervised child processes: each has a time limit and its own process group, and the whole group is gone when its
-//! owner lets go of it, when the time is up, and when this process is interrupted (Ctrl-C, SIGTERM, SIGHUP).
+//! owner lets go of it, when the time is up, when this process is interrupted (Ctrl-C, SIGTERM, SIGHUP), and when it is killed.
 //!
 //! A group is first asked to stop (SIGTERM), so that a child which supervises children of its own can end those too;
 //! what is left after a short grace is killed.
@@ -7,7 +7,7 @@
 mod registry;
 mod run;
 
-pub use registry::on_interrupt;
+pub use registry::{on_interrupt, remove_on_interrupt};
 pub use run::{Output, run, run_watched};
 
 use std::io;
@@ -79,7 +79,7 @@ pub fn spawn(command: &mut Command, limit: Duration) -> Result<Running, ProcessE
 }
 
 impl Running {
-    /// The child's process id, which is its group's as well.
+    /// The child's process id.
     pub fn id(&self) -> u32 {
         self.group.id()
     }

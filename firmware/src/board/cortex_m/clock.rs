@@ -40,7 +40,7 @@ impl Clock {
 
     /// Counts ticks, from any number on; wraps.
     pub fn ticks(&self) -> u32 {
-        TICKS.load(Ordering::Relaxed)
+        ticks()
     }
 
     /// Processor cycles in a tick.
@@ -70,6 +70,11 @@ impl Clock {
             }
         }
     }
+}
+
+/// As [`Clock::ticks`].
+pub(super) fn ticks() -> u32 {
+    TICKS.load(Ordering::Relaxed)
 }
 
 /// Processor cycles since the clock's start; wraps.

@@ -4,6 +4,16 @@
 //! readable without any tool. Without a debugger there is nobody to stop for: the board keeps why it crashed and restarts,
 //! and the next run tells. A program that hangs is reported when the watchdog first calls; if it goes on after all,
 //! nothing else comes of it, if not, the watchdog resets the board.
+//!
+//! # A debugger that has gone
+//!
+//! A debugger that is there answers a call at once; one that is not is recognised by the call's fault, or on a chip by the
+//! processor's debug mode being off (C_DEBUGEN). A probe that was unplugged without switching that off looks as if it were
+//! there, and the processor halts in the call for good: only a probe or a loss of power takes it out of debug mode, the program
+//! cannot. So the watchdog, which stands still while a debugger halts the processor, no longer does so from the first word of
+//! a report on, and resets the board. Whoever wants to look at a crashed board at leisure sets a breakpoint where the report
+//! begins, at `crash`. A log line that goes by such a call waits for a gone probe, too, with the watchdog standing still: the
+//! LM3S6965's does until it loses power; the STM32F405's log is in memory and waits for nobody.
 
 use core::arch::{asm, naked_asm};
 use core::cell::UnsafeCell;
@@ -16,7 +26,7 @@ use cortex_m_rt::ExceptionFrame;
 use cortex_m_semihosting::{debug, hio};
 
 use super::calls::calls;
-use super::retained;
+use super::{retained, watchdog};
 use crate::app::warm_restart::{Cause, Scene};
 use crate::fault::{Fault, Hang, Panic, Stacked};
 
@@ -35,7 +45,8 @@ static STACK: Stack = Stack(UnsafeCell::new([0; STACK_SIZE]));
 #[repr(align(8))]
 struct Stack(#[expect(dead_code, reason = "only its place is used")] UnsafeCell<[u8; STACK_SIZE]>);
 
-// SAFETY: only `HardFault` uses it, which nothing interrupts.
+// SAFETY: only `HardFault` puts the stack pointer there, and a fault within it is no second one but the processor's lockup.
+// What can interrupt it, the watchdog's call that cannot be masked, stacks below it and returns.
 unsafe impl Sync for Stack {}
 
 #[panic_handler]
@@ -53,6 +64,7 @@ fn panic(info: &PanicInfo) -> ! {
 /// # Safety
 ///
 /// Only the processor may call it, through the vector table.
+// SAFETY: the name is the vector table's for just this.
 #[unsafe(naked)]
 #[unsafe(no_mangle)]
 unsafe extern "C" fn HardFault() {
@@ -131,11 +143,18 @@ fn stack_pointer() -> u32 {
 }
 
 /// The program has finished no frame for too long; `interrupted` is where it is.
+///
+/// Not so if it is a report that takes so long, which the call that cannot be masked interrupts all the same.
 pub(super) fn hang(interrupted: &ExceptionFrame) {
+    if CRASHED.load(Ordering::Relaxed) {
+        return;
+    }
     let (pc, lr) = (interrupted.pc(), interrupted.lr());
     retained::end(Cause::Hang, pc, lr, 0);
-    if !ALONE.load(Ordering::Relaxed) {
+    if watchdog::has_ticked() && !ALONE.load(Ordering::Relaxed) {
+        watchdog::stall(false);
         say(&Hang { pc, lr });
+        watchdog::stall(true);
     }
 }
 
@@ -153,6 +172,7 @@ fn crash((cause, pc, lr, cfsr): (Cause, u32, u32, u32), report: &dyn Display) ->
         retained::end(cause, pc, lr, cfsr);
     }
     if !ALONE.load(Ordering::Relaxed) || DCB::is_debugger_attached() {
+        watchdog::stall(false);
         if is_first {
             say(report);
         }
@@ -162,6 +182,7 @@ fn crash((cause, pc, lr, cfsr): (Cause, u32, u32, u32), report: &dyn Display) ->
 }
 
 /// The report, and what was shown last.
+#[inline(never)]
 fn say(report: &dyn Display) {
     if let Ok(mut stderr) = hio::hstderr() {
         let _ = writeln!(stderr, "{report}\n  {}", Scene(retained::last()));

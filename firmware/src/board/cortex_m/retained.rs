@@ -1,42 +1,44 @@
 //! The memory that outlives a reset, and who writes it: the main loop after each frame, a crash at the end.
 
-use core::cell::UnsafeCell;
-use core::mem::MaybeUninit;
+use core::hint::black_box;
+use core::sync::atomic::{AtomicU8, Ordering};
 
 use crate::app::warm_restart::{Cause, Kept, WarmRestart, read};
 use crate::protocol::{MAX_WIRE, Message, Restarted, Status, encode};
 
 /// What is played.
+// SAFETY: start-up leaves this section alone, and whatever it finds there is bytes.
 #[unsafe(link_section = ".uninit.played")]
 static PLAYED: Memory = Memory::new();
 /// How it ended; with no cause as long as it has not.
+// SAFETY: as above.
 #[unsafe(link_section = ".uninit.end")]
 static END: Memory = Memory::new();
 
-struct Memory(UnsafeCell<MaybeUninit<Kept>>);
-
-// SAFETY: bytes are read and written one by one, and whatever comes of two at once is found out by the check.
-unsafe impl Sync for Memory {}
+/// A watchdog's interrupt may write in the middle of the main loop's writing: whatever comes of two at once is found out by
+/// the message's check.
+struct Memory([AtomicU8; MAX_WIRE]);
 
 impl Memory {
     const fn new() -> Self {
-        Self(UnsafeCell::new(MaybeUninit::uninit()))
+        Self([const { AtomicU8::new(0) }; MAX_WIRE])
     }
 
-    /// Volatile, as what is written here is for a program yet to come, and what is read by one that has ended.
+    /// The bytes, of which the compiler must assume nothing: what is read here was written by a program that has ended, and
+    /// what is written is for one yet to come.
+    fn bytes(&self) -> &[AtomicU8; MAX_WIRE] {
+        black_box(&self.0)
+    }
+
     fn read(&self) -> Kept {
-        let bytes: *const u8 = self.0.get().cast();
-        // SAFETY: within the array; memory holds some byte there, though the compiler does not know which.
-        core::array::from_fn(|index| unsafe { bytes.add(index).read_volatile() })
+        self.bytes().each_ref().map(|byte| byte.load(Ordering::Relaxed))
     }
 
     fn write<M: Message>(&self, message: &M) {
         let mut kept = [0; MAX_WIRE];
         encode(message, &mut kept);
-        let bytes: *mut u8 = self.0.get().cast();
-        for (index, byte) in kept.into_iter().enumerate() {
-            // SAFETY: within the array.
-            unsafe { bytes.add(index).write_volatile(byte) };
+        for (place, byte) in self.bytes().iter().zip(kept) {
+            place.store(byte, Ordering::Relaxed);
         }
     }
 }

@@ -3,13 +3,16 @@
 //! It is fed in one place, by the main loop, when a frame has been drawn and sent (`main_loop.rs`). An interrupt would
 //! be the wrong one to feed it: the tick's goes on for ever while the program turns in circles.
 
-use core::sync::atomic::{AtomicU16, Ordering};
+use core::cell::Cell;
+use core::sync::atomic::{AtomicU16, AtomicU32, Ordering};
 
-use cortex_m::interrupt::InterruptNumber;
+use cortex_m::interrupt::{InterruptNumber, Mutex, free};
 use cortex_m::peripheral::NVIC;
 
-use crate::board::register::Register;
-use crate::config::WATCHDOG_SECONDS;
+use super::clock::ticks;
+
+use crate::board::register::{Device, Register};
+use crate::config::{TICK_RATE, WATCHDOG_SECONDS};
 
 /// What the main loop needs of it.
 pub trait Watchdog {
@@ -38,16 +41,28 @@ pub(in crate::board) enum Call {
 
 /// Its registers.
 pub(in crate::board) struct Registers {
-    pub load: Register,
-    pub control: Register,
-    pub clear: Register,
-    pub lock: Register,
+    load: Register,
+    control: Register,
+    clear: Register,
+    lock: Register,
+}
+
+impl Registers {
+    /// Where ARM puts them.
+    pub(in crate::board) const fn of(device: Device) -> Self {
+        Self {
+            load: device.register(0x000),
+            control: device.register(0x008),
+            clear: device.register(0x00c),
+            lock: device.register(0xc00),
+        }
+    }
 }
 
 /// The interrupt and the reset, on.
 const ENABLE: u32 = 1 << 1 | 1 << 0;
 /// Writing this opens the other registers, any other number closes them.
-const UNLOCK: u32 = 0x1ACC_E551;
+pub(in crate::board) const UNLOCK: u32 = 0x1ACC_E551;
 const LOCKED: u32 = 1;
 
 impl TwoStage {
@@ -69,6 +84,7 @@ impl Watchdog for TwoStage {
         self.lock.write(UNLOCK);
         self.clear.write(1);
         self.lock.write(LOCKED);
+        FED.store(ticks(), Ordering::Relaxed);
         rearm();
     }
 
@@ -104,6 +120,30 @@ impl Call {
 /// Whether the interrupt that the processor calls so is the watchdog's.
 pub(super) fn is_call(number: u32) -> bool {
     number == Call::noted().number().into()
+}
+
+/// The tick when it was last fed.
+static FED: AtomicU32 = AtomicU32::new(0);
+
+/// Whether the ticks of the time that it gives have been counted as well. If not, the processor was held up from outside, as an
+/// emulator that is stopped for a while is, or has its interrupts off.
+pub(super) fn has_ticked() -> bool {
+    ticks().wrapping_sub(FED.load(Ordering::Relaxed)) >= WATCHDOG_SECONDS * TICK_RATE - 1
+}
+
+/// Makes the board's watchdog stand still while a debugger halts the processor, or lets it go on.
+type Stall = fn(bool);
+static STALL: Mutex<Cell<Stall>> = Mutex::new(Cell::new(|_| ()));
+
+/// The watchdog stands still while a debugger halts the processor, from now on until a report.
+pub(in crate::board) fn stall_by(stall: Stall) {
+    free(|token| STALL.borrow(token).set(stall));
+    stall(true);
+}
+
+/// Whether it does so.
+pub(super) fn stall(stalls: bool) {
+    free(|token| STALL.borrow(token).get())(stalls);
 }
 
 /// Keeps its interrupt from coming again and again until it is fed; the one that cannot be masked comes once.

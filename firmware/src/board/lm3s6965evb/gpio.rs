@@ -4,49 +4,48 @@ use core::convert::Infallible;
 
 use embedded_hal::digital::{ErrorType, OutputPin};
 
-use crate::board::register::Register;
+use crate::board::register::{Device, Register};
 
 /// A port, by its base address.
 #[derive(Clone, Copy, Debug)]
-pub struct Port(usize);
+pub struct Port(Device);
 
 /// Port A: serial port and panel.
-pub const A: Port = Port(0x4000_4000);
-const C: Port = Port(0x4000_6000);
-const D: Port = Port(0x4000_7000);
+pub const A: Port = port(0x4000_4000);
+const C: Port = port(0x4000_6000);
+const D: Port = port(0x4000_7000);
 /// Port E: four buttons.
-pub const E: Port = Port(0x4002_4000);
+pub const E: Port = port(0x4002_4000);
 /// Port F: the fifth button.
-pub const F: Port = Port(0x4002_5000);
+pub const F: Port = port(0x4002_5000);
+
+const fn port(base: usize) -> Port {
+    // SAFETY: the ports above are those of the data sheet, chapter 8; pins cannot break memory safety.
+    Port(unsafe { Device::at(base) })
+}
 
 impl Port {
-    const fn register(self, offset: usize) -> Register {
-        // SAFETY: the ports above are those of the data sheet, chapter 8, and the offsets below lie within a port;
-        // pins cannot break memory safety.
-        unsafe { Register::at(self.0 + offset) }
-    }
-
     /// Reads and writes only the pins of `pins`: the address carries the mask.
     const fn data(self, pins: u8) -> Register {
-        self.register((pins as usize) << 2)
+        self.0.register((pins as usize) << 2)
     }
 
     /// Hands `pins` over to the port's serial device.
     pub fn use_for_device(self, pins: u8) {
-        self.register(0x420).modify(0, pins.into()); // alternate function
-        self.register(0x51C).modify(0, pins.into()); // digital
+        self.0.register(0x420).modify(0, pins.into()); // alternate function
+        self.0.register(0x51C).modify(0, pins.into()); // digital
     }
 
     /// Makes `pins` inputs, held high unless something pulls them low.
     pub fn use_for_input(self, pins: u8) {
-        self.register(0x400).modify(pins.into(), 0); // direction
-        self.register(0x510).modify(0, pins.into()); // pull-up
-        self.register(0x51C).modify(0, pins.into());
+        self.0.register(0x400).modify(pins.into(), 0); // direction
+        self.0.register(0x510).modify(0, pins.into()); // pull-up
+        self.0.register(0x51C).modify(0, pins.into());
     }
 
     fn use_for_output(self, pins: u8) -> Output {
-        self.register(0x400).modify(0, pins.into());
-        self.register(0x51C).modify(0, pins.into());
+        self.0.register(0x400).modify(0, pins.into());
+        self.0.register(0x51C).modify(0, pins.into());
         Output(self.data(pins))
     }
 

@@ -6,21 +6,21 @@ use embedded_hal::digital::{self, OutputPin};
 use embedded_hal::spi::{self, SpiBus};
 
 use super::gpio;
-use crate::board::register::Register;
+use crate::board::register::{Device, Register};
+use crate::config::BUS_TRIES;
 
 /// The panel takes a bit in no less than 250 ns: at most 4 MHz.
 const FASTEST: u32 = 4_000_000;
 /// Bytes that fit into the transmit queue, and as many into the receive queue.
 const QUEUE: usize = 8;
-/// Eight bytes at 3.6 MHz take 18 us or 900 cycles of 50 MHz.
-const TRIES: u32 = 10_000;
 
-// SAFETY: SSI0 registers of the data sheet, chapter 13; without DMA they cannot break memory safety.
-const CONTROL0: Register = unsafe { Register::at(0x4000_8000) };
-const CONTROL1: Register = unsafe { Register::at(0x4000_8004) };
-const DATA: Register = unsafe { Register::at(0x4000_8008) };
-const STATUS: Register = unsafe { Register::at(0x4000_800C) };
-const PRESCALE: Register = unsafe { Register::at(0x4000_8010) };
+// SAFETY: SSI0 of the data sheet, chapter 13; without DMA it cannot break memory safety.
+const SSI0: Device = unsafe { Device::at(0x4000_8000) };
+const CONTROL0: Register = SSI0.register(0x000);
+const CONTROL1: Register = SSI0.register(0x004);
+const DATA: Register = SSI0.register(0x008);
+const STATUS: Register = SSI0.register(0x00c);
+const PRESCALE: Register = SSI0.register(0x010);
 
 const ENABLE: u32 = 1 << 1;
 const BUSY: u32 = 1 << 4;
@@ -52,7 +52,7 @@ impl Ssi {
         for &byte in sent {
             DATA.write(byte.into());
         }
-        if !STATUS.wait(BUSY, 0, TRIES) {
+        if !STATUS.wait(BUSY, 0, BUS_TRIES) {
             return Err(Timeout);
         }
         for index in 0..sent.len() {
@@ -107,7 +107,7 @@ impl SpiBus for Ssi {
     }
 
     fn flush(&mut self) -> Result<(), Timeout> {
-        if STATUS.wait(BUSY, 0, TRIES) { Ok(()) } else { Err(Timeout) }
+        if STATUS.wait(BUSY, 0, BUS_TRIES) { Ok(()) } else { Err(Timeout) }
     }
 }
 

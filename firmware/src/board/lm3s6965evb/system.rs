@@ -1,21 +1,28 @@
 //! System control: the clock and the power of the peripherals.
 
-use crate::board::register::Register;
+use crate::board::register::{Device, Register};
 
 /// Frequency of the board's crystal, Hz.
 const CRYSTAL: u32 = 8_000_000;
 /// The PLL's 400 MHz halved and divided by SYSDIV + 1 = 4, Hz.
 const FULL_SPEED: u32 = 50_000_000;
+/// What the vendor's own start gives the crystal to swing in, cycles of the internal oscillator: 0.13 s at its 12 MHz, of
+/// which it may miss 30 %.
+const CRYSTAL_START: u32 = 3 * 524_288;
+/// What it gives a new source to take effect, cycles.
+const CHANGE_OVER: u32 = 3 * 16;
 /// The PLL locks within 0.5 ms; at 8 MHz and at least 4 cycles a try that is 1,000 tries.
 const LOCK_TRIES: u32 = 10_000;
 
-// SAFETY: system control registers of the data sheet, chapter 6; clocks and power cannot break memory safety.
-const RIS: Register = unsafe { Register::at(0x400F_E050) };
-const RESC: Register = unsafe { Register::at(0x400F_E05C) };
-const RCC: Register = unsafe { Register::at(0x400F_E060) };
-const RCGC0: Register = unsafe { Register::at(0x400F_E100) };
-const RCGC1: Register = unsafe { Register::at(0x400F_E104) };
-const RCGC2: Register = unsafe { Register::at(0x400F_E108) };
+// SAFETY: system control of the data sheet, chapter 6; clocks and power cannot break memory safety.
+const SYSTEM_CONTROL: Device = unsafe { Device::at(0x400F_E000) };
+const RIS: Register = SYSTEM_CONTROL.register(0x050);
+const RESC: Register = SYSTEM_CONTROL.register(0x05c);
+const MISC: Register = SYSTEM_CONTROL.register(0x058);
+const RCC: Register = SYSTEM_CONTROL.register(0x060);
+const RCGC0: Register = SYSTEM_CONTROL.register(0x100);
+const RCGC1: Register = SYSTEM_CONTROL.register(0x104);
+const RCGC2: Register = SYSTEM_CONTROL.register(0x108);
 
 const WATCHDOG: u32 = 1 << 3;
 const MAIN_OSCILLATOR_OFF: u32 = 1 << 0;
@@ -32,11 +39,13 @@ const PLL_LOCKED: u32 = 1 << 6;
 /// Starts the clock and powers the peripherals; the processor's clock in Hz. With a PLL that does not lock that is the
 /// crystal's: slow, but alive.
 pub fn start() -> u32 {
-    // As the data sheet says in 6.1.4.5: run from the crystal, start the PLL, wait for it, change over.
+    // As the data sheet says under Initialization and Configuration: without PLL and divider; then from the crystal;
+    // start the PLL, wait for it, change over.
     RCC.modify(USE_DIVIDER, BYPASS);
-    RCC.modify(MAIN_OSCILLATOR_OFF, 0);
-    RCC.modify(OSCILLATOR_SOURCE | CRYSTAL_FIELD, CRYSTAL_8_MHZ);
-    RCC.modify(PLL_OFF, 0);
+    start_crystal();
+    MISC.write(PLL_LOCKED); // forgets a lock of before
+    RCC.modify(OSCILLATOR_SOURCE | CRYSTAL_FIELD | PLL_OFF, CRYSTAL_8_MHZ);
+    cortex_m::asm::delay(CHANGE_OVER);
     let hertz = if RIS.wait(PLL_LOCKED, PLL_LOCKED, LOCK_TRIES) {
         RCC.modify(DIVIDER_FIELD, DIVIDE_BY_4 | USE_DIVIDER);
         RCC.modify(BYPASS, 0);
@@ -50,6 +59,15 @@ pub fn start() -> u32 {
     let _ = RCGC2.read(); // A peripheral may be used three cycles after its clock is on.
     cortex_m::asm::delay(8);
     hertz
+}
+
+/// Switches the crystal's oscillator on, and waits until it can be relied on: this chip has no flag that says so, and a
+/// processor that changes over to it too early stands still. It is off after every reset (in QEMU it is on).
+fn start_crystal() {
+    if RCC.read() & MAIN_OSCILLATOR_OFF != 0 {
+        RCC.modify(MAIN_OSCILLATOR_OFF, 0);
+        cortex_m::asm::delay(CRYSTAL_START);
+    }
 }
 
 /// Whether the watchdog caused the last reset. To be asked once: the register adds up the causes. QEMU's never says so.

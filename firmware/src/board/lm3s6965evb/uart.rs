@@ -4,21 +4,24 @@ use cortex_m::interrupt::InterruptNumber;
 use cortex_m::peripheral::NVIC;
 
 use super::gpio;
-use crate::board::register::Register;
-use crate::board::serial::receiver::Inlet;
+use crate::board::register::{Device, Register};
+use crate::board::serial::receiver::{Inlet, Taken};
 use crate::board::serial::transmitter::{Outlet, Transmitter};
 use crate::config::BAUD;
 
-// SAFETY: UART0 registers of the data sheet, chapter 12; without DMA they cannot break memory safety.
-const DATA: Register = unsafe { Register::at(0x4000_C000) };
-const FLAGS: Register = unsafe { Register::at(0x4000_C018) };
-const DIVISOR: Register = unsafe { Register::at(0x4000_C024) };
-const DIVISOR_FRACTION: Register = unsafe { Register::at(0x4000_C028) };
-const LINE_CONTROL: Register = unsafe { Register::at(0x4000_C02C) };
-const CONTROL: Register = unsafe { Register::at(0x4000_C030) };
-const INTERRUPT_MASK: Register = unsafe { Register::at(0x4000_C038) };
-const INTERRUPT_CLEAR: Register = unsafe { Register::at(0x4000_C044) };
+// SAFETY: UART0 of the data sheet, chapter 12; without DMA it cannot break memory safety.
+const UART0: Device = unsafe { Device::at(0x4000_C000) };
+const DATA: Register = UART0.register(0x000);
+const RECEIVE_STATUS: Register = UART0.register(0x004);
+const FLAGS: Register = UART0.register(0x018);
+const DIVISOR: Register = UART0.register(0x024);
+const DIVISOR_FRACTION: Register = UART0.register(0x028);
+const LINE_CONTROL: Register = UART0.register(0x02c);
+const CONTROL: Register = UART0.register(0x030);
+const INTERRUPT_MASK: Register = UART0.register(0x038);
+const INTERRUPT_CLEAR: Register = UART0.register(0x044);
 
+const OVERRUN: u32 = 1 << 3;
 const RECEIVER_EMPTY: u32 = 1 << 4;
 const TRANSMITTER_FULL: u32 = 1 << 5;
 const EIGHT_BITS_QUEUED: u32 = 0b11 << 5 | 1 << 4;
@@ -59,7 +62,13 @@ impl Outlet for Port {
 /// The inward direction.
 pub(super) const INLET: Inlet = Inlet {
     clear: || INTERRUPT_CLEAR.write(RECEIVED),
-    take: || if FLAGS.read() & RECEIVER_EMPTY == 0 { Some(DATA.read() as u8) } else { None },
+    take: || {
+        let overrun = RECEIVE_STATUS.read() & OVERRUN != 0;
+        if overrun {
+            RECEIVE_STATUS.write(0); // Any write clears it.
+        }
+        Taken { byte: (FLAGS.read() & RECEIVER_EMPTY == 0).then(|| DATA.read() as u8), overrun }
+    },
 };
 
 #[derive(Clone, Copy)]

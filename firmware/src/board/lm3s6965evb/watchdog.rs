@@ -1,24 +1,27 @@
 //! The watchdog.
 
 use super::system;
-use crate::board::cortex_m::watchdog::{Call, Registers, TwoStage};
-use crate::board::register::Register;
+use crate::board::cortex_m::watchdog::{self, Call, Registers, TwoStage, UNLOCK};
+use crate::board::register::{Device, Register};
 
-// SAFETY: the watchdog's registers of the data sheet, chapter 11; without DMA they cannot break memory safety.
-const LOAD: Register = unsafe { Register::at(0x4000_0000) };
-const CONTROL: Register = unsafe { Register::at(0x4000_0008) };
-const CLEAR: Register = unsafe { Register::at(0x4000_000C) };
-const TEST: Register = unsafe { Register::at(0x4000_0418) };
-const LOCK: Register = unsafe { Register::at(0x4000_0C00) };
+// SAFETY: the watchdog of the data sheet, chapter 11; without DMA it cannot break memory safety.
+const WATCHDOG: Device = unsafe { Device::at(0x4000_0000) };
+const TEST: Register = WATCHDOG.register(0x418);
+const LOCK: Register = WATCHDOG.register(0xc00);
 
 /// It stands still while a debugger holds the processor.
 const STALL: u32 = 1 << 8;
 /// The number of its interrupt.
 const CALL: Call = Call::Own(18);
 
+/// The lock of its registers, which this opens, is closed by the next feeding.
+fn stall(stalls: bool) {
+    LOCK.write(UNLOCK);
+    TEST.write(if stalls { STALL } else { 0 });
+}
+
 /// Starts it.
 pub(super) fn start(hertz: u32) -> TwoStage {
-    TEST.write(STALL);
-    let registers = Registers { load: LOAD, control: CONTROL, clear: CLEAR, lock: LOCK };
-    TwoStage::start(registers, hertz, CALL, system::reset_by_watchdog())
+    watchdog::stall_by(stall);
+    TwoStage::start(Registers::of(WATCHDOG), hertz, CALL, system::reset_by_watchdog())
 }

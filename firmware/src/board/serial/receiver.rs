@@ -13,8 +13,17 @@ use crate::config::RECEIVE_QUEUE;
 pub(in crate::board) struct Inlet {
     /// Ends the interrupt. Done before the bytes are taken, so that one that comes meanwhile interrupts anew.
     pub clear: fn(),
-    /// Takes the next byte out; `None` once there is none.
-    pub take: fn() -> Option<u8>,
+    /// Takes out what is next.
+    pub take: fn() -> Taken,
+}
+
+/// What a serial port had.
+#[derive(Clone, Copy)]
+pub(in crate::board) struct Taken {
+    /// The next byte; `None` once there is none.
+    pub byte: Option<u8>,
+    /// Whether the port has had no room for a byte, or for several in a row, since it was last asked.
+    pub overrun: bool,
 }
 
 /// How the interrupt gets at the bytes, and where it puts them.
@@ -31,9 +40,12 @@ pub(in crate::board) fn receive() {
     let source = cortex_m::interrupt::free(|token| SOURCE.borrow(token).take());
     if let Some(mut source) = source {
         (source.inlet.clear)();
-        while let Some(byte) = (source.inlet.take)() {
-            if source.queue.enqueue(byte).is_err() {
-                LOST.fetch_add(1, Ordering::Relaxed);
+        loop {
+            let Taken { byte, overrun } = (source.inlet.take)();
+            let is_refused = byte.is_some_and(|byte| source.queue.enqueue(byte).is_err());
+            LOST.fetch_add(u32::from(overrun) + u32::from(is_refused), Ordering::Relaxed);
+            if byte.is_none() {
+                break;
             }
         }
         cortex_m::interrupt::free(|token| SOURCE.borrow(token).set(Some(source)));
@@ -54,7 +66,8 @@ impl Receiver {
         Some(Self { queue: consumer })
     }
 
-    /// Bytes lost since reset because nobody took them in time.
+    /// Bytes lost since reset because nobody took them in time; at least so many, since a port does not say how many it had no
+    /// room for. Wraps.
     pub fn lost(&self) -> u32 {
         LOST.load(Ordering::Relaxed)
     }

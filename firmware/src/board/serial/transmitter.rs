@@ -4,8 +4,7 @@ use core::fmt;
 
 use embedded_io::{Error, ErrorKind, ErrorType, Write};
 
-/// A byte leaves in 10/460,800 s = 22 us, on the fastest board 3,646 cycles of 168 MHz, and a try takes at least 4.
-const TRIES: u32 = 10_000;
+use crate::config::BUS_TRIES;
 
 /// A serial port as the transmitter sees it.
 pub trait Outlet {
@@ -45,7 +44,7 @@ impl<Port> ErrorType for Transmitter<Port> {
 impl<Port: Outlet> Write for Transmitter<Port> {
     fn write(&mut self, bytes: &[u8]) -> Result<usize, Timeout> {
         for &byte in bytes {
-            if !(0..TRIES).any(|_| self.0.is_ready()) {
+            if !(0..BUS_TRIES).any(|_| self.0.is_ready()) {
                 return Err(Timeout);
             }
             self.0.put(byte);

@@ -3,14 +3,16 @@
 
 use cortex_m::asm::delay;
 use embedded_hal::i2c::{Error, ErrorKind, ErrorType, I2c as Transactions, NoAcknowledgeSource, Operation};
-use stm32f4xx_hal::gpio::{PB6, PB7};
+use stm32f4xx_hal::gpio::alt::i2c1::{Scl, Sda};
+use stm32f4xx_hal::gpio::{PB6, PB7, PinState};
 use stm32f4xx_hal::i2c::I2c;
 use stm32f4xx_hal::pac::I2C1;
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::Rcc;
 
-/// A byte takes 9/400,000 s = 23 us or 3,780 cycles of 168 MHz, and a try takes at least 4.
-const TRIES: u32 = 10_000;
+use crate::config::BUS_TRIES;
+use crate::display::i2c_recovery::free_bus;
+
 /// Half a clock of a slow 100 kHz, cycles of 168 MHz.
 const HALF_CLOCK: u32 = 840;
 
@@ -22,7 +24,10 @@ const ARBITRATION_LOST: u16 = 1 << 9;
 const NOT_ACKNOWLEDGED: u16 = 1 << 10;
 
 /// The bus, for writing only: the panel is never read.
-pub struct Bus(I2C1);
+pub struct Bus {
+    port: I2C1,
+    pins: (Scl, Sda),
+}
 
 /// Why bytes did not get onto the bus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,23 +61,18 @@ impl ErrorType for Bus {
 
 impl Bus {
     pub(super) fn start(port: I2C1, clock: PB6, data: PB7, rcc: &mut Rcc) -> Self {
-        let (mut clock, data) = (clock.into_open_drain_output(), data.into_input());
-        // A reset in the middle of a byte leaves the panel waiting, its answer on the data line, for up to 9 clocks.
-        for _ in 0..9 {
-            clock.set_low();
-            delay(HALF_CLOCK);
-            clock.set_high();
-            delay(HALF_CLOCK);
-        }
-        Self(I2c::new(port, (clock, data), 400.kHz(), rcc).release().0)
+        let (port, pins) = I2c::new(port, (clock, data), 400.kHz(), rcc).release();
+        let mut bus = Self { port, pins };
+        bus.reset();
+        bus
     }
 
     fn send(&self, address: u8, operations: &[Operation]) -> Result<(), BusError> {
-        self.0.cr1().modify(|_, w| w.start().set_bit());
+        self.port.cr1().modify(|_, w| w.start().set_bit());
         self.wait(START_SENT, BusError::Timeout)?;
         self.put(address << 1);
         self.wait(ADDRESS_SENT, BusError::NoAnswer)?;
-        let _ = self.0.sr2().read(); // Only this ends the address phase.
+        let _ = self.port.sr2().read(); // Only this ends the address phase.
         for operation in operations {
             let Operation::Write(bytes) = operation else { return Err(BusError::Read) };
             for &byte in *bytes {
@@ -84,13 +84,13 @@ impl Bus {
     }
 
     fn put(&self, byte: u8) {
-        self.0.dr().write(|w| w.dr().set(byte));
+        self.port.dr().write(|w| w.dr().set(byte));
     }
 
     /// Waits for a status bit; `refusal` if instead the panel does not acknowledge.
     fn wait(&self, wanted: u16, refusal: BusError) -> Result<(), BusError> {
-        for _ in 0..TRIES {
-            let status = self.0.sr1().read().bits();
+        for _ in 0..BUS_TRIES {
+            let status = self.port.sr1().read().bits();
             if status & NOT_ACKNOWLEDGED != 0 {
                 return Err(refusal);
             }
@@ -106,14 +106,19 @@ impl Bus {
 
     /// Releases the bus; whether it came free in time.
     fn stop(&self) -> bool {
-        self.0.sr1().write(|w| w.af().clear_bit());
-        self.0.cr1().modify(|_, w| w.stop().set_bit());
-        (0..TRIES).any(|_| self.0.cr1().read().stop().bit_is_clear())
+        self.port.sr1().write(|w| w.af().clear_bit());
+        self.port.cr1().modify(|_, w| w.stop().set_bit());
+        (0..BUS_TRIES).any(|_| self.port.cr1().read().stop().bit_is_clear())
     }
 
-    /// Makes the device forget a bus that hangs; its settings stay.
-    fn reset(&self) {
-        let port = &self.0;
+    /// Frees a bus that hangs, and makes the device forget it; its settings stay.
+    fn reset(&mut self) {
+        if let (Scl::PB6(clock), Sda::PB7(data)) = &mut self.pins {
+            clock.with_open_drain_output_in_state(PinState::High, |clock| {
+                data.with_open_drain_output_in_state(PinState::High, |data| free_bus(clock, data, || delay(HALF_CLOCK)))
+            });
+        }
+        let port = &self.port;
         let (frequency, clock, rise) = (port.cr2().read().bits(), port.ccr().read().bits(), port.trise().read().bits());
         port.cr1().write(|w| w.swrst().set_bit());
         port.cr1().write(|w| w.swrst().clear_bit());

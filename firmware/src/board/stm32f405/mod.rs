@@ -85,7 +85,7 @@ impl Board {
             receiver,
             keys: Keys(c.pc7.into_pull_up_input()),
             clock: Clock::start(core.SYST, HERTZ),
-            watchdog: Watchdog::start(chip.IWDG, &chip.DBGMCU, &mut rcc),
+            watchdog: Watchdog::start(chip.IWDG, &mut rcc),
             hertz: HERTZ,
             place,
         })

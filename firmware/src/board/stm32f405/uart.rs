@@ -7,7 +7,7 @@ use stm32f4xx_hal::rcc::Rcc;
 use stm32f4xx_hal::serial::config::{Config, InvalidConfig};
 use stm32f4xx_hal::serial::{Event, Tx};
 
-use crate::board::serial::receiver::Inlet;
+use crate::board::serial::receiver::{Inlet, Taken};
 use crate::board::serial::transmitter::{Outlet, Transmitter};
 use crate::config::BAUD;
 
@@ -36,17 +36,15 @@ impl Outlet for Tx<USART3> {
 /// The inward direction.
 pub(super) const INLET: Inlet = Inlet { clear: || (), take };
 
-/// The next byte, if there is one. To read it ends its interrupt; there is nothing else to clear.
-fn take() -> Option<u8> {
+/// To read a byte ends its interrupt; there is nothing else to clear.
+fn take() -> Taken {
     // SAFETY: of these registers the outward direction uses other bits, and reading does not change those.
     let port = unsafe { &*USART3::ptr() };
     let status = port.sr().read();
     // A byte that came before the last one was read is lost, and interrupts until the data are read.
-    if status.rxne().bit_is_clear() && status.ore().bit_is_clear() {
-        return None;
-    }
-    let byte = port.dr().read().dr().bits() as u8;
-    status.rxne().bit_is_set().then_some(byte)
+    let (has_byte, overrun) = (status.rxne().bit_is_set(), status.ore().bit_is_set());
+    let data = (has_byte || overrun).then(|| port.dr().read().dr().bits() as u8);
+    Taken { byte: data.filter(|_| has_byte), overrun }
 }
 
 /// Lets received bytes interrupt.

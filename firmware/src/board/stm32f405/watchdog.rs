@@ -5,6 +5,7 @@ use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::Rcc;
 use stm32f4xx_hal::watchdog::IndependentWatchdog;
 
+use crate::board::cortex_m::watchdog;
 use crate::config::WATCHDOG_SECONDS;
 
 /// The chip's watchdog.
@@ -15,18 +16,23 @@ pub struct Watchdog {
 
 impl Watchdog {
     /// Starts it. Its oscillator is good for a factor of 2 (17 to 47 kHz instead of 32).
-    pub(super) fn start(unit: IWDG, debug: &DBGMCU, rcc: &mut Rcc) -> Self {
+    pub(super) fn start(unit: IWDG, rcc: &mut Rcc) -> Self {
         let has_reset = rcc.csr().read().wdgrstf().bit_is_set();
         rcc.csr().modify(|_, w| w.rmvf().set_bit());
         let mut unit = IndependentWatchdog::new(unit);
-        // It stands still while a debugger holds the processor.
-        unit.stop_on_debug(debug, true);
+        watchdog::stall_by(stall);
         unit.start((2 * 1000 * WATCHDOG_SECONDS).millis());
         Self { unit, has_reset }
     }
 }
 
-impl crate::board::cortex_m::watchdog::Watchdog for Watchdog {
+fn stall(stalls: bool) {
+    // SAFETY: of this register nothing else uses anything.
+    let debug = unsafe { &*DBGMCU::ptr() };
+    debug.apb1_fz().modify(|_, w| w.dbg_iwdg_stop().bit(stalls));
+}
+
+impl watchdog::Watchdog for Watchdog {
     fn feed(&mut self) {
         self.unit.feed();
     }

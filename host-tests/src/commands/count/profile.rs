@@ -15,6 +15,7 @@ use super::pipeline::{Cost, Pipeline};
 use super::trace::{Registers, for_each_line};
 use super::{COUNTED, CountError, Target};
 use crate::emulator::boards::Core;
+use crate::emulator::process::remove_on_interrupt;
 use crate::emulator::qemu::Lockstep;
 
 /// An instruction of the program and what all its executions together cost.
@@ -68,6 +69,7 @@ impl Profile {
     /// Lets `board` run to its next frame and profiles all that it executes for it.
     pub fn of_frame(board: &mut Lockstep, image: &Image, core: Core) -> Result<(Frame, Self), CountError> {
         let folder = tempfile::tempdir().map_err(log)?;
+        remove_on_interrupt(folder.path());
         let path = folder.path().join("log");
         mkfifo(&path, Mode::S_IRUSR | Mode::S_IWUSR).map_err(|error| log(error.into()))?;
         thread::scope(|scope| {

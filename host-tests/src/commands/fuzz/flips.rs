@@ -88,6 +88,7 @@ impl Flips {
         Frame {
             sequence: self.tally.sent as u32,
             dropped: rng.u32(..4),
+            lost: rng.u32(..4),
             scene: rng.u8(..12),
             paused: 0,
             step: rng.u32(..),

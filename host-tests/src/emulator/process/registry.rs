@@ -1,9 +1,11 @@
-//! The live process groups of this process, and the two that look after them all: the guardian thread, which ends those
-//! whose time is up, and the handler of interrupts, which ends every one of them and then this process.
+//! The live process groups of this process, and who looks after them: the guardian thread, which ends those whose time is
+//! up; the handler of interrupts, which ends every one of them and then this process; and in each group a shell that kills it
+//! when this process has been killed and can do nothing any more.
 
 use std::io;
 use std::os::unix::process::CommandExt;
-use std::process::{Child, Command, ExitStatus};
+use std::path::Path;
+use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, Once, PoisonError};
 use std::thread::{self, sleep};
@@ -20,20 +22,27 @@ const GRACE: Duration = Duration::from_secs(3);
 const INTERRUPTED_GRACE: Duration = Duration::from_secs(1);
 /// How often the guardian looks at the time limits.
 const GUARD: Duration = Duration::from_millis(20);
+/// Reads a pipe whose other end this process alone has: it ends when this process does, by whatever signal. Any Unix can do
+/// that, no thread must live for it, and it reaches the children's children, which the parent-death signal of Linux does not.
+const LAST_WILL: &str = "read -r _; kill -KILL 0";
 /// The shell's exit code for a command ended by Ctrl-C.
 const INTERRUPTED: i32 = 130;
 
 static LIVE: Mutex<Vec<Arc<Group>>> = Mutex::new(Vec::new());
-static HOOK: Mutex<Option<Hook>> = Mutex::new(None);
+static HOOKS: Mutex<Vec<Hook>> = Mutex::new(Vec::new());
 static SUPERVISION: Once = Once::new();
 
 type Hook = Box<dyn FnOnce() + Send>;
 
-/// A child and the process group it leads.
+/// A child and its process group.
 #[derive(Debug)]
 pub(super) struct Group {
     program: String,
+    /// The child's process id.
     pid: u32,
+    /// Is in the group from before the child, and gives it its number.
+    warden: Mutex<Child>,
+    group: Pid,
     started: Instant,
     limit: Duration,
     timed_out: AtomicBool,
@@ -63,13 +72,14 @@ impl Group {
 
     /// Sends `signal` to every process of the group, or only asks whether there is one; `false` if there is none.
     fn signal(&self, signal: impl Into<Option<Signal>>) -> bool {
-        i32::try_from(self.pid).is_ok_and(|pid| killpg(Pid::from_raw(pid), signal.into()).is_ok())
+        killpg(self.group, signal.into()).is_ok()
     }
 
-    /// Whether any process of the group is left. Reaps the leader.
+    /// Whether any process of the group is left. Reaps the two that are ours.
     fn is_alive(&self) -> bool {
-        let leader_runs = matches!(self.try_wait(), Ok(None));
-        leader_runs || self.signal(None)
+        let child_runs = matches!(self.try_wait(), Ok(None));
+        let warden_runs = matches!(lock(&self.warden).try_wait(), Ok(None));
+        child_runs || warden_runs || self.signal(None)
     }
 }
 
@@ -79,11 +89,23 @@ pub(super) fn start(command: &mut Command, limit: Duration) -> io::Result<(Arc<G
     let program = command.get_program().to_string_lossy().into_owned();
     // Held while the child starts: an interrupt finds either no child or a registered one.
     let mut live = lock(&LIVE);
-    let mut child = command.process_group(0).spawn()?;
+    let mut warden = Command::new("sh");
+    warden.args(["-c", LAST_WILL]).stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::null());
+    let mut warden = warden.process_group(0).spawn()?;
+    let number = warden.id().cast_signed();
+    let mut child = match command.process_group(number).spawn() {
+        Ok(child) => child,
+        Err(error) => {
+            warden.kill().and_then(|()| warden.wait())?;
+            return Err(error);
+        }
+    };
     let pipes = Pipes::of(&mut child);
     let group = Arc::new(Group {
         program,
         pid: child.id(),
+        warden: Mutex::new(warden),
+        group: Pid::from_raw(number),
         started: Instant::now(),
         limit,
         timed_out: AtomicBool::new(false),
@@ -103,10 +125,19 @@ pub(super) fn finish(group: &Arc<Group>) {
 }
 
 /// Runs `hook` when this process is interrupted, after its children have gone and before it exits with code 130:
-/// for what must be put back, such as the terminal's mode. A later hook replaces an earlier one.
+/// for what must be put back, such as the terminal's mode.
 pub fn on_interrupt(hook: impl FnOnce() + Send + 'static) {
     SUPERVISION.call_once(supervise);
-    *lock(&HOOK) = Some(Box::new(hook));
+    lock(&HOOKS).push(Box::new(hook));
+}
+
+/// An interrupt takes this folder away too, which no value is dropped for.
+pub fn remove_on_interrupt(folder: &Path) {
+    let folder = folder.to_owned();
+    on_interrupt(move || {
+        // It may be gone already.
+        let _: io::Result<()> = std::fs::remove_dir_all(folder);
+    });
 }
 
 /// Asks the groups to stop, and kills those that are still there after `grace`.
@@ -123,8 +154,9 @@ fn end(groups: &[Arc<Group>], grace: Duration) {
     }
     for group in &left {
         group.signal(Signal::SIGKILL);
-        // The leader cannot refuse, so this returns; an error only means that it was already reaped.
+        // Neither can refuse, so this returns; an error only means that it was already reaped.
         let _ = lock(&group.child).wait();
+        let _ = lock(&group.warden).wait();
     }
 }
 
@@ -147,7 +179,7 @@ fn supervise() {
         // Never released: no child starts from here on.
         let live = lock(&LIVE);
         end(&live, INTERRUPTED_GRACE);
-        if let Some(hook) = lock(&HOOK).take() {
+        for hook in lock(&HOOKS).drain(..) {
             hook();
         }
         std::process::exit(INTERRUPTED);

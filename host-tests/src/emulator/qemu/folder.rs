@@ -7,6 +7,8 @@ use std::path::Path;
 use nix::fcntl::{Flock, FlockArg};
 use tempfile::TempDir;
 
+use crate::emulator::process::remove_on_interrupt;
+
 /// How the names of all folders begin.
 const PREFIX: &str = "double-pendulum-";
 /// The file that is locked as long as the folder's owner lives, however it ends.
@@ -29,6 +31,7 @@ impl Folder {
     fn make_in(base: &Path) -> io::Result<Self> {
         remove_stale(base);
         let folder = tempfile::Builder::new().prefix(PREFIX).tempdir_in(base)?;
+        remove_on_interrupt(folder.path());
         let unnamed = folder.path().join("unlocked");
         let owner = lock(File::create(&unnamed)?).ok_or(io::ErrorKind::WouldBlock)?;
         // Under its name the file has been locked from the first: nobody can take this folder for a stale one.

@@ -155,6 +155,11 @@ impl Machine {
         })
     }
 
+    /// QEMU's process id.
+    pub fn id(&self) -> u32 {
+        self.process.id()
+    }
+
     /// Whether QEMU has ended by itself, and how.
     pub fn ended(&mut self) -> Result<Option<ExitStatus>, QemuError> {
         Ok(self.process.try_wait()?)

@@ -1,0 +1,60 @@
+//! `cargo fw`: what it says it can run, and how it ends.
+
+use std::process::{Command, Stdio};
+use std::time::Duration;
+
+use host_tests::emulator::boards::BOARDS;
+use host_tests::emulator::process::{Output, run, spawn};
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
+use std::io::{BufRead, BufReader};
+
+/// Guards against hanging, nothing else.
+const LIMIT: Duration = Duration::from_secs(900);
+
+fn fw() -> Command {
+    Command::new(env!("CARGO_BIN_EXE_fw"))
+}
+
+fn output(arguments: &[&str]) -> Output {
+    run(fw().args(arguments), LIMIT).unwrap_or_else(|error| panic!("{error}"))
+}
+
+#[test]
+fn the_help_lists_what_can_be_run() {
+    let help = output(&["--help"]);
+    assert_eq!(help.status.code(), Some(0));
+    let lists = |word: &str| help.stdout.lines().any(|line| line.split_whitespace().next() == Some(word));
+    for word in BOARDS.map(|board| board.name).iter().chain(&["inject-panic", "measure", "stm32f405"]) {
+        assert!(lists(word), "{word} is missing:\n{}", help.stdout);
+    }
+}
+
+#[test]
+fn what_runs_for_ever_ends_well_when_it_is_told_to() {
+    let told = output(&["mps2-an386", "--seconds", "2"]);
+    assert_eq!(told.status.code(), Some(0), "{}", told.stderr);
+    assert!(told.stdout.contains("boot: mps2-an386"), "{}", told.stdout);
+    assert_eq!(told.stderr.lines().last(), Some("ended after 2 s, as told"));
+}
+
+#[test]
+fn a_failure_is_one_however_long_it_may_run() {
+    assert_eq!(output(&["inject-panic", "--seconds", "600"]).status.code(), Some(1));
+}
+
+#[test]
+fn an_interrupt_leaves_nothing_in_the_temporary_folder() {
+    let temporary = tempfile::tempdir().expect("there is room for it");
+    let mut command = fw();
+    command.arg("lm3s6965evb").env("TMPDIR", temporary.path());
+    command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::null());
+    let mut fw = spawn(&mut command, LIMIT).unwrap_or_else(|error| panic!("{error}"));
+    let mut log = BufReader::new(fw.stdout.take().expect("piped"));
+    log.read_line(&mut String::new()).expect("the board says something");
+    let left = || std::fs::read_dir(temporary.path()).expect("it is there").count();
+    assert!(left() > 0, "the board has its folder there");
+    kill(Pid::from_raw(fw.id().cast_signed()), Signal::SIGTERM).expect("it runs");
+    assert_eq!(fw.wait().expect("it ends").code(), Some(130));
+    assert_eq!(left(), 0);
+}
