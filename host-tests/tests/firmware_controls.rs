@@ -111,16 +111,21 @@ fn labels_show_what_is_set() {
     let ratios = [0.01, 0.0125, 0.1, 0.315, 1.0, 2.75, 9.0 / 16.0, 12.5, 31.5, 100.0].map(label::mass_ratio);
     let expected = ["0.0100", "0.0125", "0.100", "0.315", "1.00", "2.75", "0.563", "12.5", "31.5", "100"];
     assert_eq!(ratios.map(|label| label.to_string()), expected.map(|text| format!("μ {text}")));
-    let angles = [0.0, 120.0, -7.0, 171.5, -0.5].map(label::degrees);
+    let angles = [0.0, 120.0, -7.0, 171.5, -0.5].map(|degrees| label::degrees("α", degrees));
     let expected = ["α 0°", "α 120°", "α -7°", "α 171.5°", "α -0.5°"];
     assert_eq!(angles.map(|label| label.to_string()), expected);
     let times = [0.0, 0.099, 59.96, 3600.0].map(label::time);
     assert_eq!(times.map(|label| label.to_string()), ["0.0 s", "0.0 s", "59.9 s", "3600.0 s"]);
+    let trusts = [8.44, 9370.2, f32::INFINITY, f32::NAN].map(label::trust);
+    assert_eq!(trusts.map(|label| label.to_string()), ["½px 8.4 s", "½px 9370 s", "½px ok", "½px ok"]);
+    let ticks = [0.0, 0.05, 0.2, 1.0, 50.0].map(|time| label::tick(time, " s"));
+    assert_eq!(ticks.map(|label| label.to_string()), ["0 s", "0.05 s", "0.2 s", "1 s", "50 s"]);
 }
 
 #[test]
 fn labels_of_any_numbers_are_safe() {
     for number in [f32::NAN, f32::INFINITY, f32::MAX, -f32::MAX, 1e-30] {
-        let _ = (label::mass_ratio(number), label::degrees(number), label::time(number.into()));
+        let _ = (label::mass_ratio(number), label::degrees("α", number), label::time(number.into()));
+        let _ = (label::trust(number), label::tick(number, " s"), label::energy("true", number));
     }
 }

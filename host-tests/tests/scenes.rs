@@ -1,8 +1,18 @@
 //! Every scene of the catalogue, on the host: its frame to the pixel, and what all scenes have in common.
 
+use double_pendulum::plan::Method;
+use firmware::app::App;
+use firmware::app::controls::NoButtons;
+use firmware::config::STEPS_PER_TICK;
+use firmware::display::NoDisplay;
 use firmware::graphics::canvas::{Canvas, HEIGHT, WIDTH};
-use firmware::scenes::SceneName;
-use host_tests::emulator::host::Show;
+use firmware::graphics::plot;
+use firmware::graphics::text::{self, Anchor};
+use firmware::motion::planner::Shown;
+use firmware::motion::settings::Settings;
+use firmware::protocol::{MAX_WIRE, Message, Pause, encode};
+use firmware::scenes::{AnyScene, SceneName};
+use host_tests::emulator::host::{Show, sheets};
 use host_tests::oracle::snapshot;
 
 /// The ticks after which each scene is pictured: one second, when all is in view, and four.
@@ -45,4 +55,75 @@ fn a_picture_is_drawn_over_whatever_was_there() {
         scene.draw(&mut canvas);
         assert!(canvas == scene.frame(), "{}", name.name());
     }
+}
+
+/// The pixels where two frames differ.
+fn differing(one: &Canvas, other: &Canvas) -> Vec<(i32, i32)> {
+    let pixels = (0..HEIGHT as i32).flat_map(|y| (0..WIDTH as i32).map(move |x| (x, y)));
+    pixels.filter(|&(x, y)| one.get(x, y) != other.get(x, y)).collect()
+}
+
+/// Time that stands still is marked by two bars below the top right corner, and by nothing else.
+#[test]
+fn a_pause_is_marked_and_only_a_pause() {
+    let settings = Settings::default();
+    let mut app = App::new(settings, sheets(), NoDisplay, Vec::new(), NoButtons).expect("good settings");
+    let mut pause = |paused: u8, clock: u32| {
+        app.receive(encode(&Pause { request: 1, paused }, &mut [0; MAX_WIRE]).iter().copied(), |_| ());
+        app.run_to(clock, |_| ());
+        app.canvas().clone()
+    };
+    let plain = |ticks| after(SceneName::Page, ticks).frame();
+    assert!(pause(0, 1) == plain(1), "what moves has no mark");
+    let marked = differing(&pause(1, 2), &plain(1));
+    let bar = |x: i32| (11..17).map(move |y| (x, y));
+    let mut expected: Vec<_> = [121, 122, 125, 126].into_iter().flat_map(bar).collect();
+    expected.sort_by_key(|&(x, y)| (y, x));
+    assert_eq!(marked, expected);
+    assert!(pause(0, 3) == plain(2), "the mark goes when time goes on");
+}
+
+/// A scene of curves shows its motion as large as it is drawn: the pendulum planned for has two rods as long as a radian
+/// is on the frame.
+#[test]
+fn what_is_planned_is_what_is_shown() {
+    let shown = |name: SceneName| AnyScene::new(name, &name.first_settings()).expect("a scene").shown();
+    for name in [SceneName::Beats3To2, SceneName::Beats2To1, SceneName::Beats5To2, SceneName::Beats3To1] {
+        let Some(Shown { way, steps, height }) = shown(name) else { panic!("{} moves", name.name()) };
+        assert_eq!((way, steps), (Method::Direction, STEPS_PER_TICK), "{}", name.name());
+        // Its greatest swing, 12 degrees, is 21.5 pixels long.
+        let expected = 4.0 * 21.5 / 12.0_f32.to_radians();
+        assert!((height / expected - 1.0).abs() < 1e-3, "{}: {height} for {expected}", name.name());
+    }
+    assert_eq!(shown(SceneName::Frequencies), None);
+}
+
+/// The pixels that a text lights, on black.
+fn written(text: &str, anchor: Anchor) -> Vec<(i32, i32)> {
+    let mut canvas = Canvas::default();
+    text::write(&mut canvas, text, anchor);
+    differing(&canvas, &Canvas::default())
+}
+
+#[test]
+fn text_keeps_off_the_edges() {
+    for anchor in [Anchor::TopLeft, Anchor::TopRight, Anchor::BottomLeft, Anchor::BottomRight] {
+        for text in ["μ 0.174", "½px 12.3 s", "α₁ -7.5°", "compensated", "ω₂ 0.765"] {
+            let near = |&(x, y): &(i32, i32)| x < 1 || y < 1 || x > WIDTH as i32 - 2 || y > HEIGHT as i32 - 2;
+            let ink = written(text, anchor);
+            assert!(!ink.is_empty() && !ink.iter().any(near), "{text:?} at {anchor:?}");
+        }
+    }
+}
+
+#[test]
+fn a_decimal_point_is_a_dot_on_the_line_and_both_frequencies_differ() {
+    assert_eq!(written(".", Anchor::At(10, 0)), [(10, 5), (11, 5), (10, 6), (11, 6)]);
+    assert_ne!(written("ω₁", Anchor::At(10, 0)), written("ω₂", Anchor::At(10, 0)));
+}
+
+#[test]
+fn scales_have_round_steps() {
+    let steps = [0.001, 0.3, 1.0, 1.1, 3.9, 30.0, 1e9].map(plot::scale_step);
+    assert_eq!(steps, [0.01, 0.5, 1.0, 2.0, 5.0, 50.0, 100.0]);
 }

@@ -4,6 +4,7 @@ use core::fmt::Debug;
 use core::mem::MaybeUninit;
 
 use defmt::Debug2Format;
+use double_pendulum::Parameters;
 use double_pendulum::plan::Plan;
 use embedded_io::Write;
 
@@ -18,6 +19,7 @@ use crate::display::Display;
 use crate::graphics::frame_buffers::FrameBuffers;
 use crate::motion::planner::Finding;
 use crate::motion::settings::Settings;
+use crate::scenes::SceneName;
 
 /// Makes the application as it is switched on, at its place.
 pub fn application<'a, Panel, Link, Keys>(
@@ -109,6 +111,13 @@ where
     caught_up
 }
 
+/// Says what starts from where.
+fn started(scene: SceneName, settings: &Settings) {
+    let Settings { parameters: Parameters { m1, m2, l1, l2, g }, degrees: [a1, a2], velocities: [w1, w2] } = *settings;
+    defmt::info!("{=str} starts at {} and {} degrees, {} and {} rad/s", scene.name(), a1, a2, w1, w2);
+    defmt::info!("masses {} and {} kg, rods {} and {} m, g {} m/s2", m1, m2, l1, l2, g);
+}
+
 /// Writes one event to the log.
 fn log<Panel: Debug, Link: Debug>(event: Event<Panel, Link>) {
     match event {
@@ -124,7 +133,7 @@ fn log<Panel: Debug, Link: Debug>(event: Event<Panel, Link>) {
                 defmt::warn!("too often: now with the first scene");
             }
         }
-        Event::Started(scene, settings) => defmt::info!("start: {} with {}", scene, settings),
+        Event::Started(scene, settings) => started(scene, &settings),
         Event::Refused(command, field) => defmt::warn!("refused {}: {}", command, field),
         Event::Dropped { ticks, total } => defmt::warn!("dropped {} frames, {} since reset", ticks, total),
         Event::Panel(error) => defmt::error!("panel: {}", Debug2Format(&error)),

@@ -4,8 +4,13 @@ use core::fmt::Write;
 
 use heapless::String;
 
-/// A label: at most the characters that fit beside the motion.
-pub type Label = String<12>;
+/// A label: at most the bytes of what fits beside the motion.
+pub type Label = String<16>;
+
+/// The names of both angles, and of both frequencies, the fast one first.
+pub const ANGLES: [&str; 2] = ["α₁", "α₂"];
+/// See [`ANGLES`].
+pub const FREQUENCIES: [&str; 2] = ["ω₁", "ω₂"];
 
 /// The mass ratio to three significant digits: `μ 100`, `μ 31.5`, `μ 2.75`, `μ 0.315`, `μ 0.0125`.
 pub fn mass_ratio(ratio: f32) -> Label {
@@ -16,31 +21,51 @@ pub fn mass_ratio(ratio: f32) -> Label {
         0.1.. => 3,
         _ => 4,
     };
-    label("μ ", ratio, decimals, "")
+    label("μ", " ", ratio, decimals, "")
 }
 
-/// The start angle: `α 120°`, with one decimal if it is no whole number of degrees.
-pub fn degrees(degrees: f32) -> Label {
+/// A start angle with its name: `α 120°`, with one decimal if it is no whole number of degrees.
+pub fn degrees(name: &str, degrees: f32) -> Label {
     let decimals = if degrees == (degrees as i32) as f32 { 0 } else { 1 };
-    label("α ", degrees, decimals, "°")
+    label(name, " ", degrees, decimals, "°")
 }
 
-/// A frequency in sqrt(g/l): `ω 1.848`.
-pub fn frequency(frequency: f32) -> Label {
-    label("ω ", frequency, 3, "")
+/// How far an angle swings, degrees: `30°`.
+pub fn swing(degrees: f32) -> Label {
+    label("", "", degrees, 0, "°")
 }
 
-/// A number to one decimal with its unit: `-18.7 J`.
-pub fn tenths(value: f32, unit: &str) -> Label {
-    label("", value, 1, unit)
+/// How far an axis reaches either way, degrees: `±12°`.
+pub fn reach(degrees: f32) -> Label {
+    label("±", "", degrees, 0, "°")
 }
 
-/// Until when the frame is right to half a pixel, s: `½ 8.4`, and `½ ok` as long as it is.
+/// A frequency in sqrt(g/l) with its name: `ω₁ 1.848`.
+pub fn frequency(name: &str, frequency: f32) -> Label {
+    label(name, " ", frequency, 3, "")
+}
+
+/// Whose energy is how much: `true -18.7 J`.
+pub fn energy(whose: &str, joules: f32) -> Label {
+    label(whose, " ", joules, 1, " J")
+}
+
+/// A number of an axis: `10`, `0.2 s`.
+pub fn tick(value: f32, unit: &str) -> Label {
+    let decimals = match value {
+        0.1..1.0 => 1,
+        0.01..0.1 => 2,
+        _ => 0,
+    };
+    label("", "", value, decimals, unit)
+}
+
+/// Until when the frame is right to half a pixel: `½px 8.4 s`, and `½px ok` as long as it is.
 pub fn trust(until: f32) -> Label {
     match until {
-        0.0..1e3 => label("½ ", until, 1, ""),
-        1e3..1e9 => label("½ ", until, 0, ""),
-        _ => Label::try_from("½ ok").unwrap_or_default(),
+        0.0..1e3 => label("½px", " ", until, 1, " s"),
+        1e3..1e9 => label("½px", " ", until, 0, " s"),
+        _ => Label::try_from("½px ok").unwrap_or_default(),
     }
 }
 
@@ -53,16 +78,16 @@ pub fn time(seconds: f64) -> Label {
     label
 }
 
-/// `value` rounded to `decimals` places between two texts.
-fn label(before: &str, value: f32, decimals: u32, after: &str) -> Label {
-    let unit = 10_u32.saturating_pow(decimals).max(1);
-    let rounded = (value.abs() * unit as f32 + 0.5) as u32;
+/// `value` rounded to `decimals` places after a name and a gap, and before a unit.
+fn label(name: &str, gap: &str, value: f32, decimals: u32, unit: &str) -> Label {
+    let one = 10_u32.saturating_pow(decimals).max(1);
+    let rounded = (value.abs() * one as f32 + 0.5) as u32;
     let sign = if value < 0.0 { "-" } else { "" };
-    let (whole, fraction) = (rounded / unit, rounded % unit);
+    let (whole, fraction) = (rounded / one, rounded % one);
     let mut label = Label::new();
     let _ = match decimals {
-        0 => write!(label, "{before}{sign}{whole}{after}"),
-        _ => write!(label, "{before}{sign}{whole}.{fraction:0width$}{after}", width = decimals as usize),
+        0 => write!(label, "{name}{gap}{sign}{whole}{unit}"),
+        _ => write!(label, "{name}{gap}{sign}{whole}.{fraction:0width$}{unit}", width = decimals as usize),
     };
     label
 }

@@ -38,9 +38,34 @@ pub fn dot(canvas: &mut Canvas, x: i32, at: Height, grey: u8) {
     canvas.update(x, i32::from(at).div_euclid(SUBPIXELS), |old| old.max(grey));
 }
 
+/// Grey of axes and of the lines that carry a scale: enough for a panel of one colour.
+pub const AXIS_GREY: u8 = 8;
+
 /// Draws a line across columns `from` to `to` (exclusive) in row `y`, dotted.
-pub fn axis(canvas: &mut Canvas, from: i32, to: i32, y: i32, grey: u8) {
-    (from..to).step_by(2).for_each(|x| canvas.update(x, y, |old| old.max(grey)));
+pub fn axis(canvas: &mut Canvas, from: i32, to: i32, y: i32) {
+    (from..to).step_by(3).for_each(|x| canvas.update(x, y, |old| old.max(AXIS_GREY)));
+}
+
+/// Draws a line down rows `from` to `to` (exclusive) in column `x`, dotted.
+pub fn upright_axis(canvas: &mut Canvas, x: i32, from: i32, to: i32) {
+    (from..to).step_by(3).for_each(|y| canvas.update(x, y, |old| old.max(AXIS_GREY)));
+}
+
+/// Draws a bar that tells a length, upright or level, with a foot at either end.
+pub fn bar(canvas: &mut Canvas, (x1, y1): (i32, i32), (x2, y2): (i32, i32)) {
+    let mut dot = |x: i32, y: i32| canvas.update(x, y, |old| old.max(AXIS_GREY));
+    (x1..=x2).for_each(|x| (y1..=y2).for_each(|y| dot(x, y)));
+    let (across, down) = if x1 == x2 { (1, 0) } else { (0, 1) };
+    for (x, y) in [(x1, y1), (x2, y2)] {
+        dot(x - across, y - down);
+        dot(x + across, y + down);
+    }
+}
+
+/// The least step of a scale that is no less than `least`: 1, 2 or 5 times a power of ten.
+pub fn scale_step(least: f32) -> f32 {
+    const STEPS: [f32; 12] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0];
+    STEPS.into_iter().find(|step| *step >= least).unwrap_or(100.0)
 }
 
 /// The last `COLUMNS` values of `N` curves, scrolling: the newest is the rightmost.

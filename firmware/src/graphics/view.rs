@@ -24,9 +24,10 @@ pub struct Place {
 impl Place {
     /// The whole panel.
     pub const WHOLE: Self = Self { pivot: PIVOT, reach: REACH };
-    /// The left half below a line of text, and the right half: a circle of 25 pixels with room for a bob around it.
+    /// The left half below a line of text, and the right half: a circle of 25 pixels with room for a bob around it, and
+    /// between the two for a line of text below.
     pub const HALVES: [Self; 2] =
-        [Self { pivot: (32.0, 36.0), reach: 25.0 }, Self { pivot: (96.0, 36.0), reach: 25.0 }];
+        [Self { pivot: (29.5, 36.0), reach: 25.0 }, Self { pivot: (98.5, 36.0), reach: 25.0 }];
 }
 
 /// A pendulum's look at its place.

@@ -9,7 +9,8 @@ use crate::graphics::brush::{Spot, Stroke};
 use crate::graphics::canvas::{Canvas, WIDTH};
 use crate::graphics::fade_layer::FadeLayer;
 use crate::graphics::label;
-use crate::graphics::text::{self, Anchor, LINE};
+use crate::graphics::plot;
+use crate::graphics::text::{self, Anchor, LINE, LOWEST};
 use crate::motion::direction_stepper::Directions;
 use crate::motion::planner::Shown;
 use crate::motion::settings::Settings;
@@ -18,8 +19,8 @@ use crate::scenes::horizon::{self, AccuracyHorizon};
 use crate::scenes::scene::{Report, Scene};
 
 /// The middles of the two figures, and how far a mode reaches in them, pixels.
-const MIDDLES: [(f32, f32); 2] = [(25.0, 36.0), (103.0, 36.0)];
-const REACH: f32 = 23.0;
+const MIDDLES: [(f32, f32); 2] = [(23.5, 32.5), (104.5, 32.5)];
+const REACH: f32 = 21.5;
 /// Half the width of the line, and the radius of the moving spot, subpixels.
 const HALF_WIDTH: u8 = 36;
 const SPOT_RADIUS: u8 = 120;
@@ -112,6 +113,10 @@ impl Scene for Beats {
     }
 
     fn draw(&self, report: &Report, canvas: &mut Canvas) {
+        for (x, y) in MIDDLES.map(|(x, y)| (x as i32, y as i32)) {
+            plot::axis(canvas, x - REACH as i32, x + REACH as i32 + 1, y);
+            plot::upright_axis(canvas, x, y - REACH as i32, y + REACH as i32 + 1);
+        }
         for spot in self.spots {
             Stroke::disc(spot, 2 * HALF_WIDTH + SPOT_RADIUS / 2).erase(canvas);
             Stroke::disc(spot, SPOT_RADIUS).lighten(canvas, u8::MAX);
@@ -120,7 +125,11 @@ impl Scene for Beats {
         text::write(canvas, "exact", Anchor::TopRight);
         let middle = |row| Anchor::Centred(WIDTH as i32 / 2, row);
         text::write(canvas, &label::mass_ratio(self.settings.mass_ratio()), middle(0));
-        horizon::draw_clock(canvas, report, middle(3 * LINE), middle(5 * LINE));
+        let reach = if self.scale > 0.0 { (REACH / self.scale).to_degrees() } else { 0.0 };
+        text::write(canvas, "↑ fast", middle(3 * LINE));
+        text::write(canvas, "→ slow", middle(4 * LINE));
+        text::write(canvas, &label::reach(reach), middle(5 * LINE));
+        horizon::draw_clock(canvas, report, middle(LINE + 2), middle(LOWEST));
     }
 
     fn report(&self) -> Report {

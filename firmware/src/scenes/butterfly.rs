@@ -8,7 +8,7 @@ use crate::graphics::canvas::{Canvas, WIDTH};
 use crate::graphics::fade_layer::FadeLayer;
 use crate::graphics::label;
 use crate::graphics::plot::{self, Strip};
-use crate::graphics::text::{self, Anchor};
+use crate::graphics::text::{self, Anchor, LINE, LOWEST};
 use crate::graphics::view::{Place, View};
 use crate::motion::direction_stepper::DirectionStepper;
 use crate::motion::planner::Shown;
@@ -23,12 +23,12 @@ const APART: f32 = 1e-6;
 const PLOT_COLUMNS: usize = 60;
 const PLOT_LEFT: i32 = (WIDTH - PLOT_COLUMNS) as i32;
 /// The row of e-folding 0, and pixels per e-folding: ln(sqrt 2 pi/1e-6) = 15.3 is as far apart as twins can get.
-const ZERO_ROW: f32 = 62.0;
-const SCALE: f32 = 3.0;
-const AXIS_GREY: u8 = 3;
+const ZERO_ROW: f32 = 53.0;
+const SCALE: f32 = 2.6;
 const CURVE: u8 = 255;
 /// The plot holds 60 columns of a quarter of a second: 15 s.
-const STEPS_PER_COLUMN: u64 = STEPS_PER_SECOND as u64 / 4;
+const COLUMNS_PER_SECOND: u64 = 4;
+const STEPS_PER_COLUMN: u64 = STEPS_PER_SECOND as u64 / COLUMNS_PER_SECOND;
 /// Half the width of the first twin's trace, subpixels.
 const HALF_WIDTH: u8 = 30;
 /// Brightness of the second twin, of 255.
@@ -107,14 +107,18 @@ impl Scene for Butterfly {
         self.view.draw(canvas, self.bobs, u8::MAX);
         for e_foldings in [0.0, 5.0, 10.0, 15.0] {
             let row = i32::from(plot::height(e_foldings, ZERO_ROW, SCALE)) / SUBPIXELS;
-            plot::axis(canvas, PLOT_LEFT, WIDTH as i32, row, AXIS_GREY);
+            plot::axis(canvas, PLOT_LEFT, WIDTH as i32, row);
+            text::write(canvas, &label::tick(e_foldings, ""), Anchor::EndingAt(PLOT_LEFT, row - LINE / 2));
         }
         self.strip.each(PLOT_LEFT + self.strip.columns() - 1, |x, &[now], &[before]| {
             plot::column(canvas, x, before, now, CURVE);
         });
-        horizon::draw_clock(canvas, report, Anchor::TopLeft, Anchor::At(36, 0));
-        text::write(canvas, &label::tenths(self.e_foldings, ""), Anchor::TopRight);
-        text::write(canvas, "e-folds", Anchor::At(PLOT_LEFT, 0));
+        let span = (PLOT_COLUMNS as u64 / COLUMNS_PER_SECOND) as f32;
+        let end = (self.first.time() as f32).max(span);
+        text::write(canvas, &label::tick(end - span, ""), Anchor::At(PLOT_LEFT, LOWEST));
+        text::write(canvas, &label::tick(end, " s"), Anchor::BottomRight);
+        text::write(canvas, "e-folds", Anchor::TopRight);
+        horizon::draw_clock(canvas, report, Anchor::TopLeft, Anchor::Centred(WIDTH as i32 / 2, 0));
     }
 
     fn report(&self) -> Report {

@@ -4,10 +4,10 @@ use double_pendulum::{Error, Parameters, State, rk4};
 
 use crate::config::{DT, STEPS_PER_TICK};
 use crate::graphics::brush::{Spot, Stroke};
-use crate::graphics::canvas::{Canvas, HEIGHT, WIDTH};
+use crate::graphics::canvas::{Canvas, WIDTH};
 use crate::graphics::fade_layer::FadeLayer;
 use crate::graphics::label;
-use crate::graphics::text::{self, Anchor, LINE};
+use crate::graphics::text::{self, Anchor, LINE, LOWEST};
 use crate::graphics::view::{Place, View};
 use crate::motion::direction_stepper::Directions;
 use crate::motion::planner::Shown;
@@ -83,11 +83,12 @@ impl Scene for Figure7 {
         }
         let states = [report.state, self.misprinted.state()];
         let energies = states.map(|state| self.right.energy().pendulum().energy(&state));
-        let [right, misprinted] = energies.map(|energy| label::tenths(energy, " J"));
+        let [right, misprinted] = energies;
+        let [right, misprinted] = [label::energy("true", right), label::energy("book", misprinted)];
         text::write(canvas, &right, Anchor::TopLeft);
         text::write(canvas, &misprinted, Anchor::TopRight);
         let middle = |row| Anchor::Centred(WIDTH as i32 / 2, row);
-        horizon::draw_clock(canvas, report, middle(0), middle(HEIGHT as i32 - LINE));
+        horizon::draw_clock(canvas, report, middle(LINE + 1), middle(LOWEST));
     }
 
     fn report(&self) -> Report {

@@ -4,11 +4,11 @@ use double_pendulum::{Error, Modes, Parameters, State};
 
 use crate::config::TICK_RATE;
 use crate::graphics::brush::{Spot, Stroke};
-use crate::graphics::canvas::{Canvas, HEIGHT, WIDTH};
+use crate::graphics::canvas::{Canvas, WIDTH};
 use crate::graphics::fade_layer::FadeLayer;
 use crate::graphics::label;
 use crate::graphics::plot::{self, Strip};
-use crate::graphics::text::{self, Anchor, LINE};
+use crate::graphics::text::{self, Anchor, LINE, LOWEST};
 use crate::motion::planner::Shown;
 use crate::motion::settings::Settings;
 use crate::scenes::scene::{Report, Scene};
@@ -17,25 +17,29 @@ use crate::scenes::scene::{Report, Scene};
 const LEAST_RANGE: f32 = 5.0;
 /// The mark is at most this far across.
 const FARTHEST_MARK: f32 = 0.8;
+/// The plot begins right of the scale's numbers.
+const LEFT: i32 = 12;
+const COLUMNS: usize = WIDTH - LEFT as usize;
 /// The row of frequency 0 and how far the greatest is above it, pixels.
-const ZERO_ROW: f32 = 55.0;
-const RISE: f32 = 44.0;
+const ZERO_ROW: f32 = 53.0;
+const RISE: f32 = 43.0;
+/// The scale has at most about so many numbers above 0.
+const NUMBERS: f32 = 4.0;
 const COLUMNS_PER_TICK: u32 = 2;
 const MARK_RADIUS: u8 = 112;
 const CURVE: u8 = 200;
-const AXIS_GREY: u8 = 4;
 
 /// Both frequencies in sqrt(g/l), so that the mass ratio is all that matters; the curves grow from the left.
 #[derive(Clone, Debug)]
 pub struct Frequencies {
-    /// The mass ratio across the whole frame.
+    /// The mass ratio across the whole plot.
     range: f32,
     /// Pixels per sqrt(g/l).
     scale: f32,
     mass_ratio: f32,
     /// At the mass ratio, fast and slow.
     marked: [f32; 2],
-    curves: Strip<2>,
+    curves: Strip<2, COLUMNS>,
     ticks: u64,
     drawn: u32,
 }
@@ -49,7 +53,7 @@ fn frequencies(mass_ratio: f32) -> Result<[f32; 2], Error> {
 impl Frequencies {
     fn push(&mut self) {
         // The middle of the column; mass ratio 0 itself has no modes.
-        let mass_ratio = (self.drawn as f32 + 0.5) * self.range / WIDTH as f32;
+        let mass_ratio = (self.drawn as f32 + 0.5) * self.range / COLUMNS as f32;
         if let Ok(frequencies) = frequencies(mass_ratio) {
             self.curves.push(frequencies.map(|frequency| plot::height(frequency, ZERO_ROW, self.scale)));
             self.drawn += 1;
@@ -69,32 +73,38 @@ impl Scene for Frequencies {
 
     fn tick(&mut self, _: &mut FadeLayer) {
         self.ticks = self.ticks.wrapping_add(1);
-        for _ in 0..COLUMNS_PER_TICK.min(WIDTH as u32 - self.drawn) {
+        for _ in 0..COLUMNS_PER_TICK.min(COLUMNS as u32 - self.drawn) {
             self.push();
         }
     }
 
     fn draw(&self, _: &Report, canvas: &mut Canvas) {
         let (width, zero) = (WIDTH as i32, ZERO_ROW as i32);
-        plot::axis(canvas, 0, width, zero, AXIS_GREY);
-        self.curves.each(self.drawn as i32 - 1, |x, &[fast, slow], &[fast_before, slow_before]| {
+        let step = plot::scale_step(RISE / self.scale / NUMBERS);
+        for frequency in (0..).map(|number| number as f32 * step) {
+            let row = (ZERO_ROW - self.scale * frequency) as i32;
+            if row < zero - RISE as i32 {
+                break;
+            }
+            plot::axis(canvas, LEFT, width, row);
+            text::write(canvas, &label::tick(frequency, ""), Anchor::EndingAt(LEFT, row - LINE / 2));
+        }
+        self.curves.each(LEFT + self.drawn as i32 - 1, |x, &[fast, slow], &[fast_before, slow_before]| {
             plot::column(canvas, x, fast_before, fast, CURVE);
             plot::column(canvas, x, slow_before, slow, CURVE);
         });
-        let x = self.mass_ratio / self.range * WIDTH as f32;
-        for y in (zero - RISE as i32..zero).step_by(2) {
-            canvas.update(x as i32, y, |grey| grey.max(AXIS_GREY));
-        }
+        let x = LEFT as f32 + self.mass_ratio / self.range * COLUMNS as f32;
+        plot::upright_axis(canvas, x as i32, zero - RISE as i32, zero);
         for frequency in self.marked {
             let mark = Spot::at(x, ZERO_ROW - self.scale * frequency);
             Stroke::disc(mark, 2 * MARK_RADIUS).erase(canvas);
             Stroke::disc(mark, MARK_RADIUS).lighten(canvas, u8::MAX);
         }
-        let [fast, slow] = self.marked;
-        text::write(canvas, &label::frequency(fast), Anchor::TopLeft);
-        text::write(canvas, &label::frequency(slow), Anchor::Centred(width / 2, 0));
+        let ([fast, slow], [fast_name, slow_name]) = (self.marked, label::FREQUENCIES);
+        text::write(canvas, &label::frequency(fast_name, fast), Anchor::TopLeft);
+        text::write(canvas, &label::frequency(slow_name, slow), Anchor::Centred(width / 2, 0));
         text::write(canvas, &label::mass_ratio(self.mass_ratio), Anchor::TopRight);
-        text::write(canvas, "0", Anchor::At(0, HEIGHT as i32 - LINE));
+        text::write(canvas, "ω in √(g/l)", Anchor::At(LEFT + 1, LOWEST));
         text::write(canvas, &label::mass_ratio(self.range), Anchor::BottomRight);
     }
 

@@ -3,10 +3,10 @@
 use double_pendulum::Error;
 
 use crate::graphics::brush::Spot;
-use crate::graphics::canvas::{Canvas, HEIGHT};
+use crate::graphics::canvas::Canvas;
 use crate::graphics::fade_layer::FadeLayer;
 use crate::graphics::label;
-use crate::graphics::text::{self, Anchor, LINE};
+use crate::graphics::text::{self, Anchor, LINE, LOWEST};
 use crate::graphics::trail::Trail;
 use crate::graphics::view::{Place, View};
 use crate::motion::planner::Shown;
@@ -57,9 +57,12 @@ impl Scene for Page {
         self.view.draw(canvas, self.spots(), u8::MAX);
         let [degrees1, degrees2] = self.settings.degrees;
         text::write(canvas, &label::mass_ratio(self.settings.mass_ratio()), Anchor::TopLeft);
-        text::write(canvas, &label::degrees(degrees1), Anchor::BottomLeft);
-        if degrees1 != degrees2 {
-            text::write(canvas, &label::degrees(degrees2), Anchor::At(0, HEIGHT as i32 - 2 * LINE));
+        if degrees1 == degrees2 {
+            text::write(canvas, &label::degrees("α", degrees1), Anchor::BottomLeft);
+        } else {
+            let [name1, name2] = label::ANGLES;
+            text::write(canvas, &label::degrees(name1, degrees1), Anchor::At(1, LOWEST - LINE));
+            text::write(canvas, &label::degrees(name2, degrees2), Anchor::BottomLeft);
         }
         horizon::draw_clock(canvas, report, Anchor::TopRight, Anchor::BottomRight);
     }

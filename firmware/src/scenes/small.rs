@@ -9,23 +9,27 @@ use crate::graphics::canvas::{Canvas, WIDTH};
 use crate::graphics::fade_layer::FadeLayer;
 use crate::graphics::label;
 use crate::graphics::plot::{self, Strip};
-use crate::graphics::text::{self, Anchor};
+use crate::graphics::text::{self, Anchor, LINE, LOWEST};
 use crate::motion::planner::Shown;
 use crate::motion::settings::Settings;
 use crate::scenes::horizon::{self, HALF_PIXEL};
 use crate::scenes::scene::{Report, Scene};
 
 /// The rows of rest of angle 1 and angle 2, pixels from the top, and the greatest swing about them.
-const ROWS: [f32; 2] = [22.0, 50.0];
-const SWING: f32 = 12.5;
+const ROWS: [f32; 2] = [20.5, 43.5];
+const SWING: f32 = 10.5;
+/// The plots begin right of their names and scales.
+const LEFT: i32 = 18;
+const COLUMNS: usize = WIDTH - LEFT as usize;
 /// An exchange of energy between the rods and back takes about this many columns.
 const COLUMNS_PER_EXCHANGE: f32 = 60.0;
+/// The bar that tells a length of time is at least this long, columns.
+const LEAST_BAR: f32 = 16.0;
 /// Roundings, each half an epsilon, in a phase w t: up to 8 in the frequency (4 units in the last place, see
 /// [`Modes::new`]), one in the time and one in the product. In epsilons:
 const PHASE_ROUNDINGS: f32 = 5.0;
 const CURVE: u8 = 255;
 const ENVELOPE_GREY: u8 = 5;
-const REST_GREY: u8 = 2;
 
 /// The page's worked example: equal rods of 0.25 m, g = 9.8 m/s^2, a1 = 0, a2 = 30 degrees, let go from rest.
 pub fn example(mass_ratio: f32) -> Settings {
@@ -50,7 +54,7 @@ pub struct Small {
     ticks_per_column: u32,
     ticks: u64,
     horizon: f32,
-    strip: Strip<4>,
+    strip: Strip<4, COLUMNS>,
 }
 
 impl Small {
@@ -64,6 +68,15 @@ impl Small {
         let [envelope1, envelope2] = self.envelopes.at(time);
         let height = |rod: usize, angle: f32| plot::height(angle, ROWS[rod], self.scale);
         self.strip.push([height(0, motion.a1), height(1, motion.a2), height(0, envelope1), height(1, envelope2)]);
+    }
+
+    /// Draws a bar as long as a round time, and says which.
+    fn draw_seconds(&self, canvas: &mut Canvas) {
+        let columns_per_second = TICK_RATE as f32 / self.ticks_per_column as f32;
+        let time = plot::scale_step(LEAST_BAR / columns_per_second);
+        let (end, row) = (LEFT + (time * columns_per_second) as i32, LOWEST + LINE / 2);
+        plot::bar(canvas, (LEFT, row), (end, row));
+        text::write(canvas, &label::tick(time, " s"), Anchor::At(end + 4, LOWEST));
     }
 }
 
@@ -100,8 +113,13 @@ impl Scene for Small {
     }
 
     fn draw(&self, report: &Report, canvas: &mut Canvas) {
-        for row in ROWS {
-            plot::axis(canvas, 0, WIDTH as i32, row as i32, REST_GREY);
+        let greatest = if self.scale > 0.0 { (SWING / self.scale).to_degrees() } else { 0.0 };
+        for (row, name) in ROWS.map(|row| row as i32).into_iter().zip(label::ANGLES) {
+            let swing = SWING as i32;
+            plot::axis(canvas, LEFT, WIDTH as i32, row);
+            plot::bar(canvas, (LEFT - 1, row - swing), (LEFT - 1, row + swing));
+            text::write(canvas, name, Anchor::EndingAt(LEFT - 2, row - LINE / 2));
+            text::write(canvas, &label::swing(greatest), Anchor::EndingAt(LEFT - 2, row - swing));
         }
         let mirrored = |rod: usize, envelope: i16| plot::height(0.0, 2.0 * ROWS[rod], 0.0).saturating_sub(envelope);
         self.strip.each(WIDTH as i32 - 1, |x, &[a1, a2, e1, e2], &[b1, b2, ..]| {
@@ -111,9 +129,9 @@ impl Scene for Small {
             plot::column(canvas, x, b1, a1, CURVE);
             plot::column(canvas, x, b2, a2, CURVE);
         });
+        self.draw_seconds(canvas);
         text::write(canvas, &label::mass_ratio(self.settings.mass_ratio()), Anchor::TopLeft);
-        let middle = Anchor::Centred(WIDTH as i32 / 2, 0);
-        horizon::draw_clock(canvas, report, Anchor::TopRight, middle);
+        horizon::draw_clock(canvas, report, Anchor::BottomRight, Anchor::TopRight);
     }
 
     fn report(&self) -> Report {

@@ -5,9 +5,9 @@ use double_pendulum::{Error, State};
 
 use crate::config::{DT, STEPS_PER_SECOND, STEPS_PER_TICK};
 use crate::graphics::brush::{Spot, Stroke};
-use crate::graphics::canvas::{Canvas, HEIGHT, WIDTH};
+use crate::graphics::canvas::{Canvas, WIDTH};
 use crate::graphics::fade_layer::FadeLayer;
-use crate::graphics::text::{self, Anchor, LINE};
+use crate::graphics::text::{self, Anchor, LINE, LOWEST};
 use crate::graphics::view::{Place, View};
 use crate::motion::direction_stepper::{DirectionStepper, Directions};
 use crate::motion::planner::Shown;
@@ -101,7 +101,7 @@ impl Scene for Upright {
         text::write(canvas, "plain", Anchor::TopLeft);
         text::write(canvas, "compensated", Anchor::TopRight);
         let middle = |row| Anchor::Centred(WIDTH as i32 / 2, row);
-        horizon::draw_clock(canvas, report, middle(LINE), middle(HEIGHT as i32 - LINE));
+        horizon::draw_clock(canvas, report, middle(LINE + 1), middle(LOWEST));
     }
 
     fn report(&self) -> Report {

@@ -4,7 +4,7 @@ use std::io::stdout;
 use std::time::{Duration, Instant};
 
 use firmware::config::TICK_RATE;
-use firmware::protocol::{Choose, Pause, Step};
+use firmware::protocol::{Ask, Choose, Pause, Status, Step};
 use firmware::scenes::SceneName;
 use ratatui::DefaultTerminal;
 use ratatui::crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
@@ -14,6 +14,7 @@ use super::headless::{finish, say};
 use super::panel::Depth;
 use super::readings::Readings;
 use super::record::Recording;
+use super::taps::Taps;
 use super::view::draw;
 use super::{Stage, broken};
 use crate::emulator::process;
@@ -23,8 +24,8 @@ use crate::emulator::qemu::{Clock, Key, Machine, Screenshot, Settings};
 const LIMIT: Duration = Duration::from_secs(24 * 3600);
 /// From one screenshot to the next: 30 per second.
 const PERIOD: Duration = Duration::from_millis(33);
-/// How long a button is held for a key: the firmware needs 2 ticks of 17 ms to believe it, and repeats after 24.
-const HELD: Duration = Duration::from_millis(100);
+/// From one look at the board's clock to the next: half a tick, so that buttons are pressed and let go in time.
+const LOOK: Duration = Duration::from_millis(8);
 
 /// Shows the machine until the user has seen enough; whether all was well.
 pub fn run(stage: &Stage, recording: Option<Recording>) -> anyhow::Result<bool> {
@@ -45,7 +46,7 @@ pub fn run(stage: &Stage, recording: Option<Recording>) -> anyhow::Result<bool> 
         readings: Readings::default(),
         screenshot: Screenshot::blank(),
         depth: Depth::of_terminal(),
-        held: Vec::new(),
+        taps: Taps::default(),
     };
     process::on_interrupt(|| {
         ratatui::restore();
@@ -66,8 +67,7 @@ struct Show<'a> {
     readings: Readings,
     screenshot: Screenshot,
     depth: Depth,
-    /// Buttons held down, and since when.
-    held: Vec<(Key, Instant)>,
+    taps: Taps,
 }
 
 /// What a key of the keyboard means.
@@ -102,7 +102,7 @@ impl Show<'_> {
 
     /// Looks at the machine.
     fn observe(&mut self) -> anyhow::Result<()> {
-        self.machine.serial.arrived().for_each(|frame| self.readings.frame(frame));
+        self.hear()?;
         self.machine.log.arrived().for_each(|line| self.readings.line(line));
         self.readings.counts = self.machine.serial.counts();
         if self.has_ended()? {
@@ -115,25 +115,38 @@ impl Show<'_> {
         Ok(())
     }
 
+    /// Takes what the board has sent. Where it has started anew, it is asked from where: frames tell of rod 1 only.
+    fn hear(&mut self) -> anyhow::Result<()> {
+        let messages: Vec<_> = self.machine.serial.all_arrived().collect();
+        for message in messages {
+            if let Some(Status { degrees, .. }) = message.read() {
+                self.readings.start = Some(degrees);
+            }
+            if message.read().is_some_and(|frame| self.readings.frame(frame)) {
+                self.machine.serial.send(&Ask { request: 0 }).map_err(broken)?;
+            }
+        }
+        Ok(())
+    }
+
     /// Until the next screenshot is due: presses and lets go of buttons. Whether the user wants to quit.
     fn execute(&mut self) -> anyhow::Result<bool> {
         let due = Instant::now() + PERIOD;
         loop {
-            let (over, held) = self.held.iter().partition(|(_, since)| since.elapsed() >= HELD);
-            self.held = held;
-            let over: Vec<(Key, Instant)> = over;
-            for (key, _) in over {
-                self.machine.set_key(key, false).map_err(broken)?;
+            self.hear()?;
+            if let Some((key, down)) = self.taps.change(self.readings.summary.ticks()) {
+                self.machine.set_key(key, down).map_err(broken)?;
             }
-            if !event::poll(due.saturating_duration_since(Instant::now()))? {
-                return Ok(false);
+            let left = due.saturating_duration_since(Instant::now());
+            if !event::poll(left.min(LOOK))? {
+                if left.is_zero() {
+                    return Ok(false);
+                }
+                continue;
             }
             match wish(&event::read()?) {
                 Some(Wish::Quit) => return Ok(true),
-                Some(Wish::Press(key)) if self.held.iter().all(|(held, _)| *held != key) => {
-                    self.machine.set_key(key, true).map_err(broken)?;
-                    self.held.push((key, Instant::now()));
-                }
+                Some(Wish::Press(key)) => self.taps.add(key),
                 Some(Wish::Scene(other)) => {
                     if let Some(now) = SceneName::from_code(self.readings.frame.scene) {
                         self.play(other(now))?;
@@ -144,7 +157,7 @@ impl Show<'_> {
                     self.machine.serial.send(&Pause { request: 0, paused }).map_err(broken)?;
                 }
                 Some(Wish::Step) => self.machine.serial.send(&Step { request: 0, ticks: 1 }).map_err(broken)?,
-                _ => {}
+                None => {}
             }
         }
     }

@@ -9,11 +9,13 @@ mod plot;
 mod readings;
 pub(crate) mod record;
 mod summary;
+mod taps;
 mod tint;
 mod view;
 
 pub use options::Options;
 pub use play::played;
+pub use taps::Taps;
 
 use std::io::{IsTerminal, stdin, stdout};
 use std::path::PathBuf;

@@ -9,13 +9,17 @@ use ratatui::symbols::Marker;
 use ratatui::text::{Line, Span};
 use ratatui::widgets::{Axis, Block, Chart, Dataset, GraphType};
 
+use super::panel::Depth;
+
 /// How much simulated time is shown, s.
 pub const SPAN: f64 = 5.0;
 /// The angles that the chart may reach, degrees: the least that holds every angle shown is taken.
 const REACHES: [f64; 5] = [10.0, 30.0, 60.0, 90.0, HALF_TURN];
 const HALF_TURN: f64 = 180.0;
-/// The colours of angle 1 and angle 2.
+/// The colours and the marks of angle 1 and angle 2: a thin line and a thick one, which colour-blind eyes and terminals
+/// tell apart, too.
 const COLOURS: [Color; 2] = [Color::Cyan, Color::Yellow];
+const MARKERS: [Marker; 2] = [Marker::Braille, Marker::Dot];
 
 /// Both angles at a moment.
 #[derive(Clone, Copy, Debug)]
@@ -26,22 +30,28 @@ pub struct Moment {
     pub angles: [f64; 2],
 }
 
+/// An angle, degrees, in (-180, 180] as it is shown: what rounds to straight up at a tenth of a degree is 180, never -180.
+pub fn within_half_a_turn(degrees: f64) -> f64 {
+    let tenths = (10.0 * degrees).round() / 10.0;
+    degrees - 2.0 * HALF_TURN * ((tenths - HALF_TURN) / (2.0 * HALF_TURN)).ceil()
+}
+
 /// Draws the chart of `past`, oldest first.
-pub fn draw(frame: &mut Frame, area: Rect, past: &VecDeque<Moment>) {
+pub fn draw(frame: &mut Frame, area: Rect, past: &VecDeque<Moment>, depth: Depth) {
     let end = past.back().map_or(0.0, |last| last.time).max(SPAN);
     let strands: Vec<_> = (0..2).flat_map(|rod| strands(past, rod).map(move |strand| (rod, strand))).collect();
     let largest = strands.iter().flat_map(|(_, strand)| strand).fold(0.0_f64, |most, (_, angle)| most.max(angle.abs()));
     let reach = REACHES.into_iter().find(|reach| *reach >= largest).unwrap_or(HALF_TURN);
     let lines = strands.iter().map(|(rod, strand)| {
-        let line = Dataset::default().data(strand).marker(Marker::Braille).graph_type(GraphType::Line);
-        line.style(COLOURS[*rod])
+        let line = Dataset::default().data(strand).marker(MARKERS[*rod]).graph_type(GraphType::Line);
+        line.style(depth.style(COLOURS[*rod]))
     });
     let faint = Style::new().dim();
     let title = Line::from(vec![
         Span::raw("angles, degrees: "),
-        Span::styled("1", COLOURS[0]),
-        Span::raw(" and "),
-        Span::styled("2", COLOURS[1]),
+        Span::styled("1 ⠤⠤", depth.style(COLOURS[0])),
+        Span::raw("  "),
+        Span::styled("2 ••", depth.style(COLOURS[1])),
     ]);
     let across = Axis::default().bounds([end - SPAN, end]).style(faint);
     let upwards = Axis::default().bounds([-reach, reach]).style(faint);
@@ -57,7 +67,8 @@ pub fn draw(frame: &mut Frame, area: Rect, past: &VecDeque<Moment>) {
 fn strands(past: &VecDeque<Moment>, rod: usize) -> impl Iterator<Item = Vec<(f64, f64)>> {
     let mut strands: Vec<Vec<(f64, f64)>> = Vec::new();
     for moment in past {
-        let angle = (moment.angles[rod] + HALF_TURN).rem_euclid(2.0 * HALF_TURN) - HALF_TURN;
+        // A hair above straight up is drawn on the chart's edge, not left out.
+        let angle = within_half_a_turn(moment.angles[rod]).clamp(-HALF_TURN, HALF_TURN);
         let point = (moment.time, angle);
         match strands.last_mut() {
             Some(strand) if strand.last().is_some_and(|(_, before)| (angle - before).abs() < HALF_TURN) => {
@@ -78,9 +89,22 @@ mod tests {
         let turning = |tenth: u32| Moment { time: f64::from(tenth) / 10.0, angles: [f64::from(tenth) * 36.0, 0.0] };
         let past = (0..=20).map(turning).collect();
         let cut: Vec<_> = strands(&past, 0).collect();
-        // From 0 to 144 degrees, then twice from straight up all around.
-        assert_eq!(cut.iter().map(Vec::len).collect::<Vec<_>>(), [5, 10, 6]);
-        assert!(cut.iter().flatten().all(|(_, angle)| (-HALF_TURN..HALF_TURN).contains(angle)));
+        // From 0 to 180 degrees, then on from just beyond, straight up and all around.
+        assert_eq!(cut.iter().map(Vec::len).collect::<Vec<_>>(), [6, 10, 5]);
+        assert!(cut.iter().flatten().all(|(_, angle)| *angle > -HALF_TURN && *angle <= HALF_TURN));
         assert_eq!(strands(&past, 1).count(), 1, "the other rod hangs");
+    }
+
+    #[test]
+    fn straight_up_is_180_for_the_number_and_for_the_chart() {
+        let pi = f64::from(std::f32::consts::PI).to_degrees();
+        for up in [pi, -pi, 180.0, -180.0, 540.0, 180.04, -179.96] {
+            assert_eq!(format!("{:.1}", within_half_a_turn(up)), "180.0", "{up}");
+            let past = VecDeque::from([Moment { time: 0.0, angles: [up, 0.0] }]);
+            let [strand] = &strands(&past, 0).collect::<Vec<_>>()[..] else { panic!("one strand") };
+            assert!((strand[0].1 - 180.0).abs() < 0.05, "{strand:?}");
+        }
+        assert_eq!(within_half_a_turn(180.1).round(), -180.0);
+        assert_eq!(within_half_a_turn(-30.0), -30.0);
     }
 }

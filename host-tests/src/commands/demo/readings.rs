@@ -24,6 +24,8 @@ const RATE_SPAN: Duration = Duration::from_secs(1);
 pub struct Readings {
     /// The latest frame.
     pub frame: Frame,
+    /// The angles that the motion started from, degrees; `None` until the board has told.
+    pub start: Option<[f32; 2]>,
     /// What the link has been through.
     pub counts: Counts,
     /// The largest size of the energy error in each half second, oldest first.
@@ -40,9 +42,12 @@ pub struct Readings {
 }
 
 impl Readings {
-    /// Takes a frame that has just arrived.
-    pub fn frame(&mut self, frame: Frame) {
-        if frame.scene != self.frame.scene || frame.time < self.frame.time {
+    /// Takes a frame that has just arrived; whether it is of another start than the one before.
+    pub fn frame(&mut self, frame: Frame) -> bool {
+        let first = self.summary.ticks() == 0;
+        let started = first || frame.scene != self.frame.scene || frame.time < self.frame.time;
+        if started {
+            self.start = None;
             self.energy_errors.clear();
             self.angles.clear();
         }
@@ -69,6 +74,7 @@ impl Readings {
         while self.arrivals.front().is_some_and(|&arrival| now - arrival > RATE_SPAN) {
             self.arrivals.pop_front();
         }
+        started
     }
 
     /// Takes a line of the log.

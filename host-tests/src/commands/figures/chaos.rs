@@ -3,7 +3,7 @@
 use double_pendulum::{Error, Parameters, Pendulum, State, rk4};
 use plotters::prelude::*;
 
-use super::sheet::{Area, BLUE, Drawing, Drawn, Frame, ORANGE, TEXT, headed, line, text, units};
+use super::sheet::{Area, Axes, BLUE, Drawing, Drawn, Frame, ORANGE, TEXT, headed, line, pale, text, units};
 use crate::oracle::textbook::misprinted_equal_rods;
 
 /// The figure's mass ratio, start angle of both rods (degrees), rods (m) and gravity (m/s^2).
@@ -19,6 +19,8 @@ const STEPS_PER_POINT: u32 = 32;
 
 /// The axes are this long either way, m.
 const REACH: f64 = 2.1;
+/// From one mark of time on a path to the next, s.
+const MARKED: u32 = 1;
 
 /// Both paths.
 #[derive(Clone, Debug)]
@@ -72,14 +74,17 @@ fn path(pendulum: &Pendulum<f64>, refinement: u32, rhs: impl Fn(&[f64; 4]) -> [f
 }
 
 impl Drawing for Chaos {
-    const SIZE: (u32, u32) = (800, 445);
+    const SIZE: (u32, u32) = (800, 468);
 
     fn draw<Backend: DrawingBackend>(&self, area: &Area<Backend>) -> Drawn<(), Backend> {
         let title = format!("Figure 7: path of bob 2 in the first {DURATION} s");
         let particulars = format!(
-            "mass ratio {MASS_RATIO}, both rods let go at {START}°; l = {ROD} m, g = {GRAVITY} m/s², m₁ = 1 kg"
+            "mass ratio {MASS_RATIO}, both rods let go at rest at {START}°; l = {ROD} m, g = {GRAVITY} m/s², m₁ = 1 kg"
         );
+        let marks =
+            format!("○ start, ● end; · every {MARKED} s, with the seconds; paler earlier, darker later; × pivot");
         let area = headed(&headed(area, &title, text(15))?, &particulars, text(12))?;
+        let area = headed(&area, &marks, text(12))?;
         let halves = area.split_evenly((1, 2));
         let names = ["the right equations", "as printed, a factor μ missing"];
         for (((area, name), colour), path) in halves.iter().zip(names).zip([BLUE, ORANGE]).zip(&self.paths) {
@@ -89,10 +94,39 @@ impl Drawing for Chaos {
             let range = [-REACH, REACH];
             let frame = Frame { across: ("x, m", range), upwards: ("y, m", range), ticks: [9, 9] };
             let mut chart = frame.draw(&area)?;
-            let points = path.points.iter().map(|&[x, y]| (x, y));
-            chart.draw_series(LineSeries::new(points, line(colour, 8)))?;
-            chart.draw_series([Circle::new((0.0, 0.0), units(3), TEXT.filled())])?;
+            path.draw(&mut chart, colour)?;
+            chart.draw_series([Cross::new((0.0, 0.0), units(5), line(TEXT, 12))])?;
         }
+        Ok(())
+    }
+}
+
+/// The shades of a path, from its start to its end.
+const SHADES: usize = 10;
+/// The palest of them.
+const PALEST: f64 = 0.35;
+
+impl Path {
+    /// Draws it the darker the later, with its start, its end, and a mark for every second.
+    fn draw<Backend: DrawingBackend>(&self, chart: &mut Axes<Backend>, colour: RGBColor) -> Drawn<(), Backend> {
+        let points: Vec<_> = self.points.iter().map(|&[x, y]| (x, y)).collect();
+        let length = points.len().div_ceil(SHADES);
+        for shade in 0..SHADES {
+            // Each piece begins where the one before ends.
+            let piece = points.iter().copied().skip(shade * length).take(length + 1);
+            let strength = PALEST + (1.0 - PALEST) * shade as f64 / (SHADES - 1) as f64;
+            chart.draw_series(LineSeries::new(piece, pale(colour, strength).stroke_width(units(9).div_ceil(10))))?;
+        }
+        let (Some(&start), Some(&end)) = (points.first(), points.last()) else { return Ok(()) };
+        let per_second = (STEPS / STEPS_PER_POINT) as usize;
+        for second in (MARKED..DURATION).step_by(MARKED as usize) {
+            let Some(&(x, y)) = points.get(second as usize * per_second) else { break };
+            chart.draw_series([Circle::new((x, y), units(2), TEXT.filled())])?;
+            chart.draw_series([Text::new(second.to_string(), (x + 0.05, y + 0.02), text(10))])?;
+        }
+        chart.draw_series([Circle::new(start, units(5), WHITE.filled())])?;
+        chart.draw_series([Circle::new(start, units(5), line(TEXT, 12))])?;
+        chart.draw_series([Circle::new(end, units(5), TEXT.filled())])?;
         Ok(())
     }
 }

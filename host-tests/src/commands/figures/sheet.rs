@@ -51,6 +51,12 @@ pub fn line(colour: RGBColor, width: u32) -> ShapeStyle {
     colour.stroke_width(units(width).div_ceil(10))
 }
 
+/// A colour of less strength, of 1, as it looks on white.
+pub fn pale(RGBColor(red, green, blue): RGBColor, strength: f64) -> RGBColor {
+    let [red, green, blue] = [red, green, blue].map(|channel| (255.0 - strength * (255.0 - f64::from(channel))) as u8);
+    RGBColor(red, green, blue)
+}
+
 /// Text `height` units high.
 pub fn text(height: u32) -> TextStyle<'static> {
     (TYPEFACE, units(height)).into_font().color(&TEXT)

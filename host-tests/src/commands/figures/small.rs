@@ -59,7 +59,7 @@ fn envelopes(modes: &Modes<f64>, motion: &SmallOscillations<f64>, time: f64) -> 
 }
 
 impl Drawing for Small {
-    const SIZE: (u32, u32) = (720, 480);
+    const SIZE: (u32, u32) = (720, 503);
 
     fn draw<Backend: DrawingBackend>(&self, area: &Area<Backend>) -> Drawn<(), Backend> {
         let Modes { fast, slow, .. } = &self.modes;
@@ -70,7 +70,10 @@ impl Drawing for Small {
             slow.frequency,
             TAU / self.modes.exchange()
         );
-        let area = headed(&headed(area, &title, text(15))?, &particulars, text(12))?;
+        let start =
+            "let go at rest at α₁ = 0°, α₂ = 30°; line: the angle; shade: how far it can swing while the modes beat";
+        let area = headed(&headed(area, &title, text(15))?, start, text(12))?;
+        let area = headed(&area, &particulars, text(12))?;
         let (upper, lower) = area.split_vertically((area.dim_in_pixel().1 - units(20)) / 2);
         let rods = [(upper, "", "angle α₁, degrees", BLUE), (lower, "time, s", "angle α₂, degrees", ORANGE)];
         for (rod, (area, across, upwards, colour)) in rods.into_iter().enumerate() {
