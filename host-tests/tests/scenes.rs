@@ -10,7 +10,7 @@ use firmware::graphics::plot;
 use firmware::graphics::text::{self, Anchor};
 use firmware::motion::planner::Shown;
 use firmware::motion::settings::Settings;
-use firmware::protocol::{MAX_WIRE, Message, Pause, encode};
+use firmware::protocol::{MAX_WIRE, Pause, encode};
 use firmware::scenes::{AnyScene, SceneName};
 use host_tests::emulator::host::{Show, sheets};
 use host_tests::oracle::snapshot;

@@ -96,8 +96,10 @@ impl Panel<'_> {
     }
 }
 
-/// The level from which a dot of a Braille pattern is set: all but the end of a fading trail.
+/// The level from which a dot of a Braille pattern is set: all but the end of a fading trail where a dot is a pixel or less,
+/// and where it is more what fills a third of it, or letters would run together.
 const SET: u16 = LEVELS / 6;
+const SET_SMALL: u16 = LEVELS / 3;
 /// A Braille pattern's bits, row by row.
 const BRAILLE: [[u32; 2]; 4] = [[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]];
 /// The pattern of no dot.
@@ -107,9 +109,10 @@ impl Panel<'_> {
     /// The Braille pattern at `column`, `row` of `area`.
     fn pattern(&self, (column, row): (u16, u16), area: Rect) -> char {
         let size = (2 * usize::from(area.width), 4 * usize::from(area.height));
+        let set = if size.0 < WIDTH { SET_SMALL } else { SET };
         let dots = BRAILLE.iter().zip(4 * usize::from(row)..).flat_map(|(bits, y)| {
             let across = bits.iter().zip(2 * usize::from(column)..);
-            across.map(move |(bit, x)| if self.level((x, y), size) >= SET { *bit } else { 0 })
+            across.map(move |(bit, x)| if self.level((x, y), size) >= set { *bit } else { 0 })
         });
         char::from_u32(BLANK + dots.sum::<u32>()).unwrap_or(' ')
     }
