@@ -199,6 +199,8 @@ fn periodic_mass_ratios_of_any_rods_repeat() {
 #[test]
 fn impossible_periods_are_refused() {
     let refusal = |fast, slow, lengths: [f64; 2]| periodic_mass_ratio(fast, slow, lengths).expect_err("impossible");
+    let infinite = periodic_mass_ratio(3, 0, [1.0, 1.0]);
+    assert_eq!(infinite, Err(Error::NotFinite { parameter: Parameter::FrequencyRatio, value: f64::INFINITY }));
     let too_small = |value, limit| Error::TooSmall { parameter: Parameter::FrequencyRatio, value, limit };
     assert_eq!(refusal(1, 1, [1.0, 1.0]), too_small(1.0, 1.0));
     assert_eq!(refusal(3, 2, [4.0, 1.0]), too_small(1.5, 2.0));

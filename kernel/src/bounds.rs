@@ -15,6 +15,7 @@ use crate::trig::SinCos;
 /// squares in T the same for each w and p alone. Exact up to the rounding of K (test `bounds`).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Bounds<R> {
     /// |w1| <= sqrt(2 K/m1)/l1, rad/s.
     pub w1: R,
@@ -62,6 +63,7 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     /// assert!((bounds.w1 - 39.2_f64.sqrt()).abs() < 1e-14);
     /// # Ok::<(), double_pendulum::Error>(())
     /// ```
+    #[must_use]
     pub fn bounds(&self, state: &State<R>) -> Bounds<R> {
         Bounds::new(self.parameters(), self.energy_above_rest(state))
     }
@@ -69,6 +71,7 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     /// The least energy above rest with which a rod can turn over, J: 2 g min((m1 + m2) l1, m2 l2).
     ///
     /// It is the lower of the two saddles V(pi, 0) and V(0, pi), above min V.
+    #[must_use]
     pub fn turnover_energy(&self) -> R {
         let [torque1, torque2] = self.torque();
         R::TWO * least(torque1, torque2)
@@ -77,6 +80,7 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     /// Whether it is certain that neither rod ever turns over: K below [`turnover_energy`](Self::turnover_energy).
     ///
     /// `false` says nothing. Energies within [`ROUNDING_MARGIN`] roundings of the limit are not certified.
+    #[must_use]
     pub fn cannot_turn_over(&self, state: &State<R>) -> bool {
         clearly_below(self.energy_above_rest(state), self.turnover_energy())
     }
@@ -84,6 +88,7 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
 
 impl<R: Real, T: SinCos<R>> EqualRods<R, T> {
     /// The bounds of the motion through `state`, in the units of the equal-rod form.
+    #[must_use]
     pub fn bounds(&self, state: &State<R>) -> Bounds<R> {
         Bounds::new(&self.parameters(), self.energy_above_rest(state))
     }
@@ -91,6 +96,7 @@ impl<R: Real, T: SinCos<R>> EqualRods<R, T> {
     /// Whether it is certain that neither rod ever turns over: K < 2 min(1 + mu, mu) = 2 mu.
     ///
     /// From rest that is (1 + mu) cos a1 + mu cos a2 > 1. `false` says nothing.
+    #[must_use]
     pub fn cannot_turn_over(&self, state: &State<R>) -> bool {
         clearly_below(self.energy_above_rest(state), R::TWO * self.mass_ratio())
     }
@@ -100,6 +106,7 @@ impl<R: Real> Modes<R> {
     /// The longest step with which RK4 is stable on the fast mode, s: 2 sqrt(2)/w1 (`[Hairer II]`, section IV.2).
     ///
     /// A limit, not advice: the phase is useless long before it.
+    #[must_use]
     pub fn step_limit(&self) -> R {
         R::from_f64(8.0).sqrt() / self.fast.frequency
     }

@@ -16,6 +16,8 @@ use crate::trig::{DefaultTrig, SinCos};
 /// mass ratio mu = m2/m1 is left, and an evaluation costs four multiplications less than
 /// [`Pendulum`](crate::Pendulum), which gives the same motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct EqualRods<R, T = DefaultTrig> {
     mu: R,
     /// 1 + mu.
@@ -54,11 +56,13 @@ impl<R: Real, T: SinCos<R>> EqualRods<R, T> {
     }
 
     /// The mass ratio mu = m2/m1.
+    #[must_use]
     pub fn mass_ratio(&self) -> R {
         self.mu
     }
 
     /// The same pendulum as masses, lengths and gravity, in its own units: m1 = l1 = l2 = g = 1, m2 = mu.
+    #[must_use]
     pub fn parameters(&self) -> Parameters<R> {
         Parameters::equal_rods(self.mu, R::ONE, R::ONE)
     }
@@ -74,6 +78,7 @@ impl<R: Real, T: SinCos<R>> EqualRods<R, T> {
     ///
     /// where F = mu w1 w2 sin D. (`[math24]`, whose w2 lacks the factor mu in the denominator.) Two sincos and one
     /// division.
+    #[must_use]
     #[inline]
     pub fn derivatives(&self, z: &[R; 4]) -> [R; 4] {
         let &[a1, a2, p1, p2] = z;
@@ -91,12 +96,14 @@ impl<R: Real, T: SinCos<R>> EqualRods<R, T> {
     }
 
     /// The state a time `dt`, in sqrt(l/g), after `state`, by one classical RK4 step.
+    #[must_use]
     #[inline]
     pub fn step(&self, state: &State<R>, dt: R) -> State<R> {
         rk4::step(|z| self.derivatives(z), &(*state).into(), dt).into()
     }
 
     /// Velocities to momenta: p1 = (1 + mu) w1 + mu w2 cos D, p2 = mu w2 + mu w1 cos D.
+    #[must_use]
     pub fn to_state(&self, motion: &Motion<R>) -> State<R> {
         let &Motion { a1, a2, w1, w2 } = motion;
         let (_, cos_d) = T::sin_cos(a1 - a2);
@@ -104,6 +111,7 @@ impl<R: Real, T: SinCos<R>> EqualRods<R, T> {
     }
 
     /// Momenta to velocities: the first pair of Hamilton's equations.
+    #[must_use]
     pub fn to_motion(&self, state: &State<R>) -> Motion<R> {
         let &State { a1, a2, .. } = state;
         let [w1, w2, ..] = self.derivatives(&(*state).into());
@@ -113,6 +121,7 @@ impl<R: Real, T: SinCos<R>> EqualRods<R, T> {
     /// The Hamiltonian in m1 g l; zero where both bobs are level with the pivot.
     ///
     /// H = (p1 - p2 cos D)^2 / (2 den) + p2^2 / (2 mu) - (1 + mu) cos a1 - mu cos a2
+    #[must_use]
     pub fn energy(&self, state: &State<R>) -> R {
         let (_, cos1) = T::sin_cos(state.a1);
         let (_, cos2) = T::sin_cos(state.a2);
@@ -121,6 +130,7 @@ impl<R: Real, T: SinCos<R>> EqualRods<R, T> {
 
     /// The energy above rest in m1 g l, a sum of terms none of which is negative:
     /// K = T + (1 + mu)(1 - cos a1) + mu (1 - cos a2).
+    #[must_use]
     pub fn energy_above_rest(&self, state: &State<R>) -> R {
         let height1 = one_minus_cos(T::sin_cos(state.a1));
         let height2 = one_minus_cos(T::sin_cos(state.a2));
@@ -149,6 +159,7 @@ impl<R: Real, T: SinCos<R>> EqualRods<R, T> {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Units<R> {
     /// sqrt(l/g), s.
     pub time: R,
@@ -187,11 +198,13 @@ impl<R: Real> Units<R> {
     }
 
     /// A dimensionless state in SI units.
+    #[must_use]
     pub fn to_si(&self, state: &State<R>) -> State<R> {
         State { p1: state.p1 * self.momentum, p2: state.p2 * self.momentum, ..*state }
     }
 
     /// A state in SI units made dimensionless.
+    #[must_use]
     pub fn from_si(&self, state: &State<R>) -> State<R> {
         State { p1: state.p1 / self.momentum, p2: state.p2 / self.momentum, ..*state }
     }

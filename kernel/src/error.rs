@@ -7,6 +7,7 @@ use crate::real::Real;
 /// A quantity the caller chooses. Displays as the book's symbol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Parameter {
     /// Mass of bob 1, kg.
@@ -81,6 +82,7 @@ impl fmt::Display for Parameter {
 /// Why an input is refused: the parameter and the value it had.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Error {
     /// NaN or infinite.
@@ -148,6 +150,7 @@ pub enum Error {
 
 impl Error {
     /// The offending parameter.
+    #[must_use]
     pub const fn parameter(&self) -> Parameter {
         match *self {
             Error::NotFinite { parameter, .. }

@@ -10,6 +10,7 @@ use crate::trig::SinCos;
 /// A vector in the plane of motion; the pivot is the origin, x points right, y up.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Vector<R> {
     /// To the right.
     pub x: R,
@@ -39,6 +40,7 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     /// assert_eq!([bob1.y, bob2.y], [-1.0, -1.5]);
     /// # Ok::<(), double_pendulum::Error>(())
     /// ```
+    #[must_use]
     pub fn positions(&self, [a1, a2]: [R; 2]) -> [Vector<R>; 2] {
         let rod = |l: R, a: R| {
             let (sin, cos) = T::sin_cos(a);
@@ -51,6 +53,7 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     /// The velocities of bob 1 and bob 2, m/s: the time derivatives of [`positions`](Self::positions).
     ///
     /// x1' = l1 w1 cos a1, y1' = l1 w1 sin a1, x2' = x1' + l2 w2 cos a2, y2' = y1' + l2 w2 sin a2 (`[math24]`)
+    #[must_use]
     pub fn velocities(&self, motion: &Motion<R>) -> [Vector<R>; 2] {
         let rod = |l: R, a: R, w: R| {
             let (sin, cos) = T::sin_cos(a);

@@ -14,6 +14,8 @@ use crate::trig::{DefaultTrig, SinCos};
 ///
 /// It is configuration only and drives any number of [`State`]s. `T` is the source of sine and cosine.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Pendulum<R, T = DefaultTrig> {
     parameters: Parameters<R>,
     /// 1/l1 and 1/l2.
@@ -62,6 +64,7 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     }
 
     /// The parameters it was made from.
+    #[must_use]
     pub fn parameters(&self) -> &Parameters<R> {
         &self.parameters
     }
@@ -78,6 +81,7 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     /// where F = m2 l1 l2 w1 w2 sin D is what the book (`[math24]`) calls A1 - A2. Two sincos and one division.
     ///
     /// Each is within 1e-13 (`f64`) or 2e-6 (`f32`) of its largest term of the book's own form (test `invariants`).
+    #[must_use]
     #[inline]
     pub fn derivatives(&self, z: &[R; 4]) -> [R; 4] {
         let &[a1, a2, p1, p2] = z;
@@ -100,7 +104,12 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
         [w1, w2, -torque1 * sin1 - force, -torque2 * sin2 + force]
     }
 
-    /// The state a time `dt` (s) after `state`, by one classical RK4 step.
+    /// The state a time `dt` (s) after `state`, by one classical RK4 step; a negative `dt` steps backwards.
+    ///
+    /// Nothing is refused: a state or a step that is NaN gives NaN, and a step too long for the motion gives what has
+    /// nothing to do with it, infinite or NaN in the end. Ask [`check_step`](Self::check_step) or
+    /// [`admissible_step`](Self::admissible_step) before the first step, and [`State::finite`] after each.
+    #[must_use]
     #[inline]
     pub fn step(&self, state: &State<R>, dt: R) -> State<R> {
         rk4::step(|z| self.derivatives(z), &(*state).into(), dt).into()
@@ -110,6 +119,7 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     ///
     /// In `f64`, 20 steps a second keep a regular motion of 1 m rods to 1e-9 rad over 20 s, 40 to 1e-12 (test
     /// `accuracy`).
+    #[must_use]
     #[inline]
     pub fn step_of_order_8(&self, state: &State<R>, dt: R) -> State<R> {
         rk8::step(|z| self.derivatives(z), &(*state).into(), dt).into()
@@ -122,6 +132,7 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     /// with q1 = p1/l1, q2 = p2/l2 and D, den as in [`derivatives`](Self::derivatives): the kinetic energy as a sum of
     /// squares, so that it cannot come out negative. It is kept by the exact motion ([`least_energy`](Self::least_energy)
     /// is its minimum). Costs three sincos and two divisions.
+    #[must_use]
     pub fn energy(&self, state: &State<R>) -> R {
         let (_, cos1) = T::sin_cos(state.a1);
         let (_, cos2) = T::sin_cos(state.a2);
@@ -132,6 +143,7 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     ///
     /// K = T + (m1 + m2) g l1 (1 - cos a1) + m2 g l2 (1 - cos a2), a sum of terms none of which is negative, so that
     /// it keeps its relative precision down to the smallest motions, where H and min V nearly cancel.
+    #[must_use]
     pub fn energy_above_rest(&self, state: &State<R>) -> R {
         let height1 = one_minus_cos(T::sin_cos(state.a1));
         let height2 = one_minus_cos(T::sin_cos(state.a2));
@@ -139,6 +151,7 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     }
 
     /// The potential energy hanging at rest, min V = -(m1 + m2) g l1 - m2 g l2, J: the least energy there is.
+    #[must_use]
     pub fn least_energy(&self) -> R {
         -(self.torque[0] + self.torque[1])
     }

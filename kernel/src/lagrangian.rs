@@ -12,6 +12,7 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     /// The kinetic energy, J (`[math24]`, "Lagrange equations").
     ///
     /// T = (m1 + m2)/2 l1^2 w1^2 + m2/2 l2^2 w2^2 + m2 l1 l2 w1 w2 cos(a1 - a2)
+    #[must_use]
     pub fn kinetic_energy(&self, motion: &Motion<R>) -> R {
         let &Motion { a1, a2, w1, w2 } = motion;
         let &Parameters { m1, m2, l1, l2, .. } = self.parameters();
@@ -24,6 +25,7 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     /// The potential energy where both rods are at their `angles` (a1, a2), rad; in J, zero where both bobs are level with the pivot.
     ///
     /// V = -(m1 + m2) g l1 cos a1 - m2 g l2 cos a2 (`[math24]`)
+    #[must_use]
     pub fn potential_energy(&self, [a1, a2]: [R; 2]) -> R {
         let &Parameters { m1, m2, l1, l2, g } = self.parameters();
         let (_, cos1) = T::sin_cos(a1);
@@ -32,6 +34,7 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     }
 
     /// The Lagrangian L = T - V, J.
+    #[must_use]
     pub fn lagrangian(&self, motion: &Motion<R>) -> R {
         self.kinetic_energy(motion) - self.potential_energy(motion.angles())
     }
@@ -44,6 +47,7 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     /// - l1 w1' cos D + l2 w2' = l1 w1^2 sin D - g sin a2
     ///
     /// and their determinant is l1 l2 (m1 + m2 sin^2 D), never zero.
+    #[must_use]
     pub fn accelerations(&self, motion: &Motion<R>) -> [R; 2] {
         let &Motion { a1, a2, w1, w2 } = motion;
         let &Parameters { m1, m2, l1, l2, g } = self.parameters();

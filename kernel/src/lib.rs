@@ -24,8 +24,9 @@
 //! let pendulum = Pendulum::new(Parameters { m1: 1.0, m2: 2.0, l1: 1.0, l2: 0.5, g: 9.81 })?;
 //! let mut state = State::at_rest(0.5_f64, 1.0);
 //! let energy = pendulum.energy(&state);
+//! pendulum.check_step(1.0 / 1024.0)?;
 //! for _ in 0..1024 {
-//!     state = pendulum.step(&state, 1.0 / 1024.0);
+//!     state = pendulum.step(&state, 1.0 / 1024.0).finite()?;
 //! }
 //! assert!((pendulum.energy(&state) - energy).abs() < 1e-9);
 //! # Ok::<(), double_pendulum::Error>(())
@@ -33,8 +34,14 @@
 //!
 //! # Versions
 //!
-//! Semantic versioning. [`Error`] and [`Parameter`] may get new variants, and [`Real`] is sealed, so that it may get new
-//! methods; both are minor versions, as is a higher least Rust (1.85 now). A change of any result's bits is a major one.
+//! Semantic versioning. [`Error`], [`Parameter`] and [`form::RestoreError`] may get new variants, and the traits are sealed,
+//! so that they may get new methods; both are minor versions, as is a higher least Rust (1.85 now). What is hidden from the
+//! documentation may change at any time.
+//!
+//! A change of any bit of a step is a major version. Steps use IEEE 754 arithmetic alone (and `sqrt` and `rint`, which are
+//! correctly rounded) as long as sines come from [`trig::Own`] for angles it reduces itself. The bits of
+//! [`trig::Libm`], of larger angles and of the `atan2` in a form's [`state`](form::Form::state) are those of the `libm`
+//! crate that your lock file names (0.2.16 or later): to compare machines, build both with the same.
 //!
 //! # References
 //!
@@ -62,6 +69,7 @@ pub mod plan;
 mod real;
 pub mod rk4;
 pub mod rk8;
+mod sealed;
 mod small_oscillations;
 mod state;
 pub mod trig;
@@ -76,3 +84,8 @@ pub use params::Parameters;
 pub use real::Real;
 pub use small_oscillations::{Oscillation, SmallOscillations};
 pub use state::{Motion, State};
+
+/// The README's examples, as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -9,6 +9,7 @@ use crate::trig::SinCos;
 /// One normal mode: both angles oscillate at one frequency, in a fixed ratio.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Mode<R> {
     /// Angular frequency, rad/s.
     pub frequency: R,
@@ -33,6 +34,7 @@ pub struct Mode<R> {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Modes<R> {
     /// w1, the faster: the rods swing against each other, its shape is negative.
     pub fast: Mode<R>,
@@ -79,17 +81,20 @@ impl<R: Real> Modes<R> {
     }
 
     /// The carrier frequency (w1 + w2)/2, rad/s: the fast swing inside the envelope.
+    #[must_use]
     pub fn carrier(&self) -> R {
         R::HALF * (self.fast.frequency + self.slow.frequency)
     }
 
     /// The modulation frequency (w1 - w2)/2, rad/s: each amplitude's slow cosine. (`[math24]` calls it "beat frequency".)
+    #[must_use]
     pub fn modulation(&self) -> R {
         R::HALF * self.exchange
     }
 
     /// The exchange frequency w1 - w2, rad/s: the envelope, which has no sign, repeats at this rate, and with it the
     /// energy goes from rod to rod and back.
+    #[must_use]
     pub fn exchange(&self) -> R {
         self.exchange
     }
@@ -97,6 +102,7 @@ impl<R: Real> Modes<R> {
 
 impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     /// The stiffness matrix K of small oscillations, N m/rad, row by row: diag((m1 + m2) g l1, m2 g l2).
+    #[must_use]
     pub fn stiffness(&self) -> [[R; 2]; 2] {
         let [k1, k2] = self.torque();
         [[k1, R::ZERO], [R::ZERO, k2]]
@@ -114,8 +120,8 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
 /// from (w1/w2 + w2/w1)^2 = (1 + mu)(l1 + l2)^2/(l1 l2). Equal rods: mu = ((r^2 - 1)/(2r))^2 with r = p/q.
 /// The common period is then 2 pi p/w1 = 2 pi q/w2.
 ///
-/// Refuses lengths that are not positive, and any ratio p/q not above sqrt of the longer over the shorter rod,
-/// which no masses can give.
+/// Refuses lengths that are not positive, a `slow` of 0, and any ratio p/q not above sqrt of the longer over the shorter
+/// rod, which no masses can give.
 ///
 /// ```
 /// # use double_pendulum::periodic_mass_ratio;
@@ -125,12 +131,15 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
 pub fn periodic_mass_ratio<R: Real>(fast: u16, slow: u16, lengths: [R; 2]) -> Result<R, Error> {
     let [l1, l2] = lengths;
     Parameters { m1: R::ONE, m2: R::ONE, l1, l2, g: R::ONE }.check()?;
+    if slow == 0 {
+        return Err(Error::NotFinite { parameter: Parameter::FrequencyRatio, value: f64::INFINITY });
+    }
     let p = R::from_f64(f64::from(fast));
     let q = R::from_f64(f64::from(slow));
     let numerator1 = p * p * l1 - q * q * l2;
     let numerator2 = p * p * l2 - q * q * l1;
     let denominator = p * q * (l1 + l2);
-    if numerator1 > R::ZERO && numerator2 > R::ZERO && slow > 0 {
+    if numerator1 > R::ZERO && numerator2 > R::ZERO {
         Ok(numerator1 * numerator2 / (denominator * denominator))
     } else {
         let ratio = if l1 > l2 { l1 / l2 } else { l2 / l1 };

@@ -6,6 +6,7 @@ use crate::real::Real;
 /// The five constants of a double pendulum, SI units, as the caller gives them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Parameters<R> {
     /// Mass of bob 1, kg.
     pub m1: R,
@@ -21,11 +22,13 @@ pub struct Parameters<R> {
 
 impl<R: Real> Parameters<R> {
     /// Equal rods of length `l` and a bob 1 of 1 kg, so that only the mass ratio mu = m2/m1 is left to choose.
+    #[must_use]
     pub fn equal_rods(mu: R, l: R, g: R) -> Self {
         Self { m1: R::ONE, m2: mu, l1: l, l2: l, g }
     }
 
     /// The mass ratio mu = m2/m1.
+    #[must_use]
     pub fn mass_ratio(&self) -> R {
         self.m2 / self.m1
     }

@@ -46,6 +46,7 @@ pub trait Real:
     const EPSILON: Self;
 
     /// The number nearest to `value`.
+    #[must_use]
     fn from_f64(value: f64) -> Self;
     /// The same number as an `f64`; exact.
     fn to_f64(self) -> f64;
@@ -55,37 +56,54 @@ pub trait Real:
         S::from_f64(self.to_f64())
     }
     /// The absolute value.
+    #[must_use]
     fn abs(self) -> Self;
     /// Twice the number: an addition, or a step of the exponent where an addition would be a call of 100 cycles and more.
+    #[doc(hidden)]
     fn twice(self) -> Self;
     /// The square root, correctly rounded; NaN below 0.
+    #[must_use]
     fn sqrt(self) -> Self;
     /// The bit pattern.
     fn bits(self) -> u64;
+    /// The number of this bit pattern; none if it is longer than the type.
+    #[doc(hidden)]
+    fn from_bits(bits: u64) -> Option<Self>;
     /// Neither infinite nor NaN.
+    #[must_use]
     fn is_finite(self) -> bool;
     /// Finite, not zero and not subnormal: holds its full relative precision.
     fn is_normal(self) -> bool;
     /// The angle of the point (`x`, `self`) from the positive x axis, rad, in [-pi, pi]; by the `libm` crate.
+    #[must_use]
     fn atan2(self, x: Self) -> Self;
     /// Sine and cosine by the `libm` crate.
+    #[doc(hidden)]
     fn libm_sin_cos(self) -> (Self, Self);
     /// Sine and cosine by the kernel's own routine.
+    #[doc(hidden)]
     fn own_sin_cos(self) -> (Self, Self);
-    /// The vector (s, c), an angle's sine and cosine times any length, for the angle `by` further on, which is to be within
-    /// reach: by short polynomials, 20 operations (13 in `f32`).
+    /// The vector (s, c), an angle's sine and cosine times any length, for the angle `by` further on, by short
+    /// polynomials, 20 operations (13 in `f32`); requires abs(`by`) <= 0.06 rad.
+    #[doc(hidden)]
     fn turned(direction: [Self; 2], by: Self) -> [Self; 2];
     /// How far the turns reach that were shown to [`reach`](Self::reach).
+    #[doc(hidden)]
     type Reach: Copy + Default;
     /// `so_far` with two more turns, rad.
+    #[doc(hidden)]
     fn reach(so_far: Self::Reach, turns: [Self; 2]) -> Self::Reach;
     /// Whether all of them are small enough for [`turned`](Self::turned). Not where one is NaN.
+    #[doc(hidden)]
     fn is_in_reach(reach: Self::Reach) -> bool;
     /// The nearest whole number; the nearest `i32` if there is none, 0 for NaN.
+    #[doc(hidden)]
     fn nearest(self) -> i32;
     /// Marks k pi/32 + offset in the first eighth of the circle: (offset, sin, cos).
+    #[doc(hidden)]
     const MARKS: [[Self; 3]; 9];
     /// pi/2 in three parts; whole multiples of the first two are exact.
+    #[doc(hidden)]
     const PI_OVER_TWO: [Self; 3];
 }
 
@@ -147,6 +165,10 @@ macro_rules! real {
                 self.to_bits().into()
             }
             #[inline(always)]
+            fn from_bits(bits: u64) -> Option<Self> {
+                bits.try_into().ok().map($float::from_bits)
+            }
+            #[inline(always)]
             fn is_finite(self) -> bool {
                 $float::is_finite(self)
             }
@@ -190,7 +212,7 @@ macro_rules! real {
 }
 
 real!(f32, twice_single in software if all(target_arch = "arm", target_abi = "eabi"), libm::rintf, libm::sqrtf, libm::atan2f, libm::sincosf, own_f32);
-real!(f64, twice_double in software if target_arch = "arm", libm::rint, libm::sqrt, libm::atan2, libm::sincos, own_f64);
+real!(f64, twice_double in software if all(target_arch = "arm", any(target_abi = "eabi", target_os = "none"), not(feature = "double-fpu")), libm::rint, libm::sqrt, libm::atan2, libm::sincos, own_f64);
 
 #[cfg(test)]
 mod tests {

@@ -8,6 +8,7 @@ use crate::real::Real;
 /// z' = z + (Y1 + 2 Y2 + 2 Y3 + Y4)/6.
 ///
 /// The error of one step is O(dt^5), of a fixed interval O(dt^4). A negative `dt` steps backwards.
+#[must_use]
 #[inline]
 pub fn step<R: Real, const N: usize>(f: impl Fn(&[R; N]) -> [R; N], z: &[R; N], dt: R) -> [R; N] {
     let half = dt * R::HALF;

@@ -14,6 +14,7 @@ use crate::real::Real;
 /// of `f`, 12 N numbers of stack.
 ///
 /// Tested: all 200 order conditions, each coefficient, and the order in f64 (`host-tests/tests/accuracy.rs`).
+#[must_use]
 #[inline]
 pub fn step<R: Real, const N: usize>(f: impl Fn(&[R; N]) -> [R; N], z: &[R; N], dt: R) -> [R; N] {
     let change = increment(f, z, dt);
@@ -21,6 +22,7 @@ pub fn step<R: Real, const N: usize>(f: impl Fn(&[R; N]) -> [R; N], z: &[R; N], 
 }
 
 /// What [`step`] adds to `z`, for those who carry the rounding error of that addition along.
+#[must_use]
 #[inline]
 pub fn increment<R: Real, const N: usize>(f: impl Fn(&[R; N]) -> [R; N], z: &[R; N], dt: R) -> [R; N] {
     increment_by(&STAGES, &WEIGHTS, f, z, dt)

@@ -11,6 +11,7 @@ use crate::trig::{DefaultTrig, SinCos};
 /// What one mode contributes to the angle of rod 1: C cos wt + S sin wt.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Oscillation<R> {
     /// C, rad.
     pub cosine: R,
@@ -20,11 +21,13 @@ pub struct Oscillation<R> {
 
 impl<R: Real> Oscillation<R> {
     /// The amplitude sqrt(C^2 + S^2) of rod 1, rad; that of rod 2 is the mode's shape times this.
+    #[must_use]
     pub fn amplitude(&self) -> R {
         (self.cosine * self.cosine + self.sine * self.sine).sqrt()
     }
 
     /// The phase, rad, in [-pi, pi]: C cos wt + S sin wt = amplitude cos(wt + phase).
+    #[must_use]
     pub fn phase(&self) -> R {
         (-self.sine).atan2(self.cosine)
     }
@@ -49,6 +52,8 @@ impl<R: Real> Oscillation<R> {
 /// # Ok::<(), double_pendulum::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SmallOscillations<R, T = DefaultTrig> {
     modes: Modes<R>,
     fast: Oscillation<R>,
@@ -58,6 +63,7 @@ pub struct SmallOscillations<R, T = DefaultTrig> {
 
 impl<R: Real> SmallOscillations<R> {
     /// The motion that starts as `start`, with the default source of sine and cosine.
+    #[must_use]
     pub fn new(modes: Modes<R>, start: &Motion<R>) -> Self {
         Self::with_trig(modes, start)
     }
@@ -67,6 +73,7 @@ impl<R: Real, T: SinCos<R>> SmallOscillations<R, T> {
     /// As [`SmallOscillations::new`], with the source of sine and cosine given by the type.
     ///
     /// C1 = (r2 a1 - a2)/(r2 - r1), C2 = (a2 - r1 a1)/(r2 - r1); w1 S1 and w2 S2 are the same with velocities.
+    #[must_use]
     pub fn with_trig(modes: Modes<R>, start: &Motion<R>) -> Self {
         let Modes { fast: Mode { frequency: fast, shape: r1 }, slow: Mode { frequency: slow, shape: r2 }, .. } = modes;
         let split = |x1: R, x2: R| [(r2 * x1 - x2) / (r2 - r1), (x2 - r1 * x1) / (r2 - r1)];
@@ -81,11 +88,13 @@ impl<R: Real, T: SinCos<R>> SmallOscillations<R, T> {
     }
 
     /// The fast mode's part.
+    #[must_use]
     pub fn fast(&self) -> Oscillation<R> {
         self.fast
     }
 
     /// The slow mode's part.
+    #[must_use]
     pub fn slow(&self) -> Oscillation<R> {
         self.slow
     }
@@ -93,6 +102,7 @@ impl<R: Real, T: SinCos<R>> SmallOscillations<R, T> {
     /// Angles and angular velocities a time `t` (s) after the start; `t` may be negative.
     ///
     /// The phase w t is rounded once, so the error grows as one rounding of w t: with `f32` 1e-3 rad at w t = 1e4.
+    #[must_use]
     pub fn at(&self, t: R) -> Motion<R> {
         let (a_fast, w_fast) = evaluate::<R, T>(&self.modes.fast, &self.fast, t);
         let (a_slow, w_slow) = evaluate::<R, T>(&self.modes.slow, &self.slow, t);
@@ -109,6 +119,7 @@ impl<R: Real, T: SinCos<R>> SmallOscillations<R, T> {
     ///
     /// By the first terms of their series, sin a = a - a^3/6 and cos a = 1 - a^2/2 + a^4/24: off by a^5/120, far less than
     /// the linear motion itself. Two sincos and no division.
+    #[must_use]
     pub fn directions(&self, t: R) -> [Direction<R>; 2] {
         let Motion { a1, a2, .. } = self.at(t);
         [a1, a2].map(|a| {

@@ -9,6 +9,7 @@ use crate::real::Real;
 /// [`Pendulum::to_motion`](crate::Pendulum::to_motion) turns it into angular velocities.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct State<R> {
     /// Angle of rod 1, rad.
     pub a1: R,
@@ -22,6 +23,7 @@ pub struct State<R> {
 
 impl<R: Real> State<R> {
     /// Held still at the angles `a1`, `a2` (rad): both momenta are zero.
+    #[must_use]
     pub fn at_rest(a1: R, a2: R) -> Self {
         Self { a1, a2, p1: R::ZERO, p2: R::ZERO }
     }
@@ -88,6 +90,7 @@ impl<R> From<State<R>> for [R; 4] {
 /// Angles as in [`State`]; [`Pendulum::to_state`](crate::Pendulum::to_state) turns it into canonical momenta.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Motion<R> {
     /// Angle of rod 1, rad.
     pub a1: R,
@@ -101,6 +104,7 @@ pub struct Motion<R> {
 
 impl<R: Real> Motion<R> {
     /// Held still at the angles `a1`, `a2` (rad).
+    #[must_use]
     pub fn at_rest(a1: R, a2: R) -> Self {
         Self { a1, a2, w1: R::ZERO, w2: R::ZERO }
     }

@@ -3,12 +3,14 @@
 use core::marker::PhantomData;
 
 use super::angle_accumulator::{AngleAccumulator, LARGEST, angle};
+use super::checkpoint::{Check, RestoreError, Words};
 use super::coefficients::{Coefficients, Rates, Scale, Span, prepare};
 use super::sum::{Compensated, Sum};
 use super::{Direction, Form, lower_direction};
 use crate::error::{Error, Parameter};
 use crate::params::Parameters;
 use crate::real::Real;
+use crate::sealed::Sealed;
 use crate::state::State;
 
 /// Exactly the classical method on the canonical state, fast.
@@ -22,6 +24,8 @@ use crate::state::State;
 ///
 /// Agrees with [`Pendulum::step`](crate::Pendulum::step) to 1e-12 in `f64` over 100 s of regular motion (test `forms`).
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct AngleForm<R, S = Compensated<R>> {
     coefficients: Coefficients<R>,
     scale: Scale,
@@ -30,6 +34,8 @@ pub struct AngleForm<R, S = Compensated<R>> {
 
 /// What the angle form carries from step to step: 64 bytes in compensated `f32`.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct AngleState<R, S> {
     upper: AngleAccumulator<R, S>,
     elbow: AngleAccumulator<R, S>,
@@ -47,6 +53,8 @@ impl<R: Real, S: Sum<R>> AngleState<R, S> {
         self.momenta = [self.sums[0].add(self.momenta[0], p1), self.sums[1].add(self.momenta[1], p2)];
     }
 }
+
+impl<R: Real, S: Sum<R>> Sealed for AngleForm<R, S> {}
 
 impl<R: Real, S: Sum<R>> Form<R> for AngleForm<R, S> {
     type Carried = AngleState<R, S>;
@@ -101,10 +109,33 @@ impl<R: Real, S: Sum<R>> Form<R> for AngleForm<R, S> {
         carried.elbow.bits(&mut feed);
         carried.momenta.iter().for_each(|p| feed(p.bits()));
         carried.sums.iter().for_each(|sum| feed(sum.lost().bits()));
+        feed(carried.steps);
+    }
+
+    type Saved = [u64; 12];
+
+    fn save(&self, carried: &Self::Carried) -> Self::Saved {
+        self.check().save(|feed| Self::bits(carried, feed))
+    }
+
+    fn restore(&self, saved: &[u64]) -> Result<Self::Carried, RestoreError> {
+        let words = &mut self.check().open::<12>(saved)?;
+        Ok(AngleState {
+            upper: AngleAccumulator::restore(words, R::ONE)?,
+            elbow: AngleAccumulator::restore(words, self.coefficients.norm)?,
+            momenta: words.each(Words::number)?,
+            sums: words.each(|words| S::restore(words.number()?).ok_or(RestoreError::NotSavedHere))?,
+            steps: words.word()?,
+        })
     }
 }
 
 impl<R: Real, S: Sum<R>> AngleForm<R, S> {
+    /// Tells its checkpoints from others.
+    fn check(&self) -> Check {
+        self.coefficients.check(&self.scale, Check::new(4).with(S::KIND))
+    }
+
     /// One step. Whether all was small is asked once, at its end.
     #[inline(always)]
     fn step(&self, carried: &mut AngleState<R, S>) {

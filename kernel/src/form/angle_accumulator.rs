@@ -1,5 +1,6 @@
-//! An angle that loses no digit, however often it turns.
+//! A range-reduced angle accumulator: it loses no digit, however often the angle turns.
 
+use super::checkpoint::{RestoreError, Words};
 use super::sum::Sum;
 use crate::real::Real;
 use crate::trig::{Own, SinCos, by_quarters};
@@ -18,6 +19,8 @@ pub(crate) const LARGEST: f64 = 1.647e6;
 /// The remainder is kept near 0.05 rad, so that its last place weighs 4e-9 rad in `f32` whatever the angle, and the
 /// direction follows from that of the mark by a small turn.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct AngleAccumulator<R, S> {
     mark: i32,
     /// `length` (sin, cos) of the mark.
@@ -28,6 +31,7 @@ pub(crate) struct AngleAccumulator<R, S> {
 
 impl<R: Real, S: Sum<R>> AngleAccumulator<R, S> {
     /// The angle `value`, rad, at most [`LARGEST`]; its directions come with the given `length`.
+    #[must_use]
     pub fn new(value: f64, length: R) -> Self {
         let mark = libm::rint(value / SPACING);
         let [high, middle, low] = f64::PI_OVER_TWO.map(|part| mark * (part / f64::from(MARKS)));
@@ -36,13 +40,23 @@ impl<R: Real, S: Sum<R>> AngleAccumulator<R, S> {
         Self { mark, direction: direction(mark, length), rest: R::from_f64(rest), sum: S::new(rest) }
     }
 
+    /// The angle that [`bits`](Self::bits) told; its directions come with the given `length`.
+    pub fn restore(words: &mut Words, length: R) -> Result<Self, RestoreError> {
+        let mark = u32::try_from(words.word()?).map_err(|_| RestoreError::NotSavedHere)? as i32;
+        let rest = words.number()?;
+        let sum = S::restore(words.number()?).ok_or(RestoreError::NotSavedHere)?;
+        Ok(Self { mark, direction: direction(mark, length), rest, sum })
+    }
+
     /// The direction: `length` (sin, cos).
+    #[must_use]
     #[inline(always)]
     pub fn direction(&self) -> [R; 2] {
         R::turned(self.direction, self.rest)
     }
 
     /// The direction of the angle `further` on, by the full routine.
+    #[must_use]
     #[inline]
     pub fn direction_at(&self, further: R) -> [R; 2] {
         let [s, c] = self.direction;
@@ -57,6 +71,7 @@ impl<R: Real, S: Sum<R>> AngleAccumulator<R, S> {
     }
 
     /// The remainder from the mark, rad.
+    #[must_use]
     #[inline(always)]
     pub fn rest(&self) -> R {
         self.rest
@@ -80,6 +95,7 @@ impl<R: Real, S: Sum<R>> AngleAccumulator<R, S> {
     }
 
     /// The angle in parts: the mark's multiple of pi/32, and the rest, rad.
+    #[must_use]
     pub fn parts(&self) -> (i32, f64) {
         let rest = self.rest.to_f64() + self.sum.lost().to_f64();
         (self.mark, offset::<R>(self.mark).to_f64() + rest)

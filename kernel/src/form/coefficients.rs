@@ -1,5 +1,6 @@
 //! Hamilton's equations in the units of the step, and the way there and back.
 
+use super::checkpoint::Check;
 use crate::error::{Error, Parameter};
 use crate::params::Parameters;
 use crate::real::Real;
@@ -16,6 +17,8 @@ use crate::state::State;
 ///
 /// Rods of any lengths cost what equal rods do, and no rate is multiplied by dt.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Coefficients<R> {
     /// nu.
     pub norm: R,
@@ -36,6 +39,7 @@ pub(crate) struct Rates<R> {
 
 impl<R: Real> Rates<R> {
     /// Twice these.
+    #[must_use]
     #[inline(always)]
     pub fn doubled(self) -> Self {
         Self { angles: self.angles.map(R::twice), momenta: self.momenta.map(R::twice) }
@@ -44,6 +48,7 @@ impl<R: Real> Rates<R> {
 
 impl<R: Real> Coefficients<R> {
     /// The rates where `upper` is (sin a1, cos a1), `elbow` is (S, C), `momenta` is (P1, P2), and `inverse` is r.
+    #[must_use]
     #[inline(always)]
     pub fn rates(&self, upper: [R; 2], elbow: [R; 2], momenta: [R; 2], inverse: R) -> Rates<R> {
         let [p1, p2] = momenta;
@@ -51,6 +56,7 @@ impl<R: Real> Coefficients<R> {
     }
 
     /// The rates, r not being known.
+    #[must_use]
     #[inline(always)]
     pub fn rates_by_division(&self, upper: [R; 2], elbow: [R; 2], momenta: [R; 2]) -> Rates<R> {
         let [p1, p2] = momenta;
@@ -69,9 +75,21 @@ impl<R: Real> Coefficients<R> {
     }
 
     /// m + S^2, whose inverse is r.
+    #[must_use]
     #[inline(always)]
     pub fn denominator(&self, s: R) -> R {
         self.inertia + s * s
+    }
+}
+
+impl<R: Real> Coefficients<R> {
+    /// Adds all of it to the check of a form.
+    #[must_use]
+    pub fn check(&self, scale: &Scale, check: Check) -> Check {
+        let Self { norm, inertia, gravity: [gravity1, gravity2] } = *self;
+        let Scale { time, momentum, lag } = *scale;
+        let constants = [norm, inertia, gravity1, gravity2].map(R::bits);
+        check.with(R::EPSILON.bits()).with_all(constants).with_all([time, momentum, lag].map(f64::to_bits))
     }
 }
 
@@ -90,6 +108,7 @@ pub(crate) struct Span {
 
 impl Span {
     /// The classical method's (k1 + 2 k2 + 2 k3 + k4) times a third: tau is half a step.
+    #[must_use]
     pub fn classical<R: Real>() -> Self {
         Self { weights: 6.0, factor: third::<R>().to_f64() }
     }
@@ -99,6 +118,8 @@ impl Span {
 
 /// How the units of the step translate to SI. In `f64`; used at input and output only.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Scale {
     /// tau, s.
     time: f64,
@@ -176,6 +197,7 @@ impl Scale {
     /// The state in SI units at the time that `steps` steps were meant to reach.
     ///
     /// The `angles` (rad) and `momenta` (P) stand a little beside that time; `rates` carry them over.
+    #[must_use]
     pub fn state<R: Real>(&self, angles: [f64; 2], momenta: [f64; 2], rates: Rates<R>, steps: u64) -> State<f64> {
         let behind = steps as f64 * self.lag / self.time;
         let [a1, a2] = [0, 1].map(|i| angles[i] + rates.angles[i].to_f64() * behind);

@@ -2,6 +2,7 @@
 
 use core::marker::PhantomData;
 
+use super::checkpoint::{Check, RestoreError, Words};
 use super::coefficients::{Coefficients, Rates, Scale, Span, prepare, third};
 use super::inverse::{Followed, Inverse};
 use super::sum::{Compensated, Sum};
@@ -9,6 +10,7 @@ use super::{Direction, Form, lower_direction};
 use crate::error::Error;
 use crate::params::Parameters;
 use crate::real::Real;
+use crate::sealed::Sealed;
 use crate::state::State;
 use crate::trig::{Own, SinCos};
 
@@ -16,9 +18,11 @@ use crate::trig::{Own, SinCos};
 ///
 /// (sin a)' = a' cos a, (cos a)' = -a' sin a for a1 and for D = a1 - a2. The method's error is that of RK4 on angles
 /// within a factor of three, smaller near the upright position. What it does to the length of the directions, a relative
-/// (w dt)^6/72 a step, is undone every 32 steps. AngleState are read off within (-pi, pi]; [`Winding`](super::Winding) counts
+/// (w dt)^6/72 a step, is undone every 32 steps. Angles are read off within (-pi, pi]; [`Winding`](super::Winding) counts
 /// the turns for those who ask.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct DirectionForm<R, S = Compensated<R>, I = Followed> {
     pub(super) coefficients: Coefficients<R>,
     scale: Scale,
@@ -29,6 +33,8 @@ pub struct DirectionForm<R, S = Compensated<R>, I = Followed> {
 
 /// What the direction form carries from step to step: 64 bytes in compensated `f32`.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct DirectionState<R, S> {
     /// sin a1, cos a1, S, C, P1, P2.
     pub(super) z: [R; 6],
@@ -39,6 +45,8 @@ pub struct DirectionState<R, S> {
 
 /// Steps from one restoring of the lengths to the next.
 const RESTORING: u32 = 32;
+
+impl<R: Real, S: Sum<R>, I: Inverse<R>> Sealed for DirectionForm<R, S, I> {}
 
 impl<R: Real, S: Sum<R>, I: Inverse<R>> Form<R> for DirectionForm<R, S, I> {
     type Carried = DirectionState<R, S>;
@@ -93,6 +101,17 @@ impl<R: Real, S: Sum<R>, I: Inverse<R>> Form<R> for DirectionForm<R, S, I> {
         carried.z.iter().for_each(|z| feed(z.bits()));
         carried.sums.iter().for_each(|sum| feed(sum.lost().bits()));
         feed(carried.inverse.bits());
+        feed(carried.steps);
+    }
+
+    type Saved = [u64; 15];
+
+    fn save(&self, carried: &Self::Carried) -> Self::Saved {
+        self.check(4).save(|feed| Self::bits(carried, feed))
+    }
+
+    fn restore(&self, saved: &[u64]) -> Result<Self::Carried, RestoreError> {
+        self.restore_checked(self.check(4), saved)
     }
 }
 
@@ -101,6 +120,21 @@ impl<R: Real, S: Sum<R>, I: Inverse<R>> DirectionForm<R, S, I> {
         let (coefficients, scale) = prepare(parameters, dt, span)?;
         let half_inverse_square = R::HALF / (coefficients.norm * coefficients.norm);
         Ok(Self { coefficients, scale, half_inverse_square, ways: PhantomData })
+    }
+
+    /// Tells its checkpoints from others, and those of steps of another `order`.
+    pub(super) fn check(&self, order: u64) -> Check {
+        self.coefficients.check(&self.scale, Check::new(order).with(S::KIND).with(0x10 + I::KIND))
+    }
+
+    pub(super) fn restore_checked(&self, check: Check, saved: &[u64]) -> Result<DirectionState<R, S>, RestoreError> {
+        let mut words = check.open::<15>(saved)?;
+        Ok(DirectionState {
+            z: words.each(Words::number)?,
+            sums: words.each(|words| S::restore(words.number()?).ok_or(RestoreError::NotSavedHere))?,
+            inverse: words.number()?,
+            steps: words.word()?,
+        })
     }
 
     #[inline(always)]

@@ -3,7 +3,7 @@
 //! [`Pendulum::step`](crate::Pendulum::step) is the classical method as one writes it down. The forms here do the same
 //! in the units of the step, with fewer operations, and carry the rounding error of their additions along unless told
 //! otherwise. Cost of a step on a Cortex-M4F (estimated cycles, equal rods or not) and largest error in rad within
-//! 10 s and 100 s of regular motion (0.5 rad, dt = 1/256 s; root mean square over neighbouring starts, test `forms`; the
+//! 10 s and 100 s of regular motion (0.5 rad, dt = 1/256 s; root mean square over neighbouring starts; the
 //! method's own error is 1e-8 and 1e-7):
 //!
 //! | form | cycles | 10 s | 100 s |
@@ -15,19 +15,20 @@
 //! In `f64`, where an error of 1e-9 or less is wanted, [`DirectionForm8`] takes far fewer steps, of order 8.
 //!
 //! ```
-//! use double_pendulum::form::{Form, DirectionForm};
+//! use double_pendulum::form::{DirectionForm, Stepper};
 //! use double_pendulum::{Parameters, State};
 //!
-//! let form = DirectionForm::<f32>::new(&Parameters::equal_rods(1.0, 1.0, 9.81), 1.0 / 256.0)?;
-//! let mut carried = form.start(&State::at_rest(0.5, 0.5))?;
-//! form.advance(&mut carried, 256);
-//! let [[sin1, cos1], [sin2, cos2]] = form.directions(&carried); // enough to draw both rods
+//! let pendulum = Parameters::equal_rods(1.0, 1.0, 9.81);
+//! let mut motion = Stepper::<f32, DirectionForm<f32>>::new(&pendulum, &State::at_rest(0.5, 0.5), 1.0 / 256.0)?;
+//! motion.try_advance(256)?;
+//! let [[sin1, cos1], [sin2, cos2]] = motion.directions(); // enough to draw both rods
 //! assert!((sin1 * sin1 + cos1 * cos1 - 1.0).abs() < 1e-6 && (sin2 * sin2 + cos2 * cos2 - 1.0).abs() < 1e-6);
 //! # Ok::<(), double_pendulum::Error>(())
 //! ```
 
 mod angle;
 mod angle_accumulator;
+mod checkpoint;
 mod coefficients;
 mod direction;
 mod direction8;
@@ -37,6 +38,7 @@ mod sum;
 mod winding;
 
 pub use angle::{AngleForm, AngleState};
+pub use checkpoint::RestoreError;
 pub use direction::{DirectionForm, DirectionState};
 pub use direction8::DirectionForm8;
 pub use inverse::{Divided, Followed, Inverse};
@@ -47,19 +49,29 @@ pub use winding::Winding;
 use crate::error::{Error, Parameter, check_finite};
 use crate::params::Parameters;
 use crate::real::Real;
+use crate::sealed::Sealed;
 use crate::state::State;
 
 /// (sin, cos) of an angle from the downward vertical.
 pub type Direction<R> = [R; 2];
 
-/// A pendulum and a step size, prepared: configuration that drives any number of motions.
-pub trait Form<R: Real>: Copy + core::fmt::Debug + PartialEq {
+/// A pendulum and a step size, prepared: configuration that drives any number of motions; sealed.
+///
+/// For one motion, [`Stepper`] keeps it together with what it carries.
+pub trait Form<R: Real>: Sealed + Copy + core::fmt::Debug + PartialEq {
     /// A motion: what is carried from step to step.
     type Carried: Copy + core::fmt::Debug + PartialEq;
 
     /// Checks the parameters and prepares steps of `dt` seconds; a negative one runs backwards.
     ///
+    /// The step is taken exactly: what the rounding of the constants does to its length is taken back by
+    /// [`state`](Self::state), so 1/240 s in `f32` is as good as 1/256 s.
+    ///
     /// Refuses what [`Pendulum::new`](crate::Pendulum::new) refuses, and a step that is NaN, infinite, zero or subnormal.
+    /// Not one that is too long, because what is too long depends on the motion: above
+    /// [`Modes::step_limit`](crate::Modes::step_limit) even the smallest swing grows with every step of RK4
+    /// ([`Pendulum::check_step`](crate::Pendulum::check_step) refuses that), and a motion of given energy is sure to be
+    /// resolved up to [`Pendulum::admissible_step`](crate::Pendulum::admissible_step).
     fn new(parameters: &Parameters<R>, dt: f64) -> Result<Self, Error>;
 
     /// The motion that starts from `state`.
@@ -87,16 +99,32 @@ pub trait Form<R: Real>: Copy + core::fmt::Debug + PartialEq {
     }
 
     /// The directions of the two rods, all that a drawing needs; no trigonometry.
+    #[must_use]
     fn directions(&self, carried: &Self::Carried) -> [Direction<R>; 2];
 
     /// The canonical state in SI units, to the last digit carried.
     ///
     /// It is the state at the number of steps times dt: what the rounding of a step's constants does to the time is
     /// taken back here, at no cost to the step.
+    #[must_use]
     fn state(&self, carried: &Self::Carried) -> State<f64>;
 
-    /// Gives `feed` the bit patterns of all that is carried, to compare machines by.
+    /// Gives `feed` the bit patterns of all that is carried, the number of steps among them, to compare machines by.
     fn bits(carried: &Self::Carried, feed: impl FnMut(u64));
+
+    /// The words of a checkpoint.
+    type Saved: Copy + core::fmt::Debug + PartialEq + AsRef<[u64]>;
+
+    /// All that is carried, as words to keep: [`restore`](Self::restore) makes the same motion of them, to the bit, on any
+    /// machine. The first word is a check of the others and of the form with its pendulum and step.
+    #[must_use]
+    fn save(&self, carried: &Self::Carried) -> Self::Saved;
+
+    /// The motion that was saved.
+    ///
+    /// Refuses words that no [`save`](Self::save) of this form, pendulum and step can have written, and every change of a
+    /// single word.
+    fn restore(&self, saved: &[u64]) -> Result<Self::Carried, RestoreError>;
 }
 
 /// The direction of rod 2 from that of rod 1 and (S, C) = `norm` (sin D, cos D), a2 = a1 - D.

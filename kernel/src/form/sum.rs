@@ -4,36 +4,60 @@ use core::fmt::Debug;
 
 use super::coefficients::third;
 use crate::real::Real;
+use crate::sealed::Sealed;
 
-/// A running sum: the number itself is kept elsewhere, what its additions lose is kept here.
-pub trait Sum<R: Real>: Copy + Debug + PartialEq + 'static {
+/// A running sum: the number itself is kept elsewhere, what its additions lose is kept here; sealed.
+pub trait Sum<R: Real>: Sealed + Copy + Debug + PartialEq + 'static {
+    /// Tells the kinds of sum apart in a checkpoint.
+    #[doc(hidden)]
+    const KIND: u64;
     /// For a sum that starts at `value`, of which the number keeps as many digits as it has.
+    #[doc(hidden)]
     fn new(value: f64) -> Self;
+    /// The sum of which the number lacks `lost`; none if it never lacks that.
+    #[doc(hidden)]
+    fn restore(lost: R) -> Option<Self>;
     /// `number` + `increment`.
+    #[doc(hidden)]
     fn add(&mut self, number: R, increment: R) -> R;
     /// `number` + `increment` for a look ahead, what the number lacks included.
+    #[doc(hidden)]
     fn ahead(&self, number: R, increment: R) -> R;
     /// What the number lacks.
+    #[doc(hidden)]
     fn lost(&self) -> R;
     /// What k1 + 2 k2 + 2 k3 + k4 is multiplied by to be the increment of a step, as rounded: a third if slopes are for
     /// half a step, 1 if they are for a sixth.
+    #[doc(hidden)]
     fn factor() -> f64;
     /// A `slope` times half a step.
+    #[doc(hidden)]
     fn half_step(slope: R) -> R;
     /// A `slope` times a step.
+    #[doc(hidden)]
     fn whole_step(slope: R) -> R;
     /// The increment of a step from k1 + 2 k2 + 2 k3 + k4.
+    #[doc(hidden)]
     fn increment(slopes: R) -> R;
 }
 
 /// Adds. Each addition rounds, and the error of n of them grows at least like sqrt(n).
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Plain;
 
+impl Sealed for Plain {}
+
 impl<R: Real> Sum<R> for Plain {
+    const KIND: u64 = 0;
     #[inline]
     fn new(_: f64) -> Self {
         Self
+    }
+    #[inline]
+    fn restore(lost: R) -> Option<Self> {
+        (lost.bits() == 0).then_some(Self)
     }
     #[inline(always)]
     fn add(&mut self, number: R, increment: R) -> R {
@@ -69,12 +93,21 @@ impl<R: Real> Sum<R> for Plain {
 ///
 /// Three additions more for each. Source: W. Kahan, "Further remarks on reducing truncation errors", CACM 8, 1965.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Compensated<R>(R);
 
+impl<R: Real> Sealed for Compensated<R> {}
+
 impl<R: Real> Sum<R> for Compensated<R> {
+    const KIND: u64 = 1;
     #[inline]
     fn new(value: f64) -> Self {
         Self(R::from_f64(value - R::from_f64(value).to_f64()))
+    }
+    #[inline]
+    fn restore(lost: R) -> Option<Self> {
+        Some(Self(lost))
     }
     #[inline(always)]
     fn add(&mut self, number: R, increment: R) -> R {

@@ -7,6 +7,8 @@ use crate::real::Real;
 ///
 /// Show it the direction at least once every quarter turn; then [`angle`](Self::angle) is the unwrapped angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Winding<R> {
     turns: i32,
     last: Direction<R>,
@@ -14,11 +16,18 @@ pub struct Winding<R> {
 
 impl<R: Real> Winding<R> {
     /// For an angle of `start` rad.
+    #[must_use]
     pub fn new(start: R) -> Self {
         let angle = start.to_f64();
         let turns = libm::rint(angle / core::f64::consts::TAU);
         let rest = angle - turns * core::f64::consts::TAU;
         Self { turns: turns as i32, last: [R::from_f64(libm::sin(rest)), R::from_f64(libm::cos(rest))] }
+    }
+
+    /// That has counted `turns` and was last shown the direction `last`.
+    #[must_use]
+    pub fn restore(turns: i32, last: Direction<R>) -> Self {
+        Self { turns, last }
     }
 
     /// Takes note of the direction (sin, cos) the angle has now.
@@ -33,11 +42,13 @@ impl<R: Real> Winding<R> {
     }
 
     /// Whole turns, counted from the downward vertical.
+    #[must_use]
     pub fn turns(&self) -> i32 {
         self.turns
     }
 
     /// The unwrapped angle, rad, as of the last direction observed.
+    #[must_use]
     pub fn angle(&self) -> f64 {
         let [s, c] = self.last;
         f64::from(self.turns) * core::f64::consts::TAU + libm::atan2(s.to_f64(), c.to_f64())
@@ -47,6 +58,7 @@ impl<R: Real> Winding<R> {
     /// digits of [`Form::state`](super::Form::state) and the turns from here.
     ///
     /// No trigonometry: a quarter turn to the side of the last direction is within half a turn of it, near enough.
+    #[must_use]
     pub fn unwrap(&self, angle: f64) -> f64 {
         use core::f64::consts::{FRAC_PI_2, TAU};
         let side = if self.last[0] < R::ZERO { -FRAC_PI_2 } else { FRAC_PI_2 };

@@ -10,13 +10,17 @@
 pub(crate) mod own_f32;
 pub(crate) mod own_f64;
 
-use crate::real::Real;
+use core::ops::Neg;
 
-/// A source of sine and cosine for the reals `R`.
+use crate::real::Real;
+use crate::sealed::Sealed;
+
+/// A source of sine and cosine for the reals `R`; sealed.
 ///
 /// One run uses one source, on the host and on the chip alike: results agree to the bit only within a source.
-pub trait SinCos<R: Real>: Copy + core::fmt::Debug + PartialEq + 'static {
+pub trait SinCos<R: Real>: Sealed + Copy + core::fmt::Debug + PartialEq + 'static {
     /// (sin `angle`, cos `angle`), `angle` in rad.
+    #[must_use]
     fn sin_cos(angle: R) -> (R, R);
 }
 
@@ -29,7 +33,11 @@ pub trait SinCos<R: Real>: Copy + core::fmt::Debug + PartialEq + 'static {
 ///
 /// Asserted by `host-tests/tests/trigonometry.rs`; all floats of [-pi, pi] on demand.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Own;
+
+impl Sealed for Own {}
 
 impl<R: Real> SinCos<R> for Own {
     #[inline]
@@ -42,7 +50,11 @@ impl<R: Real> SinCos<R> for Own {
 ///
 /// Cost on a Cortex-M is high: the `f32` routine works in `f64`.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Libm;
+
+impl Sealed for Libm {}
 
 impl<R: Real> SinCos<R> for Libm {
     #[inline]
@@ -54,7 +66,12 @@ impl<R: Real> SinCos<R> for Libm {
 /// The `micromath` crate: short, and wrong by up to 1.2e-3. Here for comparison.
 #[cfg(feature = "micromath")]
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Micromath;
+
+#[cfg(feature = "micromath")]
+impl Sealed for Micromath {}
 
 #[cfg(feature = "micromath")]
 impl SinCos<f32> for Micromath {
@@ -69,7 +86,7 @@ pub type DefaultTrig = Own;
 
 /// The direction (sin, cos) turned by `quarters` quarter turns; only the two lowest bits of `quarters` count.
 #[inline]
-pub(crate) fn by_quarters<R: Real>((sine, cosine): (R, R), quarters: u32) -> (R, R) {
+pub(crate) fn by_quarters<R: Copy + Neg<Output = R>>((sine, cosine): (R, R), quarters: u32) -> (R, R) {
     let (sine, cosine) = if quarters & 1 == 0 { (sine, cosine) } else { (cosine, -sine) };
     if quarters & 2 == 0 { (sine, cosine) } else { (-sine, -cosine) }
 }

@@ -2,8 +2,6 @@
 //!
 //! The constants are made by `host-tests/generate/sine_polynomials.py`.
 
-use crate::real::Real;
-
 /// 2/pi.
 const TWO_OVER_PI: f32 = core::f32::consts::FRAC_2_PI;
 
@@ -43,6 +41,7 @@ pub const MARKS: [[f32; 3]; 9] = [
 ];
 
 /// (sin `x`, cos `x`).
+#[must_use]
 #[inline]
 pub fn sin_cos(x: f32) -> (f32, f32) {
     if x.abs() <= LARGEST { reduced(x) } else { huge(x) }
@@ -67,6 +66,7 @@ fn first_octant(r: f32) -> (f32, f32) {
 }
 
 /// The vector (s, c) for an angle `by` further on: a rotation as three shears, tan(`by`/2), sin `by` and tan(`by`/2) again.
+#[must_use]
 #[inline(always)]
 pub fn turned([s, c]: [f32; 2], by: f32) -> [f32; 2] {
     let z = by * by;
@@ -85,10 +85,12 @@ pub struct Reach(f32);
 const SMALL: f32 = 0.0054;
 
 impl Reach {
+    #[must_use]
     #[inline(always)]
     pub fn with(self, [a, b]: [f32; 2]) -> Self {
         Self(self.0 + (a * a + b * b))
     }
+    #[must_use]
     #[inline(always)]
     pub fn is_small(self) -> bool {
         self.0 <= SMALL
@@ -99,5 +101,5 @@ impl Reach {
 #[cold]
 #[inline(never)]
 fn huge(x: f32) -> (f32, f32) {
-    x.libm_sin_cos()
+    libm::sincosf(x)
 }

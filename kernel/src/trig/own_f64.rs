@@ -2,8 +2,6 @@
 //!
 //! The constants are made by `host-tests/generate/sine_polynomials.py`.
 
-use crate::real::Real;
-
 /// 2/pi.
 const TWO_OVER_PI: f64 = core::f64::consts::FRAC_2_PI;
 
@@ -56,6 +54,7 @@ pub const MARKS: [[f64; 3]; 9] = [
 ];
 
 /// (sin `x`, cos `x`).
+#[must_use]
 #[inline]
 pub fn sin_cos(x: f64) -> (f64, f64) {
     if x.abs() <= LARGEST { reduced(x) } else { huge(x) }
@@ -87,6 +86,7 @@ fn first_octant(r: f64) -> (f64, f64) {
 
 /// The vector (s, c) for an angle `by` further on, as one writes a rotation: an operation less than by three shears, whose
 /// longer polynomials it does without, and fewer wait for one another.
+#[must_use]
 #[inline(always)]
 pub fn turned([s, c]: [f64; 2], by: f64) -> [f64; 2] {
     let z = by * by;
@@ -106,11 +106,13 @@ pub struct Reach(u32);
 const SMALL: u32 = (0.06_f64.to_bits() >> 32) as u32;
 
 impl Reach {
+    #[must_use]
     #[inline(always)]
     pub fn with(self, [a, b]: [f64; 2]) -> Self {
         let size = |turn: f64| (turn.abs().to_bits() >> 32) as u32;
         Self(self.0.max(size(a)).max(size(b)))
     }
+    #[must_use]
     #[inline(always)]
     pub fn is_small(self) -> bool {
         self.0 < SMALL
@@ -121,5 +123,5 @@ impl Reach {
 #[cold]
 #[inline(never)]
 fn huge(x: f64) -> (f64, f64) {
-    x.libm_sin_cos()
+    libm::sincos(x)
 }

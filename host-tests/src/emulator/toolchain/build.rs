@@ -98,11 +98,21 @@ impl Toolchain {
         Ok(Self::folder().join(target).join("release").join(binary))
     }
 
-    /// Checks all of the firmware's binaries for every target; a warning is an error.
+    /// Checks all of the firmware's binaries and its example under an executor for every target; a warning is an error.
     pub fn check(&self) -> Result<(), BuildError> {
         for target in TARGETS {
             let mut command = self.cargo();
-            command.args(["check", "--release", "--package", "firmware", "--bins", "--target", target]);
+            command.args([
+                "check",
+                "--release",
+                "--package",
+                "firmware",
+                "--bins",
+                "--example",
+                "embassy",
+                "--target",
+                target,
+            ]);
             let features = BOARDS.iter().filter(|board| board.target == target).map(|board| board.feature);
             command.arg("--features").arg(features.collect::<Vec<_>>().join(","));
             command.env("RUSTFLAGS", "-Dwarnings");

@@ -1,0 +1,67 @@
+//! The kernel under the embassy executor: one task steps the pendulum 60 times a second, woken by the SysTick timer.
+//!
+//! For any Cortex-M3 or M4; nothing here knows a board but for the clock it starts with.
+//! `cargo build --release --package firmware --example embassy --target thumbv7em-none-eabihf`
+#![no_std]
+#![no_main]
+
+use cortex_m::peripheral::syst::SystClkSource;
+use cortex_m_rt::exception;
+use double_pendulum::form::{DirectionForm, Stepper};
+use double_pendulum::{Error, Parameters, State};
+use embassy_executor::Spawner;
+use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
+use embassy_sync::signal::Signal;
+
+/// Processor clock after reset, Hz, of an STM32F405.
+const CLOCK: u32 = 16_000_000;
+/// Frames a second, and steps to a frame.
+const RATE: u32 = 60;
+const STEPS: u32 = 4;
+
+/// The timer's tick.
+static TICK: Signal<CriticalSectionRawMutex, ()> = Signal::new();
+/// Where the rods point, for the task that draws: the latest only.
+static FRAME: Signal<CriticalSectionRawMutex, [[f32; 2]; 2]> = Signal::new();
+
+#[exception]
+fn SysTick() {
+    TICK.signal(());
+}
+
+#[embassy_executor::main]
+async fn main(spawner: Spawner) {
+    if let Some(cortex_m::Peripherals { mut SYST, .. }) = cortex_m::Peripherals::take() {
+        SYST.set_clock_source(SystClkSource::Core);
+        SYST.set_reload(CLOCK / RATE - 1);
+        SYST.clear_current();
+        SYST.enable_counter();
+        SYST.enable_interrupt();
+    }
+    spawner.must_spawn(pendulum()); // there is room for one, and this is the one
+    loop {
+        let [[_sin1, _cos1], [_sin2, _cos2]] = FRAME.wait().await; // draw it here
+    }
+}
+
+/// Steps for ever; the kernel never panics, and what goes wrong comes back as an error.
+#[embassy_executor::task]
+async fn pendulum() {
+    let _error = swing().await; // report it here
+}
+
+async fn swing() -> Result<(), Error> {
+    let dt = 1.0 / f64::from(RATE * STEPS);
+    let parameters = Parameters::equal_rods(1.0, 1.0, 9.81);
+    let mut motion = Stepper::<f32, DirectionForm<f32>>::new(&parameters, &State::at_rest(2.0, 2.0), dt)?;
+    loop {
+        TICK.wait().await;
+        motion.try_advance(STEPS)?;
+        FRAME.signal(motion.directions());
+    }
+}
+
+#[panic_handler]
+fn panic(_: &core::panic::PanicInfo) -> ! {
+    loop {}
+}
