@@ -52,6 +52,7 @@ pub fn upright_axis(canvas: &mut Canvas, x: i32, from: i32, to: i32) {
 }
 
 /// Draws a bar that tells a length, upright or level, with a foot at either end.
+#[inline(never)]
 pub fn bar(canvas: &mut Canvas, (x1, y1): (i32, i32), (x2, y2): (i32, i32)) {
     let mut dot = |x: i32, y: i32| canvas.update(x, y, |old| old.max(AXIS_GREY));
     (x1..=x2).for_each(|x| (y1..=y2).for_each(|y| dot(x, y)));
