@@ -10,6 +10,8 @@
 //! | [`oracle`] | independent references, known answers, hard cases and the one table of tolerances |
 //! | [`console`] | how every command talks: options, errors, progress |
 
+#![deny(clippy::print_stdout, clippy::print_stderr)]
+
 pub mod commands;
 pub mod console;
 pub mod emulator;

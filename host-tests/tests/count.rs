@@ -1,8 +1,10 @@
-//! The counter against a second way of counting, and the bits of the target against the host's.
+//! The counter against a second way of counting, goals and prices, and what `cargo count` refuses.
+
+use std::process::Command;
 
 use double_pendulum::Parameters;
 use double_pendulum::plan::{Costs, Method};
-use firmware::measure::{Request, SUBJECTS};
+use firmware::measure::Request;
 use host_tests::commands::count::goal::GOALS;
 use host_tests::commands::count::{FULL_CYCLE, Target, affordable_steps, step_cost};
 use host_tests::emulator::boards::Core;
@@ -90,14 +92,20 @@ fn a_step_costs_what_the_planner_thinks() {
 }
 
 #[test]
-fn host_and_targets_compute_the_same_bits() {
-    let targets = targets();
-    for subject in SUBJECTS {
-        let request = Request { samples: 8, ..request(subject.name, 64) };
-        let host = request.outcome().unwrap_or_else(|error| panic!("{error}"));
-        for target in &targets {
-            let (outcome, _) = target.run(&request).unwrap_or_else(|error| panic!("{error}"));
-            assert_eq!(outcome, host, "{} on {}", subject.name, target.board.name);
-        }
+fn bad_input_is_refused_in_one_line_before_anything_is_printed() {
+    for (arguments, named) in [
+        ("--steps 0", "--steps"),
+        ("--steps -1", "--steps"),
+        ("--m2 0", "m2 = 0"),
+        ("--m2 -1", "m2 = -1"),
+        ("--l2 inf", "l2 = inf"),
+        ("--angle nan", "NaN"),
+        ("--halvings 99", "--halvings"),
+        ("--board arduino", "--board"),
+    ] {
+        let output = Command::new(env!("CARGO_BIN_EXE_count")).args(arguments.split(' ')).output().expect("it runs");
+        let report = String::from_utf8_lossy(&output.stderr);
+        assert_eq!((output.status.code(), output.stdout.as_slice()), (Some(2), &b""[..]), "{arguments}: {report}");
+        assert!(report.lines().count() == 1 && report.contains(named), "{arguments}: {report}");
     }
 }

@@ -68,12 +68,16 @@ fn a_closed_output_is_no_failure() {
 
 #[test]
 fn bad_arguments_are_refused_in_one_line() {
-    let cases: [&[&str]; 7] = [
+    let cases: [&[&str]; 11] = [
         &["--board", "arduino"],
         &["--board", "mps2-an386"],
         &["--seconds", "0"],
         &["--seconds", "NaN"],
         &["--seconds", "soon"],
+        &["--seconds", "-1"],
+        &["--record", "swing.mp4"],
+        &["--record", "swing"],
+        &["--screenshot", "last.jpg"],
         &["--headless", "--window"],
         &["--colour"],
     ];

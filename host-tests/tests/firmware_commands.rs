@@ -96,6 +96,17 @@ fn settings_too_lively_for_the_step_are_played_and_logged() {
     assert!(coarse(100.0));
 }
 
+/// Figure 7's energy could drive a livelier motion than the one it starts.
+#[test]
+fn no_scene_is_warned_of_as_it_stands_in_the_catalogue() {
+    for name in SceneName::ALL {
+        let mut app = app();
+        let choose = wire(&Choose { request: 1, scene: name.code() });
+        app.receive(choose, |event| assert!(!matches!(event, Event::StepTooLong(_)), "{}: {event:?}", name.name()));
+        assert_eq!(app.player().name(), *name);
+    }
+}
+
 #[test]
 fn a_bad_command_is_answered_with_the_field_and_changes_nothing() {
     let mut app = app();

@@ -49,7 +49,7 @@ fn both_start_at_62_9_joules() {
 }
 
 #[test]
-fn printed_form_loses_the_energy_and_hangs_below_the_pivot() {
+fn printed_form_does_not_keep_the_energy_and_hangs_below_the_pivot_on_average() {
     let summary = run(|z| textbook::misprinted_equal_rods(MU, 1.0, 9.8, z));
     assert!((summary.mean_energy + 18.7).abs() < tolerances::MISPRINT_ENERGY, "mean energy {} J", summary.mean_energy);
     assert!(summary.share_above_pivot < tolerances::MISPRINT_ABOVE, "{} above the pivot", summary.share_above_pivot);

@@ -2,7 +2,7 @@
 
 use std::process::Command;
 
-use host_tests::emulator::boards::BOARDS;
+use host_tests::emulator::boards::{BOARDS, Board, STM32F405};
 
 fn simulate(arguments: &str) -> String {
     let output = Command::new(env!("CARGO_BIN_EXE_simulate"))
@@ -13,10 +13,17 @@ fn simulate(arguments: &str) -> String {
     String::from_utf8_lossy(&output.stdout).into_owned()
 }
 
+/// One board for each kind of processor: the boards of a kind run the same code (every board answers one request below).
+const PROCESSORS: [&Board; 2] = [&BOARDS[0], &STM32F405];
+
 fn same_everywhere(options: &str) {
+    same_on(PROCESSORS, options);
+}
+
+fn same_on<'a>(boards: impl IntoIterator<Item = &'a Board>, options: &str) {
     let host = simulate(&format!("{options} --bits"));
     assert!(host.lines().count() > 2);
-    for board in &BOARDS {
+    for board in boards {
         assert_eq!(simulate(&format!("{options} --bits --on {}", board.name)), host, "{options} on {}", board.name);
     }
 }
@@ -40,8 +47,9 @@ fn equal_rods() {
 }
 
 #[test]
-fn unequal_rods_with_velocities() {
-    same_everywhere(
+fn unequal_rods_with_velocities_on_every_board() {
+    same_on(
+        &BOARDS,
         "--masses 2,0.5 --lengths 0.3,1.1 --velocities 3,-4 --step 1/256 --until 4 --every 1/2 --arithmetic f32",
     );
 }

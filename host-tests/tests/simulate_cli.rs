@@ -158,6 +158,7 @@ fn bad_input_gets_one_line_and_exit_code_2() {
         ("--on moon", "--on"),
         ("--wind 3", "--wind"),
         ("--masses 1e300,1 --lengths 1e200,1", "m1"),
+        ("--masses 1e300,1e300 --angles 1,1 --step 1/256 --until 1", "--step 1/256"),
         ("--masses 1e30,1 --lengths 1e10,1 --arithmetic f32", "m1"),
     ] {
         let output = simulate(arguments);
@@ -186,6 +187,16 @@ fn a_step_too_long_for_the_energy_is_computed_and_warned_of() {
         assert_eq!(report.lines().count(), usize::from(warned), "{arguments}: {report}");
         assert!(!warned || report.starts_with("warning: --step 1/"), "{arguments}: {report}");
     }
+}
+
+/// What has been printed until then is right, and is kept.
+#[test]
+fn a_motion_that_diverges_later_keeps_its_rows_and_fails() {
+    let output = simulate("--masses 1,100 --angles 3,2 --step 1/20 --until 10 --arithmetic f32");
+    let report = String::from_utf8_lossy(&output.stderr);
+    let rows = String::from_utf8_lossy(&output.stdout).lines().count();
+    assert_eq!(output.status.code(), Some(1), "{report}");
+    assert!(rows > 2 && report.contains(&format!("error: after {} rows: ", rows - 1)), "{rows}: {report}");
 }
 
 #[test]

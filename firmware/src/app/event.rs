@@ -52,7 +52,7 @@ pub enum Event<Panel, Link> {
     /// frame until it is started again.
     Stopped(Error),
     /// The step is longer than this, s, the longest that resolves every motion of the energy of what was started or asked
-    /// for.
+    /// for. Not said of a scene that starts as it stands in the catalogue.
     StepTooLong(f64),
     /// Looking ahead has found something.
     Found(Finding),

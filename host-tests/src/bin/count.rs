@@ -4,11 +4,16 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use double_pendulum::Parameters;
-use firmware::measure::{CLOSED_FORM, Request, SUBJECTS};
-use host_tests::commands::count::{CountError, FULL_CYCLE, Profile, StepCost, Target, affordable_steps, step_cost};
-use host_tests::console::cli;
+use firmware::measure::{CLOSED_FORM, Request, SUBJECTS, Subject};
+use host_tests::commands::count::{FULL_CYCLE, Profile, StepCost, Target, affordable_steps, step_cost};
+use host_tests::console::cli::{self, Refused, say};
 use host_tests::emulator::boards::{BOARDS, Board};
 use host_tests::emulator::toolchain;
+
+/// As in the report's regular scene, with which the figures here agree.
+const GRAVITY: f32 = 9.81;
+/// Every instruction executed is logged: many more would take hours.
+const MOST_STEPS: i64 = 65_536;
 
 /// Counts executed instructions (exact) and Cortex-M cycles (an estimate from the published instruction timings).
 #[derive(Debug, Parser)]
@@ -17,116 +22,137 @@ struct Arguments {
     /// Only arithmetics whose name contains this
     #[arg(default_value = "")]
     arithmetic: String,
-    /// Only this board
-    #[arg(long)]
-    board: Option<String>,
-    /// Steps to average over; else 256, or fewer if they are dear
-    #[arg(long)]
+    /// Only this board; else the two with a panel, a Cortex-M3 and a Cortex-M4F
+    #[arg(long, value_name = "NAME", value_parser = cli::choice(&BOARDS, |board| board.name))]
+    board: Option<&'static Board>,
+    /// Steps to average over; else 256, or fewer of a costly arithmetic
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=MOST_STEPS))]
     steps: Option<u32>,
     /// The mass of bob 2, kg; that of bob 1 is 1
-    #[arg(long, default_value_t = 1.0)]
+    #[arg(long, value_name = "KG", default_value_t = 1.0)]
     m2: f64,
     /// The length of rod 2, m; that of rod 1 is 1
-    #[arg(long, default_value_t = 1.0)]
+    #[arg(long, value_name = "M", default_value_t = 1.0)]
     l2: f64,
     /// Both starting angles, rad
-    #[arg(long, default_value_t = 0.5)]
+    #[arg(long, value_name = "RAD", default_value_t = 0.5)]
     angle: f64,
     /// The step is 1/2^K s
-    #[arg(long, value_name = "K", default_value_t = 8)]
-    halvings: i32,
+    #[arg(long, value_name = "K", default_value_t = 8, value_parser = clap::value_parser!(u8).range(0..=30))]
+    halvings: u8,
     /// List every instruction executed, with its cycles
     #[arg(long)]
     listing: bool,
 }
 
 fn main() -> ExitCode {
-    let arguments = match cli::parse() {
-        Ok(arguments) => arguments,
-        Err(code) => return code,
-    };
-    match run(&arguments) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => cli::refuse(format!("{error:#}")),
-    }
+    cli::main(run)
 }
 
 fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let (toolchain, _) = toolchain::set_up()?;
-    let boards = BOARDS.iter().filter(|board| match &arguments.board {
-        Some(name) => board.name == name,
-        None => board.has_panel,
-    });
+    let subjects = SUBJECTS.iter().chain([&CLOSED_FORM]);
+    let requests: Vec<_> = subjects
+        .filter(|subject| subject.name.contains(&arguments.arithmetic))
+        .map(|subject| arguments.request(subject))
+        .collect();
+    for request in &requests {
+        // What the chip would refuse, the host does before anything is built or printed.
+        Request { steps: 1, ..*request }.outcome().map_err(Refused::because)?;
+    }
+    let boards = BOARDS.iter().filter(|board| arguments.board.map_or(board.has_panel, |asked| asked == *board));
+    let (toolchain, _) = toolchain::set_up().map_err(Refused::because)?;
     if !arguments.listing {
-        println!("per step of 2^-{} s; cycles are estimated from the published timings", arguments.halvings);
-        println!(
-            "{:25} {:16} {:>12} {:>19} {:>8} {:>9} {:>10} {:>11}",
-            "arithmetic",
-            "board",
-            "instructions",
-            "cycles (estimate)",
-            "stalls",
-            "hot bytes",
-            "code bytes",
-            "stack bytes"
-        );
+        say(arguments.setting())?;
+        say(ROW.map(|(title, width)| format!("{title:>width$}")).join(" "))?;
     }
     for board in boards {
         let target = Target::build(&toolchain, board)?;
-        for subject in
-            SUBJECTS.iter().chain([&CLOSED_FORM]).filter(|subject| subject.name.contains(&arguments.arithmetic))
-        {
-            let request = Request {
-                subject: subject.name,
-                samples: 1,
-                steps: FULL_CYCLE,
-                parameters: Parameters { m1: 1.0, m2: arguments.m2, l1: 1.0, l2: arguments.l2, g: 9.81 },
-                angles: [arguments.angle; 2],
-                dt: f64::powi(0.5, arguments.halvings),
-            };
+        for request in &requests {
             let steps = match arguments.steps {
                 Some(steps) => steps,
-                None => affordable_steps(&target, &request)?,
+                None => affordable_steps(&target, request)?,
             };
-            let request = Request { steps, ..request };
+            let request = Request { steps, ..*request };
             if arguments.listing {
                 list(&target, &request)?;
             } else {
-                print_row(subject.name, board, &step_cost(&target, &request)?);
+                say(row(&request, board, &step_cost(&target, &request)?))?;
             }
         }
     }
     Ok(())
 }
 
-fn print_row(name: &str, board: &Board, cost: &StepCost) {
-    let cycles = format!("{:.1}..{:.1}", cost.cycles_low, cost.cycles_high);
-    println!(
-        "{name:25} {:16} {:12.1} {cycles:>19} {:8.1} {:9} {:10} {:11}",
-        board.name, cost.instructions, cost.stalls, cost.hot_bytes, cost.code_bytes, cost.stack_bytes
-    );
+impl Arguments {
+    fn request(&self, subject: &Subject) -> Request<'static> {
+        let Self { m2, l2, angle, .. } = *self;
+        Request {
+            subject: subject.name,
+            samples: 1,
+            steps: FULL_CYCLE,
+            parameters: Parameters { m1: 1.0, m2, l1: 1.0, l2, g: GRAVITY.into() },
+            angles: [angle; 2],
+            dt: f64::powi(0.5, self.halvings.into()),
+        }
+    }
+
+    /// What is stepped: arithmetic in software takes other ways for other numbers, so its counts depend on all of it.
+    fn setting(&self) -> String {
+        let Self { m2, l2, angle, halvings, .. } = self;
+        format!(
+            "one step of 2^-{halvings} s, averaged over the first steps from rest at {angle} rad; masses 1,{m2} kg, lengths \
+             1,{l2} m, gravity {GRAVITY} m/s^2 (as an f32); instructions are counted, cycles estimated from the published \
+             timings"
+        )
+    }
+}
+
+/// Titles and widths of the columns.
+const ROW: [(&str, usize); 9] = [
+    ("arithmetic", 27),
+    ("board", 16),
+    ("steps", 5),
+    ("instructions", 12),
+    ("cycles (estimate)", 19),
+    ("stalls", 8),
+    ("hot bytes", 9),
+    ("code bytes", 10),
+    ("stack bytes", 11),
+];
+
+fn row(request: &Request, board: &Board, cost: &StepCost) -> String {
+    let StepCost { instructions, cycles_low, cycles_high, stalls, hot_bytes, code_bytes, stack_bytes } = cost;
+    let cells = [
+        request.subject.to_owned(),
+        board.name.to_owned(),
+        request.steps.to_string(),
+        format!("{instructions:.1}"),
+        format!("{cycles_low:.1}..{cycles_high:.1}"),
+        format!("{stalls:.1}"),
+        hot_bytes.to_string(),
+        code_bytes.to_string(),
+        stack_bytes.to_string(),
+    ];
+    let cells = cells.iter().zip(ROW).map(|(cell, (_, width))| format!("{cell:>width$}"));
+    cells.collect::<Vec<_>>().join(" ")
 }
 
 /// Every instruction with its share of a step: address, executions, cycles, stalls, kind.
-fn list(target: &Target, request: &Request) -> Result<(), CountError> {
+fn list(target: &Target, request: &Request) -> anyhow::Result<()> {
     let image = target.image();
     let profile = Profile::of(target, request)?;
-    println!("{} on {}: per step, executions, cycles (estimate), stalls", request.subject, target.board.name);
+    say(format_args!("{} on {}: per step, executions, cycles (estimate), stalls", request.subject, target.board.name))?;
     let mut function = None;
     for (address, spot) in profile.spots() {
         let inside = image.function_at(address);
         if inside != function {
             function = inside;
-            println!("{}:", inside.map_or("?", |function| &function.name));
+            say(format_args!("{}:", inside.map_or("?", |function| &function.name)))?;
         }
         let per_step = |total: u64| total as f64 / f64::from(request.steps);
-        println!(
-            "{address:8x} {:9.2} {:9.2} {:7.2}  {}",
-            per_step(spot.cost.instructions),
-            per_step(spot.cost.cycles_high),
-            per_step(spot.cost.stalls),
-            spot.instruction.row.name
-        );
+        let [executions, cycles, stalls] =
+            [spot.cost.instructions, spot.cost.cycles_high, spot.cost.stalls].map(per_step);
+        say(format_args!("{address:8x} {executions:9.2} {cycles:9.2} {stalls:7.2}  {}", spot.instruction.row.name))?;
     }
     Ok(())
 }

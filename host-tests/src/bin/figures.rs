@@ -8,32 +8,22 @@ use anyhow::Context;
 use clap::Parser;
 use firmware::scenes::SceneName;
 use host_tests::commands::figures;
-use host_tests::console::cli;
+use host_tests::console::cli::{self, say};
 
 /// Draws the book's figures 2 to 5 and 7 from the kernel, as SVG and PNG, and the panel's frame of every scene.
 #[derive(Debug, Parser)]
 #[command(name = "cargo figures")]
 struct Options {
-    /// Also records an animation of every scene, as `cargo demo --scene NAME --headless --record NAME.gif` does
+    /// Also record an animation of every scene, each by the `cargo demo` that is printed as it begins
     #[arg(long)]
     animations: bool,
     /// Where to write
-    #[arg(long, default_value = figures::FOLDER)]
+    #[arg(long, value_name = "FOLDER", default_value = figures::FOLDER)]
     folder: PathBuf,
 }
 
 fn main() -> ExitCode {
-    let options: Options = match cli::parse() {
-        Ok(options) => options,
-        Err(code) => return code,
-    };
-    match write(&options) {
-        Ok(()) => {
-            println!("{}", options.folder.display());
-            ExitCode::SUCCESS
-        }
-        Err(error) => cli::refuse(format!("{error:#}")),
-    }
+    cli::main(write)
 }
 
 fn write(Options { animations, folder }: &Options) -> anyhow::Result<()> {
@@ -44,5 +34,6 @@ fn write(Options { animations, folder }: &Options) -> anyhow::Result<()> {
         fs::write(&path, bytes).with_context(unwritable)?;
     }
     let recorded = if *animations { SceneName::ALL } else { &[] };
-    recorded.iter().try_for_each(|&scene| figures::panel::record(scene, folder))
+    recorded.iter().try_for_each(|&scene| figures::panel::record(scene, folder))?;
+    Ok(say(folder.display())?)
 }

@@ -4,8 +4,9 @@ use std::os::unix::process::CommandExt;
 use std::process::{Command, ExitCode};
 use std::time::Duration;
 
+use anyhow::bail;
 use clap::Parser;
-use host_tests::console::cli;
+use host_tests::console::cli::{self, Refused};
 use host_tests::emulator::boards::STM32F405;
 use host_tests::emulator::process::{self, ProcessError};
 use host_tests::emulator::toolchain;
@@ -25,32 +26,19 @@ struct Arguments {
 }
 
 fn main() -> ExitCode {
-    let arguments: Arguments = match cli::parse() {
-        Ok(arguments) => arguments,
-        Err(code) => return code,
-    };
+    cli::main(flash)
+}
+
+fn flash(arguments: &Arguments) -> anyhow::Result<()> {
     // Before the build, which takes its time.
-    match process::run(Command::new(PROBE_RS).arg("--version"), LIMIT) {
-        Ok(_) => {}
-        Err(ProcessError::NotStarted { .. }) => {
-            let where_from = "https://probe.rs/docs/getting-started/installation";
-            return cli::refuse(format!("error: flashing needs {PROBE_RS}, which is not installed; see {where_from}"));
-        }
-        Err(error) => return cli::refuse(format!("error: {error}")),
-    }
-    let toolchain = match toolchain::ready() {
-        Ok(toolchain) => toolchain,
-        Err(missing) => return cli::refuse(missing),
-    };
-    match toolchain.build_for(&STM32F405) {
-        Ok(elf) => {
-            // It takes the place of this process, so that the terminal, Ctrl-C and the exit code are its own.
-            let error = Command::new(PROBE_RS).args(["run", "--chip", &arguments.chip]).arg(elf).exec();
-            cli::refuse(format!("error: cannot start {PROBE_RS}: {error}"))
-        }
-        Err(error) => {
-            eprintln!("{error}");
-            ExitCode::FAILURE
-        }
-    }
+    process::run(Command::new(PROBE_RS).arg("--version"), LIMIT).map_err(|error| match error {
+        ProcessError::NotStarted { .. } => Refused::because(format_args!(
+            "flashing needs {PROBE_RS}, which is not installed; see https://probe.rs/docs/getting-started/installation"
+        )),
+        error => Refused::because(error),
+    })?;
+    let elf = toolchain::ready().map_err(Refused::because)?.build_for(&STM32F405)?;
+    // It takes the place of this process, so that the terminal, Ctrl-C and the exit code are its own.
+    let error = Command::new(PROBE_RS).args(["run", "--chip", &arguments.chip]).arg(elf).exec();
+    bail!(Refused::because(format_args!("cannot start {PROBE_RS}: {error}")))
 }

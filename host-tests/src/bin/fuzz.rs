@@ -4,8 +4,9 @@ use std::process::ExitCode;
 
 use anyhow::{Context, bail};
 use clap::Parser;
+use clap::builder::PossibleValuesParser;
 use host_tests::commands::fuzz::{Flips, Search, TARGETS, Target, ThrottledCounter};
-use host_tests::console::cli;
+use host_tests::console::cli::{self, Refused, say};
 use host_tests::console::progress::Bar;
 
 /// The target that is no search: frames through a link that flips bits.
@@ -18,13 +19,13 @@ const BATCH: u64 = 1000;
 #[command(name = "cargo fuzz-all")]
 struct Arguments {
     /// Executions of each target
-    #[arg(long, default_value_t = 1_000_000)]
+    #[arg(long, value_name = "N", default_value_t = 1_000_000, value_parser = clap::value_parser!(u64).range(1..))]
     executions: u64,
     /// Only this target; `flips` sends frames through a link that flips bits
-    #[arg(long)]
+    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(TARGETS.map(|target| target.name).into_iter().chain([FLIPS])))]
     target: Option<String>,
     /// The chance that a bit is flipped
-    #[arg(long, default_value_t = 1e-4)]
+    #[arg(long, value_name = "P", default_value_t = 1e-4)]
     chance: f64,
     /// Keep an input for each new outcome in host-tests/corpus
     #[arg(long)]
@@ -32,32 +33,18 @@ struct Arguments {
 }
 
 fn main() -> ExitCode {
-    let arguments: Arguments = match cli::parse() {
-        Ok(arguments) => arguments,
-        Err(code) => return code,
-    };
+    cli::main(run)
+}
+
+fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let wanted = |name: &str| arguments.target.as_deref().is_none_or(|target| target == name);
-    if !TARGETS.iter().map(|target| target.name).chain([FLIPS]).any(wanted) {
-        let names: Vec<_> = TARGETS.iter().map(|target| target.name).chain([FLIPS]).collect();
-        return cli::refuse(format!("error: no such target; there are {}", names.join(", ")));
-    }
     if !(0.0..1.0).contains(&arguments.chance) {
-        return cli::refuse("error: --chance must be at least 0 and below 1");
+        bail!(Refused::because(format_args!("--chance {}: must be at least 0 and below 1", arguments.chance)));
     }
-    let mut done = Ok(());
     for target in TARGETS.iter().filter(|target| wanted(target.name)) {
-        done = done.and_then(|()| search(*target, &arguments));
+        search(*target, arguments)?;
     }
-    if wanted(FLIPS) {
-        done = done.and_then(|()| flips(&arguments));
-    }
-    match done {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("error: {error:#}");
-            ExitCode::FAILURE
-        }
-    }
+    if wanted(FLIPS) { flips(arguments) } else { Ok(()) }
 }
 
 fn search(target: Target, arguments: &Arguments) -> anyhow::Result<()> {
@@ -72,12 +59,8 @@ fn search(target: Target, arguments: &Arguments) -> anyhow::Result<()> {
         }
     }
     drop(bar);
-    println!(
-        "{:10} {:>10} executions, {:>4} outcomes, nothing found",
-        target.name,
-        arguments.executions,
-        search.outcomes()
-    );
+    let (name, outcomes) = (target.name, search.outcomes());
+    say(format_args!("{name:10} {:>10} executions, {outcomes:>4} outcomes, nothing found", arguments.executions))?;
     if arguments.keep {
         search.keep().context("the corpus")?;
     }
@@ -95,7 +78,9 @@ fn flips(arguments: &Arguments) -> anyhow::Result<()> {
     }
     drop(bar);
     let ThrottledCounter { sent, damaged, received, forged, missed, lost } = link.tally();
-    println!("{FLIPS:10} {sent:>10} frames, {damaged} damaged, {received} received, {lost} missing by their numbers");
+    say(format_args!(
+        "{FLIPS:10} {sent:>10} frames, {damaged} damaged, {received} received, {lost} missing by their numbers"
+    ))?;
     if forged + missed > 0 || lost != damaged || received + damaged != sent {
         bail!("{forged} damaged frames were taken for good, {missed} good ones were missed");
     }

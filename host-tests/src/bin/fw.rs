@@ -6,13 +6,14 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
 
+use anyhow::bail;
 use clap::Parser;
-use host_tests::console::cli;
+use host_tests::console::cli::{self, Refused, complain};
 use host_tests::emulator::boards::BOARDS;
 use host_tests::emulator::firmware_run::{board_for, run};
 use host_tests::emulator::process::{self, ProcessError};
 use host_tests::emulator::qemu::{Clock, QemuError, Settings};
-use host_tests::emulator::toolchain::{self, BuildError, SetupError};
+use host_tests::emulator::toolchain::{self, Toolchain};
 
 /// How long a firmware may run of which nobody has said how long it is to run.
 const LIMIT: Duration = Duration::from_secs(3600);
@@ -35,56 +36,34 @@ struct Arguments {
     check: bool,
 }
 
-/// Why a firmware did not run.
-#[derive(Debug, thiserror::Error)]
-enum Failure {
-    #[error(transparent)]
-    Setup(#[from] SetupError),
-    #[error(transparent)]
-    Build(#[from] BuildError),
-    #[error("error: {0}")]
-    Qemu(#[from] QemuError),
-    #[error("error: no board {0}; there are {names}", names = BOARDS.map(|board| board.name).join(", "))]
-    Board(String),
-    #[error("error: no binary {0}; there are {names}", names = binaries().join(", "))]
-    Binary(String),
-}
-
 fn main() -> ExitCode {
-    let arguments = match cli::parse() {
-        Ok(arguments) => arguments,
-        Err(code) => return code,
-    };
-    match execute(&arguments) {
-        Ok(code) => code,
-        Err(failure @ (Failure::Setup(_) | Failure::Board(_) | Failure::Binary(_))) => cli::refuse(failure),
-        Err(failure) => {
-            eprintln!("{failure}");
-            ExitCode::FAILURE
-        }
-    }
+    cli::main(execute)
 }
 
-fn execute(arguments: &Arguments) -> Result<ExitCode, Failure> {
+fn execute(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     let Some(binary) = &arguments.binary else {
-        toolchain::set_up()?.0.check()?;
+        set_up()?.check()?;
         return Ok(ExitCode::SUCCESS);
     };
-    let unknown = || Failure::Board(arguments.board.clone().unwrap_or_default());
-    let board = board_for(arguments.board.as_deref(), binary).ok_or_else(unknown)?;
+    let unknown = |kind: &str, name: &str, names: &[String]| {
+        Refused::because(format_args!("no {kind} {name}; there are {}", names.join(", ")))
+    };
+    let asked = arguments.board.as_deref();
+    let board = board_for(asked, binary)
+        .ok_or_else(|| unknown("board", asked.unwrap_or_default(), &BOARDS.map(|board| board.name.to_owned())))?;
     let name = binary.to_string_lossy();
     let is_path = name.contains('/');
     if !is_path && !binaries().contains(&name.to_string()) {
-        return Err(Failure::Binary(name.into_owned()));
+        bail!(unknown("binary", &name, &binaries()));
     }
-    let (toolchain, _) = toolchain::set_up()?;
+    let toolchain = set_up()?;
     let elf = if is_path { binary.clone() } else { toolchain.build(&name, board.target)? };
     let limit = arguments.seconds.map_or(LIMIT, |seconds| Duration::from_secs(seconds.into()));
     let settings =
         Settings { qemu: toolchain.qemu(), board, elf: &elf, clock: Clock::Real, window: None, debugger: true, limit };
     match (run(&settings, &mut stdout().lock()), arguments.seconds) {
         (Err(QemuError::Process(ProcessError::TimedOut { .. })), Some(seconds)) => {
-            eprintln!("ended after {seconds} s, as told");
+            complain(format_args!("ended after {seconds} s, as told"));
             Ok(ExitCode::SUCCESS)
         }
         (ended, _) => Ok(process::exit_code(ended?)),
@@ -95,6 +74,10 @@ fn execute(arguments: &Arguments) -> Result<ExitCode, Failure> {
 fn runnable() -> String {
     let boards = BOARDS.map(|board| format!("  {:16}{}, {} MHz", board.name, board.cpu, board.hertz / 1_000_000));
     format!("Binaries:\n  {}\n\nBoards:\n{}", binaries().join("\n  "), boards.join("\n"))
+}
+
+fn set_up() -> Result<Toolchain, Refused> {
+    toolchain::set_up().map(|(toolchain, _)| toolchain).map_err(Refused::because)
 }
 
 /// The names of the firmware's binaries, sorted.

@@ -7,26 +7,23 @@ use host_tests::commands::plan::{
     DURATIONS, FOLLOWED, Options, broken, classes, fit, margins, rk4_in_f64, scenes, study, words,
 };
 use host_tests::commands::table::Table;
-use host_tests::console::cli;
+use host_tests::console::cli::{self, Refused, say};
 use host_tests::console::progress::Bar;
 
 fn main() -> ExitCode {
-    let options = match cli::parse::<Options>() {
-        Ok(options) => options,
-        Err(code) => return code,
-    };
+    cli::main(run)
+}
+
+fn run(options: &Options) -> anyhow::Result<()> {
     let lines = match (options.study, options.fit) {
-        (Some(count), _) => tables(&options, count).map_err(anyhow::Error::new),
-        (None, Some(count)) => fitted(&options, count).map_err(anyhow::Error::new),
-        (None, None) => options.plan().map(|(scene, plan)| words(&scene, &plan, &options.target)),
-    };
-    match lines {
-        Ok(lines) => {
-            lines.iter().for_each(|line| println!("{line}"));
-            ExitCode::SUCCESS
+        (Some(count), _) => tables(options, count)?,
+        (None, Some(count)) => fitted(options, count)?,
+        (None, None) => {
+            let (scene, plan) = options.plan().map_err(Refused::because)?;
+            words(&scene, &plan, &options.target)
         }
-        Err(reason) => cli::refuse(format_args!("error: {reason}")),
-    }
+    };
+    Ok(lines.iter().try_for_each(say)?)
 }
 
 fn tables(options: &Options, count: usize) -> Result<Vec<String>, Error> {

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use anyhow::ensure;
 use clap::Parser;
 use host_tests::commands::report::{self, Extent, Main, headline};
-use host_tests::console::cli;
+use host_tests::console::cli::{self, Refused, say};
 use host_tests::console::progress::Bar;
 use host_tests::emulator::toolchain;
 
@@ -26,34 +26,24 @@ struct Options {
 }
 
 fn main() -> ExitCode {
-    let options: Options = match cli::parse() {
-        Ok(options) => options,
-        Err(code) => return code,
-    };
-    match run(&options) {
-        Ok(()) => {
-            println!("{}", options.folder.join("index.html").display());
-            ExitCode::SUCCESS
-        }
-        Err(error) => cli::refuse(format!("{error:#}")),
-    }
+    cli::main(run)
 }
 
 fn run(options: &Options) -> anyhow::Result<()> {
-    let (toolchain, _) = toolchain::set_up()?;
+    let (toolchain, _) = toolchain::set_up().map_err(Refused::because)?;
     let extent = if options.quick { Extent::QUICK } else { Extent::FULL };
     let bar = Bar::start("report", 0);
     let written = report::write(&extent, &toolchain, &options.folder, &bar);
     drop(bar);
     let Main { table, chart, absent } = written?;
     if !absent.is_empty() {
-        println!("{}", absent.trim_start());
+        say(absent.trim_start())?;
     }
     if options.readme {
         ensure!(absent.is_empty(), "the README keeps its figures: some are missing in these");
         headline::put_into_readme(&table, &chart)?;
     } else if !headline::is_in_readme(&table)? {
-        println!("the README shows other figures; cargo write-report --readme puts these there");
+        say("the README shows other figures; cargo write-report --readme puts these there")?;
     }
-    Ok(())
+    Ok(say(options.folder.join("index.html").display())?)
 }

@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use clap::Parser;
-use host_tests::console::cli;
+use host_tests::console::cli::{self, Refused, say};
 use host_tests::emulator::toolchain;
 
 /// Finds or brings all that builds and runs the firmware: the ARM core library and QEMU.
@@ -12,18 +12,13 @@ use host_tests::emulator::toolchain;
 struct Arguments {}
 
 fn main() -> ExitCode {
-    if let Err(code) = cli::parse::<Arguments>() {
-        return code;
-    }
-    match toolchain::set_up() {
-        Ok((toolchain, done)) => {
-            println!("{toolchain}");
-            match done.as_slice() {
-                [] => println!("nothing had to be done"),
-                steps => steps.iter().for_each(|step| println!("done: {step}")),
-            }
-            ExitCode::SUCCESS
+    cli::main(|_: &Arguments| {
+        let (toolchain, done) = toolchain::set_up().map_err(Refused::because)?;
+        say(toolchain)?;
+        match done.as_slice() {
+            [] => say("nothing had to be done")?,
+            steps => steps.iter().try_for_each(|step| say(format_args!("done: {step}")))?,
         }
-        Err(error) => cli::refuse(error),
-    }
+        Ok(())
+    })
 }

@@ -6,11 +6,11 @@ use std::time::Duration;
 use anyhow::Context;
 use clap::Parser;
 use host_tests::commands::soak::{self, Outcome};
-use host_tests::console::cli;
+use host_tests::console::cli::{self, Refused, say};
 use host_tests::console::progress::Bar;
 use host_tests::emulator::boards::{BOARDS, Board};
 use host_tests::emulator::qemu::{Clock, Settings};
-use host_tests::emulator::toolchain::{self, SetupError, Toolchain};
+use host_tests::emulator::toolchain::{self, Toolchain};
 
 /// The board that computes physics alone: it has no panel.
 const PHYSICS_BOARD: &str = "mps2-an386";
@@ -28,38 +28,25 @@ struct Arguments {
     #[arg(long, default_value_t = 24 * 60)]
     physics: u32,
     /// Only this board
-    #[arg(long)]
-    board: Option<String>,
+    #[arg(long, value_parser = cli::choice(&BOARDS, |board| board.name))]
+    board: Option<&'static Board>,
 }
 
 fn main() -> ExitCode {
-    let arguments: Arguments = match cli::parse() {
-        Ok(arguments) => arguments,
-        Err(code) => return code,
-    };
-    let wanted = |board: &&Board| arguments.board.as_deref().is_none_or(|name| name == board.name);
-    if !BOARDS.iter().any(|board| wanted(&board)) {
-        return cli::refuse(format!("error: no such board; there are {}", BOARDS.map(|board| board.name).join(", ")));
-    }
-    let boards: Vec<_> = BOARDS.iter().filter(wanted).collect();
-    match run(&arguments, &boards) {
-        Ok(true) => ExitCode::SUCCESS,
-        Ok(false) => ExitCode::FAILURE,
-        Err(error) if error.is::<SetupError>() => cli::refuse(error),
-        Err(error) => {
-            eprintln!("error: {error:#}");
-            ExitCode::FAILURE
-        }
-    }
+    cli::main(|arguments| run(arguments).map(cli::verdict))
 }
 
 /// Whether all was well.
-fn run(arguments: &Arguments, boards: &[&'static Board]) -> anyhow::Result<bool> {
-    let (toolchain, _) = toolchain::set_up()?;
+fn run(arguments: &Arguments) -> anyhow::Result<bool> {
+    let (toolchain, _) = toolchain::set_up().map_err(Refused::because)?;
     let mut well = true;
-    let mut say = |board: &Board, what: String, outcome: Outcome| {
+    let mut report = |board: &Board, what: String, outcome: Outcome| {
         well &= outcome.faults.is_empty();
-        println!("{:15} {what}: {outcome}", board.name);
+        say(format_args!("{:15} {what}: {outcome}", board.name))
+    };
+    let boards = match arguments.board {
+        Some(board) => std::slice::from_ref(board),
+        None => &BOARDS,
     };
     for board in boards {
         if arguments.scenes > 0 {
@@ -67,14 +54,14 @@ fn run(arguments: &Arguments, boards: &[&'static Board]) -> anyhow::Result<bool>
             let outcome =
                 on(&toolchain, board, |settings| soak::scenes(settings, arguments.scenes, || bar.advance(1)))?;
             drop(bar);
-            say(board, format!("{} s of scenes", arguments.scenes), outcome);
+            report(board, format!("{} s of scenes", arguments.scenes), outcome)?;
         }
         if arguments.physics > 0 && board.name == PHYSICS_BOARD {
             let bar = Bar::start(board.name, arguments.physics.into());
             let outcome =
                 on(&toolchain, board, |settings| soak::physics(settings, arguments.physics, || bar.advance(1)))?;
             drop(bar);
-            say(board, format!("{} min of physics", arguments.physics), outcome);
+            report(board, format!("{} min of physics", arguments.physics), outcome)?;
         }
     }
     Ok(well)

@@ -1,29 +1,99 @@
-//! What every command does alike: one clear line for a wrong option, exit code 2.
+//! What every command does alike: its options, what it says, one clear line for an error, and the exit code.
 
-use std::process::ExitCode;
+use std::fmt::Display;
+use std::io::{self, ErrorKind, Write, stderr, stdout};
+use std::process::{ExitCode, Termination};
 
 use clap::Parser;
-use clap::error::ErrorKind;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::error::ErrorKind as OptionError;
 
 /// The exit code for a request that cannot be served as asked: wrong options, missing tools.
 pub const REFUSED: u8 = 2;
 
+/// A request that cannot be served as asked, and why, in one line: exit code 2. Any other error is exit code 1.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct Refused(String);
+
+impl Refused {
+    /// With the reason that is printed after `error: `.
+    pub fn because(reason: impl Display) -> Self {
+        Self(reason.to_string())
+    }
+}
+
+/// Runs a command with the options of this run, and gives its exit code after saying what went wrong.
+///
+/// Who reads its output may stop at any time (`| head`): the command then ends quietly and with success.
+pub fn main<Options: Parser, Done: Termination>(run: impl FnOnce(&Options) -> anyhow::Result<Done>) -> ExitCode {
+    let options = match parse() {
+        Ok(options) => options,
+        Err(code) => return code,
+    };
+    match run(&options) {
+        Ok(done) => done.report(),
+        Err(error) if is_closed_output(&error) => ExitCode::SUCCESS,
+        Err(error) => {
+            complain(format_args!("error: {error:#}"));
+            if error.is::<Refused>() { ExitCode::from(REFUSED) } else { ExitCode::FAILURE }
+        }
+    }
+}
+
+/// The exit code of a command that has looked for faults: whether all was well.
+pub fn verdict(well: bool) -> ExitCode {
+    if well { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+}
+
+/// Prints a line of the command's result. A closed output is an error that [`main`] takes for a quiet end.
+pub fn say(line: impl Display) -> io::Result<()> {
+    writeln!(stdout(), "{line}")
+}
+
+/// Prints a line beside the result: an error, a warning, progress. That it cannot be read is no failure.
+pub fn complain(line: impl Display) {
+    let _ = writeln!(stderr(), "{line}");
+}
+
+/// The reader of our output has seen enough. (A broken pipe to a child comes wrapped in an error of its own.)
+pub fn is_closed_output(error: &anyhow::Error) -> bool {
+    error.downcast_ref::<io::Error>().is_some_and(|error| error.kind() == ErrorKind::BrokenPipe)
+}
+
+/// Accepts the names of a closed set of choices, and no others.
+pub fn choice<Choice>(
+    choices: impl IntoIterator<Item = Choice>,
+    name: impl Fn(Choice) -> &'static str,
+) -> impl TypedValueParser<Value = Choice>
+where
+    Choice: Copy + Send + Sync + 'static,
+{
+    let named: Vec<_> = choices.into_iter().map(|choice| (name(choice), choice)).collect();
+    PossibleValuesParser::new(named.iter().map(|(name, _)| *name).collect::<Vec<_>>())
+        .try_map(move |text| named.iter().find(|(name, _)| *name == text).map(|(_, choice)| *choice).ok_or("unknown"))
+}
+
 /// The options of this run; if they are wrong, or help is asked for, the exit code after saying so.
-pub fn parse<Options: Parser>() -> Result<Options, ExitCode> {
-    Options::try_parse().map_err(|error| match error.kind() {
-        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
+fn parse<Options: Parser>() -> Result<Options, ExitCode> {
+    // A number is the value of its option with a sign, too: what is wrong with it, the option says.
+    let command = Options::command().mut_args(|option| {
+        if option.get_action().takes_values() { option.allow_negative_numbers(true) } else { option }
+    });
+    let options = command.try_get_matches().and_then(|matches| Options::from_arg_matches(&matches));
+    options.map_err(|error| match error.kind() {
+        OptionError::DisplayHelp
+        | OptionError::DisplayVersion
+        | OptionError::DisplayHelpOnMissingArgumentOrSubcommand => {
             // A closed output is no failure of ours.
             let _ = error.print();
             ExitCode::SUCCESS
         }
-        _ => refuse(one_line(&error.to_string())),
+        _ => {
+            complain(one_line(&error.to_string()));
+            ExitCode::from(REFUSED)
+        }
     })
-}
-
-/// Says why, in one line, and gives the exit code.
-pub fn refuse(reason: impl std::fmt::Display) -> ExitCode {
-    eprintln!("{reason}");
-    ExitCode::from(REFUSED)
 }
 
 /// The first paragraph of clap's report as one line; the usage that follows is left to `--help`.

@@ -6,6 +6,8 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
+use super::cli::complain;
+
 /// How often a plain line says that work goes on.
 const REMINDER: Duration = Duration::from_secs(15);
 /// How fast the spinner turns.
@@ -60,7 +62,7 @@ impl Bar {
             bar.elapsed().as_secs(),
             bar.message()
         );
-        eprintln!("{}", line.trim_end());
+        complain(line.trim_end());
     }
 }
 
@@ -90,7 +92,7 @@ impl Progress {
             spinner
         });
         if spinner.is_none() {
-            eprintln!("{doing} ...");
+            complain(format_args!("{doing} ..."));
         }
         Self { doing: doing.to_owned(), started: Instant::now(), reminder: Reminder::new(), spinner }
     }
@@ -104,7 +106,7 @@ impl Progress {
                 }
             }
             None if self.reminder.is_due() => {
-                eprintln!("{} ... {} s", self.doing, self.started.elapsed().as_secs());
+                complain(format_args!("{} ... {} s", self.doing, self.started.elapsed().as_secs()));
             }
             None => {}
         }

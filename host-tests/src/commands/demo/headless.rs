@@ -1,6 +1,5 @@
 //! Without a terminal: frame by frame, repeatable to the bit, with a summary at the end.
 
-use std::io::{ErrorKind, Write, stdout};
 use std::time::Duration;
 
 use firmware::config::TICK_RATE;
@@ -10,6 +9,7 @@ use firmware::scenes::SceneName;
 use super::record::{Recording, TICKS_PER_FRAME, save};
 use super::summary::Summary;
 use super::{Stage, broken};
+use crate::console::cli::{complain, say};
 use crate::console::progress::Progress;
 use crate::emulator::qemu::{Clock, Lockstep, Screenshot, Settings};
 
@@ -64,8 +64,12 @@ pub fn run(stage: &Stage, mut recording: Option<Recording>) -> anyhow::Result<bo
     let counts = machine.machine().serial.counts();
 
     let faults = summary.faults(counts);
-    say(&format!("board                 {}\n{}", options.board.name, summary.report(counts)))?;
-    faults.iter().for_each(|fault| eprintln!("not well: {fault}"));
+    faults.iter().for_each(|fault| complain(format_args!("not well: {fault}")));
+    let said = say(format_args!("board                 {}\n{}", options.board.name, summary.report(counts)));
+    // A fault is one even if no one reads the summary.
+    if faults.is_empty() {
+        said?;
+    }
     Ok(faults.is_empty())
 }
 
@@ -98,12 +102,4 @@ pub fn finish(
 ) -> anyhow::Result<()> {
     recording.map_or(Ok(()), Recording::finish)?;
     stage.options.screenshot.as_deref().map_or(Ok(()), |path| save(&last()?, path))
-}
-
-/// Prints a text; a closed output is no failure of ours.
-pub fn say(text: &str) -> anyhow::Result<()> {
-    match writeln!(stdout(), "{text}") {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error.into()),
-        _ => Ok(()),
-    }
 }

@@ -10,13 +10,14 @@ use ratatui::DefaultTerminal;
 use ratatui::crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 use ratatui::crossterm::{cursor, execute};
 
-use super::headless::{finish, say};
+use super::headless::finish;
 use super::panel::Depth;
 use super::readings::Readings;
 use super::record::Recording;
 use super::taps::Taps;
 use super::view::draw;
 use super::{Stage, broken};
+use crate::console::cli::{complain, say};
 use crate::emulator::process;
 use crate::emulator::qemu::{Clock, Key, Machine, Screenshot, Settings};
 
@@ -182,10 +183,10 @@ impl Show<'_> {
         let ended = self.machine.ended().map_err(broken)?;
         if let Some(status) = ended.filter(|status| !status.success()) {
             self.machine.log.rest().for_each(|line| self.readings.line(line));
-            self.readings.lines.iter().for_each(|line| eprintln!("{line}"));
+            self.readings.lines.iter().for_each(complain);
             anyhow::bail!("the firmware or QEMU ended: {status}");
         }
-        say(&self.readings.summary.report(self.readings.counts).to_string())?;
+        say(self.readings.summary.report(self.readings.counts))?;
         Ok(true)
     }
 }

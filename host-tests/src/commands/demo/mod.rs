@@ -22,24 +22,9 @@ use std::path::PathBuf;
 
 use record::Recording;
 
+use crate::console::cli::Refused;
 use crate::emulator::qemu::{QemuError, Window};
 use crate::emulator::toolchain::{self, Toolchain};
-
-/// Why the demonstration could not even begin.
-#[derive(Debug)]
-pub struct Unavailable(String);
-
-impl std::fmt::Display for Unavailable {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(&self.0)
-    }
-}
-
-impl Unavailable {
-    fn because(reason: impl ToString) -> Self {
-        Self(reason.to_string())
-    }
-}
 
 /// All that a run needs, ready.
 struct Stage<'a> {
@@ -50,17 +35,17 @@ struct Stage<'a> {
 }
 
 /// Sets everything up and runs the demonstration; whether all was well.
-pub fn run(options: &Options) -> Result<anyhow::Result<bool>, Unavailable> {
-    let (toolchain, _) = toolchain::set_up().map_err(Unavailable::because)?;
+pub fn run(options: &Options) -> anyhow::Result<bool> {
+    let (toolchain, _) = toolchain::set_up().map_err(Refused::because)?;
     let window = options.window.then(|| Window::find(toolchain.qemu())).transpose();
-    let window = window.map_err(|error| Unavailable(format!("error: --window: {error}")))?;
-    let elf = toolchain.build_for(options.board).map_err(Unavailable::because)?;
+    let window = window.map_err(|error| Refused::because(format_args!("--window: {error}")))?;
+    let elf = toolchain.build_for(options.board)?;
     let recording = options.record.as_deref().map(Recording::create).transpose();
-    let recording = recording.map_err(|error| Unavailable(format!("error: --record: {error:#}")))?;
+    let recording = recording.map_err(|error| Refused::because(format_args!("--record: {error:#}")))?;
     let stage = Stage { options, toolchain, elf, window };
     let on_terminal = stdout().is_terminal() && stdin().is_terminal();
     let run = if options.headless || !on_terminal { headless::run } else { live::run };
-    Ok(run(&stage, recording))
+    run(&stage, recording)
 }
 
 /// What went wrong, as the demonstration says it.

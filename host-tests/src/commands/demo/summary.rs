@@ -17,6 +17,8 @@ pub struct Summary {
     first: Option<Frame>,
     last: Option<Frame>,
     greatest_energy_error: f32,
+    /// Of all scenes and restarts together, s.
+    simulated: f64,
     /// Frames whose time is not what their number and restarts allow, or whose numbers are not finite.
     implausible: u64,
     complaints: Vec<String>,
@@ -33,6 +35,8 @@ impl Summary {
             self.implausible += 1;
         }
         self.frames += 1;
+        let before = self.last.filter(|last| last.scene == frame.scene && last.time <= frame.time);
+        self.simulated += frame.time - before.map_or(0.0, |last| last.time);
         self.first.get_or_insert(*frame);
         self.greatest_energy_error = self.greatest_energy_error.max(frame.energy_error.abs());
         self.last = Some(*frame);
@@ -70,16 +74,31 @@ impl Summary {
 
     /// The report at the end.
     pub fn report(&self, counts: Counts) -> impl fmt::Display {
-        let Self { frames, last, greatest_energy_error, .. } = self;
+        let Self { frames, last, greatest_energy_error, simulated, .. } = self;
         let last = last.unwrap_or_default();
         format!(
             "frames                {frames}\n\
-             simulated time        {:.3} s\n\
+             simulated time        {simulated:.3} s\n\
              largest energy error  {greatest_energy_error:.1e}\n\
              CRC errors            {}\n\
              lost frames           {}\n\
              dropped frames        {}",
-            last.time, counts.damaged, counts.lost, last.dropped
+            counts.damaged, counts.lost, last.dropped
         )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_simulated_time_is_that_of_all_restarts_and_scenes() {
+        let mut summary = Summary::default();
+        for (scene, time) in [(0, 0.25), (0, 0.5), (0, 0.5), (0, 0.125), (0, 0.75), (1, 0.875), (1, 1.0)] {
+            summary.frame(&Frame { scene, time, ..Frame::default() });
+        }
+        let report = summary.report(Counts::default()).to_string();
+        assert!(report.contains("simulated time        2.250 s"), "{report}");
     }
 }

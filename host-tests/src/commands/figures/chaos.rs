@@ -34,7 +34,7 @@ pub struct Chaos {
 pub struct Path {
     /// Its points, m right of the pivot and above it.
     pub points: Vec<[f64; 2]>,
-    /// The energy at the start and at the end, J.
+    /// The least and the greatest energy, J.
     pub energies: [f64; 2],
 }
 
@@ -62,15 +62,17 @@ fn path(pendulum: &Pendulum<f64>, refinement: u32, rhs: impl Fn(&[f64; 4]) -> [f
     let mut state = start();
     let dt = 1.0 / f64::from(STEPS * refinement);
     let mut points = Vec::new();
-    let energy = pendulum.energy(&state);
+    let (mut least, mut greatest) = (f64::INFINITY, f64::NEG_INFINITY);
     for step in 0..=DURATION * STEPS * refinement {
         if step.is_multiple_of(STEPS_PER_POINT * refinement) {
             let [_, bob2] = pendulum.positions(state.angles());
             points.push([bob2.x, bob2.y]);
+            let energy = pendulum.energy(&state);
+            (least, greatest) = (least.min(energy), greatest.max(energy));
         }
         state = rk4::step(&rhs, &state.into(), dt).into();
     }
-    Path { points, energies: [energy, pendulum.energy(&state)] }
+    Path { points, energies: [least, greatest] }
 }
 
 impl Drawing for Chaos {
@@ -88,8 +90,9 @@ impl Drawing for Chaos {
         let halves = area.split_evenly((1, 2));
         let names = ["the right equations", "as printed, a factor μ missing"];
         for (((area, name), colour), path) in halves.iter().zip(names).zip([BLUE, ORANGE]).zip(&self.paths) {
-            let [first, last] = path.energies;
-            let name = format!("{name}; energy {first:.1} J → {last:.1} J").replace('-', "−");
+            let [least, greatest] = path.energies.map(|energy| format!("{energy:.1} J"));
+            let energy = if least == greatest { least } else { format!("{least} to {greatest}") };
+            let name = format!("{name}; energy {energy}").replace('-', "−");
             let area = headed(area, &name, text(13).color(&colour))?;
             let range = [-REACH, REACH];
             let frame = Frame { across: ("x, m", range), upwards: ("y, m", range), ticks: [9, 9] };

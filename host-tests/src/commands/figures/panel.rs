@@ -2,11 +2,12 @@
 
 use std::path::Path;
 
-use anyhow::{Result, bail};
+use anyhow::{Result, ensure};
 use firmware::config::TICK_RATE;
 use firmware::scenes::SceneName;
 
 use crate::commands::demo::{self, Options, record};
+use crate::console::cli::complain;
 use crate::emulator::boards::BOARDS;
 use crate::emulator::host::Show;
 use crate::emulator::qemu::Screenshot;
@@ -38,21 +39,20 @@ pub fn seconds(scene: SceneName) -> f64 {
     }
 }
 
-/// Records the animation of a scene into `folder`, as `cargo demo --headless` does.
+/// Records the animation of a scene into `folder`, as `cargo demo --headless` does, and says by which command.
 pub fn record(scene: SceneName, folder: &Path) -> Result<()> {
+    let path = folder.join(file(scene, "gif"));
+    let (name, seconds) = (scene.name(), seconds(scene));
+    complain(format_args!("cargo demo --scene {name} --headless --seconds {seconds} --record {}", path.display()));
     let options = Options {
         board: &BOARDS[0],
         scene,
         headless: true,
-        seconds: Some(seconds(scene)),
-        record: Some(folder.join(file(scene, "gif"))),
+        seconds: Some(seconds),
+        record: Some(path),
         screenshot: None,
         window: false,
     };
-    match demo::run(&options) {
-        Ok(Ok(true)) => Ok(()),
-        Ok(Ok(false)) => bail!("not all was well in {}", scene.name()),
-        Ok(Err(error)) => Err(error),
-        Err(unavailable) => bail!("{unavailable}"),
-    }
+    ensure!(demo::run(&options)?, "not all was well in {}", scene.name());
+    Ok(())
 }

@@ -10,6 +10,7 @@ use std::{io, process, thread};
 use fastrand::Rng;
 
 use super::{Outcome, Target};
+use crate::console::cli::complain;
 
 /// The longest input, bytes: some of every message's length and more than any number has digits.
 const LONGEST: usize = 256;
@@ -174,7 +175,7 @@ impl Watch {
                 let now = executions.load(Ordering::Relaxed);
                 if now == seen && !over.load(Ordering::Relaxed) {
                     let input = input.lock().unwrap_or_else(PoisonError::into_inner);
-                    eprintln!("error: {name} hangs on {:02x?}", *input);
+                    complain(format_args!("error: {name} hangs on {:02x?}", *input));
                     process::exit(1);
                 }
                 seen = now;

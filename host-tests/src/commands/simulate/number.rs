@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use num_bigint::BigInt;
 use num_rational::BigRational;
-use num_traits::{One, Signed, ToPrimitive, Zero};
+use num_traits::{Signed, ToPrimitive, Zero};
 
 /// A finite number, exactly as written.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,32 +15,33 @@ pub struct Number {
 }
 
 /// Why a text is not a [`Number`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NumberError {
     /// Neither a decimal nor a fraction of two.
+    #[error("not a number (write a decimal or a fraction such as 1/256)")]
     NotANumber,
     /// NaN, infinite, or beyond the range of `f64`.
+    #[error("must be a finite number")]
     NotFinite,
     /// A fraction with denominator zero.
+    #[error("the denominator is zero")]
     ZeroDenominator,
 }
-
-impl fmt::Display for NumberError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            NumberError::NotANumber => "not a number (write a decimal or a fraction such as 1/256)",
-            NumberError::NotFinite => "must be a finite number",
-            NumberError::ZeroDenominator => "the denominator is zero",
-        })
-    }
-}
-
-impl std::error::Error for NumberError {}
 
 impl Number {
     /// The `f64` nearest to it.
     pub fn value(&self) -> f64 {
         self.exact.to_f64().unwrap_or(f64::NAN)
+    }
+
+    /// Less than zero.
+    pub fn is_negative(&self) -> bool {
+        self.exact.is_negative()
+    }
+
+    /// Greater than zero.
+    pub fn is_positive(&self) -> bool {
+        self.exact.is_positive()
     }
 
     /// How many times `step` goes into it, if that is a whole number below 2^53.
@@ -95,28 +96,11 @@ fn decimal(text: &str) -> Result<BigRational, NumberError> {
     let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
     let digits: BigInt = format!("{whole}{fraction}").parse().map_err(|_| NumberError::NotANumber)?;
     let places = i64::from(exponent) - fraction.len() as i64;
-    if digits.is_zero() {
-        return Ok(BigRational::zero());
-    }
-    // Beyond these an f64 is zero or infinite, and the powers of ten below would be absurdly long.
-    if places.abs() > 10_000 {
-        return Err(NumberError::NotFinite);
-    }
-    let power = BigRational::from(BigInt::from(10).pow(places.unsigned_abs() as u32));
-    let scale = if places.is_negative() { BigRational::one() / power } else { power };
-    Ok(BigRational::from(digits) * scale)
-}
-
-/// Numbers are compared with zero often.
-impl Number {
-    /// Less than zero.
-    pub fn is_negative(&self) -> bool {
-        self.exact.is_negative()
-    }
-
-    /// Greater than zero.
-    pub fn is_positive(&self) -> bool {
-        self.exact.is_positive()
+    match i32::try_from(places) {
+        _ if digits.is_zero() => Ok(BigRational::zero()),
+        // Beyond these an f64 is zero or infinite, and the power of ten would be absurdly long.
+        Ok(places) if places.abs() <= 10_000 => Ok(BigRational::from(BigInt::from(10)).pow(places) * digits),
+        _ => Err(NumberError::NotFinite),
     }
 }
 

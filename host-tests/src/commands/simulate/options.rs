@@ -1,11 +1,10 @@
 //! The command line of `cargo simulate`.
 
 use clap::Parser;
-use clap::builder::PossibleValuesParser;
-use clap::builder::TypedValueParser;
 use firmware::job::{Arithmetic, Formulation, Model};
 
 use super::{Number, Start};
+use crate::console::cli::choice;
 use crate::emulator::boards::{BOARDS, Board};
 
 /// Where the motion is computed.
@@ -20,12 +19,15 @@ pub enum Place {
 impl Place {
     const HOST: &str = "host";
 
-    fn names() -> impl Iterator<Item = &'static str> {
-        std::iter::once(Self::HOST).chain(BOARDS.iter().map(|board| board.name))
+    fn all() -> impl Iterator<Item = Self> {
+        std::iter::once(Self::Host).chain(BOARDS.iter().map(Self::Board))
     }
 
-    fn named(name: &str) -> Self {
-        BOARDS.iter().find(|board| board.name == name).map_or(Place::Host, Place::Board)
+    fn name(self) -> &'static str {
+        match self {
+            Self::Host => Self::HOST,
+            Self::Board(board) => board.name,
+        }
     }
 }
 
@@ -50,11 +52,19 @@ impl Method {
     }
 }
 
+const AFTER_HELP: &str = "\
+Examples:
+  cargo simulate --angles 171,171 --degrees --masses 1,2.75 --step 1/4096 --until 5 --every 1
+  cargo simulate --angles 0.5,0.5 --step 1/256 --arithmetic f32-compensated --on lm3s6965evb
+
+Bad input, and numbers with which not even one step can be made: one line on stderr, exit code 2. A motion that leaves
+the finite numbers later: its rows until then, one line on stderr, exit code 1.";
+
 /// Computes a motion of the double pendulum and prints it as CSV: t,a1,a2,p1,p2,w1,w2,energy in SI units.
 ///
 /// Numbers are decimals (0.25, 1e-3) or fractions (1/256).
 #[derive(Debug, Parser)]
-#[command(name = "cargo simulate", bin_name = "cargo simulate")]
+#[command(name = "cargo simulate", bin_name = "cargo simulate", after_help = AFTER_HELP)]
 pub struct Options {
     /// What moves.
     #[command(flatten)]
@@ -69,31 +79,22 @@ pub struct Options {
     #[arg(long, value_name = "T", allow_hyphen_values = true)]
     pub every: Option<Number>,
     /// The numbers it is computed in
-    #[arg(long, value_name = "NAME", default_value = Arithmetic::F64.name(), value_parser = choice(Arithmetic::ALL, Arithmetic::name))]
+    #[arg(long, value_name = "NAME", default_value = Arithmetic::F64.name(), value_parser = choice(Arithmetic::ALL.iter().copied(), Arithmetic::name))]
     pub arithmetic: Arithmetic,
     /// The equations of motion
-    #[arg(long, value_name = "NAME", default_value = Model::General.name(), value_parser = choice(Model::ALL, Model::name))]
+    #[arg(long, value_name = "NAME", default_value = Model::General.name(), value_parser = choice(Model::ALL.iter().copied(), Model::name))]
     pub model: Model,
     /// The quantities stepped; if not given, canonical, or angle with f32-compensated
-    #[arg(long, value_name = "NAME", value_parser = choice(Formulation::ALL, Formulation::name))]
+    #[arg(long, value_name = "NAME", value_parser = choice(Formulation::ALL.iter().copied(), Formulation::name))]
     pub form: Option<Formulation>,
     /// How a step is made; order 8 in f64 and here only, for errors of 1e-9 rad and less
-    #[arg(long, value_name = "NAME", default_value = Method::Rk4.name(), value_parser = choice(Method::ALL, Method::name))]
+    #[arg(long, value_name = "NAME", default_value = Method::Rk4.name(), value_parser = choice(Method::ALL.iter().copied(), Method::name))]
     pub method: Method,
     /// Where it is computed: here, or by the firmware on an emulated board
     #[arg(long = "on", value_name = "PLACE", default_value = Place::HOST,
-          value_parser = PossibleValuesParser::new(Place::names()).map(|name| Place::named(&name)))]
+          value_parser = choice(Place::all(), Place::name))]
     pub place: Place,
     /// Add the bit patterns of a1, a2, p1, p2 in hexadecimal
     #[arg(long)]
     pub bits: bool,
-}
-
-/// Accepts the names of a closed set of choices, and no others.
-fn choice<Choice>(all: &'static [Choice], name: fn(Choice) -> &'static str) -> impl TypedValueParser<Value = Choice>
-where
-    Choice: Copy + Send + Sync + 'static,
-{
-    PossibleValuesParser::new(all.iter().map(move |&choice| name(choice)))
-        .try_map(move |text| all.iter().copied().find(|&choice| name(choice) == text).ok_or("unknown"))
 }

@@ -4,7 +4,7 @@ use anyhow::{Context, anyhow, ensure};
 use firmware::job::{Job, JobError, Request};
 use firmware::protocol::Field;
 
-use super::{Method, Number, Options, order8};
+use super::{Method, Number, Options, on_host, order8};
 
 /// A checked request and the time from row to row.
 #[derive(Debug)]
@@ -72,7 +72,12 @@ pub fn plan(options: &Options) -> anyhow::Result<Plan> {
     if options.method == Method::Order8 {
         order8::check(options, form)?;
     }
-    Ok(Plan { request, every: every.clone(), method: options.method })
+    let plan = Plan { request, every: every.clone(), method: options.method };
+    // Numbers that overflow at once are refused before anything is printed.
+    let first_step = Request { stride: 1, samples: request.samples.min(1), ..request };
+    on_host(&Plan { request: first_step, every: every.clone(), method: options.method }, |_| Ok(()))
+        .with_context(|| format!("--step {step}: not even one step can be made"))?;
+    Ok(plan)
 }
 
 /// The option that sets a field of the request.

@@ -42,6 +42,11 @@ impl<W: Write> Table<W> {
         Ok(())
     }
 
+    /// How many rows there are.
+    pub fn rows(&self) -> u64 {
+        self.rows
+    }
+
     /// Ends the table.
     pub fn finish(mut self) -> io::Result<()> {
         self.output.flush()

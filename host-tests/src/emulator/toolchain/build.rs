@@ -48,10 +48,10 @@ const FOREIGN_PREFIXES: [&str; 9] = [
 #[derive(Debug, thiserror::Error)]
 pub enum BuildError {
     /// Cargo could not be run to its end.
-    #[error("error: {0}")]
+    #[error("{0}")]
     Process(#[from] ProcessError),
     /// The firmware does not compile; what the compiler said.
-    #[error("error: the firmware does not build\n{0}")]
+    #[error("the firmware does not build\n{0}")]
     Refused(String),
 }
 

@@ -47,10 +47,10 @@ impl fmt::Display for SetupError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let names: Vec<_> = self.missing.iter().map(|part| part.name()).collect();
         if names.is_empty() {
-            return write!(f, "error: cannot set up: {}", self.reason);
+            return write!(f, "cannot set up: {}", self.reason);
         }
         let verb = if names.len() == 1 { "is" } else { "are" };
-        write!(f, "error: {} {verb} missing: {}. What brings it:", names.join(" and "), self.reason)?;
+        write!(f, "{} {verb} missing: {}. What brings it:", names.join(" and "), self.reason)?;
         if !self.tried {
             write!(f, "\n  cargo setup   or else by hand:")?;
         }

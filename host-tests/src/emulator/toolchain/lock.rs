@@ -76,6 +76,6 @@ mod tests {
     #[test]
     fn a_lock_that_cannot_be_had_is_named() {
         let error = Lock::take(Path::new("/dev/null/setup.lock")).unwrap_err();
-        assert!(error.to_string().starts_with("error: cannot set up: cannot lock /dev/null/setup.lock: "), "{error}");
+        assert!(error.to_string().starts_with("cannot set up: cannot lock /dev/null/setup.lock: "), "{error}");
     }
 }

@@ -142,7 +142,7 @@ fn without_root_nothing_is_begun() {
     assert!(world.changes().is_empty());
     assert_eq!(
         error.to_string(),
-        "error: the ARM core library and qemu-system-arm are missing: only root may install packages. What brings it:\n  \
+        "the ARM core library and qemu-system-arm are missing: only root may install packages. What brings it:\n  \
          rustup target add thumbv7m-none-eabi thumbv7em-none-eabihf   or   \
          sudo apt-get install --no-install-recommends rustc-web cargo-web rust-web-src\n  \
          sudo apt-get install --no-install-recommends qemu-system-arm"
