@@ -12,7 +12,7 @@ use crate::trig::SinCos;
 /// The greatest magnitudes that a motion of given energy can reach; each is reached by some motion of that energy.
 ///
 /// With K the energy above hanging rest (J), all of it kinetic at best: T >= m1 v1^2/2, T >= m2 v2^2/2, and by completing
-/// squares in T the same for each w and p alone. Exact up to the rounding of K (test `bounds`).
+/// squares in T the same for each w and p alone. Exact up to the rounding of K.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -151,9 +151,9 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     /// The longest step, s, with which RK4 resolves every motion of the energy of `state`: 1/(4 W), W being the
     /// [`fastest_rate`](Self::fastest_rate). Infinite where nothing can move.
     ///
-    /// Up to it a step errs by at most 3e-5 W dt rad in each angle (0.0072 (W dt)^5, whatever the masses and lengths),
-    /// and by as much of W in each velocity; the direction form by 8e-5. Half the step errs 16 times less (test `bounds`).
-    /// It is sharp for the liveliest motion of that energy. A regular one, and one with a light bob 2 that never gathers
+    /// Up to it a step errs by at most 3e-5 W dt rad in each angle (0.0072 (W dt)^5, at any masses and lengths),
+    /// and by as much of W in each velocity; the direction form by 8e-5. Half the step errs 16 times less.
+    /// It is sharp for the motion of that energy with the fastest changes. A regular one, and one with a light bob 2 that never gathers
     /// all of the energy, may do with much longer steps, up to [`Modes::step_limit`].
     ///
     /// ```

@@ -80,7 +80,7 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     ///
     /// where F = m2 l1 l2 w1 w2 sin D is what the book (`[math24]`) calls A1 - A2. Two sincos and one division.
     ///
-    /// Each is within 1e-13 (`f64`) or 2e-6 (`f32`) of its largest term of the book's own form (test `invariants`).
+    /// Each is within 1e-13 (`f64`) or 2e-6 (`f32`) of its largest term of the book's own form.
     #[must_use]
     #[inline]
     pub fn derivatives(&self, z: &[R; 4]) -> [R; 4] {
@@ -117,8 +117,7 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
 
     /// The state a time `dt` (s) after `state`, by one step of order 8 ([`rk8::step`]).
     ///
-    /// In `f64`, 20 steps a second keep a regular motion of 1 m rods to 1e-9 rad over 20 s, 40 to 1e-12 (test
-    /// `accuracy`).
+    /// In `f64`, 20 steps a second keep a regular motion of 1 m rods to 1e-9 rad over 20 s, 40 to 1e-12.
     #[must_use]
     #[inline]
     pub fn step_of_order_8(&self, state: &State<R>, dt: R) -> State<R> {

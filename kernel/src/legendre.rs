@@ -34,7 +34,7 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     /// Momenta to velocities, w = M^-1 p: the first pair of Hamilton's equations.
     ///
     /// With m2 much greater than m1 and parallel rods p1 l2 and p2 l1 nearly cancel: the relative error of w1 is then
-    /// up to m2/m1 roundings, whatever the formula, because the momenta themselves are given to one rounding only.
+    /// up to m2/m1 roundings in any formula, because the momenta themselves are given to one rounding only.
     #[must_use]
     pub fn to_motion(&self, state: &State<R>) -> Motion<R> {
         let &State { a1, a2, .. } = state;

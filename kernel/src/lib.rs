@@ -32,6 +32,8 @@
 //! # Ok::<(), double_pendulum::Error>(())
 //! ```
 //!
+//! Accuracy figures here and below are asserted by the tests of the repository.
+//!
 //! # Versions
 //!
 //! Semantic versioning. [`Error`], [`Parameter`] and [`form::RestoreError`] may get new variants, and the traits are sealed,

@@ -53,7 +53,7 @@ impl<R: Real> Modes<R> {
     /// (for d < 0 with c + d = 4 m2 l1 l2 / (M (c - d))): nothing is subtracted but l1 - l2, so nothing cancels.
     ///
     /// Both frequencies are within 4 ulp in either precision for m2/m1 in 1e-7..1e7 and l1/l2 in 1e-3..1e3
-    /// (test `small_oscillations`). Refuses what [`Pendulum::new`] refuses, zero gravity, and results out of range.
+    ///. Refuses what [`Pendulum::new`] refuses, zero gravity, and results out of range.
     pub fn new(parameters: &Parameters<R>) -> Result<Self, Error> {
         parameters.check_swinging()?;
         let &Parameters { m1, m2, l1, l2, g } = parameters;

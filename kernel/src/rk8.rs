@@ -13,7 +13,7 @@ use crate::real::Real;
 /// coefficients are converted at each use, and reach 43, by which they enlarge the roundings of `f`. Twelve evaluations
 /// of `f`, 12 N numbers of stack.
 ///
-/// Tested: all 200 order conditions, each coefficient, and the order in f64 (`host-tests/tests/accuracy.rs`).
+/// Tested: all 200 order conditions, each coefficient, and the order in f64.
 #[must_use]
 #[inline]
 pub fn step<R: Real, const N: usize>(f: impl Fn(&[R; N]) -> [R; N], z: &[R; N], dt: R) -> [R; N] {

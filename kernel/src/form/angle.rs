@@ -22,7 +22,7 @@ use crate::state::State;
 /// In compensated `f32` the rounding of the momenta carried is the largest error: momenta of 24 bits are velocities off by
 /// 6e-8, in every stage alike. So the stages look ahead from the momenta with what these lack.
 ///
-/// Agrees with [`Pendulum::step`](crate::Pendulum::step) to 1e-12 in `f64` over 100 s of regular motion (test `forms`).
+/// Agrees with [`Pendulum::step`](crate::Pendulum::step) to 1e-12 in `f64` over 100 s of regular motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

@@ -16,7 +16,7 @@ pub(crate) const LARGEST: f64 = 1.647e6;
 
 /// An angle as a mark, counted with all whole turns, and the remainder from there.
 ///
-/// The remainder is kept near 0.05 rad, so that its last place weighs 4e-9 rad in `f32` whatever the angle, and the
+/// The remainder is kept near 0.05 rad, so that its last place weighs 4e-9 rad in `f32` at every angle, and the
 /// direction follows from that of the mark by a small turn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

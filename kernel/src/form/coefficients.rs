@@ -6,8 +6,8 @@ use crate::params::Parameters;
 use crate::real::Real;
 use crate::state::State;
 
-/// The equations of motion with time counted in tau, a step or half of one ([`Span`]), and momenta scaled to leave no
-/// needless factor.
+/// The equations of motion with time counted in tau, a step or half of one ([`Span`]), and momenta scaled so
+/// that the fewest factors are left.
 ///
 /// With nu = l1/l2, (S, C) = nu (sin D, cos D), P = tau p/(m2 l2^2), and the constants
 /// m = (m1/m2) nu^2, G2 = tau^2 g/l1, G1 = (m + nu^2) G2:

@@ -19,7 +19,7 @@ use crate::trig::{Own, SinCos};
 /// (sin a)' = a' cos a, (cos a)' = -a' sin a for a1 and for D = a1 - a2. The method's error is that of RK4 on angles
 /// within a factor of three, smaller near the upright position. What it does to the length of the directions, a relative
 /// (w dt)^6/72 a step, is undone every 32 steps. Angles are read off within (-pi, pi]; [`Winding`](super::Winding) counts
-/// the turns for those who ask.
+/// the turns where they are wanted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

@@ -28,7 +28,7 @@ use crate::state::State;
 /// ```
 ///
 /// In 10 s of regular motion (0.5 rad, rods of 1 m) 16 steps a second keep the angles to 3e-10 rad, 32 to 2e-12 (`f64`;
-/// asserted with the order by test `forms`).
+/// asserted with the order by the repository's tests).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

@@ -1,4 +1,4 @@
-//! Whole turns, for those who ask a form that knows directions only.
+//! Counts whole turns, which directions alone do not tell.
 
 use super::Direction;
 use crate::real::Real;

@@ -31,7 +31,7 @@ pub trait SinCos<R: Real>: Sealed + Copy + core::fmt::Debug + PartialEq + 'stati
 /// - beyond 12,867 (`f32`) or 1,647,098 (`f64`) the `libm` crate answers: correct, slow.
 /// - an infinite argument or a NaN gives NaN for both.
 ///
-/// Asserted by `host-tests/tests/trigonometry.rs`; all floats of [-pi, pi] on demand.
+/// Asserted by the repository's tests; for all floats of [-pi, pi] on demand.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
