@@ -1,13 +1,17 @@
-//! The commands of the README: each is there, and none is taken by one of cargo's own, which nothing can replace.
+//! The READMEs: the commands in them are there, none is taken by one of cargo's own, which nothing can replace, and what
+//! they link to exists.
 
 use std::collections::BTreeSet;
 use std::fs;
 use std::process::Command;
 
+use firmware::protocol::{Frame, Message, Planned, Restarted, Sample, Simulate, Status, StepTooLong};
 use host_tests::emulator::toolchain::workspace;
 
-/// Commands that the README names and a user installs.
-const INSTALLED: [&str; 1] = ["deny"];
+/// The first page, and those of the crates.
+const README: [&str; 4] = ["README.md", "kernel/README.md", "firmware/README.md", "host-tests/README.md"];
+/// Commands that a README names and a user installs.
+const INSTALLED: [&str; 3] = ["deny", "mutants", "public-api"];
 
 fn read(file: &str) -> String {
     fs::read_to_string(workspace().join(file)).unwrap_or_else(|error| panic!("{file}: {error}"))
@@ -38,15 +42,63 @@ fn no_command_is_shadowed() {
     assert!(shadowed.is_empty(), "cargo has its own {shadowed:?}");
 }
 
-#[test]
-fn the_readme_names_every_command_and_no_other() {
-    let readme = read("README.md");
-    let words = readme.split("`cargo ").skip(1).chain(readme.split("    cargo ").skip(1));
+/// The commands in a page's text: in `backquotes` and in indented blocks.
+fn named(page: &str) -> BTreeSet<String> {
+    let words = page.split("`cargo ").skip(1).chain(page.split("    cargo ").skip(1));
     let name = |text: &str| text.split(|c: char| !c.is_alphanumeric() && c != '-').next().map(str::to_owned);
-    let named: BTreeSet<_> = words.filter_map(name).collect();
+    words.filter_map(name).collect()
+}
+
+#[test]
+fn the_readmes_name_every_command_and_no_other() {
+    let named: BTreeSet<_> = README.iter().flat_map(|file| named(&read(file))).collect();
     let missing: Vec<_> = ours().into_iter().filter(|command| !named.contains(command)).collect();
-    assert!(missing.is_empty(), "not in the README: {missing:?}");
+    assert!(missing.is_empty(), "in no README: {missing:?}");
     let known: BTreeSet<_> = ours().into_iter().chain(built_in()).chain(INSTALLED.map(String::from)).collect();
     let unknown: Vec<_> = named.difference(&known).collect();
-    assert!(unknown.is_empty(), "in the README alone: {unknown:?}");
+    assert!(unknown.is_empty(), "in the READMEs alone: {unknown:?}");
+}
+
+/// Every file and folder that a README links to is there.
+#[test]
+fn the_readmes_link_to_what_is_there() {
+    for file in README {
+        let (page, folder) = (read(file), workspace().join(file).parent().expect("a folder").to_owned());
+        let targets = page.split("](").skip(1).filter_map(|rest| rest.split([')', '#']).next());
+        for target in targets.filter(|target| !target.is_empty() && !target.starts_with("http")) {
+            assert!(folder.join(target).exists(), "{file} links to {target}");
+        }
+    }
+}
+
+#[test]
+fn the_first_readme_is_short() {
+    assert!(read(README[0]).lines().count() <= 120);
+}
+
+/// Kind and length of the messages as the firmware's README lists them.
+#[test]
+fn the_readme_lists_the_messages_as_they_are() {
+    fn row<M: Message>() -> (String, usize) {
+        (format!("{:#04x}", M::KIND), M::SIZE)
+    }
+    let page = read("firmware/README.md");
+    let rows = [
+        row::<Frame>(),
+        row::<Sample>(),
+        row::<Status>(),
+        row::<StepTooLong>(),
+        row::<Planned>(),
+        row::<Restarted>(),
+        row::<Simulate>(),
+    ];
+    for (kind, size) in rows {
+        let line = page
+            .lines()
+            .find(|line| line.starts_with("| 0x") && line.split('|').nth(1).is_some_and(|cell| cell.contains(&kind)));
+        let sizes = line.and_then(|line| line.trim_end_matches(" |").rsplit('|').next()).unwrap_or_default();
+        assert!(sizes.split(", ").any(|listed| listed.trim() == size.to_string()), "{kind}: {size} bytes, not {sizes}");
+    }
+    let version = format!("version is {};", firmware::protocol::VERSION);
+    assert!(page.contains(&version), "{version}");
 }

@@ -1,4 +1,4 @@
-//! `cargo write-report`: writes the tables and frames of cost against error.
+//! `cargo write-report`: writes the tables and charts of cost against error.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -10,14 +10,14 @@ use host_tests::console::cli::{self, Refused, say};
 use host_tests::console::progress::Bar;
 use host_tests::emulator::toolchain;
 
-/// Measures every arithmetic's cost on the target and its error, and writes tables, frames and a page.
+/// Measures every arithmetic's cost on the target and its error, and writes tables, charts and a page.
 #[derive(Debug, Parser)]
 #[command(name = "cargo write-report")]
 struct Options {
     /// Two scenes and shorter runs, in under two minutes
     #[arg(long)]
     quick: bool,
-    /// Puts the main table and chart into the README
+    /// Puts the main table and chart into the READMEs
     #[arg(long)]
     readme: bool,
     /// Where to write
@@ -40,10 +40,10 @@ fn run(options: &Options) -> anyhow::Result<()> {
         say(absent.trim_start())?;
     }
     if options.readme {
-        ensure!(absent.is_empty(), "the README keeps its figures: some are missing in these");
-        headline::put_into_readme(&table, &chart)?;
-    } else if !headline::is_in_readme(&table)? {
-        say("the README shows other figures; cargo write-report --readme puts these there")?;
+        ensure!(absent.is_empty(), "the READMEs keep their figures: some are missing in these");
+        headline::put_into_readmes(&table, &chart)?;
+    } else if !headline::is_in_readmes(&table)? {
+        say("the READMEs show other figures; cargo write-report --readme puts these there")?;
     }
     Ok(say(options.folder.join("index.html").display())?)
 }

@@ -1,4 +1,4 @@
-//! The table and the chart of the README: what a step costs on the chips and how far it is off after 10 s and 100 s.
+//! The table and the chart of the READMEs: what a step costs on the chips and how far it is off after 10 s and 100 s.
 
 use std::fs;
 
@@ -16,10 +16,16 @@ use crate::emulator::toolchain::workspace;
 /// A regular motion for 10 s and for 100 s.
 pub const FOLLOWED: [&Scene; 2] = [&SCENES[0], &LONG];
 
-/// Where the README's chart is kept, in the workspace.
+/// Where the READMEs' chart is kept, in the workspace.
 const CHART: &str = "host-tests/pictures/report/speed-against-error.svg";
-/// What stands before and after the README's table.
+/// What stands before and after a README's table.
 const MARKS: [&str; 2] = ["<!-- made by cargo write-report --readme -->\n", "<!-- so far -->\n"];
+/// The READMEs that show rows of the table: all of them, and those of the first page.
+const READMES: [(&str, fn(&str) -> bool); 2] =
+    [("host-tests/README.md", |_| true), ("README.md", |row| TELLING.contains(&row))];
+/// What exists, what the page prints, and what to take on a chip with a floating-point unit.
+const TELLING: [&str; 3] =
+    ["C textbook: CMSIS-DSP's arm_sin_f32 and arm_cos_f32", "f32-textbook-libm", "f32-direction-compensated"];
 
 /// Every arithmetic and every C program; `exact` is the exact motion of the scenes [`FOLLOWED`].
 pub fn table(costs: &[Cost], counted: &[Counted], exact: [&[[f64; 2]]; 2]) -> Table {
@@ -62,24 +68,38 @@ pub fn table(costs: &[Cost], counted: &[Counted], exact: [&[[f64; 2]]; 2]) -> Ta
     }
 }
 
-/// Whether the README shows this table.
-pub fn is_in_readme(table: &Table) -> anyhow::Result<bool> {
-    Ok(fs::read_to_string(workspace().join("README.md")).context("no README.md")?.contains(&table.markdown_rows()))
+/// Whether the READMEs show this table.
+pub fn is_in_readmes(table: &Table) -> anyhow::Result<bool> {
+    for (file, shows) in READMES {
+        let page = fs::read_to_string(workspace().join(file)).with_context(|| format!("no {file}"))?;
+        if !page.contains(&rows(table, shows).markdown_rows()) {
+            return Ok(false);
+        }
+    }
+    Ok(true)
 }
 
-/// Puts the table and the chart into the README.
-pub fn put_into_readme(table: &Table, chart: &str) -> anyhow::Result<()> {
-    let path = workspace().join("README.md");
-    let old = fs::read_to_string(&path).context("no README.md")?;
-    fs::write(&path, with_table(&old, table)?)?;
+/// Puts the table and the chart into the READMEs.
+pub fn put_into_readmes(table: &Table, chart: &str) -> anyhow::Result<()> {
+    for (file, shows) in READMES {
+        let path = workspace().join(file);
+        let old = fs::read_to_string(&path).with_context(|| format!("no {file}"))?;
+        fs::write(&path, with_table(&old, &rows(table, shows))?)?;
+    }
     let chart_path = workspace().join(CHART);
     chart_path.parent().map_or(Ok(()), fs::create_dir_all)?;
     Ok(fs::write(chart_path, chart)?)
 }
 
+/// The table with those rows alone whose first cell `shows` accepts.
+fn rows(table: &Table, shows: fn(&str) -> bool) -> Table {
+    let is_shown = |row: &&Vec<String>| row.first().is_some_and(|name| shows(name));
+    Table { rows: table.rows.iter().filter(is_shown).cloned().collect(), ..table.clone() }
+}
+
 fn with_table(readme: &str, table: &Table) -> anyhow::Result<String> {
     let places = MARKS.map(|mark| readme.find(mark));
-    ensure!(matches!(places, [Some(start), Some(end)] if start < end), "the README has no place for the table");
+    ensure!(matches!(places, [Some(start), Some(end)] if start < end), "a README has no place for the table");
     let [start, end] = places.map(Option::unwrap_or_default);
     let (head, tail) = (&readme[..start + MARKS[0].len()], &readme[end..]);
     Ok(format!("{head}\n{}\n{tail}", table.markdown_rows()))
