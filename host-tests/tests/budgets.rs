@@ -110,11 +110,11 @@ fn measure(board: &'static Board) -> Result<(Memory, f64), CountError> {
     stack.paint(&mut machine)?;
     play(&mut machine, FRAMES)?;
     let (_, profile) = Profile::of_frame(&mut machine, &image, board.core())?;
-    let Cost { instructions, cycles_high, .. } = profile.cost();
+    let Cost { instructions, cycles, .. } = profile.cost();
     let highest = exercise(&mut machine)?;
     let stack = stack.reached(&mut machine)?;
     let executed = f64::from(highest) / f64::from(board.hertz) / INSTRUCTION;
-    let cycles = executed * cycles_high as f64 / instructions as f64;
+    let cycles = executed * cycles as f64 / instructions as f64;
     let idle = 1.0 - cycles * f64::from(TICK_RATE) / f64::from(board.hertz);
     Ok((Memory { stack, ..sections(&elf) }, idle))
 }

@@ -104,8 +104,8 @@ fn every_scene_keeps_within_its_share_of_a_frame() -> Result<(), CountError> {
                 busy = busy.max(frame.busy_cycles);
             }
             let (_, profile) = Profile::of_frame(&mut machine, &image, board.core())?;
-            let Cost { instructions, cycles_high, .. } = profile.cost();
-            let cycles_per_instruction = cycles_high as f64 / instructions as f64;
+            let Cost { instructions, cycles, .. } = profile.cost();
+            let cycles_per_instruction = cycles as f64 / instructions as f64;
             let [scene, busy] = [scene, busy].map(|cycles| f64::from(cycles) * CYCLE / INSTRUCTION);
             let share = |instructions: f64| instructions * cycles_per_instruction / FRAME;
             println!(

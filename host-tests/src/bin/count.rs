@@ -1,14 +1,18 @@
-//! `cargo count`: what each arithmetic costs on the target, per step.
+//! `cargo count`: what each arithmetic costs on the target, per step; or any function of any program, per call.
 
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::time::Duration;
 
 use clap::Parser;
 use double_pendulum::Parameters;
 use firmware::measure::{CLOSED_FORM, Request, SUBJECTS, Subject};
-use host_tests::commands::count::{FULL_CYCLE, Profile, StepCost, Target, affordable_steps, step_cost};
+use host_tests::commands::count::{
+    CallCosts, Cost, ERROR_BAR, FULL_CYCLE, Profile, StepCost, Target, affordable_steps, calls_of, step_cost,
+};
 use host_tests::console::cli::{self, Refused, say};
 use host_tests::emulator::boards::{BOARDS, Board};
-use host_tests::emulator::toolchain;
+use host_tests::emulator::toolchain::{self, Toolchain};
 
 /// As in the report's regular scene, with which the figures here agree.
 const GRAVITY: f32 = 9.81;
@@ -22,9 +26,18 @@ struct Arguments {
     /// Only arithmetics whose name contains this
     #[arg(default_value = "")]
     arithmetic: String,
-    /// Only this board; else the two with a panel, a Cortex-M3 and a Cortex-M4F
+    /// Only this board; else the two with a panel, a Cortex-M3 and a Cortex-M4F; with --elf lm3s6965evb-m4
     #[arg(long, value_name = "NAME", value_parser = cli::choice(&BOARDS, |board| board.name))]
-    board: Option<&'static Board>,
+    on: Option<&'static Board>,
+    /// Count a function of this program instead; it ends itself by semihosting, or is ended after --seconds
+    #[arg(long, value_name = "FILE", requires = "function", conflicts_with = "arithmetic")]
+    elf: Option<PathBuf>,
+    /// The function of that program: mangled, demangled, or a part of its name that no other has
+    #[arg(long, value_name = "NAME", requires = "elf")]
+    function: Option<String>,
+    /// How long that program may run, s
+    #[arg(long, value_name = "N", default_value_t = 600, requires = "elf", value_parser = clap::value_parser!(u64).range(1..))]
+    seconds: u64,
     /// Steps to average over; else 256, or fewer of a costly arithmetic
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=MOST_STEPS))]
     steps: Option<u32>,
@@ -50,6 +63,10 @@ fn main() -> ExitCode {
 }
 
 fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    if let (Some(elf), Some(function)) = (&arguments.elf, &arguments.function) {
+        let (toolchain, _) = toolchain::set_up().map_err(Refused::because)?;
+        return count_calls(&toolchain, arguments, elf, function);
+    }
     let subjects = SUBJECTS.iter().chain([&CLOSED_FORM]);
     let requests: Vec<_> = subjects
         .filter(|subject| subject.name.contains(&arguments.arithmetic))
@@ -59,10 +76,11 @@ fn run(arguments: &Arguments) -> anyhow::Result<()> {
         // What the chip would refuse, the host does before anything is built or printed.
         Request { steps: 1, ..*request }.outcome().map_err(Refused::because)?;
     }
-    let boards = BOARDS.iter().filter(|board| arguments.board.map_or(board.has_panel, |asked| asked == *board));
+    let boards = BOARDS.iter().filter(|board| arguments.on.map_or(board.has_panel, |asked| asked == *board));
     let (toolchain, _) = toolchain::set_up().map_err(Refused::because)?;
     if !arguments.listing {
         say(arguments.setting())?;
+        say(ERROR_BAR)?;
         say(ROW.map(|(title, width)| format!("{title:>width$}")).join(" "))?;
     }
     for board in boards {
@@ -101,8 +119,7 @@ impl Arguments {
         let Self { m2, l2, angle, halvings, .. } = self;
         format!(
             "one step of 2^-{halvings} s, averaged over the first steps from rest at {angle} rad; masses 1,{m2} kg, lengths \
-             1,{l2} m, gravity {GRAVITY} m/s^2 (as an f32); instructions are counted, cycles estimated from the published \
-             timings"
+             1,{l2} m, gravity {GRAVITY} m/s^2 (as an f32); instructions are counted"
         )
     }
 }
@@ -113,7 +130,7 @@ const ROW: [(&str, usize); 9] = [
     ("board", 16),
     ("steps", 5),
     ("instructions", 12),
-    ("cycles (estimate)", 19),
+    ("cycles (estimate)", 17),
     ("stalls", 8),
     ("hot bytes", 9),
     ("code bytes", 10),
@@ -121,13 +138,13 @@ const ROW: [(&str, usize); 9] = [
 ];
 
 fn row(request: &Request, board: &Board, cost: &StepCost) -> String {
-    let StepCost { instructions, cycles_low, cycles_high, stalls, hot_bytes, code_bytes, stack_bytes } = cost;
+    let StepCost { instructions, cycles, stalls, hot_bytes, code_bytes, stack_bytes } = cost;
     let cells = [
         request.subject.to_owned(),
         board.name.to_owned(),
         request.steps.to_string(),
         format!("{instructions:.1}"),
-        format!("{cycles_low:.1}..{cycles_high:.1}"),
+        format!("{cycles:.1}"),
         format!("{stalls:.1}"),
         hot_bytes.to_string(),
         code_bytes.to_string(),
@@ -142,6 +159,7 @@ fn list(target: &Target, request: &Request) -> anyhow::Result<()> {
     let image = target.image();
     let profile = Profile::of(target, request)?;
     say(format_args!("{} on {}: per step, executions, cycles (estimate), stalls", request.subject, target.board.name))?;
+    say(ERROR_BAR)?;
     let mut function = None;
     for (address, spot) in profile.spots() {
         let inside = image.function_at(address);
@@ -150,9 +168,28 @@ fn list(target: &Target, request: &Request) -> anyhow::Result<()> {
             say(format_args!("{}:", inside.map_or("?", |function| &function.name)))?;
         }
         let per_step = |total: u64| total as f64 / f64::from(request.steps);
-        let [executions, cycles, stalls] =
-            [spot.cost.instructions, spot.cost.cycles_high, spot.cost.stalls].map(per_step);
+        let [executions, cycles, stalls] = [spot.cost.instructions, spot.cost.cycles, spot.cost.stalls].map(per_step);
         say(format_args!("{address:8x} {executions:9.2} {cycles:9.2} {stalls:7.2}  {}", spot.instruction.row.name))?;
+    }
+    Ok(())
+}
+
+/// What a function of any program costs, per call.
+fn count_calls(toolchain: &Toolchain, arguments: &Arguments, elf: &Path, function: &str) -> anyhow::Result<()> {
+    let board = arguments.on.unwrap_or(&BOARDS[1]);
+    let target = Target::of(toolchain, board, elf.to_owned()).map_err(Refused::because)?;
+    let limit = Duration::from_secs(arguments.seconds);
+    let CallCosts { function, calls } = calls_of(&target, function, limit).map_err(Refused::because)?;
+    let number = calls.len();
+    say(format_args!("{} on {}, from its first instruction to its return: calls {number}", function.name, board.name))?;
+    say(ERROR_BAR)?;
+    say(format_args!("{:12} {:>12} {:>12} {:>12}", "per call", "mean", "least", "most"))?;
+    let figures = |cost: &Cost| [cost.instructions, cost.cycles];
+    for (index, title) in ["instructions", "cycles"].into_iter().enumerate() {
+        let all = || calls.iter().map(|cost| figures(cost)[index]);
+        let (least, most) = all().fold((u64::MAX, 0), |(least, most), one| (least.min(one), most.max(one)));
+        let mean = all().sum::<u64>() as f64 / number as f64;
+        say(format_args!("{title:12} {mean:12.1} {least:12} {most:12}"))?;
     }
     Ok(())
 }

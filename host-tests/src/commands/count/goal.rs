@@ -2,7 +2,7 @@
 
 use double_pendulum::Parameters;
 
-/// The most cycles (estimated, the high figure) that a step of an arithmetic may take on a core.
+/// The most cycles (estimated) that a step of an arithmetic may take on a core.
 #[derive(Clone, Copy, Debug)]
 pub struct Goal {
     /// The [`Subject`](firmware::measure::Subject)'s name.

@@ -1,6 +1,8 @@
 //! One instruction as far as its timing goes.
 
-use super::timing::{Class, Reads, Row, TIMINGS};
+use super::row::{Class, Reads, Row};
+use super::timing::TIMINGS;
+use super::trace::Registers;
 use crate::emulator::boards::Core;
 
 /// A decoded instruction.
@@ -26,39 +28,74 @@ impl Instruction {
         if self.word >> 16 >= 0xe800 { 4 } else { 2 }
     }
 
-    /// The cycles it takes by itself, if it does not branch.
-    pub fn cycles(&self, core: Core) -> u64 {
-        let more = match self.row.form {
-            Class::List => (self.word & self.register_list()).count_ones(),
-            Class::FloatList => self.word & 0xff,
+    /// The cycles it takes by itself, if it does not branch, with these contents of the registers.
+    pub fn cycles(&self, core: Core, registers: &Registers) -> u64 {
+        let more = match self.row.class {
+            Class::LoadList | Class::StoreList => (self.word & self.register_list()).count_ones().into(),
+            Class::FloatList => (self.word & 0xff).into(),
+            Class::Divide => self.division(registers),
             _ => 0,
         };
-        self.row.cycles(core) + u64::from(more)
+        self.row.cycles(core) + more
     }
 
-    /// Whether it is a single load or store.
-    pub fn is_single_access(&self) -> bool {
-        self.row.form == Class::Single
+    /// Whether it reads memory.
+    pub fn loads(&self) -> bool {
+        match self.row.class {
+            Class::Load | Class::LoadPair | Class::LoadList => true,
+            Class::FloatList => self.word & 1 << 20 != 0,
+            _ => false,
+        }
+    }
+
+    /// Whether it needs the floating-point unit.
+    pub fn is_float(&self) -> bool {
+        self.word >> 26 == 0b11_1011
+    }
+
+    /// Whether its address is made of a register that `before` writes.
+    pub fn is_addressed_by(&self, before: &Self) -> bool {
+        let registers =
+            |fields: &'static [super::row::Field], word| fields.iter().map(move |field| field.register(word));
+        // A comparison has the program counter where others have what they write.
+        let written = |register| register != 15 && registers(before.row.writes, before.word).any(|it| it == register);
+        registers(self.row.address, self.word).any(written)
     }
 
     /// The floating-point register whose value comes late, if it has one.
     pub fn late_result(&self) -> Option<u32> {
-        matches!(self.row.form, Class::Arithmetic(_)).then(|| self.d())
+        matches!(self.row.class, Class::Arithmetic(_) | Class::Aside(_)).then(|| self.d())
     }
 
     /// Whether it needs the floating-point register `s` at its start.
     pub fn consumes(&self, s: u32) -> bool {
-        match self.row.form {
-            Class::Arithmetic(reads) | Class::Move(reads) => match reads {
+        match self.row.class {
+            Class::Arithmetic(reads) | Class::Aside(reads) | Class::Move(reads) => match reads {
                 Reads::Nothing => false,
                 Reads::D => self.d() == s,
                 Reads::N => self.n() == s,
+                Reads::Half => 2 * (self.n() >> 1) + (self.word >> 21 & 1) == s,
                 Reads::M => self.m() == s,
                 Reads::DM => self.d() == s || self.m() == s,
                 Reads::NM => self.n() == s || self.m() == s,
             },
-            Class::Single | Class::FloatList | Class::Fixed => self.stores(s),
-            Class::List => false,
+            _ => self.stores(s),
+        }
+    }
+
+    /// Cycles of a division, by the lengths of its operands without their signs: measured for all lengths on a Cortex-M4
+    /// (compendium.i-0.nl, "Division timing"). Both manuals say 2 to 12, "based on the number of leading ones and zeroes".
+    fn division(&self, registers: &Registers) -> u64 {
+        let is_signed = self.word & 1 << 21 == 0;
+        let bits = |register: u32| {
+            let value = registers.general[register as usize & 0xf];
+            let size = if is_signed { value.cast_signed().unsigned_abs() } else { value };
+            u32::BITS - size.leading_zeros()
+        };
+        match (bits(self.word >> 16), bits(self.word)) {
+            (0, _) | (_, 0) => 2,
+            (dividend, divisor) if dividend < divisor => 3,
+            (dividend, divisor) => 5 + u64::from(dividend - divisor) / 4,
         }
     }
 
@@ -76,7 +113,7 @@ impl Instruction {
         let is_float_store = self.word & 0xfe10_0e00 == 0xec00_0a00;
         let double = self.word & 0x100 != 0;
         let first = if double { 2 * (self.d() >> 1 | (self.d() & 1) << 4) } else { self.d() };
-        let words = match self.row.form {
+        let words = match self.row.class {
             Class::FloatList => self.word & 0xff,
             _ if double => 2,
             _ => 1,

@@ -1,18 +1,23 @@
 //! Counts what an arithmetic costs on the target: executed instructions (exact), Cortex-M cycles (an **estimate** from
 //! the published instruction timings), bytes of code and bytes of stack.
 
+mod calls;
 pub mod goal;
 mod image;
 mod instruction;
 mod pipeline;
 mod profile;
+mod row;
+#[cfg(test)]
+mod silicon;
 mod target;
 pub mod timing;
 mod trace;
 
+pub use calls::{CallCosts, calls_of};
 pub use image::{Function, Image};
 pub use instruction::Instruction;
-pub use pipeline::{Cost, Pipeline};
+pub use pipeline::{Cost, ERROR_BAR, Pipeline};
 pub use profile::{Profile, Spot};
 pub use target::Target;
 pub use trace::Registers;
@@ -41,7 +46,7 @@ const AFFORDABLE_INSTRUCTIONS: u64 = 300_000;
 /// Why something could not be counted.
 #[derive(Debug, thiserror::Error)]
 pub enum CountError {
-    /// The program is not there or not an ELF file.
+    /// The program is not there or not an ELF file for ARM.
     #[error("{}: {reason}", path.display())]
     Unreadable {
         /// The program.
@@ -56,7 +61,7 @@ pub enum CountError {
         address: u32,
     },
     /// The timing table has no row for an executed instruction.
-    #[error("no timing for the instruction {first:04x} {second:04x} at {address:#x}")]
+    #[error("no timing for the instruction {first:04x} {second:04x} at {address:#x} in {function}")]
     UnknownInstruction {
         /// Where it is.
         address: u32,
@@ -64,10 +69,41 @@ pub enum CountError {
         first: u16,
         /// The halfword after that.
         second: u16,
+        /// The function that has it, demangled.
+        function: String,
     },
-    /// The program ended before it came to the counted function.
-    #[error("the function {COUNTED} was not executed")]
-    NotReached,
+    /// The program has no such function.
+    #[error("{}: no function {function}", path.display())]
+    NoFunction {
+        /// The program.
+        path: PathBuf,
+        /// What was asked for.
+        function: String,
+    },
+    /// The name stands for several functions.
+    #[error("{function} may be any of {number}, such as {one} and {another}")]
+    Ambiguous {
+        /// What was asked for.
+        function: String,
+        /// How many functions it may be.
+        number: usize,
+        /// The symbol of one.
+        one: String,
+        /// The symbol of another.
+        another: String,
+    },
+    /// The program ended, or its time was up, before it came to the function.
+    #[error("{function} was never called")]
+    NotCalled {
+        /// The function.
+        function: String,
+    },
+    /// The program ended, or its time was up, within the first call.
+    #[error("{function} was called and never returned")]
+    NotReturned {
+        /// The function.
+        function: String,
+    },
     /// The program did not accept the request.
     #[error("{request}: {reason}")]
     Refused {
@@ -104,11 +140,9 @@ pub enum CountError {
 pub struct StepCost {
     /// Executed instructions.
     pub instructions: f64,
-    /// Estimated cycles if neighbouring single loads and stores are always pipelined.
-    pub cycles_low: f64,
-    /// Estimated cycles if they never are.
-    pub cycles_high: f64,
-    /// Those of the cycles that wait for a floating-point result.
+    /// Estimated cycles.
+    pub cycles: f64,
+    /// Those of the cycles that wait for a floating-point result or for the unit that makes one.
     pub stalls: f64,
     /// Bytes of the distinct instructions executed; literal pools are not among them.
     pub hot_bytes: u32,
@@ -135,8 +169,7 @@ pub fn step_cost(target: &Target, request: &Request) -> Result<StepCost, CountEr
     let per_step = |total: u64| total as f64 / f64::from(request.steps);
     Ok(StepCost {
         instructions: per_step(cost.instructions),
-        cycles_low: per_step(cost.cycles_low),
-        cycles_high: per_step(cost.cycles_high),
+        cycles: per_step(cost.cycles),
         stalls: per_step(cost.stalls),
         hot_bytes: twice.hot_bytes(),
         code_bytes: twice.functions(target.image()).map(|function| function.size).sum(),

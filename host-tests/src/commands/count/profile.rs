@@ -9,10 +9,11 @@ use firmware::protocol::Frame;
 use nix::sys::stat::Mode;
 use nix::unistd::mkfifo;
 
+use super::calls::{Calls, Stream};
 use super::image::{Function, Image};
 use super::instruction::Instruction;
-use super::pipeline::{Cost, Pipeline};
-use super::trace::{Registers, for_each_line};
+use super::pipeline::Cost;
+use super::trace::{Ended, LIMIT, for_each_instruction};
 use super::{COUNTED, CountError, Target};
 use crate::emulator::boards::Core;
 use crate::emulator::process::remove_on_interrupt;
@@ -38,32 +39,13 @@ impl Profile {
     /// Runs `request` on `target` and profiles the counted function, all calls of it together.
     pub fn of(target: &Target, request: &Request) -> Result<Self, CountError> {
         let image = target.image();
-        let entries: BTreeSet<_> = image.functions_named(COUNTED).map(|function| function.address).collect();
-        let mut profile = Self::default();
-        let mut call: Option<Call> = None;
-        target.trace(request, |registers| {
-            match &mut call {
-                Some(running) => {
-                    profile.execute(&mut running.stream, registers.pc);
-                    profile.stack_bytes = profile.stack_bytes.max(running.caller.sp.saturating_sub(registers.sp));
-                    if running.has_returned(registers) {
-                        call = None;
-                    } else {
-                        running.stream.next = (registers.pc, image.instruction_at(registers.pc)?);
-                    }
-                }
-                None if entries.contains(&registers.pc) => {
-                    let first = (registers.pc, image.instruction_at(registers.pc)?);
-                    call = Some(Call {
-                        caller: registers,
-                        stream: Stream { next: first, pipeline: Pipeline::new(target.core()) },
-                    });
-                }
-                None => {}
-            }
-            Ok(())
-        })?;
-        if profile.spots.is_empty() { Err(CountError::NotReached) } else { Ok(profile) }
+        let entries = image.functions_named(COUNTED).map(|function| function.address).collect();
+        let mut calls = Calls::of(image, target.core(), entries);
+        let request = request.to_string();
+        match target.trace(&request, LIMIT, |registers| calls.see(registers))? {
+            Ended { success: true, .. } => calls.into_profile().executed(),
+            Ended { output, .. } => Err(CountError::Refused { request, reason: output.trim().to_owned() }),
+        }
     }
 
     /// Lets `board` run to its next frame and profiles all that it executes for it.
@@ -84,28 +66,29 @@ impl Profile {
     fn of_log(file: File, image: &Image, core: Core) -> Result<Self, CountError> {
         let mut profile = Self::default();
         let mut stream: Option<Stream> = None;
-        for_each_line(file, |line| {
-            let Some(Registers { pc, .. }) = Registers::parse(line) else { return Ok(()) };
-            let next = (pc, image.instruction_at(pc)?);
+        for_each_instruction(file, |registers| {
             match &mut stream {
                 Some(stream) => {
-                    profile.execute(stream, pc);
-                    stream.next = next;
+                    profile.add(stream.execute(&registers), 0);
+                    stream.go_on(image, registers)?;
                 }
-                None => stream = Some(Stream { next, pipeline: Pipeline::new(core) }),
+                None => stream = Some(Stream::begin(image, core, registers)?),
             }
             Ok(())
         })?;
-        if profile.spots.is_empty() { Err(CountError::NotReached) } else { Ok(profile) }
+        profile.executed()
     }
 
-    /// The pending instruction of `stream` has been executed and led to `pc`.
-    fn execute(&mut self, stream: &mut Stream, pc: u32) {
-        let (address, instruction) = stream.next;
-        let branches = pc != address + instruction.size();
-        let cost = stream.pipeline.execute(instruction, branches);
+    /// An instruction that has been executed at an address, what it cost, and how deep the stack is.
+    pub(super) fn add(&mut self, (address, instruction, cost): (u32, Instruction, Cost), stack_bytes: u32) {
         let spot = self.spots.entry(address).or_insert(Spot { instruction, cost: Cost::default() });
         spot.cost += cost;
+        self.stack_bytes = self.stack_bytes.max(stack_bytes);
+    }
+
+    /// Itself, if anything was executed.
+    fn executed(self) -> Result<Self, CountError> {
+        if self.spots.is_empty() { Err(CountError::NotCalled { function: COUNTED.to_owned() }) } else { Ok(self) }
     }
 
     /// The cost of it all.
@@ -137,26 +120,6 @@ impl Profile {
     }
 }
 
-/// A call of the counted function that is going on.
-struct Call {
-    /// The registers at its entry.
-    caller: Registers,
-    stream: Stream,
-}
-
-/// Instructions as they are executed.
-struct Stream {
-    /// The instruction about to be executed.
-    next: (u32, Instruction),
-    pipeline: Pipeline,
-}
-
 fn log(source: io::Error) -> CountError {
     CountError::Log { source }
-}
-
-impl Call {
-    fn has_returned(&self, registers: Registers) -> bool {
-        registers.pc == self.caller.lr & !1 && registers.sp == self.caller.sp
-    }
 }

@@ -10,7 +10,7 @@ use crate::emulator::toolchain::Toolchain;
 /// The firmware's binary that runs a request.
 const PROGRAM: &str = "measure";
 
-/// An emulated board and the program that measures, built for it.
+/// An emulated board and a program built for it.
 #[derive(Debug)]
 pub struct Target {
     /// The board.
@@ -26,7 +26,7 @@ impl Target {
         Self::of(toolchain, board, toolchain.build(PROGRAM, board.target)?)
     }
 
-    /// Another program that takes the same requests and whose steps are made by a function called `counted_steps`.
+    /// Another program. One that takes the same requests makes its steps in a function called `counted_steps`.
     pub fn of(toolchain: &Toolchain, board: &'static Board, elf: PathBuf) -> Result<Self, CountError> {
         let image = Image::read(&elf)?;
         Ok(Self { board, qemu: toolchain.qemu().to_owned(), elf, image })

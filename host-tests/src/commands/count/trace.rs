@@ -15,28 +15,54 @@ use super::{CountError, Target};
 use crate::emulator::process;
 
 /// How long one run may take.
-const LIMIT: Duration = Duration::from_secs(1800);
+pub(super) const LIMIT: Duration = Duration::from_secs(1800);
 /// How long QEMU may take to tell its version.
 const VERSION_LIMIT: Duration = Duration::from_secs(10);
 
-/// The registers that matter, before the instruction at `pc` is executed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// The core's registers before an instruction is executed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Registers {
-    /// The stack pointer.
-    pub sp: u32,
-    /// The link register.
-    pub lr: u32,
-    /// The address of the instruction.
-    pub pc: u32,
+    /// r0 to r15.
+    pub general: [u32; 16],
 }
 
 impl Registers {
-    /// Reads the log's line of registers 12 to 15; `None` for any other line.
-    pub(super) fn parse(line: &str) -> Option<Self> {
-        let mut words = line.strip_prefix("R12=")?.split_ascii_whitespace().skip(1);
-        let mut register = |name| u32::from_str_radix(words.next()?.strip_prefix(name)?, 16).ok();
-        Some(Self { sp: register("R13=")?, lr: register("R14=")?, pc: register("R15=")? })
+    /// The stack pointer.
+    pub fn sp(&self) -> u32 {
+        self.general[13]
     }
+
+    /// The link register.
+    pub fn lr(&self) -> u32 {
+        self.general[14]
+    }
+
+    /// The address of the instruction.
+    pub fn pc(&self) -> u32 {
+        self.general[15]
+    }
+
+    /// Takes in a line of the log, four registers; `None` for any other line, else whether it was the last of them.
+    fn read(&mut self, line: &str) -> Option<bool> {
+        let is_register = |word: &&str| word.starts_with('R');
+        let mut last = None;
+        for word in line.split_ascii_whitespace().take_while(is_register) {
+            let (index, value) = word.get(1..)?.split_once('=')?;
+            let index: usize = index.parse().ok()?;
+            *self.general.get_mut(index)? = u32::from_str_radix(value, 16).ok()?;
+            last = Some(index == 15);
+        }
+        last
+    }
+}
+
+/// How a program ended by itself.
+#[derive(Debug)]
+pub(super) struct Ended {
+    /// Whether QEMU's exit code says so.
+    pub success: bool,
+    /// What the program printed.
+    pub output: String,
 }
 
 impl Target {
@@ -51,19 +77,21 @@ impl Target {
 
     /// Runs `request` at full speed: what it prints.
     pub fn output(&self, request: &Request) -> Result<String, CountError> {
-        Ok(process::run(self.emulator(request).args(["-icount", "shift=0"]), LIMIT)?.stdout)
+        Ok(process::run(self.emulator(&request.to_string()).args(["-icount", "shift=0"]), LIMIT)?.stdout)
     }
 
-    /// Runs `request` and calls `each` before every instruction, in order.
-    pub fn trace(
+    /// Runs the program with `argument` on its semihosting command line and calls `each` before every instruction, in
+    /// order.
+    pub(super) fn trace(
         &self,
-        request: &Request,
-        mut each: impl FnMut(Registers) -> Result<(), CountError>,
-    ) -> Result<(), CountError> {
-        let mut command = self.emulator(request);
+        argument: &str,
+        limit: Duration,
+        each: impl FnMut(Registers) -> Result<(), CountError>,
+    ) -> Result<Ended, CountError> {
+        let mut command = self.emulator(argument);
         command.args(self.single_step()?).args(["-d", "cpu,nochain", "-D", "/dev/stderr"]);
         command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
-        let mut child = process::spawn(&mut command, LIMIT)?;
+        let mut child = process::spawn(&mut command, limit)?;
         let stdout = child.stdout.take().map(|mut stdout| {
             thread::spawn(move || {
                 let mut text = String::new();
@@ -71,21 +99,20 @@ impl Target {
             })
         });
         if let Some(log) = child.stderr.take() {
-            for_each_line(log, |line| Registers::parse(line).map_or(Ok(()), &mut each))?;
+            for_each_instruction(log, each)?;
         }
-        if child.wait()?.success() {
-            return Ok(());
-        }
-        let reason = stdout.and_then(|reader| reader.join().ok()).and_then(Result::ok).unwrap_or_default();
-        Err(CountError::Refused { request: request.to_string(), reason: reason.trim().to_owned() })
+        let success = child.wait()?.success();
+        let output = stdout.and_then(|reader| reader.join().ok()).and_then(Result::ok).unwrap_or_default();
+        Ok(Ended { success, output })
     }
 
     /// QEMU with nothing attached but the semihosting console.
-    fn emulator(&self, request: &Request) -> Command {
+    fn emulator(&self, argument: &str) -> Command {
         let mut command = Command::new(&self.qemu);
         command.args(["-machine", self.board.machine, "-cpu", self.board.cpu]);
         command.args(["-display", "none", "-monitor", "none", "-serial", "null"]);
-        command.args(["-semihosting-config", &format!("enable=on,target=native,arg={request}")]);
+        let argument = if argument.is_empty() { String::new() } else { format!(",arg={argument}") };
+        command.args(["-semihosting-config", &format!("enable=on,target=native{argument}")]);
         command.arg("-kernel").arg(&self.elf);
         command
     }
@@ -104,18 +131,20 @@ impl Target {
     }
 }
 
-/// Calls `each` with every line of a log, until it refuses one.
-pub(super) fn for_each_line(
+/// Calls `each` with the registers before every instruction of a log, until it refuses.
+pub(super) fn for_each_instruction(
     log: impl Read,
-    mut each: impl FnMut(&str) -> Result<(), CountError>,
+    mut each: impl FnMut(Registers) -> Result<(), CountError>,
 ) -> Result<(), CountError> {
     let mut log = BufReader::with_capacity(1 << 20, log);
     let mut line = String::new();
+    let mut registers = Registers::default();
     loop {
         line.clear();
         match log.read_line(&mut line) {
             Ok(0) => return Ok(()),
-            Ok(_) => each(&line)?,
+            Ok(_) if registers.read(&line) == Some(true) => each(registers)?,
+            Ok(_) => {}
             // the log is ASCII; a stray byte in a line of no interest is none either
             Err(error) if error.kind() == io::ErrorKind::InvalidData => {}
             Err(source) => return Err(CountError::Log { source }),
@@ -128,10 +157,20 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_the_last_line_of_registers_is_read() {
-        let log = "R12=fffffbfd R13=2000fc98 R14=000009c7 R15=000025e2\n";
-        assert_eq!(Registers::parse(log), Some(Registers { sp: 0x2000_fc98, lr: 0x9c7, pc: 0x25e2 }));
-        assert_eq!(Registers::parse("R08=fffffbfc R09=00000000 R10=00000000 R11=00000000\n"), None);
-        assert_eq!(Registers::parse("XPSR=81000000 N--- T priv-thread\n"), None);
+    fn an_instruction_has_four_lines_of_registers() -> Result<(), CountError> {
+        let log = "R00=00000001 R01=00000002 R02=00000003 R03=00000004\n\
+                   R04=00000005 R05=00000006 R06=00000007 R07=00000008\n\
+                   R08=fffffbfc R09=00000000 R10=00000000 R11=0000000c\n\
+                   R12=fffffbfd R13=2000fc98 R14=000009c7 R15=000025e2\n\
+                   XPSR=81000000 N--- T priv-thread\n";
+        let mut seen = Vec::new();
+        for_each_instruction(log.as_bytes(), |registers| {
+            seen.push(registers);
+            Ok(())
+        })?;
+        let general = [1, 2, 3, 4, 5, 6, 7, 8, 0xffff_fbfc, 0, 0, 12, 0xffff_fbfd, 0x2000_fc98, 0x9c7, 0x25e2];
+        assert_eq!(seen, [Registers { general }]);
+        assert_eq!((seen[0].sp(), seen[0].lr(), seen[0].pc()), (0x2000_fc98, 0x9c7, 0x25e2));
+        Ok(())
     }
 }

@@ -5,6 +5,7 @@ use double_pendulum::plan::{Limit, Method};
 
 use super::study::{Case, Class, median};
 use super::target::Chip;
+use crate::commands::count::ERROR_BAR;
 use crate::commands::table::{Table, small};
 
 /// What the promises are worth, and what planning saves, for each class of scene.
@@ -23,11 +24,11 @@ pub fn classes(cases: &[Case], chip: &Chip) -> Result<Table, Error> {
     Ok(Table {
         name: "plans-by-class",
         title: format!("Plans for a {}: {} scenes", chip.title, cases.len()),
-        note: String::from(
+        note: format!(
             "Every scene is planned, carried out and compared with the reference at each frame. Broken: more than half a \
              pixel off before the promised horizon. Promised: the promised horizon over the true one in the median, over \
-             all scenes and over those whose true horizon is within the scene. Cycles of a frame are medians \
-             (estimates). Always f64: the same steps by RK4 in f64. Always finest: compensated f32 direction form at the \
+             all scenes and over those whose true horizon is within the scene. Cycles of a frame are medians. {ERROR_BAR} \
+             Always f64: the same steps by RK4 in f64. Always finest: compensated f32 direction form at the \
              finest step that any scene of the class is planned with in f32.",
         ),
         columns: vec![

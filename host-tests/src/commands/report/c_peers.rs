@@ -14,7 +14,7 @@ use super::accuracy::{Error, Point, worst};
 use super::costs::{self, Cost, HALVINGS};
 use super::parallel;
 use super::scene::{SCENES, Scene};
-use crate::commands::count::{CountError, StepCost, Target};
+use crate::commands::count::{CountError, ERROR_BAR, StepCost, Target};
 use crate::commands::table::{Table, small};
 use crate::emulator::boards::{BOARDS, Board};
 use crate::emulator::process;
@@ -186,11 +186,11 @@ pub fn table((counted, absent): &(Vec<Counted>, String), points: &[Point], costs
             Some((*name, cost.step, points.iter().find(is_it)?.error))
         });
         let ours: Vec<_> = ours.collect();
-        let unit = ours.last().map_or(f64::NAN, |(_, step, _)| step.cycles_high);
+        let unit = ours.last().map_or(f64::NAN, |(_, step, _)| step.cycles);
         for (name, step, error) in theirs.chain(ours) {
             let mut row = vec![name.to_owned(), board.cpu.to_owned()];
-            row.extend([step.instructions, step.cycles_high].map(|count| format!("{count:.0}")));
-            row.push(format!("{:.2}", step.cycles_high / unit));
+            row.extend([step.instructions, step.cycles].map(|count| format!("{count:.0}")));
+            row.push(format!("{:.2}", step.cycles / unit));
             row.extend([step.code_bytes, step.stack_bytes].map(|count| count.to_string()));
             row.extend([small(error.angle), small(error.pixels)]);
             rows.push(row);
@@ -201,7 +201,8 @@ pub fn table((counted, absent): &(Vec<Counted>, String), points: &[Point], costs
         title: String::from("The page's equations in C on the target"),
         note: format!(
             "Per step; scene {}, step 2^-{HALVINGS} s, error over the scene. GCC at -O3, which may contract multiplication \
-             and addition; counted like all others. Relative: estimated cycles against f32-angle-compensated.{absent}",
+             and addition; counted like all others. {ERROR_BAR} Relative: estimated cycles against \
+             f32-angle-compensated.{absent}",
             scene.name,
         ),
         columns: vec![

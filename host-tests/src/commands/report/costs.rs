@@ -5,7 +5,7 @@ use firmware::measure::{Request, SUBJECTS, Subject};
 use super::accuracy::request;
 use super::parallel;
 use super::scene::Scene;
-use crate::commands::count::{CountError, FULL_CYCLE, StepCost, Target, affordable_steps, step_cost};
+use crate::commands::count::{CountError, ERROR_BAR, FULL_CYCLE, StepCost, Target, affordable_steps, step_cost};
 use crate::commands::table::Table;
 use crate::emulator::boards::Board;
 
@@ -46,8 +46,8 @@ pub fn one(target: &Target, request: &Request) -> Result<StepCost, CountError> {
 /// The table of costs.
 pub fn table(costs: &[Cost], scene: &Scene) -> Table {
     let row = |cost: &Cost| {
-        let StepCost { instructions, cycles_low, cycles_high, stalls, hot_bytes, code_bytes, stack_bytes } = cost.step;
-        let counts = [instructions, cycles_low, cycles_high, stalls].map(|count| format!("{count:.0}"));
+        let StepCost { instructions, cycles, stalls, hot_bytes, code_bytes, stack_bytes } = cost.step;
+        let counts = [instructions, cycles, stalls].map(|count| format!("{count:.0}"));
         let bytes = [hot_bytes, code_bytes, stack_bytes].map(|count| count.to_string());
         let mut row = vec![cost.subject.name.to_owned(), cost.board.cpu.to_owned()];
         row.extend(counts.into_iter().chain(bytes));
@@ -57,18 +57,16 @@ pub fn table(costs: &[Cost], scene: &Scene) -> Table {
         name: "costs",
         title: String::from("Cost of one step"),
         note: format!(
-            "Scene {}, step 2^-{HALVINGS} s. Instructions are counted in QEMU and exact. Cycles are an estimate: the \
-             published instruction timings applied to the executed stream, memory without wait states; low if \
-             neighbouring loads and stores are always pipelined, high if never. Stalls are those of the cycles that wait \
-             for a floating-point result. Hot bytes: instructions executed. Code bytes: whole functions with constants.",
+            "Scene {}, step 2^-{HALVINGS} s. Instructions are counted in QEMU and exact. {ERROR_BAR} Stalls are those of \
+             the cycles that wait for the floating-point unit. Hot bytes: instructions executed. Code bytes: whole \
+             functions with constants.",
             scene.name
         ),
         columns: vec![
             "arithmetic",
             "processor",
             "instructions",
-            "cycles low",
-            "cycles high",
+            "cycles (estimate)",
             "stalls",
             "hot bytes",
             "code bytes",

@@ -9,7 +9,7 @@ use super::accuracy::{Error, error};
 use super::c_peers::Counted;
 use super::costs::{Cost, HALVINGS};
 use super::scene::{LONG, SCENES, Scene};
-use crate::commands::count::StepCost;
+use crate::commands::count::{ERROR_BAR, StepCost};
 use crate::commands::table::{Table, small};
 use crate::emulator::toolchain::workspace;
 
@@ -33,9 +33,9 @@ pub fn table(costs: &[Cost], counted: &[Counted], exact: [&[[f64; 2]]; 2]) -> Ta
     let mut push = |name: &str, step_on: &dyn Fn(&str) -> Option<StepCost>, errors: [Option<Error>; 2]| {
         let whole = |count: Option<f64>| count.map_or_else(String::new, |count| format!("{count:.0}"));
         let [m4, m3] = ["cortex-m4", "cortex-m3"].map(step_on);
-        let mut row = vec![name.to_owned(), whole(m4.map(|step| step.cycles_high))];
+        let mut row = vec![name.to_owned(), whole(m4.map(|step| step.cycles))];
         row.push(whole(m4.map(|step| step.instructions)));
-        row.push(whole(m3.map(|step| step.cycles_high)));
+        row.push(whole(m3.map(|step| step.cycles)));
         row.extend(errors.map(|error| error.map_or_else(String::new, |error| small(error.angle))));
         rows.push(row);
     };
@@ -51,10 +51,9 @@ pub fn table(costs: &[Cost], counted: &[Counted], exact: [&[[f64; 2]]; 2]) -> Ta
     Table {
         name: "headline",
         title: String::from("Cost and error of a step of 1/256 s"),
-        note: String::from(
+        note: format!(
             "The regular scene, equal rods, one step of classical RK4 (of order 8 where the name says so). Instructions \
-             are counted in QEMU; cycles are estimated from the published timings (the high figure). The error is the \
-             largest of an angle until then, against the reference.",
+             are counted in QEMU. {ERROR_BAR} The error is the largest of an angle until then, against the reference.",
         ),
         columns: vec![
             "arithmetic",

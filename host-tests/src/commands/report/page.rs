@@ -1,5 +1,6 @@
 //! The page that shows it all.
 
+use crate::commands::count::ERROR_BAR;
 use crate::commands::table::Table;
 
 const HEAD: &str = r#"<!DOCTYPE html>
@@ -14,13 +15,12 @@ th:first-child, td:first-child { text-align: left }
 svg { max-width: 100%; height: auto }
 </style>
 <h1>Double pendulum: speed against error</h1>
-<p>Costs are counted on emulated boards, errors are computed against the reference. All cycles are estimates from the
-published instruction timings; no silicon was measured.</p>
+<p>Costs are counted on emulated boards, errors are computed against the reference; no chip was measured here.</p>
 "#;
 
 /// The page: frames first, then the tables. It needs no other file.
 pub fn html(tables: &[Table], charts: &[(String, String)]) -> String {
-    let mut page = String::from(HEAD);
+    let mut page = format!("{HEAD}<p>{ERROR_BAR}</p>\n");
     for (_, svg) in charts {
         page.push_str(svg);
     }

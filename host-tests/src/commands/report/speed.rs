@@ -2,6 +2,7 @@
 
 use super::accuracy::Point;
 use super::costs::Cost;
+use crate::commands::count::ERROR_BAR;
 use crate::commands::table::{Table, small};
 use crate::emulator::boards::Board;
 
@@ -14,7 +15,7 @@ pub struct Priced {
     pub board: &'static Board,
     /// Executed instructions per simulated second.
     pub instructions: f64,
-    /// Estimated cycles per simulated second, the high figure.
+    /// Estimated cycles per simulated second.
     pub cycles: f64,
     /// Another point of the scene and board has neither more cycles nor a larger error, and less of one.
     pub dominated: bool,
@@ -27,7 +28,7 @@ pub fn priced(points: &[Point], costs: &[Cost]) -> Vec<Priced> {
         .flat_map(|cost| {
             points.iter().filter(|point| point.subject == cost.subject).map(|&point| {
                 let steps = f64::from(1 << point.halvings);
-                let (instructions, cycles) = (steps * cost.step.instructions, steps * cost.step.cycles_high);
+                let (instructions, cycles) = (steps * cost.step.instructions, steps * cost.step.cycles);
                 Priced { point, board: cost.board, instructions, cycles, dominated: false }
             })
         })
@@ -65,11 +66,11 @@ pub fn table(priced: &[Priced]) -> Table {
     Table {
         name: "speed-against-error",
         title: String::from("Speed against error"),
-        note: String::from(
+        note: format!(
             "Largest error of an angle, and of a bob's place on the panel, over 16 states of the scene, against the \
-             reference. Costs per simulated second; cycles are estimated (the high figure). Resolved: the step is at \
-             most the longest that resolves every motion of the scene's energy; a tame one may do with more. Dominated: something else \
-             is at least as good in both.",
+             reference. Costs per simulated second. {ERROR_BAR} Resolved: the step is at most the longest that resolves \
+             every motion of the scene's energy; a tame one may do with more. Dominated: something else is at least as \
+             good in both.",
         ),
         columns: vec![
             "scene",

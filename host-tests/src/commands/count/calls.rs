@@ -1,0 +1,121 @@
+//! The calls of a function in an executed stream: from its first instruction to its return, what it calls included.
+
+use std::collections::BTreeSet;
+use std::time::Duration;
+
+use super::image::{Function, Image};
+use super::instruction::Instruction;
+use super::pipeline::{Cost, Pipeline};
+use super::profile::Profile;
+use super::trace::Registers;
+use super::{CountError, Target};
+use crate::emulator::boards::Core;
+use crate::emulator::process::ProcessError;
+
+/// Every call of one of the functions that begin at some addresses.
+#[derive(Debug)]
+pub struct Calls<'a> {
+    image: &'a Image,
+    core: Core,
+    entries: BTreeSet<u32>,
+    running: Option<Call>,
+    profile: Profile,
+    ended: Vec<Cost>,
+}
+
+/// A call that is going on.
+#[derive(Clone, Copy, Debug)]
+struct Call {
+    /// The registers at its entry.
+    caller: Registers,
+    stream: Stream,
+    cost: Cost,
+}
+
+/// Instructions as they are executed.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Stream {
+    /// The registers before the instruction that is about to be executed.
+    before: Registers,
+    instruction: Instruction,
+    pipeline: Pipeline,
+}
+
+impl Stream {
+    /// Begins at an instruction.
+    pub fn begin(image: &Image, core: Core, before: Registers) -> Result<Self, CountError> {
+        Ok(Self { before, instruction: image.instruction_at(before.pc())?, pipeline: Pipeline::new(core) })
+    }
+
+    /// The pending instruction has been executed and led to `next`: its address, itself and what it cost.
+    pub fn execute(&mut self, next: &Registers) -> (u32, Instruction, Cost) {
+        let (address, instruction) = (self.before.pc(), self.instruction);
+        let branches = next.pc() != address + instruction.size();
+        (address, instruction, self.pipeline.execute(instruction, &self.before, branches))
+    }
+
+    /// What is about to be executed.
+    pub fn go_on(&mut self, image: &Image, next: Registers) -> Result<(), CountError> {
+        (self.before, self.instruction) = (next, image.instruction_at(next.pc())?);
+        Ok(())
+    }
+}
+
+impl<'a> Calls<'a> {
+    /// Waits for calls of what begins at `entries`.
+    pub fn of(image: &'a Image, core: Core, entries: BTreeSet<u32>) -> Self {
+        Self { image, core, entries, running: None, profile: Profile::default(), ended: Vec::new() }
+    }
+
+    /// Takes in the registers before the next instruction.
+    pub fn see(&mut self, registers: Registers) -> Result<(), CountError> {
+        match &mut self.running {
+            Some(call) => {
+                let executed = call.stream.execute(&registers);
+                self.profile.add(executed, call.caller.sp().saturating_sub(registers.sp()));
+                call.cost += executed.2;
+                if registers.pc() == call.caller.lr() & !1 && registers.sp() == call.caller.sp() {
+                    self.ended.push(call.cost);
+                    self.running = None;
+                } else {
+                    return call.stream.go_on(self.image, registers);
+                }
+            }
+            None if self.entries.contains(&registers.pc()) => {
+                let stream = Stream::begin(self.image, self.core, registers)?;
+                self.running = Some(Call { caller: registers, stream, cost: Cost::default() });
+            }
+            None => {}
+        }
+        Ok(())
+    }
+
+    /// What all the calls executed together.
+    pub fn into_profile(self) -> Profile {
+        self.profile
+    }
+}
+
+/// What the calls of a function cost.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CallCosts {
+    /// The function, as it was found.
+    pub function: Function,
+    /// Each call that returned, in order; one at least.
+    pub calls: Vec<Cost>,
+}
+
+/// Counts the calls of `function` until the program on `target` ends or the time is up.
+pub fn calls_of(target: &Target, function: &str, limit: Duration) -> Result<CallCosts, CountError> {
+    let function = target.image().function(function)?.clone();
+    let mut calls = Calls::of(target.image(), target.core(), BTreeSet::from([function.address]));
+    match target.trace("", limit, |registers| calls.see(registers)) {
+        Ok(_) | Err(CountError::Process(ProcessError::TimedOut { .. })) => {}
+        Err(error) => return Err(error),
+    }
+    match (calls.ended.is_empty(), calls.running.is_some()) {
+        (false, _) => Ok(CallCosts { function, calls: calls.ended }),
+        (true, true) => Err(CountError::NotReturned { function: function.name }),
+        (true, false) => Err(CountError::NotCalled { function: function.name }),
+    }
+}

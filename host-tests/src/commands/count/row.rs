@@ -1,0 +1,151 @@
+//! What a row of the timing table says of its instructions.
+
+use crate::emulator::boards::Core;
+
+/// What else decides the time of an instruction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Class {
+    /// Nothing.
+    Fixed,
+    /// A branch to an address that it holds itself: refills the pipeline sooner than one to an address in a register.
+    Branch,
+    /// Nothing, or no time at all after a 16-bit instruction.
+    IfThen,
+    /// A division of integers: the lengths of its operands.
+    Divide,
+    /// A single load: 1 cycle less if it follows another one and is pipelined with it.
+    Load,
+    /// A single store: likewise. 1 cycle more for a load that follows, unless the address has an offset in a register.
+    Store,
+    /// A load of two words, which is not pipelined.
+    LoadPair,
+    /// Loads, 1 cycle more for each core register in the list.
+    LoadList,
+    /// Stores, 1 cycle more for each core register in the list.
+    StoreList,
+    /// A load or store of as many words as the floating-point register list has, 1 cycle for each.
+    FloatList,
+    /// Floating-point arithmetic and conversions: a result that the next instruction may have to wait for.
+    Arithmetic(Reads),
+    /// A floating-point quotient or root: the unit is busy for as long, the core goes on after 1 cycle.
+    Aside(Reads),
+    /// Other uses of floating-point registers: consume results, give none that is late.
+    Move(Reads),
+}
+
+/// Which of the encoding's floating-point registers an instruction reads early.
+///
+/// A multiply-accumulate reads its addend `d` a cycle later than its factors, so it never waits for that one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reads {
+    /// None: a load or an immediate.
+    Nothing,
+    /// The destination field.
+    D,
+    /// The first operand.
+    N,
+    /// The half of a double register that the first operand's field names.
+    Half,
+    /// The second operand, or the only one.
+    M,
+    /// The destination field and the second operand: a comparison.
+    DM,
+    /// Both operands.
+    NM,
+}
+
+/// Where an encoding names a core register.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Field {
+    /// Bits 2 to 0 of a 16-bit instruction.
+    Low0,
+    /// Bits 5 to 3.
+    Low3,
+    /// Bits 8 to 6.
+    Low6,
+    /// Bits 10 to 8.
+    Low8,
+    /// Bit 7 and bits 2 to 0: any register.
+    Any,
+    /// The stack pointer, unnamed.
+    Sp,
+    /// Bits 3 to 0 of the second halfword.
+    Wide0,
+    /// Bits 11 to 8 of the second halfword.
+    Wide8,
+    /// Bits 15 to 12 of the second halfword.
+    Wide12,
+    /// Bits 3 to 0 of the first halfword.
+    Wide16,
+}
+
+impl Field {
+    /// The register that `word` names there.
+    pub fn register(self, word: u32) -> u32 {
+        match self {
+            Self::Low0 => word >> 16 & 7,
+            Self::Low3 => word >> 19 & 7,
+            Self::Low6 => word >> 22 & 7,
+            Self::Low8 => word >> 24 & 7,
+            Self::Any => word >> 16 & 7 | word >> 20 & 8,
+            Self::Sp => 13,
+            Self::Wide0 => word & 0xf,
+            Self::Wide8 => word >> 8 & 0xf,
+            Self::Wide12 => word >> 12 & 0xf,
+            Self::Wide16 => word >> 16 & 0xf,
+        }
+    }
+}
+
+/// One row: the instructions `word & mask == value`, their cycles and the core registers that matter for others' cycles.
+///
+/// `word` is the first halfword in the upper half and the second, if there is one, in the lower half.
+#[derive(Clone, Copy, Debug)]
+pub struct Row {
+    /// The manual's mnemonics.
+    pub name: &'static str,
+    pub(super) mask: u32,
+    pub(super) value: u32,
+    /// On the M3 and the M4.
+    pub(super) cycles: [u64; 2],
+    /// What else decides.
+    pub class: Class,
+    /// What a load or store makes its address of.
+    pub(super) address: &'static [Field],
+    /// What it writes.
+    pub(super) writes: &'static [Field],
+}
+
+impl Row {
+    /// The cycles before anything that [`Class`], a refill or the instruction before adds.
+    pub fn cycles(&self, core: Core) -> u64 {
+        match core {
+            Core::M3 => self.cycles[0],
+            Core::M4F => self.cycles[1],
+        }
+    }
+
+    /// Whether it leaves a new address in the register that it made its own of: pre- and post-indexed.
+    pub fn updates_base(&self) -> bool {
+        self.address.iter().any(|field| self.writes.contains(field))
+    }
+}
+
+/// An instruction that touches no memory.
+pub(super) const fn row(
+    name: &'static str,
+    mask: u32,
+    value: u32,
+    cycles: [u64; 2],
+    class: Class,
+    writes: &'static [Field],
+) -> Row {
+    Row { name, mask, value, cycles, class, address: &[], writes }
+}
+
+impl Row {
+    /// The same instruction with an address made of these registers.
+    pub(super) const fn at(self, address: &'static [Field]) -> Self {
+        Self { address, ..self }
+    }
+}
