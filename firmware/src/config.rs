@@ -33,7 +33,7 @@ pub const PLANNED: f64 = 10.0;
 /// What the search may cost, ticks of the processor's time: 20 s. It has about half of each tick.
 pub const PLANNING_TICKS: f32 = 20.0 * TICK_RATE as f32;
 /// A piece of the search, cycles, unless a single step is more: 0.4 ms of the Cortex-M3. The most expensive step, of order 8 in
-/// `f64`, takes it 3.5 ms.
+/// `f64`, takes it 2.7 ms.
 pub const PLANNING_PIECE: f32 = 20_000.0;
 /// What steps cost on this processor: with a floating-point unit or without.
 pub const COSTS: Costs = if cfg!(target_abi = "eabihf") { Costs::CORTEX_M4F } else { Costs::CORTEX_M3 };

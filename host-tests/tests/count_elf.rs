@@ -49,7 +49,7 @@ fn what_cannot_be_counted_is_said_in_a_line() {
         (host, "main", "no program for ARM but for"),
         (&elf, "nothing_of_this_name", "no function nothing_of_this_name"),
         (&elf, "counted_steps", "counted_steps may be any of "),
-        (&elf, "DefaultHandler_", "DefaultHandler_ was never called"),
+        (&elf, "__aeabi_ddiv", "__aeabi_ddiv was never called"),
         (&elf, "main", "main was called and never returned"),
     ] {
         let output = count(elf, function);

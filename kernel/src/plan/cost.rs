@@ -38,7 +38,7 @@ impl Method {
 
 /// Cycles of a step in each way on one target; of a frame for the closed form.
 ///
-/// The constants are the high estimates of `cargo count` for steps of 1/256 s, masses and lengths alike (test `count` holds
+/// The constants are the estimates of `cargo count` for steps of 1/256 s, masses and lengths alike (test `count` holds
 /// them to within a tenth).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Costs {
@@ -57,15 +57,15 @@ pub struct Costs {
 impl Costs {
     /// Cortex-M3, which has no floating-point unit.
     pub const CORTEX_M3: Self = Self {
-        closed_form: 5_545.0,
-        direction_plain: 9_803.0,
-        direction: 11_265.0,
-        angle: 16_661.0,
-        direction8: 139_600.0,
+        closed_form: 5_087.0,
+        direction_plain: 8_915.0,
+        direction: 10_210.0,
+        angle: 15_170.0,
+        direction8: 136_500.0,
     };
     /// Cortex-M4F, whose floating-point unit knows `f32` only. A plain step costs less than the closed form's two sincos.
     pub const CORTEX_M4F: Self =
-        Self { closed_form: 289.0, direction_plain: 160.4, direction: 214.0, angle: 376.0, direction8: 135_450.0 };
+        Self { closed_form: 267.0, direction_plain: 159.4, direction: 208.0, angle: 360.3, direction8: 129_650.0 };
 
     pub(super) fn check(&self) -> Result<(), Error> {
         check_positive(Parameter::Cost, Method::ALL.map(|way| self.of_frame(way, 1)))
