@@ -20,9 +20,10 @@ pub const FOLLOWED: [&Scene; 2] = [&SCENES[0], &LONG];
 const CHART: &str = "host-tests/pictures/report/speed-against-error.svg";
 /// What stands before and after a README's table.
 const MARKS: [&str; 2] = ["<!-- made by cargo write-report --readme -->\n", "<!-- so far -->\n"];
+/// Whether a README shows a row of the table.
+type Shows = fn(&str) -> bool;
 /// The READMEs that show rows of the table: all of them, and those of the first page.
-const READMES: [(&str, fn(&str) -> bool); 2] =
-    [("host-tests/README.md", |_| true), ("README.md", |row| TELLING.contains(&row))];
+const READMES: [(&str, Shows); 2] = [("host-tests/README.md", |_| true), ("README.md", |row| TELLING.contains(&row))];
 /// What exists, what the page prints, and what to take on a chip with a floating-point unit.
 const TELLING: [&str; 3] =
     ["C textbook: CMSIS-DSP's arm_sin_f32 and arm_cos_f32", "f32-textbook-libm", "f32-direction-compensated"];
