@@ -29,7 +29,8 @@ struct Arguments {
     /// Only this board; else the two with a panel, a Cortex-M3 and a Cortex-M4F; with --elf lm3s6965evb-m4
     #[arg(long, value_name = "NAME", value_parser = cli::choice(&BOARDS, |board| board.name))]
     on: Option<&'static Board>,
-    /// Count a function of this program instead; it ends itself by semihosting, or is ended after --seconds
+    /// Count a function of this program instead, with what interrupts it; the program ends itself by semihosting, or is
+    /// ended after --seconds
     #[arg(long, value_name = "FILE", requires = "function", conflicts_with = "arithmetic")]
     elf: Option<PathBuf>,
     /// The function of that program: mangled, demangled, or a part of its name that no other has

@@ -1,4 +1,5 @@
-//! The calls of a function in an executed stream: from its first instruction to its return, what it calls included.
+//! The calls of a function in an executed stream: from its first instruction to its return, with all that it calls and that
+//! interrupts it.
 
 use std::collections::BTreeSet;
 use std::time::Duration;
