@@ -26,6 +26,12 @@ pub const LEAST_SPEED: f64 = 0.01;
 /// At 4 ticks of the scene per tick even the Cortex-M3 still shows most frames.
 pub const GREATEST_SPEED: f64 = 4.0;
 
+// ---- The promise ----------------------------------------------------------------------------------------------------
+
+/// A frame is right, on the panel's clock, in the plan and in the log alike, as long as nothing in it is farther, pixels,
+/// from where the exact motion of the same start has it.
+pub const HALF_PIXEL: f32 = 0.5;
+
 // ---- The plan -------------------------------------------------------------------------------------------------------
 
 /// For how long each scene is planned, s: longer than the motion of the liveliest can be predicted in `f32`.
@@ -35,8 +41,23 @@ pub const PLANNING_TICKS: f32 = 20.0 * TICK_RATE as f32;
 /// A piece of the search, cycles, unless a single step is more: 0.4 ms of the Cortex-M3. The most expensive step, of order 8 in
 /// `f64`, takes it 2.7 ms.
 pub const PLANNING_PIECE: f32 = 20_000.0;
+/// The share of the time between frames that computing one may take; the rest is for drawing and sending it.
+pub const FRAME_SHARE: f32 = 0.5;
+/// Cycles of a step on a Cortex-M3, which has no floating-point unit: the estimates of `cargo count` for steps of
+/// 1/256 s, masses and lengths alike (test `count` holds them to within a tenth).
+pub const CORTEX_M3: Costs = Costs {
+    closed_form: 5_087.0,
+    direction_plain: 8_915.0,
+    direction: 10_210.0,
+    angle: 15_170.0,
+    direction8: 136_500.0,
+};
+/// The same on a Cortex-M4F, whose floating-point unit knows `f32` only. A plain step costs less than the closed form's two
+/// sincos.
+pub const CORTEX_M4F: Costs =
+    Costs { closed_form: 267.0, direction_plain: 159.4, direction: 208.0, angle: 360.3, direction8: 129_650.0 };
 /// What steps cost on this processor: with a floating-point unit or without.
-pub const COSTS: Costs = if cfg!(target_abi = "eabihf") { Costs::CORTEX_M4F } else { Costs::CORTEX_M3 };
+pub const COSTS: Costs = if cfg!(target_abi = "eabihf") { CORTEX_M4F } else { CORTEX_M3 };
 /// Processor cycles in a tick where no board says otherwise: 50 MHz.
 pub const TICK_CYCLES: u32 = 50_000_000 / TICK_RATE;
 
@@ -45,7 +66,9 @@ pub const TICK_CYCLES: u32 = 50_000_000 / TICK_RATE;
 /// Length of either rod, m: a period of about 2 s, which is pleasant to watch.
 pub const ROD: f32 = 1.0;
 /// Gravitational acceleration, m/s^2.
-pub const GRAVITY: f32 = 9.81;
+pub const GRAVITY: f64 = 9.81;
+/// The source page's, m/s^2: where its own figures are shown, this is.
+pub const PAGE_GRAVITY: f64 = 9.8;
 /// Mass ratio mu = m2/m1 at power-on.
 pub const FIRST_MASS_RATIO: f32 = 1.0;
 /// Start angle of both rods at power-on, degrees: well into the chaotic regime.

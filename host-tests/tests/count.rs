@@ -3,7 +3,8 @@
 use std::process::Command;
 
 use double_pendulum::Parameters;
-use double_pendulum::plan::{Costs, Method};
+use double_pendulum::plan::Method;
+use firmware::config::{CORTEX_M3, CORTEX_M4F};
 use firmware::measure::Request;
 use host_tests::commands::count::goal::GOALS;
 use host_tests::commands::count::{FULL_CYCLE, Target, affordable_steps, step_cost};
@@ -74,8 +75,8 @@ fn a_step_costs_no_more_than_its_goal() {
 fn a_step_costs_what_the_planner_thinks() {
     let within = 0.9..=1.1;
     for target in &targets() {
-        let costs = if target.core() == Core::M3 { Costs::CORTEX_M3 } else { Costs::CORTEX_M4F };
-        for (way, subject) in [
+        let costs = if target.core() == Core::M3 { CORTEX_M3 } else { CORTEX_M4F };
+        for (method, subject) in [
             (Method::ClosedForm, "f32-closed-form"),
             (Method::DirectionPlain, "f32-direction-plain"),
             (Method::Direction, "f32-direction-compensated"),
@@ -85,7 +86,7 @@ fn a_step_costs_what_the_planner_thinks() {
             let request = Request { angles: [0.5, 0.5], ..request(subject, FULL_CYCLE) };
             let steps = affordable_steps(target, &request).unwrap_or_else(|error| panic!("{error}"));
             let cost = step_cost(target, &Request { steps, ..request }).unwrap_or_else(|error| panic!("{error}"));
-            let share = f64::from(costs.of_frame(way, 1)) / cost.cycles;
+            let share = f64::from(costs.of_frame(method, 1)) / cost.cycles;
             assert!(within.contains(&share), "{subject} on {}: {share} of {cost:?}", target.board.name);
         }
     }

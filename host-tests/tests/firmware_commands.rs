@@ -8,13 +8,13 @@ use firmware::app::controls::NoButtons;
 use firmware::app::{App, Event};
 use firmware::config::{DT, MOST_MESSAGES_PER_TICK, PLANNED, STEPS_PER_TICK, TICK_RATE};
 use firmware::display::NoDisplay;
-use firmware::motion::planner::{Finding, way_code};
+use firmware::motion::planner::Finding;
 use firmware::motion::settings::Settings;
 use firmware::protocol::Field;
 use firmware::protocol::Unit;
 use firmware::protocol::{
     Ask, AskPlan, Choose, Decoder, Done, Frame, MAX_WIRE, Message, Pause, Planned, Refused, Restart, Set, Status, Step,
-    encode,
+    encode, method_code,
 };
 use firmware::scenes::SceneName;
 use host_tests::emulator::host::sheets;
@@ -210,10 +210,10 @@ fn the_plan_is_found_piece_by_piece_and_told_when_asked() {
     let [Event::Found(Finding::Plan(plan)), Event::Found(Finding::Shown { shown, plan: again })] = findings[..] else {
         panic!("{findings:?}")
     };
-    assert_eq!(plan, again);
+    assert_eq!(Some(plan), again);
     let answer = asked(&mut app);
     assert_eq!((answer.found, answer.horizon, answer.shown_horizon), (ALL, plan.horizon, shown.horizon));
-    assert_eq!((answer.shown_way, answer.shown_steps), (way_code(Method::Direction), STEPS_PER_TICK));
+    assert_eq!((answer.shown_method, answer.shown_steps), (method_code(Method::Direction), STEPS_PER_TICK));
     assert!(answer.horizon > answer.shown_horizon, "the page's first motion is chaotic: {answer:?}");
 
     app.receive(wire(&set(Field::Angle, 20.0, Unit::Degree)), |_| ());

@@ -1,22 +1,24 @@
-//! The honest clock against the exact motion: when the frame really ceases to be right to half a pixel.
+//! The accuracy clock against the exact motion, and the plan against both: until when a frame really is right to half a pixel.
 
 use std::thread;
 
-use double_pendulum::plan::{self, Budget, Costs, Limit, Search};
+use double_pendulum::plan::{self, Budget, Limit, Search};
 use double_pendulum::{Parameters, Pendulum};
-use firmware::config::{MASS_RATIOS, REACH, TICK_RATE};
+use firmware::config::{CORTEX_M4F, HALF_PIXEL, MASS_RATIOS, REACH, TICK_RATE};
 use firmware::graphics::view::Place;
-use firmware::motion::planner::scene;
+use firmware::motion::planner::problem;
 use firmware::motion::settings::Settings;
-use firmware::scenes::horizon::HALF_PIXEL;
 use firmware::scenes::{AnyScene, SceneName};
 use host_tests::commands::plan::median;
 use host_tests::emulator::host::Show;
 use host_tests::oracle::reference::Reference;
-use host_tests::oracle::tolerances::{PLAN_AND_CLOCK, PLAN_SHARE, TRUST_LATE, TRUST_TYPICAL};
+use host_tests::oracle::tolerances::{CLOCK_LATE, CLOCK_TYPICAL, PLAN_AND_CLOCK, PLAN_AND_CLOCK_EACH, PLAN_SHARE};
 
 /// How long each motion is followed, s. Of those that are still right then, the clock must say so, too.
 const FOLLOWED: f64 = 20.0;
+
+/// Ticks from one comparison with the exact motion to the next.
+const EVERY: u32 = 2;
 
 #[derive(Clone, Debug)]
 struct Case {
@@ -26,13 +28,13 @@ struct Case {
     reach: f32,
 }
 
-/// When the clock says that the frame ceases to be right, and when it really does, s.
+/// Until when the clock says that the frame is right, and until when it really is, s.
 #[derive(Clone, Debug)]
 struct Horizon {
     case: Case,
     shown: f64,
     exact: f64,
-    /// Until when the planner, looking ahead, promises it.
+    /// Until when the plan, looking ahead, promises it.
     promised: f64,
 }
 
@@ -65,7 +67,7 @@ fn horizon(case: &Case) -> Horizon {
         scene.tick();
         let time = f64::from(tick) / f64::from(TICK_RATE);
         let report = scene.report();
-        if exact.is_infinite() && tick % 2 == 0 {
+        if exact.is_infinite() && tick % EVERY == 0 {
             reference.advance_to(time);
             let truth = reference.motion();
             let bobs = pendulum.positions(truth.angles());
@@ -73,22 +75,27 @@ fn horizon(case: &Case) -> Horizon {
             let distance = |i: usize| scale * (bobs[i].x - shown[i].x).hypot(bobs[i].y - shown[i].y);
             let is_right = distance(0).max(distance(1)) <= widened(HALF_PIXEL);
             if !is_right {
-                exact = time;
+                exact = f64::from(tick - EVERY) / f64::from(TICK_RATE);
             }
-        } else if exact.is_finite() && (report.horizon.is_finite() || time > TRUST_LATE * exact) {
+        } else if exact.is_finite() && (report.horizon.is_finite() || time > CLOCK_LATE * exact) {
             break;
         }
     }
-    Horizon { case: case.clone(), shown: scene.report().horizon.into(), exact, promised: promised(case) }
+    Horizon {
+        case: case.clone(),
+        shown: scene.report().horizon.into(),
+        exact,
+        promised: promised(case.name, &case.settings),
+    }
 }
 
-/// Until when the kernel's planner says that the way is right in which the scene is shown; infinity if all the time.
-fn promised(case: &Case) -> f64 {
-    let playing = AnyScene::new(case.name, &case.settings).expect("good settings");
+/// Until when the kernel's planner says that the method is right by which the scene is shown; infinity if all the time.
+fn promised(name: SceneName, settings: &Settings) -> f64 {
+    let playing = AnyScene::new(name, settings).expect("good settings");
     let shown = playing.shown().expect("it shows a motion");
-    let scene = plan::Problem { duration: FOLLOWED, ..scene(&case.settings, &shown) };
+    let scene = plan::Problem { duration: FOLLOWED, ..problem(settings, &shown) };
     let budget = Budget { frame: 1e9, planning: 1e12 };
-    let mut search = Search::of(shown.way, shown.steps, &scene, &Costs::CORTEX_M4F, &budget).expect("a good scene");
+    let mut search = Search::of(shown.method, shown.steps, &scene, &CORTEX_M4F, &budget).expect("a good scene");
     loop {
         if let Some(plan) = search.advance(f32::INFINITY).expect("a good scene") {
             return if plan.limit == Limit::End { f64::INFINITY } else { plan.horizon };
@@ -120,7 +127,7 @@ fn the_clock_is_never_late_and_typically_close_and_the_planner_agrees() {
             case.settings.mass_ratio(),
             case.settings.degrees
         );
-        if *shown > TRUST_LATE * exact {
+        if *shown > CLOCK_LATE * exact {
             late.push(format!("{case:?}: shown {shown}, exact {exact}"));
         }
         if exact.is_finite() {
@@ -146,10 +153,27 @@ fn the_clock_is_never_late_and_typically_close_and_the_planner_agrees() {
         100.0 * typical,
         100.0 * passed[passed.len() - 1]
     );
-    assert!(typical <= TRUST_TYPICAL, "{typical}");
+    assert!(typical <= CLOCK_TYPICAL, "{typical}");
 
     let (of_exact, of_clock) = (spread(ratios.iter().map(|ratio| ratio.0)), spread(ratios.iter().map(|ratio| ratio.1)));
     println!("promised over exact {of_exact:.2?}, over the clock {of_clock:.2?} (least, median, greatest)");
     assert!(of_exact[1] >= PLAN_SHARE && of_exact[2] <= 1.0, "{of_exact:?}");
     assert!((of_clock[1] - 1.0).abs() <= PLAN_AND_CLOCK, "{of_clock:?}");
+}
+
+/// Both promise one thing: half a pixel about the exact motion, whatever the model that is shown. The clock of the scene
+/// that shows plain sums is theirs, its plan that of the compensated ones, so it is left out.
+#[test]
+fn the_clock_and_the_plan_agree_on_every_scene() {
+    let tick = 1.0 / f64::from(TICK_RATE);
+    let ticks = (FOLLOWED * f64::from(TICK_RATE)) as u32;
+    for &name in SceneName::ALL.iter().filter(|&&name| ![SceneName::Frequencies, SceneName::Upright].contains(&name)) {
+        let settings = name.first_settings();
+        let mut show = Show::new(name, &settings).expect("a scene of the catalogue");
+        (0..ticks).for_each(|_| show.tick());
+        let (clock, promised) = (f64::from(show.report().horizon), promised(name, &settings));
+        println!("{:12} clock {clock:7.3} plan {promised:7.3}", name.name());
+        let is_one = clock == promised || (clock - promised).abs() <= (PLAN_AND_CLOCK_EACH * clock).max(2.0 * tick);
+        assert!(is_one, "{}: the clock says {clock} s, the plan {promised} s", name.name());
+    }
 }

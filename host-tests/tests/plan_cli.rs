@@ -13,7 +13,7 @@ fn said(arguments: &str) -> String {
 }
 
 #[test]
-fn it_says_the_way_the_step_and_the_horizon() {
+fn it_says_the_method_the_step_and_the_horizon() {
     let small = said("--angles 3,3 --degrees --height 64 --duration 10");
     assert!(small.contains("normal modes in closed form") && small.contains("until 10.00 s of 10 s"), "{small}");
     let large = said("--angles 90,90 --degrees --duration 10 --target m4f");
@@ -22,6 +22,25 @@ fn it_says_the_way_the_step_and_the_horizon() {
     assert!(figure7.contains("errors grow until they show") && figure7.contains("of 30 s"), "{figure7}");
     let light = said("--masses 1,1000 --angles 30,30 --degrees --duration 1");
     assert!(light.contains("no rod can turn over"), "{light}");
+}
+
+/// Where nothing affordable is right in any frame, that is all there is to say: no method, no share of the chip, no horizon.
+#[test]
+fn it_says_that_nothing_holds() {
+    let nothing = said("--angles 90,90 --degrees --masses 1,1000 --height 240 --duration 20");
+    assert!(nothing.starts_with("nothing  that a Cortex-M3 at 50 MHz can afford"), "{nothing}");
+    for absent in ["method", "horizon", "%", "0.00 s"] {
+        assert!(!nothing.contains(absent), "{absent}: {nothing}");
+    }
+}
+
+/// Nothing moves without gravity, from rest; and what is shown if nothing is said is the boards' first start.
+#[test]
+fn it_has_words_for_rest_and_a_start_of_its_own() {
+    let rest = said("--gravity 0");
+    assert!(rest.contains("nothing moves") && !rest.contains("1/0 s"), "{rest}");
+    assert!(said("").contains("a rod may turn over"), "120 degrees");
+    assert_eq!(said(""), said("--angles 120,120 --degrees --gravity 9.81"));
 }
 
 #[test]

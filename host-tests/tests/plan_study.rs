@@ -1,7 +1,9 @@
 //! The planner's promises and margins against the exact motion, over scenes of all kinds.
 
 use double_pendulum::plan::Problem;
-use host_tests::commands::plan::{Case, Class, GROSS, M4F, Sample, doubt, fit, margins, median, scenes, study};
+use host_tests::commands::plan::{
+    Case, Class, GROSS, M4F, Sample, fit, margins, median, reference_error, scenes, study,
+};
 use host_tests::oracle::tolerances::{JUDGE, PLAN_KEPT, PLAN_SHARE};
 
 /// Other scenes than the report's.
@@ -12,9 +14,9 @@ const ALL: usize = 170;
 const LIVELY: usize = 30;
 /// How many must cease to be right, so that the median of their shares says something.
 const LEAST_ENDING: usize = 8;
-/// Lively scenes for the margins, and how many looks must have come to half a pixel.
+/// Lively scenes for the margins, and how many passes must have come to half a pixel.
 const FITTED: usize = 12;
-const LEAST_LOOKS: usize = 8;
+const LEAST_PASSES: usize = 8;
 
 fn all() -> impl Iterator<Item = Problem> {
     scenes(SEED, 2.0..3.0).take(ALL)
@@ -46,19 +48,19 @@ fn the_judge_is_right_where_it_judges() {
     let cases = study(lively(LIVELY), &M4F, || ()).expect("good scenes");
     let ending: Vec<&Case> = cases.iter().filter(|case| case.ends_early()).take(LEAST_ENDING).collect();
     assert_eq!(ending.len(), LEAST_ENDING);
-    let doubts = ending.iter().map(|case| doubt(&case.scene, case.verdict.horizon));
-    let worst = doubts.fold(0.0, f64::max);
+    let errors = ending.iter().map(|case| reference_error(&case.scene, case.verdict.horizon));
+    let worst = errors.fold(0.0, f64::max);
     println!("two references differ by {worst:.1e} pixels");
     assert!(worst <= JUDGE, "{worst:e} pixels");
 }
 
-/// The error of a look is never more than its bound, and the bound not many times the error.
+/// The error of a pass is never more than its bound, and the bound not many times the error.
 #[test]
 fn the_margins_cover_what_is_measured() {
     let samples = fit(lively(FITTED), || ()).expect("good scenes");
     println!("{}", margins(&samples).markdown());
     let ended: Vec<&Sample> = samples.iter().filter(|sample| sample.ended()).collect();
-    assert!(ended.len() >= LEAST_LOOKS, "only {}", ended.len());
+    assert!(ended.len() >= LEAST_PASSES, "only {}", ended.len());
     assert!(ended.iter().all(|sample| sample.ratio() <= 1.0), "{ended:#?}");
     assert!(median(ended.iter().map(|sample| sample.ratio())) >= 0.2, "{ended:#?}");
 }

@@ -3,9 +3,9 @@
 mod support;
 
 use double_pendulum::plan::{Budget, Costs, Plan, Search};
-use firmware::config::TICK_RATE;
-use firmware::motion::planner::{limit_code, scene, way_code};
-use firmware::protocol::{AskPlan, Choose, Frame, Planned};
+use firmware::config::{CORTEX_M3, CORTEX_M4F, HALF_PIXEL, TICK_RATE};
+use firmware::motion::planner::problem;
+use firmware::protocol::{AskPlan, Choose, Frame, Planned, limit_code, method_code};
 use firmware::scenes::{AnyScene, SceneName};
 use host_tests::emulator::boards::{BOARDS, Board};
 use host_tests::emulator::qemu::{Machine, QemuError};
@@ -35,27 +35,27 @@ fn expected(name: SceneName, costs: &Costs, answer: &Planned) -> Planned {
     let settings = name.first_settings();
     let playing = AnyScene::new(name, &settings).expect("a scene of the catalogue");
     let Some(shown) = playing.shown() else { return Planned { request: answer.request, ..Planned::default() } };
-    let scene = scene(&settings, &shown);
+    let scene = problem(&settings, &shown);
     let budget = Budget { frame: answer.frame_budget, planning: answer.planning_budget };
     let plan = found(Search::new(&scene, costs, &budget).expect("a good scene"));
-    let seen = found(Search::of(shown.way, shown.steps, &scene, costs, &budget).expect("a good scene"));
+    let seen = found(Search::of(shown.method, shown.steps, &scene, costs, &budget).expect("a good scene"));
     Planned {
         found: ALL,
-        way: way_code(plan.way),
+        method: method_code(plan.method),
         steps: plan.steps,
-        step: plan.step,
-        error: plan.error,
-        cycles: plan.cycles,
+        dt: plan.dt,
+        error: HALF_PIXEL * plan.error,
+        cycles: plan.cost,
         horizon: plan.horizon,
         limit: limit_code(plan.limit),
-        planning: plan.planning,
-        shown_way: way_code(seen.way),
+        planning: plan.spent,
+        shown_method: method_code(seen.method),
         shown_steps: seen.steps,
-        shown_error: seen.error,
-        shown_cycles: seen.cycles,
+        shown_error: HALF_PIXEL * seen.error,
+        shown_cycles: seen.cost,
         shown_horizon: seen.horizon,
         shown_limit: limit_code(seen.limit),
-        height: scene.height,
+        height: shown.height.into(),
         duration: scene.duration,
         ..*answer
     }
@@ -87,11 +87,11 @@ fn planned(machine: &mut Machine, board: &Board, name: SceneName) -> Result<(Pla
 #[test]
 fn every_scene_is_planned_between_the_frames() -> Result<(), QemuError> {
     BOARDS.iter().filter(|board| board.has_panel).try_for_each(|board| {
-        let costs = if board.target.ends_with("hf") { Costs::CORTEX_M4F } else { Costs::CORTEX_M3 };
+        let costs = if board.target.ends_with("hf") { CORTEX_M4F } else { CORTEX_M3 };
         let (toolchain, elf) = (toolchain(), application(board));
         let mut machine = Machine::start(&settings(&toolchain, board, &elf))?;
         machine.serial.next::<Frame>().ok_or_else(|| machine.silence())?;
-        let names = if costs == Costs::CORTEX_M3 { &ON_M3 } else { SceneName::ALL };
+        let names = if costs == CORTEX_M3 { &ON_M3 } else { SceneName::ALL };
         for &name in names {
             machine.serial.send(&Choose { request: 1, scene: name.code() })?;
             while machine.serial.next::<Frame>().ok_or_else(|| machine.silence())?.scene != name.code() {}

@@ -38,16 +38,6 @@ pub enum Parameter {
     Dt,
     /// Ratio of the normal frequencies, fast over slow.
     FrequencyRatio,
-    /// Height of the display, pixels.
-    Height,
-    /// How long a scene is shown, s.
-    Duration,
-    /// Frames per second.
-    Rate,
-    /// What a step costs, cycles.
-    Cost,
-    /// What may be spent, cycles.
-    Budget,
     /// The energy, J.
     Energy,
 }
@@ -69,11 +59,6 @@ impl fmt::Display for Parameter {
             Parameter::P2 => "p2",
             Parameter::Dt => "dt",
             Parameter::FrequencyRatio => "frequency ratio",
-            Parameter::Height => "height",
-            Parameter::Duration => "duration",
-            Parameter::Rate => "rate",
-            Parameter::Cost => "cost",
-            Parameter::Budget => "budget",
             Parameter::Energy => "energy",
         })
     }

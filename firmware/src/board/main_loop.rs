@@ -15,6 +15,7 @@ use super::serial::receiver::Receiver;
 use crate::app::controls::Buttons;
 use crate::app::warm_restart::{Journal, WarmRestart};
 use crate::app::{App, Event};
+use crate::config::HALF_PIXEL;
 use crate::display::Display;
 use crate::graphics::frame_buffers::FrameBuffers;
 use crate::motion::planner::Finding;
@@ -143,23 +144,30 @@ fn log<Panel: Debug, Link: Debug>(event: Event<Panel, Link>) {
         Event::Lost { bytes, total } => defmt::warn!("{} received bytes lost, {} since reset", bytes, total),
         Event::Stopped(error) => defmt::error!("stopped: {}", error),
         Event::StepTooLong(step) => defmt::warn!("the step is too long for this energy, {} s would do", step),
-        Event::Found(Finding::Plan(Plan { way, steps, error, cycles, horizon, limit, .. })) => defmt::info!(
+        Event::Found(Finding::Plan(Plan { method, steps, error, cost, horizon, limit, .. })) => defmt::info!(
             "plan: {=str}, {} steps to a frame, {} pixels off until {} s ({=str}), {} cycles a frame",
-            way.name(),
+            method.name(),
             steps,
-            error,
+            HALF_PIXEL * error,
             horizon,
             limit.name(),
-            cycles,
+            cost,
         ),
-        Event::Found(Finding::Shown { shown: Plan { way, steps, error, cycles, horizon, .. }, plan }) => defmt::info!(
+        Event::Found(Finding::NothingHolds(limit)) => {
+            defmt::info!("plan: nothing affordable is right to half a pixel in any frame ({=str})", limit.name());
+        }
+        Event::Found(Finding::Shown { shown: Plan { method, steps, error, cost, horizon, .. }, plan }) => defmt::info!(
             "shown: {=str}, {} steps to a frame, {} pixels off until {} s ({=str}), {} cycles a frame",
-            way.name(),
+            method.name(),
             steps,
-            error,
+            HALF_PIXEL * error,
             horizon,
-            if plan.horizon > horizon { "the plan is right for longer" } else { "as long as the plan" },
-            cycles,
+            if plan.is_some_and(|plan| plan.horizon > horizon) {
+                "the plan is right for longer"
+            } else {
+                "as long as the plan"
+            },
+            cost,
         ),
         Event::Found(Finding::Refused(error)) => defmt::warn!("no plan: {}", error),
         Event::Asked => defmt::info!("computing a motion on request"),

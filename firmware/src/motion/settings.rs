@@ -26,7 +26,7 @@ impl Default for Settings {
 impl Settings {
     /// The page's pendulum: equal rods, let go from rest with both rods at one angle.
     pub fn equal_rods(mass_ratio: f32, degrees: f32) -> Self {
-        let parameters = Parameters::equal_rods(mass_ratio, ROD, GRAVITY);
+        let parameters = Parameters::equal_rods(mass_ratio, ROD, GRAVITY as f32);
         Self { parameters, degrees: [degrees; 2], velocities: [0.0; 2] }
     }
 

@@ -20,7 +20,7 @@ pub use field::Field;
 pub use frame::Frame;
 pub use layout::{Message, WireNumber};
 pub use link::{Decoder, LinkError, MAX_FIELDS, MAX_WIRE, VERSION, encode, frame};
-pub use plan::{AskPlan, Planned};
+pub use plan::{AskPlan, NO_METHOD, Planned, limit_code, method_code};
 pub use restarted::Restarted;
 pub use simulate::{Refused, Sample, Simulate, StepTooLong};
 pub use unit::Unit;

@@ -30,15 +30,17 @@ const AMPLITUDE: f32 = 12.0;
 /// Equal rods with the slow mode at its turning point and the fast mode on its way through rest, both with one
 /// amplitude of angle 2.
 pub fn closing(mass_ratio: f32) -> Settings {
-    let parameters = Parameters::equal_rods(mass_ratio, ROD, GRAVITY);
+    let gravity = GRAVITY as f32;
+    let parameters = Parameters::equal_rods(mass_ratio, ROD, gravity);
     let shape = libm::sqrtf((1.0 + mass_ratio) / mass_ratio);
     let root = libm::sqrtf((1.0 + mass_ratio) * mass_ratio);
-    let fast = libm::sqrtf(GRAVITY / ROD * (1.0 + mass_ratio + root));
+    let fast = libm::sqrtf(gravity / ROD * (1.0 + mass_ratio + root));
     let velocity = fast * AMPLITUDE.to_radians();
     Settings { parameters, degrees: [AMPLITUDE / shape, AMPLITUDE], velocities: [-velocity / shape, velocity] }
 }
 
-/// The fast mode's share of angle 2 over the slow mode's: the linear motion on the left, the exact one on the right.
+/// The fast mode's share of angle 2 over the slow mode's: the linear motion on the left, the exact one on the right. The
+/// clock is that of the right one; what the left one misses is what the scene is about.
 #[derive(Clone, Debug)]
 pub struct Beats {
     settings: Settings,
@@ -49,7 +51,7 @@ pub struct Beats {
     /// Pixels per radian.
     scale: f32,
     spots: [Spot; 2],
-    trust: AccuracyHorizon,
+    horizon: AccuracyHorizon,
 }
 
 impl Beats {
@@ -92,8 +94,8 @@ impl Scene for Beats {
         let greatest = amplitude(linear.fast(), shape[0]).max(amplitude(linear.slow(), shape[1]));
         let scale = if greatest > 0.0 { REACH / greatest } else { 0.0 };
         let spots = [Spot::default(); 2];
-        let trust = AccuracyHorizon::new(&settings.parameters, &simulation.state())?;
-        let mut scene = Self { settings: *settings, simulation, linear, shape, scale, spots, trust };
+        let horizon = AccuracyHorizon::new(&settings.parameters, &simulation.state())?;
+        let mut scene = Self { settings: *settings, simulation, linear, shape, scale, spots, horizon };
         scene.spots = scene.spots();
         Ok(scene)
     }
@@ -106,10 +108,10 @@ impl Scene for Beats {
             ink.add(Stroke { from, to, radius: HALF_WIDTH });
         }
         self.spots = spots;
-        let mut trust = self.trust;
+        let mut horizon = self.horizon;
         let [linear, _] = places;
-        trust.tick(self.simulation.time(), places, |directions| [linear, self.exact_place(directions)]);
-        self.trust = trust;
+        horizon.tick(self.simulation.time(), places, |directions| [linear, self.exact_place(directions)]);
+        self.horizon = horizon;
     }
 
     fn draw(&self, report: &Report, canvas: &mut Canvas) {
@@ -133,7 +135,7 @@ impl Scene for Beats {
     }
 
     fn report(&self) -> Report {
-        Report::of(&self.simulation, self.trust.until())
+        Report::of(&self.simulation, self.horizon.until())
     }
 
     fn shown(&self) -> Option<Shown> {

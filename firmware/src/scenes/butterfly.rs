@@ -1,4 +1,4 @@
-//! The butterfly: twins that start a millionth of a radian apart, and how that grows.
+//! The butterfly: two pendulums that start a millionth of a radian apart, and how that grows.
 
 use double_pendulum::{Error, State};
 
@@ -47,7 +47,7 @@ pub struct Butterfly {
     apart: f64,
     /// ln(separation/`apart`), as last put down.
     e_foldings: f32,
-    trust: AccuracyHorizon,
+    horizon: AccuracyHorizon,
     bobs: [Spot; 2],
     strip: Strip<1, PLOT_COLUMNS>,
 }
@@ -76,7 +76,7 @@ impl Scene for Butterfly {
         let view = View::new(&settings.parameters, Place::HALVES[0]);
         let mut scene = Self {
             second: DirectionStepper::new(&settings.parameters, &beside, DT)?,
-            trust: AccuracyHorizon::new(&settings.parameters, &start)?,
+            horizon: AccuracyHorizon::new(&settings.parameters, &start)?,
             bobs: view.spots(first.directions()),
             first,
             view,
@@ -96,7 +96,7 @@ impl Scene for Butterfly {
         let ([_, from], [_, to]) = (self.bobs, bobs);
         ink.add(Stroke { from, to, radius: HALF_WIDTH });
         self.bobs = bobs;
-        self.trust.tick(self.first.time(), shown, |directions| self.view.bobs(directions));
+        self.horizon.tick(self.first.time(), shown, |directions| self.view.bobs(directions));
         if self.first.step().is_multiple_of(STEPS_PER_COLUMN) {
             self.put_down();
         }
@@ -122,10 +122,10 @@ impl Scene for Butterfly {
     }
 
     fn report(&self) -> Report {
-        Report::of(&self.first, self.trust.until())
+        Report::of(&self.first, self.horizon.until())
     }
 
     fn shown(&self) -> Option<Shown> {
-        Shown::swing(Place::HALVES[0].reach)
+        Shown::pendulum(Place::HALVES[0].reach)
     }
 }

@@ -2,7 +2,7 @@
 
 use double_pendulum::{Error, Parameters, State, rk4};
 
-use crate::config::{DT, STEPS_PER_TICK};
+use crate::config::{DT, PAGE_GRAVITY, STEPS_PER_TICK};
 use crate::graphics::brush::{Spot, Stroke};
 use crate::graphics::canvas::{Canvas, WIDTH};
 use crate::graphics::fade_layer::FadeLayer;
@@ -19,12 +19,14 @@ use crate::scenes::scene::{Report, Scene};
 /// Half the width of a trace, subpixels.
 const HALF_WIDTH: u8 = 30;
 
-/// The figure's start: mass ratio 2.75, both rods at 171 degrees, l = 1 m, g = 9.8 m/s^2, let go from rest.
+/// The figure's start: mass ratio 2.75, both rods at 171 degrees, let go from rest. The page gives no more; gravity is that
+/// of its worked example, and the rods are 1 m.
 pub fn figure() -> Settings {
-    Settings { parameters: Parameters::equal_rods(2.75, 1.0, 9.8), degrees: [171.0; 2], velocities: [0.0; 2] }
+    let parameters = Parameters::equal_rods(2.75, 1.0, PAGE_GRAVITY as f32);
+    Settings { parameters, degrees: [171.0; 2], velocities: [0.0; 2] }
 }
 
-/// Both motions with bob 2's whole trace, and their energies. The honest clock is that of the right equations.
+/// Both motions with bob 2's whole trace, and their energies. The clock is that of the right equations.
 #[derive(Clone, Debug)]
 pub struct Figure7 {
     right: Simulation,
@@ -32,7 +34,7 @@ pub struct Figure7 {
     views: [View; 2],
     /// The bobs of both pendulums.
     bobs: [[Spot; 2]; 2],
-    trust: AccuracyHorizon,
+    horizon: AccuracyHorizon,
 }
 
 impl Figure7 {
@@ -57,8 +59,8 @@ impl Scene for Figure7 {
         let views = Place::HALVES.map(|place| View::new(&settings.parameters, place));
         let start = right.state();
         let misprinted = Misprinted::new(&settings.parameters, &start);
-        let trust = AccuracyHorizon::new(&settings.parameters, &start)?;
-        let mut scene = Self { right, misprinted, views, bobs: Default::default(), trust };
+        let horizon = AccuracyHorizon::new(&settings.parameters, &start)?;
+        let mut scene = Self { right, misprinted, views, bobs: Default::default(), horizon };
         scene.bobs = spots(scene.places());
         Ok(scene)
     }
@@ -69,7 +71,7 @@ impl Scene for Figure7 {
         let places = self.places();
         let [shown, _] = places;
         let [view, _] = &self.views;
-        self.trust.tick(self.right.time(), shown, |directions| view.bobs(directions));
+        self.horizon.tick(self.right.time(), shown, |directions| view.bobs(directions));
         let bobs = spots(places);
         for ([_, from], [_, to]) in self.bobs.into_iter().zip(bobs) {
             ink.add(Stroke { from, to, radius: HALF_WIDTH });
@@ -92,11 +94,11 @@ impl Scene for Figure7 {
     }
 
     fn report(&self) -> Report {
-        Report::of(&self.right, self.trust.until())
+        Report::of(&self.right, self.horizon.until())
     }
 
     fn shown(&self) -> Option<Shown> {
-        Shown::swing(Place::HALVES[0].reach)
+        Shown::pendulum(Place::HALVES[0].reach)
     }
 }
 

@@ -20,7 +20,7 @@ use crate::scenes::scene::{Report, Scene};
 pub struct Page {
     settings: Settings,
     simulation: Simulation,
-    trust: AccuracyHorizon,
+    horizon: AccuracyHorizon,
     view: View,
     trail: Trail,
 }
@@ -40,8 +40,8 @@ impl Scene for Page {
         let simulation = Simulation::new(settings)?;
         let view = View::new(&settings.parameters, Place::WHOLE);
         let [_, bob2] = view.spots(simulation.directions());
-        let trust = AccuracyHorizon::new(&settings.parameters, &simulation.state())?;
-        Ok(Self { settings: *settings, simulation, trust, view, trail: Trail::new(bob2) })
+        let horizon = AccuracyHorizon::new(&settings.parameters, &simulation.state())?;
+        Ok(Self { settings: *settings, simulation, horizon, view, trail: Trail::new(bob2) })
     }
 
     fn tick(&mut self, _: &mut FadeLayer) {
@@ -49,7 +49,7 @@ impl Scene for Page {
         let shown = self.bobs();
         let [_, (x, y)] = shown;
         self.trail.push(Spot::at(x, y));
-        self.trust.tick(self.simulation.time(), shown, |directions| self.view.bobs(directions));
+        self.horizon.tick(self.simulation.time(), shown, |directions| self.view.bobs(directions));
     }
 
     fn draw(&self, report: &Report, canvas: &mut Canvas) {
@@ -68,10 +68,10 @@ impl Scene for Page {
     }
 
     fn report(&self) -> Report {
-        Report::of(&self.simulation, self.trust.until())
+        Report::of(&self.simulation, self.horizon.until())
     }
 
     fn shown(&self) -> Option<Shown> {
-        Shown::swing(Place::WHOLE.reach)
+        Shown::pendulum(Place::WHOLE.reach)
     }
 }

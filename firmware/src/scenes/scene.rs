@@ -40,7 +40,8 @@ pub struct Report {
     pub state: State<f32>,
     /// (E - E0)/(E0 - Emin) of that pendulum: its energy error relative to the energy at the start above hanging at rest.
     pub energy_error: f32,
-    /// Until when the frame is right to half a pixel, s after the start; infinity as long as that is not known.
+    /// Until when the frame is right to [half a pixel](crate::config::HALF_PIXEL) about the exact motion, s after the start;
+    /// infinity as long as it is.
     pub horizon: f32,
 }
 
@@ -59,13 +60,14 @@ impl Report {
 }
 
 impl Shown {
-    /// By a [`DirectionStepper`](crate::motion::direction_stepper::DirectionStepper), with rods that together are `reach` pixels long.
-    pub fn swing(reach: f32) -> Option<Self> {
-        Some(Self { way: Method::Direction, steps: STEPS_PER_TICK, height: 2.0 * reach })
+    /// As a pendulum whose rods together are `reach` pixels long, by a
+    /// [`DirectionStepper`](crate::motion::direction_stepper::DirectionStepper).
+    pub fn pendulum(reach: f32) -> Option<Self> {
+        Some(Self { method: Method::Direction, steps: STEPS_PER_TICK, height: 2.0 * reach })
     }
 
     /// As curves of the angles, `scale` pixels to a radian; the rods of a display that shows as much are as long each.
-    pub fn curves(way: Method, scale: f32) -> Option<Self> {
-        (scale > 0.0).then_some(Self { way, steps: STEPS_PER_TICK, height: 4.0 * scale })
+    pub fn curves(method: Method, scale: f32) -> Option<Self> {
+        (scale > 0.0).then_some(Self { method, steps: STEPS_PER_TICK, height: 4.0 * scale })
     }
 }

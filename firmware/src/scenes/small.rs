@@ -2,17 +2,18 @@
 
 use double_pendulum::plan::Method;
 use double_pendulum::trig::{DefaultTrig, SinCos};
-use double_pendulum::{Error, Modes, Oscillation, Parameters, Pendulum, SmallOscillations};
+use double_pendulum::{Error, Modes, Motion, Oscillation, Parameters, Pendulum, SmallOscillations};
 
-use crate::config::TICK_RATE;
+use crate::config::{PAGE_GRAVITY, TICK_RATE};
 use crate::graphics::canvas::{Canvas, WIDTH};
 use crate::graphics::fade_layer::FadeLayer;
 use crate::graphics::label;
 use crate::graphics::plot::{self, Strip};
 use crate::graphics::text::{self, Anchor, LINE, LOWEST};
+use crate::motion::direction_stepper::Directions;
 use crate::motion::planner::Shown;
 use crate::motion::settings::Settings;
-use crate::scenes::horizon::{self, HALF_PIXEL};
+use crate::scenes::horizon::{self, AccuracyHorizon, Point};
 use crate::scenes::scene::{Report, Scene};
 
 /// The rows of rest of angle 1 and angle 2, pixels from the top, and the greatest swing about them.
@@ -25,24 +26,16 @@ const COLUMNS: usize = WIDTH - LEFT as usize;
 const COLUMNS_PER_EXCHANGE: f32 = 60.0;
 /// The bar that tells a length of time is at least this long, columns.
 const LEAST_BAR: f32 = 16.0;
-/// Roundings, each half an epsilon, in a phase w t: up to 8 in the frequency (4 units in the last place, see
-/// [`Modes::new`]), one in the time and one in the product. In epsilons:
-const PHASE_ROUNDINGS: f32 = 5.0;
 const CURVE: u8 = 255;
 const ENVELOPE_GREY: u8 = 5;
 
 /// The page's worked example: equal rods of 0.25 m, g = 9.8 m/s^2, a1 = 0, a2 = 30 degrees, let go from rest.
 pub fn example(mass_ratio: f32) -> Settings {
-    Settings { parameters: Parameters::equal_rods(mass_ratio, 0.25, 9.8), degrees: [0.0, 30.0], velocities: [0.0; 2] }
+    let parameters = Parameters::equal_rods(mass_ratio, 0.25, PAGE_GRAVITY as f32);
+    Settings { parameters, degrees: [0.0, 30.0], velocities: [0.0; 2] }
 }
 
-/// Until when a curve of amplitude `swing` (pixels) is right to half a pixel, s: the greatest phase w1 t is off by at
-/// most [`PHASE_ROUNDINGS`] of its roundings, which moves the curve by swing times that.
-pub fn horizon(modes: &Modes<f32>, swing: f32) -> f32 {
-    HALF_PIXEL / (swing * modes.fast.frequency * PHASE_ROUNDINGS * f32::EPSILON)
-}
-
-/// Both angles over time.
+/// Both angles over time, by the linear model. The clock says until when the exact motion has them there, too.
 #[derive(Clone, Debug)]
 pub struct Small {
     settings: Settings,
@@ -53,13 +46,31 @@ pub struct Small {
     scale: f32,
     ticks_per_column: u32,
     ticks: u64,
-    horizon: f32,
+    horizon: AccuracyHorizon,
     strip: Strip<4, COLUMNS>,
 }
 
 impl Small {
     fn time(&self) -> f64 {
         self.ticks as f64 / f64::from(TICK_RATE)
+    }
+
+    /// Where the curves are with these angles, pixels above rest.
+    fn heights(&self, [a1, a2]: [f32; 2]) -> [Point; 2] {
+        [(0.0, self.scale * a1), (0.0, self.scale * a2)]
+    }
+
+    /// Compares the linear motion with the exact one, as long as they agree.
+    fn compare(&mut self) {
+        if self.horizon.is_reached() {
+            return;
+        }
+        let time = self.time();
+        let Motion { a1, a2, .. } = self.motion.at(time as f32);
+        let mut horizon = self.horizon;
+        let exact = |directions: Directions| self.heights(directions.map(|[sin, cos]| libm::atan2f(sin, cos)));
+        horizon.tick(time, self.heights([a1, a2]), exact);
+        self.horizon = horizon;
     }
 
     fn push(&mut self) {
@@ -83,7 +94,7 @@ impl Small {
 impl Scene for Small {
     fn new(settings: &Settings) -> Result<Self, Error> {
         let pendulum = settings.pendulum()?;
-        settings.start(&pendulum)?;
+        let start = settings.start(&pendulum)?;
         let modes = pendulum.modes()?;
         let motion = SmallOscillations::new(modes, &settings.motion());
         let envelopes = Envelopes::new(&modes, &motion);
@@ -98,7 +109,7 @@ impl Scene for Small {
             scale: if greatest > 0.0 { SWING / greatest } else { 0.0 },
             ticks_per_column: ticks_per_column.max(1),
             ticks: 0,
-            horizon: horizon(&modes, SWING),
+            horizon: AccuracyHorizon::new(&settings.parameters, &start)?,
             strip: Strip::default(),
         };
         scene.push();
@@ -107,6 +118,7 @@ impl Scene for Small {
 
     fn tick(&mut self, _: &mut FadeLayer) {
         self.ticks = self.ticks.wrapping_add(1);
+        self.compare();
         if self.ticks.is_multiple_of(self.ticks_per_column.into()) {
             self.push();
         }
@@ -131,12 +143,13 @@ impl Scene for Small {
         });
         self.draw_seconds(canvas);
         text::write(canvas, &label::mass_ratio(self.settings.mass_ratio()), Anchor::TopLeft);
+        text::write(canvas, "linear", Anchor::Centred(WIDTH as i32 / 2, 0));
         horizon::draw_clock(canvas, report, Anchor::BottomRight, Anchor::TopRight);
     }
 
     fn report(&self) -> Report {
         let state = self.pendulum.to_state(&self.motion.at(self.time() as f32));
-        Report { step: self.ticks, time: self.time(), state, energy_error: 0.0, horizon: self.horizon }
+        Report { step: self.ticks, time: self.time(), state, energy_error: 0.0, horizon: self.horizon.until() }
     }
 
     fn shown(&self) -> Option<Shown> {

@@ -3,7 +3,7 @@
 use double_pendulum::trig::{DefaultTrig, SinCos};
 use double_pendulum::{Error, State};
 
-use crate::config::{DT, STEPS_PER_SECOND, STEPS_PER_TICK};
+use crate::config::{DT, HALF_PIXEL, STEPS_PER_SECOND, STEPS_PER_TICK};
 use crate::graphics::brush::{Spot, Stroke};
 use crate::graphics::canvas::{Canvas, WIDTH};
 use crate::graphics::fade_layer::FadeLayer;
@@ -13,7 +13,7 @@ use crate::motion::direction_stepper::{DirectionStepper, Directions};
 use crate::motion::planner::Shown;
 use crate::motion::settings::Settings;
 use crate::motion::simulation::Energy;
-use crate::scenes::horizon::{self, HALF_PIXEL};
+use crate::scenes::horizon::{self, LastRight};
 use crate::scenes::scene::{Report, Scene};
 
 /// Half the width of a trace, subpixels.
@@ -26,7 +26,8 @@ pub fn straight_up() -> Settings {
     Settings::equal_rods(1.0, STRAIGHT_UP)
 }
 
-/// The same motion in plain `f32` on the left and in compensated `f32` on the right.
+/// The same motion in plain `f32` on the left and in compensated `f32` on the right. The clock is that of the left one,
+/// beside the right one; the plan is about the right one.
 ///
 /// The `f32` nearest to pi is 8.7e-8 too large, so the true motion from there falls after about 3 s. Plain `f32` drops
 /// the first tiny increments altogether and stands for minutes: it looks perfect and is wrong. What is kept beside the
@@ -39,7 +40,7 @@ pub struct Upright {
     step: u64,
     views: [View; 2],
     bobs: [[Spot; 2]; 2],
-    horizon: f32,
+    horizon: LastRight,
 }
 
 impl Upright {
@@ -73,7 +74,7 @@ impl Scene for Upright {
         let compensated = DirectionStepper::new(&settings.parameters, &plain, DT)?;
         let (energy, step) = (Energy::new(pendulum, &plain), 0);
         let bobs = Default::default();
-        let mut scene = Self { plain, compensated, energy, step, views, bobs, horizon: f32::INFINITY };
+        let mut scene = Self { plain, compensated, energy, step, views, bobs, horizon: LastRight::default() };
         scene.bobs = scene.places();
         Ok(scene)
     }
@@ -84,9 +85,8 @@ impl Scene for Upright {
         }
         self.compensated.advance(STEPS_PER_TICK);
         self.step = self.step.wrapping_add(STEPS_PER_TICK.into());
-        if self.horizon.is_infinite() && self.have_parted() {
-            self.horizon = self.time() as f32;
-        }
+        let is_right = !self.have_parted();
+        self.horizon.note(self.time(), is_right);
         let places = self.places();
         for ([_, from], [_, to]) in self.bobs.into_iter().zip(places) {
             ink.add(Stroke { from, to, radius: HALF_WIDTH });
@@ -110,11 +110,11 @@ impl Scene for Upright {
             time: self.time(),
             state: self.plain,
             energy_error: self.energy.error(&self.plain),
-            horizon: self.horizon,
+            horizon: self.horizon.until(),
         }
     }
 
     fn shown(&self) -> Option<Shown> {
-        Shown::swing(Place::HALVES[0].reach)
+        Shown::pendulum(Place::HALVES[0].reach)
     }
 }

@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use double_pendulum::Error;
+use double_pendulum::plan::PlanError;
 use host_tests::commands::plan::{
     DURATIONS, FOLLOWED, Options, broken, classes, fit, margins, rk4_in_f64, scenes, study, words,
 };
@@ -26,7 +26,7 @@ fn run(options: &Options) -> anyhow::Result<()> {
     Ok(lines.iter().try_for_each(say)?)
 }
 
-fn tables(options: &Options, count: usize) -> Result<Vec<String>, Error> {
+fn tables(options: &Options, count: usize) -> Result<Vec<String>, PlanError> {
     let bar = Bar::start("planning", count as u64);
     let scenes = scenes(options.seed, DURATIONS).take(count);
     let cases = study(scenes, &options.target, || bar.advance(1))?;
@@ -36,7 +36,7 @@ fn tables(options: &Options, count: usize) -> Result<Vec<String>, Error> {
     Ok(tables.iter().map(Table::markdown).collect())
 }
 
-fn fitted(options: &Options, count: usize) -> Result<Vec<String>, Error> {
+fn fitted(options: &Options, count: usize) -> Result<Vec<String>, PlanError> {
     let bar = Bar::start("fitting", count as u64);
     let samples = fit(scenes(options.seed, FOLLOWED).take(count), || bar.advance(1))?;
     drop(bar);

@@ -11,7 +11,7 @@ pub struct Expected(UnwrappedStepper<f32, DirectionForm<f32>>);
 impl Expected {
     /// From rest with both rods at `angle` (rad).
     pub fn new(mass_ratio: f32, angle: f32) -> Self {
-        let parameters = Parameters::equal_rods(mass_ratio, ROD, GRAVITY);
+        let parameters = Parameters::equal_rods(mass_ratio, ROD, GRAVITY as f32);
         let start = State::at_rest(angle, angle);
         Self(UnwrappedStepper::new(&parameters, &start, DT).expect("the board simulates it"))
     }

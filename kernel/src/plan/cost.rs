@@ -1,8 +1,8 @@
-//! The ways to compute a scene, and what each costs on a target.
+//! The methods to compute a motion, what each costs, and what may be spent.
 
-use crate::error::{Error, Parameter};
+use super::error::{PlanError, Quantity, check_positive};
 
-/// A way to compute a scene.
+/// A method to compute a motion: model, arithmetic and stepper.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
@@ -20,11 +20,12 @@ pub enum Method {
 }
 
 impl Method {
-    /// Every way.
-    pub const ALL: [Method; 5] =
-        [Method::ClosedForm, Method::DirectionPlain, Method::Direction, Method::Angle, Method::Direction8];
+    /// Every method, in no order that means anything.
+    pub const ALL: &[Method] =
+        &[Method::ClosedForm, Method::DirectionPlain, Method::Direction, Method::Angle, Method::Direction8];
 
-    /// Model, arithmetic and method in words.
+    /// Model, stepper and arithmetic in words.
+    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Method::ClosedForm => "normal modes in closed form, f32",
@@ -36,10 +37,8 @@ impl Method {
     }
 }
 
-/// Cycles of a step in each way on one target; of a frame for the closed form.
-///
-/// The constants are the estimates of `cargo count` for steps of 1/256 s, masses and lengths alike (test `count` holds
-/// them to within a tenth).
+/// The price list: what a step costs by each method, what a frame costs in closed form. In cycles, or in any other unit
+/// that the [`Budget`] is given in, too.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Costs {
     /// [`Method::ClosedForm`], for each frame.
@@ -55,25 +54,14 @@ pub struct Costs {
 }
 
 impl Costs {
-    /// Cortex-M3, which has no floating-point unit.
-    pub const CORTEX_M3: Self = Self {
-        closed_form: 5_087.0,
-        direction_plain: 8_915.0,
-        direction: 10_210.0,
-        angle: 15_170.0,
-        direction8: 136_500.0,
-    };
-    /// Cortex-M4F, whose floating-point unit knows `f32` only. A plain step costs less than the closed form's two sincos.
-    pub const CORTEX_M4F: Self =
-        Self { closed_form: 267.0, direction_plain: 159.4, direction: 208.0, angle: 360.3, direction8: 129_650.0 };
-
-    pub(super) fn check(&self) -> Result<(), Error> {
-        check_positive(Parameter::Cost, Method::ALL.map(|way| self.of_frame(way, 1)))
+    pub(super) fn check(&self) -> Result<(), PlanError> {
+        check_positive(Method::ALL.iter().map(|&method| (Quantity::Cost, self.of_frame(method, 1).into())))
     }
 
-    /// Cycles of a frame computed in `way` with `steps`.
-    pub fn of_frame(&self, way: Method, steps: u32) -> f32 {
-        match way {
+    /// What a frame costs that is computed by `method` with `steps`.
+    #[must_use]
+    pub fn of_frame(&self, method: Method, steps: u32) -> f32 {
+        match method {
             Method::ClosedForm => self.closed_form,
             Method::DirectionPlain => self.direction_plain * steps as f32,
             Method::Direction => self.direction * steps as f32,
@@ -83,36 +71,17 @@ impl Costs {
     }
 }
 
-/// What may be spent.
+/// What may be spent, in the unit of the [`Costs`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {
-    /// On computing a frame, cycles.
+    /// On computing a frame.
     pub frame: f32,
-    /// On looking ahead, cycles.
+    /// On looking ahead.
     pub planning: f32,
 }
 
 impl Budget {
-    /// Of a `clock` (Hz) with `rate` frames per second: half of the time between frames, the other half is for drawing;
-    /// `planning` seconds for looking ahead.
-    pub fn half_of(clock: f32, rate: u16, planning: f32) -> Self {
-        Self { frame: 0.5 * clock / f32::from(rate), planning: planning * clock }
+    pub(super) fn check(&self) -> Result<(), PlanError> {
+        check_positive([(Quantity::FrameBudget, self.frame.into()), (Quantity::PlanningBudget, self.planning.into())])
     }
-
-    pub(super) fn check(&self) -> Result<(), Error> {
-        check_positive(Parameter::Budget, [self.frame, self.planning])
-    }
-}
-
-/// Refuses what is not a positive number.
-fn check_positive(parameter: Parameter, values: impl IntoIterator<Item = f32>) -> Result<(), Error> {
-    for value in values.into_iter().map(f64::from) {
-        if !value.is_finite() {
-            return Err(Error::NotFinite { parameter, value });
-        }
-        if value <= 0.0 {
-            return Err(Error::NotPositive { parameter, value });
-        }
-    }
-    Ok(())
 }

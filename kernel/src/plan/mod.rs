@@ -1,39 +1,46 @@
-//! Model only what a scene needs: the cheapest way to compute it that is right to half a pixel, and until when it is.
+//! Compute only what is seen: the cheapest method that keeps both bobs within a tolerance of the exact motion, and until
+//! when it does.
 //!
-//! How fast an error grows is a property of the very motion: of two scenes with the same energy one may be regular and
-//! the other chaotic, and no formula in the energy tells them apart. So [`plan`] looks ahead. It runs the scene itself,
-//! from coarse steps to fine ones, beside twins that have other errors, and compares what would be drawn:
+//! How fast an error grows is a property of the very motion: of two starts with the same energy one may be regular and
+//! the other chaotic, and no formula in the energy tells them apart. So [`plan`] looks ahead. It runs the motion itself,
+//! from coarse steps to fine ones, beside perturbed runs that have other errors, and compares where the bobs would be:
 //!
 //! | error of | is measured by |
 //! |---|---|
-//! | the step | a twin with half the step |
-//! | rounding, that of the numbers given too | two twins with the same step, whose given numbers are half an ulp off |
+//! | the step | a run with half the step |
+//! | rounding, that of the numbers given too | two runs with the same step, whose given numbers are half an ulp off |
 //! | the closed form, plain `f32`, the angle form | the distance to the compensated direction form, which has the errors above |
 //!
-//! The coarsest step at which anything stays within half a pixel to the end of the scene decides; of all that does the
-//! cheapest is taken. If nothing does (a chaotic scene), what does longest is. The search begins at a step that resolves
-//! all motions of the scene's energy, by the proven bound of [`Pendulum::admissible_step`](crate::Pendulum::admissible_step),
-//! and goes over to `f64` where rounding is the larger error. Looking ahead costs a few times what the scene itself does in
-//! the cheap arithmetic, no heap, and is done a frame at a time ([`Search`]).
+//! The coarsest step at which anything stays within the tolerance to the end decides; of all that does the cheapest is
+//! taken. If nothing does (chaos), what does longest is; if nothing within the budgets is right in any frame,
+//! [`PlanError::NothingHolds`] says so. The search begins at a step that resolves all motions of the energy, by the proven
+//! bound of [`Pendulum::admissible_step`](crate::Pendulum::admissible_step), and goes over to `f64` where rounding is the
+//! larger error. Looking ahead costs a few times what the motion itself does in the cheap arithmetic, no heap, and is done
+//! in pieces that a busy caller can afford ([`Search`]).
 //!
-//! Over 2,000 scenes of all kinds half a pixel is kept until the promised horizon in every one (`cargo plan --study 2000
-//! --seed 1 --target m4f`); test `plan_study` draws other 200 with every run.
-//!
-//! Equal rods are no choice of their own: in the [forms](crate::form) rods of any lengths cost what equal ones do.
+//! What a step costs is the caller's business: [`Costs`] is a price list in any unit.
 //!
 //! ```
-//! use double_pendulum::plan::{Budget, Costs, Problem, Method, plan};
+//! use double_pendulum::plan::{Budget, Costs, Method, PlanError, Problem, plan};
 //! use double_pendulum::{Motion, Parameters};
 //!
+//! // Cycles of a processor without a floating-point unit, and a display with 32 pixels to a metre: half of one may be missed.
+//! let costs =
+//!     Costs { closed_form: 5.5e3, direction_plain: 9.8e3, direction: 11.3e3, angle: 16.7e3, direction8: 139.6e3 };
+//! let budget = Budget { frame: 400e3, planning: 3e9 };
 //! let pendulum = Parameters { m1: 1.0, m2: 1.0, l1: 1.0, l2: 1.0, g: 9.81 };
-//! let small = Problem { pendulum, start: Motion::at_rest(0.05, 0.05), height: 64.0, duration: 10.0, rate: 60 };
-//! let found = plan(&small, &Costs::CORTEX_M3, &Budget::half_of(50e6, 60, 60.0))?;
-//! assert_eq!(found.way, Method::ClosedForm);
-//! assert_eq!(found.horizon, 10.0);
-//! # Ok::<(), double_pendulum::Error>(())
+//! let small =
+//!     Problem { pendulum, start: Motion::at_rest(0.05, 0.05), tolerance: 0.5 / 32.0, duration: 10.0, rate: 60 };
+//! let found = plan(&small, &costs, &budget)?;
+//! assert_eq!((found.method, found.horizon), (Method::ClosedForm, 10.0));
+//!
+//! let poor = Budget { frame: 1e3, ..budget };
+//! assert!(matches!(plan(&small, &costs, &poor), Err(PlanError::NothingHolds { .. })));
+//! # Ok::<(), PlanError>(())
 //! ```
 
 mod cost;
+mod error;
 mod pass;
 mod problem;
 mod run;
@@ -41,17 +48,17 @@ mod search;
 mod shadowed_run;
 
 pub use cost::{Budget, Costs, Method};
-pub use problem::{HALF_PIXEL, Problem};
+pub use error::{PlanError, Quantity};
+pub use problem::Problem;
 pub use run::Directions;
 pub use search::{Limit, Plan, Search};
 pub use shadowed_run::{ErrorEstimate, MARGIN, ShadowedRun};
 
-use crate::error::Error;
-
-/// The plan for `scene` at once: [`Search`] to its end.
+/// The plan for `problem` at once: [`Search`] to its end.
 ///
-/// Refuses what [`Search::new`] refuses.
-pub fn plan(problem: &Problem, costs: &Costs, budget: &Budget) -> Result<Plan, Error> {
+/// Refuses what [`Search::new`] and [`Search::advance`] refuse; [`PlanError::NothingHolds`] if nothing within the budget is
+/// right in any frame.
+pub fn plan(problem: &Problem, costs: &Costs, budget: &Budget) -> Result<Plan, PlanError> {
     let mut search = Search::new(problem, costs, budget)?;
     loop {
         if let Some(plan) = search.advance(f32::INFINITY)? {

@@ -1,7 +1,7 @@
-//! Looking ahead with one step size: how wrong each way is, frame by frame.
+//! Looking ahead with one step size: how wrong each method is, frame by frame.
 
 use super::cost::{Costs, Method};
-use super::problem::{Problem, Twin};
+use super::problem::{Perturbation, Problem};
 use super::run::{Directions, Run, distance};
 use super::shadowed_run::{ErrorEstimate, ShadowedRun};
 use crate::error::Error;
@@ -10,16 +10,19 @@ use crate::modes::Modes;
 use crate::small_oscillations::SmallOscillations;
 use crate::state::State;
 
-/// How a way has fared so far.
+/// A bob may be off by this much where the tolerance is the unit.
+const TOLERATED: f32 = 1.0;
+
+/// How a method has fared so far.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Candidate {
-    /// The way.
-    pub way: Method,
+    /// The method.
+    pub method: Method,
     /// Steps to a frame.
     pub steps: u32,
     /// Frames it was right in, from the start on.
     pub right: u32,
-    /// The largest error measured in them, pixels.
+    /// The largest error measured in them, over the tolerance.
     pub error: f32,
     /// Whether it has been wrong.
     pub failed: bool,
@@ -29,27 +32,28 @@ pub(super) struct Candidate {
 
 impl Candidate {
     /// At the start.
-    pub fn new(way: Method, steps: u32) -> Self {
-        Self { way, steps, right: 0, error: 0.0, failed: false, by_rounding: false }
+    pub fn new(method: Method, steps: u32) -> Self {
+        Self { method, steps, right: 0, error: 0.0, failed: false, by_rounding: false }
     }
 
-    /// Takes note of a frame `beside` pixels from the shadowed one, which itself is in `doubt`. NaN is wrong.
-    fn note(&mut self, beside: f32, doubt: ErrorEstimate, limit: f32) {
+    /// Takes note of a frame that is `beside` off the shadowed one, whose own error is estimated. NaN is wrong.
+    fn note(&mut self, beside: f32, estimate: ErrorEstimate) {
         if self.failed {
             return;
         }
-        if beside + doubt.bound() <= limit {
-            let error = beside + doubt.error();
+        if beside + estimate.bound() <= TOLERATED {
+            let error = beside + estimate.error();
             self.error = if error > self.error { error } else { self.error };
             self.right += 1;
         } else {
             self.failed = true;
-            self.by_rounding = doubt.is_by_rounding();
+            self.by_rounding = estimate.is_by_rounding();
         }
     }
 }
 
-/// All ways in `f32` with one step size. The compensated direction form is the best of them and judges the others.
+/// All methods in `f32` with one step size. The compensated direction form is the best of them: its run is shadowed, and the
+/// others are compared with it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Single {
     shadowed: ShadowedRun<f32, DirectionForm<f32>>,
@@ -63,56 +67,56 @@ pub(super) struct Single {
 impl Single {
     /// From `start`, with `steps` steps to a frame.
     pub fn new(problem: &Problem, start: &State<f64>, steps: u32) -> Self {
-        let rounded = problem.rounded::<f32>(start, Twin::None);
+        let rounded = problem.rounded::<f32>(start, Perturbation::None);
         let (parameters, _) = &rounded;
         let motion = problem.start.cast();
         let linear = Modes::new(parameters).ok().map(|modes| SmallOscillations::new(modes, &motion));
-        let ways = [Method::Direction, Method::ClosedForm, Method::DirectionPlain, Method::Angle];
+        let methods = [Method::Direction, Method::ClosedForm, Method::DirectionPlain, Method::Angle];
         Self {
             shadowed: ShadowedRun::from_state(problem, start, steps),
             plain: Run::new(&rounded, problem.rate, steps),
             angle: Run::new(&rounded, problem.rate, steps),
             linear,
             rods: problem.rods(),
-            candidates: ways.map(|way| Candidate::new(way, steps)),
+            candidates: methods.map(|method| Candidate::new(method, steps)),
         }
     }
 
     /// As [`Pass::advance`].
-    fn advance(&mut self, costs: &Costs, cycles: f32) -> Result<bool, Error> {
+    fn advance(&mut self, costs: &Costs, cost: f32) -> Result<bool, Error> {
         let [_, _, plain, angle] = &self.candidates;
-        let most = |way: Method| steps_for(costs, way, cycles);
+        let most = |method: Method| steps_for(costs, method, cost);
         Ok(self.shadowed.advance(most(Method::Direction))?
             || !plain.failed && self.plain.advance(most(Method::DirectionPlain))?
             || !angle.failed && self.angle.advance(most(Method::Angle))?)
     }
 
     /// As [`Pass::compare`].
-    fn compare(&mut self, t: f64, limit: f32) {
-        let (frame, doubt) = self.shadowed.frame();
+    fn compare(&mut self, t: f64) {
+        let (frame, estimate) = self.shadowed.frame();
         let beside = |other: Directions| distance(self.rods, &frame, &other);
         let [own, closed, plain, angle] = &mut self.candidates;
-        own.note(0.0, doubt, limit);
+        own.note(0.0, estimate);
         if !closed.failed {
-            closed.note(self.linear.map_or(f32::INFINITY, |motion| beside(motion.directions(t as f32))), doubt, limit);
+            closed.note(self.linear.map_or(f32::INFINITY, |motion| beside(motion.directions(t as f32))), estimate);
         }
         if !plain.failed {
-            plain.note(beside(self.plain.frame()), doubt, limit);
+            plain.note(beside(self.plain.frame()), estimate);
         }
         if !angle.failed {
-            angle.note(beside(self.angle.frame()), doubt, limit);
+            angle.note(beside(self.angle.frame()), estimate);
         }
     }
 
     fn cost(&self, costs: &Costs) -> f32 {
         let [own, ..] = self.candidates;
-        let shadowed = costs.of_frame(own.way, own.steps) * ShadowedRun::<f32, DirectionForm<f32>>::RUNS;
-        let others = self.candidates.iter().filter(|candidate| candidate.way != own.way && !candidate.failed);
-        others.fold(shadowed, |sum, candidate| sum + costs.of_frame(candidate.way, candidate.steps))
+        let shadowed = costs.of_frame(own.method, own.steps) * ShadowedRun::<f32, DirectionForm<f32>>::RUNS;
+        let others = self.candidates.iter().filter(|candidate| candidate.method != own.method && !candidate.failed);
+        others.fold(shadowed, |sum, candidate| sum + costs.of_frame(candidate.method, candidate.steps))
     }
 }
 
-/// The way in `f64` with one step size.
+/// The method in `f64` with one step size.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Double {
     shadowed: ShadowedRun<f64, DirectionForm8<f64>>,
@@ -139,74 +143,76 @@ pub(super) enum Pass {
 }
 
 impl Pass {
-    /// Makes steps of one motion towards the next frame, as many as `cycles` pay for and one at least, or prepares
+    /// Makes steps of one motion towards the next frame, as many as `cost` pays for and one at least, or prepares
     /// them. `false` if there is nothing left to do.
-    pub fn advance(&mut self, costs: &Costs, cycles: f32) -> Result<bool, Error> {
+    pub fn advance(&mut self, costs: &Costs, cost: f32) -> Result<bool, Error> {
         match self {
-            Pass::Single(look) => look.advance(costs, cycles),
-            Pass::Double(look) => look.shadowed.advance(steps_for(costs, look.candidate.way, cycles)),
+            Pass::Single(single) => single.advance(costs, cost),
+            Pass::Double(double) => double.shadowed.advance(steps_for(costs, double.candidate.method, cost)),
         }
     }
 
-    /// Compares the frames at time `t`, s, when all steps towards them are made. A way fails where it may be more than
-    /// `limit` pixels off.
-    pub fn compare(&mut self, t: f64, limit: f32) {
+    /// Compares the frames at time `t`, s, when all steps towards them are made. A method fails where it may be off by more
+    /// than the tolerance.
+    pub fn compare(&mut self, t: f64) {
         match self {
-            Pass::Single(look) => look.compare(t, limit),
-            Pass::Double(look) => {
-                let (_, doubt) = look.shadowed.frame();
-                look.candidate.note(0.0, doubt, limit);
+            Pass::Single(single) => single.compare(t),
+            Pass::Double(double) => {
+                let (_, estimate) = double.shadowed.frame();
+                double.candidate.note(0.0, estimate);
             }
         }
     }
 
-    /// Looks at `way` alone, beside what judges it.
-    pub fn only(&mut self, way: Method) {
-        if let Pass::Single(look) = self {
-            look.candidates
+    /// Looks at `method` alone, beside the shadowed run.
+    pub fn only(&mut self, method: Method) {
+        if let Pass::Single(single) = self {
+            single
+                .candidates
                 .iter_mut()
-                .filter(|candidate| candidate.way != way)
+                .filter(|candidate| candidate.method != method)
                 .for_each(|candidate| candidate.failed = true);
         }
     }
 
-    /// How the ways have fared.
+    /// How the methods have fared.
     pub fn candidates(&self) -> &[Candidate] {
         match self {
-            Pass::Single(look) => &look.candidates,
-            Pass::Double(look) => core::slice::from_ref(&look.candidate),
+            Pass::Single(single) => &single.candidates,
+            Pass::Double(double) => core::slice::from_ref(&double.candidate),
         }
     }
 
-    /// How the way has fared that judges the others.
-    pub fn judge(&self) -> &Candidate {
+    /// How the method of the shadowed run has fared.
+    pub fn shadowed(&self) -> &Candidate {
         match self {
             Pass::Single(Single { candidates: [own, ..], .. }) => own,
-            Pass::Double(look) => &look.candidate,
+            Pass::Double(double) => &double.candidate,
         }
     }
 
-    /// Cycles of the most expensive of the steps that are made.
-    pub fn dearest_step(&self, costs: &Costs) -> f32 {
+    /// What the most expensive of the steps costs that are made.
+    pub fn most_expensive_step(&self, costs: &Costs) -> f32 {
         let steps =
-            self.candidates().iter().filter(|candidate| candidate.way != Method::ClosedForm && !candidate.failed);
-        let judge = costs.of_frame(self.judge().way, 1);
-        steps.map(|candidate| costs.of_frame(candidate.way, 1)).fold(judge, f32::max)
+            self.candidates().iter().filter(|candidate| candidate.method != Method::ClosedForm && !candidate.failed);
+        let shadowed = costs.of_frame(self.shadowed().method, 1);
+        steps.map(|candidate| costs.of_frame(candidate.method, 1)).fold(shadowed, f32::max)
     }
 
-    /// Cycles that the next frame takes.
+    /// What the next frame costs.
     pub fn cost(&self, costs: &Costs) -> f32 {
         match self {
-            Pass::Single(look) => look.cost(costs),
-            Pass::Double(look) => {
-                costs.of_frame(look.candidate.way, look.candidate.steps) * ShadowedRun::<f64, DirectionForm8<f64>>::RUNS
+            Pass::Single(single) => single.cost(costs),
+            Pass::Double(double) => {
+                costs.of_frame(double.candidate.method, double.candidate.steps)
+                    * ShadowedRun::<f64, DirectionForm8<f64>>::RUNS
             }
         }
     }
 }
 
-/// How many steps of `way` these `cycles` pay for, one at least.
-fn steps_for(costs: &Costs, way: Method, cycles: f32) -> u32 {
-    let steps = (cycles / costs.of_frame(way, 1)) as u32;
+/// How many steps of `method` this `cost` pays for, one at least.
+fn steps_for(costs: &Costs, method: Method, cost: f32) -> u32 {
+    let steps = (cost / costs.of_frame(method, 1)) as u32;
     if steps > 0 { steps } else { 1 }
 }

@@ -1,4 +1,4 @@
-//! One way of computing a scene, step by step, and how far two frames are apart on the display.
+//! A motion computed step by step, and how far two of its frames are apart.
 
 use crate::error::Error;
 use crate::form::{Direction, Form, Stepper};
@@ -55,7 +55,7 @@ impl<R: Real, F: Form<R>> Run<R, F> {
     }
 }
 
-/// How far the farther of the two bobs is off, pixels, where `rods` are as long as given; NaN if anything is.
+/// How far the farther of the two bobs is off where the rods are as long as `rods`, in their unit; NaN if anything is.
 pub(super) fn distance(rods: [f32; 2], a: &Directions, b: &Directions) -> f32 {
     let difference = |rod: usize, axis: usize| rods[rod] * (a[rod][axis] - b[rod][axis]);
     let elbow = [difference(0, 0), difference(0, 1)];

@@ -3,32 +3,32 @@
 //! All of it is done in pieces that a busy caller can afford: a few steps of one motion, a comparison, a new step size.
 
 use super::cost::{Budget, Costs, Method};
+use super::error::PlanError;
 use super::pass::{Candidate, Double, Pass, Single};
-use super::problem::{HALF_PIXEL, Problem};
-use crate::error::Error;
+use super::problem::Problem;
 use crate::hamiltonian::Pendulum;
 use crate::state::State;
 
-/// The cheapest way found, and what it brings.
+/// The cheapest method found, and what it brings.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Plan {
-    /// The way to compute the scene.
-    pub way: Method,
+    /// The method to compute the motion by.
+    pub method: Method,
     /// Steps to a frame; 0 for the closed form.
     pub steps: u32,
     /// The step size, s; 0 for the closed form.
-    pub step: f64,
-    /// The largest error expected until the horizon, pixels.
+    pub dt: f64,
+    /// The largest error expected until the horizon, over the tolerance.
     pub error: f32,
-    /// Cycles to compute a frame, without drawing it.
-    pub cycles: f32,
-    /// Until when every frame is right to half a pixel, s.
+    /// What computing a frame costs, without drawing it; never more than the budget.
+    pub cost: f32,
+    /// Until when every frame is right to the tolerance, s: the time of the last of them.
     pub horizon: f64,
     /// What ends the horizon.
     pub limit: Limit,
-    /// Cycles spent on looking ahead.
-    pub planning: f32,
+    /// What looking ahead has cost; never more than the budget.
+    pub spent: f32,
 }
 
 /// What ends a horizon.
@@ -36,39 +36,37 @@ pub struct Plan {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Limit {
-    /// The scene itself: all of it is right.
+    /// The duration asked for: all of it is right.
     End,
     /// The growth of errors: nothing finer goes farther.
     Growth,
     /// The budget for a frame: finer steps or `f64` may go farther, and cost more.
     Budget,
-    /// The budget for looking ahead: nobody has looked farther.
+    /// The budget for looking ahead: no later frame was looked at.
     Planning,
-    /// The way and the step that were asked for: others may go farther ([`Search::of`]).
+    /// The method and the step that were asked for: others may go farther ([`Search::of`]).
     Method,
 }
 
 impl Limit {
-    /// Every limit.
-    pub const ALL: [Limit; 5] = [Limit::End, Limit::Growth, Limit::Budget, Limit::Planning, Limit::Method];
-
     /// In words.
+    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
-            Limit::End => "the scene's end",
+            Limit::End => "the end of the time asked for",
             Limit::Growth => "the growth of errors",
             Limit::Budget => "the budget for a frame",
             Limit::Planning => "the budget for looking ahead",
-            Limit::Method => "what this way can do",
+            Limit::Method => "what this method can do",
         }
     }
 }
 
-/// A costlier way must be right for this much longer to be worth it.
+/// A costlier method must be right for this much longer to be worth it.
 const WORTH: f64 = 1.1;
 
-/// The first step is no longer than this many admissible ones: the fastest rate that the scene's energy allows turns a
-/// radian in it. In longer steps two runs could miss alike what neither sees.
+/// The first step is no longer than this many admissible ones: the fastest rate that the energy allows turns a radian
+/// in it. In longer steps two runs could miss alike what neither sees.
 const FIRST_STEP: f64 = 4.0;
 
 /// Finer steps than this many to a frame are never tried.
@@ -84,23 +82,24 @@ pub struct Search {
     start: State<f64>,
     /// The coarsest steps to a frame.
     first: u32,
-    look: Pass,
+    pass: Pass,
     steps: u32,
-    /// Frames looked at with these steps.
+    /// Frames compared with these steps.
     frame: u32,
     /// Whether the next frame is within the budget, and is being computed.
     begun: bool,
-    /// Whether the way and the step are given.
+    /// Whether the method and the step are given.
     given: bool,
     spent: f32,
     best: Option<Candidate>,
 }
 
 impl Search {
-    /// For the cheapest way.
+    /// For the cheapest method.
     ///
-    /// Refuses a scene that cannot be shown or whose pendulum the kernel refuses, and a budget that is not positive.
-    pub fn new(problem: &Problem, costs: &Costs, budget: &Budget) -> Result<Self, Error> {
+    /// Refuses a problem without a tolerance, a duration or a rate, a pendulum that the kernel refuses, and costs or
+    /// budgets that are not positive.
+    pub fn new(problem: &Problem, costs: &Costs, budget: &Budget) -> Result<Self, PlanError> {
         problem.check()?;
         costs.check()?;
         budget.check()?;
@@ -113,7 +112,7 @@ impl Search {
             budget: *budget,
             start,
             first,
-            look: Pass::Single(Single::new(problem, &start, first)),
+            pass: Pass::Single(Single::new(problem, &start, first)),
             steps: first,
             frame: 0,
             begun: false,
@@ -123,88 +122,96 @@ impl Search {
         })
     }
 
-    /// For no way but this one, with `steps` steps to a frame: how long it is right, whatever it costs. The closed form
-    /// has no steps; those given are the ones it is shadowed with.
+    /// For no method but this one, with `steps` steps to a frame: how long it is right, whatever it costs; a horizon of 0
+    /// says that no frame is. The closed form has no steps; those given are the ones of the run that it is compared with.
     ///
     /// Refuses what [`new`](Self::new) refuses. No steps count as one.
-    pub fn of(way: Method, steps: u32, problem: &Problem, costs: &Costs, budget: &Budget) -> Result<Self, Error> {
+    pub fn of(
+        method: Method,
+        steps: u32,
+        problem: &Problem,
+        costs: &Costs,
+        budget: &Budget,
+    ) -> Result<Self, PlanError> {
         let search = Self::new(problem, costs, budget)?;
         let steps = if steps > 0 { steps } else { 1 };
-        let mut look = match way {
+        let mut pass = match method {
             Method::Direction8 => Pass::Double(Double::new(problem, &search.start, steps)),
             _ => Pass::Single(Single::new(problem, &search.start, steps)),
         };
-        look.only(way);
+        pass.only(method);
         let budget = Budget { frame: f32::INFINITY, ..*budget };
-        Ok(Self { look, steps, budget, given: true, best: Some(Candidate::new(way, steps)), ..search })
+        Ok(Self { pass, steps, budget, given: true, best: Some(Candidate::new(method, steps)), ..search })
     }
 
-    /// Does a piece of the search: steps of one motion for as many `cycles`, by the costs given, or one that costs more;
+    /// Does a piece of the search: steps of one motion that together cost no more than `cost`, or a single one that does;
     /// or the preparation of a motion; or a comparison. The plan, when it is found.
     ///
-    /// Refuses what a [`Form`](crate::form::Form) refuses: a pendulum out of the range of `f32`.
-    pub fn advance(&mut self, cycles: f32) -> Result<Option<Plan>, Error> {
+    /// Refuses what a [`Form`](crate::form::Form) refuses: a pendulum out of the range of `f32`. And if nothing within the
+    /// budgets is right in any frame, that is the error at the end of the search.
+    pub fn advance(&mut self, cost: f32) -> Result<Option<Plan>, PlanError> {
         if !self.begun {
-            let cost = self.look.cost(&self.costs);
-            if self.spent + cost > self.budget.planning {
+            let frame = self.pass.cost(&self.costs);
+            if self.spent + frame > self.budget.planning {
                 self.keep_best();
-                return Ok(Some(self.plan(Limit::Planning)));
+                return self.plan(Limit::Planning).map(Some);
             }
-            self.spent += cost;
+            self.spent += frame;
             self.begun = true;
         }
-        if self.look.advance(&self.costs, cycles)? {
+        if self.pass.advance(&self.costs, cost)? {
             return Ok(None);
         }
         self.begun = false;
         self.frame += 1;
-        self.look.compare(self.problem.time(self.frame), HALF_PIXEL);
+        self.pass.compare(self.problem.time(self.frame));
         let at_end = self.frame >= self.problem.frames();
-        if !at_end && self.look.candidates().iter().any(|candidate| !candidate.failed) {
+        if !at_end && self.pass.candidates().iter().any(|candidate| !candidate.failed) {
             return Ok(None);
         }
         self.keep_best();
         if self.is_complete() {
-            return Ok(Some(self.plan(Limit::End)));
+            return self.plan(Limit::End).map(Some);
         }
         let limit = if self.given { Some(Limit::Method) } else { self.refine() };
-        Ok(limit.map(|limit| self.plan(limit)))
+        limit.map(|limit| self.plan(limit)).transpose()
     }
 
-    /// Cycles of the most expensive steps that [`advance`](Self::advance) makes with so many `cycles`.
-    pub fn piece(&self, cycles: f32) -> f32 {
-        let step = self.look.dearest_step(&self.costs);
-        if cycles > step { cycles } else { step }
+    /// What a piece costs at most that [`advance`](Self::advance) does for `cost`: as much, or one step that costs more.
+    #[must_use]
+    pub fn piece(&self, cost: f32) -> f32 {
+        let step = self.pass.most_expensive_step(&self.costs);
+        if cost > step { cost } else { step }
     }
 
     /// Takes the best of the candidates so far.
     fn keep_best(&mut self) {
-        for candidate in self.look.candidates() {
+        for candidate in self.pass.candidates() {
             if self.is_better(candidate) {
                 self.best = Some(*candidate);
             }
         }
     }
 
-    /// Whether something is right to the end of the scene.
+    /// Whether something is right to the end.
     fn is_complete(&self) -> bool {
         self.best.is_some_and(|best| best.right >= self.problem.frames())
     }
 
     /// Goes on to finer steps, or to `f64` where rounding is what limits; what forbids it, if anything does.
     fn refine(&mut self) -> Option<Limit> {
-        let by_rounding = self.look.judge().by_rounding;
-        let (single, steps) = match (&self.look, by_rounding) {
+        let by_rounding = self.pass.shadowed().by_rounding;
+        let (single, steps) = match (&self.pass, by_rounding) {
             (Pass::Double(_), true) => return Some(Limit::Growth),
             (Pass::Double(_), false) => (false, self.steps.saturating_mul(2)),
             (Pass::Single(_), true) => (false, self.first),
             (Pass::Single(_), false) => (true, self.steps.saturating_mul(2)),
         };
-        let way = if single { Method::DirectionPlain } else { Method::Direction8 };
-        if steps > MOST_STEPS || self.costs.of_frame(way, steps) > self.budget.frame {
+        let cheapest = if single { Method::DirectionPlain } else { Method::Direction8 };
+        if steps > MOST_STEPS || self.costs.of_frame(cheapest, steps) > self.budget.frame {
             return Some(Limit::Budget);
         }
-        self.look = if single {
+        self.pass = if single {
             Pass::Single(Single::new(&self.problem, &self.start, steps))
         } else {
             Pass::Double(Double::new(&self.problem, &self.start, steps))
@@ -215,7 +222,7 @@ impl Search {
 
     /// Whether `candidate` goes so much farther than the best so far, or as far and cheaper.
     fn is_better(&self, candidate: &Candidate) -> bool {
-        let cost = |candidate: &Candidate| self.costs.of_frame(candidate.way, candidate.steps);
+        let cost = |candidate: &Candidate| self.costs.of_frame(candidate.method, candidate.steps);
         if candidate.right == 0 || cost(candidate) > self.budget.frame {
             return false;
         }
@@ -227,21 +234,21 @@ impl Search {
         })
     }
 
-    /// The best candidate as a plan; if nothing affordable was right in any frame, what judges, for no time at all.
-    fn plan(&self, limit: Limit) -> Plan {
-        let best = self.best.unwrap_or(Candidate { right: 0, error: 0.0, ..*self.look.judge() });
-        let steps = if best.way == Method::ClosedForm { 0 } else { best.steps };
+    /// The best candidate as a plan, if there is one.
+    fn plan(&self, limit: Limit) -> Result<Plan, PlanError> {
+        let Some(best) = self.best else { return Err(PlanError::NothingHolds { limit, spent: self.spent }) };
+        let steps = if best.method == Method::ClosedForm { 0 } else { best.steps };
         let rate = f64::from(self.problem.rate);
-        Plan {
-            way: best.way,
+        Ok(Plan {
+            method: best.method,
             steps,
-            step: if steps == 0 { 0.0 } else { 1.0 / (rate * f64::from(steps)) },
+            dt: if steps == 0 { 0.0 } else { 1.0 / (rate * f64::from(steps)) },
             error: best.error,
-            cycles: self.costs.of_frame(best.way, best.steps),
+            cost: self.costs.of_frame(best.method, best.steps),
             horizon: if limit == Limit::End { self.problem.duration } else { self.problem.time(best.right) },
             limit,
-            planning: self.spent,
-        }
+            spent: self.spent,
+        })
     }
 }
 

@@ -1,6 +1,7 @@
 //! A run that knows how wrong it is.
 
-use super::problem::{Problem, Twin};
+use super::error::PlanError;
+use super::problem::{Perturbation, Problem};
 use super::run::{Directions, Run, distance};
 use crate::error::Error;
 use crate::form::Form;
@@ -12,11 +13,11 @@ use crate::state::State;
 ///
 /// To half the step it is 16/15 of the distance (order 4) or 256/255 (order 8) where the steps resolve the motion. Two other
 /// roundings are samples of the same spread as the run's own; half the step is a third. `cargo plan --fit 1000 --seed 2`
-/// holds it against the exact motion: of 288 looks whose error came to half a pixel, two had an error beyond this bound, by
+/// holds it against the exact motion: of 288 passes whose error came to half a pixel, two had an error beyond this bound, by
 /// at most 1.7 times.
 pub const MARGIN: f32 = 2.0;
 
-/// How far the runs are from one that tell how wrong it is, pixels.
+/// How far the runs are apart that tell how wrong one of them is, over the tolerance.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ErrorEstimate {
     /// The one with half the step; it has other roundings, too.
@@ -26,23 +27,27 @@ pub struct ErrorEstimate {
 }
 
 impl ErrorEstimate {
-    /// What the error is hardly ever more than, pixels.
+    /// What the error is hardly ever more than, over the tolerance.
+    #[must_use]
     pub fn bound(self) -> f32 {
         MARGIN * self.error()
     }
 
-    /// What the error is about, pixels.
+    /// What the error is about, over the tolerance.
+    #[must_use]
     pub fn error(self) -> f32 {
         greater(self.step, self.rounding)
     }
 
     /// Whether rounding is what parts the runs: finer steps do not help. All three have roundings of their own, so where
     /// nothing else is wrong their distances are alike.
+    #[must_use]
     pub fn is_by_rounding(self) -> bool {
         2.0 * self.rounding >= self.step
     }
 
     /// The greater of each.
+    #[must_use]
     pub fn or(self, other: Self) -> Self {
         Self { step: greater(self.step, other.step), rounding: greater(self.rounding, other.rounding) }
     }
@@ -59,7 +64,7 @@ fn greater(a: f32, b: f32) -> f32 {
 pub struct ShadowedRun<R: Real, F: Form<R>> {
     own: Run<R, F>,
     finer: Run<R, F>,
-    twins: [Run<R, F>; 2],
+    perturbed: [Run<R, F>; 2],
     rods: [f32; 2],
 }
 
@@ -69,26 +74,27 @@ impl<R: Real, F: Form<R>> ShadowedRun<R, F> {
 
     /// With `steps` steps for each frame.
     ///
-    /// Refuses a scene that cannot be shown and a pendulum that the kernel refuses.
-    pub fn new(problem: &Problem, steps: u32) -> Result<Self, Error> {
+    /// Refuses a problem without a tolerance, a duration or a rate, and a pendulum that the kernel refuses.
+    pub fn new(problem: &Problem, steps: u32) -> Result<Self, PlanError> {
         problem.check()?;
         Ok(Self::from_state(problem, &Pendulum::new(problem.pendulum)?.to_state(&problem.start), steps))
     }
 
     /// From `start`, with `steps` steps for each frame.
     pub(super) fn from_state(problem: &Problem, start: &State<f64>, steps: u32) -> Self {
-        let [own, first, second] = [Twin::None, Twin::Opposite, Twin::Alike].map(|twin| problem.rounded(start, twin));
+        let [own, first, second] = [Perturbation::None, Perturbation::Opposite, Perturbation::Alike]
+            .map(|perturbation| problem.rounded(start, perturbation));
         Self {
             own: Run::new(&own, problem.rate, steps),
             finer: Run::new(&own, problem.rate, steps.saturating_mul(2)),
-            twins: [&first, &second].map(|twin| Run::new(twin, problem.rate, steps)),
+            perturbed: [&first, &second].map(|beside| Run::new(beside, problem.rate, steps)),
             rods: problem.rods(),
         }
     }
 
     /// As [`Run::advance`], one of the runs.
     pub(super) fn advance(&mut self, most: u32) -> Result<bool, Error> {
-        let Self { own, finer, twins: [first, second], .. } = self;
+        let Self { own, finer, perturbed: [first, second], .. } = self;
         Ok(own.advance(most)? || finer.advance(most)? || first.advance(most)? || second.advance(most)?)
     }
 
@@ -97,8 +103,9 @@ impl<R: Real, F: Form<R>> ShadowedRun<R, F> {
         let frame = self.own.frame();
         let apart = |other: &mut Run<R, F>| distance(self.rods, &frame, &other.frame());
         let step = apart(&mut self.finer);
-        let [first, second] = [apart(&mut self.twins[0]), apart(&mut self.twins[1])];
-        (frame, ErrorEstimate { step, rounding: greater(first, second) })
+        let [first, second] = &mut self.perturbed;
+        let rounding = greater(apart(first), apart(second));
+        (frame, ErrorEstimate { step, rounding })
     }
 
     /// The next frame, and how wrong it is. Refuses a pendulum out of the range of the arithmetic.

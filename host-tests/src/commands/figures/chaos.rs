@@ -1,16 +1,16 @@
 //! Figure 7: bob 2's path by the right equations and by the ones that the book prints.
 
 use double_pendulum::{Error, Parameters, Pendulum, State, rk4};
+use firmware::config::PAGE_GRAVITY;
 use plotters::prelude::*;
 
 use super::sheet::{Area, Axes, BLUE, Drawing, Drawn, Frame, ORANGE, TEXT, headed, line, pale, text, units};
 use crate::oracle::textbook::misprinted_equal_rods;
 
-/// The figure's mass ratio, start angle of both rods (degrees), rods (m) and gravity (m/s^2).
+/// The figure's mass ratio, start angle of both rods (degrees) and rods (m).
 const MASS_RATIO: f64 = 2.75;
 const START: f64 = 171.0;
 const ROD: f64 = 1.0;
-const GRAVITY: f64 = 9.8;
 /// How long the motion is followed, s: as long as the frame is right (test `figures`).
 pub const DURATION: u32 = 10;
 /// Integration steps per second, and how many make a point of the path.
@@ -40,7 +40,7 @@ pub struct Path {
 
 /// Figure 7's pendulum.
 pub fn pendulum() -> Result<Pendulum<f64>, Error> {
-    Pendulum::new(Parameters::equal_rods(MASS_RATIO, ROD, GRAVITY))
+    Pendulum::new(Parameters::equal_rods(MASS_RATIO, ROD, PAGE_GRAVITY))
 }
 
 /// Its start.
@@ -53,7 +53,7 @@ impl Chaos {
     pub fn new(refinement: u32) -> Result<Self, Error> {
         let pendulum = pendulum()?;
         let right = path(&pendulum, refinement, |z| pendulum.derivatives(z));
-        let printed = path(&pendulum, refinement, |z| misprinted_equal_rods(MASS_RATIO, ROD, GRAVITY, z));
+        let printed = path(&pendulum, refinement, |z| misprinted_equal_rods(MASS_RATIO, ROD, PAGE_GRAVITY, z));
         Ok(Self { paths: [right, printed] })
     }
 }
@@ -81,7 +81,7 @@ impl Drawing for Chaos {
     fn draw<Backend: DrawingBackend>(&self, area: &Area<Backend>) -> Drawn<(), Backend> {
         let title = format!("Figure 7: path of bob 2 in the first {DURATION} s");
         let particulars = format!(
-            "mass ratio {MASS_RATIO}, both rods let go at rest at {START}°; l = {ROD} m, g = {GRAVITY} m/s², m₁ = 1 kg"
+            "mass ratio {MASS_RATIO}, both rods let go at rest at {START}°; l = {ROD} m, g = {PAGE_GRAVITY} m/s², m₁ = 1 kg"
         );
         let marks =
             format!("○ start, ● end; · every {MARKED} s, with the seconds; paler earlier, darker later; × pivot");

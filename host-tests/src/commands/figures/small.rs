@@ -3,13 +3,13 @@
 use std::f64::consts::{FRAC_PI_6, TAU};
 
 use double_pendulum::{Error, Modes, Motion, Parameters, SmallOscillations};
+use firmware::config::PAGE_GRAVITY;
 use plotters::prelude::*;
 
 use super::sheet::{Area, BLUE, Drawing, Drawn, Frame, ORANGE, headed, line, text, units};
 
-/// The book's rods, m, and its gravity, m/s^2.
+/// The book's rods, m.
 const ROD: f64 = 0.25;
-const GRAVITY: f64 = 9.8;
 /// How long the motion is shown, s, and how finely.
 const DURATION: f64 = 5.0;
 const POINTS: u32 = 1500;
@@ -38,7 +38,7 @@ pub struct Point {
 impl Small {
     /// Computes figure `number` with its mass ratio: a1 = 0, a2 = 30 degrees, let go from rest.
     pub fn new(number: u32, mass_ratio: f64) -> Result<Self, Error> {
-        let modes = Modes::new(&Parameters::equal_rods(mass_ratio, ROD, GRAVITY))?;
+        let modes = Modes::new(&Parameters::equal_rods(mass_ratio, ROD, PAGE_GRAVITY))?;
         let motion = SmallOscillations::new(modes, &Motion::at_rest(0.0, FRAC_PI_6));
         let point = |i: u32| {
             let time = DURATION * f64::from(i) / f64::from(POINTS);
@@ -65,7 +65,7 @@ impl Drawing for Small {
         let Modes { fast, slow, .. } = &self.modes;
         let title = format!("Figure {}: small oscillations, mass ratio {}", self.number, self.mass_ratio);
         let particulars = format!(
-            "l = {ROD} m, g = {GRAVITY} m/s²; ω₁ = {:.3} rad/s, ω₂ = {:.3} rad/s; the envelope repeats every {:.3} s",
+            "l = {ROD} m, g = {PAGE_GRAVITY} m/s²; ω₁ = {:.3} rad/s, ω₂ = {:.3} rad/s; the envelope repeats every {:.3} s",
             fast.frequency,
             slow.frequency,
             TAU / self.modes.exchange()

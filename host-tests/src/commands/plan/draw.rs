@@ -6,15 +6,16 @@ use std::ops::Range;
 use double_pendulum::plan::Problem;
 use double_pendulum::{Motion, Parameters};
 use fastrand::Rng;
+use firmware::config::GRAVITY;
+use firmware::motion::planner::half_pixel;
 
 use crate::oracle::random::{log_uniform, symmetric};
 
-/// The height of the display, pixels.
+/// The height of the display, pixels: half of one may be missed.
 pub const HEIGHT: f64 = 64.0;
 /// Frames per second.
 pub const RATE: u16 = 60;
-/// Gravity, m/s^2, and the length of rod 1, m: with them the mass and length ratios are all there is.
-const GRAVITY: f64 = 9.81;
+/// The length of rod 1, m: with gravity given, too, the mass and length ratios are all there is.
 const ROD: f64 = 1.0;
 /// The least amplitude, rad.
 const LEAST: f64 = 0.01;
@@ -46,5 +47,6 @@ fn scene(rng: &mut Rng, seconds: &Range<f64>) -> Problem {
         start.w1 = amplitude * symmetric(rng) * (GRAVITY / pendulum.l1).sqrt();
         start.w2 = amplitude * symmetric(rng) * (GRAVITY / pendulum.l2).sqrt();
     }
-    Problem { pendulum, start, height: HEIGHT, duration: log_uniform(rng, seconds.start, seconds.end), rate: RATE }
+    let tolerance = half_pixel(&pendulum, HEIGHT);
+    Problem { pendulum, start, tolerance, duration: log_uniform(rng, seconds.start, seconds.end), rate: RATE }
 }

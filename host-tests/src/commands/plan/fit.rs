@@ -3,8 +3,9 @@
 use std::ops::Range;
 
 use double_pendulum::form::{Direction, DirectionForm, DirectionForm8, Form};
-use double_pendulum::plan::{ErrorEstimate, HALF_PIXEL, MARGIN, Problem, ShadowedRun};
-use double_pendulum::{Error, Motion, Pendulum, Real};
+use double_pendulum::plan::{ErrorEstimate, MARGIN, PlanError, Problem, ShadowedRun};
+use double_pendulum::{Motion, Pendulum, Real};
+use firmware::config::HALF_PIXEL;
 
 use super::judge::distance;
 use super::study::spread;
@@ -13,13 +14,13 @@ use crate::oracle::reference::Reference;
 
 /// How long each scene is followed, s.
 pub const FOLLOWED: Range<f64> = 9.0..11.0;
-/// How much finer the steps become from one look to the next, and how often.
+/// How much finer the steps become from one pass to the next, and how often.
 const FINER: u32 = 8;
-const LOOKS: u32 = 3;
+const PASSES: u32 = 3;
 /// The most steps to a frame: finer ones would only take time.
 const MOST_STEPS: u32 = 256;
 
-/// A look at a motion, when its error first came to half a pixel, or as far as it was followed if it never did.
+/// A pass over a motion, when its error first came to half a pixel, or as far as it was followed if it never did.
 #[derive(Clone, Copy, Debug)]
 pub struct Sample {
     /// The scene's place in the drawing.
@@ -28,43 +29,43 @@ pub struct Sample {
     pub double: bool,
     /// Steps to a frame.
     pub steps: u32,
-    /// The largest error so far, pixels.
+    /// The largest error so far, over half a pixel.
     pub error: f64,
     /// The largest distances so far.
-    pub doubt: ErrorEstimate,
+    pub estimate: ErrorEstimate,
 }
 
 impl Sample {
     /// Whether the error came to half a pixel.
     pub fn ended(&self) -> bool {
-        self.error > f64::from(HALF_PIXEL)
+        self.error > 1.0
     }
 
-    /// The error over what it was thought to be at most.
+    /// The error over its bound.
     pub fn ratio(&self) -> f64 {
-        self.error / f64::from(self.doubt.bound())
+        self.error / f64::from(self.estimate.bound())
     }
 }
 
-/// The looks at `scenes`.
-pub fn fit(scenes: impl IntoIterator<Item = Problem>, tick: impl Fn() + Sync) -> Result<Vec<Sample>, Error> {
+/// The passes over `scenes`.
+pub fn fit(scenes: impl IntoIterator<Item = Problem>, tick: impl Fn() + Sync) -> Result<Vec<Sample>, PlanError> {
     let scenes: Vec<_> = scenes.into_iter().enumerate().collect();
     let samples = spread(&scenes, |&(number, scene)| {
-        let samples = looks(number, &scene);
+        let samples = passes(number, &scene);
         tick();
         samples
     })?;
     Ok(samples.concat())
 }
 
-fn looks(number: usize, scene: &Problem) -> Result<Vec<Sample>, Error> {
+fn passes(number: usize, scene: &Problem) -> Result<Vec<Sample>, PlanError> {
     let pendulum = Pendulum::new(scene.pendulum)?;
     let admissible = pendulum.admissible_step(&pendulum.to_state(&scene.start))?;
     let coarsest = (1.0 / (f64::from(scene.rate) * 4.0 * admissible)).ceil().max(1.0) as u32;
     let mut exact = Exact { scene, reference: Reference::new(&scene.pendulum, &scene.start), frames: Vec::new() };
     let mut samples = Vec::new();
-    for look in 0..LOOKS {
-        let steps = coarsest.next_power_of_two() * FINER.pow(look);
+    for pass in 0..PASSES {
+        let steps = coarsest.next_power_of_two() * FINER.pow(pass);
         if steps <= MOST_STEPS {
             samples.push(sample::<f32, DirectionForm<f32>>(number, &mut exact, steps)?);
         }
@@ -75,15 +76,15 @@ fn looks(number: usize, scene: &Problem) -> Result<Vec<Sample>, Error> {
     Ok(samples)
 }
 
-fn sample<R: Real, F: Form<R>>(number: usize, exact: &mut Exact, steps: u32) -> Result<Sample, Error> {
-    let mut judged = ShadowedRun::<R, F>::new(exact.scene, steps)?;
+fn sample<R: Real, F: Form<R>>(number: usize, exact: &mut Exact, steps: u32) -> Result<Sample, PlanError> {
+    let mut shadowed = ShadowedRun::<R, F>::new(exact.scene, steps)?;
     let mut sample =
-        Sample { number, double: R::EPSILON.to_f64() < 1e-10, steps, error: 0.0, doubt: ErrorEstimate::default() };
+        Sample { number, double: R::EPSILON.to_f64() < 1e-10, steps, error: 0.0, estimate: ErrorEstimate::default() };
     for frame in 1..=exact.scene.frames() {
-        let (shown, doubt) = judged.next_frame()?;
+        let (shown, estimate) = shadowed.next_frame()?;
         let shown = shown.map(|direction| direction.map(f64::from));
-        let error = distance(exact.scene, &shown, &exact.frame(frame));
-        sample.doubt = sample.doubt.or(doubt);
+        let error = distance(exact.scene, &shown, &exact.frame(frame)) / f64::from(HALF_PIXEL);
+        sample.estimate = sample.estimate.or(estimate);
         sample.error = sample.error.max(error);
         if sample.ended() {
             break;
@@ -110,10 +111,10 @@ impl Exact<'_> {
     }
 }
 
-/// How the errors compare with the planner's bounds, for looks whose error came to half a pixel.
+/// How the errors compare with the planner's bounds, for passes whose error came to half a pixel.
 pub fn margins(samples: &[Sample]) -> Table {
     let ended = |pick: &dyn Fn(&Sample) -> bool| samples.iter().filter(|s| s.ended() && pick(s)).collect::<Vec<_>>();
-    let by_rounding = |s: &Sample| s.doubt.is_by_rounding();
+    let by_rounding = |s: &Sample| s.estimate.is_by_rounding();
     let groups = [
         ("f32, the step", ended(&|s| !s.double && !by_rounding(s))),
         ("f32, rounding", ended(&|s| !s.double && by_rounding(s))),
@@ -122,8 +123,8 @@ pub fn margins(samples: &[Sample]) -> Table {
     ];
     let rows = groups.iter().map(|(name, samples)| {
         let of = |value: &dyn Fn(&Sample) -> f64, share: f64| small(quantile(samples.iter().map(|s| value(s)), share));
-        let step = |s: &Sample| s.error / f64::from(s.doubt.step);
-        let rounding = |s: &Sample| s.error / f64::from(s.doubt.rounding);
+        let step = |s: &Sample| s.error / f64::from(s.estimate.step);
+        let rounding = |s: &Sample| s.error / f64::from(s.estimate.rounding);
         vec![
             (*name).to_owned(),
             samples.len().to_string(),
@@ -142,13 +143,13 @@ pub fn margins(samples: &[Sample]) -> Table {
         name: "plan-margins",
         title: format!("The planner's margin of {MARGIN}"),
         note: String::from(
-            "Looks at scenes whose true error came to half a pixel, by what ended them. The error then, over the distance \
+            "Passes over scenes whose true error came to half a pixel, by what ended them. The error then, over the distance \
              to the motion with half the step, over the larger distance to the two with other roundings, and over the \
              bound made of both: above 1 the promise is broken. Quantiles.",
         ),
         columns: vec![
             "ended by",
-            "looks",
+            "passes",
             "over step, median",
             "99 %",
             "over rounding, median",

@@ -1,8 +1,9 @@
 //! A plan carried out, beside the reference.
 
 use double_pendulum::form::{AngleForm, Direction, DirectionForm, DirectionForm8, Form, Plain, Stepper};
-use double_pendulum::plan::{HALF_PIXEL, Method, Plan, Problem};
+use double_pendulum::plan::{Method, Plan, Problem};
 use double_pendulum::{Error, Modes, Motion, Parameters, Pendulum, Real, SmallOscillations};
+use firmware::config::HALF_PIXEL;
 
 use crate::oracle::reference::Reference;
 
@@ -10,7 +11,7 @@ use crate::oracle::reference::Reference;
 pub type Directions = [Direction<f64>; 2];
 
 /// What became of a plan.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Verdict {
     /// The last time until which every frame was right to half a pixel, s; the scene's duration if all were.
     pub horizon: f64,
@@ -48,7 +49,7 @@ pub fn judge(scene: &Problem, plan: &Plan) -> Result<Verdict, Error> {
 
 /// How far two references of this scene come apart that stop at other times, and so take other steps with other
 /// roundings, pixels: what the judge itself may be wrong by. Until `seconds`.
-pub fn doubt(scene: &Problem, seconds: f64) -> f64 {
+pub fn reference_error(scene: &Problem, seconds: f64) -> f64 {
     let [mut one, mut other] = [(); 2].map(|()| Reference::new(&scene.pendulum, &scene.start));
     let Parameters { l1, l2, .. } = scene.pendulum;
     let mut worst: f64 = 0.0;
@@ -68,15 +69,15 @@ pub fn doubt(scene: &Problem, seconds: f64) -> f64 {
     worst
 }
 
-/// The frames as the plan's way gives them, one after the other.
+/// The frames as the plan's method gives them, one after the other.
 fn frames(scene: &Problem, plan: &Plan) -> Result<Box<dyn FnMut() -> Directions>, Error> {
-    match plan.way {
+    match plan.method {
         Method::ClosedForm => closed_form(scene),
         Method::DirectionPlain => stepped::<f32, DirectionForm<f32, Plain>>(scene, plan),
         Method::Direction => stepped::<f32, DirectionForm<f32>>(scene, plan),
         Method::Angle => stepped::<f32, AngleForm<f32>>(scene, plan),
         Method::Direction8 => stepped::<f64, DirectionForm8<f64>>(scene, plan),
-        other => panic!("{other:?} is a new way: carry it out here"),
+        other => panic!("{other:?} is a new method: carry it out here"),
     }
 }
 
@@ -85,7 +86,7 @@ fn stepped<R: Real, F: Form<R> + 'static>(
     plan: &Plan,
 ) -> Result<Box<dyn FnMut() -> Directions>, Error> {
     let start = Pendulum::new(scene.pendulum)?.to_state(&scene.start);
-    let mut stepper = Stepper::<R, F>::new(&scene.pendulum.cast(), &start.cast(), plan.step)?;
+    let mut stepper = Stepper::<R, F>::new(&scene.pendulum.cast(), &start.cast(), plan.dt)?;
     let steps = plan.steps;
     Ok(Box::new(move || {
         stepper.advance(steps);
@@ -104,7 +105,7 @@ fn closed_form(scene: &Problem) -> Result<Box<dyn FnMut() -> Directions>, Error>
 
 /// Pixels to a metre.
 fn scale(scene: &Problem) -> f64 {
-    0.5 * scene.height / (scene.pendulum.l1 + scene.pendulum.l2)
+    f64::from(HALF_PIXEL) / scene.tolerance
 }
 
 /// How far the farther of the two bobs is off, pixels; infinite if anything is not a number.

@@ -12,7 +12,7 @@ mod words;
 
 pub use draw::scenes;
 pub use fit::{FOLLOWED, Sample, fit, margins};
-pub use judge::{Verdict, doubt, judge};
+pub use judge::{Verdict, judge, reference_error};
 pub use options::Options;
 pub use rival::rk4_in_f64;
 pub use study::{Case, Class, DURATIONS, GROSS, PLANNING, median, study};

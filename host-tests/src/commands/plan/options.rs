@@ -3,17 +3,19 @@
 use anyhow::{anyhow, ensure};
 use clap::Parser;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use double_pendulum::plan::{Budget, Plan, Problem, plan};
-use double_pendulum::{Error, Motion, Parameter};
+use double_pendulum::plan::{Limit, Plan, PlanError, Problem, Quantity};
+use double_pendulum::{Motion, Parameter};
+use firmware::motion::planner::half_pixel;
 
 use super::target::{CHIPS, Chip};
 use crate::commands::simulate::{Number, Start};
 
-/// Says how to compute a scene as cheaply as may be, right to half a pixel, and until when it is.
+/// Says how to compute a scene as cheaply as may be, right to half a pixel about the exact motion, and until when it is; or
+/// that nothing the chip can afford is right in any frame, which is an answer, too (exit code 0).
 ///
 /// Numbers are decimals (0.25, 1e-3) or fractions (1/256).
 #[derive(Debug, Parser)]
-#[command(name = "cargo plan", bin_name = "cargo plan", mut_arg("gravity", |gravity| gravity.default_value("9.81")))]
+#[command(name = "cargo plan", bin_name = "cargo plan")]
 pub struct Options {
     /// What moves.
     #[command(flatten)]
@@ -50,43 +52,44 @@ fn chip(name: &str) -> Chip {
 }
 
 impl Options {
-    /// The scene with its plan; an error is one line that names the option and the value.
-    pub fn plan(&self) -> anyhow::Result<(Problem, Plan)> {
+    /// The scene with its plan, or with what forbids any; an error is one line that names the option and the value.
+    pub fn plan(&self) -> anyhow::Result<(Problem, Result<Plan, Limit>)> {
         let rate = &self.rate;
         let whole = rate.value().fract() == 0.0 && rate.is_positive();
         ensure!(whole, "--rate {rate}: must be a whole number of frames per second, at least 1");
         ensure!(rate.value() <= f64::from(u16::MAX), "--rate {rate}: more than {}", u16::MAX);
+        ensure!(self.height.is_positive(), "--height {}: must be greater than zero", self.height);
         ensure!(self.planning.is_positive(), "--planning {}: must be greater than zero", self.planning);
         let ([a1, a2], [w1, w2]) = (self.start.angles(), self.start.velocities());
         let scene = Problem {
             pendulum: self.start.parameters(),
             start: Motion { a1, a2, w1, w2 },
-            height: self.height.value(),
+            tolerance: half_pixel(&self.start.parameters(), self.height.value()),
             duration: self.duration.value(),
             rate: rate.value() as u16,
         };
-        let budget = self.budget(scene.rate);
-        let plan = plan(&scene, &self.target.costs, &budget);
+        let plan = self.target.plan(&scene, self.planning.value() as f32);
         Ok((scene, plan.map_err(|error| anyhow!("{}: {error}", option_of(&error)))?))
-    }
-
-    fn budget(&self, rate: u16) -> Budget {
-        self.target.budget(rate, self.planning.value() as f32)
     }
 }
 
-/// The option that sets what the kernel refuses.
-fn option_of(error: &Error) -> &'static str {
-    match error.parameter() {
-        Parameter::M1 | Parameter::M2 | Parameter::Mu => "--masses",
-        Parameter::L1 | Parameter::L2 => "--lengths",
-        Parameter::G => "--gravity",
-        Parameter::A1 | Parameter::A2 => "--angles",
-        Parameter::W1 | Parameter::W2 | Parameter::P1 | Parameter::P2 => "--velocities",
-        Parameter::Height => "--height",
-        Parameter::Duration => "--duration",
-        Parameter::Rate => "--rate",
-        Parameter::Budget => "--planning",
+/// The option that sets what is refused.
+fn option_of(error: &PlanError) -> &'static str {
+    match error {
+        PlanError::Motion(error) => match error.parameter() {
+            Parameter::M1 | Parameter::M2 | Parameter::Mu => "--masses",
+            Parameter::L1 | Parameter::L2 => "--lengths",
+            Parameter::G => "--gravity",
+            Parameter::A1 | Parameter::A2 => "--angles",
+            Parameter::W1 | Parameter::W2 | Parameter::P1 | Parameter::P2 => "--velocities",
+            _ => "the scene",
+        },
+        PlanError::NotPositive { quantity, .. } | PlanError::TooLarge { quantity, .. } => match quantity {
+            Quantity::Tolerance => "--height",
+            Quantity::Duration => "--duration",
+            Quantity::Rate => "--rate",
+            _ => "--planning",
+        },
         _ => "the scene",
     }
 }

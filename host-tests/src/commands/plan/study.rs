@@ -4,8 +4,9 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
-use double_pendulum::plan::{HALF_PIXEL, Plan, Problem, plan};
+use double_pendulum::plan::{Limit, Plan, PlanError, Problem};
 use double_pendulum::{Error, Pendulum};
+use firmware::config::HALF_PIXEL;
 
 use super::judge::{Verdict, judge};
 use super::target::Chip;
@@ -17,9 +18,9 @@ pub struct Case {
     pub number: usize,
     /// The scene.
     pub scene: Problem,
-    /// The plan.
-    pub plan: Plan,
-    /// What became of it.
+    /// The plan; if nothing holds, what forbids it.
+    pub plan: Result<Plan, Limit>,
+    /// What became of it; nothing without one.
     pub verdict: Verdict,
 }
 
@@ -38,9 +39,14 @@ impl Case {
         self.verdict.error <= f64::from(HALF_PIXEL)
     }
 
-    /// The promised horizon over the true one; 1 if neither is before the first frame.
+    /// The promised horizon, s; 0 if nothing is promised.
+    pub fn promised(&self) -> f64 {
+        self.plan.map_or(0.0, |plan| plan.horizon)
+    }
+
+    /// The promised horizon over the true one; 0 if nothing is promised.
     pub fn share(&self) -> f64 {
-        if self.verdict.horizon > 0.0 { self.plan.horizon / self.verdict.horizon } else { 1.0 }
+        if self.verdict.horizon > 0.0 { self.promised() / self.verdict.horizon } else { 0.0 }
     }
 
     /// Whether the true horizon is within the scene.
@@ -103,11 +109,11 @@ pub fn study(
     scenes: impl IntoIterator<Item = Problem>,
     chip: &Chip,
     tick: impl Fn() + Sync,
-) -> Result<Vec<Case>, Error> {
+) -> Result<Vec<Case>, PlanError> {
     let scenes: Vec<_> = scenes.into_iter().enumerate().collect();
-    let case = |&(number, scene): &(usize, Problem)| -> Result<Case, Error> {
-        let plan = plan(&scene, &chip.costs, &chip.budget(scene.rate, PLANNING))?;
-        let verdict = judge(&scene, &plan)?;
+    let case = |&(number, scene): &(usize, Problem)| -> Result<Case, PlanError> {
+        let plan = chip.plan(&scene, PLANNING)?;
+        let verdict = plan.map_or(Ok(Verdict::default()), |plan| judge(&scene, &plan))?;
         tick();
         Ok(Case { number, scene, plan, verdict })
     };
@@ -117,8 +123,8 @@ pub fn study(
 /// What `work` makes of each item, in their order, on as many threads as there are processors.
 pub(super) fn spread<T: Sync, R: Send>(
     items: &[T],
-    work: impl Fn(&T) -> Result<R, Error> + Sync,
-) -> Result<Vec<R>, Error> {
+    work: impl Fn(&T) -> Result<R, PlanError> + Sync,
+) -> Result<Vec<R>, PlanError> {
     let workers = thread::available_parallelism().map_or(1, usize::from);
     let (next, work) = (&AtomicUsize::new(0), &work);
     let mut done = thread::scope(|scope| {

@@ -5,27 +5,35 @@ use double_pendulum::plan::{Limit, Method, Plan, Problem};
 
 use super::target::Chip;
 
-/// The plan with its reasons, a line each.
-pub fn words(scene: &Problem, plan: &Plan, chip: &Chip) -> Vec<String> {
-    let budget = chip.budget(scene.rate, 1.0);
-    let share = |cycles: f32| 100.0 * cycles * f32::from(scene.rate) / chip.clock;
-    let mut lines = vec![
-        format!("way      {}", plan.way.name()),
-        format!("step     {}", step(scene, plan)),
-        format!("error    {:.1e} pixels expected until the horizon", plan.error),
-        format!(
-            "cost     {:.0} cycles a frame, {:.2} % of a {} (estimate)",
-            plan.cycles,
-            share(plan.cycles),
-            chip.title
-        ),
-        format!("horizon  right to half a pixel until {:.2} s of {} s", plan.horizon, scene.duration),
-        format!("looked   ahead at a cost of {:.2} s of the chip", plan.planning / chip.clock),
-    ];
-    lines.push(format!("why      {}", way(scene, plan)));
-    lines.push(format!("         {}", limit(plan, budget.frame)));
+/// The plan with its reasons, a line each; or that nothing holds.
+pub fn words(scene: &Problem, plan: &Result<Plan, Limit>, chip: &Chip) -> Vec<String> {
+    let frame = chip.budget(scene.rate, 1.0).frame;
+    let mut lines = match plan {
+        Ok(plan) => planned(scene, plan, chip, frame),
+        Err(limit) => vec![
+            format!("nothing  that a {} can afford is right to half a pixel in any frame", chip.title),
+            format!("why      {}", forbidden(*limit, frame)),
+        ],
+    };
     lines.extend(energy(scene).map(|line| format!("         {line}")));
     lines
+}
+
+fn planned(scene: &Problem, plan: &Plan, chip: &Chip, frame: f32) -> Vec<String> {
+    let share = 100.0 * plan.cost * f32::from(scene.rate) / chip.clock;
+    vec![
+        format!("method   {}", plan.method.name()),
+        format!("step     {}", step(scene, plan)),
+        format!(
+            "horizon  right to half a pixel about the exact motion until {:.2} s of {} s",
+            plan.horizon, scene.duration
+        ),
+        format!("error    at most {:.0} % of that expected until then", (100.0 * plan.error).ceil()),
+        format!("cost     {:.0} cycles a frame, {share:.2} % of a {} (estimate)", plan.cost, chip.title),
+        format!("search   {:.2} s of the chip's time to look ahead", plan.spent / chip.clock),
+        format!("why      {}", method(plan)),
+        format!("         {}", limit(plan, frame)),
+    ]
 }
 
 fn step(scene: &Problem, plan: &Plan) -> String {
@@ -36,15 +44,14 @@ fn step(scene: &Problem, plan: &Plan) -> String {
     }
 }
 
-fn way(scene: &Problem, plan: &Plan) -> String {
-    let rods = if scene.pendulum.l1 == scene.pendulum.l2 { "equal" } else { "unequal" };
-    match plan.way {
+fn method(plan: &Plan) -> String {
+    match plan.method {
         Method::ClosedForm => String::from("until the horizon the linear motion is right to half a pixel"),
         Method::DirectionPlain => {
-            format!("no angle is needed to draw, nor are carried roundings; {rods} rods cost alike")
+            String::from("to draw, directions are enough and no angles needed; the roundings of plain sums do not show")
         }
         Method::Direction => {
-            format!("no angle is needed to draw, but the roundings must be carried; {rods} rods cost alike")
+            String::from("to draw, directions are enough and no angles needed; the roundings of plain sums would show")
         }
         Method::Angle => String::from("the direction form loses more than steps on the angles do"),
         Method::Direction8 => String::from("the roundings of f32 would show before; in f64 order 8 is cheapest"),
@@ -54,13 +61,27 @@ fn way(scene: &Problem, plan: &Plan) -> String {
 
 fn limit(plan: &Plan, frame: f32) -> String {
     match plan.limit {
-        Limit::End => String::from("coarser steps and cheaper arithmetic would be seen, finer and costlier would not"),
+        Limit::End if plan.steps > 1 => {
+            String::from("with half the steps errors would show, or the fastest motion could be missed")
+        }
+        Limit::End => {
+            String::from("of the cheapest steps one to a frame is enough; nothing cheaper is right to the end")
+        }
         Limit::Growth => String::from("errors grow until they show, in f64 as well; nothing here goes farther"),
         Limit::Budget => {
             format!("errors grow until they show; what goes farther costs more than the {frame:.0} cycles allowed")
         }
-        Limit::Planning => String::from("nobody has looked farther: see --planning"),
+        Limit::Planning => String::from("no farther frame was looked at: see --planning"),
         other => other.name().to_owned(),
+    }
+}
+
+/// Why nothing holds.
+fn forbidden(limit: Limit, frame: f32) -> String {
+    match limit {
+        Limit::Budget => format!("steps fine enough cost more than the {frame:.0} cycles allowed for a frame"),
+        Limit::Planning => String::from("the time to look ahead ended before anything was found: see --planning"),
+        other => format!("what forbids finer steps: {}", other.name()),
     }
 }
 
@@ -69,6 +90,12 @@ fn energy(scene: &Problem) -> Option<String> {
     let pendulum = Pendulum::new(scene.pendulum).ok()?;
     let state = pendulum.to_state(&scene.start);
     let turns = if pendulum.cannot_turn_over(&state) { "no rod can turn over" } else { "a rod may turn over" };
-    let step = pendulum.admissible_step(&state).ok()?;
-    Some(format!("by its energy {turns}, and steps of 1/{:.0} s resolve its liveliest motion", (1.0 / step).ceil()))
+    // An admissible step is a quarter of the time in which the fastest motion that the energy allows turns a radian.
+    let radian = 4.0 * pendulum.admissible_step(&state).ok()?;
+    let fastest = if radian.is_finite() {
+        format!("no motion takes less than 1/{:.0} s for a radian", (1.0 / radian).ceil())
+    } else {
+        String::from("nothing moves")
+    };
+    Some(format!("by its energy {turns}, and {fastest}"))
 }

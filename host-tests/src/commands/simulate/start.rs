@@ -4,8 +4,12 @@ use std::f64::consts::PI;
 
 use clap::Args;
 use double_pendulum::Parameters;
+use firmware::config::{FIRST_ANGLE, GRAVITY};
 
 use super::Number;
+
+/// A degree, rad.
+const DEGREE: f64 = PI / 180.0;
 
 /// Two numbers separated by a comma: one for each bob or rod.
 #[derive(Clone, Debug)]
@@ -36,12 +40,12 @@ pub struct Start {
     /// Lengths of the rods, m
     #[arg(long, value_name = "L1,L2", default_value = "1,1", allow_hyphen_values = true)]
     lengths: Pair,
-    /// Gravitational acceleration, m/s^2
-    #[arg(long, value_name = "G", default_value = "9.8", allow_hyphen_values = true)]
-    gravity: Number,
-    /// Angles at the start from hanging, rad (see --degrees)
-    #[arg(long, value_name = "A1,A2", default_value = "0,0", allow_hyphen_values = true)]
-    angles: Pair,
+    #[arg(long, value_name = "G", allow_hyphen_values = true,
+          help = format!("Gravitational acceleration, m/s^2 [default: {GRAVITY}]"))]
+    gravity: Option<Number>,
+    #[arg(long, value_name = "A1,A2", allow_hyphen_values = true,
+          help = format!("Angles at the start from hanging, rad (see --degrees) [default: {FIRST_ANGLE} degrees both]"))]
+    angles: Option<Pair>,
     /// Angular velocities at the start, rad/s (see --degrees)
     #[arg(long, value_name = "W1,W2", default_value = "0,0", allow_hyphen_values = true)]
     velocities: Pair,
@@ -54,12 +58,13 @@ impl Start {
     /// Masses, lengths and gravity, as given.
     pub fn parameters(&self) -> Parameters<f64> {
         let [[m1, m2], [l1, l2]] = [&self.masses, &self.lengths].map(Pair::values);
-        Parameters { m1, m2, l1, l2, g: self.gravity.value() }
+        Parameters { m1, m2, l1, l2, g: self.gravity.as_ref().map_or(GRAVITY, Number::value) }
     }
 
     /// a1, a2, rad.
     pub fn angles(&self) -> [f64; 2] {
-        self.angles.values().map(|angle| self.radians(angle))
+        let first = [f64::from(FIRST_ANGLE) * DEGREE; 2];
+        self.angles.as_ref().map_or(first, |angles| angles.values().map(|angle| self.radians(angle)))
     }
 
     /// w1, w2, rad/s.
@@ -68,6 +73,6 @@ impl Start {
     }
 
     fn radians(&self, angle: f64) -> f64 {
-        if self.degrees { angle * (PI / 180.0) } else { angle }
+        if self.degrees { angle * DEGREE } else { angle }
     }
 }
