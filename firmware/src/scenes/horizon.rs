@@ -12,6 +12,9 @@ use crate::scenes::scene::Report;
 /// A point of the frame, pixels right and down.
 pub type Point = (f32, f32);
 
+/// A shadow run of the same kind may be half as far off: where both are as wrong, they may by chance be so in the same way.
+const SHADOW_LIMIT: f32 = 0.5 * HALF_PIXEL;
+
 /// The shadow run's steps in a tick, where the motion shown makes four.
 const SHADOW_STEPS: u32 = 3;
 const SHADOW_DT: f64 = 1.0 / (TICK_RATE * SHADOW_STEPS) as f64;
@@ -48,6 +51,8 @@ impl LastRight {
 #[derive(Clone, Copy, Debug)]
 pub struct AccuracyHorizon {
     shadow: DirectionStepper,
+    /// How far it may be off, pixels.
+    limit: f32,
     right: LastRight,
 }
 
@@ -55,7 +60,13 @@ impl AccuracyHorizon {
     /// Beside a motion that starts at `start`; the kernel's error if it takes no such motion.
     pub fn new(parameters: &Parameters<f32>, start: &State<f32>) -> Result<Self, Error> {
         let beside = Parameters { m2: parameters.m2.next_up(), ..*parameters };
-        Ok(Self { shadow: DirectionStepper::new(&beside, start, SHADOW_DT)?, right: LastRight::default() })
+        let shadow = DirectionStepper::new(&beside, start, SHADOW_DT)?;
+        Ok(Self { shadow, limit: SHADOW_LIMIT, right: LastRight::default() })
+    }
+
+    /// The same beside a model of that motion, far more wrong than the shadow run is.
+    pub fn of_model(parameters: &Parameters<f32>, start: &State<f32>) -> Result<Self, Error> {
+        Ok(Self { limit: HALF_PIXEL, ..Self::new(parameters, start)? })
     }
 
     /// Moves on to `time` (s) and compares: `shown` is where the two bobs are shown, `places` says where they would be
@@ -65,7 +76,7 @@ impl AccuracyHorizon {
             return;
         }
         self.shadow.advance(SHADOW_STEPS);
-        self.right.note(time, !are_apart(shown, places(self.shadow.directions()), HALF_PIXEL));
+        self.right.note(time, !are_apart(shown, places(self.shadow.directions()), self.limit));
     }
 
     /// Whether a frame has been wrong.

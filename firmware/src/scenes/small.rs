@@ -109,7 +109,7 @@ impl Scene for Small {
             scale: if greatest > 0.0 { SWING / greatest } else { 0.0 },
             ticks_per_column: ticks_per_column.max(1),
             ticks: 0,
-            horizon: AccuracyHorizon::new(&settings.parameters, &start)?,
+            horizon: AccuracyHorizon::of_model(&settings.parameters, &start)?,
             strip: Strip::default(),
         };
         scene.push();

@@ -137,9 +137,8 @@ pub const INVERTED_GROWTH: f64 = 1e-9;
 /// A linear motion of 0.5 rad after a whole period, rad: the roundings of w t, 40 rad, in both modes.
 pub const PERIOD: f64 = 1e-13;
 
-/// The accuracy clock: the time it shows over the time until which the frame really is right, at most
-/// (measured: 1.053, and 38 of 46 not late at all).
-pub const CLOCK_LATE: f64 = 1.1;
+/// The accuracy clock: the time it shows over the time until which the frame really is right, at most; what the issue asks.
+pub const CLOCK_LATE: f64 = 1.2;
 
 /// How far off the accuracy clock is typically (median), relative to the true time.
 pub const CLOCK_TYPICAL: f64 = 0.1;
@@ -223,5 +222,5 @@ pub const NOT_CLOSED: f64 = 1.0;
 /// close).
 pub const PLAN_AND_CLOCK: f64 = 0.2;
 
-/// The same for each scene of the catalogue, or two frames (measured: 0.15).
+/// The same for each scene of the catalogue, or two frames (measured: 0.19, figure 7).
 pub const PLAN_AND_CLOCK_EACH: f64 = 0.2;

@@ -100,10 +100,10 @@ impl Search {
     /// Refuses a problem without a tolerance, a duration or a rate, a pendulum that the kernel refuses, and costs or
     /// budgets that are not positive.
     pub fn new(problem: &Problem, costs: &Costs, budget: &Budget) -> Result<Self, PlanError> {
+        let pendulum = Pendulum::new(problem.pendulum)?;
         problem.check()?;
         costs.check()?;
         budget.check()?;
-        let pendulum = Pendulum::new(problem.pendulum)?;
         let start = pendulum.to_state(&problem.start);
         let first = first_steps(problem, pendulum.admissible_step(&start)?);
         Ok(Self {
