@@ -89,8 +89,8 @@ fn a_pause_is_marked_and_only_a_pause() {
 fn what_is_planned_is_what_is_shown() {
     let shown = |name: SceneName| AnyScene::new(name, &name.first_settings()).expect("a scene").shown();
     for name in [SceneName::Beats3To2, SceneName::Beats2To1, SceneName::Beats5To2, SceneName::Beats3To1] {
-        let Some(Shown { way, steps, height }) = shown(name) else { panic!("{} moves", name.name()) };
-        assert_eq!((way, steps), (Method::Direction, STEPS_PER_TICK), "{}", name.name());
+        let Some(Shown { method, steps, height }) = shown(name) else { panic!("{} moves", name.name()) };
+        assert_eq!((method, steps), (Method::Direction, STEPS_PER_TICK), "{}", name.name());
         // Its greatest swing, 12 degrees, is 21.5 pixels long.
         let expected = 4.0 * 21.5 / 12.0_f32.to_radians();
         assert!((height / expected - 1.0).abs() < 1e-3, "{}: {height} for {expected}", name.name());
