@@ -22,9 +22,9 @@ const BEATS: [(SceneName, f64, [f64; 2]); 4] = [
 ];
 /// The amplitude of angle 2 in each mode of the beats, rad, and how far it reaches in the figures, pixels.
 const AMPLITUDE: f64 = 12.0 / 180.0 * PI;
-const REACH: f64 = 23.0;
+const REACH: f64 = 21.5;
 /// The middles of the linear figure and of the exact one, pixels.
-const MIDDLES: [[f64; 2]; 2] = [[25.0, 36.0], [103.0, 36.0]];
+const MIDDLES: [[f64; 2]; 2] = [[23.5, 32.5], [104.5, 32.5]];
 
 /// For how long the small oscillations are followed, s.
 const FOLLOWED: u32 = 3600;

@@ -222,5 +222,5 @@ pub const NOT_CLOSED: f64 = 1.0;
 /// close).
 pub const PLAN_AND_CLOCK: f64 = 0.2;
 
-/// The same for each scene of the catalogue, or two frames (measured: 0.19, figure 7).
+/// The same for each scene of the catalogue, or two frames (measured: 0.14).
 pub const PLAN_AND_CLOCK_EACH: f64 = 0.2;

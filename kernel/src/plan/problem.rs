@@ -12,7 +12,7 @@ pub struct Problem {
     pub pendulum: Parameters<f64>,
     /// Angles and angular velocities at the start.
     pub start: Motion<f64>,
-    /// How far either bob may be from where the exact motion has it, m.
+    /// How far either bob, and bob 2 as seen from bob 1, may be from where the exact motion has it, m.
     pub tolerance: f64,
     /// How long it is shown, s.
     pub duration: f64,

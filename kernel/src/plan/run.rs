@@ -55,11 +55,19 @@ impl<R: Real, F: Form<R>> Run<R, F> {
     }
 }
 
-/// How far the farther of the two bobs is off where the rods are as long as `rods`, in their unit; NaN if anything is.
+/// How far the farther of the two bobs is off, or bob 2 as seen from bob 1, where the rods are as long as `rods`, in their
+/// unit; NaN if anything is.
+///
+/// The last keeps curves of the angles right, too: opposite errors of both may leave bob 2 where it belongs.
 pub(super) fn distance(rods: [f32; 2], a: &Directions, b: &Directions) -> f32 {
     let difference = |rod: usize, axis: usize| rods[rod] * (a[rod][axis] - b[rod][axis]);
-    let elbow = [difference(0, 0), difference(0, 1)];
-    let tip = [elbow[0] + difference(1, 0), elbow[1] + difference(1, 1)];
-    let [elbow, tip] = [elbow, tip].map(|[x, y]| x * x + y * y);
-    libm::sqrtf(if elbow > tip { elbow } else { tip })
+    let [bob1, relative] = [0, 1].map(|rod| [difference(rod, 0), difference(rod, 1)]);
+    let bob2 = [bob1[0] + relative[0], bob1[1] + relative[1]];
+    let [bob1, relative, bob2] = [bob1, relative, bob2].map(|[x, y]| x * x + y * y);
+    libm::sqrtf(greater(greater(bob1, relative), bob2))
+}
+
+/// The greater; NaN if either is.
+pub(super) fn greater(a: f32, b: f32) -> f32 {
+    if a > b || a.is_nan() { a } else { b }
 }

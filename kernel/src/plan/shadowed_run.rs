@@ -2,7 +2,7 @@
 
 use super::error::PlanError;
 use super::problem::{Perturbation, Problem};
-use super::run::{Directions, Run, distance};
+use super::run::{Directions, Run, distance, greater};
 use crate::error::Error;
 use crate::form::Form;
 use crate::hamiltonian::Pendulum;
@@ -51,11 +51,6 @@ impl ErrorEstimate {
     pub fn or(self, other: Self) -> Self {
         Self { step: greater(self.step, other.step), rounding: greater(self.rounding, other.rounding) }
     }
-}
-
-/// NaN if either is.
-fn greater(a: f32, b: f32) -> f32 {
-    if a > b || a.is_nan() { a } else { b }
 }
 
 /// A motion beside one with half the step, for the error of the step, and two whose given numbers are off by as much as
