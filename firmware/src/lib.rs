@@ -26,7 +26,6 @@ pub mod display;
 pub mod fault;
 pub mod graphics;
 pub mod job;
-pub mod measure;
 pub mod motion;
 pub mod protocol;
 pub mod scenes;

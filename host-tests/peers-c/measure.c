@@ -11,25 +11,16 @@ static int semihosting(int operation, const void *argument) {
     return r0;
 }
 
-/* The next word of the line as a number; anything but a digit ends it. */
-static uint64_t number(const char **line, unsigned base) {
-    uint64_t value = 0;
-    while (**line == ' ') {
-        ++*line;
-    }
-    for (;; ++*line) {
-        const char c = **line;
-        const unsigned digit = c >= '0' && c <= '9' ? (unsigned)(c - '0') : c >= 'a' && c <= 'f' ? (unsigned)(c - 'a' + 10) : base;
-        if (digit >= base) {
-            return value;
-        }
-        value = value * base + digit;
-    }
-}
+/* The fields of a request, as firmware/src/protocol/simulate.rs lists them; little-endian, as this processor is. */
+struct __attribute__((packed)) request {
+    uint16_t number;
+    uint8_t arithmetic, model, form, method, order;
+    double parameters[5], angles[2], velocities[2], dt;
+    uint32_t stride, samples;
+};
 
-static float real(const char **line) {
-    union { uint64_t bits; double value; } word = { .bits = number(line, 16) };
-    return (float)word.value;
+static unsigned digit(char c) {
+    return (unsigned)(c <= '9' ? c - '0' : c - 'a' + 10);
 }
 
 static void print(int output, float value, char end) {
@@ -47,25 +38,22 @@ static void run(void) {
     static char buffer[256];
     const struct { char *text; int length; } block = { buffer, sizeof buffer };
     semihosting(SYS_GET_CMDLINE, &block);
-    const char *line = buffer;
-    while (*line && *line != ' ') {
-        line++; /* the subject's name */
+    struct request request;
+    for (unsigned i = 0; i < sizeof request; i++) {
+        ((uint8_t *)&request)[i] = (uint8_t)(digit(buffer[2 * i]) << 4 | digit(buffer[2 * i + 1]));
     }
-    const uint32_t samples = number(&line, 10), steps = number(&line, 10);
     struct textbook pendulum;
-    pendulum.m1 = real(&line);
-    pendulum.m2 = real(&line);
-    pendulum.l1 = real(&line);
-    pendulum.l2 = real(&line);
-    pendulum.g = real(&line);
-    float z[4] = { 0 };
-    z[0] = real(&line);
-    z[1] = real(&line);
-    const float dt = real(&line);
+    pendulum.m1 = (float)request.parameters[0];
+    pendulum.m2 = (float)request.parameters[1];
+    pendulum.l1 = (float)request.parameters[2];
+    pendulum.l2 = (float)request.parameters[3];
+    pendulum.g = (float)request.parameters[4];
+    float z[4] = { (float)request.angles[0], (float)request.angles[1] };
+    const float dt = (float)request.dt;
     const struct { const char *name; int mode, length; } console = { ":tt", 4 /* to be written */, 3 };
     const int output = semihosting(SYS_OPEN, &console);
-    for (uint32_t sample = 0; sample < samples; sample++) {
-        counted_steps(&pendulum, z, dt, steps);
+    for (uint32_t sample = 0; sample < request.samples; sample++) {
+        counted_steps(&pendulum, z, dt, request.stride);
         for (int i = 0; i < 4; i++) {
             print(output, z[i], i < 3 ? ' ' : '\n');
         }

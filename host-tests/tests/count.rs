@@ -5,7 +5,7 @@ use std::process::Command;
 use double_pendulum::Parameters;
 use double_pendulum::plan::Method;
 use firmware::config::{CORTEX_M3, CORTEX_M4F};
-use firmware::measure::Request;
+use firmware::job::{Arithmetic, Formulation, Model, ROWS, Request, Row};
 use host_tests::commands::count::goal::GOALS;
 use host_tests::commands::count::{FULL_CYCLE, Target, affordable_steps, step_cost};
 use host_tests::emulator::boards::Core;
@@ -19,18 +19,20 @@ fn targets() -> Vec<Target> {
     Target::build_all(&toolchain).unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn request(subject: &str, steps: u32) -> Request<'_> {
+fn request(row: Row, stride: u32) -> Request {
     let parameters = Parameters::equal_rods(1.0, 1.0, 9.81);
-    Request { subject, samples: 1, steps, parameters, angles: [2.0, 2.0], dt: 1.0 / 256.0 }
+    let (angles, velocities, dt) = ([2.0, 2.0], [0.0; 2], 1.0 / 256.0);
+    Request { row, parameters, angles, velocities, dt, stride, samples: 1 }
 }
 
 #[test]
 fn the_log_counts_as_many_instructions_as_the_clock() {
     let steps = 400;
     for target in targets().iter().filter(|target| target.board.cpu == "cortex-m4") {
-        let logged = step_cost(target, &request("f32-own", steps)).unwrap_or_else(|error| panic!("{error}"));
+        let row = Row::rk4(Arithmetic::F32, Formulation::Canonical);
+        let logged = step_cost(target, &request(row, steps)).unwrap_or_else(|error| panic!("{error}"));
         let ticks = |steps| {
-            let (_, ticks) = target.run(&request("f32-own", steps)).unwrap_or_else(|error| panic!("{error}"));
+            let (_, ticks) = target.run(&request(row, steps)).unwrap_or_else(|error| panic!("{error}"));
             ticks as f64
         };
         let clocked = (ticks(2 * steps) - ticks(steps)) * INSTRUCTIONS_PER_TICK / f64::from(steps);
@@ -47,9 +49,10 @@ fn the_book_by_the_libm_crate_costs_an_eighth_less_than_the_trial_found() {
     // sines are computed in f64, and the sums and products of our own library save an eighth.
     let expected = 20_000.0..22_000.0;
     for target in targets().iter().filter(|target| target.board.cpu == "cortex-m4") {
-        let request = request("f32-textbook-libm", 16);
-        let steps = affordable_steps(target, &request).unwrap_or_else(|error| panic!("{error}"));
-        let cost = step_cost(target, &Request { steps, ..request }).unwrap_or_else(|error| panic!("{error}"));
+        let row = Row { model: Model::Textbook, ..Row::rk4(Arithmetic::F32Libm, Formulation::Canonical) };
+        let request = request(row, 16);
+        let stride = affordable_steps(target, &request).unwrap_or_else(|error| panic!("{error}"));
+        let cost = step_cost(target, &Request { stride, ..request }).unwrap_or_else(|error| panic!("{error}"));
         assert!(expected.contains(&cost.instructions), "{cost:?}");
         assert!(cost.instructions < cost.cycles, "{cost:?}");
         assert!(cost.hot_bytes <= cost.code_bytes && cost.stack_bytes > 0, "{cost:?}");
@@ -61,10 +64,10 @@ fn a_step_costs_no_more_than_its_goal() {
     for target in &targets() {
         for goal in GOALS.iter().filter(|goal| goal.cpu == target.board.cpu) {
             let request =
-                Request { parameters: goal.parameters(), angles: [0.5, 0.5], ..request(goal.arithmetic, FULL_CYCLE) };
-            let steps = affordable_steps(target, &request).unwrap_or_else(|error| panic!("{error}"));
-            let cost = step_cost(target, &Request { steps, ..request }).unwrap_or_else(|error| panic!("{error}"));
-            println!("{}, {}, l2 = {}: {cost:?}", goal.arithmetic, goal.cpu, goal.l2);
+                Request { parameters: goal.parameters(), angles: [0.5, 0.5], ..request(goal.row, FULL_CYCLE) };
+            let stride = affordable_steps(target, &request).unwrap_or_else(|error| panic!("{error}"));
+            let cost = step_cost(target, &Request { stride, ..request }).unwrap_or_else(|error| panic!("{error}"));
+            println!("{}, {}, l2 = {}: {cost:?}", goal.row, goal.cpu, goal.l2);
             assert!(cost.cycles <= goal.cycles, "{goal:?}: {cost:?}");
         }
     }
@@ -76,18 +79,19 @@ fn a_step_costs_what_the_planner_thinks() {
     let within = 0.9..=1.1;
     for target in &targets() {
         let costs = if target.core() == Core::M3 { CORTEX_M3 } else { CORTEX_M4F };
-        for (method, subject) in [
-            (Method::ClosedForm, "f32-closed-form"),
-            (Method::DirectionPlain, "f32-direction-plain"),
-            (Method::Direction, "f32-direction-compensated"),
-            (Method::Angle, "f32-angle-compensated"),
-            (Method::Direction8, "f64-direction8-compensated"),
+        for (method, name) in [
+            (Method::ClosedForm, "f32-linear-direction"),
+            (Method::DirectionPlain, "f32-direction"),
+            (Method::Direction, "f32-compensated-direction"),
+            (Method::Angle, "f32-compensated-angle"),
+            (Method::Direction8, "f64-compensated-direction-rk8"),
         ] {
-            let request = Request { angles: [0.5, 0.5], ..request(subject, FULL_CYCLE) };
-            let steps = affordable_steps(target, &request).unwrap_or_else(|error| panic!("{error}"));
-            let cost = step_cost(target, &Request { steps, ..request }).unwrap_or_else(|error| panic!("{error}"));
+            let row = ROWS.iter().find(|row| row.to_string() == name).expect("a row");
+            let request = Request { angles: [0.5, 0.5], ..request(*row, FULL_CYCLE) };
+            let stride = affordable_steps(target, &request).unwrap_or_else(|error| panic!("{error}"));
+            let cost = step_cost(target, &Request { stride, ..request }).unwrap_or_else(|error| panic!("{error}"));
             let share = f64::from(costs.of_frame(method, 1)) / cost.cycles;
-            assert!(within.contains(&share), "{subject} on {}: {share} of {cost:?}", target.board.name);
+            assert!(within.contains(&share), "{name} on {}: {share} of {cost:?}", target.board.name);
         }
     }
 }
@@ -103,6 +107,7 @@ fn bad_input_is_refused_in_one_line_before_anything_is_printed() {
         ("--angle nan", "NaN"),
         ("--halvings 99", "--halvings"),
         ("--on arduino", "--on"),
+        ("nope", "f64-canonical, f32-canonical, "),
     ] {
         let output = Command::new(env!("CARGO_BIN_EXE_count")).args(arguments.split(' ')).output().expect("it runs");
         let report = String::from_utf8_lossy(&output.stderr);

@@ -8,7 +8,7 @@ use firmware::app::controls::NoButtons;
 use firmware::app::service::Service;
 use firmware::app::{App, Event};
 use firmware::display::NoDisplay;
-use firmware::job::{Arithmetic, Formulation as Stepped, Model, Request};
+use firmware::job::{Arithmetic, Formulation as Stepped, Request, Row};
 use firmware::motion::settings::Settings;
 use firmware::protocol::Field;
 use firmware::protocol::{Refused, Sample};
@@ -77,8 +77,8 @@ fn every_stepper_stops_at_its_last_good_state() {
 fn too_quick() -> Request {
     let parameters = Parameters { m1: 1.0, m2: 100.0, ..parameters() };
     let (angles, velocities) = ([3.0, 1.0], [3000.0, -3000.0]);
-    let (arithmetic, model, form) = (Arithmetic::F32, Model::General, Stepped::Canonical);
-    Request { arithmetic, model, form, parameters, angles, velocities, dt: 0.06, stride: 1, samples: MANY as u32 }
+    let row = Row::rk4(Arithmetic::F32, Stepped::Canonical);
+    Request { row, parameters, angles, velocities, dt: 0.06, stride: 1, samples: MANY as u32 }
 }
 
 #[test]

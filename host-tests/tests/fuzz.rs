@@ -11,7 +11,7 @@ const LEAST_OUTCOMES: [(&str, usize); 8] = [
     ("parameters", 40),
     ("steppers", 200),
     ("plans", 60),
-    ("requests", 80),
+    ("requests", 120),
     ("numbers", 6),
     ("options", 12),
 ];

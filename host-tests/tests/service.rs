@@ -2,14 +2,12 @@
 
 use double_pendulum::Parameters;
 use firmware::app::service::{Received, Service};
-use firmware::job::{Arithmetic, Formulation, Job, Model, Reading, Request};
+use firmware::job::{Arithmetic, Formulation, Job, JobError, Method, Model, ON_BOARDS, ROWS, Reading, Request, Row};
 use firmware::protocol::Field;
 use firmware::protocol::{LinkError, MAX_WIRE, Refused, Sample, Simulate, StepTooLong, encode};
 
 const REQUEST: Request = Request {
-    arithmetic: Arithmetic::F32,
-    model: Model::General,
-    form: Formulation::Canonical,
+    row: Row::rk4(Arithmetic::F32, Formulation::Canonical),
     parameters: Parameters { m1: 1.0, m2: 2.75, l1: 1.0, l2: 0.5, g: 9.8 },
     angles: [2.0, -1.0],
     velocities: [0.5, 0.25],
@@ -31,15 +29,15 @@ fn samples(service: &mut Service) -> Vec<Sample> {
 }
 
 fn readings(request: &Request) -> Vec<Reading> {
-    let mut job = Job::new(request).unwrap_or_else(|error| panic!("{error}"));
+    let mut job: Job = Job::new(request).unwrap_or_else(|error| panic!("{error}"));
     std::iter::from_fn(|| (!job.is_finished()).then(|| job.advance().expect("a finite motion"))).flatten().collect()
 }
 
 #[test]
-fn every_arithmetic_model_and_form_is_answered_in_full() {
-    for &(arithmetic, model, form) in Job::WAYS {
+fn every_row_of_the_boards_is_answered_in_full() {
+    for &row in ON_BOARDS {
         let parameters = Parameters { l2: 1.0, ..REQUEST.parameters };
-        let request = Request { arithmetic, model, form, parameters, ..REQUEST };
+        let request = Request { row, parameters, ..REQUEST };
         let mut service = Service::default();
         assert_eq!(send(&mut service, &request.message(7)), [Received::Accepted]);
         let samples = samples(&mut service);
@@ -54,6 +52,38 @@ fn every_arithmetic_model_and_form_is_answered_in_full() {
     }
 }
 
+/// One step at a time or all at once: the same readings from the same row, whoever asks.
+#[test]
+fn the_host_computes_what_the_service_answers() {
+    for &row in ON_BOARDS {
+        let parameters = Parameters { l2: 1.0, ..REQUEST.parameters };
+        let request = Request { row, parameters, ..REQUEST };
+        let mut at_once = Vec::new();
+        let done = request.readings(|reading| {
+            at_once.push(*reading);
+            Ok::<_, JobError>(())
+        });
+        assert_eq!((done, at_once), (Ok(()), readings(&request)), "{row}");
+    }
+}
+
+/// The name of a row is its words, so no two are alike, and a request comes through its text unchanged.
+#[test]
+fn rows_and_requests_are_what_their_text_says() {
+    for (index, &row) in ROWS.iter().enumerate() {
+        let name = row.to_string();
+        assert!(name.starts_with(row.arithmetic.name()), "{name}");
+        assert!(ROWS[..index].iter().all(|other| *other != row && other.to_string() != name), "{name} twice");
+        let request = Request { row, ..REQUEST };
+        assert_eq!(Request::parse(&request.to_string()), Ok(request));
+        assert!(row.order > 0 || row.method == Method::ClosedForm, "{name}");
+    }
+    let text = REQUEST.to_string();
+    for broken in ["", &text[2..], &text.replace('0', "g"), &text.replacen("32", "ff", 1), "\u{e4}\u{e4}"] {
+        assert!(Request::parse(broken).is_err(), "{broken}");
+    }
+}
+
 #[test]
 fn a_step_too_long_for_the_energy_is_obeyed_and_told() {
     let lively = Request { parameters: Parameters { m2: 1000.0, ..REQUEST.parameters }, ..REQUEST };
@@ -65,7 +95,8 @@ fn a_step_too_long_for_the_energy_is_obeyed_and_told() {
     assert_eq!(samples(&mut service).len(), 6);
     let fine = Request { dt: admissible_step, ..lively };
     assert_eq!(send(&mut service, &fine.message(5)), [Received::Accepted]);
-    let closed_form = Request { model: Model::Linear, ..lively };
+    let row = Row { model: Model::Linear, method: Method::ClosedForm, order: 0, ..lively.row };
+    let closed_form = Request { row, ..lively };
     assert_eq!(send(&mut service, &closed_form.message(6)), [Received::Accepted]);
 }
 
@@ -76,7 +107,12 @@ fn a_refusal_names_the_field_and_leaves_the_work_alone() {
         (Simulate { arithmetic: 0xFF, ..good }, Field::Arithmetic),
         (Simulate { model: 0xFF, ..good }, Field::Model),
         (Simulate { form: 0xFF, ..good }, Field::Form),
+        (Simulate { method: 0xFF, ..good }, Field::Method),
+        (Simulate { order: 5, ..good }, Field::Order),
+        (Simulate { method: Method::Rk8.code(), order: 8, ..good }, Field::Method),
         (Simulate { arithmetic: Arithmetic::F32Compensated.code(), ..good }, Field::Form),
+        (Simulate { arithmetic: Arithmetic::F32Libm.code(), ..good }, Field::Arithmetic),
+        (Simulate { model: Model::Textbook.code(), ..good }, Field::Model),
         (Simulate { parameters: [0.0, 1.0, 1.0, 1.0, 9.8], ..good }, Field::M1),
         (Simulate { parameters: [1.0, -1.0, 1.0, 1.0, 9.8], ..good }, Field::M2),
         (Simulate { parameters: [1.0, 1.0, f64::NAN, 1.0, 9.8], ..good }, Field::L1),

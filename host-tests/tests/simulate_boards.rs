@@ -72,6 +72,11 @@ fn plain_forms() {
 }
 
 #[test]
+fn order_8() {
+    same_everywhere(&format!("{FIGURE_7} --step 1/32 --method rk8"));
+}
+
+#[test]
 fn closed_form() {
     same_everywhere(
         "--angles 0.1,-0.05 --velocities 0.2,0 --step 1/64 --until 10 --every 1 --arithmetic f64 --model linear",

@@ -156,7 +156,8 @@ macro_rules! real {
             fn twice(self) -> Self {
                 if cfg!($software) { $twice(self) } else { self + self }
             }
-            #[inline]
+            // Seldom wanted, and in software a kilobyte.
+            #[inline(never)]
             fn sqrt(self) -> Self {
                 $sqrt(self)
             }

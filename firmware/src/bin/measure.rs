@@ -1,4 +1,4 @@
-//! Runs one [`Request`] from the semihosting command line and prints its outcome, and the ticks it took, as one line.
+//! Runs one [`Request`] from the semihosting command line and prints the CRC of its bits, and the ticks it took, as one line.
 #![no_std]
 #![no_main]
 
@@ -7,7 +7,7 @@ use core::fmt::Write;
 use cortex_m::peripheral::{Peripherals, SYST, syst::SystClkSource};
 use cortex_m_semihosting::{debug, hio};
 use firmware::board::cortex_m::semihosting;
-use firmware::measure::Request;
+use firmware::job::{JobError, Request};
 
 /// SysTick counts down from here; a run must take fewer ticks.
 const FULL: u32 = 0x00ff_ffff;
@@ -28,10 +28,11 @@ fn run(buffer: &mut [u8]) -> Result<(), ()> {
     let mut output = hio::hstdout()?;
     let mut peripherals = Peripherals::take().ok_or(())?;
     start_clock(&mut peripherals.SYST);
-    let outcome = Request::parse(semihosting::command_line(buffer).ok_or(())?).and_then(|request| request.outcome());
+    let request = Request::parse(semihosting::command_line(buffer).ok_or(())?).map_err(JobError::NoSuchRow);
+    let outcome = request.and_then(|request| request.crc());
     let ticks = FULL - SYST::get_current();
     match outcome {
-        Ok(outcome) => writeln!(output, "{outcome} {ticks}").map_err(|_| ()),
+        Ok(crc) => writeln!(output, "{crc:08x} {ticks}").map_err(|_| ()),
         Err(error) => writeln!(output, "{error}").map_err(|_| ()).and(Err(())),
     }
 }

@@ -1,16 +1,31 @@
-//! What a motion is computed with.
+//! What a motion is computed with, in the words of the wire and of the command line.
 
 use crate::protocol::choice::choice;
 
 choice! {
-    /// The numbers a motion is computed in.
+    /// The numbers a motion is computed in, and whose sines.
     Arithmetic {
         /// Double precision.
         F64 = 0x64, "f64";
+        /// Double precision whose sums carry their rounding errors along.
+        F64Compensated = 0x65, "f64-compensated";
+        /// Double precision with the sines of the `libm` crate.
+        F64Libm = 0x66, "f64-libm";
         /// Single precision.
         F32 = 0x32, "f32";
         /// Single precision whose sums carry their rounding errors along.
         F32Compensated = 0x33, "f32-compensated";
+        /// Single precision with the sines of the `libm` crate, which are computed in double precision.
+        F32Libm = 0x34, "f32-libm";
+        /// Single precision with the sines of the `micromath` crate.
+        F32Micromath = 0x35, "f32-micromath";
+    }
+}
+
+impl Arithmetic {
+    /// Whether its numbers are those of an `f32`.
+    pub const fn is_single(self) -> bool {
+        matches!(self, Self::F32 | Self::F32Compensated | Self::F32Libm | Self::F32Micromath)
     }
 }
 
@@ -23,6 +38,8 @@ choice! {
         EqualRods = 1, "equal-rods";
         /// Small oscillations in closed form.
         Linear = 2, "linear";
+        /// Hamilton's equations as the book prints them, nothing simplified: for comparison.
+        Textbook = 3, "textbook";
     }
 }
 
@@ -33,7 +50,21 @@ choice! {
         Canonical = 0, "canonical";
         /// Angles and momenta in the units of the step: [`AngleForm`](double_pendulum::form::AngleForm).
         Angle = 1, "angle";
-        /// Directions and momenta: [`DirectionForm`](double_pendulum::form::DirectionForm), its whole turns counted.
+        /// Directions and momenta: [`DirectionForm`](double_pendulum::form::DirectionForm).
         Direction = 2, "direction";
+        /// The same with a division at each stage: [`Divided`](double_pendulum::form::Divided).
+        DirectionDivided = 3, "direction-divided";
+    }
+}
+
+choice! {
+    /// How a step is made.
+    Method {
+        /// The classical Runge-Kutta method, of order 4.
+        Rk4 = 4, "rk4";
+        /// The Runge-Kutta method of order 8: [`rk8`](double_pendulum::rk8).
+        Rk8 = 8, "rk8";
+        /// By the closed form, at any time; of no order.
+        ClosedForm = 0, "closed-form";
     }
 }

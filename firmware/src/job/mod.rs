@@ -1,44 +1,27 @@
-//! A motion computed on request: the same code answers `cargo simulate` on the host and over the serial link.
+//! Motions computed on request: one table of arithmetics, and what runs its rows.
+//!
+//! A [`Request`] names a [`Row`] of the [table](ROWS) and a motion. The service on the boards answers it step by step
+//! ([`Job`]), `cargo simulate` all at once ([`Request::readings`]); `cargo count` counts its steps, and its bits on host and
+//! chip are compared, by [`Request::crc`]. It is the same code wherever it runs, so that errors may be computed on the host
+//! and costs counted on the chip.
 
+mod answer;
+mod canonical;
 mod choice;
+mod counted;
+mod formed;
+mod linear;
+mod reading;
 mod request;
+mod row;
 mod run;
-mod ways;
+mod table;
+mod textbook;
 
-use double_pendulum::{Error, Parameter};
-
-pub use choice::{Arithmetic, Formulation, Model};
+pub use answer::{Job, JobError};
+pub use choice::{Arithmetic, Formulation, Method, Model};
+pub use reading::Reading;
 pub use request::Request;
-pub use ways::{Job, JobError};
-
-/// What one row of the answer holds, SI units. `f32` results are widened, which loses nothing; those of the fast forms are
-/// given to the last digit they carry.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Reading {
-    /// a1, a2 (rad), p1, p2 (kg m^2/s).
-    pub state: [f64; 4],
-    /// w1, w2, rad/s.
-    pub velocities: [f64; 2],
-    /// Energy, J; zero potential at the pivot.
-    pub energy: f64,
-}
-
-impl Reading {
-    /// The reading itself if all its numbers are finite, else [`Error::Diverged`].
-    fn finite(self) -> Result<Self, Error> {
-        let ([a1, a2, p1, p2], [w1, w2]) = (self.state, self.velocities);
-        let numbers = [
-            (Parameter::A1, a1),
-            (Parameter::A2, a2),
-            (Parameter::P1, p1),
-            (Parameter::P2, p2),
-            (Parameter::W1, w1),
-            (Parameter::W2, w2),
-            (Parameter::Energy, self.energy),
-        ];
-        match numbers.into_iter().find(|(_, value)| !value.is_finite()) {
-            None => Ok(self),
-            Some((parameter, value)) => Err(Error::Diverged { parameter, value }),
-        }
-    }
-}
+pub use row::{Row, Wanted};
+pub use run::Run;
+pub use table::{ON_BOARDS, OnBoards, ROWS};

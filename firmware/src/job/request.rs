@@ -1,19 +1,19 @@
-//! What is asked for, checked.
+//! What is asked for: a message of the protocol with its words understood.
+
+use core::fmt;
 
 use double_pendulum::{Motion, Parameters, Pendulum};
 
-use super::{Arithmetic, Formulation, Model};
-use crate::protocol::{Field, Simulate};
+use super::{Arithmetic, Formulation, Method, Model, Row};
+use crate::protocol::{Field, Message, Simulate};
 
 /// A motion to compute.
+///
+/// As text it is the fields of its [`Simulate`] message, each byte as two hexadecimal digits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Request {
-    /// The numbers it is computed in.
-    pub arithmetic: Arithmetic,
-    /// The equations.
-    pub model: Model,
-    /// What is stepped.
-    pub form: Formulation,
+    /// What it is computed with.
+    pub row: Row,
     /// Masses, lengths and gravity.
     pub parameters: Parameters<f64>,
     /// a1, a2 at the start, rad.
@@ -33,7 +33,7 @@ impl Request {
     /// form, which takes any, and for what [`Job::new`](super::Job::new) refuses.
     pub fn admissible_step(&self) -> Option<f64> {
         let ([a1, a2], [w1, w2]) = (self.angles, self.velocities);
-        let pendulum = Pendulum::<f64>::new(self.parameters).ok().filter(|_| self.model != Model::Linear)?;
+        let pendulum = Pendulum::<f64>::new(self.parameters).ok().filter(|_| self.row.method != Method::ClosedForm)?;
         pendulum.admissible_step(&pendulum.to_state(&Motion { a1, a2, w1, w2 })).ok()
     }
 
@@ -42,9 +42,11 @@ impl Request {
         let Parameters { m1, m2, l1, l2, g } = self.parameters;
         Simulate {
             request,
-            arithmetic: self.arithmetic.code(),
-            model: self.model.code(),
-            form: self.form.code(),
+            arithmetic: self.row.arithmetic.code(),
+            model: self.row.model.code(),
+            form: self.row.form.code(),
+            method: self.row.method.code(),
+            order: self.row.order,
             parameters: [m1, m2, l1, l2, g],
             angles: self.angles,
             velocities: self.velocities,
@@ -54,13 +56,18 @@ impl Request {
         }
     }
 
-    /// What a message asks for; refuses an arithmetic, a model or a form that does not exist.
+    /// What a message asks for; refuses words that do not exist.
     pub fn from_message(message: &Simulate) -> Result<Self, Field> {
         let [m1, m2, l1, l2, g] = message.parameters;
-        Ok(Self {
+        let row = Row {
             arithmetic: Arithmetic::from_code(message.arithmetic).ok_or(Field::Arithmetic)?,
             model: Model::from_code(message.model).ok_or(Field::Model)?,
             form: Formulation::from_code(message.form).ok_or(Field::Form)?,
+            method: Method::from_code(message.method).ok_or(Field::Method)?,
+            order: message.order,
+        };
+        Ok(Self {
+            row,
             parameters: Parameters { m1, m2, l1, l2, g },
             angles: message.angles,
             velocities: message.velocities,
@@ -68,5 +75,26 @@ impl Request {
             stride: message.stride,
             samples: message.samples,
         })
+    }
+
+    /// Reads the text.
+    pub fn parse(text: &str) -> Result<Self, Field> {
+        let mut fields = [0; Simulate::SIZE];
+        if text.len() != 2 * fields.len() {
+            return Err(Field::Message);
+        }
+        for (byte, digits) in fields.iter_mut().zip(text.as_bytes().chunks(2)) {
+            let digits = core::str::from_utf8(digits).map_err(|_| Field::Message)?;
+            *byte = u8::from_str_radix(digits, 16).map_err(|_| Field::Message)?;
+        }
+        Self::from_message(&Simulate::read(&fields).ok_or(Field::Message)?)
+    }
+}
+
+impl fmt::Display for Request {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut fields = [0; Simulate::SIZE];
+        self.message(0).write(&mut &mut fields[..]).ok_or(fmt::Error)?;
+        fields.iter().try_for_each(|byte| write!(f, "{byte:02x}"))
     }
 }

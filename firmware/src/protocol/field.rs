@@ -45,8 +45,12 @@ choice! {
         Scene = 17, "scene";
         /// The message itself: of no known kind, or not of that kind's length.
         Message = 18, "message";
-        /// The form, or that there is none such of the model in the arithmetic.
+        /// The form. As the arithmetic, the model, the method and the order: that none such goes with those before it.
         Form = 19, "form";
+        /// The method.
+        Method = 20, "method";
+        /// The order of the method.
+        Order = 21, "order";
     }
 }
 

@@ -22,7 +22,7 @@ use crc::{CRC_32_ISO_HDLC, Crc, Table};
 use super::Message;
 
 /// The version of the protocol; the first byte of every message.
-pub const VERSION: u8 = 4;
+pub const VERSION: u8 = 5;
 /// The most bytes a message's fields may take.
 pub const MAX_FIELDS: usize = 96;
 /// The most bytes a message takes before framing: version, kind, fields, CRC.
@@ -30,7 +30,8 @@ const MAX_BODY: usize = 2 + MAX_FIELDS + 4;
 /// The most bytes a message takes on the wire: COBS adds one byte (bodies are below 254), the delimiters another two.
 pub const MAX_WIRE: usize = MAX_BODY + 3;
 
-const CRC: Crc<u32, Table<1>> = Crc::<u32, Table<1>>::new(&CRC_32_ISO_HDLC);
+/// The reflected CRC-32 of zip and Ethernet.
+pub(crate) const CRC: Crc<u32, Table<1>> = Crc::<u32, Table<1>>::new(&CRC_32_ISO_HDLC);
 
 /// The message as it goes over the wire, between delimiters: the front of `wire`.
 pub fn encode<'wire, M: Message>(message: &M, wire: &'wire mut [u8; MAX_WIRE]) -> &'wire [u8] {

@@ -19,6 +19,7 @@ pub use command::{Ask, Choose, Done, Pause, Restart, Set, Status, Step};
 pub use field::Field;
 pub use frame::Frame;
 pub use layout::{Message, WireNumber};
+pub(crate) use link::CRC;
 pub use link::{Decoder, LinkError, MAX_FIELDS, MAX_WIRE, VERSION, encode, frame};
 pub use plan::{AskPlan, NO_METHOD, Planned, limit_code, method_code};
 pub use restarted::Restarted;

@@ -4,9 +4,10 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
+use anyhow::bail;
 use clap::Parser;
 use double_pendulum::Parameters;
-use firmware::measure::{CLOSED_FORM, Request, SUBJECTS, Subject};
+use firmware::job::{ROWS, Request, Row};
 use host_tests::commands::count::{
     CallCosts, Cost, ERROR_BAR, FULL_CYCLE, Profile, StepCost, Target, affordable_steps, calls_of, step_cost,
 };
@@ -68,15 +69,7 @@ fn run(arguments: &Arguments) -> anyhow::Result<()> {
         let (toolchain, _) = toolchain::set_up().map_err(Refused::because)?;
         return count_calls(&toolchain, arguments, elf, function);
     }
-    let subjects = SUBJECTS.iter().chain([&CLOSED_FORM]);
-    let requests: Vec<_> = subjects
-        .filter(|subject| subject.name.contains(&arguments.arithmetic))
-        .map(|subject| arguments.request(subject))
-        .collect();
-    for request in &requests {
-        // What the chip would refuse, the host does before anything is built or printed.
-        Request { steps: 1, ..*request }.outcome().map_err(Refused::because)?;
-    }
+    let requests = arguments.requests().map_err(Refused::because)?;
     let boards = BOARDS.iter().filter(|board| arguments.on.map_or(board.has_panel, |asked| asked == *board));
     let (toolchain, _) = toolchain::set_up().map_err(Refused::because)?;
     if !arguments.listing {
@@ -87,11 +80,11 @@ fn run(arguments: &Arguments) -> anyhow::Result<()> {
     for board in boards {
         let target = Target::build(&toolchain, board)?;
         for request in &requests {
-            let steps = match arguments.steps {
-                Some(steps) => steps,
+            let stride = match arguments.steps {
+                Some(stride) => stride,
                 None => affordable_steps(&target, request)?,
             };
-            let request = Request { steps, ..*request };
+            let request = Request { stride, ..*request };
             if arguments.listing {
                 list(&target, &request)?;
             } else {
@@ -103,15 +96,33 @@ fn run(arguments: &Arguments) -> anyhow::Result<()> {
 }
 
 impl Arguments {
-    fn request(&self, subject: &Subject) -> Request<'static> {
+    /// What is asked for of each arithmetic with this in its name, but of those that refuse such a pendulum, which the host
+    /// finds out before anything is built or printed; one at least.
+    fn requests(&self) -> anyhow::Result<Vec<Request>> {
+        let rows: Vec<_> = ROWS.iter().copied().filter(|row| row.to_string().contains(&self.arithmetic)).collect();
+        if rows.is_empty() {
+            let names = ROWS.iter().map(Row::to_string).collect::<Vec<_>>().join(", ");
+            bail!("no arithmetic '{}'; there are {names}", self.arithmetic);
+        }
+        let request = |row| self.request(row);
+        let started = rows.into_iter().map(|row| Request { stride: 1, ..request(row) }.crc().map(|_| request(row)));
+        let (accepted, refused): (Vec<_>, Vec<_>) = started.partition(Result::is_ok);
+        match refused.into_iter().find_map(Result::err) {
+            Some(error) if accepted.is_empty() => Err(error.into()),
+            _ => Ok(accepted.into_iter().flatten().collect()),
+        }
+    }
+
+    fn request(&self, row: Row) -> Request {
         let Self { m2, l2, angle, .. } = *self;
         Request {
-            subject: subject.name,
-            samples: 1,
-            steps: FULL_CYCLE,
+            row,
             parameters: Parameters { m1: 1.0, m2, l1: 1.0, l2, g: GRAVITY.into() },
             angles: [angle; 2],
+            velocities: [0.0; 2],
             dt: f64::powi(0.5, self.halvings.into()),
+            stride: FULL_CYCLE,
+            samples: 1,
         }
     }
 
@@ -127,7 +138,7 @@ impl Arguments {
 
 /// Titles and widths of the columns.
 const ROW: [(&str, usize); 9] = [
-    ("arithmetic", 27),
+    ("arithmetic", 29),
     ("board", 16),
     ("steps", 5),
     ("instructions", 12),
@@ -141,9 +152,9 @@ const ROW: [(&str, usize); 9] = [
 fn row(request: &Request, board: &Board, cost: &StepCost) -> String {
     let StepCost { instructions, cycles, stalls, hot_bytes, code_bytes, stack_bytes } = cost;
     let cells = [
-        request.subject.to_owned(),
+        request.row.to_string(),
         board.name.to_owned(),
-        request.steps.to_string(),
+        request.stride.to_string(),
         format!("{instructions:.1}"),
         format!("{cycles:.1}"),
         format!("{stalls:.1}"),
@@ -159,7 +170,7 @@ fn row(request: &Request, board: &Board, cost: &StepCost) -> String {
 fn list(target: &Target, request: &Request) -> anyhow::Result<()> {
     let image = target.image();
     let profile = Profile::of(target, request)?;
-    say(format_args!("{} on {}: per step, executions, cycles (estimate), stalls", request.subject, target.board.name))?;
+    say(format_args!("{} on {}: per step, executions, cycles (estimate), stalls", request.row, target.board.name))?;
     say(ERROR_BAR)?;
     let mut function = None;
     for (address, spot) in profile.spots() {
@@ -168,7 +179,7 @@ fn list(target: &Target, request: &Request) -> anyhow::Result<()> {
             function = inside;
             say(format_args!("{}:", inside.map_or("?", |function| &function.name)))?;
         }
-        let per_step = |total: u64| total as f64 / f64::from(request.steps);
+        let per_step = |total: u64| total as f64 / f64::from(request.stride);
         let [executions, cycles, stalls] = [spot.cost.instructions, spot.cost.cycles, spot.cost.stalls].map(per_step);
         say(format_args!("{address:8x} {executions:9.2} {cycles:9.2} {stalls:7.2}  {}", spot.instruction.row.name))?;
     }

@@ -18,7 +18,7 @@ fn run(options: &Options) -> anyhow::Result<()> {
         complain(format_args!("warning: {warning}"));
     }
     let output = BufWriter::new(io::stdout().lock());
-    let mut table = Table::new(output, plan.request.arithmetic, plan.every.clone(), options.bits);
+    let mut table = Table::new(output, plan.request.row.arithmetic, plan.every.clone(), options.bits);
     let bar = Bar::start("rows", u64::from(plan.request.samples) + 1);
     let row = |reading: &_| {
         bar.advance(1);

@@ -49,7 +49,8 @@ impl<S: Sum<f64>> Form<f64> for DirectionForm8<f64, S> {
         self.direction.start(state)
     }
 
-    #[inline]
+    // A call is nothing beside such a step, and a chip's flash holds it once.
+    #[inline(never)]
     fn advance(&self, carried: &mut Self::Carried, steps: u32) {
         for _ in 0..steps {
             let [sin1, cos1, s, c, p1, p2] = carried.z;

@@ -25,7 +25,7 @@ pub use trace::Registers;
 use std::io;
 use std::path::PathBuf;
 
-use firmware::measure::Request;
+use firmware::job::Request;
 
 use crate::emulator::process::ProcessError;
 use crate::emulator::qemu::QemuError;
@@ -154,7 +154,7 @@ pub struct StepCost {
 
 /// The steps to count so that the counting takes a few seconds: [`FULL_CYCLE`] of a cheap arithmetic, fewer of a dear one.
 pub fn affordable_steps(target: &Target, request: &Request) -> Result<u32, CountError> {
-    let one = Profile::of(target, &Request { steps: 1, ..*request })?.cost().instructions;
+    let one = Profile::of(target, &Request { stride: 1, ..*request })?.cost().instructions;
     let steps = (AFFORDABLE_INSTRUCTIONS / one.max(1)).clamp(LEAST_STEPS, FULL_CYCLE.into());
     Ok(if steps < REGULAR { steps } else { steps - steps % REGULAR } as u32)
 }
@@ -164,9 +164,9 @@ pub fn affordable_steps(target: &Target, request: &Request) -> Result<u32, Count
 /// A run of twice the steps minus a run of once the steps, so that calling and returning cancel.
 pub fn step_cost(target: &Target, request: &Request) -> Result<StepCost, CountError> {
     let once = Profile::of(target, request)?;
-    let twice = Profile::of(target, &Request { steps: 2 * request.steps, ..*request })?;
+    let twice = Profile::of(target, &Request { stride: 2 * request.stride, ..*request })?;
     let cost = twice.cost() - once.cost();
-    let per_step = |total: u64| total as f64 / f64::from(request.steps);
+    let per_step = |total: u64| total as f64 / f64::from(request.stride);
     Ok(StepCost {
         instructions: per_step(cost.instructions),
         cycles: per_step(cost.cycles),

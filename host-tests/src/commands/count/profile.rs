@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
 use std::{io, thread};
 
-use firmware::measure::Request;
+use firmware::job::Request;
 use firmware::protocol::Frame;
 use nix::sys::stat::Mode;
 use nix::unistd::mkfifo;

@@ -9,7 +9,7 @@ use std::process::{Command, Stdio};
 use std::thread;
 use std::time::Duration;
 
-use firmware::measure::{Outcome, Request};
+use firmware::job::Request;
 
 use super::{CountError, Target};
 use crate::emulator::process;
@@ -66,13 +66,13 @@ pub(super) struct Ended {
 }
 
 impl Target {
-    /// Runs `request` at full speed: its outcome, and the ticks of the board's clock under `-icount`, where an
+    /// Runs `request` at full speed: its CRC, and the ticks of the board's clock under `-icount`, where an
     /// instruction takes 1 ns.
-    pub fn run(&self, request: &Request) -> Result<(Outcome, u64), CountError> {
+    pub fn run(&self, request: &Request) -> Result<(u32, u64), CountError> {
         let output = self.output(request)?;
-        let refused = || CountError::Refused { request: request.to_string(), reason: output.trim().to_owned() };
-        let (outcome, ticks) = output.trim().rsplit_once(' ').ok_or_else(refused)?;
-        Ok((Outcome::parse(outcome).map_err(|_| refused())?, ticks.parse().map_err(|_| refused())?))
+        let refused = || CountError::Refused { request: request.row.to_string(), reason: output.trim().to_owned() };
+        let (crc, ticks) = output.trim().split_once(' ').ok_or_else(refused)?;
+        Ok((u32::from_str_radix(crc, 16).map_err(|_| refused())?, ticks.parse().map_err(|_| refused())?))
     }
 
     /// Runs `request` at full speed: what it prints.

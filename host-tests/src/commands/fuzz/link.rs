@@ -5,7 +5,7 @@ use firmware::app::App;
 use firmware::app::controls::NoButtons;
 use firmware::display::NoDisplay;
 use firmware::graphics::frame_buffers::FrameBuffers;
-use firmware::job::{Arithmetic, Formulation, Job, Model, Request};
+use firmware::job::{Arithmetic, Formulation, Job, ON_BOARDS, Request, Row};
 use firmware::motion::settings::Settings;
 use firmware::protocol::Field;
 use firmware::protocol::{
@@ -100,11 +100,10 @@ pub fn requests(input: &[u8]) -> Outcome {
         Ok(request) => request,
         Err(field) => return u32::from(field.code()),
     };
-    let [arithmetic, model, form] = [request.arithmetic.code(), request.model.code(), request.form.code()];
-    let way = u32::from_be_bytes([0, arithmetic, model << 4 | form, 0]);
-    let mut job = match Job::new(&request) {
+    let row = ON_BOARDS.iter().zip(1..).find(|(row, _)| **row == request.row).map_or(0, |(_, number)| number << 8);
+    let mut job: Job = match Job::new(&request) {
         Ok(job) => job,
-        Err(error) => return way + 0x20 + u32::from(Field::from(error).code()),
+        Err(error) => return row + 0x20 + u32::from(Field::from(error).code()),
     };
     for _ in 0..MOST_STEPS {
         match job.advance() {
@@ -116,11 +115,11 @@ pub fn requests(input: &[u8]) -> Outcome {
             }
             Err(error) => {
                 assert!(job.is_finished());
-                return way + 0x40 + error.parameter() as u32;
+                return row + 0x40 + error.parameter() as u32;
             }
         }
     }
-    way
+    row
 }
 
 /// A message's fields.
@@ -132,9 +131,7 @@ fn fields<M: Message>(message: &M) -> Vec<u8> {
 
 fn request() -> Request {
     Request {
-        arithmetic: Arithmetic::F64,
-        model: Model::General,
-        form: Formulation::Canonical,
+        row: Row::rk4(Arithmetic::F64, Formulation::Canonical),
         parameters: Parameters { m1: 1.0, m2: 2.0, l1: 1.0, l2: 1.0, g: 9.8 },
         angles: [2.0, -1.0],
         velocities: [0.5, 0.25],
@@ -155,9 +152,7 @@ pub fn wires() -> Vec<Vec<u8>> {
 
 /// Every request that can be computed.
 pub fn request_seeds() -> Vec<Vec<u8>> {
-    let ways = Job::WAYS.iter();
-    ways.map(|&(arithmetic, model, form)| fields(&Request { arithmetic, model, form, ..request() }.message(1)))
-        .collect()
+    ON_BOARDS.iter().map(|&row| fields(&Request { row, ..request() }.message(1))).collect()
 }
 
 /// Every command.

@@ -1,6 +1,7 @@
 //! What a user types for `cargo simulate`: numbers, and whole command lines.
 
 use clap::Parser;
+use firmware::job::Row;
 
 use super::Outcome;
 use crate::commands::simulate::{Number, NumberError, Options, plan};
@@ -28,7 +29,8 @@ pub fn options(input: &[u8]) -> Outcome {
         Ok(options) => match plan(&options) {
             Ok(plan) => {
                 assert!(plan.every.is_positive() && plan.request.dt > 0.0, "{text}");
-                0x200 + plan.request.arithmetic as u32 * 4 + plan.request.model as u32
+                let Row { arithmetic, model, .. } = plan.request.row;
+                0x200 + u32::from(arithmetic.code()) * 4 + u32::from(model.code())
             }
             // The option it names: the first word of the refusal.
             Err(refusal) => 0x100 + refusal.to_string().bytes().take(5).map(u32::from).sum::<u32>(),

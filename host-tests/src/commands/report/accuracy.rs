@@ -2,11 +2,11 @@
 
 use std::f64::consts::TAU;
 
-use double_pendulum::{Motion, State};
-use firmware::measure::{Request, SUBJECTS, Subject};
+use double_pendulum::Motion;
+use firmware::job::{JobError, Request, Row};
 
-use super::parallel;
 use super::scene::{SAMPLES, SCENES, Scene};
+use super::{compared_rows, parallel};
 use crate::oracle::reference::Reference;
 
 /// The largest error over a scene.
@@ -16,6 +16,11 @@ pub struct Error {
     pub angle: f64,
     /// Of a bob's place on the panel, pixels.
     pub pixels: f64,
+}
+
+impl Error {
+    /// Of a motion that has left the finite numbers.
+    const LOST: Self = Self { angle: f64::INFINITY, pixels: f64::INFINITY };
 }
 
 /// The exact motion through a scene's samples: a1, a2.
@@ -32,23 +37,32 @@ pub fn exact(scene: &Scene) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// The request for `subject` through `scene` with steps of 2^-`halvings` s, at least 4 halvings.
-pub fn request<'a>(subject: &'a Subject, scene: &Scene, halvings: u32) -> Request<'a> {
+/// The request for `row` through `scene` with steps of 2^-`halvings` s, at least 4 halvings.
+pub fn request(row: Row, scene: &Scene, halvings: u32) -> Request {
     Request {
-        subject: subject.name,
-        samples: SAMPLES,
-        steps: (scene.duration << halvings) / SAMPLES,
+        row,
         parameters: scene.parameters(),
         angles: scene.angles(),
+        velocities: [0.0; 2],
         dt: 0.5_f64.powi(halvings as i32),
+        stride: (scene.duration << halvings) / SAMPLES,
+        samples: SAMPLES,
     }
 }
 
-/// The error of `subject`; `None` if it does not apply to the scene. A motion that was lost has an infinite error.
-pub fn error(subject: &Subject, scene: &Scene, halvings: u32, exact: &[[f64; 2]]) -> Option<Error> {
-    let mut states = Vec::new();
-    request(subject, scene, halvings).run(&mut |state: &State<f64>| states.push([state.a1, state.a2])).ok()?;
-    Some(worst(scene, &states, exact))
+/// The error of `row`; `None` if it does not apply to the scene or the step. A motion that was lost has an infinite error.
+pub fn error(row: Row, scene: &Scene, halvings: u32, exact: &[[f64; 2]]) -> Option<Error> {
+    let mut angles = Vec::new();
+    let run = request(row, scene, halvings).readings(|reading| {
+        let [a1, a2, ..] = reading.state;
+        angles.push([a1, a2]);
+        Ok::<_, JobError>(())
+    });
+    match (run, &angles[..]) {
+        (Ok(()), [_start, angles @ ..]) => Some(worst(scene, angles, exact)),
+        (Err(JobError::Refused(double_pendulum::Error::Diverged { .. })), _) => Some(Error::LOST),
+        _ => None,
+    }
 }
 
 /// The largest error of the angles a1, a2 at the scene's samples.
@@ -88,7 +102,7 @@ pub struct Point {
     /// The scene.
     pub scene: &'static Scene,
     /// The arithmetic.
-    pub subject: &'static Subject,
+    pub row: Row,
     /// The step is 2^-`halvings` s.
     pub halvings: u32,
     /// The largest error over the scene.
@@ -105,10 +119,10 @@ pub fn survey(
     let through = |scene: &'static Scene| {
         let exact = exact(scene);
         let mut points = Vec::new();
-        for subject in SUBJECTS {
+        for row in compared_rows() {
             for halvings in halvings.clone() {
-                let error = error(subject, scene, halvings, &exact);
-                points.extend(error.map(|error| Point { scene, subject, halvings, error }));
+                let error = error(row, scene, halvings, &exact);
+                points.extend(error.map(|error| Point { scene, row, halvings, error }));
                 tick();
             }
         }

@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
 
-use firmware::measure::{Request, SUBJECTS};
+use firmware::job::Formulation::{Angle, Canonical, Direction};
+use firmware::job::{Arithmetic, Model, Request, Row};
 
 use super::accuracy::{Error, Point, worst};
 use super::costs::{self, Cost, HALVINGS};
@@ -36,7 +37,14 @@ const CMSIS_SOURCES: [&str; 3] = [
     "Source/CommonTables/arm_common_tables.c",
 ];
 /// Arithmetics of the kernel that stand beside, the one that the others are compared with last.
-const BESIDE: [&str; 4] = ["f32-textbook-libm", "f32-own", "f32-direction-compensated", "f32-angle-compensated"];
+const BESIDE: [Row; 4] = [
+    TEXTBOOK,
+    Row::rk4(Arithmetic::F32, Canonical),
+    Row::rk4(Arithmetic::F32Compensated, Direction),
+    Row::rk4(Arithmetic::F32Compensated, Angle),
+];
+/// What the C programs compute, in Rust.
+const TEXTBOOK: Row = Row { model: Model::Textbook, ..Row::rk4(Arithmetic::F32Libm, Canonical) };
 
 /// Where a C program takes its sine from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -149,9 +157,9 @@ pub fn count(
     Ok((counted.into_iter().collect::<Result<_, CountError>>()?, absent))
 }
 
-/// The request through `scene` with steps of 2^-8 s, whatever the program calls itself.
-fn request(scene: &Scene) -> Request<'static> {
-    super::accuracy::request(&SUBJECTS[0], scene, HALVINGS)
+/// The request through `scene` with steps of 2^-8 s.
+fn request(scene: &Scene) -> Request {
+    super::accuracy::request(TEXTBOOK, scene, HALVINGS)
 }
 
 /// The error of the states that a program prints.
@@ -168,7 +176,7 @@ fn error(target: &Target, scene: &Scene, exact: &[[f64; 2]]) -> Result<Error, Co
     if states.len() == exact.len() {
         Ok(worst(scene, &states, exact))
     } else {
-        Err(CountError::Refused { request: request.to_string(), reason: printed.trim().to_owned() })
+        Err(CountError::Refused { request: request.row.to_string(), reason: printed.trim().to_owned() })
     }
 }
 
@@ -178,17 +186,16 @@ pub fn table((counted, absent): &(Vec<Counted>, String), points: &[Point], costs
     let mut rows = Vec::new();
     for board in BOARDS.iter().filter(|board| costs.iter().any(|cost| cost.board == *board)) {
         let theirs = counted.iter().filter(|one| one.board == board);
-        let theirs = theirs.map(|one| (one.name, one.step, one.errors[0]));
-        let ours = BESIDE.iter().filter_map(|name| {
-            let is_it =
-                |point: &&Point| point.subject.name == *name && point.scene == scene && point.halvings == HALVINGS;
-            let cost = costs.iter().find(|cost| cost.subject.name == *name && cost.board == board)?;
-            Some((*name, cost.step, points.iter().find(is_it)?.error))
+        let theirs = theirs.map(|one| (one.name.to_owned(), one.step, one.errors[0]));
+        let ours = BESIDE.iter().filter_map(|row| {
+            let is_it = |point: &&Point| point.row == *row && point.scene == scene && point.halvings == HALVINGS;
+            let cost = costs.iter().find(|cost| cost.row == *row && cost.board == board)?;
+            Some((row.to_string(), cost.step, points.iter().find(is_it)?.error))
         });
         let ours: Vec<_> = ours.collect();
         let unit = ours.last().map_or(f64::NAN, |(_, step, _)| step.cycles);
         for (name, step, error) in theirs.chain(ours) {
-            let mut row = vec![name.to_owned(), board.cpu.to_owned()];
+            let mut row = vec![name, board.cpu.to_owned()];
             row.extend([step.instructions, step.cycles].map(|count| format!("{count:.0}")));
             row.push(format!("{:.2}", step.cycles / unit));
             row.extend([step.code_bytes, step.stack_bytes].map(|count| count.to_string()));
@@ -202,7 +209,7 @@ pub fn table((counted, absent): &(Vec<Counted>, String), points: &[Point], costs
         note: format!(
             "Per step; scene {}, step 2^-{HALVINGS} s, error over the scene. GCC at -O3, which may contract multiplication \
              and addition; counted like all others. {ERROR_BAR} Relative: estimated cycles against \
-             f32-angle-compensated.{absent}",
+             f32-compensated-angle.{absent}",
             scene.name,
         ),
         columns: vec![

@@ -3,10 +3,10 @@
 use std::error::Error;
 use std::ops::Range;
 
-use firmware::measure::SUBJECTS;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
+use super::compared_rows;
 use super::scene::Scene;
 use super::speed::Priced;
 use crate::emulator::boards::Board;
@@ -22,7 +22,7 @@ const FONT: &str = "sans-serif";
 
 /// Colours that can be told apart, as many as there are arithmetics: around the wheel, neighbours dark and light.
 fn colour(index: usize) -> HSLColor {
-    HSLColor(index as f64 / SUBJECTS.len() as f64, 0.8, [0.33, 0.47][index % 2])
+    HSLColor(index as f64 / compared_rows().count() as f64, 0.8, [0.33, 0.47][index % 2])
 }
 
 /// Estimated cycles per simulated second against the error, one line for each arithmetic, as SVG. A point is hollow if
@@ -58,8 +58,8 @@ pub fn speed_against_error(priced: &[Priced], scene: &Scene, board: &Board) -> R
             .draw()?;
         let text = TextStyle::from((FONT, 14)).pos(Pos::new(HPos::Left, VPos::Center));
         let mut y = 2 * LINE;
-        for (index, subject) in SUBJECTS.iter().enumerate() {
-            let line: Vec<_> = shown.iter().filter(|one| one.point.subject == subject).collect();
+        for (index, row) in compared_rows().enumerate() {
+            let line: Vec<_> = shown.iter().filter(|one| one.point.row == row).collect();
             if line.is_empty() {
                 continue;
             }
@@ -71,7 +71,7 @@ pub fn speed_against_error(priced: &[Priced], scene: &Scene, board: &Board) -> R
                 EmptyElement::at(place(one)) + Circle::new((0, 0), 4, inside) + Circle::new((0, 0), 4, stroke)
             }))?;
             right.draw(&PathElement::new([(0, y), (24, y)], stroke))?;
-            right.draw(&Text::new(subject.name, (32, y), text.clone()))?;
+            right.draw(&Text::new(row.to_string(), (32, y), text.clone()))?;
             y += LINE;
         }
         for (inside, meaning) in [(BLACK.filled(), "none is better in both"), (WHITE.filled(), "dominated")] {

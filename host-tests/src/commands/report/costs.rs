@@ -1,10 +1,10 @@
 //! What a step costs on the target: counted, never timed.
 
-use firmware::measure::{Request, SUBJECTS, Subject};
+use firmware::job::{Request, Row};
 
 use super::accuracy::request;
-use super::parallel;
 use super::scene::Scene;
+use super::{compared_rows, parallel};
 use crate::commands::count::{CountError, ERROR_BAR, FULL_CYCLE, StepCost, Target, affordable_steps, step_cost};
 use crate::commands::table::Table;
 use crate::emulator::boards::Board;
@@ -16,7 +16,7 @@ pub const HALVINGS: u32 = 8;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cost {
     /// The arithmetic.
-    pub subject: &'static Subject,
+    pub row: Row,
     /// The board.
     pub board: &'static Board,
     /// Per step.
@@ -26,10 +26,10 @@ pub struct Cost {
 /// Counts every arithmetic on `scene`, each target on a thread of its own; `tick` is called after each.
 pub fn count(targets: &[Target], scene: &Scene, tick: &(dyn Fn() + Sync)) -> Result<Vec<Cost>, CountError> {
     let on_target = |target: &Target| {
-        let counted = SUBJECTS.iter().map(|subject| {
-            let step = one(target, &request(subject, scene, HALVINGS))?;
+        let counted = compared_rows().map(|row| {
+            let step = one(target, &request(row, scene, HALVINGS))?;
             tick();
-            Ok(Cost { subject, board: target.board, step })
+            Ok(Cost { row, board: target.board, step })
         });
         counted.collect::<Result<Vec<_>, CountError>>()
     };
@@ -38,9 +38,9 @@ pub fn count(targets: &[Target], scene: &Scene, tick: &(dyn Fn() + Sync)) -> Res
 
 /// What a step of `request` costs on `target`, over as many steps as can be afforded.
 pub fn one(target: &Target, request: &Request) -> Result<StepCost, CountError> {
-    let whole = Request { samples: 1, steps: FULL_CYCLE, ..*request };
-    let steps = affordable_steps(target, &whole)?;
-    step_cost(target, &Request { steps, ..whole })
+    let whole = Request { samples: 1, stride: FULL_CYCLE, ..*request };
+    let stride = affordable_steps(target, &whole)?;
+    step_cost(target, &Request { stride, ..whole })
 }
 
 /// The table of costs.
@@ -49,7 +49,7 @@ pub fn table(costs: &[Cost], scene: &Scene) -> Table {
         let StepCost { instructions, cycles, stalls, hot_bytes, code_bytes, stack_bytes } = cost.step;
         let counts = [instructions, cycles, stalls].map(|count| format!("{count:.0}"));
         let bytes = [hot_bytes, code_bytes, stack_bytes].map(|count| count.to_string());
-        let mut row = vec![cost.subject.name.to_owned(), cost.board.cpu.to_owned()];
+        let mut row = vec![cost.row.to_string(), cost.board.cpu.to_owned()];
         row.extend(counts.into_iter().chain(bytes));
         row
     };

@@ -1,9 +1,10 @@
 //! Energy drift over many steps: shows slow losses, says nothing about accuracy.
 
 use double_pendulum::{Pendulum, State};
-use firmware::measure::{Request, SUBJECTS};
+use firmware::job::{JobError, Request};
 
 use super::accuracy::request;
+use super::compared_rows;
 use super::scene::SCENES;
 use crate::commands::table::{Table, small};
 
@@ -12,7 +13,9 @@ const SCENES_FOLLOWED: usize = 2;
 const HALVINGS: [u32; 2] = [8, 10];
 
 /// How many runs [`table`] makes.
-pub const RUNS: usize = SCENES_FOLLOWED * SUBJECTS.len() * HALVINGS.len();
+pub fn runs() -> usize {
+    SCENES_FOLLOWED * compared_rows().count() * HALVINGS.len()
+}
 
 /// The drift of every arithmetic over `steps` steps; `tick` is called after each run.
 pub fn table(steps: u32, tick: &dyn Fn()) -> Table {
@@ -21,15 +24,18 @@ pub fn table(steps: u32, tick: &dyn Fn()) -> Table {
         let Ok(pendulum) = Pendulum::<f64>::new(scene.parameters()) else { continue };
         let [a1, a2] = scene.angles();
         let start = pendulum.energy_above_rest(&State::at_rest(a1, a2));
-        for subject in SUBJECTS {
+        for row in compared_rows() {
             for halvings in HALVINGS {
-                let long = Request { samples: 1, steps, ..request(subject, scene, halvings) };
+                let long = Request { samples: 1, stride: steps, ..request(row, scene, halvings) };
                 let mut drift = f64::NAN;
-                let run = long.run(&mut |state| drift = (pendulum.energy_above_rest(state) - start) / start);
+                let run = long.readings(|reading| {
+                    drift = (pendulum.energy_above_rest(&reading.state.into()) - start) / start;
+                    Ok::<_, JobError>(())
+                });
                 tick();
                 if run.is_ok() {
                     let (step, drift) = (format!("2^-{halvings}"), small(drift));
-                    rows.push(vec![scene.name.to_owned(), subject.name.to_owned(), step, drift]);
+                    rows.push(vec![scene.name.to_owned(), row.to_string(), step, drift]);
                 }
             }
         }

@@ -3,10 +3,10 @@
 use std::fs;
 
 use anyhow::{Context, ensure};
-use firmware::measure::SUBJECTS;
 
 use super::accuracy::{Error, error};
 use super::c_peers::Counted;
+use super::compared_rows;
 use super::costs::{Cost, HALVINGS};
 use super::scene::{LONG, SCENES, Scene};
 use crate::commands::count::{ERROR_BAR, StepCost};
@@ -26,7 +26,7 @@ type Shows = fn(&str) -> bool;
 const READMES: [(&str, Shows); 2] = [("host-tests/README.md", |_| true), ("README.md", |row| TELLING.contains(&row))];
 /// What exists, what the page prints, and what to take on a chip with a floating-point unit.
 const TELLING: [&str; 3] =
-    ["C textbook: CMSIS-DSP's arm_sin_f32 and arm_cos_f32", "f32-textbook-libm", "f32-direction-compensated"];
+    ["C textbook: CMSIS-DSP's arm_sin_f32 and arm_cos_f32", "f32-libm-textbook", "f32-compensated-direction"];
 
 /// Every arithmetic and every C program; `exact` is the exact motion of the scenes [`FOLLOWED`].
 pub fn table(costs: &[Cost], counted: &[Counted], exact: [&[[f64; 2]]; 2]) -> Table {
@@ -44,10 +44,10 @@ pub fn table(costs: &[Cost], counted: &[Counted], exact: [&[[f64; 2]]; 2]) -> Ta
         let step_on = |cpu: &str| Some(counted.iter().find(|one| one.name == *name && one.board.cpu == cpu)?.step);
         push(name, &step_on, errors.map(Some));
     }
-    for subject in SUBJECTS {
-        let step_on = |cpu: &str| Some(costs.iter().find(|one| one.subject == subject && one.board.cpu == cpu)?.step);
-        let errors = [0, 1].map(|index| error(subject, FOLLOWED[index], HALVINGS, exact[index]));
-        push(subject.name, &step_on, errors);
+    for row in compared_rows() {
+        let step_on = |cpu: &str| Some(costs.iter().find(|one| one.row == row && one.board.cpu == cpu)?.step);
+        let errors = [0, 1].map(|index| error(row, FOLLOWED[index], HALVINGS, exact[index]));
+        push(&row.to_string(), &step_on, errors);
     }
     Table {
         name: "headline",

@@ -1,6 +1,6 @@
 //! Whether the host and the chips compute the same bits: what allows errors to be computed on the host.
 
-use firmware::measure::{Request, RequestError, SUBJECTS, Subject};
+use firmware::job::{Arithmetic, JobError, ROWS, Request, Row};
 
 use super::accuracy::request;
 use super::scene::{SCENES, Scene};
@@ -22,13 +22,13 @@ pub struct Steps {
 }
 
 /// How many comparisons are made on one target.
-pub const RUNS: usize = COMPARED.len() * SUBJECTS.len();
+pub const RUNS: usize = COMPARED.len() * ROWS.len();
 
 /// One arithmetic through one motion on a target and on this host.
 #[derive(Clone, Copy, Debug)]
-pub struct Comparison<'a> {
+pub struct Comparison {
     /// What was run.
-    pub request: Request<'a>,
+    pub request: Request,
     /// The motion.
     pub scene: &'static Scene,
     /// The processor.
@@ -39,7 +39,7 @@ pub struct Comparison<'a> {
     pub target: u32,
 }
 
-impl Comparison<'_> {
+impl Comparison {
     /// Whether all bits are the same.
     pub fn agrees(&self) -> bool {
         self.host == self.target
@@ -47,40 +47,36 @@ impl Comparison<'_> {
 }
 
 /// The request whose CRC is over all states of the first `steps` steps of 2^-8 s through `scene`.
-pub fn every_state<'a>(subject: &'a Subject, scene: &Scene, steps: u32) -> Request<'a> {
-    Request { samples: steps, steps: 1, ..request(subject, scene, HALVINGS) }
+pub fn every_state(row: Row, scene: &Scene, steps: u32) -> Request {
+    Request { samples: steps, stride: 1, ..request(row, scene, HALVINGS) }
 }
 
 /// Compares every arithmetic over both motions on `target`; `tick` is called after each.
-pub fn compare(
-    target: &Target,
-    steps: Steps,
-    tick: &(dyn Fn() + Sync),
-) -> Result<Vec<Comparison<'static>>, CountError> {
-    let runs = COMPARED.iter().flat_map(|scene| SUBJECTS.iter().map(move |subject| (scene, subject)));
-    let compared = runs.map(|(scene, subject)| {
-        let steps = if is_in_hardware(target, subject) { steps.hardware } else { steps.software };
-        let request = every_state(subject, scene, steps);
-        let refused =
-            |reason: RequestError| CountError::Refused { request: request.to_string(), reason: reason.to_string() };
-        let host = request.outcome().map_err(refused)?;
-        let (outcome, _) = target.run(&request)?;
+pub fn compare(target: &Target, steps: Steps, tick: &(dyn Fn() + Sync)) -> Result<Vec<Comparison>, CountError> {
+    let runs = COMPARED.iter().flat_map(|scene| ROWS.iter().map(move |&row| (scene, row)));
+    let compared = runs.map(|(scene, row)| {
+        let steps = if is_in_hardware(target, row) { steps.hardware } else { steps.software };
+        let request = every_state(row, scene, steps);
+        let refused = |reason: JobError| CountError::Refused { request: row.to_string(), reason: reason.to_string() };
+        let host = request.crc().map_err(refused)?;
+        let (crc, _) = target.run(&request)?;
         tick();
-        Ok(Comparison { request, scene, cpu: target.board.cpu, host: host.crc, target: outcome.crc })
+        Ok(Comparison { request, scene, cpu: target.board.cpu, host, target: crc })
     });
     compared.collect()
 }
 
-/// Whether the target's floating-point unit does it all. (The `libm` crate's sine of an `f32` is computed in `f64`.)
-fn is_in_hardware(target: &Target, subject: &Subject) -> bool {
-    target.board.cpu == "cortex-m4" && subject.name.starts_with("f32") && !subject.name.ends_with("libm")
+/// Whether the target's floating-point unit does it all.
+fn is_in_hardware(target: &Target, row: Row) -> bool {
+    let single = matches!(row.arithmetic, Arithmetic::F32 | Arithmetic::F32Compensated | Arithmetic::F32Micromath);
+    target.board.cpu == "cortex-m4" && single
 }
 
 /// The comparisons as a table.
 pub fn table(comparisons: &[Comparison]) -> Table {
     let row = |one: &Comparison| {
         vec![
-            one.request.subject.to_owned(),
+            one.request.row.to_string(),
             one.scene.name.to_owned(),
             one.cpu.to_owned(),
             one.request.samples.to_string(),

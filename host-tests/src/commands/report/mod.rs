@@ -16,7 +16,7 @@ pub mod scene;
 pub mod speed;
 
 use anyhow::{Context, ensure};
-use firmware::measure::SUBJECTS;
+use firmware::job::{Model, ROWS, Row};
 use std::fs;
 use std::path::Path;
 
@@ -74,9 +74,10 @@ impl Extent {
 
     /// The runs of everything, for the progress bar.
     pub fn runs(&self, targets: usize) -> usize {
-        let survey = self.scenes * SUBJECTS.len() * self.halvings().count();
+        let rows = compared_rows().count();
+        let survey = self.scenes * rows * self.halvings().count();
         let peers = if self.peers { peers::RUNS } else { 0 };
-        survey + energy::RUNS + peers + self.plans + self.margins + targets * (identity::RUNS + SUBJECTS.len())
+        survey + energy::runs() + peers + self.plans + self.margins + targets * (identity::RUNS + rows)
     }
 }
 
@@ -178,6 +179,11 @@ pub fn write(extent: &Extent, toolchain: &Toolchain, folder: &Path, bar: &Bar) -
     let name = format!("speed-{}-cortex-m4.svg", SCENES[0].name);
     let chart = charts.into_iter().find(|(chart, _)| *chart == name);
     Ok(Main { table: headline, chart: chart.context("no chart of the first scene")?.1, absent: c.1 })
+}
+
+/// The arithmetics whose errors are compared: all but the linear model's, whose errors are those of its equations.
+pub fn compared_rows() -> impl Iterator<Item = Row> + Clone {
+    ROWS.iter().copied().filter(|row| row.model != Model::Linear)
 }
 
 /// What `work` makes of each item, every item on a thread of its own.

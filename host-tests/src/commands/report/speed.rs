@@ -26,7 +26,7 @@ pub fn priced(points: &[Point], costs: &[Cost]) -> Vec<Priced> {
     let mut priced: Vec<_> = costs
         .iter()
         .flat_map(|cost| {
-            points.iter().filter(|point| point.subject == cost.subject).map(|&point| {
+            points.iter().filter(|point| point.row == cost.row).map(|&point| {
                 let steps = f64::from(1 << point.halvings);
                 let (instructions, cycles) = (steps * cost.step.instructions, steps * cost.step.cycles);
                 Priced { point, board: cost.board, instructions, cycles, dominated: false }
@@ -49,11 +49,11 @@ fn dominates(other: &Priced, one: &Priced) -> bool {
 /// Speed against error.
 pub fn table(priced: &[Priced]) -> Table {
     let row = |one: &Priced| {
-        let Point { scene, subject, halvings, error } = one.point;
+        let Point { scene, row, halvings, error } = one.point;
         vec![
             scene.name.to_owned(),
             one.board.cpu.to_owned(),
-            subject.name.to_owned(),
+            row.to_string(),
             format!("2^-{halvings}"),
             format!("{:.0}", one.instructions),
             format!("{:.0}", one.cycles),
@@ -91,13 +91,13 @@ pub fn table(priced: &[Priced]) -> Table {
 /// The error floors: the least error, the step it needs, and what becomes of it as the step shrinks further.
 pub fn floors(points: &[Point]) -> Table {
     let mut rows = Vec::new();
-    for group in points.chunk_by(|a, b| a.scene == b.scene && a.subject == b.subject) {
+    for group in points.chunk_by(|a, b| a.scene == b.scene && a.row == b.row) {
         let least = group.iter().min_by(|a, b| a.error.angle.total_cmp(&b.error.angle));
         let worst_growth = group.windows(2).map(|pair| pair[1].error.angle / pair[0].error.angle).fold(0.0, f64::max);
         if let (Some(least), Some(finest)) = (least, group.last()) {
             rows.push(vec![
                 least.scene.name.to_owned(),
-                least.subject.name.to_owned(),
+                least.row.to_string(),
                 small(least.error.angle),
                 format!("2^-{}", least.halvings),
                 small(finest.error.angle),
@@ -128,7 +128,7 @@ pub fn floors(points: &[Point]) -> Table {
 
 #[cfg(test)]
 mod tests {
-    use firmware::measure::SUBJECTS;
+    use firmware::job::ROWS;
 
     use super::*;
     use crate::commands::report::accuracy::Error;
@@ -138,7 +138,7 @@ mod tests {
     #[test]
     fn a_point_is_dominated_by_one_at_least_as_good_in_both() {
         let one = |cycles, angle| Priced {
-            point: Point { scene: &SCENES[0], subject: &SUBJECTS[0], halvings: 4, error: Error { angle, pixels: 0.0 } },
+            point: Point { scene: &SCENES[0], row: ROWS[0], halvings: 4, error: Error { angle, pixels: 0.0 } },
             board: &BOARDS[0],
             instructions: 0.0,
             cycles,

@@ -18,8 +18,9 @@ use crate::emulator::toolchain;
 const REQUEST: u16 = 1;
 /// To start QEMU and to send the rows.
 const OVERHEAD: Duration = Duration::from_secs(120);
-/// A step takes at most 40,000 instructions (f64 on the M3, `cargo count`); a busy host executes 10 million a second.
-const PER_STEP: Duration = Duration::from_millis(4);
+/// A step takes at most 200,000 instructions (f64 in steps of order 8, `cargo count`); a busy host executes 10 million a
+/// second.
+const PER_STEP: Duration = Duration::from_millis(20);
 
 /// Sends the request to the firmware on `board` and gives each reading that comes back to `row`.
 pub fn on_board(

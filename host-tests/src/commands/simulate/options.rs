@@ -1,7 +1,7 @@
 //! The command line of `cargo simulate`.
 
 use clap::Parser;
-use firmware::job::{Arithmetic, Formulation, Model};
+use firmware::job::{Arithmetic, Formulation, Method, Model, Wanted};
 
 use super::{Number, Start};
 use crate::console::cli::choice;
@@ -27,27 +27,6 @@ impl Place {
         match self {
             Self::Host => Self::HOST,
             Self::Board(board) => board.name,
-        }
-    }
-}
-
-/// How a step is made.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Method {
-    /// The classical method, of order 4.
-    Rk4,
-    /// [`double_pendulum::rk8`], on this computer only.
-    Order8,
-}
-
-impl Method {
-    const ALL: &[Self] = &[Self::Rk4, Self::Order8];
-
-    /// What the command line calls it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Rk4 => "rk4",
-            Self::Order8 => "order-8",
         }
     }
 }
@@ -78,18 +57,21 @@ pub struct Options {
     /// Time from row to row, s; one step if not given
     #[arg(long, value_name = "T", allow_hyphen_values = true)]
     pub every: Option<Number>,
-    /// The numbers it is computed in
-    #[arg(long, value_name = "NAME", default_value = Arithmetic::F64.name(), value_parser = choice(Arithmetic::ALL.iter().copied(), Arithmetic::name))]
-    pub arithmetic: Arithmetic,
-    /// The equations of motion
-    #[arg(long, value_name = "NAME", default_value = Model::General.name(), value_parser = choice(Model::ALL.iter().copied(), Model::name))]
-    pub model: Model,
-    /// The quantities stepped; if not given, canonical, or angle with f32-compensated
+    /// The numbers it is computed in; f64 if not given
+    #[arg(long, value_name = "NAME", value_parser = choice(Arithmetic::ALL.iter().copied(), Arithmetic::name))]
+    pub arithmetic: Option<Arithmetic>,
+    /// The equations of motion; general if not given
+    #[arg(long, value_name = "NAME", value_parser = choice(Model::ALL.iter().copied(), Model::name))]
+    pub model: Option<Model>,
+    /// The quantities stepped; if not given, the first that goes with the rest
     #[arg(long, value_name = "NAME", value_parser = choice(Formulation::ALL.iter().copied(), Formulation::name))]
     pub form: Option<Formulation>,
-    /// How a step is made; order 8 in f64 and here only, for errors of 1e-9 rad and less
-    #[arg(long, value_name = "NAME", default_value = Method::Rk4.name(), value_parser = choice(Method::ALL.iter().copied(), Method::name))]
-    pub method: Method,
+    /// How a step is made; rk8 in double precision, for errors of 1e-9 rad and less
+    #[arg(long, value_name = "NAME", value_parser = choice(Method::ALL.iter().copied(), Method::name))]
+    pub method: Option<Method>,
+    /// The order of the method
+    #[arg(long, value_name = "N")]
+    pub order: Option<u8>,
     /// Where it is computed: here, or by the firmware on an emulated board
     #[arg(long = "on", value_name = "PLACE", default_value = Place::HOST,
           value_parser = choice(Place::all(), Place::name))]
@@ -97,4 +79,12 @@ pub struct Options {
     /// Add the bit patterns of a1, a2, p1, p2 in hexadecimal
     #[arg(long)]
     pub bits: bool,
+}
+
+impl Options {
+    /// What they ask of a row of the table.
+    pub fn wanted(&self) -> Wanted {
+        let Self { arithmetic, model, form, method, order, .. } = *self;
+        Wanted { arithmetic, model, form, method, order }
+    }
 }

@@ -1,10 +1,10 @@
 //! From options to a request that the kernel accepts, and the times of its rows.
 
-use anyhow::{Context, anyhow, ensure};
-use firmware::job::{Job, JobError, Request};
+use anyhow::{Context, anyhow, bail, ensure};
+use firmware::job::{JobError, ON_BOARDS, ROWS, Request, Row};
 use firmware::protocol::Field;
 
-use super::{Method, Number, Options, on_host, order8};
+use super::{Number, Options, Place};
 
 /// A checked request and the time from row to row.
 #[derive(Debug)]
@@ -13,8 +13,6 @@ pub struct Plan {
     pub request: Request,
     /// Row n is at n times this.
     pub every: Number,
-    /// How its steps are made.
-    pub method: Method,
 }
 
 impl Plan {
@@ -47,14 +45,8 @@ pub fn plan(options: &Options) -> anyhow::Result<Plan> {
     let stride = steps("--every", every)?;
     ensure!(total % stride == 0, "--until {until}: must be a whole multiple of --every {every}");
 
-    let Options { arithmetic, model, .. } = *options;
-    let form = options.form.or_else(|| Job::default_form(arithmetic, model));
-    let form =
-        form.with_context(|| format!("--arithmetic {}: not with --model {}", arithmetic.name(), model.name()))?;
     let request = Request {
-        arithmetic,
-        model,
-        form,
+        row: row(options)?,
         parameters: options.start.parameters(),
         angles: options.start.angles(),
         velocities: options.start.velocities(),
@@ -62,22 +54,41 @@ pub fn plan(options: &Options) -> anyhow::Result<Plan> {
         stride,
         samples: total / stride,
     };
-    Job::new(&request).map_err(|error| match error {
-        JobError::NoSuchForm(form) => {
-            let [form, arithmetic, model] = [form.name(), arithmetic.name(), model.name()];
-            anyhow!("--form {form}: not with --arithmetic {arithmetic} and --model {model}")
-        }
+    Request { samples: 0, ..request }.readings(|_| Ok(())).map_err(|error: JobError| match error {
+        JobError::NoSuchRow(_) => anyhow!("{error}"),
         JobError::Refused(error) => anyhow!("{}: {error}", option_of(error.into())),
     })?;
-    if options.method == Method::Order8 {
-        order8::check(options, form)?;
-    }
-    let plan = Plan { request, every: every.clone(), method: options.method };
     // Numbers that overflow at once are refused before anything is printed.
-    let first_step = Request { stride: 1, samples: request.samples.min(1), ..request };
-    on_host(&Plan { request: first_step, every: every.clone(), method: options.method }, |_| Ok(()))
+    Request { stride: 1, samples: request.samples.min(1), ..request }
+        .readings(|_| Ok::<_, JobError>(()))
         .with_context(|| format!("--step {step}: not even one step can be made"))?;
-    Ok(plan)
+    Ok(Plan { request, every: every.clone() })
+}
+
+/// The first row of the table that has all that is asked for, if the place asked for computes it.
+fn row(options: &Options) -> anyhow::Result<Row> {
+    let wanted = options.wanted();
+    let row = wanted.first_of(ROWS).map_err(|field| {
+        let words = [
+            (Field::Arithmetic, wanted.arithmetic.map(|word| word.name().to_owned())),
+            (Field::Model, wanted.model.map(|word| word.name().to_owned())),
+            (Field::Form, wanted.form.map(|word| word.name().to_owned())),
+            (Field::Method, wanted.method.map(|word| word.name().to_owned())),
+            (Field::Order, wanted.order.map(|order| order.to_string())),
+        ];
+        let given = |(field, word): &(Field, Option<String>)| Some(format!("{} {}", option_of(*field), word.as_ref()?));
+        let wrong = words.iter().filter(|(one, _)| *one == field).find_map(given).unwrap_or_default();
+        let before: Vec<_> = words.iter().take_while(|(one, _)| *one != field).filter_map(given).collect();
+        if before.is_empty() {
+            anyhow!("{wrong}: there is none such")
+        } else {
+            anyhow!("{wrong}: not with {}", before.join(" "))
+        }
+    })?;
+    match options.place {
+        Place::Board(board) if !ON_BOARDS.contains(&row) => bail!("--on {}: boards do not compute {row}", board.name),
+        _ => Ok(row),
+    }
 }
 
 /// The option that sets a field of the request.
@@ -86,6 +97,8 @@ fn option_of(field: Field) -> &'static str {
         Field::Arithmetic => "--arithmetic",
         Field::Model => "--model",
         Field::Form => "--form",
+        Field::Method => "--method",
+        Field::Order => "--order",
         Field::M1 | Field::M2 => "--masses",
         Field::L1 | Field::L2 => "--lengths",
         Field::G => "--gravity",

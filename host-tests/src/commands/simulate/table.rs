@@ -9,7 +9,8 @@ use super::Number;
 /// Writes readings as CSV, one row each, from t = 0.
 pub struct Table<W> {
     output: W,
-    arithmetic: Arithmetic,
+    /// Whether numbers have the digits of an `f32`.
+    single: bool,
     every: Number,
     bits: bool,
     rows: u64,
@@ -18,7 +19,8 @@ pub struct Table<W> {
 impl<W: Write> Table<W> {
     /// A table whose row n is at n times `every`; `bits` adds the bit patterns of the state. Nothing is written yet.
     pub fn new(output: W, arithmetic: Arithmetic, every: Number, bits: bool) -> Self {
-        Self { output, arithmetic, every, bits, rows: 0 }
+        let single = matches!(arithmetic, Arithmetic::F32 | Arithmetic::F32Libm | Arithmetic::F32Micromath);
+        Self { output, single, every, bits, rows: 0 }
     }
 
     /// Writes the next row, and the header before the first.
@@ -53,17 +55,15 @@ impl<W: Write> Table<W> {
     }
 
     fn shortest(&self, number: f64) -> String {
-        match self.arithmetic {
-            Arithmetic::F32 => shorter(format!("{}", number as f32), format!("{:e}", number as f32)),
-            Arithmetic::F64 | Arithmetic::F32Compensated => shortest_f64(number),
+        if self.single {
+            shorter(format!("{}", number as f32), format!("{:e}", number as f32))
+        } else {
+            shortest_f64(number)
         }
     }
 
     fn pattern(&self, number: f64) -> String {
-        match self.arithmetic {
-            Arithmetic::F32 => format!("{:08x}", (number as f32).to_bits()),
-            Arithmetic::F64 | Arithmetic::F32Compensated => format!("{:016x}", number.to_bits()),
-        }
+        if self.single { format!("{:08x}", (number as f32).to_bits()) } else { format!("{:016x}", number.to_bits()) }
     }
 }
 

@@ -1,7 +1,7 @@
 //! A motion computed for a day on request, beside the same on the host.
 
 use double_pendulum::{Parameters, Pendulum, State};
-use firmware::job::{Arithmetic, Formulation, Job, Model, Request};
+use firmware::job::{Arithmetic, Formulation, Job, Request, Row};
 use firmware::protocol::{Frame, Sample};
 
 use super::Outcome;
@@ -9,9 +9,7 @@ use crate::emulator::qemu::{Machine, QemuError, Settings};
 
 /// Equal rods let go at 0.5 rad, in compensated `f32`.
 pub const PHYSICS: Request = Request {
-    arithmetic: Arithmetic::F32Compensated,
-    model: Model::General,
-    form: Formulation::Direction,
+    row: Row::rk4(Arithmetic::F32Compensated, Formulation::Direction),
     parameters: Parameters { m1: 1.0, m2: 1.0, l1: 1.0, l2: 1.0, g: 9.81 },
     angles: [0.5, 0.5],
     velocities: [0.0, 0.0],
@@ -26,7 +24,7 @@ const GREATEST_ENERGY_ERROR: (f64, f64) = (1e-6, 1e-11);
 /// Computes `minutes` of the motion on the board, a sample each minute; `alive` hears of each.
 pub fn physics(settings: &Settings, minutes: u32, mut alive: impl FnMut()) -> Result<Outcome, QemuError> {
     let request = Request { samples: minutes, ..PHYSICS };
-    let mut host = Job::new(&request).expect("a motion that the kernel computes");
+    let mut host: Job = Job::new(&request).expect("a motion that the kernel computes");
     let mut machine = Machine::start(settings)?;
     let mut outcome = Outcome::default();
     outcome.frame(&machine.serial.next::<Frame>().ok_or_else(|| machine.silence())?);

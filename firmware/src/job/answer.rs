@@ -1,0 +1,126 @@
+//! A request being answered, and the error that refuses one.
+
+use core::fmt;
+
+use double_pendulum::form::Winding;
+use double_pendulum::{Error, Pendulum, State};
+
+use super::{OnBoards, Reading, Request, Run};
+use crate::protocol::Field;
+
+/// Why a request cannot be computed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum JobError {
+    /// No row of the table goes together with this field and those before it.
+    NoSuchRow(Field),
+    /// The kernel refuses a number.
+    Refused(Error),
+}
+
+impl fmt::Display for JobError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            JobError::NoSuchRow(field) => write!(f, "{}: there is none such with the rest", field.name()),
+            JobError::Refused(error) => write!(f, "{error}"),
+        }
+    }
+}
+
+impl core::error::Error for JobError {}
+
+impl From<Error> for JobError {
+    fn from(error: Error) -> Self {
+        JobError::Refused(error)
+    }
+}
+
+impl From<JobError> for Field {
+    fn from(error: JobError) -> Self {
+        match error {
+            JobError::NoSuchRow(field) => field,
+            JobError::Refused(error) => error.into(),
+        }
+    }
+}
+
+/// A request being answered: computes the samples one after the other, a bounded amount of work at a time. It counts the
+/// whole turns of a motion that does not.
+#[derive(Clone, Copy, Debug)]
+pub struct Job<R = OnBoards> {
+    run: R,
+    /// As the arithmetic holds it.
+    pendulum: Pendulum<f64>,
+    windings: [Winding<f64>; 2],
+    stride: u32,
+    /// Samples still to come, the one at the start included.
+    left: u32,
+    /// Steps until the next of them.
+    steps: u32,
+}
+
+impl<R: Run> Job<R> {
+    /// Refuses what does not go together, and parameters, angles, velocities and step sizes that the kernel refuses.
+    pub fn new(request: &Request) -> Result<Self, JobError> {
+        let Request { row, angles, stride, samples, .. } = *request;
+        let run = R::start(request)?;
+        let parameters = request.parameters;
+        let parameters = if row.arithmetic.is_single() { parameters.cast::<f32>().cast() } else { parameters };
+        let pendulum = Pendulum::new(parameters)?;
+        let windings = angles.map(Winding::new);
+        Ok(Self { run, pendulum, windings, stride, left: samples.saturating_add(1), steps: 0 })
+    }
+
+    /// Whether every sample has been given.
+    pub fn is_finished(&self) -> bool {
+        self.left == 0
+    }
+
+    /// Computes at most one step; the reading, when a sample is due.
+    ///
+    /// Ends with [`Error::Diverged`] instead of a reading that is not finite: every one given before it is.
+    pub fn advance(&mut self) -> Result<Option<Reading>, Error> {
+        if self.is_finished() {
+            return Ok(None);
+        }
+        if self.steps > 0 {
+            self.step();
+        }
+        if self.steps > 0 {
+            return Ok(None);
+        }
+        self.left -= 1;
+        self.steps = self.stride;
+        self.reading().finite().map(Some).inspect_err(|_| self.left = 0)
+    }
+
+    fn step(&mut self) {
+        self.run.advance(1);
+        self.steps -= 1;
+        if let Some(directions) = self.run.directions() {
+            self.windings.iter_mut().zip(directions).for_each(|(winding, direction)| winding.observe(direction));
+        }
+    }
+
+    fn reading(&self) -> Reading {
+        let mut state = self.run.state();
+        if self.run.directions().is_some() {
+            let [winding1, winding2] = &self.windings;
+            state = State { a1: winding1.unwrap(state.a1), a2: winding2.unwrap(state.a2), ..state };
+        }
+        Reading::new(&self.pendulum, state)
+    }
+}
+
+/// Gives every reading of `request` to `each`, the one at the start first.
+pub(super) fn readings<R: Run, E: From<JobError>>(
+    request: &Request,
+    mut each: impl FnMut(&Reading) -> Result<(), E>,
+) -> Result<(), E> {
+    let mut job = Job::<R>::new(request)?;
+    while !job.is_finished() {
+        if let Some(reading) = job.advance().map_err(JobError::from)? {
+            each(&reading)?;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,125 @@
+//! The table of arithmetics: one row for each arithmetic, model, form, method and order that go together, and the type that
+//! computes it. A new one is a row here and a type that [`Run`]s.
+//!
+//! The first block is what every board's application computes on request. The second is there to be compared with: it is
+//! computed on the host and counted on the chips by the `measure` program, and takes no flash of an application.
+
+use double_pendulum::form::{Compensated, Direction, DirectionForm, DirectionForm8, Divided, Plain};
+use double_pendulum::trig::{Libm, Micromath};
+use double_pendulum::{Pendulum, State};
+
+use super::canonical::{Canonical, Equal, Order8};
+use super::formed::{Angles, Directions};
+use super::linear::{Drawn, Linear};
+use super::textbook::Textbook;
+use super::{Arithmetic, Formulation, JobError, Method, Model, Reading, Request, Row, Run, Wanted, answer, counted};
+
+macro_rules! row {
+    ($arithmetic:ident $model:ident $form:ident $method:ident $order:literal) => {
+        Row {
+            arithmetic: Arithmetic::$arithmetic,
+            model: Model::$model,
+            form: Formulation::$form,
+            method: Method::$method,
+            order: $order,
+        }
+    };
+}
+
+macro_rules! table {
+    (
+        on_boards { $($name:ident: ($($key:tt)*) => $run:ty;)* }
+        elsewhere { $(($($other_key:tt)*) => $other:ty;)* }
+    ) => {
+        /// The rows that every board's application computes, the default first.
+        pub const ON_BOARDS: &[Row] = &[$(row!($($key)*)),*];
+
+        /// Every row, those first.
+        pub const ROWS: &[Row] = &[$(row!($($key)*),)* $(row!($($other_key)*)),*];
+
+        /// A motion by any row of the first block.
+        #[derive(Clone, Copy, Debug)]
+        pub enum OnBoards { $(#[doc = concat!("`", stringify!($($key)*), "`")] $name($run),)* }
+
+        impl Run for OnBoards {
+            fn start(request: &Request) -> Result<Self, JobError> {
+                match request.row {
+                    $(row!($($key)*) => <$run>::start(request).map(Self::$name),)*
+                    row => Err(no_such(row, ON_BOARDS)),
+                }
+            }
+
+            fn advance(&mut self, steps: u32) {
+                match self { $(Self::$name(run) => run.advance(steps),)* }
+            }
+
+            fn state(&self) -> State<f64> {
+                match self { $(Self::$name(run) => run.state(),)* }
+            }
+
+            fn directions(&self) -> Option<[Direction<f64>; 2]> {
+                match self { $(Self::$name(run) => run.directions(),)* }
+            }
+
+            fn bits(&self, feed: impl FnMut(u64)) {
+                match self { $(Self::$name(run) => run.bits(feed),)* }
+            }
+        }
+
+        impl Request {
+            /// Gives every reading to `each`, the one at the start first, until it refuses one.
+            pub fn readings<E: From<JobError>>(&self, each: impl FnMut(&Reading) -> Result<(), E>) -> Result<(), E> {
+                match self.row {
+                    $(row!($($key)*) => answer::readings::<$run, E>(self, each),)*
+                    $(row!($($other_key)*) => answer::readings::<$other, E>(self, each),)*
+                    row => Err(no_such(row, ROWS).into()),
+                }
+            }
+
+            /// CRC-32 of all that is carried at every sample but the one at the start, and of the last state: two runs
+            /// are the same to the bit if theirs are equal.
+            pub fn crc(&self) -> Result<u32, JobError> {
+                match self.row {
+                    $(row!($($key)*) => counted::crc::<$run>(self),)*
+                    $(row!($($other_key)*) => counted::crc::<$other>(self),)*
+                    row => Err(no_such(row, ROWS)),
+                }
+            }
+        }
+    };
+}
+
+#[rustfmt::skip]
+table! {
+    on_boards {
+        F64:              (F64            General   Canonical Rk4 4) => Canonical<f64>;
+        F32:              (F32            General   Canonical Rk4 4) => Canonical<f32>;
+        F64EqualRods:     (F64            EqualRods Canonical Rk4 4) => Equal<f64>;
+        F32EqualRods:     (F32            EqualRods Canonical Rk4 4) => Equal<f32>;
+        F64Linear:        (F64            Linear    Canonical ClosedForm 0) => Linear<f64>;
+        F32Linear:        (F32            Linear    Canonical ClosedForm 0) => Linear<f32>;
+        F64Angle:         (F64            General   Angle     Rk4 4) => Angles<f64, Plain>;
+        F32Angle:         (F32            General   Angle     Rk4 4) => Angles<f32, Plain>;
+        CompensatedAngle: (F32Compensated General   Angle     Rk4 4) => Angles<f32, Compensated<f32>>;
+        F64Direction:     (F64            General   Direction Rk4 4) => Directions<f64, DirectionForm<f64, Plain>>;
+        F32Direction:     (F32            General   Direction Rk4 4) => Directions<f32, DirectionForm<f32, Plain>>;
+        Compensated:      (F32Compensated General   Direction Rk4 4) => Directions<f32, DirectionForm<f32>>;
+        CompensatedRk8:   (F64Compensated General   Direction Rk8 8) => Directions<f64, DirectionForm8<f64>>;
+    }
+    elsewhere {
+        (F32Libm        General  Canonical        Rk4 4) => Canonical<f32, Pendulum<f32, Libm>>;
+        (F64Libm        General  Canonical        Rk4 4) => Canonical<f64, Pendulum<f64, Libm>>;
+        (F32Micromath   General  Canonical        Rk4 4) => Canonical<f32, Pendulum<f32, Micromath>>;
+        (F32Libm        Textbook Canonical        Rk4 4) => Canonical<f32, Textbook<f32>>;
+        (F64Libm        Textbook Canonical        Rk4 4) => Canonical<f64, Textbook<f64>>;
+        (F64            General  Canonical        Rk8 8) => Canonical<f64, Order8<f64>>;
+        (F64Compensated General  Angle            Rk4 4) => Angles<f64, Compensated<f64>>;
+        (F32            General  DirectionDivided Rk4 4) => Directions<f32, DirectionForm<f32, Plain, Divided>>;
+        (F32            Linear   Direction        ClosedForm 0) => Drawn;
+    }
+}
+
+/// The refusal of a row that is not among `rows`.
+fn no_such(row: Row, rows: &[Row]) -> JobError {
+    JobError::NoSuchRow(Wanted::from(row).first_of(rows).err().unwrap_or(crate::protocol::Field::Arithmetic))
+}
