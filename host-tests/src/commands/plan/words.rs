@@ -2,6 +2,7 @@
 
 use double_pendulum::Pendulum;
 use double_pendulum::plan::{Limit, Method, Plan, Problem};
+use firmware::config::HALF_PIXEL;
 
 use super::target::Chip;
 
@@ -28,7 +29,7 @@ fn planned(scene: &Problem, plan: &Plan, chip: &Chip, frame: f32) -> Vec<String>
             "horizon  right to half a pixel about the exact motion until {:.2} s of {} s",
             plan.horizon, scene.duration
         ),
-        format!("error    at most {:.0} % of that expected until then", (100.0 * plan.error).ceil()),
+        format!("error    at most {:.3} pixels expected until then", HALF_PIXEL * plan.error),
         format!("cost     {:.0} cycles a frame, {share:.2} % of a {} (estimate)", plan.cost, chip.title),
         format!("search   {:.2} s of the chip's time to look ahead", plan.spent / chip.clock),
         format!("why      {}", method(plan)),
@@ -64,9 +65,7 @@ fn limit(plan: &Plan, frame: f32) -> String {
         Limit::End if plan.steps > 1 => {
             String::from("with half the steps errors would show, or the fastest motion could be missed")
         }
-        Limit::End => {
-            String::from("of the cheapest steps one to a frame is enough; nothing cheaper is right to the end")
-        }
+        Limit::End => String::from("nothing cheaper that was tried is right to the end"),
         Limit::Growth => String::from("errors grow until they show, in f64 as well; nothing here goes farther"),
         Limit::Budget => {
             format!("errors grow until they show; what goes farther costs more than the {frame:.0} cycles allowed")
@@ -89,13 +88,11 @@ fn forbidden(limit: Limit, frame: f32) -> String {
 fn energy(scene: &Problem) -> Option<String> {
     let pendulum = Pendulum::new(scene.pendulum).ok()?;
     let state = pendulum.to_state(&scene.start);
-    let turns = if pendulum.cannot_turn_over(&state) { "no rod can turn over" } else { "a rod may turn over" };
     // An admissible step is a quarter of the time in which the fastest motion that the energy allows turns a radian.
     let radian = 4.0 * pendulum.admissible_step(&state).ok()?;
-    let fastest = if radian.is_finite() {
-        format!("no motion takes less than 1/{:.0} s for a radian", (1.0 / radian).ceil())
-    } else {
-        String::from("nothing moves")
-    };
-    Some(format!("by its energy {turns}, and {fastest}"))
+    if !radian.is_finite() {
+        return Some(String::from("without energy nothing moves"));
+    }
+    let turns = if pendulum.cannot_turn_over(&state) { "no rod can turn over" } else { "a rod may turn over" };
+    Some(format!("by its energy {turns}, and no motion takes less than 1/{:.0} s for a radian", (1.0 / radian).ceil()))
 }
