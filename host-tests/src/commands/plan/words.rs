@@ -29,7 +29,7 @@ fn planned(scene: &Problem, plan: &Plan, chip: &Chip, frame: f32) -> Vec<String>
             "horizon  right to half a pixel about the exact motion until {:.2} s of {} s",
             plan.horizon, scene.duration
         ),
-        format!("error    at most {:.3} pixels expected until then", HALF_PIXEL * plan.error),
+        format!("error    at most {:.3} pixels expected until then", (1e3 * HALF_PIXEL * plan.error).ceil() / 1e3),
         format!("cost     {:.0} cycles a frame, {share:.2} % of a {} (estimate)", plan.cost, chip.title),
         format!("search   {:.2} s of the chip's time to look ahead", plan.spent / chip.clock),
         format!("why      {}", method(plan)),
