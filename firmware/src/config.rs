@@ -46,7 +46,7 @@ pub const FRAME_SHARE: f32 = 0.5;
 /// Cycles of a step on a Cortex-M3, which has no floating-point unit: the estimates of `cargo count` for steps of
 /// 1/256 s, masses and lengths alike (test `count` holds them to within a tenth).
 pub const CORTEX_M3: Costs = Costs {
-    closed_form: 5_087.0,
+    closed_form: 5_082.0,
     direction_plain: 8_915.0,
     direction: 10_210.0,
     angle: 15_170.0,
@@ -55,7 +55,7 @@ pub const CORTEX_M3: Costs = Costs {
 /// The same on a Cortex-M4F, whose floating-point unit knows `f32` only. A plain step costs less than the closed form's two
 /// sincos.
 pub const CORTEX_M4F: Costs =
-    Costs { closed_form: 267.0, direction_plain: 159.4, direction: 208.0, angle: 360.3, direction8: 129_650.0 };
+    Costs { closed_form: 188.0, direction_plain: 159.4, direction: 208.0, angle: 360.3, direction8: 129_650.0 };
 /// What steps cost on this processor: with a floating-point unit or without.
 pub const COSTS: Costs = if cfg!(target_abi = "eabihf") { CORTEX_M4F } else { CORTEX_M3 };
 /// Processor cycles in a tick where no board says otherwise: 50 MHz.

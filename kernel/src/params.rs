@@ -44,6 +44,7 @@ impl<R: Real> Parameters<R> {
     }
 
     /// Refuses what no formula could use: NaN, infinite, zero or negative masses and lengths, negative gravity.
+    #[inline(never)] // cold: once in flash, not once for each caller
     pub(crate) fn check(&self) -> Result<(), Error> {
         for (parameter, value) in self.named() {
             if !value.is_finite() {
@@ -66,6 +67,7 @@ impl<R: Real> Parameters<R> {
     }
 
     /// The error for parameters whose products overflow or underflow: it names the value farthest from 1.
+    #[inline(never)] // cold: once in flash, not once for each caller
     pub(crate) fn out_of_range(&self) -> Error {
         let distance = |value: f64| if value < 1.0 { 1.0 / value } else { value };
         let [first, rest @ ..] = self.named();

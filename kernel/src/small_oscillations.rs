@@ -104,15 +104,12 @@ impl<R: Real, T: SinCos<R>> SmallOscillations<R, T> {
     /// The phase w t is rounded once, so the error grows as one rounding of w t: with `f32` 1e-3 rad at w t = 1e4.
     #[must_use]
     pub fn at(&self, t: R) -> Motion<R> {
-        let (a_fast, w_fast) = evaluate::<R, T>(&self.modes.fast, &self.fast, t);
-        let (a_slow, w_slow) = evaluate::<R, T>(&self.modes.slow, &self.slow, t);
-        let (r1, r2) = (self.modes.fast.shape, self.modes.slow.shape);
-        Motion {
-            a1: a_fast + a_slow,
-            a2: r1 * a_fast + r2 * a_slow,
-            w1: w_fast + w_slow,
-            w2: r1 * w_fast + r2 * w_slow,
-        }
+        let phases = self.phases(t);
+        let [a1, a2] = self.angles(phases);
+        let (Modes { fast, slow, .. }, [(sin_fast, cos_fast), (sin_slow, cos_slow)]) = (&self.modes, phases);
+        let w_fast = fast.frequency * (self.fast.sine * cos_fast - self.fast.cosine * sin_fast);
+        let w_slow = slow.frequency * (self.slow.sine * cos_slow - self.slow.cosine * sin_slow);
+        Motion { a1, a2, w1: w_fast + w_slow, w2: fast.shape * w_fast + slow.shape * w_slow }
     }
 
     /// (sin, cos) of both angles a time `t` (s) after the start: all that a drawing needs.
@@ -121,17 +118,24 @@ impl<R: Real, T: SinCos<R>> SmallOscillations<R, T> {
     /// the linear motion itself. Two sincos and no division.
     #[must_use]
     pub fn directions(&self, t: R) -> [Direction<R>; 2] {
-        let Motion { a1, a2, .. } = self.at(t);
-        [a1, a2].map(|a| {
+        self.angles(self.phases(t)).map(|a| {
             let square = a * a;
             let [sixth, twelfth] = [R::from_f64(1.0 / 6.0), R::from_f64(1.0 / 12.0)];
             [a - a * square * sixth, R::ONE - R::HALF * square * (R::ONE - square * twelfth)]
         })
     }
-}
 
-/// C cos wt + S sin wt and its time derivative.
-fn evaluate<R: Real, T: SinCos<R>>(mode: &Mode<R>, part: &Oscillation<R>, t: R) -> (R, R) {
-    let (sin, cos) = T::sin_cos(mode.frequency * t);
-    (part.cosine * cos + part.sine * sin, mode.frequency * (part.sine * cos - part.cosine * sin))
+    /// (sin wt, cos wt) of the fast and the slow mode.
+    #[inline]
+    fn phases(&self, t: R) -> [(R, R); 2] {
+        [self.modes.fast, self.modes.slow].map(|mode| T::sin_cos(mode.frequency * t))
+    }
+
+    /// a1 and a2 at these phases.
+    #[inline]
+    fn angles(&self, [(sin_fast, cos_fast), (sin_slow, cos_slow)]: [(R, R); 2]) -> [R; 2] {
+        let a_fast = self.fast.cosine * cos_fast + self.fast.sine * sin_fast;
+        let a_slow = self.slow.cosine * cos_slow + self.slow.sine * sin_slow;
+        [a_fast + a_slow, self.modes.fast.shape * a_fast + self.modes.slow.shape * a_slow]
+    }
 }

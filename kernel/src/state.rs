@@ -41,6 +41,7 @@ impl<R: Real> State<R> {
     }
 
     /// Refuses NaN and infinite values.
+    #[inline(never)] // cold: once in flash, not once for each caller
     pub fn check(&self) -> Result<(), Error> {
         let &Self { a1, a2, p1, p2 } = self;
         check_finite([(Parameter::A1, a1), (Parameter::A2, a2), (Parameter::P1, p1), (Parameter::P2, p2)])
@@ -122,6 +123,7 @@ impl<R: Real> Motion<R> {
     }
 
     /// Refuses NaN and infinite values.
+    #[inline(never)] // cold: once in flash, not once for each caller
     pub fn check(&self) -> Result<(), Error> {
         let &Self { a1, a2, w1, w2 } = self;
         check_finite([(Parameter::A1, a1), (Parameter::A2, a2), (Parameter::W1, w1), (Parameter::W2, w2)])

@@ -32,6 +32,7 @@ pub(crate) struct AngleAccumulator<R, S> {
 impl<R: Real, S: Sum<R>> AngleAccumulator<R, S> {
     /// The angle `value`, rad, at most [`LARGEST`]; its directions come with the given `length`.
     #[must_use]
+    #[inline(never)] // seldom: once in flash, not once for each caller
     pub fn new(value: f64, length: R) -> Self {
         let mark = libm::rint(value / SPACING);
         let [high, middle, low] = f64::PI_OVER_TWO.map(|part| mark * (part / f64::from(MARKS)));

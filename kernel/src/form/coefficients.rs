@@ -184,6 +184,7 @@ fn factor_near<R: Real>(value: f64, factor: f64) -> R {
 
 impl Scale {
     /// (P1, P2) of `state`.
+    #[inline(never)] // cold: once in flash, not once for each caller
     pub fn momenta<R: Real>(&self, state: &State<R>) -> Result<[f64; 2], Error> {
         let scaled = [state.p1, state.p2].map(|p| p.to_f64() * self.momentum);
         for (i, parameter) in [Parameter::P1, Parameter::P2].into_iter().enumerate() {
