@@ -43,6 +43,9 @@ impl<'a> Player<'a> {
 
     /// Does what is asked; if that cannot be, nothing is changed and the error names what is wrong. Whether the scene
     /// was started again.
+    ///
+    /// Never inlined: what scenes need to start would be on the stack of every frame.
+    #[inline(never)]
     pub fn execute(&mut self, command: Command) -> Result<bool, Field> {
         match command {
             Command::Heavier => return self.start(self.name, self.settings.heavier()),

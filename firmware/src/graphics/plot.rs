@@ -43,24 +43,29 @@ pub const AXIS_GREY: u8 = 8;
 
 /// Draws a line across columns `from` to `to` (exclusive) in row `y`, dotted.
 pub fn axis(canvas: &mut Canvas, from: i32, to: i32, y: i32) {
-    (from..to).step_by(3).for_each(|x| canvas.update(x, y, |old| old.max(AXIS_GREY)));
+    (from..to).step_by(3).for_each(|x| axis_dot(canvas, x, y));
 }
 
 /// Draws a line down rows `from` to `to` (exclusive) in column `x`, dotted.
 pub fn upright_axis(canvas: &mut Canvas, x: i32, from: i32, to: i32) {
-    (from..to).step_by(3).for_each(|y| canvas.update(x, y, |old| old.max(AXIS_GREY)));
+    (from..to).step_by(3).for_each(|y| axis_dot(canvas, x, y));
 }
 
 /// Draws a bar that tells a length, upright or level, with a foot at either end.
 #[inline(never)]
 pub fn bar(canvas: &mut Canvas, (x1, y1): (i32, i32), (x2, y2): (i32, i32)) {
-    let mut dot = |x: i32, y: i32| canvas.update(x, y, |old| old.max(AXIS_GREY));
-    (x1..=x2).for_each(|x| (y1..=y2).for_each(|y| dot(x, y)));
+    (x1..=x2).for_each(|x| (y1..=y2).for_each(|y| axis_dot(canvas, x, y)));
     let (across, down) = if x1 == x2 { (1, 0) } else { (0, 1) };
     for (x, y) in [(x1, y1), (x2, y2)] {
-        dot(x - across, y - down);
-        dot(x + across, y + down);
+        axis_dot(canvas, x - across, y - down);
+        axis_dot(canvas, x + across, y + down);
     }
+}
+
+/// Lightens a pixel of an axis or a bar. Once in flash, not once for each use.
+#[inline(never)]
+fn axis_dot(canvas: &mut Canvas, x: i32, y: i32) {
+    canvas.update(x, y, |old| old.max(AXIS_GREY));
 }
 
 /// The least step of a scale that is no less than `least`: 1, 2 or 5 times a power of ten.

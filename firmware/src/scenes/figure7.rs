@@ -1,5 +1,6 @@
 //! Figure 7: the page's chaotic motion by the right equations and by the ones it prints, side by side.
 
+use double_pendulum::trig::{Own, SinCos};
 use double_pendulum::{Error, Parameters, State, rk4};
 
 use crate::config::{DT, PAGE_GRAVITY, STEPS_PER_TICK};
@@ -128,8 +129,8 @@ impl Misprinted {
     fn new(parameters: &Parameters<f32>, start: &State<f32>) -> Self {
         let &Parameters { m1, m2, l1: l, g, .. } = parameters;
         let (mu, inertia) = (m2 / m1, m1 * l * l);
-        let (sin1, cos1) = libm::sincosf(start.a1);
-        let (sin_d, cos_d) = libm::sincosf(start.a1 - start.a2);
+        let (sin1, cos1) = Own::sin_cos(start.a1);
+        let (sin_d, cos_d) = Own::sin_cos(start.a1 - start.a2);
         Self {
             masses: [mu, 1.0 + mu],
             gravity: [(1.0 + mu) * g / l, mu * g / l],

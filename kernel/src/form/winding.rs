@@ -21,7 +21,8 @@ impl<R: Real> Winding<R> {
         let angle = start.to_f64();
         let turns = libm::rint(angle / core::f64::consts::TAU);
         let rest = angle - turns * core::f64::consts::TAU;
-        Self { turns: turns as i32, last: [R::from_f64(libm::sin(rest)), R::from_f64(libm::cos(rest))] }
+        let (sin, cos) = rest.own_sin_cos();
+        Self { turns: turns as i32, last: [R::from_f64(sin), R::from_f64(cos)] }
     }
 
     /// That has counted `turns` and was last shown the direction `last`.

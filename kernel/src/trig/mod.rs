@@ -28,7 +28,7 @@ pub trait SinCos<R: Real>: Sealed + Copy + core::fmt::Debug + PartialEq + 'stati
 ///
 /// - `f32`: absolute error at most 9e-8 for abs x <= pi, at most 1e-7 for abs x <= 1e4.
 /// - `f64`: at most 2 ulp for abs x <= 1.6e6.
-/// - beyond 12,867 (`f32`) or 1,647,098 (`f64`) the `libm` crate answers: correct, slow.
+/// - beyond 12,867 an `f32` is taken in double precision, beyond 1,647,098 the `libm` crate answers: correct, slow.
 /// - an infinite argument or a NaN gives NaN for both.
 ///
 /// Asserted by the repository's tests; for all floats of [-pi, pi] on demand.

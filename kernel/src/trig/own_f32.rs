@@ -97,9 +97,10 @@ impl Reach {
     }
 }
 
-/// Beyond the range of the reduction; also NaN.
+/// Beyond the range of the reduction, by that of double precision; also NaN.
 #[cold]
 #[inline(never)]
 fn huge(x: f32) -> (f32, f32) {
-    libm::sincosf(x)
+    let (s, c) = super::own_f64::sin_cos(x.into());
+    (s as f32, c as f32)
 }
