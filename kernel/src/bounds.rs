@@ -35,7 +35,7 @@ pub struct Bounds<R> {
 }
 
 impl<R: Real> Bounds<R> {
-    fn new(parameters: &Parameters<R>, energy_above_rest: R) -> Self {
+    pub(crate) fn new(parameters: &Parameters<R>, energy_above_rest: R) -> Self {
         let &Parameters { m1, m2, l1, l2, .. } = parameters;
         let twice = R::TWO * energy_above_rest;
         let v1 = (twice / m1).sqrt();

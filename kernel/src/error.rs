@@ -36,6 +36,8 @@ pub enum Parameter {
     P2,
     /// Step of time, s.
     Dt,
+    /// Order of a method.
+    Order,
     /// Ratio of the normal frequencies, fast over slow.
     FrequencyRatio,
     /// The energy, J.
@@ -58,6 +60,7 @@ impl fmt::Display for Parameter {
             Parameter::P1 => "p1",
             Parameter::P2 => "p2",
             Parameter::Dt => "dt",
+            Parameter::Order => "order",
             Parameter::FrequencyRatio => "frequency ratio",
             Parameter::Energy => "energy",
         })

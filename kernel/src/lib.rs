@@ -60,6 +60,8 @@
 mod bounds;
 mod equal_rods;
 mod error;
+pub mod extrapolation;
+mod fixed;
 pub mod form;
 mod geometry;
 mod hamiltonian;
@@ -69,6 +71,7 @@ mod modes;
 mod params;
 pub mod plan;
 mod real;
+mod ring;
 pub mod rk4;
 pub mod rk8;
 mod sealed;
@@ -84,6 +87,7 @@ pub use hamiltonian::Pendulum;
 pub use modes::{Mode, Modes, periodic_mass_ratio};
 pub use params::Parameters;
 pub use real::Real;
+pub use ring::Ring;
 pub use small_oscillations::{Oscillation, SmallOscillations};
 pub use state::{Motion, State};
 

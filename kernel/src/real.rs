@@ -3,20 +3,16 @@
 use core::fmt::{Debug, Display};
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
+use crate::ring::Ring;
+use crate::sealed::Sealed;
 use crate::trig;
-
-mod sealed {
-    pub trait Sealed {}
-    impl Sealed for f32 {}
-    impl Sealed for f64 {}
-}
 
 /// `f32` or `f64`, and no other type: the few operations the formulas need, one row each.
 ///
 /// Every operation is either IEEE 754 arithmetic or a pure-Rust routine built on it, so that a result is the same
 /// to the bit on every machine.
 pub trait Real:
-    sealed::Sealed
+    Ring<Slope = Self, Torque = Self>
     + Copy
     + Default
     + PartialOrd
@@ -58,9 +54,6 @@ pub trait Real:
     /// The absolute value.
     #[must_use]
     fn abs(self) -> Self;
-    /// Twice the number: an addition, or a step of the exponent where an addition would be a call of 100 cycles and more.
-    #[doc(hidden)]
-    fn twice(self) -> Self;
     /// The square root, correctly rounded; NaN below 0.
     #[must_use]
     fn sqrt(self) -> Self;
@@ -132,6 +125,33 @@ twice_by_bits!(twice_double, f64);
 
 macro_rules! real {
     ($float:ident, $twice:ident in software if $software:meta, $rint:path, $sqrt:path, $atan2:path, $sin_cos:path, $own:ident) => {
+        impl Sealed for $float {}
+
+        impl Ring for $float {
+            type Slope = Self;
+            type Torque = Self;
+            #[inline(always)]
+            fn constant(value: f64) -> Self {
+                value as $float
+            }
+            #[inline(always)]
+            fn twice(self) -> Self {
+                if cfg!($software) { $twice(self) } else { self + self }
+            }
+            #[inline(always)]
+            fn half(self) -> Self {
+                0.5 * self
+            }
+            #[inline(always)]
+            fn slope(self, factor: Self) -> Self {
+                self * factor
+            }
+            #[inline(always)]
+            fn torque(self, factor: Self) -> Self {
+                self * factor
+            }
+        }
+
         impl Real for $float {
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
@@ -151,10 +171,6 @@ macro_rules! real {
             #[inline(always)]
             fn abs(self) -> Self {
                 $float::abs(self)
-            }
-            #[inline(always)]
-            fn twice(self) -> Self {
-                if cfg!($software) { $twice(self) } else { self + self }
             }
             // Seldom wanted, and in software a kilobyte.
             #[inline(never)]

@@ -4,7 +4,8 @@ use core::marker::PhantomData;
 
 use super::angle_accumulator::{AngleAccumulator, LARGEST, angle};
 use super::checkpoint::{Check, RestoreError, Words};
-use super::coefficients::{Coefficients, Rates, Scale, Span, prepare};
+use super::coefficients::{Scale, Span, prepare};
+use super::equations::{Coefficients, Rates};
 use super::sum::{Compensated, Sum};
 use super::{Direction, Form, lower_direction};
 use crate::error::{Error, Parameter};
@@ -196,6 +197,6 @@ impl<R: Real, S: Sum<R>> AngleForm<R, S> {
 
 /// The rates of a1, D, P1 and P2.
 #[inline(always)]
-fn increments<R: Real>(Rates { angles: [u, v], momenta: [p1, p2] }: Rates<R>) -> [R; 4] {
+fn increments<R: Real>(Rates { angles: [u, v], momenta: [p1, p2], .. }: Rates<R>) -> [R; 4] {
     [u, u - v, p1, p2]
 }

@@ -1,86 +1,11 @@
-//! Hamilton's equations in the units of the step, and the way there and back.
+//! The constants of the equations in the units of the step, and the way there and back.
 
 use super::checkpoint::Check;
+use super::equations::{Coefficients, Rates};
 use crate::error::{Error, Parameter};
 use crate::params::Parameters;
 use crate::real::Real;
 use crate::state::State;
-
-/// The equations of motion with time counted in tau, a step or half of one ([`Span`]), and momenta scaled so
-/// that the fewest factors are left.
-///
-/// With nu = l1/l2, (S, C) = nu (sin D, cos D), P = tau p/(m2 l2^2), and the constants
-/// m = (m1/m2) nu^2, G2 = tau^2 g/l1, G1 = (m + nu^2) G2:
-///
-/// - r = 1/(m + S^2); u = a1' = (P1 - C P2) r; v = a2' = P2 - C u; F = u v S
-/// - P1' = -G1 sin a1 - F; P2' = -G2 nu sin a2 + F, where nu sin a2 = C sin a1 - S cos a1
-///
-/// Rods of any lengths cost what equal rods do, and no rate is multiplied by dt.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) struct Coefficients<R> {
-    /// nu.
-    pub norm: R,
-    /// m.
-    pub inertia: R,
-    /// G1 and G2.
-    gravity: [R; 2],
-}
-
-/// The time derivatives, in the units of the step.
-#[derive(Clone, Copy)]
-pub(crate) struct Rates<R> {
-    /// u and v.
-    pub angles: [R; 2],
-    /// P1' and P2'.
-    pub momenta: [R; 2],
-}
-
-impl<R: Real> Rates<R> {
-    /// Twice these.
-    #[must_use]
-    #[inline(always)]
-    pub fn doubled(self) -> Self {
-        Self { angles: self.angles.map(R::twice), momenta: self.momenta.map(R::twice) }
-    }
-}
-
-impl<R: Real> Coefficients<R> {
-    /// The rates where `upper` is (sin a1, cos a1), `elbow` is (S, C), `momenta` is (P1, P2), and `inverse` is r.
-    #[must_use]
-    #[inline(always)]
-    pub fn rates(&self, upper: [R; 2], elbow: [R; 2], momenta: [R; 2], inverse: R) -> Rates<R> {
-        let [p1, p2] = momenta;
-        self.rates_at(upper, elbow, p2, (p1 - elbow[1] * p2) * inverse)
-    }
-
-    /// The rates, r not being known.
-    #[must_use]
-    #[inline(always)]
-    pub fn rates_by_division(&self, upper: [R; 2], elbow: [R; 2], momenta: [R; 2]) -> Rates<R> {
-        let [p1, p2] = momenta;
-        self.rates_at(upper, elbow, p2, (p1 - elbow[1] * p2) / self.denominator(elbow[0]))
-    }
-
-    /// The rates where rod 1 turns at `u`.
-    #[inline(always)]
-    fn rates_at(&self, upper: [R; 2], elbow: [R; 2], p2: R, u: R) -> Rates<R> {
-        let [sin1, cos1] = upper;
-        let [s, c] = elbow;
-        let [gravity1, gravity2] = self.gravity;
-        let v = p2 - c * u;
-        let force = u * v * s;
-        Rates { angles: [u, v], momenta: [-(gravity1 * sin1) - force, force - gravity2 * (sin1 * c - cos1 * s)] }
-    }
-
-    /// m + S^2, whose inverse is r.
-    #[must_use]
-    #[inline(always)]
-    pub fn denominator(&self, s: R) -> R {
-        self.inertia + s * s
-    }
-}
 
 impl<R: Real> Coefficients<R> {
     /// Adds all of it to the check of a form.

@@ -3,7 +3,8 @@
 use core::marker::PhantomData;
 
 use super::checkpoint::{Check, RestoreError, Words};
-use super::coefficients::{Coefficients, Rates, Scale, Span, prepare, third};
+use super::coefficients::{Scale, Span, prepare, third};
+use super::equations::{Coefficients, Rates, Same, increments};
 use super::inverse::{Followed, Inverse};
 use super::sum::{Compensated, Sum};
 use super::{Direction, Form, lower_direction};
@@ -181,14 +182,6 @@ impl<R: Real, S: Sum<R>, I: Inverse<R>> DirectionForm<R, S, I> {
 
     #[inline(always)]
     pub(super) fn rates(&self, &[sin1, cos1, s, c, p1, p2]: &[R; 6], inverse: R) -> Rates<R> {
-        self.coefficients.rates([sin1, cos1], [s, c], [p1, p2], inverse)
+        self.coefficients.rates(&Same, [sin1, cos1], [s, c], [p1, p2], inverse)
     }
-}
-
-/// The rates of the six quantities.
-#[inline(always)]
-pub(super) fn increments<R: Real>(z: &[R; 6], Rates { angles: [u, v], momenta: [p1, p2] }: Rates<R>) -> [R; 6] {
-    let &[sin1, cos1, s, c, ..] = z;
-    let w = u - v;
-    [cos1 * u, -(sin1 * u), c * w, -(s * w), p1, p2]
 }

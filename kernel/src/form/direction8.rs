@@ -2,7 +2,8 @@
 
 use super::checkpoint::RestoreError;
 use super::coefficients::Span;
-use super::direction::{DirectionForm, DirectionState, increments};
+use super::direction::{DirectionForm, DirectionState};
+use super::equations::increments;
 use super::inverse::Divided;
 use super::sum::{Compensated, Sum};
 use super::{Direction, Form};

@@ -1,0 +1,70 @@
+//! Extrapolation: the orders it promises, and the direction form stepped by it.
+
+use double_pendulum::extrapolation::Extrapolation;
+use double_pendulum::form::{DirectionForm8, ExtrapolatedForm, Form};
+use double_pendulum::{Error, Parameter, Parameters, State};
+use host_tests::oracle::tolerances;
+use host_tests::oracle::trials::{Trial, largest_difference};
+
+/// A swing z'' = -z followed for 20 s.
+fn error(order: u32, steps: u32) -> Result<f64, Error> {
+    let method = Extrapolation::new(order)?;
+    let dt = 20.0 / f64::from(steps);
+    let [x, v] = (0..steps).fold([0.0, 1.0], |z, _| method.step(|&[x, v]: &[f64; 2]| [v, -x], &z, dt));
+    Ok((x - 20.0_f64.sin()).abs().max((v - 20.0_f64.cos()).abs()))
+}
+
+/// At the finest steps whose error is clearly above the roundings.
+#[test]
+fn the_order_is_the_one_asked_for() -> Result<(), Error> {
+    for order in [6, 8, 12, 16] {
+        let mut steps = 4;
+        while error(order, 3 * steps)? > tolerances::ORDER_MEASURABLE {
+            steps += 1 + steps / 8;
+        }
+        let [coarse, fine] = [error(order, 2 * steps)?, error(order, 3 * steps)?];
+        let measured = (coarse / fine).ln() / 1.5_f64.ln();
+        println!("order {order}: {measured:.2}, {steps} steps {coarse:.1e} {fine:.1e}");
+        assert!((measured - f64::from(order)).abs() <= 0.8, "order {measured} instead of {order}");
+    }
+    Ok(())
+}
+
+#[test]
+fn orders_that_there_are_not_are_refused() {
+    for order in [0, 1, 7, 18, u32::MAX] {
+        assert!(matches!(Extrapolation::<f64>::new(order), Err(Error::OutOfRange { parameter: Parameter::Order, .. })));
+    }
+}
+
+#[test]
+fn backwards_is_forwards_undone() -> Result<(), Error> {
+    let method = Extrapolation::new(12)?;
+    let spiral = |&[x, y]: &[f64; 2]| [y - 0.1 * x, -x];
+    let [x, y] = method.step(spiral, &method.step(spiral, &[1.0, 0.5], 0.1), -0.1);
+    assert!((x - 1.0).abs().max((y - 0.5).abs()) < 1e-14);
+    Ok(())
+}
+
+/// Fewer steps than order 8 takes for the same error: of order 12 a third, of order 16 a fifth.
+#[test]
+fn long_steps_are_as_good_as_short_ones_of_order_8() -> Result<(), Error> {
+    let trial = Trial::at_rest(1.0, 0.5, 0.5, 10.0);
+    let exact = trial.exact::<f64>()?;
+    let error = |states: Vec<State<f64>>| largest_difference(&states, &exact);
+    let order8 = error(trial.states::<f64, DirectionForm8<f64>>(1.0 / 32.0)?);
+    let order12 = error(trial.states::<f64, ExtrapolatedForm<12>>(1.0 / 11.2)?);
+    let order16 = error(trial.states::<f64, ExtrapolatedForm<16>>(1.0 / 6.4)?);
+    println!("{order8:.1e} {order12:.1e} {order16:.1e}");
+    assert!(order12 < order8 && order16 < order8, "{order8:e} {order12:e} {order16:e}");
+    Ok(())
+}
+
+#[test]
+fn a_checkpoint_goes_on_to_the_bit() -> Result<(), Error> {
+    let form = ExtrapolatedForm::<12>::new(&Parameters::equal_rods(1.0, 1.0, 9.81), 0.05)?;
+    let mut motion = form.start(&State::at_rest(2.0, 2.0))?;
+    form.advance(&mut motion, 10);
+    assert_eq!(form.restore(form.save(&motion).as_ref()), Ok(motion));
+    Ok(())
+}

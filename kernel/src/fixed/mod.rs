@@ -1,0 +1,23 @@
+//! Fixed point: numbers of 32 and 64 bits that hold one motion, in units that its energy chooses.
+
+mod q30;
+mod q60;
+mod scaling;
+
+pub(crate) use q30::{Q30, Slope, Torque};
+pub(crate) use q60::Q60;
+pub(crate) use scaling::{Scaling, Shifts, check_step};
+
+use crate::ring::Ring;
+
+/// What fixed point does where floating point has exponents.
+pub(crate) trait FixedPoint: Ring {
+    /// The number times 2^-`by`.
+    fn down(self, by: u32) -> Self;
+    /// The number times 2^`by`.
+    fn up(self, by: u32) -> Self;
+    /// The torque times 2^-`by`.
+    fn torque_down(torque: Self::Torque, by: u32) -> Self::Torque;
+    /// The product with `factor` times 2^`by`.
+    fn product_up(self, factor: Self, by: u32) -> Self;
+}

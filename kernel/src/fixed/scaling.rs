@@ -1,0 +1,166 @@
+//! The units in which every quantity of a motion is small and none is needlessly so.
+
+use super::FixedPoint;
+use crate::bounds::Bounds;
+use crate::error::{Error, Parameter};
+use crate::form::equations::Units;
+use crate::params::Parameters;
+
+/// The most a quantity may be shifted: masses and rods of a ratio beyond some 1000 are refused.
+const MOST: i32 = 12;
+
+/// Units for a pendulum's motion of some energy: constants and momenta as the equations
+/// ([`Coefficients`](crate::form::equations::Coefficients)) have them, but
+///
+/// - time in a unit T such that no rate that the energy allows ([`Bounds`]) exceeds some limit, nor any torque,
+/// - (S, C) over the power of two sigma that leaves nu/sigma in (1/2, 1], and u or v, whichever is smaller, as many times
+///   larger as makes both alike,
+/// - r in the power of two that makes it at most 1, and P1 in what leaves u = (P1 - C P2) r.
+///
+/// For equal rods and masses all shifts are 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Scaling {
+    /// T, s; negative where time runs backwards.
+    pub time: f64,
+    /// P1 and P2 to a kg m^2/s.
+    pub momenta: [f64; 2],
+    /// nu/sigma.
+    pub norm: f64,
+    /// m.
+    pub inertia: f64,
+    /// G1 and G2.
+    pub gravity: [f64; 2],
+    /// What the quantities' units differ by.
+    pub shifts: Shifts,
+}
+
+/// What the quantities' units differ by, as powers of two.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Shifts {
+    /// C P2 is so many times less as a part of P1.
+    momentum: u32,
+    /// r is so many times more than its number.
+    inverse: u32,
+    /// u is so many times less as a rate of a1, ...
+    upper: u32,
+    /// ... and v of a2.
+    lower: u32,
+}
+
+/// Refuses a step of `dt` s that no arithmetic takes: NaN, infinite, zero or subnormal.
+pub(crate) fn check_step(dt: f64) -> Result<(), Error> {
+    let (parameter, value) = (Parameter::Dt, dt);
+    if !dt.is_finite() {
+        Err(Error::NotFinite { parameter, value })
+    } else if !dt.is_normal() {
+        Err(Error::OutOfRange { parameter, value })
+    } else {
+        Ok(())
+    }
+}
+
+impl Scaling {
+    /// For a motion within `bounds`, no rate of which may exceed `rate` and no torque of gravity `torque` in these units:
+    /// `unit` chooses T and is told the longest, s.
+    pub fn new(
+        parameters: &Parameters<f64>,
+        bounds: &Bounds<f64>,
+        [rate, torque]: [f64; 2],
+        unit: impl FnOnce(f64) -> Result<f64, Error>,
+    ) -> Result<Self, Error> {
+        let &Parameters { m1, m2, l1, l2, g } = parameters;
+        let nu = l1 / l2;
+        let sigma = libm::ceil(libm::log2(nu)) as i32;
+        let norm = libm::scalbn(nu, -sigma);
+        let (upper, lower) = (sigma.max(0), (-sigma).max(0));
+        let ratio = m1 / m2 * norm * norm;
+        let parts = libm::floor(libm::log2(ratio)) as i32;
+        let (momentum, inverse) = (parts.max(0), (-parts).max(0));
+        if upper.max(lower).max(momentum).max(inverse) > MOST {
+            return Err(parameters.out_of_range());
+        }
+
+        let momentum2 = libm::scalbn(1.0 / (m2 * l2 * l2), lower);
+        let momentum1 = libm::scalbn(momentum2, -sigma - momentum);
+        let gravity2 = libm::scalbn(g / l1, upper);
+        let gravity1 = libm::scalbn(gravity2 * (m1 + m2) / m2 * norm * norm, -momentum);
+        let rates = [
+            bounds.elbow,
+            libm::scalbn(bounds.w1, upper),
+            libm::scalbn(bounds.w2, lower),
+            bounds.p1 * momentum1,
+            bounds.p2 * momentum2,
+        ];
+        let fastest = rates.into_iter().fold(0.0, f64::max);
+        let time = unit(libm::fmin(rate / fastest, libm::sqrt(torque / libm::fmax(gravity1, gravity2 * norm))))?;
+        Ok(Self {
+            time,
+            momenta: [momentum1 * time, momentum2 * time],
+            norm,
+            inertia: libm::scalbn(ratio, inverse - momentum),
+            gravity: [gravity1 * time * time, gravity2 * time * time],
+            shifts: Shifts {
+                momentum: momentum as u32,
+                inverse: inverse as u32,
+                upper: upper as u32,
+                lower: lower as u32,
+            },
+        })
+    }
+}
+
+impl Scaling {
+    /// m + S^2, by the powers of two that keep its inverse at most 1.
+    pub fn denominator(&self, s: f64) -> f64 {
+        self.inertia + libm::scalbn(s * s, self.shifts.inverse as i32 - self.shifts.momentum as i32)
+    }
+
+    /// Alters the unit of time a little, so that G1 and G2 are whole numbers of `steps`.
+    ///
+    /// G2 may be a little off, for that only alters the unit of time, which is known. The ratio of G1 to it may not: where
+    /// bob 1 is light, the fast oscillation goes by the small difference of G1 and nu^2 G2.
+    pub fn round_gravity(&mut self, steps: f64) {
+        let [gravity1, gravity2] = self.gravity;
+        if gravity2 == 0.0 {
+            return;
+        }
+        let lost = |whole: f64| {
+            let first = whole * (gravity1 / gravity2);
+            libm::fabs(first - libm::rint(first))
+        };
+        let centre = libm::rint(gravity2 * steps);
+        let candidates = (-128..=128).map(|i| centre + f64::from(i));
+        let whole = candidates.fold(centre, |best, next| if lost(next) < lost(best) { next } else { best });
+        let longer = libm::sqrt(whole / (gravity2 * steps));
+        self.time *= longer;
+        self.momenta = self.momenta.map(|unit| unit * longer);
+        self.gravity = [libm::rint(whole * (gravity1 / gravity2)) / steps, whole / steps];
+    }
+}
+
+impl<R: FixedPoint> Units<R> for Shifts {
+    #[inline(always)]
+    fn momentum(&self, product: R) -> R {
+        product.down(self.momentum)
+    }
+    #[inline(always)]
+    fn rate(&self, momentum: R, inverse: R) -> R {
+        momentum.product_up(inverse, self.inverse)
+    }
+    #[inline(always)]
+    fn turns(&self, [u, v]: [R; 2]) -> [R; 2] {
+        [u.down(self.upper), v.down(self.lower)]
+    }
+    #[inline(always)]
+    fn forces(&self, force: R::Torque) -> [R::Torque; 2] {
+        [R::torque_down(force, self.upper + self.momentum), R::torque_down(force, self.lower)]
+    }
+    #[inline(always)]
+    fn inverse(&self, product: R) -> R {
+        product.up(self.inverse).down(self.momentum)
+    }
+}

@@ -1,0 +1,184 @@
+//! Hamilton's equations, written once for every kind of number.
+
+use crate::real::Real;
+use crate::ring::Ring;
+
+/// The constants of the equations of motion, with momenta scaled to leave no needless factor.
+///
+/// With nu = l1/l2, (S, C) = nu (sin D, cos D), P = tau p/(m2 l2^2), and the constants
+/// m = (m1/m2) nu^2, G2 = tau^2 g/l1, G1 = (m + nu^2) G2:
+///
+/// - r = 1/(m + S^2); u = a1' = (P1 - C P2) r; v = a2' = P2 - C u; F = u v S
+/// - P1' = -G1 sin a1 - F; P2' = -G2 nu sin a2 + F, where nu sin a2 = C sin a1 - S cos a1
+///
+/// Rods of any lengths cost what equal rods do. Floating point counts time in tau, a step or half of one
+/// ([`Span`](super::coefficients::Span)), so that no rate is multiplied by dt.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Coefficients<R> {
+    /// nu.
+    pub norm: R,
+    /// m.
+    pub inertia: R,
+    /// G1 and G2.
+    pub gravity: [R; 2],
+}
+
+/// The time derivatives.
+#[derive(Clone, Copy)]
+pub(crate) struct Rates<R: Ring> {
+    /// u and v.
+    pub angles: [R; 2],
+    /// P1' and P2'.
+    pub momenta: [R::Torque; 2],
+    /// u and v in their own units.
+    pub own: [R; 2],
+}
+
+impl<R: Real> Rates<R> {
+    /// Twice these.
+    #[inline(always)]
+    pub fn doubled(self) -> Self {
+        Self { angles: self.angles.map(R::twice), momenta: self.momenta.map(R::twice), ..self }
+    }
+}
+
+/// The units the quantities are counted in, where they are not all the same: what of one makes what of another.
+///
+/// The default is no difference, at no cost.
+pub(crate) trait Units<R: Ring>: Copy {
+    /// C P2 as a part of P1.
+    #[inline(always)]
+    fn momentum(&self, product: R) -> R {
+        product
+    }
+    /// `momentum` r as u.
+    #[inline(always)]
+    fn rate(&self, momentum: R, inverse: R) -> R {
+        momentum * inverse
+    }
+    /// u by the time in which increments are counted.
+    #[inline(always)]
+    fn paced(&self, u: R) -> R {
+        u
+    }
+    /// u and v as rates of the angles.
+    #[inline(always)]
+    fn turns(&self, [u, v]: [R; 2]) -> [R; 2] {
+        [u, v]
+    }
+    /// F as parts of P1' and P2'.
+    #[inline(always)]
+    fn forces(&self, force: R::Torque) -> [R::Torque; 2] {
+        [force, force]
+    }
+    /// S^2 r beside m r; and S S' r, by which r falls.
+    #[inline(always)]
+    fn inverse(&self, product: R) -> R {
+        product
+    }
+}
+
+/// All quantities in one system of units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Same;
+
+impl<R: Ring> Units<R> for Same {}
+
+/// The `units` with time reversed; [`Coefficients::gravity`] is to be reversed with it.
+#[derive(Clone, Copy)]
+pub(crate) struct Reverse<U>(pub U);
+
+impl<R: Ring, U: Units<R>> Units<R> for Reverse<U> {
+    #[inline(always)]
+    fn momentum(&self, product: R) -> R {
+        self.0.momentum(product)
+    }
+    #[inline(always)]
+    fn rate(&self, momentum: R, inverse: R) -> R {
+        self.0.rate(momentum, inverse)
+    }
+    #[inline(always)]
+    fn paced(&self, u: R) -> R {
+        -u
+    }
+    #[inline(always)]
+    fn turns(&self, [u, v]: [R; 2]) -> [R; 2] {
+        self.0.turns([u, -v])
+    }
+    #[inline(always)]
+    fn forces(&self, force: R::Torque) -> [R::Torque; 2] {
+        self.0.forces(force)
+    }
+    #[inline(always)]
+    fn inverse(&self, product: R) -> R {
+        self.0.inverse(product)
+    }
+}
+
+impl<R: Ring> Coefficients<R> {
+    /// The rates where `upper` is (sin a1, cos a1), `elbow` is (S, C), `momenta` is (P1, P2), and `inverse` is r.
+    #[inline(always)]
+    pub fn rates(&self, units: &impl Units<R>, upper: [R; 2], elbow: [R; 2], [p1, p2]: [R; 2], inverse: R) -> Rates<R> {
+        let u = units.rate(p1 - units.momentum(elbow[1] * p2), inverse);
+        self.rates_at(units, upper, elbow, p2, u)
+    }
+
+    /// The rates where rod 1 turns at `u`.
+    #[inline(always)]
+    fn rates_at(&self, units: &impl Units<R>, [sin1, cos1]: [R; 2], [s, c]: [R; 2], p2: R, u: R) -> Rates<R> {
+        let [gravity1, gravity2] = self.gravity;
+        let v = p2 - c * u;
+        let own = [u, v];
+        let u = units.paced(u);
+        let [force1, force2] = units.forces((u * v).torque(s));
+        Rates {
+            angles: units.turns([u, v]),
+            momenta: [-gravity1.torque(sin1) - force1, force2 - gravity2.torque(sin1 * c - cos1 * s)],
+            own,
+        }
+    }
+}
+
+impl<R: Real> Coefficients<R> {
+    /// The rates, r not being known.
+    #[inline(always)]
+    pub fn rates_by_division(&self, upper: [R; 2], elbow: [R; 2], [p1, p2]: [R; 2]) -> Rates<R> {
+        let u = (p1 - elbow[1] * p2) / self.denominator(elbow[0]);
+        self.rates_at(&Same, upper, elbow, p2, u)
+    }
+
+    /// m + S^2, whose inverse is r.
+    #[inline(always)]
+    pub fn denominator(&self, s: R) -> R {
+        self.inertia + s * s
+    }
+}
+
+/// The rates of sin a1, cos a1, S, C where rods 1 and 2 turn at u and v.
+#[inline(always)]
+pub(crate) fn turning<R: Ring>(&[sin1, cos1, s, c, ..]: &[R; 6], [u, v]: [R; 2]) -> [R::Slope; 4] {
+    let w = u - v;
+    [cos1.slope(u), -sin1.slope(u), c.slope(w), -s.slope(w)]
+}
+
+/// The rates of sin a1, cos a1, S, C, P1, P2, where all are numbers of one kind.
+#[inline(always)]
+pub(crate) fn increments<R: Ring<Slope = R, Torque = R>>(z: &[R; 6], rates: Rates<R>) -> [R; 6] {
+    let [sin1, cos1, s, c] = turning(z, rates.angles);
+    let [p1, p2] = rates.momenta;
+    [sin1, cos1, s, c, p1, p2]
+}
+
+/// Those and the rate of r, r' = -2 S S' r^2: a method with many stages follows it as one more quantity.
+#[inline(always)]
+pub(crate) fn increments_with_inverse<R: Ring<Slope = R, Torque = R>>(
+    coefficients: &Coefficients<R>,
+    units: &impl Units<R>,
+    &[sin1, cos1, s, c, p1, p2, r]: &[R; 7],
+) -> [R; 7] {
+    let rates = coefficients.rates(units, [sin1, cos1], [s, c], [p1, p2], r);
+    let [sin1, cos1, s_rate, c_rate, p1, p2] = increments(&[sin1, cos1, s, c, p1, p2], rates);
+    [sin1, cos1, s_rate, c_rate, p1, p2, -(units.inverse(s * r * s_rate).twice() * r)]
+}

@@ -1,0 +1,29 @@
+//! What the equations of motion need of a number: sums and products, and no division.
+
+use core::fmt::Debug;
+use core::ops::{Add, Mul, Neg, Sub};
+
+use crate::sealed::Sealed;
+
+/// A number that the equations of motion can be computed in: `f32`, `f64`, or fixed point.
+///
+/// Rates of change, which a method sums up, may be numbers of another kind: in fixed point those of directions have more
+/// room and fewer digits, and those of momenta, which are small beside the largest there may be, have all digits.
+pub trait Ring:
+    Sealed + Copy + Debug + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self> + 'static
+{
+    /// The rate of change of a direction.
+    type Slope: Copy + Debug + Add<Output = Self::Slope> + Sub<Output = Self::Slope> + Neg<Output = Self::Slope>;
+    /// The rate of change of a momentum.
+    type Torque: Copy + Debug + Add<Output = Self::Torque> + Sub<Output = Self::Torque> + Neg<Output = Self::Torque>;
+    /// The number nearest to `value`.
+    fn constant(value: f64) -> Self;
+    /// Twice the number: an addition, or a step of the exponent where an addition would be a call of 100 cycles and more.
+    fn twice(self) -> Self;
+    /// Half the number.
+    fn half(self) -> Self;
+    /// The product as the rate of change of a direction.
+    fn slope(self, factor: Self) -> Self::Slope;
+    /// The product as the rate of change of a momentum.
+    fn torque(self, factor: Self) -> Self::Torque;
+}
