@@ -1,4 +1,4 @@
-"""Makes the table of marks in kernel/src/trig/own_f32.rs.
+"""Makes the table of marks in kernel/src/sine/own_f32.rs.
 
     python3 -m pip install mpmath numpy
     python3 host-tests/generate/accurate_marks.py

@@ -75,6 +75,7 @@ mod ring;
 pub mod rk4;
 pub mod rk8;
 mod sealed;
+mod sine;
 mod small_oscillations;
 mod state;
 pub mod trig;

@@ -5,7 +5,7 @@ use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 use crate::ring::Ring;
 use crate::sealed::Sealed;
-use crate::trig;
+use crate::sine;
 
 /// `f32` or `f64`, and no other type: the few operations the formulas need, one row each.
 ///
@@ -203,13 +203,13 @@ macro_rules! real {
             }
             #[inline]
             fn own_sin_cos(self) -> (Self, Self) {
-                trig::$own::sin_cos(self)
+                sine::$own::sin_cos(self)
             }
             #[inline(always)]
             fn turned(direction: [Self; 2], by: Self) -> [Self; 2] {
-                trig::$own::turned(direction, by)
+                sine::$own::turned(direction, by)
             }
-            type Reach = trig::$own::Reach;
+            type Reach = sine::$own::Reach;
             #[inline(always)]
             fn reach(so_far: Self::Reach, turns: [Self; 2]) -> Self::Reach {
                 so_far.with(turns)
@@ -222,8 +222,8 @@ macro_rules! real {
             fn nearest(self) -> i32 {
                 $rint(self) as i32
             }
-            const MARKS: [[Self; 3]; 9] = trig::$own::MARKS;
-            const PI_OVER_TWO: [Self; 3] = trig::$own::PI_OVER_TWO;
+            const MARKS: [[Self; 3]; 9] = sine::$own::MARKS;
+            const PI_OVER_TWO: [Self; 3] = sine::$own::PI_OVER_TWO;
         }
     };
 }

@@ -3,7 +3,8 @@
 use super::checkpoint::{RestoreError, Words};
 use super::sum::Sum;
 use crate::real::Real;
-use crate::trig::{Own, SinCos, by_quarters};
+use crate::sine::by_quarters;
+use crate::trig::{Own, SinCos};
 
 /// Marks to the quarter turn; they lie near the multiples of pi/32 = 0.098 rad.
 const MARKS: i32 = 16;

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use super::search::Limit;
+use super::limit::Limit;
 use crate::error::Error;
 
 /// What a plan is asked for by, beside the pendulum and its start.

@@ -41,6 +41,7 @@
 
 mod cost;
 mod error;
+mod limit;
 mod pass;
 mod problem;
 mod run;
@@ -49,9 +50,10 @@ mod shadowed_run;
 
 pub use cost::{Budget, Costs, Method};
 pub use error::{PlanError, Quantity};
+pub use limit::Limit;
 pub use problem::Problem;
 pub use run::Directions;
-pub use search::{Limit, Plan, Search};
+pub use search::{Plan, Search};
 pub use shadowed_run::{ErrorEstimate, MARGIN, ShadowedRun};
 
 /// The plan for `problem` at once: [`Search`] to its end.

@@ -7,6 +7,7 @@ mod image;
 mod instruction;
 mod pipeline;
 mod profile;
+mod record;
 mod row;
 #[cfg(test)]
 mod silicon;

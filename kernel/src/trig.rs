@@ -7,11 +7,6 @@
 //! | [`Libm`] | 1 ulp | `f64`, also for an `f32` | about 3,200 cycles (estimate) |
 //! | `Micromath` | 1.2e-3 | `f32` | about 46 cycles (estimate) |
 
-pub(crate) mod own_f32;
-pub(crate) mod own_f64;
-
-use core::ops::Neg;
-
 use crate::real::Real;
 use crate::sealed::Sealed;
 
@@ -83,10 +78,3 @@ impl SinCos<f32> for Micromath {
 
 /// The source used where none is named.
 pub type DefaultTrig = Own;
-
-/// The direction (sin, cos) turned by `quarters` quarter turns; only the two lowest bits of `quarters` count.
-#[inline]
-pub(crate) fn by_quarters<R: Copy + Neg<Output = R>>((sine, cosine): (R, R), quarters: u32) -> (R, R) {
-    let (sine, cosine) = if quarters & 1 == 0 { (sine, cosine) } else { (cosine, -sine) };
-    if quarters & 2 == 0 { (sine, cosine) } else { (-sine, -cosine) }
-}
