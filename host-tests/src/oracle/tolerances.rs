@@ -35,7 +35,7 @@ pub const DIVERGENCE: f64 = 1e-7;
 /// A motion run for a second and back: RK4's own error, twice (measured 6e-12), with a factor of ten.
 pub const RETURN: f64 = 1e-10;
 
-/// Normal frequencies, in units in the last place: what the issue asks; nine roundings, halved by the square root.
+/// Normal frequencies, in units in the last place: nine roundings, halved by the square root.
 pub const FREQUENCY_ULP: f64 = 4.0;
 
 /// Mode shapes and the exchange frequency, units in the last place: up to ten roundings each.
@@ -65,7 +65,7 @@ pub const RESOLVED: f64 = 1e-6;
 /// The measured order of the method: 4, give or take the next order's share at the steps used.
 pub const ORDER: std::ops::RangeInclusive<f64> = 3.9..=4.1;
 
-/// The measured order of the step of order 8, likewise, as the issue asks.
+/// The measured order of the step of order 8, likewise.
 pub const ORDER_8: std::ops::RangeInclusive<f64> = 7.8..=8.2;
 
 /// What the steps of order 8 that their documentation names miss in 20 s of regular motion, rad (measured: 4e-11 and
