@@ -99,7 +99,7 @@ pub const FIGURE_7_ENERGY: f64 = 0.01;
 /// The right form's share above the pivot, about 50.7 %: what 32 chaotic runs of 100 s differ by (measured 52.0 %).
 pub const FIGURE_7_ABOVE: f64 = 0.03;
 
-/// Figure 7 in f64 with 4096 steps per second after 5 s, rad and kg m^2/s: what the issue asks.
+/// Figure 7 in f64 with 4096 steps per second after 5 s, rad and kg m^2/s: the goal.
 pub const FIGURE_7: f64 = 1e-7;
 
 /// Regular motion in plain f32 with 256 steps per second after 10 s, rad: measured 2e-6, rounding walks at random.
@@ -137,7 +137,7 @@ pub const INVERTED_GROWTH: f64 = 1e-9;
 /// A linear motion of 0.5 rad after a whole period, rad: the roundings of w t, 40 rad, in both modes.
 pub const PERIOD: f64 = 1e-13;
 
-/// The accuracy clock: the time it shows over the time until which the frame really is right, at most; what the issue asks.
+/// The accuracy clock: the time it shows over the time until which the frame really is right, at most; the goal.
 pub const CLOCK_LATE: f64 = 1.2;
 
 /// How far off the accuracy clock is typically (median), relative to the true time.
@@ -147,7 +147,7 @@ pub const CLOCK_TYPICAL: f64 = 0.1;
 /// (measured: 1e-13): the roundings of each.
 pub const SAME_METHOD: f64 = 1e-12;
 
-/// Compensated `f32` forms on the regular scene (0.5 rad, dt = 1/256 s) after 10 s and 100 s, rad: what the issue asks of
+/// Compensated `f32` forms on the regular scene (0.5 rad, dt = 1/256 s) after 10 s and 100 s, rad: the goal of
 /// this one motion, but for the angle form after 100 s, of which it asks 1.3e-7 (measured: 5.1e-8 and 1.7e-7, direction form
 /// 4.0e-8 and 2.5e-7). Plain sums miss it by far.
 pub const ANGLE_FORM: [f64; 2] = [6e-8, 1.8e-7];
@@ -201,10 +201,10 @@ pub const PLOTTED_AMPLITUDE: f64 = 5e-4;
 /// Figure 7's paths, m: a hundredth of the width of its lines (measured: 3e-6).
 pub const FIGURE_7_PATH: f64 = 1e-4;
 
-/// The share of scenes in which half a pixel is kept until the planner's promised horizon: what the issue asks.
+/// The share of scenes in which half a pixel is kept until the planner's promised horizon: the goal.
 pub const PLAN_KEPT: f64 = 0.999;
 
-/// The promised over the true horizon, in the median over all scenes: what the issue asks.
+/// The promised over the true horizon, in the median over all scenes: the goal.
 pub const PLAN_SHARE: f64 = 0.7;
 
 /// Angles of the scenes in closed form, per rad of amplitude and of the fast mode's phase w t: roundings of half an epsilon
