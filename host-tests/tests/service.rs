@@ -2,7 +2,9 @@
 
 use double_pendulum::Parameters;
 use firmware::app::service::{Received, Service};
-use firmware::job::{Arithmetic, Formulation, Job, JobError, Method, Model, ON_BOARDS, ROWS, Reading, Request, Row};
+use firmware::job::{
+    Arithmetic, Formulation, Integrator, Job, JobError, Model, ON_BOARDS, ROWS, Reading, Request, Row,
+};
 use firmware::protocol::Field;
 use firmware::protocol::{LinkError, MAX_WIRE, Refused, Sample, Simulate, StepTooLong, encode};
 
@@ -76,7 +78,7 @@ fn rows_and_requests_are_what_their_text_says() {
         assert!(ROWS[..index].iter().all(|other| *other != row && other.to_string() != name), "{name} twice");
         let request = Request { row, ..REQUEST };
         assert_eq!(Request::parse(&request.to_string()), Ok(request));
-        assert!(row.order > 0 || row.method == Method::ClosedForm, "{name}");
+        assert!(row.order > 0 || row.integrator == Integrator::ClosedForm, "{name}");
     }
     let text = REQUEST.to_string();
     for broken in ["", &text[2..], &text.replace('0', "g"), &text.replacen("32", "ff", 1), "\u{e4}\u{e4}"] {
@@ -95,7 +97,7 @@ fn a_step_too_long_for_the_energy_is_obeyed_and_told() {
     assert_eq!(samples(&mut service).len(), 6);
     let fine = Request { dt: admissible_step, ..lively };
     assert_eq!(send(&mut service, &fine.message(5)), [Received::Accepted]);
-    let row = Row { model: Model::Linear, method: Method::ClosedForm, order: 0, ..lively.row };
+    let row = Row { model: Model::Linear, integrator: Integrator::ClosedForm, order: 0, ..lively.row };
     let closed_form = Request { row, ..lively };
     assert_eq!(send(&mut service, &closed_form.message(6)), [Received::Accepted]);
 }
@@ -107,9 +109,9 @@ fn a_refusal_names_the_field_and_leaves_the_work_alone() {
         (Simulate { arithmetic: 0xFF, ..good }, Field::Arithmetic),
         (Simulate { model: 0xFF, ..good }, Field::Model),
         (Simulate { form: 0xFF, ..good }, Field::Form),
-        (Simulate { method: 0xFF, ..good }, Field::Method),
+        (Simulate { integrator: 0xFF, ..good }, Field::Integrator),
         (Simulate { order: 5, ..good }, Field::Order),
-        (Simulate { method: Method::Rk8.code(), order: 8, ..good }, Field::Method),
+        (Simulate { integrator: Integrator::Rk8.code(), order: 8, ..good }, Field::Integrator),
         (Simulate { arithmetic: Arithmetic::F32Compensated.code(), ..good }, Field::Form),
         (Simulate { arithmetic: Arithmetic::F32Libm.code(), ..good }, Field::Arithmetic),
         (Simulate { model: Model::Textbook.code(), ..good }, Field::Model),

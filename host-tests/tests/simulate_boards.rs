@@ -73,7 +73,7 @@ fn plain_forms() {
 
 #[test]
 fn order_8() {
-    same_everywhere(&format!("{FIGURE_7} --step 1/32 --method rk8"));
+    same_everywhere(&format!("{FIGURE_7} --step 1/32 --integrator rk8"));
 }
 
 #[test]

@@ -97,7 +97,7 @@ fn order_8_needs_few_steps() {
     let options = "--masses 1,2.75 --angles 171,171 --degrees --until 3 --every 1";
     let exact = &rows(&format!("{options} --step 1/16384"))[4];
     for form in ["canonical", "direction"] {
-        let other = &rows(&format!("{options} --step 1/512 --method rk8 --form {form}"))[4];
+        let other = &rows(&format!("{options} --step 1/512 --integrator rk8 --form {form}"))[4];
         for column in 1..3 {
             let apart = (number(&exact[column]) - number(&other[column])).abs();
             println!("{form}, column {column}: {apart:e}");
@@ -144,17 +144,17 @@ fn bad_input_gets_one_line_and_exit_code_2() {
         ("--model equal-rods --lengths 1,2", "l2"),
         ("--model linear --gravity 0", "g"),
         ("--form round", "--form"),
-        ("--method euler", "--method"),
-        ("--method order-8", "--method"),
-        ("--method rk8 --arithmetic f32", "--method rk8: not with --arithmetic f32"),
-        ("--method rk8 --arithmetic f32-compensated", "--method rk8"),
-        ("--method rk8 --model linear", "--method rk8"),
-        ("--method rk8 --form angle", "--method rk8"),
-        ("--method rk4 --order 8", "--order 8: not with --method rk4"),
+        ("--integrator euler", "--integrator"),
+        ("--integrator order-8", "--integrator"),
+        ("--integrator rk8 --arithmetic f32", "--integrator rk8: not with --arithmetic f32"),
+        ("--integrator rk8 --arithmetic f32-compensated", "--integrator rk8"),
+        ("--integrator rk8 --model linear", "--integrator rk8"),
+        ("--integrator rk8 --form angle", "--integrator rk8"),
+        ("--integrator rk4 --order 8", "--order 8: not with --integrator rk4"),
         ("--order 5", "--order 5"),
         ("--order x", "--order"),
         ("--arithmetic f32-libm --on lm3s6965evb", "f32-libm-canonical"),
-        ("--method rk8 --form canonical --on lm3s6965evb", "f64-canonical-rk8"),
+        ("--integrator rk8 --form canonical --on lm3s6965evb", "f64-canonical-rk8"),
         ("--form angle --model linear", "--form angle"),
         ("--form direction --model equal-rods", "--form direction"),
         ("--form canonical --arithmetic f32-compensated", "--form canonical"),

@@ -59,7 +59,7 @@ choice! {
 
 choice! {
     /// How a step is made.
-    Method {
+    Integrator {
         /// The classical Runge-Kutta method, of order 4.
         Rk4 = 4, "rk4";
         /// The Runge-Kutta method of order 8: [`rk8`](double_pendulum::rk8).

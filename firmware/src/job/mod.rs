@@ -19,7 +19,7 @@ mod table;
 mod textbook;
 
 pub use answer::{Job, JobError};
-pub use choice::{Arithmetic, Formulation, Method, Model};
+pub use choice::{Arithmetic, Formulation, Integrator, Model};
 pub use reading::Reading;
 pub use request::Request;
 pub use row::{Row, Wanted};

@@ -4,7 +4,7 @@ use core::fmt;
 
 use double_pendulum::{Motion, Parameters, Pendulum};
 
-use super::{Arithmetic, Formulation, Method, Model, Row};
+use super::{Arithmetic, Formulation, Integrator, Model, Row};
 use crate::protocol::{Field, Message, Simulate};
 
 /// A motion to compute.
@@ -33,7 +33,8 @@ impl Request {
     /// form, which takes any, and for what [`Job::new`](super::Job::new) refuses.
     pub fn admissible_step(&self) -> Option<f64> {
         let ([a1, a2], [w1, w2]) = (self.angles, self.velocities);
-        let pendulum = Pendulum::<f64>::new(self.parameters).ok().filter(|_| self.row.method != Method::ClosedForm)?;
+        let pendulum =
+            Pendulum::<f64>::new(self.parameters).ok().filter(|_| self.row.integrator != Integrator::ClosedForm)?;
         pendulum.admissible_step(&pendulum.to_state(&Motion { a1, a2, w1, w2 })).ok()
     }
 
@@ -45,7 +46,7 @@ impl Request {
             arithmetic: self.row.arithmetic.code(),
             model: self.row.model.code(),
             form: self.row.form.code(),
-            method: self.row.method.code(),
+            integrator: self.row.integrator.code(),
             order: self.row.order,
             parameters: [m1, m2, l1, l2, g],
             angles: self.angles,
@@ -63,7 +64,7 @@ impl Request {
             arithmetic: Arithmetic::from_code(message.arithmetic).ok_or(Field::Arithmetic)?,
             model: Model::from_code(message.model).ok_or(Field::Model)?,
             form: Formulation::from_code(message.form).ok_or(Field::Form)?,
-            method: Method::from_code(message.method).ok_or(Field::Method)?,
+            integrator: Integrator::from_code(message.integrator).ok_or(Field::Integrator)?,
             order: message.order,
         };
         Ok(Self {

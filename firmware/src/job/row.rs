@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use super::{Arithmetic, Formulation, Method, Model};
+use super::{Arithmetic, Formulation, Integrator, Model};
 use crate::protocol::Field;
 
 /// What a motion is computed with: the words of one row of the [table](super::ROWS).
@@ -15,15 +15,15 @@ pub struct Row {
     /// What is stepped.
     pub form: Formulation,
     /// How.
-    pub method: Method,
-    /// The order of the method; 0 for the closed form.
+    pub integrator: Integrator,
+    /// The order of the integrator; 0 for the closed form.
     pub order: u8,
 }
 
 impl Row {
     /// The general model in classical steps.
     pub const fn rk4(arithmetic: Arithmetic, form: Formulation) -> Self {
-        Self { arithmetic, model: Model::General, form, method: Method::Rk4, order: 4 }
+        Self { arithmetic, model: Model::General, form, integrator: Integrator::Rk4, order: 4 }
     }
 }
 
@@ -31,7 +31,7 @@ impl Row {
 /// canonical form of the others, classical steps and the closed form.
 impl fmt::Display for Row {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { arithmetic, model, form, method, .. } = self;
+        let Self { arithmetic, model, form, integrator, .. } = self;
         f.write_str(arithmetic.name())?;
         if *model != Model::General {
             write!(f, "-{}", model.name())?;
@@ -39,9 +39,9 @@ impl fmt::Display for Row {
         if *model == Model::General || *form != Formulation::Canonical {
             write!(f, "-{}", form.name())?;
         }
-        match method {
-            Method::Rk4 | Method::ClosedForm => Ok(()),
-            Method::Rk8 => write!(f, "-{}", method.name()),
+        match integrator {
+            Integrator::Rk4 | Integrator::ClosedForm => Ok(()),
+            Integrator::Rk8 => write!(f, "-{}", integrator.name()),
         }
     }
 }
@@ -56,25 +56,25 @@ pub struct Wanted {
     /// What is stepped.
     pub form: Option<Formulation>,
     /// How.
-    pub method: Option<Method>,
-    /// The order of the method.
+    pub integrator: Option<Integrator>,
+    /// The order of the integrator.
     pub order: Option<u8>,
 }
 
 impl Wanted {
     /// What can be asked for, in the order in which it counts.
-    const FIELDS: [Field; 5] = [Field::Arithmetic, Field::Model, Field::Form, Field::Method, Field::Order];
+    const FIELDS: [Field; 5] = [Field::Arithmetic, Field::Model, Field::Form, Field::Integrator, Field::Order];
 
     /// The first of `rows` that has all that is asked for; else the first field with which none goes any more that has
     /// what is asked of the fields before it.
     pub fn first_of(&self, rows: &[Row]) -> Result<Row, Field> {
         let had = |row: &Row| {
-            let Row { arithmetic, model, form, method, order } = *row;
+            let Row { arithmetic, model, form, integrator, order } = *row;
             let has = [
                 self.arithmetic.is_none_or(|asked| asked == arithmetic),
                 self.model.is_none_or(|asked| asked == model),
                 self.form.is_none_or(|asked| asked == form),
-                self.method.is_none_or(|asked| asked == method),
+                self.integrator.is_none_or(|asked| asked == integrator),
                 self.order.is_none_or(|asked| asked == order),
             ];
             has.into_iter().take_while(|has| *has).count()
@@ -87,12 +87,12 @@ impl Wanted {
 
 /// All of a row is asked for.
 impl From<Row> for Wanted {
-    fn from(Row { arithmetic, model, form, method, order }: Row) -> Self {
+    fn from(Row { arithmetic, model, form, integrator, order }: Row) -> Self {
         Self {
             arithmetic: Some(arithmetic),
             model: Some(model),
             form: Some(form),
-            method: Some(method),
+            integrator: Some(integrator),
             order: Some(order),
         }
     }

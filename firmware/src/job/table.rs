@@ -1,5 +1,5 @@
-//! The table of arithmetics: one row for each arithmetic, model, form, method and order that go together, and the type that
-//! computes it. A new one is a row here and a type that [`Run`]s.
+//! The table of arithmetics: one row for each arithmetic, model, form, integrator and order that go together, and the type
+//! that computes it. A new one is a row here and a type that [`Run`]s.
 //!
 //! The first block is what every board's application computes on request. The second is there to be compared with: it is
 //! computed on the host and counted on the chips by the `measure` program, and takes no flash of an application.
@@ -12,15 +12,17 @@ use super::canonical::{Canonical, Equal, Order8};
 use super::formed::{Angles, Directions};
 use super::linear::{Drawn, Linear};
 use super::textbook::Textbook;
-use super::{Arithmetic, Formulation, JobError, Method, Model, Reading, Request, Row, Run, Wanted, answer, counted};
+use super::{
+    Arithmetic, Formulation, Integrator, JobError, Model, Reading, Request, Row, Run, Wanted, answer, counted,
+};
 
 macro_rules! row {
-    ($arithmetic:ident $model:ident $form:ident $method:ident $order:literal) => {
+    ($arithmetic:ident $model:ident $form:ident $integrator:ident $order:literal) => {
         Row {
             arithmetic: Arithmetic::$arithmetic,
             model: Model::$model,
             form: Formulation::$form,
-            method: Method::$method,
+            integrator: Integrator::$integrator,
             order: $order,
         }
     };

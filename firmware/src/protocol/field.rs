@@ -48,7 +48,7 @@ choice! {
         /// The form. As the arithmetic, the model, the method and the order: that none such goes with those before it.
         Form = 19, "form";
         /// The method.
-        Method = 20, "method";
+        Integrator = 20, "integrator";
         /// The order of the method.
         Order = 21, "order";
     }

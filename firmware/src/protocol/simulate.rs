@@ -11,9 +11,9 @@ crate::message! {
         model: u8,
         /// What is stepped, by its [`code`](crate::job::Formulation::code).
         form: u8,
-        /// How a step is made, by its [`code`](crate::job::Method::code).
-        method: u8,
-        /// The order of the method; 0 for the closed form.
+        /// How a step is made, by its [`code`](crate::job::Integrator::code).
+        integrator: u8,
+        /// The order of the integrator; 0 for the closed form.
         order: u8,
         /// m1, m2 (kg), l1, l2 (m), g (m/s^2).
         parameters: [f64; 5],

@@ -1,7 +1,7 @@
 //! The command line of `cargo simulate`.
 
 use clap::Parser;
-use firmware::job::{Arithmetic, Formulation, Method, Model, Wanted};
+use firmware::job::{Arithmetic, Formulation, Integrator, Model, Wanted};
 
 use super::{Number, Start};
 use crate::console::cli::choice;
@@ -67,9 +67,9 @@ pub struct Options {
     #[arg(long, value_name = "NAME", value_parser = choice(Formulation::ALL.iter().copied(), Formulation::name))]
     pub form: Option<Formulation>,
     /// How a step is made; rk8 in double precision, for errors of 1e-9 rad and less
-    #[arg(long, value_name = "NAME", value_parser = choice(Method::ALL.iter().copied(), Method::name))]
-    pub method: Option<Method>,
-    /// The order of the method
+    #[arg(long, value_name = "NAME", value_parser = choice(Integrator::ALL.iter().copied(), Integrator::name))]
+    pub integrator: Option<Integrator>,
+    /// The order of the integrator
     #[arg(long, value_name = "N")]
     pub order: Option<u8>,
     /// Where it is computed: here, or by the firmware on an emulated board
@@ -84,7 +84,7 @@ pub struct Options {
 impl Options {
     /// What they ask of a row of the table.
     pub fn wanted(&self) -> Wanted {
-        let Self { arithmetic, model, form, method, order, .. } = *self;
-        Wanted { arithmetic, model, form, method, order }
+        let Self { arithmetic, model, form, integrator, order, .. } = *self;
+        Wanted { arithmetic, model, form, integrator, order }
     }
 }

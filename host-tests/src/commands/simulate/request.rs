@@ -73,7 +73,7 @@ fn row(options: &Options) -> anyhow::Result<Row> {
             (Field::Arithmetic, wanted.arithmetic.map(|word| word.name().to_owned())),
             (Field::Model, wanted.model.map(|word| word.name().to_owned())),
             (Field::Form, wanted.form.map(|word| word.name().to_owned())),
-            (Field::Method, wanted.method.map(|word| word.name().to_owned())),
+            (Field::Integrator, wanted.integrator.map(|word| word.name().to_owned())),
             (Field::Order, wanted.order.map(|order| order.to_string())),
         ];
         let given = |(field, word): &(Field, Option<String>)| Some(format!("{} {}", option_of(*field), word.as_ref()?));
@@ -97,7 +97,7 @@ fn option_of(field: Field) -> &'static str {
         Field::Arithmetic => "--arithmetic",
         Field::Model => "--model",
         Field::Form => "--form",
-        Field::Method => "--method",
+        Field::Integrator => "--integrator",
         Field::Order => "--order",
         Field::M1 | Field::M2 => "--masses",
         Field::L1 | Field::L2 => "--lengths",
