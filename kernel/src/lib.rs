@@ -56,6 +56,8 @@
 //! - `[Hairer II]` E. Hairer, G. Wanner, *Solving Ordinary Differential Equations II*, 2nd ed., Springer 1996.
 #![no_std]
 #![forbid(unsafe_code)]
+#![warn(missing_copy_implementations, missing_debug_implementations)]
+#![warn(clippy::must_use_candidate, clippy::return_self_not_must_use)]
 
 mod bounds;
 mod equal_rods;

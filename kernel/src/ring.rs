@@ -19,8 +19,10 @@ pub trait Ring:
     /// The number nearest to `value`.
     fn constant(value: f64) -> Self;
     /// Twice the number: an addition, or a step of the exponent where an addition would be a call of 100 cycles and more.
+    #[must_use]
     fn twice(self) -> Self;
     /// Half the number.
+    #[must_use]
     fn half(self) -> Self;
     /// The product as the rate of change of a direction.
     fn slope(self, factor: Self) -> Self::Slope;

@@ -5,6 +5,7 @@ use super::error::{PlanError, Quantity, check_positive};
 /// A method to compute a motion: model, arithmetic and stepper.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Method {
     /// [`SmallOscillations`](crate::SmallOscillations) in `f32`: no steps at all.
@@ -40,6 +41,8 @@ impl Method {
 /// The price list: what a step costs by each method, what a frame costs in closed form. In cycles, or in any other unit
 /// that the [`Budget`] is given in, too.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Costs {
     /// [`Method::ClosedForm`], for each frame.
     pub closed_form: f32,
@@ -73,6 +76,8 @@ impl Costs {
 
 /// What may be spent, in the unit of the [`Costs`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Budget {
     /// On computing a frame.
     pub frame: f32,

@@ -8,6 +8,7 @@ use crate::error::Error;
 /// What a plan is asked for by, beside the pendulum and its start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Quantity {
     /// How far a bob may be off, m.
@@ -40,6 +41,7 @@ impl fmt::Display for Quantity {
 /// Why there is no plan: a refused input with its value, or that nothing holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum PlanError {
     /// The pendulum or its start describes no motion, or none that `f32` can hold.

@@ -14,7 +14,9 @@ use crate::state::State;
 const TOLERATED: f32 = 1.0;
 
 /// How a method has fared so far.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Candidate {
     /// The method.
     pub method: Method,
@@ -54,7 +56,9 @@ impl Candidate {
 
 /// All methods in `f32` with one step size. The compensated direction form is the best of them: its run is shadowed, and the
 /// others are compared with it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Single {
     shadowed: ShadowedRun<f32, DirectionForm<f32>>,
     plain: Run<f32, DirectionForm<f32, Plain>>,
@@ -117,7 +121,9 @@ impl Single {
 }
 
 /// The method in `f64` with one step size.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Double {
     shadowed: ShadowedRun<f64, DirectionForm8<f64>>,
     candidate: Candidate,
@@ -134,7 +140,9 @@ impl Double {
 }
 
 /// Looking ahead in one precision with one step size.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) enum Pass {
     /// In `f32`.
     Single(Single),

@@ -10,7 +10,15 @@ use crate::state::State;
 pub type Directions = [Direction<f32>; 2];
 
 /// A motion in the form `F`.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "R: serde::Serialize, Stepper<R, F>: serde::Serialize",
+        deserialize = "R: serde::Deserialize<'de>, Stepper<R, F>: serde::Deserialize<'de>"
+    ))
+)]
 pub(super) struct Run<R: Real, F: Form<R>> {
     parameters: Parameters<R>,
     start: State<R>,
@@ -52,6 +60,26 @@ impl<R: Real, F: Form<R>> Run<R, F> {
         self.motion.as_ref().map_or([[f32::NAN; 2]; 2], |motion| {
             motion.directions().map(|direction| direction.map(|x| x.to_f64() as f32))
         })
+    }
+}
+
+#[cfg(feature = "defmt")]
+impl<R: Real + defmt::Format, F: Form<R>> defmt::Format for Run<R, F>
+where
+    Stepper<R, F>: defmt::Format,
+{
+    fn format(&self, f: defmt::Formatter) {
+        let Self { parameters, start, dt, motion, per_frame, made } = self;
+        defmt::write!(
+            f,
+            "Run {{ parameters: {}, start: {}, dt: {}, motion: {}, per_frame: {}, made: {} }}",
+            parameters,
+            start,
+            dt,
+            motion,
+            per_frame,
+            made
+        );
     }
 }
 

@@ -13,6 +13,7 @@ use crate::state::State;
 /// The cheapest method found, and what it brings.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Plan {
     /// The method to compute the motion by.
     pub method: Method,
@@ -43,7 +44,9 @@ const FIRST_STEP: f64 = 4.0;
 const MOST_STEPS: u32 = 1 << 16;
 
 /// A search under way; [`advance`](Self::advance) it until there is a plan.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Search {
     problem: Problem,
     costs: Costs,
