@@ -7,6 +7,7 @@
 //! | `bin/` | one file a command: parses its options, calls, prints |
 //! | [`commands`] | what the commands do: demo, simulate, plan, count, report, figures, soak, fuzz |
 //! | [`emulator`] | the emulated boards: QEMU, toolchain and set-up, processes, budgets |
+//! | [`link`] | the serial link: bytes to messages, and a real port |
 //! | [`oracle`] | independent references, known answers, hard cases and the one table of tolerances |
 //! | [`console`] | how every command talks: options, errors, progress |
 
@@ -15,4 +16,5 @@
 pub mod commands;
 pub mod console;
 pub mod emulator;
+pub mod link;
 pub mod oracle;

@@ -7,7 +7,9 @@ use std::io::BufReader;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
+use firmware::scenes::SceneName;
 use host_tests::commands::demo::played;
+use host_tests::emulator::host::Show;
 use host_tests::emulator::process::{Output, run, spawn};
 use support::{LIMIT, toolchain};
 
@@ -56,6 +58,34 @@ fn a_recording_shows_a_swinging_pendulum_and_is_the_same_every_time() {
     assert!(bytes(&animation) == bytes(&again), "two recordings differ");
 }
 
+/// What the host cannot see it draws itself, from the numbers that come.
+#[test]
+fn of_a_board_without_a_panel_the_redrawn_one_is_shown() {
+    toolchain();
+    let folder = tempfile::tempdir().expect("a folder");
+    let animation = folder.path().join("figure-7.gif");
+    let mut command = Command::new(DEMO);
+    command.args(["--board", "stm32f405", "--scene", "figure-7", "--headless", "--seconds", "1", "--record"]);
+    let output = run(command.arg(&animation), LIMIT).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    assert!(output.stdout.contains("frames, every bit the host's"), "{}", output.stdout);
+
+    let name = SceneName::Figure7;
+    let mut scene = Show::new(name, &name.first_settings()).expect("a scene of the catalogue");
+    let played = played(&animation).expect("a GIF file");
+    assert_eq!(played.len(), 30);
+    for (number, (dots, _)) in played.iter().enumerate() {
+        scene.tick();
+        let canvas = scene.frame();
+        let (row, step) = (SIZE.0 as usize, 3);
+        let grey = |x: usize, y: usize| dots.get(step * y * row + step * x).copied();
+        let differing =
+            (0..128 * 64).filter(|&i| grey(i % 128, i / 128) != canvas.get((i % 128) as i32, (i / 128) as i32));
+        assert_eq!(differing.count(), 0, "screenshot {number}");
+        scene.tick();
+    }
+}
+
 #[test]
 fn a_closed_output_is_no_failure() {
     toolchain();
@@ -68,9 +98,10 @@ fn a_closed_output_is_no_failure() {
 
 #[test]
 fn bad_arguments_are_refused_in_one_line() {
-    let cases: [&[&str]; 11] = [
+    let cases: [&[&str]; 12] = [
         &["--board", "arduino"],
-        &["--board", "mps2-an386"],
+        &["--port", "/nowhere/tty"],
+        &["--port", "/dev/null"],
         &["--seconds", "0"],
         &["--seconds", "NaN"],
         &["--seconds", "soon"],

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use double_pendulum::plan::Method;
 use fastrand::Rng;
-use firmware::app::controls::NoButtons;
+use firmware::app::controls::{Key, NoButtons};
 use firmware::app::{App, Event};
 use firmware::config::{DT, MOST_MESSAGES_PER_TICK, PLANNED, STEPS_PER_TICK, TICK_RATE};
 use firmware::display::NoDisplay;
@@ -13,8 +13,8 @@ use firmware::motion::settings::Settings;
 use firmware::protocol::Field;
 use firmware::protocol::Unit;
 use firmware::protocol::{
-    Ask, AskPlan, Choose, Decoder, Done, Frame, MAX_WIRE, Message, Pause, Planned, Refused, Restart, Set, Status, Step,
-    encode, method_code,
+    Ask, AskPlan, Choose, Decoder, Done, Frame, MAX_WIRE, Message, Pause, Planned, Press, Refused, Restart, Set,
+    Status, Step, encode, method_code,
 };
 use firmware::scenes::SceneName;
 use host_tests::emulator::host::sheets;
@@ -94,6 +94,23 @@ fn settings_too_lively_for_the_step_are_played_and_logged() {
     };
     assert!(!coarse(1.0));
     assert!(coarse(100.0));
+}
+
+/// Taps that come all at once are all obeyed, in their order, as the board's own buttons are.
+#[test]
+fn no_tap_is_lost_however_quick() {
+    let mut app = app();
+    let before = *app.player().settings();
+    let taps = [Key::Right, Key::Right, Key::Up, Key::Left, Key::Right, Key::Select, Key::Down, Key::Right, Key::Right];
+    let mut bytes =
+        taps.iter().flat_map(|key| wire(&Press { request: 1, key: key.code() })).collect::<Vec<_>>().into_iter();
+    while !bytes.as_slice().is_empty() {
+        app.receive(bytes.by_ref(), |_| ());
+    }
+    assert_eq!(*app.player().settings(), before.turned(1).turned(1).turned(1).turned(1));
+    assert_eq!(all::<Done>(&app).len(), taps.len());
+    app.receive(wire(&Press { request: 2, key: 0xEE }), |_| ());
+    assert_eq!(all::<Refused>(&app), [Refused { request: 2, field: Field::Key.code() }]);
 }
 
 /// Figure 7's energy could drive a livelier motion than the one it starts.

@@ -5,7 +5,8 @@ mod support;
 use firmware::config::STEPS_PER_TICK;
 use firmware::protocol::Frame;
 use host_tests::emulator::boards::{BOARDS, Board};
-use host_tests::emulator::qemu::{Counts, Lockstep, Machine, QemuError};
+use host_tests::emulator::qemu::{Lockstep, Machine, QemuError};
+use host_tests::link::Counts;
 use host_tests::oracle::stream::Expected;
 use support::{application, settings, toolchain};
 

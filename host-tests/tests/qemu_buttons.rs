@@ -2,12 +2,12 @@
 
 mod support;
 
+use firmware::app::controls::Key;
 use firmware::config::{ANGLE_STEP, MASS_RATIOS, STEPS_PER_TICK};
 use firmware::protocol::{Choose, Frame};
 use firmware::scenes::SceneName;
-use host_tests::commands::demo::Taps;
 use host_tests::emulator::boards::{BOARDS, Board};
-use host_tests::emulator::qemu::{Key, Machine, QemuError};
+use host_tests::emulator::qemu::{Machine, QemuError};
 use support::{application, settings, toolchain};
 
 /// Frames until the firmware has noticed that a button is released, however late the host's word reaches it.
@@ -47,32 +47,6 @@ fn choose_and_restart(board: &Board) -> Result<(), QemuError> {
     assert_eq!((after.mass_ratio, degrees(&after)), (before.mass_ratio, degrees(&before) - ANGLE_STEP), "left");
     let (before, after) = tap(&mut machine, Key::Select)?;
     assert_eq!((after.mass_ratio, after.start_angle), (before.mass_ratio, before.start_angle), "select");
-    machine.quit()
-}
-
-/// Taps quicker than the board takes them: all at once.
-#[test]
-fn no_tap_is_lost_however_quick() -> Result<(), QemuError> {
-    let board = &BOARDS[0];
-    let (toolchain, elf) = (toolchain(), application(board));
-    let mut machine = Machine::start(&settings(&toolchain, board, &elf))?;
-    settle(&mut machine)?;
-    machine.wake_keys()?;
-    let start = settle(&mut machine)?;
-    let mut taps = Taps::default();
-    let tapped = [Key::Right, Key::Right, Key::Up, Key::Right, Key::Left, Key::Right];
-    tapped.into_iter().for_each(|key| taps.add(key));
-    while !taps.are_done() {
-        // The newest that is there: a reader that lags behind would go by a clock that does.
-        let first = next(&mut machine)?;
-        let frame: Frame = machine.serial.arrived().last().unwrap_or(first);
-        if let Some((key, down)) = taps.change(frame.sequence.wrapping_add(frame.dropped)) {
-            machine.set_key(key, down)?;
-        }
-    }
-    let end = settle(&mut machine)?;
-    let turned = (end.start_angle - start.start_angle).to_degrees();
-    assert_eq!((turned.round(), end.mass_ratio), (3.0 * ANGLE_STEP, 1.25));
     machine.quit()
 }
 

@@ -1,5 +1,6 @@
 //! What can be asked of the player, by button or over the serial link.
 
+use crate::app::controls::Key;
 use crate::protocol::Field;
 use crate::protocol::Unit;
 use crate::protocol::{self, Message, Refused};
@@ -82,6 +83,10 @@ impl HostCommand {
             protocol::Step::KIND => {
                 let protocol::Step { request, ticks } = Message::read(fields)?;
                 (request, Ok(Command::Step(ticks)))
+            }
+            protocol::Press::KIND => {
+                let protocol::Press { request, key } = Message::read(fields)?;
+                (request, Key::from_code(key).map(Key::tapped).ok_or(Field::Key))
             }
             protocol::Ask::KIND => (protocol::Ask::read(fields)?.request, Ok(Command::Ask)),
             protocol::AskPlan::KIND => (protocol::AskPlan::read(fields)?.request, Ok(Command::AskPlan)),

@@ -2,6 +2,36 @@
 
 use crate::app::command::Command;
 use crate::config::{DEBOUNCE_TICKS, HOLD_TICKS, REPEAT_DELAY_TICKS, REPEAT_PERIOD_TICKS};
+use crate::protocol::choice::choice;
+
+choice! {
+    /// A button.
+    Key {
+        /// Up.
+        Up = 0, "up";
+        /// Down.
+        Down = 1, "down";
+        /// Left.
+        Left = 2, "left";
+        /// Right.
+        Right = 3, "right";
+        /// Select.
+        Select = 4, "select";
+    }
+}
+
+impl Key {
+    /// What a tap on it alone asks for.
+    pub const fn tapped(self) -> Command {
+        match self {
+            Self::Up => UP[0],
+            Self::Down => DOWN[0],
+            Self::Left => LEFT[0],
+            Self::Right => RIGHT[0],
+            Self::Select => Command::Restart,
+        }
+    }
+}
 
 /// A reading of the five buttons; `true` is pressed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

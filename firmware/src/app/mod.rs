@@ -296,24 +296,13 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     }
 
     fn frame(&self, scene_cycles: u32) -> Frame {
-        let settings = self.player.settings();
-        let report = self.player.report();
-        let [start_angle, _] = settings.angles();
         Frame {
             sequence: self.frames,
             dropped: self.dropped.total(),
             lost: self.lost.total(),
-            scene: self.player.name().code(),
-            paused: self.player.is_paused().into(),
-            step: report.step as u32,
-            time: report.time,
-            mass_ratio: settings.mass_ratio(),
-            start_angle,
-            state: report.state.into(),
-            energy_error: report.energy_error,
-            horizon: report.horizon,
             scene_cycles,
             busy_cycles: self.busy_cycles,
+            ..self.player.frame()
         }
     }
 

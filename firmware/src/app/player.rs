@@ -9,8 +9,7 @@ use crate::graphics::fade_layer::FadeLayer;
 use crate::graphics::text;
 use crate::motion::planner::Shown;
 use crate::motion::settings::Settings;
-use crate::protocol::Field;
-use crate::protocol::Status;
+use crate::protocol::{Field, Frame, Status};
 use crate::scenes::scene::Report;
 use crate::scenes::{AnyScene, SceneName};
 
@@ -122,6 +121,23 @@ impl<'a> Player<'a> {
     /// Whether the scene's time stands still.
     pub fn is_paused(&self) -> bool {
         self.pace.paused || self.stopped
+    }
+
+    /// The frame as it is told to the host, but for what only the board's clock and link know.
+    pub fn frame(&self) -> Frame {
+        let [start_angle, _] = self.settings.angles();
+        Frame {
+            scene: self.name.code(),
+            paused: self.is_paused().into(),
+            step: self.report.step as u32,
+            time: self.report.time,
+            mass_ratio: self.settings.mass_ratio(),
+            start_angle,
+            state: self.report.state.into(),
+            energy_error: self.report.energy_error,
+            horizon: self.report.horizon,
+            ..Frame::default()
+        }
     }
 
     /// The answer to [`Command::Ask`].

@@ -137,7 +137,7 @@ fn log<Panel: Debug, Link: Debug>(event: Event<Panel, Link>) {
         Event::Started(scene, settings) => started(scene, &settings),
         Event::Refused(command, field) => defmt::warn!("refused {}: {}", command, field),
         Event::Dropped { ticks, total } => defmt::warn!("dropped {} frames, {} since reset", ticks, total),
-        Event::Panel(error) => defmt::error!("panel: {}", Debug2Format(&error)),
+        Event::Panel(error) => defmt::warn!("panel: {}", Debug2Format(&error)),
         Event::Damaged { messages, total, last } => {
             defmt::warn!("{} damaged messages, {} since reset, the last: {}", messages, total, last);
         }

@@ -54,6 +54,16 @@ crate::message! {
 }
 
 crate::message! {
+    /// Host to chip: do what a tap on one button asks for, as the keys of a host's terminal do.
+    Press = 0x89 {
+        /// Chosen by the host; the answer repeats it.
+        request: u16,
+        /// The button, by its [`code`](crate::app::controls::Key::code).
+        key: u8,
+    }
+}
+
+crate::message! {
     /// Host to chip: say what is played.
     Ask = 0x87 {
         /// Chosen by the host; the answer repeats it.

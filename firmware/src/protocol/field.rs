@@ -51,6 +51,8 @@ choice! {
         Integrator = 20, "integrator";
         /// The order of the method.
         Order = 21, "order";
+        /// The button.
+        Key = 22, "key";
     }
 }
 

@@ -15,7 +15,7 @@ mod restarted;
 mod simulate;
 mod unit;
 
-pub use command::{Ask, Choose, Done, Pause, Restart, Set, Status, Step};
+pub use command::{Ask, Choose, Done, Pause, Press, Restart, Set, Status, Step};
 pub use field::Field;
 pub use frame::Frame;
 pub use layout::{Message, WireNumber};

@@ -10,7 +10,8 @@ use std::fmt;
 use firmware::protocol::Frame;
 
 use crate::emulator::boards::Board;
-use crate::emulator::qemu::{Counts, Machine};
+use crate::emulator::qemu::Machine;
+use crate::link::Counts;
 
 pub use physics::{PHYSICS, physics};
 pub use scenes::scenes;

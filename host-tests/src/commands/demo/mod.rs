@@ -1,54 +1,78 @@
-//! `cargo demo`: the double pendulum on the emulated panel, live in the terminal or recorded without one.
+//! `cargo demo`: the double pendulum on a board's panel, live in the terminal or recorded without one; the board is emulated,
+//! or at a serial port.
 
+mod comparison;
 mod headless;
 mod live;
+mod mirror;
 mod options;
 mod panel;
 mod play;
 mod plot;
 mod readings;
 pub(crate) mod record;
+mod session;
+mod source;
 mod summary;
-mod taps;
 mod tint;
 mod view;
 
 pub use options::Options;
 pub use play::played;
-pub use taps::Taps;
 
 use std::io::{IsTerminal, stdin, stdout};
-use std::path::PathBuf;
+use std::time::Duration;
 
 use record::Recording;
+use session::Session;
+use source::{Source, broken};
 
 use crate::console::cli::Refused;
-use crate::emulator::qemu::{QemuError, Window};
-use crate::emulator::toolchain::{self, Toolchain};
+use crate::emulator::qemu::{Clock, Lockstep, Machine, Settings, Window};
+use crate::emulator::toolchain;
+use crate::link::{Port, find};
 
-/// All that a run needs, ready.
-struct Stage<'a> {
-    options: &'a Options,
-    toolchain: Toolchain,
-    elf: PathBuf,
-    window: Option<Window>,
-}
+/// The most time that an emulated board may take without a terminal: so much, and so much for each second of its time.
+const LIMIT: (Duration, f64) = (Duration::from_secs(60), 20.0);
+/// With one: nobody watches longer.
+const LIVE_LIMIT: Duration = Duration::from_secs(24 * 3600);
 
 /// Sets everything up and runs the demonstration; whether all was well.
 pub fn run(options: &Options) -> anyhow::Result<bool> {
+    let headless = options.headless || !(stdout().is_terminal() && stdin().is_terminal());
+    // Before the build, which takes its time.
+    let port = options.port.as_ref().map(|name| port(name, options.baud)).transpose()?;
+    let source = port.map_or_else(|| emulated(options, headless), |port| Ok(Source::Port(port)))?;
+    let recording = options.record.as_deref().map(Recording::create).transpose();
+    let recording = recording.map_err(|error| Refused::because(format_args!("--record: {error:#}")))?;
+    let session = Session::new(options, source, recording);
+    if headless { headless::run(options, session) } else { live::run(options, session) }
+}
+
+/// The port of this name.
+fn port(name: &str, baud: u32) -> Result<Port, Refused> {
+    let refused = |reason: String| Refused::because(format_args!("--port {reason}"));
+    Port::open(&find(name).map_err(|error| refused(error.to_string()))?, baud).map_err(refused)
+}
+
+/// The emulated board, started.
+fn emulated(options: &Options, headless: bool) -> anyhow::Result<Source<'_>> {
     let (toolchain, _) = toolchain::set_up().map_err(Refused::because)?;
     let window = options.window.then(|| Window::find(toolchain.qemu())).transpose();
     let window = window.map_err(|error| Refused::because(format_args!("--window: {error}")))?;
-    let elf = toolchain.build_for(options.board)?;
-    let recording = options.record.as_deref().map(Recording::create).transpose();
-    let recording = recording.map_err(|error| Refused::because(format_args!("--record: {error:#}")))?;
-    let stage = Stage { options, toolchain, elf, window };
-    let on_terminal = stdout().is_terminal() && stdin().is_terminal();
-    let run = if options.headless || !on_terminal { headless::run } else { live::run };
-    run(&stage, recording)
-}
-
-/// What went wrong, as the demonstration says it.
-fn broken(error: QemuError) -> anyhow::Error {
-    anyhow::Error::msg(error.to_string())
+    let board = options.board;
+    let seconds = options.seconds.unwrap_or(headless::DEFAULT_SECONDS);
+    let settings = Settings {
+        qemu: toolchain.qemu(),
+        board,
+        elf: &toolchain.build_for(board)?,
+        debugger: true,
+        clock: Clock::Real,
+        window,
+        limit: if headless { LIMIT.0 + Duration::from_secs_f64(LIMIT.1 * seconds) } else { LIVE_LIMIT },
+    };
+    if headless {
+        return Ok(Source::Lockstep(Lockstep::start(&settings).map_err(broken)?, board));
+    }
+    Ok(Source::Live(Machine::start(&settings).map_err(broken)?, board))
 }

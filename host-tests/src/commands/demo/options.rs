@@ -2,28 +2,37 @@
 
 use std::path::PathBuf;
 
-use clap::Parser;
+use clap::{Parser, value_parser};
+use firmware::config::BAUD;
 use firmware::scenes::SceneName;
 
 use crate::console::cli::choice;
 use crate::emulator::boards::{BOARDS, Board};
 
-/// Shows the double pendulum on an emulated board's panel, live in the terminal.
+/// Shows the double pendulum on a board's panel, live in the terminal, each frame compared with the host's own.
+///
+/// A panel that the host cannot see is redrawn from the numbers that the board sends.
 #[derive(Clone, Debug, Parser)]
 #[command(
     name = "cargo demo",
     after_help = "Keys: up/down mass ratio, left/right start angle, space restart, tab next scene, p pause, . step, q quit\n\n\
+                  A board in the hand: cargo demo --port /dev/ttyUSB0\n\
                   Example without a terminal: cargo demo --scene butterfly --headless --seconds 10 --record butterfly.gif"
 )]
 pub struct Options {
     /// The board
     #[arg(long, value_name = "NAME", default_value = BOARDS[0].name,
-          value_parser = choice(BOARDS.iter().filter(|board| board.has_panel), |board| board.name))]
+          value_parser = choice(BOARDS.iter(), |board| board.name))]
     pub board: &'static Board,
-    /// The scene
-    #[arg(long, value_name = "NAME", default_value = SceneName::Page.name(), 
-          value_parser = choice(SceneName::ALL.iter().copied(), SceneName::name))]
-    pub scene: SceneName,
+    /// Not an emulated board but the one at this serial port; `auto` finds it by its USB id
+    #[arg(long, value_name = "PATH", conflicts_with_all = ["board", "window"])]
+    pub port: Option<String>,
+    /// Bits per second of that port
+    #[arg(long, value_name = "N", default_value_t = BAUD, requires = "port", value_parser = value_parser!(u32).range(1..))]
+    pub baud: u32,
+    /// The scene [default: what the board plays, page when it is switched on]
+    #[arg(long, value_name = "NAME", value_parser = choice(SceneName::ALL.iter().copied(), SceneName::name))]
+    pub scene: Option<SceneName>,
     /// Run without a terminal: as fast as it goes, repeatable to the bit, with a summary at the end
     #[arg(long, conflicts_with = "window")]
     pub headless: bool,

@@ -4,11 +4,13 @@ use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
 use firmware::config::TICK_RATE;
-use firmware::protocol::Frame;
+use firmware::protocol::{Frame, Status};
 
+use super::comparison::Comparison;
 use super::plot::{self, Moment};
 use super::summary::Summary;
-use crate::emulator::qemu::{Counts, LogLine};
+use crate::emulator::qemu::LogLine;
+use crate::link::Counts;
 
 /// How many energy errors are remembered, each the largest of half a second.
 const PAST: usize = 240;
@@ -34,6 +36,8 @@ pub struct Readings {
     pub angles: VecDeque<Moment>,
     /// Lines of the log, oldest first.
     pub lines: VecDeque<LogLine>,
+    /// The frames beside the host's own.
+    pub comparison: Comparison,
     /// The run so far.
     pub summary: Summary,
     /// Frames that the latest of the energy errors stands for.
@@ -42,7 +46,7 @@ pub struct Readings {
 }
 
 impl Readings {
-    /// Takes a frame that has just arrived; whether it is of another start than the one before.
+    /// Takes a frame that has just arrived; whether the board is to be asked what it plays.
     pub fn frame(&mut self, frame: Frame) -> bool {
         let first = self.summary.ticks() == 0;
         let started = first || frame.scene != self.frame.scene || frame.time < self.frame.time;
@@ -74,13 +78,24 @@ impl Readings {
         while self.arrivals.front().is_some_and(|&arrival| now - arrival > RATE_SPAN) {
             self.arrivals.pop_front();
         }
-        started
+        self.comparison.frame(&frame)
+    }
+
+    /// Takes what the board says that it plays: frames tell of rod 1 only.
+    pub fn status(&mut self, status: &Status) {
+        self.start = Some(status.degrees);
+        self.comparison.status(status);
     }
 
     /// Takes a line of the log.
     pub fn line(&mut self, line: LogLine) {
         self.summary.line(&line);
         push(&mut self.lines, line, LINES);
+    }
+
+    /// The report at the end.
+    pub fn report(&self) -> String {
+        format!("{}\nbits                  {}", self.summary.report(self.counts), self.comparison)
     }
 
     /// Frames that arrived in the last second.

@@ -14,7 +14,7 @@ use crate::emulator::qemu::{HEIGHT, Screenshot, WIDTH};
 /// Every pixel of the panel becomes a square of this many by as many.
 const SCALE: usize = 3;
 /// The board's ticks from one screenshot to the next: 60/2 = 30 frames per second.
-pub const TICKS_PER_FRAME: u32 = TICK_RATE / 30;
+const TICKS_PER_FRAME: u32 = TICK_RATE / 30;
 /// In a screenshot after the first: as it was. The palette's first colour after the greys.
 const UNCHANGED: u8 = 16;
 /// GIF counts time in hundredths of a second.
@@ -42,12 +42,18 @@ impl Recording {
         Ok(Self { encoder, pending: None, shown: None, start: 0 })
     }
 
+    /// Whether a screenshot of `tick` does not come too soon after the last.
+    pub fn is_due(&self, tick: u32) -> bool {
+        self.pending.as_ref().is_none_or(|(_, since)| tick.wrapping_sub(*since) >= TICKS_PER_FRAME)
+    }
+
     /// Takes the screenshot that the panel shows from `tick` on; one that comes too soon after the last is left out.
     pub fn add(&mut self, screenshot: Screenshot, tick: u32) -> anyhow::Result<()> {
-        match &self.pending {
-            None => self.start = tick,
-            Some((_, since)) if tick.wrapping_sub(*since) < TICKS_PER_FRAME => return Ok(()),
-            Some(_) => {}
+        if !self.is_due(tick) {
+            return Ok(());
+        }
+        if self.pending.is_none() {
+            self.start = tick;
         }
         self.flush(tick)?;
         self.pending = Some((screenshot, tick));

@@ -5,7 +5,8 @@ use std::fmt;
 use firmware::config::TICK_RATE;
 use firmware::protocol::Frame;
 
-use crate::emulator::qemu::{Counts, LogLine};
+use crate::emulator::qemu::LogLine;
+use crate::link::Counts;
 
 /// An energy error beyond this is no rounding or step error: the motion is wrong.
 const GREATEST_ENERGY_ERROR: f32 = 1e-2;

@@ -45,7 +45,8 @@ pub fn draw(frame: &mut Frame, board: &str, screenshot: &Screenshot, readings: &
         Layout::vertical([Constraint::Length(top), Constraint::Min(LOWER), Constraint::Length(KEYS)]).areas(area);
     let [left, side] = Layout::horizontal([Constraint::Length(width + FRAME), Constraint::Min(SIDE)]).areas(top);
 
-    let panel = Block::bordered().title(title(board, &readings.frame).bold());
+    let bits = format!(" {} ", readings.comparison);
+    let panel = Block::bordered().title(title(board, &readings.frame).bold()).title_bottom(bits);
     let inside = panel.inner(left);
     frame.render_widget(panel, left);
     let inside = Rect { width, height: (width / 4).min(inside.height), ..inside };

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use anyhow::{Result, ensure};
-use firmware::config::TICK_RATE;
+use firmware::config::{BAUD, TICK_RATE};
 use firmware::scenes::SceneName;
 
 use crate::commands::demo::{self, Options, record};
@@ -46,7 +46,9 @@ pub fn record(scene: SceneName, folder: &Path) -> Result<()> {
     complain(format_args!("cargo demo --scene {name} --headless --seconds {seconds} --record {}", path.display()));
     let options = Options {
         board: &BOARDS[0],
-        scene,
+        port: None,
+        baud: BAUD,
+        scene: Some(scene),
         headless: true,
         seconds: Some(seconds),
         record: Some(path),

@@ -9,13 +9,13 @@ use firmware::job::{Arithmetic, Formulation, Job, ON_BOARDS, Request, Row};
 use firmware::motion::settings::Settings;
 use firmware::protocol::Field;
 use firmware::protocol::{
-    Ask, AskPlan, Choose, Decoder, Frame, LinkError, MAX_FIELDS, MAX_WIRE, Message, Pause, Restart, Set, Simulate,
-    Step, frame,
+    Ask, AskPlan, Choose, Decoder, Frame, LinkError, MAX_FIELDS, MAX_WIRE, Message, Pause, Press, Restart, Set,
+    Simulate, Step, frame,
 };
 use firmware::scenes::SceneName;
 
 use super::Outcome;
-use crate::emulator::qemu::Received;
+use crate::link::Received;
 
 /// Steps of a request that are computed, so that an execution stays short.
 const MOST_STEPS: u32 = 24;
@@ -163,6 +163,7 @@ pub fn commands_seeds() -> Vec<Vec<u8>> {
     let scenes = SceneName::ALL.iter().map(|name| fields(&Choose { request: 2, scene: name.code() }));
     let scenes = scenes.map(|fields| one(Choose::KIND, fields));
     let others = [
+        one(Press::KIND, fields(&Press { request: 9, key: 3 })),
         one(Restart::KIND, fields(&Restart { request: 3 })),
         one(Pause::KIND, fields(&Pause { request: 4, paused: 1 })),
         one(Step::KIND, fields(&Step { request: 5, ticks: 3 })),

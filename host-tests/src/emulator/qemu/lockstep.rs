@@ -3,12 +3,13 @@
 use std::ops::Range;
 use std::path::Path;
 
-use firmware::protocol::Frame;
+use firmware::protocol::{Frame, Message};
 use object::{Object, ObjectSection, SectionKind};
 
 use super::gdb::Debugger;
 use super::machine::{Clock, Machine, Settings};
 use super::{QemuError, Screenshot};
+use crate::link::Received;
 
 /// The instruction `wfi`: sleep until an interrupt.
 const WFI: u16 = 0xBF30;
@@ -38,10 +39,19 @@ impl Lockstep {
 
     /// Runs to the next frame.
     pub fn next_frame(&mut self) -> Result<Frame, QemuError> {
+        let messages = self.run_to_frame()?;
+        messages.iter().rev().find_map(Received::read).ok_or(QemuError::NoFrame)
+    }
+
+    /// Runs to the next frame: all messages up to it.
+    pub fn run_to_frame(&mut self) -> Result<Vec<Received>, QemuError> {
+        let mut messages = Vec::new();
         for _ in 0..PATIENCE {
             self.debugger.run_to_sleep().map_err(|error| self.machine.explain(error))?;
-            if let Some(frame) = self.machine.serial.arrived().last() {
-                return Ok(frame);
+            let before = messages.len();
+            messages.extend(self.machine.serial.all_arrived());
+            if messages[before..].iter().any(|message| message.kind == Frame::KIND) {
+                return Ok(messages);
             }
         }
         Err(QemuError::NoFrame)

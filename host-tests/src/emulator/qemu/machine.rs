@@ -8,10 +8,12 @@ use std::process::{Command, ExitStatus, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
 
+use firmware::app::controls::Key;
+
 use super::folder::Folder;
 use super::qmp::Monitor;
 use super::serial::Pipes;
-use super::{Key, Log, LogLine, QemuError, Screenshot, Serial, Window};
+use super::{Log, LogLine, QemuError, Screenshot, Serial, Window};
 use crate::emulator::boards::Board;
 use crate::emulator::process::{self, Running};
 
@@ -149,7 +151,7 @@ impl Machine {
     /// Presses and lets go of every button once, too early for the firmware to take it for a command: only then does
     /// this board's emulated hardware tell a released button from a pressed one.
     pub fn wake_keys(&mut self) -> Result<(), QemuError> {
-        Key::ALL.into_iter().try_for_each(|key| {
+        Key::ALL.iter().try_for_each(|&key| {
             self.set_key(key, true)?;
             self.set_key(key, false)
         })

@@ -4,38 +4,20 @@ use std::io::{BufRead, BufReader};
 use std::os::unix::net::UnixStream;
 use std::path::Path;
 
+use firmware::app::controls::Key;
 use qapi::qmp::{InputEvent, InputKeyEvent, KeyValue, QKeyCode};
 use qapi::{Command, ExecuteError, Qmp, Stream, qmp};
 
 use super::{QemuError, Screenshot};
 
-/// The board's buttons, which QEMU knows as keys.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Key {
-    /// Up.
-    Up,
-    /// Down.
-    Down,
-    /// Left.
-    Left,
-    /// Right.
-    Right,
-    /// Select, QEMU's left control key.
-    Select,
-}
-
-impl Key {
-    /// All five.
-    pub const ALL: [Self; 5] = [Self::Up, Self::Down, Self::Left, Self::Right, Self::Select];
-
-    fn code(self) -> QKeyCode {
-        match self {
-            Self::Up => QKeyCode::up,
-            Self::Down => QKeyCode::down,
-            Self::Left => QKeyCode::left,
-            Self::Right => QKeyCode::right,
-            Self::Select => QKeyCode::ctrl,
-        }
+/// The key that QEMU knows a button of the board as; select is the left control key.
+fn code(key: Key) -> QKeyCode {
+    match key {
+        Key::Up => QKeyCode::up,
+        Key::Down => QKeyCode::down,
+        Key::Left => QKeyCode::left,
+        Key::Right => QKeyCode::right,
+        Key::Select => QKeyCode::ctrl,
     }
 }
 
@@ -67,7 +49,7 @@ impl Monitor {
 
     /// Presses a button, or lets go of it. Lost while the machine stands still.
     pub(super) fn set_key(&mut self, key: Key, down: bool) -> Result<(), QemuError> {
-        let key = KeyValue::qcode(key.code().into());
+        let key = KeyValue::qcode(code(key).into());
         let events = vec![InputEvent::key(InputKeyEvent { down, key }.into())];
         self.execute(qmp::input_send_event { device: None, head: None, events })
     }

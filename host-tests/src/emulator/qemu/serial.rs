@@ -9,7 +9,7 @@ use std::sync::mpsc::{self, Receiver, Sender};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
 
-use firmware::protocol::{Decoder, Frame, MAX_WIRE, Message, Restarted, encode};
+use firmware::protocol::{MAX_WIRE, Message, encode};
 use nix::errno::Errno;
 use nix::fcntl::OFlag;
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
@@ -17,33 +17,7 @@ use nix::sys::stat::Mode;
 use nix::unistd::mkfifo;
 
 use super::QemuError;
-
-/// What the link has been through.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counts {
-    /// Intact messages.
-    pub messages: u64,
-    /// Messages damaged on the way: wrong CRC, framing, length or version.
-    pub damaged: u64,
-    /// Frames whose sequence number was never seen.
-    pub lost: u64,
-}
-
-/// An intact message of any kind.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Received {
-    /// Tells which message it is.
-    pub kind: u8,
-    /// Its fields as they came.
-    pub fields: Vec<u8>,
-}
-
-impl Received {
-    /// The message, if it is an `M`.
-    pub fn read<M: Message>(&self) -> Option<M> {
-        if self.kind == M::KIND { M::read(&self.fields) } else { None }
-    }
-}
+use crate::link::{Counts, Inbox, Received};
 
 /// The host's end of UART0. A thread of its own always reads, for QEMU stands still while nobody does.
 ///
@@ -81,13 +55,7 @@ impl Serial {
         let sender = File::options().write(true).open(pipes.sender).map_err(broken)?;
         let watched = pipes.receiver.try_clone().map_err(broken)?;
         let (channel, messages) = mpsc::channel();
-        let reader = Reader {
-            pipe: pipes.receiver,
-            decoder: Decoder::default(),
-            counts: Counts::default(),
-            expected: None,
-            channel: Some(channel),
-        };
+        let reader = Reader { pipe: pipes.receiver, inbox: Inbox::default(), channel: Some(channel) };
         let reader = Arc::new(Mutex::new(reader));
         let shared = Arc::downgrade(&reader);
         thread::spawn(move || {
@@ -122,7 +90,7 @@ impl Serial {
 
     /// What the link has been through.
     pub fn counts(&self) -> Counts {
-        lock(&self.reader).counts
+        lock(&self.reader).inbox.counts()
     }
 
     /// Reads nothing until the result is dropped: what the board sends fills the pipe, and then its port.
@@ -149,10 +117,7 @@ pub struct Stopped<'a>(#[expect(dead_code, reason = "held, never used")] MutexGu
 #[derive(Debug)]
 struct Reader {
     pipe: File,
-    decoder: Decoder,
-    counts: Counts,
-    /// The sequence number the next frame should have.
-    expected: Option<u32>,
+    inbox: Inbox,
     /// Gone once QEMU has ended, which ends the messages.
     channel: Option<Sender<Received>>,
 }
@@ -163,7 +128,14 @@ impl Reader {
         let mut buffer = [0; 4096];
         loop {
             match self.pipe.read(&mut buffer) {
-                Ok(count @ 1..) => buffer[..count].iter().for_each(|&byte| self.take(byte)),
+                Ok(count @ 1..) => {
+                    for message in buffer[..count].iter().filter_map(|&byte| self.inbox.take(byte)) {
+                        if let Some(channel) = &self.channel {
+                            // Fails only while the machine is being dropped.
+                            let _ = channel.send(message);
+                        }
+                    }
+                }
                 Err(error) if error.kind() == ErrorKind::Interrupted => {}
                 Err(error) if error.kind() == ErrorKind::WouldBlock => return true,
                 Ok(_) | Err(_) => {
@@ -171,29 +143,6 @@ impl Reader {
                     return false;
                 }
             }
-        }
-    }
-
-    fn take(&mut self, byte: u8) {
-        let message = match self.decoder.push(byte) {
-            None => return,
-            Some(Err(_)) => {
-                self.counts.damaged += 1;
-                return;
-            }
-            Some(Ok((kind, fields))) => Received { kind, fields: fields.to_vec() },
-        };
-        self.counts.messages += 1;
-        if let Some(Frame { sequence, .. }) = message.read() {
-            self.counts.lost += u64::from(self.expected.map_or(0, |expected| sequence.wrapping_sub(expected)));
-            self.expected = Some(sequence.wrapping_add(1));
-        }
-        if message.kind == Restarted::KIND {
-            self.expected = Some(0);
-        }
-        if let Some(channel) = &self.channel {
-            // Fails only while the machine is being dropped.
-            let _ = channel.send(message);
         }
     }
 }
@@ -215,22 +164,4 @@ fn broken(source: std::io::Error) -> QemuError {
 /// A panic elsewhere must not stop the reading, so a poisoned lock is as good as any.
 fn lock(reader: &Mutex<Reader>) -> MutexGuard<'_, Reader> {
     reader.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Frames missing between two are counted, also where the sequence begins again at 0.
-    #[test]
-    fn missing_frames_are_counted_over_the_wrap() {
-        let pipe = File::open("/dev/null").unwrap();
-        let (decoder, counts) = (Decoder::default(), Counts::default());
-        let mut reader = Reader { pipe, decoder, counts, expected: None, channel: None };
-        for sequence in [u32::MAX - 2, u32::MAX - 1, 1, 2, 5] {
-            let frame = Frame { sequence, ..Frame::default() };
-            encode(&frame, &mut [0; MAX_WIRE]).iter().for_each(|&byte| reader.take(byte));
-        }
-        assert_eq!(reader.counts, Counts { messages: 5, damaged: 0, lost: 4 });
-    }
 }

@@ -1,0 +1,134 @@
+//! A board being watched, with a terminal or without: its messages are taken, its scene chosen, its panel recorded.
+
+use firmware::protocol::{Ask, Choose, Frame, Status};
+use firmware::scenes::SceneName;
+
+use super::Options;
+use super::readings::Readings;
+use super::record::{Recording, save};
+use super::source::Source;
+use crate::emulator::qemu::Screenshot;
+
+/// One run.
+pub struct Session<'a> {
+    options: &'a Options,
+    /// The board.
+    pub source: Source<'a>,
+    /// What it has sent.
+    pub readings: Readings,
+    /// Its panel.
+    pub screenshot: Screenshot,
+    recording: Option<Recording>,
+    /// The latest tick, and that of the first frame of the scene that was asked for.
+    now: Option<u32>,
+    begun: Option<u32>,
+    /// What the ticks of the board's clock lack since it was last restarted.
+    before: u32,
+}
+
+impl<'a> Session<'a> {
+    /// Of a board that has just been started, or found.
+    pub fn new(options: &'a Options, source: Source<'a>, recording: Option<Recording>) -> Self {
+        let (readings, screenshot) = (Readings::default(), Screenshot::blank());
+        Self { options, source, readings, screenshot, recording, now: None, begun: None, before: 0 }
+    }
+
+    /// Takes what the board has sent. It is asked what it plays as often as the comparison wants to know.
+    pub fn hear(&mut self) -> anyhow::Result<()> {
+        for message in self.source.messages()? {
+            if let Some(status) = message.read::<Status>() {
+                self.readings.status(&status);
+            }
+            if let Some(frame) = message.read() {
+                self.frame(&frame)?;
+            }
+        }
+        while let Some(frame) = self.readings.comparison.follow() {
+            if !self.source.has_panel() {
+                self.screenshot = self.readings.comparison.panel(&frame);
+                self.record(self.tick(&frame))?;
+            }
+        }
+        self.readings.counts = self.source.counts();
+        Ok(())
+    }
+
+    fn frame(&mut self, frame: &Frame) -> anyhow::Result<()> {
+        match self.now {
+            None => self.options.scene.map_or(Ok(()), |scene| self.play_after(frame, scene))?,
+            // The board counts from 0 again.
+            Some(now) if (self.tick(frame).wrapping_sub(now) as i32) < 0 => {
+                self.before = now.wrapping_add(1).wrapping_sub(tick(frame));
+            }
+            Some(_) => {}
+        }
+        let now = self.tick(frame);
+        self.now = Some(now);
+        if self.options.scene.is_none_or(|scene| scene.code() == frame.scene) {
+            self.begun.get_or_insert(now);
+        }
+        if self.readings.frame(*frame) { self.source.send(&Ask { request: 0 }) } else { Ok(()) }
+    }
+
+    /// Looks at the panel, where it can be seen.
+    pub fn look(&mut self) -> anyhow::Result<()> {
+        if let Some(panel) = self.source.panel()? {
+            self.screenshot = panel;
+            self.now.map_or(Ok(()), |now| self.record(now))?;
+        }
+        Ok(())
+    }
+
+    /// Whether the animation wants a screenshot of the latest tick.
+    pub fn is_recording_due(&self) -> bool {
+        self.begun.and(self.now).zip(self.recording.as_ref()).is_some_and(|(now, recording)| recording.is_due(now))
+    }
+
+    fn record(&mut self, tick: u32) -> anyhow::Result<()> {
+        let has_begun = self.begun.is_some_and(|begun| tick.wrapping_sub(begun) as i32 >= 0);
+        let recording = self.recording.as_mut().filter(|_| has_begun);
+        recording.map_or(Ok(()), |recording| recording.add(self.screenshot.clone(), tick))
+    }
+
+    /// The tick that a frame belongs to, those before restarts of the board included.
+    fn tick(&self, frame: &Frame) -> u32 {
+        tick(frame).wrapping_add(self.before)
+    }
+
+    /// Ticks since the first frame of the scene that was asked for, that one included.
+    pub fn ticks(&self) -> u32 {
+        self.begun.zip(self.now).map_or(0, |(begun, now)| now.wrapping_sub(begun).wrapping_add(1))
+    }
+
+    /// Has the board play a scene, unless it does already.
+    pub fn play(&mut self, scene: SceneName) -> anyhow::Result<()> {
+        let last = self.readings.frame;
+        self.play_after(&last, scene)
+    }
+
+    fn play_after(&mut self, last: &Frame, scene: SceneName) -> anyhow::Result<()> {
+        if last.scene == scene.code() {
+            return Ok(());
+        }
+        self.source.send(&Choose { request: 0, scene: scene.code() })
+    }
+
+    /// What is not well; empty if all is. A board in the hand may drop frames, and its cable may flip bits: both are told, and
+    /// neither is a fault.
+    pub fn faults(&self) -> Vec<String> {
+        let Readings { summary, comparison, counts, .. } = &self.readings;
+        let found = if self.source.is_port() { vec![] } else { summary.faults(*counts) };
+        found.into_iter().chain(comparison.difference().map(|difference| difference.to_string())).collect()
+    }
+
+    /// Completes the files that were asked for.
+    pub fn finish(&mut self) -> anyhow::Result<()> {
+        self.recording.take().map_or(Ok(()), Recording::finish)?;
+        self.options.screenshot.as_deref().map_or(Ok(()), |path| save(&self.screenshot, path))
+    }
+}
+
+/// The tick of the board's clock that a frame belongs to.
+fn tick(frame: &Frame) -> u32 {
+    frame.sequence.wrapping_add(frame.dropped)
+}

@@ -1,0 +1,128 @@
+//! Bytes that arrive, cut into messages and counted.
+
+use firmware::protocol::{Decoder, Frame, LinkError, Message, Restarted};
+
+/// What the link has been through.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Intact messages.
+    pub messages: u64,
+    /// Messages damaged on the way: wrong CRC, framing, length or version.
+    pub damaged: u64,
+    /// Frames whose sequence number was never seen.
+    pub lost: u64,
+    /// Times that the board began to count its frames anew.
+    pub restarts: u64,
+}
+
+/// An intact message of any kind.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Received {
+    /// Tells which message it is.
+    pub kind: u8,
+    /// Its fields as they came.
+    pub fields: Vec<u8>,
+}
+
+impl Received {
+    /// The message, if it is an `M`.
+    pub fn read<M: Message>(&self) -> Option<M> {
+        if self.kind == M::KIND { M::read(&self.fields) } else { None }
+    }
+}
+
+/// Cuts what arrives into messages.
+#[derive(Debug, Default)]
+pub struct Inbox {
+    decoder: Decoder,
+    counts: Counts,
+    /// The sequence number the next frame should have.
+    expected: Option<u32>,
+    /// What was wrong with the last damaged message.
+    damage: Option<LinkError>,
+    /// What comes may begin in the middle of a message.
+    joins: bool,
+}
+
+impl Inbox {
+    /// Takes a byte; the message that it ends.
+    pub fn take(&mut self, byte: u8) -> Option<Received> {
+        let message = match self.decoder.push(byte)? {
+            Ok((kind, fields)) => Received { kind, fields: fields.to_vec() },
+            Err(error) => {
+                self.counts.damaged += u64::from(!std::mem::take(&mut self.joins));
+                self.damage = Some(error);
+                return None;
+            }
+        };
+        self.joins = false;
+        self.counts.messages += 1;
+        if let Some(Frame { sequence, .. }) = message.read() {
+            let missing = self.expected.map_or(0, |expected| sequence.wrapping_sub(expected));
+            // One that lies behind is of a board that has started to count anew.
+            let restarted = missing > u32::MAX / 2;
+            self.counts.restarts += u64::from(restarted);
+            self.counts.lost += if restarted { 0 } else { missing.into() };
+            self.expected = Some(sequence.wrapping_add(1));
+        }
+        if message.kind == Restarted::KIND {
+            self.counts.restarts += 1;
+            self.expected = Some(0);
+        }
+        Some(message)
+    }
+
+    /// A connection begins, to a board that may be in the middle of a message and of its count.
+    pub fn join(&mut self) {
+        (self.decoder, self.expected, self.damage, self.joins) = (Decoder::default(), None, None, true);
+    }
+
+    /// What the link has been through.
+    pub fn counts(&self) -> Counts {
+        self.counts
+    }
+
+    /// What was wrong with the last damaged message.
+    pub fn damage(&self) -> Option<LinkError> {
+        self.damage
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use firmware::protocol::{MAX_WIRE, encode};
+
+    use super::*;
+
+    fn counts(messages: impl IntoIterator<Item = u32>) -> Counts {
+        let mut inbox = Inbox::default();
+        for sequence in messages {
+            let frame = Frame { sequence, ..Frame::default() };
+            encode(&frame, &mut [0; MAX_WIRE]).iter().for_each(|&byte| drop(inbox.take(byte)));
+        }
+        inbox.counts()
+    }
+
+    #[test]
+    fn missing_frames_are_counted_over_the_wrap() {
+        let sequences = [u32::MAX - 2, u32::MAX - 1, 1, 2, 5];
+        assert_eq!(counts(sequences), Counts { messages: 5, lost: 4, ..Counts::default() });
+    }
+
+    #[test]
+    fn who_joins_in_the_middle_of_a_message_finds_nothing_damaged() {
+        let mut inbox = Inbox::default();
+        inbox.join();
+        let mut wire = [0; MAX_WIRE];
+        let wire = encode(&Frame::default(), &mut wire);
+        let flipped = wire.iter().enumerate().map(|(index, byte)| if index == 9 { byte ^ 0x10 } else { *byte });
+        let stream = wire[20..].iter().copied().chain(wire.iter().copied()).chain(flipped);
+        assert_eq!(stream.filter_map(|byte| inbox.take(byte)).count(), 1);
+        assert_eq!(inbox.counts(), Counts { messages: 1, damaged: 1, ..Counts::default() });
+    }
+
+    #[test]
+    fn a_board_switched_off_and_on_has_lost_no_frames() {
+        assert_eq!(counts([700, 701, 0, 1]), Counts { messages: 4, restarts: 1, ..Counts::default() });
+    }
+}

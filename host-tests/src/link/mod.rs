@@ -1,0 +1,9 @@
+//! The serial link to a board, emulated or real: bytes to messages, and the port that they come through.
+
+mod find;
+mod inbox;
+mod port;
+
+pub use find::{AUTO, NoPort, find};
+pub use inbox::{Counts, Inbox, Received};
+pub use port::Port;
