@@ -8,7 +8,7 @@ use firmware::motion::settings::Settings;
 use firmware::scenes::SceneName;
 use host_tests::emulator::host::Show;
 use host_tests::oracle::reference::Reference;
-use host_tests::oracle::tolerances::{CLOSED, CLOSED_FORM, NOT_CLOSED};
+use host_tests::oracle::tolerances::{CLOSED, CLOSED_FORM, NOT_CLOSED, RATIO};
 
 /// Figures 3 to 5 and their mass ratios.
 const SMALL: [(SceneName, f64); 3] =
@@ -75,7 +75,7 @@ fn beats_close_when_their_frequencies_say_so_and_the_exact_motion_does_not() {
     for (name, mass_ratio, [fast, slow]) in BEATS {
         let settings = name.first_settings();
         let [w1, w2] = frequencies(mass_ratio, 9.81, 1.0);
-        assert!((w1 / w2 - fast / slow).abs() < 1e-12, "{name:?}: {}", w1 / w2);
+        assert!((w1 / w2 - fast / slow).abs() < RATIO, "{name:?}: {}", w1 / w2);
         let period = fast * TAU / w1;
 
         let modes = settings.pendulum().and_then(|pendulum| pendulum.modes()).expect("a pendulum");

@@ -17,18 +17,25 @@ fn a_closed_output_ends_every_command_quietly() -> io::Result<()> {
     toolchain::ready().unwrap_or_else(|missing| panic!("{missing}"));
     let folder = tempfile::tempdir()?;
     let figures = ["--folder", folder.path().to_str().expect("text")];
-    let commands: [(&str, &[&str]); 11] = [
+    let commands: [(&str, &[&str]); 15] = [
         (env!("CARGO_BIN_EXE_count"), &["f32-linear-direction", "--on", "lm3s6965evb", "--steps", "4"]),
         (env!("CARGO_BIN_EXE_count"), &["f32-linear-direction", "--on", "lm3s6965evb", "--steps", "4", "--listing"]),
         (env!("CARGO_BIN_EXE_count"), &["--help"]),
         (env!("CARGO_BIN_EXE_demo"), &["--headless", "--seconds", "0.1"]),
         (env!("CARGO_BIN_EXE_figures"), &figures),
+        // Prints nothing of its own but this.
+        (env!("CARGO_BIN_EXE_flash-f4"), &["--help"]),
+        (env!("CARGO_BIN_EXE_fw"), &["mps2-an386", "--seconds", "2"]),
         (env!("CARGO_BIN_EXE_fuzz"), &["--executions", "10"]),
         (env!("CARGO_BIN_EXE_plan"), &["--angles", "1,1"]),
         (env!("CARGO_BIN_EXE_plan"), &["--study", "1"]),
+        // Takes minutes to print more.
+        (env!("CARGO_BIN_EXE_report"), &["--help"]),
         (env!("CARGO_BIN_EXE_setup"), &[]),
         (env!("CARGO_BIN_EXE_simulate"), &["--angles", "1,1"]),
         (env!("CARGO_BIN_EXE_soak"), &["--board", "mps2-an386", "--scenes", "0", "--physics", "1"]),
+        // What follows is cargo's.
+        (env!("CARGO_BIN_EXE_verify"), &["--help"]),
     ];
     for (command, arguments) in commands {
         let output = Command::new(command).args(arguments).stdout(closed()?).stderr(Stdio::piped()).output()?;

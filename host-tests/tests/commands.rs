@@ -3,6 +3,7 @@
 
 use std::collections::BTreeSet;
 use std::fs;
+use std::path::Path;
 use std::process::Command;
 
 use firmware::protocol::{Frame, Message, Planned, Restarted, Sample, Simulate, Status, StepTooLong};
@@ -22,6 +23,35 @@ fn ours() -> BTreeSet<String> {
     let config = read(".cargo/config.toml");
     let aliases = config.lines().skip_while(|line| *line != "[alias]").skip(1).take_while(|line| !line.is_empty());
     aliases.filter_map(|line| Some(line.split_once(" = ")?.0.to_owned())).collect()
+}
+
+/// What each of our commands says on `--help`.
+fn helps() -> Vec<(String, String)> {
+    let config = read(".cargo/config.toml");
+    let help = |line: &str| {
+        let (name, command) = line.split_once(" = \"run ")?;
+        let binary = command.split(' ').skip_while(|word| *word != "--bin").nth(1)?;
+        let program = Path::new(env!("CARGO_BIN_EXE_demo")).with_file_name(binary);
+        let output = Command::new(program).arg("--help").output().unwrap_or_else(|error| panic!("{name}: {error}"));
+        Some((name.to_owned(), String::from_utf8(output.stdout).expect("text")))
+    };
+    config.lines().filter_map(help).collect()
+}
+
+/// The command's own name, and if it has options, examples with no others.
+#[test]
+fn every_help_has_examples_of_what_it_lists() {
+    let helps = helps();
+    assert_eq!(helps.len(), ours().len());
+    for (name, help) in helps {
+        let usage = help.lines().find_map(|line| line.strip_prefix("Usage: cargo ")).unwrap_or_default();
+        assert_eq!(usage.split_whitespace().next(), Some(&*name), "{help}");
+        let (listed, examples) = help.split_once("\nExample").unwrap_or((&help, ""));
+        assert!(examples.contains(&format!("cargo {name}")) || !usage.contains("[OPTIONS]"), "no example of {name}");
+        for option in examples.split_whitespace().filter(|word| word.starts_with("--")) {
+            assert!(listed.split_whitespace().any(|word| word == option), "cargo {name} {option}");
+        }
+    }
 }
 
 /// The names of cargo's own commands: what it knows where there is no project and nothing is installed.

@@ -178,5 +178,8 @@ fn the_printed_path_of_figure_7_does_not_depend_on_the_step() {
     }
     // Its energy is not kept.
     let [least, greatest] = coarse.energies;
-    assert!(least < -40.0 && greatest > 60.0, "{least} J to {greatest} J");
+    assert!(
+        tolerances::MISPRINT_SWING.iter().all(|energy| (least..greatest).contains(energy)),
+        "{least} J to {greatest} J"
+    );
 }

@@ -45,7 +45,7 @@ fn run(rhs: impl Fn(&[f64; 4]) -> [f64; 4]) -> Summary {
 #[test]
 fn both_start_at_62_9_joules() {
     let (pendulum, start) = figure_7();
-    assert!((pendulum.energy(&start) - 62.9).abs() < 0.05);
+    assert!((pendulum.energy(&start) - 62.9).abs() < tolerances::LAST_DIGIT_OF_62_9);
 }
 
 #[test]

@@ -58,6 +58,9 @@ fn bad_input_is_refused_in_one_line_that_names_option_and_value() {
         ("--rate 70000", "--rate", "70000"),
         ("--planning 0", "--planning", "0"),
         ("--target m7", "--target", "m7"),
+        ("--study -1", "--study", "-1 is not in 1.."),
+        ("--fit 0", "--fit", "0 is not in 1.."),
+        ("--seed -1", "--seed", "-1 is not in 0.."),
     ] {
         let output = plan(arguments);
         let error = String::from_utf8(output.stderr).expect("text");

@@ -14,6 +14,7 @@ use firmware::protocol::{MAX_WIRE, Pause, encode};
 use firmware::scenes::{AnyScene, SceneName};
 use host_tests::emulator::host::{Show, sheets};
 use host_tests::oracle::snapshot;
+use host_tests::oracle::tolerances::SHOWN_HEIGHT;
 
 /// The ticks after which each scene is pictured: one second, when all is in view, and four.
 const PICTURED: [u32; 2] = [60, 240];
@@ -93,7 +94,7 @@ fn what_is_planned_is_what_is_shown() {
         assert_eq!((method, steps), (Method::Direction, STEPS_PER_TICK), "{}", name.name());
         // Its greatest swing, 12 degrees, is 21.5 pixels long.
         let expected = 4.0 * 21.5 / 12.0_f32.to_radians();
-        assert!((height / expected - 1.0).abs() < 1e-3, "{}: {height} for {expected}", name.name());
+        assert!((height / expected - 1.0).abs() < SHOWN_HEIGHT, "{}: {height} for {expected}", name.name());
     }
     assert_eq!(shown(SceneName::Frequencies), None);
 }

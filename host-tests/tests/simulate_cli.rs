@@ -59,14 +59,13 @@ fn digits_read_back_exactly_and_bits_say_the_same() {
 
 #[test]
 fn models_agree_where_they_must() {
-    // Rounding and, for the linear one, the cubic term of a swing of 1e-4 rad: relative 1e-9.
     let options = "--masses 1,2 --lengths 0.5,0.5 --angles 1e-4,1e-4 --step 1/1024 --until 1 --every 1";
     let general = &rows(&format!("{options} --model general"))[2];
     for model in ["equal-rods", "linear"] {
         let other = &rows(&format!("{options} --model {model}"))[2];
         for column in 1..3 {
             let difference = number(&general[column]) - number(&other[column]);
-            assert!(difference.abs() < 1e-11, "{model}, column {column}: {difference:e}");
+            assert!(difference.abs() < tolerances::SMALL_SWING, "{model}, column {column}: {difference:e}");
         }
     }
 }
@@ -77,11 +76,12 @@ fn every_form_moves_as_the_canonical_state_does() {
     let options = "--masses 1,2.75 --angles 171,171 --degrees --step 1/4096 --until 3 --every 1";
     let canonical = &rows(&format!("{options} --arithmetic f64"))[4];
     assert!(number(&canonical[2]) > std::f64::consts::PI, "it does not turn over: {canonical:?}");
+    let [roundings, method, single] = tolerances::FIGURE_7_FORMS;
     for (form, difference) in [
-        ("f64 --form angle", 1e-10),    // the same method: its roundings, grown by chaos
-        ("f64 --form direction", 1e-7), // the method's own error, grown by chaos
-        ("f32-compensated", 1e-4),      // roundings of 6e-8, grown by chaos
-        ("f32-compensated --form direction", 1e-4),
+        ("f64 --form angle", roundings),
+        ("f64 --form direction", method),
+        ("f32-compensated", single),
+        ("f32-compensated --form direction", single),
     ] {
         let other = &rows(&format!("{options} --arithmetic {form}"))[4];
         for column in 1..3 {
@@ -101,8 +101,7 @@ fn order_8_needs_few_steps() {
         for column in 1..3 {
             let apart = (number(&exact[column]) - number(&other[column])).abs();
             println!("{form}, column {column}: {apart:e}");
-            // RK4's own error is 5e-12 with the fine steps and would be 2e-5 with these
-            assert!(apart < 1e-10, "{form}, column {column}: {apart:e}");
+            assert!(apart < tolerances::FIGURE_7_ORDER_8, "{form}, column {column}: {apart:e}");
         }
     }
 }

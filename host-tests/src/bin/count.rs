@@ -20,9 +20,14 @@ const GRAVITY: f32 = 9.81;
 /// Every instruction executed is logged: many more would take hours.
 const MOST_STEPS: i64 = 65_536;
 
+const EXAMPLES: &str = "Examples:
+  cargo count                                             every arithmetic on both cores
+  cargo count f32-compensated --on lm3s6965evb-m4 --listing
+  cargo count --elf firmware.elf --function step --seconds 5";
+
 /// Counts executed instructions (exact) and Cortex-M cycles (an estimate from the published instruction timings).
 #[derive(Debug, Parser)]
-#[command(name = "cargo count")]
+#[command(name = "cargo count", after_help = EXAMPLES)]
 struct Arguments {
     /// Only arithmetics whose name contains this
     #[arg(default_value = "")]
@@ -38,8 +43,8 @@ struct Arguments {
     #[arg(long, value_name = "NAME", requires = "elf")]
     function: Option<String>,
     /// How long that program may run, s
-    #[arg(long, value_name = "N", default_value_t = 600, requires = "elf", value_parser = clap::value_parser!(u64).range(1..))]
-    seconds: u64,
+    #[arg(long, value_name = "N", default_value_t = 600, requires = "elf", value_parser = clap::value_parser!(u32).range(1..))]
+    seconds: u32,
     /// Steps to average over; else 256, or fewer of a costly arithmetic
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=MOST_STEPS))]
     steps: Option<u32>,
@@ -190,7 +195,7 @@ fn list(target: &Target, request: &Request) -> anyhow::Result<()> {
 fn count_calls(toolchain: &Toolchain, arguments: &Arguments, elf: &Path, function: &str) -> anyhow::Result<()> {
     let board = arguments.on.unwrap_or(&BOARDS[1]);
     let target = Target::of(toolchain, board, elf.to_owned()).map_err(Refused::because)?;
-    let limit = Duration::from_secs(arguments.seconds);
+    let limit = Duration::from_secs(arguments.seconds.into());
     let CallCosts { function, calls } = calls_of(&target, function, limit).map_err(Refused::because)?;
     let number = calls.len();
     say(format_args!("{} on {}, from its first instruction to its return: calls {number}", function.name, board.name))?;

@@ -12,7 +12,7 @@ use host_tests::console::cli::{self, say};
 
 /// Draws the book's figures 2 to 5 and 7 from the kernel, as SVG and PNG, and the panel's frame of every scene.
 #[derive(Debug, Parser)]
-#[command(name = "cargo figures")]
+#[command(name = "cargo figures", after_help = "Example: cargo figures --folder /tmp/figures")]
 struct Options {
     /// Also record an animation of every scene, each by the `cargo demo` that is printed as it begins
     #[arg(long)]

@@ -18,7 +18,7 @@ const LIMIT: Duration = Duration::from_secs(30);
 
 /// Builds the firmware of the STM32F405, flashes it through a debug probe and shows its log until Ctrl-C.
 #[derive(Debug, Parser)]
-#[command(name = "cargo flash-f4")]
+#[command(name = "cargo flash-f4", after_help = "Example: cargo flash-f4 --chip STM32F407VGTx")]
 struct Arguments {
     /// The chip, by probe-rs's name: an STM32F405 or F407
     #[arg(long, default_value = "STM32F405RGTx")]

@@ -16,11 +16,11 @@ const BATCH: u64 = 1000;
 
 /// Runs random input through everything that takes input from outside; nothing may panic, hang or break its promise.
 #[derive(Debug, Parser)]
-#[command(name = "cargo fuzz-all")]
+#[command(name = "cargo fuzz-all", after_help = "Example: cargo fuzz-all --target plans --executions 10000")]
 struct Arguments {
     /// Executions of each target
-    #[arg(long, value_name = "N", default_value_t = 1_000_000, value_parser = clap::value_parser!(u64).range(1..))]
-    executions: u64,
+    #[arg(long, value_name = "N", default_value_t = 1_000_000, value_parser = clap::value_parser!(u32).range(1..))]
+    executions: u32,
     /// Only this target; `flips` sends frames through a link that flips bits
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(TARGETS.map(|target| target.name).into_iter().chain([FLIPS])))]
     target: Option<String>,
@@ -48,9 +48,10 @@ fn run(arguments: &Arguments) -> anyhow::Result<()> {
 }
 
 fn search(target: Target, arguments: &Arguments) -> anyhow::Result<()> {
+    let executions = u64::from(arguments.executions);
     let mut search = Search::new(target).context("the corpus")?;
-    let bar = Bar::start(target.name, arguments.executions);
-    for done in 1..=arguments.executions {
+    let bar = Bar::start(target.name, executions);
+    for done in 1..=executions {
         if let Err(found) = search.step() {
             bail!("{}: a promise is broken by execution {done}: {:02x?}", target.name, found.input);
         }
@@ -60,7 +61,7 @@ fn search(target: Target, arguments: &Arguments) -> anyhow::Result<()> {
     }
     drop(bar);
     let (name, outcomes) = (target.name, search.outcomes());
-    say(format_args!("{name:10} {:>10} executions, {outcomes:>4} outcomes, nothing found", arguments.executions))?;
+    say(format_args!("{name:10} {executions:>10} executions, {outcomes:>4} outcomes, nothing found"))?;
     if arguments.keep {
         search.keep().context("the corpus")?;
     }
@@ -68,9 +69,10 @@ fn search(target: Target, arguments: &Arguments) -> anyhow::Result<()> {
 }
 
 fn flips(arguments: &Arguments) -> anyhow::Result<()> {
+    let executions = u64::from(arguments.executions);
     let mut link = Flips::new(1, arguments.chance);
-    let bar = Bar::start(FLIPS, arguments.executions);
-    for done in 1..=arguments.executions {
+    let bar = Bar::start(FLIPS, executions);
+    for done in 1..=executions {
         link.send();
         if done % BATCH == 0 {
             bar.advance(BATCH);

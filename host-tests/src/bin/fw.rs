@@ -73,7 +73,11 @@ fn execute(arguments: &Arguments) -> anyhow::Result<ExitCode> {
 /// What can be run, and where.
 fn runnable() -> String {
     let boards = BOARDS.map(|board| format!("  {:16}{}, {} MHz", board.name, board.cpu, board.hertz / 1_000_000));
-    format!("Binaries:\n  {}\n\nBoards:\n{}", binaries().join("\n  "), boards.join("\n"))
+    format!(
+        "Example: cargo fw mps2-an386 --seconds 10\n\nBinaries:\n  {}\n\nBoards:\n{}",
+        binaries().join("\n  "),
+        boards.join("\n")
+    )
 }
 
 fn set_up() -> Result<Toolchain, Refused> {

@@ -16,8 +16,8 @@ fn main() -> ExitCode {
 
 fn run(options: &Options) -> anyhow::Result<()> {
     let lines = match (options.study, options.fit) {
-        (Some(count), _) => tables(options, count)?,
-        (None, Some(count)) => fitted(options, count)?,
+        (Some(count), _) => tables(options, count as usize)?,
+        (None, Some(count)) => fitted(options, count as usize)?,
         (None, None) => {
             let (scene, plan) = options.plan().map_err(Refused::because)?;
             words(&scene, &plan, &options.target)
@@ -28,7 +28,7 @@ fn run(options: &Options) -> anyhow::Result<()> {
 
 fn tables(options: &Options, count: usize) -> Result<Vec<String>, PlanError> {
     let bar = Bar::start("planning", count as u64);
-    let scenes = scenes(options.seed, DURATIONS).take(count);
+    let scenes = scenes(options.seed.into(), DURATIONS).take(count);
     let cases = study(scenes, &options.target, || bar.advance(1))?;
     drop(bar);
     let chip = &options.target;
@@ -38,7 +38,7 @@ fn tables(options: &Options, count: usize) -> Result<Vec<String>, PlanError> {
 
 fn fitted(options: &Options, count: usize) -> Result<Vec<String>, PlanError> {
     let bar = Bar::start("fitting", count as u64);
-    let samples = fit(scenes(options.seed, FOLLOWED).take(count), || bar.advance(1))?;
+    let samples = fit(scenes(options.seed.into(), FOLLOWED).take(count), || bar.advance(1))?;
     drop(bar);
     Ok(vec![margins(&samples).markdown()])
 }

@@ -12,7 +12,7 @@ use host_tests::emulator::toolchain;
 
 /// Measures every arithmetic's cost on the target and its error, and writes tables, charts and a page.
 #[derive(Debug, Parser)]
-#[command(name = "cargo write-report")]
+#[command(name = "cargo write-report", after_help = "Example: cargo write-report --quick --folder /tmp/report")]
 struct Options {
     /// Two scenes and shorter runs, in under two minutes
     #[arg(long)]

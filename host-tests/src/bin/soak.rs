@@ -19,7 +19,7 @@ const LIMIT: Duration = Duration::from_secs(6 * 3600);
 
 /// Runs every board for long: all scenes twice, the second time as the first, then physics alone.
 #[derive(Debug, Parser)]
-#[command(name = "cargo soak")]
+#[command(name = "cargo soak", after_help = "Example: cargo soak --board mps2-an386 --scenes 300 --physics 60")]
 struct Arguments {
     /// Seconds of the board's time with scenes, on each board; 0 for none
     #[arg(long, default_value_t = 3600)]

@@ -77,7 +77,9 @@ where
 /// The options of this run; if they are wrong, or help is asked for, the exit code after saying so.
 fn parse<Options: Parser>() -> Result<Options, ExitCode> {
     // A number is the value of its option with a sign, too: what is wrong with it, the option says.
-    let command = Options::command().mut_args(|option| {
+    let command = Options::command();
+    let name = command.get_name().to_owned();
+    let command = command.bin_name(name).mut_args(|option| {
         if option.get_action().takes_values() { option.allow_negative_numbers(true) } else { option }
     });
     let options = command.try_get_matches().and_then(|matches| Options::from_arg_matches(&matches));

@@ -93,6 +93,13 @@ pub const MISPRINT_ENERGY: f64 = 2.0;
 /// The share of its time that the misprinted form's bob 2 may be above the pivot (measured 8.4 %).
 pub const MISPRINT_ABOVE: f64 = 0.12;
 
+/// Energies that the misprinted form passes through at figure 7 in 10 s, J, from 62.9 at the start (measured -45 to 63.1):
+/// it does not keep the energy.
+pub const MISPRINT_SWING: [f64; 2] = [-40.0, 60.0];
+
+/// Half of the last digit of 62.9 J.
+pub const LAST_DIGIT_OF_62_9: f64 = 0.05;
+
 /// The right form's energy error at figure 7 with 512 steps per second for 100 s, J (measured 2.4e-3 of 127).
 pub const FIGURE_7_ENERGY: f64 = 0.01;
 
@@ -101,6 +108,18 @@ pub const FIGURE_7_ABOVE: f64 = 0.03;
 
 /// Figure 7 in f64 with 4096 steps per second after 5 s, rad and kg m^2/s: the goal.
 pub const FIGURE_7: f64 = 1e-7;
+
+/// Figure 7 after 3 s with 4096 steps a second in other forms than the canonical one, rad: the angle form, the same method,
+/// in f64 (roundings of 1e-16, grown by chaos); the direction form in f64 (the method's own error, grown); any in f32
+/// (roundings of 6e-8, grown). Measured 1e-12, 9e-10 and 2.7e-6.
+pub const FIGURE_7_FORMS: [f64; 3] = [1e-11, 1e-8, 1e-5];
+
+/// The same by order 8 with 512 steps a second against RK4 with 16384, rad: the latter's error (measured 1.1e-11); RK4 with
+/// 512 would miss 2e-5.
+pub const FIGURE_7_ORDER_8: f64 = 1e-10;
+
+/// Models of a swing of 1e-4 rad after 1 s, rad: the cubic term of the linear one, (1e-4)^3 w t/16 (measured 1.8e-13).
+pub const SMALL_SWING: f64 = 1e-12;
 
 /// Regular motion in plain f32 with 256 steps per second after 10 s, rad: measured 2e-6, rounding walks at random.
 pub const PLAIN_SINGLE: f64 = 1e-5;
@@ -172,6 +191,20 @@ pub const FALL: f64 = 1.5 / 64.0;
 /// How long plain sums keep a pendulum upright, relative: the step in which they no longer do, and the rounding of w.
 pub const STAYS: f64 = 0.05;
 
+/// A swing of 1e-5 rad after 200 steps 2 % below and above the limit of stability, rad: decayed and grown at
+/// least ten times (measured: to 6e-12 at most, to 7e-4 at least).
+pub const STABILITY_EDGE: [f64; 2] = [1e-6, 1e-4];
+
+/// Whirling compensated in f32 with 4096 steps a second, rad: roundings (measured 7e-7); a turn miscounted would be 6.3.
+pub const WHIRLING: f64 = 1e-5;
+
+/// Directions against the angles of the same motion, in epsilons: roundings of the sines and the lengths.
+pub const DIRECTIONS: f64 = 8.0;
+
+/// Regular motion from 999 rad against that from the same angles without their turns, rad: 999 rad is given to 1e-13; the
+/// direction form adds its own error.
+pub const FAR_ANGLE: [f64; 2] = [1e-12, 1e-7];
+
 /// Straight rods turning evenly without gravity, 20 s, rad and relative: in f32 some 5000 steps of plain sums, each
 /// rounded; in f64 the direction form's own error, 6e-11 rad a second at 2 rad/s.
 pub const STRAIGHT: PerPrecision = PerPrecision { single: 1e-3, double: 2e-9 };
@@ -210,6 +243,18 @@ pub const PLAN_SHARE: f64 = 0.7;
 /// Angles of the scenes in closed form, per rad of amplitude and of the fast mode's phase w t: roundings of half an epsilon
 /// each, up to 8 in the frequency (4 units in the last place), one in the time and one in the product.
 pub const CLOSED_FORM: f64 = 5.0 * f32::EPSILON as f64;
+
+/// The ratio of two frequencies, in `f64`: the roundings of both.
+pub const RATIO: f64 = 1e-12;
+
+/// The height that a scene of curves is planned for, relative: the digits of the swing in pixels, 21.5.
+pub const SHOWN_HEIGHT: f32 = 1e-3;
+
+/// The sines of `libm` in f32 up to pi: half a unit in the last place of 1, 3.0e-8.
+pub const HALF_ULP: f64 = 3.1e-8;
+
+/// The sines of `micromath` up to pi: as wrong as its documentation says, and no better.
+pub const MICROMATH: std::ops::Range<f64> = 1e-4..2e-3;
 
 /// What the linear beats miss after their period, of their amplitude: the same for up to five turns.
 pub const CLOSED: f64 = 5.0 * f32::EPSILON as f64 * 2.0 * 5.0 * std::f64::consts::TAU;

@@ -1,8 +1,8 @@
 //! The command line of `cargo plan`.
 
 use anyhow::{anyhow, ensure};
-use clap::Parser;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::{Parser, value_parser};
 use double_pendulum::plan::{Limit, Plan, PlanError, Problem, Quantity};
 use double_pendulum::{Motion, Parameter};
 use firmware::motion::planner::half_pixel;
@@ -10,12 +10,17 @@ use firmware::motion::planner::half_pixel;
 use super::target::{CHIPS, Chip};
 use crate::commands::simulate::{Number, Start};
 
+const EXAMPLES: &str = "Examples:
+  cargo plan --angles 90,90 --degrees --height 64 --duration 10
+  cargo plan --masses 1,2.75 --angles 171,171 --degrees --target m4f
+  cargo plan --study 100";
+
 /// Says how to compute a scene as cheaply as may be, right to half a pixel about the exact motion, and until when it is; or
 /// that nothing the chip can afford is right in any frame, which is an answer, too (exit code 0).
 ///
 /// Numbers are decimals (0.25, 1e-3) or fractions (1/256).
 #[derive(Debug, Parser)]
-#[command(name = "cargo plan", bin_name = "cargo plan")]
+#[command(name = "cargo plan", after_help = EXAMPLES)]
 pub struct Options {
     /// What moves.
     #[command(flatten)]
@@ -37,14 +42,14 @@ pub struct Options {
     #[arg(long, value_name = "T", default_value = "60", allow_hyphen_values = true)]
     pub planning: Number,
     /// Plan this many scenes of all kinds instead, carry them out beside the reference, and print what came of it
-    #[arg(long, value_name = "SCENES")]
-    pub study: Option<usize>,
+    #[arg(long, value_name = "SCENES", value_parser = value_parser!(u32).range(1..))]
+    pub study: Option<u32>,
     /// Hold the planner's margins against the exact motion of this many scenes instead
-    #[arg(long, value_name = "SCENES", conflicts_with = "study")]
-    pub fit: Option<usize>,
+    #[arg(long, value_name = "SCENES", conflicts_with = "study", value_parser = value_parser!(u32).range(1..))]
+    pub fit: Option<u32>,
     /// Which scenes
-    #[arg(long, value_name = "N", default_value_t = 1)]
-    pub seed: u64,
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u32).range(0..))]
+    pub seed: u32,
 }
 
 fn chip(name: &str) -> Chip {

@@ -43,7 +43,7 @@ the finite numbers later: its rows until then, one line on stderr, exit code 1."
 ///
 /// Numbers are decimals (0.25, 1e-3) or fractions (1/256).
 #[derive(Debug, Parser)]
-#[command(name = "cargo simulate", bin_name = "cargo simulate", after_help = AFTER_HELP)]
+#[command(name = "cargo simulate", after_help = AFTER_HELP)]
 pub struct Options {
     /// What moves.
     #[command(flatten)]
