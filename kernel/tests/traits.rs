@@ -37,12 +37,12 @@ macro_rules! paths {
 fn every_public_type_has_the_common_traits() {
     let with = paths![
         AngleForm<f32>, AngleState<f32, Plain>, Bounds<f64>, Budget, Compensated<f32>, Costs, DirectionForm8<f64>,
-        DirectionForm<f32>, DirectionState<f32, Plain>, Divided, EqualRods<f64>, Error, ErrorEstimate, Extrapolation<f64>,
-        ExtrapolatedForm<12>, Fixed32Form, Fixed32State, Fixed64Form<12>, Fixed64State, Followed, Interpolation<f32>, Libm, Limit, Method,
-        Mode<f32>, Modes<f32>, Motion<f32>, Node<f32>, Oscillation<f32>, Own, Parameter, Parameters<f32>, Pendulum<f32>, Plain, Plan,
-        PlanError, Problem, Quantity, RestoreError, Search, ShadowedRun<f32, DirectionForm<f32>>, SmallOscillations<f32>,
-        State<f32>, Stepper<f32, DirectionForm<f32>>, Units<f32>, UnwrappedStepper<f32, DirectionForm<f32>>, Vector<f32>,
-        Winding<f32>,
+        DirectionForm<f32>, DirectionState<f32, Plain>,
+        Divided, EqualRods<f64>, Error, ErrorEstimate, ExtrapolatedForm<12>, Extrapolation<f64>, Fixed32Form, Fixed32State,
+        Fixed64Form<12>, Fixed64State, Followed, Interpolation<f32>, Lanes<f32, 4>, Libm, Limit, Method, Mode<f32>,
+        Modes<f32>, Motion<f32>, Node<f32>, Oscillation<f32>, Own, Parameter, Parameters<f32>, Pendulum<f32>, Plain, Plan,
+        PlanError, Problem, Quantity, RestoreError, Search, ShadowedRun<f32, DirectionForm<f32>>, SmallOscillations<f32>, State<f32>,
+        Stepper<f32, DirectionForm<f32>>, Units<f32>, UnwrappedStepper<f32, DirectionForm<f32>>, Vector<f32>, Winding<f32>,
     ];
     let name = |path: &'static str| path.split('<').next().and_then(|path| path.rsplit("::").next()).unwrap_or(path);
     let with = with.map(name);
