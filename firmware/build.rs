@@ -11,8 +11,10 @@ fn main() {
     }
     let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap_or(Path::new("."));
     println!("cargo:rustc-link-search={}", workspace.display());
-    // The emulated boards' flash starts at 0, this chip's elsewhere.
-    println!("cargo:rustc-link-arg-bin=stm32f405=--defsym=flash_origin=0x08000000");
+    // The emulated boards' flash starts at 0, this chip's elsewhere, and it has 1 MiB.
+    for symbol in ["flash_origin=0x08000000", "flash_length=0x00100000"] {
+        println!("cargo:rustc-link-arg-bin=stm32f405=--defsym={symbol}");
+    }
     for argument in ["-Tlink.x", "-Tdefmt.x", "--nmagic"] {
         println!("cargo:rustc-link-arg-bins={argument}");
     }

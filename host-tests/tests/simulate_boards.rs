@@ -77,6 +77,22 @@ fn order_8() {
 }
 
 #[test]
+fn fixed_point() {
+    same_everywhere(&format!("{FIGURE_7} --step 1/4096 --arithmetic fixed32"));
+    same_everywhere(&format!("{FIGURE_7} --step 1/64 --arithmetic fixed64"));
+    same_everywhere("--lengths 0.3,1.1 --velocities 3,-4 --step 1/256 --until 4 --every 1 --arithmetic fixed32");
+}
+
+#[test]
+fn every_order_of_extrapolation() {
+    for order in [6, 8, 12, 16] {
+        same_everywhere(&format!(
+            "{FIGURE_7} --step 1/128 --arithmetic fixed64 --integrator extrapolation --order {order}"
+        ));
+    }
+}
+
+#[test]
 fn closed_form() {
     same_everywhere(
         "--angles 0.1,-0.05 --velocities 0.2,0 --step 1/64 --until 10 --every 1 --arithmetic f64 --model linear",

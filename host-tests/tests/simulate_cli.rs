@@ -80,6 +80,7 @@ fn every_form_moves_as_the_canonical_state_does() {
     for (form, difference) in [
         ("f64 --form angle", roundings),
         ("f64 --form direction", method),
+        ("fixed32", single),
         ("f32-compensated", single),
         ("f32-compensated --form direction", single),
     ] {
@@ -96,12 +97,17 @@ fn every_form_moves_as_the_canonical_state_does() {
 fn order_8_needs_few_steps() {
     let options = "--masses 1,2.75 --angles 171,171 --degrees --until 3 --every 1";
     let exact = &rows(&format!("{options} --step 1/16384"))[4];
-    for form in ["canonical", "direction"] {
-        let other = &rows(&format!("{options} --step 1/512 --integrator rk8 --form {form}"))[4];
+    for integrator in [
+        "--method rk8 --form canonical",
+        "--integrator rk8 --form direction",
+        "--integrator extrapolation --order 8",
+        "--arithmetic fixed64 --order 8",
+    ] {
+        let other = &rows(&format!("{options} --step 1/512 {integrator}"))[4];
         for column in 1..3 {
             let apart = (number(&exact[column]) - number(&other[column])).abs();
-            println!("{form}, column {column}: {apart:e}");
-            assert!(apart < tolerances::FIGURE_7_ORDER_8, "{form}, column {column}: {apart:e}");
+            println!("{integrator}, column {column}: {apart:e}");
+            assert!(apart < tolerances::FIGURE_7_ORDER_8, "{integrator}, column {column}: {apart:e}");
         }
     }
 }
@@ -151,6 +157,21 @@ fn bad_input_gets_one_line_and_exit_code_2() {
         ("--integrator rk8 --form angle", "--integrator rk8"),
         ("--integrator rk4 --order 8", "--order 8: not with --integrator rk4"),
         ("--order 5", "--order 5"),
+        ("--arithmetic fixed16", "--arithmetic"),
+        (
+            "--arithmetic fixed32 --integrator extrapolation",
+            "--integrator extrapolation: not with --arithmetic fixed32",
+        ),
+        ("--arithmetic fixed64 --integrator rk4", "--integrator rk4: not with --arithmetic fixed64"),
+        ("--arithmetic fixed64 --order 10", "--order 10: not with --arithmetic fixed64"),
+        ("--arithmetic f32 --integrator extrapolation", "--integrator extrapolation: not with --arithmetic f32"),
+        ("--arithmetic fixed32 --form angle", "--form angle: not with --arithmetic fixed32"),
+        ("--arithmetic fixed32 --step 1/8", "--step: dt"),
+        ("--arithmetic fixed64 --masses 1,100000", "--masses"),
+        (
+            "--arithmetic f64-compensated --integrator extrapolation --on lm3s6965evb",
+            "f64-compensated-extrapolation-12",
+        ),
         ("--order x", "--order"),
         ("--arithmetic f32-libm --on lm3s6965evb", "f32-libm-canonical"),
         ("--integrator rk8 --form canonical --on lm3s6965evb", "f64-canonical-rk8"),

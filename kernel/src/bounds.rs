@@ -35,6 +35,7 @@ pub struct Bounds<R> {
 }
 
 impl<R: Real> Bounds<R> {
+    #[inline(never)]
     pub(crate) fn new(parameters: &Parameters<R>, energy_above_rest: R) -> Self {
         let &Parameters { m1, m2, l1, l2, .. } = parameters;
         let twice = R::TWO * energy_above_rest;

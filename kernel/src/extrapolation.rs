@@ -4,7 +4,7 @@ use crate::error::{Error, Parameter};
 use crate::real::Real;
 use crate::ring::Ring;
 
-/// The most rows a step may have: order 16.
+/// The most rows a step may have: order 16. Tables of rows are read at `row % ROWS`, which tells the compiler that it is there.
 pub const ROWS: usize = 8;
 
 /// W. B. Gragg's extrapolation of order 2 K (1965; `[Hairer I]`, II.9, his smoothing step left out).
@@ -26,28 +26,37 @@ pub struct Extrapolation<R> {
     doublings: u32,
 }
 
+/// n/2 of a row.
+fn half(row: usize) -> f64 {
+    (row + 1) as f64
+}
+
+/// w_n of one of `rows` rows.
+#[inline(never)]
+fn weight(row: usize, rows: usize) -> f64 {
+    let square = half(row) * half(row);
+    let others = (0..rows).filter(|&other| other != row).map(half);
+    others.map(|m| square / (square - m * m)).product()
+}
+
 impl<R: Ring> Extrapolation<R> {
     /// Prepares steps of `order` 2, 4 .. 16; refuses any other.
+    #[inline(never)]
     pub fn new(order: u32) -> Result<Self, Error> {
         let rows = order as usize / 2;
         if order % 2 == 1 || !(1..=ROWS).contains(&rows) {
             return Err(Error::OutOfRange { parameter: Parameter::Order, value: f64::from(order) });
         }
-        let half = |row: usize| (row + 1) as f64; // n/2
-        let weight = |row: usize| {
-            let square = half(row) * half(row);
-            let others = (0..rows).filter(|&other| other != row).map(half);
-            others.map(|m| square / (square - m * m)).product::<f64>()
-        };
-        let largest = (0..rows).map(weight).fold(1.0, |largest, weight| libm::fmax(largest, libm::fabs(weight)));
+        let largest = (0..rows).map(|row| libm::fabs(weight(row, rows))).fold(1.0, libm::fmax);
         let doublings = libm::ceil(libm::log2(largest)) as u32;
-        let scaled = |row| if row < rows { libm::scalbn(weight(row), -(doublings as i32)) } else { 0.0 };
-        Ok(Self {
-            rows,
-            doublings,
-            shares: core::array::from_fn(|row| R::constant(1.0 / half(row))),
-            weights: core::array::from_fn(|row| R::constant(scaled(row))),
-        })
+        let mut method = Self { rows, doublings, shares: [R::constant(0.0); ROWS], weights: [R::constant(0.0); ROWS] };
+        for (row, (share, scaled)) in method.shares.iter_mut().zip(&mut method.weights).enumerate() {
+            *share = R::constant(1.0 / half(row));
+            if row < rows {
+                *scaled = R::constant(libm::scalbn(weight(row, rows), -(doublings as i32)));
+            }
+        }
+        Ok(method)
     }
 
     /// The order, 2 K.
@@ -63,7 +72,7 @@ impl<R: Ring> Extrapolation<R> {
         let row_end = |row: usize| {
             let further = |d: &[R; N]| -> [R; N] { slope(&core::array::from_fn(|i| z[i] + d[i]), row) };
             // half the share of the first slope, then from one midpoint to the next but one
-            let mut odd = first.map(|slope| (slope * self.shares[row]).half());
+            let mut odd = first.map(|slope| (slope * self.shares[row % ROWS]).half());
             let mut even = further(&odd);
             for _ in 0..row {
                 let slope = further(&even);
@@ -79,7 +88,7 @@ impl<R: Ring> Extrapolation<R> {
         for row in 0..self.rows - 1 {
             let end = row_end(row);
             for i in 0..N {
-                let share = (end[i] - last[i]) * self.weights[row];
+                let share = (end[i] - last[i]) * self.weights[row % ROWS];
                 sum[i] = sum[i] + (0..self.doublings).fold(share, |share, _| share.twice());
             }
         }
@@ -109,7 +118,7 @@ impl<R: Real> Extrapolation<R> {
     pub fn increment<const N: usize>(&self, f: impl Fn(&[R; N]) -> [R; N], z: &[R; N], dt: R) -> [R; N] {
         self.increment_by(
             |z, row| {
-                let share = dt * self.shares[row];
+                let share = dt * self.shares[row % ROWS];
                 f(z).map(|slope| share * slope)
             },
             z,

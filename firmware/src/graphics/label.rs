@@ -79,6 +79,7 @@ pub fn time(seconds: f64) -> Label {
 }
 
 /// `value` rounded to `decimals` places after a name and a gap, and before a unit.
+#[inline(never)]
 fn label(name: &str, gap: &str, value: f32, decimals: u32, unit: &str) -> Label {
     let one = 10_u32.saturating_pow(decimals).max(1);
     let rounded = (value.abs() * one as f32 + 0.5) as u32;

@@ -19,6 +19,10 @@ choice! {
         F32Libm = 0x34, "f32-libm";
         /// Single precision with the sines of the `micromath` crate.
         F32Micromath = 0x35, "f32-micromath";
+        /// Fixed point of 32 bits, in units that the motion's energy chooses.
+        Fixed32 = 0x20, "fixed32";
+        /// Fixed point of 64 bits, likewise.
+        Fixed64 = 0x40, "fixed64";
     }
 }
 
@@ -64,6 +68,8 @@ choice! {
         Rk4 = 4, "rk4";
         /// The Runge-Kutta method of order 8: [`rk8`](double_pendulum::rk8).
         Rk8 = 8, "rk8";
+        /// Gragg's extrapolation of any even order: [`Extrapolation`](double_pendulum::extrapolation::Extrapolation).
+        Extrapolation = 2, "extrapolation";
         /// By the closed form, at any time; of no order.
         ClosedForm = 0, "closed-form";
     }

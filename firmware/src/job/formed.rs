@@ -18,6 +18,7 @@ pub type Angles<R, S> = Formed<R, AngleForm<R, S>, false>;
 pub type Directions<R, F> = Formed<R, F, true>;
 
 impl<R: Real, F: Form<R>, const DIRECTED: bool> Run for Formed<R, F, DIRECTED> {
+    #[inline(never)]
     fn start(request: &Request) -> Result<Self, JobError> {
         let (pendulum, state) = checked::<R>(request)?;
         Ok(Self { stepper: Stepper::new(pendulum.parameters(), &state, request.dt)? })

@@ -27,21 +27,24 @@ impl Row {
     }
 }
 
-/// The row's name: its words in order, joined by hyphens. Two of them go without saying: the general model and the
-/// canonical form of the others, classical steps and the closed form.
+/// The row's name: its words in order, joined by hyphens. Some go without saying: the general model and the
+/// canonical form of the others, classical steps and the closed form, and that extrapolation steps directions; that says its
+/// order, for it has many.
 impl fmt::Display for Row {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { arithmetic, model, form, integrator, .. } = self;
+        let Self { arithmetic, model, form, integrator, order } = self;
         f.write_str(arithmetic.name())?;
         if *model != Model::General {
             write!(f, "-{}", model.name())?;
         }
-        if *model == Model::General || *form != Formulation::Canonical {
+        let is_canonical = *model != Model::General && *form == Formulation::Canonical;
+        if !is_canonical && *integrator != Integrator::Extrapolation {
             write!(f, "-{}", form.name())?;
         }
         match integrator {
             Integrator::Rk4 | Integrator::ClosedForm => Ok(()),
             Integrator::Rk8 => write!(f, "-{}", integrator.name()),
+            Integrator::Extrapolation => write!(f, "-{}-{order}", integrator.name()),
         }
     }
 }

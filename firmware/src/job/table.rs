@@ -4,7 +4,9 @@
 //! The first block is what every board's application computes on request. The second is there to be compared with: it is
 //! computed on the host and counted on the chips by the `measure` program, and takes no flash of an application.
 
-use double_pendulum::form::{Compensated, Direction, DirectionForm, DirectionForm8, Divided, Plain};
+use double_pendulum::form::{
+    Compensated, Direction, DirectionForm, DirectionForm8, Divided, ExtrapolatedForm, Fixed32Form, Fixed64Form, Plain,
+};
 use double_pendulum::trig::{Libm, Micromath};
 use double_pendulum::{Pendulum, State};
 
@@ -44,6 +46,8 @@ macro_rules! table {
         pub enum OnBoards { $(#[doc = concat!("`", stringify!($($key)*), "`")] $name($run),)* }
 
         impl Run for OnBoards {
+            // Apart from what else is done with a request: compilers shuffle so large a value word by word.
+            #[inline(never)]
             fn start(request: &Request) -> Result<Self, JobError> {
                 match request.row {
                     $(row!($($key)*) => <$run>::start(request).map(Self::$name),)*
@@ -107,6 +111,11 @@ table! {
         F32Direction:     (F32            General   Direction Rk4 4) => Directions<f32, DirectionForm<f32, Plain>>;
         Compensated:      (F32Compensated General   Direction Rk4 4) => Directions<f32, DirectionForm<f32>>;
         CompensatedRk8:   (F64Compensated General   Direction Rk8 8) => Directions<f64, DirectionForm8<f64>>;
+        Fixed32:          (Fixed32        General   Direction Rk4 4) => Directions<f64, Fixed32Form>;
+        Fixed64Order12:   (Fixed64        General   Direction Extrapolation 12) => Directions<f64, Fixed64Form<12>>;
+        Fixed64Order6:    (Fixed64        General   Direction Extrapolation 6) => Directions<f64, Fixed64Form<6>>;
+        Fixed64Order8:    (Fixed64        General   Direction Extrapolation 8) => Directions<f64, Fixed64Form<8>>;
+        Fixed64Order16:   (Fixed64        General   Direction Extrapolation 16) => Directions<f64, Fixed64Form<16>>;
     }
     elsewhere {
         (F32Libm        General  Canonical        Rk4 4) => Canonical<f32, Pendulum<f32, Libm>>;
@@ -115,6 +124,9 @@ table! {
         (F32Libm        Textbook Canonical        Rk4 4) => Canonical<f32, Textbook<f32>>;
         (F64Libm        Textbook Canonical        Rk4 4) => Canonical<f64, Textbook<f64>>;
         (F64            General  Canonical        Rk8 8) => Canonical<f64, Order8<f64>>;
+        (F64Compensated General  Direction        Extrapolation 12) => Directions<f64, ExtrapolatedForm<12>>;
+        (F64Compensated General  Direction        Extrapolation 8) => Directions<f64, ExtrapolatedForm<8>>;
+        (F64Compensated General  Direction        Extrapolation 16) => Directions<f64, ExtrapolatedForm<16>>;
         (F64Compensated General  Angle            Rk4 4) => Angles<f64, Compensated<f64>>;
         (F32            General  DirectionDivided Rk4 4) => Directions<f32, DirectionForm<f32, Plain, Divided>>;
         (F32            Linear   Direction        ClosedForm 0) => Drawn;

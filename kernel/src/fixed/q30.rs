@@ -116,6 +116,7 @@ impl Sealed for Q30 {}
 impl Ring for Q30 {
     type Slope = Slope;
     type Torque = Torque;
+    #[inline(never)]
     fn constant(value: f64) -> Self {
         Self(word(libm::rint(value * f64::from(1 << 30)) as i64))
     }

@@ -74,6 +74,7 @@ impl Sealed for Q60 {}
 impl Ring for Q60 {
     type Slope = Self;
     type Torque = Self;
+    #[inline(never)]
     fn constant(value: f64) -> Self {
         Self(libm::rint(value * (1_u64 << 60) as f64) as i64)
     }

@@ -72,6 +72,21 @@ impl Scaling {
         [rate, torque]: [f64; 2],
         unit: impl FnOnce(f64) -> Result<f64, Error>,
     ) -> Result<Self, Error> {
+        let (mut scaling, longest) = Self::with_longest(parameters, bounds, [rate, torque])?;
+        let time = unit(longest)?;
+        scaling.time = time;
+        scaling.momenta = scaling.momenta.map(|momentum| momentum * time);
+        scaling.gravity = scaling.gravity.map(|gravity| gravity * time * time);
+        Ok(scaling)
+    }
+
+    /// With T = 1 s, and the longest T there may be.
+    #[inline(never)]
+    fn with_longest(
+        parameters: &Parameters<f64>,
+        bounds: &Bounds<f64>,
+        [rate, torque]: [f64; 2],
+    ) -> Result<(Self, f64), Error> {
         let &Parameters { m1, m2, l1, l2, g } = parameters;
         let nu = l1 / l2;
         let sigma = libm::ceil(libm::log2(nu)) as i32;
@@ -96,20 +111,21 @@ impl Scaling {
             bounds.p2 * momentum2,
         ];
         let fastest = rates.into_iter().fold(0.0, f64::max);
-        let time = unit(libm::fmin(rate / fastest, libm::sqrt(torque / libm::fmax(gravity1, gravity2 * norm))))?;
-        Ok(Self {
-            time,
-            momenta: [momentum1 * time, momentum2 * time],
+        let longest = libm::fmin(rate / fastest, libm::sqrt(torque / libm::fmax(gravity1, gravity2 * norm)));
+        let scaling = Self {
+            time: 1.0,
+            momenta: [momentum1, momentum2],
             norm,
             inertia: libm::scalbn(ratio, inverse - momentum),
-            gravity: [gravity1 * time * time, gravity2 * time * time],
+            gravity: [gravity1, gravity2],
             shifts: Shifts {
                 momentum: momentum as u32,
                 inverse: inverse as u32,
                 upper: upper as u32,
                 lower: lower as u32,
             },
-        })
+        };
+        Ok((scaling, longest))
     }
 }
 

@@ -83,7 +83,7 @@ impl<R: Real, S: Sum<R>> Form<R> for AngleForm<R, S> {
         })
     }
 
-    #[inline]
+    #[inline(never)]
     fn advance(&self, carried: &mut Self::Carried, steps: u32) {
         for _ in 0..steps {
             self.step(carried);

@@ -68,7 +68,7 @@ impl<R: Real, S: Sum<R>, I: Inverse<R>> Form<R> for DirectionForm<R, S, I> {
         Ok(DirectionState { z: z.map(R::from_f64), sums: z.map(S::new), inverse, steps: 0 })
     }
 
-    #[inline]
+    #[inline(never)]
     fn advance(&self, carried: &mut Self::Carried, steps: u32) {
         let mut left = steps;
         while left > 0 {

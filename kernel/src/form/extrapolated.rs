@@ -75,11 +75,13 @@ impl<R: Ring, U: Units<R>> Units<R> for Paced<R, U> {
 impl<R: Ring<Slope = R, Torque = R>> PacedExtrapolation<R> {
     /// Steps of `step` units of time; `gravity` is (G1, G2) in those units.
     pub fn new(order: u32, step: f64, coefficients: Coefficients<R>, gravity: [f64; 2]) -> Result<Self, Error> {
-        let row = |row: usize| {
+        let mut rows = [(R::constant(0.0), coefficients); ROWS];
+        for (row, (paced, coefficients)) in rows.iter_mut().enumerate() {
             let share = step / (row + 1) as f64;
-            (R::constant(share), Coefficients { gravity: gravity.map(|g| R::constant(share * g)), ..coefficients })
-        };
-        Ok(Self { method: Extrapolation::new(order)?, rows: core::array::from_fn(row) })
+            *paced = R::constant(share);
+            coefficients.gravity = gravity.map(|g| R::constant(share * g));
+        }
+        Ok(Self { method: Extrapolation::new(order)?, rows })
     }
 
     /// What a step adds to (sin a1, cos a1, S, C, P1, P2, r).
@@ -87,7 +89,7 @@ impl<R: Ring<Slope = R, Torque = R>> PacedExtrapolation<R> {
     pub fn increment(&self, units: &impl Units<R>, z: &[R; 7]) -> [R; 7] {
         self.method.increment_by(
             |z, row| {
-                let (share, coefficients) = &self.rows[row];
+                let (share, coefficients) = &self.rows[row % ROWS];
                 increments_with_inverse(coefficients, &Paced { units: *units, share: *share }, z)
             },
             z,

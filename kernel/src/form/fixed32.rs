@@ -106,6 +106,26 @@ impl Fixed32Form {
         let Parameters { m1, m2, l1, l2, g } = self.parameters;
         Check::new(32).with_all([m1, m2, l1, l2, g, self.dt].map(f64::to_bits))
     }
+
+    #[inline(never)]
+    fn start_from(&self, state: &State<f64>) -> Result<Fixed32State, Error> {
+        let energy = Pendulum::new(self.parameters)?.energy_above_rest(state);
+        let units = Setting::new(&self.parameters, energy, self.dt)?;
+        let &State { a1, a2, p1, p2 } = state;
+        let (sin1, cos1) = Own::sin_cos(a1);
+        let (sin_d, cos_d) = Own::sin_cos(a1 - a2);
+        let Scaling { norm, momenta: [unit1, unit2], .. } = units.scaling;
+        let z = [sin1, cos1, norm * sin_d, norm * cos_d, p1 * unit1, p2 * unit2];
+        let denominator = units.scaling.denominator(z[2]);
+        Ok(Fixed32State {
+            units,
+            z: z.map(|z| libm::rint(z * ONE) as i64 + OFFSET),
+            inverse: Q30::constant(1.0 / denominator),
+            reach: 0,
+            lost: false,
+            steps: 0,
+        })
+    }
 }
 
 impl Sealed for Fixed32Form {}
@@ -122,26 +142,11 @@ impl<R: Real> Form<R> for Fixed32Form {
 
     fn start(&self, state: &State<R>) -> Result<Self::Carried, Error> {
         state.check()?;
-        let state = state.cast::<f64>();
-        let energy = Pendulum::new(self.parameters)?.energy_above_rest(&state);
-        let units = Setting::new(&self.parameters, energy, self.dt)?;
-        let State { a1, a2, p1, p2 } = state;
-        let (sin1, cos1) = Own::sin_cos(a1);
-        let (sin_d, cos_d) = Own::sin_cos(a1 - a2);
-        let Scaling { norm, momenta: [unit1, unit2], .. } = units.scaling;
-        let z = [sin1, cos1, norm * sin_d, norm * cos_d, p1 * unit1, p2 * unit2];
-        let denominator = units.scaling.denominator(z[2]);
-        Ok(Fixed32State {
-            units,
-            z: z.map(|z| libm::rint(z * ONE) as i64 + OFFSET),
-            inverse: Q30::constant(1.0 / denominator),
-            reach: 0,
-            lost: false,
-            steps: 0,
-        })
+        self.start_from(&state.cast())
     }
 
-    #[inline]
+    // A call is nothing beside such a step, and a chip's flash holds it once.
+    #[inline(never)]
     fn advance(&self, carried: &mut Self::Carried, steps: u32) {
         let mut left = steps;
         while left > 0 {
@@ -199,6 +204,7 @@ impl<R: Real> Form<R> for Fixed32Form {
 
 impl Setting {
     /// For a motion of `energy` J above rest.
+    #[inline(never)]
     fn new(parameters: &Parameters<f64>, energy: f64, dt: f64) -> Result<Self, Error> {
         let bounds = Bounds::new(parameters, energy);
         let half = 0.5 * dt;
@@ -331,6 +337,7 @@ impl Fixed32State {
         self.reach = 0;
     }
 
+    #[inline(never)]
     fn state(&self) -> State<f64> {
         let Setting { scaling, lag, coefficients, shifts, .. } = &self.units;
         if self.lost || self.reach >= 1 << 30 {

@@ -87,16 +87,7 @@ impl<R: Real, const ORDER: u32> Form<R> for Fixed64Form<ORDER> {
 
     fn start(&self, state: &State<R>) -> Result<Self::Carried, Error> {
         state.check()?;
-        let state = state.cast::<f64>();
-        let energy = Pendulum::new(self.parameters)?.energy_above_rest(&state);
-        let motion = Fixed64State::new(&self.parameters, energy, self.dt, ORDER)?;
-        let State { a1, a2, p1, p2 } = state;
-        let (sin1, cos1) = Own::sin_cos(a1);
-        let (sin_d, cos_d) = Own::sin_cos(a1 - a2);
-        let Scaling { norm, momenta: [unit1, unit2], .. } = motion.scaling;
-        let inverse = 1.0 / motion.scaling.denominator(norm * sin_d);
-        let z = [sin1, cos1, norm * sin_d, norm * cos_d, p1 * unit1, p2 * unit2, inverse];
-        Ok(Fixed64State { z: z.map(Q60::constant), ..motion })
+        Fixed64State::start(&self.parameters, self.dt, ORDER, &state.cast())
     }
 
     #[inline]
@@ -138,6 +129,19 @@ impl<R: Real, const ORDER: u32> Form<R> for Fixed64Form<ORDER> {
 }
 
 impl Fixed64State {
+    #[inline(never)]
+    fn start(parameters: &Parameters<f64>, dt: f64, order: u32, state: &State<f64>) -> Result<Self, Error> {
+        let energy = Pendulum::new(*parameters)?.energy_above_rest(state);
+        let motion = Self::new(parameters, energy, dt, order)?;
+        let &State { a1, a2, p1, p2 } = state;
+        let (sin1, cos1) = Own::sin_cos(a1);
+        let (sin_d, cos_d) = Own::sin_cos(a1 - a2);
+        let Scaling { norm, momenta: [unit1, unit2], .. } = motion.scaling;
+        let inverse = 1.0 / motion.scaling.denominator(norm * sin_d);
+        let z = [sin1, cos1, norm * sin_d, norm * cos_d, p1 * unit1, p2 * unit2, inverse];
+        Ok(Self { z: z.map(Q60::constant), ..motion })
+    }
+
     /// At no place yet, for motions of `energy` J above rest.
     fn new(parameters: &Parameters<f64>, energy: f64, dt: f64, order: u32) -> Result<Self, Error> {
         let bounds = Bounds::new(parameters, energy);
@@ -166,6 +170,7 @@ impl Fixed64State {
         })
     }
 
+    #[inline(never)]
     fn advance(&mut self, steps: u32) {
         let shifts = self.scaling.shifts;
         for _ in 0..steps {
@@ -186,6 +191,7 @@ impl Fixed64State {
         self.z = [sin1, cos1, s, c, p1, p2, r + r * missing];
     }
 
+    #[inline(never)]
     fn state(&self) -> State<f64> {
         if self.lost {
             return State { a1: f64::NAN, a2: f64::NAN, p1: f64::NAN, p2: f64::NAN };

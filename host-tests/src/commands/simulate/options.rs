@@ -35,6 +35,8 @@ const AFTER_HELP: &str = "\
 Examples:
   cargo simulate --angles 171,171 --degrees --masses 1,2.75 --step 1/4096 --until 5 --every 1
   cargo simulate --angles 0.5,0.5 --step 1/256 --arithmetic f32-compensated --on lm3s6965evb
+  cargo simulate --angles 0.5,0.5 --step 1/256 --arithmetic fixed32 --on lm3s6965evb --bits
+  cargo simulate --angles 0.5,0.5 --step 1/16 --arithmetic fixed64 --integrator extrapolation --order 12
 
 Bad input, and numbers with which not even one step can be made: one line on stderr, exit code 2. A motion that leaves
 the finite numbers later: its rows until then, one line on stderr, exit code 1.";
@@ -57,7 +59,7 @@ pub struct Options {
     /// Time from row to row, s; one step if not given
     #[arg(long, value_name = "T", allow_hyphen_values = true)]
     pub every: Option<Number>,
-    /// The numbers it is computed in; f64 if not given
+    /// The numbers it is computed in; if not given, f64, and fixed64 for extrapolation
     #[arg(long, value_name = "NAME", value_parser = choice(Arithmetic::ALL.iter().copied(), Arithmetic::name))]
     pub arithmetic: Option<Arithmetic>,
     /// The equations of motion; general if not given
@@ -66,8 +68,8 @@ pub struct Options {
     /// The quantities stepped; if not given, the first that goes with the rest
     #[arg(long, value_name = "NAME", value_parser = choice(Formulation::ALL.iter().copied(), Formulation::name))]
     pub form: Option<Formulation>,
-    /// How a step is made; rk8 in double precision, for errors of 1e-9 rad and less
-    #[arg(long, value_name = "NAME", value_parser = choice(Integrator::ALL.iter().copied(), Integrator::name))]
+    /// How a step is made; in double precision and fixed64 extrapolation for errors of 1e-9 rad and less
+    #[arg(long, visible_alias = "method", value_name = "NAME", value_parser = choice(Integrator::ALL.iter().copied(), Integrator::name))]
     pub integrator: Option<Integrator>,
     /// The order of the integrator
     #[arg(long, value_name = "N")]
