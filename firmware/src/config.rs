@@ -120,6 +120,9 @@ pub const TRAIL_POINTS: usize = 60;
 
 /// Bits per second. A frame of 75 bytes takes 75 x 10/460,800 = 1.6 ms of the tick's 16.7 ms.
 pub const BAUD: u32 = 460_800;
+/// Steps that are measured at once, at most: of order 8 in `f64` they keep a Cortex-M3 at 50 MHz from everything else for
+/// 16 x 136,500/50e6 = 44 ms.
+pub const MOST_MEASURED_STEPS: u32 = 16;
 /// How often a bus is asked whether it is done before it counts as stuck. A try takes at least 4 processor cycles, so this is
 /// 0.24 ms of the fastest board; the slowest thing waited for is a byte of the panel's I2C, 9/400,000 s = 23 us.
 pub const BUS_TRIES: u32 = 10_000;

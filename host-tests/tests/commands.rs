@@ -6,7 +6,9 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use firmware::protocol::{Frame, Message, Planned, Restarted, Sample, Simulate, Status, StepTooLong};
+use firmware::protocol::{
+    Frame, Identity, Measure, Measured, Message, Planned, Press, Restarted, Sample, Simulate, Status, StepTooLong,
+};
 use host_tests::emulator::toolchain::workspace;
 
 /// The first page, and those of the crates.
@@ -121,6 +123,10 @@ fn the_readme_lists_the_messages_as_they_are() {
         row::<Planned>(),
         row::<Restarted>(),
         row::<Simulate>(),
+        row::<Identity>(),
+        row::<Measured>(),
+        row::<Measure>(),
+        row::<Press>(),
     ];
     for (kind, size) in rows {
         let line = page

@@ -1,127 +1,25 @@
 //! `cargo demo --port`: a pseudo-terminal with an emulated board behind it, whose cable can be pulled.
 
+#[path = "support/bench.rs"]
+mod bench;
 mod support;
 
-use std::fs;
-use std::io::{ErrorKind, Read, Write};
-use std::os::unix::fs::symlink;
-use std::path::PathBuf;
 use std::process::Command;
-use std::thread::{scope, sleep};
+use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use firmware::protocol::{Frame, MAX_WIRE, encode, frame};
-use host_tests::emulator::boards::{BOARDS, Board};
-use host_tests::emulator::process::{Output, run};
-use host_tests::emulator::qemu::{Clock, Machine, Settings};
+use bench::{Bench, WAIT, at_port, board, intact};
+use firmware::protocol::{Frame, MAX_WIRE, encode};
+use host_tests::emulator::process::Output;
 use host_tests::link::Received;
 
-use nix::fcntl::OFlag;
-use nix::pty::{PtyMaster, grantpt, posix_openpt, ptsname_r, unlockpt};
-use support::{LIMIT, application, settings, toolchain};
-
-/// A board that is quick to emulate, and has neither panel nor buttons.
-const BOARD: &Board = &BOARDS[2];
-/// From one look at the cable to the next.
-const WAIT: Duration = Duration::from_millis(1);
 /// A cable stays out for so long.
 const OUT: Duration = Duration::from_millis(700);
 /// A foreign device is there for so long.
 const FOREIGN: Duration = Duration::from_secs(4);
 
-/// A board at a port, by a name that stays when the cable is pulled.
-struct Bench {
-    machine: Machine,
-    cable: Option<PtyMaster>,
-    /// The host has said something.
-    heard: bool,
-    _folder: tempfile::TempDir,
-    name: PathBuf,
-}
-
-impl Bench {
-    fn new() -> Self {
-        let folder = tempfile::tempdir().expect("a folder");
-        let name = folder.path().join("ttyACM0");
-        let mut bench = Self { machine: board(), cable: None, heard: false, _folder: folder, name };
-        bench.plug();
-        bench
-    }
-
-    fn plug(&mut self) {
-        let flags = OFlag::O_RDWR | OFlag::O_NOCTTY | OFlag::O_NONBLOCK | OFlag::O_CLOEXEC;
-        let cable = posix_openpt(flags).expect("a pseudo-terminal");
-        grantpt(&cable).and_then(|()| unlockpt(&cable)).expect("a pseudo-terminal");
-        symlink(ptsname_r(&cable).expect("its name"), &self.name).expect("a link");
-        self.cable = Some(cable);
-    }
-
-    fn unplug(&mut self) {
-        self.cable = None;
-        fs::remove_file(&self.name).expect("the link");
-    }
-
-    /// Takes what the host has said; whether anybody listens at its end.
-    fn is_heard(&mut self) -> bool {
-        let Some(cable) = &mut self.cable else { return false };
-        let mut bytes = [0; 256];
-        match cable.read(&mut bytes) {
-            Ok(count) => {
-                self.machine.serial.send_bytes(&bytes[..count]).expect("the board takes it");
-                self.heard = true;
-                true
-            }
-            Err(error) => error.kind() == ErrorKind::WouldBlock,
-        }
-    }
-
-    /// Sends bytes to the host, as fast as it takes them.
-    fn say(&mut self, mut bytes: &[u8]) {
-        let Some(cable) = &mut self.cable else { return };
-        while !bytes.is_empty() {
-            match cable.write(bytes) {
-                Ok(count) => bytes = &bytes[count..],
-                Err(error) if error.kind() == ErrorKind::WouldBlock => sleep(WAIT),
-                // It has stopped listening.
-                Err(_) => return,
-            }
-        }
-    }
-
-    /// Carries what is there both ways; `wire` makes bytes of the board's messages.
-    fn carry(&mut self, mut wire: impl FnMut(&Received) -> Vec<u8>) {
-        let is_heard = self.is_heard();
-        let messages: Vec<_> = self.machine.serial.all_arrived().collect();
-        for message in messages.iter().filter(|_| is_heard) {
-            self.say(&wire(message));
-        }
-        sleep(WAIT);
-    }
-}
-
-fn board() -> Machine {
-    let (toolchain, elf) = (toolchain(), application(BOARD));
-    // As fast as a real one: what the host says must reach it in time.
-    let settings = Settings { clock: Clock::Real, ..settings(&toolchain, BOARD, &elf) };
-    Machine::start(&settings).unwrap_or_else(|error| panic!("{error}"))
-}
-
-/// A message as the board has sent it.
-fn intact(message: &Received) -> Vec<u8> {
-    frame(message.kind, &message.fields, &mut [0; MAX_WIRE]).to_vec()
-}
-
-/// Runs the demonstration beside `play`, which is called until it has ended.
-fn demo(bench: &mut Bench, arguments: &[&str], mut play: impl FnMut(&mut Bench)) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_demo"));
-    command.arg("--port").arg(&bench.name).args(["--headless"]).args(arguments);
-    scope(|scope| {
-        let demo = scope.spawn(move || run(&mut command, LIMIT).unwrap_or_else(|error| panic!("{error}")));
-        while !demo.is_finished() {
-            play(bench);
-        }
-        demo.join().expect("it ended")
-    })
+fn demo(bench: &mut Bench, arguments: &[&str], play: impl FnMut(&mut Bench)) -> Output {
+    at_port(bench, Command::new(env!("CARGO_BIN_EXE_demo")).arg("--headless").args(arguments), play)
 }
 
 #[test]

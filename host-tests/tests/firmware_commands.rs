@@ -2,19 +2,22 @@
 
 use std::f64::consts::PI;
 
+use double_pendulum::Parameters;
 use double_pendulum::plan::Method;
 use fastrand::Rng;
 use firmware::app::controls::{Key, NoButtons};
+use firmware::app::instruments::Instruments;
 use firmware::app::{App, Event};
-use firmware::config::{DT, MOST_MESSAGES_PER_TICK, PLANNED, STEPS_PER_TICK, TICK_RATE};
+use firmware::config::{DT, MOST_MEASURED_STEPS, MOST_MESSAGES_PER_TICK, PLANNED, STEPS_PER_TICK, TICK_RATE};
 use firmware::display::NoDisplay;
+use firmware::job::{Arithmetic, Formulation, Request, Row};
 use firmware::motion::planner::Finding;
 use firmware::motion::settings::Settings;
 use firmware::protocol::Field;
 use firmware::protocol::Unit;
 use firmware::protocol::{
-    Ask, AskPlan, Choose, Decoder, Done, Frame, MAX_WIRE, Message, Pause, Planned, Press, Refused, Restart, Set,
-    Status, Step, encode, method_code,
+    Ask, AskPlan, Choose, Decoder, Done, Frame, Identify, Identity, MAX_WIRE, Measure, Measured, Message, Pause,
+    Planned, Press, Refused, Restart, Sample, Set, Status, Step, encode, method_code,
 };
 use firmware::scenes::SceneName;
 use host_tests::emulator::host::sheets;
@@ -111,6 +114,37 @@ fn no_tap_is_lost_however_quick() {
     assert_eq!(all::<Done>(&app).len(), taps.len());
     app.receive(wire(&Press { request: 2, key: 0xEE }), |_| ());
     assert_eq!(all::<Refused>(&app), [Refused { request: 2, field: Field::Key.code() }]);
+}
+
+/// A board of 1 MHz whose steps take 100 cycles, and that knows what it is.
+#[test]
+fn a_board_tells_what_it_is_and_how_long_steps_take() {
+    let mut app = app();
+    let identity = Identity { board: 1, hertz: 1_000_000, chip: [1, 2, 3, 4], ..Identity::default() };
+    let timed = |work: &mut dyn FnMut()| {
+        work();
+        1600
+    };
+    app.use_instruments(Instruments { identity, timed, image: || b"123456789", ..Instruments::default() });
+    app.receive(wire(&Identify { request: 1 }), |_| ());
+    // The check value of CRC-32/ISO-HDLC.
+    assert_eq!(last::<Identity>(&app), Identity { request: 1, image: 0xCBF4_3926, image_bytes: 9, ..identity });
+
+    let measure = |request| wire(&Measure { request, steps: u32::MAX });
+    app.receive(measure(2), |_| ());
+    assert_eq!(last::<Refused>(&app), Refused { request: 2, field: Field::Message.code() }, "no motion was asked for");
+    let row = Row::rk4(Arithmetic::F32, Formulation::Canonical);
+    let parameters = Parameters { m1: 1.0, m2: 1.0, l1: 1.0, l2: 1.0, g: 9.81 };
+    let [angles, velocities] = [[0.5; 2], [0.0; 2]];
+    let request = Request { row, parameters, angles, velocities, dt: DT, stride: 1, samples: 1 };
+    app.receive(wire(&request.message(3)), |_| ());
+    while app.work(|_| ()) {}
+    for request in 4..6 {
+        app.receive(measure(request), |_| ());
+        assert_eq!(last::<Measured>(&app), Measured { request, steps: MOST_MEASURED_STEPS, cycles: 1600 });
+    }
+    assert!(!app.work(|_| ()), "and no sample follows");
+    assert_eq!(all::<Sample>(&app).len(), 2);
 }
 
 /// Figure 7's energy could drive a livelier motion than the one it starts.

@@ -43,6 +43,10 @@ pub enum Command {
     Ask,
     /// Nothing but an answer: what the plan of it is.
     AskPlan,
+    /// Nothing but an answer: what the board is.
+    Identify,
+    /// Nothing but an answer: how long so many steps of the motion asked for last take.
+    Measure(u32),
 }
 
 /// A command that came as a message.
@@ -90,6 +94,11 @@ impl HostCommand {
             }
             protocol::Ask::KIND => (protocol::Ask::read(fields)?.request, Ok(Command::Ask)),
             protocol::AskPlan::KIND => (protocol::AskPlan::read(fields)?.request, Ok(Command::AskPlan)),
+            protocol::Identify::KIND => (protocol::Identify::read(fields)?.request, Ok(Command::Identify)),
+            protocol::Measure::KIND => {
+                let protocol::Measure { request, steps } = Message::read(fields)?;
+                (request, Ok(Command::Measure(steps)))
+            }
             _ => return None,
         };
         let order = command.map(|command| Self { request, command });

@@ -3,6 +3,7 @@
 pub mod command;
 pub mod controls;
 mod event;
+pub mod instruments;
 pub mod player;
 pub mod service;
 mod throttle;
@@ -13,17 +14,18 @@ use embedded_io::Write;
 
 use crate::app::command::{Command, HostCommand};
 use crate::app::controls::{Buttons, Controls};
+use crate::app::instruments::Instruments;
 use crate::app::player::Player;
 use crate::app::service::{Received, Service};
 use crate::app::warm_restart::WarmRestart;
-use crate::config::{DT, MOST_MESSAGES_PER_TICK, MOST_TICKS_PER_FRAME};
+use crate::config::{DT, MOST_MEASURED_STEPS, MOST_MESSAGES_PER_TICK, MOST_TICKS_PER_FRAME};
 use crate::display::Display;
 use crate::graphics::canvas::Canvas;
 use crate::graphics::frame_buffers::FrameBuffers;
 use crate::motion::planner::Planner;
 use crate::motion::settings::Settings;
 use crate::protocol::Field;
-use crate::protocol::{Done, Frame, LinkError, MAX_WIRE, Message, Refused, encode};
+use crate::protocol::{Done, Frame, LinkError, MAX_WIRE, Measured, Message, Refused, encode};
 use throttle::{FaultEdge, ThrottledCounter};
 
 pub use event::Event;
@@ -53,7 +55,7 @@ pub struct App<'a, Panel, Link, Keys> {
     last_damage: Option<LinkError>,
     panel_failing: FaultEdge,
     link_failing: FaultEdge,
-    stopwatch: fn() -> u32,
+    instruments: Instruments,
     /// Processor cycles of the frame before, from the first tick to the end of its sending.
     busy_cycles: u32,
 }
@@ -87,14 +89,14 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
             last_damage: None,
             panel_failing: FaultEdge::default(),
             link_failing: FaultEdge::default(),
-            stopwatch: || 0,
+            instruments: Instruments::default(),
             busy_cycles: 0,
         })
     }
 
-    /// Counts costs by `stopwatch`, which reads processor cycles and may wrap.
-    pub fn use_stopwatch(&mut self, stopwatch: fn() -> u32) {
-        self.stopwatch = stopwatch;
+    /// Measures and tells of itself by these.
+    pub fn use_instruments(&mut self, instruments: Instruments) {
+        self.instruments = instruments;
     }
 
     /// Goes by a clock that stands at `clock` now, and counts frames and ticks without one from `frames` on.
@@ -128,7 +130,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         if ticks == 0 {
             return true;
         }
-        let start = (self.stopwatch)();
+        let start = (self.instruments.stopwatch)();
         for _ in 0..ticks {
             self.tick(&mut log);
         }
@@ -138,9 +140,9 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
             log(Event::Stopped(error));
         }
         self.player.draw(self.canvas);
-        let scene_cycles = (self.stopwatch)().wrapping_sub(start);
+        let scene_cycles = (self.instruments.stopwatch)().wrapping_sub(start);
         self.show(scene_cycles, &mut log);
-        self.busy_cycles = (self.stopwatch)().wrapping_sub(start);
+        self.busy_cycles = (self.instruments.stopwatch)().wrapping_sub(start);
         ticks == late
     }
 
@@ -268,8 +270,23 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         match self.execute(command, log) {
             Ok(()) if command == Command::Ask => self.send(&self.player.status(request), log),
             Ok(()) if command == Command::AskPlan => self.send(&self.planner.answer(request), log),
+            Ok(()) if command == Command::Identify => self.send(&self.instruments.identity(request), log),
+            Ok(()) if let Command::Measure(steps) = command => self.measure(request, steps, log),
             Ok(()) => self.send(&Done { request }, log),
             Err(field) => self.send(&Refused { request, field: field.code() }, log),
+        }
+    }
+
+    /// Measures steps of the motion asked for last; refuses if none was.
+    fn measure(&mut self, request: u16, steps: u32, log: &mut impl FnMut(Event<Panel::Error, Link::Error>)) {
+        let steps = steps.min(MOST_MEASURED_STEPS);
+        let service = &mut self.service;
+        let mut measured = false;
+        let cycles = (self.instruments.timed)(&mut || measured = service.advance(steps));
+        if measured {
+            self.send(&Measured { request, steps, cycles }, log);
+        } else {
+            self.send(&Refused { request, field: Field::Message.code() }, log);
         }
     }
 

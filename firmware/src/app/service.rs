@@ -68,19 +68,21 @@ impl Service {
 
     /// Whether there is work to do.
     pub fn is_busy(&self) -> bool {
-        self.work.is_some()
+        self.work.as_ref().is_some_and(|work| !work.job.is_finished())
+    }
+
+    /// Goes on with the motion asked for last by `steps` steps, beyond its last sample, at once; whether there is one.
+    pub fn advance(&mut self, steps: u32) -> bool {
+        self.work.as_mut().map(|work| work.job.measure(steps)).is_some()
     }
 
     /// Computes at most one step; the sample, when one is due. A refusal ends the work: the step is too long for the
     /// motion, which has left the finite numbers.
     pub fn work(&mut self) -> Option<Result<Sample, Refused>> {
-        let Work { request, index, job } = self.work.as_mut()?;
+        let Work { request, index, job } = self.work.as_mut().filter(|work| !work.job.is_finished())?;
         let (request, number) = (*request, *index);
         let reading = job.advance();
         *index = index.wrapping_add(u32::from(matches!(reading, Ok(Some(_)))));
-        if job.is_finished() {
-            self.work = None;
-        }
         match reading {
             Ok(reading) => reading.map(|Reading { state, velocities, energy }| {
                 Ok(Sample { request, index: number, state, velocities, energy })

@@ -21,5 +21,5 @@ fn main() -> ! {
         defmt::error!("the panel does not answer");
     }
     let app = board::application(APP, SHEETS, panel, board.link, board.keys);
-    board::run(app, board.receiver, board.clock, board.watchdog)
+    board::run(app, board.receiver, board.instruments, board.clock, board.watchdog)
 }

@@ -19,5 +19,5 @@ fn main() -> ! {
     let Some(board) = Board::take() else { panic!("the board was taken before") };
     defmt::info!("boot: mps2-an386, {} Hz", board.hertz);
     let app = board::application(APP, SHEETS, NoDisplay, board.link, NoButtons);
-    board::run(app, board.receiver, board.clock, board.watchdog)
+    board::run(app, board.receiver, board.instruments, board.clock, board.watchdog)
 }

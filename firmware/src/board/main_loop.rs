@@ -8,11 +8,12 @@ use double_pendulum::Parameters;
 use double_pendulum::plan::Plan;
 use embedded_io::Write;
 
-use super::cortex_m::clock::{Clock, cycles};
+use super::cortex_m::clock::Clock;
 use super::cortex_m::retained;
 use super::cortex_m::watchdog::Watchdog;
 use super::serial::receiver::Receiver;
 use crate::app::controls::Buttons;
+use crate::app::instruments::Instruments;
 use crate::app::warm_restart::{Journal, WarmRestart};
 use crate::app::{App, Event};
 use crate::config::HALF_PIXEL;
@@ -51,6 +52,7 @@ where
 pub fn run<Panel, Link, Keys>(
     app: &'static mut App<Panel, Link, Keys>,
     mut receiver: Receiver,
+    instruments: Instruments,
     clock: Clock,
     mut watchdog: impl Watchdog,
 ) -> !
@@ -59,7 +61,7 @@ where
     Link: Write,
     Keys: Buttons,
 {
-    app.use_stopwatch(cycles);
+    app.use_instruments(instruments);
     app.use_tick(clock.period());
     let mut journal = resume(app, &watchdog);
     let mut now = clock.ticks();

@@ -8,11 +8,14 @@ use cortex_m::peripheral::NVIC;
 
 use super::cortex_m::clock::Clock;
 use super::cortex_m::guard::guard_stack;
+use super::cortex_m::identity::instruments;
 use super::cortex_m::watchdog::{Call, Registers, TwoStage};
 use super::register::{Device, Register};
 use super::serial::receiver::{Inlet, Receiver, Taken};
 use super::serial::transmitter::{Outlet, Transmitter};
+use crate::app::instruments::Instruments;
 use crate::config::BAUD;
+use crate::protocol::BoardName;
 
 /// The processor's clock, Hz.
 const HERTZ: u32 = 25_000_000;
@@ -42,6 +45,8 @@ pub struct Board {
     pub link: Uart,
     /// The serial link inwards.
     pub receiver: Receiver,
+    /// What it tells of itself by.
+    pub instruments: Instruments,
     /// The tick.
     pub clock: Clock,
     /// What resets it when it hangs.
@@ -59,6 +64,7 @@ impl Board {
         Some(Self {
             link: Uart::start(),
             receiver,
+            instruments: instruments(BoardName::Mps2An386, HERTZ, [0; 4], &core.CPUID, core.DCB, core.DWT),
             clock: Clock::start(core.SYST, HERTZ),
             watchdog: TwoStage::start(Registers::of(WATCHDOG), HERTZ, Call::Nmi, false),
             hertz: HERTZ,

@@ -31,7 +31,7 @@ const MAX_BODY: usize = 2 + MAX_FIELDS + 4;
 pub const MAX_WIRE: usize = MAX_BODY + 3;
 
 /// The reflected CRC-32 of zip and Ethernet.
-pub(crate) const CRC: Crc<u32, Table<1>> = Crc::<u32, Table<1>>::new(&CRC_32_ISO_HDLC);
+pub const CRC: Crc<u32, Table<1>> = Crc::<u32, Table<1>>::new(&CRC_32_ISO_HDLC);
 
 /// The message as it goes over the wire, between delimiters: the front of `wire`.
 pub fn encode<'wire, M: Message>(message: &M, wire: &'wire mut [u8; MAX_WIRE]) -> &'wire [u8] {

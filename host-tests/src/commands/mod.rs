@@ -9,3 +9,4 @@ pub mod report;
 pub mod simulate;
 pub mod soak;
 pub mod table;
+pub mod verify_board;

@@ -2,6 +2,7 @@
 
 pub mod clock;
 pub mod guard;
+pub mod identity;
 pub mod semihosting;
 pub mod watchdog;
 

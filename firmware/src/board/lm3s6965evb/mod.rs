@@ -20,11 +20,14 @@ use cortex_m::Peripherals;
 use embedded_hal::digital::OutputPin;
 use embedded_hal_bus::spi::{ExclusiveDevice, NoDelay};
 
+use crate::app::instruments::Instruments;
 use crate::board::cortex_m::clock::Clock;
 use crate::board::cortex_m::guard::guard_stack;
+use crate::board::cortex_m::identity::instruments;
 use crate::board::cortex_m::watchdog::TwoStage;
 use crate::board::serial::receiver::Receiver;
 use crate::display::Ssd0323;
+use crate::protocol::BoardName;
 
 pub use buttons::Keys;
 pub use gpio::Output;
@@ -44,6 +47,8 @@ pub struct Board {
     pub receiver: Receiver,
     /// The five buttons.
     pub keys: Keys,
+    /// What it tells of itself by.
+    pub instruments: Instruments,
     /// The tick.
     pub clock: Clock,
     /// What resets it when it hangs.
@@ -68,6 +73,7 @@ impl Board {
             link,
             receiver,
             keys: Keys::start(),
+            instruments: instruments(BoardName::Lm3s6965evb, hertz, system::chip(), &core.CPUID, core.DCB, core.DWT),
             clock: Clock::start(core.SYST, hertz),
             watchdog: watchdog::start(hertz),
             hertz,

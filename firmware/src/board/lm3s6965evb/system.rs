@@ -16,6 +16,8 @@ const LOCK_TRIES: u32 = 10_000;
 
 // SAFETY: system control of the data sheet, chapter 6; clocks and power cannot break memory safety.
 const SYSTEM_CONTROL: Device = unsafe { Device::at(0x400F_E000) };
+const DID0: Register = SYSTEM_CONTROL.register(0x000);
+const DID1: Register = SYSTEM_CONTROL.register(0x004);
 const RIS: Register = SYSTEM_CONTROL.register(0x050);
 const RESC: Register = SYSTEM_CONTROL.register(0x05c);
 const MISC: Register = SYSTEM_CONTROL.register(0x058);
@@ -68,6 +70,11 @@ fn start_crystal() {
         RCC.modify(MAIN_OSCILLATOR_OFF, 0);
         cortex_m::asm::delay(CRYSTAL_START);
     }
+}
+
+/// What the chip says that it is: its two identification registers. It has no unique number.
+pub fn chip() -> [u32; 4] {
+    [DID0.read(), DID1.read(), 0, 0]
 }
 
 /// Whether the watchdog caused the last reset. To be asked once: the register adds up the causes. QEMU's never says so.

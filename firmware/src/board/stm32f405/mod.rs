@@ -17,15 +17,18 @@ mod uart;
 mod watchdog;
 
 use stm32f4xx_hal::gpio::PC7;
-use stm32f4xx_hal::pac::{self, RCC};
+use stm32f4xx_hal::pac::{self, DBGMCU, RCC};
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::{Config, Rcc};
 
 use crate::app::controls::{Buttons, Pressed};
+use crate::app::instruments::Instruments;
 use crate::board::cortex_m::clock::Clock;
 use crate::board::cortex_m::guard::guard_stack;
+use crate::board::cortex_m::identity::instruments;
 use crate::board::serial::receiver::Receiver;
 use crate::display::Ssd1306;
+use crate::protocol::BoardName;
 
 pub use i2c::{Bus, BusError};
 pub use uart::Uart;
@@ -33,6 +36,9 @@ pub use watchdog::Watchdog;
 
 /// The processor's clock, Hz: the fastest of this chip, and the fixed one of the emulated machine.
 const HERTZ: u32 = 168_000_000;
+
+/// The chip's unique number (RM0090, 39.1), in its system memory.
+const UNIQUE_NUMBER: *const [u32; 3] = core::ptr::without_provenance(0x1fff_7a10);
 
 /// Where the image runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, defmt::Format)]
@@ -56,6 +62,8 @@ pub struct Board {
     pub receiver: Receiver,
     /// The one button.
     pub keys: Keys,
+    /// What it tells of itself by.
+    pub instruments: Instruments,
     /// The tick.
     pub clock: Clock,
     /// What resets it when it hangs.
@@ -84,6 +92,7 @@ impl Board {
             link,
             receiver,
             keys: Keys(c.pc7.into_pull_up_input()),
+            instruments: instruments(BoardName::Stm32f405, HERTZ, chip_number(place), &core.CPUID, core.DCB, core.DWT),
             clock: Clock::start(core.SYST, HERTZ),
             watchdog: Watchdog::start(chip.IWDG, &mut rcc),
             hertz: HERTZ,
@@ -99,6 +108,17 @@ impl Buttons for Keys {
     fn read(&mut self) -> Pressed {
         Pressed { select: self.0.is_low(), ..Pressed::default() }
     }
+}
+
+/// What the chip says that it is, and its unique number.
+fn chip_number(place: Place) -> [u32; 4] {
+    if place == Place::Emulator {
+        return [0; 4];
+    }
+    // SAFETY: both are only read, and nothing else uses them.
+    let (debug, unique) = unsafe { (&*DBGMCU::ptr(), &*UNIQUE_NUMBER) };
+    let [a, b, c] = *unique;
+    [debug.idcode().read().bits(), a, b, c]
 }
 
 /// Starts the clock, and finds out where it is doing so.

@@ -1,7 +1,7 @@
 //! `cargo demo`: the double pendulum on a board's panel, live in the terminal or recorded without one; the board is emulated,
 //! or at a serial port.
 
-mod comparison;
+pub(crate) mod comparison;
 mod headless;
 mod live;
 mod mirror;
@@ -50,7 +50,7 @@ pub fn run(options: &Options) -> anyhow::Result<bool> {
 }
 
 /// The port of this name.
-fn port(name: &str, baud: u32) -> Result<Port, Refused> {
+pub(crate) fn port(name: &str, baud: u32) -> Result<Port, Refused> {
     let refused = |reason: String| Refused::because(format_args!("--port {reason}"));
     Port::open(&find(name).map_err(|error| refused(error.to_string()))?, baud).map_err(refused)
 }

@@ -9,8 +9,8 @@ use firmware::job::{Arithmetic, Formulation, Job, ON_BOARDS, Request, Row};
 use firmware::motion::settings::Settings;
 use firmware::protocol::Field;
 use firmware::protocol::{
-    Ask, AskPlan, Choose, Decoder, Frame, LinkError, MAX_FIELDS, MAX_WIRE, Message, Pause, Press, Restart, Set,
-    Simulate, Step, frame,
+    Ask, AskPlan, Choose, Decoder, Frame, Identify, LinkError, MAX_FIELDS, MAX_WIRE, Measure, Message, Pause, Press,
+    Restart, Set, Simulate, Step, frame,
 };
 use firmware::scenes::SceneName;
 
@@ -164,6 +164,8 @@ pub fn commands_seeds() -> Vec<Vec<u8>> {
     let scenes = scenes.map(|fields| one(Choose::KIND, fields));
     let others = [
         one(Press::KIND, fields(&Press { request: 9, key: 3 })),
+        one(Identify::KIND, fields(&Identify { request: 10 })),
+        one(Measure::KIND, fields(&Measure { request: 11, steps: 2 })),
         one(Restart::KIND, fields(&Restart { request: 3 })),
         one(Pause::KIND, fields(&Pause { request: 4, paused: 1 })),
         one(Step::KIND, fields(&Step { request: 5, ticks: 3 })),

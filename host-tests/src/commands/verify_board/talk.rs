@@ -1,0 +1,76 @@
+//! Question and answer over a serial port.
+
+use std::collections::VecDeque;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use anyhow::bail;
+use firmware::protocol::{Field, Frame, Message, Refused};
+
+use crate::link::{Port, Received};
+
+/// A board answers a command within a tick; the slowest motion asked for has a sample every second.
+const PATIENCE: Duration = Duration::from_secs(20);
+/// From one look at the port to the next.
+const LOOK: Duration = Duration::from_millis(1);
+
+/// A board that answers.
+pub struct Talk {
+    /// Where it is.
+    pub port: Port,
+    arrived: VecDeque<Received>,
+}
+
+impl Talk {
+    /// Waits until the board is heard.
+    pub fn new(port: Port) -> anyhow::Result<Self> {
+        let mut talk = Self { port, arrived: VecDeque::new() };
+        talk.next::<Frame>()?;
+        Ok(talk)
+    }
+
+    /// The next message of any kind.
+    pub fn receive(&mut self) -> anyhow::Result<Received> {
+        let since = Instant::now();
+        let mut told = Vec::new();
+        loop {
+            if let Some(message) = self.arrived.pop_front() {
+                return Ok(message);
+            }
+            self.arrived.extend(self.port.messages());
+            told.extend(self.port.notices());
+            if since.elapsed() > PATIENCE {
+                let name = self.port.name();
+                bail!("{}", told.pop().unwrap_or_else(|| format!("{name}: no message for {} s", PATIENCE.as_secs())));
+            }
+            sleep(LOOK);
+        }
+    }
+
+    /// The next message of one kind; others on the way to it are passed over, but not a refusal.
+    pub fn next<M: Message>(&mut self) -> anyhow::Result<M> {
+        let since = Instant::now();
+        while since.elapsed() < PATIENCE {
+            let message = self.receive()?;
+            if let Some(wanted) = message.read() {
+                return Ok(wanted);
+            }
+            if let Some(Refused { field, .. }) = message.read() {
+                bail!("the board refuses: {}", Field::from_code(field).map_or("unknown field", Field::name));
+            }
+        }
+        bail!("{}: the board plays, and does not answer; flash it anew", self.port.name())
+    }
+
+    /// Sends a message and waits for the answer to it.
+    pub fn ask<A: Message>(&mut self, message: &impl Message) -> anyhow::Result<A> {
+        self.port.send(message);
+        self.next()
+    }
+
+    /// Forgets what came while nobody listened.
+    pub fn forget(&mut self) {
+        self.arrived.clear();
+        self.port.messages();
+    }
+}

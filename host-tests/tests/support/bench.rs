@@ -1,0 +1,118 @@
+//! A pseudo-terminal with an emulated board behind it, whose cable can be pulled. Not every test uses all of it.
+#![allow(dead_code)]
+
+use std::fs;
+use std::io::{ErrorKind, Read, Write};
+use std::os::unix::fs::symlink;
+use std::path::PathBuf;
+use std::process::Command;
+use std::thread::{scope, sleep};
+use std::time::Duration;
+
+use firmware::protocol::{MAX_WIRE, frame};
+use host_tests::emulator::boards::{BOARDS, Board};
+use host_tests::emulator::process::{Output, run};
+use host_tests::emulator::qemu::{Clock, Machine, Settings};
+use host_tests::link::Received;
+use nix::fcntl::OFlag;
+use nix::pty::{PtyMaster, grantpt, posix_openpt, ptsname_r, unlockpt};
+
+use crate::support::{LIMIT, application, settings, toolchain};
+
+/// A board that is quick to emulate, and has neither panel nor buttons.
+pub const BOARD: &Board = &BOARDS[2];
+/// From one look at the cable to the next.
+pub const WAIT: Duration = Duration::from_millis(1);
+/// A board at a port, by a name that stays when the cable is pulled.
+pub struct Bench {
+    pub machine: Machine,
+    pub cable: Option<PtyMaster>,
+    /// The host has said something.
+    pub heard: bool,
+    _folder: tempfile::TempDir,
+    pub name: PathBuf,
+}
+
+impl Bench {
+    pub fn new() -> Self {
+        let folder = tempfile::tempdir().expect("a folder");
+        let name = folder.path().join("ttyACM0");
+        let mut bench = Self { machine: board(), cable: None, heard: false, _folder: folder, name };
+        bench.plug();
+        bench
+    }
+
+    pub fn plug(&mut self) {
+        let flags = OFlag::O_RDWR | OFlag::O_NOCTTY | OFlag::O_NONBLOCK | OFlag::O_CLOEXEC;
+        let cable = posix_openpt(flags).expect("a pseudo-terminal");
+        grantpt(&cable).and_then(|()| unlockpt(&cable)).expect("a pseudo-terminal");
+        symlink(ptsname_r(&cable).expect("its name"), &self.name).expect("a link");
+        self.cable = Some(cable);
+    }
+
+    pub fn unplug(&mut self) {
+        self.cable = None;
+        fs::remove_file(&self.name).expect("the link");
+    }
+
+    /// Takes what the host has said; whether anybody listens at its end.
+    pub fn is_heard(&mut self) -> bool {
+        let Some(cable) = &mut self.cable else { return false };
+        let mut bytes = [0; 256];
+        match cable.read(&mut bytes) {
+            Ok(count) => {
+                self.machine.serial.send_bytes(&bytes[..count]).expect("the board takes it");
+                self.heard = true;
+                true
+            }
+            Err(error) => error.kind() == ErrorKind::WouldBlock,
+        }
+    }
+
+    /// Sends bytes to the host, as fast as it takes them.
+    pub fn say(&mut self, mut bytes: &[u8]) {
+        let Some(cable) = &mut self.cable else { return };
+        while !bytes.is_empty() {
+            match cable.write(bytes) {
+                Ok(count) => bytes = &bytes[count..],
+                Err(error) if error.kind() == ErrorKind::WouldBlock => sleep(WAIT),
+                // It has stopped listening.
+                Err(_) => return,
+            }
+        }
+    }
+
+    /// Carries what is there both ways; `wire` makes bytes of the board's messages.
+    pub fn carry(&mut self, mut wire: impl FnMut(&Received) -> Vec<u8>) {
+        let is_heard = self.is_heard();
+        let messages: Vec<_> = self.machine.serial.all_arrived().collect();
+        for message in messages.iter().filter(|_| is_heard) {
+            self.say(&wire(message));
+        }
+        sleep(WAIT);
+    }
+}
+
+pub fn board() -> Machine {
+    let (toolchain, elf) = (toolchain(), application(BOARD));
+    // As fast as a real one: what the host says must reach it in time.
+    let settings = Settings { clock: Clock::Real, ..settings(&toolchain, BOARD, &elf) };
+    Machine::start(&settings).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// A message as the board has sent it.
+pub fn intact(message: &Received) -> Vec<u8> {
+    frame(message.kind, &message.fields, &mut [0; MAX_WIRE]).to_vec()
+}
+
+/// Runs a command at the bench's port beside `play`, which is called until it has ended.
+pub fn at_port(bench: &mut Bench, command: &mut Command, mut play: impl FnMut(&mut Bench)) -> Output {
+    command.arg("--port").arg(&bench.name);
+    scope(|scope| {
+        let run = scope.spawn(move || run(command, LIMIT).unwrap_or_else(|error| panic!("{error}")));
+        while !run.is_finished() {
+            play(bench);
+        }
+        run.join().expect("it ended")
+    })
+}
