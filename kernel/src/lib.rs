@@ -13,6 +13,7 @@
 //! | coordinates | [`Pendulum::positions`], [`Pendulum::velocities`] |
 //! | (not in the book) a step of order 8 | [`Pendulum::step_of_order_8`], [`rk8::step`] |
 //! | (not in the book) bounds from the energy | [`Bounds`], [`Pendulum::cannot_turn_over`], [`Pendulum::admissible_step`], [`Modes::step_limit`] |
+//! | (not in the book) when a rod first turns over | [`flips`] |
 //! | (not in the book) the cheapest method that keeps to a tolerance | [`plan`](mod@plan) |
 //!
 //! Everything is generic over `f32` and `f64` ([`Real`]), uses no heap, never panics, and gives the same bits on
@@ -64,6 +65,7 @@ mod equal_rods;
 mod error;
 pub mod extrapolation;
 mod fixed;
+pub mod flips;
 pub mod form;
 mod geometry;
 mod hamiltonian;

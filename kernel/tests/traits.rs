@@ -3,6 +3,7 @@
 use core::fmt::Debug;
 
 use double_pendulum::extrapolation::Extrapolation;
+use double_pendulum::flips::*;
 use double_pendulum::form::*;
 use double_pendulum::plan::*;
 use double_pendulum::trig::*;
@@ -39,7 +40,7 @@ fn every_public_type_has_the_common_traits() {
         AngleForm<f32>, AngleState<f32, Plain>, Bounds<f64>, Budget, Compensated<f32>, Costs, DirectionForm8<f64>,
         DirectionForm<f32>, DirectionState<f32, Plain>,
         Divided, EqualRods<f64>, Error, ErrorEstimate, ExtrapolatedForm<12>, Extrapolation<f64>, Fixed32Form, Fixed32State,
-        Fixed64Form<12>, Fixed64State, Followed, Interpolation<f32>, Lanes<f32, 4>, Libm, Limit, Method, Mode<f32>,
+        Fixed64Form<12>, Fixed64State, Followed, Falling<DirectionState<f32, Plain>, f32>, Flip<f32>, Flips<f32, DirectionForm<f32, Plain>>, Interpolation<f32>, Lanes<f32, 4>, Libm, Limit, Method, Mode<f32>,
         Modes<f32>, Motion<f32>, Node<f32>, Oscillation<f32>, Own, Parameter, Parameters<f32>, Pendulum<f32>, Plain, Plan,
         PlanError, Problem, Quantity, RestoreError, Search, ShadowedRun<f32, DirectionForm<f32>>, SmallOscillations<f32>, State<f32>,
         Stepper<f32, DirectionForm<f32>>, Units<f32>, UnwrappedStepper<f32, DirectionForm<f32>>, Vector<f32>, Winding<f32>,

@@ -25,10 +25,17 @@ pub struct Bar {
 impl Bar {
     /// Says what begins now, and how many pieces it has.
     pub fn start(doing: &str, length: u64) -> Self {
-        let style = ProgressStyle::with_template("{prefix} {elapsed} {wide_bar} {pos}/{len}, {eta} left {msg}");
+        let style =
+            ProgressStyle::with_template("{prefix} {elapsed} {wide_bar} {pos}/{len}, {per_sec}, {eta} left {msg}");
         let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
         let bar = ProgressBar::new(length).with_style(style).with_prefix(doing.to_owned());
         Self { bar, reminder: Mutex::new(Reminder::new()) }
+    }
+
+    /// So many pieces were done before.
+    pub fn begin_at(&self, pieces: u64) {
+        self.bar.set_position(pieces);
+        self.bar.reset_eta();
     }
 
     /// So many pieces more are done.

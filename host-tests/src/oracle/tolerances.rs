@@ -315,3 +315,10 @@ pub const BETWEEN_STEPS: [f64; 2] = [1e-7, 3e-4];
 pub const BETWEEN_STEPS_SINGLE: f64 = 3e-7;
 /// The order of that error, 6, give or take what the largest of some samples varies by.
 pub const BETWEEN_STEPS_ORDER: std::ops::RangeInclusive<f64> = 5.8..=6.2;
+
+/// Points of a map of flips with a limit of 10 sqrt(l/g) that are right to a grey level, of those that may turn over: the goal.
+pub const FLIPS_RIGHT: f64 = 0.999;
+/// With a limit of 100 sqrt(l/g) chaos leaves fewer: at most so many are wrong, ...
+pub const FLIPS_WRONG: f64 = 0.04;
+/// ... and so many of all are wrong without being in doubt.
+pub const FLIPS_UNSUSPECTED: f64 = 0.01;

@@ -3,8 +3,9 @@
 use core::marker::PhantomData;
 
 use super::checkpoint::{Check, RestoreError, Words};
+use super::classical;
 use super::coefficients::{Scale, Span, prepare, third};
-use super::equations::{Coefficients, Rates, Same, increments};
+use super::equations::{Coefficients, Rates};
 use super::inverse::{Followed, Inverse};
 use super::sum::{Compensated, Sum};
 use super::{Direction, Form, lower_direction};
@@ -28,7 +29,7 @@ pub struct DirectionForm<R, S = Compensated<R>, I = Followed> {
     pub(super) coefficients: Coefficients<R>,
     scale: Scale,
     /// 1/(2 nu^2).
-    half_inverse_square: R,
+    pub(super) half_inverse_square: R,
     ways: PhantomData<(S, I)>,
 }
 
@@ -45,7 +46,7 @@ pub struct DirectionState<R, S> {
 }
 
 /// Steps from one restoring of the lengths to the next.
-const RESTORING: u32 = 32;
+pub(crate) const RESTORING: u32 = 32;
 
 impl<R: Real, S: Sum<R>, I: Inverse<R>> Sealed for DirectionForm<R, S, I> {}
 
@@ -141,31 +142,11 @@ impl<R: Real, S: Sum<R>, I: Inverse<R>> DirectionForm<R, S, I> {
     #[inline(always)]
     fn step(&self, carried: &mut DirectionState<R, S>) {
         let DirectionState { z, inverse, .. } = *carried;
-        let ahead = |k: &[R; 6]| -> [R; 6] { core::array::from_fn(|i| z[i] + k[i]) };
-        // The inverse at z + k, where k was found at `from`: it falls by 2 S S' r^2.
-        let follow = |k: &[R; 6], from: &[R; 6], r: R, to: &[R; 6]| {
-            I::at_stage(inverse, k[2].twice() * (from[2] * r) * r, self.coefficients.denominator(to[2]))
-        };
-
-        let k1 = increments(&z, self.rates(&z, inverse));
-        let z2 = ahead(&k1);
-        let r2 = follow(&k1, &z, inverse, &z2);
-
-        let k2 = increments(&z2, self.rates(&z2, r2));
-        let sum: [R; 6] = core::array::from_fn(|i| k1[i] + k2[i].twice());
-        let z3 = ahead(&k2);
-        let r3 = follow(&k2, &z2, r2, &z3);
-
-        let twice_k3 = increments(&z3, self.rates(&z3, r3).doubled());
-        let sum: [R; 6] = core::array::from_fn(|i| sum[i] + twice_k3[i]);
-        let z4 = ahead(&twice_k3);
-        let r4 = follow(&twice_k3, &z3, r3, &z4);
-
-        let k4 = increments(&z4, self.rates(&z4, r4));
+        let (sum, last) = classical::stages::<R, I>(&self.coefficients, &z, inverse);
         for i in 0..6 {
-            carried.z[i] = carried.sums[i].add(z[i], (sum[i] + k4[i]) * third());
+            carried.z[i] = carried.sums[i].add(z[i], sum[i] * third());
         }
-        carried.inverse = I::at_end(r4, self.coefficients.inertia, carried.z[2]);
+        carried.inverse = I::at_end(last, self.coefficients.inertia, carried.z[2]);
     }
 
     /// Makes sin^2 a1 + cos^2 a1 = 1 and S^2 + C^2 = nu^2 again, to first order in what they miss.
@@ -174,14 +155,14 @@ impl<R: Real, S: Sum<R>, I: Inverse<R>> DirectionForm<R, S, I> {
         for (i, length, gain) in [(0, R::ONE, R::HALF), (2, self.coefficients.norm, self.half_inverse_square)] {
             let [s, c] = [carried.z[i], carried.z[i + 1]];
             let lost = s * carried.sums[i].lost() + c * carried.sums[i + 1].lost();
-            let missing = gain * (((length - c) * (length + c) - s * s) - (lost + lost));
+            let missing = classical::missing([s, c], lost, length, gain);
             carried.z[i] = carried.sums[i].add(s, s * missing);
             carried.z[i + 1] = carried.sums[i + 1].add(c, c * missing);
         }
     }
 
     #[inline(always)]
-    pub(super) fn rates(&self, &[sin1, cos1, s, c, p1, p2]: &[R; 6], inverse: R) -> Rates<R> {
-        self.coefficients.rates(&Same, [sin1, cos1], [s, c], [p1, p2], inverse)
+    pub(super) fn rates(&self, z: &[R; 6], inverse: R) -> Rates<R> {
+        classical::rates(&self.coefficients, z, inverse)
     }
 }

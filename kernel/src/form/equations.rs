@@ -36,7 +36,7 @@ pub(crate) struct Rates<R: Ring> {
     pub own: [R; 2],
 }
 
-impl<R: Real> Rates<R> {
+impl<R: Ring<Torque = R>> Rates<R> {
     /// Twice these.
     #[inline(always)]
     pub fn doubled(self) -> Self {
@@ -118,6 +118,12 @@ impl<R: Ring, U: Units<R>> Units<R> for Reverse<U> {
 }
 
 impl<R: Ring> Coefficients<R> {
+    /// m + S^2, whose inverse is r.
+    #[inline(always)]
+    pub fn denominator(&self, s: R) -> R {
+        self.inertia + s * s
+    }
+
     /// The rates where `upper` is (sin a1, cos a1), `elbow` is (S, C), `momenta` is (P1, P2), and `inverse` is r.
     #[inline(always)]
     pub fn rates(&self, units: &impl Units<R>, upper: [R; 2], elbow: [R; 2], [p1, p2]: [R; 2], inverse: R) -> Rates<R> {
@@ -147,12 +153,6 @@ impl<R: Real> Coefficients<R> {
     pub fn rates_by_division(&self, upper: [R; 2], elbow: [R; 2], [p1, p2]: [R; 2]) -> Rates<R> {
         let u = (p1 - elbow[1] * p2) / self.denominator(elbow[0]);
         self.rates_at(&Same, upper, elbow, p2, u)
-    }
-
-    /// m + S^2, whose inverse is r.
-    #[inline(always)]
-    pub fn denominator(&self, s: R) -> R {
-        self.inertia + s * s
     }
 }
 

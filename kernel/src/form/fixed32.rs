@@ -110,21 +110,7 @@ impl Fixed32Form {
     #[inline(never)]
     fn start_from(&self, state: &State<f64>) -> Result<Fixed32State, Error> {
         let energy = Pendulum::new(self.parameters)?.energy_above_rest(state);
-        let units = Setting::new(&self.parameters, energy, self.dt)?;
-        let &State { a1, a2, p1, p2 } = state;
-        let (sin1, cos1) = Own::sin_cos(a1);
-        let (sin_d, cos_d) = Own::sin_cos(a1 - a2);
-        let Scaling { norm, momenta: [unit1, unit2], .. } = units.scaling;
-        let z = [sin1, cos1, norm * sin_d, norm * cos_d, p1 * unit1, p2 * unit2];
-        let denominator = units.scaling.denominator(z[2]);
-        Ok(Fixed32State {
-            units,
-            z: z.map(|z| libm::rint(z * ONE) as i64 + OFFSET),
-            inverse: Q30::constant(1.0 / denominator),
-            reach: 0,
-            lost: false,
-            steps: 0,
-        })
+        Ok(Setting::new(&self.parameters, energy, self.dt)?.start(state))
     }
 }
 
@@ -245,7 +231,39 @@ impl Setting {
     }
 }
 
+impl Setting {
+    /// The motion that starts from `state`, of the energy it is for or less.
+    fn start(&self, state: &State<f64>) -> Fixed32State {
+        let State { a1, a2, p1, p2 } = *state;
+        let (sin1, cos1) = Own::sin_cos(a1);
+        let (sin_d, cos_d) = Own::sin_cos(a1 - a2);
+        let Scaling { norm, momenta: [unit1, unit2], .. } = self.scaling;
+        let z = [sin1, cos1, norm * sin_d, norm * cos_d, p1 * unit1, p2 * unit2];
+        let denominator = self.scaling.denominator(z[2]);
+        Fixed32State {
+            units: *self,
+            z: z.map(|z| libm::rint(z * ONE) as i64 + OFFSET),
+            inverse: Q30::constant(1.0 / denominator),
+            reach: 0,
+            lost: false,
+            steps: 0,
+        }
+    }
+}
+
 impl Fixed32State {
+    /// The motion that starts from `state`, whose energy is at most this one's: in the same units.
+    pub(super) fn start<R: Real>(&self, state: &State<R>) -> Result<Self, Error> {
+        state.check()?;
+        Ok(self.units.start(&state.cast()))
+    }
+
+    /// sin a1, cos a1, S, C, P1, P2, rounded.
+    #[inline(always)]
+    pub(super) fn quantities(&self) -> [Q30; 6] {
+        self.z.map(|z| Q30((z >> 32) as i32))
+    }
+
     fn advance(&mut self, units: &impl Units<Q30>, steps: u32) {
         for _ in 0..steps {
             self.step(units);
@@ -255,7 +273,7 @@ impl Fixed32State {
     #[inline(always)]
     fn step(&mut self, units: &impl Units<Q30>) {
         let Setting { coefficients, reverse, half_step, weight, .. } = &self.units;
-        let z = self.z.map(|z| Q30((z >> 32) as i32));
+        let z = self.quantities();
         let inverse = self.inverse;
         let rates = |z: &[Q30; 6], r: Q30| {
             let &[sin1, cos1, s, c, p1, p2] = z;

@@ -3,10 +3,11 @@
 use core::fmt::Debug;
 
 use crate::real::Real;
+use crate::ring::Ring;
 use crate::sealed::Sealed;
 
 /// A way to follow r = 1/(m + S^2) through a step; sealed.
-pub trait Inverse<R: Real>: Sealed + Copy + Debug + PartialEq + 'static {
+pub trait Inverse<R: Ring>: Sealed + Copy + Debug + PartialEq + 'static {
     /// Tells the kinds of inverse apart in a checkpoint.
     #[doc(hidden)]
     const KIND: u64;
@@ -49,7 +50,7 @@ pub struct Followed;
 
 impl Sealed for Followed {}
 
-impl<R: Real> Inverse<R> for Followed {
+impl<R: Ring> Inverse<R> for Followed {
     const KIND: u64 = 1;
     #[inline(always)]
     fn at_stage(start: R, fall: R, _: R) -> R {
@@ -57,6 +58,6 @@ impl<R: Real> Inverse<R> for Followed {
     }
     #[inline(always)]
     fn at_end(last: R, m: R, s: R) -> R {
-        last + last * ((R::ONE - m * last) - (s * last) * s)
+        last + last * ((R::constant(1.0) - m * last) - (s * last) * s)
     }
 }

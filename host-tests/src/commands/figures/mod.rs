@@ -5,7 +5,7 @@
 pub mod chaos;
 pub mod frequencies;
 pub mod panel;
-mod sheet;
+pub mod sheet;
 pub mod small;
 
 use anyhow::Result;

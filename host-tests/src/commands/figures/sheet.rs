@@ -141,23 +141,36 @@ pub fn svg<D: Drawing>(drawing: &D) -> Result<String> {
 
 /// An SVG file made here as a PNG file.
 pub fn png(svg: &str) -> Result<Vec<u8>> {
+    let pixels = pixels(svg, PIXELS as f32)?;
+    encode([pixels.width(), pixels.height()], &colours(&pixels))
+}
+
+/// An SVG file made here in pixels, so many to a unit.
+pub fn pixels(svg: &str, scale: f32) -> Result<Pixmap> {
     let mut options = usvg::Options::default();
     let fonts = options.fontdb_mut();
     fonts.load_font_data(dejavu::sans::regular().to_vec());
     fonts.set_sans_serif_family("DejaVu Sans");
     let tree = usvg::Tree::from_str(svg, &options)?;
-    let size = tree.size().to_int_size();
-    let mut pixels = Pixmap::new(PIXELS * size.width(), PIXELS * size.height()).context("the figure is empty")?;
-    let scale = Transform::from_scale(PIXELS as f32, PIXELS as f32);
-    resvg::render(&tree, scale, &mut pixels.as_mut());
-    // Nothing is transparent, so the fourth byte of each pixel says nothing.
-    let colours: Vec<u8> = pixels.data().chunks(4).flat_map(|pixel| pixel.iter().copied().take(3)).collect();
+    let [width, height] = [tree.size().width(), tree.size().height()].map(|length| (scale * length).round() as u32);
+    let mut pixels = Pixmap::new(width, height).context("the figure is empty")?;
+    resvg::render(&tree, Transform::from_scale(scale, scale), &mut pixels.as_mut());
+    Ok(pixels)
+}
+
+/// The colours of pixels none of which is transparent, so that the fourth byte of each says nothing.
+pub fn colours(pixels: &Pixmap) -> Vec<u8> {
+    pixels.data().chunks(4).flat_map(|pixel| pixel.iter().copied().take(3)).collect()
+}
+
+/// Red, green and blue of each pixel as a PNG file.
+pub fn encode([width, height]: [u32; 2], colours: &[u8]) -> Result<Vec<u8>> {
     let mut file = Vec::new();
-    let mut encoder = png::Encoder::new(&mut file, pixels.width(), pixels.height());
+    let mut encoder = png::Encoder::new(&mut file, width, height);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_compression(png::Compression::High);
     let mut writer = encoder.write_header()?;
-    writer.write_image_data(&colours)?;
+    writer.write_image_data(colours)?;
     writer.finish()?;
     Ok(file)
 }

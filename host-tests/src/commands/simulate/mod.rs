@@ -15,7 +15,7 @@ pub use board::on_board;
 pub use number::{Number, NumberError};
 pub use options::{Options, Place};
 pub use request::{Plan, plan};
-pub use start::Start;
+pub use start::{Pair, Start};
 pub use table::Table;
 
 /// Computes the motion on the host and gives each reading to `row`.

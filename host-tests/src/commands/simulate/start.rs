@@ -13,10 +13,11 @@ const DEGREE: f64 = PI / 180.0;
 
 /// Two numbers separated by a comma: one for each bob or rod.
 #[derive(Clone, Debug)]
-struct Pair(Number, Number);
+pub struct Pair(Number, Number);
 
 impl Pair {
-    fn values(&self) -> [f64; 2] {
+    /// Their nearest `f64`.
+    pub fn values(&self) -> [f64; 2] {
         [self.0.value(), self.1.value()]
     }
 }

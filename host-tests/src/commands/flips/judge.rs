@@ -1,0 +1,72 @@
+//! What can be believed: the map held against the exact motion.
+
+use std::f64::consts::PI;
+
+use double_pendulum::flips::{Flip, Flips};
+use double_pendulum::form::DirectionForm;
+use double_pendulum::{Error, Motion};
+
+use super::map::{Map, Point};
+use crate::oracle::reference::Reference;
+
+/// The judge's steps are so many times finer; its arithmetic is compensated `f64`.
+const FINER: u32 = 16;
+/// Times between which the exact motion is looked at, sqrt(l1/g).
+const LOOKS: f64 = 0.1;
+
+/// How a map's points were judged.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Verdict {
+    /// Points that may turn over.
+    pub points: usize,
+    /// Of them, those whose time is more than a grey level off.
+    pub wrong: usize,
+    /// Those in doubt.
+    pub doubtful: usize,
+    /// Those that are wrong and not in doubt.
+    pub unsuspected: usize,
+}
+
+/// Judges all points of the upper half of a map by fine steps in `f64`.
+pub fn judge(map: &Map) -> Result<Verdict, Error> {
+    let points = map.points(0..map.square.rows())?;
+    let dt = map.dt / f64::from(FINER);
+    let fine = Flips::<f64, DirectionForm<f64>>::new(&map.parameters.cast(), dt, (f64::from(map.limit) / dt) as u32)?;
+    let mut verdict = Verdict::default();
+    for (start, point) in map.starts(0..map.square.rows()).zip(points) {
+        let [a1, a2] = start.map(f64::from);
+        let Point { flip: Flip::After(_) | Flip::Later, .. } = point else { continue };
+        let (wrong, doubtful) = (map.differ(point.flip, single(fine.of(a1, a2)?)), map.is_in_doubt(point));
+        verdict.points += 1;
+        verdict.wrong += usize::from(wrong);
+        verdict.doubtful += usize::from(doubtful);
+        verdict.unsuspected += usize::from(wrong && !doubtful);
+    }
+    Ok(verdict)
+}
+
+/// The flip of the exact motion, to 30 digits.
+pub fn exact(map: &Map, [a1, a2]: [f32; 2]) -> Flip<f32> {
+    let mut motion = Reference::new(&map.parameters.cast(), &Motion::at_rest(a1.into(), a2.into()));
+    let mut before = [a1, a2].map(f64::from);
+    for look in 1..=(f64::from(map.limit) / LOOKS) as u32 {
+        let time = f64::from(look) * LOOKS;
+        motion.advance_to(time);
+        let after = motion.motion().angles();
+        let passed =
+            |rod: usize| (after[rod].abs() > PI).then(|| (after[rod].abs() - PI) / (after[rod] - before[rod]).abs());
+        if let Some(since) = [0, 1].into_iter().filter_map(passed).reduce(f64::max) {
+            return Flip::After((time - since * LOOKS) as f32);
+        }
+        before = after;
+    }
+    Flip::Later
+}
+
+fn single(flip: Flip<f64>) -> Flip<f32> {
+    match flip {
+        Flip::Never => Flip::Never,
+        Flip::After(time) => Flip::After(time as f32),
+        Flip::Later => Flip::Later,
+    }
+}

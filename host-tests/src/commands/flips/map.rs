@@ -1,0 +1,116 @@
+//! Computing the map: in threads, lanes and two steps.
+
+use double_pendulum::flips::{Flip, Flips, step_size};
+use double_pendulum::form::{DirectionForm, Plain};
+use double_pendulum::{Error, Parameters};
+use rayon::prelude::*;
+
+use super::square::Square;
+
+/// The greys that the panel has for times: equal parts of their logarithm.
+pub const GREYS: u8 = 14;
+
+/// What is looked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Map {
+    /// The pendulum; its gravity is its l1, so that times are in sqrt(l1/g).
+    pub parameters: Parameters<f32>,
+    /// The step, sqrt(l1/g).
+    pub dt: f64,
+    /// How long is waited, sqrt(l1/g).
+    pub limit: f32,
+    /// Which starts.
+    pub square: Square,
+}
+
+/// A start's flip with the step, and with half of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    /// What is shown.
+    pub flip: Flip<f32>,
+    /// What it is held against.
+    pub check: Flip<f32>,
+}
+
+/// The kernel's search with the cheapest steps.
+pub type Search = Flips<f32, DirectionForm<f32, Plain>>;
+
+/// Numbers side by side: two vectors of 8 with AVX2, four of 4 without.
+pub const LANES: usize = 16;
+/// Starts that a thread follows by itself; the more, the fewer lanes are idle at its end.
+const PORTION: usize = 8192;
+
+impl Map {
+    /// The search with the step divided by `finer`.
+    pub fn search(&self, finer: u32) -> Result<Search, Error> {
+        let dt = self.dt / f64::from(finer);
+        Search::new(&self.parameters, dt, (f64::from(self.limit) / dt).ceil() as u32)
+    }
+
+    /// Rows computed at once: work for every thread.
+    pub fn band(&self) -> usize {
+        let [width, _] = self.square.size;
+        (2 * rayon::current_num_threads() * PORTION).div_ceil(width)
+    }
+
+    /// A pendulum's map with the step that suits it, for a time `limit`, sqrt(l1/g), of the pendulum's l1 being its g.
+    pub fn new(parameters: Parameters<f32>, limit: f32, square: Square) -> Result<Self, Error> {
+        Ok(Self { parameters, dt: step_size(&parameters)?, limit, square })
+    }
+
+    /// The starts of some rows.
+    pub fn starts(&self, rows: std::ops::Range<usize>) -> impl Iterator<Item = [f32; 2]> + '_ {
+        let [width, _] = self.square.size;
+        rows.flat_map(move |row| (0..width).map(move |column| self.square.start([column, row])))
+    }
+
+    /// The points of some rows.
+    pub fn points(&self, rows: std::ops::Range<usize>) -> Result<Vec<Point>, Error> {
+        let starts: Vec<[f32; 2]> = self.starts(rows).collect();
+        let searches = [self.search(1)?, self.search(2)?];
+        let portions = starts.par_chunks(PORTION).map(|portion| {
+            let [flips, checks] = [flips(&searches[0], portion)?, flips(&searches[1], portion)?];
+            Ok(flips.into_iter().zip(checks).map(|(flip, check)| Point { flip, check }).collect::<Vec<_>>())
+        });
+        Ok(portions.collect::<Result<Vec<_>, Error>>()?.concat())
+    }
+
+    /// Whether its two times are farther apart than a grey level of the panel.
+    pub fn is_in_doubt(&self, Point { flip, check }: Point) -> bool {
+        self.differ(flip, check)
+    }
+
+    /// Whether two flips are farther apart than a grey level; none at all counts as at the limit.
+    pub fn differ(&self, one: Flip<f32>, other: Flip<f32>) -> bool {
+        if [one, other].contains(&Flip::Never) {
+            return one != other;
+        }
+        let level = |flip| self.share(flip).unwrap_or(1.0) * f32::from(GREYS);
+        (level(one) - level(other)).abs() > 1.0
+    }
+
+    /// How far a flip is on the logarithmic scale from sqrt(l1/g) to the limit, 0 to 1; none without one.
+    pub fn share(&self, flip: Flip<f32>) -> Option<f32> {
+        match flip {
+            Flip::After(time) => Some((time.ln() / self.limit.ln()).clamp(0.0, 1.0)),
+            Flip::Never | Flip::Later => None,
+        }
+    }
+}
+
+/// The flips of some starts, by the widest vectors that this processor has.
+pub fn flips(search: &Search, starts: &[[f32; 2]]) -> Result<Vec<Flip<f32>>, Error> {
+    let mut flips = vec![Flip::Never; starts.len()];
+    pulp::Arch::new().dispatch(|| each(search, starts, &mut flips))?;
+    Ok(flips)
+}
+
+/// The same, for the processor that its caller is compiled for.
+#[inline(always)]
+pub fn each(search: &Search, starts: &[[f32; 2]], flips: &mut [Flip<f32>]) -> Result<(), Error> {
+    search.of_each::<LANES>(starts.iter().copied(), |start, flip| {
+        if let Some(place) = flips.get_mut(start) {
+            *place = flip;
+        }
+    })
+}

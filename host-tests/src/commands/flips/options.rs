@@ -1,0 +1,123 @@
+//! The command line of `cargo flips`.
+
+use std::f64::consts::PI;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use clap::Parser;
+use double_pendulum::Parameters;
+
+use super::map::Map;
+use super::output::Kind;
+use super::square::Square;
+use crate::commands::simulate::{Number, Pair};
+use crate::console::cli::Refused;
+
+const AFTER_HELP: &str = "\
+Examples:
+  cargo flips --size 1024 --out flips.png
+  cargo flips --size 512 --limit 100 --centre 1.9,2.2 --zoom 8 --doubt --out corner.png
+
+Ctrl-C leaves what is done as a picture; the same command with --resume goes on, to the same bytes as if it had never
+stopped. Bad input: one line on stderr, exit code 2.";
+
+/// Draws when a rod first turns over, for every start from rest: a1 across, a2 upwards, colour the time.
+///
+/// Each start is followed twice, with a step and with half of it, in f32; the time shown is the first's.
+/// Numbers are decimals (0.25, 1e-3) or fractions (1/256).
+#[derive(Debug, Parser)]
+#[command(name = "cargo flips", bin_name = "cargo flips", after_help = AFTER_HELP)]
+pub struct Options {
+    /// Pixels: one number for a square, or two
+    #[arg(long, value_name = "N|WxH", default_value = "512")]
+    size: Size,
+    /// How long to wait for a turn-over, sqrt(l1/g)
+    #[arg(long, value_name = "T", default_value = "1000", allow_hyphen_values = true)]
+    limit: Number,
+    /// Masses of the bobs
+    #[arg(long, value_name = "M1,M2", default_value = "1,1", allow_hyphen_values = true)]
+    masses: Pair,
+    /// Lengths of the rods
+    #[arg(long, value_name = "L1,L2", default_value = "1,1", allow_hyphen_values = true)]
+    lengths: Pair,
+    /// The start in the middle, rad
+    #[arg(long, value_name = "A1,A2", default_value = "0,0", allow_hyphen_values = true)]
+    centre: Pair,
+    /// How many times less than a whole turn the picture is across
+    #[arg(long, value_name = "Z", default_value = "1", allow_hyphen_values = true)]
+    zoom: Number,
+    /// Show the starts of which the two steps differ by more than a grey level of the panel
+    #[arg(long)]
+    pub doubt: bool,
+    /// Go on where an interrupted run of the same map has stopped
+    #[arg(long)]
+    pub resume: bool,
+    /// What to write: a picture (.png), a table (.csv), or the times as f32, little-endian, row by row (.f32)
+    #[arg(long, value_name = "FILE", default_value = "flips.png")]
+    pub out: PathBuf,
+}
+
+/// Pixels across and down.
+#[derive(Clone, Copy, Debug)]
+struct Size([usize; 2]);
+
+/// The least and the most pixels across or down.
+const SIZES: std::ops::RangeInclusive<usize> = 2..=32_768;
+
+impl FromStr for Size {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let number = |text: &str| {
+            let number = text.parse().map_err(|_| format!("'{text}' is no whole number"))?;
+            let (least, most) = (SIZES.start(), SIZES.end());
+            if SIZES.contains(&number) { Ok(number) } else { Err(format!("must be from {least} to {most}")) }
+        };
+        let (width, height) = text.split_once('x').unwrap_or((text, text));
+        Ok(Self([number(width)?, number(height)?]))
+    }
+}
+
+/// The least time waited for, sqrt(l1/g): colours go by its logarithm. The most steps to a start.
+const LEAST_LIMIT: f64 = 2.0;
+const MOST_STEPS: f64 = 1e9;
+
+/// A step of an `f32` angle of a turn, rad, of which a pixel must have several.
+const FINEST: f64 = 8.0 * 2.4e-7;
+
+impl Options {
+    /// The map and the kind of file; an error names the option and its value.
+    pub fn map(&self) -> Result<(Map, Kind), Refused> {
+        let kind = Kind::of(&self.out)?;
+        let Self { limit, zoom, .. } = self;
+        let wrong =
+            |option: &str, value: &Number, what: &str| Err(Refused::because(format!("--{option} {value}: {what}")));
+        if limit.value() < LEAST_LIMIT {
+            return wrong("limit", limit, "must be at least 2");
+        }
+        let Size(size) = self.size;
+        let pixel = 2.0 * PI / zoom.value() / size[0].max(size[1]) as f64;
+        if !zoom.is_positive() || zoom.value() < 1.0 {
+            return wrong("zoom", zoom, "must be at least 1");
+        }
+        if pixel < FINEST {
+            return wrong("zoom", zoom, "f32 has no angles so close");
+        }
+        let [centre, [m1, m2], [l1, l2]] = [&self.centre, &self.masses, &self.lengths].map(Pair::values);
+        if centre.iter().any(|angle| angle.abs() > PI) {
+            return Err(Refused::because(format!("--centre {},{}: must be within -pi and pi", centre[0], centre[1])));
+        }
+        // Time in sqrt(l1/g), whatever g is.
+        let parameters = Parameters { m1, m2, l1, l2, g: l1 }.cast::<f32>();
+        let square = Square { size, centre, half: PI / zoom.value() };
+        let map = Map::new(parameters, limit.value() as f32, square)
+            .and_then(|map| {
+                [1, 2].map(|finer| map.search(finer)).into_iter().try_fold(map, |map, search| search.map(|_| map))
+            })
+            .map_err(|error| Refused::because(format!("--masses, --lengths: {error}")))?;
+        if 2.0 * limit.value() / map.dt > MOST_STEPS {
+            return wrong("limit", limit, "more than a thousand million steps");
+        }
+        Ok((map, kind))
+    }
+}

@@ -1,0 +1,105 @@
+//! What is written: a picture, a table, or numbers.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use anyhow::Result;
+use double_pendulum::flips::Flip;
+
+use super::legend;
+use super::map::{Map, Point};
+use super::part::number;
+use crate::commands::figures::sheet;
+use crate::console::cli::Refused;
+
+/// A kind of file, by its name's end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// `.png`
+    Picture,
+    /// `.csv`
+    Table,
+    /// `.f32`
+    Numbers,
+}
+
+impl Kind {
+    /// The kind of `file`.
+    pub fn of(file: &Path) -> Result<Self, Refused> {
+        match file.extension().and_then(|end| end.to_str()) {
+            Some("png") => Ok(Self::Picture),
+            Some("csv") => Ok(Self::Table),
+            Some("f32") => Ok(Self::Numbers),
+            _ => Err(Refused::because(format!("--out {}: must end in .png, .csv or .f32", file.display()))),
+        }
+    }
+
+    /// The file of a map, of which the first `points` are done; `doubt` has a colour of its own where it is asked for.
+    pub fn file(self, map: &Map, points: &[Point], doubt: bool) -> Result<Vec<u8>> {
+        let [width, height] = map.square.size;
+        let places = (0..height).flat_map(|row| (0..width).map(move |column| [column, row]));
+        let pixels = places.map(|place| (place, points.get(map.square.place(place)).copied()));
+        match self {
+            Self::Picture => picture(map, pixels.map(|(_, point)| colour(map, point, doubt)), doubt),
+            Self::Table => table(map, pixels),
+            Self::Numbers => {
+                let undone = f32::NAN;
+                Ok(pixels
+                    .flat_map(|(_, point)| point.map_or(undone, |point| number(point.flip)).to_le_bytes())
+                    .collect())
+            }
+        }
+    }
+}
+
+/// Red, green, blue.
+pub type Colour = [u8; 3];
+
+/// There is not the energy for it; not within the limit; the two steps do not agree; not computed yet.
+pub const NEVER: Colour = [0, 0, 0];
+/// See [`NEVER`].
+pub const LATER: Colour = [110, 110, 118];
+/// See [`NEVER`].
+pub const DOUBT: Colour = [255, 0, 90];
+const UNDONE: Colour = [255, 255, 255];
+
+/// The colour of a share of the scale: viridis, in which equal steps look equal; bright is early.
+pub fn scale(share: f32) -> Colour {
+    colorous::VIRIDIS.eval_continuous(f64::from(1.0 - share)).as_array()
+}
+
+fn colour(map: &Map, point: Option<Point>, doubt: bool) -> Colour {
+    match point {
+        None => UNDONE,
+        Some(point) if doubt && map.is_in_doubt(point) => DOUBT,
+        Some(Point { flip, .. }) => match flip {
+            Flip::Never => NEVER,
+            _ => map.share(flip).map_or(LATER, scale),
+        },
+    }
+}
+
+/// The map above its legend.
+fn picture(map: &Map, pixels: impl Iterator<Item = Colour>, doubt: bool) -> Result<Vec<u8>> {
+    let [width, height] = map.square.size;
+    let legend = sheet::pixels(&legend::svg(map, doubt), width as f32 / legend::SIZE[0] as f32)?;
+    let mut colours: Vec<u8> = pixels.flatten().collect();
+    colours.extend(sheet::colours(&legend));
+    sheet::encode([width as u32, height as u32 + legend.height()], &colours)
+}
+
+/// A row for each pixel, from the top left corner.
+fn table(map: &Map, pixels: impl Iterator<Item = ([usize; 2], Option<Point>)>) -> Result<Vec<u8>> {
+    let mut text = String::from("a1,a2,time,half_step\n");
+    let word = |flip: Flip<f32>| match flip {
+        Flip::Never => "never".to_owned(),
+        Flip::After(time) => time.to_string(),
+        Flip::Later => "later".to_owned(),
+    };
+    for (place, point) in pixels {
+        let ([a1, a2], point) = (map.square.start(place), point.map(|point| [point.flip, point.check].map(word)));
+        let [time, check] = point.unwrap_or_default();
+        writeln!(text, "{a1},{a2},{time},{check}")?;
+    }
+    Ok(text.into_bytes())
+}

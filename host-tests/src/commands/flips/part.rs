@@ -1,0 +1,80 @@
+//! What is done so far, on disk: rows are added as they are computed, so that a run may be ended in any way.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{Read, Write};
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, ensure};
+use double_pendulum::flips::Flip;
+
+use super::map::{Map, Point};
+use crate::console::cli::Refused;
+
+/// Points in a file: a line that says of what map, then two numbers for each.
+#[derive(Debug)]
+pub struct Part {
+    path: PathBuf,
+    file: File,
+}
+
+/// Bytes of a point.
+const POINT: usize = 8;
+
+impl Part {
+    /// The points of `map` done so far, beside `out`: none, unless it is to `resume`.
+    pub fn open(out: &Path, map: &Map, resume: bool) -> Result<(Self, Vec<Point>)> {
+        let mut name = out.as_os_str().to_owned();
+        name.push(".part");
+        let path = PathBuf::from(name);
+        let head = format!("{map:?}\n");
+        let unwritable = || format!("cannot write {}", path.display());
+        if !resume {
+            let mut file = File::create(&path).with_context(unwritable)?;
+            file.write_all(head.as_bytes()).with_context(unwritable)?;
+            return Ok((Self { path, file }, Vec::new()));
+        }
+        let mut bytes = Vec::new();
+        let opened = OpenOptions::new().read(true).write(true).open(&path);
+        let mut file = opened.map_err(|error| Refused::because(format!("--resume: {}: {error}", path.display())))?;
+        file.read_to_end(&mut bytes)?;
+        let other = || Refused::because(format!("--resume: {} is of another map", path.display()));
+        let body = bytes.strip_prefix(head.as_bytes()).ok_or_else(other)?;
+        let points: Vec<Point> = body.chunks_exact(POINT).map(read).collect();
+        // What follows the last whole point was cut off.
+        let kept = head.len() + points.len() * POINT;
+        file.set_len(kept as u64)?;
+        ensure!(std::io::Seek::seek(&mut file, std::io::SeekFrom::End(0))? == kept as u64, unwritable());
+        Ok((Self { path, file }, points))
+    }
+
+    /// Adds what has been computed.
+    pub fn add(&mut self, points: &[Point]) -> Result<()> {
+        let numbers = points.iter().flat_map(|point| [point.flip, point.check].map(number));
+        let bytes: Vec<u8> = numbers.flat_map(f32::to_le_bytes).collect();
+        self.file.write_all(&bytes).with_context(|| format!("cannot write {}", self.path.display()))
+    }
+
+    /// Takes the file away: all is done.
+    pub fn remove(self) -> Result<()> {
+        Ok(fs::remove_file(&self.path)?)
+    }
+}
+
+/// A flip as a number: its time; infinite if it was waited for in vain, -1 if it cannot be.
+pub fn number(flip: Flip<f32>) -> f32 {
+    match flip {
+        Flip::Never => -1.0,
+        Flip::After(time) => time,
+        Flip::Later => f32::INFINITY,
+    }
+}
+
+fn read(bytes: &[u8]) -> Point {
+    let flip = |bytes: &[u8]| match f32::from_le_bytes(bytes.try_into().unwrap_or_default()) {
+        time if time < 0.0 => Flip::Never,
+        time if time.is_finite() => Flip::After(time),
+        _ => Flip::Later,
+    };
+    let (first, second) = bytes.split_at(POINT / 2);
+    Point { flip: flip(first), check: flip(second) }
+}

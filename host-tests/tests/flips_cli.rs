@@ -1,0 +1,116 @@
+//! `cargo flips`: its files, what it refuses, and that an interrupted run goes on as if nothing had been.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+use std::thread::sleep;
+use std::time::Duration;
+
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
+
+fn command(arguments: &str, out: &Path) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_flips"));
+    // Bands as small as they come, on any machine.
+    command.env("RAYON_NUM_THREADS", "1").args(arguments.split_whitespace()).arg("--out").arg(out);
+    command
+}
+
+fn run(arguments: &str, out: &Path) -> Output {
+    command(arguments, out).output().expect("it runs")
+}
+
+/// A map large enough to be caught half done: several bands, of which the first are quickly done.
+const LARGE: &str = "--size 450x80 --limit 5 --centre 1,-1 --zoom 8";
+
+const PIXELS: usize = 450 * 80;
+
+/// Runs it until it has put down something, and sends it a signal; whether it was caught half done.
+fn interrupted(out: &Path, signal: Signal) -> Output {
+    let mut child = command(LARGE, out).stderr(Stdio::piped()).stdout(Stdio::piped()).spawn().expect("it runs");
+    let mut part = out.as_os_str().to_owned();
+    part.push(".part");
+    while fs::metadata(&part).map_or(0, |part| part.len()) < 1000 {
+        assert_eq!(child.try_wait().expect("a state"), None, "it was too fast");
+        sleep(Duration::from_millis(1));
+    }
+    kill(Pid::from_raw(child.id() as i32), signal).expect("it is alive");
+    child.wait_with_output().expect("it ends")
+}
+
+#[test]
+fn an_interrupted_run_goes_on_to_the_same_bytes() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let [whole, stopped, killed] = ["whole.png", "stopped.png", "killed.png"].map(|name| folder.path().join(name));
+    assert!(run(LARGE, &whole).status.success());
+    let output = interrupted(&stopped, Signal::SIGINT);
+    assert_eq!(output.status.code(), Some(130), "{output:?}");
+    let partly = png::Decoder::new(std::io::BufReader::new(fs::File::open(&stopped).expect("a picture")));
+    let mut reader = partly.read_info().expect("a picture");
+    let mut pixels = vec![0; reader.output_buffer_size().expect("a size")];
+    reader.next_frame(&mut pixels).expect("a whole picture");
+    let undone = pixels.chunks(3).take(PIXELS).filter(|pixel| *pixel == [255; 3]).count();
+    assert!(undone > 0 && undone < PIXELS, "{undone} undone");
+    assert!(!interrupted(&killed, Signal::SIGKILL).status.success());
+    for out in [&stopped, &killed] {
+        let resumed = run(&format!("{LARGE} --resume"), out);
+        assert!(resumed.status.success(), "{resumed:?}");
+        assert!(fs::read(out).expect("a file") == fs::read(&whole).expect("a file"), "{out:?}");
+    }
+    assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 3, "nothing is left beside");
+}
+
+#[test]
+fn tables_and_numbers_say_the_same() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let [table, numbers] = ["map.csv", "map.f32"].map(|name| folder.path().join(name));
+    for out in [&table, &numbers] {
+        assert!(run("--size 12x6 --limit 20", out).status.success());
+    }
+    let numbers: Vec<f32> = fs::read(&numbers)
+        .expect("a file")
+        .chunks(4)
+        .map(|bytes| f32::from_le_bytes(bytes.try_into().expect("4")))
+        .collect();
+    let table = fs::read_to_string(&table).expect("a file");
+    assert_eq!((numbers.len(), table.lines().count()), (72, 73));
+    for (line, number) in table.lines().skip(1).zip(&numbers) {
+        let expected = match *number {
+            -1.0 => "never".to_owned(),
+            f32::INFINITY => "later".to_owned(),
+            time => time.to_string(),
+        };
+        assert_eq!(line.split(',').nth(2), Some(expected.as_str()), "{line}");
+    }
+    // Both angles mirrored: the same motion.
+    assert!(numbers.iter().eq(numbers.iter().rev()));
+    let words = |word: &str| table.lines().filter(|line| line.contains(word)).count();
+    assert!(words("never") > 10 && words("later") > 0 && words("never") < 40);
+}
+
+#[test]
+fn bad_input_is_refused_in_one_line_that_names_option_and_value() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (arguments, out, option, value) in [
+        ("--size 1", "x.png", "--size", "1"),
+        ("--size 3x", "x.png", "--size", "3x"),
+        ("--size 40000", "x.png", "--size", "40000"),
+        ("--limit 1", "x.png", "--limit", "1"),
+        ("--limit 1e12", "x.png", "--limit", "1e12"),
+        ("--limit long", "x.png", "--limit", "long"),
+        ("--zoom 0.5", "x.png", "--zoom", "0.5"),
+        ("--zoom 1e9", "x.png", "--zoom", "1e9"),
+        ("--centre 4,0", "x.png", "--centre", "4"),
+        ("--masses 0,1", "x.png", "--masses", "0"),
+        ("--lengths 1,-2", "x.png", "--lengths", "-2"),
+        ("", "x.gif", "--out", "x.gif"),
+        ("--resume", "x.png", "--resume", "x.png.part"),
+    ] {
+        let output = run(arguments, &folder.path().join(out));
+        let line = String::from_utf8(output.stderr).expect("text");
+        assert_eq!(output.status.code(), Some(2), "{arguments}: {line}");
+        assert!(output.stdout.is_empty() && line.lines().count() == 1, "{arguments}: {line}");
+        assert!(line.contains(option) && line.contains(value), "{arguments}: {line}");
+    }
+    assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 0, "nothing is written");
+}
