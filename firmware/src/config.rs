@@ -97,6 +97,8 @@ pub const REPEAT_PERIOD_TICKS: u8 = 4;
 
 /// Select held alone for 48/60 = 0.8 s changes the scene.
 pub const HOLD_TICKS: u8 = 48;
+/// Taps and a hold belong together if no more than 24/60 = 0.4 s lie between them.
+pub const MOST_TICKS_BETWEEN_TAPS: u8 = 24;
 
 // ---- The frame, in pixels -----------------------------------------------------------------------------------------
 

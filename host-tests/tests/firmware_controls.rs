@@ -62,6 +62,27 @@ fn select_restarts_when_let_go_and_changes_the_scene_when_held() {
     assert_eq!(commands(&mut proven(), readings), [(held, Command::NextScene)], "once, and no restart after it");
 }
 
+/// With one button: so many taps, and then it is held.
+#[test]
+fn taps_before_a_hold_choose_what_the_hold_does() {
+    let tap = || [SELECT; 5].into_iter().chain([NONE; 5]);
+    let after = |taps: usize, pause: usize, held: usize| {
+        let taps = (0..taps).flat_map(|_| tap()).chain([NONE; 60].into_iter().take(pause));
+        let readings = taps.chain([SELECT; 200].into_iter().take(held)).chain([NONE; 10]);
+        let fired = commands(&mut proven(), readings).into_iter().map(|(_, command)| command);
+        fired.filter(|command| *command != Command::Restart).collect::<Vec<_>>()
+    };
+    let held = usize::from(HOLD_TICKS) + 2 * usize::from(REPEAT_PERIOD_TICKS) + 2;
+    for (taps, command) in
+        [Command::Heavier, Command::Lighter, Command::TurnRight, Command::TurnLeft].into_iter().enumerate()
+    {
+        assert_eq!(after(taps + 1, 0, held), [command; 3], "after {} taps", taps + 1);
+        assert_eq!(after(taps + 1, 30, held), [Command::NextScene], "too long after {} taps", taps + 1);
+    }
+    assert_eq!(after(5, 0, held), [], "there is nothing for five taps");
+    assert_eq!(after(3, 0, 20), [], "not held long enough");
+}
+
 #[test]
 fn arrows_mean_something_else_while_select_is_held() {
     for (arrow, command) in [

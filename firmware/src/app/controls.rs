@@ -1,7 +1,8 @@
 //! Five buttons become commands: debounced, and repeated while held.
 
 use crate::app::command::Command;
-use crate::config::{DEBOUNCE_TICKS, HOLD_TICKS, REPEAT_DELAY_TICKS, REPEAT_PERIOD_TICKS};
+use crate::app::one_button::OneButton;
+use crate::config::{DEBOUNCE_TICKS, REPEAT_DELAY_TICKS, REPEAT_PERIOD_TICKS};
 use crate::protocol::choice::choice;
 
 choice! {
@@ -79,7 +80,8 @@ const RIGHT: [Command; 2] = [Command::TurnRight, Command::NextScene];
 /// | left | start angle clockwise | scene before |
 /// | right | start angle counter-clockwise | next scene |
 ///
-/// Select let go asks for a restart; held alone for [`HOLD_TICKS`], for the next scene; so one button does for both.
+/// Select alone does for all: let go it asks for a restart, held for [`HOLD_TICKS`](crate::config::HOLD_TICKS) for the next scene, and held after taps
+/// for another mass ratio or start angle.
 #[derive(Clone, Debug, Default)]
 pub struct Controls {
     up: Button,
@@ -87,8 +89,7 @@ pub struct Controls {
     left: Button,
     right: Button,
     select: Button,
-    /// Ticks that select has been held alone; `None` once it has served for something else.
-    alone: Option<u8>,
+    alone: OneButton,
 }
 
 impl Controls {
@@ -107,35 +108,19 @@ impl Controls {
             Change::Pressed | Change::Repeated if !shifted => Some(plain),
             _ => None,
         });
-        let alone = self.select_alone(select, arrows.iter().any(Option::is_some));
+        let alone = self.alone.tick(select, arrows.iter().any(Option::is_some));
         arrows.into_iter().chain([alone]).flatten()
-    }
-
-    /// What select by itself asks for.
-    fn select_alone(&mut self, change: Option<Change>, with_arrow: bool) -> Option<Command> {
-        match change {
-            Some(Change::Pressed) => self.alone = Some(0),
-            Some(Change::Released) => return self.alone.take().map(|_| Command::Restart),
-            _ => {}
-        }
-        if with_arrow {
-            self.alone = None;
-        }
-        let ticks = self.alone.as_mut()?;
-        *ticks += 1;
-        (*ticks >= HOLD_TICKS).then(|| {
-            self.alone = None;
-            Command::NextScene
-        })
     }
 }
 
 /// What a button does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Change {
+pub enum Change {
+    /// It is pressed.
     Pressed,
     /// Held long enough to count as pressed again.
     Repeated,
+    /// It is let go.
     Released,
 }
 

@@ -4,6 +4,7 @@ pub mod command;
 pub mod controls;
 mod event;
 pub mod instruments;
+mod one_button;
 pub mod player;
 pub mod service;
 mod throttle;

@@ -1,28 +1,41 @@
-//! `cargo flash-f4`: the firmware of the STM32F405, built, flashed by `probe-rs` and its log shown.
+//! `cargo flash-f4`: the firmware of the STM32F405, built and flashed, through a debug probe or over the chip's own USB loader.
 
 use std::os::unix::process::CommandExt;
 use std::process::{Command, ExitCode};
 use std::time::Duration;
 
-use anyhow::bail;
+use anyhow::{Context, bail};
 use clap::Parser;
-use host_tests::console::cli::{self, Refused};
+use host_tests::console::cli::{self, Refused, complain};
 use host_tests::emulator::boards::STM32F405;
+use host_tests::emulator::flash::flash_image;
 use host_tests::emulator::process::{self, ProcessError};
 use host_tests::emulator::toolchain;
 
-/// The program that speaks to debug probes.
-const PROBE_RS: &str = "probe-rs";
-/// For it to say its version.
+/// For the program that flashes to say its version.
 const LIMIT: Duration = Duration::from_secs(30);
+/// Chips alike in all that the firmware uses.
+const CHIPS: [&str; 4] = ["STM32F405", "STM32F407", "STM32F415", "STM32F417"];
 
-/// Builds the firmware of the STM32F405, flashes it through a debug probe and shows its log until Ctrl-C.
+/// Builds the firmware of the STM32F405 and flashes it: through a debug probe, whose log it shows until Ctrl-C, or by USB.
 #[derive(Debug, Parser)]
-#[command(name = "cargo flash-f4", after_help = "Example: cargo flash-f4 --chip STM32F407VGTx")]
+#[command(
+    name = "cargo flash-f4",
+    after_help = "Examples:\n  cargo flash-f4 --chip STM32F407VGTx\n  cargo flash-f4 --dfu    (BOOT0 at 3.3 V, then reset: the chip waits at its USB port)"
+)]
 struct Arguments {
     /// The chip, by probe-rs's name: an STM32F405 or F407
-    #[arg(long, default_value = "STM32F405RGTx")]
+    #[arg(long, default_value = "STM32F405RGTx", value_parser = chip)]
     chip: String,
+    /// Without a probe, over the USB loader that the chip has built in
+    #[arg(long, conflicts_with = "chip")]
+    dfu: bool,
+}
+
+/// A chip that the firmware is for.
+fn chip(name: &str) -> Result<String, String> {
+    let is_it = CHIPS.iter().any(|chip| name.to_ascii_uppercase().starts_with(chip));
+    if is_it { Ok(name.to_owned()) } else { Err(format!("the firmware is for {}", CHIPS.join(", "))) }
 }
 
 fn main() -> ExitCode {
@@ -30,15 +43,31 @@ fn main() -> ExitCode {
 }
 
 fn flash(arguments: &Arguments) -> anyhow::Result<()> {
+    let (program, source) = if arguments.dfu {
+        ("dfu-util", "https://dfu-util.sourceforge.net, in Debian: apt-get install dfu-util")
+    } else {
+        ("probe-rs", "https://probe.rs/docs/getting-started/installation")
+    };
     // Before the build, which takes its time.
-    process::run(Command::new(PROBE_RS).arg("--version"), LIMIT).map_err(|error| match error {
-        ProcessError::NotStarted { .. } => Refused::because(format_args!(
-            "flashing needs {PROBE_RS}, which is not installed; see https://probe.rs/docs/getting-started/installation"
-        )),
+    process::run(Command::new(program).arg("--version"), LIMIT).map_err(|error| match error {
+        ProcessError::NotStarted { .. } => {
+            Refused::because(format_args!("flashing needs {program}, which is not installed; see {source}"))
+        }
         error => Refused::because(error),
     })?;
     let elf = toolchain::ready().map_err(Refused::because)?.build_for(&STM32F405)?;
+    let mut command = Command::new(program);
+    if arguments.dfu {
+        let (start, image) = flash_image(&std::fs::read(&elf)?)?;
+        let file = elf.with_extension("bin");
+        std::fs::write(&file, image).with_context(|| file.display().to_string())?;
+        // ST's loader, its flash, and the program started at the end.
+        command.args(["-d", "0483:df11", "-a", "0", "-s", &format!("{start:#010x}:leave"), "-D"]).arg(file);
+        complain(format_args!("{command:?}"));
+    } else {
+        command.args(["run", "--chip", &arguments.chip]).arg(elf);
+    }
     // It takes the place of this process, so that the terminal, Ctrl-C and the exit code are its own.
-    let error = Command::new(PROBE_RS).args(["run", "--chip", &arguments.chip]).arg(elf).exec();
-    bail!(Refused::because(format_args!("cannot start {PROBE_RS}: {error}")))
+    let error = command.exec();
+    bail!(Refused::because(format_args!("cannot start {program}: {error}")))
 }

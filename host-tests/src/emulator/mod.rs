@@ -3,6 +3,7 @@
 pub mod boards;
 pub mod budgets;
 pub mod firmware_run;
+pub mod flash;
 pub mod host;
 pub mod process;
 pub mod qemu;

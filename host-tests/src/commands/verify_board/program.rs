@@ -6,10 +6,11 @@ use std::time::Duration;
 
 use anyhow::Context;
 use firmware::protocol::{CRC, Identity};
-use object::{Object, ObjectSegment, ObjectSymbol};
+use object::{Object, ObjectSymbol};
 use serde::Serialize;
 
 use crate::emulator::boards::Board;
+use crate::emulator::flash::flash_image;
 use crate::emulator::process;
 use crate::emulator::toolchain::{self, workspace};
 
@@ -57,11 +58,9 @@ fn crc(elf: &Path) -> anyhow::Result<(u32, u32)> {
         symbol.map(|symbol| symbol.address()).with_context(|| format!("no {name} in {}", elf.display()))
     };
     let (start, end) = (address("__vector_table")?, address("__erodata")?);
-    let mut image = vec![0; (end - start) as usize];
-    for segment in file.segments().filter(|segment| (start..end).contains(&segment.address())) {
-        let (from, data) = ((segment.address() - start) as usize, segment.data()?);
-        let length = data.len().min(image.len() - from);
-        image[from..from + length].copy_from_slice(&data[..length]);
-    }
-    Ok((CRC.checksum(&image), image.len() as u32))
+    let (first, image) = flash_image(&bytes)?;
+    let place = |address: u64| address.checked_sub(first.into()).map(|offset| offset as usize);
+    let image = place(start).zip(place(end)).and_then(|(start, end)| image.get(start..end));
+    let image = image.with_context(|| format!("{}: the program is not where its names say", elf.display()))?;
+    Ok((CRC.checksum(image), image.len() as u32))
 }
