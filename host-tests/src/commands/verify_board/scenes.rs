@@ -1,5 +1,6 @@
 //! Every scene for a second: its frames beside the host's, and the time that they take.
 
+use anyhow::ensure;
 use firmware::config::TICK_RATE;
 use firmware::protocol::{Ask, Choose, Frame, Status};
 use firmware::scenes::SceneName;
@@ -10,6 +11,8 @@ use crate::commands::demo::comparison::Comparison;
 
 /// Frames of each.
 const FRAMES: u32 = TICK_RATE;
+/// By so many it must have said what it plays.
+const PATIENCE: u32 = 10 * FRAMES;
 
 /// A scene's frames.
 #[derive(Clone, Debug, Serialize)]
@@ -49,6 +52,8 @@ fn play(talk: &mut Talk, name: SceneName, hertz: u32) -> anyhow::Result<Scene> {
             talk.port.send(&Ask { request: 0 });
         }
         let first: &Frame = first.get_or_insert(frame);
+        let arrived = frame.sequence.wrapping_sub(first.sequence);
+        ensure!(arrived < PATIENCE, "{}: of {arrived} frames {} could be compared", name.name(), scene.frames);
         scene.dropped = frame.dropped.wrapping_sub(first.dropped);
         scene.computing = scene.computing.max(milliseconds(frame.scene_cycles));
         // It is told of the frame before, which is another scene's at first.
