@@ -7,7 +7,7 @@ use firmware::config::TICK_RATE;
 use firmware::graphics::canvas::{HEIGHT, WIDTH};
 use firmware::protocol::{Choose, Done, Frame};
 use firmware::scenes::SceneName;
-use host_tests::commands::count::{Cost, CountError, Image, Profile};
+use host_tests::commands::count::{Cost, CountError, FrameProfile, Image};
 use host_tests::emulator::boards::Core;
 use host_tests::emulator::boards::{BOARDS, Board};
 use host_tests::emulator::budgets;
@@ -103,8 +103,8 @@ fn every_scene_keeps_within_its_share_of_a_frame() -> Result<(), CountError> {
                 scene = scene.max(frame.scene_cycles);
                 busy = busy.max(frame.busy_cycles);
             }
-            let (_, profile) = Profile::of_frame(&mut machine, &image, board.core())?;
-            let Cost { instructions, cycles, .. } = profile.cost();
+            let (_, profile) = FrameProfile::of_next(&mut machine, &image, board.core())?;
+            let Cost { instructions, cycles, .. } = profile.whole();
             let cycles_per_instruction = cycles as f64 / instructions as f64;
             let [scene, busy] = [scene, busy].map(|cycles| f64::from(cycles) * CYCLE / INSTRUCTION);
             let share = |instructions: f64| instructions * cycles_per_instruction / FRAME;

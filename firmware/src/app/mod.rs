@@ -305,6 +305,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         }
     }
 
+    #[inline(never)]
     fn show(&mut self, scene_cycles: u32, log: &mut impl FnMut(Event<Panel::Error, Link::Error>)) {
         let shown = self.panel.flush(self.canvas);
         self.panel_failing.note(shown, |error| log(Event::Panel(error)));

@@ -67,6 +67,7 @@ impl<'a> Player<'a> {
     }
 
     /// Advances by one tick of the clock, which may be any number of the scene's.
+    #[inline(never)]
     pub fn tick(&mut self) {
         if self.stopped {
             return;
@@ -78,6 +79,7 @@ impl<'a> Player<'a> {
 
     /// Takes the scene's numbers if they are finite; else stops its time for good and says why, once. To be asked
     /// before each frame: what is drawn and reported stays at the last good one.
+    #[inline(never)]
     pub fn check(&mut self) -> Result<(), Error> {
         if self.stopped {
             return Ok(());
@@ -89,6 +91,7 @@ impl<'a> Player<'a> {
     }
 
     /// Draws the scene over the canvas that holds its last frame, and a mark if its time stands still.
+    #[inline(never)]
     pub fn draw(&self, canvas: &mut Canvas) {
         if !self.stopped {
             self.scene.draw(&self.report, self.ink, canvas);

@@ -49,6 +49,7 @@ pub fn recall(by_watchdog: bool) -> Option<WarmRestart> {
 }
 
 /// Keeps what is played, in case this frame is the last.
+#[inline(never)]
 pub fn keep((played, end): (Status, Restarted)) {
     PLAYED.write(&played);
     END.write(&end);

@@ -87,7 +87,7 @@ impl Image {
         // Several names of one place are no question.
         found.dedup_by_key(|function| function.address);
         match found[..] {
-            [] => Err(CountError::NoFunction { path: self.path.clone(), function: name.to_owned() }),
+            [] => Err(self.lacks(name)),
             [function] => Ok(function),
             [one, another, ..] => Err(CountError::Ambiguous {
                 function: name.to_owned(),
@@ -96,6 +96,11 @@ impl Image {
                 another: another.symbol.clone(),
             }),
         }
+    }
+
+    /// That it has no such function.
+    pub fn lacks(&self, function: &str) -> CountError {
+        CountError::NoFunction { path: self.path.clone(), function: function.to_owned() }
     }
 
     /// The function that holds `address`.

@@ -2,6 +2,7 @@
 //! the published instruction timings), bytes of code and bytes of stack.
 
 mod calls;
+mod frame_profile;
 pub mod goal;
 mod image;
 mod instruction;
@@ -16,6 +17,7 @@ pub mod timing;
 mod trace;
 
 pub use calls::{CallCosts, calls_of};
+pub use frame_profile::{FrameProfile, Part};
 pub use image::{Function, Image};
 pub use instruction::Instruction;
 pub use pipeline::{Cost, ERROR_BAR, Pipeline};

@@ -8,6 +8,7 @@ mod c_peers;
 pub mod chart;
 pub mod costs;
 pub mod energy;
+pub mod frames;
 pub mod headline;
 pub mod identity;
 mod page;
@@ -17,6 +18,7 @@ pub mod speed;
 
 use anyhow::{Context, ensure};
 use firmware::job::{Model, ROWS, Row};
+use firmware::scenes::SceneName;
 use std::fs;
 use std::path::Path;
 
@@ -24,6 +26,7 @@ use crate::commands::count::Target;
 use crate::commands::plan;
 use crate::commands::table::Table;
 use crate::console::progress::Bar;
+use crate::emulator::boards::BOARDS;
 use crate::emulator::toolchain::Toolchain;
 use scene::SCENES;
 
@@ -44,6 +47,8 @@ pub struct Extent {
     pub plans: usize,
     /// Scenes that the planner's margin is held against.
     pub margins: usize,
+    /// Boards whose frames are counted, from the first on.
+    pub boards: usize,
 }
 
 impl Extent {
@@ -56,6 +61,7 @@ impl Extent {
         peers: true,
         plans: 2_000,
         margins: 1_000,
+        boards: BOARDS.len(),
     };
     /// The first two scenes and shorter runs: under two minutes.
     pub const QUICK: Self = Self {
@@ -66,6 +72,7 @@ impl Extent {
         peers: false,
         plans: 40,
         margins: 10,
+        boards: 2,
     };
 
     fn halvings(&self) -> impl Iterator<Item = u32> + Clone {
@@ -77,7 +84,8 @@ impl Extent {
         let rows = compared_rows().count();
         let survey = self.scenes * rows * self.halvings().count();
         let peers = if self.peers { peers::RUNS } else { 0 };
-        survey + energy::runs() + peers + self.plans + self.margins + targets * (identity::RUNS + rows)
+        let frames = self.boards * SceneName::ALL.len();
+        survey + energy::runs() + peers + self.plans + self.margins + frames + targets * (identity::RUNS + rows)
     }
 }
 
@@ -137,6 +145,9 @@ pub fn write(extent: &Extent, toolchain: &Toolchain, folder: &Path, bar: &Bar) -
     let scenes = plan::scenes(MARGINS_SEED, plan::FOLLOWED).take(extent.margins);
     let margins = plan::fit(scenes, tick)?;
 
+    bar.say("counting frames");
+    let frames = frames::count(toolchain, extent.boards, &tick)?;
+
     bar.say("writing");
     let priced = speed::priced(&points, &costs);
     let tables = [
@@ -152,6 +163,8 @@ pub fn write(extent: &Extent, toolchain: &Toolchain, folder: &Path, bar: &Bar) -
         plan::broken(&plans),
         plan::rk4_in_f64(&plans, chip)?,
         plan::margins(&margins),
+        frames::table(&frames),
+        frames::functions(&frames),
         speed::table(&priced),
     ];
     let mut charts = Vec::new();

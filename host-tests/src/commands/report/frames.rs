@@ -1,0 +1,148 @@
+//! What a frame costs: of every scene on every board, by the parts of the work, and one by function.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::time::Duration;
+
+use firmware::config::TICK_RATE;
+use firmware::protocol::{Choose, Frame};
+use firmware::scenes::SceneName;
+
+use super::parallel;
+use crate::commands::count::{CountError, ERROR_BAR, FrameProfile, Image, Part};
+use crate::commands::table::Table;
+use crate::emulator::boards::{BOARDS, Board};
+use crate::emulator::qemu::{Clock, Lockstep, Settings};
+use crate::emulator::toolchain::Toolchain;
+
+/// The tick whose frame is counted: after 2 s all is in view, and the curves that scroll every few ticks do so.
+const COUNTED: u32 = 2 * TICK_RATE;
+/// The work for a frame, in the order of the columns; the search for a plan takes what frames leave.
+const WORK: [Part; 4] = [Part::Motion, Part::Drawing, Part::Sending, Part::Rest];
+/// A guard against hanging.
+const LIMIT: Duration = Duration::from_secs(1800);
+/// The functions listed.
+const FUNCTIONS: usize = 24;
+
+/// A scene's frame on a board.
+#[derive(Debug)]
+pub struct Counted {
+    board: &'static Board,
+    scene: SceneName,
+    profile: FrameProfile,
+    /// By function and part, cycles.
+    functions: BTreeMap<(String, Part), u64>,
+}
+
+impl Counted {
+    fn cycles(&self, part: Part) -> u64 {
+        self.profile.cost(part).cycles
+    }
+
+    /// All of it.
+    pub fn whole(&self) -> u64 {
+        WORK.iter().map(|&part| self.cycles(part)).sum()
+    }
+
+    /// Of the time between frames.
+    pub fn share(&self) -> f64 {
+        self.whole() as f64 * f64::from(TICK_RATE) / f64::from(self.board.hertz)
+    }
+}
+
+/// Counts a frame of every scene on the first `boards` boards, each on a thread of its own; `tick` is called after each.
+pub fn count(toolchain: &Toolchain, boards: usize, tick: &(dyn Fn() + Sync)) -> Result<Vec<Counted>, CountError> {
+    let elves = BOARDS.iter().take(boards).map(|board| Ok((board, toolchain.build_for(board)?)));
+    let elves = elves.collect::<Result<Vec<_>, CountError>>()?;
+    let on_board = |(board, elf): &(&'static Board, PathBuf)| {
+        let settings = Settings {
+            qemu: toolchain.qemu(),
+            board,
+            elf,
+            clock: Clock::Counted,
+            window: None,
+            debugger: true,
+            limit: LIMIT,
+        };
+        let image = Image::read(elf)?;
+        let mut machine = Lockstep::start(&settings)?;
+        let scenes = SceneName::ALL.iter().map(|&scene| {
+            machine.machine().serial.send(&Choose { request: 1, scene: scene.code() })?;
+            let is_before = |frame: &Frame| {
+                frame.scene == scene.code() && (frame.time * f64::from(TICK_RATE)).round() as u32 == COUNTED - 1
+            };
+            while !is_before(&machine.next_frame()?) {}
+            let (_, profile) = FrameProfile::of_next(&mut machine, &image, board.core())?;
+            tick();
+            let functions = by_function(&profile, &image);
+            Ok(Counted { board, scene, profile, functions })
+        });
+        scenes.collect::<Result<Vec<_>, CountError>>()
+    };
+    Ok(parallel(&elves, on_board).into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
+}
+
+fn by_function(profile: &FrameProfile, image: &Image) -> BTreeMap<(String, Part), u64> {
+    let mut functions = BTreeMap::new();
+    for part in WORK {
+        for (address, spot) in profile.part(part).into_iter().flat_map(|profile| profile.spots()) {
+            let name = image.function_at(address).map_or_else(|| String::from("?"), |function| short(&function.name));
+            *functions.entry((name, part)).or_default() += spot.cost.cycles;
+        }
+    }
+    functions
+}
+
+/// Of `<path::Type<R> as Trait>::name` and of `path::Type::name` the last two words.
+fn short(name: &str) -> String {
+    let Some((path, name)) = name.rsplit_once("::") else { return name.to_owned() };
+    let path = path.trim_start_matches('<').split(['<', '>', ' ']).next().unwrap_or_default();
+    format!("{}::{name}", path.rsplit("::").next().unwrap_or_default())
+}
+
+/// Every scene on every board, by the parts of the work.
+pub fn table(frames: &[Counted]) -> Table {
+    let row = |frame: &Counted| {
+        let mut row = vec![frame.scene.name().to_owned(), frame.board.name.to_owned()];
+        row.extend(WORK.map(|part| frame.cycles(part).to_string()));
+        let share = 100.0 * frame.share();
+        row.extend([frame.whole().to_string(), format!("{share:.1} %"), format!("{:.1} %", 100.0 - share)]);
+        row
+    };
+    Table {
+        name: "frames",
+        title: String::from("Cost of a frame"),
+        note: format!(
+            "The frame of tick {COUNTED}, cycles. Sending: the frame in numbers, what has changed to the panel, which QEMU's bus \
+             takes at once, and the message. Share: of a frame of 1/{TICK_RATE} s at the board's clock. Idle: what is left, for \
+             commands and for the search for a plan. {ERROR_BAR}"
+        ),
+        columns: vec!["scene", "board", "motion", "drawing", "sending", "rest", "whole", "share", "idle"],
+        rows: frames.iter().map(row).collect(),
+    }
+}
+
+/// The first frame counted, by function.
+pub fn functions(frames: &[Counted]) -> Table {
+    let frame = frames.first();
+    let mut functions: Vec<_> = frame.iter().flat_map(|frame| &frame.functions).collect();
+    functions.sort_by_key(|(name, cycles)| (std::cmp::Reverse(**cycles), *name));
+    let whole = frame.map_or(0, Counted::whole);
+    let listed = functions.into_iter().take(FUNCTIONS).map(|((name, part), cycles)| {
+        let share = 100.0 * *cycles as f64 / whole as f64;
+        vec![name.clone(), format!("{part:?}").to_lowercase(), cycles.to_string(), format!("{share:.1} %")]
+    });
+    Table {
+        name: "functions",
+        title: String::from("A frame by function"),
+        note: frame.map_or_else(String::new, |frame| {
+            let (scene, board) = (frame.scene.name(), frame.board.name);
+            format!(
+                "The scene {scene} on {board}, the frame of tick {COUNTED}: the {FUNCTIONS} functions that take most of its \
+                 {whole} cycles, without what they call. {ERROR_BAR}"
+            )
+        }),
+        columns: vec!["function", "part", "cycles", "share"],
+        rows: listed.collect(),
+    }
+}
