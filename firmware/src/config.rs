@@ -112,11 +112,12 @@ pub const GREATEST_RADIUS: f32 = 3.0;
 pub const LEAST_RADIUS: f32 = 1.5;
 /// Half the width of a rod.
 pub const ROD_HALF_WIDTH: f32 = 0.6;
-/// Bob 2's trail has one point every 2 ticks: at its fastest bob 2 moves 3 pixels in that time, short enough for a
-/// line of straight pieces to look curved.
-pub const TRAIL_PERIOD_TICKS: u8 = 2;
-/// Points of the trail: 60 x 2/60 = 2 s of motion.
-pub const TRAIL_POINTS: usize = 60;
+/// Half the width of bob 2's trail.
+pub const TRAIL_HALF_WIDTH: f32 = 0.8;
+/// Brightness of the trail at the bob, of 255: its grey is 11.
+pub const TRAIL_BRIGHTNESS: u8 = 184;
+/// Rows of the trail that lose a grey in a tick: the last of 11 greys is gone after 11 x 64/5 = 141 ticks, 2.3 s of motion.
+pub const TRAIL_FADING: u8 = 5;
 
 // ---- The serial link ------------------------------------------------------------------------------------------------
 

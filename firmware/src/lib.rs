@@ -11,7 +11,7 @@
 //! | [`job`] | motions computed on request: one table of arithmetics |
 //! | [`motion`] | settings, the moving state, the planner |
 //! | [`display`] | panel drivers, generic over `embedded-hal` |
-//! | [`graphics`] | canvas, brush, fade layer, trail, plot, text, frame buffers |
+//! | [`graphics`] | canvas, brush, fade layer, plot, text and its font, frame buffers |
 //! | [`protocol`] | messages on the serial link as tables, units, wire enums |
 //! | [`fault`] | what a crash report says |
 //! | [`config`] | every number that may be tuned |

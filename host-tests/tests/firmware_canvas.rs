@@ -1,21 +1,28 @@
 //! The framebuffer and the brush: layout, clipping, and that a disc is where it was put.
 
-use embedded_graphics::geometry::Size;
-use embedded_graphics::pixelcolor::Gray4;
-use embedded_graphics::prelude::{Dimensions, DrawTarget, Drawable, Pixel, Point, Primitive};
-use embedded_graphics::primitives::{PrimitiveStyle, Rectangle};
-use firmware::graphics::brush::{SUBPIXELS, Spot, Stroke};
+use embedded_graphics::geometry::Point;
+use embedded_graphics::image::GetPixel;
+use embedded_graphics::mono_font::MonoFont;
+use embedded_graphics::mono_font::iso_8859_7::FONT_5X8;
+use embedded_graphics::pixelcolor::BinaryColor;
+use fastrand::Rng;
+use firmware::graphics::brush::{Disc, SUBPIXELS, Spot, Stroke};
 use firmware::graphics::canvas::{Canvas, HEIGHT, WIDTH};
+use firmware::graphics::font::{Glyph, glyph};
 
 /// Greys are rounded down to one of 16, which shifts a disc's centre of light by far less than this, pixels.
 const CENTRE_TOLERANCE: f64 = 0.1;
+
+/// A ramp one pixel wide is not quite the share of a pixel that is covered: where a narrow stroke ends they differ most, by 2.3
+/// of 15 greys.
+const GREY_TOLERANCE: f64 = 2.5;
 
 fn grey(canvas: &Canvas, x: i32, y: i32) -> u8 {
     canvas.get(x, y).expect("inside")
 }
 
 fn light(canvas: &Canvas) -> u32 {
-    canvas.bytes().iter().map(|byte| u32::from(byte >> 4) + u32::from(byte & 15)).sum()
+    canvas.bytes().map(|byte| u32::from(byte >> 4) + u32::from(byte & 15)).sum()
 }
 
 /// The top left corner, a character per pixel.
@@ -30,8 +37,8 @@ fn the_left_pixel_is_the_high_nibble() {
     canvas.update(2, 1, |_| 0xA);
     canvas.update(3, 1, |_| 0x5);
     canvas.update(127, 63, |_| 0x7);
-    let set: Vec<_> = canvas.bytes().iter().enumerate().filter(|(_, byte)| **byte != 0).collect();
-    assert_eq!(set, [(65, &0xA5), (4095, &0x07)]);
+    let set: Vec<_> = canvas.bytes().enumerate().filter(|(_, byte)| *byte != 0).collect();
+    assert_eq!(set, [(65, 0xA5), (4095, 0x07)]);
     canvas.clear();
     assert_eq!(canvas, Canvas::default());
 }
@@ -40,24 +47,42 @@ fn the_left_pixel_is_the_high_nibble() {
 fn what_lies_outside_is_not_drawn() {
     let mut canvas = Canvas::default();
     let (width, height) = (WIDTH as i32, HEIGHT as i32);
-    let outside = [-1, i32::MIN, i32::MAX, width, height];
-    for a in outside {
-        let pixels = [(a, 0), (0, a), (a, a)].map(|(x, y)| Pixel(Point::new(x, y), Gray4::new(15)));
-        let inside = |pixel: &Pixel<Gray4>| canvas.bounding_box().contains(pixel.0);
-        let pixels: Vec<_> = pixels.into_iter().filter(|pixel| !inside(pixel)).collect();
-        let Ok(()) = canvas.draw_iter(pixels);
+    for out in [-1, i32::MIN, i32::MAX, width.max(height)] {
+        for (x, y) in [(out, 0), (0, out), (out, out), (width, 0), (0, height)] {
+            canvas.update(x, y, |_| 15);
+            canvas.stamp(x, y, 0x80, 15);
+            assert_eq!(canvas.get(x, y), None);
+        }
     }
     assert_eq!(canvas, Canvas::default());
+    canvas.stamp(-2, 0, 0xFF, 9);
+    canvas.stamp(width - 3, 1, 0xFF, 9);
+    assert_eq!((light(&canvas), grey(&canvas, 0, 0), grey(&canvas, 6, 0)), ((6 + 3) * 9, 9, 0));
+}
 
-    let style = PrimitiveStyle::with_fill(Gray4::new(9));
-    let Ok(()) = Rectangle::new(Point::new(-10, -10), Size::new(12, 11)).into_styled(style).draw(&mut canvas);
-    assert_eq!((light(&canvas), grey(&canvas, 0, 0), grey(&canvas, 1, 0)), (18, 9, 9));
+#[test]
+fn the_characters_are_those_of_the_library() {
+    for character in (' '..='~').chain(['±', '°', 'μ']).filter(|character| !" .".contains(*character)) {
+        let MonoFont { image, glyph_mapping, .. } = FONT_5X8;
+        let index = glyph_mapping.index(character) as i32;
+        let corner = Point::new(index % 16 * 5, index / 16 * 8);
+        let Glyph { width, rows } = glyph(character);
+        for (x, y) in (0..8).flat_map(|x| (0..8).map(move |y| (x, y))) {
+            let is_ink = x < 5 && image.pixel(corner + Point::new(x, y)) == Some(BinaryColor::On);
+            assert_eq!(rows >> (63 - (8 * y + x)) & 1 != 0, is_ink, "{character:?}, column {x}, row {y}");
+        }
+        assert_eq!(width, 5);
+    }
+}
+
+fn disc(x: f32, y: f32, pixels: f32) -> Disc {
+    Disc { centre: Spot::at(x, y), radius: (pixels * SUBPIXELS as f32) as u8, gap: 0 }
 }
 
 #[test]
 fn a_disc_has_a_soft_edge() {
     let mut canvas = Canvas::default();
-    Stroke::disc(Spot::at(4.0, 4.0), 3 * SUBPIXELS as u8).lighten(&mut canvas, u8::MAX);
+    disc(4.0, 4.0, 3.0).draw(&mut canvas, u8::MAX);
     let expected = [
         "00000000", //
         "009ee900", "09ffff90", "0effffe0", "0effffe0", "09ffff90", "009ee900", "00000000",
@@ -70,7 +95,7 @@ fn a_disc_is_where_it_was_put() {
     for number in 0..1000 {
         let (x, y) = (10.0 + (number as f32 * 0.377) % 100.0, 10.0 + (number as f32 * 0.713) % 40.0);
         let mut canvas = Canvas::default();
-        Stroke::disc(Spot::at(x, y), (1.5 * SUBPIXELS as f32) as u8).lighten(&mut canvas, u8::MAX);
+        disc(x, y, 1.5).draw(&mut canvas, u8::MAX);
         let mut sum = [0.0; 3];
         for (row, column) in (0..HEIGHT as i32).flat_map(|row| (0..WIDTH as i32).map(move |column| (row, column))) {
             let grey = f64::from(grey(&canvas, column, row));
@@ -90,8 +115,67 @@ fn a_stroke_of_any_numbers_is_safe() {
         for &to in &spots {
             let mut canvas = Canvas::default();
             Stroke { from, to, radius: 255 }.lighten(&mut canvas, 255);
-            Stroke { from, to, radius: 0 }.erase(&mut canvas);
+            Disc { centre: from, radius: 255, gap: 255 }.draw(&mut canvas, 255);
+            Disc { centre: to, radius: 0, gap: 0 }.draw(&mut canvas, 0);
         }
+    }
+}
+
+/// How far the middle of a pixel is from the straight line between two places, and the share of its area within `radius` of
+/// that line, by 16 x 16 points.
+fn covered((x, y): (i32, i32), [from, to]: [(f64, f64); 2], radius: f64) -> f64 {
+    let along = (to.0 - from.0, to.1 - from.1);
+    let squared = along.0 * along.0 + along.1 * along.1;
+    let is_far = |at: i32, a: f64, b: f64| (f64::from(at) - (a + b) / 2.0).abs() > (a - b).abs() / 2.0 + radius + 2.0;
+    if is_far(x, from.0, to.0) || is_far(y, from.1, to.1) {
+        return 0.0;
+    }
+    let is_inside = |(x, y): (f64, f64)| {
+        let part = ((x - from.0) * along.0 + (y - from.1) * along.1) / squared;
+        let part = if squared > 0.0 { part.clamp(0.0, 1.0) } else { 0.0 };
+        (x - from.0 - part * along.0).hypot(y - from.1 - part * along.1) <= radius
+    };
+    let points = (0..256)
+        .map(|i| (f64::from(x) + (f64::from(i % 16) + 0.5) / 16.0, f64::from(y) + (f64::from(i / 16) + 0.5) / 16.0));
+    points.filter(|point| is_inside(*point)).count() as f64 / 256.0
+}
+
+/// Strokes as wide as those of scenes and wider, of any direction and length, some across the edges.
+#[test]
+fn a_pixel_is_as_bright_as_it_is_covered() {
+    let mut rng = Rng::with_seed(7);
+    let mut greatest = 0.0_f64;
+    for _ in 0..100 {
+        let mut place = || (rng.f64() * 160.0 - 16.0, rng.f64() * 80.0 - 8.0);
+        let (from, mut to) = (place(), place());
+        if rng.bool() {
+            to = (from.0 + 4.0 * rng.f64() - 2.0, from.1 + 4.0 * rng.f64() - 2.0);
+        }
+        let radius = rng.u8(30..192);
+        let spot = |(x, y): (f64, f64)| Spot::at(x as f32, y as f32);
+        let mut canvas = Canvas::default();
+        Stroke { from: spot(from), to: spot(to), radius }.lighten(&mut canvas, u8::MAX);
+        for (x, y) in (0..WIDTH as i32).flat_map(|x| (0..HEIGHT as i32).map(move |y| (x, y))) {
+            let exact = 15.0 * covered((x, y), [from, to], f64::from(radius) / f64::from(SUBPIXELS));
+            let error = (f64::from(grey(&canvas, x, y)) - exact).abs();
+            assert!(error < GREY_TOLERANCE, "{from:?} to {to:?}, radius {radius}: {exact} at {x}, {y}");
+            greatest = greatest.max(error);
+        }
+    }
+    println!("off by {greatest} greys at most");
+}
+
+#[test]
+fn a_gap_sets_a_disc_off() {
+    let mut canvas = Canvas::default();
+    (0..HEIGHT as i32).for_each(|y| (0..WIDTH as i32).for_each(|x| canvas.update(x, y, |_| 15)));
+    let (x, y) = (30.3_f32, 20.7_f32);
+    Disc { gap: 2 * SUBPIXELS as u8, ..disc(x, y, 3.0) }.draw(&mut canvas, u8::MAX);
+    for (column, row) in (0..WIDTH as i32).flat_map(|column| (0..HEIGHT as i32).map(move |row| (column, row))) {
+        let share = |radius: f64| covered((column, row), [(x.into(), y.into()); 2], radius);
+        let exact = 15.0 * (1.0 - share(5.0) + share(3.0));
+        let error = (f64::from(grey(&canvas, column, row)) - exact).abs();
+        assert!(error < GREY_TOLERANCE, "{exact} at {column}, {row}, not {}", grey(&canvas, column, row));
     }
 }
 

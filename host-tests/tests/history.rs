@@ -1,4 +1,4 @@
-//! The history of a curve and of a trail, against the standard library's queue.
+//! The history of a curve, against the standard library's queue.
 
 use std::collections::VecDeque;
 

@@ -1,11 +1,13 @@
 //! Every scene of the catalogue, on the host: its frame to the pixel, and what all scenes have in common.
 
+use double_pendulum::State;
 use double_pendulum::plan::Method;
 use firmware::app::App;
 use firmware::app::controls::NoButtons;
-use firmware::config::STEPS_PER_TICK;
+use firmware::config::{PIVOT, REACH, STEPS_PER_TICK, TRAIL_FADING, TRAIL_HALF_WIDTH};
 use firmware::display::NoDisplay;
 use firmware::graphics::canvas::{Canvas, HEIGHT, WIDTH};
+use firmware::graphics::fade_layer::FadeLayer;
 use firmware::graphics::plot;
 use firmware::graphics::text::{self, Anchor};
 use firmware::motion::planner::Shown;
@@ -56,6 +58,49 @@ fn a_picture_is_drawn_over_whatever_was_there() {
         scene.draw(&mut canvas);
         assert!(canvas == scene.frame(), "{}", name.name());
     }
+}
+
+/// The page's trail is bob 2's path, by the state that the scene tells: as bright as its age says wherever it has not been since,
+/// and elsewhere there is none.
+#[test]
+fn the_trail_is_the_path_and_fades_with_age() {
+    const FRESH: f64 = 11.0; // of 15 greys: 184/17 rounded
+    const FADED: f64 = 64.0 / TRAIL_FADING as f64; // ticks to a grey
+    let (mut ink, mut path) = (FadeLayer::NONE, Vec::new());
+    let mut scene = AnyScene::new(SceneName::Page, &Settings::default()).expect("the page");
+    for _ in 0..400 {
+        scene.tick(&mut ink);
+        let State { a1, a2, .. } = scene.report().state;
+        let rod = REACH / 2.0;
+        path.push((PIVOT.0 + rod * (a1.sin() + a2.sin()), PIVOT.1 + rod * (a1.cos() + a2.cos())));
+    }
+    path.reverse();
+    let distance = |at: (f32, f32), [from, to]: [(f32, f32); 2]| {
+        let along = (to.0 - from.0, to.1 - from.1);
+        let part = ((at.0 - from.0) * along.0 + (at.1 - from.1) * along.1) / (along.0 * along.0 + along.1 * along.1);
+        let part = part.clamp(0.0, 1.0);
+        (at.0 - from.0 - part * along.0).hypot(at.1 - from.1 - part * along.1)
+    };
+    let mut compared = 0;
+    for (x, y) in (0..WIDTH as i32).flat_map(|x| (0..HEIGHT as i32).map(move |y| (x, y))) {
+        let middle = (x as f32 + 0.5, y as f32 + 0.5);
+        let grey = f64::from(ink.frame().get(x, y).expect("inside"));
+        let far: Vec<_> = path.windows(2).map(|piece| distance(middle, [piece[0], piece[1]])).collect();
+        let covers = |far: &f32| *far < TRAIL_HALF_WIDTH - 0.5;
+        let touches = |far: &f32| *far < TRAIL_HALF_WIDTH + 0.6;
+        let youngest = far.iter().position(touches);
+        if youngest.is_none() {
+            assert_eq!(grey, 0.0, "no bob was ever at {x}, {y}");
+        }
+        if let (Some(touched), Some(age)) = (youngest, far.iter().position(covers))
+            && age < touched + 5
+        {
+            let expected = (FRESH - age as f64 / FADED).max(0.0);
+            assert!((grey - expected).abs() <= 1.0, "{x}, {y}: {grey} after {age} ticks, not {expected}");
+            compared += usize::from(expected > 0.0);
+        }
+    }
+    assert!(compared > 50, "{compared} pixels compared");
 }
 
 /// The pixels where two frames differ.

@@ -1,19 +1,24 @@
 //! The SSD0323 controller of a 128 x 64 OLED panel with 16 greys, over four-wire SPI.
 //!
+//! A whole frame takes 4,096 bytes, 9 ms at 3.6 MHz. So only what has changed is sent: of each row the bytes from the first
+//! word that did to the last.
+//!
 //! Source: Solomon Systech, SSD0323 data sheet; register values from the panel's application note (OSRAM AN018).
 
 use embedded_hal::digital::OutputPin;
 use embedded_hal::spi::SpiDevice;
 
 use super::Display;
-use crate::graphics::canvas::{Canvas, HEIGHT, WIDTH};
+use crate::graphics::canvas::{Canvas, HEIGHT, Row, WIDTH};
 
 const LAST_COLUMN: u8 = (WIDTH / 2 - 1) as u8;
 const LAST_ROW: u8 = (HEIGHT - 1) as u8;
 
-/// The whole panel as the window that data goes to, which also sets the address to its corner: columns (of two pixels
-/// each) 0 to 63, rows 0 to 63.
-const WHOLE_PANEL: [u8; 6] = [0x15, 0, LAST_COLUMN, 0x75, 0, LAST_ROW];
+/// The window that data goes to, which also sets the address to its corner: columns (of two pixels each) and rows.
+const fn window(first: u8, last: u8, first_row: u8, last_row: u8) -> [u8; 6] {
+    [0x15, first, last, 0x75, first_row, last_row]
+}
+const WHOLE_PANEL: [u8; 6] = window(0, LAST_COLUMN, 0, LAST_ROW);
 
 /// What wakes the panel, one command a row.
 #[rustfmt::skip]
@@ -49,31 +54,45 @@ pub enum PanelError<Spi, Pin> {
 
 /// The panel: an SPI device and the pin that tells data (high) from commands (low).
 #[derive(Debug)]
-pub struct Ssd0323<Spi, Pin> {
+pub struct Ssd0323<'a, Spi, Pin> {
     spi: Spi,
     data_not_command: Pin,
+    /// What the panel's memory holds, if that is known.
+    memory: &'a mut Canvas,
+    is_known: bool,
 }
 
-impl<Spi: SpiDevice, Pin: OutputPin> Ssd0323<Spi, Pin> {
-    /// Takes the panel's wires; nothing is sent yet.
-    pub fn new(spi: Spi, data_not_command: Pin) -> Self {
-        Self { spi, data_not_command }
+impl<'a, Spi: SpiDevice, Pin: OutputPin> Ssd0323<'a, Spi, Pin> {
+    /// Takes the panel's wires, and a canvas to remember what it shows; nothing is sent yet.
+    pub fn new(spi: Spi, data_not_command: Pin, memory: &'a mut Canvas) -> Self {
+        Self { spi, data_not_command, memory, is_known: false }
     }
 
     /// Configures the controller, blanks its memory and switches the panel on.
     pub fn init(&mut self) -> Result<(), PanelError<Spi::Error, Pin::Error>> {
-        self.begin()?;
+        self.command(&WHOLE_PANEL)?;
         (0..HEIGHT).try_for_each(|_| self.data(&[0; WIDTH / 2]))?;
+        self.memory.clear();
+        self.is_known = true;
         WAKE.iter().try_for_each(|command| self.command(command))
     }
 
-    /// What is sent next goes to the panel's top left corner, and on from there.
-    fn begin(&mut self) -> Result<(), PanelError<Spi::Error, Pin::Error>> {
-        self.command(&WHOLE_PANEL)?;
-        self.data_not_command.set_high().map_err(PanelError::Pin)
+    /// Sends what differs between the panel's memory and the frame; all of it if the memory is not known.
+    fn update(&mut self, canvas: &Canvas) -> Result<(), PanelError<Spi::Error, Pin::Error>> {
+        for (y, new) in (0..).zip(canvas.rows()) {
+            let Some(old) = self.memory.row_mut(y) else { break };
+            let all = (0, WIDTH / 2 - 1);
+            if let Some((first, last)) = if self.is_known { differing(old, new) } else { Some(all) } {
+                *old = *new;
+                self.command(&window(first as u8, last as u8, y as u8, y as u8))?;
+                self.data(new.0.get(first..=last).unwrap_or_default())?;
+            }
+        }
+        Ok(())
     }
 
     fn data(&mut self, bytes: &[u8]) -> Result<(), PanelError<Spi::Error, Pin::Error>> {
+        self.data_not_command.set_high().map_err(PanelError::Pin)?;
         self.spi.write(bytes).map_err(PanelError::Spi)
     }
 
@@ -84,11 +103,21 @@ impl<Spi: SpiDevice, Pin: OutputPin> Ssd0323<Spi, Pin> {
     }
 }
 
-impl<Spi: SpiDevice, Pin: OutputPin> Display for Ssd0323<Spi, Pin> {
+/// The first and the last byte of the words in which two rows differ; `None` if they are alike.
+fn differing(Row(old): &Row, Row(new): &Row) -> Option<(usize, usize)> {
+    const WORD: usize = size_of::<u32>();
+    let mut words = old.as_chunks::<WORD>().0.iter().zip(new.as_chunks::<WORD>().0);
+    let first = words.position(|(old, new)| old != new)?;
+    let last = words.rposition(|(old, new)| old != new).map_or(first, |further| first + 1 + further);
+    Some((WORD * first, WORD * last + WORD - 1))
+}
+
+impl<Spi: SpiDevice, Pin: OutputPin> Display for Ssd0323<'_, Spi, Pin> {
     type Error = PanelError<Spi::Error, Pin::Error>;
 
     fn flush(&mut self, canvas: &Canvas) -> Result<(), Self::Error> {
-        self.begin()?;
-        self.data(canvas.bytes())
+        let sent = self.update(canvas);
+        self.is_known = sent.is_ok();
+        sent
     }
 }

@@ -1,11 +1,12 @@
-//! Soft-edged strokes in integer arithmetic: the one shape that rods, bobs and trail are all made of.
+//! Soft-edged strokes and discs in integer arithmetic: what rods, bobs and traces are made of.
 
 use core::ops::Range;
 
 use crate::graphics::canvas::{Canvas, HEIGHT, WIDTH};
 
 /// Subpixels in a pixel.
-pub const SUBPIXELS: i32 = 64;
+pub const SUBPIXELS: i32 = 1 << SHIFT;
+const SHIFT: u32 = 6;
 const HALF: i32 = SUBPIXELS / 2;
 
 /// A place on the canvas in subpixels from its top left corner; pixel i covers 64 i to 64 i + 63.
@@ -44,47 +45,21 @@ pub struct Stroke {
 }
 
 impl Stroke {
-    /// A disc.
-    pub fn disc(centre: Spot, radius: u8) -> Self {
-        Self { from: centre, to: centre, radius }
-    }
-
     /// Draws it with a brightness of 0 to 255; where the canvas is brighter already, it stays.
     pub fn lighten(&self, canvas: &mut Canvas, brightness: u8) {
-        /// The product that makes one grey: full brightness, 255 = 17 x 15, times full coverage is 15 of them.
-        const GREY: u32 = 17 * SUBPIXELS as u32;
-        self.cover(|x, y, coverage| {
-            let grey = ((u32::from(brightness) * coverage + GREY / 2) / GREY) as u8;
-            canvas.update(x, y, |old| old.max(grey));
-        });
-    }
-
-    /// Wipes it out to black.
-    pub fn erase(&self, canvas: &mut Canvas) {
-        self.cover(|x, y, coverage| {
-            let left = SUBPIXELS as u32 - coverage;
-            canvas.update(x, y, |old| (u32::from(old) * left / SUBPIXELS as u32) as u8);
-        });
-    }
-
-    /// Calls `paint` with each pixel touched and how much of it is covered, of [`SUBPIXELS`]: the edge is a ramp one
-    /// pixel wide, which is what a straight edge of any direction covers to within a few percent.
-    fn cover(&self, mut paint: impl FnMut(i32, i32, u32)) {
-        let outer = i32::from(self.radius) + HALF;
-        let pixels = |a: i16, b: i16, size: usize| {
-            let first = (i32::from(a.min(b)) - outer).div_euclid(SUBPIXELS).max(0);
-            let last = (i32::from(a.max(b)) + outer).div_euclid(SUBPIXELS).min(size as i32 - 1);
-            first..last + 1
-        };
-        let line = Line::new(self.from, self.to);
-        let columns = pixels(self.from.x, self.to.x, WIDTH);
-        for y in pixels(self.from.y, self.to.y, HEIGHT) {
-            let near = line.columns(y * SUBPIXELS + HALF, outer);
+        let limit = i32::from(self.radius) + HALF;
+        let line = Line::new(self.from, self.to, limit);
+        let columns = pixels([self.from.x, self.to.x], limit, WIDTH);
+        let rows = pixels([self.from.y, self.to.y], limit, HEIGHT);
+        let mut band = line.band(rows.start);
+        for y in rows {
+            let near = band.next();
             let columns = columns.start.max(near.start)..columns.end.min(near.end);
-            let mut probe = line.probe(columns.start * SUBPIXELS + HALF, y * SUBPIXELS + HALF);
+            let Some(row) = canvas.row_mut(y) else { return };
+            let mut probe = line.probe(columns.start, y);
             for x in columns {
-                if let Some(coverage) = line.coverage(&probe, outer) {
-                    paint(x, y, coverage);
+                if let Some(distance) = line.distance(&probe) {
+                    row.lighten(x, grey(brightness, limit - distance));
                 }
                 line.advance(&mut probe);
             }
@@ -92,84 +67,178 @@ impl Stroke {
     }
 }
 
-/// A straight line between two spots.
+/// A disc that a dark gap sets off from what lies behind it.
+#[derive(Clone, Copy, Debug)]
+pub struct Disc {
+    /// Its middle.
+    pub centre: Spot,
+    /// Its radius, subpixels.
+    pub radius: u8,
+    /// The width of the gap, subpixels.
+    pub gap: u8,
+}
+
+impl Disc {
+    /// Draws it with a brightness of 0 to 255.
+    pub fn draw(&self, canvas: &mut Canvas, brightness: u8) {
+        let Spot { x: centre_x, y: centre_y } = self.centre;
+        let edge = i32::from(self.radius) + HALF;
+        let (inner, outer) = ((edge - SUBPIXELS).max(0), edge + i32::from(self.gap));
+        let wiped = (outer - SUBPIXELS).max(0);
+        let full = grey(brightness, SUBPIXELS);
+        let columns = pixels([centre_x; 2], outer, WIDTH);
+        for y in pixels([centre_y; 2], outer, HEIGHT) {
+            let Some(row) = canvas.row_mut(y) else { return };
+            let dy = middle(y) - i32::from(centre_y);
+            for x in columns.clone() {
+                let dx = middle(x) - i32::from(centre_x);
+                let squared = dx * dx + dy * dy;
+                if squared < inner * inner {
+                    row.update(x, |_| full);
+                } else if squared < outer * outer {
+                    let distance = root(squared, inner, outer);
+                    let left = (distance - wiped).max(0) as u32;
+                    let grey = grey(brightness, edge - distance);
+                    row.update(x, |old| (((left * u32::from(old)) >> SHIFT) as u8).max(grey));
+                }
+            }
+        }
+    }
+}
+
+/// The pixels of `size` that anything within `limit` of the places between two can touch.
+fn pixels([a, b]: [i16; 2], limit: i32, size: usize) -> Range<i32> {
+    let first = (i32::from(a.min(b)) - limit) >> SHIFT;
+    let last = (i32::from(a.max(b)) + limit) >> SHIFT;
+    first.max(0)..(last + 1).min(size as i32)
+}
+
+/// The middle of a pixel, subpixels.
+fn middle(pixel: i32) -> i32 {
+    pixel * SUBPIXELS + HALF
+}
+
+/// The grey of a pixel of which so many [`SUBPIXELS`] are covered, at a brightness of 0 to 255: the edge is a ramp one pixel
+/// wide, which is what a straight edge of any direction covers to within a few percent.
+#[inline(always)]
+fn grey(brightness: u8, covered: i32) -> u8 {
+    /// The product that makes one grey: full brightness, 255 = 17 x 15, times full coverage is 15 of them.
+    const GREY: u16 = 17 * SUBPIXELS as u16;
+    ((u16::from(brightness) * covered.clamp(0, SUBPIXELS) as u16 + GREY / 2) / GREY) as u8
+}
+
+/// A straight line between two spots, and what is within `limit` of it.
 struct Line {
     from: Spot,
     along: (i32, i32),
     length_squared: i32,
     length: i32,
+    /// Beyond it nothing is covered, within `whole` all of a pixel.
+    limit: i32,
+    whole: i32,
 }
 
-/// A place as a line sees it.
+/// A pixel as a line sees it.
 struct Probe {
-    /// From the line's start, subpixels.
-    from: (i32, i32),
-    /// Along the line and across it, each times the line's length.
+    /// Its middle.
+    at: (i32, i32),
+    /// From the line's start along the line and across it, each times the line's length.
     progress: i32,
     across: i32,
 }
 
+/// The pixels of each row, from one row down to the next, that can be near the line made infinitely long: on a slope they are
+/// few.
+struct Band {
+    /// Where the line crosses the middle of the row, and how far it moves from row to row; parts of a subpixel.
+    middle: i32,
+    slope: i32,
+    /// Half of the band's width along a row, subpixels.
+    half: i32,
+}
+
+impl Band {
+    /// Parts of a subpixel, as a shift.
+    const PARTS: u32 = 10;
+
+    fn next(&mut self) -> Range<i32> {
+        let middle = (self.middle >> Self::PARTS) - HALF;
+        self.middle = self.middle.wrapping_add(self.slope);
+        (middle - self.half) >> SHIFT..((middle + self.half) >> SHIFT) + 1
+    }
+}
+
 impl Line {
-    fn new(from: Spot, to: Spot) -> Self {
+    fn new(from: Spot, to: Spot, limit: i32) -> Self {
         let along = from.to(to);
         let length_squared = dot(along, along);
-        Self { from, along, length_squared, length: root(length_squared) }
+        let length = length_squared.unsigned_abs().isqrt() as i32;
+        Self { from, along, length_squared, length, limit, whole: (limit - SUBPIXELS).max(0) }
     }
 
-    /// The pixels of the row whose middle is at `y` that can be nearer than `limit`: those about as near the line
-    /// made infinitely long. On a slope they are few.
-    fn columns(&self, y: i32, limit: i32) -> Range<i32> {
-        let (along, across) = (self.along.0 * (y - i32::from(self.from.y)), limit * (self.length + 1));
-        let place = |product: i32| product.checked_div(self.along.1).map(|x| i32::from(self.from.x) + x - HALF);
-        match (place(along - across), place(along + across)) {
-            (Some(a), Some(b)) => (a.min(b) - 1).div_euclid(SUBPIXELS)..(a.max(b) + 1).div_euclid(SUBPIXELS) + 1,
-            _ => 0..WIDTH as i32,
+    /// From the row `y` on. A line that is nearly level, or is but a spot, is near all pixels of its rows.
+    fn band(&self, y: i32) -> Band {
+        let (dx, dy) = self.along;
+        let over = |product: i32| product.checked_div(dy).unwrap_or_default();
+        if dx.abs() >= 8 * dy.abs() {
+            return Band { middle: 0, slope: 0, half: 2 * WIDTH as i32 * SUBPIXELS };
+        }
+        // Half a pixel more makes up for all that is rounded here.
+        Band {
+            middle: (i32::from(self.from.x) + over(dx * (middle(y) - i32::from(self.from.y)))) << Band::PARTS,
+            slope: over(dx << (Band::PARTS + SHIFT)),
+            half: over(self.limit * (self.length + 1)).abs() + HALF,
         }
     }
 
     fn probe(&self, x: i32, y: i32) -> Probe {
-        let from = (x - i32::from(self.from.x), y - i32::from(self.from.y));
-        Probe { from, progress: dot(self.along, from), across: self.along.0 * from.1 - self.along.1 * from.0 }
+        let at = (middle(x), middle(y));
+        let from = (at.0 - i32::from(self.from.x), at.1 - i32::from(self.from.y));
+        Probe { at, progress: dot(self.along, from), across: self.along.0 * from.1 - self.along.1 * from.0 }
     }
 
     /// To the pixel on the right.
     #[inline]
     fn advance(&self, probe: &mut Probe) {
-        probe.from.0 += SUBPIXELS;
+        probe.at.0 += SUBPIXELS;
         probe.progress += self.along.0 * SUBPIXELS;
         probe.across -= self.along.1 * SUBPIXELS;
     }
 
-    /// How much of the pixel around a place is covered, of [`SUBPIXELS`]: all of it as far as a pixel inside of `limit`,
-    /// from there to `limit` in proportion; `None` beyond. Only between the two it takes a root or a division.
+    /// How far from the line the middle of a pixel is, subpixels: 0 within `whole`; `None` beyond `limit`. Only between the two
+    /// it takes a division.
     ///
     /// Spots lie within one canvas of the canvas, so differences are below 3 x 128 x 64 = 24,576 across and half that
     /// down, and sums of two products below 24,576^2 x 1.25 = 7.6e8: 31 bits hold them.
-    #[inline]
-    fn coverage(&self, probe: &Probe, limit: i32) -> Option<u32> {
-        let whole = (limit - SUBPIXELS).max(0);
-        let distance = if probe.progress > 0 && probe.progress < self.length_squared {
-            match probe.across.abs() {
-                across if across >= limit * self.length => return None,
-                across if across < whole * self.length => 0,
-                across => across / self.length.max(1),
-            }
-        } else {
-            let (dx, dy) = probe.from;
-            let end = if probe.progress <= 0 { (dx, dy) } else { (dx - self.along.0, dy - self.along.1) };
-            match dot(end, end) {
-                squared if squared >= limit * limit => return None,
-                squared if squared < whole * whole => 0,
-                squared => root(squared),
-            }
-        };
-        Some((limit - distance).min(SUBPIXELS) as u32)
+    #[inline(always)]
+    fn distance(&self, probe: &Probe) -> Option<i32> {
+        let &Self { from, along, length, limit, whole, .. } = self;
+        if probe.progress > 0 && probe.progress < self.length_squared {
+            return match probe.across.abs() {
+                across if across >= limit * length => None,
+                across if across < whole * length => Some(0),
+                across => across.checked_div(length),
+            };
+        }
+        let (dx, dy) = (probe.at.0 - i32::from(from.x), probe.at.1 - i32::from(from.y));
+        let end = if probe.progress <= 0 { (dx, dy) } else { (dx - along.0, dy - along.1) };
+        match dot(end, end) {
+            squared if squared >= limit * limit => None,
+            squared if squared < whole * whole => Some(0),
+            squared => Some(root(squared, whole, limit)),
+        }
     }
 }
 
-/// The square root rounded down; 0 below 0.
-fn root(square: i32) -> i32 {
-    square.max(0).unsigned_abs().isqrt() as i32
+/// The square root, rounded down, of what is no less than the square of `low` and less than that of `high`: what the chord
+/// between them says is never more, and less by a few.
+#[inline(always)]
+fn root(square: i32, low: i32, high: i32) -> i32 {
+    let mut root = low + (square - low * low).checked_div(low + high).unwrap_or_default();
+    while (root + 1) * (root + 1) <= square {
+        root += 1;
+    }
+    root
 }
 
 fn dot(a: (i32, i32), b: (i32, i32)) -> i32 {

@@ -1,17 +1,30 @@
 //! What has been drawn and stays: a frame of its own that strokes are added to and that slowly pales.
 
 use crate::graphics::brush::Stroke;
-use crate::graphics::canvas::{Canvas, HEIGHT};
+use crate::graphics::canvas::{Canvas, HEIGHT, Row};
 
-/// Grey that ink pales down to and keeps.
-const LAST_GREY: u8 = 4;
+/// How ink pales: every row loses one grey in [`HEIGHT`]/`rows` ticks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Fading {
+    /// Rows that lose a grey in a tick.
+    pub rows: u8,
+    /// Grey that ink pales down to and keeps.
+    pub last: u8,
+}
 
-/// A frame that fades: every row loses one grey in [`HEIGHT`] ticks, about a second.
+impl Fading {
+    /// Not at all.
+    pub const NEVER: Self = Self { rows: 0, last: 15 };
+    /// A trace that stays: it loses a grey in about a second.
+    pub const TRACE: Self = Self { rows: 1, last: 4 };
+}
+
+/// A frame that fades.
 #[derive(Clone, Debug)]
 pub struct FadeLayer {
     frame: Canvas,
     /// The row that pales next.
-    row: u8,
+    row: i32,
 }
 
 impl FadeLayer {
@@ -24,22 +37,41 @@ impl FadeLayer {
         self.row = 0;
     }
 
-    /// Adds a stroke at full brightness.
-    pub fn add(&mut self, stroke: Stroke) {
-        stroke.lighten(&mut self.frame, u8::MAX);
+    /// Adds a stroke with a brightness of 0 to 255.
+    #[inline(never)]
+    pub fn add(&mut self, stroke: Stroke, brightness: u8) {
+        stroke.lighten(&mut self.frame, brightness);
     }
 
-    /// Pales one row.
-    pub fn tick(&mut self) {
-        for pair in self.frame.row_mut(self.row.into()) {
-            let [left, right] = [*pair >> 4, *pair & 0x0F].map(|grey| grey - u8::from(grey > LAST_GREY));
-            *pair = left << 4 | right;
+    /// Pales by one tick.
+    #[inline(never)]
+    pub fn fade(&mut self, Fading { rows, last }: Fading) {
+        for _ in 0..rows {
+            if let Some(Row(row)) = self.frame.row_mut(self.row) {
+                let words = row.as_chunks_mut().0.iter_mut();
+                words.for_each(|word| *word = paled(u32::from_ne_bytes(*word), last).to_ne_bytes());
+            }
+            self.row = (self.row + 1) % HEIGHT as i32;
         }
-        self.row = (self.row + 1) % HEIGHT as u8;
     }
 
     /// What is there now.
     pub fn frame(&self) -> &Canvas {
         &self.frame
     }
+
+    /// The same, to be drawn on.
+    pub fn frame_mut(&mut self) -> &mut Canvas {
+        &mut self.frame
+    }
+}
+
+/// Eight greys at once: each that is above `last` loses 1.
+#[inline]
+fn paled(greys: u32, last: u8) -> u32 {
+    const ONES: u32 = 0x0101_0101;
+    // Added to a grey above `last`, and to no other, it carries out of the nibble.
+    let room = u32::from(15_u8.saturating_sub(last)) * ONES;
+    let above = |every_other: u32| (((every_other & (15 * ONES)) + room) >> 4) & ONES;
+    greys - above(greys) - (above(greys >> 4) << 4)
 }

@@ -1,7 +1,7 @@
 //! Curves over time or any other quantity: one value per column, drawn with soft edges in integer arithmetic.
 
 use crate::graphics::brush::SUBPIXELS;
-use crate::graphics::canvas::{Canvas, HEIGHT, WIDTH};
+use crate::graphics::canvas::{Canvas, HEIGHT};
 use crate::graphics::history::History;
 
 /// Half the thickness of a curve, subpixels.
@@ -19,23 +19,24 @@ pub fn height(value: f32, zero: f32, scale: f32) -> Height {
 
 /// Draws the piece of a curve in column `x` between two heights with a brightness of 0 to 255; where the canvas is
 /// brighter already, it stays.
+#[inline(never)]
 pub fn column(canvas: &mut Canvas, x: i32, from: Height, to: Height, brightness: u8) {
     /// As in [`crate::graphics::brush`]: 255 = 17 x 15.
-    const GREY: i32 = 17 * SUBPIXELS;
+    const GREY: u16 = 17 * SUBPIXELS as u16;
     let top = i32::from(from.min(to)) - HALF_THICKNESS;
     let bottom = i32::from(from.max(to)) + HALF_THICKNESS;
     let first = top.div_euclid(SUBPIXELS).max(0);
     let last = bottom.div_euclid(SUBPIXELS).min(HEIGHT as i32 - 1);
-    for y in first..=last {
+    for y in first..last + 1 {
         let covered = bottom.min((y + 1) * SUBPIXELS) - top.max(y * SUBPIXELS);
-        let grey = ((i32::from(brightness) * covered + GREY / 2) / GREY) as u8;
-        canvas.update(x, y, |old| old.max(grey));
+        let grey = ((u16::from(brightness) * covered as u16 + GREY / 2) / GREY) as u8;
+        canvas.lighten(x, y, grey);
     }
 }
 
 /// Draws a dot of one pixel's size at a height.
 pub fn dot(canvas: &mut Canvas, x: i32, at: Height, grey: u8) {
-    canvas.update(x, i32::from(at).div_euclid(SUBPIXELS), |old| old.max(grey));
+    canvas.lighten(x, i32::from(at).div_euclid(SUBPIXELS), grey);
 }
 
 /// Grey of axes and of the lines that carry a scale: enough for a panel of one colour.
@@ -65,7 +66,7 @@ pub fn bar(canvas: &mut Canvas, (x1, y1): (i32, i32), (x2, y2): (i32, i32)) {
 /// Lightens a pixel of an axis or a bar. Once in flash, not once for each use.
 #[inline(never)]
 fn axis_dot(canvas: &mut Canvas, x: i32, y: i32) {
-    canvas.update(x, y, |old| old.max(AXIS_GREY));
+    canvas.lighten(x, y, AXIS_GREY);
 }
 
 /// The least step of a scale that is no less than `least`: 1, 2 or 5 times a power of ten.
@@ -74,37 +75,30 @@ pub fn scale_step(least: f32) -> f32 {
     STEPS.into_iter().find(|step| *step >= least).unwrap_or(100.0)
 }
 
-/// The last `COLUMNS` values of `N` curves, scrolling: the newest is the rightmost.
+/// The last `COLUMNS` values of a curve, scrolling: the newest is the rightmost.
 #[derive(Clone, Debug)]
-pub struct Strip<const N: usize, const COLUMNS: usize = WIDTH> {
-    columns: History<[Height; N], COLUMNS>,
+pub struct Strip<const COLUMNS: usize> {
+    columns: History<Height, COLUMNS>,
 }
 
-impl<const N: usize, const COLUMNS: usize> Default for Strip<N, COLUMNS> {
+impl<const COLUMNS: usize> Default for Strip<COLUMNS> {
     fn default() -> Self {
-        Self { columns: History::new([0; N]) }
+        Self { columns: History::new(0) }
     }
 }
 
-impl<const N: usize, const COLUMNS: usize> Strip<N, COLUMNS> {
+impl<const COLUMNS: usize> Strip<COLUMNS> {
     /// Adds the newest column.
-    pub fn push(&mut self, heights: [Height; N]) {
-        self.columns.write(heights);
+    pub fn push(&mut self, height: Height) {
+        self.columns.write(height);
     }
 
-    /// How many columns are kept.
-    pub fn columns(&self) -> i32 {
-        self.columns.len() as i32
-    }
-
-    /// Calls `draw` for each column kept, oldest first, with its place from the left when the newest is in column
-    /// `right`, its heights and those of the column before.
-    pub fn each(&self, right: i32, mut draw: impl FnMut(i32, &[Height; N], &[Height; N])) {
-        let first = right + 1 - self.columns();
+    /// Draws them with a brightness of 0 to 255, the oldest in column `left`.
+    pub fn draw(&self, canvas: &mut Canvas, left: i32, brightness: u8) {
         let mut before = None;
-        for (x, heights) in (first..).zip(self.columns.oldest_first()) {
-            draw(x, heights, before.unwrap_or(heights));
-            before = Some(heights);
+        for (x, &height) in (left..).zip(self.columns.oldest_first()) {
+            column(canvas, x, before.unwrap_or(height), height, brightness);
+            before = Some(height);
         }
     }
 }

@@ -3,7 +3,7 @@
 use double_pendulum::Parameters;
 
 use crate::config::{GREATEST_RADIUS, LEAST_RADIUS, PIVOT, REACH, ROD_HALF_WIDTH};
-use crate::graphics::brush::{SUBPIXELS, Spot, Stroke};
+use crate::graphics::brush::{Disc, SUBPIXELS, Spot, Stroke};
 use crate::graphics::canvas::Canvas;
 use crate::motion::direction_stepper::Directions;
 
@@ -82,10 +82,9 @@ impl View {
         for (from, to) in [(pivot, bob1), (bob1, bob2)] {
             Stroke { from, to, radius: half_width }.lighten(canvas, rod_brightness);
         }
-        Stroke::disc(pivot, 2 * half_width).lighten(canvas, rod_brightness);
-        for (bob, radius) in [bob1, bob2].into_iter().zip(self.radii) {
-            Stroke::disc(bob, radius.saturating_add(GAP)).erase(canvas);
-            Stroke::disc(bob, radius).lighten(canvas, brightness);
+        Stroke { from: pivot, to: pivot, radius: 2 * half_width }.lighten(canvas, rod_brightness);
+        for (centre, radius) in [bob1, bob2].into_iter().zip(self.radii) {
+            Disc { centre, radius, gap: GAP }.draw(canvas, brightness);
         }
     }
 }

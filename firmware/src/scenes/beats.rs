@@ -5,7 +5,7 @@ use double_pendulum::plan::Method;
 use double_pendulum::{Error, Oscillation, Parameters, SmallOscillations};
 
 use crate::config::{GRAVITY, ROD};
-use crate::graphics::brush::{Spot, Stroke};
+use crate::graphics::brush::{Disc, Spot, Stroke};
 use crate::graphics::canvas::{Canvas, WIDTH};
 use crate::graphics::fade_layer::FadeLayer;
 use crate::graphics::label;
@@ -21,9 +21,10 @@ use crate::scenes::scene::{Report, Scene};
 /// The middles of the two figures, and how far a mode reaches in them, pixels.
 const MIDDLES: [(f32, f32); 2] = [(23.5, 32.5), (104.5, 32.5)];
 const REACH: f32 = 21.5;
-/// Half the width of the line, and the radius of the moving spot, subpixels.
+/// Half the width of the line, the radius of the moving spot and the gap around it, subpixels.
 const HALF_WIDTH: u8 = 36;
 const SPOT_RADIUS: u8 = 120;
+const GAP: u8 = 12;
 /// The amplitude of angle 2 in each mode, degrees.
 const AMPLITUDE: f32 = 12.0;
 
@@ -105,7 +106,7 @@ impl Scene for Beats {
         let places = self.places();
         let spots = places.map(|(x, y)| Spot::at(x, y));
         for (from, to) in self.spots.into_iter().zip(spots) {
-            ink.add(Stroke { from, to, radius: HALF_WIDTH });
+            ink.add(Stroke { from, to, radius: HALF_WIDTH }, u8::MAX);
         }
         self.spots = spots;
         let mut horizon = self.horizon;
@@ -119,9 +120,8 @@ impl Scene for Beats {
             plot::axis(canvas, x - REACH as i32, x + REACH as i32 + 1, y);
             plot::upright_axis(canvas, x, y - REACH as i32, y + REACH as i32 + 1);
         }
-        for spot in self.spots {
-            Stroke::disc(spot, 2 * HALF_WIDTH + SPOT_RADIUS / 2).erase(canvas);
-            Stroke::disc(spot, SPOT_RADIUS).lighten(canvas, u8::MAX);
+        for centre in self.spots {
+            Disc { centre, radius: SPOT_RADIUS, gap: GAP }.draw(canvas, u8::MAX);
         }
         text::write(canvas, "linear", Anchor::TopLeft);
         text::write(canvas, "exact", Anchor::TopRight);

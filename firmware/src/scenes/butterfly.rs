@@ -49,7 +49,7 @@ pub struct Butterfly {
     e_foldings: f32,
     horizon: AccuracyHorizon,
     bobs: [Spot; 2],
-    strip: Strip<1, PLOT_COLUMNS>,
+    strip: Strip<PLOT_COLUMNS>,
 }
 
 impl Butterfly {
@@ -64,7 +64,7 @@ impl Butterfly {
     fn put_down(&mut self) {
         let ratio = (self.separation() / self.apart) as f32;
         self.e_foldings = libm::logf(ratio.max(f32::MIN_POSITIVE));
-        self.strip.push([plot::height(self.e_foldings, ZERO_ROW, SCALE)]);
+        self.strip.push(plot::height(self.e_foldings, ZERO_ROW, SCALE));
     }
 }
 
@@ -94,7 +94,7 @@ impl Scene for Butterfly {
         let shown = self.view.bobs(self.first.directions());
         let bobs = shown.map(|(x, y)| Spot::at(x, y));
         let ([_, from], [_, to]) = (self.bobs, bobs);
-        ink.add(Stroke { from, to, radius: HALF_WIDTH });
+        ink.add(Stroke { from, to, radius: HALF_WIDTH }, u8::MAX);
         self.bobs = bobs;
         self.horizon.tick(self.first.time(), shown, |directions| self.view.bobs(directions));
         if self.first.step().is_multiple_of(STEPS_PER_COLUMN) {
@@ -110,9 +110,7 @@ impl Scene for Butterfly {
             plot::axis(canvas, PLOT_LEFT, WIDTH as i32, row);
             text::write(canvas, &label::tick(e_foldings, ""), Anchor::EndingAt(PLOT_LEFT, row - LINE / 2));
         }
-        self.strip.each(PLOT_LEFT + self.strip.columns() - 1, |x, &[now], &[before]| {
-            plot::column(canvas, x, before, now, CURVE);
-        });
+        self.strip.draw(canvas, PLOT_LEFT, CURVE);
         let span = (PLOT_COLUMNS as u64 / COLUMNS_PER_SECOND) as f32;
         let end = (self.first.time() as f32).max(span);
         text::write(canvas, &label::tick(end - span, ""), Anchor::At(PLOT_LEFT, LOWEST));

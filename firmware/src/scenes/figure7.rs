@@ -75,7 +75,7 @@ impl Scene for Figure7 {
         self.horizon.tick(self.right.time(), shown, |directions| view.bobs(directions));
         let bobs = spots(places);
         for ([_, from], [_, to]) in self.bobs.into_iter().zip(bobs) {
-            ink.add(Stroke { from, to, radius: HALF_WIDTH });
+            ink.add(Stroke { from, to, radius: HALF_WIDTH }, u8::MAX);
         }
         self.bobs = bobs;
     }

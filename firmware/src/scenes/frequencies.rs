@@ -3,11 +3,11 @@
 use double_pendulum::{Error, Modes, Parameters, State};
 
 use crate::config::TICK_RATE;
-use crate::graphics::brush::{Spot, Stroke};
+use crate::graphics::brush::{Disc, Spot};
 use crate::graphics::canvas::{Canvas, WIDTH};
-use crate::graphics::fade_layer::FadeLayer;
+use crate::graphics::fade_layer::{FadeLayer, Fading};
 use crate::graphics::label;
-use crate::graphics::plot::{self, Strip};
+use crate::graphics::plot::{self, Height};
 use crate::graphics::text::{self, Anchor, LINE, LOWEST};
 use crate::motion::planner::Shown;
 use crate::motion::settings::Settings;
@@ -39,9 +39,10 @@ pub struct Frequencies {
     mass_ratio: f32,
     /// At the mass ratio, fast and slow.
     marked: [f32; 2],
-    curves: Strip<2, COLUMNS>,
     ticks: u64,
+    /// Columns of the curves drawn so far, and where they end.
     drawn: u32,
+    ends: Option<[Height; 2]>,
 }
 
 /// The fast and the slow frequency of equal rods, in sqrt(g/l).
@@ -51,30 +52,34 @@ fn frequencies(mass_ratio: f32) -> Result<[f32; 2], Error> {
 }
 
 impl Frequencies {
-    fn push(&mut self) {
+    fn extend(&mut self, ink: &mut Canvas) {
         // The middle of the column; mass ratio 0 itself has no modes.
         let mass_ratio = (self.drawn as f32 + 0.5) * self.range / COLUMNS as f32;
         if let Ok(frequencies) = frequencies(mass_ratio) {
-            self.curves.push(frequencies.map(|frequency| plot::height(frequency, ZERO_ROW, self.scale)));
-            self.drawn += 1;
+            let heights = frequencies.map(|frequency| plot::height(frequency, ZERO_ROW, self.scale));
+            for (before, now) in self.ends.unwrap_or(heights).into_iter().zip(heights) {
+                plot::column(ink, LEFT + self.drawn as i32, before, now, CURVE);
+            }
+            (self.drawn, self.ends) = (self.drawn + 1, Some(heights));
         }
     }
 }
 
 impl Scene for Frequencies {
+    const FADING: Fading = Fading::NEVER;
+
     fn new(settings: &Settings) -> Result<Self, Error> {
         let mass_ratio = settings.mass_ratio();
         let marked = frequencies(mass_ratio)?;
         let range = (mass_ratio / FARTHEST_MARK).max(LEAST_RANGE);
         let [greatest, _] = frequencies(range)?;
-        let curves = Strip::default();
-        Ok(Self { range, scale: RISE / greatest, mass_ratio, marked, curves, ticks: 0, drawn: 0 })
+        Ok(Self { range, scale: RISE / greatest, mass_ratio, marked, ticks: 0, drawn: 0, ends: None })
     }
 
-    fn tick(&mut self, _: &mut FadeLayer) {
+    fn tick(&mut self, ink: &mut FadeLayer) {
         self.ticks = self.ticks.wrapping_add(1);
         for _ in 0..COLUMNS_PER_TICK.min(COLUMNS as u32 - self.drawn) {
-            self.push();
+            self.extend(ink.frame_mut());
         }
     }
 
@@ -89,16 +94,11 @@ impl Scene for Frequencies {
             plot::axis(canvas, LEFT, width, row);
             text::write(canvas, &label::tick(frequency, ""), Anchor::EndingAt(LEFT, row - LINE / 2));
         }
-        self.curves.each(LEFT + self.drawn as i32 - 1, |x, &[fast, slow], &[fast_before, slow_before]| {
-            plot::column(canvas, x, fast_before, fast, CURVE);
-            plot::column(canvas, x, slow_before, slow, CURVE);
-        });
         let x = LEFT as f32 + self.mass_ratio / self.range * COLUMNS as f32;
         plot::upright_axis(canvas, x as i32, zero - RISE as i32, zero);
         for frequency in self.marked {
-            let mark = Spot::at(x, ZERO_ROW - self.scale * frequency);
-            Stroke::disc(mark, 2 * MARK_RADIUS).erase(canvas);
-            Stroke::disc(mark, MARK_RADIUS).lighten(canvas, u8::MAX);
+            let centre = Spot::at(x, ZERO_ROW - self.scale * frequency);
+            Disc { centre, radius: MARK_RADIUS, gap: MARK_RADIUS }.draw(canvas, u8::MAX);
         }
         let ([fast, slow], [fast_name, slow_name]) = (self.marked, label::FREQUENCIES);
         text::write(canvas, &label::frequency(fast_name, fast), Anchor::TopLeft);

@@ -50,8 +50,8 @@ macro_rules! catalogue {
 
             /// Advances by one tick, as [`Scene::tick`]; the ink, which was clear at the start, pales.
             pub fn tick(&mut self, ink: &mut FadeLayer) {
-                match self { $(Self::$row(scene) => scene.tick(ink),)* }
-                ink.tick();
+                let fading = match self { $(Self::$row(scene) => { scene.tick(ink); <$scene>::FADING })* };
+                ink.fade(fading);
             }
 
             /// Draws the whole frame over whatever was there; `report` is the scene's, as of now.

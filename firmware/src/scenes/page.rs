@@ -2,12 +2,12 @@
 
 use double_pendulum::Error;
 
-use crate::graphics::brush::Spot;
+use crate::config::{TRAIL_BRIGHTNESS, TRAIL_FADING, TRAIL_HALF_WIDTH};
+use crate::graphics::brush::{SUBPIXELS, Spot, Stroke};
 use crate::graphics::canvas::Canvas;
-use crate::graphics::fade_layer::FadeLayer;
+use crate::graphics::fade_layer::{FadeLayer, Fading};
 use crate::graphics::label;
 use crate::graphics::text::{self, Anchor, LINE, LOWEST};
-use crate::graphics::trail::Trail;
 use crate::graphics::view::{Place, View};
 use crate::motion::planner::Shown;
 use crate::motion::settings::Settings;
@@ -22,39 +22,32 @@ pub struct Page {
     simulation: Simulation,
     horizon: AccuracyHorizon,
     view: View,
-    trail: Trail,
-}
-
-impl Page {
-    fn bobs(&self) -> [(f32, f32); 2] {
-        self.view.bobs(self.simulation.directions())
-    }
-
-    fn spots(&self) -> [Spot; 2] {
-        self.bobs().map(|(x, y)| Spot::at(x, y))
-    }
+    bobs: [Spot; 2],
 }
 
 impl Scene for Page {
+    const FADING: Fading = Fading { rows: TRAIL_FADING, last: 0 };
+
     fn new(settings: &Settings) -> Result<Self, Error> {
         let simulation = Simulation::new(settings)?;
         let view = View::new(&settings.parameters, Place::WHOLE);
-        let [_, bob2] = view.spots(simulation.directions());
+        let bobs = view.spots(simulation.directions());
         let horizon = AccuracyHorizon::new(&settings.parameters, &simulation.state())?;
-        Ok(Self { settings: *settings, simulation, horizon, view, trail: Trail::new(bob2) })
+        Ok(Self { settings: *settings, simulation, horizon, view, bobs })
     }
 
-    fn tick(&mut self, _: &mut FadeLayer) {
+    fn tick(&mut self, ink: &mut FadeLayer) {
         self.simulation.tick();
-        let shown = self.bobs();
-        let [_, (x, y)] = shown;
-        self.trail.push(Spot::at(x, y));
+        let shown = self.view.bobs(self.simulation.directions());
+        let bobs = shown.map(|(x, y)| Spot::at(x, y));
+        let ([_, from], [_, to]) = (self.bobs, bobs);
+        ink.add(Stroke { from, to, radius: (TRAIL_HALF_WIDTH * SUBPIXELS as f32) as u8 }, TRAIL_BRIGHTNESS);
+        self.bobs = bobs;
         self.horizon.tick(self.simulation.time(), shown, |directions| self.view.bobs(directions));
     }
 
     fn draw(&self, report: &Report, canvas: &mut Canvas) {
-        self.trail.draw(canvas);
-        self.view.draw(canvas, self.spots(), u8::MAX);
+        self.view.draw(canvas, self.bobs, u8::MAX);
         let [degrees1, degrees2] = self.settings.degrees;
         text::write(canvas, &label::mass_ratio(self.settings.mass_ratio()), Anchor::TopLeft);
         if degrees1 == degrees2 {

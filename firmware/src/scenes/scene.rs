@@ -5,13 +5,16 @@ use double_pendulum::{Error, State};
 
 use crate::config::STEPS_PER_TICK;
 use crate::graphics::canvas::Canvas;
-use crate::graphics::fade_layer::FadeLayer;
+use crate::graphics::fade_layer::{FadeLayer, Fading};
 use crate::motion::planner::Shown;
 use crate::motion::settings::Settings;
 use crate::motion::simulation::Simulation;
 
 /// Something to watch: it starts from settings, moves tick by tick and is drawn when there is time for it.
 pub trait Scene: Sized {
+    /// How its ink pales.
+    const FADING: Fading = Fading::TRACE;
+
     /// At the start; the kernel's error if the settings describe no pendulum, or none that this scene can show.
     fn new(settings: &Settings) -> Result<Self, Error>;
 

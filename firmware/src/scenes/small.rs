@@ -6,9 +6,9 @@ use double_pendulum::{Error, Modes, Motion, Oscillation, Parameters, Pendulum, S
 
 use crate::config::{PAGE_GRAVITY, TICK_RATE};
 use crate::graphics::canvas::{Canvas, WIDTH};
-use crate::graphics::fade_layer::FadeLayer;
+use crate::graphics::fade_layer::{FadeLayer, Fading};
 use crate::graphics::label;
-use crate::graphics::plot::{self, Strip};
+use crate::graphics::plot::{self, Height};
 use crate::graphics::text::{self, Anchor, LINE, LOWEST};
 use crate::motion::direction_stepper::Directions;
 use crate::motion::planner::Shown;
@@ -21,7 +21,7 @@ const ROWS: [f32; 2] = [20.5, 43.5];
 const SWING: f32 = 10.5;
 /// The plots begin right of their names and scales.
 const LEFT: i32 = 18;
-const COLUMNS: usize = WIDTH - LEFT as usize;
+const RIGHT: i32 = WIDTH as i32 - 1;
 /// An exchange of energy between the rods and back takes about this many columns.
 const COLUMNS_PER_EXCHANGE: f32 = 60.0;
 /// The bar that tells a length of time is at least this long, columns.
@@ -47,7 +47,8 @@ pub struct Small {
     ticks_per_column: u32,
     ticks: u64,
     horizon: AccuracyHorizon,
-    strip: Strip<4, COLUMNS>,
+    /// Where the curves end.
+    ends: Option<[Height; 2]>,
 }
 
 impl Small {
@@ -73,12 +74,23 @@ impl Small {
         self.horizon = horizon;
     }
 
-    fn push(&mut self) {
+    /// Scrolls the curves and their envelopes, and adds a column.
+    fn extend(&mut self, ink: &mut Canvas) {
+        ink.scroll(LEFT);
         let time = self.time() as f32;
-        let motion = self.motion.at(time);
+        let Motion { a1, a2, .. } = self.motion.at(time);
+        let height = |(angle, row): (f32, f32)| plot::height(angle, row, self.scale);
         let [envelope1, envelope2] = self.envelopes.at(time);
-        let height = |rod: usize, angle: f32| plot::height(angle, ROWS[rod], self.scale);
-        self.strip.push([height(0, motion.a1), height(1, motion.a2), height(0, envelope1), height(1, envelope2)]);
+        for envelope in [(envelope1, ROWS[0]), (envelope2, ROWS[1])] {
+            let mirrored = plot::height(0.0, 2.0 * envelope.1, 0.0).saturating_sub(height(envelope));
+            plot::dot(ink, RIGHT, height(envelope), ENVELOPE_GREY);
+            plot::dot(ink, RIGHT, mirrored, ENVELOPE_GREY);
+        }
+        let heights = [(a1, ROWS[0]), (a2, ROWS[1])].map(height);
+        for (before, now) in self.ends.unwrap_or(heights).into_iter().zip(heights) {
+            plot::column(ink, RIGHT, before, now, CURVE);
+        }
+        self.ends = Some(heights);
     }
 
     /// Draws a bar as long as a round time, and says which.
@@ -92,6 +104,8 @@ impl Small {
 }
 
 impl Scene for Small {
+    const FADING: Fading = Fading::NEVER;
+
     fn new(settings: &Settings) -> Result<Self, Error> {
         let pendulum = settings.pendulum()?;
         let start = settings.start(&pendulum)?;
@@ -101,7 +115,7 @@ impl Scene for Small {
         let greatest = envelopes.greatest().into_iter().fold(0.0, f32::max);
         let exchange = core::f32::consts::TAU / modes.exchange();
         let ticks_per_column = (exchange * TICK_RATE as f32 / COLUMNS_PER_EXCHANGE) as u32;
-        let mut scene = Self {
+        Ok(Self {
             settings: *settings,
             pendulum,
             motion,
@@ -110,17 +124,18 @@ impl Scene for Small {
             ticks_per_column: ticks_per_column.max(1),
             ticks: 0,
             horizon: AccuracyHorizon::of_model(&settings.parameters, &start)?,
-            strip: Strip::default(),
-        };
-        scene.push();
-        Ok(scene)
+            ends: None,
+        })
     }
 
-    fn tick(&mut self, _: &mut FadeLayer) {
+    fn tick(&mut self, ink: &mut FadeLayer) {
+        if self.ends.is_none() {
+            self.extend(ink.frame_mut());
+        }
         self.ticks = self.ticks.wrapping_add(1);
         self.compare();
         if self.ticks.is_multiple_of(self.ticks_per_column.into()) {
-            self.push();
+            self.extend(ink.frame_mut());
         }
     }
 
@@ -133,14 +148,6 @@ impl Scene for Small {
             text::write(canvas, name, Anchor::EndingAt(LEFT - 2, row - LINE / 2));
             text::write(canvas, &label::swing(greatest), Anchor::EndingAt(LEFT - 2, row - swing));
         }
-        let mirrored = |rod: usize, envelope: i16| plot::height(0.0, 2.0 * ROWS[rod], 0.0).saturating_sub(envelope);
-        self.strip.each(WIDTH as i32 - 1, |x, &[a1, a2, e1, e2], &[b1, b2, ..]| {
-            for envelope in [e1, mirrored(0, e1), e2, mirrored(1, e2)] {
-                plot::dot(canvas, x, envelope, ENVELOPE_GREY);
-            }
-            plot::column(canvas, x, b1, a1, CURVE);
-            plot::column(canvas, x, b2, a2, CURVE);
-        });
         self.draw_seconds(canvas);
         text::write(canvas, &label::mass_ratio(self.settings.mass_ratio()), Anchor::TopLeft);
         text::write(canvas, "linear", Anchor::Centred(WIDTH as i32 / 2, 0));

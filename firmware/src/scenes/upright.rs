@@ -89,7 +89,7 @@ impl Scene for Upright {
         self.horizon.note(self.time(), is_right);
         let places = self.places();
         for ([_, from], [_, to]) in self.bobs.into_iter().zip(places) {
-            ink.add(Stroke { from, to, radius: HALF_WIDTH });
+            ink.add(Stroke { from, to, radius: HALF_WIDTH }, u8::MAX);
         }
         self.bobs = places;
     }

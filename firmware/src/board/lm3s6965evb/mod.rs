@@ -27,6 +27,7 @@ use crate::board::cortex_m::identity::instruments;
 use crate::board::cortex_m::watchdog::TwoStage;
 use crate::board::serial::receiver::Receiver;
 use crate::display::Ssd0323;
+use crate::graphics::canvas::Canvas;
 use crate::protocol::BoardName;
 
 pub use buttons::Keys;
@@ -35,7 +36,7 @@ pub use ssi::{NoSelect, Ssi};
 pub use uart::Uart;
 
 /// The board's panel.
-pub type Panel = Ssd0323<ExclusiveDevice<Ssi, NoSelect, NoDelay>, Output>;
+pub type Panel = Ssd0323<'static, ExclusiveDevice<Ssi, NoSelect, NoDelay>, Output>;
 
 /// The board, set up and running.
 pub struct Board {
@@ -67,9 +68,10 @@ impl Board {
         let link = Uart::start(hertz);
         let receiver = Receiver::new(uart::INLET)?;
         uart::enable_receiver();
+        let memory = cortex_m::singleton!(: Canvas = Canvas::BLACK)?;
         let Ok(panel) = ExclusiveDevice::new_no_delay(Ssi::start(hertz), NoSelect);
         Some(Self {
-            panel: Ssd0323::new(panel, gpio::data_not_command()),
+            panel: Ssd0323::new(panel, gpio::data_not_command(), memory),
             link,
             receiver,
             keys: Keys::start(),

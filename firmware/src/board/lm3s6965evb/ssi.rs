@@ -48,6 +48,7 @@ impl Ssi {
 
     /// Exchanges up to [`QUEUE`] bytes and passes each one received to `take`. What was received must be taken out:
     /// a full receive queue stops the bus.
+    #[inline(always)]
     fn exchange(sent: &[u8], mut take: impl FnMut(usize, u8)) -> Result<(), Timeout> {
         for &byte in sent {
             DATA.write(byte.into());
@@ -74,7 +75,9 @@ impl spi::ErrorType for Ssi {
 
 impl SpiBus for Ssi {
     fn write(&mut self, words: &[u8]) -> Result<(), Timeout> {
-        words.chunks(QUEUE).try_for_each(|chunk| Self::exchange(chunk, |_, _| ()))
+        let (chunks, rest) = words.as_chunks::<QUEUE>();
+        chunks.iter().try_for_each(|chunk| Self::exchange(chunk, |_, _| ()))?;
+        Self::exchange(rest, |_, _| ())
     }
 
     fn read(&mut self, words: &mut [u8]) -> Result<(), Timeout> {
