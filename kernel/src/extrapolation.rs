@@ -1,17 +1,18 @@
 //! Steps of any even order, for any system of first-order equations, from one number and no table.
 
 use crate::error::{Error, Parameter};
+use crate::lanes::Lanes;
 use crate::real::Real;
 use crate::ring::Ring;
 
-/// The most rows a step may have: order 16. Tables of rows are read at `row % ROWS`, which tells the compiler that it is there.
+/// The most rows a step may have: order 16.
 pub const ROWS: usize = 8;
 
 /// W. B. Gragg's extrapolation of order 2 K (1965; `[Hairer I]`, II.9, his smoothing step left out).
 ///
 /// Row n = 2, 4 .. 2 K goes through the step with n modified midpoints. Where it ends is off by a series in the even powers
 /// of 1/n, so that the sum of all ends with the weights w_n, the product over the other rows m of n^2/(n^2 - m^2), is off
-/// by order 2 K only. K^2 + 1 evaluations, two sums to each; 4 N numbers of stack.
+/// by order 2 K only. K^2 + 1 evaluations, one sum to each; 4 N numbers of stack.
 ///
 /// The orders 6, 8, 12 and 16 are measured by the repository's tests.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,10 +21,58 @@ pub const ROWS: usize = 8;
 pub struct Extrapolation<R> {
     rows: usize,
     /// 1/(n/2), the share of the step between every second midpoint.
-    shares: [R; ROWS],
-    /// w_n/2^doublings, at most 1: w_n reaches 51, more than every kind of number holds.
-    weights: [R; ROWS],
-    doublings: u32,
+    shares: [Factor<R>; ROWS],
+    /// w_n.
+    weights: [Factor<R>; ROWS],
+}
+
+/// A factor of any size: w_n reaches 51, more than every kind of number holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+struct Factor<R> {
+    whole: i32,
+    rest: R,
+}
+
+impl<R: Ring> Factor<R> {
+    fn new(value: f64) -> Self {
+        let (whole, rest) = R::split(value);
+        Self { whole, rest }
+    }
+
+    #[inline(always)]
+    fn times(&self, number: R) -> R {
+        let product = number * self.rest;
+        if self.whole == 0 { product } else { product + number.times(self.whole) }
+    }
+}
+
+/// What is stepped: `L` rows side by side.
+pub(crate) trait System<R, const L: usize, const N: usize> {
+    /// From now on lane l is in row `rows[l]`, n/2 - 1.
+    fn turn_to(&mut self, rows: [usize; L]);
+    /// 2H/n f in each lane's row, H being the step.
+    fn slope(&mut self, at: &[Lanes<R, L>; N]) -> [Lanes<R, L>; N];
+}
+
+/// What a lane goes through.
+#[derive(Clone, Copy, PartialEq)]
+enum Turn {
+    /// The slope where the step starts.
+    Start,
+    Row(usize),
+    Done,
+}
+
+impl Turn {
+    fn stages(self) -> usize {
+        match self {
+            Turn::Start => 1,
+            Turn::Row(row) => 2 * row + 1,
+            Turn::Done => usize::MAX,
+        }
+    }
 }
 
 /// n/2 of a row.
@@ -47,13 +96,11 @@ impl<R: Ring> Extrapolation<R> {
         if order % 2 == 1 || !(1..=ROWS).contains(&rows) {
             return Err(Error::OutOfRange { parameter: Parameter::Order, value: f64::from(order) });
         }
-        let largest = (0..rows).map(|row| libm::fabs(weight(row, rows))).fold(1.0, libm::fmax);
-        let doublings = libm::ceil(libm::log2(largest)) as u32;
-        let mut method = Self { rows, doublings, shares: [R::constant(0.0); ROWS], weights: [R::constant(0.0); ROWS] };
-        for (row, (share, scaled)) in method.shares.iter_mut().zip(&mut method.weights).enumerate() {
-            *share = R::constant(1.0 / half(row));
+        let mut method = Self { rows, shares: [Factor::new(0.0); ROWS], weights: [Factor::new(0.0); ROWS] };
+        for (row, (share, of_end)) in method.shares.iter_mut().zip(&mut method.weights).enumerate() {
+            *share = Factor::new(1.0 / half(row));
             if row < rows {
-                *scaled = R::constant(libm::scalbn(weight(row, rows), -(doublings as i32)));
+                *of_end = Factor::new(weight(row, rows));
             }
         }
         Ok(method)
@@ -64,35 +111,90 @@ impl<R: Ring> Extrapolation<R> {
         2 * self.rows as u32
     }
 
-    /// What a step adds to `z`, for those who let the step enter with the constants of their equations:
-    /// `slope(z, row)` is to be H/(row + 1) f(z), H being the step.
+    /// The row that a `lane` of `L` goes through after so many others, the long ones first; then there and back, so that
+    /// all end at about the same time.
+    fn turn<const L: usize>(&self, lane: usize, before: usize) -> Turn {
+        let place = if before % 2 == 0 { lane } else { L - 1 - lane };
+        (self.rows.checked_sub(1 + before * L + place)).map_or(Turn::Done, Turn::Row)
+    }
+
+    /// Where a step from `origin` ends.
     #[inline(always)]
-    pub(crate) fn increment_by<const N: usize>(&self, slope: impl Fn(&[R; N], usize) -> [R; N], z: &[R; N]) -> [R; N] {
-        let first = slope(z, 0);
-        let row_end = |row: usize| {
-            let further = |d: &[R; N]| -> [R; N] { slope(&core::array::from_fn(|i| z[i] + d[i]), row) };
-            // half the share of the first slope, then from one midpoint to the next but one
-            let mut odd = first.map(|slope| (slope * self.shares[row % ROWS]).half());
-            let mut even = further(&odd);
-            for _ in 0..row {
-                let slope = further(&even);
-                odd = core::array::from_fn(|i| odd[i] + slope[i]);
-                let slope = further(&odd);
-                even = core::array::from_fn(|i| even[i] + slope[i]);
+    pub(crate) fn end<const L: usize, const N: usize>(
+        &self,
+        system: &mut impl System<R, L, N>,
+        origin: &[R; N],
+    ) -> [R; N] {
+        let [mut first, mut sum, mut reference] = [*origin; 3];
+        let mut is_first_end = true;
+        let (mut turns, mut before, mut left) = ([Turn::Start; L], [0; L], [1; L]);
+        let [mut even, mut odd] = [origin.map(Lanes::splat); 2];
+        let (mut behind, mut ahead) = (&mut even, &mut odd);
+        system.turn_to([0; L]);
+        while turns.iter().any(|&turn| turn != Turn::Done) {
+            let stages = left.iter().fold(usize::MAX, |least, &left| least.min(left));
+            for _ in 0..stages {
+                let slope = system.slope(ahead);
+                for i in 0..N {
+                    behind[i] = behind[i] + slope[i];
+                }
+                core::mem::swap(&mut behind, &mut ahead);
             }
-            even
-        };
-        // All weights sum to 1: small differences are weighted instead of the ends themselves.
-        let last = row_end(self.rows - 1);
-        let mut sum = last;
-        for row in 0..self.rows - 1 {
-            let end = row_end(row);
-            for i in 0..N {
-                let share = (end[i] - last[i]) * self.weights[row % ROWS];
-                sum[i] = sum[i] + (0..self.doublings).fold(share, |share, _| share.twice());
+            for lane in 0..L {
+                left[lane] -= stages;
+                if left[lane] > 0 {
+                    continue;
+                }
+                let end: [R; N] = core::array::from_fn(|i| ahead[i].0[lane]);
+                match turns[lane] {
+                    Turn::Row(_) if is_first_end => {
+                        is_first_end = false;
+                        (sum, reference) = (end, end);
+                    }
+                    // All weights sum to 1: small differences are weighted instead of the ends themselves.
+                    Turn::Row(row) => {
+                        for i in 0..N {
+                            sum[i] = sum[i] + self.weights[row % ROWS].times(end[i] - reference[i]);
+                        }
+                    }
+                    _ if lane == 0 => first = core::array::from_fn(|i| end[i] - origin[i]),
+                    _ => {}
+                }
+                turns[lane] = self.turn::<L>(lane, before[lane]);
+                before[lane] += 1;
+                left[lane] = turns[lane].stages();
+                if let Turn::Row(row) = turns[lane] {
+                    for i in 0..N {
+                        behind[i].0[lane] = origin[i];
+                        ahead[i].0[lane] = origin[i] + self.shares[row % ROWS].times(first[i]).half();
+                    }
+                }
             }
+            system.turn_to(turns.map(|turn| if let Turn::Row(row) = turn { row % ROWS } else { 0 }));
         }
         sum
+    }
+}
+
+/// Any system z' = f(z), one row at a time, on increments from where the step starts.
+struct Any<'a, R, F, const N: usize> {
+    f: F,
+    z: &'a [R; N],
+    dt: R,
+    method: &'a Extrapolation<R>,
+    share: R,
+}
+
+impl<R: Real, F: Fn(&[R; N]) -> [R; N], const N: usize> System<R, 1, N> for Any<'_, R, F, N> {
+    #[inline(always)]
+    fn turn_to(&mut self, [row]: [usize; 1]) {
+        self.share = self.method.shares[row % ROWS].times(self.dt);
+    }
+
+    #[inline(always)]
+    fn slope(&mut self, at: &[Lanes<R, 1>; N]) -> [Lanes<R, 1>; N] {
+        let z = core::array::from_fn(|i| self.z[i] + at[i].0[0]);
+        (self.f)(&z).map(|slope| Lanes([self.share * slope]))
     }
 }
 
@@ -116,12 +218,6 @@ impl<R: Real> Extrapolation<R> {
     /// What [`step`](Self::step) adds to `z`, for those who carry the rounding error of that addition along.
     #[inline]
     pub fn increment<const N: usize>(&self, f: impl Fn(&[R; N]) -> [R; N], z: &[R; N], dt: R) -> [R; N] {
-        self.increment_by(
-            |z, row| {
-                let share = dt * self.shares[row % ROWS];
-                f(z).map(|slope| share * slope)
-            },
-            z,
-        )
+        self.end(&mut Any { f, z, dt, method: self, share: dt }, &[R::ZERO; N])
     }
 }

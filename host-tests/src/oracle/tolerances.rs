@@ -323,3 +323,6 @@ pub const FLIPS_RIGHT: f64 = 0.999;
 pub const FLIPS_WRONG: f64 = 0.04;
 /// ... and so many of all are wrong without being in doubt.
 pub const FLIPS_UNSUSPECTED: f64 = 0.01;
+
+/// Three steps as coarse as there may be in 64-bit fixed point and in `f64`, rad.
+pub const FIXED_64_AND_DOUBLE: f64 = 1e-9;

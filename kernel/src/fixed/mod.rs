@@ -1,11 +1,11 @@
 //! Fixed point: numbers of 32 and 64 bits that hold one motion, in units that its energy chooses.
 
 mod q30;
-mod q60;
+mod q64;
 mod scaling;
 
 pub(crate) use q30::{Q30, Slope, Torque};
-pub(crate) use q60::Q60;
+pub(crate) use q64::Q64;
 pub(crate) use scaling::{Scaling, Shifts, check_step};
 
 use crate::ring::Ring;

@@ -42,13 +42,13 @@ pub(crate) struct Scaling {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Shifts {
     /// C P2 is so many times less as a part of P1.
-    momentum: u32,
+    pub momentum: u32,
     /// r is so many times more than its number.
-    inverse: u32,
+    pub inverse: u32,
     /// u is so many times less as a rate of a1, ...
-    upper: u32,
+    pub upper: u32,
     /// ... and v of a2.
-    lower: u32,
+    pub lower: u32,
 }
 
 /// Refuses a step of `dt` s that no arithmetic takes: NaN, infinite, zero or subnormal.
@@ -65,12 +65,12 @@ pub(crate) fn check_step(dt: f64) -> Result<(), Error> {
 
 impl Scaling {
     /// For a motion within `bounds`, no rate of which may exceed `rate` and no torque of gravity `torque` in these units:
-    /// `unit` chooses T and is told the longest, s.
+    /// `unit` chooses T and is told the longest, s, by rates and by torques.
     pub fn new(
         parameters: &Parameters<f64>,
         bounds: &Bounds<f64>,
         [rate, torque]: [f64; 2],
-        unit: impl FnOnce(f64) -> Result<f64, Error>,
+        unit: impl FnOnce([f64; 2]) -> Result<f64, Error>,
     ) -> Result<Self, Error> {
         let (mut scaling, longest) = Self::with_longest(parameters, bounds, [rate, torque])?;
         let time = unit(longest)?;
@@ -86,7 +86,7 @@ impl Scaling {
         parameters: &Parameters<f64>,
         bounds: &Bounds<f64>,
         [rate, torque]: [f64; 2],
-    ) -> Result<(Self, f64), Error> {
+    ) -> Result<(Self, [f64; 2]), Error> {
         let &Parameters { m1, m2, l1, l2, g } = parameters;
         let nu = l1 / l2;
         let sigma = libm::ceil(libm::log2(nu)) as i32;
@@ -111,7 +111,7 @@ impl Scaling {
             bounds.p2 * momentum2,
         ];
         let fastest = rates.into_iter().fold(0.0, f64::max);
-        let longest = libm::fmin(rate / fastest, libm::sqrt(torque / libm::fmax(gravity1, gravity2 * norm)));
+        let longest = [rate / fastest, libm::sqrt(torque / libm::fmax(gravity1, gravity2 * norm))];
         let scaling = Self {
             time: 1.0,
             momenta: [momentum1, momentum2],

@@ -58,10 +58,20 @@ pub(crate) trait Units<R: Ring>: Copy {
     fn rate(&self, momentum: R, inverse: R) -> R {
         momentum * inverse
     }
+    /// C u as a part of v.
+    #[inline(always)]
+    fn swing(&self, product: R) -> R {
+        product
+    }
     /// u by the time in which increments are counted.
     #[inline(always)]
     fn paced(&self, u: R) -> R {
         u
+    }
+    /// u v as a factor of F.
+    #[inline(always)]
+    fn factor(&self, product: R) -> R {
+        product
     }
     /// u and v as rates of the angles.
     #[inline(always)]
@@ -72,6 +82,16 @@ pub(crate) trait Units<R: Ring>: Copy {
     #[inline(always)]
     fn forces(&self, force: R::Torque) -> [R::Torque; 2] {
         [force, force]
+    }
+    /// nu sin a2.
+    #[inline(always)]
+    fn lower(&self, sine: R) -> R {
+        sine
+    }
+    /// The torque of gravity on rod 2 as a part of P2'.
+    #[inline(always)]
+    fn weight(&self, torque: R::Torque) -> R::Torque {
+        torque
     }
     /// S^2 r beside m r; and S S' r, by which r falls.
     #[inline(always)]
@@ -135,13 +155,16 @@ impl<R: Ring> Coefficients<R> {
     #[inline(always)]
     fn rates_at(&self, units: &impl Units<R>, [sin1, cos1]: [R; 2], [s, c]: [R; 2], p2: R, u: R) -> Rates<R> {
         let [gravity1, gravity2] = self.gravity;
-        let v = p2 - c * u;
+        let v = p2 - units.swing(c * u);
         let own = [u, v];
         let u = units.paced(u);
-        let [force1, force2] = units.forces((u * v).torque(s));
+        let [force1, force2] = units.forces(units.factor(u * v).torque(s));
         Rates {
             angles: units.turns([u, v]),
-            momenta: [-gravity1.torque(sin1) - force1, force2 - gravity2.torque(sin1 * c - cos1 * s)],
+            momenta: [
+                -gravity1.torque(sin1) - force1,
+                force2 - units.weight(gravity2.torque(units.lower(sin1 * c - cos1 * s))),
+            ],
             own,
         }
     }
@@ -169,16 +192,4 @@ pub(crate) fn increments<R: Ring<Slope = R, Torque = R>>(z: &[R; 6], rates: Rate
     let [sin1, cos1, s, c] = turning(z, rates.angles);
     let [p1, p2] = rates.momenta;
     [sin1, cos1, s, c, p1, p2]
-}
-
-/// Those and the rate of r, r' = -2 S S' r^2: a method with many stages follows it as one more quantity.
-#[inline(always)]
-pub(crate) fn increments_with_inverse<R: Ring<Slope = R, Torque = R>>(
-    coefficients: &Coefficients<R>,
-    units: &impl Units<R>,
-    &[sin1, cos1, s, c, p1, p2, r]: &[R; 7],
-) -> [R; 7] {
-    let rates = coefficients.rates(units, [sin1, cos1], [s, c], [p1, p2], r);
-    let [sin1, cos1, s_rate, c_rate, p1, p2] = increments(&[sin1, cos1, s, c, p1, p2], rates);
-    [sin1, cos1, s_rate, c_rate, p1, p2, -(units.inverse(s * r * s_rate).twice() * r)]
 }

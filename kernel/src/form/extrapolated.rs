@@ -3,97 +3,82 @@
 use super::checkpoint::{Check, RestoreError};
 use super::coefficients::Span;
 use super::direction::{DirectionForm, DirectionState};
-use super::equations::{Coefficients, Same, Units, increments_with_inverse};
+use super::equations::{Coefficients, Units, increments};
 use super::inverse::Divided;
 use super::sum::{Compensated, Sum};
 use super::{Direction, Form};
 use crate::error::Error;
-use crate::extrapolation::{Extrapolation, ROWS};
+use crate::extrapolation::{Extrapolation, ROWS, System};
+use crate::lanes::Lanes;
 use crate::params::Parameters;
-use crate::ring::Ring;
 use crate::sealed::Sealed;
 use crate::state::State;
 
 /// As [`DirectionForm`], but each step by [`Extrapolation`] of order `ORDER`, 2, 4 .. 16, after which the lengths of the
-/// directions are restored and r = 1/(m + S^2) is computed anew. Within the step r is a seventh quantity,
-/// r' = -2 S S' r^2: a division at every stage would be waited for.
+/// directions are restored. Four rows go through the step side by side, in the vectors of processors that have them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ExtrapolatedForm<const ORDER: u32, S = Compensated<f64>> {
     direction: DirectionForm<f64, S, Divided>,
-    method: PacedExtrapolation<f64>,
+    method: Extrapolation<f64>,
 }
 
 /// What an [`ExtrapolatedForm`] carries from step to step.
 pub type ExtrapolatedState<S> = DirectionState<f64, S>;
 
-/// An extrapolation and the constants of the equations for each of its rows, times the share of a step between every second
-/// midpoint: so nothing but two rates is multiplied by the step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) struct PacedExtrapolation<R> {
-    method: Extrapolation<R>,
-    rows: [(R, Coefficients<R>); ROWS],
+/// Rows side by side: two vectors of SSE2 hide each other's latency.
+const LANES: usize = 4;
+
+type Numbers = Lanes<f64, LANES>;
+
+/// The equations where the lanes are.
+struct Rows<'a> {
+    z: &'a [f64; 6],
+    step: &'a Coefficients<f64>,
+    paced: Coefficients<Numbers>,
+    pace: Pace,
 }
 
-/// The `units`, and rates times the share of the step.
+/// Rates times the share of the step between every second midpoint.
 #[derive(Clone, Copy)]
-struct Paced<R, U> {
-    units: U,
-    share: R,
-}
+struct Pace(Numbers);
 
-impl<R: Ring, U: Units<R>> Units<R> for Paced<R, U> {
+impl Units<Numbers> for Pace {
     #[inline(always)]
-    fn momentum(&self, product: R) -> R {
-        self.units.momentum(product)
+    fn paced(&self, u: Numbers) -> Numbers {
+        self.0 * u
     }
     #[inline(always)]
-    fn rate(&self, momentum: R, inverse: R) -> R {
-        self.units.rate(momentum, inverse)
-    }
-    #[inline(always)]
-    fn paced(&self, u: R) -> R {
-        self.share * u
-    }
-    #[inline(always)]
-    fn turns(&self, [u, v]: [R; 2]) -> [R; 2] {
-        self.units.turns([u, self.share * v])
-    }
-    #[inline(always)]
-    fn forces(&self, force: R::Torque) -> [R::Torque; 2] {
-        self.units.forces(force)
-    }
-    #[inline(always)]
-    fn inverse(&self, product: R) -> R {
-        self.units.inverse(product)
+    fn turns(&self, [u, v]: [Numbers; 2]) -> [Numbers; 2] {
+        [u, self.0 * v]
     }
 }
 
-impl<R: Ring<Slope = R, Torque = R>> PacedExtrapolation<R> {
-    /// Steps of `step` units of time; `gravity` is (G1, G2) in those units.
-    pub fn new(order: u32, step: f64, coefficients: Coefficients<R>, gravity: [f64; 2]) -> Result<Self, Error> {
-        let mut rows = [(R::constant(0.0), coefficients); ROWS];
-        for (row, (paced, coefficients)) in rows.iter_mut().enumerate() {
-            let share = step / (row + 1) as f64;
-            *paced = R::constant(share);
-            coefficients.gravity = gravity.map(|g| R::constant(share * g));
-        }
-        Ok(Self { method: Extrapolation::new(order)?, rows })
+impl<'a> Rows<'a> {
+    fn new(z: &'a [f64; 6], step: &'a Coefficients<f64>) -> Self {
+        let Coefficients { norm, inertia, gravity } = *step;
+        let gravity = gravity.map(Lanes::splat);
+        let paced = Coefficients { norm: Lanes::splat(norm), inertia: Lanes::splat(inertia), gravity };
+        Self { z, step, paced, pace: Pace(Lanes::splat(1.0)) }
+    }
+}
+
+impl System<f64, LANES, 6> for Rows<'_> {
+    #[inline(always)]
+    fn turn_to(&mut self, rows: [usize; LANES]) {
+        const SHARES: [f64; ROWS] = [1.0, 0.5, 1.0 / 3.0, 0.25, 0.2, 1.0 / 6.0, 1.0 / 7.0, 0.125];
+        let shares = Lanes(rows.map(|row| SHARES[row % ROWS]));
+        self.pace = Pace(shares);
+        self.paced.gravity = self.step.gravity.map(|gravity| Lanes::splat(gravity) * shares);
     }
 
-    /// What a step adds to (sin a1, cos a1, S, C, P1, P2, r).
     #[inline(always)]
-    pub fn increment(&self, units: &impl Units<R>, z: &[R; 7]) -> [R; 7] {
-        self.method.increment_by(
-            |z, row| {
-                let (share, coefficients) = &self.rows[row % ROWS];
-                increments_with_inverse(coefficients, &Paced { units: *units, share: *share }, z)
-            },
-            z,
-        )
+    fn slope(&mut self, at: &[Numbers; 6]) -> [Numbers; 6] {
+        let z: [Numbers; 6] = core::array::from_fn(|i| Lanes::splat(self.z[i]) + at[i]);
+        let [sin1, cos1, s, c, p1, p2] = z;
+        let inverse = Lanes((self.paced.inertia + s * s).0.map(|denominator| 1.0 / denominator));
+        increments(&z, self.paced.rates(&self.pace, [sin1, cos1], [s, c], [p1, p2], inverse))
     }
 }
 
@@ -110,26 +95,25 @@ impl<const ORDER: u32, S: Sum<f64>> Form<f64> for ExtrapolatedForm<ORDER, S> {
 
     fn new(parameters: &Parameters<f64>, dt: f64) -> Result<Self, Error> {
         let direction = DirectionForm::with_span(parameters, dt, Span::STEP)?;
-        let coefficients = direction.coefficients;
-        Ok(Self { direction, method: PacedExtrapolation::new(ORDER, 1.0, coefficients, coefficients.gravity)? })
+        Ok(Self { direction, method: Extrapolation::new(ORDER)? })
     }
 
     fn start(&self, state: &State<f64>) -> Result<Self::Carried, Error> {
         self.direction.start(state)
     }
 
-    #[inline]
+    // A call is nothing beside such a step, and a chip's flash holds it once.
+    #[inline(never)]
     fn advance(&self, carried: &mut Self::Carried, steps: u32) {
         for _ in 0..steps {
-            let [sin1, cos1, s, c, p1, p2] = carried.z;
-            let start = [sin1, cos1, s, c, p1, p2, carried.inverse];
-            let change = self.method.increment(&Same, &start);
-            for (n, change) in change.into_iter().take(6).enumerate() {
+            let mut rows = Rows::new(&carried.z, &self.direction.coefficients);
+            let change = self.method.end(&mut rows, &[0.0; 6]);
+            for (n, change) in change.into_iter().enumerate() {
                 carried.z[n] = carried.sums[n].add(carried.z[n], change);
             }
             self.direction.restore_lengths(carried);
-            carried.inverse = 1.0 / self.direction.coefficients.denominator(carried.z[2]);
         }
+        carried.inverse = 1.0 / self.direction.coefficients.denominator(carried.z[2]);
         carried.steps += u64::from(steps);
     }
 

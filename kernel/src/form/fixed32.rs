@@ -195,7 +195,8 @@ impl Setting {
         let bounds = Bounds::new(parameters, energy);
         let half = 0.5 * dt;
         let mut halvings = 0;
-        let mut scaling = Scaling::new(parameters, &bounds, [RATE, TORQUE], |longest| {
+        let mut scaling = Scaling::new(parameters, &bounds, [RATE, TORQUE], |[by_rates, by_torques]| {
+            let longest = libm::fmin(by_rates, by_torques);
             let fit = libm::floor(libm::log2(longest / libm::fabs(half)));
             let resolved = RESOLVED / (bounds.elbow * libm::sqrt(1.0 + parameters.m2 / parameters.m1));
             let limit = libm::fmin(libm::scalbn(longest, 1 - COARSEST), resolved);

@@ -1,0 +1,213 @@
+//! The equations in the units of fixed point, in each row of an extrapolation, and the guard of their ranges.
+
+use core::cell::Cell;
+
+use crate::error::Error;
+use crate::extrapolation::{Extrapolation, ROWS, System};
+use crate::fixed::{FixedPoint, Q64, Scaling, Shifts};
+use crate::form::equations::{Coefficients, Units, increments};
+use crate::lanes::Lanes;
+use crate::ring::Ring;
+
+/// What a number of a direction is more than it stands for, as a power of two; momenta and rates are what they are.
+pub(super) const EIGHTH: f64 = 0.125;
+
+/// What all shares of a step are multiples of: those of all rows are whole numbers.
+const PARTS: i64 = 840;
+
+/// 1 as a share of a step in units of time.
+const SHARE: f64 = (1 << 27) as f64;
+
+/// The longest unit of time up to `longest` that has a whole number of parts in a step of `dt` s; it has the sign of `dt`.
+pub(super) fn unit_of_time(longest: f64, dt: f64) -> f64 {
+    let unit = dt * SHARE / PARTS as f64;
+    unit / libm::ceil(libm::fabs(unit) / longest)
+}
+
+/// The constants of the equations in each row.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Rows {
+    method: Extrapolation<Q64>,
+    shifts: Shifts,
+    /// nu by 8 and m by 64.
+    coefficients: Coefficients<Q64>,
+    rows: [Row; ROWS],
+}
+
+/// The share of a step between every second midpoint, and gravity times it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+struct Row {
+    share: i32,
+    gravity: [Q64; 2],
+}
+
+impl Rows {
+    /// For steps of `dt` s.
+    pub fn new(order: u32, scaling: &Scaling, dt: f64) -> Result<Self, Error> {
+        let Scaling { norm, inertia, gravity: [gravity1, gravity2], shifts, time, .. } = *scaling;
+        let step = dt / time;
+        let share = libm::rint(step * SHARE) as i64;
+        let whole = [8.0 * step * gravity1, 4.0 * step * gravity2].map(|gravity| Q64::constant(gravity).0);
+        let mut rows = [Row { share: 0, gravity: [Q64(0); 2] }; ROWS];
+        for (parts, row) in (1..).zip(&mut rows) {
+            row.share = (share / parts) as i32;
+            row.gravity = whole.map(|whole| Q64((whole + parts / 2) / parts));
+        }
+        let inertia = libm::scalbn(inertia, -(shifts.inverse as i32));
+        Ok(Self {
+            method: Extrapolation::new(order)?,
+            shifts,
+            coefficients: Coefficients {
+                norm: Q64::constant(norm * EIGHTH),
+                inertia: Q64::constant(inertia * EIGHTH * EIGHTH),
+                gravity: [Q64(0); 2],
+            },
+            rows,
+        })
+    }
+
+    /// nu by 8.
+    pub fn norm(&self) -> Q64 {
+        self.coefficients.norm
+    }
+
+    /// Where a step from `z` ends; something else than 0 is left in `reach` if a quantity left its range on the way.
+    pub fn end(&self, z: &[Q64; 6], reach: &Cell<u32>) -> [Q64; 6] {
+        if self.shifts == Shifts::default() { self.end_in::<true>(z, reach) } else { self.end_in::<false>(z, reach) }
+    }
+
+    // once in flash
+    #[inline(never)]
+    fn end_in<const ALIKE: bool>(&self, z: &[Q64; 6], reach: &Cell<u32>) -> [Q64; 6] {
+        let units = Fractions::<ALIKE> { shifts: self.shifts, share: 0, reach };
+        self.method.end(&mut Stage { rows: self, coefficients: self.coefficients, units }, z)
+    }
+}
+
+/// A row's equations.
+struct Stage<'a, const ALIKE: bool> {
+    rows: &'a Rows,
+    coefficients: Coefficients<Q64>,
+    units: Fractions<'a, ALIKE>,
+}
+
+impl<const ALIKE: bool> System<Q64, 1, 6> for Stage<'_, ALIKE> {
+    #[inline(always)]
+    fn turn_to(&mut self, [row]: [usize; 1]) {
+        let row = &self.rows.rows[row % ROWS];
+        (self.units.share, self.coefficients.gravity) = (row.share, row.gravity);
+    }
+
+    #[inline(always)]
+    fn slope(&mut self, at: &[Lanes<Q64, 1>; 6]) -> [Lanes<Q64, 1>; 6] {
+        let z = at.map(|Lanes([z])| z);
+        // sines and cosines below 2, momenta below 1/4
+        z.into_iter().for_each(|z| self.units.guard(z, 2));
+        let [sin1, cos1, s, c, p1, p2] = z;
+        let inverse = self.units.inverse(self.coefficients.inertia, s * s);
+        let rates = self.coefficients.rates(&self.units, [sin1, cos1], [s, c], [p1, p2], inverse);
+        increments(&z, rates).map(|slope| Lanes([slope]))
+    }
+}
+
+/// What products of fractions are short of the units of what they add to: directions are in eighths, u and v by the step in
+/// quarters, r in quarters; the pendulum's own [`Shifts`] come on top unless all are 0.
+///
+/// Each product that is shifted up is looked at before, so that neither the shift nor the sum behind it can overflow.
+#[derive(Clone, Copy)]
+struct Fractions<'a, const ALIKE: bool> {
+    shifts: Shifts,
+    /// In parts.
+    share: i32,
+    reach: &'a Cell<u32>,
+}
+
+impl<const ALIKE: bool> Fractions<'_, ALIKE> {
+    /// Notes if `number` is 2^-`places` or more.
+    #[inline(always)]
+    fn guard(&self, number: Q64, places: u32) {
+        self.reach.set(self.reach.get() | number.reach(places));
+    }
+
+    #[inline(always)]
+    fn down(&self, number: Q64, by: u32) -> Q64 {
+        if ALIKE { number } else { number.down(by) }
+    }
+
+    /// `number` times 2^`by`, which is to be below 2^-`places`.
+    #[inline(always)]
+    fn up(&self, number: Q64, by: u32, places: u32) -> Q64 {
+        self.guard(number, by + places);
+        number.up(by)
+    }
+
+    /// r of m + S^2.
+    #[inline(always)]
+    fn inverse(&self, inertia: Q64, square: Q64) -> Q64 {
+        let denominator = inertia + self.down(square, self.shifts.momentum);
+        if ALIKE {
+            denominator.inverse()
+        } else {
+            // from 2^-`inverse` on: made 1 to 8
+            let more = self.shifts.inverse.min(denominator.0.leading_zeros().saturating_sub(4));
+            Q64(denominator.0 << more).inverse().down(self.shifts.inverse - more)
+        }
+    }
+
+    /// `rate`, below 1/2, by the share of the step, below 1.
+    #[inline(always)]
+    fn by_share(&self, rate: Q64) -> Q64 {
+        self.up(rate.times_word(self.share), 3, 2)
+    }
+}
+
+impl<const ALIKE: bool> Units<Q64> for Fractions<'_, ALIKE> {
+    /// Below 1/4, so that P1 - C P2 is below 1/2.
+    #[inline(always)]
+    fn momentum(&self, product: Q64) -> Q64 {
+        self.down(self.up(product, 3, 2), self.shifts.momentum)
+    }
+    /// Below 1/4.
+    #[inline(always)]
+    fn rate(&self, momentum: Q64, inverse: Q64) -> Q64 {
+        let more = if ALIKE { 0 } else { self.shifts.inverse };
+        self.up(momentum * inverse, 2 + more, 2)
+    }
+    /// Below 1/4, so that v is below 1/2.
+    #[inline(always)]
+    fn swing(&self, product: Q64) -> Q64 {
+        self.up(product, 3, 2)
+    }
+    #[inline(always)]
+    fn paced(&self, u: Q64) -> Q64 {
+        self.by_share(u)
+    }
+    /// Of u by the step, below 1/4, and v, below 1/2.
+    #[inline(always)]
+    fn factor(&self, product: Q64) -> Q64 {
+        self.up(product, 4, 2)
+    }
+    #[inline(always)]
+    fn turns(&self, [u, v]: [Q64; 2]) -> [Q64; 2] {
+        [self.down(u, self.shifts.upper), self.down(self.by_share(v), self.shifts.lower)]
+    }
+    /// Below 1/8, as is the other torque on each momentum: together with that, which was below 1/4, below 1/2.
+    #[inline(always)]
+    fn forces(&self, force: Q64) -> [Q64; 2] {
+        let force = self.up(force, 1, 3);
+        let Shifts { upper, momentum, lower, .. } = self.shifts;
+        [self.down(force, upper + momentum), self.down(force, lower)]
+    }
+    #[inline(always)]
+    fn lower(&self, sine: Q64) -> Q64 {
+        self.up(sine, 3, 2)
+    }
+    #[inline(always)]
+    fn weight(&self, torque: Q64) -> Q64 {
+        torque.up(1)
+    }
+}
