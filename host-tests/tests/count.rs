@@ -6,8 +6,11 @@ use double_pendulum::Parameters;
 use double_pendulum::plan::Method;
 use firmware::config::{CORTEX_M3, CORTEX_M4F};
 use firmware::job::{Arithmetic, Formulation, Model, ROWS, Request, Row};
-use host_tests::commands::count::goal::GOALS;
+use host_tests::commands::count::goal::{GOALS, SECONDS};
 use host_tests::commands::count::{FULL_CYCLE, Target, affordable_steps, step_cost};
+use host_tests::commands::report::accuracy::{self, exact};
+use host_tests::commands::report::costs;
+use host_tests::commands::report::scene::SCENES;
 use host_tests::emulator::boards::Core;
 use host_tests::emulator::toolchain;
 
@@ -67,8 +70,37 @@ fn a_step_costs_no_more_than_its_goal() {
                 Request { parameters: goal.parameters(), angles: [0.5, 0.5], ..request(goal.row, FULL_CYCLE) };
             let stride = affordable_steps(target, &request).unwrap_or_else(|error| panic!("{error}"));
             let cost = step_cost(target, &Request { stride, ..request }).unwrap_or_else(|error| panic!("{error}"));
-            println!("{}, {}, l2 = {}: {cost:?}", goal.row, goal.cpu, goal.l2);
+            println!("{}, {}, m2, l2 = {:?}: {cost:?}", goal.row, goal.cpu, goal.second);
             assert!(cost.cycles <= goal.cycles, "{goal:?}: {cost:?}");
+        }
+    }
+}
+
+#[test]
+fn a_simulated_second_costs_no_more_than_its_goal() {
+    let exact: Vec<_> = SCENES[..2].iter().map(exact).collect();
+    for target in &targets() {
+        let goals = || SECONDS.iter().filter(|goal| goal.cpu == target.board.cpu);
+        let rows = ROWS.iter().filter(|row| row.arithmetic == Arithmetic::Fixed64);
+        let costs: Vec<_> = rows
+            .map(|&row| {
+                let request = accuracy::request(row, &SCENES[0], accuracy::usual_rate(row));
+                (row, costs::one(target, &request).unwrap_or_else(|error| panic!("{error}")).cycles)
+            })
+            .collect();
+        for goal in goals() {
+            let scene = &SCENES[goal.scene];
+            let keeps = |row, rate| {
+                accuracy::error(row, scene, rate, &exact[goal.scene]).is_some_and(|error| error.angle <= goal.error)
+            };
+            let fewest = |row| accuracy::rates(row, 8).find(|&rate| keeps(row, rate));
+            let seconds = costs.iter().filter_map(|&(row, cycles)| Some((row, fewest(row)?, cycles)));
+            let cheapest = seconds
+                .map(|(row, rate, cycles)| (f64::from(rate) * cycles, rate, row))
+                .min_by(|one, other| one.0.total_cmp(&other.0));
+            let (cycles, rate, row) = cheapest.expect("an order that keeps the error");
+            println!("{:e} rad on {}: {cycles:.0} cycles by {row}, {rate} steps a second", goal.error, goal.cpu);
+            assert!(cycles <= goal.cycles, "{goal:?}: {cycles} by {row}, {rate} steps a second");
         }
     }
 }

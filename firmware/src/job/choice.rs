@@ -31,6 +31,11 @@ impl Arithmetic {
     pub const fn is_single(self) -> bool {
         matches!(self, Self::F32 | Self::F32Compensated | Self::F32Libm | Self::F32Micromath)
     }
+
+    /// Whether its numbers are whole ones of the processor.
+    pub const fn is_fixed_point(self) -> bool {
+        matches!(self, Self::Fixed32 | Self::Fixed64)
+    }
 }
 
 choice! {

@@ -14,7 +14,7 @@ use host_tests::emulator::toolchain;
 #[derive(Debug, Parser)]
 #[command(name = "cargo write-report", after_help = "Example: cargo write-report --quick --folder /tmp/report")]
 struct Options {
-    /// Two scenes and shorter runs, in under two minutes
+    /// Two scenes and shorter runs, in a few minutes
     #[arg(long)]
     quick: bool,
     /// Puts the main table and chart into the READMEs
@@ -35,14 +35,17 @@ fn run(options: &Options) -> anyhow::Result<()> {
     let bar = Bar::start("report", 0);
     let written = report::write(&extent, &toolchain, &options.folder, &bar);
     drop(bar);
-    let Main { table, chart, absent } = written?;
+    let Main { advice, table, chart, absent } = written?;
     if !absent.is_empty() {
         say(absent.trim_start())?;
     }
+    for sentence in &advice {
+        say(sentence)?;
+    }
     if options.readme {
         ensure!(absent.is_empty(), "the READMEs keep their figures: some are missing in these");
-        headline::put_into_readmes(&table, &chart)?;
-    } else if !headline::is_in_readmes(&table)? {
+        headline::put_into_readmes(&advice, &table, &chart)?;
+    } else if !headline::is_in_readmes(&advice, &table)? {
         say("the READMEs show other figures; cargo write-report --readme puts these there")?;
     }
     Ok(say(options.folder.join("index.html").display())?)

@@ -1,6 +1,7 @@
 //! Errors against the reference, computed on the host: the bits are those of the target (see `identity`).
 
 use std::f64::consts::TAU;
+use std::fmt;
 
 use double_pendulum::Motion;
 use firmware::job::{JobError, Request, Row};
@@ -23,11 +24,11 @@ impl Error {
     const LOST: Self = Self { angle: f64::INFINITY, pixels: f64::INFINITY };
 }
 
-/// The exact motion through a scene's samples: a1, a2.
+/// The exact motion through a scene, [`SAMPLES`] times a second: a1, a2.
 pub fn exact(scene: &Scene) -> Vec<[f64; 2]> {
     let [a1, a2] = scene.angles();
     let mut reference = Reference::new(&scene.parameters(), &Motion::at_rest(a1, a2));
-    let times = (1..=SAMPLES).map(|sample| f64::from(sample * scene.duration) / f64::from(SAMPLES));
+    let times = (1..=SAMPLES * scene.duration).map(|sample| f64::from(sample) / f64::from(SAMPLES));
     times
         .map(|time| {
             reference.advance_to(time);
@@ -37,23 +38,43 @@ pub fn exact(scene: &Scene) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// The request for `row` through `scene` with steps of 2^-`halvings` s, at least 4 halvings.
-pub fn request(row: Row, scene: &Scene, halvings: u32) -> Request {
+/// How many states of a motion with `rate` steps a second are compared in each: as many as fall on whole steps.
+fn samples(rate: u32) -> u32 {
+    [SAMPLES, SAMPLES / 2].into_iter().find(|samples| rate.is_multiple_of(*samples)).unwrap_or(1)
+}
+
+/// The request for `row` through `scene` with `rate` steps a second.
+pub fn request(row: Row, scene: &Scene, rate: u32) -> Request {
     Request {
         row,
         parameters: scene.parameters(),
         angles: scene.angles(),
         velocities: [0.0; 2],
-        dt: 0.5_f64.powi(halvings as i32),
-        stride: (scene.duration << halvings) / SAMPLES,
-        samples: SAMPLES,
+        dt: 1.0 / f64::from(rate),
+        stride: rate / samples(rate),
+        samples: samples(rate) * scene.duration,
     }
 }
 
+/// Steps a second that are fair to count and to show: many for a low order, few for a high one.
+pub fn usual_rate(row: Row) -> u32 {
+    if row.order > 4 { 16 } else { 256 }
+}
+
+/// A few steps a second, for high orders and for low ones.
+const HIGH: [u32; 21] = [4, 5, 6, 7, 8, 9, 10, 11, 12, 14, 16, 18, 20, 24, 28, 32, 40, 48, 64, 80, 96];
+const LOW: [u32; 3] = [16, 32, 64];
+
+/// Steps a second that `row` is tried with: a few, and all powers of two beyond.
+pub fn rates(row: Row, finest: u32) -> impl Iterator<Item = u32> + Clone {
+    let few: &[u32] = if row.order > 4 { &HIGH } else { &LOW };
+    few.iter().copied().chain((7..=finest).map(|halvings| 1 << halvings))
+}
+
 /// The error of `row`; `None` if it does not apply to the scene or the step. A motion that was lost has an infinite error.
-pub fn error(row: Row, scene: &Scene, halvings: u32, exact: &[[f64; 2]]) -> Option<Error> {
+pub fn error(row: Row, scene: &Scene, rate: u32, exact: &[[f64; 2]]) -> Option<Error> {
     let mut angles = Vec::new();
-    let run = request(row, scene, halvings).readings(|reading| {
+    let run = request(row, scene, rate).readings(|reading| {
         let [a1, a2, ..] = reading.state;
         angles.push([a1, a2]);
         Ok::<_, JobError>(())
@@ -65,10 +86,11 @@ pub fn error(row: Row, scene: &Scene, halvings: u32, exact: &[[f64; 2]]) -> Opti
     }
 }
 
-/// The largest error of the angles a1, a2 at the scene's samples.
+/// The largest error of the angles a1, a2, at as many moments of the scene as there are; `exact` has them and more.
 pub fn worst(scene: &Scene, angles: &[[f64; 2]], exact: &[[f64; 2]]) -> Error {
     let mut worst = Error { angle: 0.0, pixels: 0.0 };
-    for (&angles, &exact) in angles.iter().zip(exact) {
+    let apart_by = (exact.len() / angles.len().max(1)).max(1);
+    for (&angles, &exact) in angles.iter().zip(exact.iter().skip(apart_by - 1).step_by(apart_by)) {
         let angle = apart(angles[0], exact[0]).max(apart(angles[1], exact[1]));
         worst.angle = worst.angle.max(angle);
         worst.pixels = worst.pixels.max(pixels(scene, angles, exact));
@@ -101,33 +123,46 @@ fn pixels(scene: &Scene, angles: [f64; 2], exact: [f64; 2]) -> f64 {
 pub struct Point {
     /// The scene.
     pub scene: &'static Scene,
-    /// The arithmetic.
-    pub row: Row,
-    /// The step is 2^-`halvings` s.
-    pub halvings: u32,
+    /// What computed it.
+    pub contestant: Contestant,
+    /// Steps a second.
+    pub rate: u32,
     /// The largest error over the scene.
     pub error: Error,
 }
 
-/// Every arithmetic on the first `scenes` scenes with every step size in `halvings`, the scenes on threads of their own;
-/// `tick` is called after each run.
-pub fn survey(
-    scenes: usize,
-    halvings: impl Iterator<Item = u32> + Clone + Sync,
-    tick: &(dyn Fn() + Sync),
-) -> Vec<Point> {
-    let through = |scene: &'static Scene| {
-        let exact = exact(scene);
+/// What is compared.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Contestant {
+    /// A row of the table.
+    Kernel(Row),
+    /// A program in C, by its name.
+    C(&'static str),
+}
+
+impl fmt::Display for Contestant {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Kernel(row) => write!(f, "{row}"),
+            Self::C(name) => f.write_str(name),
+        }
+    }
+}
+
+/// Every arithmetic through the first scenes, of which `exact` are the exact motions, with steps down to 2^-`finest` s, the
+/// scenes on threads of their own; `tick` is called after each run.
+pub fn survey(exact: &[Vec<[f64; 2]>], finest: u32, tick: &(dyn Fn() + Sync)) -> Vec<Point> {
+    let through = |&(scene, exact): &(&'static Scene, &Vec<[f64; 2]>)| {
         let mut points = Vec::new();
         for row in compared_rows() {
-            for halvings in halvings.clone() {
-                let error = error(row, scene, halvings, &exact);
-                points.extend(error.map(|error| Point { scene, row, halvings, error }));
+            for rate in rates(row, finest) {
+                let error = error(row, scene, rate, exact);
+                points.extend(error.map(|error| Point { scene, contestant: Contestant::Kernel(row), rate, error }));
                 tick();
             }
         }
         points
     };
-    let scenes: Vec<_> = SCENES.iter().take(scenes).collect();
-    parallel(&scenes, |scene| through(scene)).concat()
+    let scenes: Vec<_> = SCENES.iter().zip(exact).collect();
+    parallel(&scenes, through).concat()
 }

@@ -11,10 +11,10 @@ use std::time::Duration;
 use firmware::job::Formulation::{Angle, Canonical, Direction};
 use firmware::job::{Arithmetic, Model, Request, Row};
 
-use super::accuracy::{Error, Point, worst};
-use super::costs::{self, Cost, HALVINGS};
+use super::accuracy::{Contestant, Error, Point, worst};
+use super::costs::{self, Cost};
 use super::parallel;
-use super::scene::{SCENES, Scene};
+use super::scene::{LONG, SCENES, Scene};
 use crate::commands::count::{CountError, ERROR_BAR, StepCost, Target};
 use crate::commands::table::{Table, small};
 use crate::emulator::boards::{BOARDS, Board};
@@ -45,6 +45,10 @@ const BESIDE: [Row; 4] = [
 ];
 /// What the C programs compute, in Rust.
 const TEXTBOOK: Row = Row { model: Model::Textbook, ..Row::rk4(Arithmetic::F32Libm, Canonical) };
+
+/// Steps a second of what a step is counted with, and all that its errors are computed with.
+pub const RATE: u32 = 256;
+const RATES: [u32; 5] = [16, 32, 64, 128, RATE];
 
 /// Where a C program takes its sine from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -117,25 +121,34 @@ fn run(command: &mut Command) -> Result<(), String> {
 }
 
 /// One program's steps on one board.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Counted {
     /// What it computes with.
     pub name: &'static str,
     /// The board.
     pub board: &'static Board,
-    /// Per step of 2^-8 s.
+    /// Per step of 1/256 s.
     pub step: StepCost,
-    /// The largest error through each scene that was asked for.
-    pub errors: [Error; 2],
+    /// The largest error through each of the scenes.
+    pub points: Vec<Point>,
+    /// The same through the long scene, in steps of 1/256 s.
+    pub long: Error,
 }
 
-/// Counts the C programs on the boards of `targets` through the first scene and compares their states through both;
-/// `exact` is the exact motion. Also says what had to be left out, and why.
+impl Counted {
+    /// The largest error through the first scene in steps of 1/256 s.
+    pub fn error(&self) -> Option<Error> {
+        self.points.iter().find(|point| point.scene == &SCENES[0] && point.rate == RATE).map(|point| point.error)
+    }
+}
+
+/// Counts the C programs on the boards of `targets` through the first scene and compares their states through those that
+/// `exact` and `long` are the exact motions of. Also says what had to be left out, and why.
 pub fn count(
     toolchain: &Toolchain,
     targets: &[Target],
-    scenes: [&Scene; 2],
-    exact: [&[[f64; 2]]; 2],
+    exact: &[Vec<[f64; 2]>],
+    long: &[[f64; 2]],
 ) -> Result<(Vec<Counted>, String), CountError> {
     let mut absent = String::new();
     let mut programs = Vec::new();
@@ -150,21 +163,28 @@ pub fn count(
         }
     }
     let counted = parallel(&programs, |(sine, target)| {
-        let step = costs::one(target, &request(scenes[0]))?;
-        let errors = [error(target, scenes[0], exact[0])?, error(target, scenes[1], exact[1])?];
-        Ok(Counted { name: sine.name(), board: target.board, step, errors })
+        let (name, step) = (sine.name(), costs::one(target, &request(&SCENES[0], RATE))?);
+        let mut points = Vec::new();
+        for (scene, exact) in SCENES.iter().zip(exact) {
+            for rate in RATES {
+                let error = error(target, scene, rate, exact)?;
+                points.push(Point { scene, contestant: Contestant::C(name), rate, error });
+            }
+        }
+        let long = error(target, &LONG, RATE, long)?;
+        Ok(Counted { name, board: target.board, step, points, long })
     });
     Ok((counted.into_iter().collect::<Result<_, CountError>>()?, absent))
 }
 
-/// The request through `scene` with steps of 2^-8 s.
-fn request(scene: &Scene) -> Request {
-    super::accuracy::request(TEXTBOOK, scene, HALVINGS)
+/// The request through `scene` with `rate` steps a second.
+fn request(scene: &Scene, rate: u32) -> Request {
+    super::accuracy::request(TEXTBOOK, scene, rate)
 }
 
 /// The error of the states that a program prints.
-fn error(target: &Target, scene: &Scene, exact: &[[f64; 2]]) -> Result<Error, CountError> {
-    let request = request(scene);
+fn error(target: &Target, scene: &Scene, rate: u32, exact: &[[f64; 2]]) -> Result<Error, CountError> {
+    let request = request(scene, rate);
     let printed = target.output(&request)?;
     let mut states = Vec::new();
     for line in printed.lines() {
@@ -186,10 +206,11 @@ pub fn table((counted, absent): &(Vec<Counted>, String), points: &[Point], costs
     let mut rows = Vec::new();
     for board in BOARDS.iter().filter(|board| costs.iter().any(|cost| cost.board == *board)) {
         let theirs = counted.iter().filter(|one| one.board == board);
-        let theirs = theirs.map(|one| (one.name.to_owned(), one.step, one.errors[0]));
+        let theirs = theirs.filter_map(|one| Some((one.name.to_owned(), one.step, one.error()?)));
         let ours = BESIDE.iter().filter_map(|row| {
-            let is_it = |point: &&Point| point.row == *row && point.scene == scene && point.halvings == HALVINGS;
-            let cost = costs.iter().find(|cost| cost.row == *row && cost.board == board)?;
+            let contestant = Contestant::Kernel(*row);
+            let is_it = |point: &&Point| point.contestant == contestant && point.scene == scene && point.rate == RATE;
+            let cost = costs::of(costs, *row, scene, board)?;
             Some((row.to_string(), cost.step, points.iter().find(is_it)?.error))
         });
         let ours: Vec<_> = ours.collect();
@@ -207,7 +228,7 @@ pub fn table((counted, absent): &(Vec<Counted>, String), points: &[Point], costs
         name: "target-peers",
         title: String::from("The page's equations in C on the target"),
         note: format!(
-            "Per step; scene {}, step 2^-{HALVINGS} s, error over the scene. GCC at -O3, which may contract multiplication \
+            "Per step; scene {}, step 1/{RATE} s, error over the scene. GCC at -O3, which may contract multiplication \
              and addition; counted like all others. {ERROR_BAR} Relative: estimated cycles against \
              f32-compensated-angle.{absent}",
             scene.name,

@@ -6,23 +6,34 @@ use std::ops::Range;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::compared_rows;
+use super::accuracy::Contestant;
 use super::scene::Scene;
 use super::speed::Priced;
 use crate::emulator::boards::Board;
 
 /// Pixels: the whole, and how much of the width the axes have.
-const SIZE: (u32, u32) = (1000, 620);
+const SIZE: (u32, u32) = (1150, 680);
 const AXES: u32 = 770;
 /// Pixels from one line of the key to the next.
-const LINE: i32 = 24;
+const LINE: i32 = 17;
 /// Points outside are not drawn.
 const ERRORS: Range<f64> = 1e-16..10.0;
 const FONT: &str = "sans-serif";
 
-/// Colours that can be told apart, as many as there are arithmetics: around the wheel, neighbours dark and light.
-fn colour(index: usize) -> HSLColor {
-    HSLColor(index as f64 / compared_rows().count() as f64, 0.8, [0.33, 0.47][index % 2])
+/// A colour that can be told from those of the others of so many: around the wheel, neighbours dark and light.
+fn colour(index: usize, of: usize) -> HSLColor {
+    HSLColor(index as f64 / of as f64, 0.8, [0.33, 0.47][index % 2])
+}
+
+/// Who has points, in their order.
+fn contestants(priced: &[Priced]) -> Vec<Contestant> {
+    let mut all = Vec::new();
+    for one in priced {
+        if !all.contains(&one.point.contestant) {
+            all.push(one.point.contestant);
+        }
+    }
+    all
 }
 
 /// Estimated cycles per simulated second against the error, one line for each arithmetic, as SVG. A point is hollow if
@@ -56,22 +67,24 @@ pub fn speed_against_error(priced: &[Priced], scene: &Scene, board: &Board) -> R
             .y_label_formatter(&|cycles| format!("{cycles:.0e}"))
             .light_line_style(TRANSPARENT)
             .draw()?;
-        let text = TextStyle::from((FONT, 14)).pos(Pos::new(HPos::Left, VPos::Center));
+        let text = TextStyle::from((FONT, 13)).pos(Pos::new(HPos::Left, VPos::Center));
         let mut y = 2 * LINE;
-        for (index, row) in compared_rows().enumerate() {
-            let line: Vec<_> = shown.iter().filter(|one| one.point.row == row).collect();
+        let contestants = contestants(priced);
+        for (index, contestant) in contestants.iter().enumerate() {
+            let colour = colour(index, contestants.len());
+            let line: Vec<_> = shown.iter().filter(|one| one.point.contestant == *contestant).collect();
             if line.is_empty() {
                 continue;
             }
             let place = |one: &&&Priced| (one.point.error.angle, one.cycles);
-            let stroke = colour(index).stroke_width(2);
+            let stroke = colour.stroke_width(2);
             chart.draw_series(LineSeries::new(line.iter().map(place), stroke))?;
             chart.draw_series(line.iter().map(|one| {
-                let inside = if one.dominated { WHITE.filled() } else { colour(index).filled() };
+                let inside = if one.dominated { WHITE.filled() } else { colour.filled() };
                 EmptyElement::at(place(one)) + Circle::new((0, 0), 4, inside) + Circle::new((0, 0), 4, stroke)
             }))?;
             right.draw(&PathElement::new([(0, y), (24, y)], stroke))?;
-            right.draw(&Text::new(row.to_string(), (32, y), text.clone()))?;
+            right.draw(&Text::new(contestant.to_string(), (32, y), text.clone()))?;
             y += LINE;
         }
         for (inside, meaning) in [(BLACK.filled(), "none is better in both"), (WHITE.filled(), "dominated")] {

@@ -2,38 +2,57 @@
 
 use firmware::job::{Request, Row};
 
-use super::accuracy::request;
+use super::accuracy::{rates, request, usual_rate};
 use super::scene::Scene;
 use super::{compared_rows, parallel};
 use crate::commands::count::{CountError, ERROR_BAR, FULL_CYCLE, StepCost, Target, affordable_steps, step_cost};
 use crate::commands::table::Table;
 use crate::emulator::boards::Board;
 
-/// The step size the counting is done at: 2^-8 s.
-pub const HALVINGS: u32 = 8;
+/// The finest step counted is 2^-this s.
+const FINEST: u32 = 13;
 
 /// One arithmetic on one board.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cost {
     /// The arithmetic.
     pub row: Row,
+    /// The motion: that of fixed point matters, for rods and masses unlike each other are stepped by other code.
+    pub scene: &'static Scene,
     /// The board.
     pub board: &'static Board,
     /// Per step.
     pub step: StepCost,
 }
 
-/// Counts every arithmetic on `scene`, each target on a thread of its own; `tick` is called after each.
-pub fn count(targets: &[Target], scene: &Scene, tick: &(dyn Fn() + Sync)) -> Result<Vec<Cost>, CountError> {
+/// Counts every arithmetic on the first of `scenes`, and fixed point on all, each target on a thread of its own; `tick` is
+/// called after each arithmetic.
+pub fn count(targets: &[Target], scenes: &'static [Scene], tick: &(dyn Fn() + Sync)) -> Result<Vec<Cost>, CountError> {
     let on_target = |target: &Target| {
-        let counted = compared_rows().map(|row| {
-            let step = one(target, &request(row, scene, HALVINGS))?;
+        let mut costs = Vec::new();
+        for row in compared_rows() {
+            let scenes = scenes.iter().take(if row.arithmetic.is_fixed_point() { scenes.len() } else { 1 });
+            for (scene, request) in scenes.filter_map(|scene| Some((scene, counted_request(row, scene)?))) {
+                costs.push(Cost { row, scene, board: target.board, step: one(target, &request)? });
+            }
             tick();
-            Ok(Cost { row, board: target.board, step })
-        });
-        counted.collect::<Result<Vec<_>, CountError>>()
+        }
+        Ok(costs)
     };
-    Ok(parallel(targets, on_target).into_iter().collect::<Result<Vec<_>, _>>()?.concat())
+    Ok(parallel(targets, on_target).into_iter().collect::<Result<Vec<_>, CountError>>()?.concat())
+}
+
+/// With so many steps a second as are usual, or the fewest above that it accepts.
+fn counted_request(row: Row, scene: &Scene) -> Option<Request> {
+    let rates = rates(row, FINEST).filter(|&rate| rate >= usual_rate(row));
+    let accepts = |request: &Request| Request { stride: 1, samples: 1, ..*request }.crc().is_ok();
+    rates.map(|rate| request(row, scene, rate)).find(accepts)
+}
+
+/// The cost of `row` on `board` in `scene`, or in the first that it was counted in.
+pub fn of<'a>(costs: &'a [Cost], row: Row, scene: &Scene, board: &Board) -> Option<&'a Cost> {
+    let mut own = costs.iter().filter(|cost| cost.row == row && cost.board == board);
+    own.clone().find(|cost| cost.scene == scene).or_else(|| own.next())
 }
 
 /// What a step of `request` costs on `target`, over as many steps as can be afforded.
@@ -44,12 +63,12 @@ pub fn one(target: &Target, request: &Request) -> Result<StepCost, CountError> {
 }
 
 /// The table of costs.
-pub fn table(costs: &[Cost], scene: &Scene) -> Table {
+pub fn table(costs: &[Cost]) -> Table {
     let row = |cost: &Cost| {
         let StepCost { instructions, cycles, stalls, hot_bytes, code_bytes, stack_bytes } = cost.step;
         let counts = [instructions, cycles, stalls].map(|count| format!("{count:.0}"));
         let bytes = [hot_bytes, code_bytes, stack_bytes].map(|count| count.to_string());
-        let mut row = vec![cost.row.to_string(), cost.board.cpu.to_owned()];
+        let mut row = vec![cost.row.to_string(), cost.scene.name.to_owned(), cost.board.cpu.to_owned()];
         row.extend(counts.into_iter().chain(bytes));
         row
     };
@@ -57,13 +76,13 @@ pub fn table(costs: &[Cost], scene: &Scene) -> Table {
         name: "costs",
         title: String::from("Cost of one step"),
         note: format!(
-            "Scene {}, step 2^-{HALVINGS} s. Instructions are counted in QEMU and exact. {ERROR_BAR} Stalls are those of \
-             the cycles that wait for the floating-point unit. Hot bytes: instructions executed. Code bytes: whole \
-             functions with constants.",
-            scene.name
+            "256 steps a second, 16 of high orders. Instructions are counted in QEMU and exact. {ERROR_BAR} Stalls are \
+             those of the cycles that wait for the floating-point unit. Hot bytes: instructions executed. Code bytes: \
+             whole functions with constants."
         ),
         columns: vec![
             "arithmetic",
+            "scene",
             "processor",
             "instructions",
             "cycles (estimate)",

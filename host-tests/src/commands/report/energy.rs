@@ -10,11 +10,11 @@ use crate::commands::table::{Table, small};
 
 /// The scenes and step sizes followed.
 const SCENES_FOLLOWED: usize = 2;
-const HALVINGS: [u32; 2] = [8, 10];
+const RATES: [u32; 2] = [256, 1024];
 
 /// How many runs [`table`] makes.
 pub fn runs() -> usize {
-    SCENES_FOLLOWED * compared_rows().count() * HALVINGS.len()
+    SCENES_FOLLOWED * compared_rows().count() * RATES.len()
 }
 
 /// The drift of every arithmetic over `steps` steps; `tick` is called after each run.
@@ -25,8 +25,8 @@ pub fn table(steps: u32, tick: &dyn Fn()) -> Table {
         let [a1, a2] = scene.angles();
         let start = pendulum.energy_above_rest(&State::at_rest(a1, a2));
         for row in compared_rows() {
-            for halvings in HALVINGS {
-                let long = Request { samples: 1, stride: steps, ..request(row, scene, halvings) };
+            for rate in RATES {
+                let long = Request { samples: 1, stride: steps, ..request(row, scene, rate) };
                 let mut drift = f64::NAN;
                 let run = long.readings(|reading| {
                     drift = (pendulum.energy_above_rest(&reading.state.into()) - start) / start;
@@ -34,7 +34,7 @@ pub fn table(steps: u32, tick: &dyn Fn()) -> Table {
                 });
                 tick();
                 if run.is_ok() {
-                    let (step, drift) = (format!("2^-{halvings}"), small(drift));
+                    let (step, drift) = (format!("1/{rate}"), small(drift));
                     rows.push(vec![scene.name.to_owned(), row.to_string(), step, drift]);
                 }
             }

@@ -7,15 +7,15 @@ use super::scene::{SCENES, Scene};
 use crate::commands::count::{CountError, Target};
 use crate::commands::table::Table;
 
-/// The step size compared: 2^-8 s.
-const HALVINGS: u32 = 8;
+/// Steps a second.
+const RATE: u32 = 256;
 /// A regular and a chaotic motion.
 const COMPARED: &[Scene] = SCENES.split_at(2).0;
 
 /// How many steps are compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Steps {
-    /// Where the processor's floating-point unit computes them.
+    /// Where the processor computes them: with its floating-point unit, or in fixed point.
     pub hardware: u32,
     /// Where they are computed in software, at a hundred times the cost.
     pub software: u32,
@@ -46,9 +46,9 @@ impl Comparison {
     }
 }
 
-/// The request whose CRC is over all states of the first `steps` steps of 2^-8 s through `scene`.
+/// The request whose CRC is over all states of the first `steps` steps of 1/256 s through `scene`.
 pub fn every_state(row: Row, scene: &Scene, steps: u32) -> Request {
-    Request { samples: steps, stride: 1, ..request(row, scene, HALVINGS) }
+    Request { samples: steps, stride: 1, ..request(row, scene, RATE) }
 }
 
 /// Compares every arithmetic over both motions on `target`; `tick` is called after each.
@@ -66,10 +66,12 @@ pub fn compare(target: &Target, steps: Steps, tick: &(dyn Fn() + Sync)) -> Resul
     compared.collect()
 }
 
-/// Whether the target's floating-point unit does it all.
+/// Whether the target's processor does it all.
 fn is_in_hardware(target: &Target, row: Row) -> bool {
-    let single = matches!(row.arithmetic, Arithmetic::F32 | Arithmetic::F32Compensated | Arithmetic::F32Micromath);
-    target.board.cpu == "cortex-m4" && single
+    match row.arithmetic {
+        Arithmetic::F32 | Arithmetic::F32Compensated | Arithmetic::F32Micromath => target.board.cpu == "cortex-m4",
+        arithmetic => arithmetic.is_fixed_point(),
+    }
 }
 
 /// The comparisons as a table.
@@ -88,7 +90,7 @@ pub fn table(comparisons: &[Comparison]) -> Table {
     Table {
         name: "bit-identity",
         title: String::from("Bit identity"),
-        note: format!("CRC-32 of all that is carried from step to step, after every single step of 2^-{HALVINGS} s."),
+        note: format!("CRC-32 of all that is carried from step to step, after every single step of 1/{RATE} s."),
         columns: vec!["arithmetic", "scene", "processor", "steps", "this host", "target", "verdict"],
         rows: comparisons.iter().map(row).collect(),
     }

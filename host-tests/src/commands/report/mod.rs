@@ -9,6 +9,7 @@ pub mod chart;
 pub mod costs;
 pub mod energy;
 pub mod frames;
+pub mod frontier;
 pub mod headline;
 pub mod identity;
 mod page;
@@ -28,14 +29,14 @@ use crate::commands::table::Table;
 use crate::console::progress::Bar;
 use crate::emulator::boards::BOARDS;
 use crate::emulator::toolchain::Toolchain;
-use scene::SCENES;
+use scene::{LONG, SCENES};
 
 /// How much is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Extent {
     /// Scenes, from the first on.
     pub scenes: usize,
-    /// The finest step is 2^-`finest` s; the coarsest is 2^-4 s.
+    /// The finest step is 2^-`finest` s.
     pub finest: u32,
     /// Steps of the energy runs.
     pub energy_steps: u32,
@@ -52,7 +53,7 @@ pub struct Extent {
 }
 
 impl Extent {
-    /// All of it: three quarters of an hour, most of them for the comparison of bits where they are computed in software.
+    /// All of it: some hours, most of them for the comparison of bits.
     pub const FULL: Self = Self {
         scenes: SCENES.len(),
         finest: 13,
@@ -63,7 +64,7 @@ impl Extent {
         margins: 1_000,
         boards: BOARDS.len(),
     };
-    /// The first two scenes and shorter runs: under two minutes.
+    /// The first two scenes and shorter runs: a few minutes.
     pub const QUICK: Self = Self {
         scenes: 2,
         finest: 13,
@@ -75,14 +76,10 @@ impl Extent {
         boards: 2,
     };
 
-    fn halvings(&self) -> impl Iterator<Item = u32> + Clone {
-        4..=self.finest
-    }
-
     /// The runs of everything, for the progress bar.
     pub fn runs(&self, targets: usize) -> usize {
         let rows = compared_rows().count();
-        let survey = self.scenes * rows * self.halvings().count();
+        let survey = self.scenes * compared_rows().map(|row| accuracy::rates(row, self.finest).count()).sum::<usize>();
         let peers = if self.peers { peers::RUNS } else { 0 };
         let frames = self.boards * SceneName::ALL.len();
         survey + energy::runs() + peers + self.plans + self.margins + frames + targets * (identity::RUNS + rows)
@@ -92,6 +89,8 @@ impl Extent {
 /// What the README shows of it.
 #[derive(Clone, Debug)]
 pub struct Main {
+    /// What to take on each core, a sentence each.
+    pub advice: Vec<String>,
     /// The table.
     pub table: Table,
     /// The chart, SVG.
@@ -122,14 +121,16 @@ pub fn write(extent: &Extent, toolchain: &Toolchain, folder: &Path, bar: &Bar) -
         identity.markdown()
     );
     bar.say("counting");
-    let costs = costs::count(targets, &SCENES[0], &tick)?;
+    let scenes = &SCENES[..extent.scenes];
+    let costs = costs::count(targets, scenes, &tick)?;
+    bar.say("following the reference");
+    let exact = parallel(scenes, accuracy::exact);
+    let long = accuracy::exact(&LONG);
     bar.say("compiling and counting C");
-    let exact = headline::FOLLOWED.map(accuracy::exact);
-    let exact = exact.each_ref().map(Vec::as_slice);
-    let c = c_peers::count(toolchain, targets, headline::FOLLOWED, exact)?;
-    let headline = headline::table(&costs, &c.0, exact);
+    let c = c_peers::count(toolchain, targets, &exact, &long)?;
+    let headline = headline::table(&costs, &c.0, [&exact[0], &long]);
     bar.say("comparing with the reference");
-    let points = accuracy::survey(extent.scenes, extent.halvings(), &tick);
+    let points = accuracy::survey(&exact, extent.finest, &tick);
     bar.say("following the energy");
     let energy = energy::table(extent.energy_steps, &tick);
 
@@ -138,22 +139,25 @@ pub fn write(extent: &Extent, toolchain: &Toolchain, folder: &Path, bar: &Bar) -
 
     bar.say("carrying out plans");
     let chip = &plan::M4F;
-    let scenes = plan::scenes(PLANS_SEED, plan::DURATIONS).take(extent.plans);
-    let plans = plan::study(scenes, chip, tick)?;
+    let planned = plan::scenes(PLANS_SEED, plan::DURATIONS).take(extent.plans);
+    let plans = plan::study(planned, chip, tick)?;
 
     bar.say("holding the planner's margins");
-    let scenes = plan::scenes(MARGINS_SEED, plan::FOLLOWED).take(extent.margins);
-    let margins = plan::fit(scenes, tick)?;
+    let held = plan::scenes(MARGINS_SEED, plan::FOLLOWED).take(extent.margins);
+    let margins = plan::fit(held, tick)?;
 
     bar.say("counting frames");
     let frames = frames::count(toolchain, extent.boards, &tick)?;
 
     bar.say("writing");
-    let priced = speed::priced(&points, &costs);
+    let priced = speed::priced(&points, &costs, &c.0);
+    let boards: Vec<_> = targets.iter().map(|target| target.board).collect();
+    let advice = frontier::advice(&priced, &boards);
     let tables = [
+        frontier::table(&priced, &boards, scenes),
         headline.clone(),
         c_peers::table(&c, &points, &costs),
-        costs::table(&costs, &SCENES[0]),
+        costs::table(&costs),
         speed::floors(&points),
         energy,
         peers,
@@ -168,9 +172,8 @@ pub fn write(extent: &Extent, toolchain: &Toolchain, folder: &Path, bar: &Bar) -
         speed::table(&priced),
     ];
     let mut charts = Vec::new();
-    for scene in &SCENES[..extent.scenes] {
-        for target in targets {
-            let board = target.board;
+    for scene in scenes {
+        for &board in &boards {
             let name = format!("speed-{}-{}.svg", scene.name, board.cpu);
             let svg = chart::speed_against_error(&priced, scene, board);
             charts.push((name, svg.map_err(|error| anyhow::anyhow!("cannot draw: {error}"))?));
@@ -188,10 +191,10 @@ pub fn write(extent: &Extent, toolchain: &Toolchain, folder: &Path, bar: &Bar) -
     for (name, svg) in &charts {
         save(name, svg)?;
     }
-    save("index.html", &page::html(&tables, &charts))?;
+    save("index.html", &page::html(&advice, &tables, &charts))?;
     let name = format!("speed-{}-cortex-m4.svg", SCENES[0].name);
     let chart = charts.into_iter().find(|(chart, _)| *chart == name);
-    Ok(Main { table: headline, chart: chart.context("no chart of the first scene")?.1, absent: c.1 })
+    Ok(Main { advice, table: headline, chart: chart.context("no chart of the first scene")?.1, absent: c.1 })
 }
 
 /// The arithmetics whose errors are compared: all but the linear model's, whose errors are those of its equations.

@@ -1,7 +1,7 @@
 //! The page that shows it all.
 
 use crate::commands::count::ERROR_BAR;
-use crate::commands::table::Table;
+use crate::commands::table::{Table, escaped};
 
 const HEAD: &str = r#"<!DOCTYPE html>
 <html lang="en">
@@ -18,9 +18,11 @@ svg { max-width: 100%; height: auto }
 <p>Costs are counted on emulated boards, errors are computed against the reference; no chip was measured here.</p>
 "#;
 
-/// The page: frames first, then the tables. It needs no other file.
-pub fn html(tables: &[Table], charts: &[(String, String)]) -> String {
-    let mut page = format!("{HEAD}<p>{ERROR_BAR}</p>\n");
+/// The page: the advice, the frames, then the tables. It needs no other file.
+pub fn html(advice: &[String], tables: &[Table], charts: &[(String, String)]) -> String {
+    let mut page = format!("{HEAD}<p>{ERROR_BAR}</p>\n<ul>\n");
+    advice.iter().for_each(|sentence| page.push_str(&format!("<li>{}</li>\n", escaped(&sentence.replace('`', "")))));
+    page.push_str("</ul>\n");
     for (_, svg) in charts {
         page.push_str(svg);
     }
