@@ -32,6 +32,7 @@ fn it_says_that_nothing_holds() {
     for absent in ["method", "horizon", "%", "0.00 s"] {
         assert!(!nothing.contains(absent), "{absent}: {nothing}");
     }
+    assert!(nothing.contains("why      steps fine enough cost more than"), "{nothing}");
 }
 
 /// Nothing moves without gravity, from rest; and what is shown if nothing is said is the boards' first start.

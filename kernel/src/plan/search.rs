@@ -209,7 +209,13 @@ impl Search {
 
     /// The best candidate as a plan, if there is one.
     fn plan(&self, limit: Limit) -> Result<Plan, PlanError> {
-        let Some(best) = self.best else { return Err(PlanError::NothingHolds { limit, spent: self.spent }) };
+        let Some(best) = self.best else {
+            // To look ahead for longer would help nothing of which a frame costs too much.
+            let affordable = |one: &Candidate| self.costs.of_frame(one.method, one.steps) <= self.budget.frame;
+            let open = self.pass.candidates().iter().any(|one| !one.failed && affordable(one));
+            let limit = if limit == Limit::Planning && !open { Limit::Budget } else { limit };
+            return Err(PlanError::NothingHolds { limit, spent: self.spent });
+        };
         let steps = if best.method == Method::ClosedForm { 0 } else { best.steps };
         let rate = f64::from(self.problem.rate);
         Ok(Plan {
