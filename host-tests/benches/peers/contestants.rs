@@ -1,7 +1,7 @@
 //! Who takes part: this kernel and two integration libraries, each in f64 and each keeping what it always keeps.
 
 use differential_equations::prelude::{ExplicitRungeKutta, IVP, ODE};
-use double_pendulum::form::{AngleForm, DirectionForm, DirectionForm8, Form, Plain, Stepper};
+use double_pendulum::form::{AngleForm, DirectionForm, DirectionForm8, ExtrapolatedForm, Form, Plain, Stepper};
 use double_pendulum::{Motion, State};
 use host_tests::oracle::reference::Reference;
 use host_tests::oracle::trials::largest_difference;
@@ -116,6 +116,7 @@ pub const CLASSICAL: &[Contestant] = &[
 /// For tight errors: order 8, and this kernel's RK4 beside it.
 pub const TIGHT: &[Contestant] = &[
     own("double-pendulum, direction form of order 8", form::<DirectionForm8<f64>>),
+    own("double-pendulum, direction form extrapolated to order 16", form::<ExtrapolatedForm<16>>),
     own("double-pendulum, direction form of RK4", form::<DirectionForm<f64>>),
     own("double-pendulum, order 8", |scene, parts, steps| own_step(scene, parts, steps, Pendulum::step_of_order_8)),
     adaptive("ode_solvers DOP853, the book's equations", |scene, parts, effort| {
