@@ -211,3 +211,38 @@ impl<const ALIKE: bool> Units<Q64> for Fractions<'_, ALIKE> {
         torque.up(1)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bounds::Bounds;
+    use crate::params::Parameters;
+    use crate::ring::Ring;
+
+    /// Whether a step from `z` is said to leave the range, C being 1 by 8 and S 0 unless said.
+    fn leaves(z: [f64; 6]) -> Result<bool, Error> {
+        let parameters = Parameters::equal_rods(1.0, 1.0, 9.81);
+        let dt = 1.0 / 64.0;
+        let bounds = Bounds::new(&parameters, 50.0);
+        let unit = |[by_rates, by_torques]: [f64; 2]| Ok(unit_of_time(libm::fmin(by_rates, by_torques), dt));
+        let scaling = Scaling::new(&parameters, &bounds, [0.125, 1.0 / 256.0], unit)?;
+        let reach = Cell::new(0);
+        Rows::new(2, &scaling, dt)?.end(&z.map(Q64::constant), &reach);
+        Ok(reach.get() != 0)
+    }
+
+    #[test]
+    fn every_quantity_that_leaves_its_range_is_noted() -> Result<(), Error> {
+        assert!(!leaves([0.0, 0.125, 0.0, 0.125, 0.1, 0.1])?);
+        for (i, beyond) in [(0, 0.26), (1, -0.26), (2, 0.26), (3, -0.26), (4, 0.26), (5, -0.26)] {
+            let mut z = [0.0, 0.125, 0.0, 0.125, 0.0, 0.0];
+            z[i] = beyond;
+            assert!(leaves(z)?, "{i}");
+        }
+        // each momentum has room, u has not
+        assert!(leaves([0.0, 0.125, 0.0, 0.125, 0.24, -0.24])?);
+        // C P2 has not
+        assert!(leaves([0.0, 0.125, 0.0, 0.24, 0.24, 0.2])?);
+        Ok(())
+    }
+}
