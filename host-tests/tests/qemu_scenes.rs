@@ -7,7 +7,7 @@ use firmware::config::TICK_RATE;
 use firmware::graphics::canvas::{HEIGHT, WIDTH};
 use firmware::protocol::{Choose, Done, Frame};
 use firmware::scenes::SceneName;
-use host_tests::commands::count::{Cost, CountError, FrameProfile, Image};
+use host_tests::commands::count::{Cost, CountError, FrameProfile, Image, Part};
 use host_tests::emulator::boards::Core;
 use host_tests::emulator::boards::{BOARDS, Board};
 use host_tests::emulator::budgets;
@@ -104,6 +104,10 @@ fn every_scene_keeps_within_its_share_of_a_frame() -> Result<(), CountError> {
                 busy = busy.max(frame.busy_cycles);
             }
             let (_, profile) = FrameProfile::of_next(&mut machine, &image, board.core())?;
+            let showing = profile.cost(Part::Drawing).cycles + profile.cost(Part::Sending).cycles;
+            if board.core() == Core::M3 && showing > budgets::SHOWING {
+                too_dear.push(format!("{}: {} is drawn and sent in {showing} cycles", board.name, name.name()));
+            }
             let Cost { instructions, cycles, .. } = profile.whole();
             let cycles_per_instruction = cycles as f64 / instructions as f64;
             let [scene, busy] = [scene, busy].map(|cycles| f64::from(cycles) * CYCLE / INSTRUCTION);

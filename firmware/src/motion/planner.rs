@@ -90,6 +90,7 @@ impl Planner {
     }
 
     /// Does a piece of the search if it fits into `left` cycles and leaves the reserve: whether it did, and what is found.
+    #[inline(never)]
     pub fn work(&mut self, left: u32) -> (bool, Option<Finding>) {
         let piece = self.search.as_ref().map_or(0.0, |search| search.piece(PLANNING_PIECE));
         let is_over = self.task.is_none() || self.shown.is_some();

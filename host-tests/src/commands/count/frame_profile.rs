@@ -43,7 +43,7 @@ const BEGINNINGS: [(&str, &str, Part); 9] = [
     ("firmware::app::player::", "::check", Part::Sending),
     ("firmware::app::App", "::show", Part::Sending),
     ("firmware::board::cortex_m::retained::", "keep", Part::Sending),
-    ("firmware::motion::planner::", "::advance", Part::Planning),
+    ("firmware::motion::planner::", "::work", Part::Planning),
 ];
 
 /// What a frame executed, by parts: each instruction belongs to the innermost of the functions above that is at work.
