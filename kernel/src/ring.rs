@@ -8,12 +8,14 @@ use crate::sealed::Sealed;
 /// A number that the equations of motion can be computed in: `f32`, `f64`, or fixed point.
 ///
 /// Rates of change, which a method sums up, may be numbers of another kind: in fixed point those of directions have more
-/// room and fewer digits, and those of momenta, which are small beside the largest there may be, have all digits.
+/// room and fewer digits, and those of momenta, which are small, have more digits and less room.
 pub trait Ring:
     Sealed + Copy + Debug + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self> + 'static
 {
     /// The rate of change of a direction.
     type Slope: Copy + Debug + Add<Output = Self::Slope> + Sub<Output = Self::Slope> + Neg<Output = Self::Slope>;
+    /// The greatest torque of gravity.
+    type Gravity: Copy + Debug;
     /// The rate of change of a momentum.
     type Torque: Copy + Debug + Add<Output = Self::Torque> + Sub<Output = Self::Torque> + Neg<Output = Self::Torque>;
     /// The number nearest to `value`.
@@ -26,8 +28,10 @@ pub trait Ring:
     fn half(self) -> Self;
     /// The product as the rate of change of a direction.
     fn slope(self, factor: Self) -> Self::Slope;
-    /// The product as the rate of change of a momentum.
-    fn torque(self, factor: Self) -> Self::Torque;
+    /// The product of two rates and a direction as the rate of change of a momentum.
+    fn torque(self, rate: Self, direction: Self) -> Self::Torque;
+    /// The torque of gravity in a direction.
+    fn weight(gravity: Self::Gravity, direction: Self) -> Self::Torque;
     /// `value`, of any size, as a whole number and the rest: [`times`](Self::times) the one and a product with the other.
     #[doc(hidden)]
     #[must_use]

@@ -4,7 +4,9 @@ mod q30;
 mod q64;
 mod scaling;
 
-pub(crate) use q30::{Q30, Slope, Torque};
+#[cfg(test)]
+pub(crate) use q30::watch;
+pub(crate) use q30::{Gravity, Q30, Slope, Torque};
 pub(crate) use q64::Q64;
 pub(crate) use scaling::{Scaling, Shifts, check_step};
 

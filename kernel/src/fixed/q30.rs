@@ -2,43 +2,61 @@
 
 use core::ops::{Add, Mul, Neg, Sub};
 
-use super::FixedPoint;
+use super::{FixedPoint, Shifts};
 use crate::ring::Ring;
 use crate::sealed::Sealed;
 
-/// A number below 2 in 32 bits, in steps of 2^-30.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) struct Q30(pub i32);
-
-/// The rate of change of a direction: below 8, in steps of 2^-28, the upper word of a product, which is rounded down.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) struct Slope(pub i32);
-
-/// The rate of change of a momentum: below 8, a whole product.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) struct Torque(pub i64);
-
-/// The word that holds a number. That it does is what [`Motion`](super::Scaling) proves; unit tests are stopped if not.
+/// The word that holds a number. That it does is what [`Scaling`](super::Scaling) sees to; unit tests are stopped if not.
 #[inline(always)]
 fn word(number: i64) -> i32 {
     #[cfg(test)]
-    assert!(i32::try_from(number).is_ok(), "{number:#x} does not fit");
+    watch::look_at("", number);
     number as i32
 }
 
-macro_rules! sums {
-    ($type:ident) => {
+/// Looks at every number on its way into its word.
+#[cfg(test)]
+pub(crate) mod watch {
+    extern crate std;
+
+    use core::cell::Cell;
+
+    std::thread_local! {
+        static LARGEST: Cell<u64> = const { Cell::new(0) };
+    }
+
+    pub fn look_at(kind: &str, number: i64) {
+        assert!(i32::try_from(number).is_ok(), "{kind} {number:#x} does not fit");
+        if kind != "Q30" {
+            LARGEST.set(LARGEST.get().max(number.unsigned_abs()));
+        }
+    }
+
+    /// How near to the end of its word, 1, a rate of change or a product came in `computation`; the directions are always
+    /// about half-way.
+    pub fn largest(computation: impl FnOnce()) -> f64 {
+        LARGEST.set(0);
+        computation();
+        LARGEST.get() as f64 / f64::from(1_u32 << 31)
+    }
+}
+
+macro_rules! fixed_point {
+    ($(#[$doc:meta])* $type:ident) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+        #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+        pub(crate) struct $type(pub i32);
+
         impl Add for $type {
             type Output = Self;
             #[inline(always)]
             fn add(self, other: Self) -> Self {
-                Self(word(i64::from(self.0) + i64::from(other.0)))
+                let sum = i64::from(self.0) + i64::from(other.0);
+                #[cfg(test)]
+                watch::look_at(stringify!($type), sum);
+                Self(sum as i32)
             }
         }
         impl Neg for $type {
@@ -52,62 +70,74 @@ macro_rules! sums {
             type Output = Self;
             #[inline(always)]
             fn sub(self, other: Self) -> Self {
-                Self(word(i64::from(self.0) - i64::from(other.0)))
+                let difference = i64::from(self.0) - i64::from(other.0);
+                #[cfg(test)]
+                watch::look_at(stringify!($type), difference);
+                Self(difference as i32)
             }
         }
     };
 }
 
-sums!(Q30);
-sums!(Slope);
+fixed_point! {
+    /// A direction, a rate, a momentum or r: below 2, in steps of 2^-30.
+    Q30
+}
+fixed_point! {
+    /// The rate of change of a direction: below 8, in steps of 2^-28.
+    Slope
+}
+fixed_point! {
+    /// The greatest torque of gravity: below 1/4, in steps of 2^-33.
+    Gravity
+}
+fixed_point! {
+    /// The rate of change of a momentum: below 1, in steps of 2^-31.
+    Torque
+}
 
-impl Q30 {
-    /// The product times 2^`by`, rounded to nearest.
-    #[inline(always)]
-    fn product(self, factor: Self, by: u32) -> Self {
-        let product = i64::from(self.0) * i64::from(factor.0);
-        Self(word((product + (1 << 29 >> by)) >> (30 - by)))
+/// The upper word of a product, which is the instruction's second register: rounded down.
+#[inline(always)]
+fn upper(a: i32, b: i32) -> i32 {
+    ((i64::from(a) * i64::from(b)) >> 32) as i32
+}
+
+impl Gravity {
+    /// Steps in 1.
+    pub const STEPS: f64 = (1_u64 << 33) as f64;
+
+    pub fn constant(value: f64) -> Self {
+        Self(word(libm::rint(value * Self::STEPS) as i64))
     }
 }
 
+impl Slope {
+    /// The same as a number.
+    #[inline(always)]
+    pub fn number(self) -> Q30 {
+        Q30(word(i64::from(self.0) << 2))
+    }
+}
+
+impl Q30 {
+    /// Itself, where it is nearly r = 1/(m + S^2), by a step of Newton's: the only number that is rounded to nearest.
+    #[inline(always)]
+    pub fn inverse_of(self, inertia: Self, s: Self, shifts: &Shifts) -> Self {
+        let part = word((i64::from(s.0) * i64::from(self.0) + (1 << 29)) >> 30);
+        let square = shifts.inverse_product(i64::from(part) * i64::from(s.0));
+        let missing = (1 << 60) - i64::from(inertia.0) * i64::from(self.0) - square;
+        // what is missing is small: 32 bits after the point
+        let change = i64::from(self.0) * i64::from(word(missing >> 28));
+        self + Self(((change + (1 << 31)) >> 32) as i32)
+    }
+}
+
+/// Rounded down to a multiple of 2^-28: the upper word, shifted, which costs nothing where a sum takes its operand shifted.
 impl Mul for Q30 {
     type Output = Self;
     #[inline(always)]
     fn mul(self, factor: Self) -> Self {
-        self.product(factor, 0)
-    }
-}
-
-/// Unit tests are stopped where a sum of torques does not fit.
-#[inline(always)]
-fn fits((sum, overflown): (i64, bool)) -> Torque {
-    #[cfg(test)]
-    assert!(!overflown, "a torque does not fit");
-    let _ = overflown;
-    Torque(sum)
-}
-
-impl Add for Torque {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        fits(self.0.overflowing_add(other.0))
-    }
-}
-
-impl Sub for Torque {
-    type Output = Self;
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        fits(self.0.overflowing_sub(other.0))
-    }
-}
-
-impl Neg for Torque {
-    type Output = Self;
-    #[inline(always)]
-    fn neg(self) -> Self {
-        fits(self.0.overflowing_neg())
+        Slope(upper(self.0, factor.0)).number()
     }
 }
 
@@ -115,10 +145,10 @@ impl Sealed for Q30 {}
 
 impl Ring for Q30 {
     type Slope = Slope;
+    type Gravity = Gravity;
     type Torque = Torque;
-    #[inline(never)]
     fn constant(value: f64) -> Self {
-        Self(word(libm::rint(value * f64::from(1 << 30)) as i64))
+        Self(word(libm::rint(libm::scalbn(value, 30)) as i64))
     }
     #[inline(always)]
     fn twice(self) -> Self {
@@ -130,11 +160,17 @@ impl Ring for Q30 {
     }
     #[inline(always)]
     fn slope(self, factor: Self) -> Slope {
-        Slope(word((i64::from(self.0) * i64::from(factor.0)) >> 32))
+        Slope(upper(self.0, factor.0))
     }
     #[inline(always)]
-    fn torque(self, factor: Self) -> Torque {
-        Torque(i64::from(self.0) * i64::from(factor.0))
+    fn torque(self, rate: Self, direction: Self) -> Torque {
+        // the force: below 1/2, in steps of 2^-32
+        let force = word(i64::from(upper(self.0, rate.0)) << 4);
+        Torque(word((i64::from(force) * i64::from(direction.0)) >> 31))
+    }
+    #[inline(always)]
+    fn weight(gravity: Gravity, direction: Self) -> Torque {
+        Torque(upper(gravity.0, direction.0))
     }
 }
 
@@ -153,6 +189,6 @@ impl FixedPoint for Q30 {
     }
     #[inline(always)]
     fn product_up(self, factor: Self, by: u32) -> Self {
-        self.product(factor, by)
+        Self(word((i64::from(self.0) * i64::from(factor.0)) >> (30 - by)))
     }
 }

@@ -104,6 +104,7 @@ impl Sealed for Q64 {}
 
 impl Ring for Q64 {
     type Slope = Self;
+    type Gravity = Self;
     type Torque = Self;
     #[inline(never)]
     fn constant(value: f64) -> Self {
@@ -123,8 +124,12 @@ impl Ring for Q64 {
         (self * factor).up(2)
     }
     #[inline(always)]
-    fn torque(self, factor: Self) -> Self {
-        self * factor
+    fn torque(self, rate: Self, direction: Self) -> Self {
+        self * rate * direction
+    }
+    #[inline(always)]
+    fn weight(gravity: Self, direction: Self) -> Self {
+        gravity * direction
     }
     fn split(value: f64) -> (i32, Self) {
         let whole = libm::floor(value + 0.5); // the rest may be -1/2, but not 1/2

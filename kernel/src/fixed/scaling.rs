@@ -72,21 +72,25 @@ impl Scaling {
         [rate, torque]: [f64; 2],
         unit: impl FnOnce([f64; 2]) -> Result<f64, Error>,
     ) -> Result<Self, Error> {
-        let (mut scaling, longest) = Self::with_longest(parameters, bounds, [rate, torque])?;
-        let time = unit(longest)?;
-        scaling.time = time;
-        scaling.momenta = scaling.momenta.map(|momentum| momentum * time);
-        scaling.gravity = scaling.gravity.map(|gravity| gravity * time * time);
-        Ok(scaling)
+        let scaling = Self::in_seconds(parameters)?;
+        let longest = scaling.longest(bounds, [rate, torque]);
+        Ok(scaling.in_unit(unit(longest)?))
     }
 
-    /// With T = 1 s, and the longest T there may be.
+    /// The same in another unit of time, `time` of this one's.
+    #[must_use]
+    pub fn in_unit(self, time: f64) -> Self {
+        Self {
+            time: self.time * time,
+            momenta: self.momenta.map(|momentum| momentum * time),
+            gravity: self.gravity.map(|gravity| gravity * time * time),
+            ..self
+        }
+    }
+
+    /// With T = 1 s.
     #[inline(never)]
-    fn with_longest(
-        parameters: &Parameters<f64>,
-        bounds: &Bounds<f64>,
-        [rate, torque]: [f64; 2],
-    ) -> Result<(Self, [f64; 2]), Error> {
+    pub fn in_seconds(parameters: &Parameters<f64>) -> Result<Self, Error> {
         let &Parameters { m1, m2, l1, l2, g } = parameters;
         let nu = l1 / l2;
         let sigma = libm::ceil(libm::log2(nu)) as i32;
@@ -103,16 +107,7 @@ impl Scaling {
         let momentum1 = libm::scalbn(momentum2, -sigma - momentum);
         let gravity2 = libm::scalbn(g / l1, upper);
         let gravity1 = libm::scalbn(gravity2 * (m1 + m2) / m2 * norm * norm, -momentum);
-        let rates = [
-            bounds.elbow,
-            libm::scalbn(bounds.w1, upper),
-            libm::scalbn(bounds.w2, lower),
-            bounds.p1 * momentum1,
-            bounds.p2 * momentum2,
-        ];
-        let fastest = rates.into_iter().fold(0.0, f64::max);
-        let longest = [rate / fastest, libm::sqrt(torque / libm::fmax(gravity1, gravity2 * norm))];
-        let scaling = Self {
+        Ok(Self {
             time: 1.0,
             momenta: [momentum1, momentum2],
             norm,
@@ -124,8 +119,28 @@ impl Scaling {
                 upper: upper as u32,
                 lower: lower as u32,
             },
-        };
-        Ok((scaling, longest))
+        })
+    }
+
+    /// The longest T in which no rate of a motion within `bounds` exceeds `rate`, and that in which no torque of gravity
+    /// exceeds `torque`.
+    fn longest(&self, bounds: &Bounds<f64>, [rate, torque]: [f64; 2]) -> [f64; 2] {
+        let [momentum1, momentum2] = self.momenta;
+        let rates = [
+            bounds.elbow,
+            libm::scalbn(bounds.w1, self.shifts.upper as i32),
+            libm::scalbn(bounds.w2, self.shifts.lower as i32),
+            bounds.p1 * momentum1,
+            bounds.p2 * momentum2,
+        ];
+        let fastest = rates.into_iter().fold(0.0, f64::max);
+        [rate / fastest, libm::sqrt(torque / self.weight())]
+    }
+
+    /// The greatest torque of gravity.
+    pub fn weight(&self) -> f64 {
+        let [gravity1, gravity2] = self.gravity;
+        libm::fmax(gravity1, gravity2 * self.norm)
     }
 }
 
@@ -178,5 +193,16 @@ impl<R: FixedPoint> Units<R> for Shifts {
     #[inline(always)]
     fn inverse(&self, product: R) -> R {
         product.up(self.inverse).down(self.momentum)
+    }
+}
+
+impl Shifts {
+    /// Rods and masses that are about equal.
+    pub const NONE: Self = Self { momentum: 0, inverse: 0, upper: 0, lower: 0 };
+
+    /// As [`inverse`](Units::inverse), on a product of two words.
+    #[inline(always)]
+    pub fn inverse_product(&self, product: i64) -> i64 {
+        (product << self.inverse) >> self.momentum
     }
 }

@@ -8,7 +8,7 @@ use crate::ring::Ring;
 
 /// k1 + 2 k2 + 2 k3 + k4 of the step from `z`, where the inverse is `inverse`, and the inverse at the last stage.
 #[inline(always)]
-pub(crate) fn stages<R: Ring<Slope = R, Torque = R>, I: Inverse<R>>(
+pub(crate) fn stages<R: Ring<Gravity = R, Slope = R, Torque = R>, I: Inverse<R>>(
     coefficients: &Coefficients<R>,
     z: &[R; 6],
     inverse: R,
@@ -40,7 +40,7 @@ pub(crate) fn stages<R: Ring<Slope = R, Torque = R>, I: Inverse<R>>(
 
 /// The rates at `z`, where the inverse is `inverse`.
 #[inline(always)]
-pub(crate) fn rates<R: Ring<Slope = R, Torque = R>>(
+pub(crate) fn rates<R: Ring<Gravity = R, Slope = R, Torque = R>>(
     coefficients: &Coefficients<R>,
     &[sin1, cos1, s, c, p1, p2]: &[R; 6],
     inverse: R,

@@ -16,13 +16,13 @@ use crate::ring::Ring;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) struct Coefficients<R> {
+pub(crate) struct Coefficients<R, G = R> {
     /// nu.
     pub norm: R,
     /// m.
     pub inertia: R,
     /// G1 and G2.
-    pub gravity: [R; 2],
+    pub gravity: [G; 2],
 }
 
 /// The time derivatives.
@@ -32,15 +32,13 @@ pub(crate) struct Rates<R: Ring> {
     pub angles: [R; 2],
     /// P1' and P2'.
     pub momenta: [R::Torque; 2],
-    /// u and v in their own units.
-    pub own: [R; 2],
 }
 
 impl<R: Ring<Torque = R>> Rates<R> {
     /// Twice these.
     #[inline(always)]
     pub fn doubled(self) -> Self {
-        Self { angles: self.angles.map(R::twice), momenta: self.momenta.map(R::twice), ..self }
+        Self { angles: self.angles.map(R::twice), momenta: self.momenta.map(R::twice) }
     }
 }
 
@@ -68,10 +66,10 @@ pub(crate) trait Units<R: Ring>: Copy {
     fn paced(&self, u: R) -> R {
         u
     }
-    /// u v as a factor of F.
+    /// F = u v S.
     #[inline(always)]
-    fn factor(&self, product: R) -> R {
-        product
+    fn force(&self, u: R, v: R, s: R) -> R::Torque {
+        u.torque(v, s)
     }
     /// u and v as rates of the angles.
     #[inline(always)]
@@ -106,7 +104,7 @@ pub(crate) struct Same;
 
 impl<R: Ring> Units<R> for Same {}
 
-/// The `units` with time reversed; [`Coefficients::gravity`] is to be reversed with it.
+/// The `units` where time and momenta are reversed; [`Coefficients::gravity`] is to be reversed with them.
 #[derive(Clone, Copy)]
 pub(crate) struct Reverse<U>(pub U);
 
@@ -125,7 +123,7 @@ impl<R: Ring, U: Units<R>> Units<R> for Reverse<U> {
     }
     #[inline(always)]
     fn turns(&self, [u, v]: [R; 2]) -> [R; 2] {
-        self.0.turns([u, -v])
+        self.0.turns([-u, v])
     }
     #[inline(always)]
     fn forces(&self, force: R::Torque) -> [R::Torque; 2] {
@@ -137,13 +135,15 @@ impl<R: Ring, U: Units<R>> Units<R> for Reverse<U> {
     }
 }
 
-impl<R: Ring> Coefficients<R> {
+impl<R: Ring, G> Coefficients<R, G> {
     /// m + S^2, whose inverse is r.
     #[inline(always)]
     pub fn denominator(&self, s: R) -> R {
         self.inertia + s * s
     }
+}
 
+impl<R: Ring> Coefficients<R, R::Gravity> {
     /// The rates where `upper` is (sin a1, cos a1), `elbow` is (S, C), `momenta` is (P1, P2), and `inverse` is r.
     #[inline(always)]
     pub fn rates(&self, units: &impl Units<R>, upper: [R; 2], elbow: [R; 2], [p1, p2]: [R; 2], inverse: R) -> Rates<R> {
@@ -156,16 +156,14 @@ impl<R: Ring> Coefficients<R> {
     fn rates_at(&self, units: &impl Units<R>, [sin1, cos1]: [R; 2], [s, c]: [R; 2], p2: R, u: R) -> Rates<R> {
         let [gravity1, gravity2] = self.gravity;
         let v = p2 - units.swing(c * u);
-        let own = [u, v];
         let u = units.paced(u);
-        let [force1, force2] = units.forces(units.factor(u * v).torque(s));
+        let [force1, force2] = units.forces(units.force(u, v, s));
         Rates {
             angles: units.turns([u, v]),
             momenta: [
-                -gravity1.torque(sin1) - force1,
-                force2 - units.weight(gravity2.torque(units.lower(sin1 * c - cos1 * s))),
+                -R::weight(gravity1, sin1) - force1,
+                force2 - units.weight(R::weight(gravity2, units.lower(sin1 * c - cos1 * s))),
             ],
-            own,
         }
     }
 }
@@ -188,7 +186,7 @@ pub(crate) fn turning<R: Ring>(&[sin1, cos1, s, c, ..]: &[R; 6], [u, v]: [R; 2])
 
 /// The rates of sin a1, cos a1, S, C, P1, P2, where all are numbers of one kind.
 #[inline(always)]
-pub(crate) fn increments<R: Ring<Slope = R, Torque = R>>(z: &[R; 6], rates: Rates<R>) -> [R; 6] {
+pub(crate) fn increments<R: Ring<Gravity = R, Slope = R, Torque = R>>(z: &[R; 6], rates: Rates<R>) -> [R; 6] {
     let [sin1, cos1, s, c] = turning(z, rates.angles);
     let [p1, p2] = rates.momenta;
     [sin1, cos1, s, c, p1, p2]

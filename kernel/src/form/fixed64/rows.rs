@@ -186,10 +186,10 @@ impl<const ALIKE: bool> Units<Q64> for Fractions<'_, ALIKE> {
     fn paced(&self, u: Q64) -> Q64 {
         self.by_share(u)
     }
-    /// Of u by the step, below 1/4, and v, below 1/2.
+    /// u by the step is below 1/4, and v below 1/2.
     #[inline(always)]
-    fn factor(&self, product: Q64) -> Q64 {
-        self.up(product, 4, 2)
+    fn force(&self, u: Q64, v: Q64, s: Q64) -> Q64 {
+        self.up(u * v, 4, 2) * s
     }
     #[inline(always)]
     fn turns(&self, [u, v]: [Q64; 2]) -> [Q64; 2] {

@@ -1,0 +1,100 @@
+//! What the steps of one motion have in common: its units and constants.
+
+use crate::bounds::Bounds;
+use crate::error::{Error, Parameter};
+use crate::fixed::{Gravity, Q30, Scaling};
+use crate::form::equations::Coefficients;
+use crate::params::Parameters;
+use crate::ring::Ring;
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Setting {
+    /// The energy above rest, J, which all of it follows from.
+    pub energy: f64,
+    pub coefficients: Coefficients<Q30, Gravity>,
+    /// The same with time reversed.
+    pub reverse: Coefficients<Q30, Gravity>,
+    /// Half a step is 2^-n T.
+    pub halvings: u32,
+    /// 2^34 h/(6 T), h being the step, for slopes; and 2^31 of it for torques.
+    pub weights: [i32; 2],
+    /// nu^2 with 60 bits after the point, and its inverse with 29.
+    pub square: [i64; 2],
+    /// The greatest energy in the units of [`Fixed32State::energy`](super::Fixed32State::energy).
+    pub most_energy: i64,
+    pub scaling: Scaling,
+    /// What a step is short of dt, in T.
+    pub lag: f64,
+}
+
+/// The greatest |u| + |v| at the start, and the greatest torque, in the units of the motion.
+const RATE: f64 = 0.85;
+const TORQUE: f64 = 0.14;
+
+/// The energy may grow by so much of itself, ...
+const GROWTH: f64 = 0.125;
+/// ... and by so much of what goes with [`RATE`]: roundings move a pendulum at rest.
+const ROOM: f64 = 1.0 / 64.0;
+
+/// Half a step is a quarter of the unit of time or less, ...
+pub(super) const COARSEST: u32 = 2;
+
+/// ... no more than so much of the time in which an elbow bends and is through a light bob 1's peak of r, ...
+const RESOLVED: f64 = 0.5;
+
+/// ... and at least this power of a half.
+const FINEST: u32 = 10;
+
+impl Setting {
+    /// For a motion of `energy` J above rest.
+    #[inline(never)]
+    pub fn new(parameters: &Parameters<f64>, energy: f64, dt: f64) -> Result<Self, Error> {
+        let seconds = Scaling::in_seconds(parameters)?;
+        // K, the greatest |u| + |v| and the greatest u v S by that K, in units with T = 1 s
+        let kinetic = energy * seconds.momenta[1] * libm::scalbn(1.0, seconds.shifts.lower as i32);
+        let ratio = parameters.m1 / parameters.m2 * seconds.norm * seconds.norm;
+        let sum = 1.0 + (1.0 + seconds.norm) * (1.0 + seconds.norm) / ratio;
+        let force = kinetic * libm::sqrt(parameters.m2 / parameters.m1);
+        let longest =
+            libm::fmin(RATE / libm::sqrt(2.0 * kinetic * sum), libm::sqrt(TORQUE / (force + seconds.weight())));
+
+        let elbow = Bounds::new(parameters, energy).elbow * libm::sqrt(1.0 + parameters.m2 / parameters.m1);
+        let limit = libm::fmin(libm::scalbn(longest, 1 - COARSEST as i32), RESOLVED / elbow);
+        let half = 0.5 * dt;
+        let fit = libm::floor(libm::log2(longest / libm::fabs(half)));
+        if fit.is_nan() || fit < f64::from(COARSEST) || libm::fabs(dt) > limit {
+            return Err(Error::TooLarge { parameter: Parameter::Dt, value: dt, limit });
+        }
+        let halvings = libm::fmin(fit, f64::from(FINEST)) as u32;
+        let mut scaling = seconds.in_unit(libm::scalbn(half, halvings as i32));
+        scaling.round_gravity(Gravity::STEPS);
+
+        let step = dt / scaling.time;
+        let torque_weight = libm::rint(libm::scalbn(step / 6.0, 31));
+        let norm = scaling.norm;
+        let coefficients = Coefficients {
+            norm: Q30::constant(norm),
+            inertia: Q30::constant(scaling.inertia),
+            gravity: scaling.gravity.map(Gravity::constant),
+        };
+        let energy_unit = libm::scalbn(1.0, 60 - (scaling.shifts.momentum + scaling.shifts.upper) as i32)
+            / libm::scalbn(1.0, scaling.shifts.lower as i32);
+        let most_energy = (1.0 + GROWTH) * kinetic * scaling.time * scaling.time + ROOM * RATE * RATE / (2.0 * sum);
+        Ok(Self {
+            energy,
+            coefficients,
+            reverse: Coefficients { gravity: coefficients.gravity.map(|gravity| -gravity), ..coefficients },
+            halvings,
+            weights: [8 * torque_weight as i32, torque_weight as i32],
+            square: [
+                libm::rint(norm * norm * (1_u64 << 60) as f64) as i64,
+                libm::rint((1 << 29) as f64 / (norm * norm)) as i64,
+            ],
+            most_energy: (most_energy * energy_unit) as i64,
+            lag: step - 6.0 * libm::scalbn(torque_weight, -31),
+            scaling,
+        })
+    }
+}

@@ -1,0 +1,104 @@
+//! A step of RK4 in words of 32 bits.
+
+use super::Fixed32State;
+use super::setting::{COARSEST, Setting};
+use crate::fixed::{Q30, Shifts, Slope, Torque};
+use crate::form::equations::{Reverse, Units, turning};
+use crate::ring::Ring;
+
+/// Whether to compile the step once for every usual length, with shifts that cost nothing. A chip with a floating-point unit
+/// has a faster form and better use for its flash.
+const SPECIALISED: bool = !cfg!(target_abi = "eabihf");
+
+impl Fixed32State {
+    pub(super) fn advance(&mut self, steps: u32) {
+        let shifts = self.units.scaling.shifts;
+        if !SPECIALISED {
+            self.run(shifts, self.units.halvings, steps);
+        } else if shifts == Shifts::NONE {
+            self.run_specialised(Shifts::NONE, steps);
+        } else {
+            self.run_specialised(shifts, steps);
+        }
+    }
+
+    #[inline(always)]
+    fn run_specialised(&mut self, units: Shifts, steps: u32) {
+        match self.units.halvings {
+            2 => self.run(units, 2, steps),
+            3 => self.run(units, 3, steps),
+            4 => self.run(units, 4, steps),
+            5 => self.run(units, 5, steps),
+            halvings => self.run(units, halvings, steps),
+        }
+    }
+
+    #[inline(always)]
+    fn run(&mut self, units: Shifts, halvings: u32, steps: u32) {
+        for _ in 0..steps {
+            self.step(units, halvings);
+        }
+    }
+
+    #[inline(always)]
+    fn step(&mut self, units: Shifts, halvings: u32) {
+        let Setting { coefficients, reverse, weights, .. } = &self.units;
+        let z = self.quantities();
+        let inverse = self.inverse;
+        let rates = |z: &[Q30; 6], r: Q30| {
+            let &[sin1, cos1, s, c, p1, p2] = z;
+            coefficients.rates(&units, [sin1, cos1], [s, c], [p1, p2], r)
+        };
+        let reversed = |z: &[Q30; 6], r: Q30| {
+            let &[sin1, cos1, s, c, p1, p2] = z;
+            reverse.rates(&Reverse(units), [sin1, cos1], [s, c], [p1, p2], r)
+        };
+        // half a step of a rate of change
+        let turned = |slope: Slope| Q30(slope.0 >> (halvings - COARSEST));
+        let pushed = |torque: Torque| Q30((torque.0 >> 3) >> (halvings - COARSEST));
+        let moved = |turns: [Slope; 4], torques: [Torque; 2]| {
+            let ([sin1, cos1, s, c], [p1, p2]) = (turns.map(turned), torques.map(pushed));
+            [sin1, cos1, s, c, p1, p2]
+        };
+        // half of -r' = 2 S S' r^2
+        let half_fall = |s_rate: Slope, s: Q30, r: Q30| units.inverse(s_rate.number() * (s * r)).slope(r);
+
+        // All is rounded down. Every second slope is taken backwards in time, with reversed momenta, so that as much is
+        // rounded up.
+        let rates1 = rates(&z, inverse);
+        let (turns1, torques1) = (turning(&z, rates1.angles), rates1.momenta);
+        let [sin1, cos1, s, c, p1, p2] = moved(turns1, torques1);
+        let z2 = [z[0] + sin1, z[1] + cos1, z[2] + s, z[3] + c, -z[4] - p1, -z[5] - p2];
+        let fall1 = half_fall(turns1[2], z[2], inverse);
+        let r2 = inverse - turned(fall1 + fall1);
+
+        let rates2 = reversed(&z2, r2);
+        let (turns2, torques2) = (turning(&z2, rates2.angles), rates2.momenta);
+        let change = moved(turns2, torques2);
+        let z3: [Q30; 6] = core::array::from_fn(|i| z[i] - change[i]);
+        let fall2 = half_fall(turns2[2], z2[2], r2);
+        let r3 = inverse + turned(fall2 + fall2);
+
+        let rates3 = rates(&z3, r3);
+        let (turns3, torques3) = (turning(&z3, rates3.angles), rates3.momenta);
+        let middle: [Slope; 4] = core::array::from_fn(|i| turns3[i] - turns2[i]);
+        let middle_torques: [Torque; 2] = core::array::from_fn(|i| torques3[i] - torques2[i]);
+        let [sin1, cos1, s, c, p1, p2] = moved(turns3.map(|k| k + k), torques3.map(|k| k + k));
+        let z4 = [z[0] + sin1, z[1] + cos1, z[2] + s, z[3] + c, -z[4] - p1, -z[5] - p2];
+        let fall3 = half_fall(turns3[2], z3[2], r3);
+        let r4 = inverse - turned((fall3 + fall3) + (fall3 + fall3));
+
+        let rates4 = reversed(&z4, r4);
+        let (turns4, torques4) = (turning(&z4, rates4.angles), rates4.momenta);
+        for i in 0..4 {
+            let sum = (turns1[i] - turns4[i]) + middle[i] + middle[i];
+            self.z[i] += i64::from(sum.0) * i64::from(weights[0]);
+        }
+        for i in 0..2 {
+            let sum = (torques1[i] - torques4[i]) + middle_torques[i] + middle_torques[i];
+            self.z[4 + i] += i64::from(sum.0) * i64::from(weights[1]);
+        }
+        let s = self.quantities()[2];
+        self.inverse = r4.inverse_of(coefficients.inertia, s, &units);
+    }
+}

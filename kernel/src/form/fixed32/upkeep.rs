@@ -1,0 +1,52 @@
+//! What is done every few steps: lengths are restored, the energy is looked at.
+
+use super::{Fixed32State, OFFSET};
+use crate::fixed::Q30;
+use crate::form::equations::Units;
+
+/// By how much the square of a length may be off, with 60 bits after the point.
+const LENGTH: u64 = 1 << 51;
+
+impl Fixed32State {
+    #[inline(never)]
+    pub(super) fn keep_up(&mut self) {
+        self.restore_lengths();
+        self.lost |= self.energy() > self.units.most_energy;
+    }
+
+    /// Makes sin^2 a1 + cos^2 a1 = 1 and S^2 + C^2 = nu^2 again, to first order in what they miss.
+    fn restore_lengths(&mut self) {
+        let [square, inverse_square] = self.units.square;
+        for (first, square, gain) in [(0, 1 << 60, 1 << 29), (2, square, inverse_square)] {
+            let [s, c] = [self.z[first] - OFFSET, self.z[first + 1] - OFFSET];
+            let part = |z: i64| ((z >> 32) * (z >> 32), ((z >> 32) * (z & 0xffff_ffff)) >> 31);
+            let ((s2, s_more), (c2, c_more)) = (part(s), part(c));
+            let missing = square - s2 - c2 - s_more - c_more;
+            if missing.unsigned_abs() >= LENGTH {
+                self.lost = true;
+                return;
+            }
+            let relative = ((missing >> 20) * gain) >> 29;
+            for z in &mut self.z[first..first + 2] {
+                *z += ((*z >> 32) * relative) >> 9;
+            }
+        }
+    }
+
+    /// The energy above rest, ((P1 - C P2)^2 r + P2^2)/2 + G1 (1 - cos a1) + G2 nu (1 - cos a2), with 60 bits after the
+    /// point and as many fewer as the units of momenta and rates differ by.
+    pub(super) fn energy(&self) -> i64 {
+        let [sin1, cos1, s, c, p1, p2] = self.quantities();
+        let (coefficients, shifts) = (&self.units.coefficients, &self.units.scaling.shifts);
+        let momentum = p1 - shifts.momentum(c * p2);
+        let u = shifts.rate(momentum, self.inverse);
+        let product = |a: i32, b: i32| i64::from(a) * i64::from(b);
+        let [gravity1, gravity2] = coefficients.gravity.map(|gravity| gravity.0);
+        let heights = [Q30(1 << 30) - cos1, coefficients.norm - (c * cos1 + s * sin1)];
+        let (upper, lower) = (shifts.momentum + shifts.upper, shifts.lower);
+        (product(momentum.0, u.0) >> (1 + shifts.upper + lower))
+            + (product(p2.0, p2.0) >> (1 + upper + lower))
+            + (product(gravity1, heights[0].0) >> (3 + lower))
+            + (product(gravity2, heights[1].0) >> (3 + upper))
+    }
+}
