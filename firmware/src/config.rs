@@ -61,6 +61,31 @@ pub const COSTS: Costs = if cfg!(target_abi = "eabihf") { CORTEX_M4F } else { CO
 /// Processor cycles in a tick where no board says otherwise: 50 MHz.
 pub const TICK_CYCLES: u32 = 50_000_000 / TICK_RATE;
 
+// ---- The map of flips -----------------------------------------------------------------------------------------------
+
+/// What the map may take of each tick, in its own steps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FlipsPace {
+    /// Steps.
+    pub steps: u32,
+    /// A new start counts as so many.
+    pub start: u32,
+}
+/// Fixed point on a Cortex-M3 at 50 MHz: two fifths of a frame.
+pub const FLIPS_M3: FlipsPace = FlipsPace { steps: 350, start: 25 };
+/// `f32` on a Cortex-M4F at 50 MHz, ...
+pub const FLIPS_M4F: FlipsPace = FlipsPace { steps: 1500, start: 100 };
+/// ... and at 168 MHz.
+pub const FLIPS_F405: FlipsPace = FlipsPace { steps: 5000, ..FLIPS_M4F };
+/// On this processor.
+pub const FLIPS: FlipsPace = if cfg!(not(target_abi = "eabihf")) {
+    FLIPS_M3
+} else if cfg!(feature = "stm32f405") {
+    FLIPS_F405
+} else {
+    FLIPS_M4F
+};
+
 // ---- The pendulum ---------------------------------------------------------------------------------------------------
 
 /// Length of either rod, m: a period of about 2 s, which is pleasant to watch.

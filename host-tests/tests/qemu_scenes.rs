@@ -58,7 +58,10 @@ fn the_panel_shows_what_the_host_draws() -> Result<(), QemuError> {
     panels().try_for_each(|board| {
         let (toolchain, elf) = (toolchain(), application(board));
         let mut machine = Lockstep::start(&settings(&toolchain, board, &elf))?;
-        for &name in SceneName::ALL {
+        // The map of flips is computed in another arithmetic and at another pace where there is a floating-point unit: test
+        // `qemu_flips`.
+        let same = |name: &&SceneName| **name != SceneName::Flips || board.core() == Core::M3;
+        for &name in SceneName::ALL.iter().filter(same) {
             let mut scene = Show::new(name, &name.first_settings()).expect("a scene of the catalogue");
             let mut frame = choose(&mut machine, name)?;
             for _ in 0..FRAMES {

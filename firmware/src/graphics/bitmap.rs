@@ -14,8 +14,10 @@ const ORDER: [[u8; 4]; 4] = [[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 
 ///
 /// Soft edges want one threshold, for of many they turn ragged; a fading trail wants many, to fade. Both are had with
 /// all thresholds in the lower half: what is brighter is solid, and what is fainter thins out to single pixels.
-const fn threshold(order: u8) -> u8 {
-    2 + order * 6 / 16
+///
+/// In a picture all greys matter: there it is 0 to 14, which is Bayer's.
+const fn threshold(order: u8, all_greys: bool) -> u8 {
+    if all_greys { order * 15 / 16 } else { 2 + order * 6 / 16 }
 }
 
 /// One in every other nibble.
@@ -23,16 +25,19 @@ const ONES: u32 = 0x0101_0101;
 
 /// For every fourth row what carries out of the nibble of a lit pixel when added: to the pixels with even numbers, and to those
 /// with odd ones, which are the high and the low nibbles.
-const ROOM: [[u32; 2]; 4] = {
+const fn room(all_greys: bool) -> [[u32; 2]; 4] {
     let mut room = [[0; 2]; 4];
     let mut place = 0;
     while place < 16 {
         let (y, x) = (place / 4, place % 4);
-        room[y][x % 2] |= (15 - threshold(ORDER[y][x]) as u32) * (0x0001_0001 << (8 * (x / 2)));
+        room[y][x % 2] |= (15 - threshold(ORDER[y][x], all_greys) as u32) * (0x0001_0001 << (8 * (x / 2)));
         place += 1;
     }
     room
-};
+}
+
+/// Of a drawing, and of a picture.
+const ROOM: [[[u32; 2]; 4]; 2] = [room(false), room(true)];
 
 /// 128 x 64 pixels, each on or off, in the layout of the panel: pages of eight rows from the top, in each a byte for
 /// every column from the left, in that the lowest bit on top.
@@ -52,10 +57,12 @@ impl From<&Canvas> for Bitmap {
     /// Eight pixels at once.
     fn from(canvas: &Canvas) -> Self {
         let mut bitmap = Self::default();
+        let [drawing, picture] = &ROOM;
+        let room = if canvas.has_all_greys() { picture } else { drawing };
         for (page, rows) in bitmap.pages.iter_mut().zip(canvas.rows().as_chunks::<ROWS>().0) {
             for (word, columns) in page.as_chunks_mut::<8>().0.iter_mut().enumerate() {
                 let mut lit = [0; 2];
-                for ((y, Row(row)), room) in rows.iter().enumerate().zip(ROOM.iter().cycle()) {
+                for ((y, Row(row)), room) in rows.iter().enumerate().zip(room.iter().cycle()) {
                     let greys = row.as_chunks().0.get(word).map_or(0, |bytes| u32::from_le_bytes(*bytes));
                     for ((lit, greys), room) in lit.iter_mut().zip([greys >> 4, greys]).zip(room) {
                         *lit |= ((((greys & (15 * ONES)) + room) >> 4) & ONES) << y;

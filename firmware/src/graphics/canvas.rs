@@ -19,6 +19,7 @@ pub struct Row(pub [u8; ROW]);
 #[derive(Debug, PartialEq, Eq)]
 pub struct Canvas {
     rows: [Row; HEIGHT],
+    all_greys: bool,
 }
 
 impl Default for Canvas {
@@ -29,11 +30,12 @@ impl Default for Canvas {
 
 impl Clone for Canvas {
     fn clone(&self) -> Self {
-        Self { rows: self.rows }
+        Self { rows: self.rows, all_greys: self.all_greys }
     }
 
     /// Row by row, in half the time of the library's `memcpy`.
     fn clone_from(&mut self, source: &Self) {
+        self.all_greys = source.all_greys;
         for (Row(row), Row(from)) in self.rows.iter_mut().zip(&source.rows) {
             row.as_chunks_mut::<16>().0.iter_mut().zip(from.as_chunks().0).for_each(|(row, from)| *row = *from);
         }
@@ -42,11 +44,22 @@ impl Clone for Canvas {
 
 impl Canvas {
     /// Every pixel black.
-    pub const BLACK: Self = Self { rows: [Row([0; ROW]); HEIGHT] };
+    pub const BLACK: Self = Self { rows: [Row([0; ROW]); HEIGHT], all_greys: false };
 
     /// Makes every pixel black.
     pub fn clear(&mut self) {
         self.rows.fill(Row([0; ROW]));
+        self.all_greys = false;
+    }
+
+    /// From now on it is a picture in which every grey matters, where a drawing is bright on dark.
+    pub fn use_all_greys(&mut self) {
+        self.all_greys = true;
+    }
+
+    /// Whether every grey matters.
+    pub fn has_all_greys(&self) -> bool {
+        self.all_greys
     }
 
     /// The bytes as the panel takes them.

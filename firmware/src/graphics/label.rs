@@ -69,6 +69,11 @@ pub fn trust(until: f32) -> Label {
     }
 }
 
+/// How much is done: `43 %`.
+pub fn percent(percent: u32) -> Label {
+    label("", "", percent as f32, 0, " %")
+}
+
 /// The time since the start to a tenth of a second: `12.3 s`.
 pub fn time(seconds: f64) -> Label {
     let tenths = (seconds * 10.0) as u32;

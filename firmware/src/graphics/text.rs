@@ -40,13 +40,23 @@ pub fn write(canvas: &mut Canvas, text: &str, anchor: Anchor) {
 
 /// Writes a line of text that stands out: dark on a light ground.
 pub fn write_marked(canvas: &mut Canvas, text: &str, anchor: Anchor) {
+    put_on(canvas, text, anchor, [0, GREY]);
+}
+
+/// Writes a line of text over a picture: white on black.
+pub fn write_over(canvas: &mut Canvas, text: &str, anchor: Anchor) {
+    put_on(canvas, text, anchor, [15, 0]);
+}
+
+/// Writes in one grey on a ground of another.
+fn put_on(canvas: &mut Canvas, text: &str, anchor: Anchor, [ink, ground]: [u8; 2]) {
     let width = width(text);
     let (left, top) = corner(anchor, width);
     for y in top..top + LINE {
         let eights = (-1..width).step_by(8);
-        eights.for_each(|x| canvas.stamp(left + x, y, !(0xFF_u32 >> (width - x).min(8)) as u8, GREY));
+        eights.for_each(|x| canvas.stamp(left + x, y, !(0xFF_u32 >> (width - x).min(8)) as u8, ground));
     }
-    put(canvas, text, (left, top), 0);
+    put(canvas, text, (left, top), ink);
 }
 
 fn width(text: &str) -> i32 {

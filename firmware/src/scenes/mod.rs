@@ -3,6 +3,7 @@
 mod beats;
 mod butterfly;
 mod figure7;
+pub mod flips;
 mod frequencies;
 pub mod horizon;
 mod page;
@@ -98,6 +99,8 @@ catalogue! {
     Butterfly = 10, "butterfly", butterfly::Butterfly, Settings::default();
     /// Both rods at exactly 180 degrees.
     Upright = 11, "upright", upright::Upright, upright::straight_up();
+    /// From which starts a rod turns over, and when.
+    Flips = 12, "flips", flips::Flips, Settings::default();
 }
 
 impl AnyScene {

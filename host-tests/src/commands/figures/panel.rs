@@ -12,8 +12,10 @@ use crate::emulator::boards::BOARDS;
 use crate::emulator::host::Show;
 use crate::emulator::qemu::Screenshot;
 
-/// The moment of the frames, ticks.
-const MOMENT: u32 = 8 * TICK_RATE;
+/// The moment of a scene's frame, ticks: what moves is well under way; the map of flips is finished.
+fn moment(scene: SceneName) -> u32 {
+    TICK_RATE * if scene == SceneName::Flips { 75 } else { 8 }
+}
 
 /// The file of a scene in the folder of frames.
 pub fn file(scene: SceneName, kind: &str) -> String {
@@ -23,7 +25,7 @@ pub fn file(scene: SceneName, kind: &str) -> String {
 /// The screenshot of a scene as a PNG file. The panel of the emulated board shows the same (test `qemu_scenes`).
 pub fn screenshot(name: SceneName) -> Result<Vec<u8>> {
     let mut scene = Show::new(name, &name.first_settings())?;
-    (0..MOMENT).for_each(|_| scene.tick());
+    (0..moment(name)).for_each(|_| scene.tick());
     let mut file = Vec::new();
     record::png(&Screenshot::from(&scene.frame()), &mut file)?;
     Ok(file)
@@ -35,6 +37,7 @@ pub fn seconds(scene: SceneName) -> f64 {
         SceneName::Figure7 => 20.0,
         SceneName::SmallLight | SceneName::SmallEqual | SceneName::SmallHeavy => 4.0,
         SceneName::Frequencies => 3.0,
+        SceneName::Flips => 75.0,
         _ => 10.0,
     }
 }

@@ -3,12 +3,10 @@
 use double_pendulum::flips::{Flip, Flips, step_size};
 use double_pendulum::form::{DirectionForm, Plain};
 use double_pendulum::{Error, Parameters};
+use firmware::scenes::flips::GREYS;
 use rayon::prelude::*;
 
 use super::square::Square;
-
-/// The greys that the panel has for times: equal parts of their logarithm.
-pub const GREYS: u8 = 14;
 
 /// What is looked for.
 #[derive(Clone, Copy, Debug, PartialEq)]

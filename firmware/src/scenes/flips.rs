@@ -1,0 +1,208 @@
+//! Flips: from which starts a rod ever turns over, and when, computed here, coarse first.
+
+use double_pendulum::flips::{FallingBy, Flip, Flips as Search, step_size};
+use double_pendulum::form::Watched;
+use double_pendulum::{Error, State};
+
+use crate::config::{FLIPS, FlipsPace, TICK_RATE};
+use crate::graphics::canvas::{Canvas, HEIGHT, WIDTH};
+use crate::graphics::fade_layer::FadeLayer;
+use crate::graphics::label;
+use crate::graphics::text::{self, Anchor};
+use crate::motion::planner::Shown;
+use crate::motion::settings::Settings;
+use crate::scenes::scene::{Report, Scene};
+
+/// A rod has so long to turn over, sqrt(l1/g).
+pub const LIMIT: f32 = 100.0;
+/// So many greys for when it does, by the logarithm of the time from sqrt(l1/g) to the limit: 15 is soonest. The last one is
+/// for a rod that has not by then, and black for one that cannot.
+pub const GREYS: u8 = 14;
+const LATER: u8 = 1;
+
+/// The first blocks, pixels across and down; the next are half as large.
+const COARSEST: usize = 8;
+/// The lower half is the upper one turned by half a turn: both starts are mirrored.
+const ROWS: usize = HEIGHT / 2;
+
+/// What motions are computed by: `f32` where the processor has it, else fixed point.
+#[cfg(target_abi = "eabihf")]
+pub type Arithmetic = double_pendulum::form::DirectionForm<f32, double_pendulum::form::Plain>;
+/// What motions are computed by: `f32` where the processor has it, else fixed point.
+#[cfg(not(target_abi = "eabihf"))]
+pub type Arithmetic = double_pendulum::form::Fixed32Form;
+
+/// The map as this processor computes it.
+pub type Flips = FlipsMap<Arithmetic>;
+
+/// Both starting angles as axes, a1 across and a2 upwards, brightness the time of the first turn-over.
+///
+/// The ink holds the map. The start angles of the settings do not matter, only the pendulum does.
+#[derive(Clone, Debug)]
+pub struct FlipsMap<F: Watched<f32>> {
+    search: Search<f32, F>,
+    pace: FlipsPace,
+    mass_ratio: f32,
+    /// sqrt(l1/g), s.
+    unit: f32,
+    block: Block,
+    falling: Option<FallingBy<f32, F>>,
+    /// Pixels of the upper half that are done.
+    done: u32,
+    ticks: u64,
+    /// Ticks until all was done.
+    elapsed: u64,
+}
+
+/// A block of pixels: its size, which is 0 when all is done, and its top left pixel, whose start is computed.
+#[derive(Clone, Copy, Debug)]
+struct Block {
+    size: usize,
+    x: usize,
+    y: usize,
+}
+
+impl Block {
+    const FIRST: Self = Self { size: COARSEST, x: 0, y: 0 };
+
+    /// The next one that is not part of a larger one with the same start.
+    fn next(self) -> Self {
+        let Self { mut size, mut x, mut y } = self;
+        while size > 0 {
+            x += size;
+            if x >= WIDTH {
+                (x, y) = (0, y + size);
+            }
+            if y >= ROWS {
+                (size, x, y) = (size / 2, 0, 0);
+            }
+            let is_done = size < COARSEST && (x | y) & size == 0;
+            if !is_done {
+                break;
+            }
+        }
+        Self { size, x, y }
+    }
+
+    /// Where it starts, rad: the middle of its pixel.
+    fn start(self) -> [f32; 2] {
+        // Whole numbers, so that what lies opposite is the mirror image.
+        let angle = |pixels: i32, all: usize| pixels as f32 * (core::f32::consts::PI / all as f32);
+        let (x, y) = (self.x as i32, self.y as i32);
+        [angle(2 * x + 1 - WIDTH as i32, WIDTH), angle(HEIGHT as i32 - 1 - 2 * y, HEIGHT)]
+    }
+
+    /// Paints it, and what lies opposite.
+    fn paint(self, ink: &mut FadeLayer, grey: u8) {
+        for y in self.y as i32..(self.y + self.size) as i32 {
+            for x in self.x as i32..(self.x + self.size) as i32 {
+                ink.paint(x, y, grey);
+                ink.paint(WIDTH as i32 - 1 - x, HEIGHT as i32 - 1 - y, grey);
+            }
+        }
+    }
+}
+
+impl<F: Watched<f32>> FlipsMap<F> {
+    /// As [`Scene::new`], at the pace of another processor.
+    pub fn at_pace(settings: &Settings, pace: FlipsPace) -> Result<Self, Error> {
+        let parameters = &settings.parameters;
+        let unit = libm::sqrtf(parameters.l1 / parameters.g);
+        let dt = step_size(parameters)?;
+        let search = Search::new(parameters, dt, (LIMIT * unit / dt as f32) as u32)?;
+        let (block, falling) = (Block::FIRST, None);
+        Ok(Self {
+            search,
+            pace,
+            mass_ratio: settings.mass_ratio(),
+            unit,
+            block,
+            falling,
+            done: 0,
+            ticks: 0,
+            elapsed: 0,
+        })
+    }
+
+    /// Whether the map is finished.
+    pub fn is_done(&self) -> bool {
+        self.block.size == 0
+    }
+
+    /// At most `steps` steps; what they and a start have cost, in steps.
+    fn work(&mut self, steps: u32, ink: &mut FadeLayer) -> u32 {
+        let Some(falling) = &mut self.falling else {
+            let [a1, a2] = self.block.start();
+            match self.search.start(a1, a2) {
+                Ok(Some(falling)) => self.falling = Some(falling),
+                // No angle of the map is refused.
+                Ok(None) | Err(_) => self.found(Flip::Never, ink),
+            }
+            return self.pace.start;
+        };
+        let before = falling.steps();
+        let flip = self.search.advance(falling, steps);
+        let made = falling.steps().wrapping_sub(before);
+        if let Some(flip) = flip {
+            self.found(flip, ink);
+        }
+        made.max(1)
+    }
+
+    fn found(&mut self, flip: Flip<f32>, ink: &mut FadeLayer) {
+        self.block.paint(ink, grey(flip, self.unit));
+        self.falling = None;
+        self.block = self.block.next();
+        self.done += 1;
+    }
+}
+
+/// The grey of a flip, where `unit` is sqrt(l1/g), s.
+pub fn grey(flip: Flip<f32>, unit: f32) -> u8 {
+    match flip {
+        Flip::Never => 0,
+        Flip::Later => LATER,
+        Flip::After(time) => {
+            let level = libm::logf(time / unit) * (f32::from(GREYS) / libm::logf(LIMIT));
+            15 - (level.max(0.0) as u8).min(GREYS - 1)
+        }
+    }
+}
+
+impl<F: Watched<f32>> Scene for FlipsMap<F> {
+    fn new(settings: &Settings) -> Result<Self, Error> {
+        Self::at_pace(settings, FLIPS)
+    }
+
+    fn tick(&mut self, ink: &mut FadeLayer) {
+        self.ticks = self.ticks.wrapping_add(1);
+        if self.is_done() {
+            return;
+        }
+        self.elapsed = self.ticks;
+        let mut left = self.pace.steps;
+        while left > 0 && !self.is_done() {
+            left = left.saturating_sub(self.work(left, ink));
+        }
+    }
+
+    fn draw(&self, _: &Report, canvas: &mut Canvas) {
+        let time = label::time(self.elapsed as f64 / f64::from(TICK_RATE));
+        text::write_over(canvas, &time, Anchor::TopRight);
+        let corner = if self.is_done() {
+            label::mass_ratio(self.mass_ratio)
+        } else {
+            label::percent((100 * self.done) / (WIDTH * ROWS) as u32)
+        };
+        text::write_over(canvas, &corner, Anchor::TopLeft);
+    }
+
+    fn report(&self) -> Report {
+        let time = self.ticks as f64 / f64::from(TICK_RATE);
+        Report { step: self.ticks, time, state: State::default(), energy_error: 0.0, horizon: f32::INFINITY }
+    }
+
+    fn shown(&self) -> Option<Shown> {
+        None
+    }
+}
