@@ -68,15 +68,17 @@ pub const TICK_CYCLES: u32 = 50_000_000 / TICK_RATE;
 pub struct FlipsPace {
     /// Steps.
     pub steps: u32,
-    /// A new start counts as so many.
+    /// A new start counts as so many, ...
     pub start: u32,
+    /// ... one that the energy forbids to turn over as so many.
+    pub never: u32,
 }
-/// Fixed point on a Cortex-M3 at 50 MHz: two fifths of a frame.
-pub const FLIPS_M3: FlipsPace = FlipsPace { steps: 350, start: 25 };
+/// Fixed point on a Cortex-M3 at 50 MHz: nearly half of a frame.
+pub const FLIPS_M3: FlipsPace = FlipsPace { steps: 320, start: 25, never: 8 };
 /// `f32` on a Cortex-M4F at 50 MHz, ...
-pub const FLIPS_M4F: FlipsPace = FlipsPace { steps: 1500, start: 100 };
+pub const FLIPS_M4F: FlipsPace = FlipsPace { steps: 1500, start: 200, never: 10 };
 /// ... and at 168 MHz.
-pub const FLIPS_F405: FlipsPace = FlipsPace { steps: 5000, ..FLIPS_M4F };
+pub const FLIPS_F405: FlipsPace = FlipsPace { steps: 6600, ..FLIPS_M4F };
 /// On this processor.
 pub const FLIPS: FlipsPace = if cfg!(not(target_abi = "eabihf")) {
     FLIPS_M3

@@ -48,7 +48,6 @@ fn played<F: Watched<f32>>(pace: FlipsPace) -> [(u32, Canvas); 2] {
     let mut until = |done: &dyn Fn(&FlipsMap<F>, u32) -> bool| {
         while !done(&scene, ticks) {
             scene.tick(&mut ink);
-            ink.tick();
             ticks += 1;
         }
         let mut canvas = ink.frame().clone();

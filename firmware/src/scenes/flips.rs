@@ -6,7 +6,7 @@ use double_pendulum::{Error, State};
 
 use crate::config::{FLIPS, FlipsPace, TICK_RATE};
 use crate::graphics::canvas::{Canvas, HEIGHT, WIDTH};
-use crate::graphics::fade_layer::FadeLayer;
+use crate::graphics::fade_layer::{FadeLayer, Fading};
 use crate::graphics::label;
 use crate::graphics::text::{self, Anchor};
 use crate::motion::planner::Shown;
@@ -94,10 +94,12 @@ impl Block {
 
     /// Paints it, and what lies opposite.
     fn paint(self, ink: &mut FadeLayer, grey: u8) {
+        let map = ink.frame_mut();
+        map.use_all_greys();
         for y in self.y as i32..(self.y + self.size) as i32 {
             for x in self.x as i32..(self.x + self.size) as i32 {
-                ink.paint(x, y, grey);
-                ink.paint(WIDTH as i32 - 1 - x, HEIGHT as i32 - 1 - y, grey);
+                map.update(x, y, |_| grey);
+                map.update(WIDTH as i32 - 1 - x, HEIGHT as i32 - 1 - y, |_| grey);
             }
         }
     }
@@ -133,11 +135,12 @@ impl<F: Watched<f32>> FlipsMap<F> {
     fn work(&mut self, steps: u32, ink: &mut FadeLayer) -> u32 {
         let Some(falling) = &mut self.falling else {
             let [a1, a2] = self.block.start();
-            match self.search.start(a1, a2) {
-                Ok(Some(falling)) => self.falling = Some(falling),
-                // No angle of the map is refused.
-                Ok(None) | Err(_) => self.found(Flip::Never, ink),
-            }
+            // No angle of the map is refused.
+            let Ok(Some(falling)) = self.search.start(a1, a2) else {
+                self.found(Flip::Never, ink);
+                return self.pace.never;
+            };
+            self.falling = Some(falling);
             return self.pace.start;
         };
         let before = falling.steps();
@@ -170,6 +173,8 @@ pub fn grey(flip: Flip<f32>, unit: f32) -> u8 {
 }
 
 impl<F: Watched<f32>> Scene for FlipsMap<F> {
+    const FADING: Fading = Fading::NEVER;
+
     fn new(settings: &Settings) -> Result<Self, Error> {
         Self::at_pace(settings, FLIPS)
     }

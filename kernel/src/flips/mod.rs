@@ -158,11 +158,12 @@ impl<R: Real, F: Watched<R>> Flips<R, F> {
 
     /// When it was, after `steps` steps and within the next.
     fn passage(&self, steps: u32, before: [Direction<F::Part>; 2], after: [Direction<F::Part>; 2]) -> Flip<R> {
-        let shares = [0, 1].map(|rod| {
-            let ([from, _], to) = (before[rod], after[rod]);
-            if turns_over([from, to[0], to[1]].map(F::Part::sign)) < 0 { from.share(to[0]) } else { R::ONE }
-        });
-        let share = if shares[1] < shares[0] { shares[1] } else { shares[0] };
+        let share = |[from, _]: Direction<F::Part>, [to, cos]: Direction<F::Part>| {
+            if turns_over([from, to, cos].map(F::Part::sign)) < 0 { from.share(to) } else { R::ONE }
+        };
+        let ([upper_before, lower_before], [upper_after, lower_after]) = (before, after);
+        let (upper, lower) = (share(upper_before, upper_after), share(lower_before, lower_after));
+        let share = if lower < upper { lower } else { upper };
         Flip::After((R::from_f64(steps.into()) + share) * self.dt)
     }
 }
@@ -170,11 +171,9 @@ impl<R: Real, F: Watched<R>> Flips<R, F> {
 /// Negative if a rod has come through straight up between the two.
 #[inline(always)]
 fn passes<P: Part>(before: &[Direction<P>; 2], after: &[Direction<P>; 2]) -> i32 {
-    let [upper, lower] = [0, 1].map(|rod| {
-        let ([from, _], [to, cos]) = (before[rod], after[rod]);
-        turns_over([from, to, cos].map(P::sign))
-    });
-    upper | lower
+    let signs = |[from, _]: Direction<P>, [to, cos]: Direction<P>| turns_over([from, to, cos].map(P::sign));
+    let ([upper_before, lower_before], [upper_after, lower_after]) = (*before, *after);
+    signs(upper_before, upper_after) | signs(lower_before, lower_after)
 }
 
 /// Negative if the sine's sign, first before and then after, has changed, and the cosine's is negative.
