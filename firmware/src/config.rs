@@ -75,8 +75,8 @@ pub struct FlipsPace {
 }
 /// Fixed point on a Cortex-M3 at 50 MHz: nearly half of a frame.
 pub const FLIPS_M3: FlipsPace = FlipsPace { steps: 320, start: 25, never: 8 };
-/// `f32` on a Cortex-M4F at 50 MHz, ...
-pub const FLIPS_M4F: FlipsPace = FlipsPace { steps: 1500, start: 200, never: 10 };
+/// `f32` on a Cortex-M4F at 25 MHz, ...
+pub const FLIPS_M4F: FlipsPace = FlipsPace { steps: 400, start: 200, never: 10 };
 /// ... and at 168 MHz.
 pub const FLIPS_F405: FlipsPace = FlipsPace { steps: 6600, ..FLIPS_M4F };
 /// On this processor.
