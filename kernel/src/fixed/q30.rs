@@ -27,13 +27,10 @@ pub(crate) mod watch {
 
     pub fn look_at(kind: &str, number: i64) {
         assert!(i32::try_from(number).is_ok(), "{kind} {number:#x} does not fit");
-        if kind != "Q30" {
-            LARGEST.set(LARGEST.get().max(number.unsigned_abs()));
-        }
+        LARGEST.set(LARGEST.get().max(number.unsigned_abs()));
     }
 
-    /// How near to the end of its word, 1, a rate of change or a product came in `computation`; the directions are always
-    /// about half-way.
+    /// How near to the end of its word, 1, anything came in `computation`; directions are always about half-way.
     pub fn largest(computation: impl FnOnce()) -> f64 {
         LARGEST.set(0);
         computation();

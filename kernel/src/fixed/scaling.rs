@@ -134,13 +134,8 @@ impl Scaling {
             bounds.p2 * momentum2,
         ];
         let fastest = rates.into_iter().fold(0.0, f64::max);
-        [rate / fastest, libm::sqrt(torque / self.weight())]
-    }
-
-    /// The greatest torque of gravity.
-    pub fn weight(&self) -> f64 {
         let [gravity1, gravity2] = self.gravity;
-        libm::fmax(gravity1, gravity2 * self.norm)
+        [rate / fastest, libm::sqrt(torque / libm::fmax(gravity1, gravity2 * self.norm))]
     }
 }
 
@@ -153,10 +148,11 @@ impl Scaling {
     /// Alters the unit of time a little, so that G1 and G2 are whole numbers of `steps`.
     ///
     /// G2 may be a little off, for that only alters the unit of time, which is known. The ratio of G1 to it may not: where
-    /// bob 1 is light, the fast oscillation goes by the small difference of G1 and nu^2 G2.
+    /// bob 1 is light, the fast oscillation goes by the small difference of G1 and nu^2 G2. Where gravity is so weak that this
+    /// would alter the unit by more than 2^-10, it is left as it is.
     pub fn round_gravity(&mut self, steps: f64) {
         let [gravity1, gravity2] = self.gravity;
-        if gravity2 == 0.0 {
+        if gravity2 * steps < f64::from(1 << 17) {
             return;
         }
         let lost = |whole: f64| {
@@ -190,17 +186,13 @@ impl<R: FixedPoint> Units<R> for Shifts {
     fn forces(&self, force: R::Torque) -> [R::Torque; 2] {
         [R::torque_down(force, self.upper + self.momentum), R::torque_down(force, self.lower)]
     }
-    #[inline(always)]
-    fn inverse(&self, product: R) -> R {
-        product.up(self.inverse).down(self.momentum)
-    }
 }
 
 impl Shifts {
     /// Rods and masses that are about equal.
     pub const NONE: Self = Self { momentum: 0, inverse: 0, upper: 0, lower: 0 };
 
-    /// As [`inverse`](Units::inverse), on a product of two words.
+    /// S^2 r beside m r, as a product of two words.
     #[inline(always)]
     pub fn inverse_product(&self, product: i64) -> i64 {
         (product << self.inverse) >> self.momentum

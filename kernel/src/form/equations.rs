@@ -91,11 +91,6 @@ pub(crate) trait Units<R: Ring>: Copy {
     fn weight(&self, torque: R::Torque) -> R::Torque {
         torque
     }
-    /// S^2 r beside m r; and S S' r, by which r falls.
-    #[inline(always)]
-    fn inverse(&self, product: R) -> R {
-        product
-    }
 }
 
 /// All quantities in one system of units.
@@ -128,10 +123,6 @@ impl<R: Ring, U: Units<R>> Units<R> for Reverse<U> {
     #[inline(always)]
     fn forces(&self, force: R::Torque) -> [R::Torque; 2] {
         self.0.forces(force)
-    }
-    #[inline(always)]
-    fn inverse(&self, product: R) -> R {
-        self.0.inverse(product)
     }
 }
 

@@ -29,7 +29,8 @@ struct Candidate([f64; 7]);
 impl Candidate {
     fn random(random: &mut Random) -> Self {
         let mut most = |most: f64| most * random.next();
-        Self([most(3.3), most(3.3), most(3.2), most(3.2), most(3.2), most(6.0), most(0.5) + 0.5])
+        let [mass, length] = [most(1.0), most(1.0)].map(|x| 11.0 * x * x * x);
+        Self([mass, length, most(3.2), most(3.2), most(3.2), most(6.0), most(0.5) + 0.5])
     }
 
     fn near(self, random: &mut Random, distance: f64) -> Self {
@@ -37,7 +38,7 @@ impl Candidate {
     }
 
     fn parameters(&self) -> Parameters<f64> {
-        let [mass, length, ..] = self.0.map(|power| libm::exp2(power.clamp(-3.33, 3.33)));
+        let [mass, length, ..] = self.0.map(|power| libm::exp2(power.clamp(-11.0, 11.0)));
         Parameters { m1: 1.0, m2: mass, l1: 1.0, l2: length, g: 9.81 }
     }
 
@@ -65,7 +66,10 @@ impl Candidate {
     /// How near to the end of its word, 1, anything comes between two looks at the energy that begin with as much as
     /// there may be.
     fn reach(&self) -> Result<f64, Error> {
-        let mut motion = self.motion()?;
+        let mut motion = match self.motion() {
+            Err(Error::OutOfRange { .. }) => return Ok(0.0),
+            motion => motion?,
+        };
         let mut still = motion;
         still.z[4..].fill(OFFSET);
         let (potential, most) = (still.energy(), motion.units.most_energy);
@@ -73,7 +77,10 @@ impl Candidate {
         for momentum in &mut motion.z[4..] {
             *momentum = libm::rint((*momentum - OFFSET) as f64 * more) as i64 + OFFSET;
         }
-        Ok(watch::largest(|| motion.advance(UPKEEP)))
+        Ok(watch::largest(|| {
+            motion.advance(UPKEEP);
+            motion.keep_up();
+        }))
     }
 }
 
@@ -82,7 +89,7 @@ impl Candidate {
 fn the_motion_that_leads_furthest_stays_in_range() -> Result<(), Error> {
     let mut random = Random(1);
     let mut furthest = (0.0, Candidate([0.0; 7]));
-    for _ in 0..40 {
+    for _ in 0..400 {
         let mut candidate = Candidate::random(&mut random);
         let (mut reach, mut distance) = (candidate.reach()?, 1.0);
         while distance > 1e-3 {
@@ -98,7 +105,7 @@ fn the_motion_that_leads_furthest_stays_in_range() -> Result<(), Error> {
             furthest = (reach, candidate);
         }
     }
-    assert!((0.5..0.75).contains(&furthest.0), "as large as can be, and in range: {furthest:?}");
+    assert!((0.6..0.8).contains(&furthest.0), "as large as can be, and in range: {furthest:?}");
     Ok(())
 }
 
@@ -125,12 +132,13 @@ fn too_much_energy_is_noticed() -> Result<(), Error> {
 fn the_energy_of_the_words_is_that_of_the_motion() -> Result<(), Error> {
     let mut random = Random(2);
     for _ in 0..200 {
-        let motion = Candidate::random(&mut random).motion()?;
+        let Ok(motion) = Candidate::random(&mut random).motion() else { continue };
         let Scaling { momenta: [_, unit2], time, shifts, .. } = motion.units.scaling;
         let down = (shifts.momentum + shifts.upper) as i32;
         let exact = libm::scalbn(motion.units.energy * unit2 * time, 60 - down);
+        // from far masses and rods few bits are left of it
         let error = libm::fabs(motion.energy() as f64 - exact) / motion.units.most_energy as f64;
-        assert!(error < 1e-4, "{error:e} of {motion:?}");
+        assert!(error < 0.02, "{error:e} of {motion:?}");
     }
     Ok(())
 }

@@ -57,8 +57,10 @@ impl Setting {
         let ratio = parameters.m1 / parameters.m2 * seconds.norm * seconds.norm;
         let sum = 1.0 + (1.0 + seconds.norm) * (1.0 + seconds.norm) / ratio;
         let force = kinetic * libm::sqrt(parameters.m2 / parameters.m1);
-        let longest =
-            libm::fmin(RATE / libm::sqrt(2.0 * kinetic * sum), libm::sqrt(TORQUE / (force + seconds.weight())));
+        let longest = libm::fmin(
+            RATE / libm::sqrt(2.0 * kinetic * sum),
+            libm::sqrt(TORQUE / (force + seconds.gravity.into_iter().fold(0.0, f64::max))),
+        );
 
         let elbow = Bounds::new(parameters, energy).elbow * libm::sqrt(1.0 + parameters.m2 / parameters.m1);
         let limit = libm::fmin(libm::scalbn(longest, 1 - COARSEST as i32), RESOLVED / elbow);

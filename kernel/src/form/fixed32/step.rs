@@ -2,8 +2,8 @@
 
 use super::Fixed32State;
 use super::setting::{COARSEST, Setting};
-use crate::fixed::{Q30, Shifts, Slope, Torque};
-use crate::form::equations::{Reverse, Units, turning};
+use crate::fixed::{FixedPoint, Q30, Shifts, Slope, Torque};
+use crate::form::equations::{Reverse, turning};
 use crate::ring::Ring;
 
 /// Whether to compile the step once for every usual length, with shifts that cost nothing. A chip with a floating-point unit
@@ -60,8 +60,12 @@ impl Fixed32State {
             let ([sin1, cos1, s, c], [p1, p2]) = (turns.map(turned), torques.map(pushed));
             [sin1, cos1, s, c, p1, p2]
         };
-        // half of -r' = 2 S S' r^2
-        let half_fall = |s_rate: Slope, s: Q30, r: Q30| units.inverse(s_rate.number() * (s * r)).slope(r);
+        // Half of -r' = 2 S S' r^2. S r is 2^(i/2) at most where r is 2^i, so half of i goes where there is room for it, the
+        // rest to what r changes in half a step.
+        let half_up = units.inverse / 2;
+        let half_fall =
+            |s_rate: Slope, s: Q30, r: Q30| (s_rate.number() * (s * r)).up(half_up).down(units.momentum).slope(r);
+        let fallen = |fall: Slope| turned(fall).up(units.inverse - half_up);
 
         // All is rounded down. Every second slope is taken backwards in time, with reversed momenta, so that as much is
         // rounded up.
@@ -70,14 +74,14 @@ impl Fixed32State {
         let [sin1, cos1, s, c, p1, p2] = moved(turns1, torques1);
         let z2 = [z[0] + sin1, z[1] + cos1, z[2] + s, z[3] + c, -z[4] - p1, -z[5] - p2];
         let fall1 = half_fall(turns1[2], z[2], inverse);
-        let r2 = inverse - turned(fall1 + fall1);
+        let r2 = inverse - fallen(fall1 + fall1);
 
         let rates2 = reversed(&z2, r2);
         let (turns2, torques2) = (turning(&z2, rates2.angles), rates2.momenta);
         let change = moved(turns2, torques2);
         let z3: [Q30; 6] = core::array::from_fn(|i| z[i] - change[i]);
         let fall2 = half_fall(turns2[2], z2[2], r2);
-        let r3 = inverse + turned(fall2 + fall2);
+        let r3 = inverse + fallen(fall2 + fall2);
 
         let rates3 = rates(&z3, r3);
         let (turns3, torques3) = (turning(&z3, rates3.angles), rates3.momenta);
@@ -86,7 +90,7 @@ impl Fixed32State {
         let [sin1, cos1, s, c, p1, p2] = moved(turns3.map(|k| k + k), torques3.map(|k| k + k));
         let z4 = [z[0] + sin1, z[1] + cos1, z[2] + s, z[3] + c, -z[4] - p1, -z[5] - p2];
         let fall3 = half_fall(turns3[2], z3[2], r3);
-        let r4 = inverse - turned((fall3 + fall3) + (fall3 + fall3));
+        let r4 = inverse - fallen((fall3 + fall3) + (fall3 + fall3));
 
         let rates4 = reversed(&z4, r4);
         let (turns4, torques4) = (turning(&z4, rates4.angles), rates4.momenta);

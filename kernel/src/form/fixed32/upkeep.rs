@@ -1,7 +1,6 @@
 //! What is done every few steps: lengths are restored, the energy is looked at.
 
 use super::{Fixed32State, OFFSET};
-use crate::fixed::Q30;
 use crate::form::equations::Units;
 
 /// By how much the square of a length may be off, with 60 bits after the point.
@@ -42,11 +41,13 @@ impl Fixed32State {
         let u = shifts.rate(momentum, self.inverse);
         let product = |a: i32, b: i32| i64::from(a) * i64::from(b);
         let [gravity1, gravity2] = coefficients.gravity.map(|gravity| gravity.0);
-        let heights = [Q30(1 << 30) - cos1, coefficients.norm - (c * cos1 + s * sin1)];
+        // up to 2, which is too much for a word
+        let heights =
+            [(1 << 30) - i64::from(cos1.0), i64::from(coefficients.norm.0) - i64::from((c * cos1 + s * sin1).0)];
         let (upper, lower) = (shifts.momentum + shifts.upper, shifts.lower);
         (product(momentum.0, u.0) >> (1 + shifts.upper + lower))
             + (product(p2.0, p2.0) >> (1 + upper + lower))
-            + (product(gravity1, heights[0].0) >> (3 + lower))
-            + (product(gravity2, heights[1].0) >> (3 + upper))
+            + ((i64::from(gravity1) * heights[0]) >> (3 + lower))
+            + ((i64::from(gravity2) * heights[1]) >> (3 + upper))
     }
 }
