@@ -192,11 +192,12 @@ fn what_has_no_room_is_refused_by_name() -> Result<(), Error> {
             let refused = refuse(&good, &start, dt);
             assert!(matches!(refused, Some(Error::OutOfRange { parameter: Parameter::Dt, .. })), "{refused:?}");
         }
-        for parameters in
-            [Parameters { m2: 1e5, ..good }, Parameters { m2: 1e-5, ..good }, Parameters { l2: 1e5, ..good }]
-        {
-            let refused = refuse(&parameters, &start, 1e-9);
-            assert!(matches!(refused, Some(Error::OutOfRange { .. })), "{refused:?}");
+        for (parameters, parameter, value) in [
+            (Parameters { m2: 1e5, ..good }, Parameter::M2, 1e5),
+            (Parameters { m2: 1e-5, ..good }, Parameter::M2, 1e-5),
+            (Parameters { l2: 1e5, ..good }, Parameter::L2, 1e5),
+        ] {
+            assert_eq!(refuse(&parameters, &start, 1e-9), Some(Error::OutOfRange { parameter, value }));
         }
         let refused = refuse(&good, &State { p1: 1e300, ..start }, 1e-3);
         assert!(refused.is_some(), "an energy beyond all bounds");
@@ -205,7 +206,14 @@ fn what_has_no_room_is_refused_by_name() -> Result<(), Error> {
             other => panic!("{other:?}"),
         };
         assert_eq!(refuse(&good, &start, 0.999 * limit), None, "the limit it names is accepted");
+        let heavy = Parameters { m1: 1024.0, m2: 1024.0, ..good };
+        let heavy = refuse(&heavy, &start, 1.0);
+        assert_eq!(heavy, refuse(&good, &start, 1.0), "only the ratio of the masses counts");
     }
+    let light = |places| Parameters { m2: 0.5_f64.powi(places), ..good };
+    let refused = refusal::<Fixed64Form<12>>(&light(13), &start, 1e-4);
+    assert!(matches!(refused, Some(Error::OutOfRange { .. })), "{refused:?}");
+    assert_eq!(refusal::<Fixed64Form<12>>(&light(12), &start, 1e-4), None, "the lightest bob 2");
     Ok(())
 }
 

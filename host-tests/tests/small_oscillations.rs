@@ -159,6 +159,33 @@ fn linear_motion_is_the_limit_of_the_exact_motion() {
     }
 }
 
+/// What is drawn are the sines and cosines of the angles but for the terms of the series that are left out.
+fn directions_are_those_of_the_angles<R: Real>() {
+    let modes = Modes::new(&Parameters::equal_rods(1.0, 0.25, 9.8).cast::<R>()).expect("valid parameters");
+    let motion = SmallOscillations::<R>::new(modes, &Motion::at_rest(0.0, FRAC_PI_6).cast());
+    for tick in 0..600 {
+        let t = R::from_f64(f64::from(tick) / 60.0);
+        let angles = motion.at(t).angles().map(R::to_f64);
+        for ([sine, cosine], a) in
+            motion.directions(t).map(|direction| direction.map(R::to_f64)).into_iter().zip(angles)
+        {
+            let rounding = tolerances::FORMULAS.of::<R>();
+            assert!((sine - a.sin()).abs() <= a.abs().powi(5) / 120.0 + rounding, "{t:?}: sin {a} = {sine}");
+            assert!((cosine - a.cos()).abs() <= a.powi(6) / 720.0 + rounding, "{t:?}: cos {a} = {cosine}");
+        }
+    }
+}
+
+#[test]
+fn directions_are_those_of_the_angles_f32() {
+    directions_are_those_of_the_angles::<f32>();
+}
+
+#[test]
+fn directions_are_those_of_the_angles_f64() {
+    directions_are_those_of_the_angles::<f64>();
+}
+
 #[test]
 fn amplitude_and_phase_are_the_same_oscillation() {
     let mut rng = Rng::with_seed(4);
@@ -204,6 +231,9 @@ fn impossible_periods_are_refused() {
     let too_small = |value, limit| Error::TooSmall { parameter: Parameter::FrequencyRatio, value, limit };
     assert_eq!(refusal(1, 1, [1.0, 1.0]), too_small(1.0, 1.0));
     assert_eq!(refusal(3, 2, [4.0, 1.0]), too_small(1.5, 2.0));
+    // at the limit bob 2 would have no mass
+    assert_eq!(refusal(2, 1, [4.0, 1.0]), too_small(2.0, 2.0));
+    assert_eq!(refusal(2, 1, [1.0, 4.0]), too_small(2.0, 2.0));
     assert_eq!(refusal(3, 2, [0.0, 1.0]), Error::NotPositive { parameter: Parameter::L1, value: 0.0 });
 }
 
