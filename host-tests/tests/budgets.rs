@@ -23,8 +23,6 @@ use object::elf::{SHF_ALLOC, SHF_WRITE};
 use object::{Object, ObjectSection, SectionFlags, SectionKind};
 use support::{application, settings, toolchain};
 
-/// What QEMU's clock takes for an instruction, s.
-const INSTRUCTION: f64 = 32e-9;
 /// Frames that pay for the start of a scene, or catch up with what it cost.
 const SETTLING: usize = 6;
 /// Frames of each scene after those, and frames in which a motion asked for is computed.
@@ -113,7 +111,7 @@ fn measure(board: &'static Board) -> Result<(Memory, f64), CountError> {
     let Cost { instructions, cycles, .. } = profile.whole();
     let highest = exercise(&mut machine)?;
     let stack = stack.reached(&mut machine)?;
-    let executed = f64::from(highest) / f64::from(board.hertz) / INSTRUCTION;
+    let executed = f64::from(highest) / f64::from(board.hertz) / board.instruction();
     let cycles = executed * cycles as f64 / instructions as f64;
     let idle = 1.0 - cycles * f64::from(TICK_RATE) / f64::from(board.hertz);
     Ok((Memory { stack, ..sections(&elf) }, idle))

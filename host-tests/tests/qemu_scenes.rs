@@ -19,9 +19,8 @@ use support::{application, settings, toolchain};
 const FRAMES: usize = 3;
 const EVERY: u32 = 25;
 
-/// What QEMU's clock takes for an instruction when it counts them, and a cycle of the board's processor at 50 MHz, ns.
-const INSTRUCTION: f64 = 32.0;
-const CYCLE: f64 = 20.0;
+/// A cycle of the board's processor at 50 MHz, s.
+const CYCLE: f64 = 20e-9;
 /// A frame of a 50 MHz processor, cycles.
 const FRAME: f64 = 50e6 / 60.0;
 /// Frames after the start that are not watched.
@@ -113,7 +112,7 @@ fn every_scene_keeps_within_its_share_of_a_frame() -> Result<(), CountError> {
             }
             let Cost { instructions, cycles, .. } = profile.whole();
             let cycles_per_instruction = cycles as f64 / instructions as f64;
-            let [scene, busy] = [scene, busy].map(|cycles| f64::from(cycles) * CYCLE / INSTRUCTION);
+            let [scene, busy] = [scene, busy].map(|cycles| f64::from(cycles) * CYCLE / board.instruction());
             let share = |instructions: f64| instructions * cycles_per_instruction / FRAME;
             println!(
                 "{:15} {:12} scene {scene:7.0} instructions of {cycles_per_instruction:.2} cycles, {:4.1} % of a frame; \

@@ -138,7 +138,7 @@ impl<R: Real, F: Watched<R>> Flips<R, F> {
             if falling.steps >= self.steps {
                 return Some(Flip::Later);
             }
-            self.form.advance(&mut falling.carried, 1);
+            self.form.advance_one(&mut falling.carried);
             let before = core::mem::replace(&mut falling.heads, F::heads(&falling.carried));
             if passes(&before, &falling.heads) < 0 {
                 return Some(self.passage(falling.steps, before, falling.heads));

@@ -73,16 +73,9 @@ impl<R: Real, S: Sum<R>, I: Inverse<R>> Form<R> for DirectionForm<R, S, I> {
     fn advance(&self, carried: &mut Self::Carried, steps: u32) {
         let mut left = steps;
         while left > 0 {
-            let until_restoring = RESTORING - carried.steps as u32 % RESTORING;
-            let run = left.min(until_restoring);
-            for _ in 0..run {
-                self.step(carried);
-            }
-            carried.steps += u64::from(run);
+            let run = left.min(RESTORING - carried.steps as u32 % RESTORING);
+            self.run(carried, run);
             left -= run;
-            if run == until_restoring {
-                self.restore_lengths(carried);
-            }
         }
     }
 
@@ -137,6 +130,18 @@ impl<R: Real, S: Sum<R>, I: Inverse<R>> DirectionForm<R, S, I> {
             inverse: words.number()?,
             steps: words.word()?,
         })
+    }
+
+    /// Steps, at most to the next restoring of the lengths.
+    #[inline(always)]
+    pub(super) fn run(&self, carried: &mut DirectionState<R, S>, steps: u32) {
+        for _ in 0..steps {
+            self.step(carried);
+        }
+        carried.steps += u64::from(steps);
+        if carried.steps as u32 % RESTORING == 0 {
+            self.restore_lengths(carried);
+        }
     }
 
     #[inline(always)]

@@ -23,6 +23,12 @@ pub trait Watched<R: Real>: Form<R> {
     /// The motion that starts from `state`, whose energy is at most that of `above`: in the same units.
     #[doc(hidden)]
     fn start_below(&self, above: &Self::Carried, state: &State<R>) -> Result<Self::Carried, Error>;
+    /// As [`advance`](Form::advance) by one step, for a loop that looks at each.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn advance_one(&self, carried: &mut Self::Carried) {
+        self.advance(carried, 1);
+    }
 }
 
 impl<R: Real + Part, S: Sum<R>, I: Inverse<R>> Watched<R> for DirectionForm<R, S, I> {
@@ -33,6 +39,10 @@ impl<R: Real + Part, S: Sum<R>, I: Inverse<R>> Watched<R> for DirectionForm<R, S
     }
     fn start_below(&self, _: &DirectionState<R, S>, state: &State<R>) -> Result<DirectionState<R, S>, Error> {
         self.start(state)
+    }
+    #[inline(always)]
+    fn advance_one(&self, carried: &mut DirectionState<R, S>) {
+        self.run(carried, 1);
     }
 }
 

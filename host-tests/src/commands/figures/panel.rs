@@ -14,7 +14,7 @@ use crate::emulator::qemu::Screenshot;
 
 /// The moment of a scene's frame, ticks: what moves is well under way; the map of flips is finished.
 fn moment(scene: SceneName) -> u32 {
-    TICK_RATE * if scene == SceneName::Flips { 75 } else { 8 }
+    TICK_RATE * if scene == SceneName::Flips { 60 } else { 8 }
 }
 
 /// The file of a scene in the folder of frames.
@@ -37,7 +37,7 @@ pub fn seconds(scene: SceneName) -> f64 {
         SceneName::Figure7 => 20.0,
         SceneName::SmallLight | SceneName::SmallEqual | SceneName::SmallHeavy => 4.0,
         SceneName::Frequencies => 3.0,
-        SceneName::Flips => 75.0,
+        SceneName::Flips => 60.0,
         _ => 10.0,
     }
 }

@@ -25,8 +25,8 @@ const POLL: Duration = Duration::from_millis(2);
 pub enum Clock {
     /// The host's clock: as fast as the real board, as long as the host keeps up.
     Real,
-    /// The count of executed instructions, 32 ns each, and no waiting while the board sleeps: repeatable to the bit on
-    /// any host however busy, and several times as fast as the real board.
+    /// The count of executed instructions, each of which takes [as long as any](Board::instruction), and no waiting while the
+    /// board sleeps: repeatable to the bit on any host however busy, and several times as fast as the real board.
     Counted,
 }
 
@@ -108,7 +108,9 @@ impl Machine {
             command.args(["-semihosting-config", "enable=on,target=native"]);
         }
         match settings.clock {
-            Clock::Counted => command.args(["-icount", "shift=5,sleep=off"]),
+            Clock::Counted => {
+                command.arg("-icount").arg(format!("shift={},sleep=off", settings.board.instruction_shift()))
+            }
             // A host that holds QEMU up for seconds is no reason for the board to start again.
             Clock::Real => command.args(["-action", "watchdog=none"]),
         };
