@@ -20,6 +20,8 @@ use super::row::{Row, row};
 pub const DIRECT_REFILL: u64 = 1;
 /// The same after any other instruction that the next one in memory does not follow: bx, a pop of pc; "normally 2".
 pub const INDIRECT_REFILL: u64 = 2;
+/// Cycles more if a taken branch leads to a 32-bit instruction off a word's boundary, of which the first fetch brings half.
+pub const UNALIGNED_TARGET: u64 = 1;
 /// Cycles more until a floating-point result can be consumed (DDI 0439, notes of table 7-1).
 pub const RESULT_USE_STALL: u64 = 1;
 

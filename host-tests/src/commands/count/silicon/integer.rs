@@ -113,6 +113,22 @@ fn a_taken_branch_refills_in_a_cycle_and_a_return_in_two() {
 }
 
 #[test]
+fn a_branch_to_a_32_bit_instruction_off_a_word_s_boundary_takes_a_cycle_more() {
+    let turn = |core, target, address| {
+        let mut registers = Registers::default();
+        let mut pipeline = Pipeline::new(core);
+        let branch = pipeline.execute(decoded(BNE), &registers, true).cycles;
+        registers.general[15] = address;
+        let first = pipeline.execute(decoded(target), &registers, false).cycles;
+        branch + first + pipeline.execute(decoded(target), &registers, false).cycles
+    };
+    for core in [M3, M4F] {
+        assert_eq!([0x100, 0x102].map(|address| turn(core, CMP_W_R0, address)), [4, 5]);
+        assert_eq!([0x100, 0x102].map(|address| turn(core, CMP_R0, address)), [4, 4]);
+    }
+}
+
+#[test]
 fn long_products_are_costly_on_the_m3_alone() {
     assert_eq!([M3, M4F].map(|core| cycles(core, 10, &[UMULL])), [50, 10]);
     assert_eq!([M3, M4F].map(|core| cycles(core, 10, &[UMLAL])), [70, 10]);
