@@ -18,6 +18,7 @@ use crate::sealed::Sealed;
     feature = "serde",
     serde(bound(serialize = "[R; N]: serde::Serialize", deserialize = "[R; N]: serde::Deserialize<'de>"))
 )]
+#[repr(align(32))]
 pub struct Lanes<R, const N: usize>(pub [R; N]);
 
 impl<R: Copy, const N: usize> Lanes<R, N> {

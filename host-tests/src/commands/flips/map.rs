@@ -99,8 +99,23 @@ impl Map {
 /// The flips of some starts, by the widest vectors that this processor has.
 pub fn flips(search: &Search, starts: &[[f32; 2]]) -> Result<Vec<Flip<f32>>, Error> {
     let mut flips = vec![Flip::Never; starts.len()];
-    pulp::Arch::new().dispatch(|| each(search, starts, &mut flips))?;
+    pulp::Arch::new().dispatch(Each { search, starts, flips: &mut flips })?;
     Ok(flips)
+}
+
+/// A closure would be compiled by itself, for any processor.
+struct Each<'a> {
+    search: &'a Search,
+    starts: &'a [[f32; 2]],
+    flips: &'a mut [Flip<f32>],
+}
+
+impl pulp::NullaryFnOnce for Each<'_> {
+    type Output = Result<(), Error>;
+    #[inline(always)]
+    fn call(self) -> Self::Output {
+        each(self.search, self.starts, self.flips)
+    }
 }
 
 /// The same, for the processor that its caller is compiled for.

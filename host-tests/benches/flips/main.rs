@@ -1,0 +1,119 @@
+//! `cargo bench --bench flips`: steps of the map of flips, in vectors and one by one, beside plain C, in one run and in turns.
+//!
+//! The C program, the page's equations in `f32` with the system's `sinf`, is compiled here by `cc -O3`. Every way takes the same
+//! starts, step and limit; the fastest of its runs counts.
+
+use std::path::PathBuf;
+use std::process::Command;
+use std::time::Instant;
+
+use anyhow::{Context, Result, ensure};
+use double_pendulum::Parameters;
+use double_pendulum::flips::Flip;
+use host_tests::commands::flips::map::{Map, Search, each, flips};
+use host_tests::commands::flips::square::Square;
+use host_tests::emulator::toolchain::workspace;
+use rayon::prelude::*;
+
+/// Starts across the map, and how long is waited, sqrt(l1/g).
+const SIDE: usize = 128;
+const LIMIT: f32 = 100.0;
+/// Runs of each way, in turns.
+const ROUNDS: usize = 30;
+/// Starts that a thread takes at once.
+const PORTION: usize = 1024;
+/// Times the speed of C that are asked on one thread of vectors of 8 numbers, and of 4: 280 and 130 million steps a second where
+/// plain C made 11.
+const GOALS: [f64; 2] = [280.0 / 11.0, 130.0 / 11.0];
+
+type Starts = [[f32; 2]];
+type Way = (&'static str, fn(&Search, &Starts) -> Result<Vec<Flip<f32>>>, Option<f64>);
+
+const WAYS: [Way; 4] = [
+    ("this kernel: one start after the other", alone, None),
+    ("16 side by side, any x86-64", baseline, Some(GOALS[1])),
+    ("16 side by side, vectors as this processor has them", vectors, Some(GOALS[0])),
+    ("the same on all threads", threads, None),
+];
+
+fn alone(search: &Search, starts: &Starts) -> Result<Vec<Flip<f32>>> {
+    Ok(starts.iter().map(|&[a1, a2]| search.of(a1, a2)).collect::<Result<_, _>>()?)
+}
+
+fn baseline(search: &Search, starts: &Starts) -> Result<Vec<Flip<f32>>> {
+    let mut flips = vec![Flip::Never; starts.len()];
+    each(search, starts, &mut flips)?;
+    Ok(flips)
+}
+
+fn vectors(search: &Search, starts: &Starts) -> Result<Vec<Flip<f32>>> {
+    Ok(flips(search, starts)?)
+}
+
+fn threads(search: &Search, starts: &Starts) -> Result<Vec<Flip<f32>>> {
+    let portions = starts.par_chunks(PORTION).map(|portion| vectors(search, portion));
+    Ok(portions.collect::<Result<Vec<_>>>()?.concat())
+}
+
+/// Million steps a second of a way, and what it found.
+fn rate(way: &Way, map: &Map, starts: &Starts) -> Result<(f64, Vec<Flip<f32>>)> {
+    let search = map.search(1)?;
+    let start = Instant::now();
+    let found = way.1(&search, starts)?;
+    let seconds = start.elapsed().as_secs_f64();
+    let steps = |flip: &Flip<f32>| match *flip {
+        Flip::Never => 0.0,
+        Flip::After(time) => (f64::from(time) / map.dt).ceil(),
+        Flip::Later => (f64::from(map.limit) / map.dt).ceil(),
+    };
+    Ok((found.iter().map(steps).sum::<f64>() / seconds / 1e6, found))
+}
+
+/// The C program.
+fn compile() -> Result<PathBuf> {
+    let folder = workspace().join("target/peers-c");
+    std::fs::create_dir_all(&folder)?;
+    let program = folder.join("flips");
+    let mut command = Command::new("cc");
+    command.current_dir(workspace().join("host-tests/peers-c"));
+    command.args(["-O3", "-DSIN=sinf", "-DCOS=cosf", "flips.c", "textbook.c", "-lm", "-o"]).arg(&program);
+    ensure!(command.status().context("no C compiler")?.success(), "cc refuses flips.c");
+    Ok(program)
+}
+
+/// Its million steps a second.
+fn rate_of_c(program: &PathBuf, map: &Map) -> Result<f64> {
+    let most = (f64::from(map.limit) / map.dt).ceil();
+    let output = Command::new(program).args([SIDE.to_string(), map.dt.to_string(), most.to_string()]).output()?;
+    let text = String::from_utf8(output.stdout)?;
+    let numbers: Vec<f64> = text.split_whitespace().map(str::parse).collect::<Result<_, _>>()?;
+    let [steps, nanoseconds] = numbers[..] else { anyhow::bail!("flips.c says {text:?}") };
+    Ok(1e3 * steps / nanoseconds)
+}
+
+fn main() -> Result<()> {
+    let map = Map::new(Parameters::equal_rods(1.0, 1.0, 1.0), LIMIT, Square::whole([SIDE, SIDE]))?;
+    let starts: Vec<_> = map.starts(0..map.square.rows()).collect();
+    let program = compile()?;
+    let (mut c, mut rates) = (0.0_f64, [0.0_f64; WAYS.len()]);
+    for _ in 0..ROUNDS {
+        c = c.max(rate_of_c(&program, &map)?);
+        let mut all = Vec::new();
+        for (way, best) in WAYS.iter().zip(&mut rates) {
+            let (rate, found) = rate(way, &map, &starts)?;
+            *best = best.max(rate);
+            all.push(found);
+        }
+        ensure!(all.iter().all(|found| *found == all[0]), "not the same flips");
+    }
+    let threads = rayon::current_num_threads();
+    println!("map of {SIDE} x {SIDE} starts, limit {LIMIT} sqrt(l/g), {threads} threads");
+    println!("{:51} {:>9} {:>8} {:>10}", "", "M steps/s", "times C", "times one");
+    let row = |name: &str, rate: f64| format!("{name:51} {rate:9.1} {:8.1} {:10.2}", rate / c, rate / rates[0]);
+    println!("{}", row("plain C at -O3, the page's equations, sinf", c));
+    for ((name, _, goal), rate) in WAYS.iter().zip(rates) {
+        let verdict = |goal| format!("  {goal:.0} asked: {}", if rate >= goal * c { "met" } else { "MISSED" });
+        println!("{}{}", row(name, rate), goal.map_or_else(String::new, verdict));
+    }
+    Ok(())
+}
