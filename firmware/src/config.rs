@@ -1,18 +1,15 @@
 //! Every number that may be tuned, with its unit and the arithmetic behind it.
 
-use double_pendulum::plan::Costs;
+use double_pendulum::plan::{Budget, Costs, Problem};
 
 // ---- Time -----------------------------------------------------------------------------------------------------------
 
 /// Ticks per second: one tick moves the pendulum by one frame's worth of time.
 pub const TICK_RATE: u32 = 60;
-/// Integration steps per tick. At dt = 1/240 s the RK4 step error of a metre-long pendulum stays far below a pixel
-/// for as long as its motion can be predicted at all.
+/// RK4 steps per tick, 1/240 s, of what a scene shows beside the motion that is planned.
 pub const STEPS_PER_TICK: u32 = 4;
-/// Integration steps per simulated second: 60 x 4 = 240.
-pub const STEPS_PER_SECOND: u32 = TICK_RATE * STEPS_PER_TICK;
-/// The integration step dt, s: 1/240.
-pub const DT: f64 = 1.0 / STEPS_PER_SECOND as f64;
+/// Their length, s.
+pub const DT: f64 = 1.0 / (TICK_RATE * STEPS_PER_TICK) as f64;
 /// The most ticks integrated before a frame is drawn: a board too slow for every frame still shows
 /// 60/15 = 4 per second. Ticks beyond it wait for the next frame; none is ever skipped.
 pub const MOST_TICKS_PER_FRAME: u32 = 15;
@@ -34,32 +31,72 @@ pub const HALF_PIXEL: f32 = 0.5;
 
 // ---- The plan -------------------------------------------------------------------------------------------------------
 
-/// For how long each scene is planned, s: longer than the motion of the liveliest can be predicted in `f32`.
-pub const PLANNED: f64 = 10.0;
-/// What the search may cost, ticks of the processor's time: 20 s. It has about half of each tick.
-pub const PLANNING_TICKS: f32 = 20.0 * TICK_RATE as f32;
-/// A piece of the search, cycles, unless a single step is more: 0.4 ms of the Cortex-M3. The most expensive step, of order 8 in
-/// `f64`, takes it 2.7 ms.
+/// For how long each scene is planned, s: longer than the motion of the liveliest can be predicted in 64 bits. One that is
+/// right for so long is looked at farther as time goes on, always so far ahead.
+pub const PLANNED: f64 = 30.0;
+/// Looking ahead begins so many ticks after the start: a button that is held starts the scene again before.
+pub const SETTLED_TICKS: u64 = 6;
+const _: () = assert!(SETTLED_TICKS > REPEAT_PERIOD_TICKS as u64);
+/// A piece of the search, cycles, unless a single step is more.
 pub const PLANNING_PIECE: f32 = 20_000.0;
-/// The share of the time between frames that computing one may take; the rest is for drawing and sending it.
-pub const FRAME_SHARE: f32 = 0.5;
-/// Cycles of a step on a Cortex-M3, which has no floating-point unit: the estimates of `cargo count` for steps of
-/// 1/256 s, masses and lengths alike (test `count` holds them to within a tenth).
-pub const CORTEX_M3: Costs = Costs {
-    closed_form: 5_082.0,
-    direction_plain: 8_915.0,
-    direction: 10_210.0,
-    angle: 15_170.0,
-    direction8: 136_500.0,
+
+/// A class of processors, by what a plan must know of it: so that a scene goes the same way on all of them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Processor {
+    /// Its place in [`PROCESSORS`].
+    pub code: u8,
+    /// Cycles of a step: the estimates of `cargo count` for steps of 1/256 s, masses and lengths alike (test `count` holds them
+    /// to within a tenth).
+    pub costs: Costs,
+    /// What computing a frame may cost, cycles; the rest is for drawing and sending it.
+    pub frame: f32,
+    /// What is spent in each tick on looking ahead, cycles.
+    pub look_ahead: f32,
+}
+
+impl Processor {
+    /// What may be spent: on looking ahead as much as the scene has ticks for, so that the search keeps ahead of it.
+    pub fn budget(&self, problem: &Problem) -> Budget {
+        Budget { frame: self.frame, planning: self.look_ahead * problem.frames() as f32 }
+    }
+}
+
+/// A Cortex-M3, which has no floating-point unit: at 50 MHz a tick has 833,000 cycles.
+pub const CORTEX_M3: Processor = Processor {
+    code: 0,
+    costs: Costs {
+        closed_form: 5_082.0,
+        direction_plain: 8_915.0,
+        direction: 10_210.0,
+        fixed32: 1_000.0,
+        fixed64: 24_300.0,
+        preparation: 300_000.0,
+    },
+    frame: 200_000.0,
+    look_ahead: 250_000.0,
 };
-/// The same on a Cortex-M4F, whose floating-point unit knows `f32` only. A plain step costs less than the closed form's two
-/// sincos.
-pub const CORTEX_M4F: Costs =
-    Costs { closed_form: 188.0, direction_plain: 159.4, direction: 208.0, angle: 360.3, direction8: 129_650.0 };
-/// What steps cost on this processor: with a floating-point unit or without.
-pub const COSTS: Costs = if cfg!(target_abi = "eabihf") { CORTEX_M4F } else { CORTEX_M3 };
-/// Processor cycles in a tick where no board says otherwise: 50 MHz.
-pub const TICK_CYCLES: u32 = 50_000_000 / TICK_RATE;
+/// A Cortex-M4F, whose floating-point unit knows `f32` only: the slowest board, at 25 MHz, has 417,000 cycles in a tick. A
+/// plain step costs less than the closed form's two sincos.
+pub const CORTEX_M4F: Processor = Processor {
+    code: 1,
+    costs: Costs {
+        closed_form: 188.0,
+        direction_plain: 159.4,
+        direction: 208.0,
+        fixed32: 790.0,
+        fixed64: 18_600.0,
+        preparation: 250_000.0,
+    },
+    frame: 150_000.0,
+    look_ahead: 200_000.0,
+};
+/// The STM32F405's at 168 MHz: 2,800,000 cycles in a tick. It could look ahead by twice as much; QEMU, which takes the same time
+/// for an instruction of any processor, could not.
+pub const STM32F405: Processor = Processor { code: 2, frame: 700_000.0, look_ahead: 300_000.0, ..CORTEX_M4F };
+/// Every class, by its code on the wire.
+pub const PROCESSORS: [Processor; 3] = [CORTEX_M3, CORTEX_M4F, STM32F405];
+/// The class of a board that names no other: with a floating-point unit or without.
+pub const PROCESSOR: Processor = if cfg!(target_abi = "eabihf") { CORTEX_M4F } else { CORTEX_M3 };
 
 // ---- The map of flips -----------------------------------------------------------------------------------------------
 

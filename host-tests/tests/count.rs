@@ -110,13 +110,11 @@ fn a_simulated_second_costs_no_more_than_its_goal() {
 fn a_step_costs_what_the_planner_thinks() {
     let within = 0.9..=1.1;
     for target in &targets() {
-        let costs = if target.core() == Core::M3 { CORTEX_M3 } else { CORTEX_M4F };
+        let costs = if target.core() == Core::M3 { CORTEX_M3.costs } else { CORTEX_M4F.costs };
         for (method, name) in [
             (Method::ClosedForm, "f32-linear-direction"),
             (Method::DirectionPlain, "f32-direction"),
             (Method::Direction, "f32-compensated-direction"),
-            (Method::Angle, "f32-compensated-angle"),
-            (Method::Direction8, "f64-compensated-direction-rk8"),
         ] {
             let row = ROWS.iter().find(|row| row.to_string() == name).expect("a row");
             let request = Request { angles: [0.5, 0.5], ..request(*row, FULL_CYCLE) };

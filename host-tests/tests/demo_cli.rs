@@ -7,6 +7,7 @@ use std::io::BufReader;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
+use firmware::config::STM32F405;
 use firmware::scenes::SceneName;
 use host_tests::commands::demo::played;
 use host_tests::emulator::host::Show;
@@ -71,7 +72,7 @@ fn of_a_board_without_a_panel_the_redrawn_one_is_shown() {
     assert!(output.stdout.contains("frames, every bit the host's"), "{}", output.stdout);
 
     let name = SceneName::Figure7;
-    let mut scene = Show::new(name, &name.first_settings()).expect("a scene of the catalogue");
+    let mut scene = Show::on(STM32F405, name, &name.first_settings()).expect("a scene of the catalogue");
     let played = played(&animation).expect("a GIF file");
     assert_eq!(played.len(), 30);
     for (number, (dots, _)) in played.iter().enumerate() {

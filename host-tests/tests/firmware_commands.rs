@@ -3,12 +3,13 @@
 use std::f64::consts::PI;
 
 use double_pendulum::Parameters;
-use double_pendulum::plan::Method;
+use double_pendulum::plan::{Method, Way};
 use fastrand::Rng;
 use firmware::app::controls::{Key, NoButtons};
 use firmware::app::instruments::Instruments;
+use firmware::app::player::{AUTO, News};
 use firmware::app::{App, Event};
-use firmware::config::{DT, MOST_MEASURED_STEPS, MOST_MESSAGES_PER_TICK, PLANNED, STEPS_PER_TICK, TICK_RATE};
+use firmware::config::{DT, MOST_MEASURED_STEPS, MOST_MESSAGES_PER_TICK, PLANNED, TICK_RATE};
 use firmware::display::NoDisplay;
 use firmware::job::{Arithmetic, Formulation, Request, Row};
 use firmware::motion::planner::Finding;
@@ -86,17 +87,6 @@ fn every_parameter_is_set_in_any_unit_of_its_own() {
         assert_eq!(last::<Done>(&app), Done { request: 9 }, "{field:?}");
         assert_eq!(read(&status(&mut app)), expected, "{field:?}");
     }
-}
-
-#[test]
-fn settings_too_lively_for_the_step_are_played_and_logged() {
-    let coarse = |value| {
-        let mut events = Vec::new();
-        app().receive(wire(&set(Field::MassRatio, value, Unit::One)), |event| events.push(event));
-        events.iter().any(|event| matches!(event, Event::StepTooLong(step) if *step < DT))
-    };
-    assert!(!coarse(1.0));
-    assert!(coarse(100.0));
 }
 
 /// Taps that come all at once are all obeyed, in their order, as the board's own buttons are.
@@ -240,13 +230,13 @@ fn every_scene_can_be_chosen_restarts_pauses_and_steps() {
     }
 }
 
-/// What an answer says has been found: nothing to plan, nothing yet, all.
+/// What an answer says has been found: nothing to plan, nothing yet, the plan.
 const NOTHING: u8 = 0;
 const NOT_YET: u8 = 1;
-const ALL: u8 = 3;
+const FOUND: u8 = 2;
 
 #[test]
-fn the_plan_is_found_piece_by_piece_and_told_when_asked() {
+fn the_plan_is_found_in_some_tick_told_when_asked_and_followed() {
     let mut app = app();
     let asked = |app: &mut Plain| {
         app.receive(wire(&AskPlan { request: 3 }), |_| ());
@@ -255,28 +245,67 @@ fn the_plan_is_found_piece_by_piece_and_told_when_asked() {
         answer
     };
     assert_eq!(asked(&mut app).found, NOT_YET);
-    let mut findings = Vec::new();
-    assert!(!app.plan(0, |event| findings.push(event)), "no time is left in this tick");
-    while app.plan(u32::MAX, |event| findings.push(event)) {}
-    let [Event::Found(Finding::Plan(plan)), Event::Found(Finding::Shown { shown, plan: again })] = findings[..] else {
-        panic!("{findings:?}")
-    };
-    assert_eq!(Some(plan), again);
+    let mut news = Vec::new();
+    let mut tick = 0;
+    while asked(&mut app).found == NOT_YET {
+        tick += 1;
+        app.run_to(tick, |event| news.push(event));
+    }
+    tick += 1;
+    app.run_to(tick, |event| news.push(event));
+    let [Event::Motion(News::Found(Finding::Plan(plan)))] = news[..] else { panic!("{news:?}") };
     let answer = asked(&mut app);
-    assert_eq!((answer.found, answer.horizon, answer.shown_horizon), (ALL, plan.horizon, shown.horizon));
-    assert_eq!((answer.shown_method, answer.shown_steps), (method_code(Method::Direction), STEPS_PER_TICK));
-    assert!(answer.horizon > answer.shown_horizon, "the page's first motion is chaotic: {answer:?}");
+    assert_eq!((answer.found, answer.horizon), (FOUND, plan.horizon));
+    assert!(answer.horizon > 19.0, "{answer:?}");
+    let frame = app.player().frame();
+    assert_eq!((frame.method, u32::from(frame.way_steps)), (answer.method, answer.steps));
 
     app.receive(wire(&set(Field::Angle, 20.0, Unit::Degree)), |_| ());
     assert_eq!(asked(&mut app), Planned { request: 3, found: NOT_YET, ..blank(&answer) });
-    while app.plan(u32::MAX, |_| ()) {}
+    news.clear();
+    while asked(&mut app).found == NOT_YET {
+        tick += 1;
+        app.run_to(tick, |event| news.push(event));
+    }
     let calm = asked(&mut app);
-    assert_eq!((calm.found, calm.horizon, calm.shown_horizon), (ALL, PLANNED, PLANNED));
-    assert!(calm.cycles < calm.shown_cycles, "{calm:?}");
+    assert!(calm.found == FOUND && calm.horizon >= PLANNED, "{calm:?}");
+    for _ in 0..TICK_RATE {
+        tick += 1;
+        app.run_to(tick, |event| news.push(event));
+    }
+    let way = Way { method: Method::Fixed32, steps: calm.steps };
+    assert_eq!(news.last(), Some(&Event::Motion(News::Shown(way, calm.cycles))), "the cheaper way is taken");
+    app.receive(wire(&Ask { request: 9 }), |_| ());
+    let status: Status = last(&app);
+    assert_eq!((status.method, status.way_steps, status.cycles), (calm.method, calm.steps, calm.cycles));
+    assert!(
+        status.cycles < answer.cycles && f64::from(status.horizon) > PLANNED && status.is_looking == 1,
+        "{status:?}"
+    );
 
     app.receive(wire(&Choose { request: 1, scene: SceneName::Frequencies.code() }), |_| ());
-    assert!(!app.plan(u32::MAX, |_| ()));
+    assert!(!app.look_ahead());
     assert_eq!(asked(&mut app), Planned { request: 3, found: NOTHING, ..Planned::default() });
+}
+
+/// A method that is asked for by its code is taken, and stays; no other number is a method.
+#[test]
+fn a_way_can_be_forced() {
+    let mut app = app();
+    let mut go = |value: f64| {
+        app.receive(wire(&set(Field::Way, value, Unit::One)), |_| ());
+        app.receive(wire(&Ask { request: 2 }), |_| ());
+        let status: Status = last(&app);
+        status.method
+    };
+    let fixed64 = method_code(Method::Fixed64);
+    for method in Method::ALL.iter().map(|&method| method_code(method)) {
+        assert_eq!(go(method.into()), method);
+        assert_eq!(go(AUTO), fixed64);
+    }
+    for wrong in [-1.0, 0.5, 3.0, 7.0, 256.0, f64::NAN] {
+        assert_eq!(go(wrong), fixed64, "{wrong}");
+    }
 }
 
 /// What an answer says before anything is found.
@@ -305,10 +334,11 @@ fn flood(mut bytes: impl Iterator<Item = u8>, seconds: u32) -> Plain {
     let mut lines = 0;
     let mut waiting = std::collections::VecDeque::new();
     for clock in 1..=seconds * TICK_RATE {
-        assert!(app.run_to(clock, |_| lines += 1));
+        assert!(app.run_to(clock, |event| lines += u32::from(!matches!(event, Event::Motion(_)))));
         waiting.extend(bytes.by_ref().take(BYTES_PER_TICK));
         waiting.truncate(1023); // the queue of the boards
-        let mut counted = |event: Event<_, _>| lines += u32::from(!matches!(event, Event::Started(..) | Event::Asked));
+        let is_asked_for = |event: &Event<_, _>| matches!(event, Event::Started(..) | Event::Motion(_) | Event::Asked);
+        let mut counted = |event: Event<_, _>| lines += u32::from(!is_asked_for(&event));
         app.receive(std::iter::from_fn(|| waiting.pop_front()), &mut counted);
     }
     let frames = all::<Frame>(&app);

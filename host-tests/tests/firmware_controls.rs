@@ -137,8 +137,9 @@ fn labels_show_what_is_set() {
     assert_eq!(angles.map(|label| label.to_string()), expected);
     let times = [0.0, 0.099, 59.96, 3600.0].map(label::time);
     assert_eq!(times.map(|label| label.to_string()), ["0.0 s", "0.0 s", "59.9 s", "3600.0 s"]);
-    let trusts = [8.44, 9370.2, f32::INFINITY, f32::NAN].map(label::trust);
+    let trusts = [8.44, 9370.2, f32::INFINITY, f32::NAN].map(|until| label::trust(until, false));
     assert_eq!(trusts.map(|label| label.to_string()), ["½px 8.4 s", "½px 9370 s", "½px ok", "½px ok"]);
+    assert_eq!(label::trust(8.44, true).to_string(), "½px>8.4 s");
     let ticks = [0.0, 0.05, 0.2, 1.0, 50.0].map(|time| label::tick(time, " s"));
     assert_eq!(ticks.map(|label| label.to_string()), ["0 s", "0.05 s", "0.2 s", "1 s", "50 s"]);
 }
@@ -147,6 +148,6 @@ fn labels_show_what_is_set() {
 fn labels_of_any_numbers_are_safe() {
     for number in [f32::NAN, f32::INFINITY, f32::MAX, -f32::MAX, 1e-30] {
         let _ = (label::mass_ratio(number), label::degrees("α", number), label::time(number.into()));
-        let _ = (label::trust(number), label::tick(number, " s"), label::energy("true", number));
+        let _ = (label::trust(number, true), label::tick(number, " s"), label::energy("true", number));
     }
 }

@@ -136,7 +136,7 @@ impl I2c for Bus<'_> {
 fn scene(ticks: u32) -> Canvas {
     let FrameBuffers { mut canvas, mut ink } = FrameBuffers::default();
     let mut player = Player::new(Settings::default(), &mut ink).expect("the default settings are a pendulum");
-    (0..ticks).for_each(|_| player.tick());
+    (0..ticks).for_each(|_| player.tick(|_| ()));
     player.draw(&mut canvas);
     canvas
 }

@@ -15,7 +15,7 @@ fn said(arguments: &str) -> String {
 #[test]
 fn it_says_the_method_the_step_and_the_horizon() {
     let small = said("--angles 3,3 --degrees --height 64 --duration 10");
-    assert!(small.contains("normal modes in closed form") && small.contains("until 10.00 s of 10 s"), "{small}");
+    assert!(small.contains("32-bit fixed point") && small.contains("until 10.00 s of 10 s"), "{small}");
     let large = said("--angles 90,90 --degrees --duration 10 --target m4f");
     assert!(large.contains("plain f32") && large.contains("1/60 s, one to a frame"), "{large}");
     let figure7 = said("--masses 1,2.75 --angles 171,171 --degrees --duration 30");
@@ -57,7 +57,6 @@ fn bad_input_is_refused_in_one_line_that_names_option_and_value() {
         ("--rate 0", "--rate", "0"),
         ("--rate 0.5", "--rate", "0.5"),
         ("--rate 70000", "--rate", "70000"),
-        ("--planning 0", "--planning", "0"),
         ("--target m7", "--target", "m7"),
         ("--study -1", "--study", "-1 is not in 1.."),
         ("--fit 0", "--fit", "0 is not in 1.."),

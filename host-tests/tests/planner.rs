@@ -1,96 +1,133 @@
-//! The planner between the frames: when it may work, what it finds, and how that is written on the wire.
+//! The planner beside the scene: what it does in a tick, what it finds, and how that is written on the wire.
 
-use double_pendulum::plan::{Limit, Method};
-use firmware::config::PLANNING_PIECE;
+use double_pendulum::plan::{Limit, Method, Way};
+use firmware::config::{CORTEX_M3, CORTEX_M4F, PLANNED, PROCESSORS, Processor, SETTLED_TICKS, STM32F405};
 use firmware::motion::planner::{Finding, Planner, Shown};
 use firmware::motion::settings::Settings;
-use firmware::protocol::{NO_METHOD, limit_code, method_code};
+use firmware::protocol::{NO_METHOD, limit_code, method_code, method_of};
 
-/// Cycles in a tick of a Cortex-M3 at 50 MHz, and the quarter that is never planned away.
-const TICK: u32 = 833_333;
-const RESERVE: u32 = TICK / 4;
-/// Cycles that a piece must find free: a quarter more than what it takes, none of the first steps costing more.
-const PIECE: u32 = (1.25 * PLANNING_PIECE) as u32;
+/// The way that these begin in, which is right wherever any other is.
+const LASTING: Way = Way { method: Method::Fixed64, steps: 1 };
+const SHOWN: Shown = Shown { way: None, height: 57.0 };
+/// Ticks by which everything here is found.
+const PATIENCE: u64 = 1200;
 
-/// A tick so short that a piece needs more than its quarter.
-const QUICK_TICK: u32 = 80_000;
-
-const SHOWN: Shown = Shown { method: Method::Direction, steps: 4, height: 57.0 };
-
-fn planner(tick: u32, settings: &Settings) -> Planner {
-    let mut planner = Planner::default();
-    planner.set_tick(tick);
-    planner.start(settings, Some(SHOWN));
+fn planner(processor: Processor, settings: &Settings) -> Planner {
+    let mut planner = Planner::new(processor);
+    planner.start(settings, Some(SHOWN), Some(LASTING));
     planner
 }
 
-/// To the end of the search; what is found.
-fn findings(mut planner: Planner) -> Vec<Finding> {
-    let pieces = std::iter::from_fn(|| Some(planner.work(u32::MAX)).filter(|(worked, _)| *worked));
-    pieces.filter_map(|(_, finding)| finding).collect()
+/// What is found, and in which tick.
+fn findings(mut planner: Planner) -> Vec<(u64, Finding)> {
+    (1..=PATIENCE).filter_map(|tick| Some((tick, planner.tick()?))).collect()
 }
 
+/// A button that is held starts the scene anew before anything is looked at.
 #[test]
-fn a_quarter_of_the_tick_is_left_alone() {
-    let mut planner = planner(TICK, &Settings::default());
-    assert_eq!(planner.work(RESERVE - 1), (false, None));
-    assert_eq!(planner.work(RESERVE), (true, None), "the search is made");
-    assert_eq!(planner.work(RESERVE - 1), (false, None));
-    assert_eq!(planner.work(RESERVE), (true, None), "and goes on");
+fn nothing_is_looked_at_before_the_start_has_settled() {
+    let mut planner = planner(CORTEX_M3, &Settings::default());
+    for _ in 0..SETTLED_TICKS {
+        assert!(!planner.work_ahead());
+        assert_eq!((planner.tick(), planner.horizon(LASTING)), (None, 0.0));
+    }
+    planner.tick();
+    assert!(planner.is_looking() && planner.answer(1).found == 1);
+    assert!((0..PATIENCE).any(|_| planner.tick().is_some() || planner.horizon(LASTING) > 0.0));
 }
 
+/// Whether pieces are done ahead of their tick, all of them or some, decides nothing.
 #[test]
-fn a_piece_is_begun_only_where_it_fits_in_with_a_margin() {
-    let mut planner = planner(QUICK_TICK, &Settings::default());
-    assert_eq!(planner.work(QUICK_TICK / 4), (true, None), "no piece to do yet: the search is made");
-    assert_eq!(planner.work(PIECE - 1), (false, None));
-    assert_eq!(planner.work(PIECE), (true, None));
+fn what_is_found_in_a_tick_does_not_depend_on_when_the_work_is_done() {
+    for settings in [Settings::default(), Settings::equal_rods(1.0, 20.0)] {
+        let [mut late, mut early, mut uneven] = [(); 3].map(|()| planner(CORTEX_M4F, &settings));
+        for tick in 0..PATIENCE {
+            while early.work_ahead() {}
+            for _ in 0..tick % 7 {
+                uneven.work_ahead();
+            }
+            let found = late.tick();
+            assert_eq!((early.tick(), uneven.tick()), (found, found), "tick {tick}");
+            assert_eq!(
+                (early.horizon(LASTING), uneven.horizon(LASTING)),
+                (late.horizon(LASTING), late.horizon(LASTING)),
+                "tick {tick}"
+            );
+        }
+    }
 }
 
 #[test]
 fn there_is_nothing_to_do_without_a_motion_or_when_all_is_found() {
-    assert_eq!(Planner::default().work(u32::MAX), (false, None));
-    let mut still = planner(TICK, &Settings::default());
-    still.start(&Settings::default(), None);
-    assert_eq!(still.work(u32::MAX), (false, None));
+    let mut still = Planner::new(CORTEX_M3);
+    assert!(still.tick().is_none() && !still.work_ahead() && !still.is_looking());
+    still.start(&Settings::default(), None, None);
+    assert!(still.tick().is_none() && !still.work_ahead() && !still.is_looking());
 
-    let mut planner = planner(TICK, &Settings::equal_rods(1.0, 20.0));
-    while planner.work(u32::MAX).0 {}
-    assert_eq!(planner.answer(1).found, 3);
-    assert_eq!(planner.work(u32::MAX), (false, None));
-    planner.start(&Settings::equal_rods(1.0, 30.0), Some(SHOWN));
-    assert_eq!((planner.work(u32::MAX), planner.answer(1).found), ((true, None), 1), "it begins anew");
+    let mut planner = planner(STM32F405, &Settings::default());
+    while planner.is_looking() {
+        planner.tick();
+    }
+    assert_eq!(planner.answer(1).found, 2);
+    assert!(!planner.work_ahead() && planner.tick().is_some(), "it is told in a tick of its own");
+    assert!(!planner.work_ahead() && planner.tick().is_none());
+    planner.start(&Settings::equal_rods(1.0, 30.0), Some(SHOWN), Some(LASTING));
+    assert_eq!((planner.answer(1).found, planner.horizon(LASTING)), (1, 0.0), "it begins anew");
+}
+
+/// What is right for as long as is planned is looked at farther, always so far ahead and no farther.
+#[test]
+fn a_calm_motion_is_looked_at_for_as_long_as_it_is_played() {
+    let mut planner = planner(STM32F405, &Settings::equal_rods(1.0, 20.0));
+    for tick in 1..3600_u64 {
+        planner.tick();
+        if tick > 600 {
+            let ahead = planner.horizon(LASTING) - tick as f64 / 60.0;
+            assert!(planner.is_looking() && (ahead - PLANNED).abs() < 0.1, "tick {tick}: {ahead}");
+        }
+    }
 }
 
 #[test]
 fn a_refused_motion_is_told_once() {
-    let settings = Settings::equal_rods(f32::NAN, 20.0);
-    let found = findings(planner(TICK, &settings));
-    assert!(matches!(found[..], [Finding::Refused(_)]), "{found:?}");
+    let found = findings(planner(CORTEX_M3, &Settings::equal_rods(f32::NAN, 20.0)));
+    assert!(matches!(found[..], [(_, Finding::Refused(_))]), "{found:?}");
 }
 
-/// A processor with 2,000 cycles in a tick can afford neither a step nor a closed form; how long what is shown is right is
-/// found all the same.
+/// A processor with 100 cycles for a frame can afford neither a step nor a closed form.
 #[test]
 fn where_nothing_holds_that_is_what_is_told() {
-    let mut planner = planner(2_000, &Settings::equal_rods(1.0, 120.0));
-    let mut found = Vec::new();
-    while let (true, finding) = planner.work(u32::MAX) {
-        found.extend(finding);
-    }
-    let [Finding::NothingHolds(limit), Finding::Shown { shown, plan: None }] = found[..] else { panic!("{found:?}") };
+    let mut planner = planner(Processor { frame: 100.0, ..CORTEX_M4F }, &Settings::equal_rods(1.0, 120.0));
+    let found = (0..PATIENCE).find_map(|_| planner.tick());
+    let Some(Finding::NothingHolds(limit)) = found else { panic!("{found:?}") };
     let answer = planner.answer(9);
-    assert_eq!((answer.request, answer.found, answer.method, answer.limit), (9, 3, NO_METHOD, limit_code(limit)));
+    assert_eq!((answer.request, answer.found, answer.method, answer.limit), (9, 2, NO_METHOD, limit_code(limit)));
     assert_eq!((answer.cycles, answer.horizon, answer.steps), (0.0, 0.0, 0));
-    assert_eq!((answer.shown_method, answer.shown_horizon), (method_code(SHOWN.method), shown.horizon));
+}
+
+/// A way that was asked for is looked at, whatever it costs, and no other.
+#[test]
+fn a_way_that_is_given_stays() {
+    let mut planner = Planner::new(STM32F405);
+    let way = Way { method: Method::Direction, steps: 4 };
+    planner.start(&Settings::default(), Some(Shown { way: Some(way), ..SHOWN }), Some(way));
+    let found = (0..PATIENCE).find_map(|_| planner.tick());
+    let Some(Finding::Plan(plan)) = found else { panic!("{found:?}") };
+    assert_eq!((plan.method, plan.steps, plan.limit), (Method::Direction, 4, Limit::Method));
+    assert!((7.0..9.5).contains(&plan.horizon), "{plan:?}");
 }
 
 /// What hosts know: a code never changes its meaning, whatever becomes of the order of methods and limits.
 #[test]
 fn the_codes_on_the_wire_stay() {
-    let methods = [Method::ClosedForm, Method::DirectionPlain, Method::Direction, Method::Angle, Method::Direction8];
-    assert_eq!(methods.map(method_code), [0, 1, 2, 3, 4]);
-    assert!(Method::ALL.iter().all(|&method| method_code(method) != NO_METHOD), "a method without a code");
+    let methods = [Method::ClosedForm, Method::DirectionPlain, Method::Direction, Method::Fixed32, Method::Fixed64];
+    assert_eq!(methods.map(method_code), [0, 1, 2, 5, 6]);
+    assert!(
+        Method::ALL.iter().all(|&method| method_of(method_code(method)) == Some(method)),
+        "a method without a code"
+    );
+    assert_eq!(method_of(NO_METHOD), None);
+    assert!((0..).zip(PROCESSORS).all(|(place, processor)| processor.code == place), "a processor without a code");
     let limits = [Limit::End, Limit::Growth, Limit::Budget, Limit::Planning, Limit::Method];
     assert_eq!(limits.map(limit_code), [0, 1, 2, 3, 4]);
 }

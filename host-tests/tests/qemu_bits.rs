@@ -2,7 +2,6 @@
 
 mod support;
 
-use firmware::config::STEPS_PER_TICK;
 use firmware::protocol::Frame;
 use host_tests::emulator::boards::{BOARDS, Board};
 use host_tests::emulator::qemu::{Lockstep, Machine, QemuError};
@@ -25,7 +24,7 @@ fn streams_the_kernels_bits(board: &Board) -> Result<(), QemuError> {
     for sequence in 0..FRAMES {
         let Some(frame) = machine.serial.next::<Frame>() else { return Err(machine.silence()) };
         let expected = expected.get_or_insert_with(|| Expected::new(frame.mass_ratio, frame.start_angle));
-        expected.advance(STEPS_PER_TICK);
+        expected.tick();
         assert_eq!(
             frame.state.map(f32::to_bits),
             expected.state().map(f32::to_bits),
@@ -33,7 +32,7 @@ fn streams_the_kernels_bits(board: &Board) -> Result<(), QemuError> {
             board.name
         );
         assert_eq!((frame.sequence, frame.dropped), (sequence, 0), "{}", board.name);
-        assert_eq!(frame.step, (sequence + 1) * STEPS_PER_TICK, "{}", board.name);
+        assert_eq!(frame.step, sequence + 1, "{}", board.name);
     }
     let Counts { damaged, lost, .. } = machine.serial.counts();
     assert_eq!((damaged, lost), (0, 0), "{}", board.name);

@@ -3,7 +3,7 @@
 mod support;
 
 use firmware::app::controls::Key;
-use firmware::config::{ANGLE_STEP, MASS_RATIOS, STEPS_PER_TICK};
+use firmware::config::{ANGLE_STEP, MASS_RATIOS};
 use firmware::protocol::{Choose, Frame};
 use firmware::scenes::SceneName;
 use host_tests::emulator::boards::{BOARDS, Board};
@@ -29,7 +29,7 @@ fn choose_and_restart(board: &Board) -> Result<(), QemuError> {
     settle(&mut machine)?;
     machine.wake_keys()?;
     let start = settle(&mut machine)?;
-    assert!(start.step > STEPS_PER_TICK * SETTLING as u32, "waking the buttons must not restart");
+    assert!(start.step > SETTLING as u32, "waking the buttons must not restart");
 
     let ratio = |offset: isize, before: &Frame| {
         let place = MASS_RATIOS.iter().position(|ratio| *ratio == before.mass_ratio);
@@ -56,7 +56,7 @@ fn press(machine: &mut Machine, key: Key) -> Result<(Frame, Frame), QemuError> {
     machine.set_key(key, true)?;
     let (before, after) = restart(machine, before)?.unwrap_or_else(|| panic!("{key:?} had no effect"));
     machine.set_key(key, false)?;
-    assert_eq!(after.step, STEPS_PER_TICK, "{key:?}: restarted and moved by one tick");
+    assert_eq!(after.step, 1, "{key:?}: restarted and moved by one tick");
     let near = |angle: f32| (angle - after.start_angle).abs() < 0.01;
     assert!(near(after.state[0]) && near(after.state[1]), "{key:?}: both rods near the start angle");
     Ok((before, after))
@@ -77,7 +77,7 @@ fn tap(machine: &mut Machine, key: Key) -> Result<(Frame, Frame), QemuError> {
         if let Some((before, after)) = restart(machine, before)?
             && [before, after].iter().all(|frame| frame.scene == SceneName::Page.code())
         {
-            assert_eq!(after.step, STEPS_PER_TICK, "{key:?}: restarted and moved by one tick");
+            assert_eq!(after.step, 1, "{key:?}: restarted and moved by one tick");
             return Ok((before, after));
         }
     }

@@ -1,113 +1,110 @@
-//! The plan on the emulated boards: found between the frames without delaying one, logged, answered, and the host's to the bit.
+//! The plan on the emulated boards: found in the very tick, and followed from the very tick, that the host says, without
+//! delaying a frame; answered and logged.
 
 mod support;
 
-use double_pendulum::plan::{Budget, Costs, Plan, Search};
-use firmware::config::{CORTEX_M3, CORTEX_M4F, HALF_PIXEL, TICK_RATE};
-use firmware::motion::planner::problem;
-use firmware::protocol::{AskPlan, Choose, Frame, Planned, limit_code, method_code};
-use firmware::scenes::{AnyScene, SceneName};
+use double_pendulum::plan::{Method, Plan};
+use firmware::app::player::News;
+use firmware::config::{HALF_PIXEL, TICK_RATE};
+use firmware::motion::planner::Finding;
+use firmware::protocol::{AskPlan, Choose, Done, Frame, NO_METHOD, Planned, limit_code, method_code};
+use firmware::scenes::SceneName;
 use host_tests::emulator::boards::{BOARDS, Board};
+use host_tests::emulator::host::Show;
 use host_tests::emulator::qemu::{Machine, QemuError};
 use support::{application, settings, toolchain};
 
-/// Frames between two questions.
-const EVERY: u32 = TICK_RATE;
-/// Questions until the plan must have been found: minutes of the board's time, many times what the slowest takes.
-const PATIENCE: u32 = 240;
-/// Where a Cortex-M3 is asked, too: chaos, calm, nothing that moves, a light elbow. It takes its time.
-const ON_M3: [SceneName; 4] = [SceneName::Page, SceneName::SmallLight, SceneName::Frequencies, SceneName::Figure7];
-/// What `found` says when all is found, and when there is nothing to find.
-const ALL: u8 = 3;
-const NOTHING: u8 = 0;
+/// A motion that ends early, one that goes another way soon, a model, nothing that moves.
+const SCENES: [SceneName; 4] = [SceneName::Page, SceneName::Beats2To1, SceneName::SmallLight, SceneName::Frequencies];
+/// By then all is found, ticks.
+const FOLLOWED: u32 = 14 * TICK_RATE;
 
-/// The search to its end.
-fn found(mut search: Search) -> Plan {
-    loop {
-        if let Some(plan) = search.advance(f32::INFINITY).expect("a good scene") {
-            return plan;
-        }
-    }
-}
+/// The way as a frame tells it, until when it is right, and whether that may be later yet.
+type Told = (u8, u16, f32, u8);
 
-/// What the board must answer, by the kernel on the host.
-fn expected(name: SceneName, costs: &Costs, answer: &Planned) -> Planned {
-    let settings = name.first_settings();
-    let playing = AnyScene::new(name, &settings).expect("a scene of the catalogue");
-    let Some(shown) = playing.shown() else { return Planned { request: answer.request, ..Planned::default() } };
-    let scene = problem(&settings, &shown);
-    let budget = Budget { frame: answer.frame_budget, planning: answer.planning_budget };
-    let plan = found(Search::new(&scene, costs, &budget).expect("a good scene"));
-    let seen = found(Search::of(shown.method, shown.steps, &scene, costs, &budget).expect("a good scene"));
-    Planned {
-        found: ALL,
-        method: method_code(plan.method),
-        steps: plan.steps,
-        dt: plan.dt,
-        error: HALF_PIXEL * plan.error,
-        cycles: plan.cost,
-        horizon: plan.horizon,
-        limit: limit_code(plan.limit),
-        planning: plan.spent,
-        shown_method: method_code(seen.method),
-        shown_steps: seen.steps,
-        shown_error: HALF_PIXEL * seen.error,
-        shown_cycles: seen.cost,
-        shown_horizon: seen.horizon,
-        shown_limit: limit_code(seen.limit),
-        height: shown.height.into(),
-        duration: scene.duration,
-        ..*answer
-    }
-}
-
-/// Asks until all is found; how many frames that took.
-fn planned(machine: &mut Machine, board: &Board, name: SceneName) -> Result<(Planned, u32), QemuError> {
-    let mut frames = 0;
-    for request in 2..PATIENCE {
-        for _ in 0..EVERY {
-            let frame: Frame = machine.serial.next().ok_or_else(|| machine.silence())?;
-            assert_eq!(frame.dropped, 0, "{}: {}", board.name, name.name());
-            frames += 1;
-        }
-        machine.serial.send(&AskPlan { request: request as u16 })?;
-        loop {
-            let message = machine.serial.receive().ok_or_else(|| machine.silence())?;
-            frames += u32::from(message.read::<Frame>().is_some());
-            match message.read::<Planned>() {
-                Some(answer) if [ALL, NOTHING].contains(&answer.found) => return Ok((answer, frames)),
-                Some(_) => break,
-                None => {}
-            }
-        }
-    }
-    panic!("{}: {} has no plan after {frames} frames", board.name, name.name());
+fn told(show: &Show) -> Told {
+    let report = show.report();
+    let way = report.way.map_or((NO_METHOD, 0), |way| (method_code(way.method), way.steps as u16));
+    (way.0, way.1, report.horizon, report.is_looking.into())
 }
 
 #[test]
-fn every_scene_is_planned_between_the_frames() -> Result<(), QemuError> {
-    BOARDS.iter().filter(|board| board.has_panel).try_for_each(|board| {
-        let costs = if board.target.ends_with("hf") { CORTEX_M4F } else { CORTEX_M3 };
+fn every_board_finds_the_hosts_plan_and_follows_it_from_the_same_tick() -> Result<(), QemuError> {
+    BOARDS.iter().try_for_each(|board| {
         let (toolchain, elf) = (toolchain(), application(board));
         let mut machine = Machine::start(&settings(&toolchain, board, &elf))?;
         machine.serial.next::<Frame>().ok_or_else(|| machine.silence())?;
-        let names = if costs == CORTEX_M3 { &ON_M3 } else { SceneName::ALL };
-        for &name in names {
+        for name in SCENES {
             machine.serial.send(&Choose { request: 1, scene: name.code() })?;
-            while machine.serial.next::<Frame>().ok_or_else(|| machine.silence())?.scene != name.code() {}
+            while machine.serial.receive().ok_or_else(|| machine.silence())?.read::<Done>().is_none() {}
             machine.log.arrived().for_each(drop);
-            let (answer, frames) = planned(&mut machine, board, name)?;
-            let lines: Vec<_> = machine.log.arrived().map(|line| line.text).collect();
-            println!("{} {}: {:.1} s {lines:#?}", board.name, name.name(), f64::from(frames) / f64::from(TICK_RATE));
-            let expected = expected(name, &costs, &answer);
-            assert_eq!(format!("{answer:?}"), format!("{expected:?}"), "{}: {}", board.name, name.name());
-            let heads = lines.iter().map(|line| line.split_once(':').map_or("", |(head, _)| head));
-            let heads: Vec<_> = heads.filter(|head| ["plan", "shown"].contains(head)).collect();
-            let both = ["plan", "shown"];
-            assert_eq!(heads, if answer.found == ALL { &both[..] } else { &[] }, "{lines:#?}");
+            followed(&mut machine, board, name)?;
         }
         let counts = machine.serial.counts();
         assert_eq!((counts.damaged, counts.lost), (0, 0), "{}", board.name);
         machine.quit()
     })
+}
+
+/// Frame by frame as the host shows it, then the answer and the log.
+fn followed(machine: &mut Machine, board: &Board, name: SceneName) -> Result<(), QemuError> {
+    let mut show = Show::on(board.processor(), name, &name.first_settings()).expect("a scene of the catalogue");
+    let mut changes = 0;
+    loop {
+        let frame: Frame = machine.serial.next().ok_or_else(|| machine.silence())?;
+        assert_eq!(
+            frame.dropped,
+            0,
+            "{}: {}, tick {}, busy {}",
+            board.name,
+            name.name(),
+            frame.step,
+            frame.busy_cycles
+        );
+        while show.report().step < frame.step.into() {
+            let before = show.report().way;
+            show.tick();
+            changes += usize::from(show.report().way != before);
+        }
+        let received = (frame.method, frame.way_steps, frame.horizon, frame.is_looking);
+        assert_eq!(received, told(&show), "{}: {}, tick {}", board.name, name.name(), frame.step);
+        assert_eq!(
+            frame.state.map(f32::to_bits),
+            <[f32; 4]>::from(show.report().state).map(f32::to_bits),
+            "{}: {}, tick {}",
+            board.name,
+            name.name(),
+            frame.step
+        );
+        if frame.step >= FOLLOWED {
+            break;
+        }
+    }
+    machine.serial.send(&AskPlan { request: 2 })?;
+    let answer = loop {
+        let message = machine.serial.receive().ok_or_else(|| machine.silence())?;
+        if let Some(answer) = message.read::<Planned>() {
+            break answer;
+        }
+    };
+    let lines: Vec<_> = machine.log.arrived().map(|line| line.text).collect();
+    let logged = |head: &str| lines.iter().filter(|line| line.starts_with(head)).count();
+    let plan = show.news.iter().find_map(|(_, news)| match news {
+        News::Found(Finding::Plan(plan)) => Some(*plan),
+        _ => None,
+    });
+    println!("{} {}: {} changes, {plan:?}", board.name, name.name(), changes);
+    assert_eq!(name == SceneName::Frequencies, plan.is_none(), "{}: {} {lines:#?}", board.name, name.name());
+    let Some(Plan { method, steps, error, cost, limit, .. }) = plan else { return Ok(()) };
+    assert_eq!(
+        (answer.found, answer.method, answer.steps, answer.error, answer.cycles, answer.limit),
+        (2, method_code(method), steps, HALF_PIXEL * error, cost, limit_code(limit)),
+        "{}: {}",
+        board.name,
+        name.name()
+    );
+    // What is said at the start may have come before the first frame of it.
+    assert!(logged("plan: ") == 1 && (changes..=1 + changes).contains(&logged("shown: ")), "{lines:#?}");
+    assert_eq!(changes > 0, name == SceneName::Beats2To1 && method != Method::Fixed64, "{lines:#?}");
+    Ok(())
 }

@@ -61,7 +61,8 @@ fn the_panel_shows_what_the_host_draws() -> Result<(), QemuError> {
         // `qemu_flips`.
         let same = |name: &&SceneName| **name != SceneName::Flips || board.core() == Core::M3;
         for &name in SceneName::ALL.iter().filter(same) {
-            let mut scene = Show::new(name, &name.first_settings()).expect("a scene of the catalogue");
+            let mut scene =
+                Show::on(board.processor(), name, &name.first_settings()).expect("a scene of the catalogue");
             let mut frame = choose(&mut machine, name)?;
             for _ in 0..FRAMES {
                 for _ in 0..EVERY {

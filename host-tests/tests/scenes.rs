@@ -1,10 +1,9 @@
 //! Every scene of the catalogue, on the host: its frame to the pixel, and what all scenes have in common.
 
 use double_pendulum::State;
-use double_pendulum::plan::Method;
 use firmware::app::App;
 use firmware::app::controls::NoButtons;
-use firmware::config::{PIVOT, REACH, STEPS_PER_TICK, TRAIL_FADING, TRAIL_HALF_WIDTH};
+use firmware::config::{PIVOT, PROCESSOR, REACH, TRAIL_FADING, TRAIL_HALF_WIDTH};
 use firmware::display::NoDisplay;
 use firmware::graphics::canvas::{Canvas, HEIGHT, WIDTH};
 use firmware::graphics::fade_layer::FadeLayer;
@@ -12,11 +11,15 @@ use firmware::graphics::plot;
 use firmware::graphics::text::{self, Anchor};
 use firmware::motion::planner::Shown;
 use firmware::motion::settings::Settings;
+use firmware::motion::simulation::Means;
 use firmware::protocol::{MAX_WIRE, Pause, encode};
 use firmware::scenes::{AnyScene, SceneName};
 use host_tests::emulator::host::{Show, sheets};
 use host_tests::oracle::snapshot;
 use host_tests::oracle::tolerances::SHOWN_HEIGHT;
+
+/// What a board without a floating-point unit may spend.
+const MEANS: Means = Means { processor: PROCESSOR, method: None };
 
 /// The ticks after which each scene is pictured: one second, when all is in view, and four.
 const PICTURED: [u32; 2] = [60, 240];
@@ -67,7 +70,7 @@ fn the_trail_is_the_path_and_fades_with_age() {
     const FRESH: f64 = 11.0; // of 15 greys: 184/17 rounded
     const FADED: f64 = 64.0 / TRAIL_FADING as f64; // ticks to a grey
     let (mut ink, mut path) = (FadeLayer::NONE, Vec::new());
-    let mut scene = AnyScene::new(SceneName::Page, &Settings::default()).expect("the page");
+    let mut scene = AnyScene::new(SceneName::Page, &Settings::default(), &MEANS).expect("the page");
     for _ in 0..400 {
         scene.tick(&mut ink);
         let State { a1, a2, .. } = scene.report().state;
@@ -133,10 +136,10 @@ fn a_pause_is_marked_and_only_a_pause() {
 /// is on the frame.
 #[test]
 fn what_is_planned_is_what_is_shown() {
-    let shown = |name: SceneName| AnyScene::new(name, &name.first_settings()).expect("a scene").shown();
+    let shown = |name: SceneName| AnyScene::new(name, &name.first_settings(), &MEANS).expect("a scene").shown();
     for name in [SceneName::Beats3To2, SceneName::Beats2To1, SceneName::Beats5To2, SceneName::Beats3To1] {
-        let Some(Shown { method, steps, height }) = shown(name) else { panic!("{} moves", name.name()) };
-        assert_eq!((method, steps), (Method::Direction, STEPS_PER_TICK), "{}", name.name());
+        let Some(Shown { way, height }) = shown(name) else { panic!("{} moves", name.name()) };
+        assert_eq!(way, None, "{} follows its plan", name.name());
         // Its greatest swing, 12 degrees, is 21.5 pixels long.
         let expected = 4.0 * 21.5 / 12.0_f32.to_radians();
         assert!((height / expected - 1.0).abs() < SHOWN_HEIGHT, "{}: {height} for {expected}", name.name());

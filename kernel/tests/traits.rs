@@ -43,7 +43,8 @@ fn every_public_type_has_the_common_traits() {
         Fixed64Form<12>, Fixed64State, Followed, Falling<DirectionState<f32, Plain>, f32>, Flip<f32>, Flips<f32, DirectionForm<f32, Plain>>, Interpolation<f32>, Lanes<f32, 4>, Libm, Limit, Method, Mode<f32>,
         Modes<f32>, Motion<f32>, Node<f32>, Oscillation<f32>, Own, Parameter, Parameters<f32>, Pendulum<f32>, Plain, Plan,
         PlanError, Problem, Quantity, RestoreError, Search, ShadowedRun<f32, DirectionForm<f32>>, SmallOscillations<f32>, State<f32>,
-        Stepper<f32, DirectionForm<f32>>, Units<f32>, UnwrappedStepper<f32, DirectionForm<f32>>, Vector<f32>, Winding<f32>,
+        Stepper<f32, DirectionForm<f32>>, Units<f32>, UnwrappedStepper<f32, DirectionForm<f32>>, Vector<f32>, Way, WayStepper,
+        Winding<f32>,
     ];
     let name = |path: &'static str| path.split('<').next().and_then(|path| path.rsplit("::").next()).unwrap_or(path);
     let with = with.map(name);

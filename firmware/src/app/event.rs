@@ -3,8 +3,8 @@
 use double_pendulum::Error;
 
 use crate::app::command::Command;
+use crate::app::player::News;
 use crate::app::warm_restart::WarmRestart;
-use crate::motion::planner::Finding;
 use crate::motion::settings::Settings;
 use crate::protocol::Field;
 use crate::protocol::LinkError;
@@ -51,9 +51,8 @@ pub enum Event<Panel, Link> {
     /// The step is too long for the scene's motion, which has left the finite numbers; it stands at its last good
     /// frame until it is started again.
     Stopped(Error),
-    /// The step is longer than this, s, the longest that resolves every motion of the energy of what was started or asked
-    /// for. Not said of a scene that starts as it stands in the catalogue.
+    /// The step is longer than this, s, the longest that resolves every motion of the energy of what was asked for.
     StepTooLong(f64),
-    /// Looking ahead has found something.
-    Found(Finding),
+    /// What becomes of the motion.
+    Motion(News),
 }

@@ -16,17 +16,16 @@ use embedded_io::Write;
 use crate::app::command::{Command, HostCommand};
 use crate::app::controls::{Buttons, Controls};
 use crate::app::instruments::Instruments;
-use crate::app::player::Player;
+use crate::app::player::{News, Player};
 use crate::app::service::{Received, Service};
 use crate::app::warm_restart::WarmRestart;
-use crate::config::{DT, MOST_MEASURED_STEPS, MOST_MESSAGES_PER_TICK, MOST_TICKS_PER_FRAME};
+use crate::config::{MOST_MEASURED_STEPS, MOST_MESSAGES_PER_TICK, MOST_TICKS_PER_FRAME, PROCESSOR, Processor};
 use crate::display::Display;
 use crate::graphics::canvas::Canvas;
 use crate::graphics::frame_buffers::FrameBuffers;
-use crate::motion::planner::Planner;
 use crate::motion::settings::Settings;
-use crate::protocol::Field;
-use crate::protocol::{Done, Frame, LinkError, MAX_WIRE, Measured, Message, Refused, encode};
+use crate::protocol::{Done, Field, Frame, LinkError, MAX_WIRE, Measured, Message, Refused, encode};
+use crate::scenes::SceneName;
 use throttle::{FaultEdge, ThrottledCounter};
 
 pub use event::Event;
@@ -40,7 +39,6 @@ pub struct App<'a, Panel, Link, Keys> {
     controls: Controls,
     player: Player<'a>,
     service: Service,
-    planner: Planner,
     canvas: &'a mut Canvas,
     /// Ticks done since reset.
     ticks: u32,
@@ -65,22 +63,47 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     /// Starts with `settings`, at tick 0; the kernel's error if they describe no pendulum.
     pub fn new(
         settings: Settings,
-        FrameBuffers { canvas, ink }: &'a mut FrameBuffers,
+        buffers: &'a mut FrameBuffers,
         panel: Panel,
         link: Link,
         keys: Keys,
     ) -> Result<Self, Error> {
-        let player = Player::new(settings, ink)?;
-        let mut planner = Planner::default();
-        planner.start(player.settings(), player.shown());
-        Ok(Self {
+        Self::on(PROCESSOR, settings, buffers, panel, link, keys)
+    }
+
+    /// The same as it goes on another class of processors.
+    pub fn on(
+        processor: Processor,
+        settings: Settings,
+        buffers: &'a mut FrameBuffers,
+        panel: Panel,
+        link: Link,
+        keys: Keys,
+    ) -> Result<Self, Error> {
+        let mut app = Self::idle(processor, settings, buffers, panel, link, keys);
+        app.begin()?;
+        Ok(app)
+    }
+
+    /// The same before it [begins](Self::begin), which takes much of the stack: better when it is at its place.
+    ///
+    /// Never inlined: so it is made at its place, and no copy of it stands on the stack.
+    #[inline(never)]
+    pub fn idle(
+        processor: Processor,
+        settings: Settings,
+        FrameBuffers { canvas, ink }: &'a mut FrameBuffers,
+        panel: Panel,
+        link: Link,
+        keys: Keys,
+    ) -> Self {
+        Self {
             panel,
             link,
             keys,
             controls: Controls::default(),
-            player,
+            player: Player::idle(processor, settings, ink),
             service: Service::default(),
-            planner,
             canvas,
             ticks: 0,
             frames: 0,
@@ -92,7 +115,12 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
             link_failing: FaultEdge::default(),
             instruments: Instruments::default(),
             busy_cycles: 0,
-        })
+        }
+    }
+
+    /// Plays the first scene, from its start.
+    pub fn begin(&mut self) -> Result<(), Error> {
+        self.player.play(SceneName::Page, *self.player.settings())
     }
 
     /// Measures and tells of itself by these.
@@ -105,17 +133,9 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         (self.ticks, self.frames, self.dropped) = (clock, frames, ThrottledCounter::starting(frames, clock));
     }
 
-    /// Plans for a processor that has `cycles` in a tick.
-    pub fn use_tick(&mut self, cycles: u32) {
-        self.planner.set_tick(cycles);
-    }
-
     /// Goes on after a restart with what was played before it, and tells the host.
     pub fn resume(&mut self, survivor: &WarmRestart, mut log: impl FnMut(Event<Panel::Error, Link::Error>)) {
         let resumed = survivor.played.is_some_and(|played| self.player.resume(&played).is_ok());
-        if resumed {
-            self.planner.start(self.player.settings(), self.player.shown());
-        }
         log(Event::Restarted(*survivor, resumed));
         self.send(&survivor.end, &mut log);
     }
@@ -197,14 +217,9 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         self.service.is_busy()
     }
 
-    /// Looks ahead for the plan of what is played, a piece that fits into the `left` cycles of this tick; whether there
-    /// is more to do that may fit.
-    pub fn plan(&mut self, left: u32, mut log: impl FnMut(Event<Panel::Error, Link::Error>)) -> bool {
-        let (worked, found) = self.planner.work(left);
-        if let Some(found) = found {
-            log(Event::Found(found));
-        }
-        worked
+    /// Does a bounded piece of the looking ahead that the next tick would do; whether there is more.
+    pub fn look_ahead(&mut self) -> bool {
+        self.player.look_ahead()
     }
 
     /// Frames drawn and sent since reset; wraps.
@@ -239,7 +254,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
                 log(Event::Refused(command, field));
             }
         }
-        self.player.tick();
+        self.player.tick(|news| log(Event::Motion(news)));
     }
 
     fn execute(
@@ -248,15 +263,9 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         log: &mut impl FnMut(Event<Panel::Error, Link::Error>),
     ) -> Result<(), Field> {
         if self.player.execute(command)? {
-            let settings = *self.player.settings();
-            self.planner.start(&settings, self.player.shown());
-            log(Event::Started(self.player.name(), settings));
-            // The catalogue's own starts are known to go well with the step; the clock says how long.
-            let own = settings == self.player.name().first_settings();
-            if let Some(admissible) =
-                settings.admissible_step().filter(|&admissible| !own && DT > f64::from(admissible))
-            {
-                log(Event::StepTooLong(admissible.into()));
+            log(Event::Started(self.player.name(), *self.player.settings()));
+            if let Some(way) = self.player.report().way {
+                log(Event::Motion(News::Shown(way, self.player.cost(way))));
             }
         }
         Ok(())
@@ -270,7 +279,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     ) {
         match self.execute(command, log) {
             Ok(()) if command == Command::Ask => self.send(&self.player.status(request), log),
-            Ok(()) if command == Command::AskPlan => self.send(&self.planner.answer(request), log),
+            Ok(()) if command == Command::AskPlan => self.send(&self.player.plan(request), log),
             Ok(()) if command == Command::Identify => self.send(&self.instruments.identity(request), log),
             Ok(()) if let Command::Measure(steps) = command => self.measure(request, steps, log),
             Ok(()) => self.send(&Done { request }, log),

@@ -1,17 +1,31 @@
 //! What is played: a scene with its settings, and how its time goes.
 
+use double_pendulum::plan::{Plan, Way};
 use double_pendulum::{Error, Parameters};
 
 use crate::app::command::Command;
-use crate::config::{GREATEST_ANGLE, GREATEST_SPEED, LEAST_SPEED};
+use crate::config::{GREATEST_ANGLE, GREATEST_SPEED, LEAST_SPEED, PROCESSOR, Processor};
 use crate::graphics::canvas::Canvas;
 use crate::graphics::fade_layer::FadeLayer;
 use crate::graphics::text;
-use crate::motion::planner::Shown;
+use crate::motion::planner::{Finding, Planner};
 use crate::motion::settings::Settings;
-use crate::protocol::{Field, Frame, Status};
+use crate::motion::simulation::{CatchingUp, Means};
+use crate::protocol::{Field, Frame, NO_METHOD, Planned, Status, method_code, method_of};
 use crate::scenes::scene::Report;
 use crate::scenes::{AnyScene, SceneName};
+
+/// The value of [`Field::Way`] that leaves the way to the plan.
+pub const AUTO: f64 = NO_METHOD as f64;
+
+/// What becomes of the motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum News {
+    /// Looking ahead has found something.
+    Found(Finding),
+    /// The motion goes this way from now on; cycles of a frame.
+    Shown(Way, f32),
+}
 
 /// Full speed, in the parts that a tick is made of.
 const WHOLE_TICK: u32 = 100;
@@ -22,6 +36,10 @@ pub struct Player<'a> {
     name: SceneName,
     settings: Settings,
     scene: AnyScene,
+    means: Means,
+    planner: Planner,
+    /// The motion in the way of the plan, until it takes over; meanwhile nothing looks ahead.
+    next: Option<CatchingUp>,
     ink: &'a mut FadeLayer,
     pace: Pace,
     /// As of the last check.
@@ -33,11 +51,41 @@ pub struct Player<'a> {
 impl<'a> Player<'a> {
     /// Plays the page with `settings`; the kernel's error if they describe no pendulum.
     pub fn new(settings: Settings, ink: &'a mut FadeLayer) -> Result<Self, Error> {
-        let name = SceneName::Page;
-        let scene = AnyScene::new(name, &settings)?;
-        let report = scene.report();
-        ink.clear();
-        Ok(Self { name, settings, scene, ink, pace: Pace::default(), report, stopped: false })
+        Self::on(PROCESSOR, SceneName::Page, settings, ink)
+    }
+
+    /// Plays a scene with `settings` as it goes on this class of processors.
+    pub fn on(
+        processor: Processor,
+        name: SceneName,
+        settings: Settings,
+        ink: &'a mut FadeLayer,
+    ) -> Result<Self, Error> {
+        let mut player = Self::idle(processor, settings, ink);
+        player.play(name, settings)?;
+        Ok(player)
+    }
+
+    /// The same before it plays anything that moves.
+    pub fn idle(processor: Processor, settings: Settings, ink: &'a mut FadeLayer) -> Self {
+        let means = Means { processor, method: None };
+        let scene = AnyScene::empty();
+        let (name, report) = (SceneName::Frequencies, scene.report());
+        let (planner, pace, stopped) = (Planner::new(processor), Pace::default(), false);
+        Self { name, settings, scene, means, planner, next: None, ink, pace, report, stopped }
+    }
+
+    /// Plays a scene with `settings`; the kernel's error if they describe no pendulum, and nothing is changed.
+    ///
+    /// Never inlined: what a scene needs to start would be on the stack of every frame.
+    #[inline(never)]
+    pub fn play(&mut self, name: SceneName, settings: Settings) -> Result<(), Error> {
+        self.scene.start(name, &settings, &self.means)?;
+        (self.name, self.settings, self.stopped, self.next) = (name, settings, false, None);
+        self.planner.start(&settings, self.scene.shown(), self.scene.report().way);
+        self.ink.clear();
+        self.report = self.now();
+        Ok(())
     }
 
     /// Does what is asked; if that cannot be, nothing is changed and the error names what is wrong. Whether the scene
@@ -56,6 +104,7 @@ impl<'a> Player<'a> {
             Command::PreviousScene => return self.choose(self.name.previous()),
             Command::Choose(name) => return self.choose(name),
             Command::Set { field: Field::Speed, value } => self.pace.set_speed(value)?,
+            Command::Set { field: Field::Way, value } => return self.go(value),
             // Whatever the new value makes impossible, it is the new value that is wrong.
             Command::Set { field, value } => return self.start(self.name, self.with(field, value)?).map_err(|_| field),
             Command::Pause(paused) => self.pace.pause(paused),
@@ -66,15 +115,63 @@ impl<'a> Player<'a> {
         Ok(false)
     }
 
-    /// Advances by one tick of the clock, which may be any number of the scene's.
+    /// Advances by one tick of the clock, which may be any number of the scene's; `tell` is given what looking ahead finds, and
+    /// the way that a scene begins or changes to.
     #[inline(never)]
-    pub fn tick(&mut self) {
+    pub fn tick(&mut self, mut tell: impl FnMut(News)) {
         if self.stopped {
             return;
         }
         for _ in 0..self.pace.tick() {
             self.scene.tick(self.ink);
+            if let Some(next) = &mut self.next {
+                self.planner.rest();
+                if self.scene.planned().is_none_or(|motion| next.tick(motion)) {
+                    self.next = None;
+                    if let Some(way) = self.scene.planned().map(|motion| motion.way()) {
+                        tell(News::Shown(way, self.cost(way)));
+                    }
+                }
+            } else if let Some(found) = self.planner.tick() {
+                tell(News::Found(found));
+                self.follow(&found);
+            }
         }
+    }
+
+    /// Never inlined: what a motion needs to start would be on the stack of every frame.
+    #[inline(never)]
+    fn follow(&mut self, found: &Finding) {
+        if let (Finding::Plan(Plan { method, steps, .. }), None) =
+            (found, self.scene.shown().and_then(|shown| shown.way))
+        {
+            let way = Way { method: *method, steps: (*steps).max(1) };
+            if self.scene.planned().is_some_and(|motion| motion.way() != way) {
+                self.next = CatchingUp::new(&self.settings, way, &self.means.processor).ok();
+            }
+        }
+    }
+
+    /// Does a piece of the looking ahead that the next tick would do; whether there is more.
+    pub fn look_ahead(&mut self) -> bool {
+        !self.is_paused() && self.next.is_none() && self.planner.work_ahead()
+    }
+
+    /// The answer to [`Command::AskPlan`].
+    pub fn plan(&self, request: u16) -> Planned {
+        self.planner.answer(request)
+    }
+
+    /// Cycles of a frame that is computed this way.
+    pub fn cost(&self, Way { method, steps }: Way) -> f32 {
+        self.means.processor.costs.of_frame(method, steps)
+    }
+
+    /// The scene in numbers, with what the planner knows of it.
+    fn now(&self) -> Report {
+        let report = self.scene.report();
+        let (Some(_), Some(way)) = (self.scene.shown(), report.way) else { return report };
+        Report { horizon: self.planner.horizon(way) as f32, is_looking: self.planner.is_looking(), ..report }
     }
 
     /// Takes the scene's numbers if they are finite; else stops its time for good and says why, once. To be asked
@@ -84,7 +181,7 @@ impl<'a> Player<'a> {
         if self.stopped {
             return Ok(());
         }
-        let report = self.scene.report();
+        let report = self.now();
         report.state.finite().inspect_err(|_| self.stopped = true)?;
         self.report = report;
         Ok(())
@@ -111,11 +208,6 @@ impl<'a> Player<'a> {
         &self.settings
     }
 
-    /// How the scene shows its motion, if it shows one.
-    pub fn shown(&self) -> Option<Shown> {
-        self.scene.shown()
-    }
-
     /// The scene in numbers, as of the last check.
     pub fn report(&self) -> Report {
         self.report
@@ -129,6 +221,7 @@ impl<'a> Player<'a> {
     /// The frame as it is told to the host, but for what only the board's clock and link know.
     pub fn frame(&self) -> Frame {
         let [start_angle, _] = self.settings.angles();
+        let Report { horizon, is_looking, way, .. } = self.report;
         Frame {
             scene: self.name.code(),
             paused: self.is_paused().into(),
@@ -138,7 +231,10 @@ impl<'a> Player<'a> {
             start_angle,
             state: self.report.state.into(),
             energy_error: self.report.energy_error,
-            horizon: self.report.horizon,
+            method: way.map_or(NO_METHOD, |way| method_code(way.method)),
+            way_steps: way.map_or(0, |way| way.steps as u16),
+            horizon,
+            is_looking: is_looking.into(),
             ..Frame::default()
         }
     }
@@ -146,8 +242,16 @@ impl<'a> Player<'a> {
     /// The answer to [`Command::Ask`].
     pub fn status(&self, request: u16) -> Status {
         let Settings { parameters, degrees, velocities } = self.settings;
+        let Report { horizon, is_looking, way, .. } = self.report;
         Status {
             request,
+            processor: self.means.processor.code,
+            asked: self.means.method.map_or(NO_METHOD, method_code),
+            method: way.map_or(NO_METHOD, |way| method_code(way.method)),
+            way_steps: way.map_or(0, |way| way.steps),
+            cycles: way.map_or(0.0, |way| self.cost(way)),
+            horizon,
+            is_looking: is_looking.into(),
             scene: self.name.code(),
             paused: self.is_paused().into(),
             steps: self.pace.steps,
@@ -163,7 +267,9 @@ impl<'a> Player<'a> {
         let name = SceneName::from_code(status.scene).ok_or(Field::Scene)?;
         let [m1, m2, l1, l2, g] = status.parameters;
         let parameters = Parameters { m1, m2, l1, l2, g };
-        self.start(name, Settings { parameters, degrees: status.degrees, velocities: status.velocities })?;
+        let before = core::mem::replace(&mut self.means.method, method_of(status.asked));
+        let settings = Settings { parameters, degrees: status.degrees, velocities: status.velocities };
+        self.start(name, settings).inspect_err(|_| self.means.method = before)?;
         let speed = ((status.speed * WHOLE_TICK as f32 + 0.5) as u32).clamp(1, GREATEST_SPEED as u32 * WHOLE_TICK);
         self.pace = Pace { paused: status.paused != 0, steps: status.steps, speed, part: 0 };
         Ok(())
@@ -174,13 +280,18 @@ impl<'a> Player<'a> {
     }
 
     fn start(&mut self, name: SceneName, settings: Settings) -> Result<bool, Field> {
-        self.scene.start(name, &settings)?;
-        self.ink.clear();
-        self.report = self.scene.report();
-        self.stopped = false;
-        self.name = name;
-        self.settings = settings;
+        self.play(name, settings)?;
         Ok(true)
+    }
+
+    /// Starts again by the method of this code and no other, or as the plan has it if `value` is [`AUTO`].
+    fn go(&mut self, value: f64) -> Result<bool, Field> {
+        let method = method_of(value as u8);
+        if value != AUTO && method.is_none_or(|method| value != f64::from(method_code(method))) {
+            return Err(Field::Way);
+        }
+        let before = core::mem::replace(&mut self.means.method, method);
+        self.start(self.name, self.settings).inspect_err(|_| self.means.method = before).map_err(|_| Field::Way)
     }
 
     /// The settings with one of them changed; refuses an angle beyond straight up.

@@ -7,6 +7,7 @@ use core::mem::MaybeUninit;
 use firmware::app::App;
 use firmware::board;
 use firmware::board::lm3s6965evb::{Board, Keys, Panel, Uart};
+use firmware::config::PROCESSOR;
 use firmware::graphics::frame_buffers::FrameBuffers;
 
 #[cortex_m_rt::entry]
@@ -20,6 +21,6 @@ fn main() -> ! {
     if panel.init().is_err() {
         defmt::error!("the panel does not answer");
     }
-    let app = board::application(APP, SHEETS, panel, board.link, board.keys);
+    let app = board::application(APP, SHEETS, panel, board.link, board.keys, PROCESSOR);
     board::run(app, board.receiver, board.instruments, board.clock, board.watchdog)
 }

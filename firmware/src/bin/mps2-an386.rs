@@ -8,6 +8,7 @@ use firmware::app::App;
 use firmware::app::controls::NoButtons;
 use firmware::board;
 use firmware::board::mps2_an386::{Board, Uart};
+use firmware::config::PROCESSOR;
 use firmware::display::NoDisplay;
 use firmware::graphics::frame_buffers::FrameBuffers;
 
@@ -18,6 +19,6 @@ fn main() -> ! {
 
     let Some(board) = Board::take() else { panic!("the board was taken before") };
     defmt::info!("boot: mps2-an386, {} Hz", board.hertz);
-    let app = board::application(APP, SHEETS, NoDisplay, board.link, NoButtons);
+    let app = board::application(APP, SHEETS, NoDisplay, board.link, NoButtons, PROCESSOR);
     board::run(app, board.receiver, board.instruments, board.clock, board.watchdog)
 }

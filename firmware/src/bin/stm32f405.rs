@@ -7,6 +7,7 @@ use core::mem::MaybeUninit;
 use firmware::app::App;
 use firmware::board;
 use firmware::board::stm32f405::{Board, Keys, Panel, Uart};
+use firmware::config::STM32F405;
 use firmware::graphics::frame_buffers::FrameBuffers;
 
 #[cortex_m_rt::entry]
@@ -20,6 +21,6 @@ fn main() -> ! {
     if let Err(error) = panel.init() {
         defmt::warn!("no panel: {}", defmt::Debug2Format(&error));
     }
-    let app = board::application(APP, SHEETS, panel, board.link, board.keys);
+    let app = board::application(APP, SHEETS, panel, board.link, board.keys, STM32F405);
     board::run(app, board.receiver, board.instruments, board.clock, board.watchdog)
 }

@@ -5,7 +5,7 @@ use core::mem::MaybeUninit;
 
 use defmt::Debug2Format;
 use double_pendulum::Parameters;
-use double_pendulum::plan::Plan;
+use double_pendulum::plan::{Plan, Way};
 use embedded_io::Write;
 
 use super::cortex_m::clock::Clock;
@@ -14,9 +14,10 @@ use super::cortex_m::watchdog::Watchdog;
 use super::serial::receiver::Receiver;
 use crate::app::controls::Buttons;
 use crate::app::instruments::Instruments;
+use crate::app::player::News;
 use crate::app::warm_restart::{Journal, WarmRestart};
 use crate::app::{App, Event};
-use crate::config::HALF_PIXEL;
+use crate::config::{HALF_PIXEL, Processor};
 use crate::display::Display;
 use crate::graphics::frame_buffers::FrameBuffers;
 use crate::motion::planner::Finding;
@@ -30,14 +31,16 @@ pub fn application<'a, Panel, Link, Keys>(
     panel: Panel,
     link: Link,
     keys: Keys,
+    processor: Processor,
 ) -> &'a mut App<'a, Panel, Link, Keys>
 where
     Panel: Display,
     Link: Write,
     Keys: Buttons,
 {
-    match App::new(Settings::default(), sheets, panel, link, keys) {
-        Ok(app) => place.write(app),
+    let app = place.write(App::idle(processor, Settings::default(), sheets, panel, link, keys));
+    match app.begin().map(|()| app) {
+        Ok(app) => app,
         Err(error) => {
             defmt::error!("{}", error);
             panic!("the first settings describe no pendulum")
@@ -62,7 +65,6 @@ where
     Keys: Buttons,
 {
     app.use_instruments(instruments);
-    app.use_tick(clock.period());
     let mut journal = resume(app, &watchdog);
     let mut now = clock.ticks();
     app.count_from(now, 0);
@@ -71,7 +73,7 @@ where
         app.receive(&mut receiver, log);
         app.note_lost(receiver.lost(), log);
         while clock.ticks() == now && app.work(log) {}
-        while app.plan(clock.left_after(now), log) {}
+        while clock.ticks() == now && app.look_ahead() {}
         now = clock.wait_after(now);
     }
 }
@@ -122,6 +124,7 @@ fn started(scene: SceneName, settings: &Settings) {
 }
 
 /// Writes one event to the log.
+#[inline(never)]
 fn log<Panel: Debug, Link: Debug>(event: Event<Panel, Link>) {
     match event {
         Event::Restarted(WarmRestart { end, cause, .. }, resumed) => {
@@ -146,32 +149,24 @@ fn log<Panel: Debug, Link: Debug>(event: Event<Panel, Link>) {
         Event::Lost { bytes, total } => defmt::warn!("{} received bytes lost, {} since reset", bytes, total),
         Event::Stopped(error) => defmt::error!("stopped: {}", error),
         Event::StepTooLong(step) => defmt::warn!("the step is too long for this energy, {} s would do", step),
-        Event::Found(Finding::Plan(Plan { method, steps, error, cost, horizon, limit, .. })) => defmt::info!(
-            "plan: {=str}, {} steps to a frame, {} pixels off until {} s ({=str}), {} cycles a frame",
-            method.name(),
-            steps,
-            HALF_PIXEL * error,
-            horizon,
-            limit.name(),
-            cost,
-        ),
-        Event::Found(Finding::NothingHolds(limit)) => {
+        Event::Motion(News::Found(Finding::Plan(Plan { method, steps, error, cost, horizon, limit, .. }))) => {
+            defmt::info!(
+                "plan: {=str}, {} steps to a frame, {} pixels off until {} s ({=str}), {} cycles a frame",
+                method.name(),
+                steps,
+                HALF_PIXEL * error,
+                horizon,
+                limit.name(),
+                cost,
+            )
+        }
+        Event::Motion(News::Found(Finding::NothingHolds(limit))) => {
             defmt::info!("plan: nothing affordable is right to half a pixel in any frame ({=str})", limit.name());
         }
-        Event::Found(Finding::Shown { shown: Plan { method, steps, error, cost, horizon, .. }, plan }) => defmt::info!(
-            "shown: {=str}, {} steps to a frame, {} pixels off until {} s ({=str}), {} cycles a frame",
-            method.name(),
-            steps,
-            HALF_PIXEL * error,
-            horizon,
-            if plan.is_some_and(|plan| plan.horizon > horizon) {
-                "the plan is right for longer"
-            } else {
-                "as long as the plan"
-            },
-            cost,
-        ),
-        Event::Found(Finding::Refused(error)) => defmt::warn!("no plan: {}", error),
+        Event::Motion(News::Shown(Way { method, steps }, cost)) => {
+            defmt::info!("shown: {=str}, {} steps to a frame, {} cycles a frame", method.name(), steps, cost);
+        }
+        Event::Motion(News::Found(Finding::Refused(error))) => defmt::warn!("no plan: {}", error),
         Event::Asked => defmt::info!("computing a motion on request"),
         Event::Link(error) => defmt::error!("serial link: {}", Debug2Format(&error)),
     }

@@ -60,11 +60,12 @@ pub fn tick(value: f32, unit: &str) -> Label {
     label("", "", value, decimals, unit)
 }
 
-/// Until when the frame is right to half a pixel: `½px 8.4 s`, and `½px ok` as long as it is.
-pub fn trust(until: f32) -> Label {
+/// Until when the frame is right to half a pixel: `½px 8.4 s`, `½px>8.4 s` if it may be for longer, `½px ok` if for ever.
+pub fn trust(until: f32, is_looking: bool) -> Label {
+    let gap = if is_looking { ">" } else { " " };
     match until {
-        0.0..1e3 => label("½px", " ", until, 1, " s"),
-        1e3..1e9 => label("½px", " ", until, 0, " s"),
+        0.0..1e3 => label("½px", gap, until, 1, " s"),
+        1e3..1e9 => label("½px", gap, until, 0, " s"),
         _ => Label::try_from("½px ok").unwrap_or_default(),
     }
 }

@@ -1,28 +1,21 @@
-//! The plan of the scene played: the cheapest method to show its motion right to half a pixel, beside the one it is shown by.
+//! Looks ahead for the scene that is played: in which way it is right to half a pixel for longest, and cheapest, and until when.
 //!
-//! Both are found by the kernel's [`plan`](double_pendulum::plan), in the time that frames leave free, piece by piece.
-//! The scene does not wait for it and goes on as it is: the method and the steps of every scene are the same always, so
-//! that its state after n ticks is.
+//! All by the kernel's [`plan`](double_pendulum::plan), for a number of cycles in each tick of the scene that is the same on
+//! all boards of a class: so what has been found after n ticks is, too. The work itself may be done before the tick, in the
+//! time that a frame leaves free.
 
 use double_pendulum::Parameters;
-use double_pendulum::plan::{Budget, Costs, Limit, Method, Plan, PlanError, Problem, Search};
+use double_pendulum::plan::{Limit, Method, Plan, PlanError, Problem, Search, Way};
 
-use crate::config::{COSTS, FRAME_SHARE, HALF_PIXEL, PLANNED, PLANNING_PIECE, PLANNING_TICKS, TICK_CYCLES, TICK_RATE};
+use crate::config::{HALF_PIXEL, PLANNED, PLANNING_PIECE, Processor, SETTLED_TICKS, TICK_RATE};
 use crate::motion::settings::Settings;
 use crate::protocol::{NO_METHOD, Planned, limit_code, method_code};
-
-/// One part in so many of each tick is left to whatever comes up before its end.
-const RESERVE: u32 = 4;
-/// A piece must fit in with this margin, for what it costs is an estimate.
-const PIECE_MARGIN: f32 = 1.25;
 
 /// How a scene shows its motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shown {
-    /// The method it is computed by.
-    pub method: Method,
-    /// Steps to a tick.
-    pub steps: u32,
+    /// The way that it goes whatever the plan; `None` if it follows that.
+    pub way: Option<Way>,
     /// The height of a display, pixels, that shows the motion as large: both rods together are half of it long.
     pub height: f32,
 }
@@ -30,17 +23,10 @@ pub struct Shown {
 /// What has been found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Finding {
-    /// The plan.
+    /// The plan. One that was right to its end is looked at farther, and told again when that comes to an end.
     Plan(Plan),
     /// Nothing that this processor can afford is right in any frame; what forbids finer steps.
     NothingHolds(Limit),
-    /// What becomes of the method that the scene is shown by, and the plan beside it if there is one.
-    Shown {
-        /// The method it is shown by.
-        shown: Plan,
-        /// The plan.
-        plan: Option<Plan>,
-    },
     /// The kernel refuses to plan it.
     Refused(PlanError),
 }
@@ -48,94 +34,160 @@ pub enum Finding {
 /// Looks ahead for the scene that is played.
 #[derive(Clone, Copy, Debug)]
 pub struct Planner {
-    costs: Costs,
-    budget: Budget,
-    /// Cycles of a tick.
-    tick: u32,
+    processor: Processor,
+    /// Ticks of the scene.
+    ticks: u64,
     task: Option<(Problem, Shown)>,
     search: Option<Search>,
+    /// Cycles that may still be spent in this tick; less than 0 if some of the next have been.
+    credit: f32,
     /// The plan once it is found, or what forbids any.
     plan: Option<Result<Plan, Limit>>,
-    shown: Option<Plan>,
-}
-
-impl Default for Planner {
-    fn default() -> Self {
-        Self {
-            costs: COSTS,
-            budget: budget(TICK_CYCLES),
-            tick: TICK_CYCLES,
-            task: None,
-            search: None,
-            plan: None,
-            shown: None,
-        }
-    }
-}
-
-fn budget(tick: u32) -> Budget {
-    Budget { frame: FRAME_SHARE * tick as f32, planning: PLANNING_TICKS * tick as f32 }
+    /// The way that the scene has begun in, and until when that is known to be right, s.
+    begun: Option<Way>,
+    begun_horizon: f64,
+    /// What has been found and not yet told, and whether the next tick tells it.
+    finding: Option<Finding>,
+    is_due: bool,
 }
 
 impl Planner {
-    /// For a processor that has `tick` cycles in a tick.
-    pub fn set_tick(&mut self, tick: u32) {
-        (self.tick, self.budget) = (tick, budget(tick));
+    /// For a class of processors; nothing to do yet.
+    pub fn new(processor: Processor) -> Self {
+        Self {
+            processor,
+            ticks: 0,
+            task: None,
+            search: None,
+            credit: 0.0,
+            plan: None,
+            begun: None,
+            begun_horizon: 0.0,
+            finding: None,
+            is_due: false,
+        }
     }
 
-    /// Begins anew for a scene that starts with `settings`; one that shows no motion has no plan.
-    pub fn start(&mut self, settings: &Settings, shown: Option<Shown>) {
-        (self.search, self.plan, self.shown) = (None, None, None);
+    /// Begins anew for a scene that starts with `settings`, and in the way `begun`; one that shows no motion has no plan.
+    pub fn start(&mut self, settings: &Settings, shown: Option<Shown>, begun: Option<Way>) {
+        (self.ticks, self.credit) = (0, 0.0);
+        (self.begun, self.begun_horizon) = (begun, 0.0);
+        (self.search, self.plan, self.finding, self.is_due) = (None, None, None, false);
         self.task = shown.map(|shown| (problem(settings, &shown), shown));
     }
 
-    /// Does a piece of the search if it fits into `left` cycles and leaves the reserve: whether it did, and what is found.
-    #[inline(never)]
-    pub fn work(&mut self, left: u32) -> (bool, Option<Finding>) {
-        let piece = self.search.as_ref().map_or(0.0, |search| search.piece(PLANNING_PIECE));
-        let is_over = self.task.is_none() || self.shown.is_some();
-        if is_over || left < self.tick / RESERVE || (left as f32) < PIECE_MARGIN * piece {
-            return (false, None);
+    /// Does all that this tick of the scene may spend, but what has been done before. What is found the next one tells, and does
+    /// nothing else: to follow it takes time, too.
+    pub fn tick(&mut self) -> Option<Finding> {
+        self.ticks += 1;
+        if core::mem::take(&mut self.is_due) {
+            return self.finding.take();
         }
-        let finding = self.advance().unwrap_or_else(|error| {
-            self.task = None;
-            Some(Finding::Refused(error))
-        });
-        (true, finding)
+        if self.ticks > SETTLED_TICKS {
+            self.credit += self.processor.look_ahead;
+        }
+        while self.credit > 0.0 && self.work() {}
+        self.credit = self.credit.min(0.0);
+        if let Some(way) = self.begun {
+            self.begun_horizon = self.begun_horizon.max(self.looked_at(way));
+        }
+        self.is_due = self.finding.is_some();
+        None
+    }
+
+    /// Lets a tick of the scene pass that has no time for this.
+    pub fn rest(&mut self) {
+        self.ticks += 1;
+    }
+
+    /// Does a piece of what the next tick may spend; whether there is more.
+    pub fn work_ahead(&mut self) -> bool {
+        self.ticks >= SETTLED_TICKS && self.credit + self.processor.look_ahead > 0.0 && self.work()
+    }
+
+    /// Until when the frames are known to be right of a scene that goes this `way`, s.
+    pub fn horizon(&self, way: Way) -> f64 {
+        let looked_at = if self.begun == Some(way) { self.begun_horizon } else { self.looked_at(way) };
+        looked_at.max(self.planned(way))
+    }
+
+    /// Until when the search has found this way right so far.
+    #[inline(never)] // once in flash
+    fn looked_at(&self, way: Way) -> f64 {
+        self.search.as_ref().map_or(0.0, |search| search.horizon(way))
+    }
+
+    /// The plan's horizon, if it is of this way.
+    fn planned(&self, way: Way) -> f64 {
+        let plan = self.plan.and_then(Result::ok);
+        let is_of = |plan: &Plan| plan.method == way.method && plan.steps.max(1) == way.steps;
+        plan.filter(|plan| way.method == Method::Fixed64 || is_of(plan)).map_or(0.0, |plan| plan.horizon)
+    }
+
+    /// Whether it may turn out that they are for longer.
+    pub fn is_looking(&self) -> bool {
+        self.task.is_some() && (self.plan.is_none() || self.search.is_some())
+    }
+
+    /// Does a piece of the search; whether there was one to do.
+    ///
+    /// Never inlined: a profile of a frame tells looking ahead by it.
+    #[inline(never)]
+    fn work(&mut self) -> bool {
+        if self.finding.is_some() || !self.is_looking() || self.is_far() {
+            return false;
+        }
+        let before = self.search.as_ref().map_or(0.0, Search::spent);
+        if let Err(error) = self.advance() {
+            (self.task, self.search) = (None, None);
+            self.finding = Some(Finding::Refused(error));
+        }
+        let spent = self.search.as_ref().map_or(0.0, Search::spent) - before;
+        let is_first = before == 0.0;
+        let least =
+            if is_first { self.processor.costs.preparation } else { self.processor.costs.closed_form.max(PIECE) };
+        self.credit -= spent.max(least);
+        true
+    }
+
+    /// Whether a plan that was right to its end has been looked at far enough for now.
+    fn is_far(&self) -> bool {
+        let plan = self.plan.and_then(Result::ok);
+        plan.is_some_and(|plan| {
+            let far = self.ticks as f64 / f64::from(TICK_RATE) + PLANNED;
+            self.looked_at(Way { method: plan.method, steps: plan.steps.max(1) }) >= far
+        })
     }
 
     /// Never inlined: a search stands on the stack while it is made.
     #[inline(never)]
-    fn advance(&mut self) -> Result<Option<Finding>, PlanError> {
-        let Some((problem, Shown { method, steps, .. })) = &self.task else { return Ok(None) };
+    fn advance(&mut self) -> Result<(), PlanError> {
+        let Some((problem, Shown { way, .. })) = &self.task else { return Ok(()) };
         let Some(search) = &mut self.search else {
-            self.search = Some(match self.plan {
-                None => Search::new(problem, &self.costs, &self.budget)?,
-                Some(_) => Search::of(*method, *steps, problem, &self.costs, &self.budget)?,
+            let (costs, budget) = (&self.processor.costs, self.processor.budget(problem));
+            self.search = Some(match way {
+                None => Search::new(problem, costs, &budget)?,
+                Some(Way { method, steps }) => Search::of(*method, *steps, problem, costs, &budget)?,
             });
-            return Ok(None);
+            return Ok(());
         };
-        let found = match search.advance(PLANNING_PIECE) {
-            Ok(None) => return Ok(None),
-            Ok(Some(found)) => Ok(found),
-            Err(PlanError::NothingHolds { limit, .. }) => Err(limit),
+        match search.advance(PLANNING_PIECE) {
+            Ok(None) => {}
+            Ok(Some(plan)) => {
+                (self.plan, self.finding) = (Some(Ok(plan)), Some(Finding::Plan(plan)));
+                if plan.limit == Limit::End {
+                    search.extend(FOR_EVER);
+                } else {
+                    self.search = None;
+                }
+            }
+            Err(PlanError::NothingHolds { limit, .. }) => {
+                (self.plan, self.finding) = (Some(Err(limit)), Some(Finding::NothingHolds(limit)));
+                self.search = None;
+            }
             Err(error) => return Err(error),
-        };
-        self.search = None;
-        Ok(Some(match (self.plan, found) {
-            (Some(plan), Ok(shown)) => {
-                self.shown = Some(shown);
-                Finding::Shown { shown, plan: plan.ok() }
-            }
-            (_, Ok(plan)) => {
-                self.plan = Some(Ok(plan));
-                Finding::Plan(plan)
-            }
-            (_, Err(limit)) => {
-                self.plan = Some(Err(limit));
-                Finding::NothingHolds(limit)
-            }
-        }))
+        }
+        Ok(())
     }
 
     /// What is known of the plan, as an answer.
@@ -143,33 +195,35 @@ impl Planner {
         let Some((problem, Shown { height, .. })) = &self.task else {
             return Planned { request, ..Planned::default() };
         };
-        let found = 1 + u8::from(self.plan.is_some()) + u8::from(self.shown.is_some());
+        let budget = self.processor.budget(problem);
         let mut answer = Planned {
             request,
-            found,
+            found: 1 + u8::from(self.plan.is_some()),
+            horizon: self.plan.and_then(Result::ok).map_or(0.0, |plan| plan.horizon),
             height: (*height).into(),
             duration: problem.duration,
-            frame_budget: self.budget.frame,
-            planning_budget: self.budget.planning,
+            frame_budget: budget.frame,
+            planning_budget: budget.planning,
             ..Planned::default()
         };
         match self.plan {
-            Some(Ok(Plan { method, steps, dt, error, cost, horizon, limit, spent })) => {
+            Some(Ok(Plan { method, steps, dt, error, cost, limit, spent, .. })) => {
                 (answer.method, answer.steps, answer.dt) = (method_code(method), steps, dt);
-                (answer.error, answer.cycles, answer.horizon) = (HALF_PIXEL * error, cost, horizon);
+                (answer.error, answer.cycles) = (HALF_PIXEL * error, cost);
                 (answer.limit, answer.planning) = (limit_code(limit), spent);
             }
             Some(Err(limit)) => (answer.method, answer.limit) = (NO_METHOD, limit_code(limit)),
             None => {}
         }
-        if let Some(Plan { method, steps, error, cost, horizon, limit, .. }) = self.shown {
-            (answer.shown_method, answer.shown_steps) = (method_code(method), steps);
-            (answer.shown_error, answer.shown_cycles) = (HALF_PIXEL * error, cost);
-            (answer.shown_horizon, answer.shown_limit) = (horizon, limit_code(limit));
-        }
         answer
     }
 }
+
+/// The least that a piece costs, cycles.
+const PIECE: f32 = 1_000.0;
+
+/// Longer than anything is played, s: four months.
+const FOR_EVER: f64 = 1e7;
 
 /// What the kernel is asked to plan.
 pub fn problem(settings: &Settings, shown: &Shown) -> Problem {

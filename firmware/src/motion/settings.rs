@@ -42,13 +42,13 @@ impl Settings {
 
     /// With the next larger mass ratio of [`MASS_RATIOS`]; the largest stays.
     pub fn heavier(self) -> Self {
-        let next = MASS_RATIOS.into_iter().find(|&ratio| ratio > self.mass_ratio());
+        let next = MASS_RATIOS.iter().copied().find(|&ratio| ratio > self.mass_ratio());
         next.map_or(self, |ratio| self.with_mass_ratio(ratio))
     }
 
     /// With the next smaller mass ratio of [`MASS_RATIOS`]; the smallest stays.
     pub fn lighter(self) -> Self {
-        let next = MASS_RATIOS.into_iter().rev().find(|&ratio| ratio < self.mass_ratio());
+        let next = MASS_RATIOS.iter().copied().rev().find(|&ratio| ratio < self.mass_ratio());
         next.map_or(self, |ratio| self.with_mass_ratio(ratio))
     }
 

@@ -1,71 +1,146 @@
-//! The motion itself, apart from any frame of it: the state after n steps, and what its energy has become.
+//! The motion itself, apart from any frame of it: the state after n ticks, and what its energy has become.
 
-use double_pendulum::{Error, Pendulum, State};
+use double_pendulum::plan::{Directions, Method, Way, WayStepper};
+use double_pendulum::{Error, Motion, Pendulum, State};
 
-use crate::config::{DT, STEPS_PER_SECOND, STEPS_PER_TICK};
-use crate::motion::direction_stepper::{Directions, UnwrappedDirectionStepper};
+use crate::config::{Processor, TICK_RATE};
 use crate::motion::settings::Settings;
+
+/// What a motion may be computed by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Means {
+    /// What steps cost, and what may be spent.
+    pub processor: Processor,
+    /// The method that is asked for; `None` leaves it to the plan.
+    pub method: Option<Method>,
+}
+
+impl Means {
+    /// `settings` in motion: in the way that lasts longest by all that is known before looking ahead, or that is asked for.
+    ///
+    /// The kernel's error if the `pendulum` is too quick for what may be spent.
+    fn start(&self, settings: &Settings, pendulum: &Pendulum<f32>) -> Result<WayStepper, Error> {
+        let (parameters, start, rate) = (settings.parameters.cast(), settings.motion().cast(), TICK_RATE as u16);
+        let way = match self.method {
+            Some(method) => Way::of(&parameters, &start, rate, method)?,
+            None => Way::lasting(&parameters, &start, rate, &self.processor.costs, self.processor.frame)?,
+        };
+        pendulum.check_step(1.0 / (f64::from(rate) * f64::from(way.steps)))?;
+        WayStepper::new(&parameters, &start, rate, way)
+    }
+}
+
+/// `settings` in motion in this `way`, but with rod 1 ahead by `apart` rad.
+pub fn start_beside(settings: &Settings, apart: f64, way: Way) -> Result<WayStepper, Error> {
+    let start = settings.motion().cast();
+    let beside = Motion { a1: start.a1 + apart, ..start };
+    WayStepper::new(&settings.parameters.cast(), &beside, TICK_RATE as u16, way)
+}
 
 /// A pendulum in motion since its last restart.
 #[derive(Clone, Debug)]
 pub struct Simulation {
     energy: Energy,
-    swing: UnwrappedDirectionStepper,
-    step: u64,
+    motion: WayStepper,
+    /// Whether its method was asked for.
+    is_given: bool,
+    directions: Directions,
     /// The precise state now, once it was asked for: it takes as long as a step and a half.
     precise: Option<State<f64>>,
 }
 
 impl Simulation {
-    /// At the start; the kernel's error if the settings describe no pendulum, or one too quick for [`DT`].
-    pub fn new(settings: &Settings) -> Result<Self, Error> {
+    /// At the start; refuses what [`Means::start`] refuses.
+    pub fn new(settings: &Settings, means: &Means) -> Result<Self, Error> {
         let pendulum = settings.pendulum()?;
-        pendulum.check_step(DT)?;
         let start = settings.start(&pendulum)?;
-        Ok(Self {
-            energy: Energy::new(pendulum, &start),
-            swing: UnwrappedDirectionStepper::new(&settings.parameters, &start, DT)?,
-            step: 0,
-            precise: None,
-        })
+        let motion = means.start(settings, &pendulum)?;
+        let directions = motion.directions();
+        let is_given = means.method.is_some();
+        Ok(Self { energy: Energy::new(pendulum, &start), motion, is_given, directions, precise: None })
     }
 
-    /// Advances by one tick: [`STEPS_PER_TICK`] steps of [`DT`] seconds.
+    /// Advances by one tick.
+    #[inline(never)] // once in flash
     pub fn tick(&mut self) {
         self.precise = None;
-        self.swing.advance(STEPS_PER_TICK);
-        self.step = self.step.wrapping_add(STEPS_PER_TICK.into());
+        self.motion.advance();
+        self.directions = self.motion.directions();
+    }
+
+    /// The way it goes whatever the plan, if it was asked for.
+    pub fn given(&self) -> Option<Way> {
+        self.is_given.then(|| self.way())
+    }
+
+    /// The way it goes now.
+    pub fn way(&self) -> Way {
+        self.motion.way()
     }
 
     /// Where the rods point: all that most frames need.
     pub fn directions(&self) -> Directions {
-        self.swing.directions()
+        self.directions
     }
 
     /// The canonical state now, rounded to `f32`, its angles unwrapped.
     pub fn state(&self) -> State<f32> {
-        let state = self.precise.unwrap_or_else(|| self.swing.stepper().state());
-        self.swing.unwrap(state).cast()
+        self.precise.unwrap_or_else(|| self.motion.state()).cast()
     }
 
-    /// The canonical state to the last digit carried, each angle within half a turn of hanging.
+    /// The canonical state to the last digit carried.
     pub fn precise_state(&mut self) -> State<f64> {
-        *self.precise.get_or_insert_with(|| self.swing.stepper().state())
+        *self.precise.get_or_insert_with(|| self.motion.state())
     }
 
-    /// Steps since the start. They never wrap: that would take 2.4 thousand million years.
+    /// Ticks since the start. They never wrap: that would take ten thousand million years.
     pub fn step(&self) -> u64 {
-        self.step
+        self.motion.frame()
     }
 
     /// Simulated time since the start, s.
     pub fn time(&self) -> f64 {
-        self.step as f64 / f64::from(STEPS_PER_SECOND)
+        self.motion.time()
     }
 
     /// What its energy is measured by.
     pub fn energy(&self) -> &Energy {
         &self.energy
+    }
+}
+
+/// A motion in another way, from the start until it has caught up: after a number of ticks that depends on nothing but what
+/// the way costs.
+#[derive(Clone, Debug)]
+pub struct CatchingUp {
+    motion: WayStepper,
+    /// Frames in a tick.
+    most: u32,
+}
+
+impl CatchingUp {
+    /// Refuses what [`WayStepper::new`] refuses.
+    pub fn new(settings: &Settings, way: Way, processor: &Processor) -> Result<Self, Error> {
+        let (parameters, start) = (settings.parameters.cast(), settings.motion().cast());
+        let affordable = (processor.look_ahead / processor.costs.of_frame(way.method, way.steps)) as u32;
+        let motion = WayStepper::new(&parameters, &start, TICK_RATE as u16, way)?;
+        // With fewer frames in a tick nothing catches up.
+        Ok(Self { motion, most: affordable.max(2) })
+    }
+
+    /// Makes a tick's frames; whether it has caught up with `simulation`, which then goes on as this.
+    pub fn tick(&mut self, simulation: &mut Simulation) -> bool {
+        for _ in 0..self.most {
+            if self.motion.frame() < simulation.motion.frame() {
+                self.motion.advance();
+            }
+        }
+        let is_there = self.motion.frame() == simulation.motion.frame();
+        if is_there {
+            simulation.motion = self.motion;
+            (simulation.directions, simulation.precise) = (self.motion.directions(), None);
+        }
+        is_there
     }
 }
 

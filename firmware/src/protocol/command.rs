@@ -98,5 +98,20 @@ crate::message! {
         degrees: [f32; 2],
         /// Angular velocities of rod 1 and rod 2 at the start, rad/s.
         velocities: [f32; 2],
+        /// The class of the processor, by its place in [`PROCESSORS`](crate::config::PROCESSORS).
+        processor: u8,
+        /// The method that was asked for, by its [`method_code`](super::method_code); [`NO_METHOD`](super::NO_METHOD): as the
+        /// plan has it.
+        asked: u8,
+        /// The method by which the motion is computed; [`NO_METHOD`](super::NO_METHOD) where there is none to choose.
+        method: u8,
+        /// Its steps to a frame.
+        way_steps: u32,
+        /// Cycles to compute a frame, without drawing it (estimate).
+        cycles: f32,
+        /// Until when the frames are known to be right to half a pixel, s since the start.
+        horizon: f32,
+        /// 1 if that may yet turn out to be later, else 0.
+        is_looking: u8,
     }
 }

@@ -53,6 +53,9 @@ choice! {
         Order = 21, "order";
         /// The button.
         Key = 22, "key";
+        /// The method of the scene, by its [`method_code`](super::method_code); [`NO_METHOD`](super::NO_METHOD): as the
+        /// plan has it.
+        Way = 23, "way";
     }
 }
 

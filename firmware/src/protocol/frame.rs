@@ -13,9 +13,9 @@ crate::message! {
         scene: u8,
         /// 1 if the scene's time stands still, else 0.
         paused: u8,
-        /// Integration steps since the last restart; their low 32 bits, which last 207 days.
+        /// Steps of 1/60 s since the last restart; their low 32 bits, which last 828 days.
         step: u32,
-        /// Simulated time since the last restart, s: `step` times the step size.
+        /// Simulated time since the last restart, s: `step` times that.
         time: f64,
         /// Mass ratio mu = m2/m1.
         mass_ratio: f32,
@@ -25,9 +25,16 @@ crate::message! {
         state: [f32; 4],
         /// (E - E0)/(E0 - Emin): the energy error relative to the energy at the start above hanging at rest.
         energy_error: f32,
-        /// Until when the frame is right to half a pixel, s since the last restart; infinity as long as that is not
-        /// known.
+        /// The method by which the motion is computed, by its [`method_code`](super::method_code);
+        /// [`NO_METHOD`](super::NO_METHOD) where there is none to choose.
+        method: u8,
+        /// Its steps to a frame.
+        way_steps: u16,
+        /// Until when the frames are known to be right to half a pixel, s since the last restart; infinity where nothing can
+        /// be wrong.
         horizon: f32,
+        /// 1 if that may yet turn out to be later, else 0.
+        is_looking: u8,
         /// Counts of the processor clock that the scene took for this frame, moving and drawing: cycles on a chip; QEMU
         /// does not model cycles, there they say how much of the tick its own clock let pass.
         scene_cycles: u32,

@@ -22,7 +22,7 @@ pub use frame::Frame;
 pub use identity::{BoardName, Identify, Identity, Measure, Measured};
 pub use layout::{Message, WireNumber};
 pub use link::{CRC, Decoder, LinkError, MAX_FIELDS, MAX_WIRE, VERSION, encode, frame};
-pub use plan::{AskPlan, NO_METHOD, Planned, limit_code, method_code};
+pub use plan::{AskPlan, NO_METHOD, Planned, limit_code, method_code, method_of};
 pub use restarted::Restarted;
 pub use simulate::{Refused, Sample, Simulate, StepTooLong};
 pub use unit::Unit;

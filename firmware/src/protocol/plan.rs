@@ -1,20 +1,25 @@
-//! The plan of the scene played: how it might be computed, beside how it is.
+//! The plan of the scene played.
 
 use double_pendulum::plan::{Limit, Method};
 
 /// The code of no method: nothing affordable holds. And of what this version of the protocol does not know.
 pub const NO_METHOD: u8 = u8::MAX;
 
-/// A method's code on the wire, whatever its place among the others.
+/// A method's code on the wire, whatever its place among the others; 3 and 4 were those of methods that no plan takes any more.
 pub const fn method_code(method: Method) -> u8 {
     match method {
         Method::ClosedForm => 0,
         Method::DirectionPlain => 1,
         Method::Direction => 2,
-        Method::Angle => 3,
-        Method::Direction8 => 4,
+        Method::Fixed32 => 5,
+        Method::Fixed64 => 6,
         _ => NO_METHOD,
     }
+}
+
+/// The method with this code.
+pub fn method_of(code: u8) -> Option<Method> {
+    Method::ALL.iter().copied().find(|&method| method_code(method) == code)
 }
 
 /// The code on the wire of what ends a horizon.
@@ -43,7 +48,7 @@ crate::message! {
         /// The command it answers.
         request: u16,
         /// 0: there is nothing to plan, no motion is shown or the kernel refuses it; 1: the search is under way; 2: the
-        /// plan is found; 3: and so is how long the method is right that is shown.
+        /// plan is found.
         found: u8,
         /// The cheapest method, by its [`method_code`]; [`NO_METHOD`] if nothing affordable is right in any frame, with no
         /// more about it but the limit.
@@ -56,24 +61,12 @@ crate::message! {
         error: f32,
         /// Cycles to compute a frame, without drawing it (estimate).
         cycles: f32,
-        /// Until when it is right to half a pixel about the exact motion, s.
+        /// Until when it is right to half a pixel about the exact motion, s; as far as was looked when it was found.
         horizon: f64,
         /// What ends that, by its [`limit_code`].
         limit: u8,
         /// Cycles spent on looking ahead (estimate).
         planning: f32,
-        /// The same of the method that is shown; its horizon is 0 if it is right in no frame.
-        shown_method: u8,
-        /// See `steps`.
-        shown_steps: u32,
-        /// See `error`.
-        shown_error: f32,
-        /// See `cycles`.
-        shown_cycles: f32,
-        /// See `horizon`.
-        shown_horizon: f64,
-        /// See `limit`.
-        shown_limit: u8,
         /// The display's height that was planned for, pixels: both rods together are half of it long.
         height: f64,
         /// For how long the plan is made, s.

@@ -1,7 +1,6 @@
 //! Beats that close: where the frequencies are as whole numbers, small oscillations come back to their start after a
 //! few periods and their Lissajous figure closes; the exact motion from the same start does not.
 
-use double_pendulum::plan::Method;
 use double_pendulum::{Error, Oscillation, Parameters, SmallOscillations};
 
 use crate::config::{GRAVITY, ROD};
@@ -14,8 +13,8 @@ use crate::graphics::text::{self, Anchor, LINE, LOWEST};
 use crate::motion::direction_stepper::Directions;
 use crate::motion::planner::Shown;
 use crate::motion::settings::Settings;
-use crate::motion::simulation::Simulation;
-use crate::scenes::horizon::{self, AccuracyHorizon};
+use crate::motion::simulation::{Means, Simulation};
+use crate::scenes::horizon;
 use crate::scenes::scene::{Report, Scene};
 
 /// The middles of the two figures, and how far a mode reaches in them, pixels.
@@ -30,6 +29,7 @@ const AMPLITUDE: f32 = 12.0;
 
 /// Equal rods with the slow mode at its turning point and the fast mode on its way through rest, both with one
 /// amplitude of angle 2.
+#[inline(never)] // once in flash
 pub fn closing(mass_ratio: f32) -> Settings {
     let gravity = GRAVITY as f32;
     let parameters = Parameters::equal_rods(mass_ratio, ROD, gravity);
@@ -52,7 +52,6 @@ pub struct Beats {
     /// Pixels per radian.
     scale: f32,
     spots: [Spot; 2],
-    horizon: AccuracyHorizon,
 }
 
 impl Beats {
@@ -86,8 +85,8 @@ impl Beats {
 }
 
 impl Scene for Beats {
-    fn new(settings: &Settings) -> Result<Self, Error> {
-        let simulation = Simulation::new(settings)?;
+    fn new(settings: &Settings, means: &Means) -> Result<Self, Error> {
+        let simulation = Simulation::new(settings, means)?;
         let modes = simulation.energy().pendulum().modes()?;
         let linear = SmallOscillations::new(modes, &settings.motion());
         let amplitude = |part: Oscillation<f32>, shape: f32| part.amplitude() * shape.abs();
@@ -95,24 +94,18 @@ impl Scene for Beats {
         let greatest = amplitude(linear.fast(), shape[0]).max(amplitude(linear.slow(), shape[1]));
         let scale = if greatest > 0.0 { REACH / greatest } else { 0.0 };
         let spots = [Spot::default(); 2];
-        let horizon = AccuracyHorizon::new(&settings.parameters, &simulation.state())?;
-        let mut scene = Self { settings: *settings, simulation, linear, shape, scale, spots, horizon };
+        let mut scene = Self { settings: *settings, simulation, linear, shape, scale, spots };
         scene.spots = scene.spots();
         Ok(scene)
     }
 
     fn tick(&mut self, ink: &mut FadeLayer) {
         self.simulation.tick();
-        let places = self.places();
-        let spots = places.map(|(x, y)| Spot::at(x, y));
+        let spots = self.spots();
         for (from, to) in self.spots.into_iter().zip(spots) {
             ink.add(Stroke { from, to, radius: HALF_WIDTH }, u8::MAX);
         }
         self.spots = spots;
-        let mut horizon = self.horizon;
-        let [linear, _] = places;
-        horizon.tick(self.simulation.time(), places, |directions| [linear, self.exact_place(directions)]);
-        self.horizon = horizon;
     }
 
     fn draw(&self, report: &Report, canvas: &mut Canvas) {
@@ -135,10 +128,14 @@ impl Scene for Beats {
     }
 
     fn report(&self) -> Report {
-        Report::of(&self.simulation, self.horizon.until())
+        Report::of(&self.simulation)
     }
 
     fn shown(&self) -> Option<Shown> {
-        Shown::curves(Method::Direction, self.scale)
+        Shown::curves(self.simulation.given(), self.scale)
+    }
+
+    fn planned(&mut self) -> Option<&mut Simulation> {
+        Some(&mut self.simulation)
     }
 }

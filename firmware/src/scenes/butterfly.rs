@@ -1,8 +1,9 @@
 //! The butterfly: two pendulums that start a millionth of a radian apart, and how that grows.
 
-use double_pendulum::{Error, State};
+use double_pendulum::Error;
+use double_pendulum::plan::WayStepper;
 
-use crate::config::{DT, STEPS_PER_SECOND, STEPS_PER_TICK};
+use crate::config::TICK_RATE;
 use crate::graphics::brush::{SUBPIXELS, Spot, Stroke};
 use crate::graphics::canvas::{Canvas, WIDTH};
 use crate::graphics::fade_layer::FadeLayer;
@@ -10,15 +11,14 @@ use crate::graphics::label;
 use crate::graphics::plot::{self, Strip};
 use crate::graphics::text::{self, Anchor, LINE, LOWEST};
 use crate::graphics::view::{Place, View};
-use crate::motion::direction_stepper::DirectionStepper;
 use crate::motion::planner::Shown;
 use crate::motion::settings::Settings;
-use crate::motion::simulation::Simulation;
-use crate::scenes::horizon::{self, AccuracyHorizon};
+use crate::motion::simulation::{self, Means, Simulation};
+use crate::scenes::horizon;
 use crate::scenes::scene::{Report, Scene};
 
 /// Angle 1 of the second twin ahead of the first's at the start, rad.
-const APART: f32 = 1e-6;
+const APART: f64 = 1e-6;
 /// The plot takes the right half but for a gap, columns.
 const PLOT_COLUMNS: usize = 60;
 const PLOT_LEFT: i32 = (WIDTH - PLOT_COLUMNS) as i32;
@@ -28,7 +28,7 @@ const SCALE: f32 = 2.6;
 const CURVE: u8 = 255;
 /// The plot holds 60 columns of a quarter of a second: 15 s.
 const COLUMNS_PER_SECOND: u64 = 4;
-const STEPS_PER_COLUMN: u64 = STEPS_PER_SECOND as u64 / COLUMNS_PER_SECOND;
+const TICKS_PER_COLUMN: u64 = TICK_RATE as u64 / COLUMNS_PER_SECOND;
 /// Half the width of the first twin's trace, subpixels.
 const HALF_WIDTH: u8 = 30;
 /// Brightness of the second twin, of 255.
@@ -36,19 +36,15 @@ const SECOND: u8 = 110;
 
 /// Both pendulums at one pivot, and the e-foldings of their separation over time.
 ///
-/// A millionth of a radian is 4 of the last digits that an `f32` angle of 2 rad has, and rounding would soon hide
-/// it; the direction form carries what each addition loses.
+/// Both go in the way that lasts longest, whatever the plan: one that is right to half a pixel may be off by far more than a
+/// millionth of a radian, and would soon hide what the twins do.
 #[derive(Clone, Debug)]
 pub struct Butterfly {
     first: Simulation,
-    second: DirectionStepper,
+    second: WayStepper,
     view: View,
-    /// The twins' separation at the start, rad: [`APART`] as far as the digits of an `f32` angle allow.
-    apart: f64,
-    /// ln(separation/`apart`), as last put down.
-    e_foldings: f32,
-    horizon: AccuracyHorizon,
-    bobs: [Spot; 2],
+    /// The bobs of both.
+    bobs: [[Spot; 2]; 2],
     strip: Strip<PLOT_COLUMNS>,
 }
 
@@ -62,49 +58,39 @@ impl Butterfly {
     }
 
     fn put_down(&mut self) {
-        let ratio = (self.separation() / self.apart) as f32;
-        self.e_foldings = libm::logf(ratio.max(f32::MIN_POSITIVE));
-        self.strip.push(plot::height(self.e_foldings, ZERO_ROW, SCALE));
+        let ratio = (self.separation() / APART) as f32;
+        let e_foldings = libm::logf(ratio.max(f32::MIN_POSITIVE));
+        self.strip.push(plot::height(e_foldings, ZERO_ROW, SCALE));
     }
 }
 
 impl Scene for Butterfly {
-    fn new(settings: &Settings) -> Result<Self, Error> {
-        let first = Simulation::new(settings)?;
-        let start = first.state();
-        let beside = State { a1: start.a1 + APART, ..start };
+    fn new(settings: &Settings, means: &Means) -> Result<Self, Error> {
+        let first = Simulation::new(settings, means)?;
+        let second = simulation::start_beside(settings, APART, first.way())?;
         let view = View::new(&settings.parameters, Place::HALVES[0]);
-        let mut scene = Self {
-            second: DirectionStepper::new(&settings.parameters, &beside, DT)?,
-            horizon: AccuracyHorizon::new(&settings.parameters, &start)?,
-            bobs: view.spots(first.directions()),
-            first,
-            view,
-            apart: f64::from(beside.a1) - f64::from(start.a1),
-            e_foldings: 0.0,
-            strip: Strip::default(),
-        };
+        let bobs = [first.directions(), second.directions()].map(|directions| view.spots(directions));
+        let mut scene = Self { first, second, view, bobs, strip: Strip::default() };
         scene.put_down();
         Ok(scene)
     }
 
     fn tick(&mut self, ink: &mut FadeLayer) {
         self.first.tick();
-        self.second.advance(STEPS_PER_TICK);
-        let shown = self.view.bobs(self.first.directions());
-        let bobs = shown.map(|(x, y)| Spot::at(x, y));
-        let ([_, from], [_, to]) = (self.bobs, bobs);
+        self.second.advance();
+        let bobs = [self.first.directions(), self.second.directions()].map(|directions| self.view.spots(directions));
+        let ([[_, from], _], [[_, to], _]) = (self.bobs, bobs);
         ink.add(Stroke { from, to, radius: HALF_WIDTH }, u8::MAX);
         self.bobs = bobs;
-        self.horizon.tick(self.first.time(), shown, |directions| self.view.bobs(directions));
-        if self.first.step().is_multiple_of(STEPS_PER_COLUMN) {
+        if self.first.step().is_multiple_of(TICKS_PER_COLUMN) {
             self.put_down();
         }
     }
 
     fn draw(&self, report: &Report, canvas: &mut Canvas) {
-        self.view.draw(canvas, self.view.spots(self.second.directions()), SECOND);
-        self.view.draw(canvas, self.bobs, u8::MAX);
+        let [first, second] = self.bobs;
+        self.view.draw(canvas, second, SECOND);
+        self.view.draw(canvas, first, u8::MAX);
         for e_foldings in [0.0, 5.0, 10.0, 15.0] {
             let row = i32::from(plot::height(e_foldings, ZERO_ROW, SCALE)) / SUBPIXELS;
             plot::axis(canvas, PLOT_LEFT, WIDTH as i32, row);
@@ -112,7 +98,7 @@ impl Scene for Butterfly {
         }
         self.strip.draw(canvas, PLOT_LEFT, CURVE);
         let span = (PLOT_COLUMNS as u64 / COLUMNS_PER_SECOND) as f32;
-        let end = (self.first.time() as f32).max(span);
+        let end = (report.time as f32).max(span);
         text::write(canvas, &label::tick(end - span, ""), Anchor::At(PLOT_LEFT, LOWEST));
         text::write(canvas, &label::tick(end, " s"), Anchor::BottomRight);
         text::write(canvas, "e-folds", Anchor::TopRight);
@@ -120,10 +106,10 @@ impl Scene for Butterfly {
     }
 
     fn report(&self) -> Report {
-        Report::of(&self.first, self.horizon.until())
+        Report::of(&self.first)
     }
 
     fn shown(&self) -> Option<Shown> {
-        Shown::pendulum(Place::HALVES[0].reach)
+        Shown::pendulum(Some(self.first.way()), Place::HALVES[0].reach)
     }
 }

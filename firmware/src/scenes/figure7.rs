@@ -13,8 +13,8 @@ use crate::graphics::view::{Place, View};
 use crate::motion::direction_stepper::Directions;
 use crate::motion::planner::Shown;
 use crate::motion::settings::Settings;
-use crate::motion::simulation::Simulation;
-use crate::scenes::horizon::{self, AccuracyHorizon};
+use crate::motion::simulation::{Means, Simulation};
+use crate::scenes::horizon;
 use crate::scenes::scene::{Report, Scene};
 
 /// Half the width of a trace, subpixels.
@@ -35,7 +35,6 @@ pub struct Figure7 {
     views: [View; 2],
     /// The bobs of both pendulums.
     bobs: [[Spot; 2]; 2],
-    horizon: AccuracyHorizon,
 }
 
 impl Figure7 {
@@ -51,17 +50,16 @@ fn spots(places: [[(f32, f32); 2]; 2]) -> [[Spot; 2]; 2] {
 }
 
 impl Scene for Figure7 {
-    fn new(settings: &Settings) -> Result<Self, Error> {
+    fn new(settings: &Settings, means: &Means) -> Result<Self, Error> {
         let &Parameters { l1, l2, .. } = &settings.parameters;
         if l1 != l2 {
             return Err(Error::UnequalRods { l1: l1.into(), l2: l2.into() });
         }
-        let right = Simulation::new(settings)?;
+        let right = Simulation::new(settings, means)?;
         let views = Place::HALVES.map(|place| View::new(&settings.parameters, place));
         let start = right.state();
         let misprinted = Misprinted::new(&settings.parameters, &start);
-        let horizon = AccuracyHorizon::new(&settings.parameters, &start)?;
-        let mut scene = Self { right, misprinted, views, bobs: Default::default(), horizon };
+        let mut scene = Self { right, misprinted, views, bobs: Default::default() };
         scene.bobs = spots(scene.places());
         Ok(scene)
     }
@@ -69,11 +67,7 @@ impl Scene for Figure7 {
     fn tick(&mut self, ink: &mut FadeLayer) {
         self.right.tick();
         self.misprinted.tick();
-        let places = self.places();
-        let [shown, _] = places;
-        let [view, _] = &self.views;
-        self.horizon.tick(self.right.time(), shown, |directions| view.bobs(directions));
-        let bobs = spots(places);
+        let bobs = spots(self.places());
         for ([_, from], [_, to]) in self.bobs.into_iter().zip(bobs) {
             ink.add(Stroke { from, to, radius: HALF_WIDTH }, u8::MAX);
         }
@@ -95,11 +89,15 @@ impl Scene for Figure7 {
     }
 
     fn report(&self) -> Report {
-        Report::of(&self.right, self.horizon.until())
+        Report::of(&self.right)
     }
 
     fn shown(&self) -> Option<Shown> {
-        Shown::pendulum(Place::HALVES[0].reach)
+        Shown::pendulum(self.right.given(), Place::HALVES[0].reach)
+    }
+
+    fn planned(&mut self) -> Option<&mut Simulation> {
+        Some(&mut self.right)
     }
 }
 

@@ -1,8 +1,8 @@
 //! Flips: from which starts a rod ever turns over, and when, computed here, coarse first.
 
+use double_pendulum::Error;
 use double_pendulum::flips::{FallingBy, Flip, Flips as Search, step_size};
 use double_pendulum::form::Watched;
-use double_pendulum::{Error, State};
 
 use crate::config::{FLIPS, FlipsPace, TICK_RATE};
 use crate::graphics::canvas::{Canvas, HEIGHT, WIDTH};
@@ -11,6 +11,7 @@ use crate::graphics::label;
 use crate::graphics::text::{self, Anchor};
 use crate::motion::planner::Shown;
 use crate::motion::settings::Settings;
+use crate::motion::simulation::Means;
 use crate::scenes::scene::{Report, Scene};
 
 /// A rod has so long to turn over, sqrt(l1/g).
@@ -175,7 +176,7 @@ pub fn grey(flip: Flip<f32>, unit: f32) -> u8 {
 impl<F: Watched<f32>> Scene for FlipsMap<F> {
     const FADING: Fading = Fading::NEVER;
 
-    fn new(settings: &Settings) -> Result<Self, Error> {
+    fn new(settings: &Settings, _: &Means) -> Result<Self, Error> {
         Self::at_pace(settings, FLIPS)
     }
 
@@ -203,8 +204,7 @@ impl<F: Watched<f32>> Scene for FlipsMap<F> {
     }
 
     fn report(&self) -> Report {
-        let time = self.ticks as f64 / f64::from(TICK_RATE);
-        Report { step: self.ticks, time, state: State::default(), energy_error: 0.0, horizon: f32::INFINITY }
+        Report::of_figure(self.ticks)
     }
 
     fn shown(&self) -> Option<Shown> {

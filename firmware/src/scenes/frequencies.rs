@@ -1,8 +1,7 @@
 //! Figure 2: the two frequencies of small oscillations over the mass ratio, with the present one marked.
 
-use double_pendulum::{Error, Modes, Parameters, State};
+use double_pendulum::{Error, Modes, Parameters};
 
-use crate::config::TICK_RATE;
 use crate::graphics::brush::{Disc, Spot};
 use crate::graphics::canvas::{Canvas, WIDTH};
 use crate::graphics::fade_layer::{FadeLayer, Fading};
@@ -11,6 +10,7 @@ use crate::graphics::plot::{self, Height};
 use crate::graphics::text::{self, Anchor, LINE, LOWEST};
 use crate::motion::planner::Shown;
 use crate::motion::settings::Settings;
+use crate::motion::simulation::Means;
 use crate::scenes::scene::{Report, Scene};
 
 /// The least range of mass ratios across the frame, that of the figure; a heavier bob 2 widens it.
@@ -30,7 +30,7 @@ const MARK_RADIUS: u8 = 112;
 const CURVE: u8 = 200;
 
 /// Both frequencies in sqrt(g/l), so that the mass ratio is all that matters; the curves grow from the left.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Frequencies {
     /// The mass ratio across the whole plot.
     range: f32,
@@ -68,7 +68,7 @@ impl Frequencies {
 impl Scene for Frequencies {
     const FADING: Fading = Fading::NEVER;
 
-    fn new(settings: &Settings) -> Result<Self, Error> {
+    fn new(settings: &Settings, _: &Means) -> Result<Self, Error> {
         let mass_ratio = settings.mass_ratio();
         let marked = frequencies(mass_ratio)?;
         let range = (mass_ratio / FARTHEST_MARK).max(LEAST_RANGE);
@@ -109,8 +109,7 @@ impl Scene for Frequencies {
     }
 
     fn report(&self) -> Report {
-        let time = self.ticks as f64 / f64::from(TICK_RATE);
-        Report { step: self.ticks, time, state: State::default(), energy_error: 0.0, horizon: f32::INFINITY }
+        Report::of_figure(self.ticks)
     }
 
     fn shown(&self) -> Option<Shown> {

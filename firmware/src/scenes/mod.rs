@@ -17,6 +17,7 @@ use crate::graphics::canvas::Canvas;
 use crate::graphics::fade_layer::FadeLayer;
 use crate::motion::planner::Shown;
 use crate::motion::settings::Settings;
+use crate::motion::simulation::{Means, Simulation};
 use crate::protocol::choice::choice;
 use crate::scenes::scene::{Report, Scene};
 
@@ -35,18 +36,19 @@ macro_rules! catalogue {
         }
 
         /// A scene of the catalogue, playing.
+        #[expect(clippy::large_enum_variant, reason = "without a heap there is nowhere else to keep it")]
         #[derive(Clone, Debug)]
         pub enum AnyScene { $($(#[$doc])* $row($scene),)* }
 
         impl AnyScene {
             /// The scene `name` at the start; the error of a scene that cannot show `settings`.
-            pub fn new(name: SceneName, settings: &Settings) -> Result<Self, Error> {
-                match name { $(SceneName::$row => <$scene>::new(settings).map(Self::$row),)* }
+            pub fn new(name: SceneName, settings: &Settings, means: &Means) -> Result<Self, Error> {
+                match name { $(SceneName::$row => <$scene>::new(settings, means).map(Self::$row),)* }
             }
 
             /// Starts the scene `name` in the place of this one; if it cannot show `settings`, this one goes on.
-            pub fn start(&mut self, name: SceneName, settings: &Settings) -> Result<(), Error> {
-                match name { $(SceneName::$row => self.become_one(settings, Self::$row),)* }
+            pub fn start(&mut self, name: SceneName, settings: &Settings, means: &Means) -> Result<(), Error> {
+                match name { $(SceneName::$row => self.become_one(settings, means, Self::$row),)* }
             }
 
             /// Advances by one tick, as [`Scene::tick`]; the ink, which was clear at the start, pales.
@@ -64,6 +66,11 @@ macro_rules! catalogue {
             /// As [`Scene::shown`].
             pub fn shown(&self) -> Option<Shown> {
                 match self { $(Self::$row(scene) => scene.shown(),)* }
+            }
+
+            /// As [`Scene::planned`].
+            pub fn planned(&mut self) -> Option<&mut Simulation> {
+                match self { $(Self::$row(scene) => scene.planned(),)* }
             }
 
             /// As [`Scene::report`].
@@ -104,10 +111,15 @@ catalogue! {
 }
 
 impl AnyScene {
+    /// An empty figure, until a scene is started in its place.
+    pub fn empty() -> Self {
+        Self::Frequencies(frequencies::Frequencies::default())
+    }
+
     /// Kept apart, for else the scenes of all the catalogue would stand side by side on the stack of who chooses one.
     #[inline(never)]
-    fn become_one<S: Scene>(&mut self, settings: &Settings, one: fn(S) -> Self) -> Result<(), Error> {
-        *self = one(S::new(settings)?);
+    fn become_one<S: Scene>(&mut self, settings: &Settings, means: &Means, one: fn(S) -> Self) -> Result<(), Error> {
+        *self = one(S::new(settings, means)?);
         Ok(())
     }
 }

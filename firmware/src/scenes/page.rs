@@ -11,8 +11,8 @@ use crate::graphics::text::{self, Anchor, LINE, LOWEST};
 use crate::graphics::view::{Place, View};
 use crate::motion::planner::Shown;
 use crate::motion::settings::Settings;
-use crate::motion::simulation::Simulation;
-use crate::scenes::horizon::{self, AccuracyHorizon};
+use crate::motion::simulation::{Means, Simulation};
+use crate::scenes::horizon;
 use crate::scenes::scene::{Report, Scene};
 
 /// One pendulum, bob 2's trail, and settings and time in the corners, the one place the motion never reaches.
@@ -20,7 +20,6 @@ use crate::scenes::scene::{Report, Scene};
 pub struct Page {
     settings: Settings,
     simulation: Simulation,
-    horizon: AccuracyHorizon,
     view: View,
     bobs: [Spot; 2],
 }
@@ -28,22 +27,19 @@ pub struct Page {
 impl Scene for Page {
     const FADING: Fading = Fading { rows: TRAIL_FADING, last: 0 };
 
-    fn new(settings: &Settings) -> Result<Self, Error> {
-        let simulation = Simulation::new(settings)?;
+    fn new(settings: &Settings, means: &Means) -> Result<Self, Error> {
+        let simulation = Simulation::new(settings, means)?;
         let view = View::new(&settings.parameters, Place::WHOLE);
         let bobs = view.spots(simulation.directions());
-        let horizon = AccuracyHorizon::new(&settings.parameters, &simulation.state())?;
-        Ok(Self { settings: *settings, simulation, horizon, view, bobs })
+        Ok(Self { settings: *settings, simulation, view, bobs })
     }
 
     fn tick(&mut self, ink: &mut FadeLayer) {
         self.simulation.tick();
-        let shown = self.view.bobs(self.simulation.directions());
-        let bobs = shown.map(|(x, y)| Spot::at(x, y));
+        let bobs = self.view.spots(self.simulation.directions());
         let ([_, from], [_, to]) = (self.bobs, bobs);
         ink.add(Stroke { from, to, radius: (TRAIL_HALF_WIDTH * SUBPIXELS as f32) as u8 }, TRAIL_BRIGHTNESS);
         self.bobs = bobs;
-        self.horizon.tick(self.simulation.time(), shown, |directions| self.view.bobs(directions));
     }
 
     fn draw(&self, report: &Report, canvas: &mut Canvas) {
@@ -61,10 +57,14 @@ impl Scene for Page {
     }
 
     fn report(&self) -> Report {
-        Report::of(&self.simulation, self.horizon.until())
+        Report::of(&self.simulation)
     }
 
     fn shown(&self) -> Option<Shown> {
-        Shown::pendulum(Place::WHOLE.reach)
+        Shown::pendulum(self.simulation.given(), Place::WHOLE.reach)
+    }
+
+    fn planned(&mut self) -> Option<&mut Simulation> {
+        Some(&mut self.simulation)
     }
 }

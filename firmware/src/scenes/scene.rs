@@ -1,14 +1,14 @@
 //! What every scene is.
 
-use double_pendulum::plan::Method;
+use double_pendulum::plan::Way;
 use double_pendulum::{Error, State};
 
-use crate::config::STEPS_PER_TICK;
+use crate::config::TICK_RATE;
 use crate::graphics::canvas::Canvas;
 use crate::graphics::fade_layer::{FadeLayer, Fading};
 use crate::motion::planner::Shown;
 use crate::motion::settings::Settings;
-use crate::motion::simulation::Simulation;
+use crate::motion::simulation::{Means, Simulation};
 
 /// Something to watch: it starts from settings, moves tick by tick and is drawn when there is time for it.
 pub trait Scene: Sized {
@@ -16,7 +16,7 @@ pub trait Scene: Sized {
     const FADING: Fading = Fading::TRACE;
 
     /// At the start; the kernel's error if the settings describe no pendulum, or none that this scene can show.
-    fn new(settings: &Settings) -> Result<Self, Error>;
+    fn new(settings: &Settings, means: &Means) -> Result<Self, Error>;
 
     /// Advances by one tick and adds to the ink what shall stay. The frame after n ticks does not depend on which of
     /// them were drawn.
@@ -28,14 +28,19 @@ pub trait Scene: Sized {
     /// What is to be told about it in numbers.
     fn report(&self) -> Report;
 
-    /// How it shows the motion of its settings; `None` if nothing of it moves.
+    /// How it shows the motion of its settings; `None` if it shows nothing that can be planned.
     fn shown(&self) -> Option<Shown>;
+
+    /// The motion that goes the way of the plan, if it shows one.
+    fn planned(&mut self) -> Option<&mut Simulation> {
+        None
+    }
 }
 
 /// A scene in numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Report {
-    /// Integration steps since the start; where nothing is integrated, ticks.
+    /// Ticks since the start.
     pub step: u64,
     /// Simulated time since the start, s.
     pub time: f64,
@@ -43,34 +48,47 @@ pub struct Report {
     pub state: State<f32>,
     /// (E - E0)/(E0 - Emin) of that pendulum: its energy error relative to the energy at the start above hanging at rest.
     pub energy_error: f32,
-    /// Until when the frame is right to [half a pixel](crate::config::HALF_PIXEL) about the exact motion, s after the start;
-    /// infinity as long as it is.
+    /// Until when the frame is known to be right to [half a pixel](crate::config::HALF_PIXEL) about the exact motion, s after
+    /// the start; infinity where nothing can be wrong.
     pub horizon: f32,
+    /// Whether that may yet turn out to be later.
+    pub is_looking: bool,
+    /// The way that it is computed; `None` where no motion is.
+    pub way: Option<Way>,
 }
 
 impl Report {
+    /// Of a figure in which no pendulum moves.
+    pub fn of_figure(ticks: u64) -> Self {
+        let time = ticks as f64 / f64::from(TICK_RATE);
+        let (state, horizon) = (State::default(), f32::INFINITY);
+        Self { step: ticks, time, state, energy_error: 0.0, horizon, is_looking: false, way: None }
+    }
+
     /// Of a scene whose first pendulum is `simulation`.
-    pub fn of(simulation: &Simulation, horizon: f32) -> Self {
+    #[inline(never)] // once in flash
+    pub fn of(simulation: &Simulation) -> Self {
         let state = simulation.state();
         Self {
             step: simulation.step(),
             time: simulation.time(),
             state,
             energy_error: simulation.energy().error(&state),
-            horizon,
+            horizon: f32::INFINITY,
+            is_looking: false,
+            way: Some(simulation.way()),
         }
     }
 }
 
 impl Shown {
-    /// As a pendulum whose rods together are `reach` pixels long, by a
-    /// [`DirectionStepper`](crate::motion::direction_stepper::DirectionStepper).
-    pub fn pendulum(reach: f32) -> Option<Self> {
-        Some(Self { method: Method::Direction, steps: STEPS_PER_TICK, height: 2.0 * reach })
+    /// As a pendulum whose rods together are `reach` pixels long.
+    pub fn pendulum(way: Option<Way>, reach: f32) -> Option<Self> {
+        Some(Self { way, height: 2.0 * reach })
     }
 
     /// As curves of the angles, `scale` pixels to a radian; the rods of a display that shows as much are as long each.
-    pub fn curves(method: Method, scale: f32) -> Option<Self> {
-        (scale > 0.0).then_some(Self { method, steps: STEPS_PER_TICK, height: 4.0 * scale })
+    pub fn curves(way: Option<Way>, scale: f32) -> Option<Self> {
+        (scale > 0.0).then_some(Self { way, height: 4.0 * scale })
     }
 }

@@ -1,6 +1,6 @@
 //! Figures 3 to 5: small oscillations, both angles as scrolling curves within their envelopes, in closed form.
 
-use double_pendulum::plan::Method;
+use double_pendulum::plan::{Method, Way};
 use double_pendulum::trig::{DefaultTrig, SinCos};
 use double_pendulum::{Error, Modes, Motion, Oscillation, Parameters, Pendulum, SmallOscillations};
 
@@ -10,10 +10,10 @@ use crate::graphics::fade_layer::{FadeLayer, Fading};
 use crate::graphics::label;
 use crate::graphics::plot::{self, Height};
 use crate::graphics::text::{self, Anchor, LINE, LOWEST};
-use crate::motion::direction_stepper::Directions;
 use crate::motion::planner::Shown;
 use crate::motion::settings::Settings;
-use crate::scenes::horizon::{self, AccuracyHorizon, Point};
+use crate::motion::simulation::Means;
+use crate::scenes::horizon;
 use crate::scenes::scene::{Report, Scene};
 
 /// The rows of rest of angle 1 and angle 2, pixels from the top, and the greatest swing about them.
@@ -28,6 +28,9 @@ const COLUMNS_PER_EXCHANGE: f32 = 60.0;
 const LEAST_BAR: f32 = 16.0;
 const CURVE: u8 = 255;
 const ENVELOPE_GREY: u8 = 5;
+
+/// The linear model is what is shown, whatever the plan.
+const CLOSED_FORM: Way = Way { method: Method::ClosedForm, steps: 1 };
 
 /// The page's worked example: equal rods of 0.25 m, g = 9.8 m/s^2, a1 = 0, a2 = 30 degrees, let go from rest.
 pub fn example(mass_ratio: f32) -> Settings {
@@ -46,7 +49,6 @@ pub struct Small {
     scale: f32,
     ticks_per_column: u32,
     ticks: u64,
-    horizon: AccuracyHorizon,
     /// Where the curves end.
     ends: Option<[Height; 2]>,
 }
@@ -54,24 +56,6 @@ pub struct Small {
 impl Small {
     fn time(&self) -> f64 {
         self.ticks as f64 / f64::from(TICK_RATE)
-    }
-
-    /// Where the curves are with these angles, pixels above rest.
-    fn heights(&self, [a1, a2]: [f32; 2]) -> [Point; 2] {
-        [(0.0, self.scale * a1), (0.0, self.scale * a2)]
-    }
-
-    /// Compares the linear motion with the exact one, as long as they agree.
-    fn compare(&mut self) {
-        if self.horizon.is_reached() {
-            return;
-        }
-        let time = self.time();
-        let Motion { a1, a2, .. } = self.motion.at(time as f32);
-        let mut horizon = self.horizon;
-        let exact = |directions: Directions| self.heights(directions.map(|[sin, cos]| libm::atan2f(sin, cos)));
-        horizon.tick(time, self.heights([a1, a2]), exact);
-        self.horizon = horizon;
     }
 
     /// Scrolls the curves and their envelopes, and adds a column.
@@ -106,9 +90,9 @@ impl Small {
 impl Scene for Small {
     const FADING: Fading = Fading::NEVER;
 
-    fn new(settings: &Settings) -> Result<Self, Error> {
+    fn new(settings: &Settings, _: &Means) -> Result<Self, Error> {
         let pendulum = settings.pendulum()?;
-        let start = settings.start(&pendulum)?;
+        settings.start(&pendulum)?;
         let modes = pendulum.modes()?;
         let motion = SmallOscillations::new(modes, &settings.motion());
         let envelopes = Envelopes::new(&modes, &motion);
@@ -123,7 +107,6 @@ impl Scene for Small {
             scale: if greatest > 0.0 { SWING / greatest } else { 0.0 },
             ticks_per_column: ticks_per_column.max(1),
             ticks: 0,
-            horizon: AccuracyHorizon::of_model(&settings.parameters, &start)?,
             ends: None,
         })
     }
@@ -133,7 +116,6 @@ impl Scene for Small {
             self.extend(ink.frame_mut());
         }
         self.ticks = self.ticks.wrapping_add(1);
-        self.compare();
         if self.ticks.is_multiple_of(self.ticks_per_column.into()) {
             self.extend(ink.frame_mut());
         }
@@ -156,11 +138,19 @@ impl Scene for Small {
 
     fn report(&self) -> Report {
         let state = self.pendulum.to_state(&self.motion.at(self.time() as f32));
-        Report { step: self.ticks, time: self.time(), state, energy_error: 0.0, horizon: self.horizon.until() }
+        Report {
+            step: self.ticks,
+            time: self.time(),
+            state,
+            energy_error: 0.0,
+            horizon: f32::INFINITY,
+            is_looking: false,
+            way: Some(CLOSED_FORM),
+        }
     }
 
     fn shown(&self) -> Option<Shown> {
-        Shown::curves(Method::ClosedForm, self.scale)
+        Shown::curves(Some(CLOSED_FORM), self.scale)
     }
 }
 

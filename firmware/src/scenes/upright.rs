@@ -3,7 +3,7 @@
 use double_pendulum::trig::{DefaultTrig, SinCos};
 use double_pendulum::{Error, State};
 
-use crate::config::{DT, HALF_PIXEL, STEPS_PER_SECOND, STEPS_PER_TICK};
+use crate::config::{DT, HALF_PIXEL, STEPS_PER_TICK, TICK_RATE};
 use crate::graphics::brush::{Spot, Stroke};
 use crate::graphics::canvas::{Canvas, WIDTH};
 use crate::graphics::fade_layer::FadeLayer;
@@ -12,7 +12,7 @@ use crate::graphics::view::{Place, View};
 use crate::motion::direction_stepper::{DirectionStepper, Directions};
 use crate::motion::planner::Shown;
 use crate::motion::settings::Settings;
-use crate::motion::simulation::Energy;
+use crate::motion::simulation::{Energy, Means};
 use crate::scenes::horizon::{self, LastRight};
 use crate::scenes::scene::{Report, Scene};
 
@@ -27,7 +27,7 @@ pub fn straight_up() -> Settings {
 }
 
 /// The same motion in plain `f32` on the left and in compensated `f32` on the right. The clock is that of the left one,
-/// beside the right one; the plan is about the right one.
+/// beside the right one. There is no plan: both are shown for what their arithmetic does.
 ///
 /// The `f32` nearest to pi is 8.7e-8 too large, so the true motion from there falls after about 3 s. Plain `f32` drops
 /// the first tiny increments altogether and stands for minutes: it looks perfect and is wrong. What is kept beside the
@@ -37,7 +37,7 @@ pub struct Upright {
     plain: State<f32>,
     compensated: DirectionStepper,
     energy: Energy,
-    step: u64,
+    ticks: u64,
     views: [View; 2],
     bobs: [[Spot; 2]; 2],
     horizon: LastRight,
@@ -54,7 +54,7 @@ impl Upright {
     }
 
     fn time(&self) -> f64 {
-        self.step as f64 / f64::from(STEPS_PER_SECOND)
+        self.ticks as f64 / f64::from(TICK_RATE)
     }
 
     /// Whether the plain motion is no longer shown where the compensated one is.
@@ -66,15 +66,15 @@ impl Upright {
 }
 
 impl Scene for Upright {
-    fn new(settings: &Settings) -> Result<Self, Error> {
+    fn new(settings: &Settings, _: &Means) -> Result<Self, Error> {
         let pendulum = settings.pendulum()?;
         pendulum.check_step(DT)?;
         let plain = settings.start(&pendulum)?;
         let views = Place::HALVES.map(|place| View::new(&settings.parameters, place));
         let compensated = DirectionStepper::new(&settings.parameters, &plain, DT)?;
-        let (energy, step) = (Energy::new(pendulum, &plain), 0);
+        let (energy, ticks) = (Energy::new(pendulum, &plain), 0);
         let bobs = Default::default();
-        let mut scene = Self { plain, compensated, energy, step, views, bobs, horizon: LastRight::default() };
+        let mut scene = Self { plain, compensated, energy, ticks, views, bobs, horizon: LastRight::default() };
         scene.bobs = scene.places();
         Ok(scene)
     }
@@ -84,7 +84,7 @@ impl Scene for Upright {
             self.plain = self.energy.pendulum().step(&self.plain, DT as f32);
         }
         self.compensated.advance(STEPS_PER_TICK);
-        self.step = self.step.wrapping_add(STEPS_PER_TICK.into());
+        self.ticks = self.ticks.wrapping_add(1);
         let is_right = !self.have_parted();
         self.horizon.note(self.time(), is_right);
         let places = self.places();
@@ -106,15 +106,17 @@ impl Scene for Upright {
 
     fn report(&self) -> Report {
         Report {
-            step: self.step,
+            step: self.ticks,
             time: self.time(),
             state: self.plain,
             energy_error: self.energy.error(&self.plain),
             horizon: self.horizon.until(),
+            is_looking: false,
+            way: None,
         }
     }
 
     fn shown(&self) -> Option<Shown> {
-        Shown::pendulum(Place::HALVES[0].reach)
+        None
     }
 }

@@ -3,9 +3,7 @@
 use std::process::ExitCode;
 
 use double_pendulum::plan::PlanError;
-use host_tests::commands::plan::{
-    DURATIONS, FOLLOWED, Options, broken, classes, fit, margins, rk4_in_f64, scenes, study, words,
-};
+use host_tests::commands::plan::{DURATIONS, FOLLOWED, Options, broken, classes, fit, margins, scenes, study, words};
 use host_tests::commands::table::Table;
 use host_tests::console::cli::{self, Refused, say};
 use host_tests::console::progress::Bar;
@@ -32,7 +30,7 @@ fn tables(options: &Options, count: usize) -> Result<Vec<String>, PlanError> {
     let cases = study(scenes, &options.target, || bar.advance(1))?;
     drop(bar);
     let chip = &options.target;
-    let tables = [classes(&cases, chip)?, broken(&cases), rk4_in_f64(&cases, chip)?];
+    let tables = [classes(&cases, chip)?, broken(&cases)];
     Ok(tables.iter().map(Table::markdown).collect())
 }
 

@@ -1,5 +1,7 @@
 //! The emulated boards: one row each, with all that QEMU and the build need to know.
 
+use firmware::config::{self, Processor};
+
 /// A board that QEMU emulates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Board {
@@ -33,6 +35,15 @@ impl Board {
     /// The same in seconds.
     pub fn instruction(&self) -> f64 {
         f64::from(1 << self.instruction_shift()) * 1e-9
+    }
+
+    /// What a scene may cost there.
+    pub fn processor(&self) -> Processor {
+        match (self.binary, self.core()) {
+            ("stm32f405", _) => config::STM32F405,
+            (_, Core::M4F) => config::CORTEX_M4F,
+            (_, Core::M3) => config::CORTEX_M3,
+        }
     }
 
     /// Whose timings hold.

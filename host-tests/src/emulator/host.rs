@@ -1,34 +1,47 @@
 //! Scenes and applications on the host, with the memory that a board would give them.
 
 use double_pendulum::Error;
+use firmware::app::player::{News, Player};
+use firmware::config::{PROCESSOR, Processor};
 use firmware::graphics::canvas::Canvas;
 use firmware::graphics::fade_layer::FadeLayer;
 use firmware::graphics::frame_buffers::FrameBuffers;
 use firmware::motion::settings::Settings;
+use firmware::scenes::SceneName;
 use firmware::scenes::scene::Report;
-use firmware::scenes::{AnyScene, SceneName};
 
-/// A scene with its ink.
-#[derive(Clone, Debug)]
+/// A scene as it is played.
+#[derive(Debug)]
 pub struct Show {
-    scene: AnyScene,
-    ink: FadeLayer,
+    player: Player<'static>,
+    /// What looking ahead has found, and the tick.
+    pub news: Vec<(u64, News)>,
 }
 
 impl Show {
     /// At the start; the error of a scene that cannot show `settings`.
     pub fn new(name: SceneName, settings: &Settings) -> Result<Self, Error> {
-        Ok(Self { scene: AnyScene::new(name, settings)?, ink: FadeLayer::NONE })
+        Self::on(PROCESSOR, name, settings)
+    }
+
+    /// The same as a board of this class plays it.
+    pub fn on(processor: Processor, name: SceneName, settings: &Settings) -> Result<Self, Error> {
+        let ink = Box::leak(Box::new(FadeLayer::NONE));
+        Ok(Self { player: Player::on(processor, name, *settings, ink)?, news: Vec::new() })
     }
 
     /// Advances by one tick.
     pub fn tick(&mut self) {
-        self.scene.tick(&mut self.ink);
+        let Self { player, news } = self;
+        let step = player.report().step + 1;
+        player.tick(|one| news.push((step, one)));
+        // What is not finite is told by the report.
+        let _ = player.check();
     }
 
     /// Draws the whole frame over whatever was there.
     pub fn draw(&self, canvas: &mut Canvas) {
-        self.scene.draw(&self.report(), &self.ink, canvas);
+        self.player.draw(canvas);
     }
 
     /// The frame now.
@@ -40,7 +53,12 @@ impl Show {
 
     /// The scene in numbers.
     pub fn report(&self) -> Report {
-        self.scene.report()
+        self.player.report()
+    }
+
+    /// What plays it.
+    pub fn player(&mut self) -> &mut Player<'static> {
+        &mut self.player
     }
 }
 

@@ -1,24 +1,26 @@
-//! What a board streams of the page's scene, by the kernel alone: nothing of the firmware but its step.
+//! What a board streams of the page's scene, by the kernel alone: nothing of the firmware but its rate.
 
-use double_pendulum::form::{DirectionForm, UnwrappedStepper};
+use double_pendulum::form::{Fixed64Form, UnwrappedStepper};
+use double_pendulum::plan::ORDER;
 use double_pendulum::{Parameters, State};
-use firmware::config::{DT, GRAVITY, ROD};
+use firmware::config::{GRAVITY, ROD, TICK_RATE};
 
-/// Equal rods let go from rest, in compensated `f32`.
+/// Equal rods let go from rest, in 64 bits of fixed point, a step to a frame.
 #[derive(Clone, Debug)]
-pub struct Expected(UnwrappedStepper<f32, DirectionForm<f32>>);
+pub struct Expected(UnwrappedStepper<f64, Fixed64Form<ORDER>>);
 
 impl Expected {
     /// From rest with both rods at `angle` (rad).
     pub fn new(mass_ratio: f32, angle: f32) -> Self {
-        let parameters = Parameters::equal_rods(mass_ratio, ROD, GRAVITY as f32);
-        let start = State::at_rest(angle, angle);
-        Self(UnwrappedStepper::new(&parameters, &start, DT).expect("the board simulates it"))
+        let parameters = Parameters::equal_rods(mass_ratio, ROD, GRAVITY as f32).cast();
+        let start = State::at_rest(angle.into(), angle.into());
+        let dt = 1.0 / f64::from(TICK_RATE);
+        Self(UnwrappedStepper::new(&parameters, &start, dt).expect("the board simulates it"))
     }
 
-    /// Makes `steps` steps.
-    pub fn advance(&mut self, steps: u32) {
-        self.0.advance(steps);
+    /// Makes a frame's step.
+    pub fn tick(&mut self) {
+        self.0.advance(1);
     }
 
     /// a1, a2, p1, p2 as they are streamed.

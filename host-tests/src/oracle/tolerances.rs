@@ -156,12 +156,6 @@ pub const INVERTED_GROWTH: f64 = 1e-9;
 /// A linear motion of 0.5 rad after a whole period, rad: the roundings of w t, 40 rad, in both modes.
 pub const PERIOD: f64 = 1e-13;
 
-/// The accuracy clock: the time it shows over the time until which the frame really is right, at most; the goal.
-pub const CLOCK_LATE: f64 = 1.2;
-
-/// How far off the accuracy clock is typically (median), relative to the true time.
-pub const CLOCK_TYPICAL: f64 = 0.1;
-
 /// The angle form against the classical step as one writes it down, both in `f64`, rad over 100 s of regular motion
 /// (measured: 1e-13): the roundings of each.
 pub const SAME_METHOD: f64 = 1e-12;
@@ -262,14 +256,6 @@ pub const CLOSED: f64 = 5.0 * f32::EPSILON as f64 * 2.0 * 5.0 * std::f64::consts
 
 /// How far the exact motion is then from its start at the least, pixels: farther than a line is wide.
 pub const NOT_CLOSED: f64 = 1.0;
-
-/// How far the planner's promise for what a scene shows is from the accuracy clock's time, relative, in the median: each is
-/// early by as much as its margin (measured: 2 %; single ones differ by more, where one of the runs beside happens to be
-/// close).
-pub const PLAN_AND_CLOCK: f64 = 0.2;
-
-/// The same for each scene of the catalogue, or two frames (measured: 0.14).
-pub const PLAN_AND_CLOCK_EACH: f64 = 0.2;
 
 /// The 32-bit fixed point, regular for 10 s with 256 steps a second and chaotic for 5 s with 240, rad: the method's own
 /// 1.2e-8 and 2.9e-6 (measured 1.2e-8 and 2.5e-6).

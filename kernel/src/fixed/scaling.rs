@@ -155,17 +155,16 @@ impl Scaling {
         if gravity2 * steps < f64::from(1 << 17) {
             return;
         }
-        let lost = |whole: f64| {
-            let first = whole * (gravity1 / gravity2);
-            libm::fabs(first - libm::rint(first))
-        };
+        let ratio = gravity1 / gravity2;
+        let lost = |whole: f64| libm::fabs(whole * ratio - libm::rint(whole * ratio));
         let centre = libm::rint(gravity2 * steps);
-        let candidates = (-128..=128).map(|i| centre + f64::from(i));
-        let whole = candidates.fold(centre, |best, next| if lost(next) < lost(best) { next } else { best });
+        let candidates = (-128..=128).map(|i| centre + f64::from(i)).map(|whole| (lost(whole), whole));
+        let (_, whole) =
+            candidates.fold((lost(centre), centre), |best, next| if next.0 < best.0 { next } else { best });
         let longer = libm::sqrt(whole / (gravity2 * steps));
         self.time *= longer;
         self.momenta = self.momenta.map(|unit| unit * longer);
-        self.gravity = [libm::rint(whole * (gravity1 / gravity2)) / steps, whole / steps];
+        self.gravity = [libm::rint(whole * ratio) / steps, whole / steps];
     }
 }
 

@@ -17,6 +17,7 @@ pub struct Winding<R> {
 impl<R: Real> Winding<R> {
     /// For an angle of `start` rad.
     #[must_use]
+    #[inline(never)] // once in flash
     pub fn new(start: R) -> Self {
         let angle = start.to_f64();
         let turns = libm::rint(angle / core::f64::consts::TAU);
@@ -60,6 +61,7 @@ impl<R: Real> Winding<R> {
     ///
     /// No trigonometry: a quarter turn to the side of the last direction is within half a turn of it, near enough.
     #[must_use]
+    #[inline(never)] // once in flash
     pub fn unwrap(&self, angle: f64) -> f64 {
         use core::f64::consts::{FRAC_PI_2, TAU};
         let side = if self.last[0] < R::ZERO { -FRAC_PI_2 } else { FRAC_PI_2 };

@@ -108,9 +108,10 @@ impl core::error::Error for PlanError {
 }
 
 /// Refuses the first of `values` that is not a finite number greater than zero.
-pub(super) fn check_positive(values: impl IntoIterator<Item = (Quantity, f64)>) -> Result<(), PlanError> {
-    match values.into_iter().find(|(_, value)| !(value.is_finite() && *value > 0.0)) {
-        Some((quantity, value)) => Err(PlanError::NotPositive { quantity, value }),
+#[inline(never)] // once in flash
+pub(super) fn check_positive(quantity: Quantity, values: &[f64]) -> Result<(), PlanError> {
+    match values.iter().find(|value| !(value.is_finite() && **value > 0.0)) {
+        Some(&value) => Err(PlanError::NotPositive { quantity, value }),
         None => Ok(()),
     }
 }

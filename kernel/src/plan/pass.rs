@@ -1,11 +1,12 @@
 //! Looking ahead with one step size: how wrong each method is, frame by frame.
 
-use super::cost::{Costs, Method};
+use super::cost::{Costs, Method, ORDER};
 use super::problem::{Perturbation, Problem};
 use super::run::{Directions, Run, distance};
 use super::shadowed_run::{ErrorEstimate, ShadowedRun};
+use super::way::Way;
 use crate::error::Error;
-use crate::form::{AngleForm, DirectionForm, DirectionForm8, Plain};
+use crate::form::{DirectionForm, Fixed32Form, Fixed64Form, Plain};
 use crate::modes::Modes;
 use crate::small_oscillations::SmallOscillations;
 use crate::state::State;
@@ -38,7 +39,19 @@ impl Candidate {
         Self { method, steps, right: 0, error: 0.0, failed: false, by_rounding: false }
     }
 
+    /// In how many frames it shows `way` to be right.
+    #[inline(never)] // once in flash
+    pub fn right_of(&self, way: Way) -> u32 {
+        let is_shown = match way.method {
+            Method::Fixed64 => true,
+            Method::ClosedForm => self.method == way.method,
+            _ => (self.method, self.steps) == (way.method, way.steps),
+        };
+        if is_shown { self.right } else { 0 }
+    }
+
     /// Takes note of a frame that is `beside` off the shadowed one, whose own error is estimated. NaN is wrong.
+    #[inline(never)] // once in flash
     fn note(&mut self, beside: f32, estimate: ErrorEstimate) {
         if self.failed {
             return;
@@ -54,52 +67,114 @@ impl Candidate {
     }
 }
 
-/// All methods in `f32` with one step size. The compensated direction form is the best of them: its run is shadowed, and the
-/// others are compared with it.
+/// A shadowed run by each method that has steps of its own. Plain `f32` has none: beside the compensated sums it shows what
+/// its roundings do.
+#[expect(clippy::large_enum_variant, reason = "without a heap there is nowhere else to keep it")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(super) struct Single {
-    shadowed: ShadowedRun<f32, DirectionForm<f32>>,
-    plain: Run<f32, DirectionForm<f32, Plain>>,
-    angle: Run<f32, AngleForm<f32>>,
-    linear: Option<SmallOscillations<f32>>,
-    rods: [f32; 2],
-    candidates: [Candidate; 4],
+enum Shadowed {
+    Direction(ShadowedRun<f32, DirectionForm<f32>>),
+    Fixed32(ShadowedRun<f32, Fixed32Form>),
+    Fixed64(ShadowedRun<f64, Fixed64Form<ORDER>, 1>),
 }
 
-impl Single {
-    /// From `start`, with `steps` steps to a frame.
-    pub fn new(problem: &Problem, start: &State<f64>, steps: u32) -> Self {
+impl Shadowed {
+    fn new(method: Method, problem: &Problem, start: &State<f64>, steps: u32) -> Self {
+        match method {
+            Method::Fixed32 => Self::Fixed32(ShadowedRun::from_state(problem, start, steps)),
+            Method::Fixed64 => Self::Fixed64(ShadowedRun::from_state(problem, start, steps)),
+            _ => Self::Direction(ShadowedRun::from_state(problem, start, steps)),
+        }
+    }
+
+    fn method(&self) -> Method {
+        match self {
+            Self::Direction(_) => Method::Direction,
+            Self::Fixed32(_) => Method::Fixed32,
+            Self::Fixed64(_) => Method::Fixed64,
+        }
+    }
+
+    fn advance(&mut self, most: u32) -> Result<u32, Error> {
+        match self {
+            Self::Direction(run) => run.advance(most),
+            Self::Fixed32(run) => run.advance(most),
+            Self::Fixed64(run) => run.advance(most),
+        }
+    }
+
+    fn frame(&mut self) -> (Directions, ErrorEstimate) {
+        match self {
+            Self::Direction(run) => run.frame(),
+            Self::Fixed32(run) => run.frame(),
+            Self::Fixed64(run) => run.frame(),
+        }
+    }
+
+    /// As [`ShadowedRun::RUNS`].
+    fn runs(&self) -> f32 {
+        match self {
+            Self::Direction(_) => ShadowedRun::<f32, DirectionForm<f32>, 2>::RUNS,
+            Self::Fixed32(_) => ShadowedRun::<f32, Fixed32Form, 2>::RUNS,
+            Self::Fixed64(_) => ShadowedRun::<f64, Fixed64Form<ORDER>, 1>::RUNS,
+        }
+    }
+}
+
+/// Looking ahead with one step size: a shadowed run, and what is compared with it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Pass {
+    shadowed: Shadowed,
+    plain: Run<f32, DirectionForm<f32, Plain>>,
+    linear: Option<SmallOscillations<f32>>,
+    rods: [f32; 2],
+    /// The shadowed method, the closed form, and plain `f32`.
+    candidates: [Candidate; 3],
+}
+
+impl Pass {
+    /// From `start`, with `steps` steps to a frame: `method` is shadowed, or compensated `f32` if it has no steps of its own.
+    pub fn new(method: Method, problem: &Problem, start: &State<f64>, steps: u32) -> Self {
+        let shadowed = Shadowed::new(method, problem, start, steps);
         let rounded = problem.rounded::<f32>(start, Perturbation::None);
         let (parameters, _) = &rounded;
         let motion = problem.start.cast();
         let linear = Modes::new(parameters).ok().map(|modes| SmallOscillations::new(modes, &motion));
-        let methods = [Method::Direction, Method::ClosedForm, Method::DirectionPlain, Method::Angle];
-        Self {
-            shadowed: ShadowedRun::from_state(problem, start, steps),
+        let methods = [shadowed.method(), Method::ClosedForm, Method::DirectionPlain];
+        let mut pass = Self {
+            shadowed,
             plain: Run::new(&rounded, problem.rate, steps),
-            angle: Run::new(&rounded, problem.rate, steps),
             linear,
             rods: problem.rods(),
             candidates: methods.map(|method| Candidate::new(method, steps)),
-        }
+        };
+        let [own, _, plain] = &mut pass.candidates;
+        plain.failed = own.method != Method::Direction;
+        pass
     }
 
-    /// As [`Pass::advance`].
-    fn advance(&mut self, costs: &Costs, cost: f32) -> Result<bool, Error> {
-        let [_, _, plain, angle] = &self.candidates;
+    /// Makes steps of one motion towards the next frame, as many as `cost` pays for and one at least, or prepares them. What
+    /// they cost; 0 if there is nothing left to do.
+    pub fn advance(&mut self, costs: &Costs, cost: f32) -> Result<f32, Error> {
+        let [own, _, plain] = &self.candidates;
         let most = |method: Method| steps_for(costs, method, cost);
-        Ok(self.shadowed.advance(most(Method::Direction))?
-            || !plain.failed && self.plain.advance(most(Method::DirectionPlain))?
-            || !angle.failed && self.angle.advance(most(Method::Angle))?)
+        let steps = self.shadowed.advance(most(own.method))?;
+        if steps > 0 || plain.failed {
+            return Ok(costs.of_frame(own.method, steps));
+        }
+        let steps = self.plain.advance(most(plain.method))?;
+        Ok(costs.of_frame(plain.method, steps))
     }
 
-    /// As [`Pass::compare`].
-    fn compare(&mut self, t: f64) {
+    /// Compares the frames at time `t`, s, when all steps towards them are made. A method fails where it may be off by more
+    /// than the tolerance.
+    pub fn compare(&mut self, t: f64) {
         let (frame, estimate) = self.shadowed.frame();
         let beside = |other: Directions| distance(self.rods, &frame, &other);
-        let [own, closed, plain, angle] = &mut self.candidates;
+        let [own, closed, plain] = &mut self.candidates;
         own.note(0.0, estimate);
         if !closed.failed {
             closed.note(self.linear.map_or(f32::INFINITY, |motion| beside(motion.directions(t as f32))), estimate);
@@ -107,115 +182,31 @@ impl Single {
         if !plain.failed {
             plain.note(beside(self.plain.frame()), estimate);
         }
-        if !angle.failed {
-            angle.note(beside(self.angle.frame()), estimate);
-        }
-    }
-
-    fn cost(&self, costs: &Costs) -> f32 {
-        let [own, ..] = self.candidates;
-        let shadowed = costs.of_frame(own.method, own.steps) * ShadowedRun::<f32, DirectionForm<f32>>::RUNS;
-        let others = self.candidates.iter().filter(|candidate| candidate.method != own.method && !candidate.failed);
-        others.fold(shadowed, |sum, candidate| sum + costs.of_frame(candidate.method, candidate.steps))
-    }
-}
-
-/// The method in `f64` with one step size.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(super) struct Double {
-    shadowed: ShadowedRun<f64, DirectionForm8<f64>>,
-    candidate: Candidate,
-}
-
-impl Double {
-    /// From `start`, with `steps` steps to a frame.
-    pub fn new(problem: &Problem, start: &State<f64>, steps: u32) -> Self {
-        Self {
-            shadowed: ShadowedRun::from_state(problem, start, steps),
-            candidate: Candidate::new(Method::Direction8, steps),
-        }
-    }
-}
-
-/// Looking ahead in one precision with one step size.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(super) enum Pass {
-    /// In `f32`.
-    Single(Single),
-    /// In `f64`.
-    Double(Double),
-}
-
-impl Pass {
-    /// Makes steps of one motion towards the next frame, as many as `cost` pays for and one at least, or prepares
-    /// them. `false` if there is nothing left to do.
-    pub fn advance(&mut self, costs: &Costs, cost: f32) -> Result<bool, Error> {
-        match self {
-            Pass::Single(single) => single.advance(costs, cost),
-            Pass::Double(double) => double.shadowed.advance(steps_for(costs, double.candidate.method, cost)),
-        }
-    }
-
-    /// Compares the frames at time `t`, s, when all steps towards them are made. A method fails where it may be off by more
-    /// than the tolerance.
-    pub fn compare(&mut self, t: f64) {
-        match self {
-            Pass::Single(single) => single.compare(t),
-            Pass::Double(double) => {
-                let (_, estimate) = double.shadowed.frame();
-                double.candidate.note(0.0, estimate);
-            }
-        }
     }
 
     /// Looks at `method` alone, beside the shadowed run.
     pub fn only(&mut self, method: Method) {
-        if let Pass::Single(single) = self {
-            single
-                .candidates
-                .iter_mut()
-                .filter(|candidate| candidate.method != method)
-                .for_each(|candidate| candidate.failed = true);
-        }
+        let others = self.candidates.iter_mut().filter(|candidate| candidate.method != method);
+        others.for_each(|candidate| candidate.failed = true);
     }
 
     /// How the methods have fared.
-    pub fn candidates(&self) -> &[Candidate] {
-        match self {
-            Pass::Single(single) => &single.candidates,
-            Pass::Double(double) => core::slice::from_ref(&double.candidate),
-        }
+    pub fn candidates(&self) -> &[Candidate; 3] {
+        &self.candidates
     }
 
     /// How the method of the shadowed run has fared.
     pub fn shadowed(&self) -> &Candidate {
-        match self {
-            Pass::Single(Single { candidates: [own, ..], .. }) => own,
-            Pass::Double(double) => &double.candidate,
-        }
-    }
-
-    /// What the most expensive of the steps costs that are made.
-    pub fn most_expensive_step(&self, costs: &Costs) -> f32 {
-        let steps =
-            self.candidates().iter().filter(|candidate| candidate.method != Method::ClosedForm && !candidate.failed);
-        let shadowed = costs.of_frame(self.shadowed().method, 1);
-        steps.map(|candidate| costs.of_frame(candidate.method, 1)).fold(shadowed, f32::max)
+        let [own, ..] = &self.candidates;
+        own
     }
 
     /// What the next frame costs.
     pub fn cost(&self, costs: &Costs) -> f32 {
-        match self {
-            Pass::Single(single) => single.cost(costs),
-            Pass::Double(double) => {
-                costs.of_frame(double.candidate.method, double.candidate.steps)
-                    * ShadowedRun::<f64, DirectionForm8<f64>>::RUNS
-            }
-        }
+        let [own, others @ ..] = &self.candidates;
+        let shadowed = costs.of_frame(own.method, own.steps) * self.shadowed.runs();
+        let others = others.iter().filter(|candidate| !candidate.failed);
+        others.fold(shadowed, |sum, candidate| sum + costs.of_frame(candidate.method, candidate.steps))
     }
 }
 

@@ -28,11 +28,9 @@ impl Problem {
     /// The pendulum is checked where it is used.
     pub fn check(&self) -> Result<(), PlanError> {
         self.start.check()?;
-        check_positive([
-            (Quantity::Tolerance, self.tolerance),
-            (Quantity::Duration, self.duration),
-            (Quantity::Rate, self.rate.into()),
-        ])?;
+        check_positive(Quantity::Tolerance, &[self.tolerance])?;
+        check_positive(Quantity::Duration, &[self.duration])?;
+        check_positive(Quantity::Rate, &[self.rate.into()])?;
         let limit = f64::from(u32::MAX) / f64::from(self.rate);
         if self.duration > limit {
             return Err(PlanError::TooLarge { quantity: Quantity::Duration, value: self.duration, limit });
@@ -42,6 +40,7 @@ impl Problem {
 
     /// Frames shown after the one at the start, at least one.
     #[must_use]
+    #[inline(never)] // once in flash
     pub fn frames(&self) -> u32 {
         let frames = libm::rint(self.duration * f64::from(self.rate)) as u32;
         if frames == 0 { 1 } else { frames }

@@ -38,23 +38,25 @@ impl<R: Real, F: Form<R>> Run<R, F> {
         Self { parameters, start, dt, motion: None, per_frame, made: 0 }
     }
 
-    /// Makes `most` of the steps towards the next frame, or as many as are left, or prepares them; whether there was
-    /// anything left to do.
-    pub fn advance(&mut self, most: u32) -> Result<bool, Error> {
+    /// Makes `most` of the steps towards the next frame, or as many as are left; or prepares them, which counts as one. How
+    /// many that were: 0 if nothing was left to do.
+    #[inline(never)] // once in flash
+    pub fn advance(&mut self, most: u32) -> Result<u32, Error> {
         let left = self.per_frame.saturating_sub(self.made);
         let steps = if most < left { most } else { left };
         match &mut self.motion {
             Some(motion) => motion.advance(steps),
             None => {
                 self.motion = Some(Stepper::new(&self.parameters, &self.start, self.dt)?);
-                return Ok(true);
+                return Ok(1);
             }
         }
         self.made += steps;
-        Ok(steps > 0)
+        Ok(steps)
     }
 
     /// The frame, when nothing is left to do; the next steps lead to the next.
+    #[inline(never)] // once in flash
     pub fn frame(&mut self) -> Directions {
         self.made = 0;
         self.motion.as_ref().map_or([[f32::NAN; 2]; 2], |motion| {
@@ -87,6 +89,7 @@ where
 /// unit; NaN if anything is.
 ///
 /// The last keeps curves of the angles right, too: opposite errors of both may leave bob 2 where it belongs.
+#[inline(never)] // once in flash
 pub(super) fn distance(rods: [f32; 2], a: &Directions, b: &Directions) -> f32 {
     let difference = |rod: usize, axis: usize| rods[rod] * (a[rod][axis] - b[rod][axis]);
     let [bob1, relative] = [0, 1].map(|rod| [difference(rod, 0), difference(rod, 1)]);

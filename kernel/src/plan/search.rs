@@ -5,9 +5,10 @@
 use super::cost::{Budget, Costs, Method};
 use super::error::PlanError;
 use super::limit::Limit;
-use super::pass::{Candidate, Double, Pass, Single};
+use super::pass::{Candidate, Pass};
 use super::problem::Problem;
-use crate::hamiltonian::Pendulum;
+use super::way::{FIRST_STEP, MOST_STEPS, RESOLVING, Way, start_and_step, steps_to_frame};
+use crate::error::{Error, Parameter};
 use crate::state::State;
 
 /// The cheapest method found, and what it brings.
@@ -36,12 +37,8 @@ pub struct Plan {
 /// A costlier method must be right for this much longer to be worth it.
 const WORTH: f64 = 1.1;
 
-/// The first step is no longer than this many admissible ones: the fastest rate that the energy allows turns a radian
-/// in it. In longer steps two runs could miss alike what neither sees.
-const FIRST_STEP: f64 = 4.0;
-
-/// Finer steps than this many to a frame are never tried.
-const MOST_STEPS: u32 = 1 << 16;
+/// The most motions that a pass prepares.
+const PREPARATIONS: f32 = 5.0;
 
 /// A search under way; [`advance`](Self::advance) it until there is a plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,16 +50,23 @@ pub struct Search {
     budget: Budget,
     /// Angles and momenta at the start.
     start: State<f64>,
-    /// The coarsest steps to a frame.
-    first: u32,
-    pass: Pass,
+    /// The cheaper method in 32 bits.
+    cheap: Method,
+    /// Steps to a frame by [`Method::Fixed64`], if they can be had, and what ends their horizon.
+    fine: Option<(u32, Limit)>,
+    /// What is looked at, and in how many steps to a frame.
+    method: Method,
     steps: u32,
+    /// Made by a piece of its own.
+    pass: Option<Pass>,
     /// Frames compared with these steps.
     frame: u32,
     /// Whether the next frame is within the budget, and is being computed.
     begun: bool,
-    /// Whether the method and the step are given.
-    given: bool,
+    /// Motions prepared in this pass.
+    preparations: f32,
+    /// The only method that counts, if it and the step are given.
+    given: Option<Method>,
     spent: f32,
     best: Option<Candidate>,
 }
@@ -72,24 +76,35 @@ impl Search {
     ///
     /// Refuses a problem without a tolerance, a duration or a rate, a pendulum that the kernel refuses, and costs or
     /// budgets that are not positive.
+    ///
+    /// Never inlined, nor is [`of`](Self::of): a search stands on the stack while it is made.
+    #[inline(never)]
     pub fn new(problem: &Problem, costs: &Costs, budget: &Budget) -> Result<Self, PlanError> {
-        let pendulum = Pendulum::new(problem.pendulum)?;
+        let (start, admissible) = start_and_step(&problem.pendulum, &problem.start)?;
         problem.check()?;
         costs.check()?;
         budget.check()?;
-        let start = pendulum.to_state(&problem.start);
-        let first = first_steps(problem, pendulum.admissible_step(&start)?);
+        let steps = steps_to_frame(problem.rate, FIRST_STEP * admissible);
+        let fine = |longest: f64, limit: Limit| {
+            let Problem { pendulum, start, rate, .. } = problem;
+            let way = Way::fixed64(pendulum, start, *rate, longest * admissible, costs, budget.frame)?;
+            Some((way.steps, limit))
+        };
+        let cheap = if costs.fixed32 < costs.direction { Method::Fixed32 } else { Method::Direction };
         Ok(Self {
             problem: *problem,
             costs: *costs,
             budget: *budget,
             start,
-            first,
-            pass: Pass::Single(Single::new(problem, &start, first)),
-            steps: first,
+            cheap,
+            fine: fine(RESOLVING, Limit::Growth).or_else(|| fine(FIRST_STEP, Limit::Budget)),
+            method: cheap,
+            steps,
+            pass: None,
             frame: 0,
             begun: false,
-            given: false,
+            preparations: 0.0,
+            given: None,
             spent: 0.0,
             best: None,
         })
@@ -99,6 +114,7 @@ impl Search {
     /// says that no frame is. The closed form has no steps; those given are the ones of the run that it is compared with.
     ///
     /// Refuses what [`new`](Self::new) refuses. No steps count as one.
+    #[inline(never)]
     pub fn of(
         method: Method,
         steps: u32,
@@ -106,15 +122,14 @@ impl Search {
         costs: &Costs,
         budget: &Budget,
     ) -> Result<Self, PlanError> {
-        let search = Self::new(problem, costs, budget)?;
-        let steps = if steps > 0 { steps } else { 1 };
-        let mut pass = match method {
-            Method::Direction8 => Pass::Double(Double::new(problem, &search.start, steps)),
-            _ => Pass::Single(Single::new(problem, &search.start, steps)),
-        };
-        pass.only(method);
-        let budget = Budget { frame: f32::INFINITY, ..*budget };
-        Ok(Self { pass, steps, budget, given: true, best: Some(Candidate::new(method, steps)), ..search })
+        let mut search = Self::new(problem, costs, budget)?;
+        search.steps = if steps > 0 { steps } else { 1 };
+        if method != Method::ClosedForm {
+            search.method = method;
+        }
+        (search.given, search.budget.frame) = (Some(method), f32::INFINITY);
+        search.best = Some(Candidate::new(method, search.steps));
+        Ok(search)
     }
 
     /// Does a piece of the search: steps of one motion that together cost no more than `cost`, or a single one that does;
@@ -123,45 +138,119 @@ impl Search {
     /// Refuses what a [`Form`](crate::form::Form) refuses: a pendulum out of the range of `f32`. And if nothing within the
     /// budgets is right in any frame, that is the error at the end of the search.
     pub fn advance(&mut self, cost: f32) -> Result<Option<Plan>, PlanError> {
+        let Some(pass) = &mut self.pass else { return self.make() };
         if !self.begun {
-            let frame = self.pass.cost(&self.costs);
-            if self.spent + frame > self.budget.planning {
+            let preparations = if self.frame == 0 { PREPARATIONS * self.costs.preparation } else { 0.0 };
+            if self.spent + preparations + pass.cost(&self.costs) > self.budget.planning {
                 self.keep_best();
                 return self.plan(Limit::Planning).map(Some);
             }
-            self.spent += frame;
             self.begun = true;
         }
-        if self.pass.advance(&self.costs, cost)? {
+        let spent = match pass.advance(&self.costs, cost) {
+            Ok(spent) => spent,
+            Err(error) => return self.refused(error),
+        };
+        if spent > 0.0 && self.frame == 0 && self.preparations < PREPARATIONS {
+            self.preparations += 1.0;
+            self.spent += self.costs.preparation;
+        }
+        if spent > 0.0 {
+            self.spent += spent;
             return Ok(None);
         }
         self.begun = false;
         self.frame += 1;
-        self.pass.compare(self.problem.time(self.frame));
+        pass.compare(self.problem.time(self.frame));
         let at_end = self.frame >= self.problem.frames();
-        if !at_end && self.pass.candidates().iter().any(|candidate| !candidate.failed) {
+        if !at_end && pass.candidates().iter().any(|candidate| !candidate.failed) {
             return Ok(None);
         }
         self.keep_best();
         if self.is_complete() {
             return self.plan(Limit::End).map(Some);
         }
-        let limit = if self.given { Some(Limit::Method) } else { self.refine() };
+        self.go_on()
+    }
+
+    /// A form takes no steps so long, or no motion so lively, or no such pendulum: finer ones, or `f32`, may.
+    fn refused(&mut self, error: Error) -> Result<Option<Plan>, PlanError> {
+        let is_step = matches!(error, Error::TooLarge { parameter: Parameter::Dt, .. });
+        match self.method {
+            Method::Direction => Err(error.into()),
+            Method::Fixed32 if !is_step && self.given.is_none() => {
+                self.cheap = Method::Direction;
+                self.begin(self.cheap, self.steps);
+                Ok(None)
+            }
+            _ => self.go_on(),
+        }
+    }
+
+    /// The next pass is to be this.
+    fn begin(&mut self, method: Method, steps: u32) {
+        (self.method, self.steps, self.pass) = (method, steps, None);
+        (self.frame, self.begun, self.preparations) = (0, false, 0.0);
+    }
+
+    /// Makes the pass, which costs as much as to prepare a motion.
+    ///
+    /// Never inlined: it stands on the stack.
+    #[inline(never)]
+    fn make(&mut self) -> Result<Option<Plan>, PlanError> {
+        if self.spent + self.costs.preparation > self.budget.planning {
+            return self.plan(Limit::Planning).map(Some);
+        }
+        self.spent += self.costs.preparation;
+        let pass = self.pass.insert(Pass::new(self.method, &self.problem, &self.start, self.steps));
+        if let Some(method) = self.given {
+            pass.only(method);
+        }
+        Ok(None)
+    }
+
+    /// How the methods have fared in this pass.
+    fn candidates(&self) -> &[Candidate] {
+        self.pass.as_ref().map_or(&[], |pass| pass.candidates())
+    }
+
+    /// With finer steps, if there is anything finer to try.
+    fn go_on(&mut self) -> Result<Option<Plan>, PlanError> {
+        let limit = if self.given.is_some() { Some(Limit::Method) } else { self.refine() };
         limit.map(|limit| self.plan(limit)).transpose()
     }
 
-    /// What a piece costs at most that [`advance`](Self::advance) does for `cost`: as much, or one step that costs more.
+    /// What looking ahead has cost so far.
     #[must_use]
-    pub fn piece(&self, cost: f32) -> f32 {
-        let step = self.pass.most_expensive_step(&self.costs);
-        if cost > step { cost } else { step }
+    pub fn spent(&self) -> f32 {
+        self.spent
+    }
+
+    /// Until when `way` has been found right so far, s. In 64 bits, with steps that resolve the motion, it is so wherever any
+    /// other is.
+    #[must_use]
+    pub fn horizon(&self, way: Way) -> f64 {
+        let looked_at = self.candidates().iter().chain(&self.best);
+        self.problem.time(looked_at.fold(0, |right, candidate| right.max(candidate.right_of(way))))
+    }
+
+    /// Goes on with the method of a plan that was right to its end, for `seconds` longer; [`Self::advance`] gives the plan
+    /// anew then.
+    pub fn extend(&mut self, seconds: f64) {
+        if let (Some(best), Some(pass)) = (self.best, &mut self.pass) {
+            pass.only(best.method);
+            self.given = Some(best.method);
+            self.problem.duration += seconds;
+            self.budget.planning = f32::INFINITY;
+        }
     }
 
     /// Takes the best of the candidates so far.
     fn keep_best(&mut self) {
-        for candidate in self.pass.candidates() {
-            if self.is_better(candidate) {
-                self.best = Some(*candidate);
+        let Some(pass) = &self.pass else { return };
+        for candidate in *pass.candidates() {
+            if self.is_better(&candidate) {
+                self.best = Some(candidate);
             }
         }
     }
@@ -171,48 +260,49 @@ impl Search {
         self.best.is_some_and(|best| best.right >= self.problem.frames())
     }
 
-    /// Goes on to finer steps, or to `f64` where rounding is what limits; what forbids it, if anything does.
+    /// Goes on to finer steps, or to 64 bits where rounding is what limits, or where they cost less; what forbids it, if
+    /// anything does.
     fn refine(&mut self) -> Option<Limit> {
-        let by_rounding = self.pass.shadowed().by_rounding;
-        let (single, steps) = match (&self.pass, by_rounding) {
-            (Pass::Double(_), true) => return Some(Limit::Growth),
-            (Pass::Double(_), false) => (false, self.steps.saturating_mul(2)),
-            (Pass::Single(_), true) => (false, self.first),
-            (Pass::Single(_), false) => (true, self.steps.saturating_mul(2)),
-        };
-        let cheapest = if single { Method::DirectionPlain } else { Method::Direction8 };
-        if steps > MOST_STEPS || self.costs.of_frame(cheapest, steps) > self.budget.frame {
-            return Some(Limit::Budget);
+        let (method, steps) = (self.method, self.steps);
+        let by_rounding = self.pass.as_ref().is_some_and(|pass| pass.shadowed().by_rounding);
+        if method == Method::Fixed64 {
+            return Some(self.fine.map_or(Limit::Budget, |(_, limit)| limit));
         }
-        self.pass = if single {
-            Pass::Single(Single::new(&self.problem, &self.start, steps))
-        } else {
-            Pass::Double(Double::new(&self.problem, &self.start, steps))
+        let finer = steps.saturating_mul(2);
+        let cost = self.costs.of_frame(method, finer);
+        let is_worth = |&(steps, _): &(u32, Limit)| by_rounding || self.costs.of_frame(Method::Fixed64, steps) <= cost;
+        let (method, steps) = match self.fine.filter(is_worth) {
+            Some((steps, _)) => (Method::Fixed64, steps),
+            None if by_rounding || finer > MOST_STEPS || cost > self.budget.frame => return Some(Limit::Budget),
+            None => (method, finer),
         };
-        (self.steps, self.frame) = (steps, 0);
+        self.begin(method, steps);
         None
     }
 
     /// Whether `candidate` goes so much farther than the best so far, or as far and cheaper.
+    #[inline(never)] // once in flash
     fn is_better(&self, candidate: &Candidate) -> bool {
         let cost = |candidate: &Candidate| self.costs.of_frame(candidate.method, candidate.steps);
         if candidate.right == 0 || cost(candidate) > self.budget.frame {
             return false;
         }
         self.best.is_none_or(|best| {
+            let is_it = (candidate.method, candidate.steps) == (best.method, best.steps);
             let reaches_end = candidate.right >= self.problem.frames() && best.right < candidate.right;
             let farther = f64::from(candidate.right) > WORTH * f64::from(best.right);
             let cheaper = candidate.right >= best.right && cost(candidate) < cost(&best);
-            reaches_end || farther || cheaper
+            reaches_end || farther || cheaper || is_it && candidate.right > best.right
         })
     }
 
     /// The best candidate as a plan, if there is one.
+    #[inline(never)] // once in flash
     fn plan(&self, limit: Limit) -> Result<Plan, PlanError> {
         let Some(best) = self.best else {
             // To look ahead for longer would help nothing of which a frame costs too much.
             let affordable = |one: &Candidate| self.costs.of_frame(one.method, one.steps) <= self.budget.frame;
-            let open = self.pass.candidates().iter().any(|one| !one.failed && affordable(one));
+            let open = self.candidates().iter().any(|one| !one.failed && affordable(one));
             let limit = if limit == Limit::Planning && !open { Limit::Budget } else { limit };
             return Err(PlanError::NothingHolds { limit, spent: self.spent });
         };
@@ -229,14 +319,4 @@ impl Search {
             spent: self.spent,
         })
     }
-}
-
-/// The least power of two of steps to a frame that keeps [`FIRST_STEP`], where steps of `admissible` seconds are.
-fn first_steps(problem: &Problem, admissible: f64) -> u32 {
-    let longest = FIRST_STEP * admissible;
-    let mut steps = 1;
-    while steps < MOST_STEPS && longest * f64::from(problem.rate) * f64::from(steps) < 1.0 {
-        steps *= 2;
-    }
-    steps
 }

@@ -24,7 +24,7 @@ pub const MARGIN: f32 = 2.0;
 pub struct ErrorEstimate {
     /// The one with half the step; it has other roundings, too.
     pub step: f32,
-    /// The farther of two with other roundings.
+    /// The farther of those with other roundings.
     pub rounding: f32,
 }
 
@@ -55,27 +55,29 @@ impl ErrorEstimate {
     }
 }
 
-/// A motion beside one with half the step, for the error of the step, and two whose given numbers are off by as much as
-/// rounding may make them, for the error of rounding.
+/// A motion beside one with half the step, for the error of the step, and `N` whose given numbers are off by as much as
+/// rounding may make them, for the error of rounding. One of these is enough where nothing finer follows, so that it need not
+/// be known which error is the larger.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
     feature = "serde",
     serde(bound(
-        serialize = "R: serde::Serialize, crate::form::Stepper<R, F>: serde::Serialize",
-        deserialize = "R: serde::Deserialize<'de>, crate::form::Stepper<R, F>: serde::Deserialize<'de>"
+        serialize = "R: serde::Serialize, crate::form::Stepper<R, F>: serde::Serialize, [Run<R, F>; N]: serde::Serialize",
+        deserialize = "R: serde::Deserialize<'de>, crate::form::Stepper<R, F>: serde::Deserialize<'de>, \
+                       [Run<R, F>; N]: serde::Deserialize<'de>"
     ))
 )]
-pub struct ShadowedRun<R: Real, F: Form<R>> {
+pub struct ShadowedRun<R: Real, F: Form<R>, const N: usize = 2> {
     own: Run<R, F>,
     finer: Run<R, F>,
-    perturbed: [Run<R, F>; 2],
+    perturbed: [Run<R, F>; N],
     rods: [f32; 2],
 }
 
-impl<R: Real, F: Form<R>> ShadowedRun<R, F> {
+impl<R: Real, F: Form<R>, const N: usize> ShadowedRun<R, F, N> {
     /// Steps made for each frame over those of the run itself.
-    pub(super) const RUNS: f32 = 5.0;
+    pub(super) const RUNS: f32 = 3.0 + N as f32;
 
     /// With `steps` steps for each frame.
     ///
@@ -87,20 +89,25 @@ impl<R: Real, F: Form<R>> ShadowedRun<R, F> {
 
     /// From `start`, with `steps` steps for each frame.
     pub(super) fn from_state(problem: &Problem, start: &State<f64>, steps: u32) -> Self {
-        let [own, first, second] = [Perturbation::None, Perturbation::Opposite, Perturbation::Alike]
-            .map(|perturbation| problem.rounded(start, perturbation));
+        let run = |perturbation, steps| Run::new(&problem.rounded(start, perturbation), problem.rate, steps);
+        let perturbations = [Perturbation::Opposite, Perturbation::Alike];
         Self {
-            own: Run::new(&own, problem.rate, steps),
-            finer: Run::new(&own, problem.rate, steps.saturating_mul(2)),
-            perturbed: [&first, &second].map(|beside| Run::new(beside, problem.rate, steps)),
+            own: run(Perturbation::None, steps),
+            finer: run(Perturbation::None, steps.saturating_mul(2)),
+            perturbed: core::array::from_fn(|sample| run(perturbations[sample % perturbations.len()], steps)),
             rods: problem.rods(),
         }
     }
 
     /// As [`Run::advance`], one of the runs.
-    pub(super) fn advance(&mut self, most: u32) -> Result<bool, Error> {
-        let Self { own, finer, perturbed: [first, second], .. } = self;
-        Ok(own.advance(most)? || finer.advance(most)? || first.advance(most)? || second.advance(most)?)
+    pub(super) fn advance(&mut self, most: u32) -> Result<u32, Error> {
+        for run in [&mut self.own, &mut self.finer].into_iter().chain(&mut self.perturbed) {
+            let steps = run.advance(most)?;
+            if steps > 0 {
+                return Ok(steps);
+            }
+        }
+        Ok(0)
     }
 
     /// The frame that all steps have led to, and how wrong it is.
@@ -108,20 +115,19 @@ impl<R: Real, F: Form<R>> ShadowedRun<R, F> {
         let frame = self.own.frame();
         let apart = |other: &mut Run<R, F>| distance(self.rods, &frame, &other.frame());
         let step = apart(&mut self.finer);
-        let [first, second] = &mut self.perturbed;
-        let rounding = greater(apart(first), apart(second));
+        let rounding = self.perturbed.iter_mut().map(apart).fold(0.0, greater);
         (frame, ErrorEstimate { step, rounding })
     }
 
     /// The next frame, and how wrong it is. Refuses a pendulum out of the range of the arithmetic.
     pub fn next_frame(&mut self) -> Result<(Directions, ErrorEstimate), Error> {
-        while self.advance(u32::MAX)? {}
+        while self.advance(u32::MAX)? > 0 {}
         Ok(self.frame())
     }
 }
 
 #[cfg(feature = "defmt")]
-impl<R: Real + defmt::Format, F: Form<R>> defmt::Format for ShadowedRun<R, F>
+impl<R: Real + defmt::Format, F: Form<R>, const N: usize> defmt::Format for ShadowedRun<R, F, N>
 where
     crate::form::Stepper<R, F>: defmt::Format,
 {

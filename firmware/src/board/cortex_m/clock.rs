@@ -43,17 +43,6 @@ impl Clock {
         ticks()
     }
 
-    /// Processor cycles in a tick.
-    pub fn period(&self) -> u32 {
-        PERIOD.load(Ordering::Relaxed)
-    }
-
-    /// Processor cycles left until the tick after `last`; 0 if it has passed already.
-    pub fn left_after(&self, last: u32) -> u32 {
-        let left = SYST::get_current();
-        if self.ticks() == last { left } else { 0 }
-    }
-
     /// Sleeps until the tick after `last`; returns at once if it has passed already.
     pub fn wait_after(&self, last: u32) -> u32 {
         // An interrupt between the test and the sleep stays pending only while interrupts are masked: with them

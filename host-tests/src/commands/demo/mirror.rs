@@ -3,10 +3,12 @@
 use std::fmt;
 
 use firmware::app::player::Player;
+use firmware::config::PROCESSORS;
 use firmware::graphics::canvas::Canvas;
 use firmware::graphics::text;
 use firmware::motion::settings::Settings;
-use firmware::protocol::{Field, Frame, Status};
+use firmware::protocol::{Field, Frame, NO_METHOD, Status};
+use firmware::scenes::SceneName;
 
 use crate::emulator::host::sheets;
 use crate::emulator::qemu::Screenshot;
@@ -27,6 +29,9 @@ impl Mirror {
 
     /// Plays what the board plays, from its start; the field of it that cannot be.
     pub fn play(&mut self, status: &Status) -> Result<(), Field> {
+        if let Some(&processor) = PROCESSORS.get(usize::from(status.processor)) {
+            self.player = Player::on(processor, SceneName::Page, Settings::default(), &mut sheets().ink)?;
+        }
         self.player.resume(&start_of(status))
     }
 
@@ -37,7 +42,7 @@ impl Mirror {
             if left(&self.player) <= 0 {
                 return true;
             }
-            self.player.tick();
+            self.player.tick(|_| ());
             if self.player.check().is_err() || self.player.is_paused() {
                 return true;
             }
@@ -64,7 +69,8 @@ impl Mirror {
 
 /// What is played by its start alone: how its time goes is another matter.
 pub fn start_of(status: &Status) -> Status {
-    Status { request: 0, paused: 0, steps: 0, speed: 1.0, ..*status }
+    let (method, way_steps, cycles, horizon, is_looking) = (NO_METHOD, 0, 0.0, 0.0, 0);
+    Status { request: 0, paused: 0, steps: 0, speed: 1.0, method, way_steps, cycles, horizon, is_looking, ..*status }
 }
 
 /// A number that board and host do not have alike, by its bits.

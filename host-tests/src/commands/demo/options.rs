@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Parser, value_parser};
+use double_pendulum::plan::Method;
 use firmware::config::BAUD;
 use firmware::scenes::SceneName;
 
@@ -33,6 +34,9 @@ pub struct Options {
     /// The scene [default: what the board plays, page when it is switched on]
     #[arg(long, value_name = "NAME", value_parser = choice(SceneName::ALL.iter().copied(), SceneName::name))]
     pub scene: Option<SceneName>,
+    /// How the motion is computed, whatever the plan [default: auto, as the plan has it]
+    #[arg(long, value_name = "NAME", value_parser = choice(WAYS.iter(), |way| way.0))]
+    pub way: Option<&'static (&'static str, Option<Method>)>,
     /// Run without a terminal: as fast as it goes, repeatable to the bit, with a summary at the end
     #[arg(long, conflicts_with = "window")]
     pub headless: bool,
@@ -49,6 +53,16 @@ pub struct Options {
     #[arg(long)]
     pub window: bool,
 }
+
+/// Every method by a name that can be typed, and the plan's choice.
+pub const WAYS: [(&str, Option<Method>); 6] = [
+    ("auto", None),
+    ("closed-form", Some(Method::ClosedForm)),
+    ("f32-plain", Some(Method::DirectionPlain)),
+    ("f32", Some(Method::Direction)),
+    ("fixed32", Some(Method::Fixed32)),
+    ("fixed64", Some(Method::Fixed64)),
+];
 
 /// A file whose name says what is written into it.
 fn ends_in(kind: &str, file: &str) -> Result<PathBuf, String> {

@@ -1,6 +1,7 @@
 //! A board being watched, with a terminal or without: its messages are taken, its scene chosen, its panel recorded.
 
-use firmware::protocol::{Ask, Choose, Frame, Status};
+use firmware::app::player::AUTO;
+use firmware::protocol::{Ask, Choose, Field, Frame, Set, Status, Unit, method_code};
 use firmware::scenes::SceneName;
 
 use super::Options;
@@ -55,7 +56,10 @@ impl<'a> Session<'a> {
 
     fn frame(&mut self, frame: &Frame) -> anyhow::Result<()> {
         match self.now {
-            None => self.options.scene.map_or(Ok(()), |scene| self.play_after(frame, scene))?,
+            None => {
+                self.options.scene.map_or(Ok(()), |scene| self.play_after(frame, scene))?;
+                self.go()?;
+            }
             // The board counts from 0 again.
             Some(now) if (self.tick(frame).wrapping_sub(now) as i32) < 0 => {
                 self.before = now.wrapping_add(1).wrapping_sub(tick(frame));
@@ -111,6 +115,14 @@ impl<'a> Session<'a> {
             return Ok(());
         }
         self.source.send(&Choose { request: 0, scene: scene.code() })
+    }
+
+    /// Has the board go the way that was asked for.
+    fn go(&mut self) -> anyhow::Result<()> {
+        let Some((_, method)) = self.options.way else { return Ok(()) };
+        let value = method.map_or(AUTO, |method| method_code(method).into());
+        let (field, unit) = (Field::Way.code(), Unit::One.code());
+        self.source.send(&Set { request: 0, field, unit, value })
     }
 
     /// What is not well; empty if all is. A board in the hand may drop frames, and its cable may flip bits: both are told, and

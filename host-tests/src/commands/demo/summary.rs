@@ -3,7 +3,7 @@
 use std::fmt;
 
 use firmware::config::TICK_RATE;
-use firmware::protocol::Frame;
+use firmware::protocol::{Frame, method_of};
 
 use crate::emulator::qemu::LogLine;
 use crate::link::Counts;
@@ -77,9 +77,11 @@ impl Summary {
     pub fn report(&self, counts: Counts) -> impl fmt::Display {
         let Self { frames, last, greatest_energy_error, simulated, .. } = self;
         let last = last.unwrap_or_default();
+        let way = way(&last);
         format!(
             "frames                {frames}\n\
              simulated time        {simulated:.3} s\n\
+             shown                 {way}\n\
              largest energy error  {greatest_energy_error:.1e}\n\
              CRC errors            {}\n\
              lost frames           {}\n\
@@ -87,6 +89,14 @@ impl Summary {
             counts.damaged, counts.lost, last.dropped
         )
     }
+}
+
+/// The way that a frame is computed and until when such frames are right, in one line.
+pub fn way(&Frame { method, way_steps, horizon, is_looking, .. }: &Frame) -> String {
+    let Some(method) = method_of(method) else { return String::from("no motion that is planned") };
+    let steps = if way_steps == 1 { "a step" } else { &format!("{way_steps} steps") };
+    let at_least = if is_looking != 0 { "at least " } else { "" };
+    format!("{}, {steps} to a frame, right to half a pixel until {at_least}{horizon:.1} s", method.name())
 }
 
 #[cfg(test)]

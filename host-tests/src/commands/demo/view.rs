@@ -11,6 +11,7 @@ use ratatui::widgets::{Block, Paragraph, Sparkline, Wrap};
 use super::panel::{Depth, Panel};
 use super::plot;
 use super::readings::Readings;
+use super::summary::way;
 use crate::emulator::qemu::{LogLine, Screenshot, WIDTH};
 
 /// Columns for the numbers, their frame included.
@@ -45,7 +46,7 @@ pub fn draw(frame: &mut Frame, board: &str, screenshot: &Screenshot, readings: &
         Layout::vertical([Constraint::Length(top), Constraint::Min(LOWER), Constraint::Length(KEYS)]).areas(area);
     let [left, side] = Layout::horizontal([Constraint::Length(width + FRAME), Constraint::Min(SIDE)]).areas(top);
 
-    let bits = format!(" {} ", readings.comparison);
+    let bits = format!(" {} · {} ", way(&readings.frame), readings.comparison);
     let panel = Block::bordered().title(title(board, &readings.frame).bold()).title_bottom(bits);
     let inside = panel.inner(left);
     frame.render_widget(panel, left);

@@ -97,7 +97,10 @@ impl Flips {
             start_angle: rng.f32(),
             state: [rng.f32(), rng.f32(), rng.f32(), rng.f32()],
             energy_error: 0.0,
+            method: rng.u8(..8),
+            way_steps: rng.u16(..),
             horizon: f32::INFINITY,
+            is_looking: rng.u8(..2),
             scene_cycles: rng.u32(..),
             busy_cycles: rng.u32(..),
         }

@@ -21,7 +21,7 @@ pub fn plan(input: &[u8]) -> Outcome {
     let (asked, steps, piece) = (input.byte(), input.byte().into(), input.number() as f32);
     let (pendulum, start) = (Parameters { m1, m2, l1, l2, g }, Motion { a1, a2, w1, w2 });
     let scene = Problem { pendulum, start, tolerance, duration, rate };
-    let (costs, budget) = (CORTEX_M4F, Budget { frame, planning });
+    let (costs, budget) = (CORTEX_M4F.costs, Budget { frame, planning });
     let method = Method::ALL.get(usize::from(asked & 7)).copied();
     let search = match method {
         Some(method) => Search::of(method, steps, &scene, &costs, &budget),
@@ -33,7 +33,6 @@ pub fn plan(input: &[u8]) -> Outcome {
         Err(error) => return asked + refused(&error),
     };
     for _ in 0..MOST_PIECES {
-        assert!(search.piece(piece) > 0.0, "{scene:?}");
         let plan = match search.advance(piece) {
             Ok(Some(plan)) => plan,
             Ok(None) => continue,

@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use double_pendulum::form::{Direction, DirectionForm, DirectionForm8, Form};
-use double_pendulum::plan::{ErrorEstimate, MARGIN, PlanError, Problem, ShadowedRun};
-use double_pendulum::{Motion, Pendulum, Real};
+use double_pendulum::form::{Direction, DirectionForm, Fixed32Form, Fixed64Form};
+use double_pendulum::plan::{Directions, ErrorEstimate, MARGIN, Method, ORDER, PlanError, Problem, ShadowedRun};
+use double_pendulum::{Error, Motion, Pendulum};
 use firmware::config::HALF_PIXEL;
 
 use super::judge::distance;
@@ -25,8 +25,8 @@ const MOST_STEPS: u32 = 256;
 pub struct Sample {
     /// The scene's place in the drawing.
     pub number: usize,
-    /// Whether in `f64`, by steps of order 8.
-    pub double: bool,
+    /// By what.
+    pub method: Method,
     /// Steps to a frame.
     pub steps: u32,
     /// The largest error so far, over half a pixel.
@@ -67,21 +67,31 @@ fn passes(number: usize, scene: &Problem) -> Result<Vec<Sample>, PlanError> {
     for pass in 0..PASSES {
         let steps = coarsest.next_power_of_two() * FINER.pow(pass);
         if steps <= MOST_STEPS {
-            samples.push(sample::<f32, DirectionForm<f32>>(number, &mut exact, steps)?);
+            let mut float = ShadowedRun::<f32, DirectionForm<f32>, 2>::new(scene, steps)?;
+            samples.push(sample(Method::Direction, number, &mut exact, steps, || float.next_frame()));
+            let mut fixed = ShadowedRun::<f32, Fixed32Form, 2>::new(scene, steps)?;
+            samples.push(sample(Method::Fixed32, number, &mut exact, steps, || fixed.next_frame()));
         }
     }
-    if coarsest <= MOST_STEPS {
-        samples.push(sample::<f64, DirectionForm8<f64>>(number, &mut exact, coarsest.next_power_of_two())?);
+    let resolving = 2 * coarsest.next_power_of_two();
+    if resolving <= MOST_STEPS {
+        let mut fixed = ShadowedRun::<f64, Fixed64Form<ORDER>, 1>::new(scene, resolving)?;
+        samples.push(sample(Method::Fixed64, number, &mut exact, resolving, || fixed.next_frame()));
     }
     Ok(samples)
 }
 
-fn sample<R: Real, F: Form<R>>(number: usize, exact: &mut Exact, steps: u32) -> Result<Sample, PlanError> {
-    let mut shadowed = ShadowedRun::<R, F>::new(exact.scene, steps)?;
-    let mut sample =
-        Sample { number, double: R::EPSILON.to_f64() < 1e-10, steps, error: 0.0, estimate: ErrorEstimate::default() };
+/// A form that takes no steps so long has no sample to give: its error stays 0.
+fn sample(
+    method: Method,
+    number: usize,
+    exact: &mut Exact,
+    steps: u32,
+    mut next: impl FnMut() -> Result<(Directions, ErrorEstimate), Error>,
+) -> Sample {
+    let mut sample = Sample { number, method, steps, error: 0.0, estimate: ErrorEstimate::default() };
     for frame in 1..=exact.scene.frames() {
-        let (shown, estimate) = shadowed.next_frame()?;
+        let Ok((shown, estimate)) = next() else { break };
         let shown = shown.map(|direction| direction.map(f64::from));
         let error = distance(exact.scene, &shown, &exact.frame(frame)) / f64::from(HALF_PIXEL);
         sample.estimate = sample.estimate.or(estimate);
@@ -90,7 +100,7 @@ fn sample<R: Real, F: Form<R>>(number: usize, exact: &mut Exact, steps: u32) -> 
             break;
         }
     }
-    Ok(sample)
+    sample
 }
 
 /// The exact motion's frames, computed once.
@@ -116,9 +126,10 @@ pub fn margins(samples: &[Sample]) -> Table {
     let ended = |pick: &dyn Fn(&Sample) -> bool| samples.iter().filter(|s| s.ended() && pick(s)).collect::<Vec<_>>();
     let by_rounding = |s: &Sample| s.estimate.is_by_rounding();
     let groups = [
-        ("f32, the step", ended(&|s| !s.double && !by_rounding(s))),
-        ("f32, rounding", ended(&|s| !s.double && by_rounding(s))),
-        ("f64, order 8", ended(&|s| s.double)),
+        ("f32, the step", ended(&|s| s.method == Method::Direction && !by_rounding(s))),
+        ("f32, rounding", ended(&|s| s.method == Method::Direction && by_rounding(s))),
+        ("32 bits of fixed point", ended(&|s| s.method == Method::Fixed32)),
+        ("64 bits of fixed point", ended(&|s| s.method == Method::Fixed64)),
         ("all", ended(&|_| true)),
     ];
     let rows = groups.iter().map(|(name, samples)| {

@@ -1,8 +1,8 @@
 //! A plan carried out, beside the reference.
 
-use double_pendulum::form::{AngleForm, Direction, DirectionForm, DirectionForm8, Form, Plain, Stepper};
-use double_pendulum::plan::{Method, Plan, Problem};
-use double_pendulum::{Error, Modes, Motion, Parameters, Pendulum, Real, SmallOscillations};
+use double_pendulum::form::Direction;
+use double_pendulum::plan::{Plan, Problem, Way, WayStepper};
+use double_pendulum::{Error, Motion, Parameters};
 use firmware::config::HALF_PIXEL;
 
 use crate::oracle::reference::Reference;
@@ -23,7 +23,8 @@ pub struct Verdict {
 ///
 /// The reference is given the scene's own numbers, the plan those that its arithmetic can hold.
 pub fn judge(scene: &Problem, plan: &Plan) -> Result<Verdict, Error> {
-    let mut frames = frames(scene, plan)?;
+    let way = Way { method: plan.method, steps: plan.steps };
+    let mut motion = WayStepper::new(&scene.pendulum, &scene.start, scene.rate, way)?;
     let mut reference = Reference::new(&scene.pendulum, &scene.start);
     let mut verdict = Verdict { horizon: scene.duration, error: 0.0 };
     let mut right = true;
@@ -35,7 +36,9 @@ pub fn judge(scene: &Problem, plan: &Plan) -> Result<Verdict, Error> {
         }
         reference.advance_to(time);
         let Motion { a1, a2, .. } = reference.motion();
-        let error = distance(scene, &frames(), &[a1, a2].map(|a| [libm::sin(a), libm::cos(a)]));
+        motion.advance();
+        let shown = motion.directions().map(|direction| direction.map(f64::from));
+        let error = distance(scene, &shown, &[a1, a2].map(|a| [libm::sin(a), libm::cos(a)]));
         if promised {
             verdict.error = verdict.error.max(error);
         }
@@ -67,40 +70,6 @@ pub fn reference_error(scene: &Problem, seconds: f64) -> f64 {
         worst = worst.max(scale(scene) * (l1 * elbow + l2 * rod));
     }
     worst
-}
-
-/// The frames as the plan's method gives them, one after the other.
-fn frames(scene: &Problem, plan: &Plan) -> Result<Box<dyn FnMut() -> Directions>, Error> {
-    match plan.method {
-        Method::ClosedForm => closed_form(scene),
-        Method::DirectionPlain => stepped::<f32, DirectionForm<f32, Plain>>(scene, plan),
-        Method::Direction => stepped::<f32, DirectionForm<f32>>(scene, plan),
-        Method::Angle => stepped::<f32, AngleForm<f32>>(scene, plan),
-        Method::Direction8 => stepped::<f64, DirectionForm8<f64>>(scene, plan),
-        other => panic!("{other:?} is a new method: carry it out here"),
-    }
-}
-
-fn stepped<R: Real, F: Form<R> + 'static>(
-    scene: &Problem,
-    plan: &Plan,
-) -> Result<Box<dyn FnMut() -> Directions>, Error> {
-    let start = Pendulum::new(scene.pendulum)?.to_state(&scene.start);
-    let mut stepper = Stepper::<R, F>::new(&scene.pendulum.cast(), &start.cast(), plan.dt)?;
-    let steps = plan.steps;
-    Ok(Box::new(move || {
-        stepper.advance(steps);
-        stepper.directions().map(|direction| direction.map(R::to_f64))
-    }))
-}
-
-fn closed_form(scene: &Problem) -> Result<Box<dyn FnMut() -> Directions>, Error> {
-    let motion = SmallOscillations::new(Modes::new(&scene.pendulum.cast::<f32>())?, &scene.start.cast());
-    let (scene, mut frame) = (*scene, 0);
-    Ok(Box::new(move || {
-        frame += 1;
-        motion.directions(scene.time(frame) as f32).map(|direction| direction.map(f64::from))
-    }))
 }
 
 /// Pixels to a metre.

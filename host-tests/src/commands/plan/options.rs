@@ -29,7 +29,7 @@ pub struct Options {
     #[arg(long, value_name = "PIXELS", default_value = "64", allow_hyphen_values = true)]
     pub height: Number,
     /// How long the scene lasts, s
-    #[arg(long, value_name = "T", default_value = "10", allow_hyphen_values = true)]
+    #[arg(long, value_name = "T", default_value = "30", allow_hyphen_values = true)]
     pub duration: Number,
     /// Frames per second, 1 to 65535
     #[arg(long, value_name = "N", default_value = "60", allow_hyphen_values = true)]
@@ -38,9 +38,6 @@ pub struct Options {
     #[arg(long, value_name = "CHIP", default_value = CHIPS[0].name,
           value_parser = PossibleValuesParser::new(CHIPS.iter().map(|chip| chip.name)).map(|name| chip(&name)))]
     pub target: Chip,
-    /// For how long the chip may look ahead, s of its time
-    #[arg(long, value_name = "T", default_value = "60", allow_hyphen_values = true)]
-    pub planning: Number,
     /// Plan this many scenes of all kinds instead, carry them out beside the reference, and print what came of it
     #[arg(long, value_name = "SCENES", value_parser = value_parser!(u32).range(1..))]
     pub study: Option<u32>,
@@ -64,7 +61,6 @@ impl Options {
         ensure!(whole, "--rate {rate}: must be a whole number of frames per second, at least 1");
         ensure!(rate.value() <= f64::from(u16::MAX), "--rate {rate}: more than {}", u16::MAX);
         ensure!(self.height.is_positive(), "--height {}: must be greater than zero", self.height);
-        ensure!(self.planning.is_positive(), "--planning {}: must be greater than zero", self.planning);
         let ([a1, a2], [w1, w2]) = (self.start.angles(), self.start.velocities());
         let scene = Problem {
             pendulum: self.start.parameters(),
@@ -73,7 +69,7 @@ impl Options {
             duration: self.duration.value(),
             rate: rate.value() as u16,
         };
-        let plan = self.target.plan(&scene, self.planning.value() as f32);
+        let plan = self.target.plan(&scene);
         Ok((scene, plan.map_err(|error| anyhow!("{}: {error}", option_of(&error)))?))
     }
 }
@@ -93,7 +89,7 @@ fn option_of(error: &PlanError) -> &'static str {
             Quantity::Tolerance => "--height",
             Quantity::Duration => "--duration",
             Quantity::Rate => "--rate",
-            _ => "--planning",
+            _ => "the scene",
         },
         _ => "the scene",
     }

@@ -24,9 +24,6 @@ pub struct Case {
     pub verdict: Verdict,
 }
 
-/// For how long the chip may look ahead, s of its time.
-pub const PLANNING: f32 = 2.0;
-
 /// How long the scenes of a study last, s.
 pub const DURATIONS: Range<f64> = 2.0..30.0;
 
@@ -112,7 +109,7 @@ pub fn study(
 ) -> Result<Vec<Case>, PlanError> {
     let scenes: Vec<_> = scenes.into_iter().enumerate().collect();
     let case = |&(number, scene): &(usize, Problem)| -> Result<Case, PlanError> {
-        let plan = chip.plan(&scene, PLANNING)?;
+        let plan = chip.plan(&scene)?;
         let verdict = plan.map_or(Ok(Verdict::default()), |plan| judge(&scene, &plan))?;
         tick();
         Ok(Case { number, scene, plan, verdict })

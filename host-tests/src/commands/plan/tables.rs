@@ -50,7 +50,7 @@ pub fn classes(cases: &[Case], chip: &Chip) -> Result<Table, Error> {
 
 fn row(name: &str, cases: &[&Case], chip: &Chip) -> Vec<String> {
     let plans: Vec<Plan> = cases.iter().filter_map(|case| case.plan.ok()).collect();
-    let finest = plans.iter().filter(|plan| plan.method != Method::Direction8).map(|plan| plan.steps).max();
+    let finest = plans.iter().filter(|plan| plan.method != Method::Fixed64).map(|plan| plan.steps).max();
     let share = |early: bool| {
         let shares = cases.iter().filter(|case| !early || case.ends_early()).map(|case| case.share());
         format!("{:.2}", median(shares))
@@ -67,7 +67,7 @@ fn row(name: &str, cases: &[&Case], chip: &Chip) -> Vec<String> {
         share(true),
         cycles(&|plan| plan.cost),
         cycles(&|plan| chip.rk4_f64 * plan.steps.max(1) as f32),
-        cycles(&|_| chip.costs.of_frame(Method::Direction, finest.unwrap_or(1).max(1))),
+        cycles(&|_| chip.processor.costs.of_frame(Method::Direction, finest.unwrap_or(1).max(1))),
     ]
 }
 

@@ -1,7 +1,7 @@
 //! The chips a plan is made for.
 
-use double_pendulum::plan::{Budget, Costs, Limit, Plan, PlanError, Problem, plan};
-use firmware::config::{CORTEX_M3, CORTEX_M4F, FRAME_SHARE};
+use double_pendulum::plan::{Limit, Plan, PlanError, Problem, plan};
+use firmware::config::{CORTEX_M3, CORTEX_M4F, Processor, STM32F405};
 
 /// A chip, by what a plan must know of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -12,30 +12,28 @@ pub struct Chip {
     pub title: &'static str,
     /// Its clock, Hz.
     pub clock: f32,
-    /// Cycles of a step.
-    pub costs: Costs,
+    /// What its steps cost, and what may be spent.
+    pub processor: Processor,
     /// Cycles of a step of the plain direction form in `f64` by RK4, which no plan needs.
     pub rk4_f64: f32,
 }
 
 /// The LM3S6965, without a floating-point unit.
 pub const M3: Chip =
-    Chip { name: "m3", title: "Cortex-M3 at 50 MHz", clock: 50e6, costs: CORTEX_M3, rk4_f64: 17_400.0 };
+    Chip { name: "m3", title: "Cortex-M3 at 50 MHz", clock: 50e6, processor: CORTEX_M3, rk4_f64: 17_400.0 };
 /// The STM32F405, with one for `f32`.
 pub const M4F: Chip =
-    Chip { name: "m4f", title: "Cortex-M4F at 168 MHz", clock: 168e6, costs: CORTEX_M4F, rk4_f64: 16_610.0 };
+    Chip { name: "m4f", title: "Cortex-M4F at 168 MHz", clock: 168e6, processor: STM32F405, rk4_f64: 16_610.0 };
+/// The slowest board's, with one.
+pub const SLOW_M4F: Chip =
+    Chip { name: "slow-m4f", title: "Cortex-M4F at 25 MHz", clock: 25e6, processor: CORTEX_M4F, ..M4F };
 /// Every chip, the default first.
-pub const CHIPS: [Chip; 2] = [M3, M4F];
+pub const CHIPS: [Chip; 3] = [M3, M4F, SLOW_M4F];
 
 impl Chip {
-    /// What it may spend with `rate` frames per second and `planning` seconds for looking ahead.
-    pub fn budget(&self, rate: u16, planning: f32) -> Budget {
-        Budget { frame: FRAME_SHARE * self.clock / f32::from(rate), planning: planning * self.clock }
-    }
-
-    /// The plan for this chip with `planning` seconds for looking ahead; if nothing holds, what forbids finer steps.
-    pub fn plan(&self, problem: &Problem, planning: f32) -> Result<Result<Plan, Limit>, PlanError> {
-        match plan(problem, &self.costs, &self.budget(problem.rate, planning)) {
+    /// The plan that a board of this class finds; if nothing holds, what forbids finer steps.
+    pub fn plan(&self, problem: &Problem) -> Result<Result<Plan, Limit>, PlanError> {
+        match plan(problem, &self.processor.costs, &self.processor.budget(problem)) {
             Err(PlanError::NothingHolds { limit, .. }) => Ok(Err(limit)),
             found => found.map(Ok),
         }

@@ -8,7 +8,7 @@ use super::target::Chip;
 
 /// The plan with its reasons, a line each; or that nothing holds.
 pub fn words(scene: &Problem, plan: &Result<Plan, Limit>, chip: &Chip) -> Vec<String> {
-    let frame = chip.budget(scene.rate, 1.0).frame;
+    let frame = chip.processor.frame;
     let mut lines = match plan {
         Ok(plan) => planned(scene, plan, chip, frame),
         Err(limit) => vec![
@@ -54,8 +54,10 @@ fn method(plan: &Plan) -> String {
         Method::Direction => {
             String::from("to draw, directions are enough and no angles needed; the roundings of plain sums would show")
         }
-        Method::Angle => String::from("the direction form loses more than steps on the angles do"),
-        Method::Direction8 => String::from("the roundings of f32 would show before; in f64 order 8 is cheapest"),
+        Method::Fixed32 => {
+            String::from("to draw, directions are enough and no angles needed; integers are cheapest here")
+        }
+        Method::Fixed64 => String::from("32 bits show before, or take as many steps as cost more"),
         other => other.name().to_owned(),
     }
 }
@@ -66,11 +68,11 @@ fn limit(plan: &Plan, frame: f32) -> String {
             String::from("with half the steps errors would show, or the fastest motion could be missed")
         }
         Limit::End => String::from("nothing cheaper that was tried is right to the end"),
-        Limit::Growth => String::from("errors grow until they show, in f64 as well; nothing here goes farther"),
+        Limit::Growth => String::from("errors grow until they show, in 64 bits as well; nothing here goes farther"),
         Limit::Budget => {
             format!("errors grow until they show; what goes farther costs more than the {frame:.0} cycles allowed")
         }
-        Limit::Planning => String::from("no farther frame was looked at: see --planning"),
+        Limit::Planning => String::from("looking farther ahead costs more than the scene has time for"),
         other => other.name().to_owned(),
     }
 }
@@ -79,7 +81,7 @@ fn limit(plan: &Plan, frame: f32) -> String {
 fn forbidden(limit: Limit, frame: f32) -> String {
     match limit {
         Limit::Budget => format!("steps fine enough cost more than the {frame:.0} cycles allowed for a frame"),
-        Limit::Planning => String::from("the time to look ahead ended before anything was found: see --planning"),
+        Limit::Planning => String::from("the time to look ahead ended before anything was found"),
         other => format!("what forbids finer steps: {}", other.name()),
     }
 }

@@ -165,7 +165,6 @@ pub fn write(extent: &Extent, toolchain: &Toolchain, folder: &Path, bar: &Bar) -
         identity,
         plan::classes(&plans, chip)?,
         plan::broken(&plans),
-        plan::rk4_in_f64(&plans, chip)?,
         plan::margins(&margins),
         frames::table(&frames),
         frames::functions(&frames),
