@@ -2,8 +2,7 @@
 
 use double_pendulum::Parameters;
 use double_pendulum::flips::Flip;
-use fastrand::Rng;
-use host_tests::commands::flips::judge::{Verdict, exact, judge};
+use host_tests::commands::flips::judge::{Sample, Verdict, judge, sample};
 use host_tests::commands::flips::map::{Map, Point};
 use host_tests::commands::flips::square::Square;
 use host_tests::oracle::tolerances;
@@ -37,18 +36,7 @@ fn points_are_right_to_a_grey_level() {
     println!("limit 10: {wrong} of {points} wrong");
     assert!(points > 1000 && wrong as f64 <= (1.0 - tolerances::FLIPS_RIGHT) * points as f64, "{wrong} of {points}");
 
-    let mut rng = Rng::with_seed(1);
-    let starts: Vec<[f32; 2]> = short.starts(0..short.square.rows()).collect();
-    let points = short.points(0..short.square.rows()).expect("points");
-    let (mut judged, mut wrong) = (0, 0);
-    while judged < JUDGED {
-        let place = rng.usize(..starts.len());
-        if points[place].flip != Flip::Never {
-            judged += 1;
-            wrong += usize::from(short.differ(points[place].flip, exact(&short, starts[place])));
-        }
-    }
-    assert_eq!(wrong, 0, "of {judged}");
+    assert_eq!(sample(&short, JUDGED), Ok(Sample { judged: JUDGED, wrong: 0 }));
 }
 
 /// Points that the reference judges: 0.1 s each.

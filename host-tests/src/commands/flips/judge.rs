@@ -6,6 +6,8 @@ use double_pendulum::flips::{Flip, Flips};
 use double_pendulum::form::DirectionForm;
 use double_pendulum::{Error, Motion};
 
+use fastrand::Rng;
+
 use super::map::{Map, Point};
 use crate::oracle::reference::Reference;
 
@@ -25,6 +27,26 @@ pub struct Verdict {
     pub doubtful: usize,
     /// Those that are wrong and not in doubt.
     pub unsuspected: usize,
+}
+
+/// How a sample of a map's points was judged by the reference.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// Points that may turn over: 0.1 s each.
+    pub judged: usize,
+    /// Of them, those whose time is more than a grey level off.
+    pub wrong: usize,
+}
+
+/// Has the reference judge so many points of the upper half of a map, drawn at random, the same in each run.
+pub fn sample(map: &Map, judged: usize) -> Result<Sample, Error> {
+    let points = map.points(0..map.square.rows())?;
+    let starts = map.starts(0..map.square.rows()).zip(points);
+    let mut candidates: Vec<_> = starts.filter(|(_, point)| point.flip != Flip::Never).collect();
+    Rng::with_seed(1).shuffle(&mut candidates);
+    candidates.truncate(judged);
+    let is_wrong = |&&(start, point): &&([f32; 2], Point)| map.differ(point.flip, exact(map, start));
+    Ok(Sample { judged: candidates.len(), wrong: candidates.iter().filter(is_wrong).count() })
 }
 
 /// Judges all points of the upper half of a map by fine steps in `f64`.

@@ -58,15 +58,18 @@ const EARLIER: [[[u64; 3]; 12]; 2] = [[
 /// A scene's frame on a board.
 #[derive(Debug)]
 pub struct Counted {
-    board: &'static Board,
-    scene: SceneName,
+    /// The board.
+    pub board: &'static Board,
+    /// The scene.
+    pub scene: SceneName,
     profile: FrameProfile,
     /// By function and part, cycles.
     functions: BTreeMap<(String, Part), u64>,
 }
 
 impl Counted {
-    fn cycles(&self, part: Part) -> u64 {
+    /// Of a part of the work.
+    pub fn cycles(&self, part: Part) -> u64 {
         self.profile.cost(part).cycles
     }
 

@@ -8,6 +8,7 @@ mod c_peers;
 pub mod chart;
 pub mod costs;
 pub mod energy;
+pub mod flips;
 pub mod frames;
 pub mod frontier;
 pub mod headline;
@@ -50,6 +51,8 @@ pub struct Extent {
     pub margins: usize,
     /// Boards whose frames are counted, from the first on.
     pub boards: usize,
+    /// Starts across the maps of flips that are judged, and how many maps.
+    pub flips: (usize, usize),
 }
 
 impl Extent {
@@ -63,6 +66,7 @@ impl Extent {
         plans: 2_000,
         margins: 1_000,
         boards: BOARDS.len(),
+        flips: (64, 3),
     };
     /// The first two scenes and shorter runs: a few minutes.
     pub const QUICK: Self = Self {
@@ -74,6 +78,7 @@ impl Extent {
         plans: 40,
         margins: 10,
         boards: 2,
+        flips: (64, 2),
     };
 
     /// The runs of everything, for the progress bar.
@@ -149,6 +154,10 @@ pub fn write(extent: &Extent, toolchain: &Toolchain, folder: &Path, bar: &Bar) -
     bar.say("counting frames");
     let frames = frames::count(toolchain, extent.boards, &tick)?;
 
+    bar.say("judging the map of flips");
+    let (side, limits) = extent.flips;
+    let belief = flips::belief(side, limits)?;
+
     bar.say("writing");
     let priced = speed::priced(&points, &costs, &c.0);
     let boards: Vec<_> = targets.iter().map(|target| target.board).collect();
@@ -168,6 +177,8 @@ pub fn write(extent: &Extent, toolchain: &Toolchain, folder: &Path, bar: &Bar) -
         plan::margins(&margins),
         frames::table(&frames),
         frames::functions(&frames),
+        belief,
+        flips::cost(&frames)?,
         speed::table(&priced),
     ];
     let mut charts = Vec::new();

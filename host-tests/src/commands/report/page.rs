@@ -1,5 +1,9 @@
 //! The page that shows it all.
 
+use base64::Engine;
+use base64::prelude::BASE64_STANDARD;
+
+use super::flips;
 use crate::commands::count::ERROR_BAR;
 use crate::commands::table::{Table, escaped};
 
@@ -18,6 +22,10 @@ svg { max-width: 100%; height: auto }
 <p>Costs are counted on emulated boards, errors are computed against the reference; no chip was measured here.</p>
 "#;
 
+/// The map of flips as `cargo flips` made it, and the panel's.
+const PICTURES: [&[u8]; 2] =
+    [include_bytes!("../../../pictures/figures/flips.png"), include_bytes!("../../../pictures/panel/flips.png")];
+
 /// The page: the advice, the frames, then the tables. It needs no other file.
 pub fn html(advice: &[String], tables: &[Table], charts: &[(String, String)]) -> String {
     let mut page = format!("{HEAD}<p>{ERROR_BAR}</p>\n<ul>\n");
@@ -28,6 +36,10 @@ pub fn html(advice: &[String], tables: &[Table], charts: &[(String, String)]) ->
     }
     for table in tables {
         page.push_str(&table.html());
+        for picture in PICTURES.iter().filter(|_| table.name == flips::NAME) {
+            let data = BASE64_STANDARD.encode(picture);
+            page.push_str(&format!("<img alt=\"map of flips\" src=\"data:image/png;base64,{data}\">\n"));
+        }
     }
     page.push_str("</html>\n");
     page
