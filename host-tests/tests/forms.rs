@@ -3,7 +3,8 @@
 use std::f64::consts::{PI, TAU};
 
 use double_pendulum::form::{
-    AngleForm, AngleState, Compensated, DirectionForm, DirectionForm8, DirectionState, Divided, Form, Plain, Winding,
+    AngleForm, AngleState, Compensated, DirectionForm, DirectionForm8, DirectionState, Divided, Fixed64Form, Form,
+    Plain, Winding,
 };
 use double_pendulum::{Error, Parameter, Parameters, Pendulum, Real, State};
 use fastrand::Rng;
@@ -227,8 +228,12 @@ fn directions_are_those_of_the_angles() -> Result<(), Error> {
             form.advance(&mut carried, 7);
             let State { a1, a2, .. } = form.state(&carried);
             for ([sine, cosine], angle) in form.directions(&carried).into_iter().zip([a1, a2]) {
-                let miss = (sine.to_f64() * angle.cos() - cosine.to_f64() * angle.sin()).abs();
-                assert!(miss <= tolerances::DIRECTIONS * R::EPSILON.to_f64(), "{miss:e} at {angle}");
+                let [along, across] = [
+                    sine.to_f64() * angle.sin() + cosine.to_f64() * angle.cos(),
+                    sine.to_f64() * angle.cos() - cosine.to_f64() * angle.sin(),
+                ];
+                assert!(across.abs() <= tolerances::DIRECTIONS * R::EPSILON.to_f64(), "{across:e} at {angle}");
+                assert!((along - 1.0).abs() <= tolerances::LENGTHS, "{along} long at {angle}");
             }
         }
         Ok(())
@@ -239,6 +244,7 @@ fn directions_are_those_of_the_angles() -> Result<(), Error> {
         agree::<f64, AngleForm<f64>>(&trial)?;
         agree::<f64, DirectionForm<f64>>(&trial)?;
         agree::<f64, DirectionForm8<f64>>(&trial)?;
+        agree::<f64, Fixed64Form<12>>(&trial)?;
     }
     Ok(())
 }
