@@ -75,7 +75,7 @@ fn it_hands_the_bytes_of_the_flash_to_dfu_util() -> io::Result<()> {
     let mut inbox = Inbox::default();
     let bytes = BufReader::new(qemu.stdout.take().expect("its serial port")).bytes();
     let mut frames = bytes.map_while(Result::ok).filter_map(|byte| inbox.take(byte)?.read::<Frame>());
-    assert_eq!(frames.next().map(|frame| frame.step), Some(4));
+    assert_eq!(frames.next().map(|frame| frame.step), Some(1));
     Ok(())
 }
 
