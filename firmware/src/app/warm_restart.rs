@@ -72,6 +72,8 @@ pub fn read<M: Message>(kept: &Kept) -> Option<M> {
 /// What is to be kept after each frame, in case it is the last.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Journal {
+    /// What is kept as played.
+    played: Option<Status>,
     /// In a row, so far.
     restarts: u8,
     /// Frames since the last.
@@ -81,17 +83,19 @@ pub struct Journal {
 impl Journal {
     /// Of a board that starts with this.
     pub fn new(survivor: Option<&WarmRestart>) -> Self {
-        Self { restarts: survivor.map_or(0, |survivor| survivor.end.restarts), frames: 0 }
+        Self { restarts: survivor.map_or(0, |survivor| survivor.end.restarts), ..Self::default() }
     }
 
-    /// What to keep of `player`, which has just been shown.
-    pub fn note(&mut self, player: &Player) -> (Status, Restarted) {
+    /// What to keep of `player`, which has just been shown: what is played, if that is not kept already, and where it stands.
+    pub fn note(&mut self, player: &Player) -> (Option<Status>, Restarted) {
         self.frames = self.frames.saturating_add(1);
         if self.frames >= SOUND_FRAMES {
             self.restarts = 0;
         }
         let (scene, step) = (player.name().code(), player.report().step as u32);
-        (player.status(0), Restarted { restarts: self.restarts, scene, step, ..Restarted::default() })
+        let status = player.status(0);
+        let is_new = self.played.replace(status) != Some(status);
+        (is_new.then_some(status), Restarted { restarts: self.restarts, scene, step, ..Restarted::default() })
     }
 }
 

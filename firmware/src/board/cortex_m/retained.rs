@@ -48,10 +48,12 @@ pub fn recall(by_watchdog: bool) -> Option<WarmRestart> {
     WarmRestart::recall(&PLAYED.read(), &END.read(), by_watchdog)
 }
 
-/// Keeps what is played, in case this frame is the last.
+/// Keeps what is played, if it is new, and where it stands, in case this frame is the last.
 #[inline(never)]
-pub fn keep((played, end): (Status, Restarted)) {
-    PLAYED.write(&played);
+pub fn keep((played, end): (Option<Status>, Restarted)) {
+    if let Some(played) = played {
+        PLAYED.write(&played);
+    }
     END.write(&end);
 }
 
