@@ -145,7 +145,13 @@ pub trait Form<R: Real>: Sealed + Copy + core::fmt::Debug + PartialEq {
 
 /// The direction of rod 2 from that of rod 1 and (S, C) = `norm` (sin D, cos D), a2 = a1 - D.
 #[inline]
-fn lower_direction<R: Real>([sin1, cos1]: Direction<R>, [s, c]: [R; 2], norm: R) -> Direction<R> {
+fn lower_direction<R: Real>(upper: Direction<R>, elbow: [R; 2], norm: R) -> Direction<R> {
     let inverse = R::ONE / norm;
-    [(sin1 * c - cos1 * s) * inverse, (cos1 * c + sin1 * s) * inverse]
+    lower_ray(upper, elbow).map(|x| x * inverse)
+}
+
+/// The same, as long as (S, C): enough to tell the angle by.
+#[inline]
+fn lower_ray<R: Real>([sin1, cos1]: Direction<R>, [s, c]: [R; 2]) -> [R; 2] {
+    [sin1 * c - cos1 * s, cos1 * c + sin1 * s]
 }

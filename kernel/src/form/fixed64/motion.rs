@@ -7,7 +7,7 @@ use crate::bounds::Bounds;
 use crate::error::{Error, Parameter};
 use crate::fixed::{FixedPoint, Q64, Scaling};
 use crate::form::checkpoint::{RestoreError, Words};
-use crate::form::{Direction, lower_direction};
+use crate::form::{Direction, lower_direction, lower_ray};
 use crate::hamiltonian::Pendulum;
 use crate::params::Parameters;
 use crate::real::Real;
@@ -101,14 +101,8 @@ impl Fixed64State {
         self.lost |= reach != 0 || [missing1, missing2].into_iter().any(|missing| missing.0.unsigned_abs() > LENGTH);
     }
 
-    fn values(&self) -> [f64; 6] {
-        let mut values = self.z.map(Q64::value);
-        values.iter_mut().take(4).for_each(|value| *value /= EIGHTH);
-        values
-    }
-
     pub(super) fn directions<R: Real>(&self) -> [Direction<R>; 2] {
-        let [sin1, cos1, s, c, ..] = self.values().map(R::from_f64);
+        let [sin1, cos1, s, c, ..] = self.z.map(|z| R::from_f64(z.value() / EIGHTH));
         [[sin1, cos1], lower_direction([sin1, cos1], [s, c], R::from_f64(self.scaling.norm))]
     }
 
@@ -117,8 +111,8 @@ impl Fixed64State {
         if self.lost {
             return State { a1: f64::NAN, a2: f64::NAN, p1: f64::NAN, p2: f64::NAN };
         }
-        let [sin1, cos1, s, c, p1, p2] = self.values();
-        let [sin2, cos2] = lower_direction([sin1, cos1], [s, c], self.scaling.norm);
+        let [sin1, cos1, s, c, p1, p2] = self.z.map(Q64::value);
+        let [sin2, cos2] = lower_ray([sin1, cos1], [s, c]);
         let [unit1, unit2] = self.scaling.momenta;
         State { a1: libm::atan2(sin1, cos1), a2: libm::atan2(sin2, cos2), p1: p1 / unit1, p2: p2 / unit2 }
     }
