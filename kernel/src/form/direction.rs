@@ -8,7 +8,7 @@ use super::coefficients::{Scale, Span, prepare, third};
 use super::equations::{Coefficients, Rates};
 use super::inverse::{Followed, Inverse};
 use super::sum::{Compensated, Sum};
-use super::{Direction, Form, lower_direction};
+use super::{Direction, Form, lower_direction, lower_ray};
 use crate::error::Error;
 use crate::params::Parameters;
 use crate::real::Real;
@@ -87,7 +87,7 @@ impl<R: Real, S: Sum<R>, I: Inverse<R>> Form<R> for DirectionForm<R, S, I> {
     fn state(&self, carried: &Self::Carried) -> State<f64> {
         let z: [f64; 6] = core::array::from_fn(|i| carried.z[i].to_f64() + carried.sums[i].lost().to_f64());
         let [sin1, cos1, s, c, p1, p2] = z;
-        let [sin2, cos2] = lower_direction([sin1, cos1], [s, c], self.coefficients.norm.to_f64());
+        let [sin2, cos2] = lower_ray([sin1, cos1], [s, c]);
         let angles = [libm::atan2(sin1, cos1), libm::atan2(sin2, cos2)];
         self.scale.state(angles, [p1, p2], self.rates(&carried.z, carried.inverse), carried.steps)
     }

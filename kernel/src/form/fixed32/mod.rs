@@ -7,7 +7,7 @@ mod step;
 mod upkeep;
 
 use super::checkpoint::{Check, RestoreError};
-use super::{Direction, Form, lower_direction};
+use super::{Direction, Form, lower_direction, lower_ray};
 use crate::error::Error;
 use crate::fixed::{Q30, Scaling, check_step};
 use crate::hamiltonian::Pendulum;
@@ -193,7 +193,7 @@ impl Fixed32State {
             return State { a1: f64::NAN, a2: f64::NAN, p1: f64::NAN, p2: f64::NAN };
         }
         let [sin1, cos1, s, c, p1, p2] = self.z.map(value);
-        let [sin2, cos2] = lower_direction([sin1, cos1], [s, c], scaling.norm);
+        let [sin2, cos2] = lower_ray([sin1, cos1], [s, c]);
         let [sin_q, cos_q, s_q, c_q, p1_q, p2_q] = self.quantities();
         let rates = coefficients.rates(&scaling.shifts, [sin_q, cos_q], [s_q, c_q], [p1_q, p2_q], self.inverse);
         let behind = self.steps as f64 * lag;

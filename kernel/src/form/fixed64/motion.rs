@@ -101,8 +101,14 @@ impl Fixed64State {
         self.lost |= reach != 0 || [missing1, missing2].into_iter().any(|missing| missing.0.unsigned_abs() > LENGTH);
     }
 
+    // once in flash
+    #[inline(never)]
+    fn values(&self) -> [f64; 6] {
+        self.z.map(Q64::value)
+    }
+
     pub(super) fn directions<R: Real>(&self) -> [Direction<R>; 2] {
-        let [sin1, cos1, s, c, ..] = self.z.map(|z| R::from_f64(z.value() / EIGHTH));
+        let [sin1, cos1, s, c, ..] = self.values().map(|value| R::from_f64(value / EIGHTH));
         [[sin1, cos1], lower_direction([sin1, cos1], [s, c], R::from_f64(self.scaling.norm))]
     }
 
@@ -111,7 +117,7 @@ impl Fixed64State {
         if self.lost {
             return State { a1: f64::NAN, a2: f64::NAN, p1: f64::NAN, p2: f64::NAN };
         }
-        let [sin1, cos1, s, c, p1, p2] = self.z.map(Q64::value);
+        let [sin1, cos1, s, c, p1, p2] = self.values();
         let [sin2, cos2] = lower_ray([sin1, cos1], [s, c]);
         let [unit1, unit2] = self.scaling.momenta;
         State { a1: libm::atan2(sin1, cos1), a2: libm::atan2(sin2, cos2), p1: p1 / unit1, p2: p2 / unit2 }
