@@ -33,7 +33,7 @@ pub struct Memory {
 /// the stack is for what no run has met: an interrupt at the deepest place, the report of a crash.
 pub const MEMORY: [(&str, Memory); 4] = [
     ("lm3s6965evb", Memory { text: 240 * KIB, data: 256, bss: 24 * KIB, stack: 28 * KIB }),
-    ("lm3s6965evb-m4", Memory { text: 244 * KIB, data: 256, bss: 24 * KIB, stack: 28 * KIB }),
+    ("lm3s6965evb-m4", Memory { text: 240 * KIB, data: 256, bss: 24 * KIB, stack: 28 * KIB }),
     ("mps2-an386", Memory { text: 240 * KIB, data: 256, bss: 20 * KIB, stack: 28 * KIB }),
     ("stm32f405", Memory { text: 248 * KIB, data: 256, bss: 22 * KIB, stack: 28 * KIB }),
 ];
