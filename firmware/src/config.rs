@@ -90,8 +90,7 @@ pub const CORTEX_M4F: Processor = Processor {
     frame: 150_000.0,
     look_ahead: 200_000.0,
 };
-/// The STM32F405's at 168 MHz: 2,800,000 cycles in a tick. It could look ahead by twice as much; QEMU, which takes the same time
-/// for an instruction of any processor, could not.
+/// The STM32F405's at 168 MHz: 2,800,000 cycles in a tick, of which it could look ahead by more.
 pub const STM32F405: Processor = Processor { code: 2, frame: 700_000.0, look_ahead: 300_000.0, ..CORTEX_M4F };
 /// Every class, by its code on the wire.
 pub const PROCESSORS: [Processor; 3] = [CORTEX_M3, CORTEX_M4F, STM32F405];
