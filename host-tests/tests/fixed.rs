@@ -35,6 +35,20 @@ fn thirty_two_bits_keep_their_promise() -> Result<(), Error> {
     Ok(())
 }
 
+/// Its momenta are told and taken in units of their own.
+#[test]
+fn thirty_two_bits_keep_their_promise_of_a_moving_start() -> Result<(), Error> {
+    let parameters = Parameters { m1: 0.7, m2: 1.3, l1: 0.6, l2: 1.1, g: 9.81 };
+    let trial = Trial { parameters, start: State { a1: 0.3, a2: -0.2, p1: 0.1, p2: -0.1 }, seconds: 10.0 };
+    let error = trial.error::<f64, Fixed32Form>(1.0 / 1024.0)?;
+    assert!(error <= tolerances::FIXED_32_UNLIKE, "{error:e} rad");
+    let start = Stepper::<f64, Fixed32Form>::new(&parameters, &trial.start, 1.0 / 1024.0)?.state();
+    for (told, taken) in [(start.p1, trial.start.p1), (start.p2, trial.start.p2)] {
+        assert!((told - taken).abs() <= tolerances::FIXED_32_FLOOR, "{told} for {taken} kg m^2/s");
+    }
+    Ok(())
+}
+
 #[test]
 fn sixty_four_bits_keep_their_promise() -> Result<(), Error> {
     let error = regular(12.0).error::<f64, Fixed64Form<12>>(1.0 / 12.0)?;
