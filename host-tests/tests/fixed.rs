@@ -286,6 +286,9 @@ fn a_motion_of_64_bits_is_right_or_said_to_be_lost() -> Result<(), Error> {
         let mut double = Stepper::<f64, ExtrapolatedForm<ORDER>>::new(&parameters, &start, dt)?;
         fixed.advance(3);
         double.advance(3);
+        let mut restored = Stepper::<f64, Fixed64Form<ORDER>>::new(&parameters, &start, dt)?;
+        restored.restore(fixed.save().as_ref()).expect("saved here");
+        assert_eq!(restored.state().finite().is_ok(), fixed.state().finite().is_ok(), "a checkpoint forgets no loss");
         let [fixed, double] = [fixed.state(), double.state()];
         Ok(fixed.finite().ok().map(|fixed| largest_difference(&[fixed], &[double])))
     }
