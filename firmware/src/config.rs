@@ -34,7 +34,7 @@ pub const HALF_PIXEL: f32 = 0.5;
 /// For how long each scene is planned, s: longer than the motion of the liveliest can be predicted in 64 bits. One that is
 /// right for so long is looked at farther as time goes on, always so far ahead.
 pub const PLANNED: f64 = 30.0;
-/// Looking ahead begins so many ticks after the start: a button that is held starts the scene again before.
+/// Ticks from the start of a scene until looking ahead begins. A held button restarts the scene sooner than that.
 pub const SETTLED_TICKS: u64 = 6;
 const _: () = assert!(SETTLED_TICKS > REPEAT_PERIOD_TICKS as u64);
 /// A piece of the search, cycles, unless a single step is more.
@@ -104,9 +104,9 @@ pub const PROCESSOR: Processor = if cfg!(target_abi = "eabihf") { CORTEX_M4F } e
 pub struct FlipsPace {
     /// Steps.
     pub steps: u32,
-    /// A new start counts as so many, ...
+    /// How many steps a new start counts as.
     pub start: u32,
-    /// ... one that the energy forbids to turn over as so many.
+    /// The same of a start that has not the energy to turn over.
     pub never: u32,
 }
 /// Fixed point on a Cortex-M3 at 50 MHz: 920 cycles a step, nearly half of a frame.

@@ -1,5 +1,5 @@
 //! What the frames show against the exact motion: right to half a pixel until the time that the panel promises, and hardly
-//! longer, in whatever way they are computed, before and after that changes.
+//! longer, before and after the way they are computed changes.
 
 use std::thread;
 

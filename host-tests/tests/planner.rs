@@ -105,7 +105,7 @@ fn where_nothing_holds_that_is_what_is_told() {
     assert_eq!((answer.cycles, answer.horizon, answer.steps), (0.0, 0.0, 0));
 }
 
-/// A way that was asked for is looked at, whatever it costs, and no other.
+/// Only the way that was asked for is looked at, even if it costs more than a frame allows.
 #[test]
 fn a_way_that_is_given_stays() {
     let mut planner = Planner::new(STM32F405);

@@ -14,7 +14,7 @@ use crate::protocol::{NO_METHOD, Planned, limit_code, method_code};
 /// How a scene shows its motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shown {
-    /// The way that it goes whatever the plan; `None` if it follows that.
+    /// The way it is tied to; `None` if it follows the plan.
     pub way: Option<Way>,
     /// The height of a display, pixels, that shows the motion as large: both rods together are half of it long.
     pub height: f32,

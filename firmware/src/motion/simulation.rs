@@ -68,7 +68,7 @@ impl Simulation {
         self.directions = self.motion.directions();
     }
 
-    /// The way it goes whatever the plan, if it was asked for.
+    /// The way that was asked for in place of the plan's, if one was.
     pub fn given(&self) -> Option<Way> {
         self.is_given.then(|| self.way())
     }

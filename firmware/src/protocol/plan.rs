@@ -5,7 +5,7 @@ use double_pendulum::plan::{Limit, Method};
 /// The code of no method: nothing affordable holds. And of what this version of the protocol does not know.
 pub const NO_METHOD: u8 = u8::MAX;
 
-/// A method's code on the wire, whatever its place among the others; 3 and 4 were those of methods that no plan takes any more.
+/// A method's code on the wire, which does not change when the order of the methods does. 3 and 4 are retired.
 pub const fn method_code(method: Method) -> u8 {
     match method {
         Method::ClosedForm => 0,

@@ -16,7 +16,7 @@ use crate::scenes::scene::{Report, Scene};
 
 /// A rod has so long to turn over, sqrt(l1/g).
 pub const LIMIT: f32 = 100.0;
-/// So many greys for when it does, by the logarithm of the time from sqrt(l1/g) to the limit: 15 is soonest. The last one is
+/// Greys for the time of the turn-over, by its logarithm from sqrt(l1/g) to the limit: 15 is soonest. The last one is
 /// for a rod that has not by then, and black for one that cannot.
 pub const GREYS: u8 = 14;
 const LATER: u8 = 1;

@@ -29,7 +29,7 @@ const LEAST_BAR: f32 = 16.0;
 const CURVE: u8 = 255;
 const ENVELOPE_GREY: u8 = 5;
 
-/// The linear model is what is shown, whatever the plan.
+/// The scene shows the linear model and does not follow the plan.
 const CLOSED_FORM: Way = Way { method: Method::ClosedForm, steps: 1 };
 
 /// The page's worked example: equal rods of 0.25 m, g = 9.8 m/s^2, a1 = 0, a2 = 30 degrees, let go from rest.

@@ -34,7 +34,7 @@ pub struct Options {
     /// The scene [default: what the board plays, page when it is switched on]
     #[arg(long, value_name = "NAME", value_parser = choice(SceneName::ALL.iter().copied(), SceneName::name))]
     pub scene: Option<SceneName>,
-    /// How the motion is computed, whatever the plan [default: auto, as the plan has it]
+    /// How the motion is computed, in place of the plan's choice [default: auto, the plan's choice]
     #[arg(long, value_name = "NAME", value_parser = choice(WAYS.iter(), |way| way.0))]
     pub way: Option<&'static (&'static str, Option<Method>)>,
     /// Run without a terminal: as fast as it goes, repeatable to the bit, with a summary at the end

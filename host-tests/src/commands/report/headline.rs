@@ -126,14 +126,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_section_replaces_the_one_between_the_marks() {
+    fn a_section_replaces_the_one_between_the_marks() -> anyhow::Result<()> {
         let table = Table { columns: vec!["a", "b"], rows: vec![vec![String::from("1"); 2]], ..Table::default() };
         let section = section(&[String::from("take a")], &table);
         assert!(section.starts_with("- take a\n\n| a |"), "{section}");
         let old = format!("before\n{}old\n{}after\n", MARKS[0], MARKS[1]);
-        let new = with_section(&old, &section).unwrap();
+        let new = with_section(&old, &section)?;
         assert_eq!(new, format!("before\n{}\n{section}\n{}after\n", MARKS[0], MARKS[1]));
-        assert_eq!(with_section(&new, &section).unwrap(), new);
+        assert_eq!(with_section(&new, &section)?, new);
         assert!(with_section("no marks", &section).is_err());
+        Ok(())
     }
 }
