@@ -5,9 +5,9 @@ use core::panic::PanicInfo;
 
 use crate::config::WATCHDOG_SECONDS;
 
-/// The registers that tell why a HardFault was taken.
+/// The registers that tell why a HardFault was taken. A Cortex-M0+ has none of the last four: they are 0.
 ///
-/// Source: ARM DDI 0403 (ARMv7-M Architecture Reference Manual), B3.2.15 to B3.2.18.
+/// Source: ARM DDI 0403 (ARMv7-M Architecture Reference Manual), B3.2.15 to B3.2.18; ARM DDI 0419 (ARMv6-M), B3.2.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fault {
     /// The registers that the processor stacked; `None` if the stack could not take them.
@@ -46,6 +46,9 @@ const ENTRY_FAILED: u32 = 1 << 12;
 const LAZY_ENTRY_FAILED: u32 = 1 << 13;
 /// The stack did not take the registers, or not all of them.
 const NOT_STACKED: u32 = ENTRY_REFUSED | LAZY_ENTRY_REFUSED | ENTRY_FAILED | LAZY_ENTRY_FAILED;
+
+/// The bit of the program status that is set as long as the processor executes Thumb code, which is all it can.
+const THUMB: u32 = 1 << 24;
 
 /// The most bytes that one instruction pushes: 16 double-precision registers. Before it is done, the stack pointer still
 /// stands above them.
@@ -92,7 +95,10 @@ impl Fault {
             Some((_, cause)) => cause,
             None if has(self.hfsr, 1) => "vector table could not be read",
             None if has(self.hfsr, 31) => "breakpoint without a debugger",
-            None => "unknown cause",
+            None if self.stacked.is_some_and(|stacked| stacked.xpsr & THUMB == 0) => {
+                "invalid state (jump to an even address?)"
+            }
+            None => "unknown cause (a Cortex-M0+ tells none)",
         }
     }
 
@@ -113,7 +119,11 @@ impl fmt::Display for Fault {
             (None, Some(call)) => writeln!(f, "  pc and lr are lost; the last call on the stack is at {call:#010x}")?,
             (None, None) => writeln!(f, "  pc and lr are lost")?,
         }
-        write!(f, "  sp {sp:#010x}  cfsr {cfsr:#010x}  hfsr {hfsr:#010x}  mmfar {mmfar:#010x}  bfar {bfar:#010x}")
+        write!(f, "  sp {sp:#010x}")?;
+        if cfsr | hfsr == 0 {
+            return Ok(());
+        }
+        write!(f, "  cfsr {cfsr:#010x}  hfsr {hfsr:#010x}  mmfar {mmfar:#010x}  bfar {bfar:#010x}")
     }
 }
 

@@ -21,7 +21,7 @@ fn names_the_cause() {
         (0x0000_1000, 0x4000_0000, "stack overflow"),
         (0, 0x0000_0002, "vector table could not be read"),
         (0, 0x8000_0000, "breakpoint without a debugger"),
-        (0, 0, "unknown cause"),
+        (0, 0, "unknown cause (a Cortex-M0+ tells none)"),
     ] {
         assert_eq!(fault(cfsr, hfsr).cause(), cause);
     }
@@ -65,6 +65,19 @@ fn says_what_is_lost_with_the_stack() {
     );
     let all_lost = Fault { last_call: None, ..lost }.to_string();
     assert!(all_lost.contains("\n  pc and lr are lost\n"), "{all_lost}");
+}
+
+#[test]
+fn a_processor_that_tells_no_cause_says_what_it_can() {
+    let told = fault(0, 0);
+    assert_eq!(
+        told.to_string(),
+        "HARDFAULT: unknown cause (a Cortex-M0+ tells none)\n  \
+         pc 0x00000456  lr 0x00001234  xpsr 0x01000000\n  \
+         sp 0x20008010"
+    );
+    let stacked = Some(Stacked { pc: 0x456, lr: 0x1234, xpsr: 0 });
+    assert_eq!(Fault { stacked, ..told }.cause(), "invalid state (jump to an even address?)");
 }
 
 #[test]

@@ -25,7 +25,7 @@ use lock::Lock;
 use system::Host;
 
 /// The compiler's targets, one for each kind of core.
-pub const TARGETS: [&str; 2] = ["thumbv7m-none-eabi", "thumbv7em-none-eabihf"];
+pub const TARGETS: [&str; 3] = ["thumbv6m-none-eabi", "thumbv7m-none-eabi", "thumbv7em-none-eabihf"];
 
 /// Everything that builds and runs the firmware.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -89,7 +89,7 @@ impl Toolchain {
 impl fmt::Display for Toolchain {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.core {
-            ArmCore::ReadyMade => writeln!(f, "ARM core library: ready-made, for {}", TARGETS.join(" and "))?,
+            ArmCore::ReadyMade => writeln!(f, "ARM core library: ready-made, for {}", TARGETS.join(", "))?,
             ArmCore::FromSource { version, linker } => {
                 let linker = linker.display();
                 writeln!(f, "ARM core library: from Debian's sources, by {version}, linked by rust-lld of {linker}")?;

@@ -18,15 +18,16 @@ pub fn calls(sp: u32) -> impl Iterator<Item = u32> {
     words.filter_map(|address| call_before(unsafe { (address as *const u32).read_volatile() }))
 }
 
+/// The halfword at an address in the code.
+pub fn instruction(address: u32) -> Option<u16> {
+    let code = &raw const __stext as u32..&raw const __etext as u32;
+    // SAFETY: any two bytes of the code are a `u16`.
+    (address & 1 == 0 && code.contains(&address)).then(|| unsafe { (address as *const u16).read_volatile() })
+}
+
 /// The call that returns to this address, if it is one that a call returns to: in the code, marked as Thumb code, and a
 /// call before it.
 fn call_before(address: u32) -> Option<u32> {
-    let first = &raw const __stext as u32 + 4;
-    if address & 1 == 0 || !(first..&raw const __etext as u32).contains(&address) {
-        return None;
-    }
-    let halfword = |back: u32| address.wrapping_sub(back + 1) as *const u16;
-    // SAFETY: both are in the code, too.
-    let halfwords = unsafe { [4, 2].map(|back| halfword(back).read_volatile()) };
-    Some(address.wrapping_sub(call_size(halfwords)? + 1))
+    let before = |back: u32| instruction(address.wrapping_sub(back + 1));
+    Some(address.wrapping_sub(call_size([before(4)?, before(2)?])? + 1))
 }

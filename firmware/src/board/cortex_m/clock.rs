@@ -18,7 +18,8 @@ static PERIOD: AtomicU32 = AtomicU32::new(0);
 
 #[exception]
 fn SysTick() {
-    TICKS.fetch_add(1, Ordering::Relaxed);
+    // Only this writes it: an M0+ cannot add in one go.
+    TICKS.store(ticks().wrapping_add(1), Ordering::Relaxed);
 }
 
 /// A running clock of [`TICK_RATE`] ticks per second.

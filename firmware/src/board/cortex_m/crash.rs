@@ -25,8 +25,8 @@ use cortex_m::peripheral::{DCB, SCB};
 use cortex_m_rt::ExceptionFrame;
 use cortex_m_semihosting::{debug, hio};
 
-use super::calls::calls;
-use super::{retained, watchdog};
+use super::calls::{calls, instruction};
+use super::{fault_status, retained, watchdog};
 use crate::app::warm_restart::{Cause, Scene};
 use crate::fault::{Fault, Hang, Panic, Stacked};
 
@@ -53,7 +53,7 @@ unsafe impl Sync for Stack {}
 fn panic(info: &PanicInfo) -> ! {
     let mut calls = calls(stack_pointer());
     let (pc, lr) = (calls.next(), calls.next());
-    let cfsr = control().cfsr.read();
+    let [cfsr, ..] = fault_status::read();
     let [known_pc, known_lr] = [pc, lr].map(Option::unwrap_or_default);
     crash((Cause::Panic, known_pc, known_lr, cfsr), &Panic { info, pc, lr, cfsr })
 }
@@ -71,15 +71,15 @@ unsafe extern "C" fn HardFault() {
     naked_asm!(
         "mrs r0, msp", // The program and the interrupts have this one stack.
         "mov r1, lr",
-        "movw r2, #:lower16:{stack}",
-        "movt r2, #:upper16:{stack}",
-        "add r2, r2, #{size}",
+        "ldr r2, 0f",
         "mov sp, r2",
         "push {{r0, r1}}",
         "bl {hard_fault}",
         "pop {{r0, r1}}",
         "mov sp, r0",
         "bx r1",
+        ".p2align 2",
+        "0: .word {stack} + {size}",
         stack = sym STACK,
         size = const STACK_SIZE,
         hard_fault = sym hard_fault,
@@ -88,16 +88,15 @@ unsafe extern "C" fn HardFault() {
 
 /// `exception` is what the link register holds on the way into a handler.
 extern "C" fn hard_fault(frame: *mut ExceptionFrame, exception: u32) {
-    let control = control();
-    let (cfsr, hfsr) = (control.cfsr.read(), control.hfsr.read());
+    let [cfsr, hfsr, mmfar, bfar] = fault_status::read();
     // SAFETY: the processor has put the frame there, and nobody else knows of it.
     let frame = Fault::has_stacked(cfsr).then(|| unsafe { &mut *frame }).ok_or(frame as u32);
     let (stacked, bottom) = match frame {
         Ok(frame) => {
-            // A breakpoint is the one fault that leaves CFSR clear. (It also sets HFSR.DEBUGEVT, but not in QEMU.)
+            // A breakpoint is the one fault that leaves CFSR clear, where there is one. (It also sets HFSR.DEBUGEVT, but not in
+            // QEMU.)
             if cfsr == 0 && step_over_debugger_call(frame) {
-                // SAFETY: writing the bits back only clears them.
-                unsafe { control.hfsr.write(hfsr) };
+                fault_status::clear();
                 return;
             }
             let stacked = Stacked { pc: frame.pc(), lr: frame.lr(), xpsr: frame.xpsr() };
@@ -107,7 +106,6 @@ extern "C" fn hard_fault(frame: *mut ExceptionFrame, exception: u32) {
     };
     let sp = bottom.wrapping_add(Stacked::size(exception));
     let last_call = calls(sp).next();
-    let (mmfar, bfar) = (control.mmfar.read(), control.bfar.read());
     let (pc, lr) = stacked.map_or((0, last_call.unwrap_or_default()), |stacked| (stacked.pc, stacked.lr));
     crash((Cause::Fault, pc, lr, cfsr), &Fault { stacked, sp, last_call, cfsr, hfsr, mmfar, bfar })
 }
@@ -115,9 +113,7 @@ extern "C" fn hard_fault(frame: *mut ExceptionFrame, exception: u32) {
 /// A call to the debugger with no debugger there fails as if it had answered -1, so that an image with logs runs
 /// without one, too. Whether this was such a call.
 fn step_over_debugger_call(frame: &mut ExceptionFrame) -> bool {
-    // SAFETY: with CFSR clear the processor has fetched the instruction at this even address.
-    let instruction = unsafe { (frame.pc() as *const u16).read_volatile() };
-    let is_call = instruction == DEBUGGER_CALL.0;
+    let is_call = instruction(frame.pc()) == Some(DEBUGGER_CALL.0);
     if is_call {
         ALONE.store(true, Ordering::Relaxed);
         // SAFETY: a debugger's answer changes just these: the result and the place to go on.
@@ -127,12 +123,6 @@ fn step_over_debugger_call(frame: &mut ExceptionFrame) -> bool {
         }
     }
     is_call
-}
-
-/// The System Control Block.
-fn control() -> &'static cortex_m::peripheral::scb::RegisterBlock {
-    // SAFETY: it is always there, and of what crashes use nothing else uses anything.
-    unsafe { &*SCB::PTR }
 }
 
 fn stack_pointer() -> u32 {
@@ -167,11 +157,13 @@ pub(in crate::board) fn expect_no_debugger() {
 
 fn crash((cause, pc, lr, cfsr): (Cause, u32, u32, u32), report: &dyn Display) -> ! {
     cortex_m::interrupt::disable();
-    let is_first = !CRASHED.swap(true, Ordering::Relaxed);
+    let is_first = !CRASHED.load(Ordering::Relaxed);
+    CRASHED.store(true, Ordering::Relaxed);
     if is_first {
         retained::end(cause, pc, lr, cfsr);
     }
-    if !ALONE.load(Ordering::Relaxed) || DCB::is_debugger_attached() {
+    // The processor's debug registers are not for an M0+ to read.
+    if !ALONE.load(Ordering::Relaxed) || cfg!(not(armv6m)) && DCB::is_debugger_attached() {
         watchdog::stall(false);
         if is_first {
             say(report);

@@ -2,7 +2,7 @@
 
 use cortex_m::peripheral::{CPUID, DCB, DWT};
 
-use super::clock;
+use super::{clock, stopwatch};
 use crate::app::instruments::Instruments;
 use crate::protocol::{BoardName, Identity};
 
@@ -14,27 +14,10 @@ unsafe extern "C" {
 }
 
 /// The instruments of this processor, its cycle counter started; `chip` is what the chip says of itself.
-pub fn instruments(
-    board: BoardName,
-    hertz: u32,
-    chip: [u32; 4],
-    cpuid: &CPUID,
-    mut dcb: DCB,
-    mut dwt: DWT,
-) -> Instruments {
-    dcb.enable_trace();
-    dwt.enable_cycle_counter();
+pub fn instruments(board: BoardName, hertz: u32, chip: [u32; 4], cpuid: &CPUID, dcb: DCB, dwt: DWT) -> Instruments {
+    stopwatch::start(dcb, dwt);
     let identity = Identity { board: board.code(), hertz, processor: cpuid.base.read(), chip, ..Identity::default() };
-    Instruments { stopwatch: clock::cycles, timed, image, identity }
-}
-
-/// QEMU has no cycle counter: it reads 0 there.
-fn timed(work: &mut dyn FnMut()) -> u32 {
-    cortex_m::interrupt::free(|_| {
-        let start = DWT::cycle_count();
-        work();
-        DWT::cycle_count().wrapping_sub(start)
-    })
+    Instruments { stopwatch: clock::cycles, timed: stopwatch::timed, image, identity }
 }
 
 fn image() -> &'static [u8] {

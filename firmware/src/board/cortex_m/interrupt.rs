@@ -18,7 +18,10 @@ unsafe extern "C" fn DefaultHandler() {
     naked_asm!(
         "mrs r0, msp", // The program and the interrupts have this one stack.
         "mrs r1, ipsr",
-        "b {interrupt}",
+        "ldr r2, 0f", // An M0+ does not branch so far.
+        "bx r2",
+        ".p2align 2",
+        "0: .word {interrupt}",
         interrupt = sym interrupt,
     )
 }

@@ -10,5 +10,7 @@ pub(super) mod crash;
 pub(super) mod retained;
 
 mod calls;
+mod fault_status;
 mod interrupt;
 mod soft_float;
+mod stopwatch;

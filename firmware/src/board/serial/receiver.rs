@@ -43,7 +43,9 @@ pub(in crate::board) fn receive() {
         loop {
             let Taken { byte, overrun } = (source.inlet.take)();
             let is_refused = byte.is_some_and(|byte| source.queue.enqueue(byte).is_err());
-            LOST.fetch_add(u32::from(overrun) + u32::from(is_refused), Ordering::Relaxed);
+            // Only this writes it: an M0+ cannot add in one go.
+            let lost = LOST.load(Ordering::Relaxed).wrapping_add(u32::from(overrun) + u32::from(is_refused));
+            LOST.store(lost, Ordering::Relaxed);
             if byte.is_none() {
                 break;
             }

@@ -51,7 +51,7 @@ pub(super) fn set_up(system: &impl System) -> Result<(Toolchain, Vec<String>), S
     let mut rustup_failure = None;
     if core_is_missing {
         match add_targets(system) {
-            Ok(()) => done.push(format!("rustup added {}", TARGETS.join(" and "))),
+            Ok(()) => done.push(format!("rustup added {}", TARGETS.join(", "))),
             Err(failure) => {
                 if let Err(reason) = packages_allowed.and_then(|()| detect::linker(system).map(|_| ())) {
                     return refuse(&missing, format!("{failure}; {reason}"));

@@ -143,7 +143,7 @@ fn without_root_nothing_is_begun() {
     assert_eq!(
         error.to_string(),
         "the ARM core library and qemu-system-arm are missing: only root may install packages. What brings it:\n  \
-         rustup target add thumbv7m-none-eabi thumbv7em-none-eabihf   or   \
+         rustup target add thumbv6m-none-eabi thumbv7m-none-eabi thumbv7em-none-eabihf   or   \
          sudo apt-get install --no-install-recommends rustc-web cargo-web rust-web-src\n  \
          sudo apt-get install --no-install-recommends qemu-system-arm"
     );
