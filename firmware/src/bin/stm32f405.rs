@@ -17,10 +17,6 @@ fn main() -> ! {
 
     let Some(board) = Board::take() else { panic!("the board was taken before") };
     defmt::info!("boot: stm32f405, {} Hz, {}", board.hertz, board.place);
-    let mut panel = board.panel;
-    if let Err(error) = panel.init() {
-        defmt::warn!("no panel: {}", defmt::Debug2Format(&error));
-    }
-    let app = board::application(APP, SHEETS, panel, board.link, board.keys, STM32F405);
+    let app = board::application(APP, SHEETS, board.panel, board.link, board.keys, STM32F405);
     board::run(app, board.receiver, board.instruments, board.clock, board.watchdog)
 }

@@ -7,12 +7,15 @@
 //! | `main_loop` | the application of every board: its main loop, its log |
 //! | [`lm3s6965evb`], [`mps2_an386`], `stm32f405` | one board each: its clocks, pins and devices |
 //! | [`cortex_m`] | what every Cortex-M has: the tick, the stack's guard, crash reports, memory that outlives a reset |
+//! | [`panel_bus`] | a panel's bus that an interrupt drives |
 //! | [`serial`] | bytes in and out of any board's serial port |
 //! | `register` | a device register |
 
 pub mod cortex_m;
 pub mod lm3s6965evb;
 pub mod mps2_an386;
+#[cfg(feature = "stm32f405")]
+pub mod panel_bus;
 pub mod serial;
 #[cfg(feature = "stm32f405")]
 pub mod stm32f405;

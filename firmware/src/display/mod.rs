@@ -5,6 +5,7 @@ use core::convert::Infallible;
 use crate::graphics::canvas::Canvas;
 
 pub mod i2c_recovery;
+pub mod outbox;
 mod ssd0323;
 mod ssd1306;
 

@@ -1,49 +1,56 @@
 //! The SSD1306 controller of a 128 x 64 OLED panel in one colour, over I2C.
 //!
-//! A whole frame takes 1,120 bytes of 9 bits, 25 ms at the bus's 400 kHz and longer than a tick. So only what has
-//! changed is sent: of each page the columns from the first that did to the last.
+//! A whole frame takes 1,104 bytes of 9 bits, 25 ms at the bus's 400 kHz and longer than a tick. So only what has
+//! changed is sent, and no frame waits for it: one that is ready before the bus is done with an earlier one is not shown, and
+//! the next is sent by what differs from what the panel holds.
 //!
 //! Source: Solomon Systech, SSD1306 data sheet.
 
-use embedded_hal::i2c::{Error, ErrorKind, I2c};
+use core::iter::from_fn;
+
+use embedded_hal::i2c::ErrorKind;
 
 use super::Display;
+use super::outbox::{Outbox, PanelBus, Sent};
 use crate::config::TICK_RATE;
-use crate::graphics::bitmap::{Bitmap, PAGES};
+use crate::graphics::bitmap::Bitmap;
 use crate::graphics::canvas::{Canvas, HEIGHT, WIDTH};
 
 /// The two addresses that a panel can be set to.
 const ADDRESSES: [u8; 2] = [0x3C, 0x3D];
-/// First byte of a message: one command follows, with its arguments.
+/// First byte of a message: commands follow, with their arguments.
 const COMMAND: u8 = 0x00;
 /// First byte of a message: bytes for the window follow.
 const DATA: u8 = 0x40;
-/// A message without effect.
-const NOTHING: &[u8] = &[COMMAND, 0xE3];
 
-/// What wakes the panel, one message a row; its memory is blanked before the last.
+/// What wakes the panel, one command a row.
 #[rustfmt::skip]
-const WAKE: [&[u8]; 17] = [
-    &[COMMAND, 0xAE],                       // display off
-    &[COMMAND, 0xD5, 0x80],                 // clock as after reset, not divided
-    &[COMMAND, 0xA8, (HEIGHT - 1) as u8],   // rows driven, less one
-    &[COMMAND, 0xD3, 0],                    // rows not shifted
-    &[COMMAND, 0x40],                       // first row shown
-    &[COMMAND, 0x8D, 0x14],                 // charge pump on
-    &[COMMAND, 0x20, 0],                    // data goes to the right, then to the next page of the window
-    &[COMMAND, 0xDA, 0x12],                 // wiring of this panel's rows: odd and even apart
-    &[COMMAND, 0xA1],                       // columns from the left
-    &[COMMAND, 0xC8],                       // rows from the top
-    &[COMMAND, 0xD9, 0x21],                 // precharge, 1 and 2 clocks
-    &[COMMAND, 0x81, 0x5F],                 // contrast, of 0xFF
-    &[COMMAND, 0xDB, 0x40],                 // voltage of rows not driven
-    &[COMMAND, 0xA4],                       // show what is in memory
-    &[COMMAND, 0xA6],                       // not inverted
-    &[COMMAND, 0x2E],                       // no scrolling
-    &[COMMAND, 0xAF],                       // display on
+const SETTINGS: &[u8] = &[
+    0xAE,                      // display off
+    0xD5, 0x80,                // clock as after reset, not divided
+    0xA8, (HEIGHT - 1) as u8,  // rows driven, less one
+    0xD3, 0,                   // rows not shifted
+    0x40,                      // first row shown
+    0x8D, 0x14,                // charge pump on
+    0x20, 0,                   // data goes to the right, then to the next page of the window
+    0xDA, 0x12,                // wiring of this panel's rows: odd and even apart
+    0xA1,                      // columns from the left
+    0xC8,                      // rows from the top
+    0xD9, 0x21,                // precharge, 1 and 2 clocks
+    0x81, 0x5F,                // contrast, of 0xFF
+    0xDB, 0x40,                // voltage of rows not driven
+    0xA4,                      // show what is in memory
+    0xA6,                      // not inverted
+    0x2E,                      // no scrolling
 ];
+/// Switches it on.
+const ON: &[u8] = &[0xAF];
 /// Frames between two tries of a panel that does not answer: 1 s.
 const RETRY: u32 = TICK_RATE;
+/// Frames after which a bus that is still busy hangs: 0.1 s, four times what most bytes take.
+const PATIENCE: u32 = 6;
+/// Columns that are better sent again than left out: to address what comes after them takes as many bytes.
+const GAP: usize = 10;
 
 /// Why a frame did not reach the panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,111 +59,150 @@ pub enum Ssd1306Error {
     Absent(ErrorKind),
     /// The panel answered before, but not now.
     Lost,
+    /// The bus was busy: of [`TICK_RATE`] frames it has carried so many.
+    Slow {
+        /// Those that have reached the panel.
+        shown: u32,
+    },
 }
 
 /// The panel: an I2C bus that it may be on.
 ///
 /// A panel that does not answer is absent: frames for it are refused at once. Once a second it is looked for, so that
-/// it may be plugged in at any time.
+/// it may be plugged in at any time. What becomes of a frame is told with one of the next.
 #[derive(Debug)]
 pub struct Ssd1306<Bus> {
     bus: Bus,
     state: State,
-    /// What the panel's memory holds while it is awake.
+    /// What the panel's memory holds once all that was sent has arrived.
     memory: Bitmap,
+    told: Result<(), Ssd1306Error>,
+    /// Frames for which the bus has been busy.
+    waiting: u32,
+    /// Frames since they were last counted, and those of them that the bus has taken.
+    counted: u32,
+    shown: u32,
 }
 
 #[derive(Clone, Copy, Debug)]
 enum State {
+    Absent { retry_in: u32 },
+    Waking { address: u8 },
     Awake { address: u8 },
-    Absent { error: Ssd1306Error, retry_in: u32 },
 }
 
-impl<Bus: I2c> Ssd1306<Bus> {
-    /// Takes the bus; nothing is sent yet.
+impl<Bus: PanelBus> Ssd1306<Bus> {
+    /// Takes the bus; the panel is looked for with the first frame.
     pub fn new(bus: Bus) -> Self {
-        Self { bus, state: State::Absent { error: Ssd1306Error::Lost, retry_in: 0 }, memory: Bitmap::default() }
+        let (state, memory) = (State::Absent { retry_in: 0 }, Bitmap::default());
+        Self { bus, state, memory, told: Ok(()), waiting: 0, counted: 0, shown: 0 }
     }
 
-    /// Looks for the panel, configures it, blanks its memory and switches it on.
-    pub fn init(&mut self) -> Result<(), Ssd1306Error> {
-        let woken = self.find().and_then(|address| self.wake(address).map(|()| address));
-        self.memory = Bitmap::default();
-        self.state = match woken {
-            Ok(address) => State::Awake { address },
-            Err(error) => State::Absent { error, retry_in: RETRY },
+    /// Sends the frame if the bus is free; whether it is.
+    fn offer(&mut self, canvas: &Canvas) -> bool {
+        let Some((outbox, sent)) = self.bus.outbox() else {
+            self.waiting += 1;
+            if self.waiting >= PATIENCE {
+                self.bus.give_up();
+            }
+            return false;
         };
-        woken.map(drop)
-    }
-
-    /// The address at which a panel answers.
-    fn find(&mut self) -> Result<u8, Ssd1306Error> {
-        let [first, second] = ADDRESSES;
-        let mut answers = |address| self.bus.write(address, NOTHING).map(|()| address);
-        answers(first).or_else(|_| answers(second)).map_err(|error| Ssd1306Error::Absent(error.kind()))
-    }
-
-    fn wake(&mut self, address: u8) -> Result<(), Ssd1306Error> {
-        let [settings @ .., on] = WAKE;
-        settings.iter().try_for_each(|message| send(&mut self.bus, address, message))?;
-        for page in 0..PAGES {
-            draw(&mut self.bus, address, page, (0, WIDTH - 1), &[0; WIDTH])?;
+        self.waiting = 0;
+        let (state, news) = self.state.after(sent);
+        self.state = state;
+        if let Some(told) = news {
+            (self.told, self.counted, self.shown) = (told, 0, 0);
         }
-        send(&mut self.bus, address, on)
+        match state {
+            State::Absent { .. } => return true,
+            State::Waking { address } => {
+                self.memory = Bitmap::from(canvas);
+                wake(outbox, address, &self.memory);
+            }
+            State::Awake { address } => {
+                let frame = Bitmap::from(canvas);
+                outbox.address_to(address);
+                draw(outbox, Some(&self.memory), &frame);
+                self.memory = frame;
+            }
+        }
+        if !outbox.is_empty() {
+            self.bus.send();
+        }
+        true
+    }
+
+    /// Tells once a second whether all frames are shown.
+    fn count(&mut self, is_shown: bool) {
+        self.counted += 1;
+        self.shown += u32::from(is_shown);
+        if self.counted >= TICK_RATE {
+            let shown = self.shown;
+            self.told = if shown < self.counted { Err(Ssd1306Error::Slow { shown }) } else { Ok(()) };
+            (self.counted, self.shown) = (0, 0);
+        }
     }
 }
 
-impl<Bus: I2c> Display for Ssd1306<Bus> {
+impl State {
+    /// What is next when the last messages have become of so, and what there is to be told.
+    fn after(self, sent: Sent) -> (Self, Option<Result<(), Ssd1306Error>>) {
+        let [first, second] = ADDRESSES;
+        let absent = Self::Absent { retry_in: RETRY };
+        match (self, sent) {
+            (Self::Absent { retry_in: 0 }, _) => (Self::Waking { address: first }, None),
+            (Self::Absent { retry_in }, _) => (Self::Absent { retry_in: retry_in - 1 }, None),
+            (Self::Waking { address }, Ok(())) => (Self::Awake { address }, Some(Ok(()))),
+            (Self::Waking { address }, Err(ErrorKind::NoAcknowledge(_))) if address == first => {
+                (Self::Waking { address: second }, None)
+            }
+            (Self::Waking { .. }, Err(error)) => (absent, Some(Err(Ssd1306Error::Absent(error)))),
+            (Self::Awake { .. }, Ok(())) => (self, None),
+            (Self::Awake { .. }, Err(_)) => (absent, Some(Err(Ssd1306Error::Lost))),
+        }
+    }
+}
+
+impl<Bus: PanelBus> Display for Ssd1306<Bus> {
     type Error = Ssd1306Error;
 
     fn flush(&mut self, canvas: &Canvas) -> Result<(), Ssd1306Error> {
-        match &mut self.state {
-            State::Absent { error, retry_in: left @ 1.. } => {
-                *left -= 1;
-                return Err(*error);
-            }
-            State::Absent { .. } => self.init()?,
-            State::Awake { .. } => {}
+        let is_shown = self.offer(canvas);
+        if let State::Awake { .. } = self.state {
+            self.count(is_shown);
         }
-        let State::Awake { address } = self.state else { return Ok(()) };
-        let frame = Bitmap::from(canvas);
-        let sent = update(&mut self.bus, address, &self.memory, &frame);
-        match sent {
-            Ok(()) => self.memory = frame,
-            Err(error) => self.state = State::Absent { error, retry_in: RETRY },
-        }
-        sent
+        self.told
     }
 }
 
-/// Sends what differs between the panel's memory and the frame.
-fn update(bus: &mut impl I2c, address: u8, memory: &Bitmap, frame: &Bitmap) -> Result<(), Ssd1306Error> {
-    for (page, (old, new)) in memory.pages().iter().zip(frame.pages()).enumerate() {
-        let differs = |column: &usize| old.get(*column) != new.get(*column);
-        if let (Some(first), Some(last)) = ((0..WIDTH).find(differs), (0..WIDTH).rfind(differs)) {
-            draw(bus, address, page, (first, last), new.get(first..=last).unwrap_or_default())?;
+/// Configures the panel, fills its memory and switches it on.
+fn wake(outbox: &mut Outbox, address: u8, frame: &Bitmap) {
+    outbox.address_to(address);
+    outbox.put(COMMAND, SETTINGS);
+    draw(outbox, None, frame);
+    outbox.put(COMMAND, ON);
+}
+
+/// Sends what differs between the panel's memory and the frame; all of it if the memory is not known.
+fn draw(outbox: &mut Outbox, memory: Option<&Bitmap>, frame: &Bitmap) {
+    for (page, new) in (0..).zip(frame.pages()) {
+        let old = memory.and_then(|memory| memory.pages().get(usize::from(page)));
+        for (first, last) in runs(|column| old.is_none_or(|old| old.get(column) != new.get(column))) {
+            outbox.put(COMMAND, &[0x21, first as u8, last as u8, 0x22, page, page]);
+            outbox.put(DATA, new.get(first..=last).unwrap_or_default());
         }
     }
-    Ok(())
 }
 
-/// Sends the columns from `first` to `last` of a page.
-fn draw(
-    bus: &mut impl I2c,
-    address: u8,
-    page: usize,
-    (first, last): (usize, usize),
-    columns: &[u8],
-) -> Result<(), Ssd1306Error> {
-    send(bus, address, &[COMMAND, 0x21, first as u8, last as u8])?;
-    send(bus, address, &[COMMAND, 0x22, page as u8, page as u8])?;
-    let mut message = [DATA; 1 + WIDTH];
-    for (place, byte) in message.iter_mut().skip(1).zip(columns) {
-        *place = *byte;
-    }
-    send(bus, address, message.get(..=columns.len()).unwrap_or_default())
-}
-
-fn send(bus: &mut impl I2c, address: u8, message: &[u8]) -> Result<(), Ssd1306Error> {
-    bus.write(address, message).map_err(|_| Ssd1306Error::Lost)
+/// The columns that differ, from the first to the last of each run; short gaps belong to it.
+fn runs(differs: impl Fn(usize) -> bool) -> impl Iterator<Item = (usize, usize)> {
+    let mut columns = (0..WIDTH).filter(move |&column| differs(column)).peekable();
+    from_fn(move || {
+        let first = columns.next()?;
+        let mut last = first;
+        while let Some(next) = columns.next_if(|&next| next - last <= GAP) {
+            last = next;
+        }
+        Some((first, last))
+    })
 }

@@ -1,124 +1,74 @@
-//! The I2C bus of the panel. The support library sets it up; bytes are sent here, because the library waits for the bus
-//! without end, and here there may be none.
+//! The I2C bus of the panel. The support library sets it up; bytes are sent here, by the bus's interrupts.
+//!
+//! Source: ST RM0090, 27.3.3 (master transmitter), 27.3.4 (errors).
 
 use cortex_m::asm::delay;
-use embedded_hal::i2c::{Error, ErrorKind, ErrorType, I2c as Transactions, NoAcknowledgeSource, Operation};
+use cortex_m::peripheral::NVIC;
+use embedded_hal::i2c::{ErrorKind, NoAcknowledgeSource};
 use stm32f4xx_hal::gpio::alt::i2c1::{Scl, Sda};
 use stm32f4xx_hal::gpio::{PB6, PB7, PinState};
 use stm32f4xx_hal::i2c::I2c;
-use stm32f4xx_hal::pac::I2C1;
+use stm32f4xx_hal::interrupt;
+use stm32f4xx_hal::pac::i2c1::RegisterBlock;
+use stm32f4xx_hal::pac::{I2C1, Interrupt};
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::Rcc;
 
-use crate::config::BUS_TRIES;
+use crate::board::panel_bus::{self, Port};
 use crate::display::i2c_recovery::free_bus;
+use crate::display::outbox::{Outbox, Sent};
 
 /// Half a clock of a slow 100 kHz, cycles of 168 MHz.
 const HALF_CLOCK: u32 = 840;
+/// How often it is asked whether a start or stop is done, which takes 5 us: these tries take at least 12.
+const TRIES: u32 = 500;
 
 const START_SENT: u16 = 1 << 0;
 const ADDRESS_SENT: u16 = 1 << 1;
 const ALL_SENT: u16 = 1 << 2;
 const READY_FOR_BYTE: u16 = 1 << 7;
+const BUS_ERROR: u16 = 1 << 8;
 const ARBITRATION_LOST: u16 = 1 << 9;
 const NOT_ACKNOWLEDGED: u16 = 1 << 10;
 
 /// The bus, for writing only: the panel is never read.
-pub struct Bus {
+pub type Bus = panel_bus::Bus<I2c1>;
+
+/// I2C1 and its pins.
+pub struct I2c1 {
     port: I2C1,
     pins: (Scl, Sda),
 }
 
-/// Why bytes did not get onto the bus.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum BusError {
-    /// The bus did not move in time: no pull-up resistors, a short circuit, or no bus at all.
-    Timeout,
-    /// Nobody acknowledged the address.
-    NoAnswer,
-    /// A byte was not acknowledged.
-    Refused,
-    /// A line was low that should have been high.
-    ArbitrationLost,
-    /// This bus does not read.
-    Read,
+pub(super) fn start(port: I2C1, clock: PB6, data: PB7, rcc: &mut Rcc, outbox: &'static mut Outbox) -> Bus {
+    let (port, pins) = I2c::new(port, (clock, data), 400.kHz(), rcc).release();
+    let mut port = I2c1 { port, pins };
+    port.reset();
+    // SAFETY: no critical section relies on these interrupts being masked.
+    unsafe {
+        NVIC::unmask(Interrupt::I2C1_EV);
+        NVIC::unmask(Interrupt::I2C1_ER);
+    }
+    Bus::new(port, outbox)
 }
 
-impl Error for BusError {
-    fn kind(&self) -> ErrorKind {
-        match self {
-            Self::Timeout | Self::Read => ErrorKind::Other,
-            Self::NoAnswer => ErrorKind::NoAcknowledge(NoAcknowledgeSource::Address),
-            Self::Refused => ErrorKind::NoAcknowledge(NoAcknowledgeSource::Data),
-            Self::ArbitrationLost => ErrorKind::ArbitrationLoss,
-        }
-    }
-}
-
-impl ErrorType for Bus {
-    type Error = BusError;
-}
-
-impl Bus {
-    pub(super) fn start(port: I2C1, clock: PB6, data: PB7, rcc: &mut Rcc) -> Self {
-        let (port, pins) = I2c::new(port, (clock, data), 400.kHz(), rcc).release();
-        let mut bus = Self { port, pins };
-        bus.reset();
-        bus
+impl Port for I2c1 {
+    fn begin(&mut self, _: u8) {
+        let port = &self.port;
+        // The control register is not to be written before.
+        let _ = (0..TRIES).any(|_| port.cr1().read().stop().bit_is_clear());
+        port.cr2().modify(|_, w| w.itevten().set_bit().iterren().set_bit());
+        port.cr1().modify(|_, w| w.start().set_bit());
     }
 
-    fn send(&self, address: u8, operations: &[Operation]) -> Result<(), BusError> {
-        self.port.cr1().modify(|_, w| w.start().set_bit());
-        self.wait(START_SENT, BusError::Timeout)?;
-        self.put(address << 1);
-        self.wait(ADDRESS_SENT, BusError::NoAnswer)?;
-        let _ = self.port.sr2().read(); // Only this ends the address phase.
-        for operation in operations {
-            let Operation::Write(bytes) = operation else { return Err(BusError::Read) };
-            for &byte in *bytes {
-                self.wait(READY_FOR_BYTE, BusError::Refused)?;
-                self.put(byte);
-            }
-        }
-        self.wait(ALL_SENT, BusError::Refused)
-    }
-
-    fn put(&self, byte: u8) {
-        self.port.dr().write(|w| w.dr().set(byte));
-    }
-
-    /// Waits for a status bit; `refusal` if instead the panel does not acknowledge.
-    fn wait(&self, wanted: u16, refusal: BusError) -> Result<(), BusError> {
-        for _ in 0..BUS_TRIES {
-            let status = self.port.sr1().read().bits();
-            if status & NOT_ACKNOWLEDGED != 0 {
-                return Err(refusal);
-            }
-            if status & ARBITRATION_LOST != 0 {
-                return Err(BusError::ArbitrationLost);
-            }
-            if status & wanted != 0 {
-                return Ok(());
-            }
-        }
-        Err(BusError::Timeout)
-    }
-
-    /// Releases the bus; whether it came free in time.
-    fn stop(&self) -> bool {
-        self.port.sr1().write(|w| w.af().clear_bit());
-        self.port.cr1().modify(|_, w| w.stop().set_bit());
-        (0..BUS_TRIES).any(|_| self.port.cr1().read().stop().bit_is_clear())
-    }
-
-    /// Frees a bus that hangs, and makes the device forget it; its settings stay.
     fn reset(&mut self) {
+        let port = &self.port;
+        silence(port);
         if let (Scl::PB6(clock), Sda::PB7(data)) = &mut self.pins {
             clock.with_open_drain_output_in_state(PinState::High, |clock| {
                 data.with_open_drain_output_in_state(PinState::High, |data| free_bus(clock, data, || delay(HALF_CLOCK)))
             });
         }
-        let port = &self.port;
         let (frequency, clock, rise) = (port.cr2().read().bits(), port.ccr().read().bits(), port.trise().read().bits());
         port.cr1().write(|w| w.swrst().set_bit());
         port.cr1().write(|w| w.swrst().clear_bit());
@@ -132,13 +82,77 @@ impl Bus {
     }
 }
 
-impl Transactions for Bus {
-    fn transaction(&mut self, address: u8, operations: &mut [Operation<'_>]) -> Result<(), BusError> {
-        let sent = self.send(address, operations);
-        let free = self.stop();
-        if !free || matches!(sent, Err(BusError::Timeout | BusError::ArbitrationLost)) {
-            self.reset();
-        }
-        sent
+#[interrupt]
+fn I2C1_EV() {
+    panel_bus::serve(|outbox| advance(registers(), outbox));
+}
+
+#[interrupt]
+fn I2C1_ER() {
+    panel_bus::serve(|outbox| fail(registers(), outbox));
+}
+
+fn registers() -> &'static RegisterBlock {
+    // SAFETY: while there is something in the outbox the bus is the interrupts'.
+    unsafe { &*I2C1::ptr() }
+}
+
+/// Does what the bus waits for. Between two messages there is no stop but a start.
+fn advance(port: &RegisterBlock, outbox: &mut Outbox) -> Option<Sent> {
+    let status = port.sr1().read().bits();
+    let is_ready = if status & START_SENT != 0 {
+        port.dr().write(|w| w.dr().set(outbox.address() << 1));
+        false
+    } else if status & ADDRESS_SENT != 0 {
+        let _ = port.sr2().read(); // Only this ends the address phase.
+        true
+    } else {
+        outbox.is_within_message() && status & READY_FOR_BYTE != 0
+    };
+    if is_ready && let Some(byte) = outbox.next() {
+        port.dr().write(|w| w.dr().set(byte.value));
+        // After the last byte of a message only its end interrupts.
+        port.cr2().modify(|_, w| w.itbufen().bit(!byte.ends_message));
+        return None;
     }
+    if is_ready || status & ALL_SENT == 0 || outbox.is_within_message() {
+        return None;
+    }
+    if outbox.is_empty() {
+        stop(port);
+        return Some(Ok(()));
+    }
+    port.cr1().modify(|_, w| w.start().set_bit());
+    // Until it is sent the interrupt would come again and again.
+    if (0..TRIES).any(|_| port.sr1().read().bits() & START_SENT != 0) {
+        return None;
+    }
+    stop(port);
+    Some(Err(ErrorKind::Other))
+}
+
+fn fail(port: &RegisterBlock, outbox: &Outbox) -> Option<Sent> {
+    let status = port.sr1().read().bits();
+    port.sr1().write(|w| w.af().clear_bit().arlo().clear_bit().berr().clear_bit());
+    stop(port);
+    Some(Err(if status & NOT_ACKNOWLEDGED != 0 {
+        let source = if outbox.has_begun() { NoAcknowledgeSource::Data } else { NoAcknowledgeSource::Address };
+        ErrorKind::NoAcknowledge(source)
+    } else if status & ARBITRATION_LOST != 0 {
+        ErrorKind::ArbitrationLoss
+    } else if status & BUS_ERROR != 0 {
+        ErrorKind::Bus
+    } else {
+        ErrorKind::Overrun
+    }))
+}
+
+/// Ends the last message.
+fn stop(port: &RegisterBlock) {
+    silence(port);
+    port.cr1().modify(|_, w| w.stop().set_bit());
+}
+
+fn silence(port: &RegisterBlock) {
+    port.cr2().modify(|_, w| w.itevten().clear_bit().itbufen().clear_bit().iterren().clear_bit());
 }

@@ -28,9 +28,10 @@ use crate::board::cortex_m::guard::guard_stack;
 use crate::board::cortex_m::identity::instruments;
 use crate::board::serial::receiver::Receiver;
 use crate::display::Ssd1306;
+use crate::display::outbox::Outbox;
 use crate::protocol::BoardName;
 
-pub use i2c::{Bus, BusError};
+pub use i2c::Bus;
 pub use uart::Uart;
 pub use watchdog::Watchdog;
 
@@ -54,7 +55,7 @@ pub type Panel = Ssd1306<Bus>;
 
 /// The board, set up and running.
 pub struct Board {
-    /// The OLED panel, not yet initialised; it may be absent.
+    /// The OLED panel; it may be absent.
     pub panel: Panel,
     /// The serial link outwards.
     pub link: Uart,
@@ -87,8 +88,9 @@ impl Board {
         let link = Uart::start(chip.USART3, (b.pb10, b.pb11), &mut rcc).ok()?;
         let receiver = Receiver::new(uart::INLET)?;
         uart::enable_receiver();
+        let outbox = cortex_m::singleton!(: Outbox = Outbox::new())?;
         Some(Self {
-            panel: Ssd1306::new(Bus::start(chip.I2C1, b.pb6, b.pb7, &mut rcc)),
+            panel: Ssd1306::new(i2c::start(chip.I2C1, b.pb6, b.pb7, &mut rcc, outbox)),
             link,
             receiver,
             keys: Keys(c.pc7.into_pull_up_input()),
