@@ -45,3 +45,13 @@ fn unequal_rods_with_velocities_on_every_board() {
         }
     }
 }
+
+/// What is chosen for a tolerance is what is computed, on the host and on the board.
+#[test]
+fn a_tolerance_is_kept_on_a_board() {
+    let motion = "--angles 2,2 --until 2 --every 1/2 --bits";
+    let board = BOARDS[0].name;
+    let tolerated = simulate(&format!("{motion} --tolerance 1e-4 --on {board}"));
+    assert_eq!(tolerated, simulate(&format!("{motion} --tolerance 1e-4 --arithmetic fixed32 --on host")));
+    assert_ne!(tolerated, simulate(&format!("{motion} --tolerance 1e-4")));
+}

@@ -4,7 +4,7 @@ use std::io::{self, BufWriter};
 use std::process::ExitCode;
 
 use anyhow::Context;
-use host_tests::commands::simulate::{Options, Place, Table, on_board, on_host, plan};
+use host_tests::commands::simulate::{Options, Place, Plan, Table, choose, on_board, on_host, plan};
 use host_tests::console::cli::{self, Refused, complain};
 use host_tests::console::progress::Bar;
 
@@ -13,10 +13,7 @@ fn main() -> ExitCode {
 }
 
 fn run(options: &Options) -> anyhow::Result<()> {
-    let plan = plan(options).map_err(|error| Refused::because(format_args!("{error:#}")))?;
-    if let Some(warning) = plan.warning(options) {
-        complain(format_args!("warning: {warning}"));
-    }
+    let plan = planned(options).map_err(|error| Refused::because(format_args!("{error:#}")))?;
     let output = BufWriter::new(io::stdout().lock());
     let mut table = Table::new(output, plan.request.row.arithmetic, plan.every.clone(), options.bits);
     let bar = Bar::start("rows", u64::from(plan.request.samples) + 1);
@@ -32,4 +29,18 @@ fn run(options: &Options) -> anyhow::Result<()> {
     // The rows until then are right, and stay.
     done.with_context(|| format!("after {} rows", table.rows()))?;
     Ok(table.finish()?)
+}
+
+/// What is to be computed, after what there is to say about it.
+fn planned(options: &Options) -> anyhow::Result<Plan> {
+    if let Some(tolerance) = &options.tolerance {
+        let choice = choose(options, tolerance)?;
+        complain(&choice);
+        return Ok(choice.plan);
+    }
+    let plan = plan(options)?;
+    if let Some(warning) = plan.warning(options) {
+        complain(format_args!("warning: {warning}"));
+    }
+    Ok(plan)
 }

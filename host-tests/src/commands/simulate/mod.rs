@@ -3,9 +3,11 @@
 mod board;
 mod number;
 mod options;
+mod price;
 mod request;
 mod start;
 mod table;
+mod tolerance;
 
 use std::io;
 
@@ -17,6 +19,7 @@ pub use options::{Options, Place};
 pub use request::{Plan, plan};
 pub use start::{Pair, Start};
 pub use table::Table;
+pub use tolerance::{Choice, choose};
 
 /// Computes the motion on the host and gives each reading to `row`.
 pub fn on_host(plan: &Plan, mut row: impl FnMut(&Reading) -> io::Result<()>) -> anyhow::Result<()> {

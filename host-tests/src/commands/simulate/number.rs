@@ -54,6 +54,12 @@ impl Number {
         (count < 1 << f64::MANTISSA_DIGITS).then_some(count)
     }
 
+    /// One of so many equal parts of it; of none, itself.
+    pub fn divided_by(&self, parts: u32) -> Number {
+        let exact = &self.exact / &BigRational::from(BigInt::from(parts.max(1)));
+        Self { text: exact.to_string(), exact }
+    }
+
     /// The `f64` nearest to `count` times it.
     pub fn times(&self, count: u64) -> f64 {
         (&self.exact * BigInt::from(count)).to_f64().unwrap_or(f64::NAN)
@@ -156,5 +162,12 @@ mod tests {
         assert_eq!(number("-1").whole_multiple_of(&number("0.5")), None);
         assert_eq!(number("1").whole_multiple_of(&number("0")), None);
         assert_eq!(number("0.1").times(3), 0.3);
+    }
+
+    #[test]
+    fn parts_are_exact() {
+        let part = number("0.1").divided_by(3);
+        assert_eq!(part.to_string(), "1/30");
+        assert_eq!(number("0.1").whole_multiple_of(&part), Some(3));
     }
 }

@@ -33,6 +33,8 @@ impl Place {
 
 const AFTER_HELP: &str = "\
 Examples:
+  cargo simulate --angles 120,120 --degrees --until 5 --tolerance 1e-9
+  cargo simulate --angles 0.5,0.5 --until 10 --every 1/10 --tolerance 1e-5 --on lm3s6965evb
   cargo simulate --angles 171,171 --degrees --masses 1,2.75 --step 1/4096 --until 5 --every 1
   cargo simulate --angles 0.5,0.5 --step 1/256 --arithmetic f32-compensated --on lm3s6965evb
   cargo simulate --angles 0.5,0.5 --step 1/256 --arithmetic fixed32 --on lm3s6965evb --bits
@@ -53,10 +55,14 @@ pub struct Options {
     /// Step size, s; a warning says when it is too long to resolve every motion of this energy
     #[arg(long, value_name = "DT", default_value = "1/1024", allow_hyphen_values = true)]
     pub step: Number,
+    /// Instead of a step: the error, rad, that no angle of any row may exceed; the cheapest arithmetic, method and step that
+    /// keep it, by the reference, are found and taken, among those that other options leave
+    #[arg(long, value_name = "E", conflicts_with = "step", allow_hyphen_values = true)]
+    pub tolerance: Option<Number>,
     /// Time of the last row, s
     #[arg(long, value_name = "T", default_value = "10", allow_hyphen_values = true)]
     pub until: Number,
-    /// Time from row to row, s; one step if not given
+    /// Time from row to row, s; if not given one step, with --tolerance a hundredth of --until
     #[arg(long, value_name = "T", allow_hyphen_values = true)]
     pub every: Option<Number>,
     /// The numbers it is computed in; if not given, f64, and fixed64 for extrapolation

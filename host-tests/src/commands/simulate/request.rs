@@ -35,29 +35,12 @@ pub fn plan(options: &Options) -> anyhow::Result<Plan> {
         ensure!(time.is_positive(), "{option} {time}: must be greater than zero");
     }
     ensure!(!until.is_negative(), "--until {until}: must not be negative");
-    let steps = |option, time: &Number| {
-        let count = time
-            .whole_multiple_of(step)
-            .with_context(|| format!("{option} {time}: must be a whole multiple of --step {step}"))?;
-        u32::try_from(count).with_context(|| format!("{option} {time}: more than {} steps", u32::MAX))
-    };
-    let total = steps("--until", until)?;
-    let stride = steps("--every", every)?;
+    let total = count(("--until", until), ("--step", step))?;
+    let stride = count(("--every", every), ("--step", step))?;
     ensure!(total % stride == 0, "--until {until}: must be a whole multiple of --every {every}");
 
-    let request = Request {
-        row: row(options)?,
-        parameters: options.start.parameters(),
-        angles: options.start.angles(),
-        velocities: options.start.velocities(),
-        dt: step.value(),
-        stride,
-        samples: total / stride,
-    };
-    Request { samples: 0, ..request }.readings(|_| Ok(())).map_err(|error: JobError| match error {
-        JobError::NoSuchRow(_) => anyhow!("{error}"),
-        JobError::Refused(error) => anyhow!("{}: {error}", option_of(error.into())),
-    })?;
+    let request = request(options, row(options)?, step, stride, total / stride);
+    accepted(&request)?;
     // Numbers that overflow at once are refused before anything is printed.
     Request { stride: 1, samples: request.samples.min(1), ..request }
         .readings(|_| Ok::<_, JobError>(()))
@@ -65,8 +48,38 @@ pub fn plan(options: &Options) -> anyhow::Result<Plan> {
     Ok(Plan { request, every: every.clone() })
 }
 
+/// How many times one option's time goes into another's.
+pub(super) fn count((option, time): (&str, &Number), (unit_option, unit): (&str, &Number)) -> anyhow::Result<u32> {
+    let count = time
+        .whole_multiple_of(unit)
+        .with_context(|| format!("{option} {time}: must be a whole multiple of {unit_option} {unit}"))?;
+    u32::try_from(count).with_context(|| format!("{option} {time}: more than {} times {unit_option} {unit}", u32::MAX))
+}
+
+/// The motion that the options describe, by `row` in steps of `step`.
+pub(super) fn request(options: &Options, row: Row, step: &Number, stride: u32, samples: u32) -> Request {
+    let start = &options.start;
+    Request {
+        row,
+        parameters: start.parameters(),
+        angles: start.angles(),
+        velocities: start.velocities(),
+        dt: step.value(),
+        stride,
+        samples,
+    }
+}
+
+/// Refuses what the kernel refuses, and names its option.
+pub(super) fn accepted(request: &Request) -> anyhow::Result<()> {
+    Request { samples: 0, ..*request }.readings(|_| Ok(())).map_err(|error: JobError| match error {
+        JobError::NoSuchRow(_) => anyhow!("{error}"),
+        JobError::Refused(error) => anyhow!("{}: {error}", option_of(error.into())),
+    })
+}
+
 /// The first row of the table that has all that is asked for, if the place asked for computes it.
-fn row(options: &Options) -> anyhow::Result<Row> {
+pub(super) fn row(options: &Options) -> anyhow::Result<Row> {
     let wanted = options.wanted();
     let row = wanted.first_of(ROWS).map_err(|field| {
         let words = [

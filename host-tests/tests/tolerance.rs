@@ -1,0 +1,110 @@
+//! `cargo simulate --tolerance`: what it chooses keeps the error in every row, and costs no more than it must.
+
+use clap::Parser;
+use double_pendulum::Motion;
+use firmware::job::{JobError, Request};
+use host_tests::commands::simulate::{Choice, Options, choose};
+use host_tests::oracle::reference;
+
+fn chosen(arguments: &str) -> Result<Choice, String> {
+    let words = std::iter::once("simulate").chain(arguments.split_whitespace());
+    let options = Options::try_parse_from(words).map_err(|error| error.to_string())?;
+    let tolerance = options.tolerance.as_ref().ok_or("no tolerance")?;
+    choose(&options, tolerance).map_err(|error| format!("{error:#}"))
+}
+
+/// The largest error of an angle in any row, rad, by the double-double reference.
+fn error(request: &Request) -> Result<f64, JobError> {
+    let mut rows = Vec::new();
+    request.readings::<JobError>(|reading| {
+        rows.push(reading.state);
+        Ok(())
+    })?;
+    let every = f64::from(request.stride) * request.dt;
+    let times: Vec<_> = (0..rows.len()).map(|row| row as f64 * every).collect();
+    let ([a1, a2], [w1, w2]) = (request.angles, request.velocities);
+    let exact = reference::states(&request.parameters, &Motion { a1, a2, w1, w2 }, &times);
+    let errors = rows.iter().zip(exact).map(|([a1, a2, ..], exact)| (a1 - exact.a1).abs().max((a2 - exact.a2).abs()));
+    Ok(errors.fold(0.0, f64::max))
+}
+
+/// Times of rows are multiples of the step here, and of the time between rows there.
+const ROUNDING: f64 = 1.01;
+
+const MOTIONS: [&str; 6] = [
+    "--angles 0.5,0.5 --until 10 --every 1/4",
+    "--angles 2,2 --until 5 --every 1/2",
+    "--angles 120,120 --degrees --until 5 --every 1",
+    "--angles 171,171 --degrees --masses 1,2.75 --until 3 --every 1/2",
+    "--masses 1,100 --lengths 0.3,1.1 --angles 2,1 --velocities 3,-4 --until 2 --every 1/2",
+    "--angles 1e-3,-1e-3 --until 5 --every 1",
+];
+const PLACES: [(&str, &[f64]); 3] =
+    [("host", &[1e-3, 1e-6, 1e-9, 1e-11]), ("lm3s6965evb", &[1e-2, 1e-4, 1e-9]), ("stm32f405", &[1e-2, 1e-4, 1e-9])];
+
+#[test]
+fn every_row_is_within_the_tolerance_and_no_longer_step_would_do() -> Result<(), Box<dyn std::error::Error>> {
+    for motion in MOTIONS {
+        for (place, tolerances) in PLACES {
+            for tolerance in tolerances {
+                let case = format!("{motion} --on {place} --tolerance {tolerance:e}");
+                let choice = chosen(&case)?;
+                let request = choice.plan.request;
+                let error_now = error(&request)?;
+                println!("{case}: {choice}, {error_now:.1e} rad");
+                assert!(
+                    error_now <= choice.error * ROUNDING && choice.error <= *tolerance,
+                    "{case}: {error_now:e} rad"
+                );
+                // One of three steps, or two of three, from row to row fewer.
+                let fewer =
+                    if request.stride.is_power_of_two() { 3 * request.stride / 4 } else { 2 * request.stride / 3 };
+                let longer = request.dt * f64::from(request.stride) / f64::from(fewer);
+                if let (1.., Ok(error)) = (fewer, error(&Request { dt: longer, stride: fewer, ..request })) {
+                    assert!(error > *tolerance, "{case}: {error:e} rad with {longer} s");
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn the_cheapest_serves_where_it_is_right() -> Result<(), String> {
+    for (case, row) in [
+        ("--angles 1e-4,1e-4 --until 1 --tolerance 1e-9", "f64-linear"),
+        ("--angles 0.5,0.5 --until 1 --tolerance 1e-9 --order 16", "f64-compensated-extrapolation-16"),
+        ("--angles 0.5,0.5 --until 1 --tolerance 1e-3 --on lm3s6965evb", "fixed32-direction"),
+        ("--angles 0.5,0.5 --until 1 --tolerance 1e-3 --on stm32f405", "f32-direction"),
+        ("--angles 0.5,0.5 --until 1 --tolerance 1e-3 --arithmetic f64 --on stm32f405", "f64-canonical"),
+        ("--angles 0.5,0.5 --until 10 --tolerance 1e-9 --on stm32f405 --every 1/4", "fixed64-extrapolation-12"),
+    ] {
+        let choice = chosen(case)?;
+        assert_eq!(choice.plan.request.row.to_string(), row, "{case}");
+    }
+    Ok(())
+}
+
+/// 64 bits lose the page's motion within 30 s, and f32's roundings are seen at once.
+#[test]
+fn what_nothing_reaches_is_refused_with_the_time_until_which_it_is() {
+    for (case, named) in [
+        ("--until 60 --every 1 --tolerance 1e-3", "--tolerance 1e-3: nothing that may be taken keeps it beyond 2"),
+        ("--until 5 --tolerance 1e-6 --arithmetic f32", "--tolerance 1e-6: nothing that may be taken keeps it beyond"),
+        ("--until 5 --tolerance 1e-6 --model textbook --order 8", "--order 8"),
+        ("--angles 2,2 --until 1 --tolerance 1e-6 --model linear", "keeps it beyond 0 s"),
+        ("--tolerance 0", "--tolerance 0: must be greater than zero"),
+        ("--tolerance 1e-3 --until 0", "--until 0"),
+        ("--tolerance 1e-3 --every 0", "--every 0"),
+        ("--tolerance 1e-3 --every 3", "--until 10: must be a whole multiple of --every 3"),
+        ("--tolerance 1e-3 --every 1e-6", "--every 1e-6: more than"),
+        ("--tolerance 1e-3 --masses -1,1", "m1"),
+        ("--tolerance 1e-3 --step 1/4", "--step"),
+        ("--tolerance 1e-3 --arithmetic fixed32 --form angle", "--form angle"),
+    ] {
+        match chosen(case) {
+            Ok(choice) => panic!("{case}: {choice}"),
+            Err(error) => assert!(error.contains(named), "{case}: {error}"),
+        }
+    }
+}
