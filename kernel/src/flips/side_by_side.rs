@@ -1,14 +1,18 @@
 //! Many starts at once, in the lanes of the processor's vectors.
 
-use core::array::from_fn;
-
-use super::{Falling, Flip, Flips, turns_over};
+use super::{Falling, Flip, Flips, passes, turns_over};
 use crate::error::Error;
-use crate::form::{Direction, DirectionForm, DirectionLanes, DirectionState, Part, Plain, RESTORING};
+use crate::form::{Direction, DirectionForm, DirectionLanes, DirectionState, Form as _, Part, Plain, RESTORING};
 use crate::lanes::Lanes;
+use crate::state::State;
 
 type Form = DirectionForm<f32, Plain>;
 type Motion = DirectionState<f32, Plain>;
+type Motions<const N: usize> = DirectionLanes<f32, N, ROWS>;
+type Heads<const N: usize> = [Direction<Lanes<f32, N>>; 2];
+
+/// Rows of lanes: enough to keep a processor busy; with more the compiler no longer finds the vectors of 4.
+const ROWS: usize = 3;
 
 /// Which start a lane follows, and how far it is.
 #[derive(Clone, Copy)]
@@ -18,9 +22,9 @@ struct Lane {
 }
 
 impl Flips<f32, Form> {
-    /// What becomes of each of `starts`, the angles a1 and a2, rad: as [`of`](Self::of), to the bit, `N` at a time.
+    /// What becomes of each of `starts`, the angles a1 and a2, rad: as [`of`](Self::of), to the bit, three times `N` at a time.
     ///
-    /// A lane whose motion has turned over takes the next start. 16 lanes suit processors with vectors of 4 and of 8. Inlined
+    /// A lane whose motion has turned over takes the next start. 8 lanes suit processors with vectors of 4 and of 8. Inlined
     /// wherever it is called, so that it is compiled for the processor its caller is compiled for.
     ///
     /// Refuses angles that are not finite, having given the flips of those before.
@@ -31,16 +35,21 @@ impl Flips<f32, Form> {
         mut give: impl FnMut(usize, Flip<f32>),
     ) -> Result<(), Error> {
         let mut starts = starts.into_iter().enumerate();
-        let mut motions = DirectionLanes::<f32, N>::new(&self.form, &self.highest);
-        let mut lanes: [Option<Lane>; N] = [None; N];
+        let hanging = self.form.start(&State::at_rest(0.0, 0.0))?;
+        let mut motions = Motions::<N>::new(&self.form, &hanging);
+        let mut lanes: [[Option<Lane>; N]; ROWS] = [[None; N]; ROWS];
         loop {
-            for (place, lane) in lanes.iter_mut().enumerate().filter(|(_, lane)| lane.is_none()) {
-                if let Some((start, carried)) = self.next(&mut starts, &mut give)? {
-                    motions.put(place, &carried);
-                    *lane = Some(Lane { start, steps: 0 });
+            for (place, lane) in lanes.as_flattened_mut().iter_mut().enumerate() {
+                if let Some(Lane { start, .. }) = lane.take_if(|lane| lane.steps >= self.steps) {
+                    give(start, Flip::Later);
+                }
+                if lane.is_none() {
+                    let next = self.next(&mut starts, &mut give)?;
+                    motions.put(place, next.as_ref().map_or(&hanging, |(_, motion)| motion));
+                    *lane = next.map(|(start, _)| Lane { start, steps: 0 });
                 }
             }
-            if lanes.iter().all(Option::is_none) {
+            if lanes.as_flattened().iter().all(Option::is_none) {
                 return Ok(());
             }
             self.follow(&mut motions, &mut lanes, &mut give);
@@ -66,55 +75,50 @@ impl Flips<f32, Form> {
     #[inline(always)]
     fn follow<const N: usize>(
         &self,
-        motions: &mut DirectionLanes<f32, N>,
-        lanes: &mut [Option<Lane>; N],
+        motions: &mut Motions<N>,
+        lanes: &mut [[Option<Lane>; N]; ROWS],
         give: &mut impl FnMut(usize, Flip<f32>),
     ) {
-        let mut watched: [i32; N] = from_fn(|place| -i32::from(lanes[place].is_some()));
-        let mut heads = motions.heads();
+        let mut before = [motions.heads(0); ROWS];
+        for (row, before) in before.iter_mut().enumerate() {
+            *before = motions.heads(row);
+        }
         for step in 0..RESTORING {
             motions.step();
             if step + 1 == RESTORING {
                 motions.restore_lengths();
             }
-            let before = core::mem::replace(&mut heads, motions.heads());
-            let passes: [i32; N] = from_fn(|place| {
-                let [upper, lower] = [0, 1].map(|rod| signs(&before[rod], &heads[rod], place));
-                (upper | lower) & watched[place]
-            });
-            if passes.iter().fold(0, |any, &pass| any | pass) < 0 {
-                for place in 0..N {
-                    if let Some(lane) = lanes[place].filter(|_| passes[place] < 0) {
-                        let at =
-                            |heads: &[Direction<Lanes<f32, N>>; 2]| heads.map(|head| head.map(|part| part.0[place]));
-                        let steps = lane.steps + step;
-                        let flip = || self.passage(steps, at(&before), at(&heads));
-                        give(lane.start, if steps < self.steps { flip() } else { Flip::Later });
-                        (lanes[place], watched[place]) = (None, 0);
+            for (row, before) in before.iter_mut().enumerate() {
+                let heads = motions.heads(row);
+                if any_turns_over(before, &heads) {
+                    for (place, lane) in lanes[row].iter_mut().enumerate() {
+                        let at = |heads: &Heads<N>| heads.map(|head| head.map(|part| part.0[place]));
+                        let (before, after) = (at(before), at(&heads));
+                        if let Some(Lane { start, steps }) = lane.take_if(|_| passes(&before, &after) < 0) {
+                            let steps = steps + step;
+                            let flip = || self.passage(steps, before, after);
+                            give(start, if steps < self.steps { flip() } else { Flip::Later });
+                        }
                     }
                 }
+                *before = heads;
             }
         }
-        for lane in lanes.iter_mut() {
-            if let Some(Lane { start, steps }) = lane {
-                *steps += RESTORING;
-                if *steps >= self.steps {
-                    give(*start, Flip::Later);
-                    *lane = None;
-                }
-            }
-        }
+        lanes.as_flattened_mut().iter_mut().flatten().for_each(|lane| lane.steps += RESTORING);
     }
 }
 
-/// As [`turns_over`] of one lane.
+/// Whether a rod in any lane has come through straight up between the two. Rod by rod, for the compiler to find the vectors.
 #[inline(always)]
-fn signs<const N: usize>(
-    [from, _]: &Direction<Lanes<f32, N>>,
-    [to, cos]: &Direction<Lanes<f32, N>>,
-    place: usize,
-) -> i32 {
-    turns_over([from, to, cos].map(|part| part.0[place].sign()))
+fn any_turns_over<const N: usize>(before: &Heads<N>, after: &Heads<N>) -> bool {
+    let mut any = [0; 2];
+    for (rod, any) in any.iter_mut().enumerate() {
+        let ([from, _], [to, cos]) = (before[rod], after[rod]);
+        for place in 0..N {
+            *any |= turns_over([from, to, cos].map(|part| part.0[place].sign()));
+        }
+    }
+    any[0] | any[1] < 0
 }
 
 #[cfg(test)]
@@ -142,14 +146,27 @@ mod tests {
         Flips::new(parameters, dt, (LIMIT / dt) as u32 | 1)
     }
 
+    /// The flips of all starts. A closure would be compiled by itself, for any processor.
+    struct All<'a>(&'a Flips<f32, Form>);
+
+    impl pulp::NullaryFnOnce for All<'_> {
+        type Output = Result<Vec<Option<Flip<f32>>>, Error>;
+        #[inline(always)]
+        fn call(self) -> Self::Output {
+            let mut found = std::vec![None; SIDE * SIDE];
+            self.0.of_each::<8>(starts(SIDE), |start, flip| assert_eq!(found[start].replace(flip), None))?;
+            Ok(found)
+        }
+    }
+
     #[test]
     fn every_lane_is_what_one_motion_gives() -> Result<(), Error> {
         for parameters in
             [Parameters::equal_rods(1.0, 1.0, 1.0), Parameters { m1: 2.0, m2: 1.0, l1: 1.0, l2: 0.6, g: 1.0 }]
         {
             let flips = flips(&parameters)?;
-            let mut found: Vec<Option<Flip<f32>>> = std::vec![None; SIDE * SIDE];
-            flips.of_each::<16>(starts(SIDE), |start, flip| assert_eq!(found[start].replace(flip), None))?;
+            let found = pulp::NullaryFnOnce::call(All(&flips))?;
+            assert_eq!(found, pulp::Arch::new().dispatch(All(&flips))?, "vectors as this processor has them");
             for (flip, [a1, a2]) in found.iter().zip(starts(SIDE)) {
                 assert_eq!(*flip, Some(flips.of(a1, a2)?), "{a1} {a2}");
             }

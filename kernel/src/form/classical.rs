@@ -1,41 +1,91 @@
 //! The stages of classical RK4 in the direction form, for every kind of number that has one unit for all quantities.
-
-use core::array::from_fn;
+//!
+//! Loops and functions rather than array methods and closures, which are not always inlined in code for a processor's vectors.
 
 use super::equations::{Coefficients, Rates, Same, increments};
 use super::inverse::Inverse;
 use crate::ring::Ring;
 
-/// k1 + 2 k2 + 2 k3 + k4 of the step from `z`, where the inverse is `inverse`, and the inverse at the last stage.
+/// A motion's z, and r there.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Point<R> {
+    pub z: [R; 6],
+    pub inverse: R,
+}
+
+/// A step half made: where the next k is found, and the sum of those so far.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stage<R> {
+    at: Point<R>,
+    sum: [R; 6],
+}
+
+/// k1 + 2 k2 + 2 k3 + k4 of the step from `start`, and the inverse at the last stage.
 #[inline(always)]
 pub(crate) fn stages<R: Ring<Gravity = R, Slope = R, Torque = R>, I: Inverse<R>>(
     coefficients: &Coefficients<R>,
-    z: &[R; 6],
-    inverse: R,
+    start: &Point<R>,
 ) -> ([R; 6], R) {
-    let rates = |z: &[R; 6], r: R| rates(coefficients, z, r);
-    let ahead = |k: &[R; 6]| -> [R; 6] { from_fn(|i| z[i] + k[i]) };
-    // The inverse at z + k, where k was found at `from`: it falls by 2 S S' r^2.
-    let follow = |k: &[R; 6], from: &[R; 6], r: R, to: &[R; 6]| {
-        I::at_stage(inverse, k[2].twice() * (from[2] * r) * r, coefficients.denominator(to[2]))
-    };
+    let mut stage = Stage::first::<I>(coefficients, start);
+    stage.second::<I>(coefficients, start);
+    stage.third::<I>(coefficients, start);
+    stage.last(coefficients)
+}
 
-    let k1 = increments(z, rates(z, inverse));
-    let z2 = ahead(&k1);
-    let r2 = follow(&k1, z, inverse, &z2);
+impl<R: Ring<Gravity = R, Slope = R, Torque = R>> Stage<R> {
+    /// After k1.
+    #[inline(always)]
+    pub fn first<I: Inverse<R>>(coefficients: &Coefficients<R>, start: &Point<R>) -> Self {
+        let k1 = increments(&start.z, start.rates(coefficients));
+        Self { at: start.ahead::<I>(coefficients, &k1, start), sum: k1 }
+    }
 
-    let k2 = increments(&z2, rates(&z2, r2));
-    let sum: [R; 6] = from_fn(|i| k1[i] + k2[i].twice());
-    let z3 = ahead(&k2);
-    let r3 = follow(&k2, &z2, r2, &z3);
+    /// After k2.
+    #[inline(always)]
+    pub fn second<I: Inverse<R>>(&mut self, coefficients: &Coefficients<R>, start: &Point<R>) {
+        let k2 = increments(&self.at.z, self.at.rates(coefficients));
+        self.sum = with(&self.sum, &k2, |sum, k2| sum + k2.twice());
+        self.at = start.ahead::<I>(coefficients, &k2, &self.at);
+    }
 
-    let twice_k3 = increments(&z3, rates(&z3, r3).doubled());
-    let sum: [R; 6] = from_fn(|i| sum[i] + twice_k3[i]);
-    let z4 = ahead(&twice_k3);
-    let r4 = follow(&twice_k3, &z3, r3, &z4);
+    /// After k3.
+    #[inline(always)]
+    pub fn third<I: Inverse<R>>(&mut self, coefficients: &Coefficients<R>, start: &Point<R>) {
+        let twice_k3 = increments(&self.at.z, self.at.rates(coefficients).doubled());
+        self.sum = with(&self.sum, &twice_k3, R::add);
+        self.at = start.ahead::<I>(coefficients, &twice_k3, &self.at);
+    }
 
-    let k4 = increments(&z4, rates(&z4, r4));
-    (from_fn(|i| sum[i] + k4[i]), r4)
+    /// As of [`stages`].
+    #[inline(always)]
+    pub fn last(&self, coefficients: &Coefficients<R>) -> ([R; 6], R) {
+        let k4 = increments(&self.at.z, self.at.rates(coefficients));
+        (with(&self.sum, &k4, R::add), self.at.inverse)
+    }
+}
+
+impl<R: Ring<Gravity = R, Slope = R, Torque = R>> Point<R> {
+    #[inline(always)]
+    fn rates(&self, coefficients: &Coefficients<R>) -> Rates<R> {
+        rates(coefficients, &self.z, self.inverse)
+    }
+
+    /// The point `k` further, where `k` was found at `from`: the inverse falls by 2 S S' r^2.
+    #[inline(always)]
+    fn ahead<I: Inverse<R>>(&self, coefficients: &Coefficients<R>, k: &[R; 6], from: &Self) -> Self {
+        let z = with(&self.z, k, R::add);
+        let fall = k[2].twice() * (from.z[2] * from.inverse) * from.inverse;
+        Self { z, inverse: I::at_stage(self.inverse, fall, coefficients.denominator(z[2])) }
+    }
+}
+
+#[inline(always)]
+fn with<R: Copy>(one: &[R; 6], other: &[R; 6], operation: impl Fn(R, R) -> R) -> [R; 6] {
+    let mut all = *one;
+    for (one, other) in all.iter_mut().zip(other) {
+        *one = operation(*one, *other);
+    }
+    all
 }
 
 /// The rates at `z`, where the inverse is `inverse`.

@@ -3,7 +3,7 @@
 use core::marker::PhantomData;
 
 use super::checkpoint::{Check, RestoreError, Words};
-use super::classical;
+use super::classical::{self, Point};
 use super::coefficients::{Scale, Span, prepare, third};
 use super::equations::{Coefficients, Rates};
 use super::inverse::{Followed, Inverse};
@@ -147,7 +147,7 @@ impl<R: Real, S: Sum<R>, I: Inverse<R>> DirectionForm<R, S, I> {
     #[inline(always)]
     fn step(&self, carried: &mut DirectionState<R, S>) {
         let DirectionState { z, inverse, .. } = *carried;
-        let (sum, last) = classical::stages::<R, I>(&self.coefficients, &z, inverse);
+        let (sum, last) = classical::stages::<R, I>(&self.coefficients, &Point { z, inverse });
         for i in 0..6 {
             carried.z[i] = carried.sums[i].add(z[i], sum[i] * third());
         }

@@ -1,9 +1,7 @@
 //! The plain direction form for many motions at once.
 
-use core::array::from_fn;
-
 use super::Direction;
-use super::classical;
+use super::classical::{Point, Stage, missing};
 use super::coefficients::third;
 use super::direction::{DirectionForm, DirectionState};
 use super::equations::Coefficients;
@@ -14,67 +12,88 @@ use crate::lanes::Lanes;
 use crate::real::Real;
 use crate::ring::Ring;
 
-/// As [`DirectionForm`] in plain numbers, to the bit, for `N` motions of one pendulum side by side.
+/// As [`DirectionForm`] in plain numbers, to the bit, for `ROWS` times `N` motions of one pendulum side by side.
 ///
-/// Who steps restores the lengths, and when: each motion wants it as often as it would alone.
+/// Every row makes a stage before any makes the next: a stage waits for the one before it, and meanwhile the processor
+/// computes the other rows. Who steps restores the lengths, and when: each motion wants it as often as it would alone.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct DirectionLanes<R, const N: usize> {
+pub(crate) struct DirectionLanes<R, const N: usize, const ROWS: usize> {
     coefficients: Coefficients<Lanes<R, N>>,
     half_inverse_square: R,
-    /// sin a1, cos a1, S, C, P1, P2.
-    z: [Lanes<R, N>; 6],
-    inverse: Lanes<R, N>,
+    rows: [Row<Lanes<R, N>>; ROWS],
 }
 
-impl<R: Real, const N: usize> DirectionLanes<R, N> {
-    /// Motions of `form`, all of them as `resting`.
+/// Motions at the start of a step, and within it.
+#[derive(Clone, Copy, Debug)]
+struct Row<R> {
+    start: Point<R>,
+    stage: Stage<R>,
+}
+
+impl<R: Real, const N: usize, const ROWS: usize> DirectionLanes<R, N, ROWS> {
+    /// Motions of `form`, all of them as `motion`.
     #[inline(always)]
-    pub fn new(form: &DirectionForm<R, Plain>, resting: &DirectionState<R, Plain>) -> Self {
+    pub fn new(form: &DirectionForm<R, Plain>, motion: &DirectionState<R, Plain>) -> Self {
         let Coefficients { norm, inertia, gravity } = form.coefficients;
         let coefficients = Coefficients {
             norm: Lanes::splat(norm),
             inertia: Lanes::splat(inertia),
             gravity: gravity.map(Lanes::splat),
         };
-        let (z, inverse) = (resting.z.map(Lanes::splat), Lanes::splat(resting.inverse));
-        Self { coefficients, half_inverse_square: form.half_inverse_square, z, inverse }
+        let start = Point { z: motion.z.map(Lanes::splat), inverse: Lanes::splat(motion.inverse) };
+        let stage = Stage::first::<Followed>(&coefficients, &start);
+        Self { coefficients, half_inverse_square: form.half_inverse_square, rows: [Row { start, stage }; ROWS] }
     }
 
-    /// Puts another motion into a lane; one that there is not is left alone.
+    /// Puts another motion into a lane, counted through all rows; one that there is not is left alone.
     #[inline(always)]
     pub fn put(&mut self, lane: usize, motion: &DirectionState<R, Plain>) {
-        let places = self.z.iter_mut().chain([&mut self.inverse]);
+        let Some(Row { start, .. }) = self.rows.get_mut(lane / N) else { return };
+        let places = start.z.iter_mut().chain([&mut start.inverse]);
         for (place, number) in places.zip(motion.z.into_iter().chain([motion.inverse])) {
-            if let Some(place) = place.0.get_mut(lane) {
-                *place = number;
-            }
+            place.0[lane % N] = number;
         }
     }
 
     /// Makes a step of each.
     #[inline(always)]
     pub fn step(&mut self) {
-        let (sum, last) = classical::stages::<_, Followed>(&self.coefficients, &self.z, self.inverse);
-        let third = Lanes::splat(third());
-        self.z = from_fn(|i| self.z[i] + sum[i] * third);
-        self.inverse = <Followed as Inverse<Lanes<R, N>>>::at_end(last, self.coefficients.inertia, self.z[2]);
+        let Self { coefficients, rows, .. } = self;
+        for Row { start, stage } in &mut *rows {
+            *stage = Stage::first::<Followed>(coefficients, start);
+        }
+        for Row { start, stage } in &mut *rows {
+            stage.second::<Followed>(coefficients, start);
+        }
+        for Row { start, stage } in &mut *rows {
+            stage.third::<Followed>(coefficients, start);
+        }
+        for Row { start: Point { z, inverse }, stage } in &mut *rows {
+            let (sum, last) = stage.last(coefficients);
+            for (z, sum) in z.iter_mut().zip(sum) {
+                *z = *z + sum * Lanes::splat(third());
+            }
+            *inverse = <Followed as Inverse<Lanes<R, N>>>::at_end(last, coefficients.inertia, z[2]);
+        }
     }
 
     /// Restores the lengths of each.
     #[inline(always)]
     pub fn restore_lengths(&mut self) {
         let ways = [(0, Lanes::splat(R::ONE), R::HALF), (2, self.coefficients.norm, self.half_inverse_square)];
-        for (i, length, gain) in ways {
-            let [s, c] = [self.z[i], self.z[i + 1]];
-            let missing = classical::missing([s, c], Lanes::constant(0.0), length, Lanes::splat(gain));
-            self.z[i] = s + s * missing;
-            self.z[i + 1] = c + c * missing;
+        for Row { start: Point { z, .. }, .. } in &mut self.rows {
+            for (i, length, gain) in ways {
+                let [s, c] = [z[i], z[i + 1]];
+                let missing = missing([s, c], Lanes::constant(0.0), length, Lanes::splat(gain));
+                z[i] = s + s * missing;
+                z[i + 1] = c + c * missing;
+            }
         }
     }
 
-    /// As of [`Watched`](super::heads::Watched).
+    /// As of [`Watched`](super::heads::Watched), of a row.
     #[inline(always)]
-    pub fn heads(&self) -> [Direction<Lanes<R, N>>; 2] {
-        heads(&self.z)
+    pub fn heads(&self, row: usize) -> [Direction<Lanes<R, N>>; 2] {
+        heads(&self.rows[row].start.z)
     }
 }

@@ -33,8 +33,8 @@ pub struct Point {
 /// The kernel's search with the cheapest steps.
 pub type Search = Flips<f32, DirectionForm<f32, Plain>>;
 
-/// Numbers side by side: two vectors of 8 with AVX2, four of 4 without.
-pub const LANES: usize = 16;
+/// Numbers in a row: a vector of 8 with AVX2, two of 4 without.
+pub const LANES: usize = 8;
 /// Starts that a thread follows by itself; the more, the fewer lanes are idle at its end.
 const PORTION: usize = 8192;
 
