@@ -5,15 +5,19 @@ use std::convert::Infallible;
 
 use double_pendulum::{Parameters, Pendulum, State};
 use embedded_io::{ErrorKind, ErrorType, Write};
+use firmware::app::command::Command;
 use firmware::app::controls::{Buttons, NoButtons, Pressed};
+use firmware::app::player::Player;
+use firmware::app::warm_restart::{Cause, WarmRestart};
 use firmware::app::{App, Event};
 use firmware::config::{GRAVITY, MOST_TICKS_PER_FRAME, ROD, TICK_RATE};
 use firmware::display::{Display, NoDisplay};
 use firmware::graphics::canvas::Canvas;
+use firmware::graphics::fade_layer::FadeLayer;
 use firmware::graphics::view::{Place, View};
 use firmware::motion::direction_stepper::Directions;
 use firmware::motion::settings::Settings;
-use firmware::protocol::{Decoder, Frame, LinkError, Message};
+use firmware::protocol::{Decoder, Frame, LinkError, MAX_WIRE, Message, Restarted, Status, encode};
 use firmware::scenes::SceneName;
 use host_tests::emulator::host::sheets;
 use host_tests::oracle::stream::Expected;
@@ -295,5 +299,27 @@ fn the_motion_never_touches_the_labels() {
                 assert!(dx.hypot(dy) > radius, "tick {now}: ({x}, {y}) on {columns:?} {rows:?}");
             }
         }
+    }
+}
+
+/// What was played before a restart goes on, and the host is told why the board restarted; what cannot be played is left.
+#[test]
+fn a_restart_goes_on_with_what_was_played() {
+    let mut ink = FadeLayer::NONE;
+    let mut before = Player::new(Settings::equal_rods(2.5, 90.0), &mut ink).expect("good");
+    before.execute(Command::Choose(SceneName::Butterfly)).expect("possible");
+    let played = before.status(0);
+    let end = Restarted { cause: Cause::Hang.code(), restarts: 1, pc: 2, lr: 3, cfsr: 0, scene: 4, step: 5 };
+    let massless = Status { parameters: [0.0; 5], ..played };
+    for (played, resumed) in [(Some(played), true), (Some(massless), false), (None, false)] {
+        let mut app = app();
+        let first = app.player().status(0);
+        let survivor = WarmRestart { played, end, cause: Cause::Hang };
+        let mut events = Vec::new();
+        app.resume(&survivor, |event| events.push(event));
+        assert_eq!(events, [Event::Restarted(survivor, resumed)]);
+        assert_eq!(app.player().status(0), played.filter(|_| resumed).unwrap_or(first));
+        let mut wire = [0; MAX_WIRE];
+        assert_eq!(app.link(), encode(&end, &mut wire));
     }
 }

@@ -235,14 +235,19 @@ fn scene(ticks: u32) -> Canvas {
 
 #[test]
 fn black_is_dark_and_the_upper_half_of_the_greys_is_solid() {
-    let share = |grey: u8| {
+    let share = |grey: u8, all_greys: bool| {
         let mut canvas = Canvas::default();
+        if all_greys {
+            canvas.use_all_greys();
+        }
         (0..HEIGHT as i32).for_each(|y| (0..WIDTH as i32).for_each(|x| canvas.update(x, y, |_| grey)));
         let bitmap = Bitmap::from(&canvas);
         bitmap.pages().as_flattened().iter().map(|byte| byte.count_ones()).sum::<u32>() as usize * 16 / (WIDTH * HEIGHT)
     };
-    let shares: Vec<_> = (0..16).map(share).collect();
+    let shares: Vec<_> = (0..16).map(|grey| share(grey, false)).collect();
     assert_eq!(shares, [0, 0, 0, 3, 6, 8, 11, 14, 16, 16, 16, 16, 16, 16, 16, 16], "lit pixels of 16");
+    let shares: Vec<_> = (0..16).map(|grey| share(grey, true)).collect();
+    assert_eq!(shares, [0, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16], "lit pixels of 16 in a picture");
 }
 
 #[test]

@@ -103,6 +103,7 @@ fn where_nothing_holds_that_is_what_is_told() {
     let answer = planner.answer(9);
     assert_eq!((answer.request, answer.found, answer.method, answer.limit), (9, 2, NO_METHOD, limit_code(limit)));
     assert_eq!((answer.cycles, answer.horizon, answer.steps), (0.0, 0.0, 0));
+    assert_eq!((answer.duration, answer.height, answer.frame_budget), (PLANNED, SHOWN.height.into(), 100.0));
 }
 
 /// Only the way that was asked for is looked at, even if it costs more than a frame allows.

@@ -1,5 +1,7 @@
 //! Requests over the serial link, answered by the very application that runs on the boards.
 
+use std::f64::consts::PI;
+
 use double_pendulum::Parameters;
 use firmware::app::service::{Received, Service};
 use firmware::job::{
@@ -7,6 +9,7 @@ use firmware::job::{
 };
 use firmware::protocol::Field;
 use firmware::protocol::{LinkError, MAX_WIRE, Refused, Sample, Simulate, StepTooLong, encode};
+use host_tests::oracle::tolerances;
 
 const REQUEST: Request = Request {
     row: Row::rk4(Arithmetic::F32, Formulation::Canonical),
@@ -66,6 +69,39 @@ fn the_host_computes_what_the_service_answers() {
             Ok::<_, JobError>(())
         });
         assert_eq!((done, at_once), (Ok(()), readings(&request)), "{row}");
+    }
+}
+
+/// Every row of the general motion, the page's form too, goes where the canonical one does, whole turns of either rod
+/// included.
+#[test]
+fn every_row_of_the_table_moves_alike() {
+    let turning = Request { velocities: [14.0, -9.0], dt: 1.0 / 8192.0, stride: 1024, samples: 8, ..REQUEST };
+    let states = |row: Row| {
+        let mut states = Vec::new();
+        let request = Request { row, ..turning };
+        request.readings::<JobError>(|reading| {
+            states.push(reading.state);
+            Ok(())
+        })?;
+        Ok::<_, JobError>(states)
+    };
+    let canonical = states(Row::rk4(Arithmetic::F64, Formulation::Canonical)).expect("a pendulum");
+    let last = canonical.last().expect("a sample");
+    assert!(last[0].abs() > PI && last[1].abs() > PI, "both rods turn over: {last:?}");
+    for &row in ROWS.iter().filter(|row| matches!(row.model, Model::General | Model::Textbook)) {
+        let [double, single, micromath] = tolerances::TURNING;
+        let near = match row.arithmetic {
+            Arithmetic::F32Micromath => micromath,
+            Arithmetic::F64 | Arithmetic::F64Compensated | Arithmetic::F64Libm | Arithmetic::Fixed64 => double,
+            _ => single,
+        };
+        let mut farthest = 0.0_f64;
+        for (state, exact) in states(row).unwrap_or_else(|error| panic!("{row}: {error}")).iter().zip(&canonical) {
+            farthest = state.iter().zip(exact).map(|(x, y)| (x - y).abs()).fold(farthest, f64::max);
+        }
+        println!("{row}: {farthest:e}");
+        assert!(farthest < near, "{row}: {farthest:e}");
     }
 }
 

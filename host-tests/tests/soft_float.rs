@@ -96,6 +96,17 @@ fn every_pair_of_corners_is_right() {
     corners_are_right::<f64>();
 }
 
+/// Bits that are lost in both halves of a word, and alike, are not taken for none: they break a tie.
+#[test]
+fn lost_bits_that_are_alike_break_a_tie() {
+    for (exponent, place) in (33..60).flat_map(|exponent| (0..20).map(move |place| (exponent, place))) {
+        let small = with_exponent(1_u64 << place | 1 << (place + 32), u64::BIAS);
+        for fraction in [0, 1] {
+            compare::<f64>(with_exponent(fraction, u64::BIAS + exponent), small);
+        }
+    }
+}
+
 /// Any bits; exponents so near to each other that digits cancel or are shifted out; and few bits set, so that ties are met.
 fn pairs_are_right<N: Number>() {
     let mut rng = Rng::with_seed(4);

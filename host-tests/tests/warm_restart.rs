@@ -112,13 +112,15 @@ fn every_scene_is_resumed_with_its_settings() {
         let (mut ink, mut other) = (FadeLayer::NONE, FadeLayer::NONE);
         let mut player = Player::new(Settings::default(), &mut ink).expect("good");
         let speed = |value| Command::Set { field: Field::Speed, value };
-        for command in [Command::Choose(name), Command::TurnLeft, speed(0.01), Command::Step(7)] {
-            player.execute(command).expect("possible");
-        }
-        let status = player.status(0);
         let mut resumed = Player::new(Settings::default(), &mut other).expect("good");
-        resumed.resume(&status).expect("it was possible before");
-        assert_eq!(resumed.status(0), status, "{}", name.name());
+        for value in [0.01, 0.7, 4.0] {
+            for command in [Command::Choose(name), Command::TurnLeft, speed(value), Command::Step(7)] {
+                player.execute(command).expect("possible");
+            }
+            let status = player.status(0);
+            resumed.resume(&status).expect("it was possible before");
+            assert_eq!(resumed.status(0), status, "{}", name.name());
+        }
     }
 }
 
