@@ -106,8 +106,10 @@ pub const CORTEX_M4F: Processor = Processor {
 };
 /// The STM32F405's at 168 MHz: 2,800,000 cycles in a tick, of which it could look ahead by more.
 pub const STM32F405: Processor = Processor { code: 2, frame: 700_000.0, look_ahead: 300_000.0, ..CORTEX_M4F };
+/// The Raspberry Pi Pico's Cortex-M0+ at 125 MHz: 2,083,000 cycles in a tick.
+pub const PICO: Processor = Processor { code: 4, frame: 480_000.0, look_ahead: 600_000.0, ..CORTEX_M0PLUS };
 /// Every class, by its code on the wire.
-pub const PROCESSORS: [Processor; 4] = [CORTEX_M3, CORTEX_M4F, STM32F405, CORTEX_M0PLUS];
+pub const PROCESSORS: [Processor; 5] = [CORTEX_M3, CORTEX_M4F, STM32F405, CORTEX_M0PLUS, PICO];
 /// The class of a board that names no other.
 pub const PROCESSOR: Processor = if cfg!(target_abi = "eabihf") {
     CORTEX_M4F
@@ -131,14 +133,18 @@ pub struct FlipsPace {
 }
 /// Fixed point on a Cortex-M3 at 50 MHz: 920 cycles a step, nearly half of a frame.
 pub const FLIPS_M3: FlipsPace = FlipsPace { steps: 400, start: 42, never: 13 };
-/// The same on a Cortex-M0+: 2,400 cycles a step.
+/// The same on a Cortex-M0+: 2,400 cycles a step ...
 pub const FLIPS_M0PLUS: FlipsPace = FlipsPace { steps: 150, ..FLIPS_M3 };
+/// ... so that at 125 MHz it is about as quick.
+pub const FLIPS_PICO: FlipsPace = FLIPS_M3;
 /// `f32` on a Cortex-M4F: 230 cycles a step, of 417,000 in a frame at 25 MHz, ...
 pub const FLIPS_M4F: FlipsPace = FlipsPace { steps: 650, start: 60, never: 10 };
 /// ... and of 2,800,000 at 168 MHz.
 pub const FLIPS_F405: FlipsPace = FlipsPace { steps: 5500, ..FLIPS_M4F };
 /// On this processor.
-pub const FLIPS: FlipsPace = if cfg!(armv6m) {
+pub const FLIPS: FlipsPace = if cfg!(feature = "pico") {
+    FLIPS_PICO
+} else if cfg!(armv6m) {
     FLIPS_M0PLUS
 } else if cfg!(not(target_abi = "eabihf")) {
     FLIPS_M3
@@ -219,5 +225,7 @@ pub const BUS_TRIES: u32 = 10_000;
 /// Received bytes waiting for the application; one tick brings at most 460,800/10/60 = 768 (the queue holds one less
 /// than its size).
 pub const RECEIVE_QUEUE: usize = 1024;
+/// Bytes waiting for the USB host, which fetches 63 about every 0.1 ms: a dozen frames, should it be late.
+pub const USB_QUEUE: usize = 1024;
 /// Messages executed per tick at most; more wait in the queue, and when that is full are lost and never answered.
 pub const MOST_MESSAGES_PER_TICK: usize = 4;

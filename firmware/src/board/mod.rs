@@ -5,7 +5,8 @@
 //! | room | what is in it |
 //! |---|---|
 //! | `main_loop` | the application of every board: its main loop, its log |
-//! | [`lm3s6965evb`], [`mps2_an386`], `stm32f405` | one board each: its clocks, pins and devices |
+//! | [`lm3s6965evb`], [`mps2_an386`], `stm32f405`, `pico` | one board each: its clocks, pins and devices |
+//! | `log` | where a real chip's log goes |
 //! | [`cortex_m`] | what every Cortex-M has: the tick, the stack's guard, crash reports, memory that outlives a reset |
 //! | [`panel_bus`] | a panel's bus that an interrupt drives |
 //! | [`serial`] | bytes in and out of any board's serial port |
@@ -14,16 +15,20 @@
 pub mod cortex_m;
 pub mod lm3s6965evb;
 pub mod mps2_an386;
-#[cfg(feature = "stm32f405")]
+#[cfg(any(feature = "pico", feature = "stm32f405"))]
 pub mod panel_bus;
+#[cfg(feature = "pico")]
+pub mod pico;
 pub mod serial;
 #[cfg(feature = "stm32f405")]
 pub mod stm32f405;
 
+#[cfg(any(feature = "pico", feature = "stm32f405"))]
+mod log;
 mod main_loop;
 mod register;
 
-#[cfg(not(feature = "stm32f405"))] // which has a log of its own
+#[cfg(not(any(feature = "pico", feature = "stm32f405")))] // which have a log of their own
 use defmt_semihosting as _; // where the log goes
 
 pub use main_loop::{application, run};

@@ -11,6 +11,8 @@ choice! {
         Mps2An386 = 1, "mps2-an386";
         /// Any board with an STM32F405 or F407.
         Stm32f405 = 2, "stm32f405";
+        /// Raspberry Pi's Pico.
+        Pico = 3, "pico";
     }
 }
 

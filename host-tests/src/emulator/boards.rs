@@ -41,6 +41,7 @@ impl Board {
     pub fn processor(&self) -> Processor {
         match (self.binary, self.core()) {
             ("stm32f405", _) => config::STM32F405,
+            ("pico", _) => config::PICO,
             (_, Core::M4F) => config::CORTEX_M4F,
             (_, Core::M3) => config::CORTEX_M3,
         }
@@ -102,6 +103,24 @@ pub const STM32F405: Board = Board {
     hertz: 168_000_000,
     has_panel: false,
 };
+
+/// The Raspberry Pi Pico, which not QEMU but rp2040js emulates.
+pub const PICO: Board = Board {
+    name: "pico",
+    machine: "rp2040js",
+    cpu: "cortex-m0",
+    target: "thumbv6m-none-eabi",
+    binary: "pico",
+    feature: "pico",
+    serial_port: 0,
+    hertz: 125_000_000,
+    has_panel: true,
+};
+
+/// Every board that the firmware is built for: those that QEMU emulates, and the Pico.
+pub fn every_board() -> impl Iterator<Item = &'static Board> + Clone {
+    BOARDS.iter().chain([&PICO])
+}
 
 /// The processors whose timings are known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -5,6 +5,8 @@ pub mod budgets;
 pub mod firmware_run;
 pub mod flash;
 pub mod host;
+pub mod pico;
 pub mod process;
 pub mod qemu;
 pub mod toolchain;
+pub mod uf2;

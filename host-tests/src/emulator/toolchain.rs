@@ -1,4 +1,5 @@
-//! What the firmware needs from outside, found or brought: the ARM core library and `qemu-system-arm`.
+//! What the firmware needs from outside, found or brought: the ARM core library, `qemu-system-arm` and, for the Raspberry Pi
+//! Pico, rp2040js.
 //!
 //! [`ready`] only looks. [`set_up`] brings what is missing: the core library by `rustup target add`, or else from
 //! Debian's source packages; QEMU from Debian's packages, installed, or unpacked into `target/qemu` where installing it
@@ -10,12 +11,14 @@ mod detect;
 mod error;
 mod install;
 mod lock;
+mod rp2040js;
 mod system;
 #[cfg(test)]
 mod tests;
 
 pub use build::BuildError;
 pub use error::SetupError;
+pub use rp2040js::Rp2040js;
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -71,6 +74,17 @@ pub fn set_up() -> Result<(Toolchain, Vec<String>), SetupError> {
     }
     let _turn = Lock::take(&workspace().join("target/setup.lock"))?;
     install::set_up(&Host)
+}
+
+/// The emulator of the Raspberry Pi Pico, if it is there; installs nothing.
+pub fn ready_for_pico() -> Result<Rp2040js, SetupError> {
+    rp2040js::detect(&Host).map_err(|error| SetupError { tried: false, ..error })
+}
+
+/// The same, brought if need be; and a line for each thing that was done for it.
+pub fn set_up_pico() -> Result<(Rp2040js, Vec<String>), SetupError> {
+    let _turn = Lock::take(&workspace().join("target/setup.lock"))?;
+    rp2040js::set_up(&Host)
 }
 
 /// The workspace's folder.

@@ -6,7 +6,8 @@ use serialport::{SerialPortInfo, SerialPortType};
 pub const AUTO: &str = "auto";
 
 /// USB ids, vendor and product, of what a board's serial link comes in by; no product: any of the vendor's.
-const ADAPTERS: [(u16, Option<u16>, &str); 8] = [
+const ADAPTERS: [(u16, Option<u16>, &str); 9] = [
+    (0x16c0, Some(0x27dd), "Raspberry Pi Pico that plays"),
     (0x0403, None, "FTDI adapter"),
     (0x10c4, Some(0xea60), "CP210x adapter"),
     (0x1a86, None, "CH34x adapter"),
@@ -14,7 +15,7 @@ const ADAPTERS: [(u16, Option<u16>, &str); 8] = [
     (0x0483, None, "ST-LINK"),
     (0x1366, None, "J-Link"),
     (0x0d28, Some(0x0204), "CMSIS-DAP probe"),
-    (0x2e8a, None, "Raspberry Pi Pico or its probe"),
+    (0x2e8a, None, "Raspberry Pi probe"),
 ];
 
 /// Why no port can be chosen.

@@ -77,6 +77,11 @@ impl Inbox {
         (self.decoder, self.expected, self.damage, self.joins) = (Decoder::default(), None, None, true);
     }
 
+    /// The board has been reset, in the middle of a message perhaps.
+    pub fn restart(&mut self) {
+        self.decoder = Decoder::default();
+    }
+
     /// What the link has been through.
     pub fn counts(&self) -> Counts {
         self.counts

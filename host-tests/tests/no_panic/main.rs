@@ -25,10 +25,7 @@ const PERMITTED: [(&str, &str); 12] = [
     ("firmware::board::main_loop::application", "start-up: the default settings are a pendulum"),
     ("stm32f4xx_hal::rcc::", "start-up: the clock is set up with constant numbers"),
     ("stm32f4xx_hal::i2c::", "start-up: the bus is set up with constant numbers"),
-    (
-        "firmware::board::stm32f405::log::",
-        "a line of the log within a line: interrupts are off from its start to its end",
-    ),
+    ("firmware::board::log::", "a line of the log within a line: interrupts are off from its start to its end"),
     ("defmt_semihosting::", "as above"),
     ("semihosting::fd::", "a console that could not be opened: then there is no log, and nothing is written"),
     ("heapless::spsc::", "a queue of length zero, kept at run time: the receiver's is a constant"),

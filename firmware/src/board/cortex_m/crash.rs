@@ -150,7 +150,7 @@ pub(super) fn hang(interrupted: &ExceptionFrame) {
 
 /// On a chip a debugger can be recognised, and a call to one that is not there is the better avoided: in a fault handler it
 /// would be the end.
-#[cfg(feature = "stm32f405")]
+#[cfg(any(feature = "pico", feature = "stm32f405"))]
 pub(in crate::board) fn expect_no_debugger() {
     ALONE.store(true, Ordering::Relaxed);
 }

@@ -12,7 +12,6 @@
 //! | serial link | USART3: PB10 out, PB11 in |
 
 mod i2c;
-mod log;
 mod uart;
 mod watchdog;
 
@@ -26,6 +25,7 @@ use crate::app::instruments::Instruments;
 use crate::board::cortex_m::clock::Clock;
 use crate::board::cortex_m::guard::guard_stack;
 use crate::board::cortex_m::identity::instruments;
+use crate::board::log;
 use crate::board::serial::receiver::Receiver;
 use crate::display::Ssd1306;
 use crate::display::outbox::Outbox;
@@ -81,7 +81,10 @@ impl Board {
         let core = cortex_m::Peripherals::take()?;
         let chip = pac::Peripherals::take()?;
         let (mut rcc, place) = start_clock(chip.RCC);
-        log::start(place);
+        match place {
+            Place::Chip => log::into_memory(),
+            Place::Emulator => log::into_emulator(),
+        }
         guard_stack(core.MPU);
         let (b, c) = (chip.GPIOB.split(&mut rcc), chip.GPIOC.split(&mut rcc));
         // There is a divisor for this baud rate at either clock, so this does not fail.

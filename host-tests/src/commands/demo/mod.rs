@@ -6,6 +6,7 @@ mod headless;
 mod live;
 mod mirror;
 mod options;
+mod pace;
 mod panel;
 mod play;
 mod plot;
@@ -23,13 +24,16 @@ pub use play::played;
 use std::io::{IsTerminal, stdin, stdout};
 use std::time::Duration;
 
+use pace::Pace;
 use record::Recording;
 use session::Session;
 use source::{Source, broken};
 
 use crate::console::cli::Refused;
+use crate::emulator::boards::PICO;
+use crate::emulator::pico;
 use crate::emulator::qemu::{Clock, Lockstep, Machine, Settings, Window};
-use crate::emulator::toolchain;
+use crate::emulator::toolchain::{self, Toolchain};
 use crate::link::{Port, find};
 
 /// The most time that an emulated board may take without a terminal: so much, and so much for each second of its time.
@@ -58,10 +62,12 @@ pub(crate) fn port(name: &str, baud: u32) -> Result<Port, Refused> {
 /// The emulated board, started.
 fn emulated(options: &Options, headless: bool) -> anyhow::Result<Source<'_>> {
     let (toolchain, _) = toolchain::set_up().map_err(Refused::because)?;
+    if *options.board == PICO {
+        return pico(&toolchain, options, headless);
+    }
     let window = options.window.then(|| Window::find(toolchain.qemu())).transpose();
     let window = window.map_err(|error| Refused::because(format_args!("--window: {error}")))?;
     let board = options.board;
-    let seconds = options.seconds.unwrap_or(headless::DEFAULT_SECONDS);
     let settings = Settings {
         qemu: toolchain.qemu(),
         board,
@@ -69,10 +75,25 @@ fn emulated(options: &Options, headless: bool) -> anyhow::Result<Source<'_>> {
         debugger: true,
         clock: Clock::Real,
         window,
-        limit: if headless { LIMIT.0 + Duration::from_secs_f64(LIMIT.1 * seconds) } else { LIVE_LIMIT },
+        limit: limit(options, headless),
     };
     if headless {
         return Ok(Source::Lockstep(Lockstep::start(&settings).map_err(broken)?, board));
     }
     Ok(Source::Live(Machine::start(&settings).map_err(broken)?, board))
+}
+
+/// The emulated Pico, switched on.
+fn pico<'a>(toolchain: &Toolchain, options: &Options, headless: bool) -> anyhow::Result<Source<'a>> {
+    if options.window {
+        return Err(Refused::because("--window: the Pico is not emulated by QEMU, which alone has one").into());
+    }
+    let (emulator, _) = toolchain::set_up_pico().map_err(Refused::because)?;
+    let machine = pico::Machine::start(&emulator, &toolchain.build_for(&PICO)?, limit(options, headless))?;
+    Ok(Source::Pico(Box::new(machine), (!headless).then(Pace::start)))
+}
+
+fn limit(options: &Options, headless: bool) -> Duration {
+    let seconds = options.seconds.unwrap_or(headless::DEFAULT_SECONDS);
+    if headless { LIMIT.0 + Duration::from_secs_f64(LIMIT.1 * seconds) } else { LIVE_LIMIT }
 }

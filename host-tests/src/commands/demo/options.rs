@@ -8,7 +8,7 @@ use firmware::config::BAUD;
 use firmware::scenes::SceneName;
 
 use crate::console::cli::choice;
-use crate::emulator::boards::{BOARDS, Board};
+use crate::emulator::boards::{BOARDS, Board, every_board};
 
 /// Shows the double pendulum on a board's panel, live in the terminal, each frame compared with the host's own.
 ///
@@ -23,7 +23,7 @@ use crate::emulator::boards::{BOARDS, Board};
 pub struct Options {
     /// The board
     #[arg(long, value_name = "NAME", default_value = BOARDS[0].name,
-          value_parser = choice(BOARDS.iter(), |board| board.name))]
+          value_parser = choice(every_board(), |board| board.name))]
     pub board: &'static Board,
     /// Not an emulated board but the one at this serial port; `auto` finds it by its USB id
     #[arg(long, value_name = "PATH", conflicts_with_all = ["board", "window"])]

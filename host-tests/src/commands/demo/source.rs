@@ -4,7 +4,9 @@ use std::process::ExitStatus;
 
 use firmware::protocol::{MAX_WIRE, Message, encode};
 
-use crate::emulator::boards::Board;
+use super::pace::Pace;
+use crate::emulator::boards::{Board, PICO};
+use crate::emulator::pico;
 use crate::emulator::qemu::{Lockstep, LogLine, Machine, QemuError, Screenshot};
 use crate::link::{Counts, Port, Received};
 
@@ -14,6 +16,8 @@ pub enum Source<'a> {
     Live(Machine, &'a Board),
     /// Emulated, run from frame to frame.
     Lockstep(Lockstep, &'a Board),
+    /// The emulated Pico; in a terminal no faster than the real one.
+    Pico(Box<pico::Machine>, Option<Pace>),
     /// At a serial port.
     Port(Port),
 }
@@ -23,15 +27,20 @@ impl Source<'_> {
     pub fn name(&self) -> &str {
         match self {
             Self::Live(_, board) | Self::Lockstep(_, board) => board.name,
+            Self::Pico(..) => PICO.name,
             Self::Port(port) => port.name(),
         }
     }
 
-    /// The messages since the last call; in lockstep those up to the next frame.
+    /// The messages since the last call; of one that goes frame by frame those up to the next.
     pub fn messages(&mut self) -> anyhow::Result<Vec<Received>> {
         match self {
             Self::Live(machine, _) => Ok(machine.serial.all_arrived().collect()),
             Self::Lockstep(lockstep, _) => lockstep.run_to_frame().map_err(broken),
+            Self::Pico(machine, pace) => {
+                pace.iter_mut().for_each(Pace::keep);
+                Ok(machine.run_to_frame()?)
+            }
             Self::Port(port) => Ok(port.messages()),
         }
     }
@@ -45,6 +54,7 @@ impl Source<'_> {
                 port.send_bytes(wire);
                 Ok(())
             }
+            Self::Pico(machine, _) => Ok(machine.send_bytes(wire)?),
             Self::Live(machine, _) => machine.serial.send_bytes(wire).map_err(broken),
             Self::Lockstep(lockstep, _) => lockstep.machine().serial.send_bytes(wire).map_err(broken),
         }
@@ -55,6 +65,7 @@ impl Source<'_> {
         match self {
             Self::Live(machine, _) => machine.log.arrived().collect(),
             Self::Lockstep(lockstep, _) => lockstep.machine().log.arrived().collect(),
+            Self::Pico(machine, _) => machine.lines(),
             Self::Port(port) => port.notices().map(notice).collect(),
         }
     }
@@ -64,13 +75,18 @@ impl Source<'_> {
         match self {
             Self::Live(machine, _) => machine.serial.counts(),
             Self::Lockstep(lockstep, _) => lockstep.machine().serial.counts(),
+            Self::Pico(machine, _) => machine.counts()[0],
             Self::Port(port) => port.counts(),
         }
     }
 
     /// Whether the host can see its panel.
     pub fn has_panel(&self) -> bool {
-        matches!(self, Self::Live(_, board) | Self::Lockstep(_, board) if board.has_panel)
+        match self {
+            Self::Live(_, board) | Self::Lockstep(_, board) => board.has_panel,
+            Self::Pico(..) => true,
+            Self::Port(_) => false,
+        }
     }
 
     /// What its panel shows; `None` where the host cannot see one.
@@ -81,6 +97,7 @@ impl Source<'_> {
         match self {
             Self::Live(machine, _) => machine.screenshot().map(Some).map_err(broken),
             Self::Lockstep(lockstep, _) => lockstep.screenshot().map(Some).map_err(broken),
+            Self::Pico(machine, _) => Ok(Some(machine.screenshot()?)),
             Self::Port(_) => Ok(None),
         }
     }
@@ -94,7 +111,7 @@ impl Source<'_> {
     pub fn ended(&mut self) -> anyhow::Result<Option<ExitStatus>> {
         match self {
             Self::Live(machine, _) => machine.ended().map_err(broken),
-            Self::Lockstep(..) | Self::Port(_) => Ok(None),
+            Self::Lockstep(..) | Self::Pico(..) | Self::Port(_) => Ok(None),
         }
     }
 

@@ -7,7 +7,7 @@ use std::process::{ChildStderr, ChildStdout};
 use std::sync::mpsc::{self, Receiver, Sender};
 use std::thread;
 
-use defmt_decoder::{DecodeError, Frame, Locations, Table};
+use defmt_decoder::{DecodeError, Frame, Locations, StreamDecoder, Table};
 
 use super::QemuError;
 
@@ -58,14 +58,11 @@ pub struct Log {
 impl Log {
     /// Of the firmware in the file `elf`: defmt on `stdout`, plain text on `stderr`.
     pub(super) fn new(elf: &Path, stdout: Option<ChildStdout>, stderr: Option<ChildStderr>) -> Result<Self, QemuError> {
-        let unusable = |reason: String| QemuError::Firmware { path: elf.to_owned(), reason };
-        let program = std::fs::read(elf).map_err(|error| unusable(error.to_string()))?;
-        let table = Table::parse(&program).map_err(|error| unusable(error.to_string()))?;
+        let decoder = LogDecoder::new(elf)?;
         let (sender, lines) = mpsc::channel();
-        if let (Some(table), Some(stdout)) = (table, stdout) {
-            let locations = table.get_locations(&program).map_err(|error| unusable(error.to_string()))?;
+        if let Some(stdout) = stdout {
             let sender = sender.clone();
-            thread::spawn(move || decode(&table, &locations, stdout, &sender));
+            thread::spawn(move || decode(decoder, stdout, &sender));
         }
         if let Some(stderr) = stderr {
             thread::spawn(move || {
@@ -92,21 +89,51 @@ impl Log {
 }
 
 /// Sends on each line of defmt's stream, to its end.
-fn decode(table: &Table, locations: &Locations, mut stream: impl Read, lines: &Sender<LogLine>) {
-    let mut decoder = table.new_stream_decoder();
+fn decode(mut decoder: LogDecoder, mut stream: impl Read, lines: &Sender<LogLine>) {
     let mut buffer = [0; 4096];
     while let Ok(count @ 1..) = stream.read(&mut buffer) {
-        decoder.received(&buffer[..count]);
+        for line in decoder.take(&buffer[..count]) {
+            let _ = lines.send(line);
+        }
+    }
+}
+
+/// Makes lines of defmt's stream.
+pub struct LogDecoder {
+    /// None, once the stream is damaged for good, or if the program has no log.
+    stream: Option<Box<dyn StreamDecoder + Send + Sync>>,
+    can_recover: bool,
+    locations: Locations,
+}
+
+impl LogDecoder {
+    /// Of the firmware in the file `elf`. Its table stays in memory for good.
+    pub fn new(elf: &Path) -> Result<Self, QemuError> {
+        let unusable = |reason: String| QemuError::Firmware { path: elf.to_owned(), reason };
+        let program = std::fs::read(elf).map_err(|error| unusable(error.to_string()))?;
+        let table = Table::parse(&program).map_err(|error| unusable(error.to_string()))?;
+        let Some(table) = table else {
+            return Ok(Self { stream: None, can_recover: false, locations: Locations::new() });
+        };
+        let locations = table.get_locations(&program).map_err(|error| unusable(error.to_string()))?;
+        let can_recover = table.encoding().can_recover();
+        Ok(Self { stream: Some(Box::leak(Box::new(table)).new_stream_decoder()), can_recover, locations })
+    }
+
+    /// Takes the next bytes; the lines that they complete.
+    pub fn take(&mut self, bytes: &[u8]) -> Vec<LogLine> {
+        let mut lines = Vec::new();
+        let Some(stream) = &mut self.stream else { return lines };
+        stream.received(bytes);
         loop {
-            match decoder.decode() {
-                Ok(frame) => {
-                    let _ = lines.send(line(&frame, locations));
-                }
-                Err(DecodeError::UnexpectedEof) => break,
+            match stream.decode() {
+                Ok(frame) => lines.push(line(&frame, &self.locations)),
+                Err(DecodeError::UnexpectedEof) => return lines,
                 Err(DecodeError::Malformed) => {
-                    let _ = lines.send(LogLine::plain("a line of the log was damaged"));
-                    if !table.encoding().can_recover() {
-                        break;
+                    lines.push(LogLine::plain("a line of the log was damaged"));
+                    if !self.can_recover {
+                        self.stream = None;
+                        return lines;
                     }
                 }
             }

@@ -17,7 +17,7 @@ mod window;
 
 pub use error::QemuError;
 pub use lockstep::Lockstep;
-pub use log::{Log, LogLine};
+pub use log::{Log, LogDecoder, LogLine};
 pub use machine::{Clock, Machine, Settings};
 pub use probe::{Probe, Register};
 pub use screenshot::{HEIGHT, Screenshot, WIDTH};

@@ -48,6 +48,14 @@ impl Screenshot {
         Self { greys: vec![0; WIDTH * HEIGHT] }
     }
 
+    /// Out of the memory of a one-colour panel, pages of eight rows from the top, a byte for every column of each; black where
+    /// there is none.
+    pub fn from_pages(memory: &[u8]) -> Self {
+        let is_lit = |x: usize, y: usize| memory.get(y / 8 * WIDTH + x).is_some_and(|byte| byte >> (y % 8) & 1 != 0);
+        let grey = |index: usize| if is_lit(index % WIDTH, index / WIDTH) { 15 } else { 0 };
+        Self { greys: (0..WIDTH * HEIGHT).map(grey).collect() }
+    }
+
     /// The grey, 0 to 15, of the pixel `x` from the left and `y` from the top; 0 outside the panel.
     pub fn grey(&self, x: usize, y: usize) -> u8 {
         if x < WIDTH { self.greys.get(y * WIDTH + x).copied().unwrap_or_default() } else { 0 }

@@ -9,7 +9,7 @@ use std::time::Duration;
 use super::detect::{DEBIAN_CARGO, DEBIAN_RUSTC};
 use super::system::{Host, System};
 use super::{ArmCore, TARGETS, Toolchain, workspace};
-use crate::emulator::boards::{BOARDS, Board};
+use crate::emulator::boards::{Board, every_board};
 use crate::emulator::process::ProcessError;
 
 /// For a build from nothing on a slow, busy machine, downloads included.
@@ -92,7 +92,7 @@ impl Toolchain {
     pub fn build(&self, binary: &str, target: &str) -> Result<PathBuf, BuildError> {
         let mut command = self.cargo();
         command.args(["build", "--release", "--package", "firmware", "--bin", binary, "--target", target]);
-        let feature = BOARDS.iter().find(|board| board.binary == binary).map_or("", |board| board.feature);
+        let feature = every_board().find(|board| board.binary == binary).map_or("", |board| board.feature);
         command.args(["--features", feature]);
         self.finish(command, &format!("building {binary} for {target}"))?;
         Ok(Self::folder().join(target).join("release").join(binary))
@@ -113,7 +113,7 @@ impl Toolchain {
                 "--target",
                 target,
             ]);
-            let features = BOARDS.iter().filter(|board| board.target == target).map(|board| board.feature);
+            let features = every_board().filter(|board| board.target == target).map(|board| board.feature);
             command.arg("--features").arg(features.collect::<Vec<_>>().join(","));
             command.env("RUSTFLAGS", "-Dwarnings");
             self.finish(command, &format!("checking the firmware for {target}"))?;

@@ -143,7 +143,7 @@ impl Compiler {
 }
 
 /// The first line of what a quick command says.
-fn says(system: &impl System, command: &mut Command) -> Result<String, String> {
+pub(super) fn says(system: &impl System, command: &mut Command) -> Result<String, String> {
     Ok(output(system, command)?.lines().next().unwrap_or_default().to_owned())
 }
 

@@ -11,6 +11,10 @@ pub(super) enum Part {
     ArmCore,
     /// The emulator.
     Qemu,
+    /// What runs the emulator of the Pico.
+    Node,
+    /// The emulator of the Pico.
+    Rp2040js,
 }
 
 /// The Debian packages that build the ARM core library.
@@ -18,19 +22,27 @@ pub(super) const CORE_PACKAGES: [&str; 3] = ["rustc-web", "cargo-web", "rust-web
 /// The Debian package of the emulator.
 pub(super) const QEMU_PACKAGE: &str = "qemu-system-arm";
 
-/// A system's package manager: its program, and the command that brings QEMU.
+/// The Debian packages that run the emulator of the Pico, and fetch it.
+pub(super) const NODE_PACKAGES: [&str; 2] = ["nodejs", "npm"];
+
+/// A system's package manager: its program, and the commands that bring QEMU and Node.js.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Manager {
     pub(super) program: &'static str,
     qemu: &'static str,
+    node: &'static str,
 }
 
 /// The package managers known by name; only the first is ever run.
 pub(super) const MANAGERS: [Manager; 4] = [
-    Manager { program: "apt-get", qemu: "sudo apt-get install --no-install-recommends qemu-system-arm" },
-    Manager { program: "dnf", qemu: "sudo dnf install qemu-system-arm" },
-    Manager { program: "pacman", qemu: "sudo pacman -S qemu-system-arm" },
-    Manager { program: "brew", qemu: "brew install qemu" },
+    Manager {
+        program: "apt-get",
+        qemu: "sudo apt-get install --no-install-recommends qemu-system-arm",
+        node: "sudo apt-get install --no-install-recommends nodejs npm",
+    },
+    Manager { program: "dnf", qemu: "sudo dnf install qemu-system-arm", node: "sudo dnf install nodejs npm" },
+    Manager { program: "pacman", qemu: "sudo pacman -S qemu-system-arm", node: "sudo pacman -S nodejs npm" },
+    Manager { program: "brew", qemu: "brew install qemu", node: "brew install node" },
 ];
 
 /// What is missing, why it could not be had, and what to type.
@@ -70,6 +82,8 @@ impl Part {
         match self {
             Part::ArmCore => "the ARM core library",
             Part::Qemu => "qemu-system-arm",
+            Part::Node => "Node.js, of 18 or newer, with npm",
+            Part::Rp2040js => "the emulator of the Raspberry Pi Pico",
         }
     }
 
@@ -78,6 +92,9 @@ impl Part {
         match (self, manager) {
             (Part::Qemu, Some(manager)) => vec![manager.qemu.to_owned()],
             (Part::Qemu, None) => MANAGERS.iter().map(|manager| manager.qemu.to_owned()).collect(),
+            (Part::Node, Some(manager)) => vec![manager.node.to_owned()],
+            (Part::Node, None) => MANAGERS.iter().map(|manager| manager.node.to_owned()).collect(),
+            (Part::Rp2040js, _) => vec!["npm ci --prefix host-tests/rp2040".to_owned()],
             (Part::ArmCore, manager) => {
                 let rustup = format!("rustup target add {}", TARGETS.join(" "));
                 let apt = format!("sudo apt-get install --no-install-recommends {}", CORE_PACKAGES.join(" "));

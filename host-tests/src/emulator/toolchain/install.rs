@@ -83,7 +83,7 @@ fn missing_now(system: &impl System) -> Vec<Part> {
 }
 
 /// Whether Debian's packages can be installed here, else why not.
-fn debian_allows(system: &impl System) -> Result<(), String> {
+pub(super) fn debian_allows(system: &impl System) -> Result<(), String> {
     if system.find(MANAGERS[0].program).is_none() {
         return Err("this system has no apt-get, the only package manager this command runs".to_owned());
     }
@@ -132,7 +132,7 @@ fn bring_packages(system: &impl System, packages: &[&str], reinstall: bool) -> R
 
 /// Installs the newest that Debian has: old lists may name packages that are gone, or a compiler that is too old. Heals an
 /// interrupted dpkg.
-fn install_packages(system: &impl System, packages: &[&str], reinstall: bool) -> Result<(), String> {
+pub(super) fn install_packages(system: &impl System, packages: &[&str], reinstall: bool) -> Result<(), String> {
     let mut update = apt_get("update");
     update.args(["-o", "APT::Update::Error-Mode=any"]);
     let updated = attempt(system, &mut update, UPDATE, "apt-get fetches the lists of packages");
@@ -175,7 +175,7 @@ fn apt_get(action: &str) -> Command {
 }
 
 /// Runs a command to its end; if it fails, the line in which it says why.
-fn attempt(system: &impl System, command: &mut Command, limit: Duration, doing: &str) -> Result<(), String> {
+pub(super) fn attempt(system: &impl System, command: &mut Command, limit: Duration, doing: &str) -> Result<(), String> {
     let output = system.run(command, limit, Some(doing)).map_err(|error| error.to_string())?;
     if output.status.success() {
         return Ok(());

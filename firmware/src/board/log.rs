@@ -1,15 +1,15 @@
-//! Where the log goes: on the chip into memory that a debug probe reads while the processor runs (RTT), which costs
-//! next to nothing and waits for nobody; in the emulator to its standard output, as on the other boards.
+//! Where the log of a real chip goes: into memory that a debug probe reads while the processor runs (RTT), which costs next to
+//! nothing and waits for nobody; or, where the same image runs in QEMU, to its standard output, as on the other boards.
 
 use core::cell::UnsafeCell;
 
+#[cfg(feature = "stm32f405")]
 use cortex_m_semihosting::hio::{self, HostStream};
 use critical_section::RestoreState;
 use defmt::Encoder;
 use rtt_target::{ChannelMode, UpChannel, rtt_init};
 
-use super::Place;
-use crate::board::cortex_m::crash;
+use super::cortex_m::crash;
 
 #[defmt::global_logger]
 struct Logger;
@@ -25,6 +25,7 @@ struct Path {
 enum Sink {
     Nowhere,
     Memory(UpChannel),
+    #[cfg(feature = "stm32f405")]
     Emulator(HostStream),
 }
 
@@ -35,15 +36,19 @@ unsafe impl Sync for Shared {}
 
 static PATH: Shared = Shared(UnsafeCell::new(Path { encoder: Encoder::new(), sink: Sink::Nowhere, interrupts: None }));
 
-/// Opens the log; before that, lines are lost.
-pub fn start(place: Place) {
-    let sink = match place {
-        Place::Chip => {
-            crash::expect_no_debugger();
-            Sink::Memory(rtt_init! { up: { 0: { size: 1024, name: "defmt" } } }.up.0)
-        }
-        Place::Emulator => hio::hstdout().map_or(Sink::Nowhere, Sink::Emulator),
-    };
+/// Opens the log of a chip; before that, lines are lost.
+pub fn into_memory() {
+    crash::expect_no_debugger();
+    open(Sink::Memory(rtt_init! { up: { 0: { size: 1024, name: "defmt" } } }.up.0));
+}
+
+/// Opens the log of an emulated chip.
+#[cfg(feature = "stm32f405")]
+pub fn into_emulator() {
+    open(hio::hstdout().map_or(Sink::Nowhere, Sink::Emulator));
+}
+
+fn open(sink: Sink) {
     // SAFETY: interrupts are off, and no line is being written.
     critical_section::with(|_| unsafe { (*PATH.0.get()).sink = sink });
 }
@@ -57,6 +62,7 @@ impl Sink {
                 channel.set_mode(ChannelMode::NoBlockSkip);
                 channel.write(bytes);
             }
+            #[cfg(feature = "stm32f405")]
             Self::Emulator(stream) => {
                 let _ = stream.write_all(bytes);
             }

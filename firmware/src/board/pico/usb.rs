@@ -1,0 +1,109 @@
+//! The serial port at the USB socket (CDC-ACM): the same stream, for whoever has opened it. Nobody is waited for: a message that
+//! finds no room is given up whole.
+
+use core::cell::Cell;
+
+use cortex_m::interrupt::{Mutex, free};
+use cortex_m::singleton;
+use heapless::Deque;
+use rp2040_hal::clocks::UsbClock;
+use rp2040_hal::pac::{RESETS, USBCTRL_DPRAM, USBCTRL_REGS};
+use rp2040_hal::usb::UsbBus;
+use usb_device::bus::UsbBusAllocator;
+use usb_device::device::{StringDescriptors, UsbDevice, UsbDeviceBuilder, UsbDeviceState, UsbVidPid};
+use usbd_serial::{CdcAcmClass, USB_CLASS_CDC};
+
+use crate::config::USB_QUEUE;
+
+/// What anybody may use for a serial port (V-USB's shared ids); `cargo demo --port auto` looks for it.
+const IDS: UsbVidPid = UsbVidPid(0x16c0, 0x27dd);
+/// The longest packet.
+const PACKET: usize = 64;
+
+/// The device, and bytes on their way.
+struct Usb {
+    device: UsbDevice<'static, UsbBus>,
+    port: CdcAcmClass<'static, UsbBus>,
+    /// Not yet sent.
+    leaving: Deque<u8, USB_QUEUE>,
+    /// Received and not yet taken.
+    arrived: Deque<u8, PACKET>,
+}
+
+static USB: Mutex<Cell<Option<&'static mut Usb>>> = Mutex::new(Cell::new(None));
+
+/// Begins to show the board to a host; `None` the second time.
+pub(super) fn start(
+    registers: USBCTRL_REGS,
+    memory: USBCTRL_DPRAM,
+    clock: UsbClock,
+    resets: &mut RESETS,
+) -> Option<()> {
+    let bus = UsbBus::new(registers, memory, clock, true, resets);
+    let bus = singleton!(: UsbBusAllocator<UsbBus> = UsbBusAllocator::new(bus))?;
+    let port = CdcAcmClass::new(bus, PACKET as u16);
+    let names = StringDescriptors::default().manufacturer("double-pendulum").product("Double pendulum");
+    let device = UsbDeviceBuilder::new(bus, IDS).strings(&[names]).ok()?.device_class(USB_CLASS_CDC).build();
+    let usb = singleton!(: Usb = Usb { device, port, leaving: Deque::new(), arrived: Deque::new() })?;
+    free(|token| USB.borrow(token).set(Some(usb)));
+    Some(())
+}
+
+/// Does something with the device, undisturbed by its interrupt; `None` before the start.
+fn with<T>(act: impl FnOnce(&mut Usb) -> T) -> Option<T> {
+    free(|token| {
+        let usb = USB.borrow(token).take()?;
+        let result = act(usb);
+        USB.borrow(token).set(Some(usb));
+        Some(result)
+    })
+}
+
+/// Sends a message, if somebody listens and there is room for all of it.
+pub(super) fn send(message: &[u8]) {
+    with(|usb| usb.send(message));
+}
+
+/// Does what the device's interrupt asks for.
+pub(super) fn poll() {
+    with(Usb::poll);
+}
+
+/// The next byte received, if there is one.
+pub(super) fn take() -> Option<u8> {
+    with(|usb| usb.arrived.pop_front()).flatten()
+}
+
+impl Usb {
+    fn send(&mut self, message: &[u8]) {
+        let is_heard = self.device.state() == UsbDeviceState::Configured && self.port.dtr();
+        if !is_heard {
+            self.leaving.clear();
+        } else if self.leaving.capacity().saturating_sub(self.leaving.len()) >= message.len() {
+            self.leaving.extend(message.iter().copied());
+            self.pass_on();
+        }
+    }
+
+    fn poll(&mut self) {
+        self.device.poll(&mut [&mut self.port]);
+        let mut packet = [0; PACKET];
+        if self.arrived.is_empty()
+            && let Ok(length) = self.port.read_packet(&mut packet)
+        {
+            self.arrived.extend(packet.into_iter().take(length));
+        }
+        self.pass_on();
+    }
+
+    /// Gives the device its next packet, if it has sent the last. No packet is a full one: after that the host would wait for more.
+    fn pass_on(&mut self) {
+        let mut packet = [0; PACKET - 1];
+        let length = packet.iter_mut().zip(&self.leaving).map(|(place, byte)| *place = *byte).count();
+        if length > 0 && self.port.write_packet(packet.get(..length).unwrap_or_default()).is_ok() {
+            for _ in 0..length {
+                self.leaving.pop_front();
+            }
+        }
+    }
+}

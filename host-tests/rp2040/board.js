@@ -1,0 +1,117 @@
+// The chip with all that is wired to it, and its restarts.
+
+import { RP2040 } from 'rp2040js';
+import { Panel } from './panel.js';
+import { UsbHost } from './usb_host.js';
+import { flashed } from './uf2.js';
+
+const FLASH = 0x10000000;
+const RAM = 0x20000000;
+/** Where the vector table is: behind the 256 bytes that the boot ROM runs first, of which there is none here. */
+const VECTORS = FLASH + 0x100;
+const BUTTONS = [10, 11, 12, 13, 14];
+/** What the watchdog says of a reset of its own. */
+const BY_TIMER = 1;
+/** The newer revision of the chip, B2: of the older one's fault at the start of USB the emulator knows nothing. */
+const CHIP_ID = 0x20002927;
+/** Registers of the processor that the emulator lacks: reset (bit 2), what protects memory, and whether a debugger is there. */
+const [AIRCR, MPU_TYPE, MPU_LAST, DHCSR] = [0xd0c, 0xd90, 0xda0, 0xdf0];
+
+export class Board {
+  constructor(uf2, say) {
+    this.image = flashed(uf2, FLASH);
+    this.say = say;
+    this.panel = new Panel();
+    this.pressed = new Set();
+    this.start();
+  }
+
+  /** Starts a new chip, for the emulator's cannot be reset; `before` is the one whose memory it goes on with. */
+  start(before, reason = 0) {
+    const chip = new RP2040();
+    this.chip = chip;
+    chip.logger = { debug() {}, info() {}, warn() {}, error: (from, text) => console.error(`${from}: ${text}`) };
+    chip.flash.set(this.image);
+    if (before) {
+      chip.sram.set(before.sram);
+      chip.clock.nanosCounter = before.clock.nanos;
+    }
+    chip.peripherals[0x40000].readUint32 = (offset) => (offset === 0 ? CHIP_ID : 0);
+    const watchdog = chip.peripherals[0x40058];
+    watchdog.reason = reason;
+    watchdog.onWatchdogTrigger = () => {
+      watchdog.alarm.enable = false; // or it comes again at once
+      this.due = watchdog.reason;
+    };
+    this.addRegisters(chip.ppb);
+    chip.onBreak = () => {};
+    this.panel.connect(chip);
+    this.usb = new UsbHost(chip.usbCtrl, (bytes) => this.say('usb', bytes));
+    chip.uart[0].onByte = (byte) => this.sent.push(byte);
+    this.sent = [];
+    BUTTONS.forEach((pin) => chip.gpio[pin].setInputValue(!this.pressed.has(pin)));
+    this.due = null;
+    chip.core.VTOR = VECTORS;
+    chip.core.reset();
+  }
+
+  addRegisters(ppb) {
+    const [read, write] = [ppb.readUint32.bind(ppb), ppb.writeUint32.bind(ppb)];
+    const isAdded = (offset) => offset === AIRCR || offset === DHCSR || (offset >= MPU_TYPE && offset <= MPU_LAST);
+    ppb.readUint32 = (offset) => (isAdded(offset) ? 0 : read(offset));
+    ppb.writeUint32 = (offset, value) => {
+      if (!isAdded(offset)) write(offset, value);
+      else if (offset === AIRCR && value & 4) this.due = 0;
+    };
+  }
+
+  run(micros) {
+    const end = this.chip.clock.nanos + 1000 * micros;
+    while (this.chip.clock.nanos < end) {
+      const { core, clock, clkSys } = this.chip;
+      const cycle = 1e9 / clkSys;
+      while (clock.nanos < end && this.due === null) {
+        if (!core.waiting) clock.tick(core.executeInstruction() * cycle);
+        else if (core.checkForInterrupts()) core.waiting = false;
+        else clock.tick(Math.max(1, Math.min(clock.nanosToNextAlarm, end - clock.nanos)));
+        if (this.chip.clkSys !== clkSys) break;
+      }
+      if (this.due !== null) this.restart();
+    }
+    this.tell();
+  }
+
+  restart() {
+    this.tell();
+    this.say('restarted', [this.due]);
+    this.start(this.chip, this.due);
+  }
+
+  /** Passes on what the UART has sent, and the log, as a debug probe does: out of the ring that the chip writes it into. */
+  tell() {
+    if (this.sent.length) this.say('uart', this.sent.splice(0));
+    const { sram, sramView } = this.chip;
+    const ring = Buffer.from(sram.buffer).indexOf('SEGGER RTT') + 24;
+    if (ring < 24) return;
+    const word = (index) => sramView.getUint32(ring + 4 * index, true);
+    const [start, size, written, read] = [word(1) - RAM, word(2), word(3), word(4)];
+    if (written === read) return;
+    const parts = written > read ? [[read, written]] : [[read, size], [0, written]];
+    this.say('log', Buffer.concat(parts.map(([from, to]) => sram.subarray(start + from, start + to))));
+    sramView.setUint32(ring + 16, written, true);
+  }
+
+  press(pin, is) {
+    this.pressed[is ? 'add' : 'delete'](pin);
+    this.chip.gpio[pin].setInputValue(!is);
+  }
+
+  hang() {
+    this.chip.flash16[(this.chip.core.PC & 0xffffff) >> 1] = 0xe7fe; // b .
+  }
+
+  memory(address, length) {
+    const from = Number(address) - RAM;
+    return this.chip.sram.subarray(from, from + Number(length));
+  }
+}

@@ -1,0 +1,34 @@
+// A Raspberry Pi Pico that does what it is told, line by line: see `commands`. Each is answered by what has come of it, a line
+// each, and at the end by `done`. Its clock stands still in between, so a run is repeatable to the bit.
+
+import { readFileSync, writeSync } from 'node:fs';
+import { createInterface } from 'node:readline';
+import { Board } from './board.js';
+
+const say = (word, bytes) => writeSync(1, `${word} ${Buffer.from(bytes ?? []).toString('hex')}\n`);
+const board = new Board(readFileSync(process.argv[2]), say);
+
+const commands = {
+  /** Lets so many microseconds pass. */
+  run: (micros) => board.run(Number(micros)),
+  /** Gives the board bytes, over USB or through the UART. */
+  usb: (hex) => board.usb.send(Buffer.from(hex, 'hex')),
+  uart: (hex) => Buffer.from(hex, 'hex').forEach((byte) => board.chip.uart[0].feedByte(byte)),
+  /** The panel's memory; nothing while it is off. */
+  panel: () => say('panel', board.panel.shown()),
+  /** Plugs the panel in, or pulls it. */
+  plug: (is) => (board.panel.present = is === '1'),
+  /** A button between this pin and ground: 1 is pressed. */
+  button: (pin, is) => board.press(Number(pin), is === '1'),
+  /** A circle where the processor is, in flash, until the next start. */
+  hang: () => board.hang(),
+  /** The board's memory, from an address on. */
+  read: (address, length) => say('memory', board.memory(address, length)),
+  fill: (address, length, byte) => board.memory(address, length).fill(Number(byte)),
+};
+
+for await (const line of createInterface({ input: process.stdin })) {
+  const [name, ...rest] = line.split(' ');
+  commands[name](...rest);
+  say('done');
+}

@@ -1,0 +1,174 @@
+//! Starting the emulated board, and letting its time pass.
+
+use std::fmt;
+use std::io::{self, BufReader};
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::Duration;
+
+use firmware::app::controls::Key;
+use firmware::protocol::{Frame, MAX_WIRE, Message, encode};
+
+use super::talk::{Said, Talk, digits};
+use crate::emulator::flash::flash_image;
+use crate::emulator::process::{self, ProcessError, Running};
+use crate::emulator::qemu::{LogDecoder, LogLine, Screenshot};
+use crate::emulator::toolchain::{Rp2040js, workspace};
+use crate::emulator::uf2::uf2;
+use crate::link::{Counts, Inbox, Received};
+
+/// From one look at the stream to the next.
+const SLICE: Duration = Duration::from_millis(1);
+/// A board that sends no frame for so many of them sends none.
+const PATIENCE: u32 = 5000;
+
+/// Why the board could not be used.
+#[derive(Debug, thiserror::Error)]
+pub enum PicoError {
+    /// The emulator did not start.
+    #[error(transparent)]
+    Process(#[from] ProcessError),
+    /// The firmware's file is not usable.
+    #[error("{0}")]
+    Firmware(String),
+    /// The emulator no longer answers.
+    #[error("the emulator of the Pico no longer answers: {0}")]
+    Ended(#[from] io::Error),
+    /// It sends nothing.
+    #[error("the board sends no frames")]
+    NoFrame,
+}
+
+/// The board. Its time passes only in [`Self::run`], so all that it does is repeatable to the bit. Dropping it ends it.
+pub struct Machine {
+    talk: Talk,
+    process: Running,
+    _file: tempfile::NamedTempFile,
+    usb: Inbox,
+    uart: Inbox,
+    log: LogDecoder,
+    lines: Vec<LogLine>,
+    heard_by_uart: Vec<Received>,
+}
+
+impl fmt::Debug for Machine {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Machine").field("process", &self.process).finish_non_exhaustive()
+    }
+}
+
+impl Machine {
+    /// Switches a board on with this firmware in its flash: what `cargo pico` copies, and nothing else.
+    pub fn start(emulator: &Rp2040js, elf: &Path, limit: Duration) -> Result<Self, PicoError> {
+        let program = std::fs::read(elf)?;
+        let (start, image) = flash_image(&program).map_err(|error| PicoError::Firmware(error.to_string()))?;
+        let file = tempfile::NamedTempFile::new()?;
+        std::fs::write(file.path(), uf2(start, &image))?;
+        let mut command = Command::new(emulator.node());
+        command.arg(workspace().join("host-tests/rp2040/main.js")).arg(file.path());
+        command.stdin(Stdio::piped()).stdout(Stdio::piped());
+        let mut process = process::spawn(&mut command, limit)?;
+        let ended = || io::Error::from(io::ErrorKind::NotConnected);
+        let output = BufReader::new(process.stdout.take().ok_or_else(ended)?);
+        let talk = Talk { input: process.stdin.take().ok_or_else(ended)?, output };
+        let log = LogDecoder::new(elf).map_err(|error| PicoError::Firmware(error.to_string()))?;
+        let (usb, uart) = (Inbox::default(), Inbox::default());
+        Ok(Self { talk, process, _file: file, usb, uart, log, lines: Vec::new(), heard_by_uart: Vec::new() })
+    }
+
+    /// Lets time pass by the board's clock; what it has sent over USB.
+    pub fn run(&mut self, time: Duration) -> Result<Vec<Received>, PicoError> {
+        let mut messages = Vec::new();
+        for Said { word, bytes } in self.talk.ask(&format!("run {}", time.as_micros()))? {
+            match &*word {
+                "usb" => messages.extend(bytes.iter().filter_map(|&byte| self.usb.take(byte))),
+                "uart" => self.heard_by_uart.extend(bytes.iter().filter_map(|&byte| self.uart.take(byte))),
+                "log" => self.lines.extend(self.log.take(&bytes)),
+                // Bytes cut off by it are no damage of the link's.
+                "restarted" => [&mut self.usb, &mut self.uart].into_iter().for_each(Inbox::restart),
+                _ => {}
+            }
+        }
+        Ok(messages)
+    }
+
+    /// Runs to the next frame: all messages up to it.
+    pub fn run_to_frame(&mut self) -> Result<Vec<Received>, PicoError> {
+        let mut messages = Vec::new();
+        for _ in 0..PATIENCE {
+            let before = messages.len();
+            messages.extend(self.run(SLICE)?);
+            if messages[before..].iter().any(|message| message.kind == Frame::KIND) {
+                return Ok(messages);
+            }
+        }
+        Err(PicoError::NoFrame)
+    }
+
+    /// Sends bytes over USB.
+    pub fn send_bytes(&mut self, bytes: &[u8]) -> Result<(), PicoError> {
+        self.tell(&format!("usb {}", digits(bytes)))
+    }
+
+    /// Sends a message over USB.
+    pub fn send<M: Message>(&mut self, message: &M) -> Result<(), PicoError> {
+        self.send_bytes(encode(message, &mut [0; MAX_WIRE]))
+    }
+
+    /// Sends a message through the UART.
+    pub fn send_through_uart<M: Message>(&mut self, message: &M) -> Result<(), PicoError> {
+        self.tell(&format!("uart {}", digits(encode(message, &mut [0; MAX_WIRE]))))
+    }
+
+    /// What the board has sent through the UART since the last call.
+    pub fn heard_by_uart(&mut self) -> Vec<Received> {
+        std::mem::take(&mut self.heard_by_uart)
+    }
+
+    /// The lines of the log since the last call.
+    pub fn lines(&mut self) -> Vec<LogLine> {
+        std::mem::take(&mut self.lines)
+    }
+
+    /// What the USB link has been through, and the UART.
+    pub fn counts(&self) -> [Counts; 2] {
+        [self.usb.counts(), self.uart.counts()]
+    }
+
+    /// The panel's memory, a byte for eight pixels, page after page; empty while the panel is off.
+    pub fn panel(&mut self) -> Result<Vec<u8>, PicoError> {
+        let said = self.talk.ask("panel")?;
+        Ok(said.into_iter().next().map(|said| said.bytes).unwrap_or_default())
+    }
+
+    /// What the panel shows.
+    pub fn screenshot(&mut self) -> Result<Screenshot, PicoError> {
+        Ok(Screenshot::from_pages(&self.panel()?))
+    }
+
+    /// Presses a button, or lets go of it.
+    pub fn set_key(&mut self, key: Key, down: bool) -> Result<(), PicoError> {
+        let pin = match key {
+            Key::Up => 10,
+            Key::Down => 11,
+            Key::Left => 12,
+            Key::Right => 13,
+            Key::Select => 14,
+        };
+        self.tell(&format!("button {pin} {}", u8::from(down)))
+    }
+
+    /// Plugs the panel in, or pulls it.
+    pub fn plug(&mut self, is_there: bool) -> Result<(), PicoError> {
+        self.tell(&format!("plug {}", u8::from(is_there)))
+    }
+
+    /// Makes the processor turn in a circle, wherever it is.
+    pub fn hang(&mut self) -> Result<(), PicoError> {
+        self.tell("hang")
+    }
+
+    fn tell(&mut self, line: &str) -> Result<(), PicoError> {
+        Ok(self.talk.ask(line).map(drop)?)
+    }
+}

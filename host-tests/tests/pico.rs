@@ -1,0 +1,183 @@
+//! The file that `cargo pico` makes, in an emulated Raspberry Pi Pico with a panel, buttons, a USB host and a serial adapter.
+
+mod support;
+
+use std::error::Error;
+use std::time::Duration;
+
+use crc::{CRC_32_MPEG_2, Crc};
+use firmware::app::controls::Key;
+use firmware::app::warm_restart::Cause;
+use firmware::config::{HOLD_TICKS, TICK_RATE, WATCHDOG_SECONDS};
+use firmware::graphics::bitmap::Bitmap;
+use firmware::motion::settings::Settings;
+use firmware::protocol::{Choose, Done, Field, Frame, Pause, Press, Restarted, Set, Unit};
+use firmware::scenes::SceneName;
+use host_tests::emulator::boards::PICO;
+use host_tests::emulator::flash::flash_image;
+use host_tests::emulator::host::Show;
+use host_tests::emulator::pico::{Machine, PicoError};
+use host_tests::emulator::toolchain;
+use host_tests::link::{Counts, Received};
+use support::{LIMIT, application};
+
+/// Long enough for the panel to take a whole picture.
+const PICTURE: Duration = Duration::from_millis(50);
+const TICK: Duration = Duration::from_nanos(1_000_000_000 / TICK_RATE as u64);
+
+fn board() -> Result<Machine, PicoError> {
+    let emulator = toolchain::ready_for_pico().unwrap_or_else(|missing| panic!("{missing}"));
+    Machine::start(&emulator, &application(&PICO), LIMIT)
+}
+
+/// The host's own scene, as this board plays it.
+fn show(name: SceneName, settings: &Settings) -> Show {
+    Show::on(PICO.processor(), name, settings).expect("a scene of the catalogue")
+}
+
+fn next_frame(board: &mut Machine) -> Result<Frame, PicoError> {
+    let messages = board.run_to_frame()?;
+    messages.iter().rev().find_map(Received::read).ok_or(PicoError::NoFrame)
+}
+
+/// The frame that the host would send in its place: all of it, but how long it took.
+fn expected(show: &mut Show, frame: &Frame) -> Frame {
+    let Frame { sequence, dropped, lost, scene_cycles, busy_cycles, .. } = *frame;
+    Frame { sequence, dropped, lost, scene_cycles, busy_cycles, ..show.player().frame() }
+}
+
+#[test]
+fn the_file_is_for_the_chips_flash_and_its_boot_rom() -> Result<(), Box<dyn Error>> {
+    let (start, image) = flash_image(&std::fs::read(application(&PICO))?)?;
+    assert_eq!(start, 0x1000_0000);
+    assert!(image.len() <= 2 << 20, "2 MiB of flash");
+    // The ROM starts nothing that lacks this sum.
+    let (boot, sum) = image[..256].split_at(252);
+    assert_eq!(Crc::<u32>::new(&CRC_32_MPEG_2).checksum(boot), u32::from_le_bytes(sum.try_into()?));
+    Ok(())
+}
+
+#[test]
+fn usb_uart_and_panel_show_the_hosts_bits() -> Result<(), PicoError> {
+    const FRAMES: u32 = 240;
+    let mut board = board()?;
+    let mut show = show(SceneName::Page, &Settings::default());
+    let mut sent = Vec::new();
+    for sequence in 0..FRAMES {
+        let frame = next_frame(&mut board)?;
+        show.tick();
+        assert_eq!((frame.sequence, frame.dropped, frame.step), (sequence, 0, sequence + 1));
+        assert_eq!(frame, expected(&mut show, &frame));
+        sent.push(frame);
+    }
+    board.run(TICK / 4)?;
+    let through_uart: Vec<Frame> = board.heard_by_uart().iter().filter_map(Received::read).collect();
+    assert_eq!(through_uart, sent);
+    for Counts { damaged, lost, .. } in board.counts() {
+        assert_eq!((damaged, lost), (0, 0));
+    }
+    // By its crystal and PLL.
+    assert!(board.lines().iter().any(|line| line.text == "boot: pico, 125000000 Hz"));
+    Ok(())
+}
+
+/// The board stands still, so that the panel has time to take all of a picture.
+fn stand_still(board: &mut Machine) -> Result<Frame, PicoError> {
+    board.send(&Pause { request: 9, paused: 1 })?;
+    board.run(PICTURE)?;
+    next_frame(board)
+}
+
+#[test]
+fn the_panel_shows_the_hosts_picture() -> Result<(), PicoError> {
+    let mut board = board()?;
+    for name in [SceneName::Page, SceneName::Figure7, SceneName::Butterfly] {
+        board.send(&Choose { request: 1, scene: name.code() })?;
+        board.send(&Pause { request: 2, paused: 0 })?;
+        board.run(Duration::from_millis(700))?;
+        let frame = stand_still(&mut board)?;
+        let mut show = show(name, &name.first_settings());
+        (0..frame.step).for_each(|_| show.tick());
+        let mut canvas = show.frame();
+        firmware::graphics::text::pause_mark(&mut canvas);
+        let shown = board.panel()?;
+        assert!(shown == Bitmap::from(&canvas).pages().as_flattened(), "{}: {:?}", name.name(), board.screenshot()?);
+    }
+    Ok(())
+}
+
+#[test]
+fn a_panel_that_is_plugged_in_later_shows_the_picture() -> Result<(), PicoError> {
+    let mut board = board()?;
+    board.plug(false)?;
+    board.run(Duration::from_millis(300))?;
+    assert!(board.panel()?.is_empty(), "it is off");
+    assert!(board.lines().iter().any(|line| line.text.starts_with("panel: Absent")));
+    board.plug(true)?;
+    board.run(Duration::from_millis(1500))?;
+    assert!(board.panel()?.iter().any(|byte| *byte != 0), "it is found within a second or so");
+    Ok(())
+}
+
+#[test]
+fn commands_are_obeyed_from_either_side() -> Result<(), PicoError> {
+    let mut board = board()?;
+    board.run(PICTURE)?;
+    board.send(&Choose { request: 1, scene: SceneName::Butterfly.code() })?;
+    let mut messages = board.run(4 * TICK)?;
+    board.send_through_uart(&Set {
+        request: 2,
+        field: Field::M2.code(),
+        unit: Unit::of(Field::M2).map_or(0, Unit::code),
+        value: 2.5,
+    })?;
+    messages.extend(board.run(4 * TICK)?);
+    // Both hear both answers.
+    for heard in [messages, board.heard_by_uart()] {
+        let answers: Vec<_> = heard.iter().filter_map(Received::read).map(|Done { request }| request).collect();
+        assert_eq!(answers, [1, 2]);
+    }
+    let frame = next_frame(&mut board)?;
+    assert_eq!((frame.scene, frame.mass_ratio), (SceneName::Butterfly.code(), 2.5));
+    Ok(())
+}
+
+#[test]
+fn every_button_does_its_own() -> Result<(), PicoError> {
+    let mut board = board()?;
+    board.run(10 * TICK)?;
+    let mut show = show(SceneName::Page, &Settings::default());
+    for key in [Key::Up, Key::Up, Key::Left, Key::Right, Key::Right, Key::Down] {
+        board.set_key(key, true)?;
+        board.run(6 * TICK)?;
+        board.set_key(key, false)?;
+        board.run(6 * TICK)?;
+        show.player().execute(key.tapped()).expect("within its range");
+        let (frame, here) = (next_frame(&mut board)?, show.player().frame());
+        assert_eq!((frame.mass_ratio, frame.start_angle), (here.mass_ratio, here.start_angle), "{}", key.name());
+    }
+    board.set_key(Key::Select, true)?;
+    board.run(TICK * (u32::from(HOLD_TICKS) + 6))?;
+    assert_eq!(next_frame(&mut board)?.scene, SceneName::Page.next().code());
+    Ok(())
+}
+
+#[test]
+fn the_watchdog_restarts_the_board_in_its_scene() -> Result<(), PicoError> {
+    let mut board = board()?;
+    board.run(PICTURE)?;
+    board.send(&Choose { request: 1, scene: SceneName::Butterfly.code() })?;
+    board.send(&Press { request: 2, key: Key::Up.code() })?;
+    board.run(10 * TICK)?;
+    let before = next_frame(&mut board)?;
+    board.hang()?;
+    let messages = board.run(Duration::from_secs(u64::from(WATCHDOG_SECONDS) * 2) + 2 * PICTURE)?;
+    let restarted: Vec<Restarted> = messages.iter().chain(&board.heard_by_uart()).filter_map(Received::read).collect();
+    let Restarted { cause, restarts, scene, step, .. } = *restarted.first().expect("it says so");
+    assert_eq!((Cause::from_code(cause), restarts), (Some(Cause::Hang), 1));
+    assert_eq!((scene, step), (before.scene, before.step));
+    let frame = next_frame(&mut board)?;
+    assert_eq!((frame.scene, frame.mass_ratio), (before.scene, before.mass_ratio));
+    assert!(frame.step < before.step, "from its start");
+    Ok(())
+}
