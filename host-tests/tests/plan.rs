@@ -38,7 +38,8 @@ fn small_oscillations_are_taken_from_the_closed_form() {
 fn large_regular_oscillations_take_the_cheapest_steps() {
     let plan = planned(&scene(1.0, 60.0, 10.0));
     assert_eq!((plan.method, plan.steps, plan.limit), (Method::DirectionPlain, 1, Limit::End));
-    assert!(plan.error <= 1.0 && plan.cost == M4F.direction_plain, "{plan:?}");
+    assert!((0.001..=1.0).contains(&plan.error) && plan.cost == M4F.direction_plain, "{plan:?}");
+    assert_eq!(plan.dt, 1.0 / 60.0);
 }
 
 #[test]
@@ -52,6 +53,7 @@ fn a_chaotic_scene_is_promised_for_as_long_as_it_can_be() {
     let lavish = Budget { frame: 5e6, planning: 1e11 };
     let double = double_pendulum::plan::plan(&figure7, &M4F, &lavish).expect("a good scene");
     assert!(double.method == Method::Fixed64 && double.horizon > 2.0 * single.horizon, "{double:?}");
+    assert_eq!(double.dt, 1.0 / f64::from(60 * double.steps), "{double:?}");
 }
 
 #[test]
