@@ -1,5 +1,7 @@
 //! Many starts at once, in the lanes of the processor's vectors.
 
+use core::array::from_fn;
+
 use super::{Falling, Flip, Flips, passes, turns_over};
 use crate::error::Error;
 use crate::form::{Direction, DirectionForm, DirectionLanes, DirectionState, Form as _, Part, Plain, RESTORING};
@@ -14,11 +16,11 @@ type Heads<const N: usize> = [Direction<Lanes<f32, N>>; 2];
 /// Rows of lanes: enough to keep a processor busy; with more the compiler no longer finds the vectors of 4.
 const ROWS: usize = 3;
 
-/// Which start a lane follows, and how far it is.
+/// Which start a lane follows, and for how many steps yet.
 #[derive(Clone, Copy)]
 struct Lane {
     start: usize,
-    steps: u32,
+    left: u32,
 }
 
 impl Flips<f32, Form> {
@@ -40,13 +42,13 @@ impl Flips<f32, Form> {
         let mut lanes: [[Option<Lane>; N]; ROWS] = [[None; N]; ROWS];
         loop {
             for (place, lane) in lanes.as_flattened_mut().iter_mut().enumerate() {
-                if let Some(Lane { start, .. }) = lane.take_if(|lane| lane.steps >= self.steps) {
+                if let Some(Lane { start, .. }) = lane.take_if(|lane| lane.left == 0) {
                     give(start, Flip::Later);
                 }
                 if lane.is_none() {
                     let next = self.next(&mut starts, &mut give)?;
                     motions.put(place, next.as_ref().map_or(&hanging, |(_, motion)| motion));
-                    *lane = next.map(|(start, _)| Lane { start, steps: 0 });
+                    *lane = next.map(|(start, _)| Lane { start, left: self.steps });
                 }
             }
             if lanes.as_flattened().iter().all(Option::is_none) {
@@ -79,10 +81,7 @@ impl Flips<f32, Form> {
         lanes: &mut [[Option<Lane>; N]; ROWS],
         give: &mut impl FnMut(usize, Flip<f32>),
     ) {
-        let mut before = [motions.heads(0); ROWS];
-        for (row, before) in before.iter_mut().enumerate() {
-            *before = motions.heads(row);
-        }
+        let mut before: [Heads<N>; ROWS] = from_fn(|row| motions.heads(row));
         for step in 0..RESTORING {
             motions.step();
             if step + 1 == RESTORING {
@@ -94,17 +93,16 @@ impl Flips<f32, Form> {
                     for (place, lane) in lanes[row].iter_mut().enumerate() {
                         let at = |heads: &Heads<N>| heads.map(|head| head.map(|part| part.0[place]));
                         let (before, after) = (at(before), at(&heads));
-                        if let Some(Lane { start, steps }) = lane.take_if(|_| passes(&before, &after) < 0) {
-                            let steps = steps + step;
-                            let flip = || self.passage(steps, before, after);
-                            give(start, if steps < self.steps { flip() } else { Flip::Later });
+                        let passes = |lane: &mut Lane| step < lane.left && passes(&before, &after) < 0;
+                        if let Some(Lane { start, left }) = lane.take_if(passes) {
+                            give(start, self.passage(self.steps - left + step, before, after));
                         }
                     }
                 }
                 *before = heads;
             }
         }
-        lanes.as_flattened_mut().iter_mut().flatten().for_each(|lane| lane.steps += RESTORING);
+        lanes.as_flattened_mut().iter_mut().flatten().for_each(|lane| lane.left = lane.left.saturating_sub(RESTORING));
     }
 }
 
