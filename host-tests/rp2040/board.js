@@ -107,7 +107,7 @@ export class Board {
   }
 
   hang() {
-    this.chip.flash16[(this.chip.core.PC & 0xffffff) >> 1] = 0xe7fe; // b .
+    this.chip.writeUint16((this.chip.core.PC & ~1) >>> 0, 0xe7fe); // b .
   }
 
   memory(address, length) {

@@ -20,7 +20,7 @@ const commands = {
   plug: (is) => (board.panel.present = is === '1'),
   /** A button between this pin and ground: 1 is pressed. */
   button: (pin, is) => board.press(Number(pin), is === '1'),
-  /** A circle where the processor is, in flash, until the next start. */
+  /** A circle where the processor is, until the next start. */
   hang: () => board.hang(),
   /** The board's memory, from an address on. */
   read: (address, length) => say('memory', board.memory(address, length)),

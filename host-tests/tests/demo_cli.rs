@@ -101,6 +101,29 @@ fn of_a_board_without_a_panel_the_redrawn_one_is_shown() {
     }
 }
 
+/// An emulated Pico, whose panel is seen through its own bus.
+#[test]
+fn the_pico_plays_every_frame() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let animation = folder.path().join("pico.gif");
+    let mut command = Command::new(DEMO);
+    command.args(["--board", "pico", "--headless", "--seconds", "2", "--record"]);
+    let output = run(command.arg(&animation), LIMIT).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    for line in [
+        "frames                120\n",
+        "CRC errors            0\n",
+        "dropped frames        0\n",
+        "120 frames, every bit",
+    ] {
+        assert!(output.stdout.contains(line), "no {line:?} in\n{}", output.stdout);
+    }
+    let played = played(&animation).expect("a GIF file");
+    assert_eq!(played.len(), FRAMES);
+    let moved = played.windows(2).filter(|pair| pair[0].0 != pair[1].0).count();
+    assert_eq!(moved, FRAMES - 1, "every picture differs from the one before");
+}
+
 #[test]
 fn a_closed_output_is_no_failure() {
     toolchain();
@@ -113,7 +136,8 @@ fn a_closed_output_is_no_failure() {
 
 #[test]
 fn bad_arguments_are_refused_in_one_line() {
-    let cases: [&[&str]; 12] = [
+    let cases: [&[&str]; 13] = [
+        &["--board", "pico", "--window"],
         &["--board", "arduino"],
         &["--port", "/nowhere/tty"],
         &["--port", "/dev/null"],

@@ -27,6 +27,13 @@ const TRIES: u32 = 500;
 /// Half a clock of a slow 100 kHz, cycles of 125 MHz.
 const HALF_CLOCK: u32 = 625;
 
+/// Interrupts.
+const NOTHING: u32 = 0;
+const FEW_LEFT: u32 = 1 << 4;
+const ABORTED: u32 = 1 << 6;
+const STOPPED: u32 = 1 << 9;
+
+/// Why it was aborted.
 const ADDRESS_REFUSED: u32 = 1 << 0;
 const DATA_REFUSED: u32 = 1 << 3;
 const ARBITRATION_LOST: u32 = 1 << 12;
@@ -85,11 +92,11 @@ impl Port for Panel0 {
         // SAFETY: an address of seven bits.
         port.ic_tar().write(|w| unsafe { w.ic_tar().bits(address.into()) });
         port.ic_enable().write(|w| w.enable().enabled());
-        port.ic_intr_mask().write(|w| w.m_tx_empty().set_bit().m_tx_abrt().set_bit());
+        listen(port, FEW_LEFT | ABORTED);
     }
 
     fn reset(&mut self) {
-        silence(&self.port);
+        listen(&self.port, NOTHING);
         self.port.ic_enable().write(|w| w.enable().disabled());
         let (data, clock) = &mut self.lines;
         free_bus(clock, data, || delay(HALF_CLOCK));
@@ -114,14 +121,17 @@ fn advance(port: &RegisterBlock, outbox: &mut Outbox) -> Option<Sent> {
     if status.tx_abrt().is_active() {
         let reason = port.ic_tx_abrt_source().read().bits();
         let _ = port.ic_clr_tx_abrt().read();
-        silence(port);
+        listen(port, NOTHING);
         return Some(Err(error(reason)));
     }
     if outbox.is_empty() {
-        let is_last = status.stop_det().is_active() && port.ic_status().read().tfe().is_empty();
+        if !status.stop_det().is_active() {
+            return None;
+        }
+        // It may be that of a message before.
         let _ = port.ic_clr_stop_det().read();
-        return is_last.then(|| {
-            silence(port);
+        return port.ic_status().read().tfe().is_empty().then(|| {
+            listen(port, NOTHING);
             Ok(())
         });
     }
@@ -134,7 +144,7 @@ fn advance(port: &RegisterBlock, outbox: &mut Outbox) -> Option<Sent> {
     if outbox.is_empty() {
         // What is left to wait for is the last stop.
         let _ = port.ic_clr_stop_det().read();
-        port.ic_intr_mask().write(|w| w.m_stop_det().set_bit().m_tx_abrt().set_bit());
+        listen(port, STOPPED | ABORTED);
     }
     None
 }
@@ -151,9 +161,10 @@ fn error(reason: u32) -> ErrorKind {
     }
 }
 
-fn silence(port: &RegisterBlock) {
-    // SAFETY: no interrupt at all.
-    port.ic_intr_mask().write(|w| unsafe { w.bits(0) });
+/// Lets these interrupts through, and no others.
+fn listen(port: &RegisterBlock, to: u32) {
+    // SAFETY: a bit for each interrupt.
+    port.ic_intr_mask().write(|w| unsafe { w.bits(to) });
 }
 
 /// A line of the bus, which can be pulled low by hand.

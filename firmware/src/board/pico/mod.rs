@@ -42,6 +42,27 @@ pub use watchdog::Watchdog;
 #[used]
 static BOOT: [u8; 256] = rp2040_boot2::BOOT_LOADER_W25Q080;
 
+// Before anything else the hot loops are copied from flash into memory, where they run (`pico.x`).
+core::arch::global_asm!(
+    ".section .text.__pre_init, \"ax\"",
+    ".global __pre_init",
+    ".type __pre_init, %function",
+    ".thumb_func",
+    "__pre_init:",
+    "ldr r0, =__fast_start",
+    "ldr r1, =__fast_end",
+    "ldr r2, =__fast_load",
+    "1:",
+    "cmp r0, r1",
+    "bhs 2f",
+    "ldm r2!, {{r3}}",
+    "stm r0!, {{r3}}",
+    "b 1b",
+    "2:",
+    "bx lr",
+    ".pool",
+);
+
 /// The Pico's crystal, Hz.
 const CRYSTAL: u32 = 12_000_000;
 

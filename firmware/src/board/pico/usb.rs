@@ -60,6 +60,9 @@ fn with<T>(act: impl FnOnce(&mut Usb) -> T) -> Option<T> {
 }
 
 /// Sends a message, if somebody listens and there is room for all of it.
+///
+/// Never inlined, for the libraries may panic, and the main loop may not (test `no_panic`).
+#[inline(never)]
 pub(super) fn send(message: &[u8]) {
     with(|usb| usb.send(message));
 }
@@ -80,7 +83,9 @@ impl Usb {
         if !is_heard {
             self.leaving.clear();
         } else if self.leaving.capacity().saturating_sub(self.leaving.len()) >= message.len() {
-            self.leaving.extend(message.iter().copied());
+            for byte in message {
+                let _ = self.leaving.push_back(*byte);
+            }
             self.pass_on();
         }
     }
@@ -91,7 +96,9 @@ impl Usb {
         if self.arrived.is_empty()
             && let Ok(length) = self.port.read_packet(&mut packet)
         {
-            self.arrived.extend(packet.into_iter().take(length));
+            for byte in packet.into_iter().take(length) {
+                let _ = self.arrived.push_back(byte);
+            }
         }
         self.pass_on();
     }

@@ -61,6 +61,9 @@ pub(crate) fn port(name: &str, baud: u32) -> Result<Port, Refused> {
 
 /// The emulated board, started.
 fn emulated(options: &Options, headless: bool) -> anyhow::Result<Source<'_>> {
+    if options.window && *options.board == PICO {
+        return Err(Refused::because("--window: QEMU alone has one, and --board pico runs in rp2040js").into());
+    }
     let (toolchain, _) = toolchain::set_up().map_err(Refused::because)?;
     if *options.board == PICO {
         return pico(&toolchain, options, headless);
@@ -85,9 +88,6 @@ fn emulated(options: &Options, headless: bool) -> anyhow::Result<Source<'_>> {
 
 /// The emulated Pico, switched on.
 fn pico<'a>(toolchain: &Toolchain, options: &Options, headless: bool) -> anyhow::Result<Source<'a>> {
-    if options.window {
-        return Err(Refused::because("--window: the Pico is not emulated by QEMU, which alone has one").into());
-    }
     let (emulator, _) = toolchain::set_up_pico().map_err(Refused::because)?;
     let machine = pico::Machine::start(&emulator, &toolchain.build_for(&PICO)?, limit(options, headless))?;
     Ok(Source::Pico(Box::new(machine), (!headless).then(Pace::start)))

@@ -2,6 +2,7 @@
 
 use std::fmt;
 use std::io::{self, BufReader};
+use std::ops::Range;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Duration;
@@ -137,8 +138,7 @@ impl Machine {
 
     /// The panel's memory, a byte for eight pixels, page after page; empty while the panel is off.
     pub fn panel(&mut self) -> Result<Vec<u8>, PicoError> {
-        let said = self.talk.ask("panel")?;
-        Ok(said.into_iter().next().map(|said| said.bytes).unwrap_or_default())
+        self.bytes("panel")
     }
 
     /// What the panel shows.
@@ -163,9 +163,24 @@ impl Machine {
         self.tell(&format!("plug {}", u8::from(is_there)))
     }
 
+    /// Writes `byte` at all these addresses of memory.
+    pub fn fill(&mut self, addresses: Range<u32>, byte: u8) -> Result<(), PicoError> {
+        self.tell(&format!("fill {} {} {byte}", addresses.start, addresses.len()))
+    }
+
+    /// The bytes at these addresses of memory.
+    pub fn read(&mut self, addresses: Range<u32>) -> Result<Vec<u8>, PicoError> {
+        self.bytes(&format!("read {} {}", addresses.start, addresses.len()))
+    }
+
     /// Makes the processor turn in a circle, wherever it is.
     pub fn hang(&mut self) -> Result<(), PicoError> {
         self.tell("hang")
+    }
+
+    fn bytes(&mut self, line: &str) -> Result<Vec<u8>, PicoError> {
+        let said = self.talk.ask(line)?;
+        Ok(said.into_iter().next().map(|said| said.bytes).unwrap_or_default())
     }
 
     fn tell(&mut self, line: &str) -> Result<(), PicoError> {

@@ -22,5 +22,5 @@ pub use machine::{Clock, Machine, Settings};
 pub use probe::{Probe, Register};
 pub use screenshot::{HEIGHT, Screenshot, WIDTH};
 pub use serial::{Serial, Stopped};
-pub use stack::Stack;
+pub use stack::{PAINT, Stack};
 pub use window::{NoWindow, Window};

@@ -10,7 +10,7 @@ use super::{Lockstep, QemuError};
 /// The stack's share of memory, from its top (`board/cortex_m/guard.rs`).
 const SIZE: u32 = 32 * 1024;
 /// No byte that is common in memory.
-const PAINT: u8 = 0xA5;
+pub const PAINT: u8 = 0xA5;
 
 /// The addresses of a program's stack.
 #[derive(Clone, Debug)]
@@ -27,6 +27,16 @@ impl Stack {
         Ok(Self(top.saturating_sub(SIZE)..top))
     }
 
+    /// Where it is.
+    pub fn addresses(&self) -> Range<u32> {
+        self.0.clone()
+    }
+
+    /// The most bytes that it has held since it was painted, by what stands there now.
+    pub fn depth(memory: &[u8]) -> u32 {
+        SIZE - memory.iter().take_while(|byte| **byte == PAINT).count() as u32
+    }
+
     /// To be done before the board's first instruction.
     pub fn paint(&self, board: &mut Lockstep) -> Result<(), QemuError> {
         board.fill(self.0.clone(), PAINT)
@@ -34,7 +44,6 @@ impl Stack {
 
     /// The most bytes that the stack has held since it was painted.
     pub fn reached(&self, board: &mut Lockstep) -> Result<u32, QemuError> {
-        let untouched = board.read(self.0.clone())?.iter().take_while(|byte| **byte == PAINT).count();
-        Ok(SIZE - untouched as u32)
+        Ok(Self::depth(&board.read(self.0.clone())?))
     }
 }

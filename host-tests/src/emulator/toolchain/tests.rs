@@ -6,7 +6,7 @@ use std::cell::Cell;
 use std::path::Path;
 
 use super::error::Part;
-use super::{ArmCore, SetupError, Toolchain, detect, install};
+use super::{ArmCore, SetupError, Toolchain, detect, install, rp2040js};
 use world::{Emulator, Rustup, World, fresh_debian};
 
 fn set_up(world: &World) -> (Toolchain, Vec<String>) {
@@ -224,4 +224,27 @@ fn looking_changes_nothing_and_points_at_the_set_up() {
     assert!(world.changes().is_empty());
     let untried = SetupError { tried: false, ..error };
     assert!(untried.to_string().contains("\n  cargo setup   or else by hand:\n  rustup target add"), "{untried}");
+}
+
+#[test]
+fn the_picos_emulator_is_fetched_by_npm_which_debian_brings() {
+    let world = fresh_debian();
+    let (emulator, done) = rp2040js::set_up(&world).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(emulator.node(), Path::new("/usr/bin/node"));
+    assert_eq!(done, ["apt-get installed nodejs, npm", "npm fetched rp2040js"]);
+    assert_eq!(verbs(&world.changes()), ["update", "install", "ci"]);
+    let (again, done) = rp2040js::set_up(&world).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!((again, done.len(), world.changes().len()), (emulator, 0, 0));
+}
+
+#[test]
+fn what_keeps_the_picos_emulator_away_is_said_with_what_brings_it() {
+    let refused = |world: World| rp2040js::set_up(&world).expect_err("this cannot be set up").to_string();
+    let told = refused(World { root: false, ..fresh_debian() });
+    assert!(told.contains("only root may install packages") && told.contains("apt-get install"), "{told}");
+    let told = refused(World { node: Cell::new(Some("v20.0.0")), network: false, ..fresh_debian() });
+    assert!(told.contains("npm error network") && told.contains("npm ci --prefix host-tests/rp2040"), "{told}");
+    // One that is too old does not count.
+    let world = World { node: Cell::new(Some("v12.22.9")), root: false, ..fresh_debian() };
+    assert!(refused(world).starts_with("Node.js, of 18 or newer"));
 }

@@ -51,6 +51,9 @@ pub struct World {
     pub emulator_is_unpacked: Cell<bool>,
     pub reinstall_helps: bool,
     pub has_package: fn(&str) -> bool,
+    /// The version of Node.js, and whether npm has brought the Pico's emulator.
+    pub node: Cell<Option<&'static str>>,
+    pub rp2040js: Cell<bool>,
     pub targets: Cell<bool>,
     pub debian_packages: RefCell<BTreeSet<String>>,
     pub changes: RefCell<Vec<String>>,
@@ -74,6 +77,8 @@ pub fn fresh_debian() -> World {
         emulator_is_unpacked: Cell::new(false),
         reinstall_helps: true,
         has_package: |_| true,
+        node: Cell::new(None),
+        rp2040js: Cell::new(false),
         targets: Cell::new(false),
         debian_packages: RefCell::default(),
         changes: RefCell::default(),
@@ -127,6 +132,9 @@ impl World {
         self.debian_packages.borrow_mut().extend(packages.iter().map(|&package| package.to_owned()));
         if packages.contains(&"qemu-system-arm") && (self.emulator.get() == Emulator::Absent || self.reinstall_helps) {
             self.emulator.set(Emulator::Runs);
+        }
+        if packages.contains(&"nodejs") {
+            self.node.set(Some("v18.19.0"));
         }
         says("")
     }
@@ -185,6 +193,15 @@ impl System for World {
             [own, "--version"] if Path::new(own).starts_with(detect::own_qemu_folder()) => {
                 says("QEMU emulator version 7.2.22")
             }
+            ["/usr/bin/node", "--version"] => says(self.node.get().unwrap_or_default()),
+            ["/usr/bin/node", "--print", _] if self.rp2040js.get() => says("1.4.1"),
+            ["/usr/bin/node", "--print", _] => fails("Error: Cannot find module"),
+            ["npm", "ci", ..] if self.network => {
+                assert!(words.contains(&"--ignore-scripts"), "nothing foreign is run");
+                self.rp2040js.set(true);
+                says("")
+            }
+            ["npm", "ci", ..] => fails("npm error network"),
             _ => panic!("an unknown command: {words:?}"),
         }
     }
@@ -193,6 +210,7 @@ impl System for World {
         let is_there = match program {
             "rustup" => self.rustup != Rustup::Absent,
             "qemu-system-arm" => self.emulator.get() != Emulator::Absent,
+            "node" | "npm" => self.node.get().is_some(),
             other => self.manager == Some(other),
         };
         is_there.then(|| Path::new("/usr/bin").join(program))
