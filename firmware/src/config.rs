@@ -75,19 +75,19 @@ pub const CORTEX_M3: Processor = Processor {
     frame: 200_000.0,
     look_ahead: 250_000.0,
 };
-/// A Cortex-M0+, which has no long product either: 2.4 times what a Cortex-M3 takes. At 50 MHz it draws for half a tick.
+/// A Cortex-M0+, which has no long product either, as on the Raspberry Pi Pico: at 125 MHz a tick has 2,083,000 cycles.
 pub const CORTEX_M0PLUS: Processor = Processor {
     code: 3,
     costs: Costs {
-        closed_form: 12_200.0,
-        direction_plain: 21_400.0,
-        direction: 24_500.0,
-        fixed32: 2_400.0,
-        fixed64: 58_300.0,
-        preparation: 720_000.0,
+        closed_form: 10_500.0,
+        direction_plain: 19_900.0,
+        direction: 23_000.0,
+        fixed32: 2_900.0,
+        fixed64: 88_000.0,
+        preparation: 1_000_000.0,
     },
-    frame: 200_000.0,
-    look_ahead: 100_000.0,
+    frame: 300_000.0,
+    look_ahead: 600_000.0,
 };
 /// A Cortex-M4F, whose floating-point unit knows `f32` only: the slowest board, at 25 MHz, has 417,000 cycles in a tick. A
 /// plain step costs less than the closed form's two sincos.
@@ -106,10 +106,8 @@ pub const CORTEX_M4F: Processor = Processor {
 };
 /// The STM32F405's at 168 MHz: 2,800,000 cycles in a tick, of which it could look ahead by more.
 pub const STM32F405: Processor = Processor { code: 2, frame: 700_000.0, look_ahead: 300_000.0, ..CORTEX_M4F };
-/// The Raspberry Pi Pico's Cortex-M0+ at 125 MHz: 2,083,000 cycles in a tick.
-pub const PICO: Processor = Processor { code: 4, frame: 480_000.0, look_ahead: 600_000.0, ..CORTEX_M0PLUS };
 /// Every class, by its code on the wire.
-pub const PROCESSORS: [Processor; 5] = [CORTEX_M3, CORTEX_M4F, STM32F405, CORTEX_M0PLUS, PICO];
+pub const PROCESSORS: [Processor; 4] = [CORTEX_M3, CORTEX_M4F, STM32F405, CORTEX_M0PLUS];
 /// The class of a board that names no other.
 pub const PROCESSOR: Processor = if cfg!(target_abi = "eabihf") {
     CORTEX_M4F
@@ -133,18 +131,14 @@ pub struct FlipsPace {
 }
 /// Fixed point on a Cortex-M3 at 50 MHz: 920 cycles a step, nearly half of a frame.
 pub const FLIPS_M3: FlipsPace = FlipsPace { steps: 400, start: 42, never: 13 };
-/// The same on a Cortex-M0+: 2,400 cycles a step ...
-pub const FLIPS_M0PLUS: FlipsPace = FlipsPace { steps: 150, ..FLIPS_M3 };
-/// ... so that at 125 MHz it is about as quick.
-pub const FLIPS_PICO: FlipsPace = FLIPS_M3;
+/// The same on a Cortex-M0+ at 125 MHz: 2,200 cycles a step.
+pub const FLIPS_M0PLUS: FlipsPace = FLIPS_M3;
 /// `f32` on a Cortex-M4F: 230 cycles a step, of 417,000 in a frame at 25 MHz, ...
 pub const FLIPS_M4F: FlipsPace = FlipsPace { steps: 650, start: 60, never: 10 };
 /// ... and of 2,800,000 at 168 MHz.
 pub const FLIPS_F405: FlipsPace = FlipsPace { steps: 5500, ..FLIPS_M4F };
 /// On this processor.
-pub const FLIPS: FlipsPace = if cfg!(feature = "pico") {
-    FLIPS_PICO
-} else if cfg!(armv6m) {
+pub const FLIPS: FlipsPace = if cfg!(armv6m) {
     FLIPS_M0PLUS
 } else if cfg!(not(target_abi = "eabihf")) {
     FLIPS_M3

@@ -113,7 +113,7 @@ fn measure(board: &'static Board) -> Result<(Memory, f64), CountError> {
     let stack = stack.reached(&mut machine)?;
     let executed = f64::from(highest) / f64::from(board.hertz) / board.instruction();
     let cycles = executed * cycles as f64 / instructions as f64;
-    let idle = 1.0 - cycles * f64::from(TICK_RATE) / f64::from(board.hertz);
+    let idle = 1.0 - cycles * f64::from(TICK_RATE) / f64::from(board.processor_hertz());
     Ok((Memory { stack, ..sections(&elf) }, idle))
 }
 

@@ -4,14 +4,12 @@ use std::process::Command;
 
 use double_pendulum::Parameters;
 use double_pendulum::plan::Method;
-use firmware::config::{CORTEX_M3, CORTEX_M4F};
 use firmware::job::{Arithmetic, Formulation, Model, ROWS, Request, Row};
 use host_tests::commands::count::goal::{GOALS, SECONDS};
 use host_tests::commands::count::{FULL_CYCLE, Target, affordable_steps, step_cost};
 use host_tests::commands::report::accuracy::{self, exact};
 use host_tests::commands::report::costs;
 use host_tests::commands::report::scene::SCENES;
-use host_tests::emulator::boards::Core;
 use host_tests::emulator::toolchain;
 
 /// A tick of the board's clock, 12.5 MHz after reset, under `-icount`, where an instruction takes 1 ns.
@@ -110,7 +108,7 @@ fn a_simulated_second_costs_no_more_than_its_goal() {
 fn a_step_costs_what_the_planner_thinks() {
     let within = 0.9..=1.1;
     for target in &targets() {
-        let costs = if target.core() == Core::M3 { CORTEX_M3.costs } else { CORTEX_M4F.costs };
+        let costs = target.board.processor().costs;
         for (method, name) in [
             (Method::ClosedForm, "f32-linear-direction"),
             (Method::DirectionPlain, "f32-direction"),

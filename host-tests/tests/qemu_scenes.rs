@@ -19,10 +19,6 @@ use support::{application, settings, toolchain};
 const FRAMES: usize = 3;
 const EVERY: u32 = 25;
 
-/// A cycle of the board's processor at 50 MHz, s.
-const CYCLE: f64 = 20e-9;
-/// A frame of a 50 MHz processor, cycles.
-const FRAME: f64 = 50e6 / 60.0;
 /// Frames after the start that are not watched.
 const SETTLING: u32 = 6;
 
@@ -30,7 +26,7 @@ const SETTLING: u32 = 6;
 /// 10 s; the M4F is far below its budget.
 fn watched(board: &Board, name: SceneName) -> u32 {
     let seconds = match (board.core(), name) {
-        (Core::M4F, _) => 1,
+        (Core::M4F | Core::M0Plus, _) => 1,
         (Core::M3, SceneName::Butterfly) => 10,
         (Core::M3, _) => 3,
     };
@@ -59,7 +55,7 @@ fn the_panel_shows_what_the_host_draws() -> Result<(), QemuError> {
         let mut machine = Lockstep::start(&settings(&toolchain, board, &elf))?;
         // The map of flips is computed in another arithmetic and at another pace where there is a floating-point unit: test
         // `qemu_flips`.
-        let same = |name: &&SceneName| **name != SceneName::Flips || board.core() == Core::M3;
+        let same = |name: &&SceneName| **name != SceneName::Flips || board.core() != Core::M4F;
         for &name in SceneName::ALL.iter().filter(same) {
             let mut scene =
                 Show::on(board.processor(), name, &name.first_settings()).expect("a scene of the catalogue");
@@ -113,8 +109,10 @@ fn every_scene_keeps_within_its_share_of_a_frame() -> Result<(), CountError> {
             }
             let Cost { instructions, cycles, .. } = profile.whole();
             let cycles_per_instruction = cycles as f64 / instructions as f64;
-            let [scene, busy] = [scene, busy].map(|cycles| f64::from(cycles) * CYCLE / board.instruction());
-            let share = |instructions: f64| instructions * cycles_per_instruction / FRAME;
+            let [scene, busy] =
+                [scene, busy].map(|cycles| f64::from(cycles) / f64::from(board.hertz) / board.instruction());
+            let frame = f64::from(board.processor_hertz()) / f64::from(TICK_RATE);
+            let share = |instructions: f64| instructions * cycles_per_instruction / frame;
             println!(
                 "{:15} {:12} scene {scene:7.0} instructions of {cycles_per_instruction:.2} cycles, {:4.1} % of a frame; \
                  all {busy:7.0}, idle {:4.1} %",
@@ -123,7 +121,8 @@ fn every_scene_keeps_within_its_share_of_a_frame() -> Result<(), CountError> {
                 100.0 * share(scene),
                 100.0 * (1.0 - share(busy)),
             );
-            if share(scene) > budgets::SCENE {
+            let most = if board.core() == Core::M0Plus { budgets::SCENE_M0PLUS } else { budgets::SCENE };
+            if share(scene) > most {
                 too_dear.push(format!("{}: {} takes {:.3} of a frame", board.name, name.name(), share(scene)));
             }
             if 1.0 - share(busy) < budgets::IDLE {

@@ -21,7 +21,7 @@ const GRAVITY: f32 = 9.81;
 const MOST_STEPS: i64 = 65_536;
 
 const EXAMPLES: &str = "Examples:
-  cargo count                                             every arithmetic on both cores
+  cargo count                                             every arithmetic on all three cores
   cargo count f32-compensated --on lm3s6965evb-m4 --listing
   cargo count --elf firmware.elf --function step --seconds 5";
 
@@ -32,7 +32,7 @@ struct Arguments {
     /// Only arithmetics whose name contains this
     #[arg(default_value = "")]
     arithmetic: String,
-    /// Only this board; else the two with a panel, a Cortex-M3 and a Cortex-M4F; with --elf lm3s6965evb-m4
+    /// Only this board; else the three of QEMU with a panel, a Cortex-M3, M4F and M0+; with --elf lm3s6965evb-m4
     #[arg(long, value_name = "NAME", value_parser = cli::choice(&BOARDS, |board| board.name))]
     on: Option<&'static Board>,
     /// Count a function of this program instead, with what interrupts it; the program ends itself by semihosting, or is

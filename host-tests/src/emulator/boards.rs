@@ -19,17 +19,26 @@ pub struct Board {
     pub feature: &'static str,
     /// Which of QEMU's serial ports is the link, counted from 0.
     pub serial_port: usize,
-    /// Its processor's clock, Hz.
+    /// Its clock, which it measures time by, Hz.
     pub hertz: u32,
     /// Whether it has the OLED panel and the five buttons.
     pub has_panel: bool,
 }
 
 impl Board {
+    /// The clock of the processor that it stands for, Hz: QEMU's machine with a Cortex-M0+ stands for a Raspberry Pi Pico.
+    pub fn processor_hertz(&self) -> u32 {
+        if self.core() == Core::M0Plus { 125_000_000 } else { self.hertz }
+    }
+
     /// How long an instruction takes where the clock counts them, as a power of two of a nanosecond, for QEMU knows no others:
-    /// on the STM32F405 1.3 cycles, on the others 1.6 of 50 MHz.
+    /// on the STM32F405 1.3 cycles, on the Cortex-M0+ 2 of 125 MHz, on the others 1.6 of 50 MHz.
     pub fn instruction_shift(&self) -> u32 {
-        if self.hertz > 50_000_000 { 3 } else { 5 }
+        match self.processor_hertz() {
+            ..=50_000_000 => 5,
+            50_000_001..=125_000_000 => 4,
+            _ => 3,
+        }
     }
 
     /// The same in seconds.
@@ -41,20 +50,29 @@ impl Board {
     pub fn processor(&self) -> Processor {
         match (self.binary, self.core()) {
             ("stm32f405", _) => config::STM32F405,
-            ("pico", _) => config::PICO,
             (_, Core::M4F) => config::CORTEX_M4F,
             (_, Core::M3) => config::CORTEX_M3,
+            (_, Core::M0Plus) => config::CORTEX_M0PLUS,
         }
+    }
+
+    /// Whether its processor has a memory protection unit and tells the cause of a fault. An M0+ tells none, and QEMU's has no such unit.
+    pub fn is_guarded(&self) -> bool {
+        self.core() != Core::M0Plus
     }
 
     /// Whose timings hold.
     pub fn core(&self) -> Core {
-        if self.cpu == "cortex-m3" { Core::M3 } else { Core::M4F }
+        match self.cpu {
+            "cortex-m3" => Core::M3,
+            "cortex-m0" => Core::M0Plus,
+            _ => Core::M4F,
+        }
     }
 }
 
 /// Every board, the default one first.
-pub const BOARDS: [Board; 4] = [
+pub const BOARDS: [Board; 5] = [
     Board {
         name: "lm3s6965evb",
         machine: "lm3s6965evb",
@@ -89,6 +107,17 @@ pub const BOARDS: [Board; 4] = [
         has_panel: false,
     },
     STM32F405,
+    Board {
+        name: "lm3s6965evb-m0",
+        machine: "lm3s6965evb",
+        cpu: "cortex-m0",
+        target: "thumbv6m-none-eabi",
+        binary: "lm3s6965evb",
+        feature: "",
+        serial_port: 0,
+        hertz: 50_000_000,
+        has_panel: true,
+    },
 ];
 
 /// The board that exists: the one ELF file is flashed and emulated. Its panel, button and I2C are not emulated.
@@ -129,4 +158,7 @@ pub enum Core {
     M3,
     /// Cortex-M4 with the single-precision floating-point unit.
     M4F,
+    /// Cortex-M0+ with the multiplier of 1 cycle, no floating-point unit. QEMU knows it as the Cortex-M0, whose instructions are the
+    /// same.
+    M0Plus,
 }

@@ -1,9 +1,11 @@
 //! Fixed point: numbers of 32 and 64 bits that hold one motion, in units that its energy chooses.
 
+mod product;
 mod q30;
 mod q64;
 mod scaling;
 
+pub(crate) use product::{IN_HALVES, product};
 #[cfg(test)]
 pub(crate) use q30::watch;
 pub(crate) use q30::{Gravity, Q30, Slope, Torque};

@@ -2,6 +2,7 @@
 
 use core::ops::{Add, Mul, Neg, Sub};
 
+use super::product::{product, upper};
 use super::{FixedPoint, Shifts};
 use crate::ring::Ring;
 use crate::sealed::Sealed;
@@ -93,12 +94,6 @@ fixed_point! {
     Torque
 }
 
-/// The upper word of a product, which is the instruction's second register: rounded down.
-#[inline(always)]
-fn upper(a: i32, b: i32) -> i32 {
-    ((i64::from(a) * i64::from(b)) >> 32) as i32
-}
-
 impl Gravity {
     /// Steps in 1.
     pub const STEPS: f64 = (1_u64 << 33) as f64;
@@ -120,11 +115,11 @@ impl Q30 {
     /// Itself, where it is nearly r = 1/(m + S^2), by a step of Newton's: the only number that is rounded to nearest.
     #[inline(always)]
     pub fn inverse_of(self, inertia: Self, s: Self, shifts: &Shifts) -> Self {
-        let part = word((i64::from(s.0) * i64::from(self.0) + (1 << 29)) >> 30);
-        let square = shifts.inverse_product(i64::from(part) * i64::from(s.0));
-        let missing = (1 << 60) - i64::from(inertia.0) * i64::from(self.0) - square;
+        let part = word((product(s.0, self.0) + (1 << 29)) >> 30);
+        let square = shifts.inverse_product(product(part, s.0));
+        let missing = (1 << 60) - product(inertia.0, self.0) - square;
         // what is missing is small: 32 bits after the point
-        let change = i64::from(self.0) * i64::from(word(missing >> 28));
+        let change = product(self.0, word(missing >> 28));
         self + Self(((change + (1 << 31)) >> 32) as i32)
     }
 }
@@ -163,7 +158,7 @@ impl Ring for Q30 {
     fn torque(self, rate: Self, direction: Self) -> Torque {
         // the force: below 1/2, in steps of 2^-32
         let force = word(i64::from(upper(self.0, rate.0)) << 4);
-        Torque(word((i64::from(force) * i64::from(direction.0)) >> 31))
+        Torque(word(product(force, direction.0) >> 31))
     }
     #[inline(always)]
     fn weight(gravity: Gravity, direction: Self) -> Torque {
@@ -186,6 +181,6 @@ impl FixedPoint for Q30 {
     }
     #[inline(always)]
     fn product_up(self, factor: Self, by: u32) -> Self {
-        Self(word((i64::from(self.0) * i64::from(factor.0)) >> (30 - by)))
+        Self(word(product(self.0, factor.0) >> (30 - by)))
     }
 }

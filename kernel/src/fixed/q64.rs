@@ -3,6 +3,7 @@
 use core::ops::{Add, Mul, Neg, Sub};
 
 use super::FixedPoint;
+use super::product::product;
 use crate::ring::Ring;
 use crate::sealed::Sealed;
 
@@ -33,7 +34,7 @@ impl Q64 {
     /// The product with `factor` 2^-32, rounded down.
     #[inline(always)]
     pub fn times_word(self, factor: i32) -> Self {
-        let [upper, lower] = self.words().map(|word| i64::from(word) * i64::from(factor));
+        let [upper, lower] = self.words().map(|word| product(word, factor));
         Self(upper + (lower >> 32))
     }
 
@@ -95,8 +96,7 @@ impl Mul for Q64 {
     #[inline(always)]
     fn mul(self, factor: Self) -> Self {
         let ([a, a_lower], [b, b_lower]) = (self.words(), factor.words());
-        let [a, a_lower, b, b_lower] = [a, a_lower, b, b_lower].map(i64::from);
-        Self(a * b + ((a * b_lower).wrapping_add(a_lower * b) >> 32))
+        Self(product(a, b) + (product(a, b_lower).wrapping_add(product(a_lower, b)) >> 32))
     }
 }
 

@@ -11,6 +11,7 @@
 //! | A floating-point quotient or root takes the unit 14 cycles, the core 1. | DDI 0439, notes of table 7-1 |
 //! | A move of one register to or from the floating-point unit takes 1 cycle. | DDI 0439, table 7-1 |
 //! | A floating-point result is there 1 cycle later for the very next instruction. | DDI 0439, there; 200 dependent sums in 401 cycles, 200 independent ones in 201 on an STM32F429 |
+//! | On the M0+ nothing waits for its neighbours; a taken branch refills the pipeline in 1 cycle, a pop of pc in 2. | DDI 0484C, table 3-1; the RP2040's own delay loop of `subs` and `bcs`, "3 cycles per loop" (pico-sdk, `busy_wait_at_least_cycles`) |
 //! | On the M3, what leaves a new address in its register (pre- and post-indexed) is not pipelined after a load. | jnk0le/random |
 //!
 //! What the rules leave out: memory with wait states, tables in the flash that code is fetched from, several 32-bit
@@ -36,7 +37,7 @@ use crate::emulator::boards::Core;
 
 /// What every table of cycles says about them.
 pub const ERROR_BAR: &str = "Cycles are estimated: within 5.3 % of 47 published figures of AES and P-256 on four chips, rms \
-     1.8 %, mostly too low; floating-point sequences held against chips for VADD, VDIV and moves only; wait states cost extra \
+     1.8 %, mostly too low, none of them with an M0+; floating-point sequences held against chips for VADD, VDIV and moves only; wait states cost extra \
      (34 % at 2 on an STM32F1 for one AES).";
 
 /// Executed instructions, which are exact, and the cycles they take by the published timings, which are an estimate.
@@ -104,11 +105,13 @@ impl Pipeline {
         };
         let refill = match instruction.row.class {
             _ if !branches => 0,
+            Class::LoadList => INDIRECT_REFILL,
             Class::Branch => DIRECT_REFILL,
+            _ if self.core == Core::M0Plus => DIRECT_REFILL,
             _ => INDIRECT_REFILL,
         };
         let is_split = instruction.size() == 4 && registers.pc() % 4 == 2;
-        let fetch = if self.branched && is_split { UNALIGNED_TARGET } else { 0 };
+        let fetch = if self.branched && is_split && self.core != Core::M0Plus { UNALIGNED_TARGET } else { 0 };
         let (waits, saved) = self.previous.map_or((0, 0), |previous| self.neighbours(&previous, &instruction));
         if let Some(register) = instruction.late_result() {
             self.unit_free = start + stalls + own;
@@ -129,6 +132,9 @@ impl Pipeline {
 
     /// The cycles that `instruction` waits for `previous`, and those it saves by following it.
     fn neighbours(&self, previous: &Instruction, instruction: &Instruction) -> (u64, u64) {
+        if self.core == Core::M0Plus {
+            return (0, 0);
+        }
         let depends = instruction.is_addressed_by(previous);
         match (previous.row.class, instruction.row.class) {
             (Class::Load, Class::Load | Class::Store) if !depends => {

@@ -106,8 +106,8 @@ pub struct Row {
     pub name: &'static str,
     pub(super) mask: u32,
     pub(super) value: u32,
-    /// On the M3 and the M4.
-    pub(super) cycles: [u64; 2],
+    /// On the M3, the M4 and the M0+.
+    pub(super) cycles: [u64; 3],
     /// What else decides.
     pub class: Class,
     /// What a load or store makes its address of.
@@ -122,6 +122,7 @@ impl Row {
         match core {
             Core::M3 => self.cycles[0],
             Core::M4F => self.cycles[1],
+            Core::M0Plus => self.cycles[2],
         }
     }
 
@@ -136,7 +137,7 @@ pub(super) const fn row(
     name: &'static str,
     mask: u32,
     value: u32,
-    cycles: [u64; 2],
+    cycles: [u64; 3],
     class: Class,
     writes: &'static [Field],
 ) -> Row {

@@ -2,7 +2,7 @@
 
 use double_pendulum::form::{DirectionForm, Fixed32Form, Plain, Watched};
 use double_pendulum::{Error, Parameters};
-use firmware::config::{FLIPS_F405, FLIPS_M3, FLIPS_M4F, FlipsPace, TICK_RATE};
+use firmware::config::{FLIPS_F405, FLIPS_M0PLUS, FLIPS_M3, FLIPS_M4F, FlipsPace, TICK_RATE};
 use firmware::graphics::canvas::{HEIGHT, WIDTH};
 use firmware::graphics::fade_layer::FadeLayer;
 use firmware::motion::settings::Settings;
@@ -95,6 +95,7 @@ fn played(board: &Board) -> Result<(FlipsPace, u32), Error> {
     let float = |pace| Ok((pace, ticks::<DirectionForm<f32, Plain>>(pace)?));
     match board.core() {
         Core::M3 => Ok((FLIPS_M3, ticks::<Fixed32Form>(FLIPS_M3)?)),
+        Core::M0Plus => Ok((FLIPS_M0PLUS, ticks::<Fixed32Form>(FLIPS_M0PLUS)?)),
         Core::M4F => float(if *board == STM32F405 { FLIPS_F405 } else { FLIPS_M4F }),
     }
 }

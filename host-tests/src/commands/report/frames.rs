@@ -80,7 +80,7 @@ impl Counted {
 
     /// Of the time between frames.
     pub fn share(&self) -> f64 {
-        self.whole() as f64 * f64::from(TICK_RATE) / f64::from(self.board.hertz)
+        self.whole() as f64 * f64::from(TICK_RATE) / f64::from(self.board.processor_hertz())
     }
 }
 

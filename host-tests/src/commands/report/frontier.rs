@@ -37,6 +37,7 @@ pub fn advice(priced: &[Priced], boards: &[&Board]) -> Vec<String> {
         let core = match board.core() {
             Core::M3 => "Cortex-M3",
             Core::M4F => "Cortex-M4F",
+            Core::M0Plus => "Cortex-M0+",
         };
         for scene in &SCENES[..2] {
             let take = |(purpose, serves): (&str, Serves)| match cheapest(priced, scene, board, serves) {

@@ -2,7 +2,7 @@
 
 use super::Fixed32State;
 use super::setting::{COARSEST, Setting};
-use crate::fixed::{FixedPoint, Q30, Shifts, Slope, Torque};
+use crate::fixed::{FixedPoint, IN_HALVES, Q30, Shifts, Slope, Torque, product};
 use crate::form::equations::{Reverse, turning};
 use crate::ring::Ring;
 
@@ -25,6 +25,7 @@ impl Fixed32State {
     #[inline(always)]
     fn run_specialised(&mut self, units: Shifts, steps: u32) {
         match self.units.halvings {
+            halvings if IN_HALVES => self.run(units, halvings, steps),
             2 => self.run(units, 2, steps),
             3 => self.run(units, 3, steps),
             4 => self.run(units, 4, steps),
@@ -96,11 +97,11 @@ impl Fixed32State {
         let (turns4, torques4) = (turning(&z4, rates4.angles), rates4.momenta);
         for i in 0..4 {
             let sum = (turns1[i] - turns4[i]) + middle[i] + middle[i];
-            self.z[i] += i64::from(sum.0) * i64::from(weights[0]);
+            self.z[i] += product(sum.0, weights[0]);
         }
         for i in 0..2 {
             let sum = (torques1[i] - torques4[i]) + middle_torques[i] + middle_torques[i];
-            self.z[4 + i] += i64::from(sum.0) * i64::from(weights[1]);
+            self.z[4 + i] += product(sum.0, weights[1]);
         }
         let s = self.quantities()[2];
         self.inverse = r4.inverse_of(coefficients.inertia, s, &units);

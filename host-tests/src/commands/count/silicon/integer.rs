@@ -3,7 +3,7 @@
 use super::{ADDS_R4_R5_R6, Word, cycles, decoded, run};
 use crate::commands::count::pipeline::Pipeline;
 use crate::commands::count::trace::Registers;
-use crate::emulator::boards::Core::{M3, M4F};
+use crate::emulator::boards::Core::{M0Plus, M3, M4F};
 
 const ADDS_R0_4: Word = 0x3004_0000;
 const CMP_R0: Word = 0x2800_0000;
@@ -31,6 +31,8 @@ const LDM_R0: Word = 0xc806_0000;
 const LDR_R1_AFTER_R2: Word = 0xf852_1b04;
 const LDR_R3_AFTER_R4: Word = 0xf854_3b04;
 const STR_R1_AFTER_R2: Word = 0xf842_1b04;
+const MULS: Word = 0x4350_0000;
+const MRS: Word = 0xf3ef_8008;
 const UMULL: Word = 0xfba2_0103;
 const UMLAL: Word = 0xfbe2_0103;
 const UDIV_R0_R1_R2: Word = 0xfbb1_f0f2;
@@ -126,6 +128,20 @@ fn a_branch_to_a_32_bit_instruction_off_a_word_s_boundary_takes_a_cycle_more() {
         assert_eq!([0x100, 0x102].map(|address| turn(core, CMP_W_R0, address)), [4, 5]);
         assert_eq!([0x100, 0x102].map(|address| turn(core, CMP_R0, address)), [4, 4]);
     }
+}
+
+#[test]
+fn an_m0_plus_takes_what_its_manual_says_whatever_the_neighbours() {
+    assert_eq!(
+        [LDR_R1_AT_R0, LDR_R0_AT_R0, STR_R1_AT_R2, STR_R1_AT_R3_R2].map(|word| cycles(M0Plus, 100, &[word])),
+        [200; 4]
+    );
+    assert_eq!(cycles(M0Plus, 1, &[SUB_SP, STR_R0_AT_SP, LDM_R0, MULS, MRS]), 1 + 2 + 3 + 1 + 3);
+    let registers = Registers::default();
+    let taken = |word| Pipeline::new(M0Plus).execute(decoded(word), &registers, true).cycles;
+    assert_eq!([BNE, BL, BX_LR, POP_PC].map(taken), [2, 3, 2, 4]);
+    // the delay loop of the Pico's kit for C: "3 cycles per loop"
+    assert_eq!(cycles(M0Plus, 1, &[SUBS_R0_1]) + taken(BNE), 3);
 }
 
 #[test]
