@@ -11,7 +11,9 @@ use firmware::app::warm_restart::Cause;
 use firmware::config::{HOLD_TICKS, TICK_RATE, WATCHDOG_SECONDS};
 use firmware::graphics::bitmap::Bitmap;
 use firmware::motion::settings::Settings;
-use firmware::protocol::{Choose, Done, Field, Frame, Pause, Press, Restarted, Set, Unit};
+use firmware::protocol::{
+    BoardName, CRC, Choose, Done, Field, Frame, Identify, Identity, Pause, Press, Restarted, Set, Unit,
+};
 use firmware::scenes::SceneName;
 use host_tests::emulator::boards::PICO;
 use host_tests::emulator::flash::flash_image;
@@ -156,6 +158,21 @@ fn commands_are_obeyed_from_either_side() -> Result<(), PicoError> {
     }
     let frame = next_frame(&mut board)?;
     assert_eq!((frame.scene, frame.mass_ratio), (SceneName::Butterfly.code(), 2.5));
+    Ok(())
+}
+
+#[test]
+fn it_says_which_board_and_which_program_it_is() -> Result<(), Box<dyn Error>> {
+    let (_, image) = flash_image(&std::fs::read(application(&PICO))?)?;
+    let mut board = board()?;
+    board.run(PICTURE)?;
+    board.send(&Identify { request: 1 })?;
+    let messages = board.run(4 * TICK)?;
+    let identity: Identity = messages.iter().find_map(Received::read).expect("an answer");
+    assert_eq!((identity.board, identity.hertz), (BoardName::Pico.code(), PICO.hertz));
+    let program = &image[256..][..identity.image_bytes as usize];
+    assert_eq!(identity.image, CRC.checksum(program));
+    assert!(image.len() - 256 - program.len() < 256, "nearly all of it");
     Ok(())
 }
 

@@ -16,7 +16,7 @@ use firmware::protocol::{BoardName, Identify, Identity};
 use crate::commands::demo;
 use crate::console::cli::{complain, say};
 use crate::console::progress::Progress;
-use crate::emulator::boards::BOARDS;
+use crate::emulator::boards::{BOARDS, every_board};
 use report::{Chip, Report};
 use talk::Talk;
 
@@ -31,9 +31,10 @@ pub fn run(options: &Options) -> anyhow::Result<bool> {
     let scenes = scenes::watch(&mut talk, identity.hertz)?;
     drop(progress);
     let asked = if options.no_questions { vec![] } else { questions::ask(&mut talk, name)? };
-    let board = BOARDS.iter().find(|board| board.name == name);
+    let board = every_board().find(|board| board.name == name);
     let program = program::compare(board, &identity)?;
-    if let Some(board) = board {
+    // Instructions are counted in QEMU, on a board with the same processor.
+    if let Some(board) = board.and_then(|board| BOARDS.iter().find(|counted| counted.target == board.target)) {
         cycles::estimate(&mut cycles, board)?;
     }
     let chip = Chip::new(name, &identity);
