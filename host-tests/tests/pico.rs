@@ -110,7 +110,7 @@ fn stand_still(board: &mut Machine) -> Result<Frame, PicoError> {
 #[test]
 fn the_panel_shows_the_hosts_picture() -> Result<(), PicoError> {
     let mut board = board()?;
-    for name in [SceneName::Page, SceneName::Figure7, SceneName::Butterfly] {
+    for name in [SceneName::Page, SceneName::Figure7, SceneName::Butterfly, SceneName::Flips] {
         board.send(&Choose { request: 1, scene: name.code() })?;
         board.send(&Pause { request: 2, paused: 0 })?;
         board.run(Duration::from_millis(700))?;
