@@ -83,6 +83,9 @@ pub fn ready_for_pico() -> Result<Rp2040js, SetupError> {
 
 /// The same, brought if need be; and a line for each thing that was done for it.
 pub fn set_up_pico() -> Result<(Rp2040js, Vec<String>), SetupError> {
+    if let Ok(emulator) = rp2040js::detect(&Host) {
+        return Ok((emulator, Vec::new()));
+    }
     let _turn = Lock::take(&workspace().join("target/setup.lock"))?;
     rp2040js::set_up(&Host)
 }
