@@ -294,14 +294,14 @@ fn what_has_not_changed_is_not_sent() {
     let line = Line::to(Controller::at(0x3C));
     let mut panel = Ssd1306::new(Bus::new(&line));
     let mut canvas = scene(30);
-    for x in [None, None, Some(20), Some(20)] {
-        x.into_iter().for_each(|x| canvas.update(x, 7, |grey| 15 - grey));
+    for changed in [&[][..], &[], &[20], &[20, 90]] {
+        changed.iter().for_each(|&x| canvas.update(x, 7, |grey| 15 - grey));
         assert_eq!(panel.flush(&canvas), Ok(()));
         line.borrow_mut().run(LONG);
     }
     assert_eq!(line.borrow().sent, 3, "the second frame was the first");
-    // An address, what follows, and the window; an address, what follows, and one byte; the stop.
-    assert_eq!(line.borrow().taken, (1 + 8 * BYTE) + (1 + 3 * BYTE) + 1);
+    // Twice an address, what follows, and the window; an address, what follows, and one byte; the stop.
+    assert_eq!(line.borrow().taken, 2 * ((1 + 8 * BYTE) + (1 + 3 * BYTE)) + 1);
 }
 
 /// Frames of each scene: 5 s.
