@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use double_pendulum::plan::{Budget, Costs, Limit, Method, Plan, PlanError, Problem, Quantity, Search, plan};
+use double_pendulum::plan::{Budget, Costs, Limit, Method, Plan, PlanError, Problem, Quantity, Search, Way, plan};
 use double_pendulum::{Error, Motion, Parameter, Parameters};
 use firmware::config::{CORTEX_M3, STM32F405};
 use firmware::motion::planner::half_pixel;
@@ -81,6 +81,43 @@ fn budgets_are_kept() {
         }
     }
     assert!((20..64).contains(&found), "{found} of 64: some hold, some cannot be had");
+}
+
+/// What a plan costs is just enough for it; by less, another is found that costs less.
+#[test]
+fn a_budget_that_is_just_enough_is_enough() {
+    for (mass_ratio, degrees) in [(1.0, 60.0), (1.0, 120.0), (2.75, 171.0), (1e3, 30.0)] {
+        let scene = scene(mass_ratio, degrees, 20.0);
+        for costs in [&M3, &M4F] {
+            let within = |frame| plan(&scene, costs, &Budget { frame, planning: 1e10 });
+            let lavish = within(1e6).expect("a good scene");
+            let enough = within(lavish.cost).expect("a good scene");
+            assert_eq!((enough.method, enough.steps, enough.horizon), (lavish.method, lavish.steps, lavish.horizon));
+            if let Ok(frugal) = within(lavish.cost.next_down()) {
+                assert!(frugal.cost < lavish.cost, "{frugal:?} {lavish:?}");
+            }
+        }
+    }
+}
+
+/// The way that lasts longest is in 64 bits where a frame can pay for it, and else what it can pay for.
+#[test]
+fn the_lasting_way_is_what_a_frame_can_pay_for() {
+    for degrees in [60.0, 120.0, 171.0] {
+        let Problem { pendulum, start, .. } = scene(2.75, degrees, 20.0);
+        for costs in [&M3, &M4F] {
+            let within = |frame| Way::lasting(&pendulum, &start, RATE, costs, frame).expect("a pendulum");
+            let cost = |way: Way| costs.of_frame(way.method, way.steps);
+            let lavish = within(1e7);
+            assert_eq!((lavish.method, within(cost(lavish))), (Method::Fixed64, lavish));
+            let frugal = within(cost(lavish).next_down());
+            assert!(cost(frugal) < cost(lavish), "{frugal:?} {lavish:?}");
+            let poor = within(costs.fixed64.next_down());
+            assert!(poor.method != Method::Fixed64 && cost(poor) < costs.fixed64, "{poor:?}");
+            let poorer = within(cost(poor).next_down());
+            assert!(poorer.steps == (poor.steps / 2).max(1), "{poorer:?} {poor:?}");
+        }
+    }
 }
 
 /// A light elbow at 90 degrees: steps that resolve it cost several times what a Cortex-M3 has, and the closed form is wrong
