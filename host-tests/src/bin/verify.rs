@@ -18,6 +18,7 @@ struct Arguments {}
 fn main() -> ExitCode {
     cli::main(|_: &Arguments| {
         toolchain::set_up().map_err(Refused::because)?;
+        toolchain::set_up_pico().map_err(Refused::because)?;
         test()
     })
 }
