@@ -88,12 +88,12 @@ pub const CORTEX_M0PLUS: Processor = Processor {
         closed_form: 10_500.0,
         direction_plain: 19_900.0,
         direction: 23_000.0,
-        fixed32: 2_170.0,
-        fixed64: 78_000.0,
-        preparation: 620_000.0,
+        fixed32: 2_900.0,
+        fixed64: 88_000.0,
+        preparation: 1_000_000.0,
     },
     frame: 300_000.0,
-    look_ahead: 530_000.0,
+    look_ahead: 600_000.0,
 };
 /// A Cortex-M4F, whose floating-point unit knows `f32` only: the slowest board, at 25 MHz, has 417,000 cycles in a tick. A
 /// plain step costs less than the closed form's two sincos.
