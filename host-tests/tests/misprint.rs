@@ -1,6 +1,9 @@
 //! The page's equal-rod form as printed, against the right one, at the settings of its figure 7.
 
 use double_pendulum::{Parameters, Pendulum, State, rk4};
+use firmware::config::{HALF_PIXEL, TICK_RATE};
+use firmware::graphics::view::{Place, View};
+use firmware::motion::misprinted::Misprinted;
 use host_tests::oracle::{textbook, tolerances};
 
 const MU: f64 = 2.75;
@@ -81,5 +84,34 @@ fn with_equal_masses_the_printed_form_is_right() {
             (printed - right).abs() < tolerances::DERIVATIVES.double * right.abs().max(1.0),
             "{printed} instead of {right}"
         );
+    }
+}
+
+#[test]
+fn what_is_shown_of_the_printed_form_is_right_to_half_a_pixel_for_10_s() {
+    const STEPS_PER_TICK: usize = 64;
+    let (pendulum, start) = figure_7();
+    let view = View::new(&pendulum.parameters().cast(), Place::HALVES[1]);
+    let mut shown = Misprinted::new(&pendulum.parameters().cast(), &start.cast());
+    let mut z = start.into();
+    for tick in 1..=10 * TICK_RATE {
+        shown.tick();
+        for _ in 0..STEPS_PER_TICK {
+            let rhs = |z: &[f64; 4]| textbook::misprinted_equal_rods(MU, 1.0, 9.8, z);
+            z = rk4::step(rhs, &z, 1.0 / (TICK_RATE as usize * STEPS_PER_TICK) as f64);
+        }
+        let state = State::from(z);
+        let exact = view.bobs([state.a1, state.a2].map(|angle| [angle.sin() as f32, angle.cos() as f32]));
+        for ((x, y), (exact_x, exact_y)) in view.bobs(shown.directions()).into_iter().zip(exact) {
+            let off = (x - exact_x).hypot(y - exact_y);
+            assert!(off <= HALF_PIXEL, "{off} pixels in tick {tick}");
+        }
+        if tick <= 5 * TICK_RATE {
+            let (energy, exact) = (f64::from(shown.energy()), pendulum.energy(&state));
+            assert!(
+                (energy - exact).abs() < tolerances::MISPRINT_SHOWN,
+                "{energy} J instead of {exact} in tick {tick}"
+            );
+        }
     }
 }

@@ -169,4 +169,9 @@ impl Energy {
         let scale = self.start - self.pendulum.least_energy();
         if scale > 0.0 { (self.pendulum.energy(state) - self.start) / scale } else { 0.0 }
     }
+
+    /// The energy, J, that has this [`error`](Self::error).
+    pub fn of_error(&self, error: f32) -> f32 {
+        self.start + error * (self.start - self.pendulum.least_energy())
+    }
 }
