@@ -50,14 +50,14 @@ fn what_lies_outside_is_not_drawn() {
     for out in [-1, i32::MIN, i32::MAX, width.max(height)] {
         for (x, y) in [(out, 0), (0, out), (out, out), (width, 0), (0, height)] {
             canvas.update(x, y, |_| 15);
-            canvas.stamp(x, y, 0x80, 15);
+            canvas.stamp(x, y, 0x80 << 56, 15);
             assert_eq!(canvas.get(x, y), None);
         }
     }
     assert_eq!(canvas, Canvas::default());
-    canvas.stamp(-2, 0, 0xFF, 9);
-    canvas.stamp(width - 3, 1, 0xFF, 9);
-    assert_eq!((light(&canvas), grey(&canvas, 0, 0), grey(&canvas, 6, 0)), ((6 + 3) * 9, 9, 0));
+    canvas.stamp(-2, -6, u64::MAX, 9);
+    canvas.stamp(width - 3, height - 1, u64::MAX, 9);
+    assert_eq!((light(&canvas), grey(&canvas, 5, 1), grey(&canvas, 6, 1)), ((2 * 6 + 3) * 9, 9, 0));
 }
 
 #[test]

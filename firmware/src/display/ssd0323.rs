@@ -106,9 +106,9 @@ impl<'a, Spi: SpiDevice, Pin: OutputPin> Ssd0323<'a, Spi, Pin> {
 /// The first and the last byte of the words in which two rows differ; `None` if they are alike.
 fn differing(Row(old): &Row, Row(new): &Row) -> Option<(usize, usize)> {
     const WORD: usize = size_of::<u32>();
-    let mut words = old.as_chunks::<WORD>().0.iter().zip(new.as_chunks::<WORD>().0);
-    let first = words.position(|(old, new)| old != new)?;
-    let last = words.rposition(|(old, new)| old != new).map_or(first, |further| first + 1 + further);
+    let words = || old.as_chunks::<WORD>().0.iter().zip(new.as_chunks::<WORD>().0);
+    let first = words().position(|(old, new)| old != new)?;
+    let last = words().rposition(|(old, new)| old != new)?;
     Some((WORD * first, WORD * last + WORD - 1))
 }
 

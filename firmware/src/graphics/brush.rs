@@ -58,8 +58,9 @@ impl Stroke {
             let Some(row) = canvas.row_mut(y) else { return };
             let mut probe = line.probe(columns.start, y);
             for x in columns {
-                if let Some(distance) = line.distance(&probe) {
-                    row.lighten(x, grey(brightness, limit - distance));
+                let covered = line.covered(x, y, &probe);
+                if covered > 0 {
+                    row.lighten(x, grey(brightness, covered));
                 }
                 line.advance(&mut probe);
             }
@@ -85,6 +86,7 @@ impl Disc {
         let edge = i32::from(self.radius) + HALF;
         let (inner, outer) = ((edge - SUBPIXELS).max(0), edge + i32::from(self.gap));
         let wiped = (outer - SUBPIXELS).max(0);
+        let wipe = |old: u8, distance: i32| (((distance - wiped).max(0) as u32 * u32::from(old)) >> SHIFT) as u8;
         let full = grey(brightness, SUBPIXELS);
         let columns = pixels([centre_x; 2], outer, WIDTH);
         for y in pixels([centre_y; 2], outer, HEIGHT) {
@@ -96,10 +98,14 @@ impl Disc {
                 if squared < inner * inner {
                     row.update(x, |_| full);
                 } else if squared < outer * outer {
-                    let distance = root(squared, inner, outer);
-                    let left = (distance - wiped).max(0) as u32;
-                    let grey = grey(brightness, edge - distance);
-                    row.update(x, |old| (((left * u32::from(old)) >> SHIFT) as u8).max(grey));
+                    row.update(x, |old| {
+                        let (low, high) = if squared < edge * edge { (inner, edge) } else { (edge, outer) };
+                        if old == 0 && low == edge {
+                            return 0;
+                        }
+                        let distance = root(squared, low, high);
+                        wipe(old, distance).max(grey(brightness, edge - distance))
+                    });
                 }
             }
         }
@@ -138,11 +144,8 @@ struct Line {
     whole: i32,
 }
 
-/// A pixel as a line sees it.
+/// The middle of a pixel as a line sees it: from the line's start along the line and across it, each times the line's length.
 struct Probe {
-    /// Its middle.
-    at: (i32, i32),
-    /// From the line's start along the line and across it, each times the line's length.
     progress: i32,
     across: i32,
 }
@@ -162,13 +165,16 @@ impl Band {
     const PARTS: u32 = 10;
 
     fn next(&mut self) -> Range<i32> {
-        let middle = (self.middle >> Self::PARTS) - HALF;
+        let middle = (self.middle >> Self::PARTS) + HALF;
         self.middle = self.middle.wrapping_add(self.slope);
-        (middle - self.half) >> SHIFT..((middle + self.half) >> SHIFT) + 1
+        (middle - self.half) >> SHIFT..(middle + self.half) >> SHIFT
     }
 }
 
 impl Line {
+    /// Subpixels that a band is wider than the line: of the divisions and the slope each is off by less than one.
+    const ROUNDED: i32 = 4;
+
     fn new(from: Spot, to: Spot, limit: i32) -> Self {
         let along = from.to(to);
         let length_squared = dot(along, along);
@@ -183,49 +189,51 @@ impl Line {
         if dx.abs() >= 8 * dy.abs() {
             return Band { middle: 0, slope: 0, half: 2 * WIDTH as i32 * SUBPIXELS };
         }
-        // Half a pixel more makes up for all that is rounded here.
         Band {
             middle: (i32::from(self.from.x) + over(dx * (middle(y) - i32::from(self.from.y)))) << Band::PARTS,
             slope: over(dx << (Band::PARTS + SHIFT)),
-            half: over(self.limit * (self.length + 1)).abs() + HALF,
+            half: over(self.limit * (self.length + 1)).abs() + Self::ROUNDED,
         }
     }
 
+    /// From the line's start to the middle of a pixel.
+    fn to(&self, x: i32, y: i32) -> (i32, i32) {
+        (middle(x) - i32::from(self.from.x), middle(y) - i32::from(self.from.y))
+    }
+
     fn probe(&self, x: i32, y: i32) -> Probe {
-        let at = (middle(x), middle(y));
-        let from = (at.0 - i32::from(self.from.x), at.1 - i32::from(self.from.y));
-        Probe { at, progress: dot(self.along, from), across: self.along.0 * from.1 - self.along.1 * from.0 }
+        let to = self.to(x, y);
+        Probe { progress: dot(self.along, to), across: self.along.0 * to.1 - self.along.1 * to.0 }
     }
 
     /// To the pixel on the right.
     #[inline]
     fn advance(&self, probe: &mut Probe) {
-        probe.at.0 += SUBPIXELS;
         probe.progress += self.along.0 * SUBPIXELS;
         probe.across -= self.along.1 * SUBPIXELS;
     }
 
-    /// How far from the line the middle of a pixel is, subpixels: 0 within `whole`; `None` beyond `limit`. Only between the two
-    /// it takes a division.
+    /// How many subpixels of a pixel are covered: `limit`, which is more than all, where its middle is within `whole` of the line;
+    /// none beyond `limit`. Only between the two it takes a division.
     ///
     /// Spots lie within one canvas of the canvas, so differences are below 3 x 128 x 64 = 24,576 across and half that
     /// down, and sums of two products below 24,576^2 x 1.25 = 7.6e8: 31 bits hold them.
     #[inline(always)]
-    fn distance(&self, probe: &Probe) -> Option<i32> {
-        let &Self { from, along, length, limit, whole, .. } = self;
+    fn covered(&self, x: i32, y: i32, probe: &Probe) -> i32 {
+        let &Self { along, length, limit, whole, .. } = self;
         if probe.progress > 0 && probe.progress < self.length_squared {
             return match probe.across.abs() {
-                across if across >= limit * length => None,
-                across if across < whole * length => Some(0),
-                across => across.checked_div(length),
+                across if across >= limit * length => 0,
+                across if across < whole * length => limit,
+                across => limit - across.checked_div(length).unwrap_or_default(),
             };
         }
-        let (dx, dy) = (probe.at.0 - i32::from(from.x), probe.at.1 - i32::from(from.y));
+        let (dx, dy) = self.to(x, y);
         let end = if probe.progress <= 0 { (dx, dy) } else { (dx - along.0, dy - along.1) };
         match dot(end, end) {
-            squared if squared >= limit * limit => None,
-            squared if squared < whole * whole => Some(0),
-            squared => Some(root(squared, whole, limit)),
+            squared if squared >= limit * limit => 0,
+            squared if squared < whole * whole => limit,
+            squared => limit - root(squared, whole, limit),
         }
     }
 }

@@ -37,7 +37,9 @@ impl Clone for Canvas {
     fn clone_from(&mut self, source: &Self) {
         self.all_greys = source.all_greys;
         for (Row(row), Row(from)) in self.rows.iter_mut().zip(&source.rows) {
-            row.as_chunks_mut::<16>().0.iter_mut().zip(from.as_chunks().0).for_each(|(row, from)| *row = *from);
+            let ((left, right), (from_left, from_right)) = (row.split_at_mut(ROW / 2), from.split_at(ROW / 2));
+            right.copy_from_slice(from_right);
+            left.copy_from_slice(from_left);
         }
     }
 }
@@ -116,19 +118,26 @@ impl Canvas {
         }
     }
 
-    /// Gives the pixels of a row whose bits are set one grey; the highest bit is the pixel at `x`.
-    #[inline]
-    pub fn stamp(&mut self, x: i32, y: i32, bits: u8, grey: u8) {
-        const PAIRS: [u8; 4] = [0x00, 0x0F, 0xF0, 0xFF];
-        let Some(Row(row)) = self.row_mut(y) else { return };
-        let mut bits = u32::from(bits) << (24 - (x & 1));
-        let mut place = (x >> 1) as usize;
+    /// Gives pixels one grey: of 8 x 8 from (x, y) on those whose bits are set, the first row in the highest byte, in each the
+    /// leftmost pixel in the highest bit.
+    #[inline(never)]
+    pub fn stamp(&mut self, x: i32, mut y: i32, mut bits: u64, grey: u8) {
+        let (word, shift) = ((x >> 3) as usize, 4 * (x & 7));
+        let greys = u32::from(grey) * 0x1111_1111;
         while bits != 0 {
-            if let Some(pair) = row.get_mut(place) {
-                let mask = PAIRS[(bits >> 30) as usize];
-                *pair = (*pair & !mask) | ((0x11 * (grey & 0x0F)) & mask);
+            if let Some(Row(row)) = self.row_mut(y) {
+                let pixels = nibbles((bits >> 56) as u32);
+                for (word, part) in [(word, pixels >> shift), (word.wrapping_add(1), (pixels << 1) << (31 - shift))] {
+                    if part != 0
+                        && let Some(eight) = row.as_chunks_mut().0.get_mut(word)
+                    {
+                        let part = u32::from_ne_bytes(part.to_be_bytes());
+                        let old = u32::from_ne_bytes(*eight);
+                        *eight = (old ^ ((old ^ greys) & part)).to_ne_bytes();
+                    }
+                }
             }
-            (bits, place) = (bits << 2, place.wrapping_add(1));
+            (bits, y) = (bits << 8, y.wrapping_add(1));
         }
     }
 }
@@ -158,4 +167,12 @@ impl Row {
 #[inline]
 fn shift(x: i32) -> u32 {
     if x & 1 == 0 { 4 } else { 0 }
+}
+
+/// Of eight bits each as a nibble.
+#[inline]
+fn nibbles(bits: u32) -> u32 {
+    let fours = (bits | bits << 12) & 0x000F_000F;
+    let twos = (fours | fours << 6) & 0x0303_0303;
+    15 * ((twos | twos << 3) & 0x1111_1111)
 }

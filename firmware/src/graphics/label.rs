@@ -1,7 +1,5 @@
 //! Numbers as text without floating-point formatting, which alone would take 14 KB of flash.
 
-use core::fmt::Write;
-
 use heapless::String;
 
 /// A label: at most the bytes of what fits beside the motion.
@@ -77,24 +75,37 @@ pub fn percent(percent: u32) -> Label {
 
 /// The time since the start to a tenth of a second: `12.3 s`.
 pub fn time(seconds: f64) -> Label {
-    let tenths = (seconds * 10.0) as u32;
-    let mut label = Label::new();
-    // A label too long for its place ends early; there is nothing else to do about it on a panel.
-    let _ = write!(label, "{}.{} s", tenths / 10, tenths % 10);
-    label
+    written([""; 3], (seconds * 10.0) as u32, 10, " s")
 }
 
 /// `value` rounded to `decimals` places after a name and a gap, and before a unit.
 #[inline(never)]
 fn label(name: &str, gap: &str, value: f32, decimals: u32, unit: &str) -> Label {
-    let one = 10_u32.saturating_pow(decimals).max(1);
-    let rounded = (value.abs() * one as f32 + 0.5) as u32;
+    let one = 10_u32.saturating_pow(decimals);
     let sign = if value < 0.0 { "-" } else { "" };
-    let (whole, fraction) = (rounded / one, rounded % one);
+    written([name, gap, sign], (value.abs() * one as f32 + 0.5) as u32, one, unit)
+}
+
+/// A number of which `one`, a power of ten, is 1.
+#[inline(never)]
+fn written(head: [&str; 3], number: u32, one: u32, unit: &str) -> Label {
     let mut label = Label::new();
-    let _ = match decimals {
-        0 => write!(label, "{name}{gap}{sign}{whole}{unit}"),
-        _ => write!(label, "{name}{gap}{sign}{whole}.{fraction:0width$}{unit}", width = decimals as usize),
+    let mut write = || {
+        head.iter().try_for_each(|part| label.push_str(part))?;
+        let (mut power, mut rest) = (one, number);
+        while power <= number / 10 {
+            power *= 10;
+        }
+        while let Some(digit) = rest.checked_div(power) {
+            label.push(char::from(b'0' + digit as u8))?;
+            if power == one && one > 1 {
+                label.push('.')?;
+            }
+            (rest, power) = (rest - digit * power, power / 10);
+        }
+        label.push_str(unit)
     };
+    // A label too long for its place ends early; there is nothing else to do about it on a panel.
+    let _ = write();
     label
 }

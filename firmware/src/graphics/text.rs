@@ -52,9 +52,9 @@ pub fn write_over(canvas: &mut Canvas, text: &str, anchor: Anchor) {
 fn put_on(canvas: &mut Canvas, text: &str, anchor: Anchor, [ink, ground]: [u8; 2]) {
     let width = width(text);
     let (left, top) = corner(anchor, width);
-    for y in top..top + LINE {
-        let eights = (-1..width).step_by(8);
-        eights.for_each(|x| canvas.stamp(left + x, y, !(0xFF_u32 >> (width - x).min(8)) as u8, ground));
+    for x in (-1..width).step_by(8) {
+        let row = !(0xFF_u32 >> (width - x).min(8)) as u8;
+        canvas.stamp(left + x, top, u64::from_be_bytes([row; LINE as usize]), ground);
     }
     put(canvas, text, (left, top), ink);
 }
@@ -82,7 +82,7 @@ fn corner(anchor: Anchor, width: i32) -> (i32, i32) {
 #[inline(never)]
 fn put(canvas: &mut Canvas, text: &str, (mut left, top): (i32, i32), grey: u8) {
     for Glyph { width, rows } in text.chars().map(glyph) {
-        (top..).zip(rows.to_be_bytes()).for_each(|(y, row)| canvas.stamp(left, y, row, grey));
+        canvas.stamp(left, top, rows, grey);
         left += width;
     }
 }
