@@ -36,8 +36,8 @@ const SECOND: u8 = 110;
 
 /// Both pendulums at one pivot, and the e-foldings of their separation over time.
 ///
-/// Both go in the way that lasts longest, and the plan does not change it: one that is right to half a pixel may be off by far more than a
-/// millionth of a radian, and would soon hide what the twins do.
+/// Both go in the way that lasts longest, and the plan does not change it: one that is right to half a pixel may be off by far
+/// more than a millionth of a radian, and would soon hide what the twins do.
 #[derive(Clone, Debug)]
 pub struct Butterfly {
     first: Simulation,

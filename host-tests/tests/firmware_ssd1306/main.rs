@@ -1,12 +1,12 @@
 //! The one-colour panel: its frame, and its driver against a controller that is stricter than the real one.
 
-use std::cell::RefCell;
+mod bus;
+mod controller;
 
 use embedded_hal::i2c::{ErrorKind, NoAcknowledgeSource};
 use fastrand::Rng;
 use firmware::app::player::Player;
 use firmware::config::{STM32F405, TICK_RATE};
-use firmware::display::outbox::{Outbox, PanelBus, Sent};
 use firmware::display::{Display, Ssd1306, Ssd1306Error};
 use firmware::graphics::bitmap::Bitmap;
 use firmware::graphics::canvas::{Canvas, HEIGHT, WIDTH};
@@ -15,212 +15,13 @@ use firmware::motion::settings::Settings;
 use firmware::scenes::SceneName;
 use host_tests::emulator::host::Show;
 
-/// Commands and how many arguments each takes, from the data sheet's command table; their arguments follow them in the
-/// same message.
-const COMMANDS: [(u8, usize); 19] = [
-    (0x20, 1), // addressing mode
-    (0x21, 2), // columns
-    (0x22, 2), // pages
-    (0x2E, 0), // no scrolling
-    (0x40, 0), // first row shown
-    (0x81, 1), // contrast
-    (0x8D, 1), // charge pump
-    (0xA1, 0), // columns mirrored
-    (0xA4, 0), // show what is in memory
-    (0xA6, 0), // not inverted
-    (0xA8, 1), // rows driven
-    (0xAE, 0), // off
-    (0xAF, 0), // on
-    (0xC8, 0), // rows mirrored
-    (0xD3, 1), // shift of the rows
-    (0xD5, 1), // clock
-    (0xD9, 1), // precharge
-    (0xDA, 1), // wiring of the rows
-    (0xDB, 1), // voltage of rows not driven
-];
+use bus::{BYTE, Bus, Line};
+use controller::Controller;
 
 /// Nobody answered.
 const SILENCE: ErrorKind = ErrorKind::NoAcknowledge(NoAcknowledgeSource::Address);
-/// Bits that 400 kHz carry in a tick; a byte takes 9 with its acknowledgement, a start or stop 1.
+/// Bits that 400 kHz carry in a tick.
 const TICK: u32 = 400_000 / TICK_RATE;
-const BYTE: u32 = 9;
-
-/// An SSD1306 on a bus: panics on anything that the data sheet does not allow.
-struct Controller {
-    address: u8,
-    plugged_in: bool,
-    columns: (u8, u8),
-    pages: (u8, u8),
-    at: (u8, u8),
-    memory: Vec<Option<u8>>,
-    horizontal: bool,
-    on: bool,
-}
-
-impl Controller {
-    fn at(address: u8) -> Self {
-        Self {
-            address,
-            plugged_in: true,
-            columns: (0, 127),
-            pages: (0, 7),
-            at: (0, 0),
-            memory: vec![None; WIDTH * HEIGHT / 8],
-            horizontal: false,
-            on: false,
-        }
-    }
-
-    fn commands(&mut self, mut bytes: &[u8]) {
-        while let Some((command, rest)) = bytes.split_first() {
-            let known = COMMANDS.iter().find(|(known, _)| known == command);
-            let (_, count) = known.unwrap_or_else(|| panic!("unknown command {command:#04x}"));
-            let (arguments, others) = rest.split_at_checked(*count).expect("all arguments in one message");
-            self.command(*command, arguments);
-            bytes = others;
-        }
-    }
-
-    fn command(&mut self, command: u8, arguments: &[u8]) {
-        match (command, arguments) {
-            (0x20, mode) => self.horizontal = mode == [0],
-            (0x21, &[first, last]) => {
-                assert!(first <= last && last < 128);
-                self.columns = (first, last);
-                self.at.0 = first;
-            }
-            (0x22, &[first, last]) => {
-                assert!(self.horizontal && first <= last && last < 8);
-                self.pages = (first, last);
-                self.at.1 = first;
-            }
-            (0xAE, _) => self.on = false,
-            (0xAF, _) => self.on = true,
-            _ => {}
-        }
-    }
-
-    fn data(&mut self, byte: u8) {
-        assert!(self.horizontal, "data in another mode than the driver counts on");
-        let (column, page) = self.at;
-        self.memory[usize::from(page) * WIDTH + usize::from(column)] = Some(byte);
-        self.at.0 = if column == self.columns.1 { self.columns.0 } else { column + 1 };
-        if column == self.columns.1 {
-            self.at.1 = if page == self.pages.1 { self.pages.0 } else { page + 1 };
-        }
-    }
-
-    fn take(&mut self, message: &[u8]) {
-        match message {
-            [0x00, commands @ ..] => self.commands(commands),
-            [0x40, data @ ..] => data.iter().for_each(|byte| self.data(*byte)),
-            _ => panic!("neither commands nor data"),
-        }
-    }
-
-    fn shows(&self, frame: &Bitmap) -> bool {
-        self.on && self.memory.iter().copied().eq(frame.pages().as_flattened().iter().copied().map(Some))
-    }
-}
-
-/// The bus as an interrupt drives it, and the panel at its end.
-struct Line {
-    panel: Controller,
-    /// What is going out, and what has become of it.
-    outgoing: Option<(Outbox, Option<Sent>)>,
-    message: Vec<u8>,
-    /// Bits there is time for.
-    time: u32,
-    /// Bits that the messages under way, or the last ones, have taken.
-    taken: u32,
-    /// Somebody holds the clock low.
-    hangs: bool,
-    freed: u32,
-    /// Messages sent off in one go.
-    sent: u32,
-}
-
-impl Line {
-    fn to(panel: Controller) -> RefCell<Self> {
-        let (outgoing, message) = (None, Vec::new());
-        RefCell::new(Self { panel, outgoing, message, time: 0, taken: 0, hangs: false, freed: 0, sent: 0 })
-    }
-
-    /// Lets time pass, of so many bits.
-    fn run(&mut self, bits: u32) {
-        self.time = if self.hangs { 0 } else { self.time.saturating_add(bits) };
-        while let Some((outbox, sent @ None)) = &mut self.outgoing {
-            let needed = match (outbox.is_within_message(), outbox.is_empty()) {
-                (true, _) => BYTE,
-                (false, true) => 1,
-                (false, false) => 1 + 2 * BYTE,
-            };
-            if self.time < needed {
-                return;
-            }
-            self.time -= needed;
-            self.taken += needed;
-            if !self.panel.plugged_in || outbox.address() != self.panel.address {
-                let source = if outbox.has_begun() { NoAcknowledgeSource::Data } else { NoAcknowledgeSource::Address };
-                *sent = Some(Err(ErrorKind::NoAcknowledge(source)));
-                self.message.clear();
-            } else if let Some(byte) = outbox.next() {
-                self.message.push(byte.value);
-                if byte.ends_message {
-                    self.panel.take(&self.message);
-                    self.message.clear();
-                }
-            } else {
-                *sent = Some(Ok(()));
-            }
-        }
-        self.time = 0;
-    }
-
-    fn is_idle(&self) -> bool {
-        !matches!(self.outgoing, Some((_, None)))
-    }
-}
-
-/// The driver's end of the bus.
-struct Bus<'a> {
-    line: &'a RefCell<Line>,
-    outbox: Option<Outbox>,
-    sent: Sent,
-}
-
-impl<'a> Bus<'a> {
-    fn new(line: &'a RefCell<Line>) -> Self {
-        Self { line, outbox: Some(Outbox::new()), sent: Ok(()) }
-    }
-}
-
-impl PanelBus for Bus<'_> {
-    fn outbox(&mut self) -> Option<(&mut Outbox, Sent)> {
-        let mut line = self.line.borrow_mut();
-        if line.is_idle()
-            && let Some((outbox, Some(sent))) = line.outgoing.take()
-        {
-            (self.outbox, self.sent) = (Some(outbox), sent);
-        }
-        self.outbox.as_mut().map(|outbox| (outbox, self.sent))
-    }
-
-    fn send(&mut self) {
-        let mut line = self.line.borrow_mut();
-        line.outgoing = Some((self.outbox.take().expect("sent once"), None));
-        (line.taken, line.sent) = (0, line.sent + 1);
-    }
-
-    fn give_up(&mut self) {
-        let mut line = self.line.borrow_mut();
-        let (outbox, _) = line.outgoing.take().expect("something to give up");
-        line.freed += 1;
-        line.message.clear();
-        (self.outbox, self.sent) = (Some(outbox), Err(ErrorKind::Other));
-    }
-}
-
 /// As much time as any frame needs, with all that wakes the panel.
 const LONG: u32 = 4 * TICK;
 
@@ -368,8 +169,8 @@ fn a_panel_whose_bus_is_too_slow_says_so() {
 
 #[test]
 fn an_absent_panel_is_looked_for_once_a_second_and_may_come_and_go() {
-    let line = Line::to(Controller { plugged_in: false, ..Controller::at(0x3C) });
-    let plug = |plugged_in| line.borrow_mut().panel = Controller { plugged_in, ..Controller::at(0x3C) };
+    let line = Line::to(Controller::at(0x3C).plugged(false));
+    let plug = |plugged_in| line.borrow_mut().panel = Controller::at(0x3C).plugged(plugged_in);
     let mut panel = Ssd1306::new(Bus::new(&line));
     let mut flush = |ticks| {
         let told = panel.flush(&scene(ticks));
