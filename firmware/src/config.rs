@@ -221,5 +221,7 @@ pub const BUS_TRIES: u32 = 10_000;
 pub const RECEIVE_QUEUE: usize = 1024;
 /// Bytes waiting for the USB host, which fetches 63 about every 0.1 ms: a dozen frames, should it be late.
 pub const USB_QUEUE: usize = 1024;
+/// Bytes on their way to the Pico's UART: a frame and two answers. The line takes 768 in a tick.
+pub const UART_QUEUE: usize = 256;
 /// Messages executed per tick at most; more wait in the queue, and when that is full are lost and never answered.
 pub const MOST_MESSAGES_PER_TICK: usize = 4;

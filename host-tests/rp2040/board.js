@@ -2,6 +2,7 @@
 
 import { RP2040 } from 'rp2040js';
 import { Panel } from './panel.js';
+import { addTime } from './uart.js';
 import { UsbHost } from './usb_host.js';
 import { flashed } from './uf2.js';
 
@@ -44,15 +45,25 @@ export class Board {
       this.due = watchdog.reason;
     };
     this.addRegisters(chip.ppb);
+    this.mendEntry(chip.core);
     chip.onBreak = () => {};
     this.panel.connect(chip);
     this.usb = new UsbHost(chip.usbCtrl, (bytes) => this.say('usb', bytes));
-    chip.uart[0].onByte = (byte) => this.sent.push(byte);
     this.sent = [];
+    addTime(chip.uart[0], chip.clock, (byte) => this.sent.push(byte));
     BUTTONS.forEach((pin) => chip.gpio[pin].setInputValue(!this.pressed.has(pin)));
     this.due = null;
     chip.core.VTOR = VECTORS;
     chip.core.reset();
+  }
+
+  /** The emulator begins an interrupt at an odd address, from which jump tables are misread. */
+  mendEntry(core) {
+    const enter = core.exceptionEntry.bind(core);
+    core.exceptionEntry = (number) => {
+      enter(number);
+      core.PC &= ~1;
+    };
   }
 
   addRegisters(ppb) {

@@ -1,5 +1,5 @@
 //! Where the log of a real chip goes: into memory that a debug probe reads while the processor runs (RTT), which costs next to
-//! nothing and waits for nobody; or, where the same image runs in QEMU, to its standard output, as on the other boards.
+//! nothing and never waits; or, where the same image runs in QEMU, to its standard output, as on the other boards.
 
 use core::cell::UnsafeCell;
 

@@ -56,7 +56,8 @@ impl Board {
         }
     }
 
-    /// Whether its processor has a memory protection unit and tells the cause of a fault. An M0+ tells none, and QEMU's has no such unit.
+    /// Whether its processor has a memory protection unit and tells the cause of a fault. An M0+ tells none, and QEMU's has no
+    /// such unit.
     pub fn is_guarded(&self) -> bool {
         self.core() != Core::M0Plus
     }

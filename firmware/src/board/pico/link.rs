@@ -1,34 +1,56 @@
 //! The serial link: the same bytes go out over USB and through UART0, and commands are taken from either. Two hosts that speak at
-//! the same moment spoil each other's messages.
+//! the same moment spoil each other's messages. The UART's interrupt sends what is in its queue, so no frame waits; a motion asked
+//! for, whose samples may come faster than the UART sends them, waits for room in it.
 
+use core::cell::Cell;
+
+use cortex_m::interrupt::{Mutex, free};
+use cortex_m::singleton;
 use embedded_io::{ErrorType, Write};
+use heapless::Deque;
 use rp2040_hal::fugit::{HertzU32, RateExtU32};
 use rp2040_hal::gpio::bank0::{Gpio0, Gpio1};
 use rp2040_hal::gpio::{FunctionUart, Pin, PullNone, PullUp};
-use rp2040_hal::pac::{Interrupt, NVIC, RESETS, UART0};
+use rp2040_hal::pac::{Interrupt, NVIC, RESETS, UART0, interrupt};
 use rp2040_hal::uart::{DataBits, StopBits, UartConfig, UartPeripheral};
 
 use super::usb;
-use crate::board::serial::receiver::{Inlet, Taken};
-use crate::board::serial::transmitter::{Outlet, Timeout, Transmitter};
-use crate::config::BAUD;
+use crate::board::serial::receiver::{self, Inlet, Taken};
+use crate::board::serial::transmitter::Timeout;
+use crate::config::{BAUD, BUS_TRIES, UART_QUEUE};
 
 /// Both pins of UART0.
 pub(super) type SerialPins = (Pin<Gpio0, FunctionUart, PullNone>, Pin<Gpio1, FunctionUart, PullUp>);
 
-/// The outward direction.
-pub struct Link(Transmitter<Port>);
+/// How often it is asked whether there is room for a message, which takes 2.6 ms at most: these tries take at least 8.
+const TRIES: u32 = 4 * BUS_TRIES;
 
-/// UART0, running.
-struct Port(());
+/// Bytes that the UART has not taken yet.
+type Queue = Deque<u8, UART_QUEUE>;
+static QUEUE: Mutex<Cell<Option<&'static mut Queue>>> = Mutex::new(Cell::new(None));
+
+/// Does something with the queue, undisturbed by the interrupt; `None` before the start.
+fn with<T>(act: impl FnOnce(&mut Queue) -> T) -> Option<T> {
+    free(|token| {
+        let queue = QUEUE.borrow(token).take()?;
+        let result = act(queue);
+        QUEUE.borrow(token).set(Some(queue));
+        Some(result)
+    })
+}
+
+/// The outward direction.
+pub struct Link(());
 
 impl Link {
-    /// Starts the UART; `None` if no divisor of the clock makes its speed.
+    /// Starts the UART; `None` the second time, or if no divisor of the clock makes its speed.
     pub(super) fn start(device: UART0, pins: SerialPins, clock: HertzU32, resets: &mut RESETS) -> Option<Self> {
         let config = UartConfig::new(BAUD.Hz(), DataBits::Eight, None, StopBits::One);
         let mut uart = UartPeripheral::new(device, pins, resets).enable(config, clock).ok()?;
         uart.enable_rx_interrupt();
-        Some(Self(Transmitter(Port(()))))
+        let queue = singleton!(: Queue = Queue::new())?;
+        free(|token| QUEUE.borrow(token).set(Some(queue)));
+        Some(Self(()))
     }
 }
 
@@ -39,7 +61,11 @@ impl ErrorType for Link {
 impl Write for Link {
     fn write(&mut self, bytes: &[u8]) -> Result<usize, Timeout> {
         usb::send(bytes);
-        self.0.write(bytes)
+        if !(0..TRIES).any(|_| put(bytes)) {
+            return Err(Timeout);
+        }
+        NVIC::pend(Interrupt::UART0_IRQ);
+        Ok(bytes.len())
     }
 
     fn flush(&mut self) -> Result<(), Timeout> {
@@ -53,15 +79,37 @@ fn uart() -> &'static rp2040_hal::pac::uart0::RegisterBlock {
     unsafe { &*UART0::ptr() }
 }
 
-impl Outlet for Port {
-    fn is_ready(&self) -> bool {
-        uart().uartfr().read().txff().bit_is_clear()
-    }
+/// Puts a message into the queue, if there is room for all of it.
+fn put(message: &[u8]) -> bool {
+    let put = with(|queue| {
+        let has_room = queue.capacity().saturating_sub(queue.len()) >= message.len();
+        if has_room {
+            for &byte in message {
+                let _ = queue.push_back(byte);
+            }
+        }
+        has_room
+    });
+    put.unwrap_or_default()
+}
 
-    fn put(&mut self, byte: u8) {
-        // SAFETY: any byte may be sent.
-        uart().uartdr().write(|w| unsafe { w.data().bits(byte) });
-    }
+#[interrupt]
+fn UART0_IRQ() {
+    pass_on();
+    receiver::receive();
+}
+
+/// Gives the UART as many bytes as it takes; while there are more it interrupts again when it has sent half of them.
+fn pass_on() {
+    with(|queue| {
+        while uart().uartfr().read().txff().bit_is_clear()
+            && let Some(byte) = queue.pop_front()
+        {
+            // SAFETY: any byte may be sent.
+            uart().uartdr().write(|w| unsafe { w.data().bits(byte) });
+        }
+        uart().uartimsc().modify(|_, w| w.txim().bit(!queue.is_empty()));
+    });
 }
 
 /// The inward direction: to look at USB and to read what has come ends the interrupts of both.
@@ -75,8 +123,8 @@ fn take() -> Taken {
     Taken { byte: Some(word.data().bits()), overrun: word.oe().bit_is_set() }
 }
 
-/// Lets received bytes interrupt, and whatever else happens at the USB port.
-pub(super) fn enable_receivers() {
+/// Unmasks the interrupts of the UART and of the USB port.
+pub(super) fn enable_interrupts() {
     for interrupt in [Interrupt::UART0_IRQ, Interrupt::USBCTRL_IRQ] {
         // SAFETY: no critical section relies on these being masked.
         unsafe { NVIC::unmask(interrupt) };

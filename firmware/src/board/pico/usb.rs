@@ -1,5 +1,5 @@
-//! The serial port at the USB socket (CDC-ACM): the same stream, for whoever has opened it. Nobody is waited for: a message that
-//! finds no room is given up whole.
+//! The serial port at the USB socket (CDC-ACM): the same stream, for a host that has opened it. It never waits for the host: a
+//! message that does not fit into the queue is dropped whole.
 
 use core::cell::Cell;
 
