@@ -16,13 +16,16 @@ fn main() {
     }
     let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap_or(Path::new("."));
     println!("cargo:rustc-link-search={}", workspace.display());
-    println!("cargo:rustc-link-search={}", workspace.join("firmware/src/board/pico").display());
+    let boards = workspace.join("firmware/src/board");
+    for script in ["steps.x", "pico/pico.x", "stm32f405/stm32f405.x"].map(|script| boards.join(script)) {
+        println!("cargo:rustc-link-search={}", script.with_file_name("").display());
+        println!("cargo:rerun-if-changed={}", script.display());
+    }
     // The emulated boards' flash starts at 0, this chip's elsewhere, and it has 1 MiB.
-    for symbol in ["flash_origin=0x08000000", "flash_length=0x00100000"] {
-        println!("cargo:rustc-link-arg-bin=stm32f405=--defsym={symbol}");
+    for argument in ["--defsym=flash_origin=0x08000000", "--defsym=flash_length=0x00100000", "-Tstm32f405.x"] {
+        println!("cargo:rustc-link-arg-bin=stm32f405={argument}");
     }
     // This one's flash begins with what its boot ROM runs first.
-    println!("cargo:rerun-if-changed=src/board/pico/pico.x");
     for argument in ["--defsym=flash_origin=0x10000100", "--defsym=flash_length=0x001fff00", "-Tpico.x"] {
         println!("cargo:rustc-link-arg-bin=pico={argument}");
     }

@@ -11,7 +11,7 @@ use firmware::app::player::{AUTO, News};
 use firmware::app::{App, Event};
 use firmware::config::{DT, MOST_MEASURED_STEPS, MOST_MESSAGES_PER_TICK, PLANNED, TICK_RATE};
 use firmware::display::NoDisplay;
-use firmware::job::{Arithmetic, Formulation, Request, Row};
+use firmware::job::{Arithmetic, Formulation, OnBoards, Request, Row, Run};
 use firmware::motion::planner::Finding;
 use firmware::motion::settings::Settings;
 use firmware::protocol::Field;
@@ -111,17 +111,17 @@ fn no_tap_is_lost_however_quick() {
 fn a_board_tells_what_it_is_and_how_long_steps_take() {
     let mut app = app();
     let identity = Identity { board: 1, hertz: 1_000_000, chip: [1, 2, 3, 4], ..Identity::default() };
-    let timed = |work: &mut dyn FnMut()| {
-        work();
-        1600
+    let timed = |motion: &mut OnBoards, steps, in_ram| {
+        motion.advance(steps);
+        if in_ram { 800 } else { 1600 }
     };
     app.use_instruments(Instruments { identity, timed, image: || b"123456789", ..Instruments::default() });
     app.receive(wire(&Identify { request: 1 }), |_| ());
     // The check value of CRC-32/ISO-HDLC.
     assert_eq!(last::<Identity>(&app), Identity { request: 1, image: 0xCBF4_3926, image_bytes: 9, ..identity });
 
-    let measure = |request| wire(&Measure { request, steps: u32::MAX });
-    app.receive(measure(2), |_| ());
+    let measure = |request, in_ram| wire(&Measure { request, steps: u32::MAX, in_ram });
+    app.receive(measure(2, 0), |_| ());
     assert_eq!(last::<Refused>(&app), Refused { request: 2, field: Field::Message.code() }, "no motion was asked for");
     let row = Row::rk4(Arithmetic::F32, Formulation::Canonical);
     let parameters = Parameters { m1: 1.0, m2: 1.0, l1: 1.0, l2: 1.0, g: 9.81 };
@@ -129,9 +129,9 @@ fn a_board_tells_what_it_is_and_how_long_steps_take() {
     let request = Request { row, parameters, angles, velocities, dt: DT, stride: 1, samples: 1 };
     app.receive(wire(&request.message(3)), |_| ());
     while app.work(|_| ()) {}
-    for request in 4..6 {
-        app.receive(measure(request), |_| ());
-        assert_eq!(last::<Measured>(&app), Measured { request, steps: MOST_MEASURED_STEPS, cycles: 1600 });
+    for (request, in_ram, cycles) in [(4, 0, 1600), (5, 1, 800), (6, 0, 1600)] {
+        app.receive(measure(request, in_ram), |_| ());
+        assert_eq!(last::<Measured>(&app), Measured { request, steps: MOST_MEASURED_STEPS, cycles });
     }
     assert!(!app.work(|_| ()), "and no sample follows");
     assert_eq!(all::<Sample>(&app).len(), 2);

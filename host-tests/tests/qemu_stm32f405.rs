@@ -2,7 +2,10 @@
 
 mod support;
 
-use firmware::protocol::Frame;
+use double_pendulum::Parameters;
+use firmware::config::{GRAVITY, MOST_MEASURED_STEPS};
+use firmware::job::{ON_BOARDS, Request};
+use firmware::protocol::{Frame, Measure, Measured};
 use host_tests::emulator::boards::STM32F405;
 use host_tests::emulator::qemu::{Machine, QemuError};
 use object::{Object, ObjectSegment};
@@ -35,5 +38,27 @@ fn without_a_panel_it_says_so_and_goes_on() -> Result<(), QemuError> {
     let log: Vec<_> = machine.log.arrived().map(|line| line.text).filter(|text| !text.starts_with("plan: ")).collect();
     let expected = ["boot: stm32f405, 168000000 Hz, Emulator", "panel: Absent(Other)"];
     assert_eq!(log, expected);
+    machine.quit()
+}
+
+/// Every arithmetic's from its copy in memory: a branch into nowhere would end the application.
+#[test]
+fn its_steps_run_in_flash_and_in_memory() -> Result<(), QemuError> {
+    let (toolchain, elf) = (toolchain(), application(&STM32F405));
+    let mut machine = Machine::start(&settings(&toolchain, &STM32F405, &elf))?;
+    // It listens from here on.
+    assert!(machine.serial.next::<Frame>().is_some());
+    let parameters = Parameters { m1: 1.0, m2: 1.0, l1: 1.0, l2: 1.0, g: GRAVITY };
+    for (&row, request) in ON_BOARDS.iter().zip(0..) {
+        let motion =
+            Request { row, parameters, angles: [0.5; 2], velocities: [0.0; 2], dt: 1.0 / 256.0, stride: 1, samples: 0 };
+        machine.serial.send(&motion.message(request))?;
+        for in_ram in [0, 1] {
+            machine.serial.send(&Measure { request, steps: MOST_MEASURED_STEPS, in_ram })?;
+            let Some(measured) = machine.serial.next::<Measured>() else { return Err(machine.silence()) };
+            assert_eq!(measured, Measured { request, steps: MOST_MEASURED_STEPS, cycles: 0 }, "QEMU counts none");
+        }
+    }
+    assert!(machine.serial.next::<Frame>().is_some(), "it goes on");
     machine.quit()
 }

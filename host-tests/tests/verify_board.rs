@@ -5,16 +5,23 @@ mod bench;
 mod support;
 
 use std::fs;
+use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
-use std::process::Command;
+use std::process::{Command, Stdio};
+use std::sync::mpsc::{Receiver, channel};
+use std::thread::spawn;
+use std::time::{Duration, Instant};
 
 use bench::{BOARD, Bench, at_port, intact};
+use firmware::app::controls::Key;
 use firmware::job::ON_BOARDS;
-use firmware::protocol::{Frame, MAX_WIRE, Sample, encode};
+use firmware::protocol::{Frame, MAX_WIRE, Measured, Sample, encode};
 use firmware::scenes::SceneName;
-use host_tests::emulator::process::Output;
+use host_tests::emulator::boards::BOARDS;
+use host_tests::emulator::process::{self, Output};
 use host_tests::link::Received;
 use serde_json::Value;
+use support::LIMIT;
 
 fn verify(report: &Path, wire: impl Fn(&Received) -> Vec<u8>) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_verify-board"));
@@ -29,7 +36,8 @@ fn a_board_with_the_hosts_bits_is_told_so_and_reported() {
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     assert!(output.stdout.contains("every bit the host's"), "{}", output.stdout);
     let markdown = fs::read_to_string(folder.path().join("mps2.md")).expect("the report");
-    assert_eq!(markdown.matches("| no cycle counter | - |").count(), ON_BOARDS.len(), "{markdown}");
+    let uncounted = "| no cycle counter | no cycle counter | - |";
+    assert_eq!(markdown.matches(uncounted).count(), ON_BOARDS.len(), "{markdown}");
     let json = fs::read_to_string(folder.path().join("mps2.json")).expect("the report");
     let json: Value = serde_json::from_str(&json).expect("JSON");
     assert_eq!((&json["chip"]["board"], &json["chip"]["hertz"]), (&BOARD.name.into(), &BOARD.hertz.into()));
@@ -65,4 +73,106 @@ fn a_flipped_bit_is_named_and_fails() {
     assert!(scene.is_some_and(|line| line.contains("step 20: a1 is 0x")), "{}", output.stderr);
     let markdown = fs::read_to_string(folder.path().join("flipped.md")).expect("the report");
     assert!(markdown.contains("2 not well") && markdown.contains("step 160: w2 is 0x"), "{markdown}");
+}
+
+/// For how long a button is tapped, and then for how long it is left alone.
+const TAP: Duration = Duration::from_millis(150);
+
+/// What the person does who is asked this: the button that is tapped, and the line that is entered; `None` ends the input.
+fn person(question: &str) -> Option<(Option<Key>, Option<&'static str>)> {
+    if question.contains("the panel shows a swinging pendulum") {
+        return Some((None, Some("n\n")));
+    }
+    let key = Key::ALL.iter().copied().find(|key| question.contains(&format!("tap the button '{}'", key.name())))?;
+    Some(match key {
+        Key::Up | Key::Right => (Some(key), Some("\n")),
+        Key::Down => (None, Some("\n")),
+        Key::Left => (None, Some("n\n")),
+        Key::Select => (None, None),
+    })
+}
+
+/// A chip that counts 100 cycles for a step of the second arithmetic from flash, 50 from RAM, and none else, which no emulated one
+/// does. Of an arithmetic that is not counted it is asked once for each place, of the others until 256 steps are made.
+fn counting(message: &Received, asked: &mut u32) -> Vec<u8> {
+    let Some(measured) = message.read::<Measured>() else { return intact(message) };
+    let cycles = match *asked {
+        2..18 => 100,
+        18..34 => 50,
+        _ => 0,
+    };
+    *asked += 1;
+    encode(&Measured { cycles: cycles * measured.steps, ..measured }, &mut [0; MAX_WIRE]).to_vec()
+}
+
+#[test]
+fn what_the_person_says_and_the_chip_counts_is_in_the_report() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut bench = Bench::of(&BOARDS[0]);
+    bench.machine.wake_keys().expect("buttons");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_verify-board"));
+    command.arg("--port").arg(&bench.name).arg("--report").arg(folder.path().join("asked"));
+    command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::piped());
+    let mut verification = process::spawn(&mut command, LIMIT).expect("it starts");
+    let mut input = verification.stdin.take();
+    let lines = lines(BufReader::new(verification.stderr.take().expect("a pipe")));
+    let (mut said, mut asked) = (Vec::new(), 0);
+    let mut carry = |bench: &mut Bench, time: Duration| {
+        let start = Instant::now();
+        while {
+            bench.carry(|message| counting(message, &mut asked));
+            start.elapsed() < time
+        } {}
+    };
+    let status = loop {
+        carry(&mut bench, Duration::ZERO);
+        if let Some(status) = verification.try_wait().expect("it runs") {
+            break status;
+        }
+        let Ok(line) = lines.try_recv() else { continue };
+        if let Some((key, entered)) = person(&line) {
+            for down in key.into_iter().flat_map(|_| [true, false]) {
+                bench.machine.set_key(key.expect("one"), down).expect("buttons");
+                carry(&mut bench, TAP);
+            }
+            input = input.filter(|_| entered.is_some());
+            if let Some((input, entered)) = input.as_mut().zip(entered) {
+                input.write_all(entered.as_bytes()).expect("it listens");
+            }
+        }
+        said.push(line);
+    };
+    said.extend(lines);
+    assert_eq!(status.code(), Some(1), "{said:#?}");
+    let markdown = fs::read_to_string(folder.path().join("asked.md")).expect("the report");
+    let panel = "the panel shows a swinging pendulum, upright and sharp";
+    let button = |key: &str| format!("a tap on the button '{key}' starts the motion again");
+    let answers = [
+        (panel.to_owned(), "no"),
+        (button("up"), "yes"),
+        (button("down"), "no"),
+        (button("left"), "not answered"),
+        (button("right"), "yes"),
+        (button("select"), "not answered"),
+    ];
+    for (what, answer) in answers {
+        assert!(markdown.contains(&format!("| {what} | {answer} |")), "{what}: not {answer} in {markdown}");
+        assert_eq!(said.contains(&format!("not well: not so: {what}")), answer == "no", "{said:#?}");
+    }
+    let json = fs::read_to_string(folder.path().join("asked.json")).expect("the report");
+    let json: Value = serde_json::from_str(&json).expect("JSON");
+    for (row, cycles) in json["cycles"].as_array().expect("all of them").iter().enumerate() {
+        let [flash, ram, estimate] = ["from_flash", "from_ram", "estimated"].map(|column| cycles[column].as_f64());
+        assert_eq!((flash, ram), if row == 1 { (Some(100.0), Some(50.0)) } else { (None, None) }, "{cycles}");
+        // A step of it takes some 23,000 cycles (`cargo count`).
+        assert_eq!(estimate.is_some_and(|estimate| (1e4..4e4).contains(&estimate)), row == 1, "{cycles}");
+    }
+    assert!(markdown.contains(&format!("| {} | 100.0 | 50.0 | ", ON_BOARDS[1])), "{markdown}");
+}
+
+/// The lines as they come.
+fn lines(source: impl BufRead + Send + 'static) -> Receiver<String> {
+    let (line, lines) = channel();
+    spawn(move || source.lines().map_while(Result::ok).try_for_each(|text| line.send(text)));
+    lines
 }

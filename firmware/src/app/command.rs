@@ -45,8 +45,13 @@ pub enum Command {
     AskPlan,
     /// Nothing but an answer: what the board is.
     Identify,
-    /// Nothing but an answer: how long so many steps of the motion asked for last take.
-    Measure(u32),
+    /// Nothing but an answer: how long steps of the motion asked for last take.
+    Measure {
+        /// How many.
+        steps: u32,
+        /// By their code in memory, otherwise by that in flash.
+        in_ram: bool,
+    },
 }
 
 /// A command that came as a message.
@@ -96,8 +101,8 @@ impl HostCommand {
             protocol::AskPlan::KIND => (protocol::AskPlan::read(fields)?.request, Ok(Command::AskPlan)),
             protocol::Identify::KIND => (protocol::Identify::read(fields)?.request, Ok(Command::Identify)),
             protocol::Measure::KIND => {
-                let protocol::Measure { request, steps } = Message::read(fields)?;
-                (request, Ok(Command::Measure(steps)))
+                let protocol::Measure { request, steps, in_ram } = Message::read(fields)?;
+                (request, Ok(Command::Measure { steps, in_ram: in_ram != 0 }))
             }
             _ => return None,
         };

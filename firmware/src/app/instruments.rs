@@ -1,5 +1,6 @@
 //! What the board lends the application to tell of itself.
 
+use crate::job::{OnBoards, Run};
 use crate::protocol::{CRC, Identity};
 
 /// Nothing, by default, as on a host.
@@ -7,8 +8,9 @@ use crate::protocol::{CRC, Identity};
 pub struct Instruments {
     /// Counts of the processor clock; may wrap.
     pub stopwatch: fn() -> u32,
-    /// Does something with interrupts off: processor cycles that it took, 0 where nothing counts them.
-    pub timed: fn(&mut dyn FnMut()) -> u32,
+    /// Makes so many steps with interrupts off, by their code in memory (`true`) or in flash: processor cycles that they took,
+    /// 0 where nothing counts them or the code does not stand there.
+    pub timed: fn(&mut OnBoards, u32, bool) -> u32,
     /// The program in flash.
     pub image: fn() -> &'static [u8],
     /// The board and its chip.
@@ -17,8 +19,8 @@ pub struct Instruments {
 
 impl Default for Instruments {
     fn default() -> Self {
-        let timed = |work: &mut dyn FnMut()| {
-            work();
+        let timed = |motion: &mut OnBoards, steps, _| {
+            motion.advance(steps);
             0
         };
         Self { stopwatch: || 0, timed, image: || &[], identity: Identity::default() }

@@ -281,22 +281,25 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
             Ok(()) if command == Command::Ask => self.send(&self.player.status(request), log),
             Ok(()) if command == Command::AskPlan => self.send(&self.player.plan(request), log),
             Ok(()) if command == Command::Identify => self.send(&self.instruments.identity(request), log),
-            Ok(()) if let Command::Measure(steps) = command => self.measure(request, steps, log),
+            Ok(()) if let Command::Measure { steps, in_ram } = command => self.measure(request, steps, in_ram, log),
             Ok(()) => self.send(&Done { request }, log),
             Err(field) => self.send(&Refused { request, field: field.code() }, log),
         }
     }
 
     /// Measures steps of the motion asked for last; refuses if none was.
-    fn measure(&mut self, request: u16, steps: u32, log: &mut impl FnMut(Event<Panel::Error, Link::Error>)) {
+    fn measure(
+        &mut self,
+        request: u16,
+        steps: u32,
+        in_ram: bool,
+        log: &mut impl FnMut(Event<Panel::Error, Link::Error>),
+    ) {
         let steps = steps.min(MOST_MEASURED_STEPS);
-        let service = &mut self.service;
-        let mut measured = false;
-        let cycles = (self.instruments.timed)(&mut || measured = service.advance(steps));
-        if measured {
-            self.send(&Measured { request, steps, cycles }, log);
-        } else {
-            self.send(&Refused { request, field: Field::Message.code() }, log);
+        let timed = self.instruments.timed;
+        match self.service.measure(|motion| timed(motion, steps, in_ram)) {
+            Some(cycles) => self.send(&Measured { request, steps, cycles }, log),
+            None => self.send(&Refused { request, field: Field::Message.code() }, log),
         }
     }
 

@@ -110,7 +110,7 @@ impl<'a> Player<'a> {
             Command::Pause(paused) => self.pace.pause(paused),
             Command::TogglePause => self.pace.pause(!self.pace.paused),
             Command::Step(ticks) => self.pace.step(ticks),
-            Command::Ask | Command::AskPlan | Command::Identify | Command::Measure(_) => {}
+            Command::Ask | Command::AskPlan | Command::Identify | Command::Measure { .. } => {}
         }
         Ok(false)
     }

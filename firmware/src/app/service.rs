@@ -2,7 +2,7 @@
 //! leaves free.
 
 use crate::app::command::HostCommand;
-use crate::job::{Job, Reading, Request};
+use crate::job::{Job, OnBoards, Reading, Request};
 use crate::protocol::Field;
 use crate::protocol::{Decoder, LinkError, Message, Refused, Sample, Simulate, StepTooLong};
 
@@ -71,9 +71,9 @@ impl Service {
         self.work.as_ref().is_some_and(|work| !work.job.is_finished())
     }
 
-    /// Goes on with the motion asked for last by `steps` steps, beyond its last sample, at once; whether there is one.
-    pub fn advance(&mut self, steps: u32) -> bool {
-        self.work.as_mut().map(|work| work.job.measure(steps)).is_some()
+    /// Lets `advance` go on with the motion asked for last, beyond its last sample; `None` if there is none.
+    pub fn measure<T>(&mut self, advance: impl FnOnce(&mut OnBoards) -> T) -> Option<T> {
+        self.work.as_mut().map(|work| work.job.measure(advance))
     }
 
     /// Computes at most one step; the sample, when one is due. A refusal ends the work: the step is too long for the

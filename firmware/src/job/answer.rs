@@ -93,10 +93,10 @@ impl<R: Run> Job<R> {
         self.reading().finite().map(Some).inspect_err(|_| self.left = 0)
     }
 
-    /// Makes `steps` steps and nothing else, for their time to be measured: no sample after them is right.
-    pub fn measure(&mut self, steps: u32) {
+    /// Lets `advance` make steps and nothing else, for their time to be measured: no sample after them is right.
+    pub fn measure<T>(&mut self, advance: impl FnOnce(&mut R) -> T) -> T {
         self.left = 0;
-        self.run.advance(steps);
+        advance(&mut self.run)
     }
 
     fn step(&mut self) {

@@ -55,6 +55,8 @@ macro_rules! table {
                 }
             }
 
+            // Never inlined: a board may have it twice, in flash and in memory.
+            #[inline(never)]
             fn advance(&mut self, steps: u32) {
                 match self { $(Self::$name(run) => run.advance(steps),)* }
             }

@@ -52,6 +52,8 @@ crate::message! {
         request: u16,
         /// How many.
         steps: u32,
+        /// By their code in memory if it is not 0, otherwise by that in flash.
+        in_ram: u8,
     }
 }
 
@@ -62,7 +64,7 @@ crate::message! {
         request: u16,
         /// Steps made.
         steps: u32,
-        /// Processor cycles, what calls them included; 0 where nothing counts cycles, as in the emulator.
+        /// Processor cycles, what calls them included; 0 where nothing counts cycles, as in QEMU, or the code does not stand there.
         cycles: u32,
     }
 }

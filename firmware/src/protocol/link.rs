@@ -22,7 +22,7 @@ use crc::{CRC_32_ISO_HDLC, Crc, Table};
 use super::Message;
 
 /// The version of the protocol; the first byte of every message.
-pub const VERSION: u8 = 6;
+pub const VERSION: u8 = 7;
 /// The most bytes a message's fields may take.
 pub const MAX_FIELDS: usize = 96;
 /// The most bytes a message takes before framing: version, kind, fields, CRC.

@@ -4,7 +4,9 @@
 //! library, to the places in other code where a panic begins. A place belongs to the innermost function there that is
 //! not of the core library, inlined ones included.
 
+#[path = "../support/branch.rs"]
 mod branch;
+#[path = "../support/code.rs"]
 mod code;
 #[path = "../support/mod.rs"]
 mod support;

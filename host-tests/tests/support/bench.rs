@@ -35,9 +35,13 @@ pub struct Bench {
 
 impl Bench {
     pub fn new() -> Self {
+        Self::of(BOARD)
+    }
+
+    pub fn of(board: &Board) -> Self {
         let folder = tempfile::tempdir().expect("a folder");
         let name = folder.path().join("ttyACM0");
-        let mut bench = Self { machine: board(), cable: None, heard: false, _folder: folder, name };
+        let mut bench = Self { machine: machine(board), cable: None, heard: false, _folder: folder, name };
         bench.plug();
         bench
     }
@@ -71,11 +75,10 @@ impl Bench {
 
     /// Sends bytes to the host, as fast as it takes them.
     pub fn say(&mut self, mut bytes: &[u8]) {
-        let Some(cable) = &mut self.cable else { return };
-        while !bytes.is_empty() {
+        while let Some(cable) = self.cable.as_mut().filter(|_| !bytes.is_empty()) {
             match cable.write(bytes) {
                 Ok(count) => bytes = &bytes[count..],
-                Err(error) if error.kind() == ErrorKind::WouldBlock => sleep(WAIT),
+                Err(error) if error.kind() == ErrorKind::WouldBlock && self.is_heard() => sleep(WAIT),
                 // It has stopped listening.
                 Err(_) => return,
             }
@@ -94,9 +97,13 @@ impl Bench {
 }
 
 pub fn board() -> Machine {
-    let (toolchain, elf) = (toolchain(), application(BOARD));
+    machine(BOARD)
+}
+
+fn machine(board: &Board) -> Machine {
+    let (toolchain, elf) = (toolchain(), application(board));
     // As fast as a real one: what the host says must reach it in time.
-    let settings = Settings { clock: Clock::Real, ..settings(&toolchain, BOARD, &elf) };
+    let settings = Settings { clock: Clock::Real, ..settings(&toolchain, board, &elf) };
     Machine::start(&settings).unwrap_or_else(|error| panic!("{error}"))
 }
 

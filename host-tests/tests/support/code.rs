@@ -1,7 +1,9 @@
-//! An ELF file's functions, and where they are called or pointed to.
+//! An ELF file's functions, and where they are called or pointed to. Not every test uses all of it.
+#![allow(dead_code)]
 
 use std::collections::BTreeMap;
 use std::error::Error;
+use std::ops::Range;
 use std::path::Path;
 
 use object::{File, Object, ObjectSection, ObjectSymbol, SectionFlags, SectionIndex, SectionKind, SymbolKind};
@@ -82,6 +84,14 @@ impl Code {
     pub fn function_at(&self, address: u32) -> Option<(u32, &str)> {
         let (start, function) = self.functions.range(..=address).next_back()?;
         (address - start < function.size).then_some((*start, &*function.name))
+    }
+
+    /// Where code between these addresses branches to other code, or has the address of another function.
+    pub fn leads_out_of<'a>(&'a self, addresses: &'a Range<u32>) -> impl Iterator<Item = (u32, u32)> + 'a {
+        let functions =
+            self.numbers.iter().filter(|(_, to)| to & THUMB == THUMB && self.functions.contains_key(&(to ^ THUMB)));
+        let all = self.branches.iter().chain(functions).copied();
+        all.filter(|(at, to)| addresses.contains(at) && !addresses.contains(to))
     }
 
     /// Where other functions branch to `function`.

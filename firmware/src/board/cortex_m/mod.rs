@@ -8,9 +8,9 @@ pub mod watchdog;
 
 pub(super) mod crash;
 pub(super) mod retained;
+pub(super) mod stopwatch;
 
 mod calls;
 mod fault_status;
 mod interrupt;
 mod soft_float;
-mod stopwatch;

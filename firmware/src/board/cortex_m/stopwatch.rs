@@ -11,7 +11,7 @@ pub fn start(mut dcb: DCB, mut dwt: DWT) {
 
 /// QEMU has no cycle counter: it reads 0 there.
 #[cfg(not(armv6m))]
-pub fn timed(work: &mut dyn FnMut()) -> u32 {
+pub fn timed(work: impl FnOnce()) -> u32 {
     cortex_m::interrupt::free(|_| {
         let start = DWT::cycle_count();
         work();
@@ -25,10 +25,10 @@ pub fn start(_: DCB, _: DWT) {}
 /// A Cortex-M0+ has no other counter than the tick's, which is borrowed: the present tick begins anew afterwards. Up to 2^24
 /// cycles, 134 ms at 125 MHz.
 #[cfg(armv6m)]
-pub fn timed(work: &mut dyn FnMut()) -> u32 {
+pub fn timed(work: impl FnOnce()) -> u32 {
     use cortex_m::peripheral::SYST;
     const FULL: u32 = (1 << 24) - 1;
-    // SAFETY: interrupts are off while it differs from what the clock has set, and so nobody reads it then.
+    // SAFETY: interrupts stay off until the clock's reload value is restored, so nothing reads the counter in between.
     let begin = |reload: u32| unsafe {
         let counter = &*SYST::PTR;
         counter.rvr.write(reload);

@@ -25,8 +25,8 @@ use crate::app::instruments::Instruments;
 use crate::board::cortex_m::clock::Clock;
 use crate::board::cortex_m::guard::guard_stack;
 use crate::board::cortex_m::identity::instruments;
-use crate::board::log;
 use crate::board::serial::receiver::Receiver;
+use crate::board::{log, steps};
 use crate::display::Ssd1306;
 use crate::display::outbox::Outbox;
 use crate::protocol::BoardName;
@@ -41,27 +41,6 @@ pub use watchdog::Watchdog;
 #[unsafe(link_section = ".boot2")]
 #[used]
 static BOOT: [u8; 256] = rp2040_boot2::BOOT_LOADER_W25Q080;
-
-// Before anything else the hot loops are copied from flash into memory, where they run (`pico.x`).
-core::arch::global_asm!(
-    ".section .text.__pre_init, \"ax\"",
-    ".global __pre_init",
-    ".type __pre_init, %function",
-    ".thumb_func",
-    "__pre_init:",
-    "ldr r0, =__fast_start",
-    "ldr r1, =__fast_end",
-    "ldr r2, =__fast_load",
-    "1:",
-    "cmp r0, r1",
-    "bhs 2f",
-    "ldm r2!, {{r3}}",
-    "stm r0!, {{r3}}",
-    "b 1b",
-    "2:",
-    "bx lr",
-    ".pool",
-);
 
 /// The Pico's crystal, Hz.
 const CRYSTAL: u32 = 12_000_000;
@@ -113,7 +92,7 @@ impl Board {
         let link = Link::start(chip.UART0, serial, clocks.peripheral_clock.freq(), &mut chip.RESETS)?;
         let receiver = Receiver::new(link::INLET)?;
         usb::start(chip.USBCTRL_REGS, chip.USBCTRL_DPRAM, clocks.usb_clock, &mut chip.RESETS)?;
-        link::enable_receivers();
+        link::enable_interrupts();
         let outbox = cortex_m::singleton!(: Outbox = Outbox::new())?;
         let lines = (Line(pins.gpio4.reconfigure()), Line(pins.gpio5.reconfigure()));
         let bus = i2c::start(chip.I2C0, lines, &mut chip.RESETS, hertz, outbox)?;
@@ -129,7 +108,10 @@ impl Board {
                 right: button(pins.gpio13),
                 select: button(pins.gpio14),
             },
-            instruments: instruments(BoardName::Pico, hertz, chip_number, &core.CPUID, core.DCB, core.DWT),
+            instruments: Instruments {
+                timed: steps::timed,
+                ..instruments(BoardName::Pico, hertz, chip_number, &core.CPUID, core.DCB, core.DWT)
+            },
             clock: Clock::start(core.SYST, hertz),
             watchdog: watchdog.start(),
             hertz,

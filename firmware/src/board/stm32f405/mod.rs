@@ -25,8 +25,8 @@ use crate::app::instruments::Instruments;
 use crate::board::cortex_m::clock::Clock;
 use crate::board::cortex_m::guard::guard_stack;
 use crate::board::cortex_m::identity::instruments;
-use crate::board::log;
 use crate::board::serial::receiver::Receiver;
+use crate::board::{log, steps};
 use crate::display::Ssd1306;
 use crate::display::outbox::Outbox;
 use crate::protocol::BoardName;
@@ -97,7 +97,10 @@ impl Board {
             link,
             receiver,
             keys: Keys(c.pc7.into_pull_up_input()),
-            instruments: instruments(BoardName::Stm32f405, HERTZ, chip_number(place), &core.CPUID, core.DCB, core.DWT),
+            instruments: Instruments {
+                timed: steps::timed,
+                ..instruments(BoardName::Stm32f405, HERTZ, chip_number(place), &core.CPUID, core.DCB, core.DWT)
+            },
             clock: Clock::start(core.SYST, HERTZ),
             watchdog: Watchdog::start(chip.IWDG, &mut rcc),
             hertz: HERTZ,

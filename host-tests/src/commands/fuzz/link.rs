@@ -165,7 +165,7 @@ pub fn commands_seeds() -> Vec<Vec<u8>> {
     let others = [
         one(Press::KIND, fields(&Press { request: 9, key: 3 })),
         one(Identify::KIND, fields(&Identify { request: 10 })),
-        one(Measure::KIND, fields(&Measure { request: 11, steps: 2 })),
+        one(Measure::KIND, fields(&Measure { request: 11, steps: 2, in_ram: 1 })),
         one(Restart::KIND, fields(&Restart { request: 3 })),
         one(Pause::KIND, fields(&Pause { request: 4, paused: 1 })),
         one(Step::KIND, fields(&Step { request: 5, ticks: 3 })),

@@ -21,8 +21,10 @@ pub struct Cycles {
     pub arithmetic: String,
     #[serde(skip)]
     row: Row,
-    /// On average over the first second; `None` where the board counts no cycles.
-    pub measured: Option<f64>,
+    /// From flash, on average over the first second; `None` where the board counts no cycles.
+    pub from_flash: Option<f64>,
+    /// The same from RAM; `None`, too, where the board has the steps in flash only.
+    pub from_ram: Option<f64>,
     /// For memory without wait states.
     pub estimated: Option<f64>,
 }
@@ -31,16 +33,19 @@ pub struct Cycles {
 pub fn measure(talk: &mut Talk) -> anyhow::Result<Vec<Cycles>> {
     let accepted = |row: &&Row| Request { samples: 0, ..REGULAR.request(**row) }.crc().is_ok();
     let rows = ON_BOARDS.iter().filter(accepted);
-    rows.map(|&row| Ok(Cycles { arithmetic: row.to_string(), row, measured: step(talk, row)?, estimated: None }))
-        .collect()
+    rows.map(|&row| {
+        let [from_flash, from_ram] = [step(talk, row, 0)?, step(talk, row, 1)?];
+        Ok(Cycles { arithmetic: row.to_string(), row, from_flash, from_ram, estimated: None })
+    })
+    .collect()
 }
 
-fn step(talk: &mut Talk, row: Row) -> anyhow::Result<Option<f64>> {
+fn step(talk: &mut Talk, row: Row, in_ram: u8) -> anyhow::Result<Option<f64>> {
     talk.port.send(&Request { samples: 0, ..REGULAR.request(row) }.message(REQUEST));
     next(talk, REQUEST)?;
     let (mut steps, mut cycles) = (0, 0.0);
     while steps < FULL_CYCLE {
-        let measured: Measured = talk.ask(&Measure { request: REQUEST, steps: MOST_MEASURED_STEPS })?;
+        let measured: Measured = talk.ask(&Measure { request: REQUEST, steps: MOST_MEASURED_STEPS, in_ram })?;
         if measured.cycles == 0 || measured.steps == 0 {
             return Ok(None);
         }
@@ -52,7 +57,8 @@ fn step(talk: &mut Talk, row: Row) -> anyhow::Result<Option<f64>> {
 
 /// Estimates what has been measured.
 pub fn estimate(rows: &mut [Cycles], board: &'static Board) -> anyhow::Result<()> {
-    if rows.iter().all(|row| row.measured.is_none()) {
+    let mut rows = rows.iter_mut().filter(|row| row.from_flash.is_some()).peekable();
+    if rows.peek().is_none() {
         return Ok(());
     }
     let target = Target::build(&toolchain::ready()?, board)?;

@@ -14,6 +14,9 @@ use super::questions::Asked;
 use super::scenes::Scene;
 use crate::commands::table::Table;
 
+/// Where a step's cycles would stand.
+const NO_COUNTER: &str = "no cycle counter";
+
 /// The board and its chip, as it says itself.
 #[derive(Clone, Debug, Serialize)]
 pub struct Chip {
@@ -127,12 +130,17 @@ impl Report {
         };
         let costs = Table {
             title: "Cycles of a step".to_owned(),
-            note: "Measured by the processor's cycle counter, interrupts off, from flash, over 256 steps of the regular motion; \
-                   estimated for memory without wait states, over as many steps or, of the expensive ones, fewer."
+            note: "Measured by the processor's cycle counter, interrupts off, over 256 steps of the regular motion, by the code in \
+                   flash and, where there is one, by its copy in RAM (constants are read from flash by both); estimated for \
+                   memory without wait states, over as many steps or, of the expensive ones, fewer."
                 .to_owned(),
-            columns: vec!["arithmetic", "measured", "estimated"],
+            columns: vec!["arithmetic", "from flash", "from RAM", "estimated"],
             rows: (self.cycles.iter())
-                .map(|row| vec![row.arithmetic.clone(), cycles(row.measured, "no cycle counter"), cycles(row.estimated, "-")])
+                .map(|row| {
+                    let no_copy = if row.from_flash.is_some() { "-" } else { NO_COUNTER };
+                    let measured = [cycles(row.from_flash, NO_COUNTER), cycles(row.from_ram, no_copy)];
+                    [vec![row.arithmetic.clone()], measured.to_vec(), vec![cycles(row.estimated, "-")]].concat()
+                })
                 .collect(),
             ..Table::default()
         };
@@ -156,7 +164,8 @@ impl Report {
         };
         let asked = Table {
             title: "Seen and pressed".to_owned(),
-            note: "By the person at the board; nobody was asked where nothing stands here.".to_owned(),
+            note: "By the person at the board; empty where it has neither panel nor buttons, and with --no-questions."
+                .to_owned(),
             columns: vec!["what", "is so"],
             rows: (self.asked.iter())
                 .map(|row| {

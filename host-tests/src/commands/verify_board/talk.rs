@@ -67,10 +67,4 @@ impl Talk {
         self.port.send(message);
         self.next()
     }
-
-    /// Forgets what came while nobody listened.
-    pub fn forget(&mut self) {
-        self.arrived.clear();
-        self.port.messages();
-    }
 }

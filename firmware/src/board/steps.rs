@@ -1,0 +1,45 @@
+//! The steps of every arithmetic stand twice, in flash and in memory, so that their cycles can be measured in both. The linker
+//! keeps them together with all that they call (`steps.x`) and no branch leads out of there (test `steps`), so that they run
+//! wherever they are copied.
+
+use super::cortex_m::stopwatch;
+use crate::job::{OnBoards, Run};
+
+unsafe extern "C" {
+    /// Where the linker has taken them to stand: in one of the two places.
+    static __steps_start: u8;
+    /// The two places.
+    static __steps_flash: u8;
+    static __steps_ram: u8;
+}
+
+// Before anything else they are copied from flash into memory.
+core::arch::global_asm!(
+    ".section .text.__pre_init, \"ax\"",
+    ".global __pre_init",
+    ".type __pre_init, %function",
+    ".thumb_func",
+    "__pre_init:",
+    "ldr r0, =__steps_ram",
+    "ldr r1, =__steps_ram_end",
+    "ldr r2, =__steps_flash",
+    "1:",
+    "cmp r0, r1",
+    "bhs 2f",
+    "ldm r2!, {{r3}}",
+    "stm r0!, {{r3}}",
+    "b 1b",
+    "2:",
+    "bx lr",
+    ".pool",
+);
+
+/// As [`Instruments::timed`](crate::app::instruments::Instruments::timed).
+pub fn timed(motion: &mut OnBoards, steps: u32, in_ram: bool) -> u32 {
+    let advance = <OnBoards as Run>::advance as *const ();
+    let place = if in_ram { &raw const __steps_ram } else { &raw const __steps_flash };
+    let distance = (place as usize).wrapping_sub(&raw const __steps_start as usize);
+    // SAFETY: at this distance from the function stands a copy of it and of all that it calls.
+    let advance: fn(&mut OnBoards, u32) = unsafe { core::mem::transmute(advance.wrapping_byte_add(distance)) };
+    stopwatch::timed(|| advance(motion, steps))
+}

@@ -1,0 +1,45 @@
+//! The steps of every arithmetic, which real boards have twice, in flash and in memory: they run wherever they are copied.
+
+#[path = "support/branch.rs"]
+mod branch;
+#[path = "support/code.rs"]
+mod code;
+mod support;
+
+use std::error::Error;
+
+use code::Code;
+use host_tests::emulator::boards::{PICO, STM32F405};
+use object::{Object, ObjectSection};
+use support::application;
+
+/// What is measured, and what the scenes spend most of their time in.
+const STEPS: [&str; 4] =
+    ["OnBoards as firmware::job::run::Run>::advance", "Form<R>>::advance", "fixed32::step::", "fixed64::rows::"];
+
+#[test]
+fn no_branch_leads_out_of_the_steps() -> Result<(), Box<dyn Error>> {
+    const RAM: u32 = 0x2000_0000;
+    for (board, runs_in_ram) in [(&STM32F405, false), (&PICO, true)] {
+        let elf = application(board);
+        let bytes = std::fs::read(&elf)?;
+        let section = object::File::parse(&*bytes)?;
+        let section = section.section_by_name(".steps").expect("the steps");
+        let steps = section.address() as u32..(section.address() + section.size()) as u32;
+        assert_eq!(steps.start >= RAM, runs_in_ram, "{}: {steps:x?}", board.name);
+        let code = Code::read(&elf)?;
+        for name in STEPS {
+            let mut found = code.functions_named(|function| function.contains(name)).peekable();
+            assert!(found.peek().is_some(), "{}: no {name}", board.name);
+            assert!(found.all(|function| steps.contains(&function)), "{}: {name} stands elsewhere", board.name);
+        }
+        let name = |address| code.function_at(address).map_or("?", |(_, name)| name);
+        let out: Vec<_> = code.leads_out_of(&steps).map(|(at, to)| (name(at), name(to))).collect();
+        assert!(out.is_empty(), "{}: {out:#?}", board.name);
+        // By which the linker reaches what is too far for a branch.
+        let far: Vec<_> =
+            code.functions_named(|name| name.contains("Thunk")).filter(|at| steps.contains(at)).map(name).collect();
+        assert!(far.is_empty(), "{}: {far:#?}", board.name);
+    }
+    Ok(())
+}
