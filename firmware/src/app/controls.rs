@@ -98,10 +98,10 @@ impl Controls {
         let select = self.select.tick(pressed.select);
         let shifted = self.select.is_held();
         let arrows = [
-            (self.up.tick(pressed.up), UP),
-            (self.down.tick(pressed.down), DOWN),
-            (self.left.tick(pressed.left), LEFT),
-            (self.right.tick(pressed.right), RIGHT),
+            (self.up.tick(pressed.up), &UP),
+            (self.down.tick(pressed.down), &DOWN),
+            (self.left.tick(pressed.left), &LEFT),
+            (self.right.tick(pressed.right), &RIGHT),
         ]
         .map(|(change, [plain, with_select])| match change? {
             Change::Pressed if shifted => Some(with_select),
@@ -109,7 +109,7 @@ impl Controls {
             _ => None,
         });
         let alone = self.alone.tick(select, arrows.iter().any(Option::is_some));
-        arrows.into_iter().chain([alone]).flatten()
+        arrows.into_iter().flatten().copied().chain(alone)
     }
 }
 

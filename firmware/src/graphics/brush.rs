@@ -49,6 +49,7 @@ impl Stroke {
     pub fn lighten(&self, canvas: &mut Canvas, brightness: u8) {
         let limit = i32::from(self.radius) + HALF;
         let line = Line::new(self.from, self.to, limit);
+        let grey = shade(brightness);
         let columns = pixels([self.from.x, self.to.x], limit, WIDTH);
         let rows = pixels([self.from.y, self.to.y], limit, HEIGHT);
         let mut band = line.band(rows.start);
@@ -60,7 +61,7 @@ impl Stroke {
             for x in columns {
                 let covered = line.covered(x, y, &probe);
                 if covered > 0 {
-                    row.lighten(x, grey(brightness, covered));
+                    row.lighten(x, grey(covered));
                 }
                 line.advance(&mut probe);
             }
@@ -87,7 +88,7 @@ impl Disc {
         let (inner, outer) = ((edge - SUBPIXELS).max(0), edge + i32::from(self.gap));
         let wiped = (outer - SUBPIXELS).max(0);
         let wipe = |old: u8, distance: i32| (((distance - wiped).max(0) as u32 * u32::from(old)) >> SHIFT) as u8;
-        let full = grey(brightness, SUBPIXELS);
+        let grey = shade(brightness);
         let columns = pixels([centre_x; 2], outer, WIDTH);
         for y in pixels([centre_y; 2], outer, HEIGHT) {
             let Some(row) = canvas.row_mut(y) else { return };
@@ -96,16 +97,14 @@ impl Disc {
                 let dx = middle(x) - i32::from(centre_x);
                 let squared = dx * dx + dy * dy;
                 if squared < inner * inner {
-                    row.update(x, |_| full);
+                    row.update(x, |_| grey(SUBPIXELS));
+                } else if squared < edge * edge {
+                    let distance = root(squared, inner, edge);
+                    row.update(x, |old| wipe(old, distance).max(grey(edge - distance)));
                 } else if squared < outer * outer {
-                    row.update(x, |old| {
-                        let (low, high) = if squared < edge * edge { (inner, edge) } else { (edge, outer) };
-                        if old == 0 && low == edge {
-                            return 0;
-                        }
-                        let distance = root(squared, low, high);
-                        wipe(old, distance).max(grey(brightness, edge - distance))
-                    });
+                    row.update(x, |old| if old == 0 { 0 } else { wipe(old, root(squared, edge, outer)) });
+                } else if dx > 0 {
+                    break;
                 }
             }
         }
@@ -124,13 +123,14 @@ fn middle(pixel: i32) -> i32 {
     pixel * SUBPIXELS + HALF
 }
 
-/// The grey of a pixel of which so many [`SUBPIXELS`] are covered, at a brightness of 0 to 255: the edge is a ramp one pixel
+/// At a brightness of 0 to 255 the grey of a pixel of which so many [`SUBPIXELS`] are covered: the edge is a ramp one pixel
 /// wide, which is what a straight edge of any direction covers to within a few percent.
 #[inline(always)]
-fn grey(brightness: u8, covered: i32) -> u8 {
+fn shade(brightness: u8) -> impl Fn(i32) -> u8 {
     /// The product that makes one grey: full brightness, 255 = 17 x 15, times full coverage is 15 of them.
-    const GREY: u16 = 17 * SUBPIXELS as u16;
-    ((u16::from(brightness) * covered.clamp(0, SUBPIXELS) as u16 + GREY / 2) / GREY) as u8
+    const GREY: u32 = 17 * SUBPIXELS as u32;
+    let greys = (u32::from(brightness) << 16).div_ceil(GREY);
+    move |covered| ((covered.clamp(0, SUBPIXELS) as u32 * greys + (1 << 15)) >> 16) as u8
 }
 
 /// A straight line between two spots, and what is within `limit` of it.

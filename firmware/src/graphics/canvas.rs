@@ -147,26 +147,22 @@ impl Row {
     #[inline]
     pub fn update(&mut self, x: i32, new: impl FnOnce(u8) -> u8) {
         if let Some(pair) = self.0.get_mut((x >> 1) as usize) {
-            let shift = shift(x);
-            let old = (*pair >> shift) & 0x0F;
-            *pair = (*pair & !(0x0F << shift)) | ((new(old) & 0x0F) << shift);
+            let old = (*pair >> shift(x)) & 0x0F;
+            *pair ^= (old ^ (new(old) & 0x0F)) << shift(x);
         }
     }
 
     /// Gives a pixel a grey of 0 to 15; if it is brighter already, it stays.
     #[inline]
     pub fn lighten(&mut self, x: i32, grey: u8) {
-        if let Some(pair) = self.0.get_mut((x >> 1) as usize) {
-            let (old, new) = (*pair & (0x0F << shift(x)), (grey & 0x0F) << shift(x));
-            *pair = (*pair ^ old) | old.max(new);
-        }
+        self.update(x, |old| old.max(grey));
     }
 }
 
 /// How far left in its byte a pixel's nibble lies.
 #[inline]
 fn shift(x: i32) -> u32 {
-    if x & 1 == 0 { 4 } else { 0 }
+    4 * (!x as u32 & 1)
 }
 
 /// Of eight bits each as a nibble.

@@ -35,7 +35,7 @@ pub enum Anchor {
 
 /// Writes a line of text.
 pub fn write(canvas: &mut Canvas, text: &str, anchor: Anchor) {
-    put(canvas, text, corner(anchor, width(text)), GREY);
+    put(canvas, text, corner(anchor, text), GREY);
 }
 
 /// Writes a line of text that stands out: dark on a light ground.
@@ -51,7 +51,7 @@ pub fn write_over(canvas: &mut Canvas, text: &str, anchor: Anchor) {
 /// Writes in one grey on a ground of another.
 fn put_on(canvas: &mut Canvas, text: &str, anchor: Anchor, [ink, ground]: [u8; 2]) {
     let width = width(text);
-    let (left, top) = corner(anchor, width);
+    let (left, top) = corner(anchor, text);
     for x in (-1..width).step_by(8) {
         let row = !(0xFF_u32 >> (width - x).min(8)) as u8;
         canvas.stamp(left + x, top, u64::from_be_bytes([row; LINE as usize]), ground);
@@ -64,17 +64,17 @@ fn width(text: &str) -> i32 {
 }
 
 /// Where the top left corner of a text goes.
-fn corner(anchor: Anchor, width: i32) -> (i32, i32) {
+fn corner(anchor: Anchor, text: &str) -> (i32, i32) {
     // The last character's gap may lie in the margin.
-    let right = RIGHT + 2 - width;
+    let right = || RIGHT + 2 - width(text);
     match anchor {
         Anchor::TopLeft => (MARGIN, 0),
-        Anchor::TopRight => (right, 0),
+        Anchor::TopRight => (right(), 0),
         Anchor::BottomLeft => (MARGIN, LOWEST),
-        Anchor::BottomRight => (right, LOWEST),
+        Anchor::BottomRight => (right(), LOWEST),
         Anchor::At(x, y) => (x, y),
-        Anchor::EndingAt(x, y) => (x - width, y),
-        Anchor::Centred(x, y) => (x - (width - 1) / 2, y),
+        Anchor::EndingAt(x, y) => (x - width(text), y),
+        Anchor::Centred(x, y) => (x - (width(text) - 1) / 2, y),
     }
 }
 
