@@ -91,7 +91,9 @@ impl Code {
         let functions =
             self.numbers.iter().filter(|(_, to)| to & THUMB == THUMB && self.functions.contains_key(&(to ^ THUMB)));
         let all = self.branches.iter().chain(functions).copied();
-        all.filter(|(at, to)| addresses.contains(at) && !addresses.contains(to))
+        // What fills up the place between functions is no code.
+        let is_code = |at: &u32| addresses.contains(at) && self.function_at(*at).is_some();
+        all.filter(move |(at, to)| is_code(at) && !addresses.contains(to))
     }
 
     /// Where other functions branch to `function`.
