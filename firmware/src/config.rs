@@ -6,8 +6,8 @@ use double_pendulum::plan::{Budget, Costs, Problem};
 
 /// Ticks per second: one tick moves the pendulum by one frame's worth of time.
 pub const TICK_RATE: u32 = 60;
-/// RK4 steps per tick, 1/240 s, of what a scene shows beside the motion that is planned.
-pub const STEPS_PER_TICK: u32 = 4;
+/// RK4 steps per tick, 1/120 s, of what a scene shows beside the motion that is planned.
+pub const STEPS_PER_TICK: u32 = 2;
 /// Their length, s.
 pub const DT: f64 = 1.0 / (TICK_RATE * STEPS_PER_TICK) as f64;
 /// The most ticks integrated before a frame is drawn: a board too slow for every frame still shows
@@ -45,16 +45,22 @@ pub const PLANNING_PIECE: f32 = 20_000.0;
 pub struct Processor {
     /// Its place in [`PROCESSORS`].
     pub code: u8,
-    /// Cycles of a step: the estimates of `cargo count` for steps of 1/256 s, masses and lengths alike (test `count` holds them
-    /// to within a tenth).
+    /// Cycles of a step, masses and lengths alike, and of the preparation that costs most: the counter's estimates (test `count`
+    /// holds them to within a tenth).
     pub costs: Costs,
     /// What computing a frame may cost, cycles; the rest is for drawing and sending it.
     pub frame: f32,
-    /// What is spent in each tick on looking ahead, cycles.
+    /// What is spent in each tick on looking ahead, cycles; comparing frames takes up to a quarter more.
     pub look_ahead: f32,
 }
 
 impl Processor {
+    /// The least that a piece of looking ahead takes, cycles, and a frame that is not shown: its steps may cost less than what
+    /// is done around them.
+    pub fn piece(&self) -> f32 {
+        self.costs.closed_form.max(1_000.0)
+    }
+
     /// What may be spent: on looking ahead as much as the scene has ticks for, so that the search keeps ahead of it.
     pub fn budget(&self, problem: &Problem) -> Budget {
         Budget { frame: self.frame, planning: self.look_ahead * problem.frames() as f32 }
@@ -68,12 +74,12 @@ pub const CORTEX_M3: Processor = Processor {
         closed_form: 5_082.0,
         direction_plain: 8_915.0,
         direction: 10_210.0,
-        fixed32: 1_000.0,
-        fixed64: 24_300.0,
+        fixed32: 689.0,
+        fixed64: 21_500.0,
         preparation: 300_000.0,
     },
     frame: 200_000.0,
-    look_ahead: 250_000.0,
+    look_ahead: 300_000.0,
 };
 /// A Cortex-M0+, which has no long product either, as on the Raspberry Pi Pico: at 125 MHz a tick has 2,083,000 cycles.
 pub const CORTEX_M0PLUS: Processor = Processor {
@@ -82,12 +88,12 @@ pub const CORTEX_M0PLUS: Processor = Processor {
         closed_form: 10_500.0,
         direction_plain: 19_900.0,
         direction: 23_000.0,
-        fixed32: 2_900.0,
-        fixed64: 88_000.0,
-        preparation: 1_000_000.0,
+        fixed32: 2_170.0,
+        fixed64: 78_000.0,
+        preparation: 620_000.0,
     },
     frame: 300_000.0,
-    look_ahead: 600_000.0,
+    look_ahead: 530_000.0,
 };
 /// A Cortex-M4F, whose floating-point unit knows `f32` only: the slowest board, at 25 MHz, has 417,000 cycles in a tick. A
 /// plain step costs less than the closed form's two sincos.
@@ -97,15 +103,15 @@ pub const CORTEX_M4F: Processor = Processor {
         closed_form: 188.0,
         direction_plain: 159.4,
         direction: 208.0,
-        fixed32: 790.0,
-        fixed64: 18_600.0,
-        preparation: 250_000.0,
+        fixed32: 591.0,
+        fixed64: 14_000.0,
+        preparation: 300_000.0,
     },
     frame: 150_000.0,
-    look_ahead: 200_000.0,
+    look_ahead: 160_000.0,
 };
-/// The STM32F405's at 168 MHz: 2,800,000 cycles in a tick, of which it could look ahead by more.
-pub const STM32F405: Processor = Processor { code: 2, frame: 700_000.0, look_ahead: 300_000.0, ..CORTEX_M4F };
+/// The STM32F405's at 168 MHz: 2,800,000 cycles in a tick. Less looking ahead ends before the errors of a light elbow show.
+pub const STM32F405: Processor = Processor { code: 2, frame: 700_000.0, look_ahead: 1_300_000.0, ..CORTEX_M4F };
 /// Every class, by its code on the wire.
 pub const PROCESSORS: [Processor; 4] = [CORTEX_M3, CORTEX_M4F, STM32F405, CORTEX_M0PLUS];
 /// The class of a board that names no other.

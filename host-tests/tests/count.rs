@@ -1,23 +1,28 @@
 //! The counter against a second way of counting, goals and prices, and what `cargo count` refuses.
 
+mod support;
+
+use std::ops::RangeInclusive;
 use std::process::Command;
 
 use double_pendulum::Parameters;
-use double_pendulum::plan::Method;
+use double_pendulum::plan::{Costs, Method};
 use firmware::job::{Arithmetic, Formulation, Model, ROWS, Request, Row};
+use firmware::protocol::{Field, Set, Unit, method_code};
 use host_tests::commands::count::goal::{GOALS, SECONDS};
-use host_tests::commands::count::{FULL_CYCLE, Target, affordable_steps, step_cost};
+use host_tests::commands::count::{CountError, FULL_CYCLE, Image, Target, affordable_steps, calls_in_next, step_cost};
 use host_tests::commands::report::accuracy::{self, exact};
 use host_tests::commands::report::costs;
 use host_tests::commands::report::scene::SCENES;
-use host_tests::emulator::toolchain;
+use host_tests::emulator::boards::BOARDS;
+use host_tests::emulator::qemu::Lockstep;
+use support::{application, settings, toolchain};
 
 /// A tick of the board's clock, 12.5 MHz after reset, under `-icount`, where an instruction takes 1 ns.
 const INSTRUCTIONS_PER_TICK: f64 = 80.0;
 
 fn targets() -> Vec<Target> {
-    let toolchain = toolchain::ready().unwrap_or_else(|error| panic!("{error}"));
-    Target::build_all(&toolchain).unwrap_or_else(|error| panic!("{error}"))
+    Target::build_all(&toolchain()).unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn request(row: Row, stride: u32) -> Request {
@@ -103,25 +108,57 @@ fn a_simulated_second_costs_no_more_than_its_goal() {
     }
 }
 
-/// The planner's price list; soft float depends on the numbers, compilers on their version.
+/// How near the planner's price list must be: soft float depends on the numbers, compilers on their version.
+const PRICED: RangeInclusive<f64> = 0.9..=1.1;
+
 #[test]
 fn a_step_costs_what_the_planner_thinks() {
-    let within = 0.9..=1.1;
     for target in &targets() {
         let costs = target.board.processor().costs;
         for (method, name) in [
             (Method::ClosedForm, "f32-linear-direction"),
             (Method::DirectionPlain, "f32-direction"),
             (Method::Direction, "f32-compensated-direction"),
+            (Method::Fixed32, "fixed32-direction"),
         ] {
             let row = ROWS.iter().find(|row| row.to_string() == name).expect("a row");
             let request = Request { angles: [0.5, 0.5], ..request(*row, FULL_CYCLE) };
             let stride = affordable_steps(target, &request).unwrap_or_else(|error| panic!("{error}"));
             let cost = step_cost(target, &Request { stride, ..request }).unwrap_or_else(|error| panic!("{error}"));
             let share = f64::from(costs.of_frame(method, 1)) / cost.cycles;
-            assert!(within.contains(&share), "{name} on {}: {share} of {cost:?}", target.board.name);
+            assert!(PRICED.contains(&share), "{name} on {}: {share} of {cost:?}", target.board.name);
         }
     }
+}
+
+/// What only the application does: a step in 64 bits of the plans' order, and the preparation of a motion, the most expensive.
+#[test]
+fn a_scene_is_prepared_and_stepped_in_64_bits_for_what_the_planner_thinks() -> Result<(), CountError> {
+    BOARDS.iter().filter(|board| board.has_panel).try_for_each(|board| {
+        let (toolchain, elf) = (toolchain(), application(board));
+        let image = Image::read(&elf)?;
+        let mut machine = Lockstep::start(&settings(&toolchain, board, &elf))?;
+        let Costs { fixed64, preparation, .. } = board.processor().costs;
+        let most = |machine: &mut Lockstep, function: &str| -> Result<f64, CountError> {
+            let (_, calls) = calls_in_next(machine, &image, board.core(), function)?;
+            Ok(calls.iter().map(|call| call.cycles as f64).fold(0.0, f64::max))
+        };
+        machine.next_frame()?;
+        let step = most(&mut machine, "Fixed64State::advance")?;
+        let mut prepared: f64 = 0.0;
+        for &method in Method::ALL {
+            let (field, unit, value) = (Field::Way.code(), Unit::One.code(), method_code(method).into());
+            machine.machine().serial.send(&Set { request: 1, field, unit, value })?;
+            // Whether the command comes before this frame or the next is a matter of bytes.
+            for _ in 0..2 {
+                prepared = prepared.max(most(&mut machine, "WayStepper::new")?);
+            }
+        }
+        println!("{}: a step {step}, prepared {prepared}", board.name);
+        assert!(PRICED.contains(&(f64::from(fixed64) / step)), "{}: {step}", board.name);
+        assert!(PRICED.contains(&(f64::from(preparation) / prepared)), "{}: {prepared}", board.name);
+        Ok(())
+    })
 }
 
 #[test]

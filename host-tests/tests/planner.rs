@@ -75,6 +75,38 @@ fn there_is_nothing_to_do_without_a_motion_or_when_all_is_found() {
     assert_eq!((planner.answer(1).found, planner.horizon(LASTING)), (1, 0.0), "it begins anew");
 }
 
+/// To follow what is found takes time: until it is told nothing else is done, and then looking ahead goes on.
+#[test]
+fn nothing_is_done_between_a_finding_and_its_telling() {
+    let mut planner = planner(STM32F405, &Settings::equal_rods(1.0, 20.0));
+    while planner.answer(1).found < 2 {
+        assert!(planner.tick().is_none());
+    }
+    assert!(!planner.work_ahead());
+    assert_eq!(planner.horizon(LASTING), PLANNED);
+    assert!(matches!(planner.tick(), Some(Finding::Plan(plan)) if plan.limit == Limit::End));
+    assert!(planner.work_ahead());
+}
+
+/// In 64 bits steps that resolve all that the energy allows, four to a frame here, are right wherever any others are; longer
+/// ones only as far as they have been looked at themselves.
+#[test]
+fn only_steps_that_resolve_a_motion_are_right_wherever_others_are() {
+    let in_32_bits = |planner: &Planner| {
+        let ways = [1, 2, 4, 8, 16].map(|steps| Way { method: Method::Fixed32, steps });
+        ways.map(|way| planner.horizon(way)).into_iter().fold(0.0, f64::max)
+    };
+    for (steps, is_right) in [(2, false), (4, true)] {
+        let begun = Way { method: Method::Fixed64, steps };
+        let mut planner = Planner::new(CORTEX_M3);
+        planner.start(&Settings::equal_rods(2.75, 171.0), Some(SHOWN), Some(begun));
+        while in_32_bits(&planner) < 1.0 {
+            assert!(planner.tick().is_none());
+        }
+        assert_eq!(planner.horizon(begun) > 0.0, is_right, "{begun:?}");
+    }
+}
+
 /// What is right for as long as is planned is looked at farther, always so far ahead and no farther.
 #[test]
 fn a_calm_motion_is_looked_at_for_as_long_as_it_is_played() {

@@ -5,7 +5,7 @@
 //! time that a frame leaves free.
 
 use double_pendulum::Parameters;
-use double_pendulum::plan::{Limit, Method, Plan, PlanError, Problem, Search, Way};
+use double_pendulum::plan::{Limit, Plan, PlanError, Problem, Search, Way};
 
 use crate::config::{HALF_PIXEL, PLANNED, PLANNING_PIECE, Processor, SETTLED_TICKS, TICK_RATE};
 use crate::motion::settings::Settings;
@@ -88,11 +88,17 @@ impl Planner {
         }
         while self.credit > 0.0 && self.work() {}
         self.credit = self.credit.min(0.0);
+        self.note();
+        self.is_due = self.finding.is_some();
+        None
+    }
+
+    /// Takes note of how far the way that the scene has begun in has been looked at.
+    #[inline(never)] // once in flash
+    fn note(&mut self) {
         if let Some(way) = self.begun {
             self.begun_horizon = self.begun_horizon.max(self.looked_at(way));
         }
-        self.is_due = self.finding.is_some();
-        None
     }
 
     /// Lets a tick of the scene pass that has no time for this.
@@ -121,7 +127,7 @@ impl Planner {
     fn planned(&self, way: Way) -> f64 {
         let plan = self.plan.and_then(Result::ok);
         let is_of = |plan: &Plan| plan.method == way.method && plan.steps.max(1) == way.steps;
-        plan.filter(|plan| way.method == Method::Fixed64 || is_of(plan)).map_or(0.0, |plan| plan.horizon)
+        plan.filter(is_of).map_or(0.0, |plan| plan.horizon)
     }
 
     /// Whether it may turn out that they are for longer.
@@ -144,8 +150,7 @@ impl Planner {
         }
         let spent = self.search.as_ref().map_or(0.0, Search::spent) - before;
         let is_first = before == 0.0;
-        let least =
-            if is_first { self.processor.costs.preparation } else { self.processor.costs.closed_form.max(PIECE) };
+        let least = if is_first { self.processor.costs.preparation } else { self.processor.piece() };
         self.credit -= spent.max(least);
         true
     }
@@ -178,6 +183,7 @@ impl Planner {
                 if plan.limit == Limit::End {
                     search.extend(FOR_EVER);
                 } else {
+                    self.note();
                     self.search = None;
                 }
             }
@@ -218,9 +224,6 @@ impl Planner {
         answer
     }
 }
-
-/// The least that a piece costs, cycles.
-const PIECE: f32 = 1_000.0;
 
 /// Longer than anything is played, s: four months.
 const FOR_EVER: f64 = 1e7;

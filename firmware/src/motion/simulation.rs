@@ -44,7 +44,6 @@ pub struct Simulation {
     motion: WayStepper,
     /// Whether its method was asked for.
     is_given: bool,
-    directions: Directions,
     /// The precise state now, once it was asked for: it takes as long as a step and a half.
     precise: Option<State<f64>>,
 }
@@ -55,9 +54,7 @@ impl Simulation {
         let pendulum = settings.pendulum()?;
         let start = settings.start(&pendulum)?;
         let motion = means.start(settings, &pendulum)?;
-        let directions = motion.directions();
-        let is_given = means.method.is_some();
-        Ok(Self { energy: Energy::new(pendulum, &start), motion, is_given, directions, precise: None })
+        Ok(Self { energy: Energy::new(pendulum, &start), motion, is_given: means.method.is_some(), precise: None })
     }
 
     /// Advances by one tick.
@@ -65,7 +62,6 @@ impl Simulation {
     pub fn tick(&mut self) {
         self.precise = None;
         self.motion.advance();
-        self.directions = self.motion.directions();
     }
 
     /// The way that was asked for in place of the plan's, if one was.
@@ -80,7 +76,7 @@ impl Simulation {
 
     /// Where the rods point: all that most frames need.
     pub fn directions(&self) -> Directions {
-        self.directions
+        self.motion.directions()
     }
 
     /// The canonical state now, rounded to `f32`, its angles unwrapped.
@@ -122,7 +118,8 @@ impl CatchingUp {
     /// Refuses what [`WayStepper::new`] refuses.
     pub fn new(settings: &Settings, way: Way, processor: &Processor) -> Result<Self, Error> {
         let (parameters, start) = (settings.parameters.cast(), settings.motion().cast());
-        let affordable = (processor.look_ahead / processor.costs.of_frame(way.method, way.steps)) as u32;
+        let frame = processor.costs.of_frame(way.method, way.steps).max(processor.piece());
+        let affordable = (processor.look_ahead / frame) as u32;
         let motion = WayStepper::new(&parameters, &start, TICK_RATE as u16, way)?;
         // With fewer frames in a tick nothing catches up.
         Ok(Self { motion, most: affordable.max(2) })
@@ -137,8 +134,7 @@ impl CatchingUp {
         }
         let is_there = self.motion.frame() == simulation.motion.frame();
         if is_there {
-            simulation.motion = self.motion;
-            (simulation.directions, simulation.precise) = (self.motion.directions(), None);
+            (simulation.motion, simulation.precise) = (self.motion, None);
         }
         is_there
     }

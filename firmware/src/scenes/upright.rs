@@ -35,6 +35,8 @@ pub fn straight_up() -> Settings {
 #[derive(Clone, Debug)]
 pub struct Upright {
     plain: State<f32>,
+    /// Where its rods point.
+    plain_directions: Directions,
     compensated: DirectionStepper,
     energy: Energy,
     ticks: u64,
@@ -46,11 +48,7 @@ pub struct Upright {
 impl Upright {
     fn places(&self) -> [[Spot; 2]; 2] {
         let [left, right] = &self.views;
-        [left.spots(self.plain_directions()), right.spots(self.compensated.directions())]
-    }
-
-    fn plain_directions(&self) -> Directions {
-        [self.plain.a1, self.plain.a2].map(|angle| DefaultTrig::sin_cos(angle).into())
+        [left.spots(self.plain_directions), right.spots(self.compensated.directions())]
     }
 
     fn time(&self) -> f64 {
@@ -60,9 +58,14 @@ impl Upright {
     /// Whether the plain motion is no longer shown where the compensated one is.
     fn have_parted(&self) -> bool {
         let [left, _] = &self.views;
-        let [plain, compensated] = [self.plain_directions(), self.compensated.directions()].map(|to| left.bobs(to));
+        let [plain, compensated] = [self.plain_directions, self.compensated.directions()].map(|to| left.bobs(to));
         horizon::are_apart(plain, compensated, HALF_PIXEL)
     }
+}
+
+#[inline(never)] // once in flash
+fn directions(state: &State<f32>) -> Directions {
+    state.angles().map(|angle| DefaultTrig::sin_cos(angle).into())
 }
 
 impl Scene for Upright {
@@ -73,8 +76,9 @@ impl Scene for Upright {
         let views = Place::HALVES.map(|place| View::new(&settings.parameters, place));
         let compensated = DirectionStepper::new(&settings.parameters, &plain, DT)?;
         let (energy, ticks) = (Energy::new(pendulum, &plain), 0);
+        let (plain_directions, horizon) = (directions(&plain), LastRight::default());
         let bobs = Default::default();
-        let mut scene = Self { plain, compensated, energy, ticks, views, bobs, horizon: LastRight::default() };
+        let mut scene = Self { plain, plain_directions, compensated, energy, ticks, views, bobs, horizon };
         scene.bobs = scene.places();
         Ok(scene)
     }
@@ -83,6 +87,7 @@ impl Scene for Upright {
         for _ in 0..STEPS_PER_TICK {
             self.plain = self.energy.pendulum().step(&self.plain, DT as f32);
         }
+        self.plain_directions = directions(&self.plain);
         self.compensated.advance(STEPS_PER_TICK);
         self.ticks = self.ticks.wrapping_add(1);
         let is_right = !self.have_parted();

@@ -38,6 +38,15 @@ impl<R: Real, F: Form<R>> Stepper<R, F> {
         Ok(Self { form, carried: form.start(start)? })
     }
 
+    /// The same motion, read in the arithmetic `Q`.
+    pub(crate) fn read_in<Q: Real>(self) -> Stepper<Q, F>
+    where
+        F: Form<Q, Carried = <F as Form<R>>::Carried>,
+    {
+        let Self { form, carried } = self;
+        Stepper { form, carried }
+    }
+
     /// Makes `steps` steps ([`Form::advance`]).
     #[inline(always)]
     pub fn advance(&mut self, steps: u32) {
@@ -116,7 +125,20 @@ pub struct UnwrappedStepper<R: Real, F: Form<R>> {
 impl<R: Real, F: Form<R>> UnwrappedStepper<R, F> {
     /// As [`Stepper::new`].
     pub fn new(parameters: &Parameters<R>, start: &State<R>, dt: f64) -> Result<Self, Error> {
-        Ok(Self { stepper: Stepper::new(parameters, start, dt)?, windings: start.angles().map(Winding::new) })
+        Ok(Self::of(Stepper::new(parameters, start, dt)?, start.angles()))
+    }
+
+    /// A motion that starts at these angles.
+    pub(crate) fn of(stepper: Stepper<R, F>, start: [R; 2]) -> Self {
+        let ([start1, start2], [upper, lower]) = (start, stepper.directions());
+        Self { stepper, windings: [Winding::at(start1, upper), Winding::at(start2, lower)] }
+    }
+
+    #[inline(never)] // once in flash
+    fn observe(&mut self) {
+        for (winding, direction) in self.windings.iter_mut().zip(self.stepper.directions()) {
+            winding.observe(direction);
+        }
     }
 
     /// Makes `steps` steps and counts the turns.
@@ -124,9 +146,7 @@ impl<R: Real, F: Form<R>> UnwrappedStepper<R, F> {
     pub fn advance(&mut self, steps: u32) {
         for _ in 0..steps {
             self.stepper.advance(1);
-            for (winding, direction) in self.windings.iter_mut().zip(self.stepper.directions()) {
-                winding.observe(direction);
-            }
+            self.observe();
         }
     }
 
@@ -134,7 +154,7 @@ impl<R: Real, F: Form<R>> UnwrappedStepper<R, F> {
     #[must_use]
     #[inline]
     pub fn directions(&self) -> [Direction<R>; 2] {
-        self.stepper.directions()
+        self.windings.each_ref().map(Winding::last)
     }
 
     /// As [`Stepper::state`], the angles with all their turns.

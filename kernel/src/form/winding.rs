@@ -19,11 +19,9 @@ impl<R: Real> Winding<R> {
     #[must_use]
     #[inline(never)] // once in flash
     pub fn new(start: R) -> Self {
-        let angle = start.to_f64();
-        let turns = libm::rint(angle / core::f64::consts::TAU);
-        let rest = angle - turns * core::f64::consts::TAU;
+        let (turns, rest) = split(start.to_f64());
         let (sin, cos) = rest.own_sin_cos();
-        Self { turns: turns as i32, last: [R::from_f64(sin), R::from_f64(cos)] }
+        Self { turns, last: [R::from_f64(sin), R::from_f64(cos)] }
     }
 
     /// That has counted `turns` and was last shown the direction `last`.
@@ -41,6 +39,20 @@ impl<R: Real> Winding<R> {
             self.turns = self.turns.wrapping_add(if after { 1 } else { -1 });
         }
         self.last = now;
+    }
+
+    /// For an angle of `start` rad, whose direction is `now`: no sines, the sign of one tells the side.
+    #[inline(never)] // once in flash
+    pub(super) fn at(start: R, now: Direction<R>) -> Self {
+        let (turns, rest) = split(start.to_f64());
+        let mut winding = Self { turns, last: [R::from_f64(rest), -R::ONE] };
+        winding.observe(now);
+        winding
+    }
+
+    /// The last direction observed.
+    pub(super) fn last(&self) -> Direction<R> {
+        self.last
     }
 
     /// Whole turns, counted from the downward vertical.
@@ -68,4 +80,11 @@ impl<R: Real> Winding<R> {
         let near = f64::from(self.turns) * TAU + side;
         angle + TAU * libm::rint((near - angle) / TAU)
     }
+}
+
+/// The whole turns of an angle, and the rest, rad.
+#[inline(never)] // once in flash
+fn split(angle: f64) -> (i32, f64) {
+    let turns = libm::rint(angle / core::f64::consts::TAU);
+    (turns as i32, angle - turns * core::f64::consts::TAU)
 }

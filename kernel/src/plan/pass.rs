@@ -39,14 +39,11 @@ impl Candidate {
         Self { method, steps, right: 0, error: 0.0, failed: false, by_rounding: false }
     }
 
-    /// In how many frames it shows `way` to be right.
+    /// In how many frames it shows `way` to be right; one that `outlasts` all others is so wherever any is.
     #[inline(never)] // once in flash
-    pub fn right_of(&self, way: Way) -> u32 {
-        let is_shown = match way.method {
-            Method::Fixed64 => true,
-            Method::ClosedForm => self.method == way.method,
-            _ => (self.method, self.steps) == (way.method, way.steps),
-        };
+    pub fn right_of(&self, way: Way, outlasts: bool) -> u32 {
+        let is_same = self.steps == way.steps || way.method == Method::ClosedForm;
+        let is_shown = outlasts || self.method == way.method && is_same;
         if is_shown { self.right } else { 0 }
     }
 

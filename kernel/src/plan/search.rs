@@ -230,8 +230,10 @@ impl Search {
     /// other is.
     #[must_use]
     pub fn horizon(&self, way: Way) -> f64 {
+        let resolves = |(steps, limit)| limit == Limit::Growth && way.steps >= steps;
+        let outlasts = way.method == Method::Fixed64 && self.fine.is_some_and(resolves);
         let looked_at = self.candidates().iter().chain(&self.best);
-        self.problem.time(looked_at.fold(0, |right, candidate| right.max(candidate.right_of(way))))
+        self.problem.time(looked_at.fold(0, |right, candidate| right.max(candidate.right_of(way, outlasts))))
     }
 
     /// Goes on with the method of a plan that was right to its end, for `seconds` longer; [`Self::advance`] gives the plan

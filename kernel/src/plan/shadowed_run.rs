@@ -77,6 +77,8 @@ pub struct ShadowedRun<R: Real, F: Form<R>, const N: usize = 2> {
 impl<R: Real, F: Form<R>, const N: usize> ShadowedRun<R, F, N> {
     /// Steps made for each frame over those of the run itself.
     pub(super) const RUNS: f32 = 3.0 + N as f32;
+    /// What a distance counts for: fewer samples come near the run by chance more often.
+    const WEIGHT: f32 = if N == 1 { 2.0 } else { 1.0 };
 
     /// With `steps` steps for each frame.
     ///
@@ -115,7 +117,7 @@ impl<R: Real, F: Form<R>, const N: usize> ShadowedRun<R, F, N> {
         let apart = |other: &mut Run<R, F>| distance(self.rods, &frame, &other.frame());
         let step = apart(&mut self.finer);
         let rounding = self.perturbed.iter_mut().map(apart).fold(0.0, greater);
-        (frame, ErrorEstimate { step, rounding })
+        (frame, ErrorEstimate { step: Self::WEIGHT * step, rounding: Self::WEIGHT * rounding })
     }
 
     /// The next frame, and how wrong it is. Refuses a pendulum out of the range of the arithmetic.

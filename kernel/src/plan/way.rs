@@ -3,7 +3,7 @@
 use super::cost::{Costs, Method, ORDER};
 use super::run::Directions;
 use crate::error::Error;
-use crate::form::{DirectionForm, Fixed32Form, Fixed64Form, Form, Plain, UnwrappedStepper};
+use crate::form::{DirectionForm, Fixed32Form, Fixed64Form, Form, Plain, Stepper, UnwrappedStepper};
 use crate::hamiltonian::Pendulum;
 use crate::modes::Modes;
 use crate::params::Parameters;
@@ -43,7 +43,8 @@ enum Carried {
     DirectionPlain(UnwrappedStepper<f32, DirectionForm<f32, Plain>>),
     Direction(UnwrappedStepper<f32, DirectionForm<f32>>),
     Fixed32(UnwrappedStepper<f32, Fixed32Form>),
-    Fixed64(UnwrappedStepper<f64, Fixed64Form<ORDER>>),
+    /// Read in `f32`: in `f64` that would take as long as a fifth of a step.
+    Fixed64(UnwrappedStepper<f32, Fixed64Form<ORDER>>),
 }
 
 /// At so many admissible steps or less in one, the roundings of [`Method::Fixed64`] are what ends its horizon, not its steps.
@@ -75,8 +76,8 @@ pub(super) fn start_and_step(parameters: &Parameters<f64>, start: &Motion<f64>) 
 
 impl Way {
     /// The way that a motion may be shown in while nothing is known of it but its energy: by [`Method::Fixed64`] where
-    /// `frame`, which a frame may cost, allows for steps that resolve all there may be; else by steps in 32 bits that do, or
-    /// as many as can be had.
+    /// `frame`, which a frame may cost, allows for it, in steps that resolve all there may be or, if those cost too much, the
+    /// longest that are looked at; else by such steps in 32 bits, or as many as can be had.
     ///
     /// Refuses what [`Pendulum::new`] and [`Pendulum::admissible_step`] refuse.
     pub fn lasting(
@@ -87,8 +88,10 @@ impl Way {
         frame: f32,
     ) -> Result<Self, Error> {
         let (_, admissible) = start_and_step(parameters, start)?;
-        if let Some(way) = Self::fixed64(parameters, start, rate, RESOLVING * admissible, costs, frame) {
-            return Ok(way);
+        for longest in [RESOLVING, FIRST_STEP] {
+            if let Some(way) = Self::fixed64(parameters, start, rate, longest * admissible, costs, frame) {
+                return Ok(way);
+            }
         }
         let affordable = |method| {
             let mut steps = steps_to_frame(rate, FIRST_STEP * admissible);
@@ -158,7 +161,10 @@ impl WayStepper {
             Method::DirectionPlain => Carried::DirectionPlain(stepper(parameters, &state, dt)?),
             Method::Direction => Carried::Direction(stepper(parameters, &state, dt)?),
             Method::Fixed32 => Carried::Fixed32(stepper(parameters, &state, dt)?),
-            Method::Fixed64 => Carried::Fixed64(stepper(parameters, &state, dt)?),
+            Method::Fixed64 => {
+                let motion = Stepper::<f64, Fixed64Form<ORDER>>::new(parameters, &state, dt)?;
+                Carried::Fixed64(UnwrappedStepper::of(motion.read_in(), state.cast().angles()))
+            }
         };
         let steps = if way.method == Method::ClosedForm { 1 } else { steps };
         Ok(Self { way: Way { steps, ..way }, rate, frame: 0, motion })
@@ -205,7 +211,7 @@ impl WayStepper {
             Carried::DirectionPlain(motion) => motion.directions(),
             Carried::Direction(motion) => motion.directions(),
             Carried::Fixed32(motion) => motion.directions(),
-            Carried::Fixed64(motion) => motion.directions().map(|direction| direction.map(|x| x as f32)),
+            Carried::Fixed64(motion) => motion.directions(),
         }
     }
 

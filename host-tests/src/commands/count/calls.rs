@@ -91,6 +91,11 @@ impl<'a> Calls<'a> {
         Ok(())
     }
 
+    /// What each call that returned cost, in order.
+    pub fn into_ended(self) -> Vec<Cost> {
+        self.ended
+    }
+
     /// What all the calls executed together.
     pub fn into_profile(self) -> Profile {
         self.profile

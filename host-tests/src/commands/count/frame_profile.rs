@@ -1,6 +1,6 @@
-//! How a profile is taken of a whole frame of an application, by the parts of the work.
+//! How a whole frame of an application is counted: a profile by the parts of the work, or the calls of a function.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
 use std::{io, thread};
 
@@ -9,7 +9,7 @@ use nix::sys::stat::Mode;
 use nix::unistd::mkfifo;
 
 use super::CountError;
-use super::calls::Stream;
+use super::calls::{Calls, Stream};
 use super::image::Image;
 use super::pipeline::Cost;
 use super::profile::Profile;
@@ -55,17 +55,7 @@ pub struct FrameProfile {
 impl FrameProfile {
     /// Lets `board` run to its next frame and profiles all that it executes for it.
     pub fn of_next(board: &mut Lockstep, image: &Image, core: Core) -> Result<(Frame, Self), CountError> {
-        let folder = tempfile::tempdir().map_err(log)?;
-        remove_on_interrupt(folder.path());
-        let path = folder.path().join("log");
-        mkfifo(&path, Mode::S_IRUSR | Mode::S_IWUSR).map_err(|error| log(error.into()))?;
-        thread::scope(|scope| {
-            // The pipe opens for QEMU once it is open here, and the other way about.
-            let profile = scope.spawn(|| Self::of_log(File::open(&path).map_err(log)?, image, core));
-            let frame = board.next_frame_logged(&path)?;
-            let profile = profile.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
-            Ok((frame, profile?))
-        })
+        next_frame_read(board, |log| Self::of_log(log, image, core))
     }
 
     fn of_log(file: File, image: &Image, core: Core) -> Result<Self, CountError> {
@@ -101,6 +91,39 @@ impl FrameProfile {
         self.parts.values().for_each(|part| whole += part.cost());
         whole
     }
+}
+
+/// Lets `board` run to its next frame and counts the calls of `function` on the way, those that return.
+pub fn calls_in_next(
+    board: &mut Lockstep,
+    image: &Image,
+    core: Core,
+    function: &str,
+) -> Result<(Frame, Vec<Cost>), CountError> {
+    let entry = BTreeSet::from([image.function(function)?.address]);
+    next_frame_read(board, |log| {
+        let mut calls = Calls::of(image, core, entry);
+        for_each_instruction(log, |registers| calls.see(registers))?;
+        Ok(calls.into_ended())
+    })
+}
+
+/// Lets `board` run to its next frame and `read` the log of what it executes.
+fn next_frame_read<T: Send>(
+    board: &mut Lockstep,
+    read: impl FnOnce(File) -> Result<T, CountError> + Send,
+) -> Result<(Frame, T), CountError> {
+    let folder = tempfile::tempdir().map_err(log)?;
+    remove_on_interrupt(folder.path());
+    let path = folder.path().join("log");
+    mkfifo(&path, Mode::S_IRUSR | Mode::S_IWUSR).map_err(|error| log(error.into()))?;
+    thread::scope(|scope| {
+        // The pipe opens for QEMU once it is open here, and the other way about.
+        let reader = scope.spawn(|| read(File::open(&path).map_err(log)?));
+        let frame = board.next_frame_logged(&path)?;
+        let read = reader.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+        Ok((frame, read?))
+    })
 }
 
 /// Tells by the registers which part is at work.

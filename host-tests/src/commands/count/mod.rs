@@ -17,7 +17,7 @@ pub mod timing;
 mod trace;
 
 pub use calls::{CallCosts, calls_of};
-pub use frame_profile::{FrameProfile, Part};
+pub use frame_profile::{FrameProfile, Part, calls_in_next};
 pub use image::{Function, Image};
 pub use instruction::Instruction;
 pub use pipeline::{Cost, ERROR_BAR, Pipeline};

@@ -1,17 +1,22 @@
-//! What a frame costs: of every scene on every board, by the parts of the work, and one by function.
+//! What a frame costs: of every scene on every board, by the parts of the work, and one by function; and until when the
+//! frames are right.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::time::Duration;
 
-use firmware::config::TICK_RATE;
+use double_pendulum::plan::{Limit, Method, Plan};
+use firmware::config::{PLANNED, TICK_RATE};
+use firmware::motion::planner::{Shown, problem};
 use firmware::protocol::{Choose, Frame};
 use firmware::scenes::SceneName;
 
 use super::parallel;
 use crate::commands::count::{CountError, ERROR_BAR, FrameProfile, Image, Part};
+use crate::commands::plan::judge;
 use crate::commands::table::Table;
 use crate::emulator::boards::{BOARDS, Board};
+use crate::emulator::host::Show;
 use crate::emulator::qemu::{Clock, Lockstep, Settings};
 use crate::emulator::toolchain::Toolchain;
 
@@ -55,6 +60,9 @@ const EARLIER: [[[u64; 3]; 12]; 2] = [[
     [6_920, 110_107, 73_952], // upright
 ]];
 
+/// In how many steps to a frame that version computed every motion, in compensated `f32`, but for small oscillations.
+const EARLIER_STEPS: u32 = 4;
+
 /// A scene's frame on a board.
 #[derive(Debug)]
 pub struct Counted {
@@ -62,6 +70,7 @@ pub struct Counted {
     pub board: &'static Board,
     /// The scene.
     pub scene: SceneName,
+    horizons: [String; 2],
     profile: FrameProfile,
     /// By function and part, cycles.
     functions: BTreeMap<(String, Part), u64>,
@@ -109,11 +118,31 @@ pub fn count(toolchain: &Toolchain, boards: usize, tick: &(dyn Fn() + Sync)) -> 
             let (_, profile) = FrameProfile::of_next(&mut machine, &image, board.core())?;
             tick();
             let functions = by_function(&profile, &image);
-            Ok(Counted { board, scene, profile, functions })
+            Ok(Counted { board, scene, horizons: horizons(board, scene).unwrap_or_default(), profile, functions })
         });
         scenes.collect::<Result<Vec<_>, CountError>>()
     };
     Ok(parallel(&elves, on_board).into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
+}
+
+/// Until when `board` says that the frames are right, s, when it has looked ahead as far as it may; and until when they were
+/// in that earlier version, by the reference. Empty where no motion is planned.
+fn horizons(board: &Board, scene: SceneName) -> Option<[String; 2]> {
+    let settings = scene.first_settings();
+    let mut show = Show::on(board.processor(), scene, &settings).ok()?;
+    for _ in 0..(PLANNED + 1.0) as u32 * TICK_RATE {
+        show.tick();
+    }
+    let (report, answer) = (show.report(), show.player().plan(0));
+    let way = report.way.filter(|_| answer.found > 0)?;
+    let (method, steps) =
+        if way.method == Method::ClosedForm { (way.method, 0) } else { (Method::Direction, EARLIER_STEPS) };
+    let earlier =
+        Plan { method, steps, dt: 0.0, error: 0.0, cost: 0.0, horizon: 0.0, limit: Limit::Method, spent: 0.0 };
+    let motion = problem(&settings, &Shown { way: None, height: answer.height as f32 });
+    let until = |seconds: f64, or_longer| format!("{seconds:.1}{}", if or_longer { " and on" } else { "" });
+    let before = judge(&motion, &earlier).ok()?.horizon;
+    Some([until(report.horizon.into(), report.is_looking), until(before, before >= motion.duration)])
 }
 
 fn by_function(profile: &FrameProfile, image: &Image) -> BTreeMap<(String, Part), u64> {
@@ -146,7 +175,8 @@ pub fn table(frames: &[Counted]) -> Table {
         row.extend(WORK.map(|part| frame.cycles(part).to_string()));
         let share = 100.0 * frame.share();
         row.extend([frame.whole().to_string(), format!("{share:.1} %"), format!("{:.1} %", 100.0 - share)]);
-        row.push(earlier(frame).unwrap_or_default());
+        let [horizon, before] = frame.horizons.clone();
+        row.extend([horizon, earlier(frame).unwrap_or_default(), before]);
         row
     };
     Table {
@@ -155,10 +185,23 @@ pub fn table(frames: &[Counted]) -> Table {
         note: format!(
             "The frame of tick {COUNTED}, cycles. Sending: the frame in numbers, what has changed to the panel, which QEMU's bus \
              takes at once, and the message. Share: of a frame of 1/{TICK_RATE} s at the board's clock. Idle: what is left, for \
-             commands and for the search for a plan. Earlier: motion, drawing and sending of a version before, recorded then. \
-             {ERROR_BAR}"
+             commands and for the search for a plan. Right until: by the panel's clock, s. Earlier: motion, drawing and sending \
+             of a version before, recorded then, and until when its frames were right, by the reference. {ERROR_BAR}"
         ),
-        columns: vec!["scene", "board", "motion", "drawing", "sending", "rest", "whole", "share", "idle", "earlier"],
+        columns: vec![
+            "scene",
+            "board",
+            "motion",
+            "drawing",
+            "sending",
+            "rest",
+            "whole",
+            "share",
+            "idle",
+            "right until (s)",
+            "earlier",
+            "right until (s), earlier",
+        ],
         rows: frames.iter().map(row).collect(),
     }
 }

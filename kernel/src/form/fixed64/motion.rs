@@ -108,7 +108,8 @@ impl Fixed64State {
     }
 
     pub(super) fn directions<R: Real>(&self) -> [Direction<R>; 2] {
-        let [sin1, cos1, s, c, ..] = self.values().map(|value| R::from_f64(value / EIGHTH));
+        let [sin1, cos1, s, c, ..] = self.z;
+        let [sin1, cos1, s, c] = [sin1, cos1, s, c].map(|z| R::from_f64(z.value() / EIGHTH));
         [[sin1, cos1], lower_direction([sin1, cos1], [s, c], R::from_f64(self.scaling.norm))]
     }
 
