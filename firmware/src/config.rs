@@ -79,7 +79,7 @@ pub const CORTEX_M3: Processor = Processor {
         preparation: 300_000.0,
     },
     frame: 200_000.0,
-    look_ahead: 300_000.0,
+    look_ahead: 280_000.0,
 };
 /// A Cortex-M0+, which has no long product either, as on the Raspberry Pi Pico: at 125 MHz a tick has 2,083,000 cycles.
 pub const CORTEX_M0PLUS: Processor = Processor {
@@ -93,7 +93,7 @@ pub const CORTEX_M0PLUS: Processor = Processor {
         preparation: 620_000.0,
     },
     frame: 300_000.0,
-    look_ahead: 530_000.0,
+    look_ahead: 400_000.0,
 };
 /// A Cortex-M4F, whose floating-point unit knows `f32` only: the slowest board, at 25 MHz, has 417,000 cycles in a tick. A
 /// plain step costs less than the closed form's two sincos.

@@ -35,7 +35,8 @@ fn replace(outgoing: Option<Outgoing>) -> Option<Outgoing> {
     free(|token| OUTGOING.borrow(token).replace(outgoing))
 }
 
-/// What has come back. In one piece: an interrupt that finds no outbox does nothing, and would come again and again.
+/// The outbox that the interrupt is done with, if it is. Looked at and put back within one critical section: an interrupt that
+/// found no outbox would do nothing, and fire again at once.
 fn returned() -> Option<(&'static mut Outbox, Sent)> {
     free(|token| match OUTGOING.borrow(token).take() {
         Some(Outgoing { outbox, sent: Some(sent) }) => Some((outbox, sent)),

@@ -59,9 +59,9 @@ pub enum Ssd1306Error {
     Absent(ErrorKind),
     /// The panel answered before, but not now.
     Lost,
-    /// The bus was busy: of [`TICK_RATE`] frames it has carried so many.
+    /// The bus is too slow for every frame.
     Slow {
-        /// Those that have reached the panel.
+        /// How many of the last [`TICK_RATE`] frames reached the panel.
         shown: u32,
     },
 }
@@ -145,7 +145,7 @@ impl<Bus: PanelBus> Ssd1306<Bus> {
 }
 
 impl State {
-    /// What is next when the last messages have become of so, and what there is to be told.
+    /// The next state, given how the last messages fared, and what there is to report.
     fn after(self, sent: Sent) -> (Self, Option<Result<(), Ssd1306Error>>) {
         let [first, second] = ADDRESSES;
         let absent = Self::Absent { retry_in: RETRY };

@@ -39,8 +39,8 @@ pub struct Planner {
     ticks: u64,
     task: Option<(Problem, Shown)>,
     search: Option<Search>,
-    /// Cycles that may still be spent in this tick; less than 0 if some of the next have been.
-    credit: f32,
+    /// Cycles of the ticks to come that have been spent.
+    debt: f32,
     /// The plan once it is found, or what forbids any.
     plan: Option<Result<Plan, Limit>>,
     /// The way that the scene has begun in, and until when that is known to be right, s.
@@ -59,7 +59,7 @@ impl Planner {
             ticks: 0,
             task: None,
             search: None,
-            credit: 0.0,
+            debt: 0.0,
             plan: None,
             begun: None,
             begun_horizon: 0.0,
@@ -70,7 +70,7 @@ impl Planner {
 
     /// Begins anew for a scene that starts with `settings`, and in the way `begun`; one that shows no motion has no plan.
     pub fn start(&mut self, settings: &Settings, shown: Option<Shown>, begun: Option<Way>) {
-        (self.ticks, self.credit) = (0, 0.0);
+        (self.ticks, self.debt) = (0, 0.0);
         (self.begun, self.begun_horizon) = (begun, 0.0);
         (self.search, self.plan, self.finding, self.is_due) = (None, None, None, false);
         self.task = shown.map(|shown| (problem(settings, &shown), shown));
@@ -84,10 +84,9 @@ impl Planner {
             return self.finding.take();
         }
         if self.ticks > SETTLED_TICKS {
-            self.credit += self.processor.look_ahead;
+            while self.work() {}
+            self.debt = (self.debt - self.processor.look_ahead).max(0.0);
         }
-        while self.credit > 0.0 && self.work() {}
-        self.credit = self.credit.min(0.0);
         self.note();
         self.is_due = self.finding.is_some();
         None
@@ -108,7 +107,7 @@ impl Planner {
 
     /// Does a piece of what the next tick may spend; whether there is more.
     pub fn work_ahead(&mut self) -> bool {
-        self.ticks >= SETTLED_TICKS && self.credit + self.processor.look_ahead > 0.0 && self.work()
+        self.ticks >= SETTLED_TICKS && self.work()
     }
 
     /// Until when the frames are known to be right of a scene that goes this `way`, s.
@@ -135,12 +134,18 @@ impl Planner {
         self.task.is_some() && (self.plan.is_none() || self.search.is_some())
     }
 
-    /// Does a piece of the search; whether there was one to do.
+    /// Does a piece of the search, if the tick has time for it; whether it has done one. A preparation that a tick has no time
+    /// for waits for one that has nothing else to do.
     ///
     /// Never inlined: a profile of a frame tells looking ahead by it.
     #[inline(never)]
     fn work(&mut self) -> bool {
         if self.finding.is_some() || !self.is_looking() || self.is_far() {
+            return false;
+        }
+        let is_preparing = self.search.as_ref().is_none_or(Search::is_preparing);
+        let long = if is_preparing { self.processor.costs.preparation } else { 0.0 };
+        if self.debt > 0.0 && self.debt + long >= self.processor.look_ahead {
             return false;
         }
         let before = self.search.as_ref().map_or(0.0, Search::spent);
@@ -149,9 +154,8 @@ impl Planner {
             self.finding = Some(Finding::Refused(error));
         }
         let spent = self.search.as_ref().map_or(0.0, Search::spent) - before;
-        let is_first = before == 0.0;
-        let least = if is_first { self.processor.costs.preparation } else { self.processor.piece() };
-        self.credit -= spent.max(least);
+        let least = if before == 0.0 { long } else { self.processor.piece() };
+        self.debt += spent.max(least);
         true
     }
 

@@ -65,6 +65,8 @@ impl Butterfly {
 }
 
 impl Scene for Butterfly {
+    /// Never inlined: all scenes' preparations would stand side by side on the stack.
+    #[inline(never)]
     fn new(settings: &Settings, means: &Means) -> Result<Self, Error> {
         let first = Simulation::new(settings, means)?;
         let second = simulation::start_beside(settings, APART, first.way())?;

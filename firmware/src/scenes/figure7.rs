@@ -49,6 +49,8 @@ fn spots(places: [[(f32, f32); 2]; 2]) -> [[Spot; 2]; 2] {
 }
 
 impl Scene for Figure7 {
+    /// Never inlined: all scenes' preparations would stand side by side on the stack.
+    #[inline(never)]
     fn new(settings: &Settings, means: &Means) -> Result<Self, Error> {
         let &Parameters { l1, l2, .. } = &settings.parameters;
         if l1 != l2 {

@@ -1,5 +1,6 @@
 //! Upright: both rods at exactly 180 degrees, where the pendulum would stand for ever if the number pi could be held.
 
+use double_pendulum::form::Direction;
 use double_pendulum::trig::{DefaultTrig, SinCos};
 use double_pendulum::{Error, State};
 
@@ -63,9 +64,13 @@ impl Upright {
     }
 }
 
-#[inline(never)] // once in flash
 fn directions(state: &State<f32>) -> Directions {
-    state.angles().map(|angle| DefaultTrig::sin_cos(angle).into())
+    state.angles().map(direction)
+}
+
+#[inline(never)] // once in flash
+fn direction(angle: f32) -> Direction<f32> {
+    DefaultTrig::sin_cos(angle).into()
 }
 
 impl Scene for Upright {

@@ -31,7 +31,7 @@ fn run(options: &Options) -> anyhow::Result<()> {
     Ok(table.finish()?)
 }
 
-/// What is to be computed, after what there is to say about it.
+/// The motion to compute; warnings about it go to stderr first.
 fn planned(options: &Options) -> anyhow::Result<Plan> {
     if let Some(tolerance) = &options.tolerance {
         let choice = choose(options, tolerance)?;

@@ -110,8 +110,13 @@ impl core::error::Error for PlanError {
 /// Refuses the first of `values` that is not a finite number greater than zero.
 #[inline(never)] // once in flash
 pub(super) fn check_positive(quantity: Quantity, values: &[f64]) -> Result<(), PlanError> {
-    match values.iter().find(|value| !(value.is_finite() && **value > 0.0)) {
+    match values.iter().find(|value| !is_positive(**value)) {
         Some(&value) => Err(PlanError::NotPositive { quantity, value }),
         None => Ok(()),
     }
+}
+
+#[inline(never)] // once in flash
+fn is_positive(value: f64) -> bool {
+    value.is_finite() && value > 0.0
 }

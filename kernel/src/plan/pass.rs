@@ -93,7 +93,15 @@ impl Shadowed {
         }
     }
 
-    fn advance(&mut self, most: u32) -> Result<u32, Error> {
+    fn prepare(&mut self) -> Result<bool, Error> {
+        match self {
+            Self::Direction(run) => run.prepare(),
+            Self::Fixed32(run) => run.prepare(),
+            Self::Fixed64(run) => run.prepare(),
+        }
+    }
+
+    fn advance(&mut self, most: u32) -> u32 {
         match self {
             Self::Direction(run) => run.advance(most),
             Self::Fixed32(run) => run.advance(most),
@@ -153,17 +161,23 @@ impl Pass {
         pass
     }
 
-    /// Makes steps of one motion towards the next frame, as many as `cost` pays for and one at least, or prepares them. What
-    /// they cost; 0 if there is nothing left to do.
-    pub fn advance(&mut self, costs: &Costs, cost: f32) -> Result<f32, Error> {
+    /// Prepares one motion; whether there was one to prepare.
+    pub fn prepare(&mut self) -> Result<bool, Error> {
+        let [.., plain] = &self.candidates;
+        Ok(self.shadowed.prepare()? || !plain.failed && self.plain.prepare()?)
+    }
+
+    /// Makes steps of one motion towards the next frame, as many as `cost` pays for and one at least. What they cost; 0 if
+    /// there is nothing left to do.
+    pub fn advance(&mut self, costs: &Costs, cost: f32) -> f32 {
         let [own, _, plain] = &self.candidates;
         let most = |method: Method| steps_for(costs, method, cost);
-        let steps = self.shadowed.advance(most(own.method))?;
+        let steps = self.shadowed.advance(most(own.method));
         if steps > 0 || plain.failed {
-            return Ok(costs.of_frame(own.method, steps));
+            return costs.of_frame(own.method, steps);
         }
-        let steps = self.plain.advance(most(plain.method))?;
-        Ok(costs.of_frame(plain.method, steps))
+        let steps = self.plain.advance(most(plain.method));
+        costs.of_frame(plain.method, steps)
     }
 
     /// Compares the frames at time `t`, s, when all steps towards them are made. A method fails where it may be off by more

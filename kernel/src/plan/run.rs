@@ -24,7 +24,6 @@ pub(super) struct Run<R: Real, F: Form<R>> {
     start: State<R>,
     /// The step, s.
     dt: f64,
-    /// Prepared by the first piece of work.
     motion: Option<Stepper<R, F>>,
     per_frame: u32,
     /// Steps made since the last frame.
@@ -38,21 +37,27 @@ impl<R: Real, F: Form<R>> Run<R, F> {
         Self { parameters, start, dt, motion: None, per_frame, made: 0 }
     }
 
-    /// Makes `most` of the steps towards the next frame, or as many as are left; or prepares them, which counts as one. How
-    /// many that were: 0 if nothing was left to do.
+    /// Prepares the steps; whether they were not.
     #[inline(never)] // once in flash
-    pub fn advance(&mut self, most: u32) -> Result<u32, Error> {
+    pub fn prepare(&mut self) -> Result<bool, Error> {
+        let is_new = self.motion.is_none();
+        if is_new {
+            self.motion = Some(Stepper::new(&self.parameters, &self.start, self.dt)?);
+        }
+        Ok(is_new)
+    }
+
+    /// Makes `most` of the steps towards the next frame, or as many as are left. How many that were: 0 if nothing was left to
+    /// do.
+    #[inline(never)] // once in flash
+    pub fn advance(&mut self, most: u32) -> u32 {
         let left = self.per_frame.saturating_sub(self.made);
         let steps = if most < left { most } else { left };
-        match &mut self.motion {
-            Some(motion) => motion.advance(steps),
-            None => {
-                self.motion = Some(Stepper::new(&self.parameters, &self.start, self.dt)?);
-                return Ok(1);
-            }
+        if let Some(motion) = &mut self.motion {
+            motion.advance(steps);
         }
         self.made += steps;
-        Ok(steps)
+        steps
     }
 
     /// The frame, when nothing is left to do; the next steps lead to the next.

@@ -37,9 +37,6 @@ pub struct Plan {
 /// A costlier method must be right for this much longer to be worth it.
 const WORTH: f64 = 1.1;
 
-/// The most motions that a pass prepares.
-const PREPARATIONS: f32 = 5.0;
-
 /// A search under way; [`advance`](Self::advance) it until there is a plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -61,10 +58,10 @@ pub struct Search {
     pass: Option<Pass>,
     /// Frames compared with these steps.
     frame: u32,
+    /// Whether the motions of the pass are prepared.
+    prepared: bool,
     /// Whether the next frame is within the budget, and is being computed.
     begun: bool,
-    /// Motions prepared in this pass.
-    preparations: f32,
     /// The only method that counts, if it and the step are given.
     given: Option<Method>,
     spent: f32,
@@ -102,8 +99,8 @@ impl Search {
             steps,
             pass: None,
             frame: 0,
+            prepared: false,
             begun: false,
-            preparations: 0.0,
             given: None,
             spent: 0.0,
             best: None,
@@ -140,21 +137,17 @@ impl Search {
     pub fn advance(&mut self, cost: f32) -> Result<Option<Plan>, PlanError> {
         let Some(pass) = &mut self.pass else { return self.make() };
         if !self.begun {
-            let preparations = if self.frame == 0 { PREPARATIONS * self.costs.preparation } else { 0.0 };
-            if self.spent + preparations + pass.cost(&self.costs) > self.budget.planning {
+            let next = if self.prepared { pass.cost(&self.costs) } else { self.costs.preparation };
+            if self.spent + next > self.budget.planning {
                 self.keep_best();
                 return self.plan(Limit::Planning).map(Some);
             }
+            if !self.prepared {
+                return self.prepare();
+            }
             self.begun = true;
         }
-        let spent = match pass.advance(&self.costs, cost) {
-            Ok(spent) => spent,
-            Err(error) => return self.refused(error),
-        };
-        if spent > 0.0 && self.frame == 0 && self.preparations < PREPARATIONS {
-            self.preparations += 1.0;
-            self.spent += self.costs.preparation;
-        }
+        let spent = pass.advance(&self.costs, cost);
         if spent > 0.0 {
             self.spent += spent;
             return Ok(None);
@@ -190,7 +183,7 @@ impl Search {
     /// The next pass is to be this.
     fn begin(&mut self, method: Method, steps: u32) {
         (self.method, self.steps, self.pass) = (method, steps, None);
-        (self.frame, self.begun, self.preparations) = (0, false, 0.0);
+        (self.frame, self.begun, self.prepared) = (0, false, false);
     }
 
     /// Makes the pass, which costs as much as to prepare a motion.
@@ -207,6 +200,22 @@ impl Search {
             pass.only(method);
         }
         Ok(None)
+    }
+
+    /// Prepares a motion of the pass.
+    fn prepare(&mut self) -> Result<Option<Plan>, PlanError> {
+        match self.pass.as_mut().map_or(Ok(false), Pass::prepare) {
+            Ok(true) => self.spent += self.costs.preparation,
+            Ok(false) => self.prepared = true,
+            Err(error) => return self.refused(error),
+        }
+        Ok(None)
+    }
+
+    /// Whether the next piece prepares a motion, which takes longer than any other.
+    #[must_use]
+    pub fn is_preparing(&self) -> bool {
+        self.pass.is_none() || !self.prepared
     }
 
     /// How the methods have fared in this pass.

@@ -100,15 +100,18 @@ impl<R: Real, F: Form<R>, const N: usize> ShadowedRun<R, F, N> {
         }
     }
 
+    fn runs(&mut self) -> impl Iterator<Item = &mut Run<R, F>> {
+        [&mut self.own, &mut self.finer].into_iter().chain(&mut self.perturbed)
+    }
+
+    /// Prepares one of the runs; whether there was one to prepare.
+    pub(super) fn prepare(&mut self) -> Result<bool, Error> {
+        self.runs().map(Run::prepare).find(|prepared| *prepared != Ok(false)).unwrap_or(Ok(false))
+    }
+
     /// As [`Run::advance`], one of the runs.
-    pub(super) fn advance(&mut self, most: u32) -> Result<u32, Error> {
-        for run in [&mut self.own, &mut self.finer].into_iter().chain(&mut self.perturbed) {
-            let steps = run.advance(most)?;
-            if steps > 0 {
-                return Ok(steps);
-            }
-        }
-        Ok(0)
+    pub(super) fn advance(&mut self, most: u32) -> u32 {
+        self.runs().map(|run| run.advance(most)).find(|&steps| steps > 0).unwrap_or(0)
     }
 
     /// The frame that all steps have led to, and how wrong it is.
@@ -122,7 +125,8 @@ impl<R: Real, F: Form<R>, const N: usize> ShadowedRun<R, F, N> {
 
     /// The next frame, and how wrong it is. Refuses a pendulum out of the range of the arithmetic.
     pub fn next_frame(&mut self) -> Result<(Directions, ErrorEstimate), Error> {
-        while self.advance(u32::MAX)? > 0 {}
+        while self.prepare()? {}
+        while self.advance(u32::MAX) > 0 {}
         Ok(self.frame())
     }
 }

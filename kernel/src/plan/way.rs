@@ -57,11 +57,11 @@ pub(super) const FIRST_STEP: f64 = 4.0;
 /// Finer steps than this many to a frame are never tried.
 pub(super) const MOST_STEPS: u32 = 1 << 16;
 
-/// The least power of two of steps to a frame, of which there are `rate` in a second, that are no longer than `longest` s.
+/// The fewest steps to a frame, of which there are `rate` in a second, that are no longer than `longest` s.
 #[inline(never)] // once in flash
 pub(super) fn steps_to_frame(rate: u16, longest: f64) -> u32 {
     let fewest = libm::ceil(1.0 / (longest * f64::from(rate)));
-    (fewest as u32).clamp(1, MOST_STEPS).next_power_of_two()
+    (fewest as u32).clamp(1, MOST_STEPS)
 }
 
 /// Angles and momenta of `start`, and the longest step that resolves every motion of its energy, s.

@@ -54,7 +54,7 @@ impl Number {
         (count < 1 << f64::MANTISSA_DIGITS).then_some(count)
     }
 
-    /// One of so many equal parts of it; of none, itself.
+    /// This number divided by `parts`; by 0, unchanged.
     pub fn divided_by(&self, parts: u32) -> Number {
         let exact = &self.exact / &BigRational::from(BigInt::from(parts.max(1)));
         Self { text: exact.to_string(), exact }
