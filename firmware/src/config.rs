@@ -93,7 +93,7 @@ pub const CORTEX_M0PLUS: Processor = Processor {
         preparation: 620_000.0,
     },
     frame: 300_000.0,
-    look_ahead: 400_000.0,
+    look_ahead: 530_000.0,
 };
 /// A Cortex-M4F, whose floating-point unit knows `f32` only: the slowest board, at 25 MHz, has 417,000 cycles in a tick. A
 /// plain step costs less than the closed form's two sincos.

@@ -24,7 +24,7 @@ fn all() -> impl Iterator<Item = Problem> {
 
 fn lively(count: usize) -> impl Iterator<Item = Problem> {
     let is_lively = |scene: &Problem| Class::of(scene) == Ok(Class::Free) && scene.start.a2.abs() > 1.5;
-    scenes(SEED + 1, 18.0..24.0).filter(is_lively).take(count)
+    scenes(SEED + 1, 22.0..28.0).filter(is_lively).take(count)
 }
 
 #[test]
