@@ -12,7 +12,7 @@ pub type Height = i16;
 
 /// The height of `value` where zero is at row `zero` and a unit is `scale` pixels, upwards; held within one canvas of
 /// the canvas.
-pub fn height(value: f32, zero: f32, scale: f32) -> Height {
+pub const fn height(value: f32, zero: f32, scale: f32) -> Height {
     let limit = (2 * HEIGHT as i32 * SUBPIXELS) as f32;
     ((zero - scale * value) * SUBPIXELS as f32).clamp(-limit, limit) as Height
 }
@@ -43,8 +43,11 @@ pub fn dot(canvas: &mut Canvas, x: i32, at: Height, grey: u8) {
 pub const AXIS_GREY: u8 = 8;
 
 /// Draws a line across columns `from` to `to` (exclusive) in row `y`, dotted.
+#[inline(never)] // once in flash
 pub fn axis(canvas: &mut Canvas, from: i32, to: i32, y: i32) {
-    (from..to).step_by(3).for_each(|x| axis_dot(canvas, x, y));
+    if let Some(row) = canvas.row_mut(y) {
+        (from..to).step_by(3).for_each(|x| row.lighten(x, AXIS_GREY));
+    }
 }
 
 /// Draws a line down rows `from` to `to` (exclusive) in column `x`, dotted.

@@ -25,6 +25,8 @@ const PLOT_LEFT: i32 = (WIDTH - PLOT_COLUMNS) as i32;
 /// The row of e-folding 0, and pixels per e-folding: ln(sqrt 2 pi/1e-6) = 15.3 is as far apart as twins can get.
 const ZERO_ROW: f32 = 53.0;
 const SCALE: f32 = 2.6;
+/// The rows that carry the scale, and what they are.
+const AXES: [(i32, &str); 4] = [(row(0.0), "0"), (row(5.0), "5"), (row(10.0), "10"), (row(15.0), "15")];
 const CURVE: u8 = 255;
 /// The plot holds 60 columns of a quarter of a second: 15 s.
 const COLUMNS_PER_SECOND: u64 = 4;
@@ -33,6 +35,10 @@ const TICKS_PER_COLUMN: u64 = TICK_RATE as u64 / COLUMNS_PER_SECOND;
 const HALF_WIDTH: u8 = 30;
 /// Brightness of the second twin, of 255.
 const SECOND: u8 = 110;
+
+const fn row(e_foldings: f32) -> i32 {
+    plot::height(e_foldings, ZERO_ROW, SCALE) as i32 / SUBPIXELS
+}
 
 /// Both pendulums at one pivot, and the e-foldings of their separation over time.
 ///
@@ -93,10 +99,9 @@ impl Scene for Butterfly {
         let [first, second] = self.bobs;
         self.view.draw(canvas, second, SECOND);
         self.view.draw(canvas, first, u8::MAX);
-        for e_foldings in [0.0, 5.0, 10.0, 15.0] {
-            let row = i32::from(plot::height(e_foldings, ZERO_ROW, SCALE)) / SUBPIXELS;
+        for (row, e_foldings) in AXES {
             plot::axis(canvas, PLOT_LEFT, WIDTH as i32, row);
-            text::write(canvas, &label::tick(e_foldings, ""), Anchor::EndingAt(PLOT_LEFT, row - LINE / 2));
+            text::write(canvas, e_foldings, Anchor::EndingAt(PLOT_LEFT, row - LINE / 2));
         }
         self.strip.draw(canvas, PLOT_LEFT, CURVE);
         let span = (PLOT_COLUMNS as u64 / COLUMNS_PER_SECOND) as f32;
