@@ -75,8 +75,8 @@ fn a_flipped_bit_is_named_and_fails() {
     assert!(markdown.contains("2 not well") && markdown.contains("step 160: w2 is 0x"), "{markdown}");
 }
 
-/// For how long a button is tapped, and then for how long it is left alone.
-const TAP: Duration = Duration::from_millis(150);
+/// A button that has done nothing for so long is let go.
+const PATIENCE: Duration = Duration::from_secs(10);
 
 /// What the person does who is asked this: the button that is tapped, and the line that is entered; `None` ends the input.
 fn person(question: &str) -> Option<(Option<Key>, Option<&'static str>)> {
@@ -116,24 +116,28 @@ fn what_the_person_says_and_the_chip_counts_is_in_the_report() {
     let mut verification = process::spawn(&mut command, LIMIT).expect("it starts");
     let mut input = verification.stdin.take();
     let lines = lines(BufReader::new(verification.stderr.take().expect("a pipe")));
-    let (mut said, mut asked) = (Vec::new(), 0);
-    let mut carry = |bench: &mut Bench, time: Duration| {
-        let start = Instant::now();
-        while {
-            bench.carry(|message| counting(message, &mut asked));
-            start.elapsed() < time
-        } {}
+    let (mut said, mut asked, mut step) = (Vec::new(), 0, 0);
+    // The step that the motion has come to.
+    let mut carry = |bench: &mut Bench| {
+        bench.carry(|message| {
+            step = message.read::<Frame>().map_or(step, |frame| frame.step);
+            counting(message, &mut asked)
+        });
+        step
     };
     let status = loop {
-        carry(&mut bench, Duration::ZERO);
+        carry(&mut bench);
         if let Some(status) = verification.try_wait().expect("it runs") {
             break status;
         }
         let Ok(line) = lines.try_recv() else { continue };
         if let Some((key, entered)) = person(&line) {
-            for down in key.into_iter().flat_map(|_| [true, false]) {
-                bench.machine.set_key(key.expect("one"), down).expect("buttons");
-                carry(&mut bench, TAP);
+            if let Some(key) = key {
+                let (before, since) = (carry(&mut bench), Instant::now());
+                bench.machine.set_key(key, true).expect("buttons");
+                // Until the motion starts again.
+                while carry(&mut bench) >= before && since.elapsed() < PATIENCE {}
+                bench.machine.set_key(key, false).expect("buttons");
             }
             input = input.filter(|_| entered.is_some());
             if let Some((input, entered)) = input.as_mut().zip(entered) {
