@@ -79,7 +79,7 @@ pub const CORTEX_M3: Processor = Processor {
         preparation: 300_000.0,
     },
     frame: 200_000.0,
-    look_ahead: 280_000.0,
+    look_ahead: 320_000.0,
 };
 /// A Cortex-M0+, which has no long product either, as on the Raspberry Pi Pico: at 125 MHz a tick has 2,083,000 cycles.
 pub const CORTEX_M0PLUS: Processor = Processor {
@@ -108,7 +108,7 @@ pub const CORTEX_M4F: Processor = Processor {
         preparation: 300_000.0,
     },
     frame: 150_000.0,
-    look_ahead: 160_000.0,
+    look_ahead: 190_000.0,
 };
 /// The STM32F405's at 168 MHz: 2,800,000 cycles in a tick. Less looking ahead ends before the errors of a light elbow show.
 pub const STM32F405: Processor = Processor { code: 2, frame: 700_000.0, look_ahead: 1_300_000.0, ..CORTEX_M4F };

@@ -117,12 +117,12 @@ impl Shadowed {
         }
     }
 
-    /// As [`ShadowedRun::RUNS`].
-    fn runs(&self) -> f32 {
+    /// As [`ShadowedRun::steps`].
+    fn steps(&self, steps: u32) -> u32 {
         match self {
-            Self::Direction(_) => ShadowedRun::<f32, DirectionForm<f32>, 2>::RUNS,
-            Self::Fixed32(_) => ShadowedRun::<f32, Fixed32Form, 2>::RUNS,
-            Self::Fixed64(_) => ShadowedRun::<f64, Fixed64Form<ORDER>, 1>::RUNS,
+            Self::Direction(_) => ShadowedRun::<f32, DirectionForm<f32>, 2>::steps(steps),
+            Self::Fixed32(_) => ShadowedRun::<f32, Fixed32Form, 2>::steps(steps),
+            Self::Fixed64(_) => ShadowedRun::<f64, Fixed64Form<ORDER>, 1>::steps(steps),
         }
     }
 }
@@ -215,7 +215,7 @@ impl Pass {
     /// What the next frame costs.
     pub fn cost(&self, costs: &Costs) -> f32 {
         let [own, others @ ..] = &self.candidates;
-        let shadowed = costs.of_frame(own.method, own.steps) * self.shadowed.runs();
+        let shadowed = costs.of_frame(own.method, self.shadowed.steps(own.steps));
         let others = others.iter().filter(|candidate| !candidate.failed);
         others.fold(shadowed, |sum, candidate| sum + costs.of_frame(candidate.method, candidate.steps))
     }

@@ -81,13 +81,13 @@ impl Search {
         problem.check()?;
         costs.check()?;
         budget.check()?;
-        let steps = steps_to_frame(problem.rate, FIRST_STEP * admissible);
         let fine = |longest: f64, limit: Limit| {
             let Problem { pendulum, start, rate, .. } = problem;
             let way = Way::fixed64(pendulum, start, *rate, longest * admissible, costs, budget.frame)?;
             Some((way.steps, limit))
         };
         let cheap = if costs.fixed32 < costs.direction { Method::Fixed32 } else { Method::Direction };
+        let steps = steps_to_frame(cheap, problem.rate, FIRST_STEP * admissible);
         Ok(Self {
             problem: *problem,
             costs: *costs,

@@ -1,5 +1,7 @@
 //! A run that knows how wrong it is.
 
+use core::f32::consts::SQRT_2;
+
 use super::error::PlanError;
 use super::problem::{Perturbation, Problem};
 use super::run::{Directions, Run, distance, greater};
@@ -75,10 +77,20 @@ pub struct ShadowedRun<R: Real, F: Form<R>, const N: usize = 2> {
 }
 
 impl<R: Real, F: Form<R>, const N: usize> ShadowedRun<R, F, N> {
-    /// Steps made for each frame over those of the run itself.
-    pub(super) const RUNS: f32 = 3.0 + N as f32;
-    /// What a distance counts for: fewer samples come near the run by chance more often.
-    const WEIGHT: f32 = if N == 1 { 2.0 } else { 1.0 };
+    /// Steps of the finer run for each frame. Alone with one other sample it has another unit of time as well, for by half the
+    /// step [`Fixed64Form`](crate::form::Fixed64Form) has the constants of the run itself, and their roundings.
+    const fn finer(steps: u32) -> u32 {
+        let twice = steps.saturating_mul(2);
+        if N == 1 { twice.saturating_add(1) } else { twice }
+    }
+
+    /// Steps made by all the runs for each frame.
+    pub(super) const fn steps(steps: u32) -> u32 {
+        Self::finer(steps).saturating_add(steps.saturating_mul(1 + N as u32))
+    }
+
+    /// What a distance counts for: on average the greater of two samples of a normal spread is so many times a single one.
+    const WEIGHT: f32 = if N == 1 { SQRT_2 } else { 1.0 };
 
     /// With `steps` steps for each frame.
     ///
@@ -94,7 +106,7 @@ impl<R: Real, F: Form<R>, const N: usize> ShadowedRun<R, F, N> {
         let perturbations = [Perturbation::Opposite, Perturbation::Alike];
         Self {
             own: run(Perturbation::None, steps),
-            finer: run(Perturbation::None, steps.saturating_mul(2)),
+            finer: run(Perturbation::None, Self::finer(steps)),
             perturbed: core::array::from_fn(|sample| run(perturbations[sample % perturbations.len()], steps)),
             rods: problem.rods(),
         }

@@ -57,11 +57,13 @@ pub(super) const FIRST_STEP: f64 = 4.0;
 /// Finer steps than this many to a frame are never tried.
 pub(super) const MOST_STEPS: u32 = 1 << 16;
 
-/// The fewest steps to a frame, of which there are `rate` in a second, that are no longer than `longest` s.
+/// The fewest steps by `method` to a frame, of which there are `rate` in a second, that are no longer than `longest` s; in 32
+/// bits a power of two, as the steps that refine them.
 #[inline(never)] // once in flash
-pub(super) fn steps_to_frame(rate: u16, longest: f64) -> u32 {
+pub(super) fn steps_to_frame(method: Method, rate: u16, longest: f64) -> u32 {
     let fewest = libm::ceil(1.0 / (longest * f64::from(rate)));
-    (fewest as u32).clamp(1, MOST_STEPS)
+    let fewest = (fewest as u32).clamp(1, MOST_STEPS);
+    if method == Method::Fixed64 { fewest } else { fewest.next_power_of_two() }
 }
 
 /// Angles and momenta of `start`, and the longest step that resolves every motion of its energy, s.
@@ -94,7 +96,7 @@ impl Way {
             }
         }
         let affordable = |method| {
-            let mut steps = steps_to_frame(rate, FIRST_STEP * admissible);
+            let mut steps = steps_to_frame(method, rate, FIRST_STEP * admissible);
             while steps > 1 && costs.of_frame(method, steps) > frame {
                 steps /= 2;
             }
@@ -111,7 +113,7 @@ impl Way {
     pub fn of(parameters: &Parameters<f64>, start: &Motion<f64>, rate: u16, method: Method) -> Result<Self, Error> {
         let (_, admissible) = start_and_step(parameters, start)?;
         let longest = if method == Method::Fixed64 { RESOLVING } else { FIRST_STEP };
-        Ok(Self { method, steps: steps_to_frame(rate, longest * admissible) })
+        Ok(Self { method, steps: steps_to_frame(method, rate, longest * admissible) })
     }
 
     /// By [`Method::Fixed64`] in steps of `longest` s or less, as coarse as its numbers take, if they cost no more than `frame`.
@@ -123,7 +125,7 @@ impl Way {
         costs: &Costs,
         frame: f32,
     ) -> Option<Self> {
-        let mut way = Self { method: Method::Fixed64, steps: steps_to_frame(rate, longest) };
+        let mut way = Self { method: Method::Fixed64, steps: steps_to_frame(Method::Fixed64, rate, longest) };
         while costs.of_frame(way.method, way.steps) <= frame && way.steps < MOST_STEPS {
             if way.takes(parameters, start, rate) {
                 return Some(way);
