@@ -17,7 +17,7 @@ use support::{application, settings, toolchain};
 /// A motion that ends early, one that goes another way soon, a model, nothing that moves.
 const SCENES: [SceneName; 4] = [SceneName::Page, SceneName::Beats2To1, SceneName::SmallLight, SceneName::Frequencies];
 /// By then all is found, ticks.
-const FOLLOWED: u32 = 14 * TICK_RATE;
+const FOLLOWED: u32 = 18 * TICK_RATE;
 
 /// The way as a frame tells it, until when it is right, and whether that may be later yet.
 type Told = (u8, u16, f32, u8);
