@@ -56,6 +56,25 @@ fn a_chaotic_scene_is_promised_for_as_long_as_it_can_be() {
     assert_eq!(double.dt, 1.0 / f64::from(60 * double.steps), "{double:?}");
 }
 
+/// By the same method, it is right for less than a tenth longer: too little to be worth a costlier one.
+#[test]
+fn a_plan_that_is_looked_at_farther_is_told_anew_where_it_ends() {
+    let whole = planned(&scene(2.75, 171.0, 30.0));
+    let short = scene(2.75, 171.0, 0.95 * whole.horizon);
+    let mut search = Search::new(&short, &M4F, &STM32F405.budget(&short)).expect("a good scene");
+    let mut found = || {
+        loop {
+            if let Some(plan) = search.advance(f32::INFINITY).expect("a good scene") {
+                search.extend(100.0);
+                break plan;
+            }
+        }
+    };
+    let [first, second] = [found(), found()];
+    assert_eq!((first.limit, first.horizon), (Limit::End, short.duration));
+    assert_eq!((second.method, second.steps, second.horizon), (whole.method, whole.steps, whole.horizon));
+}
+
 #[test]
 fn a_light_elbow_takes_fine_steps() {
     let [light, alike] = [1e3, 1.0].map(|mass_ratio| planned(&scene(mass_ratio, 30.0, 2.0)));
@@ -160,6 +179,9 @@ fn what_is_refused_is_named_with_its_value() {
         assert_eq!(of(&M4F, &Budget { planning: single, ..budget }), not_positive(Quantity::PlanningBudget, bad));
     }
     assert_eq!(refused(&Problem { rate: 0, ..good }), not_positive(Quantity::Rate, 0.0));
+    // Out of the range of f32.
+    let pendulum = Parameters { m1: 1e60, m2: 1e60, ..good.pendulum };
+    assert!(matches!(plan(&Problem { pendulum, ..good }, &M4F, &budget), Err(PlanError::Motion(_))));
     let start = Motion { w1: f64::NEG_INFINITY, ..good.start };
     let motion = PlanError::Motion(Error::NotFinite { parameter: Parameter::W1, value: f64::NEG_INFINITY });
     assert_eq!(plan(&Problem { start, ..good }, &M4F, &budget), Err(motion));
