@@ -2,7 +2,7 @@
 
 use double_pendulum::plan::Problem;
 use host_tests::commands::plan::{
-    Case, Class, GROSS, M4F, Sample, fit, margins, median, reference_error, scenes, study,
+    Case, Class, DURATIONS, GROSS, M4F, Sample, fit, margins, median, reference_error, scenes, study,
 };
 use host_tests::oracle::tolerances::{JUDGE, PLAN_KEPT, PLAN_SHARE};
 
@@ -14,6 +14,8 @@ const ALL: usize = 170;
 const LIVELY: usize = 30;
 /// How many must cease to be right, so that the median of their shares says something.
 const LEAST_ENDING: usize = 8;
+/// The place of a scene with a light bob 2 in the report's study.
+const LIGHT: usize = 1369;
 /// Lively scenes for the margins, and how many passes must have come to half a pixel.
 const FITTED: usize = 12;
 const LEAST_PASSES: usize = 8;
@@ -40,6 +42,15 @@ fn half_a_pixel_is_kept_until_the_promised_horizon() {
     println!("{} scenes, {} ending early, {} broken, {shares:.2?} promised", cases.len(), ending.len(), broken.len());
     assert!(cases.len() == ALL + LIVELY && ending.len() >= LEAST_ENDING, "{} end early", ending.len());
     assert!(shares.iter().all(|&share| share >= PLAN_SHARE), "{shares:?}");
+}
+
+/// With a mass ratio of 1/40 the roundings of the constants part the motion from the exact one; runs that share them do not
+/// see it.
+#[test]
+fn the_roundings_of_the_constants_are_seen() {
+    let light = scenes(1, DURATIONS).nth(LIGHT);
+    let cases = study(light, &M4F, || ()).expect("good scenes");
+    assert!(matches!(cases[..], [case] if case.is_kept() && case.ends_early()), "{cases:#?}");
 }
 
 /// The reference is far more accurate than what it judges, as far as it judges: where errors grow the most.

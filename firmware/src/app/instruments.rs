@@ -8,8 +8,8 @@ use crate::protocol::{CRC, Identity};
 pub struct Instruments {
     /// Counts of the processor clock; may wrap.
     pub stopwatch: fn() -> u32,
-    /// Makes so many steps with interrupts off, by their code in memory (`true`) or in flash: processor cycles that they took,
-    /// 0 where nothing counts them or the code does not stand there.
+    /// Makes this many steps with interrupts off, running their code from RAM (`true`) or from flash. Returns the processor
+    /// cycles taken; 0 without a cycle counter, or if the code is not in that memory.
     pub timed: fn(&mut OnBoards, u32, bool) -> u32,
     /// The program in flash.
     pub image: fn() -> &'static [u8],

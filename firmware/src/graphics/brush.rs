@@ -123,8 +123,8 @@ fn middle(pixel: i32) -> i32 {
     pixel * SUBPIXELS + HALF
 }
 
-/// At a brightness of 0 to 255 the grey of a pixel of which so many [`SUBPIXELS`] are covered: the edge is a ramp one pixel
-/// wide, which is what a straight edge of any direction covers to within a few percent.
+/// For a brightness of 0 to 255, the function from a pixel's coverage, of [`SUBPIXELS`], to its grey: the edge is a ramp one
+/// pixel wide, which is what a straight edge of any direction covers to within a few percent.
 #[inline(always)]
 fn shade(brightness: u8) -> impl Fn(i32) -> u8 {
     /// The product that makes one grey: full brightness, 255 = 17 x 15, times full coverage is 15 of them.

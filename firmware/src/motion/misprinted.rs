@@ -6,12 +6,10 @@ use double_pendulum::trig::{Own, SinCos};
 use double_pendulum::{Parameters, State};
 
 use super::direction_stepper::Directions;
-use crate::config::TICK_RATE;
+use crate::config::{DT, STEPS_PER_TICK};
 
-/// RK4 steps per tick: with 1/120 s both bobs of figure 7 are right to half a pixel for 10 s (test `misprint`).
-const STEPS_PER_TICK: u32 = 2;
-/// The unit of time, s: half a step.
-const UNIT: f32 = 0.5 / (TICK_RATE * STEPS_PER_TICK) as f32;
+/// The unit of time, s: half a step, with which both bobs of figure 7 are right to half a pixel for 10 s (test `misprint`).
+const UNIT: f32 = 0.5 * DT as f32;
 
 /// A number in fixed point; sums and products beyond its range wrap.
 type Number = Wrapping<i32>;
@@ -163,8 +161,8 @@ fn torque(gravity: Number, direction: Number) -> Number {
     product(gravity, direction, GRAVITY_PLACES + PLACES - MOMENTUM_PLACES)
 }
 
-/// The product with so many binary places less, rounded to nearest.
-fn product(a: Number, b: Number, less: u32) -> Number {
-    let half = 1 << (less - 1);
-    Wrapping(((i64::from(a.0) * i64::from(b.0) + half) >> less) as i32)
+/// The product shifted right by `places` bits, rounded to nearest.
+fn product(a: Number, b: Number, places: u32) -> Number {
+    let half = 1 << (places - 1);
+    Wrapping(((i64::from(a.0) * i64::from(b.0) + half) >> places) as i32)
 }

@@ -33,7 +33,7 @@ impl Line {
         RefCell::new(Self { panel, outgoing, message, time: 0, taken: 0, hangs: false, freed: 0, sent: 0 })
     }
 
-    /// Lets time pass, of so many bits.
+    /// Lets the time of `bits` bits pass on the bus.
     pub fn run(&mut self, bits: u32) {
         self.time = if self.hangs { 0 } else { self.time.saturating_add(bits) };
         while let Some((outbox, sent @ None)) = &mut self.outgoing {

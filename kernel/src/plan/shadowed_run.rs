@@ -13,9 +13,9 @@ use crate::state::State;
 
 /// How much larger than the largest of the distances an error may be.
 ///
-/// To half the step it is 16/15 of the distance (order 4) or 1024/1023 (order 10) where the steps resolve the motion. Other
-/// roundings are samples of the same spread as the run's own; half the step is one more. `cargo plan --fit 1000 --seed 2` holds
-/// it against the exact motion.
+/// To half the step it is 16/15 of the distance (order 4) or less than 1024/1023 (order 10) where the steps resolve the
+/// motion. Other roundings are samples of the same spread as the run's own; half the step is one more. `cargo plan --fit 1000
+/// --seed 2` holds it against the exact motion.
 pub const MARGIN: f32 = 2.0;
 
 /// How far the runs are apart that tell how wrong one of them is, over the tolerance.
@@ -77,8 +77,8 @@ pub struct ShadowedRun<R: Real, F: Form<R>, const N: usize = 2> {
 }
 
 impl<R: Real, F: Form<R>, const N: usize> ShadowedRun<R, F, N> {
-    /// Steps of the finer run for each frame. Alone with one other sample it has another unit of time as well, for by half the
-    /// step [`Fixed64Form`](crate::form::Fixed64Form) has the constants of the run itself, and their roundings.
+    /// Steps of the finer run for each frame. Beside a single perturbed run they are one more than twice as many: with half the
+    /// step [`Fixed64Form`](crate::form::Fixed64Form) keeps the unit of time, and with it the constants and their roundings.
     const fn finer(steps: u32) -> u32 {
         let twice = steps.saturating_mul(2);
         if N == 1 { twice.saturating_add(1) } else { twice }
@@ -89,7 +89,7 @@ impl<R: Real, F: Form<R>, const N: usize> ShadowedRun<R, F, N> {
         Self::finer(steps).saturating_add(steps.saturating_mul(1 + N as u32))
     }
 
-    /// What a distance counts for: on average the greater of two samples of a normal spread is so many times a single one.
+    /// The factor on each distance. The mean of the greater of two normally distributed distances is sqrt 2 times that of one.
     const WEIGHT: f32 = if N == 1 { SQRT_2 } else { 1.0 };
 
     /// With `steps` steps for each frame.

@@ -15,5 +15,5 @@ pub use judge::{Verdict, judge, reference_error};
 pub use options::Options;
 pub use study::{Case, Class, DURATIONS, GROSS, median, study};
 pub use tables::{broken, classes};
-pub use target::{CHIPS, Chip, M3, M4F, SLOW_M4F};
+pub use target::{CHIPS, Chip, M3, M4F};
 pub use words::words;
