@@ -15,6 +15,7 @@ use host_tests::commands::count::{Cost, CountError, FrameProfile, Image};
 use host_tests::emulator::boards::{BOARDS, Board, Core, STM32F405};
 use host_tests::emulator::budgets;
 use host_tests::emulator::qemu::{Lockstep, Screenshot};
+use rayon::prelude::*;
 use support::{application, settings, toolchain};
 
 /// A frame with the map half done is compared, too.
@@ -28,7 +29,7 @@ fn goal(board: &Board) -> f64 {
 /// Frame by frame, and finished; no frame is late on the way, and there are cycles left in each, as their number is estimated.
 #[test]
 fn the_map_of_a_board_is_the_hosts() -> Result<(), CountError> {
-    BOARDS.iter().try_for_each(|board| {
+    BOARDS.par_iter().try_for_each(|board| {
         let (toolchain, elf) = (toolchain(), application(board));
         let image = Image::read(&elf)?;
         let mut machine = Lockstep::start(&settings(&toolchain, board, &elf))?;

@@ -12,6 +12,7 @@ use firmware::scenes::SceneName;
 use host_tests::emulator::boards::{BOARDS, Board};
 use host_tests::emulator::host::Show;
 use host_tests::emulator::qemu::{Machine, QemuError};
+use rayon::prelude::*;
 use support::{application, settings, toolchain};
 
 /// A motion that ends early, one that goes another way soon, a model, nothing that moves.
@@ -30,7 +31,7 @@ fn told(show: &Show) -> Told {
 
 #[test]
 fn every_board_finds_the_hosts_plan_and_follows_it_from_the_same_tick() -> Result<(), QemuError> {
-    BOARDS.iter().try_for_each(|board| {
+    BOARDS.par_iter().try_for_each(|board| {
         let (toolchain, elf) = (toolchain(), application(board));
         let mut machine = Machine::start(&settings(&toolchain, board, &elf))?;
         machine.serial.next::<Frame>().ok_or_else(|| machine.silence())?;

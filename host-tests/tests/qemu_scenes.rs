@@ -13,6 +13,7 @@ use host_tests::emulator::boards::{BOARDS, Board};
 use host_tests::emulator::budgets;
 use host_tests::emulator::host::Show;
 use host_tests::emulator::qemu::{Lockstep, Machine, QemuError};
+use rayon::prelude::*;
 use support::{application, settings, toolchain};
 
 /// Frames compared for each scene, and frames from one to the next.
@@ -33,8 +34,8 @@ fn watched(board: &Board, name: SceneName) -> u32 {
     seconds * TICK_RATE
 }
 
-fn panels() -> impl Iterator<Item = &'static Board> {
-    BOARDS.iter().filter(|board| board.has_panel)
+fn panels() -> impl ParallelIterator<Item = &'static Board> {
+    BOARDS.par_iter().filter(|board| board.has_panel)
 }
 
 /// Chooses a scene; the first frame of it.
@@ -80,58 +81,63 @@ fn the_panel_shows_what_the_host_draws() -> Result<(), QemuError> {
     })
 }
 
-/// The cycles of a scene are estimated: instructions, counted by the board's clock, of the most expensive screenshot, times the
-/// cycles that an instruction takes on average in a screenshot that QEMU logs whole, by the published timings.
 #[test]
 fn every_scene_keeps_within_its_share_of_a_frame() -> Result<(), CountError> {
-    let mut too_dear: Vec<String> = Vec::new();
-    for board in panels() {
-        let (toolchain, elf) = (toolchain(), application(board));
-        let image = Image::read(&elf)?;
-        let mut machine = Lockstep::start(&settings(&toolchain, board, &elf))?;
-        for &name in SceneName::ALL {
-            choose(&mut machine, name)?;
-            // The first frames pay for the start.
-            for _ in 0..SETTLING {
-                machine.next_frame()?;
-            }
-            let (mut scene, mut busy) = (0, 0);
-            for _ in 0..watched(board, name) {
-                let frame = machine.next_frame()?;
-                assert_eq!((frame.scene, frame.dropped), (name.code(), 0), "{}: {}", board.name, name.name());
-                scene = scene.max(frame.scene_cycles);
-                busy = busy.max(frame.busy_cycles);
-            }
-            let (_, profile) = FrameProfile::of_next(&mut machine, &image, board.core())?;
-            let showing = profile.cost(Part::Drawing).cycles + profile.cost(Part::Sending).cycles;
-            if board.core() == Core::M3 && showing > budgets::SHOWING {
-                too_dear.push(format!("{}: {} is drawn and sent in {showing} cycles", board.name, name.name()));
-            }
-            let Cost { instructions, cycles, .. } = profile.whole();
-            let cycles_per_instruction = cycles as f64 / instructions as f64;
-            let [scene, busy] =
-                [scene, busy].map(|cycles| f64::from(cycles) / f64::from(board.hertz) / board.instruction());
-            let frame = f64::from(board.processor_hertz()) / f64::from(TICK_RATE);
-            let share = |instructions: f64| instructions * cycles_per_instruction / frame;
-            println!(
-                "{:15} {:12} scene {scene:7.0} instructions of {cycles_per_instruction:.2} cycles, {:4.1} % of a frame; \
-                 all {busy:7.0}, idle {:4.1} %",
-                board.name,
-                name.name(),
-                100.0 * share(scene),
-                100.0 * (1.0 - share(busy)),
-            );
-            let most = if board.core() == Core::M0Plus { budgets::SCENE_M0PLUS } else { budgets::SCENE };
-            if share(scene) > most {
-                too_dear.push(format!("{}: {} takes {:.3} of a frame", board.name, name.name(), share(scene)));
-            }
-            if 1.0 - share(busy) < budgets::IDLE {
-                too_dear.push(format!("{}: {} leaves {:.3} of a frame", board.name, name.name(), 1.0 - share(busy)));
-            }
-        }
-    }
+    let too_dear = panels().map(too_dear).collect::<Result<Vec<_>, _>>()?.concat();
     assert!(too_dear.is_empty(), "{too_dear:#?}");
     Ok(())
+}
+
+/// The scenes that take more of a frame of `board` than they may.
+///
+/// The cycles of a scene are estimated: instructions, counted by the board's clock, of the most expensive screenshot, times the
+/// cycles that an instruction takes on average in a screenshot that QEMU logs whole, by the published timings.
+fn too_dear(board: &Board) -> Result<Vec<String>, CountError> {
+    let mut too_dear = Vec::new();
+    let (toolchain, elf) = (toolchain(), application(board));
+    let image = Image::read(&elf)?;
+    let mut machine = Lockstep::start(&settings(&toolchain, board, &elf))?;
+    for &name in SceneName::ALL {
+        choose(&mut machine, name)?;
+        // The first frames pay for the start.
+        for _ in 0..SETTLING {
+            machine.next_frame()?;
+        }
+        let (mut scene, mut busy) = (0, 0);
+        for _ in 0..watched(board, name) {
+            let frame = machine.next_frame()?;
+            assert_eq!((frame.scene, frame.dropped), (name.code(), 0), "{}: {}", board.name, name.name());
+            scene = scene.max(frame.scene_cycles);
+            busy = busy.max(frame.busy_cycles);
+        }
+        let (_, profile) = FrameProfile::of_next(&mut machine, &image, board.core())?;
+        let showing = profile.cost(Part::Drawing).cycles + profile.cost(Part::Sending).cycles;
+        if board.core() == Core::M3 && showing > budgets::SHOWING {
+            too_dear.push(format!("{}: {} is drawn and sent in {showing} cycles", board.name, name.name()));
+        }
+        let Cost { instructions, cycles, .. } = profile.whole();
+        let cycles_per_instruction = cycles as f64 / instructions as f64;
+        let [scene, busy] =
+            [scene, busy].map(|cycles| f64::from(cycles) / f64::from(board.hertz) / board.instruction());
+        let frame = f64::from(board.processor_hertz()) / f64::from(TICK_RATE);
+        let share = |instructions: f64| instructions * cycles_per_instruction / frame;
+        println!(
+            "{:15} {:12} scene {scene:7.0} instructions of {cycles_per_instruction:.2} cycles, {:4.1} % of a frame; \
+                 all {busy:7.0}, idle {:4.1} %",
+            board.name,
+            name.name(),
+            100.0 * share(scene),
+            100.0 * (1.0 - share(busy)),
+        );
+        let most = if board.core() == Core::M0Plus { budgets::SCENE_M0PLUS } else { budgets::SCENE };
+        if share(scene) > most {
+            too_dear.push(format!("{}: {} takes {:.3} of a frame", board.name, name.name(), share(scene)));
+        }
+        if 1.0 - share(busy) < budgets::IDLE {
+            too_dear.push(format!("{}: {} leaves {:.3} of a frame", board.name, name.name(), 1.0 - share(busy)));
+        }
+    }
+    Ok(too_dear)
 }
 
 /// Messages waited for until a command is repeated.

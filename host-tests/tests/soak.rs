@@ -5,6 +5,7 @@ mod support;
 use host_tests::commands::soak::{self, Outcome};
 use host_tests::emulator::boards::{BOARDS, Board};
 use host_tests::emulator::qemu::QemuError;
+use rayon::prelude::*;
 use support::{application, settings, toolchain};
 
 /// Seconds of the board's time: 1.5 for each scene, twice. Within 1.1 s the stack has been as deep on every board as it gets
@@ -19,7 +20,7 @@ fn is_well(board: &Board, outcome: &Outcome) {
 
 #[test]
 fn every_board_plays_all_scenes_twice_alike() -> Result<(), QemuError> {
-    BOARDS.iter().try_for_each(|board| {
+    BOARDS.par_iter().try_for_each(|board| {
         let (toolchain, elf) = (toolchain(), application(board));
         let outcome = soak::scenes(&settings(&toolchain, board, &elf), SCENES, || ())?;
         is_well(board, &outcome);

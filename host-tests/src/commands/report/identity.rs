@@ -1,11 +1,13 @@
 //! Whether the host and the chips compute the same bits: what allows errors to be computed on the host.
 
-use firmware::job::{Arithmetic, JobError, ROWS, Request, Row};
+use firmware::job::{Arithmetic, Integrator, JobError, ROWS, Request, Row};
+use rayon::prelude::*;
 
 use super::accuracy::request;
 use super::scene::{SCENES, Scene};
 use crate::commands::count::{CountError, Target};
 use crate::commands::table::Table;
+use crate::emulator::boards::Core;
 
 /// Steps a second.
 const RATE: u32 = 256;
@@ -15,10 +17,10 @@ const COMPARED: &[Scene] = SCENES.split_at(2).0;
 /// How many steps are compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Steps {
-    /// Where the processor computes them: with its floating-point unit, or in fixed point.
-    pub hardware: u32,
-    /// Where they are computed in software, at a hundred times the cost.
-    pub software: u32,
+    /// With a floating-point unit, in fixed point, and by extrapolation: what is to be taken for a picture or for many digits.
+    pub full: u32,
+    /// By the other methods in software, and on the Cortex-M0+, which has no long products either.
+    pub reduced: u32,
 }
 
 /// How many comparisons are made on one target.
@@ -51,11 +53,12 @@ pub fn every_state(row: Row, scene: &Scene, steps: u32) -> Request {
     Request { samples: steps, stride: 1, ..request(row, scene, RATE) }
 }
 
-/// Compares every arithmetic over both motions on `target`; `tick` is called after each.
-pub fn compare(target: &Target, steps: Steps, tick: &(dyn Fn() + Sync)) -> Result<Vec<Comparison>, CountError> {
-    let runs = COMPARED.iter().flat_map(|scene| ROWS.iter().map(move |&row| (scene, row)));
-    let compared = runs.map(|(scene, row)| {
-        let steps = if is_in_hardware(target, row) { steps.hardware } else { steps.software };
+/// Compares every arithmetic over both motions on all `targets`; `tick` is called after each.
+pub fn compare(targets: &[Target], steps: Steps, tick: &(dyn Fn() + Sync)) -> Result<Vec<Comparison>, CountError> {
+    let motions = || COMPARED.iter().flat_map(|scene| ROWS.iter().map(move |&row| (scene, row)));
+    let runs: Vec<_> = targets.iter().flat_map(|target| motions().map(move |motion| (target, motion))).collect();
+    let compared = runs.into_par_iter().map(|(target, (scene, row))| {
+        let steps = if is_full(target, row) { steps.full } else { steps.reduced };
         let request = every_state(row, scene, steps);
         let refused = |reason: JobError| CountError::Refused { request: row.to_string(), reason: reason.to_string() };
         let host = request.crc().map_err(refused)?;
@@ -66,11 +69,12 @@ pub fn compare(target: &Target, steps: Steps, tick: &(dyn Fn() + Sync)) -> Resul
     compared.collect()
 }
 
-/// Whether the target's processor does it all.
-fn is_in_hardware(target: &Target, row: Row) -> bool {
-    match row.arithmetic {
-        Arithmetic::F32 | Arithmetic::F32Compensated | Arithmetic::F32Micromath => target.board.cpu == "cortex-m4",
-        arithmetic => arithmetic.is_fixed_point(),
+fn is_full(target: &Target, row: Row) -> bool {
+    let is_single = matches!(row.arithmetic, Arithmetic::F32 | Arithmetic::F32Compensated | Arithmetic::F32Micromath);
+    match target.core() {
+        Core::M0Plus => false,
+        Core::M4F if is_single => true,
+        _ => row.arithmetic.is_fixed_point() || row.integrator == Integrator::Extrapolation,
     }
 }
 

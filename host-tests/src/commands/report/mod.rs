@@ -61,7 +61,7 @@ impl Extent {
         scenes: SCENES.len(),
         finest: 13,
         energy_steps: 1_000_000,
-        identity: identity::Steps { hardware: 1_000_000, software: 1_000_000 },
+        identity: identity::Steps { full: 1_000_000, reduced: 1_000_000 },
         peers: true,
         plans: 2_000,
         margins: 1_000,
@@ -73,7 +73,7 @@ impl Extent {
         scenes: 2,
         finest: 13,
         energy_steps: 100_000,
-        identity: identity::Steps { hardware: 10_000, software: 1_000 },
+        identity: identity::Steps { full: 10_000, reduced: 1_000 },
         peers: false,
         plans: 40,
         margins: 10,
@@ -120,8 +120,7 @@ pub fn write(extent: &Extent, toolchain: &Toolchain, folder: &Path, bar: &Bar) -
     bar.set_length(extent.runs(targets.len()) as u64);
     let tick = || bar.advance(1);
     bar.say("comparing bits");
-    let compared = parallel(targets, |target| identity::compare(target, extent.identity, &tick));
-    let compared = compared.into_iter().collect::<Result<Vec<_>, _>>()?.concat();
+    let compared = identity::compare(targets, extent.identity, &tick)?;
     let identity = identity::table(&compared);
     ensure!(
         compared.iter().all(identity::Comparison::agrees),
