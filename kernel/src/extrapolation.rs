@@ -106,6 +106,11 @@ impl<R: Ring> Extrapolation<R> {
         Ok(method)
     }
 
+    /// How many of a row's slopes add up to where a step ends: n/2 by its weight.
+    pub(crate) fn slopes(&self, row: usize) -> f64 {
+        weight(row, self.rows) * half(row)
+    }
+
     /// The order, 2 K.
     pub fn order(&self) -> u32 {
         2 * self.rows as u32

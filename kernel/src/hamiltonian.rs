@@ -135,7 +135,18 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     pub fn energy(&self, state: &State<R>) -> R {
         let (_, cos1) = T::sin_cos(state.a1);
         let (_, cos2) = T::sin_cos(state.a2);
-        self.kinetic_energy_of(state) - self.torque[0] * cos1 - self.torque[1] * cos2
+        self.kinetic_energy_of(T::sin_cos(state.a1 - state.a2), [state.p1, state.p2])
+            - self.torque[0] * cos1
+            - self.torque[1] * cos2
+    }
+
+    /// As [`energy`](Self::energy), where rods 1 and 2 point to (sin, cos) and the momenta are (p1, p2), kg m^2/s: without
+    /// trigonometry.
+    #[must_use]
+    #[inline(never)] // once in flash
+    pub fn energy_at(&self, [[sin1, cos1], [sin2, cos2]]: [[R; 2]; 2], momenta: [R; 2]) -> R {
+        let elbow = (sin1 * cos2 - cos1 * sin2, cos1 * cos2 + sin1 * sin2);
+        self.kinetic_energy_of(elbow, momenta) - self.torque[0] * cos1 - self.torque[1] * cos2
     }
 
     /// The energy above rest, K = H - min V, J: what the motion can spend.
@@ -146,7 +157,9 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     pub fn energy_above_rest(&self, state: &State<R>) -> R {
         let height1 = one_minus_cos(T::sin_cos(state.a1));
         let height2 = one_minus_cos(T::sin_cos(state.a2));
-        self.kinetic_energy_of(state) + self.torque[0] * height1 + self.torque[1] * height2
+        self.kinetic_energy_of(T::sin_cos(state.a1 - state.a2), [state.p1, state.p2])
+            + self.torque[0] * height1
+            + self.torque[1] * height2
     }
 
     /// The potential energy hanging at rest, min V = -(m1 + m2) g l1 - m2 g l2, J: the least energy there is.
@@ -160,12 +173,12 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
         self.torque
     }
 
-    /// T as a function of the momenta.
-    fn kinetic_energy_of(&self, state: &State<R>) -> R {
+    /// T as a function of (sin D, cos D) and the momenta.
+    #[inline(never)] // once in flash
+    fn kinetic_energy_of(&self, (sin_d, cos_d): (R, R), [p1, p2]: [R; 2]) -> R {
         let Parameters { m1, m2, .. } = self.parameters;
-        let (sin_d, cos_d) = T::sin_cos(state.a1 - state.a2);
-        let q1 = state.p1 * self.inverse_length[0];
-        let q2 = state.p2 * self.inverse_length[1];
+        let q1 = p1 * self.inverse_length[0];
+        let q2 = p2 * self.inverse_length[1];
         let den = m1 + m2 * sin_d * sin_d;
         let q = q1 - q2 * cos_d;
         R::HALF * (q * q / den + q2 * q2 / m2)

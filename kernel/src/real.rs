@@ -46,6 +46,9 @@ pub trait Real:
     fn from_f64(value: f64) -> Self;
     /// The same number as an `f64`; exact.
     fn to_f64(self) -> f64;
+    /// The number nearest to this whole one.
+    #[doc(hidden)]
+    fn from_i64(value: i64) -> Self;
     /// The number of `S` nearest to this one.
     #[inline(always)]
     fn cast<S: Real>(self) -> S {
@@ -172,6 +175,10 @@ macro_rules! real {
             #[inline(always)]
             fn to_f64(self) -> f64 {
                 self as f64
+            }
+            #[inline(always)]
+            fn from_i64(value: i64) -> Self {
+                value as $float
             }
             #[inline(always)]
             fn abs(self) -> Self {

@@ -42,7 +42,7 @@ impl Outbox {
     }
 
     /// Puts a message in: a byte that tells what follows, and what follows, up to 254 bytes. One that does not fit is dropped; the
-    /// longest update of a panel fits (test `firmware_ssd1306`).
+    /// longest update of a panel fits (test `ssd1306`).
     pub fn put(&mut self, head: u8, body: &[u8]) {
         let needed = 2 + body.len();
         if let Ok(length) = u8::try_from(needed - 1)

@@ -1,5 +1,5 @@
 //! The characters of text: those of ASCII are [`embedded-graphics`](https://docs.rs/embedded-graphics)' font of 5 x 8 pixels
-//! (test `firmware_canvas`), as whole rows, which are drawn in a fifth of the time of its pixels.
+//! (test `canvas`), as whole rows, which are drawn in a fifth of the time of its pixels.
 
 /// A character's pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -44,8 +44,6 @@ pub struct Simulation {
     motion: WayStepper,
     /// Whether its method was asked for.
     is_given: bool,
-    /// The precise state now, once it was asked for: it takes as long as a step and a half.
-    precise: Option<State<f64>>,
 }
 
 impl Simulation {
@@ -54,13 +52,13 @@ impl Simulation {
         let pendulum = settings.pendulum()?;
         let start = settings.start(&pendulum)?;
         let motion = means.start(settings, &pendulum)?;
-        Ok(Self { energy: Energy::new(pendulum, &start), motion, is_given: means.method.is_some(), precise: None })
+        let energy = pendulum.energy_at(motion.directions(), [start.p1, start.p2]);
+        Ok(Self { energy: Energy::new(pendulum, energy), motion, is_given: means.method.is_some() })
     }
 
     /// Advances by one tick.
     #[inline(never)] // once in flash
     pub fn tick(&mut self) {
-        self.precise = None;
         self.motion.advance();
     }
 
@@ -81,12 +79,12 @@ impl Simulation {
 
     /// The canonical state now, rounded to `f32`, its angles unwrapped.
     pub fn state(&self) -> State<f32> {
-        self.precise.unwrap_or_else(|| self.motion.state()).cast()
+        self.motion.rounded_state()
     }
 
     /// The canonical state to the last digit carried.
-    pub fn precise_state(&mut self) -> State<f64> {
-        *self.precise.get_or_insert_with(|| self.motion.state())
+    pub fn precise_state(&self) -> State<f64> {
+        self.motion.state()
     }
 
     /// Ticks since the start. They never wrap: that would take ten thousand million years.
@@ -97,6 +95,12 @@ impl Simulation {
     /// Simulated time since the start, s.
     pub fn time(&self) -> f64 {
         self.motion.time()
+    }
+
+    /// The error of its energy in this `state`, which is the one now ([`Energy::error`]).
+    pub fn energy_error(&self, state: &State<f32>) -> f32 {
+        let Energy { pendulum, .. } = &self.energy;
+        self.energy.error(pendulum.energy_at(self.directions(), [state.p1, state.p2]))
     }
 
     /// What its energy is measured by.
@@ -134,7 +138,7 @@ impl CatchingUp {
         }
         let is_there = self.motion.frame() == simulation.motion.frame();
         if is_there {
-            (simulation.motion, simulation.precise) = (self.motion, None);
+            simulation.motion = self.motion;
         }
         is_there
     }
@@ -149,9 +153,9 @@ pub struct Energy {
 }
 
 impl Energy {
-    /// Of a motion of `pendulum` that starts at `start`.
-    pub fn new(pendulum: Pendulum<f32>, start: &State<f32>) -> Self {
-        Self { pendulum, start: pendulum.energy(start) }
+    /// Of a motion of `pendulum` that starts with so much, J.
+    pub fn new(pendulum: Pendulum<f32>, start: f32) -> Self {
+        Self { pendulum, start }
     }
 
     /// The equations of motion it belongs to.
@@ -161,9 +165,9 @@ impl Energy {
 
     /// (E - E0)/(E0 - Emin), with E0 the energy at the start and Emin that of hanging at rest; 0 if the start is
     /// hanging at rest, which it never leaves.
-    pub fn error(&self, state: &State<f32>) -> f32 {
+    pub fn error(&self, energy: f32) -> f32 {
         let scale = self.start - self.pendulum.least_energy();
-        if scale > 0.0 { (self.pendulum.energy(state) - self.start) / scale } else { 0.0 }
+        if scale > 0.0 { (energy - self.start) / scale } else { 0.0 }
     }
 
     /// The energy, J, that has this [`error`](Self::error).

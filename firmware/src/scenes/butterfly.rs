@@ -56,7 +56,7 @@ pub struct Butterfly {
 
 impl Butterfly {
     /// The distance of the twins in the plane of the angles, rad; whole turns do not count.
-    fn separation(&mut self) -> f64 {
+    fn separation(&self) -> f64 {
         let ([first, second], turn) = ([self.first.precise_state(), self.second.state()], core::f64::consts::TAU);
         let [d1, d2] =
             [second.a1 - first.a1, second.a2 - first.a2].map(|apart| apart - turn * libm::rint(apart / turn));

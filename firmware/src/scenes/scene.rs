@@ -73,7 +73,7 @@ impl Report {
             step: simulation.step(),
             time: simulation.time(),
             state,
-            energy_error: simulation.energy().error(&state),
+            energy_error: simulation.energy_error(&state),
             horizon: f32::INFINITY,
             is_looking: false,
             way: Some(simulation.way()),

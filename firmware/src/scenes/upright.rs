@@ -80,8 +80,8 @@ impl Scene for Upright {
         let plain = settings.start(&pendulum)?;
         let views = Place::HALVES.map(|place| View::new(&settings.parameters, place));
         let compensated = DirectionStepper::new(&settings.parameters, &plain, DT)?;
-        let (energy, ticks) = (Energy::new(pendulum, &plain), 0);
-        let (plain_directions, horizon) = (directions(&plain), LastRight::default());
+        let (plain_directions, horizon, ticks) = (directions(&plain), LastRight::default(), 0);
+        let energy = Energy::new(pendulum, pendulum.energy_at(plain_directions, [plain.p1, plain.p2]));
         let bobs = Default::default();
         let mut scene = Self { plain, plain_directions, compensated, energy, ticks, views, bobs, horizon };
         scene.bobs = scene.places();
@@ -115,11 +115,12 @@ impl Scene for Upright {
     }
 
     fn report(&self) -> Report {
+        let energy = self.energy.pendulum().energy_at(self.plain_directions, [self.plain.p1, self.plain.p2]);
         Report {
             step: self.ticks,
             time: self.time(),
             state: self.plain,
-            energy_error: self.energy.error(&self.plain),
+            energy_error: self.energy.error(energy),
             horizon: self.horizon.until(),
             is_looking: false,
             way: None,

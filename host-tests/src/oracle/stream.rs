@@ -1,30 +1,29 @@
 //! What a board streams of the page's scene, by the kernel alone: nothing of the firmware but its rate.
 
-use double_pendulum::form::{Fixed64Form, UnwrappedStepper};
-use double_pendulum::plan::ORDER;
-use double_pendulum::{Parameters, State};
+use double_pendulum::plan::{Method, Way, WayStepper};
+use double_pendulum::{Motion, Parameters};
 use firmware::config::{GRAVITY, ROD, TICK_RATE};
 
 /// Equal rods let go from rest, in 64 bits of fixed point, a step to a frame.
 #[derive(Clone, Debug)]
-pub struct Expected(UnwrappedStepper<f64, Fixed64Form<ORDER>>);
+pub struct Expected(WayStepper);
 
 impl Expected {
     /// From rest with both rods at `angle` (rad).
     pub fn new(mass_ratio: f32, angle: f32) -> Self {
         let parameters = Parameters::equal_rods(mass_ratio, ROD, GRAVITY as f32).cast();
-        let start = State::at_rest(angle.into(), angle.into());
-        let dt = 1.0 / f64::from(TICK_RATE);
-        Self(UnwrappedStepper::new(&parameters, &start, dt).expect("the board simulates it"))
+        let start = Motion::at_rest(angle.into(), angle.into());
+        let way = Way { method: Method::Fixed64, steps: 1 };
+        Self(WayStepper::new(&parameters, &start, TICK_RATE as u16, way).expect("the board simulates it"))
     }
 
     /// Makes a frame's step.
     pub fn tick(&mut self) {
-        self.0.advance(1);
+        self.0.advance();
     }
 
     /// a1, a2, p1, p2 as they are streamed.
     pub fn state(&self) -> [f32; 4] {
-        self.0.state().cast().into()
+        self.0.rounded_state().into()
     }
 }

@@ -332,3 +332,7 @@ pub const FIXED_64_AND_DOUBLE: f64 = 1e-9;
 /// A second of a motion in which both rods turn over, in steps of 1/8192 s, by every row of the table: the method's error in
 /// double precision, the roundings of single, and the sines of `micromath`.
 pub const TURNING: [f64; 3] = [5e-7, 5e-3, 1.0];
+
+/// The energy error in `f32`, from directions against from angles: some roundings of numbers three times as large as what it is
+/// relative to.
+pub const ENERGY_SHOWN: f32 = 1e-6;

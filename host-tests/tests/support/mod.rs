@@ -1,6 +1,11 @@
 //! What the tests on emulated boards share. Not every test uses all of it.
 #![allow(dead_code)]
 
+pub mod bench;
+pub mod branch;
+pub mod code;
+pub mod program;
+
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 

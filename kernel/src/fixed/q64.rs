@@ -4,6 +4,7 @@ use core::ops::{Add, Mul, Neg, Sub};
 
 use super::FixedPoint;
 use super::product::product;
+use crate::real::Real;
 use crate::ring::Ring;
 use crate::sealed::Sealed;
 
@@ -21,7 +22,12 @@ const UNIT: f64 = 18_446_744_073_709_551_616.0;
 impl Q64 {
     /// As an `f64`.
     pub fn value(self) -> f64 {
-        self.0 as f64 / UNIT
+        self.over(1.0)
+    }
+
+    /// The number over a power of two, rounded once.
+    pub fn over<R: Real>(self, divisor: f64) -> R {
+        R::from_i64(self.0) * R::from_f64(1.0 / (UNIT * divisor))
     }
 
     /// The upper word, rounded to nearest, and the lower one, with its sign.
@@ -142,9 +148,10 @@ impl Ring for Q64 {
 }
 
 impl FixedPoint for Q64 {
+    /// Rounded to nearest.
     #[inline(always)]
     fn down(self, by: u32) -> Self {
-        Self(self.0 >> by)
+        Self(self.0.wrapping_add(i64::from(1_u32 << by >> 1)) >> by)
     }
     /// Made the middle of what it may have been before it was rounded down: no bias is left. `by` is 1 or more.
     #[inline(always)]

@@ -59,6 +59,7 @@ impl<R: Real, S: Sum<R>> Sealed for AngleForm<R, S> {}
 
 impl<R: Real, S: Sum<R>> Form<R> for AngleForm<R, S> {
     type Carried = AngleState<R, S>;
+    const ORDER: u32 = 4;
 
     fn new(parameters: &Parameters<R>, dt: f64) -> Result<Self, Error> {
         let (coefficients, scale) = prepare(parameters, dt, Span { weights: 6.0, factor: S::factor() })?;

@@ -52,6 +52,7 @@ impl<R: Real, S: Sum<R>, I: Inverse<R>> Sealed for DirectionForm<R, S, I> {}
 
 impl<R: Real, S: Sum<R>, I: Inverse<R>> Form<R> for DirectionForm<R, S, I> {
     type Carried = DirectionState<R, S>;
+    const ORDER: u32 = 4;
 
     fn new(parameters: &Parameters<R>, dt: f64) -> Result<Self, Error> {
         Self::with_span(parameters, dt, Span::classical::<R>())

@@ -41,6 +41,7 @@ impl<R: Real, S: Sum<R>> Sealed for DirectionForm8<R, S> {}
 
 impl<S: Sum<f64>> Form<f64> for DirectionForm8<f64, S> {
     type Carried = DirectionState<f64, S>;
+    const ORDER: u32 = 8;
 
     fn new(parameters: &Parameters<f64>, dt: f64) -> Result<Self, Error> {
         Ok(Self { direction: DirectionForm::with_span(parameters, dt, Span::STEP)? })

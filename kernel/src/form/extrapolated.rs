@@ -92,6 +92,7 @@ impl<const ORDER: u32, S: Sum<f64>> Sealed for ExtrapolatedForm<ORDER, S> {}
 
 impl<const ORDER: u32, S: Sum<f64>> Form<f64> for ExtrapolatedForm<ORDER, S> {
     type Carried = ExtrapolatedState<S>;
+    const ORDER: u32 = ORDER;
 
     fn new(parameters: &Parameters<f64>, dt: f64) -> Result<Self, Error> {
         let direction = DirectionForm::with_span(parameters, dt, Span::STEP)?;

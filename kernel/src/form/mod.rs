@@ -65,6 +65,7 @@ pub use winding::Winding;
 use crate::error::{Error, Parameter, check_finite};
 use crate::params::Parameters;
 use crate::real::Real;
+use crate::ring::Ring;
 use crate::sealed::Sealed;
 use crate::state::State;
 
@@ -77,6 +78,9 @@ pub type Direction<R> = [R; 2];
 pub trait Form<R: Real>: Sealed + Copy + core::fmt::Debug + PartialEq {
     /// A motion: what is carried from step to step.
     type Carried: Copy + core::fmt::Debug + PartialEq;
+
+    /// The order of accuracy: as the step shrinks, errors do as this power of it.
+    const ORDER: u32;
 
     /// Checks the parameters and prepares steps of `dt` seconds; a negative one runs backwards.
     ///
@@ -152,6 +156,6 @@ fn lower_direction<R: Real>(upper: Direction<R>, elbow: [R; 2], norm: R) -> Dire
 
 /// The same, as long as (S, C): enough to tell the angle by.
 #[inline]
-fn lower_ray<R: Real>([sin1, cos1]: Direction<R>, [s, c]: [R; 2]) -> [R; 2] {
+fn lower_ray<R: Ring>([sin1, cos1]: [R; 2], [s, c]: [R; 2]) -> [R; 2] {
     [sin1 * c - cos1 * s, cos1 * c + sin1 * s]
 }

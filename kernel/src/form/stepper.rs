@@ -47,6 +47,11 @@ impl<R: Real, F: Form<R>> Stepper<R, F> {
         Stepper { form, carried }
     }
 
+    /// What the form carries.
+    pub(crate) fn carried(&self) -> &F::Carried {
+        &self.carried
+    }
+
     /// Makes `steps` steps ([`Form::advance`]).
     #[inline(always)]
     pub fn advance(&mut self, steps: u32) {
@@ -155,6 +160,11 @@ impl<R: Real, F: Form<R>> UnwrappedStepper<R, F> {
     #[inline]
     pub fn directions(&self) -> [Direction<R>; 2] {
         self.windings.each_ref().map(Winding::last)
+    }
+
+    /// The unwrapped angles of both rods, rad, as of their directions.
+    pub(crate) fn angles(&self) -> [R; 2] {
+        self.windings.each_ref().map(Winding::angle)
     }
 
     /// As [`Stepper::state`], the angles with all their turns.

@@ -63,9 +63,10 @@ impl<R: Real> Winding<R> {
 
     /// The unwrapped angle, rad, as of the last direction observed.
     #[must_use]
-    pub fn angle(&self) -> f64 {
+    #[inline(never)] // once in flash
+    pub fn angle(&self) -> R {
         let [s, c] = self.last;
-        f64::from(self.turns) * core::f64::consts::TAU + libm::atan2(s.to_f64(), c.to_f64())
+        R::from_f64(f64::from(self.turns) * core::f64::consts::TAU) + s.atan2(c)
     }
 
     /// `angle`, known but for whole turns, as many turns on as bring it nearest to [`angle`](Self::angle), rad: the

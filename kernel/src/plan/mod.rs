@@ -7,7 +7,7 @@
 //!
 //! | error of | is measured by |
 //! |---|---|
-//! | the step | a run with half the step |
+//! | the step | a run with finer steps |
 //! | rounding, that of the numbers given too | two runs with the same step, whose given numbers are half an ulp off; in 64 bits one |
 //! | the closed form, plain `f32` | the distance to a run that has the errors above |
 //!

@@ -73,7 +73,7 @@ impl Candidate {
 enum Shadowed {
     Direction(ShadowedRun<f32, DirectionForm<f32>>),
     Fixed32(ShadowedRun<f32, Fixed32Form>),
-    Fixed64(ShadowedRun<f64, Fixed64Form<ORDER>, 1>),
+    Fixed64(ShadowedRun<f64, Fixed64Form<ORDER>>),
 }
 
 impl Shadowed {
@@ -120,9 +120,9 @@ impl Shadowed {
     /// As [`ShadowedRun::steps`].
     fn steps(&self, steps: u32) -> u32 {
         match self {
-            Self::Direction(_) => ShadowedRun::<f32, DirectionForm<f32>, 2>::steps(steps),
-            Self::Fixed32(_) => ShadowedRun::<f32, Fixed32Form, 2>::steps(steps),
-            Self::Fixed64(_) => ShadowedRun::<f64, Fixed64Form<ORDER>, 1>::steps(steps),
+            Self::Direction(_) => ShadowedRun::<f32, DirectionForm<f32>>::steps(steps),
+            Self::Fixed32(_) => ShadowedRun::<f32, Fixed32Form>::steps(steps),
+            Self::Fixed64(_) => ShadowedRun::<f64, Fixed64Form<ORDER>>::steps(steps),
         }
     }
 }

@@ -59,6 +59,7 @@ impl Problem {
     }
 
     /// The pendulum and its start, which is at `start`, in the arithmetic `R`, some numbers off by a rounding.
+    #[inline(never)] // once in flash
     pub(super) fn rounded<R: Real>(&self, start: &State<f64>, perturbation: Perturbation) -> (Parameters<R>, State<R>) {
         let &State { a1, a2, p1, p2 } = start;
         let Parameters { m1, m2, l1, l2, g } = self.pendulum;

@@ -20,31 +20,42 @@ pub type Directions = [Direction<f32>; 2];
     ))
 )]
 pub(super) struct Run<R: Real, F: Form<R>> {
-    parameters: Parameters<R>,
-    start: State<R>,
-    /// The step, s.
-    dt: f64,
-    motion: Option<Stepper<R, F>>,
+    motion: Motion<R, F>,
     per_frame: u32,
     /// Steps made since the last frame.
     made: u32,
 }
 
+/// Before its steps are prepared, and from then on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "R: serde::Serialize, Stepper<R, F>: serde::Serialize",
+        deserialize = "R: serde::Deserialize<'de>, Stepper<R, F>: serde::Deserialize<'de>"
+    ))
+)]
+enum Motion<R: Real, F: Form<R>> {
+    /// A pendulum, its start, and the step, s.
+    Given(Parameters<R>, State<R>, f64),
+    Prepared(Stepper<R, F>),
+}
+
 impl<R: Real, F: Form<R>> Run<R, F> {
     /// With `per_frame` steps for each of the `rate` frames of a second.
+    #[inline(never)] // once in flash
     pub fn new(&(parameters, start): &(Parameters<R>, State<R>), rate: u16, per_frame: u32) -> Self {
         let dt = 1.0 / (f64::from(rate) * f64::from(per_frame));
-        Self { parameters, start, dt, motion: None, per_frame, made: 0 }
+        Self { motion: Motion::Given(parameters, start, dt), per_frame, made: 0 }
     }
 
     /// Prepares the steps; whether they were not.
     #[inline(never)] // once in flash
     pub fn prepare(&mut self) -> Result<bool, Error> {
-        let is_new = self.motion.is_none();
-        if is_new {
-            self.motion = Some(Stepper::new(&self.parameters, &self.start, self.dt)?);
-        }
-        Ok(is_new)
+        let Motion::Given(parameters, start, dt) = &self.motion else { return Ok(false) };
+        self.motion = Motion::Prepared(Stepper::new(parameters, start, *dt)?);
+        Ok(true)
     }
 
     /// Makes `most` of the steps towards the next frame, or as many as are left. How many that were: 0 if nothing was left to
@@ -53,7 +64,7 @@ impl<R: Real, F: Form<R>> Run<R, F> {
     pub fn advance(&mut self, most: u32) -> u32 {
         let left = self.per_frame.saturating_sub(self.made);
         let steps = if most < left { most } else { left };
-        if let Some(motion) = &mut self.motion {
+        if let Motion::Prepared(motion) = &mut self.motion {
             motion.advance(steps);
         }
         self.made += steps;
@@ -64,9 +75,10 @@ impl<R: Real, F: Form<R>> Run<R, F> {
     #[inline(never)] // once in flash
     pub fn frame(&mut self) -> Directions {
         self.made = 0;
-        self.motion.as_ref().map_or([[f32::NAN; 2]; 2], |motion| {
-            motion.directions().map(|direction| direction.map(|x| x.to_f64() as f32))
-        })
+        match &self.motion {
+            Motion::Given(..) => [[f32::NAN; 2]; 2],
+            Motion::Prepared(motion) => motion.directions().map(|direction| direction.map(|x| x.to_f64() as f32)),
+        }
     }
 }
 
@@ -76,17 +88,12 @@ where
     Stepper<R, F>: defmt::Format,
 {
     fn format(&self, f: defmt::Formatter) {
-        let Self { parameters, start, dt, motion, per_frame, made } = self;
-        defmt::write!(
-            f,
-            "Run {{ parameters: {}, start: {}, dt: {}, motion: {}, per_frame: {}, made: {} }}",
-            parameters,
-            start,
-            dt,
-            motion,
-            per_frame,
-            made
-        );
+        let Self { motion, per_frame, made } = self;
+        match motion {
+            Motion::Given(parameters, start, dt) => defmt::write!(f, "Run {{ {}, {}, dt: {}", parameters, start, dt),
+            Motion::Prepared(motion) => defmt::write!(f, "Run {{ {}", motion),
+        }
+        defmt::write!(f, ", per_frame: {}, made: {} }}", per_frame, made);
     }
 }
 

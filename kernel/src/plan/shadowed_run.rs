@@ -1,7 +1,5 @@
 //! A run that knows how wrong it is.
 
-use core::f32::consts::SQRT_2;
-
 use super::error::PlanError;
 use super::problem::{Perturbation, Problem};
 use super::run::{Directions, Run, distance, greater};
@@ -13,8 +11,8 @@ use crate::state::State;
 
 /// How much larger than the largest of the distances an error may be.
 ///
-/// To half the step it is 16/15 of the distance (order 4) or less than 1024/1023 (order 10) where the steps resolve the
-/// motion. Other roundings are samples of the same spread as the run's own; half the step is one more. `cargo plan --fit 1000
+/// To the finer steps it is 16/15 of the distance (order 4) or less than 10/9 (order 10) where the steps resolve the motion.
+/// Other roundings are samples of the same spread as the run's own; the finer steps are one more. `cargo plan --fit 1000
 /// --seed 2` holds it against the exact motion.
 pub const MARGIN: f32 = 2.0;
 
@@ -23,7 +21,7 @@ pub const MARGIN: f32 = 2.0;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ErrorEstimate {
-    /// The one with half the step; it has other roundings, too.
+    /// The one with finer steps; it has other roundings, too.
     pub step: f32,
     /// The farther of those with other roundings.
     pub rounding: f32,
@@ -56,41 +54,36 @@ impl ErrorEstimate {
     }
 }
 
-/// A motion beside one with half the step, for the error of the step, and `N` whose given numbers are off by as much as
-/// rounding may make them, for the error of rounding. One of these is enough where nothing finer follows, so that it need not
-/// be known which error is the larger.
+/// A motion beside one with finer steps, for the error of the step, and two whose given numbers are off by as much as
+/// rounding may make them, for the error of rounding.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
     feature = "serde",
     serde(bound(
-        serialize = "R: serde::Serialize, crate::form::Stepper<R, F>: serde::Serialize, [Run<R, F>; N]: serde::Serialize",
-        deserialize = "R: serde::Deserialize<'de>, crate::form::Stepper<R, F>: serde::Deserialize<'de>, \
-                       [Run<R, F>; N]: serde::Deserialize<'de>"
+        serialize = "R: serde::Serialize, crate::form::Stepper<R, F>: serde::Serialize",
+        deserialize = "R: serde::Deserialize<'de>, crate::form::Stepper<R, F>: serde::Deserialize<'de>"
     ))
 )]
-pub struct ShadowedRun<R: Real, F: Form<R>, const N: usize = 2> {
+pub struct ShadowedRun<R: Real, F: Form<R>> {
     own: Run<R, F>,
     finer: Run<R, F>,
-    perturbed: [Run<R, F>; N],
+    perturbed: [Run<R, F>; 2],
     rods: [f32; 2],
 }
 
-impl<R: Real, F: Form<R>, const N: usize> ShadowedRun<R, F, N> {
-    /// Steps of the finer run for each frame. Beside a single perturbed run they are one more than twice as many: with half the
-    /// step [`Fixed64Form`](crate::form::Fixed64Form) keeps the unit of time, and with it the constants and their roundings.
+impl<R: Real, F: Form<R>> ShadowedRun<R, F> {
+    /// Steps of the finer run for each frame: twice as many by order 4. By a high order a quarter more leave a tenth of the
+    /// error; with one on top of that [`Fixed64Form`](crate::form::Fixed64Form) never has the same unit of time in both runs,
+    /// and with it the same constants and their roundings.
     const fn finer(steps: u32) -> u32 {
-        let twice = steps.saturating_mul(2);
-        if N == 1 { twice.saturating_add(1) } else { twice }
+        steps.saturating_add(if F::ORDER > 4 { steps / 4 + 1 } else { steps })
     }
 
     /// Steps made by all the runs for each frame.
     pub(super) const fn steps(steps: u32) -> u32 {
-        Self::finer(steps).saturating_add(steps.saturating_mul(1 + N as u32))
+        Self::finer(steps).saturating_add(steps.saturating_mul(3))
     }
-
-    /// The factor on each distance. The mean of the greater of two normally distributed distances is sqrt 2 times that of one.
-    const WEIGHT: f32 = if N == 1 { SQRT_2 } else { 1.0 };
 
     /// With `steps` steps for each frame.
     ///
@@ -103,11 +96,10 @@ impl<R: Real, F: Form<R>, const N: usize> ShadowedRun<R, F, N> {
     /// From `start`, with `steps` steps for each frame.
     pub(super) fn from_state(problem: &Problem, start: &State<f64>, steps: u32) -> Self {
         let run = |perturbation, steps| Run::new(&problem.rounded(start, perturbation), problem.rate, steps);
-        let perturbations = [Perturbation::Opposite, Perturbation::Alike];
         Self {
             own: run(Perturbation::None, steps),
             finer: run(Perturbation::None, Self::finer(steps)),
-            perturbed: core::array::from_fn(|sample| run(perturbations[sample % perturbations.len()], steps)),
+            perturbed: [Perturbation::Opposite, Perturbation::Alike].map(|perturbation| run(perturbation, steps)),
             rods: problem.rods(),
         }
     }
@@ -132,7 +124,7 @@ impl<R: Real, F: Form<R>, const N: usize> ShadowedRun<R, F, N> {
         let apart = |other: &mut Run<R, F>| distance(self.rods, &frame, &other.frame());
         let step = apart(&mut self.finer);
         let rounding = self.perturbed.iter_mut().map(apart).fold(0.0, greater);
-        (frame, ErrorEstimate { step: Self::WEIGHT * step, rounding: Self::WEIGHT * rounding })
+        (frame, ErrorEstimate { step, rounding })
     }
 
     /// The next frame, and how wrong it is. Refuses a pendulum out of the range of the arithmetic.
@@ -144,7 +136,7 @@ impl<R: Real, F: Form<R>, const N: usize> ShadowedRun<R, F, N> {
 }
 
 #[cfg(feature = "defmt")]
-impl<R: Real + defmt::Format, F: Form<R>, const N: usize> defmt::Format for ShadowedRun<R, F, N>
+impl<R: Real + defmt::Format, F: Form<R>> defmt::Format for ShadowedRun<R, F>
 where
     crate::form::Stepper<R, F>: defmt::Format,
 {

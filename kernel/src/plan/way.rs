@@ -217,6 +217,17 @@ impl WayStepper {
         }
     }
 
+    /// The canonical state in SI units, rounded to `f32`, the angles with all their turns: what a picture needs.
+    #[must_use]
+    #[inline(never)] // once in flash
+    pub fn rounded_state(&self) -> State<f32> {
+        match &self.motion {
+            Carried::ClosedForm(motion, pendulum) => pendulum.to_state(&motion.at(self.time() as f32)),
+            Carried::Fixed64(motion) => motion.rounded_state(),
+            _ => self.state().cast(),
+        }
+    }
+
     /// The canonical state in SI units to the last digit carried, the angles with all their turns.
     #[must_use]
     #[inline(never)] // once in flash

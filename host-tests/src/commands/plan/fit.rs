@@ -67,15 +67,15 @@ fn passes(number: usize, scene: &Problem) -> Result<Vec<Sample>, PlanError> {
     for pass in 0..PASSES {
         let steps = coarsest.next_power_of_two() * FINER.pow(pass);
         if steps <= MOST_STEPS {
-            let mut float = ShadowedRun::<f32, DirectionForm<f32>, 2>::new(scene, steps)?;
+            let mut float = ShadowedRun::<f32, DirectionForm<f32>>::new(scene, steps)?;
             samples.push(sample(Method::Direction, number, &mut exact, steps, || float.next_frame()));
-            let mut fixed = ShadowedRun::<f32, Fixed32Form, 2>::new(scene, steps)?;
+            let mut fixed = ShadowedRun::<f32, Fixed32Form>::new(scene, steps)?;
             samples.push(sample(Method::Fixed32, number, &mut exact, steps, || fixed.next_frame()));
         }
     }
     let resolving = 2 * coarsest.next_power_of_two();
     if resolving <= MOST_STEPS {
-        let mut fixed = ShadowedRun::<f64, Fixed64Form<ORDER>, 1>::new(scene, resolving)?;
+        let mut fixed = ShadowedRun::<f64, Fixed64Form<ORDER>>::new(scene, resolving)?;
         samples.push(sample(Method::Fixed64, number, &mut exact, resolving, || fixed.next_frame()));
     }
     Ok(samples)
@@ -155,7 +155,7 @@ pub fn margins(samples: &[Sample]) -> Table {
         title: format!("The planner's margin of {MARGIN}"),
         note: String::from(
             "Passes over scenes whose true error came to half a pixel, by what ended them. The error then, over the distance \
-             to the motion with half the step, over the larger distance to the two with other roundings, and over the \
+             to the motion with finer steps, over the larger distance to the two with other roundings, and over the \
              bound made of both: above 1 the promise is broken. Quantiles.",
         ),
         columns: vec![

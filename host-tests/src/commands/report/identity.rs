@@ -19,8 +19,21 @@ const COMPARED: &[Scene] = SCENES.split_at(2).0;
 pub struct Steps {
     /// With a floating-point unit, in fixed point, and by extrapolation: what is to be taken for a picture or for many digits.
     pub full: u32,
-    /// By the other methods in software, and on the Cortex-M0+, which has no long products either.
+    /// By the other methods in software; on the Cortex-M0+, which has no long products either, a tenth of these by all.
     pub reduced: u32,
+}
+
+impl Steps {
+    fn of(&self, target: &Target, row: Row) -> u32 {
+        let is_single =
+            matches!(row.arithmetic, Arithmetic::F32 | Arithmetic::F32Compensated | Arithmetic::F32Micromath);
+        match target.core() {
+            Core::M0Plus => self.reduced / 10,
+            Core::M4F if is_single => self.full,
+            _ if row.arithmetic.is_fixed_point() || row.integrator == Integrator::Extrapolation => self.full,
+            _ => self.reduced,
+        }
+    }
 }
 
 /// How many comparisons are made on one target.
@@ -58,7 +71,7 @@ pub fn compare(targets: &[Target], steps: Steps, tick: &(dyn Fn() + Sync)) -> Re
     let motions = || COMPARED.iter().flat_map(|scene| ROWS.iter().map(move |&row| (scene, row)));
     let runs: Vec<_> = targets.iter().flat_map(|target| motions().map(move |motion| (target, motion))).collect();
     let compared = runs.into_par_iter().map(|(target, (scene, row))| {
-        let steps = if is_full(target, row) { steps.full } else { steps.reduced };
+        let steps = steps.of(target, row);
         let request = every_state(row, scene, steps);
         let refused = |reason: JobError| CountError::Refused { request: row.to_string(), reason: reason.to_string() };
         let host = request.crc().map_err(refused)?;
@@ -67,15 +80,6 @@ pub fn compare(targets: &[Target], steps: Steps, tick: &(dyn Fn() + Sync)) -> Re
         Ok(Comparison { request, scene, cpu: target.board.cpu, host, target: crc })
     });
     compared.collect()
-}
-
-fn is_full(target: &Target, row: Row) -> bool {
-    let is_single = matches!(row.arithmetic, Arithmetic::F32 | Arithmetic::F32Compensated | Arithmetic::F32Micromath);
-    match target.core() {
-        Core::M0Plus => false,
-        Core::M4F if is_single => true,
-        _ => row.arithmetic.is_fixed_point() || row.integrator == Integrator::Extrapolation,
-    }
 }
 
 /// The comparisons as a table.

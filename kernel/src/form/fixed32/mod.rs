@@ -97,6 +97,7 @@ impl Sealed for Fixed32Form {}
 
 impl<R: Real> Form<R> for Fixed32Form {
     type Carried = Fixed32State;
+    const ORDER: u32 = 4;
 
     fn new(parameters: &Parameters<R>, dt: f64) -> Result<Self, Error> {
         let parameters = parameters.cast::<f64>();

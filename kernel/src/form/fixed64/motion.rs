@@ -7,7 +7,7 @@ use crate::bounds::Bounds;
 use crate::error::{Error, Parameter};
 use crate::fixed::{FixedPoint, Q64, Scaling};
 use crate::form::checkpoint::{RestoreError, Words};
-use crate::form::{Direction, lower_direction, lower_ray};
+use crate::form::{Direction, lower_ray};
 use crate::hamiltonian::Pendulum;
 use crate::params::Parameters;
 use crate::real::Real;
@@ -28,6 +28,10 @@ pub struct Fixed64State {
     /// sin a1, cos a1, S, C by 8; P1, P2.
     z: [Q64; 6],
     lost: bool,
+    /// 1/nu.
+    inverse_norm: f64,
+    /// What a step loses by rounding down.
+    floored: [i64; 2],
     /// The energy above rest, J, which the units follow from.
     energy: f64,
 }
@@ -60,11 +64,14 @@ impl Fixed64State {
             }
             Ok(unit_of_time(longest, dt))
         })?;
+        let rows = Rows::new(order, &scaling, dt)?;
         Ok(Self {
-            rows: Rows::new(order, &scaling, dt)?,
+            floored: rows.floored(),
+            rows,
             scaling,
             half_inverse_square: Q64::constant(0.5 / (scaling.norm * scaling.norm) * EIGHTH),
             z: [Q64(0); 6],
+            inverse_norm: 1.0 / scaling.norm,
             energy,
             lost: false,
         })
@@ -92,7 +99,12 @@ impl Fixed64State {
 
     fn step(&mut self) {
         let reach = Cell::new(0);
-        let [sin1, cos1, s, c, p1, p2] = self.rows.end(&self.z, &reach);
+        let end = self.rows.end(&self.z, &reach);
+        // Half of 2^-64 is rounded as the last digit has it, which is as often 1 as 0.
+        let unfloored = |z: Q64, floored: i64| Q64(z.0.wrapping_add((floored + (z.0 & 1)) >> 1));
+        let [of_p1, others] = self.floored;
+        let [sin1, cos1, s, c, _, p2] = end.map(|z| unfloored(z, others));
+        let p1 = unfloored(end[4], of_p1);
         let norm = self.rows.norm();
         let ([sin1, cos1], missing1) = restored([sin1, cos1], ONE, HALF);
         let ([s, c], missing2) = restored([s, c], norm * norm, self.half_inverse_square);
@@ -109,8 +121,9 @@ impl Fixed64State {
 
     pub(super) fn directions<R: Real>(&self) -> [Direction<R>; 2] {
         let [sin1, cos1, s, c, ..] = self.z;
-        let [sin1, cos1, s, c] = [sin1, cos1, s, c].map(|z| R::from_f64(z.value() / EIGHTH));
-        [[sin1, cos1], lower_direction([sin1, cos1], [s, c], R::from_f64(self.scaling.norm))]
+        let inverse = R::from_f64(self.inverse_norm);
+        let lower = lower_ray([sin1, cos1], [s, c]).map(|z| z.over::<R>(EIGHTH * EIGHTH) * inverse);
+        [[sin1, cos1].map(|z| z.over(EIGHTH)), lower]
     }
 
     #[inline(never)]
@@ -122,6 +135,15 @@ impl Fixed64State {
         let [sin2, cos2] = lower_ray([sin1, cos1], [s, c]);
         let [unit1, unit2] = self.scaling.momenta;
         State { a1: libm::atan2(sin1, cos1), a2: libm::atan2(sin2, cos2), p1: p1 / unit1, p2: p2 / unit2 }
+    }
+
+    /// p1 and p2 in SI units, rounded to `R`.
+    #[inline(never)] // once in flash
+    pub(super) fn momenta<R: Real>(&self) -> [R; 2] {
+        let ([.., p1, p2], [unit1, unit2]) = (self.z, self.scaling.momenta);
+        let momentum =
+            |p: Q64, unit: f64| if self.lost { R::from_f64(f64::NAN) } else { p.over::<R>(1.0) / R::from_f64(unit) };
+        [momentum(p1, unit1), momentum(p2, unit2)]
     }
 
     pub(super) fn bits(&self, mut feed: impl FnMut(u64)) {

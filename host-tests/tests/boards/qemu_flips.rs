@@ -1,7 +1,6 @@
 //! The map of flips on the emulated boards, with a floating-point unit and without: frame by frame, and finished, the host's.
 
-mod support;
-
+use crate::support::{application, settings, toolchain};
 use double_pendulum::form::{DirectionForm, Fixed32Form, Plain, Watched};
 use firmware::config::{FLIPS_F405, FLIPS_M0PLUS, FLIPS_M3, FLIPS_M4F, FlipsPace, TICK_RATE};
 use firmware::graphics::canvas::{Canvas, HEIGHT, WIDTH};
@@ -16,7 +15,6 @@ use host_tests::emulator::boards::{BOARDS, Board, Core, STM32F405};
 use host_tests::emulator::budgets;
 use host_tests::emulator::qemu::{Lockstep, Screenshot};
 use rayon::prelude::*;
-use support::{application, settings, toolchain};
 
 /// A frame with the map half done is compared, too.
 const EARLY: u32 = 100;

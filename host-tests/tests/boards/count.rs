@@ -1,10 +1,9 @@
 //! The counter against a second way of counting, goals and prices, and what `cargo count` refuses.
 
-mod support;
-
 use std::ops::RangeInclusive;
 use std::process::Command;
 
+use crate::support::{application, settings, toolchain};
 use double_pendulum::Parameters;
 use double_pendulum::plan::{Costs, Method};
 use firmware::job::{Arithmetic, Formulation, Model, ROWS, Request, Row};
@@ -16,7 +15,6 @@ use host_tests::commands::report::costs;
 use host_tests::commands::report::scene::SCENES;
 use host_tests::emulator::boards::BOARDS;
 use host_tests::emulator::qemu::Lockstep;
-use support::{application, settings, toolchain};
 
 /// A tick of the board's clock, 12.5 MHz after reset, under `-icount`, where an instruction takes 1 ns.
 const INSTRUCTIONS_PER_TICK: f64 = 80.0;

@@ -1,13 +1,11 @@
 //! What a board streams is what the host's kernel computes, bit for bit.
 
-mod support;
-
+use crate::support::{application, settings, toolchain};
 use firmware::protocol::Frame;
 use host_tests::emulator::boards::{BOARDS, Board};
 use host_tests::emulator::qemu::{Lockstep, Machine, QemuError};
 use host_tests::link::Counts;
 use host_tests::oracle::stream::Expected;
-use support::{application, settings, toolchain};
 
 /// 12 s of the board's time: the motion has turned over and become chaotic long before.
 const FRAMES: u32 = 720;

@@ -1,8 +1,7 @@
 //! The plan on the emulated boards: found in the very tick, and followed from the very tick, that the host says, without
 //! delaying a frame; answered and logged.
 
-mod support;
-
+use crate::support::{application, settings, toolchain};
 use double_pendulum::plan::{Method, Plan};
 use firmware::app::player::News;
 use firmware::config::{HALF_PIXEL, TICK_RATE};
@@ -13,7 +12,6 @@ use host_tests::emulator::boards::{BOARDS, Board};
 use host_tests::emulator::host::Show;
 use host_tests::emulator::qemu::{Machine, QemuError};
 use rayon::prelude::*;
-use support::{application, settings, toolchain};
 
 /// A motion that ends early, one that goes another way soon, a model, nothing that moves.
 const SCENES: [SceneName; 4] = [SceneName::Page, SceneName::Beats2To1, SceneName::SmallLight, SceneName::Frequencies];

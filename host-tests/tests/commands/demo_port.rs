@@ -1,14 +1,10 @@
 //! `cargo demo --port`: a pseudo-terminal with an emulated board behind it, whose cable can be pulled.
 
-#[path = "support/bench.rs"]
-mod bench;
-mod support;
-
 use std::process::Command;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use bench::{Bench, WAIT, at_port, board, intact};
+use crate::support::bench::{Bench, WAIT, at_port, board, intact};
 use firmware::protocol::{Frame, MAX_WIRE, encode};
 use host_tests::emulator::process::Output;
 use host_tests::link::Received;

@@ -1,13 +1,11 @@
 //! No function of the firmware takes so much of the stack at once that it could step over the guard.
 
-mod support;
-
 use std::collections::BTreeMap;
 
+use crate::support::application;
 use host_tests::commands::count::Image;
 use host_tests::emulator::boards::BOARDS;
 use object::{Object, ObjectSymbol};
-use support::application;
 
 /// The part of memory that statics and guard share, and what it can be divided by, as in `board/cortex_m/guard.rs`.
 const REGION: u32 = 32 * 1024;

@@ -1,12 +1,10 @@
 //! A short soak; `cargo soak` runs the long one.
 
-mod support;
-
+use crate::support::{application, settings, toolchain};
 use host_tests::commands::soak::{self, Outcome};
 use host_tests::emulator::boards::{BOARDS, Board};
 use host_tests::emulator::qemu::QemuError;
 use rayon::prelude::*;
-use support::{application, settings, toolchain};
 
 /// Seconds of the board's time: 1.5 for each scene, twice. Within 1.1 s the stack has been as deep on every board as it gets
 /// in an hour, an interrupt apart, whichever tick a scene is left at.

@@ -3,15 +3,13 @@
 //! They are injected into the images that are flashed, from outside: a debugger stops the board in the middle of a frame
 //! that is drawn but not yet sent, and sends its processor elsewhere.
 
-#[path = "support/program.rs"]
-mod program;
-mod support;
-
 use std::error::Error;
 use std::path::Path;
 use std::thread::sleep;
 use std::time::Duration;
 
+use crate::support::program::address;
+use crate::support::{application, settings, toolchain};
 use firmware::app::warm_restart::{Cause, MOST_RESTARTS};
 use firmware::protocol::Field;
 use firmware::protocol::Unit;
@@ -21,8 +19,6 @@ use host_tests::emulator::boards::{BOARDS, Board, STM32F405};
 use host_tests::emulator::qemu::{Clock, Machine, Probe, QemuError, Register, Settings};
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
-use program::address;
-use support::{application, settings, toolchain};
 
 /// The lowest addresses of the stack, where it never reaches.
 const UNUSED: u32 = 0x2000_8000;

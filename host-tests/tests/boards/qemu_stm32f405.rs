@@ -1,7 +1,6 @@
 //! The image that is flashed runs in the emulator as well, where it finds neither clock control nor panel nor button.
 
-mod support;
-
+use crate::support::{application, settings, toolchain};
 use double_pendulum::Parameters;
 use firmware::config::{GRAVITY, MOST_MEASURED_STEPS};
 use firmware::job::{ON_BOARDS, Request};
@@ -9,7 +8,6 @@ use firmware::protocol::{Frame, Measure, Measured};
 use host_tests::emulator::boards::STM32F405;
 use host_tests::emulator::qemu::{Machine, QemuError};
 use object::{Object, ObjectSegment};
-use support::{application, settings, toolchain};
 
 #[test]
 fn the_image_is_for_the_chips_memory() -> Result<(), Box<dyn std::error::Error>> {

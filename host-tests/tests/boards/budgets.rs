@@ -1,13 +1,12 @@
 //! What every board's application takes of its memory, and what it leaves of its processor's time.
 //!
 //! The board's clock counts instructions; how many cycles one takes is estimated on a frame of the first scene that QEMU
-//! logs whole. The table in the README is what `cargo test -p host-tests --test budgets -- --nocapture` prints.
-
-mod support;
+//! logs whole. The table in the README is what `cargo test -p host-tests --test boards budgets:: -- --nocapture` prints.
 
 use std::error::Error;
 use std::path::Path;
 
+use crate::support::{LIMIT, application, settings, toolchain};
 use double_pendulum::Parameters;
 use firmware::config::TICK_RATE;
 use firmware::job::{ON_BOARDS, Request};
@@ -25,7 +24,6 @@ use host_tests::link::Received;
 use object::elf::{SHF_ALLOC, SHF_WRITE};
 use object::{Object, ObjectSection, SectionFlags, SectionKind};
 use rayon::prelude::*;
-use support::{LIMIT, application, settings, toolchain};
 
 /// Frames that pay for the start of a scene, or catch up with what it cost.
 const SETTLING: usize = 6;

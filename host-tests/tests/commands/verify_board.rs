@@ -1,9 +1,5 @@
 //! `cargo verify-board`: a pseudo-terminal with an emulated board behind it.
 
-#[path = "support/bench.rs"]
-mod bench;
-mod support;
-
 use std::fs;
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
@@ -12,7 +8,8 @@ use std::sync::mpsc::{Receiver, channel};
 use std::thread::spawn;
 use std::time::{Duration, Instant};
 
-use bench::{BOARD, Bench, at_port, intact};
+use crate::support::LIMIT;
+use crate::support::bench::{BOARD, Bench, at_port, intact};
 use firmware::app::controls::Key;
 use firmware::job::ON_BOARDS;
 use firmware::protocol::{Frame, MAX_WIRE, Measured, Sample, encode};
@@ -21,7 +18,6 @@ use host_tests::emulator::boards::BOARDS;
 use host_tests::emulator::process::{self, Output};
 use host_tests::link::Received;
 use serde_json::Value;
-use support::LIMIT;
 
 fn verify(report: &Path, wire: impl Fn(&Received) -> Vec<u8>) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_verify-board"));

@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use embedded_hal::i2c::{ErrorKind, NoAcknowledgeSource};
 use firmware::display::outbox::{Outbox, PanelBus, Sent};
 
-use crate::controller::Controller;
+use super::controller::Controller;
 
 /// Bits that a byte takes with its acknowledgement; a start or stop takes 1.
 pub const BYTE: u32 = 9;

@@ -126,7 +126,7 @@ fn children_do_not_outlive_a_killed_process() {
 /// The process to interrupt, its output after its family is ready, and its folder.
 fn helper() -> (Running, BufReader<ChildStdout>, PathBuf) {
     let mut helper = Command::new(std::env::current_exe().expect("a test has a path"));
-    helper.args(["--exact", "interrupted_helper", "--nocapture"]).env(HELPER, "1");
+    helper.args(["--exact", "process::interrupted_helper", "--nocapture"]).env(HELPER, "1");
     let mut helper = spawn(helper.stdin(Stdio::null()).stdout(Stdio::piped()), AMPLE).expect("it starts");
     let mut pipe = BufReader::new(helper.stdout.take().expect("piped"));
     let mut folder = PathBuf::new();

@@ -1,6 +1,6 @@
 //! The kernel's sine and cosine against the standard library's `f64`, which errs by less than 0.6 ulp.
 //!
-//! Every float of [-pi, pi]: `cargo test --release --package host-tests --test trigonometry -- --ignored` (2 minutes).
+//! Every float of [-pi, pi]: `cargo test --release --package host-tests --test kernel trigonometry:: -- --ignored` (2 minutes).
 
 use double_pendulum::trig::{DefaultTrig, Libm, Own, SinCos};
 use host_tests::oracle::tolerances;

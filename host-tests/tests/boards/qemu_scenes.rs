@@ -1,7 +1,6 @@
 //! The scenes on the emulated boards: the panel shows what the host draws, within the budgets, garbage or not.
 
-mod support;
-
+use crate::support::{application, settings, toolchain};
 use fastrand::Rng;
 use firmware::config::TICK_RATE;
 use firmware::graphics::canvas::{HEIGHT, WIDTH};
@@ -14,7 +13,6 @@ use host_tests::emulator::budgets;
 use host_tests::emulator::host::Show;
 use host_tests::emulator::qemu::{Lockstep, Machine, QemuError};
 use rayon::prelude::*;
-use support::{application, settings, toolchain};
 
 /// Frames compared for each scene, and frames from one to the next.
 const FRAMES: usize = 3;

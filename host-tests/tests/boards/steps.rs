@@ -1,17 +1,11 @@
 //! The steps of every arithmetic, which real boards have twice, in flash and in memory: they run wherever they are copied.
 
-#[path = "support/branch.rs"]
-mod branch;
-#[path = "support/code.rs"]
-mod code;
-mod support;
-
 use std::error::Error;
 
-use code::Code;
+use crate::support::application;
+use crate::support::code::Code;
 use host_tests::emulator::boards::{PICO, STM32F405};
 use object::{Object, ObjectSection};
-use support::application;
 
 /// What is measured, and what the scenes spend most of their time in, by a part and the end of its name.
 const STEPS: [(&str, &str); 4] = [

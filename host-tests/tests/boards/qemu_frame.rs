@@ -1,12 +1,10 @@
 //! The panel shows both bobs where the streamed state puts them.
 
-mod support;
-
+use crate::support::{application, settings, toolchain};
 use firmware::config::{PIVOT, REACH};
 use firmware::protocol::Frame;
 use host_tests::emulator::boards::{BOARDS, Board};
 use host_tests::emulator::qemu::{HEIGHT, Lockstep, QemuError, Screenshot, WIDTH};
-use support::{application, settings, toolchain};
 
 /// The distance a bob may be off, pixels: it is drawn to a fraction of one, and the pixels that are bright enough to
 /// count are whole ones.

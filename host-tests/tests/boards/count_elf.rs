@@ -7,17 +7,15 @@ use host_tests::commands::count::ERROR_BAR;
 use host_tests::emulator::boards::BOARDS;
 use host_tests::emulator::process::{self, Output};
 
-mod support;
-
 /// Says why it refuses an empty request and ends itself, on a Cortex-M3.
 fn measure() -> PathBuf {
-    support::toolchain().build("measure", BOARDS[0].target).unwrap_or_else(|error| panic!("{error}"))
+    crate::support::toolchain().build("measure", BOARDS[0].target).unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn count(elf: &Path, function: &str) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_count"));
     command.args(["--on", BOARDS[0].name, "--function", function, "--elf"]).arg(elf);
-    process::run(&mut command, support::LIMIT).unwrap_or_else(|error| panic!("{error}"))
+    process::run(&mut command, crate::support::LIMIT).unwrap_or_else(|error| panic!("{error}"))
 }
 
 #[test]

@@ -1,14 +1,12 @@
 //! The board's buttons, pressed through QEMU, change the mass ratio and the start angle and restart the motion.
 
-mod support;
-
+use crate::support::{application, settings, toolchain};
 use firmware::app::controls::Key;
 use firmware::config::{ANGLE_STEP, MASS_RATIOS};
 use firmware::protocol::{Choose, Frame};
 use firmware::scenes::SceneName;
 use host_tests::emulator::boards::{BOARDS, Board};
 use host_tests::emulator::qemu::{Machine, QemuError};
-use support::{application, settings, toolchain};
 
 /// Frames until the firmware has noticed that a button is released, however late the host's word reaches it.
 const SETTLING: usize = 60;

@@ -1,13 +1,11 @@
 //! A crash of the firmware ends the run with exit code 1 and a report that a person can read.
 
-mod support;
-
+use crate::support::{application, settings, toolchain};
 use firmware::protocol::Frame;
 use host_tests::commands::count::Image;
 use host_tests::emulator::boards::{BOARDS, Board};
 use host_tests::emulator::qemu::{Machine, Probe, QemuError};
 use object::{Object, ObjectSymbol};
-use support::{application, settings, toolchain};
 
 /// What the binary says before its end, which must be a failure; and the program itself.
 fn crash(board: &Board, binary: &str) -> Result<(String, Image), QemuError> {

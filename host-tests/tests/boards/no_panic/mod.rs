@@ -4,20 +4,13 @@
 //! library, to the places in other code where a panic begins. A place belongs to the innermost function there that is
 //! not of the core library, inlined ones included.
 
-#[path = "../support/branch.rs"]
-mod branch;
-#[path = "../support/code.rs"]
-mod code;
-#[path = "../support/mod.rs"]
-mod support;
-
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use addr2line::Loader;
 use host_tests::emulator::boards::{BOARDS, every_board};
 
-use code::Code;
+use crate::support::code::Code;
 
 /// The code that may contain a panic, by how its name begins, and why none ever begins there.
 const PERMITTED: [(&str, &str); 18] = [
@@ -112,7 +105,7 @@ fn frames(lines: &Loader, address: u32) -> Vec<(String, String)> {
 
 /// The images of all boards, each built once, and the one with every arithmetic.
 fn images() -> Vec<PathBuf> {
-    let toolchain = support::toolchain();
+    let toolchain = crate::support::toolchain();
     let binaries = every_board().flat_map(|board| [(board.binary, board.target), ("measure", board.target)]);
     let binaries: BTreeSet<_> = binaries.collect();
     let build = |(binary, target)| toolchain.build(binary, target).unwrap_or_else(|error| panic!("{error}"));
@@ -146,7 +139,7 @@ fn only_permitted_code_can_panic() {
 /// The search would find a panic: here is one.
 #[test]
 fn an_injected_panic_is_found() {
-    let toolchain = support::toolchain();
+    let toolchain = crate::support::toolchain();
     let elf = toolchain.build("inject-panic", BOARDS[0].target).unwrap_or_else(|error| panic!("{error}"));
     let found = places(&elf);
     assert!(found.iter().any(|place| place.owner().starts_with("inject_panic::")), "{found:#?}");

@@ -1,15 +1,13 @@
 //! The host stops reading: the board's motion does not wait for it, and the stream goes on as soon as it reads again.
 
-mod support;
-
 use std::thread::sleep;
 use std::time::Duration;
 
+use crate::support::{application, settings, toolchain};
 use firmware::protocol::Frame;
 use host_tests::emulator::boards::BOARDS;
 use host_tests::emulator::qemu::{Machine, QemuError};
 use host_tests::oracle::stream::Expected;
-use support::{application, settings, toolchain};
 
 /// How often the log is looked at.
 const POLL: Duration = Duration::from_millis(20);

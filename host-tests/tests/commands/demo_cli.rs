@@ -1,18 +1,16 @@
 //! `cargo demo` from outside: exit codes, summary, and the files it saves.
 
-mod support;
-
 use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
+use crate::support::{LIMIT, toolchain};
 use firmware::config::STM32F405;
 use firmware::scenes::SceneName;
 use host_tests::commands::demo::played;
 use host_tests::emulator::host::Show;
 use host_tests::emulator::process::{Output, run, spawn};
-use support::{LIMIT, toolchain};
 
 const DEMO: &str = env!("CARGO_BIN_EXE_demo");
 /// Seconds recorded, and what that makes: 30 frames per second, 3 x 3 dots for each of 128 x 64 pixels.

@@ -1,15 +1,10 @@
 //! The file that `cargo pico` makes, in an emulated Raspberry Pi Pico with a panel, buttons, a USB host and a serial adapter.
 
-#[path = "support/branch.rs"]
-mod branch;
-#[path = "support/code.rs"]
-mod code;
-mod support;
-
 use std::error::Error;
 use std::time::Duration;
 
-use code::Code;
+use crate::support::code::Code;
+use crate::support::{LIMIT, application};
 use crc::{CRC_32_MPEG_2, Crc};
 use double_pendulum::Parameters;
 use firmware::app::controls::Key;
@@ -30,7 +25,6 @@ use host_tests::emulator::host::Show;
 use host_tests::emulator::pico::{Machine, PicoError};
 use host_tests::emulator::toolchain;
 use host_tests::link::{Counts, Received};
-use support::{LIMIT, application};
 
 const FIXED32: Row = Row::rk4(Arithmetic::Fixed32, Formulation::Direction);
 /// Long enough for the panel to take a whole picture.

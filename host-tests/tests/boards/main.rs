@@ -1,0 +1,23 @@
+//! The firmware on emulated boards: bits, frames, faults, costs.
+
+mod budgets;
+mod count;
+mod count_elf;
+mod identity;
+mod no_panic;
+mod pico;
+mod qemu_bits;
+mod qemu_buttons;
+mod qemu_faults;
+mod qemu_flips;
+mod qemu_frame;
+mod qemu_plan;
+mod qemu_restart;
+mod qemu_scenes;
+mod qemu_stm32f405;
+mod qemu_unread;
+mod soak;
+mod stack_guard;
+mod steps;
+#[path = "../support/mod.rs"]
+mod support;

@@ -1,0 +1,23 @@
+//! The commands as they are called, the READMEs and what the report says.
+
+mod closed_output;
+mod demo_cli;
+mod demo_port;
+mod figures;
+mod flash_cli;
+mod flips_cli;
+mod frontier;
+mod fuzz;
+mod fw_cli;
+mod hygiene;
+mod pico_cli;
+mod plan_cli;
+mod process;
+mod readmes;
+mod simulate_boards;
+mod simulate_cli;
+#[path = "../support/mod.rs"]
+mod support;
+mod tolerance;
+mod toolchain;
+mod verify_board;

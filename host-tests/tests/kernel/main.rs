@@ -1,0 +1,21 @@
+//! The kernel, held against the reference, closed forms and its own symmetries.
+
+mod accuracy;
+mod bounds;
+mod closed_form;
+mod divergence;
+mod extrapolation;
+mod fixed;
+mod flips;
+mod forms;
+mod hard_cases;
+mod interpolation;
+mod invariants;
+mod known_answers;
+mod lagrange;
+mod plan;
+mod plan_study;
+mod refusals;
+mod small_oscillations;
+mod symmetries;
+mod trigonometry;
