@@ -31,7 +31,7 @@ pub struct Fixed64State {
     /// 1/nu.
     inverse_norm: f64,
     /// What a step loses by rounding down.
-    floored: [i64; 2],
+    floored: [i16; 2],
     /// The energy above rest, J, which the units follow from.
     energy: f64,
 }
@@ -101,7 +101,7 @@ impl Fixed64State {
         let reach = Cell::new(0);
         let end = self.rows.end(&self.z, &reach);
         // Half of 2^-64 is rounded as the last digit has it, which is as often 1 as 0.
-        let unfloored = |z: Q64, floored: i64| Q64(z.0.wrapping_add((floored + (z.0 & 1)) >> 1));
+        let unfloored = |z: Q64, floored: i16| Q64(z.0.wrapping_add((i64::from(floored) + (z.0 & 1)) >> 1));
         let [of_p1, others] = self.floored;
         let [sin1, cos1, s, c, _, p2] = end.map(|z| unfloored(z, others));
         let p1 = unfloored(end[4], of_p1);

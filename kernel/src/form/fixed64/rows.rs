@@ -86,10 +86,10 @@ impl Rows {
     ///
     /// One for each weighted difference of rows, and back for each torque of gravity on rod 1, which is taken away. All other
     /// products are made the middle of what they may have been. Small as these are, they would add up from step to step.
-    pub fn floored(&self) -> [i64; 2] {
-        let differences = i64::from(self.method.order() / 2) - 1;
+    pub fn floored(&self) -> [i16; 2] {
+        let differences = (self.method.order() / 2) as i16 - 1;
         let slopes: f64 = (0..self.method.order() as usize / 2).map(|row| self.method.slopes(row)).sum();
-        [differences - libm::rint(slopes) as i64, differences]
+        [differences - libm::rint(slopes) as i16, differences]
     }
 
     /// nu by 8.
