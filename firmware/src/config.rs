@@ -76,7 +76,7 @@ pub const CORTEX_M3: Processor = Processor {
         direction: 10_210.0,
         fixed32: 689.0,
         fixed64: 21_500.0,
-        preparation: 300_000.0,
+        preparation: 280_000.0,
     },
     frame: 200_000.0,
     look_ahead: 320_000.0,

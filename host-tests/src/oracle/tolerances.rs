@@ -301,6 +301,10 @@ pub const FIXED_64_AGAINST_DOUBLE: f64 = 2.0;
 /// That floor: roundings of 2^-61, as often as weights of order 12 enlarge them, grow 2000-fold in these 5 s.
 pub const FIXED_64_FLOOR: f64 = 1e-12;
 
+/// A short, light rod 2 that whirls for 8 s in steps of 1/7680 s, rad: three times what is measured (1.9e-8), a sixth of what it is with roundings
+/// that lean to one side (3e-7).
+pub const FIXED_64_WHIRLING: f64 = 6e-8;
+
 /// A bob 1 of a 128th of bob 2, 0.5 rad for 2 s in steps of 2^-12 s, 32 bits, rad: twice what compensated `f32` has.
 pub const FIXED_32_LIGHT_BOB: f64 = 4e-7;
 

@@ -94,12 +94,15 @@ impl<R: Real, F: Form<R>> ShadowedRun<R, F> {
     }
 
     /// From `start`, with `steps` steps for each frame.
+    ///
+    /// Never inlined: the runs of each form would stand side by side on the stack.
+    #[inline(never)]
     pub(super) fn from_state(problem: &Problem, start: &State<f64>, steps: u32) -> Self {
         let run = |perturbation, steps| Run::new(&problem.rounded(start, perturbation), problem.rate, steps);
         Self {
             own: run(Perturbation::None, steps),
             finer: run(Perturbation::None, Self::finer(steps)),
-            perturbed: [Perturbation::Opposite, Perturbation::Alike].map(|perturbation| run(perturbation, steps)),
+            perturbed: [run(Perturbation::Opposite, steps), run(Perturbation::Alike, steps)],
             rods: problem.rods(),
         }
     }

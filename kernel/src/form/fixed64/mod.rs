@@ -28,9 +28,9 @@ use crate::state::State;
 /// [`try_advance`](Form::try_advance) says so. Nothing is clamped.
 ///
 /// Error in 10 s of regular motion (0.5 rad, rods of 1 m) by order 12: below 1e-12 rad with 12 steps a second; chaotic, as
-/// much as in `f64` with up to 80 steps a second (the repository's tests assert it). Shorter ones only add roundings: after 5 s
-/// of chaotic motion (2 rad) they come to 2e-13 rad by order 8, 7e-13 by order 12 and 3e-12 by order 16, however short the
-/// steps, in `f64` to 1e-13 or so. No rounding leans to one side, or all steps would add it up.
+/// much as in `f64` at the same steps, or 1e-12 rad after 5 s (2 rad), where roundings are all there is (the repository's tests
+/// assert both). These come to 2e-13 rad by order 8, 7e-13 by order 12 and 3e-12 by order 16, however short the steps, in `f64`
+/// to 1e-13 or so. No rounding leans to one side, or all steps would add it up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

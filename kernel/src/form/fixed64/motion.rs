@@ -22,13 +22,15 @@ use crate::trig::{Own, SinCos};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Fixed64State {
     rows: Rows,
-    scaling: Scaling,
+    /// P1 and P2 to a kg m^2/s.
+    momenta: [f64; 2],
     /// 1/(2 nu^2) by 8.
     half_inverse_square: Q64,
     /// sin a1, cos a1, S, C by 8; P1, P2.
     z: [Q64; 6],
     lost: bool,
-    /// 1/nu.
+    /// nu and 1/nu.
+    norm: f64,
     inverse_norm: f64,
     /// What a step loses by rounding down.
     floored: [i16; 2],
@@ -68,7 +70,8 @@ impl Fixed64State {
         Ok(Self {
             floored: rows.floored(),
             rows,
-            scaling,
+            momenta: scaling.momenta,
+            norm: scaling.norm,
             half_inverse_square: Q64::constant(0.5 / (scaling.norm * scaling.norm) * EIGHTH),
             z: [Q64(0); 6],
             inverse_norm: 1.0 / scaling.norm,
@@ -84,7 +87,7 @@ impl Fixed64State {
         let &State { a1, a2, p1, p2 } = state;
         let (sin1, cos1) = Own::sin_cos(a1);
         let (sin_d, cos_d) = Own::sin_cos(a1 - a2);
-        let Scaling { norm, momenta: [unit1, unit2], .. } = motion.scaling;
+        let Self { norm, momenta: [unit1, unit2], .. } = motion;
         let eighths = [sin1, cos1, norm * sin_d, norm * cos_d].map(|direction| direction * EIGHTH);
         let [sin1, cos1, s, c] = eighths;
         Ok(Self { z: [sin1, cos1, s, c, p1 * unit1, p2 * unit2].map(Q64::constant), ..motion })
@@ -133,14 +136,14 @@ impl Fixed64State {
         }
         let [sin1, cos1, s, c, p1, p2] = self.values();
         let [sin2, cos2] = lower_ray([sin1, cos1], [s, c]);
-        let [unit1, unit2] = self.scaling.momenta;
+        let [unit1, unit2] = self.momenta;
         State { a1: libm::atan2(sin1, cos1), a2: libm::atan2(sin2, cos2), p1: p1 / unit1, p2: p2 / unit2 }
     }
 
     /// p1 and p2 in SI units, rounded to `R`.
     #[inline(never)] // once in flash
     pub(super) fn momenta<R: Real>(&self) -> [R; 2] {
-        let ([.., p1, p2], [unit1, unit2]) = (self.z, self.scaling.momenta);
+        let ([.., p1, p2], [unit1, unit2]) = (self.z, self.momenta);
         let momentum =
             |p: Q64, unit: f64| if self.lost { R::from_f64(f64::NAN) } else { p.over::<R>(1.0) / R::from_f64(unit) };
         [momentum(p1, unit1), momentum(p2, unit2)]
