@@ -1,4 +1,4 @@
-//! `cargo verify`: the set-up, then exactly `cargo test`.
+//! `cargo verify`: the set-up, the firmware, then exactly `cargo test`.
 
 use std::process::{Command, ExitCode, Stdio};
 use std::time::Duration;
@@ -17,8 +17,9 @@ struct Arguments {}
 
 fn main() -> ExitCode {
     cli::main(|_: &Arguments| {
-        toolchain::set_up().map_err(Refused::because)?;
+        let (toolchain, _) = toolchain::set_up().map_err(Refused::because)?;
         toolchain::set_up_pico().map_err(Refused::because)?;
+        toolchain.build_ahead()?;
         test()
     })
 }

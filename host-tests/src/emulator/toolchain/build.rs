@@ -4,6 +4,7 @@ use std::env;
 use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::Command;
+use std::sync::Mutex;
 use std::time::Duration;
 
 use super::detect::{DEBIAN_CARGO, DEBIAN_RUSTC};
@@ -11,6 +12,9 @@ use super::system::{Host, System};
 use super::{ArmCore, TARGETS, Toolchain, workspace};
 use crate::emulator::boards::{Board, every_board};
 use crate::emulator::process::ProcessError;
+
+/// What this process has built, each binary with its target: to ask cargo again takes half a second.
+static BUILT: Mutex<Vec<(String, String)>> = Mutex::new(Vec::new());
 
 /// For a build from nothing on a slow, busy machine, downloads included.
 const LIMIT: Duration = Duration::from_secs(1800);
@@ -86,43 +90,66 @@ impl Toolchain {
         self.build(board.binary, board.target)
     }
 
-    /// Builds a binary of the firmware with all optimisation; returns the ELF file.
+    /// Builds a binary of the firmware with all optimisation, once in a process; returns the ELF file.
     ///
-    /// Quick if nothing has changed. Builds at the same time take turns.
+    /// Builds at the same time take turns.
     pub fn build(&self, binary: &str, target: &str) -> Result<PathBuf, BuildError> {
-        let mut command = self.cargo();
-        command.args(["build", "--release", "--package", "firmware", "--bin", binary, "--target", target]);
-        let feature = every_board().find(|board| board.binary == binary).map_or("", |board| board.feature);
-        command.args(["--features", feature]);
-        self.finish(command, &format!("building {binary} for {target}"))?;
-        Ok(Self::folder().join(target).join("release").join(binary))
+        let elf = Self::folder().join(target).join("release").join(binary);
+        let this = (binary.to_owned(), target.to_owned());
+        if !BUILT.lock().is_ok_and(|built| built.contains(&this)) {
+            let feature = every_board().find(|board| board.binary == binary).map_or("", |board| board.feature);
+            let mut command = self.for_targets("build", &[target]);
+            command.args(["--bin", binary, "--features", feature]);
+            self.finish(command, &format!("building {binary} for {target}"))?;
+            BUILT.lock().into_iter().for_each(|mut built| built.push(this.clone()));
+        }
+        Ok(elf)
     }
 
-    /// Checks all of the firmware's binaries and its example under an executor for every target; a warning is an error.
+    /// Builds every binary that needs no chip's support library for every target, side by side.
+    pub fn build_ahead(&self) -> Result<(), BuildError> {
+        let mut command = self.for_targets("build", &TARGETS);
+        command.arg("--bins");
+        self.finish(command, "building the firmware for all targets")
+    }
+
+    /// Checks all of the firmware's binaries and its example under an executor for every target; a warning is an error, of
+    /// clippy too where the compiler has it.
     pub fn check(&self) -> Result<(), BuildError> {
         for target in TARGETS {
-            let mut command = self.cargo();
-            command.args([
-                "check",
-                "--release",
-                "--package",
-                "firmware",
-                "--bins",
-                "--example",
-                "embassy",
-                "--target",
-                target,
-            ]);
             let features = every_board().filter(|board| board.target == target).map(|board| board.feature);
-            command.arg("--features").arg(features.collect::<Vec<_>>().join(","));
-            command.env("RUSTFLAGS", "-Dwarnings");
+            let features = features.collect::<Vec<_>>().join(",");
+            let read = |with: &str| {
+                let mut command = self.for_targets(with, &[target]);
+                command.args(["--bins", "--example", "embassy", "--features", &features]);
+                command
+            };
+            let command = match self.core {
+                ArmCore::ReadyMade => {
+                    let mut clippy = read("clippy");
+                    clippy.args(["--", "--deny", "warnings"]);
+                    clippy
+                }
+                ArmCore::FromSource { .. } => {
+                    let mut check = read("check");
+                    check.env("RUSTFLAGS", "-Dwarnings");
+                    check
+                }
+            };
             self.finish(command, &format!("checking the firmware for {target}"))?;
         }
         Ok(())
     }
 
+    /// What cargo is to do with the optimised firmware for some targets.
+    fn for_targets(&self, what: &str, targets: &[&str]) -> Command {
+        let mut command = self.cargo();
+        command.args([what, "--release", "--package", "firmware", "--target-dir"]).arg(Self::folder());
+        command.args(targets.iter().flat_map(|target| ["--target", target]));
+        command
+    }
+
     fn finish(&self, mut command: Command, doing: &str) -> Result<(), BuildError> {
-        command.arg("--target-dir").arg(Self::folder());
         let output = Host.run(&mut command, LIMIT, Some(doing))?;
         if output.status.success() { Ok(()) } else { Err(BuildError::Refused(output.stderr)) }
     }
