@@ -14,15 +14,20 @@ use crate::graphics::canvas::{Canvas, HEIGHT, Row, WIDTH};
 const LAST_COLUMN: u8 = (WIDTH / 2 - 1) as u8;
 const LAST_ROW: u8 = (HEIGHT - 1) as u8;
 
-/// The window that data goes to, which also sets the address to its corner: columns (of two pixels each) and rows.
-const fn window(first: u8, last: u8, first_row: u8, last_row: u8) -> [u8; 6] {
-    [0x15, first, last, 0x75, first_row, last_row]
+/// The columns (of two pixels each) that data goes to, and the rows: each command also sets its half of the address to the
+/// first, and after the last column of a row comes the first of the next.
+const fn columns(first: u8, last: u8) -> [u8; 3] {
+    [0x15, first, last]
 }
-const WHOLE_PANEL: [u8; 6] = window(0, LAST_COLUMN, 0, LAST_ROW);
+const fn rows(first: u8) -> [u8; 3] {
+    [0x75, first, LAST_ROW]
+}
+const ALL_COLUMNS: [u8; 3] = columns(0, LAST_COLUMN);
+const ALL_ROWS: [u8; 3] = rows(0);
 
 /// What wakes the panel, one command a row.
 #[rustfmt::skip]
-const WAKE: [&[u8]; 18] = [
+const WAKE: [&[u8]; 19] = [
     &[0xAE],                    // display off
     &[0x81, 50],                // contrast, of 127
     &[0x85],                    // half current range
@@ -39,7 +44,8 @@ const WAKE: [&[u8]; 18] = [
     &[0xBE, 0x02],              // voltage of rows not driven
     &[0xBF, 0x0D],              // low level of the segments
     &[0xAD, 0x03],              // DC-DC converter on
-    &WHOLE_PANEL,
+    &ALL_COLUMNS,
+    &ALL_ROWS,
     &[0xAF],                    // display on
 ];
 
@@ -70,7 +76,8 @@ impl<'a, Spi: SpiDevice, Pin: OutputPin> Ssd0323<'a, Spi, Pin> {
 
     /// Configures the controller, blanks its memory and switches the panel on.
     pub fn init(&mut self) -> Result<(), PanelError<Spi::Error, Pin::Error>> {
-        self.command(&WHOLE_PANEL)?;
+        self.command(&ALL_COLUMNS)?;
+        self.command(&ALL_ROWS)?;
         (0..HEIGHT).try_for_each(|_| self.data(&[0; WIDTH / 2]))?;
         self.memory.clear();
         self.is_known = true;
@@ -79,13 +86,18 @@ impl<'a, Spi: SpiDevice, Pin: OutputPin> Ssd0323<'a, Spi, Pin> {
 
     /// Sends what differs between the panel's memory and the frame; all of it if the memory is not known.
     fn update(&mut self, canvas: &Canvas) -> Result<(), PanelError<Spi::Error, Pin::Error>> {
+        let mut next = None;
         for (y, new) in (0..).zip(canvas.rows()) {
-            let Some(old) = self.memory.row_mut(y) else { break };
+            let Some(old) = self.memory.row_mut(y.into()) else { break };
             let all = (0, WIDTH / 2 - 1);
             if let Some((first, last)) = if self.is_known { differing(old, new) } else { Some(all) } {
                 *old = *new;
-                self.command(&window(first as u8, last as u8, y as u8, y as u8))?;
+                if next != Some(y) {
+                    self.command(&rows(y))?;
+                }
+                self.command(&columns(first as u8, last as u8))?;
                 self.data(new.0.get(first..=last).unwrap_or_default())?;
+                next = Some(y + 1);
             }
         }
         Ok(())

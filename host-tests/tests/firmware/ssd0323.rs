@@ -72,19 +72,20 @@ impl Controller {
             let (_, count) = COMMANDS.iter().find(|(code, _)| *code == command).expect("a known command");
             let mut arguments = bytes.drain(..*count);
             match command {
-                0x15 => self.columns = Some(window(&mut arguments, 63)),
-                0x75 => self.rows = Some(window(&mut arguments, 63)),
+                0x15 => {
+                    let columns = window(&mut arguments, 63);
+                    (self.columns, self.at.0) = (Some(columns), columns.0);
+                }
+                0x75 => {
+                    let rows = window(&mut arguments, 63);
+                    (self.rows, self.at.1) = (Some(rows), rows.0);
+                }
                 0xAE => self.on = false,
                 0xAF => {
                     assert!(self.memory.iter().all(Option::is_some), "switched on with noise in memory");
                     self.on = true;
                 }
                 _ => {}
-            }
-            if let (Some((column, _)), Some((row, _))) = (self.columns, self.rows)
-                && matches!(command, 0x15 | 0x75)
-            {
-                self.at = (column, row);
             }
         }
     }
@@ -191,7 +192,8 @@ fn hands_on_the_error_of_the_bus() {
     assert_eq!(panel.flush(&Canvas::default()), Err(PanelError::Spi(BusError)));
 }
 
-/// What has not changed is not sent: of a row the words between two that have changed are.
+/// What has not changed is not sent: of a row the words between two that have changed are. A row below one that was sent needs
+/// no address of its own.
 #[test]
 fn sends_what_has_changed() {
     let (controller, mut memory, mut canvas) = (RefCell::new(Controller::new()), Canvas::default(), Canvas::default());
@@ -209,7 +211,8 @@ fn sends_what_has_changed() {
     canvas.update(8, 3, |_| 1);
     canvas.update(31, 3, |_| 1);
     canvas.update(0, 4, |_| 1);
-    assert_eq!(sent(&canvas), 6 + 12 + 6 + 4);
+    canvas.update(5, 6, |_| 1);
+    assert_eq!(sent(&canvas), 6 + 12 + 3 + 4 + 6 + 4);
     assert_eq!(sent(&canvas), 0);
 }
 

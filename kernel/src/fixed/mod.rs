@@ -25,3 +25,15 @@ pub(crate) trait FixedPoint: Ring {
     /// The product with `factor` times 2^`by`.
     fn product_up(self, factor: Self, by: u32) -> Self;
 }
+
+/// `value` times 2^`exponent`; once in flash, as is [`nearest`].
+#[inline(never)]
+pub(crate) fn scaled(value: f64, exponent: i32) -> f64 {
+    libm::scalbn(value, exponent)
+}
+
+/// The nearest whole number.
+#[inline(never)]
+pub(crate) fn nearest(value: f64) -> f64 {
+    libm::rint(value)
+}

@@ -3,7 +3,7 @@
 use core::ops::{Add, Mul, Neg, Sub};
 
 use super::product::{product, upper};
-use super::{FixedPoint, Shifts};
+use super::{FixedPoint, Shifts, nearest, scaled};
 use crate::ring::Ring;
 use crate::sealed::Sealed;
 
@@ -99,7 +99,7 @@ impl Gravity {
     pub const STEPS: f64 = (1_u64 << 33) as f64;
 
     pub fn constant(value: f64) -> Self {
-        Self(word(libm::rint(value * Self::STEPS) as i64))
+        Self(word(nearest(value * Self::STEPS) as i64))
     }
 }
 
@@ -140,7 +140,7 @@ impl Ring for Q30 {
     type Gravity = Gravity;
     type Torque = Torque;
     fn constant(value: f64) -> Self {
-        Self(word(libm::rint(libm::scalbn(value, 30)) as i64))
+        Self(word(nearest(scaled(value, 30)) as i64))
     }
     #[inline(always)]
     fn twice(self) -> Self {

@@ -2,8 +2,8 @@
 
 use core::ops::{Add, Mul, Neg, Sub};
 
-use super::FixedPoint;
 use super::product::product;
+use super::{FixedPoint, nearest};
 use crate::real::Real;
 use crate::ring::Ring;
 use crate::sealed::Sealed;
@@ -114,7 +114,7 @@ impl Ring for Q64 {
     type Torque = Self;
     #[inline(never)]
     fn constant(value: f64) -> Self {
-        Self(libm::rint(value * UNIT) as i64)
+        Self(nearest(value * UNIT) as i64)
     }
     #[inline(always)]
     fn twice(self) -> Self {

@@ -1,6 +1,6 @@
 //! The units in which every quantity of a motion is small and none is needlessly so.
 
-use super::FixedPoint;
+use super::{FixedPoint, nearest, scaled};
 use crate::bounds::Bounds;
 use crate::error::{Error, Parameter};
 use crate::form::equations::Units;
@@ -94,7 +94,7 @@ impl Scaling {
         let &Parameters { m1, m2, l1, l2, g } = parameters;
         let nu = l1 / l2;
         let sigma = libm::ceil(libm::log2(nu)) as i32;
-        let norm = libm::scalbn(nu, -sigma);
+        let norm = scaled(nu, -sigma);
         let (upper, lower) = (sigma.max(0), (-sigma).max(0));
         let ratio = m1 / m2 * norm * norm;
         let parts = libm::floor(libm::log2(ratio)) as i32;
@@ -103,15 +103,15 @@ impl Scaling {
             return Err(parameters.out_of_range());
         }
 
-        let momentum2 = libm::scalbn(1.0 / (m2 * l2 * l2), lower);
-        let momentum1 = libm::scalbn(momentum2, -sigma - momentum);
-        let gravity2 = libm::scalbn(g / l1, upper);
-        let gravity1 = libm::scalbn(gravity2 * (m1 + m2) / m2 * norm * norm, -momentum);
+        let momentum2 = scaled(1.0 / (m2 * l2 * l2), lower);
+        let momentum1 = scaled(momentum2, -sigma - momentum);
+        let gravity2 = scaled(g / l1, upper);
+        let gravity1 = scaled(gravity2 * (m1 + m2) / m2 * norm * norm, -momentum);
         Ok(Self {
             time: 1.0,
             momenta: [momentum1, momentum2],
             norm,
-            inertia: libm::scalbn(ratio, inverse - momentum),
+            inertia: scaled(ratio, inverse - momentum),
             gravity: [gravity1, gravity2],
             shifts: Shifts {
                 momentum: momentum as u32,
@@ -128,8 +128,8 @@ impl Scaling {
         let [momentum1, momentum2] = self.momenta;
         let rates = [
             bounds.elbow,
-            libm::scalbn(bounds.w1, self.shifts.upper as i32),
-            libm::scalbn(bounds.w2, self.shifts.lower as i32),
+            scaled(bounds.w1, self.shifts.upper as i32),
+            scaled(bounds.w2, self.shifts.lower as i32),
             bounds.p1 * momentum1,
             bounds.p2 * momentum2,
         ];
@@ -142,7 +142,7 @@ impl Scaling {
 impl Scaling {
     /// m + S^2, by the powers of two that keep its inverse at most 1.
     pub fn denominator(&self, s: f64) -> f64 {
-        self.inertia + libm::scalbn(s * s, self.shifts.inverse as i32 - self.shifts.momentum as i32)
+        self.inertia + scaled(s * s, self.shifts.inverse as i32 - self.shifts.momentum as i32)
     }
 
     /// Alters the unit of time a little, so that G1 and G2 are whole numbers of `steps`.
@@ -156,15 +156,15 @@ impl Scaling {
             return;
         }
         let ratio = gravity1 / gravity2;
-        let lost = |whole: f64| libm::fabs(whole * ratio - libm::rint(whole * ratio));
-        let centre = libm::rint(gravity2 * steps);
+        let lost = |whole: f64| libm::fabs(whole * ratio - nearest(whole * ratio));
+        let centre = nearest(gravity2 * steps);
         let candidates = (-128..=128).map(|i| centre + f64::from(i)).map(|whole| (lost(whole), whole));
         let (_, whole) =
             candidates.fold((lost(centre), centre), |best, next| if next.0 < best.0 { next } else { best });
         let longer = libm::sqrt(whole / (gravity2 * steps));
         self.time *= longer;
         self.momenta = self.momenta.map(|unit| unit * longer);
-        self.gravity = [libm::rint(whole * ratio) / steps, whole / steps];
+        self.gravity = [nearest(whole * ratio) / steps, whole / steps];
     }
 }
 

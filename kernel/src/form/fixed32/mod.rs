@@ -9,7 +9,7 @@ mod upkeep;
 use super::checkpoint::{Check, RestoreError};
 use super::{Direction, Form, lower_direction, lower_ray};
 use crate::error::Error;
-use crate::fixed::{Q30, Scaling, check_step};
+use crate::fixed::{Q30, Scaling, check_step, nearest, scaled};
 use crate::hamiltonian::Pendulum;
 use crate::params::Parameters;
 use crate::real::Real;
@@ -172,7 +172,7 @@ impl Fixed32State {
         let Scaling { norm, momenta: [unit1, unit2], .. } = units.scaling;
         let z = [sin1, cos1, norm * sin_d, norm * cos_d, p1 * unit1, p2 * unit2];
         let inverse = Q30::constant(1.0 / units.scaling.denominator(z[2]));
-        Self { units, z: z.map(|z| libm::rint(z * ONE) as i64 + OFFSET), inverse, lost: false, steps: 0 }
+        Self { units, z: z.map(|z| nearest(z * ONE) as i64 + OFFSET), inverse, lost: false, steps: 0 }
     }
 
     /// The motion that starts from `state`, whose energy is at most this one's: in the same units.
@@ -198,8 +198,8 @@ impl Fixed32State {
         let [sin_q, cos_q, s_q, c_q, p1_q, p2_q] = self.quantities();
         let rates = coefficients.rates(&scaling.shifts, [sin_q, cos_q], [s_q, c_q], [p1_q, p2_q], self.inverse);
         let behind = self.steps as f64 * lag;
-        let [u, v] = rates.angles.map(|rate| libm::scalbn(f64::from(rate.0), -30) * behind);
-        let [f1, f2] = rates.momenta.map(|rate| libm::scalbn(f64::from(rate.0), -31) * behind);
+        let [u, v] = rates.angles.map(|rate| scaled(f64::from(rate.0), -30) * behind);
+        let [f1, f2] = rates.momenta.map(|rate| scaled(f64::from(rate.0), -31) * behind);
         let [unit1, unit2] = scaling.momenta;
         State {
             a1: libm::atan2(sin1, cos1) + u,

@@ -2,7 +2,7 @@
 
 use crate::bounds::Bounds;
 use crate::error::{Error, Parameter};
-use crate::fixed::{Gravity, Q30, Scaling};
+use crate::fixed::{Gravity, Q30, Scaling, nearest, scaled};
 use crate::form::equations::Coefficients;
 use crate::params::Parameters;
 use crate::ring::Ring;
@@ -53,7 +53,7 @@ impl Setting {
     pub fn new(parameters: &Parameters<f64>, energy: f64, dt: f64) -> Result<Self, Error> {
         let seconds = Scaling::in_seconds(parameters)?;
         // K, the greatest |u| + |v| and the greatest u v S by that K, in units with T = 1 s
-        let kinetic = energy * seconds.momenta[1] * libm::scalbn(1.0, seconds.shifts.lower as i32);
+        let kinetic = energy * seconds.momenta[1] * scaled(1.0, seconds.shifts.lower as i32);
         let ratio = parameters.m1 / parameters.m2 * seconds.norm * seconds.norm;
         let sum = 1.0 + (1.0 + seconds.norm) * (1.0 + seconds.norm) / ratio;
         let force = kinetic * libm::sqrt(parameters.m2 / parameters.m1);
@@ -63,26 +63,26 @@ impl Setting {
         );
 
         let elbow = Bounds::new(parameters, energy).elbow * libm::sqrt(1.0 + parameters.m2 / parameters.m1);
-        let limit = libm::fmin(libm::scalbn(longest, 1 - COARSEST as i32), RESOLVED / elbow);
+        let limit = libm::fmin(scaled(longest, 1 - COARSEST as i32), RESOLVED / elbow);
         let half = 0.5 * dt;
         let fit = libm::floor(libm::log2(longest / libm::fabs(half)));
         if fit.is_nan() || fit < f64::from(COARSEST) || libm::fabs(dt) > limit {
             return Err(Error::TooLarge { parameter: Parameter::Dt, value: dt, limit });
         }
         let halvings = libm::fmin(fit, f64::from(FINEST)) as u32;
-        let mut scaling = seconds.in_unit(libm::scalbn(half, halvings as i32));
+        let mut scaling = seconds.in_unit(scaled(half, halvings as i32));
         scaling.round_gravity(Gravity::STEPS);
 
         let step = dt / scaling.time;
-        let torque_weight = libm::rint(libm::scalbn(step / 6.0, 31));
+        let torque_weight = nearest(scaled(step / 6.0, 31));
         let norm = scaling.norm;
         let coefficients = Coefficients {
             norm: Q30::constant(norm),
             inertia: Q30::constant(scaling.inertia),
             gravity: scaling.gravity.map(Gravity::constant),
         };
-        let energy_unit = libm::scalbn(1.0, 60 - (scaling.shifts.momentum + scaling.shifts.upper) as i32)
-            / libm::scalbn(1.0, scaling.shifts.lower as i32);
+        let energy_unit = scaled(1.0, 60 - (scaling.shifts.momentum + scaling.shifts.upper) as i32)
+            / scaled(1.0, scaling.shifts.lower as i32);
         let most_energy = (1.0 + GROWTH) * kinetic * scaling.time * scaling.time + ROOM * RATE * RATE / (2.0 * sum);
         Ok(Self {
             energy,
@@ -91,11 +91,11 @@ impl Setting {
             halvings,
             weights: [8 * torque_weight as i32, torque_weight as i32],
             square: [
-                libm::rint(norm * norm * (1_u64 << 60) as f64) as i64,
-                libm::rint((1 << 29) as f64 / (norm * norm)) as i64,
+                nearest(norm * norm * (1_u64 << 60) as f64) as i64,
+                nearest((1 << 29) as f64 / (norm * norm)) as i64,
             ],
             most_energy: (most_energy * energy_unit) as i64,
-            lag: step - 6.0 * libm::scalbn(torque_weight, -31),
+            lag: step - 6.0 * scaled(torque_weight, -31),
             scaling,
         })
     }

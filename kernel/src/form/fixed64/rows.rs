@@ -4,7 +4,7 @@ use core::cell::Cell;
 
 use crate::error::Error;
 use crate::extrapolation::{Extrapolation, ROWS, System};
-use crate::fixed::{FixedPoint, Q64, Scaling, Shifts};
+use crate::fixed::{FixedPoint, Q64, Scaling, Shifts, nearest, scaled};
 use crate::form::equations::{Coefficients, Units, increments};
 use crate::lanes::Lanes;
 use crate::ring::Ring;
@@ -54,7 +54,7 @@ impl Rows {
     pub fn new(order: u32, scaling: &Scaling, dt: f64) -> Result<Self, Error> {
         let Scaling { norm, inertia, gravity: [gravity1, gravity2], shifts, time, .. } = *scaling;
         let step = dt / time;
-        let share = libm::rint(step * SHARE) as i64;
+        let share = nearest(step * SHARE) as i64;
         let whole = [8.0 * step * gravity1, 4.0 * step * gravity2].map(|gravity| Q64::constant(gravity).0);
         let method = Extrapolation::<Q64>::new(order)?;
         let mut rows = [Row { share: 0, gravity: [Q64(0); 2] }; ROWS];
@@ -64,12 +64,12 @@ impl Rows {
             row.share = (share / parts) as i32;
             for ((whole, gravity), error) in whole.iter().zip(&mut row.gravity).zip(&mut errors) {
                 let exact = whole.rem_euclid(parts) as f64 / parts as f64;
-                let rounded = libm::rint(if libm::fabs(slopes) > LEAST { exact - *error / slopes } else { exact });
+                let rounded = nearest(if libm::fabs(slopes) > LEAST { exact - *error / slopes } else { exact });
                 *error += slopes * (rounded - exact);
                 *gravity = Q64(whole.div_euclid(parts) + rounded as i64);
             }
         }
-        let inertia = libm::scalbn(inertia, -(shifts.inverse as i32));
+        let inertia = scaled(inertia, -(shifts.inverse as i32));
         Ok(Self {
             method,
             shifts,
@@ -89,7 +89,7 @@ impl Rows {
     pub fn floored(&self) -> [i16; 2] {
         let differences = (self.method.order() / 2) as i16 - 1;
         let slopes: f64 = (0..self.method.order() as usize / 2).map(|row| self.method.slopes(row)).sum();
-        [differences - libm::rint(slopes) as i16, differences]
+        [differences - nearest(slopes) as i16, differences]
     }
 
     /// nu by 8.
@@ -99,25 +99,29 @@ impl Rows {
 
     /// Where a step from `z` ends; something else than 0 is left in `reach` if a quantity left its range on the way.
     pub fn end(&self, z: &[Q64; 6], reach: &Cell<u32>) -> [Q64; 6] {
-        if self.shifts == Shifts::default() { self.end_in::<true>(z, reach) } else { self.end_in::<false>(z, reach) }
+        match self.shifts {
+            Shifts::NONE => self.end_in::<false, false>(z, reach),
+            Shifts { momentum: 0, inverse: _, upper: 0, lower: 0 } => self.end_in::<false, true>(z, reach),
+            _ => self.end_in::<true, true>(z, reach),
+        }
     }
 
     // once in flash
     #[inline(never)]
-    fn end_in<const ALIKE: bool>(&self, z: &[Q64; 6], reach: &Cell<u32>) -> [Q64; 6] {
-        let units = Fractions::<ALIKE> { shifts: self.shifts, share: 0, reach };
+    fn end_in<const UNLIKE: bool, const INVERSE: bool>(&self, z: &[Q64; 6], reach: &Cell<u32>) -> [Q64; 6] {
+        let units = Fractions::<UNLIKE, INVERSE> { shifts: self.shifts, share: 0, reach };
         self.method.end(&mut Stage { rows: self, coefficients: self.coefficients, units }, z)
     }
 }
 
 /// A row's equations.
-struct Stage<'a, const ALIKE: bool> {
+struct Stage<'a, const UNLIKE: bool, const INVERSE: bool> {
     rows: &'a Rows,
     coefficients: Coefficients<Q64>,
-    units: Fractions<'a, ALIKE>,
+    units: Fractions<'a, UNLIKE, INVERSE>,
 }
 
-impl<const ALIKE: bool> System<Q64, 1, 6> for Stage<'_, ALIKE> {
+impl<const UNLIKE: bool, const INVERSE: bool> System<Q64, 1, 6> for Stage<'_, UNLIKE, INVERSE> {
     #[inline(always)]
     fn turn_to(&mut self, [row]: [usize; 1]) {
         let row = &self.rows.rows[row % ROWS];
@@ -137,18 +141,19 @@ impl<const ALIKE: bool> System<Q64, 1, 6> for Stage<'_, ALIKE> {
 }
 
 /// What products of fractions are short of the units of what they add to: directions are in eighths, u and v by the step in
-/// quarters, r in quarters; the pendulum's own [`Shifts`] come on top unless all are 0.
+/// quarters, r in quarters. The pendulum's own [`Shifts`] come on top: that of r where `INVERSE`, as with equal rods and a heavier
+/// bob 2, the others where `UNLIKE`.
 ///
 /// Each product that is shifted up is looked at before, so that neither the shift nor the sum behind it can overflow.
 #[derive(Clone, Copy)]
-struct Fractions<'a, const ALIKE: bool> {
+struct Fractions<'a, const UNLIKE: bool, const INVERSE: bool> {
     shifts: Shifts,
     /// In parts.
     share: i32,
     reach: &'a Cell<u32>,
 }
 
-impl<const ALIKE: bool> Fractions<'_, ALIKE> {
+impl<const UNLIKE: bool, const INVERSE: bool> Fractions<'_, UNLIKE, INVERSE> {
     /// Notes if `number` is 2^-`places` or more.
     #[inline(always)]
     fn guard(&self, number: Q64, places: u32) {
@@ -157,7 +162,7 @@ impl<const ALIKE: bool> Fractions<'_, ALIKE> {
 
     #[inline(always)]
     fn down(&self, number: Q64, by: u32) -> Q64 {
-        if ALIKE { number } else { number.down(by) }
+        if UNLIKE { number.down(by) } else { number }
     }
 
     /// `number` times 2^`by`, which is to be below 2^-`places`.
@@ -171,12 +176,12 @@ impl<const ALIKE: bool> Fractions<'_, ALIKE> {
     #[inline(always)]
     fn inverse(&self, inertia: Q64, square: Q64) -> Q64 {
         let denominator = inertia + self.down(square, self.shifts.momentum);
-        if ALIKE {
-            denominator.inverse()
-        } else {
+        if INVERSE {
             // from 2^-`inverse` on: made 1 to 8
             let more = self.shifts.inverse.min(denominator.0.leading_zeros().saturating_sub(4));
             Q64(denominator.0 << more).inverse().down(self.shifts.inverse - more)
+        } else {
+            denominator.inverse()
         }
     }
 
@@ -187,7 +192,7 @@ impl<const ALIKE: bool> Fractions<'_, ALIKE> {
     }
 }
 
-impl<const ALIKE: bool> Units<Q64> for Fractions<'_, ALIKE> {
+impl<const UNLIKE: bool, const INVERSE: bool> Units<Q64> for Fractions<'_, UNLIKE, INVERSE> {
     /// Below 1/4, so that P1 - C P2 is below 1/2.
     #[inline(always)]
     fn momentum(&self, product: Q64) -> Q64 {
@@ -196,7 +201,7 @@ impl<const ALIKE: bool> Units<Q64> for Fractions<'_, ALIKE> {
     /// Below 1/4.
     #[inline(always)]
     fn rate(&self, momentum: Q64, inverse: Q64) -> Q64 {
-        let more = if ALIKE { 0 } else { self.shifts.inverse };
+        let more = if INVERSE { self.shifts.inverse } else { 0 };
         self.up(momentum * inverse, 2 + more, 2)
     }
     /// Below 1/4, so that v is below 1/2.
