@@ -1,8 +1,12 @@
 //! The planner: what it chooses for scenes that one knows, its budgets, and what it refuses.
 
+use std::collections::BTreeSet;
 use std::f64::consts::PI;
 
-use double_pendulum::plan::{Budget, Costs, Limit, Method, Plan, PlanError, Problem, Quantity, Search, Way, plan};
+use double_pendulum::form::DirectionForm;
+use double_pendulum::plan::{
+    Budget, Costs, Limit, Method, Plan, PlanError, Problem, Quantity, Search, ShadowedRun, Way, WayStepper, plan,
+};
 use double_pendulum::{Error, Motion, Parameter, Parameters};
 use firmware::config::{CORTEX_M3, STM32F405};
 use firmware::motion::planner::half_pixel;
@@ -54,6 +58,49 @@ fn a_chaotic_scene_is_promised_for_as_long_as_it_can_be() {
     let double = double_pendulum::plan::plan(&figure7, &M4F, &lavish).expect("a good scene");
     assert!(double.method == Method::Fixed64 && double.horizon > 2.0 * single.horizon, "{double:?}");
     assert_eq!(double.dt, 1.0 / f64::from(60 * double.steps), "{double:?}");
+}
+
+/// What a frame cannot pay for is not looked at.
+#[test]
+fn looking_ahead_ends_where_the_frame_does() {
+    let figure7 = scene(2.75, 171.0, 30.0);
+    let within = |frame| plan(&figure7, &M4F, &Budget { frame, planning: 1e10 });
+    let frugal = within(5e3).expect("a good scene");
+    assert!(frugal.limit == Limit::Budget && frugal.spent < 1e7, "{frugal:?}");
+    let poor = within(300.0).expect_err("one step is too coarse");
+    assert!(matches!(poor, PlanError::NothingHolds { limit: Limit::Budget, spent } if spent < 4e6), "{poor:?}");
+}
+
+/// A costlier way that is right for less than a tenth longer is worth it if it is right to the end.
+#[test]
+fn the_end_is_worth_its_cost() {
+    let figure7 = scene(2.75, 171.0, 30.0);
+    let frugal = plan(&figure7, &M4F, &Budget { frame: 5e3, planning: 1e9 }).expect("a good scene");
+    let short = scene(2.75, 171.0, 1.05 * frugal.horizon);
+    let lavish = plan(&short, &M4F, &Budget { frame: 1e6, planning: 1e10 }).expect("a good scene");
+    assert_eq!((lavish.limit, lavish.horizon), (Limit::End, short.duration), "{lavish:?} {frugal:?}");
+}
+
+/// A frame after the other, each as the motion itself has it.
+#[test]
+fn a_shadowed_run_makes_frames() {
+    let Problem { pendulum, start, .. } = scene(1.0, 120.0, 1.0);
+    let mut run = ShadowedRun::<f32, DirectionForm<f32>>::new(&scene(1.0, 120.0, 1.0), 4).expect("a good scene");
+    let mut motion =
+        WayStepper::new(&pendulum, &start, RATE, Way { method: Method::Direction, steps: 4 }).expect("good");
+    for _ in 0..RATE {
+        motion.advance();
+        let (directions, estimate) = run.next_frame().expect("a good scene");
+        assert_eq!(directions, motion.directions());
+        assert!(estimate.error() < 0.1, "{estimate:?}");
+    }
+}
+
+/// By its name a method is told of.
+#[test]
+fn every_method_has_a_name_of_its_own() {
+    let methods = [Method::ClosedForm, Method::DirectionPlain, Method::Direction, Method::Fixed32, Method::Fixed64];
+    assert_eq!(BTreeSet::from(methods.map(Method::name)).len(), methods.len());
 }
 
 /// By the same method, it is right for less than a tenth longer: too little to be worth a costlier one.
@@ -137,6 +184,25 @@ fn the_lasting_way_is_what_a_frame_can_pay_for() {
             assert!(poorer.steps == (poor.steps / 2).max(1), "{poorer:?} {poor:?}");
         }
     }
+}
+
+/// Fixed point refuses a mass ratio of 100,000.
+#[test]
+fn the_lasting_way_can_be_gone() {
+    for (mass_ratio, method) in [(1.0, Method::Fixed32), (1e5, Method::Direction)] {
+        let Problem { pendulum, start, .. } = scene(mass_ratio, 10.0, 20.0);
+        let way = Way::lasting(&pendulum, &start, RATE, &M3, M3.fixed64.next_down()).expect("a pendulum");
+        assert_eq!(way.method, method);
+        assert!(WayStepper::new(&pendulum, &start, RATE, way).is_ok(), "{way:?}");
+    }
+}
+
+/// In steps as long as resolve the motion: in 64 bits those are of a high order, but shorter than the first that others try.
+#[test]
+fn a_method_that_is_asked_for_resolves_the_motion() {
+    let Problem { pendulum, start, .. } = scene(2.75, 171.0, 20.0);
+    let steps = |method| Way::of(&pendulum, &start, RATE, method).expect("a pendulum").steps;
+    assert_eq!([Method::Fixed64, Method::Fixed32, Method::Direction].map(steps), [3, 2, 2]);
 }
 
 /// A light elbow at 90 degrees: steps that resolve it cost several times what a Cortex-M3 has, and the closed form is wrong

@@ -226,3 +226,35 @@ fn steps_for(costs: &Costs, method: Method, cost: f32) -> u32 {
     let steps = (cost / costs.of_frame(method, 1)) as u32;
     if steps > 0 { steps } else { 1 }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_right_in_one_way_says_nothing_of_another() {
+        let candidate = Candidate { right: 7, ..Candidate::new(Method::Direction, 4) };
+        let right = |method, steps, outlasts| candidate.right_of(Way { method, steps }, outlasts);
+        assert_eq!(right(Method::Direction, 4, false), 7);
+        assert_eq!(right(Method::Direction, 2, false), 0);
+        assert_eq!(right(Method::DirectionPlain, 4, false), 0);
+        assert_eq!(right(Method::Fixed64, 3, true), 7);
+        let closed = Candidate { right: 5, ..Candidate::new(Method::ClosedForm, 1) };
+        assert_eq!(closed.right_of(Way { method: Method::ClosedForm, steps: 0 }, false), 5);
+        assert_eq!(closed.right_of(Way { method: Method::Direction, steps: 1 }, false), 0);
+    }
+
+    #[test]
+    fn a_cost_pays_for_whole_steps_and_for_one_at_least() {
+        let costs = Costs {
+            closed_form: 10.0,
+            direction_plain: 100.0,
+            direction: 150.0,
+            fixed32: 120.0,
+            fixed64: 900.0,
+            preparation: 1000.0,
+        };
+        let steps = |cost| steps_for(&costs, Method::DirectionPlain, cost);
+        assert_eq!([50.0, 100.0, 399.0, 400.0].map(steps), [1, 1, 3, 4]);
+    }
+}

@@ -114,3 +114,19 @@ pub(super) fn distance(rods: [f32; 2], a: &Directions, b: &Directions) -> f32 {
 pub(super) fn greater(a: f32, b: f32) -> f32 {
     if a > b || a.is_nan() { a } else { b }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Bob 2 is where both rods lead, and may be less far off than either.
+    #[test]
+    fn the_farthest_of_what_is_seen_counts() {
+        let from = |a: Directions| distance([2.0, 3.0], &a, &[[0.0; 2]; 2]);
+        assert_eq!(from([[1.0, 0.0], [0.0, 1.0]]), 13.0_f32.sqrt());
+        assert_eq!(from([[0.5, 0.0], [1.0, 0.0]]), 4.0);
+        assert_eq!(from([[3.0, 0.0], [-1.0, 0.0]]), 6.0);
+        assert_eq!(from([[0.0, 1.0], [0.0, -2.0]]), 6.0);
+        assert!(from([[0.0, f32::NAN], [0.0, 1.0]]).is_nan());
+    }
+}
