@@ -26,12 +26,16 @@ impl Error {
 
 /// The exact motion through a scene, [`SAMPLES`] times a second: a1, a2.
 pub fn exact(scene: &Scene) -> Vec<[f64; 2]> {
+    exact_after(scene, SAMPLES * scene.duration)
+}
+
+/// The exact motion through a scene after each of so many steps.
+fn exact_after(scene: &Scene, steps: u32) -> Vec<[f64; 2]> {
     let [a1, a2] = scene.angles();
     let mut reference = Reference::new(&scene.parameters(), &Motion::at_rest(a1, a2));
-    let times = (1..=SAMPLES * scene.duration).map(|sample| f64::from(sample) / f64::from(SAMPLES));
-    times
-        .map(|time| {
-            reference.advance_to(time);
+    (1..=steps)
+        .map(|step| {
+            reference.advance_to(f64::from(step * scene.duration) / f64::from(steps));
             let Motion { a1, a2, .. } = reference.motion();
             [a1, a2]
         })
@@ -73,8 +77,19 @@ pub fn rates(row: Row, finest: u32) -> impl Iterator<Item = u32> + Clone {
 
 /// The error of `row`; `None` if it does not apply to the scene or the step. A motion that was lost has an infinite error.
 pub fn error(row: Row, scene: &Scene, rate: u32, exact: &[[f64; 2]]) -> Option<Error> {
+    error_of(&request(row, scene, rate), scene, exact)
+}
+
+/// The error of `row` after each of so many steps through the scene, of which a second need not have a whole number.
+pub fn error_after(row: Row, scene: &Scene, steps: u32) -> Option<Error> {
+    let dt = f64::from(scene.duration) / f64::from(steps);
+    let request = Request { dt, stride: 1, samples: steps, ..request(row, scene, 1) };
+    error_of(&request, scene, &exact_after(scene, steps))
+}
+
+fn error_of(request: &Request, scene: &Scene, exact: &[[f64; 2]]) -> Option<Error> {
     let mut angles = Vec::new();
-    let run = request(row, scene, rate).readings(|reading| {
+    let run = request.readings(|reading| {
         let [a1, a2, ..] = reading.state;
         angles.push([a1, a2]);
         Ok::<_, JobError>(())
