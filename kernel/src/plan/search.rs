@@ -313,7 +313,7 @@ impl Search {
         let Some(best) = self.best else {
             // To look ahead for longer would help nothing of which a frame costs too much.
             let affordable = |one: &Candidate| self.costs.of_frame(one.method, one.steps) <= self.budget.frame;
-            let open = self.candidates().iter().any(|one| !one.failed && affordable(one));
+            let open = self.pass.is_none() || self.candidates().iter().any(|one| !one.failed && affordable(one));
             let limit = if limit == Limit::Planning && !open { Limit::Budget } else { limit };
             return Err(PlanError::NothingHolds { limit, spent: self.spent });
         };
