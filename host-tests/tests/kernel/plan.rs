@@ -284,24 +284,24 @@ fn every_scene_gets_a_plan_or_a_refusal() {
 /// What would help: to look ahead for longer as long as something is open that a frame can pay for, else a dearer frame.
 #[test]
 fn the_limit_is_what_would_help() {
-    // the closed form is wrong from the first frame on, other ways are not looked at for long
+    // the closed form, all that a frame can pay for, is wrong from the first frame on
     let light = Problem { tolerance: 2.0 / 240.0, ..scene(1e3, 90.0, 20.0) };
     let costs = Costs { closed_form: 10.0, ..M3 };
     let limit = |frame, planning| match plan(&light, &costs, &Budget { frame, planning }) {
         Err(PlanError::NothingHolds { limit, .. }) => limit,
         other => panic!("{other:?}"),
     };
-    let begun = 20.0 * M3.preparation;
-    assert_eq!(limit(20.0, begun), Limit::Budget);
-    assert_eq!(limit(5.0, begun), Limit::Budget);
+    let begun = 1.2 * M3.preparation;
+    assert_eq!([limit(20.0, begun), limit(5.0, begun)], [Limit::Planning, Limit::Budget]);
+    assert_eq!(limit(20.0, 20.0 * M3.preparation), Limit::Budget);
     assert_eq!([limit(20.0, 1.0), limit(20.0, 0.5 * M3.preparation)], [Limit::Planning; 2]);
 }
 
 /// Twice the steps are right for longer, but not by a tenth.
 #[test]
 fn what_is_hardly_better_is_not_worth_its_cost() {
-    let page = plan(&scene(1.0, 120.0, 30.0), &M4F, &Budget { frame: 12e3, planning: 1e10 }).expect("a good scene");
-    assert_eq!((page.method, page.steps), (Method::Direction, 2), "{page:?}");
+    let lively = plan(&scene(0.5, 130.0, 30.0), &M4F, &Budget { frame: 13e3, planning: 1e10 }).expect("a good scene");
+    assert_eq!((lively.method, lively.steps), (Method::Direction, 2), "{lively:?}");
 }
 
 /// Where 32 bits of fixed point do not take a pendulum, it is looked at in floating point.
@@ -315,15 +315,15 @@ fn a_pendulum_out_of_the_range_of_fixed_point_gets_a_plan() {
 /// Steps that together cost no more than is allowed, or one that does.
 #[test]
 fn a_piece_of_the_search_is_no_larger_than_allowed() {
-    let figure7 = scene(2.75, 171.0, 2.0);
-    let mut search = Search::new(&figure7, &M4F, &STM32F405.budget(&figure7)).expect("a good scene");
+    let figure7 = scene(2.75, 171.0, 30.0);
+    let budget = Budget { frame: 5e3, planning: 1e9 };
+    let mut search = Search::new(&figure7, &M4F, &budget).expect("a good scene");
     let allowed = 3.5 * M4F.direction;
     loop {
         let (before, is_preparing) = (search.spent(), search.is_preparing());
         let found = search.advance(allowed).expect("a good scene");
-        // a step in 64 bits costs more by itself
-        let most = if is_preparing { M4F.preparation } else { allowed.max(M4F.fixed64) };
-        assert!(search.spent() - before <= most + 1.0, "{before} {search:?}");
+        let most = if is_preparing { M4F.preparation } else { allowed };
+        assert!(search.spent() - before <= most + 1.0, "{before} {}", search.spent());
         if found.is_some() {
             break;
         }
