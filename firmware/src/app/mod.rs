@@ -5,6 +5,7 @@ pub mod controls;
 mod event;
 pub mod instruments;
 mod one_button;
+mod pace;
 pub mod player;
 pub mod service;
 mod throttle;

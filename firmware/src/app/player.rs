@@ -4,7 +4,8 @@ use double_pendulum::plan::{Plan, Way};
 use double_pendulum::{Error, Parameters};
 
 use crate::app::command::Command;
-use crate::config::{GREATEST_ANGLE, GREATEST_SPEED, LEAST_SPEED, PROCESSOR, Processor};
+use crate::app::pace::Pace;
+use crate::config::{GREATEST_ANGLE, PROCESSOR, Processor};
 use crate::graphics::canvas::Canvas;
 use crate::graphics::fade_layer::FadeLayer;
 use crate::graphics::text;
@@ -26,9 +27,6 @@ pub enum News {
     /// The motion goes this way from now on; cycles of a frame.
     Shown(Way, f32),
 }
-
-/// Full speed, in the parts that a tick is made of.
-const WHOLE_TICK: u32 = 100;
 
 /// A scene under way.
 #[derive(Debug)]
@@ -108,7 +106,7 @@ impl<'a> Player<'a> {
             // Whatever the new value makes impossible, it is the new value that is wrong.
             Command::Set { field, value } => return self.start(self.name, self.with(field, value)?).map_err(|_| field),
             Command::Pause(paused) => self.pace.pause(paused),
-            Command::TogglePause => self.pace.pause(!self.pace.paused),
+            Command::TogglePause => self.pace.pause(!self.pace.is_paused()),
             Command::Step(ticks) => self.pace.step(ticks),
             Command::Ask | Command::AskPlan | Command::Identify | Command::Measure { .. } => {}
         }
@@ -215,7 +213,7 @@ impl<'a> Player<'a> {
 
     /// Whether the scene's time stands still.
     pub fn is_paused(&self) -> bool {
-        self.pace.paused || self.stopped
+        self.pace.is_paused() || self.stopped
     }
 
     /// The frame as it is told to the host, but for what only the board's clock and link know.
@@ -254,8 +252,8 @@ impl<'a> Player<'a> {
             is_looking: is_looking.into(),
             scene: self.name.code(),
             paused: self.is_paused().into(),
-            steps: self.pace.steps,
-            speed: self.pace.speed as f32 / WHOLE_TICK as f32,
+            steps: self.pace.steps(),
+            speed: self.pace.speed(),
             parameters: [parameters.m1, parameters.m2, parameters.l1, parameters.l2, parameters.g],
             degrees,
             velocities,
@@ -270,8 +268,7 @@ impl<'a> Player<'a> {
         let before = core::mem::replace(&mut self.means.method, method_of(status.asked));
         let settings = Settings { parameters, degrees: status.degrees, velocities: status.velocities };
         self.start(name, settings).inspect_err(|_| self.means.method = before)?;
-        let speed = ((status.speed * WHOLE_TICK as f32 + 0.5) as u32).clamp(1, GREATEST_SPEED as u32 * WHOLE_TICK);
-        self.pace = Pace { paused: status.paused != 0, steps: status.steps, speed, part: 0 };
+        self.pace = Pace::resumed(status.paused != 0, status.steps, status.speed);
         Ok(())
     }
 
@@ -315,54 +312,5 @@ impl<'a> Player<'a> {
         }
         let within = |degrees: f32| degrees.abs() <= GREATEST_ANGLE;
         if settings.degrees.into_iter().all(within) { Ok(settings) } else { Err(field) }
-    }
-}
-
-/// How the scene's time goes.
-#[derive(Clone, Copy, Debug)]
-struct Pace {
-    paused: bool,
-    /// Ticks to do although paused.
-    steps: u32,
-    /// Ticks of the scene in [`WHOLE_TICK`] ticks of the clock.
-    speed: u32,
-    /// The part of the scene's next tick that has passed.
-    part: u32,
-}
-
-impl Default for Pace {
-    fn default() -> Self {
-        Self { paused: false, steps: 0, speed: WHOLE_TICK, part: 0 }
-    }
-}
-
-impl Pace {
-    /// How many ticks the scene does in this tick of the clock.
-    fn tick(&mut self) -> u32 {
-        if self.paused {
-            let due = self.steps.min(1);
-            self.steps -= due;
-            return due;
-        }
-        self.part += self.speed;
-        let ticks = self.part / WHOLE_TICK;
-        self.part %= WHOLE_TICK;
-        ticks
-    }
-
-    fn pause(&mut self, paused: bool) {
-        (self.paused, self.steps) = (paused, 0);
-    }
-
-    fn step(&mut self, ticks: u32) {
-        (self.paused, self.steps) = (true, ticks);
-    }
-
-    fn set_speed(&mut self, speed: f64) -> Result<(), Field> {
-        if !(LEAST_SPEED..=GREATEST_SPEED).contains(&speed) {
-            return Err(Field::Speed);
-        }
-        self.speed = (speed * f64::from(WHOLE_TICK) + 0.5) as u32;
-        Ok(())
     }
 }

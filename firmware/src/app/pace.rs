@@ -1,0 +1,80 @@
+//! How a scene's time goes: at full speed, slower, faster, or step by step.
+
+use crate::config::{GREATEST_SPEED, LEAST_SPEED};
+use crate::protocol::Field;
+
+/// Full speed, in the parts that a tick is made of.
+const WHOLE_TICK: u32 = 100;
+
+/// How the scene's time goes.
+#[derive(Clone, Copy, Debug)]
+pub struct Pace {
+    paused: bool,
+    /// Ticks to do although paused.
+    steps: u32,
+    /// Ticks of the scene in [`WHOLE_TICK`] ticks of the clock.
+    speed: u32,
+    /// The part of the scene's next tick that has passed.
+    part: u32,
+}
+
+impl Default for Pace {
+    fn default() -> Self {
+        Self { paused: false, steps: 0, speed: WHOLE_TICK, part: 0 }
+    }
+}
+
+impl Pace {
+    /// At the `speed` that a status told.
+    pub fn resumed(paused: bool, steps: u32, speed: f32) -> Self {
+        let speed = ((speed * WHOLE_TICK as f32 + 0.5) as u32).clamp(1, GREATEST_SPEED as u32 * WHOLE_TICK);
+        Self { paused, steps, speed, part: 0 }
+    }
+
+    /// Whether it stands still.
+    pub fn is_paused(&self) -> bool {
+        self.paused
+    }
+
+    /// Ticks to do although it stands still.
+    pub fn steps(&self) -> u32 {
+        self.steps
+    }
+
+    /// 1 is full speed.
+    pub fn speed(&self) -> f32 {
+        self.speed as f32 / WHOLE_TICK as f32
+    }
+
+    /// How many ticks the scene does in this tick of the clock.
+    pub fn tick(&mut self) -> u32 {
+        if self.paused {
+            let due = self.steps.min(1);
+            self.steps -= due;
+            return due;
+        }
+        self.part += self.speed;
+        let ticks = self.part / WHOLE_TICK;
+        self.part %= WHOLE_TICK;
+        ticks
+    }
+
+    /// Lets it stand still or go on.
+    pub fn pause(&mut self, paused: bool) {
+        (self.paused, self.steps) = (paused, 0);
+    }
+
+    /// Lets it stand still but for so many ticks.
+    pub fn step(&mut self, ticks: u32) {
+        (self.paused, self.steps) = (true, ticks);
+    }
+
+    /// Sets the speed; refuses one that is out of range.
+    pub fn set_speed(&mut self, speed: f64) -> Result<(), Field> {
+        if !(LEAST_SPEED..=GREATEST_SPEED).contains(&speed) {
+            return Err(Field::Speed);
+        }
+        self.speed = (speed * f64::from(WHOLE_TICK) + 0.5) as u32;
+        Ok(())
+    }
+}
