@@ -1,6 +1,8 @@
 //! `cargo verify`: the set-up, the firmware, then exactly `cargo test`.
 
+use std::env;
 use std::process::{Command, ExitCode, Stdio};
+use std::thread::available_parallelism;
 use std::time::Duration;
 
 use clap::Parser;
@@ -24,9 +26,15 @@ fn main() -> ExitCode {
     })
 }
 
+/// How many tests run side by side, unless it is said: twice as many as there are processors, for many wait for an emulator or a clock.
+const THREADS: &str = "RUST_TEST_THREADS";
+
 /// The tests' own output and exit code, unchanged.
 fn test() -> anyhow::Result<ExitCode> {
     let mut command = Command::new("cargo");
     command.arg("test").current_dir(toolchain::workspace()).stdin(Stdio::null());
+    if env::var_os(THREADS).is_none() {
+        command.env(THREADS, (2 * available_parallelism()?.get()).to_string());
+    }
     Ok(process::exit_code(process::spawn(&mut command, LIMIT)?.wait()?))
 }
