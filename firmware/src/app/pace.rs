@@ -36,7 +36,7 @@ impl Pace {
         self.paused
     }
 
-    /// Ticks to do although it stands still.
+    /// Ticks that are still to do although it is paused.
     pub fn steps(&self) -> u32 {
         self.steps
     }
@@ -59,12 +59,12 @@ impl Pace {
         ticks
     }
 
-    /// Lets it stand still or go on.
+    /// Pauses, or goes on.
     pub fn pause(&mut self, paused: bool) {
         (self.paused, self.steps) = (paused, 0);
     }
 
-    /// Lets it stand still but for so many ticks.
+    /// Pauses, but first does so many ticks.
     pub fn step(&mut self, ticks: u32) {
         (self.paused, self.steps) = (true, ticks);
     }

@@ -31,7 +31,7 @@ struct Arguments {
     /// End it after this long, successfully; else it is given an hour, and to need more is an error
     #[arg(long, value_name = "N")]
     seconds: Option<u32>,
-    /// Only check that all binaries compile for all targets without a warning
+    /// Only check that all binaries compile for all targets without a warning, clippy's included if it is installed
     #[arg(long, conflicts_with = "binary")]
     check: bool,
 }

@@ -26,7 +26,8 @@ fn main() -> ExitCode {
     })
 }
 
-/// How many tests run side by side, unless it is said: twice as many as there are processors, for many wait for an emulator or a clock.
+/// How many tests run side by side. Unless the user has set it, twice as many as there are processors: many wait for an
+/// emulator or a clock.
 const THREADS: &str = "RUST_TEST_THREADS";
 
 /// The tests' own output and exit code, unchanged.

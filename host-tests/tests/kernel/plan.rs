@@ -81,11 +81,12 @@ fn the_end_is_worth_its_cost() {
     assert_eq!((lavish.limit, lavish.horizon), (Limit::End, short.duration), "{lavish:?} {frugal:?}");
 }
 
-/// A frame after the other, each as the motion itself has it.
+/// One frame after another, each as the motion itself has it.
 #[test]
 fn a_shadowed_run_makes_frames() {
-    let Problem { pendulum, start, .. } = scene(1.0, 120.0, 1.0);
-    let mut run = ShadowedRun::<f32, DirectionForm<f32>>::new(&scene(1.0, 120.0, 1.0), 4).expect("a good scene");
+    let page = scene(1.0, 120.0, 1.0);
+    let Problem { pendulum, start, .. } = page;
+    let mut run = ShadowedRun::<f32, DirectionForm<f32>>::new(&page, 4).expect("a good scene");
     let mut motion =
         WayStepper::new(&pendulum, &start, RATE, Way { method: Method::Direction, steps: 4 }).expect("good");
     for _ in 0..RATE {
@@ -96,7 +97,6 @@ fn a_shadowed_run_makes_frames() {
     }
 }
 
-/// By its name a method is told of.
 #[test]
 fn every_method_has_a_name_of_its_own() {
     let methods = [Method::ClosedForm, Method::DirectionPlain, Method::Direction, Method::Fixed32, Method::Fixed64];
@@ -281,7 +281,8 @@ fn every_scene_gets_a_plan_or_a_refusal() {
     assert!(planned > 20, "{planned}");
 }
 
-/// What would help: to look ahead for longer as long as something is open that a frame can pay for, else a dearer frame.
+/// Where nothing holds, the limit is what to raise: the planning budget while an affordable candidate has not failed yet, else the
+/// frame budget.
 #[test]
 fn the_limit_is_what_would_help() {
     // the closed form, all that a frame can pay for, is wrong from the first frame on

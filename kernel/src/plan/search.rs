@@ -313,7 +313,8 @@ impl Search {
         let Some(best) = self.best else {
             // To look ahead for longer would help nothing of which a frame costs too much.
             let affordable = |one: &Candidate| self.costs.of_frame(one.method, one.steps) <= self.budget.frame;
-            let open = self.pass.is_none() || self.candidates().iter().any(|one| !one.failed && affordable(one));
+            let is_open = |pass: &Pass| pass.candidates().iter().any(|one| !one.failed && affordable(one));
+            let open = self.pass.as_ref().is_none_or(is_open);
             let limit = if limit == Limit::Planning && !open { Limit::Budget } else { limit };
             return Err(PlanError::NothingHolds { limit, spent: self.spent });
         };

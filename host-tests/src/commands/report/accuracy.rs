@@ -29,7 +29,7 @@ pub fn exact(scene: &Scene) -> Vec<[f64; 2]> {
     exact_after(scene, SAMPLES * scene.duration)
 }
 
-/// The exact motion through a scene after each of so many steps.
+/// The exact motion after each of `steps` equal steps through a scene.
 fn exact_after(scene: &Scene, steps: u32) -> Vec<[f64; 2]> {
     let [a1, a2] = scene.angles();
     let mut reference = Reference::new(&scene.parameters(), &Motion::at_rest(a1, a2));
@@ -80,7 +80,7 @@ pub fn error(row: Row, scene: &Scene, rate: u32, exact: &[[f64; 2]]) -> Option<E
     error_of(&request(row, scene, rate), scene, exact)
 }
 
-/// The error of `row` after each of so many steps through the scene, of which a second need not have a whole number.
+/// The error of `row` in `steps` equal steps through the scene, compared after each; a second need not be a whole number of them.
 pub fn error_after(row: Row, scene: &Scene, steps: u32) -> Option<Error> {
     let dt = f64::from(scene.duration) / f64::from(steps);
     let request = Request { dt, stride: 1, samples: steps, ..request(row, scene, 1) };
