@@ -66,12 +66,6 @@ def cosine_tail(z):
     return sum((-1) ** k * z**k / mp.factorial(2 * k + 4) for k in range(14))
 
 
-def tangent_tail(z):
-    """(tan(r/2) - r/2)/(r z) with z = r^2."""
-    r = mp.sqrt(z)
-    return (mp.tan(r / 2) - r / 2) / (r * z)
-
-
 def pi_over_two(bits, digits):
     """pi/2 in parts: each but the last holds `bits` significant bits, so that whole multiples of it are exact."""
     rest, parts = mp.pi / 2, []
@@ -96,16 +90,6 @@ for name, kind, terms in (("f32", np.float32, 3), ("f64", np.float64, 6)):
     relative = lambda z: z
     show("  sine  ", *fit(sine_tail, absolute if name == "f32" else relative, powers, kind, TINY, EDGE**2))
     show("  cosine", *fit(cosine_tail, lambda z: z * z, powers, kind, TINY, EDGE**2))
-
-print("small turns, abs r <= 0.06")
-for name, kind, terms in (("f32", np.float32, 1), ("f64", np.float64, 3)):
-    powers = list(range(terms))
-    weight = lambda z: mp.sqrt(z) * z
-    show(f"  sine    {name}", *fit(sine_tail, weight, powers, kind, mp.mpf("1e-8"), mp.mpf("0.0036")))
-    if name == "f32":
-        show(f"  tangent {name}", *fit(tangent_tail, weight, powers, kind, mp.mpf("1e-8"), mp.mpf("0.0036")))
-    else:
-        show(f"  cosine  {name}", *fit(cosine_tail, lambda z: z * z, [0, 1], kind, mp.mpf("1e-8"), mp.mpf("0.0036")))
 
 show("pi/2 f32", pi_over_two([11, 11], np.float32))
 show("pi/2 f64", pi_over_two([33, 33], np.float64))

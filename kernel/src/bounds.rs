@@ -14,8 +14,6 @@ use crate::trig::SinCos;
 /// With K the energy above hanging rest (J), all of it kinetic at best: T >= m1 v1^2/2, T >= m2 v2^2/2, and by completing
 /// squares in T the same for each w and p alone. Exact up to the rounding of K.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Bounds<R> {
     /// |w1| <= sqrt(2 K/m1)/l1, rad/s.
     pub w1: R,

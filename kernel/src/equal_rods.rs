@@ -16,8 +16,6 @@ use crate::trig::{DefaultTrig, SinCos};
 /// mass ratio mu = m2/m1 is left, and an evaluation costs four multiplications less than
 /// [`Pendulum`](crate::Pendulum), which gives the same motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct EqualRods<R, T = DefaultTrig> {
     mu: R,
     /// 1 + mu.
@@ -158,8 +156,6 @@ impl<R: Real, T: SinCos<R>> EqualRods<R, T> {
 /// # Ok::<(), double_pendulum::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Units<R> {
     /// sqrt(l/g), s.
     pub time: R,

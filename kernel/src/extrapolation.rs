@@ -16,8 +16,6 @@ pub const ROWS: usize = 8;
 ///
 /// The orders 6, 8, 12 and 16 are measured by the repository's tests.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Extrapolation<R> {
     rows: usize,
     /// 1/(n/2), the share of the step between every second midpoint.
@@ -28,8 +26,6 @@ pub struct Extrapolation<R> {
 
 /// A factor of any size: w_n reaches 51, more than every kind of number holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Factor<R> {
     whole: i32,
     rest: R,

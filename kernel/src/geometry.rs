@@ -9,8 +9,6 @@ use crate::trig::SinCos;
 
 /// A vector in the plane of motion; the pivot is the origin, x points right, y up.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Vector<R> {
     /// To the right.
     pub x: R,

@@ -12,12 +12,6 @@ use crate::sealed::Sealed;
 /// The equations of motion run on it as on any [`Ring`]. Cost: on x86-64 that of one number for each 4 of `f32` (8 with AVX2,
 /// 2 and 4 of `f64`) where `N` is a multiple of that, as long as all that is kept fits the registers.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(
-    feature = "serde",
-    serde(bound(serialize = "[R; N]: serde::Serialize", deserialize = "[R; N]: serde::Deserialize<'de>"))
-)]
 #[repr(align(32))]
 pub struct Lanes<R, const N: usize>(pub [R; N]);
 

@@ -11,7 +11,6 @@
 //! | Runge-Kutta method | [`Pendulum::step`], [`rk4::step`] |
 //! | small oscillations | [`Modes`], [`SmallOscillations`] |
 //! | coordinates | [`Pendulum::positions`], [`Pendulum::velocities`] |
-//! | (not in the book) a step of order 8 | [`Pendulum::step_of_order_8`], [`rk8::step`] |
 //! | (not in the book) bounds from the energy | [`Bounds`], [`Pendulum::cannot_turn_over`], [`Pendulum::admissible_step`], [`Modes::step_limit`] |
 //! | (not in the book) when a rod first turns over | [`flips`] |
 //! | (not in the book) the cheapest method that keeps to a tolerance | [`plan`](mod@plan) |
@@ -37,7 +36,7 @@
 //!
 //! # Versions
 //!
-//! Semantic versioning. [`Error`], [`Parameter`] and [`form::RestoreError`] may get new variants, and the traits are sealed,
+//! Semantic versioning. [`Error`] and [`Parameter`] may get new variants, and the traits are sealed,
 //! so that they may get new methods; both are minor versions, as is a higher least Rust (1.85 now). What is hidden from the
 //! documentation may change at any time.
 //!
@@ -78,7 +77,6 @@ pub mod plan;
 mod real;
 mod ring;
 pub mod rk4;
-pub mod rk8;
 mod sealed;
 mod sine;
 mod small_oscillations;

@@ -8,8 +8,6 @@ use crate::trig::SinCos;
 
 /// One normal mode: both angles oscillate at one frequency, in a fixed ratio.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Mode<R> {
     /// Angular frequency, rad/s.
     pub frequency: R,
@@ -33,8 +31,6 @@ pub struct Mode<R> {
 /// # Ok::<(), double_pendulum::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Modes<R> {
     /// w1, the faster: the rods swing against each other, its shape is negative.
     pub fast: Mode<R>,

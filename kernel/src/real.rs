@@ -62,9 +62,6 @@ pub trait Real:
     fn sqrt(self) -> Self;
     /// The bit pattern.
     fn bits(self) -> u64;
-    /// The number of this bit pattern; none if it is longer than the type.
-    #[doc(hidden)]
-    fn from_bits(bits: u64) -> Option<Self>;
     /// Neither infinite nor NaN.
     #[must_use]
     fn is_finite(self) -> bool;
@@ -79,28 +76,6 @@ pub trait Real:
     /// Sine and cosine by the kernel's own routine.
     #[doc(hidden)]
     fn own_sin_cos(self) -> (Self, Self);
-    /// The vector (s, c), an angle's sine and cosine times any length, for the angle `by` further on, by short
-    /// polynomials, 20 operations (13 in `f32`); requires abs(`by`) <= 0.06 rad.
-    #[doc(hidden)]
-    fn turned(direction: [Self; 2], by: Self) -> [Self; 2];
-    /// How far the turns reach that were shown to [`reach`](Self::reach).
-    #[doc(hidden)]
-    type Reach: Copy + Default;
-    /// `so_far` with two more turns, rad.
-    #[doc(hidden)]
-    fn reach(so_far: Self::Reach, turns: [Self; 2]) -> Self::Reach;
-    /// Whether all of them are small enough for [`turned`](Self::turned). Not where one is NaN.
-    #[doc(hidden)]
-    fn is_in_reach(reach: Self::Reach) -> bool;
-    /// The nearest whole number; the nearest `i32` if there is none, 0 for NaN.
-    #[doc(hidden)]
-    fn nearest(self) -> i32;
-    /// Marks k pi/32 + offset in the first eighth of the circle: (offset, sin, cos).
-    #[doc(hidden)]
-    const MARKS: [[Self; 3]; 9];
-    /// pi/2 in three parts; whole multiples of the first two are exact.
-    #[doc(hidden)]
-    const PI_OVER_TWO: [Self; 3];
 }
 
 /// `x` + `x`, the same bits, by integers unless `x` is zero, subnormal, NaN or close to overflow.
@@ -127,7 +102,7 @@ twice_by_bits!(twice_single, f32);
 twice_by_bits!(twice_double, f64);
 
 macro_rules! real {
-    ($float:ident, $twice:ident in software if $software:meta, $rint:path, $sqrt:path, $atan2:path, $sin_cos:path, $own:ident) => {
+    ($float:ident, $twice:ident in software if $software:meta, $sqrt:path, $atan2:path, $sin_cos:path, $own:ident) => {
         impl Sealed for $float {}
 
         impl Ring for $float {
@@ -194,10 +169,6 @@ macro_rules! real {
                 self.to_bits().into()
             }
             #[inline(always)]
-            fn from_bits(bits: u64) -> Option<Self> {
-                bits.try_into().ok().map($float::from_bits)
-            }
-            #[inline(always)]
             fn is_finite(self) -> bool {
                 $float::is_finite(self)
             }
@@ -217,31 +188,12 @@ macro_rules! real {
             fn own_sin_cos(self) -> (Self, Self) {
                 sine::$own::sin_cos(self)
             }
-            #[inline(always)]
-            fn turned(direction: [Self; 2], by: Self) -> [Self; 2] {
-                sine::$own::turned(direction, by)
-            }
-            type Reach = sine::$own::Reach;
-            #[inline(always)]
-            fn reach(so_far: Self::Reach, turns: [Self; 2]) -> Self::Reach {
-                so_far.with(turns)
-            }
-            #[inline(always)]
-            fn is_in_reach(reach: Self::Reach) -> bool {
-                reach.is_small()
-            }
-            #[inline]
-            fn nearest(self) -> i32 {
-                $rint(self) as i32
-            }
-            const MARKS: [[Self; 3]; 9] = sine::$own::MARKS;
-            const PI_OVER_TWO: [Self; 3] = sine::$own::PI_OVER_TWO;
         }
     };
 }
 
-real!(f32, twice_single in software if all(target_arch = "arm", target_abi = "eabi"), libm::rintf, libm::sqrtf, libm::atan2f, libm::sincosf, own_f32);
-real!(f64, twice_double in software if all(target_arch = "arm", any(target_abi = "eabi", target_os = "none"), not(feature = "double-fpu")), libm::rint, libm::sqrt, libm::atan2, libm::sincos, own_f64);
+real!(f32, twice_single in software if all(target_arch = "arm", target_abi = "eabi"), libm::sqrtf, libm::atan2f, libm::sincosf, own_f32);
+real!(f64, twice_double in software if all(target_arch = "arm", any(target_abi = "eabi", target_os = "none"), not(feature = "double-fpu")), libm::sqrt, libm::atan2, libm::sincos, own_f64);
 
 #[cfg(test)]
 mod tests {

@@ -10,8 +10,6 @@ use crate::trig::{DefaultTrig, SinCos};
 
 /// What one mode contributes to the angle of rod 1: C cos wt + S sin wt.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Oscillation<R> {
     /// C, rad.
     pub cosine: R,
@@ -52,8 +50,6 @@ impl<R: Real> Oscillation<R> {
 /// # Ok::<(), double_pendulum::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SmallOscillations<R, T = DefaultTrig> {
     modes: Modes<R>,
     fast: Oscillation<R>,

@@ -28,8 +28,6 @@ pub trait SinCos<R: Real>: Sealed + Copy + core::fmt::Debug + PartialEq + 'stati
 ///
 /// Asserted by the repository's tests; for all floats of [-pi, pi] on demand.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Own;
 
 impl Sealed for Own {}
@@ -45,8 +43,6 @@ impl<R: Real> SinCos<R> for Own {
 ///
 /// Cost on a Cortex-M is high: the `f32` routine works in `f64`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Libm;
 
 impl Sealed for Libm {}
@@ -61,8 +57,6 @@ impl<R: Real> SinCos<R> for Libm {
 /// The `micromath` crate: short, and wrong by up to 1.2e-3. Here for comparison.
 #[cfg(feature = "micromath")]
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Micromath;
 
 #[cfg(feature = "micromath")]

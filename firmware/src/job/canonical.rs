@@ -25,20 +25,6 @@ impl<R: Real, T: SinCos<R>> Equations<R> for Pendulum<R, T> {
     }
 }
 
-/// A pendulum stepped by the method of order 8.
-#[derive(Clone, Copy, Debug)]
-pub struct Order8<R>(Pendulum<R>);
-
-impl<R: Real> Equations<R> for Order8<R> {
-    fn prepare(parameters: &Parameters<R>) -> Result<Self, Error> {
-        Pendulum::new(*parameters).map(Self)
-    }
-
-    fn step(&self, state: &State<R>, dt: R) -> State<R> {
-        self.0.step_of_order_8(state, dt)
-    }
-}
-
 impl<R: Separate> Equations<R> for Textbook<R> {
     fn prepare(parameters: &Parameters<R>) -> Result<Self, Error> {
         Ok(Textbook::new(*parameters))

@@ -57,12 +57,8 @@ choice! {
     Formulation {
         /// The model's own, as its book writes them down.
         Canonical = 0, "canonical";
-        /// Angles and momenta in the units of the step: [`AngleForm`](double_pendulum::form::AngleForm).
-        Angle = 1, "angle";
         /// Directions and momenta: [`DirectionForm`](double_pendulum::form::DirectionForm).
         Direction = 2, "direction";
-        /// The same with a division at each stage: [`Divided`](double_pendulum::form::Divided).
-        DirectionDivided = 3, "direction-divided";
     }
 }
 
@@ -71,8 +67,6 @@ choice! {
     Integrator {
         /// The classical Runge-Kutta method, of order 4.
         Rk4 = 4, "rk4";
-        /// The Runge-Kutta method of order 8: [`rk8`](double_pendulum::rk8).
-        Rk8 = 8, "rk8";
         /// Gragg's extrapolation of any even order: [`Extrapolation`](double_pendulum::extrapolation::Extrapolation).
         Extrapolation = 2, "extrapolation";
         /// By the closed form, at any time; of no order.

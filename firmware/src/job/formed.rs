@@ -1,23 +1,18 @@
 //! The fast forms of the kernel.
 
-use double_pendulum::form::{AngleForm, Direction, Form, Stepper};
+use double_pendulum::form::{Direction, Form, Stepper};
 use double_pendulum::{Real, State};
 
 use super::run::{Run, checked};
 use super::{JobError, Request};
 
-/// A form with its motion; `DIRECTED` if it knows directions only.
+/// A direction form with its motion.
 #[derive(Clone, Copy, Debug)]
-pub struct Formed<R: Real, F: Form<R>, const DIRECTED: bool> {
+pub struct Directions<R: Real, F: Form<R>> {
     stepper: Stepper<R, F>,
 }
 
-/// The angle form with the sums `S`.
-pub type Angles<R, S> = Formed<R, AngleForm<R, S>, false>;
-/// A direction form `F`.
-pub type Directions<R, F> = Formed<R, F, true>;
-
-impl<R: Real, F: Form<R>, const DIRECTED: bool> Run for Formed<R, F, DIRECTED> {
+impl<R: Real, F: Form<R>> Run for Directions<R, F> {
     #[inline(never)]
     fn start(request: &Request) -> Result<Self, JobError> {
         let (pendulum, state) = checked::<R>(request)?;
@@ -34,7 +29,7 @@ impl<R: Real, F: Form<R>, const DIRECTED: bool> Run for Formed<R, F, DIRECTED> {
     }
 
     fn directions(&self) -> Option<[Direction<f64>; 2]> {
-        DIRECTED.then(|| self.stepper.directions().map(|direction| direction.map(R::to_f64)))
+        Some(self.stepper.directions().map(|direction| direction.map(R::to_f64)))
     }
 
     fn bits(&self, feed: impl FnMut(u64)) {

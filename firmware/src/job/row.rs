@@ -43,7 +43,6 @@ impl fmt::Display for Row {
         }
         match integrator {
             Integrator::Rk4 | Integrator::ClosedForm => Ok(()),
-            Integrator::Rk8 => write!(f, "-{}", integrator.name()),
             Integrator::Extrapolation => write!(f, "-{}-{order}", integrator.name()),
         }
     }

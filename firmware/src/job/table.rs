@@ -4,14 +4,12 @@
 //! The first block is what every board's application computes on request. The second is there to be compared with: it is
 //! computed on the host and counted on the chips by the `measure` program, and takes no flash of an application.
 
-use double_pendulum::form::{
-    Compensated, Direction, DirectionForm, DirectionForm8, Divided, ExtrapolatedForm, Fixed32Form, Fixed64Form, Plain,
-};
+use double_pendulum::form::{Direction, DirectionForm, ExtrapolatedForm, Fixed32Form, Fixed64Form, Plain};
 use double_pendulum::trig::{Libm, Micromath};
 use double_pendulum::{Pendulum, State};
 
-use super::canonical::{Canonical, Equal, Order8};
-use super::formed::{Angles, Directions};
+use super::canonical::{Canonical, Equal};
+use super::formed::Directions;
 use super::linear::{Drawn, Linear};
 use super::textbook::Textbook;
 use super::{
@@ -106,13 +104,9 @@ table! {
         F32EqualRods:     (F32            EqualRods Canonical Rk4 4) => Equal<f32>;
         F64Linear:        (F64            Linear    Canonical ClosedForm 0) => Linear<f64>;
         F32Linear:        (F32            Linear    Canonical ClosedForm 0) => Linear<f32>;
-        F64Angle:         (F64            General   Angle     Rk4 4) => Angles<f64, Plain>;
-        F32Angle:         (F32            General   Angle     Rk4 4) => Angles<f32, Plain>;
-        CompensatedAngle: (F32Compensated General   Angle     Rk4 4) => Angles<f32, Compensated<f32>>;
         F64Direction:     (F64            General   Direction Rk4 4) => Directions<f64, DirectionForm<f64, Plain>>;
         F32Direction:     (F32            General   Direction Rk4 4) => Directions<f32, DirectionForm<f32, Plain>>;
         Compensated:      (F32Compensated General   Direction Rk4 4) => Directions<f32, DirectionForm<f32>>;
-        CompensatedRk8:   (F64Compensated General   Direction Rk8 8) => Directions<f64, DirectionForm8<f64>>;
         Fixed32:          (Fixed32        General   Direction Rk4 4) => Directions<f64, Fixed32Form>;
         Fixed64Order12:   (Fixed64        General   Direction Extrapolation 12) => Directions<f64, Fixed64Form<12>>;
         Fixed64Order6:    (Fixed64        General   Direction Extrapolation 6) => Directions<f64, Fixed64Form<6>>;
@@ -125,12 +119,9 @@ table! {
         (F32Micromath   General  Canonical        Rk4 4) => Canonical<f32, Pendulum<f32, Micromath>>;
         (F32Libm        Textbook Canonical        Rk4 4) => Canonical<f32, Textbook<f32>>;
         (F64Libm        Textbook Canonical        Rk4 4) => Canonical<f64, Textbook<f64>>;
-        (F64            General  Canonical        Rk8 8) => Canonical<f64, Order8<f64>>;
         (F64Compensated General  Direction        Extrapolation 12) => Directions<f64, ExtrapolatedForm<12>>;
         (F64Compensated General  Direction        Extrapolation 8) => Directions<f64, ExtrapolatedForm<8>>;
         (F64Compensated General  Direction        Extrapolation 16) => Directions<f64, ExtrapolatedForm<16>>;
-        (F64Compensated General  Angle            Rk4 4) => Angles<f64, Compensated<f64>>;
-        (F32            General  DirectionDivided Rk4 4) => Directions<f32, DirectionForm<f32, Plain, Divided>>;
         (F32            Linear   Direction        ClosedForm 0) => Drawn;
     }
 }

@@ -1,7 +1,7 @@
 //! Who takes part: this kernel and two integration libraries, each in f64 and each keeping what it always keeps.
 
 use differential_equations::prelude::{ExplicitRungeKutta, IVP, ODE};
-use double_pendulum::form::{AngleForm, DirectionForm, DirectionForm8, ExtrapolatedForm, Form, Plain, Stepper};
+use double_pendulum::form::{DirectionForm, ExtrapolatedForm, Form, Plain, Stepper};
 use double_pendulum::{Motion, State};
 use host_tests::oracle::reference::Reference;
 use host_tests::oracle::trials::largest_difference;
@@ -96,9 +96,7 @@ const fn adaptive(name: &'static str, run: Run) -> Contestant {
 
 /// Classical RK4; this kernel's plain step first.
 pub const CLASSICAL: &[Contestant] = &[
-    own("double-pendulum", |scene, parts, steps| own_step(scene, parts, steps, Pendulum::step)),
-    own("double-pendulum, angle form", form::<AngleForm<f64, Plain>>),
-    own("double-pendulum, angle form compensated", form::<AngleForm<f64>>),
+    own("double-pendulum", |scene, parts, steps| own_step(scene, parts, steps)),
     own("double-pendulum, direction form", form::<DirectionForm<f64, Plain>>),
     own("double-pendulum, direction form compensated", form::<DirectionForm<f64>>),
     peer("ode_solvers, the book's equations", |scene, parts, steps| ode_solvers_rk4(Book, scene, parts, steps)),
@@ -113,12 +111,10 @@ pub const CLASSICAL: &[Contestant] = &[
     }),
 ];
 
-/// For tight errors: order 8, and this kernel's RK4 beside it.
+/// For tight errors: order 16, and this kernel's RK4 beside it.
 pub const TIGHT: &[Contestant] = &[
-    own("double-pendulum, direction form of order 8", form::<DirectionForm8<f64>>),
     own("double-pendulum, direction form extrapolated to order 16", form::<ExtrapolatedForm<16>>),
     own("double-pendulum, direction form of RK4", form::<DirectionForm<f64>>),
-    own("double-pendulum, order 8", |scene, parts, steps| own_step(scene, parts, steps, Pendulum::step_of_order_8)),
     adaptive("ode_solvers DOP853, the book's equations", |scene, parts, effort| {
         ode_solvers_dop853(Book, scene, parts, effort)
     }),
@@ -137,14 +133,9 @@ fn pendulum() -> Pendulum {
     Pendulum::with_trig(PARAMETERS).unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn own_step(
-    scene: &Scene,
-    parts: u32,
-    steps: u32,
-    step: impl Fn(&Pendulum, &State<f64>, f64) -> State<f64>,
-) -> [f64; 4] {
+fn own_step(scene: &Scene, parts: u32, steps: u32) -> [f64; 4] {
     let (pendulum, dt) = (pendulum(), scene.step(steps));
-    (0..parts * steps).fold(scene.start().into(), |state, _| step(&pendulum, &state, dt)).into()
+    (0..parts * steps).fold(scene.start().into(), |state, _| pendulum.step(&state, dt)).into()
 }
 
 fn form<F: Form<f64>>(scene: &Scene, parts: u32, steps: u32) -> [f64; 4] {

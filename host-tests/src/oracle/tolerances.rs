@@ -52,9 +52,9 @@ pub const BOUNDS_DRIFT: f64 = 1e-6;
 pub const BOUNDS_REACHED: f64 = 0.01;
 
 /// What one admissible step may miss, over (fastest rate) dt: rad in an angle, and the fastest rate's share in a velocity.
-/// Classical step, angle form, direction form; measured, for the worst motions that a search found over masses 1e-6..1e6
+/// Classical step and direction form; measured, for the worst motions that a search found over masses 1e-6..1e6
 /// and lengths 1:100..100:1: 2.8e-5 and 7.7e-5.
-pub const ADMISSIBLE: [f64; 3] = [3e-5, 3e-5, 8e-5];
+pub const ADMISSIBLE: [f64; 2] = [3e-5, 8e-5];
 
 /// Mass ratio 1000 from (2, 1) rad after 0.6 s, rad: with 1/1024 s the motion is lost (measured 0.5),
 pub const UNRESOLVED: f64 = 0.1;
@@ -64,17 +64,6 @@ pub const RESOLVED: f64 = 1e-6;
 
 /// The measured order of the method: 4, give or take the next order's share at the steps used.
 pub const ORDER: std::ops::RangeInclusive<f64> = 3.9..=4.1;
-
-/// The measured order of the step of order 8, likewise.
-pub const ORDER_8: std::ops::RangeInclusive<f64> = 7.8..=8.2;
-
-/// What the steps of order 8 that their documentation names miss in 20 s of regular motion, rad (measured: 4e-11 and
-/// 1.6e-13).
-pub const STEPS_OF_ORDER_8: [(u32, f64); 2] = [(20, 1e-9), (40, 1e-12)];
-
-/// What the direction form's steps of order 8 that its documentation names miss in 10 s of regular motion, rad (measured:
-/// 2.7e-10 and 1.3e-12).
-pub const PICTURE_OF_ORDER_8: [(u32, f64); 2] = [(16, 3e-10), (32, 2e-12)];
 
 /// The reference against the table of known answers, to be multiplied by the growth of a small error: the 33 digits of
 /// the table, and the roundings (1e-32) of some hundred steps of double-double arithmetic (measured: up to 1.1e-31, and
@@ -112,10 +101,9 @@ pub const FIGURE_7_ABOVE: f64 = 0.03;
 /// Figure 7 in f64 with 4096 steps per second after 5 s, rad and kg m^2/s: the goal.
 pub const FIGURE_7: f64 = 1e-7;
 
-/// Figure 7 after 3 s with 4096 steps a second in other forms than the canonical one, rad: the angle form, the same method,
-/// in f64 (roundings of 1e-16, grown by chaos); the direction form in f64 (the method's own error, grown); any in f32
-/// (roundings of 6e-8, grown). Measured 1e-12, 9e-10 and 2.7e-6.
-pub const FIGURE_7_FORMS: [f64; 3] = [1e-11, 1e-8, 1e-5];
+/// Figure 7 after 3 s with 4096 steps a second in other forms than the canonical one, rad: the direction form in f64
+/// (the method's own error, grown by chaos); any in f32 (roundings of 6e-8, grown). Measured 9e-10 and 2.7e-6.
+pub const FIGURE_7_FORMS: [f64; 2] = [1e-8, 1e-5];
 
 /// The same by order 8 with 512 steps a second against RK4 with 16384, rad: the latter's error (measured 1.1e-11); RK4 with
 /// 512 would miss 2e-5.
@@ -159,28 +147,17 @@ pub const INVERTED_GROWTH: f64 = 1e-9;
 /// A linear motion of 0.5 rad after a whole period, rad: the roundings of w t, 40 rad, in both modes.
 pub const PERIOD: f64 = 1e-13;
 
-/// The angle form against the classical step as one writes it down, both in `f64`, rad over 100 s of regular motion
-/// (measured: 1e-13): the roundings of each.
-pub const SAME_METHOD: f64 = 1e-12;
-
-/// Compensated `f32` forms on the regular scene (0.5 rad, dt = 1/256 s) after 10 s and 100 s, rad: the goal of
-/// this one motion, but for the angle form after 100 s, of which it asks 1.3e-7 (measured: 5.1e-8 and 1.7e-7, direction form
-/// 4.0e-8 and 2.5e-7). Plain sums miss it by far.
-pub const ANGLE_FORM: [f64; 2] = [6e-8, 1.8e-7];
-/// See [`ANGLE_FORM`].
+/// Compensated `f32` on the regular scene (0.5 rad, dt = 1/256 s) after 10 s and 100 s, rad: the goal of this one motion
+/// (measured: 4.0e-8 and 2.5e-7). Plain sums miss it by far.
 pub const DIRECTION_FORM: [f64; 2] = [5e-8, 2.5e-7];
 
 /// The same over neighbouring starts, root mean square: what one may count on, for a single motion is 3 times luckier or
 /// less. The method's own error is 1.1e-8 and 1.0e-7; the rest are the roundings of the evaluations, 6e-8 each, of which
-/// none stands out: momenta and velocities, directions, gravity, sums, each 1e-7 to 2e-7 in 100 s. (Measured: 3.2e-8 and
-/// 2.7e-7, direction form 4.3e-8 and 4.0e-7.) To keep 1.3e-7 in 100 s, three quarters of them would have to go.
-pub const TYPICAL_ANGLE_FORM: [f64; 2] = [4e-8, 3.2e-7];
-/// See [`TYPICAL_ANGLE_FORM`].
+/// none stands out. (Measured: 4.3e-8 and 4.0e-7.)
 pub const TYPICAL_DIRECTION_FORM: [f64; 2] = [5e-8, 4.5e-7];
 
 /// By how much steps of 1/240 s may err more than those of 1/256 s, for which the budgets are: RK4's own error does so by
-/// (256/240)^4 (measured over 192 starts: angle form 1.05 times its 3.3e-8, direction form 1.32 times its 4.2e-8, 1.20
-/// to 1.42 over 32 of them; with 1/240 rounded to `f32` 30 times).
+/// (256/240)^4 (measured over 192 starts: 1.32 times 4.2e-8, 1.20 to 1.42 over 32 of them; with 1/240 rounded to `f32` 30 times).
 pub const LONGER_STEP: f64 = 1.3;
 
 /// When a pendulum that stood upright is a radian down, s: one look, and RK4's error of the growth rate at 2^-6 s.
@@ -201,9 +178,8 @@ pub const DIRECTIONS: f64 = 8.0;
 /// Their lengths against 1 with 64 steps a second: what restoring them to first order leaves (measured 3e-6).
 pub const LENGTHS: f64 = 1e-5;
 
-/// Regular motion from 999 rad against that from the same angles without their turns, rad: 999 rad is given to 1e-13; the
-/// direction form adds its own error.
-pub const FAR_ANGLE: [f64; 2] = [1e-12, 1e-7];
+/// Regular motion from 999 rad against that from the same angles without their turns, rad: 999 rad is given to 1e-13.
+pub const FAR_ANGLE: f64 = 1e-12;
 
 /// Straight rods turning evenly without gravity, 20 s, rad and relative: in f32 some 5000 steps of plain sums, each
 /// rounded; in f64 the direction form's own error, 6e-11 rad a second at 2 rad/s.
@@ -212,15 +188,12 @@ pub const STRAIGHT: PerPrecision = PerPrecision { single: 1e-3, double: 2e-9 };
 /// A tiny swing against the cosine, relative, 10 s: the roundings of 2560 plain sums; RK4's own error is 1e-9.
 pub const TINY: PerPrecision = PerPrecision { single: 1e-3, double: 1e-8 };
 
-/// A million compensated steps of 2^-13 s of regular motion, rad: angle form, direction form
-/// (measured 2e-7 and 9e-14 in both; plain sums miss 2e-5 in f32).
-pub const MILLION_STEPS: [PerPrecision; 2] = [PerPrecision { single: 5e-7, double: 3e-13 }; 2];
+/// A million compensated steps of 2^-13 s of regular motion, rad (measured 2e-7 and
+/// 9e-14; plain sums miss 2e-5 in f32).
+pub const MILLION_STEPS: PerPrecision = PerPrecision { single: 5e-7, double: 3e-13 };
 
 /// How much better a compensated form is than a plain one on the regular scene in 10 s, at least (measured: 30 to 70).
 pub const COMPENSATION_GAIN: f64 = 10.0;
-
-/// Frame against angle form: the ratio of their methods' own errors (measured: 0.13 to 2.6, on all scenes tried).
-pub const PICTURE_AGAINST_ANGLE: f64 = 3.0;
 
 /// A frequency or period read off a plotted curve where it crosses a level, relative: half of the last digit given of the
 /// shortest, 1.3e-6, and the shift of a crossing by joining the points with straight lines, (w dt)^3/16 of a radian or

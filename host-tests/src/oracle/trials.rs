@@ -62,20 +62,6 @@ impl Trial {
     }
 }
 
-/// Motions for measuring an order of 8 in f64, and steps a second to be doubled: fine enough that the next order is small,
-/// coarse enough that rounding is. They swing nearly in the slow mode; in the fast one the step's first error is so small
-/// that it shows orders 9 and 10.
-pub fn slow() -> [(Trial, u32); 4] {
-    let unlike = |m1, m2, l1, l2| Parameters { m1, m2, l1, l2, g: 9.81 };
-    let trial = |parameters, a1, a2| Trial { parameters, start: State::at_rest(a1, a2), seconds: 20.0 };
-    [
-        (trial(unlike(1.0, 1.0, 1.0, 1.0), 0.5, 0.5), 20),
-        (trial(unlike(1.0, 1.0, 1.0, 1.0), 0.2, 0.3), 12),
-        (trial(unlike(0.7, 1.3, 0.6, 1.1), 0.3, 0.3), 24),
-        (trial(unlike(2.0, 1.0, 1.0, 0.7), 0.3, 0.4), 12),
-    ]
-}
-
 /// The largest difference of the angles, rad, whole turns apart; infinite where one is not a number.
 pub fn largest_difference(states: &[State<f64>], others: &[State<f64>]) -> f64 {
     let apart = |a: f64, b: f64| ((a - b) / TAU - ((a - b) / TAU).round()).abs() * TAU;

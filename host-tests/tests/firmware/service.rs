@@ -147,7 +147,7 @@ fn a_refusal_names_the_field_and_leaves_the_work_alone() {
         (Simulate { form: 0xFF, ..good }, Field::Form),
         (Simulate { integrator: 0xFF, ..good }, Field::Integrator),
         (Simulate { order: 5, ..good }, Field::Order),
-        (Simulate { integrator: Integrator::Rk8.code(), order: 8, ..good }, Field::Integrator),
+        (Simulate { integrator: Integrator::Extrapolation.code(), order: 8, ..good }, Field::Integrator),
         (Simulate { arithmetic: Arithmetic::F32Compensated.code(), ..good }, Field::Form),
         (Simulate { arithmetic: Arithmetic::F32Libm.code(), ..good }, Field::Arithmetic),
         (Simulate { model: Model::Textbook.code(), ..good }, Field::Model),

@@ -1,9 +1,8 @@
 //! The kernel's motion against the reference, and the order of its method.
 
-use double_pendulum::{EqualRods, Motion, Parameters, Pendulum, State, Units, rk4, rk8};
+use double_pendulum::{EqualRods, Motion, Parameters, Pendulum, State, Units, rk4};
 use host_tests::oracle::reference::{self, Reference};
 use host_tests::oracle::tolerances;
-use host_tests::oracle::trials::{self, Trial};
 
 /// Regular motions, in which an error grows no faster than the time: masses and lengths alike and unlike.
 fn regular() -> [(Parameters<f64>, Motion<f64>); 3] {
@@ -15,17 +14,15 @@ fn regular() -> [(Parameters<f64>, Motion<f64>); 3] {
     ]
 }
 
-type Step = fn(&Pendulum<f64>, &State<f64>, f64) -> State<f64>;
-
 /// The largest difference of the angles in 20 s, looked at every second.
-fn error(step: Step, parameters: &Parameters<f64>, start: &Motion<f64>, steps_per_second: u32) -> f64 {
+fn error(parameters: &Parameters<f64>, start: &Motion<f64>, steps_per_second: u32) -> f64 {
     let pendulum = Pendulum::new(*parameters).expect("valid parameters");
     let mut reference = Reference::new(parameters, start);
     let mut state = pendulum.to_state(start);
     let mut largest = 0.0_f64;
     for second in 1..=20 {
         for _ in 0..steps_per_second {
-            state = step(&pendulum, &state, 1.0 / f64::from(steps_per_second));
+            state = pendulum.step(&state, 1.0 / f64::from(steps_per_second));
         }
         reference.advance_to(f64::from(second));
         let exact = reference.motion();
@@ -38,31 +35,11 @@ fn error(step: Step, parameters: &Parameters<f64>, start: &Motion<f64>, steps_pe
 fn order_is_4() {
     // fine enough that the next order is small, coarse enough that rounding is
     for ((parameters, start), steps) in regular().into_iter().zip([128, 1024, 256]) {
-        let errors = [steps, 2 * steps, 4 * steps].map(|steps| error(Pendulum::step, &parameters, &start, steps));
+        let errors = [steps, 2 * steps, 4 * steps].map(|steps| error(&parameters, &start, steps));
         let orders: Vec<f64> = errors.windows(2).map(|pair| (pair[0] / pair[1]).log2()).collect();
         for order in orders {
             assert!(tolerances::ORDER.contains(&order), "order {order} for {parameters:?}");
         }
-    }
-}
-
-#[test]
-fn order_of_order_8_is_8() {
-    for (trial, steps) in trials::slow() {
-        let Trial { parameters, start: State { a1, a2, .. }, .. } = trial;
-        let start = Motion::at_rest(a1, a2);
-        let errors = [steps, 2 * steps].map(|steps| error(Pendulum::step_of_order_8, &parameters, &start, steps));
-        let order = (errors[0] / errors[1]).log2();
-        assert!(tolerances::ORDER_8.contains(&order), "order {order} for {trial:?}");
-    }
-}
-
-#[test]
-fn steps_of_order_8_keep_their_promise() {
-    let (parameters, start) = (Parameters::equal_rods(1.0, 1.0, 9.81), Motion::at_rest(0.5, 0.5));
-    for (steps, budget) in tolerances::STEPS_OF_ORDER_8 {
-        let error = error(Pendulum::step_of_order_8, &parameters, &start, steps);
-        assert!(error < budget, "{error:e} rad with {steps} steps a second");
     }
 }
 
@@ -110,16 +87,6 @@ fn order_is_4_for_the_exponential() {
     };
     let order = (error(64) / error(128)).log2();
     assert!(tolerances::ORDER.contains(&order), "order {order}");
-}
-
-#[test]
-fn order_of_order_8_is_8_for_the_exponential() {
-    let error = |steps: u32| {
-        let end = (0..steps).fold([1.0], |z, _| rk8::step(|&z: &[f64; 1]| z, &z, 2.0 / f64::from(steps)));
-        (end[0] - 2_f64.exp()).abs()
-    };
-    let order = (error(6) / error(12)).log2();
-    assert!(tolerances::ORDER_8.contains(&order), "order {order}");
 }
 
 /// What `cargo simulate` must show for figure 7: 113-bit results, to 1e-7 in each of the four numbers after 5 s.

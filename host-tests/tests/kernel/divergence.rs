@@ -2,7 +2,7 @@
 
 use std::fmt::Debug;
 
-use double_pendulum::form::{AngleForm, DirectionForm, DirectionForm8, Form};
+use double_pendulum::form::{DirectionForm, ExtrapolatedForm, Form};
 use double_pendulum::{Error, Parameters, Pendulum, Real, State};
 use firmware::app::controls::NoButtons;
 use firmware::app::service::Service;
@@ -66,11 +66,9 @@ fn form_stops<R: Real, F: Form<R>>() {
 fn every_stepper_stops_at_its_last_good_state() {
     plain_steps_stop::<f32>();
     plain_steps_stop::<f64>();
-    form_stops::<f32, AngleForm<f32>>();
-    form_stops::<f64, AngleForm<f64>>();
     form_stops::<f32, DirectionForm<f32>>();
     form_stops::<f64, DirectionForm<f64>>();
-    form_stops::<f64, DirectionForm8<f64>>();
+    form_stops::<f64, ExtrapolatedForm<12>>();
 }
 
 /// Within the limit for small motions, which is all that can be known beforehand, but too long for this one.

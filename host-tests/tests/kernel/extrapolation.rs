@@ -1,10 +1,8 @@
-//! Extrapolation: the orders it promises, and the direction form stepped by it.
+//! Extrapolation: the orders it names.
 
 use double_pendulum::extrapolation::Extrapolation;
-use double_pendulum::form::{DirectionForm8, ExtrapolatedForm, Form};
-use double_pendulum::{Error, Parameter, Parameters, State};
+use double_pendulum::{Error, Parameter};
 use host_tests::oracle::tolerances;
-use host_tests::oracle::trials::{Trial, largest_difference};
 
 /// A swing z'' = -z followed for 20 s.
 fn error(order: u32, steps: u32) -> Result<f64, Error> {
@@ -46,28 +44,5 @@ fn backwards_is_forwards_undone() -> Result<(), Error> {
     let spiral = |&[x, y]: &[f64; 2]| [y - 0.1 * x, -x];
     let [x, y] = method.step(spiral, &method.step(spiral, &[1.0, 0.5], 0.1), -0.1);
     assert!((x - 1.0).abs().max((y - 0.5).abs()) < tolerances::RETURN_OF_ONE_STEP);
-    Ok(())
-}
-
-/// Fewer steps than order 8 takes for the same error: of order 12 a third, of order 16 a fifth.
-#[test]
-fn long_steps_are_as_good_as_short_ones_of_order_8() -> Result<(), Error> {
-    let trial = Trial::at_rest(1.0, 0.5, 0.5, 10.0);
-    let exact = trial.exact::<f64>()?;
-    let error = |states: Vec<State<f64>>| largest_difference(&states, &exact);
-    let order8 = error(trial.states::<f64, DirectionForm8<f64>>(1.0 / 32.0)?);
-    let order12 = error(trial.states::<f64, ExtrapolatedForm<12>>(1.0 / 11.2)?);
-    let order16 = error(trial.states::<f64, ExtrapolatedForm<16>>(1.0 / 6.4)?);
-    println!("{order8:.1e} {order12:.1e} {order16:.1e}");
-    assert!(order12 < order8 && order16 < order8, "{order8:e} {order12:e} {order16:e}");
-    Ok(())
-}
-
-#[test]
-fn a_checkpoint_goes_on_to_the_bit() -> Result<(), Error> {
-    let form = ExtrapolatedForm::<12>::new(&Parameters::equal_rods(1.0, 1.0, 9.81), 0.05)?;
-    let mut motion = form.start(&State::at_rest(2.0, 2.0))?;
-    form.advance(&mut motion, 10);
-    assert_eq!(form.restore(form.save(&motion).as_ref()), Ok(motion));
     Ok(())
 }

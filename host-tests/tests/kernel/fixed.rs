@@ -243,21 +243,14 @@ fn what_has_no_room_is_refused_by_name() -> Result<(), Error> {
 }
 
 #[test]
-fn how_steps_are_dealt_out_changes_nothing_and_a_checkpoint_goes_on_to_the_bit() -> Result<(), Error> {
+fn how_steps_are_dealt_out_changes_nothing() -> Result<(), Error> {
     fn same<F: Form<f64>>() -> Result<(), Error> {
         let form = F::new(&Parameters { l2: 0.4, ..Parameters::equal_rods(3.0, 1.0, 9.81) }, 1.0 / 256.0)?;
         let mut all = form.start(&State { a1: 1.0, a2: 2.0, p1: 0.1, p2: 0.2 })?;
         let mut each = all;
         form.advance(&mut all, 1000);
-        for i in 0..1000 {
-            if i == 500 {
-                each = form.restore(form.save(&each).as_ref()).expect("saved here");
-            }
-            form.advance(&mut each, 1);
-        }
+        (0..1000).for_each(|_| form.advance(&mut each, 1));
         assert_eq!(all, each);
-        let other = F::new(&Parameters::equal_rods(3.0, 1.0, 9.81), 1.0 / 256.0)?;
-        assert!(other.restore(form.save(&all).as_ref()).is_err());
         Ok(())
     }
     same::<Fixed32Form>()?;
@@ -297,9 +290,6 @@ fn a_motion_of_64_bits_is_right_or_said_to_be_lost() -> Result<(), Error> {
         let mut double = Stepper::<f64, ExtrapolatedForm<ORDER>>::new(&parameters, &start, dt)?;
         fixed.advance(3);
         double.advance(3);
-        let mut restored = Stepper::<f64, Fixed64Form<ORDER>>::new(&parameters, &start, dt)?;
-        restored.restore(fixed.save().as_ref()).expect("saved here");
-        assert_eq!(restored.state().finite().is_ok(), fixed.state().finite().is_ok(), "a checkpoint forgets no loss");
         let [fixed, double] = [fixed.state(), double.state()];
         Ok(fixed.finite().ok().map(|fixed| largest_difference(&[fixed], &[double])))
     }

@@ -9,7 +9,6 @@ mod fixed;
 mod flips;
 mod forms;
 mod hard_cases;
-mod interpolation;
 mod invariants;
 mod known_answers;
 mod lagrange;

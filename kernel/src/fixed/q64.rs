@@ -12,8 +12,6 @@ use crate::sealed::Sealed;
 ///
 /// A sum that has no room wraps; [`reach`](Self::reach) is what tells whether it can.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Q64(pub i64);
 
 /// 2^64.

@@ -19,8 +19,6 @@ const MOST: i32 = 12;
 ///
 /// For equal rods and masses all shifts are 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Scaling {
     /// T, s; negative where time runs backwards.
     pub time: f64,
@@ -38,8 +36,6 @@ pub(crate) struct Scaling {
 
 /// What the quantities' units differ by, as powers of two.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Shifts {
     /// C P2 is so many times less as a part of P1.
     pub momentum: u32,

@@ -28,8 +28,6 @@ use crate::state::State;
 
 /// When a rod first turns over.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Flip<R> {
     /// Never: there is not the energy for it.
     Never,
@@ -45,7 +43,6 @@ pub enum Flip<R> {
 /// linearly in the sine. The cost is that of the form's step and some 15 operations. How many starts are judged right with steps of
 /// [`step_size`] the repository's tests assert: of equal rods and bobs 99.9 % within 10 sqrt(l/g), in any arithmetic.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Flips<R: Real, F: Form<R>> {
     form: F,
     pendulum: Pendulum<R>,
@@ -57,8 +54,6 @@ pub struct Flips<R: Real, F: Form<R>> {
 
 /// A motion that has not turned over yet.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Falling<C, P> {
     carried: C,
     heads: [Direction<P>; 2],
@@ -67,22 +62,6 @@ pub struct Falling<C, P> {
 
 /// The same, followed by the form `F`.
 pub type FallingBy<R, F> = Falling<<F as Form<R>>::Carried, <F as Watched<R>>::Part>;
-
-#[cfg(feature = "defmt")]
-impl<R: Real + defmt::Format, F: Form<R, Carried: defmt::Format> + defmt::Format> defmt::Format for Flips<R, F> {
-    fn format(&self, f: defmt::Formatter) {
-        let Self { form, pendulum, highest, dt, steps } = self;
-        defmt::write!(
-            f,
-            "Flips {{ form: {}, pendulum: {}, highest: {}, dt: {}, steps: {} }}",
-            form,
-            pendulum,
-            highest,
-            dt,
-            steps
-        );
-    }
-}
 
 impl<C, P> Falling<C, P> {
     /// Steps made.

@@ -3,7 +3,6 @@
 //! Loops and functions rather than array methods and closures, which are not always inlined in code for a processor's vectors.
 
 use super::equations::{Coefficients, Rates, Same, increments};
-use super::inverse::Inverse;
 use crate::ring::Ring;
 
 /// A motion's z, and r there.
@@ -22,38 +21,38 @@ pub(crate) struct Stage<R> {
 
 /// k1 + 2 k2 + 2 k3 + k4 of the step from `start`, and the inverse at the last stage.
 #[inline(always)]
-pub(crate) fn stages<R: Ring<Gravity = R, Slope = R, Torque = R>, I: Inverse<R>>(
+pub(crate) fn stages<R: Ring<Gravity = R, Slope = R, Torque = R>>(
     coefficients: &Coefficients<R>,
     start: &Point<R>,
 ) -> ([R; 6], R) {
-    let mut stage = Stage::first::<I>(coefficients, start);
-    stage.second::<I>(coefficients, start);
-    stage.third::<I>(coefficients, start);
+    let mut stage = Stage::first(coefficients, start);
+    stage.second(coefficients, start);
+    stage.third(coefficients, start);
     stage.last(coefficients)
 }
 
 impl<R: Ring<Gravity = R, Slope = R, Torque = R>> Stage<R> {
     /// After k1.
     #[inline(always)]
-    pub fn first<I: Inverse<R>>(coefficients: &Coefficients<R>, start: &Point<R>) -> Self {
+    pub fn first(coefficients: &Coefficients<R>, start: &Point<R>) -> Self {
         let k1 = increments(&start.z, start.rates(coefficients));
-        Self { at: start.ahead::<I>(coefficients, &k1, start), sum: k1 }
+        Self { at: start.ahead(&k1, start), sum: k1 }
     }
 
     /// After k2.
     #[inline(always)]
-    pub fn second<I: Inverse<R>>(&mut self, coefficients: &Coefficients<R>, start: &Point<R>) {
+    pub fn second(&mut self, coefficients: &Coefficients<R>, start: &Point<R>) {
         let k2 = increments(&self.at.z, self.at.rates(coefficients));
         self.sum = with(&self.sum, &k2, |sum, k2| sum + k2.twice());
-        self.at = start.ahead::<I>(coefficients, &k2, &self.at);
+        self.at = start.ahead(&k2, &self.at);
     }
 
     /// After k3.
     #[inline(always)]
-    pub fn third<I: Inverse<R>>(&mut self, coefficients: &Coefficients<R>, start: &Point<R>) {
+    pub fn third(&mut self, coefficients: &Coefficients<R>, start: &Point<R>) {
         let twice_k3 = increments(&self.at.z, self.at.rates(coefficients).doubled());
         self.sum = with(&self.sum, &twice_k3, R::add);
-        self.at = start.ahead::<I>(coefficients, &twice_k3, &self.at);
+        self.at = start.ahead(&twice_k3, &self.at);
     }
 
     /// As of [`stages`].
@@ -72,10 +71,10 @@ impl<R: Ring<Gravity = R, Slope = R, Torque = R>> Point<R> {
 
     /// The point `k` further, where `k` was found at `from`: the inverse falls by 2 S S' r^2.
     #[inline(always)]
-    fn ahead<I: Inverse<R>>(&self, coefficients: &Coefficients<R>, k: &[R; 6], from: &Self) -> Self {
+    fn ahead(&self, k: &[R; 6], from: &Self) -> Self {
         let z = with(&self.z, k, R::add);
         let fall = k[2].twice() * (from.z[2] * from.inverse) * from.inverse;
-        Self { z, inverse: I::at_stage(self.inverse, fall, coefficients.denominator(z[2])) }
+        Self { z, inverse: self.inverse - fall }
     }
 }
 
@@ -96,6 +95,13 @@ pub(crate) fn rates<R: Ring<Gravity = R, Slope = R, Torque = R>>(
     inverse: R,
 ) -> Rates<R> {
     coefficients.rates(&Same, [sin1, cos1], [s, c], [p1, p2], inverse)
+}
+
+/// r = 1/(m + S^2) at the end of a step, by one Newton step from that of its last stage, which is off by the third power of
+/// the step. A step that changes r by a third or more makes no sense with it, nor with RK4.
+#[inline(always)]
+pub(crate) fn newton_inverse<R: Ring>(last: R, inertia: R, s: R) -> R {
+    last + last * ((R::constant(1.0) - inertia * last) - (s * last) * s)
 }
 
 /// By how much of itself a vector (`s`, `c`), whose sum lacks `lost` in direction of it, is shorter than `length`, to first

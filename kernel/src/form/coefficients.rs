@@ -1,22 +1,10 @@
 //! The constants of the equations in the units of the step, and the way there and back.
 
-use super::checkpoint::Check;
 use super::equations::{Coefficients, Rates};
 use crate::error::{Error, Parameter};
 use crate::params::Parameters;
 use crate::real::Real;
 use crate::state::State;
-
-impl<R: Real> Coefficients<R> {
-    /// Adds all of it to the check of a form.
-    #[must_use]
-    pub fn check(&self, scale: &Scale, check: Check) -> Check {
-        let Self { norm, inertia, gravity: [gravity1, gravity2] } = *self;
-        let Scale { time, momentum, lag } = *scale;
-        let constants = [norm, inertia, gravity1, gravity2].map(R::bits);
-        check.with(R::EPSILON.bits()).with_all(constants).with_all([time, momentum, lag].map(f64::to_bits))
-    }
-}
 
 /// A third, by which k1 + 2 k2 + 2 k3 + k4 becomes the increment of a step.
 #[inline(always)]
@@ -43,8 +31,6 @@ impl Span {
 
 /// How the units of the step translate to SI. In `f64`; used at input and output only.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Scale {
     /// tau, s.
     time: f64,

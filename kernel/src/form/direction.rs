@@ -2,11 +2,9 @@
 
 use core::marker::PhantomData;
 
-use super::checkpoint::{Check, RestoreError, Words};
 use super::classical::{self, Point};
 use super::coefficients::{Scale, Span, prepare, third};
 use super::equations::{Coefficients, Rates};
-use super::inverse::{Followed, Inverse};
 use super::sum::{Compensated, Sum};
 use super::{Direction, Form, lower_direction, lower_ray};
 use crate::error::Error;
@@ -23,20 +21,16 @@ use crate::trig::{Own, SinCos};
 /// (w dt)^6/72 a step, is undone every 32 steps. Angles are read off within (-pi, pi]; [`Winding`](super::Winding) counts
 /// the turns where they are wanted.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct DirectionForm<R, S = Compensated<R>, I = Followed> {
+pub struct DirectionForm<R, S = Compensated<R>> {
     pub(super) coefficients: Coefficients<R>,
     scale: Scale,
     /// 1/(2 nu^2).
     pub(super) half_inverse_square: R,
-    ways: PhantomData<(S, I)>,
+    sum: PhantomData<S>,
 }
 
 /// What the direction form carries from step to step: 64 bytes in compensated `f32`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct DirectionState<R, S> {
     /// sin a1, cos a1, S, C, P1, P2.
     pub(super) z: [R; 6],
@@ -48,9 +42,9 @@ pub struct DirectionState<R, S> {
 /// Steps from one restoring of the lengths to the next.
 pub(crate) const RESTORING: u32 = 32;
 
-impl<R: Real, S: Sum<R>, I: Inverse<R>> Sealed for DirectionForm<R, S, I> {}
+impl<R: Real, S: Sum<R>> Sealed for DirectionForm<R, S> {}
 
-impl<R: Real, S: Sum<R>, I: Inverse<R>> Form<R> for DirectionForm<R, S, I> {
+impl<R: Real, S: Sum<R>> Form<R> for DirectionForm<R, S> {
     type Carried = DirectionState<R, S>;
     const ORDER: u32 = 4;
 
@@ -99,38 +93,13 @@ impl<R: Real, S: Sum<R>, I: Inverse<R>> Form<R> for DirectionForm<R, S, I> {
         feed(carried.inverse.bits());
         feed(carried.steps);
     }
-
-    type Saved = [u64; 15];
-
-    fn save(&self, carried: &Self::Carried) -> Self::Saved {
-        self.check(4).save(|feed| Self::bits(carried, feed))
-    }
-
-    fn restore(&self, saved: &[u64]) -> Result<Self::Carried, RestoreError> {
-        self.restore_checked(self.check(4), saved)
-    }
 }
 
-impl<R: Real, S: Sum<R>, I: Inverse<R>> DirectionForm<R, S, I> {
+impl<R: Real, S: Sum<R>> DirectionForm<R, S> {
     pub(super) fn with_span(parameters: &Parameters<R>, dt: f64, span: Span) -> Result<Self, Error> {
         let (coefficients, scale) = prepare(parameters, dt, span)?;
         let half_inverse_square = R::HALF / (coefficients.norm * coefficients.norm);
-        Ok(Self { coefficients, scale, half_inverse_square, ways: PhantomData })
-    }
-
-    /// Tells its checkpoints from others, and those of steps of another `order`.
-    pub(super) fn check(&self, order: u64) -> Check {
-        self.coefficients.check(&self.scale, Check::new(order).with(S::KIND).with(0x10 + I::KIND))
-    }
-
-    pub(super) fn restore_checked(&self, check: Check, saved: &[u64]) -> Result<DirectionState<R, S>, RestoreError> {
-        let mut words = check.open::<15>(saved)?;
-        Ok(DirectionState {
-            z: words.each(Words::number)?,
-            sums: words.each(|words| S::restore(words.number()?).ok_or(RestoreError::NotSavedHere))?,
-            inverse: words.number()?,
-            steps: words.word()?,
-        })
+        Ok(Self { coefficients, scale, half_inverse_square, sum: PhantomData })
     }
 
     /// Steps, at most to the next restoring of the lengths.
@@ -148,11 +117,11 @@ impl<R: Real, S: Sum<R>, I: Inverse<R>> DirectionForm<R, S, I> {
     #[inline(always)]
     fn step(&self, carried: &mut DirectionState<R, S>) {
         let DirectionState { z, inverse, .. } = *carried;
-        let (sum, last) = classical::stages::<R, I>(&self.coefficients, &Point { z, inverse });
+        let (sum, last) = classical::stages(&self.coefficients, &Point { z, inverse });
         for i in 0..6 {
             carried.z[i] = carried.sums[i].add(z[i], sum[i] * third());
         }
-        carried.inverse = I::at_end(last, self.coefficients.inertia, carried.z[2]);
+        carried.inverse = classical::newton_inverse(last, self.coefficients.inertia, carried.z[2]);
     }
 
     /// Makes sin^2 a1 + cos^2 a1 = 1 and S^2 + C^2 = nu^2 again, to first order in what they miss.

@@ -1,12 +1,11 @@
 //! The plain direction form for many motions at once.
 
 use super::Direction;
-use super::classical::{Point, Stage, missing};
+use super::classical::{Point, Stage, missing, newton_inverse};
 use super::coefficients::third;
 use super::direction::{DirectionForm, DirectionState};
 use super::equations::Coefficients;
 use super::heads::heads;
-use super::inverse::{Followed, Inverse};
 use super::sum::Plain;
 use crate::lanes::Lanes;
 use crate::real::Real;
@@ -41,7 +40,7 @@ impl<R: Real, const N: usize, const ROWS: usize> DirectionLanes<R, N, ROWS> {
             gravity: gravity.map(Lanes::splat),
         };
         let start = Point { z: motion.z.map(Lanes::splat), inverse: Lanes::splat(motion.inverse) };
-        let stage = Stage::first::<Followed>(&coefficients, &start);
+        let stage = Stage::first(&coefficients, &start);
         Self { coefficients, half_inverse_square: form.half_inverse_square, rows: [Row { start, stage }; ROWS] }
     }
 
@@ -60,20 +59,20 @@ impl<R: Real, const N: usize, const ROWS: usize> DirectionLanes<R, N, ROWS> {
     pub fn step(&mut self) {
         let Self { coefficients, rows, .. } = self;
         for Row { start, stage } in &mut *rows {
-            *stage = Stage::first::<Followed>(coefficients, start);
+            *stage = Stage::first(coefficients, start);
         }
         for Row { start, stage } in &mut *rows {
-            stage.second::<Followed>(coefficients, start);
+            stage.second(coefficients, start);
         }
         for Row { start, stage } in &mut *rows {
-            stage.third::<Followed>(coefficients, start);
+            stage.third(coefficients, start);
         }
         for Row { start: Point { z, inverse }, stage } in &mut *rows {
             let (sum, last) = stage.last(coefficients);
             for (z, sum) in z.iter_mut().zip(sum) {
                 *z = *z + sum * Lanes::splat(third());
             }
-            *inverse = <Followed as Inverse<Lanes<R, N>>>::at_end(last, coefficients.inertia, z[2]);
+            *inverse = newton_inverse(last, coefficients.inertia, z[2]);
         }
     }
 

@@ -1,6 +1,5 @@
 //! Hamilton's equations, written once for every kind of number.
 
-use crate::real::Real;
 use crate::ring::Ring;
 
 /// The constants of the equations of motion, with momenta scaled to leave no needless factor.
@@ -14,8 +13,6 @@ use crate::ring::Ring;
 /// Rods of any lengths cost what equal rods do. Floating point counts time in tau, a step or half of one
 /// ([`Span`](super::coefficients::Span)), so that no rate is multiplied by dt.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Coefficients<R, G = R> {
     /// nu.
     pub norm: R,
@@ -138,14 +135,8 @@ impl<R: Ring> Coefficients<R, R::Gravity> {
     /// The rates where `upper` is (sin a1, cos a1), `elbow` is (S, C), `momenta` is (P1, P2), and `inverse` is r.
     #[inline(always)]
     pub fn rates(&self, units: &impl Units<R>, upper: [R; 2], elbow: [R; 2], [p1, p2]: [R; 2], inverse: R) -> Rates<R> {
-        let u = units.rate(p1 - units.momentum(elbow[1] * p2), inverse);
-        self.rates_at(units, upper, elbow, p2, u)
-    }
-
-    /// The rates where rod 1 turns at `u`.
-    #[inline(always)]
-    fn rates_at(&self, units: &impl Units<R>, [sin1, cos1]: [R; 2], [s, c]: [R; 2], p2: R, u: R) -> Rates<R> {
-        let [gravity1, gravity2] = self.gravity;
+        let ([sin1, cos1], [s, c], [gravity1, gravity2]) = (upper, elbow, self.gravity);
+        let u = units.rate(p1 - units.momentum(c * p2), inverse);
         let v = p2 - units.swing(c * u);
         let u = units.paced(u);
         let [force1, force2] = units.forces(units.force(u, v, s));
@@ -156,15 +147,6 @@ impl<R: Ring> Coefficients<R, R::Gravity> {
                 force2 - units.weight(R::weight(gravity2, units.lower(sin1 * c - cos1 * s))),
             ],
         }
-    }
-}
-
-impl<R: Real> Coefficients<R> {
-    /// The rates, r not being known.
-    #[inline(always)]
-    pub fn rates_by_division(&self, upper: [R; 2], elbow: [R; 2], [p1, p2]: [R; 2]) -> Rates<R> {
-        let u = (p1 - elbow[1] * p2) / self.denominator(elbow[0]);
-        self.rates_at(&Same, upper, elbow, p2, u)
     }
 }
 

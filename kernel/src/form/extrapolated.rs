@@ -1,10 +1,8 @@
 //! The direction form by extrapolation: the exact motion to the last digits of an `f64`, cheaply.
 
-use super::checkpoint::{Check, RestoreError};
 use super::coefficients::Span;
 use super::direction::{DirectionForm, DirectionState};
 use super::equations::{Coefficients, Units, increments};
-use super::inverse::Divided;
 use super::sum::{Compensated, Sum};
 use super::{Direction, Form};
 use crate::error::Error;
@@ -17,10 +15,8 @@ use crate::state::State;
 /// As [`DirectionForm`], but each step by [`Extrapolation`] of order `ORDER`, 2, 4 .. 16, after which the lengths of the
 /// directions are restored. Four rows go through the step side by side, in the vectors of processors that have them.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ExtrapolatedForm<const ORDER: u32, S = Compensated<f64>> {
-    direction: DirectionForm<f64, S, Divided>,
+    direction: DirectionForm<f64, S>,
     method: Extrapolation<f64>,
 }
 
@@ -82,12 +78,6 @@ impl System<f64, LANES, 6> for Rows<'_> {
     }
 }
 
-impl<const ORDER: u32, S: Sum<f64>> ExtrapolatedForm<ORDER, S> {
-    fn check(&self) -> Check {
-        self.direction.check(256 + u64::from(ORDER))
-    }
-}
-
 impl<const ORDER: u32, S: Sum<f64>> Sealed for ExtrapolatedForm<ORDER, S> {}
 
 impl<const ORDER: u32, S: Sum<f64>> Form<f64> for ExtrapolatedForm<ORDER, S> {
@@ -127,16 +117,6 @@ impl<const ORDER: u32, S: Sum<f64>> Form<f64> for ExtrapolatedForm<ORDER, S> {
     }
 
     fn bits(carried: &Self::Carried, feed: impl FnMut(u64)) {
-        DirectionForm::<f64, S, Divided>::bits(carried, feed);
-    }
-
-    type Saved = [u64; 15];
-
-    fn save(&self, carried: &Self::Carried) -> Self::Saved {
-        self.check().save(|feed| Self::bits(carried, feed))
-    }
-
-    fn restore(&self, saved: &[u64]) -> Result<Self::Carried, RestoreError> {
-        self.direction.restore_checked(self.check(), saved)
+        DirectionForm::<f64, S>::bits(carried, feed);
     }
 }

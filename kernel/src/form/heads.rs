@@ -2,7 +2,6 @@
 
 use super::direction::{DirectionForm, DirectionState};
 use super::fixed32::{Fixed32Form, Fixed32State};
-use super::inverse::Inverse;
 use super::sum::Sum;
 use super::{Direction, Form};
 use crate::error::Error;
@@ -31,7 +30,7 @@ pub trait Watched<R: Real>: Form<R> {
     }
 }
 
-impl<R: Real + Part, S: Sum<R>, I: Inverse<R>> Watched<R> for DirectionForm<R, S, I> {
+impl<R: Real + Part, S: Sum<R>> Watched<R> for DirectionForm<R, S> {
     type Part = R;
     #[inline(always)]
     fn heads(carried: &DirectionState<R, S>) -> [Direction<R>; 2] {

@@ -1,4 +1,4 @@
-//! The pendulum in forms that step fast at a fixed step: on its angles, or on the directions of its rods alone.
+//! The pendulum in forms that step fast at a fixed step, on the directions of its rods alone.
 //!
 //! [`Pendulum::step`](crate::Pendulum::step) is the classical method as one writes it down. The forms here do the same
 //! in the units of the step, with fewer operations, and carry the rounding error of their additions along unless told
@@ -8,12 +8,11 @@
 //!
 //! | form | cycles | 10 s | 100 s |
 //! |---|---|---|---|
-//! | [`AngleForm`] compensated, `f32` | 360 | 3e-8 | 2.7e-7 |
-//! | [`DirectionForm`] compensated, `f32` | 208 | 4e-8 | 4e-7 |
+//! | [`DirectionForm`] compensated, `f32` | 202 | 4e-8 | 4e-7 |
 //! | [`DirectionForm`] plain, `f32` | 159 | 2e-6 | 2e-5 |
 //!
 //! Where an error of 1e-9 or less is wanted, [`ExtrapolatedForm`] takes far fewer steps in `f64`; on chips that compute `f64` in
-//! software [`Fixed64Form`] does the same for a tenth of the cycles. [`DirectionForm8`] is there to be compared with.
+//! software [`Fixed64Form`] does the same for a tenth of the cycles.
 //!
 //! ```
 //! use double_pendulum::form::{DirectionForm, Stepper};
@@ -27,37 +26,26 @@
 //! # Ok::<(), double_pendulum::Error>(())
 //! ```
 
-mod angle;
-mod angle_accumulator;
-mod checkpoint;
 mod classical;
 mod coefficients;
 mod direction;
-mod direction8;
 mod direction_lanes;
 pub(crate) mod equations;
 mod extrapolated;
 mod fixed32;
 mod fixed64;
 mod heads;
-mod interpolation;
-mod inverse;
 mod stepper;
 mod sum;
 mod winding;
 
-pub use angle::{AngleForm, AngleState};
-pub use checkpoint::RestoreError;
 pub(crate) use direction::RESTORING;
 pub use direction::{DirectionForm, DirectionState};
 pub(crate) use direction_lanes::DirectionLanes;
-pub use direction8::DirectionForm8;
 pub use extrapolated::{ExtrapolatedForm, ExtrapolatedState};
 pub use fixed32::{Fixed32Form, Fixed32State};
 pub use fixed64::{Fixed64Form, Fixed64State};
 pub use heads::{Part, Watched};
-pub use interpolation::{Interpolation, Node};
-pub use inverse::{Divided, Followed, Inverse};
 pub use stepper::{Stepper, UnwrappedStepper};
 pub use sum::{Compensated, Plain, Sum};
 pub use winding::Winding;
@@ -96,7 +84,7 @@ pub trait Form<R: Real>: Sealed + Copy + core::fmt::Debug + PartialEq {
 
     /// The motion that starts from `state`.
     ///
-    /// Refuses NaN and infinite values and momenta out of range; the angle form also angles beyond 800,000 rad.
+    /// Refuses NaN and infinite values and momenta out of range.
     fn start(&self, state: &State<R>) -> Result<Self::Carried, Error>;
 
     /// Makes `steps` steps. How they are dealt out to calls makes no difference to any bit.
@@ -131,20 +119,6 @@ pub trait Form<R: Real>: Sealed + Copy + core::fmt::Debug + PartialEq {
 
     /// Gives `feed` the bit patterns of all that is carried, the number of steps among them, to compare machines by.
     fn bits(carried: &Self::Carried, feed: impl FnMut(u64));
-
-    /// The words of a checkpoint.
-    type Saved: Copy + core::fmt::Debug + PartialEq + AsRef<[u64]>;
-
-    /// All that is carried, as words to keep: [`restore`](Self::restore) makes the same motion of them, to the bit, on any
-    /// machine. The first word is a check of the others and of the form with its pendulum and step.
-    #[must_use]
-    fn save(&self, carried: &Self::Carried) -> Self::Saved;
-
-    /// The motion that was saved.
-    ///
-    /// Refuses words that no [`save`](Self::save) of this form, pendulum and step can have written, and every change of a
-    /// single word.
-    fn restore(&self, saved: &[u64]) -> Result<Self::Carried, RestoreError>;
 }
 
 /// The direction of rod 2 from that of rod 1 and (S, C) = `norm` (sin D, cos D), a2 = a1 - D.

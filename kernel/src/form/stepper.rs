@@ -1,6 +1,6 @@
 //! A form together with one motion in it.
 
-use super::{Direction, Form, RestoreError, Winding};
+use super::{Direction, Form, Winding};
 use crate::error::Error;
 use crate::params::Parameters;
 use crate::real::Real;
@@ -23,7 +23,6 @@ use crate::state::State;
 /// # Ok::<(), double_pendulum::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Stepper<R: Real, F: Form<R>> {
     form: F,
     carried: F::Carried,
@@ -76,37 +75,9 @@ impl<R: Real, F: Form<R>> Stepper<R, F> {
         self.form.state(&self.carried)
     }
 
-    /// The motion as words to keep ([`Form::save`]).
-    #[must_use]
-    pub fn save(&self) -> F::Saved {
-        self.form.save(&self.carried)
-    }
-
-    /// Goes on from a checkpoint of this pendulum and step ([`Form::restore`]); stays as it is where that is refused.
-    pub fn restore(&mut self, saved: &[u64]) -> Result<(), RestoreError> {
-        self.carried = self.form.restore(saved)?;
-        Ok(())
-    }
-
     /// Gives `feed` the bit patterns of all that is carried ([`Form::bits`]).
     pub fn bits(&self, feed: impl FnMut(u64)) {
         F::bits(&self.carried, feed);
-    }
-}
-
-#[cfg(feature = "defmt")]
-impl<R: Real, F: Form<R, Carried: defmt::Format> + defmt::Format> defmt::Format for Stepper<R, F> {
-    fn format(&self, f: defmt::Formatter) {
-        defmt::write!(f, "Stepper {{ form: {}, carried: {} }}", self.form, self.carried);
-    }
-}
-
-#[cfg(feature = "defmt")]
-impl<R: Real + defmt::Format, F: Form<R, Carried: defmt::Format> + defmt::Format> defmt::Format
-    for UnwrappedStepper<R, F>
-{
-    fn format(&self, f: defmt::Formatter) {
-        defmt::write!(f, "UnwrappedStepper {{ stepper: {}, windings: {} }}", self.stepper, self.windings);
     }
 }
 
@@ -114,14 +85,6 @@ impl<R: Real + defmt::Format, F: Form<R, Carried: defmt::Format> + defmt::Format
 ///
 /// It looks at the directions after each step, so a step may turn a rod by a quarter turn at most.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(
-    feature = "serde",
-    serde(bound(
-        serialize = "R: serde::Serialize, Stepper<R, F>: serde::Serialize",
-        deserialize = "R: serde::Deserialize<'de>, Stepper<R, F>: serde::Deserialize<'de>"
-    ))
-)]
 pub struct UnwrappedStepper<R: Real, F: Form<R>> {
     stepper: Stepper<R, F>,
     windings: [Winding<R>; 2],
@@ -178,20 +141,6 @@ impl<R: Real, F: Form<R>> UnwrappedStepper<R, F> {
     pub fn unwrap(&self, state: State<f64>) -> State<f64> {
         let [winding1, winding2] = &self.windings;
         State { a1: winding1.unwrap(state.a1), a2: winding2.unwrap(state.a2), ..state }
-    }
-
-    /// The motion as words to keep, and the whole turns of both rods.
-    #[must_use]
-    pub fn save(&self) -> (F::Saved, [i32; 2]) {
-        (self.stepper.save(), [self.windings[0].turns(), self.windings[1].turns()])
-    }
-
-    /// As [`Stepper::restore`], with the turns that were saved.
-    pub fn restore(&mut self, saved: &[u64], turns: [i32; 2]) -> Result<(), RestoreError> {
-        self.stepper.restore(saved)?;
-        let [upper, lower] = self.stepper.directions();
-        self.windings = [Winding::restore(turns[0], upper), Winding::restore(turns[1], lower)];
-        Ok(())
     }
 
     /// The motion without its turns.

@@ -7,8 +7,6 @@ use crate::real::Real;
 ///
 /// Show it the direction at least once every quarter turn; then [`angle`](Self::angle) is the unwrapped angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Winding<R> {
     turns: i32,
     last: Direction<R>,
@@ -22,12 +20,6 @@ impl<R: Real> Winding<R> {
         let (turns, rest) = split(start.to_f64());
         let (sin, cos) = rest.own_sin_cos();
         Self { turns, last: [R::from_f64(sin), R::from_f64(cos)] }
-    }
-
-    /// That has counted `turns` and was last shown the direction `last`.
-    #[must_use]
-    pub fn restore(turns: i32, last: Direction<R>) -> Self {
-        Self { turns, last }
     }
 
     /// Takes note of the direction (sin, cos) the angle has now.

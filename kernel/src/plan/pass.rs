@@ -16,8 +16,6 @@ const TOLERATED: f32 = 1.0;
 
 /// How a method has fared so far.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Candidate {
     /// The method.
     pub method: Method,
@@ -68,8 +66,6 @@ impl Candidate {
 /// its roundings do.
 #[expect(clippy::large_enum_variant, reason = "without a heap there is nowhere else to keep it")]
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 enum Shadowed {
     Direction(ShadowedRun<f32, DirectionForm<f32>>),
     Fixed32(ShadowedRun<f32, Fixed32Form>),
@@ -129,8 +125,6 @@ impl Shadowed {
 
 /// Looking ahead with one step size: a shadowed run, and what is compared with it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Pass {
     shadowed: Shadowed,
     plain: Run<f32, DirectionForm<f32, Plain>>,

@@ -11,14 +11,6 @@ pub type Directions = [Direction<f32>; 2];
 
 /// A motion in the form `F`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(
-    feature = "serde",
-    serde(bound(
-        serialize = "R: serde::Serialize, Stepper<R, F>: serde::Serialize",
-        deserialize = "R: serde::Deserialize<'de>, Stepper<R, F>: serde::Deserialize<'de>"
-    ))
-)]
 pub(super) struct Run<R: Real, F: Form<R>> {
     motion: Motion<R, F>,
     per_frame: u32,
@@ -28,14 +20,6 @@ pub(super) struct Run<R: Real, F: Form<R>> {
 
 /// Before its steps are prepared, and from then on.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(
-    feature = "serde",
-    serde(bound(
-        serialize = "R: serde::Serialize, Stepper<R, F>: serde::Serialize",
-        deserialize = "R: serde::Deserialize<'de>, Stepper<R, F>: serde::Deserialize<'de>"
-    ))
-)]
 enum Motion<R: Real, F: Form<R>> {
     /// A pendulum, its start, and the step, s.
     Given(Parameters<R>, State<R>, f64),
@@ -79,21 +63,6 @@ impl<R: Real, F: Form<R>> Run<R, F> {
             Motion::Given(..) => [[f32::NAN; 2]; 2],
             Motion::Prepared(motion) => motion.directions().map(|direction| direction.map(|x| x.to_f64() as f32)),
         }
-    }
-}
-
-#[cfg(feature = "defmt")]
-impl<R: Real + defmt::Format, F: Form<R>> defmt::Format for Run<R, F>
-where
-    Stepper<R, F>: defmt::Format,
-{
-    fn format(&self, f: defmt::Formatter) {
-        let Self { motion, per_frame, made } = self;
-        match motion {
-            Motion::Given(parameters, start, dt) => defmt::write!(f, "Run {{ {}, {}, dt: {}", parameters, start, dt),
-            Motion::Prepared(motion) => defmt::write!(f, "Run {{ {}", motion),
-        }
-        defmt::write!(f, ", per_frame: {}, made: {} }}", per_frame, made);
     }
 }
 

@@ -39,8 +39,6 @@ const WORTH: f64 = 1.1;
 
 /// A search under way; [`advance`](Self::advance) it until there is a plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Search {
     problem: Problem,
     costs: Costs,

@@ -18,8 +18,6 @@ pub const MARGIN: f32 = 2.0;
 
 /// How far the runs are apart that tell how wrong one of them is, over the tolerance.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ErrorEstimate {
     /// The one with finer steps; it has other roundings, too.
     pub step: f32,
@@ -57,14 +55,6 @@ impl ErrorEstimate {
 /// A motion beside one with finer steps, for the error of the step, and two whose given numbers are off by as much as
 /// rounding may make them, for the error of rounding.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(
-    feature = "serde",
-    serde(bound(
-        serialize = "R: serde::Serialize, crate::form::Stepper<R, F>: serde::Serialize",
-        deserialize = "R: serde::Deserialize<'de>, crate::form::Stepper<R, F>: serde::Deserialize<'de>"
-    ))
-)]
 pub struct ShadowedRun<R: Real, F: Form<R>> {
     own: Run<R, F>,
     finer: Run<R, F>,
@@ -135,16 +125,5 @@ impl<R: Real, F: Form<R>> ShadowedRun<R, F> {
         while self.prepare()? {}
         while self.advance(u32::MAX) > 0 {}
         Ok(self.frame())
-    }
-}
-
-#[cfg(feature = "defmt")]
-impl<R: Real + defmt::Format, F: Form<R>> defmt::Format for ShadowedRun<R, F>
-where
-    crate::form::Stepper<R, F>: defmt::Format,
-{
-    fn format(&self, f: defmt::Formatter) {
-        let Self { own, finer, perturbed, rods } = self;
-        defmt::write!(f, "ShadowedRun {{ own: {}, finer: {}, perturbed: {}, rods: {} }}", own, finer, perturbed, rods);
     }
 }

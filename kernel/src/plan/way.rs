@@ -24,8 +24,6 @@ pub struct Way {
 
 /// A motion, frame by frame, in the way that was chosen for it: to the bit what the search looked at.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct WayStepper {
     way: Way,
     rate: u16,
@@ -36,8 +34,6 @@ pub struct WayStepper {
 
 #[expect(clippy::large_enum_variant, reason = "without a heap there is nowhere else to keep it")]
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 enum Carried {
     ClosedForm(SmallOscillations<f32>, Pendulum<f32>),
     DirectionPlain(UnwrappedStepper<f32, DirectionForm<f32, Plain>>),

@@ -6,7 +6,7 @@
 const TWO_OVER_PI: f64 = core::f64::consts::FRAC_2_PI;
 
 /// pi/2 in three parts. The first two hold 33 bits each, so that k times them is exact for every k up to 2^20.
-pub const PI_OVER_TWO: [f64; 3] = [1.5707963267341256, 6.077100506303966e-11, 2.0222662487959506e-21];
+const PI_OVER_TWO: [f64; 3] = [1.5707963267341256, 6.077100506303966e-11, 2.0222662487959506e-21];
 
 /// Adding this, 3 * 2^51, rounds to a whole number, which then stands in the low bits of the sum.
 const ROUNDER: f64 = 6_755_399_441_055_744.0;
@@ -32,25 +32,6 @@ const COSINE: [f64; 6] = [
     -2.7557313954278097e-7,
     2.08756677675132e-9,
     -1.1356709826679715e-11,
-];
-
-/// (sin x - x)/x^3 in powers of x^2, for abs x <= 0.06; error of the fit 1.6e-19.
-const SMALL_SINE: [f64; 3] = [-0.16666666666663446, 0.00833333328667952, -0.00019839236124880036];
-
-/// (cos x - 1 + x^2/2)/x^4 in powers of x^2, for abs x <= 0.06; error of the fit 7.9e-17.
-const SMALL_COSINE: [f64; 2] = [0.0416666664810517, -0.0013887497374080757];
-
-/// Marks k pi/32 + offset, k = 0..8: (offset, sin, cos), rounded to nearest.
-pub const MARKS: [[f64; 3]; 9] = [
-    [0.0, 0.0, 1.0],
-    [0.0, 0.0980171403295606, 0.9951847266721969],
-    [0.0, 0.19509032201612828, 0.9807852804032304],
-    [0.0, 0.2902846772544624, 0.9569403357322088],
-    [0.0, 0.3826834323650898, 0.9238795325112867],
-    [0.0, 0.47139673682599764, 0.881921264348355],
-    [0.0, 0.5555702330196022, 0.8314696123025452],
-    [0.0, 0.6343932841636455, 0.773010453362737],
-    [0.0, core::f64::consts::FRAC_1_SQRT_2, core::f64::consts::FRAC_1_SQRT_2],
 ];
 
 /// (sin `x`, cos `x`).
@@ -82,41 +63,6 @@ fn first_octant(r: f64) -> (f64, f64) {
     let sine = r + r * z * (s1 + z * (s2 + z * (s3 + z * (s4 + z * (s5 + z * s6)))));
     let cosine = 1.0 - z * (0.5 - z * (c1 + z * (c2 + z * (c3 + z * (c4 + z * (c5 + z * c6))))));
     (sine, cosine)
-}
-
-/// The vector (s, c) for an angle `by` further on, as one writes a rotation: an operation less than by three shears, whose
-/// longer polynomials it does without, and fewer wait for one another.
-#[must_use]
-#[inline(always)]
-pub fn turned([s, c]: [f64; 2], by: f64) -> [f64; 2] {
-    let z = by * by;
-    let [s1, s2, s3] = SMALL_SINE;
-    let [c1, c2] = SMALL_COSINE;
-    let sine = by + (by * z) * (s1 + z * (s2 + z * s3));
-    let cosine = 1.0 - z * (0.5 - z * (c1 + z * c2));
-    [s * cosine + c * sine, c * cosine - s * sine]
-}
-
-/// The largest of the turns: the upper half of its bits, without the sign. No floating-point operation, each of which is a
-/// call on a Cortex-M.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Reach(u32);
-
-/// 0.06 rad, the upper half of its bits.
-const SMALL: u32 = (0.06_f64.to_bits() >> 32) as u32;
-
-impl Reach {
-    #[must_use]
-    #[inline(always)]
-    pub fn with(self, [a, b]: [f64; 2]) -> Self {
-        let size = |turn: f64| (turn.abs().to_bits() >> 32) as u32;
-        Self(self.0.max(size(a)).max(size(b)))
-    }
-    #[must_use]
-    #[inline(always)]
-    pub fn is_small(self) -> bool {
-        self.0 < SMALL
-    }
 }
 
 /// Beyond the range of the reduction; also NaN.

@@ -2,7 +2,7 @@
 
 use double_pendulum::Parameters;
 use firmware::job::Arithmetic::{F32, F32Compensated, F64, Fixed32};
-use firmware::job::Formulation::{Angle, Direction, DirectionDivided};
+use firmware::job::Formulation::Direction;
 use firmware::job::{Arithmetic, Formulation, Row};
 
 /// The most cycles (estimated) that a step of an arithmetic may take on a core.
@@ -34,14 +34,10 @@ const ALIKE: [f64; 2] = [1.0, 1.0];
 /// Every goal, for steps of 1/256 s from rest at 0.5 rad.
 #[rustfmt::skip]
 pub const GOALS: &[Goal] = &[
-    goal(F32Compensated, Angle,     M4F, ALIKE, 370.0,    "the trial's 387, which had no guard"),
-    goal(F32Compensated, Angle,     M4F, [1.0, 0.5], 410.0,    "10 % more for rods of any lengths"),
-    goal(F32Compensated, Direction, M4F, ALIKE, 220.0,    "the trial's 271"),
-    goal(F32,            Direction, M4F, ALIKE, 170.0,    "the trial's 198; no division"),
-    goal(F64,            Angle,     M4F, ALIKE, 31_000.0, "in software; 40,000 was asked, the trial's 57,500 had own sines on the angles"),
-    goal(F64,            Direction, M4F, ALIKE, 17_500.0, "cheaper still without angles"),
-    goal(F32,            DirectionDivided, M3, ALIKE, 9_200.0, "in software; 12,000 was asked. 70 additions of 55 cycles, 62 products of 49, 4 quotients of 117, and 1,000 of its own"),
-    goal(Fixed32,        Direction, M3,  ALIKE, 695.0, "the trial's 757; 690 is asked"),
+    goal(F32Compensated, Direction, M4F, ALIKE, 220.0,    "202 counted"),
+    goal(F32,            Direction, M4F, ALIKE, 170.0,    "159 counted; no division"),
+    goal(F64,            Direction, M4F, ALIKE, 17_500.0, "in software"),
+    goal(Fixed32,        Direction, M3,  ALIKE, 695.0, "689 counted"),
     goal(Fixed32,        Direction, M3,  [2.0, 0.5], 870.0, "a quarter more for shifts of each quantity"),
 ];
 

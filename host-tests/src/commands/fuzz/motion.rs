@@ -1,6 +1,6 @@
 //! The kernel on any bit patterns: parameters are refused or good for every method, steps are finite or refused.
 
-use double_pendulum::form::{AngleForm, DirectionForm, DirectionForm8, Form, Plain, Stepper};
+use double_pendulum::form::{DirectionForm, ExtrapolatedForm, Form, Plain, Stepper};
 use double_pendulum::{EqualRods, Error, Modes, Parameters, Pendulum, Real, State, Units};
 
 use super::Outcome;
@@ -70,17 +70,15 @@ fn constructed<R: Real>(numbers: [f64; 5], dt: f64, state: [f64; 4]) -> Outcome 
 pub fn steppers(input: &[u8]) -> Outcome {
     let mut input = Input(input);
     let (numbers, [dt], state) = (input.numbers(), input.numbers(), input.numbers());
-    let (kind, steps) = (input.byte() % 9, input.byte() % MOST_STEPS + 1);
+    let (kind, steps) = (input.byte() % 7, input.byte() % MOST_STEPS + 1);
     let stepped = match kind {
         0 => plain::<f32>(numbers, dt, state, steps),
         1 => plain::<f64>(numbers, dt, state, steps),
         2 => equal::<f32>(numbers, dt, state, steps),
-        3 => form::<f32, AngleForm<f32>>(numbers, dt, state, steps),
-        4 => form::<f64, AngleForm<f64>>(numbers, dt, state, steps),
-        5 => form::<f32, DirectionForm<f32>>(numbers, dt, state, steps),
-        6 => form::<f64, DirectionForm<f64>>(numbers, dt, state, steps),
-        7 => form::<f32, DirectionForm<f32, Plain>>(numbers, dt, state, steps),
-        _ => form::<f64, DirectionForm8<f64>>(numbers, dt, state, steps),
+        3 => form::<f32, DirectionForm<f32>>(numbers, dt, state, steps),
+        4 => form::<f64, DirectionForm<f64>>(numbers, dt, state, steps),
+        5 => form::<f32, DirectionForm<f32, Plain>>(numbers, dt, state, steps),
+        _ => form::<f64, ExtrapolatedForm<12>>(numbers, dt, state, steps),
     };
     u32::from(kind) * 0x10000 + stepped.map_or_else(|error| refusal(&error), |()| 0x10)
 }
@@ -124,5 +122,5 @@ fn form<R: Real, F: Form<R>>(numbers: [f64; 5], dt: f64, state: [f64; 4], steps:
 pub fn seeds() -> Vec<Vec<u8>> {
     let numbers = [1.0, 2.0, 1.0, 1.0, 9.8, 1.0 / 256.0, 2.0, -1.0, 0.5, -0.25];
     let bytes: Vec<u8> = numbers.iter().flat_map(|number: &f64| number.to_le_bytes()).collect();
-    (0..9).map(|kind| bytes.iter().copied().chain([kind, 4]).collect()).collect()
+    (0..7).map(|kind| bytes.iter().copied().chain([kind, 4]).collect()).collect()
 }

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
 
-use firmware::job::Formulation::{Angle, Canonical, Direction};
+use firmware::job::Formulation::{Canonical, Direction};
 use firmware::job::{Arithmetic, Model, Request, Row};
 
 use super::accuracy::{Contestant, Error, Point, worst};
@@ -37,12 +37,8 @@ const CMSIS_SOURCES: [&str; 3] = [
     "Source/CommonTables/arm_common_tables.c",
 ];
 /// Arithmetics of the kernel that stand beside, the one that the others are compared with last.
-const BESIDE: [Row; 4] = [
-    TEXTBOOK,
-    Row::rk4(Arithmetic::F32, Canonical),
-    Row::rk4(Arithmetic::F32Compensated, Direction),
-    Row::rk4(Arithmetic::F32Compensated, Angle),
-];
+const BESIDE: [Row; 3] =
+    [TEXTBOOK, Row::rk4(Arithmetic::F32, Canonical), Row::rk4(Arithmetic::F32Compensated, Direction)];
 /// What the C programs compute, in Rust.
 const TEXTBOOK: Row = Row { model: Model::Textbook, ..Row::rk4(Arithmetic::F32Libm, Canonical) };
 
@@ -230,7 +226,7 @@ pub fn table((counted, absent): &(Vec<Counted>, String), points: &[Point], costs
         note: format!(
             "Per step; scene {}, step 1/{RATE} s, error over the scene. GCC at -O3, which may contract multiplication \
              and addition; counted like all others. {ERROR_BAR} Relative: estimated cycles against \
-             f32-compensated-angle.{absent}",
+             f32-compensated-direction.{absent}",
             scene.name,
         ),
         columns: vec![

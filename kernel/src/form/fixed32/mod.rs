@@ -6,7 +6,6 @@ mod setting;
 mod step;
 mod upkeep;
 
-use super::checkpoint::{Check, RestoreError};
 use super::{Direction, Form, lower_direction, lower_ray};
 use crate::error::Error;
 use crate::fixed::{Q30, Scaling, check_step, nearest, scaled};
@@ -45,8 +44,6 @@ use setting::Setting;
 /// than that for mass ratios from 1/128 to 32 and unlike rods). Near the upright position `f32` is better: there sines are small,
 /// and steps of 2^-30 coarse beside them.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Fixed32Form {
     parameters: Parameters<f64>,
     dt: f64,
@@ -54,8 +51,6 @@ pub struct Fixed32Form {
 
 /// A motion in fixed point, with the units that its energy chose: what [`Fixed32Form`] carries from step to step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Fixed32State {
     units: Setting,
     /// sin a1, cos a1, S, C, P1, P2, with 62 bits after the point.
@@ -81,11 +76,6 @@ fn value(z: i64) -> f64 {
 }
 
 impl Fixed32Form {
-    fn check(&self) -> Check {
-        let Parameters { m1, m2, l1, l2, g } = self.parameters;
-        Check::new(32).with_all([m1, m2, l1, l2, g, self.dt].map(f64::to_bits))
-    }
-
     #[inline(never)]
     fn start_from(&self, state: &State<f64>) -> Result<Fixed32State, Error> {
         let energy = Pendulum::new(self.parameters)?.energy_above_rest(state);
@@ -141,25 +131,6 @@ impl<R: Real> Form<R> for Fixed32Form {
         feed(carried.inverse.0 as u64);
         feed(u64::from(carried.lost));
         feed(carried.steps);
-    }
-
-    type Saved = [u64; 11];
-
-    fn save(&self, carried: &Self::Carried) -> Self::Saved {
-        self.check().save(|feed| {
-            feed(carried.units.energy.to_bits());
-            <Self as Form<R>>::bits(carried, feed);
-        })
-    }
-
-    fn restore(&self, saved: &[u64]) -> Result<Self::Carried, RestoreError> {
-        let mut words = self.check().open::<11>(saved)?;
-        let energy = f64::from_bits(words.word()?);
-        let units = Setting::new(&self.parameters, energy, self.dt).map_err(|_| RestoreError::NotSavedHere)?;
-        let z = words.each(|words| Ok(words.word()? as i64))?;
-        let inverse = Q30(words.word()? as i32);
-        let lost = words.word()? != 0;
-        Ok(Fixed32State { units, z, inverse, lost, steps: words.word()? })
     }
 }
 

@@ -8,8 +8,6 @@ use crate::params::Parameters;
 use crate::ring::Ring;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Setting {
     /// The energy above rest, J, which all of it follows from.
     pub energy: f64,

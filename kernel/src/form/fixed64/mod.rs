@@ -5,7 +5,6 @@ mod rows;
 
 pub use motion::Fixed64State;
 
-use super::checkpoint::{Check, RestoreError};
 use super::{Direction, Form, UnwrappedStepper};
 use crate::error::Error;
 use crate::fixed::check_step;
@@ -32,18 +31,9 @@ use crate::state::State;
 /// assert both). These come to 2e-13 rad by order 8, 7e-13 by order 12 and 3e-12 by order 16, however short the steps, in `f64`
 /// to 1e-13 or so. No rounding leans to one side, or all steps would add it up.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Fixed64Form<const ORDER: u32> {
     parameters: Parameters<f64>,
     dt: f64,
-}
-
-impl<const ORDER: u32> Fixed64Form<ORDER> {
-    fn check(&self) -> Check {
-        let Parameters { m1, m2, l1, l2, g } = self.parameters;
-        Check::new(64 + (u64::from(ORDER) << 32)).with_all([m1, m2, l1, l2, g, self.dt].map(f64::to_bits))
-    }
 }
 
 impl<R: Real, const ORDER: u32> UnwrappedStepper<R, Fixed64Form<ORDER>> {
@@ -88,15 +78,5 @@ impl<R: Real, const ORDER: u32> Form<R> for Fixed64Form<ORDER> {
 
     fn bits(carried: &Self::Carried, feed: impl FnMut(u64)) {
         carried.bits(feed);
-    }
-
-    type Saved = [u64; 9];
-
-    fn save(&self, carried: &Self::Carried) -> Self::Saved {
-        self.check().save(|feed| carried.save(feed))
-    }
-
-    fn restore(&self, saved: &[u64]) -> Result<Self::Carried, RestoreError> {
-        Fixed64State::restore(&self.parameters, self.dt, ORDER, self.check().open::<9>(saved)?)
     }
 }

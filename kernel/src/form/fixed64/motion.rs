@@ -6,7 +6,6 @@ use super::rows::{EIGHTH, Rows, unit_of_time};
 use crate::bounds::Bounds;
 use crate::error::{Error, Parameter};
 use crate::fixed::{FixedPoint, Q64, Scaling};
-use crate::form::checkpoint::{RestoreError, Words};
 use crate::form::{Direction, lower_ray};
 use crate::hamiltonian::Pendulum;
 use crate::params::Parameters;
@@ -18,8 +17,6 @@ use crate::trig::{Own, SinCos};
 /// A motion in fixed point, with the units that its energy chose: what [`Fixed64Form`](super::Fixed64Form) carries from step
 /// to step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Fixed64State {
     rows: Rows,
     /// P1 and P2 to a kg m^2/s.
@@ -34,8 +31,6 @@ pub struct Fixed64State {
     inverse_norm: f64,
     /// What a step loses by rounding down.
     floored: [i16; 2],
-    /// The energy above rest, J, which the units follow from.
-    energy: f64,
 }
 
 /// The greatest rate, the greatest torque of gravity, and the longest step in the units of the motion.
@@ -75,7 +70,6 @@ impl Fixed64State {
             half_inverse_square: Q64::constant(0.5 / (scaling.norm * scaling.norm) * EIGHTH),
             z: [Q64(0); 6],
             inverse_norm: 1.0 / scaling.norm,
-            energy,
             lost: false,
         })
     }
@@ -152,24 +146,6 @@ impl Fixed64State {
     pub(super) fn bits(&self, mut feed: impl FnMut(u64)) {
         self.z.iter().for_each(|&z| feed(z.0 as u64));
         feed(u64::from(self.lost));
-    }
-
-    pub(super) fn save(&self, mut feed: impl FnMut(u64)) {
-        feed(self.energy.to_bits());
-        self.bits(feed);
-    }
-
-    /// The motion that was saved.
-    pub(super) fn restore(
-        parameters: &Parameters<f64>,
-        dt: f64,
-        order: u32,
-        mut words: Words<'_>,
-    ) -> Result<Self, RestoreError> {
-        let energy = f64::from_bits(words.word()?);
-        let z = words.each(|words| Ok(Q64(words.word()? as i64)))?;
-        let lost = words.word()? != 0;
-        Ok(Self { z, lost, ..Self::new(parameters, energy, dt, order).map_err(|_| RestoreError::NotSavedHere)? })
     }
 }
 

@@ -26,8 +26,6 @@ pub(super) fn unit_of_time(longest: f64, dt: f64) -> f64 {
 
 /// The constants of the equations in each row.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Rows {
     method: Extrapolation<Q64>,
     shifts: Shifts,
@@ -42,8 +40,6 @@ const LEAST: f64 = 0.01;
 /// The share of a step between every second midpoint, and gravity times it: rounded so that the next row makes up for what the
 /// one before has lost or gained, the step as a whole next to nothing. Where rates are high gravity has few digits.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Row {
     share: i32,
     gravity: [Q64; 2],
