@@ -5,8 +5,8 @@
 //! CRC-32/ISO-HDLC detects every change of up to four bits in a body (test `link`), and of any other damage all but one
 //! in 2^32 = 4.3e9. A flipped bit on the wire may do more than that to the body, for it may make or unmake a zero, which
 //! moves bytes: of ten million frames sent through a link that flips one bit in 10,000, half a million are damaged, and
-//! the chance that a single one of them is taken for good is 550,000/2^32 = 1.3e-4. Test `link` and `cargo fuzz-all
-//! --target flips` try it.
+//! the chance that a single one of them is taken for good is 550,000/2^32 = 1.3e-4. Tests `link` and
+//! `random_input` try it.
 //!
 //! A delimiter stands before and after each message, so that one that arrives intact is recovered whatever happened to
 //! those before and after it; what is missing shows in the sequence numbers of the frames.

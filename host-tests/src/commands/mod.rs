@@ -4,7 +4,6 @@ pub mod count;
 pub mod demo;
 pub mod figures;
 pub mod flips;
-pub mod fuzz;
 pub mod plan;
 pub mod report;
 pub mod simulate;

@@ -17,7 +17,7 @@ fn a_closed_output_ends_every_command_quietly() -> io::Result<()> {
     toolchain::ready().unwrap_or_else(|missing| panic!("{missing}"));
     let folder = tempfile::tempdir()?;
     let figures = ["--folder", folder.path().to_str().expect("text")];
-    let commands: [(&str, &[&str]); 15] = [
+    let commands: [(&str, &[&str]); 14] = [
         (env!("CARGO_BIN_EXE_count"), &["f32-linear-direction", "--on", "lm3s6965evb", "--steps", "4"]),
         (env!("CARGO_BIN_EXE_count"), &["f32-linear-direction", "--on", "lm3s6965evb", "--steps", "4", "--listing"]),
         (env!("CARGO_BIN_EXE_count"), &["--help"]),
@@ -26,7 +26,6 @@ fn a_closed_output_ends_every_command_quietly() -> io::Result<()> {
         // Prints nothing of its own but this.
         (env!("CARGO_BIN_EXE_flash-f4"), &["--help"]),
         (env!("CARGO_BIN_EXE_fw"), &["mps2-an386", "--seconds", "2"]),
-        (env!("CARGO_BIN_EXE_fuzz"), &["--executions", "10"]),
         (env!("CARGO_BIN_EXE_plan"), &["--angles", "1,1"]),
         (env!("CARGO_BIN_EXE_plan"), &["--study", "1"]),
         // Takes minutes to print more.
@@ -53,7 +52,6 @@ fn with_both_outputs_closed_a_refusal_is_still_exit_code_2() -> io::Result<()> {
     for (command, option) in [
         (env!("CARGO_BIN_EXE_count"), "--steps"),
         (env!("CARGO_BIN_EXE_demo"), "--seconds"),
-        (env!("CARGO_BIN_EXE_fuzz"), "--executions"),
         (env!("CARGO_BIN_EXE_plan"), "--duration"),
         (env!("CARGO_BIN_EXE_simulate"), "--until"),
         (env!("CARGO_BIN_EXE_soak"), "--scenes"),

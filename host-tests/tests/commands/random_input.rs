@@ -1,0 +1,289 @@
+//! Random input for everything that takes input from outside: nothing may panic or hang, what is accepted is good, and what
+//! is refused changes nothing. `PROPTEST_CASES=1000000 cargo test -p host-tests --test commands random_input::` tries more.
+
+use clap::Parser;
+use double_pendulum::form::{DirectionForm, ExtrapolatedForm, Fixed32Form, Fixed64Form, Form, Plain, Stepper};
+use double_pendulum::plan::{Budget, Limit, Method, Problem, Search};
+use double_pendulum::{EqualRods, Error, Modes, Motion, Parameters, Pendulum, Real, State, Units};
+use fastrand::Rng;
+use firmware::app::App;
+use firmware::app::controls::NoButtons;
+use firmware::config::CORTEX_M4F;
+use firmware::display::NoDisplay;
+use firmware::graphics::frame_buffers::FrameBuffers;
+use firmware::job::{Job, ON_BOARDS, Request};
+use firmware::motion::settings::Settings;
+use firmware::protocol::{
+    Ask, Decoder, Frame, LinkError, MAX_FIELDS, MAX_WIRE, Message, Refused, Simulate, encode, frame,
+};
+use host_tests::commands::simulate::{Number, Options, plan};
+use host_tests::link::Received;
+use proptest::prelude::*;
+use proptest::sample::select;
+use proptest::test_runner::RngSeed;
+
+/// The same cases in every run, more of them where the environment asks for more.
+fn cases(least: u32) -> ProptestConfig {
+    let usual = ProptestConfig::default();
+    let cases = if usual.cases == 256 { least } else { usual.cases };
+    ProptestConfig { cases, rng_seed: RngSeed::Fixed(1), failure_persistence: None, ..usual }
+}
+
+/// Any bit pattern, and numbers as they are typed.
+fn number() -> impl Strategy<Value = f64> {
+    const USUAL: &[f64] = &[0.0, 1.0, 0.5, 2.0, 9.81, 1.0 / 256.0, 1.0 / 60.0, 1e3, 1e-3, 1e30];
+    prop_oneof![1 => any::<u64>().prop_map(f64::from_bits), 4 => select(USUAL), 4 => -10.0..10.0, 4 => 0.01..10.0]
+}
+
+fn parameters() -> impl Strategy<Value = Parameters<f64>> {
+    prop::array::uniform5(number()).prop_map(|[m1, m2, l1, l2, g]| Parameters { m1, m2, l1, l2, g })
+}
+
+fn numbers<const N: usize>() -> impl Strategy<Value = [f64; N]> {
+    prop::collection::vec(number(), N).prop_map(|numbers| std::array::from_fn(|i| numbers[i]))
+}
+
+/// The messages in a stream, or why they are none.
+fn received(decoder: &mut Decoder, bytes: &[u8]) -> Vec<Result<Received, LinkError>> {
+    let mut all = Vec::new();
+    for &byte in bytes {
+        if let Some(message) = decoder.push(byte) {
+            all.push(message.map(|(kind, fields)| Received { kind, fields: fields.to_vec() }));
+        }
+    }
+    all
+}
+
+/// A part of a stream: noise, an intact message, or one with a byte changed.
+fn part() -> impl Strategy<Value = Vec<u8>> {
+    let fields = || prop::collection::vec(any::<u8>(), 0..=MAX_FIELDS);
+    let intact = (any::<u8>(), fields()).prop_map(|(kind, fields)| frame(kind, &fields, &mut [0; MAX_WIRE]).to_vec());
+    let damaged = (intact.clone(), any::<prop::sample::Index>(), 1..=255_u8).prop_map(|(mut wire, at, change)| {
+        let at = at.index(wire.len());
+        wire[at] ^= change;
+        wire
+    });
+    prop_oneof![prop::collection::vec(any::<u8>(), 0..200), intact, damaged]
+}
+
+/// A command of any kind, its fields as long as they should be or not.
+fn command() -> impl Strategy<Value = (u8, Vec<u8>)> {
+    let known = [0x81..=0x8d_u8].into_iter().flatten().collect::<Vec<_>>();
+    let set = (0..24_u8, 0..9_u8, number()).prop_map(|(field, unit, value)| {
+        let mut fields = vec![1, 0, field, unit];
+        fields.extend(value.to_le_bytes());
+        (0x82, fields)
+    });
+    let short = (select(known), prop::collection::vec(any::<u8>(), 0..9));
+    prop_oneof![4 => set, 4 => short, 1 => (any::<u8>(), prop::collection::vec(any::<u8>(), 0..=MAX_FIELDS))]
+}
+
+/// What a form's steps lead to: twelve of them at most, each finite or refused.
+fn stepped<R: Real, F: Form<R>>(parameters: &Parameters<f64>, dt: f64, start: State<f64>) -> Result<(), Error> {
+    let mut stepper = Stepper::<R, F>::new(&parameters.cast(), &start.cast(), dt)?;
+    for _ in 0..12 {
+        stepper.try_advance(1)?;
+        assert_eq!(stepper.state().check(), Ok(()));
+        let numbers = stepper.directions();
+        assert!(numbers.as_flattened().iter().all(|number| number.is_finite()), "{numbers:?}");
+    }
+    Ok(())
+}
+
+fn constructed<R: Real>(parameters: Parameters<f64>, dt: f64, state: State<f64>) -> Result<(), Error> {
+    let (parameters, state) = (parameters.cast::<R>(), state.cast::<R>());
+    if let Ok(modes) = Modes::new(&parameters) {
+        let frequencies = [modes.fast.frequency, modes.slow.frequency];
+        assert!(frequencies.iter().all(|w| w.is_finite() && *w > R::ZERO), "{frequencies:?} of {parameters:?}");
+    }
+    let pendulum = Pendulum::new(parameters)?;
+    // Hanging still is a motion of every pendulum, and it stays one.
+    let still = State::at_rest(R::ZERO, R::ZERO);
+    assert_eq!(pendulum.derivatives(&still.into()), [R::ZERO; 4], "{parameters:?}");
+    let _ = (pendulum.bounds(&state), pendulum.energy(&state), pendulum.to_motion(&state), pendulum.modes());
+    let _ = (pendulum.positions(state.angles()), pendulum.cannot_turn_over(&state), pendulum.turnover_energy());
+    pendulum.check_step(dt)?;
+    state.check()?;
+    let next = pendulum.step(&state, R::from_f64(dt)).finite()?;
+    assert_eq!(next.check(), Ok(()));
+    let (units, rods) = (Units::of(&parameters)?, EqualRods::<R>::new(parameters.mass_ratio())?);
+    let start = units.from_si(&state).finite()?;
+    units.to_si(&rods.step(&start, R::from_f64(dt) / units.time).finite()?).finite().map(drop)
+}
+
+proptest! {
+    #![proptest_config(cases(1000))]
+
+    /// Whatever came before it, an intact message is received.
+    #[test]
+    fn the_decoder_recovers(stream in prop::collection::vec(part(), 0..5)) {
+        let mut decoder = Decoder::default();
+        for Received { kind, fields } in received(&mut decoder, &stream.concat()).into_iter().flatten() {
+            prop_assert!(fields.len() <= MAX_FIELDS, "kind {kind}");
+            let again = received(&mut Decoder::default(), frame(kind, &fields, &mut [0; MAX_WIRE]));
+            prop_assert_eq!(again, [Ok(Received { kind, fields })]);
+        }
+        let after = received(&mut decoder, frame(Ask::KIND, &[1, 2], &mut [0; MAX_WIRE]));
+        prop_assert_eq!(after.last(), Some(&Ok(Received { kind: Ask::KIND, fields: vec![1, 2] })));
+    }
+
+    /// Each intact command has one answer, a refused one changes nothing, and the scene plays on.
+    #[test]
+    fn every_command_is_answered(commands in prop::collection::vec(command(), 1..3)) {
+        let mut sheets = FrameBuffers::default();
+        let mut app = App::new(Settings::default(), &mut sheets, NoDisplay, Vec::new(), NoButtons).expect("good settings");
+        for (tick, (kind, fields)) in (1..).zip(commands) {
+            let (status, sent) = (app.player().status(0), app.link().len());
+            app.receive(frame(kind, &fields, &mut [0; MAX_WIRE]).iter().copied(), |_| ());
+            let answers = received(&mut Decoder::default(), &app.link()[sent..]);
+            let is_request = kind == Simulate::KIND && fields.len() == Simulate::SIZE;
+            let is_message_for_hosts = kind < 0x80;
+            prop_assert!(
+                matches!(*answers, [Ok(_)]) || answers.is_empty() && (is_request || is_message_for_hosts),
+                "{:?} to kind {} {:02x?}", answers, kind, fields
+            );
+            if let [Ok(Received { kind: Refused::KIND, .. })] = *answers {
+                prop_assert_eq!(app.player().status(0), status, "kind {} {:02x?}", kind, fields);
+            }
+            app.run_to(tick, |_| ());
+            app.work(|_| ());
+            prop_assert_eq!(app.player().report().state.check(), Ok(()));
+        }
+    }
+
+    /// Every reading of a request is finite.
+    #[test]
+    fn requests_are_refused_or_computed(
+        (row, parameters, angles, velocities) in (select(ON_BOARDS), parameters(), numbers(), numbers()),
+        (dt, stride, samples) in (number(), any::<u8>(), any::<u32>()),
+    ) {
+        let request = Request { row, parameters, angles, velocities, dt, stride: stride.into(), samples };
+        prop_assume!(Request::from_message(&request.message(1)).is_ok());
+        let Ok(mut job) = Job::<firmware::job::OnBoards>::new(&request) else { return Ok(()) };
+        for _ in 0..24 {
+            let Ok(reading) = job.advance() else {
+                prop_assert!(job.is_finished());
+                break;
+            };
+            let finite = reading.iter().all(|reading| {
+                reading.energy.is_finite() && reading.state.iter().chain(&reading.velocities).all(|x| x.is_finite())
+            });
+            prop_assert!(finite, "{reading:?}");
+        }
+    }
+
+    /// Parameters are refused or good for every method, steps are finite or refused.
+    #[test]
+    fn the_kernel_refuses_or_stays_finite(parameters in parameters(), dt in number(), state in numbers::<4>()) {
+        let state = State::from(state);
+        let outcomes = [
+            constructed::<f32>(parameters, dt, state),
+            constructed::<f64>(parameters, dt, state),
+            stepped::<f32, DirectionForm<f32, Plain>>(&parameters, dt, state),
+            stepped::<f32, DirectionForm<f32>>(&parameters, dt, state),
+            stepped::<f64, DirectionForm<f64>>(&parameters, dt, state),
+            stepped::<f64, ExtrapolatedForm<12>>(&parameters, dt, state),
+            stepped::<f64, Fixed32Form>(&parameters, dt, state),
+            stepped::<f64, Fixed64Form<10>>(&parameters, dt, state),
+        ];
+        for error in outcomes.into_iter().filter_map(Result::err) {
+            prop_assert!(!error.to_string().is_empty());
+        }
+    }
+
+    /// A plan keeps to its budget and its scene, or is refused by name.
+    #[test]
+    fn a_plan_is_within_its_budget(
+        (pendulum, [a1, a2, w1, w2], rate) in (parameters(), numbers(), prop_oneof![Just(60), any::<u16>()]),
+        ([tolerance, duration, frame, planning, piece], steps) in (numbers(), 0..200_u32),
+        asked in prop::option::of(select(&Method::ALL[..])),
+    ) {
+        let start = Motion { a1, a2, w1, w2 };
+        let scene = Problem { pendulum, start, tolerance: tolerance.abs(), duration: duration.abs(), rate };
+        let [frame, planning, piece] = [frame * 1e4, planning * 1e5, piece * 1e5].map(|number| number.abs() as f32);
+        let (costs, budget) = (CORTEX_M4F.costs, Budget { frame, planning });
+        let search = match asked {
+            Some(method) => Search::of(method, steps, &scene, &costs, &budget),
+            None => Search::new(&scene, &costs, &budget),
+        };
+        let Ok(mut search) = search else { return Ok(()) };
+        for _ in 0..60 {
+            match search.advance(piece) {
+                Err(error) => {
+                    prop_assert!(!error.to_string().is_empty());
+                    break;
+                }
+                Ok(None) => {}
+                Ok(Some(plan)) => {
+                    prop_assert!((0.0..=duration.abs().max(scene.time(1))).contains(&plan.horizon), "{plan:?}");
+                    prop_assert!(plan.spent <= planning && plan.cost > 0.0 && plan.error <= 1.0, "{plan:?}");
+                    prop_assert!(asked.is_some() || plan.cost <= frame && plan.horizon > 0.0, "{plan:?}");
+                    prop_assert!(plan.dt.is_finite() && plan.dt >= 0.0, "{plan:?}");
+                    prop_assert!((plan.limit == Limit::End) <= (plan.horizon >= duration.abs()), "{plan:?}");
+                    prop_assert!(asked.is_none_or(|method| method == plan.method), "{plan:?} for {asked:?}");
+                    break;
+                }
+            }
+        }
+    }
+
+    /// What is shown of a number can be typed, and is the same number.
+    #[test]
+    fn numbers_are_read_as_they_are_shown(text in "[-+]?[0-9]{0,4}\\.?[0-9]{0,4}(e-?[0-9]{1,4})?(/[0-9]{1,3})?|\\PC{0,8}") {
+        if let Ok(number) = text.parse::<Number>() {
+            prop_assert!(number.value().is_finite(), "{number}");
+            prop_assert_eq!(number.to_string().parse::<Number>().ok(), Some(number));
+        }
+    }
+
+    /// A command line is refused, or asks for a motion forwards in time.
+    #[test]
+    fn command_lines_are_refused_or_good(
+        words in prop::collection::vec(
+            prop_oneof![
+                "--(angles|velocities|masses|lengths)=-?[0-9.]{1,4},-?[0-9/.]{1,4}",
+                "--(step|until|every|gravity|tolerance)=-?[0-9]{1,3}(/[0-9]{1,4}|e-?[0-9])?",
+                "--(arithmetic|model|form|method|on)=(f32|f64|fixed32|linear|direction|lm3s6965evb)",
+                "\\PC{0,8}",
+            ],
+            0..6,
+        ),
+    ) {
+        let options = Options::try_parse_from(std::iter::once(String::from("simulate")).chain(words));
+        if let Ok(plan) = options.map_err(drop).and_then(|options| plan(&options).map_err(drop)) {
+            prop_assert!(plan.every.is_positive() && plan.request.dt > 0.0);
+        }
+    }
+}
+
+/// Frames over a link that flips each bit with this `chance`: no damaged one is taken for good, and no good one is missed.
+fn bits_flipped(chance: f64, frames: u32) {
+    let mut rng = Rng::with_seed(2);
+    let mut decoder = Decoder::default();
+    let mut damaged_frames = 0;
+    for sequence in 0..frames {
+        let sent = Frame { sequence, step: rng.u32(..), time: rng.f64(), mass_ratio: rng.f32(), ..Frame::default() };
+        let mut bytes = encode(&sent, &mut [0; MAX_WIRE]).to_vec();
+        let mut damaged = false;
+        for byte in &mut bytes {
+            for bit in 0..8 {
+                if rng.f64() < chance {
+                    *byte ^= 1 << bit;
+                    damaged = true;
+                }
+            }
+        }
+        let frames: Vec<_> = received(&mut decoder, &bytes).into_iter().flatten().collect();
+        let frames: Vec<Option<Frame>> = frames.iter().map(Received::read).collect();
+        assert_eq!(frames, if damaged { vec![] } else { vec![Some(sent)] }, "frame {sequence}");
+        damaged_frames += u32::from(damaged);
+    }
+    assert!(damaged_frames > frames / 50, "the link is under fire: {damaged_frames} of {frames}");
+}
+
+#[test]
+fn no_damaged_frame_is_taken_for_good_and_no_good_one_is_missed() {
+    bits_flipped(1e-4, 20_000);
+    // Here almost every frame is damaged, and there are more forgeries to catch.
+    bits_flipped(1e-2, 20_000);
+}
