@@ -1,74 +1,47 @@
-//! The motion by the equal-rod equations that the page prints, in fixed point.
-
-use core::num::Wrapping;
+//! The motion by the equal-rod equations that the page prints.
 
 use double_pendulum::trig::{Own, SinCos};
-use double_pendulum::{Parameters, State};
+use double_pendulum::{Parameters, State, rk4};
 
 use super::direction_stepper::Directions;
 use crate::config::{DT, STEPS_PER_TICK};
 
-/// The unit of time, s: half a step, with which both bobs of figure 7 are right to half a pixel for 10 s (test `misprint`).
-const UNIT: f32 = 0.5 * DT as f32;
-
-/// A number in fixed point; sums and products beyond its range wrap.
-type Number = Wrapping<i32>;
-/// The binary places of directions and rates, which are below 2, ...
-const PLACES: u32 = 30;
-/// ... of momenta, below 1/2, ...
-const MOMENTUM_PLACES: u32 = 32;
-/// ... of mass ratios, below 128, ...
-const MASS_PLACES: u32 = 24;
-/// ... and of torques of gravity, below 1/8.
-const GRAVITY_PLACES: u32 = 34;
-
 /// The denominator of a2' lacks the factor mu = m2/m1, so rod 2 turns mu times as fast as it should. Unless mu = 1 the equations
 /// are not Hamilton's of anything, and what should be the energy is not kept.
 ///
-/// With q = p/(m1 l^2), r = 1/(1 + mu sin^2 D), D = a1 - a2:
+/// With q = p/(m1 l^2), r = 1/(1 + mu sin^2 D), D = a1 - a2, G = g/l:
 ///
-/// - a1' = u = (q1 - q2 cos D) r; a2' = v = (q2 (1 + mu) - q1 mu cos D) r = mu (q2 - q1 cos D) r + q2 r
-/// - q1' = -(1 + mu) g/l sin a1 - F; q2' = -mu g/l sin a2 + F
+/// - a1' = u = (q1 - q2 cos D) r; a2' = v = (q2 (1 + mu) - q1 mu cos D) r
+/// - q1' = -(1 + mu) G sin a1 - F; q2' = -mu G sin a2 + F
 ///
 /// F = u v sin D is, term by term, the two long fractions of the page in one. Where mu is above 10 or so, rod 2 turns so fast
-/// that no step here resolves it.
+/// that no step here resolves it. Plain `f32` is right to half a pixel at figure 7 for 10 s (test `misprint`).
 #[derive(Clone, Copy, Debug)]
 pub struct Misprinted {
-    mass_ratio: Number,
-    /// (1 + mu) g/l and mu g/l.
-    gravity: [Number; 2],
-    /// m1 l^2, J for numbers without a unit.
+    /// mu.
+    mass_ratio: f32,
+    /// G, 1/s^2.
+    gravity: f32,
+    /// m1 l^2, kg m^2.
     inertia: f32,
-    /// sin a1, cos a1, sin D, cos D, q1, q2: nothing here needs an angle.
-    z: [Number; 6],
+    /// sin a1, cos a1, sin D, cos D, q1, q2 (1/s): nothing here needs an angle.
+    z: [f32; 6],
 }
 
 impl Misprinted {
     /// Equal rods, let go at `start`.
     pub fn new(&Parameters { m1, m2, l1: l, g, .. }: &Parameters<f32>, start: &State<f32>) -> Self {
-        let (mu, inertia) = (m2 / m1, m1 * l * l / UNIT);
+        let inertia = m1 * l * l;
         let (sin1, cos1) = Own::sin_cos(start.a1);
         let (sin_d, cos_d) = Own::sin_cos(start.a1 - start.a2);
-        let torque = g / l * UNIT * UNIT;
-        Self {
-            mass_ratio: number(mu, MASS_PLACES),
-            gravity: [(1.0 + mu) * torque, mu * torque].map(|torque| number(torque, GRAVITY_PLACES)),
-            inertia: inertia / UNIT,
-            z: [
-                number(sin1, PLACES),
-                number(cos1, PLACES),
-                number(sin_d, PLACES),
-                number(cos_d, PLACES),
-                number(start.p1 / inertia, MOMENTUM_PLACES),
-                number(start.p2 / inertia, MOMENTUM_PLACES),
-            ],
-        }
+        let z = [sin1, cos1, sin_d, cos_d, start.p1 / inertia, start.p2 / inertia];
+        Self { mass_ratio: m2 / m1, gravity: g / l, inertia, z }
     }
 
     /// Advances by one tick.
     pub fn tick(&mut self) {
         for _ in 0..STEPS_PER_TICK {
-            self.step();
+            self.z = rk4::step(|z| self.rates(z), &self.z, DT as f32);
         }
         let [sin1, cos1, sin_d, cos_d, q1, q2] = self.z;
         let ([sin1, cos1], [sin_d, cos_d]) = (unit([sin1, cos1]), unit([sin_d, cos_d]));
@@ -77,92 +50,33 @@ impl Misprinted {
 
     /// Where the rods point.
     pub fn directions(&self) -> Directions {
-        let [sin1, cos1, ..] = self.z;
-        [[sin1, cos1], self.direction2()].map(|direction| direction.map(|part| float(part, PLACES)))
+        let [sin1, cos1, sin_d, cos_d, ..] = self.z;
+        [[sin1, cos1], [sin1 * cos_d - cos1 * sin_d, cos1 * cos_d + sin1 * sin_d]]
     }
 
     /// The energy H, J, as [`Pendulum::energy`](double_pendulum::Pendulum::energy) has it:
-    /// ((q1 - q2 cos D)^2 r + q2^2/mu)/2 - (1 + mu) g/l cos a1 - mu g/l cos a2, times m1 l^2.
+    /// ((q1 - q2 cos D)^2 r + q2^2/mu)/2 - (1 + mu) G cos a1 - mu G cos a2, times m1 l^2.
     pub fn energy(&self) -> f32 {
-        let &Self { mass_ratio: mu, gravity: [gravity1, gravity2], z: [_, cos1, sin_d, cos_d, q1, q2], .. } = self;
-        let [_, cos2] = self.direction2();
-        let q = q1 - times(q2, cos_d);
-        let upper = times(product(q, q, MOMENTUM_PLACES), self.inverse(sin_d));
-        let lower = product(q2, q2, MOMENTUM_PLACES);
-        let depth = torque(gravity1, cos1) + torque(gravity2, cos2);
-        let [upper, lower, depth] = [upper, lower, depth].map(|part| float(part, MOMENTUM_PLACES));
-        self.inertia * (0.5 * (upper + lower / float(mu, MASS_PLACES)) - depth)
+        let &Self { mass_ratio: mu, gravity, inertia, z: [_, _, sin_d, cos_d, q1, q2] } = self;
+        let [[_, cos1], [_, cos2]] = self.directions();
+        let q = q1 - q2 * cos_d;
+        let kinetic = 0.5 * (q * q / (1.0 + mu * sin_d * sin_d) + q2 * q2 / mu);
+        inertia * (kinetic - gravity * ((1.0 + mu) * cos1 + mu * cos2))
     }
 
-    /// By the classical Runge-Kutta method, as [`double_pendulum::rk4::step`].
-    fn step(&mut self) {
-        const THIRD: Number = Wrapping((1 << PLACES) / 3);
-        let z = self.z;
-        let after = |k: [Number; 6]| core::array::from_fn(|i| z[i] + k[i]);
-        let k1 = self.rates(&z);
-        let k2 = self.rates(&after(k1));
-        let k3 = self.rates(&after(k2));
-        let k4 = self.rates(&after(k3.map(|k| k + k)));
-        self.z = core::array::from_fn(|i| {
-            let (ends, middle) = (k1[i] + k4[i], k2[i] + k3[i]);
-            z[i] + times(THIRD, ends) + times(THIRD + THIRD, middle)
-        });
-    }
-
-    fn rates(&self, &[sin1, cos1, sin_d, cos_d, q1, q2]: &[Number; 6]) -> [Number; 6] {
-        let &Self { mass_ratio: mu, gravity: [gravity1, gravity2], .. } = self;
-        let r = self.inverse(sin_d);
-        let u = product(q1 - times(q2, cos_d), r, MOMENTUM_PLACES);
-        let elbow = times(q2 - times(q1, cos_d), r);
-        let v = product(mu, elbow, MASS_PLACES + MOMENTUM_PLACES - PLACES) + product(q2, r, MOMENTUM_PLACES);
-        let force = times(product(u, v, 2 * PLACES - MOMENTUM_PLACES), sin_d);
-        let sin2 = times(sin1, cos_d) - times(cos1, sin_d);
-        let w = u - v;
-        let [torque1, torque2] = [torque(gravity1, sin1), torque(gravity2, sin2)];
-        [times(cos1, u), -times(sin1, u), times(cos_d, w), -times(sin_d, w), -torque1 - force, force - torque2]
-    }
-
-    /// r = 1/(1 + mu sin^2 D): half of its digits by a division, the others by a step of Newton's.
-    fn inverse(&self, sin_d: Number) -> Number {
-        let inertia = Wrapping(1 << MASS_PLACES) + times(self.mass_ratio, times(sin_d, sin_d));
-        let quotient = (1_u32 << 31).checked_div(inertia.0 as u32 >> 8).unwrap_or_default();
-        let r = Wrapping((quotient << 15) as i32);
-        r + times(r, Wrapping(1 << PLACES) - product(inertia, r, MASS_PLACES))
-    }
-
-    fn direction2(&self) -> [Number; 2] {
-        let [sin1, cos1, sin_d, cos_d, ..] = self.z;
-        [times(sin1, cos_d) - times(cos1, sin_d), times(cos1, cos_d) + times(sin1, sin_d)]
+    fn rates(&self, &[sin1, cos1, sin_d, cos_d, q1, q2]: &[f32; 6]) -> [f32; 6] {
+        let &Self { mass_ratio: mu, gravity, .. } = self;
+        let r = 1.0 / (1.0 + mu * sin_d * sin_d);
+        let (u, v) = ((q1 - q2 * cos_d) * r, (q2 * (1.0 + mu) - q1 * mu * cos_d) * r);
+        let (w, force) = (u - v, u * v * sin_d);
+        let sin2 = sin1 * cos_d - cos1 * sin_d;
+        let [torque1, torque2] = [(1.0 + mu) * gravity * sin1, mu * gravity * sin2];
+        [cos1 * u, -sin1 * u, cos_d * w, -sin_d * w, -torque1 - force, force - torque2]
     }
 }
 
 /// A direction made as long as 1 again, to first order in what it misses.
-fn unit([sin, cos]: [Number; 2]) -> [Number; 2] {
-    const THREE_HALVES: Number = Wrapping(3 << (PLACES - 1));
-    let gain = THREE_HALVES - product(sin, sin, PLACES + 1) - product(cos, cos, PLACES + 1);
-    [times(gain, sin), times(gain, cos)]
-}
-
-fn number(value: f32, places: u32) -> Number {
-    Wrapping((value * (1_u64 << places) as f32) as i32)
-}
-
-fn float(number: Number, places: u32) -> f32 {
-    number.0 as f32 / (1_u64 << places) as f32
-}
-
-/// The product with a direction or a rate.
-fn times(a: Number, b: Number) -> Number {
-    product(a, b, PLACES)
-}
-
-/// The torque of gravity in a direction.
-fn torque(gravity: Number, direction: Number) -> Number {
-    product(gravity, direction, GRAVITY_PLACES + PLACES - MOMENTUM_PLACES)
-}
-
-/// The product shifted right by `places` bits, rounded to nearest.
-fn product(a: Number, b: Number, places: u32) -> Number {
-    let half = 1 << (places - 1);
-    Wrapping(((i64::from(a.0) * i64::from(b.0) + half) >> places) as i32)
+fn unit([sin, cos]: [f32; 2]) -> [f32; 2] {
+    let gain = 1.5 - 0.5 * (sin * sin + cos * cos);
+    [gain * sin, gain * cos]
 }

@@ -7,6 +7,5 @@ pub mod flips;
 pub mod plan;
 pub mod report;
 pub mod simulate;
-pub mod soak;
 pub mod table;
 pub mod verify_board;

@@ -17,7 +17,7 @@ fn a_closed_output_ends_every_command_quietly() -> io::Result<()> {
     toolchain::ready().unwrap_or_else(|missing| panic!("{missing}"));
     let folder = tempfile::tempdir()?;
     let figures = ["--folder", folder.path().to_str().expect("text")];
-    let commands: [(&str, &[&str]); 14] = [
+    let commands: [(&str, &[&str]); 13] = [
         (env!("CARGO_BIN_EXE_count"), &["f32-linear-direction", "--on", "lm3s6965evb", "--steps", "4"]),
         (env!("CARGO_BIN_EXE_count"), &["f32-linear-direction", "--on", "lm3s6965evb", "--steps", "4", "--listing"]),
         (env!("CARGO_BIN_EXE_count"), &["--help"]),
@@ -32,7 +32,6 @@ fn a_closed_output_ends_every_command_quietly() -> io::Result<()> {
         (env!("CARGO_BIN_EXE_report"), &["--help"]),
         (env!("CARGO_BIN_EXE_setup"), &[]),
         (env!("CARGO_BIN_EXE_simulate"), &["--angles", "1,1"]),
-        (env!("CARGO_BIN_EXE_soak"), &["--board", "mps2-an386", "--scenes", "0", "--physics", "1"]),
         // What follows is cargo's.
         (env!("CARGO_BIN_EXE_verify"), &["--help"]),
     ];
@@ -54,7 +53,6 @@ fn with_both_outputs_closed_a_refusal_is_still_exit_code_2() -> io::Result<()> {
         (env!("CARGO_BIN_EXE_demo"), "--seconds"),
         (env!("CARGO_BIN_EXE_plan"), "--duration"),
         (env!("CARGO_BIN_EXE_simulate"), "--until"),
-        (env!("CARGO_BIN_EXE_soak"), "--scenes"),
     ] {
         let status = Command::new(command).args([option, "-1"]).stdout(closed()?).stderr(closed()?).status()?;
         assert_eq!(status.code(), Some(2), "{command} {option} -1");

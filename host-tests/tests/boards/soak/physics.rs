@@ -4,11 +4,12 @@ use double_pendulum::{Parameters, Pendulum, State};
 use firmware::job::{Arithmetic, Formulation, Job, Request, Row};
 use firmware::protocol::{Frame, Sample};
 
+use host_tests::emulator::qemu::{Machine, QemuError, Settings};
+
 use super::Outcome;
-use crate::emulator::qemu::{Machine, QemuError, Settings};
 
 /// Equal rods let go at 0.5 rad, in compensated `f32`.
-pub const PHYSICS: Request = Request {
+const PHYSICS: Request = Request {
     row: Row::rk4(Arithmetic::F32Compensated, Formulation::Direction),
     parameters: Parameters { m1: 1.0, m2: 1.0, l1: 1.0, l2: 1.0, g: 9.81 },
     angles: [0.5, 0.5],
@@ -21,8 +22,8 @@ pub const PHYSICS: Request = Request {
 /// measured over 22 million steps. RK4's own dissipation at this step is 6e-14.
 const GREATEST_ENERGY_ERROR: (f64, f64) = (1e-6, 1e-11);
 
-/// Computes `minutes` of the motion on the board, a sample each minute; `alive` hears of each.
-pub fn physics(settings: &Settings, minutes: u32, mut alive: impl FnMut()) -> Result<Outcome, QemuError> {
+/// Computes `minutes` of the motion on the board, a sample each minute.
+pub(super) fn physics(settings: &Settings, minutes: u32) -> Result<Outcome, QemuError> {
     let request = Request { samples: minutes, ..PHYSICS };
     let mut host: Job = Job::new(&request).expect("a motion that the kernel computes");
     let mut machine = Machine::start(settings)?;
@@ -49,12 +50,11 @@ pub fn physics(settings: &Settings, minutes: u32, mut alive: impl FnMut()) -> Re
         let start = *start.get_or_insert(sample.energy);
         let error = ((sample.energy - start) / (start - least_energy())).abs();
         outcome.energy_error = outcome.energy_error.max(error);
-        outcome.steps = u64::from(request.stride) * u64::from(index);
-        if error.is_nan() || error > GREATEST_ENERGY_ERROR.0 + GREATEST_ENERGY_ERROR.1 * outcome.steps as f64 {
-            outcome.fault(format!("energy error {error:.1e} after {} steps", outcome.steps));
+        let steps = f64::from(request.stride) * f64::from(index);
+        if error.is_nan() || error > GREATEST_ENERGY_ERROR.0 + GREATEST_ENERGY_ERROR.1 * steps {
+            outcome.fault(format!("energy error {error:.1e} after {steps} steps"));
         }
         index += 1;
-        alive();
     }
     outcome.end(&machine, settings.board);
     machine.quit()?;

@@ -7,9 +7,10 @@ use firmware::config::TICK_RATE;
 use firmware::protocol::{Choose, Frame};
 use firmware::scenes::SceneName;
 
+use host_tests::emulator::qemu::{Lockstep, QemuError, Settings, Stack};
+use host_tests::link::Received;
+
 use super::Outcome;
-use crate::emulator::qemu::{Lockstep, QemuError, Settings, Stack};
-use crate::link::Received;
 
 /// How often every scene is played.
 const ROUNDS: usize = 2;
@@ -22,8 +23,8 @@ const GREATEST_ENERGY_ERROR: f64 = 1e-3;
 /// where the stack is deepest in one round and not in the other.
 const INTERRUPT: u32 = 108 + 96;
 
-/// Plays every scene twice, in `seconds` of the board's time all together; `alive` hears each second's end.
-pub fn scenes(settings: &Settings, seconds: u32, mut alive: impl FnMut()) -> Result<Outcome, QemuError> {
+/// Plays every scene twice, in `seconds` of the board's time all together.
+pub(super) fn scenes(settings: &Settings, seconds: u32) -> Result<Outcome, QemuError> {
     let each = (u64::from(seconds) * u64::from(TICK_RATE) / (ROUNDS * SceneName::ALL.len()) as u64).max(1);
     let stack = Stack::of(settings.elf)?;
     let mut machine = Lockstep::start(settings)?;
@@ -57,9 +58,6 @@ pub fn scenes(settings: &Settings, seconds: u32, mut alive: impl FnMut()) -> Res
                     outcome.fault(format!("{}: energy error {energy_error:.1e} at {} s", scene.name(), frame.time));
                 }
                 played.push((frame.state.map(f32::to_bits), frame.horizon.to_bits()));
-                if tick % u64::from(TICK_RATE) == 0 {
-                    alive();
-                }
             }
         }
         match first_round.get(scene.name()) {
