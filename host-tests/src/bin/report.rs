@@ -10,7 +10,7 @@ use host_tests::console::cli::{self, Refused, say};
 use host_tests::console::progress::Bar;
 use host_tests::emulator::toolchain;
 
-/// Measures every arithmetic's cost on the target and its error, and writes tables, charts and a page.
+/// Measures every arithmetic's cost on the target and its error, and writes tables and charts.
 #[derive(Debug, Parser)]
 #[command(name = "cargo write-report", after_help = "Example: cargo write-report --quick --folder /tmp/report")]
 struct Options {
@@ -48,5 +48,5 @@ fn run(options: &Options) -> anyhow::Result<()> {
     } else if !headline::is_in_readmes(&advice, &table)? {
         say("the READMEs show other figures; cargo write-report --readme puts these there")?;
     }
-    Ok(say(options.folder.join("index.html").display())?)
+    Ok(say(options.folder.display())?)
 }

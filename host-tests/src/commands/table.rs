@@ -1,11 +1,9 @@
-//! A table of the report, in three notations.
-
-use std::fmt::Write;
+//! A table of the report, in two notations.
 
 /// Columns with their headings, rows of as many cells.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Table {
-    /// File name without ending, and anchor on the page.
+    /// File name without ending.
     pub name: &'static str,
     /// Heading.
     pub title: String,
@@ -43,29 +41,6 @@ impl Table {
         self.rows.iter().for_each(|row| text.push_str(&line(row.join(" | "))));
         text
     }
-
-    /// With heading and note.
-    pub fn html(&self) -> String {
-        let cells = |tag: &str, cells: &mut dyn Iterator<Item = &str>| {
-            let mut row = String::from("<tr>");
-            for cell in cells {
-                // Writing to a string cannot fail.
-                let _ = write!(row, "<{tag}>{}</{tag}>", escaped(cell));
-            }
-            row + "</tr>\n"
-        };
-        let mut text =
-            format!("<h2 id=\"{}\">{}</h2>\n<p>{}</p>\n", self.name, escaped(&self.title), escaped(&self.note));
-        text.push_str("<table>\n");
-        text.push_str(&cells("th", &mut self.columns.iter().copied()));
-        self.rows.iter().for_each(|row| text.push_str(&cells("td", &mut row.iter().map(String::as_str))));
-        text + "</table>\n"
-    }
-}
-
-/// Text as HTML shows it.
-pub fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
 /// An error or a drift: two digits, or what it is not.

@@ -18,8 +18,6 @@ use crate::commands::flips::square::Square;
 use crate::commands::table::Table;
 use crate::emulator::boards::{Board, Core, STM32F405};
 
-/// The first table.
-pub const NAME: &str = "flips";
 /// Limits of the maps judged, sqrt(l/g), and points of the first that the reference judges.
 const LIMITS: [f32; 3] = [10.0, 100.0, 1000.0];
 const SAMPLE: usize = 60;
@@ -41,7 +39,7 @@ pub fn belief(side: usize, limits: usize) -> Result<Table, Error> {
         Ok(vec![limit.to_string(), verdict.points.to_string(), right, doubtful, share(verdict.unsuspected), sample])
     };
     Ok(Table {
-        name: NAME,
+        name: "flips",
         title: String::from("The map of flips: what can be believed"),
         note: format!(
             "Of {side} x {side} starts from rest, half of which mirror the others, those that may turn over. Right: within a grey \

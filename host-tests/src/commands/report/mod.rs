@@ -1,4 +1,4 @@
-//! `cargo write-report`: every arithmetic's cost on the target against its error, as tables, frames and one page.
+//! `cargo write-report`: every arithmetic's cost on the target against its error, as tables and charts.
 //!
 //! Costs are counted on the emulated targets, errors are computed on the host, which is allowed because the bits are the
 //! same ([`identity`]). Nothing is timed, so two runs write the same files.
@@ -13,8 +13,6 @@ pub mod frames;
 pub mod frontier;
 pub mod headline;
 pub mod identity;
-mod page;
-pub mod peers;
 pub mod scene;
 pub mod speed;
 
@@ -43,8 +41,6 @@ pub struct Extent {
     pub energy_steps: u32,
     /// Steps of the comparison of bits.
     pub identity: identity::Steps,
-    /// Whether other integrators are counted, which first have to be compiled.
-    pub peers: bool,
     /// Scenes planned and carried out.
     pub plans: usize,
     /// Scenes that the planner's margin is held against.
@@ -62,7 +58,6 @@ impl Extent {
         finest: 13,
         energy_steps: 1_000_000,
         identity: identity::Steps { full: 1_000_000, reduced: 1_000_000 },
-        peers: true,
         plans: 2_000,
         margins: 1_000,
         boards: BOARDS.len(),
@@ -74,7 +69,6 @@ impl Extent {
         finest: 13,
         energy_steps: 100_000,
         identity: identity::Steps { full: 10_000, reduced: 1_000 },
-        peers: false,
         plans: 40,
         margins: 10,
         boards: 2,
@@ -85,9 +79,8 @@ impl Extent {
     pub fn runs(&self, targets: usize) -> usize {
         let rows = compared_rows().count();
         let survey = self.scenes * compared_rows().map(|row| accuracy::rates(row, self.finest).count()).sum::<usize>();
-        let peers = if self.peers { peers::RUNS } else { 0 };
         let frames = self.boards * SceneName::ALL.len();
-        survey + energy::runs() + peers + self.plans + self.margins + frames + targets * (identity::RUNS + rows)
+        survey + energy::runs() + self.plans + self.margins + frames + targets * (identity::RUNS + rows)
     }
 }
 
@@ -141,9 +134,6 @@ pub fn write(extent: &Extent, toolchain: &Toolchain, folder: &Path, bar: &Bar) -
     bar.say("following the energy");
     let energy = energy::table(extent.energy_steps, &tick);
 
-    bar.say("counting other integrators");
-    let [peers, tight] = peers::tables(extent.peers, &tick)?;
-
     bar.say("carrying out plans");
     let chip = &plan::M4F;
     let planned = plan::scenes(PLANS_SEED, plan::DURATIONS).take(extent.plans);
@@ -171,14 +161,11 @@ pub fn write(extent: &Extent, toolchain: &Toolchain, folder: &Path, bar: &Bar) -
         costs::table(&costs),
         speed::floors(&points),
         energy,
-        peers,
-        tight,
         identity,
         plan::classes(&plans, chip)?,
         plan::broken(&plans),
         plan::margins(&margins),
         frames::table(&frames),
-        frames::functions(&frames),
         belief,
         flips::cost(&frames)?,
         speed::table(&priced),
@@ -203,7 +190,6 @@ pub fn write(extent: &Extent, toolchain: &Toolchain, folder: &Path, bar: &Bar) -
     for (name, svg) in &charts {
         save(name, svg)?;
     }
-    save("index.html", &page::html(&advice, &tables, &charts))?;
     let name = format!("speed-{}-cortex-m4.svg", SCENES[0].name);
     let chart = charts.into_iter().find(|(chart, _)| *chart == name);
     Ok(Main { advice, table: headline, chart: chart.context("no chart of the first scene")?.1, absent: c.1 })
