@@ -195,7 +195,7 @@ oldest-rust() {
         promised=$(sed -n 's/^rust-version = "\(.*\)".*/\1/p' kernel/Cargo.toml)
         /usr/bin/rustc --version | grep " $promised\."
         export RUSTC=/usr/bin/rustc RUSTDOC=/usr/bin/rustdoc
-        /usr/bin/cargo test --package double-pendulum --all-features --target-dir target/oldest-rust
+        /usr/bin/cargo test --package double-pendulum-kernel --all-features --target-dir target/oldest-rust
 END
 }
 

@@ -35,7 +35,7 @@ fn unoptimised_code_computes_the_same_bits() {
     let mut cargo = Command::new(env!("CARGO"));
     cargo.current_dir(toolchain::workspace()).args(["run", "--quiet", "--package", "firmware", "--example", "crc"]);
     cargo.args(["--target-dir", "target/unoptimised"]);
-    for package in ["double-pendulum", "firmware", "libm"] {
+    for package in ["double-pendulum-kernel", "firmware", "libm"] {
         cargo.args(["--config", &format!("profile.dev.package.{package}.opt-level=0")]);
     }
     let mut child = cargo.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().expect("cargo runs");

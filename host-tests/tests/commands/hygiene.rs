@@ -89,7 +89,7 @@ fn dependencies(manifest: &str) -> BTreeSet<String> {
             names.insert(name.to_owned());
         }
     }
-    for own in ["double-pendulum", "firmware", "#", ""] {
+    for own in ["double-pendulum-kernel", "firmware", "#", ""] {
         names.remove(own);
     }
     names
