@@ -59,6 +59,12 @@
 #![warn(missing_copy_implementations, missing_debug_implementations)]
 #![warn(clippy::must_use_candidate, clippy::return_self_not_must_use)]
 
+// The tests call the kernel by its name, as its users do.
+#[cfg(test)]
+extern crate self as double_pendulum;
+#[cfg(test)]
+extern crate std;
+
 mod bounds;
 mod equal_rods;
 mod error;
@@ -81,6 +87,8 @@ mod sealed;
 mod sine;
 mod small_oscillations;
 mod state;
+#[cfg(test)]
+mod tests;
 pub mod trig;
 
 pub use bounds::{Bounds, ROUNDING_MARGIN};

@@ -4,36 +4,9 @@ use double_pendulum::{Parameters, Real, State};
 
 use crate::oracle::known_answers::KnownAnswer;
 
-/// The same budget for both precisions.
-#[derive(Clone, Copy, Debug)]
-pub struct PerPrecision {
-    /// With `f32`.
-    pub single: f64,
-    /// With `f64`.
-    pub double: f64,
-}
-
-impl PerPrecision {
-    /// The budget for `R`.
-    pub fn of<R: Real>(&self) -> f64 {
-        if R::EPSILON.to_f64() > f64::EPSILON { self.single } else { self.double }
-    }
-}
-
-/// Each derivative against the page's own form and against the gradient of H, relative to its largest term: some twenty
-/// roundings (6e-8 and 1.1e-16 each), and the momenta of unlike bobs multiply those of the velocities.
-pub const DERIVATIVES: PerPrecision = PerPrecision { single: 2e-6, double: 1e-13 };
-
-/// Energies, momenta and velocities that two formulas give for one state, relative to the sum of the terms' magnitudes:
-/// some thirty roundings, the kinetic energy being divided by den.
-pub const FORMULAS: PerPrecision = PerPrecision { single: 4e-6, double: 8e-15 };
-
-/// The divergence of the phase flow by central differences with a step of 2^-17, relative to its largest term:
-/// truncation 1e-11, rounding 1e-16 / 2^-17 = 1e-11, times the curvature of 1/den for masses 100 : 1.
-pub const DIVERGENCE: f64 = 1e-7;
-
-/// A motion run for a second and back: RK4's own error, twice (measured 6e-12), with a factor of ten.
-pub const RETURN: f64 = 1e-10;
+#[path = "../../../kernel/src/tests/tolerances.rs"]
+mod shared;
+pub use shared::*;
 
 /// Normal frequencies, in units in the last place: nine roundings, halved by the square root.
 pub const FREQUENCY_ULP: f64 = 4.0;
@@ -144,9 +117,6 @@ pub const KNOWN_ANSWERS_CLAIMED: PerPrecision = PerPrecision { single: 36.0, dou
 /// excited by the rounding of the shape, add.
 pub const INVERTED_GROWTH: f64 = 1e-9;
 
-/// A linear motion of 0.5 rad after a whole period, rad: the roundings of w t, 40 rad, in both modes.
-pub const PERIOD: f64 = 1e-13;
-
 /// Compensated `f32` on the regular scene (0.5 rad, dt = 1/256 s) after 10 s and 100 s, rad: the goal of this one motion
 /// (measured: 4.0e-8 and 2.5e-7). Plain sums miss it by far.
 pub const DIRECTION_FORM: [f64; 2] = [5e-8, 2.5e-7];
@@ -222,12 +192,6 @@ pub const RATIO: f64 = 1e-12;
 
 /// The height that a scene of curves is planned for, relative: the digits of the swing in pixels, 21.5.
 pub const SHOWN_HEIGHT: f32 = 1e-3;
-
-/// The sines of `libm` in f32 up to pi: half a unit in the last place of 1, 3.0e-8.
-pub const HALF_ULP: f64 = 3.1e-8;
-
-/// The sines of `micromath` up to pi: as wrong as its documentation says, and no better.
-pub const MICROMATH: std::ops::Range<f64> = 1e-4..2e-3;
 
 /// What the linear beats miss after their period, of their amplitude: the same for up to five turns.
 pub const CLOSED: f64 = 5.0 * f32::EPSILON as f64 * 2.0 * 5.0 * std::f64::consts::TAU;

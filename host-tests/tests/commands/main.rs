@@ -9,6 +9,7 @@ mod flips_cli;
 mod frontier;
 mod fw_cli;
 mod hygiene;
+mod package;
 mod pico_cli;
 mod plan_cli;
 mod process;

@@ -1,5 +1,7 @@
 //! What the kernel refuses, by name and value.
 
+use std::string::ToString;
+
 use double_pendulum::{EqualRods, Error, Modes, Motion, Parameter, Parameters, Pendulum, State, Units};
 
 const GOOD: Parameters<f64> = Parameters { m1: 1.0, m2: 2.0, l1: 3.0, l2: 4.0, g: 9.8 };

@@ -28,7 +28,7 @@ pub fn parameters(rng: &mut Rng) -> Parameters<f64> {
 /// Any angles within one turn either way, and momenta of the order of those gravity can give; rounded to `f32`.
 pub fn state(rng: &mut Rng, &Parameters { m1, m2, l1, l2, g }: &Parameters<f64>) -> State<f64> {
     let energy = g * ((m1 + m2) * l1 + m2 * l2);
-    let turn = std::f64::consts::TAU;
+    let turn = core::f64::consts::TAU;
     [
         turn * symmetric(rng),
         turn * symmetric(rng),
