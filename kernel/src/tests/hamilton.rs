@@ -115,7 +115,7 @@ fn equal_rods_are_the_general_form<R: Real>() {
         // in its own units it is the general form to the bit
         let (values, exact) = (rods.derivatives(&z), pendulum::<R>(&own).derivatives(&z));
         for i in 0..4 {
-            assert_near(EQUATIONS[i], values[i], exact[i], R::ONE, 0.0, &own);
+            assert_near(format_args!("{} of EqualRods", EQUATIONS[i]), values[i], exact[i], R::ONE, 0.0, &own);
         }
         let state = State::from(z);
         assert_eq!(rods.energy(&state), pendulum::<R>(&own).energy(&state));
