@@ -103,7 +103,7 @@ fn what_nothing_reaches_is_refused_with_the_time_until_which_it_is() {
         ("--tolerance 1e-3 --every 1e-6", "--every 1e-6: more than"),
         ("--tolerance 1e-3 --masses -1,1", "m1"),
         ("--tolerance 1e-3 --step 1/4", "--step"),
-        ("--tolerance 1e-3 --arithmetic fixed32 --form angle", "--form angle"),
+        ("--tolerance 1e-3 --arithmetic fixed32 --form canonical", "--form canonical"),
     ] {
         match chosen(case) {
             Ok(choice) => panic!("{case}: {choice}"),

@@ -91,7 +91,6 @@ fn evaluations(row: Row) -> f64 {
     match row.integrator {
         Integrator::ClosedForm => 0.0,
         Integrator::Rk4 => 4.0,
-        Integrator::Rk8 => 12.0,
         Integrator::Extrapolation => f64::from(row.order / 2).powi(2) + 1.0,
     }
 }
