@@ -10,10 +10,11 @@ use std::time::Instant;
 use anyhow::{Context, Result, ensure};
 use double_pendulum::Parameters;
 use double_pendulum::flips::Flip;
-use host_tests::commands::flips::map::{Map, Search, each, flips};
+use host_tests::commands::flips::map::Map;
 use host_tests::commands::flips::square::Square;
 use host_tests::emulator::toolchain::workspace;
 use rayon::prelude::*;
+use vectors::Search;
 
 /// Starts across the map, and how long is waited, sqrt(l1/g).
 const SIDE: usize = 128;
@@ -41,13 +42,11 @@ fn alone(search: &Search, starts: &Starts) -> Result<Vec<Flip<f32>>> {
 }
 
 fn baseline(search: &Search, starts: &Starts) -> Result<Vec<Flip<f32>>> {
-    let mut flips = vec![Flip::Never; starts.len()];
-    each(search, starts, &mut flips)?;
-    Ok(flips)
+    Ok(vectors::baseline(search, starts)?)
 }
 
 fn vectors(search: &Search, starts: &Starts) -> Result<Vec<Flip<f32>>> {
-    Ok(flips(search, starts)?)
+    Ok(vectors::flips(search, starts)?)
 }
 
 fn threads(search: &Search, starts: &Starts) -> Result<Vec<Flip<f32>>> {

@@ -9,9 +9,10 @@ use clap::Parser;
 use double_pendulum::Parameters;
 use firmware::job::{ROWS, Request, Row};
 use host_tests::commands::count::{
-    CallCosts, Cost, ERROR_BAR, FULL_CYCLE, Profile, StepCost, Target, affordable_steps, calls_of, step_cost,
+    CallCosts, Cost, CountError, ERROR_BAR, FULL_CYCLE, Profile, StepCost, Target, affordable_steps, calls_of,
+    step_cost,
 };
-use host_tests::console::cli::{self, Refused, say};
+use host_tests::console::cli::{self, Refused, complain, say};
 use host_tests::emulator::boards::{BOARDS, Board};
 use host_tests::emulator::toolchain::{self, Toolchain};
 
@@ -23,7 +24,10 @@ const MOST_STEPS: i64 = 65_536;
 const EXAMPLES: &str = "Examples:
   cargo count                                             every arithmetic on all three cores
   cargo count f32-compensated --on lm3s6965evb-m4 --listing
-  cargo count --elf firmware.elf --function step --seconds 5";
+  cargo count --elf firmware.elf --function step --seconds 5
+
+With --elf, figures are from the function's first instruction to its return: the call itself comes on top, about 2 cycles and 1 for
+each argument. What the program prints, and how it ended, goes to stderr. If it fails: no figures, exit code 1.";
 
 /// Counts executed instructions (exact) and Cortex-M cycles (an estimate from the published instruction timings).
 #[derive(Debug, Parser)]
@@ -37,7 +41,8 @@ struct Arguments {
     on: Option<&'static Board>,
     /// Count a function of this program instead, with what interrupts it; the program ends itself by semihosting, or is
     /// ended after --seconds
-    #[arg(long, value_name = "FILE", requires = "function", conflicts_with = "arithmetic")]
+    #[arg(long, value_name = "FILE", requires = "function",
+          conflicts_with_all = ["arithmetic", "steps", "m2", "l2", "angle", "halvings", "listing"])]
     elf: Option<PathBuf>,
     /// The function of that program: mangled, demangled, or a part of its name that no other has
     #[arg(long, value_name = "NAME", requires = "elf")]
@@ -196,8 +201,16 @@ fn count_calls(toolchain: &Toolchain, arguments: &Arguments, elf: &Path, functio
     let board = arguments.on.unwrap_or(&BOARDS[1]);
     let target = Target::of(toolchain, board, elf.to_owned()).map_err(Refused::because)?;
     let limit = Duration::from_secs(arguments.seconds.into());
-    let CallCosts { function, calls } = calls_of(&target, function, limit).map_err(Refused::because)?;
+    let CallCosts { function, calls, ended } = calls_of(&target, function, limit).map_err(|error| match error {
+        CountError::Failed { .. } => error.into(),
+        error => anyhow::Error::from(Refused::because(error)),
+    })?;
     let number = calls.len();
+    ended.output.lines().for_each(complain);
+    match ended.status {
+        Some(status) => complain(format_args!("the program ended by itself, {status}")),
+        None => complain(format_args!("stopped after {} s and {number} calls; see --seconds", limit.as_secs())),
+    }
     say(format_args!("{} on {}, from its first instruction to its return: calls {number}", function.name, board.name))?;
     say(ERROR_BAR)?;
     say(format_args!("{:12} {:>12} {:>12} {:>12}", "per call", "mean", "least", "most"))?;

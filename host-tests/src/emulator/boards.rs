@@ -62,6 +62,14 @@ impl Board {
         self.core() != Core::M0Plus
     }
 
+    /// Where its flash begins, with the vectors.
+    pub fn flash(&self) -> u32 {
+        match self.machine {
+            "netduinoplus2" => 0x0800_0000,
+            _ => 0,
+        }
+    }
+
     /// Whose timings hold.
     pub fn core(&self) -> Core {
         match self.cpu {

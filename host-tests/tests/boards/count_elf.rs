@@ -1,4 +1,4 @@
-//! `cargo count --elf`: any function of any program, and one line for what cannot be counted.
+//! `cargo count --elf`: any function of any program, and a clear word for what cannot be counted.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -7,53 +7,147 @@ use host_tests::commands::count::ERROR_BAR;
 use host_tests::emulator::boards::BOARDS;
 use host_tests::emulator::process::{self, Output};
 
-/// Says why it refuses an empty request and ends itself, on a Cortex-M3.
+/// Says why it refuses an empty request and ends itself as failed, on a Cortex-M3.
 fn measure() -> PathBuf {
     crate::support::toolchain().build("measure", BOARDS[0].target).unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn count(elf: &Path, function: &str) -> Output {
+/// A program at an address that calls a function and a label three times each and then executes `last`.
+fn program(folder: &Path, address: &str, last: &str) -> PathBuf {
+    const SOURCE: &str = r#"
+#![no_std]
+#![no_main]
+core::arch::global_asm!("
+.section .text.program, \"ax\"
+.thumb
+.syntax unified
+.global start
+.word 0x20004000
+.word start + 1
+.rept 14
+.word wait + 1
+.endr
+start:
+movs r4, #3
+1: bl {step}
+bl label
+subs r4, #1
+bne 1b
+LAST
+movs r0, #0x18
+bkpt 0xab
+wait: b wait
+label: movs r0, #7
+bx lr
+never: bx lr
+", step = sym inner::step);
+mod inner {
+    #[inline(never)]
+    pub extern "C" fn step(x: u32) -> u32 { core::hint::black_box(x) + 1 }
+}
+#[panic_handler]
+fn panic(_: &core::panic::PanicInfo) -> ! { loop {} }
+"#;
+    let (source, elf) = (folder.join("program.rs"), folder.join(format!("{address}-{}.elf", last.len())));
+    std::fs::write(&source, SOURCE.replace("LAST", last)).unwrap_or_else(|error| panic!("{error}"));
+    let mut rustc = Command::new("rustc");
+    rustc.args(["--edition", "2024", "-O", "-C", "panic=abort", "--target", BOARDS[0].target]);
+    rustc
+        .args([
+            "-C",
+            "link-arg=--entry=start",
+            "-C",
+            "link-arg=--image-base=0",
+            "-C",
+            "link-arg=--nmagic",
+            "-C",
+            &format!("link-arg=-Ttext={address}"),
+            "-o",
+        ])
+        .arg(&elf)
+        .arg(&source);
+    let output = process::run(&mut rustc, crate::support::LIMIT).unwrap_or_else(|error| panic!("{error}"));
+    assert!(output.status.success(), "{output:?}");
+    elf
+}
+
+/// It ends itself, well or as failed; it waits for ever; it needs a floating-point unit.
+const ENDS: &str = "ldr r1, =0x20026";
+const FAILS: &str = "ldr r1, =0x020023";
+const WAITS: &str = "b wait";
+const NEEDS_FLOATS: &str = ".inst.w 0xee300a00 @ vadd.f32 s0, s0, s0";
+
+fn count(elf: &Path, function: &str, more: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_count"));
-    command.args(["--on", BOARDS[0].name, "--function", function, "--elf"]).arg(elf);
+    command.args(["--on", BOARDS[0].name, "--function", function, "--elf"]).arg(elf).args(more);
     process::run(&mut command, crate::support::LIMIT).unwrap_or_else(|error| panic!("{error}"))
 }
 
+fn folder() -> tempfile::TempDir {
+    tempfile::tempdir().unwrap_or_else(|error| panic!("{error}"))
+}
+
 #[test]
-fn a_function_is_counted_by_either_of_its_names() {
-    let elf = measure();
-    let output = count(&elf, "core::fmt::write");
-    assert!(output.status.success(), "{output:?}");
+fn functions_and_labels_are_counted_and_the_end_is_told() {
+    let folder = folder();
+    let elf = program(folder.path(), "0x0", ENDS);
+    let output = count(&elf, "label", &[]);
+    assert!(
+        output.status.success() && output.stderr.contains("the program ended by itself, exit status: 0"),
+        "{output:?}"
+    );
     let lines: Vec<_> = output.stdout.lines().collect();
     let [head, limits, _, instructions, cycles] = lines[..] else { panic!("{output:?}") };
-    assert!(head.starts_with("core::fmt::write on lm3s6965evb, "), "{head}");
+    assert_eq!(head, "label on lm3s6965evb, from its first instruction to its return: calls 3");
     assert_eq!(limits, ERROR_BAR);
     let mean = |line: &str| line.split_ascii_whitespace().nth(1).and_then(|mean| mean.parse::<f64>().ok());
-    assert!(mean(instructions) > Some(10.0) && mean(cycles) > mean(instructions), "{output:?}");
+    assert_eq!((mean(instructions), mean(cycles)), (Some(2.0), Some(4.0)), "a move, and a return with its refill");
 
     let bytes = std::fs::read(&elf).unwrap_or_else(|error| panic!("{error}"));
     let file = object::File::parse(&*bytes).unwrap_or_else(|error| panic!("{error}"));
     use object::{Object, ObjectSymbol};
     let names = file.symbols().filter_map(|symbol| symbol.name().ok().map(str::to_owned));
-    let mangled = names.into_iter().find(|name| format!("{:#}", rustc_demangle::demangle(name)) == "core::fmt::write");
-    assert_eq!(count(&elf, &mangled.unwrap_or_default()).stdout, output.stdout);
+    let mangled = names.into_iter().find(|name| name.contains("step")).unwrap_or_default();
+    let by_name = count(&elf, "program::inner::step", &[]);
+    assert!(
+        by_name.stdout.starts_with("program::inner::step on") && by_name.stdout.contains(": calls 3\n"),
+        "{by_name:?}"
+    );
+    assert_eq!(count(&elf, &mangled, &[]).stdout, by_name.stdout);
+}
+
+#[test]
+fn a_program_that_is_stopped_is_counted_until_then() {
+    let folder = folder();
+    let output = count(&program(folder.path(), "0x0", WAITS), "label", &["--seconds", "20"]);
+    assert!(output.status.success() && output.stdout.contains(": calls 3\n"), "{output:?}");
+    assert!(output.stderr.contains("stopped after 20 s and 3 calls"), "{output:?}");
 }
 
 #[test]
 fn what_cannot_be_counted_is_said_in_a_line() {
-    let elf = measure();
+    let measure = measure();
     let host = Path::new(env!("CARGO_BIN_EXE_count"));
-    for (elf, function, reason) in [
-        (Path::new("/nowhere/to/be/found.elf"), "main", "No such file"),
-        (Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml")), "main", "Unknown file magic"),
-        (host, "main", "no program for ARM but for"),
-        (&elf, "nothing_of_this_name", "no function nothing_of_this_name"),
-        (&elf, "counted_steps", "counted_steps may be any of "),
-        (&elf, "__aeabi_ddiv", "__aeabi_ddiv was never called"),
-        (&elf, "main", "main was called and never returned"),
+    let folder = folder();
+    let [ends, fails, floats] = [ENDS, FAILS, NEEDS_FLOATS].map(|last| program(folder.path(), "0x0", last));
+    let elsewhere = program(folder.path(), "0x8000000", ENDS);
+    for (elf, function, reason, code) in [
+        (Path::new("/nowhere/to/be/found.elf"), "main", "No such file", 2),
+        (Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml")), "main", "Unknown file magic", 2),
+        (host, "main", "no program for ARM but for", 2),
+        (&measure, "nothing_of_this_name", "no function nothing_of_this_name", 2),
+        (&measure, "counted_steps", "counted_steps may be any of ", 2),
+        (&measure, "__aeabi_ddiv", "the program failed after 0 calls, exit status: 1: ", 1),
+        (&fails, "label", "the program failed after 3 calls, exit status: 1", 1),
+        (&ends, "never", "never was never called", 2),
+        (&ends, "start", "start was called and never returned", 2),
+        (&elsewhere, "label", "never called: the program has nothing at 0x0, where lm3s6965evb reads its vectors", 2),
+        (&floats, "never", "never was never called: vadd, vsub at ", 2),
     ] {
-        let output = count(elf, function);
-        assert_eq!(output.status.code(), Some(2), "{output:?}");
-        assert_eq!((output.stdout.as_str(), output.stderr.lines().count()), ("", 1), "{output:?}");
-        assert!(output.stderr.contains(reason), "{output:?}");
+        let output = count(elf, function, &["--seconds", "20"]);
+        assert_eq!((output.status.code(), output.stdout.as_str()), (Some(code), ""), "{output:?}");
+        assert!(output.stderr.lines().last().is_some_and(|line| line.contains(reason)), "{reason}: {output:?}");
     }
+    let output = count(&ends, "label", &["--listing"]);
+    assert!(output.status.code() == Some(2) && output.stderr.contains("--listing"), "{output:?}");
 }

@@ -73,6 +73,9 @@ fn every_row_is_within_the_tolerance_and_no_longer_step_would_do() -> Result<(),
 fn the_cheapest_serves_where_it_is_right() -> Result<(), String> {
     for (case, row) in [
         ("--angles 1e-4,1e-4 --until 1 --tolerance 1e-9", "f64-linear"),
+        ("--angles 0.5,0.5 --until 1 --tolerance 1e-3 --arithmetic fixed64", "fixed64-extrapolation-6"),
+        ("--angles 0.5,0.5 --until 10 --every 1/4 --tolerance 1e-9 --arithmetic fixed64", "fixed64-extrapolation-12"),
+        ("--angles 0.5,0.5 --until 1 --tolerance 1e-3 --model textbook", "f64-libm-textbook"),
         ("--angles 0.5,0.5 --until 1 --tolerance 1e-9 --order 16", "f64-compensated-extrapolation-16"),
         ("--angles 0.5,0.5 --until 1 --tolerance 1e-3 --on lm3s6965evb", "fixed32-direction"),
         ("--angles 0.5,0.5 --until 1 --tolerance 1e-3 --on stm32f405", "f32-direction"),
@@ -100,7 +103,7 @@ fn what_nothing_reaches_is_refused_with_the_time_until_which_it_is() {
         ("--tolerance 1e-3 --every 1e-6", "--every 1e-6: more than"),
         ("--tolerance 1e-3 --masses -1,1", "m1"),
         ("--tolerance 1e-3 --step 1/4", "--step"),
-        ("--tolerance 1e-3 --arithmetic fixed32 --form angle", "--form angle"),
+        ("--tolerance 1e-3 --arithmetic fixed32 --form canonical", "--form canonical"),
     ] {
         match chosen(case) {
             Ok(choice) => panic!("{case}: {choice}"),

@@ -8,10 +8,10 @@ use super::image::{Function, Image};
 use super::instruction::Instruction;
 use super::pipeline::{Cost, Pipeline};
 use super::profile::Profile;
-use super::trace::Registers;
+use super::trace::{Ended, Registers};
 use super::{CountError, Target};
+use crate::console::progress::Progress;
 use crate::emulator::boards::Core;
-use crate::emulator::process::ProcessError;
 
 /// Every call of one of the functions that begin at some addresses.
 #[derive(Debug)]
@@ -103,25 +103,56 @@ impl<'a> Calls<'a> {
 }
 
 /// What the calls of a function cost.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug)]
 pub struct CallCosts {
     /// The function, as it was found.
     pub function: Function,
     /// Each call that returned, in order; one at least.
     pub calls: Vec<Cost>,
+    /// How the program ended.
+    pub ended: Ended,
 }
 
 /// Counts the calls of `function` until the program on `target` ends or the time is up.
 pub fn calls_of(target: &Target, function: &str, limit: Duration) -> Result<CallCosts, CountError> {
-    let function = target.image().function(function)?.clone();
-    let mut calls = Calls::of(target.image(), target.core(), BTreeSet::from([function.address]));
-    match target.trace("", limit, |registers| calls.see(registers)) {
-        Ok(_) | Err(CountError::Process(ProcessError::TimedOut { .. })) => {}
-        Err(error) => return Err(error),
+    let (image, core) = (target.image(), target.core());
+    let function = image.function(function)?.clone();
+    target.check_memory()?;
+    let mut calls = Calls::of(image, core, BTreeSet::from([function.address]));
+    let mut progress = Progress::start(&format!("counts the calls of {}", function.name));
+    let (mut instructions, mut before, mut unknown) = (0_u64, Registers::default(), None);
+    let ended = target.trace("", limit, |registers| {
+        instructions += 1;
+        if instructions % TELL == 0 {
+            progress.alive(Some(&format!("{} calls, {instructions} instructions", calls.ended.len())));
+        }
+        // An exception right after an instruction that the processor does not have is for the lack of it.
+        if is_exception(&registers) && !is_exception(&before) {
+            let instruction = image.instruction_at(before.pc()).ok();
+            unknown = unknown.or(instruction.filter(|one| one.is_missing_on(core)).map(|one| (before.pc(), one)));
+        }
+        before = registers;
+        calls.see(registers)
+    })?;
+    let name = function.name.clone();
+    match (ended.status, unknown) {
+        (Some(status), _) if !status.success() => {
+            Err(CountError::Failed { status, calls: calls.ended.len(), output: ended.output })
+        }
+        _ if !calls.ended.is_empty() => Ok(CallCosts { function, calls: calls.ended, ended }),
+        _ if calls.running.is_some() => Err(CountError::NotReturned { function: name }),
+        (_, Some((address, instruction))) => {
+            let (cpu, instruction) = (target.board.cpu, instruction.row.name);
+            Err(CountError::WrongCore { function: name, cpu, instruction, address })
+        }
+        _ => Err(CountError::NotCalled { function: name }),
     }
-    match (calls.ended.is_empty(), calls.running.is_some()) {
-        (false, _) => Ok(CallCosts { function, calls: calls.ended }),
-        (true, true) => Err(CountError::NotReturned { function: function.name }),
-        (true, false) => Err(CountError::NotCalled { function: function.name }),
-    }
+}
+
+/// Instructions between two words about them.
+const TELL: u64 = 1 << 18;
+
+/// Whether the processor has just entered an exception: the link register then holds no address.
+fn is_exception(registers: &Registers) -> bool {
+    (0xffff_ffe0..u32::MAX).contains(&registers.lr())
 }

@@ -20,6 +20,8 @@ pub struct Image {
     /// Of the code sections.
     code: Vec<(u32, Vec<u8>)>,
     functions: Vec<Function>,
+    /// Names in code that the assembler was not told to be functions.
+    labels: Vec<Function>,
     /// Where code begins (`true`) and where data in the midst of it, by the mapping symbols `$t` and `$d`.
     marks: BTreeMap<u32, bool>,
 }
@@ -52,24 +54,29 @@ impl Image {
         let code = file.sections().filter(|section| section.kind() == SectionKind::Text);
         let code = code.map(|section| Ok((section.address() as u32, section.data()?.to_vec())));
         let code = code.collect::<Result<_, object::Error>>().map_err(read)?;
-        let functions = file.symbols().filter(|symbol| symbol.kind() == SymbolKind::Text);
-        let mut functions: Vec<_> = functions
-            .map(|symbol| Function {
-                // bit 0 only says that the code is Thumb
-                address: symbol.address() as u32 & !1,
-                size: symbol.size() as u32,
-                name: format!("{:#}", rustc_demangle::demangle(symbol.name().unwrap_or_default())),
-                symbol: symbol.name().unwrap_or_default().to_owned(),
-            })
-            .collect();
+        let function = |symbol: object::Symbol| Function {
+            // bit 0 only says that the code is Thumb
+            address: symbol.address() as u32 & !1,
+            size: symbol.size() as u32,
+            name: format!("{:#}", rustc_demangle::demangle(symbol.name().unwrap_or_default())),
+            symbol: symbol.name().unwrap_or_default().to_owned(),
+        };
+        let (functions, others): (Vec<_>, Vec<_>) =
+            file.symbols().partition(|symbol| symbol.kind() == SymbolKind::Text);
+        let mut functions: Vec<_> = functions.into_iter().map(function).collect();
         functions.sort();
+        let is_label = |symbol: &object::Symbol| {
+            let section = symbol.section_index().and_then(|index| file.section_by_index(index).ok());
+            section.is_some_and(|section| section.kind() == SectionKind::Text)
+        };
+        let labels = others.into_iter().filter(is_label).map(function).collect();
         let is_code = |name: &str| match name.split('.').next() {
             Some("$t") => Some(true),
             Some("$d") => Some(false),
             _ => None,
         };
         let marks = file.symbols().filter_map(|symbol| Some((symbol.address() as u32, is_code(symbol.name().ok()?)?)));
-        Ok(Self { path: path.to_owned(), loaded, code, functions, marks: marks.collect() })
+        Ok(Self { path: path.to_owned(), loaded, code, functions, labels, marks: marks.collect() })
     }
 
     /// The functions whose demangled name contains `part`.
@@ -77,10 +84,10 @@ impl Image {
         self.functions.iter().filter(move |function| function.name.contains(part))
     }
 
-    /// The one function of this name, mangled or demangled, or the one whose demangled name contains it.
+    /// The one function or label of this name, mangled or demangled, or the one function whose demangled name contains it.
     pub fn function(&self, name: &str) -> Result<&Function, CountError> {
         let is_it = |function: &&Function| function.name == name || function.symbol == name;
-        let mut found: Vec<_> = self.functions.iter().filter(is_it).collect();
+        let mut found: Vec<_> = self.functions.iter().chain(&self.labels).filter(is_it).collect();
         if found.is_empty() {
             found = self.functions_named(name).collect();
         }
@@ -96,6 +103,11 @@ impl Image {
                 another: another.symbol.clone(),
             }),
         }
+    }
+
+    /// Whether something is loaded to `address`.
+    pub fn holds(&self, address: u32) -> bool {
+        self.loaded.iter().any(|(start, bytes)| address.wrapping_sub(*start) < bytes.len() as u32)
     }
 
     /// That it has no such function.

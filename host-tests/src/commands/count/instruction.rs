@@ -53,6 +53,11 @@ impl Instruction {
         self.word >> 26 == 0b11_1011
     }
 
+    /// Whether the core has no such instruction. Of a division, the table leaves the cycles to the operands.
+    pub fn is_missing_on(&self, core: Core) -> bool {
+        self.row.cycles(core) == 0 && (self.row.class != Class::Divide || core == Core::M0Plus)
+    }
+
     /// Whether its address is made of a register that `before` writes.
     pub fn is_addressed_by(&self, before: &Self) -> bool {
         let registers =

@@ -23,10 +23,11 @@ pub use instruction::Instruction;
 pub use pipeline::{Cost, ERROR_BAR, Pipeline};
 pub use profile::{Profile, Spot};
 pub use target::Target;
-pub use trace::Registers;
+pub use trace::{Ended, Registers};
 
 use std::io;
 use std::path::PathBuf;
+use std::process::ExitStatus;
 
 use firmware::job::Request;
 
@@ -106,6 +107,36 @@ pub enum CountError {
     NotReturned {
         /// The function.
         function: String,
+    },
+    /// The program is not where the board looks for one.
+    #[error("never called: the program has nothing at {vectors:#x}, where {board} reads its vectors; see --on")]
+    Elsewhere {
+        /// The board.
+        board: &'static str,
+        /// Where its flash begins.
+        vectors: u32,
+    },
+    /// The program stopped at an instruction that the processor lacks.
+    #[error("{function} was never called: {instruction} at {address:#x} is no instruction of a {cpu}; see --on")]
+    WrongCore {
+        /// The function.
+        function: String,
+        /// The processor.
+        cpu: &'static str,
+        /// The instruction.
+        instruction: &'static str,
+        /// Where it is.
+        address: u32,
+    },
+    /// The program ended by itself and says that it failed.
+    #[error("the program failed after {calls} calls, {status}: {}", output.trim())]
+    Failed {
+        /// How QEMU ended.
+        status: ExitStatus,
+        /// Calls that had returned.
+        calls: usize,
+        /// What it had printed.
+        output: String,
     },
     /// The program did not accept the request.
     #[error("{request}: {reason}")]

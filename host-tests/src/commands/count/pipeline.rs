@@ -19,13 +19,12 @@
 //! aligned, and an interrupt's entry. An instruction whose condition fails counts as if it were executed. No counts of chips
 //! were found for vmul, vsqrt, vfma, vldm, and for vldr and vstr in a row.
 //!
-//! [`ERROR_BAR`] is what these rules gave for others' programs, which are not in this repository, against the counts that
-//! their authors measured, each with its call: jnk0le/cortexm-AES (31 figures on an STM32F103 and an STM32F407, tables in
-//! RAM: -0.5 to +0.5 %), Ko-/aes-armcortexm (12 on an STM32L100 and an STM32F407, tables in flash: -4.7 to -0.4 %),
-//! Emill/P256-Cortex-M4 (4 on an nRF52840 from its cache: -5.3 to +1.0 %). Anyone can repeat it: `cargo count --elf FILE
-//! --function NAME`, and 1 cycle for each argument and 2 for the call. Not among the 47: dilithium-cortexm on an ATSAM3X8E
-//! (3 figures, -9.2 to -2.7 %), whose bus matrix keeps the first load of each group waiting for a cycle; with that cycle
-//! they are within 0.2 %.
+//! [`ERROR_BAR`] is what these rules gave for 76 kernels of others, which are not in this repository, against the counts that
+//! their authors measured on chips at zero wait states. On an STM32F407 with tables in flash: -2.0 to -0.5 %; on an STM32L100
+//! -2.8 % at worst; an STM32L4R5 takes 3 to 5 % more than an STM32F407 for the same code, which no rule here accounts for.
+//! Anyone can repeat it: `cargo count --elf FILE --function NAME`, and 1 cycle for each argument and 2 for the call. Not among
+//! them: dilithium-cortexm on an ATSAM3X8E (3 figures, -9.2 to -2.7 %), whose bus matrix keeps the first load of each group
+//! waiting for a cycle; with that cycle they are within 0.2 %.
 
 use std::ops::{AddAssign, Sub};
 
@@ -36,9 +35,9 @@ use super::trace::Registers;
 use crate::emulator::boards::Core;
 
 /// What every table of cycles says about them.
-pub const ERROR_BAR: &str = "Cycles are estimated: within 5.3 % of 47 published figures of AES and P-256 on four chips, rms \
-     1.8 %, mostly too low, none of them with an M0+; floating-point sequences held against chips for VADD, VDIV and moves only; wait states cost extra \
-     (34 % at 2 on an STM32F1 for one AES).";
+pub const ERROR_BAR: &str = "Cycles are estimated: 1.6 % off (root mean square) and at most 5.0 % for 76 published kernels, 3 to 5 % \
+     too low on an STM32L4R5, none of them with an M0+; floating-point sequences held against chips for VADD, VDIV and moves only; \
+     wait states cost extra (34 % at 2 on an STM32F1 for one AES).";
 
 /// Executed instructions, which are exact, and the cycles they take by the published timings, which are an estimate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

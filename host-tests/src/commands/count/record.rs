@@ -6,6 +6,7 @@ use super::calls::Calls;
 use super::profile::Profile;
 use super::trace::{Ended, LIMIT};
 use super::{COUNTED, CountError, Target};
+use crate::emulator::process::ProcessError;
 
 impl Profile {
     /// Runs `request` on `target` and profiles the counted function, all calls of it together.
@@ -15,7 +16,10 @@ impl Profile {
         let mut calls = Calls::of(image, target.core(), entries);
         let request = request.to_string();
         match target.trace(&request, LIMIT, |registers| calls.see(registers))? {
-            Ended { success: true, .. } => calls.into_profile().executed(),
+            Ended { status: Some(status), .. } if status.success() => calls.into_profile().executed(),
+            Ended { status: None, .. } => {
+                Err(ProcessError::TimedOut { program: target.elf.display().to_string(), limit: LIMIT }.into())
+            }
             Ended { output, .. } => Err(CountError::Refused { request, reason: output.trim().to_owned() }),
         }
     }

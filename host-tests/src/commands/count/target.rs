@@ -46,4 +46,10 @@ impl Target {
     pub fn core(&self) -> Core {
         self.board.core()
     }
+
+    /// Refuses a program that is not where the board looks for its vectors: it would never run.
+    pub(super) fn check_memory(&self) -> Result<(), CountError> {
+        let vectors = self.board.flash();
+        if self.image.holds(vectors) { Ok(()) } else { Err(CountError::Elsewhere { board: self.board.name, vectors }) }
+    }
 }

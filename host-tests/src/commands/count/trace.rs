@@ -5,14 +5,14 @@
 //! 2.x. The log comes through a pipe, a few hundred thousand instructions per second.
 
 use std::io::{self, BufRead, BufReader, Read};
-use std::process::{Command, Stdio};
+use std::process::{Command, ExitStatus, Stdio};
 use std::thread;
 use std::time::Duration;
 
 use firmware::job::Request;
 
 use super::{CountError, Target};
-use crate::emulator::process;
+use crate::emulator::process::{self, ProcessError};
 
 /// How long one run may take.
 pub(super) const LIMIT: Duration = Duration::from_secs(1800);
@@ -56,11 +56,11 @@ impl Registers {
     }
 }
 
-/// How a program ended by itself.
+/// How a program ended.
 #[derive(Debug)]
-pub(super) struct Ended {
-    /// Whether QEMU's exit code says so.
-    pub success: bool,
+pub struct Ended {
+    /// What QEMU's exit says of it; `None` if its time was up.
+    pub status: Option<ExitStatus>,
     /// What the program printed.
     pub output: String,
 }
@@ -101,9 +101,13 @@ impl Target {
         if let Some(log) = child.stderr.take() {
             for_each_instruction(log, each)?;
         }
-        let success = child.wait()?.success();
+        let status = match child.wait() {
+            Ok(status) => Some(status),
+            Err(ProcessError::TimedOut { .. }) => None,
+            Err(error) => return Err(error.into()),
+        };
         let output = stdout.and_then(|reader| reader.join().ok()).and_then(Result::ok).unwrap_or_default();
-        Ok(Ended { success, output })
+        Ok(Ended { status, output })
     }
 
     /// QEMU with nothing attached but the semihosting console.

@@ -1,10 +1,10 @@
 //! Computing the map: in threads, lanes and two steps.
 
-use double_pendulum::flips::{Flip, Flips, step_size};
-use double_pendulum::form::{DirectionForm, Plain};
+use double_pendulum::flips::{Flip, step_size};
 use double_pendulum::{Error, Parameters};
 use firmware::scenes::flips::GREYS;
 use rayon::prelude::*;
+use vectors::{Search, flips};
 
 use super::square::Square;
 
@@ -30,11 +30,6 @@ pub struct Point {
     pub check: Flip<f32>,
 }
 
-/// The kernel's search with the cheapest steps.
-pub type Search = Flips<f32, DirectionForm<f32, Plain>>;
-
-/// Numbers in a row: a vector of 8 with AVX2, two of 4 without.
-pub const LANES: usize = 8;
 /// Starts that a thread follows by itself; the more, the fewer lanes are idle at its end.
 const PORTION: usize = 8192;
 
@@ -94,36 +89,4 @@ impl Map {
             Flip::Never | Flip::Later => None,
         }
     }
-}
-
-/// The flips of some starts, by the widest vectors that this processor has.
-pub fn flips(search: &Search, starts: &[[f32; 2]]) -> Result<Vec<Flip<f32>>, Error> {
-    let mut flips = vec![Flip::Never; starts.len()];
-    pulp::Arch::new().dispatch(Each { search, starts, flips: &mut flips })?;
-    Ok(flips)
-}
-
-/// A closure would be compiled by itself, for any processor.
-struct Each<'a> {
-    search: &'a Search,
-    starts: &'a [[f32; 2]],
-    flips: &'a mut [Flip<f32>],
-}
-
-impl pulp::NullaryFnOnce for Each<'_> {
-    type Output = Result<(), Error>;
-    #[inline(always)]
-    fn call(self) -> Self::Output {
-        each(self.search, self.starts, self.flips)
-    }
-}
-
-/// The same, for the processor that its caller is compiled for.
-#[inline(always)]
-pub fn each(search: &Search, starts: &[[f32; 2]], flips: &mut [Flip<f32>]) -> Result<(), Error> {
-    search.of_each::<LANES>(starts.iter().copied(), |start, flip| {
-        if let Some(place) = flips.get_mut(start) {
-            *place = flip;
-        }
-    })
 }

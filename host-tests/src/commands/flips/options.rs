@@ -105,7 +105,7 @@ impl Options {
         }
         let [centre, [m1, m2], [l1, l2]] = [&self.centre, &self.masses, &self.lengths].map(Pair::values);
         if centre.iter().any(|angle| angle.abs() > PI) {
-            return Err(Refused::because(format!("--centre {},{}: must be within -pi and pi", centre[0], centre[1])));
+            return Err(Refused::because(format!("--centre {}: must be within -pi and pi", self.centre)));
         }
         // Time in sqrt(l1/g), whatever g is.
         let parameters = Parameters { m1, m2, l1, l2, g: l1 }.cast::<f32>();

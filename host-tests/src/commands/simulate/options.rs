@@ -65,7 +65,7 @@ pub struct Options {
     /// Time from row to row, s; if not given one step, with --tolerance a hundredth of --until
     #[arg(long, value_name = "T", allow_hyphen_values = true)]
     pub every: Option<Number>,
-    /// The numbers it is computed in; if not given, f64, and fixed64 for extrapolation
+    /// The numbers it is computed in; if not given, f64, f64-libm for textbook, fixed64 for extrapolation
     #[arg(long, value_name = "NAME", value_parser = choice(Arithmetic::ALL.iter().copied(), Arithmetic::name))]
     pub arithmetic: Option<Arithmetic>,
     /// The equations of motion; general if not given

@@ -1,9 +1,11 @@
 //! From options to a request that the kernel accepts, and the times of its rows.
 
 use anyhow::{Context, anyhow, bail, ensure};
-use firmware::job::{JobError, ON_BOARDS, ROWS, Request, Row};
+use double_pendulum::{Error, Parameter};
+use firmware::job::{JobError, ON_BOARDS, Request, Row};
 use firmware::protocol::Field;
 
+use super::price::rows;
 use super::{Number, Options, Place};
 
 /// A checked request and the time from row to row.
@@ -40,7 +42,7 @@ pub fn plan(options: &Options) -> anyhow::Result<Plan> {
     ensure!(total % stride == 0, "--until {until}: must be a whole multiple of --every {every}");
 
     let request = request(options, row(options)?, step, stride, total / stride);
-    accepted(&request)?;
+    accepted(options, &request)?;
     // Numbers that overflow at once are refused before anything is printed.
     Request { stride: 1, samples: request.samples.min(1), ..request }
         .readings(|_| Ok::<_, JobError>(()))
@@ -53,7 +55,9 @@ pub(super) fn count((option, time): (&str, &Number), (unit_option, unit): (&str,
     let count = time
         .whole_multiple_of(unit)
         .with_context(|| format!("{option} {time}: must be a whole multiple of {unit_option} {unit}"))?;
-    u32::try_from(count).with_context(|| format!("{option} {time}: more than {} times {unit_option} {unit}", u32::MAX))
+    u32::try_from(count)
+        .ok()
+        .with_context(|| format!("{option} {time}: more than {} times {unit_option} {unit}", u32::MAX))
 }
 
 /// The motion that the options describe, by `row` in steps of `step`.
@@ -70,10 +74,22 @@ pub(super) fn request(options: &Options, row: Row, step: &Number, stride: u32, s
     }
 }
 
-/// Refuses what the kernel refuses, and names its option.
-pub(super) fn accepted(request: &Request) -> anyhow::Result<()> {
+/// Refuses what the kernel refuses, and names its option; and angles that leave the turns more digits than the direction.
+pub(super) fn accepted(options: &Options, request: &Request) -> anyhow::Result<()> {
+    let arithmetic = request.row.arithmetic;
+    let digits = if arithmetic.is_single() { f32::MANTISSA_DIGITS } else { f64::MANTISSA_DIGITS };
+    let limit = f64::powi(2.0, digits as i32 / 2);
+    if let Some(angle) = request.angles.into_iter().find(|angle| angle.abs() > limit) {
+        let name = arithmetic.name();
+        bail!(
+            "--angles: {angle:?} rad: must not exceed {limit}, beyond which {name} has too few digits for a direction"
+        );
+    }
     Request { samples: 0, ..*request }.readings(|_| Ok(())).map_err(|error: JobError| match error {
         JobError::NoSuchRow(_) => anyhow!("{error}"),
+        JobError::Refused(Error::Diverged { parameter: Parameter::Energy, .. }) => {
+            anyhow!("--velocities {}: the energy at the start is too large a number", options.start.velocities)
+        }
         JobError::Refused(error) => anyhow!("{}: {error}", option_of(error.into())),
     })
 }
@@ -81,7 +97,8 @@ pub(super) fn accepted(request: &Request) -> anyhow::Result<()> {
 /// The first row of the table that has all that is asked for, if the place asked for computes it.
 pub(super) fn row(options: &Options) -> anyhow::Result<Row> {
     let wanted = options.wanted();
-    let row = wanted.first_of(ROWS).map_err(|field| {
+    let rows: Vec<_> = rows(Place::Host).collect();
+    let row = wanted.first_of(&rows).map_err(|field| {
         let words = [
             (Field::Arithmetic, wanted.arithmetic.map(|word| word.name().to_owned())),
             (Field::Model, wanted.model.map(|word| word.name().to_owned())),

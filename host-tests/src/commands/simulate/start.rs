@@ -1,6 +1,7 @@
 //! The options that say what moves: the pendulum and how it starts.
 
 use std::f64::consts::PI;
+use std::fmt;
 
 use clap::Args;
 use double_pendulum::Parameters;
@@ -19,6 +20,13 @@ impl Pair {
     /// Their nearest `f64`.
     pub fn values(&self) -> [f64; 2] {
         [self.0.value(), self.1.value()]
+    }
+}
+
+/// As it was written.
+impl fmt::Display for Pair {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{},{}", self.0, self.1)
     }
 }
 
@@ -49,7 +57,7 @@ pub struct Start {
     angles: Option<Pair>,
     /// Angular velocities at the start, rad/s (see --degrees)
     #[arg(long, value_name = "W1,W2", default_value = "0,0", allow_hyphen_values = true)]
-    velocities: Pair,
+    pub velocities: Pair,
     /// Read angles in degrees and velocities in degrees per second; what is printed stays in radians
     #[arg(long)]
     degrees: bool,

@@ -9,9 +9,9 @@ use anyhow::{bail, ensure};
 use double_pendulum::Motion;
 use firmware::job::{Integrator, JobError, Request, Row};
 
-use super::price::candidates;
+use super::price::{Unit, candidates};
 use super::request::{accepted, count, request, row};
-use super::{Number, Options, Place, Plan};
+use super::{Number, Options, Plan};
 use crate::commands::table::small;
 use crate::console::progress::Bar;
 use crate::oracle::reference::Reference;
@@ -28,10 +28,10 @@ const ROWS: u32 = 100;
 pub struct Choice {
     /// What is to be computed.
     pub plan: Plan,
-    place: Place,
     step: Number,
-    /// Of a simulated second, in the place's unit.
+    /// Of a simulated second.
     price: f64,
+    unit: Unit,
     /// How far any angle of any row is from the exact one at most, rad.
     pub error: f64,
 }
@@ -39,11 +39,11 @@ pub struct Choice {
 /// Chooses among all that the options leave open; an error is one line that names the option and the value.
 pub fn choose(options: &Options, tolerance: &Number) -> anyhow::Result<Choice> {
     let search = Search::new(options, tolerance)?;
-    let named = row(options)?;
-    search.check(named)?;
+    search.check(row(options)?)?;
     let exact = search.exact();
     let mut trials = Vec::new();
-    for (row, price) in candidates(options, named) {
+    let (unit, rows) = candidates(options);
+    for (row, price) in rows {
         trials.extend(search.divisions(row).map(|parts| (f64::from(parts) * price, row, parts)));
     }
     trials.sort_by(|(one, ..), (other, ..)| one.total_cmp(other));
@@ -56,7 +56,7 @@ pub fn choose(options: &Options, tolerance: &Number) -> anyhow::Result<Choice> {
         let Agreement { rows, apart } = Agreement::of(&request, &exact, tolerance.value());
         if rows == exact.len() {
             let (plan, price) = (Plan { request, every: search.every.clone() }, price / search.every.value());
-            return Ok(Choice { plan, place: options.place, step, price, error: apart });
+            return Ok(Choice { plan, step, price, unit, error: apart });
         }
         reached = reached.max(rows);
     }
@@ -67,8 +67,8 @@ pub fn choose(options: &Options, tolerance: &Number) -> anyhow::Result<Choice> {
 /// In one line.
 impl fmt::Display for Choice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { plan, place, step, price, error } = self;
-        let (row, unit, error) = (plan.request.row, place.unit(), small(*error));
+        let Self { plan, step, price, unit, error } = self;
+        let (row, error) = (plan.request.row, small(*error));
         write!(f, "takes {row} in steps of {step} s, {price:.0} {unit} a simulated second: ")?;
         write!(f, "off by {error} rad at most, by the double-double reference")
     }
@@ -96,7 +96,7 @@ impl<'a> Search<'a> {
     /// Refuses what the kernel refuses in the finest steps.
     fn check(&self, row: Row) -> anyhow::Result<()> {
         let finest = self.divisions(row).last().unwrap_or(1);
-        accepted(&self.request(row, finest).0)
+        accepted(self.options, &self.request(row, finest).0)
     }
 
     /// The motion by `row` in so many steps from row to row, and the step.

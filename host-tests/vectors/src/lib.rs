@@ -1,0 +1,43 @@
+//! The map of flips in vectors. The kernel's search is inlined into its caller: in a package of its own it is compiled with full
+//! optimisation in every profile, while the commands around it compile fast.
+
+use double_pendulum::Error;
+use double_pendulum::flips::{Flip, Flips};
+use double_pendulum::form::{DirectionForm, Plain};
+
+/// The kernel's search with the cheapest steps.
+pub type Search = Flips<f32, DirectionForm<f32, Plain>>;
+
+/// Numbers in a row: a vector of 8 with AVX2, two of 4 without.
+const LANES: usize = 8;
+
+/// The flips of some starts, by the widest vectors that this processor has.
+pub fn flips(search: &Search, starts: &[[f32; 2]]) -> Result<Vec<Flip<f32>>, Error> {
+    pulp::Arch::new().dispatch(Each { search, starts })
+}
+
+/// The same for any processor of this kind, without a look at what this one has.
+pub fn baseline(search: &Search, starts: &[[f32; 2]]) -> Result<Vec<Flip<f32>>, Error> {
+    pulp::NullaryFnOnce::call(Each { search, starts })
+}
+
+/// A closure would be compiled by itself, for any processor.
+struct Each<'a> {
+    search: &'a Search,
+    starts: &'a [[f32; 2]],
+}
+
+impl pulp::NullaryFnOnce for Each<'_> {
+    type Output = Result<Vec<Flip<f32>>, Error>;
+
+    #[inline(always)]
+    fn call(self) -> Self::Output {
+        let mut flips = vec![Flip::Never; self.starts.len()];
+        self.search.of_each::<LANES>(self.starts.iter().copied(), |start, flip| {
+            if let Some(place) = flips.get_mut(start) {
+                *place = flip;
+            }
+        })?;
+        Ok(flips)
+    }
+}
