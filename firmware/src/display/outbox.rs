@@ -58,6 +58,11 @@ impl Outbox {
         self.address
     }
 
+    /// Bytes of the messages in it, their addresses included.
+    pub fn len(&self) -> usize {
+        self.messages.len()
+    }
+
     /// Whether all has gone out.
     pub fn is_empty(&self) -> bool {
         self.at == self.messages.len()

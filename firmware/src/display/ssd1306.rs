@@ -7,13 +7,14 @@
 //! Source: Solomon Systech, SSD1306 data sheet.
 
 use core::iter::from_fn;
+use core::ops::Range;
 
 use embedded_hal::i2c::ErrorKind;
 
 use super::Display;
 use super::outbox::{Outbox, PanelBus, Sent};
 use crate::config::TICK_RATE;
-use crate::graphics::bitmap::Bitmap;
+use crate::graphics::bitmap::{Bitmap, PAGES};
 use crate::graphics::canvas::{Canvas, HEIGHT, WIDTH};
 
 /// The two addresses that a panel can be set to.
@@ -23,10 +24,11 @@ const COMMAND: u8 = 0x00;
 /// First byte of a message: bytes for the window follow.
 const DATA: u8 = 0x40;
 
+/// Switches the panel off.
+const OFF: &[u8] = &[0xAE];
 /// What wakes the panel, one command a row.
 #[rustfmt::skip]
 const SETTINGS: &[u8] = &[
-    0xAE,                      // display off
     0xD5, 0x80,                // clock as after reset, not divided
     0xA8, (HEIGHT - 1) as u8,  // rows driven, less one
     0xD3, 0,                   // rows not shifted
@@ -47,6 +49,12 @@ const SETTINGS: &[u8] = &[
 const ON: &[u8] = &[0xAF];
 /// Frames between two tries of a panel that does not answer: 1 s.
 const RETRY: u32 = TICK_RATE;
+/// Frames after which a panel that is awake is woken again, as soon as there is room: 1 s.
+const REMINDER: u32 = TICK_RATE;
+/// Pages that are sent again with that: the whole picture in 4 s.
+const REMINDED: usize = 2;
+/// Bytes of a frame beside which there is room for that in a tick: it takes 310, and the bus carries 740.
+const SHORT: usize = 400;
 /// Frames after which a bus that is still busy hangs: 0.1 s, four times what most bytes take.
 const PATIENCE: u32 = 6;
 /// Columns that are better sent again than left out: to address what comes after them takes as many bytes.
@@ -70,6 +78,9 @@ pub enum Ssd1306Error {
 ///
 /// A panel that does not answer is absent: frames for it are refused at once. Once a second it is looked for, so that
 /// it may be plugged in at any time. What becomes of a frame is told with one of the next.
+///
+/// A panel that was without power for a moment is dark, and answers all the same. So about once a second it is told again what
+/// woke it, and a part of the picture, with a frame that leaves room for that in its tick: one that stands still, or any short one.
 #[derive(Debug)]
 pub struct Ssd1306<Bus> {
     bus: Bus,
@@ -79,6 +90,9 @@ pub struct Ssd1306<Bus> {
     told: Result<(), Ssd1306Error>,
     /// Frames for which the bus has been busy.
     waiting: u32,
+    /// Frames since the panel was last woken, and the page with which the next reminder begins.
+    since_woken: u32,
+    page: usize,
     /// Frames since they were last counted, and those of them that the bus has taken.
     counted: u32,
     shown: u32,
@@ -95,7 +109,7 @@ impl<Bus: PanelBus> Ssd1306<Bus> {
     /// Takes the bus; the panel is looked for with the first frame.
     pub fn new(bus: Bus) -> Self {
         let (state, memory) = (State::Absent { retry_in: 0 }, Bitmap::default());
-        Self { bus, state, memory, told: Ok(()), waiting: 0, counted: 0, shown: 0 }
+        Self { bus, state, memory, told: Ok(()), waiting: 0, since_woken: 0, page: 0, counted: 0, shown: 0 }
     }
 
     /// Sends the frame if the bus is free; whether it is.
@@ -117,13 +131,21 @@ impl<Bus: PanelBus> Ssd1306<Bus> {
             State::Absent { .. } => return true,
             State::Waking { address } => {
                 self.memory = Bitmap::from(canvas);
-                wake(outbox, address, &self.memory);
+                self.since_woken = 0;
+                outbox.address_to(address);
+                outbox.put(COMMAND, OFF);
+                wake(outbox, &self.memory, 0..PAGES);
             }
             State::Awake { address } => {
                 let frame = Bitmap::from(canvas);
                 outbox.address_to(address);
-                draw(outbox, Some(&self.memory), &frame);
+                draw(outbox, Some(&self.memory), &frame, 0..PAGES);
                 self.memory = frame;
+                self.since_woken = self.since_woken.saturating_add(1);
+                if self.since_woken >= REMINDER && outbox.len() <= SHORT {
+                    wake(outbox, &self.memory, self.page..self.page + REMINDED);
+                    (self.since_woken, self.page) = (0, (self.page + REMINDED) % PAGES);
+                }
             }
         }
         if !outbox.is_empty() {
@@ -175,17 +197,16 @@ impl<Bus: PanelBus> Display for Ssd1306<Bus> {
     }
 }
 
-/// Configures the panel, fills its memory and switches it on.
-fn wake(outbox: &mut Outbox, address: u8, frame: &Bitmap) {
-    outbox.address_to(address);
+/// Configures the panel, fills these pages of its memory and switches it on.
+fn wake(outbox: &mut Outbox, frame: &Bitmap, pages: Range<usize>) {
     outbox.put(COMMAND, SETTINGS);
-    draw(outbox, None, frame);
+    draw(outbox, None, frame, pages);
     outbox.put(COMMAND, ON);
 }
 
-/// Sends what differs between the panel's memory and the frame; all of it if the memory is not known.
-fn draw(outbox: &mut Outbox, memory: Option<&Bitmap>, frame: &Bitmap) {
-    for (page, new) in (0..).zip(frame.pages()) {
+/// Sends what differs in these pages between the panel's memory and the frame; all of it if the memory is not known.
+fn draw(outbox: &mut Outbox, memory: Option<&Bitmap>, frame: &Bitmap, pages: Range<usize>) {
+    for (page, new) in (0..).zip(frame.pages()).filter(|(page, _)| pages.contains(&usize::from(*page))) {
         let old = memory.and_then(|memory| memory.pages().get(usize::from(page)));
         for (first, last) in runs(|column| old.is_none_or(|old| old.get(column) != new.get(column))) {
             outbox.put(COMMAND, &[0x21, first as u8, last as u8, 0x22, page, page]);

@@ -104,6 +104,10 @@ impl Controller {
         }
     }
 
+    pub fn is_on(&self) -> bool {
+        self.on
+    }
+
     pub fn shows(&self, frame: &Bitmap) -> bool {
         self.on && self.memory.iter().copied().eq(frame.pages().as_flattened().iter().copied().map(Some))
     }

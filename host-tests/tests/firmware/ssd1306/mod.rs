@@ -203,6 +203,27 @@ fn an_absent_panel_is_looked_for_once_a_second_and_may_come_and_go() {
     assert!(line.borrow().panel.shows(&Bitmap::from(&scene(4))));
 }
 
+/// Nothing that is sent fails: it answers again when the next reminder comes.
+#[test]
+fn a_panel_that_was_without_power_for_a_moment_comes_back_though_the_picture_stands_still() {
+    let line = Line::to(Controller::at(0x3C));
+    let mut panel = Ssd1306::new(Bus::new(&line));
+    let picture = scene(30);
+    assert_eq!(panel.flush(&picture), Ok(()));
+    line.borrow_mut().run(LONG);
+    line.borrow_mut().panel = Controller::at(0x3C);
+    let mut seconds = |seconds: u32| {
+        for _ in 0..seconds * TICK_RATE {
+            assert_eq!(panel.flush(&picture), Ok(()));
+            line.borrow_mut().run(TICK);
+            assert!(line.borrow().is_idle(), "the next frame would not be held up");
+        }
+        (line.borrow().panel.is_on(), line.borrow().panel.shows(&Bitmap::from(&picture)))
+    };
+    assert_eq!(seconds(1), (true, false), "a part of the picture");
+    assert_eq!(seconds(3), (true, true), "all of it");
+}
+
 #[test]
 fn a_bus_that_hangs_holds_up_nothing_and_is_freed() {
     let line = Line::to(Controller::at(0x3C));
