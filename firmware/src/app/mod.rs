@@ -20,7 +20,9 @@ use crate::app::instruments::Instruments;
 use crate::app::player::{News, Player};
 use crate::app::service::{Received, Service};
 use crate::app::warm_restart::WarmRestart;
-use crate::config::{MOST_MEASURED_STEPS, MOST_MESSAGES_PER_TICK, MOST_TICKS_PER_FRAME, PROCESSOR, Processor};
+use crate::config::{
+    MOST_MEASURED_STEPS, MOST_MESSAGES_PER_TICK, MOST_TICKS_PER_FRAME, PROCESSOR, Processor, RECEIVE_QUEUE,
+};
 use crate::display::Display;
 use crate::graphics::canvas::Canvas;
 use crate::graphics::frame_buffers::FrameBuffers;
@@ -168,15 +170,15 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         ticks == late
     }
 
-    /// Takes bytes received over the link, executes and answers. Stops after [`MOST_MESSAGES_PER_TICK`] messages, so that no
-    /// flood of them delays the frame; what is left in `bytes` waits for the next call.
+    /// Takes bytes received over the link, executes and answers. Stops after [`MOST_MESSAGES_PER_TICK`] messages or
+    /// [`RECEIVE_QUEUE`] bytes, so that no flood of either delays the frame; what is left in `bytes` waits for the next call.
     pub fn receive(
         &mut self,
         bytes: impl IntoIterator<Item = u8>,
         mut log: impl FnMut(Event<Panel::Error, Link::Error>),
     ) {
         let mut left = MOST_MESSAGES_PER_TICK;
-        for byte in bytes {
+        for byte in bytes.into_iter().take(RECEIVE_QUEUE) {
             let Some(received) = self.service.receive(byte) else { continue };
             match received {
                 Received::Accepted => log(Event::Asked),

@@ -4,7 +4,7 @@
 use crate::app::command::HostCommand;
 use crate::job::{Job, OnBoards, Reading, Request};
 use crate::protocol::Field;
-use crate::protocol::{Decoder, LinkError, Message, Refused, Sample, Simulate, StepTooLong};
+use crate::protocol::{Decoder, LinkError, Message, Refused, Sample, Simulate, StepTooLong, TO_CHIP};
 
 /// What a received message came to.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,6 +43,9 @@ impl Service {
             Ok(message) => message,
             Err(error) => return Some(Received::Damaged(error)),
         };
+        if kind & TO_CHIP == 0 {
+            return None; // An answer, perhaps its own, looped back: to answer that would have no end.
+        }
         Some(match (kind == Simulate::KIND).then(|| Simulate::read(fields)).flatten() {
             Some(message) => self.accept(&message),
             None => HostCommand::read(kind, fields).map_or_else(Received::Refused, Received::HostCommand),

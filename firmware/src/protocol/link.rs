@@ -23,6 +23,8 @@ use super::Message;
 
 /// The version of the protocol; the first byte of every message.
 pub const VERSION: u8 = 7;
+/// Set in the kind of every message to the chip, and in no other's.
+pub const TO_CHIP: u8 = 0x80;
 /// The most bytes a message's fields may take.
 pub const MAX_FIELDS: usize = 96;
 /// The most bytes a message takes before framing: version, kind, fields, CRC.

@@ -21,7 +21,7 @@ pub use field::Field;
 pub use frame::Frame;
 pub use identity::{BoardName, Identify, Identity, Measure, Measured};
 pub use layout::{Message, WireNumber};
-pub use link::{CRC, Decoder, LinkError, MAX_FIELDS, MAX_WIRE, VERSION, encode, frame};
+pub use link::{CRC, Decoder, LinkError, MAX_FIELDS, MAX_WIRE, TO_CHIP, VERSION, encode, frame};
 pub use plan::{AskPlan, NO_METHOD, Planned, limit_code, method_code, method_of};
 pub use restarted::Restarted;
 pub use simulate::{Refused, Sample, Simulate, StepTooLong};

@@ -9,7 +9,7 @@ use firmware::app::controls::{Key, NoButtons};
 use firmware::app::instruments::Instruments;
 use firmware::app::player::{AUTO, News};
 use firmware::app::{App, Event};
-use firmware::config::{DT, MOST_MEASURED_STEPS, MOST_MESSAGES_PER_TICK, PLANNED, TICK_RATE};
+use firmware::config::{DT, MOST_MEASURED_STEPS, MOST_MESSAGES_PER_TICK, PLANNED, RECEIVE_QUEUE, TICK_RATE};
 use firmware::display::NoDisplay;
 use firmware::job::{Arithmetic, Formulation, OnBoards, Request, Row, Run};
 use firmware::motion::planner::Finding;
@@ -18,7 +18,7 @@ use firmware::protocol::Field;
 use firmware::protocol::Unit;
 use firmware::protocol::{
     Ask, AskPlan, Choose, Decoder, Done, Frame, Identify, Identity, MAX_WIRE, Measure, Measured, Message, Pause,
-    Planned, Press, Refused, Restart, Sample, Set, Status, Step, encode, method_code,
+    Planned, Press, Refused, Restart, Sample, Set, Status, Step, TO_CHIP, encode, frame, method_code,
 };
 use firmware::scenes::SceneName;
 use host_tests::emulator::host::sheets;
@@ -198,6 +198,24 @@ fn an_intact_message_of_unknown_kind_is_answered_too() {
     let mut app = app();
     app.receive(wire(&Stranger { request: 77, rest: [1, 2, 3] }), |_| ());
     assert_eq!(last::<Refused>(&app), Refused { request: 77, field: Field::Message.code() });
+}
+
+/// Of a link that is looped back the board hears what it has sent.
+#[test]
+fn what_is_an_answer_itself_is_not_answered() {
+    let mut app = app();
+    for kind in 0..TO_CHIP {
+        app.receive(frame(kind, &[7, 0, 1], &mut [0; MAX_WIRE]).iter().copied(), |event| panic!("{event:?}"));
+    }
+    assert_eq!(sent(&app), []);
+}
+
+/// Bytes without a zero end no message.
+#[test]
+fn an_endless_message_holds_up_nothing() {
+    let mut taken = 0;
+    app().receive(std::iter::repeat_n(1, 1_000_000).inspect(|_| taken += 1), |_| ());
+    assert_eq!(taken, RECEIVE_QUEUE);
 }
 
 #[test]
