@@ -11,8 +11,12 @@ const RAM = 0x20000000;
 /** Where the vector table is: behind the 256 bytes that the boot ROM runs first, of which there is none here. */
 const VECTORS = FLASH + 0x100;
 const BUTTONS = [10, 11, 12, 13, 14];
-/** What the watchdog says of a reset of its own. */
+/** What the watchdog says of a reset of its own, and the register in which the boot ROM says what it wants of such a reset. */
 const BY_TIMER = 1;
+const WISH = 4;
+/** Where the watchdog is, and the device that holds others in their reset; which of these the boot ROM lets go. */
+const [WATCHDOG, RESETS] = [0x40058, 0x4000c];
+const [ALL, BY_ROM] = [0x1ffffff, (1 << 6) | (1 << 9) | (1 << 21)];
 /** The newer revision of the chip, B2: of the older one's fault at the start of USB the emulator knows nothing. */
 const CHIP_ID = 0x20002927;
 /** Registers of the processor that the emulator lacks: reset (bit 2), what protects memory, and whether a debugger is there. */
@@ -27,7 +31,10 @@ export class Board {
     this.start();
   }
 
-  /** Starts a new chip, for the emulator's cannot be reset; `before` is the one whose memory it goes on with. */
+  /**
+   * Starts a new chip, for the emulator's cannot be reset; `before` is the one whose memory it goes on with. The watchdog resets
+   * all but its own scratch registers; without it, the processor alone is reset.
+   */
   start(before, reason = 0) {
     const chip = new RP2040();
     this.chip = chip;
@@ -38,8 +45,11 @@ export class Board {
       chip.clock.nanosCounter = before.clock.nanos;
     }
     chip.peripherals[0x40000].readUint32 = (offset) => (offset === 0 ? CHIP_ID : 0);
-    const watchdog = chip.peripherals[0x40058];
-    watchdog.reason = reason;
+    const [watchdog, resets] = [WATCHDOG, RESETS].map((at) => chip.peripherals[at]);
+    const [watched, held] = [WATCHDOG, RESETS].map((at) => before?.peripherals[at]);
+    if (before) watchdog.scratchData.set(watched.scratchData);
+    watchdog.reason = reason || (watched?.reason ?? 0);
+    resets.reset = (before && !reason ? held.reset : ALL) & ~BY_ROM;
     watchdog.onWatchdogTrigger = () => {
       watchdog.alarm.enable = false; // or it comes again at once
       this.due = watchdog.reason;
@@ -115,6 +125,13 @@ export class Board {
   press(pin, is) {
     this.pressed[is ? 'add' : 'delete'](pin);
     this.chip.gpio[pin].setInputValue(!is);
+  }
+
+  /** A reset by a debugger, or by the boot ROM after a download. */
+  reset(isDownload) {
+    this.due = isDownload ? BY_TIMER : 0;
+    if (isDownload) this.chip.peripherals[WATCHDOG].scratchData[WISH] = 0;
+    this.restart();
   }
 
   hang() {

@@ -22,6 +22,8 @@ const commands = {
   button: (pin, is) => board.press(Number(pin), is === '1'),
   /** A circle where the processor is, until the next start. */
   hang: () => board.hang(),
+  /** Resets it: 1 after a download, 0 as a debugger does. */
+  reset: (isDownload) => board.reset(isDownload === '1'),
   /** The board's memory, from an address on. */
   read: (address, length) => say('memory', board.memory(address, length)),
   fill: (address, length, byte) => board.memory(address, length).fill(Number(byte)),

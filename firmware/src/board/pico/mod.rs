@@ -36,7 +36,7 @@ use i2c::Line;
 pub use link::Link;
 pub use watchdog::Watchdog;
 
-/// What the chip's boot ROM runs first: it makes the flash readable as memory.
+/// What the chip's boot ROM runs first: it makes the flash readable as memory, if that is a W25Q080 or takes its commands.
 // SAFETY: the linker puts this section where the ROM looks for it, and nothing else into it.
 #[unsafe(link_section = ".boot2")]
 #[used]
@@ -75,7 +75,7 @@ impl Board {
         let mut chip = pac::Peripherals::take()?;
         log::into_memory();
         guard_stack(core.MPU);
-        let mut watchdog = Watchdog::new(chip.WATCHDOG);
+        let mut watchdog = Watchdog::new(chip.WATCHDOG, &chip.RESETS);
         let clocks = init_clocks_and_plls(
             CRYSTAL,
             chip.XOSC,

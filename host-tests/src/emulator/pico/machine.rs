@@ -178,6 +178,12 @@ impl Machine {
         self.tell("hang")
     }
 
+    /// Resets it as a debugger does, or as the boot ROM does after a download.
+    pub fn reset(&mut self, after_download: bool) -> Result<(), PicoError> {
+        [&mut self.usb, &mut self.uart].into_iter().for_each(Inbox::restart);
+        self.tell(&format!("reset {}", u8::from(after_download)))
+    }
+
     fn bytes(&mut self, line: &str) -> Result<Vec<u8>, PicoError> {
         let said = self.talk.ask(line)?;
         Ok(said.into_iter().next().map(|said| said.bytes).unwrap_or_default())
