@@ -101,7 +101,7 @@ impl Outlet for Port {
 
 /// The inward direction.
 const INLET: Inlet = Inlet {
-    clear: || INTERRUPT_CLEAR.write(RECEIVED),
+    clear: |_| INTERRUPT_CLEAR.write(RECEIVED),
     take: || {
         let state = STATE.read();
         if state & RECEIVER_OVERRUN != 0 {

@@ -9,13 +9,13 @@ use crc::{CRC_32_MPEG_2, Crc};
 use double_pendulum::Parameters;
 use firmware::app::controls::Key;
 use firmware::app::warm_restart::Cause;
-use firmware::config::{GRAVITY, HOLD_TICKS, MOST_MEASURED_STEPS, TICK_RATE, WATCHDOG_SECONDS};
+use firmware::config::{GRAVITY, HOLD_TICKS, MOST_MEASURED_STEPS, RECEIVE_QUEUE, TICK_RATE, WATCHDOG_SECONDS};
 use firmware::graphics::bitmap::Bitmap;
 use firmware::job::{Arithmetic, Formulation, ON_BOARDS, Request, Row};
 use firmware::motion::settings::Settings;
 use firmware::protocol::{
-    BoardName, CRC, Choose, Done, Field, Frame, Identify, Identity, Measure, Measured, Pause, Press, Restarted, Sample,
-    Set, Unit,
+    Ask, BoardName, CRC, Choose, Done, Field, Frame, Identify, Identity, MAX_WIRE, Measure, Measured, Message, Pause,
+    Press, Restarted, Sample, Set, Status, Unit, encode,
 };
 use firmware::scenes::SceneName;
 use host_tests::commands::count::{FULL_CYCLE, Target, affordable_steps, step_cost};
@@ -272,6 +272,24 @@ fn every_button_does_its_own() -> Result<(), PicoError> {
     Ok(())
 }
 
+/// More than it takes in many ticks, in which its queue is full: the host waits.
+#[test]
+fn a_flood_over_usb_loses_nothing() -> Result<(), PicoError> {
+    let mut board = board()?;
+    board.run(PICTURE)?;
+    let mut flood = vec![1; 5 * RECEIVE_QUEUE];
+    for request in 0..100 {
+        flood.extend_from_slice(encode(&Ask { request }, &mut [0; MAX_WIRE]));
+    }
+    board.send_bytes(&flood)?;
+    let messages = board.run(60 * TICK)?;
+    let answers = messages.iter().filter_map(Received::read).map(|Status { request, .. }| request);
+    assert!(answers.eq(0..100));
+    let frame = next_frame(&mut board)?;
+    assert_eq!((frame.lost, frame.dropped), (0, 0));
+    Ok(())
+}
+
 #[test]
 fn the_watchdog_restarts_the_board_in_its_scene() -> Result<(), PicoError> {
     let mut board = board_in(SceneName::Butterfly)?;
@@ -288,5 +306,14 @@ fn the_watchdog_restarts_the_board_in_its_scene() -> Result<(), PicoError> {
     let frame = next_frame(&mut board)?;
     assert_eq!((frame.scene, frame.mass_ratio), (before.scene, before.mass_ratio));
     assert_eq!((frame.step, frame.dropped), (frame.sequence + 1, 0), "from its start, and all frames since");
+    // A reset from outside starts afresh: it is not for the watchdog's that was before, nor for the one by which the boot ROM does it.
+    for after_download in [false, true, false] {
+        board.reset(after_download)?;
+        let messages = board.run(8 * PICTURE)?;
+        assert!(messages.iter().all(|message| message.kind != Restarted::KIND), "{after_download}");
+        assert_eq!(next_frame(&mut board)?.scene, SceneName::Page.code());
+        board.send(&Choose { request: 3, scene: SceneName::Butterfly.code() })?;
+        board.run(4 * TICK)?;
+    }
     Ok(())
 }

@@ -61,7 +61,7 @@ impl Outlet for Port {
 
 /// The inward direction.
 pub(super) const INLET: Inlet = Inlet {
-    clear: || INTERRUPT_CLEAR.write(RECEIVED),
+    clear: |_| INTERRUPT_CLEAR.write(RECEIVED),
     take: || {
         let overrun = RECEIVE_STATUS.read() & OVERRUN != 0;
         if overrun {

@@ -113,11 +113,25 @@ fn pass_on() {
 }
 
 /// The inward direction: to look at USB and to read what has come ends the interrupts of both.
-pub(super) const INLET: Inlet = Inlet { clear: usb::poll, take };
+pub(super) const INLET: Inlet = Inlet { clear, take };
 
+/// A USB packet for which there is no room stays where it is, and the host waits. As long as it does, its interrupt would come again
+/// and again; meanwhile the UART's does, which is asked for with each frame.
+fn clear(room: usize) {
+    let has_room = room >= usb::PACKET;
+    usb::poll(has_room);
+    if has_room {
+        enable_interrupts();
+    } else {
+        NVIC::mask(Interrupt::USBCTRL_IRQ);
+    }
+}
+
+/// First what has come over USB, for which the room was reckoned.
 fn take() -> Taken {
-    if uart().uartfr().read().rxfe().bit_is_set() {
-        return Taken { byte: usb::take(), overrun: false };
+    let byte = usb::take();
+    if byte.is_some() || uart().uartfr().read().rxfe().bit_is_set() {
+        return Taken { byte, overrun: false };
     }
     let word = uart().uartdr().read();
     Taken { byte: Some(word.data().bits()), overrun: word.oe().bit_is_set() }

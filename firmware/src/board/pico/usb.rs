@@ -15,10 +15,11 @@ use usbd_serial::{CdcAcmClass, USB_CLASS_CDC};
 
 use crate::config::USB_QUEUE;
 
-/// What anybody may use for a serial port (V-USB's shared ids); `cargo demo --port auto` looks for it.
+/// What anybody may use for a serial port (V-USB's shared ids). Without a serial number, as long as no program goes by them to find
+/// the board (rule 7 of V-USB's `USB-IDs-for-free.txt`): none of ours does.
 const IDS: UsbVidPid = UsbVidPid(0x16c0, 0x27dd);
 /// The longest packet.
-const PACKET: usize = 64;
+pub(super) const PACKET: usize = 64;
 
 /// The device, and bytes on their way.
 struct Usb {
@@ -67,9 +68,9 @@ pub(super) fn send(message: &[u8]) {
     with(|usb| usb.send(message));
 }
 
-/// Does what the device's interrupt asks for.
-pub(super) fn poll() {
-    with(Usb::poll);
+/// Does what the device's interrupt asks for; takes a packet only if there is room for it.
+pub(super) fn poll(has_room: bool) {
+    with(|usb| usb.poll(has_room));
 }
 
 /// The next byte received, if there is one.
@@ -90,10 +91,11 @@ impl Usb {
         }
     }
 
-    fn poll(&mut self) {
+    fn poll(&mut self, has_room: bool) {
         self.device.poll(&mut [&mut self.port]);
         let mut packet = [0; PACKET];
-        if self.arrived.is_empty()
+        if has_room
+            && self.arrived.is_empty()
             && let Ok(length) = self.port.read_packet(&mut packet)
         {
             for byte in packet.into_iter().take(length) {

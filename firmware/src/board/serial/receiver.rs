@@ -11,8 +11,9 @@ use crate::config::RECEIVE_QUEUE;
 /// A serial port as the interrupt sees it.
 #[derive(Clone, Copy)]
 pub(in crate::board) struct Inlet {
-    /// Ends the interrupt. Done before the bytes are taken, so that one that comes meanwhile interrupts anew.
-    pub clear: fn(),
+    /// Ends the interrupt, given for how many bytes there is room. Done before the bytes are taken, so that one that comes
+    /// meanwhile interrupts anew.
+    pub clear: fn(usize),
     /// Takes out what is next.
     pub take: fn() -> Taken,
 }
@@ -39,7 +40,7 @@ static LOST: AtomicU32 = AtomicU32::new(0);
 pub(in crate::board) fn receive() {
     let source = cortex_m::interrupt::free(|token| SOURCE.borrow(token).take());
     if let Some(mut source) = source {
-        (source.inlet.clear)();
+        (source.inlet.clear)(source.queue.capacity().saturating_sub(source.queue.len()));
         loop {
             let Taken { byte, overrun } = (source.inlet.take)();
             let is_refused = byte.is_some_and(|byte| source.queue.enqueue(byte).is_err());

@@ -34,7 +34,7 @@ impl Outlet for Tx<USART3> {
 }
 
 /// The inward direction.
-pub(super) const INLET: Inlet = Inlet { clear: || (), take };
+pub(super) const INLET: Inlet = Inlet { clear: |_| (), take };
 
 /// To read a byte ends its interrupt; there is nothing else to clear.
 fn take() -> Taken {
