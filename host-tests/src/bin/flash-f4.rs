@@ -21,7 +21,7 @@ const CHIPS: [&str; 4] = ["STM32F405", "STM32F407", "STM32F415", "STM32F417"];
 #[derive(Debug, Parser)]
 #[command(
     name = "cargo flash-f4",
-    after_help = "Examples:\n  cargo flash-f4 --chip STM32F407VGTx\n  cargo flash-f4 --dfu    (BOOT0 at 3.3 V, then reset: the chip waits at its USB port)"
+    after_help = "Examples:\n  cargo flash-f4 --chip STM32F407VGTx\n  cargo flash-f4 --dfu    (BOOT0 at 3.3 V, then reset: the chip waits at its USB port; afterwards the wire off, then reset)"
 )]
 struct Arguments {
     /// The chip, by probe-rs's name: an STM32F405 or F407

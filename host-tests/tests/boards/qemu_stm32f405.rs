@@ -1,12 +1,13 @@
 //! The image that is flashed runs in the emulator as well, where it finds neither clock control nor panel nor button.
 
+use crate::support::program::address;
 use crate::support::{application, settings, toolchain};
 use double_pendulum::Parameters;
 use firmware::config::{GRAVITY, MOST_MEASURED_STEPS};
 use firmware::job::{ON_BOARDS, Request};
 use firmware::protocol::{Frame, Measure, Measured};
 use host_tests::emulator::boards::STM32F405;
-use host_tests::emulator::qemu::{Machine, QemuError};
+use host_tests::emulator::qemu::{Machine, Probe, QemuError};
 use object::{Object, ObjectSegment};
 
 #[test]
@@ -18,6 +19,18 @@ fn the_image_is_for_the_chips_memory() -> Result<(), Box<dyn std::error::Error>>
     assert_eq!(starts.next(), Some(flash.start), "the vector table");
     assert!(image.segments().all(|part| flash.contains(&part.address()) || ram.contains(&part.address())));
     assert!(flash.contains(&image.entry()));
+    Ok(())
+}
+
+/// The chip's own loader starts the program while its ROM stands at address 0: the processor must be told where the vectors are.
+#[test]
+fn the_vector_table_is_the_programs_own_wherever_it_is_started_from() -> Result<(), QemuError> {
+    const VTOR: u32 = 0xe000_ed08;
+    let (toolchain, elf) = (toolchain(), application(&STM32F405));
+    let mut probe = Probe::start(&settings(&toolchain, &STM32F405, &elf))?;
+    assert_eq!(probe.read(VTOR..VTOR + 4)?, [0; 4]);
+    probe.run_to(address(&elf, "clock::cycles"))?;
+    assert_eq!(probe.read(VTOR..VTOR + 4)?, 0x0800_0000_u32.to_le_bytes());
     Ok(())
 }
 

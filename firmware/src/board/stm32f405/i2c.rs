@@ -1,6 +1,6 @@
 //! The I2C bus of the panel. The support library sets it up; bytes are sent here, by the bus's interrupts.
 //!
-//! Source: ST RM0090, 27.3.3 (master transmitter), 27.3.4 (errors).
+//! Source: ST RM0090, 27.3.3 (master transmitter), 27.3.4 (errors); ES0182, the chip's errata.
 
 use cortex_m::asm::delay;
 use cortex_m::peripheral::NVIC;
@@ -27,9 +27,6 @@ const START_SENT: u16 = 1 << 0;
 const ADDRESS_SENT: u16 = 1 << 1;
 const ALL_SENT: u16 = 1 << 2;
 const READY_FOR_BYTE: u16 = 1 << 7;
-const BUS_ERROR: u16 = 1 << 8;
-const ARBITRATION_LOST: u16 = 1 << 9;
-const NOT_ACKNOWLEDGED: u16 = 1 << 10;
 
 /// The bus, for writing only: the panel is never read.
 pub type Bus = panel_bus::Bus<I2c1>;
@@ -131,20 +128,23 @@ fn advance(port: &RegisterBlock, outbox: &mut Outbox) -> Option<Sent> {
     Some(Err(ErrorKind::Other))
 }
 
+/// A bus error is none: a master may detect one where there is none, so it is to be cleared and the transfer goes on (ES0182,
+/// "Spurious bus error detection in master mode"). A bus that has really been disturbed hangs, and is freed for that.
 fn fail(port: &RegisterBlock, outbox: &Outbox) -> Option<Sent> {
-    let status = port.sr1().read().bits();
-    port.sr1().write(|w| w.af().clear_bit().arlo().clear_bit().berr().clear_bit());
-    stop(port);
-    Some(Err(if status & NOT_ACKNOWLEDGED != 0 {
+    let status = port.sr1().read();
+    // To write 1 leaves a flag as it is: one that has come up meanwhile.
+    port.sr1()
+        .write(|w| w.af().bit(!status.af().bit()).arlo().bit(!status.arlo().bit()).berr().bit(!status.berr().bit()));
+    let error = if status.af().bit_is_set() {
         let source = if outbox.has_begun() { NoAcknowledgeSource::Data } else { NoAcknowledgeSource::Address };
         ErrorKind::NoAcknowledge(source)
-    } else if status & ARBITRATION_LOST != 0 {
+    } else if status.arlo().bit_is_set() {
         ErrorKind::ArbitrationLoss
-    } else if status & BUS_ERROR != 0 {
-        ErrorKind::Bus
     } else {
-        ErrorKind::Overrun
-    }))
+        return None;
+    };
+    stop(port);
+    Some(Err(error))
 }
 
 /// Ends the last message.
