@@ -1,6 +1,7 @@
 //! `cargo pico`: the firmware of the Raspberry Pi Pico as a file to be copied onto it.
 
 use std::fs;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -36,7 +37,8 @@ fn make(arguments: &Arguments) -> anyhow::Result<()> {
     let elf = fs::read(toolchain.build_for(&PICO)?)?;
     let (start, image) = flash_image(&elf)?;
     let file = workspace().join("target").join(FILE);
-    fs::write(&file, uf2(start, &image)).with_context(|| file.display().to_string())?;
+    let blocks = uf2(start, &image);
+    fs::write(&file, &blocks).with_context(|| file.display().to_string())?;
     say(format_args!("{}: {} bytes of flash", file.display(), image.len()))?;
     let Some(drive) = arguments.drive.clone().or_else(|| mounted(&fs::read_to_string("/proc/mounts").ok()?)) else {
         say(
@@ -45,8 +47,15 @@ fn make(arguments: &Arguments) -> anyhow::Result<()> {
         return Ok(());
     };
     let to = drive.join(FILE);
-    fs::copy(&file, &to).with_context(|| to.display().to_string())?;
+    write_through(&to, &blocks).with_context(|| to.display().to_string())?;
     Ok(say(format_args!("copied to {}: the board starts by itself", drive.display()))?)
+}
+
+/// Returns once the drive has it. Not `fs::copy`, which sets the file's mode as well: a drive that root has mounted refuses that.
+fn write_through(to: &Path, bytes: &[u8]) -> io::Result<()> {
+    let mut file = fs::File::create(to)?;
+    file.write_all(bytes)?;
+    file.sync_all()
 }
 
 /// A folder that is an RP2040's drive.
