@@ -1,22 +1,10 @@
-//! Which port: the one named, or the one that a board is on by its USB id.
+//! Which port: the one named, or the only one that is a USB device's.
 
 use serialport::{SerialPortInfo, SerialPortType};
 
-/// The word that stands for whichever port a board is on.
+/// The word that stands for the only serial port over USB. Not the only one of some ids, for those of the Pico are lent to whoever
+/// does not go by them.
 pub const AUTO: &str = "auto";
-
-/// USB ids, vendor and product, of what a board's serial link comes in by; no product: any of the vendor's.
-const ADAPTERS: [(u16, Option<u16>, &str); 9] = [
-    (0x16c0, Some(0x27dd), "Raspberry Pi Pico that plays"),
-    (0x0403, None, "FTDI adapter"),
-    (0x10c4, Some(0xea60), "CP210x adapter"),
-    (0x1a86, None, "CH34x adapter"),
-    (0x067b, None, "PL2303 adapter"),
-    (0x0483, None, "ST-LINK"),
-    (0x1366, None, "J-Link"),
-    (0x0d28, Some(0x0204), "CMSIS-DAP probe"),
-    (0x2e8a, None, "Raspberry Pi probe"),
-];
 
 /// Why no port can be chosen.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -37,20 +25,17 @@ pub fn find(name: &str) -> Result<String, NoPort> {
     choose(&serialport::available_ports().unwrap_or_default())
 }
 
-/// The only one of `ports` that a board may be on.
+/// The only one of `ports` that is a USB device's.
 fn choose(ports: &[SerialPortInfo]) -> Result<String, NoPort> {
-    let known = |port: &SerialPortInfo| {
+    let over_usb = |port: &SerialPortInfo| {
         let SerialPortType::UsbPort(usb) = &port.port_type else { return None };
-        let is_it =
-            |vendor, product: Option<u16>| usb.vid == vendor && product.is_none_or(|product| usb.pid == product);
-        let (.., kind) = ADAPTERS.into_iter().find(|(vendor, product, _)| is_it(*vendor, *product))?;
-        Some((port.port_name.clone(), kind))
+        Some((port.port_name.clone(), usb.product.clone().unwrap_or_else(|| "no name".to_owned())))
     };
-    match &ports.iter().filter_map(known).collect::<Vec<_>>()[..] {
+    match &ports.iter().filter_map(over_usb).collect::<Vec<_>>()[..] {
         [] => Err(NoPort::None),
         [(name, _)] => Ok(name.clone()),
         several => {
-            let named: Vec<_> = several.iter().map(|(name, kind)| format!("{name} ({kind})")).collect();
+            let named: Vec<_> = several.iter().map(|(name, product)| format!("{name} ({product})")).collect();
             Err(NoPort::Several(named.join(", ")))
         }
     }
@@ -62,19 +47,19 @@ mod tests {
 
     use super::*;
 
-    fn usb(name: &str, vid: u16, pid: u16) -> SerialPortInfo {
-        let usb = UsbPortInfo { vid, pid, serial_number: None, manufacturer: None, product: None };
+    fn usb(name: &str, product: Option<&str>) -> SerialPortInfo {
+        let product = product.map(str::to_owned);
+        let usb = UsbPortInfo { vid: 0x16c0, pid: 0x27dd, serial_number: None, manufacturer: None, product };
         SerialPortInfo { port_name: name.to_owned(), port_type: SerialPortType::UsbPort(usb) }
     }
 
     #[test]
     fn the_one_adapter_that_is_plugged_in_is_taken() {
-        let modem = usb("/dev/ttyACM3", 0x1199, 0x9071);
         let built_in = SerialPortInfo { port_name: "/dev/ttyS0".to_owned(), port_type: SerialPortType::Unknown };
-        let [ftdi, st_link] = [usb("/dev/ttyUSB0", 0x0403, 0x6001), usb("/dev/ttyACM0", 0x0483, 0x374b)];
-        assert_eq!(choose(&[modem.clone(), built_in.clone()]), Err(NoPort::None));
-        assert_eq!(choose(&[modem, built_in, ftdi.clone()]), Ok("/dev/ttyUSB0".to_owned()));
-        let several = "/dev/ttyUSB0 (FTDI adapter), /dev/ttyACM0 (ST-LINK)".to_owned();
-        assert_eq!(choose(&[ftdi, st_link]), Err(NoPort::Several(several)));
+        let [pico, other] = [usb("/dev/ttyACM0", Some("Double pendulum")), usb("/dev/ttyUSB0", None)];
+        assert_eq!(choose(std::slice::from_ref(&built_in)), Err(NoPort::None));
+        assert_eq!(choose(&[built_in, pico.clone()]), Ok("/dev/ttyACM0".to_owned()));
+        let several = "/dev/ttyACM0 (Double pendulum), /dev/ttyUSB0 (no name)".to_owned();
+        assert_eq!(choose(&[pico, other]), Err(NoPort::Several(several)));
     }
 }

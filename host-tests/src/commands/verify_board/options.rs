@@ -10,7 +10,7 @@ use firmware::config::BAUD;
 #[derive(Clone, Debug, Parser)]
 #[command(name = "cargo verify-board", after_help = "Example: cargo verify-board --port auto --report feather")]
 pub struct Options {
-    /// The serial port; `auto` finds it by its USB id
+    /// The serial port; `auto` is the only one over USB
     #[arg(long, value_name = "PATH")]
     pub port: String,
     /// Bits per second of that port
