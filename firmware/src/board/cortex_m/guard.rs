@@ -7,6 +7,10 @@
 //! A thinner guard would do against a creeping stack, but a function that takes kilobytes at once, as those do that make
 //! a scene, could step over it. No function of the firmware takes as much as this guard holds (test `stack_guard`), so the
 //! stack pointer cannot pass it; and wherever it stops within, the next call or interrupt is refused.
+//!
+//! So are the registers that the processor stacks on its way to the fault's handler. A Cortex-M3 or M4 notes that and takes the
+//! handler all the same; an M0+, which has nothing to note it in, may lock up. Then the watchdog resets the board, and what the
+//! next run reports is a hang.
 
 use core::ops::Range;
 
