@@ -9,7 +9,7 @@ mod upkeep;
 use super::checkpoint::{Check, RestoreError};
 use super::{Direction, Form, lower_direction, lower_ray};
 use crate::error::Error;
-use crate::fixed::{Q30, Scaling, check_step, nearest, scaled};
+use crate::fixed::{Q30, Scaling, check_step, nearest};
 use crate::hamiltonian::Pendulum;
 use crate::params::Parameters;
 use crate::real::Real;
@@ -189,23 +189,12 @@ impl Fixed32State {
 
     #[inline(never)]
     fn state(&self) -> State<f64> {
-        let Setting { scaling, lag, coefficients, .. } = &self.units;
         if self.lost {
             return State { a1: f64::NAN, a2: f64::NAN, p1: f64::NAN, p2: f64::NAN };
         }
         let [sin1, cos1, s, c, p1, p2] = self.z.map(value);
         let [sin2, cos2] = lower_ray([sin1, cos1], [s, c]);
-        let [sin_q, cos_q, s_q, c_q, p1_q, p2_q] = self.quantities();
-        let rates = coefficients.rates(&scaling.shifts, [sin_q, cos_q], [s_q, c_q], [p1_q, p2_q], self.inverse);
-        let behind = self.steps as f64 * lag;
-        let [u, v] = rates.angles.map(|rate| scaled(f64::from(rate.0), -30) * behind);
-        let [f1, f2] = rates.momenta.map(|rate| scaled(f64::from(rate.0), -31) * behind);
-        let [unit1, unit2] = scaling.momenta;
-        State {
-            a1: libm::atan2(sin1, cos1) + u,
-            a2: libm::atan2(sin2, cos2) + v,
-            p1: (p1 + f1) / unit1,
-            p2: (p2 + f2) / unit2,
-        }
+        let [unit1, unit2] = self.units.scaling.momenta;
+        State { a1: libm::atan2(sin1, cos1), a2: libm::atan2(sin2, cos2), p1: p1 / unit1, p2: p2 / unit2 }
     }
 }
