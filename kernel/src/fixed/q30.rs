@@ -102,9 +102,9 @@ impl Gravity {
         Self(word(nearest(value * Self::STEPS) as i64))
     }
 
-    /// What this misses of `value`, times `sixths` 2^-`halvings`, with 60 bits after the point.
-    pub fn missed(self, value: f64, times: u32, halvings: u32) -> i32 {
-        word(nearest((value * Self::STEPS - f64::from(self.0)) * scaled(f64::from(times), 27 - halvings as i32)) as i64)
+    /// What this misses of `value`.
+    pub fn missed(self, value: f64) -> f64 {
+        value - f64::from(self.0) / Self::STEPS
     }
 }
 

@@ -29,7 +29,7 @@ pub(super) struct Setting {
 }
 
 /// The greatest |u| + |v| at the start, and the greatest torque, in the units of the motion.
-const RATE: f64 = 0.85;
+const RATE: f64 = 0.86;
 const TORQUE: f64 = 0.14;
 
 /// The energy may grow by so much of itself, ...
@@ -71,12 +71,10 @@ impl Setting {
         let halvings = libm::fmin(fit, f64::from(FINEST)) as u32;
         let scaling = seconds.in_unit(scaled(sixth, halvings as i32));
         let gravity = scaling.gravity.map(Gravity::constant);
+        let run = scaled(f64::from(6 * UPKEEP), 60 - halvings as i32);
+        let missed = |i: usize| nearest(gravity[i].missed(scaling.gravity[i]) * run) as i32;
         let norm = scaling.norm;
-        let coefficients = Coefficients {
-            norm: Q30::constant(norm),
-            inertia: Q30::constant(scaling.inertia),
-            gravity,
-        };
+        let coefficients = Coefficients { norm: Q30::constant(norm), inertia: Q30::constant(scaling.inertia), gravity };
         let energy_unit = scaled(1.0, 60 - (scaling.shifts.momentum + scaling.shifts.upper) as i32)
             / scaled(1.0, scaling.shifts.lower as i32);
         let most_energy = (1.0 + GROWTH) * kinetic * scaling.time * scaling.time + ROOM * RATE * RATE / (2.0 * sum);
@@ -85,7 +83,7 @@ impl Setting {
             coefficients,
             reverse: Coefficients { gravity: coefficients.gravity.map(|gravity| -gravity), ..coefficients },
             halvings,
-            missed: [0, 1].map(|i| gravity[i].missed(scaling.gravity[i], UPKEEP * 6, halvings)),
+            missed: [0, 1].map(missed),
             square: [
                 nearest(norm * norm * (1_u64 << 60) as f64) as i64,
                 nearest((1 << 29) as f64 / (norm * norm)) as i64,
