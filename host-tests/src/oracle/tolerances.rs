@@ -300,7 +300,7 @@ pub const FIXED_FLOORS: [(&str, [f64; 2]); 10] = [
     ("rods 1:100", [5e-8, 3e-12]),
     ("no gravity", [4e-9, 3e-12]),
     ("whirling", [1e-7, 4e-12]),
-    ("far angles", [3e-9, 6e-12]),
+    ("far angles", [7e-9, 6e-12]),
 ];
 
 /// Chaotic, the 64-bit fixed point against `f64` at the same steps; where both are at their floors, the floor, rad.

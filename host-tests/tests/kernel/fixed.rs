@@ -204,8 +204,8 @@ fn thirty_two_bits_are_of_order_four_at_any_speed() -> Result<(), Error> {
             }
         }
     }
-    println!("{measured} orders");
-    assert!(measured >= MOTIONS / 4, "{measured} orders");
+    // measured 67; of a method that errs in the unit of time 51 are left above its floor, two of them below order 2
+    assert!(measured >= 60, "{measured} orders");
     Ok(())
 }
 
