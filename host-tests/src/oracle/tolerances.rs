@@ -209,6 +209,12 @@ pub const FIXED_32_FLOOR: f64 = 5e-9;
 /// The same of rods and masses all different, from a moving start (measured 2.3e-8: their units leave some bits empty).
 pub const FIXED_32_UNLIKE: f64 = 5e-8;
 
+/// A light, short rod 2 that whirls at 56 rad/s for 13.9 s, 32 steps a frame, half pixels: the goal (measured 6e-4, as in `f64`).
+pub const FIXED_32_WHIRLING: f64 = 0.01;
+/// What the order of 32 bits is measured by, rad: what roundings leave scatters from step to step, and is less in most of the
+/// motions tried.
+pub const FIXED_32_ORDER_MEASURABLE: f64 = 5e-6;
+
 /// The 64-bit fixed point by extrapolation of order 12, regular, 12 steps a second, rad (measured 3e-13).
 pub const FIXED_64: f64 = 1e-12;
 
@@ -217,20 +223,21 @@ pub const FIXED_64: f64 = 1e-12;
 pub const FIXED_64_PAGE: f64 = 4e-5;
 
 /// The hard cases in fixed point of 32 and 64 bits: the error below which a halved step need not be better, and within
-/// which the finest is, rad. It is twice to four times what was measured, at most what compensated `f32` is held to but near
-/// the upright position. Near the upright position 2^-30 of a sine near 0 is
+/// which the finest is, rad. It is twice to four times what was measured, at most what compensated `f32` is held to but with a
+/// heavy elbow and near the upright position. With a heavy elbow the unit of time in 32 bits, which goes with the step, is half
+/// of what it may be (in steps a quarter longer the error is a third, measured 2.8e-8). Near the upright position 2^-30 of a sine near 0 is
 /// more than an `f32` would lose; in 64 bits the roundings of each step add up, for no sum is compensated.
 pub const FIXED_FLOORS: [(&str, [f64; 2]); 10] = [
     ("regular", [2e-9, 2e-12]),
     ("chaotic", [3e-8, 3e-11]),
     ("near-upright", [5e-5, 1e-8]),
-    ("heavy elbow", [6e-8, 3e-11]),
+    ("heavy elbow", [1.7e-7, 3e-11]),
     ("light elbow", [f64::NAN, 5e-10]),
     ("rods 100:1", [3e-7, 4e-12]),
     ("rods 1:100", [5e-8, 3e-12]),
     ("no gravity", [4e-9, 3e-12]),
     ("whirling", [1e-7, 4e-12]),
-    ("far angles", [3e-9, 6e-12]),
+    ("far angles", [7e-9, 6e-12]),
 ];
 
 /// Chaotic, the 64-bit fixed point against `f64` at the same steps; where both are at their floors, the floor, rad.

@@ -99,6 +99,11 @@ impl Gravity {
     pub fn constant(value: f64) -> Self {
         Self(word(nearest(value * Self::STEPS) as i64))
     }
+
+    /// What this misses of `value`.
+    pub fn missed(self, value: f64) -> f64 {
+        value - f64::from(self.0) / Self::STEPS
+    }
 }
 
 impl Slope {

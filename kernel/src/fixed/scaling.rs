@@ -1,6 +1,6 @@
 //! The units in which every quantity of a motion is small and none is needlessly so.
 
-use super::{FixedPoint, nearest, scaled};
+use super::{FixedPoint, scaled};
 use crate::bounds::Bounds;
 use crate::error::{Error, Parameter};
 use crate::form::equations::Units;
@@ -139,28 +139,6 @@ impl Scaling {
     /// m + S^2, by the powers of two that keep its inverse at most 1.
     pub fn denominator(&self, s: f64) -> f64 {
         self.inertia + scaled(s * s, self.shifts.inverse as i32 - self.shifts.momentum as i32)
-    }
-
-    /// Alters the unit of time a little, so that G1 and G2 are whole numbers of `steps`.
-    ///
-    /// G2 may be a little off, for that only alters the unit of time, which is known. The ratio of G1 to it may not: where
-    /// bob 1 is light, the fast oscillation goes by the small difference of G1 and nu^2 G2. Where gravity is so weak that this
-    /// would alter the unit by more than 2^-10, it is left as it is.
-    pub fn round_gravity(&mut self, steps: f64) {
-        let [gravity1, gravity2] = self.gravity;
-        if gravity2 * steps < f64::from(1 << 17) {
-            return;
-        }
-        let ratio = gravity1 / gravity2;
-        let lost = |whole: f64| libm::fabs(whole * ratio - nearest(whole * ratio));
-        let centre = nearest(gravity2 * steps);
-        let candidates = (-128..=128).map(|i| centre + f64::from(i)).map(|whole| (lost(whole), whole));
-        let (_, whole) =
-            candidates.fold((lost(centre), centre), |best, next| if next.0 < best.0 { next } else { best });
-        let longer = libm::sqrt(whole / (gravity2 * steps));
-        self.time *= longer;
-        self.momenta = self.momenta.map(|unit| unit * longer);
-        self.gravity = [nearest(whole * ratio) / steps, whole / steps];
     }
 }
 

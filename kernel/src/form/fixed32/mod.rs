@@ -8,7 +8,7 @@ mod upkeep;
 
 use super::{Direction, Form, lower_direction, lower_ray};
 use crate::error::Error;
-use crate::fixed::{Q30, Scaling, check_step, nearest, scaled};
+use crate::fixed::{Q30, Scaling, check_step, nearest};
 use crate::hamiltonian::Pendulum;
 use crate::params::Parameters;
 use crate::real::Real;
@@ -25,12 +25,16 @@ use setting::Setting;
 /// Cost of a step on a Cortex-M3: some 690 cycles with rods and masses about equal, 855 with others, where half a step is
 /// 1/4 to 1/32 of the unit of time; up to 890 in finer steps.
 ///
+/// **Order 4 at any speed.** Half a step is 3 2^-n of the unit of time T, so that h/6 is a power of two of it: stages and weights
+/// are exact, no time is lost. Gravity is rounded to 2^-33 of that unit; what its digits miss is given to the momenta every
+/// 32 steps, less than 2^-30 each time.
+///
 /// **Nothing overflows.** The units of a motion follow from its energy at the start, and every 32 steps the energy is held
 /// to 9/8 of that; a motion that gained more, because its steps were too coarse, is lost: its state is NaN and
 /// [`try_advance`](Form::try_advance) says so. Nothing is clamped.
 ///
 /// - |u| + |v| is at most [`Bounds::elbow`](crate::Bounds), for what a motion has of it with opposite signs, its mirror image
-///   has with equal ones. The unit of time makes that 0.85, so |u v| is below 0.2, and momenta are of that size.
+///   has with equal ones. The unit of time makes that 0.86, so |u v| is below 0.2, and momenta are of that size.
 /// - With the kinetic energy K = (M11 u^2 + 2 C u v + v^2)/2 the force |u v S| is at most K nu/sqrt(m), and with the torque of
 ///   gravity at most 0.14.
 /// - Within a step momenta change little, and the rates that go with them by less than e^(sqrt(1 + m2/m1) |w| t) in the time t:
@@ -160,23 +164,12 @@ impl Fixed32State {
 
     #[inline(never)]
     fn state(&self) -> State<f64> {
-        let Setting { scaling, lag, coefficients, .. } = &self.units;
         if self.lost {
             return State { a1: f64::NAN, a2: f64::NAN, p1: f64::NAN, p2: f64::NAN };
         }
         let [sin1, cos1, s, c, p1, p2] = self.z.map(value);
         let [sin2, cos2] = lower_ray([sin1, cos1], [s, c]);
-        let [sin_q, cos_q, s_q, c_q, p1_q, p2_q] = self.quantities();
-        let rates = coefficients.rates(&scaling.shifts, [sin_q, cos_q], [s_q, c_q], [p1_q, p2_q], self.inverse);
-        let behind = self.steps as f64 * lag;
-        let [u, v] = rates.angles.map(|rate| scaled(f64::from(rate.0), -30) * behind);
-        let [f1, f2] = rates.momenta.map(|rate| scaled(f64::from(rate.0), -31) * behind);
-        let [unit1, unit2] = scaling.momenta;
-        State {
-            a1: libm::atan2(sin1, cos1) + u,
-            a2: libm::atan2(sin2, cos2) + v,
-            p1: (p1 + f1) / unit1,
-            p2: (p2 + f2) / unit2,
-        }
+        let [unit1, unit2] = self.units.scaling.momenta;
+        State { a1: libm::atan2(sin1, cos1), a2: libm::atan2(sin2, cos2), p1: p1 / unit1, p2: p2 / unit2 }
     }
 }

@@ -1,5 +1,6 @@
 //! What the steps of one motion have in common: its units and constants.
 
+use super::UPKEEP;
 use crate::bounds::Bounds;
 use crate::error::{Error, Parameter};
 use crate::fixed::{Gravity, Q30, Scaling, nearest, scaled};
@@ -14,21 +15,19 @@ pub(super) struct Setting {
     pub coefficients: Coefficients<Q30, Gravity>,
     /// The same with time reversed.
     pub reverse: Coefficients<Q30, Gravity>,
-    /// Half a step is 2^-n T.
+    /// Half a step is 3 2^-n T.
     pub halvings: u32,
-    /// 2^34 h/(6 T), h being the step, for slopes; and 2^31 of it for torques.
-    pub weights: [i32; 2],
+    /// What the words of G1 and G2 miss, times 32 steps, with 60 bits after the point.
+    pub missed: [i32; 2],
     /// nu^2 with 60 bits after the point, and its inverse with 29.
     pub square: [i64; 2],
     /// The greatest energy in the units of [`Fixed32State::energy`](super::Fixed32State::energy).
     pub most_energy: i64,
     pub scaling: Scaling,
-    /// What a step is short of dt, in T.
-    pub lag: f64,
 }
 
 /// The greatest |u| + |v| at the start, and the greatest torque, in the units of the motion.
-const RATE: f64 = 0.85;
+const RATE: f64 = 0.86;
 const TORQUE: f64 = 0.14;
 
 /// The energy may grow by so much of itself, ...
@@ -36,14 +35,14 @@ const GROWTH: f64 = 0.125;
 /// ... and by so much of what goes with [`RATE`]: roundings move a pendulum at rest.
 const ROOM: f64 = 1.0 / 64.0;
 
-/// Half a step is a quarter of the unit of time or less, ...
-pub(super) const COARSEST: u32 = 2;
+/// A step is so much of the longest unit of time that there may be, or less, ...
+const COARSEST: f64 = 0.5;
 
 /// ... no more than so much of the time in which an elbow bends and is through a light bob 1's peak of r, ...
 const RESOLVED: f64 = 0.5;
 
-/// ... and at least this power of a half.
-const FINEST: u32 = 10;
+/// Half a step is at least three times this power of a half.
+const FINEST: u32 = 12;
 
 impl Setting {
     /// For a motion of `energy` J above rest.
@@ -61,24 +60,19 @@ impl Setting {
         );
 
         let elbow = Bounds::new(parameters, energy).elbow * libm::sqrt(1.0 + parameters.m2 / parameters.m1);
-        let limit = libm::fmin(scaled(longest, 1 - COARSEST as i32), RESOLVED / elbow);
-        let half = 0.5 * dt;
-        let fit = libm::floor(libm::log2(longest / libm::fabs(half)));
-        if fit.is_nan() || fit < f64::from(COARSEST) || libm::fabs(dt) > limit {
+        let limit = libm::fmin(COARSEST * longest, RESOLVED / elbow);
+        let sixth = dt / 6.0;
+        let fit = libm::floor(libm::log2(longest / libm::fabs(sixth)));
+        if fit.is_nan() || libm::fabs(dt) > limit {
             return Err(Error::TooLarge { parameter: Parameter::Dt, value: dt, limit });
         }
         let halvings = libm::fmin(fit, f64::from(FINEST)) as u32;
-        let mut scaling = seconds.in_unit(scaled(half, halvings as i32));
-        scaling.round_gravity(Gravity::STEPS);
-
-        let step = dt / scaling.time;
-        let torque_weight = nearest(scaled(step / 6.0, 31));
+        let scaling = seconds.in_unit(scaled(sixth, halvings as i32));
+        let gravity = scaling.gravity.map(Gravity::constant);
+        let run = scaled(f64::from(6 * UPKEEP), 60 - halvings as i32);
+        let missed = |i: usize| nearest(gravity[i].missed(scaling.gravity[i]) * run) as i32;
         let norm = scaling.norm;
-        let coefficients = Coefficients {
-            norm: Q30::constant(norm),
-            inertia: Q30::constant(scaling.inertia),
-            gravity: scaling.gravity.map(Gravity::constant),
-        };
+        let coefficients = Coefficients { norm: Q30::constant(norm), inertia: Q30::constant(scaling.inertia), gravity };
         let energy_unit = scaled(1.0, 60 - (scaling.shifts.momentum + scaling.shifts.upper) as i32)
             / scaled(1.0, scaling.shifts.lower as i32);
         let most_energy = (1.0 + GROWTH) * kinetic * scaling.time * scaling.time + ROOM * RATE * RATE / (2.0 * sum);
@@ -87,13 +81,12 @@ impl Setting {
             coefficients,
             reverse: Coefficients { gravity: coefficients.gravity.map(|gravity| -gravity), ..coefficients },
             halvings,
-            weights: [8 * torque_weight as i32, torque_weight as i32],
+            missed: [0, 1].map(missed),
             square: [
                 nearest(norm * norm * (1_u64 << 60) as f64) as i64,
                 nearest((1 << 29) as f64 / (norm * norm)) as i64,
             ],
             most_energy: (most_energy * energy_unit) as i64,
-            lag: step - 6.0 * scaled(torque_weight, -31),
             scaling,
         })
     }

@@ -1,14 +1,20 @@
 //! A step of RK4 in words of 32 bits.
 
 use super::Fixed32State;
-use super::setting::{COARSEST, Setting};
-use crate::fixed::{FixedPoint, IN_HALVES, Q30, Shifts, Slope, Torque, product};
+use super::setting::Setting;
+use crate::fixed::{FixedPoint, IN_HALVES, Q30, Shifts, Slope, Torque};
 use crate::form::equations::{Reverse, turning};
 use crate::ring::Ring;
 
 /// Whether to compile the step once for every usual length, with shifts that cost nothing. A chip with a floating-point unit
 /// has a faster form and better use for its flash.
 const SPECIALISED: bool = !cfg!(target_abi = "eabihf");
+
+/// The word times 2^`by`, `by` being from 1 to 31.
+#[inline(always)]
+fn shifted(word: i32, by: u32) -> i64 {
+    i64::from(word >> (32 - by)) << 32 | i64::from((word as u32) << by)
+}
 
 impl Fixed32State {
     pub(super) fn advance(&mut self, steps: u32) {
@@ -26,10 +32,10 @@ impl Fixed32State {
     fn run_specialised(&mut self, units: Shifts, steps: u32) {
         match self.units.halvings {
             halvings if IN_HALVES => self.run(units, halvings, steps),
-            2 => self.run(units, 2, steps),
             3 => self.run(units, 3, steps),
             4 => self.run(units, 4, steps),
             5 => self.run(units, 5, steps),
+            6 => self.run(units, 6, steps),
             halvings => self.run(units, halvings, steps),
         }
     }
@@ -43,7 +49,7 @@ impl Fixed32State {
 
     #[inline(always)]
     fn step(&mut self, units: Shifts, halvings: u32) {
-        let Setting { coefficients, reverse, weights, .. } = &self.units;
+        let Setting { coefficients, reverse, .. } = &self.units;
         let z = self.quantities();
         let inverse = self.inverse;
         let rates = |z: &[Q30; 6], r: Q30| {
@@ -54,11 +60,10 @@ impl Fixed32State {
             let &[sin1, cos1, s, c, p1, p2] = z;
             reverse.rates(&Reverse(units), [sin1, cos1], [s, c], [p1, p2], r)
         };
-        // half a step of a rate of change
-        let turned = |slope: Slope| Q30(slope.0 >> (halvings - COARSEST));
-        let pushed = |torque: Torque| Q30((torque.0 >> 3) >> (halvings - COARSEST));
-        let moved = |turns: [Slope; 4], torques: [Torque; 2]| {
-            let ([sin1, cos1, s, c], [p1, p2]) = (turns.map(turned), torques.map(pushed));
+        // half a step of a rate of change, or a whole one with one halving less
+        let moved = |turns: [Slope; 4], torques: [Torque; 2], halvings: u32| {
+            let [sin1, cos1, s, c] = turns.map(|k| Q30((k + k + k).0 >> (halvings - 2)));
+            let [p1, p2] = torques.map(|k| Q30((k + k + k).0 >> (halvings + 1)));
             [sin1, cos1, s, c, p1, p2]
         };
         // Half of -r' = 2 S S' r^2. S r is 2^(i/2) at most where r is 2^i, so half of i goes where there is room for it, the
@@ -66,42 +71,42 @@ impl Fixed32State {
         let half_up = units.inverse / 2;
         let half_fall =
             |s_rate: Slope, s: Q30, r: Q30| (s_rate.number() * (s * r)).up(half_up).down(units.momentum).slope(r);
-        let fallen = |fall: Slope| turned(fall).up(units.inverse - half_up);
+        let fallen = |k: Slope| Q30((k + k + k).0 >> (halvings - 3)).up(units.inverse - half_up);
 
         // All is rounded down. Every second slope is taken backwards in time, with reversed momenta, so that as much is
         // rounded up.
         let rates1 = rates(&z, inverse);
         let (turns1, torques1) = (turning(&z, rates1.angles), rates1.momenta);
-        let [sin1, cos1, s, c, p1, p2] = moved(turns1, torques1);
+        let [sin1, cos1, s, c, p1, p2] = moved(turns1, torques1, halvings);
         let z2 = [z[0] + sin1, z[1] + cos1, z[2] + s, z[3] + c, -z[4] - p1, -z[5] - p2];
         let fall1 = half_fall(turns1[2], z[2], inverse);
-        let r2 = inverse - fallen(fall1 + fall1);
+        let r2 = inverse - fallen(fall1);
 
         let rates2 = reversed(&z2, r2);
         let (turns2, torques2) = (turning(&z2, rates2.angles), rates2.momenta);
-        let change = moved(turns2, torques2);
+        let change = moved(turns2, torques2, halvings);
         let z3: [Q30; 6] = core::array::from_fn(|i| z[i] - change[i]);
         let fall2 = half_fall(turns2[2], z2[2], r2);
-        let r3 = inverse + fallen(fall2 + fall2);
+        let r3 = inverse + fallen(fall2);
 
         let rates3 = rates(&z3, r3);
         let (turns3, torques3) = (turning(&z3, rates3.angles), rates3.momenta);
         let middle: [Slope; 4] = core::array::from_fn(|i| turns3[i] - turns2[i]);
         let middle_torques: [Torque; 2] = core::array::from_fn(|i| torques3[i] - torques2[i]);
-        let [sin1, cos1, s, c, p1, p2] = moved(turns3.map(|k| k + k), torques3.map(|k| k + k));
+        let [sin1, cos1, s, c, p1, p2] = moved(turns3, torques3, halvings - 1);
         let z4 = [z[0] + sin1, z[1] + cos1, z[2] + s, z[3] + c, -z[4] - p1, -z[5] - p2];
         let fall3 = half_fall(turns3[2], z3[2], r3);
-        let r4 = inverse - fallen((fall3 + fall3) + (fall3 + fall3));
+        let r4 = inverse - fallen(fall3).twice();
 
         let rates4 = reversed(&z4, r4);
         let (turns4, torques4) = (turning(&z4, rates4.angles), rates4.momenta);
         for i in 0..4 {
             let sum = (turns1[i] - turns4[i]) + middle[i] + middle[i];
-            self.z[i] += product(sum.0, weights[0]);
+            self.z[i] += shifted(sum.0, 34 - halvings);
         }
         for i in 0..2 {
             let sum = (torques1[i] - torques4[i]) + middle_torques[i] + middle_torques[i];
-            self.z[4 + i] += product(sum.0, weights[1]);
+            self.z[4 + i] += shifted(sum.0, 31 - halvings);
         }
         let s = self.quantities()[2];
         self.inverse = r4.inverse_of(coefficients.inertia, s, &units);

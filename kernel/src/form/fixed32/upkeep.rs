@@ -1,6 +1,7 @@
-//! What is done every few steps: lengths are restored, the energy is looked at.
+//! What is done every few steps: lengths are restored, gravity's last digits are made up for, the energy is looked at.
 
 use super::{Fixed32State, OFFSET};
+use crate::fixed::product;
 use crate::form::equations::Units;
 
 /// By how much the square of a length may be off, with 60 bits after the point.
@@ -10,6 +11,7 @@ impl Fixed32State {
     #[inline(never)]
     pub(super) fn keep_up(&mut self) {
         self.restore_lengths();
+        self.make_up_for_gravity();
         self.lost |= self.energy() > self.units.most_energy;
     }
 
@@ -30,6 +32,14 @@ impl Fixed32State {
                 *z += ((*z >> 32) * relative) >> 9;
             }
         }
+    }
+
+    /// Gives the momenta what the words of G1 and G2 have missed since the last time.
+    fn make_up_for_gravity(&mut self) {
+        let [sin1, cos1, s, c, ..] = self.quantities();
+        let [missed1, missed2] = self.units.missed;
+        self.z[4] -= product(missed1, sin1.0) >> 28;
+        self.z[5] -= product(missed2, (sin1 * c - cos1 * s).0) >> 28;
     }
 
     /// The energy above rest, ((P1 - C P2)^2 r + P2^2)/2 + G1 (1 - cos a1) + G2 nu (1 - cos a2), with 60 bits after the
