@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_6, PI, TAU};
 
-use double_pendulum::SmallOscillations;
+use double_pendulum::{Modes, SmallOscillations};
 use firmware::config::TICK_RATE;
 use firmware::motion::settings::Settings;
 use firmware::scenes::SceneName;
@@ -78,9 +78,9 @@ fn beats_close_when_their_frequencies_say_so_and_the_exact_motion_does_not() {
         assert!((w1 / w2 - fast / slow).abs() < RATIO, "{name:?}: {}", w1 / w2);
         let period = fast * TAU / w1;
 
-        let modes = settings.pendulum().and_then(|pendulum| pendulum.modes()).expect("a pendulum");
+        let modes = Modes::new(&settings.parameters.cast()).expect("a pendulum");
         let linear = SmallOscillations::new(modes, &settings.motion());
-        let [start, end] = [0.0, period as f32].map(|t| linear.at(t));
+        let [start, end] = [0.0, period].map(|t| linear.at(t));
         let parted = |a: f32, b: f32| f64::from((a - b).abs()) / AMPLITUDE;
         let missed = parted(end.a1, start.a1).max(parted(end.a2, start.a2));
         assert!(missed < CLOSED, "{name:?}: the linear motion misses its start by {missed:e}");

@@ -161,10 +161,10 @@ fn linear_motion_is_the_limit_of_the_exact_motion() {
 
 /// What is drawn are the sines and cosines of the angles but for the terms of the series that are left out.
 fn directions_are_those_of_the_angles<R: Real>() {
-    let modes = Modes::new(&Parameters::equal_rods(1.0, 0.25, 9.8).cast::<R>()).expect("valid parameters");
+    let modes = Modes::new(&Parameters::equal_rods(1.0, 0.25, 9.8)).expect("valid parameters");
     let motion = SmallOscillations::<R>::new(modes, &Motion::at_rest(0.0, FRAC_PI_6).cast());
     for tick in 0..600 {
-        let t = R::from_f64(f64::from(tick) / 60.0);
+        let t = f64::from(tick) / 60.0;
         let angles = motion.at(t).angles().map(R::to_f64);
         for ([sine, cosine], a) in
             motion.directions(t).map(|direction| direction.map(R::to_f64)).into_iter().zip(angles)
