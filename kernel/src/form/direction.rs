@@ -4,7 +4,7 @@ use core::marker::PhantomData;
 
 use super::classical::{self, Point};
 use super::coefficients::{Scale, Span, prepare, third};
-use super::equations::{Coefficients, Rates};
+use super::equations::Coefficients;
 use super::sum::{Compensated, Sum};
 use super::lead::BLOCK;
 use super::{Direction, Form, lower_direction};
@@ -144,10 +144,5 @@ impl<R: Real, S: Sum<R>> DirectionForm<R, S> {
             carried.z[i] = carried.sums[i].add(s, s * missing);
             carried.z[i + 1] = carried.sums[i + 1].add(c, c * missing);
         }
-    }
-
-    #[inline(always)]
-    pub(super) fn rates(&self, z: &[R; 6], inverse: R) -> Rates<R> {
-        classical::rates(&self.coefficients, z, inverse)
     }
 }

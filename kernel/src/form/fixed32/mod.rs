@@ -6,8 +6,6 @@ mod setting;
 mod step;
 mod upkeep;
 
-use super::equations::turning;
-use super::lead::BLOCK;
 use super::{Direction, Form, lower_direction, lower_ray};
 use crate::error::Error;
 use crate::fixed::{Q30, Scaling, check_step, nearest, scaled};
@@ -63,6 +61,9 @@ pub struct Fixed32State {
     steps: u64,
 }
 
+/// Steps from one [`keep_up`](Fixed32State::keep_up) to the next.
+const UPKEEP: u32 = 32;
+
 /// 1 as the state has it.
 const ONE: f64 = (1_u64 << 62) as f64;
 
@@ -105,10 +106,10 @@ impl<R: Real> Form<R> for Fixed32Form {
     fn advance(&self, carried: &mut Self::Carried, steps: u32) {
         let mut left = steps;
         while left > 0 {
-            let until_upkeep = BLOCK - carried.steps as u32 % BLOCK;
+            let until_upkeep = UPKEEP - carried.steps as u32 % UPKEEP;
             let run = left.min(until_upkeep);
+            carried.advance(run);
             carried.steps += u64::from(run);
-            carried.advance(carried.units.lead.made(run, carried.steps));
             left -= run;
             if run == until_upkeep {
                 carried.keep_up();
@@ -166,32 +167,25 @@ impl Fixed32State {
         if self.lost { [f64::NAN; 2] } else { [p1 / unit1, p2 / unit2] }
     }
 
-    /// The state at the time told: as of [`Scale::state`](super::coefficients::Scale::state), in whole numbers.
     #[inline(never)]
     fn state(&self) -> State<f64> {
-        let Setting { scaling, lead, coefficients, weights, .. } = &self.units;
+        let Setting { scaling, lag, coefficients, .. } = &self.units;
         if self.lost {
             return State { a1: f64::NAN, a2: f64::NAN, p1: f64::NAN, p2: f64::NAN };
         }
-        // in T, by the place of what slopes and torques count
-        let span = -lead.ahead(self.steps) * 6.0 * scaled(f64::from(weights[1]), -31);
-        let spans = [scaled(span, 62 - 28), scaled(span, 62 - 31)];
-        let mut at = *self;
-        for share in [0.25, 1.0 / 3.0, 0.5, 1.0] {
-            let z = at.quantities();
-            let [sin1, cos1, s, c, p1, p2] = z;
-            let inverse = Q30::constant(1.0 / scaling.denominator(value(at.z[2])));
-            let rates = coefficients.rates(&scaling.shifts, [sin1, cos1], [s, c], [p1, p2], inverse);
-            let moved = |slope: i32, span: f64| (f64::from(slope) * (share * span)) as i64;
-            let turns = turning(&z, rates.angles).map(|slope| moved(slope.0, spans[0]));
-            let torques = rates.momenta.map(|torque| moved(torque.0, spans[1]));
-            let changes = turns.into_iter().chain(torques);
-            for ((z, start), change) in at.z.iter_mut().zip(self.z).zip(changes) {
-                *z = start + change;
-            }
+        let [sin1, cos1, s, c, p1, p2] = self.z.map(value);
+        let [sin2, cos2] = lower_ray([sin1, cos1], [s, c]);
+        let [sin_q, cos_q, s_q, c_q, p1_q, p2_q] = self.quantities();
+        let rates = coefficients.rates(&scaling.shifts, [sin_q, cos_q], [s_q, c_q], [p1_q, p2_q], self.inverse);
+        let behind = self.steps as f64 * lag;
+        let [u, v] = rates.angles.map(|rate| scaled(f64::from(rate.0), -30) * behind);
+        let [f1, f2] = rates.momenta.map(|rate| scaled(f64::from(rate.0), -31) * behind);
+        let [unit1, unit2] = scaling.momenta;
+        State {
+            a1: libm::atan2(sin1, cos1) + u,
+            a2: libm::atan2(sin2, cos2) + v,
+            p1: (p1 + f1) / unit1,
+            p2: (p2 + f2) / unit2,
         }
-        let [sin1, cos1, s, c, ..] = at.z.map(value);
-        let ([sin2, cos2], [p1, p2]) = (lower_ray([sin1, cos1], [s, c]), at.momenta());
-        State { a1: libm::atan2(sin1, cos1), a2: libm::atan2(sin2, cos2), p1, p2 }
     }
 }

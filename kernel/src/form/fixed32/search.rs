@@ -1,10 +1,10 @@
 //! A search for the motion that leads furthest: unit tests are stopped where a sum or product does not fit its word.
 
 use super::setting::Setting;
-use super::{Fixed32Form, Fixed32State, OFFSET};
+use super::{Fixed32Form, Fixed32State, OFFSET, UPKEEP};
 use crate::error::Error;
 use crate::fixed::{Scaling, watch};
-use crate::form::{BLOCK, Form};
+use crate::form::Form;
 use crate::hamiltonian::Pendulum;
 use crate::params::Parameters;
 use crate::state::State;
@@ -78,7 +78,7 @@ impl Candidate {
             *momentum = libm::rint((*momentum - OFFSET) as f64 * more) as i64 + OFFSET;
         }
         Ok(watch::largest(|| {
-            motion.advance(BLOCK);
+            motion.advance(UPKEEP);
             motion.keep_up();
         }))
     }
@@ -117,11 +117,11 @@ fn too_much_energy_is_noticed() -> Result<(), Error> {
     let motion = Form::<f64>::start(&form, &State { a1: 0.0, a2: 0.0, p1: 4.0, p2: 2.0 })?;
     for (more, lost) in [(1.0, false), (1.2, true)] {
         let mut motion = motion;
-        Form::<f64>::advance(&form, &mut motion, BLOCK);
+        Form::<f64>::advance(&form, &mut motion, UPKEEP);
         for momentum in &mut motion.z[4..] {
             *momentum = libm::rint((*momentum - OFFSET) as f64 * more) as i64 + OFFSET;
         }
-        Form::<f64>::advance(&form, &mut motion, BLOCK);
+        Form::<f64>::advance(&form, &mut motion, UPKEEP);
         assert_eq!((motion.lost, motion.state().a1.is_nan()), (lost, lost), "momenta times {more}");
     }
     Ok(())

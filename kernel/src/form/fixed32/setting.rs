@@ -4,7 +4,6 @@ use crate::bounds::Bounds;
 use crate::error::{Error, Parameter};
 use crate::fixed::{Gravity, Q30, Scaling, nearest, scaled};
 use crate::form::equations::Coefficients;
-use crate::form::lead::Lead;
 use crate::params::Parameters;
 use crate::ring::Ring;
 
@@ -24,8 +23,8 @@ pub(super) struct Setting {
     /// The greatest energy in the units of [`Fixed32State::energy`](super::Fixed32State::energy).
     pub most_energy: i64,
     pub scaling: Scaling,
-    /// By how much a step is longer than dt, for its weights are rounded up.
-    pub lead: Lead,
+    /// What a step is short of dt, in T.
+    pub lag: f64,
 }
 
 /// The greatest |u| + |v| at the start, and the greatest torque, in the units of the motion.
@@ -73,7 +72,7 @@ impl Setting {
         scaling.round_gravity(Gravity::STEPS);
 
         let step = dt / scaling.time;
-        let torque_weight = libm::ceil(scaled(step / 6.0, 31));
+        let torque_weight = nearest(scaled(step / 6.0, 31));
         let norm = scaling.norm;
         let coefficients = Coefficients {
             norm: Q30::constant(norm),
@@ -94,7 +93,7 @@ impl Setting {
                 nearest((1 << 29) as f64 / (norm * norm)) as i64,
             ],
             most_energy: (most_energy * energy_unit) as i64,
-            lead: Lead::new(6.0 * scaled(torque_weight, -31), step),
+            lag: step - 6.0 * scaled(torque_weight, -31),
             scaling,
         })
     }
