@@ -81,7 +81,7 @@ pub(crate) fn prepare<R: Real>(
     }
 }
 
-/// Of the 32 numbers above `value`, 1 ulp apart, the one whose product with `factor` loses least by rounding.
+/// Of the first 32 numbers from `value` upwards, 1 ulp apart, the one whose product with `factor` loses least by rounding.
 ///
 /// G2 may be a little too large, for that only lengthens the unit of time, which is known. The ratio of G1 to it may not be
 /// off: where bob 1 is light, the fast oscillation goes by the small difference of G1 and nu^2 G2.
@@ -90,12 +90,13 @@ fn factor_above<R: Real>(value: f64, factor: f64) -> R {
         let exact = candidate.to_f64() * factor;
         (R::from_f64(exact).to_f64() - exact).abs()
     };
-    let centre = R::from_f64(value);
-    let ulp = centre * R::EPSILON;
-    let candidates = (1..=32_i32).map(|i| centre + R::from_f64(f64::from(i)) * ulp);
+    let nearest = R::from_f64(value);
+    let ulp = nearest * R::EPSILON;
+    let least = if nearest.to_f64() < value { nearest + ulp } else { nearest };
+    let candidates = (0..32_i32).map(|i| least + R::from_f64(f64::from(i)) * ulp);
     let (best, _) = candidates
         .map(|candidate| (candidate, lost(candidate)))
-        .fold((centre, f64::INFINITY), |best, other| if other.1 < best.1 { other } else { best });
+        .fold((least, f64::INFINITY), |best, other| if other.1 < best.1 { other } else { best });
     best
 }
 
