@@ -139,8 +139,7 @@ impl Scale {
             let slopes = increments(&at, rates(coefficients, &at, inverse));
             change = slopes.map(|slope| slope * (span * R::from_f64(share)));
         }
-        let [sin1, cos1, s, c, p1, p2] =
-            core::array::from_fn(|i| z[i].to_f64() + (lost[i] + change[i]).to_f64());
+        let [sin1, cos1, s, c, p1, p2] = core::array::from_fn(|i| z[i].to_f64() + (lost[i] + change[i]).to_f64());
         let [sin2, cos2] = lower_ray([sin1, cos1], [s, c]);
         let [a1, a2] = [libm::atan2(sin1, cos1), libm::atan2(sin2, cos2)];
         State { a1, a2, p1: p1 / self.momentum, p2: p2 / self.momentum }

@@ -121,7 +121,8 @@ pub trait Form<R: Real>: Sealed + Copy + core::fmt::Debug + PartialEq {
     /// The canonical state in SI units, to the last digit carried, at the number of steps times dt.
     ///
     /// The motion carried may be ahead of that time by up to half a step ([`new`](Self::new)). It is taken back here, which
-    /// alters the energy by less than 1e-5 of itself where no frequency times dt exceeds 0.3.
+    /// alters the energy by 1e-4 of itself at most where the fastest frequency times dt is 0.2 or less (the repository's tests
+    /// assert it over a day).
     #[must_use]
     fn state(&self, carried: &Self::Carried) -> State<f64>;
 
