@@ -51,7 +51,9 @@ impl<R: Real> Oscillation<R> {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SmallOscillations<R, T = DefaultTrig> {
-    modes: Modes<R>,
+    /// The frequencies in turns per second, in `f64`: after a day in `f32` the phase would be anywhere.
+    turns: [f64; 2],
+    modes: [Mode<R>; 2],
     fast: Oscillation<R>,
     slow: Oscillation<R>,
     trig: PhantomData<T>,
@@ -60,7 +62,7 @@ pub struct SmallOscillations<R, T = DefaultTrig> {
 impl<R: Real> SmallOscillations<R> {
     /// The motion that starts as `start`, with the default source of sine and cosine.
     #[must_use]
-    pub fn new(modes: Modes<R>, start: &Motion<R>) -> Self {
+    pub fn new(modes: Modes<f64>, start: &Motion<R>) -> Self {
         Self::with_trig(modes, start)
     }
 }
@@ -70,12 +72,16 @@ impl<R: Real, T: SinCos<R>> SmallOscillations<R, T> {
     ///
     /// C1 = (r2 a1 - a2)/(r2 - r1), C2 = (a2 - r1 a1)/(r2 - r1); w1 S1 and w2 S2 are the same with velocities.
     #[must_use]
-    pub fn with_trig(modes: Modes<R>, start: &Motion<R>) -> Self {
-        let Modes { fast: Mode { frequency: fast, shape: r1 }, slow: Mode { frequency: slow, shape: r2 }, .. } = modes;
+    pub fn with_trig(modes: Modes<f64>, start: &Motion<R>) -> Self {
+        let turns = [modes.fast, modes.slow].map(|mode| mode.frequency / core::f64::consts::TAU);
+        let modes = [modes.fast, modes.slow]
+            .map(|Mode { frequency, shape }| Mode { frequency: R::from_f64(frequency), shape: R::from_f64(shape) });
+        let [Mode { frequency: fast, shape: r1 }, Mode { frequency: slow, shape: r2 }] = modes;
         let split = |x1: R, x2: R| [(r2 * x1 - x2) / (r2 - r1), (x2 - r1 * x1) / (r2 - r1)];
         let [c1, c2] = split(start.a1, start.a2);
         let [v1, v2] = split(start.w1, start.w2);
         Self {
+            turns,
             modes,
             fast: Oscillation { cosine: c1, sine: v1 / fast },
             slow: Oscillation { cosine: c2, sine: v2 / slow },
@@ -97,12 +103,12 @@ impl<R: Real, T: SinCos<R>> SmallOscillations<R, T> {
 
     /// Angles and angular velocities a time `t` (s) after the start; `t` may be negative.
     ///
-    /// The phase w t is rounded once, so the error grows as one rounding of w t: with `f32` 1e-3 rad at w t = 1e4.
+    /// The phase w t is reduced to a turn in `f64`: its error grows as some roundings of w t there, 1e-9 rad in a day.
     #[must_use]
-    pub fn at(&self, t: R) -> Motion<R> {
+    pub fn at(&self, t: f64) -> Motion<R> {
         let phases = self.phases(t);
         let [a1, a2] = self.angles(phases);
-        let (Modes { fast, slow, .. }, [(sin_fast, cos_fast), (sin_slow, cos_slow)]) = (&self.modes, phases);
+        let ([fast, slow], [(sin_fast, cos_fast), (sin_slow, cos_slow)]) = (&self.modes, phases);
         let w_fast = fast.frequency * (self.fast.sine * cos_fast - self.fast.cosine * sin_fast);
         let w_slow = slow.frequency * (self.slow.sine * cos_slow - self.slow.cosine * sin_slow);
         Motion { a1, a2, w1: w_fast + w_slow, w2: fast.shape * w_fast + slow.shape * w_slow }
@@ -113,7 +119,7 @@ impl<R: Real, T: SinCos<R>> SmallOscillations<R, T> {
     /// By the first terms of their series, sin a = a - a^3/6 and cos a = 1 - a^2/2 + a^4/24: off by a^5/120, far less than
     /// the linear motion itself. Two sincos and no division.
     #[must_use]
-    pub fn directions(&self, t: R) -> [Direction<R>; 2] {
+    pub fn directions(&self, t: f64) -> [Direction<R>; 2] {
         self.angles(self.phases(t)).map(|a| {
             let square = a * a;
             let [sixth, twelfth] = [R::from_f64(1.0 / 6.0), R::from_f64(1.0 / 12.0)];
@@ -123,8 +129,11 @@ impl<R: Real, T: SinCos<R>> SmallOscillations<R, T> {
 
     /// (sin wt, cos wt) of the fast and the slow mode.
     #[inline]
-    fn phases(&self, t: R) -> [(R, R); 2] {
-        [self.modes.fast, self.modes.slow].map(|mode| T::sin_cos(mode.frequency * t))
+    fn phases(&self, t: f64) -> [(R, R); 2] {
+        self.turns.map(|turns| {
+            let turns = turns * t;
+            T::sin_cos(R::from_f64(turns - libm::rint(turns)) * R::from_f64(core::f64::consts::TAU))
+        })
     }
 
     /// a1 and a2 at these phases.
@@ -132,6 +141,7 @@ impl<R: Real, T: SinCos<R>> SmallOscillations<R, T> {
     fn angles(&self, [(sin_fast, cos_fast), (sin_slow, cos_slow)]: [(R, R); 2]) -> [R; 2] {
         let a_fast = self.fast.cosine * cos_fast + self.fast.sine * sin_fast;
         let a_slow = self.slow.cosine * cos_slow + self.slow.sine * sin_slow;
-        [a_fast + a_slow, self.modes.fast.shape * a_fast + self.modes.slow.shape * a_slow]
+        let [fast, slow] = self.modes;
+        [a_fast + a_slow, fast.shape * a_fast + slow.shape * a_slow]
     }
 }

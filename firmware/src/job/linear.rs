@@ -12,14 +12,17 @@ pub struct Linear<R> {
     oscillations: SmallOscillations<R>,
     /// In f64, so that no digit of the velocities is lost in the momenta.
     pendulum: Pendulum<f64>,
-    /// In f64, so that the time is rounded once.
     dt: f64,
     steps: u32,
 }
 
 impl<R: Real> Linear<R> {
+    fn time(&self) -> f64 {
+        f64::from(self.steps) * self.dt
+    }
+
     fn motion(&self) -> Motion<R> {
-        self.oscillations.at(R::from_f64(f64::from(self.steps) * self.dt))
+        self.oscillations.at(self.time())
     }
 }
 
@@ -28,7 +31,7 @@ impl<R: Real> Run for Linear<R> {
         let (parameters, start) = rounded(request);
         start.check()?;
         let pendulum = Pendulum::new(parameters.cast())?;
-        let oscillations = SmallOscillations::new(Modes::new(&parameters)?, &start);
+        let oscillations = SmallOscillations::new(Modes::new(&parameters.cast())?, &start);
         Ok(Self { oscillations, pendulum, dt: request.dt, steps: 0 })
     }
 
@@ -50,21 +53,20 @@ impl<R: Real> Run for Linear<R> {
 #[derive(Clone, Copy, Debug)]
 pub struct Drawn {
     linear: Linear<f32>,
-    dt: f32,
     directions: [Direction<f32>; 2],
 }
 
 impl Run for Drawn {
     fn start(request: &Request) -> Result<Self, JobError> {
         let linear = Linear::start(request)?;
-        Ok(Self { linear, dt: request.dt as f32, directions: linear.oscillations.directions(0.0) })
+        Ok(Self { linear, directions: linear.oscillations.directions(0.0) })
     }
 
     #[inline(always)]
     fn advance(&mut self, steps: u32) {
         for _ in 0..steps {
             self.linear.advance(1);
-            self.directions = self.linear.oscillations.directions(self.linear.steps as f32 * self.dt);
+            self.directions = self.linear.oscillations.directions(self.linear.time());
         }
     }
 

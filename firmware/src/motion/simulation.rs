@@ -77,7 +77,7 @@ impl Simulation {
         self.motion.directions()
     }
 
-    /// The canonical state now, rounded to `f32`, its angles unwrapped.
+    /// The canonical state when the rods point to the [`directions`](Self::directions), rounded to `f32`, its angles unwrapped.
     pub fn state(&self) -> State<f32> {
         self.motion.rounded_state()
     }
@@ -97,7 +97,7 @@ impl Simulation {
         self.motion.time()
     }
 
-    /// The error of its energy in this `state`, which is the one now ([`Energy::error`]).
+    /// The error of its energy in this `state`, which is that of the [`directions`](Self::directions) now ([`Energy::error`]).
     pub fn energy_error(&self, state: &State<f32>) -> f32 {
         let Energy { pendulum, .. } = &self.energy;
         self.energy.error(pendulum.energy_at(self.directions(), [state.p1, state.p2]))

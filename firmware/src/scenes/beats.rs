@@ -1,7 +1,7 @@
 //! Beats that close: where the frequencies are as whole numbers, small oscillations come back to their start after a
 //! few periods and their Lissajous figure closes; the exact motion from the same start does not.
 
-use double_pendulum::{Error, Oscillation, Parameters, SmallOscillations};
+use double_pendulum::{Error, Modes, Oscillation, Parameters, SmallOscillations};
 
 use crate::config::{GRAVITY, ROD};
 use crate::graphics::brush::{Disc, Spot, Stroke};
@@ -57,7 +57,7 @@ pub struct Beats {
 impl Beats {
     /// Where the linear motion is in its figure, pixels.
     fn linear_place(&self) -> (f32, f32) {
-        let motion = self.linear.at(self.simulation.time() as f32);
+        let motion = self.linear.at(self.simulation.time());
         self.place(MIDDLES[0], motion.a1, motion.a2)
     }
 
@@ -87,10 +87,10 @@ impl Beats {
 impl Scene for Beats {
     fn new(settings: &Settings, means: &Means) -> Result<Self, Error> {
         let simulation = Simulation::new(settings, means)?;
-        let modes = simulation.energy().pendulum().modes()?;
+        let modes = Modes::new(&settings.parameters.cast())?;
         let linear = SmallOscillations::new(modes, &settings.motion());
         let amplitude = |part: Oscillation<f32>, shape: f32| part.amplitude() * shape.abs();
-        let shape = [modes.fast.shape, modes.slow.shape];
+        let shape = [modes.fast.shape, modes.slow.shape].map(|shape| shape as f32);
         let greatest = amplitude(linear.fast(), shape[0]).max(amplitude(linear.slow(), shape[1]));
         let scale = if greatest > 0.0 { REACH / greatest } else { 0.0 };
         let spots = [Spot::default(); 2];

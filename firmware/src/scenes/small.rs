@@ -61,7 +61,7 @@ impl Small {
     /// Scrolls the curves and their envelopes, and adds a column.
     fn extend(&mut self, ink: &mut Canvas) {
         ink.scroll(LEFT);
-        let time = self.time() as f32;
+        let time = self.time();
         let Motion { a1, a2, .. } = self.motion.at(time);
         let height = |(angle, row): (f32, f32)| plot::height(angle, row, self.scale);
         let [envelope1, envelope2] = self.envelopes.at(time);
@@ -93,11 +93,11 @@ impl Scene for Small {
     fn new(settings: &Settings, _: &Means) -> Result<Self, Error> {
         let pendulum = settings.pendulum()?;
         settings.start(&pendulum)?;
-        let modes = pendulum.modes()?;
+        let modes = Modes::new(&settings.parameters.cast())?;
         let motion = SmallOscillations::new(modes, &settings.motion());
         let envelopes = Envelopes::new(&modes, &motion);
         let greatest = envelopes.greatest().into_iter().fold(0.0, f32::max);
-        let exchange = core::f32::consts::TAU / modes.exchange();
+        let exchange = core::f32::consts::TAU / modes.exchange() as f32;
         let ticks_per_column = (exchange * TICK_RATE as f32 / COLUMNS_PER_EXCHANGE) as u32;
         Ok(Self {
             settings: *settings,
@@ -137,7 +137,7 @@ impl Scene for Small {
     }
 
     fn report(&self) -> Report {
-        let state = self.pendulum.to_state(&self.motion.at(self.time() as f32));
+        let state = self.pendulum.to_state(&self.motion.at(self.time()));
         Report {
             step: self.ticks,
             time: self.time(),
@@ -160,23 +160,25 @@ impl Scene for Small {
 struct Envelopes {
     /// Amplitudes of the fast and the slow mode in angle 1 and in angle 2, rad; of one sign if the modes are in phase.
     amplitudes: [[f32; 2]; 2],
-    /// w1 - w2, rad/s.
-    exchange: f32,
+    /// w1 - w2, turns per second.
+    exchange: f64,
     /// f1 - f2, rad.
     phase: f32,
 }
 
 impl Envelopes {
-    fn new(modes: &Modes<f32>, motion: &SmallOscillations<f32>) -> Self {
+    fn new(modes: &Modes<f64>, motion: &SmallOscillations<f32>) -> Self {
         let (fast, slow) = (motion.fast(), motion.slow());
         let [c1, c2] = [fast, slow].map(|part: Oscillation<f32>| part.amplitude());
-        let amplitudes = [[c1, c2], [modes.fast.shape * c1, modes.slow.shape * c2]];
-        Self { amplitudes, exchange: modes.exchange(), phase: fast.phase() - slow.phase() }
+        let amplitudes = [[c1, c2], [modes.fast.shape as f32 * c1, modes.slow.shape as f32 * c2]];
+        Self { amplitudes, exchange: modes.exchange() / core::f64::consts::TAU, phase: fast.phase() - slow.phase() }
     }
 
     /// The amplitudes of angle 1 and angle 2 at time `t`, rad.
-    fn at(&self, t: f32) -> [f32; 2] {
-        let (_, cos) = DefaultTrig::sin_cos(self.exchange * t + self.phase);
+    fn at(&self, t: f64) -> [f32; 2] {
+        let turns = self.exchange * t;
+        let exchanged = (turns - libm::rint(turns)) as f32 * core::f32::consts::TAU;
+        let (_, cos) = DefaultTrig::sin_cos(exchanged + self.phase);
         self.amplitudes.map(|[c1, c2]| libm::sqrtf((c1 * c1 + c2 * c2 + 2.0 * c1 * c2 * cos).max(0.0)))
     }
 

@@ -135,19 +135,24 @@ fn bits<R: Real, F: Form<R>>(carried: &F::Carried) -> Vec<u64> {
 
 #[test]
 fn directions_are_those_of_the_angles() -> Result<(), Error> {
+    /// No rod turns faster in these motions, rad/s.
+    const FASTEST: f64 = 10.0;
     fn agree<R: Real, F: Form<R>>(trial: &Trial) -> Result<(), Error> {
         let (parameters, start) = trial.rounded::<R>();
         let form = F::new(&parameters, 1.0 / 64.0)?;
         let mut carried = form.start(&start)?;
-        for _ in 0..10 {
+        for look in 1..=10 {
             form.advance(&mut carried, 7);
+            // the directions are ahead of the state by as much as the steps are longer than dt
+            let ahead = tolerances::LONGER * R::EPSILON.to_f64() * f64::from(look * 7) / 64.0;
+            let budget = tolerances::DIRECTIONS * R::EPSILON.to_f64() + FASTEST * ahead;
             let State { a1, a2, .. } = form.state(&carried);
             for ([sine, cosine], angle) in form.directions(&carried).into_iter().zip([a1, a2]) {
                 let [along, across] = [
                     sine.to_f64() * angle.sin() + cosine.to_f64() * angle.cos(),
                     sine.to_f64() * angle.cos() - cosine.to_f64() * angle.sin(),
                 ];
-                assert!(across.abs() <= tolerances::DIRECTIONS * R::EPSILON.to_f64(), "{across:e} at {angle}");
+                assert!(across.abs() <= budget, "{across:e} at {angle}");
                 assert!((along - 1.0).abs() <= tolerances::LENGTHS, "{along} long at {angle}");
             }
         }

@@ -3,6 +3,7 @@
 mod accuracy;
 mod bounds;
 mod closed_form;
+mod day;
 mod divergence;
 mod extrapolation;
 mod fixed;

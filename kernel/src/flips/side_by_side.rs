@@ -4,7 +4,7 @@ use core::array::from_fn;
 
 use super::{Falling, Flip, Flips, passes, turns_over};
 use crate::error::Error;
-use crate::form::{Direction, DirectionForm, DirectionLanes, DirectionState, Form as _, Part, Plain, RESTORING};
+use crate::form::{BLOCK, Direction, DirectionForm, DirectionLanes, DirectionState, Form as _, Part, Plain};
 use crate::lanes::Lanes;
 use crate::state::State;
 
@@ -73,7 +73,7 @@ impl Flips<f32, Form> {
         Ok(None)
     }
 
-    /// Steps until the lengths are due to be restored, and restores them.
+    /// Makes a block of steps, of which a lane may leave out the last, and restores the lengths.
     #[inline(always)]
     fn follow<const N: usize>(
         &self,
@@ -82,9 +82,16 @@ impl Flips<f32, Form> {
         give: &mut impl FnMut(usize, Flip<f32>),
     ) {
         let mut before: [Heads<N>; ROWS] = from_fn(|row| motions.heads(row));
-        for step in 0..RESTORING {
+        for step in 0..BLOCK {
+            let kept = (step + 1 == BLOCK).then_some(*motions);
             motions.step();
-            if step + 1 == RESTORING {
+            if let Some(kept) = kept {
+                for (place, lane) in lanes.as_flattened().iter().enumerate() {
+                    let count = |lane: &Lane| u64::from(self.steps) - u64::from(lane.left) + u64::from(BLOCK);
+                    if lane.as_ref().is_some_and(|lane| self.form.leaves_out(count(lane))) {
+                        motions.keep(place, &kept);
+                    }
+                }
                 motions.restore_lengths();
             }
             for (row, before) in before.iter_mut().enumerate() {
@@ -102,7 +109,7 @@ impl Flips<f32, Form> {
                 *before = heads;
             }
         }
-        lanes.as_flattened_mut().iter_mut().flatten().for_each(|lane| lane.left = lane.left.saturating_sub(RESTORING));
+        lanes.as_flattened_mut().iter_mut().flatten().for_each(|lane| lane.left = lane.left.saturating_sub(BLOCK));
     }
 }
 
@@ -163,6 +170,7 @@ mod tests {
             [Parameters::equal_rods(1.0, 1.0, 1.0), Parameters { m1: 2.0, m2: 1.0, l1: 1.0, l2: 0.6, g: 1.0 }]
         {
             let flips = flips(&parameters)?;
+            let flips = Flips { form: flips.form.leaving_out_more(), ..flips };
             let found = pulp::NullaryFnOnce::call(All(&flips))?;
             assert_eq!(found, pulp::Arch::new().dispatch(All(&flips))?, "vectors as this processor has them");
             for (flip, [a1, a2]) in found.iter().zip(starts(SIDE)) {

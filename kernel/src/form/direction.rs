@@ -4,9 +4,10 @@ use core::marker::PhantomData;
 
 use super::classical::{self, Point};
 use super::coefficients::{Scale, Span, prepare, third};
-use super::equations::{Coefficients, Rates};
+use super::equations::Coefficients;
+use super::lead::BLOCK;
 use super::sum::{Compensated, Sum};
-use super::{Direction, Form, lower_direction, lower_ray};
+use super::{Direction, Form, lower_direction};
 use crate::error::Error;
 use crate::params::Parameters;
 use crate::real::Real;
@@ -39,9 +40,6 @@ pub struct DirectionState<R, S> {
     pub(super) steps: u64,
 }
 
-/// Steps from one restoring of the lengths to the next.
-pub(crate) const RESTORING: u32 = 32;
-
 impl<R: Real, S: Sum<R>> Sealed for DirectionForm<R, S> {}
 
 impl<R: Real, S: Sum<R>> Form<R> for DirectionForm<R, S> {
@@ -68,7 +66,7 @@ impl<R: Real, S: Sum<R>> Form<R> for DirectionForm<R, S> {
     fn advance(&self, carried: &mut Self::Carried, steps: u32) {
         let mut left = steps;
         while left > 0 {
-            let run = left.min(RESTORING - carried.steps as u32 % RESTORING);
+            let run = left.min(BLOCK - carried.steps as u32 % BLOCK);
             self.run(carried, run);
             left -= run;
         }
@@ -79,12 +77,12 @@ impl<R: Real, S: Sum<R>> Form<R> for DirectionForm<R, S> {
         [[sin1, cos1], lower_direction([sin1, cos1], [s, c], self.coefficients.norm)]
     }
 
+    fn momenta(&self, carried: &Self::Carried) -> [R; 2] {
+        self.scale.in_si([carried.z[4], carried.z[5]])
+    }
+
     fn state(&self, carried: &Self::Carried) -> State<f64> {
-        let z: [f64; 6] = core::array::from_fn(|i| carried.z[i].to_f64() + carried.sums[i].lost().to_f64());
-        let [sin1, cos1, s, c, p1, p2] = z;
-        let [sin2, cos2] = lower_ray([sin1, cos1], [s, c]);
-        let angles = [libm::atan2(sin1, cos1), libm::atan2(sin2, cos2)];
-        self.scale.state(angles, [p1, p2], self.rates(&carried.z, carried.inverse), carried.steps)
+        self.scale.state(&self.coefficients, &carried.z, carried.sums.map(|sum| sum.lost()), carried.steps)
     }
 
     fn bits(carried: &Self::Carried, mut feed: impl FnMut(u64)) {
@@ -102,14 +100,26 @@ impl<R: Real, S: Sum<R>> DirectionForm<R, S> {
         Ok(Self { coefficients, scale, half_inverse_square, sum: PhantomData })
     }
 
-    /// Steps, at most to the next restoring of the lengths.
+    /// Whether the step that ends at `count` is left out, the last of a block.
+    pub(crate) fn leaves_out(&self, count: u64) -> bool {
+        self.scale.lead.is_left_out(count)
+    }
+
+    /// As this, but every hundredth step is left out.
+    #[cfg(test)]
+    pub(crate) fn leaving_out_more(mut self) -> Self {
+        self.scale.lead = super::lead::Lead::new(1.0, 0.99);
+        self
+    }
+
+    /// Steps, at most to the end of a block, where the lengths are restored.
     #[inline(always)]
     pub(super) fn run(&self, carried: &mut DirectionState<R, S>, steps: u32) {
-        for _ in 0..steps {
+        carried.steps += u64::from(steps);
+        for _ in 0..self.scale.lead.made(steps, carried.steps) {
             self.step(carried);
         }
-        carried.steps += u64::from(steps);
-        if carried.steps as u32 % RESTORING == 0 {
+        if carried.steps as u32 % BLOCK == 0 {
             self.restore_lengths(carried);
         }
     }
@@ -134,10 +144,5 @@ impl<R: Real, S: Sum<R>> DirectionForm<R, S> {
             carried.z[i] = carried.sums[i].add(s, s * missing);
             carried.z[i + 1] = carried.sums[i + 1].add(c, c * missing);
         }
-    }
-
-    #[inline(always)]
-    pub(super) fn rates(&self, z: &[R; 6], inverse: R) -> Rates<R> {
-        classical::rates(&self.coefficients, z, inverse)
     }
 }

@@ -14,7 +14,8 @@ use crate::ring::Ring;
 /// As [`DirectionForm`] in plain numbers, to the bit, for `ROWS` times `N` motions of one pendulum side by side.
 ///
 /// Every row makes a stage before any makes the next: a stage waits for the one before it, and meanwhile the processor
-/// computes the other rows. Who steps restores the lengths, and when: each motion wants it as often as it would alone.
+/// computes the other rows. Who steps restores the lengths and leaves out steps, when each
+/// motion would alone.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct DirectionLanes<R, const N: usize, const ROWS: usize> {
     coefficients: Coefficients<Lanes<R, N>>,
@@ -51,6 +52,16 @@ impl<R: Real, const N: usize, const ROWS: usize> DirectionLanes<R, N, ROWS> {
         let places = start.z.iter_mut().chain([&mut start.inverse]);
         for (place, number) in places.zip(motion.z.into_iter().chain([motion.inverse])) {
             place.0[lane % N] = number;
+        }
+    }
+
+    /// Takes a lane back to what it was in `before`.
+    #[inline(always)]
+    pub fn keep(&mut self, lane: usize, before: &Self) {
+        let (Some(row), Some(kept)) = (self.rows.get_mut(lane / N), before.rows.get(lane / N)) else { return };
+        let places = row.start.z.iter_mut().chain([&mut row.start.inverse]);
+        for (place, number) in places.zip(kept.start.z.iter().chain([&kept.start.inverse])) {
+            place.0[lane % N] = number.0[lane % N];
         }
     }
 

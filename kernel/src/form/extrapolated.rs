@@ -112,6 +112,10 @@ impl<const ORDER: u32, S: Sum<f64>> Form<f64> for ExtrapolatedForm<ORDER, S> {
         self.direction.directions(carried)
     }
 
+    fn momenta(&self, carried: &Self::Carried) -> [f64; 2] {
+        self.direction.momenta(carried)
+    }
+
     fn state(&self, carried: &Self::Carried) -> State<f64> {
         self.direction.state(carried)
     }

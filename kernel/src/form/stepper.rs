@@ -46,11 +46,6 @@ impl<R: Real, F: Form<R>> Stepper<R, F> {
         Stepper { form, carried }
     }
 
-    /// What the form carries.
-    pub(crate) fn carried(&self) -> &F::Carried {
-        &self.carried
-    }
-
     /// Makes `steps` steps ([`Form::advance`]).
     #[inline(always)]
     pub fn advance(&mut self, steps: u32) {
@@ -67,6 +62,12 @@ impl<R: Real, F: Form<R>> Stepper<R, F> {
     #[inline]
     pub fn directions(&self) -> [Direction<R>; 2] {
         self.form.directions(&self.carried)
+    }
+
+    /// The momenta that go with the directions ([`Form::momenta`]).
+    #[must_use]
+    pub fn momenta(&self) -> [R; 2] {
+        self.form.momenta(&self.carried)
     }
 
     /// The canonical state in SI units ([`Form::state`]).
@@ -125,9 +126,12 @@ impl<R: Real, F: Form<R>> UnwrappedStepper<R, F> {
         self.windings.each_ref().map(Winding::last)
     }
 
-    /// The unwrapped angles of both rods, rad, as of their directions.
-    pub(crate) fn angles(&self) -> [R; 2] {
-        self.windings.each_ref().map(Winding::angle)
+    /// The state when the rods point to the [`directions`](Self::directions), rounded: near enough for a picture, and far cheaper
+    /// than [`state`](Self::state) where `f64` is software.
+    #[inline(never)]
+    pub(crate) fn rounded_state(&self) -> State<R> {
+        let ([a1, a2], [p1, p2]) = (self.windings.each_ref().map(Winding::angle), self.stepper.momenta());
+        State { a1, a2, p1, p2 }
     }
 
     /// As [`Stepper::state`], the angles with all their turns.

@@ -141,7 +141,7 @@ impl Pass {
         let rounded = problem.rounded::<f32>(start, Perturbation::None);
         let (parameters, _) = &rounded;
         let motion = problem.start.cast();
-        let linear = Modes::new(parameters).ok().map(|modes| SmallOscillations::new(modes, &motion));
+        let linear = Modes::new(&parameters.cast()).ok().map(|modes| SmallOscillations::new(modes, &motion));
         let methods = [shadowed.method(), Method::ClosedForm, Method::DirectionPlain];
         let mut pass = Self {
             shadowed,
@@ -182,7 +182,7 @@ impl Pass {
         let [own, closed, plain] = &mut self.candidates;
         own.note(0.0, estimate);
         if !closed.failed {
-            closed.note(self.linear.map_or(f32::INFINITY, |motion| beside(motion.directions(t as f32))), estimate);
+            closed.note(self.linear.map_or(f32::INFINITY, |motion| beside(motion.directions(t))), estimate);
         }
         if !plain.failed {
             plain.note(beside(self.plain.frame()), estimate);

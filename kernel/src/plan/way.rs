@@ -152,9 +152,8 @@ impl WayStepper {
         let dt = 1.0 / (f64::from(rate) * f64::from(steps));
         let motion = match way.method {
             Method::ClosedForm => {
-                let parameters = parameters.cast();
-                let motion = SmallOscillations::new(Modes::new(&parameters)?, &start.cast());
-                Carried::ClosedForm(motion, Pendulum::new(parameters)?)
+                let motion = SmallOscillations::new(Modes::new(parameters)?, &start.cast());
+                Carried::ClosedForm(motion, Pendulum::new(parameters.cast())?)
             }
             Method::DirectionPlain => Carried::DirectionPlain(stepper(parameters, &state, dt)?),
             Method::Direction => Carried::Direction(stepper(parameters, &state, dt)?),
@@ -205,7 +204,7 @@ impl WayStepper {
     #[inline(never)] // once in flash
     pub fn directions(&self) -> Directions {
         match &self.motion {
-            Carried::ClosedForm(motion, _) => motion.directions(self.time() as f32),
+            Carried::ClosedForm(motion, _) => motion.directions(self.time()),
             Carried::DirectionPlain(motion) => motion.directions(),
             Carried::Direction(motion) => motion.directions(),
             Carried::Fixed32(motion) => motion.directions(),
@@ -213,14 +212,17 @@ impl WayStepper {
         }
     }
 
-    /// The canonical state in SI units, rounded to `f32`, the angles with all their turns: what a picture needs.
+    /// The canonical state in SI units when the rods point to the [`directions`](Self::directions), rounded to `f32`, the angles
+    /// with all their turns: what a picture needs.
     #[must_use]
     #[inline(never)] // once in flash
     pub fn rounded_state(&self) -> State<f32> {
         match &self.motion {
-            Carried::ClosedForm(motion, pendulum) => pendulum.to_state(&motion.at(self.time() as f32)),
+            Carried::ClosedForm(motion, pendulum) => pendulum.to_state(&motion.at(self.time())),
+            Carried::DirectionPlain(motion) => motion.rounded_state(),
+            Carried::Direction(motion) => motion.rounded_state(),
+            Carried::Fixed32(motion) => motion.rounded_state(),
             Carried::Fixed64(motion) => motion.rounded_state(),
-            _ => self.state().cast(),
         }
     }
 
@@ -229,7 +231,7 @@ impl WayStepper {
     #[inline(never)] // once in flash
     pub fn state(&self) -> State<f64> {
         match &self.motion {
-            Carried::ClosedForm(motion, pendulum) => pendulum.to_state(&motion.at(self.time() as f32)).cast(),
+            Carried::ClosedForm(motion, pendulum) => pendulum.to_state(&motion.at(self.time())).cast(),
             Carried::DirectionPlain(motion) => motion.state(),
             Carried::Direction(motion) => motion.state(),
             Carried::Fixed32(motion) => motion.state(),

@@ -28,3 +28,7 @@ pub const FORMULAS: PerPrecision = PerPrecision { single: 4e-6, double: 8e-15 };
 
 /// A motion run for a second and back: RK4's own error, twice (measured 6e-12), with a factor of ten.
 pub const RETURN: f64 = 1e-10;
+
+/// Angles of the scenes in closed form, per rad of amplitude, at any time: half an epsilon of the phase, up to pi, and some
+/// roundings of amplitudes and sines (measured 3e-7).
+pub const CLOSED_FORM: f64 = 5.0 * f32::EPSILON as f64;

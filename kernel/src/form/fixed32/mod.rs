@@ -126,6 +126,10 @@ impl<R: Real> Form<R> for Fixed32Form {
         [[sin1, cos1], lower_direction([sin1, cos1], [s, c], R::from_f64(carried.units.scaling.norm))]
     }
 
+    fn momenta(&self, carried: &Self::Carried) -> [R; 2] {
+        carried.momenta().map(R::from_f64)
+    }
+
     fn state(&self, carried: &Self::Carried) -> State<f64> {
         carried.state()
     }
@@ -160,6 +164,11 @@ impl Fixed32State {
     #[inline(always)]
     pub(super) fn quantities(&self) -> [Q30; 6] {
         self.z.map(|z| Q30((z >> 32) as i32))
+    }
+
+    fn momenta(&self) -> [f64; 2] {
+        let ([.., p1, p2], [unit1, unit2]) = (self.z.map(value), self.units.scaling.momenta);
+        if self.lost { [f64::NAN; 2] } else { [p1 / unit1, p2 / unit2] }
     }
 
     #[inline(never)]

@@ -5,7 +5,7 @@ mod rows;
 
 pub use motion::Fixed64State;
 
-use super::{Direction, Form, UnwrappedStepper};
+use super::{Direction, Form};
 use crate::error::Error;
 use crate::fixed::check_step;
 use crate::params::Parameters;
@@ -36,15 +36,6 @@ pub struct Fixed64Form<const ORDER: u32> {
     dt: f64,
 }
 
-impl<R: Real, const ORDER: u32> UnwrappedStepper<R, Fixed64Form<ORDER>> {
-    /// As [`state`](Self::state), in `R` throughout: near enough for a picture, and far cheaper where `f64` is software.
-    #[inline(never)] // once in flash
-    pub(crate) fn rounded_state(&self) -> State<R> {
-        let ([a1, a2], [p1, p2]) = (self.angles(), self.stepper().carried().momenta());
-        State { a1, a2, p1, p2 }
-    }
-}
-
 impl<const ORDER: u32> Sealed for Fixed64Form<ORDER> {}
 
 impl<R: Real, const ORDER: u32> Form<R> for Fixed64Form<ORDER> {
@@ -70,6 +61,10 @@ impl<R: Real, const ORDER: u32> Form<R> for Fixed64Form<ORDER> {
 
     fn directions(&self, carried: &Self::Carried) -> [Direction<R>; 2] {
         carried.directions()
+    }
+
+    fn momenta(&self, carried: &Self::Carried) -> [R; 2] {
+        carried.momenta()
     }
 
     fn state(&self, carried: &Self::Carried) -> State<f64> {
