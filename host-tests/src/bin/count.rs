@@ -26,7 +26,7 @@ const EXAMPLES: &str = "Examples:
   cargo count f32-compensated --on lm3s6965evb-m4 --listing
   cargo count --elf firmware.elf --function step --seconds 5
 
-With --elf, figures are from the function's first instruction to its return: the call itself comes on top, about 2 cycles and 1 for
+A function's figures are from its first instruction to its return: the call itself comes on top, about 2 cycles and 1 for
 each argument. What the program prints, and how it ended, goes to stderr. If it fails: no figures, exit code 1.";
 
 /// Counts executed instructions (exact) and Cortex-M cycles (an estimate from the published instruction timings).
