@@ -96,7 +96,7 @@ const fn adaptive(name: &'static str, run: Run) -> Contestant {
 
 /// Classical RK4; this kernel's plain step first.
 pub const CLASSICAL: &[Contestant] = &[
-    own("double-pendulum", |scene, parts, steps| own_step(scene, parts, steps)),
+    own("double-pendulum", own_step),
     own("double-pendulum, direction form", form::<DirectionForm<f64, Plain>>),
     own("double-pendulum, direction form compensated", form::<DirectionForm<f64>>),
     peer("ode_solvers, the book's equations", |scene, parts, steps| ode_solvers_rk4(Book, scene, parts, steps)),

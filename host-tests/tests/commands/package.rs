@@ -35,7 +35,7 @@ fn the_readmes_example_runs_in_an_empty_crate() {
     let target = folder.path().join("target");
     let target = target.to_str().expect("a path that is text");
     let package = ["package", "--package", "double-pendulum-kernel", "--allow-dirty", "--no-verify", "--target-dir"];
-    cargo(&[&package[..], &[target]].concat(), &workspace());
+    cargo(&[&package[..], &[target]].concat(), workspace());
 
     let name = concat!("double-pendulum-kernel-", env!("CARGO_PKG_VERSION"));
     let mut unpack = Command::new("tar");

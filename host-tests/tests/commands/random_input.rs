@@ -196,7 +196,7 @@ proptest! {
     fn a_plan_is_within_its_budget(
         (pendulum, [a1, a2, w1, w2], rate) in (parameters(), numbers(), prop_oneof![Just(60), any::<u16>()]),
         ([tolerance, duration, frame, planning, piece], steps) in (numbers(), 0..200_u32),
-        asked in prop::option::of(select(&Method::ALL[..])),
+        asked in prop::option::of(select(Method::ALL)),
     ) {
         let start = Motion { a1, a2, w1, w2 };
         let scene = Problem { pendulum, start, tolerance: tolerance.abs(), duration: duration.abs(), rate };
