@@ -50,7 +50,7 @@ fn flash(arguments: &Arguments) -> anyhow::Result<()> {
     };
     // Before the build, which takes its time.
     process::run(Command::new(program).arg("--version"), LIMIT).map_err(|error| match error {
-        ProcessError::NotStarted { .. } => {
+        ProcessError::Failed(..) => {
             Refused::because(format_args!("flashing needs {program}, which is not installed; see {source}"))
         }
         error => Refused::because(error),

@@ -62,7 +62,7 @@ fn execute(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     let settings =
         Settings { qemu: toolchain.qemu(), board, elf: &elf, clock: Clock::Real, window: None, debugger: true, limit };
     match (run(&settings, &mut stdout().lock()), arguments.seconds) {
-        (Err(QemuError::Process(ProcessError::TimedOut { .. })), Some(seconds)) => {
+        (Err(QemuError::Process(ProcessError::TimedOut(..))), Some(seconds)) => {
             complain(format_args!("ended after {seconds} s, as told"));
             Ok(ExitCode::SUCCESS)
         }

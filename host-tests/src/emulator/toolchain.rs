@@ -2,30 +2,24 @@
 //! Pico, rp2040js.
 //!
 //! [`ready`] only looks. [`set_up`] brings what is missing: the core library by `rustup target add`, or else from
-//! Debian's source packages; QEMU from Debian's packages, installed, or unpacked into `target/qemu` where installing it
-//! would remove another package. Both ways build the same firmware with the same flags.
-//! All of the world outside is reached through one small trait, so that every decision is tested without it.
+//! Debian's source packages; QEMU from Debian's packages, installed, or unpacked into `target/qemu` where they cannot be.
+//! Both ways build the same firmware with the same flags.
 
 mod build;
 mod detect;
-mod error;
 mod install;
-mod lock;
+mod missing;
 mod rp2040js;
-mod system;
-#[cfg(test)]
-mod tests;
 
 pub use build::BuildError;
-pub use error::SetupError;
+pub use missing::SetupError;
 pub use rp2040js::Rp2040js;
 
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use lock::Lock;
-use system::Host;
+use missing::{Part, SET_UP};
 
 /// The compiler's targets, one for each kind of core.
 pub const TARGETS: [&str; 3] = ["thumbv6m-none-eabi", "thumbv7m-none-eabi", "thumbv7em-none-eabihf"];
@@ -61,33 +55,46 @@ struct Qemu {
 /// The tools, if all are there; installs nothing. Looks once per process.
 pub fn ready() -> Result<Toolchain, SetupError> {
     static READY: OnceLock<Result<Toolchain, SetupError>> = OnceLock::new();
-    let look = || detect::toolchain(&Host).map_err(|error| SetupError { tried: false, ..error });
-    READY.get_or_init(look).clone()
+    READY.get_or_init(|| both(detect::arm_core(), detect::qemu(), SET_UP)).clone()
 }
 
 /// The tools, brought if need be; and a line for each thing that was done for it.
 ///
-/// Two set-ups at once take turns. Nothing is begun that is known to fail.
+/// Two set-ups at once take turns.
 pub fn set_up() -> Result<(Toolchain, Vec<String>), SetupError> {
-    if let Ok(toolchain) = detect::toolchain(&Host) {
+    if let Ok(toolchain) = both(detect::arm_core(), detect::qemu(), SET_UP) {
         return Ok((toolchain, Vec::new()));
     }
-    let _turn = Lock::take(&workspace().join("target/setup.lock"))?;
-    install::set_up(&Host)
+    let _turn = install::turn(&workspace().join("target/setup.lock"))?;
+    let mut done = Vec::new();
+    let core = detect::arm_core().or_else(|_| install::arm_core(&mut done));
+    let qemu = detect::qemu().or_else(|_| install::qemu(&mut done));
+    Ok((both(core, qemu, "")?, done))
+}
+
+/// Both of them, or a line for each that is missing, with what comes `first` of what brings it.
+fn both(core: Result<ArmCore, String>, qemu: Result<Qemu, String>, first: &str) -> Result<Toolchain, SetupError> {
+    match (core, qemu) {
+        (Ok(core), Ok(qemu)) => Ok(Toolchain { core, qemu }),
+        (core, qemu) => {
+            let missing = [core.err().map(|why| (Part::ArmCore, why)), qemu.err().map(|why| (Part::Qemu, why))];
+            Err(SetupError::missing(missing.into_iter().flatten(), first))
+        }
+    }
 }
 
 /// The emulator of the Raspberry Pi Pico, if it is there; installs nothing.
 pub fn ready_for_pico() -> Result<Rp2040js, SetupError> {
-    rp2040js::detect(&Host).map_err(|error| SetupError { tried: false, ..error })
+    rp2040js::detect().map_err(|missing| SetupError::missing([missing], SET_UP))
 }
 
 /// The same, brought if need be; and a line for each thing that was done for it.
 pub fn set_up_pico() -> Result<(Rp2040js, Vec<String>), SetupError> {
-    if let Ok(emulator) = rp2040js::detect(&Host) {
+    if let Ok(emulator) = rp2040js::detect() {
         return Ok((emulator, Vec::new()));
     }
-    let _turn = Lock::take(&workspace().join("target/setup.lock"))?;
-    rp2040js::set_up(&Host)
+    let _turn = install::turn(&workspace().join("target/setup.lock"))?;
+    rp2040js::set_up().map_err(|missing| SetupError::missing([missing], ""))
 }
 
 /// The workspace's folder.

@@ -18,7 +18,7 @@ impl Profile {
         match target.trace(&request, LIMIT, |registers| calls.see(registers))? {
             Ended { status: Some(status), .. } if status.success() => calls.into_profile().executed(),
             Ended { status: None, .. } => {
-                Err(ProcessError::TimedOut { program: target.elf.display().to_string(), limit: LIMIT }.into())
+                Err(ProcessError::TimedOut(target.elf.display().to_string(), LIMIT).into())
             }
             Ended { output, .. } => Err(CountError::Refused { request, reason: output.trim().to_owned() }),
         }

@@ -103,7 +103,7 @@ impl Target {
         }
         let status = match child.wait() {
             Ok(status) => Some(status),
-            Err(ProcessError::TimedOut { .. }) => None,
+            Err(ProcessError::TimedOut(..)) => None,
             Err(error) => return Err(error.into()),
         };
         let output = stdout.and_then(|reader| reader.join().ok()).and_then(Result::ok).unwrap_or_default();

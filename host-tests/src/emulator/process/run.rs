@@ -10,7 +10,7 @@ use super::{ProcessError, spawn};
 
 /// How often the watcher is told that the child is alive.
 const TICK: Duration = Duration::from_millis(100);
-/// How long the output may still come in after the child has ended.
+/// How long the output may still come in after the child has ended: a stranger that left the group may hold the pipes open.
 const DRAIN: Duration = Duration::from_secs(1);
 
 /// What a child said and how it ended.
@@ -39,46 +39,30 @@ pub fn run_watched(
     command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = spawn(command, limit)?;
     let (sender, lines) = mpsc::channel();
-    forward(child.stdout.take(), Stream::Out, sender.clone());
-    forward(child.stderr.take(), Stream::Err, sender);
+    forward(0, child.stdout.take(), sender.clone());
+    forward(1, child.stderr.take(), sender);
 
-    let (mut stdout, mut stderr) = (String::new(), String::new());
+    let mut said = [String::new(), String::new()];
     let mut ended = None;
     loop {
         match lines.recv_timeout(TICK) {
             Ok((stream, line)) => {
                 watch(Some(line.trim_end()));
-                match stream {
-                    Stream::Out => stdout.push_str(&line),
-                    Stream::Err => stderr.push_str(&line),
-                }
+                said[stream].push_str(&line);
             }
             Err(RecvTimeoutError::Timeout) => watch(None),
             Err(RecvTimeoutError::Disconnected) => break,
         }
-        if ended.is_none() {
-            ended = child.try_wait()?.map(|status| (status, Instant::now()));
-        }
-        // A stranger that left the group may hold the pipes open; it does not hold us up.
-        if ended.is_some_and(|(_, at)| at.elapsed() > DRAIN) {
+        if child.try_wait()?.is_some() && ended.get_or_insert_with(Instant::now).elapsed() > DRAIN {
             break;
         }
     }
-    let status = match ended {
-        Some((status, _)) => status,
-        None => child.wait()?,
-    };
-    Ok(Output { status, stdout, stderr })
+    let [stdout, stderr] = said;
+    Ok(Output { status: child.wait()?, stdout, stderr })
 }
 
-#[derive(Clone, Copy)]
-enum Stream {
-    Out,
-    Err,
-}
-
-/// Sends each line of `source` on, until its end or until nobody listens.
-fn forward(source: Option<impl Read + Send + 'static>, stream: Stream, lines: Sender<(Stream, String)>) {
+/// Sends each line of a numbered stream on, until its end or until nobody listens.
+fn forward(stream: usize, source: Option<impl Read + Send + 'static>, lines: Sender<(usize, String)>) {
     let Some(source) = source else { return };
     thread::spawn(move || {
         let mut source = BufReader::new(source);

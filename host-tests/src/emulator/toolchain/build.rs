@@ -8,7 +8,7 @@ use std::sync::Mutex;
 use std::time::Duration;
 
 use super::detect::{DEBIAN_CARGO, DEBIAN_RUSTC};
-use super::system::{Host, System};
+use super::install::run_shown;
 use super::{ArmCore, TARGETS, Toolchain, workspace};
 use crate::emulator::boards::{Board, every_board};
 use crate::emulator::process::ProcessError;
@@ -150,7 +150,7 @@ impl Toolchain {
     }
 
     fn finish(&self, mut command: Command, doing: &str) -> Result<(), BuildError> {
-        let output = Host.run(&mut command, LIMIT, Some(doing))?;
+        let output = run_shown(&mut command, LIMIT, doing)?;
         if output.status.success() { Ok(()) } else { Err(BuildError::Refused(output.stderr)) }
     }
 }

@@ -1,12 +1,14 @@
 //! What is there already. Runs nothing that changes anything.
 
-use std::path::PathBuf;
+use std::env;
+use std::fs;
+use std::os::unix::fs::PermissionsExt;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
 
-use super::error::{CORE_PACKAGES, MANAGERS, Manager, Part, QEMU_PACKAGE, SetupError};
-use super::system::System;
-use super::{ArmCore, Qemu, TARGETS, Toolchain, workspace};
+use super::{ArmCore, Qemu, TARGETS, workspace};
+use crate::emulator::process::run;
 
 /// For a program that only says its version.
 const QUICK: Duration = Duration::from_secs(20);
@@ -14,83 +16,66 @@ const QUICK: Duration = Duration::from_secs(20);
 pub(super) const DEBIAN_RUSTC: &str = "/usr/bin/rustc";
 /// Debian's cargo, whatever the PATH says.
 pub(super) const DEBIAN_CARGO: &str = "/usr/bin/cargo";
-
-/// All the tools, or which of them are missing and why.
-pub(super) fn toolchain(system: &impl System) -> Result<Toolchain, SetupError> {
-    match (arm_core(system), qemu(system)) {
-        (Ok(core), Ok(qemu)) => Ok(Toolchain { core, qemu }),
-        (core, qemu) => {
-            let mut missing = Vec::new();
-            let mut reasons = Vec::new();
-            if let Err(reason) = core {
-                missing.push(Part::ArmCore);
-                reasons.push(reason);
-            }
-            if let Err(trouble) = qemu {
-                missing.push(Part::Qemu);
-                reasons.push(trouble.to_string());
-            }
-            Err(SetupError { missing, reason: reasons.join("; "), manager: manager(system), tried: true })
-        }
-    }
-}
-
-/// The system's package manager.
-pub(super) fn manager(system: &impl System) -> Option<Manager> {
-    MANAGERS.into_iter().find(|manager| system.find(manager.program).is_some())
-}
+/// The Debian packages that build the ARM core library; the first is the compiler.
+pub(super) const CORE_PACKAGES: [&str; 3] = ["rustc-web", "cargo-web", "rust-web-src"];
+/// The emulator, and its Debian package.
+pub(super) const QEMU: &str = "qemu-system-arm";
+/// What apt-get, dpkg, rustup and npm begin the line with in which they say what went wrong.
+const MARKS: [&str; 5] = ["E: ", "error: ", "npm ERR! network ", "npm error network ", "npm error "];
+/// How much of a failed command's own words is passed on, in characters.
+const LONGEST_REASON: usize = 200;
 
 /// The core library: ready-made beside the compiler in use, else Debian's sources.
-pub(super) fn arm_core(system: &impl System) -> Result<ArmCore, String> {
-    let compiler = compiler(system)?;
+pub(super) fn arm_core() -> Result<ArmCore, String> {
+    let (libraries, _) = libraries()?;
     let has_core = |target: &str| {
-        let library = compiler.libraries().join(target).join("lib");
-        system.list(&library).iter().any(|name| name.starts_with("libcore-"))
+        let files = fs::read_dir(libraries.join(target).join("lib")).into_iter().flatten().flatten();
+        files.into_iter().any(|file| file.file_name().as_encoded_bytes().starts_with(b"libcore-"))
     };
-    if TARGETS.iter().all(|target| has_core(target)) {
+    if TARGETS.into_iter().all(has_core) {
         return Ok(ArmCore::ReadyMade);
     }
-    let version = debian_rustc(system)?;
-    Ok(ArmCore::FromSource { version, linker: compiler.linker(system)? })
+    let mut packages = Command::new("dpkg-query");
+    packages.args(["--show", "--showformat=${Package} ${db:Status-Status} ${Version}\\n"]).args(CORE_PACKAGES);
+    let listing = says(&mut packages).map_err(|_| "neither rustup nor Debian has brought one")?;
+    Ok(ArmCore::FromSource { version: debian_compiler(&listing)?, linker: linker()? })
 }
 
 /// The folder of `rust-lld`, which Debian's packages do not have.
-pub(super) fn linker(system: &impl System) -> Result<PathBuf, String> {
-    compiler(system)?.linker(system)
+pub(super) fn linker() -> Result<PathBuf, String> {
+    let (libraries, host) = libraries()?;
+    let folder = libraries.join(host).join("bin");
+    if folder.join("rust-lld").is_file() {
+        return Ok(folder);
+    }
+    Err(format!("there is no rust-lld in {}; the compiler of rustup.rs has one", folder.display()))
 }
 
-/// Debian's compiler, if it comes with all that builds the core library and is not too old for this workspace.
-/// A package that dpkg had to leave half-installed does not count.
-fn debian_rustc(system: &impl System) -> Result<String, String> {
-    let absent = |_| "neither rustup nor Debian has brought one".to_owned();
-    let mut query = Command::new("dpkg-query");
-    query.args(["--show", "--showformat=${db:Status-Status}\\n"]).args(CORE_PACKAGES);
-    let states = output(system, &mut query).map_err(absent)?;
-    if states.lines().any(|state| state != "installed") {
-        return Err(format!("dpkg has not finished installing {}", CORE_PACKAGES.join(", ")));
+/// Where the compiler in use has its libraries, and its name of the host.
+fn libraries() -> Result<(PathBuf, String), String> {
+    let mut command = Command::new("rustc");
+    command.args(["--print", "sysroot", "--print", "host-tuple"]).current_dir(workspace());
+    let said = says(command.env("RUSTUP_AUTO_INSTALL", "0"))?;
+    let (sysroot, host) = said.split_once('\n').ok_or("rustc does not say where its libraries are")?;
+    Ok((Path::new(sysroot).join("lib/rustlib"), host.trim().to_owned()))
+}
+
+/// Debian's compiler, by a line for each of its packages: all are wholly installed, and it is not too old for this workspace.
+fn debian_compiler(listing: &str) -> Result<String, String> {
+    let minor = |version: &str| version.split('.').nth(1)?.parse::<u32>().ok();
+    let mut version = "";
+    for line in listing.lines() {
+        match line.split(' ').collect::<Vec<_>>()[..] {
+            [package, "installed", its] if package == CORE_PACKAGES[0] => version = its,
+            [_, "installed", _] => {}
+            _ => return Err(format!("dpkg has not finished installing {}", CORE_PACKAGES.join(", "))),
+        }
     }
-    says(system, Command::new(DEBIAN_CARGO).arg("--version")).map_err(absent)?;
-    let version = says(system, Command::new(DEBIAN_RUSTC).arg("--version")).map_err(absent)?;
-    let number = version.split(' ').nth(1).unwrap_or_default();
     let least = env!("CARGO_PKG_RUST_VERSION");
-    if minor_version(number) < minor_version(least) {
-        return Err(format!("Debian's {version:?} is older than {least}"));
+    if minor(version) < minor(least) {
+        return Err(format!("Debian's rustc {version} is older than {least}"));
     }
-    Ok(format!("rustc {number}"))
-}
-
-/// 88 of `1.88.0`.
-fn minor_version(version: &str) -> Option<u32> {
-    version.split('.').nth(1)?.parse().ok()
-}
-
-/// Why there is no emulator.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub(super) enum QemuTrouble {
-    #[error("there is no such program")]
-    Absent,
-    #[error("{} does not run: {reason}", path.display())]
-    Broken { path: PathBuf, reason: String },
+    Ok(format!("rustc {}", version.split(['+', '~', '-']).next().unwrap_or(version)))
 }
 
 /// Where the set-up unpacks an emulator for this project alone.
@@ -98,59 +83,80 @@ pub(super) fn own_qemu_folder() -> PathBuf {
     workspace().join("target/qemu")
 }
 
-/// The emulator, if it runs: the system's, else this project's own.
-pub(super) fn qemu(system: &impl System) -> Result<Qemu, QemuTrouble> {
-    let folder = own_qemu_folder();
-    let own = || system.list(&folder).iter().any(|name| name == QEMU_PACKAGE).then(|| folder.join(QEMU_PACKAGE));
-    let path = system.find(QEMU_PACKAGE).or_else(own).ok_or(QemuTrouble::Absent)?;
-    match says(system, Command::new(&path).arg("--version")) {
-        Ok(version) => {
-            let version = version.strip_prefix("QEMU emulator version ").unwrap_or(&version).to_owned();
-            Ok(Qemu { path, version })
+/// The first emulator that runs: the system's, else this project's own.
+pub(super) fn qemu() -> Result<Qemu, String> {
+    let mut why = "there is no such program".to_owned();
+    for path in find(QEMU).into_iter().chain(executable(own_qemu_folder().join(QEMU))) {
+        match says(Command::new(&path).arg("--version")) {
+            Ok(version) => {
+                let version = version.lines().next().unwrap_or_default();
+                let version = version.strip_prefix("QEMU emulator version ").unwrap_or(version).to_owned();
+                return Ok(Qemu { path, version });
+            }
+            Err(reason) => why = format!("{} does not run: {reason}", path.display()),
         }
-        Err(reason) => Err(QemuTrouble::Broken { path, reason }),
     }
+    Err(why)
 }
 
-/// The compiler that builds for the host: where its libraries are, and the name of the host.
-struct Compiler {
-    sysroot: PathBuf,
-    host: String,
+/// The program that would be run by this name.
+pub(super) fn find(program: &str) -> Option<PathBuf> {
+    env::split_paths(&env::var_os("PATH")?).find_map(|folder| executable(folder.join(program)))
 }
 
-fn compiler(system: &impl System) -> Result<Compiler, String> {
-    let mut command = Command::new("rustc");
-    command.args(["--print", "sysroot", "--print", "host-tuple"]).current_dir(workspace());
-    let output = output(system, command.env("RUSTUP_AUTO_INSTALL", "0"))?;
-    match output.lines().collect::<Vec<_>>()[..] {
-        [sysroot, host, ..] => Ok(Compiler { sysroot: sysroot.into(), host: host.to_owned() }),
-        _ => Err(format!("rustc does not say where its libraries are, but {output:?}")),
-    }
+fn executable(path: PathBuf) -> Option<PathBuf> {
+    fs::metadata(&path).is_ok_and(|file| file.is_file() && file.permissions().mode() & 0o111 != 0).then_some(path)
 }
 
-impl Compiler {
-    fn libraries(&self) -> PathBuf {
-        self.sysroot.join("lib/rustlib")
-    }
+/// What a quick command says, or why it fails.
+pub(super) fn says(command: &mut Command) -> Result<String, String> {
+    let output = run(command, QUICK).map_err(|error| error.to_string())?;
+    if output.status.success() { Ok(output.stdout) } else { Err(reason(&output.stderr)) }
+}
 
-    fn linker(&self, system: &impl System) -> Result<PathBuf, String> {
-        let folder = self.libraries().join(&self.host).join("bin");
-        if system.list(&folder).iter().any(|name| name == "rust-lld") {
-            return Ok(folder);
+/// Why a command failed, from what it said: the line in which it says so.
+pub(super) fn reason(said: &str) -> String {
+    // dpkg says it in the middle of a line, and apt-get sums up that dpkg has failed.
+    if said.contains("No space left on device") {
+        return "the disk is full".to_owned();
+    }
+    let marked = |mark: &&str| said.lines().find_map(|line| line.strip_prefix(*mark));
+    let line = MARKS.iter().find_map(marked).or_else(|| said.lines().last());
+    line.unwrap_or("it fails without a word").chars().take(LONGEST_REASON).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_failed_commands_own_reason_is_found() {
+        for (said, why) in [
+            (
+                "Err:1 http://deb.debian.org\nE: Failed to fetch: no network\nE: Some index",
+                "Failed to fetch: no network",
+            ),
+            ("E: dpkg was interrupted, you must ...", "dpkg was interrupted, you must ..."),
+            ("info: syncing\nerror: could not download\n", "could not download"),
+            ("npm error code EAI\nnpm error network request failed\nnpm error A log", "request failed"),
+            ("dpkg: error:\n failed to write (No space left on device)\nE: Sub-process", "the disk is full"),
+            ("error while loading shared libraries: libfdt", "error while loading shared libraries: libfdt"),
+            ("", "it fails without a word"),
+        ] {
+            assert_eq!(reason(said), why);
         }
-        Err(format!("there is no rust-lld in {}; the compiler of rustup.rs has one", folder.display()))
     }
-}
 
-/// The first line of what a quick command says.
-pub(super) fn says(system: &impl System, command: &mut Command) -> Result<String, String> {
-    Ok(output(system, command)?.lines().next().unwrap_or_default().to_owned())
-}
-
-fn output(system: &impl System, command: &mut Command) -> Result<String, String> {
-    let output = system.run(command, QUICK, None).map_err(|error| error.to_string())?;
-    if output.status.success() {
-        return Ok(output.stdout);
+    #[test]
+    fn debians_compiler_counts_if_it_is_whole_and_new_enough() {
+        let listing = |state: &str, version: &str| {
+            format!("cargo-web installed 1.96.0\nrust-web-src {state} {version}\nrustc-web installed {version}\n")
+        };
+        assert_eq!(debian_compiler(&listing("installed", "1.96.0+dfsg1-1~deb12u2")), Ok("rustc 1.96.0".to_owned()));
+        let old = debian_compiler(&listing("installed", "1.85.0+dfsg3-1~deb12u3"));
+        assert!(old.is_err_and(|why| why.contains("1.85.0") && why.contains("is older than 1.88")));
+        let half = debian_compiler(&listing("unpacked", "1.96.0"));
+        assert!(half.is_err_and(|why| why.starts_with("dpkg has not finished installing rustc-web")));
+        assert!(debian_compiler("").is_err());
     }
-    Err(output.stderr.lines().next().unwrap_or("it fails without a word").to_owned())
 }

@@ -1,13 +1,18 @@
-//! Bringing what is missing. The order keeps failure early: what is known to be impossible is said before anything is
-//! changed, and everything from Debian comes in one go.
+//! Bringing what is missing.
 
+use std::fs::{self, File};
+use std::io;
+use std::path::Path;
 use std::process::Command;
+use std::sync::OnceLock;
 use std::time::Duration;
 
-use super::detect::{self, QemuTrouble};
-use super::error::{CORE_PACKAGES, MANAGERS, Part, QEMU_PACKAGE, SetupError};
-use super::system::System;
-use super::{TARGETS, Toolchain, workspace};
+use nix::fcntl::{Flock, FlockArg};
+
+use super::detect::{self, CORE_PACKAGES, QEMU, find, reason};
+use super::{ArmCore, Qemu, SetupError, TARGETS, workspace};
+use crate::console::progress::Progress;
+use crate::emulator::process::{Output, ProcessError, run_watched};
 
 /// For `rustup target add`: 40 MB. Where it can only hang, this is what that costs, once.
 const RUSTUP: Duration = Duration::from_secs(60);
@@ -15,157 +20,86 @@ const RUSTUP: Duration = Duration::from_secs(60);
 const UPDATE: Duration = Duration::from_secs(300);
 /// For fetching and unpacking at most 400 MB, and for a turn at dpkg.
 const INSTALL: Duration = Duration::from_secs(1200);
-/// For finishing what an interrupted dpkg left.
-const CONFIGURE: Duration = Duration::from_secs(300);
-/// What apt-get says where dpkg was stopped in its work.
-const INTERRUPTED: &str = "dpkg was interrupted";
-/// What apt-get says where packages are there without those that they need.
-const HALF_INSTALLED: &str = "Unmet dependencies";
-/// What apt-get says instead of removing a package.
-const WOULD_REMOVE: &str = "Packages need to be removed";
-/// What rustup, dpkg and the unpacking say where the disk is full, and what apt-get says beforehand if it can tell.
-const DISK_IS_FULL: [&str; 2] = ["No space left on device", "enough free space"];
 /// Unpacks QEMU's packages, in the workspace.
 const UNPACK_QEMU: &str = "host-tests/src/emulator/toolchain/unpack-qemu.sh";
-/// How much of a failed command's own words is passed on, in characters.
-const LONGEST_REASON: usize = 120;
 
-/// Brings what is missing; a line for each thing that was done.
-pub(super) fn set_up(system: &impl System) -> Result<(Toolchain, Vec<String>), SetupError> {
-    let core_is_missing = detect::arm_core(system).is_err();
-    let qemu_trouble = detect::qemu(system).err();
-    let mut missing = Vec::new();
-    missing.extend(core_is_missing.then_some(Part::ArmCore));
-    missing.extend(qemu_trouble.is_some().then_some(Part::Qemu));
-    let refuse = |missing: &[Part], reason: String| {
-        Err(SetupError { missing: missing.to_vec(), reason, manager: detect::manager(system), tried: true })
-    };
-
-    let packages_allowed = debian_allows(system);
-    if let (Some(_), Err(reason)) = (&qemu_trouble, &packages_allowed) {
-        return refuse(&missing, reason.clone());
-    }
-
-    let mut done = Vec::new();
-    let mut packages = Vec::new();
-    let mut rustup_failure = None;
-    if core_is_missing {
-        match add_targets(system) {
-            Ok(()) => done.push(format!("rustup added {}", TARGETS.join(", "))),
-            Err(failure) => {
-                if let Err(reason) = packages_allowed.and_then(|()| detect::linker(system).map(|_| ())) {
-                    return refuse(&missing, format!("{failure}; {reason}"));
-                }
-                packages.extend(CORE_PACKAGES);
-                rustup_failure = Some(failure);
-            }
-        }
-    }
-    if qemu_trouble.is_some() {
-        packages.push(QEMU_PACKAGE);
-    }
-    if !packages.is_empty() {
-        let reinstall = matches!(qemu_trouble, Some(QemuTrouble::Broken { .. }));
-        match bring_packages(system, &packages, reinstall) {
-            Ok(lines) => done.extend(lines),
-            Err(failure) => {
-                let reason = rustup_failure.into_iter().chain([failure]).collect::<Vec<_>>().join("; ");
-                return refuse(&missing_now(system), reason);
-            }
-        }
-        done.extend(rustup_failure.map(|failure| format!("because {failure}")));
-    }
-    Ok((detect::toolchain(system)?, done))
+/// Waits for our turn at a set-up; it ends when this is dropped or the process ends, however it ends.
+pub(super) fn turn(path: &Path) -> Result<Flock<File>, SetupError> {
+    let refuse = |error: io::Error| SetupError(format!("cannot lock {}: {error}", path.display()));
+    fs::create_dir_all(path.parent().unwrap_or(path)).map_err(refuse)?;
+    let file = File::options().create(true).truncate(false).write(true).open(path).map_err(refuse)?;
+    Flock::lock(file, FlockArg::LockExclusiveNonblock)
+        .or_else(|(file, _)| {
+            let _waiting = Progress::start("waiting for another set-up");
+            Flock::lock(file, FlockArg::LockExclusive)
+        })
+        .map_err(|(_, error)| refuse(error.into()))
 }
 
-fn missing_now(system: &impl System) -> Vec<Part> {
-    detect::toolchain(system).err().map_or_else(Vec::new, |error| error.missing)
+/// The core library: ready-made by rustup, else Debian's sources and their compiler. A line more of what was done.
+pub(super) fn arm_core(done: &mut Vec<String>) -> Result<ArmCore, String> {
+    let mut rustup = Command::new("rustup");
+    rustup.args(["target", "add"]).args(TARGETS).current_dir(workspace()).env("RUSTUP_AUTO_INSTALL", "0");
+    let doing = format!("rustup fetches the ARM core library, for at most {} s", RUSTUP.as_secs());
+    // Its success is not enough: it may skip a target it cannot have.
+    match attempt(&mut rustup, RUSTUP, &doing).and_then(|()| detect::arm_core()) {
+        Ok(core) => {
+            done.push(format!("rustup added {}", TARGETS.join(", ")));
+            Ok(core)
+        }
+        Err(failure) => {
+            let brought = detect::linker().and_then(|_| install_packages(&CORE_PACKAGES));
+            let core = brought.and_then(|()| detect::arm_core()).map_err(|why| format!("{failure}; {why}"))?;
+            done.push(format!("apt-get installed {}, because {failure}", CORE_PACKAGES.join(", ")));
+            Ok(core)
+        }
+    }
 }
 
-/// Whether Debian's packages can be installed here, else why not.
-pub(super) fn debian_allows(system: &impl System) -> Result<(), String> {
-    if system.find(MANAGERS[0].program).is_none() {
+/// QEMU from Debian's packages, installed, or unpacked for this project alone where they cannot be: where that would cost the
+/// user another package, or another may do it. A line more of what was done.
+pub(super) fn qemu(done: &mut Vec<String>) -> Result<Qemu, String> {
+    match install_packages(&[QEMU]).and_then(|()| detect::qemu()) {
+        Ok(qemu) => {
+            done.push(format!("apt-get installed {QEMU}"));
+            Ok(qemu)
+        }
+        Err(failure) => {
+            let folder = detect::own_qemu_folder();
+            let mut unpack = Command::new("sh");
+            unpack.arg(workspace().join(UNPACK_QEMU)).arg(&folder).env("LC_ALL", "C");
+            let unpacked = attempt(&mut unpack, INSTALL, "unpacking QEMU, which cannot be installed");
+            let qemu = unpacked.and_then(|()| detect::qemu()).map_err(|_| failure.clone())?;
+            done.push(format!("{QEMU} unpacked into {}, because {failure}", folder.display()));
+            Ok(qemu)
+        }
+    }
+}
+
+/// Installs the newest that Debian has: old lists may name packages that are gone, or a compiler that is too old.
+pub(super) fn install_packages(packages: &[&str]) -> Result<(), String> {
+    static UPDATED: OnceLock<Result<(), String>> = OnceLock::new();
+    if find("apt-get").is_none() {
         return Err("this system has no apt-get, the only package manager this command runs".to_owned());
     }
-    if !system.is_root() {
+    if !nix::unistd::geteuid().is_root() {
         return Err("only root may install packages".to_owned());
     }
-    Ok(())
-}
-
-/// The ready-made core library. Success of rustup is not enough: it may skip a target it cannot have.
-fn add_targets(system: &impl System) -> Result<(), String> {
-    if system.find("rustup").is_none() {
-        return Err("there is no rustup".to_owned());
-    }
-    let mut command = Command::new("rustup");
-    command.args(["target", "add"]).args(TARGETS).current_dir(workspace()).env("RUSTUP_AUTO_INSTALL", "0");
-    let doing = format!("rustup fetches the ARM core library, for at most {} s", RUSTUP.as_secs());
-    attempt(system, &mut command, RUSTUP, &doing)?;
-    match detect::arm_core(system) {
-        Ok(_) => Ok(()),
-        Err(_) => Err("rustup has no core library for these targets".to_owned()),
-    }
-}
-
-/// Installs the packages; where QEMU's would cost the user another package, it is unpacked for this project alone.
-fn bring_packages(system: &impl System, packages: &[&str], reinstall: bool) -> Result<Vec<String>, String> {
-    let installed = |packages: &[&str]| format!("apt-get installed {}", packages.join(", "));
-    match install_packages(system, packages, reinstall) {
-        Ok(()) => Ok(vec![installed(packages)]),
-        Err(failure) if failure.contains(WOULD_REMOVE) && packages.contains(&QEMU_PACKAGE) => {
-            let others: Vec<_> = packages.iter().copied().filter(|&package| package != QEMU_PACKAGE).collect();
-            let mut done = Vec::new();
-            if !others.is_empty() {
-                install_packages(system, &others, false)?;
-                done.push(installed(&others));
-            }
-            let mut unpack = Command::new("sh");
-            unpack.arg(workspace().join(UNPACK_QEMU)).arg(detect::own_qemu_folder()).env("LC_ALL", "C");
-            attempt(system, &mut unpack, INSTALL, "installing QEMU would remove a package; it is unpacked instead")?;
-            done.push(format!("{QEMU_PACKAGE} unpacked into {}", detect::own_qemu_folder().display()));
-            Ok(done)
-        }
-        Err(failure) => Err(failure),
-    }
-}
-
-/// Installs the newest that Debian has: old lists may name packages that are gone, or a compiler that is too old. Heals an
-/// interrupted dpkg.
-pub(super) fn install_packages(system: &impl System, packages: &[&str], reinstall: bool) -> Result<(), String> {
-    let mut update = apt_get("update");
-    update.args(["-o", "APT::Update::Error-Mode=any"]);
-    let updated = attempt(system, &mut update, UPDATE, "apt-get fetches the lists of packages");
-    let install = || {
-        let mut command = apt_get("install");
-        command.args(["--no-install-recommends", "--no-remove"]).args(reinstall.then_some("--reinstall"));
-        attempt(system, command.args(packages), INSTALL, &format!("apt-get installs {}", packages.join(", ")))
-    };
-    let mut installed = install();
-    if installed.as_ref().is_err_and(|failure| failure.contains(INTERRUPTED)) {
-        let mut configure = Command::new("dpkg");
-        configure.args(["--configure", "-a"]).env("DEBIAN_FRONTEND", "noninteractive").env("LC_ALL", "C");
-        // Fails where a package still lacks another that it needs: that is mended next.
-        let _ = attempt(system, &mut configure, CONFIGURE, "dpkg finishes what was interrupted");
-        installed = install();
-    }
-    if installed.as_ref().is_err_and(|failure| failure.contains(HALF_INSTALLED)) {
-        let mut mend = apt_get("install");
-        mend.args(["--fix-broken", "--no-install-recommends", "--no-remove"]);
-        attempt(system, &mut mend, INSTALL, "apt-get completes what was left half-installed")?;
-        installed = install();
-    }
-    // One bad source of many does not stop the install; if that fails too, the earlier failure is the cause, except for
-    // one that no list would change.
-    installed.map_err(|failure| match updated {
-        Err(earlier) if !failure.contains(WOULD_REMOVE) => earlier,
-        _ => failure,
-    })
+    let updated = UPDATED.get_or_init(|| {
+        let mut update = apt_get("update");
+        update.args(["-o", "APT::Update::Error-Mode=any"]);
+        attempt(&mut update, UPDATE, "apt-get fetches the lists of packages")
+    });
+    let mut install = apt_get("install");
+    install.args(["--no-install-recommends", "--no-remove", "--reinstall"]).args(packages);
+    // One bad source of many does not stop the install; where it fails too, the lists are the cause.
+    attempt(&mut install, INSTALL, &format!("apt-get installs {}", packages.join(", ")))
+        .map_err(|failure| updated.clone().err().unwrap_or(failure))
 }
 
 /// `apt-get` that asks nothing, waits its turn and does not wait for a dead network.
 fn apt_get(action: &str) -> Command {
-    let mut command = Command::new(MANAGERS[0].program);
+    let mut command = Command::new("apt-get");
     command.args([action, "--yes", "--quiet"]);
     for option in ["DPkg::Lock::Timeout=120", "Dpkg::Use-Pty=0", "Acquire::http::Timeout=30", "Acquire::Retries=1"] {
         command.args(["-o", option]);
@@ -175,16 +109,43 @@ fn apt_get(action: &str) -> Command {
 }
 
 /// Runs a command to its end; if it fails, the line in which it says why.
-pub(super) fn attempt(system: &impl System, command: &mut Command, limit: Duration, doing: &str) -> Result<(), String> {
-    let output = system.run(command, limit, Some(doing)).map_err(|error| error.to_string())?;
+pub(super) fn attempt(command: &mut Command, limit: Duration, doing: &str) -> Result<(), String> {
+    let output = run_shown(command, limit, doing).map_err(|error| error.to_string())?;
     if output.status.success() {
         return Ok(());
     }
-    let said = |start: &str| output.stderr.lines().find(|line| line.starts_with(start));
-    // dpkg says it in the middle of a line, and apt-get sums up that dpkg has failed.
-    let full = DISK_IS_FULL.iter().any(|words| output.stderr.contains(words)).then_some("the disk is full");
-    let why = full.or_else(|| said("E: ")).or_else(|| said("error: ")).or_else(|| output.stderr.lines().last());
-    let why = why.unwrap_or("it fails without a word").trim_start_matches("E: ").trim_start_matches("error: ");
-    let why: String = why.chars().take(LONGEST_REASON).collect();
-    Err(format!("{}: {why}", command.get_program().to_string_lossy()))
+    Err(format!("{}: {}", command.get_program().to_string_lossy(), reason(&output.stderr)))
+}
+
+/// Runs a command to its end, within the limit, and shows meanwhile what is being done.
+pub(super) fn run_shown(command: &mut Command, limit: Duration, doing: &str) -> Result<Output, ProcessError> {
+    let mut progress = Progress::start(doing);
+    run_watched(command, limit, |line| progress.alive(line))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::{AtomicBool, Ordering};
+    use std::thread;
+
+    use super::*;
+
+    #[test]
+    fn set_ups_take_turns() {
+        let folder = tempfile::tempdir().expect("there is room for it");
+        let path = folder.path().join("target/setup.lock");
+        let first = turn(&path).expect("nobody has it");
+        let is_over = AtomicBool::new(false);
+        thread::scope(|scope| {
+            scope.spawn(|| {
+                let _second = turn(&path).expect("it comes");
+                assert!(is_over.load(Ordering::SeqCst), "two turns at once");
+            });
+            thread::sleep(Duration::from_millis(300));
+            is_over.store(true, Ordering::SeqCst);
+            drop(first);
+        });
+        let error = turn(Path::new("/dev/null/setup.lock")).expect_err("it is no folder").to_string();
+        assert!(error.starts_with("cannot lock /dev/null/setup.lock: "), "{error}");
+    }
 }

@@ -4,10 +4,9 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
 
-use super::detect::{manager, says};
-use super::error::{NODE_PACKAGES, Part, SetupError};
-use super::install::{attempt, debian_allows, install_packages};
-use super::system::System;
+use super::detect::{find, says};
+use super::install::{attempt, install_packages};
+use super::missing::Part;
 use super::workspace;
 
 /// For npm to fetch one small package.
@@ -45,43 +44,40 @@ fn folder() -> PathBuf {
 }
 
 /// Node.js, if it is new enough.
-fn node(system: &impl System) -> Result<PathBuf, String> {
-    let node = system.find("node").ok_or("there is no Node.js")?;
-    let version = says(system, Command::new(&node).arg("--version"))?;
+fn node() -> Result<PathBuf, String> {
+    let node = find("node").ok_or("there is no Node.js")?;
+    let version = says(Command::new(&node).arg("--version"))?;
     let major = version.trim_start_matches('v').split('.').next().and_then(|major| major.parse::<u32>().ok());
     if major.is_some_and(|major| major >= LEAST) {
-        Ok(node)
-    } else {
-        Err(format!("Node.js {version} is older than {LEAST}"))
+        return Ok(node);
     }
+    Err(format!("Node.js {} is older than {LEAST}", version.trim()))
 }
 
 /// The emulator, or what is missing of it and why.
-pub(super) fn detect(system: &impl System) -> Result<Rp2040js, SetupError> {
-    let refused = |part, reason| SetupError { missing: vec![part], reason, manager: manager(system), tried: true };
-    let node = node(system).map_err(|reason| refused(Part::Node, reason))?;
-    match says(system, Command::new(&node).args(["--print", ASK]).current_dir(folder())) {
-        Ok(version) => Ok(Rp2040js { node, version }),
-        Err(_) => Err(refused(Part::Rp2040js, "npm has not fetched the version that is wanted".to_owned())),
+pub(super) fn detect() -> Result<Rp2040js, (Part, String)> {
+    let node = node().map_err(|why| (Part::Node, why))?;
+    match says(Command::new(&node).args(["--print", ASK]).current_dir(folder())) {
+        Ok(version) => Ok(Rp2040js { node, version: version.trim().to_owned() }),
+        Err(_) => Err((Part::Rp2040js, "npm has not fetched the version that is wanted".to_owned())),
     }
 }
 
 /// Brings what is missing; a line for each thing that was done.
-pub(super) fn set_up(system: &impl System) -> Result<(Rp2040js, Vec<String>), SetupError> {
+pub(super) fn set_up() -> Result<(Rp2040js, Vec<String>), (Part, String)> {
     let mut done = Vec::new();
-    let refused = |part, reason| SetupError { missing: vec![part], reason, manager: manager(system), tried: true };
-    if node(system).is_err() || system.find("npm").is_none() {
-        debian_allows(system)
-            .and_then(|()| install_packages(system, &NODE_PACKAGES, false))
-            .map_err(|reason| refused(Part::Node, reason))?;
-        done.push(format!("apt-get installed {}", NODE_PACKAGES.join(", ")));
+    let has_npm = || find("npm").map(drop).ok_or_else(|| "there is no npm".to_owned());
+    if let Err(failure) = node().and_then(|_| has_npm()) {
+        let installed = install_packages(&["nodejs", "npm"]).and_then(|()| has_npm());
+        installed.map_err(|why| (Part::Node, format!("{failure}; {why}")))?;
+        done.push("apt-get installed nodejs, npm".to_owned());
     }
-    if detect(system).is_err() {
+    if detect().is_err() {
         let mut npm = Command::new("npm");
         npm.args(["ci", "--ignore-scripts", "--no-audit", "--no-fund"]).current_dir(folder());
-        let doing = "npm fetches the emulator of the Raspberry Pi Pico";
-        attempt(system, &mut npm, NPM, doing).map_err(|reason| refused(Part::Rp2040js, reason))?;
+        let fetched = attempt(&mut npm, NPM, "npm fetches the emulator of the Raspberry Pi Pico");
+        fetched.map_err(|why| (Part::Rp2040js, why))?;
         done.push("npm fetched rp2040js".to_owned());
     }
-    Ok((detect(system)?, done))
+    Ok((detect()?, done))
 }

@@ -3,6 +3,7 @@
 # Installs nothing: for systems where installing it would cost the user another package (a newer qemu-utils, say).
 set -eu
 folder=$1
+trap 'rm -rf "$folder.new"' EXIT
 rm -rf "$folder.new"
 mkdir -p "$folder.new"
 cd "$folder.new"
