@@ -64,6 +64,7 @@ pub(super) fn qemu(done: &mut Vec<String>) -> Result<Qemu, String> {
             done.push(format!("apt-get installed {QEMU}"));
             Ok(qemu)
         }
+        Err(failure) if find("apt-get").is_none() => Err(failure),
         Err(failure) => {
             let folder = detect::own_qemu_folder();
             let mut unpack = Command::new("sh");

@@ -46,7 +46,7 @@ impl SetupError {
 impl Part {
     /// Its name, and what to type on a system with this package manager, if it is known.
     fn told(self, manager: Option<(&str, &str)>) -> (&'static str, String) {
-        let (program, install) = manager.unwrap_or(("", "the packages of this system like"));
+        let (program, install) = manager.unwrap_or(("", "this system's packages like"));
         let of_brew = |its, others| if program == "brew" { its } else { others };
         match self {
             Part::ArmCore => {
@@ -81,7 +81,7 @@ mod tests {
         assert_eq!(fedora, "rustup target add thumbv6m-none-eabi thumbv7m-none-eabi thumbv7em-none-eabihf");
         let packages = "sudo apt-get install --no-install-recommends rustc-web cargo-web rust-web-src";
         assert_eq!(debian, format!("{fedora}, or {packages}"));
-        assert_eq!(Part::Node.told(None).1, "the packages of this system like nodejs npm");
+        assert_eq!(Part::Node.told(None).1, "this system's packages like nodejs npm");
     }
 
     #[test]
