@@ -15,12 +15,6 @@ const RUSTUP: Duration = Duration::from_secs(60);
 const UPDATE: Duration = Duration::from_secs(300);
 /// For fetching and unpacking at most 400 MB, and for a turn at dpkg.
 const INSTALL: Duration = Duration::from_secs(1200);
-/// For finishing what an interrupted dpkg left.
-const CONFIGURE: Duration = Duration::from_secs(300);
-/// What apt-get says where dpkg was stopped in its work.
-const INTERRUPTED: &str = "dpkg was interrupted";
-/// What apt-get says where packages are there without those that they need.
-const HALF_INSTALLED: &str = "Unmet dependencies";
 /// What apt-get says instead of removing a package.
 const WOULD_REMOVE: &str = "Packages need to be removed";
 /// What rustup, dpkg and the unpacking say where the disk is full, and what apt-get says beforehand if it can tell.
@@ -130,31 +124,14 @@ fn bring_packages(system: &impl System, packages: &[&str], reinstall: bool) -> R
     }
 }
 
-/// Installs the newest that Debian has: old lists may name packages that are gone, or a compiler that is too old. Heals an
-/// interrupted dpkg.
+/// Installs the newest that Debian has: old lists may name packages that are gone, or a compiler that is too old.
 pub(super) fn install_packages(system: &impl System, packages: &[&str], reinstall: bool) -> Result<(), String> {
     let mut update = apt_get("update");
     update.args(["-o", "APT::Update::Error-Mode=any"]);
     let updated = attempt(system, &mut update, UPDATE, "apt-get fetches the lists of packages");
-    let install = || {
-        let mut command = apt_get("install");
-        command.args(["--no-install-recommends", "--no-remove"]).args(reinstall.then_some("--reinstall"));
-        attempt(system, command.args(packages), INSTALL, &format!("apt-get installs {}", packages.join(", ")))
-    };
-    let mut installed = install();
-    if installed.as_ref().is_err_and(|failure| failure.contains(INTERRUPTED)) {
-        let mut configure = Command::new("dpkg");
-        configure.args(["--configure", "-a"]).env("DEBIAN_FRONTEND", "noninteractive").env("LC_ALL", "C");
-        // Fails where a package still lacks another that it needs: that is mended next.
-        let _ = attempt(system, &mut configure, CONFIGURE, "dpkg finishes what was interrupted");
-        installed = install();
-    }
-    if installed.as_ref().is_err_and(|failure| failure.contains(HALF_INSTALLED)) {
-        let mut mend = apt_get("install");
-        mend.args(["--fix-broken", "--no-install-recommends", "--no-remove"]);
-        attempt(system, &mut mend, INSTALL, "apt-get completes what was left half-installed")?;
-        installed = install();
-    }
+    let mut install = apt_get("install");
+    install.args(["--no-install-recommends", "--no-remove"]).args(reinstall.then_some("--reinstall")).args(packages);
+    let installed = attempt(system, &mut install, INSTALL, &format!("apt-get installs {}", packages.join(", ")));
     // One bad source of many does not stop the install; if that fails too, the earlier failure is the cause, except for
     // one that no list would change.
     installed.map_err(|failure| match updated {
