@@ -7,7 +7,7 @@
 mod registry;
 mod run;
 
-pub use registry::{on_interrupt, remove_on_interrupt};
+pub use registry::{INTERRUPTS, interrupted_by, on_interrupt, remove_on_interrupt};
 pub use run::{Output, run, run_watched};
 
 use std::io;

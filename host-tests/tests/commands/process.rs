@@ -105,10 +105,10 @@ fn what_an_ended_child_leaves_behind_is_ended() {
 
 #[test]
 fn an_interrupt_ends_the_children_and_then_this_process() {
-    for signal in [Signal::SIGINT, Signal::SIGTERM, Signal::SIGHUP] {
+    for (signal, code) in [(Signal::SIGINT, 130), (Signal::SIGTERM, 143), (Signal::SIGHUP, 129)] {
         let (mut helper, pipe, folder) = helper();
         kill(Pid::from_raw(helper.id() as i32), signal).expect("it runs");
-        assert_eq!(helper.wait().expect("it ends").code(), Some(130), "{signal}");
+        assert_eq!(helper.wait().expect("it ends").code(), Some(code), "{signal}");
         assert_eq!(rest(pipe), "hook\n", "{signal}");
         assert!(!folder.exists(), "{signal}: {} is left", folder.display());
     }

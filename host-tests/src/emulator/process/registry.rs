@@ -13,6 +13,8 @@ use std::time::{Duration, Instant};
 
 use nix::sys::signal::{Signal, killpg};
 use nix::unistd::Pid;
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+use signal_hook::iterator::Signals;
 
 use super::{POLL, Pipes};
 
@@ -25,8 +27,13 @@ const GUARD: Duration = Duration::from_millis(20);
 /// Reads a pipe whose other end this process alone has: it ends when this process does, by whatever signal. Any Unix can do
 /// that, no thread must live for it, and it reaches the children's children, which the parent-death signal of Linux does not.
 const LAST_WILL: &str = "read -r _; kill -KILL 0";
-/// The shell's exit code for a command ended by Ctrl-C.
-const INTERRUPTED: i32 = 130;
+/// The signals that interrupt a command: Ctrl-C, a request to end, a terminal that is closed.
+pub const INTERRUPTS: [i32; 3] = [SIGINT, SIGTERM, SIGHUP];
+
+/// The exit code that the shell has for a command ended by a signal: 130 after Ctrl-C.
+pub fn interrupted_by(signal: i32) -> i32 {
+    128 + signal
+}
 
 static LIVE: Mutex<Vec<Arc<Group>>> = Mutex::new(Vec::new());
 static HOOKS: Mutex<Vec<Hook>> = Mutex::new(Vec::new());
@@ -124,8 +131,8 @@ pub(super) fn finish(group: &Arc<Group>) {
     }
 }
 
-/// Runs `hook` when this process is interrupted, after its children have gone and before it exits with code 130:
-/// for what must be put back, such as the terminal's mode.
+/// Runs `hook` when this process is interrupted, after its children have gone and before it exits: for what must be put back,
+/// such as the terminal's mode.
 pub fn on_interrupt(hook: impl FnOnce() + Send + 'static) {
     SUPERVISION.call_once(supervise);
     lock(&HOOKS).push(Box::new(hook));
@@ -174,15 +181,17 @@ fn supervise() {
             end(&late, GRACE);
         }
     });
-    // Fails only if the program has a handler of its own already, which then has the say.
-    let _ = ctrlc::set_handler(|| {
+    // Fails only for signals that no program may handle.
+    let Ok(mut signals) = Signals::new(INTERRUPTS) else { return };
+    thread::spawn(move || {
+        let Some(signal) = signals.forever().next() else { return };
         // Never released: no child starts from here on.
         let live = lock(&LIVE);
         end(&live, INTERRUPTED_GRACE);
         for hook in lock(&HOOKS).drain(..) {
             hook();
         }
-        std::process::exit(INTERRUPTED);
+        std::process::exit(interrupted_by(signal));
     });
 }
 
