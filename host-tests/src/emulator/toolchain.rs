@@ -2,7 +2,7 @@
 //! Pico, rp2040js.
 //!
 //! [`ready`] only looks. [`set_up`] brings what is missing: the core library by `rustup target add`, or else from
-//! Debian's source packages; QEMU from Debian's packages, installed, or unpacked into `target/qemu` where installing it
+//! Debian's source packages; QEMU from Debian's packages, installed, or unpacked into `qemu` in the target folder where installing it
 //! would remove another package. Both ways build the same firmware with the same flags.
 //! All of the world outside is reached through one small trait, so that every decision is tested without it.
 
@@ -15,15 +15,18 @@ mod rp2040js;
 mod system;
 #[cfg(test)]
 mod tests;
+mod workspace;
 
 pub use build::BuildError;
 pub use error::SetupError;
 pub use rp2040js::Rp2040js;
+pub use workspace::{target, workspace};
 
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
+use crate::emulator::qemu;
 use lock::Lock;
 use system::Host;
 
@@ -69,10 +72,11 @@ pub fn ready() -> Result<Toolchain, SetupError> {
 ///
 /// Two set-ups at once take turns. Nothing is begun that is known to fail.
 pub fn set_up() -> Result<(Toolchain, Vec<String>), SetupError> {
+    qemu::check_folder().map_err(SetupError::of)?;
     if let Ok(toolchain) = detect::toolchain(&Host) {
         return Ok((toolchain, Vec::new()));
     }
-    let _turn = Lock::take(&workspace().join("target/setup.lock"))?;
+    let _turn = Lock::take(&target().join("setup.lock"))?;
     install::set_up(&Host)
 }
 
@@ -86,14 +90,8 @@ pub fn set_up_pico() -> Result<(Rp2040js, Vec<String>), SetupError> {
     if let Ok(emulator) = rp2040js::detect(&Host) {
         return Ok((emulator, Vec::new()));
     }
-    let _turn = Lock::take(&workspace().join("target/setup.lock"))?;
+    let _turn = Lock::take(&target().join("setup.lock"))?;
     rp2040js::set_up(&Host)
-}
-
-/// The workspace's folder.
-pub fn workspace() -> &'static Path {
-    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
-    here.parent().unwrap_or(here)
 }
 
 impl Toolchain {

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use super::error::{CORE_PACKAGES, MANAGERS, Manager, Part, QEMU_PACKAGE, SetupError};
 use super::system::System;
-use super::{ArmCore, Qemu, TARGETS, Toolchain, workspace};
+use super::{ArmCore, Qemu, TARGETS, Toolchain, target, workspace};
 
 /// For a program that only says its version.
 const QUICK: Duration = Duration::from_secs(20);
@@ -95,7 +95,7 @@ pub(super) enum QemuTrouble {
 
 /// Where the set-up unpacks an emulator for this project alone.
 pub(super) fn own_qemu_folder() -> PathBuf {
-    workspace().join("target/qemu")
+    target().join("qemu")
 }
 
 /// The emulator, if it runs: the system's, else this project's own.

@@ -55,6 +55,13 @@ pub struct SetupError {
     pub(super) tried: bool,
 }
 
+impl SetupError {
+    /// For a reason that nothing brought would change.
+    pub(super) fn of(reason: String) -> Self {
+        Self { missing: Vec::new(), reason, manager: None, tried: true }
+    }
+}
+
 impl fmt::Display for SetupError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let names: Vec<_> = self.missing.iter().map(|part| part.name()).collect();

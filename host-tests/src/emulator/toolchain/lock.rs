@@ -24,12 +24,7 @@ pub(super) struct Lock(#[expect(dead_code, reason = "held, never read")] Flock<F
 impl Lock {
     /// Waits for our turn at the file.
     pub(super) fn take(path: &Path) -> Result<Self, SetupError> {
-        let refuse = |reason: io::Error| SetupError {
-            missing: Vec::new(),
-            reason: format!("cannot lock {}: {reason}", path.display()),
-            manager: None,
-            tried: true,
-        };
+        let refuse = |reason: io::Error| SetupError::of(format!("cannot lock {}: {reason}", path.display()));
         let mut file = open(path).map_err(refuse)?;
         let mut waiting = None;
         let started = Instant::now();
