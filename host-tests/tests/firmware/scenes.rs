@@ -19,7 +19,6 @@ use firmware::motion::settings::Settings;
 use firmware::motion::simulation::Means;
 use firmware::protocol::{MAX_WIRE, Pause, encode};
 use firmware::scenes::flips::FlipsMap;
-use firmware::scenes::scene::Scene;
 use firmware::scenes::{AnyScene, SceneName};
 use host_tests::emulator::host::{Show, sheets};
 use host_tests::oracle::snapshot;

@@ -25,7 +25,9 @@ const NONE: &str = "-";
 pub fn draw(frame: &mut Frame, area: Rect, readings: &Readings) {
     let area = Rect { width: area.width.min(WIDEST), ..area };
     let lines: Vec<_> = rows(readings).into_iter().flat_map(|row| lines(row, area.width.into())).collect();
-    let heights = [Constraint::Length(lines.len() as u16), Constraint::Length(1), Constraint::Min(0)];
+    let rows = lines.len() as u16;
+    let scale = area.height.saturating_sub(rows).min(1);
+    let heights = [Constraint::Length(rows), Constraint::Length(scale), Constraint::Min(0)];
     let [table, scale, bars] = Layout::vertical(heights).areas(area);
     frame.render_widget(Paragraph::new(Text::from(lines)), table);
     if readings.frame.as_ref().is_some_and(has_angles) && bars.height > 0 {
