@@ -32,6 +32,7 @@ const ROWS: usize = HEIGHT / 2;
 
 /// The map as the processor computes it: in `f32` where it has that, else in fixed point. A board has the code of its own alone,
 /// the host that of both.
+#[cfg_attr(not(target_os = "none"), expect(clippy::large_enum_variant, reason = "the host has the room"))]
 #[derive(Clone, Debug)]
 pub enum Flips {
     /// In `f32`.
