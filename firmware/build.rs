@@ -14,11 +14,11 @@ fn main() {
     if env::var("CARGO_CFG_TARGET_OS").as_deref() != Ok("none") {
         return;
     }
-    let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap_or(Path::new("."));
-    println!("cargo:rustc-link-search={}", workspace.display());
-    let boards = workspace.join("firmware/src/board");
-    for script in ["steps.x", "pico/pico.x", "stm32f405/stm32f405.x"].map(|script| boards.join(script)) {
-        println!("cargo:rustc-link-search={}", script.with_file_name("").display());
+    // From the workspace's folder, in which the linker runs: a checkout that was moved keeps what it has built.
+    println!("cargo:rustc-link-search=.");
+    for script in ["steps.x", "pico/pico.x", "stm32f405/stm32f405.x"].map(|script| Path::new("src/board").join(script))
+    {
+        println!("cargo:rustc-link-search={}", Path::new("firmware").join(&script).with_file_name("").display());
         println!("cargo:rerun-if-changed={}", script.display());
     }
     // The emulated boards' flash starts at 0, this chip's elsewhere, and it has 1 MiB.

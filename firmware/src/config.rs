@@ -52,9 +52,16 @@ pub struct Processor {
     pub frame: f32,
     /// What is spent in each tick on looking ahead, cycles; comparing frames takes up to a quarter more.
     pub look_ahead: f32,
+    /// What is spent on the map of flips.
+    pub flips: FlipsPace,
 }
 
 impl Processor {
+    /// Whether it has a floating-point unit: else steps in fixed point cost less.
+    pub fn has_float(&self) -> bool {
+        self.costs.direction_plain < self.costs.fixed32
+    }
+
     /// The least that a piece of looking ahead takes, cycles, and a frame that is not shown: its steps may cost less than what
     /// is done around them.
     pub fn piece(&self) -> f32 {
@@ -80,6 +87,7 @@ pub const CORTEX_M3: Processor = Processor {
     },
     frame: 200_000.0,
     look_ahead: 320_000.0,
+    flips: FLIPS_M3,
 };
 /// A Cortex-M0+, which has no long product either, as on the Raspberry Pi Pico: at 125 MHz a tick has 2,083,000 cycles.
 pub const CORTEX_M0PLUS: Processor = Processor {
@@ -94,6 +102,7 @@ pub const CORTEX_M0PLUS: Processor = Processor {
     },
     frame: 300_000.0,
     look_ahead: 530_000.0,
+    flips: FLIPS_M0PLUS,
 };
 /// A Cortex-M4F, whose floating-point unit knows `f32` only: the slowest board, at 25 MHz, has 417,000 cycles in a tick. A
 /// plain step costs less than the closed form's two sincos.
@@ -109,9 +118,11 @@ pub const CORTEX_M4F: Processor = Processor {
     },
     frame: 150_000.0,
     look_ahead: 190_000.0,
+    flips: FLIPS_M4F,
 };
 /// The STM32F405's at 168 MHz: 2,800,000 cycles in a tick. Less looking ahead ends before the errors of a light elbow show.
-pub const STM32F405: Processor = Processor { code: 2, frame: 700_000.0, look_ahead: 1_300_000.0, ..CORTEX_M4F };
+pub const STM32F405: Processor =
+    Processor { code: 2, frame: 700_000.0, look_ahead: 1_300_000.0, flips: FLIPS_F405, ..CORTEX_M4F };
 /// Every class, by its code on the wire.
 pub const PROCESSORS: [Processor; 4] = [CORTEX_M3, CORTEX_M4F, STM32F405, CORTEX_M0PLUS];
 /// The class of a board that names no other.
@@ -143,16 +154,6 @@ pub const FLIPS_M0PLUS: FlipsPace = FLIPS_M3;
 pub const FLIPS_M4F: FlipsPace = FlipsPace { steps: 650, start: 60, never: 10 };
 /// ... and of 2,800,000 at 168 MHz.
 pub const FLIPS_F405: FlipsPace = FlipsPace { steps: 5500, ..FLIPS_M4F };
-/// On this processor.
-pub const FLIPS: FlipsPace = if cfg!(armv6m) {
-    FLIPS_M0PLUS
-} else if cfg!(not(target_abi = "eabihf")) {
-    FLIPS_M3
-} else if cfg!(feature = "stm32f405") {
-    FLIPS_F405
-} else {
-    FLIPS_M4F
-};
 
 // ---- The pendulum ---------------------------------------------------------------------------------------------------
 

@@ -95,6 +95,8 @@ impl<'a> Player<'a> {
         match command {
             Command::Heavier => return self.start(self.name, self.settings.heavier()),
             Command::Lighter => return self.start(self.name, self.settings.lighter()),
+            // What does not depend on the angles goes on.
+            Command::TurnLeft | Command::TurnRight if !self.name.has_angles() => {}
             Command::TurnLeft => return self.start(self.name, self.settings.turned(-1)),
             Command::TurnRight => return self.start(self.name, self.settings.turned(1)),
             Command::Restart => return self.start(self.name, self.settings),

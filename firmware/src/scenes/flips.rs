@@ -2,9 +2,13 @@
 
 use double_pendulum::Error;
 use double_pendulum::flips::{FallingBy, Flip, Flips as Search, step_size};
+#[cfg(not(target_abi = "eabihf"))]
+use double_pendulum::form::Fixed32Form;
 use double_pendulum::form::Watched;
+#[cfg(any(target_abi = "eabihf", not(target_os = "none")))]
+use double_pendulum::form::{DirectionForm, Plain};
 
-use crate::config::{FLIPS, FlipsPace, TICK_RATE};
+use crate::config::{FlipsPace, Processor, TICK_RATE};
 use crate::graphics::canvas::{Canvas, HEIGHT, WIDTH};
 use crate::graphics::fade_layer::{FadeLayer, Fading};
 use crate::graphics::label;
@@ -26,15 +30,75 @@ const COARSEST: usize = 8;
 /// The lower half is the upper one turned by half a turn: both starts are mirrored.
 const ROWS: usize = HEIGHT / 2;
 
-/// What motions are computed by: `f32` where the processor has it, else fixed point.
-#[cfg(target_abi = "eabihf")]
-pub type Arithmetic = double_pendulum::form::DirectionForm<f32, double_pendulum::form::Plain>;
-/// What motions are computed by: `f32` where the processor has it, else fixed point.
-#[cfg(not(target_abi = "eabihf"))]
-pub type Arithmetic = double_pendulum::form::Fixed32Form;
+/// The map as the processor computes it: in `f32` where it has that, else in fixed point. A board has the code of its own alone,
+/// the host that of both.
+#[cfg_attr(not(target_os = "none"), expect(clippy::large_enum_variant, reason = "the host has the room"))]
+#[derive(Clone, Debug)]
+pub enum Flips {
+    /// In `f32`.
+    #[cfg(any(target_abi = "eabihf", not(target_os = "none")))]
+    Float(FlipsMap<DirectionForm<f32, Plain>>),
+    /// In fixed point.
+    #[cfg(not(target_abi = "eabihf"))]
+    Fixed(FlipsMap<Fixed32Form>),
+}
 
-/// The map as this processor computes it.
-pub type Flips = FlipsMap<Arithmetic>;
+/// The same of either.
+macro_rules! of_either {
+    ($flips:ident, $map:ident => $what:expr) => {
+        match $flips {
+            #[cfg(any(target_abi = "eabihf", not(target_os = "none")))]
+            Flips::Float($map) => $what,
+            #[cfg(not(target_abi = "eabihf"))]
+            Flips::Fixed($map) => $what,
+        }
+    };
+}
+
+impl Flips {
+    /// Whether the map is finished.
+    pub fn is_done(&self) -> bool {
+        of_either!(self, map => map.is_done())
+    }
+}
+
+impl Scene for Flips {
+    const FADING: Fading = Fading::NEVER;
+
+    fn new(settings: &Settings, means: &Means) -> Result<Self, Error> {
+        let Processor { flips: pace, .. } = means.processor;
+        #[cfg(target_abi = "eabihf")]
+        {
+            FlipsMap::at_pace(settings, pace).map(Self::Float)
+        }
+        #[cfg(all(target_os = "none", not(target_abi = "eabihf")))]
+        {
+            FlipsMap::at_pace(settings, pace).map(Self::Fixed)
+        }
+        #[cfg(not(target_os = "none"))]
+        if means.processor.has_float() {
+            FlipsMap::at_pace(settings, pace).map(Self::Float)
+        } else {
+            FlipsMap::at_pace(settings, pace).map(Self::Fixed)
+        }
+    }
+
+    fn tick(&mut self, ink: &mut FadeLayer) {
+        of_either!(self, map => map.tick(ink));
+    }
+
+    fn draw(&self, _: &Report, canvas: &mut Canvas) {
+        of_either!(self, map => map.draw(canvas));
+    }
+
+    fn report(&self) -> Report {
+        of_either!(self, map => Report::of_figure(map.ticks))
+    }
+
+    fn shown(&self) -> Option<Shown> {
+        None
+    }
+}
 
 /// Both starting angles as axes, a1 across and a2 upwards, brightness the time of the first turn-over.
 ///
@@ -107,7 +171,7 @@ impl Block {
 }
 
 impl<F: Watched<f32>> FlipsMap<F> {
-    /// As [`Scene::new`], at the pace of another processor.
+    /// As [`Scene::new`], at the pace of any processor.
     pub fn at_pace(settings: &Settings, pace: FlipsPace) -> Result<Self, Error> {
         let parameters = &settings.parameters;
         let unit = libm::sqrtf(parameters.l1 / parameters.g);
@@ -173,14 +237,9 @@ pub fn grey(flip: Flip<f32>, unit: f32) -> u8 {
     }
 }
 
-impl<F: Watched<f32>> Scene for FlipsMap<F> {
-    const FADING: Fading = Fading::NEVER;
-
-    fn new(settings: &Settings, _: &Means) -> Result<Self, Error> {
-        Self::at_pace(settings, FLIPS)
-    }
-
-    fn tick(&mut self, ink: &mut FadeLayer) {
+impl<F: Watched<f32>> FlipsMap<F> {
+    /// As [`Scene::tick`].
+    pub fn tick(&mut self, ink: &mut FadeLayer) {
         self.ticks = self.ticks.wrapping_add(1);
         if self.is_done() {
             return;
@@ -192,7 +251,8 @@ impl<F: Watched<f32>> Scene for FlipsMap<F> {
         }
     }
 
-    fn draw(&self, _: &Report, canvas: &mut Canvas) {
+    /// As [`Scene::draw`].
+    pub fn draw(&self, canvas: &mut Canvas) {
         let time = label::time(self.elapsed as f64 / f64::from(TICK_RATE));
         text::write_over(canvas, &time, Anchor::TopRight);
         let corner = if self.is_done() {
@@ -201,13 +261,5 @@ impl<F: Watched<f32>> Scene for FlipsMap<F> {
             label::percent((100 * self.done) / (WIDTH * ROWS) as u32)
         };
         text::write_over(canvas, &corner, Anchor::TopLeft);
-    }
-
-    fn report(&self) -> Report {
-        Report::of_figure(self.ticks)
-    }
-
-    fn shown(&self) -> Option<Shown> {
-        None
     }
 }

@@ -125,6 +125,11 @@ impl AnyScene {
 }
 
 impl SceneName {
+    /// Whether it shows a motion, which starts from two angles.
+    pub fn has_angles(self) -> bool {
+        !matches!(self, Self::Frequencies | Self::Flips)
+    }
+
     /// The next one in the catalogue; after the last the first.
     pub fn next(self) -> Self {
         self.turned(1)

@@ -1,14 +1,13 @@
 //! `cargo figures`: writes the book's figures and what the panel shows in every scene.
 
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use anyhow::Context;
 use clap::Parser;
 use firmware::scenes::SceneName;
 use host_tests::commands::figures;
-use host_tests::console::cli::{self, say};
+use host_tests::console::cli::{self, Refused, say};
 
 /// Draws the book's figures 2 to 5 and 7 from the kernel, as SVG and PNG, and the panel's frame of every scene.
 #[derive(Debug, Parser)]
@@ -17,9 +16,9 @@ struct Options {
     /// Also record an animation of every scene, each by the `cargo demo` that is printed as it begins
     #[arg(long)]
     animations: bool,
-    /// Where to write
-    #[arg(long, value_name = "FOLDER", default_value = figures::FOLDER)]
-    folder: PathBuf,
+    /// Where to write [default: host-tests/pictures of the project]
+    #[arg(long, value_name = "FOLDER")]
+    folder: Option<PathBuf>,
 }
 
 fn main() -> ExitCode {
@@ -27,11 +26,15 @@ fn main() -> ExitCode {
 }
 
 fn write(Options { animations, folder }: &Options) -> anyhow::Result<()> {
+    let folder = &folder.clone().unwrap_or_else(figures::folder);
+    let unwritable =
+        |path: &Path, error| Refused::because(format_args!("--folder: cannot write {}: {error}", path.display()));
+    for subfolder in figures::FOLDERS.map(|name| folder.join(name)) {
+        fs::create_dir_all(&subfolder).map_err(|error| unwritable(&subfolder, error))?;
+    }
     for (name, bytes) in figures::files()? {
         let path = folder.join(name);
-        let unwritable = || format!("cannot write {}", path.display());
-        path.parent().map_or(Ok(()), fs::create_dir_all).with_context(unwritable)?;
-        fs::write(&path, bytes).with_context(unwritable)?;
+        fs::write(&path, bytes).map_err(|error| unwritable(&path, error))?;
     }
     let recorded = if *animations { SceneName::ALL } else { &[] };
     recorded.iter().try_for_each(|&scene| figures::panel::record(scene, folder))?;

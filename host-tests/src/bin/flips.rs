@@ -4,9 +4,7 @@ use std::process::ExitCode;
 
 use host_tests::commands::flips::{Options, Outcome, run};
 use host_tests::console::cli::{self, complain, say};
-
-/// The exit code of a command that was interrupted.
-const INTERRUPTED: u8 = 130;
+use host_tests::emulator::process::interrupted_by;
 
 fn main() -> ExitCode {
     cli::main(|options: &Options| {
@@ -17,9 +15,9 @@ fn main() -> ExitCode {
                 say(format_args!("{out}: {doubtful} of {all} starts in doubt ({percent:.3} %)"))?;
                 Ok(ExitCode::SUCCESS)
             }
-            Outcome::Interrupted(share) => {
+            Outcome::Interrupted { signal, share } => {
                 complain(format_args!("interrupted: {out} has {:.1} %; --resume goes on", 100.0 * share));
-                Ok(ExitCode::from(INTERRUPTED))
+                Ok(ExitCode::from(interrupted_by(signal) as u8))
             }
         }
     })

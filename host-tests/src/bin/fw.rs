@@ -59,8 +59,7 @@ fn execute(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     let toolchain = set_up()?;
     let elf = if is_path { binary.clone() } else { toolchain.build(&name, board.target)? };
     let limit = arguments.seconds.map_or(LIMIT, |seconds| Duration::from_secs(seconds.into()));
-    let settings =
-        Settings { qemu: toolchain.qemu(), board, elf: &elf, clock: Clock::Real, window: None, debugger: true, limit };
+    let settings = Settings { qemu: toolchain.qemu(), board, elf: &elf, clock: Clock::Real, debugger: true, limit };
     match (run(&settings, &mut stdout().lock()), arguments.seconds) {
         (Err(QemuError::Process(ProcessError::TimedOut(..))), Some(seconds)) => {
             complain(format_args!("ended after {seconds} s, as told"));

@@ -10,7 +10,7 @@ use clap::Parser;
 use host_tests::console::cli::{self, Refused, say};
 use host_tests::emulator::boards::PICO;
 use host_tests::emulator::flash::flash_image;
-use host_tests::emulator::toolchain::{self, workspace};
+use host_tests::emulator::toolchain::{self, target};
 use host_tests::emulator::uf2::uf2;
 
 /// The file, and the one by which a board's drive says whose it is.
@@ -36,7 +36,7 @@ fn make(arguments: &Arguments) -> anyhow::Result<()> {
     let (toolchain, _) = toolchain::set_up().map_err(Refused::because)?;
     let elf = fs::read(toolchain.build_for(&PICO)?)?;
     let (start, image) = flash_image(&elf)?;
-    let file = workspace().join("target").join(FILE);
+    let file = target().join(FILE);
     let blocks = uf2(start, &image);
     fs::write(&file, &blocks).with_context(|| file.display().to_string())?;
     say(format_args!("{}: {} bytes of flash", file.display(), image.len()))?;

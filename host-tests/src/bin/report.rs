@@ -1,5 +1,6 @@
 //! `cargo write-report`: writes the tables and charts of cost against error.
 
+use std::fs;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -20,9 +21,9 @@ struct Options {
     /// Puts the main table and chart into the READMEs
     #[arg(long)]
     readme: bool,
-    /// Where to write
-    #[arg(long, default_value = concat!(env!("CARGO_MANIFEST_DIR"), "/report"))]
-    folder: PathBuf,
+    /// Where to write [default: host-tests/report of the project]
+    #[arg(long)]
+    folder: Option<PathBuf>,
 }
 
 fn main() -> ExitCode {
@@ -31,9 +32,12 @@ fn main() -> ExitCode {
 
 fn run(options: &Options) -> anyhow::Result<()> {
     let (toolchain, _) = toolchain::set_up().map_err(Refused::because)?;
+    let folder = options.folder.clone().unwrap_or_else(|| toolchain::workspace().join("host-tests/report"));
+    let created = fs::create_dir_all(&folder);
+    created.map_err(|error| Refused::because(format_args!("--folder: cannot write {}: {error}", folder.display())))?;
     let extent = if options.quick { Extent::QUICK } else { Extent::FULL };
     let bar = Bar::start("report", 0);
-    let written = report::write(&extent, &toolchain, &options.folder, &bar);
+    let written = report::write(&extent, &toolchain, &folder, &bar);
     drop(bar);
     let Main { advice, table, chart, absent } = written?;
     if !absent.is_empty() {
@@ -48,5 +52,5 @@ fn run(options: &Options) -> anyhow::Result<()> {
     } else if !headline::is_in_readmes(&advice, &table)? {
         say("the READMEs show other figures; cargo write-report --readme puts these there")?;
     }
-    Ok(say(options.folder.display())?)
+    Ok(say(folder.display())?)
 }

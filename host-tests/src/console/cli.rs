@@ -1,7 +1,9 @@
 //! What every command does alike: its options, what it says, one clear line for an error, and the exit code.
 
 use std::fmt::Display;
+use std::fs::{self, File};
 use std::io::{self, ErrorKind, Write, stderr, stdout};
+use std::path::Path;
 use std::process::{ExitCode, Termination};
 
 use clap::Parser;
@@ -59,6 +61,14 @@ pub fn complain(line: impl Display) {
 /// The reader of our output has seen enough. (A broken pipe to a child comes wrapped in an error of its own.)
 pub fn is_closed_output(error: &anyhow::Error) -> bool {
     error.downcast_ref::<io::Error>().is_some_and(|error| error.kind() == ErrorKind::BrokenPipe)
+}
+
+/// Refuses a file that cannot be written, before the work for it begins. What is there stays as it is.
+pub fn check_writable(option: &str, file: &Path) -> Result<(), Refused> {
+    let was_there = file.exists();
+    let opened = File::options().create(true).append(true).open(file);
+    let removed = opened.and_then(|_| if was_there { Ok(()) } else { fs::remove_file(file) });
+    removed.map_err(|error| Refused::because(format_args!("{option}: cannot write {}: {error}", file.display())))
 }
 
 /// Accepts the names of a closed set of choices, and no others.

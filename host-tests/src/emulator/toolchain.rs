@@ -2,7 +2,7 @@
 //! Pico, rp2040js.
 //!
 //! [`ready`] only looks. [`set_up`] brings what is missing: the core library by `rustup target add`, or else from
-//! Debian's source packages; QEMU from Debian's packages, installed, or unpacked into `target/qemu` where they cannot be.
+//! Debian's source packages; QEMU from Debian's packages, installed, or unpacked into `qemu` in the target folder where they cannot be.
 //! Both ways build the same firmware with the same flags.
 
 mod build;
@@ -10,15 +10,18 @@ mod detect;
 mod install;
 mod missing;
 mod rp2040js;
+mod workspace;
 
 pub use build::BuildError;
 pub use missing::SetupError;
 pub use rp2040js::Rp2040js;
+pub use workspace::{target, workspace};
 
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
+use crate::emulator::qemu;
 use missing::{Part, SET_UP};
 
 /// The compiler's targets, one for each kind of core.
@@ -62,10 +65,11 @@ pub fn ready() -> Result<Toolchain, SetupError> {
 ///
 /// Two set-ups at once take turns.
 pub fn set_up() -> Result<(Toolchain, Vec<String>), SetupError> {
+    qemu::check_folder().map_err(SetupError)?;
     if let Ok(toolchain) = both(detect::arm_core(), detect::qemu(), SET_UP) {
         return Ok((toolchain, Vec::new()));
     }
-    let _turn = install::turn(&workspace().join("target/setup.lock"))?;
+    let _turn = install::turn(&target().join("setup.lock"))?;
     let mut done = Vec::new();
     let core = detect::arm_core().or_else(|_| install::arm_core(&mut done));
     let qemu = detect::qemu().or_else(|_| install::qemu(&mut done));
@@ -93,14 +97,8 @@ pub fn set_up_pico() -> Result<(Rp2040js, Vec<String>), SetupError> {
     if let Ok(emulator) = rp2040js::detect() {
         return Ok((emulator, Vec::new()));
     }
-    let _turn = install::turn(&workspace().join("target/setup.lock"))?;
+    let _turn = install::turn(&target().join("setup.lock"))?;
     rp2040js::set_up().map_err(|missing| SetupError::missing([missing], ""))
-}
-
-/// The workspace's folder.
-pub fn workspace() -> &'static Path {
-    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
-    here.parent().unwrap_or(here)
 }
 
 impl Toolchain {

@@ -2,7 +2,8 @@
 
 use std::env;
 use std::fs;
-use std::path::PathBuf;
+
+use crate::emulator::toolchain::workspace;
 
 /// One character for each of the panel's 16 greys, from black to white.
 pub const GREYS: &[u8; 16] = b" .,:;-~=+*oaOX#@";
@@ -19,7 +20,7 @@ pub fn text(greys: &[u8], width: usize) -> String {
 
 /// Compares a picture with the committed one called `name`; the message of what differs, with the command that accepts it.
 pub fn check(name: &str, picture: &str) -> Result<(), String> {
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("pictures/scenes").join(format!("{name}.txt"));
+    let path = workspace().join("host-tests/pictures/scenes").join(format!("{name}.txt"));
     if env::var_os(BLESS).is_some() {
         return fs::write(&path, picture).map_err(|error| format!("{}: {error}", path.display()));
     }

@@ -1,17 +1,17 @@
 //! The map of flips on the emulated boards, with a floating-point unit and without: frame by frame, and finished, the host's.
 
 use crate::support::{application, settings, toolchain};
-use double_pendulum::form::{DirectionForm, Fixed32Form, Plain, Watched};
-use firmware::config::{FLIPS_F405, FLIPS_M0PLUS, FLIPS_M3, FLIPS_M4F, FlipsPace, TICK_RATE};
+use firmware::config::TICK_RATE;
 use firmware::graphics::canvas::{Canvas, HEIGHT, WIDTH};
 use firmware::graphics::fade_layer::FadeLayer;
 use firmware::motion::settings::Settings;
+use firmware::motion::simulation::Means;
 use firmware::protocol::Choose;
 use firmware::scenes::SceneName;
-use firmware::scenes::flips::FlipsMap;
+use firmware::scenes::flips::Flips;
 use firmware::scenes::scene::Scene;
 use host_tests::commands::count::{Cost, CountError, FrameProfile, Image};
-use host_tests::emulator::boards::{BOARDS, Board, Core, STM32F405};
+use host_tests::emulator::boards::{BOARDS, Board, STM32F405};
 use host_tests::emulator::budgets;
 use host_tests::emulator::qemu::{Lockstep, Screenshot};
 use rayon::prelude::*;
@@ -34,12 +34,7 @@ fn the_map_of_a_board_is_the_hosts() -> Result<(), CountError> {
         // The link is up once a frame has come.
         machine.next_frame()?;
         machine.machine().serial.send(&Choose { request: 1, scene: SceneName::Flips.code() })?;
-        let frames = match (board.core(), board == &STM32F405) {
-            (Core::M0Plus, _) => played::<Fixed32Form>(FLIPS_M0PLUS),
-            (Core::M3, _) => played::<Fixed32Form>(FLIPS_M3),
-            (Core::M4F, false) => played::<DirectionForm<f32, Plain>>(FLIPS_M4F),
-            (Core::M4F, true) => played::<DirectionForm<f32, Plain>>(FLIPS_F405),
-        };
+        let frames = played(board);
         let (mut busy, mut cycles_per_instruction) = (0, 0.0);
         for &(ticks, ref expected) in &frames {
             let mut frame = machine.next_frame()?;
@@ -69,10 +64,11 @@ fn the_map_of_a_board_is_the_hosts() -> Result<(), CountError> {
 }
 
 /// The frame early on, and that of the finished map, on the host, each with its tick.
-fn played<F: Watched<f32>>(pace: FlipsPace) -> [(u32, Canvas); 2] {
+fn played(board: &Board) -> [(u32, Canvas); 2] {
     let (mut ink, mut ticks) = (FadeLayer::NONE, 0);
-    let mut scene = FlipsMap::<F>::at_pace(&Settings::default(), pace).expect("good settings");
-    let mut until = |done: &dyn Fn(&FlipsMap<F>, u32) -> bool| {
+    let means = Means { processor: board.processor(), method: None };
+    let mut scene = Flips::new(&Settings::default(), &means).expect("good settings");
+    let mut until = |done: &dyn Fn(&Flips, u32) -> bool| {
         while !done(&scene, ticks) {
             scene.tick(&mut ink);
             ticks += 1;

@@ -134,8 +134,10 @@ fn a_closed_output_is_no_failure() {
 
 #[test]
 fn bad_arguments_are_refused_in_one_line() {
-    let cases: [&[&str]; 13] = [
-        &["--board", "pico", "--window"],
+    let cases: [&[&str]; 14] = [
+        &["--scene", "small-1", "--way", "f32"],
+        &["--scene", "flips", "--way", "fixed64"],
+        &["--screenshot", "/nowhere/last.png"],
         &["--board", "arduino"],
         &["--port", "/nowhere/tty"],
         &["--port", "/dev/null"],
@@ -146,7 +148,6 @@ fn bad_arguments_are_refused_in_one_line() {
         &["--record", "swing.mp4"],
         &["--record", "swing"],
         &["--screenshot", "last.jpg"],
-        &["--headless", "--window"],
         &["--colour"],
     ];
     for arguments in cases {
@@ -155,6 +156,21 @@ fn bad_arguments_are_refused_in_one_line() {
         assert_eq!(output.stderr.lines().count(), 1, "{arguments:?}: {}", output.stderr);
         let named = arguments.iter().all(|argument| output.stderr.contains(argument));
         assert!(named, "{arguments:?} are not named in {}", output.stderr);
+    }
+}
+
+/// What QEMU is reached by lies there.
+#[test]
+fn a_folder_for_sockets_that_cannot_be_had_is_named() {
+    let long = tempfile::tempdir().expect("a folder").path().join("long".repeat(20));
+    std::fs::create_dir_all(&long).expect("a folder");
+    for folder in [Path::new("/dev/null"), &long] {
+        let mut command = Command::new(DEMO);
+        let output = run(command.args(["--headless", "--seconds", "0.1"]).env("TMPDIR", folder), LIMIT);
+        let output = output.unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!((output.status.code(), output.stdout.as_str()), (Some(2), ""), "{output:?}");
+        let named = format!("TMPDIR={}", folder.display());
+        assert!(output.stderr.lines().count() == 1 && output.stderr.contains(&named), "{}", output.stderr);
     }
 }
 

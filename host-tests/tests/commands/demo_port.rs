@@ -1,16 +1,21 @@
 //! `cargo demo --port`: a pseudo-terminal with an emulated board behind it, whose cable can be pulled.
 
-use std::process::Command;
-use std::thread::sleep;
+use std::fs::File;
+use std::io::{Read, Write};
+use std::process::{Command, Stdio};
+use std::thread::{sleep, spawn};
 use std::time::{Duration, Instant};
 
 use crate::support::bench::{Bench, WAIT, at_port, board, intact};
 use firmware::protocol::{Frame, MAX_WIRE, encode};
 use host_tests::emulator::process::Output;
 use host_tests::link::Received;
+use nix::pty::{OpenptyResult, Winsize, openpty};
 
 /// A cable stays out for so long.
 const OUT: Duration = Duration::from_millis(700);
+/// A terminal is looked at for so long.
+const SILENCE: Duration = Duration::from_secs(3);
 /// A foreign device is there for so long.
 const FOREIGN: Duration = Duration::from_secs(4);
 
@@ -112,6 +117,40 @@ fn a_foreign_device_is_said_and_a_board_in_its_place_is_taken() {
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     assert_eq!(output.stderr.matches("no message: another device").count(), 1, "{}", output.stderr);
     assert_eq!(output.stderr.matches("the board sends again").count(), 1, "{}", output.stderr);
+}
+
+/// In a terminal nothing is given up: the one who looks at it ends it, and is told no number that did not come.
+#[test]
+fn of_a_silent_or_foreign_device_the_terminal_shows_no_number() {
+    for says in [&b""[..], b"$GPGGA,123519,4807.038,N,01131.000,E,1,08,0.9,545.4,M,46.9,M,,*47\r\n"] {
+        let mut bench = Bench::new();
+        let size = Winsize { ws_row: 24, ws_col: 80, ws_xpixel: 0, ws_ypixel: 0 };
+        let OpenptyResult { master, slave } = openpty(&size, None).expect("a terminal");
+        let mut command = Command::new(env!("CARGO_BIN_EXE_demo"));
+        command.stdin(slave.try_clone().expect("a terminal")).stdout(slave).stderr(Stdio::piped());
+        let child = command.arg("--port").arg(&bench.name).spawn().expect("it starts");
+        drop(command);
+        let (mut keyboard, mut screen) = (File::from(master.try_clone().expect("a terminal")), File::from(master));
+        let shown = spawn(move || {
+            let mut bytes = Vec::new();
+            // That its other end is closed is an error on Linux.
+            let _ = screen.read_to_end(&mut bytes);
+            String::from_utf8_lossy(&bytes).into_owned()
+        });
+        let ends = Instant::now() + SILENCE;
+        while Instant::now() < ends {
+            bench.is_heard();
+            bench.say(says);
+            sleep(Duration::from_millis(20));
+        }
+        keyboard.write_all(b"q").expect("it is heard");
+        let output = child.wait_with_output().expect("it ends");
+        let shown = shown.join().expect("it ends");
+        assert!(shown.contains("yet") && !shown.contains("every"), "{shown}");
+        let told = String::from_utf8(output.stderr).expect("text");
+        assert_eq!(output.status.code(), Some(1), "{told}");
+        assert!(told.lines().count() == 1 && told.contains("ttyACM0: no frame came"), "{told}");
+    }
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 use std::fs;
-use std::path::Path;
+use std::process::Command;
 
 use double_pendulum::{Motion, Pendulum, State};
 use firmware::graphics::canvas::{HEIGHT, WIDTH};
@@ -11,7 +11,7 @@ use host_tests::commands::demo::played;
 use host_tests::commands::figures::chaos::{self, Chaos};
 use host_tests::commands::figures::frequencies::Frequencies;
 use host_tests::commands::figures::small::{Point, Small};
-use host_tests::commands::figures::{FOLDER, files, panel};
+use host_tests::commands::figures::{files, folder, panel};
 use host_tests::emulator::host::Show;
 use host_tests::oracle::reference::Reference;
 use host_tests::oracle::tolerances;
@@ -30,10 +30,19 @@ fn the_committed_files_are_what_the_kernel_gives() {
     let wrong: Vec<_> = files()
         .expect("the figures can be drawn")
         .into_iter()
-        .filter(|(name, bytes)| fs::read(Path::new(FOLDER).join(name)).ok().as_ref() != Some(bytes))
+        .filter(|(name, bytes)| fs::read(folder().join(name)).ok().as_ref() != Some(bytes))
         .map(|(name, _)| name)
         .collect();
     assert!(wrong.is_empty(), "accept by `cargo figures`: {wrong:?}");
+}
+
+#[test]
+fn a_folder_that_cannot_be_written_is_refused_in_one_line() {
+    let output =
+        Command::new(env!("CARGO_BIN_EXE_figures")).args(["--folder", "/dev/null/here"]).output().expect("it runs");
+    let line = String::from_utf8(output.stderr).expect("text");
+    assert_eq!((output.status.code(), line.lines().count()), (Some(2), 1), "{line}");
+    assert!(line.contains("--folder") && line.contains("/dev/null/here"), "{line}");
 }
 
 /// Every so many frames of an animation are compared; two ticks pass from one to the next.
@@ -48,7 +57,7 @@ fn the_committed_animations_show_what_the_host_draws() {
 }
 
 fn is_shown(name: SceneName) -> bool {
-    let Ok(frames) = played(&Path::new(FOLDER).join(panel::file(name, "gif"))) else { return false };
+    let Ok(frames) = played(&folder().join(panel::file(name, "gif"))) else { return false };
     // A recording starts with the first screenshot that was drawn, at most two ticks after the start.
     !frames.is_empty() && (0..=2).any(|late| is_shown_from(late, name, &frames))
 }

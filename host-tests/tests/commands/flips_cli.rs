@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::{Child, Command, Output, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
 
@@ -25,8 +25,8 @@ const LARGE: &str = "--size 450x80 --limit 5 --centre 1,-1 --zoom 8";
 
 const PIXELS: usize = 450 * 80;
 
-/// Runs it until it has put down something, and sends it a signal; whether it was caught half done.
-fn interrupted(out: &Path, signal: Signal) -> Output {
+/// Runs it until it has put down something.
+fn begun(out: &Path) -> Child {
     let mut child = command(LARGE, out).stderr(Stdio::piped()).stdout(Stdio::piped()).spawn().expect("it runs");
     let mut part = out.as_os_str().to_owned();
     part.push(".part");
@@ -34,6 +34,12 @@ fn interrupted(out: &Path, signal: Signal) -> Output {
         assert_eq!(child.try_wait().expect("a state"), None, "it was too fast");
         sleep(Duration::from_millis(1));
     }
+    child
+}
+
+/// Runs it until it has put down something, and sends it a signal; what it says to that.
+fn interrupted(out: &Path, signal: Signal) -> Output {
+    let child = begun(out);
     kill(Pid::from_raw(child.id() as i32), signal).expect("it is alive");
     child.wait_with_output().expect("it ends")
 }
@@ -41,7 +47,8 @@ fn interrupted(out: &Path, signal: Signal) -> Output {
 #[test]
 fn an_interrupted_run_goes_on_to_the_same_bytes() {
     let folder = tempfile::tempdir().expect("a folder");
-    let [whole, stopped, killed] = ["whole.png", "stopped.png", "killed.png"].map(|name| folder.path().join(name));
+    let [whole, stopped, killed, ended] =
+        ["whole.png", "stopped.png", "killed.png", "ended.png"].map(|name| folder.path().join(name));
     assert!(run(LARGE, &whole).status.success());
     let output = interrupted(&stopped, Signal::SIGINT);
     assert_eq!(output.status.code(), Some(130), "{output:?}");
@@ -52,12 +59,26 @@ fn an_interrupted_run_goes_on_to_the_same_bytes() {
     let undone = pixels.chunks(3).take(PIXELS).filter(|pixel| *pixel == [255; 3]).count();
     assert!(undone > 0 && undone < PIXELS, "{undone} undone");
     assert!(!interrupted(&killed, Signal::SIGKILL).status.success());
-    for out in [&stopped, &killed] {
+    let output = interrupted(&ended, Signal::SIGTERM);
+    assert_eq!(output.status.code(), Some(143), "{output:?}");
+    for out in [&stopped, &killed, &ended] {
         let resumed = run(&format!("{LARGE} --resume"), out);
         assert!(resumed.status.success(), "{resumed:?}");
         assert!(fs::read(out).expect("a file") == fs::read(&whole).expect("a file"), "{out:?}");
     }
-    assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 3, "nothing is left beside");
+    assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 4, "nothing is left beside");
+}
+
+#[test]
+fn a_second_run_does_not_write_over_the_first() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("one.png");
+    let first = begun(&out);
+    let second = run(LARGE, &out);
+    let line = String::from_utf8(second.stderr).expect("text");
+    assert_eq!((second.status.code(), line.lines().count()), (Some(2), 1), "{line}");
+    assert!(line.contains("one.png: another cargo flips is writing it"), "{line}");
+    assert!(first.wait_with_output().expect("it ends").status.success());
 }
 
 #[test]
@@ -105,6 +126,7 @@ fn bad_input_is_refused_in_one_line_that_names_option_and_value() {
         ("--lengths 1,-2", "x.png", "--lengths", "-2"),
         ("", "x.gif", "--out", "x.gif"),
         ("--resume", "x.png", "--resume", "x.png.part"),
+        ("", "missing/x.png", "--out", "missing/x.png"),
     ] {
         let output = run(arguments, &folder.path().join(out));
         let line = String::from_utf8(output.stderr).expect("text");

@@ -91,8 +91,8 @@ fn what_an_ended_child_leaves_behind_is_ended() {
 fn children_end_with_an_interrupted_or_killed_process() {
     for (signal, code, said) in [
         (Signal::SIGINT, Some(130), "hook\n"),
-        (Signal::SIGTERM, Some(130), "hook\n"),
-        (Signal::SIGHUP, Some(130), "hook\n"),
+        (Signal::SIGTERM, Some(143), "hook\n"),
+        (Signal::SIGHUP, Some(129), "hook\n"),
         (Signal::SIGKILL, None, ""),
     ] {
         let (mut helper, pipe, folder) = helper();

@@ -1,9 +1,14 @@
 //! Every scene of the catalogue, on the host: its frame to the pixel, and what all scenes have in common.
 
 use double_pendulum::State;
+use double_pendulum::form::{DirectionForm, Fixed32Form, Plain, Watched};
 use firmware::app::App;
+use firmware::app::command::Command;
 use firmware::app::controls::NoButtons;
-use firmware::config::{PIVOT, PROCESSOR, REACH, TRAIL_FADING, TRAIL_HALF_WIDTH};
+use firmware::config::{
+    CORTEX_M0PLUS, CORTEX_M3, CORTEX_M4F, FLIPS_F405, FLIPS_M0PLUS, FLIPS_M3, FLIPS_M4F, FlipsPace, PIVOT, PROCESSOR,
+    Processor, REACH, STM32F405, TRAIL_FADING, TRAIL_HALF_WIDTH,
+};
 use firmware::display::NoDisplay;
 use firmware::graphics::canvas::{Canvas, HEIGHT, WIDTH};
 use firmware::graphics::fade_layer::FadeLayer;
@@ -13,6 +18,7 @@ use firmware::motion::planner::Shown;
 use firmware::motion::settings::Settings;
 use firmware::motion::simulation::Means;
 use firmware::protocol::{MAX_WIRE, Pause, encode};
+use firmware::scenes::flips::FlipsMap;
 use firmware::scenes::{AnyScene, SceneName};
 use host_tests::emulator::host::{Show, sheets};
 use host_tests::oracle::snapshot;
@@ -145,6 +151,41 @@ fn what_is_planned_is_what_is_shown() {
         assert!((height / expected - 1.0).abs() < SHOWN_HEIGHT, "{}: {height} for {expected}", name.name());
     }
     assert_eq!(shown(SceneName::Frequencies), None);
+}
+
+/// The map as each class of processors computes it, whatever this host is: in `f32` where there is a unit for that.
+#[test]
+fn the_map_of_flips_is_that_of_the_boards_processor() {
+    let after = |processor: Processor| {
+        let mut show = Show::on(processor, SceneName::Flips, &Settings::default()).expect("a map");
+        (0..60).for_each(|_| show.tick());
+        show.frame()
+    };
+    fn map<F: Watched<f32>>(pace: FlipsPace) -> Canvas {
+        let (mut ink, settings) = (FadeLayer::NONE, Settings::default());
+        let mut map = FlipsMap::<F>::at_pace(&settings, pace).expect("a map");
+        (0..60).for_each(|_| map.tick(&mut ink));
+        let mut canvas = ink.frame().clone();
+        map.draw(&mut canvas);
+        canvas
+    }
+    assert!(after(CORTEX_M3) == map::<Fixed32Form>(FLIPS_M3));
+    assert!(after(CORTEX_M0PLUS) == map::<Fixed32Form>(FLIPS_M0PLUS));
+    assert!(after(CORTEX_M4F) == map::<DirectionForm<f32, Plain>>(FLIPS_M4F));
+    assert!(after(STM32F405) == map::<DirectionForm<f32, Plain>>(FLIPS_F405));
+}
+
+/// What shows no motion goes on when the start angle is turned.
+#[test]
+fn only_what_starts_from_angles_starts_again_when_they_are_turned() {
+    for &name in SceneName::ALL {
+        let mut show = scene(name);
+        (0..20).for_each(|_| show.tick());
+        for command in [Command::TurnLeft, Command::TurnRight] {
+            let started = show.player().execute(command).expect("an angle");
+            assert_eq!(started, name.has_angles(), "{}", name.name());
+        }
+    }
 }
 
 /// The pixels that a text lights, on black.

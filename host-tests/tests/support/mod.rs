@@ -28,5 +28,5 @@ pub fn application(board: &Board) -> PathBuf {
 
 /// Repeatable to the bit.
 pub fn settings<'a>(toolchain: &'a Toolchain, board: &'a Board, elf: &'a Path) -> Settings<'a> {
-    Settings { qemu: toolchain.qemu(), board, elf, clock: Clock::Counted, window: None, debugger: true, limit: LIMIT }
+    Settings { qemu: toolchain.qemu(), board, elf, clock: Clock::Counted, debugger: true, limit: LIMIT }
 }

@@ -17,9 +17,7 @@ impl Profile {
         let request = request.to_string();
         match target.trace(&request, LIMIT, |registers| calls.see(registers))? {
             Ended { status: Some(status), .. } if status.success() => calls.into_profile().executed(),
-            Ended { status: None, .. } => {
-                Err(ProcessError::TimedOut(target.elf.display().to_string(), LIMIT).into())
-            }
+            Ended { status: None, .. } => Err(ProcessError::TimedOut(target.elf.display().to_string(), LIMIT).into()),
             Ended { output, .. } => Err(CountError::Refused { request, reason: output.trim().to_owned() }),
         }
     }

@@ -3,16 +3,17 @@
 use std::io::stdout;
 use std::time::{Duration, Instant};
 
+use anyhow::{bail, ensure};
 use firmware::app::controls::Key;
 use firmware::config::TICK_RATE;
 use firmware::protocol::{Pause, Press, Step};
 use firmware::scenes::SceneName;
 use ratatui::DefaultTerminal;
 use ratatui::crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
+use ratatui::crossterm::style::Colored;
 use ratatui::crossterm::{cursor, execute};
 
 use super::Options;
-use super::panel::Depth;
 use super::session::Session;
 use super::view::draw;
 use crate::console::cli::{complain, say};
@@ -27,7 +28,7 @@ const LOOK: Duration = Duration::from_millis(8);
 pub fn run(options: &Options, mut session: Session) -> anyhow::Result<bool> {
     process::on_interrupt(|| {
         ratatui::restore();
-        // There is nobody left to tell if this fails.
+        // It is too late to tell if this fails.
         let _ = execute!(stdout(), cursor::Show);
     });
     let terminal = ratatui::try_init()?;
@@ -39,12 +40,12 @@ pub fn run(options: &Options, mut session: Session) -> anyhow::Result<bool> {
 
 fn show(options: &Options, session: &mut Session, mut terminal: DefaultTerminal) -> anyhow::Result<()> {
     let last = options.seconds.map(|seconds| (seconds * f64::from(TICK_RATE)).ceil() as u32);
-    let depth = Depth::of_terminal();
+    let colours = !Colored::ansi_color_disabled();
     loop {
         observe(session)?;
-        terminal.draw(|frame| draw(frame, session.source.name(), &session.screenshot, &session.readings, depth))?;
+        terminal.draw(|frame| draw(frame, session.source.name(), &session.screenshot, &session.readings, colours))?;
         let is_over = last.is_some_and(|last| session.ticks() >= last);
-        if is_over || obey(session)? || session.source.ended()?.is_some() {
+        if is_over || keys(session)? || session.source.ended()?.is_some() {
             return Ok(());
         }
     }
@@ -61,7 +62,7 @@ fn observe(session: &mut Session) -> anyhow::Result<()> {
 }
 
 /// Until the next screenshot is due: sends what the keys ask for. Whether the user wants to quit.
-fn obey(session: &mut Session) -> anyhow::Result<bool> {
+fn keys(session: &mut Session) -> anyhow::Result<bool> {
     let due = Instant::now() + PERIOD;
     loop {
         session.hear()?;
@@ -76,12 +77,13 @@ fn obey(session: &mut Session) -> anyhow::Result<bool> {
             Some(Wish::Quit) => return Ok(true),
             Some(Wish::Press(key)) => session.source.send(&Press { request: 0, key: key.code() })?,
             Some(Wish::Scene(other)) => {
-                if let Some(now) = SceneName::from_code(session.readings.frame.scene) {
+                let now = session.readings.frame.and_then(|now| SceneName::from_code(now.scene));
+                if let Some(now) = now {
                     session.play(other(now))?;
                 }
             }
             Some(Wish::Pause) => {
-                let paused = u8::from(session.readings.frame.paused == 0);
+                let paused = u8::from(session.readings.frame.is_some_and(|now| now.paused == 0));
                 session.source.send(&Pause { request: 0, paused })?;
             }
             Some(Wish::Step) => session.source.send(&Step { request: 0, ticks: 1 })?,
@@ -97,8 +99,9 @@ fn finish(mut session: Session) -> anyhow::Result<bool> {
     if let Some(status) = ended.filter(|status| !status.success()) {
         session.source.rest().into_iter().for_each(|line| session.readings.line(line));
         session.readings.lines.iter().for_each(complain);
-        anyhow::bail!("the firmware or QEMU ended: {status}");
+        bail!("the firmware or QEMU ended: {status}");
     }
+    ensure!(session.readings.frame.is_some(), "{}: no frame came", session.source.name());
     say(session.readings.report())?;
     Ok(session.readings.comparison.difference().is_none())
 }
@@ -144,28 +147,19 @@ mod tests {
 
     #[test]
     fn keys_mean_what_the_line_of_keys_says() {
-        let pressed = |code| match wish_of(code, KeyModifiers::NONE) {
-            Some(Wish::Press(key)) => Some(key),
-            _ => None,
-        };
-        assert_eq!(pressed(KeyCode::Up), Some(Key::Up));
-        assert_eq!(pressed(KeyCode::Down), Some(Key::Down));
-        assert_eq!(pressed(KeyCode::Left), Some(Key::Left));
-        assert_eq!(pressed(KeyCode::Right), Some(Key::Right));
-        assert_eq!(pressed(KeyCode::Char(' ')), Some(Key::Select));
-        assert_eq!(pressed(KeyCode::Enter), Some(Key::Select));
-        let scene = |code| match wish_of(code, KeyModifiers::NONE) {
-            Some(Wish::Scene(other)) => Some(other(SceneName::Page)),
-            _ => None,
-        };
-        assert_eq!(scene(KeyCode::Tab), Some(SceneName::Page.next()));
-        assert_eq!(scene(KeyCode::BackTab), Some(SceneName::Page.previous()));
-        assert!(matches!(wish_of(KeyCode::Char('p'), KeyModifiers::NONE), Some(Wish::Pause)));
-        assert!(matches!(wish_of(KeyCode::Char('.'), KeyModifiers::NONE), Some(Wish::Step)));
-        for quit in [KeyCode::Char('q'), KeyCode::Esc] {
-            assert!(matches!(wish_of(quit, KeyModifiers::NONE), Some(Wish::Quit)));
+        use KeyCode::{BackTab, Char, Down, Enter, Esc, Left, Right, Tab, Up};
+        let plain = |code| wish_of(code, KeyModifiers::NONE);
+        let keys = [(Up, Key::Up), (Down, Key::Down), (Left, Key::Left), (Right, Key::Right)];
+        for (code, key) in keys.into_iter().chain([Char(' '), Enter].map(|code| (code, Key::Select))) {
+            assert!(matches!(plain(code), Some(Wish::Press(pressed)) if pressed == key), "{code}");
         }
-        assert!(matches!(wish_of(KeyCode::Char('c'), KeyModifiers::CONTROL), Some(Wish::Quit)));
-        assert!(wish_of(KeyCode::Char('x'), KeyModifiers::NONE).is_none());
+        for (code, name) in [(Tab, SceneName::Page.next()), (BackTab, SceneName::Page.previous())] {
+            assert!(matches!(plain(code), Some(Wish::Scene(other)) if other(SceneName::Page) == name), "{code}");
+        }
+        assert!(matches!(plain(Char('p')), Some(Wish::Pause)) && matches!(plain(Char('.')), Some(Wish::Step)));
+        for quit in [plain(Char('q')), plain(Esc), wish_of(Char('c'), KeyModifiers::CONTROL)] {
+            assert!(matches!(quit, Some(Wish::Quit)));
+        }
+        assert!(plain(Char('x')).is_none());
     }
 }

@@ -5,6 +5,7 @@ pub(crate) mod comparison;
 mod headless;
 mod live;
 mod mirror;
+mod numbers;
 mod options;
 mod pace;
 mod panel;
@@ -32,7 +33,7 @@ use source::{Source, broken};
 use crate::console::cli::Refused;
 use crate::emulator::boards::PICO;
 use crate::emulator::pico;
-use crate::emulator::qemu::{Clock, Lockstep, Machine, Settings, Window};
+use crate::emulator::qemu::{Clock, Lockstep, Machine, Settings};
 use crate::emulator::toolchain::{self, Toolchain};
 use crate::link::{Port, find};
 
@@ -44,12 +45,12 @@ const LIVE_LIMIT: Duration = Duration::from_secs(24 * 3600);
 /// Sets everything up and runs the demonstration; whether all was well.
 pub fn run(options: &Options) -> anyhow::Result<bool> {
     let headless = options.headless || !(stdout().is_terminal() && stdin().is_terminal());
+    options.check()?;
     // Before the build, which takes its time.
     let port = options.port.as_ref().map(|name| port(name, options.baud)).transpose()?;
     let source = port.map_or_else(|| emulated(options, headless), |port| Ok(Source::Port(port)))?;
     let recording = options.record.as_deref().map(Recording::create).transpose();
-    let recording = recording.map_err(|error| Refused::because(format_args!("--record: {error:#}")))?;
-    let session = Session::new(options, source, recording);
+    let session = Session::new(options, source, recording?);
     if headless { headless::run(options, session) } else { live::run(options, session) }
 }
 
@@ -61,15 +62,10 @@ pub(crate) fn port(name: &str, baud: u32) -> Result<Port, Refused> {
 
 /// The emulated board, started.
 fn emulated(options: &Options, headless: bool) -> anyhow::Result<Source<'_>> {
-    if options.window && *options.board == PICO {
-        return Err(Refused::because("--window: QEMU alone has one, and --board pico runs in rp2040js").into());
-    }
     let (toolchain, _) = toolchain::set_up().map_err(Refused::because)?;
     if *options.board == PICO {
         return pico(&toolchain, options, headless);
     }
-    let window = options.window.then(|| Window::find(toolchain.qemu())).transpose();
-    let window = window.map_err(|error| Refused::because(format_args!("--window: {error}")))?;
     let board = options.board;
     let settings = Settings {
         qemu: toolchain.qemu(),
@@ -77,7 +73,6 @@ fn emulated(options: &Options, headless: bool) -> anyhow::Result<Source<'_>> {
         elf: &toolchain.build_for(board)?,
         debugger: true,
         clock: Clock::Real,
-        window,
         limit: limit(options, headless),
     };
     if headless {

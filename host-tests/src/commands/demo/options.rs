@@ -3,11 +3,12 @@
 use std::path::PathBuf;
 
 use clap::{Parser, value_parser};
-use double_pendulum::plan::Method;
-use firmware::config::BAUD;
-use firmware::scenes::SceneName;
+use double_pendulum::plan::{Method, Way};
+use firmware::config::{BAUD, PROCESSOR};
+use firmware::motion::simulation::Means;
+use firmware::scenes::{AnyScene, SceneName};
 
-use crate::console::cli::choice;
+use crate::console::cli::{Refused, check_writable, choice};
 use crate::emulator::boards::{BOARDS, Board, every_board};
 
 /// Shows the double pendulum on a board's panel, live in the terminal, each frame compared with the host's own.
@@ -26,7 +27,7 @@ pub struct Options {
           value_parser = choice(every_board(), |board| board.name))]
     pub board: &'static Board,
     /// Not an emulated board but the one at this serial port; `auto` finds it by its USB id
-    #[arg(long, value_name = "PATH", conflicts_with_all = ["board", "window"])]
+    #[arg(long, value_name = "PATH", conflicts_with = "board")]
     pub port: Option<String>,
     /// Bits per second of that port
     #[arg(long, value_name = "N", default_value_t = BAUD, requires = "port", value_parser = value_parser!(u32).range(1..))]
@@ -38,7 +39,7 @@ pub struct Options {
     #[arg(long, value_name = "NAME", value_parser = choice(WAYS.iter(), |way| way.0))]
     pub way: Option<&'static (&'static str, Option<Method>)>,
     /// Run without a terminal: as fast as it goes, repeatable to the bit, with a summary at the end
-    #[arg(long, conflicts_with = "window")]
+    #[arg(long)]
     pub headless: bool,
     /// How long, in seconds by the board's clock [default: 10 when headless, else until q is pressed]
     #[arg(long, value_name = "N", value_parser = seconds)]
@@ -49,9 +50,6 @@ pub struct Options {
     /// Save the last screenshot of the panel
     #[arg(long, value_name = "FILE.png", value_parser = |file: &str| ends_in("png", file))]
     pub screenshot: Option<PathBuf>,
-    /// Open QEMU's own window as well
-    #[arg(long)]
-    pub window: bool,
 }
 
 /// Every method by a name that can be typed, and the plan's choice.
@@ -63,6 +61,29 @@ pub const WAYS: [(&str, Option<Method>); 6] = [
     ("fixed32", Some(Method::Fixed32)),
     ("fixed64", Some(Method::Fixed64)),
 ];
+
+impl Options {
+    /// Refuses what is known to fail before anything is built: files that cannot be written, a way that the scene does not go.
+    pub fn check(&self) -> Result<(), Refused> {
+        for (option, file) in [("--record", &self.record), ("--screenshot", &self.screenshot)] {
+            file.as_deref().map_or(Ok(()), |file| check_writable(option, file))?;
+        }
+        let first = self.port.is_none().then_some(SceneName::Page);
+        self.scene.or(first).map_or(Ok(()), |scene| self.check_way(scene))
+    }
+
+    /// Refuses a way that a scene does not go.
+    pub fn check_way(&self, scene: SceneName) -> Result<(), Refused> {
+        let Some((way, Some(method))) = self.way else { return Ok(()) };
+        let means = Means { processor: PROCESSOR, method: Some(*method) };
+        let refused = |why: &str| Err(Refused::because(format_args!("--way {way}: --scene {} {why}", scene.name())));
+        match AnyScene::new(scene, &scene.first_settings(), &means).map(|scene| scene.report().way) {
+            Ok(Some(Way { method: gone, .. })) if gone == *method => Ok(()),
+            Ok(_) => refused("has no use for it"),
+            Err(_) => refused("cannot be computed so"),
+        }
+    }
+}
 
 /// A file whose name says what is written into it.
 fn ends_in(kind: &str, file: &str) -> Result<PathBuf, String> {

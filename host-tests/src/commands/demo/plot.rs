@@ -9,8 +9,6 @@ use ratatui::symbols::Marker;
 use ratatui::text::{Line, Span};
 use ratatui::widgets::{Axis, Block, Chart, Dataset, GraphType};
 
-use super::panel::Depth;
-
 /// How much simulated time is shown, s.
 pub const SPAN: f64 = 5.0;
 /// The angles that the chart may reach, degrees: the least that holds every angle shown is taken.
@@ -37,21 +35,21 @@ pub fn within_half_a_turn(degrees: f64) -> f64 {
 }
 
 /// Draws the chart of `past`, oldest first.
-pub fn draw(frame: &mut Frame, area: Rect, past: &VecDeque<Moment>, depth: Depth) {
+pub fn draw(frame: &mut Frame, area: Rect, past: &VecDeque<Moment>) {
     let end = past.back().map_or(0.0, |last| last.time).max(SPAN);
     let strands: Vec<_> = (0..2).flat_map(|rod| strands(past, rod).map(move |strand| (rod, strand))).collect();
     let largest = strands.iter().flat_map(|(_, strand)| strand).fold(0.0_f64, |most, (_, angle)| most.max(angle.abs()));
     let reach = REACHES.into_iter().find(|reach| *reach >= largest).unwrap_or(HALF_TURN);
     let lines = strands.iter().map(|(rod, strand)| {
         let line = Dataset::default().data(strand).marker(MARKERS[*rod]).graph_type(GraphType::Line);
-        line.style(depth.style(COLOURS[*rod]))
+        line.style(COLOURS[*rod])
     });
     let faint = Style::new().dim();
     let title = Line::from(vec![
         Span::raw("angles, degrees: "),
-        Span::styled("1 ⠤⠤", depth.style(COLOURS[0])),
+        Span::styled("1 ⠤⠤", COLOURS[0]),
         Span::raw("  "),
-        Span::styled("2 ••", depth.style(COLOURS[1])),
+        Span::styled("2 ••", COLOURS[1]),
     ]);
     let across = Axis::default().bounds([end - SPAN, end]).style(faint);
     let upwards = Axis::default().bounds([-reach, reach]).style(faint);

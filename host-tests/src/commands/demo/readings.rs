@@ -24,8 +24,8 @@ const RATE_SPAN: Duration = Duration::from_secs(1);
 /// The latest of everything.
 #[derive(Debug, Default)]
 pub struct Readings {
-    /// The latest frame.
-    pub frame: Frame,
+    /// The latest frame; `None` until one has come.
+    pub frame: Option<Frame>,
     /// The angles that the motion started from, degrees; `None` until the board has told.
     pub start: Option<[f32; 2]>,
     /// What the link has been through.
@@ -42,20 +42,18 @@ pub struct Readings {
     pub summary: Summary,
     /// Frames that the latest of the energy errors stands for.
     frames_in_bar: u32,
-    arrivals: VecDeque<Instant>,
+    pub(super) arrivals: VecDeque<Instant>,
 }
 
 impl Readings {
     /// Takes a frame that has just arrived; whether the board is to be asked what it plays.
     pub fn frame(&mut self, frame: Frame) -> bool {
-        let first = self.summary.ticks() == 0;
-        let started = first || frame.scene != self.frame.scene || frame.time < self.frame.time;
-        if started {
+        if self.frame.is_none_or(|last| frame.scene != last.scene || frame.time < last.time) {
             self.start = None;
             self.energy_errors.clear();
             self.angles.clear();
         }
-        self.frame = frame;
+        self.frame = Some(frame);
         self.summary.frame(&frame);
         let error = frame.energy_error.abs();
         match self.energy_errors.back_mut() {

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use anyhow::Context;
 use firmware::config::TICK_RATE;
-use gif::{DisposalMethod, Encoder, Frame, Repeat};
+use gif::{Encoder, Frame, Repeat};
 
 use super::tint;
 use crate::emulator::qemu::{HEIGHT, Screenshot, WIDTH};
@@ -36,8 +36,8 @@ impl Recording {
     pub fn create(path: &Path) -> anyhow::Result<Self> {
         let file = File::create(path).with_context(|| format!("cannot write {}", path.display()))?;
         let size = |pixels: usize| (pixels * SCALE) as u16;
-        let mut encoder =
-            Encoder::new(BufWriter::new(file), size(WIDTH), size(HEIGHT), &[tint::palette(), vec![0; 3]].concat())?;
+        let palette = [tint::palette(), vec![0; 3]].concat();
+        let mut encoder = Encoder::new(BufWriter::new(file), size(WIDTH), size(HEIGHT), &palette)?;
         encoder.set_repeat(Repeat::Infinite)?;
         Ok(Self { encoder, pending: None, shown: None, start: 0 })
     }
@@ -66,8 +66,7 @@ impl Recording {
         self.flush(end)
     }
 
-    /// Writes the pending screenshot, whose time ends at `tick`: only the rectangle that has changed, and of that all
-    /// pixels or only those that have, whichever is shorter: where little has, that leaves long runs of one value.
+    /// Writes the pending screenshot, whose time ends at `tick`.
     fn flush(&mut self, tick: u32) -> anyhow::Result<()> {
         let Some((screenshot, since)) = self.pending.take() else { return Ok(()) };
         let hundredths = |tick: u32| {
@@ -75,67 +74,24 @@ impl Recording {
             (ticks * GIF_RATE + u64::from(TICK_RATE) / 2) / u64::from(TICK_RATE)
         };
         let delay = u16::try_from(hundredths(tick) - hundredths(since)).unwrap_or(u16::MAX);
-        let area = Area::changed(self.shown.as_ref(), &screenshot);
-        let encoded = |transparent: Option<u8>, buffer: Vec<u8>| {
-            let mut frame = Frame {
-                delay,
-                dispose: DisposalMethod::Keep,
-                transparent,
-                left: (area.left * SCALE) as u16,
-                top: (area.top * SCALE) as u16,
-                width: (area.width * SCALE) as u16,
-                height: (area.height * SCALE) as u16,
-                buffer: buffer.into(),
-                ..Frame::default()
-            };
-            frame.make_lzw_pre_encoded();
-            frame
+        let [width, height] = [WIDTH, HEIGHT].map(|pixels| (pixels * SCALE) as u16);
+        // Few pixels change, which leaves long runs of one value.
+        let change = |x, y| match (&self.shown, screenshot.grey(x, y)) {
+            (Some(shown), grey) if shown.grey(x, y) == grey => UNCHANGED,
+            (_, grey) => grey,
         };
-        let mut frame = encoded(None, area.magnified(|x, y| screenshot.grey(x, y)));
-        if let Some(shown) = &self.shown {
-            let unless_shown = |grey: u8, x, y| if shown.grey(x, y) == grey { UNCHANGED } else { grey };
-            let changes = encoded(Some(UNCHANGED), area.magnified(|x, y| unless_shown(screenshot.grey(x, y), x, y)));
-            if changes.buffer.len() < frame.buffer.len() {
-                frame = changes;
-            }
-        }
-        self.encoder.write_lzw_pre_encoded_frame(&frame)?;
+        let transparent = Some(UNCHANGED);
+        let frame = Frame { delay, width, height, transparent, buffer: magnified(change).into(), ..Frame::default() };
+        self.encoder.write_frame(&frame)?;
         self.shown = Some(screenshot);
         Ok(())
     }
 }
 
-/// A rectangle of the panel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Area {
-    left: usize,
-    top: usize,
-    width: usize,
-    height: usize,
-}
-
-impl Area {
-    const WHOLE: Self = Self { left: 0, top: 0, width: WIDTH, height: HEIGHT };
-
-    /// The smallest that holds every difference; a single pixel if there is none.
-    fn changed(before: Option<&Screenshot>, after: &Screenshot) -> Self {
-        let Some(before) = before else { return Self::WHOLE };
-        let differs = |x: usize, y: usize| before.grey(x, y) != after.grey(x, y);
-        let mut columns = (0..WIDTH).filter(|&x| (0..HEIGHT).any(|y| differs(x, y)));
-        let mut rows = (0..HEIGHT).filter(|&y| (0..WIDTH).any(|x| differs(x, y)));
-        let (left, top) = (columns.next().unwrap_or(0), rows.next().unwrap_or(0));
-        let (right, bottom) = (columns.next_back().unwrap_or(left), rows.next_back().unwrap_or(top));
-        Self { left, top, width: right - left + 1, height: bottom - top + 1 }
-    }
-
-    /// The values of its pixels, magnified, row by row.
-    fn magnified(self, value: impl Fn(usize, usize) -> u8) -> Vec<u8> {
-        let at = |index: usize| {
-            let (x, y) = (index % (self.width * SCALE), index / (self.width * SCALE));
-            value(self.left + x / SCALE, self.top + y / SCALE)
-        };
-        (0..self.width * SCALE * self.height * SCALE).map(at).collect()
-    }
+/// The panel's values, magnified, row by row.
+fn magnified(value: impl Fn(usize, usize) -> u8) -> Vec<u8> {
+    let at = |index: usize| value(index % (WIDTH * SCALE) / SCALE, index / (WIDTH * SCALE) / SCALE);
+    (0..WIDTH * SCALE * HEIGHT * SCALE).map(at).collect()
 }
 
 /// Writes one screenshot to a PNG file.
@@ -151,7 +107,7 @@ pub fn png(screenshot: &Screenshot, file: impl Write) -> anyhow::Result<()> {
     encoder.set_color(png::ColorType::Indexed);
     encoder.set_palette(tint::palette());
     let mut writer = encoder.write_header()?;
-    writer.write_image_data(&Area::WHOLE.magnified(|x, y| screenshot.grey(x, y)))?;
+    writer.write_image_data(&magnified(|x, y| screenshot.grey(x, y)))?;
     Ok(writer.finish()?)
 }
 
@@ -184,7 +140,7 @@ mod tests {
         let played = played(file.path()).expect("a GIF file");
         assert_eq!(played.len(), frames.len());
         for (number, (screenshot, (greys, delay))) in frames.iter().zip(played).enumerate() {
-            assert!(greys == Area::WHOLE.magnified(|x, y| screenshot.grey(x, y)), "screenshot {number}");
+            assert!(greys == magnified(|x, y| screenshot.grey(x, y)), "screenshot {number}");
             assert!((3..=4).contains(&delay), "screenshot {number} is shown for {delay}/100 s");
         }
     }

@@ -58,6 +58,8 @@ impl<'a> Session<'a> {
         match self.now {
             None => {
                 self.options.scene.map_or(Ok(()), |scene| self.play_after(frame, scene))?;
+                let playing = self.options.scene.or(SceneName::from_code(frame.scene));
+                playing.map_or(Ok(()), |scene| self.options.check_way(scene))?;
                 self.go()?;
             }
             // The board counts from 0 again.
@@ -106,8 +108,7 @@ impl<'a> Session<'a> {
 
     /// Has the board play a scene, unless it does already.
     pub fn play(&mut self, scene: SceneName) -> anyhow::Result<()> {
-        let last = self.readings.frame;
-        self.play_after(&last, scene)
+        self.readings.frame.map_or(Ok(()), |last| self.play_after(&last, scene))
     }
 
     fn play_after(&mut self, last: &Frame, scene: SceneName) -> anyhow::Result<()> {

@@ -107,7 +107,7 @@ impl Source<'_> {
         matches!(self, Self::Port(_))
     }
 
-    /// How an emulated board has ended by itself, if it has: its window was closed, or the firmware has crashed.
+    /// How an emulated board has ended by itself, if it has: the firmware has crashed.
     pub fn ended(&mut self) -> anyhow::Result<Option<ExitStatus>> {
         match self {
             Self::Live(machine, _) => machine.ended().map_err(broken),

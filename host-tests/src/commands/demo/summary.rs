@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use double_pendulum::plan::Method;
 use firmware::config::TICK_RATE;
 use firmware::protocol::{Frame, method_of};
 
@@ -15,7 +16,6 @@ const GREATEST_ENERGY_ERROR: f32 = 1e-2;
 #[derive(Clone, Debug, Default)]
 pub struct Summary {
     frames: u64,
-    first: Option<Frame>,
     last: Option<Frame>,
     greatest_energy_error: f32,
     /// Of all scenes and restarts together, s.
@@ -38,7 +38,6 @@ impl Summary {
         self.frames += 1;
         let before = self.last.filter(|last| last.scene == frame.scene && last.time <= frame.time);
         self.simulated += frame.time - before.map_or(0.0, |last| last.time);
-        self.first.get_or_insert(*frame);
         self.greatest_energy_error = self.greatest_energy_error.max(frame.energy_error.abs());
         self.last = Some(*frame);
     }
@@ -48,11 +47,6 @@ impl Summary {
         if line.is_bad() {
             self.complaints.push(line.to_string());
         }
-    }
-
-    /// Ticks of the board's clock since its reset.
-    pub fn ticks(&self) -> u32 {
-        self.last.map_or(0, |last| last.sequence.wrapping_add(1).wrapping_add(last.dropped))
     }
 
     /// What is not well; empty if all is.
@@ -91,17 +85,36 @@ impl Summary {
     }
 }
 
-/// The way that a frame is computed and until when such frames are right, in one line.
+/// How a frame is computed and until when such frames are right, in one line.
 pub fn way(&Frame { method, way_steps, horizon, is_looking, .. }: &Frame) -> String {
-    let Some(method) = method_of(method) else { return String::from("no motion that is planned") };
-    let steps = if way_steps == 1 { "a step" } else { &format!("{way_steps} steps") };
+    let name = method_of(method).map_or("nothing to plan", Method::name);
+    let steps = match way_steps {
+        0 => String::new(),
+        1 => ", a step to a frame".to_owned(),
+        steps => format!(", {steps} steps to a frame"),
+    };
+    if horizon.is_infinite() {
+        return format!("{name}{steps}");
+    }
     let at_least = if is_looking != 0 { "at least " } else { "" };
-    format!("{}, {steps} to a frame, right to half a pixel until {at_least}{horizon:.1} s", method.name())
+    format!("{name}{steps}, right to half a pixel until {at_least}{horizon:.1} s")
 }
 
 #[cfg(test)]
 mod tests {
+    use firmware::protocol::{NO_METHOD, method_code};
+
     use super::*;
+
+    #[test]
+    fn what_is_computed_is_said_in_words() {
+        let said = |method, way_steps, horizon| way(&Frame { method, way_steps, horizon, ..Frame::default() });
+        let fixed64 = method_code(Method::Fixed64);
+        assert!(said(fixed64, 1, 20.483_334).ends_with("point, a step to a frame, right to half a pixel until 20.5 s"));
+        assert!(said(fixed64, 4, 1.0).contains(", 4 steps to a frame,"));
+        assert_eq!(said(NO_METHOD, 0, f32::INFINITY), "nothing to plan");
+        assert_eq!(said(NO_METHOD, 0, 9.0), "nothing to plan, right to half a pixel until 9.0 s");
+    }
 
     #[test]
     fn the_simulated_time_is_that_of_all_restarts_and_scenes() {

@@ -8,12 +8,21 @@ pub mod panel;
 pub mod sheet;
 pub mod small;
 
+use std::path::PathBuf;
+
 use anyhow::Result;
 use firmware::scenes::SceneName;
 use sheet::Drawing;
 
+use crate::emulator::toolchain::workspace;
+
 /// The folder in which they are kept.
-pub const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/pictures");
+pub fn folder() -> PathBuf {
+    workspace().join("host-tests/pictures")
+}
+
+/// Those in it.
+pub const FOLDERS: [&str; 2] = ["figures", "panel"];
 
 /// A file: its name in that folder and what is in it.
 pub type File = (String, Vec<u8>);

@@ -57,7 +57,6 @@ pub fn record(scene: SceneName, folder: &Path) -> Result<()> {
         seconds: Some(seconds),
         record: Some(path),
         screenshot: None,
-        window: false,
     };
     ensure!(demo::run(&options)?, "not all was well in {}", scene.name());
     Ok(())

@@ -9,17 +9,18 @@ mod part;
 pub mod square;
 
 use std::fs;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use anyhow::{Context, Result};
+use signal_hook::flag::register_usize;
 
+use crate::console::cli::check_writable;
 use crate::console::progress::Bar;
+use crate::emulator::process::INTERRUPTS;
 use map::{Map, Point};
 pub use options::Options;
 use part::Part;
-
-/// Somebody wants the command to stop.
-static STOPPED: AtomicBool = AtomicBool::new(false);
 
 /// What a run came to.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,21 +32,31 @@ pub enum Outcome {
         /// Of them, those in doubt.
         doubtful: usize,
     },
-    /// It was interrupted; the share that is done.
-    Interrupted(f64),
+    /// It was interrupted.
+    Interrupted {
+        /// By this signal.
+        signal: i32,
+        /// What is done, of 1.
+        share: f64,
+    },
 }
 
 /// Computes the map and writes the file, or what of it is done when it is interrupted.
 pub fn run(options: &Options) -> Result<Outcome> {
     let (map, kind) = options.map()?;
+    check_writable("--out", &options.out)?;
     let (mut part, mut points) = Part::open(&options.out, &map, options.resume)?;
-    // Fails only if there is a handler already, which then has the say.
-    let _ = ctrlc::set_handler(|| STOPPED.store(true, Ordering::Relaxed));
-    let all = compute(&map, &mut points, |band| part.add(band))?;
+    let stopped = Arc::new(AtomicUsize::new(0));
+    for signal in INTERRUPTS {
+        register_usize(signal, Arc::clone(&stopped), signal as usize)?;
+    }
+    let is_stopped = || stopped.load(Ordering::Relaxed) != 0;
+    let all = compute(&map, &mut points, is_stopped, |band| part.add(band))?;
     let file = kind.file(&map, &points, options.doubt)?;
     fs::write(&options.out, file).with_context(|| format!("cannot write {}", options.out.display()))?;
     if points.len() < all {
-        return Ok(Outcome::Interrupted(points.len() as f64 / all as f64));
+        let signal = stopped.load(Ordering::Relaxed) as i32;
+        return Ok(Outcome::Interrupted { signal, share: points.len() as f64 / all as f64 });
     }
     part.remove()?;
     let doubtful = doubtful(&map, &points);
@@ -53,14 +64,19 @@ pub fn run(options: &Options) -> Result<Outcome> {
     Ok(Outcome::Done { all: width * height, doubtful })
 }
 
-/// Computes what is missing of `points`, band by band, until somebody wants it to stop; how many there are in all.
-fn compute(map: &Map, points: &mut Vec<Point>, mut keep: impl FnMut(&[Point]) -> Result<()>) -> Result<usize> {
+/// Computes what is missing of `points`, band by band, until it is stopped; how many there are in all.
+fn compute(
+    map: &Map,
+    points: &mut Vec<Point>,
+    is_stopped: impl Fn() -> bool,
+    mut keep: impl FnMut(&[Point]) -> Result<()>,
+) -> Result<usize> {
     let ([width, _], rows) = (map.square.size, map.square.rows());
     let (all, whole) = (width * rows, points.len() / width);
     let bar = Bar::start("starts", all as u64);
     bar.begin_at((whole * width) as u64);
     for first in (whole..rows).step_by(map.band()) {
-        if STOPPED.load(Ordering::Relaxed) {
+        if is_stopped() {
             break;
         }
         let band = map.points(first..rows.min(first + map.band()))?;

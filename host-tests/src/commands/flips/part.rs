@@ -1,11 +1,12 @@
 //! What is done so far, on disk: rows are added as they are computed, so that a run may be ended in any way.
 
-use std::fs::{self, File, OpenOptions};
+use std::fs::{self, File};
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
 use double_pendulum::flips::Flip;
+use nix::fcntl::{Flock, FlockArg};
 
 use super::map::{Map, Point};
 use crate::console::cli::Refused;
@@ -14,7 +15,8 @@ use crate::console::cli::Refused;
 #[derive(Debug)]
 pub struct Part {
     path: PathBuf,
-    file: File,
+    /// Locked, for two runs of one name would write over each other.
+    file: Flock<File>,
 }
 
 /// Bytes of a point.
@@ -28,14 +30,17 @@ impl Part {
         let path = PathBuf::from(name);
         let head = format!("{map:?}\n");
         let unwritable = || format!("cannot write {}", path.display());
+        let opened = File::options().read(true).write(true).create(!resume).truncate(false).open(&path);
+        let option = if resume { "--resume" } else { "--out" };
+        let file = opened.map_err(|error| Refused::because(format!("{option}: {}: {error}", path.display())))?;
+        let locked = Flock::lock(file, FlockArg::LockExclusiveNonblock);
+        let busy = |_| Refused::because(format!("--out {}: another cargo flips is writing it", out.display()));
+        let mut file = locked.map_err(busy)?;
         if !resume {
-            let mut file = File::create(&path).with_context(unwritable)?;
-            file.write_all(head.as_bytes()).with_context(unwritable)?;
+            file.set_len(0).and_then(|()| file.write_all(head.as_bytes())).with_context(unwritable)?;
             return Ok((Self { path, file }, Vec::new()));
         }
         let mut bytes = Vec::new();
-        let opened = OpenOptions::new().read(true).write(true).open(&path);
-        let mut file = opened.map_err(|error| Refused::because(format!("--resume: {}: {error}", path.display())))?;
         file.read_to_end(&mut bytes)?;
         let other = || Refused::because(format!("--resume: {} is of another map", path.display()));
         let body = bytes.strip_prefix(head.as_bytes()).ok_or_else(other)?;
@@ -43,7 +48,7 @@ impl Part {
         // What follows the last whole point was cut off.
         let kept = head.len() + points.len() * POINT;
         file.set_len(kept as u64)?;
-        ensure!(std::io::Seek::seek(&mut file, std::io::SeekFrom::End(0))? == kept as u64, unwritable());
+        ensure!(std::io::Seek::seek(&mut *file, std::io::SeekFrom::End(0))? == kept as u64, unwritable());
         Ok((Self { path, file }, points))
     }
 
@@ -56,7 +61,7 @@ impl Part {
 
     /// Takes the file away: all is done.
     pub fn remove(self) -> Result<()> {
-        Ok(fs::remove_file(&self.path)?)
+        fs::remove_file(&self.path).with_context(|| format!("cannot remove {}", self.path.display()))
     }
 }
 

@@ -1,13 +1,13 @@
 //! The map of flips: what of it can be believed, and what it costs on chips.
 
-use double_pendulum::form::{DirectionForm, Fixed32Form, Plain, Watched};
 use double_pendulum::{Error, Parameters};
-use firmware::config::{FLIPS_F405, FLIPS_M0PLUS, FLIPS_M3, FLIPS_M4F, FlipsPace, TICK_RATE};
+use firmware::config::{FlipsPace, TICK_RATE};
 use firmware::graphics::canvas::{HEIGHT, WIDTH};
 use firmware::graphics::fade_layer::FadeLayer;
 use firmware::motion::settings::Settings;
+use firmware::motion::simulation::Means;
 use firmware::scenes::SceneName;
-use firmware::scenes::flips::FlipsMap;
+use firmware::scenes::flips::Flips;
 use firmware::scenes::scene::Scene;
 
 use super::frames::Counted;
@@ -16,7 +16,7 @@ use crate::commands::flips::judge::{Sample, judge, sample};
 use crate::commands::flips::map::Map;
 use crate::commands::flips::square::Square;
 use crate::commands::table::Table;
-use crate::emulator::boards::{Board, Core, STM32F405};
+use crate::emulator::boards::Board;
 
 /// Limits of the maps judged, sqrt(l/g), and points of the first that the reference judges.
 const LIMITS: [f32; 3] = [10.0, 100.0, 1000.0];
@@ -81,19 +81,12 @@ pub fn cost(frames: &[Counted]) -> Result<Table, Error> {
 
 /// A board's pace, and its ticks until the map is finished.
 fn played(board: &Board) -> Result<(FlipsPace, u32), Error> {
-    fn ticks<F: Watched<f32>>(pace: FlipsPace) -> Result<u32, Error> {
-        let (mut scene, mut ink) = (FlipsMap::<F>::at_pace(&Settings::default(), pace)?, FadeLayer::NONE);
-        let mut ticks = 0;
-        while !scene.is_done() {
-            scene.tick(&mut ink);
-            ticks += 1;
-        }
-        Ok(ticks)
+    let means = Means { processor: board.processor(), method: None };
+    let (mut scene, mut ink) = (Flips::new(&Settings::default(), &means)?, FadeLayer::NONE);
+    let mut ticks = 0;
+    while !scene.is_done() {
+        scene.tick(&mut ink);
+        ticks += 1;
     }
-    let float = |pace| Ok((pace, ticks::<DirectionForm<f32, Plain>>(pace)?));
-    match board.core() {
-        Core::M3 => Ok((FLIPS_M3, ticks::<Fixed32Form>(FLIPS_M3)?)),
-        Core::M0Plus => Ok((FLIPS_M0PLUS, ticks::<Fixed32Form>(FLIPS_M0PLUS)?)),
-        Core::M4F => float(if *board == STM32F405 { FLIPS_F405 } else { FLIPS_M4F }),
-    }
+    Ok((means.processor.flips, ticks))
 }

@@ -54,15 +54,8 @@ pub fn count(toolchain: &Toolchain, boards: usize, tick: &(dyn Fn() + Sync)) -> 
     let elves = BOARDS.iter().take(boards).map(|board| Ok((board, toolchain.build_for(board)?)));
     let elves = elves.collect::<Result<Vec<_>, CountError>>()?;
     let on_board = |(board, elf): &(&'static Board, PathBuf)| {
-        let settings = Settings {
-            qemu: toolchain.qemu(),
-            board,
-            elf,
-            clock: Clock::Counted,
-            window: None,
-            debugger: true,
-            limit: LIMIT,
-        };
+        let settings =
+            Settings { qemu: toolchain.qemu(), board, elf, clock: Clock::Counted, debugger: true, limit: LIMIT };
         let image = Image::read(elf)?;
         let mut machine = Lockstep::start(&settings)?;
         let scenes = SceneName::ALL.iter().map(|&scene| {

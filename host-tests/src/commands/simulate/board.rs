@@ -33,15 +33,8 @@ pub fn on_board(
     let steps = plan.request.stride.saturating_mul(plan.request.samples);
     let limit = OVERHEAD.saturating_add(PER_STEP.saturating_mul(steps));
     let clock = Clock::Real;
-    let mut machine = Machine::start(&Settings {
-        qemu: toolchain.qemu(),
-        board,
-        elf: &elf,
-        clock,
-        window: None,
-        debugger: true,
-        limit,
-    })?;
+    let mut machine =
+        Machine::start(&Settings { qemu: toolchain.qemu(), board, elf: &elf, clock, debugger: true, limit })?;
 
     // Its first frame says that it listens.
     if machine.serial.next::<Frame>().is_none() {

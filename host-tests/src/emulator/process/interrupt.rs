@@ -3,21 +3,31 @@
 use std::path::Path;
 use std::process::exit;
 use std::sync::{Mutex, MutexGuard, Once, PoisonError};
+use std::thread;
 
-/// The shell's exit code for a command ended by Ctrl-C.
-const INTERRUPTED: i32 = 130;
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+use signal_hook::iterator::Signals;
+
+/// The signals that interrupt a command: Ctrl-C, a request to end, a terminal that is closed.
+pub const INTERRUPTS: [i32; 3] = [SIGINT, SIGTERM, SIGHUP];
+
+/// The exit code that the shell has for a command ended by a signal: 130 after Ctrl-C.
+pub fn interrupted_by(signal: i32) -> i32 {
+    128 + signal
+}
 
 type Hooks = Vec<Box<dyn FnOnce() + Send>>;
 
-/// Runs `hook` when this process is interrupted, before it exits with code 130: for what must be put back, such as the
-/// terminal's mode.
+/// Runs `hook` when this process is interrupted, before it exits: for what must be put back, such as the terminal's mode.
 pub fn on_interrupt(hook: impl FnOnce() + Send + 'static) {
     static HANDLER: Once = Once::new();
     HANDLER.call_once(|| {
-        // Fails only if the program has a handler of its own already, which then has the say.
-        let _ = ctrlc::set_handler(|| {
+        // Fails only for signals that no program may handle.
+        let Ok(mut signals) = Signals::new(INTERRUPTS) else { return };
+        thread::spawn(move || {
+            let Some(signal) = signals.forever().next() else { return };
             hooks().drain(..).for_each(|hook| hook());
-            exit(INTERRUPTED);
+            exit(interrupted_by(signal));
         });
     });
     hooks().push(Box::new(hook));

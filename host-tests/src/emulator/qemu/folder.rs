@@ -2,6 +2,7 @@
 
 use std::fs::{self, File};
 use std::io;
+use std::os::unix::net::UnixListener;
 use std::path::Path;
 
 use nix::fcntl::{Flock, FlockArg};
@@ -13,6 +14,13 @@ use crate::emulator::process::remove_on_interrupt;
 const PREFIX: &str = "double-pendulum-";
 /// The file that is locked as long as the folder's owner lives, however it ends.
 const OWNER: &str = "owner";
+
+/// Why no machine can have its folder, in one line that names `TMPDIR`: it is no folder, or no socket's name is so long.
+pub(crate) fn check() -> Result<(), String> {
+    let base = std::env::temp_dir();
+    let listened = Folder::make_in(&base).and_then(|folder| UnixListener::bind(folder.path().join("debugger")));
+    listened.map(drop).map_err(|error| format!("QEMU's sockets cannot be in TMPDIR={}: {error}", base.display()))
+}
 
 /// A folder of this process, removed when it is dropped.
 #[derive(Debug)]

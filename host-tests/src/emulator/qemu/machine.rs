@@ -13,7 +13,7 @@ use firmware::app::controls::Key;
 use super::folder::Folder;
 use super::qmp::Monitor;
 use super::serial::Pipes;
-use super::{Log, LogLine, QemuError, Screenshot, Serial, Window};
+use super::{Log, LogLine, QemuError, Screenshot, Serial};
 use crate::emulator::boards::Board;
 use crate::emulator::process::{self, Running};
 
@@ -41,8 +41,6 @@ pub struct Settings<'a> {
     pub elf: &'a Path,
     /// What its clock goes by.
     pub clock: Clock,
-    /// QEMU's own window, if it is wanted.
-    pub window: Option<Window>,
     /// Whether there is a debugger that answers the firmware's calls and so takes its log.
     pub debugger: bool,
     /// It is ended at the latest after this long, by the host's clock.
@@ -100,7 +98,7 @@ impl Machine {
         let mut command = Command::new(settings.qemu);
         command.current_dir(folder.path());
         command.args(["-machine", settings.board.machine, "-cpu", settings.board.cpu]).arg("-kernel").arg(elf);
-        command.args(["-display", settings.window.map_or("none", Window::name)]);
+        command.args(["-display", "none"]);
         command.args(["-serial", "null"].repeat(settings.board.serial_port));
         command.args(["-chardev", "pipe,id=serial,path=serial", "-serial", "chardev:serial"]);
         command.args(["-chardev", "socket,id=monitor,path=monitor", "-mon", "chardev=monitor,mode=control"]);

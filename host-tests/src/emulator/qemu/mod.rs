@@ -13,9 +13,9 @@ mod qmp;
 mod screenshot;
 mod serial;
 mod stack;
-mod window;
 
 pub use error::QemuError;
+pub(crate) use folder::check as check_folder;
 pub use lockstep::Lockstep;
 pub use log::{Log, LogDecoder, LogLine};
 pub use machine::{Clock, Machine, Settings};
@@ -23,4 +23,3 @@ pub use probe::{Probe, Register};
 pub use screenshot::{HEIGHT, Screenshot, WIDTH};
 pub use serial::{Serial, Stopped};
 pub use stack::{PAINT, Stack};
-pub use window::{NoWindow, Window};

@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use super::detect::{DEBIAN_CARGO, DEBIAN_RUSTC};
 use super::install::run_shown;
-use super::{ArmCore, TARGETS, Toolchain, workspace};
+use super::{ArmCore, TARGETS, Toolchain, target, workspace};
 use crate::emulator::boards::{Board, every_board};
 use crate::emulator::process::ProcessError;
 
@@ -82,7 +82,7 @@ impl Toolchain {
 
     /// Where the firmware is built: apart from the host's programs, so that neither waits for the other.
     pub fn folder() -> PathBuf {
-        workspace().join("target/firmware")
+        target().join("firmware")
     }
 
     /// Builds the board's application; returns the ELF file.

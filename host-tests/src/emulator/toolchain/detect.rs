@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
 
-use super::{ArmCore, Qemu, TARGETS, workspace};
+use super::{ArmCore, Qemu, TARGETS, target, workspace};
 use crate::emulator::process::run;
 
 /// For a program that only says its version.
@@ -80,7 +80,7 @@ fn debian_compiler(listing: &str) -> Result<String, String> {
 
 /// Where the set-up unpacks an emulator for this project alone.
 pub(super) fn own_qemu_folder() -> PathBuf {
-    workspace().join("target/qemu")
+    target().join("qemu")
 }
 
 /// The first emulator that runs: the system's, else this project's own.

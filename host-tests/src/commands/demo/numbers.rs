@@ -1,0 +1,89 @@
+//! The latest numbers in a column beside the panel, the energy error's past as bars below them.
+
+use firmware::protocol::Frame as Reading;
+use ratatui::Frame;
+use ratatui::layout::{Constraint, Layout, Rect};
+use ratatui::style::{Color, Stylize};
+use ratatui::text::{Line, Text};
+use ratatui::widgets::{Paragraph, Sparkline};
+
+use super::plot;
+use super::readings::Readings;
+use super::view::has_angles;
+
+/// Columns that they need, and beyond which a value would be far from its name.
+pub const NARROWEST: u16 = 15;
+const WIDEST: u16 = 24;
+/// Rows that they need in the narrowest column.
+pub const ROWS: u16 = 13;
+/// The least scale of the energy errors: what is below a tenth of it is rounding and nothing to look at.
+const LEAST_SCALE: f32 = 1e-6;
+/// What stands where there is no number.
+const NONE: &str = "-";
+
+/// Draws them, and the bars where there is room left.
+pub fn draw(frame: &mut Frame, area: Rect, readings: &Readings) {
+    let area = Rect { width: area.width.min(WIDEST), ..area };
+    let lines: Vec<_> = rows(readings).into_iter().flat_map(|row| lines(row, area.width.into())).collect();
+    let rows = lines.len() as u16;
+    let scale = area.height.saturating_sub(rows).min(1);
+    let heights = [Constraint::Length(rows), Constraint::Length(scale), Constraint::Min(0)];
+    let [table, scale, bars] = Layout::vertical(heights).areas(area);
+    frame.render_widget(Paragraph::new(Text::from(lines)), table);
+    if readings.frame.as_ref().is_some_and(has_angles) && bars.height > 0 {
+        energy_errors(frame, scale, bars, readings);
+    }
+}
+
+/// Each number by its name.
+fn rows(readings: &Readings) -> [(&'static str, String); 9] {
+    let of_frame = |text: &dyn Fn(&Reading) -> String| readings.frame.as_ref().map_or(NONE.to_owned(), text);
+    let of_motion = |text: &dyn Fn(&Reading) -> String| {
+        readings.frame.as_ref().filter(|now| has_angles(now)).map_or(NONE.to_owned(), text)
+    };
+    let angle = |angle: f32| format!("{:.1}°", plot::within_half_a_turn(f64::from(angle).to_degrees()));
+    [
+        ("time", of_frame(&|now| format!("{:.2} s", now.time))),
+        ("mass ratio", of_frame(&|now| rounded(now.mass_ratio, 4))),
+        ("start", of_motion(&|now| start(readings.start.unwrap_or([now.start_angle.to_degrees(); 2])))),
+        ("angle 1", of_motion(&|now| angle(now.state[0]))),
+        ("angle 2", of_motion(&|now| angle(now.state[1]))),
+        ("frames/s", of_frame(&|_| readings.rate().to_string())),
+        ("dropped", of_frame(&|now| now.dropped.to_string())),
+        ("CRC errors", readings.counts.damaged.to_string()),
+        ("energy error", of_motion(&|now| format!("{:+.1e}", now.energy_error))),
+    ]
+}
+
+/// A row as one line, or as two where it would not fit into one.
+fn lines((name, value): (&'static str, String), width: usize) -> Vec<Line<'static>> {
+    let left = width.saturating_sub(name.chars().count());
+    if value.chars().count() < left {
+        return vec![Line::from(vec![name.dim(), format!("{value:>left$}").bold()])];
+    }
+    vec![Line::from(name).dim(), Line::from(format!("{value:>width$}")).bold()]
+}
+
+/// With so many decimals at most.
+fn rounded(number: f32, decimals: i32) -> String {
+    let unit = 10_f64.powi(decimals);
+    ((f64::from(number) * unit).round() / unit).to_string()
+}
+
+/// The angles at the start, degrees: one if both rods have the same.
+fn start(degrees: [f32; 2]) -> String {
+    let [one, other] = degrees.map(|degrees| rounded(degrees, 1) + "°");
+    if one == other { one } else { format!("{one}, {other}") }
+}
+
+/// The size of the energy error, the largest of each half second, as bars up to a power of ten, which is told.
+fn energy_errors(frame: &mut Frame, scale: Rect, area: Rect, readings: &Readings) {
+    const HEIGHT: f32 = 1000.0;
+    let errors = &readings.energy_errors;
+    let greatest = errors.iter().copied().fold(LEAST_SCALE, f32::max);
+    let exponent = greatest.log10().ceil() as i32;
+    frame.render_widget(Line::from(format!("error 0 to 1e{exponent}")).dim(), scale);
+    let shown = errors.iter().skip(errors.len().saturating_sub(usize::from(area.width)));
+    let bars = shown.map(|error| (error / 10.0_f32.powi(exponent) * HEIGHT) as u64).collect::<Vec<_>>();
+    frame.render_widget(Sparkline::default().data(bars).max(HEIGHT as u64).fg(Color::Yellow), area);
+}
