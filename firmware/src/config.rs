@@ -23,7 +23,7 @@ pub const LEAST_SPEED: f64 = 0.01;
 /// At 4 ticks of the scene per tick even the Cortex-M3 still shows most frames.
 pub const GREATEST_SPEED: f64 = 4.0;
 
-// ---- The promise ----------------------------------------------------------------------------------------------------
+// ---- What counts as right -------------------------------------------------------------------------------------------
 
 /// A frame is right, on the panel's clock, in the plan and in the log alike, as long as nothing in it is farther, pixels,
 /// from where the exact motion of the same start has it.

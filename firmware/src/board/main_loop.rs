@@ -151,20 +151,21 @@ fn log<Panel: Debug, Link: Debug>(event: Event<Panel, Link>) {
         Event::StepTooLong(step) => defmt::warn!("the step is too long for this energy, {} s would do", step),
         Event::Motion(News::Found(Finding::Plan(Plan { method, steps, error, cost, horizon, limit, .. }))) => {
             defmt::info!(
-                "plan: {=str}, {} steps to a frame, {} pixels off until {} s ({=str}), {} cycles a frame",
+                "plan: {=str}, steps to a frame: {}, expected to be at most {}/1000 of a pixel off until {}.{:02} s ({=str}), {} cycles a frame",
                 method.name(),
                 steps,
-                HALF_PIXEL * error,
-                horizon,
+                libm::ceilf(1e3 * HALF_PIXEL * error) as u32,
+                horizon as u32,
+                (100.0 * horizon) as u32 % 100,
                 limit.name(),
-                cost,
+                cost as u32,
             )
         }
         Event::Motion(News::Found(Finding::NothingHolds(limit))) => {
             defmt::info!("plan: nothing affordable is right to half a pixel in any frame ({=str})", limit.name());
         }
         Event::Motion(News::Shown(Way { method, steps }, cost)) => {
-            defmt::info!("shown: {=str}, {} steps to a frame, {} cycles a frame", method.name(), steps, cost);
+            defmt::info!("shown: {=str}, steps to a frame: {}, {} cycles a frame", method.name(), steps, cost as u32);
         }
         Event::Motion(News::Found(Finding::Refused(error))) => defmt::warn!("no plan: {}", error),
         Event::Asked => defmt::info!("computing a motion on request"),

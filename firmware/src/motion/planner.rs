@@ -43,7 +43,7 @@ pub struct Planner {
     debt: f32,
     /// The plan once it is found, or what forbids any.
     plan: Option<Result<Plan, Limit>>,
-    /// The way that the scene has begun in, and until when that is known to be right, s.
+    /// The way that the scene has begun in, and until when that is expected to be right, s.
     begun: Option<Way>,
     begun_horizon: f64,
     /// What has been found and not yet told, and whether the next tick tells it.
@@ -110,7 +110,7 @@ impl Planner {
         self.ticks >= SETTLED_TICKS && self.work()
     }
 
-    /// Until when the frames are known to be right of a scene that goes this `way`, s.
+    /// Until when the frames are expected to be right of a scene that goes this `way`, s.
     pub fn horizon(&self, way: Way) -> f64 {
         let looked_at = if self.begun == Some(way) { self.begun_horizon } else { self.looked_at(way) };
         looked_at.max(self.planned(way))
@@ -200,7 +200,7 @@ impl Planner {
         Ok(())
     }
 
-    /// What is known of the plan, as an answer.
+    /// What has been found, as an answer.
     pub fn answer(&self, request: u16) -> Planned {
         let Some((problem, Shown { height, .. })) = &self.task else {
             return Planned { request, ..Planned::default() };

@@ -2,6 +2,12 @@
 
 use std::process::{Command, Output};
 
+use firmware::app::player::News;
+use firmware::config::{CORTEX_M3, STM32F405};
+use firmware::motion::planner::Finding;
+use firmware::scenes::SceneName;
+use host_tests::emulator::host::Show;
+
 fn plan(arguments: &str) -> Output {
     Command::new(env!("CARGO_BIN_EXE_plan")).args(arguments.split_whitespace()).output().expect("it runs")
 }
@@ -35,6 +41,23 @@ fn it_says_that_nothing_holds() {
     assert!(nothing.contains("why      steps fine enough cost more than"), "{nothing}");
 }
 
+/// The boards' own scene starts from the nearest `f32` to 120 degrees, which is another motion in the end.
+#[test]
+fn a_scene_is_planned_as_the_boards_start_it() {
+    let name = SceneName::Page;
+    for (target, processor) in [("m3", CORTEX_M3), ("m4f", STM32F405)] {
+        let mut show = Show::on(processor, name, &name.first_settings()).expect("a scene of the catalogue");
+        let horizon = loop {
+            show.tick();
+            if let [.., (_, News::Found(Finding::Plan(plan)))] = show.news[..] {
+                break plan.horizon;
+            }
+        };
+        let said = said(&format!("--scene page --target {target}"));
+        assert!(said.contains(&format!("until {horizon:.2} s of 30 s")), "{horizon} {said}");
+    }
+}
+
 /// Nothing moves without gravity, from rest; and what is shown if nothing is said is the boards' first start.
 #[test]
 fn it_has_words_for_rest_and_a_start_of_its_own() {
@@ -59,7 +82,9 @@ fn bad_input_is_refused_in_one_line_that_names_option_and_value() {
         ("--rate 70000", "--rate", "70000"),
         ("--target m7", "--target", "m7"),
         ("--study -1", "--study", "-1 is not in 1.."),
-        ("--fit 0", "--fit", "0 is not in 1.."),
+        ("--height 1e9", "--height", "1e9"),
+        ("--scene nowhere", "--scene", "nowhere"),
+        ("--scene flips", "--scene", "flips"),
         ("--seed -1", "--seed", "-1 is not in 0.."),
     ] {
         let output = plan(arguments);

@@ -1,4 +1,4 @@
-//! What the frames show against the exact motion: right to half a pixel until the time that the panel promises, and hardly
+//! What the frames show against the exact motion: right to half a pixel until the time that the panel predicts, and hardly
 //! longer, before and after the way they are computed changes.
 
 use std::thread;
@@ -32,10 +32,10 @@ struct Case {
 #[derive(Clone, Debug)]
 struct Horizon {
     case: Case,
-    promised: f64,
+    predicted: f64,
     exact: f64,
     /// Whether the first wrong frame was shown as a right one.
-    broken: bool,
+    violated: bool,
     /// Whether the way changed.
     changed: bool,
 }
@@ -70,7 +70,7 @@ fn horizon(case: &Case) -> Horizon {
     let first = scene.report().way;
     let scale = widened(case.reach) / (parameters.l1 + parameters.l2);
 
-    let (mut exact, mut broken) = (f64::INFINITY, false);
+    let (mut exact, mut violated) = (f64::INFINITY, false);
     for tick in 1..=(FOLLOWED * f64::from(TICK_RATE)) as u32 {
         scene.tick();
         let time = f64::from(tick) / f64::from(TICK_RATE);
@@ -84,12 +84,12 @@ fn horizon(case: &Case) -> Horizon {
             let is_right = distance(0).max(distance(1)) <= widened(HALF_PIXEL);
             if !is_right {
                 exact = f64::from(tick - EVERY) / f64::from(TICK_RATE);
-                broken = f64::from(report.horizon) >= time;
+                violated = f64::from(report.horizon) >= time;
             }
         }
     }
     let report = scene.report();
-    Horizon { case: case.clone(), promised: report.horizon.into(), exact, broken, changed: report.way != first }
+    Horizon { case: case.clone(), predicted: report.horizon.into(), exact, violated, changed: report.way != first }
 }
 
 #[test]
@@ -104,19 +104,19 @@ fn half_a_pixel_is_kept_until_the_time_on_the_panel_and_hardly_longer() {
     });
 
     let (mut late, mut shares, mut changes) = (Vec::new(), Vec::new(), 0);
-    for Horizon { case, promised, exact, broken, changed } in &horizons {
+    for Horizon { case, predicted, exact, violated, changed } in &horizons {
         println!(
-            "{:10} promised {promised:8.3} exact {exact:8.3} {}  {:?} {:?}",
+            "{:10} predicted {predicted:8.3} exact {exact:8.3} {}  {:?} {:?}",
             case.name.name(),
             if *changed { "changed" } else { "" },
             case.settings.mass_ratio(),
             case.settings.degrees
         );
-        if *broken {
-            late.push(format!("{case:?}: promised {promised}, exact {exact}"));
+        if *violated {
+            late.push(format!("{case:?}: predicted {predicted}, exact {exact}"));
         }
         if exact.is_finite() {
-            shares.push(promised / exact);
+            shares.push(predicted / exact);
         }
         changes += usize::from(*changed);
     }
@@ -124,7 +124,7 @@ fn half_a_pixel_is_kept_until_the_time_on_the_panel_and_hardly_longer() {
     println!("{} motions, {} end early, {changes} changed their way", horizons.len(), shares.len());
     assert!(shares.len() >= LEAST_ENDING && changes >= LEAST_CHANGES, "{} {changes}", shares.len());
     let share = median(shares.into_iter());
-    println!("promised over exact: {share:.2}");
+    println!("predicted over exact: {share:.2}");
     assert!(share >= PLAN_SHARE, "{share}");
 }
 

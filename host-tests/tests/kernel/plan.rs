@@ -47,7 +47,7 @@ fn large_regular_oscillations_take_the_cheapest_steps() {
 }
 
 #[test]
-fn a_chaotic_scene_is_promised_for_as_long_as_it_can_be() {
+fn a_chaotic_scene_is_predicted_for_as_long_as_it_can_be() {
     let figure7 = scene(2.75, 171.0, 30.0);
     let plan = planned(&figure7);
     assert!(plan.limit == Limit::Growth && (12.0..20.0).contains(&plan.horizon), "{plan:?}");
@@ -204,6 +204,26 @@ fn a_method_that_is_asked_for_resolves_the_motion() {
     let Problem { pendulum, start, .. } = scene(2.75, 171.0, 20.0);
     let steps = |method| Way::of(&pendulum, &start, RATE, method).expect("a pendulum").steps;
     assert_eq!([Method::Fixed64, Method::Fixed32, Method::Direction].map(steps), [3, 2, 2]);
+}
+
+/// What fixed point takes ends just beyond equal rods: the runs beside the motion must not be refused where it is not.
+#[test]
+fn a_way_that_can_be_gone_is_looked_at() {
+    for degrees in [60.0, 90.0, 120.0] {
+        let scene = scene(1.0, degrees, 1.0);
+        for method in [Method::Fixed32, Method::Direction, Method::Fixed64] {
+            let way = Way::of(&scene.pendulum, &scene.start, RATE, method).expect("a pendulum");
+            assert!(WayStepper::new(&scene.pendulum, &scene.start, RATE, way).is_ok(), "{way:?} at {degrees}");
+            let mut search =
+                Search::of(method, way.steps, &scene, &M3, &CORTEX_M3.budget(&scene)).expect("a good scene");
+            let plan = loop {
+                if let Some(plan) = search.advance(f32::INFINITY).expect("a good scene") {
+                    break plan;
+                }
+            };
+            assert_eq!(plan.horizon, scene.duration, "{plan:?} at {degrees}");
+        }
+    }
 }
 
 /// A light elbow at 90 degrees: steps that resolve it cost several times what a Cortex-M3 has, and the closed form is wrong

@@ -1,77 +1,92 @@
-//! The planner's promises and margins against the exact motion, over scenes of all kinds.
+//! The planner's predictions against the exact motion, over scenes of all kinds, for every processor.
 
 use double_pendulum::plan::Problem;
-use host_tests::commands::plan::{
-    Case, Class, DURATIONS, GROSS, M4F, Sample, fit, margins, median, reference_error, scenes, study,
-};
-use host_tests::oracle::tolerances::{JUDGE, PLAN_KEPT, PLAN_SHARE};
+use double_pendulum::{Motion, Parameters, Pendulum};
+use firmware::config::GRAVITY;
+use firmware::motion::planner::half_pixel;
+use host_tests::commands::plan::{CHIPS, Case, DURATIONS, M4F, median, reference_error, scenes, study};
+use host_tests::oracle::tolerances::{JUDGE, PLAN_ERROR, PLAN_SHARE};
 
-/// Other scenes than the report's.
+/// Other scenes than those of [`thousands_of_scenes`].
 const SEED: u64 = 20;
 /// Scenes of all kinds, and lively ones among which many cease to be right before their end. Short, for the reference
 /// takes its time.
-const ALL: usize = 170;
-const LIVELY: usize = 30;
+const ALL: usize = 60;
+const LIVELY: usize = 8;
 /// How many must cease to be right, so that the median of their shares says something.
-const LEAST_ENDING: usize = 8;
-/// The place of a scene with a light bob 2 in the report's study.
-const LIGHT: usize = 1369;
-/// Lively scenes for the margins, and how many passes must have come to half a pixel.
-const FITTED: usize = 12;
-const LEAST_PASSES: usize = 8;
+const LEAST_ENDING: usize = 6;
 
 fn all() -> impl Iterator<Item = Problem> {
     scenes(SEED, 2.0..3.0).take(ALL)
 }
 
+/// A rod may turn over, and bob 1 is not so light that steps must be very fine.
 fn lively(count: usize) -> impl Iterator<Item = Problem> {
-    let is_lively = |scene: &Problem| Class::of(scene) == Ok(Class::Free) && scene.start.a2.abs() > 1.5;
+    let is_lively = |scene: &Problem| {
+        let pendulum = Pendulum::new(scene.pendulum).expect("a good scene");
+        let light = scene.pendulum.mass_ratio() > 30.0;
+        !light && scene.start.a2.abs() > 1.5 && !pendulum.cannot_turn_over(&pendulum.to_state(&scene.start))
+    };
     scenes(SEED + 1, 22.0..28.0).filter(is_lively).take(count)
 }
 
-#[test]
-fn half_a_pixel_is_kept_until_the_promised_horizon() {
-    let cases = study(all().chain(lively(LIVELY)), &M4F, || ()).expect("good scenes");
-    let broken: Vec<&Case> = cases.iter().filter(|case| !case.is_kept()).collect();
-    let kept = 1.0 - broken.len() as f64 / cases.len() as f64;
-    assert!(kept >= PLAN_KEPT, "{broken:#?}");
-    assert!(broken.iter().all(|case| case.verdict.error <= GROSS), "{broken:#?}");
-
-    let ending: Vec<f64> = cases.iter().filter(|case| case.ends_early()).map(Case::share).collect();
-    let shares = [median(cases.iter().map(Case::share)), median(ending.iter().copied())];
-    println!("{} scenes, {} ending early, {} broken, {shares:.2?} promised", cases.len(), ending.len(), broken.len());
-    assert!(cases.len() == ALL + LIVELY && ending.len() >= LEAST_ENDING, "{} end early", ending.len());
-    assert!(shares.iter().all(|&share| share >= PLAN_SHARE), "{shares:?}");
+/// Scenes that are right for some 20 s in 64 bits, each with neighbours: how the roundings fall is chance.
+fn long() -> impl Iterator<Item = Problem> {
+    let scenes = [(1.18219, 0.714144, 2.17128, 1.27892), (2.15233, 1.72009, -2.41900, -2.39437)];
+    scenes.into_iter().flat_map(|(m2, l2, a1, a2)| {
+        [-1e-6, 0.0, 1e-6].map(|beside| {
+            let pendulum = Parameters { m1: 1.0, m2, l1: 1.0, l2, g: GRAVITY };
+            let start = Motion::at_rest(a1 + beside, a2);
+            Problem { pendulum, start, tolerance: half_pixel(&pendulum, 64.0), duration: 30.0, rate: 60 }
+        })
+    })
 }
 
-/// With a mass ratio of 1/40 the roundings of the constants part the motion from the exact one; runs that share them do not
-/// see it.
+/// At most `most` violations, none a large one; the shares are told.
+fn check(cases: &[Case], most: usize) -> Vec<f64> {
+    let violations: Vec<&Case> = cases.iter().filter(|case| case.is_violation()).collect();
+    for case in &violations {
+        println!("{} {} {:?} {:?} {:?}", case.number, case.chip.name, case.plan, case.verdict, case.scene);
+    }
+    assert!(violations.len() <= most, "{} violations: {violations:#?}", violations.len());
+    assert!(violations.iter().all(|case| case.verdict.error <= PLAN_ERROR), "{violations:#?}");
+    cases.iter().filter(|case| case.ends_early()).map(Case::share).collect()
+}
+
 #[test]
-fn the_roundings_of_the_constants_are_seen() {
-    let light = scenes(1, DURATIONS).nth(LIGHT);
-    let cases = study(light, &M4F, || ()).expect("good scenes");
-    assert!(matches!(cases[..], [case] if case.is_kept() && case.ends_early()), "{cases:#?}");
+fn half_a_pixel_is_kept_until_the_predicted_horizon() {
+    let cases = study(all().chain(lively(LIVELY)).chain(long()), &CHIPS, || ()).expect("good scenes");
+    for chip in CHIPS {
+        let of_chip: Vec<Case> = cases.iter().filter(|case| case.chip == chip).copied().collect();
+        let shares = check(&of_chip, 1);
+        let (ending, share) = (shares.len(), median(shares.into_iter()));
+        println!("{}: {} scenes, {ending} end early, predicted {share:.2}", chip.title, of_chip.len());
+        assert!(ending >= LEAST_ENDING && share >= PLAN_SHARE, "{}: {ending} end early, {share}", chip.title);
+    }
+}
+
+/// The whole study, some hours: `cargo plan --study 2000 --seed 1` makes its table.
+#[test]
+#[ignore = "takes hours"]
+fn thousands_of_scenes() {
+    for seed in 1..=3 {
+        let cases = study(scenes(seed, DURATIONS).take(2_000), &CHIPS, || ()).expect("good scenes");
+        for chip in CHIPS {
+            let of_chip: Vec<Case> = cases.iter().filter(|case| case.chip == chip).copied().collect();
+            let share = median(check(&of_chip, 1).into_iter());
+            assert!(share >= PLAN_SHARE, "{}: {share}", chip.title);
+        }
+    }
 }
 
 /// The reference is far more accurate than what it judges, as far as it judges: where errors grow the most.
 #[test]
 fn the_judge_is_right_where_it_judges() {
-    let cases = study(lively(LIVELY), &M4F, || ()).expect("good scenes");
-    let ending: Vec<&Case> = cases.iter().filter(|case| case.ends_early()).take(LEAST_ENDING).collect();
-    assert_eq!(ending.len(), LEAST_ENDING);
+    let cases = study(long().step_by(3), &[M4F], || ()).expect("good scenes");
+    let ending: Vec<&Case> = cases.iter().filter(|case| case.ends_early()).collect();
+    assert_eq!(ending.len(), cases.len());
     let errors = ending.iter().map(|case| reference_error(&case.scene, case.verdict.horizon));
     let worst = errors.fold(0.0, f64::max);
     println!("two references differ by {worst:.1e} pixels");
     assert!(worst <= JUDGE, "{worst:e} pixels");
-}
-
-/// The error of a pass is never more than its bound, and the bound not many times the error.
-#[test]
-fn the_margins_cover_what_is_measured() {
-    let samples = fit(lively(FITTED), || ()).expect("good scenes");
-    println!("{}", margins(&samples).markdown());
-    let ended: Vec<&Sample> = samples.iter().filter(|sample| sample.ended()).collect();
-    assert!(ended.len() >= LEAST_PASSES, "only {}", ended.len());
-    assert!(ended.iter().all(|sample| sample.ratio() <= 1.0), "{ended:#?}");
-    assert!(median(ended.iter().map(|sample| sample.ratio())) >= 0.2, "{ended:#?}");
 }

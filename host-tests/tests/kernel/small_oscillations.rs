@@ -10,7 +10,7 @@ use twofloat::TwoFloat;
 
 /// The modes by the book's own formulas, differences and all, in double-double precision.
 fn exact_modes(parameters: &Parameters<f64>) -> [TwoFloat; 5] {
-    let Constants { masses: [m1, m2], lengths: [l1, l2], gravity: g } = parameters.into();
+    let Constants { masses: [m1, m2], lengths: [l1, l2], gravity: g }: Constants = parameters.into();
     let total = m1 + m2;
     let sum = l1 + l2;
     let root = (total * (total * sum * sum - m1 * l1 * l2 * 4.0)).sqrt();

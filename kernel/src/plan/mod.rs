@@ -8,7 +8,7 @@
 //! | error of | is measured by |
 //! |---|---|
 //! | the step | a run with finer steps |
-//! | rounding, that of the numbers given too | two runs with the same step, whose given numbers are half an ulp off; in 64 bits one |
+//! | rounding, that of the numbers given too | two more with the same step; the numbers given to all three are an ulp off |
 //! | the closed form, plain `f32` | the distance to a run that has the errors above |
 //!
 //! The coarsest step at which anything stays within the tolerance to the end decides; of all that does the cheapest is
@@ -56,7 +56,7 @@ pub use limit::Limit;
 pub use problem::Problem;
 pub use run::Directions;
 pub use search::{Plan, Search};
-pub use shadowed_run::{ErrorEstimate, MARGIN, ShadowedRun};
+pub use shadowed_run::{ErrorEstimate, MARGINS, ShadowedRun};
 pub use way::{Way, WayStepper};
 
 /// The plan for `problem` at once: [`Search`] to its end.

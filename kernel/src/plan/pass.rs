@@ -138,14 +138,14 @@ impl Pass {
     /// From `start`, with `steps` steps to a frame: `method` is shadowed, or compensated `f32` if it has no steps of its own.
     pub fn new(method: Method, problem: &Problem, start: &State<f64>, steps: u32) -> Self {
         let shadowed = Shadowed::new(method, problem, start, steps);
-        let rounded = problem.rounded::<f32>(start, Perturbation::None);
+        let rounded = problem.rounded::<f32>(start, Perturbation::NONE);
         let (parameters, _) = &rounded;
         let motion = problem.start.cast();
         let linear = Modes::new(&parameters.cast()).ok().map(|modes| SmallOscillations::new(modes, &motion));
         let methods = [shadowed.method(), Method::ClosedForm, Method::DirectionPlain];
         let mut pass = Self {
             shadowed,
-            plain: Run::new(&rounded, problem.rate, steps),
+            plain: Run::new([rounded; 2], problem.rate, steps),
             linear,
             rods: problem.rods(),
             candidates: methods.map(|method| Candidate::new(method, steps)),

@@ -58,42 +58,47 @@ impl Problem {
         [l1, l2].map(|l| (l / self.tolerance) as f32)
     }
 
-    /// The pendulum and its start, which is at `start`, in the arithmetic `R`, some numbers off by a rounding.
+    /// The pendulum and its start, which is at `start`, in the arithmetic `R`, some numbers off by a little.
     #[inline(never)] // once in flash
     pub(super) fn rounded<R: Real>(&self, start: &State<f64>, perturbation: Perturbation) -> (Parameters<R>, State<R>) {
         let &State { a1, a2, p1, p2 } = start;
         let Parameters { m1, m2, l1, l2, g } = self.pendulum;
         let off = |value: f64, by: f64| R::from_f64(value + value * (by * R::EPSILON.to_f64()));
-        let [first, second] = match perturbation {
-            Perturbation::None => [0.0, 0.0],
-            Perturbation::Alike => [HALF_ULP, HALF_ULP],
-            Perturbation::Opposite => [HALF_ULP, -HALF_ULP],
-        };
+        let Perturbation([by_g, by_l2, by_m2, by_a1]) = perturbation;
         let parameters = Parameters {
             m1: R::from_f64(m1),
-            m2: off(m2, first),
+            m2: off(m2, by_m2),
             l1: R::from_f64(l1),
-            l2: off(l2, second),
-            g: off(g, second),
+            l2: off(l2, by_l2),
+            g: off(g, by_g),
         };
-        let state = State { a1: off(a1, first), a2: off(a2, second), p1: off(p1, second), p2: off(p2, first) };
+        let state = State { a1: off(a1, by_a1), a2: off(a2, by_m2), p1: off(p1, by_g), p2: off(p2, by_l2) };
         (parameters, state)
     }
 }
 
-/// Half an epsilon, and a little more: in `f64`, which holds the given numbers themselves, just half of one rounds back to
-/// them.
-const HALF_ULP: f64 = 0.5 + 1.0 / 1024.0;
+/// An epsilon, and a little more: in `f64` just half of one would round back to the given number. Rounding takes half of one at
+/// most, but the errors of all the numbers come together as chance has it.
+const OFF: f64 = 1.0 + 1.0 / 1024.0;
 
-/// Which numbers of a problem are half an ulp off before they are rounded, and in which direction.
+/// By how much the numbers of a problem are off before they are rounded, in epsilons: g and p1, l2 and p2, m2 and a2, a1.
+///
+/// What a motion does goes by quotients of these, as a fast one by g/l2 or m2 g/l2, and two errors may make up for each other.
+/// What one of the perturbations leaves as it is, another alters.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Perturbation {
-    /// None.
-    None,
-    /// All but m1 and l1, the same way.
-    Alike,
-    /// The same ones, half of them the other way.
-    Opposite,
+pub(super) struct Perturbation([f64; 4]);
+
+impl Perturbation {
+    /// Nothing is off.
+    pub const NONE: Self = Self([0.0; 4]);
+    /// One half of the numbers off one way, the other half the other way: three such halves.
+    pub const ALL: [Self; 3] =
+        [Self([OFF, OFF, -OFF, -OFF]), Self([OFF, -OFF, OFF, -OFF]), Self([OFF, -OFF, -OFF, OFF])];
+
+    /// All of them the other way.
+    pub fn mirrored(self) -> Self {
+        Self(self.0.map(|by| -by))
+    }
 }
 
 #[cfg(test)]
@@ -112,10 +117,14 @@ mod tests {
                 let [a1, a2, p1, p2] = <[R; 4]>::from(state);
                 [m2, g, a1, a2, p1, p2].map(R::to_f64)
             };
-            let [own, alike, opposite] = [Perturbation::None, Perturbation::Alike, Perturbation::Opposite].map(numbers);
-            assert!(own != alike && own != opposite && alike != opposite, "{own:?} {alike:?} {opposite:?}");
-            for (own, beside) in own.into_iter().zip(alike).chain(own.into_iter().zip(opposite)) {
-                assert!((beside - own).abs() <= own.abs() * R::EPSILON.to_f64(), "{own} {beside}");
+            let [first, second, third] = Perturbation::ALL.map(numbers);
+            let own = numbers(Perturbation::NONE);
+            assert!(first != second && second != third && third != first, "{first:?} {second:?} {third:?}");
+            for other in [first, second, third] {
+                assert_ne!(own, other);
+                for (own, beside) in own.into_iter().zip(other) {
+                    assert!((beside - own).abs() <= 2.0 * own.abs() * R::EPSILON.to_f64(), "{own} {beside}");
+                }
             }
         }
     }

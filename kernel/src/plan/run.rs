@@ -21,24 +21,26 @@ pub(super) struct Run<R: Real, F: Form<R>> {
 /// Before its steps are prepared, and from then on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Motion<R: Real, F: Form<R>> {
-    /// A pendulum, its start, and the step, s.
-    Given(Parameters<R>, State<R>, f64),
+    /// A pendulum and its start, others if these are refused, and the step, s.
+    Given([(Parameters<R>, State<R>); 2], f64),
     Prepared(Stepper<R, F>),
 }
 
 impl<R: Real, F: Form<R>> Run<R, F> {
-    /// With `per_frame` steps for each of the `rate` frames of a second.
+    /// A pendulum and its start, or the others if the first are refused, with `per_frame` steps for each of the `rate` frames of
+    /// a second.
     #[inline(never)] // once in flash
-    pub fn new(&(parameters, start): &(Parameters<R>, State<R>), rate: u16, per_frame: u32) -> Self {
+    pub fn new(given: [(Parameters<R>, State<R>); 2], rate: u16, per_frame: u32) -> Self {
         let dt = 1.0 / (f64::from(rate) * f64::from(per_frame));
-        Self { motion: Motion::Given(parameters, start, dt), per_frame, made: 0 }
+        Self { motion: Motion::Given(given, dt), per_frame, made: 0 }
     }
 
     /// Prepares the steps; whether they were not.
     #[inline(never)] // once in flash
     pub fn prepare(&mut self) -> Result<bool, Error> {
-        let Motion::Given(parameters, start, dt) = &self.motion else { return Ok(false) };
-        self.motion = Motion::Prepared(Stepper::new(parameters, start, *dt)?);
+        let Motion::Given(given, dt) = &self.motion else { return Ok(false) };
+        let [first, other] = given.each_ref().map(|(parameters, start)| move || Stepper::new(parameters, start, *dt));
+        self.motion = Motion::Prepared(first().or_else(|_| other())?);
         Ok(true)
     }
 

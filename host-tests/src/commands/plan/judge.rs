@@ -10,36 +10,86 @@ use crate::oracle::reference::Reference;
 /// The directions of both rods.
 pub type Directions = [Direction<f64>; 2];
 
+/// The exact motion of a scene, each frame computed once, however many plans are held against it: this takes longest by far.
+///
+/// In `f64` as long as that is enough by far, from then on by the reference.
+pub struct Exact<'a> {
+    scene: &'a Problem,
+    /// One, and another that starts [`APART`] from it.
+    quick: [Reference<f64>; 2],
+    slow: Option<Reference>,
+    frames: Vec<Directions>,
+}
+
+/// What the other motion in `f64` starts apart, relative: many times what all roundings of a step come to.
+const APART: f64 = 1e-13;
+/// As long as both are not farther apart, pixels, neither is off by more.
+const ENOUGH: f64 = 1e-2;
+
+impl<'a> Exact<'a> {
+    /// The reference is given the scene's own numbers, a plan those that its arithmetic can hold.
+    pub fn new(scene: &'a Problem) -> Self {
+        let Motion { a1, a2, w1, w2 } = scene.start;
+        let beside = Motion { a1: a1 * (1.0 + APART), a2: a2 * (1.0 - APART), w1: w1 * (1.0 + APART), w2 };
+        let quick = [scene.start, beside].map(|start| Reference::of(&scene.pendulum, &start));
+        Self { scene, quick, slow: None, frames: Vec::new() }
+    }
+
+    /// Frame `frame`, from 1.
+    fn frame(&mut self, frame: u32) -> Directions {
+        while self.frames.len() < frame as usize {
+            let next = self.next();
+            self.frames.push(next);
+        }
+        self.frames[frame as usize - 1]
+    }
+
+    fn next(&mut self) -> Directions {
+        let time = self.scene.time(self.frames.len() as u32 + 1);
+        if self.slow.is_none() {
+            let [one, other] = self.quick.each_mut().map(|quick| {
+                quick.advance_to(time);
+                directions(&quick.motion())
+            });
+            if distance(self.scene, &one, &other) <= ENOUGH {
+                return one;
+            }
+        }
+        let slow = self.slow.get_or_insert_with(|| Reference::new(&self.scene.pendulum, &self.scene.start));
+        slow.advance_to(time);
+        directions(&slow.motion())
+    }
+}
+
+fn directions(motion: &Motion<f64>) -> Directions {
+    [motion.a1, motion.a2].map(|a| [libm::sin(a), libm::cos(a)])
+}
+
 /// What became of a plan.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Verdict {
     /// The last time until which every frame was right to half a pixel, s; the scene's duration if all were.
     pub horizon: f64,
-    /// The largest error until the horizon that was promised, pixels.
+    /// The largest error until the predicted horizon, pixels.
     pub error: f64,
 }
 
-/// Carries out `plan` and compares each frame with the exact motion, until one is wrong and the promise is over.
-///
-/// The reference is given the scene's own numbers, the plan those that its arithmetic can hold.
-pub fn judge(scene: &Problem, plan: &Plan) -> Result<Verdict, Error> {
+/// Carries out `plan` and compares each frame with the exact motion, until one is wrong and the predicted horizon is past.
+pub fn judge(exact: &mut Exact, plan: &Plan) -> Result<Verdict, Error> {
+    let scene = exact.scene;
     let way = Way { method: plan.method, steps: plan.steps };
     let mut motion = WayStepper::new(&scene.pendulum, &scene.start, scene.rate, way)?;
-    let mut reference = Reference::new(&scene.pendulum, &scene.start);
     let mut verdict = Verdict { horizon: scene.duration, error: 0.0 };
     let mut right = true;
     for frame in 1..=scene.frames() {
-        let time = scene.time(frame);
-        let promised = time <= plan.horizon;
-        if !right && !promised {
+        let predicted = scene.time(frame) <= plan.horizon;
+        if !right && !predicted {
             break;
         }
-        reference.advance_to(time);
-        let Motion { a1, a2, .. } = reference.motion();
         motion.advance();
         let shown = motion.directions().map(|direction| direction.map(f64::from));
-        let error = distance(scene, &shown, &[a1, a2].map(|a| [libm::sin(a), libm::cos(a)]));
-        if promised {
+        let error = distance(scene, &shown, &exact.frame(frame));
+        if predicted {
             verdict.error = verdict.error.max(error);
         }
         if right && error > f64::from(HALF_PIXEL) {
@@ -78,7 +128,7 @@ fn scale(scene: &Problem) -> f64 {
 }
 
 /// How far the farther of the two bobs is off, pixels; infinite if anything is not a number.
-pub fn distance(scene: &Problem, shown: &Directions, exact: &Directions) -> f64 {
+fn distance(scene: &Problem, shown: &Directions, exact: &Directions) -> f64 {
     let Parameters { l1, l2, .. } = scene.pendulum;
     let scale = scale(scene);
     let off = |length: f64, rod: usize| [0, 1].map(|axis| scale * length * (shown[rod][axis] - exact[rod][axis]));

@@ -1,7 +1,6 @@
 //! The planner held against the reference, and shown.
 
 mod draw;
-mod fit;
 mod judge;
 mod options;
 mod study;
@@ -10,10 +9,9 @@ mod target;
 mod words;
 
 pub use draw::scenes;
-pub use fit::{FOLLOWED, Sample, fit, margins};
-pub use judge::{Verdict, judge, reference_error};
+pub use judge::{Exact, Verdict, judge, reference_error};
 pub use options::Options;
-pub use study::{Case, Class, DURATIONS, GROSS, median, study};
-pub use tables::{broken, classes};
-pub use target::{CHIPS, Chip, M3, M4F};
+pub use study::{Case, DURATIONS, median, study};
+pub use tables::{summary, violations};
+pub use target::{CHIPS, Chip, M4F};
 pub use words::words;

@@ -5,18 +5,22 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Parser, value_parser};
 use double_pendulum::plan::{Limit, Plan, PlanError, Problem, Quantity};
 use double_pendulum::{Motion, Parameter};
-use firmware::motion::planner::half_pixel;
+use firmware::motion::planner::{Shown, half_pixel, problem};
+use firmware::scenes::SceneName;
 
 use super::target::{CHIPS, Chip};
 use crate::commands::simulate::{Number, Start};
+use crate::console::cli::choice;
+use crate::emulator::host::Show;
 
 const EXAMPLES: &str = "Examples:
   cargo plan --angles 90,90 --degrees --height 64 --duration 10
   cargo plan --masses 1,2.75 --angles 171,171 --degrees --target m4f
+  cargo plan --scene figure-7 --target pico
   cargo plan --study 100";
 
-/// Says how to compute a scene as cheaply as may be, right to half a pixel about the exact motion, and until when it is; or
-/// that nothing the chip can afford is right in any frame, which is an answer, too (exit code 0).
+/// Says how to compute a motion as cheaply as may be, right to half a pixel about the exact one, and until when that is
+/// expected; or that nothing the chip can afford is right in any frame, which is an answer, too (exit code 0).
 ///
 /// Numbers are decimals (0.25, 1e-3) or fractions (1/256).
 #[derive(Debug, Parser)]
@@ -25,7 +29,11 @@ pub struct Options {
     /// What moves.
     #[command(flatten)]
     pub start: Start,
-    /// Height of the display, pixels; both rods together are half of it long
+    /// A scene of the boards as they start it, in place of all that moves: angles and masses are then the nearest `f32`
+    #[arg(long, value_name = "NAME", value_parser = choice(SceneName::ALL.iter().copied(), SceneName::name),
+          conflicts_with_all = ["masses", "lengths", "gravity", "angles", "velocities", "degrees", "height", "duration", "rate"])]
+    pub scene: Option<SceneName>,
+    /// Height of the display, pixels, at most 1e6; both rods together are half of it long
     #[arg(long, value_name = "PIXELS", default_value = "64", allow_hyphen_values = true)]
     pub height: Number,
     /// How long the scene lasts, s
@@ -38,16 +46,16 @@ pub struct Options {
     #[arg(long, value_name = "CHIP", default_value = CHIPS[0].name,
           value_parser = PossibleValuesParser::new(CHIPS.iter().map(|chip| chip.name)).map(|name| chip(&name)))]
     pub target: Chip,
-    /// Plan this many scenes of all kinds instead, carry them out beside the reference, and print what came of it
-    #[arg(long, value_name = "SCENES", value_parser = value_parser!(u32).range(1..))]
+    /// Plan this many scenes of all kinds for every chip instead, carry them out beside the reference, and print what came of it
+    #[arg(long, value_name = "SCENES", conflicts_with_all = ["scene", "target"], value_parser = value_parser!(u32).range(1..))]
     pub study: Option<u32>,
-    /// Hold the planner's margins against the exact motion of this many scenes instead
-    #[arg(long, value_name = "SCENES", conflicts_with = "study", value_parser = value_parser!(u32).range(1..))]
-    pub fit: Option<u32>,
     /// Which scenes
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u32).range(0..))]
     pub seed: u32,
 }
+
+/// The highest display, pixels: half of one is then eight times what the rods' directions are rounded to.
+const HIGHEST: f64 = 1e6;
 
 fn chip(name: &str) -> Chip {
     CHIPS.into_iter().find(|chip| chip.name == name).unwrap_or(CHIPS[0])
@@ -56,21 +64,42 @@ fn chip(name: &str) -> Chip {
 impl Options {
     /// The scene with its plan, or with what forbids any; an error is one line that names the option and the value.
     pub fn plan(&self) -> anyhow::Result<(Problem, Result<Plan, Limit>)> {
+        let problem = match self.scene {
+            Some(name) => self.of_scene(name)?,
+            None => self.given()?,
+        };
+        let plan = self.target.plan(&problem);
+        Ok((problem, plan.map_err(|error| anyhow!("{}: {error}", option_of(&error)))?))
+    }
+
+    /// What a board of this class plans when it starts the scene.
+    fn of_scene(&self, name: SceneName) -> anyhow::Result<Problem> {
+        let settings = name.first_settings();
+        let mut show = Show::on(self.target.processor, name, &settings)?;
+        let answer = show.player().plan(0);
+        ensure!(answer.found > 0, "--scene {}: has no motion to plan", name.name());
+        Ok(problem(&settings, &Shown { way: None, height: answer.height as f32 }))
+    }
+
+    fn given(&self) -> anyhow::Result<Problem> {
         let rate = &self.rate;
         let whole = rate.value().fract() == 0.0 && rate.is_positive();
         ensure!(whole, "--rate {rate}: must be a whole number of frames per second, at least 1");
         ensure!(rate.value() <= f64::from(u16::MAX), "--rate {rate}: more than {}", u16::MAX);
-        ensure!(self.height.is_positive(), "--height {}: must be greater than zero", self.height);
+        let height = &self.height;
+        ensure!(height.is_positive(), "--height {height}: must be greater than zero");
+        ensure!(
+            height.value() <= HIGHEST,
+            "--height {height}: more than {HIGHEST}, finer than the rods' directions in f32"
+        );
         let ([a1, a2], [w1, w2]) = (self.start.angles(), self.start.velocities());
-        let scene = Problem {
+        Ok(Problem {
             pendulum: self.start.parameters(),
             start: Motion { a1, a2, w1, w2 },
-            tolerance: half_pixel(&self.start.parameters(), self.height.value()),
+            tolerance: half_pixel(&self.start.parameters(), height.value()),
             duration: self.duration.value(),
             rate: rate.value() as u16,
-        };
-        let plan = self.target.plan(&scene);
-        Ok((scene, plan.map_err(|error| anyhow!("{}: {error}", option_of(&error)))?))
+        })
     }
 }
 

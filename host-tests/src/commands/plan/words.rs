@@ -26,15 +26,24 @@ fn planned(scene: &Problem, plan: &Plan, chip: &Chip, frame: f32) -> Vec<String>
         format!("method   {}", plan.method.name()),
         format!("step     {}", step(scene, plan)),
         format!(
-            "horizon  right to half a pixel about the exact motion until {:.2} s of {} s",
+            "horizon  expected to be right to half a pixel about the exact motion until {:.2} s of {} s",
             plan.horizon, scene.duration
         ),
-        format!("error    at most {:.3} pixels expected until then", (1e3 * HALF_PIXEL * plan.error).ceil() / 1e3),
+        format!("error    at most {} expected until then", pixels(HALF_PIXEL * plan.error)),
         format!("cost     {:.0} cycles a frame, {share:.2} % of a {} (estimate)", plan.cost, chip.title),
         format!("search   {:.2} s of the chip's time to look ahead", plan.spent / chip.clock),
         format!("why      {}", method(plan)),
         format!("         {}", limit(plan, frame)),
     ]
+}
+
+/// Rounded up.
+fn pixels(error: f32) -> String {
+    if error < 1e-3 {
+        String::from("a thousandth of a pixel")
+    } else {
+        format!("{:.3} pixels", (1e3 * error).ceil() / 1e3)
+    }
 }
 
 fn step(scene: &Problem, plan: &Plan) -> String {
@@ -47,7 +56,9 @@ fn step(scene: &Problem, plan: &Plan) -> String {
 
 fn method(plan: &Plan) -> String {
     match plan.method {
-        Method::ClosedForm => String::from("until the horizon the linear motion is right to half a pixel"),
+        Method::ClosedForm => {
+            String::from("until the horizon the linear motion is expected to be right to half a pixel")
+        }
         Method::DirectionPlain => {
             String::from("to draw, directions are enough and no angles needed; the roundings of plain sums do not show")
         }

@@ -43,8 +43,6 @@ pub struct Extent {
     pub identity: identity::Steps,
     /// Scenes planned and carried out.
     pub plans: usize,
-    /// Scenes that the planner's margin is held against.
-    pub margins: usize,
     /// Boards whose frames are counted, from the first on.
     pub boards: usize,
     /// Starts across the maps of flips that are judged, and how many maps.
@@ -59,7 +57,6 @@ impl Extent {
         energy_steps: 1_000_000,
         identity: identity::Steps { full: 1_000_000, reduced: 1_000_000 },
         plans: 2_000,
-        margins: 1_000,
         boards: BOARDS.len(),
         flips: (64, 3),
     };
@@ -70,7 +67,6 @@ impl Extent {
         energy_steps: 100_000,
         identity: identity::Steps { full: 10_000, reduced: 1_000 },
         plans: 40,
-        margins: 10,
         boards: 2,
         flips: (64, 2),
     };
@@ -80,7 +76,7 @@ impl Extent {
         let rows = compared_rows().count();
         let survey = self.scenes * compared_rows().map(|row| accuracy::rates(row, self.finest).count()).sum::<usize>();
         let frames = self.boards * SceneName::ALL.len();
-        survey + energy::runs() + self.plans + self.margins + frames + targets * (identity::RUNS + rows)
+        survey + energy::runs() + self.plans + frames + targets * (identity::RUNS + rows)
     }
 }
 
@@ -99,8 +95,6 @@ pub struct Main {
 
 /// The seed of the scenes that are planned; the test draws others.
 const PLANS_SEED: u64 = 1;
-/// The seed of those that the planner's margin is held against.
-const MARGINS_SEED: u64 = 2;
 
 /// Computes the report and writes it into `folder`. Costs are counted on one board for each kind of core.
 ///
@@ -135,13 +129,8 @@ pub fn write(extent: &Extent, toolchain: &Toolchain, folder: &Path, bar: &Bar) -
     let energy = energy::table(extent.energy_steps, &tick);
 
     bar.say("carrying out plans");
-    let chip = &plan::M4F;
     let planned = plan::scenes(PLANS_SEED, plan::DURATIONS).take(extent.plans);
-    let plans = plan::study(planned, chip, tick)?;
-
-    bar.say("holding the planner's margins");
-    let held = plan::scenes(MARGINS_SEED, plan::FOLLOWED).take(extent.margins);
-    let margins = plan::fit(held, tick)?;
+    let plans = plan::study(planned, &plan::CHIPS, tick)?;
 
     bar.say("counting frames");
     let frames = frames::count(toolchain, extent.boards, &tick)?;
@@ -162,9 +151,8 @@ pub fn write(extent: &Extent, toolchain: &Toolchain, folder: &Path, bar: &Bar) -
         speed::floors(&points),
         energy,
         identity,
-        plan::classes(&plans, chip)?,
-        plan::broken(&plans),
-        plan::margins(&margins),
+        plan::summary(&plans),
+        plan::violations(&plans),
         frames::table(&frames),
         belief,
         flips::cost(&frames)?,
