@@ -284,8 +284,8 @@ pub const TURNING: [f64; 3] = [5e-7, 5e-3, 1.0];
 /// relative to.
 pub const ENERGY_SHOWN: f32 = 1e-6;
 
-/// The energy after a day in 32 bits beside that of `f64` in the same steps, over the energy above rest: the goal (measured at
-/// five mass ratios and three steps: compensated `f32` up to 2e-4, plain 3e-4, 32-bit fixed point 8e-4).
+/// The energy along a day in 32 bits beside that of `f64` in the same steps, over the energy above rest: the goal (measured at
+/// five mass ratios and three steps: compensated `f32` up to 2.0e-4, plain 3.1e-4, fixed point 2.6e-6).
 pub const DAY_ENERGY: f64 = 1e-3;
 /// What taking back up to half a step does to it, and the roundings of directions and momenta to `f32`: the goal.
 pub const DAY_READING: f64 = 1e-4;

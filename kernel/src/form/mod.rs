@@ -74,7 +74,7 @@ pub trait Form<R: Real>: Sealed + Copy + core::fmt::Debug + PartialEq {
     /// Checks the parameters and prepares steps of `dt` seconds; a negative one runs backwards.
     ///
     /// 1/240 s is as good as 1/256 s, though no `f32` holds it: the constants of a step are rounded so that it is longer than
-    /// dt by a share that is known, up to 2e-6 in 32 bits. Half a step ahead, one step is left out; [`state`](Self::state)
+    /// dt by a share that is known, up to 2e-6 in `f32`. Half a step ahead, one step is left out; [`state`](Self::state)
     /// takes back the rest. [`directions`](Self::directions) may be half a step ahead.
     ///
     /// Refuses what [`Pendulum::new`](crate::Pendulum::new) refuses, and a step that is NaN, infinite, zero or subnormal.
