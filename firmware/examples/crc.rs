@@ -7,7 +7,7 @@ use firmware::job::{JobError, Request};
 
 fn main() -> Result<(), Box<dyn Error>> {
     for line in io::stdin().lock().lines() {
-        let request = Request::parse(&line?).map_err(JobError::NoSuchRow)?;
+        let request = Request::parse(&line?).map_err(JobError::Malformed)?;
         println!("{:08x}", request.crc()?);
     }
     Ok(())

@@ -2,6 +2,7 @@
 
 use core::fmt;
 
+use crate::method::Method;
 use crate::real::Real;
 
 /// A quantity the caller chooses. Displays as the book's symbol.
@@ -42,6 +43,8 @@ pub enum Parameter {
     FrequencyRatio,
     /// The energy, J.
     Energy,
+    /// The method.
+    Method,
 }
 
 impl fmt::Display for Parameter {
@@ -63,6 +66,7 @@ impl fmt::Display for Parameter {
             Parameter::Order => "order",
             Parameter::FrequencyRatio => "frequency ratio",
             Parameter::Energy => "energy",
+            Parameter::Method => "method",
         })
     }
 }
@@ -119,6 +123,11 @@ pub enum Error {
         /// Length of rod 2, m.
         l2: f64,
     },
+    /// A plan does not choose from it: none of [`Method::DRAWN`].
+    NotDrawn {
+        /// The method.
+        method: Method,
+    },
     /// Every input was good, but a step was too long for the motion and led out of the finite numbers.
     Diverged {
         /// The first quantity that is no longer finite.
@@ -149,6 +158,7 @@ impl Error {
             | Error::Diverged { parameter, .. }
             | Error::OutOfRange { parameter, .. } => parameter,
             Error::UnequalRods { .. } => Parameter::L2,
+            Error::NotDrawn { .. } => Parameter::Method,
         }
     }
 }
@@ -182,6 +192,7 @@ impl fmt::Display for Error {
                 )
             }
             Error::UnequalRods { l1, l2 } => write!(f, "l2 = {l2:?}: the equal-rod form needs l2 = l1 = {l1:?}"),
+            Error::NotDrawn { method } => write!(f, "{method}: not a method that frames are drawn by"),
             Error::OutOfRange { parameter, value } => {
                 write!(f, "{parameter} = {value:?}: too extreme for this arithmetic in combination with the others")
             }

@@ -13,6 +13,7 @@
 //! | coordinates | [`Pendulum::positions`], [`Pendulum::velocities`] |
 //! | (not in the book) bounds from the energy | [`Bounds`], [`Pendulum::cannot_turn_over`], [`Pendulum::admissible_step`], [`Modes::step_limit`] |
 //! | (not in the book) when a rod first turns over | [`flips`] |
+//! | (not in the book) every way to compute a motion | [`Method`] |
 //! | (not in the book) the cheapest method that keeps to a tolerance | [`plan`](mod@plan) |
 //!
 //! Everything is generic over `f32` and `f64` ([`Real`]), uses no heap, never panics, and gives the same bits on
@@ -77,6 +78,7 @@ mod hamiltonian;
 mod lagrangian;
 mod lanes;
 mod legendre;
+mod method;
 mod modes;
 mod params;
 pub mod plan;
@@ -97,6 +99,7 @@ pub use error::{Error, Parameter};
 pub use geometry::Vector;
 pub use hamiltonian::Pendulum;
 pub use lanes::Lanes;
+pub use method::{Equations, Integrator, Method, Numbers};
 pub use modes::{Mode, Modes, periodic_mass_ratio};
 pub use params::Parameters;
 pub use real::Real;

@@ -1,7 +1,8 @@
 //! What goes in and out of a program can be kept with `serde` and logged with `defmt`.
 #![cfg(all(feature = "serde", feature = "defmt"))]
 
-use double_pendulum::plan::{Budget, Costs, Limit, Method, Plan, PlanError, Problem, Quantity, Way};
+use double_pendulum::Method;
+use double_pendulum::plan::{Budget, Costs, Limit, Plan, PlanError, Problem, Quantity, Way};
 use double_pendulum::{Error, Motion, Parameter, Parameters, State};
 
 /// The compiler refuses a type that lacks a trait.

@@ -1,7 +1,7 @@
 //! What is played: a scene with its settings, and how its time goes.
 
 use double_pendulum::plan::{Plan, Way};
-use double_pendulum::{Error, Parameters};
+use double_pendulum::{Error, Method, Parameters};
 
 use crate::app::command::Command;
 use crate::app::pace::Pace;
@@ -16,7 +16,7 @@ use crate::protocol::{Field, Frame, NO_METHOD, Planned, Status, method_code, met
 use crate::scenes::scene::Report;
 use crate::scenes::{AnyScene, SceneName};
 
-/// The value of [`Field::Way`] that leaves the way to the plan.
+/// The value of [`Field::Method`] that leaves the way to the plan.
 pub const AUTO: f64 = NO_METHOD as f64;
 
 /// What becomes of the motion.
@@ -104,7 +104,7 @@ impl<'a> Player<'a> {
             Command::PreviousScene => return self.choose(self.name.previous()),
             Command::Choose(name) => return self.choose(name),
             Command::Set { field: Field::Speed, value } => self.pace.set_speed(value)?,
-            Command::Set { field: Field::Way, value } => return self.go(value),
+            Command::Set { field: Field::Method, value } => return self.go(value),
             // Whatever the new value makes impossible, it is the new value that is wrong.
             Command::Set { field, value } => return self.start(self.name, self.with(field, value)?).map_err(|_| field),
             Command::Pause(paused) => self.pace.pause(paused),
@@ -285,12 +285,12 @@ impl<'a> Player<'a> {
 
     /// Starts again by the method of this code and no other, or as the plan has it if `value` is [`AUTO`].
     fn go(&mut self, value: f64) -> Result<bool, Field> {
-        let method = method_of(value as u8);
+        let method = method_of(value as u8).filter(|method| Method::DRAWN.contains(method));
         if value != AUTO && method.is_none_or(|method| value != f64::from(method_code(method))) {
-            return Err(Field::Way);
+            return Err(Field::Method);
         }
         let before = core::mem::replace(&mut self.means.method, method);
-        self.start(self.name, self.settings).inspect_err(|_| self.means.method = before).map_err(|_| Field::Way)
+        self.start(self.name, self.settings).inspect_err(|_| self.means.method = before).map_err(|_| Field::Method)
     }
 
     /// The settings with one of them changed; refuses an angle beyond straight up.

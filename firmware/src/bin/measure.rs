@@ -28,7 +28,7 @@ fn run(buffer: &mut [u8]) -> Result<(), ()> {
     let mut output = hio::hstdout()?;
     let mut peripherals = Peripherals::take().ok_or(())?;
     start_clock(&mut peripherals.SYST);
-    let request = Request::parse(semihosting::command_line(buffer).ok_or(())?).map_err(JobError::NoSuchRow);
+    let request = Request::parse(semihosting::command_line(buffer).ok_or(())?).map_err(JobError::Malformed);
     let outcome = request.and_then(|request| request.crc());
     let ticks = FULL - SYST::get_current();
     match outcome {

@@ -3,7 +3,7 @@
 use core::fmt;
 
 use double_pendulum::form::Winding;
-use double_pendulum::{Error, Pendulum, State};
+use double_pendulum::{Error, Method, Pendulum, State};
 
 use super::{OnBoards, Reading, Request, Run};
 use crate::protocol::Field;
@@ -11,8 +11,10 @@ use crate::protocol::Field;
 /// Why a request cannot be computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum JobError {
-    /// No row of the table goes together with this field and those before it.
-    NoSuchRow(Field),
+    /// The boards' applications do not link this method.
+    NotOnBoards(Method),
+    /// A message that is none, by the field that is wrong.
+    Malformed(Field),
     /// The kernel refuses a number.
     Refused(Error),
 }
@@ -20,7 +22,8 @@ pub enum JobError {
 impl fmt::Display for JobError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            JobError::NoSuchRow(field) => write!(f, "{}: there is none such with the rest", field.name()),
+            JobError::NotOnBoards(method) => write!(f, "{method}: not in the boards' applications"),
+            JobError::Malformed(field) => write!(f, "not a request: {}", field.name()),
             JobError::Refused(error) => write!(f, "{error}"),
         }
     }
@@ -37,7 +40,8 @@ impl From<Error> for JobError {
 impl From<JobError> for Field {
     fn from(error: JobError) -> Self {
         match error {
-            JobError::NoSuchRow(field) => field,
+            JobError::NotOnBoards(_) => Field::Method,
+            JobError::Malformed(field) => field,
             JobError::Refused(error) => error.into(),
         }
     }
@@ -59,12 +63,12 @@ pub struct Job<R = OnBoards> {
 }
 
 impl<R: Run> Job<R> {
-    /// Refuses what does not go together, and parameters, angles, velocities and step sizes that the kernel refuses.
+    /// Refuses a method that `R` does not have, and parameters, angles, velocities and step sizes that the kernel refuses.
     pub fn new(request: &Request) -> Result<Self, JobError> {
-        let Request { row, angles, stride, samples, .. } = *request;
+        let Request { method, angles, stride, samples, .. } = *request;
         let run = R::start(request)?;
         let parameters = request.parameters;
-        let parameters = if row.arithmetic.is_single() { parameters.cast::<f32>().cast() } else { parameters };
+        let parameters = if method.is_single() { parameters.cast::<f32>().cast() } else { parameters };
         let pendulum = Pendulum::new(parameters)?;
         let windings = angles.map(Winding::new);
         Ok(Self { run, pendulum, windings, stride, left: samples.saturating_add(1), steps: 0 })

@@ -2,18 +2,17 @@
 
 use core::fmt;
 
-use double_pendulum::{Motion, Parameters, Pendulum};
+use double_pendulum::{Integrator, Method, Motion, Parameters, Pendulum};
 
-use super::{Arithmetic, Formulation, Integrator, Model, Row};
-use crate::protocol::{Field, Message, Simulate};
+use crate::protocol::{Field, Message, Simulate, method_code, method_of};
 
 /// A motion to compute.
 ///
 /// As text it is the fields of its [`Simulate`] message, each byte as two hexadecimal digits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Request {
-    /// What it is computed with.
-    pub row: Row,
+    /// What it is computed by.
+    pub method: Method,
     /// Masses, lengths and gravity.
     pub parameters: Parameters<f64>,
     /// a1, a2 at the start, rad.
@@ -33,8 +32,9 @@ impl Request {
     /// form, which takes any, and for what [`Job::new`](super::Job::new) refuses.
     pub fn admissible_step(&self) -> Option<f64> {
         let ([a1, a2], [w1, w2]) = (self.angles, self.velocities);
-        let pendulum =
-            Pendulum::<f64>::new(self.parameters).ok().filter(|_| self.row.integrator != Integrator::ClosedForm)?;
+        let pendulum = Pendulum::<f64>::new(self.parameters)
+            .ok()
+            .filter(|_| self.method.integrator() != Integrator::ClosedForm)?;
         pendulum.admissible_step(&pendulum.to_state(&Motion { a1, a2, w1, w2 })).ok()
     }
 
@@ -43,11 +43,7 @@ impl Request {
         let Parameters { m1, m2, l1, l2, g } = self.parameters;
         Simulate {
             request,
-            arithmetic: self.row.arithmetic.code(),
-            model: self.row.model.code(),
-            form: self.row.form.code(),
-            integrator: self.row.integrator.code(),
-            order: self.row.order,
+            method: method_code(self.method),
             parameters: [m1, m2, l1, l2, g],
             angles: self.angles,
             velocities: self.velocities,
@@ -57,18 +53,11 @@ impl Request {
         }
     }
 
-    /// What a message asks for; refuses words that do not exist.
+    /// What a message asks for; refuses a method that does not exist.
     pub fn from_message(message: &Simulate) -> Result<Self, Field> {
         let [m1, m2, l1, l2, g] = message.parameters;
-        let row = Row {
-            arithmetic: Arithmetic::from_code(message.arithmetic).ok_or(Field::Arithmetic)?,
-            model: Model::from_code(message.model).ok_or(Field::Model)?,
-            form: Formulation::from_code(message.form).ok_or(Field::Form)?,
-            integrator: Integrator::from_code(message.integrator).ok_or(Field::Integrator)?,
-            order: message.order,
-        };
         Ok(Self {
-            row,
+            method: method_of(message.method).ok_or(Field::Method)?,
             parameters: Parameters { m1, m2, l1, l2, g },
             angles: message.angles,
             velocities: message.velocities,

@@ -1,6 +1,7 @@
 //! The motion itself, apart from any frame of it: the state after n ticks, and what its energy has become.
 
-use double_pendulum::plan::{Directions, Method, Way, WayStepper};
+use double_pendulum::Method;
+use double_pendulum::plan::{Directions, Way, WayStepper};
 use double_pendulum::{Error, Motion, Pendulum, State};
 
 use crate::config::{Processor, TICK_RATE};

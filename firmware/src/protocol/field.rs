@@ -7,10 +7,9 @@ use super::choice::choice;
 choice! {
     /// What a request or a command can be wrong in.
     Field {
-        /// The arithmetic.
-        Arithmetic = 0, "arithmetic";
-        /// The model.
-        Model = 1, "model";
+        /// The method, by its [`method_code`](super::method_code); to set the scene's, [`NO_METHOD`](super::NO_METHOD) is as
+        /// the plan has it.
+        Method = 0, "method";
         /// Mass of bob 1.
         M1 = 2, "m1";
         /// Mass of bob 2.
@@ -45,17 +44,8 @@ choice! {
         Scene = 17, "scene";
         /// The message itself: of no known kind, or not of that kind's length.
         Message = 18, "message";
-        /// The form. As the arithmetic, the model, the method and the order: that none such goes with those before it.
-        Form = 19, "form";
-        /// The method.
-        Integrator = 20, "integrator";
-        /// The order of the method.
-        Order = 21, "order";
         /// The button.
         Key = 22, "key";
-        /// The method of the scene, by its [`method_code`](super::method_code); [`NO_METHOD`](super::NO_METHOD): as the
-        /// plan has it.
-        Way = 23, "way";
     }
 }
 

@@ -22,7 +22,7 @@ use crc::{CRC_32_ISO_HDLC, Crc, Table};
 use super::Message;
 
 /// The version of the protocol; the first byte of every message.
-pub const VERSION: u8 = 7;
+pub const VERSION: u8 = 8;
 /// Set in the kind of every message to the chip, and in no other's.
 pub const TO_CHIP: u8 = 0x80;
 /// The most bytes a message's fields may take.

@@ -1,25 +1,19 @@
 //! The plan of the scene played.
 
-use double_pendulum::plan::{Limit, Method};
+use double_pendulum::Method;
+use double_pendulum::plan::Limit;
 
-/// The code of no method: nothing affordable holds. And of what this version of the protocol does not know.
+/// The code of no method: nothing affordable holds.
 pub const NO_METHOD: u8 = u8::MAX;
 
-/// A method's code on the wire, which does not change when the order of the methods does. 3 and 4 are retired.
+/// A method's code on the wire: its place in the table.
 pub const fn method_code(method: Method) -> u8 {
-    match method {
-        Method::ClosedForm => 0,
-        Method::DirectionPlain => 1,
-        Method::Direction => 2,
-        Method::Fixed32 => 5,
-        Method::Fixed64 => 6,
-        _ => NO_METHOD,
-    }
+    method as u8
 }
 
 /// The method with this code.
 pub fn method_of(code: u8) -> Option<Method> {
-    Method::ALL.iter().copied().find(|&method| method_code(method) == code)
+    Method::ALL.get(usize::from(code)).copied()
 }
 
 /// The code on the wire of what ends a horizon.

@@ -5,16 +5,8 @@ crate::message! {
     Simulate = 0x81 {
         /// Chosen by the host; every answer repeats it.
         request: u16,
-        /// The arithmetic, by its [`code`](crate::job::Arithmetic::code).
-        arithmetic: u8,
-        /// The equations, by their [`code`](crate::job::Model::code).
-        model: u8,
-        /// What is stepped, by its [`code`](crate::job::Formulation::code).
-        form: u8,
-        /// How a step is made, by its [`code`](crate::job::Integrator::code).
-        integrator: u8,
-        /// The order of the integrator; 0 for the closed form.
-        order: u8,
+        /// The method, by its [`method_code`](super::method_code).
+        method: u8,
         /// m1, m2 (kg), l1, l2 (m), g (m/s^2).
         parameters: [f64; 5],
         /// a1, a2 at the start, rad.

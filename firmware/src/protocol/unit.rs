@@ -40,7 +40,7 @@ impl Unit {
             Field::G => Self::MetrePerSecondSquared,
             Field::A1 | Field::A2 | Field::Angle => Self::Degree,
             Field::W1 | Field::W2 => Self::RadianPerSecond,
-            Field::MassRatio | Field::Speed | Field::Way => Self::One,
+            Field::MassRatio | Field::Speed | Field::Method => Self::One,
             _ => return None,
         })
     }

@@ -1,6 +1,7 @@
 //! Figures 3 to 5: small oscillations, both angles as scrolling curves within their envelopes, in closed form.
 
-use double_pendulum::plan::{Method, Way};
+use double_pendulum::Method;
+use double_pendulum::plan::Way;
 use double_pendulum::trig::{DefaultTrig, SinCos};
 use double_pendulum::{Error, Modes, Motion, Oscillation, Parameters, Pendulum, SmallOscillations};
 
@@ -30,7 +31,7 @@ const CURVE: u8 = 255;
 const ENVELOPE_GREY: u8 = 5;
 
 /// The scene shows the linear model and does not follow the plan.
-const CLOSED_FORM: Way = Way { method: Method::ClosedForm, steps: 1 };
+const CLOSED_FORM: Way = Way { method: Method::ClosedFormF32, steps: 1 };
 
 /// The page's worked example: equal rods of 0.25 m, g = 9.8 m/s^2, a1 = 0, a2 = 30 degrees, let go from rest.
 pub fn example(mass_ratio: f32) -> Settings {

@@ -1,4 +1,4 @@
-//! `cargo count`: what each arithmetic costs on the target, per step; or any function of any program, per call.
+//! `cargo count`: what each method costs on the target, per step; or any function of any program, per call.
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -6,8 +6,8 @@ use std::time::Duration;
 
 use anyhow::bail;
 use clap::Parser;
-use double_pendulum::Parameters;
-use firmware::job::{ROWS, Request, Row};
+use double_pendulum::{Method, Parameters};
+use firmware::job::Request;
 use host_tests::commands::count::{
     CallCosts, Cost, CountError, ERROR_BAR, FULL_CYCLE, Profile, StepCost, Target, affordable_steps, calls_of,
     step_cost,
@@ -22,8 +22,8 @@ const GRAVITY: f32 = 9.81;
 const MOST_STEPS: i64 = 65_536;
 
 const EXAMPLES: &str = "Examples:
-  cargo count                                             every arithmetic on all three cores
-  cargo count f32-compensated --on lm3s6965evb-m4 --listing
+  cargo count                                             every method on all three cores
+  cargo count rk4-f32-direction --on lm3s6965evb-m4 --listing
   cargo count --elf firmware.elf --function step --seconds 5
 
 A function's figures are from its first instruction to its return: the call itself comes on top, about 2 cycles and 1 for
@@ -33,16 +33,16 @@ each argument. What the program prints, and how it ended, goes to stderr. If it 
 #[derive(Debug, Parser)]
 #[command(name = "cargo count", after_help = EXAMPLES)]
 struct Arguments {
-    /// Only arithmetics whose name contains this
+    /// Only methods whose name contains this
     #[arg(default_value = "")]
-    arithmetic: String,
+    method: String,
     /// Only this board; else the three of QEMU with a panel, a Cortex-M3, M4F and M0+; with --elf lm3s6965evb-m4
     #[arg(long, value_name = "NAME", value_parser = cli::choice(&BOARDS, |board| board.name))]
     on: Option<&'static Board>,
     /// Count a function of this program instead, with what interrupts it; the program ends itself by semihosting, or is
     /// ended after --seconds
     #[arg(long, value_name = "FILE", requires = "function",
-          conflicts_with_all = ["arithmetic", "steps", "m2", "l2", "angle", "halvings", "listing"])]
+          conflicts_with_all = ["method", "steps", "m2", "l2", "angle", "halvings", "listing"])]
     elf: Option<PathBuf>,
     /// The function of that program: mangled, demangled, or a part of its name that no other has
     #[arg(long, value_name = "NAME", requires = "elf")]
@@ -50,7 +50,7 @@ struct Arguments {
     /// How long that program may run, s
     #[arg(long, value_name = "N", default_value_t = 600, requires = "elf", value_parser = clap::value_parser!(u32).range(1..))]
     seconds: u32,
-    /// Steps to average over; else 256, or fewer of a costly arithmetic
+    /// Steps to average over; else 256, or fewer of a costly method
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=MOST_STEPS))]
     steps: Option<u32>,
     /// The mass of bob 2, kg; that of bob 1 is 1
@@ -106,16 +106,18 @@ fn run(arguments: &Arguments) -> anyhow::Result<()> {
 }
 
 impl Arguments {
-    /// What is asked for of each arithmetic with this in its name, but of those that refuse such a pendulum, which the host
+    /// What is asked for of each method with this in its name, but of those that refuse such a pendulum, which the host
     /// finds out before anything is built or printed; one at least.
     fn requests(&self) -> anyhow::Result<Vec<Request>> {
-        let rows: Vec<_> = ROWS.iter().copied().filter(|row| row.to_string().contains(&self.arithmetic)).collect();
-        if rows.is_empty() {
-            let names = ROWS.iter().map(Row::to_string).collect::<Vec<_>>().join(", ");
-            bail!("no arithmetic '{}'; there are {names}", self.arithmetic);
+        let methods: Vec<_> =
+            Method::ALL.iter().copied().filter(|method| method.name().contains(&self.method)).collect();
+        if methods.is_empty() {
+            let names = Method::ALL.iter().map(|method| method.name()).collect::<Vec<_>>().join(", ");
+            bail!("no method '{}'; there are {names}", self.method);
         }
-        let request = |row| self.request(row);
-        let started = rows.into_iter().map(|row| Request { stride: 1, ..request(row) }.crc().map(|_| request(row)));
+        let request = |method| self.request(method);
+        let started =
+            methods.into_iter().map(|method| Request { stride: 1, ..request(method) }.crc().map(|_| request(method)));
         let (accepted, refused): (Vec<_>, Vec<_>) = started.partition(Result::is_ok);
         match refused.into_iter().find_map(Result::err) {
             Some(error) if accepted.is_empty() => Err(error.into()),
@@ -123,10 +125,10 @@ impl Arguments {
         }
     }
 
-    fn request(&self, row: Row) -> Request {
+    fn request(&self, method: Method) -> Request {
         let Self { m2, l2, angle, .. } = *self;
         Request {
-            row,
+            method,
             parameters: Parameters { m1: 1.0, m2, l1: 1.0, l2, g: GRAVITY.into() },
             angles: [angle; 2],
             velocities: [0.0; 2],
@@ -148,7 +150,7 @@ impl Arguments {
 
 /// Titles and widths of the columns.
 const ROW: [(&str, usize); 9] = [
-    ("arithmetic", 29),
+    ("method", 29),
     ("board", 16),
     ("steps", 5),
     ("instructions", 12),
@@ -162,7 +164,7 @@ const ROW: [(&str, usize); 9] = [
 fn row(request: &Request, board: &Board, cost: &StepCost) -> String {
     let StepCost { instructions, cycles, stalls, hot_bytes, code_bytes, stack_bytes } = cost;
     let cells = [
-        request.row.to_string(),
+        request.method.to_string(),
         board.name.to_owned(),
         request.stride.to_string(),
         format!("{instructions:.1}"),
@@ -180,7 +182,7 @@ fn row(request: &Request, board: &Board, cost: &StepCost) -> String {
 fn list(target: &Target, request: &Request) -> anyhow::Result<()> {
     let image = target.image();
     let profile = Profile::of(target, request)?;
-    say(format_args!("{} on {}: per step, executions, cycles (estimate), stalls", request.row, target.board.name))?;
+    say(format_args!("{} on {}: per step, executions, cycles (estimate), stalls", request.method, target.board.name))?;
     say(ERROR_BAR)?;
     let mut function = None;
     for (address, spot) in profile.spots() {

@@ -4,8 +4,8 @@ use std::io::{self, BufWriter};
 use std::process::ExitCode;
 
 use anyhow::Context;
-use host_tests::commands::simulate::{Options, Place, Plan, Table, choose, on_board, on_host, plan};
-use host_tests::console::cli::{self, Refused, complain};
+use host_tests::commands::simulate::{Options, Place, Plan, Table, choose, list, on_board, on_host, plan};
+use host_tests::console::cli::{self, Refused, complain, say};
 use host_tests::console::progress::Bar;
 
 fn main() -> ExitCode {
@@ -13,9 +13,12 @@ fn main() -> ExitCode {
 }
 
 fn run(options: &Options) -> anyhow::Result<()> {
+    if options.list {
+        return Ok(say(list())?);
+    }
     let plan = planned(options).map_err(|error| Refused::because(format_args!("{error:#}")))?;
     let output = BufWriter::new(io::stdout().lock());
-    let mut table = Table::new(output, plan.request.row.arithmetic, plan.every.clone(), options.bits);
+    let mut table = Table::new(output, plan.request.method, plan.every.clone(), options.bits);
     let bar = Bar::start("rows", u64::from(plan.request.samples) + 1);
     let row = |reading: &_| {
         bar.advance(1);

@@ -1,6 +1,7 @@
 //! What a board streams of the page's scene, by the kernel alone: nothing of the firmware but its rate.
 
-use double_pendulum::plan::{Method, Way, WayStepper};
+use double_pendulum::Method;
+use double_pendulum::plan::{Way, WayStepper};
 use double_pendulum::{Motion, Parameters};
 use firmware::config::{GRAVITY, ROD, TICK_RATE};
 
@@ -13,7 +14,7 @@ impl Expected {
     pub fn new(mass_ratio: f32, angle: f32) -> Self {
         let parameters = Parameters::equal_rods(mass_ratio, ROD, GRAVITY as f32).cast();
         let start = Motion::at_rest(angle.into(), angle.into());
-        let way = Way { method: Method::Fixed64, steps: 1 };
+        let way = Way { method: Method::Extrapolation10Fixed64, steps: 1 };
         Self(WayStepper::new(&parameters, &start, TICK_RATE as u16, way).expect("the board simulates it"))
     }
 

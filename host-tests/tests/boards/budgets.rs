@@ -110,12 +110,12 @@ fn exercise(board: &mut impl Stepped) -> Result<u32, Box<dyn Error>> {
     play(board, FRAMES)?;
     send(board, Restart { request: 8 })?;
     send(board, Pause { request: 9, paused: 0 })?;
-    for &row in ON_BOARDS {
+    for &method in ON_BOARDS {
         for dt in [1.0 / 256.0, 0.5, 0.0] {
             let parameters = Parameters { m1: 1.0, m2: 1.0, l1: 1.0, l2: 1.0, g: 9.81 };
             let (angles, velocities) = ([2.0, 1.0], [0.5, -0.5]);
             let (stride, samples) = (4, 20);
-            let request = Request { row, parameters, angles, velocities, dt, stride, samples };
+            let request = Request { method, parameters, angles, velocities, dt, stride, samples };
             send(board, request.message(10))?;
             play(board, COMPUTING)?;
         }

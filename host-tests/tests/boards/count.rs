@@ -4,9 +4,9 @@ use std::ops::RangeInclusive;
 use std::process::Command;
 
 use crate::support::{application, settings, toolchain};
-use double_pendulum::Parameters;
-use double_pendulum::plan::{Costs, Method};
-use firmware::job::{Arithmetic, Formulation, Model, ROWS, Request, Row};
+use double_pendulum::plan::Costs;
+use double_pendulum::{Method, Numbers, Parameters};
+use firmware::job::Request;
 use firmware::protocol::{Field, Set, Unit, method_code};
 use host_tests::commands::count::goal::{GOALS, SECONDS};
 use host_tests::commands::count::{CountError, FULL_CYCLE, Image, Target, affordable_steps, calls_in_next, step_cost};
@@ -23,20 +23,20 @@ fn targets() -> Vec<Target> {
     Target::build_all(&toolchain()).unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn request(row: Row, stride: u32) -> Request {
+fn request(method: Method, stride: u32) -> Request {
     let parameters = Parameters::equal_rods(1.0, 1.0, 9.81);
     let (angles, velocities, dt) = ([2.0, 2.0], [0.0; 2], 1.0 / 256.0);
-    Request { row, parameters, angles, velocities, dt, stride, samples: 1 }
+    Request { method, parameters, angles, velocities, dt, stride, samples: 1 }
 }
 
 #[test]
 fn the_log_counts_as_many_instructions_as_the_clock() {
     let steps = 400;
     for target in targets().iter().filter(|target| target.board.cpu == "cortex-m4") {
-        let row = Row::rk4(Arithmetic::F32, Formulation::Canonical);
-        let logged = step_cost(target, &request(row, steps)).unwrap_or_else(|error| panic!("{error}"));
+        let method = Method::Rk4F32;
+        let logged = step_cost(target, &request(method, steps)).unwrap_or_else(|error| panic!("{error}"));
         let ticks = |steps| {
-            let (_, ticks) = target.run(&request(row, steps)).unwrap_or_else(|error| panic!("{error}"));
+            let (_, ticks) = target.run(&request(method, steps)).unwrap_or_else(|error| panic!("{error}"));
             ticks as f64
         };
         let clocked = (ticks(2 * steps) - ticks(steps)) * INSTRUCTIONS_PER_TICK / f64::from(steps);
@@ -53,8 +53,8 @@ fn the_book_by_the_libm_crate_costs_an_eighth_less_than_the_trial_found() {
     // sines are computed in f64, and the sums and products of our own library save an eighth.
     let expected = 20_000.0..22_000.0;
     for target in targets().iter().filter(|target| target.board.cpu == "cortex-m4") {
-        let row = Row { model: Model::Textbook, ..Row::rk4(Arithmetic::F32Libm, Formulation::Canonical) };
-        let request = request(row, 16);
+        let method = Method::TextbookF32;
+        let request = request(method, 16);
         let stride = affordable_steps(target, &request).unwrap_or_else(|error| panic!("{error}"));
         let cost = step_cost(target, &Request { stride, ..request }).unwrap_or_else(|error| panic!("{error}"));
         assert!(expected.contains(&cost.instructions), "{cost:?}");
@@ -68,10 +68,10 @@ fn a_step_costs_no_more_than_its_goal() {
     for target in &targets() {
         for goal in GOALS.iter().filter(|goal| goal.cpu == target.board.cpu) {
             let request =
-                Request { parameters: goal.parameters(), angles: [0.5, 0.5], ..request(goal.row, FULL_CYCLE) };
+                Request { parameters: goal.parameters(), angles: [0.5, 0.5], ..request(goal.method, FULL_CYCLE) };
             let stride = affordable_steps(target, &request).unwrap_or_else(|error| panic!("{error}"));
             let cost = step_cost(target, &Request { stride, ..request }).unwrap_or_else(|error| panic!("{error}"));
-            println!("{}, {}, m2, l2 = {:?}: {cost:?}", goal.row, goal.cpu, goal.second);
+            println!("{}, {}, m2, l2 = {:?}: {cost:?}", goal.method, goal.cpu, goal.second);
             assert!(cost.cycles <= goal.cycles, "{goal:?}: {cost:?}");
         }
     }
@@ -82,11 +82,11 @@ fn a_simulated_second_costs_no_more_than_its_goal() {
     let exact: Vec<_> = SCENES[..2].iter().map(exact).collect();
     for target in &targets() {
         let goals = || SECONDS.iter().filter(|goal| goal.cpu == target.board.cpu);
-        let rows = ROWS.iter().filter(|row| row.arithmetic == Arithmetic::Fixed64);
-        let costs: Vec<_> = rows
-            .map(|&row| {
-                let request = accuracy::request(row, &SCENES[0], accuracy::usual_rate(row));
-                (row, costs::one(target, &request).unwrap_or_else(|error| panic!("{error}")).cycles)
+        let methods = Method::ALL.iter().filter(|method| method.numbers() == Numbers::Fixed64);
+        let costs: Vec<_> = methods
+            .map(|&method| {
+                let request = accuracy::request(method, &SCENES[0], accuracy::usual_rate(method));
+                (method, costs::one(target, &request).unwrap_or_else(|error| panic!("{error}")).cycles)
             })
             .collect();
         for goal in goals() {
@@ -94,19 +94,20 @@ fn a_simulated_second_costs_no_more_than_its_goal() {
             let keeps = |error: Option<accuracy::Error>| error.is_some_and(|error| error.angle <= goal.error);
             let wholes: Vec<_> = costs
                 .iter()
-                .filter_map(|&(row, cycles)| {
-                    let is_few = |rate: &u32| keeps(accuracy::error(row, scene, *rate, &exact[goal.scene]));
-                    Some((row, accuracy::rates(row, 8).find(is_few)? * scene.duration, cycles))
+                .filter_map(|&(method, cycles)| {
+                    let is_few = |rate: &u32| keeps(accuracy::error(method, scene, *rate, &exact[goal.scene]));
+                    Some((method, accuracy::rates(method, 8).find(is_few)? * scene.duration, cycles))
                 })
                 .collect();
             let a_second = |steps: u32, cycles: f64| f64::from(steps) * cycles / f64::from(scene.duration);
             let whole = wholes.iter().map(|&(_, steps, cycles)| a_second(steps, cycles)).fold(f64::INFINITY, f64::min);
             // From the fewest whole steps a second by halves down to the fewest steps through the scene, a sixth less at most.
-            let fewest = |row, few| {
+            let fewest = |method, few| {
                 let (mut too_few, mut enough) = (few - few / 6, few);
                 while enough - too_few > 1 {
                     let steps = u32::midpoint(too_few, enough);
-                    let half = if keeps(accuracy::error_after(row, scene, steps)) { &mut enough } else { &mut too_few };
+                    let half =
+                        if keeps(accuracy::error_after(method, scene, steps)) { &mut enough } else { &mut too_few };
                     *half = steps;
                 }
                 enough
@@ -114,13 +115,13 @@ fn a_simulated_second_costs_no_more_than_its_goal() {
             let cheapest = wholes
                 .iter()
                 .filter(|(_, few, cycles)| a_second(few - few / 6, *cycles) < whole)
-                .map(|&(row, few, cycles)| (row, fewest(row, few), cycles))
-                .map(|(row, steps, cycles)| (a_second(steps, cycles), steps, row))
+                .map(|&(method, few, cycles)| (method, fewest(method, few), cycles))
+                .map(|(method, steps, cycles)| (a_second(steps, cycles), steps, method))
                 .min_by(|one, other| one.0.total_cmp(&other.0));
-            let (cycles, steps, row) = cheapest.expect("an order that keeps the error");
+            let (cycles, steps, method) = cheapest.expect("an order that keeps the error");
             let steps = format!("{steps} steps in {} s", scene.duration);
-            println!("{:e} rad on {}: {cycles:.0} cycles a second by {row}, {steps}", goal.error, goal.cpu);
-            assert!(cycles <= goal.cycles, "{goal:?}: {cycles} by {row}, {steps}");
+            println!("{:e} rad on {}: {cycles:.0} cycles a second by {method}, {steps}", goal.error, goal.cpu);
+            assert!(cycles <= goal.cycles, "{goal:?}: {cycles} by {method}, {steps}");
         }
     }
 }
@@ -132,18 +133,12 @@ const PRICED: RangeInclusive<f64> = 0.9..=1.1;
 fn a_step_costs_what_the_planner_thinks() {
     for target in &targets() {
         let costs = target.board.processor().costs;
-        for (method, name) in [
-            (Method::ClosedForm, "f32-linear-direction"),
-            (Method::DirectionPlain, "f32-direction"),
-            (Method::Direction, "f32-compensated-direction"),
-            (Method::Fixed32, "fixed32-direction"),
-        ] {
-            let row = ROWS.iter().find(|row| row.to_string() == name).expect("a row");
-            let request = Request { angles: [0.5, 0.5], ..request(*row, FULL_CYCLE) };
+        for &method in Method::DRAWN {
+            let request = Request { angles: [0.5, 0.5], ..request(method, FULL_CYCLE) };
             let stride = affordable_steps(target, &request).unwrap_or_else(|error| panic!("{error}"));
             let cost = step_cost(target, &Request { stride, ..request }).unwrap_or_else(|error| panic!("{error}"));
             let share = f64::from(costs.of_frame(method, 1)) / cost.cycles;
-            assert!(PRICED.contains(&share), "{name} on {}: {share} of {cost:?}", target.board.name);
+            assert!(PRICED.contains(&share), "{method} on {}: {share} of {cost:?}", target.board.name);
         }
     }
 }
@@ -163,8 +158,8 @@ fn a_scene_is_prepared_and_stepped_in_64_bits_for_what_the_planner_thinks() -> R
         machine.next_frame()?;
         let step = most(&mut machine, "Fixed64State::advance")?;
         let mut prepared: f64 = 0.0;
-        for &method in Method::ALL {
-            let (field, unit, value) = (Field::Way.code(), Unit::One.code(), method_code(method).into());
+        for &method in Method::DRAWN {
+            let (field, unit, value) = (Field::Method.code(), Unit::One.code(), method_code(method).into());
             machine.machine().serial.send(&Set { request: 1, field, unit, value })?;
             // Whether the command comes before this frame or the next is a matter of bytes.
             for _ in 0..2 {

@@ -3,7 +3,8 @@
 use std::io::Write;
 use std::process::{Command, Stdio};
 
-use firmware::job::{ROWS, Request};
+use double_pendulum::Method;
+use firmware::job::Request;
 use host_tests::commands::count::Target;
 use host_tests::commands::report::identity::{Steps, compare, every_state};
 use host_tests::commands::report::scene::SCENES;
@@ -30,8 +31,10 @@ fn host_and_targets_agree_after_every_step() {
 #[test]
 fn unoptimised_code_computes_the_same_bits() {
     let scenes = [&SCENES[0], &SCENES[1]];
-    let requests: Vec<Request> =
-        ROWS.iter().flat_map(|&row| scenes.map(|scene| every_state(row, scene, STEPS_UNOPTIMISED))).collect();
+    let requests: Vec<Request> = Method::ALL
+        .iter()
+        .flat_map(|&method| scenes.map(|scene| every_state(method, scene, STEPS_UNOPTIMISED)))
+        .collect();
     let mut cargo = Command::new(env!("CARGO"));
     cargo.current_dir(toolchain::workspace()).args(["run", "--quiet", "--package", "firmware", "--example", "crc"]);
     cargo.args(["--target-dir", "target/unoptimised"]);
@@ -48,7 +51,7 @@ fn unoptimised_code_computes_the_same_bits() {
     assert_eq!(text.lines().count(), requests.len());
     for (line, request) in text.lines().zip(&requests) {
         let optimised = request.crc().unwrap_or_else(|error| panic!("{error}"));
-        assert_eq!(line, format!("{optimised:08x}"), "{}", request.row);
+        assert_eq!(line, format!("{optimised:08x}"), "{}", request.method);
     }
 }
 

@@ -52,7 +52,7 @@ fn without_a_panel_it_says_so_and_goes_on() -> Result<(), QemuError> {
     machine.quit()
 }
 
-/// Every arithmetic's from its copy in memory: a branch into nowhere would end the application.
+/// Every method's from its copy in memory: a branch into nowhere would end the application.
 #[test]
 fn its_steps_run_in_flash_and_in_memory() -> Result<(), QemuError> {
     let (toolchain, elf) = (toolchain(), application(&STM32F405));
@@ -60,9 +60,16 @@ fn its_steps_run_in_flash_and_in_memory() -> Result<(), QemuError> {
     // It listens from here on.
     assert!(machine.serial.next::<Frame>().is_some());
     let parameters = Parameters { m1: 1.0, m2: 1.0, l1: 1.0, l2: 1.0, g: GRAVITY };
-    for (&row, request) in ON_BOARDS.iter().zip(0..) {
-        let motion =
-            Request { row, parameters, angles: [0.5; 2], velocities: [0.0; 2], dt: 1.0 / 256.0, stride: 1, samples: 0 };
+    for (&method, request) in ON_BOARDS.iter().zip(0..) {
+        let motion = Request {
+            method,
+            parameters,
+            angles: [0.5; 2],
+            velocities: [0.0; 2],
+            dt: 1.0 / 256.0,
+            stride: 1,
+            samples: 0,
+        };
         machine.serial.send(&motion.message(request))?;
         for in_ram in [0, 1] {
             machine.serial.send(&Measure { request, steps: MOST_MEASURED_STEPS, in_ram })?;

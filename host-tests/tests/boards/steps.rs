@@ -1,4 +1,4 @@
-//! The steps of every arithmetic, which real boards have twice, in flash and in memory: they run wherever they are copied.
+//! The steps of every method, which real boards have twice, in flash and in memory: they run wherever they are copied.
 
 use std::error::Error;
 

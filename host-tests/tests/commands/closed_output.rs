@@ -18,8 +18,8 @@ fn a_closed_output_ends_every_command_quietly() -> io::Result<()> {
     let folder = tempfile::tempdir()?;
     let figures = ["--folder", folder.path().to_str().expect("text")];
     let commands: [(&str, &[&str]); 13] = [
-        (env!("CARGO_BIN_EXE_count"), &["f32-linear-direction", "--on", "lm3s6965evb", "--steps", "4"]),
-        (env!("CARGO_BIN_EXE_count"), &["f32-linear-direction", "--on", "lm3s6965evb", "--steps", "4", "--listing"]),
+        (env!("CARGO_BIN_EXE_count"), &["closed-form-f32", "--on", "lm3s6965evb", "--steps", "4"]),
+        (env!("CARGO_BIN_EXE_count"), &["closed-form-f32", "--on", "lm3s6965evb", "--steps", "4", "--listing"]),
         (env!("CARGO_BIN_EXE_count"), &["--help"]),
         (env!("CARGO_BIN_EXE_demo"), &["--headless", "--seconds", "0.1"]),
         (env!("CARGO_BIN_EXE_figures"), &figures),

@@ -57,17 +57,18 @@ fn a_recording_shows_a_swinging_pendulum_and_is_the_same_every_time() {
     assert!(bytes(&animation) == bytes(&again), "two recordings differ");
 }
 
-/// The summary names the way, the plan's or the one asked for, and until when it is right.
+/// The summary names the method, the plan's or the one asked for, and until when it is right.
 #[test]
-fn the_way_can_be_chosen_and_is_named() {
+fn the_method_can_be_chosen_and_is_named() {
     toolchain();
-    for (way, shown) in
-        [("auto", "64-bit fixed point, a step to a frame"), ("f32", "compensated f32, a step to a frame")]
-    {
-        let output = demo(&["--scene", "page", "--way", way, "--headless", "--seconds", "2"]);
+    for (method, shown) in [
+        ("plan", "extrapolation10-fixed64, a step to a frame"),
+        ("rk4-f32-direction", "rk4-f32-direction, a step to a frame"),
+    ] {
+        let output = demo(&["--scene", "page", "--method", method, "--headless", "--seconds", "2"]);
         assert_eq!(output.status.code(), Some(0), "{output:?}");
         let line = output.stdout.lines().find(|line| line.starts_with("shown ")).unwrap_or_default();
-        assert!(line.contains(shown) && line.contains("right to half a pixel until"), "{way}: {line}");
+        assert!(line.contains(shown) && line.contains("right to half a pixel until"), "{method}: {line}");
     }
 }
 
@@ -135,8 +136,8 @@ fn a_closed_output_is_no_failure() {
 #[test]
 fn bad_arguments_are_refused_in_one_line() {
     let cases: [&[&str]; 14] = [
-        &["--scene", "small-1", "--way", "f32"],
-        &["--scene", "flips", "--way", "fixed64"],
+        &["--scene", "small-1", "--method", "rk4-f32-direction"],
+        &["--scene", "flips", "--method", "extrapolation10-fixed64"],
         &["--screenshot", "/nowhere/last.png"],
         &["--board", "arduino"],
         &["--port", "/nowhere/tty"],

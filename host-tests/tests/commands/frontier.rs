@@ -1,6 +1,6 @@
 //! What the chart of cost against error promises: fixed point fills what is between pictures and the last digits.
 
-use firmware::job::{ROWS, Row};
+use double_pendulum::Method;
 use host_tests::commands::report::accuracy::{error, exact, rates};
 use host_tests::commands::report::scene::SCENES;
 
@@ -14,10 +14,10 @@ fn there_is_no_hole_between_1e_8_and_1e_12() {
     let scene = &SCENES[0];
     let exact = exact(scene);
     let mut errors = Vec::new();
-    for row in ROWS.iter().filter(|row: &&Row| row.arithmetic.is_fixed_point()) {
-        for rate in rates(*row, FINEST) {
-            if let Some(error) = error(*row, scene, rate, &exact) {
-                println!("{row} {rate} {:.1e}", error.angle);
+    for method in Method::ALL.iter().filter(|method| method.is_fixed_point()) {
+        for rate in rates(*method, FINEST) {
+            if let Some(error) = error(*method, scene, rate, &exact) {
+                println!("{method} {rate} {:.1e}", error.angle);
                 errors.push(error.angle);
             }
         }

@@ -21,7 +21,7 @@ fn said(arguments: &str) -> String {
 #[test]
 fn it_says_the_method_the_step_and_the_horizon() {
     let small = said("--angles 3,3 --degrees --height 64 --duration 10");
-    assert!(small.contains("32-bit fixed point") && small.contains("until 10.00 s of 10 s"), "{small}");
+    assert!(small.contains("rk4-fixed32") && small.contains("until 10.00 s of 10 s"), "{small}");
     let large = said("--angles 90,90 --degrees --duration 10 --target m4f");
     assert!(large.contains("plain f32") && large.contains("1/60 s, one to a frame"), "{large}");
     let figure7 = said("--masses 1,2.75 --angles 171,171 --degrees --duration 30");

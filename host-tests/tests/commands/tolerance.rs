@@ -71,19 +71,17 @@ fn every_row_is_within_the_tolerance_and_no_longer_step_would_do() -> Result<(),
 
 #[test]
 fn the_cheapest_serves_where_it_is_right() -> Result<(), String> {
-    for (case, row) in [
-        ("--angles 1e-4,1e-4 --until 1 --tolerance 1e-9", "f64-linear"),
-        ("--angles 0.5,0.5 --until 1 --tolerance 1e-3 --arithmetic fixed64", "fixed64-extrapolation-6"),
-        ("--angles 0.5,0.5 --until 10 --every 1/4 --tolerance 1e-9 --arithmetic fixed64", "fixed64-extrapolation-12"),
-        ("--angles 0.5,0.5 --until 1 --tolerance 1e-3 --model textbook", "f64-libm-textbook"),
-        ("--angles 0.5,0.5 --until 1 --tolerance 1e-9 --order 16", "f64-compensated-extrapolation-16"),
-        ("--angles 0.5,0.5 --until 1 --tolerance 1e-3 --on lm3s6965evb", "fixed32-direction"),
-        ("--angles 0.5,0.5 --until 1 --tolerance 1e-3 --on stm32f405", "f32-direction"),
-        ("--angles 0.5,0.5 --until 1 --tolerance 1e-3 --arithmetic f64 --on stm32f405", "f64-canonical"),
-        ("--angles 0.5,0.5 --until 10 --tolerance 1e-9 --on stm32f405 --every 1/4", "fixed64-extrapolation-12"),
+    for (case, method) in [
+        ("--angles 1e-4,1e-4 --until 1 --tolerance 1e-9", "closed-form-f64"),
+        ("--angles 0.5,0.5 --until 1 --tolerance 1e-3 --method textbook-f64", "textbook-f64"),
+        ("--angles 0.5,0.5 --until 1 --tolerance 1e-3 --method extrapolation16-f64", "extrapolation16-f64"),
+        ("--angles 0.5,0.5 --until 1 --tolerance 1e-3 --on lm3s6965evb", "rk4-fixed32"),
+        ("--angles 0.5,0.5 --until 1 --tolerance 1e-3 --on stm32f405", "rk4-f32-direction-plain"),
+        ("--angles 0.5,0.5 --until 1 --tolerance 1e-3 --method rk4-f64 --on stm32f405", "rk4-f64"),
+        ("--angles 0.5,0.5 --until 10 --tolerance 1e-9 --on stm32f405 --every 1/4", "extrapolation12-fixed64"),
     ] {
         let choice = chosen(case)?;
-        assert_eq!(choice.plan.request.row.to_string(), row, "{case}");
+        assert_eq!(choice.plan.request.method.to_string(), method, "{case}");
     }
     Ok(())
 }
@@ -93,9 +91,8 @@ fn the_cheapest_serves_where_it_is_right() -> Result<(), String> {
 fn what_nothing_reaches_is_refused_with_the_time_until_which_it_is() {
     for (case, named) in [
         ("--until 60 --every 1 --tolerance 1e-3", "--tolerance 1e-3: nothing that may be taken keeps it beyond 2"),
-        ("--until 5 --tolerance 1e-6 --arithmetic f32", "--tolerance 1e-6: nothing that may be taken keeps it beyond"),
-        ("--until 5 --tolerance 1e-6 --model textbook --order 8", "--order 8"),
-        ("--angles 2,2 --until 1 --tolerance 1e-6 --model linear", "keeps it beyond 0 s"),
+        ("--until 5 --tolerance 1e-6 --method rk4-f32", "--tolerance 1e-6: nothing that may be taken keeps it beyond"),
+        ("--angles 2,2 --until 1 --tolerance 1e-6 --method closed-form-f64", "keeps it beyond 0 s"),
         ("--tolerance 0", "--tolerance 0: must be greater than zero"),
         ("--tolerance 1e-3 --until 0", "--until 0"),
         ("--tolerance 1e-3 --every 0", "--every 0"),
@@ -103,7 +100,7 @@ fn what_nothing_reaches_is_refused_with_the_time_until_which_it_is() {
         ("--tolerance 1e-3 --every 1e-6", "--every 1e-6: more than"),
         ("--tolerance 1e-3 --masses -1,1", "m1"),
         ("--tolerance 1e-3 --step 1/4", "--step"),
-        ("--tolerance 1e-3 --arithmetic fixed32 --form canonical", "--form canonical"),
+        ("--tolerance 1e-3 --method textbook-f64 --on lm3s6965evb", "--method textbook-f64: not on lm3s6965evb"),
     ] {
         match chosen(case) {
             Ok(choice) => panic!("{case}: {choice}"),

@@ -2,8 +2,9 @@
 
 use std::f64::consts::PI;
 
+use double_pendulum::Method;
 use double_pendulum::Parameters;
-use double_pendulum::plan::{Method, Way};
+use double_pendulum::plan::Way;
 use fastrand::Rng;
 use firmware::app::controls::{Key, NoButtons};
 use firmware::app::instruments::Instruments;
@@ -11,7 +12,7 @@ use firmware::app::player::{AUTO, News};
 use firmware::app::{App, Event};
 use firmware::config::{DT, MOST_MEASURED_STEPS, MOST_MESSAGES_PER_TICK, PLANNED, RECEIVE_QUEUE, TICK_RATE};
 use firmware::display::NoDisplay;
-use firmware::job::{Arithmetic, Formulation, OnBoards, Request, Row, Run};
+use firmware::job::{OnBoards, Request, Run};
 use firmware::motion::planner::Finding;
 use firmware::motion::settings::Settings;
 use firmware::protocol::Field;
@@ -123,10 +124,10 @@ fn a_board_tells_what_it_is_and_how_long_steps_take() {
     let measure = |request, in_ram| wire(&Measure { request, steps: u32::MAX, in_ram });
     app.receive(measure(2, 0), |_| ());
     assert_eq!(last::<Refused>(&app), Refused { request: 2, field: Field::Message.code() }, "no motion was asked for");
-    let row = Row::rk4(Arithmetic::F32, Formulation::Canonical);
+    let method = Method::Rk4F32;
     let parameters = Parameters { m1: 1.0, m2: 1.0, l1: 1.0, l2: 1.0, g: 9.81 };
     let [angles, velocities] = [[0.5; 2], [0.0; 2]];
-    let request = Request { row, parameters, angles, velocities, dt: DT, stride: 1, samples: 1 };
+    let request = Request { method, parameters, angles, velocities, dt: DT, stride: 1, samples: 1 };
     app.receive(wire(&request.message(3)), |_| ());
     while app.work(|_| ()) {}
     for (request, in_ram, cycles) in [(4, 0, 1600), (5, 1, 800), (6, 0, 1600)] {
@@ -291,7 +292,7 @@ fn the_plan_is_found_in_some_tick_told_when_asked_and_followed() {
         tick += 1;
         app.run_to(tick, |event| news.push(event));
     }
-    let way = Way { method: Method::Fixed32, steps: calm.steps };
+    let way = Way { method: Method::Rk4Fixed32, steps: calm.steps };
     assert_eq!(news.last(), Some(&Event::Motion(News::Shown(way, calm.cycles))), "the cheaper way is taken");
     app.receive(wire(&Ask { request: 9 }), |_| ());
     let status: Status = last(&app);
@@ -311,17 +312,17 @@ fn the_plan_is_found_in_some_tick_told_when_asked_and_followed() {
 fn a_way_can_be_forced() {
     let mut app = app();
     let mut go = |value: f64| {
-        app.receive(wire(&set(Field::Way, value, Unit::One)), |_| ());
+        app.receive(wire(&set(Field::Method, value, Unit::One)), |_| ());
         app.receive(wire(&Ask { request: 2 }), |_| ());
         let status: Status = last(&app);
         status.method
     };
-    let fixed64 = method_code(Method::Fixed64);
-    for method in Method::ALL.iter().map(|&method| method_code(method)) {
+    let fixed64 = method_code(Method::Extrapolation10Fixed64);
+    for method in Method::DRAWN.iter().map(|&method| method_code(method)) {
         assert_eq!(go(method.into()), method);
         assert_eq!(go(AUTO), fixed64);
     }
-    for wrong in [-1.0, 0.5, 3.0, 7.0, 256.0, f64::NAN] {
+    for wrong in [-1.0, 0.5, method_code(Method::Rk4F64).into(), 99.0, 256.0, f64::NAN] {
         assert_eq!(go(wrong), fixed64, "{wrong}");
     }
 }

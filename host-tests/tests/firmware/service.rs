@@ -2,17 +2,15 @@
 
 use std::f64::consts::PI;
 
-use double_pendulum::Parameters;
+use double_pendulum::{Equations, Integrator, Method, Parameters};
 use firmware::app::service::{Received, Service};
-use firmware::job::{
-    Arithmetic, Formulation, Integrator, Job, JobError, Model, ON_BOARDS, ROWS, Reading, Request, Row,
-};
+use firmware::job::{Job, JobError, ON_BOARDS, Reading, Request};
 use firmware::protocol::Field;
-use firmware::protocol::{LinkError, MAX_WIRE, Refused, Sample, Simulate, StepTooLong, encode};
+use firmware::protocol::{LinkError, MAX_WIRE, Refused, Sample, Simulate, StepTooLong, encode, method_code};
 use host_tests::oracle::tolerances;
 
 const REQUEST: Request = Request {
-    row: Row::rk4(Arithmetic::F32, Formulation::Canonical),
+    method: Method::Rk4F32,
     parameters: Parameters { m1: 1.0, m2: 2.75, l1: 1.0, l2: 0.5, g: 9.8 },
     angles: [2.0, -1.0],
     velocities: [0.5, 0.25],
@@ -39,10 +37,10 @@ fn readings(request: &Request) -> Vec<Reading> {
 }
 
 #[test]
-fn every_row_of_the_boards_is_answered_in_full() {
-    for &row in ON_BOARDS {
+fn every_method_of_the_boards_is_answered_in_full() {
+    for &method in ON_BOARDS {
         let parameters = Parameters { l2: 1.0, ..REQUEST.parameters };
-        let request = Request { row, parameters, ..REQUEST };
+        let request = Request { method, parameters, ..REQUEST };
         let mut service = Service::default();
         assert_eq!(send(&mut service, &request.message(7)), [Received::Accepted]);
         let samples = samples(&mut service);
@@ -57,67 +55,69 @@ fn every_row_of_the_boards_is_answered_in_full() {
     }
 }
 
-/// One step at a time or all at once: the same readings from the same row, whoever asks.
+/// One step at a time or all at once: the same readings from the same method, whoever asks.
 #[test]
 fn the_host_computes_what_the_service_answers() {
-    for &row in ON_BOARDS {
+    for &method in ON_BOARDS {
         let parameters = Parameters { l2: 1.0, ..REQUEST.parameters };
-        let request = Request { row, parameters, ..REQUEST };
+        let request = Request { method, parameters, ..REQUEST };
         let mut at_once = Vec::new();
         let done = request.readings(|reading| {
             at_once.push(*reading);
             Ok::<_, JobError>(())
         });
-        assert_eq!((done, at_once), (Ok(()), readings(&request)), "{row}");
+        assert_eq!((done, at_once), (Ok(()), readings(&request)), "{method}");
     }
 }
 
-/// Every row of the general motion, the page's form too, goes where the canonical one does, whole turns of either rod
+/// Every method of Hamilton's equations, the page's form too, goes where the canonical one does, whole turns of either rod
 /// included.
 #[test]
-fn every_row_of_the_table_moves_alike() {
+fn every_method_moves_alike() {
     let turning = Request { velocities: [14.0, -9.0], dt: 1.0 / 8192.0, stride: 1024, samples: 8, ..REQUEST };
-    let states = |row: Row| {
+    let states = |method: Method| {
         let mut states = Vec::new();
-        let request = Request { row, ..turning };
+        let request = Request { method, ..turning };
         request.readings::<JobError>(|reading| {
             states.push(reading.state);
             Ok(())
         })?;
         Ok::<_, JobError>(states)
     };
-    let canonical = states(Row::rk4(Arithmetic::F64, Formulation::Canonical)).expect("a pendulum");
+    let canonical = states(Method::Rk4F64).expect("a pendulum");
     let last = canonical.last().expect("a sample");
     assert!(last[0].abs() > PI && last[1].abs() > PI, "both rods turn over: {last:?}");
-    for &row in ROWS.iter().filter(|row| matches!(row.model, Model::General | Model::Textbook)) {
+    let is_general = |method: &&Method| !matches!(method.equations(), Equations::EqualRods | Equations::Linear);
+    for &method in Method::ALL.iter().filter(is_general) {
         let [double, single, micromath] = tolerances::TURNING;
-        let near = match row.arithmetic {
-            Arithmetic::F32Micromath => micromath,
-            Arithmetic::F64 | Arithmetic::F64Compensated | Arithmetic::F64Libm | Arithmetic::Fixed64 => double,
-            _ => single,
+        let near = match method {
+            Method::Rk4F32Micromath => micromath,
+            Method::Rk4Fixed32 => single,
+            _ if method.is_single() => single,
+            _ => double,
         };
         let mut farthest = 0.0_f64;
-        for (state, exact) in states(row).unwrap_or_else(|error| panic!("{row}: {error}")).iter().zip(&canonical) {
+        for (state, exact) in states(method).unwrap_or_else(|error| panic!("{method}: {error}")).iter().zip(&canonical)
+        {
             farthest = state.iter().zip(exact).map(|(x, y)| (x - y).abs()).fold(farthest, f64::max);
         }
-        println!("{row}: {farthest:e}");
-        assert!(farthest < near, "{row}: {farthest:e}");
+        println!("{method}: {farthest:e}");
+        assert!(farthest < near, "{method}: {farthest:e}");
     }
 }
 
-/// The name of a row is its words, so no two are alike, and a request comes through its text unchanged.
+/// No two names are alike, and a request comes through its text unchanged.
 #[test]
-fn rows_and_requests_are_what_their_text_says() {
-    for (index, &row) in ROWS.iter().enumerate() {
-        let name = row.to_string();
-        assert!(name.starts_with(row.arithmetic.name()), "{name}");
-        assert!(ROWS[..index].iter().all(|other| *other != row && other.to_string() != name), "{name} twice");
-        let request = Request { row, ..REQUEST };
+fn methods_and_requests_are_what_their_text_says() {
+    for (index, &method) in Method::ALL.iter().enumerate() {
+        assert_eq!(Method::from_name(method.name()), Some(method));
+        assert!(Method::ALL[..index].iter().all(|other| other.name() != method.name()), "{method} twice");
+        let request = Request { method, ..REQUEST };
         assert_eq!(Request::parse(&request.to_string()), Ok(request));
-        assert!(row.order > 0 || row.integrator == Integrator::ClosedForm, "{name}");
+        assert_eq!(method.order() == 0, method.integrator() == Integrator::ClosedForm, "{method}");
     }
     let text = REQUEST.to_string();
-    for broken in ["", &text[2..], &text.replace('0', "g"), &text.replacen("32", "ff", 1), "\u{e4}\u{e4}"] {
+    for broken in ["", &text[2..], &text.replace('0', "g"), &text.replacen("000001", "0000ff", 1), "\u{e4}\u{e4}"] {
         assert!(Request::parse(broken).is_err(), "{broken}");
     }
 }
@@ -133,8 +133,7 @@ fn a_step_too_long_for_the_energy_is_obeyed_and_told() {
     assert_eq!(samples(&mut service).len(), 6);
     let fine = Request { dt: admissible_step, ..lively };
     assert_eq!(send(&mut service, &fine.message(5)), [Received::Accepted]);
-    let row = Row { model: Model::Linear, integrator: Integrator::ClosedForm, order: 0, ..lively.row };
-    let closed_form = Request { row, ..lively };
+    let closed_form = Request { method: Method::ClosedFormF64, ..lively };
     assert_eq!(send(&mut service, &closed_form.message(6)), [Received::Accepted]);
 }
 
@@ -142,15 +141,8 @@ fn a_step_too_long_for_the_energy_is_obeyed_and_told() {
 fn a_refusal_names_the_field_and_leaves_the_work_alone() {
     let good = REQUEST.message(1);
     for (message, field) in [
-        (Simulate { arithmetic: 0xFF, ..good }, Field::Arithmetic),
-        (Simulate { model: 0xFF, ..good }, Field::Model),
-        (Simulate { form: 0xFF, ..good }, Field::Form),
-        (Simulate { integrator: 0xFF, ..good }, Field::Integrator),
-        (Simulate { order: 5, ..good }, Field::Order),
-        (Simulate { integrator: Integrator::Extrapolation.code(), order: 8, ..good }, Field::Integrator),
-        (Simulate { arithmetic: Arithmetic::F32Compensated.code(), ..good }, Field::Form),
-        (Simulate { arithmetic: Arithmetic::F32Libm.code(), ..good }, Field::Arithmetic),
-        (Simulate { model: Model::Textbook.code(), ..good }, Field::Model),
+        (Simulate { method: 0xFF, ..good }, Field::Method),
+        (Simulate { method: method_code(Method::TextbookF32), ..good }, Field::Method),
         (Simulate { parameters: [0.0, 1.0, 1.0, 1.0, 9.8], ..good }, Field::M1),
         (Simulate { parameters: [1.0, -1.0, 1.0, 1.0, 9.8], ..good }, Field::M2),
         (Simulate { parameters: [1.0, 1.0, f64::NAN, 1.0, 9.8], ..good }, Field::L1),

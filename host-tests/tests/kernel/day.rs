@@ -1,7 +1,8 @@
 //! A simulated day: no method that steps in 32 bits loses its energy or its time to its number type.
 
+use double_pendulum::Method;
 use double_pendulum::form::{DirectionForm, Fixed32Form, Form, Plain, Stepper};
-use double_pendulum::plan::{Method, Way};
+use double_pendulum::plan::Way;
 use double_pendulum::{Error, Pendulum, Real, State};
 use firmware::config::{STM32F405, TICK_RATE};
 use firmware::motion::simulation::{Means, Simulation};
@@ -115,7 +116,7 @@ fn a_frame_tells_the_energy_of_one_instant_all_day() -> Result<(), Error> {
     let pendulum = Pendulum::new(settings.parameters.cast::<f64>())?;
     let start = pendulum.to_state(&settings.motion().cast());
     let energy = pendulum.energy_above_rest(&start);
-    for method in [None, Some(Method::DirectionPlain), Some(Method::Direction), Some(Method::Fixed32)] {
+    for method in [None, Some(Method::Rk4F32DirectionPlain), Some(Method::Rk4F32Direction), Some(Method::Rk4Fixed32)] {
         let mut simulation = Simulation::new(&settings, &Means { processor: STM32F405, method })?;
         let Way { method, steps } = simulation.way();
         let dt = 1.0 / f64::from(TICK_RATE * steps);
@@ -125,7 +126,7 @@ fn a_frame_tells_the_energy_of_one_instant_all_day() -> Result<(), Error> {
             let ticks = DAY as u32 * TICK_RATE / LOOKS_OF_A_SCENE;
             (0..ticks).for_each(|_| simulation.tick());
             // extrapolation loses nothing
-            let lost = if method == Method::Fixed64 {
+            let lost = if method == Method::Extrapolation10Fixed64 {
                 0.0
             } else {
                 exact.advance(ticks * steps);

@@ -3,12 +3,12 @@
 use std::fmt::Debug;
 
 use double_pendulum::form::{DirectionForm, ExtrapolatedForm, Form};
-use double_pendulum::{Error, Parameters, Pendulum, Real, State};
+use double_pendulum::{Error, Method, Parameters, Pendulum, Real, State};
 use firmware::app::controls::NoButtons;
 use firmware::app::service::Service;
 use firmware::app::{App, Event};
 use firmware::display::NoDisplay;
-use firmware::job::{Arithmetic, Formulation as Stepped, Request, Row};
+use firmware::job::Request;
 use firmware::motion::settings::Settings;
 use firmware::protocol::Field;
 use firmware::protocol::{Refused, Sample};
@@ -75,8 +75,7 @@ fn every_stepper_stops_at_its_last_good_state() {
 fn too_quick() -> Request {
     let parameters = Parameters { m1: 1.0, m2: 100.0, ..parameters() };
     let (angles, velocities) = ([3.0, 1.0], [3000.0, -3000.0]);
-    let row = Row::rk4(Arithmetic::F32, Stepped::Canonical);
-    Request { row, parameters, angles, velocities, dt: 0.06, stride: 1, samples: MANY as u32 }
+    Request { method: Method::Rk4F32, parameters, angles, velocities, dt: 0.06, stride: 1, samples: MANY as u32 }
 }
 
 #[test]

@@ -3,9 +3,10 @@
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
 
+use double_pendulum::Method;
 use double_pendulum::form::DirectionForm;
 use double_pendulum::plan::{
-    Budget, Costs, Limit, Method, Plan, PlanError, Problem, Quantity, Search, ShadowedRun, Way, WayStepper, plan,
+    Budget, Costs, Limit, Plan, PlanError, Problem, Quantity, Search, ShadowedRun, Way, WayStepper, plan,
 };
 use double_pendulum::{Error, Motion, Parameter, Parameters};
 use firmware::config::{CORTEX_M3, STM32F405};
@@ -32,16 +33,16 @@ fn small_oscillations_are_taken_from_the_closed_form() {
     let small = scene(1.0, 3.0, 10.0);
     let found = |costs: &Costs| plan(&small, costs, &CORTEX_M3.budget(&small)).expect("a good scene");
     let Plan { method, steps, limit, horizon, .. } = found(&Costs { fixed32: 20e3, ..M3 });
-    assert_eq!((method, steps, limit, horizon), (Method::ClosedForm, 0, Limit::End, 10.0));
+    assert_eq!((method, steps, limit, horizon), (Method::ClosedFormF32, 0, Limit::End, 10.0));
     // One step costs less where it is made of integers, or by the floating-point unit.
-    assert_eq!(found(&M3).method, Method::Fixed32);
-    assert_eq!(planned(&small).method, Method::DirectionPlain);
+    assert_eq!(found(&M3).method, Method::Rk4Fixed32);
+    assert_eq!(planned(&small).method, Method::Rk4F32DirectionPlain);
 }
 
 #[test]
 fn large_regular_oscillations_take_the_cheapest_steps() {
     let plan = planned(&scene(1.0, 60.0, 10.0));
-    assert_eq!((plan.method, plan.steps, plan.limit), (Method::DirectionPlain, 1, Limit::End));
+    assert_eq!((plan.method, plan.steps, plan.limit), (Method::Rk4F32DirectionPlain, 1, Limit::End));
     assert!((0.001..=1.0).contains(&plan.error) && plan.cost == M4F.direction_plain, "{plan:?}");
     assert_eq!(plan.dt, 1.0 / 60.0);
 }
@@ -53,10 +54,10 @@ fn a_chaotic_scene_is_predicted_for_as_long_as_it_can_be() {
     assert!(plan.limit == Limit::Growth && (12.0..20.0).contains(&plan.horizon), "{plan:?}");
     let frugal = Budget { frame: 5e3, planning: 1e9 };
     let single = double_pendulum::plan::plan(&figure7, &M4F, &frugal).expect("a good scene");
-    assert!(single.method != Method::Fixed64 && (5.5..8.0).contains(&single.horizon), "{single:?}");
+    assert!(single.method != Method::Extrapolation10Fixed64 && (5.5..8.0).contains(&single.horizon), "{single:?}");
     let lavish = Budget { frame: 5e6, planning: 1e11 };
     let double = double_pendulum::plan::plan(&figure7, &M4F, &lavish).expect("a good scene");
-    assert!(double.method == Method::Fixed64 && double.horizon > 2.0 * single.horizon, "{double:?}");
+    assert!(double.method == Method::Extrapolation10Fixed64 && double.horizon > 2.0 * single.horizon, "{double:?}");
     assert_eq!(double.dt, 1.0 / f64::from(60 * double.steps), "{double:?}");
 }
 
@@ -88,7 +89,7 @@ fn a_shadowed_run_makes_frames() {
     let Problem { pendulum, start, .. } = page;
     let mut run = ShadowedRun::<f32, DirectionForm<f32>>::new(&page, 4).expect("a good scene");
     let mut motion =
-        WayStepper::new(&pendulum, &start, RATE, Way { method: Method::Direction, steps: 4 }).expect("good");
+        WayStepper::new(&pendulum, &start, RATE, Way { method: Method::Rk4F32Direction, steps: 4 }).expect("good");
     for _ in 0..RATE {
         motion.advance();
         let (directions, estimate) = run.next_frame().expect("a good scene");
@@ -99,7 +100,13 @@ fn a_shadowed_run_makes_frames() {
 
 #[test]
 fn every_method_has_a_name_of_its_own() {
-    let methods = [Method::ClosedForm, Method::DirectionPlain, Method::Direction, Method::Fixed32, Method::Fixed64];
+    let methods = [
+        Method::ClosedFormF32,
+        Method::Rk4F32DirectionPlain,
+        Method::Rk4F32Direction,
+        Method::Rk4Fixed32,
+        Method::Extrapolation10Fixed64,
+    ];
     assert_eq!(BTreeSet::from(methods.map(Method::name)).len(), methods.len());
 }
 
@@ -175,11 +182,11 @@ fn the_lasting_way_is_what_a_frame_can_pay_for() {
             let within = |frame| Way::lasting(&pendulum, &start, RATE, costs, frame).expect("a pendulum");
             let cost = |way: Way| costs.of_frame(way.method, way.steps);
             let lavish = within(1e7);
-            assert_eq!((lavish.method, within(cost(lavish))), (Method::Fixed64, lavish));
+            assert_eq!((lavish.method, within(cost(lavish))), (Method::Extrapolation10Fixed64, lavish));
             let frugal = within(cost(lavish).next_down());
             assert!(cost(frugal) < cost(lavish), "{frugal:?} {lavish:?}");
             let poor = within(costs.fixed64.next_down());
-            assert!(poor.method != Method::Fixed64 && cost(poor) < costs.fixed64, "{poor:?}");
+            assert!(poor.method != Method::Extrapolation10Fixed64 && cost(poor) < costs.fixed64, "{poor:?}");
             assert_eq!(Way::of(&pendulum, &start, RATE, poor.method), Ok(poor));
             let poorer = within(cost(poor).next_down());
             assert!(poorer.steps == (poor.steps / 2).max(1), "{poorer:?} {poor:?}");
@@ -190,7 +197,7 @@ fn the_lasting_way_is_what_a_frame_can_pay_for() {
 /// Fixed point refuses a mass ratio of 100,000.
 #[test]
 fn the_lasting_way_can_be_gone() {
-    for (mass_ratio, method) in [(1.0, Method::Fixed32), (1e5, Method::Direction)] {
+    for (mass_ratio, method) in [(1.0, Method::Rk4Fixed32), (1e5, Method::Rk4F32Direction)] {
         let Problem { pendulum, start, .. } = scene(mass_ratio, 10.0, 20.0);
         let way = Way::lasting(&pendulum, &start, RATE, &M3, M3.fixed64.next_down()).expect("a pendulum");
         assert_eq!(way.method, method);
@@ -203,7 +210,7 @@ fn the_lasting_way_can_be_gone() {
 fn a_method_that_is_asked_for_resolves_the_motion() {
     let Problem { pendulum, start, .. } = scene(2.75, 171.0, 20.0);
     let steps = |method| Way::of(&pendulum, &start, RATE, method).expect("a pendulum").steps;
-    assert_eq!([Method::Fixed64, Method::Fixed32, Method::Direction].map(steps), [3, 2, 2]);
+    assert_eq!([Method::Extrapolation10Fixed64, Method::Rk4Fixed32, Method::Rk4F32Direction].map(steps), [3, 2, 2]);
 }
 
 /// What fixed point takes ends just beyond equal rods: the runs beside the motion must not be refused where it is not.
@@ -211,7 +218,7 @@ fn a_method_that_is_asked_for_resolves_the_motion() {
 fn a_way_that_can_be_gone_is_looked_at() {
     for degrees in [60.0, 90.0, 120.0] {
         let scene = scene(1.0, degrees, 1.0);
-        for method in [Method::Fixed32, Method::Direction, Method::Fixed64] {
+        for method in [Method::Rk4Fixed32, Method::Rk4F32Direction, Method::Extrapolation10Fixed64] {
             let way = Way::of(&scene.pendulum, &scene.start, RATE, method).expect("a pendulum");
             assert!(WayStepper::new(&scene.pendulum, &scene.start, RATE, way).is_ok(), "{way:?} at {degrees}");
             let mut search =
@@ -236,13 +243,13 @@ fn where_nothing_holds_there_is_no_plan_but_a_method_asked_for_is_told() {
         panic!("{:?}", plan(&scene, &M3, &budget))
     };
     assert!(limit != Limit::End && spent <= budget.planning, "{limit:?} {spent}");
-    let mut search = Search::of(Method::ClosedForm, 1, &scene, &M3, &budget).expect("a good scene");
+    let mut search = Search::of(Method::ClosedFormF32, 1, &scene, &M3, &budget).expect("a good scene");
     let asked = loop {
         if let Some(plan) = search.advance(f32::INFINITY).expect("a good scene") {
             break plan;
         }
     };
-    assert_eq!((asked.method, asked.horizon), (Method::ClosedForm, 0.0));
+    assert_eq!((asked.method, asked.horizon), (Method::ClosedFormF32, 0.0));
 }
 
 #[test]
@@ -322,7 +329,7 @@ fn the_limit_is_what_would_help() {
 #[test]
 fn what_is_hardly_better_is_not_worth_its_cost() {
     let lively = plan(&scene(0.5, 130.0, 30.0), &M4F, &Budget { frame: 13e3, planning: 1e10 }).expect("a good scene");
-    assert_eq!((lively.method, lively.steps), (Method::Direction, 2), "{lively:?}");
+    assert_eq!((lively.method, lively.steps), (Method::Rk4F32Direction, 2), "{lively:?}");
 }
 
 /// Where 32 bits of fixed point do not take a pendulum, it is looked at in floating point.

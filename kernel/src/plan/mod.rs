@@ -22,8 +22,8 @@
 //! What a step costs is the caller's business: [`Costs`] is a price list in any unit.
 //!
 //! ```
-//! use double_pendulum::plan::{Budget, Costs, Method, PlanError, Problem, plan};
-//! use double_pendulum::{Motion, Parameters};
+//! use double_pendulum::plan::{Budget, Costs, PlanError, Problem, plan};
+//! use double_pendulum::{Method, Motion, Parameters};
 //!
 //! // Cycles of a processor without a floating-point unit, and a display with 32 pixels to a metre: half of one may be missed.
 //! let costs =
@@ -33,7 +33,7 @@
 //! let small =
 //!     Problem { pendulum, start: Motion::at_rest(0.05, 0.05), tolerance: 0.5 / 32.0, duration: 10.0, rate: 60 };
 //! let found = plan(&small, &costs, &budget)?;
-//! assert_eq!((found.method, found.horizon), (Method::ClosedForm, 10.0));
+//! assert_eq!((found.method, found.horizon), (Method::ClosedFormF32, 10.0));
 //!
 //! let poor = Budget { frame: 1e3, ..budget };
 //! assert!(matches!(plan(&small, &costs, &poor), Err(PlanError::NothingHolds { .. })));
@@ -50,7 +50,7 @@ mod search;
 mod shadowed_run;
 mod way;
 
-pub use cost::{Budget, Costs, Method, ORDER};
+pub use cost::{Budget, Costs};
 pub use error::{PlanError, Quantity};
 pub use limit::Limit;
 pub use problem::Problem;

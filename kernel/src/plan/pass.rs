@@ -1,12 +1,13 @@
 //! Looking ahead with one step size: how wrong each method is, frame by frame.
 
-use super::cost::{Costs, Method, ORDER};
+use super::cost::{Costs, ORDER};
 use super::problem::{Perturbation, Problem};
 use super::run::{Directions, Run, distance};
 use super::shadowed_run::{ErrorEstimate, ShadowedRun};
 use super::way::Way;
 use crate::error::Error;
 use crate::form::{DirectionForm, Fixed32Form, Fixed64Form, Plain};
+use crate::method::Method;
 use crate::modes::Modes;
 use crate::small_oscillations::SmallOscillations;
 use crate::state::State;
@@ -40,7 +41,7 @@ impl Candidate {
     /// In how many frames it shows `way` to be right; one that `outlasts` all others is so wherever any is.
     #[inline(never)] // once in flash
     pub fn right_of(&self, way: Way, outlasts: bool) -> u32 {
-        let is_same = self.steps == way.steps || way.method == Method::ClosedForm;
+        let is_same = self.steps == way.steps || way.method == Method::ClosedFormF32;
         let is_shown = outlasts || self.method == way.method && is_same;
         if is_shown { self.right } else { 0 }
     }
@@ -75,17 +76,17 @@ enum Shadowed {
 impl Shadowed {
     fn new(method: Method, problem: &Problem, start: &State<f64>, steps: u32) -> Self {
         match method {
-            Method::Fixed32 => Self::Fixed32(ShadowedRun::from_state(problem, start, steps)),
-            Method::Fixed64 => Self::Fixed64(ShadowedRun::from_state(problem, start, steps)),
+            Method::Rk4Fixed32 => Self::Fixed32(ShadowedRun::from_state(problem, start, steps)),
+            Method::Extrapolation10Fixed64 => Self::Fixed64(ShadowedRun::from_state(problem, start, steps)),
             _ => Self::Direction(ShadowedRun::from_state(problem, start, steps)),
         }
     }
 
     fn method(&self) -> Method {
         match self {
-            Self::Direction(_) => Method::Direction,
-            Self::Fixed32(_) => Method::Fixed32,
-            Self::Fixed64(_) => Method::Fixed64,
+            Self::Direction(_) => Method::Rk4F32Direction,
+            Self::Fixed32(_) => Method::Rk4Fixed32,
+            Self::Fixed64(_) => Method::Extrapolation10Fixed64,
         }
     }
 
@@ -142,7 +143,7 @@ impl Pass {
         let (parameters, _) = &rounded;
         let motion = problem.start.cast();
         let linear = Modes::new(&parameters.cast()).ok().map(|modes| SmallOscillations::new(modes, &motion));
-        let methods = [shadowed.method(), Method::ClosedForm, Method::DirectionPlain];
+        let methods = [shadowed.method(), Method::ClosedFormF32, Method::Rk4F32DirectionPlain];
         let mut pass = Self {
             shadowed,
             plain: Run::new([rounded; 2], problem.rate, steps),
@@ -151,7 +152,7 @@ impl Pass {
             candidates: methods.map(|method| Candidate::new(method, steps)),
         };
         let [own, _, plain] = &mut pass.candidates;
-        plain.failed = own.method != Method::Direction;
+        plain.failed = own.method != Method::Rk4F32Direction;
         pass
     }
 
@@ -227,15 +228,15 @@ mod tests {
 
     #[test]
     fn what_is_right_in_one_way_says_nothing_of_another() {
-        let candidate = Candidate { right: 7, ..Candidate::new(Method::Direction, 4) };
+        let candidate = Candidate { right: 7, ..Candidate::new(Method::Rk4F32Direction, 4) };
         let right = |method, steps, outlasts| candidate.right_of(Way { method, steps }, outlasts);
-        assert_eq!(right(Method::Direction, 4, false), 7);
-        assert_eq!(right(Method::Direction, 2, false), 0);
-        assert_eq!(right(Method::DirectionPlain, 4, false), 0);
-        assert_eq!(right(Method::Fixed64, 3, true), 7);
-        let closed = Candidate { right: 5, ..Candidate::new(Method::ClosedForm, 1) };
-        assert_eq!(closed.right_of(Way { method: Method::ClosedForm, steps: 0 }, false), 5);
-        assert_eq!(closed.right_of(Way { method: Method::Direction, steps: 1 }, false), 0);
+        assert_eq!(right(Method::Rk4F32Direction, 4, false), 7);
+        assert_eq!(right(Method::Rk4F32Direction, 2, false), 0);
+        assert_eq!(right(Method::Rk4F32DirectionPlain, 4, false), 0);
+        assert_eq!(right(Method::Extrapolation10Fixed64, 3, true), 7);
+        let closed = Candidate { right: 5, ..Candidate::new(Method::ClosedFormF32, 1) };
+        assert_eq!(closed.right_of(Way { method: Method::ClosedFormF32, steps: 0 }, false), 5);
+        assert_eq!(closed.right_of(Way { method: Method::Rk4F32Direction, steps: 1 }, false), 0);
     }
 
     #[test]
@@ -248,7 +249,7 @@ mod tests {
             fixed64: 900.0,
             preparation: 1000.0,
         };
-        let steps = |cost| steps_for(&costs, Method::DirectionPlain, cost);
+        let steps = |cost| steps_for(&costs, Method::Rk4F32DirectionPlain, cost);
         assert_eq!([50.0, 100.0, 399.0, 400.0].map(steps), [1, 1, 3, 4]);
     }
 }

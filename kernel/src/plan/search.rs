@@ -2,13 +2,14 @@
 //!
 //! All of it is done in pieces that a busy caller can afford: a few steps of one motion, a comparison, a new step size.
 
-use super::cost::{Budget, Costs, Method};
+use super::cost::{Budget, Costs};
 use super::error::PlanError;
 use super::limit::Limit;
 use super::pass::{Candidate, Pass};
 use super::problem::Problem;
 use super::way::{FIRST_STEP, MOST_STEPS, RESOLVING, Way, start_and_step, steps_to_frame};
 use crate::error::{Error, Parameter};
+use crate::method::Method;
 use crate::state::State;
 
 /// The cheapest method found, and what it brings.
@@ -48,7 +49,7 @@ pub struct Search {
     start: State<f64>,
     /// The cheaper method in 32 bits.
     cheap: Method,
-    /// Steps to a frame by [`Method::Fixed64`], if they can be had, and what ends their horizon.
+    /// Steps to a frame by [`Method::Extrapolation10Fixed64`], if they can be had, and what ends their horizon.
     fine: Option<(u32, Limit)>,
     /// What is looked at, and in how many steps to a frame.
     method: Method,
@@ -85,7 +86,7 @@ impl Search {
             let way = Way::fixed64(pendulum, start, *rate, longest * admissible, costs, budget.frame)?;
             Some((way.steps, limit))
         };
-        let cheap = if costs.fixed32 < costs.direction { Method::Fixed32 } else { Method::Direction };
+        let cheap = if costs.fixed32 < costs.direction { Method::Rk4Fixed32 } else { Method::Rk4F32Direction };
         let steps = steps_to_frame(cheap, problem.rate, FIRST_STEP * admissible);
         Ok(Self {
             problem: *problem,
@@ -109,7 +110,7 @@ impl Search {
     /// For no method but this one, with `steps` steps to a frame: how long it is right, whatever it costs; a horizon of 0
     /// says that no frame is. The closed form has no steps; those given are the ones of the run that it is compared with.
     ///
-    /// Refuses what [`new`](Self::new) refuses. No steps count as one.
+    /// Refuses what [`new`](Self::new) refuses, and a method that is none of [`Method::DRAWN`]. No steps count as one.
     #[inline(never)]
     pub fn of(
         method: Method,
@@ -118,9 +119,12 @@ impl Search {
         costs: &Costs,
         budget: &Budget,
     ) -> Result<Self, PlanError> {
+        if !Method::DRAWN.contains(&method) {
+            return Err(Error::NotDrawn { method }.into());
+        }
         let mut search = Self::new(problem, costs, budget)?;
         search.steps = if steps > 0 { steps } else { 1 };
-        if method != Method::ClosedForm {
+        if method != Method::ClosedFormF32 {
             search.method = method;
         }
         (search.given, search.budget.frame) = (Some(method), f32::INFINITY);
@@ -169,9 +173,9 @@ impl Search {
     fn refused(&mut self, error: Error) -> Result<Option<Plan>, PlanError> {
         let is_step = matches!(error, Error::TooLarge { parameter: Parameter::Dt, .. });
         match self.method {
-            Method::Direction => Err(error.into()),
-            Method::Fixed32 if !is_step && self.given.is_none() => {
-                self.cheap = Method::Direction;
+            Method::Rk4F32Direction => Err(error.into()),
+            Method::Rk4Fixed32 if !is_step && self.given.is_none() => {
+                self.cheap = Method::Rk4F32Direction;
                 self.begin(self.cheap, self.steps);
                 Ok(None)
             }
@@ -239,7 +243,7 @@ impl Search {
     #[must_use]
     pub fn horizon(&self, way: Way) -> f64 {
         let resolves = |(steps, limit)| limit == Limit::Growth && way.steps >= steps;
-        let outlasts = way.method == Method::Fixed64 && self.fine.is_some_and(resolves);
+        let outlasts = way.method == Method::Extrapolation10Fixed64 && self.fine.is_some_and(resolves);
         let looked_at = self.candidates().iter().chain(&self.best);
         self.problem.time(looked_at.fold(0, |right, candidate| right.max(candidate.right_of(way, outlasts))))
     }
@@ -275,14 +279,16 @@ impl Search {
     fn refine(&mut self) -> Option<Limit> {
         let (method, steps) = (self.method, self.steps);
         let by_rounding = self.pass.as_ref().is_some_and(|pass| pass.shadowed().by_rounding);
-        if method == Method::Fixed64 {
+        if method == Method::Extrapolation10Fixed64 {
             return Some(self.fine.map_or(Limit::Budget, |(_, limit)| limit));
         }
         let finer = steps.saturating_mul(2);
         let cost = self.costs.of_frame(method, finer);
-        let is_worth = |&(steps, _): &(u32, Limit)| by_rounding || self.costs.of_frame(Method::Fixed64, steps) <= cost;
+        let is_worth = |&(steps, _): &(u32, Limit)| {
+            by_rounding || self.costs.of_frame(Method::Extrapolation10Fixed64, steps) <= cost
+        };
         let (method, steps) = match self.fine.filter(is_worth) {
-            Some((steps, _)) => (Method::Fixed64, steps),
+            Some((steps, _)) => (Method::Extrapolation10Fixed64, steps),
             None if by_rounding || finer > MOST_STEPS || cost > self.budget.frame => return Some(Limit::Budget),
             None => (method, finer),
         };
@@ -317,7 +323,7 @@ impl Search {
             let limit = if limit == Limit::Planning && !open { Limit::Budget } else { limit };
             return Err(PlanError::NothingHolds { limit, spent: self.spent });
         };
-        let steps = if best.method == Method::ClosedForm { 0 } else { best.steps };
+        let steps = if best.method == Method::ClosedFormF32 { 0 } else { best.steps };
         let rate = f64::from(self.problem.rate);
         Ok(Plan {
             method: best.method,

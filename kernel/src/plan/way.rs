@@ -1,10 +1,11 @@
 //! A motion carried out as a plan has it.
 
-use super::cost::{Costs, Method, ORDER};
+use super::cost::{Costs, ORDER};
 use super::run::Directions;
 use crate::error::Error;
 use crate::form::{DirectionForm, Fixed32Form, Fixed64Form, Form, Plain, Stepper, UnwrappedStepper};
 use crate::hamiltonian::Pendulum;
+use crate::method::Method;
 use crate::modes::Modes;
 use crate::params::Parameters;
 use crate::real::Real;
@@ -43,7 +44,7 @@ enum Carried {
     Fixed64(UnwrappedStepper<f32, Fixed64Form<ORDER>>),
 }
 
-/// At so many admissible steps or less in one, the roundings of [`Method::Fixed64`] are what ends its horizon, not its steps.
+/// At so many admissible steps or less in one, the roundings of [`Method::Extrapolation10Fixed64`] are what ends its horizon, not its steps.
 pub(super) const RESOLVING: f64 = 2.1;
 
 /// The first step looked at is no longer than this many admissible ones: the fastest rate that the energy allows turns a
@@ -59,7 +60,7 @@ pub(super) const MOST_STEPS: u32 = 1 << 16;
 pub(super) fn steps_to_frame(method: Method, rate: u16, longest: f64) -> u32 {
     let fewest = libm::ceil(1.0 / (longest * f64::from(rate)));
     let fewest = (fewest as u32).clamp(1, MOST_STEPS);
-    if method == Method::Fixed64 { fewest } else { fewest.next_power_of_two() }
+    if method == Method::Extrapolation10Fixed64 { fewest } else { fewest.next_power_of_two() }
 }
 
 /// Angles and momenta of `start`, and the longest step that resolves every motion of its energy, s.
@@ -73,7 +74,7 @@ pub(super) fn start_and_step(parameters: &Parameters<f64>, start: &Motion<f64>) 
 }
 
 impl Way {
-    /// The way that a motion may be shown in while nothing is known of it but its energy: by [`Method::Fixed64`] where
+    /// The way that a motion may be shown in while nothing is known of it but its energy: by [`Method::Extrapolation10Fixed64`] where
     /// `frame`, which a frame may cost, allows for it, in steps that resolve all there may be or, if those cost too much, the
     /// longest that are looked at; else by such steps in 32 bits, or as many as can be had.
     ///
@@ -98,9 +99,9 @@ impl Way {
             }
             Self { method, steps }
         };
-        let fixed = affordable(Method::Fixed32);
+        let fixed = affordable(Method::Rk4Fixed32);
         let is_fixed = costs.fixed32 < costs.direction && fixed.takes(parameters, start, rate);
-        Ok(if is_fixed { fixed } else { affordable(Method::Direction) })
+        Ok(if is_fixed { fixed } else { affordable(Method::Rk4F32Direction) })
     }
 
     /// By `method`, in the longest steps that resolve every motion of this energy.
@@ -108,11 +109,11 @@ impl Way {
     /// Refuses what [`lasting`](Self::lasting) refuses.
     pub fn of(parameters: &Parameters<f64>, start: &Motion<f64>, rate: u16, method: Method) -> Result<Self, Error> {
         let (_, admissible) = start_and_step(parameters, start)?;
-        let longest = if method == Method::Fixed64 { RESOLVING } else { FIRST_STEP };
+        let longest = if method == Method::Extrapolation10Fixed64 { RESOLVING } else { FIRST_STEP };
         Ok(Self { method, steps: steps_to_frame(method, rate, longest * admissible) })
     }
 
-    /// By [`Method::Fixed64`] in steps of `longest` s or less, as coarse as its numbers take, if they cost no more than `frame`.
+    /// By [`Method::Extrapolation10Fixed64`] in steps of `longest` s or less, as coarse as its numbers take, if they cost no more than `frame`.
     pub(super) fn fixed64(
         parameters: &Parameters<f64>,
         start: &Motion<f64>,
@@ -121,7 +122,10 @@ impl Way {
         costs: &Costs,
         frame: f32,
     ) -> Option<Self> {
-        let mut way = Self { method: Method::Fixed64, steps: steps_to_frame(Method::Fixed64, rate, longest) };
+        let mut way = Self {
+            method: Method::Extrapolation10Fixed64,
+            steps: steps_to_frame(Method::Extrapolation10Fixed64, rate, longest),
+        };
         while costs.of_frame(way.method, way.steps) <= frame && way.steps < MOST_STEPS {
             if way.takes(parameters, start, rate) {
                 return Some(way);
@@ -143,7 +147,8 @@ impl Way {
 impl WayStepper {
     /// At `start`, with `rate` frames to a second. No steps count as one.
     ///
-    /// Refuses what [`Form::new`] and [`Form::start`] refuse, and what has no normal modes if the way is the closed form.
+    /// Refuses what [`Form::new`] and [`Form::start`] refuse, what has no normal modes if the way is the closed form, and a method
+    /// that is none of [`Method::DRAWN`].
     #[inline(never)] // once in flash
     pub fn new(parameters: &Parameters<f64>, start: &Motion<f64>, rate: u16, way: Way) -> Result<Self, Error> {
         start.check()?;
@@ -151,19 +156,20 @@ impl WayStepper {
         let state = Pendulum::new(*parameters)?.to_state(start);
         let dt = 1.0 / (f64::from(rate) * f64::from(steps));
         let motion = match way.method {
-            Method::ClosedForm => {
+            Method::ClosedFormF32 => {
                 let motion = SmallOscillations::new(Modes::new(parameters)?, &start.cast());
                 Carried::ClosedForm(motion, Pendulum::new(parameters.cast())?)
             }
-            Method::DirectionPlain => Carried::DirectionPlain(stepper(parameters, &state, dt)?),
-            Method::Direction => Carried::Direction(stepper(parameters, &state, dt)?),
-            Method::Fixed32 => Carried::Fixed32(stepper(parameters, &state, dt)?),
-            Method::Fixed64 => {
+            Method::Rk4F32DirectionPlain => Carried::DirectionPlain(stepper(parameters, &state, dt)?),
+            Method::Rk4F32Direction => Carried::Direction(stepper(parameters, &state, dt)?),
+            Method::Rk4Fixed32 => Carried::Fixed32(stepper(parameters, &state, dt)?),
+            Method::Extrapolation10Fixed64 => {
                 let motion = Stepper::<f64, Fixed64Form<ORDER>>::new(parameters, &state, dt)?;
                 Carried::Fixed64(UnwrappedStepper::of(motion.read_in(), state.cast().angles()))
             }
+            method => return Err(Error::NotDrawn { method }),
         };
-        let steps = if way.method == Method::ClosedForm { 1 } else { steps };
+        let steps = if way.method == Method::ClosedFormF32 { 1 } else { steps };
         Ok(Self { way: Way { steps, ..way }, rate, frame: 0, motion })
     }
 

@@ -1,4 +1,4 @@
-//! Counts what an arithmetic costs on the target: executed instructions (exact), Cortex-M cycles (an **estimate** from
+//! Counts what a method costs on the target: executed instructions (exact), Cortex-M cycles (an **estimate** from
 //! the published instruction timings), bytes of code and bytes of stack.
 
 mod calls;
@@ -35,13 +35,13 @@ use crate::emulator::process::ProcessError;
 use crate::emulator::qemu::QemuError;
 use crate::emulator::toolchain::BuildError;
 
-/// Name of the function, one per arithmetic, that is counted from its first instruction to its return.
+/// Name of the function, one per method, that is counted from its first instruction to its return.
 const COUNTED: &str = "counted_steps";
 
-/// Steps over which an average is fair to what an arithmetic does only now and then: a second of steps of 2^-8 s. In it
+/// Steps over which an average is fair to what a method does only now and then: a second of steps of 2^-8 s. In it
 /// the rods of a regular motion pass several marks of the angle form; the direction form restores its lengths eight times.
 pub const FULL_CYCLE: u32 = 256;
-/// The rarest thing that an arithmetic does regularly, it does once in so many steps.
+/// The rarest thing that a method does regularly, it does once in so many steps.
 const REGULAR: u64 = 32;
 /// Fewer would show little but the start, where momenta are zero and soft-float arithmetic takes short cuts.
 const LEAST_STEPS: u64 = 4;
@@ -186,7 +186,7 @@ pub struct StepCost {
     pub stack_bytes: u32,
 }
 
-/// The steps to count so that the counting takes a few seconds: [`FULL_CYCLE`] of a cheap arithmetic, fewer of a dear one.
+/// The steps to count so that the counting takes a few seconds: [`FULL_CYCLE`] of a cheap method, fewer of a costly one.
 pub fn affordable_steps(target: &Target, request: &Request) -> Result<u32, CountError> {
     let one = Profile::of(target, &Request { stride: 1, ..*request })?.cost().instructions;
     let steps = (AFFORDABLE_INSTRUCTIONS / one.max(1)).clamp(LEAST_STEPS, FULL_CYCLE.into());

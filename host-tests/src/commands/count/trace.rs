@@ -70,7 +70,7 @@ impl Target {
     /// instruction takes 1 ns.
     pub fn run(&self, request: &Request) -> Result<(u32, u64), CountError> {
         let output = self.output(request)?;
-        let refused = || CountError::Refused { request: request.row.to_string(), reason: output.trim().to_owned() };
+        let refused = || CountError::Refused { request: request.method.to_string(), reason: output.trim().to_owned() };
         let (crc, ticks) = output.trim().split_once(' ').ok_or_else(refused)?;
         Ok((u32::from_str_radix(crc, 16).map_err(|_| refused())?, ticks.parse().map_err(|_| refused())?))
     }

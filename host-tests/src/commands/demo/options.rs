@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use clap::{Parser, value_parser};
-use double_pendulum::plan::{Method, Way};
+use double_pendulum::Method;
+use double_pendulum::plan::Way;
 use firmware::config::{BAUD, PROCESSOR};
 use firmware::motion::simulation::Means;
 use firmware::scenes::{AnyScene, SceneName};
@@ -35,9 +36,9 @@ pub struct Options {
     /// The scene [default: what the board plays, page when it is switched on]
     #[arg(long, value_name = "NAME", value_parser = choice(SceneName::ALL.iter().copied(), SceneName::name))]
     pub scene: Option<SceneName>,
-    /// How the motion is computed, in place of the plan's choice [default: auto, the plan's choice]
-    #[arg(long, value_name = "NAME", value_parser = choice(WAYS.iter(), |way| way.0))]
-    pub way: Option<&'static (&'static str, Option<Method>)>,
+    /// How the motion is computed; `plan` leaves it to the board [default: what the board does, plan when it is switched on]
+    #[arg(long, value_name = "NAME", value_parser = choice(asked(), |method| method.map_or("plan", Method::name)))]
+    pub method: Option<Asked>,
     /// Run without a terminal: as fast as it goes, repeatable to the bit, with a summary at the end
     #[arg(long)]
     pub headless: bool,
@@ -52,33 +53,31 @@ pub struct Options {
     pub screenshot: Option<PathBuf>,
 }
 
-/// Every method by a name that can be typed, and the plan's choice.
-pub const WAYS: [(&str, Option<Method>); 6] = [
-    ("auto", None),
-    ("closed-form", Some(Method::ClosedForm)),
-    ("f32-plain", Some(Method::DirectionPlain)),
-    ("f32", Some(Method::Direction)),
-    ("fixed32", Some(Method::Fixed32)),
-    ("fixed64", Some(Method::Fixed64)),
-];
+/// A method, or none to leave it to the board's plan.
+pub type Asked = Option<Method>;
+
+fn asked() -> impl Iterator<Item = Asked> {
+    std::iter::once(None).chain(Method::DRAWN.iter().copied().map(Some))
+}
 
 impl Options {
-    /// Refuses what is known to fail before anything is built: files that cannot be written, a way that the scene does not go.
+    /// Refuses what is known to fail before anything is built: files that cannot be written, a method that the scene does not use.
     pub fn check(&self) -> Result<(), Refused> {
         for (option, file) in [("--record", &self.record), ("--screenshot", &self.screenshot)] {
             file.as_deref().map_or(Ok(()), |file| check_writable(option, file))?;
         }
         let first = self.port.is_none().then_some(SceneName::Page);
-        self.scene.or(first).map_or(Ok(()), |scene| self.check_way(scene))
+        self.scene.or(first).map_or(Ok(()), |scene| self.check_method(scene))
     }
 
-    /// Refuses a way that a scene does not go.
-    pub fn check_way(&self, scene: SceneName) -> Result<(), Refused> {
-        let Some((way, Some(method))) = self.way else { return Ok(()) };
-        let means = Means { processor: PROCESSOR, method: Some(*method) };
-        let refused = |why: &str| Err(Refused::because(format_args!("--way {way}: --scene {} {why}", scene.name())));
+    /// Refuses a method that a scene does not use.
+    pub fn check_method(&self, scene: SceneName) -> Result<(), Refused> {
+        let Some(Some(method)) = self.method else { return Ok(()) };
+        let means = Means { processor: PROCESSOR, method: Some(method) };
+        let refused =
+            |why: &str| Err(Refused::because(format_args!("--method {method}: --scene {} {why}", scene.name())));
         match AnyScene::new(scene, &scene.first_settings(), &means).map(|scene| scene.report().way) {
-            Ok(Some(Way { method: gone, .. })) if gone == *method => Ok(()),
+            Ok(Some(Way { method: gone, .. })) if gone == method => Ok(()),
             Ok(_) => refused("has no use for it"),
             Err(_) => refused("cannot be computed so"),
         }

@@ -59,7 +59,7 @@ impl<'a> Session<'a> {
             None => {
                 self.options.scene.map_or(Ok(()), |scene| self.play_after(frame, scene))?;
                 let playing = self.options.scene.or(SceneName::from_code(frame.scene));
-                playing.map_or(Ok(()), |scene| self.options.check_way(scene))?;
+                playing.map_or(Ok(()), |scene| self.options.check_method(scene))?;
                 self.go()?;
             }
             // The board counts from 0 again.
@@ -120,9 +120,9 @@ impl<'a> Session<'a> {
 
     /// Has the board go the way that was asked for.
     fn go(&mut self) -> anyhow::Result<()> {
-        let Some((_, method)) = self.options.way else { return Ok(()) };
+        let Some(method) = self.options.method else { return Ok(()) };
         let value = method.map_or(AUTO, |method| method_code(method).into());
-        let (field, unit) = (Field::Way.code(), Unit::One.code());
+        let (field, unit) = (Field::Method.code(), Unit::One.code());
         self.source.send(&Set { request: 0, field, unit, value })
     }
 

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use double_pendulum::plan::Method;
+use double_pendulum::Method;
 use firmware::config::TICK_RATE;
 use firmware::protocol::{Frame, method_of};
 
@@ -109,8 +109,10 @@ mod tests {
     #[test]
     fn what_is_computed_is_said_in_words() {
         let said = |method, way_steps, horizon| way(&Frame { method, way_steps, horizon, ..Frame::default() });
-        let fixed64 = method_code(Method::Fixed64);
-        assert!(said(fixed64, 1, 20.483_334).ends_with("point, a step to a frame, right to half a pixel until 20.5 s"));
+        let fixed64 = method_code(Method::Extrapolation10Fixed64);
+        assert!(
+            said(fixed64, 1, 20.483_334).ends_with("fixed64, a step to a frame, right to half a pixel until 20.5 s")
+        );
         assert!(said(fixed64, 4, 1.0).contains(", 4 steps to a frame,"));
         assert_eq!(said(NO_METHOD, 0, f32::INFINITY), "nothing to plan");
         assert_eq!(said(NO_METHOD, 0, 9.0), "nothing to plan, right to half a pixel until 9.0 s");

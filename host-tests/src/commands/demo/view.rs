@@ -139,7 +139,7 @@ fn wrapped(line: &LogLine, width: u16) -> Vec<Line<'static>> {
 
 #[cfg(test)]
 mod tests {
-    use double_pendulum::plan::Method;
+    use double_pendulum::Method;
     use firmware::graphics::canvas::Canvas;
     use firmware::graphics::text::{self, Anchor};
     use firmware::protocol::method_code;
@@ -168,7 +168,7 @@ mod tests {
                 state: [0.5 * (6.0 * time).sin() as f32, -2.0, 0.0, 0.0],
                 energy_error: -2.5e-7,
                 dropped: 123_456,
-                method: method_code(Method::Fixed64),
+                method: method_code(Method::Extrapolation10Fixed64),
                 way_steps: 12,
                 horizon: 86_400.0,
                 is_looking: 1,

@@ -48,7 +48,7 @@ pub fn record(scene: SceneName, folder: &Path) -> Result<()> {
     let (name, seconds) = (scene.name(), seconds(scene));
     complain(format_args!("cargo demo --scene {name} --headless --seconds {seconds} --record {}", path.display()));
     let options = Options {
-        way: None,
+        method: None,
         board: &BOARDS[0],
         port: None,
         baud: BAUD,

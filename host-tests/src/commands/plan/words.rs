@@ -1,7 +1,8 @@
 //! A plan in words.
 
+use double_pendulum::Method;
 use double_pendulum::Pendulum;
-use double_pendulum::plan::{Limit, Method, Plan, Problem};
+use double_pendulum::plan::{Limit, Plan, Problem};
 use firmware::config::HALF_PIXEL;
 
 use super::target::Chip;
@@ -56,19 +57,19 @@ fn step(scene: &Problem, plan: &Plan) -> String {
 
 fn method(plan: &Plan) -> String {
     match plan.method {
-        Method::ClosedForm => {
+        Method::ClosedFormF32 => {
             String::from("until the horizon the linear motion is expected to be right to half a pixel")
         }
-        Method::DirectionPlain => {
+        Method::Rk4F32DirectionPlain => {
             String::from("to draw, directions are enough and no angles needed; the roundings of plain sums do not show")
         }
-        Method::Direction => {
+        Method::Rk4F32Direction => {
             String::from("to draw, directions are enough and no angles needed; the roundings of plain sums would show")
         }
-        Method::Fixed32 => {
+        Method::Rk4Fixed32 => {
             String::from("to draw, directions are enough and no angles needed; integers are cheapest here")
         }
-        Method::Fixed64 => String::from("32 bits show before, or take as many steps as cost more"),
+        Method::Extrapolation10Fixed64 => String::from("32 bits show before, or take as many steps as cost more"),
         other => other.name().to_owned(),
     }
 }

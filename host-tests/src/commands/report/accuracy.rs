@@ -3,11 +3,11 @@
 use std::f64::consts::TAU;
 use std::fmt;
 
-use double_pendulum::Motion;
-use firmware::job::{JobError, Request, Row};
+use double_pendulum::{Method, Motion};
+use firmware::job::{JobError, Request};
 
 use super::scene::{SAMPLES, SCENES, Scene};
-use super::{compared_rows, parallel};
+use super::{compared, parallel};
 use crate::oracle::reference::Reference;
 
 /// The largest error over a scene.
@@ -47,10 +47,10 @@ fn samples(rate: u32) -> u32 {
     [SAMPLES, SAMPLES / 2].into_iter().find(|samples| rate.is_multiple_of(*samples)).unwrap_or(1)
 }
 
-/// The request for `row` through `scene` with `rate` steps a second.
-pub fn request(row: Row, scene: &Scene, rate: u32) -> Request {
+/// The request for `method` through `scene` with `rate` steps a second.
+pub fn request(method: Method, scene: &Scene, rate: u32) -> Request {
     Request {
-        row,
+        method,
         parameters: scene.parameters(),
         angles: scene.angles(),
         velocities: [0.0; 2],
@@ -61,29 +61,29 @@ pub fn request(row: Row, scene: &Scene, rate: u32) -> Request {
 }
 
 /// Steps a second that are fair to count and to show: many for a low order, few for a high one.
-pub fn usual_rate(row: Row) -> u32 {
-    if row.order > 4 { 16 } else { 256 }
+pub fn usual_rate(method: Method) -> u32 {
+    if method.order() > 4 { 16 } else { 256 }
 }
 
 /// A few steps a second, for high orders and for low ones.
 const HIGH: [u32; 21] = [4, 5, 6, 7, 8, 9, 10, 11, 12, 14, 16, 18, 20, 24, 28, 32, 40, 48, 64, 80, 96];
 const LOW: [u32; 3] = [16, 32, 64];
 
-/// Steps a second that `row` is tried with: a few, and all powers of two beyond.
-pub fn rates(row: Row, finest: u32) -> impl Iterator<Item = u32> + Clone {
-    let few: &[u32] = if row.order > 4 { &HIGH } else { &LOW };
+/// Steps a second that `method` is tried with: a few, and all powers of two beyond.
+pub fn rates(method: Method, finest: u32) -> impl Iterator<Item = u32> + Clone {
+    let few: &[u32] = if method.order() > 4 { &HIGH } else { &LOW };
     few.iter().copied().chain((7..=finest).map(|halvings| 1 << halvings))
 }
 
-/// The error of `row`; `None` if it does not apply to the scene or the step. A motion that was lost has an infinite error.
-pub fn error(row: Row, scene: &Scene, rate: u32, exact: &[[f64; 2]]) -> Option<Error> {
-    error_of(&request(row, scene, rate), scene, exact)
+/// The error of `method`; `None` if it does not apply to the scene or the step. A motion that was lost has an infinite error.
+pub fn error(method: Method, scene: &Scene, rate: u32, exact: &[[f64; 2]]) -> Option<Error> {
+    error_of(&request(method, scene, rate), scene, exact)
 }
 
-/// The error of `row` in `steps` equal steps through the scene, compared after each; a second need not be a whole number of them.
-pub fn error_after(row: Row, scene: &Scene, steps: u32) -> Option<Error> {
+/// The error of `method` in `steps` equal steps through the scene, compared after each; a second need not be a whole number of them.
+pub fn error_after(method: Method, scene: &Scene, steps: u32) -> Option<Error> {
     let dt = f64::from(scene.duration) / f64::from(steps);
-    let request = Request { dt, stride: 1, samples: steps, ..request(row, scene, 1) };
+    let request = Request { dt, stride: 1, samples: steps, ..request(method, scene, 1) };
     error_of(&request, scene, &exact_after(scene, steps))
 }
 
@@ -149,8 +149,8 @@ pub struct Point {
 /// What is compared.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Contestant {
-    /// A row of the table.
-    Kernel(Row),
+    /// A method of the kernel.
+    Kernel(Method),
     /// A program in C, by its name.
     C(&'static str),
 }
@@ -158,21 +158,21 @@ pub enum Contestant {
 impl fmt::Display for Contestant {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Kernel(row) => write!(f, "{row}"),
+            Self::Kernel(method) => write!(f, "{method}"),
             Self::C(name) => f.write_str(name),
         }
     }
 }
 
-/// Every arithmetic through the first scenes, of which `exact` are the exact motions, with steps down to 2^-`finest` s, the
+/// Every method through the first scenes, of which `exact` are the exact motions, with steps down to 2^-`finest` s, the
 /// scenes on threads of their own; `tick` is called after each run.
 pub fn survey(exact: &[Vec<[f64; 2]>], finest: u32, tick: &(dyn Fn() + Sync)) -> Vec<Point> {
     let through = |&(scene, exact): &(&'static Scene, &Vec<[f64; 2]>)| {
         let mut points = Vec::new();
-        for row in compared_rows() {
-            for rate in rates(row, finest) {
-                let error = error(row, scene, rate, exact);
-                points.extend(error.map(|error| Point { scene, contestant: Contestant::Kernel(row), rate, error }));
+        for method in compared() {
+            for rate in rates(method, finest) {
+                let error = error(method, scene, rate, exact);
+                points.extend(error.map(|error| Point { scene, contestant: Contestant::Kernel(method), rate, error }));
                 tick();
             }
         }

@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
 
-use firmware::job::Formulation::{Canonical, Direction};
-use firmware::job::{Arithmetic, Model, Request, Row};
+use double_pendulum::Method;
+use firmware::job::Request;
 
 use super::accuracy::{Contestant, Error, Point, worst};
 use super::costs::{self, Cost};
@@ -36,11 +36,10 @@ const CMSIS_SOURCES: [&str; 3] = [
     "Source/FastMathFunctions/arm_cos_f32.c",
     "Source/CommonTables/arm_common_tables.c",
 ];
-/// Arithmetics of the kernel that stand beside, the one that the others are compared with last.
-const BESIDE: [Row; 3] =
-    [TEXTBOOK, Row::rk4(Arithmetic::F32, Canonical), Row::rk4(Arithmetic::F32Compensated, Direction)];
+/// Methods of the kernel that stand beside, the one that the others are compared with last.
+const BESIDE: [Method; 3] = [TEXTBOOK, Method::Rk4F32, Method::Rk4F32Direction];
 /// What the C programs compute, in Rust.
-const TEXTBOOK: Row = Row { model: Model::Textbook, ..Row::rk4(Arithmetic::F32Libm, Canonical) };
+const TEXTBOOK: Method = Method::TextbookF32;
 
 /// Steps a second of what a step is counted with, and all that its errors are computed with.
 pub const RATE: u32 = 256;
@@ -192,7 +191,7 @@ fn error(target: &Target, scene: &Scene, rate: u32, exact: &[[f64; 2]]) -> Resul
     if states.len() == exact.len() {
         Ok(worst(scene, &states, exact))
     } else {
-        Err(CountError::Refused { request: request.row.to_string(), reason: printed.trim().to_owned() })
+        Err(CountError::Refused { request: request.method.to_string(), reason: printed.trim().to_owned() })
     }
 }
 
@@ -203,11 +202,11 @@ pub fn table((counted, absent): &(Vec<Counted>, String), points: &[Point], costs
     for board in BOARDS.iter().filter(|board| costs.iter().any(|cost| cost.board == *board)) {
         let theirs = counted.iter().filter(|one| one.board == board);
         let theirs = theirs.filter_map(|one| Some((one.name.to_owned(), one.step, one.error()?)));
-        let ours = BESIDE.iter().filter_map(|row| {
-            let contestant = Contestant::Kernel(*row);
+        let ours = BESIDE.iter().filter_map(|method| {
+            let contestant = Contestant::Kernel(*method);
             let is_it = |point: &&Point| point.contestant == contestant && point.scene == scene && point.rate == RATE;
-            let cost = costs::of(costs, *row, scene, board)?;
-            Some((row.to_string(), cost.step, points.iter().find(is_it)?.error))
+            let cost = costs::of(costs, *method, scene, board)?;
+            Some((method.to_string(), cost.step, points.iter().find(is_it)?.error))
         });
         let ours: Vec<_> = ours.collect();
         let unit = ours.last().map_or(f64::NAN, |(_, step, _)| step.cycles);
@@ -226,11 +225,11 @@ pub fn table((counted, absent): &(Vec<Counted>, String), points: &[Point], costs
         note: format!(
             "Per step; scene {}, step 1/{RATE} s, error over the scene. GCC at -O3, which may contract multiplication \
              and addition; counted like all others. {ERROR_BAR} Relative: estimated cycles against \
-             f32-compensated-direction.{absent}",
+             rk4-f32-direction.{absent}",
             scene.name,
         ),
         columns: vec![
-            "arithmetic",
+            "method",
             "processor",
             "instructions",
             "cycles (estimate)",

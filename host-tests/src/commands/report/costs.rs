@@ -1,10 +1,11 @@
 //! What a step costs on the target: counted, never timed.
 
-use firmware::job::{Request, Row};
+use double_pendulum::Method;
+use firmware::job::Request;
 
 use super::accuracy::{rates, request, usual_rate};
 use super::scene::Scene;
-use super::{compared_rows, parallel};
+use super::{compared, parallel};
 use crate::commands::count::{CountError, ERROR_BAR, FULL_CYCLE, StepCost, Target, affordable_steps, step_cost};
 use crate::commands::table::Table;
 use crate::emulator::boards::Board;
@@ -12,11 +13,11 @@ use crate::emulator::boards::Board;
 /// The finest step counted is 2^-this s.
 const FINEST: u32 = 13;
 
-/// One arithmetic on one board.
+/// One method on one board.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cost {
-    /// The arithmetic.
-    pub row: Row,
+    /// The method.
+    pub method: Method,
     /// The motion: that of fixed point matters, for rods and masses unlike each other are stepped by other code.
     pub scene: &'static Scene,
     /// The board.
@@ -25,15 +26,15 @@ pub struct Cost {
     pub step: StepCost,
 }
 
-/// Counts every arithmetic on the first of `scenes`, and fixed point on all, each target on a thread of its own; `tick` is
-/// called after each arithmetic.
+/// Counts every method on the first of `scenes`, and fixed point on all, each target on a thread of its own; `tick` is
+/// called after each method.
 pub fn count(targets: &[Target], scenes: &'static [Scene], tick: &(dyn Fn() + Sync)) -> Result<Vec<Cost>, CountError> {
     let on_target = |target: &Target| {
         let mut costs = Vec::new();
-        for row in compared_rows() {
-            let scenes = scenes.iter().take(if row.arithmetic.is_fixed_point() { scenes.len() } else { 1 });
-            for (scene, request) in scenes.filter_map(|scene| Some((scene, counted_request(row, scene)?))) {
-                costs.push(Cost { row, scene, board: target.board, step: one(target, &request)? });
+        for method in compared() {
+            let scenes = scenes.iter().take(if method.is_fixed_point() { scenes.len() } else { 1 });
+            for (scene, request) in scenes.filter_map(|scene| Some((scene, counted_request(method, scene)?))) {
+                costs.push(Cost { method, scene, board: target.board, step: one(target, &request)? });
             }
             tick();
         }
@@ -43,15 +44,15 @@ pub fn count(targets: &[Target], scenes: &'static [Scene], tick: &(dyn Fn() + Sy
 }
 
 /// With so many steps a second as are usual, or the fewest above that it accepts.
-fn counted_request(row: Row, scene: &Scene) -> Option<Request> {
-    let rates = rates(row, FINEST).filter(|&rate| rate >= usual_rate(row));
+fn counted_request(method: Method, scene: &Scene) -> Option<Request> {
+    let rates = rates(method, FINEST).filter(|&rate| rate >= usual_rate(method));
     let accepts = |request: &Request| Request { stride: 1, samples: 1, ..*request }.crc().is_ok();
-    rates.map(|rate| request(row, scene, rate)).find(accepts)
+    rates.map(|rate| request(method, scene, rate)).find(accepts)
 }
 
-/// The cost of `row` on `board` in `scene`, or in the first that it was counted in.
-pub fn of<'a>(costs: &'a [Cost], row: Row, scene: &Scene, board: &Board) -> Option<&'a Cost> {
-    let mut own = costs.iter().filter(|cost| cost.row == row && cost.board == board);
+/// The cost of `method` on `board` in `scene`, or in the first that it was counted in.
+pub fn of<'a>(costs: &'a [Cost], method: Method, scene: &Scene, board: &Board) -> Option<&'a Cost> {
+    let mut own = costs.iter().filter(|cost| cost.method == method && cost.board == board);
     own.clone().find(|cost| cost.scene == scene).or_else(|| own.next())
 }
 
@@ -68,7 +69,7 @@ pub fn table(costs: &[Cost]) -> Table {
         let StepCost { instructions, cycles, stalls, hot_bytes, code_bytes, stack_bytes } = cost.step;
         let counts = [instructions, cycles, stalls].map(|count| format!("{count:.0}"));
         let bytes = [hot_bytes, code_bytes, stack_bytes].map(|count| count.to_string());
-        let mut row = vec![cost.row.to_string(), cost.scene.name.to_owned(), cost.board.cpu.to_owned()];
+        let mut row = vec![cost.method.to_string(), cost.scene.name.to_owned(), cost.board.cpu.to_owned()];
         row.extend(counts.into_iter().chain(bytes));
         row
     };
@@ -81,7 +82,7 @@ pub fn table(costs: &[Cost]) -> Table {
              whole functions with constants."
         ),
         columns: vec![
-            "arithmetic",
+            "method",
             "scene",
             "processor",
             "instructions",

@@ -4,7 +4,7 @@ use double_pendulum::{Pendulum, State};
 use firmware::job::{JobError, Request};
 
 use super::accuracy::request;
-use super::compared_rows;
+use super::compared;
 use super::scene::SCENES;
 use crate::commands::table::{Table, small};
 
@@ -14,19 +14,19 @@ const RATES: [u32; 2] = [256, 1024];
 
 /// How many runs [`table`] makes.
 pub fn runs() -> usize {
-    SCENES_FOLLOWED * compared_rows().count() * RATES.len()
+    SCENES_FOLLOWED * compared().count() * RATES.len()
 }
 
-/// The drift of every arithmetic over `steps` steps; `tick` is called after each run.
+/// The drift of every method over `steps` steps; `tick` is called after each run.
 pub fn table(steps: u32, tick: &dyn Fn()) -> Table {
     let mut rows = Vec::new();
     for scene in &SCENES[..SCENES_FOLLOWED] {
         let Ok(pendulum) = Pendulum::<f64>::new(scene.parameters()) else { continue };
         let [a1, a2] = scene.angles();
         let start = pendulum.energy_above_rest(&State::at_rest(a1, a2));
-        for row in compared_rows() {
+        for method in compared() {
             for rate in RATES {
-                let long = Request { samples: 1, stride: steps, ..request(row, scene, rate) };
+                let long = Request { samples: 1, stride: steps, ..request(method, scene, rate) };
                 let mut drift = f64::NAN;
                 let run = long.readings(|reading| {
                     drift = (pendulum.energy_above_rest(&reading.state.into()) - start) / start;
@@ -35,7 +35,7 @@ pub fn table(steps: u32, tick: &dyn Fn()) -> Table {
                 tick();
                 if run.is_ok() {
                     let (step, drift) = (format!("1/{rate}"), small(drift));
-                    rows.push(vec![scene.name.to_owned(), row.to_string(), step, drift]);
+                    rows.push(vec![scene.name.to_owned(), method.to_string(), step, drift]);
                 }
             }
         }
@@ -47,7 +47,7 @@ pub fn table(steps: u32, tick: &dyn Fn()) -> Table {
             "Change of the energy above rest, relative to the energy at the start. The f64 rows show what the method \
              itself loses.",
         ),
-        columns: vec!["scene", "arithmetic", "step (s)", "relative drift"],
+        columns: vec!["scene", "method", "step (s)", "relative drift"],
         rows,
     }
 }

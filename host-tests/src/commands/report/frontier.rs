@@ -91,14 +91,14 @@ pub fn table(priced: &[Priced], boards: &[&Board], scenes: &[Scene]) -> Table {
         name: "frontier",
         title: String::from("What to take"),
         note: format!(
-            "{} The rows: every arithmetic and step that nothing else is as good as in both, error and cycles per \
+            "{} The rows: every method and step that nothing else is as good as in both, error and cycles per \
              simulated second. {ERROR_BAR}",
             advice(priced, boards).join(" ")
         ),
         columns: vec![
             "scene",
             "processor",
-            "arithmetic",
+            "method",
             "step (s)",
             "cycles per s (estimate)",
             "error (rad)",

@@ -6,7 +6,7 @@ use anyhow::{Context, ensure};
 
 use super::accuracy::{Error, error, usual_rate};
 use super::c_peers::{Counted, RATE};
-use super::compared_rows;
+use super::compared;
 use super::costs::Cost;
 use super::scene::{LONG, SCENES, Scene};
 use crate::commands::count::{ERROR_BAR, StepCost};
@@ -27,13 +27,13 @@ const READMES: [(&str, Shows); 2] = [("host-tests/README.md", |_| true), ("READM
 /// What exists, what the page prints, and what to take.
 const TELLING: [&str; 5] = [
     "C textbook: CMSIS-DSP's arm_sin_f32 and arm_cos_f32",
-    "f32-libm-textbook",
-    "f32-compensated-direction",
-    "fixed32-direction",
-    "fixed64-extrapolation-12",
+    "textbook-f32",
+    "rk4-f32-direction",
+    "rk4-fixed32",
+    "extrapolation12-fixed64",
 ];
 
-/// Every arithmetic and every C program; `exact` is the exact motion of the scenes [`FOLLOWED`].
+/// Every method and every C program; `exact` is the exact motion of the scenes [`FOLLOWED`].
 pub fn table(costs: &[Cost], counted: &[Counted], exact: [&[[f64; 2]]; 2]) -> Table {
     let mut rows = Vec::new();
     let mut push = |name: &str, rate: u32, step_on: &dyn Fn(&str) -> Option<StepCost>, errors: [Option<Error>; 2]| {
@@ -50,10 +50,10 @@ pub fn table(costs: &[Cost], counted: &[Counted], exact: [&[[f64; 2]]; 2]) -> Ta
             |cpu: &str| Some(counted.iter().find(|other| other.name == one.name && other.board.cpu == cpu)?.step);
         push(one.name, RATE, &step_on, [one.error(), Some(one.long)]);
     }
-    for row in compared_rows() {
-        let step_on = |cpu: &str| Some(costs.iter().find(|one| one.row == row && one.board.cpu == cpu)?.step);
-        let errors = [0, 1].map(|index| error(row, FOLLOWED[index], usual_rate(row), exact[index]));
-        push(&row.to_string(), usual_rate(row), &step_on, errors);
+    for method in compared() {
+        let step_on = |cpu: &str| Some(costs.iter().find(|one| one.method == method && one.board.cpu == cpu)?.step);
+        let errors = [0, 1].map(|index| error(method, FOLLOWED[index], usual_rate(method), exact[index]));
+        push(method.name(), usual_rate(method), &step_on, errors);
     }
     Table {
         name: "headline",
@@ -63,7 +63,7 @@ pub fn table(costs: &[Cost], counted: &[Counted], exact: [&[[f64; 2]]; 2]) -> Ta
              counted in QEMU. {ERROR_BAR} The error is the largest of an angle until then, against the reference.",
         ),
         columns: vec![
-            "arithmetic",
+            "method",
             "steps a second",
             "M4F cycles (estimated)",
             "M4F instructions",

@@ -1,6 +1,7 @@
 //! Whether the host and the chips compute the same bits: what allows errors to be computed on the host.
 
-use firmware::job::{Arithmetic, Integrator, JobError, ROWS, Request, Row};
+use double_pendulum::{Integrator, Method};
+use firmware::job::{JobError, Request};
 use rayon::prelude::*;
 
 use super::accuracy::request;
@@ -24,22 +25,22 @@ pub struct Steps {
 }
 
 impl Steps {
-    fn of(&self, target: &Target, row: Row) -> u32 {
-        let is_single =
-            matches!(row.arithmetic, Arithmetic::F32 | Arithmetic::F32Compensated | Arithmetic::F32Micromath);
+    fn of(&self, target: &Target, method: Method) -> u32 {
+        // The libm crate's sines are computed in double precision.
+        let is_single = method.is_single() && !matches!(method, Method::Rk4F32Libm | Method::TextbookF32);
         match target.core() {
             Core::M0Plus => self.reduced / 10,
             Core::M4F if is_single => self.full,
-            _ if row.arithmetic.is_fixed_point() || row.integrator == Integrator::Extrapolation => self.full,
+            _ if method.is_fixed_point() || method.integrator() == Integrator::Extrapolation => self.full,
             _ => self.reduced,
         }
     }
 }
 
 /// How many comparisons are made on one target.
-pub const RUNS: usize = COMPARED.len() * ROWS.len();
+pub const RUNS: usize = COMPARED.len() * Method::ALL.len();
 
-/// One arithmetic through one motion on a target and on this host.
+/// One method through one motion on a target and on this host.
 #[derive(Clone, Copy, Debug)]
 pub struct Comparison {
     /// What was run.
@@ -62,18 +63,19 @@ impl Comparison {
 }
 
 /// The request whose CRC is over all states of the first `steps` steps of 1/256 s through `scene`.
-pub fn every_state(row: Row, scene: &Scene, steps: u32) -> Request {
-    Request { samples: steps, stride: 1, ..request(row, scene, RATE) }
+pub fn every_state(method: Method, scene: &Scene, steps: u32) -> Request {
+    Request { samples: steps, stride: 1, ..request(method, scene, RATE) }
 }
 
-/// Compares every arithmetic over both motions on all `targets`; `tick` is called after each.
+/// Compares every method over both motions on all `targets`; `tick` is called after each.
 pub fn compare(targets: &[Target], steps: Steps, tick: &(dyn Fn() + Sync)) -> Result<Vec<Comparison>, CountError> {
-    let motions = || COMPARED.iter().flat_map(|scene| ROWS.iter().map(move |&row| (scene, row)));
+    let motions = || COMPARED.iter().flat_map(|scene| Method::ALL.iter().map(move |&method| (scene, method)));
     let runs: Vec<_> = targets.iter().flat_map(|target| motions().map(move |motion| (target, motion))).collect();
-    let compared = runs.into_par_iter().map(|(target, (scene, row))| {
-        let steps = steps.of(target, row);
-        let request = every_state(row, scene, steps);
-        let refused = |reason: JobError| CountError::Refused { request: row.to_string(), reason: reason.to_string() };
+    let compared = runs.into_par_iter().map(|(target, (scene, method))| {
+        let steps = steps.of(target, method);
+        let request = every_state(method, scene, steps);
+        let refused =
+            |reason: JobError| CountError::Refused { request: method.to_string(), reason: reason.to_string() };
         let host = request.crc().map_err(refused)?;
         let (crc, _) = target.run(&request)?;
         tick();
@@ -86,7 +88,7 @@ pub fn compare(targets: &[Target], steps: Steps, tick: &(dyn Fn() + Sync)) -> Re
 pub fn table(comparisons: &[Comparison]) -> Table {
     let row = |one: &Comparison| {
         vec![
-            one.request.row.to_string(),
+            one.request.method.to_string(),
             one.scene.name.to_owned(),
             one.cpu.to_owned(),
             one.request.samples.to_string(),
@@ -99,7 +101,7 @@ pub fn table(comparisons: &[Comparison]) -> Table {
         name: "bit-identity",
         title: String::from("Bit identity"),
         note: format!("CRC-32 of all that is carried from step to step, after every single step of 1/{RATE} s."),
-        columns: vec!["arithmetic", "scene", "processor", "steps", "this host", "target", "verdict"],
+        columns: vec!["method", "scene", "processor", "steps", "this host", "target", "verdict"],
         rows: comparisons.iter().map(row).collect(),
     }
 }

@@ -1,4 +1,4 @@
-//! `cargo write-report`: every arithmetic's cost on the target against its error, as tables and charts.
+//! `cargo write-report`: every method's cost on the target against its error, as tables and charts.
 //!
 //! Costs are counted on the emulated targets, errors are computed on the host, which is allowed because the bits are the
 //! same ([`identity`]). Nothing is timed, so two runs write the same files.
@@ -17,7 +17,7 @@ pub mod scene;
 pub mod speed;
 
 use anyhow::{Context, ensure};
-use firmware::job::{Model, ROWS, Row};
+use double_pendulum::{Integrator, Method};
 use firmware::scenes::SceneName;
 use std::fs;
 use std::path::Path;
@@ -73,10 +73,10 @@ impl Extent {
 
     /// The runs of everything, for the progress bar.
     pub fn runs(&self, targets: usize) -> usize {
-        let rows = compared_rows().count();
-        let survey = self.scenes * compared_rows().map(|row| accuracy::rates(row, self.finest).count()).sum::<usize>();
+        let methods = compared().count();
+        let survey = self.scenes * compared().map(|method| accuracy::rates(method, self.finest).count()).sum::<usize>();
         let frames = self.boards * SceneName::ALL.len();
-        survey + energy::runs() + self.plans + frames + targets * (identity::RUNS + rows)
+        survey + energy::runs() + self.plans + frames + targets * (identity::RUNS + methods)
     }
 }
 
@@ -183,9 +183,9 @@ pub fn write(extent: &Extent, toolchain: &Toolchain, folder: &Path, bar: &Bar) -
     Ok(Main { advice, table: headline, chart: chart.context("no chart of the first scene")?.1, absent: c.1 })
 }
 
-/// The arithmetics whose errors are compared: all but the linear model's, whose errors are those of its equations.
-pub fn compared_rows() -> impl Iterator<Item = Row> + Clone {
-    ROWS.iter().copied().filter(|row| row.model != Model::Linear)
+/// The methods whose errors are compared: all but the closed forms, whose errors are those of their equations.
+pub fn compared() -> impl Iterator<Item = Method> + Clone {
+    Method::ALL.iter().copied().filter(|method| method.integrator() != Integrator::ClosedForm)
 }
 
 /// What `work` makes of each item, every item on a thread of its own.

@@ -11,7 +11,7 @@ use crate::emulator::boards::{BOARDS, Board};
 /// A point with its price on one board.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Priced {
-    /// Arithmetic, scene, step size and error.
+    /// Method, scene, step size and error.
     pub point: Point,
     /// The board.
     pub board: &'static Board,
@@ -28,8 +28,8 @@ pub fn priced(points: &[Point], costs: &[Cost], counted: &[Counted]) -> Vec<Pric
     let mut priced = Vec::new();
     for board in &BOARDS {
         priced.extend(points.iter().filter_map(|&point| {
-            let Contestant::Kernel(row) = point.contestant else { return None };
-            Some(Priced::new(point, board, costs::of(costs, row, point.scene, board)?.step))
+            let Contestant::Kernel(method) = point.contestant else { return None };
+            Some(Priced::new(point, board, costs::of(costs, method, point.scene, board)?.step))
         }));
         for one in counted.iter().filter(|one| one.board == board) {
             priced.extend(one.points.iter().map(|&point| Priced::new(point, board, one.step)));
@@ -85,7 +85,7 @@ pub fn table(priced: &[Priced]) -> Table {
         columns: vec![
             "scene",
             "processor",
-            "arithmetic",
+            "method",
             "step (s)",
             "instructions per s",
             "cycles per s (estimate)",
@@ -125,7 +125,7 @@ pub fn floors(points: &[Point]) -> Table {
         ),
         columns: vec![
             "scene",
-            "arithmetic",
+            "method",
             "least error (rad)",
             "at step (s)",
             "error at the finest step (rad)",
@@ -138,7 +138,7 @@ pub fn floors(points: &[Point]) -> Table {
 
 #[cfg(test)]
 mod tests {
-    use firmware::job::ROWS;
+    use double_pendulum::Method;
 
     use super::*;
     use crate::commands::report::accuracy::Error;
@@ -150,7 +150,7 @@ mod tests {
         let one = |cycles, angle| Priced {
             point: Point {
                 scene: &SCENES[0],
-                contestant: Contestant::Kernel(ROWS[0]),
+                contestant: Contestant::Kernel(Method::ALL[0]),
                 rate: 16,
                 error: Error { angle, pixels: 0.0 },
             },

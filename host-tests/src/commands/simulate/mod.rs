@@ -1,6 +1,7 @@
 //! `cargo simulate`: any motion as a table, computed here or by the firmware on a board.
 
 mod board;
+mod list;
 mod number;
 mod options;
 mod price;
@@ -14,6 +15,7 @@ use std::io;
 use firmware::job::Reading;
 
 pub use board::on_board;
+pub use list::list;
 pub use number::{Number, NumberError};
 pub use options::{Options, Place};
 pub use request::{Plan, plan};

@@ -2,18 +2,18 @@
 
 use std::fmt;
 
-use double_pendulum::plan::ORDER;
+use double_pendulum::{Equations, Integrator, Method, Numbers};
 use firmware::config::Processor;
-use firmware::job::{Arithmetic, Formulation, Integrator, Model, ON_BOARDS, ROWS, Row};
+use firmware::job::ON_BOARDS;
 
 use super::{Options, Place};
 
 impl Place {
-    /// What a step of `row` costs; `None` of what is no frontier there: something else is as good and costs less.
-    fn price(self, row: Row) -> Option<f64> {
+    /// What a step by `method` costs; `None` of what is no frontier there: something else is as good and costs less.
+    fn price(self, method: Method) -> Option<f64> {
         match self {
-            Place::Host => on_host(row),
-            Place::Board(board) => on_board(row, &board.processor()),
+            Place::Host => on_host(method),
+            Place::Board(board) => on_board(method, &board.processor()),
         }
     }
 }
@@ -36,61 +36,51 @@ impl fmt::Display for Unit {
 
 /// What the options leave open, and what a step of it costs: by the place's prices or, where it has none for any of it, by the
 /// evaluations of the equations.
-pub(super) fn candidates(options: &Options) -> (Unit, Vec<(Row, f64)>) {
-    let (wanted, place) = (options.wanted(), options.place);
-    let left: Vec<_> = rows(place).filter(|row| wanted.first_of(&[*row]).is_ok()).collect();
-    let priced: Vec<_> = left.iter().filter_map(|&row| Some((row, place.price(row)?))).collect();
+pub(super) fn candidates(options: &Options) -> (Unit, Vec<(Method, f64)>) {
+    let place = options.place;
+    let left: Vec<_> = methods(place).filter(|method| options.method.is_none_or(|asked| asked == *method)).collect();
+    let priced: Vec<_> = left.iter().filter_map(|&method| Some((method, place.price(method)?))).collect();
     match place {
         Place::Board(_) if !priced.is_empty() => (Unit::Cycles, priced),
         Place::Host if !priced.is_empty() => (Unit::Evaluations, priced),
-        _ => (Unit::Evaluations, left.into_iter().map(|row| (row, evaluations(row))).collect()),
+        _ => (Unit::Evaluations, left.into_iter().map(|method| (method, evaluations(method))).collect()),
     }
 }
 
-/// What is computed at a place, double precision before single.
-pub(super) fn rows(place: Place) -> impl Iterator<Item = Row> {
-    let rows = match place {
-        Place::Host => ROWS,
+/// What is computed at a place.
+pub(super) fn methods(place: Place) -> impl Iterator<Item = Method> {
+    let methods = match place {
+        Place::Host => Method::ALL,
         Place::Board(_) => ON_BOARDS,
     };
-    let of = |single| rows.iter().copied().filter(move |row| row.arithmetic.is_single() == single);
-    of(false).chain(of(true))
+    methods.iter().copied()
 }
 
 /// A processor of the host computes in `f64` as fast as in anything else: the evaluations count.
-fn on_host(row: Row) -> Option<f64> {
-    match row {
-        Row { arithmetic: Arithmetic::F64, model: Model::Linear, .. }
-        | Row { arithmetic: Arithmetic::F64, form: Formulation::Direction, integrator: Integrator::Rk4, .. }
-        | Row { arithmetic: Arithmetic::F64Compensated, integrator: Integrator::Extrapolation, .. } => {
-            Some(evaluations(row))
-        }
-        _ => None,
-    }
+fn on_host(method: Method) -> Option<f64> {
+    let is_fast = match method.equations() {
+        Equations::Directions => matches!(method.numbers(), Numbers::F64 | Numbers::CompensatedF64),
+        Equations::Linear => method.numbers() == Numbers::F64,
+        _ => false,
+    };
+    is_fast.then(|| evaluations(method))
 }
 
 /// By the board's own prices; a step of another order than theirs costs as its evaluations do.
-fn on_board(row: Row, Processor { costs, .. }: &Processor) -> Option<f64> {
-    let price = match row {
-        Row { arithmetic: Arithmetic::F32, model: Model::Linear, .. } => costs.closed_form,
-        Row { arithmetic: Arithmetic::F32, form: Formulation::Direction, .. } => costs.direction_plain,
-        Row { arithmetic: Arithmetic::F32Compensated, form: Formulation::Direction, .. } => costs.direction,
-        Row { arithmetic: Arithmetic::Fixed32, .. } => costs.fixed32,
-        Row { arithmetic: Arithmetic::Fixed64, .. } => {
-            let priced = Row { order: ORDER as u8, ..row };
-            return Some(f64::from(costs.fixed64) * evaluations(row) / evaluations(priced));
-        }
-        _ => return None,
-    };
-    Some(f64::from(price))
+fn on_board(method: Method, Processor { costs, .. }: &Processor) -> Option<f64> {
+    const PRICED: Method = Method::Extrapolation10Fixed64;
+    if method.numbers() == Numbers::Fixed64 {
+        return Some(f64::from(costs.fixed64) * evaluations(method) / evaluations(PRICED));
+    }
+    Some(f64::from(costs.of_frame(method, 1))).filter(|cost| cost.is_finite())
 }
 
 /// Of the equations, in a step; extrapolation of order 2 K takes K^2 + 1
 /// ([`Extrapolation`](double_pendulum::extrapolation::Extrapolation)).
-fn evaluations(row: Row) -> f64 {
-    match row.integrator {
+fn evaluations(method: Method) -> f64 {
+    match method.integrator() {
         Integrator::ClosedForm => 0.0,
         Integrator::Rk4 => 4.0,
-        Integrator::Extrapolation => f64::from(row.order / 2).powi(2) + 1.0,
+        Integrator::Extrapolation => f64::from(method.order() / 2).powi(2) + 1.0,
     }
 }

@@ -1,12 +1,12 @@
 //! From options to a request that the kernel accepts, and the times of its rows.
 
 use anyhow::{Context, anyhow, bail, ensure};
-use double_pendulum::{Error, Parameter};
-use firmware::job::{JobError, ON_BOARDS, Request, Row};
+use double_pendulum::{Error, Method, Parameter};
+use firmware::job::{JobError, Request};
 use firmware::protocol::Field;
 
-use super::price::rows;
-use super::{Number, Options, Place};
+use super::price::methods;
+use super::{Number, Options};
 
 /// A checked request and the time from row to row.
 #[derive(Debug)]
@@ -41,7 +41,7 @@ pub fn plan(options: &Options) -> anyhow::Result<Plan> {
     let stride = count(("--every", every), ("--step", step))?;
     ensure!(total % stride == 0, "--until {until}: must be a whole multiple of --every {every}");
 
-    let request = request(options, row(options)?, step, stride, total / stride);
+    let request = request(options, method(options)?, step, stride, total / stride);
     accepted(options, &request)?;
     // Numbers that overflow at once are refused before anything is printed.
     Request { stride: 1, samples: request.samples.min(1), ..request }
@@ -60,11 +60,11 @@ pub(super) fn count((option, time): (&str, &Number), (unit_option, unit): (&str,
         .with_context(|| format!("{option} {time}: more than {} times {unit_option} {unit}", u32::MAX))
 }
 
-/// The motion that the options describe, by `row` in steps of `step`.
-pub(super) fn request(options: &Options, row: Row, step: &Number, stride: u32, samples: u32) -> Request {
+/// The motion that the options describe, by `method` in steps of `step`.
+pub(super) fn request(options: &Options, method: Method, step: &Number, stride: u32, samples: u32) -> Request {
     let start = &options.start;
     Request {
-        row,
+        method,
         parameters: start.parameters(),
         angles: start.angles(),
         velocities: start.velocities(),
@@ -76,17 +76,16 @@ pub(super) fn request(options: &Options, row: Row, step: &Number, stride: u32, s
 
 /// Refuses what the kernel refuses, and names its option; and angles that leave the turns more digits than the direction.
 pub(super) fn accepted(options: &Options, request: &Request) -> anyhow::Result<()> {
-    let arithmetic = request.row.arithmetic;
-    let digits = if arithmetic.is_single() { f32::MANTISSA_DIGITS } else { f64::MANTISSA_DIGITS };
+    let digits = if request.method.is_single() { f32::MANTISSA_DIGITS } else { f64::MANTISSA_DIGITS };
     let limit = f64::powi(2.0, digits as i32 / 2);
     if let Some(angle) = request.angles.into_iter().find(|angle| angle.abs() > limit) {
-        let name = arithmetic.name();
+        let numbers = request.method.numbers();
         bail!(
-            "--angles: {angle:?} rad: must not exceed {limit}, beyond which {name} has too few digits for a direction"
+            "--angles: {angle:?} rad: must not exceed {limit}, beyond which {numbers} has too few digits for a direction"
         );
     }
     Request { samples: 0, ..*request }.readings(|_| Ok(())).map_err(|error: JobError| match error {
-        JobError::NoSuchRow(_) => anyhow!("{error}"),
+        JobError::NotOnBoards(_) | JobError::Malformed(_) => anyhow!("{error}"),
         JobError::Refused(Error::Diverged { parameter: Parameter::Energy, .. }) => {
             anyhow!("--velocities {}: the energy at the start is too large a number", options.start.velocities)
         }
@@ -94,41 +93,21 @@ pub(super) fn accepted(options: &Options, request: &Request) -> anyhow::Result<(
     })
 }
 
-/// The first row of the table that has all that is asked for, if the place asked for computes it.
-pub(super) fn row(options: &Options) -> anyhow::Result<Row> {
-    let wanted = options.wanted();
-    let rows: Vec<_> = rows(Place::Host).collect();
-    let row = wanted.first_of(&rows).map_err(|field| {
-        let words = [
-            (Field::Arithmetic, wanted.arithmetic.map(|word| word.name().to_owned())),
-            (Field::Model, wanted.model.map(|word| word.name().to_owned())),
-            (Field::Form, wanted.form.map(|word| word.name().to_owned())),
-            (Field::Integrator, wanted.integrator.map(|word| word.name().to_owned())),
-            (Field::Order, wanted.order.map(|order| order.to_string())),
-        ];
-        let given = |(field, word): &(Field, Option<String>)| Some(format!("{} {}", option_of(*field), word.as_ref()?));
-        let wrong = words.iter().filter(|(one, _)| *one == field).find_map(given).unwrap_or_default();
-        let before: Vec<_> = words.iter().take_while(|(one, _)| *one != field).filter_map(given).collect();
-        if before.is_empty() {
-            anyhow!("{wrong}: there is none such")
-        } else {
-            anyhow!("{wrong}: not with {}", before.join(" "))
-        }
-    })?;
-    match options.place {
-        Place::Board(board) if !ON_BOARDS.contains(&row) => bail!("--on {}: boards do not compute {row}", board.name),
-        _ => Ok(row),
-    }
+/// The method asked for, or the first of the table, if the place asked for computes it.
+pub(super) fn method(options: &Options) -> anyhow::Result<Method> {
+    let method = options.method.unwrap_or(Method::ALL[0]);
+    let place = options.place.name();
+    ensure!(
+        methods(options.place).any(|one| one == method),
+        "--method {method}: not on {place}; --list says where it runs"
+    );
+    Ok(method)
 }
 
 /// The option that sets a field of the request.
 fn option_of(field: Field) -> &'static str {
     match field {
-        Field::Arithmetic => "--arithmetic",
-        Field::Model => "--model",
-        Field::Form => "--form",
-        Field::Integrator => "--integrator",
-        Field::Order => "--order",
+        Field::Method => "--method",
         Field::M1 | Field::M2 => "--masses",
         Field::L1 | Field::L2 => "--lengths",
         Field::G => "--gravity",

@@ -2,7 +2,8 @@
 
 use std::io::{self, Write};
 
-use firmware::job::{Arithmetic, Reading};
+use double_pendulum::{Method, Numbers};
+use firmware::job::Reading;
 
 use super::Number;
 
@@ -18,8 +19,8 @@ pub struct Table<W> {
 
 impl<W: Write> Table<W> {
     /// A table whose row n is at n times `every`; `bits` adds the bit patterns of the state. Nothing is written yet.
-    pub fn new(output: W, arithmetic: Arithmetic, every: Number, bits: bool) -> Self {
-        let single = matches!(arithmetic, Arithmetic::F32 | Arithmetic::F32Libm | Arithmetic::F32Micromath);
+    pub fn new(output: W, method: Method, every: Number, bits: bool) -> Self {
+        let single = method.numbers() == Numbers::F32;
         Self { output, single, every, bits, rows: 0 }
     }
 

@@ -1,4 +1,4 @@
-//! The cheapest arithmetic, method and step that keep an error: found by trying, proven by the reference.
+//! The cheapest method and step that keep an error: found by trying, proven by the reference.
 //!
 //! What may be taken is tried in the order of its price; the first that stays so near to the double-double reference in every
 //! row is the cheapest.
@@ -6,11 +6,11 @@
 use std::fmt;
 
 use anyhow::{bail, ensure};
-use double_pendulum::Motion;
-use firmware::job::{Integrator, JobError, Request, Row};
+use double_pendulum::{Integrator, Method, Motion};
+use firmware::job::{JobError, Request};
 
 use super::price::{Unit, candidates};
-use super::request::{accepted, count, request, row};
+use super::request::{accepted, count, method, request};
 use super::{Number, Options, Plan};
 use crate::commands::table::small;
 use crate::console::progress::Bar;
@@ -39,20 +39,20 @@ pub struct Choice {
 /// Chooses among all that the options leave open; an error is one line that names the option and the value.
 pub fn choose(options: &Options, tolerance: &Number) -> anyhow::Result<Choice> {
     let search = Search::new(options, tolerance)?;
-    search.check(row(options)?)?;
+    search.check(method(options)?)?;
     let exact = search.exact();
     let mut trials = Vec::new();
-    let (unit, rows) = candidates(options);
-    for (row, price) in rows {
-        trials.extend(search.divisions(row).map(|parts| (f64::from(parts) * price, row, parts)));
+    let (unit, methods) = candidates(options);
+    for (method, price) in methods {
+        trials.extend(search.divisions(method).map(|parts| (f64::from(parts) * price, method, parts)));
     }
     trials.sort_by(|(one, ..), (other, ..)| one.total_cmp(other));
 
     let bar = Bar::start("trials", trials.len() as u64);
     let mut reached = 0;
-    for (price, row, parts) in trials {
+    for (price, method, parts) in trials {
         bar.advance(1);
-        let (request, step) = search.request(row, parts);
+        let (request, step) = search.request(method, parts);
         let Agreement { rows, apart } = Agreement::of(&request, &exact, tolerance.value());
         if rows == exact.len() {
             let (plan, price) = (Plan { request, every: search.every.clone() }, price / search.every.value());
@@ -68,8 +68,8 @@ pub fn choose(options: &Options, tolerance: &Number) -> anyhow::Result<Choice> {
 impl fmt::Display for Choice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { plan, step, price, unit, error } = self;
-        let (row, error) = (plan.request.row, small(*error));
-        write!(f, "takes {row} in steps of {step} s, {price:.0} {unit} a simulated second: ")?;
+        let (method, error) = (plan.request.method, small(*error));
+        write!(f, "takes {method} in steps of {step} s, {price:.0} {unit} a simulated second: ")?;
         write!(f, "off by {error} rad at most, by the double-double reference")
     }
 }
@@ -94,20 +94,20 @@ impl<'a> Search<'a> {
     }
 
     /// Refuses what the kernel refuses in the finest steps.
-    fn check(&self, row: Row) -> anyhow::Result<()> {
-        let finest = self.divisions(row).last().unwrap_or(1);
-        accepted(self.options, &self.request(row, finest).0)
+    fn check(&self, method: Method) -> anyhow::Result<()> {
+        let finest = self.divisions(method).last().unwrap_or(1);
+        accepted(self.options, &self.request(method, finest).0)
     }
 
-    /// The motion by `row` in so many steps from row to row, and the step.
-    fn request(&self, row: Row, parts: u32) -> (Request, Number) {
+    /// The motion by `method` in so many steps from row to row, and the step.
+    fn request(&self, method: Method, parts: u32) -> (Request, Number) {
         let step = self.every.divided_by(parts);
-        (request(self.options, row, &step, parts, self.samples), step)
+        (request(self.options, method, &step, parts, self.samples), step)
     }
 
     /// The numbers of steps from row to row that are tried: 1, 2, 3, 4, 6, 8, 12 and so on; the closed form needs none.
-    fn divisions(&self, row: Row) -> impl Iterator<Item = u32> + use<> {
-        let most = if row.integrator == Integrator::ClosedForm { 1 } else { MOST_STEPS / self.samples };
+    fn divisions(&self, method: Method) -> impl Iterator<Item = u32> + use<> {
+        let most = if method.integrator() == Integrator::ClosedForm { 1 } else { MOST_STEPS / self.samples };
         let powers = (0..u32::BITS - 2).map(|exponent| 1 << exponent);
         powers
             .flat_map(|power: u32| [Some(power), (power > 1).then_some(power / 2 * 3)])

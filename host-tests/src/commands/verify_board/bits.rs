@@ -1,8 +1,8 @@
-//! The motions of every arithmetic, computed by the board, beside the host's own.
+//! The motions of every method, computed by the board, beside the host's own.
 
-use double_pendulum::Parameters;
+use double_pendulum::{Method, Parameters};
 use firmware::config::GRAVITY;
-use firmware::job::{JobError, ON_BOARDS, Reading, Request, Row};
+use firmware::job::{JobError, ON_BOARDS, Reading, Request};
 use firmware::protocol::Sample;
 use serde::Serialize;
 
@@ -28,10 +28,10 @@ pub const REGULAR: Motion = Motion { name: "regular", m2: 1.0, angle: 0.5 };
 const MOTIONS: [Motion; 2] = [REGULAR, Motion { name: "chaotic", m2: 2.75, angle: 2.98 }];
 
 impl Motion {
-    /// As a request of the board, by the arithmetic `row`.
-    pub fn request(&self, row: Row) -> Request {
+    /// As a request of the board, by `method`.
+    pub fn request(&self, method: Method) -> Request {
         Request {
-            row,
+            method,
             parameters: Parameters { m1: 1.0, m2: self.m2, l1: 1.0, l2: 1.0, g: GRAVITY },
             angles: [self.angle; 2],
             velocities: [0.0; 2],
@@ -45,8 +45,8 @@ impl Motion {
 /// What became of one motion.
 #[derive(Clone, Debug, Serialize)]
 pub struct Bits {
-    /// The row of the table.
-    pub arithmetic: String,
+    /// The method.
+    pub method: String,
     /// The motion.
     pub motion: &'static str,
     /// How many steps.
@@ -55,12 +55,12 @@ pub struct Bits {
     pub difference: Option<String>,
 }
 
-/// Every arithmetic of the boards, in every motion that it accepts.
+/// Every method of the boards, in every motion that it accepts.
 pub fn check(talk: &mut Talk) -> anyhow::Result<Vec<Bits>> {
-    let all = ON_BOARDS.iter().flat_map(|&row| MOTIONS.map(|motion| (row, motion)));
+    let all = ON_BOARDS.iter().flat_map(|&method| MOTIONS.map(|motion| (method, motion)));
     let mut checked = Vec::new();
-    for (number, (row, motion)) in all.enumerate() {
-        let request = motion.request(row);
+    for (number, (method, motion)) in all.enumerate() {
+        let request = motion.request(method);
         let mut readings = Vec::new();
         let accepted = request.readings(|reading| {
             readings.push(*reading);
@@ -68,8 +68,8 @@ pub fn check(talk: &mut Talk) -> anyhow::Result<Vec<Bits>> {
         });
         if accepted.is_ok() {
             let difference = compare(talk, &request, number as u16, &readings)?;
-            let (arithmetic, motion) = (row.to_string(), motion.name);
-            checked.push(Bits { arithmetic, motion, steps: STRIDE * SAMPLES, difference });
+            let (method, motion) = (method.to_string(), motion.name);
+            checked.push(Bits { method, motion, steps: STRIDE * SAMPLES, difference });
         }
     }
     Ok(checked)

@@ -47,7 +47,7 @@ pub struct Report {
     pub chip: Chip,
     /// What runs there.
     pub program: Program,
-    /// The motions of every arithmetic.
+    /// The motions of every method.
     pub bits: Vec<Bits>,
     /// What they cost.
     pub cycles: Vec<Cycles>,
@@ -60,8 +60,8 @@ pub struct Report {
 impl Report {
     /// What is not well, a line each.
     pub fn faults(&self) -> Vec<String> {
-        let bits = self.bits.iter().filter_map(|Bits { arithmetic, motion, difference, .. }| {
-            difference.as_ref().map(|difference| format!("{arithmetic}, {motion}: {difference}"))
+        let bits = self.bits.iter().filter_map(|Bits { method, motion, difference, .. }| {
+            difference.as_ref().map(|difference| format!("{method}, {motion}: {difference}"))
         });
         let scenes = self.scenes.iter().filter_map(|Scene { scene, difference, .. }| {
             difference.as_ref().map(|difference| format!("{scene}: {difference}"))
@@ -75,7 +75,7 @@ impl Report {
         let faults = self.faults().len();
         let frames: u32 = self.scenes.iter().map(|scene| scene.frames).sum();
         let said = format!(
-            "{}: {} motions of {} arithmetics, {frames} frames of {} scenes",
+            "{}: {} motions of {} methods, {frames} frames of {} scenes",
             self.chip.board,
             self.bits.len(),
             self.cycles.len(),
@@ -118,10 +118,10 @@ impl Report {
         let bits = Table {
             title: "Bits".to_owned(),
             note: "Motions from rest in steps of 1/256 s, computed by the board on request.".to_owned(),
-            columns: vec!["arithmetic", "motion", "steps", "bits"],
+            columns: vec!["method", "motion", "steps", "bits"],
             rows: (self.bits.iter())
                 .map(|row| {
-                    [&row.arithmetic, row.motion, &row.steps.to_string(), &verdict(&row.difference)]
+                    [&row.method, row.motion, &row.steps.to_string(), &verdict(&row.difference)]
                         .map(str::to_owned)
                         .to_vec()
                 })
@@ -134,12 +134,12 @@ impl Report {
                    flash and, where there is one, by its copy in RAM (constants are read from flash by both); estimated for \
                    memory without wait states, over as many steps or, of the expensive ones, fewer."
                 .to_owned(),
-            columns: vec!["arithmetic", "from flash", "from RAM", "estimated"],
+            columns: vec!["method", "from flash", "from RAM", "estimated"],
             rows: (self.cycles.iter())
                 .map(|row| {
                     let no_copy = if row.from_flash.is_some() { "-" } else { NO_COUNTER };
                     let measured = [cycles(row.from_flash, NO_COUNTER), cycles(row.from_ram, no_copy)];
-                    [vec![row.arithmetic.clone()], measured.to_vec(), vec![cycles(row.estimated, "-")]].concat()
+                    [vec![row.method.to_string()], measured.to_vec(), vec![cycles(row.estimated, "-")]].concat()
                 })
                 .collect(),
             ..Table::default()

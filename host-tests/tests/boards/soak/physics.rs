@@ -1,7 +1,7 @@
 //! A motion computed for a day on request, beside the same on the host.
 
-use double_pendulum::{Parameters, Pendulum, State};
-use firmware::job::{Arithmetic, Formulation, Job, Request, Row};
+use double_pendulum::{Method, Parameters, Pendulum, State};
+use firmware::job::{Job, Request};
 use firmware::protocol::{Frame, Sample};
 
 use host_tests::emulator::qemu::{Machine, QemuError, Settings};
@@ -10,7 +10,7 @@ use super::Outcome;
 
 /// Equal rods let go at 0.5 rad, in compensated `f32`.
 const PHYSICS: Request = Request {
-    row: Row::rk4(Arithmetic::F32Compensated, Formulation::Direction),
+    method: Method::Rk4F32Direction,
     parameters: Parameters { m1: 1.0, m2: 1.0, l1: 1.0, l2: 1.0, g: 9.81 },
     angles: [0.5, 0.5],
     velocities: [0.0, 0.0],
