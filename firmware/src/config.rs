@@ -78,12 +78,12 @@ impl Processor {
 pub const CORTEX_M3: Processor = Processor {
     code: 0,
     costs: Costs {
-        closed_form: 5_082.0,
+        closed_form: 6_321.0,
         direction_plain: 8_915.0,
         direction: 10_210.0,
-        fixed32: 689.0,
+        fixed32: 668.0,
         fixed64: 21_500.0,
-        preparation: 280_000.0,
+        preparation: 147_000.0,
     },
     frame: 200_000.0,
     look_ahead: 320_000.0,
@@ -93,12 +93,12 @@ pub const CORTEX_M3: Processor = Processor {
 pub const CORTEX_M0PLUS: Processor = Processor {
     code: 3,
     costs: Costs {
-        closed_form: 10_500.0,
+        closed_form: 12_543.0,
         direction_plain: 19_900.0,
         direction: 23_000.0,
-        fixed32: 2_170.0,
+        fixed32: 2_122.0,
         fixed64: 78_000.0,
-        preparation: 620_000.0,
+        preparation: 351_000.0,
     },
     frame: 300_000.0,
     look_ahead: 530_000.0,
@@ -109,12 +109,12 @@ pub const CORTEX_M0PLUS: Processor = Processor {
 pub const CORTEX_M4F: Processor = Processor {
     code: 1,
     costs: Costs {
-        closed_form: 188.0,
+        closed_form: 1_437.0,
         direction_plain: 159.4,
         direction: 208.0,
-        fixed32: 591.0,
+        fixed32: 612.0,
         fixed64: 14_000.0,
-        preparation: 300_000.0,
+        preparation: 140_000.0,
     },
     frame: 150_000.0,
     look_ahead: 190_000.0,

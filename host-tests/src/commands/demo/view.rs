@@ -209,7 +209,7 @@ mod tests {
             let numbers = ["86399.48 s", "0.1736", "-179.9°, 179.9°", "12.3°", "-114.6°", "123456", "12345", "-2.5e-7"];
             let words = [
                 "lm3s6965evb-m4 · butterfly · paused",
-                "64-bit fixed point, 12 steps to a frame, right to half a pixel until at least 86400.0 s",
+                "extrapolation10-fixed64, 12 steps to a frame, right to half a pixel until at least 86400.0 s",
                 "0 frames, every bit the host's (30 not compared)",
             ];
             for text in numbers.into_iter().chain(words).chain(KEYS) {
