@@ -55,6 +55,6 @@ fn an_interrupt_leaves_nothing_in_the_temporary_folder() {
     let left = || std::fs::read_dir(temporary.path()).expect("it is there").count();
     assert!(left() > 0, "the board has its folder there");
     kill(Pid::from_raw(fw.id().cast_signed()), Signal::SIGTERM).expect("it runs");
-    assert_eq!(fw.wait().expect("it ends").code(), Some(130));
+    assert_eq!(fw.wait().expect("it ends").code(), Some(143));
     assert_eq!(left(), 0);
 }

@@ -23,7 +23,7 @@ fn it_says_the_method_the_step_and_the_horizon() {
     let small = said("--angles 3,3 --degrees --height 64 --duration 10");
     assert!(small.contains("rk4-fixed32") && small.contains("until 10.00 s of 10 s"), "{small}");
     let large = said("--angles 90,90 --degrees --duration 10 --target m4f");
-    assert!(large.contains("plain f32") && large.contains("1/60 s, one to a frame"), "{large}");
+    assert!(large.contains("rk4-f32-direction-plain") && large.contains("1/60 s, one to a frame"), "{large}");
     let figure7 = said("--masses 1,2.75 --angles 171,171 --degrees --duration 30");
     assert!(figure7.contains("errors grow until they show") && figure7.contains("of 30 s"), "{figure7}");
     let light = said("--masses 1,1000 --angles 30,30 --degrees --duration 1");

@@ -8,8 +8,8 @@
 //!
 //! | form | cycles | 10 s | 100 s |
 //! |---|---|---|---|
-//! | [`DirectionForm`] compensated, `f32` | 202 | 4e-8 | 4e-7 |
-//! | [`DirectionForm`] plain, `f32` | 159 | 2e-6 | 2e-5 |
+//! | [`DirectionForm`] compensated, `f32` | 206 | 4e-8 | 4e-7 |
+//! | [`DirectionForm`] plain, `f32` | 160 | 2e-6 | 2e-5 |
 //!
 //! Where an error of 1e-9 or less is wanted, [`ExtrapolatedForm`] takes far fewer steps in `f64`; on chips that compute `f64` in
 //! software [`Fixed64Form`] does the same for a tenth of the cycles.
