@@ -89,9 +89,9 @@ table! {
         Extrapolation12Fixed64: Directions<f64, Fixed64Form<12>>;
         Extrapolation16Fixed64: Directions<f64, Fixed64Form<16>>;
         ClosedFormF64: Linear<f64>;
-        ClosedFormF32: Drawn;
     }
     elsewhere {
+        ClosedFormF32: Drawn;
         Extrapolation8F64: Directions<f64, ExtrapolatedForm<8>>;
         Extrapolation12F64: Directions<f64, ExtrapolatedForm<12>>;
         Extrapolation16F64: Directions<f64, ExtrapolatedForm<16>>;
