@@ -259,13 +259,6 @@ pub const ORDER_EXTRAPOLATED: f64 = 0.8;
 /// A step of order 12 and back, of 0.1 rad: some 70 roundings of the sums, 2e-16 each (measured 2e-16).
 pub const RETURN_OF_ONE_STEP: f64 = 1e-14;
 
-/// Pictures between steps of 1/15 s, regular (0.5 rad) and chaotic (2 rad), sines and cosines (measured 9.5e-8 and 2.7e-4).
-pub const BETWEEN_STEPS: [f64; 2] = [1e-7, 3e-4];
-/// What the roundings of `f32` add to them: of the angles, the polynomial's coefficients and its sum.
-pub const BETWEEN_STEPS_SINGLE: f64 = 3e-7;
-/// The order of that error, 6, give or take what the largest of some samples varies by.
-pub const BETWEEN_STEPS_ORDER: std::ops::RangeInclusive<f64> = 5.8..=6.2;
-
 /// Points of a map of flips with a limit of 10 sqrt(l/g) that are right to a grey level, of those that may turn over: the goal.
 pub const FLIPS_RIGHT: f64 = 0.999;
 /// With a limit of 100 sqrt(l/g) chaos leaves fewer: at most so many are wrong, ...

@@ -148,8 +148,7 @@ fn a_way_that_is_given_stays() {
     let found = (0..PATIENCE).find_map(|_| planner.tick());
     let Some(Finding::Plan(plan)) = found else { panic!("{found:?}") };
     assert_eq!((plan.method, plan.steps, plan.limit), (Method::Rk4F32Direction, 4, Limit::Method));
-    // The exact motion is left after 10.5 s.
-    assert!((7.0..10.5).contains(&plan.horizon), "{plan:?}");
+    assert!((7.0..=9.5).contains(&plan.horizon), "{plan:?}");
 }
 
 /// What hosts know: a code never changes its meaning, whatever becomes of the order of methods and limits.
