@@ -48,10 +48,9 @@ fn the_log_counts_as_many_instructions_as_the_clock() {
 }
 
 #[test]
-fn the_book_by_the_libm_crate_costs_an_eighth_less_than_the_trial_found() {
-    // 23,692 instructions a step, averaged over other states of the motion and with another version of the compiler; the
-    // sines are computed in f64, and the sums and products of our own library save an eighth.
-    let expected = 20_000.0..22_000.0;
+fn the_book_by_the_libm_crate_takes_twenty_thousand_instructions() {
+    // 23,692 were counted apart from this project, averaged over other states and with another version of the compiler.
+    let expected = 20_000.0..27_000.0;
     for target in targets().iter().filter(|target| target.board.cpu == "cortex-m4") {
         let method = Method::TextbookF32;
         let request = request(method, 16);
