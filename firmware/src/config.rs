@@ -31,7 +31,7 @@ pub const HALF_PIXEL: f32 = 0.5;
 
 // ---- The plan -------------------------------------------------------------------------------------------------------
 
-/// For how long each scene is planned, s: longer than the motion of the liveliest can be predicted in 64 bits. One that is
+/// For how long each scene is planned, s: longer than the most energetic motion can be predicted in 64 bits. One that is
 /// right for so long is looked at farther as time goes on, always so far ahead.
 pub const PLANNED: f64 = 30.0;
 /// Ticks from the start of a scene until looking ahead begins. A held button restarts the scene sooner than that.
@@ -202,7 +202,7 @@ pub const PIVOT: (f32, f32) = (64.0, 32.0);
 pub const REACH: f32 = 28.5;
 /// Radius of the heavier bob. The lighter one's follows by volume.
 pub const GREATEST_RADIUS: f32 = 3.0;
-/// No bob is drawn smaller than this, whatever its mass.
+/// No bob is drawn smaller than this.
 pub const LEAST_RADIUS: f32 = 1.5;
 /// Half the width of a rod.
 pub const ROD_HALF_WIDTH: f32 = 0.6;
@@ -215,7 +215,7 @@ pub const TRAIL_FADING: u8 = 5;
 
 // ---- The serial link ------------------------------------------------------------------------------------------------
 
-/// Bits per second. A frame of 75 bytes takes 75 x 10/460,800 = 1.6 ms of the tick's 16.7 ms.
+/// Bits per second. A frame of at most 86 bytes takes 86 x 10/460,800 = 1.9 ms of the tick's 16.7 ms.
 pub const BAUD: u32 = 460_800;
 /// Steps that are measured at once, at most: of order 8 in `f64` they keep a Cortex-M3 at 50 MHz from everything else for
 /// 16 x 136,500/50e6 = 44 ms.

@@ -1,9 +1,9 @@
 //! What can be asked of the player, by button or over the serial link.
 
-use crate::app::controls::Key;
-use crate::protocol::Field;
-use crate::protocol::Unit;
-use crate::protocol::{self, Message, Refused};
+use crate::protocol::choice::choice;
+use crate::protocol::{
+    Ask, AskPlan, Choose, Field, Identify, Measure, Message, Pause, Press, Refused, Restart, Set, Step, request,
+};
 use crate::scenes::SceneName;
 
 /// What the user asks for.
@@ -30,7 +30,7 @@ pub enum Command {
     Set {
         /// Which.
         field: Field,
-        /// Its value in the unit that the field is kept in.
+        /// Its value, in SI units.
         value: f64,
     },
     /// Stop the scene's time, or let it go on.
@@ -54,68 +54,96 @@ pub enum Command {
     },
 }
 
+choice! {
+    /// A button.
+    Key {
+        /// Up.
+        Up = 0, "up";
+        /// Down.
+        Down = 1, "down";
+        /// Left.
+        Left = 2, "left";
+        /// Right.
+        Right = 3, "right";
+        /// Select.
+        Select = 4, "select";
+    }
+}
+
+impl Key {
+    /// What a tap on it alone asks for.
+    pub const fn tapped(self) -> Command {
+        match self {
+            Self::Up => Command::Heavier,
+            Self::Down => Command::Lighter,
+            Self::Left => Command::TurnLeft,
+            Self::Right => Command::TurnRight,
+            Self::Select => Command::Restart,
+        }
+    }
+
+    /// What an arrow asks for while select is held.
+    pub(super) const fn with_select(self) -> Command {
+        match self {
+            Self::Up => Command::TogglePause,
+            Self::Down => Command::Step(1),
+            Self::Left => Command::PreviousScene,
+            Self::Right => Command::NextScene,
+            Self::Select => Command::Restart,
+        }
+    }
+}
+
 /// A command that came as a message.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HostCommand {
     /// The number to answer it with.
     pub request: u16,
-    /// What is asked.
+    /// What it asks for.
     pub command: Command,
 }
 
 impl HostCommand {
-    /// The order in an intact message, or why it is none.
+    /// The command in an intact message, or why there is none.
     pub fn read(kind: u8, fields: &[u8]) -> Result<Self, Refused> {
-        Self::known(kind, fields).unwrap_or_else(|| {
-            // Every message to the chip begins with its number, so that even one of unknown kind can be answered.
-            let request = fields.first_chunk().map_or(0, |bytes| u16::from_le_bytes(*bytes));
-            Err(Refused { request, field: Field::Message.code() })
-        })
-    }
-
-    /// `None` if there is no such kind or the length is not that kind's.
-    fn known(kind: u8, fields: &[u8]) -> Option<Result<Self, Refused>> {
-        let (request, command) = match kind {
-            protocol::Set::KIND => {
-                let message = protocol::Set::read(fields)?;
-                (message.request, set(&message))
-            }
-            protocol::Choose::KIND => {
-                let protocol::Choose { request, scene } = Message::read(fields)?;
-                (request, SceneName::from_code(scene).map(Command::Choose).ok_or(Field::Scene))
-            }
-            protocol::Restart::KIND => (protocol::Restart::read(fields)?.request, Ok(Command::Restart)),
-            protocol::Pause::KIND => {
-                let protocol::Pause { request, paused } = Message::read(fields)?;
-                (request, Ok(Command::Pause(paused != 0)))
-            }
-            protocol::Step::KIND => {
-                let protocol::Step { request, ticks } = Message::read(fields)?;
-                (request, Ok(Command::Step(ticks)))
-            }
-            protocol::Press::KIND => {
-                let protocol::Press { request, key } = Message::read(fields)?;
-                (request, Key::from_code(key).map(Key::tapped).ok_or(Field::Key))
-            }
-            protocol::Ask::KIND => (protocol::Ask::read(fields)?.request, Ok(Command::Ask)),
-            protocol::AskPlan::KIND => (protocol::AskPlan::read(fields)?.request, Ok(Command::AskPlan)),
-            protocol::Identify::KIND => (protocol::Identify::read(fields)?.request, Ok(Command::Identify)),
-            protocol::Measure::KIND => {
-                let protocol::Measure { request, steps, in_ram } = Message::read(fields)?;
-                (request, Ok(Command::Measure { steps, in_ram: in_ram != 0 }))
-            }
-            _ => return None,
-        };
-        let order = command.map(|command| Self { request, command });
-        Some(order.map_err(|field| Refused { request, field: field.code() }))
+        // Even one of unknown kind is answered.
+        let (request, command) = known(kind, fields).unwrap_or((request(fields), Err(Field::Message)));
+        command.map(|command| Self { request, command }).map_err(|field| Refused { request, field: field.code() })
     }
 }
 
-/// The field to set must be a quantity, and the unit one of its own.
-fn set(message: &protocol::Set) -> Result<Command, Field> {
-    let field = Field::from_code(message.field).ok_or(Field::Field)?;
-    let kept_in = Unit::of(field).ok_or(Field::Field)?;
-    let unit = Unit::from_code(message.unit).ok_or(Field::Unit)?;
-    let value = unit.convert(message.value, kept_in).ok_or(Field::Unit)?;
-    Ok(Command::Set { field, value })
+/// `None` if there is no such kind or the fields are not that kind's.
+fn known(kind: u8, fields: &[u8]) -> Option<(u16, Result<Command, Field>)> {
+    Some(match kind {
+        Set::KIND => {
+            let Set { request, field, value } = Message::read(fields)?;
+            let field = Field::from_code(field).ok_or(Field::Field);
+            (request, field.map(|field| Command::Set { field, value }))
+        }
+        Choose::KIND => {
+            let Choose { request, scene } = Message::read(fields)?;
+            (request, SceneName::from_code(scene).map(Command::Choose).ok_or(Field::Scene))
+        }
+        Pause::KIND => {
+            let Pause { request, paused } = Message::read(fields)?;
+            (request, Ok(Command::Pause(paused != 0)))
+        }
+        Step::KIND => {
+            let Step { request, ticks } = Message::read(fields)?;
+            (request, Ok(Command::Step(ticks)))
+        }
+        Press::KIND => {
+            let Press { request, key } = Message::read(fields)?;
+            (request, Key::from_code(key).map(Key::tapped).ok_or(Field::Key))
+        }
+        Measure::KIND => {
+            let Measure { request, steps, in_ram } = Message::read(fields)?;
+            (request, Ok(Command::Measure { steps, in_ram: in_ram != 0 }))
+        }
+        Restart::KIND => (Restart::read(fields)?.request, Ok(Command::Restart)),
+        Ask::KIND => (Ask::read(fields)?.request, Ok(Command::Ask)),
+        AskPlan::KIND => (AskPlan::read(fields)?.request, Ok(Command::AskPlan)),
+        Identify::KIND => (Identify::read(fields)?.request, Ok(Command::Identify)),
+        _ => return None,
+    })
 }

@@ -1,10 +1,12 @@
 //! What the application says of itself.
 
 use double_pendulum::Error;
+use embedded_io::ErrorType;
 
 use crate::app::command::Command;
 use crate::app::player::News;
 use crate::app::warm_restart::WarmRestart;
+use crate::display::Display;
 use crate::motion::settings::Settings;
 use crate::protocol::Field;
 use crate::protocol::LinkError;
@@ -56,3 +58,8 @@ pub enum Event<Panel, Link> {
     /// What becomes of the motion.
     Motion(News),
 }
+
+/// What takes the events of an application with such a panel and link.
+pub trait Log<Panel: Display, Link: ErrorType>: FnMut(Event<Panel::Error, Link::Error>) {}
+
+impl<Panel: Display, Link: ErrorType, F: FnMut(Event<Panel::Error, Link::Error>)> Log<Panel, Link> for F {}

@@ -1,5 +1,6 @@
 //! The application: reads the buttons, moves the scene, draws it and sends it, tick by tick.
 
+mod button;
 pub mod command;
 pub mod controls;
 mod event;
@@ -31,7 +32,7 @@ use crate::protocol::{Done, Field, Frame, LinkError, MAX_WIRE, Measured, Message
 use crate::scenes::SceneName;
 use throttle::{FaultEdge, ThrottledCounter};
 
-pub use event::Event;
+pub use event::{Event, Log};
 
 /// The same on a board and in a test: a panel, a byte sink and buttons are all it needs.
 #[derive(Debug)]
@@ -63,7 +64,7 @@ pub struct App<'a, Panel, Link, Keys> {
 }
 
 impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> {
-    /// Starts with `settings`, at tick 0; the kernel's error if they describe no pendulum.
+    /// Plays the page with `settings`, at tick 0; the kernel's error if they describe no pendulum.
     pub fn new(
         settings: Settings,
         buffers: &'a mut FrameBuffers,
@@ -71,24 +72,12 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         link: Link,
         keys: Keys,
     ) -> Result<Self, Error> {
-        Self::on(PROCESSOR, settings, buffers, panel, link, keys)
-    }
-
-    /// The same as it goes on another class of processors.
-    pub fn on(
-        processor: Processor,
-        settings: Settings,
-        buffers: &'a mut FrameBuffers,
-        panel: Panel,
-        link: Link,
-        keys: Keys,
-    ) -> Result<Self, Error> {
-        let mut app = Self::idle(processor, settings, buffers, panel, link, keys);
+        let mut app = Self::idle(PROCESSOR, settings, buffers, panel, link, keys);
         app.begin()?;
         Ok(app)
     }
 
-    /// The same before it [begins](Self::begin), which takes much of the stack: better when it is at its place.
+    /// The same for a class of processors, before it [begins](Self::begin), which takes much of the stack: better when it is at its place.
     ///
     /// Never inlined: so it is made at its place, and no copy of it stands on the stack.
     #[inline(never)]
@@ -137,10 +126,10 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     }
 
     /// Goes on after a restart with what was played before it, and tells the host.
-    pub fn resume(&mut self, survivor: &WarmRestart, mut log: impl FnMut(Event<Panel::Error, Link::Error>)) {
-        let resumed = survivor.played.is_some_and(|played| self.player.resume(&played).is_ok());
-        log(Event::Restarted(*survivor, resumed));
-        self.send(&survivor.end, &mut log);
+    pub fn resume(&mut self, restart: &WarmRestart, mut log: impl Log<Panel, Link>) {
+        let resumed = restart.played.is_some_and(|played| self.player.resume(&played).is_ok());
+        log(Event::Restarted(*restart, resumed));
+        self.send(&restart.end, &mut log);
     }
 
     /// Catches up with the clock, which counts ticks since reset and may wrap, then draws and sends once.
@@ -148,7 +137,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     /// Every tick is integrated, however late; the state after n ticks does not depend on how often this is called.
     /// At most [`MOST_TICKS_PER_FRAME`] are done per call; the rest are done by the next calls. Returns whether the
     /// clock is caught up with; if not, call again without waiting for the next tick.
-    pub fn run_to(&mut self, clock: u32, mut log: impl FnMut(Event<Panel::Error, Link::Error>)) -> bool {
+    pub fn run_to(&mut self, clock: u32, mut log: impl Log<Panel, Link>) -> bool {
         let late = clock.wrapping_sub(self.ticks);
         let ticks = late.min(MOST_TICKS_PER_FRAME);
         if ticks == 0 {
@@ -159,7 +148,9 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
             self.tick(&mut log);
         }
         self.dropped.add(ticks - 1);
-        self.log_dropped(&mut log);
+        if let Some(ticks) = self.dropped.news(self.ticks) {
+            log(Event::Dropped { ticks, total: self.dropped.total() });
+        }
         if let Err(error) = self.player.check() {
             log(Event::Stopped(error));
         }
@@ -172,11 +163,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
 
     /// Takes bytes received over the link, executes and answers. Stops after [`MOST_MESSAGES_PER_TICK`] messages or
     /// [`RECEIVE_QUEUE`] bytes, so that no flood of either delays the frame; what is left in `bytes` waits for the next call.
-    pub fn receive(
-        &mut self,
-        bytes: impl IntoIterator<Item = u8>,
-        mut log: impl FnMut(Event<Panel::Error, Link::Error>),
-    ) {
+    pub fn receive(&mut self, bytes: impl IntoIterator<Item = u8>, mut log: impl Log<Panel, Link>) {
         let mut left = MOST_MESSAGES_PER_TICK;
         for byte in bytes.into_iter().take(RECEIVE_QUEUE) {
             let Some(received) = self.service.receive(byte) else { continue };
@@ -187,7 +174,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
                     log(Event::StepTooLong(coarse.admissible_step));
                     self.send(&coarse, &mut log);
                 }
-                Received::HostCommand(order) => self.reply(order, &mut log),
+                Received::HostCommand(command) => self.reply(command, &mut log),
                 Received::Refused(refused) => self.send(&refused, &mut log),
                 Received::Damaged(error) => {
                     self.damaged.add(1);
@@ -199,11 +186,15 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
                 break;
             }
         }
-        self.log_damaged(&mut log);
+        if let Some(last) = self.last_damage
+            && let Some(messages) = self.damaged.news(self.ticks)
+        {
+            log(Event::Damaged { messages, total: self.damaged.total(), last });
+        }
     }
 
     /// Takes note of how many received bytes have been lost since reset; may wrap.
-    pub fn note_lost(&mut self, total: u32, mut log: impl FnMut(Event<Panel::Error, Link::Error>)) {
+    pub fn note_lost(&mut self, total: u32, mut log: impl Log<Panel, Link>) {
         self.lost.set(total);
         if let Some(bytes) = self.lost.news(self.ticks) {
             log(Event::Lost { bytes, total });
@@ -211,7 +202,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     }
 
     /// Does a bounded piece of the work asked for over the link, a step at most; whether there is more.
-    pub fn work(&mut self, mut log: impl FnMut(Event<Panel::Error, Link::Error>)) -> bool {
+    pub fn work(&mut self, mut log: impl Log<Panel, Link>) -> bool {
         match self.service.work() {
             Some(Ok(sample)) => self.send(&sample, &mut log),
             Some(Err(refused)) => self.send(&refused, &mut log),
@@ -250,7 +241,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         &self.panel
     }
 
-    fn tick(&mut self, log: &mut impl FnMut(Event<Panel::Error, Link::Error>)) {
+    fn tick(&mut self, log: &mut impl Log<Panel, Link>) {
         self.ticks = self.ticks.wrapping_add(1);
         for command in self.controls.tick(self.keys.read()) {
             if let Err(field) = self.execute(command, log) {
@@ -260,11 +251,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         self.player.tick(|news| log(Event::Motion(news)));
     }
 
-    fn execute(
-        &mut self,
-        command: Command,
-        log: &mut impl FnMut(Event<Panel::Error, Link::Error>),
-    ) -> Result<(), Field> {
+    fn execute(&mut self, command: Command, log: &mut impl Log<Panel, Link>) -> Result<(), Field> {
         if self.player.execute(command)? {
             log(Event::Started(self.player.name(), *self.player.settings()));
             if let Some(way) = self.player.report().way {
@@ -274,74 +261,44 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         Ok(())
     }
 
-    /// Obeys an order that came over the link, and answers it.
-    fn reply(
-        &mut self,
-        HostCommand { request, command }: HostCommand,
-        log: &mut impl FnMut(Event<Panel::Error, Link::Error>),
-    ) {
-        match self.execute(command, log) {
-            Ok(()) if command == Command::Ask => self.send(&self.player.status(request), log),
-            Ok(()) if command == Command::AskPlan => self.send(&self.player.plan(request), log),
-            Ok(()) if command == Command::Identify => self.send(&self.instruments.identity(request), log),
-            Ok(()) if let Command::Measure { steps, in_ram } = command => self.measure(request, steps, in_ram, log),
-            Ok(()) => self.send(&Done { request }, log),
-            Err(field) => self.send(&Refused { request, field: field.code() }, log),
+    /// Executes a command that came over the link, and answers it.
+    fn reply(&mut self, HostCommand { request, command }: HostCommand, log: &mut impl Log<Panel, Link>) {
+        if let Err(field) = self.execute(command, log) {
+            return self.send(&Refused { request, field: field.code() }, log);
         }
-    }
-
-    /// Measures steps of the motion asked for last; refuses if none was.
-    fn measure(
-        &mut self,
-        request: u16,
-        steps: u32,
-        in_ram: bool,
-        log: &mut impl FnMut(Event<Panel::Error, Link::Error>),
-    ) {
-        let steps = steps.min(MOST_MEASURED_STEPS);
-        let timed = self.instruments.timed;
-        match self.service.measure(|motion| timed(motion, steps, in_ram)) {
-            Some(cycles) => self.send(&Measured { request, steps, cycles }, log),
-            None => self.send(&Refused { request, field: Field::Message.code() }, log),
-        }
-    }
-
-    fn log_dropped(&mut self, log: &mut impl FnMut(Event<Panel::Error, Link::Error>)) {
-        if let Some(ticks) = self.dropped.news(self.ticks) {
-            log(Event::Dropped { ticks, total: self.dropped.total() });
-        }
-    }
-
-    fn log_damaged(&mut self, log: &mut impl FnMut(Event<Panel::Error, Link::Error>)) {
-        if let Some(last) = self.last_damage
-            && let Some(messages) = self.damaged.news(self.ticks)
-        {
-            log(Event::Damaged { messages, total: self.damaged.total(), last });
+        match command {
+            Command::Ask => self.send(&self.player.status(request), log),
+            Command::AskPlan => self.send(&self.player.plan(request), log),
+            Command::Identify => self.send(&self.instruments.identity(request), log),
+            Command::Measure { steps, in_ram } => {
+                let (steps, timed) = (steps.min(MOST_MEASURED_STEPS), self.instruments.timed);
+                match self.service.measure(|motion| timed(motion, steps, in_ram)) {
+                    Some(cycles) => self.send(&Measured { request, steps, cycles }, log),
+                    None => self.send(&Refused { request, field: Field::Message.code() }, log),
+                }
+            }
+            _ => self.send(&Done { request }, log),
         }
     }
 
     #[inline(never)]
-    fn show(&mut self, scene_cycles: u32, log: &mut impl FnMut(Event<Panel::Error, Link::Error>)) {
+    fn show(&mut self, scene_cycles: u32, log: &mut impl Log<Panel, Link>) {
         let shown = self.panel.flush(self.canvas);
         self.panel_failing.note(shown, |error| log(Event::Panel(error)));
-        let frame = self.frame(scene_cycles);
-        self.send(&frame, log);
-        self.frames = self.frames.wrapping_add(1);
-    }
-
-    fn frame(&self, scene_cycles: u32) -> Frame {
-        Frame {
+        let frame = Frame {
             sequence: self.frames,
             dropped: self.dropped.total(),
             lost: self.lost.total(),
             scene_cycles,
             busy_cycles: self.busy_cycles,
             ..self.player.frame()
-        }
+        };
+        self.send(&frame, log);
+        self.frames = self.frames.wrapping_add(1);
     }
 
     /// Sends a message, or the part of it that the link takes in time.
-    fn send<M: Message>(&mut self, message: &M, log: &mut impl FnMut(Event<Panel::Error, Link::Error>)) {
+    fn send<M: Message>(&mut self, message: &M, log: &mut impl Log<Panel, Link>) {
         let sent = write_whole(&mut self.link, encode(message, &mut [0; MAX_WIRE]));
         self.link_failing.note(sent, |error| log(Event::Link(error)));
     }

@@ -1,7 +1,7 @@
 //! All that one button can ask for, by how often it is tapped before it is held.
 
+use crate::app::button::Change;
 use crate::app::command::Command;
-use crate::app::controls::Change;
 use crate::config::{HOLD_TICKS, MOST_TICKS_BETWEEN_TAPS, REPEAT_PERIOD_TICKS};
 
 /// What the button asks for when it is held after no tap, one, two, three, four; all but the first repeat.

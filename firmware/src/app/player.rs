@@ -86,7 +86,7 @@ impl<'a> Player<'a> {
         Ok(())
     }
 
-    /// Does what is asked; if that cannot be, nothing is changed and the error names what is wrong. Whether the scene
+    /// Executes a command; if that cannot be, nothing is changed and the error names what is wrong. Whether the scene
     /// was started again.
     ///
     /// Never inlined: what scenes need to start would be on the stack of every frame.
@@ -105,7 +105,7 @@ impl<'a> Player<'a> {
             Command::Choose(name) => return self.choose(name),
             Command::Set { field: Field::Speed, value } => self.pace.set_speed(value)?,
             Command::Set { field: Field::Method, value } => return self.go(value),
-            // Whatever the new value makes impossible, it is the new value that is wrong.
+            // What the new value makes impossible, it is the new value that is wrong.
             Command::Set { field, value } => return self.start(self.name, self.with(field, value)?).map_err(|_| field),
             Command::Pause(paused) => self.pace.pause(paused),
             Command::TogglePause => self.pace.pause(!self.pace.is_paused()),
@@ -297,16 +297,16 @@ impl<'a> Player<'a> {
     fn with(&self, field: Field, value: f64) -> Result<Settings, Field> {
         let mut settings = self.settings;
         let Settings { parameters, degrees: [a1, a2], velocities: [w1, w2] } = &mut settings;
-        let value = value as f32;
+        let (value, angle) = (value as f32, value.to_degrees() as f32);
         match field {
             Field::M1 => parameters.m1 = value,
             Field::M2 => parameters.m2 = value,
             Field::L1 => parameters.l1 = value,
             Field::L2 => parameters.l2 = value,
             Field::G => parameters.g = value,
-            Field::A1 => *a1 = value,
-            Field::A2 => *a2 = value,
-            Field::Angle => [*a1, *a2] = [value; 2],
+            Field::A1 => *a1 = angle,
+            Field::A2 => *a2 = angle,
+            Field::Angle => [*a1, *a2] = [angle; 2],
             Field::W1 => *w1 = value,
             Field::W2 => *w2 = value,
             Field::MassRatio => parameters.m2 = parameters.m1 * value,

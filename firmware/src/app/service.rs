@@ -17,7 +17,7 @@ pub enum Received {
     HostCommand(HostCommand),
     /// The message is answered with a refusal; nothing was changed.
     Refused(Refused),
-    /// Damaged bytes; nothing was changed, and there is nobody to answer.
+    /// Damaged bytes; nothing was changed, and there is no one to answer.
     Damaged(LinkError),
 }
 

@@ -22,7 +22,7 @@ impl ThrottledCounter {
         self.total = self.total.wrapping_add(count);
     }
 
-    /// Takes the total from one who counts himself.
+    /// Takes the total of an external counter.
     pub(super) fn set(&mut self, total: u32) {
         self.total = total;
     }

@@ -1,4 +1,4 @@
-//! What outlives a reset: what was played, and why it ended.
+//! What is kept across a reset: what was played, and why it ended.
 //!
 //! It is kept in memory that the start-up code leaves alone, as two messages of the serial link just as they would be
 //! sent. That memory holds noise when the board is switched on; what is no intact message, by its frame, length, version
@@ -33,7 +33,7 @@ choice! {
     }
 }
 
-/// What outlived a reset.
+/// What was kept across a reset.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WarmRestart {
     /// What was played; `None` if it has been tried [often enough](MOST_RESTARTS).
@@ -69,7 +69,7 @@ pub fn read<M: Message>(kept: &Kept) -> Option<M> {
     None
 }
 
-/// What is to be kept after each frame, in case it is the last.
+/// What is kept after each frame, in case it is the last.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Journal {
     /// What is kept as played.
@@ -82,8 +82,8 @@ pub struct Journal {
 
 impl Journal {
     /// Of a board that starts with this.
-    pub fn new(survivor: Option<&WarmRestart>) -> Self {
-        Self { restarts: survivor.map_or(0, |survivor| survivor.end.restarts), ..Self::default() }
+    pub fn new(restart: Option<&WarmRestart>) -> Self {
+        Self { restarts: restart.map_or(0, |restart| restart.end.restarts), ..Self::default() }
     }
 
     /// What to keep of `player`, which has just been shown: what is played, if that is not kept already, and where it stands.
@@ -101,9 +101,9 @@ impl Journal {
 
 /// What was shown last, in words.
 #[derive(Clone, Copy, Debug)]
-pub struct Scene(pub Option<Restarted>);
+pub struct LastShown(pub Option<Restarted>);
 
-impl fmt::Display for Scene {
+impl fmt::Display for LastShown {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.0.and_then(|last| Some((SceneName::from_code(last.scene)?, last.step))) {
             Some((scene, step)) => write!(f, "scene {}, step {step}", scene.name()),

@@ -22,23 +22,80 @@ use crate::display::Display;
 use crate::graphics::frame_buffers::FrameBuffers;
 use crate::motion::planner::Finding;
 use crate::motion::settings::Settings;
+use crate::protocol::BoardName;
 use crate::scenes::SceneName;
 
+/// A board, set up and running.
+pub struct Board<Panel, Link, Keys, Dog> {
+    /// Its panel, which may be absent.
+    pub panel: Panel,
+    /// The serial link outwards.
+    pub link: Link,
+    /// The serial link inwards.
+    pub receiver: Receiver,
+    /// Its buttons.
+    pub keys: Keys,
+    /// What it measures and tells of itself by.
+    pub instruments: Instruments,
+    /// The tick.
+    pub clock: Clock,
+    /// What resets it when it hangs.
+    pub watchdog: Dog,
+}
+
+/// The type of a board's application.
+pub trait Plays {
+    /// See [`App`].
+    type Application;
+}
+
+impl<Panel: 'static, Link: 'static, Keys: 'static, Dog> Plays for Board<Panel, Link, Keys, Dog> {
+    type Application = App<'static, Panel, Link, Keys>;
+}
+
+/// The program of a board: the module that takes it, its type there, and the class of its processor.
+#[macro_export]
+macro_rules! program {
+    ($module:ident::$board:ident on $processor:ident) => {
+        #[cortex_m_rt::entry]
+        fn main() -> ! {
+            static mut BUFFERS: $crate::graphics::frame_buffers::FrameBuffers =
+                $crate::graphics::frame_buffers::FrameBuffers::BLANK;
+            static mut APP: core::mem::MaybeUninit<
+                <$crate::board::$module::$board as $crate::board::Plays>::Application,
+            > = core::mem::MaybeUninit::uninit();
+            let Some(board) = $crate::board::$module::take() else { panic!("the board was taken before") };
+            board.play(APP, BUFFERS, $crate::config::$processor)
+        }
+    };
+}
+
+impl<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons, Dog: Watchdog> Board<Panel, Link, Keys, Dog> {
+    /// Plays for ever, the application and its frames at the places given.
+    pub fn play(
+        self,
+        place: &'static mut MaybeUninit<App<'static, Panel, Link, Keys>>,
+        buffers: &'static mut FrameBuffers,
+        processor: Processor,
+    ) -> ! {
+        let Self { panel, link, receiver, keys, instruments, clock, watchdog } = self;
+        let name = BoardName::from_code(instruments.identity.board).map_or("", BoardName::name);
+        defmt::info!("boot: {=str}, {} Hz", name, instruments.identity.hertz);
+        let app = application(place, buffers, panel, link, keys, processor);
+        run(app, receiver, instruments, clock, watchdog)
+    }
+}
+
 /// Makes the application as it is switched on, at its place.
-pub fn application<'a, Panel, Link, Keys>(
+fn application<'a, Panel: Display, Link: Write, Keys: Buttons>(
     place: &'a mut MaybeUninit<App<'a, Panel, Link, Keys>>,
-    sheets: &'a mut FrameBuffers,
+    buffers: &'a mut FrameBuffers,
     panel: Panel,
     link: Link,
     keys: Keys,
     processor: Processor,
-) -> &'a mut App<'a, Panel, Link, Keys>
-where
-    Panel: Display,
-    Link: Write,
-    Keys: Buttons,
-{
-    let app = place.write(App::idle(processor, Settings::default(), sheets, panel, link, keys));
+) -> &'a mut App<'a, Panel, Link, Keys> {
+    let app = place.write(App::idle(processor, Settings::default(), buffers, panel, link, keys));
     match app.begin().map(|()| app) {
         Ok(app) => app,
         Err(error) => {
@@ -52,18 +109,13 @@ where
 ///
 /// Kept apart from the start-up code, which may panic; this may not (test `no_panic`).
 #[inline(never)]
-pub fn run<Panel, Link, Keys>(
+fn run<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons>(
     app: &'static mut App<Panel, Link, Keys>,
     mut receiver: Receiver,
     instruments: Instruments,
     clock: Clock,
     mut watchdog: impl Watchdog,
-) -> !
-where
-    Panel: Display<Error: Debug>,
-    Link: Write,
-    Keys: Buttons,
-{
+) -> ! {
     app.use_instruments(instruments);
     let mut journal = resume(app, &watchdog);
     let mut now = clock.ticks();
@@ -78,35 +130,28 @@ where
     }
 }
 
-/// What was played before a reset that nobody asked for goes on.
+/// What was played before an unplanned reset goes on.
 #[inline(never)]
-fn resume<Panel, Link, Keys>(app: &mut App<Panel, Link, Keys>, watchdog: &impl Watchdog) -> Journal
-where
-    Panel: Display<Error: Debug>,
-    Link: Write,
-    Keys: Buttons,
-{
-    let survivor = retained::recall(watchdog.has_reset());
-    if let Some(survivor) = &survivor {
-        app.resume(survivor, log);
+fn resume<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons>(
+    app: &mut App<Panel, Link, Keys>,
+    watchdog: &impl Watchdog,
+) -> Journal {
+    let restart = retained::recall(watchdog.has_reset());
+    if let Some(restart) = &restart {
+        app.resume(restart, log);
     }
-    let mut journal = Journal::new(survivor.as_ref());
+    let mut journal = Journal::new(restart.as_ref());
     retained::keep(journal.note(app.player()));
     journal
 }
 
 /// As [`App::run_to`]; a frame that is finished, drawn and sent, is noted, and feeds the watchdog: nothing else does.
-fn run_to<Panel, Link, Keys>(
+fn run_to<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons>(
     now: u32,
     app: &mut App<Panel, Link, Keys>,
     journal: &mut Journal,
     watchdog: &mut impl Watchdog,
-) -> bool
-where
-    Panel: Display<Error: Debug>,
-    Link: Write,
-    Keys: Buttons,
-{
+) -> bool {
     let before = app.frames();
     let caught_up = app.run_to(now, log);
     if app.frames() != before {

@@ -8,7 +8,7 @@
 //! | [`lm3s6965evb`], [`mps2_an386`], `stm32f405`, `pico` | one board each: its clocks, pins and devices |
 //! | `log` | where a real chip's log goes |
 //! | `steps` | the steps of every arithmetic, which real chips have twice, in flash and in memory |
-//! | [`cortex_m`] | what every Cortex-M has: the tick, the stack's guard, crash reports, memory that outlives a reset |
+//! | [`cortex_m`] | what every Cortex-M has: the tick, the stack's guard, crash reports, memory kept across a reset |
 //! | [`panel_bus`] | a panel's bus that an interrupt drives |
 //! | [`serial`] | bytes in and out of any board's serial port |
 //! | `register` | a device register |
@@ -34,4 +34,4 @@ mod steps;
 #[cfg(not(any(feature = "pico", feature = "stm32f405")))] // which have a log of their own
 use defmt_semihosting as _; // where the log goes
 
-pub use main_loop::{application, run};
+pub use main_loop::{Board, Plays};

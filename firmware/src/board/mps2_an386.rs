@@ -3,18 +3,19 @@
 //! Source: ARM DAI 0386; the serial port is the CMSDK UART of ARM DDI 0479.
 
 use cortex_m::Peripherals;
-use cortex_m::interrupt::InterruptNumber;
-use cortex_m::peripheral::NVIC;
 
+use super::Board;
 use super::cortex_m::clock::Clock;
 use super::cortex_m::guard::guard_stack;
 use super::cortex_m::identity::instruments;
+use super::cortex_m::interrupt::Interrupt;
 use super::cortex_m::watchdog::{Call, Registers, TwoStage};
 use super::register::{Device, Register};
 use super::serial::receiver::{Inlet, Receiver, Taken};
 use super::serial::transmitter::{Outlet, Transmitter};
-use crate::app::instruments::Instruments;
+use crate::app::controls::NoButtons;
 use crate::config::BAUD;
+use crate::display::NoDisplay;
 use crate::protocol::BoardName;
 
 /// The processor's clock, Hz.
@@ -39,57 +40,36 @@ const RECEIVER_OVERRUN: u32 = 1 << 3;
 const ENABLE: u32 = 1 << 3 | 1 << 1 | 1 << 0;
 const RECEIVED: u32 = 1 << 1;
 
-/// The board, set up and running.
-pub struct Board {
-    /// The serial link outwards.
-    pub link: Uart,
-    /// The serial link inwards.
-    pub receiver: Receiver,
-    /// What it tells of itself by.
-    pub instruments: Instruments,
-    /// The tick.
-    pub clock: Clock,
-    /// What resets it when it hangs.
-    pub watchdog: TwoStage,
-    /// The processor's clock, Hz.
-    pub hertz: u32,
-}
+/// UART0's receiver.
+const INTERRUPT: Interrupt = Interrupt(0);
 
-impl Board {
-    /// Sets the board up; `None` the second time.
-    pub fn take() -> Option<Self> {
-        let core = Peripherals::take()?;
-        guard_stack(core.MPU);
-        let receiver = Receiver::new(INLET)?;
-        Some(Self {
-            link: Uart::start(),
-            receiver,
-            instruments: instruments(BoardName::Mps2An386, HERTZ, [0; 4], &core.CPUID, core.DCB, core.DWT),
-            clock: Clock::start(core.SYST, HERTZ),
-            watchdog: TwoStage::start(Registers::of(WATCHDOG), HERTZ, Call::Nmi, false),
-            hertz: HERTZ,
-        })
-    }
+/// The board.
+pub type Mps2An386 = Board<NoDisplay, Transmitter<CmsdkUart>, NoButtons, TwoStage>;
+
+/// Sets the board up; `None` the second time.
+pub fn take() -> Option<Mps2An386> {
+    let core = Peripherals::take()?;
+    guard_stack(core.MPU);
+    let receiver = Receiver::new(INLET)?;
+    DIVISOR.write(HERTZ / BAUD);
+    CONTROL.write(ENABLE);
+    INTERRUPT.unmask();
+    Some(Board {
+        panel: NoDisplay,
+        link: Transmitter(CmsdkUart(())),
+        receiver,
+        keys: NoButtons,
+        instruments: instruments(BoardName::Mps2An386, HERTZ, [0; 4], &core.CPUID, core.DCB, core.DWT),
+        clock: Clock::start(core.SYST, HERTZ),
+        watchdog: TwoStage::start(Registers::of(WATCHDOG), HERTZ, Call::Nmi, false),
+    })
 }
 
 /// The port, running.
 #[derive(Debug)]
-pub struct Port(());
+pub struct CmsdkUart(());
 
-/// The outward direction.
-pub type Uart = Transmitter<Port>;
-
-impl Uart {
-    fn start() -> Self {
-        DIVISOR.write(HERTZ / BAUD);
-        CONTROL.write(ENABLE);
-        // SAFETY: no critical section relies on this interrupt being masked.
-        unsafe { NVIC::unmask(Interrupt) };
-        Self(Port(()))
-    }
-}
-
-impl Outlet for Port {
+impl Outlet for CmsdkUart {
     fn is_ready(&self) -> bool {
         STATE.read() & TRANSMITTER_FULL == 0
     }
@@ -110,13 +90,3 @@ const INLET: Inlet = Inlet {
         Taken { byte: (state & RECEIVER_FULL != 0).then(|| DATA.read() as u8), overrun: state & RECEIVER_OVERRUN != 0 }
     },
 };
-
-#[derive(Clone, Copy)]
-struct Interrupt;
-
-// SAFETY: 0 is the number of UART0's receiver on this board.
-unsafe impl InterruptNumber for Interrupt {
-    fn number(self) -> u16 {
-        0
-    }
-}

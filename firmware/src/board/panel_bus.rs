@@ -8,7 +8,7 @@ use embedded_hal::i2c::ErrorKind;
 use crate::display::outbox::{Outbox, PanelBus, Sent};
 
 /// The chip's side of it.
-pub trait Port {
+pub trait PanelPort {
     /// Begins a message to this address; the interrupt does the rest.
     fn begin(&mut self, address: u8);
 
@@ -48,7 +48,7 @@ fn returned() -> Option<(&'static mut Outbox, Sent)> {
 }
 
 /// For the bus's interrupt: `advance` does what is due, and says what has become of the messages once nothing more is; from
-/// then on the bus must not interrupt until [`Port::begin`].
+/// then on the bus must not interrupt until [`PanelPort::begin`].
 pub(in crate::board) fn serve(advance: impl FnOnce(&mut Outbox) -> Option<Sent>) {
     if let Some(Outgoing { outbox, sent }) = replace(None) {
         let sent = sent.or_else(|| advance(outbox));
@@ -56,14 +56,14 @@ pub(in crate::board) fn serve(advance: impl FnOnce(&mut Outbox) -> Option<Sent>)
     }
 }
 
-impl<P: Port> Bus<P> {
+impl<P: PanelPort> Bus<P> {
     /// There is one at most: the interrupt knows no other.
     pub(in crate::board) fn new(port: P, outbox: &'static mut Outbox) -> Self {
         Self { port, outbox: Some(outbox), sent: Ok(()) }
     }
 }
 
-impl<P: Port> PanelBus for Bus<P> {
+impl<P: PanelPort> PanelBus for Bus<P> {
     fn outbox(&mut self) -> Option<(&mut Outbox, Sent)> {
         if let Some((outbox, sent)) = returned() {
             if !matches!(sent, Ok(()) | Err(ErrorKind::NoAcknowledge(_))) {

@@ -1,7 +1,7 @@
 //! A panel that holds the data line of its I2C bus low is freed.
 //!
 //! A board that is reset in the middle of a byte, or a panel plugged in while the bus runs, leaves the panel in the middle of
-//! an answer: it holds the line for a bit that nobody fetches, and no start can be made.
+//! an answer: it holds the line for a bit that is never fetched, and no start can be made.
 //!
 //! Source: NXP UM10204, I2C-bus specification, 3.1.16 (bus clear).
 
@@ -13,7 +13,7 @@ use embedded_hal::digital::{InputPin, OutputPin};
 const MOST_CLOCKS: u32 = 9;
 
 /// Clocks the bus until the data line is high, at most nine times, then makes a stop. A bus whose data line is high already is
-/// left alone. Whether the line is high in the end: if not, the panel is broken, or the line is short of a resistor.
+/// left alone. Whether the line is high in the end: if not, the panel is defective, or the line is short of a resistor.
 ///
 /// Both pins are open-drain outputs that are high at first; `wait` lets half a clock pass.
 pub fn free_bus(

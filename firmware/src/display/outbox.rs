@@ -31,7 +31,7 @@ pub struct OutByte {
 }
 
 impl Outbox {
-    /// Without messages, to whom ever.
+    /// Without messages or an address.
     pub const fn new() -> Self {
         Self { address: 0, messages: Vec::new(), at: 0, left: 0 }
     }
@@ -53,7 +53,7 @@ impl Outbox {
         }
     }
 
-    /// To whom the messages go.
+    /// Where the messages go.
     pub fn address(&self) -> u8 {
         self.address
     }
@@ -106,6 +106,6 @@ pub trait PanelBus {
     /// Sends what is in the outbox; returns at once.
     fn send(&mut self);
 
-    /// Gives up what is going out, which then has failed, and frees a bus that hangs.
+    /// Aborts the transfer, which then has failed, and frees a bus that hangs.
     fn give_up(&mut self);
 }

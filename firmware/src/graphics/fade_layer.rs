@@ -1,14 +1,14 @@
-//! What has been drawn and stays: a frame of its own that strokes are added to and that slowly pales.
+//! What has been drawn and stays: a frame of its own that strokes are added to and that slowly fades.
 
 use crate::graphics::brush::Stroke;
 use crate::graphics::canvas::{Canvas, HEIGHT, Row};
 
-/// How ink pales: every row loses one grey in [`HEIGHT`]/`rows` ticks.
+/// How ink fades: every row loses one grey in [`HEIGHT`]/`rows` ticks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fading {
     /// Rows that lose a grey in a tick.
     pub rows: u8,
-    /// Grey that ink pales down to and keeps.
+    /// Grey that ink fades to and keeps.
     pub last: u8,
 }
 
@@ -23,7 +23,7 @@ impl Fading {
 #[derive(Clone, Debug)]
 pub struct FadeLayer {
     frame: Canvas,
-    /// The row that pales next.
+    /// The row that fades next.
     row: i32,
 }
 
@@ -43,7 +43,7 @@ impl FadeLayer {
         stroke.lighten(&mut self.frame, brightness);
     }
 
-    /// Pales by one tick.
+    /// Fades by one tick.
     #[inline(never)]
     pub fn fade(&mut self, Fading { rows, last }: Fading) {
         for _ in 0..rows {

@@ -7,7 +7,7 @@ use crate::graphics::fade_layer::FadeLayer;
 /// stack nor are copied when a scene is made.
 #[derive(Clone, Debug)]
 pub struct FrameBuffers {
-    /// What the panel shall show.
+    /// What the panel is to show.
     pub canvas: Canvas,
     /// What stays of the frames before.
     pub ink: FadeLayer,

@@ -28,7 +28,7 @@ pub fn degrees(name: &str, degrees: f32) -> Label {
     label(name, " ", degrees, decimals, "°")
 }
 
-/// How far an angle swings, degrees: `30°`.
+/// The amplitude of an angle, degrees: `30°`.
 pub fn swing(degrees: f32) -> Label {
     label("", "", degrees, 0, "°")
 }

@@ -6,7 +6,6 @@ pub mod canvas;
 pub mod fade_layer;
 pub mod font;
 pub mod frame_buffers;
-pub mod history;
 pub mod label;
 pub mod plot;
 pub mod text;

@@ -2,7 +2,6 @@
 
 use crate::graphics::brush::SUBPIXELS;
 use crate::graphics::canvas::{Canvas, HEIGHT};
-use crate::graphics::history::History;
 
 /// Half the thickness of a curve, subpixels.
 const HALF_THICKNESS: i32 = 38;
@@ -10,8 +9,8 @@ const HALF_THICKNESS: i32 = 38;
 /// A height on the frame: subpixels down from the top edge.
 pub type Height = i16;
 
-/// The height of `value` where zero is at row `zero` and a unit is `scale` pixels, upwards; held within one canvas of
-/// the canvas.
+/// The height of `value` where zero is at row `zero` and a unit is `scale` pixels, upwards; held within twice the
+/// canvas.
 pub const fn height(value: f32, zero: f32, scale: f32) -> Height {
     let limit = (2 * HEIGHT as i32 * SUBPIXELS) as f32;
     ((zero - scale * value) * SUBPIXELS as f32).clamp(-limit, limit) as Height
@@ -43,7 +42,7 @@ pub fn dot(canvas: &mut Canvas, x: i32, at: Height, grey: u8) {
 pub const AXIS_GREY: u8 = 8;
 
 /// Draws a line across columns `from` to `to` (exclusive) in row `y`, dotted.
-#[inline(never)] // once in flash
+#[inline(never)] // no second copy
 pub fn axis(canvas: &mut Canvas, from: i32, to: i32, y: i32) {
     if let Some(row) = canvas.row_mut(y) {
         (from..to).step_by(3).for_each(|x| row.lighten(x, AXIS_GREY));
@@ -66,7 +65,7 @@ pub fn bar(canvas: &mut Canvas, (x1, y1): (i32, i32), (x2, y2): (i32, i32)) {
     }
 }
 
-/// Lightens a pixel of an axis or a bar. Once in flash, not once for each use.
+/// Lightens a pixel of an axis or a bar; never inlined, to avoid a copy for each use.
 #[inline(never)]
 fn axis_dot(canvas: &mut Canvas, x: i32, y: i32) {
     canvas.lighten(x, y, AXIS_GREY);
@@ -78,28 +77,36 @@ pub fn scale_step(least: f32) -> f32 {
     STEPS.into_iter().find(|step| *step >= least).unwrap_or(100.0)
 }
 
-/// The last `COLUMNS` values of a curve, scrolling: the newest is the rightmost.
+/// The last `COLUMNS` values of a curve, scrolling.
 #[derive(Clone, Debug)]
 pub struct Strip<const COLUMNS: usize> {
-    columns: History<Height, COLUMNS>,
+    /// The newest last.
+    columns: [Height; COLUMNS],
+    written: usize,
 }
 
 impl<const COLUMNS: usize> Default for Strip<COLUMNS> {
     fn default() -> Self {
-        Self { columns: History::new(0) }
+        Self { columns: [0; COLUMNS], written: 0 }
     }
 }
 
 impl<const COLUMNS: usize> Strip<COLUMNS> {
     /// Adds the newest column.
     pub fn push(&mut self, height: Height) {
-        self.columns.write(height);
+        self.columns.iter_mut().rev().fold(height, |newer, place| core::mem::replace(place, newer));
+        self.written = COLUMNS.min(self.written + 1);
+    }
+
+    /// The columns from the oldest to the newest.
+    pub fn oldest_first(&self) -> impl Iterator<Item = Height> {
+        self.columns.iter().copied().skip(COLUMNS.saturating_sub(self.written))
     }
 
     /// Draws them with a brightness of 0 to 255, the oldest in column `left`.
     pub fn draw(&self, canvas: &mut Canvas, left: i32, brightness: u8) {
         let mut before = None;
-        for (x, &height) in (left..).zip(self.columns.oldest_first()) {
+        for (x, height) in (left..).zip(self.oldest_first()) {
             column(canvas, x, before.unwrap_or(height), height, brightness);
             before = Some(height);
         }

@@ -5,7 +5,9 @@ use double_pendulum::Parameters;
 use crate::config::{GREATEST_RADIUS, LEAST_RADIUS, PIVOT, REACH, ROD_HALF_WIDTH};
 use crate::graphics::brush::{Disc, SUBPIXELS, Spot, Stroke};
 use crate::graphics::canvas::Canvas;
-use crate::motion::direction_stepper::Directions;
+
+/// Where both rods point: (sin, cos) of their angles from the downward vertical.
+pub type RodDirections = [[f32; 2]; 2];
 
 /// Brightness of a rod, of 255: between the trail and the bobs.
 const ROD_BRIGHTNESS: u8 = 190;
@@ -58,14 +60,14 @@ impl View {
 
     /// The centres of bob 1 and bob 2, in pixels right and down from the panel's top left corner: a rod that points to
     /// (sin a, cos a) from the downward vertical leads that far right and down. Pixel i covers i to i + 1.
-    pub fn bobs(&self, [[sin1, cos1], [sin2, cos2]]: Directions) -> [(f32, f32); 2] {
+    pub fn bobs(&self, [[sin1, cos1], [sin2, cos2]]: RodDirections) -> [(f32, f32); 2] {
         let ((x, y), [rod1, rod2]) = (self.pivot, self.rods);
         let (x1, y1) = (x + rod1 * sin1, y + rod1 * cos1);
         [(x1, y1), (x1 + rod2 * sin2, y1 + rod2 * cos2)]
     }
 
     /// As [`bobs`](Self::bobs), as spots.
-    pub fn spots(&self, directions: Directions) -> [Spot; 2] {
+    pub fn spots(&self, directions: RodDirections) -> [Spot; 2] {
         self.bobs(directions).map(|(x, y)| Spot::at(x, y))
     }
 

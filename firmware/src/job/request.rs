@@ -3,8 +3,9 @@
 use core::fmt;
 
 use double_pendulum::{Integrator, Method, Motion, Parameters, Pendulum};
+use heapless::Vec;
 
-use crate::protocol::{Field, Message, Simulate, method_code, method_of};
+use crate::protocol::{Field, MAX_FIELDS, Message, Simulate, method_code, method_of};
 
 /// A motion to compute.
 ///
@@ -69,13 +70,11 @@ impl Request {
 
     /// Reads the text.
     pub fn parse(text: &str) -> Result<Self, Field> {
-        let mut fields = [0; Simulate::SIZE];
-        if text.len() != 2 * fields.len() {
-            return Err(Field::Message);
-        }
-        for (byte, digits) in fields.iter_mut().zip(text.as_bytes().chunks(2)) {
+        let mut fields = Vec::<u8, MAX_FIELDS>::new();
+        for digits in text.as_bytes().chunks(2) {
             let digits = core::str::from_utf8(digits).map_err(|_| Field::Message)?;
-            *byte = u8::from_str_radix(digits, 16).map_err(|_| Field::Message)?;
+            let byte = u8::from_str_radix(digits, 16).map_err(|_| Field::Message)?;
+            fields.push(byte).map_err(|_| Field::Message)?;
         }
         Self::from_message(&Simulate::read(&fields).ok_or(Field::Message)?)
     }
@@ -83,8 +82,6 @@ impl Request {
 
 impl fmt::Display for Request {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mut fields = [0; Simulate::SIZE];
-        self.message(0).write(&mut &mut fields[..]).ok_or(fmt::Error)?;
-        fields.iter().try_for_each(|byte| write!(f, "{byte:02x}"))
+        self.message(0).write(&mut [0; MAX_FIELDS]).iter().try_for_each(|byte| write!(f, "{byte:02x}"))
     }
 }

@@ -3,8 +3,8 @@
 use double_pendulum::trig::{Own, SinCos};
 use double_pendulum::{Parameters, State, rk4};
 
-use super::direction_stepper::Directions;
 use crate::config::{DT, STEPS_PER_TICK};
+use crate::graphics::view::RodDirections;
 
 /// The denominator of a2' lacks the factor mu = m2/m1, so rod 2 turns mu times as fast as it should. Unless mu = 1 the equations
 /// are not Hamilton's of anything, and what should be the energy is not kept.
@@ -49,7 +49,7 @@ impl Misprinted {
     }
 
     /// Where the rods point.
-    pub fn directions(&self) -> Directions {
+    pub fn directions(&self) -> RodDirections {
         let [sin1, cos1, sin_d, cos_d, ..] = self.z;
         [[sin1, cos1], [sin1 * cos_d - cos1 * sin_d, cos1 * cos_d + sin1 * sin_d]]
     }

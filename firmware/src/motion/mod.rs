@@ -1,6 +1,5 @@
 //! The motion itself, apart from any frame of it: settings, stepping, planning.
 
-pub mod direction_stepper;
 pub mod misprinted;
 pub mod planner;
 pub mod settings;

@@ -38,11 +38,9 @@ choice! {
         Speed = 14, "speed";
         /// The field to set.
         Field = 15, "field";
-        /// The unit of the value.
-        Unit = 16, "unit";
         /// The scene.
         Scene = 17, "scene";
-        /// The message itself: of no known kind, or not of that kind's length.
+        /// The message itself: of no known kind, or not with that kind's fields.
         Message = 18, "message";
         /// The button.
         Key = 22, "key";

@@ -13,20 +13,18 @@
 //!
 //! # When the host stops reading
 //!
-//! The board waits for its serial port a bounded time, then gives the message up and goes on: the motion never waits for
-//! the host. The frames given up are missing from the sequence.
+//! The board waits for its serial port a bounded time, then drops the message and goes on: the motion never waits for
+//! the host. The frames dropped are missing from the sequence.
 
 use cobs::{CobsEncoder, DecodeResult, DecoderState};
 use crc::{CRC_32_ISO_HDLC, Crc, Table};
 
-use super::Message;
+use super::{MAX_FIELDS, Message};
 
 /// The version of the protocol; the first byte of every message.
-pub const VERSION: u8 = 8;
+pub const VERSION: u8 = 9;
 /// Set in the kind of every message to the chip, and in no other's.
 pub const TO_CHIP: u8 = 0x80;
-/// The most bytes a message's fields may take.
-pub const MAX_FIELDS: usize = 96;
 /// The most bytes a message takes before framing: version, kind, fields, CRC.
 const MAX_BODY: usize = 2 + MAX_FIELDS + 4;
 /// The most bytes a message takes on the wire: COBS adds one byte (bodies are below 254), the delimiters another two.
@@ -37,11 +35,7 @@ pub const CRC: Crc<u32, Table<1>> = Crc::<u32, Table<1>>::new(&CRC_32_ISO_HDLC);
 
 /// The message as it goes over the wire, between delimiters: the front of `wire`.
 pub fn encode<'wire, M: Message>(message: &M, wire: &'wire mut [u8; MAX_WIRE]) -> &'wire [u8] {
-    const { assert!(M::SIZE <= MAX_FIELDS) };
-    let mut fields = [0; MAX_FIELDS];
-    let written = message.write(&mut &mut fields[..]);
-    debug_assert!(written.is_some());
-    frame(M::KIND, fields.get(..M::SIZE).unwrap_or_default(), wire)
+    frame(M::KIND, message.write(&mut [0; MAX_FIELDS]), wire)
 }
 
 /// A message of any kind, its fields being given as bytes; nothing if they are more than [`MAX_FIELDS`].

@@ -10,7 +10,6 @@ use crate::graphics::fade_layer::FadeLayer;
 use crate::graphics::label;
 use crate::graphics::plot;
 use crate::graphics::text::{self, Anchor, LINE, LOWEST};
-use crate::motion::direction_stepper::Directions;
 use crate::motion::planner::Shown;
 use crate::motion::settings::Settings;
 use crate::motion::simulation::{Means, Simulation};
@@ -29,7 +28,7 @@ const AMPLITUDE: f32 = 12.0;
 
 /// Equal rods with the slow mode at its turning point and the fast mode on its way through rest, both with one
 /// amplitude of angle 2.
-#[inline(never)] // once in flash
+#[inline(never)] // no second copy
 pub fn closing(mass_ratio: f32) -> Settings {
     let gravity = GRAVITY as f32;
     let parameters = Parameters::equal_rods(mass_ratio, ROD, gravity);
@@ -55,32 +54,19 @@ pub struct Beats {
 }
 
 impl Beats {
-    /// Where the linear motion is in its figure, pixels.
-    fn linear_place(&self) -> (f32, f32) {
-        let motion = self.linear.at(self.simulation.time());
-        self.place(MIDDLES[0], motion.a1, motion.a2)
-    }
-
-    /// Where the exact motion is in its figure with the rods in some directions, pixels.
-    fn exact_place(&self, directions: Directions) -> (f32, f32) {
-        let [a1, a2] = directions.map(|[sin, cos]| libm::atan2f(sin, cos));
-        self.place(MIDDLES[1], a1, a2)
-    }
-
     /// The slow mode's share of angle 2 across, the fast mode's upwards.
-    fn place(&self, (x, y): (f32, f32), a1: f32, a2: f32) -> (f32, f32) {
+    fn spot(&self, (x, y): (f32, f32), a1: f32, a2: f32) -> Spot {
         let [fast_shape, slow_shape] = self.shape;
         let across = slow_shape * (a2 - fast_shape * a1) / (slow_shape - fast_shape);
         let up = a2 - across;
-        (x + self.scale * across, y - self.scale * up)
+        Spot::at(x + self.scale * across, y - self.scale * up)
     }
 
-    fn places(&self) -> [(f32, f32); 2] {
-        [self.linear_place(), self.exact_place(self.simulation.directions())]
-    }
-
+    /// Where the linear and the exact motion are, each in its figure.
     fn spots(&self) -> [Spot; 2] {
-        self.places().map(|(x, y)| Spot::at(x, y))
+        let linear = self.linear.at(self.simulation.time());
+        let [a1, a2] = self.simulation.directions().map(|[sin, cos]| libm::atan2f(sin, cos));
+        [self.spot(MIDDLES[0], linear.a1, linear.a2), self.spot(MIDDLES[1], a1, a2)]
     }
 }
 

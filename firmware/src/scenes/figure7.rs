@@ -37,15 +37,11 @@ pub struct Figure7 {
 }
 
 impl Figure7 {
-    /// Where the bobs of both pendulums are, pixels.
-    fn places(&self) -> [[(f32, f32); 2]; 2] {
+    /// Where the bobs of both pendulums are.
+    fn places(&self) -> [[Spot; 2]; 2] {
         let [left_view, right_view] = &self.views;
-        [left_view.bobs(self.right.directions()), right_view.bobs(self.misprinted.directions())]
+        [left_view.spots(self.right.directions()), right_view.spots(self.misprinted.directions())]
     }
-}
-
-fn spots(places: [[(f32, f32); 2]; 2]) -> [[Spot; 2]; 2] {
-    places.map(|bobs| bobs.map(|(x, y)| Spot::at(x, y)))
 }
 
 impl Scene for Figure7 {
@@ -61,14 +57,14 @@ impl Scene for Figure7 {
         let start = right.state();
         let misprinted = Misprinted::new(&settings.parameters, &start);
         let mut scene = Self { right, misprinted, views, bobs: Default::default() };
-        scene.bobs = spots(scene.places());
+        scene.bobs = scene.places();
         Ok(scene)
     }
 
     fn tick(&mut self, ink: &mut FadeLayer) {
         self.right.tick();
         self.misprinted.tick();
-        let bobs = spots(self.places());
+        let bobs = self.places();
         for ([_, from], [_, to]) in self.bobs.into_iter().zip(bobs) {
             ink.add(Stroke { from, to, radius: HALF_WIDTH }, u8::MAX);
         }

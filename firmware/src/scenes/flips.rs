@@ -8,12 +8,11 @@ use double_pendulum::form::Watched;
 #[cfg(any(target_abi = "eabihf", not(target_os = "none")))]
 use double_pendulum::form::{DirectionForm, Plain};
 
-use crate::config::{FlipsPace, Processor, TICK_RATE};
+use crate::config::{FlipsPace, TICK_RATE};
 use crate::graphics::canvas::{Canvas, HEIGHT, WIDTH};
 use crate::graphics::fade_layer::{FadeLayer, Fading};
 use crate::graphics::label;
 use crate::graphics::text::{self, Anchor};
-use crate::motion::planner::Shown;
 use crate::motion::settings::Settings;
 use crate::motion::simulation::Means;
 use crate::scenes::scene::{Report, Scene};
@@ -30,35 +29,34 @@ const COARSEST: usize = 8;
 /// The lower half is the upper one turned by half a turn: both starts are mirrored.
 const ROWS: usize = HEIGHT / 2;
 
-/// The map as the processor computes it: in `f32` where it has that, else in fixed point. A board has the code of its own alone,
-/// the host that of both.
+/// What a processor with a floating-point unit computes in, and one without.
+#[cfg(any(target_abi = "eabihf", not(target_os = "none")))]
+type Float = DirectionForm<f32, Plain>;
+#[cfg(not(target_abi = "eabihf"))]
+type Fixed = Fixed32Form;
+// A board links its own alone.
+#[cfg(all(target_os = "none", not(target_abi = "eabihf")))]
+type Float = Fixed;
+#[cfg(target_abi = "eabihf")]
+type Fixed = Float;
+
+/// The map as the processor computes it.
 #[cfg_attr(not(target_os = "none"), expect(clippy::large_enum_variant, reason = "the host has the room"))]
 #[derive(Clone, Debug)]
 pub enum Flips {
     /// In `f32`.
-    #[cfg(any(target_abi = "eabihf", not(target_os = "none")))]
-    Float(FlipsMap<DirectionForm<f32, Plain>>),
+    Float(FlipsMap<Float>),
     /// In fixed point.
-    #[cfg(not(target_abi = "eabihf"))]
-    Fixed(FlipsMap<Fixed32Form>),
-}
-
-/// The same of either.
-macro_rules! of_either {
-    ($flips:ident, $map:ident => $what:expr) => {
-        match $flips {
-            #[cfg(any(target_abi = "eabihf", not(target_os = "none")))]
-            Flips::Float($map) => $what,
-            #[cfg(not(target_abi = "eabihf"))]
-            Flips::Fixed($map) => $what,
-        }
-    };
+    Fixed(FlipsMap<Fixed>),
 }
 
 impl Flips {
     /// Whether the map is finished.
     pub fn is_done(&self) -> bool {
-        of_either!(self, map => map.is_done())
+        match self {
+            Self::Float(map) => map.is_done(),
+            Self::Fixed(map) => map.is_done(),
+        }
     }
 }
 
@@ -66,16 +64,7 @@ impl Scene for Flips {
     const FADING: Fading = Fading::NEVER;
 
     fn new(settings: &Settings, means: &Means) -> Result<Self, Error> {
-        let Processor { flips: pace, .. } = means.processor;
-        #[cfg(target_abi = "eabihf")]
-        {
-            FlipsMap::at_pace(settings, pace).map(Self::Float)
-        }
-        #[cfg(all(target_os = "none", not(target_abi = "eabihf")))]
-        {
-            FlipsMap::at_pace(settings, pace).map(Self::Fixed)
-        }
-        #[cfg(not(target_os = "none"))]
+        let pace = means.processor.flips;
         if means.processor.has_float() {
             FlipsMap::at_pace(settings, pace).map(Self::Float)
         } else {
@@ -84,19 +73,24 @@ impl Scene for Flips {
     }
 
     fn tick(&mut self, ink: &mut FadeLayer) {
-        of_either!(self, map => map.tick(ink));
+        match self {
+            Self::Float(map) => map.tick(ink),
+            Self::Fixed(map) => map.tick(ink),
+        }
     }
 
     fn draw(&self, _: &Report, canvas: &mut Canvas) {
-        of_either!(self, map => map.draw(canvas));
+        match self {
+            Self::Float(map) => map.draw(canvas),
+            Self::Fixed(map) => map.draw(canvas),
+        }
     }
 
     fn report(&self) -> Report {
-        of_either!(self, map => Report::of_figure(map.ticks))
-    }
-
-    fn shown(&self) -> Option<Shown> {
-        None
+        match self {
+            Self::Float(map) => Report::of_figure(map.ticks),
+            Self::Fixed(map) => Report::of_figure(map.ticks),
+        }
     }
 }
 
@@ -177,18 +171,8 @@ impl<F: Watched<f32>> FlipsMap<F> {
         let unit = libm::sqrtf(parameters.l1 / parameters.g);
         let dt = step_size(parameters)?;
         let search = Search::new(parameters, dt, (LIMIT * unit / dt as f32) as u32)?;
-        let (block, falling) = (Block::FIRST, None);
-        Ok(Self {
-            search,
-            pace,
-            mass_ratio: settings.mass_ratio(),
-            unit,
-            block,
-            falling,
-            done: 0,
-            ticks: 0,
-            elapsed: 0,
-        })
+        let (mass_ratio, block) = (settings.mass_ratio(), Block::FIRST);
+        Ok(Self { search, pace, mass_ratio, unit, block, falling: None, done: 0, ticks: 0, elapsed: 0 })
     }
 
     /// Whether the map is finished.

@@ -8,7 +8,6 @@ use crate::graphics::fade_layer::{FadeLayer, Fading};
 use crate::graphics::label;
 use crate::graphics::plot::{self, Height};
 use crate::graphics::text::{self, Anchor, LINE, LOWEST};
-use crate::motion::planner::Shown;
 use crate::motion::settings::Settings;
 use crate::motion::simulation::Means;
 use crate::scenes::scene::{Report, Scene};
@@ -110,9 +109,5 @@ impl Scene for Frequencies {
 
     fn report(&self) -> Report {
         Report::of_figure(self.ticks)
-    }
-
-    fn shown(&self) -> Option<Shown> {
-        None
     }
 }

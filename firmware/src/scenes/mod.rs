@@ -51,13 +51,13 @@ macro_rules! catalogue {
                 match name { $(SceneName::$row => self.become_one(settings, means, Self::$row),)* }
             }
 
-            /// Advances by one tick, as [`Scene::tick`]; the ink, which was clear at the start, pales.
+            /// Advances by one tick, as [`Scene::tick`]; the ink, which was clear at the start, fades.
             pub fn tick(&mut self, ink: &mut FadeLayer) {
                 let fading = match self { $(Self::$row(scene) => { scene.tick(ink); <$scene>::FADING })* };
                 ink.fade(fading);
             }
 
-            /// Draws the whole frame over whatever was there; `report` is the scene's, as of now.
+            /// Draws the whole frame over what was there; `report` is the scene's, as of now.
             pub fn draw(&self, report: &Report, ink: &FadeLayer, canvas: &mut Canvas) {
                 canvas.clone_from(ink.frame());
                 match self { $(Self::$row(scene) => scene.draw(report, canvas),)* }

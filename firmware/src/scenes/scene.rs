@@ -12,24 +12,26 @@ use crate::motion::simulation::{Means, Simulation};
 
 /// Something to watch: it starts from settings, moves tick by tick and is drawn when there is time for it.
 pub trait Scene: Sized {
-    /// How its ink pales.
+    /// How its ink fades.
     const FADING: Fading = Fading::TRACE;
 
     /// At the start; the kernel's error if the settings describe no pendulum, or none that this scene can show.
     fn new(settings: &Settings, means: &Means) -> Result<Self, Error>;
 
-    /// Advances by one tick and adds to the ink what shall stay. The frame after n ticks does not depend on which of
+    /// Advances by one tick and adds to the ink what stays. The frame after n ticks does not depend on which of
     /// them were drawn.
     fn tick(&mut self, ink: &mut FadeLayer);
 
     /// Draws over the ink; `report` is what it has just been told in numbers, which need not be found twice.
     fn draw(&self, report: &Report, canvas: &mut Canvas);
 
-    /// What is to be told about it in numbers.
+    /// It in numbers.
     fn report(&self) -> Report;
 
     /// How it shows the motion of its settings; `None` if it shows nothing that can be planned.
-    fn shown(&self) -> Option<Shown>;
+    fn shown(&self) -> Option<Shown> {
+        None
+    }
 
     /// The motion that goes the way of the plan, if it shows one.
     fn planned(&mut self) -> Option<&mut Simulation> {
@@ -60,25 +62,22 @@ pub struct Report {
 impl Report {
     /// Of a figure in which no pendulum moves.
     pub fn of_figure(ticks: u64) -> Self {
-        let time = ticks as f64 / f64::from(TICK_RATE);
         let (state, horizon) = (State::default(), f32::INFINITY);
-        Self { step: ticks, time, state, energy_error: 0.0, horizon, is_looking: false, way: None }
+        Self { step: ticks, time: time(ticks), state, energy_error: 0.0, horizon, is_looking: false, way: None }
     }
 
     /// Of a scene whose first pendulum is `simulation`.
-    #[inline(never)] // once in flash
+    #[inline(never)] // no second copy
     pub fn of(simulation: &Simulation) -> Self {
         let state = simulation.state();
-        Self {
-            step: simulation.step(),
-            time: simulation.time(),
-            state,
-            energy_error: simulation.energy_error(&state),
-            horizon: f32::INFINITY,
-            is_looking: false,
-            way: Some(simulation.way()),
-        }
+        let (energy_error, way) = (simulation.energy_error(&state), Some(simulation.way()));
+        Self { state, energy_error, way, ..Self::of_figure(simulation.step()) }
     }
+}
+
+/// The simulated time after so many ticks, s.
+pub fn time(ticks: u64) -> f64 {
+    ticks as f64 / f64::from(TICK_RATE)
 }
 
 impl Shown {

@@ -15,7 +15,7 @@ use crate::motion::planner::Shown;
 use crate::motion::settings::Settings;
 use crate::motion::simulation::Means;
 use crate::scenes::horizon;
-use crate::scenes::scene::{Report, Scene};
+use crate::scenes::scene::{self, Report, Scene};
 
 /// The rows of rest of angle 1 and angle 2, pixels from the top, and the greatest swing about them.
 const ROWS: [f32; 2] = [20.5, 43.5];
@@ -55,14 +55,10 @@ pub struct Small {
 }
 
 impl Small {
-    fn time(&self) -> f64 {
-        self.ticks as f64 / f64::from(TICK_RATE)
-    }
-
     /// Scrolls the curves and their envelopes, and adds a column.
     fn extend(&mut self, ink: &mut Canvas) {
         ink.scroll(LEFT);
-        let time = self.time();
+        let time = scene::time(self.ticks);
         let Motion { a1, a2, .. } = self.motion.at(time);
         let height = |(angle, row): (f32, f32)| plot::height(angle, row, self.scale);
         let [envelope1, envelope2] = self.envelopes.at(time);
@@ -138,16 +134,8 @@ impl Scene for Small {
     }
 
     fn report(&self) -> Report {
-        let state = self.pendulum.to_state(&self.motion.at(self.time()));
-        Report {
-            step: self.ticks,
-            time: self.time(),
-            state,
-            energy_error: 0.0,
-            horizon: f32::INFINITY,
-            is_looking: false,
-            way: Some(CLOSED_FORM),
-        }
+        let state = self.pendulum.to_state(&self.motion.at(scene::time(self.ticks)));
+        Report { state, way: Some(CLOSED_FORM), ..Report::of_figure(self.ticks) }
     }
 
     fn shown(&self) -> Option<Shown> {

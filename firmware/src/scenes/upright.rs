@@ -1,21 +1,19 @@
 //! Upright: both rods at exactly 180 degrees, where the pendulum would stand for ever if the number pi could be held.
 
-use double_pendulum::form::Direction;
+use double_pendulum::form::{DirectionForm, Stepper};
 use double_pendulum::trig::{DefaultTrig, SinCos};
 use double_pendulum::{Error, State};
 
-use crate::config::{DT, HALF_PIXEL, STEPS_PER_TICK, TICK_RATE};
+use crate::config::{DT, HALF_PIXEL, STEPS_PER_TICK};
 use crate::graphics::brush::{Spot, Stroke};
 use crate::graphics::canvas::{Canvas, WIDTH};
 use crate::graphics::fade_layer::FadeLayer;
 use crate::graphics::text::{self, Anchor, LINE, LOWEST};
-use crate::graphics::view::{Place, View};
-use crate::motion::direction_stepper::{DirectionStepper, Directions};
-use crate::motion::planner::Shown;
+use crate::graphics::view::{Place, RodDirections, View};
 use crate::motion::settings::Settings;
 use crate::motion::simulation::{Energy, Means};
 use crate::scenes::horizon::{self, LastRight};
-use crate::scenes::scene::{Report, Scene};
+use crate::scenes::scene::{self, Report, Scene};
 
 /// Half the width of a trace, subpixels.
 const HALF_WIDTH: u8 = 30;
@@ -37,8 +35,8 @@ pub fn straight_up() -> Settings {
 pub struct Upright {
     plain: State<f32>,
     /// Where its rods point.
-    plain_directions: Directions,
-    compensated: DirectionStepper,
+    plain_directions: RodDirections,
+    compensated: Stepper<f32, DirectionForm<f32>>,
     energy: Energy,
     ticks: u64,
     views: [View; 2],
@@ -52,10 +50,6 @@ impl Upright {
         [left.spots(self.plain_directions), right.spots(self.compensated.directions())]
     }
 
-    fn time(&self) -> f64 {
-        self.ticks as f64 / f64::from(TICK_RATE)
-    }
-
     /// Whether the plain motion is no longer shown where the compensated one is.
     fn have_parted(&self) -> bool {
         let [left, _] = &self.views;
@@ -64,13 +58,8 @@ impl Upright {
     }
 }
 
-fn directions(state: &State<f32>) -> Directions {
-    state.angles().map(direction)
-}
-
-#[inline(never)] // once in flash
-fn direction(angle: f32) -> Direction<f32> {
-    DefaultTrig::sin_cos(angle).into()
+fn directions(state: &State<f32>) -> RodDirections {
+    state.angles().map(|angle| DefaultTrig::sin_cos(angle).into())
 }
 
 impl Scene for Upright {
@@ -79,7 +68,7 @@ impl Scene for Upright {
         pendulum.check_step(DT)?;
         let plain = settings.start(&pendulum)?;
         let views = Place::HALVES.map(|place| View::new(&settings.parameters, place));
-        let compensated = DirectionStepper::new(&settings.parameters, &plain, DT)?;
+        let compensated = Stepper::new(&settings.parameters, &plain, DT)?;
         let (plain_directions, horizon, ticks) = (directions(&plain), LastRight::default(), 0);
         let energy = Energy::new(pendulum, pendulum.energy_at(plain_directions, [plain.p1, plain.p2]));
         let bobs = Default::default();
@@ -96,7 +85,7 @@ impl Scene for Upright {
         self.compensated.advance(STEPS_PER_TICK);
         self.ticks = self.ticks.wrapping_add(1);
         let is_right = !self.have_parted();
-        self.horizon.note(self.time(), is_right);
+        self.horizon.note(scene::time(self.ticks), is_right);
         let places = self.places();
         for ([_, from], [_, to]) in self.bobs.into_iter().zip(places) {
             ink.add(Stroke { from, to, radius: HALF_WIDTH }, u8::MAX);
@@ -116,18 +105,7 @@ impl Scene for Upright {
 
     fn report(&self) -> Report {
         let energy = self.energy.pendulum().energy_at(self.plain_directions, [self.plain.p1, self.plain.p2]);
-        Report {
-            step: self.ticks,
-            time: self.time(),
-            state: self.plain,
-            energy_error: self.energy.error(energy),
-            horizon: self.horizon.until(),
-            is_looking: false,
-            way: None,
-        }
-    }
-
-    fn shown(&self) -> Option<Shown> {
-        None
+        let (energy_error, horizon) = (self.energy.error(energy), self.horizon.until());
+        Report { state: self.plain, energy_error, horizon, ..Report::of_figure(self.ticks) }
     }
 }

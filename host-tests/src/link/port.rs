@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::io::{ErrorKind, Read, Write};
 use std::time::{Duration, Instant};
 
-use firmware::app::warm_restart::{Cause, Scene};
+use firmware::app::warm_restart::{Cause, LastShown};
 use firmware::config::BAUD;
 use firmware::protocol::{LinkError, MAX_WIRE, Message, Restarted, VERSION, encode};
 use serialport::SerialPort;
@@ -173,7 +173,7 @@ fn restart(messages: &[Received]) -> String {
         return "the board has been switched on or reset".to_owned();
     };
     let cause = Cause::from_code(end.cause).map_or("reset", Cause::name);
-    format!("the board has restarted after a {cause} in {}", Scene(Some(end)))
+    format!("the board has restarted after a {cause} in {}", LastShown(Some(end)))
 }
 
 fn open(name: &str, baud: u32) -> serialport::Result<Box<dyn SerialPort>> {

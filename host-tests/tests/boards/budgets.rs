@@ -11,7 +11,6 @@ use double_pendulum::Parameters;
 use firmware::config::TICK_RATE;
 use firmware::job::{ON_BOARDS, Request};
 use firmware::protocol::Field;
-use firmware::protocol::Unit;
 use firmware::protocol::{Ask, Choose, Frame, MAX_WIRE, Message, Pause, Restart, Set, Step, encode};
 use firmware::scenes::SceneName;
 use host_tests::commands::count::{Cost, FrameProfile, Image};
@@ -95,13 +94,12 @@ fn exercise(board: &mut impl Stepped) -> Result<u32, Box<dyn Error>> {
         highest = highest.max(play(board, FRAMES)?);
     }
     for field in Field::ALL {
-        let unit = Unit::of(*field).unwrap_or(Unit::One).code();
         for value in [0.75, f64::NAN, -1e30] {
-            send(board, Set { request: 2, field: field.code(), unit, value })?;
+            send(board, Set { request: 2, field: field.code(), value })?;
             play(board, 1)?;
         }
     }
-    send(board, Set { request: 3, field: Field::Speed.code(), unit: Unit::One.code(), value: 1.0 })?;
+    send(board, Set { request: 3, field: Field::Speed.code(), value: 1.0 })?;
     send(board, Choose { request: 4, scene: u8::MAX })?;
     play(board, 1)?;
     send(board, Pause { request: 5, paused: 1 })?;

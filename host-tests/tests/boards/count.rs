@@ -7,7 +7,7 @@ use crate::support::{application, settings, toolchain};
 use double_pendulum::plan::Costs;
 use double_pendulum::{Method, Numbers, Parameters};
 use firmware::job::Request;
-use firmware::protocol::{Field, Set, Unit, method_code};
+use firmware::protocol::{Field, Set, method_code};
 use host_tests::commands::count::goal::{GOALS, SECONDS};
 use host_tests::commands::count::{CountError, FULL_CYCLE, Image, Target, affordable_steps, calls_in_next, step_cost};
 use host_tests::commands::report::accuracy::{self, exact};
@@ -163,8 +163,8 @@ fn a_scene_is_prepared_and_stepped_in_64_bits_for_what_the_planner_thinks() -> R
         let step = most(&mut machine, "Fixed64State::advance")?;
         let mut prepared: f64 = 0.0;
         for &method in Method::DRAWN {
-            let (field, unit, value) = (Field::Method.code(), Unit::One.code(), method_code(method).into());
-            machine.machine().serial.send(&Set { request: 1, field, unit, value })?;
+            let (field, value) = (Field::Method.code(), method_code(method).into());
+            machine.machine().serial.send(&Set { request: 1, field, value })?;
             // Whether the command comes before this frame or the next is a matter of bytes.
             for _ in 0..2 {
                 prepared = prepared.max(most(&mut machine, "WayStepper::new")?);

@@ -15,7 +15,7 @@ use firmware::job::Request;
 use firmware::motion::settings::Settings;
 use firmware::protocol::{
     Ask, BoardName, CRC, Choose, Done, Field, Frame, Identify, Identity, MAX_WIRE, Measure, Measured, Message, Pause,
-    Press, Restarted, Sample, Set, Status, Unit, encode,
+    Press, Restarted, Sample, Set, Status, encode,
 };
 use firmware::scenes::SceneName;
 use host_tests::commands::count::{FULL_CYCLE, Target, affordable_steps, step_cost};
@@ -219,12 +219,7 @@ fn a_panel_that_is_plugged_in_later_shows_the_picture() -> Result<(), PicoError>
 fn commands_are_obeyed_from_either_side() -> Result<(), PicoError> {
     let mut board = board_in(SceneName::Butterfly)?;
     let mut messages = board.run(4 * TICK)?;
-    board.send_through_uart(&Set {
-        request: 2,
-        field: Field::M2.code(),
-        unit: Unit::of(Field::M2).map_or(0, Unit::code),
-        value: 2.5,
-    })?;
+    board.send_through_uart(&Set { request: 2, field: Field::M2.code(), value: 2.5 })?;
     messages.extend(board.run(4 * TICK)?);
     // Both hear both answers.
     for heard in [messages, board.heard_by_uart()] {

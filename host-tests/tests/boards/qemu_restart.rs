@@ -12,7 +12,6 @@ use crate::support::program::address;
 use crate::support::{application, settings, toolchain};
 use firmware::app::warm_restart::{Cause, MOST_RESTARTS};
 use firmware::protocol::Field;
-use firmware::protocol::Unit;
 use firmware::protocol::{Choose, Frame, Restarted, Set};
 use firmware::scenes::SceneName;
 use host_tests::emulator::boards::{BOARDS, Board, STM32F405};
@@ -40,8 +39,7 @@ fn within(probe: &mut Probe, elf: &Path, scene: SceneName) -> Result<Frame, Qemu
     probe.run_to(stopwatch)?;
     let serial = &mut probe.machine().serial;
     serial.send(&Choose { request: 1, scene: scene.code() })?;
-    let (field, unit) = (Field::MassRatio.code(), Unit::One.code());
-    serial.send(&Set { request: 2, field, unit, value: MASS_RATIO.into() })?;
+    serial.send(&Set { request: 2, field: Field::MassRatio.code(), value: MASS_RATIO.into() })?;
     // To stop rarely is quicker: a board that stands still takes no bytes.
     let execute = address(elf, "Player::execute");
     probe.run_to(execute)?;

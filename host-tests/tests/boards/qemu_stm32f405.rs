@@ -47,7 +47,7 @@ fn without_a_panel_it_says_so_and_goes_on() -> Result<(), QemuError> {
     }
     // The plan's line comes as soon as it is found.
     let log: Vec<_> = machine.log.arrived().map(|line| line.text).filter(|text| !text.starts_with("plan: ")).collect();
-    let expected = ["boot: stm32f405, 168000000 Hz, Emulator", "panel: Absent(Other)"];
+    let expected = ["boot: stm32f405, 168000000 Hz", "panel: Absent(Other)"];
     assert_eq!(log, expected);
     machine.quit()
 }

@@ -15,6 +15,7 @@ mod plan_cli;
 mod process;
 mod random_input;
 mod readmes;
+mod rooms;
 mod simulate_boards;
 mod simulate_cli;
 #[path = "../support/mod.rs"]

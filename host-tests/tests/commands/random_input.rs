@@ -14,7 +14,7 @@ use firmware::graphics::frame_buffers::FrameBuffers;
 use firmware::job::{Job, ON_BOARDS, Request};
 use firmware::motion::settings::Settings;
 use firmware::protocol::{
-    Ask, Decoder, Frame, LinkError, MAX_FIELDS, MAX_WIRE, Message, Refused, Simulate, encode, frame,
+    Ask, Decoder, Frame, LinkError, MAX_FIELDS, MAX_WIRE, Message, Refused, Set, Simulate, encode, frame,
 };
 use host_tests::commands::simulate::{Number, Options, plan};
 use host_tests::link::Received;
@@ -69,11 +69,8 @@ fn part() -> impl Strategy<Value = Vec<u8>> {
 /// A command of any kind, its fields as long as they should be or not.
 fn command() -> impl Strategy<Value = (u8, Vec<u8>)> {
     let known = [0x81..=0x8d_u8].into_iter().flatten().collect::<Vec<_>>();
-    let set = (0..24_u8, 0..9_u8, number()).prop_map(|(field, unit, value)| {
-        let mut fields = vec![1, 0, field, unit];
-        fields.extend(value.to_le_bytes());
-        (0x82, fields)
-    });
+    let set = (0..24_u8, number())
+        .prop_map(|(field, value)| (Set::KIND, Set { request: 1, field, value }.write(&mut [0; MAX_FIELDS]).to_vec()));
     let short = (select(known), prop::collection::vec(any::<u8>(), 0..9));
     prop_oneof![4 => set, 4 => short, 1 => (any::<u8>(), prop::collection::vec(any::<u8>(), 0..=MAX_FIELDS))]
 }
@@ -136,7 +133,7 @@ proptest! {
             let (status, sent) = (app.player().status(0), app.link().len());
             app.receive(frame(kind, &fields, &mut [0; MAX_WIRE]).iter().copied(), |_| ());
             let answers = received(&mut Decoder::default(), &app.link()[sent..]);
-            let is_request = kind == Simulate::KIND && fields.len() == Simulate::SIZE;
+            let is_request = kind == Simulate::KIND && Simulate::read(&fields).is_some();
             let is_message_for_hosts = kind < 0x80;
             prop_assert!(
                 matches!(*answers, [Ok(_)]) || answers.is_empty() && (is_request || is_message_for_hosts),

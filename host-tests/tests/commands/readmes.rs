@@ -6,9 +6,6 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use firmware::protocol::{
-    Frame, Identity, Measure, Measured, Message, Planned, Press, Restarted, Sample, Simulate, Status, StepTooLong,
-};
 use host_tests::emulator::toolchain::workspace;
 
 /// The first page, and those of the crates.
@@ -108,33 +105,19 @@ fn the_first_readme_is_short() {
     assert!(read(README[0]).lines().count() <= 120);
 }
 
-/// Kind and length of the messages as the firmware's README lists them.
+/// Kind and name of the messages, and the version, as the firmware's README lists them.
 #[test]
 fn the_readme_lists_the_messages_as_they_are() {
-    fn row<M: Message>() -> (String, usize) {
-        (format!("{:#04x}", M::KIND), M::SIZE)
-    }
     let page = read("firmware/README.md");
-    let rows = [
-        row::<Frame>(),
-        row::<Sample>(),
-        row::<Status>(),
-        row::<StepTooLong>(),
-        row::<Planned>(),
-        row::<Restarted>(),
-        row::<Simulate>(),
-        row::<Identity>(),
-        row::<Measured>(),
-        row::<Measure>(),
-        row::<Press>(),
-    ];
-    for (kind, size) in rows {
-        let line = page
-            .lines()
-            .find(|line| line.starts_with("| 0x") && line.split('|').nth(1).is_some_and(|cell| cell.contains(&kind)));
-        let sizes = line.and_then(|line| line.trim_end_matches(" |").rsplit('|').next()).unwrap_or_default();
-        assert!(sizes.split(", ").any(|listed| listed.trim() == size.to_string()), "{kind}: {size} bytes, not {sizes}");
+    let sources = ["to_host", "to_chip"].map(|file| read(&format!("firmware/src/protocol/{file}.rs")));
+    let declared = sources.iter().flat_map(|source| source.lines()).filter_map(|line| line.trim().split_once(" = 0x"));
+    let mut count = 0;
+    for (name, kind) in declared.map(|(name, rest)| (name, rest[..2].to_lowercase())) {
+        let row = page.lines().find(|line| line.starts_with(&format!("| 0x{kind} | `{name}` |")));
+        assert!(row.is_some(), "0x{kind} {name}");
+        count += 1;
     }
+    assert_eq!(page.lines().filter(|line| line.starts_with("| 0x")).count(), count);
     let version = format!("version is {};", firmware::protocol::VERSION);
     assert!(page.contains(&version), "{version}");
 }

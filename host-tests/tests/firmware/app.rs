@@ -1,7 +1,6 @@
 //! The application as it runs on the boards, with a panel in memory, a growing byte vector and scripted buttons.
 
 use std::cell::Cell;
-use std::convert::Infallible;
 
 use double_pendulum::{Parameters, Pendulum, State};
 use embedded_io::{ErrorKind, ErrorType, Write};
@@ -14,20 +13,15 @@ use firmware::config::{GRAVITY, MOST_TICKS_PER_FRAME, ROD, TICK_RATE};
 use firmware::display::{Display, NoDisplay};
 use firmware::graphics::canvas::Canvas;
 use firmware::graphics::fade_layer::FadeLayer;
-use firmware::graphics::view::{Place, View};
-use firmware::motion::direction_stepper::Directions;
+use firmware::graphics::view::{Place, RodDirections, View};
 use firmware::motion::settings::Settings;
-use firmware::protocol::{Decoder, Frame, LinkError, MAX_WIRE, Message, Restarted, Status, encode};
+use firmware::protocol::{Frame, Message, Restarted, Status};
 use firmware::scenes::SceneName;
 use host_tests::emulator::host::sheets;
 use host_tests::oracle::stream::Expected;
 use host_tests::oracle::tolerances::ENERGY_SHOWN;
 
-type Plain = App<'static, NoDisplay, Vec<u8>, NoButtons>;
-
-fn app() -> Plain {
-    App::new(Settings::default(), sheets(), NoDisplay, Vec::new(), NoButtons).expect("the first settings are good")
-}
+use crate::bench::{Plain, all, app, messages, starting_with, wire};
 
 /// Runs to each of the clock's readings in turn.
 fn run(clock: impl IntoIterator<Item = u32>) -> Plain {
@@ -38,22 +32,8 @@ fn run(clock: impl IntoIterator<Item = u32>) -> Plain {
     app
 }
 
-fn messages(bytes: &[u8]) -> Vec<Result<Frame, LinkError>> {
-    let mut decoder = Decoder::default();
-    let mut messages = Vec::new();
-    for &byte in bytes {
-        if let Some(message) = decoder.push(byte) {
-            messages.push(message.map(|(kind, fields)| {
-                assert_eq!(kind, Frame::KIND);
-                Frame::read(fields).expect("all fields")
-            }));
-        }
-    }
-    messages
-}
-
 fn frames(bytes: &[u8]) -> Vec<Frame> {
-    messages(bytes).into_iter().map(|message| message.expect("undamaged")).collect()
+    all(bytes)
 }
 
 #[test]
@@ -156,8 +136,8 @@ fn counts_wrap_unnoticed() {
 #[test]
 fn hanging_at_rest_has_no_energy_error() {
     let settings = Settings::equal_rods(1.0, 0.0);
-    let mut app = App::new(settings, sheets(), NoDisplay, Vec::new(), NoButtons).expect("good");
-    app.run_to(10, |_: Event<Infallible, Infallible>| ());
+    let mut app = starting_with(settings);
+    app.run_to(10, |_| ());
     assert_eq!(frames(app.link()).iter().map(|frame| frame.energy_error).collect::<Vec<_>>(), [0.0]);
 }
 
@@ -237,7 +217,9 @@ fn a_failing_link_is_reported_once_and_loses_only_its_own_frames() {
     }
     assert_eq!(events, [Event::Link(ErrorKind::TimedOut)]);
     // Writes: frames 0 to 3 (1 to 4), frames 4 to 8 broken off in the middle (5 to 9), then all is well.
-    let received: Vec<_> = messages(&app.link().bytes).iter().map(|m| m.map(|frame| frame.sequence).ok()).collect();
+    let sequence = |(_, fields): (u8, Vec<u8>)| Frame::read(&fields).map(|frame| frame.sequence);
+    let received: Vec<_> =
+        messages(&app.link().bytes).into_iter().map(|message| message.ok().and_then(sequence)).collect();
     let expected: Vec<_> = (0..4).map(Some).chain([None; 5]).chain((9..20).map(Some)).collect();
     assert_eq!(received, expected);
 }
@@ -266,7 +248,7 @@ fn a_failing_panel_is_reported_once_and_does_not_stop_the_rest() {
 }
 
 /// Where the rods point, by the state reported.
-fn directions(app: &Plain) -> Directions {
+fn directions(app: &Plain) -> RodDirections {
     let State { a1, a2, .. } = app.player().report().state;
     [a1, a2].map(|angle| angle.sin_cos().into())
 }
@@ -286,8 +268,7 @@ fn bobs_are_drawn_where_the_state_puts_them() {
 
 #[test]
 fn the_motion_never_touches_the_labels() {
-    let mut app =
-        App::new(Settings::equal_rods(0.0125, -179.0), sheets(), NoDisplay, Vec::new(), NoButtons).expect("good");
+    let mut app = starting_with(Settings::equal_rods(0.0125, -179.0));
     // Boxes of the three labels at their longest in use: 8 and 7 characters of 5 pixels, and a time below 1000 s.
     let boxes = [(0..40, 0..8), (0..35, 56..64), (93..128, 0..8)];
     for now in 1..=3600 {
@@ -316,12 +297,11 @@ fn a_restart_goes_on_with_what_was_played() {
     for (played, resumed) in [(Some(played), true), (Some(massless), false), (None, false)] {
         let mut app = app();
         let first = app.player().status(0);
-        let survivor = WarmRestart { played, end, cause: Cause::Hang };
+        let restart = WarmRestart { played, end, cause: Cause::Hang };
         let mut events = Vec::new();
-        app.resume(&survivor, |event| events.push(event));
-        assert_eq!(events, [Event::Restarted(survivor, resumed)]);
+        app.resume(&restart, |event| events.push(event));
+        assert_eq!(events, [Event::Restarted(restart, resumed)]);
         assert_eq!(app.player().status(0), played.filter(|_| resumed).unwrap_or(first));
-        let mut wire = [0; MAX_WIRE];
-        assert_eq!(app.link(), encode(&end, &mut wire));
+        assert_eq!(app.link(), &wire(&end));
     }
 }

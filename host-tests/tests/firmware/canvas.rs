@@ -9,6 +9,7 @@ use fastrand::Rng;
 use firmware::graphics::brush::{Disc, SUBPIXELS, Spot, Stroke};
 use firmware::graphics::canvas::{Canvas, HEIGHT, WIDTH};
 use firmware::graphics::font::{Glyph, glyph};
+use firmware::graphics::plot::Strip;
 
 /// Greys are rounded down to one of 16, which shifts a disc's centre of light by far less than this, pixels.
 const CENTRE_TOLERANCE: f64 = 0.1;
@@ -194,5 +195,14 @@ fn a_line_is_as_bright_in_every_direction() {
     for degrees in 0..360 {
         let ratio = total(degrees as f32) / expected;
         assert!((0.97..1.03).contains(&ratio), "{degrees} degrees: {ratio}");
+    }
+}
+
+#[test]
+fn a_strip_keeps_its_last_columns_in_order() {
+    let mut strip = Strip::<3>::default();
+    for (newest, expected) in [(7, &[7][..]), (8, &[7, 8]), (9, &[7, 8, 9]), (10, &[8, 9, 10]), (11, &[9, 10, 11])] {
+        strip.push(newest);
+        assert!(strip.oldest_first().eq(expected.iter().copied()), "{strip:?}");
     }
 }

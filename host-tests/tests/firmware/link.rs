@@ -2,7 +2,10 @@
 
 use std::collections::HashSet;
 
-use firmware::protocol::{Decoder, LinkError, MAX_FIELDS, MAX_WIRE, VERSION, frame};
+use firmware::protocol::{
+    Decoder, Frame, Identity, LinkError, MAX_FIELDS, MAX_WIRE, Message, Planned, Sample, Simulate, Status, VERSION,
+    frame,
+};
 
 /// What the decoder says of a wire.
 fn decoded(wire: &[u8]) -> Option<Result<(u8, Vec<u8>), LinkError>> {
@@ -31,7 +34,7 @@ fn crc(kind: u8, fields: &[u8]) -> u32 {
 fn every_change_of_four_bits_is_detected() {
     let bits = 8 * (MAX_FIELDS + 2);
     let clean = crc(0, &[0; MAX_FIELDS]);
-    // The longest message there is has 93 bytes of fields, so that its version lies where a flip here still reaches. A flip
+    // The longest message there is has 94 bytes of fields, so that its version lies where a flip here still reaches. A flip
     // in the CRC changes one bit of it.
     let mut changes: Vec<u32> = (8..bits)
         .map(|bit| {
@@ -74,4 +77,29 @@ fn a_wrong_check_is_refused() {
     for wrong in [right ^ 1, !right, 0] {
         assert_eq!(decoded(&sealed(wrong)), Some(Err(LinkError::Checksum)));
     }
+}
+
+/// The longest messages, their whole numbers as large as they can be.
+#[test]
+fn every_message_fits() {
+    let (request, u8, u16, u32) = (u16::MAX, u8::MAX, u16::MAX, u32::MAX);
+    let frame = Frame { sequence: u32, dropped: u32, lost: u32, step: u32, way_steps: u16, ..Frame::default() };
+    let identity = Identity { request, hertz: u32, processor: u32, chip: [u32; 4], ..Identity::default() };
+    let simulate = Simulate { request, method: u8, stride: u32, samples: u32, ..Simulate::default() };
+    let lengths = [
+        length(Frame { scene_cycles: u32, busy_cycles: u32, ..frame }),
+        length(Identity { image: u32, image_bytes: u32, ..identity }),
+        length(simulate),
+        length(Planned { request, steps: u32, ..Planned::default() }),
+        length(Sample { request, index: u32, ..Sample::default() }),
+        length(Status { request, steps: u32, way_steps: u32, ..Status::default() }),
+    ];
+    assert_eq!(lengths, [77, 44, 94, 63, 64, 67]);
+}
+
+fn length<M: Message + PartialEq + std::fmt::Debug>(message: M) -> usize {
+    let mut fields = [0; MAX_FIELDS];
+    let fields = message.write(&mut fields);
+    assert_eq!(M::read(fields), Some(message));
+    fields.len()
 }

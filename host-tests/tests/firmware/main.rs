@@ -1,11 +1,11 @@
 //! The portable firmware on the host: motion, scenes, protocol, panels.
 
 mod app;
+mod bench;
 mod canvas;
 mod commands;
 mod controls;
 mod fault;
-mod history;
 mod horizon;
 mod i2c_recovery;
 mod link;

@@ -153,7 +153,7 @@ fn what_is_planned_is_what_is_shown() {
     assert_eq!(shown(SceneName::Frequencies), None);
 }
 
-/// The map as each class of processors computes it, whatever this host is: in `f32` where there is a unit for that.
+/// The map as each class of processors computes it, on any host: in `f32` where there is a unit for that.
 #[test]
 fn the_map_of_flips_is_that_of_the_boards_processor() {
     let after = |processor: Processor| {

@@ -1,9 +1,9 @@
-//! What outlives a reset is trusted only if it is intact, and is played again as it was.
+//! What is kept across a reset is trusted only if it is intact, and is played again as it was.
 
 use fastrand::Rng;
 use firmware::app::command::Command;
 use firmware::app::player::Player;
-use firmware::app::warm_restart::{Cause, Journal, Kept, MOST_RESTARTS, SOUND_FRAMES, Scene, WarmRestart};
+use firmware::app::warm_restart::{Cause, Journal, Kept, LastShown, MOST_RESTARTS, SOUND_FRAMES, WarmRestart};
 use firmware::graphics::fade_layer::FadeLayer;
 use firmware::motion::settings::Settings;
 use firmware::protocol::Field;
@@ -32,11 +32,11 @@ fn end() -> Restarted {
 
 #[test]
 fn it_is_recalled_as_it_was_kept() {
-    let survivor = WarmRestart::recall(&kept(&status()).0, &kept(&end()).0, false).expect("intact");
+    let restart = WarmRestart::recall(&kept(&status()).0, &kept(&end()).0, false).expect("intact");
     let expected = WarmRestart { played: Some(status()), end: Restarted { restarts: 2, ..end() }, cause: Cause::Fault };
-    assert_eq!(survivor, expected);
-    assert_eq!(Scene(Some(survivor.end)).to_string(), "scene butterfly, step 480");
-    assert_eq!(Scene(None).to_string(), "no scene yet");
+    assert_eq!(restart, expected);
+    assert_eq!(LastShown(Some(restart.end)).to_string(), "scene butterfly, step 480");
+    assert_eq!(LastShown(None).to_string(), "no scene yet");
 }
 
 #[test]
@@ -83,19 +83,19 @@ fn a_reset_from_outside_starts_anew_and_one_by_the_watchdog_does_not() {
 #[test]
 fn what_ends_the_board_each_time_is_given_up() {
     for restarts in [0, 1, MOST_RESTARTS - 1, MOST_RESTARTS, u8::MAX] {
-        let survivor = WarmRestart::recall(&kept(&status()).0, &kept(&Restarted { restarts, ..end() }).0, false);
-        let survivor = survivor.expect("intact");
-        assert_eq!(survivor.end.restarts, restarts.saturating_add(1));
-        assert_eq!(survivor.played.is_some(), restarts < MOST_RESTARTS, "after {restarts}");
+        let restart = WarmRestart::recall(&kept(&status()).0, &kept(&Restarted { restarts, ..end() }).0, false);
+        let restart = restart.expect("intact");
+        assert_eq!(restart.end.restarts, restarts.saturating_add(1));
+        assert_eq!(restart.played.is_some(), restarts < MOST_RESTARTS, "after {restarts}");
     }
 }
 
 #[test]
 fn a_minute_without_a_restart_forgets_those_before() {
-    let survivor = WarmRestart::recall(&kept(&status()).0, &kept(&end()).0, false).expect("intact");
+    let restart = WarmRestart::recall(&kept(&status()).0, &kept(&end()).0, false).expect("intact");
     let mut ink = FadeLayer::NONE;
     let mut player = Player::new(Settings::default(), &mut ink).expect("good");
-    let mut journal = Journal::new(Some(&survivor));
+    let mut journal = Journal::new(Some(&restart));
     for frame in 1..=SOUND_FRAMES + 10 {
         let (played, end) = journal.note(&player);
         let restarts = if frame < SOUND_FRAMES { 2 } else { 0 };

@@ -1,7 +1,7 @@
 //! The end: panics and faults are reported in plain text on the debugger's standard error, then the run fails.
 //!
-//! Plain text there, and not a defmt log, because a crash may come in the middle of a log line, and because it shall be
-//! readable without any tool. Without a debugger there is nobody to stop for: the board keeps why it crashed and restarts,
+//! Plain text there, and not a defmt log, because a crash may come in the middle of a log line, and because it must be
+//! readable without any tool. Without a debugger the board keeps why it crashed and restarts,
 //! and the next run tells. A program that hangs is reported when the watchdog first calls; if it goes on after all,
 //! nothing else comes of it, if not, the watchdog resets the board.
 //!
@@ -13,7 +13,7 @@
 //! cannot. So the watchdog, which stands still while a debugger halts the processor, no longer does so from the first word of
 //! a report on, and resets the board. Whoever wants to look at a crashed board at leisure sets a breakpoint where the report
 //! begins, at `crash`. A log line that goes by such a call waits for a gone probe, too, with the watchdog standing still: the
-//! LM3S6965's does until it loses power; the STM32F405's log is in memory and waits for nobody.
+//! LM3S6965's does until it loses power; the STM32F405's log is in memory and waits for no one.
 
 use core::arch::{asm, naked_asm};
 use core::cell::UnsafeCell;
@@ -27,7 +27,7 @@ use cortex_m_semihosting::{debug, hio};
 
 use super::calls::{calls, instruction};
 use super::{fault_status, retained, watchdog};
-use crate::app::warm_restart::{Cause, Scene};
+use crate::app::warm_restart::{Cause, LastShown};
 use crate::fault::{Fault, Hang, Panic, Stacked};
 
 /// A call to the debugger, `bkpt 0xAB`, and its length in bytes.
@@ -89,7 +89,7 @@ unsafe extern "C" fn HardFault() {
 /// `exception` is what the link register holds on the way into a handler.
 extern "C" fn hard_fault(frame: *mut ExceptionFrame, exception: u32) {
     let [cfsr, hfsr, mmfar, bfar] = fault_status::read();
-    // SAFETY: the processor has put the frame there, and nobody else knows of it.
+    // SAFETY: the processor has put the frame there, and nothing else knows of it.
     let frame = Fault::has_stacked(cfsr).then(|| unsafe { &mut *frame }).ok_or(frame as u32);
     let (stacked, bottom) = match frame {
         Ok(frame) => {
@@ -177,6 +177,6 @@ fn crash((cause, pc, lr, cfsr): (Cause, u32, u32, u32), report: &dyn Display) ->
 #[inline(never)]
 fn say(report: &dyn Display) {
     if let Ok(mut stderr) = hio::hstderr() {
-        let _ = writeln!(stderr, "{report}\n  {}", Scene(retained::last()));
+        let _ = writeln!(stderr, "{report}\n  {}", LastShown(retained::last()));
     }
 }

@@ -58,7 +58,7 @@ pub fn guard_stack(unit: MPU) {
     let base = end.wrapping_sub(REGION);
     // A bit for each eighth that is not refused, from the lowest.
     let statics = (1_u32 << (start.wrapping_sub(base) / EIGHTH)) - 1;
-    // SAFETY: nothing but the stack uses these addresses, and it shall not.
+    // SAFETY: nothing but the stack uses these addresses, and it must not.
     unsafe {
         unit.rbar.write(base | REGION_0);
         unit.rasr.write(NO_ACCESS | statics << 8 | SIZE | REGION_ON);

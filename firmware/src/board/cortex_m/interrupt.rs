@@ -2,6 +2,8 @@
 
 use core::arch::naked_asm;
 
+use cortex_m::interrupt::InterruptNumber;
+use cortex_m::peripheral::NVIC;
 use cortex_m_rt::ExceptionFrame;
 
 use super::{crash, watchdog};
@@ -32,5 +34,24 @@ extern "C" fn interrupt(interrupted: &ExceptionFrame, number: u32) {
         crash::hang(interrupted);
     } else {
         receiver::receive();
+    }
+}
+
+/// One of the chip's own interrupts, by its number in the data sheet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::board) struct Interrupt(pub u16);
+
+// SAFETY: boards name only numbers of their chip.
+unsafe impl InterruptNumber for Interrupt {
+    fn number(self) -> u16 {
+        self.0
+    }
+}
+
+impl Interrupt {
+    /// Lets it through.
+    pub fn unmask(self) {
+        // SAFETY: no critical section relies on a masked interrupt.
+        unsafe { NVIC::unmask(self) };
     }
 }

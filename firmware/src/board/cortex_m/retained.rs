@@ -1,4 +1,4 @@
-//! The memory that outlives a reset, and who writes it: the main loop after each frame, a crash at the end.
+//! The memory that is kept across a reset, and who writes it: the main loop after each frame, a crash at the end.
 
 use core::hint::black_box;
 use core::sync::atomic::{AtomicU8, Ordering};
@@ -7,7 +7,7 @@ use crate::app::warm_restart::{Cause, Kept, WarmRestart, read};
 use crate::protocol::{MAX_WIRE, Message, Restarted, Status, encode};
 
 /// What is played.
-// SAFETY: start-up leaves this section alone, and whatever it finds there is bytes.
+// SAFETY: start-up leaves this section alone, and what stands there is bytes.
 #[unsafe(link_section = ".uninit.played")]
 static PLAYED: Memory = Memory::new();
 /// How it ended; with no cause as long as it has not.
@@ -15,7 +15,7 @@ static PLAYED: Memory = Memory::new();
 #[unsafe(link_section = ".uninit.end")]
 static END: Memory = Memory::new();
 
-/// A watchdog's interrupt may write in the middle of the main loop's writing: whatever comes of two at once is found out by
+/// A watchdog's interrupt may write in the middle of the main loop's writing: what comes of two at once is found out by
 /// the message's check.
 struct Memory([AtomicU8; MAX_WIRE]);
 
@@ -43,7 +43,7 @@ impl Memory {
     }
 }
 
-/// What outlived the last reset, if that was no planned one.
+/// What was kept across the last reset, if that was no planned one.
 pub fn recall(by_watchdog: bool) -> Option<WarmRestart> {
     WarmRestart::recall(&PLAYED.read(), &END.read(), by_watchdog)
 }

@@ -6,11 +6,11 @@
 use core::cell::Cell;
 use core::sync::atomic::{AtomicU16, AtomicU32, Ordering};
 
-use cortex_m::interrupt::{InterruptNumber, Mutex, free};
+use cortex_m::interrupt::{Mutex, free};
 use cortex_m::peripheral::NVIC;
 
 use super::clock::ticks;
-
+use super::interrupt::Interrupt;
 use crate::board::register::{Device, Register};
 use crate::config::{TICK_RATE, WATCHDOG_SECONDS};
 
@@ -157,17 +157,6 @@ pub(super) fn silence() {
 fn rearm() {
     if let Call::Own(interrupt) = Call::noted() {
         NVIC::unpend(Interrupt(interrupt));
-        // SAFETY: no critical section relies on this interrupt being masked.
-        unsafe { NVIC::unmask(Interrupt(interrupt)) };
-    }
-}
-
-#[derive(Clone, Copy)]
-struct Interrupt(u16);
-
-// SAFETY: it is the watchdog's number on its chip.
-unsafe impl InterruptNumber for Interrupt {
-    fn number(self) -> u16 {
-        self.0
+        Interrupt(interrupt).unmask();
     }
 }

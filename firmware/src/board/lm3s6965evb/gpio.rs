@@ -8,23 +8,23 @@ use crate::board::register::{Device, Register};
 
 /// A port, by its base address.
 #[derive(Clone, Copy, Debug)]
-pub struct Port(Device);
+pub struct Pins(Device);
 
 /// Port A: serial port and panel.
-pub const A: Port = port(0x4000_4000);
-const C: Port = port(0x4000_6000);
-const D: Port = port(0x4000_7000);
+pub const A: Pins = port(0x4000_4000);
+const C: Pins = port(0x4000_6000);
+const D: Pins = port(0x4000_7000);
 /// Port E: four buttons.
-pub const E: Port = port(0x4002_4000);
+pub const E: Pins = port(0x4002_4000);
 /// Port F: the fifth button.
-pub const F: Port = port(0x4002_5000);
+pub const F: Pins = port(0x4002_5000);
 
-const fn port(base: usize) -> Port {
+const fn port(base: usize) -> Pins {
     // SAFETY: the ports above are those of the data sheet, chapter 8; pins cannot break memory safety.
-    Port(unsafe { Device::at(base) })
+    Pins(unsafe { Device::at(base) })
 }
 
-impl Port {
+impl Pins {
     /// Reads and writes only the pins of `pins`: the address carries the mask.
     const fn data(self, pins: u8) -> Register {
         self.0.register((pins as usize) << 2)

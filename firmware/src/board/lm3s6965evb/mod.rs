@@ -18,67 +18,47 @@ mod watchdog;
 
 use cortex_m::Peripherals;
 use embedded_hal::digital::OutputPin;
-use embedded_hal_bus::spi::{ExclusiveDevice, NoDelay};
 
-use crate::app::instruments::Instruments;
+use crate::board::Board;
 use crate::board::cortex_m::clock::Clock;
 use crate::board::cortex_m::guard::guard_stack;
 use crate::board::cortex_m::identity::instruments;
 use crate::board::cortex_m::watchdog::TwoStage;
 use crate::board::serial::receiver::Receiver;
+use crate::board::serial::transmitter::Transmitter;
 use crate::display::Ssd0323;
 use crate::graphics::canvas::Canvas;
 use crate::protocol::BoardName;
 
-pub use buttons::Keys;
-pub use gpio::Output;
-pub use ssi::{NoSelect, Ssi};
-pub use uart::Uart;
+use buttons::Keys;
+use gpio::Output;
+use ssi::Ssi;
+use uart::Pl011;
 
-/// The board's panel.
-pub type Panel = Ssd0323<'static, ExclusiveDevice<Ssi, NoSelect, NoDelay>, Output>;
+/// The board.
+pub type Lm3s6965evb = Board<Ssd0323<'static, Ssi, Output>, Transmitter<Pl011>, Keys, TwoStage>;
 
-/// The board, set up and running.
-pub struct Board {
-    /// The OLED panel, not yet initialised.
-    pub panel: Panel,
-    /// The serial link outwards.
-    pub link: Uart,
-    /// The serial link inwards.
-    pub receiver: Receiver,
-    /// The five buttons.
-    pub keys: Keys,
-    /// What it tells of itself by.
-    pub instruments: Instruments,
-    /// The tick.
-    pub clock: Clock,
-    /// What resets it when it hangs.
-    pub watchdog: TwoStage,
-    /// The processor's clock, Hz.
-    pub hertz: u32,
-}
-
-impl Board {
-    /// Sets the board up; `None` the second time.
-    pub fn take() -> Option<Self> {
-        let core = Peripherals::take()?;
-        guard_stack(core.MPU);
-        let hertz = system::start();
-        let Ok(()) = gpio::card_select().set_high();
-        let link = Uart::start(hertz);
-        let receiver = Receiver::new(uart::INLET)?;
-        uart::enable_receiver();
-        let memory = cortex_m::singleton!(: Canvas = Canvas::BLACK)?;
-        let Ok(panel) = ExclusiveDevice::new_no_delay(Ssi::start(hertz), NoSelect);
-        Some(Self {
-            panel: Ssd0323::new(panel, gpio::data_not_command(), memory),
-            link,
-            receiver,
-            keys: Keys::start(),
-            instruments: instruments(BoardName::Lm3s6965evb, hertz, system::chip(), &core.CPUID, core.DCB, core.DWT),
-            clock: Clock::start(core.SYST, hertz),
-            watchdog: watchdog::start(hertz),
-            hertz,
-        })
+/// Sets the board up; `None` the second time.
+pub fn take() -> Option<Lm3s6965evb> {
+    let core = Peripherals::take()?;
+    guard_stack(core.MPU);
+    let hertz = system::start();
+    let Ok(()) = gpio::card_select().set_high();
+    let link = uart::start(hertz);
+    let receiver = Receiver::new(uart::INLET)?;
+    uart::enable_receiver();
+    let memory = cortex_m::singleton!(: Canvas = Canvas::BLACK)?;
+    let mut panel = Ssd0323::new(Ssi::start(hertz), gpio::data_not_command(), memory);
+    if panel.init().is_err() {
+        defmt::error!("the panel does not answer");
     }
+    Some(Board {
+        panel,
+        link,
+        receiver,
+        keys: Keys::start(),
+        instruments: instruments(BoardName::Lm3s6965evb, hertz, system::chip(), &core.CPUID, core.DCB, core.DWT),
+        clock: Clock::start(core.SYST, hertz),
+        watchdog: watchdog::start(hertz),
+    })
 }

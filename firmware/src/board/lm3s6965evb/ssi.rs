@@ -1,9 +1,6 @@
-//! Synchronous serial interface 0 (PL022) as an SPI bus.
+//! Synchronous serial interface 0 (PL022) as the panel's SPI bus, which is written only and drives its select pin by itself.
 
-use core::convert::Infallible;
-
-use embedded_hal::digital::{self, OutputPin};
-use embedded_hal::spi::{self, SpiBus};
+use embedded_hal::spi::{Error, ErrorKind, ErrorType, Operation, SpiDevice};
 
 use super::gpio;
 use crate::board::register::{Device, Register};
@@ -31,9 +28,14 @@ const MODE_2_BYTES: u32 = 1 << 6 | 7;
 #[derive(Debug)]
 pub struct Ssi(());
 
-/// The bus did not finish in time.
+/// Why bytes were not sent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Timeout;
+pub enum SsiError {
+    /// The bus did not finish in time.
+    Late,
+    /// No wire leads back from the panel.
+    WriteOnly,
+}
 
 impl Ssi {
     pub(super) fn start(hertz: u32) -> Self {
@@ -45,90 +47,40 @@ impl Ssi {
         CONTROL1.write(ENABLE);
         Self(())
     }
+}
 
-    /// Exchanges up to [`QUEUE`] bytes and passes each one received to `take`. What was received must be taken out:
-    /// a full receive queue stops the bus.
-    #[inline(always)]
-    fn exchange(sent: &[u8], mut take: impl FnMut(usize, u8)) -> Result<(), Timeout> {
-        for &byte in sent {
-            DATA.write(byte.into());
-        }
-        if !STATUS.wait(BUSY, 0, BUS_TRIES) {
-            return Err(Timeout);
-        }
-        for index in 0..sent.len() {
-            take(index, DATA.read() as u8);
-        }
-        Ok(())
+/// Sends up to [`QUEUE`] bytes. What comes back is noise, but must be taken out: a full receive queue stops the bus.
+#[inline(always)]
+fn send(bytes: &[u8]) -> Result<(), SsiError> {
+    for &byte in bytes {
+        DATA.write(byte.into());
+    }
+    if !STATUS.wait(BUSY, 0, BUS_TRIES) {
+        return Err(SsiError::Late);
+    }
+    for _ in bytes {
+        let _ = DATA.read();
+    }
+    Ok(())
+}
+
+impl Error for SsiError {
+    fn kind(&self) -> ErrorKind {
+        ErrorKind::Other
     }
 }
 
-impl spi::Error for Timeout {
-    fn kind(&self) -> spi::ErrorKind {
-        spi::ErrorKind::Other
-    }
+impl ErrorType for Ssi {
+    type Error = SsiError;
 }
 
-impl spi::ErrorType for Ssi {
-    type Error = Timeout;
-}
-
-impl SpiBus for Ssi {
-    fn write(&mut self, words: &[u8]) -> Result<(), Timeout> {
-        let (chunks, rest) = words.as_chunks::<QUEUE>();
-        chunks.iter().try_for_each(|chunk| Self::exchange(chunk, |_, _| ()))?;
-        Self::exchange(rest, |_, _| ())
-    }
-
-    fn read(&mut self, words: &mut [u8]) -> Result<(), Timeout> {
-        words.fill(0);
-        self.transfer_in_place(words)
-    }
-
-    fn transfer(&mut self, read: &mut [u8], write: &[u8]) -> Result<(), Timeout> {
-        let both = read.len().min(write.len());
-        let (read, rest_to_read) = read.split_at_mut(both);
-        let (write, rest_to_write) = write.split_at(both);
-        read.copy_from_slice(write);
-        self.transfer_in_place(read)?;
-        self.read(rest_to_read)?;
-        self.write(rest_to_write)
-    }
-
-    fn transfer_in_place(&mut self, words: &mut [u8]) -> Result<(), Timeout> {
-        for chunk in words.chunks_mut(QUEUE) {
-            let mut sent = [0; QUEUE];
-            let sent = &mut sent[..chunk.len()];
-            sent.copy_from_slice(chunk);
-            Self::exchange(sent, |index, byte| {
-                if let Some(word) = chunk.get_mut(index) {
-                    *word = byte;
-                }
-            })?;
-        }
-        Ok(())
-    }
-
-    /// Every exchange has waited for its last bit.
-    fn flush(&mut self) -> Result<(), Timeout> {
-        Ok(())
-    }
-}
-
-/// The device select: the interface drives its pin by itself.
-#[derive(Clone, Copy, Debug)]
-pub struct NoSelect;
-
-impl digital::ErrorType for NoSelect {
-    type Error = Infallible;
-}
-
-impl OutputPin for NoSelect {
-    fn set_low(&mut self) -> Result<(), Infallible> {
-        Ok(())
-    }
-
-    fn set_high(&mut self) -> Result<(), Infallible> {
-        Ok(())
+impl SpiDevice for Ssi {
+    fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), SsiError> {
+        operations.iter().try_for_each(|operation| {
+            let Operation::Write(bytes) = operation else { return Err(SsiError::WriteOnly) };
+            let (chunks, rest) = bytes.as_chunks::<QUEUE>();
+            chunks.iter().try_for_each(|chunk| send(chunk))?;
+            send(rest)
+        })
     }
 }

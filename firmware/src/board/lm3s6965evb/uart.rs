@@ -1,9 +1,7 @@
 //! The serial port (PL011).
 
-use cortex_m::interrupt::InterruptNumber;
-use cortex_m::peripheral::NVIC;
-
 use super::gpio;
+use crate::board::cortex_m::interrupt::Interrupt;
 use crate::board::register::{Device, Register};
 use crate::board::serial::receiver::{Inlet, Taken};
 use crate::board::serial::transmitter::{Outlet, Transmitter};
@@ -28,28 +26,27 @@ const EIGHT_BITS_QUEUED: u32 = 0b11 << 5 | 1 << 4;
 const ENABLE: u32 = 1 << 9 | 1 << 8 | 1 << 0;
 const RECEIVED: u32 = 1 << 6 | 1 << 4;
 
+/// UART0's number on this chip.
+const INTERRUPT: Interrupt = Interrupt(5);
+
 /// The port, running.
 #[derive(Debug)]
-pub struct Port(());
+pub struct Pl011(());
 
-/// The outward direction.
-pub type Uart = Transmitter<Port>;
-
-impl Uart {
-    pub(super) fn start(hertz: u32) -> Self {
-        gpio::A.use_for_device(1 << 0 | 1 << 1);
-        CONTROL.write(0);
-        // The divisor hertz/(16 baud) in 64ths, rounded: 50 MHz / (16 x 460,800) = 6 + 50/64, 0.005 % off.
-        let divisor = (4 * hertz + BAUD / 2) / BAUD;
-        DIVISOR.write(divisor / 64);
-        DIVISOR_FRACTION.write(divisor % 64);
-        LINE_CONTROL.write(EIGHT_BITS_QUEUED);
-        CONTROL.write(ENABLE);
-        Self(Port(()))
-    }
+/// Starts the outward direction.
+pub(super) fn start(hertz: u32) -> Transmitter<Pl011> {
+    gpio::A.use_for_device(1 << 0 | 1 << 1);
+    CONTROL.write(0);
+    // The divisor hertz/(16 baud) in 64ths, rounded: 50 MHz / (16 x 460,800) = 6 + 50/64, 0.005 % off.
+    let divisor = (4 * hertz + BAUD / 2) / BAUD;
+    DIVISOR.write(divisor / 64);
+    DIVISOR_FRACTION.write(divisor % 64);
+    LINE_CONTROL.write(EIGHT_BITS_QUEUED);
+    CONTROL.write(ENABLE);
+    Transmitter(Pl011(()))
 }
 
-impl Outlet for Port {
+impl Outlet for Pl011 {
     fn is_ready(&self) -> bool {
         FLAGS.read() & TRANSMITTER_FULL == 0
     }
@@ -71,19 +68,8 @@ pub(super) const INLET: Inlet = Inlet {
     },
 };
 
-#[derive(Clone, Copy)]
-struct Interrupt;
-
-// SAFETY: 5 is UART0's number on this chip, below the 64 that it has.
-unsafe impl InterruptNumber for Interrupt {
-    fn number(self) -> u16 {
-        5
-    }
-}
-
 /// Lets received bytes interrupt.
 pub(super) fn enable_receiver() {
     INTERRUPT_MASK.write(RECEIVED);
-    // SAFETY: no critical section relies on this interrupt being masked.
-    unsafe { NVIC::unmask(Interrupt) };
+    INTERRUPT.unmask();
 }

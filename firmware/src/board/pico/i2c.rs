@@ -11,7 +11,7 @@ use rp2040_hal::gpio::{FunctionI2C, OutputEnableOverride, OutputOverride, Pin, P
 use rp2040_hal::pac::i2c0::RegisterBlock;
 use rp2040_hal::pac::{I2C0, Interrupt, RESETS, interrupt};
 
-use crate::board::panel_bus::{self, Port};
+use crate::board::panel_bus::{self, Bus, PanelPort};
 use crate::display::i2c_recovery::free_bus;
 use crate::display::outbox::{Outbox, Sent};
 
@@ -22,7 +22,7 @@ const LOW: (u32, u32) = (3, 5);
 const HOLD: (u32, u32) = (3, 10_000_000);
 /// Bytes left when the next are fetched: 90 us before the last is sent.
 const FEW: u8 = 4;
-/// How often it is asked whether a stop is done, which takes 5 us: these tries take at least 12.
+/// How often a stop is waited for, which takes 5 us: these tries take at least 12.
 const TRIES: u32 = 500;
 /// Half a clock of a slow 100 kHz, cycles of 125 MHz.
 const HALF_CLOCK: u32 = 625;
@@ -38,14 +38,11 @@ const ADDRESS_REFUSED: u32 = 1 << 0;
 const DATA_REFUSED: u32 = 1 << 3;
 const ARBITRATION_LOST: u32 = 1 << 12;
 
-/// The bus, for writing only: the panel is never read.
-pub type Bus = panel_bus::Bus<Panel0>;
-
 /// Its data and its clock.
 pub(super) type Lines = (Line<Gpio4>, Line<Gpio5>);
 
-/// I2C0 and its pins.
-pub struct Panel0 {
+/// I2C0 and its pins, for writing only: the panel is never read.
+pub struct I2c0 {
     port: I2C0,
     lines: Lines,
 }
@@ -57,7 +54,7 @@ pub(super) fn start(
     resets: &mut RESETS,
     hertz: u32,
     outbox: &'static mut Outbox,
-) -> Option<Bus> {
+) -> Option<Bus<I2c0>> {
     resets.reset().modify(|_, w| w.i2c0().set_bit());
     resets.reset().modify(|_, w| w.i2c0().clear_bit());
     if !(0..TRIES).any(|_| resets.reset_done().read().i2c0().bit_is_set()) {
@@ -76,14 +73,14 @@ pub(super) fn start(
         port.ic_sda_hold().write(|w| w.ic_sda_tx_hold().bits((hertz / HOLD.1 * HOLD.0 + 1) as u16));
         port.ic_tx_tl().write(|w| w.tx_tl().bits(FEW));
     }
-    let mut port = Panel0 { port, lines };
+    let mut port = I2c0 { port, lines };
     port.reset();
     // SAFETY: no critical section relies on this interrupt being masked.
     unsafe { NVIC::unmask(Interrupt::I2C0_IRQ) };
     Some(Bus::new(port, outbox))
 }
 
-impl Port for Panel0 {
+impl PanelPort for I2c0 {
     fn begin(&mut self, address: u8) {
         let port = &self.port;
         // The last stop may still be under way.

@@ -22,7 +22,7 @@ use crate::config::{BAUD, BUS_TRIES, UART_QUEUE};
 /// Both pins of UART0.
 pub(super) type SerialPins = (Pin<Gpio0, FunctionUart, PullNone>, Pin<Gpio1, FunctionUart, PullUp>);
 
-/// How often it is asked whether there is room for a message, which takes 2.6 ms at most: these tries take at least 8.
+/// How often room for a message is waited for, which takes 2.6 ms at most: these tries take at least 8.
 const TRIES: u32 = 4 * BUS_TRIES;
 
 /// Bytes that the UART has not taken yet.

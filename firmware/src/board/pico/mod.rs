@@ -22,19 +22,20 @@ use rp2040_hal::{Sio, pac};
 
 use crate::app::controls::{Buttons, Pressed};
 use crate::app::instruments::Instruments;
+use crate::board::Board;
 use crate::board::cortex_m::clock::Clock;
 use crate::board::cortex_m::guard::guard_stack;
 use crate::board::cortex_m::identity::instruments;
+use crate::board::panel_bus::Bus;
 use crate::board::serial::receiver::Receiver;
 use crate::board::{log, steps};
 use crate::display::Ssd1306;
 use crate::display::outbox::Outbox;
 use crate::protocol::BoardName;
 
-pub use i2c::Bus;
-use i2c::Line;
-pub use link::Link;
-pub use watchdog::Watchdog;
+use i2c::{I2c0, Line};
+use link::Link;
+use watchdog::Dog;
 
 /// What the chip's boot ROM runs first: it makes the flash readable as memory, if that is a W25Q080 or takes its commands.
 // SAFETY: the linker puts this section where the ROM looks for it, and nothing else into it.
@@ -45,78 +46,55 @@ static BOOT: [u8; 256] = rp2040_boot2::BOOT_LOADER_W25Q080;
 /// The Pico's crystal, Hz.
 const CRYSTAL: u32 = 12_000_000;
 
-/// The board's panel.
-pub type Panel = Ssd1306<Bus>;
+/// The board.
+pub type Pico = Board<Ssd1306<Bus<I2c0>>, Link, PinKeys, Dog>;
 
-/// The board, set up and running.
-pub struct Board {
-    /// The OLED panel; it may be absent.
-    pub panel: Panel,
-    /// The serial link outwards.
-    pub link: Link,
-    /// The serial link inwards.
-    pub receiver: Receiver,
-    /// The buttons.
-    pub keys: Keys,
-    /// What it tells of itself by.
-    pub instruments: Instruments,
-    /// The tick.
-    pub clock: Clock,
-    /// What resets it when it hangs.
-    pub watchdog: Watchdog,
-    /// The processor's clock, Hz.
-    pub hertz: u32,
-}
-
-impl Board {
-    /// Sets the board up; `None` the second time, or if its clock does not start.
-    pub fn take() -> Option<Self> {
-        let core = cortex_m::Peripherals::take()?;
-        let mut chip = pac::Peripherals::take()?;
-        log::into_memory();
-        guard_stack(core.MPU);
-        let mut watchdog = Watchdog::new(chip.WATCHDOG, &chip.RESETS);
-        let clocks = init_clocks_and_plls(
-            CRYSTAL,
-            chip.XOSC,
-            chip.CLOCKS,
-            chip.PLL_SYS,
-            chip.PLL_USB,
-            &mut chip.RESETS,
-            watchdog.unit(),
-        )
-        .ok()?;
-        let hertz = clocks.system_clock.freq().to_Hz();
-        let pins = Pins::new(chip.IO_BANK0, chip.PADS_BANK0, Sio::new(chip.SIO).gpio_bank0, &mut chip.RESETS);
-        let serial = (pins.gpio0.reconfigure(), pins.gpio1.reconfigure());
-        let link = Link::start(chip.UART0, serial, clocks.peripheral_clock.freq(), &mut chip.RESETS)?;
-        let receiver = Receiver::new(link::INLET)?;
-        usb::start(chip.USBCTRL_REGS, chip.USBCTRL_DPRAM, clocks.usb_clock, &mut chip.RESETS)?;
-        link::enable_interrupts();
-        let outbox = cortex_m::singleton!(: Outbox = Outbox::new())?;
-        let lines = (Line(pins.gpio4.reconfigure()), Line(pins.gpio5.reconfigure()));
-        let bus = i2c::start(chip.I2C0, lines, &mut chip.RESETS, hertz, outbox)?;
-        let chip_number = [chip.SYSINFO.chip_id().read().bits(), 0, 0, 0];
-        Some(Self {
-            panel: Ssd1306::new(bus),
-            link,
-            receiver,
-            keys: Keys {
-                up: button(pins.gpio10),
-                down: button(pins.gpio11),
-                left: button(pins.gpio12),
-                right: button(pins.gpio13),
-                select: button(pins.gpio14),
-            },
-            instruments: Instruments {
-                timed: steps::timed,
-                ..instruments(BoardName::Pico, hertz, chip_number, &core.CPUID, core.DCB, core.DWT)
-            },
-            clock: Clock::start(core.SYST, hertz),
-            watchdog: watchdog.start(),
-            hertz,
-        })
-    }
+/// Sets the board up; `None` the second time, or if its clock does not start.
+pub fn take() -> Option<Pico> {
+    let core = cortex_m::Peripherals::take()?;
+    let mut chip = pac::Peripherals::take()?;
+    log::into_memory();
+    guard_stack(core.MPU);
+    let mut watchdog = Dog::new(chip.WATCHDOG, &chip.RESETS);
+    let clocks = init_clocks_and_plls(
+        CRYSTAL,
+        chip.XOSC,
+        chip.CLOCKS,
+        chip.PLL_SYS,
+        chip.PLL_USB,
+        &mut chip.RESETS,
+        watchdog.unit(),
+    )
+    .ok()?;
+    let hertz = clocks.system_clock.freq().to_Hz();
+    let pins = Pins::new(chip.IO_BANK0, chip.PADS_BANK0, Sio::new(chip.SIO).gpio_bank0, &mut chip.RESETS);
+    let serial = (pins.gpio0.reconfigure(), pins.gpio1.reconfigure());
+    let link = Link::start(chip.UART0, serial, clocks.peripheral_clock.freq(), &mut chip.RESETS)?;
+    let receiver = Receiver::new(link::INLET)?;
+    usb::start(chip.USBCTRL_REGS, chip.USBCTRL_DPRAM, clocks.usb_clock, &mut chip.RESETS)?;
+    link::enable_interrupts();
+    let outbox = cortex_m::singleton!(: Outbox = Outbox::new())?;
+    let lines = (Line(pins.gpio4.reconfigure()), Line(pins.gpio5.reconfigure()));
+    let bus = i2c::start(chip.I2C0, lines, &mut chip.RESETS, hertz, outbox)?;
+    let chip_number = [chip.SYSINFO.chip_id().read().bits(), 0, 0, 0];
+    Some(Board {
+        panel: Ssd1306::new(bus),
+        link,
+        receiver,
+        keys: PinKeys {
+            up: button(pins.gpio10),
+            down: button(pins.gpio11),
+            left: button(pins.gpio12),
+            right: button(pins.gpio13),
+            select: button(pins.gpio14),
+        },
+        instruments: Instruments {
+            timed: steps::timed,
+            ..instruments(BoardName::Pico, hertz, chip_number, &core.CPUID, core.DCB, core.DWT)
+        },
+        clock: Clock::start(core.SYST, hertz),
+        watchdog: watchdog.start(),
+    })
 }
 
 /// A button between a pin and ground.
@@ -127,7 +105,7 @@ fn button<I: PinId + ValidFunction<FunctionSioInput>>(pin: Pin<I, FunctionNull, 
 }
 
 /// The five buttons; those that are not there are never pressed, and select alone does for all.
-pub struct Keys {
+pub struct PinKeys {
     up: Button<Gpio10>,
     down: Button<Gpio11>,
     left: Button<Gpio12>,
@@ -135,7 +113,7 @@ pub struct Keys {
     select: Button<Gpio14>,
 }
 
-impl Buttons for Keys {
+impl Buttons for PinKeys {
     fn read(&mut self) -> Pressed {
         let Self { up, down, left, right, select } = self;
         let [up, down, left, right, select] =

@@ -16,12 +16,12 @@ use crate::config::WATCHDOG_SECONDS;
 const STARTED: u32 = 0x6ab7_3121;
 
 /// The watchdog.
-pub struct Watchdog {
+pub struct Dog {
     unit: support::Watchdog,
     has_reset: bool,
 }
 
-impl Watchdog {
+impl Dog {
     /// To be called before anything is taken out of its reset. The watchdog puts all there is into reset, a debugger does not.
     pub(super) fn new(unit: pac::WATCHDOG, resets: &pac::RESETS) -> Self {
         let has_reset = unit.reason().read().timer().bit_is_set()
@@ -49,7 +49,7 @@ fn stall(stalls: bool) {
     unit.ctrl().modify(|_, w| w.pause_dbg0().bit(stalls).pause_dbg1().bit(stalls).pause_jtag().bit(stalls));
 }
 
-impl watchdog::Watchdog for Watchdog {
+impl watchdog::Watchdog for Dog {
     fn feed(&mut self) {
         self.unit.feed();
     }

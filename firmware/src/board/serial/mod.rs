@@ -1,4 +1,4 @@
-//! Bytes over a board's serial port, whatever port that is.
+//! Bytes over a board's serial port, of any kind.
 
 pub mod receiver;
 pub mod transmitter;

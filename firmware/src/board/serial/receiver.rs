@@ -69,7 +69,7 @@ impl Receiver {
         Some(Self { queue: consumer })
     }
 
-    /// Bytes lost since reset because nobody took them in time; at least so many, since a port does not say how many it had no
+    /// Bytes lost since reset because they were not taken in time; at least so many, since a port does not say how many it had no
     /// room for. Wraps.
     pub fn lost(&self) -> u32 {
         LOST.load(Ordering::Relaxed)

@@ -14,13 +14,13 @@ use stm32f4xx_hal::pac::{I2C1, Interrupt};
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::Rcc;
 
-use crate::board::panel_bus::{self, Port};
+use crate::board::panel_bus::{self, Bus, PanelPort};
 use crate::display::i2c_recovery::free_bus;
 use crate::display::outbox::{Outbox, Sent};
 
 /// Half a clock of a slow 100 kHz, cycles of 168 MHz.
 const HALF_CLOCK: u32 = 840;
-/// How often it is asked whether a start or stop is done, which takes 5 us: these tries take at least 12.
+/// How often a start or stop is waited for, which takes 5 us: these tries take at least 12.
 const TRIES: u32 = 500;
 
 const START_SENT: u16 = 1 << 0;
@@ -28,16 +28,13 @@ const ADDRESS_SENT: u16 = 1 << 1;
 const ALL_SENT: u16 = 1 << 2;
 const READY_FOR_BYTE: u16 = 1 << 7;
 
-/// The bus, for writing only: the panel is never read.
-pub type Bus = panel_bus::Bus<I2c1>;
-
-/// I2C1 and its pins.
+/// I2C1 and its pins, for writing only: the panel is never read.
 pub struct I2c1 {
     port: I2C1,
     pins: (Scl, Sda),
 }
 
-pub(super) fn start(port: I2C1, clock: PB6, data: PB7, rcc: &mut Rcc, outbox: &'static mut Outbox) -> Bus {
+pub(super) fn start(port: I2C1, clock: PB6, data: PB7, rcc: &mut Rcc, outbox: &'static mut Outbox) -> Bus<I2c1> {
     let (port, pins) = I2c::new(port, (clock, data), 400.kHz(), rcc).release();
     let mut port = I2c1 { port, pins };
     port.reset();
@@ -49,7 +46,7 @@ pub(super) fn start(port: I2C1, clock: PB6, data: PB7, rcc: &mut Rcc, outbox: &'
     Bus::new(port, outbox)
 }
 
-impl Port for I2c1 {
+impl PanelPort for I2c1 {
     fn begin(&mut self, _: u8) {
         let port = &self.port;
         // The control register is not to be written before.
@@ -128,7 +125,7 @@ fn advance(port: &RegisterBlock, outbox: &mut Outbox) -> Option<Sent> {
     Some(Err(ErrorKind::Other))
 }
 
-/// A bus error is none: a master may detect one where there is none, so it is to be cleared and the transfer goes on (ES0182,
+/// A bus error is none: a master may detect one where there is none, so it is cleared and the transfer goes on (ES0182,
 /// "Spurious bus error detection in master mode"). A bus that has really been disturbed hangs, and is freed for that.
 fn fail(port: &RegisterBlock, outbox: &Outbox) -> Option<Sent> {
     let status = port.sr1().read();

@@ -16,24 +16,27 @@ mod uart;
 mod watchdog;
 
 use stm32f4xx_hal::gpio::PC7;
-use stm32f4xx_hal::pac::{self, DBGMCU, RCC};
+use stm32f4xx_hal::pac::{self, DBGMCU, RCC, USART3};
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::{Config, Rcc};
+use stm32f4xx_hal::serial::Tx;
 
 use crate::app::controls::{Buttons, Pressed};
 use crate::app::instruments::Instruments;
+use crate::board::Board;
 use crate::board::cortex_m::clock::Clock;
 use crate::board::cortex_m::guard::guard_stack;
 use crate::board::cortex_m::identity::instruments;
+use crate::board::panel_bus::Bus;
 use crate::board::serial::receiver::Receiver;
+use crate::board::serial::transmitter::Transmitter;
 use crate::board::{log, steps};
 use crate::display::Ssd1306;
 use crate::display::outbox::Outbox;
 use crate::protocol::BoardName;
 
-pub use i2c::Bus;
-pub use uart::Uart;
-pub use watchdog::Watchdog;
+use i2c::I2c1;
+use watchdog::Independent;
 
 /// The processor's clock, Hz: the fastest of this chip, and the fixed one of the emulated machine.
 const HERTZ: u32 = 168_000_000;
@@ -42,85 +45,57 @@ const HERTZ: u32 = 168_000_000;
 const UNIQUE_NUMBER: *const [u32; 3] = core::ptr::without_provenance(0x1fff_7a10);
 
 /// Where the image runs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, defmt::Format)]
-pub enum Place {
-    /// On the chip.
-    Chip,
-    /// In QEMU.
-    Emulator,
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Runs {
+    OnChip,
+    InEmulator,
 }
 
-/// The board's panel.
-pub type Panel = Ssd1306<Bus>;
+/// The board.
+pub type Stm32f405 = Board<Ssd1306<Bus<I2c1>>, Transmitter<Tx<USART3>>, OneKey, Independent>;
 
-/// The board, set up and running.
-pub struct Board {
-    /// The OLED panel; it may be absent.
-    pub panel: Panel,
-    /// The serial link outwards.
-    pub link: Uart,
-    /// The serial link inwards.
-    pub receiver: Receiver,
-    /// The one button.
-    pub keys: Keys,
-    /// What it tells of itself by.
-    pub instruments: Instruments,
-    /// The tick.
-    pub clock: Clock,
-    /// What resets it when it hangs.
-    pub watchdog: Watchdog,
-    /// The processor's clock, Hz.
-    pub hertz: u32,
-    /// Where the image runs.
-    pub place: Place,
-}
-
-impl Board {
-    /// Sets the board up; `None` the second time.
-    pub fn take() -> Option<Self> {
-        let core = cortex_m::Peripherals::take()?;
-        let chip = pac::Peripherals::take()?;
-        let (mut rcc, place) = start_clock(chip.RCC);
-        match place {
-            Place::Chip => log::into_memory(),
-            Place::Emulator => log::into_emulator(),
-        }
-        guard_stack(core.MPU);
-        let (b, c) = (chip.GPIOB.split(&mut rcc), chip.GPIOC.split(&mut rcc));
-        // There is a divisor for this baud rate at either clock, so this does not fail.
-        let link = Uart::start(chip.USART3, (b.pb10, b.pb11), &mut rcc).ok()?;
-        let receiver = Receiver::new(uart::INLET)?;
-        uart::enable_receiver();
-        let outbox = cortex_m::singleton!(: Outbox = Outbox::new())?;
-        Some(Self {
-            panel: Ssd1306::new(i2c::start(chip.I2C1, b.pb6, b.pb7, &mut rcc, outbox)),
-            link,
-            receiver,
-            keys: Keys(c.pc7.into_pull_up_input()),
-            instruments: Instruments {
-                timed: steps::timed,
-                ..instruments(BoardName::Stm32f405, HERTZ, chip_number(place), &core.CPUID, core.DCB, core.DWT)
-            },
-            clock: Clock::start(core.SYST, HERTZ),
-            watchdog: Watchdog::start(chip.IWDG, &mut rcc),
-            hertz: HERTZ,
-            place,
-        })
+/// Sets the board up; `None` the second time.
+pub fn take() -> Option<Stm32f405> {
+    let core = cortex_m::Peripherals::take()?;
+    let chip = pac::Peripherals::take()?;
+    let (mut rcc, runs) = start_clock(chip.RCC);
+    match runs {
+        Runs::OnChip => log::into_memory(),
+        Runs::InEmulator => log::into_emulator(),
     }
+    guard_stack(core.MPU);
+    let (b, c) = (chip.GPIOB.split(&mut rcc), chip.GPIOC.split(&mut rcc));
+    // There is a divisor for this baud rate at either clock, so this does not fail.
+    let link = uart::start(chip.USART3, (b.pb10, b.pb11), &mut rcc).ok()?;
+    let receiver = Receiver::new(uart::INLET)?;
+    uart::enable_receiver();
+    let outbox = cortex_m::singleton!(: Outbox = Outbox::new())?;
+    Some(Board {
+        panel: Ssd1306::new(i2c::start(chip.I2C1, b.pb6, b.pb7, &mut rcc, outbox)),
+        link,
+        receiver,
+        keys: OneKey(c.pc7.into_pull_up_input()),
+        instruments: Instruments {
+            timed: steps::timed,
+            ..instruments(BoardName::Stm32f405, HERTZ, chip_number(runs), &core.CPUID, core.DCB, core.DWT)
+        },
+        clock: Clock::start(core.SYST, HERTZ),
+        watchdog: Independent::start(chip.IWDG, &mut rcc),
+    })
 }
 
 /// The one button is the select button: a tap starts again, held it goes to the next scene.
-pub struct Keys(PC7);
+pub struct OneKey(PC7);
 
-impl Buttons for Keys {
+impl Buttons for OneKey {
     fn read(&mut self) -> Pressed {
         Pressed { select: self.0.is_low(), ..Pressed::default() }
     }
 }
 
 /// What the chip says that it is, and its unique number.
-fn chip_number(place: Place) -> [u32; 4] {
-    if place == Place::Emulator {
+fn chip_number(runs: Runs) -> [u32; 4] {
+    if runs == Runs::InEmulator {
         return [0; 4];
     }
     // SAFETY: both are only read, and nothing else uses them.
@@ -133,12 +108,12 @@ fn chip_number(place: Place) -> [u32; 4] {
 ///
 /// The source is the chip's own oscillator, true to 1 % at room temperature, which is near enough for the eye and for
 /// the serial port. So the image fits boards with any crystal (8, 12 and 25 MHz are in use), and none can fail to start.
-fn start_clock(rcc: RCC) -> (Rcc, Place) {
+fn start_clock(rcc: RCC) -> (Rcc, Runs) {
     // A chip comes out of reset running from this oscillator.
     if rcc.cr().read().hsirdy().bit_is_set() {
-        (rcc.freeze(Config::hsi().sysclk(HERTZ.Hz())), Place::Chip)
+        (rcc.freeze(Config::hsi().sysclk(HERTZ.Hz())), Runs::OnChip)
     } else {
         // There is no PLL to wait for, either.
-        (rcc.freeze(Config::hsi()), Place::Emulator)
+        (rcc.freeze(Config::hsi()), Runs::InEmulator)
     }
 }

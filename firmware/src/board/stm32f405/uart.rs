@@ -11,15 +11,15 @@ use crate::board::serial::receiver::{Inlet, Taken};
 use crate::board::serial::transmitter::{Outlet, Transmitter};
 use crate::config::BAUD;
 
-/// The outward direction.
-pub type Uart = Transmitter<Tx<USART3>>;
-
-impl Uart {
-    pub(super) fn start(port: USART3, (out, inwards): (PB10, PB11), rcc: &mut Rcc) -> Result<Self, InvalidConfig> {
-        let mut port = port.serial((out, inwards), Config::default().baudrate(BAUD.bps()), rcc)?;
-        port.listen(Event::RxNotEmpty);
-        Ok(Self(port.split().0))
-    }
+/// Starts the outward direction.
+pub(super) fn start(
+    port: USART3,
+    (out, inwards): (PB10, PB11),
+    rcc: &mut Rcc,
+) -> Result<Transmitter<Tx<USART3>>, InvalidConfig> {
+    let mut port = port.serial((out, inwards), Config::default().baudrate(BAUD.bps()), rcc)?;
+    port.listen(Event::RxNotEmpty);
+    Ok(Transmitter(port.split().0))
 }
 
 impl Outlet for Tx<USART3> {

@@ -9,12 +9,12 @@ use crate::board::cortex_m::watchdog;
 use crate::config::WATCHDOG_SECONDS;
 
 /// The chip's watchdog.
-pub struct Watchdog {
+pub struct Independent {
     unit: IndependentWatchdog,
     has_reset: bool,
 }
 
-impl Watchdog {
+impl Independent {
     /// Starts it. Its oscillator is good for a factor of 2 (17 to 47 kHz instead of 32).
     pub(super) fn start(unit: IWDG, rcc: &mut Rcc) -> Self {
         let has_reset = rcc.csr().read().wdgrstf().bit_is_set();
@@ -32,7 +32,7 @@ fn stall(stalls: bool) {
     debug.apb1_fz().modify(|_, w| w.dbg_iwdg_stop().bit(stalls));
 }
 
-impl watchdog::Watchdog for Watchdog {
+impl watchdog::Watchdog for Independent {
     fn feed(&mut self) {
         self.unit.feed();
     }

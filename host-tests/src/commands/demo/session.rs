@@ -1,7 +1,7 @@
 //! A board being watched, with a terminal or without: its messages are taken, its scene chosen, its panel recorded.
 
 use firmware::app::player::AUTO;
-use firmware::protocol::{Ask, Choose, Field, Frame, Set, Status, Unit, method_code};
+use firmware::protocol::{Ask, Choose, Field, Frame, Set, Status, method_code};
 use firmware::scenes::SceneName;
 
 use super::Options;
@@ -122,8 +122,7 @@ impl<'a> Session<'a> {
     fn go(&mut self) -> anyhow::Result<()> {
         let Some(method) = self.options.method else { return Ok(()) };
         let value = method.map_or(AUTO, |method| method_code(method).into());
-        let (field, unit) = (Field::Method.code(), Unit::One.code());
-        self.source.send(&Set { request: 0, field, unit, value })
+        self.source.send(&Set { request: 0, field: Field::Method.code(), value })
     }
 
     /// What is not well; empty if all is. A board in the hand may drop frames, and its cable may flip bits: both are told, and

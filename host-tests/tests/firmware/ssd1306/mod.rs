@@ -18,7 +18,7 @@ use host_tests::emulator::host::Show;
 use bus::{BYTE, Bus, Line};
 use controller::Controller;
 
-/// Nobody answered.
+/// No answer.
 const SILENCE: ErrorKind = ErrorKind::NoAcknowledge(NoAcknowledgeSource::Address);
 /// Bits that 400 kHz carry in a tick.
 const TICK: u32 = 400_000 / TICK_RATE;
@@ -181,7 +181,7 @@ fn an_absent_panel_is_looked_for_once_a_second_and_may_come_and_go() {
     assert_eq!(
         [flush(1), flush(1), flush(1)],
         [Ok(()), Ok(()), absent],
-        "nobody at the first address, nor at the second"
+        "no answer at the first address, nor at the second"
     );
     for _ in 0..TICK_RATE {
         assert_eq!(flush(1), absent);
