@@ -4,8 +4,6 @@
 pub const WIDTH: usize = 128;
 /// Pixels down.
 pub const HEIGHT: usize = 64;
-/// Bytes of the frame: two pixels each.
-pub const BYTES: usize = ROW * HEIGHT;
 /// Bytes of a row.
 const ROW: usize = WIDTH / 2;
 

@@ -75,12 +75,6 @@ impl Settings {
         Motion { a1, a2, w1, w2 }
     }
 
-    /// The longest step, s, that resolves every motion of this energy; none if these settings describe no motion.
-    pub fn admissible_step(&self) -> Option<f32> {
-        let pendulum = self.pendulum().ok()?;
-        pendulum.admissible_step(&self.start(&pendulum).ok()?).ok()
-    }
-
     /// Where `pendulum` starts, by angles and momenta; the kernel's error if they are not finite.
     pub fn start(&self, pendulum: &Pendulum<f32>) -> Result<State<f32>, Error> {
         let motion = self.motion();

@@ -25,11 +25,6 @@ macro_rules! choice {
             pub fn from_code(code: u8) -> Option<Self> {
                 Self::ALL.iter().copied().find(|choice| choice.code() == code)
             }
-
-            /// The choice with this name.
-            pub fn from_name(name: &str) -> Option<Self> {
-                Self::ALL.iter().copied().find(|choice| choice.name() == name)
-            }
         }
     };
 }
