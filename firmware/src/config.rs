@@ -109,7 +109,7 @@ pub const CORTEX_M0PLUS: Processor = Processor {
 pub const CORTEX_M4F: Processor = Processor {
     code: 1,
     costs: Costs {
-        closed_form: 1_437.0,
+        closed_form: 1_674.0,
         direction_plain: 159.4,
         direction: 208.0,
         fixed32: 612.0,
