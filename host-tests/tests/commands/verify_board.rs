@@ -35,12 +35,9 @@ fn a_board_with_the_hosts_bits_is_told_so_and_reported() {
     assert_eq!(markdown.matches(uncounted).count(), ON_BOARDS.len(), "{markdown}");
     let head = [format!("# {}\n", BOARD.name), format!(", {} Hz\n", BOARD.hertz), "built from commit ".to_owned()];
     assert!(head.iter().all(|part| markdown.contains(part)), "{markdown}");
-    let agree = |columns| {
-        markdown
-            .lines()
-            .filter(|line| line.matches('|').count() == columns + 1)
-            .filter(|line| line.contains("| the host's |"))
-            .count()
+    let agree = |columns: usize| {
+        let is_row = |line: &&str| line.matches('|').count() == columns + 1 && line.contains("| the host's |");
+        markdown.lines().filter(is_row).count()
     };
     assert_eq!((agree(4), agree(6)), (2 * ON_BOARDS.len(), SceneName::ALL.len()), "{markdown}");
 }
@@ -161,7 +158,7 @@ fn what_the_person_says_and_the_chip_counts_is_in_the_report() {
         assert_eq!(said.contains(&format!("not well: not so: {what}")), answer == "no", "{said:#?}");
     }
     let counted = format!("| {} | 100.0 | 50.0 | ", ON_BOARDS[1]);
-    let estimate = markdown.split_once(&counted).and_then(|(_, rest)| rest.split(' ').next()?.parse().ok());
+    let estimate: Option<f64> = markdown.split_once(&counted).and_then(|(_, rest)| rest.split(' ').next()?.parse().ok());
     // A step of it takes some 23,000 cycles (`cargo count`).
     assert!(estimate.is_some_and(|estimate| (1e4..4e4).contains(&estimate)), "{markdown}");
     assert_eq!(

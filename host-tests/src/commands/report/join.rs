@@ -149,7 +149,7 @@ pub fn table(points: &[Point]) -> Table {
 }
 
 #[cfg(test)]
-pub mod tests {
+pub(super) mod tests {
     use super::super::scene::SCENES;
     use super::*;
     use crate::emulator::boards::BOARDS;

@@ -35,7 +35,7 @@ const HALF_PIXEL: f64 = 0.5;
 /// What one may want to compute a motion for, in words before the cycles.
 type Purpose = (&'static str, fn(&Point) -> bool);
 const PURPOSES: [Purpose; 3] = [
-    ("draws 60 frames a second", |point| point.rate >= 60 && point.error.pixels <= HALF_PIXEL),
+    ("draws at 60 fps", |point| point.rate >= 60 && point.error.pixels <= HALF_PIXEL),
     ("keeps 1e-9 rad", |point| point.error.angle <= 1e-9),
     ("keeps 1e-12 rad", |point| point.error.angle <= 1e-12),
 ];
@@ -171,7 +171,7 @@ mod tests {
         let advice = advice(&points);
         assert!(advice.iter().all(|sentence| sentence.split_whitespace().count() <= 25), "{advice:?}");
         let expected =
-            "`rk4-fixed32` draws 60 frames a second for 44k; `extrapolation12-fixed64` keeps 1e-9 rad for 2.0M;";
+            "`rk4-fixed32` draws at 60 fps for 44k; `extrapolation12-fixed64` keeps 1e-9 rad for 2.0M;";
         assert!(advice[0].contains(expected), "{advice:?}");
     }
 
