@@ -158,7 +158,8 @@ fn what_the_person_says_and_the_chip_counts_is_in_the_report() {
         assert_eq!(said.contains(&format!("not well: not so: {what}")), answer == "no", "{said:#?}");
     }
     let counted = format!("| {} | 100.0 | 50.0 | ", ON_BOARDS[1]);
-    let estimate: Option<f64> = markdown.split_once(&counted).and_then(|(_, rest)| rest.split(' ').next()?.parse().ok());
+    let estimate: Option<f64> =
+        markdown.split_once(&counted).and_then(|(_, rest)| rest.split(' ').next()?.parse().ok());
     // A step of it takes some 23,000 cycles (`cargo count`).
     assert!(estimate.is_some_and(|estimate| (1e4..4e4).contains(&estimate)), "{markdown}");
     assert_eq!(

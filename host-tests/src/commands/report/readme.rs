@@ -170,8 +170,7 @@ mod tests {
         ];
         let advice = advice(&points);
         assert!(advice.iter().all(|sentence| sentence.split_whitespace().count() <= 25), "{advice:?}");
-        let expected =
-            "`rk4-fixed32` draws at 60 fps for 44k; `extrapolation12-fixed64` keeps 1e-9 rad for 2.0M;";
+        let expected = "`rk4-fixed32` draws at 60 fps for 44k; `extrapolation12-fixed64` keeps 1e-9 rad for 2.0M;";
         assert!(advice[0].contains(expected), "{advice:?}");
     }
 
