@@ -9,8 +9,7 @@ use clap::Parser;
 use double_pendulum::{Method, Parameters};
 use firmware::job::Request;
 use host_tests::commands::count::{
-    CallCosts, Cost, ERROR_BAR, FULL_CYCLE, Profile, StepCost, Target, affordable_cost, affordable_steps, calls_of,
-    step_cost,
+    CallCosts, ERROR_BAR, FULL_CYCLE, Profile, StepCost, Target, affordable_cost, affordable_steps, calls_of, step_cost,
 };
 use host_tests::console::cli::{self, Refused, complain, say};
 use host_tests::emulator::boards::{BOARDS, Board};
@@ -210,12 +209,11 @@ fn count_calls(toolchain: &Toolchain, arguments: &Arguments, elf: &Path, functio
     say(format_args!("{} on {}, from its first instruction to its return: calls {number}", function.name, board.name))?;
     say(ERROR_BAR)?;
     say(format_args!("{:12} {:>12} {:>12} {:>12}", "per call", "mean", "least", "most"))?;
-    let figures: [(_, fn(&Cost) -> u64); 2] =
-        [("instructions", |cost| cost.instructions), ("cycles", |cost| cost.cycles)];
-    for (title, figure) in figures {
-        let (least, most) =
-            calls.iter().map(figure).fold((u64::MAX, 0), |(least, most), one| (least.min(one), most.max(one)));
-        let mean = calls.iter().map(figure).sum::<u64>() as f64 / number as f64;
+    let instructions = calls.iter().map(|cost| cost.instructions).collect();
+    let cycles: Vec<u64> = calls.iter().map(|cost| cost.cycles).collect();
+    for (title, counts) in [("instructions", instructions), ("cycles", cycles)] {
+        let (least, most) = (counts.iter().min().unwrap_or(&0), counts.iter().max().unwrap_or(&0));
+        let mean = counts.iter().sum::<u64>() as f64 / number as f64;
         say(format_args!("{title:12} {mean:12.1} {least:12} {most:12}"))?;
     }
     Ok(())
