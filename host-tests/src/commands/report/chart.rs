@@ -16,7 +16,9 @@ use crate::emulator::boards::{Board, Core};
 /// Pixels.
 const SIZE: (u32, u32) = (860, 460);
 /// Points outside are not drawn. Errors fall to the right.
-const ERRORS: Range<f64> = 1e-15..1.0;
+const ERRORS: Range<f64> = 1e-15..0.1;
+/// A finer step is worth its cycles if it makes the error at least so much smaller.
+const WORTH: f64 = 0.9;
 /// An error of both angles that is half a pixel of the panel, and what people ask of digits, rad.
 const MARKS: [(f64, &str); 3] =
     [(0.5 / REACH as f64, "half a pixel: 60 fps on the panel"), (1e-9, "1e-9"), (1e-12, "1e-12")];
@@ -47,13 +49,18 @@ pub fn core_name(board: &Board) -> &'static str {
     }
 }
 
-/// Each contestant's name with its points, from the coarsest step to the one with the least error.
+/// Each contestant's name with its points from the coarsest step on, those that a finer step makes better.
 fn lines<'a>(points: &'a [Point], scene: &Scene, board: &Board) -> Vec<(&'static str, Vec<&'a Point>)> {
     let shown = points.iter().filter(|point| point.scene == scene && point.board == board);
     let shown: Vec<_> = shown.filter(|point| ERRORS.contains(&point.error.angle)).collect();
     let line = |points: &[&'a Point]| {
-        let least = points.iter().enumerate().min_by(|(_, a), (_, b)| a.error.angle.total_cmp(&b.error.angle));
-        (points[0].name, points[..=least.map_or(0, |(index, _)| index)].to_vec())
+        let mut least = f64::INFINITY;
+        let is_better = |point: &&Point| {
+            let is_it = point.error.angle < WORTH * least;
+            least = least.min(point.error.angle);
+            is_it
+        };
+        (points[0].name, points.iter().copied().filter(is_better).collect())
     };
     shown.chunk_by(|a, b| a.name == b.name).map(line).collect()
 }
