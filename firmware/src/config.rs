@@ -78,9 +78,9 @@ impl Processor {
 pub const CORTEX_M3: Processor = Processor {
     code: 0,
     costs: Costs {
-        closed_form: 6_321.0,
-        direction_plain: 8_915.0,
-        direction: 10_210.0,
+        closed_form: 8_310.0,
+        direction_plain: 13_070.0,
+        direction: 14_900.0,
         fixed32: 668.0,
         fixed64: 21_500.0,
         preparation: 147_000.0,
@@ -93,9 +93,9 @@ pub const CORTEX_M3: Processor = Processor {
 pub const CORTEX_M0PLUS: Processor = Processor {
     code: 3,
     costs: Costs {
-        closed_form: 12_543.0,
-        direction_plain: 19_900.0,
-        direction: 23_000.0,
+        closed_form: 14_990.0,
+        direction_plain: 22_550.0,
+        direction: 25_850.0,
         fixed32: 2_122.0,
         fixed64: 78_000.0,
         preparation: 351_000.0,

@@ -15,7 +15,6 @@
 //! | [`protocol`] | messages on the serial link as tables, units, wire enums |
 //! | [`fault`] | what a crash report says |
 //! | [`config`] | every number that may be tuned |
-//! | [`soft_float`] | IEEE sums and products by integer arithmetic, for processors without a floating-point unit |
 #![cfg_attr(not(test), no_std)]
 
 pub mod app;
@@ -29,4 +28,3 @@ pub mod job;
 pub mod motion;
 pub mod protocol;
 pub mod scenes;
-pub mod soft_float;

@@ -1,10 +1,8 @@
 //! The one table of budgets: what a board may spend, and why.
 
-/// What a scene may take of a frame of 1/60 s on a 50 MHz Cortex-M3: the other half is for the panel's bus, the serial
-/// link, commands, and motions asked for.
-pub const SCENE: f64 = 0.5;
-/// The same on a Cortex-M0+ at 125 MHz, whose panel's bus and link go on beside it: the map of flips takes 53 %.
-pub const SCENE_M0PLUS: f64 = 0.55;
+/// What a scene may take of a frame of 1/60 s, on a 50 MHz Cortex-M3 in the tick that prepares a motion, on a Cortex-M0+ at
+/// 125 MHz for the map of flips: the rest is for the panel's bus, the serial link, commands, and motions asked for.
+pub const SCENE: f64 = 0.55;
 /// Cycles in which a Cortex-M3 draws and sends a frame of any scene, moving it apart: a seventh of a frame at 50 MHz. The most
 /// expensive one, the butterfly when its curve is long, takes 102,000.
 pub const SHOWING: u64 = 110_000;

@@ -127,8 +127,7 @@ fn too_dear(board: &Board) -> anyhow::Result<Vec<String>> {
             100.0 * share(scene),
             100.0 * (1.0 - share(busy)),
         );
-        let most = if board.core() == Core::M0Plus { budgets::SCENE_M0PLUS } else { budgets::SCENE };
-        if share(scene) > most {
+        if share(scene) > budgets::SCENE {
             too_dear.push(format!("{}: {} takes {:.3} of a frame", board.name, name.name(), share(scene)));
         }
         if 1.0 - share(busy) < budgets::IDLE {

@@ -27,11 +27,7 @@ const UNSAFE: [(&str, usize, &str); 29] = [
     ("firmware/src/board/pico/watchdog.rs", 1, "the register of what stands still under a debugger"),
     ("firmware/src/board/register.rs", 3, "volatile access, the one place where it is done"),
     ("firmware/src/board/cortex_m/semihosting.rs", 1, "a call to the debugger"),
-    (
-        "firmware/src/board/cortex_m/soft_float.rs",
-        5,
-        "names of the compiler's library, given to functions that do the same",
-    ),
+    ("firmware/src/board/cortex_m/long_product.rs", 2, "the name of a function of the compiler's library"),
     ("firmware/src/board/steps.rs", 2, "a function's copy, between names of the linker"),
     ("firmware/src/board/stm32f405/i2c.rs", 5, "register values read before and written back, its two interrupts"),
     ("firmware/src/board/log.rs", 11, "the log's state, used with interrupts off"),

@@ -13,7 +13,6 @@ mod misprint;
 mod planner;
 mod scenes;
 mod service;
-mod soft_float;
 mod ssd0323;
 mod ssd1306;
 mod warm_restart;

@@ -13,4 +13,5 @@ pub(super) mod stopwatch;
 mod calls;
 mod fault_status;
 mod interrupt;
-mod soft_float;
+#[cfg(armv6m)]
+mod long_product;
