@@ -14,7 +14,7 @@ static int semihosting(int operation, const void *argument) {
 /* The fields of a request, as firmware/src/protocol/simulate.rs lists them; little-endian, as this processor is. */
 struct __attribute__((packed)) request {
     uint16_t number;
-    uint8_t arithmetic, model, form, method, order;
+    uint8_t method;
     double parameters[5], angles[2], velocities[2], dt;
     uint32_t stride, samples;
 };

@@ -4,13 +4,12 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
-use anyhow::bail;
+use anyhow::{bail, ensure};
 use clap::Parser;
 use double_pendulum::{Method, Parameters};
 use firmware::job::Request;
 use host_tests::commands::count::{
-    CallCosts, Cost, CountError, ERROR_BAR, FULL_CYCLE, Profile, StepCost, Target, affordable_steps, calls_of,
-    step_cost,
+    CallCosts, ERROR_BAR, FULL_CYCLE, Profile, StepCost, Target, affordable_cost, affordable_steps, calls_of, step_cost,
 };
 use host_tests::console::cli::{self, Refused, complain, say};
 use host_tests::emulator::boards::{BOARDS, Board};
@@ -85,20 +84,19 @@ fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if !arguments.listing {
         say(arguments.setting())?;
         say(ERROR_BAR)?;
-        say(ROW.map(|(title, width)| format!("{title:>width$}")).join(" "))?;
+        say(columns(ROW.map(|(title, _)| title.to_owned())))?;
     }
     for board in boards {
         let target = Target::build(&toolchain, board)?;
         for request in &requests {
-            let stride = match arguments.steps {
-                Some(stride) => stride,
-                None => affordable_steps(&target, request)?,
-            };
-            let request = Request { stride, ..*request };
+            let given = arguments.steps.map(|stride| Request { stride, ..*request });
             if arguments.listing {
-                list(&target, &request)?;
+                let stride = given.map_or_else(|| affordable_steps(&target, request), |given| Ok(given.stride))?;
+                list(&target, &Request { stride, ..*request })?;
             } else {
-                say(row(&request, board, &step_cost(&target, &request)?))?;
+                let cost =
+                    given.map_or_else(|| affordable_cost(&target, request), |given| step_cost(&target, &given))?;
+                say(row(request.method, board, &cost))?;
             }
         }
     }
@@ -161,21 +159,15 @@ const ROW: [(&str, usize); 9] = [
     ("stack bytes", 11),
 ];
 
-fn row(request: &Request, board: &Board, cost: &StepCost) -> String {
-    let StepCost { instructions, cycles, stalls, hot_bytes, code_bytes, stack_bytes } = cost;
-    let cells = [
-        request.method.to_string(),
-        board.name.to_owned(),
-        request.stride.to_string(),
-        format!("{instructions:.1}"),
-        format!("{cycles:.1}"),
-        format!("{stalls:.1}"),
-        hot_bytes.to_string(),
-        code_bytes.to_string(),
-        stack_bytes.to_string(),
-    ];
-    let cells = cells.iter().zip(ROW).map(|(cell, (_, width))| format!("{cell:>width$}"));
-    cells.collect::<Vec<_>>().join(" ")
+fn columns(cells: [String; 9]) -> String {
+    cells.iter().zip(ROW).map(|(cell, (_, width))| format!("{cell:>width$}")).collect::<Vec<_>>().join(" ")
+}
+
+fn row(method: Method, board: &Board, cost: &StepCost) -> String {
+    let StepCost { steps, instructions, cycles, stalls, hot_bytes, code_bytes, stack_bytes } = cost;
+    let [instructions, cycles, stalls] = [instructions, cycles, stalls].map(|count| format!("{count:.1}"));
+    let [steps, hot, code, stack] = [steps, hot_bytes, code_bytes, stack_bytes].map(u32::to_string);
+    columns([method.to_string(), board.name.to_owned(), steps, instructions, cycles, stalls, hot, code, stack])
 }
 
 /// Every instruction with its share of a step: address, executions, cycles, stalls, kind.
@@ -201,13 +193,14 @@ fn list(target: &Target, request: &Request) -> anyhow::Result<()> {
 /// What a function of any program costs, per call.
 fn count_calls(toolchain: &Toolchain, arguments: &Arguments, elf: &Path, function: &str) -> anyhow::Result<()> {
     let board = arguments.on.unwrap_or(&BOARDS[1]);
-    let target = Target::of(toolchain, board, elf.to_owned()).map_err(Refused::because)?;
+    let target = Target::of(toolchain, board, elf.to_owned());
+    let target = target.map_err(|error| Refused::because(format_args!("{error:#}")))?;
     let limit = Duration::from_secs(arguments.seconds.into());
-    let CallCosts { function, calls, ended } = calls_of(&target, function, limit).map_err(|error| match error {
-        CountError::Failed { .. } => error.into(),
-        error => anyhow::Error::from(Refused::because(error)),
-    })?;
-    let number = calls.len();
+    let costs = calls_of(&target, function, limit).map_err(|error| Refused::because(format_args!("{error:#}")))?;
+    let (CallCosts { function, calls, ended }, number) = (&costs, costs.calls.len());
+    if let Some(status) = ended.status {
+        ensure!(status.success(), "the program failed after {number} calls, {status}: {}", ended.output.trim());
+    }
     ended.output.lines().for_each(complain);
     match ended.status {
         Some(status) => complain(format_args!("the program ended by itself, {status}")),
@@ -216,11 +209,11 @@ fn count_calls(toolchain: &Toolchain, arguments: &Arguments, elf: &Path, functio
     say(format_args!("{} on {}, from its first instruction to its return: calls {number}", function.name, board.name))?;
     say(ERROR_BAR)?;
     say(format_args!("{:12} {:>12} {:>12} {:>12}", "per call", "mean", "least", "most"))?;
-    let figures = |cost: &Cost| [cost.instructions, cost.cycles];
-    for (index, title) in ["instructions", "cycles"].into_iter().enumerate() {
-        let all = || calls.iter().map(|cost| figures(cost)[index]);
-        let (least, most) = all().fold((u64::MAX, 0), |(least, most), one| (least.min(one), most.max(one)));
-        let mean = all().sum::<u64>() as f64 / number as f64;
+    let instructions = calls.iter().map(|cost| cost.instructions).collect();
+    let cycles: Vec<u64> = calls.iter().map(|cost| cost.cycles).collect();
+    for (title, counts) in [("instructions", instructions), ("cycles", cycles)] {
+        let (least, most) = (counts.iter().min().unwrap_or(&0), counts.iter().max().unwrap_or(&0));
+        let mean = counts.iter().sum::<u64>() as f64 / number as f64;
         say(format_args!("{title:12} {mean:12.1} {least:12} {most:12}"))?;
     }
     Ok(())

@@ -9,7 +9,7 @@ use firmware::scenes::SceneName;
 use host_tests::commands::figures;
 use host_tests::console::cli::{self, Refused, say};
 
-/// Draws the book's figures 2 to 5 and 7 from the kernel, as SVG and PNG, and the panel's frame of every scene.
+/// Draws the book's figures 2 to 5 and 7 from the kernel, as SVG, and the panel's frame of every scene.
 #[derive(Debug, Parser)]
 #[command(name = "cargo figures", after_help = "Example: cargo figures --folder /tmp/figures")]
 struct Options {

@@ -1,4 +1,4 @@
-//! `cargo write-report`: writes the tables and charts of cost against error.
+//! `cargo write-report`: writes tables and charts of cost against error.
 
 use std::fs;
 use std::path::PathBuf;
@@ -6,19 +6,19 @@ use std::process::ExitCode;
 
 use anyhow::ensure;
 use clap::Parser;
-use host_tests::commands::report::{self, Extent, Main, headline};
+use host_tests::commands::report::{self, Extent};
 use host_tests::console::cli::{self, Refused, say};
 use host_tests::console::progress::Bar;
 use host_tests::emulator::toolchain;
 
-/// Measures every arithmetic's cost on the target and its error, and writes tables and charts.
+/// Measures every method's cost on the target and its error, and writes them as CSV and as charts.
 #[derive(Debug, Parser)]
 #[command(name = "cargo write-report", after_help = "Example: cargo write-report --quick --folder /tmp/report")]
 struct Options {
-    /// Two scenes and shorter runs, in a few minutes
+    /// Two scenes and two boards, in some minutes
     #[arg(long)]
     quick: bool,
-    /// Puts the main table and chart into the READMEs
+    /// Puts what to take, the main table and the charts into the READMEs
     #[arg(long)]
     readme: bool,
     /// Where to write [default: host-tests/report of the project]
@@ -39,17 +39,12 @@ fn run(options: &Options) -> anyhow::Result<()> {
     let bar = Bar::start("report", 0);
     let written = report::write(&extent, &toolchain, &folder, &bar);
     drop(bar);
-    let Main { advice, table, chart, absent } = written?;
-    if !absent.is_empty() {
-        say(absent.trim_start())?;
-    }
-    for sentence in &advice {
-        say(sentence)?;
-    }
+    let (blocks, absent) = written?;
+    absent.iter().chain(&blocks.advice).try_for_each(say)?;
     if options.readme {
         ensure!(absent.is_empty(), "the READMEs keep their figures: some are missing in these");
-        headline::put_into_readmes(&advice, &table, &chart)?;
-    } else if !headline::is_in_readmes(&advice, &table)? {
+        blocks.put_into_readmes()?;
+    } else if !blocks.is_in_readmes()? {
         say("the READMEs show other figures; cargo write-report --readme puts these there")?;
     }
     Ok(say(folder.display())?)

@@ -1,30 +1,23 @@
-//! A table of the report, in two notations.
+//! A table, in two notations.
 
 /// Columns with their headings, rows of as many cells.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Table {
-    /// File name without ending.
-    pub name: &'static str,
     /// Heading.
-    pub title: String,
+    pub title: &'static str,
     /// What the columns mean and where the numbers come from.
     pub note: String,
     /// Headings of the columns, with units.
-    pub columns: Vec<&'static str>,
+    pub columns: &'static [&'static str],
     /// Cells.
     pub rows: Vec<Vec<String>>,
 }
 
 impl Table {
-    /// Comma-separated; no cell contains a comma or a quote.
+    /// Comma-separated, without title and note; no cell contains a comma or a quote.
     pub fn csv(&self) -> String {
-        let mut text = self.columns.join(",");
-        text.push('\n');
-        for row in &self.rows {
-            text.push_str(&row.join(","));
-            text.push('\n');
-        }
-        text
+        let lines = std::iter::once(self.columns.join(",")).chain(self.rows.iter().map(|row| row.join(",")));
+        lines.map(|line| line + "\n").collect()
     }
 
     /// With heading and note.
@@ -34,12 +27,9 @@ impl Table {
 
     /// The columns' headings and the rows.
     pub fn markdown_rows(&self) -> String {
-        let line = |cells: String| format!("| {cells} |\n");
-        let mut text = String::new();
-        text.push_str(&line(self.columns.join(" | ")));
-        text.push_str(&line(vec!["---"; self.columns.len()].join(" | ")));
-        self.rows.iter().for_each(|row| text.push_str(&line(row.join(" | "))));
-        text
+        let heads = [self.columns.join(" | "), vec!["---"; self.columns.len()].join(" | ")];
+        let lines = heads.into_iter().chain(self.rows.iter().map(|row| row.join(" | ")));
+        lines.map(|cells| format!("| {cells} |\n")).collect()
     }
 }
 

@@ -10,7 +10,7 @@ use firmware::protocol::Choose;
 use firmware::scenes::SceneName;
 use firmware::scenes::flips::Flips;
 use firmware::scenes::scene::Scene;
-use host_tests::commands::count::{Cost, CountError, FrameProfile, Image};
+use host_tests::commands::count::{Cost, FrameProfile, Image};
 use host_tests::emulator::boards::{BOARDS, Board, STM32F405};
 use host_tests::emulator::budgets;
 use host_tests::emulator::qemu::{Lockstep, Screenshot};
@@ -26,7 +26,7 @@ fn goal(board: &Board) -> f64 {
 
 /// Frame by frame, and finished; no frame is late on the way, and there are cycles left in each, as their number is estimated.
 #[test]
-fn the_map_of_a_board_is_the_hosts() -> Result<(), CountError> {
+fn the_map_of_a_board_is_the_hosts() -> anyhow::Result<()> {
     BOARDS.par_iter().try_for_each(|board| {
         let (toolchain, elf) = (toolchain(), application(board));
         let image = Image::read(&elf)?;

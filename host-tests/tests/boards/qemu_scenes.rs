@@ -6,7 +6,7 @@ use firmware::config::TICK_RATE;
 use firmware::graphics::canvas::{HEIGHT, WIDTH};
 use firmware::protocol::{Choose, Done, Frame};
 use firmware::scenes::SceneName;
-use host_tests::commands::count::{Cost, CountError, FrameProfile, Image, Part};
+use host_tests::commands::count::{Cost, FrameProfile, Image, Part};
 use host_tests::emulator::boards::Core;
 use host_tests::emulator::boards::{BOARDS, Board};
 use host_tests::emulator::budgets;
@@ -80,7 +80,7 @@ fn the_panel_shows_what_the_host_draws() -> Result<(), QemuError> {
 }
 
 #[test]
-fn every_scene_keeps_within_its_share_of_a_frame() -> Result<(), CountError> {
+fn every_scene_keeps_within_its_share_of_a_frame() -> anyhow::Result<()> {
     let too_dear = panels().map(too_dear).collect::<Result<Vec<_>, _>>()?.concat();
     assert!(too_dear.is_empty(), "{too_dear:#?}");
     Ok(())
@@ -90,7 +90,7 @@ fn every_scene_keeps_within_its_share_of_a_frame() -> Result<(), CountError> {
 ///
 /// The cycles of a scene are estimated: instructions, counted by the board's clock, of the most expensive screenshot, times the
 /// cycles that an instruction takes on average in a screenshot that QEMU logs whole, by the published timings.
-fn too_dear(board: &Board) -> Result<Vec<String>, CountError> {
+fn too_dear(board: &Board) -> anyhow::Result<Vec<String>> {
     let mut too_dear = Vec::new();
     let (toolchain, elf) = (toolchain(), application(board));
     let image = Image::read(&elf)?;

@@ -63,7 +63,7 @@ fn no_function_steps_over_the_guard() {
         let image = Image::read(&elf).unwrap_or_else(|error| panic!("{error}"));
         let mut frames = BTreeMap::new();
         for (address, first, second) in image.words() {
-            if let Some(bytes) = taken(first, second) {
+            if let Some(bytes) = taken(first, second.unwrap_or_default()) {
                 let frame: &mut u32 = frames.entry(image.function_at(address)).or_default();
                 *frame = frame.saturating_add(bytes);
             }

@@ -17,7 +17,6 @@ use firmware::scenes::SceneName;
 use host_tests::emulator::boards::BOARDS;
 use host_tests::emulator::process::{self, Output};
 use host_tests::link::Received;
-use serde_json::Value;
 
 fn verify(report: &Path, wire: impl Fn(&Received) -> Vec<u8>) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_verify-board"));
@@ -34,14 +33,13 @@ fn a_board_with_the_hosts_bits_is_told_so_and_reported() {
     let markdown = fs::read_to_string(folder.path().join("mps2.md")).expect("the report");
     let uncounted = "| no cycle counter | no cycle counter | - |";
     assert_eq!(markdown.matches(uncounted).count(), ON_BOARDS.len(), "{markdown}");
-    let json = fs::read_to_string(folder.path().join("mps2.json")).expect("the report");
-    let json: Value = serde_json::from_str(&json).expect("JSON");
-    assert_eq!((&json["chip"]["board"], &json["chip"]["hertz"]), (&BOARD.name.into(), &BOARD.hertz.into()));
-    assert_eq!(json["program"]["is_this"], true, "{}", json["program"]);
-    assert_eq!(json["bits"].as_array().map(Vec::len), Some(2 * ON_BOARDS.len()));
-    let scenes = json["scenes"].as_array().expect("all scenes");
-    assert_eq!(scenes.len(), SceneName::ALL.len());
-    assert!(scenes.iter().all(|scene| scene["frames"].as_u64() >= Some(60) && scene["difference"].is_null()), "{json}");
+    let head = [format!("# {}\n", BOARD.name), format!(", {} Hz\n", BOARD.hertz), "built from commit ".to_owned()];
+    assert!(head.iter().all(|part| markdown.contains(part)), "{markdown}");
+    let agree = |columns: usize| {
+        let is_row = |line: &&str| line.matches('|').count() == columns + 1 && line.contains("| the host's |");
+        markdown.lines().filter(is_row).count()
+    };
+    assert_eq!((agree(4), agree(6)), (2 * ON_BOARDS.len(), SceneName::ALL.len()), "{markdown}");
 }
 
 #[test]
@@ -159,15 +157,16 @@ fn what_the_person_says_and_the_chip_counts_is_in_the_report() {
         assert!(markdown.contains(&format!("| {what} | {answer} |")), "{what}: not {answer} in {markdown}");
         assert_eq!(said.contains(&format!("not well: not so: {what}")), answer == "no", "{said:#?}");
     }
-    let json = fs::read_to_string(folder.path().join("asked.json")).expect("the report");
-    let json: Value = serde_json::from_str(&json).expect("JSON");
-    for (row, cycles) in json["cycles"].as_array().expect("all of them").iter().enumerate() {
-        let [flash, ram, estimate] = ["from_flash", "from_ram", "estimated"].map(|column| cycles[column].as_f64());
-        assert_eq!((flash, ram), if row == 1 { (Some(100.0), Some(50.0)) } else { (None, None) }, "{cycles}");
-        // A step of it takes some 23,000 cycles (`cargo count`).
-        assert_eq!(estimate.is_some_and(|estimate| (1e4..4e4).contains(&estimate)), row == 1, "{cycles}");
-    }
-    assert!(markdown.contains(&format!("| {} | 100.0 | 50.0 | ", ON_BOARDS[1])), "{markdown}");
+    let counted = format!("| {} | 100.0 | 50.0 | ", ON_BOARDS[1]);
+    let estimate: Option<f64> =
+        markdown.split_once(&counted).and_then(|(_, rest)| rest.split(' ').next()?.parse().ok());
+    // A step of it takes some 23,000 cycles (`cargo count`).
+    assert!(estimate.is_some_and(|estimate| (1e4..4e4).contains(&estimate)), "{markdown}");
+    assert_eq!(
+        markdown.matches("| no cycle counter | no cycle counter | - |").count(),
+        ON_BOARDS.len() - 1,
+        "{markdown}"
+    );
 }
 
 /// The lines as they come.

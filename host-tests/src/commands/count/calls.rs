@@ -4,12 +4,14 @@
 use std::collections::BTreeSet;
 use std::time::Duration;
 
+use anyhow::{Result, bail};
+
+use super::Target;
 use super::image::{Function, Image};
 use super::instruction::Instruction;
 use super::pipeline::{Cost, Pipeline};
 use super::profile::Profile;
 use super::trace::{Ended, Registers};
-use super::{CountError, Target};
 use crate::console::progress::Progress;
 use crate::emulator::boards::Core;
 
@@ -44,7 +46,7 @@ pub(super) struct Stream {
 
 impl Stream {
     /// Begins at an instruction.
-    pub fn begin(image: &Image, core: Core, before: Registers) -> Result<Self, CountError> {
+    pub fn begin(image: &Image, core: Core, before: Registers) -> Result<Self> {
         Ok(Self { before, instruction: image.instruction_at(before.pc())?, pipeline: Pipeline::new(core) })
     }
 
@@ -56,7 +58,7 @@ impl Stream {
     }
 
     /// What is about to be executed.
-    pub fn go_on(&mut self, image: &Image, next: Registers) -> Result<(), CountError> {
+    pub fn go_on(&mut self, image: &Image, next: Registers) -> Result<()> {
         (self.before, self.instruction) = (next, image.instruction_at(next.pc())?);
         Ok(())
     }
@@ -69,7 +71,7 @@ impl<'a> Calls<'a> {
     }
 
     /// Takes in the registers before the next instruction.
-    pub fn see(&mut self, registers: Registers) -> Result<(), CountError> {
+    pub fn see(&mut self, registers: Registers) -> Result<()> {
         match &mut self.running {
             Some(call) => {
                 let executed = call.stream.execute(&registers);
@@ -107,14 +109,14 @@ impl<'a> Calls<'a> {
 pub struct CallCosts {
     /// The function, as it was found.
     pub function: Function,
-    /// Each call that returned, in order; one at least.
+    /// Each call that returned, in order; one at least, unless the program says that it failed.
     pub calls: Vec<Cost>,
     /// How the program ended.
     pub ended: Ended,
 }
 
 /// Counts the calls of `function` until the program on `target` ends or the time is up.
-pub fn calls_of(target: &Target, function: &str, limit: Duration) -> Result<CallCosts, CountError> {
+pub fn calls_of(target: &Target, function: &str, limit: Duration) -> Result<CallCosts> {
     let (image, core) = (target.image(), target.core());
     let function = image.function(function)?.clone();
     target.check_memory()?;
@@ -134,19 +136,19 @@ pub fn calls_of(target: &Target, function: &str, limit: Duration) -> Result<Call
         before = registers;
         calls.see(registers)
     })?;
-    let name = function.name.clone();
-    match (ended.status, unknown) {
-        (Some(status), _) if !status.success() => {
-            Err(CountError::Failed { status, calls: calls.ended.len(), output: ended.output })
+    let name = &function.name;
+    let failed = ended.status.is_some_and(|status| !status.success());
+    if calls.ended.is_empty() && !failed {
+        match unknown {
+            _ if calls.running.is_some() => bail!("{name} was called and never returned"),
+            Some((address, instruction)) => {
+                let (instruction, cpu) = (instruction.row.name, target.board.cpu);
+                bail!("{name} was never called: {instruction} at {address:#x} is no instruction of a {cpu}; see --on")
+            }
+            None => bail!("{name} was never called"),
         }
-        _ if !calls.ended.is_empty() => Ok(CallCosts { function, calls: calls.ended, ended }),
-        _ if calls.running.is_some() => Err(CountError::NotReturned { function: name }),
-        (_, Some((address, instruction))) => {
-            let (cpu, instruction) = (target.board.cpu, instruction.row.name);
-            Err(CountError::WrongCore { function: name, cpu, instruction, address })
-        }
-        _ => Err(CountError::NotCalled { function: name }),
     }
+    Ok(CallCosts { function, calls: calls.ended, ended })
 }
 
 /// Instructions between two words about them.

@@ -2,13 +2,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
-use std::{io, thread};
+use std::thread;
 
+use anyhow::Result;
 use firmware::protocol::Frame;
 use nix::sys::stat::Mode;
 use nix::unistd::mkfifo;
 
-use super::CountError;
 use super::calls::{Calls, Stream};
 use super::image::Image;
 use super::pipeline::Cost;
@@ -54,11 +54,11 @@ pub struct FrameProfile {
 
 impl FrameProfile {
     /// Lets `board` run to its next frame and profiles all that it executes for it.
-    pub fn of_next(board: &mut Lockstep, image: &Image, core: Core) -> Result<(Frame, Self), CountError> {
+    pub fn of_next(board: &mut Lockstep, image: &Image, core: Core) -> Result<(Frame, Self)> {
         next_frame_read(board, |log| Self::of_log(log, image, core))
     }
 
-    fn of_log(file: File, image: &Image, core: Core) -> Result<Self, CountError> {
+    fn of_log(file: File, image: &Image, core: Core) -> Result<Self> {
         let (mut profile, mut parts) = (Self::default(), Parts::of(image)?);
         let mut stream: Option<(Stream, Part)> = None;
         for_each_instruction(file, |registers| {
@@ -94,12 +94,7 @@ impl FrameProfile {
 }
 
 /// Lets `board` run to its next frame and counts the calls of `function` on the way, those that return.
-pub fn calls_in_next(
-    board: &mut Lockstep,
-    image: &Image,
-    core: Core,
-    function: &str,
-) -> Result<(Frame, Vec<Cost>), CountError> {
+pub fn calls_in_next(board: &mut Lockstep, image: &Image, core: Core, function: &str) -> Result<(Frame, Vec<Cost>)> {
     let entry = BTreeSet::from([image.function(function)?.address]);
     next_frame_read(board, |log| {
         let mut calls = Calls::of(image, core, entry);
@@ -109,17 +104,14 @@ pub fn calls_in_next(
 }
 
 /// Lets `board` run to its next frame and `read` the log of what it executes.
-fn next_frame_read<T: Send>(
-    board: &mut Lockstep,
-    read: impl FnOnce(File) -> Result<T, CountError> + Send,
-) -> Result<(Frame, T), CountError> {
-    let folder = tempfile::tempdir().map_err(log)?;
+fn next_frame_read<T: Send>(board: &mut Lockstep, read: impl FnOnce(File) -> Result<T> + Send) -> Result<(Frame, T)> {
+    let folder = tempfile::tempdir()?;
     remove_on_interrupt(folder.path());
     let path = folder.path().join("log");
-    mkfifo(&path, Mode::S_IRUSR | Mode::S_IWUSR).map_err(|error| log(error.into()))?;
+    mkfifo(&path, Mode::S_IRUSR | Mode::S_IWUSR)?;
     thread::scope(|scope| {
         // The pipe opens for QEMU once it is open here, and the other way about.
-        let reader = scope.spawn(|| read(File::open(&path).map_err(log)?));
+        let reader = scope.spawn(|| read(File::open(&path)?));
         let frame = board.next_frame_logged(&path)?;
         let read = reader.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
         Ok((frame, read?))
@@ -135,7 +127,7 @@ struct Parts {
 
 impl Parts {
     /// Of an application; the error names a function that it lacks.
-    fn of(image: &Image) -> Result<Self, CountError> {
+    fn of(image: &Image) -> Result<Self> {
         let address = |(module, name, part): (&str, &str, Part)| {
             // One version of the compiler writes <path::Type>::name, the next path::Type::name.
             let is_it = |path: &str| path.trim_start_matches('<').starts_with(module) && path.ends_with(name);
@@ -156,8 +148,4 @@ impl Parts {
         }
         self.running.last().map_or(Part::Rest, |(part, ..)| *part)
     }
-}
-
-fn log(source: io::Error) -> CountError {
-    CountError::Log { source }
 }

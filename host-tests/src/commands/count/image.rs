@@ -3,19 +3,15 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use anyhow::{Context, Result, anyhow, bail, ensure};
 use object::{Architecture, Object, ObjectSection, ObjectSegment, ObjectSymbol, SectionKind, SymbolKind};
 
-use super::CountError;
-use super::instruction::Instruction;
-
-/// Halfwords from here on begin a long instruction.
-const LONG: u16 = 0xe800;
+use super::instruction::{Instruction, is_long};
 
 /// Code sections and functions of an ELF file.
 #[derive(Debug)]
 pub struct Image {
     path: PathBuf,
-    /// Start address and bytes of all that is loaded, functions that run in RAM included.
     loaded: Vec<(u32, Vec<u8>)>,
     /// Of the code sections.
     code: Vec<(u32, Vec<u8>)>,
@@ -41,42 +37,44 @@ pub struct Function {
 
 impl Image {
     /// Reads an ELF file for ARM.
-    pub fn read(path: &Path) -> Result<Self, CountError> {
-        let unreadable = |reason: String| CountError::Unreadable { path: path.to_owned(), reason };
-        let bytes = std::fs::read(path).map_err(|error| unreadable(error.to_string()))?;
-        let file = object::File::parse(&*bytes).map_err(|error| unreadable(error.to_string()))?;
-        if file.architecture() != Architecture::Arm {
-            return Err(unreadable(format!("no program for ARM but for {:?}", file.architecture())));
-        }
-        let read = |error: object::Error| unreadable(error.to_string());
+    pub fn read(path: &Path) -> Result<Self> {
+        Self::parse(path).with_context(|| path.display().to_string())
+    }
+
+    fn parse(path: &Path) -> Result<Self> {
+        let bytes = std::fs::read(path)?;
+        let file = object::File::parse(&*bytes)?;
+        let architecture = file.architecture();
+        ensure!(architecture == Architecture::Arm, "no program for ARM but for {architecture:?}");
         let loaded = file.segments().map(|segment| Ok((segment.address() as u32, segment.data()?.to_vec())));
-        let loaded = loaded.collect::<Result<_, object::Error>>().map_err(read)?;
-        let code = file.sections().filter(|section| section.kind() == SectionKind::Text);
-        let code = code.map(|section| Ok((section.address() as u32, section.data()?.to_vec())));
-        let code = code.collect::<Result<_, object::Error>>().map_err(read)?;
-        let function = |symbol: object::Symbol| Function {
-            // bit 0 only says that the code is Thumb
-            address: symbol.address() as u32 & !1,
-            size: symbol.size() as u32,
-            name: format!("{:#}", rustc_demangle::demangle(symbol.name().unwrap_or_default())),
-            symbol: symbol.name().unwrap_or_default().to_owned(),
-        };
-        let (functions, others): (Vec<_>, Vec<_>) =
-            file.symbols().partition(|symbol| symbol.kind() == SymbolKind::Text);
-        let mut functions: Vec<_> = functions.into_iter().map(function).collect();
-        functions.sort();
-        let is_label = |symbol: &object::Symbol| {
+        let sections = file.sections().filter(|section| section.kind() == SectionKind::Text);
+        let code = sections.map(|section| Ok((section.address() as u32, section.data()?.to_vec())));
+        let is_in_code = |symbol: &object::Symbol| {
             let section = symbol.section_index().and_then(|index| file.section_by_index(index).ok());
             section.is_some_and(|section| section.kind() == SectionKind::Text)
         };
-        let labels = others.into_iter().filter(is_label).map(function).collect();
-        let is_code = |name: &str| match name.split('.').next() {
-            Some("$t") => Some(true),
-            Some("$d") => Some(false),
-            _ => None,
-        };
-        let marks = file.symbols().filter_map(|symbol| Some((symbol.address() as u32, is_code(symbol.name().ok()?)?)));
-        Ok(Self { path: path.to_owned(), loaded, code, functions, labels, marks: marks.collect() })
+        let (mut functions, mut labels, mut marks) = (Vec::new(), Vec::new(), BTreeMap::new());
+        for symbol in file.symbols() {
+            let (address, name) = (symbol.address() as u32, symbol.name().unwrap_or_default());
+            let function = || Function {
+                // bit 0 only says that the code is Thumb
+                address: address & !1,
+                size: symbol.size() as u32,
+                name: format!("{:#}", rustc_demangle::demangle(name)),
+                symbol: name.to_owned(),
+            };
+            match name.split('.').next() {
+                _ if symbol.kind() == SymbolKind::Text => functions.push(function()),
+                _ if !is_in_code(&symbol) => {}
+                Some(mark @ ("$t" | "$d")) => {
+                    marks.insert(address, mark == "$t");
+                }
+                _ => labels.push(function()),
+            }
+        }
+        functions.sort();
+        let (loaded, code) = (loaded.collect::<Result<_>>()?, code.collect::<Result<_>>()?);
+        Ok(Self { path: path.to_owned(), loaded, code, functions, labels, marks })
     }
 
     /// The functions whose demangled name contains `part`.
@@ -85,7 +83,7 @@ impl Image {
     }
 
     /// The one function or label of this name, mangled or demangled, or the one function whose demangled name contains it.
-    pub fn function(&self, name: &str) -> Result<&Function, CountError> {
+    pub fn function(&self, name: &str) -> Result<&Function> {
         let is_it = |function: &&Function| function.name == name || function.symbol == name;
         let mut found: Vec<_> = self.functions.iter().chain(&self.labels).filter(is_it).collect();
         if found.is_empty() {
@@ -96,23 +94,26 @@ impl Image {
         match found[..] {
             [] => Err(self.lacks(name)),
             [function] => Ok(function),
-            [one, another, ..] => Err(CountError::Ambiguous {
-                function: name.to_owned(),
-                number: found.len(),
-                one: one.symbol.clone(),
-                another: another.symbol.clone(),
-            }),
+            [one, another, ..] => {
+                let ([one, another], number) = ([&one.symbol, &another.symbol], found.len());
+                bail!("{name} may be any of {number}, such as {one} and {another}")
+            }
         }
+    }
+
+    /// Start address and bytes of all that is loaded, functions that run in RAM included.
+    pub fn loaded(&self) -> impl Iterator<Item = (u32, &[u8])> {
+        self.loaded.iter().map(|(start, bytes)| (*start, &bytes[..]))
     }
 
     /// Whether something is loaded to `address`.
     pub fn holds(&self, address: u32) -> bool {
-        self.loaded.iter().any(|(start, bytes)| address.wrapping_sub(*start) < bytes.len() as u32)
+        self.loaded().any(|(start, bytes)| address.wrapping_sub(start) < bytes.len() as u32)
     }
 
     /// That it has no such function.
-    pub fn lacks(&self, function: &str) -> CountError {
-        CountError::NoFunction { path: self.path.clone(), function: function.to_owned() }
+    pub fn lacks(&self, function: &str) -> anyhow::Error {
+        anyhow!("{}: no function {function}", self.path.display())
     }
 
     /// The function that holds `address`.
@@ -121,16 +122,15 @@ impl Image {
         self.functions[..before].iter().rfind(|function| address - function.address < function.size)
     }
 
-    /// Every instruction there is, as its address and its halfwords, the second 0 if it has only one.
-    pub fn words(&self) -> Vec<(u32, u16, u16)> {
+    /// Every instruction there is, as its address and its halfwords, the second only if it has one.
+    pub fn words(&self) -> Vec<(u32, u16, Option<u16>)> {
         let mut words = Vec::new();
         for (start, bytes) in &self.code {
-            let (halfwords, _) = bytes.as_chunks();
-            let mut halfwords = (*start..).step_by(2).zip(halfwords.iter().map(|half| u16::from_le_bytes(*half)));
+            let halfwords = bytes.as_chunks().0.iter().map(|half| u16::from_le_bytes(*half));
+            let mut halfwords = (*start..).step_by(2).zip(halfwords);
             while let Some((address, first)) = halfwords.next() {
                 if self.marks.range(..=address).next_back().is_some_and(|(_, is_code)| *is_code) {
-                    let is_long = first >= LONG;
-                    let second = if is_long { halfwords.next().map_or(0, |(_, second)| second) } else { 0 };
+                    let second = if is_long(first) { halfwords.next().map(|(_, second)| second) } else { None };
                     words.push((address, first, second));
                 }
             }
@@ -139,18 +139,18 @@ impl Image {
     }
 
     /// The instruction at `address`.
-    pub fn instruction_at(&self, address: u32) -> Result<Instruction, CountError> {
+    pub fn instruction_at(&self, address: u32) -> Result<Instruction> {
         let halfword = |address: u32| {
-            self.loaded.iter().find_map(|(start, bytes)| {
-                let at = address.checked_sub(*start)? as usize;
+            self.loaded().find_map(|(start, bytes)| {
+                let at = address.checked_sub(start)? as usize;
                 Some(u16::from_le_bytes(bytes.get(at..at + 2)?.try_into().ok()?))
             })
         };
-        let first = halfword(address).ok_or(CountError::NoCode { address })?;
+        let first = halfword(address).with_context(|| format!("no code at {address:#x}"))?;
         let second = halfword(address + 2).unwrap_or_default();
-        Instruction::decode(first, second).ok_or_else(|| {
-            let function = self.function_at(address).map_or_else(|| String::from("?"), |inside| inside.name.clone());
-            CountError::UnknownInstruction { address, first, second, function }
+        Instruction::decode(first, second).with_context(|| {
+            let function = self.function_at(address).map_or("?", |inside| &inside.name);
+            format!("no timing for the instruction {first:04x} {second:04x} at {address:#x} in {function}")
         })
     }
 }

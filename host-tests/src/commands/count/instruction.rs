@@ -5,6 +5,11 @@ use super::timing::TIMINGS;
 use super::trace::Registers;
 use crate::emulator::boards::Core;
 
+/// Whether a halfword begins an instruction of two.
+pub fn is_long(first: u16) -> bool {
+    first >= 0xe800
+}
+
 /// A decoded instruction.
 #[derive(Clone, Copy, Debug)]
 pub struct Instruction {
@@ -17,15 +22,14 @@ impl Instruction {
     /// The instruction of these halfwords, the second of which is ignored if the first is an instruction by itself;
     /// `None` if the table has no row for it.
     pub fn decode(first: u16, second: u16) -> Option<Self> {
-        let wide = first >= 0xe800;
-        let word = u32::from(first) << 16 | if wide { u32::from(second) } else { 0 };
+        let word = u32::from(first) << 16 | if is_long(first) { u32::from(second) } else { 0 };
         let row = TIMINGS.iter().find(|row| word & row.mask == row.value)?;
         Some(Self { word, row })
     }
 
     /// Its length in bytes.
     pub fn size(&self) -> u32 {
-        if self.word >> 16 >= 0xe800 { 4 } else { 2 }
+        if is_long((self.word >> 16) as u16) { 4 } else { 2 }
     }
 
     /// The cycles it takes by itself, if it does not branch, with these contents of the registers.

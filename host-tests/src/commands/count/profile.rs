@@ -2,10 +2,16 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use anyhow::{Result, bail, ensure};
+use firmware::job::Request;
+
+use super::calls::Calls;
 use super::image::{Function, Image};
 use super::instruction::Instruction;
 use super::pipeline::Cost;
-use super::{COUNTED, CountError};
+use super::trace::{Ended, LIMIT};
+use super::{COUNTED, Target};
+use crate::emulator::process::ProcessError;
 
 /// An instruction of the program and what all its executions together cost.
 #[derive(Clone, Copy, Debug)]
@@ -24,16 +30,26 @@ pub struct Profile {
 }
 
 impl Profile {
+    /// Runs `request` on `target` and profiles the counted function, all calls of it together.
+    pub fn of(target: &Target, request: &Request) -> Result<Self> {
+        let image = target.image();
+        let entries = image.functions_named(COUNTED).map(|function| function.address).collect();
+        let mut calls = Calls::of(image, target.core(), entries);
+        match target.trace(&request.to_string(), LIMIT, |registers| calls.see(registers))? {
+            Ended { status: Some(status), .. } if status.success() => {}
+            Ended { status: None, .. } => bail!(ProcessError::TimedOut(target.elf.display().to_string(), LIMIT)),
+            Ended { output, .. } => bail!("{request}: {}", output.trim()),
+        }
+        let profile = calls.into_profile();
+        ensure!(!profile.spots.is_empty(), "{COUNTED} was never called");
+        Ok(profile)
+    }
+
     /// An instruction that has been executed at an address, what it cost, and how deep the stack is.
     pub(super) fn add(&mut self, (address, instruction, cost): (u32, Instruction, Cost), stack_bytes: u32) {
         let spot = self.spots.entry(address).or_insert(Spot { instruction, cost: Cost::default() });
         spot.cost += cost;
         self.stack_bytes = self.stack_bytes.max(stack_bytes);
-    }
-
-    /// Itself, if anything was executed.
-    pub(super) fn executed(self) -> Result<Self, CountError> {
-        if self.spots.is_empty() { Err(CountError::NotCalled { function: COUNTED.to_owned() }) } else { Ok(self) }
     }
 
     /// The cost of it all.

@@ -2,9 +2,10 @@
 
 use std::path::PathBuf;
 
-use super::{CountError, Image};
-use crate::emulator::boards::Core;
-use crate::emulator::boards::{BOARDS, Board};
+use anyhow::{Result, ensure};
+
+use super::Image;
+use crate::emulator::boards::{BOARDS, Board, Core};
 use crate::emulator::toolchain::Toolchain;
 
 /// The firmware's binary that runs a request.
@@ -22,18 +23,18 @@ pub struct Target {
 
 impl Target {
     /// Builds the program for `board`.
-    pub fn build(toolchain: &Toolchain, board: &'static Board) -> Result<Self, CountError> {
+    pub fn build(toolchain: &Toolchain, board: &'static Board) -> Result<Self> {
         Self::of(toolchain, board, toolchain.build(PROGRAM, board.target)?)
     }
 
     /// Another program. One that takes the same requests makes its steps in a function called `counted_steps`.
-    pub fn of(toolchain: &Toolchain, board: &'static Board, elf: PathBuf) -> Result<Self, CountError> {
+    pub fn of(toolchain: &Toolchain, board: &'static Board, elf: PathBuf) -> Result<Self> {
         let image = Image::read(&elf)?;
         Ok(Self { board, qemu: toolchain.qemu().to_owned(), elf, image })
     }
 
-    /// One board for each kind of core: the same machine with a Cortex-M3 and with a Cortex-M4F.
-    pub fn build_all(toolchain: &Toolchain) -> Result<Vec<Self>, CountError> {
+    /// One board for each kind of core: the same machine with a Cortex-M3, a Cortex-M4F and a Cortex-M0+.
+    pub fn build_all(toolchain: &Toolchain) -> Result<Vec<Self>> {
         BOARDS.iter().filter(|board| board.has_panel).map(|board| Self::build(toolchain, board)).collect()
     }
 
@@ -48,8 +49,12 @@ impl Target {
     }
 
     /// Refuses a program that is not where the board looks for its vectors: it would never run.
-    pub(super) fn check_memory(&self) -> Result<(), CountError> {
-        let vectors = self.board.flash();
-        if self.image.holds(vectors) { Ok(()) } else { Err(CountError::Elsewhere { board: self.board.name, vectors }) }
+    pub(super) fn check_memory(&self) -> Result<()> {
+        let (vectors, board) = (self.board.flash(), self.board.name);
+        ensure!(
+            self.image.holds(vectors),
+            "never called: the program has nothing at {vectors:#x}, where {board} reads its vectors; see --on"
+        );
+        Ok(())
     }
 }

@@ -9,9 +9,10 @@ use std::process::{Command, ExitStatus, Stdio};
 use std::thread;
 use std::time::Duration;
 
+use anyhow::{Context, Result};
 use firmware::job::Request;
 
-use super::{CountError, Target};
+use super::Target;
 use crate::emulator::process::{self, ProcessError};
 
 /// How long one run may take.
@@ -68,15 +69,15 @@ pub struct Ended {
 impl Target {
     /// Runs `request` at full speed: its CRC, and the ticks of the board's clock under `-icount`, where an
     /// instruction takes 1 ns.
-    pub fn run(&self, request: &Request) -> Result<(u32, u64), CountError> {
+    pub fn run(&self, request: &Request) -> Result<(u32, u64)> {
         let output = self.output(request)?;
-        let refused = || CountError::Refused { request: request.method.to_string(), reason: output.trim().to_owned() };
-        let (crc, ticks) = output.trim().split_once(' ').ok_or_else(refused)?;
-        Ok((u32::from_str_radix(crc, 16).map_err(|_| refused())?, ticks.parse().map_err(|_| refused())?))
+        let numbers = output.trim().split_once(' ');
+        let numbers = numbers.and_then(|(crc, ticks)| Some((u32::from_str_radix(crc, 16).ok()?, ticks.parse().ok()?)));
+        numbers.with_context(|| format!("{}: {}", request.method, output.trim()))
     }
 
     /// Runs `request` at full speed: what it prints.
-    pub fn output(&self, request: &Request) -> Result<String, CountError> {
+    pub fn output(&self, request: &Request) -> Result<String> {
         Ok(process::run(self.emulator(&request.to_string()).args(["-icount", "shift=0"]), LIMIT)?.stdout)
     }
 
@@ -86,8 +87,8 @@ impl Target {
         &self,
         argument: &str,
         limit: Duration,
-        each: impl FnMut(Registers) -> Result<(), CountError>,
-    ) -> Result<Ended, CountError> {
+        each: impl FnMut(Registers) -> Result<()>,
+    ) -> Result<Ended> {
         let mut command = self.emulator(argument);
         command.args(self.single_step()?).args(["-d", "cpu,nochain", "-D", "/dev/stderr"]);
         command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
@@ -122,24 +123,19 @@ impl Target {
     }
 
     /// The options for one instruction per translation block, which QEMU 8.1 renamed.
-    fn single_step(&self) -> Result<&'static [&'static str], CountError> {
+    fn single_step(&self) -> Result<&'static [&'static str]> {
         let version = process::run(Command::new(&self.qemu).arg("--version"), VERSION_LIMIT)?.stdout;
         let mut words = version.split_ascii_whitespace();
         let number = words.find(|word| word.starts_with(|first: char| first.is_ascii_digit()));
         let mut parts = number.unwrap_or_default().split('.').map_while(|part| part.parse::<u32>().ok());
-        match (parts.next(), parts.next()) {
-            (Some(major), Some(minor)) if (major, minor) < (8, 1) => Ok(&["-singlestep"]),
-            (Some(_), Some(_)) => Ok(&["-accel", "tcg,one-insn-per-tb=on"]),
-            _ => Err(CountError::UnknownVersion { version }),
-        }
+        let parts = parts.next().zip(parts.next());
+        let number = parts.with_context(|| format!("cannot tell QEMU's version from {version:?}"))?;
+        Ok(if number < (8, 1) { &["-singlestep"] } else { &["-accel", "tcg,one-insn-per-tb=on"] })
     }
 }
 
 /// Calls `each` with the registers before every instruction of a log, until it refuses.
-pub(super) fn for_each_instruction(
-    log: impl Read,
-    mut each: impl FnMut(Registers) -> Result<(), CountError>,
-) -> Result<(), CountError> {
+pub(super) fn for_each_instruction(log: impl Read, mut each: impl FnMut(Registers) -> Result<()>) -> Result<()> {
     let mut log = BufReader::with_capacity(1 << 20, log);
     let mut line = String::new();
     let mut registers = Registers::default();
@@ -151,7 +147,7 @@ pub(super) fn for_each_instruction(
             Ok(_) => {}
             // the log is ASCII; a stray byte in a line of no interest is none either
             Err(error) if error.kind() == io::ErrorKind::InvalidData => {}
-            Err(source) => return Err(CountError::Log { source }),
+            Err(error) => return Err(error).context("QEMU's log"),
         }
     }
 }
@@ -161,7 +157,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_instruction_has_four_lines_of_registers() -> Result<(), CountError> {
+    fn an_instruction_has_four_lines_of_registers() -> Result<()> {
         let log = "R00=00000001 R01=00000002 R02=00000003 R03=00000004\n\
                    R04=00000005 R05=00000006 R06=00000007 R07=00000008\n\
                    R08=fffffbfc R09=00000000 R10=00000000 R11=0000000c\n\

@@ -1,10 +1,11 @@
 //! Figure 7: bob 2's path by the right equations and by the ones that the book prints.
 
+use anyhow::Result;
 use double_pendulum::{Error, Parameters, Pendulum, State, rk4};
 use firmware::config::PAGE_GRAVITY;
 use plotters::prelude::*;
 
-use super::sheet::{Area, Axes, BLUE, Drawing, Drawn, Frame, ORANGE, TEXT, headed, line, pale, text, units};
+use super::sheet::{Area, Axes, BLUE, Frame, ORANGE, TEXT, headed, line, pale, svg, text, units};
 use crate::oracle::textbook::misprinted_equal_rods;
 
 /// The figure's mass ratio, start angle of both rods (degrees) and rods (m).
@@ -75,10 +76,13 @@ fn path(pendulum: &Pendulum<f64>, refinement: u32, rhs: impl Fn(&[f64; 4]) -> [f
     Path { points, energies: [least, greatest] }
 }
 
-impl Drawing for Chaos {
-    const SIZE: (u32, u32) = (800, 468);
+impl Chaos {
+    /// The figure as an SVG file.
+    pub fn svg(&self) -> Result<String> {
+        svg([800, 468], |area| self.draw(area))
+    }
 
-    fn draw<Backend: DrawingBackend>(&self, area: &Area<Backend>) -> Drawn<(), Backend> {
+    fn draw(&self, area: &Area) -> Result<()> {
         let title = format!("Figure 7: path of bob 2 in the first {DURATION} s");
         let particulars = format!(
             "mass ratio {MASS_RATIO}, both rods let go at rest at {START}°; l = {ROD} m, g = {PAGE_GRAVITY} m/s², m₁ = 1 kg"
@@ -111,7 +115,7 @@ const PALEST: f64 = 0.35;
 
 impl Path {
     /// Draws it the darker the later, with its start, its end, and a mark for every second.
-    fn draw<Backend: DrawingBackend>(&self, chart: &mut Axes<Backend>, colour: RGBColor) -> Drawn<(), Backend> {
+    fn draw(&self, chart: &mut Axes, colour: RGBColor) -> Result<()> {
         let points: Vec<_> = self.points.iter().map(|&[x, y]| (x, y)).collect();
         let length = points.len().div_ceil(SHADES);
         for shade in 0..SHADES {

@@ -1,9 +1,10 @@
 //! Figure 2: the two frequencies of small oscillations over the mass ratio.
 
+use anyhow::Result;
 use double_pendulum::{Error, Modes, Parameters};
 use plotters::prelude::*;
 
-use super::sheet::{Area, BLUE, Drawing, Drawn, Frame, ORANGE, TEXT, headed, line, text, units};
+use super::sheet::{Area, BLUE, Frame, ORANGE, TEXT, headed, line, svg, text, units};
 
 /// The figure's mass ratios are 0 to this; at 0 itself there are no modes.
 const GREATEST_MASS_RATIO: f64 = 5.0;
@@ -34,10 +35,13 @@ impl Frequencies {
     }
 }
 
-impl Drawing for Frequencies {
-    const SIZE: (u32, u32) = (640, 400);
+impl Frequencies {
+    /// The figure as an SVG file.
+    pub fn svg(&self) -> Result<String> {
+        svg([640, 400], |area| self.draw(area))
+    }
 
-    fn draw<Backend: DrawingBackend>(&self, area: &Area<Backend>) -> Drawn<(), Backend> {
+    fn draw(&self, area: &Area) -> Result<()> {
         let area = headed(area, "Figure 2: both frequencies of small oscillations of equal rods", text(15))?;
         let frame = Frame {
             across: ("mass ratio μ = m₂/m₁", [0.0, GREATEST_MASS_RATIO]),

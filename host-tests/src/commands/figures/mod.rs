@@ -5,14 +5,13 @@
 pub mod chaos;
 pub mod frequencies;
 pub mod panel;
-pub mod sheet;
+mod sheet;
 pub mod small;
 
 use std::path::PathBuf;
 
 use anyhow::Result;
 use firmware::scenes::SceneName;
-use sheet::Drawing;
 
 use crate::emulator::toolchain::workspace;
 
@@ -24,25 +23,14 @@ pub fn folder() -> PathBuf {
 /// Those in it.
 pub const FOLDERS: [&str; 2] = ["figures", "panel"];
 
-/// A file: its name in that folder and what is in it.
-pub type File = (String, Vec<u8>);
-
-/// Every file that the command writes.
-pub fn files() -> Result<Vec<File>> {
-    let mut files = Vec::new();
-    files.extend(both("figures/figure-2", &frequencies::Frequencies::new()?)?);
+/// Every file that the command writes: its name in that folder and what is in it.
+pub fn files() -> Result<Vec<(String, Vec<u8>)>> {
+    let mut figures = vec![(2, frequencies::Frequencies::new()?.svg()?), (7, chaos::Chaos::new(1)?.svg()?)];
     for (number, mass_ratio) in [(3, 0.2), (4, 1.0), (5, 5.0)] {
-        files.extend(both(&format!("figures/figure-{number}"), &small::Small::new(number, mass_ratio)?)?);
+        figures.push((number, small::Small::new(number, mass_ratio)?.svg()?));
     }
-    files.extend(both("figures/figure-7", &chaos::Chaos::new(1)?)?);
-    for &scene in SceneName::ALL {
-        files.push((panel::file(scene, "png"), panel::screenshot(scene)?));
-    }
-    Ok(files)
-}
-
-fn both<D: Drawing>(name: &str, drawing: &D) -> Result<[File; 2]> {
-    let svg = sheet::svg(drawing)?;
-    let png = sheet::png(&svg)?;
-    Ok([(format!("{name}.svg"), svg.into_bytes()), (format!("{name}.png"), png)])
+    let figures =
+        figures.into_iter().map(|(number, svg)| Ok((format!("figures/figure-{number}.svg"), svg.into_bytes())));
+    let panels = SceneName::ALL.iter().map(|&scene| Ok((panel::file(scene, "png"), panel::screenshot(scene)?)));
+    figures.chain(panels).collect()
 }

@@ -1,19 +1,14 @@
-//! A figure on paper: one drawing, an SVG and a PNG file of it, the same bytes every time.
+//! A figure on paper: an SVG file, the same bytes every time.
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use plotters::coord::Shift;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
-use resvg::tiny_skia::{Pixmap, Transform};
-use resvg::usvg;
 
 /// Plotters draws on whole dots. A unit of length of a figure, as wide as a pixel of a common screen, is this many.
 const DOTS: u32 = 8;
-/// Pixels of the PNG file to a unit.
-const PIXELS: u32 = 2;
-/// The typeface. An SVG file leaves the choice to its reader; for the PNG file DejaVu Sans comes as a crate, so that
-/// nothing depends on what is installed.
+/// The typeface: its reader's choice.
 const TYPEFACE: &str = "sans-serif";
 
 /// Black is hard on white.
@@ -26,20 +21,9 @@ pub const BLUE: RGBColor = RGBColor(0, 95, 175);
 pub const ORANGE: RGBColor = RGBColor(205, 85, 15);
 
 /// Where a figure, or a part of it, is drawn.
-pub type Area<Backend> = DrawingArea<Backend, Shift>;
+pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 /// An area with axes.
-pub type Axes<'a, Backend> = ChartContext<'a, Backend, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
-/// Whether drawing went well.
-pub type Drawn<T, Backend> = std::result::Result<T, DrawingAreaErrorKind<<Backend as DrawingBackend>::ErrorType>>;
-
-/// Something to be drawn, whatever on.
-pub trait Drawing {
-    /// Width and height, units.
-    const SIZE: (u32, u32);
-
-    /// Draws it on white.
-    fn draw<Backend: DrawingBackend>(&self, area: &Area<Backend>) -> Drawn<(), Backend>;
-}
+pub type Axes<'a> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
 /// A length in units as dots.
 pub const fn units(length: u32) -> u32 {
@@ -63,11 +47,7 @@ pub fn text(height: u32) -> TextStyle<'static> {
 }
 
 /// Writes a line in `style` above the rest, which it gives.
-pub fn headed<Backend: DrawingBackend>(
-    area: &Area<Backend>,
-    line: &str,
-    style: TextStyle<'_>,
-) -> Drawn<Area<Backend>, Backend> {
+pub fn headed<'a>(area: &Area<'a>, line: &str, style: TextStyle<'_>) -> Result<Area<'a>> {
     let (head, rest) = area.split_vertically(units(23));
     let (width, height) = head.dim_in_pixel();
     let centred = style.pos(Pos::new(HPos::Center, VPos::Bottom));
@@ -88,7 +68,7 @@ pub struct Frame<'a> {
 
 impl Frame<'_> {
     /// Draws the axes with their numbers and names.
-    pub fn draw<'a, Backend: DrawingBackend>(&self, area: &Area<Backend>) -> Drawn<Axes<'a, Backend>, Backend> {
+    pub fn draw<'a>(&self, area: &Area<'a>) -> Result<Axes<'a>> {
         let ((across, [left, right]), (upwards, [bottom, top])) = (self.across, self.upwards);
         let mut chart = ChartBuilder::on(area)
             .margin(units(6))
@@ -124,53 +104,16 @@ fn plain(number: &f64) -> String {
     rounded.to_string().replace('-', "−")
 }
 
-/// The figure as an SVG file.
-pub fn svg<D: Drawing>(drawing: &D) -> Result<String> {
-    let (width, height) = D::SIZE;
+/// A figure so many units wide and high, drawn on white, as an SVG file.
+pub fn svg([width, height]: [u32; 2], draw: impl FnOnce(&Area) -> Result<()>) -> Result<String> {
     let mut file = String::new();
     {
         let area = SVGBackend::with_string(&mut file, (units(width), units(height))).into_drawing_area();
         area.fill(&WHITE)?;
-        drawing.draw(&area)?;
+        draw(&area)?;
         area.present()?;
     }
     // It is shown in its own size; its coordinates stay dots.
     let in_dots = format!("<svg width=\"{}\" height=\"{}\"", units(width), units(height));
     Ok(file.replacen(&in_dots, &format!("<svg width=\"{width}\" height=\"{height}\""), 1))
-}
-
-/// An SVG file made here as a PNG file.
-pub fn png(svg: &str) -> Result<Vec<u8>> {
-    let pixels = pixels(svg, PIXELS as f32)?;
-    encode([pixels.width(), pixels.height()], &colours(&pixels))
-}
-
-/// An SVG file made here in pixels, so many to a unit.
-pub fn pixels(svg: &str, scale: f32) -> Result<Pixmap> {
-    let mut options = usvg::Options::default();
-    let fonts = options.fontdb_mut();
-    fonts.load_font_data(dejavu::sans::regular().to_vec());
-    fonts.set_sans_serif_family("DejaVu Sans");
-    let tree = usvg::Tree::from_str(svg, &options)?;
-    let [width, height] = [tree.size().width(), tree.size().height()].map(|length| (scale * length).round() as u32);
-    let mut pixels = Pixmap::new(width, height).context("the figure is empty")?;
-    resvg::render(&tree, Transform::from_scale(scale, scale), &mut pixels.as_mut());
-    Ok(pixels)
-}
-
-/// The colours of pixels none of which is transparent, so that the fourth byte of each says nothing.
-pub fn colours(pixels: &Pixmap) -> Vec<u8> {
-    pixels.data().chunks(4).flat_map(|pixel| pixel.iter().copied().take(3)).collect()
-}
-
-/// Red, green and blue of each pixel as a PNG file.
-pub fn encode([width, height]: [u32; 2], colours: &[u8]) -> Result<Vec<u8>> {
-    let mut file = Vec::new();
-    let mut encoder = png::Encoder::new(&mut file, width, height);
-    encoder.set_color(png::ColorType::Rgb);
-    encoder.set_compression(png::Compression::High);
-    let mut writer = encoder.write_header()?;
-    writer.write_image_data(colours)?;
-    writer.finish()?;
-    Ok(file)
 }

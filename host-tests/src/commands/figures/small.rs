@@ -2,11 +2,12 @@
 
 use std::f64::consts::{FRAC_PI_6, TAU};
 
+use anyhow::Result;
 use double_pendulum::{Error, Modes, Motion, Parameters, SmallOscillations};
 use firmware::config::PAGE_GRAVITY;
 use plotters::prelude::*;
 
-use super::sheet::{Area, BLUE, Drawing, Drawn, Frame, ORANGE, headed, line, text, units};
+use super::sheet::{Area, BLUE, Frame, ORANGE, headed, line, svg, text, units};
 
 /// The book's rods, m.
 const ROD: f64 = 0.25;
@@ -58,10 +59,13 @@ fn envelopes(modes: &Modes<f64>, motion: &SmallOscillations<f64>, time: f64) -> 
     [amplitude(fast, slow), amplitude(modes.fast.shape * fast, modes.slow.shape * slow)]
 }
 
-impl Drawing for Small {
-    const SIZE: (u32, u32) = (720, 503);
+impl Small {
+    /// The figure as an SVG file.
+    pub fn svg(&self) -> Result<String> {
+        svg([720, 503], |area| self.draw(area))
+    }
 
-    fn draw<Backend: DrawingBackend>(&self, area: &Area<Backend>) -> Drawn<(), Backend> {
+    fn draw(&self, area: &Area) -> Result<()> {
         let Modes { fast, slow, .. } = &self.modes;
         let title = format!("Figure {}: small oscillations, mass ratio {}", self.number, self.mass_ratio);
         let particulars = format!(

@@ -29,24 +29,15 @@ pub struct Verdict {
     pub unsuspected: usize,
 }
 
-/// How a sample of a map's points was judged by the reference.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sample {
-    /// Points that may turn over: 0.1 s each.
-    pub judged: usize,
-    /// Of them, those whose time is more than a grey level off.
-    pub wrong: usize,
-}
-
-/// Has the reference judge so many points of the upper half of a map, drawn at random, the same in each run.
-pub fn sample(map: &Map, judged: usize) -> Result<Sample, Error> {
+/// Has the reference judge so many points of the upper half of a map that may turn over, drawn at random, the same in each run:
+/// 0.1 s each. How many of them are more than a grey level off.
+pub fn sample(map: &Map, judged: usize) -> Result<usize, Error> {
     let points = map.points(0..map.square.rows())?;
     let starts = map.starts(0..map.square.rows()).zip(points);
     let mut candidates: Vec<_> = starts.filter(|(_, point)| point.flip != Flip::Never).collect();
     Rng::with_seed(1).shuffle(&mut candidates);
-    candidates.truncate(judged);
-    let is_wrong = |&&(start, point): &&([f32; 2], Point)| map.differ(point.flip, exact(map, start));
-    Ok(Sample { judged: candidates.len(), wrong: candidates.iter().filter(is_wrong).count() })
+    let is_wrong = |(start, point): &([f32; 2], Point)| map.differ(point.flip, exact(map, *start));
+    Ok(candidates.into_iter().take(judged).filter(is_wrong).count())
 }
 
 /// Judges all points of the upper half of a map by fine steps in `f64`.
@@ -57,8 +48,13 @@ pub fn judge(map: &Map) -> Result<Verdict, Error> {
     let mut verdict = Verdict::default();
     for (start, point) in map.starts(0..map.square.rows()).zip(points) {
         let [a1, a2] = start.map(f64::from);
-        let Point { flip: Flip::After(_) | Flip::Later, .. } = point else { continue };
-        let (wrong, doubtful) = (map.differ(point.flip, single(fine.of(a1, a2)?)), map.is_in_doubt(point));
+        let exact = match fine.of(a1, a2)? {
+            _ if point.flip == Flip::Never => continue,
+            Flip::Never => Flip::Never,
+            Flip::After(time) => Flip::After(time as f32),
+            Flip::Later => Flip::Later,
+        };
+        let (wrong, doubtful) = (map.differ(point.flip, exact), map.is_in_doubt(point));
         verdict.points += 1;
         verdict.wrong += usize::from(wrong);
         verdict.doubtful += usize::from(doubtful);
@@ -68,7 +64,7 @@ pub fn judge(map: &Map) -> Result<Verdict, Error> {
 }
 
 /// The flip of the exact motion, to 30 digits.
-pub fn exact(map: &Map, [a1, a2]: [f32; 2]) -> Flip<f32> {
+fn exact(map: &Map, [a1, a2]: [f32; 2]) -> Flip<f32> {
     let mut motion = Reference::new(&map.parameters.cast(), &Motion::at_rest(a1.into(), a2.into()));
     let mut before = [a1, a2].map(f64::from);
     for look in 1..=(f64::from(map.limit) / LOOKS) as u32 {
@@ -83,12 +79,4 @@ pub fn exact(map: &Map, [a1, a2]: [f32; 2]) -> Flip<f32> {
         before = after;
     }
     Flip::Later
-}
-
-fn single(flip: Flip<f64>) -> Flip<f32> {
-    match flip {
-        Flip::Never => Flip::Never,
-        Flip::After(time) => Flip::After(time as f32),
-        Flip::Later => Flip::Later,
-    }
 }

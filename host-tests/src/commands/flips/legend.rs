@@ -1,65 +1,81 @@
-//! What the colours of a map say, as an SVG.
+//! What the colours of a map say, in the panel's letters.
 
-use std::fmt::Write;
+use firmware::graphics::font::glyph;
 
 use super::map::Map;
 use super::output::{Colour, DOUBT, LATER, NEVER, scale};
 
-/// Units across and down; the picture's width is as many units.
-pub const SIZE: [u32; 2] = [512, 62];
+/// Units across that there are at least, and down; a unit is a whole number of pixels.
+const WIDTH: usize = 400;
+const HEIGHT: usize = 42;
+/// Where the scale begins and how long it is; where the rest does.
+const LEFT: usize = 8;
+const LENGTH: usize = 160;
+const BESIDE: usize = LEFT + LENGTH + 20;
 
-/// Where the scale begins, how long it is, and in how many pieces.
-const LEFT: f32 = 14.0;
-const LENGTH: f32 = 250.0;
-const PIECES: usize = 125;
+const WHITE: Colour = [255; 3];
+const TEXT: Colour = [34; 3];
 
-/// The legend of `map`.
-pub fn svg(map: &Map, doubt: bool) -> String {
-    let [width, height] = SIZE;
-    let mut svg = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" font-family=\"sans-serif\" \
-         font-size=\"11\" fill=\"#222\"><rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>"
-    );
-    let piece = LENGTH / PIECES as f32;
-    for number in 0..PIECES {
-        let x = LEFT + number as f32 * piece;
-        square(&mut svg, [x, 8.0, piece + 0.3, 12.0], scale((number as f32 + 0.5) / PIECES as f32));
+/// Rows of pixels, each as wide as the map.
+struct Legend {
+    width: usize,
+    unit: usize,
+    pixels: Vec<Colour>,
+}
+
+/// The legend of `map`: red, green and blue of each pixel.
+pub fn pixels(map: &Map, doubt: bool) -> Vec<Colour> {
+    let [width, _] = map.square.size;
+    let unit = (width / WIDTH).max(1);
+    let mut legend = Legend { width, unit, pixels: vec![WHITE; width * HEIGHT * unit] };
+    for x in 0..LENGTH {
+        legend.fill([LEFT + x, 4, 1, 10], scale((x as f32 + 0.5) / LENGTH as f32));
     }
-    let mut times: Vec<f32> =
-        std::iter::successors(Some(1.0), |time| Some(10.0 * time)).take_while(|&time| time < 0.7 * map.limit).collect();
-    times.push(map.limit);
-    for time in times {
-        let x = LEFT + LENGTH * time.ln() / map.limit.ln();
-        text(&mut svg, [x, 32.0], "middle", &time.to_string());
+    let tens = std::iter::successors(Some(1.0), |time| Some(10.0 * time));
+    let tens = tens.take_while(|time| *time < 0.7 * map.limit).chain([map.limit]);
+    for time in tens {
+        let (x, words) = (LEFT + (LENGTH as f32 * time.ln() / map.limit.ln()) as usize, time.to_string());
+        let half = words.chars().map(|character| glyph(character).width as usize).sum::<usize>() / 2;
+        legend.text([x.saturating_sub(half), 17], &words);
     }
-    let kinds = [(NEVER, "cannot"), (LATER, "not by then"), (DOUBT, "in doubt")];
-    let mut x = LEFT + LENGTH + 26.0;
-    for (colour, name) in kinds.into_iter().take(if doubt { 3 } else { 2 }) {
-        square(&mut svg, [x, 8.0, 12.0, 12.0], colour);
-        text(&mut svg, [x + 17.0, 18.0], "start", name);
-        x += 26.0 + 6.2 * name.len() as f32;
+    let mut x = BESIDE;
+    for (colour, name) in
+        [(NEVER, "cannot"), (LATER, "not by then"), (DOUBT, "in doubt")].into_iter().take(2 + usize::from(doubt))
+    {
+        legend.fill([x, 4, 10, 10], colour);
+        x = legend.text([x + 14, 5], name) + 12;
     }
-    text(&mut svg, [LEFT + LENGTH + 26.0, 32.0], "start", "first turn-over of a rod, √(l₁/g)");
-    let [a1, a2] = map.square.centre.map(f64::to_degrees);
+    legend.text([BESIDE, 17], "first turn-over of a rod, √(l₁/g)");
     let half = map.square.half.to_degrees();
-    let range = |angle: f64| format!("{}° to {}°", short(angle - half), short(angle + half));
-    let masses = short(f64::from(map.parameters.m2 / map.parameters.m1));
-    let lengths = short(f64::from(map.parameters.l2 / map.parameters.l1));
-    let starts = format!("let go at α₁ → {}, α₂ ↑ {}; m₂/m₁ = {masses}, l₂/l₁ = {lengths}", range(a1), range(a2));
-    text(&mut svg, [LEFT, 52.0], "start", &starts);
-    svg + "</svg>"
+    let [a1, a2] =
+        map.square.centre.map(f64::to_degrees).map(|at| format!("{}° to {}°", short(at - half), short(at + half)));
+    let [masses, lengths] =
+        [map.parameters.m2 / map.parameters.m1, map.parameters.l2 / map.parameters.l1].map(|ratio| short(ratio.into()));
+    legend.text([LEFT, 30], &format!("let go at α₁ → {a1}, α₂ ↑ {a2}; m₂/m₁ = {masses}, l₂/l₁ = {lengths}"));
+    legend.pixels
 }
 
-/// To four digits after the point, without needless zeros.
-fn short(number: f64) -> String {
-    ((number * 1e4).round() / 1e4 + 0.0).to_string().replace('-', "−")
+/// To four digits after the point, at most.
+fn short(number: f64) -> f64 {
+    (number * 1e4).round() / 1e4 + 0.0
 }
 
-fn square(svg: &mut String, [x, y, width, height]: [f32; 4], [red, green, blue]: Colour) {
-    let fill = format!("#{red:02x}{green:02x}{blue:02x}");
-    let _ = write!(svg, "<rect x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" fill=\"{fill}\"/>");
-}
+impl Legend {
+    fn fill(&mut self, place: [usize; 4], colour: Colour) {
+        let [x, y, width, height] = place.map(|units| units * self.unit);
+        for row in self.pixels.chunks_mut(self.width).skip(y).take(height) {
+            row.iter_mut().skip(x).take(width).for_each(|pixel| *pixel = colour);
+        }
+    }
 
-fn text(svg: &mut String, [x, y]: [f32; 2], anchor: &str, words: &str) {
-    let _ = write!(svg, "<text x=\"{x}\" y=\"{y}\" text-anchor=\"{anchor}\">{words}</text>");
+    /// Writes words; where they end.
+    fn text(&mut self, [mut x, y]: [usize; 2], words: &str) -> usize {
+        for glyph in words.chars().map(glyph) {
+            for bit in (0..64).filter(|bit| glyph.rows << bit >> 63 == 1) {
+                self.fill([x + bit % 8, y + bit / 8, 1, 1], TEXT);
+            }
+            x += glyph.width as usize;
+        }
+        x
+    }
 }

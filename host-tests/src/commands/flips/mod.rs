@@ -9,40 +9,22 @@ mod part;
 pub mod square;
 
 use std::fs;
+use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use anyhow::{Context, Result};
 use signal_hook::flag::register_usize;
 
-use crate::console::cli::check_writable;
+use crate::console::cli::{check_writable, complain, say};
 use crate::console::progress::Bar;
-use crate::emulator::process::INTERRUPTS;
+use crate::emulator::process::{INTERRUPTS, interrupted_by};
 use map::{Map, Point};
 pub use options::Options;
 use part::Part;
 
-/// What a run came to.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Outcome {
-    /// All points are done; so many there are, and so many are in doubt.
-    Done {
-        /// Points.
-        all: usize,
-        /// Of them, those in doubt.
-        doubtful: usize,
-    },
-    /// It was interrupted.
-    Interrupted {
-        /// By this signal.
-        signal: i32,
-        /// What is done, of 1.
-        share: f64,
-    },
-}
-
-/// Computes the map and writes the file, or what of it is done when it is interrupted.
-pub fn run(options: &Options) -> Result<Outcome> {
+/// Computes the map and writes the file, or what of it is done when it is interrupted; says how much, or how much is in doubt.
+pub fn run(options: &Options) -> Result<ExitCode> {
     let (map, kind) = options.map()?;
     check_writable("--out", &options.out)?;
     let (mut part, mut points) = Part::open(&options.out, &map, options.resume)?;
@@ -50,18 +32,19 @@ pub fn run(options: &Options) -> Result<Outcome> {
     for signal in INTERRUPTS {
         register_usize(signal, Arc::clone(&stopped), signal as usize)?;
     }
-    let is_stopped = || stopped.load(Ordering::Relaxed) != 0;
-    let all = compute(&map, &mut points, is_stopped, |band| part.add(band))?;
-    let file = kind.file(&map, &points, options.doubt)?;
-    fs::write(&options.out, file).with_context(|| format!("cannot write {}", options.out.display()))?;
+    let all = compute(&map, &mut points, || stopped.load(Ordering::Relaxed) != 0, |band| part.add(band))?;
+    let (file, out) = (kind.file(&map, &points, options.doubt)?, options.out.display());
+    fs::write(&options.out, file).with_context(|| format!("cannot write {out}"))?;
     if points.len() < all {
-        let signal = stopped.load(Ordering::Relaxed) as i32;
-        return Ok(Outcome::Interrupted { signal, share: points.len() as f64 / all as f64 });
+        let percent = 100.0 * points.len() as f64 / all as f64;
+        complain(format_args!("interrupted: {out} has {percent:.1} %; --resume goes on"));
+        return Ok(ExitCode::from(interrupted_by(stopped.load(Ordering::Relaxed) as i32) as u8));
     }
     part.remove()?;
-    let doubtful = doubtful(&map, &points);
-    let [width, height] = map.square.size;
-    Ok(Outcome::Done { all: width * height, doubtful })
+    let ([width, height], doubtful) = (map.square.size, doubtful(&map, &points));
+    let (all, percent) = (width * height, 100.0 * doubtful as f64 / (width * height) as f64);
+    say(format_args!("{out}: {doubtful} of {all} starts in doubt ({percent:.3} %)"))?;
+    Ok(ExitCode::SUCCESS)
 }
 
 /// Computes what is missing of `points`, band by band, until it is stopped; how many there are in all.

@@ -52,7 +52,7 @@ pub struct Options {
     /// Go on where an interrupted run of the same map has stopped
     #[arg(long)]
     pub resume: bool,
-    /// What to write: a picture (.png), a table (.csv), or the times as f32, little-endian, row by row (.f32)
+    /// What to write: a picture (.png) or a table (.csv)
     #[arg(long, value_name = "FILE", default_value = "flips.png")]
     pub out: PathBuf,
 }

@@ -1,4 +1,4 @@
-//! What is written: a picture, a table, or numbers.
+//! What is written: a picture or a table.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -8,8 +8,6 @@ use double_pendulum::flips::Flip;
 
 use super::legend;
 use super::map::{Map, Point};
-use super::part::number;
-use crate::commands::figures::sheet;
 use crate::console::cli::Refused;
 
 /// A kind of file, by its name's end.
@@ -19,8 +17,6 @@ pub enum Kind {
     Picture,
     /// `.csv`
     Table,
-    /// `.f32`
-    Numbers,
 }
 
 impl Kind {
@@ -29,8 +25,7 @@ impl Kind {
         match file.extension().and_then(|end| end.to_str()) {
             Some("png") => Ok(Self::Picture),
             Some("csv") => Ok(Self::Table),
-            Some("f32") => Ok(Self::Numbers),
-            _ => Err(Refused::because(format!("--out {}: must end in .png, .csv or .f32", file.display()))),
+            _ => Err(Refused::because(format!("--out {}: must end in .png or .csv", file.display()))),
         }
     }
 
@@ -42,12 +37,6 @@ impl Kind {
         match self {
             Self::Picture => picture(map, pixels.map(|(_, point)| colour(map, point, doubt)), doubt),
             Self::Table => table(map, pixels),
-            Self::Numbers => {
-                let undone = f32::NAN;
-                Ok(pixels
-                    .flat_map(|(_, point)| point.map_or(undone, |point| number(point.flip)).to_le_bytes())
-                    .collect())
-            }
         }
     }
 }
@@ -81,11 +70,16 @@ fn colour(map: &Map, point: Option<Point>, doubt: bool) -> Colour {
 
 /// The map above its legend.
 fn picture(map: &Map, pixels: impl Iterator<Item = Colour>, doubt: bool) -> Result<Vec<u8>> {
-    let [width, height] = map.square.size;
-    let legend = sheet::pixels(&legend::svg(map, doubt), width as f32 / legend::SIZE[0] as f32)?;
-    let mut colours: Vec<u8> = pixels.flatten().collect();
-    colours.extend(sheet::colours(&legend));
-    sheet::encode([width as u32, height as u32 + legend.height()], &colours)
+    let [width, _] = map.square.size;
+    let colours: Vec<Colour> = pixels.chain(legend::pixels(map, doubt)).collect();
+    let mut file = Vec::new();
+    let mut encoder = png::Encoder::new(&mut file, width as u32, (colours.len() / width) as u32);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_compression(png::Compression::High);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(colours.as_flattened())?;
+    writer.finish()?;
+    Ok(file)
 }
 
 /// A row for each pixel, from the top left corner.

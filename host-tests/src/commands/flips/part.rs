@@ -4,7 +4,7 @@ use std::fs::{self, File};
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result};
 use double_pendulum::flips::Flip;
 use nix::fcntl::{Flock, FlockArg};
 
@@ -29,15 +29,14 @@ impl Part {
         name.push(".part");
         let path = PathBuf::from(name);
         let head = format!("{map:?}\n");
-        let unwritable = || format!("cannot write {}", path.display());
-        let opened = File::options().read(true).write(true).create(!resume).truncate(false).open(&path);
+        let opened = File::options().read(true).append(true).create(!resume).open(&path);
         let option = if resume { "--resume" } else { "--out" };
         let file = opened.map_err(|error| Refused::because(format!("{option}: {}: {error}", path.display())))?;
         let locked = Flock::lock(file, FlockArg::LockExclusiveNonblock);
         let busy = |_| Refused::because(format!("--out {}: another cargo flips is writing it", out.display()));
         let mut file = locked.map_err(busy)?;
         if !resume {
-            file.set_len(0).and_then(|()| file.write_all(head.as_bytes())).with_context(unwritable)?;
+            file.set_len(0).and_then(|()| file.write_all(head.as_bytes()))?;
             return Ok((Self { path, file }, Vec::new()));
         }
         let mut bytes = Vec::new();
@@ -46,9 +45,7 @@ impl Part {
         let body = bytes.strip_prefix(head.as_bytes()).ok_or_else(other)?;
         let points: Vec<Point> = body.chunks_exact(POINT).map(read).collect();
         // What follows the last whole point was cut off.
-        let kept = head.len() + points.len() * POINT;
-        file.set_len(kept as u64)?;
-        ensure!(std::io::Seek::seek(&mut *file, std::io::SeekFrom::End(0))? == kept as u64, unwritable());
+        file.set_len((head.len() + points.len() * POINT) as u64)?;
         Ok((Self { path, file }, points))
     }
 
@@ -66,7 +63,7 @@ impl Part {
 }
 
 /// A flip as a number: its time; infinite if it was waited for in vain, -1 if it cannot be.
-pub fn number(flip: Flip<f32>) -> f32 {
+fn number(flip: Flip<f32>) -> f32 {
     match flip {
         Flip::Never => -1.0,
         Flip::After(time) => time,
@@ -75,11 +72,11 @@ pub fn number(flip: Flip<f32>) -> f32 {
 }
 
 fn read(bytes: &[u8]) -> Point {
-    let flip = |bytes: &[u8]| match f32::from_le_bytes(bytes.try_into().unwrap_or_default()) {
+    let (numbers, _) = bytes.as_chunks();
+    let flip = |at: usize| match numbers.get(at).map_or(-1.0, |bytes| f32::from_le_bytes(*bytes)) {
         time if time < 0.0 => Flip::Never,
         time if time.is_finite() => Flip::After(time),
         _ => Flip::Later,
     };
-    let (first, second) = bytes.split_at(POINT / 2);
-    Point { flip: flip(first), check: flip(second) }
+    Point { flip: flip(0), check: flip(1) }
 }

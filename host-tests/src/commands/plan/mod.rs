@@ -4,14 +4,12 @@ mod draw;
 mod judge;
 mod options;
 mod study;
-mod tables;
 mod target;
 mod words;
 
 pub use draw::scenes;
 pub use judge::{Exact, Verdict, judge, reference_error};
 pub use options::Options;
-pub use study::{Case, DURATIONS, median, study};
-pub use tables::{summary, violations};
+pub use study::{Case, DURATIONS, median, study, summary};
 pub use target::{CHIPS, Chip, M4F};
 pub use words::words;

@@ -1,14 +1,18 @@
 //! Many scenes, each planned, carried out and compared with the exact motion.
 
 use std::ops::Range;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::thread;
 
 use double_pendulum::plan::{Limit, Plan, PlanError, Problem};
 use firmware::config::HALF_PIXEL;
+use rayon::prelude::*;
 
 use super::judge::{Exact, Verdict, judge};
-use super::target::Chip;
+use super::target::{CHIPS, Chip};
+use crate::commands::count::ERROR_BAR;
+use crate::commands::table::{Table, small};
+
+/// How long the scenes of a study last, s.
+pub const DURATIONS: Range<f64> = 2.0..30.0;
 
 /// A scene with its plan and what became of it.
 #[derive(Clone, Copy, Debug)]
@@ -24,9 +28,6 @@ pub struct Case {
     /// What became of it; nothing without one.
     pub verdict: Verdict,
 }
-
-/// How long the scenes of a study last, s.
-pub const DURATIONS: Range<f64> = 2.0..30.0;
 
 impl Case {
     /// Whether a frame was more than half a pixel off before the predicted horizon.
@@ -53,7 +54,7 @@ pub fn study(
     tick: impl Fn() + Sync,
 ) -> Result<Vec<Case>, PlanError> {
     let scenes: Vec<_> = scenes.into_iter().enumerate().collect();
-    let by_scene = spread(&scenes, |&(number, scene)| {
+    let by_scene = scenes.par_iter().map(|&(number, scene)| {
         let mut exact = Exact::new(&scene);
         let case = |&chip: &Chip| -> Result<Case, PlanError> {
             let plan = chip.plan(&scene)?;
@@ -63,28 +64,8 @@ pub fn study(
         let cases = chips.iter().map(case).collect::<Result<Vec<_>, _>>()?;
         tick();
         Ok(cases)
-    })?;
-    Ok(by_scene.concat())
-}
-
-/// What `work` makes of each item, in their order, on as many threads as there are processors.
-fn spread<T: Sync, R: Send>(
-    items: &[T],
-    work: impl Fn(&T) -> Result<R, PlanError> + Sync,
-) -> Result<Vec<R>, PlanError> {
-    let workers = thread::available_parallelism().map_or(1, usize::from);
-    let (next, work) = (&AtomicUsize::new(0), &work);
-    let mut done = thread::scope(|scope| {
-        let every = || {
-            let taken = std::iter::repeat_with(|| next.fetch_add(1, Ordering::Relaxed));
-            taken.map_while(|at| Some((at, work(items.get(at)?)))).collect::<Vec<_>>()
-        };
-        let threads: Vec<_> = (0..workers).map(|_| scope.spawn(every)).collect();
-        let done = threads.into_iter().map(|thread| thread.join());
-        done.flat_map(|done| done.unwrap_or_else(|panic| std::panic::resume_unwind(panic))).collect::<Vec<_>>()
     });
-    done.sort_by_key(|(at, _)| *at);
-    done.into_iter().map(|(_, result)| result).collect()
+    Ok(by_scene.collect::<Result<Vec<_>, PlanError>>()?.concat())
 }
 
 /// The middle of `values`; 1 of none.
@@ -92,4 +73,43 @@ pub fn median(values: impl Iterator<Item = f64>) -> f64 {
     let mut values: Vec<_> = values.collect();
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied().unwrap_or(1.0)
+}
+
+/// What the predictions are worth, for each chip that was studied.
+pub fn summary(cases: &[Case]) -> Table {
+    let row = |chip: &Chip| {
+        let cases: Vec<&Case> = cases.iter().filter(|case| case.chip == *chip).collect();
+        let pick = |which: fn(&Case) -> bool| cases.iter().copied().filter(move |case| which(case));
+        let share = |which: fn(&Case) -> bool| format!("{:.2}", median(pick(which).map(Case::share)));
+        let counts: [fn(&Case) -> bool; 4] =
+            [|_| true, |case| case.plan.is_err(), Case::ends_early, Case::is_violation];
+        let mut row = vec![chip.title.to_owned()];
+        row.extend(counts.map(|which| pick(which).count().to_string()));
+        row.push(small(cases.iter().map(|case| case.verdict.error).fold(0.0, f64::max)));
+        row.extend([share(|case| case.plan.is_ok()), share(Case::ends_early)]);
+        row.push(format!("{:.0}", median(cases.iter().filter_map(|case| Some(case.plan.ok()?.cost.into())))));
+        row
+    };
+    Table {
+        title: "Plans",
+        note: format!(
+            "Every scene is planned for each processor, carried out and compared with the reference at each frame. Nothing holds: no \
+             method that is affordable is right in any frame. End early: cease to be right to half a pixel within the scene. \
+             Violations: scenes with a frame more than half a pixel off before the predicted horizon. Largest error: until then. \
+             Predicted: the predicted horizon over the true one in the median, of all scenes with a plan and of those that end early. Cycles: \
+             the median. {ERROR_BAR}",
+        ),
+        columns: &[
+            "processor",
+            "scenes",
+            "nothing holds",
+            "end early",
+            "violations",
+            "largest error (pixels)",
+            "predicted (all)",
+            "predicted (ending early)",
+            "cycles a frame",
+        ],
+        rows: CHIPS.iter().map(row).filter(|row| row[1] != "0").collect(),
+    }
 }

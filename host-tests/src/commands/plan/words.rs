@@ -11,7 +11,23 @@ use super::target::Chip;
 pub fn words(scene: &Problem, plan: &Result<Plan, Limit>, chip: &Chip) -> Vec<String> {
     let frame = chip.processor.frame;
     let mut lines = match plan {
-        Ok(plan) => planned(scene, plan, chip, frame),
+        Ok(plan) => {
+            let share = 100.0 * plan.cost * f32::from(scene.rate) / chip.clock;
+            let Plan { horizon, cost, .. } = plan;
+            vec![
+                format!("method   {}", plan.method),
+                format!("step     {}", step(scene, plan)),
+                format!(
+                    "horizon  expected to be right to half a pixel about the exact motion until {horizon:.2} s of {} s",
+                    scene.duration
+                ),
+                format!("error    at most {} expected until then", pixels(HALF_PIXEL * plan.error)),
+                format!("cost     {cost:.0} cycles a frame, {share:.2} % of a {} (estimate)", chip.title),
+                format!("search   {:.2} s of the chip's time to look ahead", plan.spent / chip.clock),
+                format!("why      {}", method(plan.method)),
+                format!("         {}", limit(plan, frame)),
+            ]
+        }
         Err(limit) => vec![
             format!("nothing  that a {} can afford is right to half a pixel in any frame", chip.title),
             format!("why      {}", forbidden(*limit, frame)),
@@ -19,23 +35,6 @@ pub fn words(scene: &Problem, plan: &Result<Plan, Limit>, chip: &Chip) -> Vec<St
     };
     lines.extend(energy(scene).map(|line| format!("         {line}")));
     lines
-}
-
-fn planned(scene: &Problem, plan: &Plan, chip: &Chip, frame: f32) -> Vec<String> {
-    let share = 100.0 * plan.cost * f32::from(scene.rate) / chip.clock;
-    vec![
-        format!("method   {}", plan.method.name()),
-        format!("step     {}", step(scene, plan)),
-        format!(
-            "horizon  expected to be right to half a pixel about the exact motion until {:.2} s of {} s",
-            plan.horizon, scene.duration
-        ),
-        format!("error    at most {} expected until then", pixels(HALF_PIXEL * plan.error)),
-        format!("cost     {:.0} cycles a frame, {share:.2} % of a {} (estimate)", plan.cost, chip.title),
-        format!("search   {:.2} s of the chip's time to look ahead", plan.spent / chip.clock),
-        format!("why      {}", method(plan)),
-        format!("         {}", limit(plan, frame)),
-    ]
 }
 
 /// Rounded up.
@@ -55,22 +54,18 @@ fn step(scene: &Problem, plan: &Plan) -> String {
     }
 }
 
-fn method(plan: &Plan) -> String {
-    match plan.method {
-        Method::ClosedFormF32 => {
-            String::from("until the horizon the linear motion is expected to be right to half a pixel")
-        }
+fn method(method: Method) -> &'static str {
+    match method {
+        Method::ClosedFormF32 => "until the horizon the linear motion is expected to be right to half a pixel",
         Method::Rk4F32DirectionPlain => {
-            String::from("to draw, directions are enough and no angles needed; the roundings of plain sums do not show")
+            "to draw, directions are enough and no angles needed; the roundings of plain sums do not show"
         }
         Method::Rk4F32Direction => {
-            String::from("to draw, directions are enough and no angles needed; the roundings of plain sums would show")
+            "to draw, directions are enough and no angles needed; the roundings of plain sums would show"
         }
-        Method::Rk4Fixed32 => {
-            String::from("to draw, directions are enough and no angles needed; integers are cheapest here")
-        }
-        Method::Extrapolation10Fixed64 => String::from("32 bits show before, or take as many steps as cost more"),
-        other => other.name().to_owned(),
+        Method::Rk4Fixed32 => "to draw, directions are enough and no angles needed; integers are cheapest here",
+        Method::Extrapolation10Fixed64 => "32 bits show before, or take as many steps as cost more",
+        other => other.name(),
     }
 }
 

@@ -1,13 +1,11 @@
 //! Errors against the reference, computed on the host: the bits are those of the target (see `identity`).
 
 use std::f64::consts::TAU;
-use std::fmt;
 
 use double_pendulum::{Method, Motion};
 use firmware::job::{JobError, Request};
 
-use super::scene::{SAMPLES, SCENES, Scene};
-use super::{compared, parallel};
+use super::scene::{SAMPLES, Scene};
 use crate::oracle::reference::Reference;
 
 /// The largest error over a scene.
@@ -131,53 +129,4 @@ fn pixels(scene: &Scene, angles: [f64; 2], exact: [f64; 2]) -> f64 {
     let distance = |bob: usize| libm::hypot(drawn[bob][0] - right[bob][0], drawn[bob][1] - right[bob][1]);
     let metres = distance(0).max(distance(1));
     if metres.is_finite() { scene.scale() * metres } else { f64::INFINITY }
-}
-
-/// One arithmetic, one scene, one step size.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Point {
-    /// The scene.
-    pub scene: &'static Scene,
-    /// What computed it.
-    pub contestant: Contestant,
-    /// Steps a second.
-    pub rate: u32,
-    /// The largest error over the scene.
-    pub error: Error,
-}
-
-/// What is compared.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Contestant {
-    /// A method of the kernel.
-    Kernel(Method),
-    /// A program in C, by its name.
-    C(&'static str),
-}
-
-impl fmt::Display for Contestant {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Kernel(method) => write!(f, "{method}"),
-            Self::C(name) => f.write_str(name),
-        }
-    }
-}
-
-/// Every method through the first scenes, of which `exact` are the exact motions, with steps down to 2^-`finest` s, the
-/// scenes on threads of their own; `tick` is called after each run.
-pub fn survey(exact: &[Vec<[f64; 2]>], finest: u32, tick: &(dyn Fn() + Sync)) -> Vec<Point> {
-    let through = |&(scene, exact): &(&'static Scene, &Vec<[f64; 2]>)| {
-        let mut points = Vec::new();
-        for method in compared() {
-            for rate in rates(method, finest) {
-                let error = error(method, scene, rate, exact);
-                points.extend(error.map(|error| Point { scene, contestant: Contestant::Kernel(method), rate, error }));
-                tick();
-            }
-        }
-        points
-    };
-    let scenes: Vec<_> = SCENES.iter().zip(exact).collect();
-    parallel(&scenes, through).concat()
 }

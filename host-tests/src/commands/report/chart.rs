@@ -1,99 +1,168 @@
-//! Cost against error as a frame.
+//! Cost against error as a picture: a few named lines, all others grey.
 
 use std::error::Error;
 use std::ops::Range;
 
+use anyhow::{Result, anyhow};
+use firmware::config::REACH;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::accuracy::Contestant;
+use super::c_peers::PROGRAMS;
+use super::join::Point;
 use super::scene::Scene;
-use super::speed::Priced;
-use crate::emulator::boards::Board;
+use crate::emulator::boards::{Board, Core};
 
-/// Pixels: the whole, and how much of the width the axes have.
-const SIZE: (u32, u32) = (1150, 680);
-const AXES: u32 = 770;
-/// Pixels from one line of the key to the next.
-const LINE: i32 = 17;
-/// Points outside are not drawn.
-const ERRORS: Range<f64> = 1e-16..10.0;
+/// Pixels.
+const SIZE: (u32, u32) = (860, 460);
+/// Points outside are not drawn. Errors fall to the right.
+const ERRORS: Range<f64> = 1e-15..0.1;
+/// A finer step is worth its cycles if it makes the error at least so much smaller.
+const WORTH: f64 = 0.9;
+/// An error of both angles that is half a pixel of the panel, and what people ask of digits, rad.
+const MARKS: [(f64, &str); 3] =
+    [(0.5 / REACH as f64, "half a pixel: 60 fps on the panel"), (1e-9, "1e-9"), (1e-12, "1e-12")];
+/// Lines with a name: the programs in C, which are what people do today, and methods that are the best of something.
+const NAMED: usize = 7;
+/// Colours that anybody can tell apart.
+const COLOURS: [RGBColor; NAMED] = [
+    RGBColor(0, 95, 175),
+    RGBColor(205, 85, 15),
+    RGBColor(0, 130, 95),
+    RGBColor(170, 50, 120),
+    RGBColor(120, 95, 0),
+    RGBColor(80, 80, 80),
+    RGBColor(200, 30, 30),
+];
+const TEXT: RGBColor = RGBColor(34, 34, 34);
+const GREY: RGBColor = RGBColor(200, 200, 200);
 const FONT: &str = "sans-serif";
+/// Pixels of a name: each character, and from one line to the next.
+const LETTER: (i32, i32) = (7, 15);
 
-/// A colour that can be told from those of the others of so many: around the wheel, neighbours dark and light.
-fn colour(index: usize, of: usize) -> HSLColor {
-    HSLColor(index as f64 / of as f64, 0.8, [0.33, 0.47][index % 2])
-}
-
-/// Who has points, in their order.
-fn contestants(priced: &[Priced]) -> Vec<Contestant> {
-    let mut all = Vec::new();
-    for one in priced {
-        if !all.contains(&one.point.contestant) {
-            all.push(one.point.contestant);
-        }
+/// A core by the name on its manual.
+pub fn core_name(board: &Board) -> &'static str {
+    match board.core() {
+        Core::M3 => "Cortex-M3",
+        Core::M4F => "Cortex-M4F",
+        Core::M0Plus => "Cortex-M0+",
     }
-    all
 }
 
-/// Estimated cycles per simulated second against the error, one line for each arithmetic, as SVG. A point is hollow if
-/// another arithmetic or step is at least as good in both.
-pub fn speed_against_error(priced: &[Priced], scene: &Scene, board: &Board) -> Result<String, Box<dyn Error>> {
-    let shown: Vec<_> = priced
-        .iter()
-        .filter(|one| one.point.scene == scene && one.board == board && ERRORS.contains(&one.point.error.angle))
-        .collect();
-    let cycles = shown.iter().map(|one| one.cycles);
-    let (least, most) = cycles.fold((f64::INFINITY, 0.0_f64), |(least, most), next| (least.min(next), most.max(next)));
+/// Each contestant's name with its points from the coarsest step on, those that a finer step makes better.
+fn lines<'a>(points: &'a [Point], scene: &Scene, board: &Board) -> Vec<(&'static str, Vec<&'a Point>)> {
+    let shown = points.iter().filter(|point| point.scene == scene && point.board == board);
+    let shown: Vec<_> = shown.filter(|point| ERRORS.contains(&point.error.angle)).collect();
+    let line = |points: &[&'a Point]| {
+        let mut least = f64::INFINITY;
+        let is_better = |point: &&Point| {
+            let is_it = point.error.angle < WORTH * least;
+            least = least.min(point.error.angle);
+            is_it
+        };
+        (points[0].name, points.iter().copied().filter(is_better).collect())
+    };
+    shown.chunk_by(|a, b| a.name == b.name).map(line).collect()
+}
 
+/// Which lines get a name: the programs in C, and those with the most points that nothing else is as good as in both.
+fn named(lines: &[(&'static str, Vec<&Point>)]) -> Vec<&'static str> {
+    let is_peer = |name: &&str| PROGRAMS.iter().any(|(program, _)| program == name);
+    let best = |points: &[&Point]| points.iter().filter(|point| !point.dominated).count();
+    let mut methods: Vec<_> = lines.iter().map(|(name, points)| (best(points), *name)).collect();
+    methods.retain(|(best, name)| *best > 0 && !is_peer(name));
+    methods.sort_by_key(|(best, _)| std::cmp::Reverse(*best));
+    let peers = lines.iter().map(|(name, _)| *name).filter(is_peer);
+    peers.clone().chain(methods.into_iter().map(|(_, name)| name).take(NAMED - peers.count())).collect()
+}
+
+/// Estimated cycles per simulated second against the error, as SVG.
+pub fn speed_against_error(points: &[Point], scene: &Scene, board: &Board) -> Result<String> {
+    draw(points, scene, board).map_err(|error| anyhow!("cannot draw: {error}"))
+}
+
+fn draw(points: &[Point], scene: &Scene, board: &Board) -> Result<String, Box<dyn Error>> {
+    let lines = lines(points, scene, board);
+    let named = named(&lines);
+    let cycles = lines.iter().flat_map(|(_, points)| points).map(|point| point.cycles());
+    let (least, most) = cycles.fold((f64::INFINITY, 1.0_f64), |(least, most), next| (least.min(next), most.max(next)));
     let mut svg = String::new();
     {
         let area = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
         area.fill(&WHITE)?;
-        let (left, right) = area.split_horizontally(AXES);
-        let mut chart = ChartBuilder::on(&left)
-            .caption(format!("{}; {}", scene.title, board.cpu), (FONT, 20))
-            .margin(12)
-            .x_label_area_size(45)
-            .y_label_area_size(75)
-            .build_cartesian_2d(ERRORS.log_scale(), (least / 2.0..most * 2.0).log_scale())?;
+        let mut chart = ChartBuilder::on(&area)
+            .caption(
+                format!("{}: {}, {} s", core_name(board), scene.title, scene.duration),
+                (FONT, 17).into_font().color(&TEXT),
+            )
+            .margin(10)
+            .x_label_area_size(42)
+            .y_label_area_size(66)
+            .build_cartesian_2d((ERRORS.end..ERRORS.start).log_scale(), (least / 2.0..most * 2.0).log_scale())?;
         chart
             .configure_mesh()
-            .x_desc("largest error of an angle (rad)")
-            .y_desc("cycles per simulated second (estimated)")
-            .axis_desc_style((FONT, 16))
-            .label_style((FONT, 13))
+            .x_desc("largest error of an angle, rad: better to the right")
+            .y_desc("cycles per simulated second, estimated")
+            .axis_desc_style((FONT, 14))
+            .label_style((FONT, 12))
             .x_label_formatter(&|error| format!("{error:.0e}"))
             .y_label_formatter(&|cycles| format!("{cycles:.0e}"))
+            .bold_line_style(RGBColor(238, 238, 238))
             .light_line_style(TRANSPARENT)
             .draw()?;
-        let text = TextStyle::from((FONT, 13)).pos(Pos::new(HPos::Left, VPos::Center));
-        let mut y = 2 * LINE;
-        let contestants = contestants(priced);
-        for (index, contestant) in contestants.iter().enumerate() {
-            let colour = colour(index, contestants.len());
-            let line: Vec<_> = shown.iter().filter(|one| one.point.contestant == *contestant).collect();
-            if line.is_empty() {
-                continue;
-            }
-            let place = |one: &&&Priced| (one.point.error.angle, one.cycles);
-            let stroke = colour.stroke_width(2);
-            chart.draw_series(LineSeries::new(line.iter().map(place), stroke))?;
-            chart.draw_series(line.iter().map(|one| {
-                let inside = if one.dominated { WHITE.filled() } else { colour.filled() };
-                EmptyElement::at(place(one)) + Circle::new((0, 0), 4, inside) + Circle::new((0, 0), 4, stroke)
-            }))?;
-            right.draw(&PathElement::new([(0, y), (24, y)], stroke))?;
-            right.draw(&Text::new(contestant.to_string(), (32, y), text.clone()))?;
-            y += LINE;
+        let small = TextStyle::from((FONT, 12)).color(&TEXT);
+        for (error, meaning) in MARKS {
+            chart.draw_series([PathElement::new([(error, least / 2.0), (error, most * 2.0)], TEXT.stroke_width(1))])?;
+            let top = EmptyElement::at((error, most * 2.0)) + Text::new(meaning, (4, 2), small.clone());
+            chart.draw_series([top])?;
         }
-        for (inside, meaning) in [(BLACK.filled(), "none is better in both"), (WHITE.filled(), "dominated")] {
-            y += LINE;
-            right.draw(&Circle::new((12, y), 4, inside))?;
-            right.draw(&Circle::new((12, y), 4, BLACK.stroke_width(2)))?;
-            right.draw(&Text::new(meaning, (32, y), text.clone()))?;
+        let place = |point: &&Point| (point.error.angle, point.cycles());
+        for (_, points) in lines.iter().filter(|(name, _)| !named.contains(name)) {
+            chart.draw_series(LineSeries::new(points.iter().map(place), GREY.stroke_width(1)))?;
+        }
+        let mut taken: Vec<[i32; 3]> = Vec::new();
+        for (name, colour) in named.iter().zip(COLOURS) {
+            let Some((_, points)) = lines.iter().find(|(line, _)| line == name) else { continue };
+            chart.draw_series(LineSeries::new(points.iter().map(place), colour.stroke_width(2)))?;
+            chart.draw_series(points.iter().map(|point| Circle::new(place(point), 3, colour.filled())))?;
+            let Some(end) = points.last() else { continue };
+            let (x, mut y) = chart.backend_coord(&place(end));
+            let width = LETTER.0 * name.len() as i32;
+            // Right of the line's end, or left of it where the frame is near; and where no other name is.
+            let left = if x + 10 + width < SIZE.0 as i32 { x + 10 } else { x - 10 - width };
+            let overlaps =
+                |y: i32| taken.iter().any(|&[a, b, at]| left < b && a < left + width && (y - at).abs() < LETTER.1);
+            while overlaps(y) {
+                y -= 1;
+            }
+            taken.push([left, left + width, y]);
+            let style = TextStyle::from((FONT, 13)).color(&colour).pos(Pos::new(HPos::Left, VPos::Center));
+            area.draw(&Text::new(*name, (left, y), style))?;
         }
         area.present()?;
     }
     Ok(svg)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::join::{mark_dominated, tests::point};
+    use super::super::scene::SCENES;
+    use super::*;
+    use crate::emulator::boards::BOARDS;
+
+    #[test]
+    fn seven_lines_at_most_have_names_and_the_programs_in_c_do() -> Result<()> {
+        let names = ["a", "b", "c", "d", "e", "f", "g", "h", PROGRAMS[0].0, PROGRAMS[1].0];
+        let each = |(i, name): (usize, &&'static str)| point(name, 10_f64.powi(i as i32), 0.1_f64.powi(i as i32 + 1));
+        let mut points: Vec<_> = names.iter().enumerate().map(each).collect();
+        points.insert(0, point("worse than all others", 1e12, 0.5));
+        mark_dominated(&mut points);
+        let svg = speed_against_error(&points, &SCENES[0], &BOARDS[0])?;
+        let named = |name: &str| svg.lines().any(|line| line.trim() == name);
+        assert_eq!(names.iter().filter(|name| named(name)).count(), NAMED, "{svg}");
+        assert!(PROGRAMS.iter().all(|(name, _)| named(name)) && !named("worse than all others"), "{svg}");
+        assert!(MARKS.iter().all(|(_, meaning)| named(meaning)), "{svg}");
+        Ok(())
+    }
 }

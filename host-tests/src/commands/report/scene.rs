@@ -35,7 +35,7 @@ const fn scene(name: &'static str, title: &'static str, m2: f32, [l1, l2]: [f32;
     Scene { name, title, m2, l1, l2, g, a1, a2, duration }
 }
 
-/// Every scene; m1 = 1 kg. The first two are those of `cargo write-report --quick`.
+/// Every scene; m1 = 1 kg. The first two, a regular and a chaotic one, are those of `cargo write-report --quick`.
 #[rustfmt::skip]
 pub const SCENES: &[Scene] = &[
     scene("regular",       "regular: 0.5/0.5 rad",              1.0,   [1.0, 1.0],   EARTH, [0.5, 0.5], 10),

@@ -4,44 +4,30 @@ use double_pendulum::Method;
 use firmware::config::MOST_MEASURED_STEPS;
 use firmware::job::{ON_BOARDS, Request};
 use firmware::protocol::{Measure, Measured};
-use serde::Serialize;
 
-use super::bits::{REGULAR, next};
+use super::Section;
+use super::bits::{next, regular};
 use super::talk::Talk;
-use crate::commands::count::{FULL_CYCLE, Target, affordable_steps, step_cost};
-use crate::emulator::boards::Board;
+use crate::commands::count::{FULL_CYCLE, Target, affordable_cost};
+use crate::commands::table::Table;
+use crate::emulator::boards::{BOARDS, Board};
 use crate::emulator::toolchain;
 
 /// The number of the requests.
 const REQUEST: u16 = u16::MAX;
 
-/// The cost of a step.
-#[derive(Clone, Debug, Serialize)]
-pub struct Cycles {
-    /// The method.
-    #[serde(serialize_with = "named")]
-    pub method: Method,
-    /// From flash, on average over the first second; `None` where the board counts no cycles.
-    pub from_flash: Option<f64>,
-    /// The same from RAM; `None`, too, where the board has the steps in flash only.
-    pub from_ram: Option<f64>,
-    /// For memory without wait states.
-    pub estimated: Option<f64>,
-}
+/// A method with the cycles of its step from flash and from RAM; `None` where the board counts none, or has no copy in RAM.
+type Row = (Method, [Option<f64>; 2]);
 
 /// Measures a step of every method, as `cargo count` counts it: on average over the first second from rest.
-pub fn measure(talk: &mut Talk) -> anyhow::Result<Vec<Cycles>> {
-    let accepted = |method: &&Method| Request { samples: 0, ..REGULAR.request(**method) }.crc().is_ok();
-    let rows = ON_BOARDS.iter().filter(accepted);
-    rows.map(|&method| {
-        let [from_flash, from_ram] = [step(talk, method, 0)?, step(talk, method, 1)?];
-        Ok(Cycles { method, from_flash, from_ram, estimated: None })
-    })
-    .collect()
+pub fn measure(talk: &mut Talk) -> anyhow::Result<Vec<Row>> {
+    let accepted = |method: &&Method| Request { samples: 0, ..regular(**method) }.crc().is_ok();
+    let row = |&method: &Method| Ok((method, [step(talk, method, 0)?, step(talk, method, 1)?]));
+    ON_BOARDS.iter().filter(accepted).map(row).collect()
 }
 
 fn step(talk: &mut Talk, method: Method, in_ram: u8) -> anyhow::Result<Option<f64>> {
-    talk.port.send(&Request { samples: 0, ..REGULAR.request(method) }.message(REQUEST));
+    talk.port.send(&Request { samples: 0, ..regular(method) }.message(REQUEST));
     next(talk, REQUEST)?;
     let (mut steps, mut cycles) = (0, 0.0);
     while steps < FULL_CYCLE {
@@ -55,21 +41,24 @@ fn step(talk: &mut Talk, method: Method, in_ram: u8) -> anyhow::Result<Option<f6
     Ok(Some(cycles / f64::from(steps)))
 }
 
-fn named<S: serde::Serializer>(method: &Method, serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.serialize_str(method.name())
-}
-
-/// Estimates what has been measured.
-pub fn estimate(rows: &mut [Cycles], board: &'static Board) -> anyhow::Result<()> {
-    let mut rows = rows.iter_mut().filter(|row| row.from_flash.is_some()).peekable();
-    if rows.peek().is_none() {
-        return Ok(());
+/// Estimates what has been measured. Instructions are counted in QEMU, on a board with the same processor.
+pub fn estimate(measured: Vec<Row>, board: Option<&Board>) -> anyhow::Result<Section> {
+    let board = board.and_then(|board| BOARDS.iter().find(|counted| counted.target == board.target));
+    let is_counted = measured.iter().any(|(_, [flash, _])| flash.is_some());
+    let target = board.filter(|_| is_counted).map(|board| Target::build(&toolchain::ready()?, board)).transpose()?;
+    let mut rows = Vec::new();
+    for (method, [flash, ram]) in measured {
+        let estimated = target.as_ref().filter(|_| flash.is_some());
+        let estimated = estimated.map(|target| affordable_cost(target, &regular(method))).transpose()?;
+        let cell =
+            |cycles: Option<f64>, none: &str| cycles.map_or_else(|| none.into(), |cycles| format!("{cycles:.1}"));
+        let (none, estimated) = ("no cycle counter", estimated.map(|cost| cost.cycles));
+        let no_copy = if flash.is_some() { "-" } else { none };
+        rows.push(vec![method.to_string(), cell(flash, none), cell(ram, no_copy), cell(estimated, "-")]);
     }
-    let target = Target::build(&toolchain::ready()?, board)?;
-    for row in rows {
-        let request = Request { samples: 1, ..REGULAR.request(row.method) };
-        let request = Request { stride: affordable_steps(&target, &request)?, ..request };
-        row.estimated = Some(step_cost(&target, &request)?.cycles);
-    }
-    Ok(())
+    let note = "Measured by the processor's cycle counter, interrupts off, over 256 steps of the regular motion, by the code in \
+                flash and, where there is one, by its copy in RAM (constants are read from flash by both); estimated for memory \
+                without wait states, over as many steps or, of the expensive ones, fewer.";
+    let columns = &["method", "from flash", "from RAM", "estimated"];
+    Ok(Section { table: Table { title: "Cycles of a step", note: note.into(), columns, rows }, faults: vec![] })
 }

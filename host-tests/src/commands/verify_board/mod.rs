@@ -2,46 +2,78 @@
 
 mod bits;
 mod cycles;
-mod options;
 mod program;
 mod questions;
-mod report;
 mod scenes;
 mod talk;
 
-pub use options::Options;
+use std::fs;
+use std::path::PathBuf;
 
+use anyhow::Context;
+use clap::{Parser, value_parser};
+use firmware::config::BAUD;
 use firmware::protocol::{BoardName, Identify, Identity};
 
 use crate::commands::demo;
+use crate::commands::table::Table;
 use crate::console::cli::{complain, say};
 use crate::console::progress::Progress;
-use crate::emulator::boards::{BOARDS, every_board};
-use report::{Chip, Report};
+use crate::emulator::boards::every_board;
 use talk::Talk;
+
+/// Verifies a board at a serial port: the bits of every method and scene beside the host's, the cycles of every method, the
+/// times of the scenes, its buttons and its panel; and writes a report.
+#[derive(Clone, Debug, Parser)]
+#[command(name = "cargo verify-board", after_help = "Example: cargo verify-board --port auto --report feather")]
+pub struct Options {
+    /// The serial port; `auto` is the only one over USB
+    #[arg(long, value_name = "PATH")]
+    pub port: String,
+    /// Bits per second of that port
+    #[arg(long, value_name = "N", default_value_t = BAUD, value_parser = value_parser!(u32).range(1..))]
+    pub baud: u32,
+    /// Do not ask about buttons and panel
+    #[arg(long)]
+    pub no_questions: bool,
+    /// Where the report goes: FILE.md
+    #[arg(long, value_name = "FILE", default_value = "board-report")]
+    pub report: PathBuf,
+}
+
+/// A part of the report, and what in it is not well, a line each.
+#[derive(Debug, Default)]
+struct Section {
+    table: Table,
+    faults: Vec<String>,
+}
 
 /// Verifies the board and writes the report; whether all was well.
 pub fn run(options: &Options) -> anyhow::Result<bool> {
     let mut talk = Talk::new(demo::port(&options.port, options.baud)?)?;
     let identity: Identity = talk.ask(&Identify { request: 0 })?;
     let name = BoardName::from_code(identity.board).map_or("unknown", BoardName::name);
+    let board = every_board().find(|board| board.name == name);
     let progress = Progress::start(&format!("verifying {name} at {}", talk.port.name()));
-    let bits = bits::check(&mut talk)?;
-    let mut cycles = cycles::measure(&mut talk)?;
+    let (bits, measured) = (bits::check(&mut talk)?, cycles::measure(&mut talk)?);
     let scenes = scenes::watch(&mut talk, identity.hertz)?;
     drop(progress);
-    let asked = if options.no_questions { vec![] } else { questions::ask(&mut talk, name)? };
-    let board = every_board().find(|board| board.name == name);
+    let asked = if options.no_questions { Section::default() } else { questions::ask(&mut talk, name)? };
     let program = program::compare(board, &identity)?;
-    // Instructions are counted in QEMU, on a board with the same processor.
-    if let Some(board) = board.and_then(|board| BOARDS.iter().find(|counted| counted.target == board.target)) {
-        cycles::estimate(&mut cycles, board)?;
-    }
-    let chip = Chip::new(name, &identity);
-    let report = Report { chip, program, bits, cycles, scenes, asked };
-    let (markdown, json) = report.write(&options.report)?;
-    let faults = report.faults();
+    let sections = [bits, cycles::estimate(measured, board)?, scenes, asked];
+
+    let faults: Vec<&String> = sections.iter().flat_map(|section| &section.faults).collect();
+    let verdict = if faults.is_empty() { "every bit the host's".into() } else { format!("{} not well", faults.len()) };
+    let [motions, methods, scenes, _] = sections.each_ref().map(|section| section.table.rows.len());
+    let headline = format!("{name}: {motions} motions of {methods} methods, {scenes} scenes: {verdict}");
+    let chip = identity.chip.map(|word| format!("{word:08x}")).join(" ");
+    let mut text = format!("# {name}\n\n{headline}.\n\n");
+    text += &format!("- chip {chip}, processor {:08x}, {} Hz\n- {program}\n", identity.processor, identity.hertz);
+    let told = sections.iter().filter(|section| !section.table.rows.is_empty());
+    told.for_each(|section| text += &format!("\n{}", section.table.markdown()));
+    let path = options.report.with_extension("md");
+    fs::write(&path, text).with_context(|| path.display().to_string())?;
     faults.iter().for_each(|fault| complain(format_args!("not well: {fault}")));
-    say(format_args!("{}\nreport: {} and {}", report.headline(), markdown.display(), json.display()))?;
+    say(format_args!("{headline}\nreport: {}", path.display()))?;
     Ok(faults.is_empty())
 }

@@ -7,53 +7,52 @@ use std::thread;
 use firmware::app::controls::Key;
 use firmware::protocol::{Choose, Done, Frame};
 use firmware::scenes::SceneName;
-use serde::Serialize;
 
+use super::Section;
 use super::talk::Talk;
+use crate::commands::table::Table;
 use crate::console::cli::complain;
 
 /// Frames that may still be on their way when the person answers.
 const UNDER_WAY: u32 = 12;
 
-/// A question and its answer.
-#[derive(Clone, Debug, Serialize)]
-pub struct Asked {
-    /// What was asked for.
-    pub what: String,
-    /// Whether it is so; `None` if that was not answered.
-    pub is_so: Option<bool>,
-}
-
 /// Asks about what the board `name` has.
-pub fn ask(talk: &mut Talk, name: &str) -> anyhow::Result<Vec<Asked>> {
+pub fn ask(talk: &mut Talk, name: &str) -> anyhow::Result<Section> {
     let (has_panel, keys): (_, &[Key]) = match name {
         "lm3s6965evb" | "pico" => (true, Key::ALL),
         "stm32f405" => (true, &[Key::Select]),
         _ => (false, &[]),
     };
     talk.ask::<Done>(&Choose { request: 0, scene: SceneName::Page.code() })?;
-    let panel = has_panel.then(|| panel(talk));
-    panel.into_iter().chain(keys.iter().map(|&key| button(talk, key))).collect()
-}
-
-fn panel(talk: &mut Talk) -> anyhow::Result<Asked> {
-    let what = "the panel shows a swinging pendulum, upright and sharp";
-    let (answer, _) = answer(talk, &format!("{what}? [y/n, anything else: cannot say]"))?;
-    let is_so = match answer.trim() {
-        "y" | "yes" => Some(true),
-        "n" | "no" => Some(false),
-        _ => None,
+    let mut section = Section::default();
+    let mut note = |what: String, is_so: Option<bool>| {
+        let answer = is_so.map_or("not answered", |is_so| if is_so { "yes" } else { "no" });
+        section.faults.extend((is_so == Some(false)).then(|| format!("not so: {what}")));
+        section.table.rows.push(vec![what, answer.to_owned()]);
     };
-    Ok(Asked { what: what.to_owned(), is_so })
-}
-
-/// Whether a tap on the button starts the motion again.
-fn button(talk: &mut Talk, key: Key) -> anyhow::Result<Asked> {
-    let name = key.name();
-    let (answer, restarted) = answer(talk, &format!("tap the button '{name}', then press enter [n: there is none]"))?;
-    let is_tapped = !matches!(answer.trim(), "n" | "no") && !answer.is_empty();
-    let what = format!("a tap on the button '{name}' starts the motion again");
-    Ok(Asked { what, is_so: is_tapped.then_some(restarted) })
+    if has_panel {
+        let what = "the panel shows a swinging pendulum, upright and sharp";
+        let (answer, _) = answer(talk, &format!("{what}? [y/n, anything else: cannot say]"))?;
+        let is_so = match answer.trim() {
+            "y" | "yes" => Some(true),
+            "n" | "no" => Some(false),
+            _ => None,
+        };
+        note(what.to_owned(), is_so);
+    }
+    for key in keys.iter().map(|key| key.name()) {
+        let (answer, restarted) =
+            answer(talk, &format!("tap the button '{key}', then press enter [n: there is none]"))?;
+        let is_tapped = !matches!(answer.trim(), "n" | "no") && !answer.is_empty();
+        note(format!("a tap on the button '{key}' starts the motion again"), is_tapped.then_some(restarted));
+    }
+    section.table = Table {
+        title: "Seen and pressed",
+        note: "By the person at the board.".to_owned(),
+        columns: &["what", "is so"],
+        ..section.table
+    };
+    Ok(section)
 }
 
 /// The line that the person enters, empty where input has ended, and whether the motion started again meanwhile.

@@ -31,8 +31,7 @@ impl Talk {
 
     /// The next message of any kind.
     pub fn receive(&mut self) -> anyhow::Result<Received> {
-        let since = Instant::now();
-        let mut told = Vec::new();
+        let (since, mut told) = (Instant::now(), Vec::new());
         loop {
             if let Some(message) = self.arrived.pop_front() {
                 return Ok(message);

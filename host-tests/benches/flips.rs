@@ -8,8 +8,8 @@ use std::process::Command;
 use std::time::Instant;
 
 use anyhow::{Context, Result, ensure};
-use double_pendulum::Parameters;
 use double_pendulum::flips::Flip;
+use double_pendulum::{Error, Parameters};
 use host_tests::commands::flips::map::Map;
 use host_tests::commands::flips::square::Square;
 use host_tests::emulator::toolchain::workspace;
@@ -27,35 +27,27 @@ const PORTION: usize = 1024;
 /// plain C made 11.
 const GOALS: [f64; 2] = [280.0 / 11.0, 130.0 / 11.0];
 
-type Starts = [[f32; 2]];
-type Way = (&'static str, fn(&Search, &Starts) -> Result<Vec<Flip<f32>>>, Option<f64>);
+type Found = Result<Vec<Flip<f32>>, Error>;
+type Way = (&'static str, fn(&Search, &[[f32; 2]]) -> Found, Option<f64>);
 
 const WAYS: [Way; 4] = [
-    ("this kernel: one start after the other", alone, None),
-    ("24 side by side, any x86-64", baseline, Some(GOALS[1])),
-    ("24 side by side, vectors as this processor has them", vectors, Some(GOALS[0])),
+    (
+        "this kernel: one start after the other",
+        |search, starts| starts.iter().map(|&[a1, a2]| search.of(a1, a2)).collect(),
+        None,
+    ),
+    ("24 side by side, any x86-64", vectors::baseline, Some(GOALS[1])),
+    ("24 side by side, vectors as this processor has them", vectors::flips, Some(GOALS[0])),
     ("the same on all threads", threads, None),
 ];
 
-fn alone(search: &Search, starts: &Starts) -> Result<Vec<Flip<f32>>> {
-    Ok(starts.iter().map(|&[a1, a2]| search.of(a1, a2)).collect::<Result<_, _>>()?)
-}
-
-fn baseline(search: &Search, starts: &Starts) -> Result<Vec<Flip<f32>>> {
-    Ok(vectors::baseline(search, starts)?)
-}
-
-fn vectors(search: &Search, starts: &Starts) -> Result<Vec<Flip<f32>>> {
-    Ok(vectors::flips(search, starts)?)
-}
-
-fn threads(search: &Search, starts: &Starts) -> Result<Vec<Flip<f32>>> {
-    let portions = starts.par_chunks(PORTION).map(|portion| vectors(search, portion));
-    Ok(portions.collect::<Result<Vec<_>>>()?.concat())
+fn threads(search: &Search, starts: &[[f32; 2]]) -> Found {
+    let portions = starts.par_chunks(PORTION).map(|portion| vectors::flips(search, portion));
+    Ok(portions.collect::<Result<Vec<_>, _>>()?.concat())
 }
 
 /// Million steps a second of a way, and what it found.
-fn rate(way: &Way, map: &Map, starts: &Starts) -> Result<(f64, Vec<Flip<f32>>)> {
+fn rate(way: &Way, map: &Map, starts: &[[f32; 2]]) -> Result<(f64, Vec<Flip<f32>>)> {
     let search = map.search(1)?;
     let start = Instant::now();
     let found = way.1(&search, starts)?;

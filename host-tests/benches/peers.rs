@@ -1,0 +1,213 @@
+//! `cargo bench --bench peers`: this kernel beside an integration library, on this machine and in one run.
+//!
+//! Times are taken in turns and given as ratios only, because a machine's speed drifts. The last lines set them against
+//! the project's goals.
+
+use std::hint::black_box;
+use std::iter::successors;
+use std::time::Instant;
+
+use double_pendulum::form::{DirectionForm, ExtrapolatedForm, Form, Plain, Stepper};
+use double_pendulum::trig::Own;
+use double_pendulum::{Motion, Parameters, State};
+use host_tests::oracle::reference::Reference;
+use host_tests::oracle::trials::largest_difference;
+use ode_solvers::dop_shared::OutputType;
+use ode_solvers::{Dop853, Rk4, System, Vector4};
+
+const PARAMETERS: Parameters<f64> = Parameters { m1: 1.0, m2: 1.0, l1: 1.0, l2: 1.0, g: 9.81 };
+/// Motions from rest: both angles, rad, and how long they are followed, s.
+const SCENES: [(&str, f64, u32); 2] = [("regular", 0.5, 10), ("chaotic", 2.0, 5)];
+/// A scene is followed in parts, so that errors can be taken within it.
+const PARTS: u32 = 8;
+/// Runs of each, in turns; the fastest counts.
+const ROUNDS: usize = 200;
+
+/// The start of a motion and the time of a part of it.
+#[derive(Clone, Copy)]
+struct Scene {
+    start: [f64; 4],
+    part: f64,
+}
+
+/// One way to follow a scene: the state after so many parts of it. The effort, the last argument, is the number of steps to a
+/// part, or for an integrator that chooses its steps a tolerance of 10^(-effort/8).
+struct Contestant {
+    name: &'static str,
+    own: bool,
+    /// The greatest effort worth trying; below a tolerance of 1e-16 there is nothing.
+    most: u32,
+    run: fn(Scene, u32, u32) -> [f64; 4],
+}
+
+const fn own(name: &'static str, run: fn(Scene, u32, u32) -> [f64; 4]) -> Contestant {
+    Contestant { name, own: true, most: 8192, run }
+}
+
+const fn peer(name: &'static str, most: u32, run: fn(Scene, u32, u32) -> [f64; 4]) -> Contestant {
+    Contestant { name, own: false, most, run }
+}
+
+const DIRECTION: &str = "double-pendulum, direction form";
+const EXTRAPOLATED: &str = "double-pendulum, extrapolated to order 16";
+
+/// Classical RK4, 256 steps a second.
+const CLASSICAL: &[Contestant] = &[
+    own("double-pendulum", |scene, parts, steps| {
+        let (pendulum, dt) = (pendulum(), scene.part / f64::from(steps));
+        (0..parts * steps).fold(scene.start.into(), |state, _| pendulum.step(&state, dt)).into()
+    }),
+    own(DIRECTION, form::<DirectionForm<f64, Plain>>),
+    own("double-pendulum, direction form compensated", form::<DirectionForm<f64>>),
+    peer("ode_solvers, the book's equations", 8192, |scene, parts, steps| library_rk4(book, scene, parts, steps)),
+    peer("ode_solvers, this kernel's equations", 8192, |scene, parts, steps| library_rk4(ours(), scene, parts, steps)),
+];
+
+/// For tight errors.
+const TIGHT: &[Contestant] = &[
+    own(EXTRAPOLATED, form::<ExtrapolatedForm<16>>),
+    own("double-pendulum, direction form of RK4", form::<DirectionForm<f64>>),
+    peer("ode_solvers DOP853, the book's equations", 128, |scene, parts, effort| dop853(book, scene, parts, effort)),
+    peer("ode_solvers DOP853, this kernel's equations", 128, |scene, parts, effort| {
+        dop853(ours(), scene, parts, effort)
+    }),
+];
+
+fn pendulum() -> double_pendulum::Pendulum<f64, Own> {
+    double_pendulum::Pendulum::with_trig(PARAMETERS).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn form<F: Form<f64>>(scene: Scene, parts: u32, steps: u32) -> [f64; 4] {
+    let dt = scene.part / f64::from(steps);
+    let motion = Stepper::<f64, F>::new(&PARAMETERS, &scene.start.into(), dt);
+    let mut motion = motion.unwrap_or_else(|error| panic!("{error}"));
+    motion.advance(parts * steps);
+    motion.state().into()
+}
+
+/// This kernel's equations.
+fn ours() -> impl Fn(&[f64; 4]) -> [f64; 4] {
+    let pendulum = pendulum();
+    move |z| pendulum.derivatives(z)
+}
+
+/// The equations as the book prints them, with the standard library's sine and cosine: what a user would write.
+fn book(&[a1, a2, p1, p2]: &[f64; 4]) -> [f64; 4] {
+    let Parameters { m1, m2, l1, l2, g } = PARAMETERS;
+    let (sin, cos) = ((a1 - a2).sin(), (a1 - a2).cos());
+    let den = m1 + m2 * sin * sin;
+    let squares = p1 * p1 * m2 * l2 * l2 - 2.0 * p1 * p2 * m2 * l1 * l2 * cos + p2 * p2 * (m1 + m2) * l1 * l1;
+    let a_1 = p1 * p2 * sin / (l1 * l2 * den);
+    let a_2 = squares * (2.0 * (a1 - a2)).sin() / (2.0 * l1 * l1 * l2 * l2 * den * den);
+    [
+        (p1 * l2 - p2 * l1 * cos) / (l1 * l1 * l2 * den),
+        (p2 * (m1 + m2) * l1 - p1 * m2 * l2 * cos) / (m2 * l1 * l2 * l2 * den),
+        -(m1 + m2) * g * l1 * a1.sin() - a_1 + a_2,
+        -m2 * g * l2 * a2.sin() + a_1 - a_2,
+    ]
+}
+
+/// Equations for the library.
+struct Problem<E>(E);
+
+impl<E: Fn(&[f64; 4]) -> [f64; 4]> System<f64, Vector4<f64>> for Problem<E> {
+    fn system(&self, _t: f64, z: &Vector4<f64>, dz: &mut Vector4<f64>) {
+        *dz = self.0(&[z[0], z[1], z[2], z[3]]).into();
+    }
+}
+
+/// What an integrator has found that ends before its time, as some do at tolerances near the resolution of f64.
+const LOST: [f64; 4] = [f64::NAN; 4];
+
+fn library_rk4(equations: impl Fn(&[f64; 4]) -> [f64; 4], scene: Scene, parts: u32, steps: u32) -> [f64; 4] {
+    let (start, end, dt) = (Vector4::from(scene.start), scene.part * f64::from(parts), scene.part / f64::from(steps));
+    let mut stepper = Rk4::new(Problem(equations), 0.0, start, end, dt);
+    stepper.integrate().unwrap_or_else(|error| panic!("{error}"));
+    stepper.y_out().last().map_or(LOST, |&z| z.into())
+}
+
+fn dop853(equations: impl Fn(&[f64; 4]) -> [f64; 4], scene: Scene, parts: u32, effort: u32) -> [f64; 4] {
+    let (start, end) = (Vector4::from(scene.start), scene.part * f64::from(parts));
+    let tolerance = 10_f64.powf(-f64::from(effort) / 8.0);
+    let mut stepper = Dop853::new(Problem(equations), 0.0, end, end, start, tolerance, tolerance);
+    stepper.set_output(OutputType::Sparse);
+    let ended = stepper.integrate().ok();
+    ended.and_then(|_| stepper.y_out().last().copied()).map_or(LOST, Into::into)
+}
+
+/// A contestant with its effort, what it errs by, rad, and the fastest time.
+struct Entry {
+    contestant: &'static Contestant,
+    effort: u32,
+    error: f64,
+    time: f64,
+}
+
+/// Every contestant at the `effort` given, or at the least that errs by at most `asked`, rad (those that never do are left
+/// out), and the fastest of its runs in turns.
+fn race(contestants: &'static [Contestant], scene: Scene, effort: Option<u32>, asked: f64) -> Vec<Entry> {
+    let mut reference = Reference::new(&PARAMETERS, &Motion::at_rest(scene.start[0], scene.start[1]));
+    let exact = (PARTS / 2 + 1..=PARTS).map(|parts| {
+        reference.advance_to(scene.part * f64::from(parts));
+        (parts, reference.state())
+    });
+    let exact: Vec<(u32, State<f64>)> = exact.collect();
+    let entry = |contestant: &'static Contestant| {
+        let from = effort.unwrap_or(4);
+        let efforts = successors(Some(from), |last| Some(last + 1 + last / 128));
+        let mut tries = efforts.take_while(|&next| next <= contestant.most).map(|effort| {
+            let end = |parts| (contestant.run)(scene, parts, effort).into();
+            let errors = exact.iter().map(|&(parts, exact)| largest_difference(&[end(parts)], &[exact]));
+            Entry { contestant, effort, error: errors.fold(0.0, f64::max), time: f64::INFINITY }
+        });
+        tries.find(|entry| effort.is_some() || entry.error <= asked)
+    };
+    let mut entries: Vec<_> = contestants.iter().filter_map(entry).collect();
+    for _ in 0..ROUNDS {
+        for entry in &mut entries {
+            let start = Instant::now();
+            black_box((entry.contestant.run)(scene, PARTS, black_box(entry.effort)));
+            entry.time = start.elapsed().as_secs_f64().min(entry.time);
+        }
+    }
+    entries
+}
+
+/// Prints the entries with `time` relative to the fastest peer's; the least such ratio of ours that `counts`.
+fn ratio(title: &str, entries: &[Entry], time: fn(&Entry) -> f64, counts: fn(&str) -> bool) -> f64 {
+    println!("\n{title}\n{:51} {:>7} {:>9} {:>6}", "", "effort", "error", "time");
+    let least = |who: &dyn Fn(&Contestant) -> bool| {
+        entries.iter().filter(|entry| who(entry.contestant)).map(time).fold(f64::INFINITY, f64::min)
+    };
+    let peer = least(&|one| !one.own);
+    for entry in entries {
+        let Entry { contestant: Contestant { name, .. }, effort, error, .. } = entry;
+        println!("{name:51} {effort:7} {error:9.1e} {:6.2}", time(entry) / peer);
+    }
+    least(&|one| one.own && counts(one.name)) / peer
+}
+
+fn main() {
+    let mut goals = Vec::new();
+    for (name, angle, seconds) in SCENES {
+        let scene = Scene { start: [angle, angle, 0.0, 0.0], part: f64::from(seconds) / f64::from(PARTS) };
+        let entries = race(CLASSICAL, scene, Some(256 * seconds / PARTS), 0.0);
+        // In proportion to the time for an error that all share: it falls with the fourth power of the number of steps.
+        let at_equal_error = |entry: &Entry| entry.time * entry.error.powf(0.25);
+        let title = format!("{name}: RK4, 256 steps a second, time for an error that all share");
+        let measured = ratio(&title, &entries, at_equal_error, |name| name == DIRECTION);
+        goals.push((format!("{name}: RK4 in the direction form, of every peer's time"), measured, 0.45));
+        for error in [1e-9, 1e-12] {
+            let entries = race(TIGHT, scene, None, error);
+            let title = format!("{name}: time to an error of {error:e} rad");
+            let measured = ratio(&title, &entries, |entry| entry.time, |name| name == EXTRAPOLATED);
+            let most = if (name, error) == ("regular", 1e-12) { 0.2 } else { 1.0 / 1.5 };
+            goals.push((format!("{name}: extrapolation, of DOP853's time to {error:e} rad"), measured, most));
+        }
+    }
+    println!("\ngoals, at equal error");
+    for (asked, measured, most) in goals {
+        let verdict = if measured <= most { "met" } else { "MISSED" };
+        println!("{asked:58} {measured:6.2}, at most {most:.2} asked: {verdict}");
+    }
+}

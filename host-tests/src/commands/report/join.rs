@@ -1,0 +1,182 @@
+//! Cost and error of every method and of the programs in C: one table.
+
+use anyhow::Result;
+use double_pendulum::{Integrator, Method};
+use rayon::prelude::*;
+
+use super::accuracy::{self, Error, rates, request, usual_rate};
+use super::c_peers::{self, Program};
+use super::scene::{LONG, Scene};
+use crate::commands::count::{StepCost, Target, affordable_cost};
+use crate::commands::table::{Table, small};
+use crate::emulator::boards::Board;
+use crate::emulator::toolchain::Toolchain;
+
+/// The finest step is 2^-this s.
+const FINEST: u32 = 13;
+
+/// One method through one scene on one board with one size of its steps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    /// A method of the kernel, or a program in C.
+    pub name: &'static str,
+    /// The motion.
+    pub scene: &'static Scene,
+    /// The board.
+    pub board: &'static Board,
+    /// Steps a second.
+    pub rate: u32,
+    /// Of one step.
+    pub step: StepCost,
+    /// The largest over the scene.
+    pub error: Error,
+    /// Another point of the scene and board has neither more cycles nor a larger error, and less of one.
+    pub dominated: bool,
+}
+
+impl Point {
+    /// Estimated cycles per simulated second.
+    pub fn cycles(&self) -> f64 {
+        f64::from(self.rate) * self.step.cycles
+    }
+
+    fn is_dominated_by(&self, other: &Self) -> bool {
+        let same = other.board == self.board && other.scene == self.scene;
+        let (error, own) = (other.error.angle, self.error.angle);
+        let (cycles, own_cycles) = (other.cycles(), self.cycles());
+        same && cycles <= own_cycles && error <= own && (cycles < own_cycles || error < own)
+    }
+}
+
+/// The methods that are compared: all but the closed forms, whose errors are those of their equations.
+pub fn methods() -> impl Iterator<Item = Method> + Clone {
+    Method::ALL.iter().copied().filter(|method| method.integrator() != Integrator::ClosedForm)
+}
+
+/// Every method and every program in C through `scenes` on all targets; the long scene with as many steps as are usual.
+/// `tick` is called after each method. Also says what had to be left out, a line each.
+pub fn join(
+    toolchain: &Toolchain,
+    targets: &[Target],
+    scenes: &[&'static Scene],
+    tick: &(dyn Fn() + Sync),
+) -> Result<(Vec<Point>, Vec<String>)> {
+    let exact: Vec<_> = scenes.par_iter().map(|scene| (*scene, accuracy::exact(scene))).collect();
+    let methods: Vec<Method> = methods().collect();
+    let pairs: Vec<_> = exact.iter().flat_map(|scene| methods.iter().map(move |&method| (scene, method))).collect();
+    let errors = pairs.into_par_iter().map(|(&(scene, ref exact), method)| {
+        let rates = rates(method, FINEST).filter(|&rate| scene != &LONG || rate == usual_rate(method));
+        let errors = rates.filter_map(|rate| Some((rate, accuracy::error(method, scene, rate, exact)?)));
+        let errors: Vec<_> = errors.collect();
+        tick();
+        (scene, method, errors)
+    });
+    let errors: Vec<_> = errors.collect();
+    let runs: Vec<_> = targets.iter().flat_map(|target| methods.iter().map(move |&method| (target, method))).collect();
+    let points = runs.into_par_iter().map(|(target, method)| {
+        // Only in fixed point are rods and masses unlike each other stepped by other code.
+        let mut counted: Vec<(&Scene, StepCost)> = Vec::new();
+        let mut points = Vec::new();
+        for &(scene, _, ref errors) in errors.iter().filter(|(_, of, _)| *of == method) {
+            let alike = |known: &Scene| !method.is_fixed_point() || known.parameters() == scene.parameters();
+            let step = match counted.iter().find(|(known, _)| alike(known)) {
+                Some(&(_, step)) => step,
+                None => {
+                    let Some(&(rate, _)) = errors.iter().find(|(rate, _)| *rate >= usual_rate(method)) else {
+                        continue;
+                    };
+                    let step = affordable_cost(target, &request(method, scene, rate))?;
+                    counted.push((scene, step));
+                    step
+                }
+            };
+            let (name, board) = (method.name(), target.board);
+            let point =
+                |&(rate, error): &(u32, Error)| Point { name, scene, board, rate, step, error, dominated: false };
+            points.extend(errors.iter().map(point));
+        }
+        tick();
+        Ok(points)
+    });
+    let mut points = points.collect::<Result<Vec<_>>>()?.concat();
+    let (programs, absent) = c_peers::compile(toolchain, targets)?;
+    let peers = programs.par_iter().map(|program: &Program| program.points(&exact)).collect::<Result<Vec<_>>>()?;
+    points.extend(peers.concat());
+    Ok((points, absent))
+}
+
+/// Marks what something else is at least as good as, in both cost and error.
+pub fn mark_dominated(points: &mut [Point]) {
+    let all = points.to_vec();
+    for point in points {
+        point.dominated = all.iter().any(|other| point.is_dominated_by(other));
+    }
+}
+
+/// Every point.
+pub fn table(points: &[Point]) -> Table {
+    let row = |point: &Point| {
+        let Point { name, scene, board, rate, step, error, dominated } = *point;
+        let mut row = [scene.name, board.cpu, name].map(str::to_owned).to_vec();
+        row.push(format!("1/{rate}"));
+        row.extend([step.instructions, step.cycles, step.stalls].map(|count| format!("{count:.0}")));
+        row.extend([step.hot_bytes, step.code_bytes, step.stack_bytes].map(|bytes| bytes.to_string()));
+        row.push(format!("{:.0}", point.cycles()));
+        row.extend([error.angle, error.pixels].map(small));
+        let is_resolved = 1.0 / f64::from(rate) <= scene.admissible_step();
+        row.push(String::from(if is_resolved { "yes" } else { "no" }));
+        row.push(String::from(if dominated { "dominated" } else { "best" }));
+        row
+    };
+    let columns = &[
+        "scene",
+        "processor",
+        "method",
+        "step (s)",
+        "instructions of a step",
+        "cycles of a step (estimate)",
+        "stalls",
+        "hot bytes",
+        "code bytes",
+        "stack bytes",
+        "cycles per s (estimate)",
+        "error (rad)",
+        "error (pixels)",
+        "resolved",
+        "verdict",
+    ];
+    Table { columns, rows: points.iter().map(row).collect(), ..Table::default() }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::super::scene::SCENES;
+    use super::*;
+    use crate::emulator::boards::BOARDS;
+
+    /// A method's point in the regular scene on the first board.
+    pub fn point(name: &'static str, cycles: f64, angle: f64) -> Point {
+        let step = StepCost {
+            steps: 1,
+            instructions: 0.0,
+            cycles: cycles / 64.0,
+            stalls: 0.0,
+            hot_bytes: 0,
+            code_bytes: 0,
+            stack_bytes: 0,
+        };
+        let error = Error { angle, pixels: 10.0 * angle };
+        Point { name, scene: &SCENES[0], board: &BOARDS[0], rate: 64, step, error, dominated: false }
+    }
+
+    #[test]
+    fn a_point_is_dominated_by_one_at_least_as_good_in_both() {
+        let one = |cycles, angle| point("rk4-f32", cycles, angle);
+        assert!(one(2.0, 1.0).is_dominated_by(&one(1.0, 1.0)));
+        assert!(one(1.0, 2.0).is_dominated_by(&one(1.0, 1.0)));
+        assert!(!one(1.0, 1.0).is_dominated_by(&one(1.0, 1.0)));
+        assert!(!one(2.0, 1.0).is_dominated_by(&one(1.0, 2.0)));
+        let elsewhere = Point { board: &BOARDS[1], ..one(0.0, 0.0) };
+        assert!(!one(1.0, 1.0).is_dominated_by(&elsewhere));
+    }
+}

@@ -1,0 +1,184 @@
+//! What the READMEs show of the report: what to take on each core, what a step costs and how far it is off, and a chart a core.
+
+use std::fs;
+
+use anyhow::{Context, Result, ensure};
+
+use super::c_peers::PROGRAMS;
+use super::chart::core_name;
+use super::join::Point;
+use super::scene::{LONG, SCENES, Scene};
+use crate::commands::table::{Table, small};
+use crate::emulator::boards::{BOARDS, Board};
+use crate::emulator::toolchain::workspace;
+
+/// Where the charts are kept, in the workspace.
+const CHARTS: &str = "host-tests/pictures/report";
+/// What stands before and after a README's block.
+const MARKS: [&str; 2] = ["<!-- made by cargo write-report --readme -->\n", "<!-- so far -->\n"];
+/// The READMEs, and how many of the rows they show.
+const READMES: [(&str, usize); 2] = [("README.md", 5), ("host-tests/README.md", 8)];
+/// The rows: what exists, what the page prints, and what to take; those of the first page first.
+const ROWS: [&str; 8] = [
+    PROGRAMS[1].0,
+    "textbook-f32",
+    "rk4-f32-direction",
+    "rk4-fixed32",
+    "extrapolation12-fixed64",
+    PROGRAMS[0].0,
+    "rk4-f32-direction-plain",
+    "extrapolation16-fixed64",
+];
+
+/// No larger an error is seen on the panel, pixels.
+const HALF_PIXEL: f64 = 0.5;
+/// What one may want to compute a motion for, in words before the cycles.
+type Purpose = (&'static str, fn(&Point) -> bool);
+const PURPOSES: [Purpose; 3] = [
+    ("draws at 60 fps", |point| point.rate >= 60 && point.error.pixels <= HALF_PIXEL),
+    ("keeps 1e-9 rad", |point| point.error.angle <= 1e-9),
+    ("keeps 1e-12 rad", |point| point.error.angle <= 1e-12),
+];
+
+/// What is machine-made in the READMEs.
+#[derive(Clone, Debug)]
+pub struct Blocks {
+    /// What to take on each core through a regular and a chaotic motion, a sentence each, in Markdown.
+    pub advice: Vec<String>,
+    table: Table,
+    /// Each chart's file.
+    charts: Vec<(String, String)>,
+}
+
+impl Blocks {
+    /// Of all points; `charts` are of the regular scene.
+    pub fn new(points: &[Point], charts: Vec<(String, String)>) -> Self {
+        Self { advice: advice(points), table: table(points), charts }
+    }
+
+    /// Whether the READMEs show this.
+    pub fn is_in_readmes(&self) -> Result<bool> {
+        let shown = READMES.map(|(file, rows)| Ok(read(file)?.contains(&self.block(rows))));
+        shown.into_iter().try_fold(true, |all, shown: Result<bool>| Ok(all && shown?))
+    }
+
+    /// Puts it there.
+    pub fn put_into_readmes(&self) -> Result<()> {
+        for (file, rows) in READMES {
+            fs::write(workspace().join(file), with_block(&read(file)?, &self.block(rows))?)?;
+        }
+        fs::create_dir_all(workspace().join(CHARTS))?;
+        self.charts.iter().try_for_each(|(name, svg)| Ok(fs::write(workspace().join(CHARTS).join(name), svg)?))
+    }
+
+    /// The advice as a list, and the first rows of the table.
+    fn block(&self, rows: usize) -> String {
+        let items: String = self.advice.iter().map(|sentence| format!("- {sentence}\n")).collect();
+        let rows = self.table.rows.iter().take(rows).cloned().collect();
+        format!("{items}\n{}", Table { rows, ..self.table.clone() }.markdown_rows())
+    }
+}
+
+fn read(file: &str) -> Result<String> {
+    fs::read_to_string(workspace().join(file)).with_context(|| format!("no {file}"))
+}
+
+/// The boards that were counted on.
+fn boards(points: &[Point]) -> impl Iterator<Item = &'static Board> {
+    BOARDS.iter().filter(|board| points.iter().any(|point| point.board == *board))
+}
+
+fn advice(points: &[Point]) -> Vec<String> {
+    let sentence = |board: &Board, scene: &Scene| {
+        let of = points.iter().filter(|point| point.scene == scene && point.board == board);
+        let parts = PURPOSES.map(|(words, serves)| {
+            let cheapest = of.clone().filter(|point| serves(point)).min_by(|a, b| a.cycles().total_cmp(&b.cycles()));
+            match cheapest {
+                Some(point) => format!("`{}` {words} for {}", point.name, thousands(point.cycles())),
+                None => format!("nothing {words}"),
+            }
+        });
+        format!("{}, {} motion, cycles a second: {}.", core_name(board), scene.name, parts.join("; "))
+    };
+    boards(points).flat_map(|board| [&SCENES[0], &SCENES[1]].map(|scene| sentence(board, scene))).collect()
+}
+
+/// To three digits, in thousands.
+fn thousands(cycles: f64) -> String {
+    match cycles / 1e3 {
+        kilo @ ..10.0 => format!("{kilo:.1}k"),
+        kilo @ ..1000.0 => format!("{kilo:.0}k"),
+        kilo => format!("{:.1}M", kilo / 1e3),
+    }
+}
+
+/// Cycles of a step and errors through the regular scene and the long one.
+fn table(points: &[Point]) -> Table {
+    let row = |&name: &&str| {
+        let long = points.iter().find(|point| point.name == name && point.scene == &LONG)?;
+        let same = points.iter().filter(|point| point.name == name && point.rate == long.rate);
+        let short = same.clone().find(|point| point.scene == &SCENES[0])?;
+        let on = |cpu: &str| same.clone().find(|point| point.board.cpu == cpu && point.scene == &SCENES[0]);
+        let cycles = ["cortex-m4", "cortex-m3", "cortex-m0"]
+            .map(|cpu| on(cpu).map_or_else(String::new, |point| format!("{:.0}", point.step.cycles)));
+        let errors = [short, long].map(|point| small(point.error.angle));
+        Some([vec![name.to_owned(), long.rate.to_string()], cycles.to_vec(), errors.to_vec()].concat())
+    };
+    let columns = &[
+        "method",
+        "steps a second",
+        "M4F cycles a step",
+        "M3 cycles",
+        "M0+ cycles",
+        "error in 10 s (rad)",
+        "error in 100 s (rad)",
+    ];
+    Table { columns, rows: ROWS.iter().filter_map(row).collect(), ..Table::default() }
+}
+
+fn with_block(readme: &str, block: &str) -> Result<String> {
+    let places = MARKS.map(|mark| readme.find(mark));
+    ensure!(
+        matches!(places, [Some(start), Some(end)] if start < end),
+        "a README has no place for what is machine-made"
+    );
+    let [start, end] = places.map(Option::unwrap_or_default);
+    Ok(format!("{}\n{block}\n{}", &readme[..start + MARKS[0].len()], &readme[end..]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::join::tests::point;
+    use super::*;
+
+    #[test]
+    fn a_block_replaces_the_one_between_the_marks() -> Result<()> {
+        let old = format!("before\n{}old\n{}after\n", MARKS[0], MARKS[1]);
+        let new = with_block(&old, "- take a\n")?;
+        assert_eq!(new, format!("before\n{}\n- take a\n\n{}after\n", MARKS[0], MARKS[1]));
+        assert_eq!(with_block(&new, "- take a\n")?, new);
+        assert!(with_block("no marks", "").is_err());
+        Ok(())
+    }
+
+    #[test]
+    fn a_sentence_has_25_words_at_most_and_names_the_cheapest() {
+        let points = [
+            point("rk4-fixed32", 4.4e4, 1e-4),
+            point("rk4-f64", 1e6, 1e-4),
+            point("extrapolation12-fixed64", 2e6, 1e-13),
+        ];
+        let advice = advice(&points);
+        assert!(advice.iter().all(|sentence| sentence.split_whitespace().count() <= 25), "{advice:?}");
+        let expected = "`rk4-fixed32` draws at 60 fps for 44k; `extrapolation12-fixed64` keeps 1e-9 rad for 2.0M;";
+        assert!(advice[0].contains(expected), "{advice:?}");
+    }
+
+    #[test]
+    fn the_rows_are_methods_or_programs_in_c() {
+        let is_known = |name: &&str| {
+            double_pendulum::Method::from_name(name).is_some() || PROGRAMS.iter().any(|(program, _)| program == name)
+        };
+        assert!(ROWS.iter().all(is_known));
+    }
+}
