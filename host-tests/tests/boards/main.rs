@@ -10,7 +10,6 @@ mod qemu_bits;
 mod qemu_buttons;
 mod qemu_faults;
 mod qemu_flips;
-mod qemu_frame;
 mod qemu_plan;
 mod qemu_restart;
 mod qemu_scenes;

@@ -1,6 +1,6 @@
 //! What a board streams is what the host's kernel computes, bit for bit.
 
-use crate::support::{application, settings, toolchain};
+use crate::support::on;
 use firmware::protocol::Frame;
 use host_tests::emulator::boards::{BOARDS, Board};
 use host_tests::emulator::qemu::{Lockstep, Machine, QemuError};
@@ -16,11 +16,10 @@ fn every_board_streams_the_kernels_bits() -> Result<(), QemuError> {
 }
 
 fn streams_the_kernels_bits(board: &Board) -> Result<(), QemuError> {
-    let (toolchain, elf) = (toolchain(), application(board));
-    let mut machine = Machine::start(&settings(&toolchain, board, &elf))?;
+    let mut machine = on(board, Machine::start)?;
     let mut expected: Option<Expected> = None;
     for sequence in 0..FRAMES {
-        let Some(frame) = machine.serial.next::<Frame>() else { return Err(machine.silence()) };
+        let frame: Frame = machine.wait_for()?;
         let expected = expected.get_or_insert_with(|| Expected::new(frame.mass_ratio, frame.start_angle));
         expected.tick();
         assert_eq!(
@@ -29,8 +28,7 @@ fn streams_the_kernels_bits(board: &Board) -> Result<(), QemuError> {
             "{}, frame {sequence}",
             board.name
         );
-        assert_eq!((frame.sequence, frame.dropped), (sequence, 0), "{}", board.name);
-        assert_eq!(frame.step, sequence + 1, "{}", board.name);
+        assert_eq!((frame.sequence, frame.dropped, frame.step), (sequence, 0, sequence + 1), "{}", board.name);
     }
     let Counts { damaged, lost, .. } = machine.serial.counts();
     assert_eq!((damaged, lost), (0, 0), "{}", board.name);
@@ -40,15 +38,12 @@ fn streams_the_kernels_bits(board: &Board) -> Result<(), QemuError> {
 #[test]
 fn standing_still_between_frames_changes_nothing() -> Result<(), QemuError> {
     const FRAMES: usize = 120;
-    let (toolchain, board) = (toolchain(), &BOARDS[0]);
-    let elf = application(board);
-    let settings = settings(&toolchain, board, &elf);
-    let mut stopped = Lockstep::start(&settings)?;
-    let running = Machine::start(&settings)?;
+    let mut stopped = on(&BOARDS[0], Lockstep::start)?;
+    let mut running = on(&BOARDS[0], Machine::start)?;
     for _ in 0..FRAMES {
         let frame = stopped.next_frame()?;
         stopped.screenshot()?;
-        assert_eq!(Some(frame), running.serial.next());
+        assert_eq!(frame, running.wait_for()?);
     }
     Ok(())
 }

@@ -1,6 +1,6 @@
 //! The map of flips on the emulated boards, with a floating-point unit and without: frame by frame, and finished, the host's.
 
-use crate::support::{application, settings, toolchain};
+use crate::support::{application, on};
 use firmware::config::TICK_RATE;
 use firmware::graphics::canvas::{Canvas, HEIGHT, WIDTH};
 use firmware::graphics::fade_layer::FadeLayer;
@@ -28,9 +28,8 @@ fn goal(board: &Board) -> f64 {
 #[test]
 fn the_map_of_a_board_is_the_hosts() -> Result<(), CountError> {
     BOARDS.par_iter().try_for_each(|board| {
-        let (toolchain, elf) = (toolchain(), application(board));
-        let image = Image::read(&elf)?;
-        let mut machine = Lockstep::start(&settings(&toolchain, board, &elf))?;
+        let image = Image::read(&application(board))?;
+        let mut machine = on(board, Lockstep::start)?;
         // The link is up once a frame has come.
         machine.next_frame()?;
         machine.machine().serial.send(&Choose { request: 1, scene: SceneName::Flips.code() })?;

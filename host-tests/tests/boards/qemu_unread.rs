@@ -3,7 +3,7 @@
 use std::thread::sleep;
 use std::time::Duration;
 
-use crate::support::{application, settings, toolchain};
+use crate::support::on;
 use firmware::protocol::Frame;
 use host_tests::emulator::boards::BOARDS;
 use host_tests::emulator::qemu::{Machine, QemuError};
@@ -18,9 +18,8 @@ const FRAMES: usize = 120;
 #[test]
 fn a_host_that_stops_reading_loses_frames_and_nothing_else() -> Result<(), QemuError> {
     let board = BOARDS.iter().find(|board| board.name == "mps2-an386").expect("it is a board");
-    let (toolchain, elf) = (toolchain(), application(board));
-    let mut machine = Machine::start(&settings(&toolchain, board, &elf))?;
-    let first: Frame = machine.serial.next().ok_or_else(|| machine.silence())?;
+    let mut machine = on(board, Machine::start)?;
+    let first: Frame = machine.wait_for()?;
 
     let stopped = machine.serial.stop_reading();
     let mut said = Vec::new();
@@ -33,7 +32,7 @@ fn a_host_that_stops_reading_loses_frames_and_nothing_else() -> Result<(), QemuE
     let mut expected = Expected::new(first.mass_ratio, first.start_angle);
     let (mut steps, mut last, mut after) = (0, first, 0);
     while after < FRAMES {
-        let frame: Frame = machine.serial.next().ok_or_else(|| machine.silence())?;
+        let frame: Frame = machine.wait_for()?;
         (steps..frame.step).for_each(|_| expected.tick());
         steps = frame.step;
         assert_eq!(frame.state.map(f32::to_bits), expected.state().map(f32::to_bits), "frame {}", frame.sequence);

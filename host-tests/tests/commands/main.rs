@@ -1,5 +1,6 @@
 //! The commands as they are called, the READMEs and what the report says.
 
+mod cli;
 mod closed_output;
 mod demo_cli;
 mod demo_port;

@@ -3,13 +3,12 @@
 
 pub(crate) mod comparison;
 mod headless;
+mod help;
 mod live;
 mod mirror;
 mod numbers;
 mod options;
-mod pace;
 mod panel;
-mod play;
 mod plot;
 mod readings;
 pub(crate) mod record;
@@ -20,12 +19,11 @@ mod tint;
 mod view;
 
 pub use options::Options;
-pub use play::played;
+pub use record::played;
 
 use std::io::{IsTerminal, stdin, stdout};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
-use pace::Pace;
 use record::Recording;
 use session::Session;
 use source::{Source, broken};
@@ -85,7 +83,7 @@ fn emulated(options: &Options, headless: bool) -> anyhow::Result<Source<'_>> {
 fn pico<'a>(toolchain: &Toolchain, options: &Options, headless: bool) -> anyhow::Result<Source<'a>> {
     let (emulator, _) = toolchain::set_up_pico().map_err(Refused::because)?;
     let machine = pico::Machine::start(&emulator, &toolchain.build_for(&PICO)?, limit(options, headless))?;
-    Ok(Source::Pico(Box::new(machine), (!headless).then(Pace::start)))
+    Ok(Source::Pico(Box::new(machine), (!headless).then(Instant::now)))
 }
 
 fn limit(options: &Options, headless: bool) -> Duration {

@@ -40,6 +40,8 @@ pub struct Readings {
     pub comparison: Comparison,
     /// The run so far.
     pub summary: Summary,
+    /// Whether what they mean is shown in their place.
+    pub help: bool,
     /// Frames that the latest of the energy errors stands for.
     frames_in_bar: u32,
     pub(super) arrivals: VecDeque<Instant>,

@@ -1,10 +1,12 @@
 //! Where the stream comes from: an emulated board, at the speed of the real one or frame by frame, or a board at a serial port.
 
 use std::process::ExitStatus;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
 
+use firmware::config::TICK_RATE;
 use firmware::protocol::{MAX_WIRE, Message, encode};
 
-use super::pace::Pace;
 use crate::emulator::boards::{Board, PICO};
 use crate::emulator::pico;
 use crate::emulator::qemu::{Lockstep, LogLine, Machine, QemuError, Screenshot};
@@ -16,8 +18,8 @@ pub enum Source<'a> {
     Live(Machine, &'a Board),
     /// Emulated, run from frame to frame.
     Lockstep(Lockstep, &'a Board),
-    /// The emulated Pico; in a terminal no faster than the real one.
-    Pico(Box<pico::Machine>, Option<Pace>),
+    /// The emulated Pico; in a terminal no faster than the real one, whose next frame is due then.
+    Pico(Box<pico::Machine>, Option<Instant>),
     /// At a serial port.
     Port(Port),
 }
@@ -38,7 +40,11 @@ impl Source<'_> {
             Self::Live(machine, _) => Ok(machine.serial.all_arrived().collect()),
             Self::Lockstep(lockstep, _) => lockstep.run_to_frame().map_err(broken),
             Self::Pico(machine, pace) => {
-                pace.iter_mut().for_each(Pace::keep);
+                if let Some(due) = pace {
+                    sleep(due.saturating_duration_since(Instant::now()));
+                    // What is late is not made up for.
+                    *due = Instant::now().max(*due) + Duration::from_secs(1) / TICK_RATE;
+                }
                 Ok(machine.run_to_frame()?)
             }
             Self::Port(port) => Ok(port.messages()),

@@ -15,7 +15,7 @@ use host_tests::emulator::qemu::{Machine, QemuError, Settings};
 use host_tests::link::Counts;
 use rayon::prelude::*;
 
-use crate::support::{application, settings, toolchain};
+use crate::support::{LIMIT, on};
 
 /// Seconds of the board's time in a short run: 1.5 for each scene, twice. Within 1.1 s the stack has been as deep on every
 /// board as it gets in an hour, an interrupt apart, whichever tick a scene is left at.
@@ -25,7 +25,7 @@ const PHYSICS: u32 = 2;
 /// An hour of scenes, a day of physics.
 const LONG: [u32; 2] = [3600, 24 * 60];
 /// Guards a long run against a hang: the slowest board on a slow host takes a tenth of it.
-const LIMIT: Duration = Duration::from_secs(6 * 3600);
+const LONG_LIMIT: Duration = Duration::from_secs(6 * 3600);
 
 /// What a run has shown.
 #[derive(Debug, Default)]
@@ -85,11 +85,9 @@ impl fmt::Display for Outcome {
     }
 }
 
-fn scenes(seconds: u32, limit: Option<Duration>) -> Result<(), QemuError> {
+fn scenes(seconds: u32, limit: Duration) -> Result<(), QemuError> {
     BOARDS.par_iter().try_for_each(|board| {
-        let (toolchain, elf) = (toolchain(), application(board));
-        let settings = settings(&toolchain, board, &elf);
-        let outcome = scenes::scenes(&Settings { limit: limit.unwrap_or(settings.limit), ..settings }, seconds)?;
+        let outcome = on(board, |settings| scenes::scenes(&Settings { limit, ..*settings }, seconds))?;
         println!("{}: {seconds} s of scenes: {outcome}", board.name);
         assert!(outcome.faults.is_empty(), "{}: {outcome}", board.name);
         assert!(outcome.frames >= u64::from(60 * seconds), "{}: {outcome}", board.name);
@@ -97,11 +95,9 @@ fn scenes(seconds: u32, limit: Option<Duration>) -> Result<(), QemuError> {
     })
 }
 
-fn physics(minutes: u32, limit: Option<Duration>) -> Result<(), QemuError> {
+fn physics(minutes: u32, limit: Duration) -> Result<(), QemuError> {
     let board = BOARDS.iter().find(|board| board.name == "mps2-an386").expect("it is a board");
-    let (toolchain, elf) = (toolchain(), application(board));
-    let settings = settings(&toolchain, board, &elf);
-    let outcome = physics::physics(&Settings { limit: limit.unwrap_or(settings.limit), ..settings }, minutes)?;
+    let outcome = on(board, |settings| physics::physics(&Settings { limit, ..*settings }, minutes))?;
     println!("{minutes} min of physics: {outcome}");
     assert!(outcome.faults.is_empty(), "{outcome}");
     Ok(())
@@ -109,18 +105,18 @@ fn physics(minutes: u32, limit: Option<Duration>) -> Result<(), QemuError> {
 
 #[test]
 fn every_board_plays_all_scenes_twice_alike() -> Result<(), QemuError> {
-    scenes(SCENES, None)
+    scenes(SCENES, LIMIT)
 }
 
 #[test]
 fn physics_alone_keeps_its_energy() -> Result<(), QemuError> {
-    physics(PHYSICS, None)
+    physics(PHYSICS, LIMIT)
 }
 
 #[test]
 #[ignore = "takes hours"]
 fn an_hour_of_scenes_and_a_day_of_physics() -> Result<(), QemuError> {
     let [seconds, minutes] = LONG;
-    scenes(seconds, Some(LIMIT))?;
-    physics(minutes, Some(LIMIT))
+    scenes(seconds, LONG_LIMIT)?;
+    physics(minutes, LONG_LIMIT)
 }

@@ -28,13 +28,13 @@ pub(super) fn physics(settings: &Settings, minutes: u32) -> Result<Outcome, Qemu
     let mut host: Job = Job::new(&request).expect("a motion that the kernel computes");
     let mut machine = Machine::start(settings)?;
     let mut outcome = Outcome::default();
-    outcome.frame(&machine.serial.next::<Frame>().ok_or_else(|| machine.silence())?);
+    outcome.frame(&machine.wait_for::<Frame>()?);
     machine.serial.send(&request.message(1))?;
 
     let mut start = None;
     let mut index = 0;
     while index <= minutes {
-        let message = machine.serial.receive().ok_or_else(|| machine.silence())?;
+        let message = machine.receive()?;
         if let Some(frame) = message.read() {
             outcome.frame(&frame);
         }
