@@ -6,7 +6,6 @@ mod count_elf;
 mod identity;
 mod no_panic;
 mod pico;
-mod qemu_bits;
 mod qemu_buttons;
 mod qemu_faults;
 mod qemu_flips;

@@ -2,7 +2,7 @@
 
 use std::fs::File;
 use std::io::BufReader;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::support::{LIMIT, toolchain};
@@ -11,6 +11,7 @@ use firmware::scenes::SceneName;
 use host_tests::commands::demo::played;
 use host_tests::emulator::host::Show;
 use host_tests::emulator::process::{Output, run};
+use tempfile::TempDir;
 
 const DEMO: &str = env!("CARGO_BIN_EXE_demo");
 /// Seconds recorded, and what that makes: 30 frames per second, 3 x 3 dots for each of 128 x 64 pixels.
@@ -22,39 +23,46 @@ fn demo(arguments: &[&str]) -> Output {
     run(Command::new(DEMO).args(arguments), LIMIT).unwrap_or_else(|error| panic!("{error}"))
 }
 
+/// Records this long on a board, without a fault; the files, and what it says.
+fn recorded(board: &str, folder: &TempDir, name: &str) -> ([PathBuf; 2], String) {
+    toolchain();
+    let files = ["gif", "png"].map(|kind| folder.path().join(format!("{name}.{kind}")));
+    let mut command = Command::new(DEMO);
+    command.args(["--board", board, "--headless", "--seconds", &SECONDS.to_string()]);
+    command.arg("--record").arg(&files[0]).arg("--screenshot").arg(&files[1]);
+    let output = run(&mut command, LIMIT).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    (files, output.stdout)
+}
+
+/// By QEMU, and by the emulator of the Pico, whose panel is seen through its own bus.
 #[test]
 fn a_recording_shows_a_swinging_pendulum_and_is_the_same_every_time() {
-    toolchain();
     let folder = tempfile::tempdir().expect("a folder");
-    let record = |name: &str| {
-        let (animation, last) = (folder.path().join(format!("{name}.gif")), folder.path().join(format!("{name}.png")));
-        let arguments = ["--headless", "--seconds", &SECONDS.to_string(), "--record"];
-        let mut command = Command::new(DEMO);
-        command.args(arguments).arg(&animation).arg("--screenshot").arg(&last);
-        let output = run(&mut command, LIMIT).unwrap_or_else(|error| panic!("{error}"));
-        assert_eq!(output.status.code(), Some(0), "{output:?}");
-        (animation, last, output.stdout)
-    };
-    let (animation, last, summary) = record("first");
-    for line in ["frames                120\n", "simulated time        2.000 s", "CRC errors            0"] {
-        assert!(summary.contains(line), "no {line:?} in\n{summary}");
+    for board in ["lm3s6965evb", "pico"] {
+        let ([animation, last], summary) = recorded(board, &folder, board);
+        for line in [
+            "frames                120\n",
+            "simulated time        2.000 s\n",
+            "CRC errors            0\n",
+            "dropped frames        0\n",
+            "120 frames, every bit",
+        ] {
+            assert!(summary.contains(line), "no {line:?} in\n{summary}");
+        }
+        let frames = played(&animation).expect("a GIF file");
+        let time: u32 = frames.iter().map(|(_, delay)| u32::from(*delay)).sum();
+        assert_eq!((frames.len(), time), (FRAMES, 100 * SECONDS));
+        assert!(frames.iter().all(|(dots, _)| dots.len() == (SIZE.0 * SIZE.1) as usize));
+        let moved = frames.windows(2).filter(|pair| pair[0].0 != pair[1].0).count();
+        assert_eq!(moved, FRAMES - 1, "every frame differs from the one before");
+        let screenshot = png::Decoder::new(BufReader::new(File::open(last).expect("a file")));
+        let screenshot = screenshot.read_info().expect("a PNG file");
+        assert_eq!((screenshot.info().width, screenshot.info().height), SIZE);
+        let ([again, _], _) = recorded(board, &folder, "again");
+        let bytes = |path: &Path| std::fs::read(path).expect("a file");
+        assert!(bytes(&animation) == bytes(&again), "two recordings differ");
     }
-    assert!(summary.contains("dropped frames        0"), "{summary}");
-
-    let frames = played(&animation).expect("a GIF file");
-    let time: u32 = frames.iter().map(|(_, delay)| u32::from(*delay)).sum();
-    assert_eq!((frames.len(), time), (FRAMES, 100 * SECONDS));
-    assert!(frames.iter().all(|(dots, _)| dots.len() == (SIZE.0 * SIZE.1) as usize));
-    let moved = frames.windows(2).filter(|pair| pair[0].0 != pair[1].0).count();
-    assert_eq!(moved, FRAMES - 1, "every frame differs from the one before");
-
-    let screenshot = png::Decoder::new(BufReader::new(File::open(last).expect("a file")));
-    let screenshot = screenshot.read_info().expect("a PNG file");
-    assert_eq!((screenshot.info().width, screenshot.info().height), SIZE);
-
-    let (again, ..) = record("second");
-    let bytes = |path: &Path| std::fs::read(path).expect("a file");
-    assert!(bytes(&animation) == bytes(&again), "two recordings differ");
 }
 
 /// The summary names the method, the plan's or the one asked for, and until when it is right.
@@ -98,29 +106,6 @@ fn of_a_board_without_a_panel_the_redrawn_one_is_shown() {
         assert_eq!(differing.count(), 0, "screenshot {number}");
         scene.tick();
     }
-}
-
-/// An emulated Pico, whose panel is seen through its own bus.
-#[test]
-fn the_pico_plays_every_frame() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let animation = folder.path().join("pico.gif");
-    let mut command = Command::new(DEMO);
-    command.args(["--board", "pico", "--headless", "--seconds", "2", "--record"]);
-    let output = run(command.arg(&animation), LIMIT).unwrap_or_else(|error| panic!("{error}"));
-    assert_eq!(output.status.code(), Some(0), "{output:?}");
-    for line in [
-        "frames                120\n",
-        "CRC errors            0\n",
-        "dropped frames        0\n",
-        "120 frames, every bit",
-    ] {
-        assert!(output.stdout.contains(line), "no {line:?} in\n{}", output.stdout);
-    }
-    let played = played(&animation).expect("a GIF file");
-    assert_eq!(played.len(), FRAMES);
-    let moved = played.windows(2).filter(|pair| pair[0].0 != pair[1].0).count();
-    assert_eq!(moved, FRAMES - 1, "every picture differs from the one before");
 }
 
 /// What QEMU is reached by lies there.

@@ -3,7 +3,7 @@
 use std::io::stdout;
 use std::time::{Duration, Instant};
 
-use anyhow::{bail, ensure};
+use anyhow::ensure;
 use firmware::app::controls::Key;
 use firmware::config::TICK_RATE;
 use firmware::protocol::{Pause, Press, Step};
@@ -16,7 +16,7 @@ use ratatui::crossterm::{cursor, execute};
 use super::Options;
 use super::session::Session;
 use super::view::draw;
-use crate::console::cli::{complain, say};
+use crate::console::cli::say;
 use crate::emulator::process;
 
 /// From one screenshot to the next: 30 per second.
@@ -42,23 +42,15 @@ fn show(options: &Options, session: &mut Session, mut terminal: DefaultTerminal)
     let last = options.seconds.map(|seconds| (seconds * f64::from(TICK_RATE)).ceil() as u32);
     let colours = !Colored::ansi_color_disabled();
     loop {
-        observe(session)?;
+        session.hear()?;
+        session.source.lines().into_iter().for_each(|line| session.readings.line(line));
+        session.look()?;
         terminal.draw(|frame| draw(frame, session.source.name(), &session.screenshot, &session.readings, colours))?;
         let is_over = last.is_some_and(|last| session.ticks() >= last);
-        if is_over || keys(session)? || session.source.ended()?.is_some() {
+        if is_over || keys(session)? {
             return Ok(());
         }
     }
-}
-
-/// Looks at the board.
-fn observe(session: &mut Session) -> anyhow::Result<()> {
-    session.hear()?;
-    session.source.lines().into_iter().for_each(|line| session.readings.line(line));
-    if session.source.ended()?.is_none() {
-        session.look()?;
-    }
-    Ok(())
 }
 
 /// Until the next screenshot is due: sends what the keys ask for. Whether the user wants to quit.
@@ -97,12 +89,6 @@ fn keys(session: &mut Session) -> anyhow::Result<bool> {
 /// With the terminal as it was: completes the files and says how it went.
 fn finish(mut session: Session) -> anyhow::Result<bool> {
     session.finish()?;
-    let ended = session.source.ended()?;
-    if let Some(status) = ended.filter(|status| !status.success()) {
-        session.source.rest().into_iter().for_each(|line| session.readings.line(line));
-        session.readings.lines.iter().for_each(complain);
-        bail!("the firmware or QEMU ended: {status}");
-    }
     ensure!(session.readings.frame.is_some(), "{}: no frame came", session.source.name());
     say(session.readings.report())?;
     Ok(session.readings.comparison.difference().is_none())

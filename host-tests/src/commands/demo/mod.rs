@@ -14,7 +14,6 @@ mod readings;
 pub(crate) mod record;
 mod session;
 mod source;
-mod summary;
 mod tint;
 mod view;
 
@@ -22,7 +21,7 @@ pub use options::Options;
 pub use record::played;
 
 use std::io::{IsTerminal, stdin, stdout};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use record::Recording;
 use session::Session;
@@ -31,8 +30,8 @@ use source::{Source, broken};
 use crate::console::cli::Refused;
 use crate::emulator::boards::PICO;
 use crate::emulator::pico;
-use crate::emulator::qemu::{Clock, Lockstep, Machine, Settings};
-use crate::emulator::toolchain::{self, Toolchain};
+use crate::emulator::qemu::{Clock, Lockstep, Settings};
+use crate::emulator::toolchain;
 use crate::link::{Port, find};
 
 /// The most time that an emulated board may take without a terminal: so much, and so much for each second of its time.
@@ -48,7 +47,7 @@ pub fn run(options: &Options) -> anyhow::Result<bool> {
     let port = options.port.as_ref().map(|name| port(name, options.baud)).transpose()?;
     let source = port.map_or_else(|| emulated(options, headless), |port| Ok(Source::Port(port)))?;
     let recording = options.record.as_deref().map(Recording::create).transpose();
-    let session = Session::new(options, source, recording?);
+    let session = Session::new(options, source, recording?, !headless);
     if headless { headless::run(options, session) } else { live::run(options, session) }
 }
 
@@ -61,29 +60,14 @@ pub(crate) fn port(name: &str, baud: u32) -> Result<Port, Refused> {
 /// The emulated board, started.
 fn emulated(options: &Options, headless: bool) -> anyhow::Result<Source<'_>> {
     let (toolchain, _) = toolchain::set_up().map_err(Refused::because)?;
-    if *options.board == PICO {
-        return pico(&toolchain, options, headless);
+    let (board, limit) = (options.board, limit(options, headless));
+    if *board == PICO {
+        let (emulator, _) = toolchain::set_up_pico().map_err(Refused::because)?;
+        return Ok(Source::Pico(Box::new(pico::Machine::start(&emulator, &toolchain.build_for(board)?, limit)?)));
     }
-    let board = options.board;
-    let settings = Settings {
-        qemu: toolchain.qemu(),
-        board,
-        elf: &toolchain.build_for(board)?,
-        debugger: true,
-        clock: Clock::Real,
-        limit: limit(options, headless),
-    };
-    if headless {
-        return Ok(Source::Lockstep(Lockstep::start(&settings).map_err(broken)?, board));
-    }
-    Ok(Source::Live(Machine::start(&settings).map_err(broken)?, board))
-}
-
-/// The emulated Pico, switched on.
-fn pico<'a>(toolchain: &Toolchain, options: &Options, headless: bool) -> anyhow::Result<Source<'a>> {
-    let (emulator, _) = toolchain::set_up_pico().map_err(Refused::because)?;
-    let machine = pico::Machine::start(&emulator, &toolchain.build_for(&PICO)?, limit(options, headless))?;
-    Ok(Source::Pico(Box::new(machine), (!headless).then(Instant::now)))
+    let (elf, clock) = (toolchain.build_for(board)?, Clock::Counted);
+    let settings = Settings { qemu: toolchain.qemu(), board, elf: &elf, debugger: true, clock, limit };
+    Ok(Source::Lockstep(Lockstep::start(&settings).map_err(broken)?, board))
 }
 
 fn limit(options: &Options, headless: bool) -> Duration {

@@ -13,8 +13,7 @@ use super::help;
 use super::numbers;
 use super::panel::Panel;
 use super::plot;
-use super::readings::Readings;
-use super::summary::way;
+use super::readings::{Readings, way};
 use crate::emulator::qemu::{LogLine, Screenshot, WIDTH};
 
 /// The panel's widths, columns: a pixel each; in Braille two of them; no narrower than makes sense.

@@ -79,7 +79,7 @@ pub(super) fn install_packages(packages: &[&str]) -> Result<(), String> {
     }
     let updated = attempt(&mut apt_get("update"), INSTALL, "apt-get fetches the lists of packages");
     let mut install = apt_get("install");
-    install.args(["--no-install-recommends", "--no-remove"]).args(packages);
+    install.args(["--no-install-recommends", "--no-remove", "--reinstall"]).args(packages);
     // One bad source of many does not stop the install; where it fails too, the lists are the cause.
     attempt(&mut install, INSTALL, &format!("apt-get installs {}", packages.join(", ")))
         .map_err(|failure| updated.err().unwrap_or(failure))
