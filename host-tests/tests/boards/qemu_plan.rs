@@ -14,8 +14,8 @@ use host_tests::emulator::host::Show;
 use host_tests::emulator::qemu::{Machine, QemuError};
 use rayon::prelude::*;
 
-/// A motion that ends early, one that goes another way soon, a model, nothing that moves.
-const SCENES: [SceneName; 4] = [SceneName::Page, SceneName::Beats2To1, SceneName::SmallLight, SceneName::Frequencies];
+/// One that goes another way soon, nothing that moves; a motion that ends early, a model.
+const SCENES: [SceneName; 4] = [SceneName::Beats2To1, SceneName::Frequencies, SceneName::Page, SceneName::SmallLight];
 /// By then all is found, ticks.
 const FOLLOWED: u32 = 18 * TICK_RATE;
 
@@ -30,10 +30,20 @@ fn told(show: &Show) -> Told {
 
 #[test]
 fn every_board_finds_the_hosts_plan_and_follows_it_from_the_same_tick() -> Result<(), QemuError> {
+    every_board_plans(&SCENES[..2])
+}
+
+#[test]
+#[ignore = "minutes: two scenes more"]
+fn every_board_plans_as_the_host_does_whatever_it_shows() -> Result<(), QemuError> {
+    every_board_plans(&SCENES[2..])
+}
+
+fn every_board_plans(scenes: &[SceneName]) -> Result<(), QemuError> {
     BOARDS.par_iter().try_for_each(|board| {
         let mut machine = on(board, Machine::start)?;
         machine.wait_for::<Frame>()?;
-        for name in SCENES {
+        for &name in scenes {
             machine.serial.send(&Choose { request: 1, scene: name.code() })?;
             machine.wait_for::<Done>()?;
             machine.log.arrived().for_each(drop);

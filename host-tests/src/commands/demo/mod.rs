@@ -30,7 +30,7 @@ use source::{Source, broken};
 use crate::console::cli::Refused;
 use crate::emulator::boards::PICO;
 use crate::emulator::pico;
-use crate::emulator::qemu::{Clock, Lockstep, Settings};
+use crate::emulator::qemu::{Clock, Lockstep, Machine, Settings};
 use crate::emulator::toolchain;
 use crate::link::{Port, find};
 
@@ -65,9 +65,12 @@ fn emulated(options: &Options, headless: bool) -> anyhow::Result<Source<'_>> {
         let (emulator, _) = toolchain::set_up_pico().map_err(Refused::because)?;
         return Ok(Source::Pico(Box::new(pico::Machine::start(&emulator, &toolchain.build_for(board)?, limit)?)));
     }
-    let (elf, clock) = (toolchain.build_for(board)?, Clock::Counted);
-    let settings = Settings { qemu: toolchain.qemu(), board, elf: &elf, debugger: true, clock, limit };
-    Ok(Source::Lockstep(Lockstep::start(&settings).map_err(broken)?, board))
+    let elf = toolchain.build_for(board)?;
+    let settings = Settings { qemu: toolchain.qemu(), board, elf: &elf, debugger: true, clock: Clock::Real, limit };
+    if headless {
+        return Ok(Source::Lockstep(Lockstep::start(&settings).map_err(broken)?, board));
+    }
+    Ok(Source::Live(Machine::start(&settings).map_err(broken)?, board))
 }
 
 fn limit(options: &Options, headless: bool) -> Duration {

@@ -15,6 +15,9 @@ use crate::emulator::qemu::{HEIGHT, Screenshot, WIDTH};
 const SCALE: usize = 3;
 /// The board's ticks from one screenshot to the next: 60/2 = 30 frames per second.
 const TICKS_PER_FRAME: u32 = TICK_RATE / 30;
+/// In a picture after the first: as it was. Few pixels change, which leaves long runs of this. The palette's first colour after
+/// the greys.
+const UNCHANGED: u8 = 16;
 /// GIF counts time in hundredths of a second.
 const GIF_RATE: u32 = 100;
 
@@ -23,6 +26,8 @@ pub struct Recording {
     encoder: Encoder<BufWriter<File>>,
     /// The screenshot to be shown next, and since which tick; it is written when its end is known.
     pending: Option<(Screenshot, u32)>,
+    /// What the file shows so far.
+    shown: Vec<u8>,
     /// The tick of the first screenshot.
     start: u32,
 }
@@ -32,9 +37,10 @@ impl Recording {
     pub fn create(path: &Path) -> anyhow::Result<Self> {
         let file = File::create(path).with_context(|| format!("cannot write {}", path.display()))?;
         let [width, height] = size();
-        let mut encoder = Encoder::new(BufWriter::new(file), width, height, &tint::palette())?;
+        let palette = [tint::palette(), vec![0; 3]].concat();
+        let mut encoder = Encoder::new(BufWriter::new(file), width, height, &palette)?;
         encoder.set_repeat(Repeat::Infinite)?;
-        Ok(Self { encoder, pending: None, start: 0 })
+        Ok(Self { encoder, pending: None, shown: Vec::new(), start: 0 })
     }
 
     /// Whether a screenshot of `tick` does not come too soon after the last.
@@ -67,8 +73,12 @@ impl Recording {
         let hundredths = |tick: u32| (tick.wrapping_sub(self.start) * GIF_RATE + TICK_RATE / 2) / TICK_RATE;
         let delay = u16::try_from(hundredths(tick) - hundredths(since)).unwrap_or(u16::MAX);
         let [width, height] = size();
-        let frame = Frame { delay, width, height, buffer: magnified(&screenshot).into(), ..Frame::default() };
-        Ok(self.encoder.write_frame(&frame)?)
+        let now = magnified(&screenshot);
+        let before = std::mem::replace(&mut self.shown, now.clone());
+        let change = |(index, grey)| if before.get(index) == Some(&grey) { UNCHANGED } else { grey };
+        let buffer = now.into_iter().enumerate().map(change).collect::<Vec<_>>().into();
+        let transparent = Some(UNCHANGED);
+        Ok(self.encoder.write_frame(&Frame { delay, width, height, transparent, buffer, ..Frame::default() })?)
     }
 }
 
@@ -88,9 +98,12 @@ pub fn played(path: &Path) -> anyhow::Result<Vec<(Vec<u8>, u16)>> {
     let mut options = DecodeOptions::new();
     options.set_color_output(ColorOutput::Indexed);
     let mut decoder = options.read_info(File::open(path)?)?;
-    let mut played = Vec::new();
+    let (mut played, mut shown) = (Vec::new(), Vec::new());
     while let Some(frame) = decoder.read_next_frame()? {
-        played.push((frame.buffer.to_vec(), frame.delay));
+        shown.resize(frame.buffer.len(), 0);
+        let dots = shown.iter_mut().zip(frame.buffer.iter());
+        dots.filter(|(_, dot)| frame.transparent != Some(**dot)).for_each(|(shown, dot)| *shown = *dot);
+        played.push((shown.clone(), frame.delay));
     }
     Ok(played)
 }

@@ -14,7 +14,7 @@ use super::record::{Recording, save};
 use super::source::Source;
 use crate::emulator::qemu::Screenshot;
 
-/// How far an emulated board may be behind a real one before it lets that go.
+/// How far the emulated Pico may be behind a real one before it lets that go.
 const LATE: Duration = Duration::from_millis(100);
 
 /// One run.
@@ -32,7 +32,7 @@ pub struct Session<'a> {
     begun: Option<u32>,
     /// What the ticks of the board's clock lack since it was last restarted.
     before: u32,
-    /// When an emulated board's next frame is due, which in a terminal goes no faster than a real one.
+    /// When the emulated Pico's next frame is due, which in a terminal goes no faster than a real one.
     due: Option<Instant>,
 }
 
@@ -40,7 +40,7 @@ impl<'a> Session<'a> {
     /// Of a board that has just been started, or found.
     pub fn new(options: &'a Options, source: Source<'a>, recording: Option<Recording>, is_live: bool) -> Self {
         let (readings, screenshot) = (Readings::default(), Screenshot::blank());
-        let due = (is_live && !source.is_port()).then(Instant::now);
+        let due = (is_live && matches!(source, Source::Pico(_))).then(Instant::now);
         Self { options, source, readings, screenshot, recording, now: None, begun: None, before: 0, due }
     }
 

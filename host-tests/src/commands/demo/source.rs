@@ -1,15 +1,17 @@
-//! Where the stream comes from: an emulated board, frame by frame, or a board at a serial port.
+//! Where the stream comes from: an emulated board, at the speed of the real one or frame by frame, or a board at a serial port.
 
 use firmware::protocol::{MAX_WIRE, Message, encode};
 
 use crate::emulator::boards::{Board, PICO};
 use crate::emulator::pico;
-use crate::emulator::qemu::{Lockstep, LogLine, QemuError, Screenshot};
+use crate::emulator::qemu::{Lockstep, LogLine, Machine, QemuError, Screenshot};
 use crate::link::{Counts, Port, Received};
 
 /// A board that plays.
 pub enum Source<'a> {
-    /// Emulated by QEMU.
+    /// Emulated by QEMU, its clock the host's.
+    Live(Machine, &'a Board),
+    /// Emulated by QEMU, run from frame to frame.
     Lockstep(Lockstep, &'a Board),
     /// The emulated Pico.
     Pico(Box<pico::Machine>),
@@ -21,7 +23,7 @@ impl Source<'_> {
     /// What the user calls it.
     pub fn name(&self) -> &str {
         match self {
-            Self::Lockstep(_, board) => board.name,
+            Self::Live(_, board) | Self::Lockstep(_, board) => board.name,
             Self::Pico(_) => PICO.name,
             Self::Port(port) => port.name(),
         }
@@ -30,6 +32,10 @@ impl Source<'_> {
     /// The messages since the last call; of one that goes frame by frame those up to the next.
     pub fn messages(&mut self) -> anyhow::Result<Vec<Received>> {
         match self {
+            Self::Live(machine, _) => match machine.ended().map_err(broken)? {
+                Some(_) => Err(broken(machine.silence())),
+                None => Ok(machine.serial.all_arrived().collect()),
+            },
             Self::Lockstep(lockstep, _) => lockstep.run_to_frame().map_err(broken),
             Self::Pico(machine) => Ok(machine.run_to_frame()?),
             Self::Port(port) => Ok(port.messages()),
@@ -41,6 +47,7 @@ impl Source<'_> {
         let mut wire = [0; MAX_WIRE];
         let wire = encode(message, &mut wire);
         match self {
+            Self::Live(machine, _) => machine.serial.send_bytes(wire).map_err(broken)?,
             Self::Lockstep(lockstep, _) => lockstep.machine().serial.send_bytes(wire).map_err(broken)?,
             Self::Pico(machine) => machine.send_bytes(wire)?,
             Self::Port(port) => port.send_bytes(wire),
@@ -52,6 +59,7 @@ impl Source<'_> {
     pub fn lines(&mut self) -> Vec<LogLine> {
         let notice = |text: String| LogLine { level: Some("warn".to_owned()), text, place: None };
         match self {
+            Self::Live(machine, _) => machine.log.arrived().collect(),
             Self::Lockstep(lockstep, _) => lockstep.machine().log.arrived().collect(),
             Self::Pico(machine) => machine.lines(),
             Self::Port(port) => port.notices().map(notice).collect(),
@@ -61,6 +69,7 @@ impl Source<'_> {
     /// What the link has been through.
     pub fn counts(&mut self) -> Counts {
         match self {
+            Self::Live(machine, _) => machine.serial.counts(),
             Self::Lockstep(lockstep, _) => lockstep.machine().serial.counts(),
             Self::Pico(machine) => machine.counts()[0],
             Self::Port(port) => port.counts(),
@@ -70,7 +79,7 @@ impl Source<'_> {
     /// Whether the host can see its panel.
     pub fn has_panel(&self) -> bool {
         match self {
-            Self::Lockstep(_, board) => board.has_panel,
+            Self::Live(_, board) | Self::Lockstep(_, board) => board.has_panel,
             Self::Pico(_) => true,
             Self::Port(_) => false,
         }
@@ -79,6 +88,7 @@ impl Source<'_> {
     /// What its panel shows; `None` where the host cannot see one.
     pub fn panel(&mut self) -> anyhow::Result<Option<Screenshot>> {
         match self {
+            Self::Live(machine, board) if board.has_panel => machine.screenshot().map(Some).map_err(broken),
             Self::Lockstep(lockstep, board) if board.has_panel => lockstep.screenshot().map(Some).map_err(broken),
             Self::Pico(machine) => Ok(Some(machine.screenshot()?)),
             _ => Ok(None),

@@ -212,7 +212,7 @@ impl Machine {
     }
 
     /// Why no message comes any more.
-    fn silence(&mut self) -> QemuError {
+    pub fn silence(&mut self) -> QemuError {
         self.explain(QemuError::connection("serial port")(ErrorKind::UnexpectedEof.into()))
     }
 }
