@@ -6,18 +6,29 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
+use host_tests::emulator::process::{Output, run};
 use host_tests::emulator::toolchain::workspace;
 use host_tests::oracle::snapshot::BLESS;
 use rayon::prelude::*;
 
+use crate::support::LIMIT;
+
+/// A command of this project.
+pub fn program(name: &str) -> Command {
+    Command::new(Path::new(env!("CARGO_BIN_EXE_demo")).with_file_name(name))
+}
+
+/// What it says, and how it ends.
+pub fn output(command: &mut Command) -> Output {
+    run(command, LIMIT).unwrap_or_else(|error| panic!("{error}"))
+}
+
 /// What a command line of this project's does, as a snapshot has it.
 fn played(line: &str) -> String {
     let mut words = line.split_whitespace();
-    let program = Path::new(env!("CARGO_BIN_EXE_demo")).with_file_name(words.next().unwrap_or_default());
-    let output = Command::new(program).args(words).output().unwrap_or_else(|error| panic!("{line}: {error}"));
+    let output = output(program(words.next().unwrap_or_default()).args(words));
     let mut text = format!("$ {line}\n");
-    for (mark, bytes) in [('>', output.stdout), ('!', output.stderr)] {
-        let said = String::from_utf8(bytes).unwrap_or_else(|error| panic!("{line}: {error}"));
+    for (mark, said) in [('>', output.stdout), ('!', output.stderr)] {
         text.extend(said.lines().map(|line| format!("{mark} {line}\n")));
     }
     let code = output.status.code();

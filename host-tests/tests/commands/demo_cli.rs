@@ -3,34 +3,28 @@
 use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
-use crate::support::{LIMIT, toolchain};
+use super::cli::{output, program};
+use crate::support::toolchain;
 use firmware::config::STM32F405;
 use firmware::scenes::SceneName;
 use host_tests::commands::demo::played;
 use host_tests::emulator::host::Show;
-use host_tests::emulator::process::{Output, run};
 use tempfile::TempDir;
 
-const DEMO: &str = env!("CARGO_BIN_EXE_demo");
 /// Seconds recorded, and what that makes: 30 frames per second, 3 x 3 dots for each of 128 x 64 pixels.
 const SECONDS: u32 = 2;
 const FRAMES: usize = 60;
 const SIZE: (u32, u32) = (384, 192);
 
-fn demo(arguments: &[&str]) -> Output {
-    run(Command::new(DEMO).args(arguments), LIMIT).unwrap_or_else(|error| panic!("{error}"))
-}
-
 /// Records this long on a board, without a fault; the files, and what it says.
 fn recorded(board: &str, folder: &TempDir, name: &str) -> ([PathBuf; 2], String) {
     toolchain();
     let files = ["gif", "png"].map(|kind| folder.path().join(format!("{name}.{kind}")));
-    let mut command = Command::new(DEMO);
+    let mut command = program("demo");
     command.args(["--board", board, "--headless", "--seconds", &SECONDS.to_string()]);
     command.arg("--record").arg(&files[0]).arg("--screenshot").arg(&files[1]);
-    let output = run(&mut command, LIMIT).unwrap_or_else(|error| panic!("{error}"));
+    let output = output(&mut command);
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     (files, output.stdout)
 }
@@ -73,7 +67,8 @@ fn the_method_can_be_chosen_and_is_named() {
         ("plan", "extrapolation10-fixed64, a step to a frame"),
         ("rk4-f32-direction", "rk4-f32-direction, a step to a frame"),
     ] {
-        let output = demo(&["--scene", "page", "--method", method, "--headless", "--seconds", "2"]);
+        let output =
+            output(program("demo").args(["--scene", "page", "--method", method, "--headless", "--seconds", "2"]));
         assert_eq!(output.status.code(), Some(0), "{output:?}");
         let line = output.stdout.lines().find(|line| line.starts_with("shown ")).unwrap_or_default();
         assert!(line.contains(shown) && line.contains("right to half a pixel until"), "{method}: {line}");
@@ -86,9 +81,9 @@ fn of_a_board_without_a_panel_the_redrawn_one_is_shown() {
     toolchain();
     let folder = tempfile::tempdir().expect("a folder");
     let animation = folder.path().join("figure-7.gif");
-    let mut command = Command::new(DEMO);
+    let mut command = program("demo");
     command.args(["--board", "stm32f405", "--scene", "figure-7", "--headless", "--seconds", "1", "--record"]);
-    let output = run(command.arg(&animation), LIMIT).unwrap_or_else(|error| panic!("{error}"));
+    let output = output(command.arg(&animation));
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     assert!(output.stdout.contains("frames, every bit the host's"), "{}", output.stdout);
 
@@ -114,9 +109,7 @@ fn a_folder_for_sockets_that_cannot_be_had_is_named() {
     let long = tempfile::tempdir().expect("a folder").path().join("long".repeat(20));
     std::fs::create_dir_all(&long).expect("a folder");
     for folder in [Path::new("/dev/null"), &long] {
-        let mut command = Command::new(DEMO);
-        let output = run(command.args(["--headless", "--seconds", "0.1"]).env("TMPDIR", folder), LIMIT);
-        let output = output.unwrap_or_else(|error| panic!("{error}"));
+        let output = output(program("demo").args(["--headless", "--seconds", "0.1"]).env("TMPDIR", folder));
         assert_eq!((output.status.code(), output.stdout.as_str()), (Some(2), ""), "{output:?}");
         let named = format!("TMPDIR={}", folder.display());
         assert!(output.stderr.lines().count() == 1 && output.stderr.contains(&named), "{}", output.stderr);

@@ -6,7 +6,6 @@ use std::io::{self, BufReader, Read};
 use std::os::unix::fs::PermissionsExt;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
-use std::time::Duration;
 
 use firmware::protocol::Frame;
 use host_tests::emulator::boards::STM32F405;
@@ -14,13 +13,11 @@ use host_tests::emulator::process::{self, Output};
 use host_tests::emulator::toolchain;
 use host_tests::link::Inbox;
 
-/// For a build of the firmware from nothing.
-const LIMIT: Duration = Duration::from_secs(1800);
+use super::cli::{output, program};
+use crate::support::LIMIT;
 
 fn flash(arguments: &[&str], path: impl IntoIterator<Item = PathBuf>) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_flash-f4"));
-    command.args(arguments).env("PATH", env::join_paths(path).expect("no colon in a folder's name"));
-    process::run(&mut command, LIMIT).unwrap_or_else(|error| panic!("{error}"))
+    output(program("flash-f4").args(arguments).env("PATH", env::join_paths(path).expect("no colon in a folder's name")))
 }
 
 #[test]

@@ -16,7 +16,6 @@ mod plan_cli;
 mod process;
 mod random_input;
 mod readmes;
-mod simulate_boards;
 mod simulate_cli;
 #[path = "../support/mod.rs"]
 mod support;

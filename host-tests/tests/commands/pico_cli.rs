@@ -2,22 +2,19 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::Command;
-use std::time::Duration;
 
 use host_tests::emulator::boards::PICO;
 use host_tests::emulator::flash::flash_image;
-use host_tests::emulator::process::{Output, run};
+use host_tests::emulator::process::Output;
 use host_tests::emulator::toolchain;
 
-/// For a build of the firmware from nothing.
-const LIMIT: Duration = Duration::from_secs(1800);
+use super::cli::{output, program};
+
 /// What the label on an RP2040's drive says.
 const LABEL: &str = "UF2 Bootloader v3.0\nModel: Raspberry Pi RP2\nBoard-ID: RPI-RP2\n";
 
 fn pico(drive: &Path) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_pico"));
-    run(command.arg("--drive").arg(drive), LIMIT).unwrap_or_else(|error| panic!("{error}"))
+    output(program("pico").arg("--drive").arg(drive))
 }
 
 /// Block by block, as the boot ROM takes it.

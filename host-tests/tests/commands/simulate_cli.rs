@@ -1,17 +1,24 @@
-//! `cargo simulate` computes what it says: methods agree, energies stay, digits and bits are the same numbers.
+//! `cargo simulate` computes what it says: methods agree, energies stay, digits and bits are the same numbers, and a board's are
+//! the host's.
 
 use std::f64::consts::PI;
-use std::process::Command;
 
+use double_pendulum::Integrator;
+use firmware::job::ON_BOARDS;
+use host_tests::emulator::boards::{BOARDS, Board};
 use host_tests::oracle::tolerances;
+
+use super::cli::{output, program};
+
+fn simulate(arguments: &str) -> String {
+    let output = output(program("simulate").args(arguments.split_whitespace()));
+    assert!(output.status.success(), "{arguments}: {}", output.stderr);
+    output.stdout
+}
 
 /// The rows that the command prints, cell by cell, without the header.
 fn rows(arguments: &str) -> Vec<Vec<String>> {
-    let mut simulate = Command::new(env!("CARGO_BIN_EXE_simulate"));
-    let output = simulate.args(arguments.split_whitespace()).output().expect("it runs");
-    assert!(output.status.success(), "{arguments}: {}", String::from_utf8_lossy(&output.stderr));
-    let text = String::from_utf8(output.stdout).expect("text");
-    text.lines().skip(1).map(|line| line.split(',').map(str::to_owned).collect()).collect()
+    simulate(arguments).lines().skip(1).map(|line| line.split(',').map(str::to_owned).collect()).collect()
 }
 
 /// The numbers of its last row.
@@ -82,4 +89,41 @@ fn many_turns_at_the_start_keep_the_energy() {
         let [before, after] = [0, 1].map(|until| last(&format!("--angles {start} --until {until} --every 1"))[7]);
         assert!((after - before).abs() < digits * before.abs(), "{start}: {before} {after}");
     }
+}
+
+fn same_on(board: &Board, options: &str) {
+    let host = simulate(&format!("{options} --bits"));
+    assert!(host.lines().count() > 2);
+    assert_eq!(simulate(&format!("{options} --bits --on {}", board.name)), host, "{options} on {}", board.name);
+}
+
+/// On a Cortex-M3; test `verify_board` does the same on a Cortex-M4F, `identity` compares every step on both.
+#[test]
+fn every_method_has_the_same_bits_on_a_board() {
+    for method in ON_BOARDS {
+        let is_linear = method.integrator() == Integrator::ClosedForm;
+        // Chaotic, and long enough for one wrong bit to show everywhere.
+        let figure_7 = "--masses 1,2.75 --angles 171,171 --degrees";
+        let motion = if is_linear { "--angles 0.1,-0.05 --velocities 0.2,0" } else { figure_7 };
+        same_on(&BOARDS[0], &format!("{motion} --step 1/256 --until 5 --every 1 --method {method}"));
+    }
+}
+
+#[test]
+fn unequal_rods_with_velocities_have_the_same_bits_on_every_board() {
+    let rods = "--masses 2,0.5 --lengths 0.3,1.1 --velocities 3,-4 --step 1/256 --until 4 --every 1/2";
+    for board in &BOARDS {
+        for method in ["rk4-f32", "rk4-fixed32"] {
+            same_on(board, &format!("{rods} --method {method}"));
+        }
+    }
+}
+
+/// What is chosen for a tolerance is what is computed, on the host and on the board.
+#[test]
+fn a_tolerance_is_kept_on_a_board() {
+    let motion = "--angles 2,2 --until 2 --every 1/2 --bits";
+    let tolerated = simulate(&format!("{motion} --tolerance 1e-4 --on {}", BOARDS[0].name));
+    assert_eq!(tolerated, simulate(&format!("{motion} --tolerance 1e-4 --method rk4-fixed32 --on host")));
+    assert_ne!(tolerated, simulate(&format!("{motion} --tolerance 1e-4")));
 }

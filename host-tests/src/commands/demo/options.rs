@@ -12,9 +12,8 @@ use firmware::scenes::{AnyScene, SceneName};
 use crate::console::cli::{Refused, check_writable, choice};
 use crate::emulator::boards::{BOARDS, Board, every_board};
 
-/// Shows the double pendulum on a board's panel, live in the terminal, each frame compared with the host's own.
-///
-/// A panel that the host cannot see is redrawn from the numbers that the board sends.
+/// Shows the double pendulum on a board's panel, live in the terminal, each frame compared with the host's own; a panel that the
+/// host cannot see is redrawn from the numbers that the board sends.
 #[derive(Clone, Debug, Parser)]
 #[command(name = "cargo demo", after_help = after_help())]
 pub struct Options {
