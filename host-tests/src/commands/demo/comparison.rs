@@ -71,11 +71,8 @@ impl Comparison {
             None if self.playing.is_some() => return,
             _ => {}
         }
-        if self.mirror.is_none() {
-            self.mirror = Mirror::new().ok();
-        }
-        let plays = self.mirror.as_mut().is_some_and(|mirror| mirror.play(&start).is_ok());
-        self.playing = plays.then_some(start);
+        self.mirror = Mirror::of(&start).ok();
+        self.playing = self.mirror.is_some().then_some(start);
         self.unsure = self.waiting.len();
     }
 

@@ -1,6 +1,5 @@
 //! Starting and ending an emulated board.
 
-use std::fmt;
 use std::io::ErrorKind;
 use std::os::unix::net::{UnixListener, UnixStream};
 use std::path::Path;
@@ -51,6 +50,7 @@ pub struct Settings<'a> {
 }
 
 /// A running board. Dropping it ends QEMU.
+#[derive(Debug)]
 pub struct Machine {
     /// The serial link.
     pub serial: Serial,
@@ -59,12 +59,6 @@ pub struct Machine {
     monitor: Monitor,
     process: Running,
     folder: TempDir,
-}
-
-impl fmt::Debug for Machine {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Machine").field("process", &self.process).finish_non_exhaustive()
-    }
 }
 
 impl Machine {

@@ -13,6 +13,7 @@ use serde_json::{Value, json};
 use super::{QemuError, Screenshot};
 
 /// The control channel of a running QEMU.
+#[derive(Debug)]
 pub(super) struct Monitor(BufReader<UnixStream>);
 
 impl Monitor {
