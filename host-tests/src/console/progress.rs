@@ -31,13 +31,13 @@ impl Bar {
         Self { bar, reminder: Mutex::new(Reminder::new()) }
     }
 
-    /// So many pieces were done before.
+    /// The pieces that were done before.
     pub fn begin_at(&self, pieces: u64) {
         self.bar.set_position(pieces);
         self.bar.reset_eta();
     }
 
-    /// So many pieces more are done.
+    /// That these pieces more are done.
     pub fn advance(&self, pieces: u64) {
         self.bar.inc(pieces);
         if self.bar.is_hidden() && self.reminder.lock().is_ok_and(|mut reminder| reminder.is_due()) {

@@ -18,7 +18,7 @@ use nix::sys::signal::{Signal, killpg};
 use nix::unistd::Pid;
 
 /// Kills the group when the time is up, and when the other end of its input closes, which this process alone has: when this
-/// process ends, by whatever signal. Any Unix can do that, and it reaches the children's children.
+/// process ends, by any signal. Any Unix can do that, and it reaches the children's children.
 const WARDEN: &str = "(sleep $0; kill -KILL 0) & read -r _; kill -KILL 0";
 
 /// Why a child could not be run to its end.

@@ -61,7 +61,7 @@ fn within(probe: &mut Lockstep, elf: &Path, scene: SceneName) -> Result<Frame, Q
     }
 }
 
-/// Puts an instruction where it disturbs nobody, and the processor there.
+/// Puts an instruction where it disturbs nothing, and the processor there.
 fn execute(probe: &mut Lockstep, instruction: [u8; 2]) -> Result<(), QemuError> {
     probe.write(UNUSED, &instruction)?;
     probe.divert(&[(Register::Pc, UNUSED)])

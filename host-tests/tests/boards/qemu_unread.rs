@@ -40,7 +40,7 @@ fn a_host_that_stops_reading_loses_frames_and_nothing_else() -> Result<(), QemuE
         steps = frame.step;
         let state: [f32; 4] = expected.report().state.into();
         assert_eq!(frame.state.map(f32::to_bits), state.map(f32::to_bits), "frame {}", frame.sequence);
-        // No tick is left out, whatever became of its frame.
+        // No tick is left out, even if its frame is.
         assert_eq!(frame.step, frame.sequence + 1 + frame.dropped);
         after += usize::from(after > 0 || frame.sequence > last.sequence + 1);
         last = frame;

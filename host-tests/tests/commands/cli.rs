@@ -44,7 +44,7 @@ fn commands_say_what_they_said() {
         let old = fs::read_to_string(&file).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
         let lines: Vec<_> = old.lines().filter_map(|line| line.strip_prefix("$ ")).collect();
         let blocks: Vec<_> = lines.par_iter().map(|line| played(line)).collect();
-        // Whatever is refused: one line, nothing on stdout, exit code 2.
+        // Every refusal: one line, nothing on stdout, exit code 2.
         for block in blocks.iter().filter(|_| file.ends_with("refused.txt")) {
             let lines: Vec<_> = block.lines().collect();
             assert!(matches!(lines[..], [_, why, "exit 2"] if why.starts_with("! error: ")), "{block}");

@@ -29,7 +29,7 @@ impl Mirror {
         Ok(Self { player, canvas: Canvas::default() })
     }
 
-    /// Goes on to the step of `frame`, at most so many ticks; whether it is there.
+    /// Goes on to the step of `frame`, at most this many ticks; whether it is there.
     pub fn advance(&mut self, frame: &Frame, most: u32) -> bool {
         let left = |player: &Player| frame.step.wrapping_sub(player.report().step as u32) as i32;
         for _ in 0..most {

@@ -36,7 +36,7 @@ use crate::link::{Port, find};
 
 /// The most time that an emulated board may take without a terminal: so much, and so much for each second of its time.
 const LIMIT: (Duration, f64) = (Duration::from_secs(60), 20.0);
-/// With one: nobody watches longer.
+/// With one: no one watches longer.
 const LIVE_LIMIT: Duration = Duration::from_secs(24 * 3600);
 
 /// Sets everything up and runs the demonstration; whether all was well.

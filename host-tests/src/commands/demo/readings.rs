@@ -53,7 +53,7 @@ pub struct Readings {
 }
 
 impl Readings {
-    /// Takes a frame that has just arrived; whether the board is to be asked what it plays.
+    /// Takes a frame that has just arrived; whether to ask the board what it plays.
     pub fn frame(&mut self, frame: Frame) -> bool {
         let last = self.frame.replace(frame);
         let before = last.filter(|last| last.scene == frame.scene && last.time <= frame.time);

@@ -44,7 +44,7 @@ impl<'a> Session<'a> {
         Self { options, source, readings, screenshot, recording, now: None, begun: None, before: 0, due }
     }
 
-    /// Takes what the board has sent. It is asked what it plays as often as the comparison wants to know.
+    /// Takes what the board has sent. The host asks what it plays as often as the comparison wants to know.
     pub fn hear(&mut self) -> anyhow::Result<()> {
         if let Some(due) = &mut self.due {
             sleep(due.saturating_duration_since(Instant::now()));

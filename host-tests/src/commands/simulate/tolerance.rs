@@ -23,10 +23,10 @@ const MOST_ROWS: u32 = 10_000;
 /// Rows where no time between them is given.
 const ROWS: u32 = 100;
 
-/// What was chosen, and why it is believed.
+/// What was chosen, and its error by the reference.
 #[derive(Debug)]
 pub struct Choice {
-    /// What is to be computed.
+    /// What to compute.
     pub plan: Plan,
     step: Number,
     /// Of a simulated second.
@@ -99,7 +99,7 @@ impl<'a> Search<'a> {
         accepted(self.options, &self.request(method, finest).0)
     }
 
-    /// The motion by `method` in so many steps from row to row, and the step.
+    /// The motion by `method` in this many steps from row to row, and the step.
     fn request(&self, method: Method, parts: u32) -> (Request, Number) {
         let step = self.every.divided_by(parts);
         (request(self.options, method, &step, parts, self.samples), step)
@@ -142,7 +142,7 @@ fn agreement(request: &Request, exact: &[[f64; 2]], limit: f64) -> (usize, f64) 
         }
     }
     let (mut rows, mut largest) = (0, 0.0_f64);
-    // What ends the motion ends the agreement, whatever it is.
+    // Anything that ends the motion ends the agreement.
     let _ = request.readings(|reading| {
         let ([a1, a2, ..], [b1, b2]) = (reading.state, exact.get(rows).ok_or(End)?);
         let apart = (a1 - b1).abs().max((a2 - b2).abs());

@@ -42,7 +42,7 @@ pub struct Lockstep {
 }
 
 impl Lockstep {
-    /// Starts a board with its clock counted, whatever `settings` say of it; it stands still at its first instruction.
+    /// Starts a board with its clock counted, even if `settings` say otherwise; it stands still at its first instruction.
     pub fn start(settings: &Settings) -> Result<Self, QemuError> {
         let sleeps = sleeps(settings.elf)?;
         let (machine, debugger) = Machine::start_stopped(&Settings { clock: Clock::Counted, ..*settings })?;

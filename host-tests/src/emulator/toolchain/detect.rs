@@ -12,9 +12,9 @@ use crate::emulator::process::run;
 
 /// For a program that only says its version.
 const QUICK: Duration = Duration::from_secs(20);
-/// Debian's compiler, whatever the PATH says.
+/// Debian's compiler, by its own path.
 pub(super) const DEBIAN_RUSTC: &str = "/usr/bin/rustc";
-/// Debian's cargo, whatever the PATH says.
+/// Debian's cargo, likewise.
 pub(super) const DEBIAN_CARGO: &str = "/usr/bin/cargo";
 /// The Debian packages that build the ARM core library.
 pub(super) const CORE_PACKAGES: [&str; 3] = ["rustc-web", "cargo-web", "rust-web-src"];
