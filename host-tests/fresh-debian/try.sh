@@ -122,7 +122,7 @@ twice-at-once() {
         target/debug/setup &
         target/debug/setup && wait $!
 END
-    said "waiting for another set-up" && sets_up
+    sets_up
 }
 
 broken-qemu() {
@@ -132,15 +132,15 @@ broken-qemu() {
 without-root() {
     chown nobody "$folder/root/opt/double-pendulum/target" # as it is for whoever made the clone
     ends 'setpriv --reuid=nobody --regid=nogroup --clear-groups target/debug/setup' 2
-    said "only root may install packages" && said "sudo apt-get install" && sets_up
+    said "only root may install packages" && said "what brings it: " && sets_up
 }
 
 without-network() {
     ends target/debug/setup 2 --net
-    said "apt-get: " && said "sudo apt-get install" && sets_up
+    said "apt-get: " && said "what brings it: " && sets_up
 }
 
-full-disk() { ends target/debug/setup 2 && said "disk is full\|free space"; }
+full-disk() { ends target/debug/setup 2 && said "No space left\|free space"; }
 
 # Debian 12 has had several versions of these packages; its first release keeps the oldest.
 oldest-rust() {

@@ -15,7 +15,7 @@ use host_tests::emulator::process::{self, ProcessError};
 use host_tests::emulator::qemu::{Clock, QemuError, Settings};
 use host_tests::emulator::toolchain::{self, Toolchain};
 
-/// How long a firmware may run of which nobody has said how long it is to run.
+/// How long a firmware may run if `--seconds` does not say.
 const LIMIT: Duration = Duration::from_secs(3600);
 
 /// Builds a firmware binary, runs it in QEMU and prints its log; exits as the firmware does.

@@ -18,7 +18,7 @@ fn run(options: &Options) -> anyhow::Result<()> {
     }
     let plan = planned(options).map_err(|error| Refused::because(format_args!("{error:#}")))?;
     let output = BufWriter::new(io::stdout().lock());
-    let mut table = Table::new(output, plan.request.method, plan.every.clone(), options.bits);
+    let mut table = Table::new(output, &plan, options);
     let bar = Bar::start("rows", u64::from(plan.request.samples) + 1);
     let row = |reading: &_| {
         bar.advance(1);

@@ -9,20 +9,24 @@ use clap::Parser;
 use host_tests::console::cli::{self, Refused};
 use host_tests::emulator::{process, toolchain};
 
-/// For every test, the compiling included, on a slow, busy machine.
-const LIMIT: Duration = Duration::from_secs(3600);
+/// For every test, the compiling included, on a slow, busy machine; and for the long ones too.
+const LIMITS: [Duration; 2] = [Duration::from_secs(3600), Duration::from_secs(12 * 3600)];
 
 /// Sets everything up and runs every test, those in QEMU included.
 #[derive(Debug, Parser)]
-#[command(name = "cargo verify")]
-struct Arguments {}
+#[command(name = "cargo verify", after_help = "Example: cargo verify --long")]
+struct Arguments {
+    /// Run the tests that take hours, too
+    #[arg(long)]
+    long: bool,
+}
 
 fn main() -> ExitCode {
-    cli::main(|_: &Arguments| {
+    cli::main(|arguments: &Arguments| {
         let (toolchain, _) = toolchain::set_up().map_err(Refused::because)?;
         toolchain::set_up_pico().map_err(Refused::because)?;
         toolchain.build_ahead()?;
-        test()
+        test(arguments.long)
     })
 }
 
@@ -31,11 +35,14 @@ fn main() -> ExitCode {
 const THREADS: &str = "RUST_TEST_THREADS";
 
 /// The tests' own output and exit code, unchanged.
-fn test() -> anyhow::Result<ExitCode> {
+fn test(long: bool) -> anyhow::Result<ExitCode> {
     let mut command = Command::new("cargo");
     command.arg("test").current_dir(toolchain::workspace()).stdin(Stdio::null());
+    if long {
+        command.args(["--", "--include-ignored"]);
+    }
     if env::var_os(THREADS).is_none() {
         command.env(THREADS, (2 * available_parallelism()?.get()).to_string());
     }
-    Ok(process::exit_code(process::spawn(&mut command, LIMIT)?.wait()?))
+    Ok(process::exit_code(process::spawn(&mut command, LIMITS[usize::from(long)])?.wait()?))
 }

@@ -1,6 +1,5 @@
 //! What a command is doing and that it is alive: a spinner or a bar on a terminal, elsewhere a plain line now and then.
 
-use std::io::{IsTerminal, stderr};
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
@@ -32,13 +31,13 @@ impl Bar {
         Self { bar, reminder: Mutex::new(Reminder::new()) }
     }
 
-    /// So many pieces were done before.
+    /// The pieces that were done before.
     pub fn begin_at(&self, pieces: u64) {
         self.bar.set_position(pieces);
         self.bar.reset_eta();
     }
 
-    /// So many pieces more are done.
+    /// That these pieces more are done.
     pub fn advance(&self, pieces: u64) {
         self.bar.inc(pieces);
         if self.bar.is_hidden() && self.reminder.lock().is_ok_and(|mut reminder| reminder.is_due()) {
@@ -82,49 +81,38 @@ impl Drop for Bar {
 /// One piece of work that is going on. Dropping it takes the spinner away.
 #[derive(Debug)]
 pub struct Progress {
-    doing: String,
-    started: Instant,
+    spinner: ProgressBar,
     reminder: Reminder,
-    spinner: Option<ProgressBar>,
 }
 
 impl Progress {
     /// Says what begins now.
     pub fn start(doing: &str) -> Self {
-        let spinner = stderr().is_terminal().then(|| {
-            let style = ProgressStyle::with_template("{spinner} {prefix} {elapsed} {msg:.dim}");
-            let spinner = ProgressBar::new_spinner().with_prefix(doing.to_owned());
-            spinner.set_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()));
-            spinner.enable_steady_tick(TURN);
-            spinner
-        });
-        if spinner.is_none() {
+        let style = ProgressStyle::with_template("{spinner} {prefix} {elapsed} {msg:.dim}");
+        let spinner = ProgressBar::new_spinner().with_prefix(doing.to_owned());
+        spinner.set_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()));
+        if spinner.is_hidden() {
             complain(format_args!("{doing} ..."));
+        } else {
+            spinner.enable_steady_tick(TURN);
         }
-        Self { doing: doing.to_owned(), started: Instant::now(), reminder: Reminder::new(), spinner }
+        Self { spinner, reminder: Reminder::new() }
     }
 
     /// To be called often: with the latest line of the one who works, or with `None` while there is none.
     pub fn alive(&mut self, line: Option<&str>) {
-        match &self.spinner {
-            Some(spinner) => {
-                if let Some(line) = line {
-                    spinner.set_message(line.chars().take(SHOWN).collect::<String>());
-                }
-            }
-            None if self.reminder.is_due() => {
-                complain(format_args!("{} ... {} s", self.doing, self.started.elapsed().as_secs()));
-            }
-            None => {}
+        if let Some(line) = line {
+            self.spinner.set_message(line.chars().take(SHOWN).collect::<String>());
+        }
+        if self.spinner.is_hidden() && self.reminder.is_due() {
+            complain(format_args!("{} ... {} s", self.spinner.prefix(), self.spinner.elapsed().as_secs()));
         }
     }
 }
 
 impl Drop for Progress {
     fn drop(&mut self) {
-        if let Some(spinner) = &self.spinner {
-            spinner.finish_and_clear();
-        }
+        self.spinner.finish_and_clear();
     }
 }
 
@@ -139,10 +127,10 @@ impl Reminder {
 
     /// Whether one is due again now.
     fn is_due(&mut self) -> bool {
-        let due = self.0.elapsed() >= REMINDER;
-        if due {
-            self.0 = Instant::now();
+        let is_due = self.0.elapsed() >= REMINDER;
+        if is_due {
+            *self = Self::new();
         }
-        due
+        is_due
     }
 }

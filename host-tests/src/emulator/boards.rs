@@ -80,53 +80,35 @@ impl Board {
     }
 }
 
+/// QEMU's board with the OLED panel, which knows several processors.
+const LM3S6965EVB: Board = Board {
+    name: "lm3s6965evb",
+    machine: "lm3s6965evb",
+    cpu: "cortex-m3",
+    target: "thumbv7m-none-eabi",
+    binary: "lm3s6965evb",
+    feature: "",
+    serial_port: 0,
+    hertz: 50_000_000,
+    has_panel: true,
+};
+
 /// Every board, the default one first.
 pub const BOARDS: [Board; 5] = [
-    Board {
-        name: "lm3s6965evb",
-        machine: "lm3s6965evb",
-        cpu: "cortex-m3",
-        target: "thumbv7m-none-eabi",
-        binary: "lm3s6965evb",
-        feature: "",
-        serial_port: 0,
-        hertz: 50_000_000,
-        has_panel: true,
-    },
-    Board {
-        name: "lm3s6965evb-m4",
-        machine: "lm3s6965evb",
-        cpu: "cortex-m4",
-        target: "thumbv7em-none-eabihf",
-        binary: "lm3s6965evb",
-        feature: "",
-        serial_port: 0,
-        hertz: 50_000_000,
-        has_panel: true,
-    },
+    LM3S6965EVB,
+    Board { name: "lm3s6965evb-m4", cpu: "cortex-m4", target: "thumbv7em-none-eabihf", ..LM3S6965EVB },
     Board {
         name: "mps2-an386",
         machine: "mps2-an386",
         cpu: "cortex-m4",
         target: "thumbv7em-none-eabihf",
         binary: "mps2-an386",
-        feature: "",
-        serial_port: 0,
         hertz: 25_000_000,
         has_panel: false,
+        ..LM3S6965EVB
     },
     STM32F405,
-    Board {
-        name: "lm3s6965evb-m0",
-        machine: "lm3s6965evb",
-        cpu: "cortex-m0",
-        target: "thumbv6m-none-eabi",
-        binary: "lm3s6965evb",
-        feature: "",
-        serial_port: 0,
-        hertz: 50_000_000,
-        has_panel: true,
-    },
+    Board { name: "lm3s6965evb-m0", cpu: "cortex-m0", target: "thumbv6m-none-eabi", ..LM3S6965EVB },
 ];
 
 /// The board that exists: the one ELF file is flashed and emulated. Its panel, button and I2C are not emulated.
@@ -150,9 +132,8 @@ pub const PICO: Board = Board {
     target: "thumbv6m-none-eabi",
     binary: "pico",
     feature: "pico",
-    serial_port: 0,
     hertz: 125_000_000,
-    has_panel: true,
+    ..LM3S6965EVB
 };
 
 /// Every board that the firmware is built for: those that QEMU emulates, and the Pico.

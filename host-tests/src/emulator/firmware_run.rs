@@ -37,22 +37,18 @@ pub fn run(settings: &Settings, output: &mut impl Write) -> Result<ExitStatus, Q
 mod tests {
     use super::*;
 
-    fn chosen(name: Option<&str>, binary: &str) -> Option<&'static str> {
-        board_for(name, Path::new(binary)).map(|board| board.name)
-    }
-
     #[test]
-    fn the_board_follows_from_the_binary() {
-        assert_eq!(chosen(None, "lm3s6965evb"), Some("lm3s6965evb"));
-        assert_eq!(chosen(None, "mps2-an386"), Some("mps2-an386"));
-        assert_eq!(chosen(None, "inject-panic"), Some("lm3s6965evb"));
-        assert_eq!(chosen(None, "target/thumbv7em-none-eabihf/release/lm3s6965evb"), Some("lm3s6965evb-m4"));
-        assert_eq!(chosen(None, "target/thumbv7em-none-eabihf/release/inject-panic"), Some("lm3s6965evb-m4"));
-    }
-
-    #[test]
-    fn a_board_asked_for_is_taken_or_refused() {
-        assert_eq!(chosen(Some("mps2-an386"), "inject-panic"), Some("mps2-an386"));
-        assert_eq!(chosen(Some("toaster"), "inject-panic"), None);
+    fn the_board_is_the_one_asked_for_or_follows_from_the_binary() {
+        for (asked, binary, name) in [
+            (None, "lm3s6965evb", Some("lm3s6965evb")),
+            (None, "mps2-an386", Some("mps2-an386")),
+            (None, "inject-panic", Some("lm3s6965evb")),
+            (None, "target/thumbv7em-none-eabihf/release/lm3s6965evb", Some("lm3s6965evb-m4")),
+            (None, "target/thumbv7em-none-eabihf/release/inject-panic", Some("lm3s6965evb-m4")),
+            (Some("mps2-an386"), "inject-panic", Some("mps2-an386")),
+            (Some("toaster"), "inject-panic", None),
+        ] {
+            assert_eq!(board_for(asked, Path::new(binary)).map(|board| board.name), name, "{asked:?} {binary}");
+        }
     }
 }

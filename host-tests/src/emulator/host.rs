@@ -39,7 +39,7 @@ impl Show {
         let _ = player.check();
     }
 
-    /// Draws the whole frame over whatever was there.
+    /// Draws the whole frame over what was there.
     pub fn draw(&self, canvas: &mut Canvas) {
         self.player.draw(canvas);
     }

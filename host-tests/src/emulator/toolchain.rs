@@ -2,18 +2,16 @@
 //! Pico, rp2040js.
 //!
 //! [`ready`] only looks. [`set_up`] brings what is missing: the core library by `rustup target add`, or else from
-//! Debian's source packages; QEMU from Debian's packages, installed, or unpacked into `qemu` in the target folder where they cannot be.
-//! Both ways build the same firmware with the same flags.
+//! Debian's source packages; QEMU from Debian's packages, installed, or unpacked into `qemu` in the target folder where they
+//! cannot be. Both ways build the same firmware with the same flags.
 
 mod build;
 mod detect;
 mod install;
-mod missing;
 mod rp2040js;
 mod workspace;
 
 pub use build::BuildError;
-pub use missing::SetupError;
 pub use rp2040js::Rp2040js;
 pub use workspace::{target, workspace};
 
@@ -22,7 +20,6 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use crate::emulator::qemu;
-use missing::{Part, SET_UP};
 
 /// The compiler's targets, one for each kind of core.
 pub const TARGETS: [&str; 3] = ["thumbv6m-none-eabi", "thumbv7m-none-eabi", "thumbv7em-none-eabihf"];
@@ -31,7 +28,7 @@ pub const TARGETS: [&str; 3] = ["thumbv6m-none-eabi", "thumbv7m-none-eabi", "thu
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Toolchain {
     core: ArmCore,
-    qemu: Qemu,
+    qemu: PathBuf,
 }
 
 /// Where the ARM core library comes from.
@@ -41,55 +38,57 @@ enum ArmCore {
     ReadyMade,
     /// Built from the sources that Debian's compiler carries, by that compiler.
     FromSource {
-        /// Debian's compiler.
-        version: String,
         /// The folder that holds `rust-lld`.
         linker: PathBuf,
     },
 }
 
-/// The emulator.
-#[derive(Clone, Debug, PartialEq, Eq)]
-struct Qemu {
-    path: PathBuf,
-    version: String,
+/// What is missing, a line each: why, and what brings it.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct SetupError(String);
+
+impl SetupError {
+    fn missing(what: &str, why: &str, by_hand: &str) -> Self {
+        Self(format!("{what} is missing: {why}; what brings it: cargo setup, or {by_hand}"))
+    }
 }
 
 /// The tools, if all are there; installs nothing. Looks once per process.
 pub fn ready() -> Result<Toolchain, SetupError> {
     static READY: OnceLock<Result<Toolchain, SetupError>> = OnceLock::new();
-    READY.get_or_init(|| both(detect::arm_core(), detect::qemu(), SET_UP)).clone()
+    READY.get_or_init(|| both(detect::arm_core(), detect::qemu())).clone()
 }
 
-/// The tools, brought if need be; and a line for each thing that was done for it.
-///
-/// Two set-ups at once take turns.
+/// The tools, brought if need be; and a line for each thing that was done for it. Two set-ups at once take turns.
 pub fn set_up() -> Result<(Toolchain, Vec<String>), SetupError> {
     qemu::check_folder().map_err(SetupError)?;
-    if let Ok(toolchain) = both(detect::arm_core(), detect::qemu(), SET_UP) {
+    if let Ok(toolchain) = ready() {
         return Ok((toolchain, Vec::new()));
     }
-    let _turn = install::turn(&target().join("setup.lock"))?;
+    let _turn = install::turn()?;
     let mut done = Vec::new();
     let core = detect::arm_core().or_else(|_| install::arm_core(&mut done));
     let qemu = detect::qemu().or_else(|_| install::qemu(&mut done));
-    Ok((both(core, qemu, "")?, done))
+    Ok((both(core, qemu)?, done))
 }
 
-/// Both of them, or a line for each that is missing, with what comes `first` of what brings it.
-fn both(core: Result<ArmCore, String>, qemu: Result<Qemu, String>, first: &str) -> Result<Toolchain, SetupError> {
+/// Both of them, or a line for each that is missing.
+fn both(core: Result<ArmCore, String>, qemu: Result<PathBuf, String>) -> Result<Toolchain, SetupError> {
+    let packages = format!("rustup target add {}, or Debian's {}", TARGETS.join(" "), detect::CORE_PACKAGES.join(" "));
+    let core = core.map_err(|why| SetupError::missing("the ARM core library", &why, &packages).0);
+    let by_hand = "this system's package of that name (Homebrew: qemu)";
+    let qemu = qemu.map_err(|why| SetupError::missing(detect::QEMU, &why, by_hand).0);
     match (core, qemu) {
         (Ok(core), Ok(qemu)) => Ok(Toolchain { core, qemu }),
-        (core, qemu) => {
-            let missing = [core.err().map(|why| (Part::ArmCore, why)), qemu.err().map(|why| (Part::Qemu, why))];
-            Err(SetupError::missing(missing.into_iter().flatten(), first))
-        }
+        (Err(core), Err(qemu)) => Err(SetupError(format!("{core}\n{qemu}"))),
+        (Err(missing), _) | (_, Err(missing)) => Err(SetupError(missing)),
     }
 }
 
 /// The emulator of the Raspberry Pi Pico, if it is there; installs nothing.
 pub fn ready_for_pico() -> Result<Rp2040js, SetupError> {
-    rp2040js::detect().map_err(|missing| SetupError::missing([missing], SET_UP))
+    rp2040js::detect()
 }
 
 /// The same, brought if need be; and a line for each thing that was done for it.
@@ -97,14 +96,14 @@ pub fn set_up_pico() -> Result<(Rp2040js, Vec<String>), SetupError> {
     if let Ok(emulator) = rp2040js::detect() {
         return Ok((emulator, Vec::new()));
     }
-    let _turn = install::turn(&target().join("setup.lock"))?;
-    rp2040js::set_up().map_err(|missing| SetupError::missing([missing], ""))
+    let _turn = install::turn()?;
+    rp2040js::set_up()
 }
 
 impl Toolchain {
     /// The emulator's program.
     pub fn qemu(&self) -> &Path {
-        &self.qemu.path
+        &self.qemu
     }
 }
 
@@ -112,11 +111,10 @@ impl fmt::Display for Toolchain {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.core {
             ArmCore::ReadyMade => writeln!(f, "ARM core library: ready-made, for {}", TARGETS.join(", "))?,
-            ArmCore::FromSource { version, linker } => {
-                let linker = linker.display();
-                writeln!(f, "ARM core library: from Debian's sources, by {version}, linked by rust-lld of {linker}")?;
+            ArmCore::FromSource { linker } => {
+                writeln!(f, "ARM core library: from Debian's sources, linked by rust-lld of {}", linker.display())?;
             }
         }
-        write!(f, "QEMU: {} at {}", self.qemu.version, self.qemu.path.display())
+        write!(f, "QEMU: {}", self.qemu.display())
     }
 }

@@ -1,10 +1,10 @@
 //! A crash of the firmware ends the run with exit code 1 and a report that a person can read.
 
-use crate::support::{application, settings, toolchain};
+use crate::support::{guarded, on, settings, toolchain};
 use firmware::protocol::Frame;
 use host_tests::commands::count::Image;
 use host_tests::emulator::boards::{BOARDS, Board};
-use host_tests::emulator::qemu::{Machine, Probe, QemuError};
+use host_tests::emulator::qemu::{Lockstep, Machine, QemuError};
 use object::{Object, ObjectSymbol};
 
 /// What the binary says before its end, which must be a failure; and the program itself.
@@ -61,17 +61,11 @@ fn a_hard_fault_tells_where_and_why() -> Result<(), QemuError> {
     Ok(())
 }
 
-fn guarded() -> impl Iterator<Item = &'static Board> {
-    BOARDS.iter().filter(|board| board.is_guarded())
-}
-
 #[test]
 fn a_board_whose_stack_has_no_guard_says_so() -> Result<(), QemuError> {
-    let toolchain = toolchain();
     for board in BOARDS.iter().filter(|board| !board.is_guarded()) {
-        let elf = application(board);
-        let mut machine = Machine::start(&settings(&toolchain, board, &elf))?;
-        machine.serial.next::<Frame>().ok_or_else(|| machine.silence())?;
+        let mut machine = on(board, Machine::start)?;
+        machine.wait_for::<Frame>()?;
         let log: Vec<_> = machine.log.arrived().map(|line| line.text).collect();
         assert!(log.iter().any(|line| line == "no memory protection unit: the stack has no guard"), "{log:?}");
     }
@@ -103,7 +97,7 @@ fn a_stack_overflow_changes_nothing_below_the_stack() -> Result<(), Box<dyn std:
             symbol.map_or_else(|| panic!("no {name}"), |symbol| symbol.address() as u32 & !1)
         };
         let statics = address("_ram_start")..address("__euninit");
-        let mut probe = Probe::start(&settings(&toolchain, board, &elf))?;
+        let mut probe = Lockstep::start(&settings(&toolchain, board, &elf))?;
         probe.run_to(address("descend"))?;
         let before = probe.read(statics.clone())?;
         probe.run_to(address("HardFault"))?;

@@ -9,13 +9,12 @@ use std::thread::sleep;
 use std::time::Duration;
 
 use crate::support::program::address;
-use crate::support::{application, settings, toolchain};
+use crate::support::{application, guarded, on};
 use firmware::app::warm_restart::{Cause, MOST_RESTARTS};
-use firmware::protocol::Field;
-use firmware::protocol::{Choose, Frame, Restarted, Set};
+use firmware::protocol::{Choose, Field, Frame, Restarted, Set};
 use firmware::scenes::SceneName;
 use host_tests::emulator::boards::{BOARDS, Board, STM32F405};
-use host_tests::emulator::qemu::{Clock, Machine, Probe, QemuError, Register, Settings};
+use host_tests::emulator::qemu::{Clock, Lockstep, Machine, QemuError, Register, Settings};
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 
@@ -33,7 +32,7 @@ const MASS_RATIO: f32 = 0.7;
 
 /// A board that stands still in the middle of a frame of `scene`, with a mass ratio of its own: the last frame it has
 /// sent.
-fn within(probe: &mut Probe, elf: &Path, scene: SceneName) -> Result<Frame, QemuError> {
+fn within(probe: &mut Lockstep, elf: &Path, scene: SceneName) -> Result<Frame, QemuError> {
     // A serial port that is not yet on takes no bytes.
     let stopwatch = address(elf, STOPWATCH);
     probe.run_to(stopwatch)?;
@@ -61,34 +60,28 @@ fn within(probe: &mut Probe, elf: &Path, scene: SceneName) -> Result<Frame, Qemu
     }
 }
 
-/// Puts an instruction where it disturbs nobody, and the processor there.
-fn execute(probe: &mut Probe, instruction: [u8; 2]) -> Result<(), QemuError> {
+/// Puts an instruction where it disturbs nothing, and the processor there.
+fn execute(probe: &mut Lockstep, instruction: [u8; 2]) -> Result<(), QemuError> {
     probe.write(UNUSED, &instruction)?;
     probe.divert(&[(Register::Pc, UNUSED)])
 }
 
-/// Everything said until the end, which must be a failure.
-fn last_words(machine: &mut Machine) -> Result<String, QemuError> {
-    let (status, lines) = machine.wait()?;
-    let said = lines.iter().map(|line| format!("{line}\n")).collect::<String>();
-    assert_eq!(status.code(), Some(1), "{said}");
-    Ok(said)
-}
-
-/// Spoils these boards in the middle of a frame of `scene`; their last words must hold all `parts`, and where it was.
+/// Spoils these boards in the middle of a frame of `scene`; they end as a failure, and their last words must hold all `parts`, and
+/// where it was.
 fn boards_say(
     boards: impl Iterator<Item = &'static Board>,
     scene: SceneName,
     parts: &[&str],
-    spoil: impl Fn(&mut Probe, &Path) -> Result<(), QemuError>,
+    spoil: impl Fn(&mut Lockstep, &Path) -> Result<(), QemuError>,
 ) -> Result<(), QemuError> {
-    let toolchain = toolchain();
     for board in boards {
         let elf = application(board);
-        let mut probe = Probe::start(&settings(&toolchain, board, &elf))?;
+        let mut probe = on(board, Lockstep::start)?;
         let frame = within(&mut probe, &elf, scene)?;
         spoil(&mut probe, &elf)?;
-        let report = last_words(probe.run()?)?;
+        let (status, lines) = probe.run()?.wait()?;
+        let report = lines.iter().map(|line| format!("{line}\n")).collect::<String>();
+        assert_eq!(status.code(), Some(1), "{report}");
         let place = format!("scene {}, step {}\n", scene.name(), frame.step);
         for part in parts.iter().chain([&&*place]) {
             assert!(report.contains(part), "{}: no {part:?} in\n{report}", board.name);
@@ -97,14 +90,10 @@ fn boards_say(
     Ok(())
 }
 
-fn guarded() -> impl Iterator<Item = &'static Board> {
-    BOARDS.iter().filter(|board| board.is_guarded())
-}
-
 #[test]
 fn a_fault_in_a_picture_tells_the_scene_and_the_step() -> Result<(), QemuError> {
     let registers = format!("pc {UNUSED:#010x}  lr 0x12345679");
-    let spoil = |probe: &mut Probe, _: &Path| {
+    let spoil = |probe: &mut Lockstep, _: &Path| {
         execute(probe, UNDEFINED)?;
         probe.divert(&[(Register::Lr, 0x1234_5679)])
     };
@@ -133,33 +122,38 @@ fn a_panic_in_a_picture_tells_the_scene_and_the_step() -> Result<(), QemuError> 
 /// A board that nothing restarts is given up after this long, by the host's clock: many times what a restart takes.
 const PATIENCE: Duration = Duration::from_secs(120);
 
-/// The boards whose watchdog is emulated.
-fn watched() -> impl Iterator<Item = &'static Board> {
-    BOARDS.iter().filter(|board| **board != STM32F405)
+/// Each board whose watchdog is emulated, with a debugger that takes its log or without, in the middle of a frame of `scene`, and
+/// that frame's predecessor.
+fn watched(
+    scene: SceneName,
+    debugger: bool,
+    mut check: impl FnMut(&Board, &Path, Lockstep, Frame) -> Result<(), QemuError>,
+) -> Result<(), QemuError> {
+    for board in BOARDS.iter().filter(|board| **board != STM32F405) {
+        let elf = application(board);
+        let start = |settings: &Settings| Lockstep::start(&Settings { debugger, limit: PATIENCE, ..*settings });
+        let mut probe = on(board, start)?;
+        let before = within(&mut probe, &elf, scene)?;
+        check(board, &elf, probe, before)?;
+    }
+    Ok(())
 }
 
 #[test]
-fn a_board_that_hangs_comes_back_where_it_was_and_says_why() -> Result<(), Box<dyn Error>> {
-    let toolchain = toolchain();
-    for board in watched() {
-        let elf = application(board);
-        let mut probe = Probe::start(&Settings { limit: PATIENCE, ..settings(&toolchain, board, &elf) })?;
-        let before = within(&mut probe, &elf, SceneName::Butterfly)?;
+fn a_board_that_hangs_comes_back_where_it_was_and_says_why() -> Result<(), QemuError> {
+    watched(SceneName::Butterfly, true, |board, _, mut probe, before| {
         execute(&mut probe, HANG)?;
         let machine = probe.run()?;
-
-        let restarted: Restarted = machine.serial.next().ok_or_else(|| machine.silence())?;
-        let Restarted { cause, restarts, pc, scene, step, .. } = restarted;
+        let Restarted { cause, restarts, pc, scene, step, .. } = machine.wait_for()?;
         assert_eq!((Cause::from_code(cause), restarts, pc), (Some(Cause::Hang), 1, UNUSED), "{}", board.name);
         assert_eq!((scene, step), (SceneName::Butterfly.code(), before.step), "{}", board.name);
         for sequence in 0..FRAMES as u32 {
-            let frame: Frame = machine.serial.next().ok_or_else(|| machine.silence())?;
+            let frame: Frame = machine.wait_for()?;
             assert_eq!((frame.sequence, frame.step), (sequence, sequence + 1), "{}", board.name);
             assert_eq!((frame.scene, frame.mass_ratio), (before.scene, MASS_RATIO), "{}", board.name);
         }
         assert_eq!((machine.serial.counts().damaged, machine.serial.counts().lost), (0, 0), "{}", board.name);
-
-        let log: String = machine.log.arrived().map(|line| format!("{line}\n")).collect();
+        let log = machine.said();
         for part in [
             "HANG: no frame finished for 1 s\n",
             &format!("pc {UNUSED:#010x}"),
@@ -168,42 +162,52 @@ fn a_board_that_hangs_comes_back_where_it_was_and_says_why() -> Result<(), Box<d
         ] {
             assert!(log.contains(part), "{}: no {part:?} in\n{log}", board.name);
         }
-    }
-    Ok(())
+        Ok(())
+    })
 }
 
 #[test]
-fn without_a_debugger_a_fault_restarts_the_board() -> Result<(), Box<dyn Error>> {
-    let toolchain = toolchain();
-    for board in watched() {
-        let elf = application(board);
-        let alone = Settings { debugger: false, limit: PATIENCE, ..settings(&toolchain, board, &elf) };
-        let mut probe = Probe::start(&alone)?;
-        let before = within(&mut probe, &elf, SceneName::Figure7)?;
+fn without_a_debugger_a_fault_restarts_the_board() -> Result<(), QemuError> {
+    watched(SceneName::Figure7, false, |board, elf, mut probe, before| {
         for restarts in 1..=MOST_RESTARTS + 1 {
             execute(&mut probe, UNDEFINED)?;
             // To the first frame after the restart.
-            let stopwatch = address(&elf, STOPWATCH);
+            let stopwatch = address(elf, STOPWATCH);
             let (mut restarted, mut frame) = (None, None);
             while frame.is_none() {
                 probe.run_to(stopwatch)?;
-                let serial = &probe.machine().serial;
-                for message in serial.all_arrived() {
+                for message in probe.machine().serial.all_arrived() {
                     restarted = restarted.or(message.read::<Restarted>());
                     frame = frame.or(message.read::<Frame>());
                 }
             }
             let restarted = restarted.expect("said before the first frame");
-            assert_eq!(Cause::from_code(restarted.cause), Some(Cause::Fault), "{}", board.name);
             let cfsr = if board.is_guarded() { 1 << 16 } else { 0 };
+            assert_eq!(Cause::from_code(restarted.cause), Some(Cause::Fault), "{}", board.name);
             assert_eq!((restarted.restarts, restarted.pc, restarted.cfsr), (restarts, UNUSED, cfsr), "{}", board.name);
             assert_eq!(restarted.scene, before.scene, "{}", board.name);
             // What ends the board each time is given up.
             let scene = if restarts <= MOST_RESTARTS { SceneName::Figure7 } else { SceneName::Page };
             assert_eq!(frame.map(|frame| frame.scene), Some(scene.code()), "{}: restart {restarts}", board.name);
         }
-    }
-    Ok(())
+        Ok(())
+    })
+}
+
+/// The watchdog's call that cannot be masked comes in the middle of a report that takes long: the fault stays the reason.
+#[test]
+fn a_report_that_takes_long_is_no_hang() -> Result<(), QemuError> {
+    watched(SceneName::Butterfly, true, |board, elf, mut probe, _| {
+        execute(&mut probe, UNDEFINED)?;
+        probe.run_to(address(elf, "crash::say"))?;
+        execute(&mut probe, HANG)?;
+        let machine = probe.run()?;
+        let restarted: Restarted = machine.wait_for()?;
+        assert_eq!(Cause::from_code(restarted.cause), Some(Cause::Fault), "{}", board.name);
+        let log = machine.said();
+        assert!(!log.contains("HANG"), "{}: {log}", board.name);
+        Ok(())
+    })
 }
 
 /// A host that stops QEMU, or has no time for it, is no fault of the firmware: its clock has not ticked meanwhile.
@@ -211,14 +215,12 @@ fn without_a_debugger_a_fault_restarts_the_board() -> Result<(), Box<dyn Error>>
 fn a_board_whose_emulator_pauses_does_not_take_it_for_a_hang() -> Result<(), Box<dyn Error>> {
     /// Longer than the watchdog's two stages.
     const PAUSE: Duration = Duration::from_millis(2500);
-    let toolchain = toolchain();
-    for board in watched() {
-        let elf = application(board);
-        let mut machine = Machine::start(&Settings { clock: Clock::Real, ..settings(&toolchain, board, &elf) })?;
+    for board in BOARDS.iter().filter(|board| **board != STM32F405) {
+        let mut machine = on(board, |settings| Machine::start(&Settings { clock: Clock::Real, ..*settings }))?;
         let emulator = Pid::from_raw(machine.id().cast_signed());
         for pause in [true, false] {
             for _ in 0..FRAMES {
-                machine.serial.next::<Frame>().ok_or_else(|| machine.silence())?;
+                machine.wait_for::<Frame>()?;
             }
             if pause {
                 kill(emulator, Signal::SIGSTOP)?;
@@ -226,50 +228,27 @@ fn a_board_whose_emulator_pauses_does_not_take_it_for_a_hang() -> Result<(), Box
                 kill(emulator, Signal::SIGCONT)?;
             }
         }
-        let log: String = machine.log.arrived().map(|line| format!("{line}\n")).collect();
+        let log = machine.said();
         assert!(!log.contains("HANG") && !log.contains("restarted"), "{}: {log}", board.name);
         machine.quit()?;
     }
     Ok(())
 }
 
-/// The watchdog's call that cannot be masked comes in the middle of a report that takes long: the fault stays the reason.
-#[test]
-fn a_report_that_takes_long_is_no_hang() -> Result<(), Box<dyn Error>> {
-    let toolchain = toolchain();
-    for board in watched() {
-        let elf = application(board);
-        let mut probe = Probe::start(&Settings { limit: PATIENCE, ..settings(&toolchain, board, &elf) })?;
-        within(&mut probe, &elf, SceneName::Butterfly)?;
-        execute(&mut probe, UNDEFINED)?;
-        probe.run_to(address(&elf, "crash::say"))?;
-        execute(&mut probe, HANG)?;
-        let machine = probe.run()?;
-        let restarted: Restarted = machine.serial.next().ok_or_else(|| machine.silence())?;
-        assert_eq!(Cause::from_code(restarted.cause), Some(Cause::Fault), "{}", board.name);
-        let log: String = machine.log.arrived().map(|line| format!("{line}\n")).collect();
-        assert!(!log.contains("HANG"), "{}: {log}", board.name);
-    }
-    Ok(())
-}
-
 /// A host that sends faster than the board reads is told how much it has lost.
 #[test]
-fn received_bytes_that_are_lost_are_counted() -> Result<(), Box<dyn Error>> {
+fn received_bytes_that_are_lost_are_counted() -> Result<(), QemuError> {
     // Broken messages of a byte each, of which a board takes no more than four a tick: many times what its queue holds.
     let flood = [0, 1].repeat(10_000);
-    let toolchain = toolchain();
     for board in &BOARDS {
-        let elf = application(board);
-        let mut machine = Machine::start(&settings(&toolchain, board, &elf))?;
-        let first: Frame = machine.serial.next().ok_or_else(|| machine.silence())?;
-        assert_eq!(first.lost, 0, "{}", board.name);
+        let mut machine = on(board, Machine::start)?;
+        assert_eq!(machine.wait_for::<Frame>()?.lost, 0, "{}", board.name);
         machine.serial.send_bytes(&flood)?;
         // The log comes by another way than the frames, and may be later.
         let (mut lost, mut log) = (0, String::new());
         while lost == 0 || !log.contains("received bytes lost") {
-            lost = machine.serial.next::<Frame>().ok_or_else(|| machine.silence())?.lost;
-            log.extend(machine.log.arrived().map(|line| format!("{line}\n")));
+            lost = machine.wait_for::<Frame>()?.lost;
+            log += &machine.said();
         }
         assert!(lost < flood.len() as u32, "{}: {lost}", board.name);
         machine.quit()?;

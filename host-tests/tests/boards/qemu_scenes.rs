@@ -1,13 +1,12 @@
 //! The scenes on the emulated boards: the panel shows what the host draws, within the budgets, garbage or not.
 
-use crate::support::{application, settings, toolchain};
+use crate::support::{application, on};
 use fastrand::Rng;
 use firmware::config::TICK_RATE;
 use firmware::graphics::canvas::{HEIGHT, WIDTH};
 use firmware::protocol::{Choose, Done, Frame};
 use firmware::scenes::SceneName;
 use host_tests::commands::count::{Cost, FrameProfile, Image, Part};
-use host_tests::emulator::boards::Core;
 use host_tests::emulator::boards::{BOARDS, Board};
 use host_tests::emulator::budgets;
 use host_tests::emulator::host::Show;
@@ -50,8 +49,7 @@ fn choose(machine: &mut Lockstep, name: SceneName) -> Result<Frame, QemuError> {
 #[test]
 fn the_panel_shows_what_the_host_draws() -> Result<(), QemuError> {
     panels().try_for_each(|board| {
-        let (toolchain, elf) = (toolchain(), application(board));
-        let mut machine = Lockstep::start(&settings(&toolchain, board, &elf))?;
+        let mut machine = on(board, Lockstep::start)?;
         // The map of flips is computed in another arithmetic and at another pace where there is a floating-point unit: test
         // `qemu_flips`.
         let same = |name: &&SceneName| **name != SceneName::Flips || board.core() != Core::M4F;
@@ -81,8 +79,8 @@ fn the_panel_shows_what_the_host_draws() -> Result<(), QemuError> {
 
 #[test]
 fn every_scene_keeps_within_its_share_of_a_frame() -> anyhow::Result<()> {
-    let too_dear = panels().map(too_dear).collect::<Result<Vec<_>, _>>()?.concat();
-    assert!(too_dear.is_empty(), "{too_dear:#?}");
+    let too_costly = panels().map(too_costly).collect::<Result<Vec<_>, _>>()?.concat();
+    assert!(too_costly.is_empty(), "{too_costly:#?}");
     Ok(())
 }
 
@@ -90,11 +88,10 @@ fn every_scene_keeps_within_its_share_of_a_frame() -> anyhow::Result<()> {
 ///
 /// The cycles of a scene are estimated: instructions, counted by the board's clock, of the most expensive screenshot, times the
 /// cycles that an instruction takes on average in a screenshot that QEMU logs whole, by the published timings.
-fn too_dear(board: &Board) -> anyhow::Result<Vec<String>> {
-    let mut too_dear = Vec::new();
-    let (toolchain, elf) = (toolchain(), application(board));
-    let image = Image::read(&elf)?;
-    let mut machine = Lockstep::start(&settings(&toolchain, board, &elf))?;
+fn too_costly(board: &Board) -> anyhow::Result<Vec<String>> {
+    let mut too_costly = Vec::new();
+    let image = Image::read(&application(board))?;
+    let mut machine = on(board, Lockstep::start)?;
     for &name in SceneName::ALL {
         choose(&mut machine, name)?;
         // The first frames pay for the start.
@@ -111,7 +108,7 @@ fn too_dear(board: &Board) -> anyhow::Result<Vec<String>> {
         let (_, profile) = FrameProfile::of_next(&mut machine, &image, board.core())?;
         let showing = profile.cost(Part::Drawing).cycles + profile.cost(Part::Sending).cycles;
         if board.core() == Core::M3 && showing > budgets::SHOWING {
-            too_dear.push(format!("{}: {} is drawn and sent in {showing} cycles", board.name, name.name()));
+            too_costly.push(format!("{}: {} is drawn and sent in {showing} cycles", board.name, name.name()));
         }
         let Cost { instructions, cycles, .. } = profile.whole();
         let cycles_per_instruction = cycles as f64 / instructions as f64;
@@ -128,13 +125,13 @@ fn too_dear(board: &Board) -> anyhow::Result<Vec<String>> {
             100.0 * (1.0 - share(busy)),
         );
         if share(scene) > budgets::SCENE {
-            too_dear.push(format!("{}: {} takes {:.3} of a frame", board.name, name.name(), share(scene)));
+            too_costly.push(format!("{}: {} takes {:.3} of a frame", board.name, name.name(), share(scene)));
         }
         if 1.0 - share(busy) < budgets::IDLE {
-            too_dear.push(format!("{}: {} leaves {:.3} of a frame", board.name, name.name(), 1.0 - share(busy)));
+            too_costly.push(format!("{}: {} leaves {:.3} of a frame", board.name, name.name(), 1.0 - share(busy)));
         }
     }
-    Ok(too_dear)
+    Ok(too_costly)
 }
 
 /// Messages waited for until a command is repeated.
@@ -142,15 +139,13 @@ const PATIENCE: usize = 60;
 
 #[test]
 fn garbage_on_the_link_disturbs_nothing() -> Result<(), QemuError> {
-    let board = &BOARDS[0];
-    let (toolchain, elf) = (toolchain(), application(board));
-    let mut machine = Machine::start(&settings(&toolchain, board, &elf))?;
+    let mut machine = on(&BOARDS[0], Machine::start)?;
     let mut rng = Rng::with_seed(7);
-    for frame in 0..60 * TICK_RATE {
+    for frame in 0..15 * TICK_RATE {
         let length = rng.usize(..600);
         let garbage: Vec<u8> = std::iter::repeat_with(|| rng.u8(..)).take(length).collect();
         machine.serial.send_bytes(&garbage)?;
-        let received: Frame = machine.serial.next().ok_or_else(|| machine.silence())?;
+        let received: Frame = machine.wait_for()?;
         assert_eq!((received.sequence, received.dropped), (frame, 0));
     }
     assert_eq!((machine.serial.counts().damaged, machine.serial.counts().lost), (0, 0));
@@ -160,8 +155,7 @@ fn garbage_on_the_link_disturbs_nothing() -> Result<(), QemuError> {
         machine.serial.send_bytes(&[0, 0])?;
         machine.serial.send(&Choose { request: 5, scene: SceneName::Figure7.code() })?;
         for _ in 0..PATIENCE {
-            let received = machine.serial.receive().ok_or_else(|| machine.silence())?;
-            if let Some(done) = received.read::<Done>() {
+            if let Some(done) = machine.receive()?.read::<Done>() {
                 assert_eq!(done.request, 5);
                 return machine.quit();
             }

@@ -1,13 +1,13 @@
 //! The image that is flashed runs in the emulator as well, where it finds neither clock control nor panel nor button.
 
 use crate::support::program::address;
-use crate::support::{application, settings, toolchain};
+use crate::support::{application, on};
 use double_pendulum::Parameters;
 use firmware::config::{GRAVITY, MOST_MEASURED_STEPS};
 use firmware::job::{ON_BOARDS, Request};
 use firmware::protocol::{Frame, Measure, Measured};
 use host_tests::emulator::boards::STM32F405;
-use host_tests::emulator::qemu::{Machine, Probe, QemuError};
+use host_tests::emulator::qemu::{Lockstep, Machine, QemuError};
 use object::{Object, ObjectSegment};
 
 #[test]
@@ -26,10 +26,9 @@ fn the_image_is_for_the_chips_memory() -> Result<(), Box<dyn std::error::Error>>
 #[test]
 fn the_vector_table_is_the_programs_own_wherever_it_is_started_from() -> Result<(), QemuError> {
     const VTOR: u32 = 0xe000_ed08;
-    let (toolchain, elf) = (toolchain(), application(&STM32F405));
-    let mut probe = Probe::start(&settings(&toolchain, &STM32F405, &elf))?;
+    let mut probe = on(&STM32F405, Lockstep::start)?;
     assert_eq!(probe.read(VTOR..VTOR + 4)?, [0; 4]);
-    probe.run_to(address(&elf, "clock::cycles"))?;
+    probe.run_to(address(&application(&STM32F405), "clock::cycles"))?;
     assert_eq!(probe.read(VTOR..VTOR + 4)?, 0x0800_0000_u32.to_le_bytes());
     Ok(())
 }
@@ -38,10 +37,9 @@ fn the_vector_table_is_the_programs_own_wherever_it_is_started_from() -> Result<
 fn without_a_panel_it_says_so_and_goes_on() -> Result<(), QemuError> {
     /// Long enough for the panel to be looked for again, several times.
     const FRAMES: u32 = 300;
-    let (toolchain, elf) = (toolchain(), application(&STM32F405));
-    let mut machine = Machine::start(&settings(&toolchain, &STM32F405, &elf))?;
+    let mut machine = on(&STM32F405, Machine::start)?;
     for sequence in 0..FRAMES {
-        let Some(frame) = machine.serial.next::<Frame>() else { return Err(machine.silence()) };
+        let frame: Frame = machine.wait_for()?;
         assert_eq!((frame.sequence, frame.dropped), (sequence, 0), "looking for the panel holds up nothing");
         assert_eq!(frame.step, sequence + 1, "a line that reads low for ever presses no button");
     }
@@ -55,10 +53,9 @@ fn without_a_panel_it_says_so_and_goes_on() -> Result<(), QemuError> {
 /// Every method's from its copy in memory: a branch into nowhere would end the application.
 #[test]
 fn its_steps_run_in_flash_and_in_memory() -> Result<(), QemuError> {
-    let (toolchain, elf) = (toolchain(), application(&STM32F405));
-    let mut machine = Machine::start(&settings(&toolchain, &STM32F405, &elf))?;
+    let mut machine = on(&STM32F405, Machine::start)?;
     // It listens from here on.
-    assert!(machine.serial.next::<Frame>().is_some());
+    machine.wait_for::<Frame>()?;
     let parameters = Parameters { m1: 1.0, m2: 1.0, l1: 1.0, l2: 1.0, g: GRAVITY };
     for (&method, request) in ON_BOARDS.iter().zip(0..) {
         let motion = Request {
@@ -73,10 +70,13 @@ fn its_steps_run_in_flash_and_in_memory() -> Result<(), QemuError> {
         machine.serial.send(&motion.message(request))?;
         for in_ram in [0, 1] {
             machine.serial.send(&Measure { request, steps: MOST_MEASURED_STEPS, in_ram })?;
-            let Some(measured) = machine.serial.next::<Measured>() else { return Err(machine.silence()) };
-            assert_eq!(measured, Measured { request, steps: MOST_MEASURED_STEPS, cycles: 0 }, "QEMU counts none");
+            assert_eq!(
+                machine.wait_for::<Measured>()?,
+                Measured { request, steps: MOST_MEASURED_STEPS, cycles: 0 },
+                "QEMU counts none"
+            );
         }
     }
-    assert!(machine.serial.next::<Frame>().is_some(), "it goes on");
+    machine.wait_for::<Frame>()?;
     machine.quit()
 }

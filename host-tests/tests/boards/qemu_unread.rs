@@ -3,11 +3,13 @@
 use std::thread::sleep;
 use std::time::Duration;
 
-use crate::support::{application, settings, toolchain};
+use crate::support::on;
+use firmware::motion::settings::Settings;
 use firmware::protocol::Frame;
+use firmware::scenes::SceneName;
 use host_tests::emulator::boards::BOARDS;
+use host_tests::emulator::host::Show;
 use host_tests::emulator::qemu::{Machine, QemuError};
-use host_tests::oracle::stream::Expected;
 
 /// How often the log is looked at.
 const POLL: Duration = Duration::from_millis(20);
@@ -18,9 +20,8 @@ const FRAMES: usize = 120;
 #[test]
 fn a_host_that_stops_reading_loses_frames_and_nothing_else() -> Result<(), QemuError> {
     let board = BOARDS.iter().find(|board| board.name == "mps2-an386").expect("it is a board");
-    let (toolchain, elf) = (toolchain(), application(board));
-    let mut machine = Machine::start(&settings(&toolchain, board, &elf))?;
-    let first: Frame = machine.serial.next().ok_or_else(|| machine.silence())?;
+    let mut machine = on(board, Machine::start)?;
+    let first: Frame = machine.wait_for()?;
 
     let stopped = machine.serial.stop_reading();
     let mut said = Vec::new();
@@ -30,14 +31,16 @@ fn a_host_that_stops_reading_loses_frames_and_nothing_else() -> Result<(), QemuE
     }
     drop(stopped);
 
-    let mut expected = Expected::new(first.mass_ratio, first.start_angle);
+    let mut expected =
+        Show::on(board.processor(), SceneName::Page, &Settings::default()).expect("a scene of the catalogue");
     let (mut steps, mut last, mut after) = (0, first, 0);
     while after < FRAMES {
-        let frame: Frame = machine.serial.next().ok_or_else(|| machine.silence())?;
+        let frame: Frame = machine.wait_for()?;
         (steps..frame.step).for_each(|_| expected.tick());
         steps = frame.step;
-        assert_eq!(frame.state.map(f32::to_bits), expected.state().map(f32::to_bits), "frame {}", frame.sequence);
-        // No tick is left out, whatever became of its frame.
+        let state: [f32; 4] = expected.report().state.into();
+        assert_eq!(frame.state.map(f32::to_bits), state.map(f32::to_bits), "frame {}", frame.sequence);
+        // No tick is left out, even if its frame is.
         assert_eq!(frame.step, frame.sequence + 1 + frame.dropped);
         after += usize::from(after > 0 || frame.sequence > last.sequence + 1);
         last = frame;

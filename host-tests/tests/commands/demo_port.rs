@@ -63,12 +63,8 @@ fn a_board_that_restarts_is_followed_again() {
     let mut bench = Bench::new();
     let mut restarted = false;
     let output = demo(&mut bench, &["--seconds", "8"], |bench| {
-        let mut frames = 0;
-        bench.carry(|message| {
-            frames = message.read::<Frame>().map_or(frames, |frame| frame.sequence);
-            intact(message)
-        });
-        if !restarted && bench.heard && frames > 200 {
+        bench.carry(intact);
+        if !restarted && bench.heard && bench.frame > 200 {
             (bench.machine, restarted) = (board(), true);
         }
     });
@@ -82,13 +78,9 @@ fn a_pulled_cable_is_said_and_waited_for() {
     let mut bench = Bench::new();
     let mut pulled = None;
     let output = demo(&mut bench, &["--seconds", "8"], |bench| {
-        let mut frames = 0;
-        bench.carry(|message| {
-            frames = message.read::<Frame>().map_or(frames, |frame| frame.sequence);
-            intact(message)
-        });
+        bench.carry(intact);
         match pulled {
-            None if bench.heard && frames > 200 => {
+            None if bench.heard && bench.frame > 200 => {
                 bench.unplug();
                 pulled = Some(Instant::now());
             }

@@ -6,7 +6,6 @@ use std::io::{self, BufReader, Read};
 use std::os::unix::fs::PermissionsExt;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
-use std::time::Duration;
 
 use firmware::protocol::Frame;
 use host_tests::emulator::boards::STM32F405;
@@ -14,13 +13,11 @@ use host_tests::emulator::process::{self, Output};
 use host_tests::emulator::toolchain;
 use host_tests::link::Inbox;
 
-/// For a build of the firmware from nothing.
-const LIMIT: Duration = Duration::from_secs(1800);
+use super::cli::{output, program};
+use crate::support::LIMIT;
 
 fn flash(arguments: &[&str], path: impl IntoIterator<Item = PathBuf>) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_flash-f4"));
-    command.args(arguments).env("PATH", env::join_paths(path).expect("no colon in a folder's name"));
-    process::run(&mut command, LIMIT).unwrap_or_else(|error| panic!("{error}"))
+    output(program("flash-f4").args(arguments).env("PATH", env::join_paths(path).expect("no colon in a folder's name")))
 }
 
 #[test]
@@ -77,14 +74,4 @@ fn it_hands_the_bytes_of_the_flash_to_dfu_util() -> io::Result<()> {
     let mut frames = bytes.map_while(Result::ok).filter_map(|byte| inbox.take(byte)?.read::<Frame>());
     assert_eq!(frames.next().map(|frame| frame.step), Some(1));
     Ok(())
-}
-
-#[test]
-fn a_chip_that_it_is_not_for_is_refused() {
-    for chip in ["STM32F411CEUx", "nRF52840_xxAA", "RP2040"] {
-        let output = flash(&["--chip", chip], []);
-        assert_eq!((output.status.code(), output.stdout.as_str()), (Some(2), ""));
-        let told = output.stderr.contains(chip) && output.stderr.contains("the firmware is for STM32F405, STM32F407");
-        assert!(told && output.stderr.lines().count() == 1, "{}", output.stderr);
-    }
 }

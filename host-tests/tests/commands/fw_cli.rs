@@ -1,28 +1,23 @@
 //! `cargo fw`: what it says it can run, and how it ends.
 
-use std::process::{Command, Stdio};
-use std::time::Duration;
+use std::io::{BufRead, BufReader};
+use std::process::Stdio;
 
 use host_tests::emulator::boards::BOARDS;
-use host_tests::emulator::process::{Output, run, spawn};
+use host_tests::emulator::process::{Output, spawn};
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
-use std::io::{BufRead, BufReader};
 
-/// Guards against hanging, nothing else.
-const LIMIT: Duration = Duration::from_secs(900);
+use super::cli::{output, program};
+use crate::support::LIMIT;
 
-fn fw() -> Command {
-    Command::new(env!("CARGO_BIN_EXE_fw"))
-}
-
-fn output(arguments: &[&str]) -> Output {
-    run(fw().args(arguments), LIMIT).unwrap_or_else(|error| panic!("{error}"))
+fn fw(arguments: &[&str]) -> Output {
+    output(program("fw").args(arguments))
 }
 
 #[test]
 fn the_help_lists_what_can_be_run() {
-    let help = output(&["--help"]);
+    let help = fw(&["--help"]);
     assert_eq!(help.status.code(), Some(0));
     let lists = |word: &str| help.stdout.lines().any(|line| line.split_whitespace().next() == Some(word));
     for word in BOARDS.map(|board| board.name).iter().chain(&["inject-panic", "measure", "stm32f405"]) {
@@ -32,7 +27,7 @@ fn the_help_lists_what_can_be_run() {
 
 #[test]
 fn what_runs_for_ever_ends_well_when_it_is_told_to() {
-    let told = output(&["mps2-an386", "--seconds", "2"]);
+    let told = fw(&["mps2-an386", "--seconds", "2"]);
     assert_eq!(told.status.code(), Some(0), "{}", told.stderr);
     assert!(told.stdout.contains("boot: mps2-an386"), "{}", told.stdout);
     assert_eq!(told.stderr.lines().last(), Some("ended after 2 s, as told"));
@@ -40,13 +35,13 @@ fn what_runs_for_ever_ends_well_when_it_is_told_to() {
 
 #[test]
 fn a_failure_is_one_however_long_it_may_run() {
-    assert_eq!(output(&["inject-panic", "--seconds", "600"]).status.code(), Some(1));
+    assert_eq!(fw(&["inject-panic", "--seconds", "600"]).status.code(), Some(1));
 }
 
 #[test]
 fn an_interrupt_leaves_nothing_in_the_temporary_folder() {
     let temporary = tempfile::tempdir().expect("there is room for it");
-    let mut command = fw();
+    let mut command = program("fw");
     command.arg("lm3s6965evb").env("TMPDIR", temporary.path());
     command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::null());
     let mut fw = spawn(&mut command, LIMIT).unwrap_or_else(|error| panic!("{error}"));

@@ -1,5 +1,6 @@
 //! The commands as they are called, the READMEs and what the report says.
 
+mod cli;
 mod closed_output;
 mod demo_cli;
 mod demo_port;
@@ -16,7 +17,6 @@ mod process;
 mod random_input;
 mod readmes;
 mod rooms;
-mod simulate_boards;
 mod simulate_cli;
 #[path = "../support/mod.rs"]
 mod support;

@@ -9,7 +9,7 @@ use std::process::Command;
 use std::thread::{scope, sleep};
 use std::time::Duration;
 
-use firmware::protocol::{MAX_WIRE, frame};
+use firmware::protocol::{Frame, MAX_WIRE, frame};
 use host_tests::emulator::boards::{BOARDS, Board};
 use host_tests::emulator::process::{Output, run};
 use host_tests::emulator::qemu::{Clock, Machine, Settings};
@@ -17,7 +17,7 @@ use host_tests::link::Received;
 use nix::fcntl::OFlag;
 use nix::pty::{PtyMaster, grantpt, posix_openpt, ptsname_r, unlockpt};
 
-use crate::support::{LIMIT, application, settings, toolchain};
+use crate::support::{LIMIT, on};
 
 /// A board that is quick to emulate, and has neither panel nor buttons.
 pub const BOARD: &Board = &BOARDS[2];
@@ -29,6 +29,8 @@ pub struct Bench {
     pub cable: Option<PtyMaster>,
     /// The host has said something.
     pub heard: bool,
+    /// The sequence number of the last frame that was carried.
+    pub frame: u32,
     _folder: tempfile::TempDir,
     pub name: PathBuf,
 }
@@ -41,7 +43,7 @@ impl Bench {
     pub fn of(board: &Board) -> Self {
         let folder = tempfile::tempdir().expect("a folder");
         let name = folder.path().join("ttyACM0");
-        let mut bench = Self { machine: machine(board), cable: None, heard: false, _folder: folder, name };
+        let mut bench = Self { machine: machine(board), cable: None, heard: false, frame: 0, _folder: folder, name };
         bench.plug();
         bench
     }
@@ -90,6 +92,7 @@ impl Bench {
         let is_heard = self.is_heard();
         let messages: Vec<_> = self.machine.serial.all_arrived().collect();
         for message in messages.iter().filter(|_| is_heard) {
+            self.frame = message.read().map_or(self.frame, |Frame { sequence, .. }| sequence);
             self.say(&wire(message));
         }
         sleep(WAIT);
@@ -101,10 +104,9 @@ pub fn board() -> Machine {
 }
 
 fn machine(board: &Board) -> Machine {
-    let (toolchain, elf) = (toolchain(), application(board));
     // As fast as a real one: what the host says must reach it in time.
-    let settings = Settings { clock: Clock::Real, ..settings(&toolchain, board, &elf) };
-    Machine::start(&settings).unwrap_or_else(|error| panic!("{error}"))
+    let start = |settings: &Settings| Machine::start(&Settings { clock: Clock::Real, ..*settings });
+    on(board, start).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// A message as the board has sent it.

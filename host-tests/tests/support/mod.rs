@@ -9,8 +9,8 @@ pub mod program;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use host_tests::emulator::boards::Board;
-use host_tests::emulator::qemu::{Clock, Settings};
+use host_tests::emulator::boards::{BOARDS, Board};
+use host_tests::emulator::qemu::{Clock, QemuError, Settings};
 use host_tests::emulator::toolchain::{self, Toolchain};
 
 /// Guards against hanging, nothing else: many times what any of these runs takes, on a slow and busy machine too.
@@ -29,4 +29,15 @@ pub fn application(board: &Board) -> PathBuf {
 /// Repeatable to the bit.
 pub fn settings<'a>(toolchain: &'a Toolchain, board: &'a Board, elf: &'a Path) -> Settings<'a> {
     Settings { qemu: toolchain.qemu(), board, elf, clock: Clock::Counted, debugger: true, limit: LIMIT }
+}
+
+/// What `start` makes of a board with its application: a machine that runs, or one in lockstep.
+pub fn on<M>(board: &Board, start: impl FnOnce(&Settings) -> Result<M, QemuError>) -> Result<M, QemuError> {
+    let (toolchain, elf) = (toolchain(), application(board));
+    start(&settings(&toolchain, board, &elf))
+}
+
+/// The boards with a memory protection unit, which tell the cause of a fault.
+pub fn guarded() -> impl Iterator<Item = &'static Board> {
+    BOARDS.iter().filter(|board| board.is_guarded())
 }

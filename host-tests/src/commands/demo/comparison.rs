@@ -1,5 +1,5 @@
-//! Every frame of a board beside the host's own. Frames do not tell all that a scene starts from, so the board is asked; the
-//! frames wait for its answer.
+//! Every frame of a board beside the host's own. Frames do not tell all that a scene starts from, so the host asks the board;
+//! the frames wait for its answer.
 
 use std::collections::VecDeque;
 use std::fmt;
@@ -10,9 +10,9 @@ use firmware::protocol::{Frame, Status};
 use super::mirror::{Difference, Mirror, start_of};
 use crate::emulator::qemu::Screenshot;
 
-/// A board that has not answered for so many frames is asked again.
+/// After this many frames without an answer the host asks again.
 const PATIENCE: u32 = TICK_RATE;
-/// The host catches up with a board that has long been playing by so many ticks at a time, so that the terminal lives.
+/// The host catches up with a board that has long been playing by this many ticks at a time, so that the terminal goes on.
 const MOST_TICKS: u32 = 2000;
 
 /// The comparison so far.
@@ -23,7 +23,7 @@ pub struct Comparison {
     playing: Option<Status>,
     /// Frames since the start that are not yet compared, oldest first.
     waiting: VecDeque<Frame>,
-    /// So many of them came before the board said what it plays. It may have started something else in between.
+    /// How many of them came before the board said what it plays. It may have started something else in between.
     unsure: usize,
     /// A frame that differs, unless the board says that it has started something else.
     doubt: Option<Difference>,
@@ -36,7 +36,7 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// Takes a frame that has just arrived; whether the board is to be asked what it plays.
+    /// Takes a frame that has just arrived; whether to ask the board what it plays.
     pub fn frame(&mut self, frame: &Frame) -> bool {
         let starts = |last: &Frame| frame.scene != last.scene || (frame.step.wrapping_sub(last.step) as i32) < 0;
         if self.last.as_ref().is_none_or(starts) {
@@ -71,11 +71,8 @@ impl Comparison {
             None if self.playing.is_some() => return,
             _ => {}
         }
-        if self.mirror.is_none() {
-            self.mirror = Mirror::new().ok();
-        }
-        let plays = self.mirror.as_mut().is_some_and(|mirror| mirror.play(&start).is_ok());
-        self.playing = plays.then_some(start);
+        self.mirror = Mirror::of(&start).ok();
+        self.playing = self.mirror.is_some().then_some(start);
         self.unsure = self.waiting.len();
     }
 

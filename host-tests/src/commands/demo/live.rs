@@ -3,7 +3,7 @@
 use std::io::stdout;
 use std::time::{Duration, Instant};
 
-use anyhow::{bail, ensure};
+use anyhow::ensure;
 use firmware::app::controls::Key;
 use firmware::config::TICK_RATE;
 use firmware::protocol::{Pause, Press, Step};
@@ -16,7 +16,7 @@ use ratatui::crossterm::{cursor, execute};
 use super::Options;
 use super::session::Session;
 use super::view::draw;
-use crate::console::cli::{complain, say};
+use crate::console::cli::say;
 use crate::emulator::process;
 
 /// From one screenshot to the next: 30 per second.
@@ -42,23 +42,15 @@ fn show(options: &Options, session: &mut Session, mut terminal: DefaultTerminal)
     let last = options.seconds.map(|seconds| (seconds * f64::from(TICK_RATE)).ceil() as u32);
     let colours = !Colored::ansi_color_disabled();
     loop {
-        observe(session)?;
+        session.hear()?;
+        session.source.lines().into_iter().for_each(|line| session.readings.line(line));
+        session.look()?;
         terminal.draw(|frame| draw(frame, session.source.name(), &session.screenshot, &session.readings, colours))?;
         let is_over = last.is_some_and(|last| session.ticks() >= last);
-        if is_over || keys(session)? || session.source.ended()?.is_some() {
+        if is_over || keys(session)? {
             return Ok(());
         }
     }
-}
-
-/// Looks at the board.
-fn observe(session: &mut Session) -> anyhow::Result<()> {
-    session.hear()?;
-    session.source.lines().into_iter().for_each(|line| session.readings.line(line));
-    if session.source.ended()?.is_none() {
-        session.look()?;
-    }
-    Ok(())
 }
 
 /// Until the next screenshot is due: sends what the keys ask for. Whether the user wants to quit.
@@ -75,12 +67,14 @@ fn keys(session: &mut Session) -> anyhow::Result<bool> {
         }
         match wish(&event::read()?) {
             Some(Wish::Quit) => return Ok(true),
+            Some(Wish::Help) => {
+                session.readings.help = !session.readings.help;
+                return Ok(false);
+            }
             Some(Wish::Press(key)) => session.source.send(&Press { request: 0, key: key.code() })?,
             Some(Wish::Scene(other)) => {
                 let now = session.readings.frame.and_then(|now| SceneName::from_code(now.scene));
-                if let Some(now) = now {
-                    session.play(other(now))?;
-                }
+                now.map_or(Ok(()), |now| session.play(other(now)))?;
             }
             Some(Wish::Pause) => {
                 let paused = u8::from(session.readings.frame.is_some_and(|now| now.paused == 0));
@@ -95,71 +89,48 @@ fn keys(session: &mut Session) -> anyhow::Result<bool> {
 /// With the terminal as it was: completes the files and says how it went.
 fn finish(mut session: Session) -> anyhow::Result<bool> {
     session.finish()?;
-    let ended = session.source.ended()?;
-    if let Some(status) = ended.filter(|status| !status.success()) {
-        session.source.rest().into_iter().for_each(|line| session.readings.line(line));
-        session.readings.lines.iter().for_each(complain);
-        bail!("the firmware or QEMU ended: {status}");
-    }
     ensure!(session.readings.frame.is_some(), "{}: no frame came", session.source.name());
     say(session.readings.report())?;
     Ok(session.readings.comparison.difference().is_none())
 }
 
 /// What a key of the keyboard means.
+#[derive(Clone, Copy)]
 enum Wish {
     Press(Key),
     /// Another scene, found from the present one.
     Scene(fn(SceneName) -> SceneName),
     Pause,
     Step,
+    Help,
     Quit,
 }
+
+const WISHES: [(KeyCode, Wish); 15] = [
+    (KeyCode::Up, Wish::Press(Key::Up)),
+    (KeyCode::Down, Wish::Press(Key::Down)),
+    (KeyCode::Left, Wish::Press(Key::Left)),
+    (KeyCode::Right, Wish::Press(Key::Right)),
+    (KeyCode::Char(' '), Wish::Press(Key::Select)),
+    (KeyCode::Enter, Wish::Press(Key::Select)),
+    (KeyCode::Tab, Wish::Scene(SceneName::next)),
+    (KeyCode::Char('n'), Wish::Scene(SceneName::next)),
+    (KeyCode::BackTab, Wish::Scene(SceneName::previous)),
+    (KeyCode::Char('N'), Wish::Scene(SceneName::previous)),
+    (KeyCode::Char('p'), Wish::Pause),
+    (KeyCode::Char('.'), Wish::Step),
+    (KeyCode::Char('?'), Wish::Help),
+    (KeyCode::Char('q'), Wish::Quit),
+    (KeyCode::Esc, Wish::Quit),
+];
 
 fn wish(event: &Event) -> Option<Wish> {
     let Event::Key(KeyEvent { code, modifiers, kind, .. }) = event else { return None };
     if *kind == KeyEventKind::Release {
         return None;
     }
-    match code {
-        KeyCode::Char('c') if modifiers.contains(KeyModifiers::CONTROL) => Some(Wish::Quit),
-        KeyCode::Char('q') | KeyCode::Esc => Some(Wish::Quit),
-        KeyCode::Tab | KeyCode::Char('n') => Some(Wish::Scene(SceneName::next)),
-        KeyCode::BackTab | KeyCode::Char('N') => Some(Wish::Scene(SceneName::previous)),
-        KeyCode::Char('p') => Some(Wish::Pause),
-        KeyCode::Char('.') => Some(Wish::Step),
-        KeyCode::Up => Some(Wish::Press(Key::Up)),
-        KeyCode::Down => Some(Wish::Press(Key::Down)),
-        KeyCode::Left => Some(Wish::Press(Key::Left)),
-        KeyCode::Right => Some(Wish::Press(Key::Right)),
-        KeyCode::Char(' ') | KeyCode::Enter => Some(Wish::Press(Key::Select)),
-        _ => None,
+    if *code == KeyCode::Char('c') && modifiers.contains(KeyModifiers::CONTROL) {
+        return Some(Wish::Quit);
     }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn wish_of(code: KeyCode, modifiers: KeyModifiers) -> Option<Wish> {
-        wish(&Event::Key(KeyEvent::new(code, modifiers)))
-    }
-
-    #[test]
-    fn keys_mean_what_the_line_of_keys_says() {
-        use KeyCode::{BackTab, Char, Down, Enter, Esc, Left, Right, Tab, Up};
-        let plain = |code| wish_of(code, KeyModifiers::NONE);
-        let keys = [(Up, Key::Up), (Down, Key::Down), (Left, Key::Left), (Right, Key::Right)];
-        for (code, key) in keys.into_iter().chain([Char(' '), Enter].map(|code| (code, Key::Select))) {
-            assert!(matches!(plain(code), Some(Wish::Press(pressed)) if pressed == key), "{code}");
-        }
-        for (code, name) in [(Tab, SceneName::Page.next()), (BackTab, SceneName::Page.previous())] {
-            assert!(matches!(plain(code), Some(Wish::Scene(other)) if other(SceneName::Page) == name), "{code}");
-        }
-        assert!(matches!(plain(Char('p')), Some(Wish::Pause)) && matches!(plain(Char('.')), Some(Wish::Step)));
-        for quit in [plain(Char('q')), plain(Esc), wish_of(Char('c'), KeyModifiers::CONTROL)] {
-            assert!(matches!(quit, Some(Wish::Quit)));
-        }
-        assert!(plain(Char('x')).is_none());
-    }
+    WISHES.iter().find(|(key, _)| key == code).map(|(_, wish)| *wish)
 }

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use firmware::app::player::Player;
-use firmware::config::PROCESSORS;
+use firmware::config::{PROCESSOR, PROCESSORS};
 use firmware::graphics::canvas::Canvas;
 use firmware::graphics::text;
 use firmware::motion::settings::Settings;
@@ -21,21 +21,15 @@ pub struct Mirror {
 }
 
 impl Mirror {
-    /// At the start of a board that is switched on.
-    pub fn new() -> Result<Self, double_pendulum::Error> {
-        let player = Player::new(Settings::default(), &mut sheets().ink)?;
+    /// Plays what the board plays, from its start; the field of it that cannot be.
+    pub fn of(status: &Status) -> Result<Self, Field> {
+        let processor = PROCESSORS.get(usize::from(status.processor)).copied().unwrap_or(PROCESSOR);
+        let mut player = Player::on(processor, SceneName::Page, Settings::default(), &mut sheets().ink)?;
+        player.resume(&start_of(status))?;
         Ok(Self { player, canvas: Canvas::default() })
     }
 
-    /// Plays what the board plays, from its start; the field of it that cannot be.
-    pub fn play(&mut self, status: &Status) -> Result<(), Field> {
-        if let Some(&processor) = PROCESSORS.get(usize::from(status.processor)) {
-            self.player = Player::on(processor, SceneName::Page, Settings::default(), &mut sheets().ink)?;
-        }
-        self.player.resume(&start_of(status))
-    }
-
-    /// Goes on to the step of `frame`, at most so many ticks; whether it is there.
+    /// Goes on to the step of `frame`, at most this many ticks; whether it is there.
     pub fn advance(&mut self, frame: &Frame, most: u32) -> bool {
         let left = |player: &Player| frame.step.wrapping_sub(player.report().step as u32) as i32;
         for _ in 0..most {

@@ -3,29 +3,26 @@
 
 pub(crate) mod comparison;
 mod headless;
+mod help;
 mod live;
 mod mirror;
 mod numbers;
 mod options;
-mod pace;
 mod panel;
-mod play;
 mod plot;
 mod readings;
 pub(crate) mod record;
 mod session;
 mod source;
-mod summary;
 mod tint;
 mod view;
 
 pub use options::Options;
-pub use play::played;
+pub use record::played;
 
 use std::io::{IsTerminal, stdin, stdout};
 use std::time::Duration;
 
-use pace::Pace;
 use record::Recording;
 use session::Session;
 use source::{Source, broken};
@@ -34,12 +31,12 @@ use crate::console::cli::Refused;
 use crate::emulator::boards::PICO;
 use crate::emulator::pico;
 use crate::emulator::qemu::{Clock, Lockstep, Machine, Settings};
-use crate::emulator::toolchain::{self, Toolchain};
+use crate::emulator::toolchain;
 use crate::link::{Port, find};
 
 /// The most time that an emulated board may take without a terminal: so much, and so much for each second of its time.
 const LIMIT: (Duration, f64) = (Duration::from_secs(60), 20.0);
-/// With one: nobody watches longer.
+/// With one: no one watches longer.
 const LIVE_LIMIT: Duration = Duration::from_secs(24 * 3600);
 
 /// Sets everything up and runs the demonstration; whether all was well.
@@ -50,7 +47,7 @@ pub fn run(options: &Options) -> anyhow::Result<bool> {
     let port = options.port.as_ref().map(|name| port(name, options.baud)).transpose()?;
     let source = port.map_or_else(|| emulated(options, headless), |port| Ok(Source::Port(port)))?;
     let recording = options.record.as_deref().map(Recording::create).transpose();
-    let session = Session::new(options, source, recording?);
+    let session = Session::new(options, source, recording?, !headless);
     if headless { headless::run(options, session) } else { live::run(options, session) }
 }
 
@@ -63,29 +60,17 @@ pub(crate) fn port(name: &str, baud: u32) -> Result<Port, Refused> {
 /// The emulated board, started.
 fn emulated(options: &Options, headless: bool) -> anyhow::Result<Source<'_>> {
     let (toolchain, _) = toolchain::set_up().map_err(Refused::because)?;
-    if *options.board == PICO {
-        return pico(&toolchain, options, headless);
+    let (board, limit) = (options.board, limit(options, headless));
+    if *board == PICO {
+        let (emulator, _) = toolchain::set_up_pico().map_err(Refused::because)?;
+        return Ok(Source::Pico(Box::new(pico::Machine::start(&emulator, &toolchain.build_for(board)?, limit)?)));
     }
-    let board = options.board;
-    let settings = Settings {
-        qemu: toolchain.qemu(),
-        board,
-        elf: &toolchain.build_for(board)?,
-        debugger: true,
-        clock: Clock::Real,
-        limit: limit(options, headless),
-    };
+    let elf = toolchain.build_for(board)?;
+    let settings = Settings { qemu: toolchain.qemu(), board, elf: &elf, debugger: true, clock: Clock::Real, limit };
     if headless {
         return Ok(Source::Lockstep(Lockstep::start(&settings).map_err(broken)?, board));
     }
     Ok(Source::Live(Machine::start(&settings).map_err(broken)?, board))
-}
-
-/// The emulated Pico, switched on.
-fn pico<'a>(toolchain: &Toolchain, options: &Options, headless: bool) -> anyhow::Result<Source<'a>> {
-    let (emulator, _) = toolchain::set_up_pico().map_err(Refused::because)?;
-    let machine = pico::Machine::start(&emulator, &toolchain.build_for(&PICO)?, limit(options, headless))?;
-    Ok(Source::Pico(Box::new(machine), (!headless).then(Pace::start)))
 }
 
 fn limit(options: &Options, headless: bool) -> Duration {

@@ -64,7 +64,7 @@ fn lines((name, value): (&'static str, String), width: usize) -> Vec<Line<'stati
     vec![Line::from(name).dim(), Line::from(format!("{value:>width$}")).bold()]
 }
 
-/// With so many decimals at most.
+/// With this many decimals at most.
 fn rounded(number: f32, decimals: i32) -> String {
     let unit = 10_f64.powi(decimals);
     ((f64::from(number) * unit).round() / unit).to_string()

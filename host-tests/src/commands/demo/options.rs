@@ -12,16 +12,10 @@ use firmware::scenes::{AnyScene, SceneName};
 use crate::console::cli::{Refused, check_writable, choice};
 use crate::emulator::boards::{BOARDS, Board, every_board};
 
-/// Shows the double pendulum on a board's panel, live in the terminal, each frame compared with the host's own.
-///
-/// A panel that the host cannot see is redrawn from the numbers that the board sends.
+/// Shows the double pendulum on a board's panel, live in the terminal, each frame compared with the host's own; a panel that the
+/// host cannot see is redrawn from the numbers that the board sends.
 #[derive(Clone, Debug, Parser)]
-#[command(
-    name = "cargo demo",
-    after_help = "Keys: up/down mass ratio, left/right start angle, space restart, tab next scene, p pause, . step, q quit\n\n\
-                  A board in the hand: cargo demo --port /dev/ttyUSB0\n\
-                  Example without a terminal: cargo demo --scene butterfly --headless --seconds 10 --record butterfly.gif"
-)]
+#[command(name = "cargo demo", after_help = after_help())]
 pub struct Options {
     /// The board
     #[arg(long, value_name = "NAME", default_value = BOARDS[0].name,
@@ -51,6 +45,37 @@ pub struct Options {
     /// Save the last screenshot of the panel
     #[arg(long, value_name = "FILE.png", value_parser = |file: &str| ends_in("png", file))]
     pub screenshot: Option<PathBuf>,
+}
+
+/// The keys, what each scene shows, and examples.
+fn after_help() -> String {
+    let scenes = SceneName::ALL.iter().map(|scene| format!("  {:12} {}\n", scene.name(), shows(*scene)));
+    format!(
+        "Keys: up/down mass ratio, left/right start angle, space restart, tab next scene, p pause, . step, ? help, q quit\n\n\
+         Scenes:\n{}\n\
+         A board in the hand: cargo demo --port /dev/ttyUSB0\n\
+         Example without a terminal: cargo demo --scene butterfly --headless --seconds 10 --record butterfly.gif",
+        scenes.collect::<String>()
+    )
+}
+
+/// What a scene shows.
+fn shows(scene: SceneName) -> &'static str {
+    match scene {
+        SceneName::Page => "the book's animation: a motion from 120 degrees, soon chaotic",
+        SceneName::SmallLight => "both angles of a small oscillation, bob 2 light: figure 3",
+        SceneName::SmallEqual => "the same of equal bobs: figure 4",
+        SceneName::SmallHeavy => "the same, bob 2 heavy: figure 5",
+        SceneName::Frequencies => "both normal frequencies over the mass ratio: figure 2",
+        SceneName::Beats3To2 => "frequencies as 3 to 2: the curve of both angles closes",
+        SceneName::Beats2To1 => "the same as 2 to 1",
+        SceneName::Beats5To2 => "the same as 5 to 2",
+        SceneName::Beats3To1 => "the same as 3 to 1",
+        SceneName::Figure7 => "the right equations beside those misprinted in the book",
+        SceneName::Butterfly => "two pendulums a millionth of a radian apart, until they part",
+        SceneName::Upright => "straight up: which arithmetic lets it fall, and when",
+        SceneName::Flips => "a map of all starts: how soon a rod turns over",
+    }
 }
 
 /// A method, or none to leave it to the board's plan.

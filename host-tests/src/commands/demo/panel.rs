@@ -94,23 +94,18 @@ mod tests {
     }
 
     #[test]
-    fn what_is_lit_is_a_dot_in_its_colour_and_what_is_dark_is_none() {
+    fn what_is_lit_is_a_dot_or_a_pixel_in_its_colour() {
         for colours in [true, false] {
             let buffer = drawn(64, colours);
             let lit: Vec<_> = buffer.content().iter().filter(|cell| cell.symbol() != "\u{2800}").collect();
             assert_eq!(lit.iter().map(|cell| cell.symbol()).collect::<String>(), "⠁⠠⢀");
             let expected = [15, 15, 6].map(|grey| if colours { tint::in_terminal(grey) } else { Color::Reset });
             assert_eq!(lit.iter().map(|cell| cell.fg).collect::<Vec<_>>(), expected);
-            assert!(buffer.content().iter().all(|cell| cell.bg == Color::Reset));
         }
-    }
-
-    #[test]
-    fn where_it_fits_every_pixel_has_its_grey() {
         let buffer = drawn(128, true);
-        let colours = |x, y| buffer.cell((x, y)).map(|cell| [cell.fg, cell.bg]);
-        assert_eq!(colours(0, 0), Some([15, 0].map(tint::in_terminal)));
-        assert_eq!(colours(3, 1), Some([15, 0].map(tint::in_terminal)));
-        assert_eq!(colours(127, 31), Some([0, 6].map(tint::in_terminal)));
+        for (x, y, greys) in [(0, 0, [15, 0]), (3, 1, [15, 0]), (127, 31, [0, 6])] {
+            let colours = buffer.cell((x, y)).map(|cell| [cell.fg, cell.bg]);
+            assert_eq!(colours, Some(greys.map(tint::in_terminal)), "{x}, {y}");
+        }
     }
 }

@@ -1,21 +1,23 @@
-//! What the terminal shows beside the panel: the latest numbers and a little of their past.
+//! What a board has sent: the latest numbers, a little of their past for the terminal, and whether all was well.
 
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
+use double_pendulum::Method;
 use firmware::config::TICK_RATE;
-use firmware::protocol::{Frame, Status};
+use firmware::protocol::{Frame, Status, method_of};
 
 use super::comparison::Comparison;
 use super::plot::{self, Moment};
-use super::summary::Summary;
 use crate::emulator::qemu::LogLine;
 use crate::link::Counts;
 
+/// An energy error beyond this is no rounding or step error: the motion is wrong.
+const GREATEST_ENERGY_ERROR: f32 = 1e-2;
 /// How many energy errors are remembered, each the largest of half a second.
 const PAST: usize = 240;
 /// Frames in half a second.
-const FRAMES_PER_BAR: u32 = TICK_RATE / 2;
+const FRAMES_PER_BAR: u64 = TICK_RATE as u64 / 2;
 /// How many lines of the log are remembered.
 const LINES: usize = 100;
 /// The time over which frames per second are counted.
@@ -38,32 +40,41 @@ pub struct Readings {
     pub lines: VecDeque<LogLine>,
     /// The frames beside the host's own.
     pub comparison: Comparison,
-    /// The run so far.
-    pub summary: Summary,
-    /// Frames that the latest of the energy errors stands for.
-    frames_in_bar: u32,
+    /// Whether what they mean is shown in their place.
+    pub help: bool,
     pub(super) arrivals: VecDeque<Instant>,
+    frames: u64,
+    greatest_energy_error: f32,
+    /// Of all scenes and restarts together, s.
+    simulated: f64,
+    /// Frames whose time is not what their number and restarts allow, or whose numbers are not finite.
+    implausible: u64,
+    complaints: Vec<String>,
 }
 
 impl Readings {
-    /// Takes a frame that has just arrived; whether the board is to be asked what it plays.
+    /// Takes a frame that has just arrived; whether to ask the board what it plays.
     pub fn frame(&mut self, frame: Frame) -> bool {
-        if self.frame.is_none_or(|last| frame.scene != last.scene || frame.time < last.time) {
+        let last = self.frame.replace(frame);
+        let before = last.filter(|last| last.scene == frame.scene && last.time <= frame.time);
+        if before.is_none() {
             self.start = None;
             self.energy_errors.clear();
             self.angles.clear();
         }
-        self.frame = Some(frame);
-        self.summary.frame(&frame);
+        let is_finite = frame.time.is_finite() && frame.state.iter().all(|number| number.is_finite());
+        let may_stay = frame.paused != 0 || frame.time <= 1.0 / f64::from(TICK_RATE);
+        let has_advanced = may_stay || last.is_none_or(|last| frame.step > last.step);
+        self.implausible += u64::from(!is_finite || !frame.energy_error.is_finite() || !has_advanced);
+        self.simulated += frame.time - before.map_or(0.0, |last| last.time);
+
         let error = frame.energy_error.abs();
+        self.greatest_energy_error = self.greatest_energy_error.max(error);
         match self.energy_errors.back_mut() {
-            Some(largest) if self.frames_in_bar < FRAMES_PER_BAR => *largest = largest.max(error),
-            _ => {
-                push(&mut self.energy_errors, error, PAST);
-                self.frames_in_bar = 0;
-            }
+            Some(largest) if !self.frames.is_multiple_of(FRAMES_PER_BAR) => *largest = largest.max(error),
+            _ => push(&mut self.energy_errors, error, PAST),
         }
-        self.frames_in_bar += 1;
+        self.frames += 1;
         let [a1, a2, ..] = frame.state.map(|number| f64::from(number).to_degrees());
         if self.angles.back().is_none_or(|last| frame.time > last.time) {
             self.angles.push_back(Moment { time: frame.time, angles: [a1, a2] });
@@ -71,9 +82,8 @@ impl Readings {
         while self.angles.front().is_some_and(|first| frame.time - first.time > plot::SPAN) {
             self.angles.pop_front();
         }
-        let now = Instant::now();
-        self.arrivals.push_back(now);
-        while self.arrivals.front().is_some_and(|&arrival| now - arrival > RATE_SPAN) {
+        self.arrivals.push_back(Instant::now());
+        while self.arrivals.front().is_some_and(|arrival| arrival.elapsed() > RATE_SPAN) {
             self.arrivals.pop_front();
         }
         self.comparison.frame(&frame)
@@ -87,19 +97,68 @@ impl Readings {
 
     /// Takes a line of the log.
     pub fn line(&mut self, line: LogLine) {
-        self.summary.line(&line);
+        if line.is_bad() {
+            self.complaints.push(line.to_string());
+        }
         push(&mut self.lines, line, LINES);
-    }
-
-    /// The report at the end.
-    pub fn report(&self) -> String {
-        format!("{}\nbits                  {}", self.summary.report(self.counts), self.comparison)
     }
 
     /// Frames that arrived in the last second.
     pub fn rate(&self) -> usize {
         self.arrivals.iter().filter(|arrival| arrival.elapsed() <= RATE_SPAN).count()
     }
+
+    /// What is not well of an emulated board; empty if all is.
+    pub fn faults(&self) -> Vec<String> {
+        let Counts { damaged, lost, .. } = self.counts;
+        let dropped = self.frame.map_or(0, |last| last.dropped);
+        let is_wrong = self.greatest_energy_error > GREATEST_ENERGY_ERROR;
+        let findings = [
+            (self.frames == 0, "no frame arrived".to_owned()),
+            (damaged > 0, format!("{damaged} messages arrived damaged")),
+            (lost > 0, format!("{lost} frames were lost on the way")),
+            (dropped > 0, format!("{dropped} frames were dropped")),
+            (self.implausible > 0, format!("{} frames are implausible", self.implausible)),
+            (is_wrong, format!("the energy error exceeds {GREATEST_ENERGY_ERROR}")),
+        ];
+        let findings = findings.into_iter().filter_map(|(found, text)| found.then_some(text));
+        findings.chain(self.complaints.iter().cloned()).collect()
+    }
+
+    /// The report at the end.
+    pub fn report(&self) -> String {
+        let Self { frames, simulated, greatest_energy_error, counts, comparison, .. } = self;
+        let last = self.frame.unwrap_or_default();
+        format!(
+            "frames                {frames}\n\
+             simulated time        {simulated:.3} s\n\
+             shown                 {}\n\
+             largest energy error  {greatest_energy_error:.1e}\n\
+             CRC errors            {}\n\
+             lost frames           {}\n\
+             dropped frames        {}\n\
+             bits                  {comparison}",
+            way(&last),
+            counts.damaged,
+            counts.lost,
+            last.dropped
+        )
+    }
+}
+
+/// How a frame is computed and until when such frames are right, in one line.
+pub fn way(&Frame { method, way_steps, horizon, is_looking, .. }: &Frame) -> String {
+    let name = method_of(method).map_or("nothing to plan", Method::name);
+    let steps = match way_steps {
+        0 => String::new(),
+        1 => ", a step to a frame".to_owned(),
+        steps => format!(", {steps} steps to a frame"),
+    };
+    if horizon.is_infinite() {
+        return format!("{name}{steps}");
+    }
+    let at_least = if is_looking != 0 { "at least " } else { "" };
+    format!("{name}{steps}, right to half a pixel until {at_least}{horizon:.1} s")
 }
 
 /// Keeps the last `most`.
@@ -108,4 +167,18 @@ fn push<T>(queue: &mut VecDeque<T>, item: T, most: usize) {
         queue.pop_front();
     }
     queue.push_back(item);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_simulated_time_is_that_of_all_restarts_and_scenes() {
+        let mut readings = Readings::default();
+        for (scene, time) in [(0, 0.25), (0, 0.5), (0, 0.5), (0, 0.125), (0, 0.75), (1, 0.875), (1, 1.0)] {
+            readings.frame(Frame { scene, time, ..Frame::default() });
+        }
+        assert!(readings.report().contains("simulated time        2.250 s"), "{}", readings.report());
+    }
 }

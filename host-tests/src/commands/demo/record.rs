@@ -6,7 +6,7 @@ use std::path::Path;
 
 use anyhow::Context;
 use firmware::config::TICK_RATE;
-use gif::{Encoder, Frame, Repeat};
+use gif::{ColorOutput, DecodeOptions, Encoder, Frame, Repeat};
 
 use super::tint;
 use crate::emulator::qemu::{HEIGHT, Screenshot, WIDTH};
@@ -15,18 +15,19 @@ use crate::emulator::qemu::{HEIGHT, Screenshot, WIDTH};
 const SCALE: usize = 3;
 /// The board's ticks from one screenshot to the next: 60/2 = 30 frames per second.
 const TICKS_PER_FRAME: u32 = TICK_RATE / 30;
-/// In a screenshot after the first: as it was. The palette's first colour after the greys.
+/// In a picture after the first: as it was. Few pixels change, which leaves long runs of this. The palette's first colour after
+/// the greys.
 const UNCHANGED: u8 = 16;
 /// GIF counts time in hundredths of a second.
-const GIF_RATE: u64 = 100;
+const GIF_RATE: u32 = 100;
 
 /// An animation being written.
 pub struct Recording {
     encoder: Encoder<BufWriter<File>>,
     /// The screenshot to be shown next, and since which tick; it is written when its end is known.
     pending: Option<(Screenshot, u32)>,
-    /// The screenshot that the file shows so far.
-    shown: Option<Screenshot>,
+    /// What the file shows so far.
+    shown: Vec<u8>,
     /// The tick of the first screenshot.
     start: u32,
 }
@@ -35,11 +36,11 @@ impl Recording {
     /// Begins the file.
     pub fn create(path: &Path) -> anyhow::Result<Self> {
         let file = File::create(path).with_context(|| format!("cannot write {}", path.display()))?;
-        let size = |pixels: usize| (pixels * SCALE) as u16;
+        let [width, height] = size();
         let palette = [tint::palette(), vec![0; 3]].concat();
-        let mut encoder = Encoder::new(BufWriter::new(file), size(WIDTH), size(HEIGHT), &palette)?;
+        let mut encoder = Encoder::new(BufWriter::new(file), width, height, &palette)?;
         encoder.set_repeat(Repeat::Infinite)?;
-        Ok(Self { encoder, pending: None, shown: None, start: 0 })
+        Ok(Self { encoder, pending: None, shown: Vec::new(), start: 0 })
     }
 
     /// Whether a screenshot of `tick` does not come too soon after the last.
@@ -69,29 +70,42 @@ impl Recording {
     /// Writes the pending screenshot, whose time ends at `tick`.
     fn flush(&mut self, tick: u32) -> anyhow::Result<()> {
         let Some((screenshot, since)) = self.pending.take() else { return Ok(()) };
-        let hundredths = |tick: u32| {
-            let ticks = u64::from(tick.wrapping_sub(self.start));
-            (ticks * GIF_RATE + u64::from(TICK_RATE) / 2) / u64::from(TICK_RATE)
-        };
+        let hundredths = |tick: u32| (tick.wrapping_sub(self.start) * GIF_RATE + TICK_RATE / 2) / TICK_RATE;
         let delay = u16::try_from(hundredths(tick) - hundredths(since)).unwrap_or(u16::MAX);
-        let [width, height] = [WIDTH, HEIGHT].map(|pixels| (pixels * SCALE) as u16);
-        // Few pixels change, which leaves long runs of one value.
-        let change = |x, y| match (&self.shown, screenshot.grey(x, y)) {
-            (Some(shown), grey) if shown.grey(x, y) == grey => UNCHANGED,
-            (_, grey) => grey,
-        };
+        let [width, height] = size();
+        let now = magnified(&screenshot);
+        let before = std::mem::replace(&mut self.shown, now.clone());
+        let change = |(index, grey)| if before.get(index) == Some(&grey) { UNCHANGED } else { grey };
+        let buffer = now.into_iter().enumerate().map(change).collect::<Vec<_>>().into();
         let transparent = Some(UNCHANGED);
-        let frame = Frame { delay, width, height, transparent, buffer: magnified(change).into(), ..Frame::default() };
-        self.encoder.write_frame(&frame)?;
-        self.shown = Some(screenshot);
-        Ok(())
+        Ok(self.encoder.write_frame(&Frame { delay, width, height, transparent, buffer, ..Frame::default() })?)
     }
 }
 
-/// The panel's values, magnified, row by row.
-fn magnified(value: impl Fn(usize, usize) -> u8) -> Vec<u8> {
-    let at = |index: usize| value(index % (WIDTH * SCALE) / SCALE, index / (WIDTH * SCALE) / SCALE);
+/// Of a file's picture, in its own dots.
+fn size<N: TryFrom<usize> + Default>() -> [N; 2] {
+    [WIDTH, HEIGHT].map(|pixels| N::try_from(pixels * SCALE).unwrap_or_default())
+}
+
+/// The panel's greys, magnified, row by row.
+fn magnified(screenshot: &Screenshot) -> Vec<u8> {
+    let at = |index: usize| screenshot.grey(index % (WIDTH * SCALE) / SCALE, index / (WIDTH * SCALE) / SCALE);
     (0..WIDTH * SCALE * HEIGHT * SCALE).map(at).collect()
+}
+
+/// Reads an animation back, for tests: the greys of each of its pictures, dot by dot, and the hundredths of a second it stays.
+pub fn played(path: &Path) -> anyhow::Result<Vec<(Vec<u8>, u16)>> {
+    let mut options = DecodeOptions::new();
+    options.set_color_output(ColorOutput::Indexed);
+    let mut decoder = options.read_info(File::open(path)?)?;
+    let (mut played, mut shown) = (Vec::new(), Vec::new());
+    while let Some(frame) = decoder.read_next_frame()? {
+        shown.resize(frame.buffer.len(), 0);
+        let dots = shown.iter_mut().zip(frame.buffer.iter());
+        dots.filter(|(_, dot)| frame.transparent != Some(**dot)).for_each(|(shown, dot)| *shown = *dot);
+        played.push((shown.clone(), frame.delay));
+    }
+    Ok(played)
 }
 
 /// Writes one screenshot to a PNG file.
@@ -102,12 +116,12 @@ pub fn save(screenshot: &Screenshot, path: &Path) -> anyhow::Result<()> {
 
 /// Writes one screenshot as a PNG file.
 pub fn png(screenshot: &Screenshot, file: impl Write) -> anyhow::Result<()> {
-    let size = |pixels: usize| (pixels * SCALE) as u32;
-    let mut encoder = png::Encoder::new(file, size(WIDTH), size(HEIGHT));
+    let [width, height] = size();
+    let mut encoder = png::Encoder::new(file, width, height);
     encoder.set_color(png::ColorType::Indexed);
     encoder.set_palette(tint::palette());
     let mut writer = encoder.write_header()?;
-    writer.write_image_data(&magnified(|x, y| screenshot.grey(x, y)))?;
+    writer.write_image_data(&magnified(screenshot))?;
     Ok(writer.finish()?)
 }
 
@@ -117,31 +131,23 @@ mod tests {
     use firmware::graphics::canvas::Canvas;
 
     use super::*;
-    use crate::commands::demo::played;
 
     #[test]
     fn an_animation_shows_every_picture_as_it_was() {
-        let mut rng = Rng::with_seed(1);
-        let mut canvas = Canvas::default();
-        // None, one, a few and nearly all pixels change.
-        let mut frames = vec![Screenshot::from(&canvas)];
-        for changes in [0, 1, 30, 20_000, 5, 20_000, 0] {
+        let (mut rng, mut canvas) = (Rng::with_seed(1), Canvas::default());
+        let file = tempfile::NamedTempFile::new().expect("a file");
+        let mut recording = Recording::create(file.path()).expect("it can be written");
+        let mut frames = Vec::new();
+        for (number, changes) in (0..).zip([0, 1, 30, 20_000, 0]) {
             for _ in 0..changes {
                 canvas.update(rng.i32(0..WIDTH as i32), rng.i32(0..HEIGHT as i32), |_| rng.u8(0..16));
             }
-            frames.push(Screenshot::from(&canvas));
-        }
-        let file = tempfile::NamedTempFile::new().expect("a file");
-        let mut recording = Recording::create(file.path()).expect("it can be written");
-        for (screenshot, tick) in frames.iter().zip((0..).step_by(TICKS_PER_FRAME as usize)) {
-            recording.add(screenshot.clone(), tick).expect("it can be written");
+            recording.add(Screenshot::from(&canvas), number * TICKS_PER_FRAME).expect("it can be written");
+            frames.push(magnified(&Screenshot::from(&canvas)));
         }
         recording.finish().expect("it can be written");
-        let played = played(file.path()).expect("a GIF file");
-        assert_eq!(played.len(), frames.len());
-        for (number, (screenshot, (greys, delay))) in frames.iter().zip(played).enumerate() {
-            assert!(greys == magnified(|x, y| screenshot.grey(x, y)), "screenshot {number}");
-            assert!((3..=4).contains(&delay), "screenshot {number} is shown for {delay}/100 s");
-        }
+        let (greys, delays): (Vec<_>, Vec<_>) = played(file.path()).expect("a GIF file").into_iter().unzip();
+        assert!(greys == frames);
+        assert_eq!(delays, [3, 4, 3, 3, 4]);
     }
 }

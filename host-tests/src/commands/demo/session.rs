@@ -1,6 +1,10 @@
 //! A board being watched, with a terminal or without: its messages are taken, its scene chosen, its panel recorded.
 
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
 use firmware::app::player::AUTO;
+use firmware::config::TICK_RATE;
 use firmware::protocol::{Ask, Choose, Field, Frame, Set, Status, method_code};
 use firmware::scenes::SceneName;
 
@@ -9,6 +13,9 @@ use super::readings::Readings;
 use super::record::{Recording, save};
 use super::source::Source;
 use crate::emulator::qemu::Screenshot;
+
+/// How far the emulated Pico may be behind a real one before it lets that go.
+const LATE: Duration = Duration::from_millis(100);
 
 /// One run.
 pub struct Session<'a> {
@@ -25,17 +32,25 @@ pub struct Session<'a> {
     begun: Option<u32>,
     /// What the ticks of the board's clock lack since it was last restarted.
     before: u32,
+    /// When the emulated Pico's next frame is due, which in a terminal goes no faster than a real one.
+    due: Option<Instant>,
 }
 
 impl<'a> Session<'a> {
     /// Of a board that has just been started, or found.
-    pub fn new(options: &'a Options, source: Source<'a>, recording: Option<Recording>) -> Self {
+    pub fn new(options: &'a Options, source: Source<'a>, recording: Option<Recording>, is_live: bool) -> Self {
         let (readings, screenshot) = (Readings::default(), Screenshot::blank());
-        Self { options, source, readings, screenshot, recording, now: None, begun: None, before: 0 }
+        let due = (is_live && matches!(source, Source::Pico(_))).then(Instant::now);
+        Self { options, source, readings, screenshot, recording, now: None, begun: None, before: 0, due }
     }
 
-    /// Takes what the board has sent. It is asked what it plays as often as the comparison wants to know.
+    /// Takes what the board has sent. The host asks what it plays as often as the comparison wants to know.
     pub fn hear(&mut self) -> anyhow::Result<()> {
+        if let Some(due) = &mut self.due {
+            sleep(due.saturating_duration_since(Instant::now()));
+            // More than this late, and it is not made up for.
+            *due = if due.elapsed() > LATE { Instant::now() } else { *due } + Duration::from_secs(1) / TICK_RATE;
+        }
         for message in self.source.messages()? {
             if let Some(status) = message.read::<Status>() {
                 self.readings.status(&status);
@@ -128,9 +143,9 @@ impl<'a> Session<'a> {
     /// What is not well; empty if all is. A board in the hand may drop frames, and its cable may flip bits: both are told, and
     /// neither is a fault.
     pub fn faults(&self) -> Vec<String> {
-        let Readings { summary, comparison, counts, .. } = &self.readings;
-        let found = if self.source.is_port() { vec![] } else { summary.faults(*counts) };
-        found.into_iter().chain(comparison.difference().map(|difference| difference.to_string())).collect()
+        let found = if self.source.is_port() { vec![] } else { self.readings.faults() };
+        let difference = self.readings.comparison.difference();
+        found.into_iter().chain(difference.map(|difference| difference.to_string())).collect()
     }
 
     /// Completes the files that were asked for.

@@ -30,28 +30,3 @@ pub fn in_terminal(grey: u8) -> Color {
 pub fn palette() -> Vec<u8> {
     (0..=BRIGHTEST_GREY).flat_map(colour).collect()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Red, green and blue of one of the 256: a cube of 6 x 6 x 6 colours from 16 on, 24 greys from 232 on.
-    fn cube(index: u8) -> [u32; 3] {
-        let level = |step: u8| if step == 0 { 0 } else { 55 + 40 * u32::from(step) };
-        match index {
-            232.. => [8 + 10 * u32::from(index - 232); 3],
-            _ => [(index - 16) / 36, (index - 16) / 6 % 6, (index - 16) % 6].map(level),
-        }
-    }
-
-    #[test]
-    fn in_a_terminal_brighter_is_never_darker_and_every_hue_is_amber() {
-        let luminance =
-            |index: u8| cube(index).into_iter().zip([299, 587, 114]).map(|(c, weight)| c * weight).sum::<u32>();
-        assert!(TERMINAL.is_sorted_by_key(|&index| luminance(index)), "{:?}", TERMINAL.map(luminance));
-        for [red, green, blue] in TERMINAL.map(cube) {
-            let is_grey = red == green && green == blue && red < 90;
-            assert!(is_grey || (red * 7 >= green * 8 && green * 2 > red && blue < green), "{red} {green} {blue}");
-        }
-    }
-}

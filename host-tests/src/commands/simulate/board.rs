@@ -3,10 +3,9 @@
 use std::io;
 use std::time::Duration;
 
-use anyhow::{Context, bail};
+use anyhow::{Context, bail, ensure};
 use firmware::job::Reading;
-use firmware::protocol::Field;
-use firmware::protocol::{Frame, Refused, Sample};
+use firmware::protocol::{Field, Frame, Refused, Sample};
 
 use super::Plan;
 use crate::console::cli;
@@ -37,28 +36,24 @@ pub fn on_board(
         Machine::start(&Settings { qemu: toolchain.qemu(), board, elf: &elf, clock, debugger: true, limit })?;
 
     // Its first frame says that it listens.
-    if machine.serial.next::<Frame>().is_none() {
-        return Err(machine.silence()).context(board.name);
-    }
+    machine.wait_for::<Frame>().context(board.name)?;
     machine.serial.send(&plan.request.message(REQUEST))?;
     for index in 0..=plan.request.samples {
         let sample = next_sample(&mut machine).context(board.name)?;
-        if sample.index != index {
-            bail!("{}: row {index} was lost on the way", board.name);
-        }
+        ensure!(sample.index == index, "{}: row {index} was lost on the way", board.name);
         row(&Reading { state: sample.state, velocities: sample.velocities, energy: sample.energy })?;
     }
     Ok(machine.quit()?)
 }
 
 fn next_sample(machine: &mut Machine) -> anyhow::Result<Sample> {
-    while let Some(message) = machine.serial.receive() {
-        if let Some(sample) = message.read() {
-            return Ok(sample);
-        }
+    loop {
+        let message = machine.receive()?;
         if let Some(Refused { field, .. }) = message.read() {
             bail!("the board refuses the request: {}", Field::from_code(field).map_or("unknown field", Field::name));
         }
+        if let Some(sample) = message.read() {
+            return Ok(sample);
+        }
     }
-    Err(machine.silence().into())
 }

@@ -20,7 +20,7 @@ pub use number::{Number, NumberError};
 pub use options::{Options, Place};
 pub use request::{Plan, plan};
 pub use start::{Pair, Start};
-pub use table::Table;
+pub use table::{COLUMNS, Column, Table};
 pub use tolerance::{Choice, choose};
 
 /// Computes the motion on the host and gives each reading to `row`.

@@ -1,9 +1,9 @@
 //! The command line of `cargo simulate`.
 
-use clap::Parser;
+use clap::{ArgAction, Parser};
 use double_pendulum::Method;
 
-use super::{Number, Start};
+use super::{COLUMNS, Column, Number, Start};
 use crate::console::cli::choice;
 use crate::emulator::boards::{BOARDS, Board};
 
@@ -37,15 +37,13 @@ Examples:
   cargo simulate --angles 0.5,0.5 --until 10 --every 1/10 --tolerance 1e-5 --on lm3s6965evb
   cargo simulate --angles 171,171 --degrees --masses 1,2.75 --step 1/4096 --until 5 --every 1
   cargo simulate --angles 0.5,0.5 --step 1/256 --method rk4-fixed32 --on lm3s6965evb --bits
-  cargo simulate --angles 0.5,0.5 --step 1/16 --method extrapolation12-f64
+  cargo simulate --angles 0.5,0.5 --step 1/16 --method extrapolation12-f64 --columns t,x2,y2 --header units
   cargo simulate --list
 
 Bad input, and numbers with which not even one step can be made: one line on stderr, exit code 2. A motion that leaves
 the finite numbers later: its rows until then, one line on stderr, exit code 1.";
 
-/// Computes a motion of the double pendulum and prints it as CSV: t,a1,a2,p1,p2,w1,w2,energy in SI units.
-///
-/// Numbers are decimals (0.25, 1e-3) or fractions (1/256).
+/// Computes a motion of the double pendulum and prints it as CSV, SI units. Numbers are decimals (0.25, 1e-3) or fractions (1/256).
 #[derive(Debug, Parser)]
 #[command(name = "cargo simulate", after_help = AFTER_HELP)]
 pub struct Options {
@@ -75,6 +73,14 @@ pub struct Options {
     #[arg(long = "on", value_name = "PLACE", default_value = Place::HOST,
           value_parser = choice(Place::all(), Place::name))]
     pub place: Place,
+    /// The columns, of t, a1, a2, p1, p2, w1, w2, energy, and x1, y1, x2, y2 of the bobs from the pivot, y upwards
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', default_value = "t,a1,a2,p1,p2,w1,w2,energy",
+          value_parser = choice(COLUMNS, |column| column.name), hide_possible_values = true)]
+    pub columns: Vec<Column>,
+    /// What the first line says: the names of the columns, or their units as well
+    #[arg(long = "header", value_name = "KIND", default_value = "names", action = ArgAction::Set,
+          value_parser = choice([false, true], |units| if units { "units" } else { "names" }))]
+    pub units: bool,
     /// Add the bit patterns of a1, a2, p1, p2 in hexadecimal
     #[arg(long)]
     pub bits: bool,

@@ -1,62 +1,40 @@
 //! What may be computed, and what a step of it costs where it is computed.
 
-use std::fmt;
-
 use double_pendulum::{Equations, Integrator, Method, Numbers};
 use firmware::config::Processor;
 use firmware::job::ON_BOARDS;
 
 use super::{Options, Place};
 
-impl Place {
-    /// What a step by `method` costs; `None` of what is no frontier there: something else is as good and costs less.
-    fn price(self, method: Method) -> Option<f64> {
-        match self {
-            Place::Host => on_host(method),
-            Place::Board(board) => on_board(method, &board.processor()),
+/// What the options leave open, what a step of it costs, and in what: by the place's prices or, where it has none for any of it,
+/// by the evaluations of the equations.
+pub(super) fn candidates(options: &Options) -> (&'static str, Vec<(Method, f64)>) {
+    let left: Vec<_> =
+        methods(options.place).filter(|method| options.method.is_none_or(|asked| asked == *method)).collect();
+    let priced = |price: &dyn Fn(Method) -> Option<f64>| {
+        left.iter().filter_map(|&method| Some((method, price(method)?))).collect::<Vec<_>>()
+    };
+    if let Place::Board(board) = options.place {
+        let prices = priced(&|method| on_board(method, &board.processor()));
+        if !prices.is_empty() {
+            return ("cycles (estimate)", prices);
         }
     }
-}
-
-/// In what a price is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Unit {
-    Evaluations,
-    Cycles,
-}
-
-impl fmt::Display for Unit {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Evaluations => "evaluations of the equations",
-            Self::Cycles => "cycles (estimate)",
-        })
+    let mut prices = priced(&on_host);
+    if prices.is_empty() || options.place != Place::Host {
+        prices = priced(&|method| Some(evaluations(method)));
     }
-}
-
-/// What the options leave open, and what a step of it costs: by the place's prices or, where it has none for any of it, by the
-/// evaluations of the equations.
-pub(super) fn candidates(options: &Options) -> (Unit, Vec<(Method, f64)>) {
-    let place = options.place;
-    let left: Vec<_> = methods(place).filter(|method| options.method.is_none_or(|asked| asked == *method)).collect();
-    let priced: Vec<_> = left.iter().filter_map(|&method| Some((method, place.price(method)?))).collect();
-    match place {
-        Place::Board(_) if !priced.is_empty() => (Unit::Cycles, priced),
-        Place::Host if !priced.is_empty() => (Unit::Evaluations, priced),
-        _ => (Unit::Evaluations, left.into_iter().map(|method| (method, evaluations(method))).collect()),
-    }
+    ("evaluations of the equations", prices)
 }
 
 /// What is computed at a place.
 pub(super) fn methods(place: Place) -> impl Iterator<Item = Method> {
-    let methods = match place {
-        Place::Host => Method::ALL,
-        Place::Board(_) => ON_BOARDS,
-    };
+    let methods = if place == Place::Host { Method::ALL } else { ON_BOARDS };
     methods.iter().copied()
 }
 
-/// A processor of the host computes in `f64` as fast as in anything else: the evaluations count.
+/// A processor of the host computes in `f64` as fast as in anything else: the evaluations count. `None` of what is no frontier:
+/// something else is as good and costs less.
 fn on_host(method: Method) -> Option<f64> {
     let is_fast = match method.equations() {
         Equations::Directions => matches!(method.numbers(), Numbers::F64 | Numbers::CompensatedF64),

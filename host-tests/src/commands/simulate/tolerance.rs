@@ -9,7 +9,7 @@ use anyhow::{bail, ensure};
 use double_pendulum::{Integrator, Method, Motion};
 use firmware::job::{JobError, Request};
 
-use super::price::{Unit, candidates};
+use super::price::candidates;
 use super::request::{accepted, count, method, request};
 use super::{Number, Options, Plan};
 use crate::commands::table::small;
@@ -23,15 +23,15 @@ const MOST_ROWS: u32 = 10_000;
 /// Rows where no time between them is given.
 const ROWS: u32 = 100;
 
-/// What was chosen, and why it is believed.
+/// What was chosen, and its error by the reference.
 #[derive(Debug)]
 pub struct Choice {
-    /// What is to be computed.
+    /// What to compute.
     pub plan: Plan,
     step: Number,
     /// Of a simulated second.
     price: f64,
-    unit: Unit,
+    unit: &'static str,
     /// How far any angle of any row is from the exact one at most, rad.
     pub error: f64,
 }
@@ -53,10 +53,10 @@ pub fn choose(options: &Options, tolerance: &Number) -> anyhow::Result<Choice> {
     for (price, method, parts) in trials {
         bar.advance(1);
         let (request, step) = search.request(method, parts);
-        let Agreement { rows, apart } = Agreement::of(&request, &exact, tolerance.value());
+        let (rows, error) = agreement(&request, &exact, tolerance.value());
         if rows == exact.len() {
             let (plan, price) = (Plan { request, every: search.every.clone() }, price / search.every.value());
-            return Ok(Choice { plan, step, price, unit, error: apart });
+            return Ok(Choice { plan, step, price, unit, error });
         }
         reached = reached.max(rows);
     }
@@ -99,7 +99,7 @@ impl<'a> Search<'a> {
         accepted(self.options, &self.request(method, finest).0)
     }
 
-    /// The motion by `method` in so many steps from row to row, and the step.
+    /// The motion by `method` in this many steps from row to row, and the step.
     fn request(&self, method: Method, parts: u32) -> (Request, Number) {
         let step = self.every.divided_by(parts);
         (request(self.options, method, &step, parts, self.samples), step)
@@ -108,10 +108,10 @@ impl<'a> Search<'a> {
     /// The numbers of steps from row to row that are tried: 1, 2, 3, 4, 6, 8, 12 and so on; the closed form needs none.
     fn divisions(&self, method: Method) -> impl Iterator<Item = u32> + use<> {
         let most = if method.integrator() == Integrator::ClosedForm { 1 } else { MOST_STEPS / self.samples };
-        let powers = (0..u32::BITS - 2).map(|exponent| 1 << exponent);
+        let powers = (0..u32::BITS - 2).map(|exponent| 1_u32 << exponent);
         powers
-            .flat_map(|power: u32| [Some(power), (power > 1).then_some(power / 2 * 3)])
-            .flatten()
+            .flat_map(|power| [power, power / 2 * 3])
+            .filter(|parts| *parts > 0)
             .take_while(move |parts| *parts <= most)
     }
 
@@ -131,36 +131,26 @@ impl<'a> Search<'a> {
     }
 }
 
-/// How long a motion stays near to the exact one.
-struct Agreement {
-    /// The rows before the first that is too far off.
-    rows: usize,
-    /// The largest error of an angle in them, rad.
-    apart: f64,
-}
-
-impl Agreement {
-    /// Within `limit`, rad.
-    fn of(request: &Request, exact: &[[f64; 2]], limit: f64) -> Self {
-        /// It is too far off, or lost.
-        struct End;
-        impl From<JobError> for End {
-            fn from(_: JobError) -> Self {
-                End
-            }
+/// How long a motion stays within `limit`, rad, of the exact one: the rows before the first that is too far off, and the largest
+/// error of an angle in them.
+fn agreement(request: &Request, exact: &[[f64; 2]], limit: f64) -> (usize, f64) {
+    /// It is too far off, or lost.
+    struct End;
+    impl From<JobError> for End {
+        fn from(_: JobError) -> Self {
+            End
         }
-        let mut agreement = Self { rows: 0, apart: 0.0 };
-        let mut exact = exact.iter();
-        // What ends the motion ends the agreement, whatever it is.
-        let _ = request.readings(|reading| {
-            let ([a1, a2, ..], [b1, b2]) = (reading.state, exact.next().ok_or(End)?);
-            let apart = (a1 - b1).abs().max((a2 - b2).abs());
-            if apart > limit {
-                return Err(End);
-            }
-            agreement = Self { rows: agreement.rows + 1, apart: agreement.apart.max(apart) };
-            Ok(())
-        });
-        agreement
     }
+    let (mut rows, mut largest) = (0, 0.0_f64);
+    // Anything that ends the motion ends the agreement.
+    let _ = request.readings(|reading| {
+        let ([a1, a2, ..], [b1, b2]) = (reading.state, exact.get(rows).ok_or(End)?);
+        let apart = (a1 - b1).abs().max((a2 - b2).abs());
+        if apart > limit {
+            return Err(End);
+        }
+        (rows, largest) = (rows + 1, largest.max(apart));
+        Ok(())
+    });
+    (rows, largest)
 }

@@ -20,7 +20,7 @@ use crate::link::{Counts, Inbox, Received};
 
 /// From one look at the stream to the next.
 const SLICE: Duration = Duration::from_millis(1);
-/// A board that sends no frame for so many of them sends none.
+/// A board that sends no frame for this many of them sends none.
 const PATIENCE: u32 = 5000;
 
 /// Why the board could not be used.

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 use std::process::exit;
-use std::sync::{Mutex, MutexGuard, Once, PoisonError};
+use std::sync::{Mutex, Once, PoisonError};
 use std::thread;
 
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
@@ -16,11 +16,13 @@ pub fn interrupted_by(signal: i32) -> i32 {
     128 + signal
 }
 
-type Hooks = Vec<Box<dyn FnOnce() + Send>>;
-
 /// Runs `hook` when this process is interrupted, before it exits: for what must be put back, such as the terminal's mode.
 pub fn on_interrupt(hook: impl FnOnce() + Send + 'static) {
+    type Hook = Box<dyn FnOnce() + Send>;
+    static HOOKS: Mutex<Vec<Hook>> = Mutex::new(Vec::new());
     static HANDLER: Once = Once::new();
+    // A panic elsewhere must not keep a hook from running, so a poisoned lock is as good as any.
+    let hooks = || HOOKS.lock().unwrap_or_else(PoisonError::into_inner);
     HANDLER.call_once(|| {
         // Fails only for signals that no program may handle.
         let Ok(mut signals) = Signals::new(INTERRUPTS) else { return };
@@ -38,10 +40,4 @@ pub fn remove_on_interrupt(folder: &Path) {
     let folder = folder.to_owned();
     // It may be gone already.
     on_interrupt(move || drop(std::fs::remove_dir_all(folder)));
-}
-
-/// A panic elsewhere must not keep a hook from running, so a poisoned lock is as good as any.
-fn hooks() -> MutexGuard<'static, Hooks> {
-    static HOOKS: Mutex<Hooks> = Mutex::new(Vec::new());
-    HOOKS.lock().unwrap_or_else(PoisonError::into_inner)
 }

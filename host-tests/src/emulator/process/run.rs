@@ -4,14 +4,12 @@ use std::io::{BufRead, BufReader, Read};
 use std::process::{Command, ExitStatus, Stdio};
 use std::sync::mpsc::{self, RecvTimeoutError, Sender};
 use std::thread;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use super::{ProcessError, spawn};
 
 /// How often the watcher is told that the child is alive.
 const TICK: Duration = Duration::from_millis(100);
-/// How long the output may still come in after the child has ended: a stranger that left the group may hold the pipes open.
-const DRAIN: Duration = Duration::from_secs(1);
 
 /// What a child said and how it ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -24,7 +22,7 @@ pub struct Output {
     pub stderr: String,
 }
 
-/// Runs `command` to its end, captured, without input; at the latest after `limit` it is ended.
+/// Runs `command` to its end, captured, without input; at the latest after `limit` it is killed.
 pub fn run(command: &mut Command, limit: Duration) -> Result<Output, ProcessError> {
     run_watched(command, limit, |_| {})
 }
@@ -41,36 +39,33 @@ pub fn run_watched(
     let (sender, lines) = mpsc::channel();
     forward(0, child.stdout.take(), sender.clone());
     forward(1, child.stderr.take(), sender);
-
     let mut said = [String::new(), String::new()];
-    let mut ended = None;
+    let mut has_ended = false;
     loop {
         match lines.recv_timeout(TICK) {
             Ok((stream, line)) => {
                 watch(Some(line.trim_end()));
                 said[stream].push_str(&line);
             }
+            // A process that has left the group may hold the pipes open.
+            Err(RecvTimeoutError::Timeout) if has_ended => break,
             Err(RecvTimeoutError::Timeout) => watch(None),
             Err(RecvTimeoutError::Disconnected) => break,
         }
-        if child.try_wait()?.is_some() && ended.get_or_insert_with(Instant::now).elapsed() > DRAIN {
-            break;
-        }
+        has_ended = has_ended || child.try_wait()?.is_some();
     }
     let [stdout, stderr] = said;
     Ok(Output { status: child.wait()?, stdout, stderr })
 }
 
-/// Sends each line of a numbered stream on, until its end or until nobody listens.
+/// Sends each line of a numbered stream on, until its end or until no one listens.
 fn forward(stream: usize, source: Option<impl Read + Send + 'static>, lines: Sender<(usize, String)>) {
     let Some(source) = source else { return };
     thread::spawn(move || {
-        let mut source = BufReader::new(source);
-        let mut line = Vec::new();
-        while source.read_until(b'\n', &mut line).is_ok_and(|count| count > 0) {
-            if lines.send((stream, String::from_utf8_lossy(&line).into_owned())).is_err() {
-                return;
-            }
+        let (mut source, mut line) = (BufReader::new(source), Vec::new());
+        while source.read_until(b'\n', &mut line).is_ok_and(|count| count > 0)
+            && lines.send((stream, String::from_utf8_lossy(&line).into_owned())).is_ok()
+        {
             line.clear();
         }
     });

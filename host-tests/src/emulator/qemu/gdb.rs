@@ -9,10 +9,8 @@ use std::os::unix::net::UnixStream;
 
 use super::QemuError;
 
-/// The size of the instruction `wfi`, bytes.
-const WFI_SIZE: u32 = 2;
-/// What a breakpoint is said to take, bytes.
-const BREAKPOINT_SIZE: u32 = 2;
+/// The size of the instruction `wfi`, and what any breakpoint is said to take, bytes.
+const SIZE: u32 = 2;
 /// Bytes of memory asked for at once.
 const PIECE: u32 = 512;
 /// GDB's number of the program counter.
@@ -27,19 +25,18 @@ const DESCRIBE: &str = "qXfer:features:read:target.xml:0,10";
 pub(super) struct Debugger {
     reader: BufReader<UnixStream>,
     writer: UnixStream,
+    /// Where it stops when it is let run to the next of them.
+    sleeps: Vec<u32>,
     /// The machine stands at this `wfi`.
     asleep_at: Option<u32>,
 }
 
 impl Debugger {
-    /// Will stop at the instructions `wfi` at these addresses.
-    pub(super) fn new(socket: UnixStream, sleeps: &[u32]) -> Result<Self, QemuError> {
+    /// Will run to the instructions `wfi` at these addresses.
+    pub(super) fn new(socket: UnixStream, sleeps: Vec<u32>) -> Result<Self, QemuError> {
         let writer = socket.try_clone().map_err(broken)?;
-        let mut debugger = Self { reader: BufReader::new(socket), writer, asleep_at: None };
+        let mut debugger = Self { reader: BufReader::new(socket), writer, sleeps, asleep_at: None };
         debugger.ask(DESCRIBE)?;
-        for address in sleeps {
-            debugger.expect(&format!("Z0,{address:x},{WFI_SIZE}"), "OK")?;
-        }
         Ok(debugger)
     }
 
@@ -48,8 +45,11 @@ impl Debugger {
     /// The `wfi` it stands at is passed over: the architecture lets it wake at any time, and while the machine stood
     /// still QEMU has put its clock forward to the next event, which is just what sleeping does.
     pub(super) fn run_to_sleep(&mut self) -> Result<(), QemuError> {
+        for address in std::mem::take(&mut self.sleeps) {
+            self.expect(&format!("Z0,{address:x},{SIZE}"), "OK")?;
+        }
         if let Some(address) = self.asleep_at.take() {
-            let next = (address + WFI_SIZE).swap_bytes();
+            let next = (address + SIZE).swap_bytes();
             self.expect(&format!("P{PC}={next:08x}"), "OK")?;
         }
         self.expect("c", "T05")?;
@@ -62,9 +62,9 @@ impl Debugger {
     /// Lets the machine run until the instruction at this address is about to be executed, the next time if it stands there.
     pub(super) fn run_to(&mut self, address: u32) -> Result<(), QemuError> {
         self.expect("s", "T05")?;
-        self.expect(&format!("Z0,{address:x},{BREAKPOINT_SIZE}"), "OK")?;
+        self.expect(&format!("Z0,{address:x},{SIZE}"), "OK")?;
         self.expect("c", "T05")?;
-        self.expect(&format!("z0,{address:x},{BREAKPOINT_SIZE}"), "OK")
+        self.expect(&format!("z0,{address:x},{SIZE}"), "OK")
     }
 
     /// Lets the machine run, for good.
@@ -74,8 +74,11 @@ impl Debugger {
 
     /// Puts bytes into the machine's memory.
     pub(super) fn write(&mut self, address: u32, bytes: &[u8]) -> Result<(), QemuError> {
-        let digits: String = bytes.iter().map(|byte| format!("{byte:02x}")).collect();
-        self.expect(&format!("M{address:x},{:x}:{digits}", bytes.len()), "OK")
+        for (start, piece) in (address..).step_by(PIECE as usize).zip(bytes.chunks(PIECE as usize)) {
+            let digits: String = piece.iter().map(|byte| format!("{byte:02x}")).collect();
+            self.expect(&format!("M{start:x},{:x}:{digits}", piece.len()), "OK")?;
+        }
+        Ok(())
     }
 
     /// Sets a register of the machine's processor, by GDB's number of it.
@@ -99,16 +102,6 @@ impl Debugger {
             bytes.extend(piece);
         }
         Ok(bytes)
-    }
-
-    /// Writes `byte` at all these addresses.
-    pub(super) fn fill(&mut self, addresses: Range<u32>, byte: u8) -> Result<(), QemuError> {
-        for start in addresses.clone().step_by(PIECE as usize) {
-            let length = (addresses.end - start).min(PIECE);
-            let digits = format!("{byte:02x}").repeat(length as usize);
-            self.expect(&format!("M{start:x},{length:x}:{digits}"), "OK")?;
-        }
-        Ok(())
     }
 
     /// Sends a packet whose answer must begin with `answer`.

@@ -1,4 +1,5 @@
-//! Frame by frame: the machine stands still at a moment when its panel shows exactly the frame just received.
+//! A board under a debugger, frame by frame: the machine stands still at a moment when its panel shows exactly the frame just
+//! received, or at any place in its program.
 
 use std::ops::Range;
 use std::path::Path;
@@ -18,7 +19,18 @@ const PATIENCE: u32 = 1000;
 /// One instruction per translation block: QEMU's name for it since 8.1, and before.
 const SINGLE_STEP: [&str; 2] = ["one-insn-per-tb", "singlestep"];
 
-/// A machine that is let run from one frame to the next.
+/// A register of the processor, with GDB's number of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Register {
+    /// The stack pointer.
+    Sp = 13,
+    /// The link register.
+    Lr = 14,
+    /// The program counter.
+    Pc = 15,
+}
+
+/// A machine that is let run from one frame to the next, or from one place in its program to the next; its memory is open.
 ///
 /// It is stopped from outside, through QEMU's debugger port, when the firmware has done its work and goes to sleep:
 /// a frame is then on the panel and sent, and the next not begun. The firmware need not know, and its clock is the
@@ -30,11 +42,11 @@ pub struct Lockstep {
 }
 
 impl Lockstep {
-    /// Starts a board with its clock counted, whatever `settings` say of it.
+    /// Starts a board with its clock counted, even if `settings` say otherwise; it stands still at its first instruction.
     pub fn start(settings: &Settings) -> Result<Self, QemuError> {
         let sleeps = sleeps(settings.elf)?;
         let (machine, debugger) = Machine::start_stopped(&Settings { clock: Clock::Counted, ..*settings })?;
-        Ok(Self { machine, debugger: Debugger::new(debugger, &sleeps)? })
+        Ok(Self { machine, debugger: Debugger::new(debugger, sleeps)? })
     }
 
     /// Runs to the next frame.
@@ -47,7 +59,7 @@ impl Lockstep {
     pub fn run_to_frame(&mut self) -> Result<Vec<Received>, QemuError> {
         let mut messages = Vec::new();
         for _ in 0..PATIENCE {
-            self.debugger.run_to_sleep().map_err(|error| self.machine.explain(error))?;
+            self.debug(Debugger::run_to_sleep)?;
             let before = messages.len();
             messages.extend(self.machine.serial.all_arrived());
             if messages[before..].iter().any(|message| message.kind == Frame::KIND) {
@@ -70,19 +82,44 @@ impl Lockstep {
         frame
     }
 
+    fn single_step(&mut self, switch: &str) -> Result<(), QemuError> {
+        let [name, name_before] = SINGLE_STEP.map(|name| format!("{name} {switch}"));
+        self.machine.tell(&name).or_else(|_| self.machine.tell(&name_before))
+    }
+
+    /// Runs until the instruction at this address is about to be executed. Not after a run to a frame.
+    pub fn run_to(&mut self, address: u32) -> Result<(), QemuError> {
+        self.debug(|debugger| debugger.run_to(address))
+    }
+
+    /// Makes the processor go on elsewhere: the values of some registers. To be followed by [`run`](Self::run).
+    pub fn divert(&mut self, registers: &[(Register, u32)]) -> Result<(), QemuError> {
+        self.debug(|debugger| registers.iter().try_for_each(|(register, value)| debugger.set(*register as u32, *value)))
+    }
+
+    /// Lets it run for good.
+    pub fn run(&mut self) -> Result<&mut Machine, QemuError> {
+        self.debugger.run()?;
+        Ok(&mut self.machine)
+    }
+
+    /// Puts bytes into the memory.
+    pub fn write(&mut self, address: u32, bytes: &[u8]) -> Result<(), QemuError> {
+        self.debug(|debugger| debugger.write(address, bytes))
+    }
+
     /// Writes `byte` at all these addresses.
     pub fn fill(&mut self, addresses: Range<u32>, byte: u8) -> Result<(), QemuError> {
-        self.debugger.fill(addresses, byte).map_err(|error| self.machine.explain(error))
+        self.write(addresses.start, &vec![byte; addresses.len()])
     }
 
     /// The bytes at these addresses.
     pub fn read(&mut self, addresses: Range<u32>) -> Result<Vec<u8>, QemuError> {
-        self.debugger.read(addresses).map_err(|error| self.machine.explain(error))
+        self.debug(|debugger| debugger.read(addresses))
     }
 
-    fn single_step(&mut self, switch: &str) -> Result<(), QemuError> {
-        let [name, name_before] = SINGLE_STEP.map(|name| format!("{name} {switch}"));
-        self.machine.tell(&name).or_else(|_| self.machine.tell(&name_before))
+    fn debug<T>(&mut self, act: impl FnOnce(&mut Debugger) -> Result<T, QemuError>) -> Result<T, QemuError> {
+        act(&mut self.debugger).map_err(|error| self.machine.explain(error))
     }
 
     /// The panel's screenshot of the last frame.
@@ -90,7 +127,7 @@ impl Lockstep {
         self.machine.screenshot()
     }
 
-    /// The machine, for its counts and its log.
+    /// The machine, for its link, its counts and its log.
     pub fn machine(&mut self) -> &mut Machine {
         &mut self.machine
     }

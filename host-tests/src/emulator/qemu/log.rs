@@ -11,7 +11,7 @@ use defmt_decoder::{DecodeError, Frame, Locations, StreamDecoder, Table};
 
 use super::QemuError;
 
-/// What QEMU says at every start of this machine and nobody needs to read.
+/// What QEMU says at every start of this machine and no one needs to read.
 const CHATTER: [&str; 2] = ["Timer with period zero, disabling", "has no peer"];
 
 /// One line.
@@ -49,7 +49,7 @@ impl fmt::Display for LogLine {
     }
 }
 
-/// The lines as they come. Threads of its own always read, for QEMU stands still while nobody does.
+/// The lines as they come. Threads of its own always read, for QEMU stands still while no one does.
 #[derive(Debug)]
 pub struct Log {
     lines: Receiver<LogLine>,
@@ -68,7 +68,7 @@ impl Log {
             thread::spawn(move || {
                 for line in BufReader::new(stderr).lines().map_while(Result::ok) {
                     if !CHATTER.iter().any(|chatter| line.contains(chatter)) {
-                        // Nobody listens any more; still read on, or QEMU would stand still.
+                        // No one listens any more; still read on, or QEMU would stand still.
                         let _ = sender.send(LogLine::plain(&line));
                     }
                 }

@@ -1,6 +1,5 @@
 //! Starting and ending an emulated board.
 
-use std::fmt;
 use std::io::ErrorKind;
 use std::os::unix::net::{UnixListener, UnixStream};
 use std::path::Path;
@@ -9,13 +8,16 @@ use std::thread::sleep;
 use std::time::Duration;
 
 use firmware::app::controls::Key;
+use firmware::protocol::Message;
+use tempfile::TempDir;
 
-use super::folder::Folder;
+use super::folder;
 use super::qmp::Monitor;
 use super::serial::Pipes;
 use super::{Log, LogLine, QemuError, Screenshot, Serial};
 use crate::emulator::boards::Board;
 use crate::emulator::process::{self, Running};
+use crate::link::Received;
 
 /// How often a connection that is not there yet is looked for.
 const POLL: Duration = Duration::from_millis(2);
@@ -48,6 +50,7 @@ pub struct Settings<'a> {
 }
 
 /// A running board. Dropping it ends QEMU.
+#[derive(Debug)]
 pub struct Machine {
     /// The serial link.
     pub serial: Serial,
@@ -55,13 +58,7 @@ pub struct Machine {
     pub log: Log,
     monitor: Monitor,
     process: Running,
-    folder: Folder,
-}
-
-impl fmt::Debug for Machine {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Machine").field("process", &self.process).finish_non_exhaustive()
-    }
+    folder: TempDir,
 }
 
 impl Machine {
@@ -89,7 +86,7 @@ impl Machine {
             .elf
             .canonicalize()
             .map_err(|error| QemuError::Firmware { path: settings.elf.to_owned(), reason: error.to_string() })?;
-        let folder = Folder::make().map_err(&unusable)?;
+        let folder = folder::make().map_err(&unusable)?;
         // QEMU connects to sockets that listen already: none of its bytes can be lost.
         let listen = |name| UnixListener::bind(folder.path().join(name)).map_err(&unusable);
         let (monitor, debugger) = (listen("monitor")?, listen("debugger")?);
@@ -125,6 +122,21 @@ impl Machine {
         // QEMU greets once all its connections are made.
         let monitor = Monitor::new(monitor)?;
         Ok((Self { serial: Serial::new(pipes)?, log, monitor, process, folder }, debugger))
+    }
+
+    /// The next message.
+    pub fn receive(&mut self) -> Result<Received, QemuError> {
+        self.serial.receive().ok_or_else(|| self.silence())
+    }
+
+    /// The next message of one kind; others on the way to it are passed over.
+    pub fn wait_for<M: Message>(&mut self) -> Result<M, QemuError> {
+        self.serial.next().ok_or_else(|| self.silence())
+    }
+
+    /// The lines of the log that have arrived since the last call.
+    pub fn said(&self) -> String {
+        self.log.arrived().map(|line| format!("{line}\n")).collect()
     }
 
     /// What the panel shows now. While the board runs this may be a mixture of two frames.

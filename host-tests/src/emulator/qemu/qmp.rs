@@ -1,87 +1,81 @@
-//! QEMU's control channel (QMP): the screenshot, the buttons, the end.
+//! QEMU's control channel (QMP), a line of JSON each way: the screenshot, the buttons, the end.
+//!
+//! Source: QEMU, docs/interop/qmp-spec.rst: a greeting, `qmp_capabilities`, then commands, each answered by `return` or `error`;
+//! events come at any time.
 
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, ErrorKind, Write};
 use std::os::unix::net::UnixStream;
 use std::path::Path;
 
 use firmware::app::controls::Key;
-use qapi::qmp::{InputEvent, InputKeyEvent, KeyValue, QKeyCode};
-use qapi::{Command, ExecuteError, Qmp, Stream, qmp};
+use serde_json::{Value, json};
 
 use super::{QemuError, Screenshot};
 
-/// The key that QEMU knows a button of the board as; select is the left control key.
-fn code(key: Key) -> QKeyCode {
-    match key {
-        Key::Up => QKeyCode::up,
-        Key::Down => QKeyCode::down,
-        Key::Left => QKeyCode::left,
-        Key::Right => QKeyCode::right,
-        Key::Select => QKeyCode::ctrl,
-    }
-}
-
 /// The control channel of a running QEMU.
-pub(super) struct Monitor {
-    channel: Qmp<Stream<BufReader<UnixStream>, UnixStream>>,
-}
+#[derive(Debug)]
+pub(super) struct Monitor(BufReader<UnixStream>);
 
 impl Monitor {
     pub(super) fn new(socket: UnixStream) -> Result<Self, QemuError> {
-        let broken = QemuError::connection("control channel");
-        let reader = BufReader::new(socket.try_clone().map_err(&broken)?);
-        let mut channel = Qmp::new(Stream::new(reader, socket));
-        if channel.inner_mut().fill_buf().map_err(&broken)?.is_empty() {
-            return Err(broken(std::io::ErrorKind::UnexpectedEof.into()));
-        }
-        channel.handshake().map_err(refused("the control channel"))?;
-        Ok(Self { channel })
+        let mut monitor = Self(BufReader::new(socket));
+        monitor.heard()?;
+        monitor.execute("qmp_capabilities", json!({}))?;
+        Ok(monitor)
     }
 
     /// The panel's screenshot, by way of a file in `folder`.
     pub(super) fn screenshot(&mut self, folder: &Path) -> Result<Screenshot, QemuError> {
         let path = folder.join("panel.ppm");
-        let filename = path.to_string_lossy().into_owned();
-        self.execute(qmp::screendump { device: None, format: None, head: None, filename })?;
+        self.execute("screendump", json!({ "filename": path.to_string_lossy() }))?;
         let file = std::fs::read(path).map_err(QemuError::connection("screenshot"))?;
         Screenshot::from_ppm(&file)
     }
 
     /// Presses a button, or lets go of it. Lost while the machine stands still.
     pub(super) fn set_key(&mut self, key: Key, down: bool) -> Result<(), QemuError> {
-        let key = KeyValue::qcode(code(key).into());
-        let events = vec![InputEvent::key(InputKeyEvent { down, key }.into())];
-        self.execute(qmp::input_send_event { device: None, head: None, events })
+        // QEMU knows the board's select as the left control key.
+        let code = if key == Key::Select { "ctrl" } else { key.name() };
+        let event = json!({ "type": "key", "data": { "down": down, "key": { "type": "qcode", "data": code } } });
+        self.execute("input-send-event", json!({ "events": [event] })).map(drop)
     }
 
     /// Gives QEMU's own console a line; what it says to that.
     pub(super) fn console(&mut self, line: &str) -> Result<String, QemuError> {
-        let command = qmp::human_monitor_command { command_line: line.to_owned(), cpu_index: None };
-        let said = self.channel.execute(&command).map_err(refused("human-monitor-command"))?;
-        self.channel.events();
-        Ok(said)
+        let said = self.execute("human-monitor-command", json!({ "command-line": line }))?;
+        Ok(said.as_str().unwrap_or_default().to_owned())
     }
 
     /// Lets the machine run.
     pub(super) fn resume(&mut self) -> Result<(), QemuError> {
-        self.execute(qmp::cont {})
+        self.execute("cont", json!({})).map(drop)
     }
 
     /// Asks QEMU to end.
     pub(super) fn quit(&mut self) -> Result<(), QemuError> {
-        self.execute(qmp::quit {})
+        self.execute("quit", json!({})).map(drop)
     }
 
-    fn execute<C: Command>(&mut self, command: C) -> Result<(), QemuError> {
-        let result = self.channel.execute(&command).map_err(refused(C::NAME));
-        self.channel.events();
-        result.map(drop)
+    fn execute(&mut self, command: &'static str, arguments: Value) -> Result<Value, QemuError> {
+        let line = json!({ "execute": command, "arguments": arguments });
+        writeln!(self.0.get_mut(), "{line}").map_err(QemuError::connection("control channel"))?;
+        loop {
+            let mut answer = self.heard()?;
+            if let Some(result) = answer.get_mut("return") {
+                return Ok(result.take());
+            }
+            if let Some(reason) = answer.pointer("/error/desc").and_then(Value::as_str) {
+                return Err(QemuError::Refused { command, reason: reason.to_owned() });
+            }
+        }
     }
-}
 
-fn refused(command: &'static str) -> impl Fn(ExecuteError) -> QemuError {
-    move |error| match error {
-        ExecuteError::Qapi(error) => QemuError::Refused { command, reason: error.desc },
-        ExecuteError::Io(source) => QemuError::Connection { name: "control channel", source },
+    fn heard(&mut self) -> Result<Value, QemuError> {
+        let mut line = String::new();
+        let read = self.0.read_line(&mut line).and_then(|count| match count {
+            0 => Err(ErrorKind::UnexpectedEof.into()),
+            _ => Ok(serde_json::from_str(&line)?),
+        });
+        read.map_err(QemuError::connection("control channel"))
     }
 }

@@ -19,7 +19,7 @@ use nix::unistd::mkfifo;
 use super::QemuError;
 use crate::link::{Counts, Inbox, Received};
 
-/// The host's end of UART0. A thread of its own always reads, for QEMU stands still while nobody does.
+/// The host's end of UART0. A thread of its own always reads, for QEMU stands still while no one does.
 ///
 /// It is a pair of named pipes: they hold a second's worth of single bytes, where a socket holds a few frames, and not
 /// every emulated board stands still by itself when its bytes are not taken.
@@ -109,7 +109,7 @@ impl Serial {
     }
 }
 
-/// While this lives nobody reads the link.
+/// While this lives no one reads the link.
 #[derive(Debug)]
 pub struct Stopped<'a>(#[expect(dead_code, reason = "held, never used")] MutexGuard<'a, Reader>);
 

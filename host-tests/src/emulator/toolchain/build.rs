@@ -19,34 +19,11 @@ static BUILT: Mutex<Vec<(String, String)>> = Mutex::new(Vec::new());
 /// For a build from nothing on a slow, busy machine, downloads included.
 const LIMIT: Duration = Duration::from_secs(1800);
 
-/// What `cargo run` and `cargo test` leave in the environment, and what a user may have set for host programs:
-/// none of it may reach the firmware's build.
-const FOREIGN: [&str; 12] = [
-    "CARGO",
-    "RUSTC",
-    "RUSTC_WRAPPER",
-    "RUSTC_WORKSPACE_WRAPPER",
-    "RUSTC_BOOTSTRAP",
-    "RUSTFLAGS",
-    "RUSTDOC",
-    "RUSTDOCFLAGS",
-    "RUST_RECURSION_COUNT",
-    "LD_LIBRARY_PATH",
-    "DYLD_FALLBACK_LIBRARY_PATH",
-    "OUT_DIR",
-];
-/// The same, by how the names begin.
-const FOREIGN_PREFIXES: [&str; 9] = [
-    "CARGO_PKG_",
-    "CARGO_MANIFEST_",
-    "CARGO_BIN_",
-    "CARGO_BUILD_",
-    "CARGO_TARGET_",
-    "CARGO_PROFILE_",
-    "CARGO_ENCODED_",
-    "CARGO_UNSTABLE_",
-    "CARGO_CFG_",
-];
+/// What `cargo run` and `cargo test` leave in the environment, and what a user may have set for host programs, begins so, and
+/// none of it may reach the firmware's build, ...
+const FOREIGN: [&str; 5] = ["CARGO", "RUST", "LD_LIBRARY_PATH", "DYLD_", "OUT_DIR"];
+/// ... but what says where cargo is at home and how it reaches the network.
+const OURS: [&str; 5] = ["CARGO_HOME", "CARGO_HTTP_", "CARGO_NET_", "CARGO_REGISTR", "RUSTUP_"];
 
 /// Why there is no firmware to run.
 #[derive(Debug, thiserror::Error)]
@@ -66,13 +43,11 @@ impl Toolchain {
             ArmCore::ReadyMade => Command::new("cargo"),
             ArmCore::FromSource { .. } => Command::new(DEBIAN_CARGO),
         };
-        for (name, _) in env::vars_os() {
-            if is_foreign(&name) {
-                command.env_remove(name);
-            }
+        for (name, _) in env::vars_os().filter(|(name, _)| is_foreign(name)) {
+            command.env_remove(name);
         }
         command.current_dir(workspace()).env("RUSTUP_AUTO_INSTALL", "0");
-        if let ArmCore::FromSource { linker, .. } = &self.core {
+        if let ArmCore::FromSource { linker } = &self.core {
             // Debian's cargo is a stable one; building core is still called unstable.
             command.env("RUSTC", DEBIAN_RUSTC).env("RUSTC_BOOTSTRAP", "1").env("CARGO_UNSTABLE_BUILD_STD", "core");
             command.env("PATH", path_with(linker.clone()));
@@ -119,23 +94,14 @@ impl Toolchain {
         for target in TARGETS {
             let features = every_board().filter(|board| board.target == target).map(|board| board.feature);
             let features = features.collect::<Vec<_>>().join(",");
-            let read = |with: &str| {
-                let mut command = self.for_targets(with, &[target]);
-                command.args(["--bins", "--example", "embassy", "--features", &features]);
-                command
-            };
-            let command = match self.core {
-                ArmCore::ReadyMade => {
-                    let mut clippy = read("clippy");
-                    clippy.args(["--", "--deny", "warnings"]);
-                    clippy
-                }
-                ArmCore::FromSource { .. } => {
-                    let mut check = read("check");
-                    check.env("RUSTFLAGS", "-Dwarnings");
-                    check
-                }
-            };
+            let is_ready_made = self.core == ArmCore::ReadyMade;
+            let mut command = self.for_targets(if is_ready_made { "clippy" } else { "check" }, &[target]);
+            command.args(["--bins", "--example", "embassy", "--features", &features]);
+            if is_ready_made {
+                command.args(["--", "--deny", "warnings"]);
+            } else {
+                command.env("RUSTFLAGS", "-Dwarnings");
+            }
             self.finish(command, &format!("checking the firmware for {target}"))?;
         }
         Ok(())
@@ -156,8 +122,8 @@ impl Toolchain {
 }
 
 fn is_foreign(name: &OsString) -> bool {
-    let Some(name) = name.to_str() else { return false };
-    FOREIGN.contains(&name) || FOREIGN_PREFIXES.iter().any(|prefix| name.starts_with(prefix))
+    let begins = |with: &&str| name.as_encoded_bytes().starts_with(with.as_bytes());
+    FOREIGN.iter().any(begins) && !OURS.iter().any(begins)
 }
 
 /// The PATH with one more folder in front.

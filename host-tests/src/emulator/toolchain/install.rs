@@ -2,38 +2,31 @@
 
 use std::fs::{self, File};
 use std::io;
-use std::path::Path;
+use std::path::PathBuf;
 use std::process::Command;
-use std::sync::OnceLock;
 use std::time::Duration;
 
 use nix::fcntl::{Flock, FlockArg};
 
 use super::detect::{self, CORE_PACKAGES, QEMU, find, reason};
-use super::{ArmCore, Qemu, SetupError, TARGETS, workspace};
+use super::{ArmCore, SetupError, TARGETS, target, workspace};
 use crate::console::progress::Progress;
 use crate::emulator::process::{Output, ProcessError, run_watched};
 
 /// For `rustup target add`: 40 MB. Where it can only hang, this is what that costs, once.
 const RUSTUP: Duration = Duration::from_secs(60);
-/// For fetching Debian's lists.
-const UPDATE: Duration = Duration::from_secs(300);
 /// For fetching and unpacking at most 400 MB, and for a turn at dpkg.
 const INSTALL: Duration = Duration::from_secs(1200);
 /// Unpacks QEMU's packages, in the workspace.
 const UNPACK_QEMU: &str = "host-tests/src/emulator/toolchain/unpack-qemu.sh";
 
 /// Waits for our turn at a set-up; it ends when this is dropped or the process ends, however it ends.
-pub(super) fn turn(path: &Path) -> Result<Flock<File>, SetupError> {
+pub(super) fn turn() -> Result<Flock<File>, SetupError> {
+    let path = target().join("setup.lock");
     let refuse = |error: io::Error| SetupError(format!("cannot lock {}: {error}", path.display()));
-    fs::create_dir_all(path.parent().unwrap_or(path)).map_err(refuse)?;
-    let file = File::options().create(true).truncate(false).write(true).open(path).map_err(refuse)?;
-    Flock::lock(file, FlockArg::LockExclusiveNonblock)
-        .or_else(|(file, _)| {
-            let _waiting = Progress::start("waiting for another set-up");
-            Flock::lock(file, FlockArg::LockExclusive)
-        })
-        .map_err(|(_, error)| refuse(error.into()))
+    fs::create_dir_all(target()).map_err(refuse)?;
+    let file = File::options().create(true).truncate(false).write(true).open(&path).map_err(refuse)?;
+    Flock::lock(file, FlockArg::LockExclusive).map_err(|(_, error)| refuse(error.into()))
 }
 
 /// The core library: ready-made by rustup, else Debian's sources and their compiler. A line more of what was done.
@@ -58,13 +51,12 @@ pub(super) fn arm_core(done: &mut Vec<String>) -> Result<ArmCore, String> {
 
 /// QEMU from Debian's packages, installed, or unpacked for this project alone where they cannot be: where that would cost the
 /// user another package, or another may do it. A line more of what was done.
-pub(super) fn qemu(done: &mut Vec<String>) -> Result<Qemu, String> {
+pub(super) fn qemu(done: &mut Vec<String>) -> Result<PathBuf, String> {
     match install_packages(&[QEMU]).and_then(|()| detect::qemu()) {
         Ok(qemu) => {
             done.push(format!("apt-get installed {QEMU}"));
             Ok(qemu)
         }
-        Err(failure) if find("apt-get").is_none() => Err(failure),
         Err(failure) => {
             let folder = detect::own_qemu_folder();
             let mut unpack = Command::new("sh");
@@ -77,25 +69,20 @@ pub(super) fn qemu(done: &mut Vec<String>) -> Result<Qemu, String> {
     }
 }
 
-/// Installs the newest that Debian has: old lists may name packages that are gone, or a compiler that is too old.
+/// Installs packages of Debian's, by its newest lists: old ones may name packages that are gone.
 pub(super) fn install_packages(packages: &[&str]) -> Result<(), String> {
-    static UPDATED: OnceLock<Result<(), String>> = OnceLock::new();
     if find("apt-get").is_none() {
         return Err("this system has no apt-get, the only package manager this command runs".to_owned());
     }
     if !nix::unistd::geteuid().is_root() {
         return Err("only root may install packages".to_owned());
     }
-    let updated = UPDATED.get_or_init(|| {
-        let mut update = apt_get("update");
-        update.args(["-o", "APT::Update::Error-Mode=any"]);
-        attempt(&mut update, UPDATE, "apt-get fetches the lists of packages")
-    });
+    let updated = attempt(&mut apt_get("update"), INSTALL, "apt-get fetches the lists of packages");
     let mut install = apt_get("install");
     install.args(["--no-install-recommends", "--no-remove", "--reinstall"]).args(packages);
     // One bad source of many does not stop the install; where it fails too, the lists are the cause.
     attempt(&mut install, INSTALL, &format!("apt-get installs {}", packages.join(", ")))
-        .map_err(|failure| updated.clone().err().unwrap_or(failure))
+        .map_err(|failure| updated.err().unwrap_or(failure))
 }
 
 /// `apt-get` that asks nothing, waits its turn and does not wait for a dead network.
@@ -122,31 +109,4 @@ pub(super) fn attempt(command: &mut Command, limit: Duration, doing: &str) -> Re
 pub(super) fn run_shown(command: &mut Command, limit: Duration, doing: &str) -> Result<Output, ProcessError> {
     let mut progress = Progress::start(doing);
     run_watched(command, limit, |line| progress.alive(line))
-}
-
-#[cfg(test)]
-mod tests {
-    use std::sync::atomic::{AtomicBool, Ordering};
-    use std::thread;
-
-    use super::*;
-
-    #[test]
-    fn set_ups_take_turns() {
-        let folder = tempfile::tempdir().expect("there is room for it");
-        let path = folder.path().join("target/setup.lock");
-        let first = turn(&path).expect("nobody has it");
-        let is_over = AtomicBool::new(false);
-        thread::scope(|scope| {
-            scope.spawn(|| {
-                let _second = turn(&path).expect("it comes");
-                assert!(is_over.load(Ordering::SeqCst), "two turns at once");
-            });
-            thread::sleep(Duration::from_millis(300));
-            is_over.store(true, Ordering::SeqCst);
-            drop(first);
-        });
-        let error = turn(Path::new("/dev/null/setup.lock")).expect_err("it is no folder").to_string();
-        assert!(error.starts_with("cannot lock /dev/null/setup.lock: "), "{error}");
-    }
 }

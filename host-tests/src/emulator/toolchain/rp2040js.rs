@@ -1,12 +1,13 @@
 //! The emulator of the Raspberry Pi Pico: a package of npm's, kept to one version, and Node.js, which runs it.
 
+use std::fmt;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
 
+use super::SetupError;
 use super::detect::{find, says};
 use super::install::{attempt, install_packages};
-use super::missing::Part;
 use super::workspace;
 
 /// For npm to fetch one small package.
@@ -32,8 +33,8 @@ impl Rp2040js {
     }
 }
 
-impl std::fmt::Display for Rp2040js {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+impl fmt::Display for Rp2040js {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "Raspberry Pi Pico: rp2040js {} under {}", self.version, self.node.display())
     }
 }
@@ -48,35 +49,38 @@ fn node() -> Result<PathBuf, String> {
     let node = find("node").ok_or("there is no Node.js")?;
     let version = says(Command::new(&node).arg("--version"))?;
     let major = version.trim_start_matches('v').split('.').next().and_then(|major| major.parse::<u32>().ok());
-    if major.is_some_and(|major| major >= LEAST) {
-        return Ok(node);
-    }
-    Err(format!("Node.js {} is older than {LEAST}", version.trim()))
+    let is_new = major.is_some_and(|major| major >= LEAST);
+    if is_new { Ok(node) } else { Err(format!("Node.js {} is older than {LEAST}", version.trim())) }
+}
+
+fn no_node(why: impl AsRef<str>) -> SetupError {
+    SetupError::missing("Node.js, of 18 or newer, with npm", why.as_ref(), "this system's packages nodejs and npm")
+}
+
+fn no_emulator(why: impl AsRef<str>) -> SetupError {
+    let by_hand = "npm ci --prefix host-tests/rp2040";
+    SetupError::missing("the emulator of the Raspberry Pi Pico", why.as_ref(), by_hand)
 }
 
 /// The emulator, or what is missing of it and why.
-pub(super) fn detect() -> Result<Rp2040js, (Part, String)> {
-    let node = node().map_err(|why| (Part::Node, why))?;
-    match says(Command::new(&node).args(["--print", ASK]).current_dir(folder())) {
-        Ok(version) => Ok(Rp2040js { node, version: version.trim().to_owned() }),
-        Err(_) => Err((Part::Rp2040js, "npm has not fetched the version that is wanted".to_owned())),
-    }
+pub(super) fn detect() -> Result<Rp2040js, SetupError> {
+    let node = node().map_err(no_node)?;
+    let version = says(Command::new(&node).args(["--print", ASK]).current_dir(folder()))
+        .map_err(|_| no_emulator("npm has not fetched the version that is wanted"))?;
+    Ok(Rp2040js { node, version: version.trim().to_owned() })
 }
 
 /// Brings what is missing; a line for each thing that was done.
-pub(super) fn set_up() -> Result<(Rp2040js, Vec<String>), (Part, String)> {
+pub(super) fn set_up() -> Result<(Rp2040js, Vec<String>), SetupError> {
     let mut done = Vec::new();
-    let has_npm = || find("npm").map(drop).ok_or_else(|| "there is no npm".to_owned());
-    if let Err(failure) = node().and_then(|_| has_npm()) {
-        let installed = install_packages(&["nodejs", "npm"]).and_then(|()| has_npm());
-        installed.map_err(|why| (Part::Node, format!("{failure}; {why}")))?;
+    if node().is_err() || find("npm").is_none() {
+        install_packages(&["nodejs", "npm"]).map_err(no_node)?;
         done.push("apt-get installed nodejs, npm".to_owned());
     }
     if detect().is_err() {
         let mut npm = Command::new("npm");
         npm.args(["ci", "--ignore-scripts", "--no-audit", "--no-fund"]).current_dir(folder());
-        let fetched = attempt(&mut npm, NPM, "npm fetches the emulator of the Raspberry Pi Pico");
-        fetched.map_err(|why| (Part::Rp2040js, why))?;
+        attempt(&mut npm, NPM, "npm fetches the emulator of the Raspberry Pi Pico").map_err(no_emulator)?;
         done.push("npm fetched rp2040js".to_owned());
     }
     Ok((detect()?, done))

@@ -2,7 +2,6 @@
 //! programs already built.
 
 use std::env;
-use std::ffi::OsString;
 use std::path::{Path, PathBuf, absolute};
 use std::process::exit;
 use std::sync::OnceLock;
@@ -34,25 +33,6 @@ fn above(start: &Path) -> Option<PathBuf> {
 
 /// Where everything built goes: `CARGO_TARGET_DIR`, as cargo has it, or else the workspace's own folder.
 pub fn target() -> PathBuf {
-    chosen(env::var_os("CARGO_TARGET_DIR"))
-}
-
-fn chosen(folder: Option<OsString>) -> PathBuf {
-    let chosen = folder.filter(|folder| !folder.is_empty());
+    let chosen = env::var_os("CARGO_TARGET_DIR").filter(|folder| !folder.is_empty());
     chosen.and_then(|folder| absolute(folder).ok()).unwrap_or_else(|| workspace().join("target"))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_is_built_goes_where_cargo_is_told_to_put_it() {
-        assert_eq!(chosen(Some("/elsewhere".into())), Path::new("/elsewhere"));
-        let here = env::current_dir().expect("a folder");
-        assert_eq!(chosen(Some("beside".into())), here.join("beside"));
-        for unset in [None, Some(OsString::new())] {
-            assert_eq!(chosen(unset), workspace().join("target"));
-        }
-    }
 }
