@@ -5,7 +5,7 @@
 //! | room | what is in it |
 //! |---|---|
 //! | `bin/` | one file a command: parses its options, calls, prints |
-//! | [`commands`] | what the commands do: demo, simulate, plan, flips, count, report, figures, verify-board |
+//! | [`commands`] | what the commands do: demo, simulate, plan, prove, flips, count, report, figures, verify-board |
 //! | [`emulator`] | the emulated boards: QEMU, toolchain and set-up, processes, budgets |
 //! | [`link`] | the serial link: bytes to messages, and a real port |
 //! | [`oracle`] | independent references, known answers, hard cases and the one table of tolerances |

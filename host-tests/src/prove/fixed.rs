@@ -68,6 +68,19 @@ impl Fixed {
         Ball::about(self.middle as f64 * ULP, up(self.radius * ULP))
     }
 
+    /// Whether the midpoint is negative, and the digits of its size by 2^`doublings`, up to 12 either way, before the point and to so many
+    /// `places` behind it, the rest cut off.
+    pub fn digits(self, doublings: i32, places: usize) -> (bool, u128, String) {
+        let behind = FRACTION.saturating_add_signed(-doublings);
+        let (size, mask) = (self.middle.unsigned_abs(), (1 << behind) - 1);
+        let mut rest = size & mask;
+        let next = |_| {
+            rest = (rest & mask) * 10;
+            char::from(b'0' + (rest >> behind) as u8)
+        };
+        (self.middle < 0, size >> behind, (0..places).map(next).collect())
+    }
+
     /// No less than any number at the midpoint: the upper half of its bits, and one more.
     fn bound(self) -> f64 {
         (((self.middle >> 64) as i64).unsigned_abs() + 1) as f64 * ((1_u128 << 64) as f64 * ULP)

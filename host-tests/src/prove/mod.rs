@@ -2,7 +2,6 @@
 //!
 //! Nothing here is estimated. Every bound names its theorem where it stands; what is rounded is counted.
 
-mod axes;
 mod ball;
 mod discs;
 mod enclosure;

@@ -18,14 +18,15 @@ pub enum Given {
 
 impl Given {
     /// By 2^`halvings`.
-    fn fixed(self, halvings: u32) -> Fixed {
+    pub fn fixed(self, halvings: u32) -> Fixed {
         match self {
             Self::Binary(number) => Fixed::of(number / 2_f64.powi(halvings as i32)),
             Self::Fraction(numerator, denominator) => Fixed::fraction(numerator, denominator, halvings),
         }
     }
 
-    fn about(self) -> f64 {
+    /// The `f64` next to it, or next to that.
+    pub fn about(self) -> f64 {
         match self {
             Self::Binary(number) => number,
             Self::Fraction(numerator, denominator) => numerator as f64 / denominator as f64,
@@ -62,7 +63,12 @@ impl Start {
         Self { masses, lengths, gravity: Given::Binary(g), angles: (angles, false), velocities: (velocities, false) }
     }
 
-    /// The `f64` next to it, or next to that.
+    /// How often masses are to be halved for their sum to be below 2.
+    pub fn halvings(&self) -> u32 {
+        halvings(&self.masses) + 7
+    }
+
+    /// All of it in `f64`, rounded twice at most.
     fn about(&self) -> (Parameters<f64>, Motion<f64>) {
         let [[m1, m2], [l1, l2]] = [self.masses, self.lengths].map(|x| x.map(Given::about));
         let [[a1, a2], [w1, w2]] = [self.angles, self.velocities]
@@ -97,7 +103,7 @@ impl Start {
         let [gravity1, gravity2] =
             [l1, l2].map(|l| (by_unit(by_unit(gravity) * l.inverse()) >> by_lengths) << by_gravity);
 
-        let radians = |x: Fixed, degrees: bool| if degrees { (x * pi()).over(180) } else { x };
+        let radians = |x: Fixed, degrees: bool| if degrees { x.over(180) * pi() } else { x };
         let [a1, a2] = self.angles.0.map(|angle| radians(angle.fixed(0), self.angles.1));
         let by = halvings(&self.velocities.0);
         let [w1, w2] = self.velocities.0.map(|w| by_unit(radians(w.fixed(by), self.velocities.1)) << by);

@@ -28,9 +28,14 @@ impl Verdict {
 
 impl Enclosure {
     /// Where the rods point, (sin, cos) each.
-    pub fn directions(&self) -> [[Ball; 2]; 2] {
+    pub fn exact_directions(&self) -> [[Fixed; 2]; 2] {
         let [sin1, cos1, s, c, ..] = self.hull();
-        [[sin1, cos1], [sin1 * c - cos1 * s, cos1 * c + sin1 * s]].map(|direction| direction.map(Fixed::ball))
+        [[sin1, cos1], [sin1 * c - cos1 * s, cos1 * c + sin1 * s]]
+    }
+
+    /// The same in `f64`.
+    pub fn directions(&self) -> [[Ball; 2]; 2] {
+        self.exact_directions().map(|direction| direction.map(Fixed::ball))
     }
 
     /// Of a frame that shows rods of these `lengths` in these directions, each bob to be within `tolerance`.

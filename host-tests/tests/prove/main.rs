@@ -1,6 +1,7 @@
 //! The enclosure: the exact motion is in it, and leaves it when any of its allowances is taken away.
 
 mod allowances;
+mod cli;
 mod motions;
 mod numbers;
 
