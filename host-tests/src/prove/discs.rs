@@ -36,7 +36,9 @@ impl Discs {
             let slopes = series(constants, &discs, 1, halvings);
             for ((disc, slope), start) in discs.iter_mut().zip(&slopes).zip(hull) {
                 let needed = up(start.radius + time * slope[1].size());
-                if !(needed <= disc.radius) {
+                // NaN does not hold either
+                let holds = needed <= disc.radius;
+                if !holds {
                     (fits, disc.radius) = (false, needed * GROWTH);
                 }
             }

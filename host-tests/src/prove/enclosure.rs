@@ -136,7 +136,7 @@ impl Enclosure {
         }
         self.moved = v.map(|row| from_fn(|j| (0..6).fold(Ball::ZERO, |sum, l| sum + row[l] * self.moved[l][j])));
         (self.middle, self.about, self.steps) = (middle, about, self.steps + 1);
-        if self.steps % STEPS == 0 {
+        if self.steps.is_multiple_of(STEPS) {
             self.settle();
         }
         Some(())

@@ -46,7 +46,7 @@ impl Fixed {
         let below = u128::from(denominator);
         let (whole, rest) = (numerator.unsigned_abs() / below, numerator.unsigned_abs() % below);
         let (upper, rest) = ((rest << 64) / below, (rest << 64) % below);
-        let places = upper << (FRACTION - 64) | (rest << (FRACTION - 64)) / below;
+        let places = (upper << (FRACTION - 64)) | ((rest << (FRACTION - 64)) / below);
         let shift = FRACTION - halvings;
         let fits = whole.leading_zeros() > shift + 3;
         let middle = if fits { ((whole << shift) + (places >> halvings)) as i128 } else { LIMIT };
@@ -154,8 +154,8 @@ impl Number for Fixed {
         for (a, b) in a.iter().zip(b.iter().rev()) {
             let (a1, a0, b1, b0) = ((a.middle >> 64) as i64, a.middle as u64, (b.middle >> 64) as i64, b.middle as u64);
             high += i128::from(a1) * i128::from(b1);
-            let low = (u128::from(a0) * u128::from(b0) >> 72) as i128;
-            cross += (i128::from(a1) * i128::from(b0) >> 8) + (i128::from(b1) * i128::from(a0) >> 8) + low;
+            let low = ((u128::from(a0) * u128::from(b0)) >> 72) as i128;
+            cross += ((i128::from(a1) * i128::from(b0)) >> 8) + ((i128::from(b1) * i128::from(a0)) >> 8) + low;
             radius += a.bound() * b.radius + a.radius * (b.bound() + b.radius * ULP);
         }
         let fits = a.len() <= MOST_TERMS && high.abs() < LIMIT >> (128 - FRACTION);

@@ -38,6 +38,8 @@ impl Sub for Tangents {
     }
 }
 
+/// (ab)' = a' b + a b'.
+#[expect(clippy::suspicious_arithmetic_impl, reason = "the rule has a sum")]
 impl Mul for Tangents {
     type Output = Self;
 

@@ -11,11 +11,11 @@ use twofloat::TwoFloat;
 
 use crate::{RATE, after, energy, meet, page};
 
-/// Masses and rods over three decades each, any angles, half of them with velocities.
+/// Ratios of masses and of rods over three decades each, angles up to 3 rad, half of them with velocities.
 fn random(rng: &mut Rng) -> (Parameters<f64>, Motion<f64>) {
     let [m1, m2, l1, l2] = [(); 4].map(|()| log_uniform(rng, 10_f64.powf(-0.75), 10_f64.powf(0.75)));
     let speed = if rng.bool() { 6.0 } else { 0.0 };
-    let [a1, a2, w1, w2] = [3.14, 3.14, speed, speed].map(|most| most * symmetric(rng));
+    let [a1, a2, w1, w2] = [3.0, 3.0, speed, speed].map(|most| most * symmetric(rng));
     (Parameters { m1, m2, l1, l2, g: 9.81 }, Motion { a1, a2, w1, w2 })
 }
 
