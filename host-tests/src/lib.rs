@@ -5,10 +5,11 @@
 //! | room | what is in it |
 //! |---|---|
 //! | `bin/` | one file a command: parses its options, calls, prints |
-//! | [`commands`] | what the commands do: demo, simulate, plan, flips, count, report, figures, verify-board |
+//! | [`commands`] | what the commands do: demo, simulate, plan, prove, flips, count, report, figures, verify-board |
 //! | [`emulator`] | the emulated boards: QEMU, toolchain and set-up, processes, budgets |
 //! | [`link`] | the serial link: bytes to messages, and a real port |
 //! | [`oracle`] | independent references, known answers, hard cases and the one table of tolerances |
+//! | [`prove`] | the exact motion enclosed, every bound a theorem |
 //! | [`console`] | how every command talks: options, errors, progress |
 
 #![deny(clippy::print_stdout, clippy::print_stderr)]
@@ -18,3 +19,4 @@ pub mod console;
 pub mod emulator;
 pub mod link;
 pub mod oracle;
+pub mod prove;

@@ -5,6 +5,7 @@ pub mod demo;
 pub mod figures;
 pub mod flips;
 pub mod plan;
+pub mod prove;
 pub mod report;
 pub mod simulate;
 pub mod table;

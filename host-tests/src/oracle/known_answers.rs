@@ -1,6 +1,6 @@
-//! The table of known answers, `data/known_answers.csv`: exact motions from arbitrary-precision arithmetic.
+//! The table of known answers, `data/known_answers.csv`: exact motions, every digit proved.
 //!
-//! `host-tests/generate/known_answers.py` makes it again, digit for digit.
+//! `cargo prove --known-answers` makes it again, digit for digit.
 
 use std::str::FromStr;
 
@@ -26,6 +26,8 @@ pub struct KnownAnswer {
     pub time: f64,
     /// (a1, a2, p1, p2) at that time, rad and kg m^2/s.
     pub state: [TwoFloat; 4],
+    /// What these may be off by: two units of the last digit written.
+    pub radius: [f64; 4],
     /// How many times larger a small error of the start has become by then.
     pub growth: f64,
 }
@@ -44,9 +46,10 @@ pub fn table() -> Result<Vec<KnownAnswer>, String> {
 impl KnownAnswer {
     fn read(line: &'static str) -> Option<Self> {
         let (scene, numbers) = line.split_once(',')?;
+        let places = |text: &str| text.split_once('.').map_or(0, |(_, places)| places.len() as i32);
+        let radii: Vec<f64> = numbers.split(',').map(|text| 2.0 * 10_f64.powi(-places(text))).collect();
         let numbers: Vec<TwoFloat> = numbers.split(',').map(decimal).collect::<Option<_>>()?;
-        let &[a1, a2, w1, w2, m1, m2, l1, l2, gravity, time, z1, z2, z3, z4, growth, _agreement] = numbers.as_slice()
-        else {
+        let &[a1, a2, w1, w2, m1, m2, l1, l2, gravity, time, z1, z2, z3, z4, growth] = numbers.as_slice() else {
             return None;
         };
         Some(Self {
@@ -56,6 +59,7 @@ impl KnownAnswer {
             start_velocities: [w1, w2],
             time: time.into(),
             state: [z1, z2, z3, z4],
+            radius: radii[10..14].try_into().ok()?,
             growth: growth.into(),
         })
     }

@@ -4,8 +4,8 @@
 //! 36 (not Runge-Kutta), in double-double arithmetic of 106 bits (not f32 or f64). Of the kernel it uses the plain
 //! structures of numbers only. The same in `f64` is a hundred times faster, and right for half as long where errors grow.
 //!
-//! It agrees with the table `data/known_answers.csv`, made by a third road in arbitrary precision, to
-//! [`tolerances::REFERENCE`](crate::oracle::tolerances::REFERENCE) times the growth of a small error (test `known_answers`).
+//! It is inside what the [enclosure](crate::prove) proves, in the table `data/known_answers.csv` and of random motions, to
+//! [`tolerances::REFERENCE`](crate::oracle::tolerances::REFERENCE) times the growth of a small error (tests `known_answers` and `motions`).
 
 pub mod series;
 

@@ -38,9 +38,8 @@ pub const RESOLVED: f64 = 1e-6;
 /// The measured order of the method: 4, give or take the next order's share at the steps used.
 pub const ORDER: std::ops::RangeInclusive<f64> = 3.9..=4.1;
 
-/// The reference against the table of known answers, to be multiplied by the growth of a small error: the 33 digits of
-/// the table, and the roundings (1e-32) of some hundred steps of double-double arithmetic (measured: up to 1.1e-31, and
-/// 1.4e-30 where the angles reach 80 rad).
+/// The reference against the table of known answers, to be multiplied by the growth of a small error: the roundings (1e-32)
+/// of some hundred steps of double-double arithmetic (measured: up to 1.1e-31, and 1.4e-30 where the angles reach 80 rad).
 pub const REFERENCE: f64 = 4e-30;
 
 /// Two references with other steps until a scene ceases to be right in any arithmetic, pixels: what the judge of the

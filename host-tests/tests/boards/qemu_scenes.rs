@@ -7,7 +7,7 @@ use firmware::graphics::canvas::{HEIGHT, WIDTH};
 use firmware::protocol::{Choose, Done, Frame};
 use firmware::scenes::SceneName;
 use host_tests::commands::count::{Cost, FrameProfile, Image, Part};
-use host_tests::emulator::boards::{BOARDS, Board};
+use host_tests::emulator::boards::{BOARDS, Board, Core};
 use host_tests::emulator::budgets;
 use host_tests::emulator::host::Show;
 use host_tests::emulator::qemu::{Lockstep, Machine, QemuError};

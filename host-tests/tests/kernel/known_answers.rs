@@ -7,12 +7,12 @@ use host_tests::oracle::tolerances;
 
 const STEPS_PER_SECOND: u32 = 4096;
 
-/// The largest difference of the four numbers, momenta relative to the greatest the energy allows.
+/// The largest difference of the four numbers from all that they may be, momenta relative to the greatest the energy allows.
 fn distance(row: &KnownAnswer, differences: [f64; 4]) -> f64 {
     let pendulum = Pendulum::new(row.parameters()).expect("the table's parameters are valid");
     let bounds = pendulum.bounds(&pendulum.to_state(&row.start()));
     let scale = [1.0, 1.0, bounds.p1, bounds.p2];
-    (0..4).fold(0.0, |largest, i| (differences[i].abs() / scale[i]).max(largest))
+    (0..4).fold(0.0, |largest, i| ((differences[i].abs() - row.radius[i]) / scale[i]).max(largest))
 }
 
 /// Runs through the table's rows: `start` makes a scene, `advance` moves it to a row's time and tells its distance.

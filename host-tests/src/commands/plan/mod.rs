@@ -11,5 +11,5 @@ pub use draw::scenes;
 pub use judge::{Exact, Verdict, judge, reference_error};
 pub use options::Options;
 pub use study::{Case, DURATIONS, median, study, summary};
-pub use target::{CHIPS, Chip, M4F};
+pub use target::{CHIPS, Chip, M3, M4F, PICO};
 pub use words::words;

@@ -3,6 +3,8 @@
 use std::fmt;
 use std::str::FromStr;
 
+use crate::prove::Given;
+
 /// A finite number as written.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Number {
@@ -33,6 +35,11 @@ impl Number {
     /// The `f64` nearest to it.
     pub fn value(&self) -> f64 {
         self.value
+    }
+
+    /// Itself, if it has at most 38 digits and 19 places.
+    pub fn exact(&self) -> Option<Given> {
+        self.fraction.map(|(numerator, denominator)| Given::Fraction(numerator, denominator))
     }
 
     /// Less than zero.

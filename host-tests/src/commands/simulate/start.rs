@@ -8,6 +8,7 @@ use double_pendulum::Parameters;
 use firmware::config::{FIRST_ANGLE, GRAVITY};
 
 use super::Number;
+use crate::prove::Start as Exact;
 
 /// A degree, rad.
 const DEGREE: f64 = PI / 180.0;
@@ -79,6 +80,23 @@ impl Start {
     /// w1, w2, rad/s.
     pub fn velocities(&self) -> [f64; 2] {
         self.velocities.values().map(|velocity| self.radians(velocity))
+    }
+
+    /// All of it to the last digit given; `None` if a number has too many.
+    pub fn exact(&self) -> Option<Exact> {
+        let both = |Pair(one, other): &Pair| Some([one.exact()?, other.exact()?]);
+        let [gravity, first] = [GRAVITY.to_string(), FIRST_ANGLE.to_string()].map(|text| text.parse::<Number>().ok());
+        let angles = match &self.angles {
+            Some(angles) => (both(angles)?, self.degrees),
+            None => ([first?.exact()?; 2], true),
+        };
+        Some(Exact {
+            masses: both(&self.masses)?,
+            lengths: both(&self.lengths)?,
+            gravity: self.gravity.clone().or(gravity)?.exact()?,
+            angles,
+            velocities: (both(&self.velocities)?, self.degrees),
+        })
     }
 
     fn radians(&self, angle: f64) -> f64 {
