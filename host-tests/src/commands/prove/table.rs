@@ -24,12 +24,11 @@ pub fn horizons(tick: impl Fn()) -> anyhow::Result<Table> {
         cells
     };
     Ok(Table {
-        name: "horizons",
-        title: String::from("Horizons"),
+        title: "Horizons",
         note: String::from(
             "Until when every frame is right to half a pixel, s: as the plan predicts, and as is proved.",
         ),
-        columns: vec![
+        columns: &[
             "scene",
             "M3: predicted",
             "proved",

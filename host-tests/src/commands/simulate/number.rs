@@ -37,9 +37,9 @@ impl Number {
         self.value
     }
 
-    /// Itself, if it has at most 38 digits and 19 places.
+    /// Itself, if a numerator and a denominator of 63 bits are enough.
     pub fn exact(&self) -> Option<Given> {
-        self.fraction.map(|(numerator, denominator)| Given::Fraction(numerator, denominator))
+        self.fraction.map(|(numerator, denominator)| Given::Fraction(numerator.into(), denominator.unsigned_abs()))
     }
 
     /// Less than zero.
