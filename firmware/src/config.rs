@@ -2,6 +2,8 @@
 
 use double_pendulum::plan::{Budget, Costs, Problem};
 
+use crate::prices;
+
 // ---- Time -----------------------------------------------------------------------------------------------------------
 
 /// Ticks per second: one tick moves the pendulum by one frame's worth of time.
@@ -45,8 +47,7 @@ pub const PLANNING_PIECE: f32 = 20_000.0;
 pub struct Processor {
     /// Its place in [`PROCESSORS`].
     pub code: u8,
-    /// Cycles of a step, masses and lengths alike, and of the preparation that costs most: the counter's estimates (test `count`
-    /// holds them to within a tenth).
+    /// The counter's estimates.
     pub costs: Costs,
     /// What computing a frame may cost, cycles; the rest is for drawing and sending it.
     pub frame: f32,
@@ -75,51 +76,15 @@ impl Processor {
 }
 
 /// A Cortex-M3, which has no floating-point unit: at 50 MHz a tick has 833,000 cycles.
-pub const CORTEX_M3: Processor = Processor {
-    code: 0,
-    costs: Costs {
-        closed_form: 8_310.0,
-        direction_plain: 13_070.0,
-        direction: 14_900.0,
-        fixed32: 668.0,
-        fixed64: 21_500.0,
-        preparation: 147_000.0,
-    },
-    frame: 200_000.0,
-    look_ahead: 320_000.0,
-    flips: FLIPS_M3,
-};
+pub const CORTEX_M3: Processor =
+    Processor { code: 0, costs: prices::CORTEX_M3, frame: 200_000.0, look_ahead: 320_000.0, flips: FLIPS_M3 };
 /// A Cortex-M0+, which has no long product either, as on the Raspberry Pi Pico: at 125 MHz a tick has 2,083,000 cycles.
-pub const CORTEX_M0PLUS: Processor = Processor {
-    code: 3,
-    costs: Costs {
-        closed_form: 14_990.0,
-        direction_plain: 22_550.0,
-        direction: 25_850.0,
-        fixed32: 2_122.0,
-        fixed64: 78_000.0,
-        preparation: 351_000.0,
-    },
-    frame: 300_000.0,
-    look_ahead: 530_000.0,
-    flips: FLIPS_M0PLUS,
-};
+pub const CORTEX_M0PLUS: Processor =
+    Processor { code: 3, costs: prices::CORTEX_M0PLUS, frame: 300_000.0, look_ahead: 530_000.0, flips: FLIPS_M0PLUS };
 /// A Cortex-M4F, whose floating-point unit knows `f32` only: the slowest board, at 25 MHz, has 417,000 cycles in a tick. A
 /// plain step costs less than the closed form's two sincos.
-pub const CORTEX_M4F: Processor = Processor {
-    code: 1,
-    costs: Costs {
-        closed_form: 1_674.0,
-        direction_plain: 159.4,
-        direction: 208.0,
-        fixed32: 612.0,
-        fixed64: 14_000.0,
-        preparation: 140_000.0,
-    },
-    frame: 150_000.0,
-    look_ahead: 190_000.0,
-    flips: FLIPS_M4F,
-};
+pub const CORTEX_M4F: Processor =
+    Processor { code: 1, costs: prices::CORTEX_M4F, frame: 150_000.0, look_ahead: 190_000.0, flips: FLIPS_M4F };
 /// The STM32F405's at 168 MHz: 2,800,000 cycles in a tick. Less looking ahead ends before the errors of a light elbow show.
 pub const STM32F405: Processor =
     Processor { code: 2, frame: 700_000.0, look_ahead: 1_300_000.0, flips: FLIPS_F405, ..CORTEX_M4F };

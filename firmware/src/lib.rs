@@ -15,6 +15,7 @@
 //! | [`protocol`] | messages on the serial link as tables, units, wire enums |
 //! | [`fault`] | what a crash report says |
 //! | [`config`] | every number that may be tuned |
+//! | [`prices`] | what steps cost on each core, as counted |
 #![cfg_attr(not(test), no_std)]
 
 pub mod app;
@@ -26,5 +27,6 @@ pub mod fault;
 pub mod graphics;
 pub mod job;
 pub mod motion;
+pub mod prices;
 pub mod protocol;
 pub mod scenes;

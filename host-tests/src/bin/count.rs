@@ -9,7 +9,8 @@ use clap::Parser;
 use double_pendulum::{Method, Parameters};
 use firmware::job::Request;
 use host_tests::commands::count::{
-    CallCosts, ERROR_BAR, FULL_CYCLE, Profile, StepCost, Target, affordable_cost, affordable_steps, calls_of, step_cost,
+    CallCosts, ERROR_BAR, FULL_CYCLE, Profile, StepCost, Target, affordable_cost, affordable_steps, calls_of, prices,
+    step_cost, write_prices,
 };
 use host_tests::console::cli::{self, Refused, complain, say};
 use host_tests::emulator::boards::{BOARDS, Board};
@@ -67,6 +68,9 @@ struct Arguments {
     /// List every instruction executed, with its cycles
     #[arg(long)]
     listing: bool,
+    /// Count what a plan's steps cost on each kind of core and write it into the firmware's price lists instead
+    #[arg(long, conflicts_with_all = ["method", "on", "elf", "steps", "m2", "l2", "angle", "halvings", "listing"])]
+    write_prices: bool,
 }
 
 fn main() -> ExitCode {
@@ -77,6 +81,10 @@ fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if let (Some(elf), Some(function)) = (&arguments.elf, &arguments.function) {
         let (toolchain, _) = toolchain::set_up().map_err(Refused::because)?;
         return count_calls(&toolchain, arguments, elf, function);
+    }
+    if arguments.write_prices {
+        let (toolchain, _) = toolchain::set_up().map_err(Refused::because)?;
+        return Ok(say(write_prices(&prices(&toolchain)?)?.display())?);
     }
     let requests = arguments.requests().map_err(Refused::because)?;
     let boards = BOARDS.iter().filter(|board| arguments.on.map_or(board.has_panel, |asked| asked == *board));

@@ -6,6 +6,7 @@ mod frame_profile;
 mod image;
 mod instruction;
 mod pipeline;
+mod prices;
 mod profile;
 mod row;
 #[cfg(test)]
@@ -19,6 +20,7 @@ pub use frame_profile::{FrameProfile, Part, calls_in_next};
 pub use image::{Function, Image};
 pub use instruction::Instruction;
 pub use pipeline::{Cost, ERROR_BAR, Pipeline};
+pub use prices::{prices, write_prices};
 pub use profile::{Profile, Spot};
 pub use target::Target;
 pub use trace::{Ended, Registers};

@@ -1,0 +1,95 @@
+//! The planner's price lists, counted.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use anyhow::{Context, Result};
+use double_pendulum::plan::Costs;
+use double_pendulum::{Method, Parameters};
+use firmware::job::Request;
+use firmware::protocol::{Field, Set, method_code};
+use rayon::prelude::*;
+
+use super::{FULL_CYCLE, Image, Target, affordable_cost, calls_in_next};
+use crate::emulator::boards::{Board, Core};
+use crate::emulator::qemu::{Clock, Lockstep, Settings};
+use crate::emulator::toolchain::{Toolchain, workspace};
+
+/// A guard against hanging.
+const LIMIT: Duration = Duration::from_secs(1800);
+/// What stands before and after the lists in their file.
+const MARKS: [&str; 2] = ["// made by cargo count --write-prices\n", "// so far\n"];
+
+/// What a step costs by each method that a plan chooses from, on one board for each kind of core.
+pub fn prices(toolchain: &Toolchain) -> Result<Vec<(&'static Board, Costs)>> {
+    let targets = Target::build_all(toolchain)?;
+    targets.par_iter().map(|target| Ok((target.board, on(target, toolchain)?))).collect()
+}
+
+fn on(target: &Target, toolchain: &Toolchain) -> Result<Costs> {
+    let step = |method| {
+        let parameters = Parameters::equal_rods(1.0, 1.0, 9.81);
+        let (angles, velocities, dt) = ([0.5; 2], [0.0; 2], 1.0 / 256.0);
+        let request = Request { method, parameters, angles, velocities, dt, stride: FULL_CYCLE, samples: 1 };
+        anyhow::Ok(affordable_cost(target, &request)?.cycles as f32)
+    };
+    let (fixed64, preparation) = in_application(target.board, toolchain)?;
+    Ok(Costs {
+        closed_form: step(Method::ClosedFormF32)?,
+        direction_plain: step(Method::Rk4F32DirectionPlain)?,
+        direction: step(Method::Rk4F32Direction)?,
+        fixed32: step(Method::Rk4Fixed32)?,
+        fixed64,
+        preparation,
+    })
+}
+
+/// What only the application does: a step in 64 bits of the plans' order, and the preparation of a motion, the most expensive.
+fn in_application(board: &'static Board, toolchain: &Toolchain) -> Result<(f32, f32)> {
+    let elf = toolchain.build_for(board)?;
+    let image = Image::read(&elf)?;
+    let qemu = toolchain.qemu();
+    let settings = Settings { qemu, board, elf: &elf, clock: Clock::Counted, debugger: true, limit: LIMIT };
+    let mut machine = Lockstep::start(&settings)?;
+    let most = |machine: &mut Lockstep, function: &str| {
+        let (_, calls) = calls_in_next(machine, &image, board.core(), function)?;
+        anyhow::Ok(calls.iter().map(|call| call.cycles as f32).fold(0.0, f32::max))
+    };
+    machine.next_frame()?;
+    let step = most(&mut machine, "Fixed64State::advance")?;
+    let mut prepared: f32 = 0.0;
+    for &method in Method::DRAWN {
+        let (field, value) = (Field::Method.code(), method_code(method).into());
+        machine.machine().serial.send(&Set { request: 1, field, value })?;
+        // Whether the command comes before this frame or the next is a matter of bytes.
+        for _ in 0..2 {
+            prepared = prepared.max(most(&mut machine, "WayStepper::new")?);
+        }
+    }
+    Ok((step, prepared))
+}
+
+/// Writes them into the firmware's source; the file.
+pub fn write_prices(prices: &[(&Board, Costs)]) -> Result<PathBuf> {
+    let path = workspace().join("firmware/src/prices.rs");
+    let old = std::fs::read_to_string(&path)?;
+    let place = old.split_once(MARKS[0]).and_then(|(head, rest)| Some((head, rest.split_once(MARKS[1])?.1)));
+    let (head, tail) = place.with_context(|| format!("{} has no place for them", path.display()))?;
+    let lists: String = prices.iter().map(|(board, costs)| list(board, costs)).collect();
+    std::fs::write(&path, format!("{head}{}{lists}{}{tail}", MARKS[0], MARKS[1]))?;
+    Ok(path)
+}
+
+fn list(board: &Board, costs: &Costs) -> String {
+    let (name, title) = match board.core() {
+        Core::M3 => ("CORTEX_M3", "Cortex-M3"),
+        Core::M4F => ("CORTEX_M4F", "Cortex-M4F"),
+        Core::M0Plus => ("CORTEX_M0PLUS", "Cortex-M0+"),
+    };
+    let Costs { closed_form, direction_plain, direction, fixed32, fixed64, preparation } = costs;
+    format!(
+        "/// A {title}.\npub const {name}: Costs = Costs {{\n    closed_form: {closed_form:.1},\n    direction_plain: \
+         {direction_plain:.1},\n    direction: {direction:.1},\n    fixed32: {fixed32:.1},\n    fixed64: {fixed64:.1},\n    \
+         preparation: {preparation:.1},\n}};\n"
+    )
+}
