@@ -4,7 +4,6 @@ use std::collections::BTreeSet;
 use std::f64::consts::PI;
 
 use double_pendulum::Method;
-use double_pendulum::form::DirectionForm;
 use double_pendulum::plan::{
     Budget, Costs, Limit, Plan, PlanError, Problem, Quantity, Search, ShadowedRun, Way, WayStepper, plan,
 };
@@ -87,7 +86,7 @@ fn the_end_is_worth_its_cost() {
 fn a_shadowed_run_makes_frames() {
     let page = scene(1.0, 120.0, 1.0);
     let Problem { pendulum, start, .. } = page;
-    let mut run = ShadowedRun::<f32, DirectionForm<f32>>::new(&page, 4).expect("a good scene");
+    let mut run = ShadowedRun::new(Method::Rk4F32Direction, &page, 4).expect("a good scene");
     let mut motion =
         WayStepper::new(&pendulum, &start, RATE, Way { method: Method::Rk4F32Direction, steps: 4 }).expect("good");
     for _ in 0..RATE {

@@ -126,14 +126,6 @@ impl<R: Real, F: Form<R>> UnwrappedStepper<R, F> {
         self.windings.each_ref().map(Winding::last)
     }
 
-    /// The state when the rods point to the [`directions`](Self::directions), rounded: near enough for a picture, and far cheaper
-    /// than [`state`](Self::state) where `f64` is software.
-    #[inline(never)]
-    pub(crate) fn rounded_state(&self) -> State<R> {
-        let ([a1, a2], [p1, p2]) = (self.windings.each_ref().map(Winding::angle), self.stepper.momenta());
-        State { a1, a2, p1, p2 }
-    }
-
     /// As [`Stepper::state`], the angles with all their turns.
     #[must_use]
     pub fn state(&self) -> State<f64> {

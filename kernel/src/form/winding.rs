@@ -35,7 +35,7 @@ impl<R: Real> Winding<R> {
 
     /// For an angle of `start` rad, whose direction is `now`: no sines, the sign of one tells the side.
     #[inline(never)] // once in flash
-    pub(super) fn at(start: R, now: Direction<R>) -> Self {
+    pub(crate) fn at(start: R, now: Direction<R>) -> Self {
         let (turns, rest) = split(start.to_f64());
         let mut winding = Self { turns, last: [R::from_f64(rest), -R::ONE] };
         winding.observe(now);
@@ -43,7 +43,7 @@ impl<R: Real> Winding<R> {
     }
 
     /// The last direction observed.
-    pub(super) fn last(&self) -> Direction<R> {
+    pub(crate) fn last(&self) -> Direction<R> {
         self.last
     }
 

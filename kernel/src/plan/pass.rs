@@ -1,15 +1,12 @@
 //! Looking ahead with one step size: how wrong each method is, frame by frame.
 
-use super::cost::{Costs, ORDER};
-use super::problem::{Perturbation, Problem};
-use super::run::{Directions, Run, distance};
-use super::shadowed_run::{ErrorEstimate, ShadowedRun};
+use super::cost::Costs;
+use super::problem::Problem;
+use super::run::{AnyRun, Directions, Run, distance};
+use super::shadowed_run::{ErrorEstimate, ShadowedRun, steps_of_all};
 use super::way::Way;
 use crate::error::Error;
-use crate::form::{DirectionForm, Fixed32Form, Fixed64Form, Plain};
 use crate::method::Method;
-use crate::modes::Modes;
-use crate::small_oscillations::SmallOscillations;
 use crate::state::State;
 
 /// A bob may be off by this much where the tolerance is the unit.
@@ -63,73 +60,13 @@ impl Candidate {
     }
 }
 
-/// A shadowed run by each method that has steps of its own. Plain `f32` has none: beside the compensated sums it shows what
-/// its roundings do.
-#[expect(clippy::large_enum_variant, reason = "without a heap there is nowhere else to keep it")]
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Shadowed {
-    Direction(ShadowedRun<f32, DirectionForm<f32>>),
-    Fixed32(ShadowedRun<f32, Fixed32Form>),
-    Fixed64(ShadowedRun<f64, Fixed64Form<ORDER>>),
-}
-
-impl Shadowed {
-    fn new(method: Method, problem: &Problem, start: &State<f64>, steps: u32) -> Self {
-        match method {
-            Method::Rk4Fixed32 => Self::Fixed32(ShadowedRun::from_state(problem, start, steps)),
-            Method::Extrapolation10Fixed64 => Self::Fixed64(ShadowedRun::from_state(problem, start, steps)),
-            _ => Self::Direction(ShadowedRun::from_state(problem, start, steps)),
-        }
-    }
-
-    fn method(&self) -> Method {
-        match self {
-            Self::Direction(_) => Method::Rk4F32Direction,
-            Self::Fixed32(_) => Method::Rk4Fixed32,
-            Self::Fixed64(_) => Method::Extrapolation10Fixed64,
-        }
-    }
-
-    fn prepare(&mut self) -> Result<bool, Error> {
-        match self {
-            Self::Direction(run) => run.prepare(),
-            Self::Fixed32(run) => run.prepare(),
-            Self::Fixed64(run) => run.prepare(),
-        }
-    }
-
-    fn advance(&mut self, most: u32) -> u32 {
-        match self {
-            Self::Direction(run) => run.advance(most),
-            Self::Fixed32(run) => run.advance(most),
-            Self::Fixed64(run) => run.advance(most),
-        }
-    }
-
-    fn frame(&mut self) -> (Directions, ErrorEstimate) {
-        match self {
-            Self::Direction(run) => run.frame(),
-            Self::Fixed32(run) => run.frame(),
-            Self::Fixed64(run) => run.frame(),
-        }
-    }
-
-    /// As [`ShadowedRun::steps`].
-    fn steps(&self, steps: u32) -> u32 {
-        match self {
-            Self::Direction(_) => ShadowedRun::<f32, DirectionForm<f32>>::steps(steps),
-            Self::Fixed32(_) => ShadowedRun::<f32, Fixed32Form>::steps(steps),
-            Self::Fixed64(_) => ShadowedRun::<f64, Fixed64Form<ORDER>>::steps(steps),
-        }
-    }
-}
-
 /// Looking ahead with one step size: a shadowed run, and what is compared with it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pass {
-    shadowed: Shadowed,
-    plain: Run<f32, DirectionForm<f32, Plain>>,
-    linear: Option<SmallOscillations<f32>>,
+    shadowed: ShadowedRun,
+    /// Plain `f32`, which shows beside compensated sums what its roundings do.
+    plain: Run,
+    closed: Option<AnyRun>,
     rods: [f32; 2],
     /// The shadowed method, the closed form, and plain `f32`.
     candidates: [Candidate; 3],
@@ -138,16 +75,17 @@ pub(super) struct Pass {
 impl Pass {
     /// From `start`, with `steps` steps to a frame: `method` is shadowed, or compensated `f32` if it has no steps of its own.
     pub fn new(method: Method, problem: &Problem, start: &State<f64>, steps: u32) -> Self {
-        let shadowed = Shadowed::new(method, problem, start, steps);
-        let rounded = problem.rounded::<f32>(start, Perturbation::NONE);
-        let (parameters, _) = &rounded;
-        let motion = problem.start.cast();
-        let linear = Modes::new(&parameters.cast()).ok().map(|modes| SmallOscillations::new(modes, &motion));
-        let methods = [shadowed.method(), Method::ClosedFormF32, Method::Rk4F32DirectionPlain];
+        let method = if matches!(method, Method::Rk4Fixed32 | Method::Extrapolation10Fixed64) {
+            method
+        } else {
+            Method::Rk4F32Direction
+        };
+        let given = (problem.pendulum, *start);
+        let methods = [method, Method::ClosedFormF32, Method::Rk4F32DirectionPlain];
         let mut pass = Self {
-            shadowed,
-            plain: Run::new([rounded; 2], problem.rate, steps),
-            linear,
+            shadowed: ShadowedRun::from_state(method, problem, start, steps),
+            plain: Run::new(Method::Rk4F32DirectionPlain, [given; 2], problem.rate, steps),
+            closed: AnyRun::new(Method::ClosedFormF32, &given, problem.rate.into()).ok(),
             rods: problem.rods(),
             candidates: methods.map(|method| Candidate::new(method, steps)),
         };
@@ -175,15 +113,19 @@ impl Pass {
         costs.of_frame(plain.method, steps)
     }
 
-    /// Compares the frames at time `t`, s, when all steps towards them are made. A method fails where it may be off by more
+    /// Compares the next frames, when all steps towards them are made. A method fails where it may be off by more
     /// than the tolerance.
-    pub fn compare(&mut self, t: f64) {
+    pub fn compare(&mut self) {
         let (frame, estimate) = self.shadowed.frame();
         let beside = |other: Directions| distance(self.rods, &frame, &other);
         let [own, closed, plain] = &mut self.candidates;
         own.note(0.0, estimate);
         if !closed.failed {
-            closed.note(self.linear.map_or(f32::INFINITY, |motion| beside(motion.directions(t))), estimate);
+            let beside = self.closed.as_mut().map_or(f32::INFINITY, |motion| {
+                motion.advance(1);
+                beside(motion.directions())
+            });
+            closed.note(beside, estimate);
         }
         if !plain.failed {
             plain.note(beside(self.plain.frame()), estimate);
@@ -210,7 +152,7 @@ impl Pass {
     /// What the next frame costs.
     pub fn cost(&self, costs: &Costs) -> f32 {
         let [own, others @ ..] = &self.candidates;
-        let shadowed = costs.of_frame(own.method, self.shadowed.steps(own.steps));
+        let shadowed = costs.of_frame(own.method, steps_of_all(own.method, own.steps));
         let others = others.iter().filter(|candidate| !candidate.failed);
         others.fold(shadowed, |sum, candidate| sum + costs.of_frame(candidate.method, candidate.steps))
     }

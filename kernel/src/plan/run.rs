@@ -1,56 +1,171 @@
-//! A motion computed step by step, and how far two of its frames are apart.
+//! A motion by any method that a plan chooses from, and how far two of its frames are apart.
 
+use super::cost::ORDER;
 use crate::error::Error;
-use crate::form::{Direction, Form, Stepper};
+use crate::form::{Direction, DirectionForm, Fixed32Form, Fixed64Form, Plain, Stepper};
+use crate::hamiltonian::Pendulum;
+use crate::method::Method;
+use crate::modes::Modes;
 use crate::params::Parameters;
-use crate::real::Real;
-use crate::state::State;
+use crate::small_oscillations::SmallOscillations;
+use crate::state::{Motion, State};
 
 /// The directions of both rods as they would be drawn.
 pub type Directions = [Direction<f32>; 2];
 
-/// A motion in the form `F`.
+/// A motion by any of [`Method::DRAWN`], read in `f32`: the one place that knows which type computes each.
+#[expect(clippy::large_enum_variant, reason = "without a heap there is nowhere else to keep it")]
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Run<R: Real, F: Form<R>> {
-    motion: Motion<R, F>,
+pub(super) enum AnyRun {
+    ClosedForm(ClosedForm),
+    DirectionPlain(Stepper<f32, DirectionForm<f32, Plain>>),
+    Direction(Stepper<f32, DirectionForm<f32>>),
+    Fixed32(Stepper<f32, Fixed32Form>),
+    Fixed64(Stepper<f32, Fixed64Form<ORDER>>),
+}
+
+/// `$body` with the run of whichever method as `$run`.
+macro_rules! with {
+    ($any:expr, $run:ident => $body:expr) => {
+        match $any {
+            AnyRun::ClosedForm($run) => $body,
+            AnyRun::DirectionPlain($run) => $body,
+            AnyRun::Direction($run) => $body,
+            AnyRun::Fixed32($run) => $body,
+            AnyRun::Fixed64($run) => $body,
+        }
+    };
+}
+
+impl AnyRun {
+    /// A pendulum from its start, with so many steps a second.
+    ///
+    /// Refuses what [`Form::new`](crate::form::Form::new) and [`Form::start`](crate::form::Form::start) refuse, what has no normal
+    /// modes if the method is the closed form, and a method that is none of [`Method::DRAWN`].
+    #[inline(never)] // each kind's preparations would stand side by side on the stack
+    pub fn new(
+        method: Method,
+        (parameters, start): &(Parameters<f64>, State<f64>),
+        per_second: f64,
+    ) -> Result<Self, Error> {
+        let dt = 1.0 / per_second;
+        Ok(match method {
+            Method::ClosedFormF32 => Self::ClosedForm(ClosedForm::new(parameters, start, per_second)?),
+            Method::Rk4F32DirectionPlain => Self::DirectionPlain(Stepper::new(&parameters.cast(), &start.cast(), dt)?),
+            Method::Rk4F32Direction => Self::Direction(Stepper::new(&parameters.cast(), &start.cast(), dt)?),
+            Method::Rk4Fixed32 => Self::Fixed32(Stepper::<f64, _>::new(parameters, start, dt)?.read_in()),
+            Method::Extrapolation10Fixed64 => Self::Fixed64(Stepper::<f64, _>::new(parameters, start, dt)?.read_in()),
+            method => return Err(Error::NotDrawn { method }),
+        })
+    }
+
+    /// Makes `steps` steps.
+    #[inline(never)] // never inlined: a copy of every method for each caller
+    pub fn advance(&mut self, steps: u32) {
+        with!(self, run => run.advance(steps));
+    }
+
+    /// Where the rods point.
+    #[inline(never)]
+    pub fn directions(&self) -> Directions {
+        with!(self, run => run.directions())
+    }
+
+    /// The momenta that go with the directions.
+    #[inline(never)]
+    pub fn momenta(&self) -> [f32; 2] {
+        with!(self, run => run.momenta())
+    }
+
+    /// The canonical state, angles within a turn but in closed form.
+    #[inline(never)]
+    pub fn state(&self) -> State<f64> {
+        with!(self, run => run.state())
+    }
+}
+
+/// Small oscillations, read at any step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct ClosedForm {
+    oscillations: SmallOscillations<f32>,
+    pendulum: Pendulum<f32>,
+    per_second: f64,
+    steps: u64,
+}
+
+impl ClosedForm {
+    fn new(parameters: &Parameters<f64>, start: &State<f64>, per_second: f64) -> Result<Self, Error> {
+        let motion = Pendulum::new(*parameters)?.to_motion(start);
+        let oscillations = SmallOscillations::new(Modes::new(parameters)?, &motion.cast());
+        Ok(Self { oscillations, pendulum: Pendulum::new(parameters.cast())?, per_second, steps: 0 })
+    }
+
+    fn advance(&mut self, steps: u32) {
+        self.steps += u64::from(steps);
+    }
+
+    fn time(&self) -> f64 {
+        self.steps as f64 / self.per_second
+    }
+
+    fn directions(&self) -> Directions {
+        self.oscillations.directions(self.time())
+    }
+
+    fn momenta(&self) -> [f32; 2] {
+        let State { p1, p2, .. } = self.state();
+        [p1, p2].map(|p| p as f32)
+    }
+
+    fn state(&self) -> State<f64> {
+        let motion: Motion<f32> = self.oscillations.at(self.time());
+        self.pendulum.to_state(&motion).cast()
+    }
+}
+
+/// A motion that is prepared before its first step, and stepped from frame to frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Run {
+    method: Method,
+    motion: Prepared,
+    rate: u16,
     per_frame: u32,
     /// Steps made since the last frame.
     made: u32,
 }
 
-/// Before its steps are prepared, and from then on.
+#[expect(clippy::large_enum_variant, reason = "without a heap there is nowhere else to keep it")]
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Motion<R: Real, F: Form<R>> {
-    /// A pendulum and its start, others if these are refused, and the step, s.
-    Given([(Parameters<R>, State<R>); 2], f64),
-    Prepared(Stepper<R, F>),
+enum Prepared {
+    /// A pendulum and its start, others if these are refused.
+    NotYet([(Parameters<f64>, State<f64>); 2]),
+    Ready(AnyRun),
 }
 
-impl<R: Real, F: Form<R>> Run<R, F> {
-    /// A pendulum and its start, or the others if the first are refused, with `per_frame` steps for each of the `rate` frames of
-    /// a second.
-    #[inline(never)] // once in flash
-    pub fn new(given: [(Parameters<R>, State<R>); 2], rate: u16, per_frame: u32) -> Self {
-        let dt = 1.0 / (f64::from(rate) * f64::from(per_frame));
-        Self { motion: Motion::Given(given, dt), per_frame, made: 0 }
+impl Run {
+    /// By `method`: a pendulum and its start, or the others if the first are refused, with `per_frame` steps for each of the
+    /// `rate` frames of a second.
+    pub fn new(method: Method, given: [(Parameters<f64>, State<f64>); 2], rate: u16, per_frame: u32) -> Self {
+        Self { method, motion: Prepared::NotYet(given), rate, per_frame, made: 0 }
     }
 
     /// Prepares the steps; whether they were not.
-    #[inline(never)] // once in flash
+    #[inline(never)]
     pub fn prepare(&mut self) -> Result<bool, Error> {
-        let Motion::Given(given, dt) = &self.motion else { return Ok(false) };
-        let [first, other] = given.each_ref().map(|(parameters, start)| move || Stepper::new(parameters, start, *dt));
-        self.motion = Motion::Prepared(first().or_else(|_| other())?);
+        let Prepared::NotYet([first, other]) = &self.motion else { return Ok(false) };
+        let per_second = f64::from(self.rate) * f64::from(self.per_frame);
+        let run = AnyRun::new(self.method, first, per_second);
+        self.motion = Prepared::Ready(run.or_else(|_| AnyRun::new(self.method, other, per_second))?);
         Ok(true)
     }
 
     /// Makes `most` of the steps towards the next frame, or as many as are left. How many that were: 0 if nothing was left to
     /// do.
-    #[inline(never)] // once in flash
+    #[inline(never)]
     pub fn advance(&mut self, most: u32) -> u32 {
         let left = self.per_frame.saturating_sub(self.made);
         let steps = if most < left { most } else { left };
-        if let Motion::Prepared(motion) = &mut self.motion {
+        if let Prepared::Ready(motion) = &mut self.motion {
             motion.advance(steps);
         }
         self.made += steps;
@@ -58,16 +173,15 @@ impl<R: Real, F: Form<R>> Run<R, F> {
     }
 
     /// The frame, when nothing is left to do; the next steps lead to the next.
-    #[inline(never)] // once in flash
+    #[inline(never)]
     pub fn frame(&mut self) -> Directions {
         self.made = 0;
         match &self.motion {
-            Motion::Given(..) => [[f32::NAN; 2]; 2],
-            Motion::Prepared(motion) => motion.directions().map(|direction| direction.map(|x| x.to_f64() as f32)),
+            Prepared::NotYet(_) => [[f32::NAN; 2]; 2],
+            Prepared::Ready(motion) => motion.directions(),
         }
     }
 }
-
 /// How far the farther of the two bobs is off, or bob 2 as seen from bob 1, where the rods are as long as `rods`, in their
 /// unit; NaN if anything is.
 ///

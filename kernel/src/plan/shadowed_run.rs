@@ -4,15 +4,14 @@ use super::error::PlanError;
 use super::problem::{Perturbation, Problem};
 use super::run::{Directions, Run, distance, greater};
 use crate::error::Error;
-use crate::form::Form;
 use crate::hamiltonian::Pendulum;
-use crate::real::Real;
+use crate::method::Method;
 use crate::state::State;
 
 /// How much larger an error may be than the distances: that to the finer steps, and the larger of those to other roundings.
 ///
-/// To the finer steps the error of the step is 16/15 of the distance (order 4) or less than 10/9 (order 10) where the steps
-/// resolve the motion. Roundings are samples of the same spread, those of the run itself, of the finer steps and of the two
+/// To the finer steps the error of the step is 16/15 of the distance (order 4), 5/4 in fixed point, or less than 10/9 (order 10)
+/// where the steps resolve the motion. Roundings are samples of the same spread, those of the run itself, of the finer steps and of the two
 /// others. Test `plan_study` holds the sum against the exact motion.
 pub const MARGINS: [f32; 2] = [1.25, 2.0];
 
@@ -50,58 +49,68 @@ impl ErrorEstimate {
 /// A motion beside one with finer steps, for the error of the step, and two with the same, for the error of rounding. The given
 /// numbers of all three are off by about as much as rounding may make them, each run's in a way of its own.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ShadowedRun<R: Real, F: Form<R>> {
-    own: Run<R, F>,
-    finer: Run<R, F>,
-    perturbed: [Run<R, F>; 2],
+pub struct ShadowedRun {
+    method: Method,
+    own: Run,
+    finer: Run,
+    perturbed: [Run; 2],
     rods: [f32; 2],
 }
 
-impl<R: Real, F: Form<R>> ShadowedRun<R, F> {
-    /// Steps of the finer run for each frame: twice as many by order 4. By a high order a quarter more leave a tenth of the
-    /// error; with one on top of that [`Fixed64Form`](crate::form::Fixed64Form) never has the same unit of time in both runs,
-    /// and with it the same constants and their roundings.
-    const fn finer(steps: u32) -> u32 {
-        steps.saturating_add(if F::ORDER > 4 { steps / 4 + 1 } else { steps })
+/// Steps of the finer run for each frame. By order 4 twice as many leave a sixteenth of the error, half as many again a fifth; by
+/// a high order a quarter more leave a tenth. Fixed point has another unit of time then, and with it other constants and
+/// roundings: what a word drops of a torque is the same for many steps while a pendulum hardly moves.
+fn finer(method: Method, steps: u32) -> u32 {
+    steps.saturating_add(match method {
+        Method::Extrapolation10Fixed64 => steps / 4 + 1,
+        Method::Rk4Fixed32 if steps > 1 => steps / 2,
+        Method::Rk4Fixed32 => 2,
+        _ => steps,
+    })
+}
+
+/// What the distance to the finer run counts: in fixed point it is the only one with other constants.
+fn weight(method: Method) -> f32 {
+    match method {
+        Method::Extrapolation10Fixed64 => 3.0,
+        Method::Rk4Fixed32 => 2.0,
+        _ => 1.0,
     }
+}
 
-    /// What the distance to the finer run counts. By a high order it is the only one with other constants, and the roundings of
-    /// constants are what parts 64 bits from the exact motion.
-    const WEIGHT: f32 = if F::ORDER > 4 { 3.0 } else { 1.0 };
+/// Steps made by all the runs for each frame.
+pub(super) fn steps_of_all(method: Method, steps: u32) -> u32 {
+    finer(method, steps).saturating_add(steps.saturating_mul(3))
+}
 
-    /// Steps made by all the runs for each frame.
-    pub(super) const fn steps(steps: u32) -> u32 {
-        Self::finer(steps).saturating_add(steps.saturating_mul(3))
-    }
-
-    /// With `steps` steps for each frame.
+impl ShadowedRun {
+    /// By `method` with `steps` steps for each frame.
     ///
     /// Refuses a problem without a tolerance, a duration or a rate, and a pendulum that the kernel refuses.
-    pub fn new(problem: &Problem, steps: u32) -> Result<Self, PlanError> {
+    pub fn new(method: Method, problem: &Problem, steps: u32) -> Result<Self, PlanError> {
         problem.check()?;
-        Ok(Self::from_state(problem, &Pendulum::new(problem.pendulum)?.to_state(&problem.start), steps))
+        Ok(Self::from_state(method, problem, &Pendulum::new(problem.pendulum)?.to_state(&problem.start), steps))
     }
 
     /// From `start`, with `steps` steps for each frame.
-    ///
-    /// Never inlined: the runs of each form would stand side by side on the stack.
     #[inline(never)]
-    pub(super) fn from_state(problem: &Problem, start: &State<f64>, steps: u32) -> Self {
+    pub(super) fn from_state(method: Method, problem: &Problem, start: &State<f64>, steps: u32) -> Self {
         let run = |perturbation: Perturbation, steps| {
-            // What a form takes ends somewhere: a run just within may have its neighbour on one side beyond.
-            let given = [perturbation, perturbation.mirrored()].map(|by| problem.rounded(start, by));
-            Run::new(given, problem.rate, steps)
+            // What a method takes ends somewhere: a run just within may have its neighbour on one side beyond.
+            let given = [perturbation, perturbation.mirrored()].map(|by| problem.perturbed(start, by, method));
+            Run::new(method, given, problem.rate, steps)
         };
-        let [finer, perturbed @ ..] = Perturbation::ALL;
+        let [other, perturbed @ ..] = Perturbation::ALL;
         Self {
+            method,
             own: run(Perturbation::NONE, steps),
-            finer: run(finer, Self::finer(steps)),
+            finer: run(other, finer(method, steps)),
             perturbed: perturbed.map(|perturbation| run(perturbation, steps)),
             rods: problem.rods(),
         }
     }
 
-    fn runs(&mut self) -> impl Iterator<Item = &mut Run<R, F>> {
+    fn runs(&mut self) -> impl Iterator<Item = &mut Run> {
         [&mut self.own, &mut self.finer].into_iter().chain(&mut self.perturbed)
     }
 
@@ -118,8 +127,8 @@ impl<R: Real, F: Form<R>> ShadowedRun<R, F> {
     /// The frame that all steps have led to, and how wrong it is.
     pub(super) fn frame(&mut self) -> (Directions, ErrorEstimate) {
         let frame = self.own.frame();
-        let apart = |other: &mut Run<R, F>| distance(self.rods, &frame, &other.frame());
-        let step = Self::WEIGHT * apart(&mut self.finer);
+        let apart = |other: &mut Run| distance(self.rods, &frame, &other.frame());
+        let step = weight(self.method) * apart(&mut self.finer);
         let rounding = self.perturbed.iter_mut().map(apart).fold(0.0, greater);
         (frame, ErrorEstimate { step, rounding })
     }

@@ -1,15 +1,12 @@
 //! A motion carried out as a plan has it.
 
-use super::cost::{Costs, ORDER};
-use super::run::Directions;
+use super::cost::Costs;
+use super::run::{AnyRun, Directions};
 use crate::error::Error;
-use crate::form::{DirectionForm, Fixed32Form, Fixed64Form, Form, Plain, Stepper, UnwrappedStepper};
+use crate::form::Winding;
 use crate::hamiltonian::Pendulum;
 use crate::method::Method;
-use crate::modes::Modes;
 use crate::params::Parameters;
-use crate::real::Real;
-use crate::small_oscillations::SmallOscillations;
 use crate::state::{Motion, State};
 
 /// How a motion is computed: a method, and how fine.
@@ -30,18 +27,9 @@ pub struct WayStepper {
     rate: u16,
     /// Frames since the start.
     frame: u64,
-    motion: Carried,
-}
-
-#[expect(clippy::large_enum_variant, reason = "without a heap there is nowhere else to keep it")]
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Carried {
-    ClosedForm(SmallOscillations<f32>, Pendulum<f32>),
-    DirectionPlain(UnwrappedStepper<f32, DirectionForm<f32, Plain>>),
-    Direction(UnwrappedStepper<f32, DirectionForm<f32>>),
-    Fixed32(UnwrappedStepper<f32, Fixed32Form>),
-    /// Read in `f32`: in `f64` that would take as long as a fifth of a step.
-    Fixed64(UnwrappedStepper<f32, Fixed64Form<ORDER>>),
+    run: AnyRun,
+    /// Where the rods point, and how often they have turned over.
+    windings: [Winding<f32>; 2],
 }
 
 /// At so many admissible steps or less in one, the roundings of [`Method::Extrapolation10Fixed64`] are what ends its horizon, not its steps.
@@ -152,25 +140,13 @@ impl WayStepper {
     #[inline(never)] // once in flash
     pub fn new(parameters: &Parameters<f64>, start: &Motion<f64>, rate: u16, way: Way) -> Result<Self, Error> {
         start.check()?;
-        let steps = if way.steps > 0 { way.steps } else { 1 };
+        let is_closed = way.method == Method::ClosedFormF32;
+        let steps = if way.steps == 0 || is_closed { 1 } else { way.steps };
         let state = Pendulum::new(*parameters)?.to_state(start);
-        let dt = 1.0 / (f64::from(rate) * f64::from(steps));
-        let motion = match way.method {
-            Method::ClosedFormF32 => {
-                let motion = SmallOscillations::new(Modes::new(parameters)?, &start.cast());
-                Carried::ClosedForm(motion, Pendulum::new(parameters.cast())?)
-            }
-            Method::Rk4F32DirectionPlain => Carried::DirectionPlain(stepper(parameters, &state, dt)?),
-            Method::Rk4F32Direction => Carried::Direction(stepper(parameters, &state, dt)?),
-            Method::Rk4Fixed32 => Carried::Fixed32(stepper(parameters, &state, dt)?),
-            Method::Extrapolation10Fixed64 => {
-                let motion = Stepper::<f64, Fixed64Form<ORDER>>::new(parameters, &state, dt)?;
-                Carried::Fixed64(UnwrappedStepper::of(motion.read_in(), state.cast().angles()))
-            }
-            method => return Err(Error::NotDrawn { method }),
-        };
-        let steps = if way.method == Method::ClosedFormF32 { 1 } else { steps };
-        Ok(Self { way: Way { steps, ..way }, rate, frame: 0, motion })
+        let run = AnyRun::new(way.method, &(*parameters, state), f64::from(rate) * f64::from(steps))?;
+        let ([a1, a2], [upper, lower]) = (state.cast().angles(), run.directions());
+        let windings = [Winding::at(a1, upper), Winding::at(a2, lower)];
+        Ok(Self { way: Way { steps, ..way }, rate, frame: 0, run, windings })
     }
 
     /// The way it goes.
@@ -183,13 +159,11 @@ impl WayStepper {
     #[inline(never)] // once in flash
     pub fn advance(&mut self) {
         self.frame += 1;
-        let steps = self.way.steps;
-        match &mut self.motion {
-            Carried::ClosedForm(..) => {}
-            Carried::DirectionPlain(motion) => motion.advance(steps),
-            Carried::Direction(motion) => motion.advance(steps),
-            Carried::Fixed32(motion) => motion.advance(steps),
-            Carried::Fixed64(motion) => motion.advance(steps),
+        for _ in 0..self.way.steps {
+            self.run.advance(1);
+            for (winding, direction) in self.windings.iter_mut().zip(self.run.directions()) {
+                winding.observe(direction);
+            }
         }
     }
 
@@ -207,51 +181,25 @@ impl WayStepper {
 
     /// Where the rods point, (sin, cos) each.
     #[must_use]
-    #[inline(never)] // once in flash
     pub fn directions(&self) -> Directions {
-        match &self.motion {
-            Carried::ClosedForm(motion, _) => motion.directions(self.time()),
-            Carried::DirectionPlain(motion) => motion.directions(),
-            Carried::Direction(motion) => motion.directions(),
-            Carried::Fixed32(motion) => motion.directions(),
-            Carried::Fixed64(motion) => motion.directions(),
-        }
+        self.windings.each_ref().map(Winding::last)
     }
 
     /// The canonical state in SI units when the rods point to the [`directions`](Self::directions), rounded to `f32`, the angles
-    /// with all their turns: what a picture needs.
+    /// with all their turns: what a picture needs, and far cheaper than [`state`](Self::state) where `f64` is software.
     #[must_use]
-    #[inline(never)] // once in flash
+    #[inline(never)]
     pub fn rounded_state(&self) -> State<f32> {
-        match &self.motion {
-            Carried::ClosedForm(motion, pendulum) => pendulum.to_state(&motion.at(self.time())),
-            Carried::DirectionPlain(motion) => motion.rounded_state(),
-            Carried::Direction(motion) => motion.rounded_state(),
-            Carried::Fixed32(motion) => motion.rounded_state(),
-            Carried::Fixed64(motion) => motion.rounded_state(),
-        }
+        let ([a1, a2], [p1, p2]) = (self.windings.each_ref().map(Winding::angle), self.run.momenta());
+        State { a1, a2, p1, p2 }
     }
 
     /// The canonical state in SI units to the last digit carried, the angles with all their turns.
     #[must_use]
-    #[inline(never)] // once in flash
+    #[inline(never)]
     pub fn state(&self) -> State<f64> {
-        match &self.motion {
-            Carried::ClosedForm(motion, pendulum) => pendulum.to_state(&motion.at(self.time())).cast(),
-            Carried::DirectionPlain(motion) => motion.state(),
-            Carried::Direction(motion) => motion.state(),
-            Carried::Fixed32(motion) => motion.state(),
-            Carried::Fixed64(motion) => motion.state(),
-        }
+        let [winding1, winding2] = &self.windings;
+        let state = self.run.state();
+        State { a1: winding1.unwrap(state.a1), a2: winding2.unwrap(state.a2), ..state }
     }
-}
-
-/// Never inlined: each kind's preparations would stand side by side on the stack.
-#[inline(never)]
-fn stepper<R: Real, F: Form<R>>(
-    parameters: &Parameters<f64>,
-    state: &State<f64>,
-    dt: f64,
-) -> Result<UnwrappedStepper<R, F>, Error> {
-    UnwrappedStepper::new(&parameters.cast(), &state.cast(), dt)
 }

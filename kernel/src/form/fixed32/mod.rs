@@ -60,6 +60,8 @@ pub struct Fixed32State {
     /// sin a1, cos a1, S, C, P1, P2, with 62 bits after the point.
     z: [i64; 6],
     inverse: Q30,
+    /// The torques of gravity at the last look, with 63 bits after the point.
+    weights: [i64; 2],
     /// Whether the energy was once out of range, or a length far off.
     lost: bool,
     steps: u64,
@@ -137,6 +139,7 @@ impl<R: Real> Form<R> for Fixed32Form {
     fn bits(carried: &Self::Carried, mut feed: impl FnMut(u64)) {
         carried.z.iter().for_each(|&z| feed(z as u64));
         feed(carried.inverse.0 as u64);
+        carried.weights.iter().for_each(|&weight| feed(weight as u64));
         feed(u64::from(carried.lost));
         feed(carried.steps);
     }
@@ -151,7 +154,10 @@ impl Fixed32State {
         let Scaling { norm, momenta: [unit1, unit2], .. } = units.scaling;
         let z = [sin1, cos1, norm * sin_d, norm * cos_d, p1 * unit1, p2 * unit2];
         let inverse = Q30::constant(1.0 / units.scaling.denominator(z[2]));
-        Self { units, z: z.map(|z| nearest(z * ONE) as i64 + OFFSET), inverse, lost: false, steps: 0 }
+        let z = z.map(|z| nearest(z * ONE) as i64 + OFFSET);
+        let mut motion = Self { units, z, inverse, weights: [0; 2], lost: false, steps: 0 };
+        motion.weights = motion.weights_now();
+        motion
     }
 
     /// The motion that starts from `state`, whose energy is at most this one's: in the same units.

@@ -1,7 +1,8 @@
 //! What is done every few steps: lengths are restored, gravity's last digits are made up for, the energy is looked at.
 
-use super::{Fixed32State, OFFSET};
-use crate::fixed::product;
+use super::setting::Setting;
+use super::{Fixed32State, OFFSET, UPKEEP};
+use crate::fixed::{Q30, product};
 use crate::form::equations::Units;
 
 /// By how much the square of a length may be off, with 60 bits after the point.
@@ -34,12 +35,34 @@ impl Fixed32State {
         }
     }
 
-    /// Gives the momenta what the words of G1 and G2 have missed since the last time.
+    /// Gives the momenta what the words of G1 and G2 have missed since the last time, and what the words of the torques have
+    /// where these have stayed the same: of a pendulum let go from rest, half a step of them for a hundred steps is seen later.
     fn make_up_for_gravity(&mut self) {
+        let Setting { missed, halvings, .. } = self.units;
+        let (directions, weights) = (self.sines(), self.weights_now());
+        for i in 0..2 {
+            let (before, now) = (self.weights[i], weights[i]);
+            let mut made_up = product(missed[i], directions[i].0) >> 28;
+            if before >> 32 == now >> 32 {
+                // every second slope is rounded up: half a step is in it
+                let dropped = (((before & 0xffff_ffff) + (now & 0xffff_ffff)) >> 1) - (1 << 31);
+                made_up += (dropped * 3 * i64::from(UPKEEP)) >> halvings;
+            }
+            self.z[4 + i] -= made_up;
+        }
+        self.weights = weights;
+    }
+
+    /// sin a1 and nu sin a2.
+    fn sines(&self) -> [Q30; 2] {
         let [sin1, cos1, s, c, ..] = self.quantities();
-        let [missed1, missed2] = self.units.missed;
-        self.z[4] -= product(missed1, sin1.0) >> 28;
-        self.z[5] -= product(missed2, (sin1 * c - cos1 * s).0) >> 28;
+        [sin1, sin1 * c - cos1 * s]
+    }
+
+    /// The torques of gravity, with 63 bits after the point.
+    pub(super) fn weights_now(&self) -> [i64; 2] {
+        let (gravity, sines) = (self.units.coefficients.gravity, self.sines());
+        [0, 1].map(|i| product(gravity[i].0, sines[i].0))
     }
 
     /// The energy above rest, ((P1 - C P2)^2 r + P2^2)/2 + G1 (1 - cos a1) + G2 nu (1 - cos a2), with 60 bits after the
