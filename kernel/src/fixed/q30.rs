@@ -161,8 +161,7 @@ impl Ring for Q30 {
     fn torque(self, rate: Self, direction: Self) -> Torque {
         // the force: below 1/2, in steps of 2^-32
         let force = word(i64::from(upper(self.0, rate.0)) << 4);
-        // to nearest: beside a pendulum that has hardly begun to move, half a step of this always the same way is seen
-        Torque(word((product(force, direction.0) + (1 << 30)) >> 31))
+        Torque(word(product(force, direction.0) >> 31))
     }
     #[inline(always)]
     fn weight(gravity: Gravity, direction: Self) -> Torque {

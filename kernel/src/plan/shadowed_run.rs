@@ -73,7 +73,7 @@ fn finer(method: Method, steps: u32) -> u32 {
 fn weight(method: Method) -> f32 {
     match method {
         Method::Extrapolation10Fixed64 => 3.0,
-        Method::Rk4Fixed32 => 2.0,
+        Method::Rk4Fixed32 => 3.0,
         _ => 1.0,
     }
 }

@@ -44,9 +44,9 @@ impl Fixed32State {
             let (before, now) = (self.weights[i], weights[i]);
             let mut made_up = product(missed[i], directions[i].0) >> 28;
             if before >> 32 == now >> 32 {
-                // every second slope is rounded up: half a step is in it
-                let dropped = (((before & 0xffff_ffff) + (now & 0xffff_ffff)) >> 1) - (1 << 31);
-                made_up += (dropped * 3 * i64::from(UPKEEP)) >> halvings;
+                // of every second slope it is rounded up, so half a step is in it, but where it is a whole number
+                let dropped = |weight: i64| if weight as u32 == 0 { 0 } else { i64::from(weight as u32) - (1 << 31) };
+                made_up += ((dropped(before) + dropped(now)) * (3 * i64::from(UPKEEP) / 2)) >> halvings;
             }
             self.z[4 + i] -= made_up;
         }
