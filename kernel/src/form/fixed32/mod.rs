@@ -23,7 +23,7 @@ use setting::Setting;
 /// refused by name), and any start.
 ///
 /// Cost of a step on a Cortex-M3: some 670 cycles with rods and masses about equal, 855 with others, where half a step is
-/// 3/8 to 3/64 of the unit of time; 740 and up to 915 in finer steps. On a Cortex-M0+ some 2120.
+/// 3/8 to 3/64 of the unit of time; 740 and up to 915 in finer steps. On a Cortex-M0+ some 2130.
 ///
 /// **Order 4 at any speed.** Half a step is 3 2^-n of the unit of time T, so that h/6 is a power of two of it: stages and weights
 /// are exact, no time is lost. Gravity is rounded to 2^-33 of that unit; what its digits miss is given to the momenta every
