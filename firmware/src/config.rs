@@ -36,7 +36,7 @@ pub const HALF_PIXEL: f32 = 0.5;
 /// For how long each scene is planned, s: longer than the most energetic motion can be predicted in 64 bits. One that is
 /// right for so long is looked at farther as time goes on, always so far ahead.
 pub const PLANNED: f64 = 30.0;
-/// Ticks from the start of a scene until looking ahead begins. A held button restarts the scene sooner than that.
+/// Ticks from the start of a scene until planning begins. A held button restarts the scene sooner than that.
 pub const SETTLED_TICKS: u64 = 6;
 const _: () = assert!(SETTLED_TICKS > REPEAT_PERIOD_TICKS as u64);
 /// A piece of the search, cycles, unless a single step is more.
@@ -51,7 +51,7 @@ pub struct Processor {
     pub costs: Costs,
     /// What computing a frame may cost, cycles; the rest is for drawing and sending it.
     pub frame: f32,
-    /// What is spent in each tick on looking ahead, cycles; comparing frames takes up to a quarter more.
+    /// What is spent in each tick on planning, cycles; comparing frames takes up to a quarter more.
     pub look_ahead: f32,
     /// What is spent on the map of flips.
     pub flips: FlipsPace,
@@ -63,13 +63,13 @@ impl Processor {
         self.costs.direction_plain < self.costs.fixed32
     }
 
-    /// The least that a piece of looking ahead takes, cycles, and a frame that is not shown: its steps may cost less than what
+    /// The least that a piece of planning takes, cycles, and a frame that is not shown: its steps may cost less than what
     /// is done around them.
     pub fn piece(&self) -> f32 {
         self.costs.closed_form.max(1_000.0)
     }
 
-    /// What may be spent: on looking ahead as much as the scene has ticks for, so that the search keeps ahead of it.
+    /// What may be spent: on planning as much as the scene has ticks for, so that the search keeps ahead of it.
     pub fn budget(&self, problem: &Problem) -> Budget {
         Budget { frame: self.frame, planning: self.look_ahead * problem.frames() as f32 }
     }
@@ -85,7 +85,7 @@ pub const CORTEX_M0PLUS: Processor =
 /// plain step costs less than the closed form's two sincos.
 pub const CORTEX_M4F: Processor =
     Processor { code: 1, costs: prices::CORTEX_M4F, frame: 150_000.0, look_ahead: 190_000.0, flips: FLIPS_M4F };
-/// The STM32F405's at 168 MHz: 2,800,000 cycles in a tick. Less looking ahead ends before the errors of a light elbow show.
+/// The STM32F405's at 168 MHz: 2,800,000 cycles in a tick. Less planning ends before the errors of a light elbow show.
 pub const STM32F405: Processor =
     Processor { code: 2, frame: 700_000.0, look_ahead: 1_300_000.0, flips: FLIPS_F405, ..CORTEX_M4F };
 /// Every class, by its code on the wire.

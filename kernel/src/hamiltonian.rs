@@ -131,7 +131,7 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     /// As [`energy`](Self::energy), where rods 1 and 2 point to (sin, cos) and the momenta are (p1, p2), kg m^2/s: without
     /// trigonometry.
     #[must_use]
-    #[inline(never)] // once in flash
+    #[inline(never)] // one copy
     pub fn energy_at(&self, [[sin1, cos1], [sin2, cos2]]: [[R; 2]; 2], momenta: [R; 2]) -> R {
         let elbow = (sin1 * cos2 - cos1 * sin2, cos1 * cos2 + sin1 * sin2);
         self.kinetic_energy_of(elbow, momenta) - self.torque[0] * cos1 - self.torque[1] * cos2
@@ -162,7 +162,7 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     }
 
     /// T as a function of (sin D, cos D) and the momenta.
-    #[inline(never)] // once in flash
+    #[inline(never)] // one copy
     fn kinetic_energy_of(&self, (sin_d, cos_d): (R, R), [p1, p2]: [R; 2]) -> R {
         let Parameters { m1, m2, .. } = self.parameters;
         let q1 = p1 * self.inverse_length[0];

@@ -12,7 +12,7 @@ use crate::sealed::Sealed;
 
 /// A source of sine and cosine for the reals `R`; sealed.
 ///
-/// One run uses one source, on the host and on the chip alike: results agree to the bit only within a source.
+/// One run uses one source, on the host and on the chip alike: results agree bit for bit only within a source.
 pub trait SinCos<R: Real>: Sealed + Copy + core::fmt::Debug + PartialEq + 'static {
     /// (sin `angle`, cos `angle`), `angle` in rad.
     #[must_use]

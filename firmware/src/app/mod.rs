@@ -211,7 +211,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         self.service.is_busy()
     }
 
-    /// Does a bounded piece of the looking ahead that the next tick would do; whether there is more.
+    /// Does a bounded piece of the planning that the next tick would do; whether there is more.
     pub fn look_ahead(&mut self) -> bool {
         self.player.look_ahead()
     }

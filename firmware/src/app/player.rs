@@ -22,7 +22,7 @@ pub const AUTO: f64 = NO_METHOD as f64;
 /// What becomes of the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum News {
-    /// Looking ahead has found something.
+    /// The planner has found something.
     Found(Finding),
     /// The motion goes this way from now on; cycles of a frame.
     Shown(Way, f32),
@@ -36,7 +36,7 @@ pub struct Player<'a> {
     scene: AnyScene,
     means: Means,
     planner: Planner,
-    /// The motion in the way of the plan, until it takes over; meanwhile nothing looks ahead.
+    /// The motion in the way of the plan, until it takes over; meanwhile nothing is planned.
     next: Option<CatchingUp>,
     ink: &'a mut FadeLayer,
     pace: Pace,
@@ -115,7 +115,7 @@ impl<'a> Player<'a> {
         Ok(false)
     }
 
-    /// Advances by one tick of the clock, which may be any number of the scene's; `tell` is given what looking ahead finds, and
+    /// Advances by one tick of the clock, which may be any number of the scene's; `tell` is given what planning finds, and
     /// the way that a scene begins or changes to.
     #[inline(never)]
     pub fn tick(&mut self, mut tell: impl FnMut(News)) {
@@ -152,7 +152,7 @@ impl<'a> Player<'a> {
         }
     }
 
-    /// Does a piece of the looking ahead that the next tick would do; whether there is more.
+    /// Does a piece of the planning that the next tick would do; whether there is more.
     pub fn look_ahead(&mut self) -> bool {
         !self.is_paused() && self.next.is_none() && self.planner.work_ahead()
     }

@@ -64,7 +64,7 @@ macro_rules! table {
             }
 
             /// CRC-32 of all that is carried at every sample but the one at the start, and of the last state: two runs
-            /// are the same to the bit if theirs are equal.
+            /// are bit-identical if theirs are equal.
             pub fn crc(&self) -> Result<u32, JobError> {
                 match self.method {
                     $(Method::$method => counted::crc::<$run>(self),)*

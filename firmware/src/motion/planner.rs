@@ -1,4 +1,4 @@
-//! Looks ahead for the scene that is played: in which way it is right to half a pixel for longest, and cheapest, and until when.
+//! Plans the scene that is played: in which way it is right to half a pixel for longest, and cheapest, and until when.
 //!
 //! All by the kernel's [`plan`](double_pendulum::plan), for a number of cycles in each tick of the scene that is the same on
 //! all boards of a class: so what has been found after n ticks is, too. The work itself may be done before the tick, in the
@@ -31,7 +31,7 @@ pub enum Finding {
     Refused(PlanError),
 }
 
-/// Looks ahead for the scene that is played.
+/// Plans the scene that is played.
 #[derive(Clone, Copy, Debug)]
 pub struct Planner {
     processor: Processor,
@@ -93,7 +93,7 @@ impl Planner {
     }
 
     /// Takes note of how far the way that the scene has begun in has been looked at.
-    #[inline(never)] // once in flash
+    #[inline(never)] // one copy
     fn note(&mut self) {
         if let Some(way) = self.begun {
             self.begun_horizon = self.begun_horizon.max(self.looked_at(way));
@@ -117,7 +117,7 @@ impl Planner {
     }
 
     /// Until when the search has found this way right so far.
-    #[inline(never)] // once in flash
+    #[inline(never)] // one copy
     fn looked_at(&self, way: Way) -> f64 {
         self.search.as_ref().map_or(0.0, |search| search.horizon(way))
     }
@@ -137,7 +137,7 @@ impl Planner {
     /// Does a piece of the search, if the tick has time for it; whether it has done one. A preparation that a tick has no time
     /// for waits for one that has nothing else to do.
     ///
-    /// Never inlined: a profile of a frame tells looking ahead by it.
+    /// Never inlined: a profile of a frame tells planning by it.
     #[inline(never)]
     fn work(&mut self) -> bool {
         if self.finding.is_some() || !self.is_looking() || self.is_far() {

@@ -17,7 +17,7 @@ pub struct Means {
 }
 
 impl Means {
-    /// `settings` in motion: in the way that lasts longest by all that is known before looking ahead, or that is asked for.
+    /// `settings` in motion: in the way that lasts longest by all that is known before planning, or that is asked for.
     ///
     /// The kernel's error if the `pendulum` is too quick for what may be spent.
     fn start(&self, settings: &Settings, pendulum: &Pendulum<f32>) -> Result<WayStepper, Error> {
@@ -58,7 +58,7 @@ impl Simulation {
     }
 
     /// Advances by one tick.
-    #[inline(never)] // once in flash
+    #[inline(never)] // one copy
     pub fn tick(&mut self) {
         self.motion.advance();
     }

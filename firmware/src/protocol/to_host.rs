@@ -136,7 +136,7 @@ numbered! {
         horizon: f64,
         /// What ends that, by its [`limit_code`](super::limit_code).
         limit: u8,
-        /// Cycles spent on looking ahead (estimate).
+        /// Cycles spent on planning (estimate).
         planning: f32,
         /// The display's height that was planned for, pixels: both rods together are half of it long.
         height: f64,
@@ -144,7 +144,7 @@ numbered! {
         duration: f64,
         /// What computing a frame may cost, cycles.
         frame_budget: f32,
-        /// What looking ahead may cost, cycles.
+        /// What planning may cost, cycles.
         planning_budget: f32,
     }
 }

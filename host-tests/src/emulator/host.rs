@@ -14,7 +14,7 @@ use firmware::scenes::scene::Report;
 #[derive(Debug)]
 pub struct Show {
     player: Player<'static>,
-    /// What looking ahead has found, and the tick.
+    /// What planning has found, and the tick.
     pub news: Vec<(u64, News)>,
 }
 

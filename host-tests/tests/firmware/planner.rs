@@ -76,7 +76,7 @@ fn there_is_nothing_to_do_without_a_motion_or_when_all_is_found() {
     assert_eq!((planner.answer(1).found, planner.horizon(LASTING)), (1, 0.0), "it begins anew");
 }
 
-/// To follow what is found takes time: until it is told nothing else is done, and then looking ahead goes on.
+/// To follow what is found takes time: until it is told nothing else is done, and then planning goes on.
 #[test]
 fn nothing_is_done_between_a_finding_and_its_telling() {
     let mut planner = planner(STM32F405, &Settings::equal_rods(1.0, 20.0));

@@ -26,7 +26,7 @@ pub fn application(board: &Board) -> PathBuf {
     toolchain().build_for(board).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Repeatable to the bit.
+/// Repeatable bit for bit.
 pub fn settings<'a>(toolchain: &'a Toolchain, board: &'a Board, elf: &'a Path) -> Settings<'a> {
     Settings { qemu: toolchain.qemu(), board, elf, clock: Clock::Counted, debugger: true, limit: LIMIT }
 }

@@ -26,7 +26,7 @@ pub(crate) trait FixedPoint: Ring {
     fn product_up(self, factor: Self, by: u32) -> Self;
 }
 
-/// `value` times 2^`exponent`; once in flash, as is [`nearest`].
+/// `value` times 2^`exponent`; one copy, as is [`nearest`].
 #[inline(never)]
 pub(crate) fn scaled(value: f64, exponent: i32) -> f64 {
     libm::scalbn(value, exponent)

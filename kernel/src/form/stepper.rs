@@ -103,7 +103,7 @@ impl<R: Real, F: Form<R>> UnwrappedStepper<R, F> {
         Self { stepper, windings: [Winding::at(start1, upper), Winding::at(start2, lower)] }
     }
 
-    #[inline(never)] // once in flash
+    #[inline(never)] // one copy
     fn observe(&mut self) {
         for (winding, direction) in self.windings.iter_mut().zip(self.stepper.directions()) {
             winding.observe(direction);

@@ -15,7 +15,7 @@ pub struct Winding<R> {
 impl<R: Real> Winding<R> {
     /// For an angle of `start` rad.
     #[must_use]
-    #[inline(never)] // once in flash
+    #[inline(never)] // one copy
     pub fn new(start: R) -> Self {
         let (turns, rest) = split(start.to_f64());
         let (sin, cos) = rest.own_sin_cos();
@@ -34,7 +34,7 @@ impl<R: Real> Winding<R> {
     }
 
     /// For an angle of `start` rad, whose direction is `now`: no sines, the sign of one tells the side.
-    #[inline(never)] // once in flash
+    #[inline(never)] // one copy
     pub(crate) fn at(start: R, now: Direction<R>) -> Self {
         let (turns, rest) = split(start.to_f64());
         let mut winding = Self { turns, last: [R::from_f64(rest), -R::ONE] };
@@ -55,7 +55,7 @@ impl<R: Real> Winding<R> {
 
     /// The unwrapped angle, rad, as of the last direction observed.
     #[must_use]
-    #[inline(never)] // once in flash
+    #[inline(never)] // one copy
     pub fn angle(&self) -> R {
         let [s, c] = self.last;
         R::from_f64(f64::from(self.turns) * core::f64::consts::TAU) + s.atan2(c)
@@ -66,7 +66,7 @@ impl<R: Real> Winding<R> {
     ///
     /// No trigonometry: a quarter turn to the side of the last direction is within half a turn of it, near enough.
     #[must_use]
-    #[inline(never)] // once in flash
+    #[inline(never)] // one copy
     pub fn unwrap(&self, angle: f64) -> f64 {
         use core::f64::consts::{FRAC_PI_2, TAU};
         let side = if self.last[0] < R::ZERO { -FRAC_PI_2 } else { FRAC_PI_2 };
@@ -76,7 +76,7 @@ impl<R: Real> Winding<R> {
 }
 
 /// The whole turns of an angle, and the rest, rad.
-#[inline(never)] // once in flash
+#[inline(never)] // one copy
 fn split(angle: f64) -> (i32, f64) {
     let turns = libm::rint(angle / core::f64::consts::TAU);
     (turns as i32, angle - turns * core::f64::consts::TAU)

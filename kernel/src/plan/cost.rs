@@ -36,7 +36,7 @@ impl Costs {
 
     /// What a frame costs that is computed by `method` with `steps`; infinite for what no plan chooses from.
     #[must_use]
-    #[inline(never)] // once in flash
+    #[inline(never)] // one copy
     pub fn of_frame(&self, method: Method, steps: u32) -> f32 {
         let step = match method {
             Method::ClosedFormF32 => return self.closed_form,
@@ -57,7 +57,7 @@ impl Costs {
 pub struct Budget {
     /// On computing a frame.
     pub frame: f32,
-    /// On looking ahead.
+    /// On planning.
     pub planning: f32,
 }
 

@@ -21,7 +21,7 @@ pub enum Quantity {
     Cost,
     /// What computing a frame may cost.
     FrameBudget,
-    /// What looking ahead may cost.
+    /// What planning may cost.
     PlanningBudget,
 }
 
@@ -33,7 +33,7 @@ impl fmt::Display for Quantity {
             Quantity::Rate => "rate",
             Quantity::Cost => "cost",
             Quantity::FrameBudget => "budget for a frame",
-            Quantity::PlanningBudget => "budget for looking ahead",
+            Quantity::PlanningBudget => "budget for planning",
         })
     }
 }
@@ -66,7 +66,7 @@ pub enum PlanError {
     NothingHolds {
         /// What forbids finer steps.
         limit: Limit,
-        /// Spent on looking ahead.
+        /// Spent on planning.
         spent: f32,
     },
 }
@@ -108,7 +108,7 @@ impl core::error::Error for PlanError {
 }
 
 /// Refuses the first of `values` that is not a finite number greater than zero.
-#[inline(never)] // once in flash
+#[inline(never)] // one copy
 pub(super) fn check_positive(quantity: Quantity, values: &[f64]) -> Result<(), PlanError> {
     match values.iter().find(|value| !is_positive(**value)) {
         Some(&value) => Err(PlanError::NotPositive { quantity, value }),
@@ -116,7 +116,7 @@ pub(super) fn check_positive(quantity: Quantity, values: &[f64]) -> Result<(), P
     }
 }
 
-#[inline(never)] // once in flash
+#[inline(never)] // one copy
 fn is_positive(value: f64) -> bool {
     value.is_finite() && value > 0.0
 }

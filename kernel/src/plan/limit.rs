@@ -12,7 +12,7 @@ pub enum Limit {
     Growth,
     /// The budget for a frame: finer steps or `f64` may go farther, and cost more.
     Budget,
-    /// The budget for looking ahead: no later frame was looked at.
+    /// The budget for planning: no later frame was looked at.
     Planning,
     /// The method and the step that were asked for: others may go farther ([`Search::of`](super::Search::of)).
     Method,
@@ -26,7 +26,7 @@ impl Limit {
             Limit::End => "the end of the time asked for",
             Limit::Growth => "the growth of errors",
             Limit::Budget => "the budget for a frame",
-            Limit::Planning => "the budget for looking ahead",
+            Limit::Planning => "the budget for planning",
             Limit::Method => "what this method can do",
         }
     }

@@ -15,7 +15,7 @@
 //! taken. If nothing does (chaos), what does longest is; if nothing within the budgets is right in any frame,
 //! [`PlanError::NothingHolds`] says so. The search begins at a step that resolves all motions of the energy, by the proven
 //! bound of [`Pendulum::admissible_step`](crate::Pendulum::admissible_step), by compensated `f32` or 32 bits of fixed point,
-//! whichever costs less, and goes over to 64 bits where rounding is the larger error or these cost less. Looking ahead costs
+//! whichever costs less, and goes over to 64 bits where rounding is the larger error or these cost less. Planning costs
 //! a few times what the motion itself does in the cheap arithmetic, no heap, and is done in pieces that a busy caller can
 //! afford ([`Search`]).
 //!

@@ -1,4 +1,4 @@
-//! Looking ahead with one step size: how wrong each method is, frame by frame.
+//! One step size tried: how wrong each method is, frame by frame.
 
 use super::cost::Costs;
 use super::problem::Problem;
@@ -35,16 +35,16 @@ impl Candidate {
         Self { method, steps, right: 0, error: 0.0, failed: false, by_rounding: false }
     }
 
-    /// In how many frames it shows `way` to be right; one that `outlasts` all others is so wherever any is.
-    #[inline(never)] // once in flash
-    pub fn right_of(&self, way: Way, outlasts: bool) -> u32 {
+    /// In how many frames it shows `way` to be right; one that has the longest horizon of all is so wherever any is.
+    #[inline(never)] // one copy
+    pub fn right_of(&self, way: Way, has_longest_horizon: bool) -> u32 {
         let is_same = self.steps == way.steps || way.method == Method::ClosedFormF32;
-        let is_shown = outlasts || self.method == way.method && is_same;
+        let is_shown = has_longest_horizon || self.method == way.method && is_same;
         if is_shown { self.right } else { 0 }
     }
 
     /// Takes note of a frame that is `beside` off the shadowed one, whose own error is estimated. NaN is wrong.
-    #[inline(never)] // once in flash
+    #[inline(never)] // one copy
     fn note(&mut self, beside: f32, estimate: ErrorEstimate) {
         if self.failed {
             return;
@@ -60,7 +60,7 @@ impl Candidate {
     }
 }
 
-/// Looking ahead with one step size: a shadowed run, and what is compared with it.
+/// One step size tried: a shadowed run, and what is compared with it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pass {
     shadowed: ShadowedRun,
@@ -171,7 +171,7 @@ mod tests {
     #[test]
     fn what_is_right_in_one_way_says_nothing_of_another() {
         let candidate = Candidate { right: 7, ..Candidate::new(Method::Rk4F32Direction, 4) };
-        let right = |method, steps, outlasts| candidate.right_of(Way { method, steps }, outlasts);
+        let right = |method, steps, has_longest_horizon| candidate.right_of(Way { method, steps }, has_longest_horizon);
         assert_eq!(right(Method::Rk4F32Direction, 4, false), 7);
         assert_eq!(right(Method::Rk4F32Direction, 2, false), 0);
         assert_eq!(right(Method::Rk4F32DirectionPlain, 4, false), 0);

@@ -40,7 +40,7 @@ impl Problem {
 
     /// Frames shown after the one at the start, at least one.
     #[must_use]
-    #[inline(never)] // once in flash
+    #[inline(never)] // one copy
     pub fn frames(&self) -> u32 {
         let frames = libm::rint(self.duration * f64::from(self.rate)) as u32;
         if frames == 0 { 1 } else { frames }

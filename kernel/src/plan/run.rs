@@ -186,7 +186,7 @@ impl Run {
 /// unit; NaN if anything is.
 ///
 /// The last keeps curves of the angles right, too: opposite errors of both may leave bob 2 where it belongs.
-#[inline(never)] // once in flash
+#[inline(never)] // one copy
 pub(super) fn distance(rods: [f32; 2], a: &Directions, b: &Directions) -> f32 {
     let difference = |rod: usize, axis: usize| rods[rod] * (a[rod][axis] - b[rod][axis]);
     let [bob1, relative] = [0, 1].map(|rod| [difference(rod, 0), difference(rod, 1)]);

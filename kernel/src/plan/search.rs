@@ -32,7 +32,7 @@ pub struct Plan {
     pub horizon: f64,
     /// What ends the horizon.
     pub limit: Limit,
-    /// What looking ahead has cost; never more than the budget.
+    /// What planning has cost; never more than the budget.
     pub spent: f32,
 }
 
@@ -169,7 +169,7 @@ impl Search {
         self.go_on()
     }
 
-    /// A form takes no steps so long, or no motion so lively, or no such pendulum: finer ones, or `f32`, may.
+    /// A form takes no steps so long, or no motion of so high an energy, or no such pendulum: finer ones, or `f32`, may.
     fn refused(&mut self, error: Error) -> Result<Option<Plan>, PlanError> {
         let is_step = matches!(error, Error::TooLarge { parameter: Parameter::Dt, .. });
         match self.method {
@@ -232,7 +232,7 @@ impl Search {
         limit.map(|limit| self.plan(limit)).transpose()
     }
 
-    /// What looking ahead has cost so far.
+    /// What planning has cost so far.
     #[must_use]
     pub fn spent(&self) -> f32 {
         self.spent
@@ -243,9 +243,9 @@ impl Search {
     #[must_use]
     pub fn horizon(&self, way: Way) -> f64 {
         let resolves = |(steps, limit)| limit == Limit::Growth && way.steps >= steps;
-        let outlasts = way.method == Method::Extrapolation10Fixed64 && self.fine.is_some_and(resolves);
+        let has_longest_horizon = way.method == Method::Extrapolation10Fixed64 && self.fine.is_some_and(resolves);
         let looked_at = self.candidates().iter().chain(&self.best);
-        self.problem.time(looked_at.fold(0, |right, candidate| right.max(candidate.right_of(way, outlasts))))
+        self.problem.time(looked_at.fold(0, |right, candidate| right.max(candidate.right_of(way, has_longest_horizon))))
     }
 
     /// Goes on with the method of a plan that was right to its end, for `seconds` longer; [`Self::advance`] gives the plan
@@ -297,7 +297,7 @@ impl Search {
     }
 
     /// Whether `candidate` goes so much farther than the best so far, or as far and cheaper.
-    #[inline(never)] // once in flash
+    #[inline(never)] // one copy
     fn is_better(&self, candidate: &Candidate) -> bool {
         let cost = |candidate: &Candidate| self.costs.of_frame(candidate.method, candidate.steps);
         if candidate.right == 0 || cost(candidate) > self.budget.frame {
@@ -313,10 +313,10 @@ impl Search {
     }
 
     /// The best candidate as a plan, if there is one.
-    #[inline(never)] // once in flash
+    #[inline(never)] // one copy
     fn plan(&self, limit: Limit) -> Result<Plan, PlanError> {
         let Some(best) = self.best else {
-            // To look ahead for longer would help nothing of which a frame costs too much.
+            // To plan for longer would help nothing of which a frame costs too much.
             let affordable = |one: &Candidate| self.costs.of_frame(one.method, one.steps) <= self.budget.frame;
             let is_open = |pass: &Pass| pass.candidates().iter().any(|one| !one.failed && affordable(one));
             let open = self.pass.as_ref().is_none_or(is_open);

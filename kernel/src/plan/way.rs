@@ -44,7 +44,7 @@ pub(super) const MOST_STEPS: u32 = 1 << 16;
 
 /// The fewest steps by `method` to a frame, of which there are `rate` in a second, that are no longer than `longest` s; in 32
 /// bits a power of two, as the steps that refine them.
-#[inline(never)] // once in flash
+#[inline(never)] // one copy
 pub(super) fn steps_to_frame(method: Method, rate: u16, longest: f64) -> u32 {
     let fewest = libm::ceil(1.0 / (longest * f64::from(rate)));
     let fewest = (fewest as u32).clamp(1, MOST_STEPS);
@@ -54,7 +54,7 @@ pub(super) fn steps_to_frame(method: Method, rate: u16, longest: f64) -> u32 {
 /// Angles and momenta of `start`, and the longest step that resolves every motion of its energy, s.
 ///
 /// Refuses what [`Pendulum::new`] and [`Pendulum::admissible_step`] refuse.
-#[inline(never)] // once in flash
+#[inline(never)] // one copy
 pub(super) fn start_and_step(parameters: &Parameters<f64>, start: &Motion<f64>) -> Result<(State<f64>, f64), Error> {
     let pendulum = Pendulum::new(*parameters)?;
     let state = pendulum.to_state(start);
@@ -135,9 +135,9 @@ impl Way {
 impl WayStepper {
     /// At `start`, with `rate` frames to a second. No steps count as one.
     ///
-    /// Refuses what [`Form::new`] and [`Form::start`] refuse, what has no normal modes if the way is the closed form, and a method
+    /// Refuses what [`Form::new`](crate::form::Form::new) and [`Form::start`](crate::form::Form::start) refuse, what has no normal modes if the way is the closed form, and a method
     /// that is none of [`Method::DRAWN`].
-    #[inline(never)] // once in flash
+    #[inline(never)] // one copy
     pub fn new(parameters: &Parameters<f64>, start: &Motion<f64>, rate: u16, way: Way) -> Result<Self, Error> {
         start.check()?;
         let is_closed = way.method == Method::ClosedFormF32;
@@ -156,7 +156,7 @@ impl WayStepper {
     }
 
     /// Moves on by a frame.
-    #[inline(never)] // once in flash
+    #[inline(never)] // one copy
     pub fn advance(&mut self) {
         self.frame += 1;
         for _ in 0..self.way.steps {

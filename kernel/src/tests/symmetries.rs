@@ -1,4 +1,4 @@
-//! Time reversal, mirror image and the scaling laws. All but the first hold to the bit.
+//! Time reversal, mirror image and the scaling laws. All but the first hold bit for bit.
 
 use double_pendulum::{Parameters, Pendulum, Real, State};
 use fastrand::Rng;

@@ -1,4 +1,4 @@
-//! Without a terminal: an emulated board frame by frame, repeatable to the bit, or the board at a port; with a summary at
+//! Without a terminal: an emulated board frame by frame, repeatable bit for bit, or the board at a port; with a summary at
 //! the end.
 
 use std::thread::sleep;

@@ -33,7 +33,7 @@ pub struct Options {
     /// How the motion is computed; `plan` leaves it to the board [default: what the board does, plan when it is switched on]
     #[arg(long, value_name = "NAME", value_parser = choice(asked(), |method| method.map_or("plan", Method::name)))]
     pub method: Option<Asked>,
-    /// Run without a terminal: as fast as it goes, repeatable to the bit, with a summary at the end
+    /// Run without a terminal: as fast as it goes, repeatable bit for bit, with a summary at the end
     #[arg(long)]
     pub headless: bool,
     /// How long, in seconds by the board's clock [default: 10 when headless, else until q is pressed]

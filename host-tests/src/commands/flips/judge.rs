@@ -1,4 +1,4 @@
-//! What can be believed: the map held against the exact motion.
+//! How far the map is right: it is held against the exact motion.
 
 use std::f64::consts::PI;
 

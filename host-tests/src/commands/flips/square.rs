@@ -20,7 +20,7 @@ impl Square {
     /// The start at the middle of a pixel, counted from the top left corner.
     pub fn start(&self, [column, row]: [usize; 2]) -> [f32; 2] {
         let Self { size: [width, height], centre: [a1, a2], half } = *self;
-        // Twice the pixels from the middle: whole, so that what lies opposite is its mirror image to the bit.
+        // Twice the pixels from the middle: whole, so that what lies opposite is its mirror image, bit for bit.
         let angle = |pixel: usize, pixels: usize| (2 * pixel as i64 + 1 - pixels as i64) as f64 * half / pixels as f64;
         [(a1 + angle(column, width)) as f32, (a2 - angle(row, height)) as f32]
     }

@@ -23,7 +23,7 @@ pub fn words(scene: &Problem, plan: &Result<Plan, Limit>, chip: &Chip) -> Vec<St
                 ),
                 format!("error    at most {} expected until then", pixels(HALF_PIXEL * plan.error)),
                 format!("cost     {cost:.0} cycles a frame, {share:.2} % of a {} (estimate)", chip.title),
-                format!("search   {:.2} s of the chip's time to look ahead", plan.spent / chip.clock),
+                format!("search   {:.2} s of the chip's time for planning", plan.spent / chip.clock),
                 format!("why      {}", method(plan.method)),
                 format!("         {}", limit(plan, frame)),
             ]
@@ -88,7 +88,7 @@ fn limit(plan: &Plan, frame: f32) -> String {
 fn forbidden(limit: Limit, frame: f32) -> String {
     match limit {
         Limit::Budget => format!("steps fine enough cost more than the {frame:.0} cycles allowed for a frame"),
-        Limit::Planning => String::from("the time to look ahead ended before anything was found"),
+        Limit::Planning => String::from("the time for planning ended before anything was found"),
         other => format!("what forbids finer steps: {}", other.name()),
     }
 }

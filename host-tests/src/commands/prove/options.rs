@@ -18,7 +18,7 @@ const EXAMPLES: &str = "Examples:
 Ctrl-C leaves what is proved until then. Bad input: one line on stderr, exit code 2.";
 
 /// Proves until when the frames that a chip draws are right to half a pixel: encloses the exact motion, rounding errors and
-/// all, and holds each frame of the planned method, which is the same to the bit on every chip, against it.
+/// all, and holds each frame of the planned method, which is bit-identical on every chip, against it.
 ///
 /// The motion is that of the decimals and fractions given; with --scene it is that of the board's own numbers.
 #[derive(Debug, Parser)]

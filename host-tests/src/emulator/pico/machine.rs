@@ -40,7 +40,7 @@ pub enum PicoError {
     NoFrame,
 }
 
-/// The board. Its time passes only in [`Self::run`], so all that it does is repeatable to the bit. Dropping it ends it.
+/// The board. Its time passes only in [`Self::run`], so all that it does is repeatable bit for bit. Dropping it ends it.
 pub struct Machine {
     talk: Talk,
     process: Running,

@@ -28,7 +28,7 @@ pub enum Clock {
     /// The host's clock: as fast as the real board, as long as the host keeps up.
     Real,
     /// The count of executed instructions, each of which takes [as long as any](Board::instruction), and no waiting while the
-    /// board sleeps: repeatable to the bit on any host however busy, and several times as fast as the real board.
+    /// board sleeps: repeatable bit for bit on any host however busy, and several times as fast as the real board.
     Counted,
 }
 

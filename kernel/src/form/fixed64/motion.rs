@@ -110,7 +110,7 @@ impl Fixed64State {
         self.lost |= reach != 0 || [missing1, missing2].into_iter().any(|missing| missing.0.unsigned_abs() > LENGTH);
     }
 
-    // once in flash
+    // one copy
     #[inline(never)]
     fn values(&self) -> [f64; 6] {
         self.z.map(Q64::value)
@@ -135,7 +135,7 @@ impl Fixed64State {
     }
 
     /// p1 and p2 in SI units, rounded to `R`.
-    #[inline(never)] // once in flash
+    #[inline(never)] // one copy
     pub(super) fn momenta<R: Real>(&self) -> [R; 2] {
         let ([.., p1, p2], [unit1, unit2]) = (self.z, self.momenta);
         let momentum =

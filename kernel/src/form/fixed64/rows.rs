@@ -102,7 +102,7 @@ impl Rows {
         }
     }
 
-    // once in flash
+    // one copy
     #[inline(never)]
     fn end_in<const UNLIKE: bool, const INVERSE: bool>(&self, z: &[Q64; 6], reach: &Cell<u32>) -> [Q64; 6] {
         let units = Fractions::<UNLIKE, INVERSE> { shifts: self.shifts, share: 0, reach };
