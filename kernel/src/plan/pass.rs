@@ -2,10 +2,11 @@
 
 use super::cost::Costs;
 use super::problem::Problem;
-use super::run::{AnyRun, Directions, Run, distance};
+use super::run::{ClosedForm, Directions, Run, distance};
 use super::shadowed_run::{ErrorEstimate, ShadowedRun, steps_of_all};
 use super::way::Way;
 use crate::error::Error;
+use crate::form::{DirectionForm, Plain, Stepper};
 use crate::method::Method;
 use crate::state::State;
 
@@ -65,8 +66,8 @@ impl Candidate {
 pub(super) struct Pass {
     shadowed: ShadowedRun,
     /// Plain `f32`, which shows beside compensated sums what its roundings do.
-    plain: Run,
-    closed: Option<AnyRun>,
+    plain: Run<Stepper<f32, DirectionForm<f32, Plain>>>,
+    closed: Option<ClosedForm>,
     rods: [f32; 2],
     /// The shadowed method, the closed form, and plain `f32`.
     candidates: [Candidate; 3],
@@ -85,7 +86,7 @@ impl Pass {
         let mut pass = Self {
             shadowed: ShadowedRun::from_state(method, problem, start, steps),
             plain: Run::new(Method::Rk4F32DirectionPlain, [given; 2], problem.rate, steps),
-            closed: AnyRun::new(Method::ClosedFormF32, &given, problem.rate.into()).ok(),
+            closed: ClosedForm::new(&problem.pendulum, start, problem.rate.into()).ok(),
             rods: problem.rods(),
             candidates: methods.map(|method| Candidate::new(method, steps)),
         };

@@ -94,13 +94,13 @@ pub(super) struct ClosedForm {
 }
 
 impl ClosedForm {
-    fn new(parameters: &Parameters<f64>, start: &State<f64>, per_second: f64) -> Result<Self, Error> {
+    pub fn new(parameters: &Parameters<f64>, start: &State<f64>, per_second: f64) -> Result<Self, Error> {
         let motion = Pendulum::new(*parameters)?.to_motion(start);
         let oscillations = SmallOscillations::new(Modes::new(parameters)?, &motion.cast());
         Ok(Self { oscillations, pendulum: Pendulum::new(parameters.cast())?, per_second, steps: 0 })
     }
 
-    fn advance(&mut self, steps: u32) {
+    pub fn advance(&mut self, steps: u32) {
         self.steps += u64::from(steps);
     }
 
@@ -108,7 +108,7 @@ impl ClosedForm {
         self.steps as f64 / self.per_second
     }
 
-    fn directions(&self) -> Directions {
+    pub fn directions(&self) -> Directions {
         self.oscillations.directions(self.time())
     }
 
@@ -123,39 +123,68 @@ impl ClosedForm {
     }
 }
 
+/// What a [`Run`] steps: a motion by any method, or by one where that takes less memory.
+pub(super) trait Stepped: Sized {
+    fn prepared(method: Method, given: &(Parameters<f64>, State<f64>), per_second: f64) -> Result<Self, Error>;
+    fn steps(&mut self, steps: u32);
+    fn shown(&self) -> Directions;
+}
+
+impl Stepped for AnyRun {
+    fn prepared(method: Method, given: &(Parameters<f64>, State<f64>), per_second: f64) -> Result<Self, Error> {
+        Self::new(method, given, per_second)
+    }
+    fn steps(&mut self, steps: u32) {
+        self.advance(steps);
+    }
+    fn shown(&self) -> Directions {
+        self.directions()
+    }
+}
+
+impl Stepped for Stepper<f32, DirectionForm<f32, Plain>> {
+    #[inline(never)]
+    fn prepared(_: Method, given: &(Parameters<f64>, State<f64>), per_second: f64) -> Result<Self, Error> {
+        Self::new(&given.0.cast(), &given.1.cast(), 1.0 / per_second)
+    }
+    fn steps(&mut self, steps: u32) {
+        self.advance(steps);
+    }
+    fn shown(&self) -> Directions {
+        self.directions()
+    }
+}
+
 /// A motion that is prepared before its first step, and stepped from frame to frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Run {
-    method: Method,
-    motion: Prepared,
-    rate: u16,
+pub(super) struct Run<M = AnyRun> {
+    motion: Prepared<M>,
     per_frame: u32,
     /// Steps made since the last frame.
     made: u32,
 }
 
-#[expect(clippy::large_enum_variant, reason = "without a heap there is nowhere else to keep it")]
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Prepared {
-    /// A pendulum and its start, others if these are refused.
-    NotYet([(Parameters<f64>, State<f64>); 2]),
-    Ready(AnyRun),
+enum Prepared<M> {
+    /// A pendulum and its start, others if these are refused, and steps a second.
+    NotYet(Method, [(Parameters<f64>, State<f64>); 2], f64),
+    Ready(M),
 }
 
-impl Run {
+impl<M: Stepped> Run<M> {
     /// By `method`: a pendulum and its start, or the others if the first are refused, with `per_frame` steps for each of the
     /// `rate` frames of a second.
     pub fn new(method: Method, given: [(Parameters<f64>, State<f64>); 2], rate: u16, per_frame: u32) -> Self {
-        Self { method, motion: Prepared::NotYet(given), rate, per_frame, made: 0 }
+        let per_second = f64::from(rate) * f64::from(per_frame);
+        Self { motion: Prepared::NotYet(method, given, per_second), per_frame, made: 0 }
     }
 
     /// Prepares the steps; whether they were not.
     #[inline(never)]
     pub fn prepare(&mut self) -> Result<bool, Error> {
-        let Prepared::NotYet([first, other]) = &self.motion else { return Ok(false) };
-        let per_second = f64::from(self.rate) * f64::from(self.per_frame);
-        let run = AnyRun::new(self.method, first, per_second);
-        self.motion = Prepared::Ready(run.or_else(|_| AnyRun::new(self.method, other, per_second))?);
+        let Prepared::NotYet(method, [first, other], per_second) = &self.motion else { return Ok(false) };
+        let run = M::prepared(*method, first, *per_second);
+        self.motion = Prepared::Ready(run.or_else(|_| M::prepared(*method, other, *per_second))?);
         Ok(true)
     }
 
@@ -166,7 +195,7 @@ impl Run {
         let left = self.per_frame.saturating_sub(self.made);
         let steps = if most < left { most } else { left };
         if let Prepared::Ready(motion) = &mut self.motion {
-            motion.advance(steps);
+            motion.steps(steps);
         }
         self.made += steps;
         steps
@@ -177,8 +206,8 @@ impl Run {
     pub fn frame(&mut self) -> Directions {
         self.made = 0;
         match &self.motion {
-            Prepared::NotYet(_) => [[f32::NAN; 2]; 2],
-            Prepared::Ready(motion) => motion.directions(),
+            Prepared::NotYet(..) => [[f32::NAN; 2]; 2],
+            Prepared::Ready(motion) => motion.shown(),
         }
     }
 }
