@@ -2,12 +2,14 @@
 
 use super::cost::Costs;
 use super::problem::Problem;
-use super::run::{ClosedForm, Directions, Run, distance};
+use super::run::{Directions, Run, distance};
 use super::shadowed_run::{ErrorEstimate, ShadowedRun, steps_of_all};
 use super::way::Way;
 use crate::error::Error;
 use crate::form::{DirectionForm, Plain, Stepper};
 use crate::method::Method;
+use crate::modes::Modes;
+use crate::small_oscillations::SmallOscillations;
 use crate::state::State;
 
 /// A bob may be off by this much where the tolerance is the unit.
@@ -67,7 +69,7 @@ pub(super) struct Pass {
     shadowed: ShadowedRun,
     /// Plain `f32`, which shows beside compensated sums what its roundings do.
     plain: Run<Stepper<f32, DirectionForm<f32, Plain>>>,
-    closed: Option<ClosedForm>,
+    closed: Option<SmallOscillations<f32>>,
     rods: [f32; 2],
     /// The shadowed method, the closed form, and plain `f32`.
     candidates: [Candidate; 3],
@@ -86,7 +88,9 @@ impl Pass {
         let mut pass = Self {
             shadowed: ShadowedRun::from_state(method, problem, start, steps),
             plain: Run::new(Method::Rk4F32DirectionPlain, [given; 2], problem.rate, steps),
-            closed: ClosedForm::new(&problem.pendulum, start, problem.rate.into()).ok(),
+            closed: Modes::new(&problem.pendulum)
+                .ok()
+                .map(|modes| SmallOscillations::new(modes, &problem.start.cast())),
             rods: problem.rods(),
             candidates: methods.map(|method| Candidate::new(method, steps)),
         };
@@ -114,18 +118,15 @@ impl Pass {
         costs.of_frame(plain.method, steps)
     }
 
-    /// Compares the next frames, when all steps towards them are made. A method fails where it may be off by more
+    /// Compares the frames at time `t`, s, when all steps towards them are made. A method fails where it may be off by more
     /// than the tolerance.
-    pub fn compare(&mut self) {
+    pub fn compare(&mut self, t: f64) {
         let (frame, estimate) = self.shadowed.frame();
         let beside = |other: Directions| distance(self.rods, &frame, &other);
         let [own, closed, plain] = &mut self.candidates;
         own.note(0.0, estimate);
         if !closed.failed {
-            let beside = self.closed.as_mut().map_or(f32::INFINITY, |motion| {
-                motion.advance(1);
-                beside(motion.directions())
-            });
+            let beside = self.closed.map_or(f32::INFINITY, |motion| beside(motion.directions(t)));
             closed.note(beside, estimate);
         }
         if !plain.failed {

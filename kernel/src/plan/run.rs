@@ -94,7 +94,7 @@ pub(super) struct ClosedForm {
 }
 
 impl ClosedForm {
-    pub fn new(parameters: &Parameters<f64>, start: &State<f64>, per_second: f64) -> Result<Self, Error> {
+    fn new(parameters: &Parameters<f64>, start: &State<f64>, per_second: f64) -> Result<Self, Error> {
         let motion = Pendulum::new(*parameters)?.to_motion(start);
         let oscillations = SmallOscillations::new(Modes::new(parameters)?, &motion.cast());
         Ok(Self { oscillations, pendulum: Pendulum::new(parameters.cast())?, per_second, steps: 0 })

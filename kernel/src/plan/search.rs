@@ -157,7 +157,7 @@ impl Search {
         }
         self.begun = false;
         self.frame += 1;
-        pass.compare();
+        pass.compare(self.problem.time(self.frame));
         let at_end = self.frame >= self.problem.frames();
         if !at_end && pass.candidates().iter().any(|candidate| !candidate.failed) {
             return Ok(None);
