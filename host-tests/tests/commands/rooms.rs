@@ -11,8 +11,11 @@ const MOST: usize = 12;
 
 /// The rooms of each crate, from the uppermost down.
 const ROOMS: [(&str, &[&str]); 2] = [
-    ("firmware", &["board", "app", "scenes", "job", "motion", "display", "graphics", "protocol", "fault", "config"]),
-    ("host-tests", &["commands", "oracle", "emulator", "console", "link"]),
+    (
+        "firmware",
+        &["board", "app", "scenes", "job", "motion", "display", "graphics", "protocol", "fault", "config", "prices"],
+    ),
+    ("host-tests", &["commands", "oracle", "prove", "emulator", "console", "link"]),
 ];
 /// Crates in which no two public types have one name.
 const NAMED_APART: [&str; 1] = ["firmware"];
