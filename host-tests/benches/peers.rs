@@ -10,10 +10,10 @@ use std::time::Instant;
 use double_pendulum::form::{DirectionForm, ExtrapolatedForm, Form, Plain, Stepper};
 use double_pendulum::trig::Own;
 use double_pendulum::{Motion, Parameters, State};
-use host_tests::oracle::reference::Reference;
 use host_tests::oracle::trials::largest_difference;
 use ode_solvers::dop_shared::OutputType;
 use ode_solvers::{Dop853, Rk4, System, Vector4};
+use reference::taylor::Reference;
 
 const PARAMETERS: Parameters<f64> = Parameters { m1: 1.0, m2: 1.0, l1: 1.0, l2: 1.0, g: 9.81 };
 /// Motions from rest: both angles, rad, and how long they are followed, s.

@@ -8,8 +8,7 @@
 //! | [`commands`] | what the commands do: demo, simulate, plan, prove, flips, count, report, figures, verify-board |
 //! | [`emulator`] | the emulated boards: QEMU, toolchain and set-up, processes, budgets |
 //! | [`link`] | the serial link: bytes to messages, and a real port |
-//! | [`oracle`] | independent references, known answers, hard cases and the one table of tolerances |
-//! | [`prove`] | the exact motion enclosed, every bound a theorem |
+//! | [`oracle`] | known answers, hard cases and the one table of tolerances |
 //! | [`console`] | how every command talks: options, errors, progress |
 
 #![deny(clippy::print_stdout, clippy::print_stderr)]
@@ -19,4 +18,3 @@ pub mod console;
 pub mod emulator;
 pub mod link;
 pub mod oracle;
-pub mod prove;

@@ -10,7 +10,7 @@ use host_tests::commands::prove::{
 use host_tests::console::cli::{self, Refused, say};
 use host_tests::console::progress::Bar;
 use host_tests::emulator::process::{INTERRUPTS, interrupted_by};
-use host_tests::prove::Fineness;
+use reference::enclosure::Fineness;
 use signal_hook::flag::register_usize;
 
 fn main() -> ExitCode {

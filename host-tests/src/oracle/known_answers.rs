@@ -5,11 +5,11 @@
 use std::str::FromStr;
 
 use double_pendulum::{Bounds, Motion, Parameters, Pendulum, State};
-use twofloat::TwoFloat;
-use twofloat::consts::PI;
+use reference::twofloat::TwoFloat;
+use reference::twofloat::consts::PI;
 
-use crate::oracle::reference::series::divide;
-use crate::oracle::reference::{Constants, Reference};
+use reference::taylor::series::divide;
+use reference::taylor::{Constants, Reference};
 
 /// One line of the table: a scene at one time.
 #[derive(Clone, Debug)]

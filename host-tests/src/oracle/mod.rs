@@ -4,7 +4,6 @@ pub mod hard_cases;
 pub mod known_answers;
 #[path = "../../../kernel/src/tests/random.rs"]
 pub mod random;
-pub mod reference;
 pub mod snapshot;
 pub mod stream;
 pub mod textbook;

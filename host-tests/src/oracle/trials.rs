@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use double_pendulum::form::{Form, Stepper};
 use double_pendulum::{Error, Parameters, Pendulum, Real, State};
 
-use crate::oracle::reference::Reference;
+use reference::taylor::Reference;
 
 /// A motion to try: everything in SI units.
 #[derive(Clone, Copy, Debug)]

@@ -13,8 +13,8 @@ use host_tests::commands::figures::frequencies::Frequencies;
 use host_tests::commands::figures::small::{Point, Small};
 use host_tests::commands::figures::{files, folder, panel};
 use host_tests::emulator::host::Show;
-use host_tests::oracle::reference::Reference;
 use host_tests::oracle::tolerances;
+use reference::taylor::Reference;
 
 /// Figures 3 to 5: number, mu, w1, w2 (rad/s), the envelope's period (s), the largest |a1| (degrees).
 const SMALL: [(u32, [f64; 5]); 3] = [

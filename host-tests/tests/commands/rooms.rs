@@ -15,7 +15,7 @@ const ROOMS: [(&str, &[&str]); 2] = [
         "firmware",
         &["board", "app", "scenes", "job", "motion", "display", "graphics", "protocol", "fault", "config", "prices"],
     ),
-    ("host-tests", &["commands", "oracle", "prove", "emulator", "console", "link"]),
+    ("host-tests", &["commands", "oracle", "emulator", "console", "link"]),
 ];
 /// Crates in which no two public types have one name.
 const NAMED_APART: [&str; 1] = ["firmware"];

@@ -4,7 +4,7 @@ use clap::Parser;
 use double_pendulum::Motion;
 use firmware::job::{JobError, Request};
 use host_tests::commands::simulate::{Choice, Options, choose};
-use host_tests::oracle::reference;
+use reference::taylor;
 
 fn chosen(arguments: &str) -> Result<Choice, String> {
     let words = std::iter::once("simulate").chain(arguments.split_whitespace());
@@ -23,7 +23,7 @@ fn error(request: &Request) -> Result<f64, JobError> {
     let every = f64::from(request.stride) * request.dt;
     let times: Vec<_> = (0..rows.len()).map(|row| row as f64 * every).collect();
     let ([a1, a2], [w1, w2]) = (request.angles, request.velocities);
-    let exact = reference::states(&request.parameters, &Motion { a1, a2, w1, w2 }, &times);
+    let exact = taylor::states(&request.parameters, &Motion { a1, a2, w1, w2 }, &times);
     let errors = rows.iter().zip(exact).map(|([a1, a2, ..], exact)| (a1 - exact.a1).abs().max((a2 - exact.a2).abs()));
     Ok(errors.fold(0.0, f64::max))
 }

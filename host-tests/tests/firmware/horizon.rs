@@ -10,8 +10,8 @@ use firmware::motion::settings::Settings;
 use firmware::scenes::SceneName;
 use host_tests::commands::plan::median;
 use host_tests::emulator::host::Show;
-use host_tests::oracle::reference::Reference;
 use host_tests::oracle::tolerances::PLAN_SHARE;
+use reference::taylor::Reference;
 
 /// How long each motion is followed, s.
 const FOLLOWED: f64 = 25.0;

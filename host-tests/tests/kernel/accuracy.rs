@@ -1,8 +1,8 @@
 //! The kernel's motion against the reference, and the order of its method.
 
 use double_pendulum::{EqualRods, Motion, Parameters, Pendulum, State, Units, rk4};
-use host_tests::oracle::reference::{self, Reference};
 use host_tests::oracle::tolerances;
+use reference::taylor::{self, Reference};
 
 /// Regular motions, in which an error grows no faster than the time: masses and lengths alike and unlike.
 fn regular() -> [(Parameters<f64>, Motion<f64>); 3] {
@@ -54,7 +54,7 @@ fn plain_f32_stays_within_its_roundings() {
             state = pendulum.step(&state, 1.0 / 256.0);
         }
         // the motion of the very numbers that f32 holds
-        let exact = reference::states(&single.cast(), &start.cast(), &[10.0])[0];
+        let exact = taylor::states(&single.cast(), &start.cast(), &[10.0])[0];
         let error = (f64::from(state.a1) - exact.a1).abs().max((f64::from(state.a2) - exact.a2).abs());
         assert!(error < tolerances::PLAIN_SINGLE, "{error:e} rad after 10 s for {parameters:?}");
     }
@@ -67,7 +67,7 @@ fn equal_rods_follow_the_reference() {
     let units = Units::of(&parameters).expect("equal rods");
     let rods = EqualRods::new(parameters.mass_ratio()).expect("a valid ratio");
     let start = Motion::at_rest(0.5, -0.3);
-    let exact = reference::states(&parameters, &start, &[2.0])[0];
+    let exact = taylor::states(&parameters, &start, &[2.0])[0];
     let error = |steps: u32| {
         let dt = 2.0 / f64::from(steps) / units.time;
         let start = State::at_rest(start.a1, start.a2);

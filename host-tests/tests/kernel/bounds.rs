@@ -5,9 +5,9 @@ use std::f64::consts::{PI, TAU};
 use double_pendulum::form::{DirectionForm, Form};
 use double_pendulum::{Bounds, EqualRods, Error, Modes, Motion, Parameters, Pendulum, Real, State};
 use fastrand::Rng;
-use host_tests::oracle::reference::Reference;
 use host_tests::oracle::trials::Trial;
 use host_tests::oracle::{random, tolerances};
+use reference::taylor::Reference;
 
 /// |w1|, |w2|, |w1 - w2|, |p1|, |p2|, v1, v2 of a state, each divided by its bound.
 fn shares<R: Real>(pendulum: &Pendulum<R>, bounds: &Bounds<R>, state: &State<R>) -> [f64; 7] {

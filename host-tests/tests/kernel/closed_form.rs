@@ -7,8 +7,8 @@ use firmware::config::TICK_RATE;
 use firmware::motion::settings::Settings;
 use firmware::scenes::SceneName;
 use host_tests::emulator::host::Show;
-use host_tests::oracle::reference::Reference;
 use host_tests::oracle::tolerances::{CLOSED, CLOSED_FORM, NOT_CLOSED, RATIO};
+use reference::taylor::Reference;
 
 /// Figures 3 to 5 and their mass ratios.
 const SMALL: [(SceneName, f64); 3] =

@@ -8,9 +8,9 @@ use firmware::config::GRAVITY;
 use firmware::motion::planner::half_pixel;
 use host_tests::oracle::hard_cases::{HALVINGS, HARD_CASES};
 use host_tests::oracle::random::{self, log_uniform, symmetric};
-use host_tests::oracle::reference::Reference;
 use host_tests::oracle::tolerances;
 use host_tests::oracle::trials::{Trial, largest_difference};
+use reference::taylor::Reference;
 
 /// Starts that are searched.
 const TRIALS: u32 = 3000;

@@ -5,9 +5,9 @@ use std::f64::consts::TAU;
 use double_pendulum::form::{DirectionForm, Form, Plain, UnwrappedStepper};
 use double_pendulum::{Error, Modes, Motion, Parameters, Pendulum, Real, State};
 use host_tests::oracle::hard_cases::{HALVINGS, HARD_CASES, HardCase};
-use host_tests::oracle::reference::Reference;
 use host_tests::oracle::tolerances;
 use host_tests::oracle::trials::Trial;
+use reference::taylor::Reference;
 
 /// Halving the step never makes the typical error much worse, and in the end the error is within its budget.
 fn refining_pays<R: Real>(case: &HardCase, starts: usize) -> Result<(), Error> {

@@ -2,8 +2,8 @@
 
 use double_pendulum::{Pendulum, Real, State};
 use host_tests::oracle::known_answers::{KnownAnswer, table};
-use host_tests::oracle::reference::Reference;
 use host_tests::oracle::tolerances;
+use reference::taylor::Reference;
 
 const STEPS_PER_SECOND: u32 = 4096;
 

@@ -3,10 +3,10 @@
 use double_pendulum::{Mode, Modes, Motion, Parameters, Real, SmallOscillations};
 use fastrand::Rng;
 use host_tests::oracle::random::{log_uniform, parameters, symmetric};
-use host_tests::oracle::reference::series::divide;
-use host_tests::oracle::reference::{Constants, Reference};
 use host_tests::oracle::tolerances;
-use twofloat::TwoFloat;
+use reference::taylor::series::divide;
+use reference::taylor::{Constants, Reference};
+use reference::twofloat::TwoFloat;
 
 /// The modes by the book's own formulas, differences and all, in double-double precision.
 fn exact_modes(parameters: &Parameters<f64>) -> [TwoFloat; 5] {
@@ -89,7 +89,7 @@ fn linear_motion_is_the_limit_of_the_exact_motion() {
 fn inverted_rest_falls_at_the_same_two_rates() {
     let parameters = Parameters { m1: 1.3, m2: 0.4, l1: 0.7, l2: 1.1, g: 9.81 };
     let modes = Modes::new(&parameters).expect("valid parameters");
-    let upright = twofloat::consts::PI;
+    let upright = reference::twofloat::consts::PI;
     for Mode { frequency, shape } in [modes.fast, modes.slow] {
         let push = 1e-10;
         let angles = [upright + push, upright + push * shape];

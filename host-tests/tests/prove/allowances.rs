@@ -1,6 +1,6 @@
 //! Each allowance is needed: without it the exact motion leaves the set.
 
-use host_tests::prove::{Enclosure, Fineness, Fixed};
+use reference::enclosure::{Enclosure, Fineness, Fixed};
 
 use crate::{RATE, after, meet, page, page_at};
 

@@ -6,7 +6,7 @@ mod motions;
 mod numbers;
 
 use double_pendulum::{Motion, Parameters};
-use host_tests::prove::{Constants, Enclosure, Fineness, Fixed, Number, Start};
+use reference::enclosure::{Constants, Enclosure, Fineness, Fixed, Number, Start};
 
 /// Frames per second: their times are numbers of `f64`.
 const RATE: u16 = 64;

@@ -3,11 +3,11 @@
 use double_pendulum::{Motion, Parameters};
 use fastrand::Rng;
 use host_tests::oracle::random::{log_uniform, symmetric};
-use host_tests::oracle::reference::Reference;
-use host_tests::oracle::reference::series::sin_cos;
 use host_tests::oracle::tolerances;
-use host_tests::prove::{Fineness, Fixed, Start};
-use twofloat::TwoFloat;
+use reference::enclosure::{Fineness, Fixed, Start};
+use reference::taylor::Reference;
+use reference::taylor::series::sin_cos;
+use reference::twofloat::TwoFloat;
 
 use crate::{RATE, after, energy, meet, page};
 

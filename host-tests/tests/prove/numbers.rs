@@ -2,7 +2,7 @@
 
 use fastrand::Rng;
 use host_tests::oracle::random::symmetric;
-use host_tests::prove::{Ball, Fixed, Number, sin_cos};
+use reference::enclosure::{Ball, Fixed, Number, sin_cos};
 
 /// Sums, products and quotients whose exact results are known: inside, and not without the allowance for rounding.
 #[test]

@@ -9,7 +9,7 @@ use double_pendulum::{Error, Motion};
 use fastrand::Rng;
 
 use super::map::{Map, Point};
-use crate::oracle::reference::Reference;
+use reference::taylor::Reference;
 
 /// The judge's steps are so many times finer; its arithmetic is compensated `f64`.
 const FINER: u32 = 16;

@@ -5,7 +5,7 @@ use double_pendulum::plan::{Plan, Problem, Way, WayStepper};
 use double_pendulum::{Error, Motion, Parameters};
 use firmware::config::HALF_PIXEL;
 
-use crate::oracle::reference::Reference;
+use reference::taylor::Reference;
 
 /// The directions of both rods.
 pub type Directions = [Direction<f64>; 2];

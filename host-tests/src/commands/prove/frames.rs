@@ -3,7 +3,7 @@
 use double_pendulum::Error;
 use double_pendulum::plan::{Problem, Way, WayStepper};
 
-use crate::prove::{Enclosure, Verdict};
+use reference::enclosure::{Enclosure, Verdict};
 
 /// What is proved of a method's frames.
 #[derive(Clone, Debug)]

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use anyhow::Context;
 
-use crate::prove::{Ball, Enclosure, Fineness, Fixed, Given, Start, sin_cos};
+use reference::enclosure::{Ball, Enclosure, Fineness, Fixed, Given, Start, sin_cos};
 
 const TABLE: &str = include_str!("../../../data/known_answers.csv");
 /// Frames per second, 2^6: no rod of the table's turns by half a turn in one, by the bounds that its energy sets.

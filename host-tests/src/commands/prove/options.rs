@@ -7,7 +7,7 @@ use double_pendulum::plan::{Limit, Plan, Problem, Way};
 
 use crate::commands::plan;
 use crate::console::cli::choice;
-use crate::prove::Start;
+use reference::enclosure::Start;
 
 const EXAMPLES: &str = "Examples:
   cargo prove --scene page

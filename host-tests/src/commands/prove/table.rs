@@ -9,7 +9,7 @@ use super::frames::{Proof, follow};
 use super::options::Options;
 use crate::commands::plan::{Chip, M3, M4F, PICO};
 use crate::commands::table::Table;
-use crate::prove::Fineness;
+use reference::enclosure::Fineness;
 
 /// The scenes that move, if only in the end.
 pub fn moving() -> impl Iterator<Item = &'static SceneName> {

@@ -4,7 +4,7 @@ use double_pendulum::plan::{Limit, Plan, Problem};
 use firmware::config::HALF_PIXEL;
 
 use super::frames::Proof;
-use crate::prove::{Enclosure, Verdict};
+use reference::enclosure::{Enclosure, Verdict};
 
 /// The table's heading with `csv`.
 pub const HEADING: &str = "t,sin_a1,cos_a1,sin_a2,cos_a2,radius,verdict";

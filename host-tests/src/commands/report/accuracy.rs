@@ -6,7 +6,7 @@ use double_pendulum::{Method, Motion};
 use firmware::job::{JobError, Request};
 
 use super::scene::{SAMPLES, Scene};
-use crate::oracle::reference::Reference;
+use reference::taylor::Reference;
 
 /// The largest error over a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use crate::prove::Given;
+use reference::enclosure::Given;
 
 /// A finite number as written.
 #[derive(Clone, Debug, PartialEq)]

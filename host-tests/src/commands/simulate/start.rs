@@ -8,7 +8,7 @@ use double_pendulum::Parameters;
 use firmware::config::{FIRST_ANGLE, GRAVITY};
 
 use super::Number;
-use crate::prove::Start as Exact;
+use reference::enclosure::Start as Exact;
 
 /// A degree, rad.
 const DEGREE: f64 = PI / 180.0;

@@ -14,7 +14,7 @@ use super::request::{accepted, count, method, request};
 use super::{Number, Options, Plan};
 use crate::commands::table::small;
 use crate::console::progress::Bar;
-use crate::oracle::reference::Reference;
+use reference::taylor::Reference;
 
 /// The longest run that is tried, steps.
 const MOST_STEPS: u32 = 1 << 19;
