@@ -87,6 +87,12 @@ impl<T: Number> Reference<T> {
         self.exact_state().map(T::into).into()
     }
 
+    /// (sin a1, cos a1, sin a2, cos a2) now, in full precision.
+    pub fn directions(&self) -> [T; 4] {
+        let [(sin1, cos1), (sin2, cos2)] = self.angles.map(T::sin_cos);
+        [sin1, cos1, sin2, cos2]
+    }
+
     /// (a1, a2, p1, p2) now, in full precision: p_i = dL/dw_i.
     pub fn exact_state(&self) -> [T; 4] {
         let Constants { masses: [m1, m2], lengths: [l1, l2], .. } = self.constants;

@@ -4,13 +4,10 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use host_tests::commands::prove::{
-    HEADING, Options, Proof, follow, horizons, known_answers, moving, row, width, words,
-};
+use host_tests::commands::prove::{HEADING, Options, Proof, follow, horizons, known_answers, moving, row, words};
 use host_tests::console::cli::{self, Refused, say};
 use host_tests::console::progress::Bar;
 use host_tests::emulator::process::{INTERRUPTS, interrupted_by};
-use reference::enclosure::Fineness;
 use signal_hook::flag::register_usize;
 
 fn main() -> ExitCode {
@@ -20,13 +17,13 @@ fn main() -> ExitCode {
 fn run(options: &Options) -> anyhow::Result<ExitCode> {
     if options.table {
         let bar = Bar::start("proving", moving().count() as u64);
-        let table = horizons(|| bar.advance(1))?;
+        let table = horizons(moving(), || bar.advance(1))?;
         drop(bar);
         say(table.markdown_rows().trim_end())?;
         return Ok(ExitCode::SUCCESS);
     }
     if options.known_answers {
-        known_answers(say)?;
+        known_answers(|_| true, say)?;
         return Ok(ExitCode::SUCCESS);
     }
     let (scene, start, plan) = options.scene().map_err(Refused::because)?;
@@ -43,18 +40,18 @@ fn run(options: &Options) -> anyhow::Result<ExitCode> {
         say(HEADING)?;
     }
     let bar = Bar::start("proving", scene.frames().into());
-    let mut known = 0.0;
-    let frames = follow(&scene, start.enclose(scene.rate, Fineness::default()), &mut proof, |frame, set, verdicts| {
-        known = width(set);
+    let mut width = 0.0;
+    let frames = follow(&scene, &start, &mut proof, |frame, set, verdicts| {
+        width = set.width();
         bar.advance(1);
         if options.csv {
             say(row(&scene, frame, set, verdicts[0]))?;
         }
-        Ok::<_, std::io::Error>(stopped.load(Ordering::Relaxed) == 0)
+        Ok(stopped.load(Ordering::Relaxed) == 0)
     })?;
     drop(bar);
     if !options.csv {
-        words(&scene, &plan, &proof[0], frames, known).iter().try_for_each(say)?;
+        words(&scene, &plan, &proof[0], frames, width).iter().try_for_each(say)?;
     }
     match stopped.load(Ordering::Relaxed) {
         0 => Ok(ExitCode::SUCCESS),

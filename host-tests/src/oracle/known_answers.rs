@@ -1,10 +1,11 @@
-//! The table of known answers, `data/known_answers.csv`: exact motions, every digit proved.
+//! The table of known answers, `data/known_answers.csv`: where the rods of exact motions point, every digit proved.
 //!
 //! `cargo prove --known-answers` makes it again, digit for digit.
 
 use std::str::FromStr;
 
-use double_pendulum::{Bounds, Motion, Parameters, Pendulum, State};
+use anyhow::Context;
+use double_pendulum::{Bounds, Motion, Parameters, Pendulum};
 use reference::twofloat::TwoFloat;
 use reference::twofloat::consts::PI;
 
@@ -16,6 +17,8 @@ use reference::taylor::{Constants, Reference};
 pub struct KnownAnswer {
     /// The scene's name.
     pub scene: &'static str,
+    /// Its name, what is given, and the time: as written.
+    pub given: &'static str,
     /// Masses (kg), lengths (m), gravity (m/s^2).
     pub constants: Constants,
     /// The angles at the start, rad.
@@ -24,27 +27,33 @@ pub struct KnownAnswer {
     pub start_velocities: [TwoFloat; 2],
     /// The time, s.
     pub time: f64,
-    /// (a1, a2, p1, p2) at that time, rad and kg m^2/s.
-    pub state: [TwoFloat; 4],
+    /// (sin a1, cos a1, sin a2, cos a2) at that time.
+    pub directions: [TwoFloat; 4],
     /// What these may be off by: two units of the last digit written.
     pub radius: [f64; 4],
     /// How many times larger a small error of the start has become by then.
     pub growth: f64,
 }
 
+/// The columns.
+pub const HEADING: &str = "scene,a1_deg,a2_deg,w1_start,w2_start,m1,m2,l1,l2,g,t,sin_a1,cos_a1,sin_a2,cos_a2,growth";
+/// How many of these are what is given, and the time.
+const GIVEN: usize = 11;
+
 /// Every line, in the file's order.
 ///
 /// # Errors
 /// Names the first line that cannot be read.
-pub fn table() -> Result<Vec<KnownAnswer>, String> {
+pub fn table() -> anyhow::Result<Vec<KnownAnswer>> {
     let lines = include_str!("../../data/known_answers.csv").lines().skip(1);
     lines
-        .map(|line| KnownAnswer::read(line).ok_or_else(|| format!("known_answers.csv: cannot read `{line}`")))
+        .map(|line| KnownAnswer::read(line).with_context(|| format!("known_answers.csv: cannot read `{line}`")))
         .collect()
 }
 
 impl KnownAnswer {
     fn read(line: &'static str) -> Option<Self> {
+        let (end, _) = line.match_indices(',').nth(GIVEN - 1)?;
         let (scene, numbers) = line.split_once(',')?;
         let places = |text: &str| text.split_once('.').map_or(0, |(_, places)| places.len() as i32);
         let radii: Vec<f64> = numbers.split(',').map(|text| 2.0 * 10_f64.powi(-places(text))).collect();
@@ -54,11 +63,12 @@ impl KnownAnswer {
         };
         Some(Self {
             scene,
+            given: &line[..end],
             constants: Constants { masses: [m1, m2], lengths: [l1, l2], gravity },
             start_angles: [a1, a2].map(|degrees| degrees * PI / 180.0),
             start_velocities: [w1, w2],
             time: time.into(),
-            state: [z1, z2, z3, z4],
+            directions: [z1, z2, z3, z4],
             radius: radii[10..14].try_into().ok()?,
             growth: growth.into(),
         })
@@ -86,11 +96,6 @@ impl KnownAnswer {
         let Ok(pendulum) = Pendulum::<f64>::new(self.parameters()) else { return f64::NAN };
         let Bounds { w1, w2, .. } = pendulum.bounds(&pendulum.to_state(&self.start()));
         pendulum.modes().map_or(0.0, |modes| modes.fast.frequency).max(w1).max(w2)
-    }
-
-    /// The answer, rounded to f64.
-    pub fn answer(&self) -> State<f64> {
-        self.state.map(f64::from).into()
     }
 }
 

@@ -2,62 +2,61 @@
 
 use reference::enclosure::{Enclosure, Fineness, Fixed};
 
-use crate::{RATE, after, meet, page, page_at};
+use crate::{RATE, after, equal_rods, meet};
 
-/// A set that is a segment at the start, `reach` to both sides along P1, and its end: in which frame of a second that leaves the set. Not
-/// followed any farther, it has not left.
-fn left(reach: f64, fineness: Fineness) -> Option<u32> {
-    let page = page(2.0, fineness);
-    let middle = page.hull().map(|x| x.split().0);
-    let from = |start, fineness| Enclosure::new(*page.constants(), page.unit(), start, fineness);
-    let (mut segment, mut end) = (middle, middle);
-    (segment[4], end[4]) = (middle[4].wider(reach), middle[4] + Fixed::of(reach));
-    let (mut set, mut end) = (from(segment, fineness), from(end, Fineness::default()));
-    for frame in 1..=u32::from(RATE) {
-        set.advance().and(end.advance()).ok()?;
-        if !meet(&set.hull(), &end.hull(), 0.0) {
-            return Some(frame);
-        }
-    }
-    None
+/// Whether a set that is a segment at the start, `reach` to both sides along P1, loses its end within a second.
+fn is_left(reach: f64, fineness: Fineness) -> bool {
+    let from = |p1: Fixed, fineness| {
+        let set = equal_rods(2.0, 9.81, RATE, fineness);
+        let mut start = set.hull().map(Fixed::middle);
+        start[4] = start[4] + p1;
+        Enclosure::new(set.constants, set.frame, start, fineness)
+    };
+    let (mut set, mut end) = (from(Fixed::ZERO.wider(reach), fineness), from(Fixed::of(reach), Fineness::default()));
+    (0..RATE)
+        .map_while(|_| set.advance().and(end.advance()).map(|()| meet(&set.hull(), &end.hull(), 0.0)))
+        .any(|meets| !meets)
 }
 
+/// By the rest of their series, by the bend of the motion, and by what a quotient of differences is off.
 #[test]
-fn the_derivatives_are_bounded_to_their_last_term() {
-    let coarse = Fineness { tangents: 0, ..Fineness::default() };
-    assert_eq!(left(1e-7, coarse), None);
-    assert!(left(1e-7, Fineness { allowances: [1.0, 1.0, 0.0, 1.0], ..coarse }).is_some());
+fn what_the_derivatives_lack_is_counted() {
+    let fine = Fineness::default();
+    for (reach, fineness) in
+        [(1e-7, Fineness { tangents: 4, ..fine }), (1e-3, fine), (1e-9, Fineness { beside: 1e-4, ..fine })]
+    {
+        let without = Fineness { allowances: [1.0, 1.0, 0.0, 1.0], ..fineness };
+        assert!(!is_left(reach, fineness) && is_left(reach, without), "{fineness:?}");
+    }
 }
 
-/// They are what a set is bent by, too.
+/// Those of differences so small that they show.
 #[test]
 fn roundings_of_the_segments_are_counted() {
-    let without = Fineness { allowances: [1.0, 1.0, 1.0, 0.0], ..Fineness::default() };
-    for reach in [1e-4, 1e-7] {
-        assert_eq!(left(reach, Fineness::default()), None);
-        assert!(left(reach, without).is_some(), "{reach}");
-    }
+    let fineness = Fineness { beside: 1e-29, ..Fineness::default() };
+    let without = Fineness { allowances: [1.0, 1.0, 1.0, 0.0], ..fineness };
+    assert!(!is_left(1e-10, fineness) && is_left(1e-10, without));
 }
 
 #[test]
 fn the_series_of_the_midpoint_is_bounded_to_its_last_term() {
     let coarse = Fineness { terms: 8, ..Fineness::default() };
     let without = Fineness { allowances: [1.0, 0.0, 1.0, 1.0], ..coarse };
-    let exact = after(10, page(2.0, Fineness::default())).hull();
-    assert!(meet(&exact, &after(10, page(2.0, coarse)).hull(), 0.0));
-    assert!(!meet(&exact, &after(10, page(2.0, without)).hull(), 0.0));
+    let [exact, coarse, without] =
+        [Fineness::default(), coarse, without].map(|fineness| after(10, equal_rods(2.0, 9.81, RATE, fineness)).hull());
+    assert!(meet(&exact, &coarse, 0.0) && !meet(&exact, &without, 0.0));
 }
 
-/// One point, in two units of time, which has other roundings: a second later it is in both sets. (The rest of the series, which would
-/// hide that, is less than one rounding.)
+/// One point, in steps of two lengths, which have other roundings: a second later it is in both sets. (The rest of the series, which
+/// would hide that, is less than one rounding.)
 #[test]
 fn roundings_of_the_midpoint_are_counted() {
     let meet = |rounding: f64| {
         let fineness = Fineness { allowances: [rounding, 0.0, 1.0, 1.0], ..Fineness::default() };
         let moved = |rate: u16| {
-            let set = page_at(rate, 2.0, fineness);
-            let point = set.hull().map(|x| x.split().0);
-            after(rate.into(), Enclosure::new(*set.constants(), set.unit(), point, fineness)).hull()
+            let set = equal_rods(2.0, 9.81, rate, fineness);
+            let point = set.hull().map(Fixed::middle);
+            after(rate.into(), Enclosure::new(set.constants, set.frame, point, fineness)).hull()
         };
         meet(&moved(64)[..4], &moved(48)[..4], 0.0)
     };

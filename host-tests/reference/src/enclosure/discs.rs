@@ -1,89 +1,66 @@
 //! Where the solution may be in complex time: what bounds every remainder.
 
-use super::ball::{Ball, largest, up};
-use super::equations::{Constants, series};
-use super::tangents::Tangents;
+use std::array::from_fn;
 
-/// How often a radius is made larger before a shorter time is tried, and by how much more than was missing.
-const TRIES: usize = 50;
-const GROWTH: f64 = 1.04;
-/// Times tried, in steps, the longest first. The shortest lets a power series of 48 terms end at 2^-116.
-const TIMES: [f64; 7] = [24.0, 16.0, 12.0, 10.0, 8.0, 7.0, 6.0];
+use super::equations::Constants;
+use super::fixed::{Fixed, up};
 
-/// Discs that no solution leaves in complex times t, |t| <= `time`, whichever of a set it starts from.
+/// The share of the discs' radii within which solutions may start: a sixteenth.
+pub const STARTS: f64 = 0.0625;
+/// The least radius, and how many times an extent of the set it is: so [`Discs::share`] is at most 1/4.
+const LEAST: [f64; 2] = [1.0 / 65_536.0, 64.0];
+/// Times tried, in steps, and how often radii are made those that such a time needs, with a little to spare.
+const TIMES: [f64; 5] = [24.0, 16.0, 12.0, 9.0, 7.0];
+const TRIES: usize = 12;
+/// The shortest time of use, in steps: it lets a power series of 48 terms end at 2^-116.
+const SHORTEST: f64 = 6.0;
+
+/// Discs that no solution leaves in complex times t, |t| <= `time`, if it starts within [`STARTS`] of their radii.
 #[derive(Clone, Copy, Debug)]
 pub struct Discs {
-    /// One for each number.
-    pub discs: [Ball; 6],
+    /// About the midpoint.
+    pub radii: [f64; 6],
     /// In steps.
-    pub time: f64,
+    time: f64,
 }
 
 impl Discs {
-    /// About the set `hull`, for the longest time found; none if that is shorter than all of [`TIMES`].
+    /// About `middle`, for the longest time found; none if that is too short.
     ///
     /// Theorem (Picard and Lindeloef for analytic equations; Hille, Ordinary Differential Equations in the Complex Domain, 2.3): if
-    /// z0 + t f(B) is in the product of discs B for |t| <= T, one solution from z0 exists there, is analytic, and stays in B. f has no pole in
-    /// B, for else the radius of its inverse is infinite.
-    pub fn around(constants: &Constants<Ball>, hull: &[Ball; 6], halvings: u32) -> Option<Self> {
-        TIMES.iter().find_map(|&time| Self::within(constants, hull, halvings, time))
-    }
-
-    fn within(constants: &Constants<Ball>, hull: &[Ball; 6], halvings: u32, time: f64) -> Option<Self> {
-        let mut discs = *hull;
-        for _ in 0..TRIES {
-            let mut fits = true;
-            let slopes = series(constants, &discs, 1, halvings);
-            for ((disc, slope), start) in discs.iter_mut().zip(&slopes).zip(hull) {
-                let needed = up(start.radius + time * slope[1].size());
-                // NaN does not hold either
-                let holds = needed <= disc.radius;
-                if !holds {
-                    (fits, disc.radius) = (false, needed * GROWTH);
+    /// z0 + t f(B) is in the product of discs B for |t| <= T, one solution from z0 exists there, is analytic in t and z0, and stays in B. f
+    /// has no pole in B, for else the radius of its inverse is infinite.
+    pub fn about(constants: &Constants, middle: &[Fixed; 6], extent: &[f64; 6], step: Fixed) -> Option<Self> {
+        let least = extent.map(|extent| LEAST[0].max(LEAST[1] * extent));
+        let mut best = Self { radii: least, time: 0.0 };
+        for time in TIMES {
+            let mut radii = least;
+            for _ in 0..TRIES {
+                let slopes = constants.series(&from_fn(|i| middle[i].wider(radii[i])), 1, step).map(|z| z[1].size());
+                // twice the share: what is rounded is far less
+                let held = (0..6).map(|i| (1.0 - 2.0 * STARTS) * radii[i] / slopes[i]).fold(time, f64::min);
+                if held > best.time {
+                    best = Self { radii, time: held };
                 }
-            }
-            if !discs.iter().all(|disc| disc.radius.is_finite()) {
-                return None;
-            }
-            if fits {
-                return Some(Self { discs, time });
+                // a slope was infinite
+                if held == 0.0 {
+                    break;
+                }
+                radii = from_fn(|i| least[i].max(1.1 * time * slopes[i]));
             }
         }
-        None
+        (best.time >= SHORTEST).then_some(best)
     }
 
-    /// What number `index` of the series has beyond `order` after a step, at most.
+    /// What a series has beyond `order` after a step, by the disc's radius, at most: time^-order/(time - 1).
     ///
-    /// Theorem (Cauchy's estimate): the coefficient of t^k is at most the disc's radius by `time`^-k, for k > 0.
-    pub fn tail(&self, index: usize, order: usize) -> f64 {
-        up(self.discs[index].radius * geometric(self.time, order))
+    /// Theorem (Cauchy's estimate): the coefficient of t^k is at most the radius by `time`^-k, for k > 0.
+    pub fn tail(&self, order: usize) -> f64 {
+        up((0..order).fold(1.0 / (self.time - 1.0), |power, _| power / self.time))
     }
 
-    /// What the derivatives after the start have beyond `order` after a step makes of a change of the start by `change`, relative to the discs'
-    /// radii, at most: so measured, too.
-    ///
-    /// Theorem (Gronwall): in any norm the solution V of V' = Df V, V(0) = I has |V(t)| <= exp(L |t|) where |Df| <= L; here the norm is the largest
-    /// component over its disc's radius, L the largest row sum of |Df| over the discs. Then Cauchy's estimate as above, on the best circle.
-    pub fn tangents_tail(&self, constants: &Constants<Ball>, order: usize, halvings: u32) -> f64 {
-        let start = Tangents::variables(&self.discs);
-        let slopes = series(&constants.map(Tangents::constant), &start, 1, halvings);
-        let row = |i: usize| {
-            let sum = (0..6).map(|j| slopes[i][1].1[j].size() * self.discs[j].radius).sum::<f64>();
-            up(sum / self.discs[i].radius)
-        };
-        let rate = largest((0..6).map(row));
-        let circles = (4..=16).map(|part| self.time * f64::from(part) / 16.0).filter(|&time| time > 1.0);
-        circles.map(|time| up(exponential(up(rate * time)) * geometric(time, order))).fold(f64::INFINITY, f64::min)
+    /// The largest of `extent` as a share of how far off solutions may start.
+    pub fn share(&self, extent: &[f64; 6]) -> f64 {
+        (0..6).map(|i| up(extent[i] / (STARTS * self.radii[i]))).fold(0.0, f64::max)
     }
-}
-
-/// The sum of time^-k over k > `order`, at most: time^-order/(time - 1).
-fn geometric(time: f64, order: usize) -> f64 {
-    up((0..order).fold(1.0 / (time - 1.0), |power, _| power / time))
-}
-
-/// exp x at most, for x >= 0: exp y <= 1/(1 - y) for y < 1, and x is 512 of these; infinite beyond.
-fn exponential(x: f64) -> f64 {
-    let root = 1.0 / (1.0 - x / 512.0);
-    if x < 256.0 { up((0..9).fold(root, |power, _| power * power)) } else { f64::INFINITY }
 }

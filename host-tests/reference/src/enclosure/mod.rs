@@ -2,20 +2,13 @@
 //!
 //! Nothing here is estimated. Every bound names its theorem where it stands; what is rounded is counted.
 
-mod ball;
 mod discs;
-mod enclosure;
 mod equations;
 mod fixed;
-mod number;
+mod set;
 mod start;
-mod tangents;
-mod verdict;
 
-pub use ball::Ball;
-pub use enclosure::{Enclosure, Fineness, Lost};
 pub use equations::Constants;
 pub use fixed::Fixed;
-pub use number::Number;
+pub use set::{Enclosure, Fineness};
 pub use start::{Given, Start, sin_cos};
-pub use verdict::Verdict;

@@ -2,10 +2,9 @@
 
 use double_pendulum::{Bounds, Motion, Parameters, Pendulum};
 
-use super::enclosure::{Enclosure, Fineness};
 use super::equations::Constants;
 use super::fixed::Fixed;
-use super::number::Number;
+use super::set::{Enclosure, Fineness};
 
 /// A number as it was given.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,117 +12,76 @@ pub enum Given {
     /// Of `f64`, exactly.
     Binary(f64),
     /// A numerator over a denominator.
-    Fraction(i128, u64),
+    Fraction(i64, u64),
 }
 
 impl Given {
-    /// By 2^`halvings`.
-    pub fn fixed(self, halvings: u32) -> Fixed {
+    /// Times 2^`exponent`.
+    fn fixed(self, exponent: i32) -> Fixed {
         match self {
-            Self::Binary(number) => Fixed::of(number / 2_f64.powi(halvings as i32)),
-            Self::Fraction(numerator, denominator) => Fixed::fraction(numerator, denominator, halvings),
-        }
-    }
-
-    /// The `f64` next to it, or next to that.
-    pub fn about(self) -> f64 {
-        match self {
-            Self::Binary(number) => number,
-            Self::Fraction(numerator, denominator) => numerator as f64 / denominator as f64,
+            Self::Binary(number) => Fixed::of(number * f64::from(exponent).exp2()),
+            Self::Fraction(numerator, denominator) => Fixed::fraction(numerator, denominator, exponent),
         }
     }
 }
 
-/// How often the larger of these is to be halved to be below 128, up to 63 times.
-fn halvings(numbers: &[Given]) -> u32 {
-    let fits = |by: &u32| numbers.iter().all(|number| number.about().abs() < 128.0 * 2_f64.powi(*by as i32));
-    (0..63).find(fits).unwrap_or(63)
-}
-
-/// A pendulum and how it starts. SI units, or degrees.
+/// A pendulum and how it starts: m1, m2; l1, l2; g; a1, a2; w1, w2. SI units, or degrees.
 #[derive(Clone, Copy, Debug)]
 pub struct Start {
-    /// m1 and m2.
-    pub masses: [Given; 2],
-    /// l1 and l2.
-    pub lengths: [Given; 2],
-    /// g.
-    pub gravity: Given,
-    /// a1 and a2, and whether in degrees.
-    pub angles: ([Given; 2], bool),
-    /// w1 and w2, and whether in degrees per second.
-    pub velocities: ([Given; 2], bool),
+    /// All of it, each number rounded.
+    pub about: (Parameters<f64>, Motion<f64>),
+    /// All of it.
+    pub given: [Given; 9],
+    /// Whether the angles and the velocities are in degrees.
+    pub degrees: [bool; 2],
 }
 
 impl Start {
     /// Every number as it is in `f64`.
-    pub fn of(&Parameters { m1, m2, l1, l2, g }: &Parameters<f64>, &Motion { a1, a2, w1, w2 }: &Motion<f64>) -> Self {
-        let [masses, lengths, angles, velocities] =
-            [[m1, m2], [l1, l2], [a1, a2], [w1, w2]].map(|x| x.map(Given::Binary));
-        Self { masses, lengths, gravity: Given::Binary(g), angles: (angles, false), velocities: (velocities, false) }
-    }
-
-    /// How often masses are to be halved for their sum to be below 2.
-    pub fn halvings(&self) -> u32 {
-        halvings(&self.masses) + 7
-    }
-
-    /// All of it in `f64`, rounded twice at most.
-    fn about(&self) -> (Parameters<f64>, Motion<f64>) {
-        let [[m1, m2], [l1, l2]] = [self.masses, self.lengths].map(|x| x.map(Given::about));
-        let [[a1, a2], [w1, w2]] = [self.angles, self.velocities]
-            .map(|(x, degrees)| x.map(|x| if degrees { x.about().to_radians() } else { x.about() }));
-        (Parameters { m1, m2, l1, l2, g: self.gravity.about() }, Motion { a1, a2, w1, w2 })
-    }
-
-    /// The fastest rate in the motion, 1/s: the fast normal frequency or the greatest angular velocity.
-    fn fastest_rate(&self) -> f64 {
-        let (parameters, motion) = self.about();
-        let Ok(pendulum) = Pendulum::<f64>::new(parameters) else { return 1.0 };
-        let Bounds { w1, w2, .. } = pendulum.bounds(&pendulum.to_state(&motion));
-        pendulum.modes().map_or(0.0, |modes| modes.fast.frequency).max(w1).max(w2)
+    pub fn of(parameters: &Parameters<f64>, motion: &Motion<f64>) -> Self {
+        let (&Parameters { m1, m2, l1, l2, g }, &Motion { a1, a2, w1, w2 }) = (parameters, motion);
+        let given = [m1, m2, l1, l2, g, a1, a2, w1, w2].map(Given::Binary);
+        Self { about: (*parameters, *motion), given, degrees: [false; 2] }
     }
 
     /// The set that the motion starts in, with `rate` frames to a second.
     ///
-    /// The unit of time is a frame by a power of two in which nothing turns by more than [`UNIT`], and 2^e is near the root of (m1 + m2)/m1: so
-    /// the equations' numbers are neither large nor small, for masses and lengths within a factor of 1000 and 30 of each other.
+    /// The unit of time is so short that nothing turns by more than [`UNIT`], and 2^e is near the root of (m1 + m2)/m1: so the equations'
+    /// numbers are neither large nor small, for masses and lengths within a factor of 1000 and 30 of each other.
     pub fn enclose(&self, rate: u16, fineness: Fineness) -> Enclosure {
-        let unit = (UNIT * f64::from(rate) / self.fastest_rate()).log2().floor().clamp(-15.0, 15.0) as i32;
-        let by_unit = |x: Fixed| {
-            let (longer, shorter) = (unit.max(0) as u32, unit.min(0).unsigned_abs());
-            x.over(u32::from(rate) << shorter) << longer
-        };
-        let [[m1, m2], [l1, l2]] = [self.masses, self.lengths].map(|pair| pair.map(|x| x.fixed(halvings(&pair))));
-        let total = (m1 + m2).inverse();
-        let (rods, upper, lower) = (l1 * l2.inverse(), m1 * total, m2 * total);
-        let coupling = lower * l2 * l1.inverse();
-        let [by_gravity, by_lengths] = [halvings(&[self.gravity]), halvings(&self.lengths)];
-        let gravity = self.gravity.fixed(by_gravity);
-        let [gravity1, gravity2] =
-            [l1, l2].map(|l| (by_unit(by_unit(gravity) * l.inverse()) >> by_lengths) << by_gravity);
+        let (parameters, motion) = self.about;
+        let fastest = Pendulum::new(parameters).map_or(1.0, |pendulum| {
+            let Bounds { w1, w2, .. } = pendulum.bounds(&pendulum.to_state(&motion));
+            pendulum.modes().map_or(0.0, |modes| modes.fast.frequency).max(w1).max(w2)
+        });
+        let unit = (fastest / UNIT).log2().ceil() as i32;
+        let e = (0.5 * (1.0 + parameters.m2 / parameters.m1).log2()).clamp(0.0, 7.0).round() as i32;
+        let [m1, m2, l1, l2, g, a1, a2, w1, w2] = self.given;
+        let [by, by1, by2] = [parameters.m1.max(parameters.m2), parameters.l1, parameters.l2].map(|x| x.log2() as i32);
+
+        let total = (m1.fixed(-by) + m2.fixed(-by)).inverse();
+        let [upper, lower] = [m1, m2].map(|m| m.fixed(e - by) * total);
+        let [over_l1, over_l2] = [l1.fixed(-by1), l2.fixed(-by2)].map(Fixed::inverse);
+        let (rods, coupling) = (l1.fixed(-by2) * over_l2, lower * l2.fixed(-by1) * over_l1);
+        let gravity = [g.fixed(e - 2 * unit - by1) * over_l1, g.fixed(-2 * unit - by2) * over_l2];
 
         let radians = |x: Fixed, degrees: bool| if degrees { x.over(180) * pi() } else { x };
-        let [a1, a2] = self.angles.0.map(|angle| radians(angle.fixed(0), self.angles.1));
-        let by = halvings(&self.velocities.0);
-        let [w1, w2] = self.velocities.0.map(|w| by_unit(radians(w.fixed(by), self.velocities.1)) << by);
+        let [a1, a2] = [a1, a2].map(|a| radians(a.fixed(0), self.degrees[0]));
+        let [w1, w2] = [w1, w2].map(|w| radians(w.fixed(-unit), self.degrees[1]));
         let ([sin1, cos1], [s, c]) = (sin_cos(a1), sin_cos(a1 - a2));
-
-        let e = (-0.5 * upper.ball().middle.log2()).round().clamp(0.0, 15.0) as u32;
-        let start = [sin1, cos1, s, c, (w1 + coupling * c * w2) << e, w2 + rods * c * w1];
-        let [upper, lower, coupling, gravity1] = [upper, lower, coupling, gravity1].map(|x| x << e);
-        Enclosure::new(Constants { upper, lower, rods, coupling, gravity: [gravity1, gravity2] }, unit, start, fineness)
+        let start = [sin1, cos1, s, c, (upper + lower) * w1 + coupling * c * w2, w2 + rods * c * w1];
+        Enclosure::new(Constants { upper, lower, rods, coupling, gravity }, (unit, rate), start, fineness)
     }
 }
 
 /// The most that anything may turn by in a unit of time, rad.
 const UNIT: f64 = 4.0;
 
-/// pi: 3.14159 26535 89793 2384 and 62643 38327 95028 8419 behind that, and less than 1e-38 more.
-pub fn pi() -> Fixed {
-    const PLACES: u64 = 10_000_000_000_000_000_000;
-    let [first, last] = [31_415_926_535_897_932_384, 6_264_338_327_950_288_419].map(|x| Fixed::fraction(x, PLACES, 0));
-    (first + last * Fixed::fraction(1, PLACES, 0)).wider(1e-38)
+/// pi: 3.14159 26535 89793 238 and 46264 33832 79502 884 behind that, and less than 1e-36 more.
+fn pi() -> Fixed {
+    const PLACES: u64 = 1_000_000_000_000_000_000;
+    let [first, last] = [3_141_592_653_589_793_238, 462_643_383_279_502_884].map(|x| Fixed::fraction(x, PLACES, 0));
+    (first + last * Fixed::fraction(1, PLACES, 0)).wider(1e-36)
 }
 
 /// The sine and the cosine.
@@ -132,7 +90,7 @@ pub fn pi() -> Fixed {
 /// |x| being below 4 when whole turns are taken away.
 pub fn sin_cos(angle: Fixed) -> [Fixed; 2] {
     let turn = pi() + pi();
-    let x = angle - turn * Fixed::of((angle.ball().middle / turn.ball().middle).round());
+    let x = angle - turn * Fixed::of((angle.about() / turn.about()).round());
     let square = x * x;
     [(x, 1), (Fixed::ONE, 0)].map(|(first, power)| {
         let (mut sum, mut term) = (first, first);
@@ -140,6 +98,6 @@ pub fn sin_cos(angle: Fixed) -> [Fixed; 2] {
             term = Fixed::ZERO - (term * square).over((power + 1) * (power + 2));
             sum = sum + term;
         }
-        sum.wider(term.ball().size())
+        sum.wider(term.size())
     })
 }

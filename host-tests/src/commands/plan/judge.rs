@@ -100,28 +100,6 @@ pub fn judge(exact: &mut Exact, plan: &Plan) -> Result<Verdict, Error> {
     Ok(verdict)
 }
 
-/// How far two references of this scene come apart that stop at other times, and so take other steps with other
-/// roundings, pixels: what the judge itself may be wrong by. Until `seconds`.
-pub fn reference_error(scene: &Problem, seconds: f64) -> f64 {
-    let [mut one, mut other] = [(); 2].map(|()| Reference::new(&scene.pendulum, &scene.start));
-    let Parameters { l1, l2, .. } = scene.pendulum;
-    let mut worst: f64 = 0.0;
-    for frame in 1..=scene.frames() {
-        let [before, time] = [frame - 1, frame].map(|frame| scene.time(frame));
-        if time > seconds {
-            break;
-        }
-        other.advance_to(before + (time - before) / 3.0);
-        let [one, other] = [&mut one, &mut other].map(|reference| {
-            reference.advance_to(time);
-            reference.exact_state()
-        });
-        let [elbow, rod] = [0, 1].map(|rod| f64::from(one[rod] - other[rod]).abs());
-        worst = worst.max(scale(scene) * (l1 * elbow + l2 * rod));
-    }
-    worst
-}
-
 /// Pixels to a metre.
 fn scale(scene: &Problem) -> f64 {
     f64::from(HALF_PIXEL) / scene.tolerance

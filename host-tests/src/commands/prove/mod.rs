@@ -1,13 +1,11 @@
 //! The horizons of plans, proved.
 
-mod frames;
+mod horizon;
 mod known_answers;
 mod options;
 mod table;
-mod words;
 
-pub use frames::{Proof, follow};
+pub use horizon::{HEADING, Proof, follow, row, words};
 pub use known_answers::known_answers;
 pub use options::Options;
 pub use table::{horizons, moving};
-pub use words::{HEADING, row, width, words};

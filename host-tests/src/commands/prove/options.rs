@@ -4,10 +4,10 @@ use anyhow::{Context, ensure};
 use clap::{Parser, value_parser};
 use double_pendulum::Method;
 use double_pendulum::plan::{Limit, Plan, Problem, Way};
+use reference::enclosure::Start;
 
 use crate::commands::plan;
 use crate::console::cli::choice;
-use reference::enclosure::Start;
 
 const EXAMPLES: &str = "Examples:
   cargo prove --scene page
@@ -52,7 +52,7 @@ impl Options {
         let (scene, plan) = self.plan.plan()?;
         let start = match self.plan.scene {
             Some(_) => Start::of(&scene.pendulum, &scene.start),
-            None => self.plan.start.exact().context("of a number, 38 digits and 19 places at most can be enclosed")?,
+            None => self.plan.start.exact().context("of a number, 18 digits at most can be enclosed")?,
         };
         Ok((scene, start, plan))
     }

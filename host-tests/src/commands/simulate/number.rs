@@ -39,7 +39,7 @@ impl Number {
 
     /// Itself, if a numerator and a denominator of 63 bits are enough.
     pub fn exact(&self) -> Option<Given> {
-        self.fraction.map(|(numerator, denominator)| Given::Fraction(numerator.into(), denominator.unsigned_abs()))
+        self.fraction.map(|(numerator, denominator)| Given::Fraction(numerator, denominator.unsigned_abs()))
     }
 
     /// Less than zero.

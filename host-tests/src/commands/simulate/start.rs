@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 use std::fmt;
 
 use clap::Args;
-use double_pendulum::Parameters;
+use double_pendulum::{Motion, Parameters};
 use firmware::config::{FIRST_ANGLE, GRAVITY};
 
 use super::Number;
@@ -84,19 +84,15 @@ impl Start {
 
     /// All of it to the last digit given; `None` if a number has too many.
     pub fn exact(&self) -> Option<Exact> {
-        let both = |Pair(one, other): &Pair| Some([one.exact()?, other.exact()?]);
+        let ([a1, a2], [w1, w2]) = (self.angles(), self.velocities());
         let [gravity, first] = [GRAVITY.to_string(), FIRST_ANGLE.to_string()].map(|text| text.parse::<Number>().ok());
-        let angles = match &self.angles {
-            Some(angles) => (both(angles)?, self.degrees),
-            None => ([first?.exact()?; 2], true),
-        };
-        Some(Exact {
-            masses: both(&self.masses)?,
-            lengths: both(&self.lengths)?,
-            gravity: self.gravity.clone().or(gravity)?.exact()?,
-            angles,
-            velocities: (both(&self.velocities)?, self.degrees),
-        })
+        let first = first?;
+        let angles = self.angles.clone().unwrap_or(Pair(first.clone(), first));
+        let degrees = [self.degrees || self.angles.is_none(), self.degrees];
+        let [m, l, a, w] = [&self.masses, &self.lengths, &angles, &self.velocities];
+        let numbers = [&m.0, &m.1, &l.0, &l.1, self.gravity.as_ref().or(gravity.as_ref())?, &a.0, &a.1, &w.0, &w.1];
+        let given = numbers.into_iter().map(Number::exact).collect::<Option<Vec<_>>>()?.try_into().ok()?;
+        Some(Exact { about: (self.parameters(), Motion { a1, a2, w1, w2 }), given, degrees })
     }
 
     fn radians(&self, angle: f64) -> f64 {
