@@ -6,7 +6,7 @@
 mod interrupt;
 mod run;
 
-pub use interrupt::{INTERRUPTS, interrupted_by, on_interrupt, remove_on_interrupt};
+pub use interrupt::{interrupted, interrupted_by, on_interrupt, remove_on_interrupt};
 pub use run::{Output, run, run_watched};
 
 use std::io;

@@ -4,7 +4,7 @@ use double_pendulum::plan::Problem;
 use double_pendulum::{Motion, Parameters, Pendulum};
 use firmware::config::GRAVITY;
 use firmware::motion::planner::half_pixel;
-use host_tests::commands::plan::{CHIPS, Case, DURATIONS, M4F, median, scenes, study};
+use host_tests::commands::plan::{CHIPS, Case, DURATIONS, median, scenes, study};
 use host_tests::oracle::tolerances::{PLAN_ERROR, PLAN_SHARE};
 
 /// Other scenes than those of [`thousands_of_scenes`].

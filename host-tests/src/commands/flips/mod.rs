@@ -10,15 +10,13 @@ pub mod square;
 
 use std::fs;
 use std::process::ExitCode;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::Ordering;
 
 use anyhow::{Context, Result};
-use signal_hook::flag::register_usize;
 
 use crate::console::cli::{check_writable, complain, say};
 use crate::console::progress::Bar;
-use crate::emulator::process::{INTERRUPTS, interrupted_by};
+use crate::emulator::process::{interrupted, interrupted_by};
 use map::{Map, Point};
 pub use options::Options;
 use part::Part;
@@ -28,10 +26,7 @@ pub fn run(options: &Options) -> Result<ExitCode> {
     let (map, kind) = options.map()?;
     check_writable("--out", &options.out)?;
     let (mut part, mut points) = Part::open(&options.out, &map, options.resume)?;
-    let stopped = Arc::new(AtomicUsize::new(0));
-    for signal in INTERRUPTS {
-        register_usize(signal, Arc::clone(&stopped), signal as usize)?;
-    }
+    let stopped = interrupted()?;
     let all = compute(&map, &mut points, || stopped.load(Ordering::Relaxed) != 0, |band| part.add(band))?;
     let (file, out) = (kind.file(&map, &points, options.doubt)?, options.out.display());
     fs::write(&options.out, file).with_context(|| format!("cannot write {out}"))?;

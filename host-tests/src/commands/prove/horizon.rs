@@ -1,63 +1,58 @@
 //! The frames a method draws, held against the exact motion.
 
+use std::io;
+
 use double_pendulum::plan::{Limit, Plan, Problem, Way, WayStepper};
-use double_pendulum::{Error, Motion, Parameters};
+use double_pendulum::{Motion, Parameters};
 use firmware::config::HALF_PIXEL;
 use reference::enclosure::{Enclosure, Fineness, Fixed, Start};
 
+use crate::console::cli::Refused;
+
 /// What is proved of a method's frames.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct Proof {
     way: Way,
-    motion: WayStepper,
     /// So many frames are right, from the start on.
     pub right: u32,
     wrong: Option<u32>,
-    /// Frames until then, or until now, of which neither can be proved.
+    /// Frames of which neither is proved.
     pub open: u32,
+    /// So many have been looked at, ...
+    frames: u32,
+    /// ... and so far each direction of the exact motion may then be from the middle of the box.
+    width: f64,
 }
 
 impl Proof {
-    /// Of nothing yet.
-    pub fn new(scene: &Problem, way: Way) -> Result<Self, Error> {
-        let motion = WayStepper::new(&scene.pendulum, &scene.start, scene.rate, way)?;
-        Ok(Self { way, motion, right: 0, wrong: None, open: 0 })
-    }
-
-    /// Whether the next frame is right, if that is proved.
-    fn judge(&mut self, scene: &Problem, frame: u32, set: &Enclosure) -> Option<bool> {
-        self.motion.advance();
-        let shown = self.motion.directions().map(|direction| direction.map(|x| Fixed::of(x.into())));
-        let is_right = set.is_right(&shown, [scene.pendulum.l1, scene.pendulum.l2], scene.tolerance);
-        match is_right {
-            _ if self.wrong.is_some() => {}
-            Some(true) => self.right = if self.right + 1 == frame { frame } else { self.right },
-            Some(false) => self.wrong = Some(frame),
-            None => self.open += 1,
+    /// Judges every frame until a wrong one, or as long as the motion can be followed and `goes_on`, which is told the frame, the set that the
+    /// motion is in, and whether the frame is right, if that is proved.
+    pub fn of(
+        scene: &Problem,
+        start: &Start,
+        way: Way,
+        mut goes_on: impl FnMut(u32, &Enclosure, Option<bool>) -> io::Result<bool>,
+    ) -> anyhow::Result<Self> {
+        let stepper = WayStepper::new(&scene.pendulum, &scene.start, scene.rate, way);
+        let (mut motion, mut set) =
+            (stepper.map_err(Refused::because)?, start.enclose(scene.rate, Fineness::default()));
+        let mut proof = Self { way, right: 0, wrong: None, open: 0, frames: 0, width: 0.0 };
+        while proof.wrong.is_none() && proof.frames < scene.frames() && set.advance().is_some() {
+            motion.advance();
+            let shown = motion.directions().map(|direction| direction.map(|x| Fixed::of(x.into())));
+            let is_right = set.is_right(&shown, [scene.pendulum.l1, scene.pendulum.l2], scene.tolerance);
+            (proof.frames, proof.width) = (proof.frames + 1, set.width());
+            match is_right {
+                Some(true) => proof.right += u32::from(proof.right + 1 == proof.frames),
+                Some(false) => proof.wrong = Some(proof.frames),
+                None => proof.open += 1,
+            }
+            if !goes_on(proof.frames, &set, is_right)? {
+                break;
+            }
         }
-        is_right
+        Ok(proof)
     }
-}
-
-/// Judges every frame until a wrong one in each of `proofs`, or as long as the motion can be followed and `goes_on`, which is told
-/// the set that it is in and whether each is right. How many frames.
-pub fn follow(
-    scene: &Problem,
-    start: &Start,
-    proofs: &mut [Proof],
-    mut goes_on: impl FnMut(u32, &Enclosure, &[Option<bool>]) -> anyhow::Result<bool>,
-) -> anyhow::Result<u32> {
-    let mut set = start.enclose(scene.rate, Fineness::default());
-    for frame in 1..=scene.frames() {
-        if proofs.iter().all(|proof| proof.wrong.is_some()) || set.advance().is_none() {
-            return Ok(frame - 1);
-        }
-        let are_right: Vec<_> = proofs.iter_mut().map(|proof| proof.judge(scene, frame, &set)).collect();
-        if !goes_on(frame, &set, &are_right)? {
-            return Ok(frame);
-        }
-    }
-    Ok(scene.frames())
 }
 
 /// When two motions are more than the longer rod apart that start with the same digits on the panel: a mass ratio of three, angles to a
@@ -90,9 +85,9 @@ pub fn row(scene: &Problem, frame: u32, set: &Enclosure, is_right: Option<bool>)
     format!("{},{middles},{:.1e},{verdict}", scene.time(frame), set.width())
 }
 
-/// What is proved, a line each, `frames` having been looked at.
-pub fn words(scene: &Problem, plan: &Result<Plan, Limit>, proof: &Proof, frames: u32, width: f64) -> Vec<String> {
-    let &Proof { way, right, wrong, open, .. } = proof;
+/// What is proved, a line each.
+pub fn words(scene: &Problem, plan: &Result<Plan, Limit>, proof: &Proof) -> Vec<String> {
+    let &Proof { way, right, wrong, open, frames, width } = proof;
     let of_plan = match plan {
         Ok(plan) => format!("right until {:.3} s by {}, {} to a frame", plan.horizon, plan.method.name(), plan.steps),
         Err(_) => String::from("nothing that the chip can afford is right in any frame"),

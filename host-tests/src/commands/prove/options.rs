@@ -12,10 +12,8 @@ use crate::console::cli::choice;
 const EXAMPLES: &str = "Examples:
   cargo prove --scene page
   cargo prove --angles 120,120 --degrees --method rk4-f32-direction --steps 4
-  cargo prove --scene figure-7 --target m4f --csv
-  cargo prove --table
 
-Ctrl-C leaves what is proved until then. Bad input: one line on stderr, exit code 2.";
+Ctrl-C leaves what is proved until then.";
 
 /// Proves until when the frames that a chip draws are right to half a pixel: encloses the exact motion, rounding errors and
 /// all, and holds each frame of the planned method, which is bit-identical on every chip, against it.
@@ -59,11 +57,7 @@ impl Options {
 
     /// How the frames are drawn, if anything holds.
     pub fn way(&self, plan: &Result<Plan, Limit>) -> Option<Way> {
-        self.method.map(|method| Way { method, steps: self.steps }).or_else(|| Self::planned(plan))
-    }
-
-    /// How the plan has them drawn.
-    pub fn planned(plan: &Result<Plan, Limit>) -> Option<Way> {
-        plan.as_ref().ok().map(|plan| Way { method: plan.method, steps: plan.steps.max(1) })
+        let planned = || plan.as_ref().ok().map(|plan| Way { method: plan.method, steps: plan.steps.max(1) });
+        self.method.map(|method| Way { method, steps: self.steps }).or_else(planned)
     }
 }

@@ -2,18 +2,29 @@
 
 use std::path::Path;
 use std::process::exit;
-use std::sync::{Mutex, Once, PoisonError};
-use std::thread;
+use std::sync::atomic::AtomicUsize;
+use std::sync::{Arc, Mutex, Once, PoisonError};
+use std::{io, thread};
 
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+use signal_hook::flag::register_usize;
 use signal_hook::iterator::Signals;
 
 /// The signals that interrupt a command: Ctrl-C, a request to end, a terminal that is closed.
-pub const INTERRUPTS: [i32; 3] = [SIGINT, SIGTERM, SIGHUP];
+const INTERRUPTS: [i32; 3] = [SIGINT, SIGTERM, SIGHUP];
 
 /// The exit code that the shell has for a command ended by a signal: 130 after Ctrl-C.
 pub fn interrupted_by(signal: i32) -> i32 {
     128 + signal
+}
+
+/// The signal that has interrupted this process since, 0 as long as none has; it goes on meanwhile.
+pub fn interrupted() -> io::Result<Arc<AtomicUsize>> {
+    let signal = Arc::default();
+    for each in INTERRUPTS {
+        register_usize(each, Arc::clone(&signal), each as usize)?;
+    }
+    Ok(signal)
 }
 
 /// Runs `hook` when this process is interrupted, before it exits: for what must be put back, such as the terminal's mode.
