@@ -34,7 +34,7 @@ fn horizon(name: &str) -> anyhow::Result<Vec<String>> {
             (Ok(plan), Some(way)) => {
                 let proof = Proof::of(&scene, &start, way, |_, _, _| Ok(true))?;
                 open += proof.open;
-                [f64::from(plan.horizon), scene.time(proof.right)].map(|time| format!("{time:.2}"))
+                [plan.horizon, scene.time(proof.right)].map(|time| format!("{time:.2}"))
             }
             _ => ["none", "none"].map(String::from),
         };
