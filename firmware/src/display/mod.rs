@@ -4,6 +4,7 @@ use core::convert::Infallible;
 
 use crate::graphics::canvas::Canvas;
 
+pub mod controller;
 pub mod i2c_recovery;
 pub mod outbox;
 mod ssd0323;
@@ -19,6 +20,11 @@ pub trait Display {
 
     /// Sends the frame.
     fn flush(&mut self, canvas: &Canvas) -> Result<(), Self::Error>;
+
+    /// Which panel was found since this was last asked.
+    fn found(&mut self) -> Option<controller::Found> {
+        None
+    }
 }
 
 /// For a board without a panel.
