@@ -11,7 +11,8 @@ fn main() {
     if env::var("TARGET").is_ok_and(|target| target.starts_with("thumbv6m")) {
         println!("cargo:rustc-cfg=armv6m");
     }
-    if env::var("CARGO_CFG_TARGET_OS").as_deref() != Ok("none") {
+    let is = |name: &str, value: &str| env::var(name).as_deref() == Ok(value);
+    if !is("CARGO_CFG_TARGET_OS", "none") || !is("CARGO_CFG_TARGET_ARCH", "arm") {
         return;
     }
     // From the workspace's folder, in which the linker runs: a checkout that was moved keeps what it has built.
@@ -28,6 +29,12 @@ fn main() {
     // This one's flash begins with what its boot ROM runs first.
     for argument in ["--defsym=flash_origin=0x10000100", "--defsym=flash_length=0x001fff00", "-Tpico.x"] {
         println!("cargo:rustc-link-arg-bin=pico={argument}");
+    }
+    // Of a Cortex-M33 or M55 this is what its secure side sees, as it does after reset.
+    if is("TARGET", "thumbv8m.main-none-eabihf") {
+        for place in ["flash_origin=0x10000000", "ram_origin=0x30000000", "ram_length=0x00008000"] {
+            println!("cargo:rustc-link-arg-bin=cores=--defsym={place}");
+        }
     }
     for argument in ["-Tlink.x", "-Tdefmt.x", "--nmagic"] {
         println!("cargo:rustc-link-arg-bins={argument}");
