@@ -27,8 +27,12 @@ fn main() {
         println!("cargo:rustc-link-arg-bin=stm32f405={argument}");
     }
     // This one's flash begins with what its boot ROM runs first.
-    for argument in ["--defsym=flash_origin=0x10000100", "--defsym=flash_length=0x001fff00", "-Tpico.x"] {
-        println!("cargo:rustc-link-arg-bin=pico={argument}");
+    let pico = ["--defsym=flash_origin=0x10000100", "--defsym=flash_length=0x001fff00", "-Tpico.x"];
+    let any = ["-Tlink.x", "-Tdefmt.x", "--nmagic"];
+    pico.iter().for_each(|argument| println!("cargo:rustc-link-arg-bin=pico={argument}"));
+    // The example with a colour panel is for it, too.
+    if env::var_os("CARGO_FEATURE_COLOUR_PANEL").is_some() {
+        pico.iter().chain(&any).for_each(|argument| println!("cargo:rustc-link-arg-examples={argument}"));
     }
     // Of a Cortex-M33 or M55 this is what its secure side sees, as it does after reset.
     if is("TARGET", "thumbv8m.main-none-eabihf") {
@@ -36,7 +40,5 @@ fn main() {
             println!("cargo:rustc-link-arg-bin=cores=--defsym={place}");
         }
     }
-    for argument in ["-Tlink.x", "-Tdefmt.x", "--nmagic"] {
-        println!("cargo:rustc-link-arg-bins={argument}");
-    }
+    any.iter().for_each(|argument| println!("cargo:rustc-link-arg-bins={argument}"));
 }

@@ -10,7 +10,7 @@ use std::time::Duration;
 use super::detect::{DEBIAN_CARGO, DEBIAN_RUSTC};
 use super::install::run_shown;
 use super::{ArmCore, TARGETS, Toolchain, target, workspace};
-use crate::emulator::boards::{Board, every_board};
+use crate::emulator::boards::{Board, PICO, every_board};
 use crate::emulator::process::ProcessError;
 
 /// What this process has built, each binary with its target: to ask cargo again takes half a second.
@@ -102,7 +102,7 @@ impl Toolchain {
         self.finish(command, "building the firmware for all targets")
     }
 
-    /// Checks all of the firmware's binaries and its example under an executor for every target; a warning is an error, of
+    /// Checks all of the firmware's binaries and its examples for chips for every target; a warning is an error, of
     /// clippy too where the compiler has it.
     pub fn check(&self) -> Result<(), BuildError> {
         for target in TARGETS {
@@ -112,6 +112,9 @@ impl Toolchain {
             let mut command =
                 self.for_targets(if is_ready_made { "clippy" } else { "check" }, &[target], &Self::folder());
             command.args(["--bins", "--example", "embassy", "--features", &features]);
+            if features.contains(PICO.feature) {
+                command.args(["--example", "colour_panel", "--features", "colour-panel"]);
+            }
             if is_ready_made {
                 command.args(["--", "--deny", "warnings"]);
             } else {
