@@ -91,8 +91,7 @@ pub fn set_up_for(target: &str) -> Result<Toolchain, SetupError> {
     let (toolchain, _) = set_up()?;
     let _turn = install::turn()?;
     let core = detect::core(&[target]).or_else(|_| install::core(&[target], &mut Vec::new()));
-    let by_hand = format!("rustup target add {target}");
-    let core = core.map_err(|why| SetupError::missing(&format!("the core library for {target}"), &why, &by_hand))?;
+    let core = core.map_err(|why| SetupError(format!("the core library for {target} is missing: {why}")))?;
     Ok(Toolchain { core, ..toolchain })
 }
 
@@ -101,7 +100,7 @@ pub fn set_up_riscv() -> Result<PathBuf, SetupError> {
     let _turn = install::turn()?;
     let emulator = &detect::QEMU_RISCV;
     let found = emulator.find().or_else(|_| install::qemu(emulator, &mut Vec::new()));
-    found.map_err(|why| SetupError::missing(emulator.program, &why, "this system's package of QEMU's user mode"))
+    found.map_err(|why| SetupError(format!("{} is missing: {why}", emulator.program)))
 }
 
 /// The emulator of the Raspberry Pi Pico, if it is there; installs nothing.
