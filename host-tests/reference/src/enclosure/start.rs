@@ -46,7 +46,7 @@ impl Start {
 
     /// The set that the motion starts in, with `rate` frames to a second.
     ///
-    /// The unit of time is so short that nothing turns by more than [`UNIT`], and 2^e is near the root of (m1 + m2)/m1: so the equations'
+    /// The unit of time is so short that nothing turns by more than 4 rad, and 2^e is near the root of (m1 + m2)/m1: so the equations'
     /// numbers are neither large nor small, for masses and lengths within a factor of 1000 and 30 of each other.
     pub fn enclose(&self, rate: u16, fineness: Fineness) -> Enclosure {
         let (parameters, motion) = self.about;
