@@ -7,7 +7,7 @@
 
 use cortex_m::peripheral::syst::SystClkSource;
 use cortex_m_rt::exception;
-use double_pendulum::form::{DirectionForm, Stepper};
+use double_pendulum::methods::{DirectionForm, Stepper};
 use double_pendulum::{Error, Parameters, State};
 use embassy_executor::Spawner;
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;

@@ -7,7 +7,7 @@ use std::hint::black_box;
 use std::iter::successors;
 use std::time::Instant;
 
-use double_pendulum::form::{DirectionForm, ExtrapolatedForm, Form, Plain, Stepper};
+use double_pendulum::methods::{DirectionForm, ExtrapolatedForm, Form, Plain, Stepper};
 use double_pendulum::trig::Own;
 use double_pendulum::{Motion, Parameters, State};
 use host_tests::oracle::reference::Reference;

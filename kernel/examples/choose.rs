@@ -1,6 +1,6 @@
 //! Which form, and which step? First by bounds that hold for every motion of an energy, then by trying the step.
 
-use double_pendulum::form::{DirectionForm, ExtrapolatedForm, Form, Stepper};
+use double_pendulum::methods::{DirectionForm, ExtrapolatedForm, Form, Stepper};
 use double_pendulum::{Error, Parameters, Pendulum, Real, State};
 
 /// For how long the motion is wanted, s.

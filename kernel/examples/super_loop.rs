@@ -1,6 +1,6 @@
 //! A pendulum in a super-loop: one frame's worth of steps each time round.
 
-use double_pendulum::form::{DirectionForm, Stepper};
+use double_pendulum::methods::{DirectionForm, Stepper};
 use double_pendulum::{Error, Parameters, State};
 
 /// Frames a second, and steps to a frame.

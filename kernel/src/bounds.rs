@@ -1,13 +1,10 @@
 //! Bounds that hold for every motion, from its energy alone.
 
-use crate::equal_rods::EqualRods;
 use crate::error::{Error, Parameter};
-use crate::hamiltonian::Pendulum;
-use crate::modes::Modes;
-use crate::params::Parameters;
-use crate::real::Real;
-use crate::state::State;
-use crate::trig::SinCos;
+use crate::numbers::Real;
+use crate::numbers::trig::SinCos;
+use crate::pendulum::{EqualRods, Parameters, Pendulum, State};
+use crate::small::Modes;
 
 /// The greatest magnitudes that a motion of given energy can reach; each is reached by some motion of that energy.
 ///

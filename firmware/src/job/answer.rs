@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use double_pendulum::form::Winding;
+use double_pendulum::methods::Winding;
 use double_pendulum::{Error, Method, Pendulum, State};
 
 use super::{OnBoards, Reading, Request, Run};

@@ -1,6 +1,7 @@
 //! The fast forms of the kernel.
 
-use double_pendulum::form::{Direction, Form, Stepper};
+use double_pendulum::Direction;
+use double_pendulum::methods::{Form, Stepper};
 use double_pendulum::{Real, State};
 
 use super::run::{Run, checked};

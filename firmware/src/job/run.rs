@@ -1,6 +1,6 @@
 //! What a row of the table is: a motion that can be started, stepped and read.
 
-use double_pendulum::form::Direction;
+use double_pendulum::Direction;
 use double_pendulum::{Error, Motion, Parameters, Pendulum, Real, State};
 
 use super::{JobError, Request};

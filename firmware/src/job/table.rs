@@ -3,7 +3,8 @@
 //! The first block is what every board's application computes on request. The second is computed on the host and counted on the
 //! chips by the `measure` program, and takes no flash of an application.
 
-use double_pendulum::form::{Direction, DirectionForm, ExtrapolatedForm, Fixed32Form, Fixed64Form, Plain};
+use double_pendulum::Direction;
+use double_pendulum::methods::{DirectionForm, ExtrapolatedForm, Fixed32Form, Fixed64Form, Plain};
 use double_pendulum::trig::{Libm, Micromath};
 use double_pendulum::{Method, Pendulum, State};
 

@@ -3,10 +3,10 @@
 use double_pendulum::Error;
 use double_pendulum::flips::{FallingBy, Flip, Flips as Search, step_size};
 #[cfg(not(target_abi = "eabihf"))]
-use double_pendulum::form::Fixed32Form;
-use double_pendulum::form::Watched;
+use double_pendulum::methods::Fixed32Form;
+use double_pendulum::methods::Watched;
 #[cfg(any(target_abi = "eabihf", not(target_os = "none")))]
-use double_pendulum::form::{DirectionForm, Plain};
+use double_pendulum::methods::{DirectionForm, Plain};
 
 use crate::config::{FlipsPace, TICK_RATE};
 use crate::graphics::canvas::{Canvas, HEIGHT, WIDTH};

@@ -1,6 +1,6 @@
 //! Upright: both rods at exactly 180 degrees, where the pendulum would stand for ever if the number pi could be held.
 
-use double_pendulum::form::{DirectionForm, Stepper};
+use double_pendulum::methods::{DirectionForm, Stepper};
 use double_pendulum::trig::{DefaultTrig, SinCos};
 use double_pendulum::{Error, State};
 

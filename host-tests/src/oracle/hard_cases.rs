@@ -1,6 +1,6 @@
 //! The hard cases: motions that break a careless arithmetic, and how far off the direction form may be on them.
 
-use double_pendulum::form::Form;
+use double_pendulum::methods::Form;
 use double_pendulum::{Error, Parameters, Real, State};
 
 use crate::oracle::trials::{Trial, largest_difference};

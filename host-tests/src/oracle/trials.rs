@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use double_pendulum::form::{Form, Stepper};
+use double_pendulum::methods::{Form, Stepper};
 use double_pendulum::{Error, Parameters, Pendulum, Real, State};
 
 use crate::oracle::reference::Reference;

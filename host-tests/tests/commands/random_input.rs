@@ -2,7 +2,7 @@
 //! is refused changes nothing. `PROPTEST_CASES=1000000 cargo test -p host-tests --test commands random_input::` tries more.
 
 use clap::Parser;
-use double_pendulum::form::{DirectionForm, ExtrapolatedForm, Fixed32Form, Fixed64Form, Form, Plain, Stepper};
+use double_pendulum::methods::{DirectionForm, ExtrapolatedForm, Fixed32Form, Fixed64Form, Form, Plain, Stepper};
 use double_pendulum::plan::{Budget, Limit, Problem, Search};
 use double_pendulum::{EqualRods, Error, Method, Modes, Motion, Parameters, Pendulum, Real, State, Units};
 use fastrand::Rng;

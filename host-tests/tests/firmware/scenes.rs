@@ -1,7 +1,7 @@
 //! Every scene of the catalogue, on the host: its frame to the pixel, and what all scenes have in common.
 
 use double_pendulum::State;
-use double_pendulum::form::{DirectionForm, Fixed32Form, Plain, Watched};
+use double_pendulum::methods::{DirectionForm, Fixed32Form, Plain, Watched};
 use firmware::app::App;
 use firmware::app::command::Command;
 use firmware::app::controls::NoButtons;

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use double_pendulum::form::{DirectionForm, Form};
+use double_pendulum::methods::{DirectionForm, Form};
 use double_pendulum::{Bounds, EqualRods, Error, Modes, Motion, Parameters, Pendulum, Real, State};
 use fastrand::Rng;
 use host_tests::oracle::reference::Reference;

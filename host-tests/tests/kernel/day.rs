@@ -1,7 +1,7 @@
 //! A simulated day: no method that steps in 32 bits loses its energy or its time to its number type.
 
 use double_pendulum::Method;
-use double_pendulum::form::{DirectionForm, Fixed32Form, Form, Plain, Stepper};
+use double_pendulum::methods::{DirectionForm, Fixed32Form, Form, Plain, Stepper};
 use double_pendulum::plan::Way;
 use double_pendulum::{Error, Pendulum, Real, State};
 use firmware::config::{STM32F405, TICK_RATE};
@@ -41,7 +41,7 @@ fn keeps_its_energy<R: Real, F: Form<R>>(trial: &Trial, dt: f64, exact: &[State<
     let (states, apart) = followed::<R, F>(trial, dt)?;
     let errors = states.iter().zip(exact).map(|(state, exact)| (energy(state) - energy(exact)).abs());
     let error = errors.fold(0.0, f64::max);
-    let name = std::any::type_name::<F>().replace("double_pendulum::form::", "");
+    let name = std::any::type_name::<F>().replace("double_pendulum::methods::", "");
     println!("m2/m1 {}, 1/{:.0} s, {name}: {error:.1e}, {apart:.1e}", trial.parameters.m2, 1.0 / dt);
     assert!(error <= DAY_ENERGY, "m2/m1 {}, 1/{:.0} s, {name}: {error:e}", trial.parameters.m2, 1.0 / dt);
     assert!(apart <= DAY_READING, "m2/m1 {}, 1/{:.0} s, {name}: {apart:e}", trial.parameters.m2, 1.0 / dt);

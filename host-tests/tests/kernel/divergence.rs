@@ -2,7 +2,7 @@
 
 use std::fmt::Debug;
 
-use double_pendulum::form::{DirectionForm, ExtrapolatedForm, Form};
+use double_pendulum::methods::{DirectionForm, ExtrapolatedForm, Form};
 use double_pendulum::{Error, Method, Parameters, Pendulum, Real, State};
 use firmware::app::controls::NoButtons;
 use firmware::app::service::Service;

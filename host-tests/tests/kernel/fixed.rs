@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use double_pendulum::form::{DirectionForm, ExtrapolatedForm, Fixed32Form, Fixed64Form, Form, Stepper};
+use double_pendulum::methods::{DirectionForm, ExtrapolatedForm, Fixed32Form, Fixed64Form, Form, Stepper};
 use double_pendulum::{Error, Motion, Parameter, Parameters, Pendulum, State};
 use firmware::config::GRAVITY;
 use firmware::motion::planner::half_pixel;

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use double_pendulum::form::{
+use double_pendulum::methods::{
     Compensated, DirectionForm, DirectionState, ExtrapolatedForm, Fixed64Form, Form, Plain, UnwrappedStepper, Winding,
 };
 use double_pendulum::{Error, Motion, Parameter, Parameters, Pendulum, Real, State};

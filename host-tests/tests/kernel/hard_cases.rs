@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use double_pendulum::form::{DirectionForm, Form, Plain, UnwrappedStepper};
+use double_pendulum::methods::{DirectionForm, Form, Plain, UnwrappedStepper};
 use double_pendulum::{Error, Modes, Motion, Parameters, Pendulum, Real, State};
 use host_tests::oracle::hard_cases::{HALVINGS, HARD_CASES, HardCase};
 use host_tests::oracle::reference::Reference;

@@ -3,7 +3,7 @@
 
 use double_pendulum::Error;
 use double_pendulum::flips::{Flip, Flips};
-use double_pendulum::form::{DirectionForm, Plain};
+use double_pendulum::methods::{DirectionForm, Plain};
 
 /// The kernel's search with the cheapest steps.
 pub type Search = Flips<f32, DirectionForm<f32, Plain>>;

@@ -7,7 +7,7 @@
 //! ```
 //! use double_pendulum::Parameters;
 //! use double_pendulum::flips::{Flip, Flips, step_size};
-//! use double_pendulum::form::{DirectionForm, Plain};
+//! use double_pendulum::methods::{DirectionForm, Plain};
 //!
 //! let pendulum = Parameters::equal_rods(1.0_f32, 1.0, 9.81);
 //! let dt = step_size(&pendulum)?;
@@ -20,11 +20,9 @@
 mod side_by_side;
 
 use crate::error::Error;
-use crate::form::{Direction, Form, Part, Watched};
-use crate::hamiltonian::Pendulum;
-use crate::params::Parameters;
-use crate::real::Real;
-use crate::state::State;
+use crate::methods::{Form, Part, Watched};
+use crate::numbers::Real;
+use crate::pendulum::{Direction, Parameters, Pendulum, State};
 
 /// When a rod first turns over.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,7 +74,7 @@ impl<C, P> Falling<C, P> {
 ///
 /// Refuses what [`Pendulum::new`] refuses, and no gravity, with which nothing moves.
 ///
-/// [`Fixed32Form`]: crate::form::Fixed32Form
+/// [`Fixed32Form`]: crate::methods::Fixed32Form
 pub fn step_size<R: Real>(parameters: &Parameters<R>) -> Result<f64, Error> {
     /// Half a turn of the elbow's greatest rate takes nine such steps.
     const BEND: f64 = 0.36;

@@ -4,9 +4,10 @@ use core::array::from_fn;
 
 use super::{Falling, Flip, Flips, passes, turns_over};
 use crate::error::Error;
-use crate::form::{BLOCK, Direction, DirectionForm, DirectionLanes, DirectionState, Form as _, Part, Plain};
-use crate::lanes::Lanes;
-use crate::state::State;
+use crate::methods::direction::{BLOCK, DirectionForm, DirectionLanes, DirectionState, Plain};
+use crate::methods::{Form as _, Part};
+use crate::numbers::Lanes;
+use crate::pendulum::{Direction, State};
 
 type Form = DirectionForm<f32, Plain>;
 type Motion = DirectionState<f32, Plain>;
@@ -130,8 +131,8 @@ fn any_turns_over<const N: usize>(before: &Heads<N>, after: &Heads<N>) -> bool {
 mod tests {
     use super::*;
     use crate::flips::step_size;
-    use crate::form::Fixed32Form;
-    use crate::params::Parameters;
+    use crate::methods::Fixed32Form;
+    use crate::pendulum::Parameters;
     extern crate std;
     use std::vec::Vec;
 

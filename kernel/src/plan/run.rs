@@ -2,13 +2,10 @@
 
 use super::cost::ORDER;
 use crate::error::Error;
-use crate::form::{Direction, DirectionForm, Fixed32Form, Fixed64Form, Plain, Stepper};
-use crate::hamiltonian::Pendulum;
-use crate::method::Method;
-use crate::modes::Modes;
-use crate::params::Parameters;
-use crate::small_oscillations::SmallOscillations;
-use crate::state::{Motion, State};
+use crate::methods::{DirectionForm, Fixed32Form, Fixed64Form, Plain, Stepper};
+use crate::pendulum::{Direction, Motion, Parameters, Pendulum, State};
+use crate::small::{Modes, SmallOscillations};
+use crate::table::Method;
 
 /// The directions of both rods as they would be drawn.
 pub type Directions = [Direction<f32>; 2];
@@ -40,7 +37,7 @@ macro_rules! with {
 impl AnyRun {
     /// A pendulum from its start, with so many steps a second.
     ///
-    /// Refuses what [`Form::new`](crate::form::Form::new) and [`Form::start`](crate::form::Form::start) refuse, what has no normal
+    /// Refuses what [`Form::new`](crate::methods::Form::new) and [`Form::start`](crate::methods::Form::start) refuse, what has no normal
     /// modes if the method is the closed form, and a method that is none of [`Method::DRAWN`].
     #[inline(never)] // each kind's preparations would stand side by side on the stack
     pub fn new(

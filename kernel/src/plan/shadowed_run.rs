@@ -4,9 +4,8 @@ use super::error::PlanError;
 use super::problem::{Perturbation, Problem};
 use super::run::{Directions, Run, distance, greater};
 use crate::error::Error;
-use crate::hamiltonian::Pendulum;
-use crate::method::Method;
-use crate::state::State;
+use crate::pendulum::{Pendulum, State};
+use crate::table::Method;
 
 /// How much larger an error may be than the distances: that to the finer steps, and the larger of those to other roundings.
 ///

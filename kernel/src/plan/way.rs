@@ -3,11 +3,9 @@
 use super::cost::Costs;
 use super::run::{AnyRun, Directions};
 use crate::error::Error;
-use crate::form::Winding;
-use crate::hamiltonian::Pendulum;
-use crate::method::Method;
-use crate::params::Parameters;
-use crate::state::{Motion, State};
+use crate::methods::Winding;
+use crate::pendulum::{Motion, Parameters, Pendulum, State};
+use crate::table::Method;
 
 /// How a motion is computed: a method, and how fine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -135,7 +133,7 @@ impl Way {
 impl WayStepper {
     /// At `start`, with `rate` frames to a second. No steps count as one.
     ///
-    /// Refuses what [`Form::new`](crate::form::Form::new) and [`Form::start`](crate::form::Form::start) refuse, what has no normal modes if the way is the closed form, and a method
+    /// Refuses what [`Form::new`](crate::methods::Form::new) and [`Form::start`](crate::methods::Form::start) refuse, what has no normal modes if the way is the closed form, and a method
     /// that is none of [`Method::DRAWN`].
     #[inline(never)] // one copy
     pub fn new(parameters: &Parameters<f64>, start: &Motion<f64>, rate: u16, way: Way) -> Result<Self, Error> {

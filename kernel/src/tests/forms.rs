@@ -1,7 +1,7 @@
 //! Each form's short run against Hamilton's equations, stepped by the classical RK4 in `f64` ten times as finely: its rates of
 //! change on average.
 
-use double_pendulum::form::{DirectionForm, ExtrapolatedForm, Fixed32Form, Fixed64Form, Form, Stepper};
+use double_pendulum::methods::{DirectionForm, ExtrapolatedForm, Fixed32Form, Fixed64Form, Form, Stepper};
 use double_pendulum::{Motion, Parameters, Pendulum, Real};
 
 use super::{EQUATIONS, assert_near};

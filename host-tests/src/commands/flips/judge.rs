@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use double_pendulum::flips::{Flip, Flips};
-use double_pendulum::form::DirectionForm;
+use double_pendulum::methods::DirectionForm;
 use double_pendulum::{Error, Motion};
 
 use fastrand::Rng;

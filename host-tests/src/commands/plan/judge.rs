@@ -1,6 +1,6 @@
 //! A plan carried out, beside the reference.
 
-use double_pendulum::form::Direction;
+use double_pendulum::Direction;
 use double_pendulum::plan::{Plan, Problem, Way, WayStepper};
 use double_pendulum::{Error, Motion, Parameters};
 use firmware::config::HALF_PIXEL;
