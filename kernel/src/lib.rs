@@ -22,7 +22,7 @@
 //! ```
 //! use double_pendulum::{Parameters, Pendulum, State};
 //!
-//! let pendulum = Pendulum::new(Parameters { m1: 1.0, m2: 2.0, l1: 1.0, l2: 0.5, g: 9.81 })?;
+//! let pendulum = Pendulum::new(&Parameters { m1: 1.0, m2: 2.0, l1: 1.0, l2: 0.5, g: 9.81 })?;
 //! let mut state = State::at_rest(0.5_f64, 1.0);
 //! let energy = pendulum.energy(&state);
 //! pendulum.check_step(1.0 / 1024.0)?;
@@ -69,6 +69,7 @@ extern crate std;
 mod bounds;
 mod error;
 pub mod flips;
+#[doc(hidden)]
 pub mod methods;
 mod numbers;
 mod pendulum;
@@ -80,8 +81,14 @@ mod tests;
 
 pub use bounds::{Bounds, ROUNDING_MARGIN};
 pub use error::{Error, Parameter};
-pub use methods::{extrapolation, rk4};
-pub use numbers::{Lanes, Real, Scalar, trig};
+pub use methods::extrapolation::Extrapolation;
+pub use methods::{
+    ClosedFormF32, ClosedFormF64, DirectionF32, DirectionF32Plain, DirectionF64, DirectionF64Plain, ExtrapolationF64,
+    Fixed32, Fixed64, Form, HamiltonF32, HamiltonF64, Run, rk4,
+};
+#[doc(hidden)]
+pub use numbers::Lanes;
+pub use numbers::{Real, trig};
 pub use pendulum::{Direction, EqualRods, Motion, Parameters, Pendulum, State, Units, Vector};
 pub use small::{Mode, Modes, Oscillation, SmallOscillations, periodic_mass_ratio};
 pub use table::{Equations, Integrator, Method, Numbers};

@@ -201,7 +201,7 @@ impl<R: Real> Extrapolation<R> {
     /// One step for z' = f(z): the state a time `dt` after `z`; a negative `dt` steps backwards.
     ///
     /// ```
-    /// use double_pendulum::extrapolation::Extrapolation;
+    /// use double_pendulum::Extrapolation;
     ///
     /// let method = Extrapolation::new(12)?;
     /// let [x, y] = method.step(|&[x, y]| [y, -x], &[0.0_f64, 1.0], 0.5);

@@ -59,6 +59,11 @@ pub(crate) fn check_step(dt: f64) -> Result<(), Error> {
     }
 }
 
+/// What [`Form::check`](super::Form::check) says of a motion in fixed point.
+pub(super) fn lost(is_lost: bool) -> Result<(), Error> {
+    if is_lost { Err(Error::Diverged { parameter: Parameter::A1, value: f64::NAN }) } else { Ok(()) }
+}
+
 impl Scaling {
     /// For a motion within `bounds`, no rate of which may exceed `rate` and no torque of gravity `torque` in these units:
     /// `unit` chooses T and is told the longest, s, by rates and by torques.

@@ -1,83 +1,59 @@
 //! Counts whole turns, which directions alone do not tell.
 
+use super::side::turns_over;
 use crate::numbers::Real;
-use crate::pendulum::Direction;
+use crate::pendulum::{Direction, State};
 
-/// Counts how often a direction passes the upward vertical.
+/// Counts how often a direction passes straight up, by the signs of its sine and cosine.
 ///
-/// Show it the direction at least once every quarter turn; then [`angle`](Self::angle) is the unwrapped angle.
+/// To be shown them at least once every quarter turn.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Winding<R> {
-    turns: i32,
-    last: Direction<R>,
+pub struct Turns {
+    whole: i32,
+    last: [i32; 2],
 }
 
-impl<R: Real> Winding<R> {
-    /// For an angle of `start` rad.
-    #[must_use]
-    #[inline(never)] // one copy
-    pub fn new(start: R) -> Self {
-        let (turns, rest) = split(start.to_f64());
-        let (sin, cos) = rest.own_sin_cos();
-        Self { turns, last: [R::from_f64(sin), R::from_f64(cos)] }
+impl Turns {
+    /// For angles of `start` rad, whose directions have these signs.
+    #[inline(never)] // never inlined, to avoid a second copy
+    pub fn of(start: [f64; 2], now: [[i32; 2]; 2]) -> [Self; 2] {
+        let mut turns = start.map(|angle| {
+            let whole = libm::rint(angle / core::f64::consts::TAU);
+            let rest = angle - whole * core::f64::consts::TAU;
+            Self { whole: whole as i32, last: [-i32::from(rest < 0.0), -1] }
+        });
+        Self::observe(&mut turns, now);
+        turns
     }
 
-    /// Takes note of the direction (sin, cos) the angle has now.
+    /// Takes note of the signs that the directions have now.
     #[inline]
-    pub fn observe(&mut self, now: Direction<R>) {
-        let above = now[1] < R::ZERO && self.last[1] < R::ZERO;
-        let [before, after] = [self.last[0] < R::ZERO, now[0] < R::ZERO];
-        if above && before != after {
-            self.turns = self.turns.wrapping_add(if after { 1 } else { -1 });
+    pub fn observe(both: &mut [Self; 2], now: [[i32; 2]; 2]) {
+        for (turns, now) in both.iter_mut().zip(now) {
+            if turns_over([turns.last[0], now[0], turns.last[1] & now[1]]) < 0 {
+                turns.whole = turns.whole.wrapping_add(if now[0] < 0 { 1 } else { -1 });
+            }
+            turns.last = now;
         }
-        self.last = now;
     }
 
-    /// For an angle of `start` rad, whose direction is `now`: no sines, the sign of one tells the side.
-    #[inline(never)] // one copy
-    pub(crate) fn at(start: R, now: Direction<R>) -> Self {
-        let (turns, rest) = split(start.to_f64());
-        let mut winding = Self { turns, last: [R::from_f64(rest), -R::ONE] };
-        winding.observe(now);
-        winding
+    /// The angle with its turns, rad, of the direction last observed.
+    #[inline(never)] // never inlined, to avoid a second copy
+    pub fn angle<R: Real>(&self, [s, c]: Direction<R>) -> R {
+        R::from_f64(f64::from(self.whole) * core::f64::consts::TAU) + s.atan2(c)
     }
 
-    /// The last direction observed.
-    pub(crate) fn last(&self) -> Direction<R> {
-        self.last
-    }
-
-    /// Whole turns, counted from the downward vertical.
-    #[must_use]
-    pub fn turns(&self) -> i32 {
-        self.turns
-    }
-
-    /// The unwrapped angle, rad, as of the last direction observed.
-    #[must_use]
-    #[inline(never)] // one copy
-    pub fn angle(&self) -> R {
-        let [s, c] = self.last;
-        R::from_f64(f64::from(self.turns) * core::f64::consts::TAU) + s.atan2(c)
-    }
-
-    /// `angle`, known but for whole turns, as many turns on as bring it nearest to [`angle`](Self::angle), rad: the
-    /// digits of [`Form::state`](super::Form::state) and the turns from here.
+    /// `state`, whose angles are known but for whole turns, with as many turns on as bring each nearest to the last direction.
     ///
-    /// No trigonometry: a quarter turn to the side of the last direction is within half a turn of it, near enough.
-    #[must_use]
-    #[inline(never)] // one copy
-    pub fn unwrap(&self, angle: f64) -> f64 {
+    /// No trigonometry: a quarter turn to the side of that is within half a turn of it, near enough.
+    #[inline(never)] // never inlined, to avoid a second copy
+    pub fn unwrap([turns1, turns2]: &[Self; 2], state: State<f64>) -> State<f64> {
         use core::f64::consts::{FRAC_PI_2, TAU};
-        let side = if self.last[0] < R::ZERO { -FRAC_PI_2 } else { FRAC_PI_2 };
-        let near = f64::from(self.turns) * TAU + side;
-        angle + TAU * libm::rint((near - angle) / TAU)
+        let unwrapped = |turns: &Self, angle: f64| {
+            let side = if turns.last[0] < 0 { -FRAC_PI_2 } else { FRAC_PI_2 };
+            let near = f64::from(turns.whole) * TAU + side;
+            angle + TAU * libm::rint((near - angle) / TAU)
+        };
+        State { a1: unwrapped(turns1, state.a1), a2: unwrapped(turns2, state.a2), ..state }
     }
-}
-
-/// The whole turns of an angle, and the rest, rad.
-#[inline(never)] // one copy
-fn split(angle: f64) -> (i32, f64) {
-    let turns = libm::rint(angle / core::f64::consts::TAU);
-    (turns as i32, angle - turns * core::f64::consts::TAU)
 }

@@ -8,7 +8,7 @@ use crate::numbers::{Scalar, Sealed};
 
 /// `N` numbers, on each of which every operation acts as on one alone: the same bits.
 ///
-/// The equations of motion run on it as on any [`Scalar`]. Cost: on x86-64 that of one number for each 4 of `f32` (8 with AVX2,
+/// The equations of motion run on it as on any `Scalar`. Cost: on x86-64 that of one number for each 4 of `f32` (8 with AVX2,
 /// 2 and 4 of `f64`) where `N` is a multiple of that, as long as all that is kept fits the registers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(align(32))]

@@ -31,7 +31,7 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     /// ```
     /// use double_pendulum::{Parameters, Pendulum, State};
     ///
-    /// let pendulum = Pendulum::new(Parameters { m1: 1.0, m2: 2.0, l1: 1.0, l2: 0.5, g: 9.81 })?;
+    /// let pendulum = Pendulum::new(&Parameters { m1: 1.0, m2: 2.0, l1: 1.0, l2: 0.5, g: 9.81 })?;
     /// let hanging: State<f64> = State::default();
     /// let [bob1, bob2] = pendulum.positions(hanging.angles());
     /// assert_eq!([bob1.y, bob2.y], [-1.0, -1.5]);

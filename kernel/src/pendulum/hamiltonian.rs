@@ -29,18 +29,18 @@ impl<R: Real> Pendulum<R> {
     ///
     /// Refuses NaN, infinite, zero or negative masses and lengths, negative gravity, and combinations whose products
     /// leave the range of `R`; the [`Error`] names the parameter and its value.
-    pub fn new(parameters: Parameters<R>) -> Result<Self, Error> {
+    pub fn new(parameters: &Parameters<R>) -> Result<Self, Error> {
         Self::with_trig(parameters)
     }
 }
 
 impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     /// As [`Pendulum::new`], with the source of sine and cosine given by the type.
-    pub fn with_trig(parameters: Parameters<R>) -> Result<Self, Error> {
+    pub fn with_trig(parameters: &Parameters<R>) -> Result<Self, Error> {
         parameters.check()?;
-        let Parameters { m1, m2, l1, l2, g } = parameters;
+        let &Parameters { m1, m2, l1, l2, g } = parameters;
         let pendulum = Self {
-            parameters,
+            parameters: *parameters,
             inverse_length: [R::ONE / l1, R::ONE / l2],
             total_over_m2: (m1 + m2) / m2,
             coupling: m2 * l1 * l2,

@@ -56,7 +56,7 @@ impl<R: Real> State<R> {
     /// ```
     /// use double_pendulum::{Error, Parameters, Pendulum, State};
     ///
-    /// let pendulum = Pendulum::new(Parameters { m1: 1.0, m2: 1.0, l1: 1.0, l2: 1.0, g: 9.8 })?;
+    /// let pendulum = Pendulum::new(&Parameters { m1: 1.0, m2: 1.0, l1: 1.0, l2: 1.0, g: 9.8 })?;
     /// let mut state = State::at_rest(3.0, 1.0);
     /// let stopped = loop {
     ///     match pendulum.step(&state, 1e3).finite() {

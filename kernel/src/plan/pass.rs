@@ -6,7 +6,7 @@ use super::run::{Directions, Run, distance};
 use super::shadowed_run::{ErrorEstimate, ShadowedRun, steps_of_all};
 use super::way::Way;
 use crate::error::Error;
-use crate::methods::{DirectionForm, Plain, Stepper};
+use crate::methods::{DirectionF32Plain, Stepper};
 use crate::pendulum::State;
 use crate::small::{Modes, SmallOscillations};
 use crate::table::Method;
@@ -67,7 +67,7 @@ impl Candidate {
 pub(super) struct Pass {
     shadowed: ShadowedRun,
     /// Plain `f32`, which shows beside compensated sums what its roundings do.
-    plain: Run<Stepper<f32, DirectionForm<f32, Plain>>>,
+    plain: Run<Stepper<DirectionF32Plain>>,
     closed: Option<SmallOscillations<f32>>,
     rods: [f32; 2],
     /// The shadowed method, the closed form, and plain `f32`.

@@ -135,7 +135,7 @@ impl Search {
     /// Does a piece of the search: steps of one motion that together cost no more than `cost`, or a single one that does;
     /// or the preparation of a motion; or a comparison. The plan, when it is found.
     ///
-    /// Refuses what a [`Form`](crate::methods::Form) refuses: a pendulum out of the range of `f32`. And if nothing within the
+    /// Refuses what [`Pendulum::run`](crate::Pendulum::run) refuses: a pendulum out of the range of `f32`. And if nothing within the
     /// budgets is right in any frame, that is the error at the end of the search.
     pub fn advance(&mut self, cost: f32) -> Result<Option<Plan>, PlanError> {
         let Some(pass) = &mut self.pass else { return self.make() };

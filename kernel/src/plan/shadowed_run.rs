@@ -88,7 +88,7 @@ impl ShadowedRun {
     /// Refuses a problem without a tolerance, a duration or a rate, and a pendulum that the kernel refuses.
     pub fn new(method: Method, problem: &Problem, steps: u32) -> Result<Self, PlanError> {
         problem.check()?;
-        Ok(Self::from_state(method, problem, &Pendulum::new(problem.pendulum)?.to_state(&problem.start), steps))
+        Ok(Self::from_state(method, problem, &Pendulum::new(&problem.pendulum)?.to_state(&problem.start), steps))
     }
 
     /// From `start`, with `steps` steps for each frame.

@@ -138,6 +138,10 @@ impl Scale {
             let slopes = increments(&at, rates(coefficients, &at, inverse));
             change = slopes.map(|slope| slope * (span * R::from_f64(share)));
         }
+        // Of a motion about to leave the finite numbers there is nothing to take back.
+        if !change.into_iter().all(R::is_finite) {
+            change = [R::ZERO; 6];
+        }
         let [sin1, cos1, s, c, p1, p2] = core::array::from_fn(|i| z[i].to_f64() + (lost[i] + change[i]).to_f64());
         let [sin2, cos2] = lower_ray([sin1, cos1], [s, c]);
         let [a1, a2] = [libm::atan2(sin1, cos1), libm::atan2(sin2, cos2)];

@@ -1,25 +1,21 @@
 //! The direction form by extrapolation: the exact motion to the last digits of an `f64`, cheaply.
 
 use super::coefficients::Span;
-use super::sum::{Compensated, Sum};
-use super::{DirectionForm, DirectionState};
+use super::sum::Sum;
 use crate::error::Error;
-use crate::methods::Form;
 use crate::methods::extrapolation::{Extrapolation, ROWS, System};
-use crate::numbers::{Lanes, Sealed};
+use crate::methods::{DirectionF64, Form};
+use crate::numbers::{Lanes, Real, Sealed};
 use crate::pendulum::directions::{Coefficients, Units, increments};
 use crate::pendulum::{Direction, Parameters, State};
 
-/// As [`DirectionForm`], but each step by [`Extrapolation`] of order `ORDER`, 2, 4 .. 16, after which the lengths of the
+/// As [`DirectionF64`], but each step by [`Extrapolation`] of order `ORDER`, 2, 4 .. 16, after which the lengths of the
 /// directions are restored. Four rows go through the step side by side, in the vectors of processors that have them.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ExtrapolatedForm<const ORDER: u32, S = Compensated<f64>> {
-    direction: DirectionForm<f64, S>,
+pub struct ExtrapolationF64<const ORDER: u32> {
+    direction: DirectionF64,
     method: Extrapolation<f64>,
 }
-
-/// What an [`ExtrapolatedForm`] carries from step to step.
-pub type ExtrapolatedState<S> = DirectionState<f64, S>;
 
 /// Rows side by side: two vectors of SSE2 hide each other's latency.
 const LANES: usize = 4;
@@ -76,14 +72,15 @@ impl System<f64, LANES, 6> for Rows<'_> {
     }
 }
 
-impl<const ORDER: u32, S: Sum<f64>> Sealed for ExtrapolatedForm<ORDER, S> {}
+impl<const ORDER: u32> Sealed for ExtrapolationF64<ORDER> {}
 
-impl<const ORDER: u32, S: Sum<f64>> Form<f64> for ExtrapolatedForm<ORDER, S> {
-    type Carried = ExtrapolatedState<S>;
-    const ORDER: u32 = ORDER;
+impl<const ORDER: u32> Form for ExtrapolationF64<ORDER> {
+    type Real = f64;
+    type Carried = <DirectionF64 as Form>::Carried;
+    type Side = f64;
 
     fn new(parameters: &Parameters<f64>, dt: f64) -> Result<Self, Error> {
-        let direction = DirectionForm::with_span(parameters, dt, Span::STEP)?;
+        let direction = DirectionF64::with_span(parameters, dt, Span::STEP)?;
         Ok(Self { direction, method: Extrapolation::new(ORDER)? })
     }
 
@@ -91,7 +88,7 @@ impl<const ORDER: u32, S: Sum<f64>> Form<f64> for ExtrapolatedForm<ORDER, S> {
         self.direction.start(state)
     }
 
-    // A call is nothing beside such a step, and a chip's flash holds it once.
+    // A call is nothing beside such a step: never inlined, to avoid a second copy.
     #[inline(never)]
     fn advance(&self, carried: &mut Self::Carried, steps: u32) {
         for _ in 0..steps {
@@ -106,11 +103,19 @@ impl<const ORDER: u32, S: Sum<f64>> Form<f64> for ExtrapolatedForm<ORDER, S> {
         carried.steps += u64::from(steps);
     }
 
-    fn directions(&self, carried: &Self::Carried) -> [Direction<f64>; 2] {
+    fn check(&self, carried: &Self::Carried) -> Result<(), Error> {
+        self.direction.check(carried)
+    }
+
+    fn heads(carried: &Self::Carried) -> [Direction<f64>; 2] {
+        DirectionF64::heads(carried)
+    }
+
+    fn directions<Q: Real>(&self, carried: &Self::Carried) -> [Direction<Q>; 2] {
         self.direction.directions(carried)
     }
 
-    fn momenta(&self, carried: &Self::Carried) -> [f64; 2] {
+    fn momenta<Q: Real>(&self, carried: &Self::Carried) -> [Q; 2] {
         self.direction.momenta(carried)
     }
 
@@ -119,6 +124,6 @@ impl<const ORDER: u32, S: Sum<f64>> Form<f64> for ExtrapolatedForm<ORDER, S> {
     }
 
     fn bits(carried: &Self::Carried, feed: impl FnMut(u64)) {
-        DirectionForm::<f64, S>::bits(carried, feed);
+        DirectionF64::bits(carried, feed);
     }
 }

@@ -6,19 +6,19 @@ use super::classical::{self, Point};
 use super::coefficients::{Scale, Span, prepare, third};
 use super::lead::BLOCK;
 use super::sum::{Compensated, Sum};
-use crate::error::Error;
-use crate::methods::Form;
+use crate::error::{Error, Parameter, check_finite};
+use crate::methods::{Form, Side};
 use crate::numbers::trig::{Own, SinCos};
 use crate::numbers::{Real, Sealed};
 use crate::pendulum::directions::Coefficients;
-use crate::pendulum::directions::lower_direction;
+use crate::pendulum::directions::{heads, lower_direction};
 use crate::pendulum::{Direction, Parameters, State};
 
 /// The directions of the rods themselves are stepped: what a drawing needs, and no angle anywhere.
 ///
 /// (sin a)' = a' cos a, (cos a)' = -a' sin a for a1 and for D = a1 - a2. The method's error is that of RK4 on angles
 /// within a factor of three, smaller near the upright position. What it does to the length of the directions, a relative
-/// (w dt)^6/72 a step, is undone every 32 steps. Angles are read off within (-pi, pi]; [`Winding`](crate::methods::Winding) counts
+/// (w dt)^6/72 a step, is undone every 32 steps. Angles are read off within (-pi, pi]; [`Run`](crate::Run) counts
 /// the turns where they are wanted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DirectionForm<R, S = Compensated<R>> {
@@ -33,7 +33,7 @@ pub struct DirectionForm<R, S = Compensated<R>> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DirectionState<R, S> {
     /// sin a1, cos a1, S, C, P1, P2.
-    pub(in crate::methods) z: [R; 6],
+    pub(super) z: [R; 6],
     pub(super) sums: [S; 6],
     pub(super) inverse: R,
     pub(super) steps: u64,
@@ -41,15 +41,17 @@ pub struct DirectionState<R, S> {
 
 impl<R: Real, S: Sum<R>> Sealed for DirectionForm<R, S> {}
 
-impl<R: Real, S: Sum<R>> Form<R> for DirectionForm<R, S> {
+impl<R: Real + Side, S: Sum<R>> Form for DirectionForm<R, S> {
+    type Real = R;
     type Carried = DirectionState<R, S>;
-    const ORDER: u32 = 4;
+    type Side = R;
 
-    fn new(parameters: &Parameters<R>, dt: f64) -> Result<Self, Error> {
+    fn new(parameters: &Parameters<f64>, dt: f64) -> Result<Self, Error> {
         Self::with_span(parameters, dt, Span::classical::<R>())
     }
 
-    fn start(&self, state: &State<R>) -> Result<Self::Carried, Error> {
+    fn start(&self, state: &State<f64>) -> Result<Self::Carried, Error> {
+        let state = &state.cast::<R>();
         state.check()?;
         let norm = self.coefficients.norm.to_f64();
         let [a1, a2] = [state.a1.to_f64(), state.a2.to_f64()];
@@ -71,13 +73,32 @@ impl<R: Real, S: Sum<R>> Form<R> for DirectionForm<R, S> {
         }
     }
 
-    fn directions(&self, carried: &Self::Carried) -> [Direction<R>; 2] {
-        let [sin1, cos1, s, c, ..] = carried.z;
-        [[sin1, cos1], lower_direction([sin1, cos1], [s, c], self.coefficients.norm)]
+    #[inline(always)]
+    fn advance_one(&self, carried: &mut Self::Carried) {
+        self.run(carried, 1);
     }
 
-    fn momenta(&self, carried: &Self::Carried) -> [R; 2] {
-        self.scale.in_si([carried.z[4], carried.z[5]])
+    fn check(&self, carried: &Self::Carried) -> Result<(), Error> {
+        let [sin1, cos1, s, c, p1, p2] = carried.z;
+        let [_, [sin2, cos2]] = heads(&carried.z);
+        let rods = [(Parameter::A1, [sin1, cos1]), (Parameter::A2, [s, c]), (Parameter::A2, [sin2, cos2])];
+        let rods = rods.into_iter().flat_map(|(parameter, numbers)| numbers.map(|number| (parameter, number)));
+        check_finite(rods.chain([(Parameter::P1, p1), (Parameter::P2, p2)])).map_err(Error::diverged)
+    }
+
+    #[inline(always)]
+    fn heads(carried: &Self::Carried) -> [Direction<R>; 2] {
+        heads(&carried.z)
+    }
+
+    fn directions<Q: Real>(&self, carried: &Self::Carried) -> [Direction<Q>; 2] {
+        let [sin1, cos1, s, c, ..] = carried.z;
+        let lower = lower_direction([sin1, cos1], [s, c], self.coefficients.norm);
+        [[sin1, cos1], lower].map(|direction| direction.map(R::cast))
+    }
+
+    fn momenta<Q: Real>(&self, carried: &Self::Carried) -> [Q; 2] {
+        self.scale.in_si([carried.z[4], carried.z[5]]).map(R::cast)
     }
 
     fn state(&self, carried: &Self::Carried) -> State<f64> {
@@ -93,8 +114,8 @@ impl<R: Real, S: Sum<R>> Form<R> for DirectionForm<R, S> {
 }
 
 impl<R: Real, S: Sum<R>> DirectionForm<R, S> {
-    pub(super) fn with_span(parameters: &Parameters<R>, dt: f64, span: Span) -> Result<Self, Error> {
-        let (coefficients, scale) = prepare(parameters, dt, span)?;
+    pub(super) fn with_span(parameters: &Parameters<f64>, dt: f64, span: Span) -> Result<Self, Error> {
+        let (coefficients, scale) = prepare(&parameters.cast(), dt, span)?;
         let half_inverse_square = R::HALF / (coefficients.norm * coefficients.norm);
         Ok(Self { coefficients, scale, half_inverse_square, sum: PhantomData })
     }
@@ -113,7 +134,7 @@ impl<R: Real, S: Sum<R>> DirectionForm<R, S> {
 
     /// Steps, at most to the end of a block, where the lengths are restored.
     #[inline(always)]
-    pub(in crate::methods) fn run(&self, carried: &mut DirectionState<R, S>, steps: u32) {
+    pub(super) fn run(&self, carried: &mut DirectionState<R, S>, steps: u32) {
         carried.steps += u64::from(steps);
         for _ in 0..self.scale.lead.made(steps, carried.steps) {
             self.step(carried);

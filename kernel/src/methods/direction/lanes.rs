@@ -1,9 +1,10 @@
 //! The plain direction form for many motions at once.
 
+use super::DirectionForm;
 use super::classical::{Point, Stage, missing, newton_inverse};
 use super::coefficients::third;
+use super::form::DirectionState;
 use super::sum::Plain;
-use super::{DirectionForm, DirectionState};
 use crate::numbers::{Lanes, Real, Scalar};
 use crate::pendulum::Direction;
 use crate::pendulum::directions::Coefficients;
@@ -99,7 +100,7 @@ impl<R: Real, const N: usize, const ROWS: usize> DirectionLanes<R, N, ROWS> {
         }
     }
 
-    /// As of [`Watched`](crate::methods::Watched), of a row.
+    /// As of [`Form::heads`](crate::methods::Form::heads), of a row.
     #[inline(always)]
     pub fn heads(&self, row: usize) -> [Direction<Lanes<R, N>>; 2] {
         heads(&self.rows[row].start.z)

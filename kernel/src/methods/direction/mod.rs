@@ -8,8 +8,8 @@ mod lanes;
 mod lead;
 mod sum;
 
-pub use extrapolated::{ExtrapolatedForm, ExtrapolatedState};
-pub use form::{DirectionForm, DirectionState};
+pub use extrapolated::ExtrapolationF64;
+pub use form::DirectionForm;
 pub(crate) use lanes::DirectionLanes;
 pub(crate) use lead::BLOCK;
 pub use sum::{Compensated, Plain, Sum};

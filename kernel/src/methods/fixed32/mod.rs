@@ -8,11 +8,11 @@ mod upkeep;
 
 use crate::error::Error;
 use crate::methods::Form;
-use crate::methods::scaling::{Scaling, check_step};
-use crate::numbers::fixed::{Q30, nearest};
+use crate::methods::scaling::{Scaling, check_step, lost};
+use crate::numbers::fixed::{Q30, nearest, product};
 use crate::numbers::trig::{Own, SinCos};
 use crate::numbers::{Real, Scalar, Sealed};
-use crate::pendulum::directions::{lower_direction, lower_ray};
+use crate::pendulum::directions::{heads, lower_direction, lower_ray};
 use crate::pendulum::{Direction, Parameters, Pendulum, State};
 use setting::Setting;
 
@@ -29,7 +29,7 @@ use setting::Setting;
 ///
 /// **Nothing overflows.** The units of a motion follow from its energy at the start, and every 32 steps the energy is held
 /// to 9/8 of that; a motion that gained more, because its steps were too coarse, is lost: its state is NaN and
-/// [`try_advance`](Form::try_advance) says so. Nothing is clamped.
+/// [`Run::advance`](crate::Run::advance) says so. Nothing is clamped.
 ///
 /// - |u| + |v| is at most [`Bounds::elbow`](crate::Bounds), for what a motion has of it with opposite signs, its mirror image
 ///   has with equal ones. The unit of time makes that 0.86, so |u v| is below 0.2, and momenta are of that size.
@@ -46,12 +46,12 @@ use setting::Setting;
 /// than that for mass ratios from 1/128 to 32 and unlike rods). Near the upright position `f32` is better: there sines are small,
 /// and steps of 2^-30 coarse beside them.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Fixed32Form {
+pub struct Fixed32 {
     parameters: Parameters<f64>,
     dt: f64,
 }
 
-/// A motion in fixed point, with the units that its energy chose: what [`Fixed32Form`] carries from step to step.
+/// A motion in fixed point, with the units that its energy chose: what [`Fixed32`] carries from step to step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fixed32State {
     units: Setting,
@@ -79,30 +79,29 @@ fn value(z: i64) -> f64 {
     (z - OFFSET) as f64 / ONE
 }
 
-impl Fixed32Form {
-    #[inline(never)]
-    fn start_from(&self, state: &State<f64>) -> Result<Fixed32State, Error> {
-        let energy = Pendulum::new(self.parameters)?.energy_above_rest(state);
-        Ok(Fixed32State::starting(Setting::new(&self.parameters, energy, self.dt)?, state))
-    }
-}
+impl Sealed for Fixed32 {}
 
-impl Sealed for Fixed32Form {}
-
-impl<R: Real> Form<R> for Fixed32Form {
+impl Form for Fixed32 {
+    type Real = f32;
     type Carried = Fixed32State;
-    const ORDER: u32 = 4;
+    type Side = i32;
 
-    fn new(parameters: &Parameters<R>, dt: f64) -> Result<Self, Error> {
-        let parameters = parameters.cast::<f64>();
+    fn new(parameters: &Parameters<f64>, dt: f64) -> Result<Self, Error> {
         parameters.check()?;
         check_step(dt)?;
-        Ok(Self { parameters, dt })
+        Ok(Self { parameters: *parameters, dt })
     }
 
-    fn start(&self, state: &State<R>) -> Result<Self::Carried, Error> {
+    #[inline(never)]
+    fn start(&self, state: &State<f64>) -> Result<Fixed32State, Error> {
         state.check()?;
-        self.start_from(&state.cast())
+        let energy = Pendulum::new(&self.parameters)?.energy_above_rest(state);
+        Ok(Fixed32State::starting(Setting::new(&self.parameters, energy, self.dt)?, state))
+    }
+
+    fn start_below(&self, above: &Fixed32State, state: &State<f64>) -> Result<Fixed32State, Error> {
+        state.check()?;
+        Ok(Fixed32State::starting(above.units, state))
     }
 
     // A call is nothing beside such a step, and a chip's flash holds it once.
@@ -121,12 +120,21 @@ impl<R: Real> Form<R> for Fixed32Form {
         }
     }
 
-    fn directions(&self, carried: &Self::Carried) -> [Direction<R>; 2] {
+    fn check(&self, carried: &Fixed32State) -> Result<(), Error> {
+        lost(carried.lost)
+    }
+
+    #[inline(always)]
+    fn heads(carried: &Fixed32State) -> [Direction<i32>; 2] {
+        heads(&carried.quantities()).map(|direction| direction.map(|part| part.0))
+    }
+
+    fn directions<R: Real>(&self, carried: &Self::Carried) -> [Direction<R>; 2] {
         let [sin1, cos1, s, c, ..] = carried.z.map(|z| R::from_f64(value(z)));
         [[sin1, cos1], lower_direction([sin1, cos1], [s, c], R::from_f64(carried.units.scaling.norm))]
     }
 
-    fn momenta(&self, carried: &Self::Carried) -> [R; 2] {
+    fn momenta<R: Real>(&self, carried: &Self::Carried) -> [R; 2] {
         carried.momenta().map(R::from_f64)
     }
 
@@ -158,16 +166,18 @@ impl Fixed32State {
         motion
     }
 
-    /// The motion that starts from `state`, whose energy is at most this one's: in the same units.
-    pub(super) fn start<R: Real>(&self, state: &State<R>) -> Result<Self, Error> {
-        state.check()?;
-        Ok(Self::starting(self.units, &state.cast()))
-    }
-
     /// sin a1, cos a1, S, C, P1, P2, rounded.
     #[inline(always)]
-    pub(super) fn quantities(&self) -> [Q30; 6] {
+    fn quantities(&self) -> [Q30; 6] {
         self.z.map(|z| Q30((z >> 32) as i32))
+    }
+
+    /// (sin, cos) of both rods times 2^30.
+    pub(super) fn directions_q30(&self) -> [Direction<i32>; 2] {
+        let [upper, lower] = heads(&self.quantities());
+        let ([_, inverse_square], norm) = (self.units.square, self.units.coefficients.norm);
+        let over_norm = |x: Q30| ((product(x.0, norm.0) >> 30) * inverse_square) >> 29;
+        [upper.map(|x| x.0), lower.map(|x| over_norm(x) as i32)]
     }
 
     fn momenta(&self) -> [f64; 2] {

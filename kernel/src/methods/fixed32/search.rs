@@ -1,7 +1,7 @@
 //! A search for the motion that leads furthest: unit tests are stopped where a sum or product does not fit its word.
 
 use super::setting::Setting;
-use super::{Fixed32Form, Fixed32State, OFFSET, UPKEEP};
+use super::{Fixed32, Fixed32State, OFFSET, UPKEEP};
 use crate::error::Error;
 use crate::methods::Form;
 use crate::methods::scaling::Scaling;
@@ -45,7 +45,7 @@ impl Candidate {
     /// the energy allows.
     fn motion(&self) -> Result<Fixed32State, Error> {
         let parameters = self.parameters();
-        let pendulum = Pendulum::new(parameters)?;
+        let pendulum = Pendulum::new(&parameters)?;
         let [_, _, a1, a2, direction, energy, shorter] = self.0;
         let still = State::at_rest(a1, a2);
         let (sin, cos) = libm::sincos(direction);
@@ -59,7 +59,7 @@ impl Candidate {
             Err(Error::TooLarge { limit, .. }) => 0.999_999 * limit * libm::exp2(-shorter.clamp(0.0, 1.0)),
             other => return Err(other.map_or_else(|error| error, |_| parameters.out_of_range())),
         };
-        <Fixed32Form as Form<f64>>::start(&<Fixed32Form as Form<f64>>::new(&parameters, dt)?, &state)
+        Fixed32::new(&parameters, dt)?.start(&state)
     }
 
     /// How near to the end of its word, 1, anything comes between two looks at the energy that begin with as much as
@@ -112,15 +112,15 @@ fn the_motion_that_leads_furthest_stays_in_range() -> Result<(), Error> {
 #[test]
 fn too_much_energy_is_noticed() -> Result<(), Error> {
     let parameters = Parameters::equal_rods(1.0, 1.0, 9.81);
-    let form = <Fixed32Form as Form<f64>>::new(&parameters, 1.0 / 240.0)?;
-    let motion = Form::<f64>::start(&form, &State { a1: 0.0, a2: 0.0, p1: 4.0, p2: 2.0 })?;
+    let form = Fixed32::new(&parameters, 1.0 / 240.0)?;
+    let motion = form.start(&State { a1: 0.0, a2: 0.0, p1: 4.0, p2: 2.0 })?;
     for (more, lost) in [(1.0, false), (1.2, true)] {
         let mut motion = motion;
-        Form::<f64>::advance(&form, &mut motion, UPKEEP);
+        form.advance(&mut motion, UPKEEP);
         for momentum in &mut motion.z[4..] {
             *momentum = libm::rint((*momentum - OFFSET) as f64 * more) as i64 + OFFSET;
         }
-        Form::<f64>::advance(&form, &mut motion, UPKEEP);
+        form.advance(&mut motion, UPKEEP);
         assert_eq!((motion.lost, motion.state().a1.is_nan()), (lost, lost), "momenta times {more}");
     }
     Ok(())

@@ -3,15 +3,15 @@
 mod motion;
 mod rows;
 
-pub use motion::Fixed64State;
+use motion::Fixed64State;
 
 use crate::error::Error;
 use crate::methods::Form;
-use crate::methods::scaling::check_step;
+use crate::methods::scaling::{check_step, lost};
 use crate::numbers::{Real, Sealed};
 use crate::pendulum::{Direction, Parameters, State};
 
-/// As [`ExtrapolatedForm`](super::ExtrapolatedForm), but on integers of 64 bits, row after row. For any masses and rods whose
+/// As [`ExtrapolationF64`](super::ExtrapolationF64), but on integers of 64 bits, row after row. For any masses and rods whose
 /// scaled ratios are below some 4,000 (others are refused by name), and any start.
 ///
 /// The energy of the motion chooses a unit of time at its start, from the [bounds](crate::Bounds) that no motion of that
@@ -22,34 +22,34 @@ use crate::pendulum::{Direction, Parameters, State};
 /// the longest there may be. What a stage of a step may overshoot, a factor of 2 in every quantity, is looked at in every
 /// stage: given that, no sum and no product can leave its 64 bits (argued at each in `rows.rs`). A motion that ever exceeded
 /// it, because the steps were too coarse and its energy grew, is lost, its state is NaN and
-/// [`try_advance`](Form::try_advance) says so. Nothing is clamped.
+/// [`Run::advance`](crate::Run::advance) says so. Nothing is clamped.
 ///
 /// Error in 10 s of regular motion (0.5 rad, rods of 1 m) by order 12: below 1e-12 rad with 12 steps a second; chaotic, as
 /// much as in `f64` at the same steps, or 1e-12 rad after 5 s (2 rad), where roundings are all there is (the repository's tests
 /// assert both). These come to 2e-13 rad by order 8, 7e-13 by order 12 and 3e-12 by order 16, however short the steps, in `f64`
 /// to 1e-13 or so. No rounding leans to one side, or all steps would add it up.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Fixed64Form<const ORDER: u32> {
+pub struct Fixed64<const ORDER: u32> {
     parameters: Parameters<f64>,
     dt: f64,
 }
 
-impl<const ORDER: u32> Sealed for Fixed64Form<ORDER> {}
+impl<const ORDER: u32> Sealed for Fixed64<ORDER> {}
 
-impl<R: Real, const ORDER: u32> Form<R> for Fixed64Form<ORDER> {
+impl<const ORDER: u32> Form for Fixed64<ORDER> {
+    type Real = f32;
     type Carried = Fixed64State;
-    const ORDER: u32 = ORDER;
+    type Side = i32;
 
-    fn new(parameters: &Parameters<R>, dt: f64) -> Result<Self, Error> {
-        let parameters = parameters.cast::<f64>();
+    fn new(parameters: &Parameters<f64>, dt: f64) -> Result<Self, Error> {
         parameters.check()?;
         check_step(dt)?;
-        Ok(Self { parameters, dt })
+        Ok(Self { parameters: *parameters, dt })
     }
 
-    fn start(&self, state: &State<R>) -> Result<Self::Carried, Error> {
+    fn start(&self, state: &State<f64>) -> Result<Self::Carried, Error> {
         state.check()?;
-        Fixed64State::start(&self.parameters, self.dt, ORDER, &state.cast())
+        Fixed64State::start(&self.parameters, self.dt, ORDER, state)
     }
 
     #[inline]
@@ -57,11 +57,19 @@ impl<R: Real, const ORDER: u32> Form<R> for Fixed64Form<ORDER> {
         carried.advance(steps);
     }
 
-    fn directions(&self, carried: &Self::Carried) -> [Direction<R>; 2] {
+    fn check(&self, carried: &Self::Carried) -> Result<(), Error> {
+        lost(carried.is_lost())
+    }
+
+    fn heads(carried: &Self::Carried) -> [Direction<i32>; 2] {
+        carried.heads()
+    }
+
+    fn directions<R: Real>(&self, carried: &Self::Carried) -> [Direction<R>; 2] {
         carried.directions()
     }
 
-    fn momenta(&self, carried: &Self::Carried) -> [R; 2] {
+    fn momenta<R: Real>(&self, carried: &Self::Carried) -> [R; 2] {
         carried.momenta()
     }
 

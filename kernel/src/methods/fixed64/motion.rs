@@ -9,10 +9,10 @@ use crate::methods::scaling::Scaling;
 use crate::numbers::fixed::{FixedPoint, Q64};
 use crate::numbers::trig::{Own, SinCos};
 use crate::numbers::{Real, Scalar};
-use crate::pendulum::directions::lower_ray;
+use crate::pendulum::directions::{heads, lower_ray};
 use crate::pendulum::{Direction, Parameters, Pendulum, State};
 
-/// A motion in fixed point, with the units that its energy chose: what [`Fixed64Form`](super::Fixed64Form) carries from step
+/// A motion in fixed point, with the units that its energy chose: what [`Fixed64`](super::Fixed64) carries from step
 /// to step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fixed64State {
@@ -74,7 +74,7 @@ impl Fixed64State {
 
     #[inline(never)]
     pub(super) fn start(parameters: &Parameters<f64>, dt: f64, order: u32, state: &State<f64>) -> Result<Self, Error> {
-        let energy = Pendulum::new(*parameters)?.energy_above_rest(state);
+        let energy = Pendulum::new(parameters)?.energy_above_rest(state);
         let motion = Self::new(parameters, energy, dt, order)?;
         let &State { a1, a2, p1, p2 } = state;
         let (sin1, cos1) = Own::sin_cos(a1);
@@ -112,6 +112,15 @@ impl Fixed64State {
     #[inline(never)]
     fn values(&self) -> [f64; 6] {
         self.z.map(Q64::value)
+    }
+
+    pub(super) fn is_lost(&self) -> bool {
+        self.lost
+    }
+
+    #[inline]
+    pub(super) fn heads(&self) -> [Direction<i32>; 2] {
+        heads(&self.z).map(|direction| direction.map(|x| (x.0 >> 32) as i32))
     }
 
     pub(super) fn directions<R: Real>(&self) -> [Direction<R>; 2] {
