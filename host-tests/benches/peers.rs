@@ -7,7 +7,7 @@ use std::hint::black_box;
 use std::iter::successors;
 use std::time::Instant;
 
-use double_pendulum::methods::Stepper;
+use double_pendulum::parts::Stepper;
 use double_pendulum::trig::Own;
 use double_pendulum::{DirectionF64, DirectionF64Plain, ExtrapolationF64, Form};
 use double_pendulum::{Motion, Parameters, State};

@@ -84,6 +84,7 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
 
 impl<R: Real, T: SinCos<R>> EqualRods<R, T> {
     /// The bounds of the motion through `state`, in the units of the equal-rod form.
+    #[doc(hidden)]
     #[must_use]
     pub fn bounds(&self, state: &State<R>) -> Bounds<R> {
         Bounds::new(&self.parameters(), self.energy_above_rest(state))
@@ -92,6 +93,7 @@ impl<R: Real, T: SinCos<R>> EqualRods<R, T> {
     /// Whether it is certain that neither rod ever turns over: K < 2 min(1 + mu, mu) = 2 mu.
     ///
     /// From rest that is (1 + mu) cos a1 + mu cos a2 > 1. `false` says nothing.
+    #[doc(hidden)]
     #[must_use]
     pub fn cannot_turn_over(&self, state: &State<R>) -> bool {
         clearly_below(self.energy_above_rest(state), R::TWO * self.mass_ratio())
@@ -124,12 +126,7 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     pub fn check_step(&self, dt: f64) -> Result<(), Error> {
         if self.parameters().g == R::ZERO { check_forward::<R>(dt) } else { self.modes()?.check_step(dt) }
     }
-}
 
-/// W dt of the longest step that resolves a motion whose fastest rate is W.
-const RESOLVED: f64 = 0.25;
-
-impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     /// The fastest rate, 1/s, at which anything changes in a motion of the energy of `state`:
     /// W = sqrt(w1^2 + (1 + m2/m1) d^2), w1 being the fast normal frequency and d [`Bounds::elbow`].
     ///
@@ -168,6 +165,9 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     }
 }
 
+/// W dt of the longest step that resolves a motion whose fastest rate is W.
+const RESOLVED: f64 = 0.25;
+
 /// Refuses a step that is NaN, infinite, zero, negative or out of the range of `R`.
 fn check_forward<R: Real>(dt: f64) -> Result<(), Error> {
     let (parameter, value) = (Parameter::Dt, dt);
@@ -184,6 +184,7 @@ fn check_forward<R: Real>(dt: f64) -> Result<(), Error> {
 
 /// How many roundings, relative to K, a certificate keeps clear of its limit: more than the evaluation of K makes
 /// when no kinetic term cancels.
+#[doc(hidden)]
 pub const ROUNDING_MARGIN: f64 = 16.0;
 
 fn clearly_below<R: Real>(energy: R, limit: R) -> bool {

@@ -45,6 +45,16 @@ pub enum Parameter {
     Energy,
     /// The method.
     Method,
+    /// How far a bob may be off, m.
+    Tolerance,
+    /// How long a motion is shown, s.
+    Duration,
+    /// Frames per second.
+    Rate,
+    /// What a step costs, in the unit of the budget.
+    Cost,
+    /// What computing a frame, or planning, may cost.
+    Budget,
 }
 
 impl fmt::Display for Parameter {
@@ -67,6 +77,11 @@ impl fmt::Display for Parameter {
             Parameter::FrequencyRatio => "frequency ratio",
             Parameter::Energy => "energy",
             Parameter::Method => "method",
+            Parameter::Tolerance => "tolerance",
+            Parameter::Duration => "duration",
+            Parameter::Rate => "rate",
+            Parameter::Cost => "cost",
+            Parameter::Budget => "budget",
         })
     }
 }

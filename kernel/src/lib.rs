@@ -69,8 +69,7 @@ extern crate std;
 mod bounds;
 mod error;
 pub mod flips;
-#[doc(hidden)]
-pub mod methods;
+mod methods;
 mod numbers;
 mod pendulum;
 pub mod plan;
@@ -86,12 +85,19 @@ pub use methods::{
     ClosedFormF32, ClosedFormF64, DirectionF32, DirectionF32Plain, DirectionF64, DirectionF64Plain, ExtrapolationF64,
     Fixed32, Fixed64, Form, HamiltonF32, HamiltonF64, Run, rk4,
 };
-#[doc(hidden)]
-pub use numbers::Lanes;
 pub use numbers::{Real, trig};
 pub use pendulum::{Direction, EqualRods, Motion, Parameters, Pendulum, State, Units, Vector};
 pub use small::{Mode, Modes, Oscillation, SmallOscillations, periodic_mass_ratio};
 pub use table::{Equations, Integrator, Method, Numbers};
+
+/// What the methods are made of, for tools and tests; it may change at any time.
+#[doc(hidden)]
+pub mod parts {
+    pub use crate::methods::{
+        Canonical, ClosedForm, Derivatives, Dimensionless, DirectionForm, Plain, Side, Stepper, Turns,
+    };
+    pub use crate::numbers::{Lanes, Scalar};
+}
 
 /// The README's examples, as tests.
 #[cfg(doctest)]

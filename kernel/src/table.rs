@@ -4,6 +4,7 @@ use core::fmt;
 
 /// What is integrated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[doc(hidden)]
 pub enum Equations {
     /// Hamilton's equations of (a1, a2, p1, p2), SI units: [`Pendulum::derivatives`](crate::Pendulum::derivatives).
     Hamilton,
@@ -19,6 +20,7 @@ pub enum Equations {
 
 /// What is computed in. Compensated sums carry the rounding error of each addition into the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[doc(hidden)]
 pub enum Numbers {
     /// Single precision.
     F32,
@@ -36,6 +38,7 @@ pub enum Numbers {
 
 /// How a step is made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[doc(hidden)]
 pub enum Integrator {
     /// The classical Runge-Kutta method.
     Rk4,
@@ -85,18 +88,21 @@ macro_rules! methods {
 
             /// What it integrates.
             #[must_use]
+            #[doc(hidden)]
             pub const fn equations(self) -> Equations {
                 match self { $(Method::$method => Equations::$equations,)* }
             }
 
             /// What it computes in.
             #[must_use]
+            #[doc(hidden)]
             pub const fn numbers(self) -> Numbers {
                 match self { $(Method::$method => Numbers::$numbers,)* }
             }
 
             /// How it makes a step.
             #[must_use]
+            #[doc(hidden)]
             pub const fn integrator(self) -> Integrator {
                 match self { $(Method::$method => Integrator::$integrator,)* }
             }
@@ -152,12 +158,14 @@ impl Method {
 
     /// Whether its numbers are those of an `f32`.
     #[must_use]
+    #[doc(hidden)]
     pub const fn is_single(self) -> bool {
         matches!(self.numbers(), Numbers::F32 | Numbers::CompensatedF32)
     }
 
     /// Whether its numbers are integers.
     #[must_use]
+    #[doc(hidden)]
     pub const fn is_fixed_point(self) -> bool {
         matches!(self.numbers(), Numbers::Fixed32 | Numbers::Fixed64)
     }

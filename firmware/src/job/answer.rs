@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use double_pendulum::methods::Turns;
+use double_pendulum::parts::Turns;
 use double_pendulum::{Error, Method, Pendulum};
 
 use super::{OnBoards, Reading, Request, Run};

@@ -1,6 +1,7 @@
 //! What a row of the table is: a motion that can be started, stepped and read.
 
-use double_pendulum::methods::{Form, Stepper};
+use double_pendulum::Form;
+use double_pendulum::parts::Stepper;
 use double_pendulum::{Error, Motion, Parameters, Pendulum, Real, State};
 
 use super::{JobError, Request};

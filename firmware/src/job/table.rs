@@ -3,7 +3,7 @@
 //! The first block is what every board's application computes on request. The second is computed on the host and counted on the
 //! chips by the `measure` program, and takes no flash of an application.
 
-use double_pendulum::methods::{Canonical, Dimensionless, Stepper};
+use double_pendulum::parts::{Canonical, Dimensionless, Stepper};
 use double_pendulum::trig::{Libm, Micromath};
 use double_pendulum::{
     DirectionF32, DirectionF32Plain, DirectionF64Plain, ExtrapolationF64, Fixed32, Fixed64, HamiltonF32, HamiltonF64,

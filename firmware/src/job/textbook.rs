@@ -1,6 +1,6 @@
 //! The page's equations as they stand there, for comparison only.
 
-use double_pendulum::methods::Equations;
+use double_pendulum::parts::Derivatives;
 use double_pendulum::{Error, Parameters, Real};
 
 /// Sine and cosine as two routines of the `libm` crate, as the page calls them.
@@ -37,7 +37,7 @@ pub struct Textbook<R> {
     parameters: Parameters<R>,
 }
 
-impl<R: Separate> Equations<R> for Textbook<R> {
+impl<R: Separate> Derivatives<R> for Textbook<R> {
     fn prepare(parameters: &Parameters<R>) -> Result<Self, Error> {
         Ok(Self { parameters: *parameters })
     }

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use double_pendulum::Form;
-use double_pendulum::methods::Stepper;
+use double_pendulum::parts::Stepper;
 use double_pendulum::{Error, Parameters, Pendulum, Real, State};
 
 use crate::oracle::reference::Reference;

@@ -1,7 +1,7 @@
 //! A simulated day: no method that steps in 32 bits loses its energy or its time to its number type.
 
 use double_pendulum::Method;
-use double_pendulum::methods::Stepper;
+use double_pendulum::parts::Stepper;
 use double_pendulum::plan::Way;
 use double_pendulum::{DirectionF32, DirectionF32Plain, DirectionF64, Fixed32, Form};
 use double_pendulum::{Error, Pendulum, Real, State};

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use double_pendulum::methods::Stepper;
+use double_pendulum::parts::Stepper;
 use double_pendulum::{DirectionF32, DirectionF64, ExtrapolationF64, Fixed32, Fixed64, Form};
 use double_pendulum::{Error, Motion, Parameter, Parameters, Pendulum, State};
 use firmware::config::GRAVITY;

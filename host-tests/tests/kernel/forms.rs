@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use double_pendulum::methods::{Stepper, Turns};
+use double_pendulum::parts::{Stepper, Turns};
 use double_pendulum::{
     ClosedFormF32, DirectionF32, DirectionF32Plain, DirectionF64, DirectionF64Plain, Error, ExtrapolationF64, Fixed32,
     Fixed64, Form, HamiltonF32, HamiltonF64, Motion, Parameter, Parameters, Pendulum, Real, Run, State,

@@ -4,9 +4,7 @@ use std::collections::BTreeSet;
 use std::f64::consts::PI;
 
 use double_pendulum::Method;
-use double_pendulum::plan::{
-    Budget, Costs, Limit, Plan, PlanError, PlannedRun, Problem, Quantity, Search, ShadowedRun, Way,
-};
+use double_pendulum::plan::{Budget, Costs, Limit, Plan, PlanError, PlannedRun, Problem, Search, ShadowedRun, Way};
 use double_pendulum::{Error, Motion, Parameter, Parameters};
 use firmware::config::{CORTEX_M3, STM32F405};
 use firmware::motion::planner::half_pixel;
@@ -258,31 +256,36 @@ fn what_is_refused_is_named_with_its_value() {
     let good = scene(1.0, 90.0, 10.0);
     let budget = STM32F405.budget(&good);
     let refused = |scene: &Problem| format!("{:?}", Plan::search(scene, &M4F, &budget).expect_err("refused"));
-    let not_positive = |quantity, value: f64| format!("{:?}", PlanError::NotPositive { quantity, value });
+    let not_positive = |parameter, value: f64| {
+        let finite = value.is_finite();
+        let error =
+            if finite { Error::NotPositive { parameter, value } } else { Error::NotFinite { parameter, value } };
+        format!("{:?}", PlanError::Refused(error))
+    };
     for bad in [f64::NAN, f64::INFINITY, 0.0, -1.0] {
-        assert_eq!(refused(&Problem { tolerance: bad, ..good }), not_positive(Quantity::Tolerance, bad));
-        assert_eq!(refused(&Problem { duration: bad, ..good }), not_positive(Quantity::Duration, bad));
+        assert_eq!(refused(&Problem { tolerance: bad, ..good }), not_positive(Parameter::Tolerance, bad));
+        assert_eq!(refused(&Problem { duration: bad, ..good }), not_positive(Parameter::Duration, bad));
         let pendulum = Parameters { m2: bad, ..good.pendulum };
-        let Err(PlanError::Motion(error)) = Plan::search(&Problem { pendulum, ..good }, &M4F, &budget) else {
+        let Err(PlanError::Refused(error)) = Plan::search(&Problem { pendulum, ..good }, &M4F, &budget) else {
             panic!("m2 = {bad} is accepted")
         };
         assert_eq!(error.parameter(), Parameter::M2);
         let single = bad as f32;
         let of =
             |costs: &Costs, budget: &Budget| format!("{:?}", Plan::search(&good, costs, budget).expect_err("refused"));
-        assert_eq!(of(&Costs { direction: single, ..M4F }, &budget), not_positive(Quantity::Cost, bad));
-        assert_eq!(of(&M4F, &Budget { frame: single, ..budget }), not_positive(Quantity::FrameBudget, bad));
-        assert_eq!(of(&M4F, &Budget { planning: single, ..budget }), not_positive(Quantity::PlanningBudget, bad));
+        assert_eq!(of(&Costs { direction: single, ..M4F }, &budget), not_positive(Parameter::Cost, bad));
+        assert_eq!(of(&M4F, &Budget { frame: single, ..budget }), not_positive(Parameter::Budget, bad));
+        assert_eq!(of(&M4F, &Budget { planning: single, ..budget }), not_positive(Parameter::Budget, bad));
     }
-    assert_eq!(refused(&Problem { rate: 0, ..good }), not_positive(Quantity::Rate, 0.0));
+    assert_eq!(refused(&Problem { rate: 0, ..good }), not_positive(Parameter::Rate, 0.0));
     // Out of the range of f32.
     let pendulum = Parameters { m1: 1e60, m2: 1e60, ..good.pendulum };
-    assert!(matches!(Plan::search(&Problem { pendulum, ..good }, &M4F, &budget), Err(PlanError::Motion(_))));
+    assert!(matches!(Plan::search(&Problem { pendulum, ..good }, &M4F, &budget), Err(PlanError::Refused(_))));
     let start = Motion { w1: f64::NEG_INFINITY, ..good.start };
-    let motion = PlanError::Motion(Error::NotFinite { parameter: Parameter::W1, value: f64::NEG_INFINITY });
+    let motion = PlanError::Refused(Error::NotFinite { parameter: Parameter::W1, value: f64::NEG_INFINITY });
     assert_eq!(Plan::search(&Problem { start, ..good }, &M4F, &budget), Err(motion));
     let limit = f64::from(u32::MAX) / f64::from(RATE);
-    let too_long = PlanError::TooLarge { quantity: Quantity::Duration, value: 1e9, limit };
+    let too_long = PlanError::Refused(Error::TooLarge { parameter: Parameter::Duration, value: 1e9, limit });
     assert_eq!(Plan::search(&Problem { duration: 1e9, ..good }, &M4F, &budget), Err(too_long));
 }
 

@@ -52,6 +52,7 @@ pub struct Flips<F: Form> {
 
 /// A motion that has not turned over yet.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct Falling<F: Form> {
     carried: F::Carried,
     heads: [Direction<F::Side>; 2],
@@ -61,6 +62,7 @@ pub struct Falling<F: Form> {
 impl<F: Form> Falling<F> {
     /// Steps made.
     #[must_use]
+    #[doc(hidden)]
     pub fn steps(&self) -> u32 {
         self.steps
     }
@@ -95,6 +97,7 @@ impl<F: Form> Flips<F> {
     /// The motion let go at the angles `a1`, `a2`, rad; none if it never turns over.
     ///
     /// Refuses angles that are not finite.
+    #[doc(hidden)]
     pub fn start(&self, a1: F::Real, a2: F::Real) -> Result<Option<Falling<F>>, Error> {
         let state = State::at_rest(a1, a2);
         state.check()?;
@@ -107,6 +110,7 @@ impl<F: Form> Flips<F> {
 
     /// Makes at most `steps` steps; what is known after them.
     #[inline]
+    #[doc(hidden)]
     pub fn advance(&self, falling: &mut Falling<F>, steps: u32) -> Option<Flip<F::Real>> {
         for _ in 0..steps {
             if falling.steps >= self.steps {

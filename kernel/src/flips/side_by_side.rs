@@ -32,6 +32,7 @@ impl Flips<DirectionF32Plain> {
     ///
     /// Refuses angles that are not finite, having given the flips of those before.
     #[inline(always)]
+    #[doc(hidden)]
     pub fn of_each<const N: usize>(
         &self,
         starts: impl IntoIterator<Item = [f32; 2]>,

@@ -8,8 +8,8 @@ use crate::numbers::trig::{DefaultTrig, SinCos};
 use crate::numbers::{Real, Sealed};
 use crate::pendulum::{Direction, EqualRods, Parameters, Pendulum, State, Units};
 
-/// Equations of motion, with the units they have.
-pub trait Equations<R: Real>: Copy + Debug + PartialEq {
+/// Derivatives of motion, with the units they have.
+pub trait Derivatives<R: Real>: Copy + Debug + PartialEq {
     /// Refuses what they do not hold for.
     fn prepare(parameters: &Parameters<R>) -> Result<Self, Error>;
     /// The time derivatives of (a1, a2, p1, p2).
@@ -28,7 +28,7 @@ pub trait Equations<R: Real>: Copy + Debug + PartialEq {
     }
 }
 
-impl<R: Real, T: SinCos<R>> Equations<R> for Pendulum<R, T> {
+impl<R: Real, T: SinCos<R>> Derivatives<R> for Pendulum<R, T> {
     fn prepare(parameters: &Parameters<R>) -> Result<Self, Error> {
         Pendulum::with_trig(parameters)
     }
@@ -45,7 +45,7 @@ pub struct Dimensionless<R> {
     units: Units<R>,
 }
 
-impl<R: Real> Equations<R> for Dimensionless<R> {
+impl<R: Real> Derivatives<R> for Dimensionless<R> {
     fn prepare(parameters: &Parameters<R>) -> Result<Self, Error> {
         Ok(Self { units: Units::of(parameters)?, rods: EqualRods::new(parameters.mass_ratio())? })
     }
@@ -74,7 +74,7 @@ pub struct Canonical<R, E = Pendulum<R, DefaultTrig>> {
 
 impl<R, E> Sealed for Canonical<R, E> {}
 
-impl<R: Real + super::Side, E: Equations<R>> Form for Canonical<R, E> {
+impl<R: Real + super::Side, E: Derivatives<R>> Form for Canonical<R, E> {
     type Real = R;
     type Carried = State<R>;
     type Side = R;

@@ -106,6 +106,7 @@ impl<R: Scalar> Extrapolation<R> {
     }
 
     /// The order, 2 K.
+    #[doc(hidden)]
     pub fn order(&self) -> u32 {
         2 * self.rows as u32
     }
@@ -216,6 +217,7 @@ impl<R: Real> Extrapolation<R> {
 
     /// What [`step`](Self::step) adds to `z`, for those who carry the rounding error of that addition along.
     #[inline]
+    #[doc(hidden)]
     pub fn increment<const N: usize>(&self, f: impl Fn(&[R; N]) -> [R; N], z: &[R; N], dt: R) -> [R; N] {
         self.end(&mut Any { f, z, dt, method: self, share: dt }, &[R::ZERO; N])
     }

@@ -15,9 +15,9 @@ pub(crate) mod side;
 mod stepper;
 mod turns;
 
-pub use canonical::{Canonical, Dimensionless, Equations};
+pub use canonical::{Canonical, Derivatives, Dimensionless};
 pub use closed_form::ClosedForm;
-pub use direction::{Compensated, DirectionForm, ExtrapolationF64, Plain, Sum};
+pub use direction::{DirectionForm, ExtrapolationF64, Plain};
 pub use fixed32::Fixed32;
 pub use fixed64::Fixed64;
 pub use run::Run;

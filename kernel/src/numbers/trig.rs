@@ -42,6 +42,7 @@ impl<R: Real> SinCos<R> for Own {
 ///
 /// Cost on a Cortex-M is high: the `f32` routine works in `f64`.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct Libm;
 
 impl Sealed for Libm {}
@@ -56,6 +57,7 @@ impl<R: Real> SinCos<R> for Libm {
 /// The `micromath` crate: short, and wrong by up to 1.2e-3. Here for comparison.
 #[cfg(feature = "micromath")]
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct Micromath;
 
 #[cfg(feature = "micromath")]

@@ -34,6 +34,7 @@ impl<R: Real> EqualRods<R> {
 
 impl<R: Real, T: SinCos<R>> EqualRods<R, T> {
     /// As [`EqualRods::new`], with the source of sine and cosine given by the type.
+    #[doc(hidden)]
     pub fn with_trig(mu: R) -> Result<Self, Error> {
         let (parameter, value) = (Parameter::Mu, mu.to_f64());
         if !mu.is_finite() {
@@ -53,12 +54,14 @@ impl<R: Real, T: SinCos<R>> EqualRods<R, T> {
 
     /// The mass ratio mu = m2/m1.
     #[must_use]
+    #[doc(hidden)]
     pub fn mass_ratio(&self) -> R {
         self.mu
     }
 
     /// The same pendulum as masses, lengths and gravity, in its own units: m1 = l1 = l2 = g = 1, m2 = mu.
     #[must_use]
+    #[doc(hidden)]
     pub fn parameters(&self) -> Parameters<R> {
         Parameters::equal_rods(self.mu, R::ONE, R::ONE)
     }
@@ -93,6 +96,7 @@ impl<R: Real, T: SinCos<R>> EqualRods<R, T> {
 
     /// Velocities to momenta: p1 = (1 + mu) w1 + mu w2 cos D, p2 = mu w2 + mu w1 cos D.
     #[must_use]
+    #[doc(hidden)]
     pub fn to_state(&self, motion: &Motion<R>) -> State<R> {
         let &Motion { a1, a2, w1, w2 } = motion;
         let (_, cos_d) = T::sin_cos(a1 - a2);
@@ -101,6 +105,7 @@ impl<R: Real, T: SinCos<R>> EqualRods<R, T> {
 
     /// Momenta to velocities: the first pair of Hamilton's equations.
     #[must_use]
+    #[doc(hidden)]
     pub fn to_motion(&self, state: &State<R>) -> Motion<R> {
         let &State { a1, a2, .. } = state;
         let [w1, w2, ..] = self.derivatives(&(*state).into());
@@ -120,6 +125,7 @@ impl<R: Real, T: SinCos<R>> EqualRods<R, T> {
     /// The energy above rest in m1 g l, a sum of terms none of which is negative:
     /// K = T + (1 + mu)(1 - cos a1) + mu (1 - cos a2).
     #[must_use]
+    #[doc(hidden)]
     pub fn energy_above_rest(&self, state: &State<R>) -> R {
         let height1 = one_minus_cos(T::sin_cos(state.a1));
         let height2 = one_minus_cos(T::sin_cos(state.a2));

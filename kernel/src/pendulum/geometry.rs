@@ -1,7 +1,5 @@
 //! Angles to places: where the bobs are and how fast they move.
 
-use core::ops::Add;
-
 use crate::numbers::Real;
 use crate::numbers::trig::SinCos;
 use crate::pendulum::{Motion, Pendulum};
@@ -15,10 +13,8 @@ pub struct Vector<R> {
     pub y: R,
 }
 
-impl<R: Real> Add for Vector<R> {
-    type Output = Self;
-
-    fn add(self, other: Self) -> Self {
+impl<R: Real> Vector<R> {
+    fn plus(self, other: Self) -> Self {
         Self { x: self.x + other.x, y: self.y + other.y }
     }
 }
@@ -44,7 +40,7 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
             Vector { x: l * sin, y: -l * cos }
         };
         let bob1 = rod(self.parameters().l1, a1);
-        [bob1, bob1 + rod(self.parameters().l2, a2)]
+        [bob1, bob1.plus(rod(self.parameters().l2, a2))]
     }
 
     /// The velocities of bob 1 and bob 2, m/s: the time derivatives of [`positions`](Self::positions).
@@ -57,6 +53,6 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
             Vector { x: l * w * cos, y: l * w * sin }
         };
         let bob1 = rod(self.parameters().l1, motion.a1, motion.w1);
-        [bob1, bob1 + rod(self.parameters().l2, motion.a2, motion.w2)]
+        [bob1, bob1.plus(rod(self.parameters().l2, motion.a2, motion.w2))]
     }
 }

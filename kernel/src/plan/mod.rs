@@ -57,7 +57,7 @@ mod way;
 
 use crate::error::Error;
 pub use cost::{Budget, Costs};
-pub use error::{PlanError, Quantity};
+pub use error::PlanError;
 pub use limit::Limit;
 pub use planned_run::PlannedRun;
 pub use problem::Problem;

@@ -24,6 +24,7 @@ impl PlannedRun {
     /// Refuses what [`Pendulum::run`] refuses, what has no normal modes if it is the closed form, and a method
     /// that is none of [`Method::DRAWN`].
     #[inline(never)] // one copy
+    #[doc(hidden)]
     pub fn new(parameters: &Parameters<f64>, start: &Motion<f64>, rate: u16, way: Way) -> Result<Self, Error> {
         start.check()?;
         let is_closed = way.method == Method::ClosedFormF32;
@@ -53,6 +54,7 @@ impl PlannedRun {
 
     /// Frames since the start.
     #[must_use]
+    #[doc(hidden)]
     pub fn frame(&self) -> u64 {
         self.frame
     }
@@ -80,6 +82,7 @@ impl PlannedRun {
     /// with all their turns: what a picture needs, and far cheaper than [`state`](Self::state) where `f64` is software.
     #[must_use]
     #[inline(never)]
+    #[doc(hidden)]
     pub fn rounded_state(&self) -> State<f32> {
         let ([a1, a2], [p1, p2]) = (self.angles(), self.run.momenta());
         State { a1, a2, p1, p2 }

@@ -112,6 +112,7 @@ impl Search {
     ///
     /// Refuses what [`new`](Self::new) refuses, and a method that is none of [`Method::DRAWN`]. No steps count as one.
     #[inline(never)]
+    #[doc(hidden)]
     pub fn of(
         method: Method,
         steps: u32,
@@ -217,6 +218,7 @@ impl Search {
 
     /// Whether the next piece prepares a motion, which takes longer than any other.
     #[must_use]
+    #[doc(hidden)]
     pub fn is_preparing(&self) -> bool {
         self.pass.is_none() || !self.prepared
     }
@@ -234,6 +236,7 @@ impl Search {
 
     /// What planning has cost so far.
     #[must_use]
+    #[doc(hidden)]
     pub fn spent(&self) -> f32 {
         self.spent
     }
@@ -241,6 +244,7 @@ impl Search {
     /// Until when `way` has been found right so far, s. In 64 bits, with steps that resolve the motion, it is so wherever any
     /// other is.
     #[must_use]
+    #[doc(hidden)]
     pub fn horizon(&self, way: Way) -> f64 {
         let resolves = |(steps, limit)| limit == Limit::Growth && way.steps >= steps;
         let has_longest_horizon = way.method == Method::Extrapolation10Fixed64 && self.fine.is_some_and(resolves);
@@ -250,6 +254,7 @@ impl Search {
 
     /// Goes on with the method of a plan that was right to its end, for `seconds` longer; [`Self::advance`] gives the plan
     /// anew then.
+    #[doc(hidden)]
     pub fn extend(&mut self, seconds: f64) {
         if let (Some(best), Some(pass)) = (self.best, &mut self.pass) {
             pass.only(best.method);

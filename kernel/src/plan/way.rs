@@ -51,6 +51,7 @@ impl Way {
     /// longest that are looked at; else by such steps in 32 bits, or as many as can be had.
     ///
     /// Refuses what [`Pendulum::new`] and [`Pendulum::admissible_step`] refuse.
+    #[doc(hidden)]
     pub fn lasting(
         parameters: &Parameters<f64>,
         start: &Motion<f64>,
@@ -79,6 +80,7 @@ impl Way {
     /// By `method`, in the longest steps that resolve every motion of this energy.
     ///
     /// Refuses what [`lasting`](Self::lasting) refuses.
+    #[doc(hidden)]
     pub fn of(parameters: &Parameters<f64>, start: &Motion<f64>, rate: u16, method: Method) -> Result<Self, Error> {
         let (_, admissible) = start_and_step(parameters, start)?;
         let longest = if method == Method::Extrapolation10Fixed64 { RESOLVING } else { FIRST_STEP };

@@ -12,4 +12,4 @@ pub use extrapolated::ExtrapolationF64;
 pub use form::DirectionForm;
 pub(crate) use lanes::DirectionLanes;
 pub(crate) use lead::BLOCK;
-pub use sum::{Compensated, Plain, Sum};
+pub use sum::Plain;
