@@ -134,6 +134,7 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     /// that bends at the rate d is through a light bob 1's peak in sqrt(m1/m2)/d. Without gravity w1 is 0.
     ///
     /// Refuses parameters whose modes are out of range.
+    #[doc(hidden)]
     pub fn fastest_rate(&self, state: &State<R>) -> Result<R, Error> {
         let &Parameters { m1, m2, g, .. } = self.parameters();
         let normal = if g == R::ZERO { R::ZERO } else { self.modes()?.fast.frequency };

@@ -42,6 +42,7 @@ pub enum Parameter {
     /// Ratio of the normal frequencies, fast over slow.
     FrequencyRatio,
     /// The energy, J.
+    #[doc(hidden)]
     Energy,
     /// The method.
     Method,
@@ -106,13 +107,6 @@ pub enum Error {
         /// Its value.
         value: f64,
     },
-    /// Must not be less than zero.
-    Negative {
-        /// The offending parameter.
-        parameter: Parameter,
-        /// Its value.
-        value: f64,
-    },
     /// Must not exceed a limit that the other parameters set.
     TooLarge {
         /// The offending parameter.
@@ -167,7 +161,6 @@ impl Error {
         match *self {
             Error::NotFinite { parameter, .. }
             | Error::NotPositive { parameter, .. }
-            | Error::Negative { parameter, .. }
             | Error::TooLarge { parameter, .. }
             | Error::TooSmall { parameter, .. }
             | Error::Diverged { parameter, .. }
@@ -193,7 +186,6 @@ impl fmt::Display for Error {
         match self {
             Error::NotFinite { parameter, value } => write!(f, "{parameter} = {value:?}: must be a finite number"),
             Error::NotPositive { parameter, value } => write!(f, "{parameter} = {value:?}: must be greater than zero"),
-            Error::Negative { parameter, value } => write!(f, "{parameter} = {value:?}: must not be negative"),
             Error::TooLarge { parameter, value, limit } => {
                 write!(f, "{parameter} = {value:?}: must not exceed {limit:?}")
             }

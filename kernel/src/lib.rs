@@ -85,7 +85,9 @@ pub use methods::{
     ClosedFormF32, ClosedFormF64, DirectionF32, DirectionF32Plain, DirectionF64, DirectionF64Plain, ExtrapolationF64,
     Fixed32, Fixed64, Form, HamiltonF32, HamiltonF64, Run, rk4,
 };
-pub use numbers::{Real, trig};
+pub use numbers::Real;
+#[doc(hidden)]
+pub use numbers::trig;
 pub use pendulum::{Direction, EqualRods, Motion, Parameters, Pendulum, State, Units, Vector};
 pub use small::{Mode, Modes, Oscillation, SmallOscillations, periodic_mass_ratio};
 pub use table::{Equations, Integrator, Method, Numbers};

@@ -63,54 +63,30 @@ names!(Numbers: F32 "f32", CompensatedF32 "compensated f32", F64 "f64", Compensa
 names!(Integrator: Rk4 "RK4", Extrapolation "extrapolation", ClosedForm "closed form");
 
 macro_rules! methods {
-    ($($method:ident $name:literal $equations:ident $numbers:ident $integrator:ident $order:literal;)*) => {
+    ($($(#[cfg($when:meta)])? $method:ident $name:literal $equations:ident $numbers:ident $integrator:ident $order:literal;)*) => {
         /// Every way to compute a motion: equations, numbers, integrator and its order.
         ///
         /// | name | equations | numbers | integrator | order |
         /// |---|---|---|---|---|
-        $(#[doc = concat!("| `", $name, "` | ", stringify!($equations), " | ", stringify!($numbers), " | ", stringify!($integrator), " | ", $order, " |")])*
+        $(#[cfg_attr(all($($when)?), doc = concat!(
+            "| `", $name, "` | ", stringify!($equations), " | ", stringify!($numbers), " | ", stringify!($integrator), " | ", $order, " |"
+        ))])*
         ///
         /// To add one: a row here, and its type in the firmware's `job::table`.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         #[cfg_attr(feature = "defmt", derive(defmt::Format))]
         #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-        pub enum Method { $(#[doc = concat!("`", $name, "`")] $method,)* }
+        pub enum Method { $($(#[cfg($when)])? #[doc = concat!("`", $name, "`")] $method,)* }
+
+        const ALL: &[Method] = &[$($(#[cfg($when)])? Method::$method,)*];
 
         impl Method {
-            /// Every method.
-            pub const ALL: &[Method] = &[$(Method::$method,)*];
-
-            /// Its name: integrator, numbers, equations.
-            #[must_use]
-            pub const fn name(self) -> &'static str {
-                match self { $(Method::$method => $name,)* }
-            }
-
-            /// What it integrates.
-            #[must_use]
-            #[doc(hidden)]
-            pub const fn equations(self) -> Equations {
-                match self { $(Method::$method => Equations::$equations,)* }
-            }
-
-            /// What it computes in.
-            #[must_use]
-            #[doc(hidden)]
-            pub const fn numbers(self) -> Numbers {
-                match self { $(Method::$method => Numbers::$numbers,)* }
-            }
-
-            /// How it makes a step.
-            #[must_use]
-            #[doc(hidden)]
-            pub const fn integrator(self) -> Integrator {
-                match self { $(Method::$method => Integrator::$integrator,)* }
-            }
-
-            /// The order of its steps; 0 for the closed form.
-            #[must_use]
-            pub const fn order(self) -> u32 {
-                match self { $(Method::$method => $order,)* }
+            const fn row(self) -> (&'static str, Equations, Numbers, Integrator, u32) {
+                match self {
+                    $($(#[cfg($when)])? Method::$method => {
+                        ($name, Equations::$equations, Numbers::$numbers, Integrator::$integrator, $order)
+                    })*
+                }
             }
         }
     };
@@ -129,7 +105,6 @@ methods! {
     Extrapolation10Fixed64 "extrapolation10-fixed64" Directions Fixed64        Extrapolation 10;
     Extrapolation12Fixed64 "extrapolation12-fixed64" Directions Fixed64        Extrapolation 12;
     Extrapolation16Fixed64 "extrapolation16-fixed64" Directions Fixed64        Extrapolation 16;
-    Extrapolation8F64     "extrapolation8-f64"      Directions CompensatedF64 Extrapolation 8;
     Extrapolation12F64    "extrapolation12-f64"     Directions CompensatedF64 Extrapolation 12;
     Extrapolation16F64    "extrapolation16-f64"     Directions CompensatedF64 Extrapolation 16;
     ClosedFormF64         "closed-form-f64"         Linear     F64            ClosedForm    0;
@@ -138,10 +113,49 @@ methods! {
     Rk4F32Micromath       "rk4-f32-micromath"       Hamilton   F32            Rk4           4;
     TextbookF32           "textbook-f32"            Textbook   F32            Rk4           4;
     TextbookF64           "textbook-f64"            Textbook   F64            Rk4           4;
+    #[cfg(test)] Rk4F64Lagrange "rk4-f64-lagrange"  Hamilton   F64            Rk4           4;
 }
 
 impl Method {
+    /// Every method.
+    pub const ALL: &[Method] = ALL;
+
+    /// Its name: integrator, numbers, equations.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        self.row().0
+    }
+
+    /// What it integrates.
+    #[must_use]
+    #[doc(hidden)]
+    pub const fn equations(self) -> Equations {
+        self.row().1
+    }
+
+    /// What it computes in.
+    #[must_use]
+    #[doc(hidden)]
+    pub const fn numbers(self) -> Numbers {
+        self.row().2
+    }
+
+    /// How it makes a step.
+    #[must_use]
+    #[doc(hidden)]
+    pub const fn integrator(self) -> Integrator {
+        self.row().3
+    }
+
+    /// The order of its steps; 0 for the closed form.
+    #[must_use]
+    #[doc(hidden)]
+    pub const fn order(self) -> u32 {
+        self.row().4
+    }
+
     /// What a [plan](crate::plan) chooses from.
+    #[doc(hidden)]
     pub const DRAWN: &[Method] = &[
         Method::ClosedFormF32,
         Method::Rk4F32DirectionPlain,

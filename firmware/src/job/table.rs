@@ -93,7 +93,6 @@ table! {
     }
     elsewhere {
         ClosedFormF32: Drawn;
-        Extrapolation8F64: Stepper<ExtrapolationF64<8>>;
         Extrapolation12F64: Stepper<ExtrapolationF64<12>>;
         Extrapolation16F64: Stepper<ExtrapolationF64<16>>;
         Rk4F32Libm: Stepper<Canonical<f32, Pendulum<f32, Libm>>>;

@@ -1,6 +1,5 @@
 //! The planner: what it chooses for scenes that one knows, its budgets, and what it refuses.
 
-use std::collections::BTreeSet;
 use std::f64::consts::PI;
 
 use double_pendulum::Method;
@@ -93,18 +92,6 @@ fn a_shadowed_run_makes_frames() {
         assert_eq!(directions, motion.directions());
         assert!(estimate.error() < 0.1, "{estimate:?}");
     }
-}
-
-#[test]
-fn every_method_has_a_name_of_its_own() {
-    let methods = [
-        Method::ClosedFormF32,
-        Method::Rk4F32DirectionPlain,
-        Method::Rk4F32Direction,
-        Method::Rk4Fixed32,
-        Method::Extrapolation10Fixed64,
-    ];
-    assert_eq!(BTreeSet::from(methods.map(Method::name)).len(), methods.len());
 }
 
 /// By the same method, it is right for less than a tenth longer: too little to be worth a costlier one.

@@ -28,6 +28,7 @@ pub trait Derivatives<R: Real>: Copy + Debug + PartialEq {
     }
 }
 
+#[doc(hidden)]
 impl<R: Real, T: SinCos<R>> Derivatives<R> for Pendulum<R, T> {
     fn prepare(parameters: &Parameters<R>) -> Result<Self, Error> {
         Pendulum::with_trig(parameters)
@@ -74,6 +75,7 @@ pub struct Canonical<R, E = Pendulum<R, DefaultTrig>> {
 
 impl<R, E> Sealed for Canonical<R, E> {}
 
+#[doc(hidden)]
 impl<R: Real + super::Side, E: Derivatives<R>> Form for Canonical<R, E> {
     type Real = R;
     type Carried = State<R>;

@@ -32,6 +32,7 @@ impl<R: Real> Oscillating<R> {
 
 impl<R> Sealed for ClosedForm<R> {}
 
+#[doc(hidden)]
 impl<R: Real + Side> Form for ClosedForm<R> {
     type Real = R;
     type Carried = Oscillating<R>;

@@ -59,6 +59,7 @@ pub type ClosedFormF64 = ClosedForm<f64>;
 /// the rest. Directions may be half a step ahead.
 pub trait Form: Sealed + Copy + Debug + PartialEq {
     /// What [`Run::directions`] and [`Run::angles`] are told in.
+    #[doc(hidden)]
     type Real: Real;
     /// A motion: what is carried from step to step.
     #[doc(hidden)]

@@ -48,8 +48,10 @@ pub trait Real:
 
     /// The number nearest to `value`.
     #[must_use]
+    #[doc(hidden)]
     fn from_f64(value: f64) -> Self;
     /// The same number as an `f64`; exact.
+    #[doc(hidden)]
     fn to_f64(self) -> f64;
     /// The number nearest to this whole one.
     #[doc(hidden)]
@@ -147,6 +149,7 @@ macro_rules! real {
             }
         }
 
+        #[doc(hidden)]
         impl Real for $float {
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;

@@ -36,6 +36,7 @@ impl<R: Real> Pendulum<R> {
 
 impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     /// As [`Pendulum::new`], with the source of sine and cosine given by the type.
+    #[doc(hidden)]
     pub fn with_trig(parameters: &Parameters<R>) -> Result<Self, Error> {
         parameters.check()?;
         let &Parameters { m1, m2, l1, l2, g } = parameters;

@@ -51,7 +51,7 @@ impl<R: Real> Parameters<R> {
                 return Err(Error::NotFinite { parameter, value });
             }
             if value < 0.0 && parameter == Parameter::G {
-                return Err(Error::Negative { parameter, value });
+                return Err(Error::TooSmall { parameter, value, limit: 0.0 });
             }
             if value <= 0.0 && parameter != Parameter::G {
                 return Err(Error::NotPositive { parameter, value });

@@ -42,6 +42,7 @@ impl<R: Real> State<R> {
 
     /// Refuses NaN and infinite values.
     #[inline(never)] // cold: once in flash, not once for each caller
+    #[doc(hidden)]
     pub fn check(&self) -> Result<(), Error> {
         let &Self { a1, a2, p1, p2 } = self;
         check_finite([(Parameter::A1, a1), (Parameter::A2, a2), (Parameter::P1, p1), (Parameter::P2, p2)])
@@ -124,6 +125,7 @@ impl<R: Real> Motion<R> {
 
     /// Refuses NaN and infinite values.
     #[inline(never)] // cold: once in flash, not once for each caller
+    #[doc(hidden)]
     pub fn check(&self) -> Result<(), Error> {
         let &Self { a1, a2, w1, w2 } = self;
         check_finite([(Parameter::A1, a1), (Parameter::A2, a2), (Parameter::W1, w1), (Parameter::W2, w2)])
@@ -131,6 +133,7 @@ impl<R: Real> Motion<R> {
 }
 
 /// In the book's order: a1, a2, w1, w2.
+#[doc(hidden)]
 impl<R> From<[R; 4]> for Motion<R> {
     fn from([a1, a2, w1, w2]: [R; 4]) -> Self {
         Self { a1, a2, w1, w2 }
@@ -138,6 +141,7 @@ impl<R> From<[R; 4]> for Motion<R> {
 }
 
 /// In the book's order: a1, a2, w1, w2.
+#[doc(hidden)]
 impl<R> From<Motion<R>> for [R; 4] {
     fn from(Motion { a1, a2, w1, w2 }: Motion<R>) -> Self {
         [a1, a2, w1, w2]

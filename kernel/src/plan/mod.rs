@@ -83,6 +83,7 @@ impl Plan {
 
     /// The method and its steps.
     #[must_use]
+    #[doc(hidden)]
     pub fn way(&self) -> Way {
         Way { method: self.method, steps: self.steps.max(1) }
     }

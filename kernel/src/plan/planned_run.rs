@@ -37,6 +37,7 @@ impl PlannedRun {
 
     /// The method and its steps.
     #[must_use]
+    #[doc(hidden)]
     pub fn way(&self) -> Way {
         self.way
     }

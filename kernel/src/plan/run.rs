@@ -7,6 +7,7 @@ use crate::pendulum::{Direction, Parameters, State};
 use crate::table::Method;
 
 /// The directions of both rods as they would be drawn.
+#[doc(hidden)]
 pub type Directions = [Direction<f32>; 2];
 
 /// A motion by any of [`Method::DRAWN`], read in `f32`: the one place that knows which type computes each.

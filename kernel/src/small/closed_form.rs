@@ -9,6 +9,7 @@ use crate::small::{Mode, Modes};
 
 /// What one mode contributes to the angle of rod 1: C cos wt + S sin wt.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct Oscillation<R> {
     /// C, rad.
     pub cosine: R,
@@ -91,12 +92,14 @@ impl<R: Real, T: SinCos<R>> SmallOscillations<R, T> {
 
     /// The fast mode's part.
     #[must_use]
+    #[doc(hidden)]
     pub fn fast(&self) -> Oscillation<R> {
         self.fast
     }
 
     /// The slow mode's part.
     #[must_use]
+    #[doc(hidden)]
     pub fn slow(&self) -> Oscillation<R> {
         self.slow
     }

@@ -20,7 +20,10 @@ fn parameters() {
         refusal(Parameters { m2: f64::NAN, ..GOOD }),
         Error::NotFinite { parameter: Parameter::M2, value } if value.is_nan()
     ));
-    assert_eq!(refusal(Parameters { g: -9.8, ..GOOD }), Error::Negative { parameter: Parameter::G, value: -9.8 });
+    assert_eq!(
+        refusal(Parameters { g: -9.8, ..GOOD }),
+        Error::TooSmall { parameter: Parameter::G, value: -9.8, limit: 0.0 }
+    );
     assert_eq!(
         refusal(Parameters { m1: 1e300, l1: 1e200, ..GOOD }),
         Error::OutOfRange { parameter: Parameter::M1, value: 1e300 }

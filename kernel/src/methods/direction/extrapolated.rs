@@ -74,6 +74,7 @@ impl System<f64, LANES, 6> for Rows<'_> {
 
 impl<const ORDER: u32> Sealed for ExtrapolationF64<ORDER> {}
 
+#[doc(hidden)]
 impl<const ORDER: u32> Form for ExtrapolationF64<ORDER> {
     type Real = f64;
     type Carried = <DirectionF64 as Form>::Carried;

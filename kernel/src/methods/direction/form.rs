@@ -41,6 +41,7 @@ pub struct DirectionState<R, S> {
 
 impl<R: Real, S: Sum<R>> Sealed for DirectionForm<R, S> {}
 
+#[doc(hidden)]
 impl<R: Real + Side, S: Sum<R>> Form for DirectionForm<R, S> {
     type Real = R;
     type Carried = DirectionState<R, S>;

@@ -81,6 +81,7 @@ fn value(z: i64) -> f64 {
 
 impl Sealed for Fixed32 {}
 
+#[doc(hidden)]
 impl Form for Fixed32 {
     type Real = f32;
     type Carried = Fixed32State;

@@ -36,6 +36,7 @@ pub struct Fixed64<const ORDER: u32> {
 
 impl<const ORDER: u32> Sealed for Fixed64<ORDER> {}
 
+#[doc(hidden)]
 impl<const ORDER: u32> Form for Fixed64<ORDER> {
     type Real = f32;
     type Carried = Fixed64State;
