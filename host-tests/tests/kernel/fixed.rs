@@ -7,7 +7,6 @@ use double_pendulum::{DirectionF32, DirectionF64, ExtrapolationF64, Fixed32, Fix
 use double_pendulum::{Error, Motion, Parameter, Parameters, Pendulum, State};
 use firmware::config::GRAVITY;
 use firmware::motion::planner::half_pixel;
-use host_tests::oracle::hard_cases::{HALVINGS, HARD_CASES};
 use host_tests::oracle::random::{self, log_uniform, symmetric};
 use host_tests::oracle::reference::Reference;
 use host_tests::oracle::tolerances;
@@ -217,60 +216,6 @@ fn errors<F: Form>(trial: &Trial, exact: &[State<f64>], dt: impl Fn(i32) -> f64)
         *error = largest_difference(&trial.states::<F>(dt(halvings))?, exact);
     }
     Ok(errors)
-}
-
-/// The typical errors of a hard case, for the steps that are not refused as too long.
-fn typical_errors<F: Form>(starts: &[(Trial, Vec<State<f64>>)]) -> Result<Vec<f64>, Error> {
-    let mut errors = Vec::new();
-    for halvings in HALVINGS {
-        let mut logarithms = 0.0;
-        let mut refused = false;
-        for (trial, exact) in starts {
-            match trial.states::<F>(0.5_f64.powi(halvings)) {
-                Ok(states) => logarithms += largest_difference(&states, exact).max(f64::MIN_POSITIVE).ln(),
-                Err(Error::TooLarge { parameter: Parameter::Dt, .. }) => refused = true,
-                Err(error) => return Err(error),
-            }
-        }
-        if !refused {
-            errors.push((logarithms / starts.len() as f64).exp());
-        }
-    }
-    Ok(errors)
-}
-
-/// Halving the step never makes the typical error worse by more than half until the floor, which the finest keeps.
-fn refining_pays(case: &str, floor: f64, errors: &[f64]) {
-    for pair in errors.windows(2) {
-        // beyond a tenth of a radian an error says nothing but that the motion is lost
-        assert!(pair[0] > 0.1 || pair[1] <= (1.5 * pair[0]).max(floor), "{case}: {errors:?}");
-    }
-    assert!(errors.last().is_none_or(|&last| last <= floor), "{case}: {errors:?}");
-}
-
-/// One case needs masses of too unlike a size for both; in 32 bits the light elbow needs steps finer than any here.
-#[test]
-fn hard_cases() -> Result<(), Error> {
-    let mut refused = Vec::new();
-    for case in &HARD_CASES {
-        let exact = |trial: Trial| Ok((trial, trial.exact::<f64>()?));
-        let starts = case.starts().take(8).map(exact).collect::<Result<Vec<_>, Error>>()?;
-        let all = [typical_errors::<Fixed32>(&starts), typical_errors::<Fixed64<12>>(&starts[..1])];
-        for (i, errors) in all.into_iter().enumerate() {
-            let name = format!("{}, {} bits", case.name, [32, 64][i]);
-            match errors {
-                Err(Error::OutOfRange { .. }) => refused.push(name),
-                Err(other) => return Err(other),
-                Ok(errors) if errors.is_empty() => refused.push(name),
-                Ok(errors) => {
-                    let floors = tolerances::FIXED_FLOORS.iter().find(|(of, _)| *of == case.name);
-                    refining_pays(&name, floors.expect("a floor for each case that is accepted").1[i], &errors);
-                }
-            }
-        }
-    }
-    assert_eq!(refused, ["far heavier elbow, 32 bits", "far heavier elbow, 64 bits", "light elbow, 32 bits"]);
-    Ok(())
 }
 
 #[test]

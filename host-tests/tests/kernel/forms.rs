@@ -28,18 +28,6 @@ fn unlike(seconds: f64) -> Trial {
 }
 
 #[test]
-fn the_order_is_4() -> Result<(), Error> {
-    for (trial, steps) in [(regular(20.0), 128.0), (unlike(20.0), 1024.0)] {
-        let errors = |error: fn(&Trial, f64) -> Result<f64, Error>| -> Result<f64, Error> {
-            Ok((error(&trial, 1.0 / steps)? / error(&trial, 0.5 / steps)?).log2())
-        };
-        let order = errors(Trial::error::<f64, DirectionF64>)?;
-        assert!(tolerances::ORDER.contains(&order), "order {order} for {trial:?}");
-    }
-    Ok(())
-}
-
-#[test]
 fn compensated_single_precision_keeps_its_budget() -> Result<(), Error> {
     for (i, seconds) in [10.0, 100.0].into_iter().enumerate() {
         let direction = regular(seconds).error::<f32, DirectionF32>(1.0 / 256.0)?;
