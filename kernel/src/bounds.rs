@@ -3,7 +3,7 @@
 use crate::error::{Error, Parameter};
 use crate::numbers::Real;
 use crate::numbers::trig::SinCos;
-use crate::pendulum::{EqualRods, Parameters, Pendulum, State};
+use crate::pendulum::{Parameters, Pendulum, State};
 use crate::small::Modes;
 
 /// The greatest magnitudes that a motion of given energy can reach; each is reached by some motion of that energy.
@@ -79,24 +79,6 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     #[must_use]
     pub fn cannot_turn_over(&self, state: &State<R>) -> bool {
         clearly_below(self.energy_above_rest(state), self.turnover_energy())
-    }
-}
-
-impl<R: Real, T: SinCos<R>> EqualRods<R, T> {
-    /// The bounds of the motion through `state`, in the units of the equal-rod form.
-    #[doc(hidden)]
-    #[must_use]
-    pub fn bounds(&self, state: &State<R>) -> Bounds<R> {
-        Bounds::new(&self.parameters(), self.energy_above_rest(state))
-    }
-
-    /// Whether it is certain that neither rod ever turns over: K < 2 min(1 + mu, mu) = 2 mu.
-    ///
-    /// From rest that is (1 + mu) cos a1 + mu cos a2 > 1. `false` says nothing.
-    #[doc(hidden)]
-    #[must_use]
-    pub fn cannot_turn_over(&self, state: &State<R>) -> bool {
-        clearly_below(self.energy_above_rest(state), R::TWO * self.mass_ratio())
     }
 }
 

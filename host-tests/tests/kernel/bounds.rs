@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use double_pendulum::{Bounds, EqualRods, Error, Modes, Motion, Parameters, Pendulum, Real, State};
+use double_pendulum::{Bounds, Error, Modes, Motion, Parameters, Pendulum, Real, State};
 use double_pendulum::{DirectionF64, Form};
 use fastrand::Rng;
 use host_tests::oracle::reference::Reference;
@@ -153,18 +153,10 @@ fn equal_rods_certificate_is_the_cosine_rule() {
     for _ in 0..10_000 {
         let mu = random::log_uniform(&mut rng, 0.01, 100.0);
         let (a1, a2) = (PI * random::symmetric(&mut rng), PI * random::symmetric(&mut rng));
-        let certain = EqualRods::new(mu).expect("a valid ratio").cannot_turn_over(&State::at_rest(a1, a2));
         let general = Pendulum::new(&Parameters::equal_rods(mu, 0.3, 9.8)).expect("valid parameters");
+        let certain = general.cannot_turn_over(&State::at_rest(a1, a2));
         assert_eq!(certain, (1.0 + mu) * a1.cos() + mu * a2.cos() > 1.0, "mu = {mu}, {a1}, {a2}");
-        assert_eq!(certain, general.cannot_turn_over(&State::at_rest(a1, a2)), "mu = {mu}, {a1}, {a2}");
     }
-}
-
-#[test]
-fn equal_rods_have_the_general_bounds_in_their_own_units() {
-    let state = State { a1: 0.3, a2: -2.0, p1: 0.7, p2: 1.1 };
-    let general = Pendulum::new(&Parameters::equal_rods(0.8, 1.0, 1.0)).expect("valid parameters");
-    assert_eq!(EqualRods::new(0.8).expect("a valid ratio").bounds(&state), general.bounds(&state));
 }
 
 /// The fast mode decays just below the step limit and blows up just above.

@@ -15,11 +15,11 @@ pub trait Derivatives<R: Real>: Copy + Debug + PartialEq {
     /// The time derivatives of (a1, a2, p1, p2).
     fn derivatives(&self, z: &[R; 4]) -> [R; 4];
     /// `state` in these units.
-    fn from_si(&self, state: &State<R>) -> State<R> {
+    fn own(&self, state: &State<R>) -> State<R> {
         *state
     }
     /// `state` of these units in SI units.
-    fn to_si(&self, state: &State<R>) -> State<R> {
+    fn si(&self, state: &State<R>) -> State<R> {
         *state
     }
     /// `dt` s in these units.
@@ -54,10 +54,10 @@ impl<R: Real> Derivatives<R> for Dimensionless<R> {
     fn derivatives(&self, z: &[R; 4]) -> [R; 4] {
         self.rods.derivatives(z)
     }
-    fn from_si(&self, state: &State<R>) -> State<R> {
+    fn own(&self, state: &State<R>) -> State<R> {
         self.units.from_si(state)
     }
-    fn to_si(&self, state: &State<R>) -> State<R> {
+    fn si(&self, state: &State<R>) -> State<R> {
         self.units.to_si(state)
     }
     fn step(&self, dt: R) -> R {
@@ -91,7 +91,7 @@ impl<R: Real + super::Side, E: Derivatives<R>> Form for Canonical<R, E> {
     fn start(&self, state: &State<f64>) -> Result<State<R>, Error> {
         let state = state.cast();
         state.check()?;
-        Ok(self.equations.from_si(&state))
+        Ok(self.equations.own(&state))
     }
 
     #[inline(always)]
@@ -114,12 +114,12 @@ impl<R: Real + super::Side, E: Derivatives<R>> Form for Canonical<R, E> {
     }
 
     fn momenta<Q: Real>(&self, carried: &State<R>) -> [Q; 2] {
-        let State { p1, p2, .. } = self.equations.to_si(carried);
+        let State { p1, p2, .. } = self.equations.si(carried);
         [p1.cast(), p2.cast()]
     }
 
     fn state(&self, carried: &State<R>) -> State<f64> {
-        self.equations.to_si(carried).cast()
+        self.equations.si(carried).cast()
     }
 
     fn bits(carried: &State<R>, feed: impl FnMut(u64)) {

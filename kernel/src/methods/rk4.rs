@@ -41,7 +41,7 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     }
 }
 
-impl<R: Real, T: SinCos<R>> EqualRods<R, T> {
+impl<R: Real> EqualRods<R> {
     /// The state a time `dt`, in sqrt(l/g), after `state`, by one classical RK4 step.
     #[must_use]
     #[inline]

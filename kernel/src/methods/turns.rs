@@ -16,6 +16,7 @@ pub struct Turns {
 impl Turns {
     /// For angles of `start` rad, whose directions have these signs.
     #[inline(never)] // never inlined, to avoid a second copy
+    #[must_use]
     pub fn of(start: [f64; 2], now: [[i32; 2]; 2]) -> [Self; 2] {
         let mut turns = start.map(|angle| {
             let whole = libm::rint(angle / core::f64::consts::TAU);
@@ -47,6 +48,7 @@ impl Turns {
     ///
     /// No trigonometry: a quarter turn to the side of that is within half a turn of it, near enough.
     #[inline(never)] // never inlined, to avoid a second copy
+    #[must_use]
     pub fn unwrap([turns1, turns2]: &[Self; 2], state: State<f64>) -> State<f64> {
         use core::f64::consts::{FRAC_PI_2, TAU};
         let unwrapped = |turns: &Self, angle: f64| {

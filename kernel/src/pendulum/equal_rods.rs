@@ -1,12 +1,9 @@
 //! Hamilton's equations for rods of equal length, in dimensionless form: the mass ratio is the only parameter.
 
-use core::marker::PhantomData;
-
 use crate::error::{Error, Parameter};
 use crate::numbers::Real;
-use crate::numbers::trig::{DefaultTrig, SinCos};
-use crate::pendulum::hamiltonian::one_minus_cos;
-use crate::pendulum::{Motion, Parameters, State};
+use crate::numbers::trig::{Own, SinCos};
+use crate::pendulum::{Parameters, State};
 
 /// A double pendulum with rods of equal length l, in its own units: [`Units`] converts to and from SI.
 ///
@@ -14,13 +11,12 @@ use crate::pendulum::{Motion, Parameters, State};
 /// mass ratio mu = m2/m1 is left, and an evaluation costs four multiplications less than
 /// [`Pendulum`](crate::Pendulum), which gives the same motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct EqualRods<R, T = DefaultTrig> {
+pub struct EqualRods<R> {
     mu: R,
     /// 1 + mu.
     total: R,
     /// (1 + mu)/mu.
     total_over_mu: R,
-    trig: PhantomData<T>,
 }
 
 impl<R: Real> EqualRods<R> {
@@ -28,14 +24,6 @@ impl<R: Real> EqualRods<R> {
     ///
     /// Refuses a ratio that is NaN, infinite, zero, negative or so extreme that (1 + mu)/mu leaves the range of `R`.
     pub fn new(mu: R) -> Result<Self, Error> {
-        Self::with_trig(mu)
-    }
-}
-
-impl<R: Real, T: SinCos<R>> EqualRods<R, T> {
-    /// As [`EqualRods::new`], with the source of sine and cosine given by the type.
-    #[doc(hidden)]
-    pub fn with_trig(mu: R) -> Result<Self, Error> {
         let (parameter, value) = (Parameter::Mu, mu.to_f64());
         if !mu.is_finite() {
             return Err(Error::NotFinite { parameter, value });
@@ -46,17 +34,10 @@ impl<R: Real, T: SinCos<R>> EqualRods<R, T> {
         let total = R::ONE + mu;
         let total_over_mu = total / mu;
         if mu.is_normal() && total.is_finite() && total_over_mu.is_finite() {
-            Ok(Self { mu, total, total_over_mu, trig: PhantomData })
+            Ok(Self { mu, total, total_over_mu })
         } else {
             Err(Error::OutOfRange { parameter, value })
         }
-    }
-
-    /// The mass ratio mu = m2/m1.
-    #[must_use]
-    #[doc(hidden)]
-    pub fn mass_ratio(&self) -> R {
-        self.mu
     }
 
     /// The same pendulum as masses, lengths and gravity, in its own units: m1 = l1 = l2 = g = 1, m2 = mu.
@@ -81,8 +62,8 @@ impl<R: Real, T: SinCos<R>> EqualRods<R, T> {
     #[inline]
     pub fn derivatives(&self, z: &[R; 4]) -> [R; 4] {
         let &[a1, a2, p1, p2] = z;
-        let (sin1, cos1) = T::sin_cos(a1);
-        let (sin2, cos2) = T::sin_cos(a2);
+        let (sin1, cos1) = Own::sin_cos(a1);
+        let (sin2, cos2) = Own::sin_cos(a2);
         let sin_d = sin1 * cos2 - cos1 * sin2;
         let cos_d = cos1 * cos2 + sin1 * sin2;
 
@@ -94,46 +75,18 @@ impl<R: Real, T: SinCos<R>> EqualRods<R, T> {
         [w1, w2, -self.total * sin1 - force, -self.mu * sin2 + force]
     }
 
-    /// Velocities to momenta: p1 = (1 + mu) w1 + mu w2 cos D, p2 = mu w2 + mu w1 cos D.
-    #[must_use]
-    #[doc(hidden)]
-    pub fn to_state(&self, motion: &Motion<R>) -> State<R> {
-        let &Motion { a1, a2, w1, w2 } = motion;
-        let (_, cos_d) = T::sin_cos(a1 - a2);
-        State { a1, a2, p1: self.total * w1 + self.mu * w2 * cos_d, p2: self.mu * (w2 + w1 * cos_d) }
-    }
-
-    /// Momenta to velocities: the first pair of Hamilton's equations.
-    #[must_use]
-    #[doc(hidden)]
-    pub fn to_motion(&self, state: &State<R>) -> Motion<R> {
-        let &State { a1, a2, .. } = state;
-        let [w1, w2, ..] = self.derivatives(&(*state).into());
-        Motion { a1, a2, w1, w2 }
-    }
-
     /// The Hamiltonian in m1 g l; zero where both bobs are level with the pivot.
     ///
     /// H = (p1 - p2 cos D)^2 / (2 den) + p2^2 / (2 mu) - (1 + mu) cos a1 - mu cos a2
     #[must_use]
     pub fn energy(&self, state: &State<R>) -> R {
-        let (_, cos1) = T::sin_cos(state.a1);
-        let (_, cos2) = T::sin_cos(state.a2);
+        let (_, cos1) = Own::sin_cos(state.a1);
+        let (_, cos2) = Own::sin_cos(state.a2);
         self.kinetic_energy_of(state) - self.total * cos1 - self.mu * cos2
     }
 
-    /// The energy above rest in m1 g l, a sum of terms none of which is negative:
-    /// K = T + (1 + mu)(1 - cos a1) + mu (1 - cos a2).
-    #[must_use]
-    #[doc(hidden)]
-    pub fn energy_above_rest(&self, state: &State<R>) -> R {
-        let height1 = one_minus_cos(T::sin_cos(state.a1));
-        let height2 = one_minus_cos(T::sin_cos(state.a2));
-        self.kinetic_energy_of(state) + self.total * height1 + self.mu * height2
-    }
-
     fn kinetic_energy_of(&self, state: &State<R>) -> R {
-        let (sin_d, cos_d) = T::sin_cos(state.a1 - state.a2);
+        let (sin_d, cos_d) = Own::sin_cos(state.a1 - state.a2);
         let q = state.p1 - state.p2 * cos_d;
         R::HALF * (q * q / (R::ONE + self.mu * sin_d * sin_d) + state.p2 * state.p2 / self.mu)
     }
