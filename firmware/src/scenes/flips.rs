@@ -1,7 +1,11 @@
 //! Flips: from which starts a rod ever turns over, and when, computed here, coarse first.
 
+#[cfg(any(target_abi = "eabihf", not(target_os = "none")))]
+use double_pendulum::DirectionF32Plain;
+#[cfg(not(target_abi = "eabihf"))]
+use double_pendulum::Fixed32;
 use double_pendulum::flips::{Falling, Flip, Flips as Search, step_size};
-use double_pendulum::{DirectionF32Plain, Error, Fixed32, Form};
+use double_pendulum::{Error, Form};
 
 use crate::config::{FlipsPace, TICK_RATE};
 use crate::graphics::canvas::{Canvas, HEIGHT, WIDTH};
