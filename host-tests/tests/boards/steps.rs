@@ -11,7 +11,7 @@ use object::{Object, ObjectSection};
 const STEPS: [(&str, &str); 4] = [
     ("OnBoards as firmware::job::run::Run>", "advance"),
     ("double_pendulum::methods::Form>", "advance"),
-    ("Fixed32State", "advance"),
+    ("Fixed32 as double_pendulum::methods::Form>", "advance"),
     ("rows::Rows", "end_in"),
 ];
 

@@ -84,7 +84,8 @@ impl<R: Real + Side, S: Sum<R>> Form for DirectionForm<R, S> {
         let [_, [sin2, cos2]] = heads(&carried.z);
         let rods = [(Parameter::A1, [sin1, cos1]), (Parameter::A2, [s, c]), (Parameter::A2, [sin2, cos2])];
         let rods = rods.into_iter().flat_map(|(parameter, numbers)| numbers.map(|number| (parameter, number)));
-        check_finite(rods.chain([(Parameter::P1, p1), (Parameter::P2, p2)])).map_err(Error::diverged)
+        let unit = R::from_f64(self.scale.momentum);
+        check_finite(rods.chain([(Parameter::P1, p1 / unit), (Parameter::P2, p2 / unit)])).map_err(Error::diverged)
     }
 
     #[inline(always)]
