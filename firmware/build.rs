@@ -11,7 +11,8 @@ fn main() {
     if env::var("TARGET").is_ok_and(|target| target.starts_with("thumbv6m")) {
         println!("cargo:rustc-cfg=armv6m");
     }
-    if env::var("CARGO_CFG_TARGET_OS").as_deref() != Ok("none") {
+    let is = |name: &str, value: &str| env::var(name).as_deref() == Ok(value);
+    if !is("CARGO_CFG_TARGET_OS", "none") || !is("CARGO_CFG_TARGET_ARCH", "arm") {
         return;
     }
     // From the workspace's folder, in which the linker runs: a checkout that was moved keeps what it has built.
@@ -26,10 +27,18 @@ fn main() {
         println!("cargo:rustc-link-arg-bin=stm32f405={argument}");
     }
     // This one's flash begins with what its boot ROM runs first.
-    for argument in ["--defsym=flash_origin=0x10000100", "--defsym=flash_length=0x001fff00", "-Tpico.x"] {
-        println!("cargo:rustc-link-arg-bin=pico={argument}");
+    let pico = ["--defsym=flash_origin=0x10000100", "--defsym=flash_length=0x001fff00", "-Tpico.x"];
+    let any = ["-Tlink.x", "-Tdefmt.x", "--nmagic"];
+    pico.iter().for_each(|argument| println!("cargo:rustc-link-arg-bin=pico={argument}"));
+    // The example with a colour panel is for it, too.
+    if env::var_os("CARGO_FEATURE_COLOUR_PANEL").is_some() {
+        pico.iter().chain(&any).for_each(|argument| println!("cargo:rustc-link-arg-examples={argument}"));
     }
-    for argument in ["-Tlink.x", "-Tdefmt.x", "--nmagic"] {
-        println!("cargo:rustc-link-arg-bins={argument}");
+    // Of a Cortex-M33 or M55 this is what its secure side sees, as it does after reset.
+    if is("TARGET", "thumbv8m.main-none-eabihf") {
+        for place in ["flash_origin=0x10000000", "ram_origin=0x30000000", "ram_length=0x00008000"] {
+            println!("cargo:rustc-link-arg-bin=cores=--defsym={place}");
+        }
     }
+    any.iter().for_each(|argument| println!("cargo:rustc-link-arg-bins={argument}"));
 }

@@ -19,7 +19,7 @@
 #![cfg_attr(not(test), no_std)]
 
 pub mod app;
-#[cfg(target_os = "none")]
+#[cfg(all(target_arch = "arm", target_os = "none", not(feature = "cores")))]
 pub mod board;
 pub mod config;
 pub mod display;

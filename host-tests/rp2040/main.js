@@ -16,8 +16,8 @@ const commands = {
   uart: (hex) => Buffer.from(hex, 'hex').forEach((byte) => board.chip.uart[0].feedByte(byte)),
   /** The panel's memory; nothing while it is off. */
   panel: () => say('panel', board.panel.shown()),
-  /** Plugs the panel in, or pulls it. */
-  plug: (is) => (board.panel.present = is === '1'),
+  /** Plugs a panel of this status in, or pulls it: 0. */
+  plug: (status) => board.panel.plug(Number(status)),
   /** A button between this pin and ground: 1 is pressed. */
   button: (pin, is) => board.press(Number(pin), is === '1'),
   /** A circle where the processor is, until the next start. */

@@ -1,20 +1,24 @@
-// An SSD1306 at the chip's I2C0, and the time that its bus takes.
+// An SSD1306 or SH1106 at the chip's I2C0, and the time that its bus takes.
 
 const ADDRESS = 0x3c;
-const WIDTH = 128;
+/** Columns that are seen, and those of the memory, of which the SH1106 has two more on either side; its status. */
+const [WIDTH, COLUMNS, SH1106] = [128, 132, 8];
 /** Commands that are followed by so many bytes. */
-const ARGUMENTS = { 0x20: 1, 0x21: 2, 0x22: 2, 0x81: 1, 0x8d: 1, 0xa8: 1, 0xd3: 1, 0xd5: 1, 0xd9: 1, 0xda: 1, 0xdb: 1 };
+const ARGUMENTS = { 0x20: 1, 0x81: 1, 0x8d: 1, 0xa8: 1, 0xad: 1, 0xd3: 1, 0xd5: 1, 0xd9: 1, 0xda: 1, 0xdb: 1 };
 /** At 400,000 bits a second: a byte with its acknowledgement, and a start or a stop. */
 const [BYTE, CONDITION] = [22500, 2500];
 const [INTERRUPT_MASK, FEW_LEFT] = [0x30, 1 << 4];
 
 export class Panel {
   constructor() {
-    this.memory = new Uint8Array(WIDTH * 8);
-    this.present = true;
+    this.plug(6);
+  }
+
+  /** A panel of this status, dark as it is when power comes; 0 is none. */
+  plug(status) {
+    this.status = status;
+    this.memory = new Uint8Array(COLUMNS * 8);
     this.on = false;
-    this.columns = [0, WIDTH - 1];
-    this.pages = [0, 7];
     [this.column, this.page] = [0, 0];
   }
 
@@ -31,6 +35,7 @@ export class Panel {
     bus.onStart = () => after(CONDITION, () => bus.completeStart());
     bus.onConnect = (address) => after(BYTE, () => bus.completeConnect(this.begin(address)));
     bus.onWriteByte = (byte) => after(BYTE, () => bus.completeWrite(this.take(byte)));
+    bus.onReadByte = () => after(BYTE, () => bus.completeRead(this.status | (this.on ? 0 : 1 << 6)));
     bus.onStop = () => after(CONDITION, () => bus.completeStop());
   }
 
@@ -52,7 +57,7 @@ export class Panel {
   begin(address) {
     this.kind = null;
     this.command = [];
-    return this.present && address === ADDRESS;
+    return this.status !== 0 && address === ADDRESS;
   }
 
   /** A byte of a message; whether it is acknowledged. */
@@ -63,24 +68,23 @@ export class Panel {
       this.command.push(byte);
       if (this.command.length > (ARGUMENTS[this.command[0]] ?? 0)) this.obey(...this.command.splice(0));
     }
-    return this.present;
+    return this.status !== 0;
   }
 
-  obey(command, first, last) {
+  obey(command) {
     if (command === 0xae || command === 0xaf) this.on = command === 0xaf;
-    if (command === 0x21) [this.columns, this.column] = [[first, last], first];
-    if (command === 0x22) [this.pages, this.page] = [[first, last], first];
+    if (command < 0x10) this.column = (this.column & 0xf0) | command;
+    else if (command < 0x20) this.column = (this.column & 0x0f) | ((command & 0x0f) << 4);
+    if ((command & 0xf8) === 0xb0) this.page = command & 7;
   }
 
-  /** Data goes to the right, then to the next page of the window. */
+  /** Data goes to the right. */
   draw(byte) {
-    this.memory[this.page * WIDTH + this.column] = byte;
-    if (this.column++ < this.columns[1]) return;
-    this.column = this.columns[0];
-    this.page = this.page < this.pages[1] ? this.page + 1 : this.pages[0];
+    this.memory[this.page * COLUMNS + this.column++] = byte;
   }
 
   shown() {
-    return this.on ? this.memory : [];
+    const left = this.status === SH1106 ? 2 : 0;
+    return this.on ? this.memory.filter((_, at) => at % COLUMNS >= left && at % COLUMNS < left + WIDTH) : [];
   }
 }

@@ -7,6 +7,7 @@ use crate::app::command::Command;
 use crate::app::player::News;
 use crate::app::warm_restart::WarmRestart;
 use crate::display::Display;
+use crate::display::controller::Found;
 use crate::motion::settings::Settings;
 use crate::protocol::Field;
 use crate::protocol::LinkError;
@@ -46,6 +47,8 @@ pub enum Event<Panel, Link> {
     },
     /// A frame did not reach the panel, though the one before did.
     Panel(Panel),
+    /// A panel answers.
+    PanelFound(Found),
     /// A frame did not reach the link, though the one before did.
     Link(Link),
     /// A motion is asked for over the link.

@@ -285,6 +285,9 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     fn show(&mut self, scene_cycles: u32, log: &mut impl Log<Panel, Link>) {
         let shown = self.panel.flush(self.canvas);
         self.panel_failing.note(shown, |error| log(Event::Panel(error)));
+        if let Some(found) = self.panel.found() {
+            log(Event::PanelFound(found));
+        }
         let frame = Frame {
             sequence: self.frames,
             dropped: self.dropped.total(),

@@ -188,6 +188,7 @@ fn log<Panel: Debug, Link: Debug>(event: Event<Panel, Link>) {
         Event::Refused(command, field) => defmt::warn!("refused {}: {}", command, field),
         Event::Dropped { ticks, total } => defmt::warn!("dropped {} frames, {} since reset", ticks, total),
         Event::Panel(error) => defmt::warn!("panel: {}", Debug2Format(&error)),
+        Event::PanelFound(found) => defmt::info!("panel: {}", Debug2Format(&found)),
         Event::Damaged { messages, total, last } => {
             defmt::warn!("{} damaged messages, {} since reset, the last: {}", messages, total, last);
         }

@@ -4,11 +4,16 @@ use core::convert::Infallible;
 
 use crate::graphics::canvas::Canvas;
 
+#[cfg(feature = "colour-panel")]
+mod any_panel;
+pub mod controller;
 pub mod i2c_recovery;
 pub mod outbox;
 mod ssd0323;
 mod ssd1306;
 
+#[cfg(feature = "colour-panel")]
+pub use any_panel::{AnyPanel, binary, gray4, rgb565};
 pub use ssd0323::{PanelError, Ssd0323};
 pub use ssd1306::{Ssd1306, Ssd1306Error};
 
@@ -19,6 +24,11 @@ pub trait Display {
 
     /// Sends the frame.
     fn flush(&mut self, canvas: &Canvas) -> Result<(), Self::Error>;
+
+    /// Which panel was found since this was last asked.
+    fn found(&mut self) -> Option<controller::Found> {
+        None
+    }
 }
 
 /// For a board without a panel.

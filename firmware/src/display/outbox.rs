@@ -8,7 +8,7 @@ use crate::graphics::bitmap::PAGES;
 use crate::graphics::canvas::WIDTH;
 
 /// A whole frame, of each page its window and its bytes, and all that wakes a panel.
-const CAPACITY: usize = PAGES * (8 + 2 + WIDTH) + 48;
+const CAPACITY: usize = PAGES * (5 + 2 + WIDTH) + 48;
 
 /// Messages to one address, each as its length and its bytes.
 #[derive(Debug, Default)]
@@ -19,6 +19,9 @@ pub struct Outbox {
     at: usize,
     /// Bytes that are left of the message which is going out.
     left: u8,
+    /// Whether the panel's status is to be read after the messages; and what was read.
+    asks: bool,
+    status: u8,
 }
 
 /// A byte that goes out.
@@ -33,7 +36,7 @@ pub struct OutByte {
 impl Outbox {
     /// Without messages or an address.
     pub const fn new() -> Self {
-        Self { address: 0, messages: Vec::new(), at: 0, left: 0 }
+        Self { address: 0, messages: Vec::new(), at: 0, left: 0, asks: false, status: 0 }
     }
 
     /// Empties it: what is put in from now on is for this address.
@@ -53,6 +56,26 @@ impl Outbox {
         }
     }
 
+    /// After the messages the panel's status is to be read.
+    pub fn ask(&mut self) {
+        self.asks = true;
+    }
+
+    /// Whether it is still to be read.
+    pub fn asks(&self) -> bool {
+        self.asks
+    }
+
+    /// Takes what was read.
+    pub fn answer(&mut self, status: u8) {
+        (self.asks, self.status) = (false, status);
+    }
+
+    /// What was read.
+    pub fn status(&self) -> u8 {
+        self.status
+    }
+
     /// Where the messages go.
     pub fn address(&self) -> u8 {
         self.address
@@ -63,7 +86,7 @@ impl Outbox {
         self.messages.len()
     }
 
-    /// Whether all has gone out.
+    /// Whether all messages have gone out.
     pub fn is_empty(&self) -> bool {
         self.at == self.messages.len()
     }

@@ -1,10 +1,10 @@
-//! The SSD1306 controller of a 128 x 64 OLED panel in one colour, over I2C.
+//! The SSD1306 controller of a 128 x 64 OLED panel in one colour, over I2C, and the SH1106, which looks the same on four wires.
 //!
-//! A whole frame takes 1,104 bytes of 9 bits, 25 ms at the bus's 400 kHz and longer than a tick. So only what has
+//! A whole frame takes 1,080 bytes of 9 bits, 24 ms at the bus's 400 kHz and longer than a tick. So only what has
 //! changed is sent, and no frame waits for it: one that is ready before the bus is done with an earlier one is not shown, and
 //! the next is sent by what differs from what the panel holds.
 //!
-//! Source: Solomon Systech, SSD1306 data sheet.
+//! Source: Solomon Systech, SSD1306 data sheet; Sino Wealth, SH1106 data sheet.
 
 use core::iter::from_fn;
 use core::ops::Range;
@@ -12,6 +12,7 @@ use core::ops::Range;
 use embedded_hal::i2c::ErrorKind;
 
 use super::Display;
+use super::controller::{By, Controller, Found};
 use super::outbox::{Outbox, PanelBus, Sent};
 use crate::config::TICK_RATE;
 use crate::graphics::bitmap::{Bitmap, PAGES};
@@ -26,15 +27,13 @@ const DATA: u8 = 0x40;
 
 /// Switches the panel off.
 const OFF: &[u8] = &[0xAE];
-/// What wakes the panel, one command a row.
+/// What wakes either, one command a row.
 #[rustfmt::skip]
 const SETTINGS: &[u8] = &[
     0xD5, 0x80,                // clock as after reset, not divided
     0xA8, (HEIGHT - 1) as u8,  // rows driven, less one
     0xD3, 0,                   // rows not shifted
     0x40,                      // first row shown
-    0x8D, 0x14,                // charge pump on
-    0x20, 0,                   // data goes to the right, then to the next page of the window
     0xDA, 0x12,                // wiring of this panel's rows: odd and even apart
     0xA1,                      // columns from the left
     0xC8,                      // rows from the top
@@ -43,28 +42,35 @@ const SETTINGS: &[u8] = &[
     0xDB, 0x40,                // voltage of rows not driven
     0xA4,                      // show what is in memory
     0xA6,                      // not inverted
-    0x2E,                      // no scrolling
 ];
+/// What wakes the SSD1306 besides: charge pump on; data stays within the page, as the SH1106's does; no scrolling.
+const SSD1306: &[u8] = &[0x8D, 0x14, 0x20, 0x02, 0x2E];
+/// What wakes the SH1106 besides: its converter on.
+const SH1106: &[u8] = &[0xAD, 0x8B];
+/// Columns of the SH1106's 132 that are left of the panel's 128.
+const SH1106_LEFT: u8 = 2;
 /// Switches it on.
 const ON: &[u8] = &[0xAF];
 /// Frames between two tries of a panel that does not answer: 1 s.
 const RETRY: u32 = TICK_RATE;
-/// Frames after which a panel that is awake is woken again, as soon as there is room: 1 s.
-const REMINDER: u32 = TICK_RATE;
-/// Pages that are sent again with that: the whole picture in 4 s.
-const REMINDED: usize = 2;
-/// Bytes of a frame beside which there is room for that in a tick: it takes 310, and the bus carries 740.
-const SHORT: usize = 400;
+/// Columns of a part of the picture that is told again.
+const PART: usize = 16;
+/// So many parts, and two that wake the panel: all of it in 1.1 s.
+const PARTS: usize = PAGES * WIDTH / PART;
+/// Bytes of a frame beside which there is room for a part in a tick: it takes 23, and the bus carries 740.
+const SHORT: usize = 700;
 /// Frames after which a bus that is still busy hangs: 0.1 s, four times what most bytes take.
 const PATIENCE: u32 = 6;
 /// Columns that are better sent again than left out: to address what comes after them takes as many bytes.
-const GAP: usize = 10;
+const GAP: usize = 7;
 
 /// Why a frame did not reach the panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ssd1306Error {
     /// No panel answers at either address; what the bus said.
     Absent(ErrorKind),
+    /// The panel says that it has this controller, whose rows lie otherwise.
+    Sh1107,
     /// The panel answered before, but not now.
     Lost,
     /// The bus is too slow for every frame.
@@ -77,39 +83,43 @@ pub enum Ssd1306Error {
 /// The panel: an I2C bus that it may be on.
 ///
 /// A panel that does not answer is absent: frames for it are refused at once. Once a second it is looked for, so that
-/// it may be plugged in at any time. What becomes of a frame is told with one of the next.
+/// it may be plugged in at any time. Which controller it has it is asked then, unless that was said. What becomes of a frame is told
+/// with one of the next.
 ///
-/// A panel that was without power for a moment is dark, and answers all the same. So about once a second it is told again what
-/// woke it, and a part of the picture, with a frame that leaves room for that in its tick: one that stands still, or any short one.
+/// A panel that was without power for a moment is dark, and answers all the same. So with every frame that leaves room for it in its
+/// tick, a part of the picture, or of what woke the panel, is told again.
 #[derive(Debug)]
 pub struct Ssd1306<Bus> {
     bus: Bus,
     state: State,
+    built_for: Option<Controller>,
+    found: Option<Found>,
     /// What the panel's memory holds once all that was sent has arrived.
     memory: Bitmap,
     told: Result<(), Ssd1306Error>,
     /// Frames for which the bus has been busy.
     waiting: u32,
-    /// Frames since the panel was last woken, and the page with which the next reminder begins.
-    since_woken: u32,
-    page: usize,
+    /// The part that is told again next.
+    part: usize,
     /// Frames since they were last counted, and those of them that the bus has taken.
     counted: u32,
     shown: u32,
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 enum State {
     Absent { retry_in: u32 },
-    Waking { address: u8 },
-    Awake { address: u8 },
+    Looking { address: u8 },
+    Asking { address: u8 },
+    Waking { address: u8, controller: Controller },
+    Awake { address: u8, controller: Controller },
 }
 
 impl<Bus: PanelBus> Ssd1306<Bus> {
-    /// Takes the bus; the panel is looked for with the first frame.
-    pub fn new(bus: Bus) -> Self {
-        let (state, memory) = (State::Absent { retry_in: 0 }, Bitmap::default());
-        Self { bus, state, memory, told: Ok(()), waiting: 0, since_woken: 0, page: 0, counted: 0, shown: 0 }
+    /// Takes the bus, and the controller if that is not to be asked for; the panel is looked for with the first frame.
+    pub fn new(bus: Bus, built_for: Option<Controller>) -> Self {
+        let (state, memory, told) = (State::Absent { retry_in: 0 }, Bitmap::default(), Ok(()));
+        Self { bus, state, built_for, found: None, memory, told, waiting: 0, part: 0, counted: 0, shown: 0 }
     }
 
     /// Sends the frame if the bus is free; whether it is.
@@ -122,29 +132,51 @@ impl<Bus: PanelBus> Ssd1306<Bus> {
             return false;
         };
         self.waiting = 0;
-        let (state, news) = self.state.after(sent);
+        let found = match (self.state, self.built_for, sent) {
+            (State::Looking { .. }, Some(controller), Ok(())) => Some(Found { controller, by: By::Build }),
+            (State::Asking { .. }, _, Ok(())) => Some(Found::told(outbox.status())),
+            (State::Asking { .. }, _, Err(ErrorKind::NoAcknowledge(_))) => Some(Found::SILENT),
+            _ => None,
+        };
+        let (state, news) = self.state.after(sent, found);
+        if let State::Waking { .. } = state {
+            self.found = found;
+        }
         self.state = state;
         if let Some(told) = news {
             (self.told, self.counted, self.shown) = (told, 0, 0);
         }
         match state {
             State::Absent { .. } => return true,
-            State::Waking { address } => {
-                self.memory = Bitmap::from(canvas);
-                self.since_woken = 0;
+            State::Looking { address } => {
                 outbox.address_to(address);
                 outbox.put(COMMAND, OFF);
-                wake(outbox, &self.memory, 0..PAGES);
             }
-            State::Awake { address } => {
+            State::Asking { address } => {
+                outbox.address_to(address);
+                outbox.put(COMMAND, &[]);
+                outbox.ask();
+            }
+            State::Waking { address, controller } => {
+                self.memory = Bitmap::from(canvas);
+                outbox.address_to(address);
+                draw(outbox, controller, None, &self.memory);
+                (0..2).for_each(|half| wake(outbox, controller, half));
+            }
+            State::Awake { address, controller } => {
                 let frame = Bitmap::from(canvas);
                 outbox.address_to(address);
-                draw(outbox, Some(&self.memory), &frame, 0..PAGES);
+                draw(outbox, controller, Some(&self.memory), &frame);
                 self.memory = frame;
-                self.since_woken = self.since_woken.saturating_add(1);
-                if self.since_woken >= REMINDER && outbox.len() <= SHORT {
-                    wake(outbox, &self.memory, self.page..self.page + REMINDED);
-                    (self.since_woken, self.page) = (0, (self.page + REMINDED) % PAGES);
+                if outbox.len() <= SHORT {
+                    match self.part.checked_sub(PARTS) {
+                        None => {
+                            let (page, column) = (self.part * PART / WIDTH, self.part * PART % WIDTH);
+                            write(outbox, controller, &self.memory, page, column..column + PART);
+                        }
+                        Some(half) => wake(outbox, controller, half),
+                    }
+                    self.part = (self.part + 1) % (PARTS + 2);
                 }
             }
         }
@@ -167,20 +199,27 @@ impl<Bus: PanelBus> Ssd1306<Bus> {
 }
 
 impl State {
-    /// The next state, given how the last messages fared, and what there is to report.
-    fn after(self, sent: Sent) -> (Self, Option<Result<(), Ssd1306Error>>) {
+    /// The next state, given how the last messages fared and which panel was found by them, and what there is to report.
+    fn after(self, sent: Sent, found: Option<Found>) -> (Self, Option<Result<(), Ssd1306Error>>) {
         let [first, second] = ADDRESSES;
-        let absent = Self::Absent { retry_in: RETRY };
-        match (self, sent) {
-            (Self::Absent { retry_in: 0 }, _) => (Self::Waking { address: first }, None),
-            (Self::Absent { retry_in }, _) => (Self::Absent { retry_in: retry_in - 1 }, None),
-            (Self::Waking { address }, Ok(())) => (Self::Awake { address }, Some(Ok(()))),
-            (Self::Waking { address }, Err(ErrorKind::NoAcknowledge(_))) if address == first => {
-                (Self::Waking { address: second }, None)
+        let absent = |error| (Self::Absent { retry_in: RETRY }, Some(Err(error)));
+        match (self, sent, found) {
+            (Self::Absent { retry_in: 0 }, ..) => (Self::Looking { address: first }, None),
+            (Self::Absent { retry_in }, ..) => (Self::Absent { retry_in: retry_in - 1 }, None),
+            (Self::Looking { .. } | Self::Asking { .. }, _, Some(Found { controller: Controller::Sh1107, .. })) => {
+                absent(Ssd1306Error::Sh1107)
             }
-            (Self::Waking { .. }, Err(error)) => (absent, Some(Err(Ssd1306Error::Absent(error)))),
-            (Self::Awake { .. }, Ok(())) => (self, None),
-            (Self::Awake { .. }, Err(_)) => (absent, Some(Err(Ssd1306Error::Lost))),
+            (Self::Looking { address } | Self::Asking { address }, _, Some(Found { controller, .. })) => {
+                (Self::Waking { address, controller }, None)
+            }
+            (Self::Looking { address }, Ok(()), None) => (Self::Asking { address }, None),
+            (Self::Looking { address }, Err(ErrorKind::NoAcknowledge(_)), None) if address == first => {
+                (Self::Looking { address: second }, None)
+            }
+            (Self::Waking { address, controller }, Ok(()), _) => (Self::Awake { address, controller }, Some(Ok(()))),
+            (Self::Awake { .. }, Ok(()), _) => (self, None),
+            (Self::Awake { .. }, Err(_), _) => absent(Ssd1306Error::Lost),
+            (_, sent, _) => absent(Ssd1306Error::Absent(sent.err().unwrap_or(ErrorKind::Other))),
         }
     }
 }
@@ -195,28 +234,41 @@ impl<Bus: PanelBus> Display for Ssd1306<Bus> {
         }
         self.told
     }
+
+    fn found(&mut self) -> Option<Found> {
+        self.found.take()
+    }
 }
 
-/// Configures the panel, fills these pages of its memory and switches it on.
-fn wake(outbox: &mut Outbox, frame: &Bitmap, pages: Range<usize>) {
-    outbox.put(COMMAND, SETTINGS);
-    draw(outbox, None, frame, pages);
-    outbox.put(COMMAND, ON);
+/// The first half of what wakes the panel, or the second, which switches it on.
+fn wake(outbox: &mut Outbox, controller: Controller, half: usize) {
+    if half == 0 {
+        outbox.put(COMMAND, SETTINGS);
+    } else {
+        outbox.put(COMMAND, if controller == Controller::Sh1106 { SH1106 } else { SSD1306 });
+        outbox.put(COMMAND, ON);
+    }
 }
 
-/// Sends what differs in these pages between the panel's memory and the frame; all of it if the memory is not known.
-fn draw(outbox: &mut Outbox, memory: Option<&Bitmap>, frame: &Bitmap, pages: Range<usize>) {
-    for (page, new) in (0..).zip(frame.pages()).filter(|(page, _)| pages.contains(&usize::from(*page))) {
-        let old = memory.and_then(|memory| memory.pages().get(usize::from(page)));
-        for (first, last) in runs(|column| old.is_none_or(|old| old.get(column) != new.get(column))) {
-            outbox.put(COMMAND, &[0x21, first as u8, last as u8, 0x22, page, page]);
-            outbox.put(DATA, new.get(first..=last).unwrap_or_default());
+/// Sends what differs between the panel's memory and the frame; all of it if the memory is not known.
+fn draw(outbox: &mut Outbox, controller: Controller, memory: Option<&Bitmap>, frame: &Bitmap) {
+    for (page, new) in frame.pages().iter().enumerate() {
+        let old = memory.and_then(|memory| memory.pages().get(page));
+        for columns in runs(|column| old.is_none_or(|old| old.get(column) != new.get(column))) {
+            write(outbox, controller, frame, page, columns);
         }
     }
 }
 
+/// Sends these columns of a page.
+fn write(outbox: &mut Outbox, controller: Controller, frame: &Bitmap, page: usize, columns: Range<usize>) {
+    let first = columns.start as u8 + if controller == Controller::Sh1106 { SH1106_LEFT } else { 0 };
+    outbox.put(COMMAND, &[0xB0 | page as u8, first & 0x0F, 0x10 | first >> 4]);
+    outbox.put(DATA, frame.pages().get(page).and_then(|page| page.get(columns)).unwrap_or_default());
+}
+
 /// The columns that differ, from the first to the last of each run; short gaps belong to it.
-fn runs(differs: impl Fn(usize) -> bool) -> impl Iterator<Item = (usize, usize)> {
+fn runs(differs: impl Fn(usize) -> bool) -> impl Iterator<Item = Range<usize>> {
     let mut columns = (0..WIDTH).filter(move |&column| differs(column)).peekable();
     from_fn(move || {
         let first = columns.next()?;
@@ -224,6 +276,6 @@ fn runs(differs: impl Fn(usize) -> bool) -> impl Iterator<Item = (usize, usize)>
         while let Some(next) = columns.next_if(|&next| next - last <= GAP) {
             last = next;
         }
-        Some((first, last))
+        Some(first..last + 1)
     })
 }

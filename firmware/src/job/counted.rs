@@ -1,7 +1,19 @@
 //! The steps that are counted, and what the bits come to after them.
 
+use double_pendulum::{Method, Parameters};
+
 use super::{JobError, Request, Run};
+use crate::config::GRAVITY;
 use crate::protocol::CRC;
+
+impl Request {
+    /// 10,000 steps of a chaotic motion: what is compared on every core there is, boards or not.
+    pub fn on_any_core(method: Method) -> Self {
+        let parameters = Parameters { m1: 1.0, m2: 1.0, l1: 1.0, l2: 1.0, g: GRAVITY };
+        let (angles, velocities) = ([2.0; 2], [0.0; 2]);
+        Self { method, parameters, angles, velocities, dt: 1.0 / 256.0, stride: 100, samples: 100 }
+    }
+}
 
 /// CRC-32 of all that is carried at every sample but the one at the start, and of the last state.
 pub(super) fn crc<R: Run>(request: &Request) -> Result<u32, JobError> {

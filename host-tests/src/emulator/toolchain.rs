@@ -57,7 +57,7 @@ impl SetupError {
 /// The tools, if all are there; installs nothing. Looks once per process.
 pub fn ready() -> Result<Toolchain, SetupError> {
     static READY: OnceLock<Result<Toolchain, SetupError>> = OnceLock::new();
-    READY.get_or_init(|| both(detect::arm_core(), detect::qemu())).clone()
+    READY.get_or_init(|| both(detect::core(&TARGETS), detect::QEMU.find())).clone()
 }
 
 /// The tools, brought if need be; and a line for each thing that was done for it. Two set-ups at once take turns.
@@ -68,8 +68,8 @@ pub fn set_up() -> Result<(Toolchain, Vec<String>), SetupError> {
     }
     let _turn = install::turn()?;
     let mut done = Vec::new();
-    let core = detect::arm_core().or_else(|_| install::arm_core(&mut done));
-    let qemu = detect::qemu().or_else(|_| install::qemu(&mut done));
+    let core = detect::core(&TARGETS).or_else(|_| install::core(&TARGETS, &mut done));
+    let qemu = detect::QEMU.find().or_else(|_| install::qemu(&detect::QEMU, &mut done));
     Ok((both(core, qemu)?, done))
 }
 
@@ -78,12 +78,29 @@ fn both(core: Result<ArmCore, String>, qemu: Result<PathBuf, String>) -> Result<
     let packages = format!("rustup target add {}, or Debian's {}", TARGETS.join(" "), detect::CORE_PACKAGES.join(" "));
     let core = core.map_err(|why| SetupError::missing("the ARM core library", &why, &packages).0);
     let by_hand = "this system's package of that name (Homebrew: qemu)";
-    let qemu = qemu.map_err(|why| SetupError::missing(detect::QEMU, &why, by_hand).0);
+    let qemu = qemu.map_err(|why| SetupError::missing(detect::QEMU.program, &why, by_hand).0);
     match (core, qemu) {
         (Ok(core), Ok(qemu)) => Ok(Toolchain { core, qemu }),
         (Err(core), Err(qemu)) => Err(SetupError(format!("{core}\n{qemu}"))),
         (Err(missing), _) | (_, Err(missing)) => Err(SetupError(missing)),
     }
+}
+
+/// The tools, brought if need be, with the core library for one more target.
+pub fn set_up_for(target: &str) -> Result<Toolchain, SetupError> {
+    let (toolchain, _) = set_up()?;
+    let _turn = install::turn()?;
+    let core = detect::core(&[target]).or_else(|_| install::core(&[target], &mut Vec::new()));
+    let core = core.map_err(|why| SetupError(format!("the core library for {target} is missing: {why}")))?;
+    Ok(Toolchain { core, ..toolchain })
+}
+
+/// The emulator of a RISC-V under Linux, brought if need be.
+pub fn set_up_riscv() -> Result<PathBuf, SetupError> {
+    let _turn = install::turn()?;
+    let emulator = &detect::QEMU_RISCV;
+    let found = emulator.find().or_else(|_| install::qemu(emulator, &mut Vec::new()));
+    found.map_err(|why| SetupError(format!("{} is missing: {why}", emulator.program)))
 }
 
 /// The emulator of the Raspberry Pi Pico, if it is there; installs nothing.

@@ -1,6 +1,7 @@
 //! The firmware on emulated boards: bits, frames, faults, costs.
 
 mod budgets;
+mod cores;
 mod count;
 mod count_elf;
 mod identity;

@@ -185,33 +185,33 @@ fn stand_still(board: &mut Machine) -> Result<Frame, PicoError> {
 }
 
 #[test]
-fn the_panel_shows_the_hosts_picture() -> Result<(), PicoError> {
+fn the_panel_shows_the_hosts_picture_whichever_it_is_and_however_often_it_is_pulled() -> Result<(), PicoError> {
     let mut board = board()?;
-    for name in [SceneName::Page, SceneName::Figure7, SceneName::Butterfly, SceneName::Flips] {
+    board.plug(0)?;
+    board.run(Duration::from_millis(300))?;
+    assert!(board.panel()?.is_empty(), "it is off");
+    assert!(board.lines().iter().any(|line| line.text.starts_with("panel: Absent")));
+    for (name, status, found) in [
+        (SceneName::Page, 6, "panel: Found { controller: Ssd1306, by: Status(70) }"),
+        (SceneName::Figure7, 0, ""),
+        (SceneName::Butterfly, 8, "panel: Found { controller: Sh1106, by: Status(72) }"),
+        (SceneName::Flips, 8, ""),
+    ] {
         board.send(&Choose { request: 1, scene: name.code() })?;
         board.send(&Pause { request: 2, paused: 0 })?;
-        board.run(Duration::from_millis(700))?;
+        board.plug(status)?;
+        // It is looked for within a second, and has what was lost in one more.
+        board.run(Duration::from_millis(2000))?;
         let frame = stand_still(&mut board)?;
+        assert_eq!(board.lines().iter().any(|line| line.text == found), !found.is_empty(), "{}", name.name());
         let mut show = show(name, &name.first_settings());
         (0..frame.step).for_each(|_| show.tick());
         let mut canvas = show.frame();
         firmware::graphics::text::pause_mark(&mut canvas);
-        let shown = board.panel()?;
-        assert!(shown == Bitmap::from(&canvas).pages().as_flattened(), "{}: {:?}", name.name(), board.screenshot()?);
+        let (shown, picture) = (board.panel()?, Bitmap::from(&canvas));
+        let expected = if status == 0 { &[] } else { picture.pages().as_flattened() };
+        assert!(shown == expected, "{}: {:?}", name.name(), board.screenshot()?);
     }
-    Ok(())
-}
-
-#[test]
-fn a_panel_that_is_plugged_in_later_shows_the_picture() -> Result<(), PicoError> {
-    let mut board = board()?;
-    board.plug(false)?;
-    board.run(Duration::from_millis(300))?;
-    assert!(board.panel()?.is_empty(), "it is off");
-    assert!(board.lines().iter().any(|line| line.text.starts_with("panel: Absent")));
-    board.plug(true)?;
-    board.run(Duration::from_millis(1500))?;
-    assert!(board.panel()?.iter().any(|byte| *byte != 0), "it is found within a second or so");
     Ok(())
 }
 

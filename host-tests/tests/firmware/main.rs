@@ -1,5 +1,6 @@
 //! The portable firmware on the host: motion, scenes, protocol, panels.
 
+mod any_panel;
 mod app;
 mod bench;
 mod canvas;

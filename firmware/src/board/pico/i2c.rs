@@ -41,7 +41,7 @@ const ARBITRATION_LOST: u32 = 1 << 12;
 /// Its data and its clock.
 pub(super) type Lines = (Line<Gpio4>, Line<Gpio5>);
 
-/// I2C0 and its pins, for writing only: the panel is never read.
+/// I2C0 and its pins.
 pub struct I2c0 {
     port: I2C0,
     lines: Lines,
@@ -127,7 +127,11 @@ fn advance(port: &RegisterBlock, outbox: &mut Outbox) -> Option<Sent> {
         }
         // It may be that of a message before.
         let _ = port.ic_clr_stop_det().read();
-        return port.ic_status().read().tfe().is_empty().then(|| {
+        let (status, asks) = (port.ic_status().read(), outbox.asks());
+        return (status.tfe().is_empty() && (!asks || status.rfne().is_not_empty())).then(|| {
+            if asks {
+                outbox.answer(port.ic_data_cmd().read().dat().bits());
+            }
             listen(port, NOTHING);
             Ok(())
         });
@@ -139,6 +143,10 @@ fn advance(port: &RegisterBlock, outbox: &mut Outbox) -> Option<Sent> {
         port.ic_data_cmd().write(|w| unsafe { w.dat().bits(byte.value).stop().bit(byte.ends_message) });
     }
     if outbox.is_empty() {
+        if outbox.asks() {
+            // There is room: the message before it is a short one.
+            port.ic_data_cmd().write(|w| w.cmd().read().stop().enable());
+        }
         // What is left to wait for is the last stop.
         let _ = port.ic_clr_stop_det().read();
         listen(port, STOPPED | ABORTED);

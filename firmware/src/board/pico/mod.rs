@@ -1,4 +1,4 @@
-//! Raspberry Pi Pico: an RP2040, Cortex-M0+ at 125 MHz, of which one core is used; an SSD1306 panel on I2C0, up to five buttons,
+//! Raspberry Pi Pico: an RP2040, Cortex-M0+ at 125 MHz, of which one core is used; an SSD1306 or SH1106 panel on I2C0, up to five buttons,
 //! and the serial link over USB and UART0 at once.
 //!
 //! Source: RP2040 data sheet; Raspberry Pi Pico data sheet, for what is on which pin.
@@ -30,6 +30,7 @@ use crate::board::panel_bus::Bus;
 use crate::board::serial::receiver::Receiver;
 use crate::board::{log, steps};
 use crate::display::Ssd1306;
+use crate::display::controller::BUILT_FOR;
 use crate::display::outbox::Outbox;
 use crate::protocol::BoardName;
 
@@ -78,7 +79,7 @@ pub fn take() -> Option<Pico> {
     let bus = i2c::start(chip.I2C0, lines, &mut chip.RESETS, hertz, outbox)?;
     let chip_number = [chip.SYSINFO.chip_id().read().bits(), 0, 0, 0];
     Some(Board {
-        panel: Ssd1306::new(bus),
+        panel: Ssd1306::new(bus, BUILT_FOR),
         link,
         receiver,
         keys: PinKeys {

@@ -1,6 +1,6 @@
 //! The I2C bus of the panel. The support library sets it up; bytes are sent here, by the bus's interrupts.
 //!
-//! Source: ST RM0090, 27.3.3 (master transmitter), 27.3.4 (errors); ES0182, the chip's errata.
+//! Source: ST RM0090, 27.3.3 (master transmitter and receiver), 27.3.4 (errors); ES0182, the chip's errata.
 
 use cortex_m::asm::delay;
 use cortex_m::peripheral::NVIC;
@@ -26,9 +26,10 @@ const TRIES: u32 = 500;
 const START_SENT: u16 = 1 << 0;
 const ADDRESS_SENT: u16 = 1 << 1;
 const ALL_SENT: u16 = 1 << 2;
+const BYTE_READ: u16 = 1 << 6;
 const READY_FOR_BYTE: u16 = 1 << 7;
 
-/// I2C1 and its pins, for writing only: the panel is never read.
+/// I2C1 and its pins.
 pub struct I2c1 {
     port: I2C1,
     pins: (Scl, Sda),
@@ -94,12 +95,23 @@ fn registers() -> &'static RegisterBlock {
 /// Does what the bus waits for. Between two messages there is no stop but a start.
 fn advance(port: &RegisterBlock, outbox: &mut Outbox) -> Option<Sent> {
     let status = port.sr1().read().bits();
+    // What is left then is to read the status.
+    let reads = outbox.is_empty() && outbox.asks();
     let is_ready = if status & START_SENT != 0 {
-        port.dr().write(|w| w.dr().set(outbox.address() << 1));
+        port.dr().write(|w| w.dr().set(outbox.address() << 1 | u8::from(reads)));
         false
     } else if status & ADDRESS_SENT != 0 {
         let _ = port.sr2().read(); // Only this ends the address phase.
-        true
+        if reads {
+            // One byte, which is not acknowledged.
+            port.cr1().modify(|_, w| w.stop().set_bit());
+            port.cr2().modify(|_, w| w.itbufen().set_bit());
+        }
+        !reads
+    } else if reads && status & BYTE_READ != 0 {
+        outbox.answer(port.dr().read().dr().bits());
+        silence(port);
+        return Some(Ok(()));
     } else {
         outbox.is_within_message() && status & READY_FOR_BYTE != 0
     };
@@ -112,7 +124,7 @@ fn advance(port: &RegisterBlock, outbox: &mut Outbox) -> Option<Sent> {
     if is_ready || status & ALL_SENT == 0 || outbox.is_within_message() {
         return None;
     }
-    if outbox.is_empty() {
+    if outbox.is_empty() && !reads {
         stop(port);
         return Some(Ok(()));
     }

@@ -1,4 +1,4 @@
-//! STM32F405 (or F407): Cortex-M4F at 168 MHz, an SSD1306 panel on I2C1, one button, serial port USART3.
+//! STM32F405 (or F407): Cortex-M4F at 168 MHz, an SSD1306 or SH1106 panel on I2C1, one button, serial port USART3.
 //!
 //! The same image runs on the chip and in QEMU's `netduinoplus2`, where there are the processor, the memory and the
 //! serial ports, but neither clock control nor pins nor I2C: their registers read 0 and forget what is written.
@@ -32,6 +32,7 @@ use crate::board::serial::receiver::Receiver;
 use crate::board::serial::transmitter::Transmitter;
 use crate::board::{log, steps};
 use crate::display::Ssd1306;
+use crate::display::controller::BUILT_FOR;
 use crate::display::outbox::Outbox;
 use crate::protocol::BoardName;
 
@@ -71,7 +72,7 @@ pub fn take() -> Option<Stm32f405> {
     uart::enable_receiver();
     let outbox = cortex_m::singleton!(: Outbox = Outbox::new())?;
     Some(Board {
-        panel: Ssd1306::new(i2c::start(chip.I2C1, b.pb6, b.pb7, &mut rcc, outbox)),
+        panel: Ssd1306::new(i2c::start(chip.I2C1, b.pb6, b.pb7, &mut rcc, outbox), BUILT_FOR),
         link,
         receiver,
         keys: OneKey(c.pc7.into_pull_up_input()),

@@ -158,9 +158,9 @@ impl Machine {
         self.tell(&format!("button {pin} {}", u8::from(down)))
     }
 
-    /// Plugs the panel in, or pulls it.
-    pub fn plug(&mut self, is_there: bool) -> Result<(), PicoError> {
-        self.tell(&format!("plug {}", u8::from(is_there)))
+    /// Plugs a panel in that has this status, 6 an SSD1306's and 8 an SH1106's; or pulls it: 0.
+    pub fn plug(&mut self, status: u8) -> Result<(), PicoError> {
+        self.tell(&format!("plug {status}"))
     }
 
     /// Writes `byte` at all these addresses of memory.

@@ -2,7 +2,7 @@
 
 use std::env;
 use std::ffi::OsString;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::Mutex;
 use std::time::Duration;
@@ -10,7 +10,7 @@ use std::time::Duration;
 use super::detect::{DEBIAN_CARGO, DEBIAN_RUSTC};
 use super::install::run_shown;
 use super::{ArmCore, TARGETS, Toolchain, target, workspace};
-use crate::emulator::boards::{Board, every_board};
+use crate::emulator::boards::{Board, PICO, every_board};
 use crate::emulator::process::ProcessError;
 
 /// What this process has built, each binary with its target: to ask cargo again takes half a second.
@@ -73,7 +73,7 @@ impl Toolchain {
         let this = (binary.to_owned(), target.to_owned());
         if !BUILT.lock().is_ok_and(|built| built.contains(&this)) {
             let feature = every_board().find(|board| board.binary == binary).map_or("", |board| board.feature);
-            let mut command = self.for_targets("build", &[target]);
+            let mut command = self.for_targets("build", &[target], &Self::folder());
             command.args(["--bin", binary, "--features", feature]);
             self.finish(command, &format!("building {binary} for {target}"))?;
             BUILT.lock().into_iter().for_each(|mut built| built.push(this.clone()));
@@ -81,22 +81,40 @@ impl Toolchain {
         Ok(elf)
     }
 
+    /// Builds the image of every method for a target; for a processor of this name that computes `f64` itself, if there is one.
+    pub fn build_cores(&self, target: &str, double: Option<&str>) -> Result<PathBuf, BuildError> {
+        let folder = double.map_or_else(Self::folder, |cpu| Self::folder().join(cpu));
+        let mut command = self.for_targets("build", &[target], &folder);
+        command.args(["--bin", "cores", "--features", "cores"]);
+        if let Some(cpu) = double {
+            // In place of the flags of the configuration, which are those of a Cortex-M4F.
+            command.args(["--features", "double-pendulum-kernel/double-fpu"]);
+            command.env("RUSTFLAGS", format!("-Ctarget-cpu={cpu}"));
+        }
+        self.finish(command, &format!("building cores for {}", double.unwrap_or(target)))?;
+        Ok(folder.join(target).join("release/cores"))
+    }
+
     /// Builds every binary that needs no chip's support library for every target, side by side.
     pub fn build_ahead(&self) -> Result<(), BuildError> {
-        let mut command = self.for_targets("build", &TARGETS);
+        let mut command = self.for_targets("build", &TARGETS, &Self::folder());
         command.arg("--bins");
         self.finish(command, "building the firmware for all targets")
     }
 
-    /// Checks all of the firmware's binaries and its example under an executor for every target; a warning is an error, of
+    /// Checks all of the firmware's binaries and its examples for chips for every target; a warning is an error, of
     /// clippy too where the compiler has it.
     pub fn check(&self) -> Result<(), BuildError> {
         for target in TARGETS {
             let features = every_board().filter(|board| board.target == target).map(|board| board.feature);
             let features = features.collect::<Vec<_>>().join(",");
             let is_ready_made = self.core == ArmCore::ReadyMade;
-            let mut command = self.for_targets(if is_ready_made { "clippy" } else { "check" }, &[target]);
+            let mut command =
+                self.for_targets(if is_ready_made { "clippy" } else { "check" }, &[target], &Self::folder());
             command.args(["--bins", "--example", "embassy", "--features", &features]);
+            if features.contains(PICO.feature) {
+                command.args(["--example", "colour_panel", "--features", "colour-panel"]);
+            }
             if is_ready_made {
                 command.args(["--", "--deny", "warnings"]);
             } else {
@@ -108,9 +126,9 @@ impl Toolchain {
     }
 
     /// What cargo is to do with the optimised firmware for some targets.
-    fn for_targets(&self, what: &str, targets: &[&str]) -> Command {
+    fn for_targets(&self, what: &str, targets: &[&str], folder: &Path) -> Command {
         let mut command = self.cargo();
-        command.args([what, "--release", "--package", "firmware", "--target-dir"]).arg(Self::folder());
+        command.args([what, "--release", "--package", "firmware", "--target-dir"]).arg(folder);
         command.args(targets.iter().flat_map(|target| ["--target", target]));
         command
     }

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
 
-use super::{ArmCore, TARGETS, target, workspace};
+use super::{ArmCore, target, workspace};
 use crate::emulator::process::run;
 
 /// For a program that only says its version.
@@ -18,17 +18,29 @@ pub(super) const DEBIAN_RUSTC: &str = "/usr/bin/rustc";
 pub(super) const DEBIAN_CARGO: &str = "/usr/bin/cargo";
 /// The Debian packages that build the ARM core library.
 pub(super) const CORE_PACKAGES: [&str; 3] = ["rustc-web", "cargo-web", "rust-web-src"];
-/// The emulator, and its Debian package.
-pub(super) const QEMU: &str = "qemu-system-arm";
 
-/// The core library: ready-made beside the compiler in use, else Debian's sources.
-pub(super) fn arm_core() -> Result<ArmCore, String> {
+/// An emulator of QEMU's.
+pub(super) struct Emulator {
+    pub program: &'static str,
+    /// Its Debian package.
+    pub package: &'static str,
+    /// Where the set-up unpacks it for this project alone, in the target folder.
+    folder: &'static str,
+}
+
+/// Of whole boards.
+pub(super) const QEMU: Emulator = Emulator { program: "qemu-system-arm", package: "qemu-system-arm", folder: "qemu" };
+/// Of a RISC-V under Linux.
+pub(super) const QEMU_RISCV: Emulator = Emulator { program: "qemu-riscv32", package: "qemu-user", folder: "qemu-user" };
+
+/// The core library for these targets: ready-made beside the compiler in use, else Debian's sources.
+pub(super) fn core(targets: &[&str]) -> Result<ArmCore, String> {
     let (in_use, _) = libraries("rustc")?;
-    let has_core = |target: &str| {
+    let has_core = |target: &&str| {
         let mut files = fs::read_dir(in_use.join(target).join("lib")).into_iter().flatten().flatten();
         files.any(|file| file.file_name().as_encoded_bytes().starts_with(b"libcore-"))
     };
-    if TARGETS.into_iter().all(has_core) {
+    if targets.iter().all(has_core) {
         return Ok(ArmCore::ReadyMade);
     }
     let (debians, _) = libraries(DEBIAN_RUSTC).map_err(|_| "neither rustup nor Debian has brought one")?;
@@ -63,21 +75,22 @@ fn libraries(rustc: &str) -> Result<(PathBuf, String), String> {
     Ok((Path::new(sysroot).join("lib/rustlib"), host.trim().to_owned()))
 }
 
-/// Where the set-up unpacks an emulator for this project alone.
-pub(super) fn own_qemu_folder() -> PathBuf {
-    target().join("qemu")
-}
-
-/// The first emulator that runs: the system's, else this project's own.
-pub(super) fn qemu() -> Result<PathBuf, String> {
-    let mut why = "there is no such program".to_owned();
-    for path in find(QEMU).into_iter().chain(executable(own_qemu_folder().join(QEMU))) {
-        match says(Command::new(&path).arg("--version")) {
-            Ok(_) => return Ok(path),
-            Err(reason) => why = format!("{} does not run: {reason}", path.display()),
-        }
+impl Emulator {
+    pub fn own_folder(&self) -> PathBuf {
+        target().join(self.folder)
     }
-    Err(why)
+
+    /// The first that runs: the system's, else this project's own.
+    pub fn find(&self) -> Result<PathBuf, String> {
+        let mut why = "there is no such program".to_owned();
+        for path in find(self.program).into_iter().chain(executable(self.own_folder().join(self.program))) {
+            match says(Command::new(&path).arg("--version")) {
+                Ok(_) => return Ok(path),
+                Err(reason) => why = format!("{} does not run: {reason}", path.display()),
+            }
+        }
+        Err(why)
+    }
 }
 
 /// The program that would be run by this name.

@@ -8,8 +8,8 @@ use std::time::Duration;
 
 use nix::fcntl::{Flock, FlockArg};
 
-use super::detect::{self, CORE_PACKAGES, QEMU, find, reason};
-use super::{ArmCore, SetupError, TARGETS, target, workspace};
+use super::detect::{self, CORE_PACKAGES, Emulator, find, reason};
+use super::{ArmCore, SetupError, target, workspace};
 use crate::console::progress::Progress;
 use crate::emulator::process::{Output, ProcessError, run_watched};
 
@@ -30,40 +30,41 @@ pub(super) fn turn() -> Result<Flock<File>, SetupError> {
 }
 
 /// The core library: ready-made by rustup, else Debian's sources and their compiler. A line more of what was done.
-pub(super) fn arm_core(done: &mut Vec<String>) -> Result<ArmCore, String> {
+pub(super) fn core(targets: &[&str], done: &mut Vec<String>) -> Result<ArmCore, String> {
     let mut rustup = Command::new("rustup");
-    rustup.args(["target", "add"]).args(TARGETS).current_dir(workspace()).env("RUSTUP_AUTO_INSTALL", "0");
-    let doing = format!("rustup fetches the ARM core library, for at most {} s", RUSTUP.as_secs());
+    rustup.args(["target", "add"]).args(targets).current_dir(workspace()).env("RUSTUP_AUTO_INSTALL", "0");
+    let doing = format!("rustup fetches the core library, for at most {} s", RUSTUP.as_secs());
     // Its success is not enough: it may skip a target it cannot have.
-    match attempt(&mut rustup, RUSTUP, &doing).and_then(|()| detect::arm_core()) {
+    match attempt(&mut rustup, RUSTUP, &doing).and_then(|()| detect::core(targets)) {
         Ok(core) => {
-            done.push(format!("rustup added {}", TARGETS.join(", ")));
+            done.push(format!("rustup added {}", targets.join(", ")));
             Ok(core)
         }
         Err(failure) => {
             let brought = detect::linker().and_then(|_| install_packages(&CORE_PACKAGES));
-            let core = brought.and_then(|()| detect::arm_core()).map_err(|why| format!("{failure}; {why}"))?;
+            let core = brought.and_then(|()| detect::core(targets)).map_err(|why| format!("{failure}; {why}"))?;
             done.push(format!("apt-get installed {}, because {failure}", CORE_PACKAGES.join(", ")));
             Ok(core)
         }
     }
 }
 
-/// QEMU from Debian's packages, installed, or unpacked for this project alone where they cannot be: where that would cost the
+/// An emulator from Debian's packages, installed, or unpacked for this project alone where they cannot be: where that would cost the
 /// user another package, or another may do it. A line more of what was done.
-pub(super) fn qemu(done: &mut Vec<String>) -> Result<PathBuf, String> {
-    match install_packages(&[QEMU]).and_then(|()| detect::qemu()) {
+pub(super) fn qemu(emulator: &Emulator, done: &mut Vec<String>) -> Result<PathBuf, String> {
+    let Emulator { program, package, .. } = emulator;
+    match install_packages(&[package]).and_then(|()| emulator.find()) {
         Ok(qemu) => {
-            done.push(format!("apt-get installed {QEMU}"));
+            done.push(format!("apt-get installed {package}"));
             Ok(qemu)
         }
         Err(failure) => {
-            let folder = detect::own_qemu_folder();
+            let folder = emulator.own_folder();
             let mut unpack = Command::new("sh");
-            unpack.arg(workspace().join(UNPACK_QEMU)).arg(&folder).env("LC_ALL", "C");
+            unpack.arg(workspace().join(UNPACK_QEMU)).arg(&folder).args([package, program]).env("LC_ALL", "C");
             let unpacked = attempt(&mut unpack, INSTALL, "unpacking QEMU, which cannot be installed");
-            let qemu = unpacked.and_then(|()| detect::qemu()).map_err(|_| failure.clone())?;
-            done.push(format!("{QEMU} unpacked into {}, because {failure}", folder.display()));
+            let qemu = unpacked.and_then(|()| emulator.find()).map_err(|_| failure.clone())?;
+            done.push(format!("{package} unpacked into {}, because {failure}", folder.display()));
             Ok(qemu)
         }
     }

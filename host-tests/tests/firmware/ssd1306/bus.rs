@@ -37,7 +37,7 @@ impl Line {
     pub fn run(&mut self, bits: u32) {
         self.time = if self.hangs { 0 } else { self.time.saturating_add(bits) };
         while let Some((outbox, sent @ None)) = &mut self.outgoing {
-            let needed = match (outbox.is_within_message(), outbox.is_empty()) {
+            let needed = match (outbox.is_within_message(), outbox.is_empty() && !outbox.asks()) {
                 (true, _) => BYTE,
                 (false, true) => 1,
                 (false, false) => 1 + 2 * BYTE,
@@ -56,6 +56,11 @@ impl Line {
                 if byte.ends_message {
                     self.panel.take(&self.message);
                     self.message.clear();
+                }
+            } else if outbox.asks() {
+                match self.panel.status() {
+                    Some(status) => outbox.answer(status),
+                    None => *sent = Some(Err(ErrorKind::NoAcknowledge(NoAcknowledgeSource::Address))),
                 }
             } else {
                 *sent = Some(Ok(()));

@@ -1,12 +1,15 @@
-//! The one-colour panel: its frame, and its driver against a controller that is stricter than the real one.
+//! The one-colour panel: its frame, and its driver against controllers that are stricter than the real ones.
 
 mod bus;
 mod controller;
+
+use std::cell::RefCell;
 
 use embedded_hal::i2c::{ErrorKind, NoAcknowledgeSource};
 use fastrand::Rng;
 use firmware::app::player::Player;
 use firmware::config::{STM32F405, TICK_RATE};
+use firmware::display::controller::{By, Controller as Name, Found};
 use firmware::display::{Display, Ssd1306, Ssd1306Error};
 use firmware::graphics::bitmap::Bitmap;
 use firmware::graphics::canvas::{Canvas, HEIGHT, WIDTH};
@@ -16,7 +19,7 @@ use firmware::scenes::SceneName;
 use host_tests::emulator::host::Show;
 
 use bus::{BYTE, Bus, Line};
-use controller::Controller;
+use controller::{Controller, Kind, SH1106, SILENT, SSD1306};
 
 /// No answer.
 const SILENCE: ErrorKind = ErrorKind::NoAcknowledge(NoAcknowledgeSource::Address);
@@ -76,69 +79,158 @@ fn the_panel_shows_each_picture_at_either_address() {
     // Whole frames of noise, and a few pixels here and there.
     let noise = [2, 2, 1000, 300, 100, 30, 10, 3].map(|rarity| pixels(|| rng.u32(..rarity) == 0));
     let frames: Vec<_> = [0, 1, 2, 30, 31, 400].map(scene).into_iter().chain(noise).collect();
-    for address in [0x3C, 0x3D] {
-        let line = Line::to(Controller::at(address));
-        let mut panel = Ssd1306::new(Bus::new(&line));
+    for (kind, address) in [(SSD1306, 0x3C), (SSD1306, 0x3D), (SH1106, 0x3C), (SH1106, 0x3D), (SILENT, 0x3C)] {
+        let line = Line::to(Controller::new(kind, address));
+        let mut panel = Ssd1306::new(Bus::new(&line), None);
         for (number, frame) in frames.iter().enumerate() {
-            // It is found by its first frame, at the second address by its second.
-            for _ in 0..if number == 0 { 2 } else { 1 } {
+            // It is looked for, asked and woken with the first frame, at the second address with one more.
+            for _ in 0..if number == 0 { FIRST + 1 } else { 1 } {
                 assert_eq!(panel.flush(frame), Ok(()));
                 line.borrow_mut().run(LONG);
             }
-            assert!(line.borrow().panel.shows(&Bitmap::from(frame)), "frame {number}, at {address:#04x}");
+            assert!(line.borrow().panel.shows(&Bitmap::from(frame)), "frame {number}, {kind:?} at {address:#04x}");
         }
     }
 }
 
+/// Frames until a panel at the first address shows one.
+const FIRST: u32 = 3;
+
 #[test]
-fn what_has_not_changed_is_not_sent() {
+fn controllers_are_told_apart_or_the_build_says_which_it_is() {
+    let says = |status, kind: Kind| Kind { status: Some(status), ..kind };
+    let other = |status| says(status, SSD1306);
+    let by = |status: u8, controller| Some(Found { controller, by: By::Status(status) });
+    let built = |controller| Some(Found { controller, by: By::Build });
+    for (kind, built_for, found, told) in [
+        (SSD1306, None, by(0x46, Name::Ssd1306), Ok(())),
+        (other(0x03), None, by(0x43, Name::Ssd1306), Ok(())),
+        (SH1106, None, by(0x48, Name::Sh1106), Ok(())),
+        (other(0x00), None, by(0x40, Name::Ssd1306), Ok(())),
+        (SILENT, None, Some(Found { controller: Name::Ssd1306, by: By::Silence }), Ok(())),
+        (says(0x06, SH1106), Some(Name::Sh1106), built(Name::Sh1106), Ok(())),
+        (other(0x08), Some(Name::Ssd1306), built(Name::Ssd1306), Ok(())),
+        (other(0x07), None, None, Err(Ssd1306Error::Sh1107)),
+        (other(0x0F), None, None, Err(Ssd1306Error::Sh1107)),
+    ] {
+        let line = Line::to(Controller::new(kind, 0x3C));
+        let mut panel = Ssd1306::new(Bus::new(&line), built_for);
+        for _ in 0..FIRST {
+            let _ = panel.flush(&scene(1));
+            line.borrow_mut().run(LONG);
+        }
+        assert_eq!((panel.flush(&scene(1)), panel.found()), (told, found), "{kind:?}");
+        assert_eq!(panel.found(), None, "it is said once");
+        assert_eq!(line.borrow().panel.shows(&Bitmap::from(&scene(1))), told.is_ok(), "{kind:?}");
+    }
+}
+
+/// Bits of columns of a page: an address, what follows, and the place; an address, what follows, and the bytes.
+const fn bits(columns: u32) -> u32 {
+    (1 + 5 * BYTE) + (1 + (2 + columns) * BYTE)
+}
+
+#[test]
+fn what_has_not_changed_is_not_sent_but_for_the_part_that_is_told_again() {
     let line = Line::to(Controller::at(0x3C));
-    let mut panel = Ssd1306::new(Bus::new(&line));
+    let mut panel = Ssd1306::new(Bus::new(&line), None);
     let mut canvas = scene(30);
-    for changed in [&[][..], &[], &[20], &[20, 90]] {
+    let taken = [&[][..], &[], &[], &[], &[20], &[20, 90]].map(|changed| {
         changed.iter().for_each(|&x| canvas.update(x, 7, |grey| 15 - grey));
         assert_eq!(panel.flush(&canvas), Ok(()));
         line.borrow_mut().run(LONG);
-    }
-    assert_eq!(line.borrow().sent, 3, "the second frame was the first");
-    // Twice an address, what follows, and the window; an address, what follows, and one byte; the stop.
-    assert_eq!(line.borrow().taken, 2 * ((1 + 8 * BYTE) + (1 + 3 * BYTE)) + 1);
+        line.borrow().taken
+    });
+    assert_eq!(taken[3..], [0, 1, 2].map(|changed| changed * bits(1) + bits(16) + 1), "and the stop");
 }
 
 /// Frames of each scene: 5 s.
 const FRAMES: u32 = 5 * TICK_RATE;
 
+/// A panel that is given a frame in each tick.
+struct Played<'a> {
+    line: &'a RefCell<Line>,
+    panel: Ssd1306<Bus<'a>>,
+    /// What was sent last.
+    held: Bitmap,
+}
+
+impl<'a> Played<'a> {
+    fn on(line: &'a RefCell<Line>) -> Self {
+        Self { line, panel: Ssd1306::new(Bus::new(line), None), held: Bitmap::default() }
+    }
+
+    /// Whether the panel shows the last frame when this one comes; `None` if the bus is still busy with that.
+    fn tick(&mut self, canvas: &Canvas) -> Option<bool> {
+        let (was_idle, sent) = (self.line.borrow().is_idle(), self.line.borrow().sent);
+        let shows = self.line.borrow().panel.shows(&self.held);
+        let _ = self.panel.flush(canvas);
+        if was_idle {
+            self.held = Bitmap::from(canvas);
+        } else {
+            assert_eq!(self.line.borrow().sent, sent, "it disturbs the one before");
+        }
+        self.line.borrow_mut().run(TICK);
+        was_idle.then_some(shows)
+    }
+}
+
+fn shown(name: SceneName) -> Show {
+    Show::on(STM32F405, name, &name.first_settings()).expect("a scene of the catalogue")
+}
+
 /// A frame is held back by nothing but the bus: by what the one before has left to send when it comes.
 #[test]
 fn as_many_frames_are_shown_as_the_bus_can_carry() {
-    for &name in SceneName::ALL {
-        let line = Line::to(Controller::at(0x3C));
-        let mut panel = Ssd1306::new(Bus::new(&line));
-        let mut scene = Show::on(STM32F405, name, &name.first_settings()).expect("a scene of the catalogue");
-        assert_eq!(panel.flush(&scene.frame()), Ok(()));
-        line.borrow_mut().run(LONG);
-        let (mut shown, mut most, mut held) = (0, 0, Bitmap::from(&scene.frame()));
+    for (kind, &name) in [SSD1306, SH1106].iter().flat_map(|kind| SceneName::ALL.iter().map(move |name| (*kind, name)))
+    {
+        let line = Line::to(Controller::new(kind, 0x3C));
+        let (mut panel, mut scene, mut most) = (Played::on(&line), shown(name), 0);
+        for _ in 0..2 * FIRST {
+            panel.tick(&scene.frame());
+        }
         for frame in 0..FRAMES {
             scene.tick();
-            let canvas = scene.frame();
-            let (was_idle, sent) = (line.borrow().is_idle(), line.borrow().sent);
-            let _ = panel.flush(&canvas);
-            if was_idle {
-                assert!(line.borrow().panel.shows(&held), "{}, frame {frame}", name.name());
-                (shown, held) = (shown + 1, Bitmap::from(&canvas));
-            } else {
-                assert_eq!(line.borrow().sent, sent, "{}, frame {frame} disturbs the one before", name.name());
-            }
-            line.borrow_mut().run(TICK);
+            let sent = line.borrow().sent;
+            assert_eq!(panel.tick(&scene.frame()), Some(true), "{}, frame {frame}, {kind:?}", name.name());
             if line.borrow().sent != sent {
                 most = most.max(line.borrow().taken);
             }
         }
-        line.borrow_mut().run(LONG);
-        assert!(line.borrow().panel.shows(&held), "{}", name.name());
-        let rate = f64::from(shown * TICK_RATE) / f64::from(FRAMES);
-        println!("{:12} {rate:.1} frames a second, {:.1} ms at most", name.name(), f64::from(most) / 400.0);
-        assert_eq!(shown, FRAMES, "{}", name.name());
+        println!("{:12} {:.1} ms at most", name.name(), f64::from(most) / 400.0);
+    }
+}
+
+/// Ticks for which the panel is away: between two of them, for so short a time that nobody misses an answer, in one, for longer.
+const AWAY: [u32; 5] = [0, 0, 1, 50, 100];
+/// Moments in each run, which lasts 40 s.
+const MOMENTS: usize = 15;
+/// Ticks in which the picture must be back: 2 s.
+const BACK: u32 = 2 * TICK_RATE;
+
+#[test]
+fn a_panel_that_is_unplugged_and_plugged_in_again_shows_the_picture_within_two_seconds() {
+    let runs = [SSD1306, SH1106].into_iter().flat_map(|kind| [false, true].map(|is_paused| (kind, is_paused)));
+    for ((kind, is_paused), &name) in runs.flat_map(|run| SceneName::ALL.iter().map(move |name| (run, name))) {
+        let line = Line::to(Controller::new(kind, 0x3C));
+        let (mut panel, mut scene, mut longest) = (Played::on(&line), shown(name), 0);
+        let mut tick = || {
+            if !is_paused {
+                scene.tick();
+            }
+            panel.tick(&scene.frame())
+        };
+        for (away, moment) in AWAY.into_iter().zip([97, 101, 83, 89, 103]).cycle().take(MOMENTS) {
+            assert_eq!((0..moment).map(|_| tick()).last(), Some(Some(true)), "{}", name.name());
+            line.borrow_mut().panel = Controller::new(kind, 0x3C).plugged(false);
+            for _ in 0..away {
+                tick();
+            }
+            line.borrow_mut().panel.plugged_in = true;
+            let back = (0..BACK).find(|_| tick() == Some(true));
+            longest = longest.max(back.unwrap_or_else(|| panic!("{}, paused {is_paused}, {kind:?}", name.name())));
+        }
+        println!("{:12} paused {is_paused}: back after {longest} ticks at most", name.name());
     }
 }
 
@@ -146,7 +238,7 @@ fn as_many_frames_are_shown_as_the_bus_can_carry() {
 fn a_panel_whose_bus_is_too_slow_says_so() {
     let mut rng = Rng::with_seed(2);
     let line = Line::to(Controller::at(0x3C));
-    let mut panel = Ssd1306::new(Bus::new(&line));
+    let mut panel = Ssd1306::new(Bus::new(&line), None);
     let mut second = |is_noisy: bool| {
         let mut still = Canvas::default();
         let mut told: Vec<_> = (0..2 * TICK_RATE)
@@ -171,7 +263,7 @@ fn a_panel_whose_bus_is_too_slow_says_so() {
 fn an_absent_panel_is_looked_for_once_a_second_and_may_come_and_go() {
     let line = Line::to(Controller::at(0x3C).plugged(false));
     let plug = |plugged_in| line.borrow_mut().panel = Controller::at(0x3C).plugged(plugged_in);
-    let mut panel = Ssd1306::new(Bus::new(&line));
+    let mut panel = Ssd1306::new(Bus::new(&line), None);
     let mut flush = |ticks| {
         let told = panel.flush(&scene(ticks));
         line.borrow_mut().run(TICK);
@@ -191,43 +283,22 @@ fn an_absent_panel_is_looked_for_once_a_second_and_may_come_and_go() {
     assert_eq!(line.borrow().sent, 3);
 
     plug(true);
-    let told: Vec<_> = (0..TICK_RATE + 5).map(|_| flush(1)).collect();
+    let told: Vec<_> = (0..TICK_RATE + 10).map(|_| flush(1)).collect();
     assert!(told.contains(&absent) && told.last() == Some(&Ok(())), "within a second");
     assert!(line.borrow().panel.shows(&Bitmap::from(&scene(1))));
 
     plug(false);
     assert_eq!([flush(2), flush(3)], [Ok(()), Err(Ssd1306Error::Lost)]);
     plug(true);
-    let told: Vec<_> = (0..TICK_RATE + 5).map(|_| flush(4)).collect();
+    let told: Vec<_> = (0..TICK_RATE + 10).map(|_| flush(4)).collect();
     assert!(told.contains(&Err(Ssd1306Error::Lost)) && told.last() == Some(&Ok(())));
     assert!(line.borrow().panel.shows(&Bitmap::from(&scene(4))));
-}
-
-/// Nothing that is sent fails: it answers again when the next reminder comes.
-#[test]
-fn a_panel_that_was_without_power_for_a_moment_comes_back_though_the_picture_stands_still() {
-    let line = Line::to(Controller::at(0x3C));
-    let mut panel = Ssd1306::new(Bus::new(&line));
-    let picture = scene(30);
-    assert_eq!(panel.flush(&picture), Ok(()));
-    line.borrow_mut().run(LONG);
-    line.borrow_mut().panel = Controller::at(0x3C);
-    let mut seconds = |seconds: u32| {
-        for _ in 0..seconds * TICK_RATE {
-            assert_eq!(panel.flush(&picture), Ok(()));
-            line.borrow_mut().run(TICK);
-            assert!(line.borrow().is_idle(), "the next frame would not be held up");
-        }
-        (line.borrow().panel.is_on(), line.borrow().panel.shows(&Bitmap::from(&picture)))
-    };
-    assert_eq!(seconds(1), (true, false), "a part of the picture");
-    assert_eq!(seconds(3), (true, true), "all of it");
 }
 
 #[test]
 fn a_bus_that_hangs_holds_up_nothing_and_is_freed() {
     let line = Line::to(Controller::at(0x3C));
-    let mut panel = Ssd1306::new(Bus::new(&line));
+    let mut panel = Ssd1306::new(Bus::new(&line), None);
     let mut flush = |ticks| {
         let told = panel.flush(&scene(ticks));
         line.borrow_mut().run(TICK);

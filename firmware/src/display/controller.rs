@@ -1,0 +1,59 @@
+//! Which controller a panel on I2C has: they look alike, and take other commands.
+//!
+//! Source: the rule of L. Bank's OLED libraries (`ss_oled`); no data sheet promises it.
+
+/// A panel's controller.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Controller {
+    /// Most panels of 0.96 inches have it; the SSD1309 takes the same commands.
+    Ssd1306,
+    /// Most panels of 1.3 inches have it.
+    Sh1106,
+    /// Of square panels: not driven.
+    Sh1107,
+}
+
+/// How a controller was found out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum By {
+    /// By the status byte, which the panel was asked for.
+    Status(u8),
+    /// The panel does not tell: it is taken for what most are.
+    Silence,
+    /// The program was built for it, with `PANEL=ssd1306` or `PANEL=sh1106`; the panel was not asked.
+    Build,
+}
+
+/// A panel that answers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Found {
+    /// What it has.
+    pub controller: Controller,
+    /// How that was found out.
+    pub by: By,
+}
+
+impl Found {
+    /// A panel that does not tell.
+    pub const SILENT: Self = Self { controller: Controller::Ssd1306, by: By::Silence };
+
+    /// A panel of this status: what the lower half says, for the upper one says whether it is on.
+    pub fn told(status: u8) -> Self {
+        let controller = match status & 0x0F {
+            0x08 => Controller::Sh1106,
+            0x07 | 0x0F => Controller::Sh1107,
+            _ => Controller::Ssd1306, // 3 or 6, and who knows what of an imitation
+        };
+        Self { controller, by: By::Status(status) }
+    }
+}
+
+/// What the program is built for, whatever the panel says.
+pub const BUILT_FOR: Option<Controller> = match option_env!("PANEL") {
+    None => None,
+    Some(name) => match name.as_bytes() {
+        b"ssd1306" => Some(Controller::Ssd1306),
+        b"sh1106" => Some(Controller::Sh1106),
+        _ => panic!("PANEL is neither ssd1306 nor sh1106"),
+    },
+};
