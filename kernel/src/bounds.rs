@@ -1,13 +1,10 @@
 //! Bounds that hold for every motion, from its energy alone.
 
-use crate::equal_rods::EqualRods;
 use crate::error::{Error, Parameter};
-use crate::hamiltonian::Pendulum;
-use crate::modes::Modes;
-use crate::params::Parameters;
-use crate::real::Real;
-use crate::state::State;
-use crate::trig::SinCos;
+use crate::numbers::Real;
+use crate::numbers::trig::SinCos;
+use crate::pendulum::{Parameters, Pendulum, State};
+use crate::small::Modes;
 
 /// The greatest magnitudes that a motion of given energy can reach; each is reached by some motion of that energy.
 ///
@@ -57,7 +54,7 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     /// ```
     /// use double_pendulum::{Parameters, Pendulum, State};
     ///
-    /// let pendulum = Pendulum::new(Parameters { m1: 1.0, m2: 1.0, l1: 1.0, l2: 1.0, g: 9.8 })?;
+    /// let pendulum = Pendulum::new(&Parameters { m1: 1.0, m2: 1.0, l1: 1.0, l2: 1.0, g: 9.8 })?;
     /// let bounds = pendulum.bounds(&State::at_rest(0.0, core::f64::consts::PI)); // K = 2 m2 g l2
     /// assert!((bounds.w1 - 39.2_f64.sqrt()).abs() < 1e-14);
     /// # Ok::<(), double_pendulum::Error>(())
@@ -82,22 +79,6 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     #[must_use]
     pub fn cannot_turn_over(&self, state: &State<R>) -> bool {
         clearly_below(self.energy_above_rest(state), self.turnover_energy())
-    }
-}
-
-impl<R: Real, T: SinCos<R>> EqualRods<R, T> {
-    /// The bounds of the motion through `state`, in the units of the equal-rod form.
-    #[must_use]
-    pub fn bounds(&self, state: &State<R>) -> Bounds<R> {
-        Bounds::new(&self.parameters(), self.energy_above_rest(state))
-    }
-
-    /// Whether it is certain that neither rod ever turns over: K < 2 min(1 + mu, mu) = 2 mu.
-    ///
-    /// From rest that is (1 + mu) cos a1 + mu cos a2 > 1. `false` says nothing.
-    #[must_use]
-    pub fn cannot_turn_over(&self, state: &State<R>) -> bool {
-        clearly_below(self.energy_above_rest(state), R::TWO * self.mass_ratio())
     }
 }
 
@@ -127,12 +108,7 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     pub fn check_step(&self, dt: f64) -> Result<(), Error> {
         if self.parameters().g == R::ZERO { check_forward::<R>(dt) } else { self.modes()?.check_step(dt) }
     }
-}
 
-/// W dt of the longest step that resolves a motion whose fastest rate is W.
-const RESOLVED: f64 = 0.25;
-
-impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     /// The fastest rate, 1/s, at which anything changes in a motion of the energy of `state`:
     /// W = sqrt(w1^2 + (1 + m2/m1) d^2), w1 being the fast normal frequency and d [`Bounds::elbow`].
     ///
@@ -140,6 +116,7 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     /// that bends at the rate d is through a light bob 1's peak in sqrt(m1/m2)/d. Without gravity w1 is 0.
     ///
     /// Refuses parameters whose modes are out of range.
+    #[doc(hidden)]
     pub fn fastest_rate(&self, state: &State<R>) -> Result<R, Error> {
         let &Parameters { m1, m2, g, .. } = self.parameters();
         let normal = if g == R::ZERO { R::ZERO } else { self.modes()?.fast.frequency };
@@ -159,7 +136,7 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     /// use double_pendulum::{Parameters, Pendulum, State};
     ///
     /// let step = |mass_ratio: f64| {
-    ///     let pendulum = Pendulum::new(Parameters::equal_rods(mass_ratio, 1.0, 9.81))?;
+    ///     let pendulum = Pendulum::new(&Parameters::equal_rods(mass_ratio, 1.0, 9.81))?;
     ///     pendulum.admissible_step(&State::at_rest(2.0, 2.0))
     /// };
     /// assert!((1.0 / step(1.0)? - 117.8).abs() < 0.1);
@@ -170,6 +147,9 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
         Ok(R::from_f64(RESOLVED) / self.fastest_rate(state)?)
     }
 }
+
+/// W dt of the longest step that resolves a motion whose fastest rate is W.
+const RESOLVED: f64 = 0.25;
 
 /// Refuses a step that is NaN, infinite, zero, negative or out of the range of `R`.
 fn check_forward<R: Real>(dt: f64) -> Result<(), Error> {
@@ -187,6 +167,7 @@ fn check_forward<R: Real>(dt: f64) -> Result<(), Error> {
 
 /// How many roundings, relative to K, a certificate keeps clear of its limit: more than the evaluation of K makes
 /// when no kinetic term cancels.
+#[doc(hidden)]
 pub const ROUNDING_MARGIN: f64 = 16.0;
 
 fn clearly_below<R: Real>(energy: R, limit: R) -> bool {

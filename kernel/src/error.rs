@@ -2,8 +2,8 @@
 
 use core::fmt;
 
-use crate::method::Method;
-use crate::real::Real;
+use crate::numbers::Real;
+use crate::table::Method;
 
 /// A quantity the caller chooses. Displays as the book's symbol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,9 +42,20 @@ pub enum Parameter {
     /// Ratio of the normal frequencies, fast over slow.
     FrequencyRatio,
     /// The energy, J.
+    #[doc(hidden)]
     Energy,
     /// The method.
     Method,
+    /// How far a bob may be off, m.
+    Tolerance,
+    /// How long a motion is shown, s.
+    Duration,
+    /// Frames per second.
+    Rate,
+    /// What a step costs, in the unit of the budget.
+    Cost,
+    /// What computing a frame, or planning, may cost.
+    Budget,
 }
 
 impl fmt::Display for Parameter {
@@ -67,6 +78,11 @@ impl fmt::Display for Parameter {
             Parameter::FrequencyRatio => "frequency ratio",
             Parameter::Energy => "energy",
             Parameter::Method => "method",
+            Parameter::Tolerance => "tolerance",
+            Parameter::Duration => "duration",
+            Parameter::Rate => "rate",
+            Parameter::Cost => "cost",
+            Parameter::Budget => "budget",
         })
     }
 }
@@ -86,13 +102,6 @@ pub enum Error {
     },
     /// Must be greater than zero.
     NotPositive {
-        /// The offending parameter.
-        parameter: Parameter,
-        /// Its value.
-        value: f64,
-    },
-    /// Must not be less than zero.
-    Negative {
         /// The offending parameter.
         parameter: Parameter,
         /// Its value.
@@ -152,7 +161,6 @@ impl Error {
         match *self {
             Error::NotFinite { parameter, .. }
             | Error::NotPositive { parameter, .. }
-            | Error::Negative { parameter, .. }
             | Error::TooLarge { parameter, .. }
             | Error::TooSmall { parameter, .. }
             | Error::Diverged { parameter, .. }
@@ -178,7 +186,6 @@ impl fmt::Display for Error {
         match self {
             Error::NotFinite { parameter, value } => write!(f, "{parameter} = {value:?}: must be a finite number"),
             Error::NotPositive { parameter, value } => write!(f, "{parameter} = {value:?}: must be greater than zero"),
-            Error::Negative { parameter, value } => write!(f, "{parameter} = {value:?}: must not be negative"),
             Error::TooLarge { parameter, value, limit } => {
                 write!(f, "{parameter} = {value:?}: must not exceed {limit:?}")
             }

@@ -13,23 +13,24 @@
 //! | coordinates | [`Pendulum::positions`], [`Pendulum::velocities`] |
 //! | (not in the book) bounds from the energy | [`Bounds`], [`Pendulum::cannot_turn_over`], [`Pendulum::admissible_step`], [`Modes::step_limit`] |
 //! | (not in the book) when a rod first turns over | [`flips`] |
-//! | (not in the book) every way to compute a motion | [`Method`] |
+//! | (not in the book) every way to compute a motion | [`Method`]; [`Pendulum::run`] with [`HamiltonF64`], [`DirectionF32`], [`Fixed32`], [`Fixed64`], [`ExtrapolationF64`], [`ClosedFormF32`] |
 //! | (not in the book) the cheapest method that keeps to a tolerance | [`plan`](mod@plan) |
 //!
-//! Everything is generic over `f32` and `f64` ([`Real`]), uses no heap, never panics, and gives the same bits on
-//! every machine.
+//! The equations are generic over `f32` and `f64` ([`Real`]); methods compute in these or in fixed point. No heap, no panics,
+//! and the same bits on every machine.
+//!
+//! A motion is a [`Run`] of a pendulum by one method; only that method is linked:
 //!
 //! ```
-//! use double_pendulum::{Parameters, Pendulum, State};
+//! use double_pendulum::{DirectionF32, Parameters, Pendulum, State};
 //!
-//! let pendulum = Pendulum::new(Parameters { m1: 1.0, m2: 2.0, l1: 1.0, l2: 0.5, g: 9.81 })?;
-//! let mut state = State::at_rest(0.5_f64, 1.0);
-//! let energy = pendulum.energy(&state);
-//! pendulum.check_step(1.0 / 1024.0)?;
-//! for _ in 0..1024 {
-//!     state = pendulum.step(&state, 1.0 / 1024.0).finite()?;
-//! }
-//! assert!((pendulum.energy(&state) - energy).abs() < 1e-9);
+//! let pendulum = Pendulum::new(&Parameters { m1: 1.0, m2: 2.0, l1: 1.0, l2: 0.5, g: 9.81 })?;
+//! let mut run = pendulum.run::<DirectionF32>(&State::at_rest(0.5, 1.0), 1.0 / 240.0)?;
+//! run.advance(240)?; // all or nothing: a motion that leaves the finite numbers is an error
+//! let [[_sin1, _cos1], [_sin2, _cos2]] = run.directions(); // enough to draw both rods
+//! let [a1, a2] = run.angles(); // with all their turns
+//! assert!(a1.abs() < 1.0 && a2.abs() < 3.0 && run.time() == 1.0);
+//! assert!((f64::from(run.energy()) - pendulum.energy(&run.state())).abs() < 1e-4);
 //! # Ok::<(), double_pendulum::Error>(())
 //! ```
 //!
@@ -43,7 +44,7 @@
 //!
 //! A change of any bit of a step is a major version. Steps use IEEE 754 arithmetic alone (and `sqrt` and `rint`, which are
 //! correctly rounded) as long as sines come from [`trig::Own`] for angles it reduces itself. The bits of
-//! [`trig::Libm`], of larger angles and of the `atan2` in a form's [`state`](form::Form::state) are those of the `libm`
+//! [`trig::Libm`], of larger angles and of the `atan2` in [`Run::state`] are those of the `libm`
 //! crate that your lock file names (0.2.16 or later): to compare machines, build both with the same.
 //!
 //! # References
@@ -67,45 +68,39 @@ extern crate self as double_pendulum;
 extern crate std;
 
 mod bounds;
-mod equal_rods;
 mod error;
-pub mod extrapolation;
-mod fixed;
 pub mod flips;
-pub mod form;
-mod geometry;
-mod hamiltonian;
-mod lagrangian;
-mod lanes;
-mod legendre;
-mod method;
-mod modes;
-mod params;
+mod methods;
+mod numbers;
+mod pendulum;
 pub mod plan;
-mod real;
-mod ring;
-pub mod rk4;
-mod sealed;
-mod sine;
-mod small_oscillations;
-mod state;
+mod small;
+mod table;
 #[cfg(test)]
 mod tests;
-pub mod trig;
 
 pub use bounds::{Bounds, ROUNDING_MARGIN};
-pub use equal_rods::{EqualRods, Units};
 pub use error::{Error, Parameter};
-pub use geometry::Vector;
-pub use hamiltonian::Pendulum;
-pub use lanes::Lanes;
-pub use method::{Equations, Integrator, Method, Numbers};
-pub use modes::{Mode, Modes, periodic_mass_ratio};
-pub use params::Parameters;
-pub use real::Real;
-pub use ring::Ring;
-pub use small_oscillations::{Oscillation, SmallOscillations};
-pub use state::{Motion, State};
+pub use methods::extrapolation::Extrapolation;
+pub use methods::{
+    ClosedFormF32, ClosedFormF64, DirectionF32, DirectionF32Plain, DirectionF64, DirectionF64Plain, ExtrapolationF64,
+    Fixed32, Fixed64, Form, HamiltonF32, HamiltonF64, Run, rk4,
+};
+pub use numbers::Real;
+#[doc(hidden)]
+pub use numbers::trig;
+pub use pendulum::{Direction, EqualRods, Motion, Parameters, Pendulum, State, Units, Vector};
+pub use small::{Mode, Modes, Oscillation, SmallOscillations, periodic_mass_ratio};
+pub use table::{Equations, Integrator, Method, Numbers};
+
+/// What the methods are made of, for tools and tests; it may change at any time.
+#[doc(hidden)]
+pub mod parts {
+    pub use crate::methods::{
+        Canonical, ClosedForm, Derivatives, Dimensionless, DirectionForm, Plain, Side, Stepper, Turns,
+    };
+    pub use crate::numbers::{Lanes, Scalar};
+}
 
 /// The README's examples, as tests.
 #[cfg(doctest)]

@@ -2,7 +2,7 @@
 #![cfg(all(feature = "serde", feature = "defmt"))]
 
 use double_pendulum::Method;
-use double_pendulum::plan::{Budget, Costs, Limit, Plan, PlanError, Problem, Quantity, Way};
+use double_pendulum::plan::{Budget, Costs, Limit, Plan, PlanError, Problem, Way};
 use double_pendulum::{Error, Motion, Parameter, Parameters, State};
 
 /// The compiler refuses a type that lacks a trait.
@@ -11,6 +11,6 @@ fn is_kept_and_logged<T: Copy + PartialEq + serde::Serialize + serde::de::Deseri
 #[test]
 fn inputs_and_results_are_kept_and_logged() {
     is_kept_and_logged::<(Parameters<f32>, State<f64>, Motion<f32>)>();
-    is_kept_and_logged::<(Error, Parameter, PlanError, Quantity)>();
+    is_kept_and_logged::<(Error, Parameter, PlanError)>();
     is_kept_and_logged::<(Problem, Costs, Budget, Method, Way, Limit, Plan)>();
 }

@@ -71,7 +71,6 @@ fn methods_agree_where_they_must() {
         (FIGURE_7, "rk4-f64 --step 1/4096", "rk4-f64-direction --step 1/4096", form),
         (FIGURE_7, "rk4-f64 --step 1/4096", "rk4-fixed32 --step 1/4096", single),
         (FIGURE_7, "rk4-f64 --step 1/4096", "rk4-f32-direction --step 1/4096", single),
-        (FIGURE_7, "rk4-f64 --step 1/16384", "extrapolation8-f64 --step 1/512", tolerances::FIGURE_7_ORDER_8),
         (FIGURE_7, "rk4-f64 --step 1/16384", "extrapolation8-fixed64 --step 1/512", tolerances::FIGURE_7_ORDER_8),
         (REGULAR, "rk4-f64 --step 1/4096", "rk4-f32-direction --step 1/256", tolerances::DIRECTION_FORM[0]),
     ] {

@@ -51,7 +51,7 @@ struct Run<R> {
 
 fn kernel_keeps_its_budgets<R: Real>() {
     let start = |row: &KnownAnswer| {
-        let pendulum = Pendulum::new(row.parameters().cast()).expect("the table's parameters are valid");
+        let pendulum = Pendulum::new(&row.parameters().cast()).expect("the table's parameters are valid");
         Run { pendulum, state: pendulum.to_state(&row.start().cast()), steps: 0 }
     };
     let directions = |run: &mut Run<R>, row: &KnownAnswer| {

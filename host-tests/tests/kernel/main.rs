@@ -11,6 +11,7 @@ mod flips;
 mod forms;
 mod hard_cases;
 mod known_answers;
+mod methods;
 mod plan;
 mod plan_study;
 mod small_oscillations;

@@ -1,7 +1,8 @@
 //! What each method costs, and what may be spent.
 
-use super::error::{PlanError, Quantity, check_positive};
-use crate::method::Method;
+use super::error::check_positive;
+use crate::error::{Error, Parameter};
+use crate::table::Method;
 
 /// The order of the steps in 64 bits of fixed point. 8 lasts less long, 12 costs 1.4 times as much and lasts no longer: the
 /// roundings end the horizon.
@@ -28,15 +29,16 @@ pub struct Costs {
 }
 
 impl Costs {
-    pub(super) fn check(&self) -> Result<(), PlanError> {
+    pub(super) fn check(&self) -> Result<(), Error> {
         let Self { closed_form, direction_plain, direction, fixed32, fixed64, preparation } = *self;
         let costs = [closed_form, direction_plain, direction, fixed32, fixed64, preparation];
-        check_positive(Quantity::Cost, &costs.map(f64::from))
+        check_positive(Parameter::Cost, &costs.map(f64::from))
     }
 
     /// What a frame costs that is computed by `method` with `steps`; infinite for what no plan chooses from.
     #[must_use]
     #[inline(never)] // one copy
+    #[doc(hidden)]
     pub fn of_frame(&self, method: Method, steps: u32) -> f32 {
         let step = match method {
             Method::ClosedFormF32 => return self.closed_form,
@@ -62,8 +64,7 @@ pub struct Budget {
 }
 
 impl Budget {
-    pub(super) fn check(&self) -> Result<(), PlanError> {
-        check_positive(Quantity::FrameBudget, &[self.frame.into()])?;
-        check_positive(Quantity::PlanningBudget, &[self.planning.into()])
+    pub(super) fn check(&self) -> Result<(), Error> {
+        check_positive(Parameter::Budget, &[self.frame.into(), self.planning.into()])
     }
 }

@@ -21,6 +21,7 @@ pub enum Limit {
 impl Limit {
     /// In words.
     #[must_use]
+    #[doc(hidden)]
     pub const fn name(self) -> &'static str {
         match self {
             Limit::End => "the end of the time asked for",

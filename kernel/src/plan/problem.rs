@@ -1,9 +1,9 @@
 //! What is planned.
 
-use super::error::{PlanError, Quantity, check_positive};
-use crate::method::{Method, Numbers};
-use crate::params::Parameters;
-use crate::state::{Motion, State};
+use super::error::check_positive;
+use crate::error::{Error, Parameter};
+use crate::pendulum::{Motion, Parameters, State};
+use crate::table::{Method, Numbers};
 
 /// A pendulum, its start, how it is shown, and how wrong that may be.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,14 +26,15 @@ impl Problem {
     /// Refuses NaN and infinite values, and a tolerance, duration or rate that is not positive.
     ///
     /// The pendulum is checked where it is used.
-    pub fn check(&self) -> Result<(), PlanError> {
+    #[doc(hidden)]
+    pub fn check(&self) -> Result<(), Error> {
         self.start.check()?;
-        check_positive(Quantity::Tolerance, &[self.tolerance])?;
-        check_positive(Quantity::Duration, &[self.duration])?;
-        check_positive(Quantity::Rate, &[self.rate.into()])?;
+        check_positive(Parameter::Tolerance, &[self.tolerance])?;
+        check_positive(Parameter::Duration, &[self.duration])?;
+        check_positive(Parameter::Rate, &[self.rate.into()])?;
         let limit = f64::from(u32::MAX) / f64::from(self.rate);
         if self.duration > limit {
-            return Err(PlanError::TooLarge { quantity: Quantity::Duration, value: self.duration, limit });
+            return Err(Error::TooLarge { parameter: Parameter::Duration, value: self.duration, limit });
         }
         Ok(())
     }
@@ -41,6 +42,7 @@ impl Problem {
     /// Frames shown after the one at the start, at least one.
     #[must_use]
     #[inline(never)] // one copy
+    #[doc(hidden)]
     pub fn frames(&self) -> u32 {
         let frames = libm::rint(self.duration * f64::from(self.rate)) as u32;
         if frames == 0 { 1 } else { frames }
@@ -48,6 +50,7 @@ impl Problem {
 
     /// The time of frame `frame`, s.
     #[must_use]
+    #[doc(hidden)]
     pub fn time(&self, frame: u32) -> f64 {
         f64::from(frame) / f64::from(self.rate)
     }

@@ -9,8 +9,8 @@ use super::pass::{Candidate, Pass};
 use super::problem::Problem;
 use super::way::{FIRST_STEP, MOST_STEPS, RESOLVING, Way, start_and_step, steps_to_frame};
 use crate::error::{Error, Parameter};
-use crate::method::Method;
-use crate::state::State;
+use crate::pendulum::State;
+use crate::table::Method;
 
 /// The cheapest method found, and what it brings.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -112,6 +112,7 @@ impl Search {
     ///
     /// Refuses what [`new`](Self::new) refuses, and a method that is none of [`Method::DRAWN`]. No steps count as one.
     #[inline(never)]
+    #[doc(hidden)]
     pub fn of(
         method: Method,
         steps: u32,
@@ -135,7 +136,7 @@ impl Search {
     /// Does a piece of the search: steps of one motion that together cost no more than `cost`, or a single one that does;
     /// or the preparation of a motion; or a comparison. The plan, when it is found.
     ///
-    /// Refuses what a [`Form`](crate::form::Form) refuses: a pendulum out of the range of `f32`. And if nothing within the
+    /// Refuses what [`Pendulum::run`](crate::Pendulum::run) refuses: a pendulum out of the range of `f32`. And if nothing within the
     /// budgets is right in any frame, that is the error at the end of the search.
     pub fn advance(&mut self, cost: f32) -> Result<Option<Plan>, PlanError> {
         let Some(pass) = &mut self.pass else { return self.make() };
@@ -217,6 +218,7 @@ impl Search {
 
     /// Whether the next piece prepares a motion, which takes longer than any other.
     #[must_use]
+    #[doc(hidden)]
     pub fn is_preparing(&self) -> bool {
         self.pass.is_none() || !self.prepared
     }
@@ -234,6 +236,7 @@ impl Search {
 
     /// What planning has cost so far.
     #[must_use]
+    #[doc(hidden)]
     pub fn spent(&self) -> f32 {
         self.spent
     }
@@ -241,6 +244,7 @@ impl Search {
     /// Until when `way` has been found right so far, s. In 64 bits, with steps that resolve the motion, it is so wherever any
     /// other is.
     #[must_use]
+    #[doc(hidden)]
     pub fn horizon(&self, way: Way) -> f64 {
         let resolves = |(steps, limit)| limit == Limit::Growth && way.steps >= steps;
         let has_longest_horizon = way.method == Method::Extrapolation10Fixed64 && self.fine.is_some_and(resolves);
@@ -250,6 +254,7 @@ impl Search {
 
     /// Goes on with the method of a plan that was right to its end, for `seconds` longer; [`Self::advance`] gives the plan
     /// anew then.
+    #[doc(hidden)]
     pub fn extend(&mut self, seconds: f64) {
         if let (Some(best), Some(pass)) = (self.best, &mut self.pass) {
             pass.only(best.method);

@@ -25,7 +25,7 @@ fn each_state<R: Real>(seed: u64, states: usize, mut check: impl FnMut(&Paramete
 }
 
 fn pendulum<R: Real>(parameters: &Parameters<f64>) -> Pendulum<R> {
-    Pendulum::new(parameters.cast()).expect("random parameters are valid")
+    Pendulum::new(&parameters.cast()).expect("random parameters are valid")
 }
 
 fn derivatives_are_the_pages<R: Real>() {
@@ -83,7 +83,7 @@ fn derivatives_are_the_gradient_of_h() {
 
 #[test]
 fn energy_above_rest_keeps_its_precision_in_the_smallest_motion() {
-    let pendulum = Pendulum::new(Parameters { m1: 1.0_f32, m2: 1.0, l1: 1.0, l2: 1.0, g: 9.8 }).expect("valid");
+    let pendulum = Pendulum::new(&Parameters { m1: 1.0_f32, m2: 1.0, l1: 1.0, l2: 1.0, g: 9.8 }).expect("valid");
     let above = pendulum.energy_above_rest(&State::at_rest(1e-10, 2e-10));
     let exact = 9.8 * (2.0 * 1e-20 + 4e-20) / 2.0; // K = ((m1 + m2) g l1 a1^2 + m2 g l2 a2^2)/2
     assert!((f64::from(above) / exact - 1.0).abs() < tolerances::FORMULAS.single, "{above} instead of {exact}");
@@ -119,8 +119,6 @@ fn equal_rods_are_the_general_form<R: Real>() {
         }
         let state = State::from(z);
         assert_eq!(rods.energy(&state), pendulum::<R>(&own).energy(&state));
-        assert_eq!(rods.energy_above_rest(&state), pendulum::<R>(&own).energy_above_rest(&state));
-        assert_eq!(rods.to_motion(&state), pendulum::<R>(&own).to_motion(&state));
         assert_eq!(rods.parameters(), *pendulum::<R>(&own).parameters());
     }
 }
@@ -145,11 +143,7 @@ fn units_turn_equal_rods_into_si() {
     let general: Pendulum<f64> = pendulum(&si);
     let near = |name, value, exact, tolerance| assert_near(name, value, exact, 1.0, tolerance, &si);
     near("H", rods.energy(&own) * units.energy, general.energy(&state), 10.0 * tolerances::FORMULAS.double);
-    let motion = rods.to_motion(&own);
-    let back = rods.to_state(&motion);
-    near("p1 of (w1, w2)", back.p1, own.p1, tolerances::FORMULAS.double);
-    near("p2 of (w1, w2)", back.p2, own.p2, tolerances::FORMULAS.double);
-    let w1 = motion.w1 * units.angular_velocity;
+    let w1 = rods.derivatives(&own.into())[0] * units.angular_velocity;
     near("w1", w1, general.to_motion(&state).w1, 10.0 * tolerances::FORMULAS.double);
     for _ in 0..1024 {
         state = general.step(&state, 1.0 / 1024.0);

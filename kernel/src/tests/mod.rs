@@ -2,6 +2,7 @@
 //! is off, and by how much. They stand here and not in `kernel/tests`, so that cargo runs them with the unit tests: if one of
 //! those fails, it does not come to the programs of that folder.
 
+mod added_method;
 mod forms;
 mod hamilton;
 mod lagrange;

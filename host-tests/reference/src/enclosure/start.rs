@@ -50,7 +50,7 @@ impl Start {
     /// numbers are neither large nor small, for masses and lengths within a factor of 1000 and 30 of each other.
     pub fn enclose(&self, rate: u16, fineness: Fineness) -> Enclosure {
         let (parameters, motion) = self.about;
-        let fastest = Pendulum::new(parameters).map_or(1.0, |pendulum| {
+        let fastest = Pendulum::new(&parameters).map_or(1.0, |pendulum| {
             let Bounds { w1, w2, .. } = pendulum.bounds(&pendulum.to_state(&motion));
             pendulum.modes().map_or(0.0, |modes| modes.fast.frequency).max(w1).max(w2)
         });

@@ -3,7 +3,7 @@
 use anyhow::{anyhow, ensure};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Parser, value_parser};
-use double_pendulum::plan::{Limit, Plan, PlanError, Problem, Quantity};
+use double_pendulum::plan::{Limit, Plan, PlanError, Problem};
 use double_pendulum::{Motion, Parameter};
 use firmware::motion::planner::{Shown, half_pixel, problem};
 use firmware::scenes::SceneName;
@@ -106,18 +106,15 @@ impl Options {
 /// The option that sets what is refused.
 fn option_of(error: &PlanError) -> &'static str {
     match error {
-        PlanError::Motion(error) => match error.parameter() {
+        PlanError::Refused(error) => match error.parameter() {
             Parameter::M1 | Parameter::M2 | Parameter::Mu => "--masses",
             Parameter::L1 | Parameter::L2 => "--lengths",
             Parameter::G => "--gravity",
             Parameter::A1 | Parameter::A2 => "--angles",
             Parameter::W1 | Parameter::W2 | Parameter::P1 | Parameter::P2 => "--velocities",
-            _ => "the scene",
-        },
-        PlanError::NotPositive { quantity, .. } | PlanError::TooLarge { quantity, .. } => match quantity {
-            Quantity::Tolerance => "--height",
-            Quantity::Duration => "--duration",
-            Quantity::Rate => "--rate",
+            Parameter::Tolerance => "--height",
+            Parameter::Duration => "--duration",
+            Parameter::Rate => "--rate",
             _ => "the scene",
         },
         _ => "the scene",

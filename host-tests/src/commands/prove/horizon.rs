@@ -2,7 +2,7 @@
 
 use std::io;
 
-use double_pendulum::plan::{Limit, Plan, Problem, Way, WayStepper};
+use double_pendulum::plan::{Limit, Plan, PlannedRun, Problem, Way};
 use double_pendulum::{Motion, Parameters};
 use firmware::config::HALF_PIXEL;
 use reference::enclosure::{Enclosure, Fineness, Fixed, Start};
@@ -33,14 +33,18 @@ impl Proof {
         way: Way,
         mut goes_on: impl FnMut(u32, &Enclosure, Option<bool>) -> io::Result<bool>,
     ) -> anyhow::Result<Self> {
-        let stepper = WayStepper::new(&scene.pendulum, &scene.start, scene.rate, way);
+        let stepper = PlannedRun::new(&scene.pendulum, &scene.start, scene.rate, way);
         let (mut motion, mut set) =
             (stepper.map_err(Refused::because)?, start.enclose(scene.rate, Fineness::default()));
         let mut proof = Self { way, right: 0, wrong: None, open: 0, frames: 0, width: 0.0 };
         while proof.wrong.is_none() && proof.frames < scene.frames() && set.advance().is_some() {
-            motion.advance();
+            let has_diverged = motion.advance(1).is_err();
             let shown = motion.directions().map(|direction| direction.map(|x| Fixed::of(x.into())));
-            let is_right = set.is_right(&shown, [scene.pendulum.l1, scene.pendulum.l2], scene.tolerance);
+            let is_right = if has_diverged {
+                Some(false)
+            } else {
+                set.is_right(&shown, [scene.pendulum.l1, scene.pendulum.l2], scene.tolerance)
+            };
             (proof.frames, proof.width) = (proof.frames + 1, set.width());
             match is_right {
                 Some(true) => proof.right += u32::from(proof.right + 1 == proof.frames),

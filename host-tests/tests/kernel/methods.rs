@@ -1,0 +1,49 @@
+//! What holds for every method of the table that makes steps.
+
+use double_pendulum::{Integrator, Method, Motion, Parameters};
+use firmware::job::{JobError, Request};
+use host_tests::oracle::reference;
+use host_tests::oracle::tolerances;
+
+/// How long the motion is followed, s: rods of 1 m, equal bobs, let go at 0.5 rad.
+const SECONDS: u32 = 2;
+
+/// Two numbers of steps a second between which an order shows: above what roundings leave, and where no step is refused.
+fn steps(method: Method) -> [u32; 2] {
+    match method.order() {
+        4 if method.is_fixed_point() => [32, 64],
+        4 => [16, 32],
+        16 => [5, 7],
+        _ => [5, 10],
+    }
+}
+
+/// How far an angle is off in the end, rad.
+fn error(method: Method, steps_per_second: u32) -> Result<f64, JobError> {
+    let (parameters, angles) = (Parameters::equal_rods(1.0, 1.0, 9.8125), [0.5; 2]);
+    let (dt, stride) = (1.0 / f64::from(steps_per_second), SECONDS * steps_per_second);
+    let request = Request { method, parameters, angles, velocities: [0.0; 2], dt, stride, samples: 1 };
+    let mut end = [0.0; 4];
+    request.readings(|reading| {
+        end = reading.state;
+        Ok::<_, JobError>(())
+    })?;
+    let exact = reference::states(&parameters, &Motion::at_rest(0.5, 0.5), &[SECONDS.into()])[0];
+    Ok((end[0] - exact.a1).abs().max((end[1] - exact.a2).abs()))
+}
+
+#[test]
+fn every_method_is_of_its_order() -> Result<(), JobError> {
+    // the sines of micromath are wrong by more than a step is
+    let makes_steps =
+        |method: &&Method| method.integrator() != Integrator::ClosedForm && **method != Method::Rk4F32Micromath;
+    for &method in Method::ALL.iter().filter(makes_steps) {
+        let [coarse, fine] = steps(method);
+        let [coarse_error, fine_error] = [error(method, coarse)?, error(method, fine)?];
+        let order = (coarse_error / fine_error).ln() / (f64::from(fine) / f64::from(coarse)).ln();
+        println!("{method}: {order:.2} ({coarse_error:.1e}, {fine_error:.1e})");
+        let apart = (order / f64::from(method.order()) - 1.0).abs();
+        assert!(apart <= tolerances::ORDER_OF_METHODS, "{method}: order {order}");
+    }
+    Ok(())
+}

@@ -1,0 +1,57 @@
+//! How a method is added: a row in the table (here `rk4-f64-lagrange`, in tests alone) and its type.
+
+use double_pendulum::parts::{Canonical, Derivatives};
+use double_pendulum::{Error, Form, HamiltonF64, Method, Motion, Parameters, Pendulum, Real, State};
+
+use super::tolerances;
+
+/// Lagrange's equations in the momenta: a' = M^-1 p, p' = dL/da.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Lagrange<R>(Pendulum<R>);
+
+impl<R: Real> Derivatives<R> for Lagrange<R> {
+    fn prepare(parameters: &Parameters<R>) -> Result<Self, Error> {
+        Pendulum::new(parameters).map(Self)
+    }
+
+    fn derivatives(&self, z: &[R; 4]) -> [R; 4] {
+        let Motion { a1, a2, w1, w2 } = self.0.to_motion(&State::from(*z));
+        let ([sin1, _], [sin2, _], [sin_d, _]) = (sin_cos(a1), sin_cos(a2), sin_cos(a1 - a2));
+        let ([[torque1, _], [_, torque2]], [[_, coupling], _]) = (self.0.stiffness(), self.0.mass_matrix(R::ONE));
+        let force = coupling * w1 * w2 * sin_d;
+        [w1, w2, -torque1 * sin1 - force, -torque2 * sin2 + force]
+    }
+}
+
+fn sin_cos<R: Real>(angle: R) -> [R; 2] {
+    angle.own_sin_cos().into()
+}
+
+/// The state after 2 s of a moving start, in so many steps.
+fn end<F: Form>(steps: u32) -> Result<[f64; 4], Error> {
+    let pendulum = Pendulum::new(&Parameters { m1: 0.75, m2: 1.25, l1: 0.625, l2: 1.125, g: 9.8125 })?;
+    let mut run = pendulum.run::<F>(&State { a1: 0.875, a2: -0.5, p1: 1.0, p2: -1.0 }, 2.0 / f64::from(steps))?;
+    run.advance(steps)?;
+    Ok(run.state().into())
+}
+
+#[test]
+fn a_method_is_a_row_and_a_type() -> Result<(), Error> {
+    type Added = Canonical<f64, Lagrange<f64>>;
+    let method = Method::from_name("rk4-f64-lagrange").expect("a row of the table");
+    assert!(Method::ALL.contains(&method) && method.order() == 4);
+    let apart = |one: [f64; 4], other: [f64; 4]| (one[0] - other[0]).abs().max((one[1] - other[1]).abs());
+    assert!(apart(end::<Added>(2048)?, end::<HamiltonF64>(2048)?) <= tolerances::RETURN, "the same motion");
+    let exact = end::<Added>(16_384)?;
+    let order = (apart(end::<Added>(1024)?, exact) / apart(end::<Added>(2048)?, exact)).log2();
+    assert!((order - f64::from(method.order())).abs() <= 0.2, "order {order}");
+    Ok(())
+}
+
+#[test]
+fn every_method_has_a_name_of_its_own() {
+    for (i, method) in Method::ALL.iter().enumerate() {
+        assert_eq!(Method::from_name(method.name()), Some(*method));
+        assert!(Method::ALL[..i].iter().all(|other| other.name() != method.name()), "{method}");
+    }
+}
