@@ -7,8 +7,7 @@
 
 use cortex_m::peripheral::syst::SystClkSource;
 use cortex_m_rt::exception;
-use double_pendulum::form::{DirectionForm, Stepper};
-use double_pendulum::{Error, Parameters, State};
+use double_pendulum::{DirectionF32, Error, Parameters, Pendulum, State};
 use embassy_executor::Spawner;
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use embassy_sync::signal::Signal;
@@ -52,11 +51,11 @@ async fn pendulum() {
 
 async fn swing() -> Result<(), Error> {
     let dt = 1.0 / f64::from(RATE * STEPS);
-    let parameters = Parameters::equal_rods(1.0, 1.0, 9.81);
-    let mut motion = Stepper::<f32, DirectionForm<f32>>::new(&parameters, &State::at_rest(2.0, 2.0), dt)?;
+    let pendulum = Pendulum::new(&Parameters::equal_rods(1.0, 1.0, 9.81))?;
+    let mut motion = pendulum.run::<DirectionF32>(&State::at_rest(2.0, 2.0), dt)?;
     loop {
         TICK.wait().await;
-        motion.try_advance(STEPS)?;
+        motion.advance(STEPS)?;
         FRAME.signal(motion.directions());
     }
 }

@@ -7,8 +7,9 @@ use std::hint::black_box;
 use std::iter::successors;
 use std::time::Instant;
 
-use double_pendulum::form::{DirectionForm, ExtrapolatedForm, Form, Plain, Stepper};
+use double_pendulum::methods::Stepper;
 use double_pendulum::trig::Own;
+use double_pendulum::{DirectionF64, DirectionF64Plain, ExtrapolationF64, Form};
 use double_pendulum::{Motion, Parameters, State};
 use host_tests::oracle::reference::Reference;
 use host_tests::oracle::trials::largest_difference;
@@ -57,16 +58,16 @@ const CLASSICAL: &[Contestant] = &[
         let (pendulum, dt) = (pendulum(), scene.part / f64::from(steps));
         (0..parts * steps).fold(scene.start.into(), |state, _| pendulum.step(&state, dt)).into()
     }),
-    own(DIRECTION, form::<DirectionForm<f64, Plain>>),
-    own("double-pendulum, direction form compensated", form::<DirectionForm<f64>>),
+    own(DIRECTION, form::<DirectionF64Plain>),
+    own("double-pendulum, direction form compensated", form::<DirectionF64>),
     peer("ode_solvers, the book's equations", 8192, |scene, parts, steps| library_rk4(book, scene, parts, steps)),
     peer("ode_solvers, this kernel's equations", 8192, |scene, parts, steps| library_rk4(ours(), scene, parts, steps)),
 ];
 
 /// For tight errors.
 const TIGHT: &[Contestant] = &[
-    own(EXTRAPOLATED, form::<ExtrapolatedForm<16>>),
-    own("double-pendulum, direction form of RK4", form::<DirectionForm<f64>>),
+    own(EXTRAPOLATED, form::<ExtrapolationF64<16>>),
+    own("double-pendulum, direction form of RK4", form::<DirectionF64>),
     peer("ode_solvers DOP853, the book's equations", 128, |scene, parts, effort| dop853(book, scene, parts, effort)),
     peer("ode_solvers DOP853, this kernel's equations", 128, |scene, parts, effort| {
         dop853(ours(), scene, parts, effort)
@@ -74,12 +75,12 @@ const TIGHT: &[Contestant] = &[
 ];
 
 fn pendulum() -> double_pendulum::Pendulum<f64, Own> {
-    double_pendulum::Pendulum::with_trig(PARAMETERS).unwrap_or_else(|error| panic!("{error}"))
+    double_pendulum::Pendulum::with_trig(&PARAMETERS).unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn form<F: Form<f64>>(scene: Scene, parts: u32, steps: u32) -> [f64; 4] {
+fn form<F: Form>(scene: Scene, parts: u32, steps: u32) -> [f64; 4] {
     let dt = scene.part / f64::from(steps);
-    let motion = Stepper::<f64, F>::new(&PARAMETERS, &scene.start.into(), dt);
+    let motion = Stepper::<F>::new(&PARAMETERS, &scene.start.into(), dt);
     let mut motion = motion.unwrap_or_else(|error| panic!("{error}"));
     motion.advance(parts * steps);
     motion.state().into()

@@ -1,13 +1,10 @@
 //! Bounds that hold for every motion, from its energy alone.
 
-use crate::equal_rods::EqualRods;
 use crate::error::{Error, Parameter};
-use crate::hamiltonian::Pendulum;
-use crate::modes::Modes;
-use crate::params::Parameters;
-use crate::real::Real;
-use crate::state::State;
-use crate::trig::SinCos;
+use crate::numbers::Real;
+use crate::numbers::trig::SinCos;
+use crate::pendulum::{EqualRods, Parameters, Pendulum, State};
+use crate::small::Modes;
 
 /// The greatest magnitudes that a motion of given energy can reach; each is reached by some motion of that energy.
 ///
@@ -57,7 +54,7 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     /// ```
     /// use double_pendulum::{Parameters, Pendulum, State};
     ///
-    /// let pendulum = Pendulum::new(Parameters { m1: 1.0, m2: 1.0, l1: 1.0, l2: 1.0, g: 9.8 })?;
+    /// let pendulum = Pendulum::new(&Parameters { m1: 1.0, m2: 1.0, l1: 1.0, l2: 1.0, g: 9.8 })?;
     /// let bounds = pendulum.bounds(&State::at_rest(0.0, core::f64::consts::PI)); // K = 2 m2 g l2
     /// assert!((bounds.w1 - 39.2_f64.sqrt()).abs() < 1e-14);
     /// # Ok::<(), double_pendulum::Error>(())
@@ -159,7 +156,7 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     /// use double_pendulum::{Parameters, Pendulum, State};
     ///
     /// let step = |mass_ratio: f64| {
-    ///     let pendulum = Pendulum::new(Parameters::equal_rods(mass_ratio, 1.0, 9.81))?;
+    ///     let pendulum = Pendulum::new(&Parameters::equal_rods(mass_ratio, 1.0, 9.81))?;
     ///     pendulum.admissible_step(&State::at_rest(2.0, 2.0))
     /// };
     /// assert!((1.0 / step(1.0)? - 117.8).abs() < 0.1);

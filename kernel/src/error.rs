@@ -2,8 +2,8 @@
 
 use core::fmt;
 
-use crate::method::Method;
-use crate::real::Real;
+use crate::numbers::Real;
+use crate::table::Method;
 
 /// A quantity the caller chooses. Displays as the book's symbol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -22,7 +22,7 @@
 //! ```
 //! use double_pendulum::{Parameters, Pendulum, State};
 //!
-//! let pendulum = Pendulum::new(Parameters { m1: 1.0, m2: 2.0, l1: 1.0, l2: 0.5, g: 9.81 })?;
+//! let pendulum = Pendulum::new(&Parameters { m1: 1.0, m2: 2.0, l1: 1.0, l2: 0.5, g: 9.81 })?;
 //! let mut state = State::at_rest(0.5_f64, 1.0);
 //! let energy = pendulum.energy(&state);
 //! pendulum.check_step(1.0 / 1024.0)?;
@@ -43,7 +43,7 @@
 //!
 //! A change of any bit of a step is a major version. Steps use IEEE 754 arithmetic alone (and `sqrt` and `rint`, which are
 //! correctly rounded) as long as sines come from [`trig::Own`] for angles it reduces itself. The bits of
-//! [`trig::Libm`], of larger angles and of the `atan2` in a form's [`state`](form::Form::state) are those of the `libm`
+//! [`trig::Libm`], of larger angles and of the `atan2` in a form's [`state`](methods::Form::state) are those of the `libm`
 //! crate that your lock file names (0.2.16 or later): to compare machines, build both with the same.
 //!
 //! # References
@@ -67,45 +67,31 @@ extern crate self as double_pendulum;
 extern crate std;
 
 mod bounds;
-mod equal_rods;
 mod error;
-pub mod extrapolation;
-mod fixed;
 pub mod flips;
-pub mod form;
-mod geometry;
-mod hamiltonian;
-mod lagrangian;
-mod lanes;
-mod legendre;
-mod method;
-mod modes;
-mod params;
+#[doc(hidden)]
+pub mod methods;
+mod numbers;
+mod pendulum;
 pub mod plan;
-mod real;
-mod ring;
-pub mod rk4;
-mod sealed;
-mod sine;
-mod small_oscillations;
-mod state;
+mod small;
+mod table;
 #[cfg(test)]
 mod tests;
-pub mod trig;
 
 pub use bounds::{Bounds, ROUNDING_MARGIN};
-pub use equal_rods::{EqualRods, Units};
 pub use error::{Error, Parameter};
-pub use geometry::Vector;
-pub use hamiltonian::Pendulum;
-pub use lanes::Lanes;
-pub use method::{Equations, Integrator, Method, Numbers};
-pub use modes::{Mode, Modes, periodic_mass_ratio};
-pub use params::Parameters;
-pub use real::Real;
-pub use ring::Ring;
-pub use small_oscillations::{Oscillation, SmallOscillations};
-pub use state::{Motion, State};
+pub use methods::extrapolation::Extrapolation;
+pub use methods::{
+    ClosedFormF32, ClosedFormF64, DirectionF32, DirectionF32Plain, DirectionF64, DirectionF64Plain, ExtrapolationF64,
+    Fixed32, Fixed64, Form, HamiltonF32, HamiltonF64, Run, rk4,
+};
+#[doc(hidden)]
+pub use numbers::Lanes;
+pub use numbers::{Real, trig};
+pub use pendulum::{Direction, EqualRods, Motion, Parameters, Pendulum, State, Units, Vector};
+pub use small::{Mode, Modes, Oscillation, SmallOscillations, periodic_mass_ratio};
+pub use table::{Equations, Integrator, Method, Numbers};
 
 /// The README's examples, as tests.
 #[cfg(doctest)]

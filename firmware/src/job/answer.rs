@@ -2,8 +2,8 @@
 
 use core::fmt;
 
-use double_pendulum::form::Winding;
-use double_pendulum::{Error, Method, Pendulum, State};
+use double_pendulum::methods::Turns;
+use double_pendulum::{Error, Method, Pendulum};
 
 use super::{OnBoards, Reading, Request, Run};
 use crate::protocol::Field;
@@ -54,7 +54,8 @@ pub struct Job<R = OnBoards> {
     run: R,
     /// As the arithmetic holds it.
     pendulum: Pendulum<f64>,
-    windings: [Winding<f64>; 2],
+    /// Of a motion that does not count its own.
+    turns: Option<[Turns; 2]>,
     stride: u32,
     /// Samples still to come, the one at the start included.
     left: u32,
@@ -69,9 +70,9 @@ impl<R: Run> Job<R> {
         let run = R::start(request)?;
         let parameters = request.parameters;
         let parameters = if method.is_single() { parameters.cast::<f32>().cast() } else { parameters };
-        let pendulum = Pendulum::new(parameters)?;
-        let windings = angles.map(Winding::new);
-        Ok(Self { run, pendulum, windings, stride, left: samples.saturating_add(1), steps: 0 })
+        let pendulum = Pendulum::new(&parameters)?;
+        let turns = run.sides().map(|sides| Turns::of(angles, sides));
+        Ok(Self { run, pendulum, turns, stride, left: samples.saturating_add(1), steps: 0 })
     }
 
     /// Whether every sample has been given.
@@ -106,18 +107,14 @@ impl<R: Run> Job<R> {
     fn step(&mut self) {
         self.run.advance(1);
         self.steps -= 1;
-        if let Some(directions) = self.run.directions() {
-            self.windings.iter_mut().zip(directions).for_each(|(winding, direction)| winding.observe(direction));
+        if let (Some(turns), Some(sides)) = (&mut self.turns, self.run.sides()) {
+            Turns::observe(turns, sides);
         }
     }
 
     fn reading(&self) -> Reading {
-        let mut state = self.run.state();
-        if self.run.directions().is_some() {
-            let [winding1, winding2] = &self.windings;
-            state = State { a1: winding1.unwrap(state.a1), a2: winding2.unwrap(state.a2), ..state };
-        }
-        Reading::new(&self.pendulum, state)
+        let state = self.run.state();
+        Reading::new(&self.pendulum, self.turns.map_or(state, |turns| Turns::unwrap(&turns, state)))
     }
 }
 

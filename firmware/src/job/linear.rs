@@ -1,6 +1,6 @@
 //! Small oscillations in closed form.
 
-use double_pendulum::form::Direction;
+use double_pendulum::Direction;
 use double_pendulum::{Modes, Motion, Pendulum, Real, SmallOscillations, State};
 
 use super::run::{Run, rounded};
@@ -30,7 +30,7 @@ impl<R: Real> Run for Linear<R> {
     fn start(request: &Request) -> Result<Self, JobError> {
         let (parameters, start) = rounded(request);
         start.check()?;
-        let pendulum = Pendulum::new(parameters.cast())?;
+        let pendulum = Pendulum::new(&parameters.cast())?;
         let oscillations = SmallOscillations::new(Modes::new(&parameters.cast())?, &start);
         Ok(Self { oscillations, pendulum, dt: request.dt, steps: 0 })
     }

@@ -6,9 +6,7 @@
 //! and costs counted on the chip.
 
 mod answer;
-mod canonical;
 mod counted;
-mod formed;
 mod linear;
 mod reading;
 mod request;

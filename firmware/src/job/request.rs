@@ -33,7 +33,7 @@ impl Request {
     /// form, which takes any, and for what [`Job::new`](super::Job::new) refuses.
     pub fn admissible_step(&self) -> Option<f64> {
         let ([a1, a2], [w1, w2]) = (self.angles, self.velocities);
-        let pendulum = Pendulum::<f64>::new(self.parameters)
+        let pendulum = Pendulum::<f64>::new(&self.parameters)
             .ok()
             .filter(|_| self.method.integrator() != Integrator::ClosedForm)?;
         pendulum.admissible_step(&pendulum.to_state(&Motion { a1, a2, w1, w2 })).ok()

@@ -1,6 +1,6 @@
 //! What a row of the table is: a motion that can be started, stepped and read.
 
-use double_pendulum::form::Direction;
+use double_pendulum::methods::{Form, Stepper};
 use double_pendulum::{Error, Motion, Parameters, Pendulum, Real, State};
 
 use super::{JobError, Request};
@@ -14,16 +14,43 @@ pub trait Run: Copy {
     fn advance(&mut self, steps: u32);
 
     /// The canonical state now, SI units, to the last digit carried; of the angles, whole turns may be missing where there
-    /// are [`directions`](Self::directions).
+    /// are [`sides`](Self::sides).
     fn state(&self) -> State<f64>;
 
-    /// The directions of the rods, if it knows nothing else, so that somebody has to count whole turns.
-    fn directions(&self) -> Option<[Direction<f64>; 2]> {
+    /// The signs of the rods' directions, if somebody has to count whole turns by them.
+    fn sides(&self) -> Option<[[i32; 2]; 2]> {
         None
     }
 
     /// Gives `feed` the bit patterns of all that is carried from step to step.
     fn bits(&self, feed: impl FnMut(u64));
+}
+
+/// By any method of the kernel that makes steps.
+impl<F: Form> Run for Stepper<F> {
+    #[inline(never)]
+    fn start(request: &Request) -> Result<Self, JobError> {
+        let checked = if request.method.is_single() { checked::<f32> } else { checked::<f64> };
+        let (parameters, state) = checked(request)?;
+        Ok(Self::new(&parameters, &state, request.dt)?)
+    }
+
+    #[inline(always)]
+    fn advance(&mut self, steps: u32) {
+        Stepper::advance(self, steps);
+    }
+
+    fn state(&self) -> State<f64> {
+        Stepper::state(self)
+    }
+
+    fn sides(&self) -> Option<[[i32; 2]; 2]> {
+        (!F::HAS_TURNS).then(|| Stepper::sides(self))
+    }
+
+    fn bits(&self, feed: impl FnMut(u64)) {
+        Stepper::bits(self, feed);
+    }
 }
 
 /// The request's numbers in the arithmetic `R`, each rounded once.
@@ -32,16 +59,16 @@ pub(super) fn rounded<R: Real>(request: &Request) -> (Parameters<R>, Motion<R>) 
     (request.parameters.cast(), Motion { a1, a2, w1, w2 }.cast())
 }
 
-/// The request in the arithmetic `R`, checked: the pendulum and its state at the start.
+/// The pendulum and its state at the start, checked and computed in the arithmetic `R`.
 ///
 /// Never inlined: flash has room for one of it, not for one of each row.
 #[inline(never)]
-pub(super) fn checked<R: Real>(request: &Request) -> Result<(Pendulum<R>, State<R>), Error> {
-    let (parameters, start) = rounded(request);
+fn checked<R: Real>(request: &Request) -> Result<(Parameters<f64>, State<f64>), Error> {
+    let (parameters, start) = rounded::<R>(request);
     start.check()?;
-    let pendulum = Pendulum::new(parameters)?;
+    let pendulum = Pendulum::new(&parameters)?;
     pendulum.check_step(request.dt)?;
     let state = pendulum.to_state(&start);
     state.check()?;
-    Ok((pendulum, state))
+    Ok((parameters.cast(), state.cast()))
 }

@@ -3,12 +3,13 @@
 //! The first block is what every board's application computes on request. The second is computed on the host and counted on the
 //! chips by the `measure` program, and takes no flash of an application.
 
-use double_pendulum::form::{Direction, DirectionForm, ExtrapolatedForm, Fixed32Form, Fixed64Form, Plain};
+use double_pendulum::methods::{Canonical, Dimensionless, Stepper};
 use double_pendulum::trig::{Libm, Micromath};
-use double_pendulum::{Method, Pendulum, State};
+use double_pendulum::{
+    DirectionF32, DirectionF32Plain, DirectionF64Plain, ExtrapolationF64, Fixed32, Fixed64, HamiltonF32, HamiltonF64,
+    Method, Pendulum, State,
+};
 
-use super::canonical::{Canonical, Equal};
-use super::formed::Directions;
 use super::linear::{Drawn, Linear};
 use super::textbook::Textbook;
 use super::{JobError, Reading, Request, Run, answer, counted};
@@ -38,19 +39,19 @@ macro_rules! table {
             // Never inlined: a board may have it twice, in flash and in memory.
             #[inline(never)]
             fn advance(&mut self, steps: u32) {
-                match self { $(Self::$method(run) => run.advance(steps),)* }
+                match self { $(Self::$method(run) => Run::advance(run, steps),)* }
             }
 
             fn state(&self) -> State<f64> {
-                match self { $(Self::$method(run) => run.state(),)* }
+                match self { $(Self::$method(run) => Run::state(run),)* }
             }
 
-            fn directions(&self) -> Option<[Direction<f64>; 2]> {
-                match self { $(Self::$method(run) => run.directions(),)* }
+            fn sides(&self) -> Option<[[i32; 2]; 2]> {
+                match self { $(Self::$method(run) => Run::sides(run),)* }
             }
 
             fn bits(&self, feed: impl FnMut(u64)) {
-                match self { $(Self::$method(run) => run.bits(feed),)* }
+                match self { $(Self::$method(run) => Run::bits(run, feed),)* }
             }
         }
 
@@ -77,27 +78,27 @@ macro_rules! table {
 
 table! {
     on_boards {
-        Rk4F64: Canonical<f64>;
-        Rk4F32: Canonical<f32>;
-        Rk4F64EqualRods: Equal<f64>;
-        Rk4F64Direction: Directions<f64, DirectionForm<f64, Plain>>;
-        Rk4F32Direction: Directions<f32, DirectionForm<f32>>;
-        Rk4F32DirectionPlain: Directions<f32, DirectionForm<f32, Plain>>;
-        Rk4Fixed32: Directions<f64, Fixed32Form>;
-        Extrapolation8Fixed64: Directions<f64, Fixed64Form<8>>;
-        Extrapolation10Fixed64: Directions<f64, Fixed64Form<10>>;
-        Extrapolation12Fixed64: Directions<f64, Fixed64Form<12>>;
-        Extrapolation16Fixed64: Directions<f64, Fixed64Form<16>>;
+        Rk4F64: Stepper<HamiltonF64>;
+        Rk4F32: Stepper<HamiltonF32>;
+        Rk4F64EqualRods: Stepper<Canonical<f64, Dimensionless<f64>>>;
+        Rk4F64Direction: Stepper<DirectionF64Plain>;
+        Rk4F32Direction: Stepper<DirectionF32>;
+        Rk4F32DirectionPlain: Stepper<DirectionF32Plain>;
+        Rk4Fixed32: Stepper<Fixed32>;
+        Extrapolation8Fixed64: Stepper<Fixed64<8>>;
+        Extrapolation10Fixed64: Stepper<Fixed64<10>>;
+        Extrapolation12Fixed64: Stepper<Fixed64<12>>;
+        Extrapolation16Fixed64: Stepper<Fixed64<16>>;
         ClosedFormF64: Linear<f64>;
     }
     elsewhere {
         ClosedFormF32: Drawn;
-        Extrapolation8F64: Directions<f64, ExtrapolatedForm<8>>;
-        Extrapolation12F64: Directions<f64, ExtrapolatedForm<12>>;
-        Extrapolation16F64: Directions<f64, ExtrapolatedForm<16>>;
-        Rk4F32Libm: Canonical<f32, Pendulum<f32, Libm>>;
-        Rk4F32Micromath: Canonical<f32, Pendulum<f32, Micromath>>;
-        TextbookF32: Canonical<f32, Textbook<f32>>;
-        TextbookF64: Canonical<f64, Textbook<f64>>;
+        Extrapolation8F64: Stepper<ExtrapolationF64<8>>;
+        Extrapolation12F64: Stepper<ExtrapolationF64<12>>;
+        Extrapolation16F64: Stepper<ExtrapolationF64<16>>;
+        Rk4F32Libm: Stepper<Canonical<f32, Pendulum<f32, Libm>>>;
+        Rk4F32Micromath: Stepper<Canonical<f32, Pendulum<f32, Micromath>>>;
+        TextbookF32: Stepper<Canonical<f32, Textbook<f32>>>;
+        TextbookF64: Stepper<Canonical<f64, Textbook<f64>>>;
     }
 }

@@ -1,6 +1,7 @@
 //! The page's equations as they stand there, for comparison only.
 
-use double_pendulum::{Parameters, Real, State, rk4};
+use double_pendulum::methods::Equations;
+use double_pendulum::{Error, Parameters, Real};
 
 /// Sine and cosine as two routines of the `libm` crate, as the page calls them.
 pub trait Separate: Real {
@@ -31,21 +32,14 @@ impl Separate for f64 {
 /// Hamilton's equations as the source page prints them: five sines and cosines and four divisions, nothing simplified.
 ///
 /// The peer that every other arithmetic is measured against; no device should run it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Textbook<R> {
     parameters: Parameters<R>,
 }
 
-impl<R: Separate> Textbook<R> {
-    /// The equations for these parameters, unchecked.
-    pub fn new(parameters: Parameters<R>) -> Self {
-        Self { parameters }
-    }
-
-    /// The state a time `dt` (s) after `state`, by one classical RK4 step.
-    #[inline]
-    pub fn step(&self, state: &State<R>, dt: R) -> State<R> {
-        rk4::step(|z| self.derivatives(z), &(*state).into(), dt).into()
+impl<R: Separate> Equations<R> for Textbook<R> {
+    fn prepare(parameters: &Parameters<R>) -> Result<Self, Error> {
+        Ok(Self { parameters: *parameters })
     }
 
     /// The time derivatives of (a1, a2, p1, p2) (`[math24]`), with den = m1 + m2 sin^2(a1 - a2):
@@ -57,6 +51,7 @@ impl<R: Separate> Textbook<R> {
     /// - A1 = p1 p2 sin(a1 - a2) / (l1 l2 den)
     /// - A2 = (p1^2 m2 l2^2 - 2 p1 p2 m2 l1 l2 cos(a1 - a2) + p2^2 (m1 + m2) l1^2) sin(2 (a1 - a2))
     ///   / (2 l1^2 l2^2 den^2)
+    #[inline(always)]
     fn derivatives(&self, &[a1, a2, p1, p2]: &[R; 4]) -> [R; 4] {
         let Parameters { m1, m2, l1, l2, g } = self.parameters;
         let d = a1 - a2;

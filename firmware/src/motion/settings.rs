@@ -66,7 +66,7 @@ impl Settings {
 
     /// The pendulum; the kernel's error if the parameters describe none.
     pub fn pendulum(&self) -> Result<Pendulum<f32>, Error> {
-        Pendulum::new(self.parameters)
+        Pendulum::new(&self.parameters)
     }
 
     /// Where it starts, by angles and angular velocities.

@@ -1,7 +1,7 @@
 //! The motion itself, apart from any frame of it: the state after n ticks, and what its energy has become.
 
 use double_pendulum::Method;
-use double_pendulum::plan::{Directions, Way, WayStepper};
+use double_pendulum::plan::{Directions, PlannedRun, Way};
 use double_pendulum::{Error, Motion, Pendulum, State};
 
 use crate::config::{Processor, TICK_RATE};
@@ -20,29 +20,29 @@ impl Means {
     /// `settings` in motion: in the way that lasts longest by all that is known before planning, or that is asked for.
     ///
     /// The kernel's error if the `pendulum` is too quick for what may be spent.
-    fn start(&self, settings: &Settings, pendulum: &Pendulum<f32>) -> Result<WayStepper, Error> {
+    fn start(&self, settings: &Settings, pendulum: &Pendulum<f32>) -> Result<PlannedRun, Error> {
         let (parameters, start, rate) = (settings.parameters.cast(), settings.motion().cast(), TICK_RATE as u16);
         let way = match self.method {
             Some(method) => Way::of(&parameters, &start, rate, method)?,
             None => Way::lasting(&parameters, &start, rate, &self.processor.costs, self.processor.frame)?,
         };
         pendulum.check_step(1.0 / (f64::from(rate) * f64::from(way.steps)))?;
-        WayStepper::new(&parameters, &start, rate, way)
+        PlannedRun::new(&parameters, &start, rate, way)
     }
 }
 
 /// `settings` in motion in this `way`, but with rod 1 ahead by `apart` rad.
-pub fn start_beside(settings: &Settings, apart: f64, way: Way) -> Result<WayStepper, Error> {
+pub fn start_beside(settings: &Settings, apart: f64, way: Way) -> Result<PlannedRun, Error> {
     let start = settings.motion().cast();
     let beside = Motion { a1: start.a1 + apart, ..start };
-    WayStepper::new(&settings.parameters.cast(), &beside, TICK_RATE as u16, way)
+    PlannedRun::new(&settings.parameters.cast(), &beside, TICK_RATE as u16, way)
 }
 
 /// A pendulum in motion since its last restart.
 #[derive(Clone, Debug)]
 pub struct Simulation {
     energy: Energy,
-    motion: WayStepper,
+    motion: PlannedRun,
     /// Whether its method was asked for.
     is_given: bool,
 }
@@ -60,7 +60,8 @@ impl Simulation {
     /// Advances by one tick.
     #[inline(never)] // one copy
     pub fn tick(&mut self) {
-        self.motion.advance();
+        // A motion that is lost is seen by its state.
+        let _is_lost = self.motion.advance(1);
     }
 
     /// The way that was asked for in place of the plan's, if one was.
@@ -114,18 +115,18 @@ impl Simulation {
 /// the way costs.
 #[derive(Clone, Debug)]
 pub struct CatchingUp {
-    motion: WayStepper,
+    motion: PlannedRun,
     /// Frames in a tick.
     most: u32,
 }
 
 impl CatchingUp {
-    /// Refuses what [`WayStepper::new`] refuses.
+    /// Refuses what [`PlannedRun::new`] refuses.
     pub fn new(settings: &Settings, way: Way, processor: &Processor) -> Result<Self, Error> {
         let (parameters, start) = (settings.parameters.cast(), settings.motion().cast());
         let frame = processor.costs.of_frame(way.method, way.steps).max(processor.piece());
         let affordable = (processor.look_ahead / frame) as u32;
-        let motion = WayStepper::new(&parameters, &start, TICK_RATE as u16, way)?;
+        let motion = PlannedRun::new(&parameters, &start, TICK_RATE as u16, way)?;
         // With fewer frames in a tick nothing catches up.
         Ok(Self { motion, most: affordable.max(2) })
     }
@@ -134,7 +135,7 @@ impl CatchingUp {
     pub fn tick(&mut self, simulation: &mut Simulation) -> bool {
         for _ in 0..self.most {
             if self.motion.frame() < simulation.motion.frame() {
-                self.motion.advance();
+                let _is_lost = self.motion.advance(1);
             }
         }
         let is_there = self.motion.frame() == simulation.motion.frame();

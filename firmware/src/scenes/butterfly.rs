@@ -1,7 +1,7 @@
 //! The butterfly: two pendulums that start a millionth of a radian apart, and how that grows.
 
 use double_pendulum::Error;
-use double_pendulum::plan::WayStepper;
+use double_pendulum::plan::PlannedRun;
 
 use crate::config::TICK_RATE;
 use crate::graphics::brush::{SUBPIXELS, Spot, Stroke};
@@ -47,7 +47,7 @@ const fn row(e_foldings: f32) -> i32 {
 #[derive(Clone, Debug)]
 pub struct Butterfly {
     first: Simulation,
-    second: WayStepper,
+    second: PlannedRun,
     view: View,
     /// The bobs of both.
     bobs: [[Spot; 2]; 2],
@@ -85,7 +85,7 @@ impl Scene for Butterfly {
 
     fn tick(&mut self, ink: &mut FadeLayer) {
         self.first.tick();
-        self.second.advance();
+        let _is_lost = self.second.advance(1);
         let bobs = [self.first.directions(), self.second.directions()].map(|directions| self.view.spots(directions));
         let ([[_, from], _], [[_, to], _]) = (self.bobs, bobs);
         ink.add(Stroke { from, to, radius: HALF_WIDTH }, u8::MAX);

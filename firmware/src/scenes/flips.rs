@@ -1,12 +1,7 @@
 //! Flips: from which starts a rod ever turns over, and when, computed here, coarse first.
 
-use double_pendulum::Error;
-use double_pendulum::flips::{FallingBy, Flip, Flips as Search, step_size};
-#[cfg(not(target_abi = "eabihf"))]
-use double_pendulum::form::Fixed32Form;
-use double_pendulum::form::Watched;
-#[cfg(any(target_abi = "eabihf", not(target_os = "none")))]
-use double_pendulum::form::{DirectionForm, Plain};
+use double_pendulum::flips::{Falling, Flip, Flips as Search, step_size};
+use double_pendulum::{DirectionF32Plain, Error, Fixed32, Form};
 
 use crate::config::{FlipsPace, TICK_RATE};
 use crate::graphics::canvas::{Canvas, HEIGHT, WIDTH};
@@ -31,9 +26,9 @@ const ROWS: usize = HEIGHT / 2;
 
 /// What a processor with a floating-point unit computes in, and one without.
 #[cfg(any(target_abi = "eabihf", not(target_os = "none")))]
-type Float = DirectionForm<f32, Plain>;
+type Float = DirectionF32Plain;
 #[cfg(not(target_abi = "eabihf"))]
-type Fixed = Fixed32Form;
+type Fixed = Fixed32;
 // A board links its own alone.
 #[cfg(all(target_os = "none", not(target_abi = "eabihf")))]
 type Float = Fixed;
@@ -98,14 +93,14 @@ impl Scene for Flips {
 ///
 /// The ink holds the map. The start angles of the settings do not matter, only the pendulum does.
 #[derive(Clone, Debug)]
-pub struct FlipsMap<F: Watched<f32>> {
-    search: Search<f32, F>,
+pub struct FlipsMap<F: Form<Real = f32>> {
+    search: Search<F>,
     pace: FlipsPace,
     mass_ratio: f32,
     /// sqrt(l1/g), s.
     unit: f32,
     block: Block,
-    falling: Option<FallingBy<f32, F>>,
+    falling: Option<Falling<F>>,
     /// Pixels of the upper half that are done.
     done: u32,
     ticks: u64,
@@ -164,7 +159,7 @@ impl Block {
     }
 }
 
-impl<F: Watched<f32>> FlipsMap<F> {
+impl<F: Form<Real = f32>> FlipsMap<F> {
     /// As [`Scene::new`], at the pace of any processor.
     pub fn at_pace(settings: &Settings, pace: FlipsPace) -> Result<Self, Error> {
         let parameters = &settings.parameters;
@@ -221,7 +216,7 @@ pub fn grey(flip: Flip<f32>, unit: f32) -> u8 {
     }
 }
 
-impl<F: Watched<f32>> FlipsMap<F> {
+impl<F: Form<Real = f32>> FlipsMap<F> {
     /// As [`Scene::tick`].
     pub fn tick(&mut self, ink: &mut FadeLayer) {
         self.ticks = self.ticks.wrapping_add(1);

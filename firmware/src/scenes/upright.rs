@@ -1,8 +1,7 @@
 //! Upright: both rods at exactly 180 degrees, where the pendulum would stand for ever if the number pi could be held.
 
-use double_pendulum::form::{DirectionForm, Stepper};
 use double_pendulum::trig::{DefaultTrig, SinCos};
-use double_pendulum::{Error, State};
+use double_pendulum::{DirectionF32, Error, Run, State};
 
 use crate::config::{DT, HALF_PIXEL, STEPS_PER_TICK};
 use crate::graphics::brush::{Spot, Stroke};
@@ -36,7 +35,7 @@ pub struct Upright {
     plain: State<f32>,
     /// Where its rods point.
     plain_directions: RodDirections,
-    compensated: Stepper<f32, DirectionForm<f32>>,
+    compensated: Run<DirectionF32>,
     energy: Energy,
     ticks: u64,
     views: [View; 2],
@@ -68,7 +67,7 @@ impl Scene for Upright {
         pendulum.check_step(DT)?;
         let plain = settings.start(&pendulum)?;
         let views = Place::HALVES.map(|place| View::new(&settings.parameters, place));
-        let compensated = Stepper::new(&settings.parameters, &plain, DT)?;
+        let compensated = pendulum.run(&plain, DT)?;
         let (plain_directions, horizon, ticks) = (directions(&plain), LastRight::default(), 0);
         let energy = Energy::new(pendulum, pendulum.energy_at(plain_directions, [plain.p1, plain.p2]));
         let bobs = Default::default();
@@ -82,7 +81,8 @@ impl Scene for Upright {
             self.plain = self.energy.pendulum().step(&self.plain, DT as f32);
         }
         self.plain_directions = directions(&self.plain);
-        self.compensated.advance(STEPS_PER_TICK);
+        // One that is lost stands still.
+        let _stays = self.compensated.advance(STEPS_PER_TICK);
         self.ticks = self.ticks.wrapping_add(1);
         let is_right = !self.have_parted();
         self.horizon.note(scene::time(self.ticks), is_right);

@@ -1,7 +1,7 @@
 //! The hard cases: motions that break a careless arithmetic, and how far off the direction form may be on them.
 
-use double_pendulum::form::Form;
-use double_pendulum::{Error, Parameters, Real, State};
+use double_pendulum::Form;
+use double_pendulum::{Error, Parameters, State};
 
 use crate::oracle::trials::{Trial, largest_difference};
 
@@ -156,12 +156,12 @@ impl HardCase {
 
     /// The typical error over `starts`, whose exact states are given too, for each of the [`HALVINGS`]: the geometric
     /// mean, rad; infinite where a motion is lost.
-    pub fn typical_errors<R: Real, F: Form<R>>(starts: &[(Trial, Vec<State<f64>>)]) -> Result<Vec<f64>, Error> {
+    pub fn typical_errors<F: Form>(starts: &[(Trial, Vec<State<f64>>)]) -> Result<Vec<f64>, Error> {
         HALVINGS
             .map(|halvings| {
                 let mut logarithms = 0.0;
                 for (trial, exact) in starts {
-                    let error = largest_difference(&trial.states::<R, F>(0.5_f64.powi(halvings))?, exact);
+                    let error = largest_difference(&trial.states::<F>(0.5_f64.powi(halvings))?, exact);
                     logarithms += error.max(f64::MIN_POSITIVE).ln();
                 }
                 Ok((logarithms / starts.len() as f64).exp())

@@ -83,7 +83,7 @@ impl KnownAnswer {
 
     /// The fastest rate in the motion, 1/s: the fast normal frequency or the greatest angular velocity.
     pub fn fastest_rate(&self) -> f64 {
-        let Ok(pendulum) = Pendulum::<f64>::new(self.parameters()) else { return f64::NAN };
+        let Ok(pendulum) = Pendulum::<f64>::new(&self.parameters()) else { return f64::NAN };
         let Bounds { w1, w2, .. } = pendulum.bounds(&pendulum.to_state(&self.start()));
         pendulum.modes().map_or(0.0, |modes| modes.fast.frequency).max(w1).max(w2)
     }

@@ -281,3 +281,6 @@ pub const ENERGY_SHOWN: f32 = 1e-6;
 pub const DAY_ENERGY: f64 = 1e-3;
 /// What taking back up to half a step does to it, and the roundings of directions and momenta to `f32`: the goal.
 pub const DAY_READING: f64 = 1e-4;
+/// A second of 1024 steps there and back in 32 bits: what roundings leave where each is carried into the next (measured 8e-8), and
+/// where it is dropped (measured 1.8e-6).
+pub const RETURN_OF_32_BITS: [f64; 2] = [1e-7, 4e-6];

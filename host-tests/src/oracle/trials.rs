@@ -2,7 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use double_pendulum::form::{Form, Stepper};
+use double_pendulum::Form;
+use double_pendulum::methods::Stepper;
 use double_pendulum::{Error, Parameters, Pendulum, Real, State};
 
 use crate::oracle::reference::Reference;
@@ -33,9 +34,8 @@ impl Trial {
     }
 
     /// The states of the form `F` at the moments, in steps of `dt`, s.
-    pub fn states<R: Real, F: Form<R>>(&self, dt: f64) -> Result<Vec<State<f64>>, Error> {
-        let (parameters, start) = self.rounded::<R>();
-        let mut stepper = Stepper::<R, F>::new(&parameters, &start, dt)?;
+    pub fn states<F: Form>(&self, dt: f64) -> Result<Vec<State<f64>>, Error> {
+        let mut stepper = Stepper::<F>::new(&self.parameters, &self.start, dt)?;
         let steps = (self.seconds / dt / f64::from(SAMPLES)).round() as u32;
         let mut next = || {
             stepper.advance(steps);
@@ -47,7 +47,7 @@ impl Trial {
     /// The exact states at the moments, for the numbers as `R` holds them.
     pub fn exact<R: Real>(&self) -> Result<Vec<State<f64>>, Error> {
         let (parameters, start) = self.rounded::<R>();
-        let pendulum = Pendulum::new(parameters.cast())?;
+        let pendulum = Pendulum::new(&parameters.cast())?;
         let mut reference = Reference::new(pendulum.parameters(), &pendulum.to_motion(&start.cast()));
         let mut at = |sample: u32| {
             reference.advance_to(self.seconds * f64::from(sample) / f64::from(SAMPLES));
@@ -56,9 +56,10 @@ impl Trial {
         Ok((1..=SAMPLES).map(&mut at).collect())
     }
 
-    /// The largest error of an angle, rad, of the form `F` with steps of `dt`, s.
-    pub fn error<R: Real, F: Form<R>>(&self, dt: f64) -> Result<f64, Error> {
-        Ok(largest_difference(&self.states::<R, F>(dt)?, &self.exact::<R>()?))
+    /// The largest error of an angle, rad, of the form `F` with steps of `dt`, s, beside the exact motion of the numbers as `R`
+    /// holds them.
+    pub fn error<R: Real, F: Form>(&self, dt: f64) -> Result<f64, Error> {
+        Ok(largest_difference(&self.states::<F>(dt)?, &self.exact::<R>()?))
     }
 }
 

@@ -79,7 +79,7 @@ impl Start {
     /// The fastest rate in the motion, 1/s: the fast normal frequency or the greatest angular velocity.
     fn fastest_rate(&self) -> f64 {
         let (parameters, motion) = self.about();
-        let Ok(pendulum) = Pendulum::<f64>::new(parameters) else { return 1.0 };
+        let Ok(pendulum) = Pendulum::<f64>::new(&parameters) else { return 1.0 };
         let Bounds { w1, w2, .. } = pendulum.bounds(&pendulum.to_state(&motion));
         pendulum.modes().map_or(0.0, |modes| modes.fast.frequency).max(w1).max(w2)
     }

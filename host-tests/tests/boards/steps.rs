@@ -10,7 +10,7 @@ use object::{Object, ObjectSection};
 /// What is measured, and what the scenes spend most of their time in, by a part and the end of its name.
 const STEPS: [(&str, &str); 4] = [
     ("OnBoards as firmware::job::run::Run>", "advance"),
-    ("double_pendulum::form::Form<", "advance"),
+    ("double_pendulum::methods::Form<", "advance"),
     ("Fixed32State", "advance"),
     ("rows::Rows", "end_in"),
 ];

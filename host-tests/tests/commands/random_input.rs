@@ -2,8 +2,8 @@
 //! is refused changes nothing. `PROPTEST_CASES=1000000 cargo test -p host-tests --test commands random_input::` tries more.
 
 use clap::Parser;
-use double_pendulum::form::{DirectionForm, ExtrapolatedForm, Fixed32Form, Fixed64Form, Form, Plain, Stepper};
 use double_pendulum::plan::{Budget, Limit, Problem, Search};
+use double_pendulum::{DirectionF32, DirectionF32Plain, DirectionF64, ExtrapolationF64, Fixed32, Fixed64, Form};
 use double_pendulum::{EqualRods, Error, Method, Modes, Motion, Parameters, Pendulum, Real, State, Units};
 use fastrand::Rng;
 use firmware::app::App;
@@ -76,12 +76,12 @@ fn command() -> impl Strategy<Value = (u8, Vec<u8>)> {
 }
 
 /// What a form's steps lead to: twelve of them at most, each finite or refused.
-fn stepped<R: Real, F: Form<R>>(parameters: &Parameters<f64>, dt: f64, start: State<f64>) -> Result<(), Error> {
-    let mut stepper = Stepper::<R, F>::new(&parameters.cast(), &start.cast(), dt)?;
+fn stepped<F: Form>(parameters: &Parameters<f64>, dt: f64, start: State<f64>) -> Result<(), Error> {
+    let mut run = Pendulum::new(parameters)?.run::<F>(&start, dt)?;
     for _ in 0..12 {
-        stepper.try_advance(1)?;
-        assert_eq!(stepper.state().check(), Ok(()));
-        let numbers = stepper.directions();
+        run.advance(1)?;
+        assert_eq!(run.state().check(), Ok(()));
+        let numbers = run.directions();
         assert!(numbers.as_flattened().iter().all(|number| number.is_finite()), "{numbers:?}");
     }
     Ok(())
@@ -93,7 +93,7 @@ fn constructed<R: Real>(parameters: Parameters<f64>, dt: f64, state: State<f64>)
         let frequencies = [modes.fast.frequency, modes.slow.frequency];
         assert!(frequencies.iter().all(|w| w.is_finite() && *w > R::ZERO), "{frequencies:?} of {parameters:?}");
     }
-    let pendulum = Pendulum::new(parameters)?;
+    let pendulum = Pendulum::new(&parameters)?;
     // Hanging still is a motion of every pendulum, and it stays one.
     let still = State::at_rest(R::ZERO, R::ZERO);
     assert_eq!(pendulum.derivatives(&still.into()), [R::ZERO; 4], "{parameters:?}");
@@ -176,12 +176,12 @@ proptest! {
         let outcomes = [
             constructed::<f32>(parameters, dt, state),
             constructed::<f64>(parameters, dt, state),
-            stepped::<f32, DirectionForm<f32, Plain>>(&parameters, dt, state),
-            stepped::<f32, DirectionForm<f32>>(&parameters, dt, state),
-            stepped::<f64, DirectionForm<f64>>(&parameters, dt, state),
-            stepped::<f64, ExtrapolatedForm<12>>(&parameters, dt, state),
-            stepped::<f64, Fixed32Form>(&parameters, dt, state),
-            stepped::<f64, Fixed64Form<10>>(&parameters, dt, state),
+            stepped::<DirectionF32Plain>(&parameters, dt, state),
+            stepped::<DirectionF32>(&parameters, dt, state),
+            stepped::<DirectionF64>(&parameters, dt, state),
+            stepped::<ExtrapolationF64<12>>(&parameters, dt, state),
+            stepped::<Fixed32>(&parameters, dt, state),
+            stepped::<Fixed64<10>>(&parameters, dt, state),
         ];
         for error in outcomes.into_iter().filter_map(Result::err) {
             prop_assert!(!error.to_string().is_empty());

@@ -55,7 +55,7 @@ fn every_frame_carries_the_kernels_state_to_the_bit() {
     let frames = frames(app.link());
     assert_eq!(frames.len(), 600);
 
-    let pendulum = Pendulum::new(Parameters::equal_rods(1.0, ROD, GRAVITY as f32)).expect("good");
+    let pendulum = Pendulum::new(&Parameters::equal_rods(1.0, ROD, GRAVITY as f32)).expect("good");
     let start_angle = 120.0_f32.to_radians();
     let start_energy = pendulum.energy(&State::at_rest(start_angle, start_angle));
     let scale = start_energy - pendulum.least_energy();

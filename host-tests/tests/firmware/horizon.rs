@@ -64,7 +64,7 @@ fn horizon(case: &Case) -> Horizon {
     let widened = |x: f32| f64::from(x);
     let parameters = case.settings.parameters.cast();
     let motion = case.settings.motion().cast();
-    let pendulum = Pendulum::new(parameters).expect("the scene took it");
+    let pendulum = Pendulum::new(&parameters).expect("the scene took it");
     let mut reference = Reference::new(&parameters, &motion);
     let mut scene = Show::on(case.processor, case.name, &case.settings).expect("good settings");
     let first = scene.report().way;

@@ -20,7 +20,7 @@ struct Summary {
 }
 
 fn figure_7() -> (Pendulum<f64>, State<f64>) {
-    let pendulum = Pendulum::new(Parameters::equal_rods(MU, 1.0, 9.8)).expect("figure 7's parameters are valid");
+    let pendulum = Pendulum::new(&Parameters::equal_rods(MU, 1.0, 9.8)).expect("figure 7's parameters are valid");
     (pendulum, State::at_rest(171_f64.to_radians(), 171_f64.to_radians()))
 }
 
@@ -76,7 +76,7 @@ fn right_form_keeps_the_energy_and_spends_half_its_time_above_the_pivot() {
 
 #[test]
 fn with_equal_masses_the_printed_form_is_right() {
-    let pendulum = Pendulum::new(Parameters::equal_rods(1.0, 0.5, 9.8)).expect("valid parameters");
+    let pendulum = Pendulum::new(&Parameters::equal_rods(1.0, 0.5, 9.8)).expect("valid parameters");
     let z = [0.7, -1.9, 0.3, -0.4];
     let printed = textbook::misprinted_equal_rods(1.0, 0.5, 9.8, &z);
     for (printed, right) in printed.into_iter().zip(pendulum.derivatives(&z)) {

@@ -1,7 +1,7 @@
 //! Every scene of the catalogue, on the host: its frame to the pixel, and what all scenes have in common.
 
 use double_pendulum::State;
-use double_pendulum::form::{DirectionForm, Fixed32Form, Plain, Watched};
+use double_pendulum::{DirectionF32Plain, Fixed32, Form};
 use firmware::app::App;
 use firmware::app::command::Command;
 use firmware::app::controls::NoButtons;
@@ -161,7 +161,7 @@ fn the_map_of_flips_is_that_of_the_boards_processor() {
         (0..60).for_each(|_| show.tick());
         show.frame()
     };
-    fn map<F: Watched<f32>>(pace: FlipsPace) -> Canvas {
+    fn map<F: Form<Real = f32>>(pace: FlipsPace) -> Canvas {
         let (mut ink, settings) = (FadeLayer::NONE, Settings::default());
         let mut map = FlipsMap::<F>::at_pace(&settings, pace).expect("a map");
         (0..60).for_each(|_| map.tick(&mut ink));
@@ -169,10 +169,10 @@ fn the_map_of_flips_is_that_of_the_boards_processor() {
         map.draw(&mut canvas);
         canvas
     }
-    assert!(after(CORTEX_M3) == map::<Fixed32Form>(FLIPS_M3));
-    assert!(after(CORTEX_M0PLUS) == map::<Fixed32Form>(FLIPS_M0PLUS));
-    assert!(after(CORTEX_M4F) == map::<DirectionForm<f32, Plain>>(FLIPS_M4F));
-    assert!(after(STM32F405) == map::<DirectionForm<f32, Plain>>(FLIPS_F405));
+    assert!(after(CORTEX_M3) == map::<Fixed32>(FLIPS_M3));
+    assert!(after(CORTEX_M0PLUS) == map::<Fixed32>(FLIPS_M0PLUS));
+    assert!(after(CORTEX_M4F) == map::<DirectionF32Plain>(FLIPS_M4F));
+    assert!(after(STM32F405) == map::<DirectionF32Plain>(FLIPS_F405));
 }
 
 /// What shows no motion goes on when the start angle is turned.

@@ -2,8 +2,8 @@
 
 use std::f64::consts::{PI, TAU};
 
-use double_pendulum::form::{DirectionForm, Form};
 use double_pendulum::{Bounds, EqualRods, Error, Modes, Motion, Parameters, Pendulum, Real, State};
+use double_pendulum::{DirectionF64, Form};
 use fastrand::Rng;
 use host_tests::oracle::reference::Reference;
 use host_tests::oracle::trials::Trial;
@@ -36,7 +36,7 @@ fn never_exceeded<R: Real>() {
     let mut rng = Rng::with_seed(1);
     for _ in 0..10_000 {
         let given = random::parameters(&mut rng);
-        let pendulum = Pendulum::new(given.cast()).expect("valid parameters");
+        let pendulum = Pendulum::new(&given.cast()).expect("valid parameters");
         let start = random::state(&mut rng, &given).cast::<R>();
         let bounds = pendulum.bounds(&start);
         let dt = R::from_f64(0.05) / (bounds.w1 + bounds.w2);
@@ -62,7 +62,7 @@ fn never_exceeded_f64() {
 #[test]
 fn reached_by_chaotic_motion() {
     for (mu, degrees) in [(2.75, 171_f64), (1.0, 150.0)] {
-        let pendulum = Pendulum::new(Parameters::equal_rods(mu, 1.0, 9.8)).expect("valid parameters");
+        let pendulum = Pendulum::new(&Parameters::equal_rods(mu, 1.0, 9.8)).expect("valid parameters");
         let start = State::at_rest(degrees.to_radians(), degrees.to_radians());
         let shares = largest_shares(&pendulum, start, 1.0 / 512.0, 600 * 512);
         for share in shares {
@@ -76,7 +76,7 @@ fn reached_by_chaotic_motion() {
 fn each_bound_is_reached_by_some_state() {
     let mut rng = Rng::with_seed(2);
     for _ in 0..1000 {
-        let pendulum = Pendulum::new(random::parameters(&mut rng)).expect("valid parameters");
+        let pendulum = Pendulum::new(&random::parameters(&mut rng)).expect("valid parameters");
         let &Parameters { m1, m2, l1, l2, .. } = pendulum.parameters();
         let still2 = Motion { w1: 1.0, w2: -l1 / l2, ..Motion::default() }; // bob 2 at rest: all in w1, v1
         let opposed = Motion { w1: -m2 * l2 / ((m1 + m2) * l1), w2: 1.0, ..Motion::default() }; // p1 = 0: all in w2
@@ -101,7 +101,7 @@ fn certified_motions_do_not_turn_over() {
     let mut rng = Rng::with_seed(3);
     let mut certified = 0;
     for _ in 0..2000 {
-        let pendulum = Pendulum::new(random::parameters(&mut rng)).expect("valid parameters");
+        let pendulum = Pendulum::new(&random::parameters(&mut rng)).expect("valid parameters");
         let start = State::at_rest(PI * random::symmetric(&mut rng), PI * random::symmetric(&mut rng));
         if pendulum.cannot_turn_over(&start) {
             certified += 1;
@@ -124,7 +124,7 @@ fn certificate_is_sharp() {
         Parameters { m1: 1.0, m2: 0.5, l1: 1.0, l2: 0.7, g: 9.8 }, // rod 2 turns over first
         Parameters { m1: 0.5, m2: 3.0, l1: 0.3, l2: 2.0, g: 9.8 }, // rod 1 turns over first
     ] {
-        let pendulum = Pendulum::new(parameters).expect("valid parameters");
+        let pendulum = Pendulum::new(&parameters).expect("valid parameters");
         let Parameters { m1, m2, l1, l2, .. } = parameters;
         let first = if (m1 + m2) * l1 < m2 * l2 { 0 } else { 1 };
         let saddle = |share: f64| {
@@ -154,7 +154,7 @@ fn equal_rods_certificate_is_the_cosine_rule() {
         let mu = random::log_uniform(&mut rng, 0.01, 100.0);
         let (a1, a2) = (PI * random::symmetric(&mut rng), PI * random::symmetric(&mut rng));
         let certain = EqualRods::new(mu).expect("a valid ratio").cannot_turn_over(&State::at_rest(a1, a2));
-        let general = Pendulum::new(Parameters::equal_rods(mu, 0.3, 9.8)).expect("valid parameters");
+        let general = Pendulum::new(&Parameters::equal_rods(mu, 0.3, 9.8)).expect("valid parameters");
         assert_eq!(certain, (1.0 + mu) * a1.cos() + mu * a2.cos() > 1.0, "mu = {mu}, {a1}, {a2}");
         assert_eq!(certain, general.cannot_turn_over(&State::at_rest(a1, a2)), "mu = {mu}, {a1}, {a2}");
     }
@@ -163,7 +163,7 @@ fn equal_rods_certificate_is_the_cosine_rule() {
 #[test]
 fn equal_rods_have_the_general_bounds_in_their_own_units() {
     let state = State { a1: 0.3, a2: -2.0, p1: 0.7, p2: 1.1 };
-    let general = Pendulum::new(Parameters::equal_rods(0.8, 1.0, 1.0)).expect("valid parameters");
+    let general = Pendulum::new(&Parameters::equal_rods(0.8, 1.0, 1.0)).expect("valid parameters");
     assert_eq!(EqualRods::new(0.8).expect("a valid ratio").bounds(&state), general.bounds(&state));
 }
 
@@ -171,7 +171,7 @@ fn equal_rods_have_the_general_bounds_in_their_own_units() {
 fn step_limit<R: Real>() {
     let parameters =
         Parameters { m1: R::ONE, m2: R::from_f64(2.0), l1: R::from_f64(0.5), l2: R::ONE, g: R::from_f64(9.8) };
-    let pendulum = Pendulum::new(parameters).expect("valid parameters");
+    let pendulum = Pendulum::new(&parameters).expect("valid parameters");
     let modes = Modes::new(&parameters).expect("valid parameters");
     let tiny = R::from_f64(1e-6);
     let start = State::at_rest(tiny, tiny * modes.fast.shape);
@@ -236,11 +236,11 @@ fn an_admissible_step_resolves_every_motion() -> Result<(), Error> {
     let mut largest = [0.0_f64; 2];
     for _ in 0..3000 {
         let parameters = extreme_parameters(&mut rng);
-        let pendulum = Pendulum::new(parameters)?;
+        let pendulum = Pendulum::new(&parameters)?;
         let start = lively_motion(&mut rng, &parameters);
         let state = pendulum.to_state(&start);
         let (rate, dt) = (pendulum.fastest_rate(&state)?, pendulum.admissible_step(&state)?);
-        let after = [pendulum.step(&state, dt), after_a_step(&DirectionForm::<f64>::new(&parameters, dt)?, &state)?];
+        let after = [pendulum.step(&state, dt), after_a_step(&DirectionF64::new(&parameters, dt)?, &state)?];
         for (i, next) in after.iter().enumerate() {
             let miss = miss(&pendulum, &start, next, dt, rate) / (rate * dt);
             assert!(miss <= tolerances::ADMISSIBLE[i], "form {i}: {miss:e} for {parameters:?} from {start:?}");
@@ -254,7 +254,7 @@ fn an_admissible_step_resolves_every_motion() -> Result<(), Error> {
     Ok(())
 }
 
-fn after_a_step<F: Form<f64>>(form: &F, state: &State<f64>) -> Result<State<f64>, Error> {
+fn after_a_step<F: Form>(form: &F, state: &State<f64>) -> Result<State<f64>, Error> {
     let mut carried = form.start(state)?;
     form.advance(&mut carried, 1);
     Ok(form.state(&carried))
@@ -265,10 +265,10 @@ fn after_a_step<F: Form<f64>>(form: &F, state: &State<f64>) -> Result<State<f64>
 #[test]
 fn a_light_elbow_needs_a_far_shorter_step() -> Result<(), Error> {
     let trial = Trial::at_rest(1000.0, 2.0, 1.0, 0.625);
-    let dt = Pendulum::new(trial.parameters)?.admissible_step(&trial.start)?;
+    let dt = Pendulum::new(&trial.parameters)?.admissible_step(&trial.start)?;
     let steps = 16.0 * (trial.seconds / dt / 16.0).ceil();
     let [short, long] = [trial.seconds / steps, 1.0 / 1024.0];
-    let [lost, right] = [trial.error::<f64, DirectionForm<f64>>(long)?, trial.error::<f64, DirectionForm<f64>>(short)?];
+    let [lost, right] = [trial.error::<f64, DirectionF64>(long)?, trial.error::<f64, DirectionF64>(short)?];
     println!("{lost:.1e} with 1/1024 s, {right:.1e} with {short:e} s");
     assert!(lost > tolerances::UNRESOLVED, "{lost:e}");
     assert!(right < tolerances::RESOLVED, "{right:e}");
@@ -281,17 +281,17 @@ fn admissible_step<R: Real>() -> Result<(), Error> {
     for _ in 0..1000 {
         let given = random::parameters(&mut rng);
         let state = random::state(&mut rng, &given);
-        let exact = Pendulum::new(given)?.admissible_step(&state)?;
-        let step = Pendulum::new(given.cast::<R>())?.admissible_step(&state.cast())?;
+        let exact = Pendulum::new(&given)?.admissible_step(&state)?;
+        let step = Pendulum::new(&given.cast::<R>())?.admissible_step(&state.cast())?;
         let error = (step.to_f64() / exact - 1.0).abs();
         assert!(error <= tolerances::FORMULAS.of::<R>(), "{error:e} for {given:?} from {state:?}");
     }
-    let free = Pendulum::new(Parameters::equal_rods(R::ONE, R::ONE, R::ZERO))?;
+    let free = Pendulum::new(&Parameters::equal_rods(R::ONE, R::ONE, R::ZERO))?;
     let hanging = State::at_rest(R::ZERO, R::ZERO);
     assert!(!free.admissible_step(&hanging)?.is_finite());
     let [once, twice] = [R::ONE, R::TWO].map(|p1| free.admissible_step(&State { p1, ..hanging }));
     assert_eq!(once?, twice? + twice?);
-    let hung = Pendulum::new(Parameters::equal_rods(R::ONE, R::ONE, R::from_f64(9.81)))?;
+    let hung = Pendulum::new(&Parameters::equal_rods(R::ONE, R::ONE, R::from_f64(9.81)))?;
     assert!(hung.admissible_step(&hanging)? < hung.modes()?.step_limit());
     Ok(())
 }

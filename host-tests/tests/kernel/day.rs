@@ -1,8 +1,9 @@
 //! A simulated day: no method that steps in 32 bits loses its energy or its time to its number type.
 
 use double_pendulum::Method;
-use double_pendulum::form::{DirectionForm, Fixed32Form, Form, Plain, Stepper};
+use double_pendulum::methods::Stepper;
 use double_pendulum::plan::Way;
+use double_pendulum::{DirectionF32, DirectionF32Plain, DirectionF64, Fixed32, Form};
 use double_pendulum::{Error, Pendulum, Real, State};
 use firmware::config::{STM32F405, TICK_RATE};
 use firmware::motion::simulation::{Means, Simulation};
@@ -18,30 +19,31 @@ const LOOKS_OF_A_SCENE: u32 = 240;
 
 /// The states of the form `F` at the looks, and the greatest difference of the energy that directions and momenta have from that
 /// of the state, over the energy above rest.
-fn followed<R: Real, F: Form<R>>(trial: &Trial, dt: f64) -> Result<(Vec<State<f64>>, f64), Error> {
+fn followed<R: Real, F: Form>(trial: &Trial, dt: f64) -> Result<(Vec<State<f64>>, f64), Error> {
     let (parameters, start) = trial.rounded::<R>();
-    let pendulum = Pendulum::new(parameters.cast::<f64>())?;
-    let mut motion = Stepper::<R, F>::new(&parameters, &start, dt)?;
+    let (parameters, start) = (parameters.cast(), start.cast());
+    let pendulum = Pendulum::new(&parameters)?;
+    let mut motion = Stepper::<F>::new(&parameters, &start, dt)?;
     let steps = (trial.seconds / dt / f64::from(SAMPLES)).round() as u32;
     let mut apart: f64 = 0.0;
     let states = (0..SAMPLES).map(|_| {
         motion.advance(steps);
-        let directions = motion.directions().map(|direction| direction.map(R::to_f64));
-        let carried = pendulum.energy_at(directions, motion.momenta().map(R::to_f64));
+        let directions = motion.directions();
+        let carried = pendulum.energy_at(directions, motion.momenta());
         apart = apart.max((pendulum.energy(&motion.state()) - carried).abs());
         motion.state()
     });
-    Ok((states.collect(), apart / pendulum.energy_above_rest(&start.cast())))
+    Ok((states.collect(), apart / pendulum.energy_above_rest(&start)))
 }
 
 /// At every look the energy is that of `f64` in the same steps, and so is the energy told of directions and momenta.
-fn keeps_its_energy<R: Real, F: Form<R>>(trial: &Trial, dt: f64, exact: &[State<f64>]) -> Result<(), Error> {
-    let pendulum = Pendulum::new(trial.parameters)?;
+fn keeps_its_energy<R: Real, F: Form>(trial: &Trial, dt: f64, exact: &[State<f64>]) -> Result<(), Error> {
+    let pendulum = Pendulum::new(&trial.parameters)?;
     let energy = |state: &State<f64>| pendulum.energy_above_rest(state) / pendulum.energy_above_rest(&trial.start);
     let (states, apart) = followed::<R, F>(trial, dt)?;
     let errors = states.iter().zip(exact).map(|(state, exact)| (energy(state) - energy(exact)).abs());
     let error = errors.fold(0.0, f64::max);
-    let name = std::any::type_name::<F>().replace("double_pendulum::form::", "");
+    let name = std::any::type_name::<F>().replace("double_pendulum::methods::", "");
     println!("m2/m1 {}, 1/{:.0} s, {name}: {error:.1e}, {apart:.1e}", trial.parameters.m2, 1.0 / dt);
     assert!(error <= DAY_ENERGY, "m2/m1 {}, 1/{:.0} s, {name}: {error:e}", trial.parameters.m2, 1.0 / dt);
     assert!(apart <= DAY_READING, "m2/m1 {}, 1/{:.0} s, {name}: {apart:e}", trial.parameters.m2, 1.0 / dt);
@@ -50,10 +52,10 @@ fn keeps_its_energy<R: Real, F: Form<R>>(trial: &Trial, dt: f64, exact: &[State<
 
 fn a_day(mass_ratio: f64, dt: f64) -> Result<(), Error> {
     let trial = Trial::at_rest(mass_ratio, 0.5, 0.5, DAY);
-    let (exact, _) = followed::<f64, DirectionForm<f64>>(&trial, dt)?;
-    keeps_its_energy::<f32, DirectionForm<f32>>(&trial, dt, &exact)?;
-    keeps_its_energy::<f32, DirectionForm<f32, Plain>>(&trial, dt, &exact)?;
-    match keeps_its_energy::<f64, Fixed32Form>(&trial, dt, &exact) {
+    let (exact, _) = followed::<f64, DirectionF64>(&trial, dt)?;
+    keeps_its_energy::<f32, DirectionF32>(&trial, dt, &exact)?;
+    keeps_its_energy::<f32, DirectionF32Plain>(&trial, dt, &exact)?;
+    match keeps_its_energy::<f64, Fixed32>(&trial, dt, &exact) {
         // with a light bob 1 steps of 1/100 s are too long for it, and it says so
         Err(Error::TooLarge { .. }) if mass_ratio == 20.0 && dt == 0.01 => Ok(()),
         kept => kept,
@@ -82,8 +84,8 @@ fn a_day_costs_no_energy_at_any_mass_ratio_and_step() -> Result<(), Error> {
 /// within what it moves in one step.
 #[test]
 fn after_a_day_the_time_told_is_right_to_one_step() -> Result<(), Error> {
-    fn in_time<R: Real, F: Form<R>>(trial: &Trial, dt: f64, exact: &[State<f64>]) -> Result<(), Error> {
-        let pendulum = Pendulum::new(trial.parameters)?;
+    fn in_time<R: Real, F: Form>(trial: &Trial, dt: f64, exact: &[State<f64>]) -> Result<(), Error> {
+        let pendulum = Pendulum::new(&trial.parameters)?;
         // momentum and angle turn at the mode's frequency
         let slow = pendulum.modes()?.slow;
         let scale = trial.parameters.m2 * slow.frequency;
@@ -98,12 +100,12 @@ fn after_a_day_the_time_told_is_right_to_one_step() -> Result<(), Error> {
     }
     for mass_ratio in [0.2, 5.0] {
         let dt = 1.0 / 100.0;
-        let slow = Pendulum::new(Trial::at_rest(mass_ratio, 0.0, 0.0, DAY).parameters)?.modes()?.slow;
+        let slow = Pendulum::new(&Trial::at_rest(mass_ratio, 0.0, 0.0, DAY).parameters)?.modes()?.slow;
         let trial = Trial::at_rest(mass_ratio, 0.01, 0.01 * slow.shape, DAY);
-        let (exact, _) = followed::<f64, DirectionForm<f64>>(&trial, dt)?;
-        in_time::<f32, DirectionForm<f32>>(&trial, dt, &exact)?;
-        in_time::<f32, DirectionForm<f32, Plain>>(&trial, dt, &exact)?;
-        in_time::<f64, Fixed32Form>(&trial, dt, &exact)?;
+        let (exact, _) = followed::<f64, DirectionF64>(&trial, dt)?;
+        in_time::<f32, DirectionF32>(&trial, dt, &exact)?;
+        in_time::<f32, DirectionF32Plain>(&trial, dt, &exact)?;
+        in_time::<f64, Fixed32>(&trial, dt, &exact)?;
     }
     Ok(())
 }
@@ -113,14 +115,14 @@ fn after_a_day_the_time_told_is_right_to_one_step() -> Result<(), Error> {
 #[test]
 fn a_frame_tells_the_energy_of_one_instant_all_day() -> Result<(), Error> {
     let settings = SceneName::Beats2To1.first_settings();
-    let pendulum = Pendulum::new(settings.parameters.cast::<f64>())?;
+    let pendulum = Pendulum::new(&settings.parameters.cast::<f64>())?;
     let start = pendulum.to_state(&settings.motion().cast());
     let energy = pendulum.energy_above_rest(&start);
     for method in [None, Some(Method::Rk4F32DirectionPlain), Some(Method::Rk4F32Direction), Some(Method::Rk4Fixed32)] {
         let mut simulation = Simulation::new(&settings, &Means { processor: STM32F405, method })?;
         let Way { method, steps } = simulation.way();
         let dt = 1.0 / f64::from(TICK_RATE * steps);
-        let mut exact = Stepper::<f64, DirectionForm<f64>>::new(pendulum.parameters(), &start, dt)?;
+        let mut exact = Stepper::<DirectionF64>::new(pendulum.parameters(), &start, dt)?;
         let mut worst: f64 = 0.0;
         for _ in 0..LOOKS_OF_A_SCENE {
             let ticks = DAY as u32 * TICK_RATE / LOOKS_OF_A_SCENE;

@@ -1,6 +1,6 @@
 //! Extrapolation: the orders it names.
 
-use double_pendulum::extrapolation::Extrapolation;
+use double_pendulum::Extrapolation;
 use double_pendulum::{Error, Parameter};
 use host_tests::oracle::tolerances;
 

@@ -2,7 +2,8 @@
 
 use std::f64::consts::PI;
 
-use double_pendulum::form::{DirectionForm, ExtrapolatedForm, Fixed32Form, Fixed64Form, Form, Stepper};
+use double_pendulum::methods::Stepper;
+use double_pendulum::{DirectionF32, DirectionF64, ExtrapolationF64, Fixed32, Fixed64, Form};
 use double_pendulum::{Error, Motion, Parameter, Parameters, Pendulum, State};
 use firmware::config::GRAVITY;
 use firmware::motion::planner::half_pixel;
@@ -28,12 +29,12 @@ fn chaotic() -> Trial {
 #[test]
 fn thirty_two_bits_keep_their_promise() -> Result<(), Error> {
     let [promise, chaos] = tolerances::FIXED_32;
-    let error = regular(10.0).error::<f64, Fixed32Form>(1.0 / 256.0)?;
+    let error = regular(10.0).error::<f64, Fixed32>(1.0 / 256.0)?;
     assert!(error <= promise, "{error:e} rad");
-    let error = chaotic().error::<f64, Fixed32Form>(1.0 / 240.0)?;
+    let error = chaotic().error::<f64, Fixed32>(1.0 / 240.0)?;
     assert!(error <= chaos, "chaotic: {error:e} rad");
     for steps in [1024.0, 4096.0] {
-        let error = regular(10.0).error::<f64, Fixed32Form>(1.0 / steps)?;
+        let error = regular(10.0).error::<f64, Fixed32>(1.0 / steps)?;
         assert!(error <= tolerances::FIXED_32_FLOOR, "{error:e} rad with {steps} steps a second");
     }
     Ok(())
@@ -44,9 +45,9 @@ fn thirty_two_bits_keep_their_promise() -> Result<(), Error> {
 fn thirty_two_bits_keep_their_promise_of_a_moving_start() -> Result<(), Error> {
     let parameters = Parameters { m1: 0.7, m2: 1.3, l1: 0.6, l2: 1.1, g: 9.81 };
     let trial = Trial { parameters, start: State { a1: 0.3, a2: -0.2, p1: 0.1, p2: -0.1 }, seconds: 10.0 };
-    let error = trial.error::<f64, Fixed32Form>(1.0 / 1024.0)?;
+    let error = trial.error::<f64, Fixed32>(1.0 / 1024.0)?;
     assert!(error <= tolerances::FIXED_32_UNLIKE, "{error:e} rad");
-    let start = Stepper::<f64, Fixed32Form>::new(&parameters, &trial.start, 1.0 / 1024.0)?.state();
+    let start = Pendulum::new(&parameters)?.run::<Fixed32>(&trial.start, 1.0 / 1024.0)?.state();
     for (told, taken) in [(start.p1, trial.start.p1), (start.p2, trial.start.p2)] {
         assert!((told - taken).abs() <= tolerances::FIXED_32_FLOOR, "{told} for {taken} kg m^2/s");
     }
@@ -55,7 +56,7 @@ fn thirty_two_bits_keep_their_promise_of_a_moving_start() -> Result<(), Error> {
 
 #[test]
 fn sixty_four_bits_keep_their_promise() -> Result<(), Error> {
-    let error = regular(12.0).error::<f64, Fixed64Form<12>>(1.0 / 12.0)?;
+    let error = regular(12.0).error::<f64, Fixed64<12>>(1.0 / 12.0)?;
     assert!(error <= tolerances::FIXED_64, "{error:e} rad");
     Ok(())
 }
@@ -65,9 +66,9 @@ fn sixty_four_bits_keep_their_promise() -> Result<(), Error> {
 fn after_17_seconds_of_the_page() -> Result<(), Error> {
     let (parameters, angle) = (Parameters::equal_rods(1.0, 1.0, 9.81), 120_f64.to_radians());
     let start = State::at_rest(angle, angle);
-    let mut stepper = Stepper::<f64, Fixed64Form<12>>::new(&parameters, &start, 1.0 / 60.0)?;
+    let mut stepper = Pendulum::new(&parameters)?.run::<Fixed64<12>>(&start, 1.0 / 60.0)?;
     let mut reference = Reference::new(&parameters, &Motion::at_rest(angle, angle));
-    stepper.try_advance(17 * 60)?;
+    stepper.advance(17 * 60)?;
     reference.advance_to(17.0);
     let error = largest_difference(&[stepper.state()], &[reference.state()]);
     assert!(error <= tolerances::FIXED_64_PAGE, "{error:e} rad");
@@ -80,8 +81,8 @@ fn chaos_is_as_good_as_in_double_precision() -> Result<(), Error> {
     let exact = trial.exact::<f64>()?;
     for steps in [32.0, 48.0, 64.0, 80.0, 128.0, 256.0, 512.0] {
         let dt = 1.0 / steps;
-        let double = largest_difference(&trial.states::<f64, ExtrapolatedForm<12>>(dt)?, &exact);
-        let fixed = largest_difference(&trial.states::<f64, Fixed64Form<12>>(dt)?, &exact);
+        let double = largest_difference(&trial.states::<ExtrapolationF64<12>>(dt)?, &exact);
+        let fixed = largest_difference(&trial.states::<Fixed64<12>>(dt)?, &exact);
         let budget = tolerances::FIXED_64_AGAINST_DOUBLE * double.max(0.5 * tolerances::FIXED_64_FLOOR);
         assert!(fixed <= budget, "{fixed:e} against {double:e} rad with {steps} steps a second");
     }
@@ -93,7 +94,7 @@ fn chaos_is_as_good_as_in_double_precision() -> Result<(), Error> {
 fn no_rounding_leans_to_one_side() -> Result<(), Error> {
     let parameters = Parameters { m1: 1.0, m2: 0.0087, l1: 1.0, l2: 0.0825, g: 9.81 };
     let trial = Trial { parameters, ..Trial::at_rest(1.0, 1.94, 1.94, 8.0) };
-    let error = trial.error::<f64, Fixed64Form<10>>(1.0 / 7680.0)?;
+    let error = trial.error::<f64, Fixed64<10>>(1.0 / 7680.0)?;
     println!("{error:e} rad");
     assert!(error <= tolerances::FIXED_64_WHIRLING, "{error:e} rad");
     Ok(())
@@ -127,8 +128,8 @@ fn no_pendulum_is_worse_off_than_in_single_precision() -> Result<(), Error> {
         for i in 0..4 {
             let a1 = trial.start.a1 + 1e-3 * f64::from(i);
             let near = Trial { start: State { a1, ..trial.start }, ..trial };
-            fixed += near.error::<f64, Fixed32Form>(1.0 / 4096.0)?.ln();
-            single += near.error::<f32, DirectionForm<f32>>(1.0 / 4096.0)?.ln();
+            fixed += near.error::<f64, Fixed32>(1.0 / 4096.0)?.ln();
+            single += near.error::<f32, DirectionF32>(1.0 / 4096.0)?.ln();
         }
         assert!(fixed <= single, "{:e} against {:e} rad for {trial:?}", (fixed / 4.0).exp(), (single / 4.0).exp());
     }
@@ -139,9 +140,9 @@ fn no_pendulum_is_worse_off_than_in_single_precision() -> Result<(), Error> {
 #[test]
 fn a_light_bob_1_is_taken_in_short_steps() -> Result<(), Error> {
     let trial = Trial::at_rest(128.0, 0.5, 0.5, 2.0);
-    let refused = trial.error::<f64, Fixed32Form>(1.0 / 512.0);
+    let refused = trial.error::<f64, Fixed32>(1.0 / 512.0);
     assert!(matches!(refused, Err(Error::TooLarge { parameter: Parameter::Dt, .. })), "{refused:?}");
-    let error = trial.error::<f64, Fixed32Form>(1.0 / 4096.0)?;
+    let error = trial.error::<f64, Fixed32>(1.0 / 4096.0)?;
     assert!(error <= tolerances::FIXED_32_LIGHT_BOB, "{error:e} rad");
     Ok(())
 }
@@ -152,8 +153,8 @@ fn a_fast_motion_stays_within_a_hundredth_of_half_a_pixel() -> Result<(), Error>
     const FRAMES: u32 = 834;
     let parameters = Parameters { m1: 1.0, m2: 0.0510598, l1: 1.0, l2: 0.116394, g: GRAVITY };
     let motion = Motion { a1: -2.7479, a2: 2.3154, w1: -11.11, w2: 55.97 };
-    let start = Pendulum::new(parameters)?.to_state(&motion);
-    let mut stepper = Stepper::<f64, Fixed32Form>::new(&parameters, &start, 1.0 / (60.0 * 32.0))?;
+    let start = Pendulum::new(&parameters)?.to_state(&motion);
+    let mut stepper = Pendulum::new(&parameters)?.run::<Fixed32>(&start, 1.0 / (60.0 * 32.0))?;
     let mut reference = Reference::new(&parameters, &motion);
     let places = |State { a1, a2, .. }: State<f64>| {
         let [upper, lower] = [(a1, parameters.l1), (a2, parameters.l2)].map(|(a, l)| [l * a.sin(), l * a.cos()]);
@@ -161,7 +162,7 @@ fn a_fast_motion_stays_within_a_hundredth_of_half_a_pixel() -> Result<(), Error>
     };
     let mut largest = 0.0_f64;
     for frame in 1..=FRAMES {
-        stepper.try_advance(32)?;
+        stepper.advance(32)?;
         reference.advance_to(f64::from(frame) / 60.0);
         for ([x, y], [exact_x, exact_y]) in places(stepper.state()).into_iter().zip(places(reference.state())) {
             largest = largest.max((x - exact_x).hypot(y - exact_y));
@@ -184,16 +185,16 @@ fn thirty_two_bits_are_of_order_four_at_any_speed() -> Result<(), Error> {
         let parameters = Parameters { m1: 1.0, m2, l1: 1.0, l2, g: GRAVITY };
         let speed = log_uniform(&mut rng, 1.0, 60.0);
         let [a1, a2, w1, w2] = [PI, PI, speed, speed].map(|most| most * symmetric(&mut rng));
-        let start = Pendulum::new(parameters)?.to_state(&Motion { a1, a2, w1, w2 });
-        let limit = match Stepper::<f64, Fixed32Form>::new(&parameters, &start, 1e3) {
+        let start = Pendulum::new(&parameters)?.to_state(&Motion { a1, a2, w1, w2 });
+        let limit = match Stepper::<Fixed32>::new(&parameters, &start, 1e3) {
             Err(Error::TooLarge { limit, .. }) => limit,
             other => panic!("{other:?}"),
         };
         let dt = |halvings: i32| 0.98 * limit * 0.5_f64.powi(halvings);
         let trial = Trial { parameters, start, seconds: 512.0 * dt(0) };
         let exact = trial.exact::<f64>()?;
-        let fixed = errors::<Fixed32Form>(&trial, &exact, dt)?;
-        let double = errors::<DirectionForm<f64>>(&trial, &exact, dt)?;
+        let fixed = errors::<Fixed32>(&trial, &exact, dt)?;
+        let double = errors::<DirectionF64>(&trial, &exact, dt)?;
         let floor = tolerances::FIXED_32_ORDER_MEASURABLE.max(16.0 * fixed[4].max(fixed[5]));
         let order = |[coarse, fine]: [f64; 2]| (coarse / fine).log2();
         for i in 0..3 {
@@ -210,22 +211,22 @@ fn thirty_two_bits_are_of_order_four_at_any_speed() -> Result<(), Error> {
 }
 
 /// The errors of a form, each with half the step of the one before.
-fn errors<F: Form<f64>>(trial: &Trial, exact: &[State<f64>], dt: impl Fn(i32) -> f64) -> Result<[f64; 6], Error> {
+fn errors<F: Form>(trial: &Trial, exact: &[State<f64>], dt: impl Fn(i32) -> f64) -> Result<[f64; 6], Error> {
     let mut errors = [0.0; 6];
     for (halvings, error) in (0..).zip(&mut errors) {
-        *error = largest_difference(&trial.states::<f64, F>(dt(halvings))?, exact);
+        *error = largest_difference(&trial.states::<F>(dt(halvings))?, exact);
     }
     Ok(errors)
 }
 
 /// The typical errors of a hard case, for the steps that are not refused as too long.
-fn typical_errors<F: Form<f64>>(starts: &[(Trial, Vec<State<f64>>)]) -> Result<Vec<f64>, Error> {
+fn typical_errors<F: Form>(starts: &[(Trial, Vec<State<f64>>)]) -> Result<Vec<f64>, Error> {
     let mut errors = Vec::new();
     for halvings in HALVINGS {
         let mut logarithms = 0.0;
         let mut refused = false;
         for (trial, exact) in starts {
-            match trial.states::<f64, F>(0.5_f64.powi(halvings)) {
+            match trial.states::<F>(0.5_f64.powi(halvings)) {
                 Ok(states) => logarithms += largest_difference(&states, exact).max(f64::MIN_POSITIVE).ln(),
                 Err(Error::TooLarge { parameter: Parameter::Dt, .. }) => refused = true,
                 Err(error) => return Err(error),
@@ -254,7 +255,7 @@ fn hard_cases() -> Result<(), Error> {
     for case in &HARD_CASES {
         let exact = |trial: Trial| Ok((trial, trial.exact::<f64>()?));
         let starts = case.starts().take(8).map(exact).collect::<Result<Vec<_>, Error>>()?;
-        let all = [typical_errors::<Fixed32Form>(&starts), typical_errors::<Fixed64Form<12>>(&starts[..1])];
+        let all = [typical_errors::<Fixed32>(&starts), typical_errors::<Fixed64<12>>(&starts[..1])];
         for (i, errors) in all.into_iter().enumerate() {
             let name = format!("{}, {} bits", case.name, [32, 64][i]);
             match errors {
@@ -276,10 +277,10 @@ fn hard_cases() -> Result<(), Error> {
 fn what_has_no_room_is_refused_by_name() -> Result<(), Error> {
     let good = Parameters::equal_rods(1.0, 1.0, 9.81);
     let start = State::at_rest(2.0, 2.0);
-    fn refusal<F: Form<f64>>(parameters: &Parameters<f64>, start: &State<f64>, dt: f64) -> Option<Error> {
-        Stepper::<f64, F>::new(parameters, start, dt).err()
+    fn refusal<F: Form>(parameters: &Parameters<f64>, start: &State<f64>, dt: f64) -> Option<Error> {
+        Stepper::<F>::new(parameters, start, dt).err()
     }
-    for refuse in [refusal::<Fixed32Form>, refusal::<Fixed64Form<12>>] {
+    for refuse in [refusal::<Fixed32>, refusal::<Fixed64<12>>] {
         assert_eq!(refuse(&good, &start, 1.0 / 64.0), None);
         for dt in [0.5, -0.5, 1e300] {
             let refused = refuse(&good, &start, dt);
@@ -312,42 +313,10 @@ fn what_has_no_room_is_refused_by_name() -> Result<(), Error> {
         assert_eq!(heavy, refuse(&good, &start, 1.0), "only the ratio of the masses counts");
     }
     let light = |places| Parameters { m2: 0.5_f64.powi(places), ..good };
-    let refused = refusal::<Fixed64Form<12>>(&light(13), &start, 1e-4);
+    let refused = refusal::<Fixed64<12>>(&light(13), &start, 1e-4);
     assert!(matches!(refused, Some(Error::OutOfRange { .. })), "{refused:?}");
-    assert_eq!(refusal::<Fixed64Form<12>>(&light(12), &start, 1e-4), None, "the lightest bob 2");
+    assert_eq!(refusal::<Fixed64<12>>(&light(12), &start, 1e-4), None, "the lightest bob 2");
     Ok(())
-}
-
-#[test]
-fn how_steps_are_dealt_out_changes_nothing() -> Result<(), Error> {
-    fn same<F: Form<f64>>() -> Result<(), Error> {
-        let form = F::new(&Parameters { l2: 0.4, ..Parameters::equal_rods(3.0, 1.0, 9.81) }, 1.0 / 256.0)?;
-        let mut all = form.start(&State { a1: 1.0, a2: 2.0, p1: 0.1, p2: 0.2 })?;
-        let mut each = all;
-        form.advance(&mut all, 1000);
-        (0..1000).for_each(|_| form.advance(&mut each, 1));
-        assert_eq!(all, each);
-        Ok(())
-    }
-    same::<Fixed32Form>()?;
-    same::<Fixed64Form<12>>()
-}
-
-#[test]
-fn backwards_is_forwards_undone() -> Result<(), Error> {
-    fn there_and_back<F: Form<f64>>(budget: f64) -> Result<(), Error> {
-        let parameters = Parameters { l2: 0.4, ..Parameters::equal_rods(3.0, 1.0, 9.81) };
-        let start = State { a1: 0.5, a2: 1.0, p1: 0.1, p2: 0.2 };
-        let mut forth = Stepper::<f64, F>::new(&parameters, &start, 1.0 / 1024.0)?;
-        forth.try_advance(1024)?;
-        let mut back = Stepper::<f64, F>::new(&parameters, &forth.state(), -1.0 / 1024.0)?;
-        back.try_advance(1024)?;
-        let difference = largest_difference(&[back.state()], &[start]);
-        assert!(difference <= budget, "{difference:e}");
-        Ok(())
-    }
-    there_and_back::<Fixed32Form>(1e-7)?;
-    there_and_back::<Fixed64Form<12>>(tolerances::RETURN)
 }
 
 /// Any masses, rods and starts, in steps about as long as there may be: stages overshoot in many ways. Half of the motions
@@ -357,13 +326,13 @@ fn a_motion_of_64_bits_is_right_or_said_to_be_lost() -> Result<(), Error> {
     fn compared<const ORDER: u32>(rng: &mut fastrand::Rng) -> Result<Option<f64>, Error> {
         let parameters = random::parameters(rng);
         let start = random::state(rng, &parameters);
-        let limit = match Stepper::<f64, Fixed64Form<ORDER>>::new(&parameters, &start, 1e3) {
+        let limit = match Stepper::<Fixed64<ORDER>>::new(&parameters, &start, 1e3) {
             Err(Error::TooLarge { limit, .. }) => limit,
             other => panic!("{other:?}"),
         };
         let dt = limit * (0.5 + 0.5 * rng.f64());
-        let mut fixed = Stepper::<f64, Fixed64Form<ORDER>>::new(&parameters, &start, dt)?;
-        let mut double = Stepper::<f64, ExtrapolatedForm<ORDER>>::new(&parameters, &start, dt)?;
+        let mut fixed = Stepper::<Fixed64<ORDER>>::new(&parameters, &start, dt)?;
+        let mut double = Stepper::<ExtrapolationF64<ORDER>>::new(&parameters, &start, dt)?;
         fixed.advance(3);
         double.advance(3);
         let [fixed, double] = [fixed.state(), double.state()];

@@ -9,7 +9,7 @@ const STEPS_PER_SECOND: u32 = 4096;
 
 /// The largest difference of the four numbers from all that they may be, momenta relative to the greatest the energy allows.
 fn distance(row: &KnownAnswer, differences: [f64; 4]) -> f64 {
-    let pendulum = Pendulum::new(row.parameters()).expect("the table's parameters are valid");
+    let pendulum = Pendulum::new(&row.parameters()).expect("the table's parameters are valid");
     let bounds = pendulum.bounds(&pendulum.to_state(&row.start()));
     let scale = [1.0, 1.0, bounds.p1, bounds.p2];
     (0..4).fold(0.0, |largest, i| ((differences[i].abs() - row.radius[i]) / scale[i]).max(largest))
@@ -53,7 +53,7 @@ struct Run<R> {
 
 fn kernel_keeps_its_budgets<R: Real>() {
     let start = |row: &KnownAnswer| {
-        let pendulum = Pendulum::new(row.parameters().cast()).expect("the table's parameters are valid");
+        let pendulum = Pendulum::new(&row.parameters().cast()).expect("the table's parameters are valid");
         Run { pendulum, state: pendulum.to_state(&row.start().cast()), steps: 0 }
     };
     let differences = |run: &mut Run<R>, row: &KnownAnswer| {

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 
 use double_pendulum::Method;
 use double_pendulum::plan::{
-    Budget, Costs, Limit, Plan, PlanError, Problem, Quantity, Search, ShadowedRun, Way, WayStepper, plan,
+    Budget, Costs, Limit, Plan, PlanError, PlannedRun, Problem, Quantity, Search, ShadowedRun, Way,
 };
 use double_pendulum::{Error, Motion, Parameter, Parameters};
 use firmware::config::{CORTEX_M3, STM32F405};
@@ -24,13 +24,13 @@ fn scene(mass_ratio: f64, degrees: f64, duration: f64) -> Problem {
 }
 
 fn planned(scene: &Problem) -> Plan {
-    plan(scene, &M4F, &STM32F405.budget(scene)).expect("a good scene")
+    Plan::search(scene, &M4F, &STM32F405.budget(scene)).expect("a good scene")
 }
 
 #[test]
 fn small_oscillations_are_taken_from_the_closed_form() {
     let small = scene(1.0, 3.0, 10.0);
-    let found = |costs: &Costs| plan(&small, costs, &CORTEX_M3.budget(&small)).expect("a good scene");
+    let found = |costs: &Costs| Plan::search(&small, costs, &CORTEX_M3.budget(&small)).expect("a good scene");
     let Plan { method, steps, limit, horizon, .. } = found(&Costs { fixed32: 20e3, ..M3 });
     assert_eq!((method, steps, limit, horizon), (Method::ClosedFormF32, 0, Limit::End, 10.0));
     // One step costs less where it is made of integers, or by the floating-point unit.
@@ -52,10 +52,10 @@ fn a_chaotic_scene_is_predicted_for_as_long_as_it_can_be() {
     let plan = planned(&figure7);
     assert!(plan.limit == Limit::Growth && (12.0..20.0).contains(&plan.horizon), "{plan:?}");
     let frugal = Budget { frame: 5e3, planning: 1e9 };
-    let single = double_pendulum::plan::plan(&figure7, &M4F, &frugal).expect("a good scene");
+    let single = Plan::search(&figure7, &M4F, &frugal).expect("a good scene");
     assert!(single.method != Method::Extrapolation10Fixed64 && (5.5..8.0).contains(&single.horizon), "{single:?}");
     let lavish = Budget { frame: 5e6, planning: 1e11 };
-    let double = double_pendulum::plan::plan(&figure7, &M4F, &lavish).expect("a good scene");
+    let double = Plan::search(&figure7, &M4F, &lavish).expect("a good scene");
     assert!(double.method == Method::Extrapolation10Fixed64 && double.horizon > 2.0 * single.horizon, "{double:?}");
     assert_eq!(double.dt, 1.0 / f64::from(60 * double.steps), "{double:?}");
 }
@@ -64,7 +64,7 @@ fn a_chaotic_scene_is_predicted_for_as_long_as_it_can_be() {
 #[test]
 fn looking_ahead_ends_where_the_frame_does() {
     let figure7 = scene(2.75, 171.0, 30.0);
-    let within = |frame| plan(&figure7, &M4F, &Budget { frame, planning: 1e10 });
+    let within = |frame| Plan::search(&figure7, &M4F, &Budget { frame, planning: 1e10 });
     let frugal = within(5e3).expect("a good scene");
     assert!(frugal.limit == Limit::Budget && frugal.spent < 1e7, "{frugal:?}");
     let poor = within(300.0).expect_err("one step is too coarse");
@@ -75,9 +75,9 @@ fn looking_ahead_ends_where_the_frame_does() {
 #[test]
 fn the_end_is_worth_its_cost() {
     let figure7 = scene(2.75, 171.0, 30.0);
-    let frugal = plan(&figure7, &M4F, &Budget { frame: 5e3, planning: 1e9 }).expect("a good scene");
+    let frugal = Plan::search(&figure7, &M4F, &Budget { frame: 5e3, planning: 1e9 }).expect("a good scene");
     let short = scene(2.75, 171.0, 1.05 * frugal.horizon);
-    let lavish = plan(&short, &M4F, &Budget { frame: 1e6, planning: 1e10 }).expect("a good scene");
+    let lavish = Plan::search(&short, &M4F, &Budget { frame: 1e6, planning: 1e10 }).expect("a good scene");
     assert_eq!((lavish.limit, lavish.horizon), (Limit::End, short.duration), "{lavish:?} {frugal:?}");
 }
 
@@ -88,9 +88,9 @@ fn a_shadowed_run_makes_frames() {
     let Problem { pendulum, start, .. } = page;
     let mut run = ShadowedRun::new(Method::Rk4F32Direction, &page, 4).expect("a good scene");
     let mut motion =
-        WayStepper::new(&pendulum, &start, RATE, Way { method: Method::Rk4F32Direction, steps: 4 }).expect("good");
+        PlannedRun::new(&pendulum, &start, RATE, Way { method: Method::Rk4F32Direction, steps: 4 }).expect("good");
     for _ in 0..RATE {
-        motion.advance();
+        motion.advance(1).expect("finite");
         let (directions, estimate) = run.next_frame().expect("a good scene");
         assert_eq!(directions, motion.directions());
         assert!(estimate.error() < 0.1, "{estimate:?}");
@@ -141,7 +141,7 @@ fn budgets_are_kept() {
         for planning in [1e3, 1e5, 1e7, 1e9] {
             for degrees in [3.0, 60.0, 120.0, 171.0] {
                 let budget = Budget { frame, planning };
-                match plan(&scene(2.75, degrees, 20.0), &M4F, &budget) {
+                match Plan::search(&scene(2.75, degrees, 20.0), &M4F, &budget) {
                     Ok(plan) => {
                         assert!(plan.spent <= planning && plan.cost <= frame && plan.horizon > 0.0, "{plan:?}");
                         found += 1;
@@ -161,7 +161,7 @@ fn a_budget_that_is_just_enough_is_enough() {
     for (mass_ratio, degrees) in [(1.0, 60.0), (1.0, 120.0), (2.75, 171.0), (1e3, 30.0)] {
         let scene = scene(mass_ratio, degrees, 20.0);
         for costs in [&M3, &M4F] {
-            let within = |frame| plan(&scene, costs, &Budget { frame, planning: 1e10 });
+            let within = |frame| Plan::search(&scene, costs, &Budget { frame, planning: 1e10 });
             let lavish = within(1e6).expect("a good scene");
             let enough = within(lavish.cost).expect("a good scene");
             assert_eq!((enough.method, enough.steps, enough.horizon), (lavish.method, lavish.steps, lavish.horizon));
@@ -202,7 +202,7 @@ fn the_lasting_way_can_be_gone() {
         let Problem { pendulum, start, .. } = scene(mass_ratio, 10.0, 20.0);
         let way = Way::lasting(&pendulum, &start, RATE, &M3, M3.fixed64.next_down()).expect("a pendulum");
         assert_eq!(way.method, method);
-        assert!(WayStepper::new(&pendulum, &start, RATE, way).is_ok(), "{way:?}");
+        assert!(PlannedRun::new(&pendulum, &start, RATE, way).is_ok(), "{way:?}");
     }
 }
 
@@ -221,7 +221,7 @@ fn a_way_that_can_be_gone_is_looked_at() {
         let scene = scene(1.0, degrees, 1.0);
         for method in [Method::Rk4Fixed32, Method::Rk4F32Direction, Method::Extrapolation10Fixed64] {
             let way = Way::of(&scene.pendulum, &scene.start, RATE, method).expect("a pendulum");
-            assert!(WayStepper::new(&scene.pendulum, &scene.start, RATE, way).is_ok(), "{way:?} at {degrees}");
+            assert!(PlannedRun::new(&scene.pendulum, &scene.start, RATE, way).is_ok(), "{way:?} at {degrees}");
             let mut search =
                 Search::of(method, way.steps, &scene, &M3, &CORTEX_M3.budget(&scene)).expect("a good scene");
             let plan = loop {
@@ -240,8 +240,8 @@ fn a_way_that_can_be_gone_is_looked_at() {
 fn where_nothing_holds_there_is_no_plan_but_a_method_asked_for_is_told() {
     let scene = Problem { tolerance: 2.0 / 240.0, ..scene(1e3, 90.0, 20.0) };
     let budget = CORTEX_M3.budget(&scene);
-    let Err(PlanError::NothingHolds { limit, spent }) = plan(&scene, &M3, &budget) else {
-        panic!("{:?}", plan(&scene, &M3, &budget))
+    let Err(PlanError::NothingHolds { limit, spent }) = Plan::search(&scene, &M3, &budget) else {
+        panic!("{:?}", Plan::search(&scene, &M3, &budget))
     };
     assert!(limit != Limit::End && spent <= budget.planning, "{limit:?} {spent}");
     let mut search = Search::of(Method::ClosedFormF32, 1, &scene, &M3, &budget).expect("a good scene");
@@ -257,18 +257,19 @@ fn where_nothing_holds_there_is_no_plan_but_a_method_asked_for_is_told() {
 fn what_is_refused_is_named_with_its_value() {
     let good = scene(1.0, 90.0, 10.0);
     let budget = STM32F405.budget(&good);
-    let refused = |scene: &Problem| format!("{:?}", plan(scene, &M4F, &budget).expect_err("refused"));
+    let refused = |scene: &Problem| format!("{:?}", Plan::search(scene, &M4F, &budget).expect_err("refused"));
     let not_positive = |quantity, value: f64| format!("{:?}", PlanError::NotPositive { quantity, value });
     for bad in [f64::NAN, f64::INFINITY, 0.0, -1.0] {
         assert_eq!(refused(&Problem { tolerance: bad, ..good }), not_positive(Quantity::Tolerance, bad));
         assert_eq!(refused(&Problem { duration: bad, ..good }), not_positive(Quantity::Duration, bad));
         let pendulum = Parameters { m2: bad, ..good.pendulum };
-        let Err(PlanError::Motion(error)) = plan(&Problem { pendulum, ..good }, &M4F, &budget) else {
+        let Err(PlanError::Motion(error)) = Plan::search(&Problem { pendulum, ..good }, &M4F, &budget) else {
             panic!("m2 = {bad} is accepted")
         };
         assert_eq!(error.parameter(), Parameter::M2);
         let single = bad as f32;
-        let of = |costs: &Costs, budget: &Budget| format!("{:?}", plan(&good, costs, budget).expect_err("refused"));
+        let of =
+            |costs: &Costs, budget: &Budget| format!("{:?}", Plan::search(&good, costs, budget).expect_err("refused"));
         assert_eq!(of(&Costs { direction: single, ..M4F }, &budget), not_positive(Quantity::Cost, bad));
         assert_eq!(of(&M4F, &Budget { frame: single, ..budget }), not_positive(Quantity::FrameBudget, bad));
         assert_eq!(of(&M4F, &Budget { planning: single, ..budget }), not_positive(Quantity::PlanningBudget, bad));
@@ -276,13 +277,13 @@ fn what_is_refused_is_named_with_its_value() {
     assert_eq!(refused(&Problem { rate: 0, ..good }), not_positive(Quantity::Rate, 0.0));
     // Out of the range of f32.
     let pendulum = Parameters { m1: 1e60, m2: 1e60, ..good.pendulum };
-    assert!(matches!(plan(&Problem { pendulum, ..good }, &M4F, &budget), Err(PlanError::Motion(_))));
+    assert!(matches!(Plan::search(&Problem { pendulum, ..good }, &M4F, &budget), Err(PlanError::Motion(_))));
     let start = Motion { w1: f64::NEG_INFINITY, ..good.start };
     let motion = PlanError::Motion(Error::NotFinite { parameter: Parameter::W1, value: f64::NEG_INFINITY });
-    assert_eq!(plan(&Problem { start, ..good }, &M4F, &budget), Err(motion));
+    assert_eq!(Plan::search(&Problem { start, ..good }, &M4F, &budget), Err(motion));
     let limit = f64::from(u32::MAX) / f64::from(RATE);
     let too_long = PlanError::TooLarge { quantity: Quantity::Duration, value: 1e9, limit };
-    assert_eq!(plan(&Problem { duration: 1e9, ..good }, &M4F, &budget), Err(too_long));
+    assert_eq!(Plan::search(&Problem { duration: 1e9, ..good }, &M4F, &budget), Err(too_long));
 }
 
 /// Weightless and motionless, as far from reason as numbers go: a plan or a refusal, never a panic.
@@ -298,7 +299,7 @@ fn every_scene_gets_a_plan_or_a_refusal() {
                     let pendulum = Parameters { m1: 1.0, m2, l1: 1.0, l2, g };
                     let start = Motion { w2, ..Motion::at_rest(3.0, -1.0) };
                     let scene = Problem { pendulum, start, tolerance: 0.1, duration: 2.0, rate: RATE };
-                    if let Ok(plan) = plan(&scene, &M4F, &budget) {
+                    if let Ok(plan) = Plan::search(&scene, &M4F, &budget) {
                         planned += 1;
                         assert!((0.0..=2.0).contains(&plan.horizon), "{plan:?} for {scene:?}");
                     }
@@ -316,7 +317,7 @@ fn the_limit_is_what_would_help() {
     // the closed form, all that a frame can pay for, is wrong from the first frame on
     let light = Problem { tolerance: 2.0 / 240.0, ..scene(1e3, 90.0, 20.0) };
     let costs = Costs { closed_form: 10.0, ..M3 };
-    let limit = |frame, planning| match plan(&light, &costs, &Budget { frame, planning }) {
+    let limit = |frame, planning| match Plan::search(&light, &costs, &Budget { frame, planning }) {
         Err(PlanError::NothingHolds { limit, .. }) => limit,
         other => panic!("{other:?}"),
     };
@@ -329,7 +330,8 @@ fn the_limit_is_what_would_help() {
 /// Twice the steps are right for longer, but not by a tenth.
 #[test]
 fn what_is_hardly_better_is_not_worth_its_cost() {
-    let lively = plan(&scene(0.5, 130.0, 30.0), &M4F, &Budget { frame: 13e3, planning: 1e10 }).expect("a good scene");
+    let lively =
+        Plan::search(&scene(0.5, 130.0, 30.0), &M4F, &Budget { frame: 13e3, planning: 1e10 }).expect("a good scene");
     assert_eq!((lively.method, lively.steps), (Method::Rk4F32Direction, 2), "{lively:?}");
 }
 
@@ -337,7 +339,7 @@ fn what_is_hardly_better_is_not_worth_its_cost() {
 #[test]
 fn a_pendulum_out_of_the_range_of_fixed_point_gets_a_plan() {
     let budget = Budget { frame: 1e6, planning: 1e9 };
-    let plan = plan(&scene(1e5, 10.0, 2.0), &M3, &budget).expect("a plan");
+    let plan = Plan::search(&scene(1e5, 10.0, 2.0), &M3, &budget).expect("a plan");
     assert!(plan.horizon > 0.0, "{plan:?}");
 }
 

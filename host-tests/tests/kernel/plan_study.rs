@@ -28,7 +28,7 @@ fn all() -> impl Iterator<Item = Problem> {
 /// A rod may turn over, and bob 1 is not so light that steps must be very fine.
 fn lively(count: usize) -> impl Iterator<Item = Problem> {
     let is_lively = |scene: &Problem| {
-        let pendulum = Pendulum::new(scene.pendulum).expect("a good scene");
+        let pendulum = Pendulum::new(&scene.pendulum).expect("a good scene");
         let light = scene.pendulum.mass_ratio() > 30.0;
         !light && scene.start.a2.abs() > 1.5 && !pendulum.cannot_turn_over(&pendulum.to_state(&scene.start))
     };

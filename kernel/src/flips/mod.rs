@@ -5,13 +5,12 @@
 //! Where the energy forbids that ([`Pendulum::cannot_turn_over`]) no step is made.
 //!
 //! ```
-//! use double_pendulum::Parameters;
+//! use double_pendulum::{DirectionF32Plain, Parameters};
 //! use double_pendulum::flips::{Flip, Flips, step_size};
-//! use double_pendulum::form::{DirectionForm, Plain};
 //!
 //! let pendulum = Parameters::equal_rods(1.0_f32, 1.0, 9.81);
 //! let dt = step_size(&pendulum)?;
-//! let map = Flips::<f32, DirectionForm<f32, Plain>>::new(&pendulum, dt, (10.0 / dt) as u32)?;
+//! let map = Flips::<DirectionF32Plain>::new(&pendulum, dt, (10.0 / dt) as u32)?;
 //! assert_eq!(map.of(0.5, 1.0)?, Flip::Never);
 //! assert!(matches!(map.of(2.0, 2.5)?, Flip::After(time) if (time - 4.0).abs() < 0.05));
 //! # Ok::<(), double_pendulum::Error>(())
@@ -20,11 +19,10 @@
 mod side_by_side;
 
 use crate::error::Error;
-use crate::form::{Direction, Form, Part, Watched};
-use crate::hamiltonian::Pendulum;
-use crate::params::Parameters;
-use crate::real::Real;
-use crate::state::State;
+use crate::methods::side::turns_over;
+use crate::methods::{Form, Side};
+use crate::numbers::Real;
+use crate::pendulum::{Direction, Parameters, Pendulum, State};
 
 /// When a rod first turns over.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,27 +41,24 @@ pub enum Flip<R> {
 /// linearly in the sine. The cost is that of the form's step and some 15 operations. How many starts are judged right with steps of
 /// [`step_size`] the repository's tests assert: of equal rods and bobs 99.9 % within 10 sqrt(l/g), in any arithmetic.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Flips<R: Real, F: Form<R>> {
+pub struct Flips<F: Form> {
     form: F,
-    pendulum: Pendulum<R>,
+    pendulum: Pendulum<F::Real>,
     /// The motion from straight up, which has the most energy.
     highest: F::Carried,
-    dt: R,
+    dt: F::Real,
     steps: u32,
 }
 
 /// A motion that has not turned over yet.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Falling<C, P> {
-    carried: C,
-    heads: [Direction<P>; 2],
+pub struct Falling<F: Form> {
+    carried: F::Carried,
+    heads: [Direction<F::Side>; 2],
     steps: u32,
 }
 
-/// The same, followed by the form `F`.
-pub type FallingBy<R, F> = Falling<<F as Form<R>>::Carried, <F as Watched<R>>::Part>;
-
-impl<C, P> Falling<C, P> {
+impl<F: Form> Falling<F> {
     /// Steps made.
     #[must_use]
     pub fn steps(&self) -> u32 {
@@ -72,47 +67,47 @@ impl<C, P> Falling<C, P> {
 }
 
 /// The longest step, s, that resolves what a pendulum does wherever it is let go: twice the
-/// [admissible](Pendulum::admissible_step) one from straight up, and with a light bob 2 what [`Fixed32Form`] takes.
+/// [admissible](Pendulum::admissible_step) one from straight up, and with a light bob 2 what [`Fixed32`] takes.
 ///
 /// Refuses what [`Pendulum::new`] refuses, and no gravity, with which nothing moves.
 ///
-/// [`Fixed32Form`]: crate::form::Fixed32Form
+/// [`Fixed32`]: crate::Fixed32
 pub fn step_size<R: Real>(parameters: &Parameters<R>) -> Result<f64, Error> {
     /// Half a turn of the elbow's greatest rate takes nine such steps.
     const BEND: f64 = 0.36;
-    let pendulum = Pendulum::new(*parameters)?;
+    let pendulum = Pendulum::new(parameters)?;
     let highest = State::at_rest(R::PI, R::PI);
     let resolved = pendulum.admissible_step(&highest)?.twice();
     let bent = R::from_f64(BEND) / pendulum.bounds(&highest).elbow;
     Ok((if bent < resolved { bent } else { resolved }).to_f64())
 }
 
-impl<R: Real, F: Watched<R>> Flips<R, F> {
+impl<F: Form> Flips<F> {
     /// With steps of `dt` s, at most `steps` of them for each start.
     ///
     /// Refuses what the form refuses, of parameters, steps and the energy of the highest start.
-    pub fn new(parameters: &Parameters<R>, dt: f64, steps: u32) -> Result<Self, Error> {
-        let form = F::new(parameters, dt)?;
-        let highest = form.start(&State::at_rest(R::PI, R::PI))?;
-        Ok(Self { form, pendulum: Pendulum::new(*parameters)?, highest, dt: R::from_f64(dt), steps })
+    pub fn new(parameters: &Parameters<F::Real>, dt: f64, steps: u32) -> Result<Self, Error> {
+        let form = F::new(&parameters.cast(), dt)?;
+        let highest = form.start(&State::at_rest(F::Real::PI, F::Real::PI).cast())?;
+        Ok(Self { form, pendulum: Pendulum::new(parameters)?, highest, dt: F::Real::from_f64(dt), steps })
     }
 
     /// The motion let go at the angles `a1`, `a2`, rad; none if it never turns over.
     ///
     /// Refuses angles that are not finite.
-    pub fn start(&self, a1: R, a2: R) -> Result<Option<FallingBy<R, F>>, Error> {
+    pub fn start(&self, a1: F::Real, a2: F::Real) -> Result<Option<Falling<F>>, Error> {
         let state = State::at_rest(a1, a2);
         state.check()?;
         if self.pendulum.cannot_turn_over(&state) {
             return Ok(None);
         }
-        let carried = self.form.start_below(&self.highest, &state)?;
+        let carried = self.form.start_below(&self.highest, &state.cast())?;
         Ok(Some(Falling { carried, heads: F::heads(&carried), steps: 0 }))
     }
 
     /// Makes at most `steps` steps; what is known after them.
     #[inline]
-    pub fn advance(&self, falling: &mut FallingBy<R, F>, steps: u32) -> Option<Flip<R>> {
+    pub fn advance(&self, falling: &mut Falling<F>, steps: u32) -> Option<Flip<F::Real>> {
         for _ in 0..steps {
             if falling.steps >= self.steps {
                 return Some(Flip::Later);
@@ -130,33 +125,27 @@ impl<R: Real, F: Watched<R>> Flips<R, F> {
     /// What becomes of the motion let go at the angles `a1`, `a2`, rad.
     ///
     /// Refuses angles that are not finite.
-    pub fn of(&self, a1: R, a2: R) -> Result<Flip<R>, Error> {
+    pub fn of(&self, a1: F::Real, a2: F::Real) -> Result<Flip<F::Real>, Error> {
         let Some(mut falling) = self.start(a1, a2)? else { return Ok(Flip::Never) };
         Ok(self.advance(&mut falling, u32::MAX).unwrap_or(Flip::Later))
     }
 
     /// When it was, after `steps` steps and within the next.
-    fn passage(&self, steps: u32, before: [Direction<F::Part>; 2], after: [Direction<F::Part>; 2]) -> Flip<R> {
-        let share = |[from, _]: Direction<F::Part>, [to, cos]: Direction<F::Part>| {
-            if turns_over([from, to, cos].map(F::Part::sign)) < 0 { from.share(to) } else { R::ONE }
+    fn passage(&self, steps: u32, before: [Direction<F::Side>; 2], after: [Direction<F::Side>; 2]) -> Flip<F::Real> {
+        let share = |[from, _]: Direction<F::Side>, [to, cos]: Direction<F::Side>| {
+            if turns_over([from, to, cos].map(F::Side::sign)) < 0 { from.share(to) } else { F::Real::ONE }
         };
         let ([upper_before, lower_before], [upper_after, lower_after]) = (before, after);
         let (upper, lower) = (share(upper_before, upper_after), share(lower_before, lower_after));
         let share = if lower < upper { lower } else { upper };
-        Flip::After((R::from_f64(steps.into()) + share) * self.dt)
+        Flip::After((F::Real::from_f64(steps.into()) + share) * self.dt)
     }
 }
 
 /// Negative if a rod has come through straight up between the two.
 #[inline(always)]
-fn passes<P: Part>(before: &[Direction<P>; 2], after: &[Direction<P>; 2]) -> i32 {
-    let signs = |[from, _]: Direction<P>, [to, cos]: Direction<P>| turns_over([from, to, cos].map(P::sign));
+fn passes<S: Side>(before: &[Direction<S>; 2], after: &[Direction<S>; 2]) -> i32 {
+    let signs = |[from, _]: Direction<S>, [to, cos]: Direction<S>| turns_over([from, to, cos].map(S::sign));
     let ([upper_before, lower_before], [upper_after, lower_after]) = (*before, *after);
     signs(upper_before, upper_after) | signs(lower_before, lower_after)
-}
-
-/// Negative if the sine's sign, first before and then after, has changed, and the cosine's is negative.
-#[inline(always)]
-fn turns_over([from, to, cos]: [i32; 3]) -> i32 {
-    (from ^ to) & cos
 }

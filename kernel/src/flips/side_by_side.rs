@@ -2,14 +2,15 @@
 
 use core::array::from_fn;
 
-use super::{Falling, Flip, Flips, passes, turns_over};
+use super::{Falling, Flip, Flips, passes};
 use crate::error::Error;
-use crate::form::{BLOCK, Direction, DirectionForm, DirectionLanes, DirectionState, Form as _, Part, Plain};
-use crate::lanes::Lanes;
-use crate::state::State;
+use crate::methods::direction::{BLOCK, DirectionLanes};
+use crate::methods::side::turns_over;
+use crate::methods::{DirectionF32Plain, Form, Side};
+use crate::numbers::Lanes;
+use crate::pendulum::{Direction, State};
 
-type Form = DirectionForm<f32, Plain>;
-type Motion = DirectionState<f32, Plain>;
+type Motion = <DirectionF32Plain as Form>::Carried;
 type Motions<const N: usize> = DirectionLanes<f32, N, ROWS>;
 type Heads<const N: usize> = [Direction<Lanes<f32, N>>; 2];
 
@@ -23,7 +24,7 @@ struct Lane {
     left: u32,
 }
 
-impl Flips<f32, Form> {
+impl Flips<DirectionF32Plain> {
     /// What becomes of each of `starts`, the angles a1 and a2, rad: as [`of`](Self::of), to the bit, three times `N` at a time.
     ///
     /// A lane whose motion has turned over takes the next start. 8 lanes suit processors with vectors of 4 and of 8. Inlined
@@ -130,8 +131,8 @@ fn any_turns_over<const N: usize>(before: &Heads<N>, after: &Heads<N>) -> bool {
 mod tests {
     use super::*;
     use crate::flips::step_size;
-    use crate::form::Fixed32Form;
-    use crate::params::Parameters;
+    use crate::methods::Fixed32;
+    use crate::pendulum::Parameters;
     extern crate std;
     use std::vec::Vec;
 
@@ -146,13 +147,13 @@ mod tests {
     }
 
     /// Steps that are no multiple of those from one restoring to the next; starts that are no multiple of the lanes.
-    fn flips(parameters: &Parameters<f32>) -> Result<Flips<f32, Form>, Error> {
+    fn flips(parameters: &Parameters<f32>) -> Result<Flips<DirectionF32Plain>, Error> {
         let dt = step_size(parameters)?;
         Flips::new(parameters, dt, (LIMIT / dt) as u32 | 1)
     }
 
     /// The flips of all starts. A closure would be compiled by itself, for any processor.
-    struct All<'a>(&'a Flips<f32, Form>);
+    struct All<'a>(&'a Flips<DirectionF32Plain>);
 
     impl pulp::NullaryFnOnce for All<'_> {
         type Output = Result<Vec<Option<Flip<f32>>>, Error>;
@@ -190,8 +191,8 @@ mod tests {
             let parameters = Parameters::equal_rods(mass_ratio, 1.0, 1.0);
             let dt = step_size(&parameters)?;
             let steps = (10.0 / dt) as u32;
-            let float = Flips::<f32, Form>::new(&parameters, dt, steps)?;
-            let fixed = Flips::<f32, Fixed32Form>::new(&parameters, dt, steps)?;
+            let float = Flips::<DirectionF32Plain>::new(&parameters, dt, steps)?;
+            let fixed = Flips::<Fixed32>::new(&parameters, dt, steps)?;
             let mut other = 0;
             for [a1, a2] in starts(20) {
                 other += u32::from(match (float.of(a1, a2)?, fixed.of(a1, a2)?) {

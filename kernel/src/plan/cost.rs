@@ -1,7 +1,7 @@
 //! What each method costs, and what may be spent.
 
 use super::error::{PlanError, Quantity, check_positive};
-use crate::method::Method;
+use crate::table::Method;
 
 /// The order of the steps in 64 bits of fixed point. 8 lasts less long, 12 costs 1.4 times as much and lasts no longer: the
 /// roundings end the horizon.

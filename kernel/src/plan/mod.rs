@@ -2,7 +2,7 @@
 //! when it does.
 //!
 //! How fast an error grows is a property of the very motion: of two starts with the same energy one may be regular and
-//! the other chaotic, and no formula in the energy tells them apart. So [`plan`] looks ahead. It runs the motion itself,
+//! the other chaotic, and no formula in the energy tells them apart. So a search plans. It runs the motion itself,
 //! from coarse steps to fine ones, beside perturbed runs that have other errors, and compares where the bobs would be:
 //!
 //! | error of | is measured by |
@@ -22,21 +22,25 @@
 //! What a step costs is the caller's business: [`Costs`] is a price list in any unit.
 //!
 //! ```
-//! use double_pendulum::plan::{Budget, Costs, PlanError, Problem, plan};
+//! use double_pendulum::plan::{Budget, Costs, Plan, PlanError, Problem};
 //! use double_pendulum::{Method, Motion, Parameters};
 //!
 //! // Cycles of a processor without a floating-point unit, and a display with 32 pixels to a metre: half of one may be missed.
 //! let costs =
-//!     Costs { closed_form: 6.3e3, direction_plain: 9.1e3, direction: 10.4e3, fixed32: 668.0, fixed64: 21.4e3, preparation: 147e3 };
+//!     Costs { closed_form: 6.3e3, direction_plain: 9.1e3, direction: 10.4e3, fixed32: 689.0, fixed64: 21.4e3, preparation: 147e3 };
 //! let budget = Budget { frame: 400e3, planning: 3e9 };
 //! let pendulum = Parameters { m1: 1.0, m2: 1.0, l1: 1.0, l2: 1.0, g: 9.81 };
 //! let small =
 //!     Problem { pendulum, start: Motion::at_rest(0.05, 0.05), tolerance: 0.5 / 32.0, duration: 10.0, rate: 60 };
-//! let found = plan(&small, &costs, &budget)?;
-//! assert_eq!((found.method, found.horizon), (Method::Rk4Fixed32, 10.0));
+//! let plan = Plan::search(&small, &costs, &budget)?;
+//! assert_eq!((plan.method, plan.horizon), (Method::Rk4Fixed32, 10.0));
+//!
+//! let mut run = plan.run(&small)?;
+//! run.advance(60)?; // a second of frames
+//! let [[_sin1, _cos1], [_sin2, _cos2]] = run.directions();
 //!
 //! let poor = Budget { frame: 500.0, ..budget };
-//! assert!(matches!(plan(&small, &costs, &poor), Err(PlanError::NothingHolds { .. })));
+//! assert!(matches!(Plan::search(&small, &costs, &poor), Err(PlanError::NothingHolds { .. })));
 //! # Ok::<(), PlanError>(())
 //! ```
 
@@ -44,30 +48,49 @@ mod cost;
 mod error;
 mod limit;
 mod pass;
+mod planned_run;
 mod problem;
 mod run;
 mod search;
 mod shadowed_run;
 mod way;
 
+use crate::error::Error;
 pub use cost::{Budget, Costs};
 pub use error::{PlanError, Quantity};
 pub use limit::Limit;
+pub use planned_run::PlannedRun;
 pub use problem::Problem;
 pub use run::Directions;
 pub use search::{Plan, Search};
+#[doc(hidden)]
 pub use shadowed_run::{ErrorEstimate, MARGINS, ShadowedRun};
-pub use way::{Way, WayStepper};
+pub use way::Way;
 
-/// The plan for `problem` at once: [`Search`] to its end.
-///
-/// Refuses what [`Search::new`] and [`Search::advance`] refuse; [`PlanError::NothingHolds`] if nothing within the budget is
-/// right in any frame.
-pub fn plan(problem: &Problem, costs: &Costs, budget: &Budget) -> Result<Plan, PlanError> {
-    let mut search = Search::new(problem, costs, budget)?;
-    loop {
-        if let Some(plan) = search.advance(f32::INFINITY)? {
-            return Ok(plan);
+impl Plan {
+    /// The plan for `problem` at once: [`Search`] to its end.
+    ///
+    /// Refuses what [`Search::new`] and [`Search::advance`] refuse; [`PlanError::NothingHolds`] if nothing within the budgets is
+    /// right in any frame.
+    pub fn search(problem: &Problem, costs: &Costs, budget: &Budget) -> Result<Self, PlanError> {
+        let mut search = Search::new(problem, costs, budget)?;
+        loop {
+            if let Some(plan) = search.advance(f32::INFINITY)? {
+                return Ok(plan);
+            }
         }
+    }
+
+    /// The method and its steps.
+    #[must_use]
+    pub fn way(&self) -> Way {
+        Way { method: self.method, steps: self.steps.max(1) }
+    }
+
+    /// The motion of `problem`, for which the plan is, at its start.
+    ///
+    /// Refuses what [`PlannedRun::new`] refuses.
+    pub fn run(&self, problem: &Problem) -> Result<PlannedRun, Error> {
+        PlannedRun::new(&problem.pendulum, &problem.start, problem.rate, self.way())
     }
 }

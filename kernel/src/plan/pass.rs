@@ -6,11 +6,10 @@ use super::run::{Directions, Run, distance};
 use super::shadowed_run::{ErrorEstimate, ShadowedRun, steps_of_all};
 use super::way::Way;
 use crate::error::Error;
-use crate::form::{DirectionForm, Plain, Stepper};
-use crate::method::Method;
-use crate::modes::Modes;
-use crate::small_oscillations::SmallOscillations;
-use crate::state::State;
+use crate::methods::{DirectionF32Plain, Stepper};
+use crate::pendulum::State;
+use crate::small::{Modes, SmallOscillations};
+use crate::table::Method;
 
 /// A bob may be off by this much where the tolerance is the unit.
 const TOLERATED: f32 = 1.0;
@@ -68,7 +67,7 @@ impl Candidate {
 pub(super) struct Pass {
     shadowed: ShadowedRun,
     /// Plain `f32`, which shows beside compensated sums what its roundings do.
-    plain: Run<Stepper<f32, DirectionForm<f32, Plain>>>,
+    plain: Run<Stepper<DirectionF32Plain>>,
     closed: Option<SmallOscillations<f32>>,
     rods: [f32; 2],
     /// The shadowed method, the closed form, and plain `f32`.

@@ -1,9 +1,8 @@
 //! What is planned.
 
 use super::error::{PlanError, Quantity, check_positive};
-use crate::method::{Method, Numbers};
-use crate::params::Parameters;
-use crate::state::{Motion, State};
+use crate::pendulum::{Motion, Parameters, State};
+use crate::table::{Method, Numbers};
 
 /// A pendulum, its start, how it is shown, and how wrong that may be.
 #[derive(Clone, Copy, Debug, PartialEq)]

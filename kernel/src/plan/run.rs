@@ -2,13 +2,9 @@
 
 use super::cost::ORDER;
 use crate::error::Error;
-use crate::form::{Direction, DirectionForm, Fixed32Form, Fixed64Form, Plain, Stepper};
-use crate::hamiltonian::Pendulum;
-use crate::method::Method;
-use crate::modes::Modes;
-use crate::params::Parameters;
-use crate::small_oscillations::SmallOscillations;
-use crate::state::{Motion, State};
+use crate::methods::{ClosedFormF32, DirectionF32, DirectionF32Plain, Fixed32, Fixed64, Stepper};
+use crate::pendulum::{Direction, Parameters, State};
+use crate::table::Method;
 
 /// The directions of both rods as they would be drawn.
 pub type Directions = [Direction<f32>; 2];
@@ -17,11 +13,11 @@ pub type Directions = [Direction<f32>; 2];
 #[expect(clippy::large_enum_variant, reason = "without a heap there is nowhere else to keep it")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum AnyRun {
-    ClosedForm(ClosedForm),
-    DirectionPlain(Stepper<f32, DirectionForm<f32, Plain>>),
-    Direction(Stepper<f32, DirectionForm<f32>>),
-    Fixed32(Stepper<f32, Fixed32Form>),
-    Fixed64(Stepper<f32, Fixed64Form<ORDER>>),
+    ClosedForm(Stepper<ClosedFormF32>),
+    DirectionPlain(Stepper<DirectionF32Plain>),
+    Direction(Stepper<DirectionF32>),
+    Fixed32(Stepper<Fixed32>),
+    Fixed64(Stepper<Fixed64<ORDER>>),
 }
 
 /// `$body` with the run of whichever method as `$run`.
@@ -40,7 +36,7 @@ macro_rules! with {
 impl AnyRun {
     /// A pendulum from its start, with so many steps a second.
     ///
-    /// Refuses what [`Form::new`](crate::form::Form::new) and [`Form::start`](crate::form::Form::start) refuse, what has no normal
+    /// Refuses what [`Pendulum::run`](crate::Pendulum::run) refuse, what has no normal
     /// modes if the method is the closed form, and a method that is none of [`Method::DRAWN`].
     #[inline(never)] // each kind's preparations would stand side by side on the stack
     pub fn new(
@@ -50,11 +46,11 @@ impl AnyRun {
     ) -> Result<Self, Error> {
         let dt = 1.0 / per_second;
         Ok(match method {
-            Method::ClosedFormF32 => Self::ClosedForm(ClosedForm::new(parameters, start, per_second)?),
-            Method::Rk4F32DirectionPlain => Self::DirectionPlain(Stepper::new(&parameters.cast(), &start.cast(), dt)?),
-            Method::Rk4F32Direction => Self::Direction(Stepper::new(&parameters.cast(), &start.cast(), dt)?),
-            Method::Rk4Fixed32 => Self::Fixed32(Stepper::<f64, _>::new(parameters, start, dt)?.read_in()),
-            Method::Extrapolation10Fixed64 => Self::Fixed64(Stepper::<f64, _>::new(parameters, start, dt)?.read_in()),
+            Method::ClosedFormF32 => Self::ClosedForm(Stepper::new(parameters, start, dt)?),
+            Method::Rk4F32DirectionPlain => Self::DirectionPlain(Stepper::new(parameters, start, dt)?),
+            Method::Rk4F32Direction => Self::Direction(Stepper::new(parameters, start, dt)?),
+            Method::Rk4Fixed32 => Self::Fixed32(Stepper::new(parameters, start, dt)?),
+            Method::Extrapolation10Fixed64 => Self::Fixed64(Stepper::new(parameters, start, dt)?),
             method => return Err(Error::NotDrawn { method }),
         })
     }
@@ -63,6 +59,17 @@ impl AnyRun {
     #[inline(never)] // never inlined: a copy of every method for each caller
     pub fn advance(&mut self, steps: u32) {
         with!(self, run => run.advance(steps));
+    }
+
+    /// Refuses a motion that has left the finite numbers.
+    pub fn check(&self) -> Result<(), Error> {
+        with!(self, run => run.check())
+    }
+
+    /// The signs of the directions.
+    #[inline(never)]
+    pub fn sides(&self) -> [[i32; 2]; 2] {
+        with!(self, run => run.sides())
     }
 
     /// Where the rods point.
@@ -81,45 +88,6 @@ impl AnyRun {
     #[inline(never)]
     pub fn state(&self) -> State<f64> {
         with!(self, run => run.state())
-    }
-}
-
-/// Small oscillations, read at any step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct ClosedForm {
-    oscillations: SmallOscillations<f32>,
-    pendulum: Pendulum<f32>,
-    per_second: f64,
-    steps: u64,
-}
-
-impl ClosedForm {
-    fn new(parameters: &Parameters<f64>, start: &State<f64>, per_second: f64) -> Result<Self, Error> {
-        let motion = Pendulum::new(*parameters)?.to_motion(start);
-        let oscillations = SmallOscillations::new(Modes::new(parameters)?, &motion.cast());
-        Ok(Self { oscillations, pendulum: Pendulum::new(parameters.cast())?, per_second, steps: 0 })
-    }
-
-    pub fn advance(&mut self, steps: u32) {
-        self.steps += u64::from(steps);
-    }
-
-    fn time(&self) -> f64 {
-        self.steps as f64 / self.per_second
-    }
-
-    pub fn directions(&self) -> Directions {
-        self.oscillations.directions(self.time())
-    }
-
-    fn momenta(&self) -> [f32; 2] {
-        let State { p1, p2, .. } = self.state();
-        [p1, p2].map(|p| p as f32)
-    }
-
-    fn state(&self) -> State<f64> {
-        let motion: Motion<f32> = self.oscillations.at(self.time());
-        self.pendulum.to_state(&motion).cast()
     }
 }
 
@@ -142,10 +110,10 @@ impl Stepped for AnyRun {
     }
 }
 
-impl Stepped for Stepper<f32, DirectionForm<f32, Plain>> {
+impl Stepped for Stepper<DirectionF32Plain> {
     #[inline(never)]
     fn prepared(_: Method, given: &(Parameters<f64>, State<f64>), per_second: f64) -> Result<Self, Error> {
-        Self::new(&given.0.cast(), &given.1.cast(), 1.0 / per_second)
+        Self::new(&given.0, &given.1, 1.0 / per_second)
     }
     fn steps(&mut self, steps: u32) {
         self.advance(steps);

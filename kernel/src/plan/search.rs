@@ -9,8 +9,8 @@ use super::pass::{Candidate, Pass};
 use super::problem::Problem;
 use super::way::{FIRST_STEP, MOST_STEPS, RESOLVING, Way, start_and_step, steps_to_frame};
 use crate::error::{Error, Parameter};
-use crate::method::Method;
-use crate::state::State;
+use crate::pendulum::State;
+use crate::table::Method;
 
 /// The cheapest method found, and what it brings.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -135,7 +135,7 @@ impl Search {
     /// Does a piece of the search: steps of one motion that together cost no more than `cost`, or a single one that does;
     /// or the preparation of a motion; or a comparison. The plan, when it is found.
     ///
-    /// Refuses what a [`Form`](crate::form::Form) refuses: a pendulum out of the range of `f32`. And if nothing within the
+    /// Refuses what [`Pendulum::run`](crate::Pendulum::run) refuses: a pendulum out of the range of `f32`. And if nothing within the
     /// budgets is right in any frame, that is the error at the end of the search.
     pub fn advance(&mut self, cost: f32) -> Result<Option<Plan>, PlanError> {
         let Some(pass) = &mut self.pass else { return self.make() };

@@ -4,9 +4,8 @@ use super::error::PlanError;
 use super::problem::{Perturbation, Problem};
 use super::run::{Directions, Run, distance, greater};
 use crate::error::Error;
-use crate::hamiltonian::Pendulum;
-use crate::method::Method;
-use crate::state::State;
+use crate::pendulum::{Pendulum, State};
+use crate::table::Method;
 
 /// How much larger an error may be than the distances: that to the finer steps, and the larger of those to other roundings.
 ///
@@ -89,7 +88,7 @@ impl ShadowedRun {
     /// Refuses a problem without a tolerance, a duration or a rate, and a pendulum that the kernel refuses.
     pub fn new(method: Method, problem: &Problem, steps: u32) -> Result<Self, PlanError> {
         problem.check()?;
-        Ok(Self::from_state(method, problem, &Pendulum::new(problem.pendulum)?.to_state(&problem.start), steps))
+        Ok(Self::from_state(method, problem, &Pendulum::new(&problem.pendulum)?.to_state(&problem.start), steps))
     }
 
     /// From `start`, with `steps` steps for each frame.

@@ -1,13 +1,9 @@
-//! A motion carried out as a plan has it.
+//! A method and its step.
 
 use super::cost::Costs;
-use super::run::{AnyRun, Directions};
 use crate::error::Error;
-use crate::form::Winding;
-use crate::hamiltonian::Pendulum;
-use crate::method::Method;
-use crate::params::Parameters;
-use crate::state::{Motion, State};
+use crate::pendulum::{Motion, Parameters, Pendulum, State};
+use crate::table::Method;
 
 /// How a motion is computed: a method, and how fine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,18 +14,6 @@ pub struct Way {
     pub method: Method,
     /// Steps to a frame; of no meaning to the closed form, which has none.
     pub steps: u32,
-}
-
-/// A motion, frame by frame, in the way that was chosen for it: to the bit what the search looked at.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WayStepper {
-    way: Way,
-    rate: u16,
-    /// Frames since the start.
-    frame: u64,
-    run: AnyRun,
-    /// Where the rods point, and how often they have turned over.
-    windings: [Winding<f32>; 2],
 }
 
 /// At so many admissible steps or less in one, the roundings of [`Method::Extrapolation10Fixed64`] are what ends its horizon, not its steps.
@@ -56,7 +40,7 @@ pub(super) fn steps_to_frame(method: Method, rate: u16, longest: f64) -> u32 {
 /// Refuses what [`Pendulum::new`] and [`Pendulum::admissible_step`] refuse.
 #[inline(never)] // one copy
 pub(super) fn start_and_step(parameters: &Parameters<f64>, start: &Motion<f64>) -> Result<(State<f64>, f64), Error> {
-    let pendulum = Pendulum::new(*parameters)?;
+    let pendulum = Pendulum::new(parameters)?;
     let state = pendulum.to_state(start);
     Ok((state, pendulum.admissible_step(&state)?))
 }
@@ -128,78 +112,6 @@ impl Way {
     /// Never inlined: the motion stands on the stack.
     #[inline(never)]
     pub(super) fn takes(self, parameters: &Parameters<f64>, start: &Motion<f64>, rate: u16) -> bool {
-        WayStepper::new(parameters, start, rate, self).is_ok()
-    }
-}
-
-impl WayStepper {
-    /// At `start`, with `rate` frames to a second. No steps count as one.
-    ///
-    /// Refuses what [`Form::new`](crate::form::Form::new) and [`Form::start`](crate::form::Form::start) refuse, what has no normal modes if the way is the closed form, and a method
-    /// that is none of [`Method::DRAWN`].
-    #[inline(never)] // one copy
-    pub fn new(parameters: &Parameters<f64>, start: &Motion<f64>, rate: u16, way: Way) -> Result<Self, Error> {
-        start.check()?;
-        let is_closed = way.method == Method::ClosedFormF32;
-        let steps = if way.steps == 0 || is_closed { 1 } else { way.steps };
-        let state = Pendulum::new(*parameters)?.to_state(start);
-        let run = AnyRun::new(way.method, &(*parameters, state), f64::from(rate) * f64::from(steps))?;
-        let ([a1, a2], [upper, lower]) = (state.cast().angles(), run.directions());
-        let windings = [Winding::at(a1, upper), Winding::at(a2, lower)];
-        Ok(Self { way: Way { steps, ..way }, rate, frame: 0, run, windings })
-    }
-
-    /// The way it goes.
-    #[must_use]
-    pub fn way(&self) -> Way {
-        self.way
-    }
-
-    /// Moves on by a frame.
-    #[inline(never)] // one copy
-    pub fn advance(&mut self) {
-        self.frame += 1;
-        for _ in 0..self.way.steps {
-            self.run.advance(1);
-            for (winding, direction) in self.windings.iter_mut().zip(self.run.directions()) {
-                winding.observe(direction);
-            }
-        }
-    }
-
-    /// Frames since the start.
-    #[must_use]
-    pub fn frame(&self) -> u64 {
-        self.frame
-    }
-
-    /// Seconds since the start.
-    #[must_use]
-    pub fn time(&self) -> f64 {
-        self.frame as f64 / f64::from(self.rate)
-    }
-
-    /// Where the rods point, (sin, cos) each.
-    #[must_use]
-    pub fn directions(&self) -> Directions {
-        self.windings.each_ref().map(Winding::last)
-    }
-
-    /// The canonical state in SI units when the rods point to the [`directions`](Self::directions), rounded to `f32`, the angles
-    /// with all their turns: what a picture needs, and far cheaper than [`state`](Self::state) where `f64` is software.
-    #[must_use]
-    #[inline(never)]
-    pub fn rounded_state(&self) -> State<f32> {
-        let ([a1, a2], [p1, p2]) = (self.windings.each_ref().map(Winding::angle), self.run.momenta());
-        State { a1, a2, p1, p2 }
-    }
-
-    /// The canonical state in SI units to the last digit carried, the angles with all their turns.
-    #[must_use]
-    #[inline(never)]
-    pub fn state(&self) -> State<f64> {
-        let [winding1, winding2] = &self.windings;
-        let state = self.run.state();
-        State { a1: winding1.unwrap(state.a1), a2: winding2.unwrap(state.a2), ..state }
+        super::PlannedRun::new(parameters, start, rate, self).is_ok()
     }
 }

@@ -25,7 +25,7 @@ fn each_state<R: Real>(seed: u64, states: usize, mut check: impl FnMut(&Paramete
 }
 
 fn pendulum<R: Real>(parameters: &Parameters<f64>) -> Pendulum<R> {
-    Pendulum::new(parameters.cast()).expect("random parameters are valid")
+    Pendulum::new(&parameters.cast()).expect("random parameters are valid")
 }
 
 fn derivatives_are_the_pages<R: Real>() {
@@ -83,7 +83,7 @@ fn derivatives_are_the_gradient_of_h() {
 
 #[test]
 fn energy_above_rest_keeps_its_precision_in_the_smallest_motion() {
-    let pendulum = Pendulum::new(Parameters { m1: 1.0_f32, m2: 1.0, l1: 1.0, l2: 1.0, g: 9.8 }).expect("valid");
+    let pendulum = Pendulum::new(&Parameters { m1: 1.0_f32, m2: 1.0, l1: 1.0, l2: 1.0, g: 9.8 }).expect("valid");
     let above = pendulum.energy_above_rest(&State::at_rest(1e-10, 2e-10));
     let exact = 9.8 * (2.0 * 1e-20 + 4e-20) / 2.0; // K = ((m1 + m2) g l1 a1^2 + m2 g l2 a2^2)/2
     assert!((f64::from(above) / exact - 1.0).abs() < tolerances::FORMULAS.single, "{above} instead of {exact}");

@@ -11,7 +11,7 @@ fn each_motion<R: Real>(seed: u64, mut check: impl FnMut(&Pendulum<R>, &Motion<R
     for _ in 0..20_000 {
         let parameters = random::parameters(&mut rng).cast();
         let motion = [0; 4].map(|_| R::from_f64(6.0 * random::symmetric(&mut rng)));
-        check(&Pendulum::new(parameters).expect("valid parameters"), &motion.into());
+        check(&Pendulum::new(&parameters).expect("valid parameters"), &motion.into());
     }
 }
 
@@ -120,7 +120,7 @@ fn lagrange_f64() {
 #[test]
 fn bobs_are_where_the_rods_point() {
     let parameters = Parameters { m1: 1.0, m2: 2.0, l1: 3.0, l2: 4.0, g: 9.8 };
-    let pendulum = Pendulum::new(parameters).expect("valid parameters");
+    let pendulum = Pendulum::new(&parameters).expect("valid parameters");
     let quarter = core::f64::consts::FRAC_PI_2;
     let near = |x: f64, y: f64| (x - y).abs() < tolerances::FORMULAS.double;
     let [bob1, bob2] = pendulum.positions([0.0, quarter]); // down, then right
@@ -132,7 +132,7 @@ fn bobs_are_where_the_rods_point() {
 #[test]
 fn at_rest_both_ways() {
     let parameters = Parameters { m1: 1.0, m2: 2.0, l1: 3.0, l2: 4.0, g: 9.8 };
-    let pendulum = Pendulum::new(parameters).expect("valid parameters");
+    let pendulum = Pendulum::new(&parameters).expect("valid parameters");
     assert_eq!(pendulum.to_state(&Motion::at_rest(1.0, 2.0)), State::at_rest(1.0, 2.0));
     assert_eq!(pendulum.to_motion(&State::at_rest(1.0, 2.0)), Motion::at_rest(1.0, 2.0));
 }

@@ -7,7 +7,7 @@ use double_pendulum::{EqualRods, Error, Modes, Motion, Parameter, Parameters, Pe
 const GOOD: Parameters<f64> = Parameters { m1: 1.0, m2: 2.0, l1: 3.0, l2: 4.0, g: 9.8 };
 
 fn refusal(parameters: Parameters<f64>) -> Error {
-    Pendulum::new(parameters).expect_err("these parameters must be refused")
+    Pendulum::new(&parameters).expect_err("these parameters must be refused")
 }
 
 #[test]
@@ -25,7 +25,7 @@ fn parameters() {
         refusal(Parameters { m1: 1e300, l1: 1e200, ..GOOD }),
         Error::OutOfRange { parameter: Parameter::M1, value: 1e300 }
     );
-    assert!(Pendulum::new(Parameters { g: 0.0, ..GOOD }).is_ok());
+    assert!(Pendulum::new(&Parameters { g: 0.0, ..GOOD }).is_ok());
 }
 
 #[test]

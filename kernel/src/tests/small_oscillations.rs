@@ -69,7 +69,7 @@ fn carrier_modulation_and_exchange() {
 fn modes_solve_the_matrix_equation() {
     let mut rng = Rng::with_seed(2);
     for _ in 0..1000 {
-        let pendulum = Pendulum::new(random::parameters(&mut rng)).expect("valid parameters");
+        let pendulum = Pendulum::new(&random::parameters(&mut rng)).expect("valid parameters");
         let (mass, stiffness) = (pendulum.mass_matrix(1.0), pendulum.stiffness());
         let modes = pendulum.modes().expect("there is gravity");
         for Mode { frequency, shape } in [modes.fast, modes.slow] {

@@ -18,13 +18,13 @@ fn each_motion<R: Real>(seed: u64, mut check: impl FnMut(&Parameters<R>, State<R
 }
 
 fn run<R: Real>(parameters: &Parameters<R>, start: State<R>, dt: R) -> State<R> {
-    let pendulum = Pendulum::new(*parameters).expect("valid parameters");
+    let pendulum = Pendulum::new(parameters).expect("valid parameters");
     (0..STEPS).fold(start, |state, _| pendulum.step(&state, dt))
 }
 
 /// A step in which neither rod can turn by more than a twentieth of a radian.
 fn short_step<R: Real>(parameters: &Parameters<R>, start: &State<R>) -> R {
-    let bounds = Pendulum::new(*parameters).expect("valid parameters").bounds(start);
+    let bounds = Pendulum::new(parameters).expect("valid parameters").bounds(start);
     R::from_f64(0.05) / (bounds.w1 + bounds.w2)
 }
 
@@ -35,7 +35,7 @@ fn reversed<R: Real>(State { a1, a2, p1, p2 }: State<R>) -> State<R> {
 #[test]
 fn reversed_momenta_bring_the_start_back() {
     each_motion(1, |parameters, start: State<f64>| {
-        let pendulum = Pendulum::new(*parameters).expect("valid parameters");
+        let pendulum = Pendulum::new(parameters).expect("valid parameters");
         let bounds = pendulum.bounds(&start);
         let dt = 0.002 / bounds.w1.max(bounds.w2);
         let back = reversed(run(parameters, reversed(run(parameters, start, dt)), dt));
@@ -50,7 +50,7 @@ fn reversed_momenta_bring_the_start_back() {
 
 fn reversal_of_the_derivatives<R: Real>() {
     each_motion::<R>(2, |parameters, state| {
-        let pendulum = Pendulum::new(*parameters).expect("valid parameters");
+        let pendulum = Pendulum::new(parameters).expect("valid parameters");
         let [w1, w2, f1, f2] = pendulum.derivatives(&state.into());
         assert_eq!(pendulum.derivatives(&reversed(state).into()), [-w1, -w2, f1, f2]);
     });

@@ -63,7 +63,7 @@ fn in_application(board: &'static Board, toolchain: &Toolchain) -> Result<(f32, 
         machine.machine().serial.send(&Set { request: 1, field, value })?;
         // Whether the command comes before this frame or the next is a matter of bytes.
         for _ in 0..2 {
-            prepared = prepared.max(most(&mut machine, "WayStepper::new")?);
+            prepared = prepared.max(most(&mut machine, "PlannedRun::new")?);
         }
     }
     Ok((step, prepared))

@@ -41,7 +41,7 @@ pub struct Path {
 
 /// Figure 7's pendulum.
 pub fn pendulum() -> Result<Pendulum<f64>, Error> {
-    Pendulum::new(Parameters::equal_rods(MASS_RATIO, ROD, PAGE_GRAVITY))
+    Pendulum::new(&Parameters::equal_rods(MASS_RATIO, ROD, PAGE_GRAVITY))
 }
 
 /// Its start.

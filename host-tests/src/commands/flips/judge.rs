@@ -2,8 +2,8 @@
 
 use std::f64::consts::PI;
 
+use double_pendulum::DirectionF64;
 use double_pendulum::flips::{Flip, Flips};
-use double_pendulum::form::DirectionForm;
 use double_pendulum::{Error, Motion};
 
 use fastrand::Rng;
@@ -44,7 +44,7 @@ pub fn sample(map: &Map, judged: usize) -> Result<usize, Error> {
 pub fn judge(map: &Map) -> Result<Verdict, Error> {
     let points = map.points(0..map.square.rows())?;
     let dt = map.dt / f64::from(FINER);
-    let fine = Flips::<f64, DirectionForm<f64>>::new(&map.parameters.cast(), dt, (f64::from(map.limit) / dt) as u32)?;
+    let fine = Flips::<DirectionF64>::new(&map.parameters.cast(), dt, (f64::from(map.limit) / dt) as u32)?;
     let mut verdict = Verdict::default();
     for (start, point) in map.starts(0..map.square.rows()).zip(points) {
         let [a1, a2] = start.map(f64::from);

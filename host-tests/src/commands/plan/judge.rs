@@ -1,7 +1,7 @@
 //! A plan carried out, beside the reference.
 
-use double_pendulum::form::Direction;
-use double_pendulum::plan::{Plan, Problem, Way, WayStepper};
+use double_pendulum::Direction;
+use double_pendulum::plan::{Plan, Problem};
 use double_pendulum::{Error, Motion, Parameters};
 use firmware::config::HALF_PIXEL;
 
@@ -77,8 +77,7 @@ pub struct Verdict {
 /// Carries out `plan` and compares each frame with the exact motion, until one is wrong and the predicted horizon is past.
 pub fn judge(exact: &mut Exact, plan: &Plan) -> Result<Verdict, Error> {
     let scene = exact.scene;
-    let way = Way { method: plan.method, steps: plan.steps };
-    let mut motion = WayStepper::new(&scene.pendulum, &scene.start, scene.rate, way)?;
+    let mut motion = plan.run(scene)?;
     let mut verdict = Verdict { horizon: scene.duration, error: 0.0 };
     let mut right = true;
     for frame in 1..=scene.frames() {
@@ -86,7 +85,7 @@ pub fn judge(exact: &mut Exact, plan: &Plan) -> Result<Verdict, Error> {
         if !right && !predicted {
             break;
         }
-        motion.advance();
+        motion.advance(1)?;
         let shown = motion.directions().map(|direction| direction.map(f64::from));
         let error = distance(scene, &shown, &exact.frame(frame));
         if predicted {

@@ -1,6 +1,6 @@
 //! The chips a plan is made for.
 
-use double_pendulum::plan::{Limit, Plan, PlanError, Problem, plan};
+use double_pendulum::plan::{Limit, Plan, PlanError, Problem};
 use firmware::config::{CORTEX_M0PLUS, CORTEX_M3, CORTEX_M4F, Processor, STM32F405};
 
 /// A chip, by what a plan must know of it.
@@ -30,7 +30,7 @@ pub const CHIPS: [Chip; 4] = [M3, M4F, SLOW_M4F, PICO];
 impl Chip {
     /// The plan that a board of this class finds; if nothing holds, what forbids finer steps.
     pub fn plan(&self, problem: &Problem) -> Result<Result<Plan, Limit>, PlanError> {
-        match plan(problem, &self.processor.costs, &self.processor.budget(problem)) {
+        match Plan::search(problem, &self.processor.costs, &self.processor.budget(problem)) {
             Err(PlanError::NothingHolds { limit, .. }) => Ok(Err(limit)),
             found => found.map(Ok),
         }

@@ -95,7 +95,7 @@ fn forbidden(limit: Limit, frame: f32) -> String {
 
 /// What the proven bounds say.
 fn energy(scene: &Problem) -> Option<String> {
-    let pendulum = Pendulum::new(scene.pendulum).ok()?;
+    let pendulum = Pendulum::new(&scene.pendulum).ok()?;
     let state = pendulum.to_state(&scene.start);
     // An admissible step is a quarter of the time in which the fastest motion that the energy allows turns a radian.
     let radian = 4.0 * pendulum.admissible_step(&state).ok()?;

@@ -1,7 +1,7 @@
 //! The frames a method draws, held against the exact motion.
 
 use double_pendulum::Error;
-use double_pendulum::plan::{Problem, Way, WayStepper};
+use double_pendulum::plan::{PlannedRun, Problem, Way};
 
 use crate::prove::{Enclosure, Verdict};
 
@@ -10,7 +10,7 @@ use crate::prove::{Enclosure, Verdict};
 pub struct Proof {
     /// How the frames are computed.
     pub way: Way,
-    motion: WayStepper,
+    motion: PlannedRun,
     /// So many frames are right, from the start on.
     pub right: u32,
     /// The first one that is wrong.
@@ -22,12 +22,12 @@ pub struct Proof {
 impl Proof {
     /// Of nothing yet.
     pub fn new(scene: &Problem, way: Way) -> Result<Self, Error> {
-        let motion = WayStepper::new(&scene.pendulum, &scene.start, scene.rate, way)?;
+        let motion = PlannedRun::new(&scene.pendulum, &scene.start, scene.rate, way)?;
         Ok(Self { way, motion, right: 0, wrong: None, open: 0 })
     }
 
     fn judge(&mut self, scene: &Problem, frame: u32, set: &Enclosure) -> Verdict {
-        self.motion.advance();
+        let _is_lost = self.motion.advance(1);
         let shown = self.motion.directions().map(|direction| direction.map(f64::from));
         let verdict = set.verdict(&shown, [scene.pendulum.l1, scene.pendulum.l2], scene.tolerance);
         match verdict {

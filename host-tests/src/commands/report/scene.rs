@@ -71,7 +71,7 @@ impl Scene {
     pub fn admissible_step(&self) -> f64 {
         let [a1, a2] = self.angles();
         let step = |pendulum: Pendulum<f64>| pendulum.admissible_step(&State::at_rest(a1, a2));
-        Pendulum::new(self.parameters()).and_then(step).unwrap_or(f64::NAN)
+        Pendulum::new(&self.parameters()).and_then(step).unwrap_or(f64::NAN)
     }
 
     /// Pixels of the panel per metre.

@@ -46,7 +46,7 @@ pub const COLUMNS: [Column; 12] = [
 impl Row<'_> {
     fn bobs(&self) -> [[f64; 2]; 2] {
         let [a1, a2, ..] = self.reading.state;
-        let bobs = Pendulum::<f64>::new(self.parameters).map(|pendulum| pendulum.positions([a1, a2]));
+        let bobs = Pendulum::<f64>::new(&self.parameters).map(|pendulum| pendulum.positions([a1, a2]));
         bobs.map_or([[f64::NAN; 2]; 2], |bobs| bobs.map(|bob| [bob.x, bob.y]))
     }
 }

@@ -1,0 +1,126 @@
+//! The state (a1, a2, p1, p2) itself, by equations of motion as one writes them down and the classical RK4.
+
+use core::fmt::Debug;
+
+use super::{Form, rk4};
+use crate::error::Error;
+use crate::numbers::trig::{DefaultTrig, SinCos};
+use crate::numbers::{Real, Sealed};
+use crate::pendulum::{Direction, EqualRods, Parameters, Pendulum, State, Units};
+
+/// Equations of motion, with the units they have.
+pub trait Equations<R: Real>: Copy + Debug + PartialEq {
+    /// Refuses what they do not hold for.
+    fn prepare(parameters: &Parameters<R>) -> Result<Self, Error>;
+    /// The time derivatives of (a1, a2, p1, p2).
+    fn derivatives(&self, z: &[R; 4]) -> [R; 4];
+    /// `state` in these units.
+    fn from_si(&self, state: &State<R>) -> State<R> {
+        *state
+    }
+    /// `state` of these units in SI units.
+    fn to_si(&self, state: &State<R>) -> State<R> {
+        *state
+    }
+    /// `dt` s in these units.
+    fn step(&self, dt: R) -> R {
+        dt
+    }
+}
+
+impl<R: Real, T: SinCos<R>> Equations<R> for Pendulum<R, T> {
+    fn prepare(parameters: &Parameters<R>) -> Result<Self, Error> {
+        Pendulum::with_trig(parameters)
+    }
+    #[inline(always)]
+    fn derivatives(&self, z: &[R; 4]) -> [R; 4] {
+        Pendulum::derivatives(self, z)
+    }
+}
+
+/// Rods of one length, in their own units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dimensionless<R> {
+    rods: EqualRods<R>,
+    units: Units<R>,
+}
+
+impl<R: Real> Equations<R> for Dimensionless<R> {
+    fn prepare(parameters: &Parameters<R>) -> Result<Self, Error> {
+        Ok(Self { units: Units::of(parameters)?, rods: EqualRods::new(parameters.mass_ratio())? })
+    }
+    #[inline(always)]
+    fn derivatives(&self, z: &[R; 4]) -> [R; 4] {
+        self.rods.derivatives(z)
+    }
+    fn from_si(&self, state: &State<R>) -> State<R> {
+        self.units.from_si(state)
+    }
+    fn to_si(&self, state: &State<R>) -> State<R> {
+        self.units.to_si(state)
+    }
+    fn step(&self, dt: R) -> R {
+        dt / self.units.time
+    }
+}
+
+/// The state stepped by the equations `E`; nothing is carried along but the state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Canonical<R, E = Pendulum<R, DefaultTrig>> {
+    equations: E,
+    /// In the units of the equations.
+    dt: R,
+}
+
+impl<R, E> Sealed for Canonical<R, E> {}
+
+impl<R: Real + super::Side, E: Equations<R>> Form for Canonical<R, E> {
+    type Real = R;
+    type Carried = State<R>;
+    type Side = R;
+    const HAS_TURNS: bool = true;
+
+    fn new(parameters: &Parameters<f64>, dt: f64) -> Result<Self, Error> {
+        super::scaling::check_step(dt)?;
+        let equations = E::prepare(&parameters.cast())?;
+        Ok(Self { equations, dt: equations.step(R::from_f64(dt)) })
+    }
+
+    fn start(&self, state: &State<f64>) -> Result<State<R>, Error> {
+        let state = state.cast();
+        state.check()?;
+        Ok(self.equations.from_si(&state))
+    }
+
+    #[inline(always)]
+    fn advance(&self, carried: &mut State<R>, steps: u32) {
+        for _ in 0..steps {
+            *carried = rk4::step(|z| self.equations.derivatives(z), &(*carried).into(), self.dt).into();
+        }
+    }
+
+    fn check(&self, carried: &State<R>) -> Result<(), Error> {
+        carried.finite().map(drop)
+    }
+
+    fn heads(carried: &State<R>) -> [Direction<R>; 2] {
+        carried.angles().map(|angle| angle.own_sin_cos().into())
+    }
+
+    fn directions<Q: Real>(&self, carried: &State<R>) -> [Direction<Q>; 2] {
+        Self::heads(carried).map(|head| head.map(R::cast))
+    }
+
+    fn momenta<Q: Real>(&self, carried: &State<R>) -> [Q; 2] {
+        let State { p1, p2, .. } = self.equations.to_si(carried);
+        [p1.cast(), p2.cast()]
+    }
+
+    fn state(&self, carried: &State<R>) -> State<f64> {
+        self.equations.to_si(carried).cast()
+    }
+
+    fn bits(carried: &State<R>, feed: impl FnMut(u64)) {
+        <[R; 4]>::from(*carried).map(R::bits).into_iter().for_each(feed);
+    }
+}

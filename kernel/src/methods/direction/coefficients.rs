@@ -1,0 +1,150 @@
+//! The constants of the equations in the units of the step, and the way there and back.
+
+use super::classical::rates;
+use super::lead::Lead;
+use crate::error::{Error, Parameter};
+use crate::numbers::Real;
+use crate::pendulum::directions::lower_ray;
+use crate::pendulum::directions::{Coefficients, increments};
+use crate::pendulum::{Parameters, State};
+
+/// A third, by which k1 + 2 k2 + 2 k3 + k4 becomes the increment of a step.
+#[inline(always)]
+pub(crate) fn third<R: Real>() -> R {
+    R::from_f64(1.0 / 3.0)
+}
+
+/// How far a step goes, tau: the sum of the weights of its slopes, times a factor as rounded.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Span {
+    pub weights: f64,
+    pub factor: f64,
+}
+
+impl Span {
+    /// The classical method's (k1 + 2 k2 + 2 k3 + k4) times a third: tau is half a step.
+    #[must_use]
+    pub fn classical<R: Real>() -> Self {
+        Self { weights: 6.0, factor: third::<R>().to_f64() }
+    }
+    /// One tau.
+    pub const STEP: Self = Self { weights: 1.0, factor: 1.0 };
+}
+
+/// How the units of the step translate to SI. In `f64`; used at input and output only.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Scale {
+    /// tau, s.
+    time: f64,
+    /// P per p, s/(kg m^2).
+    pub momentum: f64,
+    /// What a step truly advances, tau, ...
+    step: f64,
+    /// ... which is a little more than dt, for its constants are rounded.
+    pub lead: Lead,
+}
+
+/// Checks and prepares a pendulum and a step of `dt` seconds, which are `span`; a negative one runs backwards.
+pub(crate) fn prepare<R: Real>(
+    parameters: &Parameters<R>,
+    dt: f64,
+    span: Span,
+) -> Result<(Coefficients<R>, Scale), Error> {
+    parameters.check()?;
+    let (parameter, value) = (Parameter::Dt, dt);
+    if !dt.is_finite() {
+        return Err(Error::NotFinite { parameter, value });
+    }
+    if !R::from_f64(dt).is_normal() {
+        return Err(Error::OutOfRange { parameter, value });
+    }
+    let Parameters { m1, m2, l1, l2, g } = parameters.cast::<f64>();
+    let norm = l1 / l2;
+    let [inertia, total] = [m1, m1 + m2].map(|mass| mass / m2 * norm * norm);
+
+    let step = span.weights * span.factor;
+    let unit = dt / libm::rint(step);
+    let wished = unit * unit * g / l1;
+    let gravity2 = factor_above::<R>(wished, total);
+    let gravity = [R::from_f64(total * gravity2.to_f64()), gravity2];
+    let time = if g == 0.0 { unit } else { unit * libm::sqrt(gravity2.to_f64() / wished) };
+
+    let coefficients = Coefficients { norm: R::from_f64(norm), inertia: R::from_f64(inertia), gravity };
+    let scale = Scale { time, momentum: time / (m2 * l2 * l2), step, lead: Lead::new(time * step, dt) };
+    let in_range = |constant: R| constant.is_normal() && (R::ONE / constant).is_normal();
+    let gravity_in_range = g == 0.0 || coefficients.gravity.into_iter().all(R::is_normal);
+    if [coefficients.norm, coefficients.inertia, R::from_f64(total)].into_iter().all(in_range) && gravity_in_range {
+        Ok((coefficients, scale))
+    } else {
+        Err(parameters.out_of_range())
+    }
+}
+
+/// Of the first 32 numbers from `value` upwards, 1 ulp apart, the one whose product with `factor` loses least by rounding.
+///
+/// G2 may be a little too large, for that only lengthens the unit of time, which is known. The ratio of G1 to it may not be
+/// off: where bob 1 is light, the fast oscillation goes by the small difference of G1 and nu^2 G2.
+fn factor_above<R: Real>(value: f64, factor: f64) -> R {
+    let lost = |candidate: R| {
+        let exact = candidate.to_f64() * factor;
+        (R::from_f64(exact).to_f64() - exact).abs()
+    };
+    let nearest = R::from_f64(value);
+    let ulp = nearest * R::EPSILON;
+    let least = if nearest.to_f64() < value { nearest + ulp } else { nearest };
+    let candidates = (0..32_i32).map(|i| least + R::from_f64(f64::from(i)) * ulp);
+    let (best, _) = candidates
+        .map(|candidate| (candidate, lost(candidate)))
+        .fold((least, f64::INFINITY), |best, other| if other.1 < best.1 { other } else { best });
+    best
+}
+
+impl Scale {
+    /// (P1, P2) of `state`.
+    #[inline(never)] // cold: once in flash, not once for each caller
+    pub fn momenta<R: Real>(&self, state: &State<R>) -> Result<[f64; 2], Error> {
+        let scaled = [state.p1, state.p2].map(|p| p.to_f64() * self.momentum);
+        for (i, parameter) in [Parameter::P1, Parameter::P2].into_iter().enumerate() {
+            if !R::from_f64(scaled[i]).is_finite() {
+                return Err(Error::OutOfRange { parameter, value: scaled[i] / self.momentum });
+            }
+        }
+        Ok(scaled)
+    }
+
+    /// The momenta (p1, p2) that are (P1, P2).
+    #[must_use]
+    pub fn in_si<R: Real>(&self, momenta: [R; 2]) -> [R; 2] {
+        momenta.map(|p| R::from_f64(p.to_f64() / self.momentum))
+    }
+
+    /// By how much the motion is ahead of the time told after `count` steps, tau.
+    pub fn ahead(&self, count: u64) -> f64 {
+        self.lead.ahead(count) * self.step
+    }
+
+    /// The state in SI units at the time told after `count` steps, of a motion that is at `z`, and `lost` more.
+    ///
+    /// The motion is ahead of that time by a part of a step. It is taken back over it by four stages, of which each starts
+    /// from the slope of the one before: of order 4 in small oscillations and of order 2 in others.
+    #[must_use]
+    #[inline(never)] // cold: once in flash, not once for each caller
+    pub fn state<R: Real>(&self, coefficients: &Coefficients<R>, z: &[R; 6], lost: [R; 6], count: u64) -> State<f64> {
+        let span = R::from_f64(-self.ahead(count));
+        let mut change = [R::ZERO; 6];
+        for share in [0.25, 1.0 / 3.0, 0.5, 1.0] {
+            let at: [R; 6] = core::array::from_fn(|i| z[i] + change[i]);
+            let inverse = R::ONE / coefficients.denominator(at[2]);
+            let slopes = increments(&at, rates(coefficients, &at, inverse));
+            change = slopes.map(|slope| slope * (span * R::from_f64(share)));
+        }
+        // Of a motion about to leave the finite numbers there is nothing to take back.
+        if !change.into_iter().all(R::is_finite) {
+            change = [R::ZERO; 6];
+        }
+        let [sin1, cos1, s, c, p1, p2] = core::array::from_fn(|i| z[i].to_f64() + (lost[i] + change[i]).to_f64());
+        let [sin2, cos2] = lower_ray([sin1, cos1], [s, c]);
+        let [a1, a2] = [libm::atan2(sin1, cos1), libm::atan2(sin2, cos2)];
+        State { a1, a2, p1: p1 / self.momentum, p2: p2 / self.momentum }
+    }
+}

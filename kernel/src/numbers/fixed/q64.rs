@@ -1,0 +1,221 @@
+//! Fractions of 64 bits: the digits of an `f64` at a fraction of its price where that is software.
+
+use core::ops::{Add, Mul, Neg, Sub};
+
+use super::product::product;
+use super::{FixedPoint, nearest};
+use crate::numbers::{Real, Scalar, Sealed};
+
+/// A number from -1/2 to below 1/2 in 64 bits, in steps of 2^-64: no shift follows a product.
+///
+/// A sum that has no room wraps; [`reach`](Self::reach) is what tells whether it can.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Q64(pub i64);
+
+/// 2^64.
+const UNIT: f64 = 18_446_744_073_709_551_616.0;
+
+impl Q64 {
+    /// As an `f64`.
+    pub fn value(self) -> f64 {
+        self.over(1.0)
+    }
+
+    /// The number over a power of two, rounded once.
+    pub fn over<R: Real>(self, divisor: f64) -> R {
+        R::from_i64(self.0) * R::from_f64(1.0 / (UNIT * divisor))
+    }
+
+    /// The upper word, rounded to nearest, and the lower one, with its sign.
+    #[inline(always)]
+    fn words(self) -> [i32; 2] {
+        let lower = self.0 as i32;
+        [((self.0 >> 32) as i32).wrapping_add((lower as u32 >> 31) as i32), lower]
+    }
+
+    /// The product with `factor` 2^-32, rounded down.
+    #[inline(always)]
+    pub fn times_word(self, factor: i32) -> Self {
+        let [upper, lower] = self.words().map(|word| product(word, factor));
+        Self(upper + (lower >> 32))
+    }
+
+    /// Zero if the number is below 2^-`places`, else not.
+    #[inline(always)]
+    pub fn reach(self, places: u32) -> u32 {
+        (((self.0 >> 32) as u32).wrapping_add(1 << (32 - places))) >> (33 - places)
+    }
+
+    /// 2^-8/d of d = 2^6 `self`, within 2^-56 of itself: d from 1 to 8.
+    ///
+    /// A quotient of words, one step of Newton's on words and one of third order, whose residue 1 - d r is kept in 32 bits.
+    #[inline(always)]
+    pub fn inverse(self) -> Self {
+        let divisor = self.0 as u64;
+        let upper = (divisor >> 32) as u32;
+        let quotient = u32::MAX / (upper >> 12 | 1); // 2^44/upper
+        let residue = upper.wrapping_mul(quotient).wrapping_neg() as i32; // (1 - upper quotient 2^-44) 2^44
+        let correction = ((i64::from(quotient as i32) * i64::from(residue)) >> 32) as i32;
+        let word = ((quotient << 12) as i32).wrapping_add(correction); // 2^88/divisor
+        let product = u64::from(divisor as u32)
+            .wrapping_mul(u64::from(word as u32))
+            .wrapping_add(u64::from(upper.wrapping_mul(word as u32)) << 32);
+        let [residue, _] = Self(product.wrapping_neg() as i64).words(); // (1 - divisor word 2^-88) 2^56
+        let square = ((i64::from(residue) * i64::from(residue)) >> 56) as i32;
+        let correction = i64::from(word) * i64::from(residue.wrapping_add(square));
+        Self((i64::from(word) << 32).wrapping_add(correction >> 24))
+    }
+}
+
+impl Add for Q64 {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self(self.0.wrapping_add(other.0))
+    }
+}
+
+impl Sub for Q64 {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self(self.0.wrapping_sub(other.0))
+    }
+}
+
+impl Neg for Q64 {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self(self.0.wrapping_neg())
+    }
+}
+
+/// Rounded down; the product of the lower words, which is left out, is as often below zero as above, and less than 1/4 of a
+/// step.
+impl Mul for Q64 {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, factor: Self) -> Self {
+        let ([a, a_lower], [b, b_lower]) = (self.words(), factor.words());
+        Self(product(a, b) + (product(a, b_lower).wrapping_add(product(a_lower, b)) >> 32))
+    }
+}
+
+impl Sealed for Q64 {}
+
+impl Scalar for Q64 {
+    type Slope = Self;
+    type Gravity = Self;
+    type Torque = Self;
+    #[inline(never)]
+    fn constant(value: f64) -> Self {
+        Self(nearest(value * UNIT) as i64)
+    }
+    #[inline(always)]
+    fn twice(self) -> Self {
+        self + self
+    }
+    #[inline(always)]
+    fn half(self) -> Self {
+        Self(self.0 >> 1)
+    }
+    /// Four times the product.
+    #[inline(always)]
+    fn slope(self, factor: Self) -> Self {
+        (self * factor).up(2)
+    }
+    #[inline(always)]
+    fn torque(self, rate: Self, direction: Self) -> Self {
+        self * rate * direction
+    }
+    #[inline(always)]
+    fn weight(gravity: Self, direction: Self) -> Self {
+        gravity * direction
+    }
+    fn split(value: f64) -> (i32, Self) {
+        let whole = libm::floor(value + 0.5); // the rest may be -1/2, but not 1/2
+        (whole as i32, Self::constant(value - whole))
+    }
+    #[inline(always)]
+    fn times(self, whole: i32) -> Self {
+        Self(self.0.wrapping_mul(i64::from(whole)))
+    }
+}
+
+impl FixedPoint for Q64 {
+    /// Rounded to nearest.
+    #[inline(always)]
+    fn down(self, by: u32) -> Self {
+        Self(self.0.wrapping_add(i64::from(1_u32 << by >> 1)) >> by)
+    }
+    /// Made the middle of what it may have been before it was rounded down: no bias is left. `by` is 1 or more.
+    #[inline(always)]
+    fn up(self, by: u32) -> Self {
+        Self(self.0 << by | 1 << (by - 1))
+    }
+    #[inline(always)]
+    fn torque_down(torque: Self, by: u32) -> Self {
+        torque.down(by)
+    }
+    #[inline(always)]
+    fn product_up(self, factor: Self, by: u32) -> Self {
+        (self * factor).up(by)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every product of some numbers of all sizes, the largest among them, by all 128 bits.
+    #[test]
+    fn products_are_right_to_the_last_step() {
+        let numbers = (0..64)
+            .flat_map(|bits| [1, -1, 3, -5, 0x1234_5678_9abc_def1, -0x0fed_cba9_8765_4321].map(|x: i64| x >> bits));
+        let numbers = numbers.chain([i64::MIN, 1 - (1 << 62), 1 << 62, i64::MAX / 3]);
+        for a in numbers.clone() {
+            for b in numbers.clone() {
+                let exact = (i128::from(a) * i128::from(b)) as f64 / UNIT;
+                // a floor and a quarter, and what the `f64` here rounds
+                let error = (Q64(a) * Q64(b)).0 as f64 - exact;
+                assert!((-1.25..=0.25).contains(&error) || error.abs() < exact.abs() * 1e-15, "{a:#x} {b:#x}: {error}");
+                let word = (b >> 32) as i32;
+                let exact = (i128::from(a) * i128::from(word)) >> 32;
+                assert_eq!(i128::from(Q64(a).times_word(word).0), exact, "{a:#x} {word:#x}");
+            }
+        }
+    }
+
+    #[test]
+    fn inverses_are_within_their_bound() {
+        let mut d = 1.0;
+        while d < 8.0 {
+            let inverse = Q64::constant(d / 64.0).inverse().value() * 4.0;
+            assert!((inverse * d - 1.0).abs() <= 0.6 * f64::EPSILON * 2.0, "{d}: {inverse:e}");
+            d *= 1.000_123;
+        }
+    }
+
+    #[test]
+    fn the_reach_ends_where_it_says() {
+        for places in 2..=16 {
+            let limit = 1_i64 << (64 - places);
+            for inside in [0, -limit, limit - 1, 1, -1] {
+                assert_eq!(Q64(inside).reach(places), 0, "{inside:#x}");
+            }
+            for outside in [limit, -limit - (1 << 32), i64::MIN, i64::MAX] {
+                assert_ne!(Q64(outside).reach(places), 0, "{outside:#x}");
+            }
+        }
+    }
+
+    #[test]
+    fn factors_of_any_size() {
+        for value in [0.5, 1.0, 1.0 / 3.0, -17.4, 50.7, -0.5] {
+            let (whole, rest) = Q64::split(value);
+            let product = (Q64::constant(0.003) * rest + Q64::constant(0.003).times(whole)).value();
+            assert!((product - 0.003 * value).abs() < 1e-15, "{value}: {product}");
+        }
+    }
+}

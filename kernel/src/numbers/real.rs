@@ -1,0 +1,219 @@
+//! The two floating-point types the kernel computes in.
+
+use core::fmt::{Debug, Display};
+use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
+
+use crate::numbers::sine;
+use crate::numbers::{Scalar, Sealed};
+
+/// `f32` or `f64`, and no other type: the few operations the formulas need, one row each.
+///
+/// Every operation is either IEEE 754 arithmetic or a pure-Rust routine built on it, so that a result is the same
+/// to the bit on every machine.
+pub trait Real:
+    Scalar<Gravity = Self, Slope = Self, Torque = Self>
+    + Copy
+    + Default
+    + PartialOrd
+    + Debug
+    + Display
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + AddAssign
+    + SubAssign
+    + MulAssign
+    + 'static
+{
+    /// 0.
+    const ZERO: Self;
+    /// 1.
+    const ONE: Self;
+    /// 2.
+    const TWO: Self;
+    /// 1/2.
+    const HALF: Self;
+    /// pi, rounded to nearest.
+    const PI: Self;
+    /// The distance from 1 to the next larger number.
+    const EPSILON: Self;
+
+    /// The number nearest to `value`.
+    #[must_use]
+    fn from_f64(value: f64) -> Self;
+    /// The same number as an `f64`; exact.
+    fn to_f64(self) -> f64;
+    /// The number nearest to this whole one.
+    #[doc(hidden)]
+    fn from_i64(value: i64) -> Self;
+    /// The number of `S` nearest to this one.
+    #[inline(always)]
+    fn cast<S: Real>(self) -> S {
+        S::from_f64(self.to_f64())
+    }
+    /// The absolute value.
+    #[must_use]
+    fn abs(self) -> Self;
+    /// The square root, correctly rounded; NaN below 0.
+    #[must_use]
+    fn sqrt(self) -> Self;
+    /// The bit pattern.
+    fn bits(self) -> u64;
+    /// Neither infinite nor NaN.
+    #[must_use]
+    fn is_finite(self) -> bool;
+    /// Finite, not zero and not subnormal: holds its full relative precision.
+    fn is_normal(self) -> bool;
+    /// The angle of the point (`x`, `self`) from the positive x axis, rad, in [-pi, pi]; by the `libm` crate.
+    #[must_use]
+    fn atan2(self, x: Self) -> Self;
+    /// Sine and cosine by the `libm` crate.
+    #[doc(hidden)]
+    fn libm_sin_cos(self) -> (Self, Self);
+    /// Sine and cosine by the kernel's own routine.
+    #[doc(hidden)]
+    fn own_sin_cos(self) -> (Self, Self);
+}
+
+/// `x` + `x`, the same bits, by integers unless `x` is zero, subnormal, NaN or close to overflow.
+macro_rules! twice_by_bits {
+    ($name:ident, $float:ident) => {
+        #[inline(always)]
+        fn $name(x: $float) -> $float {
+            const PLACE: u32 = $float::MANTISSA_DIGITS - 1;
+            const LARGEST: u32 = 2 * $float::MAX_EXP as u32 - 3;
+            let bits = x.to_bits();
+            let exponent = (bits << 1 >> (PLACE + 1)) as u32;
+            // kept apart, or the compiler would make the sum in any case
+            #[cold]
+            #[inline(never)]
+            fn sum(x: $float) -> $float {
+                x + x
+            }
+            if exponent.wrapping_sub(1) < LARGEST { $float::from_bits(bits + (1 << PLACE)) } else { sum(x) }
+        }
+    };
+}
+
+twice_by_bits!(twice_single, f32);
+twice_by_bits!(twice_double, f64);
+
+macro_rules! real {
+    ($float:ident, $twice:ident in software if $software:meta, $sqrt:path, $atan2:path, $sin_cos:path, $own:ident) => {
+        impl Sealed for $float {}
+
+        impl Scalar for $float {
+            type Slope = Self;
+            type Gravity = Self;
+            type Torque = Self;
+            #[inline(always)]
+            fn constant(value: f64) -> Self {
+                value as $float
+            }
+            #[inline(always)]
+            fn twice(self) -> Self {
+                if cfg!($software) { $twice(self) } else { self + self }
+            }
+            #[inline(always)]
+            fn half(self) -> Self {
+                0.5 * self
+            }
+            #[inline(always)]
+            fn slope(self, factor: Self) -> Self {
+                self * factor
+            }
+            #[inline(always)]
+            fn torque(self, rate: Self, direction: Self) -> Self {
+                self * rate * direction
+            }
+            #[inline(always)]
+            fn weight(gravity: Self, direction: Self) -> Self {
+                gravity * direction
+            }
+        }
+
+        impl Real for $float {
+            const ZERO: Self = 0.0;
+            const ONE: Self = 1.0;
+            const TWO: Self = 2.0;
+            const HALF: Self = 0.5;
+            const PI: Self = core::$float::consts::PI;
+            const EPSILON: Self = $float::EPSILON;
+
+            #[inline(always)]
+            fn from_f64(value: f64) -> Self {
+                value as $float
+            }
+            #[inline(always)]
+            fn to_f64(self) -> f64 {
+                self as f64
+            }
+            #[inline(always)]
+            fn from_i64(value: i64) -> Self {
+                value as $float
+            }
+            #[inline(always)]
+            fn abs(self) -> Self {
+                $float::abs(self)
+            }
+            // Seldom wanted, and in software a kilobyte.
+            #[inline(never)]
+            fn sqrt(self) -> Self {
+                $sqrt(self)
+            }
+            #[inline(always)]
+            fn bits(self) -> u64 {
+                self.to_bits().into()
+            }
+            #[inline(always)]
+            fn is_finite(self) -> bool {
+                $float::is_finite(self)
+            }
+            #[inline(always)]
+            fn is_normal(self) -> bool {
+                $float::is_normal(self)
+            }
+            #[inline]
+            fn atan2(self, x: Self) -> Self {
+                $atan2(self, x)
+            }
+            #[inline]
+            fn libm_sin_cos(self) -> (Self, Self) {
+                $sin_cos(self)
+            }
+            #[inline]
+            fn own_sin_cos(self) -> (Self, Self) {
+                sine::$own::sin_cos(self)
+            }
+        }
+    };
+}
+
+real!(f32, twice_single in software if all(target_arch = "arm", target_abi = "eabi"), libm::sqrtf, libm::atan2f, libm::sincosf, own_f32);
+real!(f64, twice_double in software if all(target_arch = "arm", any(target_abi = "eabi", target_os = "none"), not(feature = "double-fpu")), libm::sqrt, libm::atan2, libm::sincos, own_f64);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every sign and exponent with a spread of fractions, the ends among them.
+    #[test]
+    fn twice_by_bits_is_the_sum() {
+        for high in 0..=u16::MAX {
+            for low in [0, 1, 0x1234, 0x7fff, 0x8000, 0xffff_u32] {
+                let x = f32::from_bits(u32::from(high) << 16 | low);
+                assert!(
+                    twice_single(x).to_bits() == (x + x).to_bits() || x.is_nan() && twice_single(x).is_nan(),
+                    "{x:e}"
+                );
+                let x = f64::from_bits(u64::from(high) << 48 | u64::from(low) << 32 | u64::from(low));
+                assert!(
+                    twice_double(x).to_bits() == (x + x).to_bits() || x.is_nan() && twice_double(x).is_nan(),
+                    "{x:e}"
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,188 @@
+//! Hamilton's equations, written once for every kind of number.
+
+use crate::numbers::{Real, Scalar};
+
+/// (sin, cos) of an angle from the downward vertical.
+pub type Direction<R> = [R; 2];
+
+/// The constants of the equations of motion, with momenta scaled to leave no needless factor.
+///
+/// With nu = l1/l2, (S, C) = nu (sin D, cos D), P = tau p/(m2 l2^2), and the constants
+/// m = (m1/m2) nu^2, G2 = tau^2 g/l1, G1 = (m + nu^2) G2:
+///
+/// - r = 1/(m + S^2); u = a1' = (P1 - C P2) r; v = a2' = P2 - C u; F = u v S
+/// - P1' = -G1 sin a1 - F; P2' = -G2 nu sin a2 + F, where nu sin a2 = C sin a1 - S cos a1
+///
+/// Rods of any lengths cost what equal rods do. Floating point counts time in tau, a step or half of one
+/// ([`Span`](super::coefficients::Span)), so that no rate is multiplied by dt.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Coefficients<R, G = R> {
+    /// nu.
+    pub norm: R,
+    /// m.
+    pub inertia: R,
+    /// G1 and G2.
+    pub gravity: [G; 2],
+}
+
+/// The time derivatives.
+#[derive(Clone, Copy)]
+pub(crate) struct Rates<R: Scalar> {
+    /// u and v.
+    pub angles: [R; 2],
+    /// P1' and P2'.
+    pub momenta: [R::Torque; 2],
+}
+
+impl<R: Scalar<Torque = R>> Rates<R> {
+    /// Twice these.
+    #[inline(always)]
+    pub fn doubled(self) -> Self {
+        Self { angles: self.angles.map(R::twice), momenta: self.momenta.map(R::twice) }
+    }
+}
+
+/// The units the quantities are counted in, where they are not all the same: what of one makes what of another.
+///
+/// The default is no difference, at no cost.
+pub(crate) trait Units<R: Scalar>: Copy {
+    /// C P2 as a part of P1.
+    #[inline(always)]
+    fn momentum(&self, product: R) -> R {
+        product
+    }
+    /// `momentum` r as u.
+    #[inline(always)]
+    fn rate(&self, momentum: R, inverse: R) -> R {
+        momentum * inverse
+    }
+    /// C u as a part of v.
+    #[inline(always)]
+    fn swing(&self, product: R) -> R {
+        product
+    }
+    /// u by the time in which increments are counted.
+    #[inline(always)]
+    fn paced(&self, u: R) -> R {
+        u
+    }
+    /// F = u v S.
+    #[inline(always)]
+    fn force(&self, u: R, v: R, s: R) -> R::Torque {
+        u.torque(v, s)
+    }
+    /// u and v as rates of the angles.
+    #[inline(always)]
+    fn turns(&self, [u, v]: [R; 2]) -> [R; 2] {
+        [u, v]
+    }
+    /// F as parts of P1' and P2'.
+    #[inline(always)]
+    fn forces(&self, force: R::Torque) -> [R::Torque; 2] {
+        [force, force]
+    }
+    /// nu sin a2.
+    #[inline(always)]
+    fn lower(&self, sine: R) -> R {
+        sine
+    }
+    /// The torque of gravity on rod 2 as a part of P2'.
+    #[inline(always)]
+    fn weight(&self, torque: R::Torque) -> R::Torque {
+        torque
+    }
+}
+
+/// All quantities in one system of units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Same;
+
+impl<R: Scalar> Units<R> for Same {}
+
+/// The `units` where time and momenta are reversed; [`Coefficients::gravity`] is to be reversed with them.
+#[derive(Clone, Copy)]
+pub(crate) struct Reverse<U>(pub U);
+
+impl<R: Scalar, U: Units<R>> Units<R> for Reverse<U> {
+    #[inline(always)]
+    fn momentum(&self, product: R) -> R {
+        self.0.momentum(product)
+    }
+    #[inline(always)]
+    fn rate(&self, momentum: R, inverse: R) -> R {
+        self.0.rate(momentum, inverse)
+    }
+    #[inline(always)]
+    fn paced(&self, u: R) -> R {
+        -u
+    }
+    #[inline(always)]
+    fn turns(&self, [u, v]: [R; 2]) -> [R; 2] {
+        self.0.turns([-u, v])
+    }
+    #[inline(always)]
+    fn forces(&self, force: R::Torque) -> [R::Torque; 2] {
+        self.0.forces(force)
+    }
+}
+
+impl<R: Scalar, G> Coefficients<R, G> {
+    /// m + S^2, whose inverse is r.
+    #[inline(always)]
+    pub fn denominator(&self, s: R) -> R {
+        self.inertia + s * s
+    }
+}
+
+impl<R: Scalar> Coefficients<R, R::Gravity> {
+    /// The rates where `upper` is (sin a1, cos a1), `elbow` is (S, C), `momenta` is (P1, P2), and `inverse` is r.
+    #[inline(always)]
+    pub fn rates(&self, units: &impl Units<R>, upper: [R; 2], elbow: [R; 2], [p1, p2]: [R; 2], inverse: R) -> Rates<R> {
+        let ([sin1, cos1], [s, c], [gravity1, gravity2]) = (upper, elbow, self.gravity);
+        let u = units.rate(p1 - units.momentum(c * p2), inverse);
+        let v = p2 - units.swing(c * u);
+        let u = units.paced(u);
+        let [force1, force2] = units.forces(units.force(u, v, s));
+        Rates {
+            angles: units.turns([u, v]),
+            momenta: [
+                -R::weight(gravity1, sin1) - force1,
+                force2 - units.weight(R::weight(gravity2, units.lower(sin1 * c - cos1 * s))),
+            ],
+        }
+    }
+}
+
+/// The rates of sin a1, cos a1, S, C where rods 1 and 2 turn at u and v.
+#[inline(always)]
+pub(crate) fn turning<R: Scalar>(&[sin1, cos1, s, c, ..]: &[R; 6], [u, v]: [R; 2]) -> [R::Slope; 4] {
+    let w = u - v;
+    [cos1.slope(u), -sin1.slope(u), c.slope(w), -s.slope(w)]
+}
+
+/// The rates of sin a1, cos a1, S, C, P1, P2, where all are numbers of one kind.
+#[inline(always)]
+pub(crate) fn increments<R: Scalar<Gravity = R, Slope = R, Torque = R>>(z: &[R; 6], rates: Rates<R>) -> [R; 6] {
+    let [sin1, cos1, s, c] = turning(z, rates.angles);
+    let [p1, p2] = rates.momenta;
+    [sin1, cos1, s, c, p1, p2]
+}
+
+/// The direction of rod 2 from that of rod 1 and (S, C) = `norm` (sin D, cos D), a2 = a1 - D.
+#[inline]
+pub(crate) fn lower_direction<R: Real>(upper: Direction<R>, elbow: [R; 2], norm: R) -> Direction<R> {
+    let inverse = R::ONE / norm;
+    lower_ray(upper, elbow).map(|x| x * inverse)
+}
+
+/// The same, as long as (S, C): enough to tell the angle by.
+#[inline(always)]
+pub(crate) fn lower_ray<R: Scalar>([sin1, cos1]: [R; 2], [s, c]: [R; 2]) -> [R; 2] {
+    [sin1 * c - cos1 * s, cos1 * c + sin1 * s]
+}
+
+/// The directions of both rods from sin a1, cos a1, S, C; that of rod 2 by the length of (S, C).
+#[inline(always)]
+pub(crate) fn heads<R: Scalar>(&[sin1, cos1, s, c, ..]: &[R; 6]) -> [Direction<R>; 2] {
+    [[sin1, cos1], lower_ray([sin1, cos1], [s, c])]
+}

@@ -1,0 +1,166 @@
+//! Hamilton's canonical equations for any masses and lengths.
+
+use core::marker::PhantomData;
+
+use crate::error::Error;
+use crate::numbers::Real;
+use crate::numbers::trig::{DefaultTrig, SinCos};
+use crate::pendulum::{Parameters, State};
+
+/// A double pendulum: validated parameters and the products of them that the equations use.
+///
+/// It is configuration only and drives any number of [`State`]s. `T` is the source of sine and cosine.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pendulum<R, T = DefaultTrig> {
+    parameters: Parameters<R>,
+    /// 1/l1 and 1/l2.
+    inverse_length: [R; 2],
+    /// (m1 + m2)/m2.
+    total_over_m2: R,
+    /// m2 l1 l2.
+    coupling: R,
+    /// (m1 + m2) g l1 and m2 g l2: the greatest torque of gravity on each joint.
+    torque: [R; 2],
+    trig: PhantomData<T>,
+}
+
+impl<R: Real> Pendulum<R> {
+    /// Checks the parameters and prepares the equations, with the default source of sine and cosine.
+    ///
+    /// Refuses NaN, infinite, zero or negative masses and lengths, negative gravity, and combinations whose products
+    /// leave the range of `R`; the [`Error`] names the parameter and its value.
+    pub fn new(parameters: &Parameters<R>) -> Result<Self, Error> {
+        Self::with_trig(parameters)
+    }
+}
+
+impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
+    /// As [`Pendulum::new`], with the source of sine and cosine given by the type.
+    pub fn with_trig(parameters: &Parameters<R>) -> Result<Self, Error> {
+        parameters.check()?;
+        let &Parameters { m1, m2, l1, l2, g } = parameters;
+        let pendulum = Self {
+            parameters: *parameters,
+            inverse_length: [R::ONE / l1, R::ONE / l2],
+            total_over_m2: (m1 + m2) / m2,
+            coupling: m2 * l1 * l2,
+            torque: [(m1 + m2) * g * l1, m2 * g * l2],
+            trig: PhantomData,
+        };
+        let [inverse_l1, inverse_l2] = pendulum.inverse_length;
+        // 1/m1 is the greatest that 1/den becomes.
+        let products = [R::ONE / m1, m1 + m2, inverse_l1, inverse_l2, pendulum.total_over_m2, pendulum.coupling];
+        let torque_in_range = |torque: R| g == R::ZERO || torque.is_normal();
+        if products.into_iter().all(R::is_normal) && pendulum.torque.into_iter().all(torque_in_range) {
+            Ok(pendulum)
+        } else {
+            Err(parameters.out_of_range())
+        }
+    }
+
+    /// The parameters it was made from.
+    #[must_use]
+    pub fn parameters(&self) -> &Parameters<R> {
+        &self.parameters
+    }
+
+    /// Hamilton's equations: the time derivatives of (a1, a2, p1, p2), in rad/s and N m, in that order.
+    ///
+    /// With D = a1 - a2 and den = m1 + m2 sin^2 D,
+    ///
+    /// - w1 = (p1 l2 - p2 l1 cos D) / (l1^2 l2 den)
+    /// - w2 = (p2 (m1 + m2) l1 - p1 m2 l2 cos D) / (m2 l1 l2^2 den)
+    /// - p1' = -(m1 + m2) g l1 sin a1 - F
+    /// - p2' = -m2 g l2 sin a2 + F
+    ///
+    /// where F = m2 l1 l2 w1 w2 sin D is what the book (`[math24]`) calls A1 - A2. Two sincos and one division.
+    ///
+    /// Each is within 1e-13 (`f64`) or 2e-6 (`f32`) of its largest term of the book's own form.
+    #[must_use]
+    #[inline]
+    pub fn derivatives(&self, z: &[R; 4]) -> [R; 4] {
+        let &[a1, a2, p1, p2] = z;
+        let Parameters { m1, m2, .. } = self.parameters;
+        let [inverse_l1, inverse_l2] = self.inverse_length;
+        let [torque1, torque2] = self.torque;
+
+        let (sin1, cos1) = T::sin_cos(a1);
+        let (sin2, cos2) = T::sin_cos(a2);
+        let sin_d = sin1 * cos2 - cos1 * sin2;
+        let cos_d = cos1 * cos2 + sin1 * sin2;
+
+        let q1 = p1 * inverse_l1;
+        let q2 = p2 * inverse_l2;
+        let inverse_den = R::ONE / (m1 + m2 * sin_d * sin_d);
+        let w1 = (q1 - q2 * cos_d) * inverse_den * inverse_l1;
+        let w2 = (q2 * self.total_over_m2 - q1 * cos_d) * inverse_den * inverse_l2;
+
+        let force = self.coupling * w1 * w2 * sin_d;
+        [w1, w2, -torque1 * sin1 - force, -torque2 * sin2 + force]
+    }
+
+    /// The Hamiltonian H = T + V, J, as a function of the canonical state; zero where both bobs are level with the pivot.
+    ///
+    /// H = (q1 - q2 cos D)^2 / (2 den) + q2^2 / (2 m2) - (m1 + m2) g l1 cos a1 - m2 g l2 cos a2
+    ///
+    /// with q1 = p1/l1, q2 = p2/l2 and D, den as in [`derivatives`](Self::derivatives): the kinetic energy as a sum of
+    /// squares, so that it cannot come out negative. It is kept by the exact motion ([`least_energy`](Self::least_energy)
+    /// is its minimum). Costs three sincos and two divisions.
+    #[must_use]
+    pub fn energy(&self, state: &State<R>) -> R {
+        let (_, cos1) = T::sin_cos(state.a1);
+        let (_, cos2) = T::sin_cos(state.a2);
+        self.kinetic_energy_of(T::sin_cos(state.a1 - state.a2), [state.p1, state.p2])
+            - self.torque[0] * cos1
+            - self.torque[1] * cos2
+    }
+
+    /// As [`energy`](Self::energy), where rods 1 and 2 point to (sin, cos) and the momenta are (p1, p2), kg m^2/s: without
+    /// trigonometry.
+    #[must_use]
+    #[inline(never)] // one copy
+    pub fn energy_at(&self, [[sin1, cos1], [sin2, cos2]]: [[R; 2]; 2], momenta: [R; 2]) -> R {
+        let elbow = (sin1 * cos2 - cos1 * sin2, cos1 * cos2 + sin1 * sin2);
+        self.kinetic_energy_of(elbow, momenta) - self.torque[0] * cos1 - self.torque[1] * cos2
+    }
+
+    /// The energy above rest, K = H - min V, J: what the motion can spend.
+    ///
+    /// K = T + (m1 + m2) g l1 (1 - cos a1) + m2 g l2 (1 - cos a2), a sum of terms none of which is negative, so that
+    /// it keeps its relative precision down to the smallest motions, where H and min V nearly cancel.
+    #[must_use]
+    pub fn energy_above_rest(&self, state: &State<R>) -> R {
+        let height1 = one_minus_cos(T::sin_cos(state.a1));
+        let height2 = one_minus_cos(T::sin_cos(state.a2));
+        self.kinetic_energy_of(T::sin_cos(state.a1 - state.a2), [state.p1, state.p2])
+            + self.torque[0] * height1
+            + self.torque[1] * height2
+    }
+
+    /// The potential energy hanging at rest, min V = -(m1 + m2) g l1 - m2 g l2, J: the least energy there is.
+    #[must_use]
+    pub fn least_energy(&self) -> R {
+        -(self.torque[0] + self.torque[1])
+    }
+
+    /// The greatest torque of gravity on each joint, (m1 + m2) g l1 and m2 g l2, N m.
+    pub(crate) fn torque(&self) -> [R; 2] {
+        self.torque
+    }
+
+    /// T as a function of (sin D, cos D) and the momenta.
+    #[inline(never)] // one copy
+    fn kinetic_energy_of(&self, (sin_d, cos_d): (R, R), [p1, p2]: [R; 2]) -> R {
+        let Parameters { m1, m2, .. } = self.parameters;
+        let q1 = p1 * self.inverse_length[0];
+        let q2 = p2 * self.inverse_length[1];
+        let den = m1 + m2 * sin_d * sin_d;
+        let q = q1 - q2 * cos_d;
+        R::HALF * (q * q / den + q2 * q2 / m2)
+    }
+}
+
+/// 1 - cos a from (sin a, cos a), without cancellation for small a: sin^2 a / (1 + cos a) while cos a > 0.
+pub(crate) fn one_minus_cos<R: Real>((sin, cos): (R, R)) -> R {
+    if cos > R::ZERO { sin * sin / (R::ONE + cos) } else { R::ONE - cos }
+}

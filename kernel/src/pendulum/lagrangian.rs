@@ -1,0 +1,62 @@
+//! The Lagrangian and the second-order equations: the form in angles and angular velocities.
+//!
+//! It shares no formula with [`hamiltonian`](crate::Pendulum::derivatives), which makes each a check of the other.
+
+use crate::numbers::Real;
+use crate::numbers::trig::SinCos;
+use crate::pendulum::{Motion, Parameters, Pendulum};
+
+impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
+    /// The kinetic energy, J (`[math24]`, "Lagrange equations").
+    ///
+    /// T = (m1 + m2)/2 l1^2 w1^2 + m2/2 l2^2 w2^2 + m2 l1 l2 w1 w2 cos(a1 - a2)
+    #[must_use]
+    pub fn kinetic_energy(&self, motion: &Motion<R>) -> R {
+        let &Motion { a1, a2, w1, w2 } = motion;
+        let &Parameters { m1, m2, l1, l2, .. } = self.parameters();
+        let (_, cos_d) = T::sin_cos(a1 - a2);
+        let v1 = l1 * w1;
+        let v2 = l2 * w2;
+        R::HALF * (m1 + m2) * v1 * v1 + R::HALF * m2 * v2 * v2 + m2 * v1 * v2 * cos_d
+    }
+
+    /// The potential energy where both rods are at their `angles` (a1, a2), rad; in J, zero where both bobs are level with the pivot.
+    ///
+    /// V = -(m1 + m2) g l1 cos a1 - m2 g l2 cos a2 (`[math24]`)
+    #[must_use]
+    pub fn potential_energy(&self, [a1, a2]: [R; 2]) -> R {
+        let &Parameters { m1, m2, l1, l2, g } = self.parameters();
+        let (_, cos1) = T::sin_cos(a1);
+        let (_, cos2) = T::sin_cos(a2);
+        -(m1 + m2) * g * l1 * cos1 - m2 * g * l2 * cos2
+    }
+
+    /// The Lagrangian L = T - V, J.
+    #[must_use]
+    pub fn lagrangian(&self, motion: &Motion<R>) -> R {
+        self.kinetic_energy(motion) - self.potential_energy(motion.angles())
+    }
+
+    /// The angular accelerations (w1', w2'), rad/s^2: Lagrange's two equations solved for them.
+    ///
+    /// With D = a1 - a2 the equations are (`[math24]`)
+    ///
+    /// - (m1 + m2) l1 w1' + m2 l2 w2' cos D = -m2 l2 w2^2 sin D - (m1 + m2) g sin a1
+    /// - l1 w1' cos D + l2 w2' = l1 w1^2 sin D - g sin a2
+    ///
+    /// and their determinant is l1 l2 (m1 + m2 sin^2 D), never zero.
+    #[must_use]
+    pub fn accelerations(&self, motion: &Motion<R>) -> [R; 2] {
+        let &Motion { a1, a2, w1, w2 } = motion;
+        let &Parameters { m1, m2, l1, l2, g } = self.parameters();
+        let total = m1 + m2;
+        let (sin1, _) = T::sin_cos(a1);
+        let (sin2, _) = T::sin_cos(a2);
+        let (sin_d, cos_d) = T::sin_cos(a1 - a2);
+
+        let f1 = -m2 * l2 * w2 * w2 * sin_d - total * g * sin1;
+        let f2 = l1 * w1 * w1 * sin_d - g * sin2;
+        let den = m1 + m2 * sin_d * sin_d;
+        [(f1 - m2 * cos_d * f2) / (l1 * den), (total * f2 - cos_d * f1) / (l2 * den)]
+    }
+}

@@ -1,0 +1,17 @@
+//! The pendulum and its equations of motion, each as the book has it.
+
+pub(crate) mod directions;
+mod equal_rods;
+mod geometry;
+pub(crate) mod hamiltonian;
+mod lagrangian;
+mod legendre;
+mod parameters;
+mod state;
+
+pub use directions::Direction;
+pub use equal_rods::{EqualRods, Units};
+pub use geometry::Vector;
+pub use hamiltonian::Pendulum;
+pub use parameters::Parameters;
+pub use state::{Motion, State};

@@ -1,0 +1,147 @@
+//! The normal modes: small oscillations about hanging at rest, for any masses and lengths.
+
+use crate::error::{Error, Parameter};
+use crate::numbers::Real;
+use crate::numbers::trig::SinCos;
+use crate::pendulum::{Parameters, Pendulum};
+
+/// One normal mode: both angles oscillate at one frequency, in a fixed ratio.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mode<R> {
+    /// Angular frequency, rad/s.
+    pub frequency: R,
+    /// The mode's shape, r = H2/H1: the angle of rod 2 when that of rod 1 is 1.
+    pub shape: R,
+}
+
+/// Both normal modes of M a'' + K a = 0 (`[math24]`, "Small oscillations"; `[Landau]` paragraph 23).
+///
+/// M is [`Pendulum::mass_matrix`] for parallel rods and K is [`Pendulum::stiffness`]. The frequencies solve
+/// det(K - w^2 M) = 0, that is (m1 + m2) g^2 - w^2 (m1 + m2)(l1 + l2) g + w^4 m1 l1 l2 = 0.
+///
+/// The same two numbers are the growth rates about the inverted rest (pi, pi), where K changes its sign.
+///
+/// ```
+/// use double_pendulum::{Modes, Parameters};
+///
+/// let modes = Modes::new(&Parameters::equal_rods(1.0, 0.25, 9.8))?;
+/// assert!((modes.fast.frequency - 11.568802_f64).abs() < 1e-6);
+/// assert!((modes.slow.frequency - 4.791955).abs() < 1e-6);
+/// # Ok::<(), double_pendulum::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Modes<R> {
+    /// w1, the faster: the rods swing against each other, its shape is negative.
+    pub fast: Mode<R>,
+    /// w2, the slower: the rods swing together, its shape is positive.
+    pub slow: Mode<R>,
+    /// w1 - w2, computed without cancellation.
+    exchange: R,
+}
+
+impl<R: Real> Modes<R> {
+    /// The modes of a pendulum. With M = m1 + m2, s = l1 + l2, d = l1 - l2 and c = sqrt((m1 d^2 + m2 s^2)/M),
+    ///
+    /// - w1^2 = g M (s + c) / (2 m1 l1 l2) and w2^2 = 2 g / (s + c)
+    /// - shape of w1: -M (c + d) / (2 m2 l2); shape of w2: 2 l1 / (c + d)
+    ///
+    /// (for d < 0 with c + d = 4 m2 l1 l2 / (M (c - d))): nothing is subtracted but l1 - l2, so nothing cancels.
+    ///
+    /// Both frequencies are within 4 ulp in either precision for m2/m1 in 1e-7..1e7 and l1/l2 in 1e-3..1e3
+    ///. Refuses what [`Pendulum::new`] refuses, zero gravity, and results out of range.
+    pub fn new(parameters: &Parameters<R>) -> Result<Self, Error> {
+        parameters.check_swinging()?;
+        let &Parameters { m1, m2, l1, l2, g } = parameters;
+        let total = m1 + m2;
+        let sum = l1 + l2;
+        let difference = l1 - l2;
+        let root = ((m1 * difference * difference + m2 * sum * sum) / total).sqrt();
+
+        let fast = (g * total * (sum + root) / (R::TWO * m1 * l1 * l2)).sqrt();
+        let slow = (R::TWO * g / (sum + root)).sqrt();
+        let reach = root + difference.abs();
+        let (short, long) = (R::TWO * l1 / reach, total * reach / (R::TWO * m2 * l2));
+        let (slow_shape, fast_shape) = if difference < R::ZERO { (long, -short) } else { (short, -long) };
+
+        let modes = Self {
+            fast: Mode { frequency: fast, shape: fast_shape },
+            slow: Mode { frequency: slow, shape: slow_shape },
+            exchange: g * total * root / (m1 * l1 * l2 * (fast + slow)),
+        };
+        if [fast, slow, fast_shape, slow_shape, modes.exchange].into_iter().all(R::is_normal) {
+            Ok(modes)
+        } else {
+            Err(parameters.out_of_range())
+        }
+    }
+
+    /// The carrier frequency (w1 + w2)/2, rad/s: the fast swing inside the envelope.
+    #[must_use]
+    pub fn carrier(&self) -> R {
+        R::HALF * (self.fast.frequency + self.slow.frequency)
+    }
+
+    /// The modulation frequency (w1 - w2)/2, rad/s: each amplitude's slow cosine. (`[math24]` calls it "beat frequency".)
+    #[must_use]
+    pub fn modulation(&self) -> R {
+        R::HALF * self.exchange
+    }
+
+    /// The exchange frequency w1 - w2, rad/s: the envelope, which has no sign, repeats at this rate, and with it the
+    /// energy goes from rod to rod and back.
+    #[must_use]
+    pub fn exchange(&self) -> R {
+        self.exchange
+    }
+}
+
+impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
+    /// The stiffness matrix K of small oscillations, N m/rad, row by row: diag((m1 + m2) g l1, m2 g l2).
+    #[must_use]
+    pub fn stiffness(&self) -> [[R; 2]; 2] {
+        let [k1, k2] = self.torque();
+        [[k1, R::ZERO], [R::ZERO, k2]]
+    }
+
+    /// The normal modes; refuses zero gravity.
+    pub fn modes(&self) -> Result<Modes<R>, Error> {
+        Modes::new(self.parameters())
+    }
+}
+
+/// The mass ratio m2/m1 at which small oscillations are exactly periodic with w1/w2 = `fast`/`slow`.
+///
+/// mu = (p^2 l1 - q^2 l2)(p^2 l2 - q^2 l1) / (p q (l1 + l2))^2 with p = `fast`, q = `slow` and the `lengths` [l1, l2] in m:
+/// from (w1/w2 + w2/w1)^2 = (1 + mu)(l1 + l2)^2/(l1 l2). Equal rods: mu = ((r^2 - 1)/(2r))^2 with r = p/q.
+/// The common period is then 2 pi p/w1 = 2 pi q/w2.
+///
+/// Refuses lengths that are not positive, a `slow` of 0, and any ratio p/q not above sqrt of the longer over the shorter
+/// rod, which no masses can give.
+///
+/// ```
+/// # use double_pendulum::periodic_mass_ratio;
+/// assert_eq!(periodic_mass_ratio(3, 2, [1.0, 1.0])?, 25.0 / 144.0);
+/// # Ok::<(), double_pendulum::Error>(())
+/// ```
+pub fn periodic_mass_ratio<R: Real>(fast: u16, slow: u16, lengths: [R; 2]) -> Result<R, Error> {
+    let [l1, l2] = lengths;
+    Parameters { m1: R::ONE, m2: R::ONE, l1, l2, g: R::ONE }.check()?;
+    if slow == 0 {
+        return Err(Error::NotFinite { parameter: Parameter::FrequencyRatio, value: f64::INFINITY });
+    }
+    let p = R::from_f64(f64::from(fast));
+    let q = R::from_f64(f64::from(slow));
+    let numerator1 = p * p * l1 - q * q * l2;
+    let numerator2 = p * p * l2 - q * q * l1;
+    let denominator = p * q * (l1 + l2);
+    if numerator1 > R::ZERO && numerator2 > R::ZERO {
+        Ok(numerator1 * numerator2 / (denominator * denominator))
+    } else {
+        let ratio = if l1 > l2 { l1 / l2 } else { l2 / l1 };
+        Err(Error::TooSmall {
+            parameter: Parameter::FrequencyRatio,
+            value: (p / q).to_f64(),
+            limit: ratio.sqrt().to_f64(),
+        })
+    }
+}
