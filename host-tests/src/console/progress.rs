@@ -37,7 +37,6 @@ impl Bar {
         self.bar.reset_eta();
     }
 
-    /// That these pieces more are done.
     pub fn advance(&self, pieces: u64) {
         self.bar.inc(pieces);
         if self.bar.is_hidden() && self.reminder.lock().is_ok_and(|mut reminder| reminder.is_due()) {
@@ -125,7 +124,6 @@ impl Reminder {
         Self(Instant::now())
     }
 
-    /// Whether one is due again now.
     fn is_due(&mut self) -> bool {
         let is_due = self.0.elapsed() >= REMINDER;
         if is_due {

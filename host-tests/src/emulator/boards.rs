@@ -5,13 +5,11 @@ use firmware::config::{self, Processor};
 /// A board that QEMU emulates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Board {
-    /// What the user types.
     pub name: &'static str,
     /// QEMU's `-machine`.
     pub machine: &'static str,
     /// QEMU's `-cpu`.
     pub cpu: &'static str,
-    /// The compiler's target.
     pub target: &'static str,
     /// The firmware binary that runs on it.
     pub binary: &'static str,
@@ -62,7 +60,6 @@ impl Board {
         self.core() != Core::M0Plus
     }
 
-    /// Where its flash begins, with the vectors.
     pub fn flash(&self) -> u32 {
         match self.machine {
             "netduinoplus2" => 0x0800_0000,
@@ -70,7 +67,6 @@ impl Board {
         }
     }
 
-    /// Whose timings hold.
     pub fn core(&self) -> Core {
         match self.cpu {
             "cortex-m3" => Core::M3,

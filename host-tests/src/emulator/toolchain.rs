@@ -24,7 +24,6 @@ use crate::emulator::qemu;
 /// The compiler's targets, one for each kind of core.
 pub const TARGETS: [&str; 3] = ["thumbv6m-none-eabi", "thumbv7m-none-eabi", "thumbv7em-none-eabihf"];
 
-/// Everything that builds and runs the firmware.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Toolchain {
     core: ArmCore,
@@ -118,7 +117,6 @@ pub fn set_up_pico() -> Result<(Rp2040js, Vec<String>), SetupError> {
 }
 
 impl Toolchain {
-    /// The emulator's program.
     pub fn qemu(&self) -> &Path {
         &self.qemu
     }

@@ -9,10 +9,8 @@ pub const AUTO: &str = "auto";
 /// Why no port can be chosen.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NoPort {
-    /// None.
     #[error("{AUTO}: no USB serial adapter is plugged in; name the port, as in --port /dev/ttyUSB0")]
     None,
-    /// More than one.
     #[error("{AUTO}: there are several, name one: {0}")]
     Several(String),
 }

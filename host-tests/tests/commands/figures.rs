@@ -2,7 +2,6 @@
 
 use std::f64::consts::PI;
 use std::fs;
-use std::process::Command;
 
 use double_pendulum::{Motion, Pendulum, State};
 use firmware::graphics::canvas::{HEIGHT, WIDTH};
@@ -34,15 +33,6 @@ fn the_committed_files_are_what_the_kernel_gives() {
         .map(|(name, _)| name)
         .collect();
     assert!(wrong.is_empty(), "accept by `cargo figures`: {wrong:?}");
-}
-
-#[test]
-fn a_folder_that_cannot_be_written_is_refused_in_one_line() {
-    let output =
-        Command::new(env!("CARGO_BIN_EXE_figures")).args(["--folder", "/dev/null/here"]).output().expect("it runs");
-    let line = String::from_utf8(output.stderr).expect("text");
-    assert_eq!((output.status.code(), line.lines().count()), (Some(2), 1), "{line}");
-    assert!(line.contains("--folder") && line.contains("/dev/null/here"), "{line}");
 }
 
 /// Every so many frames of an animation are compared; two ticks pass from one to the next.

@@ -51,13 +51,11 @@ pub fn run(options: &Options) -> anyhow::Result<bool> {
     if headless { headless::run(options, session) } else { live::run(options, session) }
 }
 
-/// The port of this name.
 pub(crate) fn port(name: &str, baud: u32) -> Result<Port, Refused> {
     let refused = |reason: String| Refused::because(format_args!("--port {reason}"));
     Port::open(&find(name).map_err(|error| refused(error.to_string()))?, baud).map_err(refused)
 }
 
-/// The emulated board, started.
 fn emulated(options: &Options, headless: bool) -> anyhow::Result<Source<'_>> {
     let (toolchain, _) = toolchain::set_up().map_err(Refused::because)?;
     let (board, limit) = (options.board, limit(options, headless));

@@ -7,15 +7,12 @@ use crate::emulator::pico;
 use crate::emulator::qemu::{Lockstep, LogLine, Machine, QemuError, Screenshot};
 use crate::link::{Counts, Port, Received};
 
-/// A board that plays.
 pub enum Source<'a> {
     /// Emulated by QEMU, its clock the host's.
     Live(Machine, &'a Board),
     /// Emulated by QEMU, run from frame to frame.
     Lockstep(Lockstep, &'a Board),
-    /// The emulated Pico.
     Pico(Box<pico::Machine>),
-    /// At a serial port.
     Port(Port),
 }
 
@@ -42,7 +39,6 @@ impl Source<'_> {
         }
     }
 
-    /// Sends a message.
     pub fn send(&mut self, message: &impl Message) -> anyhow::Result<()> {
         let mut wire = [0; MAX_WIRE];
         let wire = encode(message, &mut wire);
@@ -66,7 +62,6 @@ impl Source<'_> {
         }
     }
 
-    /// What the link has been through.
     pub fn counts(&mut self) -> Counts {
         match self {
             Self::Live(machine, _) => machine.serial.counts(),
@@ -76,7 +71,6 @@ impl Source<'_> {
         }
     }
 
-    /// Whether the host can see its panel.
     pub fn has_panel(&self) -> bool {
         match self {
             Self::Live(_, board) | Self::Lockstep(_, board) => board.has_panel,

@@ -29,11 +29,9 @@ const ANGLES: u16 = 7;
 const ANGLES_WIDTH: u16 = 60;
 /// A frame takes a column or row on either side.
 const FRAME: u16 = 2;
-/// What the keys do.
 const KEYS: [&str; 8] =
     ["↑ ↓ masses", "← → angle", "space restart", "tab scene", "p pause", ". step", "? help", "q quit"];
 
-/// Draws everything, in colours or without.
 pub fn draw(frame: &mut Frame, board: &str, screenshot: &Screenshot, readings: &Readings, colours: bool) {
     let area = frame.area();
     let Some(width) = panel_width(area) else {

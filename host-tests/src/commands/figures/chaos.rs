@@ -23,7 +23,6 @@ const REACH: f64 = 2.1;
 /// From one mark of time on a path to the next, s.
 const MARKED: u32 = 1;
 
-/// Both paths.
 #[derive(Clone, Debug)]
 pub struct Chaos {
     /// By the right equations and by the printed ones.
@@ -39,12 +38,10 @@ pub struct Path {
     pub energies: [f64; 2],
 }
 
-/// Figure 7's pendulum.
 pub fn pendulum() -> Result<Pendulum<f64>, Error> {
     Pendulum::new(&Parameters::equal_rods(MASS_RATIO, ROD, PAGE_GRAVITY))
 }
 
-/// Its start.
 pub fn start() -> State<f64> {
     State::at_rest(START.to_radians(), START.to_radians())
 }
@@ -77,7 +74,6 @@ fn path(pendulum: &Pendulum<f64>, refinement: u32, rhs: impl Fn(&[f64; 4]) -> [f
 }
 
 impl Chaos {
-    /// The figure as an SVG file.
     pub fn svg(&self) -> Result<String> {
         svg([800, 468], |area| self.draw(area))
     }
@@ -110,7 +106,6 @@ impl Chaos {
 
 /// The shades of a path, from its start to its end.
 const SHADES: usize = 10;
-/// The palest of them.
 const PALEST: f64 = 0.35;
 
 impl Path {

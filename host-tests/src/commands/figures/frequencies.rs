@@ -26,7 +26,6 @@ fn point(mass_ratio: f64) -> Result<[f64; 3], Error> {
 }
 
 impl Frequencies {
-    /// Computes the figure.
     pub fn new() -> Result<Self, Error> {
         // Denser towards 0, where the curves are steep.
         let mass_ratio = |i: u32| GREATEST_MASS_RATIO * (f64::from(i) / f64::from(POINTS)).powi(2);
@@ -36,7 +35,6 @@ impl Frequencies {
 }
 
 impl Frequencies {
-    /// The figure as an SVG file.
     pub fn svg(&self) -> Result<String> {
         svg([640, 400], |area| self.draw(area))
     }

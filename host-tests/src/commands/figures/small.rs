@@ -15,13 +15,11 @@ const ROD: f64 = 0.25;
 const DURATION: f64 = 5.0;
 const POINTS: u32 = 1500;
 
-/// One of the figures.
 #[derive(Clone, Debug)]
 pub struct Small {
     number: u32,
     mass_ratio: f64,
     modes: Modes<f64>,
-    /// The curves' points.
     pub points: Vec<Point>,
 }
 
@@ -60,7 +58,6 @@ fn envelopes(modes: &Modes<f64>, motion: &SmallOscillations<f64>, time: f64) -> 
 }
 
 impl Small {
-    /// The figure as an SVG file.
     pub fn svg(&self) -> Result<String> {
         svg([720, 503], |area| self.draw(area))
     }

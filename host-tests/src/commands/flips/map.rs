@@ -8,7 +8,6 @@ use vectors::{Search, flips};
 
 use super::square::Square;
 
-/// What is looked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Map {
     /// The pendulum; its gravity is its l1, so that times are in sqrt(l1/g).
@@ -17,7 +16,6 @@ pub struct Map {
     pub dt: f64,
     /// How long is waited, sqrt(l1/g).
     pub limit: f32,
-    /// Which starts.
     pub square: Square,
 }
 
@@ -51,13 +49,11 @@ impl Map {
         Ok(Self { parameters, dt: step_size(&parameters)?, limit, square })
     }
 
-    /// The starts of some rows.
     pub fn starts(&self, rows: std::ops::Range<usize>) -> impl Iterator<Item = [f32; 2]> + '_ {
         let [width, _] = self.square.size;
         rows.flat_map(move |row| (0..width).map(move |column| self.square.start([column, row])))
     }
 
-    /// The points of some rows.
     pub fn points(&self, rows: std::ops::Range<usize>) -> Result<Vec<Point>, Error> {
         let starts: Vec<[f32; 2]> = self.starts(rows).collect();
         let searches = [self.search(1)?, self.search(2)?];

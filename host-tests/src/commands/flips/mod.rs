@@ -72,7 +72,6 @@ fn compute(
     Ok(all)
 }
 
-/// How many pixels are in doubt.
 fn doubtful(map: &Map, points: &[Point]) -> usize {
     let [width, height] = map.square.size;
     let places = (0..height).flat_map(|row| (0..width).map(move |column| map.square.place([column, row])));

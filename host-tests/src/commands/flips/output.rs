@@ -20,7 +20,6 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// The kind of `file`.
     pub fn of(file: &Path) -> Result<Self, Refused> {
         match file.extension().and_then(|end| end.to_str()) {
             Some("png") => Ok(Self::Picture),
@@ -46,9 +45,7 @@ pub type Colour = [u8; 3];
 
 /// There is not the energy for it; not within the limit; the two steps do not agree; not computed yet.
 pub const NEVER: Colour = [0, 0, 0];
-/// See [`NEVER`].
 pub const LATER: Colour = [110, 110, 118];
-/// See [`NEVER`].
 pub const DOUBT: Colour = [255, 0, 90];
 const UNDONE: Colour = [255, 255, 255];
 

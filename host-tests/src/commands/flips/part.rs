@@ -49,14 +49,12 @@ impl Part {
         Ok((Self { path, file }, points))
     }
 
-    /// Adds what has been computed.
     pub fn add(&mut self, points: &[Point]) -> Result<()> {
         let numbers = points.iter().flat_map(|point| [point.flip, point.check].map(number));
         let bytes: Vec<u8> = numbers.flat_map(f32::to_le_bytes).collect();
         self.file.write_all(&bytes).with_context(|| format!("cannot write {}", self.path.display()))
     }
 
-    /// Takes the file away: all is done.
     pub fn remove(self) -> Result<()> {
         fs::remove_file(&self.path).with_context(|| format!("cannot remove {}", self.path.display()))
     }

@@ -7,7 +7,6 @@ use firmware::config::HALF_PIXEL;
 
 use crate::oracle::reference::Reference;
 
-/// The directions of both rods.
 pub type Directions = [Direction<f64>; 2];
 
 /// The exact motion of a scene, each frame computed once, however many plans are held against it: this takes longest by far.
@@ -65,7 +64,6 @@ fn directions(motion: &Motion<f64>) -> Directions {
     [motion.a1, motion.a2].map(|a| [libm::sin(a), libm::cos(a)])
 }
 
-/// What became of a plan.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Verdict {
     /// The last time until which every frame was right to half a pixel, s; the scene's duration if all were.

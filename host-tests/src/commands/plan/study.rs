@@ -19,9 +19,7 @@ pub const DURATIONS: Range<f64> = 2.0..30.0;
 pub struct Case {
     /// Its place in the drawing, from 0.
     pub number: usize,
-    /// What it is planned for.
     pub chip: Chip,
-    /// The scene.
     pub scene: Problem,
     /// The plan; if nothing holds, what forbids it.
     pub plan: Result<Plan, Limit>,

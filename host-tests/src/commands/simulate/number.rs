@@ -17,7 +17,6 @@ pub struct Number {
 /// A numerator over a denominator greater than zero, in lowest terms.
 type Fraction = (i64, i64);
 
-/// Why a text is not a [`Number`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NumberError {
     /// Neither a decimal nor a fraction of two.
@@ -26,7 +25,6 @@ pub enum NumberError {
     /// NaN, infinite, or beyond the range of `f64`.
     #[error("must be a finite number")]
     NotFinite,
-    /// A fraction with denominator zero.
     #[error("the denominator is zero")]
     ZeroDenominator,
 }
@@ -42,12 +40,10 @@ impl Number {
         self.fraction.map(|(numerator, denominator)| Given::Fraction(numerator.into(), denominator.unsigned_abs()))
     }
 
-    /// Less than zero.
     pub fn is_negative(&self) -> bool {
         self.value < 0.0
     }
 
-    /// Greater than zero.
     pub fn is_positive(&self) -> bool {
         self.value > 0.0
     }

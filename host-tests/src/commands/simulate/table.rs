@@ -10,13 +10,11 @@ use super::{Number, Options, Plan};
 /// A column: its name, its unit, and its number in a row.
 #[derive(Clone, Copy, Debug)]
 pub struct Column {
-    /// What the user types.
     pub name: &'static str,
     unit: &'static str,
     number: fn(&Row) -> f64,
 }
 
-/// What a row is made of.
 struct Row<'a> {
     time: f64,
     reading: &'a Reading,
@@ -100,12 +98,10 @@ impl<'a, W: Write> Table<'a, W> {
         writeln!(self.output, "{}", cells.join(","))
     }
 
-    /// How many rows there are.
     pub fn rows(&self) -> u64 {
         self.rows
     }
 
-    /// Ends the table.
     pub fn finish(mut self) -> io::Result<()> {
         self.output.flush()
     }

@@ -23,7 +23,6 @@ const SLICE: Duration = Duration::from_millis(1);
 /// A board that sends no frame for this many of them sends none.
 const PATIENCE: u32 = 5000;
 
-/// Why the board could not be used.
 #[derive(Debug, thiserror::Error)]
 pub enum PicoError {
     /// The emulator did not start.
@@ -35,7 +34,6 @@ pub enum PicoError {
     /// The emulator no longer answers.
     #[error("the emulator of the Pico no longer answers: {0}")]
     Ended(#[from] io::Error),
-    /// It sends nothing.
     #[error("the board sends no frames")]
     NoFrame,
 }
@@ -106,17 +104,14 @@ impl Machine {
         Err(PicoError::NoFrame)
     }
 
-    /// Sends bytes over USB.
     pub fn send_bytes(&mut self, bytes: &[u8]) -> Result<(), PicoError> {
         self.tell(&format!("usb {}", digits(bytes)))
     }
 
-    /// Sends a message over USB.
     pub fn send<M: Message>(&mut self, message: &M) -> Result<(), PicoError> {
         self.send_bytes(encode(message, &mut [0; MAX_WIRE]))
     }
 
-    /// Sends a message through the UART.
     pub fn send_through_uart<M: Message>(&mut self, message: &M) -> Result<(), PicoError> {
         self.tell(&format!("uart {}", digits(encode(message, &mut [0; MAX_WIRE]))))
     }
@@ -126,7 +121,6 @@ impl Machine {
         std::mem::take(&mut self.heard_by_uart)
     }
 
-    /// The lines of the log since the last call.
     pub fn lines(&mut self) -> Vec<LogLine> {
         std::mem::take(&mut self.lines)
     }
@@ -141,12 +135,10 @@ impl Machine {
         self.bytes("panel")
     }
 
-    /// What the panel shows.
     pub fn screenshot(&mut self) -> Result<Screenshot, PicoError> {
         Ok(Screenshot::from_pages(&self.panel()?))
     }
 
-    /// Presses a button, or lets go of it.
     pub fn set_key(&mut self, key: Key, down: bool) -> Result<(), PicoError> {
         let pin = match key {
             Key::Up => 10,
@@ -163,12 +155,10 @@ impl Machine {
         self.tell(&format!("plug {status}"))
     }
 
-    /// Writes `byte` at all these addresses of memory.
     pub fn fill(&mut self, addresses: Range<u32>, byte: u8) -> Result<(), PicoError> {
         self.tell(&format!("fill {} {} {byte}", addresses.start, addresses.len()))
     }
 
-    /// The bytes at these addresses of memory.
     pub fn read(&mut self, addresses: Range<u32>) -> Result<Vec<u8>, PicoError> {
         self.bytes(&format!("read {} {}", addresses.start, addresses.len()))
     }

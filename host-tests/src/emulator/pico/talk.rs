@@ -3,14 +3,12 @@
 use std::io::{self, BufRead, BufReader, Write};
 use std::process::{ChildStdin, ChildStdout};
 
-/// What the emulator says.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Said {
     pub word: String,
     pub bytes: Vec<u8>,
 }
 
-/// Both directions.
 #[derive(Debug)]
 pub(super) struct Talk {
     pub input: ChildStdin,

@@ -67,7 +67,6 @@ impl Debugger {
         self.expect(&format!("z0,{address:x},{SIZE}"), "OK")
     }
 
-    /// Lets the machine run, for good.
     pub(super) fn run(&mut self) -> Result<(), QemuError> {
         self.send("c").map_err(broken)
     }
@@ -86,7 +85,6 @@ impl Debugger {
         self.expect(&format!("P{register:x}={:08x}", value.swap_bytes()), "OK")
     }
 
-    /// The bytes at these addresses.
     pub(super) fn read(&mut self, addresses: Range<u32>) -> Result<Vec<u8>, QemuError> {
         let mut bytes = Vec::new();
         for start in addresses.clone().step_by(PIECE as usize) {

@@ -22,11 +22,8 @@ const SINGLE_STEP: [&str; 2] = ["one-insn-per-tb", "singlestep"];
 /// A register of the processor, with GDB's number of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Register {
-    /// The stack pointer.
     Sp = 13,
-    /// The link register.
     Lr = 14,
-    /// The program counter.
     Pc = 15,
 }
 
@@ -49,7 +46,6 @@ impl Lockstep {
         Ok(Self { machine, debugger: Debugger::new(debugger, sleeps)? })
     }
 
-    /// Runs to the next frame.
     pub fn next_frame(&mut self) -> Result<Frame, QemuError> {
         let messages = self.run_to_frame()?;
         messages.iter().rev().find_map(Received::read).ok_or(QemuError::NoFrame)
@@ -103,17 +99,14 @@ impl Lockstep {
         Ok(&mut self.machine)
     }
 
-    /// Puts bytes into the memory.
     pub fn write(&mut self, address: u32, bytes: &[u8]) -> Result<(), QemuError> {
         self.debug(|debugger| debugger.write(address, bytes))
     }
 
-    /// Writes `byte` at all these addresses.
     pub fn fill(&mut self, addresses: Range<u32>, byte: u8) -> Result<(), QemuError> {
         self.write(addresses.start, &vec![byte; addresses.len()])
     }
 
-    /// The bytes at these addresses.
     pub fn read(&mut self, addresses: Range<u32>) -> Result<Vec<u8>, QemuError> {
         self.debug(|debugger| debugger.read(addresses))
     }

@@ -14,12 +14,10 @@ use super::QemuError;
 /// What QEMU says at every start of this machine and no one needs to read.
 const CHATTER: [&str; 2] = ["Timer with period zero, disabling", "has no peer"];
 
-/// One line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LogLine {
     /// defmt's level in lower case; `None` for plain text, in which QEMU speaks and the firmware reports a crash.
     pub level: Option<String>,
-    /// What is said.
     pub text: String,
     /// The file name and line number of the statement, where they are known.
     pub place: Option<(String, u64)>,

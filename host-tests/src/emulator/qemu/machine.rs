@@ -32,16 +32,12 @@ pub enum Clock {
     Counted,
 }
 
-/// How a board is started.
 #[derive(Clone, Copy, Debug)]
 pub struct Settings<'a> {
     /// The program `qemu-system-arm`.
     pub qemu: &'a Path,
-    /// The board.
     pub board: &'a Board,
-    /// The firmware's ELF file.
     pub elf: &'a Path,
-    /// What its clock goes by.
     pub clock: Clock,
     /// Whether there is a debugger that answers the firmware's calls and so takes its log.
     pub debugger: bool,
@@ -52,9 +48,7 @@ pub struct Settings<'a> {
 /// A running board. Dropping it ends QEMU.
 #[derive(Debug)]
 pub struct Machine {
-    /// The serial link.
     pub serial: Serial,
-    /// What it says.
     pub log: Log,
     monitor: Monitor,
     process: Running,
@@ -124,7 +118,6 @@ impl Machine {
         Ok((Self { serial: Serial::new(pipes)?, log, monitor, process, folder }, debugger))
     }
 
-    /// The next message.
     pub fn receive(&mut self) -> Result<Received, QemuError> {
         self.serial.receive().ok_or_else(|| self.silence())
     }
@@ -155,7 +148,6 @@ impl Machine {
         }
     }
 
-    /// Presses a button, or lets go of it.
     pub fn set_key(&mut self, key: Key, down: bool) -> Result<(), QemuError> {
         self.monitor.set_key(key, down).map_err(|error| self.explain(error))
     }
@@ -169,7 +161,6 @@ impl Machine {
         })
     }
 
-    /// QEMU's process id.
     pub fn id(&self) -> u32 {
         self.process.id()
     }
@@ -185,7 +176,6 @@ impl Machine {
         Ok((status, self.log.rest().collect()))
     }
 
-    /// Ends QEMU.
     pub fn quit(mut self) -> Result<(), QemuError> {
         match self.monitor.quit() {
             // It may be gone before it has answered.

@@ -46,12 +46,10 @@ impl Monitor {
         Ok(said.as_str().unwrap_or_default().to_owned())
     }
 
-    /// Lets the machine run.
     pub(super) fn resume(&mut self) -> Result<(), QemuError> {
         self.execute("cont", json!({})).map(drop)
     }
 
-    /// Asks QEMU to end.
     pub(super) fn quit(&mut self) -> Result<(), QemuError> {
         self.execute("quit", json!({})).map(drop)
     }

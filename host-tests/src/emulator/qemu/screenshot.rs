@@ -43,7 +43,6 @@ impl Screenshot {
         Ok(Self { greys: greys.ok_or(QemuError::Screenshot("it is cut short"))? })
     }
 
-    /// Black.
     pub fn blank() -> Self {
         Self { greys: vec![0; WIDTH * HEIGHT] }
     }

@@ -88,7 +88,6 @@ impl Serial {
         self.all_arrived().filter_map(|message| message.read())
     }
 
-    /// What the link has been through.
     pub fn counts(&self) -> Counts {
         lock(&self.reader).inbox.counts()
     }
@@ -98,12 +97,10 @@ impl Serial {
         Stopped(lock(&self.reader))
     }
 
-    /// Sends a message to the board.
     pub fn send<M: Message>(&mut self, message: &M) -> Result<(), QemuError> {
         self.send_bytes(encode(message, &mut [0; MAX_WIRE]))
     }
 
-    /// Sends any bytes to the board, sense or nonsense.
     pub fn send_bytes(&mut self, bytes: &[u8]) -> Result<(), QemuError> {
         self.sender.write_all(bytes).map_err(broken)
     }

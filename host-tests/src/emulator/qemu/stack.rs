@@ -27,7 +27,6 @@ impl Stack {
         Ok(Self(top.saturating_sub(SIZE)..top))
     }
 
-    /// Where it is.
     pub fn addresses(&self) -> Range<u32> {
         self.0.clone()
     }

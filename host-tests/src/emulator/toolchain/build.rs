@@ -28,10 +28,8 @@ const OURS: [&str; 5] = ["CARGO_HOME", "CARGO_HTTP_", "CARGO_NET_", "CARGO_REGIS
 /// Why there is no firmware to run.
 #[derive(Debug, thiserror::Error)]
 pub enum BuildError {
-    /// Cargo could not be run to its end.
     #[error("{0}")]
     Process(#[from] ProcessError),
-    /// The firmware does not compile; what the compiler said.
     #[error("the firmware does not build\n{0}")]
     Refused(String),
 }

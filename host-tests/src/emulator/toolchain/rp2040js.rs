@@ -19,7 +19,6 @@ const ASK: &str = "const [{ dependencies }, { version }] = ['.', './node_modules
     .map((folder) => require(folder + '/package.json'));
     if (version !== dependencies.rp2040js) throw 'another version'; version";
 
-/// The emulator, ready to run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Rp2040js {
     node: PathBuf,
@@ -27,7 +26,6 @@ pub struct Rp2040js {
 }
 
 impl Rp2040js {
-    /// The program `node`.
     pub fn node(&self) -> &Path {
         &self.node
     }
@@ -44,7 +42,6 @@ fn folder() -> PathBuf {
     workspace().join("host-tests/rp2040")
 }
 
-/// Node.js, if it is new enough.
 fn node() -> Result<PathBuf, String> {
     let node = find("node").ok_or("there is no Node.js")?;
     let version = says(Command::new(&node).arg("--version"))?;
