@@ -31,7 +31,7 @@ fn main() -> ExitCode {
 }
 
 fn run(options: &Options) -> anyhow::Result<()> {
-    let (toolchain, _) = toolchain::set_up().map_err(Refused::because)?;
+    let (toolchain, _) = toolchain::set_up()?;
     let folder = options.folder.clone().unwrap_or_else(|| toolchain::workspace().join("host-tests/report"));
     let created = fs::create_dir_all(&folder);
     created.map_err(|error| Refused::because(format_args!("--folder: cannot write {}: {error}", folder.display())))?;

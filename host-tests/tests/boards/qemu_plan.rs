@@ -11,7 +11,7 @@ use firmware::protocol::{AskPlan, Choose, Done, Frame, NO_METHOD, Planned, limit
 use firmware::scenes::SceneName;
 use host_tests::emulator::boards::{BOARDS, Board};
 use host_tests::emulator::host::Show;
-use host_tests::emulator::qemu::{Machine, QemuError};
+use host_tests::emulator::qemu::Machine;
 use rayon::prelude::*;
 
 /// One that goes another way soon, nothing that moves; a motion that ends early, a model.
@@ -29,17 +29,17 @@ fn told(show: &Show) -> Told {
 }
 
 #[test]
-fn every_board_finds_the_hosts_plan_and_follows_it_from_the_same_tick() -> Result<(), QemuError> {
+fn every_board_finds_the_hosts_plan_and_follows_it_from_the_same_tick() -> anyhow::Result<()> {
     every_board_plans(&SCENES[..2])
 }
 
 #[test]
 #[ignore = "minutes: two scenes more"]
-fn every_board_plans_as_the_host_does_whatever_it_shows() -> Result<(), QemuError> {
+fn every_board_plans_as_the_host_does_whatever_it_shows() -> anyhow::Result<()> {
     every_board_plans(&SCENES[2..])
 }
 
-fn every_board_plans(scenes: &[SceneName]) -> Result<(), QemuError> {
+fn every_board_plans(scenes: &[SceneName]) -> anyhow::Result<()> {
     BOARDS.par_iter().try_for_each(|board| {
         let mut machine = on(board, Machine::start)?;
         machine.wait_for::<Frame>()?;
@@ -56,7 +56,7 @@ fn every_board_plans(scenes: &[SceneName]) -> Result<(), QemuError> {
 }
 
 /// Frame by frame as the host shows it, then the answer and the log.
-fn followed(machine: &mut Machine, board: &Board, name: SceneName) -> Result<(), QemuError> {
+fn followed(machine: &mut Machine, board: &Board, name: SceneName) -> anyhow::Result<()> {
     let mut show = Show::on(board.processor(), name, &name.first_settings()).expect("a scene of the catalogue");
     let mut changes = 0;
     loop {

@@ -7,7 +7,7 @@ use firmware::config::{GRAVITY, MOST_MEASURED_STEPS};
 use firmware::job::{ON_BOARDS, Request};
 use firmware::protocol::{Frame, Measure, Measured};
 use host_tests::emulator::boards::STM32F405;
-use host_tests::emulator::qemu::{Lockstep, Machine, QemuError};
+use host_tests::emulator::qemu::{Lockstep, Machine};
 use object::{Object, ObjectSegment};
 
 #[test]
@@ -24,7 +24,7 @@ fn the_image_is_for_the_chips_memory() -> Result<(), Box<dyn std::error::Error>>
 
 /// The chip's own loader starts the program while its ROM stands at address 0: the processor must be told where the vectors are.
 #[test]
-fn the_vector_table_is_the_programs_own_wherever_it_is_started_from() -> Result<(), QemuError> {
+fn the_vector_table_is_the_programs_own_wherever_it_is_started_from() -> anyhow::Result<()> {
     const VTOR: u32 = 0xe000_ed08;
     let mut probe = on(&STM32F405, Lockstep::start)?;
     assert_eq!(probe.read(VTOR..VTOR + 4)?, [0; 4]);
@@ -34,7 +34,7 @@ fn the_vector_table_is_the_programs_own_wherever_it_is_started_from() -> Result<
 }
 
 #[test]
-fn without_a_panel_it_says_so_and_goes_on() -> Result<(), QemuError> {
+fn without_a_panel_it_says_so_and_goes_on() -> anyhow::Result<()> {
     /// Long enough for the panel to be looked for again, several times.
     const FRAMES: u32 = 300;
     let mut machine = on(&STM32F405, Machine::start)?;
@@ -52,7 +52,7 @@ fn without_a_panel_it_says_so_and_goes_on() -> Result<(), QemuError> {
 
 /// Every method's from its copy in memory: a branch into nowhere would end the application.
 #[test]
-fn its_steps_run_in_flash_and_in_memory() -> Result<(), QemuError> {
+fn its_steps_run_in_flash_and_in_memory() -> anyhow::Result<()> {
     let mut machine = on(&STM32F405, Machine::start)?;
     // It listens from here on.
     machine.wait_for::<Frame>()?;

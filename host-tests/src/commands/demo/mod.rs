@@ -25,7 +25,7 @@ use std::time::Duration;
 
 use record::Recording;
 use session::Session;
-use source::{Source, broken};
+use source::Source;
 
 use crate::console::cli::Refused;
 use crate::emulator::boards::PICO;
@@ -57,18 +57,18 @@ pub(crate) fn port(name: &str, baud: u32) -> Result<Port, Refused> {
 }
 
 fn emulated(options: &Options, headless: bool) -> anyhow::Result<Source<'_>> {
-    let (toolchain, _) = toolchain::set_up().map_err(Refused::because)?;
+    let (toolchain, _) = toolchain::set_up()?;
     let (board, limit) = (options.board, limit(options, headless));
     if *board == PICO {
-        let (emulator, _) = toolchain::set_up_pico().map_err(Refused::because)?;
+        let (emulator, _) = toolchain::set_up_pico()?;
         return Ok(Source::Pico(Box::new(pico::Machine::start(&emulator, &toolchain.build_for(board)?, limit)?)));
     }
     let elf = toolchain.build_for(board)?;
     let settings = Settings { qemu: toolchain.qemu(), board, elf: &elf, debugger: true, clock: Clock::Real, limit };
     if headless {
-        return Ok(Source::Lockstep(Lockstep::start(&settings).map_err(broken)?, board));
+        return Ok(Source::Lockstep(Lockstep::start(&settings)?, board));
     }
-    Ok(Source::Live(Machine::start(&settings).map_err(broken)?, board))
+    Ok(Source::Live(Machine::start(&settings)?, board))
 }
 
 fn limit(options: &Options, headless: bool) -> Duration {

@@ -16,7 +16,7 @@ use firmware::job::Reading;
 
 pub use board::on_board;
 pub use list::list;
-pub use number::{Number, NumberError};
+pub use number::Number;
 pub use options::{Options, Place};
 pub use request::{Plan, plan};
 pub use start::{Pair, Start};

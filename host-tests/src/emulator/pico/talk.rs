@@ -3,6 +3,8 @@
 use std::io::{self, BufRead, BufReader, Write};
 use std::process::{ChildStdin, ChildStdout};
 
+use anyhow::anyhow;
+
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Said {
     pub word: String,
@@ -17,7 +19,11 @@ pub(super) struct Talk {
 
 impl Talk {
     /// Says a line; what is answered.
-    pub fn ask(&mut self, line: &str) -> io::Result<Vec<Said>> {
+    pub fn ask(&mut self, line: &str) -> anyhow::Result<Vec<Said>> {
+        self.exchange(line).map_err(|error| anyhow!("the emulator of the Pico no longer answers: {error}"))
+    }
+
+    fn exchange(&mut self, line: &str) -> io::Result<Vec<Said>> {
         writeln!(self.input, "{line}")?;
         self.input.flush()?;
         let mut answers = Vec::new();

@@ -5,10 +5,11 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
 
-use super::SetupError;
 use super::detect::{find, says};
 use super::install::{attempt, install_packages};
+use super::missing;
 use super::workspace;
+use crate::console::cli::Refused;
 
 /// For npm to fetch one small package.
 const NPM: Duration = Duration::from_secs(120);
@@ -50,17 +51,17 @@ fn node() -> Result<PathBuf, String> {
     if is_new { Ok(node) } else { Err(format!("Node.js {} is older than {LEAST}", version.trim())) }
 }
 
-fn no_node(why: impl AsRef<str>) -> SetupError {
-    SetupError::missing("Node.js, of 18 or newer, with npm", why.as_ref(), "this system's packages nodejs and npm")
+fn no_node(why: impl AsRef<str>) -> Refused {
+    missing("Node.js, of 18 or newer, with npm", why.as_ref(), "this system's packages nodejs and npm")
 }
 
-fn no_emulator(why: impl AsRef<str>) -> SetupError {
+fn no_emulator(why: impl AsRef<str>) -> Refused {
     let by_hand = "npm ci --prefix host-tests/rp2040";
-    SetupError::missing("the emulator of the Raspberry Pi Pico", why.as_ref(), by_hand)
+    missing("the emulator of the Raspberry Pi Pico", why.as_ref(), by_hand)
 }
 
 /// The emulator, or what is missing of it and why.
-pub(super) fn detect() -> Result<Rp2040js, SetupError> {
+pub(super) fn detect() -> Result<Rp2040js, Refused> {
     let node = node().map_err(no_node)?;
     let version = says(Command::new(&node).args(["--print", ASK]).current_dir(folder()))
         .map_err(|_| no_emulator("npm has not fetched the version that is wanted"))?;
@@ -68,7 +69,7 @@ pub(super) fn detect() -> Result<Rp2040js, SetupError> {
 }
 
 /// Brings what is missing; a line for each thing that was done.
-pub(super) fn set_up() -> Result<(Rp2040js, Vec<String>), SetupError> {
+pub(super) fn set_up() -> Result<(Rp2040js, Vec<String>), Refused> {
     let mut done = Vec::new();
     if node().is_err() || find("npm").is_none() {
         install_packages(&["nodejs", "npm"]).map_err(no_node)?;
