@@ -47,10 +47,8 @@ fn every_method_of_the_boards_is_answered_in_full() {
         assert_eq!(samples.iter().map(|sample| sample.index).collect::<Vec<_>>(), [0, 1, 2, 3, 4, 5]);
         for (sample, reading) in samples.iter().zip(readings(&request)) {
             assert_eq!(sample.request, 7);
-            assert_eq!(
-                (sample.state, sample.velocities, sample.energy),
-                (reading.state, reading.velocities, reading.energy)
-            );
+            let &Sample { state, velocities, energy, .. } = sample;
+            assert_eq!(Reading { state, velocities, energy }, reading);
         }
     }
 }

@@ -34,7 +34,7 @@ impl Source<'_> {
                 None => Ok(machine.serial.all_arrived().collect()),
             },
             Self::Lockstep(lockstep, _) => lockstep.run_to_frame(),
-            Self::Pico(machine) => Ok(machine.run_to_frame()?),
+            Self::Pico(machine) => machine.run_to_frame(),
             Self::Port(port) => Ok(port.messages()),
         }
     }
