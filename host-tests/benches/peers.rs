@@ -9,8 +9,7 @@ use std::time::Instant;
 
 use double_pendulum::methods::Stepper;
 use double_pendulum::trig::Own;
-use double_pendulum::{DirectionF64, DirectionF64Plain, ExtrapolationF64, Form};
-use double_pendulum::{Motion, Parameters, State};
+use double_pendulum::{DirectionF64, DirectionF64Plain, ExtrapolationF64, Form, Motion, Parameters, State};
 use host_tests::oracle::reference::Reference;
 use host_tests::oracle::trials::largest_difference;
 use ode_solvers::dop_shared::OutputType;

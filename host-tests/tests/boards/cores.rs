@@ -8,8 +8,7 @@ use std::process::Command;
 use crate::support::LIMIT;
 use double_pendulum::Method;
 use firmware::job::Request;
-use host_tests::emulator::process;
-use host_tests::emulator::toolchain;
+use host_tests::emulator::{process, toolchain};
 
 /// A core, and what it is emulated by.
 struct Core {

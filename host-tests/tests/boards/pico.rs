@@ -1,6 +1,5 @@
 //! The file that `cargo pico` makes, in an emulated Raspberry Pi Pico with a panel, buttons, a USB host and a serial adapter.
 
-use std::error::Error;
 use std::time::Duration;
 
 use crate::support::code::Code;
@@ -70,7 +69,7 @@ fn expected(show: &mut Show, frame: &Frame) -> Frame {
 }
 
 #[test]
-fn the_file_is_for_the_chips_flash_and_its_boot_rom() -> Result<(), Box<dyn Error>> {
+fn the_file_is_for_the_chips_flash_and_its_boot_rom() -> anyhow::Result<()> {
     let (start, image) = flash_image(&std::fs::read(application(&PICO))?)?;
     assert_eq!(start, 0x1000_0000);
     assert!(image.len() <= 2 << 20, "2 MiB of flash");
@@ -159,7 +158,7 @@ fn steps_are_measured_in_flash_and_in_memory() -> anyhow::Result<()> {
 
 /// The emulator counts cycles by itself: a second opinion on the prices of `cargo count`, which QEMU's instructions are given.
 #[test]
-fn the_emulator_counts_the_cycles_that_are_estimated() -> Result<(), Box<dyn Error>> {
+fn the_emulator_counts_the_cycles_that_are_estimated() -> anyhow::Result<()> {
     // Found: 0.5 % more, 2.6 % less, 0.1 % less.
     const APART: f64 = 0.04;
     let [single, fixed64] = [Method::Rk4F32DirectionPlain, Method::Extrapolation8Fixed64];
@@ -233,7 +232,7 @@ fn commands_are_obeyed_from_either_side() -> anyhow::Result<()> {
 }
 
 #[test]
-fn it_says_which_board_and_which_program_it_is() -> Result<(), Box<dyn Error>> {
+fn it_says_which_board_and_which_program_it_is() -> anyhow::Result<()> {
     let (_, image) = flash_image(&std::fs::read(application(&PICO))?)?;
     let mut board = board()?;
     board.run(PICTURE)?;

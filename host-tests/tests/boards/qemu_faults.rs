@@ -86,7 +86,7 @@ fn a_stack_overflow_is_named_as_such() -> anyhow::Result<()> {
 }
 
 #[test]
-fn a_stack_overflow_changes_nothing_below_the_stack() -> Result<(), Box<dyn std::error::Error>> {
+fn a_stack_overflow_changes_nothing_below_the_stack() -> anyhow::Result<()> {
     let toolchain = toolchain();
     for board in guarded() {
         let elf = toolchain.build("inject-stack-overflow", board.target)?;

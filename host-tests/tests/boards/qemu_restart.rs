@@ -3,7 +3,6 @@
 //! They are injected into the images that are flashed, from outside: a debugger stops the board in the middle of a frame
 //! that is drawn but not yet sent, and sends its processor elsewhere.
 
-use std::error::Error;
 use std::path::Path;
 use std::thread::sleep;
 use std::time::Duration;
@@ -212,7 +211,7 @@ fn a_report_that_takes_long_is_no_hang() -> anyhow::Result<()> {
 
 /// A host that stops QEMU, or has no time for it, is no fault of the firmware: its clock has not ticked meanwhile.
 #[test]
-fn a_board_whose_emulator_pauses_does_not_take_it_for_a_hang() -> Result<(), Box<dyn Error>> {
+fn a_board_whose_emulator_pauses_does_not_take_it_for_a_hang() -> anyhow::Result<()> {
     /// Longer than the watchdog's two stages.
     const PAUSE: Duration = Duration::from_millis(2500);
     for board in BOARDS.iter().filter(|board| **board != STM32F405) {

@@ -11,7 +11,7 @@ use host_tests::emulator::qemu::{Lockstep, Machine};
 use object::{Object, ObjectSegment};
 
 #[test]
-fn the_image_is_for_the_chips_memory() -> Result<(), Box<dyn std::error::Error>> {
+fn the_image_is_for_the_chips_memory() -> anyhow::Result<()> {
     let bytes = std::fs::read(application(&STM32F405))?;
     let image = object::File::parse(&*bytes)?;
     let (flash, ram) = (0x0800_0000..0x0810_0000, 0x2000_0000..0x2002_0000);

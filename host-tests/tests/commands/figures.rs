@@ -9,7 +9,7 @@ use firmware::scenes::SceneName;
 use host_tests::commands::demo::played;
 use host_tests::commands::figures::chaos::{self, Chaos};
 use host_tests::commands::figures::frequencies::Frequencies;
-use host_tests::commands::figures::small::{Point, Small};
+use host_tests::commands::figures::small::{CurvePoint, Small};
 use host_tests::commands::figures::{files, folder, panel};
 use host_tests::emulator::host::Show;
 use host_tests::oracle::reference::Reference;
@@ -74,7 +74,7 @@ fn is_shown_as(scene: &Show, dots: &[u8]) -> bool {
 }
 
 /// The mean time from one crossing of zero to the next, s.
-fn between_crossings(points: &[Point], value: impl Fn(&Point) -> f64) -> f64 {
+fn between_crossings(points: &[CurvePoint], value: impl Fn(&CurvePoint) -> f64) -> f64 {
     let crossings: Vec<_> = points
         .windows(2)
         .filter_map(|pair| {
@@ -115,7 +115,7 @@ fn the_curves_of_figures_3_to_5_touch_their_envelopes_and_never_leave_them() {
     for (number, [mu, ..]) in SMALL {
         let Small { points, .. } = Small::new(number, mu).expect("a pendulum");
         for rod in 0..2 {
-            let beyond = |point: &Point| point.angles[rod].abs() - point.envelopes[rod];
+            let beyond = |point: &CurvePoint| point.angles[rod].abs() - point.envelopes[rod];
             let farthest = points.iter().map(beyond).fold(f64::NEG_INFINITY, f64::max);
             assert!(farthest < tolerances::FORMULAS.double * START, "figure {number}, rod {rod}: {farthest} beyond");
             let highest = points.iter().map(|point| point.envelopes[rod]).fold(0.0, f64::max);

@@ -5,8 +5,7 @@ use std::f64::consts::PI;
 use double_pendulum::{Equations, Integrator, Method, Parameters};
 use firmware::app::service::{Received, Service};
 use firmware::job::{Job, JobError, ON_BOARDS, Reading, Request};
-use firmware::protocol::Field;
-use firmware::protocol::{LinkError, MAX_WIRE, Refused, Sample, Simulate, StepTooLong, encode, method_code};
+use firmware::protocol::{Field, LinkError, MAX_WIRE, Refused, Sample, Simulate, StepTooLong, encode, method_code};
 use host_tests::oracle::tolerances;
 
 const REQUEST: Request = Request {

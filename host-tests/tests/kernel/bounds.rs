@@ -2,8 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use double_pendulum::{Bounds, EqualRods, Error, Modes, Motion, Parameters, Pendulum, Real, State};
-use double_pendulum::{DirectionF64, Form};
+use double_pendulum::{Bounds, DirectionF64, EqualRods, Error, Form, Modes, Motion, Parameters, Pendulum, Real, State};
 use fastrand::Rng;
 use host_tests::oracle::reference::Reference;
 use host_tests::oracle::trials::Trial;

@@ -3,8 +3,10 @@
 use std::f64::consts::PI;
 
 use double_pendulum::methods::Stepper;
-use double_pendulum::{DirectionF32, DirectionF64, ExtrapolationF64, Fixed32, Fixed64, Form};
-use double_pendulum::{Error, Motion, Parameter, Parameters, Pendulum, State};
+use double_pendulum::{
+    DirectionF32, DirectionF64, Error, ExtrapolationF64, Fixed32, Fixed64, Form, Motion, Parameter, Parameters,
+    Pendulum, State,
+};
 use firmware::config::GRAVITY;
 use firmware::motion::planner::half_pixel;
 use host_tests::oracle::hard_cases::{HALVINGS, HARD_CASES};

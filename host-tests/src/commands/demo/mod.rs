@@ -29,9 +29,8 @@ use source::Source;
 
 use crate::console::cli::Refused;
 use crate::emulator::boards::PICO;
-use crate::emulator::pico;
 use crate::emulator::qemu::{Clock, Lockstep, Machine, Settings};
-use crate::emulator::toolchain;
+use crate::emulator::{pico, toolchain};
 use crate::link::{Port, find};
 
 /// The most time that an emulated board may take without a terminal: so much, and so much for each second of its time.

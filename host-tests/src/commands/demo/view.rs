@@ -9,11 +9,9 @@ use ratatui::style::{Color, Stylize};
 use ratatui::text::{Line, Text};
 use ratatui::widgets::{Block, Paragraph};
 
-use super::help;
-use super::numbers;
 use super::panel::Panel;
-use super::plot;
 use super::readings::{Readings, way};
+use super::{help, numbers, plot};
 use crate::emulator::qemu::{LogLine, Screenshot, WIDTH};
 
 /// The panel's widths, columns: a pixel each; in Braille two of them; no narrower than makes sense.

@@ -20,12 +20,12 @@ pub struct Small {
     number: u32,
     mass_ratio: f64,
     modes: Modes<f64>,
-    pub points: Vec<Point>,
+    pub points: Vec<CurvePoint>,
 }
 
 /// What a figure shows of one moment.
 #[derive(Clone, Copy, Debug)]
-pub struct Point {
+pub struct CurvePoint {
     /// Since the start, s.
     pub time: f64,
     /// Both angles, degrees.
@@ -43,7 +43,11 @@ impl Small {
             let time = DURATION * f64::from(i) / f64::from(POINTS);
             let now = motion.at(time);
             let envelopes = envelopes(&modes, &motion, time);
-            Point { time, angles: [now.a1, now.a2].map(f64::to_degrees), envelopes: envelopes.map(f64::to_degrees) }
+            CurvePoint {
+                time,
+                angles: [now.a1, now.a2].map(f64::to_degrees),
+                envelopes: envelopes.map(f64::to_degrees),
+            }
         };
         Ok(Self { number, mass_ratio, modes, points: (0..=POINTS).map(point).collect() })
     }

@@ -21,7 +21,7 @@ pub struct Map {
 
 /// A start's flip with the step, and with half of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Point {
+pub struct Followed {
     /// What is shown.
     pub flip: Flip<f32>,
     /// What it is held against.
@@ -54,18 +54,18 @@ impl Map {
         rows.flat_map(move |row| (0..width).map(move |column| self.square.start([column, row])))
     }
 
-    pub fn points(&self, rows: std::ops::Range<usize>) -> Result<Vec<Point>, Error> {
+    pub fn points(&self, rows: std::ops::Range<usize>) -> Result<Vec<Followed>, Error> {
         let starts: Vec<[f32; 2]> = self.starts(rows).collect();
         let searches = [self.search(1)?, self.search(2)?];
         let portions = starts.par_chunks(PORTION).map(|portion| {
             let [flips, checks] = [flips(&searches[0], portion)?, flips(&searches[1], portion)?];
-            Ok(flips.into_iter().zip(checks).map(|(flip, check)| Point { flip, check }).collect::<Vec<_>>())
+            Ok(flips.into_iter().zip(checks).map(|(flip, check)| Followed { flip, check }).collect::<Vec<_>>())
         });
         Ok(portions.collect::<Result<Vec<_>, Error>>()?.concat())
     }
 
     /// Whether its two times are farther apart than a grey level of the panel.
-    pub fn is_in_doubt(&self, Point { flip, check }: Point) -> bool {
+    pub fn is_in_doubt(&self, Followed { flip, check }: Followed) -> bool {
         self.differ(flip, check)
     }
 

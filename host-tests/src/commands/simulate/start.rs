@@ -8,7 +8,7 @@ use double_pendulum::Parameters;
 use firmware::config::{FIRST_ANGLE, GRAVITY};
 
 use super::Number;
-use crate::prove::Start as Exact;
+use crate::prove::Start;
 
 /// A degree, rad.
 const DEGREE: f64 = PI / 180.0;
@@ -43,7 +43,7 @@ impl std::str::FromStr for Pair {
 
 /// A pendulum and its start.
 #[derive(Args, Clone, Debug)]
-pub struct Start {
+pub struct StartOptions {
     /// Masses of the bobs, kg
     #[arg(long, value_name = "M1,M2", default_value = "1,1", allow_hyphen_values = true)]
     masses: Pair,
@@ -64,7 +64,7 @@ pub struct Start {
     degrees: bool,
 }
 
-impl Start {
+impl StartOptions {
     /// Masses, lengths and gravity, as given.
     pub fn parameters(&self) -> Parameters<f64> {
         let [[m1, m2], [l1, l2]] = [&self.masses, &self.lengths].map(Pair::values);
@@ -83,14 +83,14 @@ impl Start {
     }
 
     /// All of it to the last digit given; `None` if a number has too many.
-    pub fn exact(&self) -> Option<Exact> {
+    pub fn exact(&self) -> Option<Start> {
         let both = |Pair(one, other): &Pair| Some([one.exact()?, other.exact()?]);
         let [gravity, first] = [GRAVITY.to_string(), FIRST_ANGLE.to_string()].map(|text| text.parse::<Number>().ok());
         let angles = match &self.angles {
             Some(angles) => (both(angles)?, self.degrees),
             None => ([first?.exact()?; 2], true),
         };
-        Some(Exact {
+        Some(Start {
             masses: both(&self.masses)?,
             lengths: both(&self.lengths)?,
             gravity: self.gravity.clone().or(gravity)?.exact()?,

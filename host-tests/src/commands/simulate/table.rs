@@ -50,7 +50,7 @@ impl Row<'_> {
 }
 
 /// Writes readings as CSV, one row each, from t = 0.
-pub struct Table<'a, W> {
+pub struct CsvRows<'a, W> {
     output: W,
     options: &'a Options,
     parameters: Parameters<f64>,
@@ -60,7 +60,7 @@ pub struct Table<'a, W> {
     rows: u64,
 }
 
-impl<'a, W: Write> Table<'a, W> {
+impl<'a, W: Write> CsvRows<'a, W> {
     /// The rows of `plan`, with the columns of `options`. Nothing is written yet.
     pub fn new(output: W, plan: &Plan, options: &'a Options) -> Self {
         let single = plan.request.method.numbers() == Numbers::F32;

@@ -1,7 +1,6 @@
 //! The one error of an emulated board that the code tells from others: behind a broken connection may be QEMU's end.
 
-use std::fmt;
-use std::io;
+use std::{fmt, io};
 
 /// The connection called so broke. It is no `io::Error`: that may be a closed output, which is none.
 #[derive(Debug)]

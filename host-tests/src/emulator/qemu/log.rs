@@ -1,11 +1,10 @@
 //! What the firmware and QEMU say: defmt's lines decoded with level, file and line, and plain text as it is.
 
-use std::fmt;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 use std::process::{ChildStderr, ChildStdout};
 use std::sync::mpsc::{self, Receiver, Sender};
-use std::thread;
+use std::{fmt, thread};
 
 use anyhow::Context;
 use defmt_decoder::{DecodeError, Frame, Locations, StreamDecoder, Table};

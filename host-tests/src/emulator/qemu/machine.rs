@@ -13,10 +13,9 @@ use firmware::protocol::Message;
 use tempfile::TempDir;
 
 use super::error::{Broken, broken};
-use super::folder;
 use super::qmp::Monitor;
 use super::serial::Pipes;
-use super::{Log, LogLine, Screenshot, Serial};
+use super::{Log, LogLine, Screenshot, Serial, folder};
 use crate::emulator::boards::Board;
 use crate::emulator::process::{self, Running};
 use crate::link::Received;

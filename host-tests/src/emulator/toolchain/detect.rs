@@ -1,11 +1,10 @@
 //! What is there already. Runs nothing that changes anything.
 
-use std::env;
-use std::fs;
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
+use std::{env, fs};
 
 use super::{ArmCore, target, workspace};
 use crate::emulator::process::run;

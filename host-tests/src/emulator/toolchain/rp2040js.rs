@@ -7,8 +7,7 @@ use std::time::Duration;
 
 use super::detect::{find, says};
 use super::install::{attempt, install_packages};
-use super::missing;
-use super::workspace;
+use super::{missing, workspace};
 use crate::console::cli::Refused;
 
 /// For npm to fetch one small package.
