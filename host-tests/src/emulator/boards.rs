@@ -148,3 +148,14 @@ pub enum Core {
     /// same.
     M0Plus,
 }
+
+impl Core {
+    /// As on its manual.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::M3 => "Cortex-M3",
+            Self::M4F => "Cortex-M4F",
+            Self::M0Plus => "Cortex-M0+",
+        }
+    }
+}

@@ -75,12 +75,8 @@ impl FrameProfile {
         Ok(profile)
     }
 
-    pub fn part(&self, part: Part) -> Option<&Profile> {
-        self.parts.get(&part)
-    }
-
     pub fn cost(&self, part: Part) -> Cost {
-        self.part(part).map_or_else(Cost::default, Profile::cost)
+        self.parts.get(&part).map_or_else(Cost::default, Profile::cost)
     }
 
     pub fn whole(&self) -> Cost {

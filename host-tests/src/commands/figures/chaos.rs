@@ -54,26 +54,7 @@ impl Chaos {
         let printed = path(&pendulum, refinement, |z| misprinted_equal_rods(MASS_RATIO, ROD, PAGE_GRAVITY, z));
         Ok(Self { paths: [right, printed] })
     }
-}
 
-fn path(pendulum: &Pendulum<f64>, refinement: u32, rhs: impl Fn(&[f64; 4]) -> [f64; 4]) -> Path {
-    let mut state = start();
-    let dt = 1.0 / f64::from(STEPS * refinement);
-    let mut points = Vec::new();
-    let (mut least, mut greatest) = (f64::INFINITY, f64::NEG_INFINITY);
-    for step in 0..=DURATION * STEPS * refinement {
-        if step.is_multiple_of(STEPS_PER_POINT * refinement) {
-            let [_, bob2] = pendulum.positions(state.angles());
-            points.push([bob2.x, bob2.y]);
-            let energy = pendulum.energy(&state);
-            (least, greatest) = (least.min(energy), greatest.max(energy));
-        }
-        state = rk4::step(&rhs, &state.into(), dt).into();
-    }
-    Path { points, energies: [least, greatest] }
-}
-
-impl Chaos {
     pub fn svg(&self) -> Result<String> {
         svg([800, 468], |area| self.draw(area))
     }
@@ -102,6 +83,23 @@ impl Chaos {
         }
         Ok(())
     }
+}
+
+fn path(pendulum: &Pendulum<f64>, refinement: u32, rhs: impl Fn(&[f64; 4]) -> [f64; 4]) -> Path {
+    let mut state = start();
+    let dt = 1.0 / f64::from(STEPS * refinement);
+    let mut points = Vec::new();
+    let (mut least, mut greatest) = (f64::INFINITY, f64::NEG_INFINITY);
+    for step in 0..=DURATION * STEPS * refinement {
+        if step.is_multiple_of(STEPS_PER_POINT * refinement) {
+            let [_, bob2] = pendulum.positions(state.angles());
+            points.push([bob2.x, bob2.y]);
+            let energy = pendulum.energy(&state);
+            (least, greatest) = (least.min(energy), greatest.max(energy));
+        }
+        state = rk4::step(&rhs, &state.into(), dt).into();
+    }
+    Path { points, energies: [least, greatest] }
 }
 
 /// The shades of a path, from its start to its end.

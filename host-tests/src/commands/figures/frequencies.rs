@@ -32,9 +32,7 @@ impl Frequencies {
         let points = (1..=POINTS).map(|i| point(mass_ratio(i))).collect::<Result<_, _>>()?;
         Ok(Self { points, marks: MARKED.into_iter().map(point).collect::<Result<_, _>>()? })
     }
-}
 
-impl Frequencies {
     pub fn svg(&self) -> Result<String> {
         svg([640, 400], |area| self.draw(area))
     }

@@ -5,7 +5,6 @@ use std::fs;
 use anyhow::{Context, Result, ensure};
 
 use super::c_peers::PROGRAMS;
-use super::chart::core_name;
 use super::join::Point;
 use super::scene::{LONG, SCENES, Scene};
 use crate::commands::table::{Table, small};
@@ -94,7 +93,7 @@ fn advice(points: &[Point]) -> Vec<String> {
                 None => format!("nothing {words}"),
             }
         });
-        format!("{}, {} motion, cycles a second: {}.", core_name(board), scene.name, parts.join("; "))
+        format!("{}, {} motion, cycles a second: {}.", board.core().name(), scene.name, parts.join("; "))
     };
     boards(points).flat_map(|board| [&SCENES[0], &SCENES[1]].map(|scene| sentence(board, scene))).collect()
 }

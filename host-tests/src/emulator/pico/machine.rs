@@ -1,6 +1,5 @@
 //! Starting the emulated board, and letting its time pass.
 
-use std::fmt;
 use std::io::BufReader;
 use std::ops::Range;
 use std::path::Path;
@@ -27,19 +26,13 @@ const PATIENCE: u32 = 5000;
 /// The board. Its time passes only in [`Self::run`], so all that it does is repeatable bit for bit. Dropping it ends it.
 pub struct Machine {
     talk: Talk,
-    process: Running,
+    _process: Running,
     _file: tempfile::NamedTempFile,
     usb: Inbox,
     uart: Inbox,
     log: LogDecoder,
     lines: Vec<LogLine>,
     heard_by_uart: Vec<Received>,
-}
-
-impl fmt::Debug for Machine {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Machine").field("process", &self.process).finish_non_exhaustive()
-    }
 }
 
 impl Machine {
@@ -58,7 +51,7 @@ impl Machine {
         let talk = Talk { input, output: BufReader::new(output) };
         let log = LogDecoder::new(elf)?;
         let (usb, uart) = (Inbox::default(), Inbox::default());
-        Ok(Self { talk, process, _file: file, usb, uart, log, lines: Vec::new(), heard_by_uart: Vec::new() })
+        Ok(Self { talk, _process: process, _file: file, usb, uart, log, lines: Vec::new(), heard_by_uart: Vec::new() })
     }
 
     /// Lets time pass by the board's clock; what it has sent over USB.
