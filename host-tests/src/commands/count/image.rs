@@ -59,7 +59,7 @@ impl Image {
                 // bit 0 only says that the code is Thumb
                 address: address & !1,
                 size: symbol.size() as u32,
-                name: format!("{:#}", rustc_demangle::demangle(name)),
+                name: addr2line::demangle_auto(name.into(), None).into_owned(),
                 symbol: name.to_owned(),
             };
             match name.split('.').next() {
