@@ -12,6 +12,7 @@
 //! | [`console`] | how every command talks: options, errors, progress |
 
 #![deny(clippy::print_stdout, clippy::print_stderr)]
+#![allow(missing_docs, reason = "nobody builds on this package: what name and type say is not said again")]
 
 pub mod commands;
 pub mod console;

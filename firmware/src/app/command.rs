@@ -57,15 +57,10 @@ pub enum Command {
 choice! {
     /// A button.
     Key {
-        /// Up.
         Up = 0, "up";
-        /// Down.
         Down = 1, "down";
-        /// Left.
         Left = 2, "left";
-        /// Right.
         Right = 3, "right";
-        /// Select.
         Select = 4, "select";
     }
 }

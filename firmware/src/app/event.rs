@@ -9,8 +9,7 @@ use crate::app::warm_restart::WarmRestart;
 use crate::display::Display;
 use crate::display::controller::Found;
 use crate::motion::settings::Settings;
-use crate::protocol::Field;
-use crate::protocol::LinkError;
+use crate::protocol::{Field, LinkError};
 use crate::scenes::SceneName;
 
 /// What is worth a line in the log.

@@ -3,8 +3,7 @@
 
 use crate::app::command::HostCommand;
 use crate::job::{Job, OnBoards, Reading, Request};
-use crate::protocol::Field;
-use crate::protocol::{Decoder, LinkError, Message, Refused, Sample, Simulate, StepTooLong, TO_CHIP};
+use crate::protocol::{Decoder, Field, LinkError, Message, Refused, Sample, Simulate, StepTooLong, TO_CHIP};
 
 /// What a received message came to.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -161,14 +161,12 @@ fn run_to<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons>(
     caught_up
 }
 
-/// Says what starts from where.
 fn started(scene: SceneName, settings: &Settings) {
     let Settings { parameters: Parameters { m1, m2, l1, l2, g }, degrees: [a1, a2], velocities: [w1, w2] } = *settings;
     defmt::info!("{=str} starts at {} and {} degrees, {} and {} rad/s", scene.name(), a1, a2, w1, w2);
     defmt::info!("masses {} and {} kg, rods {} and {} m, g {} m/s2", m1, m2, l1, l2, g);
 }
 
-/// Writes one event to the log.
 #[inline(never)]
 fn log<Panel: Debug, Link: Debug>(event: Event<Panel, Link>) {
     match event {

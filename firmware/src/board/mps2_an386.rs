@@ -79,7 +79,6 @@ impl Outlet for CmsdkUart {
     }
 }
 
-/// The inward direction.
 const INLET: Inlet = Inlet {
     clear: |_| INTERRUPT_CLEAR.write(RECEIVED),
     take: || {

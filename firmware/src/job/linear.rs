@@ -1,7 +1,6 @@
 //! Small oscillations in closed form.
 
-use double_pendulum::Direction;
-use double_pendulum::{Modes, Motion, Pendulum, Real, SmallOscillations, State};
+use double_pendulum::{Direction, Modes, Motion, Pendulum, Real, SmallOscillations, State};
 
 use super::run::{Run, rounded};
 use super::{JobError, Request};

@@ -1,8 +1,7 @@
 //! The motion itself, apart from any frame of it: the state after n ticks, and what its energy has become.
 
-use double_pendulum::Method;
 use double_pendulum::plan::{Directions, PlannedRun, Way};
-use double_pendulum::{Error, Motion, Pendulum, State};
+use double_pendulum::{Error, Method, Motion, Pendulum, State};
 
 use crate::config::{Processor, TICK_RATE};
 use crate::motion::settings::Settings;

@@ -5,7 +5,7 @@ macro_rules! choice {
         $(#[$doc])*
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         #[cfg_attr(target_os = "none", derive(defmt::Format))]
-        pub enum $name { $($(#[$row_doc])* $row,)* }
+        pub enum $name { $($(#[$row_doc])* #[doc = concat!("`", $text, "`")] $row,)* }
 
         impl $name {
             /// All of them, the default first.

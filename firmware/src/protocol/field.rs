@@ -28,7 +28,6 @@ choice! {
         W1 = 9, "w1";
         /// Velocity of rod 2.
         W2 = 10, "w2";
-        /// Step size.
         Dt = 11, "step size";
         /// Mass ratio m2/m1: sets m2.
         MassRatio = 12, "mu";
@@ -38,11 +37,9 @@ choice! {
         Speed = 14, "speed";
         /// The field to set.
         Field = 15, "field";
-        /// The scene.
         Scene = 17, "scene";
         /// The message itself: of no known kind, or not with that kind's fields.
         Message = 18, "message";
-        /// The button.
         Key = 22, "key";
     }
 }

@@ -1,9 +1,8 @@
 //! Figures 3 to 5: small oscillations, both angles as scrolling curves within their envelopes, in closed form.
 
-use double_pendulum::Method;
 use double_pendulum::plan::Way;
 use double_pendulum::trig::{DefaultTrig, SinCos};
-use double_pendulum::{Error, Modes, Motion, Oscillation, Parameters, Pendulum, SmallOscillations};
+use double_pendulum::{Error, Method, Modes, Motion, Oscillation, Parameters, Pendulum, SmallOscillations};
 
 use crate::config::{PAGE_GRAVITY, TICK_RATE};
 use crate::graphics::canvas::{Canvas, WIDTH};

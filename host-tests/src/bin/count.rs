@@ -79,16 +79,16 @@ fn main() -> ExitCode {
 
 fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if let (Some(elf), Some(function)) = (&arguments.elf, &arguments.function) {
-        let (toolchain, _) = toolchain::set_up().map_err(Refused::because)?;
+        let (toolchain, _) = toolchain::set_up()?;
         return count_calls(&toolchain, arguments, elf, function);
     }
     if arguments.write_prices {
-        let (toolchain, _) = toolchain::set_up().map_err(Refused::because)?;
+        let (toolchain, _) = toolchain::set_up()?;
         return Ok(say(write_prices(&prices(&toolchain)?)?.display())?);
     }
     let requests = arguments.requests().map_err(Refused::because)?;
     let boards = BOARDS.iter().filter(|board| arguments.on.map_or(board.has_panel, |asked| asked == *board));
-    let (toolchain, _) = toolchain::set_up().map_err(Refused::because)?;
+    let (toolchain, _) = toolchain::set_up()?;
     if !arguments.listing {
         say(arguments.setting())?;
         say(ERROR_BAR)?;

@@ -55,7 +55,7 @@ fn flash(arguments: &Arguments) -> anyhow::Result<()> {
         }
         error => Refused::because(error),
     })?;
-    let elf = toolchain::ready().map_err(Refused::because)?.build_for(&STM32F405)?;
+    let elf = toolchain::ready()?.build_for(&STM32F405)?;
     let mut command = Command::new(program);
     if arguments.dfu {
         let (start, image) = flash_image(&std::fs::read(&elf)?)?;

@@ -12,7 +12,7 @@ use host_tests::console::cli::{self, Refused, complain};
 use host_tests::emulator::boards::BOARDS;
 use host_tests::emulator::firmware_run::{board_for, run};
 use host_tests::emulator::process::{self, ProcessError};
-use host_tests::emulator::qemu::{Clock, QemuError, Settings};
+use host_tests::emulator::qemu::{Clock, Settings};
 use host_tests::emulator::toolchain::{self, Toolchain};
 
 /// How long a firmware may run if `--seconds` does not say.
@@ -61,7 +61,7 @@ fn execute(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     let limit = arguments.seconds.map_or(LIMIT, |seconds| Duration::from_secs(seconds.into()));
     let settings = Settings { qemu: toolchain.qemu(), board, elf: &elf, clock: Clock::Real, debugger: true, limit };
     match (run(&settings, &mut stdout().lock()), arguments.seconds) {
-        (Err(QemuError::Process(ProcessError::TimedOut(..))), Some(seconds)) => {
+        (Err(error), Some(seconds)) if matches!(error.downcast_ref(), Some(ProcessError::TimedOut(..))) => {
             complain(format_args!("ended after {seconds} s, as told"));
             Ok(ExitCode::SUCCESS)
         }
@@ -80,7 +80,7 @@ fn runnable() -> String {
 }
 
 fn set_up() -> Result<Toolchain, Refused> {
-    toolchain::set_up().map(|(toolchain, _)| toolchain).map_err(Refused::because)
+    toolchain::set_up().map(|(toolchain, _)| toolchain)
 }
 
 /// The names of the firmware's binaries, sorted.

@@ -7,7 +7,7 @@ use std::process::ExitCode;
 
 use anyhow::Context;
 use clap::Parser;
-use host_tests::console::cli::{self, Refused, say};
+use host_tests::console::cli::{self, say};
 use host_tests::emulator::boards::PICO;
 use host_tests::emulator::flash::flash_image;
 use host_tests::emulator::toolchain::{self, target};
@@ -33,7 +33,7 @@ fn main() -> ExitCode {
 }
 
 fn make(arguments: &Arguments) -> anyhow::Result<()> {
-    let (toolchain, _) = toolchain::set_up().map_err(Refused::because)?;
+    let (toolchain, _) = toolchain::set_up()?;
     let elf = fs::read(toolchain.build_for(&PICO)?)?;
     let (start, image) = flash_image(&elf)?;
     let file = target().join(FILE);

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 
 use anyhow::ensure;
 use clap::Parser;
-use host_tests::commands::report::{self, Extent};
+use host_tests::commands::report;
 use host_tests::console::cli::{self, Refused, say};
 use host_tests::console::progress::Bar;
 use host_tests::emulator::toolchain;
@@ -31,13 +31,12 @@ fn main() -> ExitCode {
 }
 
 fn run(options: &Options) -> anyhow::Result<()> {
-    let (toolchain, _) = toolchain::set_up().map_err(Refused::because)?;
+    let (toolchain, _) = toolchain::set_up()?;
     let folder = options.folder.clone().unwrap_or_else(|| toolchain::workspace().join("host-tests/report"));
     let created = fs::create_dir_all(&folder);
     created.map_err(|error| Refused::because(format_args!("--folder: cannot write {}: {error}", folder.display())))?;
-    let extent = if options.quick { Extent::QUICK } else { Extent::FULL };
     let bar = Bar::start("report", 0);
-    let written = report::write(&extent, &toolchain, &folder, &bar);
+    let written = report::write(options.quick, &toolchain, &folder, &bar);
     drop(bar);
     let (blocks, absent) = written?;
     absent.iter().chain(&blocks.advice).try_for_each(say)?;

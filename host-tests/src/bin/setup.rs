@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use clap::Parser;
-use host_tests::console::cli::{self, Refused, say};
+use host_tests::console::cli::{self, say};
 use host_tests::emulator::toolchain;
 
 /// Finds or brings all that builds and runs the firmware: the ARM core library, QEMU, and rp2040js for the Pico.
@@ -13,9 +13,9 @@ struct Arguments {}
 
 fn main() -> ExitCode {
     cli::main(|_: &Arguments| {
-        let (toolchain, mut done) = toolchain::set_up().map_err(Refused::because)?;
+        let (toolchain, mut done) = toolchain::set_up()?;
         say(toolchain)?;
-        let (emulator, more) = toolchain::set_up_pico().map_err(Refused::because)?;
+        let (emulator, more) = toolchain::set_up_pico()?;
         say(emulator)?;
         done.extend(more);
         match done.as_slice() {

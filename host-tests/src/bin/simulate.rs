@@ -4,7 +4,7 @@ use std::io::{self, BufWriter};
 use std::process::ExitCode;
 
 use anyhow::Context;
-use host_tests::commands::simulate::{Options, Place, Plan, Table, choose, list, on_board, on_host, plan};
+use host_tests::commands::simulate::{CsvRows, Options, Place, Plan, choose, list, on_board, on_host, plan};
 use host_tests::console::cli::{self, Refused, complain, say};
 use host_tests::console::progress::Bar;
 
@@ -18,7 +18,7 @@ fn run(options: &Options) -> anyhow::Result<()> {
     }
     let plan = planned(options).map_err(|error| Refused::because(format_args!("{error:#}")))?;
     let output = BufWriter::new(io::stdout().lock());
-    let mut table = Table::new(output, &plan, options);
+    let mut table = CsvRows::new(output, &plan, options);
     let bar = Bar::start("rows", u64::from(plan.request.samples) + 1);
     let row = |reading: &_| {
         bar.advance(1);

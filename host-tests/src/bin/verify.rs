@@ -6,7 +6,7 @@ use std::thread::available_parallelism;
 use std::time::Duration;
 
 use clap::Parser;
-use host_tests::console::cli::{self, Refused};
+use host_tests::console::cli;
 use host_tests::emulator::{process, toolchain};
 
 /// For every test, the compiling included, on a slow, busy machine; and for the long ones too.
@@ -23,8 +23,8 @@ struct Arguments {
 
 fn main() -> ExitCode {
     cli::main(|arguments: &Arguments| {
-        let (toolchain, _) = toolchain::set_up().map_err(Refused::because)?;
-        toolchain::set_up_pico().map_err(Refused::because)?;
+        let (toolchain, _) = toolchain::set_up()?;
+        toolchain::set_up_pico()?;
         toolchain.build_ahead()?;
         test(arguments.long)
     })

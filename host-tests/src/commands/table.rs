@@ -3,13 +3,11 @@
 /// Columns with their headings, rows of as many cells.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Table {
-    /// Heading.
     pub title: &'static str,
     /// What the columns mean and where the numbers come from.
     pub note: String,
     /// Headings of the columns, with units.
     pub columns: &'static [&'static str],
-    /// Cells.
     pub rows: Vec<Vec<String>>,
 }
 
@@ -20,12 +18,10 @@ impl Table {
         lines.map(|line| line + "\n").collect()
     }
 
-    /// With heading and note.
     pub fn markdown(&self) -> String {
         format!("## {}\n\n{}\n\n{}", self.title, self.note, self.markdown_rows())
     }
 
-    /// The columns' headings and the rows.
     pub fn markdown_rows(&self) -> String {
         let heads = [self.columns.join(" | "), vec!["---"; self.columns.len()].join(" | ")];
         let lines = heads.into_iter().chain(self.rows.iter().map(|row| row.join(" | ")));

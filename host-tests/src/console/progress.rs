@@ -18,7 +18,7 @@ const SHOWN: usize = 60;
 #[derive(Debug)]
 pub struct Bar {
     bar: ProgressBar,
-    reminder: Mutex<Reminder>,
+    reminded: Mutex<Instant>,
 }
 
 impl Bar {
@@ -28,7 +28,7 @@ impl Bar {
             ProgressStyle::with_template("{prefix} {elapsed} {wide_bar} {pos}/{len}, {per_sec}, {eta} left {msg}");
         let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
         let bar = ProgressBar::new(length).with_style(style).with_prefix(doing.to_owned());
-        Self { bar, reminder: Mutex::new(Reminder::new()) }
+        Self { bar, reminded: Mutex::new(Instant::now()) }
     }
 
     /// The pieces that were done before.
@@ -37,10 +37,9 @@ impl Bar {
         self.bar.reset_eta();
     }
 
-    /// That these pieces more are done.
     pub fn advance(&self, pieces: u64) {
         self.bar.inc(pieces);
-        if self.bar.is_hidden() && self.reminder.lock().is_ok_and(|mut reminder| reminder.is_due()) {
+        if self.bar.is_hidden() && self.reminded.lock().is_ok_and(|mut last| is_due(&mut last)) {
             self.remind();
         }
     }
@@ -60,14 +59,8 @@ impl Bar {
 
     fn remind(&self) {
         let Self { bar, .. } = self;
-        let length = bar.length().unwrap_or_default();
-        let line = format!(
-            "{} ... {} of {length}, {} s {}",
-            bar.prefix(),
-            bar.position(),
-            bar.elapsed().as_secs(),
-            bar.message()
-        );
+        let (length, seconds) = (bar.length().unwrap_or_default(), bar.elapsed().as_secs());
+        let line = format!("{} ... {} of {length}, {seconds} s {}", bar.prefix(), bar.position(), bar.message());
         complain(line.trim_end());
     }
 }
@@ -82,7 +75,7 @@ impl Drop for Bar {
 #[derive(Debug)]
 pub struct Progress {
     spinner: ProgressBar,
-    reminder: Reminder,
+    reminded: Instant,
 }
 
 impl Progress {
@@ -96,7 +89,7 @@ impl Progress {
         } else {
             spinner.enable_steady_tick(TURN);
         }
-        Self { spinner, reminder: Reminder::new() }
+        Self { spinner, reminded: Instant::now() }
     }
 
     /// To be called often: with the latest line of the one who works, or with `None` while there is none.
@@ -104,7 +97,7 @@ impl Progress {
         if let Some(line) = line {
             self.spinner.set_message(line.chars().take(SHOWN).collect::<String>());
         }
-        if self.spinner.is_hidden() && self.reminder.is_due() {
+        if self.spinner.is_hidden() && is_due(&mut self.reminded) {
             complain(format_args!("{} ... {} s", self.spinner.prefix(), self.spinner.elapsed().as_secs()));
         }
     }
@@ -116,21 +109,11 @@ impl Drop for Progress {
     }
 }
 
-/// When a plain line was last due.
-#[derive(Debug)]
-struct Reminder(Instant);
-
-impl Reminder {
-    fn new() -> Self {
-        Self(Instant::now())
+/// Whether a plain line is due again now, `last` being when one was.
+fn is_due(last: &mut Instant) -> bool {
+    let is_due = last.elapsed() >= REMINDER;
+    if is_due {
+        *last = Instant::now();
     }
-
-    /// Whether one is due again now.
-    fn is_due(&mut self) -> bool {
-        let is_due = self.0.elapsed() >= REMINDER;
-        if is_due {
-            *self = Self::new();
-        }
-        is_due
-    }
+    is_due
 }

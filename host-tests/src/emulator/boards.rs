@@ -5,13 +5,11 @@ use firmware::config::{self, Processor};
 /// A board that QEMU emulates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Board {
-    /// What the user types.
     pub name: &'static str,
     /// QEMU's `-machine`.
     pub machine: &'static str,
     /// QEMU's `-cpu`.
     pub cpu: &'static str,
-    /// The compiler's target.
     pub target: &'static str,
     /// The firmware binary that runs on it.
     pub binary: &'static str,
@@ -62,7 +60,6 @@ impl Board {
         self.core() != Core::M0Plus
     }
 
-    /// Where its flash begins, with the vectors.
     pub fn flash(&self) -> u32 {
         match self.machine {
             "netduinoplus2" => 0x0800_0000,
@@ -70,7 +67,6 @@ impl Board {
         }
     }
 
-    /// Whose timings hold.
     pub fn core(&self) -> Core {
         match self.cpu {
             "cortex-m3" => Core::M3,
@@ -151,4 +147,15 @@ pub enum Core {
     /// Cortex-M0+ with the multiplier of 1 cycle, no floating-point unit. QEMU knows it as the Cortex-M0, whose instructions are the
     /// same.
     M0Plus,
+}
+
+impl Core {
+    /// As on its manual.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::M3 => "Cortex-M3",
+            Self::M4F => "Cortex-M4F",
+            Self::M0Plus => "Cortex-M0+",
+        }
+    }
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::ExitStatus;
 
 use crate::emulator::boards::{BOARDS, Board};
-use crate::emulator::qemu::{Machine, QemuError, Settings};
+use crate::emulator::qemu::{Machine, Settings};
 
 /// The board for a binary: the one asked for; else the first that has it as its application; else the default one.
 /// Where the file says its target, as in `target/thumbv7m-none-eabi/release/x`, only boards of that target count.
@@ -24,7 +24,7 @@ pub fn board_for(name: Option<&str>, binary: &Path) -> Option<&'static Board> {
 }
 
 /// Runs a firmware to its own end, or to its limit, which is an error; each line of its log goes to `output`.
-pub fn run(settings: &Settings, output: &mut impl Write) -> Result<ExitStatus, QemuError> {
+pub fn run(settings: &Settings, output: &mut impl Write) -> anyhow::Result<ExitStatus> {
     let mut machine = Machine::start(settings)?;
     for line in machine.log.rest() {
         // Whoever stops reading does not stop the board.

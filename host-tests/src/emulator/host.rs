@@ -30,7 +30,6 @@ impl Show {
         Ok(Self { player: Player::on(processor, name, *settings, ink)?, news: Vec::new() })
     }
 
-    /// Advances by one tick.
     pub fn tick(&mut self) {
         let Self { player, news } = self;
         let step = player.report().step + 1;
@@ -44,19 +43,16 @@ impl Show {
         self.player.draw(canvas);
     }
 
-    /// The frame now.
     pub fn frame(&self) -> Canvas {
         let mut canvas = Canvas::default();
         self.draw(&mut canvas);
         canvas
     }
 
-    /// The scene in numbers.
     pub fn report(&self) -> Report {
         self.player.report()
     }
 
-    /// What plays it.
     pub fn player(&mut self) -> &mut Player<'static> {
         &mut self.player
     }

@@ -41,11 +41,8 @@ pub struct Running {
     started: Instant,
     limit: Duration,
     ended: Option<Result<ExitStatus, ProcessError>>,
-    /// The child's standard input, where the command asked for a pipe.
     pub stdin: Option<ChildStdin>,
-    /// The child's standard output, where the command asked for a pipe.
     pub stdout: Option<ChildStdout>,
-    /// The child's standard error, where the command asked for a pipe.
     pub stderr: Option<ChildStderr>,
 }
 
@@ -77,7 +74,6 @@ fn end(warden: &mut Child) {
 }
 
 impl Running {
-    /// The child's process id.
     pub fn id(&self) -> u32 {
         self.child.id()
     }

@@ -11,7 +11,6 @@ mod install;
 mod rp2040js;
 mod workspace;
 
-pub use build::BuildError;
 pub use rp2040js::Rp2040js;
 pub use workspace::{target, workspace};
 
@@ -19,12 +18,12 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
+use crate::console::cli::Refused;
 use crate::emulator::qemu;
 
 /// The compiler's targets, one for each kind of core.
 pub const TARGETS: [&str; 3] = ["thumbv6m-none-eabi", "thumbv7m-none-eabi", "thumbv7em-none-eabihf"];
 
-/// Everything that builds and runs the firmware.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Toolchain {
     core: ArmCore,
@@ -43,26 +42,20 @@ enum ArmCore {
     },
 }
 
-/// What is missing, a line each: why, and what brings it.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{0}")]
-pub struct SetupError(String);
-
-impl SetupError {
-    fn missing(what: &str, why: &str, by_hand: &str) -> Self {
-        Self(format!("{what} is missing: {why}; what brings it: cargo setup, or {by_hand}"))
-    }
+/// That something is missing: why, and what brings it, in a line.
+fn missing(what: &str, why: &str, by_hand: &str) -> Refused {
+    Refused::because(format_args!("{what} is missing: {why}; what brings it: cargo setup, or {by_hand}"))
 }
 
 /// The tools, if all are there; installs nothing. Looks once per process.
-pub fn ready() -> Result<Toolchain, SetupError> {
-    static READY: OnceLock<Result<Toolchain, SetupError>> = OnceLock::new();
+pub fn ready() -> Result<Toolchain, Refused> {
+    static READY: OnceLock<Result<Toolchain, Refused>> = OnceLock::new();
     READY.get_or_init(|| both(detect::core(&TARGETS), detect::QEMU.find())).clone()
 }
 
 /// The tools, brought if need be; and a line for each thing that was done for it. Two set-ups at once take turns.
-pub fn set_up() -> Result<(Toolchain, Vec<String>), SetupError> {
-    qemu::check_folder().map_err(SetupError)?;
+pub fn set_up() -> Result<(Toolchain, Vec<String>), Refused> {
+    qemu::check_folder().map_err(Refused::because)?;
     if let Ok(toolchain) = ready() {
         return Ok((toolchain, Vec::new()));
     }
@@ -74,42 +67,42 @@ pub fn set_up() -> Result<(Toolchain, Vec<String>), SetupError> {
 }
 
 /// Both of them, or a line for each that is missing.
-fn both(core: Result<ArmCore, String>, qemu: Result<PathBuf, String>) -> Result<Toolchain, SetupError> {
+fn both(core: Result<ArmCore, String>, qemu: Result<PathBuf, String>) -> Result<Toolchain, Refused> {
     let packages = format!("rustup target add {}, or Debian's {}", TARGETS.join(" "), detect::CORE_PACKAGES.join(" "));
-    let core = core.map_err(|why| SetupError::missing("the ARM core library", &why, &packages).0);
+    let core = core.map_err(|why| missing("the ARM core library", &why, &packages));
     let by_hand = "this system's package of that name (Homebrew: qemu)";
-    let qemu = qemu.map_err(|why| SetupError::missing(detect::QEMU.program, &why, by_hand).0);
+    let qemu = qemu.map_err(|why| missing(detect::QEMU.program, &why, by_hand));
     match (core, qemu) {
         (Ok(core), Ok(qemu)) => Ok(Toolchain { core, qemu }),
-        (Err(core), Err(qemu)) => Err(SetupError(format!("{core}\n{qemu}"))),
-        (Err(missing), _) | (_, Err(missing)) => Err(SetupError(missing)),
+        (Err(core), Err(qemu)) => Err(Refused::because(format_args!("{core}\n{qemu}"))),
+        (Err(missing), _) | (_, Err(missing)) => Err(missing),
     }
 }
 
 /// The tools, brought if need be, with the core library for one more target.
-pub fn set_up_for(target: &str) -> Result<Toolchain, SetupError> {
+pub fn set_up_for(target: &str) -> Result<Toolchain, Refused> {
     let (toolchain, _) = set_up()?;
     let _turn = install::turn()?;
     let core = detect::core(&[target]).or_else(|_| install::core(&[target], &mut Vec::new()));
-    let core = core.map_err(|why| SetupError(format!("the core library for {target} is missing: {why}")))?;
+    let core = core.map_err(|why| Refused::because(format_args!("the core library for {target} is missing: {why}")))?;
     Ok(Toolchain { core, ..toolchain })
 }
 
 /// The emulator of a RISC-V under Linux, brought if need be.
-pub fn set_up_riscv() -> Result<PathBuf, SetupError> {
+pub fn set_up_riscv() -> Result<PathBuf, Refused> {
     let _turn = install::turn()?;
     let emulator = &detect::QEMU_RISCV;
     let found = emulator.find().or_else(|_| install::qemu(emulator, &mut Vec::new()));
-    found.map_err(|why| SetupError(format!("{} is missing: {why}", emulator.program)))
+    found.map_err(|why| Refused::because(format_args!("{} is missing: {why}", emulator.program)))
 }
 
 /// The emulator of the Raspberry Pi Pico, if it is there; installs nothing.
-pub fn ready_for_pico() -> Result<Rp2040js, SetupError> {
+pub fn ready_for_pico() -> Result<Rp2040js, Refused> {
     rp2040js::detect()
 }
 
 /// The same, brought if need be; and a line for each thing that was done for it.
-pub fn set_up_pico() -> Result<(Rp2040js, Vec<String>), SetupError> {
+pub fn set_up_pico() -> Result<(Rp2040js, Vec<String>), Refused> {
     if let Ok(emulator) = rp2040js::detect() {
         return Ok((emulator, Vec::new()));
     }
@@ -118,7 +111,6 @@ pub fn set_up_pico() -> Result<(Rp2040js, Vec<String>), SetupError> {
 }
 
 impl Toolchain {
-    /// The emulator's program.
     pub fn qemu(&self) -> &Path {
         &self.qemu
     }

@@ -6,19 +6,8 @@ use serialport::{SerialPortInfo, SerialPortType};
 /// does not go by them.
 pub const AUTO: &str = "auto";
 
-/// Why no port can be chosen.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum NoPort {
-    /// None.
-    #[error("{AUTO}: no USB serial adapter is plugged in; name the port, as in --port /dev/ttyUSB0")]
-    None,
-    /// More than one.
-    #[error("{AUTO}: there are several, name one: {0}")]
-    Several(String),
-}
-
 /// The port that `name` means.
-pub fn find(name: &str) -> Result<String, NoPort> {
+pub fn find(name: &str) -> Result<String, String> {
     if name != AUTO {
         return Ok(name.to_owned());
     }
@@ -26,17 +15,17 @@ pub fn find(name: &str) -> Result<String, NoPort> {
 }
 
 /// The only one of `ports` that is a USB device's.
-fn choose(ports: &[SerialPortInfo]) -> Result<String, NoPort> {
+fn choose(ports: &[SerialPortInfo]) -> Result<String, String> {
     let over_usb = |port: &SerialPortInfo| {
         let SerialPortType::UsbPort(usb) = &port.port_type else { return None };
         Some((port.port_name.clone(), usb.product.clone().unwrap_or_else(|| "no name".to_owned())))
     };
     match &ports.iter().filter_map(over_usb).collect::<Vec<_>>()[..] {
-        [] => Err(NoPort::None),
+        [] => Err(format!("{AUTO}: no USB serial adapter is plugged in; name the port, as in --port /dev/ttyUSB0")),
         [(name, _)] => Ok(name.clone()),
         several => {
             let named: Vec<_> = several.iter().map(|(name, product)| format!("{name} ({product})")).collect();
-            Err(NoPort::Several(named.join(", ")))
+            Err(format!("{AUTO}: there are several, name one: {}", named.join(", ")))
         }
     }
 }
@@ -57,9 +46,10 @@ mod tests {
     fn the_one_adapter_that_is_plugged_in_is_taken() {
         let built_in = SerialPortInfo { port_name: "/dev/ttyS0".to_owned(), port_type: SerialPortType::Unknown };
         let [pico, other] = [usb("/dev/ttyACM0", Some("Double pendulum")), usb("/dev/ttyUSB0", None)];
-        assert_eq!(choose(std::slice::from_ref(&built_in)), Err(NoPort::None));
+        assert!(choose(std::slice::from_ref(&built_in)).is_err());
         assert_eq!(choose(&[built_in, pico.clone()]), Ok("/dev/ttyACM0".to_owned()));
-        let several = "/dev/ttyACM0 (Double pendulum), /dev/ttyUSB0 (no name)".to_owned();
-        assert_eq!(choose(&[pico, other]), Err(NoPort::Several(several)));
+        let several =
+            "auto: there are several, name one: /dev/ttyACM0 (Double pendulum), /dev/ttyUSB0 (no name)".to_owned();
+        assert_eq!(choose(&[pico, other]), Err(several));
     }
 }

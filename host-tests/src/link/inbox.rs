@@ -5,7 +5,6 @@ use firmware::protocol::{Decoder, Frame, LinkError, Message, Restarted};
 /// What the link has been through.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Intact messages.
     pub messages: u64,
     /// Messages damaged on the way: wrong CRC, framing, length or version.
     pub damaged: u64,
@@ -18,14 +17,11 @@ pub struct Counts {
 /// An intact message of any kind.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Received {
-    /// Tells which message it is.
     pub kind: u8,
-    /// Its fields as they came.
     pub fields: Vec<u8>,
 }
 
 impl Received {
-    /// The message, if it is an `M`.
     pub fn read<M: Message>(&self) -> Option<M> {
         if self.kind == M::KIND { M::read(&self.fields) } else { None }
     }
@@ -82,12 +78,10 @@ impl Inbox {
         self.decoder = Decoder::default();
     }
 
-    /// What the link has been through.
     pub fn counts(&self) -> Counts {
         self.counts
     }
 
-    /// What was wrong with the last damaged message.
     pub fn damage(&self) -> Option<LinkError> {
         self.damage
     }

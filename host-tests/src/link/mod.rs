@@ -4,6 +4,6 @@ mod find;
 mod inbox;
 mod port;
 
-pub use find::{AUTO, NoPort, find};
+pub use find::{AUTO, find};
 pub use inbox::{Counts, Inbox, Received};
 pub use port::Port;

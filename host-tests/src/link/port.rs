@@ -31,9 +31,7 @@ pub struct Port {
     notices: VecDeque<String>,
     /// When an intact message came last, or the port was opened, or last tried.
     since: Instant,
-    /// Bytes since then.
     bytes: usize,
-    /// What is the matter has been said.
     complained: bool,
 }
 
@@ -55,12 +53,10 @@ impl Port {
         })
     }
 
-    /// Its name.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// What the link has been through.
     pub fn counts(&self) -> Counts {
         self.inbox.counts()
     }
@@ -91,7 +87,6 @@ impl Port {
         self.send_bytes(encode(message, &mut wire));
     }
 
-    /// The same of any bytes.
     pub fn send_bytes(&mut self, bytes: &[u8]) {
         let Some(port) = &mut self.open else { return };
         let sent = port.set_timeout(ACCEPTANCE).map_err(std::io::Error::from).and_then(|()| port.write_all(bytes));
@@ -100,7 +95,6 @@ impl Port {
         }
     }
 
-    /// The bytes that are there.
     fn read(&mut self) -> Vec<u8> {
         let (mut bytes, mut buffer) = (Vec::new(), [0; 4096]);
         while bytes.len() < MOST_BYTES
@@ -149,7 +143,6 @@ impl Port {
         }
     }
 
-    /// Why no message comes.
     fn silence(&self) -> String {
         let Self { name, bytes, baud, .. } = self;
         match self.inbox.damage() {
@@ -193,7 +186,6 @@ fn reason(name: &str, error: &serialport::Error) -> String {
     }
 }
 
-/// The ports that there are.
 fn present() -> String {
     let ports = serialport::available_ports().unwrap_or_default();
     let names: Vec<_> = ports.into_iter().map(|port| port.port_name).collect();

@@ -3,22 +3,19 @@
 //! The board's clock counts instructions; how many cycles one takes is estimated on a frame of the first scene that QEMU
 //! logs whole. The table in the README is what `cargo test -p host-tests --test boards budgets:: -- --nocapture` prints.
 
-use std::error::Error;
 use std::path::Path;
 
 use crate::support::{LIMIT, application, settings, toolchain};
 use double_pendulum::Parameters;
 use firmware::config::TICK_RATE;
 use firmware::job::{ON_BOARDS, Request};
-use firmware::protocol::Field;
-use firmware::protocol::{Ask, Choose, Frame, MAX_WIRE, Message, Pause, Restart, Set, Step, encode};
+use firmware::protocol::{Ask, Choose, Field, Frame, MAX_WIRE, Message, Pause, Restart, Set, Step, encode};
 use firmware::scenes::SceneName;
 use host_tests::commands::count::{Cost, FrameProfile, Image};
 use host_tests::emulator::boards::{BOARDS, Board, PICO};
 use host_tests::emulator::budgets::{self, Memory};
-use host_tests::emulator::pico;
 use host_tests::emulator::qemu::{Lockstep, PAINT, Stack};
-use host_tests::emulator::toolchain;
+use host_tests::emulator::{pico, toolchain};
 use host_tests::link::Received;
 use object::elf::{SHF_ALLOC, SHF_WRITE};
 use object::{Object, ObjectSection, SectionFlags, SectionKind};
@@ -51,42 +48,42 @@ fn sections(elf: &Path) -> Memory {
 
 /// A board that goes from frame to frame.
 trait Stepped {
-    fn next(&mut self) -> Result<Frame, Box<dyn Error>>;
-    fn say(&mut self, bytes: &[u8]) -> Result<(), Box<dyn Error>>;
+    fn next(&mut self) -> anyhow::Result<Frame>;
+    fn say(&mut self, bytes: &[u8]) -> anyhow::Result<()>;
 }
 
 impl Stepped for Lockstep {
-    fn next(&mut self) -> Result<Frame, Box<dyn Error>> {
-        Ok(self.next_frame()?)
+    fn next(&mut self) -> anyhow::Result<Frame> {
+        self.next_frame()
     }
 
-    fn say(&mut self, bytes: &[u8]) -> Result<(), Box<dyn Error>> {
-        Ok(self.machine().serial.send_bytes(bytes)?)
+    fn say(&mut self, bytes: &[u8]) -> anyhow::Result<()> {
+        self.machine().serial.send_bytes(bytes)
     }
 }
 
 impl Stepped for pico::Machine {
-    fn next(&mut self) -> Result<Frame, Box<dyn Error>> {
+    fn next(&mut self) -> anyhow::Result<Frame> {
         Ok(self.run_to_frame()?.iter().rev().find_map(Received::read).expect("it ends with one"))
     }
 
-    fn say(&mut self, bytes: &[u8]) -> Result<(), Box<dyn Error>> {
-        Ok(self.send_bytes(bytes)?)
+    fn say(&mut self, bytes: &[u8]) -> anyhow::Result<()> {
+        self.send_bytes(bytes)
     }
 }
 
 /// Lets so many frames be drawn; the highest one's cost, counts of the board's clock.
-fn play(board: &mut impl Stepped, frames: usize) -> Result<u32, Box<dyn Error>> {
+fn play(board: &mut impl Stepped, frames: usize) -> anyhow::Result<u32> {
     (0..frames).try_fold(0, |highest, _| Ok(highest.max(board.next()?.busy_cycles)))
 }
 
-fn send<M: Message>(board: &mut impl Stepped, message: M) -> Result<(), Box<dyn Error>> {
+fn send<M: Message>(board: &mut impl Stepped, message: M) -> anyhow::Result<()> {
     board.say(encode(&message, &mut [0; MAX_WIRE]))
 }
 
 /// Plays every scene and sends every command, good and bad, requests of every kind, and garbage; what the highest frame
 /// of a scene's own start cost, counts of the board's clock.
-fn exercise(board: &mut impl Stepped) -> Result<u32, Box<dyn Error>> {
+fn exercise(board: &mut impl Stepped) -> anyhow::Result<u32> {
     let mut highest = 0;
     for &name in SceneName::ALL {
         send(board, Choose { request: 1, scene: name.code() })?;
@@ -126,7 +123,7 @@ fn exercise(board: &mut impl Stepped) -> Result<u32, Box<dyn Error>> {
     Ok(highest)
 }
 
-fn measure(board: &'static Board) -> Result<(Memory, f64), Box<dyn Error>> {
+fn measure(board: &'static Board) -> anyhow::Result<(Memory, f64)> {
     let (toolchain, elf) = (toolchain(), application(board));
     let image = Image::read(&elf)?;
     let stack = Stack::of(&elf)?;
@@ -159,10 +156,10 @@ fn beyond(name: &str, (memory, idle): (Memory, f64), budget: &Memory) -> Vec<Str
 }
 
 #[test]
-fn every_board_keeps_within_its_memory_and_its_time() -> Result<(), Box<dyn Error>> {
+fn every_board_keeps_within_its_memory_and_its_time() -> anyhow::Result<()> {
     let mut too_much = Vec::new();
     println!("| board | text | data | bss | stack | idle (estimated) |\n| --- | ---: | ---: | ---: | ---: | ---: |");
-    let measured: Vec<_> = BOARDS.par_iter().map(|board| measure(board).map_err(|error| error.to_string())).collect();
+    let measured: Vec<_> = BOARDS.par_iter().map(measure).collect();
     for ((board, measured), (name, budget)) in BOARDS.iter().zip(measured).zip(&budgets::MEMORY) {
         assert_eq!(board.name, *name, "a row for each board");
         too_much.extend(beyond(name, measured?, budget));
@@ -173,7 +170,7 @@ fn every_board_keeps_within_its_memory_and_its_time() -> Result<(), Box<dyn Erro
 
 /// Its emulator counts cycles itself, by the processor's manual; it knows of no waiting for the flash.
 #[test]
-fn the_pico_keeps_within_its_memory_and_its_time() -> Result<(), Box<dyn Error>> {
+fn the_pico_keeps_within_its_memory_and_its_time() -> anyhow::Result<()> {
     let emulator = toolchain::ready_for_pico().unwrap_or_else(|missing| panic!("{missing}"));
     let elf = application(&PICO);
     let stack = Stack::of(&elf)?.addresses();

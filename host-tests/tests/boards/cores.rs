@@ -8,8 +8,7 @@ use std::process::Command;
 use crate::support::LIMIT;
 use double_pendulum::Method;
 use firmware::job::Request;
-use host_tests::emulator::process;
-use host_tests::emulator::toolchain::{self, SetupError};
+use host_tests::emulator::{process, toolchain};
 
 /// A core, and what it is emulated by.
 struct Core {
@@ -22,7 +21,7 @@ struct Core {
 }
 
 /// Its emulator with the image.
-fn emulated(core: &Core) -> Result<Command, SetupError> {
+fn emulated(core: &Core) -> anyhow::Result<Command> {
     let toolchain = toolchain::set_up_for(core.target)?;
     let mut command = Command::new(match core.machine {
         Some(_) => toolchain.qemu().to_owned(),

@@ -52,20 +52,10 @@ fn panic(_: &core::panic::PanicInfo) -> ! { loop {} }
     std::fs::write(&source, SOURCE.replace("LAST", last)).unwrap_or_else(|error| panic!("{error}"));
     let mut rustc = Command::new("rustc");
     rustc.args(["--edition", "2024", "-O", "-C", "panic=abort", "--target", BOARDS[0].target]);
-    rustc
-        .args([
-            "-C",
-            "link-arg=--entry=start",
-            "-C",
-            "link-arg=--image-base=0",
-            "-C",
-            "link-arg=--nmagic",
-            "-C",
-            &format!("link-arg=-Ttext={address}"),
-            "-o",
-        ])
-        .arg(&elf)
-        .arg(&source);
+    for option in ["--entry=start", "--image-base=0", "--nmagic", &format!("-Ttext={address}")] {
+        rustc.arg(format!("-Clink-arg={option}"));
+    }
+    rustc.arg("-o").arg(&elf).arg(&source);
     let output = process::run(&mut rustc, crate::support::LIMIT).unwrap_or_else(|error| panic!("{error}"));
     assert!(output.status.success(), "{output:?}");
     elf
@@ -92,10 +82,7 @@ fn functions_and_labels_are_counted_and_the_end_is_told() {
     let folder = folder();
     let elf = program(folder.path(), "0x0", ENDS);
     let output = count(&elf, "label", &[]);
-    assert!(
-        output.status.success() && output.stderr.contains("the program ended by itself, exit status: 0"),
-        "{output:?}"
-    );
+    assert!(output.stderr.contains("the program ended by itself, exit status: 0"), "{output:?}");
     let lines: Vec<_> = output.stdout.lines().collect();
     let [head, limits, _, instructions, cycles] = lines[..] else { panic!("{output:?}") };
     assert_eq!(head, "label on lm3s6965evb, from its first instruction to its return: calls 3");
@@ -109,10 +96,8 @@ fn functions_and_labels_are_counted_and_the_end_is_told() {
     let names = file.symbols().filter_map(|symbol| symbol.name().ok().map(str::to_owned));
     let mangled = names.into_iter().find(|name| name.contains("step")).unwrap_or_default();
     let by_name = count(&elf, "program::inner::step", &[]);
-    assert!(
-        by_name.stdout.starts_with("program::inner::step on") && by_name.stdout.contains(": calls 3\n"),
-        "{by_name:?}"
-    );
+    let is_it = |line: &str| line.starts_with("program::inner::step on") && line.ends_with(": calls 3");
+    assert!(by_name.stdout.lines().next().is_some_and(is_it), "{by_name:?}");
     assert_eq!(count(&elf, &mangled, &[]).stdout, by_name.stdout);
 }
 
@@ -148,6 +133,4 @@ fn what_cannot_be_counted_is_said_in_a_line() {
         assert_eq!((output.status.code(), output.stdout.as_str()), (Some(code), ""), "{output:?}");
         assert!(output.stderr.lines().last().is_some_and(|line| line.contains(reason)), "{reason}: {output:?}");
     }
-    let output = count(&ends, "label", &["--listing"]);
-    assert!(output.status.code() == Some(2) && output.stderr.contains("--listing"), "{output:?}");
 }

@@ -6,7 +6,7 @@ use firmware::config::{ANGLE_STEP, MASS_RATIOS};
 use firmware::protocol::Frame;
 use firmware::scenes::SceneName;
 use host_tests::emulator::boards::{BOARDS, Board};
-use host_tests::emulator::qemu::{Machine, QemuError};
+use host_tests::emulator::qemu::Machine;
 
 /// Frames until the firmware has noticed that a button is released, however late the host's word reaches it.
 const SETTLING: usize = 60;
@@ -14,11 +14,11 @@ const SETTLING: usize = 60;
 const PATIENCE: usize = 2000;
 
 #[test]
-fn buttons_choose_and_restart() -> Result<(), QemuError> {
+fn buttons_choose_and_restart() -> anyhow::Result<()> {
     BOARDS.iter().filter(|board| board.has_panel).try_for_each(choose_and_restart)
 }
 
-fn choose_and_restart(board: &Board) -> Result<(), QemuError> {
+fn choose_and_restart(board: &Board) -> anyhow::Result<()> {
     let mut machine = on(board, Machine::start)?;
     settle(&mut machine)?;
     machine.wake_keys()?;
@@ -42,7 +42,7 @@ fn choose_and_restart(board: &Board) -> Result<(), QemuError> {
 }
 
 /// Holds a button until a motion starts, and lets go: the frames before and after that.
-fn press(machine: &mut Machine, key: Key) -> Result<(Frame, Frame), QemuError> {
+fn press(machine: &mut Machine, key: Key) -> anyhow::Result<(Frame, Frame)> {
     let mut before = settle(machine)?;
     machine.set_key(key, true)?;
     for _ in 0..PATIENCE {
@@ -58,7 +58,7 @@ fn press(machine: &mut Machine, key: Key) -> Result<(Frame, Frame), QemuError> {
 }
 
 /// Lets go by what is under way; the last frame of it, since which nothing has restarted for a while.
-fn settle(machine: &mut Machine) -> Result<Frame, QemuError> {
+fn settle(machine: &mut Machine) -> anyhow::Result<Frame> {
     let mut last: Frame = machine.wait_for()?;
     let mut quiet = 0;
     while quiet < SETTLING {

@@ -4,11 +4,11 @@ use crate::support::{guarded, on, settings, toolchain};
 use firmware::protocol::Frame;
 use host_tests::commands::count::Image;
 use host_tests::emulator::boards::{BOARDS, Board};
-use host_tests::emulator::qemu::{Lockstep, Machine, QemuError};
+use host_tests::emulator::qemu::{Lockstep, Machine};
 use object::{Object, ObjectSymbol};
 
 /// What the binary says before its end, which must be a failure; and the program itself.
-fn crash(board: &Board, binary: &str) -> Result<(String, Image), QemuError> {
+fn crash(board: &Board, binary: &str) -> anyhow::Result<(String, Image)> {
     let toolchain = toolchain();
     let elf = toolchain.build(binary, board.target).unwrap_or_else(|error| panic!("{error}"));
     let (status, lines) = Machine::start(&settings(&toolchain, board, &elf))?.wait()?;
@@ -27,7 +27,7 @@ fn function_after(what: &str, report: &str, image: &Image) -> String {
 }
 
 #[test]
-fn a_panic_tells_where_and_why() -> Result<(), QemuError> {
+fn a_panic_tells_where_and_why() -> anyhow::Result<()> {
     for board in &BOARDS {
         let (report, image) = crash(board, "inject-panic")?;
         for part in
@@ -44,7 +44,7 @@ fn a_panic_tells_where_and_why() -> Result<(), QemuError> {
 }
 
 #[test]
-fn a_hard_fault_tells_where_and_why() -> Result<(), QemuError> {
+fn a_hard_fault_tells_where_and_why() -> anyhow::Result<()> {
     for board in &BOARDS {
         let (report, image) = crash(board, "inject-hardfault")?;
         let parts = if board.is_guarded() {
@@ -62,7 +62,7 @@ fn a_hard_fault_tells_where_and_why() -> Result<(), QemuError> {
 }
 
 #[test]
-fn a_board_whose_stack_has_no_guard_says_so() -> Result<(), QemuError> {
+fn a_board_whose_stack_has_no_guard_says_so() -> anyhow::Result<()> {
     for board in BOARDS.iter().filter(|board| !board.is_guarded()) {
         let mut machine = on(board, Machine::start)?;
         machine.wait_for::<Frame>()?;
@@ -73,7 +73,7 @@ fn a_board_whose_stack_has_no_guard_says_so() -> Result<(), QemuError> {
 }
 
 #[test]
-fn a_stack_overflow_is_named_as_such() -> Result<(), QemuError> {
+fn a_stack_overflow_is_named_as_such() -> anyhow::Result<()> {
     for board in guarded() {
         let (report, image) = crash(board, "inject-stack-overflow")?;
         for part in ["HARDFAULT: stack overflow", "pc and lr are lost", "cfsr 0x000000", "mmfar 0x20007f"] {
@@ -86,7 +86,7 @@ fn a_stack_overflow_is_named_as_such() -> Result<(), QemuError> {
 }
 
 #[test]
-fn a_stack_overflow_changes_nothing_below_the_stack() -> Result<(), Box<dyn std::error::Error>> {
+fn a_stack_overflow_changes_nothing_below_the_stack() -> anyhow::Result<()> {
     let toolchain = toolchain();
     for board in guarded() {
         let elf = toolchain.build("inject-stack-overflow", board.target)?;

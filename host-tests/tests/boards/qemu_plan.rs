@@ -11,7 +11,7 @@ use firmware::protocol::{AskPlan, Choose, Done, Frame, NO_METHOD, Planned, limit
 use firmware::scenes::SceneName;
 use host_tests::emulator::boards::{BOARDS, Board};
 use host_tests::emulator::host::Show;
-use host_tests::emulator::qemu::{Machine, QemuError};
+use host_tests::emulator::qemu::Machine;
 use rayon::prelude::*;
 
 /// One that goes another way soon, nothing that moves; a motion that ends early, a model.
@@ -29,17 +29,17 @@ fn told(show: &Show) -> Told {
 }
 
 #[test]
-fn every_board_finds_the_hosts_plan_and_follows_it_from_the_same_tick() -> Result<(), QemuError> {
+fn every_board_finds_the_hosts_plan_and_follows_it_from_the_same_tick() -> anyhow::Result<()> {
     every_board_plans(&SCENES[..2])
 }
 
 #[test]
 #[ignore = "minutes: two scenes more"]
-fn every_board_plans_as_the_host_does_whatever_it_shows() -> Result<(), QemuError> {
+fn every_board_plans_as_the_host_does_whatever_it_shows() -> anyhow::Result<()> {
     every_board_plans(&SCENES[2..])
 }
 
-fn every_board_plans(scenes: &[SceneName]) -> Result<(), QemuError> {
+fn every_board_plans(scenes: &[SceneName]) -> anyhow::Result<()> {
     BOARDS.par_iter().try_for_each(|board| {
         let mut machine = on(board, Machine::start)?;
         machine.wait_for::<Frame>()?;
@@ -56,35 +56,22 @@ fn every_board_plans(scenes: &[SceneName]) -> Result<(), QemuError> {
 }
 
 /// Frame by frame as the host shows it, then the answer and the log.
-fn followed(machine: &mut Machine, board: &Board, name: SceneName) -> Result<(), QemuError> {
+fn followed(machine: &mut Machine, board: &Board, name: SceneName) -> anyhow::Result<()> {
     let mut show = Show::on(board.processor(), name, &name.first_settings()).expect("a scene of the catalogue");
     let mut changes = 0;
     loop {
         let frame: Frame = machine.wait_for()?;
-        assert_eq!(
-            frame.dropped,
-            0,
-            "{}: {}, tick {}, busy {}",
-            board.name,
-            name.name(),
-            frame.step,
-            frame.busy_cycles
-        );
+        let at = format!("{}: {}, tick {}", board.name, name.name(), frame.step);
+        assert_eq!(frame.dropped, 0, "{at}, busy {}", frame.busy_cycles);
         while show.report().step < frame.step.into() {
             let before = show.report().way;
             show.tick();
             changes += usize::from(show.report().way != before);
         }
         let received = (frame.method, frame.way_steps, frame.horizon, frame.is_looking);
-        assert_eq!(received, told(&show), "{}: {}, tick {}", board.name, name.name(), frame.step);
-        assert_eq!(
-            frame.state.map(f32::to_bits),
-            <[f32; 4]>::from(show.report().state).map(f32::to_bits),
-            "{}: {}, tick {}",
-            board.name,
-            name.name(),
-            frame.step
-        );
+        assert_eq!(received, told(&show), "{at}");
+        let state: [f32; 4] = show.report().state.into();
+        assert_eq!(frame.state.map(f32::to_bits), state.map(f32::to_bits), "{at}");
         if frame.step >= FOLLOWED {
             break;
         }
@@ -100,13 +87,9 @@ fn followed(machine: &mut Machine, board: &Board, name: SceneName) -> Result<(),
     println!("{} {}: {} changes, {plan:?}", board.name, name.name(), changes);
     assert_eq!(name == SceneName::Frequencies, plan.is_none(), "{}: {} {lines:#?}", board.name, name.name());
     let Some(Plan { method, steps, error, cost, limit, .. }) = plan else { return Ok(()) };
-    assert_eq!(
-        (answer.found, answer.method, answer.steps, answer.error, answer.cycles, answer.limit),
-        (2, method_code(method), steps, HALF_PIXEL * error, cost, limit_code(limit)),
-        "{}: {}",
-        board.name,
-        name.name()
-    );
+    let answered = (answer.found, answer.method, answer.steps, answer.error, answer.cycles, answer.limit);
+    let expected = (2, method_code(method), steps, HALF_PIXEL * error, cost, limit_code(limit));
+    assert_eq!(answered, expected, "{}: {}", board.name, name.name());
     // What is said at the start may have come before the first frame of it.
     assert!(logged("plan: ") == 1 && (changes..=1 + changes).contains(&logged("shown: ")), "{lines:#?}");
     assert_eq!(changes > 0, name == SceneName::Beats2To1 && method != Method::Extrapolation10Fixed64, "{lines:#?}");

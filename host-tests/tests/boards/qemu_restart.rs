@@ -3,7 +3,6 @@
 //! They are injected into the images that are flashed, from outside: a debugger stops the board in the middle of a frame
 //! that is drawn but not yet sent, and sends its processor elsewhere.
 
-use std::error::Error;
 use std::path::Path;
 use std::thread::sleep;
 use std::time::Duration;
@@ -14,7 +13,7 @@ use firmware::app::warm_restart::{Cause, MOST_RESTARTS};
 use firmware::protocol::{Choose, Field, Frame, Restarted, Set};
 use firmware::scenes::SceneName;
 use host_tests::emulator::boards::{BOARDS, Board, STM32F405};
-use host_tests::emulator::qemu::{Clock, Lockstep, Machine, QemuError, Register, Settings};
+use host_tests::emulator::qemu::{Clock, Lockstep, Machine, Register, Settings};
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 
@@ -32,7 +31,7 @@ const MASS_RATIO: f32 = 0.7;
 
 /// A board that stands still in the middle of a frame of `scene`, with a mass ratio of its own: the last frame it has
 /// sent.
-fn within(probe: &mut Lockstep, elf: &Path, scene: SceneName) -> Result<Frame, QemuError> {
+fn within(probe: &mut Lockstep, elf: &Path, scene: SceneName) -> anyhow::Result<Frame> {
     // A serial port that is not yet on takes no bytes.
     let stopwatch = address(elf, STOPWATCH);
     probe.run_to(stopwatch)?;
@@ -61,7 +60,7 @@ fn within(probe: &mut Lockstep, elf: &Path, scene: SceneName) -> Result<Frame, Q
 }
 
 /// Puts an instruction where it disturbs nothing, and the processor there.
-fn execute(probe: &mut Lockstep, instruction: [u8; 2]) -> Result<(), QemuError> {
+fn execute(probe: &mut Lockstep, instruction: [u8; 2]) -> anyhow::Result<()> {
     probe.write(UNUSED, &instruction)?;
     probe.divert(&[(Register::Pc, UNUSED)])
 }
@@ -72,8 +71,8 @@ fn boards_say(
     boards: impl Iterator<Item = &'static Board>,
     scene: SceneName,
     parts: &[&str],
-    spoil: impl Fn(&mut Lockstep, &Path) -> Result<(), QemuError>,
-) -> Result<(), QemuError> {
+    spoil: impl Fn(&mut Lockstep, &Path) -> anyhow::Result<()>,
+) -> anyhow::Result<()> {
     for board in boards {
         let elf = application(board);
         let mut probe = on(board, Lockstep::start)?;
@@ -91,7 +90,7 @@ fn boards_say(
 }
 
 #[test]
-fn a_fault_in_a_picture_tells_the_scene_and_the_step() -> Result<(), QemuError> {
+fn a_fault_in_a_picture_tells_the_scene_and_the_step() -> anyhow::Result<()> {
     let registers = format!("pc {UNUSED:#010x}  lr 0x12345679");
     let spoil = |probe: &mut Lockstep, _: &Path| {
         execute(probe, UNDEFINED)?;
@@ -104,14 +103,14 @@ fn a_fault_in_a_picture_tells_the_scene_and_the_step() -> Result<(), QemuError> 
 }
 
 #[test]
-fn a_stack_that_overflows_in_a_picture_meets_the_guard() -> Result<(), QemuError> {
+fn a_stack_that_overflows_in_a_picture_meets_the_guard() -> anyhow::Result<()> {
     boards_say(guarded(), SceneName::Butterfly, &["HARDFAULT: stack overflow"], |probe, elf| {
         probe.divert(&[(Register::Sp, UNUSED), (Register::Pc, address(elf, "Player::execute"))])
     })
 }
 
 #[test]
-fn a_panic_in_a_picture_tells_the_scene_and_the_step() -> Result<(), QemuError> {
+fn a_panic_in_a_picture_tells_the_scene_and_the_step() -> anyhow::Result<()> {
     let parts = ["PANIC: panicked at ", "divisor of zero\n", "pc 0x", "lr 0x", "cfsr 0x00000000"];
     boards_say(BOARDS.iter(), SceneName::Upright, &parts, |probe, elf| {
         // One of the few panics in the image.
@@ -127,8 +126,8 @@ const PATIENCE: Duration = Duration::from_secs(120);
 fn watched(
     scene: SceneName,
     debugger: bool,
-    mut check: impl FnMut(&Board, &Path, Lockstep, Frame) -> Result<(), QemuError>,
-) -> Result<(), QemuError> {
+    mut check: impl FnMut(&Board, &Path, Lockstep, Frame) -> anyhow::Result<()>,
+) -> anyhow::Result<()> {
     for board in BOARDS.iter().filter(|board| **board != STM32F405) {
         let elf = application(board);
         let start = |settings: &Settings| Lockstep::start(&Settings { debugger, limit: PATIENCE, ..*settings });
@@ -140,7 +139,7 @@ fn watched(
 }
 
 #[test]
-fn a_board_that_hangs_comes_back_where_it_was_and_says_why() -> Result<(), QemuError> {
+fn a_board_that_hangs_comes_back_where_it_was_and_says_why() -> anyhow::Result<()> {
     watched(SceneName::Butterfly, true, |board, _, mut probe, before| {
         execute(&mut probe, HANG)?;
         let machine = probe.run()?;
@@ -167,7 +166,7 @@ fn a_board_that_hangs_comes_back_where_it_was_and_says_why() -> Result<(), QemuE
 }
 
 #[test]
-fn without_a_debugger_a_fault_restarts_the_board() -> Result<(), QemuError> {
+fn without_a_debugger_a_fault_restarts_the_board() -> anyhow::Result<()> {
     watched(SceneName::Figure7, false, |board, elf, mut probe, before| {
         for restarts in 1..=MOST_RESTARTS + 1 {
             execute(&mut probe, UNDEFINED)?;
@@ -196,7 +195,7 @@ fn without_a_debugger_a_fault_restarts_the_board() -> Result<(), QemuError> {
 
 /// The watchdog's call that cannot be masked comes in the middle of a report that takes long: the fault stays the reason.
 #[test]
-fn a_report_that_takes_long_is_no_hang() -> Result<(), QemuError> {
+fn a_report_that_takes_long_is_no_hang() -> anyhow::Result<()> {
     watched(SceneName::Butterfly, true, |board, elf, mut probe, _| {
         execute(&mut probe, UNDEFINED)?;
         probe.run_to(address(elf, "crash::say"))?;
@@ -212,7 +211,7 @@ fn a_report_that_takes_long_is_no_hang() -> Result<(), QemuError> {
 
 /// A host that stops QEMU, or has no time for it, is no fault of the firmware: its clock has not ticked meanwhile.
 #[test]
-fn a_board_whose_emulator_pauses_does_not_take_it_for_a_hang() -> Result<(), Box<dyn Error>> {
+fn a_board_whose_emulator_pauses_does_not_take_it_for_a_hang() -> anyhow::Result<()> {
     /// Longer than the watchdog's two stages.
     const PAUSE: Duration = Duration::from_millis(2500);
     for board in BOARDS.iter().filter(|board| **board != STM32F405) {
@@ -237,7 +236,7 @@ fn a_board_whose_emulator_pauses_does_not_take_it_for_a_hang() -> Result<(), Box
 
 /// A host that sends faster than the board reads is told how much it has lost.
 #[test]
-fn received_bytes_that_are_lost_are_counted() -> Result<(), QemuError> {
+fn received_bytes_that_are_lost_are_counted() -> anyhow::Result<()> {
     // Broken messages of a byte each, of which a board takes no more than four a tick: many times what its queue holds.
     let flood = [0, 1].repeat(10_000);
     for board in &BOARDS {

@@ -10,7 +10,7 @@ use host_tests::commands::count::{Cost, FrameProfile, Image, Part};
 use host_tests::emulator::boards::{BOARDS, Board, Core};
 use host_tests::emulator::budgets;
 use host_tests::emulator::host::Show;
-use host_tests::emulator::qemu::{Lockstep, Machine, QemuError};
+use host_tests::emulator::qemu::{Lockstep, Machine};
 use rayon::prelude::*;
 
 /// Frames compared for each scene, and frames from one to the next.
@@ -36,7 +36,7 @@ fn panels() -> impl ParallelIterator<Item = &'static Board> {
 }
 
 /// Chooses a scene; the first frame of it.
-fn choose(machine: &mut Lockstep, name: SceneName) -> Result<Frame, QemuError> {
+fn choose(machine: &mut Lockstep, name: SceneName) -> anyhow::Result<Frame> {
     machine.machine().serial.send(&Choose { request: 1, scene: name.code() })?;
     loop {
         let frame = machine.next_frame()?;
@@ -47,7 +47,7 @@ fn choose(machine: &mut Lockstep, name: SceneName) -> Result<Frame, QemuError> {
 }
 
 #[test]
-fn the_panel_shows_what_the_host_draws() -> Result<(), QemuError> {
+fn the_panel_shows_what_the_host_draws() -> anyhow::Result<()> {
     panels().try_for_each(|board| {
         let mut machine = on(board, Lockstep::start)?;
         // The map of flips is computed in another arithmetic and at another pace where there is a floating-point unit: test
@@ -138,7 +138,7 @@ fn too_costly(board: &Board) -> anyhow::Result<Vec<String>> {
 const PATIENCE: usize = 60;
 
 #[test]
-fn garbage_on_the_link_disturbs_nothing() -> Result<(), QemuError> {
+fn garbage_on_the_link_disturbs_nothing() -> anyhow::Result<()> {
     let mut machine = on(&BOARDS[0], Machine::start)?;
     let mut rng = Rng::with_seed(7);
     for frame in 0..15 * TICK_RATE {

@@ -7,11 +7,11 @@ use firmware::config::{GRAVITY, MOST_MEASURED_STEPS};
 use firmware::job::{ON_BOARDS, Request};
 use firmware::protocol::{Frame, Measure, Measured};
 use host_tests::emulator::boards::STM32F405;
-use host_tests::emulator::qemu::{Lockstep, Machine, QemuError};
+use host_tests::emulator::qemu::{Lockstep, Machine};
 use object::{Object, ObjectSegment};
 
 #[test]
-fn the_image_is_for_the_chips_memory() -> Result<(), Box<dyn std::error::Error>> {
+fn the_image_is_for_the_chips_memory() -> anyhow::Result<()> {
     let bytes = std::fs::read(application(&STM32F405))?;
     let image = object::File::parse(&*bytes)?;
     let (flash, ram) = (0x0800_0000..0x0810_0000, 0x2000_0000..0x2002_0000);
@@ -24,7 +24,7 @@ fn the_image_is_for_the_chips_memory() -> Result<(), Box<dyn std::error::Error>>
 
 /// The chip's own loader starts the program while its ROM stands at address 0: the processor must be told where the vectors are.
 #[test]
-fn the_vector_table_is_the_programs_own_wherever_it_is_started_from() -> Result<(), QemuError> {
+fn the_vector_table_is_the_programs_own_wherever_it_is_started_from() -> anyhow::Result<()> {
     const VTOR: u32 = 0xe000_ed08;
     let mut probe = on(&STM32F405, Lockstep::start)?;
     assert_eq!(probe.read(VTOR..VTOR + 4)?, [0; 4]);
@@ -34,7 +34,7 @@ fn the_vector_table_is_the_programs_own_wherever_it_is_started_from() -> Result<
 }
 
 #[test]
-fn without_a_panel_it_says_so_and_goes_on() -> Result<(), QemuError> {
+fn without_a_panel_it_says_so_and_goes_on() -> anyhow::Result<()> {
     /// Long enough for the panel to be looked for again, several times.
     const FRAMES: u32 = 300;
     let mut machine = on(&STM32F405, Machine::start)?;
@@ -52,7 +52,7 @@ fn without_a_panel_it_says_so_and_goes_on() -> Result<(), QemuError> {
 
 /// Every method's from its copy in memory: a branch into nowhere would end the application.
 #[test]
-fn its_steps_run_in_flash_and_in_memory() -> Result<(), QemuError> {
+fn its_steps_run_in_flash_and_in_memory() -> anyhow::Result<()> {
     let mut machine = on(&STM32F405, Machine::start)?;
     // It listens from here on.
     machine.wait_for::<Frame>()?;
@@ -70,11 +70,9 @@ fn its_steps_run_in_flash_and_in_memory() -> Result<(), QemuError> {
         machine.serial.send(&motion.message(request))?;
         for in_ram in [0, 1] {
             machine.serial.send(&Measure { request, steps: MOST_MEASURED_STEPS, in_ram })?;
-            assert_eq!(
-                machine.wait_for::<Measured>()?,
-                Measured { request, steps: MOST_MEASURED_STEPS, cycles: 0 },
-                "QEMU counts none"
-            );
+            // QEMU counts none.
+            let measured = Measured { request, steps: MOST_MEASURED_STEPS, cycles: 0 };
+            assert_eq!(machine.wait_for::<Measured>()?, measured);
         }
     }
     machine.wait_for::<Frame>()?;

@@ -9,7 +9,7 @@ use firmware::protocol::Frame;
 use firmware::scenes::SceneName;
 use host_tests::emulator::boards::BOARDS;
 use host_tests::emulator::host::Show;
-use host_tests::emulator::qemu::{Machine, QemuError};
+use host_tests::emulator::qemu::Machine;
 
 /// How often the log is looked at.
 const POLL: Duration = Duration::from_millis(20);
@@ -18,7 +18,7 @@ const FRAMES: usize = 120;
 
 /// On the one board whose emulated port says that it is full; the others' stand still with the whole machine.
 #[test]
-fn a_host_that_stops_reading_loses_frames_and_nothing_else() -> Result<(), QemuError> {
+fn a_host_that_stops_reading_loses_frames_and_nothing_else() -> anyhow::Result<()> {
     let board = BOARDS.iter().find(|board| board.name == "mps2-an386").expect("it is a board");
     let mut machine = on(board, Machine::start)?;
     let first: Frame = machine.wait_for()?;

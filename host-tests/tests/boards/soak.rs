@@ -12,7 +12,7 @@ use firmware::config::TICK_RATE;
 use firmware::protocol::{Choose, Frame};
 use firmware::scenes::SceneName;
 use host_tests::emulator::boards::{BOARDS, Board};
-use host_tests::emulator::qemu::{Lockstep, QemuError, Settings, Stack};
+use host_tests::emulator::qemu::{Lockstep, Settings, Stack};
 use host_tests::link::{Counts, Received};
 use rayon::prelude::*;
 
@@ -39,18 +39,18 @@ const INTERRUPT: u32 = 108 + 96;
 const NO_PANEL: &str = "panel: Absent";
 
 #[test]
-fn every_board_plays_all_scenes_twice_alike() -> Result<(), QemuError> {
+fn every_board_plays_all_scenes_twice_alike() -> anyhow::Result<()> {
     BOARDS.par_iter().try_for_each(|board| plays(board, SHORT, LIMIT))
 }
 
 #[test]
 #[ignore = "an hour of five boards"]
-fn every_board_plays_all_scenes_twice_alike_for_an_hour() -> Result<(), QemuError> {
+fn every_board_plays_all_scenes_twice_alike_for_an_hour() -> anyhow::Result<()> {
     BOARDS.par_iter().try_for_each(|board| plays(board, LONG, LONG_LIMIT))
 }
 
 /// Plays every scene twice, in `seconds` of the board's time all together.
-fn plays(board: &Board, seconds: u32, limit: Duration) -> Result<(), QemuError> {
+fn plays(board: &Board, seconds: u32, limit: Duration) -> anyhow::Result<()> {
     let ticks = seconds * TICK_RATE / (ROUNDS * SceneName::ALL.len() as u32);
     let stack = Stack::of(&application(board))?;
     let mut machine = on(board, |settings| Lockstep::start(&Settings { limit, ..*settings }))?;

@@ -1,7 +1,5 @@
 //! The steps of every method, which real boards have twice, in flash and in memory: they run wherever they are copied.
 
-use std::error::Error;
-
 use crate::support::application;
 use crate::support::code::Code;
 use host_tests::emulator::boards::{PICO, STM32F405};
@@ -16,7 +14,7 @@ const STEPS: [(&str, &str); 4] = [
 ];
 
 #[test]
-fn no_branch_leads_out_of_the_steps() -> Result<(), Box<dyn Error>> {
+fn no_branch_leads_out_of_the_steps() -> anyhow::Result<()> {
     const RAM: u32 = 0x2000_0000;
     for (board, runs_in_ram) in [(&STM32F405, false), (&PICO, true)] {
         let elf = application(board);

@@ -23,10 +23,10 @@ pub fn output(command: &mut Command) -> Output {
     run(command, LIMIT).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// What a command line of this project's does, as a snapshot has it.
-fn played(line: &str) -> String {
+/// What a command line of this project's does in `folder`, as a snapshot has it.
+fn played(line: &str, folder: &Path) -> String {
     let mut words = line.split_whitespace();
-    let output = output(program(words.next().unwrap_or_default()).args(words));
+    let output = output(program(words.next().unwrap_or_default()).args(words).current_dir(folder));
     let mut text = format!("$ {line}\n");
     for (mark, said) in [('>', output.stdout), ('!', output.stderr)] {
         text.extend(said.lines().map(|line| format!("{mark} {line}\n")));
@@ -37,14 +37,15 @@ fn played(line: &str) -> String {
 
 #[test]
 fn commands_say_what_they_said() {
+    let empty = tempfile::tempdir().expect("a folder");
     let folder = workspace().join("host-tests/tests/commands/snapshots");
     let files = fs::read_dir(folder).expect("the snapshots").map(|file| file.expect("a file").path());
     let mut differences = Vec::new();
     for file in files {
         let old = fs::read_to_string(&file).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
         let lines: Vec<_> = old.lines().filter_map(|line| line.strip_prefix("$ ")).collect();
-        let blocks: Vec<_> = lines.par_iter().map(|line| played(line)).collect();
-        // Every refusal: one line, nothing on stdout, exit code 2.
+        let blocks: Vec<_> = lines.par_iter().map(|line| played(line, empty.path())).collect();
+        // Every refusal: one line, nothing on stdout, exit code 2, nothing written.
         for block in blocks.iter().filter(|_| file.ends_with("refused.txt")) {
             let lines: Vec<_> = block.lines().collect();
             assert!(matches!(lines[..], [_, why, "exit 2"] if why.starts_with("! error: ")), "{block}");
@@ -56,5 +57,6 @@ fn commands_say_what_they_said() {
             differences.extend(blocks.iter().filter(is_new).map(|block| format!("{}\n{block}", file.display())));
         }
     }
+    assert_eq!(fs::read_dir(&empty).expect("a folder").count(), 0, "something is written");
     assert!(differences.is_empty(), "accept by {BLESS}=1:\n{}", differences.join("\n"));
 }

@@ -51,11 +51,8 @@ fn one_flipped_bit_is_named_and_fails() {
     };
     let output = demo(&mut bench, &["--seconds", "8"], |bench| bench.carry(flipped));
     assert_eq!(output.status.code(), Some(1), "{output:?}");
-    assert!(
-        output.stderr.contains("not well: frame 300, step ") && output.stderr.contains(": p1 is 0x"),
-        "{}",
-        output.stderr
-    );
+    let is_it = |line: &str| line.starts_with("not well: frame 300, step ") && line.contains(": p1 is 0x");
+    assert!(output.stderr.lines().any(is_it), "{}", output.stderr);
 }
 
 #[test]
@@ -150,9 +147,6 @@ fn a_port_where_nothing_comes_is_given_up() {
     let mut bench = Bench::new();
     let output = demo(&mut bench, &[], |_| sleep(WAIT));
     assert_eq!((output.status.code(), output.stdout.as_str()), (Some(1), ""), "{output:?}");
-    assert!(
-        output.stderr.contains("nothing comes") && output.stderr.contains("no frame for 10 s"),
-        "{}",
-        output.stderr
-    );
+    let said = ["nothing comes", "no frame for 10 s"].map(|words| output.stderr.contains(words));
+    assert_eq!(said, [true; 2], "{}", output.stderr);
 }

@@ -3,8 +3,10 @@
 
 use clap::Parser;
 use double_pendulum::plan::{Budget, Limit, Problem, Search};
-use double_pendulum::{DirectionF32, DirectionF32Plain, DirectionF64, ExtrapolationF64, Fixed32, Fixed64, Form};
-use double_pendulum::{EqualRods, Error, Method, Modes, Motion, Parameters, Pendulum, Real, State, Units};
+use double_pendulum::{
+    DirectionF32, DirectionF32Plain, DirectionF64, EqualRods, Error, ExtrapolationF64, Fixed32, Fixed64, Form, Method,
+    Modes, Motion, Parameters, Pendulum, Real, State, Units,
+};
 use fastrand::Rng;
 use firmware::app::App;
 use firmware::app::controls::NoButtons;

@@ -18,6 +18,9 @@ use host_tests::emulator::boards::BOARDS;
 use host_tests::emulator::process::{self, Output};
 use host_tests::link::Received;
 
+/// Of a method whose cycles no one counts.
+const UNCOUNTED: &str = "| no cycle counter | no cycle counter | - |";
+
 fn verify(report: &Path, wire: impl Fn(&Received) -> Vec<u8>) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_verify-board"));
     command.args(["--no-questions", "--report"]).arg(report);
@@ -31,8 +34,7 @@ fn a_board_with_the_hosts_bits_is_told_so_and_reported() {
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     assert!(output.stdout.contains("every bit the host's"), "{}", output.stdout);
     let markdown = fs::read_to_string(folder.path().join("mps2.md")).expect("the report");
-    let uncounted = "| no cycle counter | no cycle counter | - |";
-    assert_eq!(markdown.matches(uncounted).count(), ON_BOARDS.len(), "{markdown}");
+    assert_eq!(markdown.matches(UNCOUNTED).count(), ON_BOARDS.len(), "{markdown}");
     let head = [format!("# {}\n", BOARD.name), format!(", {} Hz\n", BOARD.hertz), "built from commit ".to_owned()];
     assert!(head.iter().all(|part| markdown.contains(part)), "{markdown}");
     let agree = |columns: usize| {
@@ -162,11 +164,7 @@ fn what_the_person_says_and_the_chip_counts_is_in_the_report() {
         markdown.split_once(&counted).and_then(|(_, rest)| rest.split(' ').next()?.parse().ok());
     // A step of it takes some 23,000 cycles (`cargo count`).
     assert!(estimate.is_some_and(|estimate| (1e4..4e4).contains(&estimate)), "{markdown}");
-    assert_eq!(
-        markdown.matches("| no cycle counter | no cycle counter | - |").count(),
-        ON_BOARDS.len() - 1,
-        "{markdown}"
-    );
+    assert_eq!(markdown.matches(UNCOUNTED).count(), ON_BOARDS.len() - 1, "{markdown}");
 }
 
 /// The lines as they come.

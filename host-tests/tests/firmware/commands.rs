@@ -2,9 +2,8 @@
 
 use std::f64::consts::PI;
 
-use double_pendulum::Method;
-use double_pendulum::Parameters;
 use double_pendulum::plan::Way;
+use double_pendulum::{Method, Parameters};
 use fastrand::Rng;
 use firmware::app::Event;
 use firmware::app::controls::Key;

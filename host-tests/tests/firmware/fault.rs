@@ -45,39 +45,25 @@ fn what_is_refused_just_below_the_stack_is_an_overflow() {
 }
 
 #[test]
-fn reads_well() {
-    assert_eq!(
-        fault(0x0001_0000, 0x4000_0000).to_string(),
-        "HARDFAULT: undefined instruction\n  \
-         pc 0x00000456  lr 0x00001234  xpsr 0x01000000\n  \
-         sp 0x20008010  cfsr 0x00010000  hfsr 0x40000000  mmfar 0x20001234  bfar 0x00000000"
-    );
-}
-
-#[test]
-fn says_what_is_lost_with_the_stack() {
+fn a_fault_reads_well_and_says_what_is_lost_or_not_told() {
     let lost = Fault { stacked: None, ..fault(0x0000_0092, 0x4000_0000) };
-    assert_eq!(
-        lost.to_string(),
-        "HARDFAULT: stack overflow\n  \
-         pc and lr are lost; the last call on the stack is at 0x00000788\n  \
-         sp 0x20008010  cfsr 0x00000092  hfsr 0x40000000  mmfar 0x20001234  bfar 0x00000000"
-    );
-    let all_lost = Fault { last_call: None, ..lost }.to_string();
-    assert!(all_lost.contains("\n  pc and lr are lost\n"), "{all_lost}");
-}
-
-#[test]
-fn a_processor_that_tells_no_cause_says_what_it_can() {
-    let told = fault(0, 0);
-    assert_eq!(
-        told.to_string(),
-        "HARDFAULT: unknown cause (a Cortex-M0+ tells none)\n  \
-         pc 0x00000456  lr 0x00001234  xpsr 0x01000000\n  \
-         sp 0x20008010"
-    );
+    let stacked = "pc 0x00000456  lr 0x00001234  xpsr 0x01000000";
+    let registers = |cfsr| format!("  cfsr {cfsr}  hfsr 0x40000000  mmfar 0x20001234  bfar 0x00000000");
+    for (fault, cause, place, registers) in [
+        (fault(0x0001_0000, 0x4000_0000), "undefined instruction", stacked, registers("0x00010000")),
+        (
+            lost,
+            "stack overflow",
+            "pc and lr are lost; the last call on the stack is at 0x00000788",
+            registers("0x00000092"),
+        ),
+        (Fault { last_call: None, ..lost }, "stack overflow", "pc and lr are lost", registers("0x00000092")),
+        (fault(0, 0), "unknown cause (a Cortex-M0+ tells none)", stacked, String::new()),
+    ] {
+        assert_eq!(fault.to_string(), format!("HARDFAULT: {cause}\n  {place}\n  sp 0x20008010{registers}"));
+    }
     let stacked = Some(Stacked { pc: 0x456, lr: 0x1234, xpsr: 0 });
-    assert_eq!(Fault { stacked, ..told }.cause(), "invalid state (jump to an even address?)");
+    assert_eq!(Fault { stacked, ..fault(0, 0) }.cause(), "invalid state (jump to an even address?)");
 }
 
 #[test]

@@ -1,8 +1,6 @@
 //! What the frames show against the exact motion: right to half a pixel until the time that the panel predicts, and hardly
 //! longer, before and after the way they are computed changes.
 
-use std::thread;
-
 use double_pendulum::{Parameters, Pendulum};
 use firmware::config::{CORTEX_M3, CORTEX_M4F, HALF_PIXEL, MASS_RATIOS, Processor, REACH, TICK_RATE};
 use firmware::graphics::view::Place;
@@ -11,6 +9,7 @@ use firmware::scenes::SceneName;
 use host_tests::commands::plan::median;
 use host_tests::emulator::host::Show;
 use host_tests::oracle::tolerances::PLAN_SHARE;
+use rayon::prelude::*;
 use reference::taylor::Reference;
 
 /// How long each motion is followed, s.
@@ -94,15 +93,7 @@ fn horizon(case: &Case) -> Horizon {
 
 #[test]
 fn half_a_pixel_is_kept_until_the_time_on_the_panel_and_hardly_longer() {
-    let cases = cases();
-    let workers = thread::available_parallelism().map_or(1, usize::from);
-    let horizons: Vec<Horizon> = thread::scope(|scope| {
-        let chunks = cases.chunks(cases.len().div_ceil(workers));
-        let threads: Vec<_> =
-            chunks.map(|chunk| scope.spawn(|| chunk.iter().map(horizon).collect::<Vec<_>>())).collect();
-        threads.into_iter().flat_map(|thread| thread.join().expect("no panic")).collect()
-    });
-
+    let horizons: Vec<Horizon> = cases().into_par_iter().map(|case| horizon(&case)).collect();
     let (mut late, mut shares, mut changes) = (Vec::new(), Vec::new(), 0);
     for Horizon { case, predicted, exact, violated, changed } in &horizons {
         println!(

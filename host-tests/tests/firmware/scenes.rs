@@ -1,7 +1,6 @@
 //! Every scene of the catalogue, on the host: its frame to the pixel, and what all scenes have in common.
 
-use double_pendulum::State;
-use double_pendulum::{DirectionF32Plain, Fixed32, Form};
+use double_pendulum::{DirectionF32Plain, Fixed32, Form, State};
 use firmware::app::App;
 use firmware::app::command::Command;
 use firmware::app::controls::NoButtons;

@@ -5,8 +5,7 @@ use std::f64::consts::PI;
 use double_pendulum::{Equations, Integrator, Method, Parameters};
 use firmware::app::service::{Received, Service};
 use firmware::job::{Job, JobError, ON_BOARDS, Reading, Request};
-use firmware::protocol::Field;
-use firmware::protocol::{LinkError, MAX_WIRE, Refused, Sample, Simulate, StepTooLong, encode, method_code};
+use firmware::protocol::{Field, LinkError, MAX_WIRE, Refused, Sample, Simulate, StepTooLong, encode, method_code};
 use host_tests::oracle::tolerances;
 
 const REQUEST: Request = Request {
@@ -47,10 +46,8 @@ fn every_method_of_the_boards_is_answered_in_full() {
         assert_eq!(samples.iter().map(|sample| sample.index).collect::<Vec<_>>(), [0, 1, 2, 3, 4, 5]);
         for (sample, reading) in samples.iter().zip(readings(&request)) {
             assert_eq!(sample.request, 7);
-            assert_eq!(
-                (sample.state, sample.velocities, sample.energy),
-                (reading.state, reading.velocities, reading.energy)
-            );
+            let &Sample { state, velocities, energy, .. } = sample;
+            assert_eq!(Reading { state, velocities, energy }, reading);
         }
     }
 }

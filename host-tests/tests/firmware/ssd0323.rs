@@ -13,30 +13,16 @@ use firmware::graphics::canvas::Canvas;
 use firmware::motion::settings::Settings;
 use host_tests::emulator::host::sheets;
 
-/// Commands and how many arguments each takes, from the data sheet's command table.
-const COMMANDS: [(u8, usize); 21] = [
-    (0x15, 2),
-    (0x75, 2),
-    (0x81, 1),
-    (0x84, 0),
-    (0x85, 0),
-    (0x86, 0),
-    (0xA0, 1),
-    (0xA1, 1),
-    (0xA2, 1),
-    (0xA4, 0),
-    (0xA8, 1),
-    (0xAD, 1),
-    (0xAE, 0),
-    (0xAF, 0),
-    (0xB1, 1),
-    (0xB2, 1),
-    (0xB3, 1),
-    (0xB8, 8),
-    (0xBC, 1),
-    (0xBE, 1),
-    (0xBF, 1),
-];
+/// How many arguments a command takes, from the data sheet's command table.
+fn arguments(command: u8) -> usize {
+    match command {
+        0x84..=0x86 | 0xA4 | 0xAE | 0xAF => 0,
+        0x81 | 0xA0..=0xA2 | 0xA8 | 0xAD | 0xB1..=0xB3 | 0xBC | 0xBE | 0xBF => 1,
+        0x15 | 0x75 => 2,
+        0xB8 => 8,
+        _ => panic!("{command:#04x} is no command"),
+    }
+}
 
 /// An SSD0323: panics on anything that the data sheet does not allow.
 #[derive(Default)]
@@ -69,8 +55,7 @@ impl Controller {
 
     fn commands(&mut self, bytes: &mut VecDeque<u8>) {
         while let Some(command) = bytes.pop_front() {
-            let (_, count) = COMMANDS.iter().find(|(code, _)| *code == command).expect("a known command");
-            let mut arguments = bytes.drain(..*count);
+            let mut arguments = bytes.drain(..arguments(command));
             match command {
                 0x15 => {
                     let columns = window(&mut arguments, 63);

@@ -6,8 +6,7 @@ use firmware::app::player::Player;
 use firmware::app::warm_restart::{Cause, Journal, Kept, LastShown, MOST_RESTARTS, SOUND_FRAMES, WarmRestart};
 use firmware::graphics::fade_layer::FadeLayer;
 use firmware::motion::settings::Settings;
-use firmware::protocol::Field;
-use firmware::protocol::{MAX_WIRE, Message, Restarted, Status, encode};
+use firmware::protocol::{Field, MAX_WIRE, Message, Restarted, Status, encode};
 use firmware::scenes::SceneName;
 
 fn kept<M: Message>(message: &M) -> (Kept, usize) {

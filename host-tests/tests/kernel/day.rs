@@ -3,8 +3,7 @@
 use double_pendulum::Method;
 use double_pendulum::parts::Stepper;
 use double_pendulum::plan::Way;
-use double_pendulum::{DirectionF32, DirectionF32Plain, DirectionF64, Fixed32, Form};
-use double_pendulum::{Error, Pendulum, Real, State};
+use double_pendulum::{DirectionF32, DirectionF32Plain, DirectionF64, Error, Fixed32, Form, Pendulum, Real, State};
 use firmware::config::{STM32F405, TICK_RATE};
 use firmware::motion::simulation::{Means, Simulation};
 use firmware::scenes::SceneName;

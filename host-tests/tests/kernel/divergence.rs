@@ -12,8 +12,7 @@ use firmware::app::{App, Event};
 use firmware::display::NoDisplay;
 use firmware::job::Request;
 use firmware::motion::settings::Settings;
-use firmware::protocol::Field;
-use firmware::protocol::{Refused, Sample};
+use firmware::protocol::{Field, Refused, Sample};
 use host_tests::emulator::host::sheets;
 
 /// Far beyond the stability limit of 0.5 s; it leads out of the finite numbers within a few hundred steps.

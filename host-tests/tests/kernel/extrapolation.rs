@@ -1,7 +1,6 @@
 //! Extrapolation: the orders it names.
 
-use double_pendulum::Extrapolation;
-use double_pendulum::{Error, Parameter};
+use double_pendulum::{Error, Extrapolation, Parameter};
 use host_tests::oracle::tolerances;
 
 /// A swing z'' = -z followed for 20 s.

@@ -2,8 +2,8 @@
 
 use double_pendulum::Parameters;
 use double_pendulum::flips::Flip;
-use host_tests::commands::flips::judge::{Verdict, judge, sample};
-use host_tests::commands::flips::map::{Map, Point};
+use host_tests::commands::flips::judge::{Judgement, judge, sample};
+use host_tests::commands::flips::map::{Followed, Map};
 use host_tests::commands::flips::square::Square;
 use host_tests::oracle::tolerances;
 
@@ -19,7 +19,7 @@ fn the_boundary_is_where_the_energy_has_it() {
     let rows = 0..map.square.rows();
     let points = map.points(rows.clone()).expect("points");
     let (mut inside, mut flipped) = (0, 0);
-    for ([a1, a2], Point { flip, .. }) in map.starts(rows).zip(points) {
+    for ([a1, a2], Followed { flip, .. }) in map.starts(rows).zip(points) {
         let cannot = 2.0 * a1.cos() + a2.cos() > 1.0;
         assert_eq!(flip == Flip::Never, cannot, "{a1} {a2}");
         inside += usize::from(cannot);
@@ -32,7 +32,7 @@ fn the_boundary_is_where_the_energy_has_it() {
 #[test]
 fn points_are_right_to_a_grey_level() {
     let short = map(10.0, 64);
-    let Verdict { points, wrong, .. } = judge(&short).expect("a verdict");
+    let Judgement { points, wrong, .. } = judge(&short).expect("a verdict");
     println!("limit 10: {wrong} of {points} wrong");
     assert!(points > 1000 && wrong as f64 <= (1.0 - tolerances::FLIPS_RIGHT) * points as f64, "{wrong} of {points}");
 
@@ -47,7 +47,7 @@ const JUDGED: usize = 60;
 fn doubt_tells_what_is_wrong() {
     let verdict = judge(&map(100.0, 32)).expect("a verdict");
     println!("limit 100: {verdict:?}");
-    let Verdict { points, wrong, doubtful, unsuspected } = verdict;
+    let Judgement { points, wrong, doubtful, unsuspected } = verdict;
     assert!(wrong > 0 && doubtful > 0, "nothing is in doubt");
     assert!((wrong as f64) < tolerances::FLIPS_WRONG * points as f64, "{wrong} of {points}");
     assert!(unsuspected as f64 <= tolerances::FLIPS_UNSUSPECTED * points as f64, "{unsuspected} of {points}");

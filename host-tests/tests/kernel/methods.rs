@@ -2,8 +2,8 @@
 
 use double_pendulum::{Integrator, Method, Motion, Parameters};
 use firmware::job::{JobError, Request};
-use host_tests::oracle::reference;
 use host_tests::oracle::tolerances;
+use reference::taylor;
 
 /// How long the motion is followed, s: rods of 1 m, equal bobs, let go at 0.5 rad.
 const SECONDS: u32 = 2;
@@ -28,7 +28,7 @@ fn error(method: Method, steps_per_second: u32) -> Result<f64, JobError> {
         end = reading.state;
         Ok::<_, JobError>(())
     })?;
-    let exact = reference::states(&parameters, &Motion::at_rest(0.5, 0.5), &[SECONDS.into()])[0];
+    let exact = taylor::states(&parameters, &Motion::at_rest(0.5, 0.5), &[SECONDS.into()])[0];
     Ok((end[0] - exact.a1).abs().max((end[1] - exact.a2).abs()))
 }
 

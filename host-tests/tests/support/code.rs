@@ -1,7 +1,6 @@
 //! An ELF file's functions, and where they are called or pointed to. Not every test uses all of it.
 #![allow(dead_code)]
 
-use std::error::Error;
 use std::ops::Range;
 use std::path::Path;
 
@@ -22,7 +21,7 @@ pub struct Code {
 }
 
 impl Code {
-    pub fn read(path: &Path) -> Result<Self, Box<dyn Error>> {
+    pub fn read(path: &Path) -> anyhow::Result<Self> {
         let image = Image::read(path)?;
         let (mut branches, mut numbers, mut lower) = (Vec::new(), Vec::new(), [0; 16]);
         for (start, data) in image.loaded() {

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use host_tests::emulator::boards::{BOARDS, Board};
-use host_tests::emulator::qemu::{Clock, QemuError, Settings};
+use host_tests::emulator::qemu::{Clock, Settings};
 use host_tests::emulator::toolchain::{self, Toolchain};
 
 /// Guards against hanging, nothing else: many times what any of these runs takes, on a slow and busy machine too.
@@ -32,7 +32,7 @@ pub fn settings<'a>(toolchain: &'a Toolchain, board: &'a Board, elf: &'a Path) -
 }
 
 /// What `start` makes of a board with its application: a machine that runs, or one in lockstep.
-pub fn on<M>(board: &Board, start: impl FnOnce(&Settings) -> Result<M, QemuError>) -> Result<M, QemuError> {
+pub fn on<M>(board: &Board, start: impl FnOnce(&Settings) -> anyhow::Result<M>) -> anyhow::Result<M> {
     let (toolchain, elf) = (toolchain(), application(board));
     start(&settings(&toolchain, board, &elf))
 }

@@ -1,9 +1,8 @@
 //! The map of flips in vectors. The kernel's search is inlined into its caller: in a package of its own it is compiled with full
 //! optimisation in every profile, while the commands around it compile fast.
 
-use double_pendulum::DirectionF32Plain;
-use double_pendulum::Error;
 use double_pendulum::flips::{Flip, Flips};
+use double_pendulum::{DirectionF32Plain, Error};
 
 /// The kernel's search with the cheapest steps.
 pub type Search = Flips<DirectionF32Plain>;

@@ -62,7 +62,6 @@ impl Clock {
     }
 }
 
-/// As [`Clock::ticks`].
 pub(super) fn ticks() -> u32 {
     TICKS.load(Ordering::Relaxed)
 }

@@ -32,7 +32,6 @@ use crate::fault::{Fault, Hang, Panic, Stacked};
 
 /// A call to the debugger, `bkpt 0xAB`, and its length in bytes.
 const DEBUGGER_CALL: (u16, u32) = (0xBEAB, 2);
-/// The size of [`STACK`], bytes.
 const STACK_SIZE: usize = 2048;
 
 /// Set once a call to the debugger was not answered.

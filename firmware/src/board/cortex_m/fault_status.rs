@@ -15,7 +15,6 @@ pub fn clear() {
     unsafe { hfsr.write(hfsr.read()) };
 }
 
-/// The System Control Block.
 #[cfg(not(armv6m))]
 fn control() -> &'static cortex_m::peripheral::scb::RegisterBlock {
     // SAFETY: it is always there, and nothing else uses these registers.

@@ -39,7 +39,6 @@ pub(in crate::board) enum Call {
     Nmi,
 }
 
-/// Its registers.
 pub(in crate::board) struct Registers {
     load: Register,
     control: Register,

@@ -33,7 +33,6 @@ const INTERRUPT: Interrupt = Interrupt(5);
 #[derive(Debug)]
 pub struct Pl011(());
 
-/// Starts the outward direction.
 pub(super) fn start(hertz: u32) -> Transmitter<Pl011> {
     gpio::A.use_for_device(1 << 0 | 1 << 1);
     CONTROL.write(0);
@@ -56,7 +55,6 @@ impl Outlet for Pl011 {
     }
 }
 
-/// The inward direction.
 pub(super) const INLET: Inlet = Inlet {
     clear: |_| INTERRUPT_CLEAR.write(RECEIVED),
     take: || {
@@ -68,7 +66,6 @@ pub(super) const INLET: Inlet = Inlet {
     },
 };
 
-/// Lets received bytes interrupt.
 pub(super) fn enable_receiver() {
     INTERRUPT_MASK.write(RECEIVED);
     INTERRUPT.unmask();

@@ -11,7 +11,6 @@ const LOCK: Register = WATCHDOG.register(0xc00);
 
 /// It stands still while a debugger holds the processor.
 const STALL: u32 = 1 << 8;
-/// The number of its interrupt.
 const CALL: Call = Call::Own(18);
 
 /// The lock of its registers, which this opens, is closed by the next feeding.
@@ -20,7 +19,6 @@ fn stall(stalls: bool) {
     TEST.write(if stalls { STALL } else { 0 });
 }
 
-/// Starts it.
 pub(super) fn start(hertz: u32) -> TwoStage {
     watchdog::stall_by(stall);
     TwoStage::start(Registers::of(WATCHDOG), hertz, CALL, system::reset_by_watchdog())

@@ -73,7 +73,6 @@ impl Write for Link {
     }
 }
 
-/// Its registers.
 fn uart() -> &'static rp2040_hal::pac::uart0::RegisterBlock {
     // SAFETY: the support library has set them up and let go of them.
     unsafe { &*UART0::ptr() }

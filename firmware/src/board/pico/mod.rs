@@ -22,13 +22,12 @@ use rp2040_hal::{Sio, pac};
 
 use crate::app::controls::{Buttons, Pressed};
 use crate::app::instruments::Instruments;
-use crate::board::Board;
 use crate::board::cortex_m::clock::Clock;
 use crate::board::cortex_m::guard::guard_stack;
 use crate::board::cortex_m::identity::instruments;
 use crate::board::panel_bus::Bus;
 use crate::board::serial::receiver::Receiver;
-use crate::board::{log, steps};
+use crate::board::{Board, log, steps};
 use crate::display::Ssd1306;
 use crate::display::controller::BUILT_FOR;
 use crate::display::outbox::Outbox;

@@ -18,7 +18,6 @@ use crate::config::USB_QUEUE;
 /// What anybody may use for a serial port (V-USB's shared ids). Without a serial number, as long as no program goes by them to find
 /// the board (rule 7 of V-USB's `USB-IDs-for-free.txt`): none of ours does.
 const IDS: UsbVidPid = UsbVidPid(0x16c0, 0x27dd);
-/// The longest packet.
 pub(super) const PACKET: usize = 64;
 
 /// The device, and bytes on their way.

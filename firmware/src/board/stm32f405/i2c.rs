@@ -156,7 +156,6 @@ fn fail(port: &RegisterBlock, outbox: &Outbox) -> Option<Sent> {
     Some(Err(error))
 }
 
-/// Ends the last message.
 fn stop(port: &RegisterBlock) {
     silence(port);
     port.cr1().modify(|_, w| w.stop().set_bit());

@@ -11,7 +11,6 @@ use crate::board::serial::receiver::{Inlet, Taken};
 use crate::board::serial::transmitter::{Outlet, Transmitter};
 use crate::config::BAUD;
 
-/// Starts the outward direction.
 pub(super) fn start(
     port: USART3,
     (out, inwards): (PB10, PB11),
@@ -33,7 +32,6 @@ impl Outlet for Tx<USART3> {
     }
 }
 
-/// The inward direction.
 pub(super) const INLET: Inlet = Inlet { clear: |_| (), take };
 
 /// To read a byte ends its interrupt; there is nothing else to clear.
@@ -47,7 +45,6 @@ fn take() -> Taken {
     Taken { byte: data.filter(|_| has_byte), overrun }
 }
 
-/// Lets received bytes interrupt.
 pub(super) fn enable_receiver() {
     // SAFETY: no critical section relies on this interrupt being masked.
     unsafe { NVIC::unmask(Interrupt::USART3) };

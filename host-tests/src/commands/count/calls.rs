@@ -26,7 +26,6 @@ pub struct Calls<'a> {
     ended: Vec<Cost>,
 }
 
-/// A call that is going on.
 #[derive(Clone, Copy, Debug)]
 struct Call {
     /// The registers at its entry.
@@ -45,7 +44,6 @@ pub(super) struct Stream {
 }
 
 impl Stream {
-    /// Begins at an instruction.
     pub fn begin(image: &Image, core: Core, before: Registers) -> Result<Self> {
         Ok(Self { before, instruction: image.instruction_at(before.pc())?, pipeline: Pipeline::new(core) })
     }
@@ -65,7 +63,6 @@ impl Stream {
 }
 
 impl<'a> Calls<'a> {
-    /// Waits for calls of what begins at `entries`.
     pub fn of(image: &'a Image, core: Core, entries: BTreeSet<u32>) -> Self {
         Self { image, core, entries, running: None, profile: Profile::default(), ended: Vec::new() }
     }
@@ -98,20 +95,16 @@ impl<'a> Calls<'a> {
         self.ended
     }
 
-    /// What all the calls executed together.
     pub fn into_profile(self) -> Profile {
         self.profile
     }
 }
 
-/// What the calls of a function cost.
 #[derive(Debug)]
 pub struct CallCosts {
-    /// The function, as it was found.
     pub function: Function,
     /// Each call that returned, in order; one at least, unless the program says that it failed.
     pub calls: Vec<Cost>,
-    /// How the program ended.
     pub ended: Ended,
 }
 

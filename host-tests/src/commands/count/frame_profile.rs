@@ -75,17 +75,10 @@ impl FrameProfile {
         Ok(profile)
     }
 
-    /// What a part executed.
-    pub fn part(&self, part: Part) -> Option<&Profile> {
-        self.parts.get(&part)
-    }
-
-    /// The cost of a part.
     pub fn cost(&self, part: Part) -> Cost {
-        self.part(part).map_or_else(Cost::default, Profile::cost)
+        self.parts.get(&part).map_or_else(Cost::default, Profile::cost)
     }
 
-    /// The cost of it all.
     pub fn whole(&self) -> Cost {
         let mut whole = Cost::default();
         self.parts.values().for_each(|part| whole += part.cost());

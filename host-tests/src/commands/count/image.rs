@@ -36,7 +36,6 @@ pub struct Function {
 }
 
 impl Image {
-    /// Reads an ELF file for ARM.
     pub fn read(path: &Path) -> Result<Self> {
         Self::parse(path).with_context(|| path.display().to_string())
     }
@@ -60,7 +59,7 @@ impl Image {
                 // bit 0 only says that the code is Thumb
                 address: address & !1,
                 size: symbol.size() as u32,
-                name: format!("{:#}", rustc_demangle::demangle(name)),
+                name: addr2line::demangle_auto(name.into(), None).into_owned(),
                 symbol: name.to_owned(),
             };
             match name.split('.').next() {
@@ -77,7 +76,6 @@ impl Image {
         Ok(Self { path: path.to_owned(), loaded, code, functions, labels, marks })
     }
 
-    /// The functions whose demangled name contains `part`.
     pub fn functions_named(&self, part: &str) -> impl Iterator<Item = &Function> {
         self.functions.iter().filter(move |function| function.name.contains(part))
     }
@@ -106,7 +104,6 @@ impl Image {
         self.loaded.iter().map(|(start, bytes)| (*start, &bytes[..]))
     }
 
-    /// Whether something is loaded to `address`.
     pub fn holds(&self, address: u32) -> bool {
         self.loaded().any(|(start, bytes)| address.wrapping_sub(start) < bytes.len() as u32)
     }
@@ -116,7 +113,6 @@ impl Image {
         anyhow!("{}: no function {function}", self.path.display())
     }
 
-    /// The function that holds `address`.
     pub fn function_at(&self, address: u32) -> Option<&Function> {
         let before = self.functions.partition_point(|function| function.address <= address);
         self.functions[..before].iter().rfind(|function| address - function.address < function.size)
@@ -138,7 +134,6 @@ impl Image {
         words
     }
 
-    /// The instruction at `address`.
     pub fn instruction_at(&self, address: u32) -> Result<Instruction> {
         let halfword = |address: u32| {
             self.loaded().find_map(|(start, bytes)| {

@@ -10,11 +10,9 @@ pub fn is_long(first: u16) -> bool {
     first >= 0xe800
 }
 
-/// A decoded instruction.
 #[derive(Clone, Copy, Debug)]
 pub struct Instruction {
     word: u32,
-    /// Its row of the timing table.
     pub row: &'static Row,
 }
 
@@ -43,7 +41,6 @@ impl Instruction {
         self.row.cycles(core) + more
     }
 
-    /// Whether it reads memory.
     pub fn loads(&self) -> bool {
         match self.row.class {
             Class::Load | Class::LoadPair | Class::LoadList => true,
@@ -52,7 +49,6 @@ impl Instruction {
         }
     }
 
-    /// Whether it needs the floating-point unit.
     pub fn is_float(&self) -> bool {
         self.word >> 26 == 0b11_1011
     }

@@ -43,9 +43,7 @@ const AFFORDABLE_INSTRUCTIONS: u64 = 300_000;
 /// The cost of one step, on average over a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepCost {
-    /// Steps of the run.
     pub steps: u32,
-    /// Executed instructions.
     pub instructions: f64,
     /// Estimated cycles.
     pub cycles: f64,

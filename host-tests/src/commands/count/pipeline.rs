@@ -86,7 +86,6 @@ pub struct Pipeline {
 }
 
 impl Pipeline {
-    /// Before the first instruction.
     pub fn new(core: Core) -> Self {
         Self { core, previous: None, branched: false, now: 0, unit_free: 0, result: None }
     }

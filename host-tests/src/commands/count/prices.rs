@@ -11,7 +11,7 @@ use firmware::protocol::{Field, Set, method_code};
 use rayon::prelude::*;
 
 use super::{FULL_CYCLE, Image, Target, affordable_cost, calls_in_next};
-use crate::emulator::boards::{Board, Core};
+use crate::emulator::boards::Board;
 use crate::emulator::qemu::{Clock, Lockstep, Settings};
 use crate::emulator::toolchain::{Toolchain, workspace};
 
@@ -81,15 +81,7 @@ pub fn write_prices(prices: &[(&Board, Costs)]) -> Result<PathBuf> {
 }
 
 fn list(board: &Board, costs: &Costs) -> String {
-    let (name, title) = match board.core() {
-        Core::M3 => ("CORTEX_M3", "Cortex-M3"),
-        Core::M4F => ("CORTEX_M4F", "Cortex-M4F"),
-        Core::M0Plus => ("CORTEX_M0PLUS", "Cortex-M0+"),
-    };
-    let Costs { closed_form, direction_plain, direction, fixed32, fixed64, preparation } = costs;
-    format!(
-        "/// A {title}.\npub const {name}: Costs = Costs {{\n    closed_form: {closed_form:.1},\n    direction_plain: \
-         {direction_plain:.1},\n    direction: {direction:.1},\n    fixed32: {fixed32:.1},\n    fixed64: {fixed64:.1},\n    \
-         preparation: {preparation:.1},\n}};\n"
-    )
+    let title = board.core().name();
+    let name = title.to_uppercase().replace('-', "_").replace('+', "PLUS");
+    format!("/// A {title}.\npub const {name}: Costs = {costs:#.1?};\n")
 }

@@ -16,7 +16,6 @@ use crate::emulator::process::ProcessError;
 /// An instruction of the program and what all its executions together cost.
 #[derive(Clone, Copy, Debug)]
 pub struct Spot {
-    /// The instruction.
     pub instruction: Instruction,
     /// How often it was executed and what that cost.
     pub cost: Cost,
@@ -52,19 +51,16 @@ impl Profile {
         self.stack_bytes = self.stack_bytes.max(stack_bytes);
     }
 
-    /// The cost of it all.
     pub fn cost(&self) -> Cost {
         let mut total = Cost::default();
         self.spots.values().for_each(|spot| total += spot.cost);
         total
     }
 
-    /// Every instruction executed, by address.
     pub fn spots(&self) -> impl Iterator<Item = (u32, &Spot)> {
         self.spots.iter().map(|(address, spot)| (*address, spot))
     }
 
-    /// The functions entered.
     pub fn functions<'a>(&self, image: &'a Image) -> impl Iterator<Item = &'a Function> {
         let functions: BTreeSet<_> = self.spots.keys().filter_map(|&address| image.function_at(address)).collect();
         functions.into_iter()

@@ -5,7 +5,6 @@ use crate::emulator::boards::Core;
 /// What else decides the time of an instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Class {
-    /// Nothing.
     Fixed,
     /// A branch to an address that it holds itself: refills the pipeline sooner than one to an address in a register.
     Branch,
@@ -80,7 +79,6 @@ pub enum Field {
 }
 
 impl Field {
-    /// The register that `word` names there.
     pub fn register(self, word: u32) -> u32 {
         match self {
             Self::Low0 => word >> 16 & 7,
@@ -108,11 +106,9 @@ pub struct Row {
     pub(super) value: u32,
     /// On the M3, the M4 and the M0+.
     pub(super) cycles: [u64; 3],
-    /// What else decides.
     pub class: Class,
     /// What a load or store makes its address of.
     pub(super) address: &'static [Field],
-    /// What it writes.
     pub(super) writes: &'static [Field],
 }
 

@@ -14,7 +14,6 @@ const PROGRAM: &str = "measure";
 /// An emulated board and a program built for it.
 #[derive(Debug)]
 pub struct Target {
-    /// The board.
     pub board: &'static Board,
     pub(super) qemu: PathBuf,
     pub(super) elf: PathBuf,
@@ -22,7 +21,6 @@ pub struct Target {
 }
 
 impl Target {
-    /// Builds the program for `board`.
     pub fn build(toolchain: &Toolchain, board: &'static Board) -> Result<Self> {
         Self::of(toolchain, board, toolchain.build(PROGRAM, board.target)?)
     }
@@ -38,12 +36,10 @@ impl Target {
         BOARDS.iter().filter(|board| board.has_panel).map(|board| Self::build(toolchain, board)).collect()
     }
 
-    /// The program's code and symbols.
     pub fn image(&self) -> &Image {
         &self.image
     }
 
-    /// Whose timings hold.
     pub fn core(&self) -> Core {
         self.board.core()
     }

@@ -15,9 +15,7 @@ use firmware::job::Request;
 use super::Target;
 use crate::emulator::process::{self, ProcessError};
 
-/// How long one run may take.
 pub(super) const LIMIT: Duration = Duration::from_secs(1800);
-/// How long QEMU may take to tell its version.
 const VERSION_LIMIT: Duration = Duration::from_secs(10);
 
 /// The core's registers before an instruction is executed.
@@ -28,17 +26,14 @@ pub struct Registers {
 }
 
 impl Registers {
-    /// The stack pointer.
     pub fn sp(&self) -> u32 {
         self.general[13]
     }
 
-    /// The link register.
     pub fn lr(&self) -> u32 {
         self.general[14]
     }
 
-    /// The address of the instruction.
     pub fn pc(&self) -> u32 {
         self.general[15]
     }
@@ -57,12 +52,10 @@ impl Registers {
     }
 }
 
-/// How a program ended.
 #[derive(Debug)]
 pub struct Ended {
     /// What QEMU's exit says of it; `None` if its time was up.
     pub status: Option<ExitStatus>,
-    /// What the program printed.
     pub output: String,
 }
 

@@ -15,7 +15,6 @@ const PATIENCE: u32 = TICK_RATE;
 /// The host catches up with a board that has long been playing by this many ticks at a time, so that the terminal goes on.
 const MOST_TICKS: u32 = 2000;
 
-/// The comparison so far.
 #[derive(Debug, Default)]
 pub struct Comparison {
     mirror: Option<Mirror>,
@@ -59,7 +58,6 @@ impl Comparison {
         asks
     }
 
-    /// Takes the board's answer.
     pub fn status(&mut self, status: &Status) {
         self.unanswered = None;
         let start = start_of(status);
@@ -101,13 +99,11 @@ impl Comparison {
         self.waiting.is_empty()
     }
 
-    /// The first number that differed.
     pub fn difference(&self) -> Option<Difference> {
         self.first
     }
 }
 
-/// In words.
 impl fmt::Display for Comparison {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(difference) = self.first {

@@ -19,7 +19,6 @@ const MEANINGS: [(&str, &str); 11] = [
     ("not compared", "frames before the board said what it plays"),
 ];
 
-/// Draws it.
 pub fn draw(frame: &mut Frame) {
     let line = |(name, meaning): (&str, &'static str)| Line::from(vec![format!("{name}: ").bold(), meaning.into()]);
     let text: Text = MEANINGS.into_iter().map(line).collect();

@@ -95,7 +95,6 @@ fn finish(mut session: Session) -> anyhow::Result<bool> {
 }
 
 /// What a key of the keyboard means.
-#[derive(Clone, Copy)]
 enum Wish {
     Press(Key),
     /// Another scene, found from the present one.
@@ -106,31 +105,24 @@ enum Wish {
     Quit,
 }
 
-const WISHES: [(KeyCode, Wish); 15] = [
-    (KeyCode::Up, Wish::Press(Key::Up)),
-    (KeyCode::Down, Wish::Press(Key::Down)),
-    (KeyCode::Left, Wish::Press(Key::Left)),
-    (KeyCode::Right, Wish::Press(Key::Right)),
-    (KeyCode::Char(' '), Wish::Press(Key::Select)),
-    (KeyCode::Enter, Wish::Press(Key::Select)),
-    (KeyCode::Tab, Wish::Scene(SceneName::next)),
-    (KeyCode::Char('n'), Wish::Scene(SceneName::next)),
-    (KeyCode::BackTab, Wish::Scene(SceneName::previous)),
-    (KeyCode::Char('N'), Wish::Scene(SceneName::previous)),
-    (KeyCode::Char('p'), Wish::Pause),
-    (KeyCode::Char('.'), Wish::Step),
-    (KeyCode::Char('?'), Wish::Help),
-    (KeyCode::Char('q'), Wish::Quit),
-    (KeyCode::Esc, Wish::Quit),
-];
-
 fn wish(event: &Event) -> Option<Wish> {
     let Event::Key(KeyEvent { code, modifiers, kind, .. }) = event else { return None };
     if *kind == KeyEventKind::Release {
         return None;
     }
-    if *code == KeyCode::Char('c') && modifiers.contains(KeyModifiers::CONTROL) {
-        return Some(Wish::Quit);
-    }
-    WISHES.iter().find(|(key, _)| key == code).map(|(_, wish)| *wish)
+    Some(match code {
+        KeyCode::Up => Wish::Press(Key::Up),
+        KeyCode::Down => Wish::Press(Key::Down),
+        KeyCode::Left => Wish::Press(Key::Left),
+        KeyCode::Right => Wish::Press(Key::Right),
+        KeyCode::Char(' ') | KeyCode::Enter => Wish::Press(Key::Select),
+        KeyCode::Tab | KeyCode::Char('n') => Wish::Scene(SceneName::next),
+        KeyCode::BackTab | KeyCode::Char('N') => Wish::Scene(SceneName::previous),
+        KeyCode::Char('p') => Wish::Pause,
+        KeyCode::Char('.') => Wish::Step,
+        KeyCode::Char('?') => Wish::Help,
+        KeyCode::Char('q') | KeyCode::Esc => Wish::Quit,
+        KeyCode::Char('c') if modifiers.contains(KeyModifiers::CONTROL) => Wish::Quit,
+        _ => return None,
+    })
 }

@@ -25,13 +25,12 @@ use std::time::Duration;
 
 use record::Recording;
 use session::Session;
-use source::{Source, broken};
+use source::Source;
 
 use crate::console::cli::Refused;
 use crate::emulator::boards::PICO;
-use crate::emulator::pico;
 use crate::emulator::qemu::{Clock, Lockstep, Machine, Settings};
-use crate::emulator::toolchain;
+use crate::emulator::{pico, toolchain};
 use crate::link::{Port, find};
 
 /// The most time that an emulated board may take without a terminal: so much, and so much for each second of its time.
@@ -51,26 +50,24 @@ pub fn run(options: &Options) -> anyhow::Result<bool> {
     if headless { headless::run(options, session) } else { live::run(options, session) }
 }
 
-/// The port of this name.
 pub(crate) fn port(name: &str, baud: u32) -> Result<Port, Refused> {
     let refused = |reason: String| Refused::because(format_args!("--port {reason}"));
     Port::open(&find(name).map_err(|error| refused(error.to_string()))?, baud).map_err(refused)
 }
 
-/// The emulated board, started.
 fn emulated(options: &Options, headless: bool) -> anyhow::Result<Source<'_>> {
-    let (toolchain, _) = toolchain::set_up().map_err(Refused::because)?;
+    let (toolchain, _) = toolchain::set_up()?;
     let (board, limit) = (options.board, limit(options, headless));
     if *board == PICO {
-        let (emulator, _) = toolchain::set_up_pico().map_err(Refused::because)?;
+        let (emulator, _) = toolchain::set_up_pico()?;
         return Ok(Source::Pico(Box::new(pico::Machine::start(&emulator, &toolchain.build_for(board)?, limit)?)));
     }
     let elf = toolchain.build_for(board)?;
     let settings = Settings { qemu: toolchain.qemu(), board, elf: &elf, debugger: true, clock: Clock::Real, limit };
     if headless {
-        return Ok(Source::Lockstep(Lockstep::start(&settings).map_err(broken)?, board));
+        return Ok(Source::Lockstep(Lockstep::start(&settings)?, board));
     }
-    Ok(Source::Live(Machine::start(&settings).map_err(broken)?, board))
+    Ok(Source::Live(Machine::start(&settings)?, board))
 }
 
 fn limit(options: &Options, headless: bool) -> Duration {

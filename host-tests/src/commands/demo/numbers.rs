@@ -35,7 +35,6 @@ pub fn draw(frame: &mut Frame, area: Rect, readings: &Readings) {
     }
 }
 
-/// Each number by its name.
 fn rows(readings: &Readings) -> [(&'static str, String); 9] {
     let of_frame = |text: &dyn Fn(&Reading) -> String| readings.frame.as_ref().map_or(NONE.to_owned(), text);
     let of_motion = |text: &dyn Fn(&Reading) -> String| {

@@ -14,13 +14,11 @@ const SET: u8 = 3;
 const SET_SMALL: u8 = 5;
 /// A Braille pattern's bits, row by row.
 const BRAILLE: [[u32; 2]; 4] = [[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]];
-/// The pattern of no dot.
 const BLANK: u32 = 0x2800;
 
 /// The panel, scaled down by averaging to fill its area.
 #[derive(Debug)]
 pub struct Panel<'a> {
-    /// What it shows.
     pub screenshot: &'a Screenshot,
     /// Whether there are colours for greys.
     pub colours: bool,

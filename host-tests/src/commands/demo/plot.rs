@@ -19,7 +19,6 @@ const HALF_TURN: f64 = 180.0;
 const COLOURS: [Color; 2] = [Color::Cyan, Color::Yellow];
 const MARKERS: [Marker; 2] = [Marker::Braille, Marker::Dot];
 
-/// Both angles at a moment.
 #[derive(Clone, Copy, Debug)]
 pub struct Moment {
     /// Simulated time, s.

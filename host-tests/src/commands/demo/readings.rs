@@ -23,14 +23,12 @@ const LINES: usize = 100;
 /// The time over which frames per second are counted.
 const RATE_SPAN: Duration = Duration::from_secs(1);
 
-/// The latest of everything.
 #[derive(Debug, Default)]
 pub struct Readings {
     /// The latest frame; `None` until one has come.
     pub frame: Option<Frame>,
     /// The angles that the motion started from, degrees; `None` until the board has told.
     pub start: Option<[f32; 2]>,
-    /// What the link has been through.
     pub counts: Counts,
     /// The largest size of the energy error in each half second, oldest first.
     pub energy_errors: VecDeque<f32>,
@@ -38,7 +36,6 @@ pub struct Readings {
     pub angles: VecDeque<Moment>,
     /// Lines of the log, oldest first.
     pub lines: VecDeque<LogLine>,
-    /// The frames beside the host's own.
     pub comparison: Comparison,
     /// Whether what they mean is shown in their place.
     pub help: bool,
@@ -95,7 +92,6 @@ impl Readings {
         self.comparison.status(status);
     }
 
-    /// Takes a line of the log.
     pub fn line(&mut self, line: LogLine) {
         if line.is_bad() {
             self.complaints.push(line.to_string());
@@ -125,7 +121,6 @@ impl Readings {
         findings.chain(self.complaints.iter().cloned()).collect()
     }
 
-    /// The report at the end.
     pub fn report(&self) -> String {
         let Self { frames, simulated, greatest_energy_error, counts, comparison, .. } = self;
         let last = self.frame.unwrap_or_default();

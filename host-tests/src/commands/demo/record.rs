@@ -21,7 +21,6 @@ const UNCHANGED: u8 = 16;
 /// GIF counts time in hundredths of a second.
 const GIF_RATE: u32 = 100;
 
-/// An animation being written.
 pub struct Recording {
     encoder: Encoder<BufWriter<File>>,
     /// The screenshot to be shown next, and since which tick; it is written when its end is known.
@@ -33,7 +32,6 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// Begins the file.
     pub fn create(path: &Path) -> anyhow::Result<Self> {
         let file = File::create(path).with_context(|| format!("cannot write {}", path.display()))?;
         let [width, height] = size();
@@ -114,7 +112,6 @@ pub fn save(screenshot: &Screenshot, path: &Path) -> anyhow::Result<()> {
     png(screenshot, BufWriter::new(File::create(path).with_context(unwritable)?)).with_context(unwritable)
 }
 
-/// Writes one screenshot as a PNG file.
 pub fn png(screenshot: &Screenshot, file: impl Write) -> anyhow::Result<()> {
     let [width, height] = size();
     let mut encoder = png::Encoder::new(file, width, height);

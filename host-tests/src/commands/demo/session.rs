@@ -17,14 +17,10 @@ use crate::emulator::qemu::Screenshot;
 /// How far the emulated Pico may be behind a real one before it lets that go.
 const LATE: Duration = Duration::from_millis(100);
 
-/// One run.
 pub struct Session<'a> {
     options: &'a Options,
-    /// The board.
     pub source: Source<'a>,
-    /// What it has sent.
     pub readings: Readings,
-    /// Its panel.
     pub screenshot: Screenshot,
     recording: Option<Recording>,
     /// The latest tick, and that of the first frame of the scene that was asked for.
@@ -37,7 +33,6 @@ pub struct Session<'a> {
 }
 
 impl<'a> Session<'a> {
-    /// Of a board that has just been started, or found.
     pub fn new(options: &'a Options, source: Source<'a>, recording: Option<Recording>, is_live: bool) -> Self {
         let (readings, screenshot) = (Readings::default(), Screenshot::blank());
         let due = (is_live && matches!(source, Source::Pico(_))).then(Instant::now);

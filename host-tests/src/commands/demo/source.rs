@@ -4,18 +4,15 @@ use firmware::protocol::{MAX_WIRE, Message, encode};
 
 use crate::emulator::boards::{Board, PICO};
 use crate::emulator::pico;
-use crate::emulator::qemu::{Lockstep, LogLine, Machine, QemuError, Screenshot};
+use crate::emulator::qemu::{Lockstep, LogLine, Machine, Screenshot};
 use crate::link::{Counts, Port, Received};
 
-/// A board that plays.
 pub enum Source<'a> {
     /// Emulated by QEMU, its clock the host's.
     Live(Machine, &'a Board),
     /// Emulated by QEMU, run from frame to frame.
     Lockstep(Lockstep, &'a Board),
-    /// The emulated Pico.
     Pico(Box<pico::Machine>),
-    /// At a serial port.
     Port(Port),
 }
 
@@ -32,23 +29,22 @@ impl Source<'_> {
     /// The messages since the last call; of one that goes frame by frame those up to the next.
     pub fn messages(&mut self) -> anyhow::Result<Vec<Received>> {
         match self {
-            Self::Live(machine, _) => match machine.ended().map_err(broken)? {
-                Some(_) => Err(broken(machine.silence())),
+            Self::Live(machine, _) => match machine.ended()? {
+                Some(_) => Err(machine.silence()),
                 None => Ok(machine.serial.all_arrived().collect()),
             },
-            Self::Lockstep(lockstep, _) => lockstep.run_to_frame().map_err(broken),
-            Self::Pico(machine) => Ok(machine.run_to_frame()?),
+            Self::Lockstep(lockstep, _) => lockstep.run_to_frame(),
+            Self::Pico(machine) => machine.run_to_frame(),
             Self::Port(port) => Ok(port.messages()),
         }
     }
 
-    /// Sends a message.
     pub fn send(&mut self, message: &impl Message) -> anyhow::Result<()> {
         let mut wire = [0; MAX_WIRE];
         let wire = encode(message, &mut wire);
         match self {
-            Self::Live(machine, _) => machine.serial.send_bytes(wire).map_err(broken)?,
-            Self::Lockstep(lockstep, _) => lockstep.machine().serial.send_bytes(wire).map_err(broken)?,
+            Self::Live(machine, _) => machine.serial.send_bytes(wire)?,
+            Self::Lockstep(lockstep, _) => lockstep.machine().serial.send_bytes(wire)?,
             Self::Pico(machine) => machine.send_bytes(wire)?,
             Self::Port(port) => port.send_bytes(wire),
         }
@@ -66,7 +62,6 @@ impl Source<'_> {
         }
     }
 
-    /// What the link has been through.
     pub fn counts(&mut self) -> Counts {
         match self {
             Self::Live(machine, _) => machine.serial.counts(),
@@ -76,7 +71,6 @@ impl Source<'_> {
         }
     }
 
-    /// Whether the host can see its panel.
     pub fn has_panel(&self) -> bool {
         match self {
             Self::Live(_, board) | Self::Lockstep(_, board) => board.has_panel,
@@ -88,8 +82,8 @@ impl Source<'_> {
     /// What its panel shows; `None` where the host cannot see one.
     pub fn panel(&mut self) -> anyhow::Result<Option<Screenshot>> {
         match self {
-            Self::Live(machine, board) if board.has_panel => machine.screenshot().map(Some).map_err(broken),
-            Self::Lockstep(lockstep, board) if board.has_panel => lockstep.screenshot().map(Some).map_err(broken),
+            Self::Live(machine, board) if board.has_panel => machine.screenshot().map(Some),
+            Self::Lockstep(lockstep, board) if board.has_panel => lockstep.screenshot().map(Some),
             Self::Pico(machine) => Ok(Some(machine.screenshot()?)),
             _ => Ok(None),
         }
@@ -99,9 +93,4 @@ impl Source<'_> {
     pub fn is_port(&self) -> bool {
         matches!(self, Self::Port(_))
     }
-}
-
-/// What went wrong, as the demonstration says it.
-pub fn broken(error: QemuError) -> anyhow::Error {
-    anyhow::Error::msg(error.to_string())
 }

@@ -9,11 +9,9 @@ use ratatui::style::{Color, Stylize};
 use ratatui::text::{Line, Text};
 use ratatui::widgets::{Block, Paragraph};
 
-use super::help;
-use super::numbers;
 use super::panel::Panel;
-use super::plot;
 use super::readings::{Readings, way};
+use super::{help, numbers, plot};
 use crate::emulator::qemu::{LogLine, Screenshot, WIDTH};
 
 /// The panel's widths, columns: a pixel each; in Braille two of them; no narrower than makes sense.
@@ -29,11 +27,9 @@ const ANGLES: u16 = 7;
 const ANGLES_WIDTH: u16 = 60;
 /// A frame takes a column or row on either side.
 const FRAME: u16 = 2;
-/// What the keys do.
 const KEYS: [&str; 8] =
     ["↑ ↓ masses", "← → angle", "space restart", "tab scene", "p pause", ". step", "? help", "q quit"];
 
-/// Draws everything, in colours or without.
 pub fn draw(frame: &mut Frame, board: &str, screenshot: &Screenshot, readings: &Readings, colours: bool) {
     let area = frame.area();
     let Some(width) = panel_width(area) else {

@@ -23,7 +23,6 @@ const REACH: f64 = 2.1;
 /// From one mark of time on a path to the next, s.
 const MARKED: u32 = 1;
 
-/// Both paths.
 #[derive(Clone, Debug)]
 pub struct Chaos {
     /// By the right equations and by the printed ones.
@@ -39,12 +38,10 @@ pub struct Path {
     pub energies: [f64; 2],
 }
 
-/// Figure 7's pendulum.
 pub fn pendulum() -> Result<Pendulum<f64>, Error> {
     Pendulum::new(&Parameters::equal_rods(MASS_RATIO, ROD, PAGE_GRAVITY))
 }
 
-/// Its start.
 pub fn start() -> State<f64> {
     State::at_rest(START.to_radians(), START.to_radians())
 }
@@ -57,27 +54,7 @@ impl Chaos {
         let printed = path(&pendulum, refinement, |z| misprinted_equal_rods(MASS_RATIO, ROD, PAGE_GRAVITY, z));
         Ok(Self { paths: [right, printed] })
     }
-}
 
-fn path(pendulum: &Pendulum<f64>, refinement: u32, rhs: impl Fn(&[f64; 4]) -> [f64; 4]) -> Path {
-    let mut state = start();
-    let dt = 1.0 / f64::from(STEPS * refinement);
-    let mut points = Vec::new();
-    let (mut least, mut greatest) = (f64::INFINITY, f64::NEG_INFINITY);
-    for step in 0..=DURATION * STEPS * refinement {
-        if step.is_multiple_of(STEPS_PER_POINT * refinement) {
-            let [_, bob2] = pendulum.positions(state.angles());
-            points.push([bob2.x, bob2.y]);
-            let energy = pendulum.energy(&state);
-            (least, greatest) = (least.min(energy), greatest.max(energy));
-        }
-        state = rk4::step(&rhs, &state.into(), dt).into();
-    }
-    Path { points, energies: [least, greatest] }
-}
-
-impl Chaos {
-    /// The figure as an SVG file.
     pub fn svg(&self) -> Result<String> {
         svg([800, 468], |area| self.draw(area))
     }
@@ -108,9 +85,25 @@ impl Chaos {
     }
 }
 
+fn path(pendulum: &Pendulum<f64>, refinement: u32, rhs: impl Fn(&[f64; 4]) -> [f64; 4]) -> Path {
+    let mut state = start();
+    let dt = 1.0 / f64::from(STEPS * refinement);
+    let mut points = Vec::new();
+    let (mut least, mut greatest) = (f64::INFINITY, f64::NEG_INFINITY);
+    for step in 0..=DURATION * STEPS * refinement {
+        if step.is_multiple_of(STEPS_PER_POINT * refinement) {
+            let [_, bob2] = pendulum.positions(state.angles());
+            points.push([bob2.x, bob2.y]);
+            let energy = pendulum.energy(&state);
+            (least, greatest) = (least.min(energy), greatest.max(energy));
+        }
+        state = rk4::step(&rhs, &state.into(), dt).into();
+    }
+    Path { points, energies: [least, greatest] }
+}
+
 /// The shades of a path, from its start to its end.
 const SHADES: usize = 10;
-/// The palest of them.
 const PALEST: f64 = 0.35;
 
 impl Path {

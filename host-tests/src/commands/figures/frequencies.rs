@@ -26,17 +26,13 @@ fn point(mass_ratio: f64) -> Result<[f64; 3], Error> {
 }
 
 impl Frequencies {
-    /// Computes the figure.
     pub fn new() -> Result<Self, Error> {
         // Denser towards 0, where the curves are steep.
         let mass_ratio = |i: u32| GREATEST_MASS_RATIO * (f64::from(i) / f64::from(POINTS)).powi(2);
         let points = (1..=POINTS).map(|i| point(mass_ratio(i))).collect::<Result<_, _>>()?;
         Ok(Self { points, marks: MARKED.into_iter().map(point).collect::<Result<_, _>>()? })
     }
-}
 
-impl Frequencies {
-    /// The figure as an SVG file.
     pub fn svg(&self) -> Result<String> {
         svg([640, 400], |area| self.draw(area))
     }

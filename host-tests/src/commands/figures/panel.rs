@@ -1,14 +1,15 @@
 //! What the panel shows in every scene: frames drawn here, and animations recorded in QEMU.
 
+use std::ffi::OsStr;
 use std::path::Path;
 
 use anyhow::{Result, ensure};
-use firmware::config::{BAUD, TICK_RATE};
+use clap::Parser;
+use firmware::config::TICK_RATE;
 use firmware::scenes::SceneName;
 
 use crate::commands::demo::{self, Options, record};
 use crate::console::cli::complain;
-use crate::emulator::boards::BOARDS;
 use crate::emulator::host::Show;
 use crate::emulator::qemu::Screenshot;
 
@@ -45,19 +46,10 @@ pub fn seconds(scene: SceneName) -> f64 {
 /// Records the animation of a scene into `folder`, as `cargo demo --headless` does, and says by which command.
 pub fn record(scene: SceneName, folder: &Path) -> Result<()> {
     let path = folder.join(file(scene, "gif"));
-    let (name, seconds) = (scene.name(), seconds(scene));
+    let (name, seconds) = (scene.name(), seconds(scene).to_string());
     complain(format_args!("cargo demo --scene {name} --headless --seconds {seconds} --record {}", path.display()));
-    let options = Options {
-        method: None,
-        board: &BOARDS[0],
-        port: None,
-        baud: BAUD,
-        scene: Some(scene),
-        headless: true,
-        seconds: Some(seconds),
-        record: Some(path),
-        screenshot: None,
-    };
+    let words = ["cargo demo", "--scene", name, "--headless", "--seconds", &seconds, "--record"];
+    let options = Options::try_parse_from(words.iter().map(OsStr::new).chain([path.as_os_str()]))?;
     ensure!(demo::run(&options)?, "not all was well in {}", scene.name());
     Ok(())
 }

@@ -17,7 +17,6 @@ pub const TEXT: RGBColor = RGBColor(34, 34, 34);
 pub const GRID: RGBColor = RGBColor(225, 225, 225);
 /// Two colours that anybody can tell apart.
 pub const BLUE: RGBColor = RGBColor(0, 95, 175);
-/// See [`BLUE`].
 pub const ORANGE: RGBColor = RGBColor(205, 85, 15);
 
 /// Where a figure, or a part of it, is drawn.

@@ -15,19 +15,17 @@ const ROD: f64 = 0.25;
 const DURATION: f64 = 5.0;
 const POINTS: u32 = 1500;
 
-/// One of the figures.
 #[derive(Clone, Debug)]
 pub struct Small {
     number: u32,
     mass_ratio: f64,
     modes: Modes<f64>,
-    /// The curves' points.
-    pub points: Vec<Point>,
+    pub points: Vec<CurvePoint>,
 }
 
 /// What a figure shows of one moment.
 #[derive(Clone, Copy, Debug)]
-pub struct Point {
+pub struct CurvePoint {
     /// Since the start, s.
     pub time: f64,
     /// Both angles, degrees.
@@ -45,22 +43,15 @@ impl Small {
             let time = DURATION * f64::from(i) / f64::from(POINTS);
             let now = motion.at(time);
             let envelopes = envelopes(&modes, &motion, time);
-            Point { time, angles: [now.a1, now.a2].map(f64::to_degrees), envelopes: envelopes.map(f64::to_degrees) }
+            CurvePoint {
+                time,
+                angles: [now.a1, now.a2].map(f64::to_degrees),
+                envelopes: envelopes.map(f64::to_degrees),
+            }
         };
         Ok(Self { number, mass_ratio, modes, points: (0..=POINTS).map(point).collect() })
     }
-}
 
-/// The amplitudes of C1 cos w1 t + C2 cos w2 t in either angle: sqrt(C1^2 + C2^2 + 2 C1 C2 cos (w1 - w2) t), rad.
-fn envelopes(modes: &Modes<f64>, motion: &SmallOscillations<f64>, time: f64) -> [f64; 2] {
-    let [fast, slow] = [motion.fast().cosine, motion.slow().cosine];
-    let cos = libm::cos(modes.exchange() * time);
-    let amplitude = |c1: f64, c2: f64| (c1 * c1 + c2 * c2 + 2.0 * c1 * c2 * cos).max(0.0).sqrt();
-    [amplitude(fast, slow), amplitude(modes.fast.shape * fast, modes.slow.shape * slow)]
-}
-
-impl Small {
-    /// The figure as an SVG file.
     pub fn svg(&self) -> Result<String> {
         svg([720, 503], |area| self.draw(area))
     }
@@ -91,4 +82,12 @@ impl Small {
         }
         Ok(())
     }
+}
+
+/// The amplitudes of C1 cos w1 t + C2 cos w2 t in either angle: sqrt(C1^2 + C2^2 + 2 C1 C2 cos (w1 - w2) t), rad.
+fn envelopes(modes: &Modes<f64>, motion: &SmallOscillations<f64>, time: f64) -> [f64; 2] {
+    let [fast, slow] = [motion.fast().cosine, motion.slow().cosine];
+    let cos = libm::cos(modes.exchange() * time);
+    let amplitude = |c1: f64, c2: f64| (c1 * c1 + c2 * c2 + 2.0 * c1 * c2 * cos).max(0.0).sqrt();
+    [amplitude(fast, slow), amplitude(modes.fast.shape * fast, modes.slow.shape * slow)]
 }

@@ -2,13 +2,12 @@
 
 use std::f64::consts::PI;
 
-use double_pendulum::DirectionF64;
 use double_pendulum::flips::{Flip, Flips};
-use double_pendulum::{Error, Motion};
+use double_pendulum::{DirectionF64, Error, Motion};
 
 use fastrand::Rng;
 
-use super::map::{Map, Point};
+use super::map::{Followed, Map};
 use reference::taylor::Reference;
 
 /// The judge's steps are so many times finer; its arithmetic is compensated `f64`.
@@ -18,7 +17,7 @@ const LOOKS: f64 = 0.1;
 
 /// How a map's points were judged.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Verdict {
+pub struct Judgement {
     /// Points that may turn over.
     pub points: usize,
     /// Of them, those whose time is more than a grey level off.
@@ -36,16 +35,16 @@ pub fn sample(map: &Map, judged: usize) -> Result<usize, Error> {
     let starts = map.starts(0..map.square.rows()).zip(points);
     let mut candidates: Vec<_> = starts.filter(|(_, point)| point.flip != Flip::Never).collect();
     Rng::with_seed(1).shuffle(&mut candidates);
-    let is_wrong = |(start, point): &([f32; 2], Point)| map.differ(point.flip, exact(map, *start));
+    let is_wrong = |(start, point): &([f32; 2], Followed)| map.differ(point.flip, exact(map, *start));
     Ok(candidates.into_iter().take(judged).filter(is_wrong).count())
 }
 
 /// Judges all points of the upper half of a map by fine steps in `f64`.
-pub fn judge(map: &Map) -> Result<Verdict, Error> {
+pub fn judge(map: &Map) -> Result<Judgement, Error> {
     let points = map.points(0..map.square.rows())?;
     let dt = map.dt / f64::from(FINER);
     let fine = Flips::<DirectionF64>::new(&map.parameters.cast(), dt, (f64::from(map.limit) / dt) as u32)?;
-    let mut verdict = Verdict::default();
+    let mut verdict = Judgement::default();
     for (start, point) in map.starts(0..map.square.rows()).zip(points) {
         let [a1, a2] = start.map(f64::from);
         let exact = match fine.of(a1, a2)? {

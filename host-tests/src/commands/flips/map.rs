@@ -8,7 +8,6 @@ use vectors::{Search, flips};
 
 use super::square::Square;
 
-/// What is looked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Map {
     /// The pendulum; its gravity is its l1, so that times are in sqrt(l1/g).
@@ -17,13 +16,12 @@ pub struct Map {
     pub dt: f64,
     /// How long is waited, sqrt(l1/g).
     pub limit: f32,
-    /// Which starts.
     pub square: Square,
 }
 
 /// A start's flip with the step, and with half of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Point {
+pub struct Followed {
     /// What is shown.
     pub flip: Flip<f32>,
     /// What it is held against.
@@ -51,25 +49,23 @@ impl Map {
         Ok(Self { parameters, dt: step_size(&parameters)?, limit, square })
     }
 
-    /// The starts of some rows.
     pub fn starts(&self, rows: std::ops::Range<usize>) -> impl Iterator<Item = [f32; 2]> + '_ {
         let [width, _] = self.square.size;
         rows.flat_map(move |row| (0..width).map(move |column| self.square.start([column, row])))
     }
 
-    /// The points of some rows.
-    pub fn points(&self, rows: std::ops::Range<usize>) -> Result<Vec<Point>, Error> {
+    pub fn points(&self, rows: std::ops::Range<usize>) -> Result<Vec<Followed>, Error> {
         let starts: Vec<[f32; 2]> = self.starts(rows).collect();
         let searches = [self.search(1)?, self.search(2)?];
         let portions = starts.par_chunks(PORTION).map(|portion| {
             let [flips, checks] = [flips(&searches[0], portion)?, flips(&searches[1], portion)?];
-            Ok(flips.into_iter().zip(checks).map(|(flip, check)| Point { flip, check }).collect::<Vec<_>>())
+            Ok(flips.into_iter().zip(checks).map(|(flip, check)| Followed { flip, check }).collect::<Vec<_>>())
         });
         Ok(portions.collect::<Result<Vec<_>, Error>>()?.concat())
     }
 
     /// Whether its two times are farther apart than a grey level of the panel.
-    pub fn is_in_doubt(&self, Point { flip, check }: Point) -> bool {
+    pub fn is_in_doubt(&self, Followed { flip, check }: Followed) -> bool {
         self.differ(flip, check)
     }
 

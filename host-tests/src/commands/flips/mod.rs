@@ -17,7 +17,7 @@ use anyhow::{Context, Result};
 use crate::console::cli::{check_writable, complain, say};
 use crate::console::progress::Bar;
 use crate::emulator::process::{interrupted, interrupted_by};
-use map::{Map, Point};
+use map::{Followed, Map};
 pub use options::Options;
 use part::Part;
 
@@ -45,9 +45,9 @@ pub fn run(options: &Options) -> Result<ExitCode> {
 /// Computes what is missing of `points`, band by band, until it is stopped; how many there are in all.
 fn compute(
     map: &Map,
-    points: &mut Vec<Point>,
+    points: &mut Vec<Followed>,
     is_stopped: impl Fn() -> bool,
-    mut keep: impl FnMut(&[Point]) -> Result<()>,
+    mut keep: impl FnMut(&[Followed]) -> Result<()>,
 ) -> Result<usize> {
     let ([width, _], rows) = (map.square.size, map.square.rows());
     let (all, whole) = (width * rows, points.len() / width);
@@ -67,8 +67,7 @@ fn compute(
     Ok(all)
 }
 
-/// How many pixels are in doubt.
-fn doubtful(map: &Map, points: &[Point]) -> usize {
+fn doubtful(map: &Map, points: &[Followed]) -> usize {
     let [width, height] = map.square.size;
     let places = (0..height).flat_map(|row| (0..width).map(move |column| map.square.place([column, row])));
     places.filter(|&place| points.get(place).is_some_and(|&point| map.is_in_doubt(point))).count()

@@ -7,7 +7,7 @@ use anyhow::Result;
 use double_pendulum::flips::Flip;
 
 use super::legend;
-use super::map::{Map, Point};
+use super::map::{Followed, Map};
 use crate::console::cli::Refused;
 
 /// A kind of file, by its name's end.
@@ -20,7 +20,6 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// The kind of `file`.
     pub fn of(file: &Path) -> Result<Self, Refused> {
         match file.extension().and_then(|end| end.to_str()) {
             Some("png") => Ok(Self::Picture),
@@ -30,7 +29,7 @@ impl Kind {
     }
 
     /// The file of a map, of which the first `points` are done; `doubt` has a colour of its own where it is asked for.
-    pub fn file(self, map: &Map, points: &[Point], doubt: bool) -> Result<Vec<u8>> {
+    pub fn file(self, map: &Map, points: &[Followed], doubt: bool) -> Result<Vec<u8>> {
         let [width, height] = map.square.size;
         let places = (0..height).flat_map(|row| (0..width).map(move |column| [column, row]));
         let pixels = places.map(|place| (place, points.get(map.square.place(place)).copied()));
@@ -46,9 +45,7 @@ pub type Colour = [u8; 3];
 
 /// There is not the energy for it; not within the limit; the two steps do not agree; not computed yet.
 pub const NEVER: Colour = [0, 0, 0];
-/// See [`NEVER`].
 pub const LATER: Colour = [110, 110, 118];
-/// See [`NEVER`].
 pub const DOUBT: Colour = [255, 0, 90];
 const UNDONE: Colour = [255, 255, 255];
 
@@ -57,11 +54,11 @@ pub fn scale(share: f32) -> Colour {
     colorous::VIRIDIS.eval_continuous(f64::from(1.0 - share)).as_array()
 }
 
-fn colour(map: &Map, point: Option<Point>, doubt: bool) -> Colour {
+fn colour(map: &Map, point: Option<Followed>, doubt: bool) -> Colour {
     match point {
         None => UNDONE,
         Some(point) if doubt && map.is_in_doubt(point) => DOUBT,
-        Some(Point { flip, .. }) => match flip {
+        Some(Followed { flip, .. }) => match flip {
             Flip::Never => NEVER,
             _ => map.share(flip).map_or(LATER, scale),
         },
@@ -83,7 +80,7 @@ fn picture(map: &Map, pixels: impl Iterator<Item = Colour>, doubt: bool) -> Resu
 }
 
 /// A row for each pixel, from the top left corner.
-fn table(map: &Map, pixels: impl Iterator<Item = ([usize; 2], Option<Point>)>) -> Result<Vec<u8>> {
+fn table(map: &Map, pixels: impl Iterator<Item = ([usize; 2], Option<Followed>)>) -> Result<Vec<u8>> {
     let mut text = String::from("a1,a2,time,half_step\n");
     let word = |flip: Flip<f32>| match flip {
         Flip::Never => "never".to_owned(),

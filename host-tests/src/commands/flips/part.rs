@@ -8,12 +8,12 @@ use anyhow::{Context, Result};
 use double_pendulum::flips::Flip;
 use nix::fcntl::{Flock, FlockArg};
 
-use super::map::{Map, Point};
+use super::map::{Followed, Map};
 use crate::console::cli::Refused;
 
 /// Points in a file: a line that says of what map, then two numbers for each.
 #[derive(Debug)]
-pub struct Part {
+pub(super) struct Part {
     path: PathBuf,
     /// Locked, for two runs of one name would write over each other.
     file: Flock<File>,
@@ -24,7 +24,7 @@ const POINT: usize = 8;
 
 impl Part {
     /// The points of `map` done so far, beside `out`: none, unless it is to `resume`.
-    pub fn open(out: &Path, map: &Map, resume: bool) -> Result<(Self, Vec<Point>)> {
+    pub fn open(out: &Path, map: &Map, resume: bool) -> Result<(Self, Vec<Followed>)> {
         let mut name = out.as_os_str().to_owned();
         name.push(".part");
         let path = PathBuf::from(name);
@@ -43,20 +43,18 @@ impl Part {
         file.read_to_end(&mut bytes)?;
         let other = || Refused::because(format!("--resume: {} is of another map", path.display()));
         let body = bytes.strip_prefix(head.as_bytes()).ok_or_else(other)?;
-        let points: Vec<Point> = body.chunks_exact(POINT).map(read).collect();
+        let points: Vec<Followed> = body.chunks_exact(POINT).map(read).collect();
         // What follows the last whole point was cut off.
         file.set_len((head.len() + points.len() * POINT) as u64)?;
         Ok((Self { path, file }, points))
     }
 
-    /// Adds what has been computed.
-    pub fn add(&mut self, points: &[Point]) -> Result<()> {
+    pub fn add(&mut self, points: &[Followed]) -> Result<()> {
         let numbers = points.iter().flat_map(|point| [point.flip, point.check].map(number));
         let bytes: Vec<u8> = numbers.flat_map(f32::to_le_bytes).collect();
         self.file.write_all(&bytes).with_context(|| format!("cannot write {}", self.path.display()))
     }
 
-    /// Takes the file away: all is done.
     pub fn remove(self) -> Result<()> {
         fs::remove_file(&self.path).with_context(|| format!("cannot remove {}", self.path.display()))
     }
@@ -71,12 +69,12 @@ fn number(flip: Flip<f32>) -> f32 {
     }
 }
 
-fn read(bytes: &[u8]) -> Point {
+fn read(bytes: &[u8]) -> Followed {
     let (numbers, _) = bytes.as_chunks();
     let flip = |at: usize| match numbers.get(at).map_or(-1.0, |bytes| f32::from_le_bytes(*bytes)) {
         time if time < 0.0 => Flip::Never,
         time if time.is_finite() => Flip::After(time),
         _ => Flip::Later,
     };
-    Point { flip: flip(0), check: flip(1) }
+    Followed { flip: flip(0), check: flip(1) }
 }

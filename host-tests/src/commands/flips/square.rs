@@ -12,7 +12,6 @@ pub struct Square {
 }
 
 impl Square {
-    /// All starts there are.
     pub fn whole(size: [usize; 2]) -> Self {
         Self { size, centre: [0.0; 2], half: std::f64::consts::PI }
     }

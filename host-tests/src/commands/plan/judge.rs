@@ -1,13 +1,11 @@
 //! A plan carried out, beside the reference.
 
-use double_pendulum::Direction;
 use double_pendulum::plan::{Plan, Problem};
-use double_pendulum::{Error, Motion, Parameters};
+use double_pendulum::{Direction, Error, Motion, Parameters};
 use firmware::config::HALF_PIXEL;
 
 use reference::taylor::Reference;
 
-/// The directions of both rods.
 pub type Directions = [Direction<f64>; 2];
 
 /// The exact motion of a scene, each frame computed once, however many plans are held against it: this takes longest by far.
@@ -65,9 +63,8 @@ fn directions(motion: &Motion<f64>) -> Directions {
     [motion.a1, motion.a2].map(|a| [libm::sin(a), libm::cos(a)])
 }
 
-/// What became of a plan.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Verdict {
+pub struct Outcome {
     /// The last time until which every frame was right to half a pixel, s; the scene's duration if all were.
     pub horizon: f64,
     /// The largest error until the predicted horizon, pixels.
@@ -75,10 +72,10 @@ pub struct Verdict {
 }
 
 /// Carries out `plan` and compares each frame with the exact motion, until one is wrong and the predicted horizon is past.
-pub fn judge(exact: &mut Exact, plan: &Plan) -> Result<Verdict, Error> {
+pub fn judge(exact: &mut Exact, plan: &Plan) -> Result<Outcome, Error> {
     let scene = exact.scene;
     let mut motion = plan.run(scene)?;
-    let mut verdict = Verdict { horizon: scene.duration, error: 0.0 };
+    let mut verdict = Outcome { horizon: scene.duration, error: 0.0 };
     let mut right = true;
     for frame in 1..=scene.frames() {
         let predicted = scene.time(frame) <= plan.horizon;

@@ -8,7 +8,7 @@ mod target;
 mod words;
 
 pub use draw::scenes;
-pub use judge::{Exact, Verdict, judge};
+pub use judge::{Exact, Outcome, judge};
 pub use options::Options;
 pub use study::{Case, DURATIONS, median, study, summary};
 pub use target::{CHIPS, Chip, M3, M4F, PICO};

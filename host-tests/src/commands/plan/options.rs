@@ -9,7 +9,7 @@ use firmware::motion::planner::{Shown, half_pixel, problem};
 use firmware::scenes::SceneName;
 
 use super::target::{CHIPS, Chip};
-use crate::commands::simulate::{Number, Start};
+use crate::commands::simulate::{Number, StartOptions};
 use crate::console::cli::choice;
 use crate::emulator::host::Show;
 
@@ -28,7 +28,7 @@ const EXAMPLES: &str = "Examples:
 pub struct Options {
     /// What moves.
     #[command(flatten)]
-    pub start: Start,
+    pub start: StartOptions,
     /// A scene of the boards as they start it, in place of all that moves: angles and masses are then the nearest `f32`
     #[arg(long, value_name = "NAME", value_parser = choice(SceneName::ALL.iter().copied(), SceneName::name),
           conflicts_with_all = ["masses", "lengths", "gravity", "angles", "velocities", "degrees", "height", "duration", "rate"])]

@@ -6,7 +6,7 @@ use double_pendulum::plan::{Limit, Plan, PlanError, Problem};
 use firmware::config::HALF_PIXEL;
 use rayon::prelude::*;
 
-use super::judge::{Exact, Verdict, judge};
+use super::judge::{Exact, Outcome, judge};
 use super::target::{CHIPS, Chip};
 use crate::commands::count::ERROR_BAR;
 use crate::commands::table::{Table, small};
@@ -19,14 +19,12 @@ pub const DURATIONS: Range<f64> = 2.0..30.0;
 pub struct Case {
     /// Its place in the drawing, from 0.
     pub number: usize,
-    /// What it is planned for.
     pub chip: Chip,
-    /// The scene.
     pub scene: Problem,
     /// The plan; if nothing holds, what forbids it.
     pub plan: Result<Plan, Limit>,
     /// What became of it; nothing without one.
-    pub verdict: Verdict,
+    pub verdict: Outcome,
 }
 
 impl Case {
@@ -58,7 +56,7 @@ pub fn study(
         let mut exact = Exact::new(&scene);
         let case = |&chip: &Chip| -> Result<Case, PlanError> {
             let plan = chip.plan(&scene)?;
-            let verdict = plan.map_or(Ok(Verdict::default()), |plan| judge(&mut exact, &plan))?;
+            let verdict = plan.map_or(Ok(Outcome::default()), |plan| judge(&mut exact, &plan))?;
             Ok(Case { number, chip, scene, plan, verdict })
         };
         let cases = chips.iter().map(case).collect::<Result<Vec<_>, _>>()?;

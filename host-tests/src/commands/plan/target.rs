@@ -6,9 +6,7 @@ use firmware::config::{CORTEX_M0PLUS, CORTEX_M3, CORTEX_M4F, Processor, STM32F40
 /// A chip, by what a plan must know of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Chip {
-    /// What the user types.
     pub name: &'static str,
-    /// In words.
     pub title: &'static str,
     /// Its clock, Hz.
     pub clock: f32,

@@ -1,8 +1,7 @@
 //! A plan in words.
 
-use double_pendulum::Method;
-use double_pendulum::Pendulum;
 use double_pendulum::plan::{Limit, Plan, Problem};
+use double_pendulum::{Method, Pendulum};
 use firmware::config::HALF_PIXEL;
 
 use super::target::Chip;

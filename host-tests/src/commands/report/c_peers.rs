@@ -43,7 +43,6 @@ const RATES: [u32; 5] = [16, 32, 64, 128, RATE];
 /// What the programs compute, in Rust.
 const TEXTBOOK: Method = Method::TextbookF32;
 
-/// A program in C for a board.
 pub struct Program {
     name: &'static str,
     target: Target,

@@ -11,7 +11,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use super::c_peers::PROGRAMS;
 use super::join::Point;
 use super::scene::Scene;
-use crate::emulator::boards::{Board, Core};
+use crate::emulator::boards::Board;
 
 /// Pixels.
 const SIZE: (u32, u32) = (860, 460);
@@ -39,15 +39,6 @@ const GREY: RGBColor = RGBColor(200, 200, 200);
 const FONT: &str = "sans-serif";
 /// Pixels of a name: each character, and from one line to the next.
 const LETTER: (i32, i32) = (7, 15);
-
-/// A core by the name on its manual.
-pub fn core_name(board: &Board) -> &'static str {
-    match board.core() {
-        Core::M3 => "Cortex-M3",
-        Core::M4F => "Cortex-M4F",
-        Core::M0Plus => "Cortex-M0+",
-    }
-}
 
 /// Each contestant's name with its points from the coarsest step on, those that a finer step makes better.
 fn lines<'a>(points: &'a [Point], scene: &Scene, board: &Board) -> Vec<(&'static str, Vec<&'a Point>)> {
@@ -92,7 +83,7 @@ fn draw(points: &[Point], scene: &Scene, board: &Board) -> Result<String, Box<dy
         area.fill(&WHITE)?;
         let mut chart = ChartBuilder::on(&area)
             .caption(
-                format!("{}: {}, {} s", core_name(board), scene.title, scene.duration),
+                format!("{}: {}, {} s", board.core().name(), scene.title, scene.duration),
                 (FONT, 17).into_font().color(&TEXT),
             )
             .margin(10)

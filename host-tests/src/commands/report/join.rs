@@ -20,13 +20,10 @@ const FINEST: u32 = 13;
 pub struct Point {
     /// A method of the kernel, or a program in C.
     pub name: &'static str,
-    /// The motion.
     pub scene: &'static Scene,
-    /// The board.
     pub board: &'static Board,
     /// Steps a second.
     pub rate: u32,
-    /// Of one step.
     pub step: StepCost,
     /// The largest over the scene.
     pub error: Error,
@@ -113,7 +110,6 @@ pub fn mark_dominated(points: &mut [Point]) {
     }
 }
 
-/// Every point.
 pub fn table(points: &[Point]) -> Table {
     let row = |point: &Point| {
         let Point { name, scene, board, rate, step, error, dominated } = *point;

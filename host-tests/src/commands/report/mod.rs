@@ -24,29 +24,15 @@ use crate::emulator::toolchain::Toolchain;
 pub use readme::Blocks;
 use scene::{LONG, SCENES, Scene};
 
-/// How much is computed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Extent {
-    /// Scenes, from the first on.
-    pub scenes: usize,
-    /// Boards whose frames are counted, from the first on.
-    pub boards: usize,
-}
-
-impl Extent {
-    /// All of it: an hour.
-    pub const FULL: Self = Self { scenes: SCENES.len(), boards: BOARDS.len() };
-    /// The first two scenes, a Cortex-M3 and a Cortex-M4F: some minutes.
-    pub const QUICK: Self = Self { scenes: 2, boards: 2 };
-}
-
 /// Computes the report and writes it into `folder`, costs on one board for each kind of core.
 ///
-/// Gives what the READMEs show of it, and what had to be left out, a line each.
-pub fn write(extent: &Extent, toolchain: &Toolchain, folder: &Path, bar: &Bar) -> Result<(Blocks, Vec<String>)> {
+/// All of it takes an hour; `quick`, some minutes: the first two scenes, and of frames a Cortex-M3's and a Cortex-M4F's. Gives what
+/// the READMEs show of it, and what had to be left out, a line each.
+pub fn write(quick: bool, toolchain: &Toolchain, folder: &Path, bar: &Bar) -> Result<(Blocks, Vec<String>)> {
+    let [scenes, boards] = if quick { [2, 2] } else { [SCENES.len(), BOARDS.len()] };
     let targets = Target::build_all(toolchain)?;
-    let scenes: Vec<&'static Scene> = SCENES.iter().take(extent.scenes).chain([&LONG]).collect();
-    let runs = join::methods().count() * (scenes.len() + targets.len()) + extent.boards * SceneName::ALL.len();
+    let scenes: Vec<&'static Scene> = SCENES.iter().take(scenes).chain([&LONG]).collect();
+    let runs = join::methods().count() * (scenes.len() + targets.len()) + boards * SceneName::ALL.len();
     bar.set_length(runs as u64);
     let tick = || bar.advance(1);
     let save = |name: &str, text: &str| {
@@ -67,7 +53,7 @@ pub fn write(extent: &Extent, toolchain: &Toolchain, folder: &Path, bar: &Bar) -
         }
     }
     bar.say("counting frames");
-    save("frames.csv", &frames::count(toolchain, extent.boards, &tick)?.csv())?;
+    save("frames.csv", &frames::count(toolchain, boards, &tick)?.csv())?;
     charts.retain(|(name, _)| name.starts_with(SCENES[0].name));
     Ok((Blocks::new(&points, charts), absent))
 }

@@ -5,7 +5,6 @@ use std::fs;
 use anyhow::{Context, Result, ensure};
 
 use super::c_peers::PROGRAMS;
-use super::chart::core_name;
 use super::join::Point;
 use super::scene::{LONG, SCENES, Scene};
 use crate::commands::table::{Table, small};
@@ -46,7 +45,6 @@ pub struct Blocks {
     /// What to take on each core through a regular and a chaotic motion, a sentence each, in Markdown.
     pub advice: Vec<String>,
     table: Table,
-    /// Each chart's file.
     charts: Vec<(String, String)>,
 }
 
@@ -56,13 +54,11 @@ impl Blocks {
         Self { advice: advice(points), table: table(points), charts }
     }
 
-    /// Whether the READMEs show this.
     pub fn is_in_readmes(&self) -> Result<bool> {
         let shown = READMES.map(|(file, rows)| Ok(read(file)?.contains(&self.block(rows))));
         shown.into_iter().try_fold(true, |all, shown: Result<bool>| Ok(all && shown?))
     }
 
-    /// Puts it there.
     pub fn put_into_readmes(&self) -> Result<()> {
         for (file, rows) in READMES {
             fs::write(workspace().join(file), with_block(&read(file)?, &self.block(rows))?)?;
@@ -83,7 +79,6 @@ fn read(file: &str) -> Result<String> {
     fs::read_to_string(workspace().join(file)).with_context(|| format!("no {file}"))
 }
 
-/// The boards that were counted on.
 fn boards(points: &[Point]) -> impl Iterator<Item = &'static Board> {
     BOARDS.iter().filter(|board| points.iter().any(|point| point.board == *board))
 }
@@ -98,7 +93,7 @@ fn advice(points: &[Point]) -> Vec<String> {
                 None => format!("nothing {words}"),
             }
         });
-        format!("{}, {} motion, cycles a second: {}.", core_name(board), scene.name, parts.join("; "))
+        format!("{}, {} motion, cycles a second: {}.", board.core().name(), scene.name, parts.join("; "))
     };
     boards(points).flat_map(|board| [&SCENES[0], &SCENES[1]].map(|scene| sentence(board, scene))).collect()
 }

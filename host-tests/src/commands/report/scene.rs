@@ -6,9 +6,7 @@ use firmware::config::{GRAVITY, PAGE_GRAVITY, REACH};
 /// A motion from rest. Every number is one that an `f32` holds, so that all arithmetics are given the same pendulum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scene {
-    /// For tables and files.
     pub name: &'static str,
-    /// What it is.
     pub title: &'static str,
     m2: f32,
     l1: f32,
@@ -56,7 +54,6 @@ pub const LONG: Scene =
     scene("regular-long", "regular: 0.5/0.5 rad, 100 s",       1.0,   [1.0, 1.0],   EARTH, [0.5, 0.5], 100);
 
 impl Scene {
-    /// Masses, lengths and gravity.
     pub fn parameters(&self) -> Parameters<f64> {
         let [m2, l1, l2, g] = [self.m2, self.l1, self.l2, self.g].map(f64::from);
         Parameters { m1: 1.0, m2, l1, l2, g }

@@ -8,7 +8,6 @@ use firmware::job::Reading;
 use firmware::protocol::{Field, Frame, Refused, Sample};
 
 use super::Plan;
-use crate::console::cli;
 use crate::emulator::boards::Board;
 use crate::emulator::qemu::{Clock, Machine, Settings};
 use crate::emulator::toolchain;
@@ -27,7 +26,7 @@ pub fn on_board(
     board: &'static Board,
     mut row: impl FnMut(&Reading) -> io::Result<()>,
 ) -> anyhow::Result<()> {
-    let (toolchain, _) = toolchain::set_up().map_err(cli::Refused::because)?;
+    let (toolchain, _) = toolchain::set_up()?;
     let elf = toolchain.build_for(board)?;
     let steps = plan.request.stride.saturating_mul(plan.request.samples);
     let limit = OVERHEAD.saturating_add(PER_STEP.saturating_mul(steps));
@@ -43,7 +42,7 @@ pub fn on_board(
         ensure!(sample.index == index, "{}: row {index} was lost on the way", board.name);
         row(&Reading { state: sample.state, velocities: sample.velocities, energy: sample.energy })?;
     }
-    Ok(machine.quit()?)
+    machine.quit()
 }
 
 fn next_sample(machine: &mut Machine) -> anyhow::Result<Sample> {

@@ -16,11 +16,11 @@ use firmware::job::Reading;
 
 pub use board::on_board;
 pub use list::list;
-pub use number::{Number, NumberError};
+pub use number::Number;
 pub use options::{Options, Place};
 pub use request::{Plan, plan};
-pub use start::{Pair, Start};
-pub use table::{COLUMNS, Column, Table};
+pub use start::{Pair, StartOptions};
+pub use table::{COLUMNS, Column, CsvRows};
 pub use tolerance::{Choice, choose};
 
 /// Computes the motion on the host and gives each reading to `row`.

@@ -17,19 +17,10 @@ pub struct Number {
 /// A numerator over a denominator greater than zero, in lowest terms.
 type Fraction = (i64, i64);
 
-/// Why a text is not a [`Number`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum NumberError {
-    /// Neither a decimal nor a fraction of two.
-    #[error("not a number (write a decimal or a fraction such as 1/256)")]
-    NotANumber,
-    /// NaN, infinite, or beyond the range of `f64`.
-    #[error("must be a finite number")]
-    NotFinite,
-    /// A fraction with denominator zero.
-    #[error("the denominator is zero")]
-    ZeroDenominator,
-}
+/// Why a text is no [`Number`].
+const NOT_A_NUMBER: &str = "not a number (write a decimal or a fraction such as 1/256)";
+const NOT_FINITE: &str = "must be a finite number";
+const ZERO_DENOMINATOR: &str = "the denominator is zero";
 
 impl Number {
     /// The `f64` nearest to it.
@@ -42,12 +33,10 @@ impl Number {
         self.fraction.map(|(numerator, denominator)| Given::Fraction(numerator, denominator.unsigned_abs()))
     }
 
-    /// Less than zero.
     pub fn is_negative(&self) -> bool {
         self.value < 0.0
     }
 
-    /// Greater than zero.
     pub fn is_positive(&self) -> bool {
         self.value > 0.0
     }
@@ -88,30 +77,26 @@ impl fmt::Display for Number {
 }
 
 impl FromStr for Number {
-    type Err = NumberError;
+    type Err = &'static str;
 
-    fn from_str(text: &str) -> Result<Self, NumberError> {
+    fn from_str(text: &str) -> Result<Self, &'static str> {
         let (above, below) = text.split_once('/').unwrap_or((text, "1"));
         let ((numerator, above), (denominator, below)) = (decimal(above)?, decimal(below)?);
         if denominator == 0.0 {
-            return Err(NumberError::ZeroDenominator);
+            return Err(ZERO_DENOMINATOR);
         }
         let fraction = above.zip(below).and_then(|(above, below)| quotient(above, below));
         let is_decimal = !text.contains('/');
         let value = fraction.filter(|_| !is_decimal).map_or(numerator / denominator, nearest);
-        if value.is_finite() {
-            Ok(Self { text: text.to_owned(), value, fraction })
-        } else {
-            Err(NumberError::NotFinite)
-        }
+        if value.is_finite() { Ok(Self { text: text.to_owned(), value, fraction }) } else { Err(NOT_FINITE) }
     }
 }
 
 /// `[+-]digits[.digits][e[+-]digits]`: the nearest `f64`, and exactly.
-fn decimal(text: &str) -> Result<(f64, Option<Fraction>), NumberError> {
-    let value: f64 = text.parse().map_err(|_| NumberError::NotANumber)?;
+fn decimal(text: &str) -> Result<(f64, Option<Fraction>), &'static str> {
+    let value: f64 = text.parse().map_err(|_| NOT_A_NUMBER)?;
     if !value.is_finite() {
-        return Err(NumberError::NotFinite);
+        return Err(NOT_FINITE);
     }
     let (mantissa, exponent) = text.split_once(['e', 'E']).unwrap_or((text, "0"));
     let (whole, places) = mantissa.split_once('.').unwrap_or((mantissa, ""));
@@ -159,12 +144,12 @@ mod tests {
             ("-0.1/0.3", Ok(-1.0 / 3.0)),
             ("5e-324", Ok(5e-324)),
             ("1e300/1e200", Ok(1e100)),
-            ("", Err(NumberError::NotANumber)),
-            ("1/2/3", Err(NumberError::NotANumber)),
-            ("nan", Err(NumberError::NotFinite)),
-            ("1e999", Err(NumberError::NotFinite)),
-            ("1e300/1e-300", Err(NumberError::NotFinite)),
-            ("1/0", Err(NumberError::ZeroDenominator)),
+            ("", Err(NOT_A_NUMBER)),
+            ("1/2/3", Err(NOT_A_NUMBER)),
+            ("nan", Err(NOT_FINITE)),
+            ("1e999", Err(NOT_FINITE)),
+            ("1e300/1e-300", Err(NOT_FINITE)),
+            ("1/0", Err(ZERO_DENOMINATOR)),
         ] {
             assert_eq!(text.parse().map(|number: Number| number.value()), value, "{text}");
         }

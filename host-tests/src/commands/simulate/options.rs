@@ -3,7 +3,7 @@
 use clap::{ArgAction, Parser};
 use double_pendulum::Method;
 
-use super::{COLUMNS, Column, Number, Start};
+use super::{COLUMNS, Column, Number, StartOptions};
 use crate::console::cli::choice;
 use crate::emulator::boards::{BOARDS, Board};
 
@@ -49,7 +49,7 @@ the finite numbers later: its rows until then, one line on stderr, exit code 1."
 pub struct Options {
     /// What moves.
     #[command(flatten)]
-    pub start: Start,
+    pub start: StartOptions,
     /// Step size, s; a warning says when it is too long to resolve every motion of this energy
     #[arg(long, value_name = "DT", default_value = "1/1024", allow_hyphen_values = true)]
     pub step: Number,

@@ -11,7 +11,6 @@ use super::{Number, Options};
 /// A checked request and the time from row to row.
 #[derive(Debug)]
 pub struct Plan {
-    /// What to compute.
     pub request: Request,
     /// Row n is at n times this.
     pub every: Number,

@@ -43,7 +43,7 @@ impl std::str::FromStr for Pair {
 
 /// A pendulum and its start.
 #[derive(Args, Clone, Debug)]
-pub struct Start {
+pub struct StartOptions {
     /// Masses of the bobs, kg
     #[arg(long, value_name = "M1,M2", default_value = "1,1", allow_hyphen_values = true)]
     masses: Pair,
@@ -64,7 +64,7 @@ pub struct Start {
     degrees: bool,
 }
 
-impl Start {
+impl StartOptions {
     /// Masses, lengths and gravity, as given.
     pub fn parameters(&self) -> Parameters<f64> {
         let [[m1, m2], [l1, l2]] = [&self.masses, &self.lengths].map(Pair::values);

@@ -10,13 +10,11 @@ use super::{Number, Options, Plan};
 /// A column: its name, its unit, and its number in a row.
 #[derive(Clone, Copy, Debug)]
 pub struct Column {
-    /// What the user types.
     pub name: &'static str,
     unit: &'static str,
     number: fn(&Row) -> f64,
 }
 
-/// What a row is made of.
 struct Row<'a> {
     time: f64,
     reading: &'a Reading,
@@ -52,7 +50,7 @@ impl Row<'_> {
 }
 
 /// Writes readings as CSV, one row each, from t = 0.
-pub struct Table<'a, W> {
+pub struct CsvRows<'a, W> {
     output: W,
     options: &'a Options,
     parameters: Parameters<f64>,
@@ -62,7 +60,7 @@ pub struct Table<'a, W> {
     rows: u64,
 }
 
-impl<'a, W: Write> Table<'a, W> {
+impl<'a, W: Write> CsvRows<'a, W> {
     /// The rows of `plan`, with the columns of `options`. Nothing is written yet.
     pub fn new(output: W, plan: &Plan, options: &'a Options) -> Self {
         let single = plan.request.method.numbers() == Numbers::F32;
@@ -100,12 +98,10 @@ impl<'a, W: Write> Table<'a, W> {
         writeln!(self.output, "{}", cells.join(","))
     }
 
-    /// How many rows there are.
     pub fn rows(&self) -> u64 {
         self.rows
     }
 
-    /// Ends the table.
     pub fn finish(mut self) -> io::Result<()> {
         self.output.flush()
     }

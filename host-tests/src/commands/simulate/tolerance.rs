@@ -26,7 +26,6 @@ const ROWS: u32 = 100;
 /// What was chosen, and its error by the reference.
 #[derive(Debug)]
 pub struct Choice {
-    /// What to compute.
     pub plan: Plan,
     step: Number,
     /// Of a simulated second.
@@ -64,7 +63,6 @@ pub fn choose(options: &Options, tolerance: &Number) -> anyhow::Result<Choice> {
     bail!("--tolerance {tolerance}: nothing that may be taken keeps it beyond {until} s")
 }
 
-/// In one line.
 impl fmt::Display for Choice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { plan, step, price, unit, error } = self;

@@ -80,7 +80,6 @@ fn compare(talk: &mut Talk, request: &Request, number: u16, readings: &[Reading]
     Ok(difference)
 }
 
-/// The next sample of this request.
 pub fn next(talk: &mut Talk, number: u16) -> anyhow::Result<Sample> {
     loop {
         let sample: Sample = talk.next()?;

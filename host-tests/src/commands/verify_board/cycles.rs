@@ -13,7 +13,6 @@ use crate::commands::table::Table;
 use crate::emulator::boards::{BOARDS, Board};
 use crate::emulator::toolchain;
 
-/// The number of the requests.
 const REQUEST: u16 = u16::MAX;
 
 /// A method with the cycles of its step from flash and from RAM; `None` where the board counts none, or has no copy in RAM.

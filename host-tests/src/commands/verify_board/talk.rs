@@ -14,22 +14,18 @@ const PATIENCE: Duration = Duration::from_secs(20);
 /// From one look at the port to the next.
 const LOOK: Duration = Duration::from_millis(1);
 
-/// A board that answers.
 pub struct Talk {
-    /// Where it is.
     pub port: Port,
     arrived: VecDeque<Received>,
 }
 
 impl Talk {
-    /// Waits until the board is heard.
     pub fn new(port: Port) -> anyhow::Result<Self> {
         let mut talk = Self { port, arrived: VecDeque::new() };
         talk.next::<Frame>()?;
         Ok(talk)
     }
 
-    /// The next message of any kind.
     pub fn receive(&mut self) -> anyhow::Result<Received> {
         let (since, mut told) = (Instant::now(), Vec::new());
         loop {

@@ -1,18 +1,18 @@
 //! Starting the emulated board, and letting its time pass.
 
-use std::fmt;
-use std::io::{self, BufReader};
+use std::io::BufReader;
 use std::ops::Range;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
+use anyhow::{Context, bail};
 use firmware::app::controls::Key;
 use firmware::protocol::{Frame, MAX_WIRE, Message, encode};
 
 use super::talk::{Said, Talk, digits};
 use crate::emulator::flash::flash_image;
-use crate::emulator::process::{self, ProcessError, Running};
+use crate::emulator::process::{self, Running};
 use crate::emulator::qemu::{LogDecoder, LogLine, Screenshot};
 use crate::emulator::toolchain::{Rp2040js, workspace};
 use crate::emulator::uf2::uf2;
@@ -23,27 +23,10 @@ const SLICE: Duration = Duration::from_millis(1);
 /// A board that sends no frame for this many of them sends none.
 const PATIENCE: u32 = 5000;
 
-/// Why the board could not be used.
-#[derive(Debug, thiserror::Error)]
-pub enum PicoError {
-    /// The emulator did not start.
-    #[error(transparent)]
-    Process(#[from] ProcessError),
-    /// The firmware's file is not usable.
-    #[error("{0}")]
-    Firmware(String),
-    /// The emulator no longer answers.
-    #[error("the emulator of the Pico no longer answers: {0}")]
-    Ended(#[from] io::Error),
-    /// It sends nothing.
-    #[error("the board sends no frames")]
-    NoFrame,
-}
-
 /// The board. Its time passes only in [`Self::run`], so all that it does is repeatable bit for bit. Dropping it ends it.
 pub struct Machine {
     talk: Talk,
-    process: Running,
+    _process: Running,
     _file: tempfile::NamedTempFile,
     usb: Inbox,
     uart: Inbox,
@@ -52,33 +35,27 @@ pub struct Machine {
     heard_by_uart: Vec<Received>,
 }
 
-impl fmt::Debug for Machine {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Machine").field("process", &self.process).finish_non_exhaustive()
-    }
-}
-
 impl Machine {
     /// Switches a board on with this firmware in its flash: what `cargo pico` copies, and nothing else.
-    pub fn start(emulator: &Rp2040js, elf: &Path, limit: Duration) -> Result<Self, PicoError> {
+    pub fn start(emulator: &Rp2040js, elf: &Path, limit: Duration) -> anyhow::Result<Self> {
         let program = std::fs::read(elf)?;
-        let (start, image) = flash_image(&program).map_err(|error| PicoError::Firmware(error.to_string()))?;
+        let (start, image) = flash_image(&program)?;
         let file = tempfile::NamedTempFile::new()?;
         std::fs::write(file.path(), uf2(start, &image))?;
         let mut command = Command::new(emulator.node());
         command.arg(workspace().join("host-tests/rp2040/main.js")).arg(file.path());
         command.stdin(Stdio::piped()).stdout(Stdio::piped());
         let mut process = process::spawn(&mut command, limit)?;
-        let ended = || io::Error::from(io::ErrorKind::NotConnected);
-        let output = BufReader::new(process.stdout.take().ok_or_else(ended)?);
-        let talk = Talk { input: process.stdin.take().ok_or_else(ended)?, output };
-        let log = LogDecoder::new(elf).map_err(|error| PicoError::Firmware(error.to_string()))?;
+        let pipes = process.stdin.take().zip(process.stdout.take());
+        let (input, output) = pipes.context("the emulator of the Pico has no pipes")?;
+        let talk = Talk { input, output: BufReader::new(output) };
+        let log = LogDecoder::new(elf)?;
         let (usb, uart) = (Inbox::default(), Inbox::default());
-        Ok(Self { talk, process, _file: file, usb, uart, log, lines: Vec::new(), heard_by_uart: Vec::new() })
+        Ok(Self { talk, _process: process, _file: file, usb, uart, log, lines: Vec::new(), heard_by_uart: Vec::new() })
     }
 
     /// Lets time pass by the board's clock; what it has sent over USB.
-    pub fn run(&mut self, time: Duration) -> Result<Vec<Received>, PicoError> {
+    pub fn run(&mut self, time: Duration) -> anyhow::Result<Vec<Received>> {
         let mut messages = Vec::new();
         for Said { word, bytes } in self.talk.ask(&format!("run {}", time.as_micros()))? {
             match &*word {
@@ -94,7 +71,7 @@ impl Machine {
     }
 
     /// Runs to the next frame: all messages up to it.
-    pub fn run_to_frame(&mut self) -> Result<Vec<Received>, PicoError> {
+    pub fn run_to_frame(&mut self) -> anyhow::Result<Vec<Received>> {
         let mut messages = Vec::new();
         for _ in 0..PATIENCE {
             let before = messages.len();
@@ -103,21 +80,18 @@ impl Machine {
                 return Ok(messages);
             }
         }
-        Err(PicoError::NoFrame)
+        bail!("the board sends no frames")
     }
 
-    /// Sends bytes over USB.
-    pub fn send_bytes(&mut self, bytes: &[u8]) -> Result<(), PicoError> {
+    pub fn send_bytes(&mut self, bytes: &[u8]) -> anyhow::Result<()> {
         self.tell(&format!("usb {}", digits(bytes)))
     }
 
-    /// Sends a message over USB.
-    pub fn send<M: Message>(&mut self, message: &M) -> Result<(), PicoError> {
+    pub fn send<M: Message>(&mut self, message: &M) -> anyhow::Result<()> {
         self.send_bytes(encode(message, &mut [0; MAX_WIRE]))
     }
 
-    /// Sends a message through the UART.
-    pub fn send_through_uart<M: Message>(&mut self, message: &M) -> Result<(), PicoError> {
+    pub fn send_through_uart<M: Message>(&mut self, message: &M) -> anyhow::Result<()> {
         self.tell(&format!("uart {}", digits(encode(message, &mut [0; MAX_WIRE]))))
     }
 
@@ -126,7 +100,6 @@ impl Machine {
         std::mem::take(&mut self.heard_by_uart)
     }
 
-    /// The lines of the log since the last call.
     pub fn lines(&mut self) -> Vec<LogLine> {
         std::mem::take(&mut self.lines)
     }
@@ -137,17 +110,15 @@ impl Machine {
     }
 
     /// The panel's memory, a byte for eight pixels, page after page; empty while the panel is off.
-    pub fn panel(&mut self) -> Result<Vec<u8>, PicoError> {
+    pub fn panel(&mut self) -> anyhow::Result<Vec<u8>> {
         self.bytes("panel")
     }
 
-    /// What the panel shows.
-    pub fn screenshot(&mut self) -> Result<Screenshot, PicoError> {
+    pub fn screenshot(&mut self) -> anyhow::Result<Screenshot> {
         Ok(Screenshot::from_pages(&self.panel()?))
     }
 
-    /// Presses a button, or lets go of it.
-    pub fn set_key(&mut self, key: Key, down: bool) -> Result<(), PicoError> {
+    pub fn set_key(&mut self, key: Key, down: bool) -> anyhow::Result<()> {
         let pin = match key {
             Key::Up => 10,
             Key::Down => 11,
@@ -159,37 +130,35 @@ impl Machine {
     }
 
     /// Plugs a panel in that has this status, 6 an SSD1306's and 8 an SH1106's; or pulls it: 0.
-    pub fn plug(&mut self, status: u8) -> Result<(), PicoError> {
+    pub fn plug(&mut self, status: u8) -> anyhow::Result<()> {
         self.tell(&format!("plug {status}"))
     }
 
-    /// Writes `byte` at all these addresses of memory.
-    pub fn fill(&mut self, addresses: Range<u32>, byte: u8) -> Result<(), PicoError> {
+    pub fn fill(&mut self, addresses: Range<u32>, byte: u8) -> anyhow::Result<()> {
         self.tell(&format!("fill {} {} {byte}", addresses.start, addresses.len()))
     }
 
-    /// The bytes at these addresses of memory.
-    pub fn read(&mut self, addresses: Range<u32>) -> Result<Vec<u8>, PicoError> {
+    pub fn read(&mut self, addresses: Range<u32>) -> anyhow::Result<Vec<u8>> {
         self.bytes(&format!("read {} {}", addresses.start, addresses.len()))
     }
 
     /// Makes the processor turn in a circle, wherever it is.
-    pub fn hang(&mut self) -> Result<(), PicoError> {
+    pub fn hang(&mut self) -> anyhow::Result<()> {
         self.tell("hang")
     }
 
     /// Resets it as a debugger does, or as the boot ROM does after a download.
-    pub fn reset(&mut self, after_download: bool) -> Result<(), PicoError> {
+    pub fn reset(&mut self, after_download: bool) -> anyhow::Result<()> {
         [&mut self.usb, &mut self.uart].into_iter().for_each(Inbox::restart);
         self.tell(&format!("reset {}", u8::from(after_download)))
     }
 
-    fn bytes(&mut self, line: &str) -> Result<Vec<u8>, PicoError> {
+    fn bytes(&mut self, line: &str) -> anyhow::Result<Vec<u8>> {
         let said = self.talk.ask(line)?;
         Ok(said.into_iter().next().map(|said| said.bytes).unwrap_or_default())
     }
 
-    fn tell(&mut self, line: &str) -> Result<(), PicoError> {
-        Ok(self.talk.ask(line).map(drop)?)
+    fn tell(&mut self, line: &str) -> anyhow::Result<()> {
+        self.talk.ask(line).map(drop)
     }
 }

@@ -3,4 +3,4 @@
 mod machine;
 mod talk;
 
-pub use machine::{Machine, PicoError};
+pub use machine::Machine;

@@ -3,14 +3,14 @@
 use std::io::{self, BufRead, BufReader, Write};
 use std::process::{ChildStdin, ChildStdout};
 
-/// What the emulator says.
+use anyhow::anyhow;
+
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Said {
     pub word: String,
     pub bytes: Vec<u8>,
 }
 
-/// Both directions.
 #[derive(Debug)]
 pub(super) struct Talk {
     pub input: ChildStdin,
@@ -19,7 +19,11 @@ pub(super) struct Talk {
 
 impl Talk {
     /// Says a line; what is answered.
-    pub fn ask(&mut self, line: &str) -> io::Result<Vec<Said>> {
+    pub fn ask(&mut self, line: &str) -> anyhow::Result<Vec<Said>> {
+        self.exchange(line).map_err(|error| anyhow!("the emulator of the Pico no longer answers: {error}"))
+    }
+
+    fn exchange(&mut self, line: &str) -> io::Result<Vec<Said>> {
         writeln!(self.input, "{line}")?;
         self.input.flush()?;
         let mut answers = Vec::new();

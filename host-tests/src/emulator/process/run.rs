@@ -14,7 +14,6 @@ const TICK: Duration = Duration::from_millis(100);
 /// What a child said and how it ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Output {
-    /// How it ended.
     pub status: ExitStatus,
     /// Its standard output; bytes that are not UTF-8 are replaced.
     pub stdout: String,

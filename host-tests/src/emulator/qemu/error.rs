@@ -1,59 +1,20 @@
-//! What can go wrong between the host and an emulated board.
+//! The one error of an emulated board that the code tells from others: behind a broken connection may be QEMU's end.
 
-use std::io;
-use std::path::PathBuf;
+use std::{fmt, io};
 
-use crate::emulator::process::ProcessError;
+/// The connection called so broke. It is no `io::Error`: that may be a closed output, which is none.
+#[derive(Debug)]
+pub(super) struct Broken(&'static str, io::Error);
 
-/// Why an emulated board could not be used.
-#[derive(Debug, thiserror::Error)]
-pub enum QemuError {
-    /// QEMU did not start, or its time limit passed.
-    #[error(transparent)]
-    Process(#[from] ProcessError),
-    /// QEMU ended although it was still needed.
-    #[error("QEMU ended ({how}){said}")]
-    Ended {
-        /// Its exit status.
-        how: String,
-        /// The last of what it and the firmware said, after a colon; empty if nothing.
-        said: String,
-    },
-    /// A connection to QEMU broke.
-    #[error("the connection to QEMU's {name} broke: {source}")]
-    Connection {
-        /// Which one.
-        name: &'static str,
-        /// The system's reason.
-        source: io::Error,
-    },
-    /// QEMU refused a command.
-    #[error("QEMU refuses {command}: {reason}")]
-    Refused {
-        /// The command.
-        command: &'static str,
-        /// QEMU's words.
-        reason: String,
-    },
-    /// The panel's screenshot is not what the panel of this board looks like.
-    #[error("the screenshot of the panel is not usable: {0}")]
-    Screenshot(&'static str),
-    /// The firmware's file cannot be read or has no usable log table.
-    #[error("{}: {reason}", path.display())]
-    Firmware {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with it.
-        reason: String,
-    },
-    /// The board sleeps and sleeps and sends nothing.
-    #[error("the board sends no frames")]
-    NoFrame,
+impl fmt::Display for Broken {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "the connection to QEMU's {} broke: {}", self.0, self.1)
+    }
 }
 
-impl QemuError {
-    /// For `map_err` on the connection called `name`.
-    pub(super) fn connection(name: &'static str) -> impl Fn(io::Error) -> Self {
-        move |source| Self::Connection { name, source }
-    }
+impl std::error::Error for Broken {}
+
+/// For `map_err` on the connection called `name`.
+pub(super) fn broken(name: &'static str) -> impl Fn(io::Error) -> anyhow::Error {
+    move |source| Broken(name, source).into()
 }

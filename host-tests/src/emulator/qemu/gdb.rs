@@ -7,7 +7,9 @@ use std::io::{BufRead, BufReader, Read, Write};
 use std::ops::Range;
 use std::os::unix::net::UnixStream;
 
-use super::QemuError;
+use anyhow::anyhow;
+
+use super::error::broken;
 
 /// The size of the instruction `wfi`, and what any breakpoint is said to take, bytes.
 const SIZE: u32 = 2;
@@ -33,8 +35,8 @@ pub(super) struct Debugger {
 
 impl Debugger {
     /// Will run to the instructions `wfi` at these addresses.
-    pub(super) fn new(socket: UnixStream, sleeps: Vec<u32>) -> Result<Self, QemuError> {
-        let writer = socket.try_clone().map_err(broken)?;
+    pub(super) fn new(socket: UnixStream, sleeps: Vec<u32>) -> anyhow::Result<Self> {
+        let writer = socket.try_clone().map_err(broken("debugger port"))?;
         let mut debugger = Self { reader: BufReader::new(socket), writer, sleeps, asleep_at: None };
         debugger.ask(DESCRIBE)?;
         Ok(debugger)
@@ -44,7 +46,7 @@ impl Debugger {
     ///
     /// The `wfi` it stands at is passed over: the architecture lets it wake at any time, and while the machine stood
     /// still QEMU has put its clock forward to the next event, which is just what sleeping does.
-    pub(super) fn run_to_sleep(&mut self) -> Result<(), QemuError> {
+    pub(super) fn run_to_sleep(&mut self) -> anyhow::Result<()> {
         for address in std::mem::take(&mut self.sleeps) {
             self.expect(&format!("Z0,{address:x},{SIZE}"), "OK")?;
         }
@@ -60,20 +62,19 @@ impl Debugger {
     }
 
     /// Lets the machine run until the instruction at this address is about to be executed, the next time if it stands there.
-    pub(super) fn run_to(&mut self, address: u32) -> Result<(), QemuError> {
+    pub(super) fn run_to(&mut self, address: u32) -> anyhow::Result<()> {
         self.expect("s", "T05")?;
         self.expect(&format!("Z0,{address:x},{SIZE}"), "OK")?;
         self.expect("c", "T05")?;
         self.expect(&format!("z0,{address:x},{SIZE}"), "OK")
     }
 
-    /// Lets the machine run, for good.
-    pub(super) fn run(&mut self) -> Result<(), QemuError> {
-        self.send("c").map_err(broken)
+    pub(super) fn run(&mut self) -> anyhow::Result<()> {
+        self.send("c").map_err(broken("debugger port"))
     }
 
     /// Puts bytes into the machine's memory.
-    pub(super) fn write(&mut self, address: u32, bytes: &[u8]) -> Result<(), QemuError> {
+    pub(super) fn write(&mut self, address: u32, bytes: &[u8]) -> anyhow::Result<()> {
         for (start, piece) in (address..).step_by(PIECE as usize).zip(bytes.chunks(PIECE as usize)) {
             let digits: String = piece.iter().map(|byte| format!("{byte:02x}")).collect();
             self.expect(&format!("M{start:x},{:x}:{digits}", piece.len()), "OK")?;
@@ -82,12 +83,11 @@ impl Debugger {
     }
 
     /// Sets a register of the machine's processor, by GDB's number of it.
-    pub(super) fn set(&mut self, register: u32, value: u32) -> Result<(), QemuError> {
+    pub(super) fn set(&mut self, register: u32, value: u32) -> anyhow::Result<()> {
         self.expect(&format!("P{register:x}={:08x}", value.swap_bytes()), "OK")
     }
 
-    /// The bytes at these addresses.
-    pub(super) fn read(&mut self, addresses: Range<u32>) -> Result<Vec<u8>, QemuError> {
+    pub(super) fn read(&mut self, addresses: Range<u32>) -> anyhow::Result<Vec<u8>> {
         let mut bytes = Vec::new();
         for start in addresses.clone().step_by(PIECE as usize) {
             let length = (addresses.end - start).min(PIECE);
@@ -105,13 +105,13 @@ impl Debugger {
     }
 
     /// Sends a packet whose answer must begin with `answer`.
-    fn expect(&mut self, packet: &str, answer: &str) -> Result<(), QemuError> {
+    fn expect(&mut self, packet: &str, answer: &str) -> anyhow::Result<()> {
         let reply = self.ask(packet)?;
         if reply.starts_with(answer) { Ok(()) } else { Err(unexpected(packet, &reply)) }
     }
 
-    fn ask(&mut self, packet: &str) -> Result<String, QemuError> {
-        self.exchange(packet).map_err(broken)
+    fn ask(&mut self, packet: &str) -> anyhow::Result<String> {
+        self.exchange(packet).map_err(broken("debugger port"))
     }
 
     fn send(&mut self, packet: &str) -> std::io::Result<()> {
@@ -131,10 +131,6 @@ impl Debugger {
     }
 }
 
-fn unexpected(packet: &str, reply: &str) -> QemuError {
-    QemuError::Refused { command: "the debugger", reason: format!("{packet} was answered with {reply:?}") }
-}
-
-fn broken(source: std::io::Error) -> QemuError {
-    QemuError::Connection { name: "debugger port", source }
+fn unexpected(packet: &str, reply: &str) -> anyhow::Error {
+    anyhow!("QEMU refuses the debugger: {packet} was answered with {reply:?}")
 }

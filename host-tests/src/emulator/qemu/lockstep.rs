@@ -4,12 +4,13 @@
 use std::ops::Range;
 use std::path::Path;
 
+use anyhow::{Context, bail};
 use firmware::protocol::{Frame, Message};
 use object::{Object, ObjectSection, SectionKind};
 
+use super::Screenshot;
 use super::gdb::Debugger;
 use super::machine::{Clock, Machine, Settings};
-use super::{QemuError, Screenshot};
 use crate::link::Received;
 
 /// The instruction `wfi`: sleep until an interrupt.
@@ -22,11 +23,8 @@ const SINGLE_STEP: [&str; 2] = ["one-insn-per-tb", "singlestep"];
 /// A register of the processor, with GDB's number of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Register {
-    /// The stack pointer.
     Sp = 13,
-    /// The link register.
     Lr = 14,
-    /// The program counter.
     Pc = 15,
 }
 
@@ -43,20 +41,19 @@ pub struct Lockstep {
 
 impl Lockstep {
     /// Starts a board with its clock counted, even if `settings` say otherwise; it stands still at its first instruction.
-    pub fn start(settings: &Settings) -> Result<Self, QemuError> {
+    pub fn start(settings: &Settings) -> anyhow::Result<Self> {
         let sleeps = sleeps(settings.elf)?;
         let (machine, debugger) = Machine::start_stopped(&Settings { clock: Clock::Counted, ..*settings })?;
         Ok(Self { machine, debugger: Debugger::new(debugger, sleeps)? })
     }
 
-    /// Runs to the next frame.
-    pub fn next_frame(&mut self) -> Result<Frame, QemuError> {
+    pub fn next_frame(&mut self) -> anyhow::Result<Frame> {
         let messages = self.run_to_frame()?;
-        messages.iter().rev().find_map(Received::read).ok_or(QemuError::NoFrame)
+        messages.iter().rev().find_map(Received::read).context("the board sends no frames")
     }
 
     /// Runs to the next frame: all messages up to it.
-    pub fn run_to_frame(&mut self) -> Result<Vec<Received>, QemuError> {
+    pub fn run_to_frame(&mut self) -> anyhow::Result<Vec<Received>> {
         let mut messages = Vec::new();
         for _ in 0..PATIENCE {
             self.debug(Debugger::run_to_sleep)?;
@@ -66,12 +63,12 @@ impl Lockstep {
                 return Ok(messages);
             }
         }
-        Err(QemuError::NoFrame)
+        bail!("the board sends no frames")
     }
 
     /// Runs to the next frame while QEMU writes the processor's registers before every instruction to `log`, which may
     /// be a named pipe: hundreds of bytes each time.
-    pub fn next_frame_logged(&mut self, log: &Path) -> Result<Frame, QemuError> {
+    pub fn next_frame_logged(&mut self, log: &Path) -> anyhow::Result<Frame> {
         self.machine.tell(&format!("logfile {}", log.display()))?;
         self.machine.tell("log cpu,nochain")?;
         self.single_step("on")?;
@@ -82,48 +79,45 @@ impl Lockstep {
         frame
     }
 
-    fn single_step(&mut self, switch: &str) -> Result<(), QemuError> {
+    fn single_step(&mut self, switch: &str) -> anyhow::Result<()> {
         let [name, name_before] = SINGLE_STEP.map(|name| format!("{name} {switch}"));
         self.machine.tell(&name).or_else(|_| self.machine.tell(&name_before))
     }
 
     /// Runs until the instruction at this address is about to be executed. Not after a run to a frame.
-    pub fn run_to(&mut self, address: u32) -> Result<(), QemuError> {
+    pub fn run_to(&mut self, address: u32) -> anyhow::Result<()> {
         self.debug(|debugger| debugger.run_to(address))
     }
 
     /// Makes the processor go on elsewhere: the values of some registers. To be followed by [`run`](Self::run).
-    pub fn divert(&mut self, registers: &[(Register, u32)]) -> Result<(), QemuError> {
+    pub fn divert(&mut self, registers: &[(Register, u32)]) -> anyhow::Result<()> {
         self.debug(|debugger| registers.iter().try_for_each(|(register, value)| debugger.set(*register as u32, *value)))
     }
 
     /// Lets it run for good.
-    pub fn run(&mut self) -> Result<&mut Machine, QemuError> {
+    pub fn run(&mut self) -> anyhow::Result<&mut Machine> {
         self.debugger.run()?;
         Ok(&mut self.machine)
     }
 
-    /// Puts bytes into the memory.
-    pub fn write(&mut self, address: u32, bytes: &[u8]) -> Result<(), QemuError> {
+    pub fn write(&mut self, address: u32, bytes: &[u8]) -> anyhow::Result<()> {
         self.debug(|debugger| debugger.write(address, bytes))
     }
 
-    /// Writes `byte` at all these addresses.
-    pub fn fill(&mut self, addresses: Range<u32>, byte: u8) -> Result<(), QemuError> {
+    pub fn fill(&mut self, addresses: Range<u32>, byte: u8) -> anyhow::Result<()> {
         self.write(addresses.start, &vec![byte; addresses.len()])
     }
 
-    /// The bytes at these addresses.
-    pub fn read(&mut self, addresses: Range<u32>) -> Result<Vec<u8>, QemuError> {
+    pub fn read(&mut self, addresses: Range<u32>) -> anyhow::Result<Vec<u8>> {
         self.debug(|debugger| debugger.read(addresses))
     }
 
-    fn debug<T>(&mut self, act: impl FnOnce(&mut Debugger) -> Result<T, QemuError>) -> Result<T, QemuError> {
+    fn debug<T>(&mut self, act: impl FnOnce(&mut Debugger) -> anyhow::Result<T>) -> anyhow::Result<T> {
         act(&mut self.debugger).map_err(|error| self.machine.explain(error))
     }
 
     /// The panel's screenshot of the last frame.
-    pub fn screenshot(&mut self) -> Result<Screenshot, QemuError> {
+    pub fn screenshot(&mut self) -> anyhow::Result<Screenshot> {
         self.machine.screenshot()
     }
 
@@ -134,13 +128,12 @@ impl Lockstep {
 }
 
 /// The addresses in the program where `wfi` stands, or a constant that looks like it, which is never executed.
-fn sleeps(elf: &Path) -> Result<Vec<u32>, QemuError> {
-    let unusable = |reason: String| QemuError::Firmware { path: elf.to_owned(), reason };
-    let program = std::fs::read(elf).map_err(|error| unusable(error.to_string()))?;
-    let program = object::File::parse(&*program).map_err(|error| unusable(error.to_string()))?;
+fn sleeps(elf: &Path) -> anyhow::Result<Vec<u32>> {
+    let program = std::fs::read(elf).with_context(|| elf.display().to_string())?;
+    let program = object::File::parse(&*program)?;
     let mut sleeps = Vec::new();
     for section in program.sections().filter(|section| section.kind() == SectionKind::Text) {
-        let code = section.data().map_err(|error| unusable(error.to_string()))?;
+        let code = section.data()?;
         let halfwords = (section.address() as u32..).step_by(2).zip(code.as_chunks().0);
         sleeps.extend(halfwords.filter(|(_, bytes)| u16::from_le_bytes(**bytes) == WFI).map(|(address, _)| address));
     }

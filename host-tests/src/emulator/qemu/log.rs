@@ -1,25 +1,21 @@
 //! What the firmware and QEMU say: defmt's lines decoded with level, file and line, and plain text as it is.
 
-use std::fmt;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 use std::process::{ChildStderr, ChildStdout};
 use std::sync::mpsc::{self, Receiver, Sender};
-use std::thread;
+use std::{fmt, thread};
 
+use anyhow::Context;
 use defmt_decoder::{DecodeError, Frame, Locations, StreamDecoder, Table};
-
-use super::QemuError;
 
 /// What QEMU says at every start of this machine and no one needs to read.
 const CHATTER: [&str; 2] = ["Timer with period zero, disabling", "has no peer"];
 
-/// One line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LogLine {
     /// defmt's level in lower case; `None` for plain text, in which QEMU speaks and the firmware reports a crash.
     pub level: Option<String>,
-    /// What is said.
     pub text: String,
     /// The file name and line number of the statement, where they are known.
     pub place: Option<(String, u64)>,
@@ -57,7 +53,7 @@ pub struct Log {
 
 impl Log {
     /// Of the firmware in the file `elf`: defmt on `stdout`, plain text on `stderr`.
-    pub(super) fn new(elf: &Path, stdout: Option<ChildStdout>, stderr: Option<ChildStderr>) -> Result<Self, QemuError> {
+    pub(super) fn new(elf: &Path, stdout: Option<ChildStdout>, stderr: Option<ChildStderr>) -> anyhow::Result<Self> {
         let decoder = LogDecoder::new(elf)?;
         let (sender, lines) = mpsc::channel();
         if let Some(stdout) = stdout {
@@ -108,14 +104,12 @@ pub struct LogDecoder {
 
 impl LogDecoder {
     /// Of the firmware in the file `elf`. Its table stays in memory for good.
-    pub fn new(elf: &Path) -> Result<Self, QemuError> {
-        let unusable = |reason: String| QemuError::Firmware { path: elf.to_owned(), reason };
-        let program = std::fs::read(elf).map_err(|error| unusable(error.to_string()))?;
-        let table = Table::parse(&program).map_err(|error| unusable(error.to_string()))?;
-        let Some(table) = table else {
+    pub fn new(elf: &Path) -> anyhow::Result<Self> {
+        let program = std::fs::read(elf).with_context(|| elf.display().to_string())?;
+        let Some(table) = Table::parse(&program)? else {
             return Ok(Self { stream: None, can_recover: false, locations: Locations::new() });
         };
-        let locations = table.get_locations(&program).map_err(|error| unusable(error.to_string()))?;
+        let locations = table.get_locations(&program)?;
         let can_recover = table.encoding().can_recover();
         Ok(Self { stream: Some(Box::leak(Box::new(table)).new_stream_decoder()), can_recover, locations })
     }

@@ -7,14 +7,15 @@ use std::process::{Command, ExitStatus, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
 
+use anyhow::{Context, anyhow, bail};
 use firmware::app::controls::Key;
 use firmware::protocol::Message;
 use tempfile::TempDir;
 
-use super::folder;
+use super::error::{Broken, broken};
 use super::qmp::Monitor;
 use super::serial::Pipes;
-use super::{Log, LogLine, QemuError, Screenshot, Serial};
+use super::{Log, LogLine, Screenshot, Serial, folder};
 use crate::emulator::boards::Board;
 use crate::emulator::process::{self, Running};
 use crate::link::Received;
@@ -32,16 +33,12 @@ pub enum Clock {
     Counted,
 }
 
-/// How a board is started.
 #[derive(Clone, Copy, Debug)]
 pub struct Settings<'a> {
     /// The program `qemu-system-arm`.
     pub qemu: &'a Path,
-    /// The board.
     pub board: &'a Board,
-    /// The firmware's ELF file.
     pub elf: &'a Path,
-    /// What its clock goes by.
     pub clock: Clock,
     /// Whether there is a debugger that answers the firmware's calls and so takes its log.
     pub debugger: bool,
@@ -52,9 +49,7 @@ pub struct Settings<'a> {
 /// A running board. Dropping it ends QEMU.
 #[derive(Debug)]
 pub struct Machine {
-    /// The serial link.
     pub serial: Serial,
-    /// What it says.
     pub log: Log,
     monitor: Monitor,
     process: Running,
@@ -63,29 +58,26 @@ pub struct Machine {
 
 impl Machine {
     /// Starts a board. Its first instruction is executed after the host is attached to it.
-    pub fn start(settings: &Settings) -> Result<Self, QemuError> {
+    pub fn start(settings: &Settings) -> anyhow::Result<Self> {
         let (mut machine, _) = Self::launch(settings, false)?;
         match machine.monitor.resume() {
             // A firmware may end QEMU before QEMU can answer.
-            Err(QemuError::Connection { .. }) | Ok(()) => Ok(machine),
-            Err(error) => Err(error),
+            Err(error) if !error.is::<Broken>() => Err(error),
+            _ => Ok(machine),
         }
     }
 
     /// Starts a board that stands still at its first instruction, and gives its debugger port.
-    pub(super) fn start_stopped(settings: &Settings) -> Result<(Self, UnixStream), QemuError> {
+    pub(super) fn start_stopped(settings: &Settings) -> anyhow::Result<(Self, UnixStream)> {
         let (machine, debugger) = Self::launch(settings, true)?;
-        let missing = || QemuError::connection("debugger port")(ErrorKind::NotConnected.into());
+        let missing = || broken("debugger port")(ErrorKind::NotConnected.into());
         Ok((machine, debugger.ok_or_else(missing)?))
     }
 
     /// A board that stands still at its first instruction, with its debugger port if it is `debugged`.
-    fn launch(settings: &Settings, debugged: bool) -> Result<(Self, Option<UnixStream>), QemuError> {
-        let unusable = QemuError::connection("folder of sockets");
-        let elf = settings
-            .elf
-            .canonicalize()
-            .map_err(|error| QemuError::Firmware { path: settings.elf.to_owned(), reason: error.to_string() })?;
+    fn launch(settings: &Settings, debugged: bool) -> anyhow::Result<(Self, Option<UnixStream>)> {
+        let unusable = broken("folder of sockets");
+        let elf = settings.elf.canonicalize().with_context(|| settings.elf.display().to_string())?;
         let folder = folder::make().map_err(&unusable)?;
         // QEMU connects to sockets that listen already: none of its bytes can be lost.
         let listen = |name| UnixListener::bind(folder.path().join(name)).map_err(&unusable);
@@ -124,13 +116,12 @@ impl Machine {
         Ok((Self { serial: Serial::new(pipes)?, log, monitor, process, folder }, debugger))
     }
 
-    /// The next message.
-    pub fn receive(&mut self) -> Result<Received, QemuError> {
+    pub fn receive(&mut self) -> anyhow::Result<Received> {
         self.serial.receive().ok_or_else(|| self.silence())
     }
 
     /// The next message of one kind; others on the way to it are passed over.
-    pub fn wait_for<M: Message>(&mut self) -> Result<M, QemuError> {
+    pub fn wait_for<M: Message>(&mut self) -> anyhow::Result<M> {
         self.serial.next().ok_or_else(|| self.silence())
     }
 
@@ -140,80 +131,66 @@ impl Machine {
     }
 
     /// What the panel shows now. While the board runs this may be a mixture of two frames.
-    pub fn screenshot(&mut self) -> Result<Screenshot, QemuError> {
+    pub fn screenshot(&mut self) -> anyhow::Result<Screenshot> {
         self.monitor.screenshot(self.folder.path()).map_err(|error| self.explain(error))
     }
 
     /// Gives QEMU's console a line that it has nothing to say to.
-    pub(super) fn tell(&mut self, line: &str) -> Result<(), QemuError> {
+    pub(super) fn tell(&mut self, line: &str) -> anyhow::Result<()> {
         let said = self.monitor.console(line).map_err(|error| self.explain(error))?;
         let reason = said.trim();
-        if reason.is_empty() {
-            Ok(())
-        } else {
-            Err(QemuError::Refused { command: "console", reason: reason.to_owned() })
-        }
+        if reason.is_empty() { Ok(()) } else { bail!("QEMU refuses console: {reason}") }
     }
 
-    /// Presses a button, or lets go of it.
-    pub fn set_key(&mut self, key: Key, down: bool) -> Result<(), QemuError> {
+    pub fn set_key(&mut self, key: Key, down: bool) -> anyhow::Result<()> {
         self.monitor.set_key(key, down).map_err(|error| self.explain(error))
     }
 
     /// Presses and lets go of every button once, too early for the firmware to take it for a command: only then does
     /// this board's emulated hardware tell a released button from a pressed one.
-    pub fn wake_keys(&mut self) -> Result<(), QemuError> {
+    pub fn wake_keys(&mut self) -> anyhow::Result<()> {
         Key::ALL.iter().try_for_each(|&key| {
             self.set_key(key, true)?;
             self.set_key(key, false)
         })
     }
 
-    /// QEMU's process id.
     pub fn id(&self) -> u32 {
         self.process.id()
     }
 
     /// Whether QEMU has ended by itself, and how.
-    pub fn ended(&mut self) -> Result<Option<ExitStatus>, QemuError> {
+    pub fn ended(&mut self) -> anyhow::Result<Option<ExitStatus>> {
         Ok(self.process.try_wait()?)
     }
 
     /// Waits until QEMU ends by itself: how, and what was said until then.
-    pub fn wait(&mut self) -> Result<(ExitStatus, Vec<LogLine>), QemuError> {
+    pub fn wait(&mut self) -> anyhow::Result<(ExitStatus, Vec<LogLine>)> {
         let status = self.process.wait()?;
         Ok((status, self.log.rest().collect()))
     }
 
-    /// Ends QEMU.
-    pub fn quit(mut self) -> Result<(), QemuError> {
-        match self.monitor.quit() {
-            // It may be gone before it has answered.
-            Ok(()) | Err(QemuError::Connection { .. }) => {}
-            Err(error) => return Err(error),
-        }
+    pub fn quit(mut self) -> anyhow::Result<()> {
+        // It may be gone before it has answered.
+        self.monitor.quit().or_else(|error| if error.is::<Broken>() { Ok(()) } else { Err(error) })?;
         self.process.wait()?;
         Ok(())
     }
 
     /// `error`, or what is behind it if QEMU has ended.
-    pub(super) fn explain(&mut self, error: QemuError) -> QemuError {
-        if matches!(error, QemuError::Connection { .. }) {
-            ended(&mut self.process, &self.log).unwrap_or(error)
-        } else {
-            error
-        }
+    pub(super) fn explain(&mut self, error: anyhow::Error) -> anyhow::Error {
+        if error.is::<Broken>() { ended(&mut self.process, &self.log).unwrap_or(error) } else { error }
     }
 
     /// Why no message comes any more.
-    pub fn silence(&mut self) -> QemuError {
-        self.explain(QemuError::connection("serial port")(ErrorKind::UnexpectedEof.into()))
+    pub fn silence(&mut self) -> anyhow::Error {
+        self.explain(broken("serial port")(ErrorKind::UnexpectedEof.into()))
     }
 }
 
 /// The connection that QEMU makes as it starts.
-fn accept(listener: &UnixListener, process: &mut Running, log: &Log) -> Result<UnixStream, QemuError> {
-    let broken = QemuError::connection("socket");
+fn accept(listener: &UnixListener, process: &mut Running, log: &Log) -> anyhow::Result<UnixStream> {
+    let broken = broken("socket");
     listener.set_nonblocking(true).map_err(&broken)?;
     loop {
         match listener.accept() {
@@ -232,7 +209,7 @@ fn accept(listener: &UnixListener, process: &mut Running, log: &Log) -> Result<U
 }
 
 /// How QEMU ended and the last it said; `None` if it runs on.
-fn ended(process: &mut Running, log: &Log) -> Option<QemuError> {
+fn ended(process: &mut Running, log: &Log) -> Option<anyhow::Error> {
     /// A broken connection is noticed a moment before the process can be seen to end.
     const GRACE: Duration = Duration::from_millis(500);
     let mut waited = Duration::ZERO;
@@ -248,5 +225,5 @@ fn ended(process: &mut Running, log: &Log) -> Option<QemuError> {
     };
     let lines: Vec<_> = log.rest().map(|line| line.to_string()).collect();
     let said = lines[lines.len().saturating_sub(4)..].join("\n");
-    Some(QemuError::Ended { how, said: if said.is_empty() { said } else { format!(":\n{said}") } })
+    Some(if said.is_empty() { anyhow!("QEMU ended ({how})") } else { anyhow!("QEMU ended ({how}):\n{said}") })
 }

@@ -13,7 +13,6 @@ mod screenshot;
 mod serial;
 mod stack;
 
-pub use error::QemuError;
 pub(crate) use folder::check as check_folder;
 pub use lockstep::{Lockstep, Register};
 pub use log::{Log, LogDecoder, LogLine};

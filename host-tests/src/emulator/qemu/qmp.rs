@@ -7,17 +7,19 @@ use std::io::{BufRead, BufReader, ErrorKind, Write};
 use std::os::unix::net::UnixStream;
 use std::path::Path;
 
+use anyhow::bail;
 use firmware::app::controls::Key;
 use serde_json::{Value, json};
 
-use super::{QemuError, Screenshot};
+use super::Screenshot;
+use super::error::broken;
 
 /// The control channel of a running QEMU.
 #[derive(Debug)]
 pub(super) struct Monitor(BufReader<UnixStream>);
 
 impl Monitor {
-    pub(super) fn new(socket: UnixStream) -> Result<Self, QemuError> {
+    pub(super) fn new(socket: UnixStream) -> anyhow::Result<Self> {
         let mut monitor = Self(BufReader::new(socket));
         monitor.heard()?;
         monitor.execute("qmp_capabilities", json!({}))?;
@@ -25,15 +27,15 @@ impl Monitor {
     }
 
     /// The panel's screenshot, by way of a file in `folder`.
-    pub(super) fn screenshot(&mut self, folder: &Path) -> Result<Screenshot, QemuError> {
+    pub(super) fn screenshot(&mut self, folder: &Path) -> anyhow::Result<Screenshot> {
         let path = folder.join("panel.ppm");
         self.execute("screendump", json!({ "filename": path.to_string_lossy() }))?;
-        let file = std::fs::read(path).map_err(QemuError::connection("screenshot"))?;
+        let file = std::fs::read(path).map_err(broken("screenshot"))?;
         Screenshot::from_ppm(&file)
     }
 
     /// Presses a button, or lets go of it. Lost while the machine stands still.
-    pub(super) fn set_key(&mut self, key: Key, down: bool) -> Result<(), QemuError> {
+    pub(super) fn set_key(&mut self, key: Key, down: bool) -> anyhow::Result<()> {
         // QEMU knows the board's select as the left control key.
         let code = if key == Key::Select { "ctrl" } else { key.name() };
         let event = json!({ "type": "key", "data": { "down": down, "key": { "type": "qcode", "data": code } } });
@@ -41,41 +43,39 @@ impl Monitor {
     }
 
     /// Gives QEMU's own console a line; what it says to that.
-    pub(super) fn console(&mut self, line: &str) -> Result<String, QemuError> {
+    pub(super) fn console(&mut self, line: &str) -> anyhow::Result<String> {
         let said = self.execute("human-monitor-command", json!({ "command-line": line }))?;
         Ok(said.as_str().unwrap_or_default().to_owned())
     }
 
-    /// Lets the machine run.
-    pub(super) fn resume(&mut self) -> Result<(), QemuError> {
+    pub(super) fn resume(&mut self) -> anyhow::Result<()> {
         self.execute("cont", json!({})).map(drop)
     }
 
-    /// Asks QEMU to end.
-    pub(super) fn quit(&mut self) -> Result<(), QemuError> {
+    pub(super) fn quit(&mut self) -> anyhow::Result<()> {
         self.execute("quit", json!({})).map(drop)
     }
 
-    fn execute(&mut self, command: &'static str, arguments: Value) -> Result<Value, QemuError> {
+    fn execute(&mut self, command: &'static str, arguments: Value) -> anyhow::Result<Value> {
         let line = json!({ "execute": command, "arguments": arguments });
-        writeln!(self.0.get_mut(), "{line}").map_err(QemuError::connection("control channel"))?;
+        writeln!(self.0.get_mut(), "{line}").map_err(broken("control channel"))?;
         loop {
             let mut answer = self.heard()?;
             if let Some(result) = answer.get_mut("return") {
                 return Ok(result.take());
             }
             if let Some(reason) = answer.pointer("/error/desc").and_then(Value::as_str) {
-                return Err(QemuError::Refused { command, reason: reason.to_owned() });
+                bail!("QEMU refuses {command}: {reason}");
             }
         }
     }
 
-    fn heard(&mut self) -> Result<Value, QemuError> {
+    fn heard(&mut self) -> anyhow::Result<Value> {
         let mut line = String::new();
         let read = self.0.read_line(&mut line).and_then(|count| match count {
             0 => Err(ErrorKind::UnexpectedEof.into()),
             _ => Ok(serde_json::from_str(&line)?),
         });
-        read.map_err(QemuError::connection("control channel"))
+        read.map_err(broken("control channel"))
     }
 }

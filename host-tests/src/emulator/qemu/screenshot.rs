@@ -2,7 +2,7 @@
 
 use firmware::graphics::canvas::Canvas;
 
-use super::QemuError;
+use anyhow::Context;
 
 /// The panel's width, pixels.
 pub const WIDTH: usize = 128;
@@ -33,17 +33,16 @@ impl std::fmt::Debug for Screenshot {
 
 impl Screenshot {
     /// Reads QEMU's screen dump, a binary PPM file.
-    pub(super) fn from_ppm(file: &[u8]) -> Result<Self, QemuError> {
-        let pixels = file.strip_prefix(HEADER).ok_or(QemuError::Screenshot("it is no PPM file of 512 x 256 pixels"))?;
+    pub(super) fn from_ppm(file: &[u8]) -> anyhow::Result<Self> {
+        let pixels = file.strip_prefix(HEADER).context("the panel's screenshot is no PPM file of 512 x 256 pixels")?;
         let at = |x: usize, y: usize| {
             let index = 3 * ((MAGNIFIED * y + 1) * MAGNIFIED * WIDTH + MAGNIFIED * x + 1);
             pixels.get(index).map(|level| level / GREY_UNIT)
         };
         let greys = (0..WIDTH * HEIGHT).map(|index| at(index % WIDTH, index / WIDTH)).collect::<Option<_>>();
-        Ok(Self { greys: greys.ok_or(QemuError::Screenshot("it is cut short"))? })
+        Ok(Self { greys: greys.context("the panel's screenshot is cut short")? })
     }
 
-    /// Black.
     pub fn blank() -> Self {
         Self { greys: vec![0; WIDTH * HEIGHT] }
     }

@@ -16,7 +16,7 @@ use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use nix::sys::stat::Mode;
 use nix::unistd::mkfifo;
 
-use super::QemuError;
+use super::error::broken;
 use crate::link::{Counts, Inbox, Received};
 
 /// The host's end of UART0. A thread of its own always reads, for QEMU stands still while no one does.
@@ -38,22 +38,25 @@ pub(super) struct Pipes {
 
 impl Pipes {
     /// For QEMU's `-chardev pipe` of this path: QEMU reads `path.in` and writes `path.out`.
-    pub(super) fn make(path: &Path) -> Result<Self, QemuError> {
+    pub(super) fn make(path: &Path) -> anyhow::Result<Self> {
         let (sender, receiver) = (path.with_extension("in"), path.with_extension("out"));
         for pipe in [&sender, &receiver] {
-            mkfifo(pipe, Mode::S_IRUSR | Mode::S_IWUSR).map_err(|error| broken(error.into()))?;
+            mkfifo(pipe, Mode::S_IRUSR | Mode::S_IWUSR).map_err(|error| broken("serial port")(error.into()))?;
         }
-        let receiver =
-            File::options().read(true).custom_flags(OFlag::O_NONBLOCK.bits()).open(receiver).map_err(broken)?;
+        let receiver = File::options()
+            .read(true)
+            .custom_flags(OFlag::O_NONBLOCK.bits())
+            .open(receiver)
+            .map_err(broken("serial port"))?;
         Ok(Self { receiver, sender })
     }
 }
 
 impl Serial {
     /// To be called once QEMU has opened its ends.
-    pub(super) fn new(pipes: Pipes) -> Result<Self, QemuError> {
-        let sender = File::options().write(true).open(pipes.sender).map_err(broken)?;
-        let watched = pipes.receiver.try_clone().map_err(broken)?;
+    pub(super) fn new(pipes: Pipes) -> anyhow::Result<Self> {
+        let sender = File::options().write(true).open(pipes.sender).map_err(broken("serial port"))?;
+        let watched = pipes.receiver.try_clone().map_err(broken("serial port"))?;
         let (channel, messages) = mpsc::channel();
         let reader = Reader { pipe: pipes.receiver, inbox: Inbox::default(), channel: Some(channel) };
         let reader = Arc::new(Mutex::new(reader));
@@ -88,7 +91,6 @@ impl Serial {
         self.all_arrived().filter_map(|message| message.read())
     }
 
-    /// What the link has been through.
     pub fn counts(&self) -> Counts {
         lock(&self.reader).inbox.counts()
     }
@@ -98,14 +100,12 @@ impl Serial {
         Stopped(lock(&self.reader))
     }
 
-    /// Sends a message to the board.
-    pub fn send<M: Message>(&mut self, message: &M) -> Result<(), QemuError> {
+    pub fn send<M: Message>(&mut self, message: &M) -> anyhow::Result<()> {
         self.send_bytes(encode(message, &mut [0; MAX_WIRE]))
     }
 
-    /// Sends any bytes to the board, sense or nonsense.
-    pub fn send_bytes(&mut self, bytes: &[u8]) -> Result<(), QemuError> {
-        self.sender.write_all(bytes).map_err(broken)
+    pub fn send_bytes(&mut self, bytes: &[u8]) -> anyhow::Result<()> {
+        self.sender.write_all(bytes).map_err(broken("serial port"))
     }
 }
 
@@ -155,10 +155,6 @@ fn is_readable(pipe: &File) -> bool {
             result => return result.is_ok(),
         }
     }
-}
-
-fn broken(source: std::io::Error) -> QemuError {
-    QemuError::Connection { name: "serial port", source }
 }
 
 /// A panic elsewhere must not stop the reading, so a poisoned lock is as good as any.

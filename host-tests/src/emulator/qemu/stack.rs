@@ -3,9 +3,10 @@
 use std::ops::Range;
 use std::path::Path;
 
+use anyhow::Context;
 use object::{Object, ObjectSymbol};
 
-use super::{Lockstep, QemuError};
+use super::Lockstep;
 
 /// The stack's share of memory, from its top (`board/cortex_m/guard.rs`).
 const SIZE: u32 = 32 * 1024;
@@ -18,16 +19,14 @@ pub struct Stack(Range<u32>);
 
 impl Stack {
     /// Of this program, by the linker's name for its top.
-    pub fn of(elf: &Path) -> Result<Self, QemuError> {
-        let unusable = |reason: String| QemuError::Firmware { path: elf.to_owned(), reason };
-        let program = std::fs::read(elf).map_err(|error| unusable(error.to_string()))?;
-        let program = object::File::parse(&*program).map_err(|error| unusable(error.to_string()))?;
+    pub fn of(elf: &Path) -> anyhow::Result<Self> {
+        let program = std::fs::read(elf).with_context(|| elf.display().to_string())?;
+        let program = object::File::parse(&*program)?;
         let top = program.symbols().find(|symbol| symbol.name() == Ok("_stack_start"));
-        let top = top.ok_or_else(|| unusable("it has no stack".to_owned()))?.address() as u32;
+        let top = top.context("the program has no stack")?.address() as u32;
         Ok(Self(top.saturating_sub(SIZE)..top))
     }
 
-    /// Where it is.
     pub fn addresses(&self) -> Range<u32> {
         self.0.clone()
     }
@@ -38,12 +37,12 @@ impl Stack {
     }
 
     /// To be done before the board's first instruction.
-    pub fn paint(&self, board: &mut Lockstep) -> Result<(), QemuError> {
+    pub fn paint(&self, board: &mut Lockstep) -> anyhow::Result<()> {
         board.fill(self.0.clone(), PAINT)
     }
 
     /// The most bytes that the stack has held since it was painted.
-    pub fn reached(&self, board: &mut Lockstep) -> Result<u32, QemuError> {
+    pub fn reached(&self, board: &mut Lockstep) -> anyhow::Result<u32> {
         Ok(Self::depth(&board.read(self.0.clone())?))
     }
 }

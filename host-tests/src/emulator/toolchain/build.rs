@@ -7,11 +7,12 @@ use std::process::Command;
 use std::sync::Mutex;
 use std::time::Duration;
 
+use anyhow::ensure;
+
 use super::detect::{DEBIAN_CARGO, DEBIAN_RUSTC};
 use super::install::run_shown;
 use super::{ArmCore, TARGETS, Toolchain, target, workspace};
 use crate::emulator::boards::{Board, PICO, every_board};
-use crate::emulator::process::ProcessError;
 
 /// What this process has built, each binary with its target: to ask cargo again takes half a second.
 static BUILT: Mutex<Vec<(String, String)>> = Mutex::new(Vec::new());
@@ -24,17 +25,6 @@ const LIMIT: Duration = Duration::from_secs(1800);
 const FOREIGN: [&str; 5] = ["CARGO", "RUST", "LD_LIBRARY_PATH", "DYLD_", "OUT_DIR"];
 /// ... but what says where cargo is at home and how it reaches the network.
 const OURS: [&str; 5] = ["CARGO_HOME", "CARGO_HTTP_", "CARGO_NET_", "CARGO_REGISTR", "RUSTUP_"];
-
-/// Why there is no firmware to run.
-#[derive(Debug, thiserror::Error)]
-pub enum BuildError {
-    /// Cargo could not be run to its end.
-    #[error("{0}")]
-    Process(#[from] ProcessError),
-    /// The firmware does not compile; what the compiler said.
-    #[error("the firmware does not build\n{0}")]
-    Refused(String),
-}
 
 impl Toolchain {
     /// Cargo as it builds for a chip, in the workspace's folder; its output belongs into [`Self::folder`].
@@ -61,14 +51,14 @@ impl Toolchain {
     }
 
     /// Builds the board's application; returns the ELF file.
-    pub fn build_for(&self, board: &Board) -> Result<PathBuf, BuildError> {
+    pub fn build_for(&self, board: &Board) -> anyhow::Result<PathBuf> {
         self.build(board.binary, board.target)
     }
 
     /// Builds a binary of the firmware with all optimisation, once in a process; returns the ELF file.
     ///
     /// Builds at the same time take turns.
-    pub fn build(&self, binary: &str, target: &str) -> Result<PathBuf, BuildError> {
+    pub fn build(&self, binary: &str, target: &str) -> anyhow::Result<PathBuf> {
         let elf = Self::folder().join(target).join("release").join(binary);
         let this = (binary.to_owned(), target.to_owned());
         if !BUILT.lock().is_ok_and(|built| built.contains(&this)) {
@@ -82,7 +72,7 @@ impl Toolchain {
     }
 
     /// Builds the image of every method for a target; for a processor of this name that computes `f64` itself, if there is one.
-    pub fn build_cores(&self, target: &str, double: Option<&str>) -> Result<PathBuf, BuildError> {
+    pub fn build_cores(&self, target: &str, double: Option<&str>) -> anyhow::Result<PathBuf> {
         let folder = double.map_or_else(Self::folder, |cpu| Self::folder().join(cpu));
         let mut command = self.for_targets("build", &[target], &folder);
         command.args(["--bin", "cores", "--features", "cores"]);
@@ -96,7 +86,7 @@ impl Toolchain {
     }
 
     /// Builds every binary that needs no chip's support library for every target, side by side.
-    pub fn build_ahead(&self) -> Result<(), BuildError> {
+    pub fn build_ahead(&self) -> anyhow::Result<()> {
         let mut command = self.for_targets("build", &TARGETS, &Self::folder());
         command.arg("--bins");
         self.finish(command, "building the firmware for all targets")
@@ -104,7 +94,7 @@ impl Toolchain {
 
     /// Checks all of the firmware's binaries and its examples for chips for every target; a warning is an error, of
     /// clippy too where the compiler has it.
-    pub fn check(&self) -> Result<(), BuildError> {
+    pub fn check(&self) -> anyhow::Result<()> {
         for target in TARGETS {
             let features = every_board().filter(|board| board.target == target).map(|board| board.feature);
             let features = features.collect::<Vec<_>>().join(",");
@@ -133,9 +123,10 @@ impl Toolchain {
         command
     }
 
-    fn finish(&self, mut command: Command, doing: &str) -> Result<(), BuildError> {
+    fn finish(&self, mut command: Command, doing: &str) -> anyhow::Result<()> {
         let output = run_shown(&mut command, LIMIT, doing)?;
-        if output.status.success() { Ok(()) } else { Err(BuildError::Refused(output.stderr)) }
+        ensure!(output.status.success(), "the firmware does not build\n{}", output.stderr);
+        Ok(())
     }
 }
 

@@ -1,11 +1,10 @@
 //! What is there already. Runs nothing that changes anything.
 
-use std::env;
-use std::fs;
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
+use std::{env, fs};
 
 use super::{ArmCore, target, workspace};
 use crate::emulator::process::run;
@@ -14,7 +13,6 @@ use crate::emulator::process::run;
 const QUICK: Duration = Duration::from_secs(20);
 /// Debian's compiler, by its own path.
 pub(super) const DEBIAN_RUSTC: &str = "/usr/bin/rustc";
-/// Debian's cargo, likewise.
 pub(super) const DEBIAN_CARGO: &str = "/usr/bin/cargo";
 /// The Debian packages that build the ARM core library.
 pub(super) const CORE_PACKAGES: [&str; 3] = ["rustc-web", "cargo-web", "rust-web-src"];
@@ -22,7 +20,6 @@ pub(super) const CORE_PACKAGES: [&str; 3] = ["rustc-web", "cargo-web", "rust-web
 /// An emulator of QEMU's.
 pub(super) struct Emulator {
     pub program: &'static str,
-    /// Its Debian package.
     pub package: &'static str,
     /// Where the set-up unpacks it for this project alone, in the target folder.
     folder: &'static str,

@@ -9,7 +9,8 @@ use std::time::Duration;
 use nix::fcntl::{Flock, FlockArg};
 
 use super::detect::{self, CORE_PACKAGES, Emulator, find, reason};
-use super::{ArmCore, SetupError, target, workspace};
+use super::{ArmCore, target, workspace};
+use crate::console::cli::Refused;
 use crate::console::progress::Progress;
 use crate::emulator::process::{Output, ProcessError, run_watched};
 
@@ -21,9 +22,9 @@ const INSTALL: Duration = Duration::from_secs(1200);
 const UNPACK_QEMU: &str = "host-tests/src/emulator/toolchain/unpack-qemu.sh";
 
 /// Waits for our turn at a set-up; it ends when this is dropped or the process ends, however it ends.
-pub(super) fn turn() -> Result<Flock<File>, SetupError> {
+pub(super) fn turn() -> Result<Flock<File>, Refused> {
     let path = target().join("setup.lock");
-    let refuse = |error: io::Error| SetupError(format!("cannot lock {}: {error}", path.display()));
+    let refuse = |error: io::Error| Refused::because(format_args!("cannot lock {}: {error}", path.display()));
     fs::create_dir_all(target()).map_err(refuse)?;
     let file = File::options().create(true).truncate(false).write(true).open(&path).map_err(refuse)?;
     Flock::lock(file, FlockArg::LockExclusive).map_err(|(_, error)| refuse(error.into()))

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
 
-use super::SetupError;
 use super::detect::{find, says};
 use super::install::{attempt, install_packages};
-use super::workspace;
+use super::{missing, workspace};
+use crate::console::cli::Refused;
 
 /// For npm to fetch one small package.
 const NPM: Duration = Duration::from_secs(120);
@@ -19,7 +19,6 @@ const ASK: &str = "const [{ dependencies }, { version }] = ['.', './node_modules
     .map((folder) => require(folder + '/package.json'));
     if (version !== dependencies.rp2040js) throw 'another version'; version";
 
-/// The emulator, ready to run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Rp2040js {
     node: PathBuf,
@@ -27,7 +26,6 @@ pub struct Rp2040js {
 }
 
 impl Rp2040js {
-    /// The program `node`.
     pub fn node(&self) -> &Path {
         &self.node
     }
@@ -44,7 +42,6 @@ fn folder() -> PathBuf {
     workspace().join("host-tests/rp2040")
 }
 
-/// Node.js, if it is new enough.
 fn node() -> Result<PathBuf, String> {
     let node = find("node").ok_or("there is no Node.js")?;
     let version = says(Command::new(&node).arg("--version"))?;
@@ -53,17 +50,17 @@ fn node() -> Result<PathBuf, String> {
     if is_new { Ok(node) } else { Err(format!("Node.js {} is older than {LEAST}", version.trim())) }
 }
 
-fn no_node(why: impl AsRef<str>) -> SetupError {
-    SetupError::missing("Node.js, of 18 or newer, with npm", why.as_ref(), "this system's packages nodejs and npm")
+fn no_node(why: impl AsRef<str>) -> Refused {
+    missing("Node.js, of 18 or newer, with npm", why.as_ref(), "this system's packages nodejs and npm")
 }
 
-fn no_emulator(why: impl AsRef<str>) -> SetupError {
+fn no_emulator(why: impl AsRef<str>) -> Refused {
     let by_hand = "npm ci --prefix host-tests/rp2040";
-    SetupError::missing("the emulator of the Raspberry Pi Pico", why.as_ref(), by_hand)
+    missing("the emulator of the Raspberry Pi Pico", why.as_ref(), by_hand)
 }
 
 /// The emulator, or what is missing of it and why.
-pub(super) fn detect() -> Result<Rp2040js, SetupError> {
+pub(super) fn detect() -> Result<Rp2040js, Refused> {
     let node = node().map_err(no_node)?;
     let version = says(Command::new(&node).args(["--print", ASK]).current_dir(folder()))
         .map_err(|_| no_emulator("npm has not fetched the version that is wanted"))?;
@@ -71,7 +68,7 @@ pub(super) fn detect() -> Result<Rp2040js, SetupError> {
 }
 
 /// Brings what is missing; a line for each thing that was done.
-pub(super) fn set_up() -> Result<(Rp2040js, Vec<String>), SetupError> {
+pub(super) fn set_up() -> Result<(Rp2040js, Vec<String>), Refused> {
     let mut done = Vec::new();
     if node().is_err() || find("npm").is_none() {
         install_packages(&["nodejs", "npm"]).map_err(no_node)?;

@@ -270,11 +270,8 @@ fn an_absent_panel_is_looked_for_once_a_second_and_may_come_and_go() {
         told
     };
     let absent = Err(Ssd1306Error::Absent(SILENCE));
-    assert_eq!(
-        [flush(1), flush(1), flush(1)],
-        [Ok(()), Ok(()), absent],
-        "no answer at the first address, nor at the second"
-    );
+    // No answer at the first address, nor at the second.
+    assert_eq!([flush(1), flush(1), flush(1)], [Ok(()), Ok(()), absent]);
     for _ in 0..TICK_RATE {
         assert_eq!(flush(1), absent);
     }
