@@ -1,9 +1,9 @@
 //! The enclosure: the exact motion is in it, and leaves it when any of its allowances is taken away.
 
 mod allowances;
-mod commands;
 mod motions;
 mod numbers;
+mod tables;
 
 use double_pendulum::{Motion, Parameters};
 use reference::enclosure::{Enclosure, Fineness, Fixed, Start};
@@ -11,10 +11,13 @@ use reference::enclosure::{Enclosure, Fineness, Fixed, Start};
 /// Frames per second: their times are numbers of `f64`.
 const RATE: u16 = 64;
 
-/// Equal rods of 1 m, let go at `angle`, rad.
-fn equal_rods(angle: f64, g: f64, rate: u16, fineness: Fineness) -> Enclosure {
+/// Equal rods of 1 m that are let go at 2 rad, P1 being `p1`.
+fn equal_rods(g: f64, rate: u16, p1: Fixed, fineness: Fineness) -> Enclosure {
     let parameters = Parameters { m1: 1.0, m2: 1.0, l1: 1.0, l2: 1.0, g };
-    Start::of(&parameters, &Motion::at_rest(angle, angle)).enclose(rate, fineness)
+    let set = Start::of(&parameters, &Motion::at_rest(2.0, 2.0)).enclose(rate);
+    let mut start = set.hull().map(Fixed::middle);
+    start[4] = p1;
+    Enclosure::new(set.constants, set.frame, start, fineness)
 }
 
 /// Moves on by so many frames.

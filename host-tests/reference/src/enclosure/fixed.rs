@@ -32,6 +32,8 @@ impl Fixed {
     pub const ZERO: Self = Self { middle: 0, radius: 0.0 };
     /// 1.
     pub const ONE: Self = Self { middle: 1 << FRACTION, radius: 0.0 };
+    /// pi, cut after 116 bits.
+    pub const PI: Self = Self { middle: 0x32_43F6_A888_5A30_8D31_3198_A2E0_3707, radius: 1.0 };
 
     /// Nothing is known of what leaves the range.
     fn new(middle: i128, radius: f64) -> Self {

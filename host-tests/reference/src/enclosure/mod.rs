@@ -11,4 +11,4 @@ mod start;
 pub use equations::Constants;
 pub use fixed::Fixed;
 pub use set::{Enclosure, Fineness};
-pub use start::{Given, Start, sin_cos};
+pub use start::{Start, sin_cos};

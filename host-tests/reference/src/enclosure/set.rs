@@ -88,26 +88,6 @@ impl Enclosure {
         [[sin1, cos1], [sin1 * c - cos1 * s, cos1 * c + sin1 * s]]
     }
 
-    /// How far any of these may be from its middle.
-    pub fn width(&self) -> f64 {
-        self.directions().as_flattened().iter().map(|x| x.radius()).fold(0.0, f64::max)
-    }
-
-    /// Whether both bobs are within `tolerance` of where the exact motion has them if rods of these `lengths` are shown in these directions;
-    /// `None` if that depends on where in the set it is.
-    pub fn is_right(&self, shown: &[[Fixed; 2]; 2], lengths: [f64; 2], tolerance: f64) -> Option<bool> {
-        // all over the longer rod, rounded
-        let unit = lengths[0].max(lengths[1]);
-        let [l1, l2, tolerance] = [lengths[0], lengths[1], tolerance].map(|x| Fixed::of(x / unit).wider(f64::EPSILON));
-        let exact = self.directions();
-        let off = |rod: usize, l: Fixed| [0, 1].map(|axis| (exact[rod][axis] - shown[rod][axis]) * l);
-        let ([x1, y1], [x2, y2]) = (off(0, l1), off(1, l2));
-        let beyond = [[x1, y1], [x1 + x2, y1 + y2]].map(|[x, y]| x * x + y * y - tolerance * tolerance);
-        let is_wrong = beyond.iter().any(|beyond| beyond.is_positive());
-        let is_right = beyond.iter().all(|&beyond| (Fixed::ZERO - beyond).is_positive());
-        (is_right || is_wrong).then_some(is_right)
-    }
-
     /// Moves on by a frame; `None` if the set has grown too large to be followed, or its numbers too large for the arithmetic.
     pub fn advance(&mut self) -> Option<()> {
         self.advance_by(0)

@@ -1,44 +1,34 @@
 //! The table of known answers, made anew from its own scenes and times.
 
-use std::io;
-
 use anyhow::Context;
-use reference::enclosure::{Fineness, Given, Start};
+use reference::enclosure::Start;
 
 use crate::commands::simulate::Number;
-use crate::oracle::known_answers::{HEADING, KnownAnswer, table};
+use crate::oracle::known_answers::KnownAnswer;
 
 /// Frames per second: the table's times are whole seconds.
 const RATE: u16 = 64;
 /// The most digits written.
 const DIGITS: f64 = 33.0;
 
-/// Every line of these scenes in turn, the heading first. Each number is off by at most two units of its last digit, but for how many times
-/// larger a small error has become, which is about.
-pub fn known_answers(
-    is_asked: impl Fn(&str) -> bool,
-    mut say: impl FnMut(String) -> io::Result<()>,
-) -> anyhow::Result<()> {
-    say(HEADING.to_owned())?;
-    let rows: Vec<_> = table()?.into_iter().filter(|row| is_asked(row.scene)).collect();
-    for scene in rows.chunk_by(|one, next| one.scene == next.scene) {
-        let mut set = start(&scene[0]).context("more digits than can be enclosed")?.enclose(RATE, Fineness::default());
-        let mut time = 0.0;
-        for row in scene {
-            while time < row.time {
-                set.advance().context("the set has grown too large to be followed")?;
-                time += 1.0 / f64::from(RATE);
-            }
-            let exact = set.directions().as_flattened().iter().map(|x| x.decimal(DIGITS)).collect::<Vec<_>>().join(",");
-            say(format!("{},{exact},{:.2e}", row.given, set.growth()))?;
+/// The lines of one scene. Each number is off by at most two units of its last digit, but for how many times larger a small error
+/// has become, which is about.
+pub fn known_answers(scene: &[KnownAnswer]) -> anyhow::Result<Vec<String>> {
+    let mut set = start(&scene[0]).context("more digits than can be enclosed")?.enclose(RATE);
+    let mut frame = 0;
+    let mut line = |row: &KnownAnswer| {
+        while f64::from(frame) < row.time * f64::from(RATE) {
+            set.advance().context("the set has grown too large to be followed")?;
+            frame += 1;
         }
-    }
-    Ok(())
+        let exact = set.directions().as_flattened().iter().map(|x| x.decimal(DIGITS)).collect::<Vec<_>>().join(",");
+        Ok(format!("{},{exact},{:.2e}", row.given, set.growth()))
+    };
+    scene.iter().map(&mut line).collect()
 }
 
 fn start(row: &KnownAnswer) -> Option<Start> {
     let numbers = row.given.split(',').skip(1).take(9).map(|text| text.parse::<Number>().ok()?.exact());
-    let mut given: [Given; 9] = numbers.collect::<Option<Vec<_>>>()?.try_into().ok()?;
-    given.rotate_left(4);
-    Some(Start { about: (row.parameters(), row.start()), given, degrees: [true, false] })
+    let fractions = numbers.collect::<Option<Vec<_>>>()?.try_into().ok()?;
+    Some(Start { about: (row.parameters(), row.start()), fractions: Some(fractions), degrees: [true, false] })
 }

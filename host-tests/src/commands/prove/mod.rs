@@ -2,16 +2,15 @@
 
 mod horizon;
 mod known_answers;
-mod options;
 
 use clap::Parser;
 use firmware::scenes::SceneName;
+use reference::enclosure::Start;
 
-use crate::commands::plan::{M3, M4F, PICO};
+use crate::commands::plan::{M3, M4F, PICO, SceneOptions};
 use crate::commands::table::Table;
-pub use horizon::{HEADING, Proof, row, words};
+pub use horizon::{Frame, frames, open, right, words};
 pub use known_answers::known_answers;
-pub use options::Options;
 
 /// The scenes that move, if only in the end.
 pub fn moving() -> impl Iterator<Item = &'static SceneName> {
@@ -26,20 +25,20 @@ pub fn horizons<'a>(scenes: impl Iterator<Item = &'a SceneName>, tick: impl Fn()
 }
 
 fn horizon(name: &str) -> anyhow::Result<Vec<String>> {
-    let (mut cells, mut open) = (vec![name.to_owned()], 0);
+    let (mut cells, mut unproved) = (vec![name.to_owned()], 0);
     for chip in [M3, M4F, PICO] {
-        let options = Options::try_parse_from(["prove", "--scene", name, "--target", chip.name])?;
-        let (scene, start, plan) = options.scene()?;
-        let horizons = match (&plan, options.way(&plan)) {
-            (Ok(plan), Some(way)) => {
-                let proof = Proof::of(&scene, &start, way, |_, _, _| Ok(true))?;
-                open += proof.open;
-                [plan.horizon, scene.time(proof.right)].map(|time| format!("{time:.2}"))
+        let options = SceneOptions::try_parse_from(["plan", "--scene", name, "--target", chip.name])?;
+        let (scene, plan) = options.plan()?;
+        cells.extend(match plan {
+            Err(_) => ["none", "none"].map(String::from),
+            Ok(plan) => {
+                let start = Start::of(&scene.pendulum, &scene.start);
+                let frames: Vec<_> = frames(&scene, &start, plan.way())?.collect();
+                unproved += open(&frames);
+                [plan.horizon, scene.time(right(&frames))].map(|time| format!("{time:.2}"))
             }
-            _ => ["none", "none"].map(String::from),
-        };
-        cells.extend(horizons);
+        });
     }
-    cells.push(open.to_string());
+    cells.push(unproved.to_string());
     Ok(cells)
 }
