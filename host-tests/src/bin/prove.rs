@@ -3,12 +3,11 @@
 use std::process::ExitCode;
 use std::sync::atomic::Ordering;
 
-use anyhow::Context;
 use clap::{Parser, value_parser};
 use double_pendulum::Method;
-use double_pendulum::plan::{Limit, Plan, Problem, Way};
+use double_pendulum::plan::{Plan, Way};
 use host_tests::commands::plan::SceneOptions;
-use host_tests::commands::prove::{frames, horizons, known_answers, moving, words};
+use host_tests::commands::prove::{HEADING, frames, horizons, known_answers, moving, words};
 use host_tests::console::cli::{self, Refused, choice, say};
 use host_tests::console::progress::Bar;
 use host_tests::emulator::process::{interrupted, interrupted_by};
@@ -52,22 +51,12 @@ fn main() -> ExitCode {
     cli::main(run)
 }
 
-/// What moves, its start to the last digit, and the plan, or what forbids any.
-fn planned(options: &SceneOptions) -> anyhow::Result<(Problem, Start, Result<Plan, Limit>)> {
-    let (scene, plan) = options.plan()?;
-    let start = match options.scene {
-        Some(_) => Start::of(&scene.pendulum, &scene.start),
-        None => options.start.exact().context("of a number, 18 digits at most can be enclosed")?,
-    };
-    Ok((scene, start, plan))
-}
-
 fn run(options: &Options) -> anyhow::Result<ExitCode> {
     if options.table {
-        let bar = Bar::start("proving", moving().count() as u64);
-        let table = horizons(moving(), || bar.advance(1))?;
-        drop(bar);
-        say(table.markdown_rows().trim_end())?;
+        say(HEADING)?;
+        for &name in moving() {
+            say(horizons(name)?)?;
+        }
         return Ok(ExitCode::SUCCESS);
     }
     if options.known_answers {
@@ -77,7 +66,10 @@ fn run(options: &Options) -> anyhow::Result<ExitCode> {
         }
         return Ok(ExitCode::SUCCESS);
     }
-    let (scene, start, plan) = planned(&options.scene).map_err(Refused::because)?;
+    let (scene, plan) = options.scene.plan().map_err(Refused::because)?;
+    let given = || options.scene.start.exact().ok_or("of a number, 18 digits at most can be enclosed");
+    let of_board = options.scene.scene.map(|_| Start::of(&scene.pendulum, &scene.start));
+    let start = of_board.map_or_else(given, Ok).map_err(Refused::because)?;
     let asked = options.method.map(|method| Way { method, steps: options.steps });
     let Some(way) = asked.or(plan.as_ref().ok().map(Plan::way)) else {
         say("nothing that the chip can afford is right in any frame")?;
@@ -87,24 +79,18 @@ fn run(options: &Options) -> anyhow::Result<ExitCode> {
     if options.csv {
         say("t,sin_a1,cos_a1,sin_a2,cos_a2,radius,verdict")?;
     }
-    let bar = Bar::start("proving", scene.frames().into());
-    let mut proved = Vec::new();
-    for frame in frames(&scene, &start, way).map_err(Refused::because)? {
+    let (bar, mut proved) = (Bar::start("proving", scene.frames().into()), Vec::new());
+    let frames = frames(&scene, &start, way).map_err(Refused::because)?;
+    for frame in frames.take_while(|_| stopped.load(Ordering::Relaxed) == 0) {
         bar.advance(1);
         proved.push(frame);
         if options.csv {
             say(frame.row(scene.time(proved.len() as u32)))?;
-        }
-        if stopped.load(Ordering::Relaxed) != 0 {
-            break;
         }
     }
     drop(bar);
     if !options.csv {
         say(words(&scene, &plan, way, &proved))?;
     }
-    match stopped.load(Ordering::Relaxed) {
-        0 => Ok(ExitCode::SUCCESS),
-        signal => Ok(ExitCode::from(interrupted_by(signal as i32) as u8)),
-    }
+    Ok(interrupted_by(stopped.load(Ordering::Relaxed)))
 }

@@ -17,9 +17,8 @@ fn is_left(reach: f64, fineness: Fineness) -> bool {
 #[test]
 fn what_the_derivatives_lack_is_counted() {
     let fine = Fineness::default();
-    for (reach, fineness) in
-        [(1e-7, Fineness { tangents: 4, ..fine }), (1e-3, fine), (1e-9, Fineness { beside: 1e-4, ..fine })]
-    {
+    let cases = [(1e-7, Fineness { tangents: 4, ..fine }), (1e-3, fine), (1e-9, Fineness { beside: 1e-4, ..fine })];
+    for (reach, fineness) in cases {
         let without = Fineness { allowances: [1.0, 1.0, 0.0, 1.0], ..fineness };
         assert!(!is_left(reach, fineness) && is_left(reach, without), "{fineness:?}");
     }
@@ -46,10 +45,10 @@ fn the_series_of_the_midpoint_is_bounded_to_its_last_term() {
 /// would hide that, is less than one rounding.)
 #[test]
 fn roundings_of_the_midpoint_are_counted() {
-    let meet = |rounding: f64| {
+    let hull = |rate: u16, rounding: f64| {
         let fineness = Fineness { allowances: [rounding, 0.0, 1.0, 1.0], ..Fineness::default() };
-        let moved = |rate: u16| after(rate.into(), equal_rods(9.81, rate, Fixed::ZERO, fineness)).hull();
-        meet(&moved(64)[..4], &moved(48)[..4], 0.0)
+        after(rate.into(), equal_rods(9.81, rate, Fixed::ZERO, fineness)).hull()
     };
+    let meet = |rounding: f64| meet(&hull(64, rounding)[..4], &hull(48, rounding)[..4], 0.0);
     assert!(meet(1.0) && !meet(0.0));
 }

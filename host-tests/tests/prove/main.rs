@@ -3,9 +3,11 @@
 mod allowances;
 mod motions;
 mod numbers;
-mod tables;
 
 use double_pendulum::{Motion, Parameters};
+use firmware::scenes::SceneName;
+use host_tests::commands::prove::{HEADING, horizons, known_answers};
+use host_tests::oracle::known_answers::table;
 use reference::enclosure::{Enclosure, Fineness, Fixed, Start};
 
 /// Frames per second: their times are numbers of `f64`.
@@ -28,5 +30,19 @@ fn after(frames: u32, mut set: Enclosure) -> Enclosure {
 
 /// Whether two sets of numbers may have one in common, `more` apart at most.
 fn meet(one: &[Fixed], other: &[Fixed], more: f64) -> bool {
-    one.iter().zip(other).all(|(one, other)| (*one - *other).wider(more).holds_zero())
+    one.iter().zip(other).all(|(one, other)| (*one - *other).wider(more).is_positive().is_none())
+}
+
+#[test]
+fn the_readme_has_the_table_that_the_command_makes() {
+    let line = horizons(SceneName::Figure7).expect("it can be proved");
+    let readme = include_str!("../../README.md");
+    assert!(HEADING.lines().chain([&*line]).all(|line| readme.lines().any(|other| other == line)), "{line}");
+}
+
+#[test]
+fn the_known_answers_are_those_that_the_command_makes() {
+    let scene: Vec<_> = table().expect("the file").into_iter().filter(|row| row.scene == "S11").collect();
+    let kept = include_str!("../../data/known_answers.csv").lines().filter(|line| line.starts_with("S11,"));
+    assert_eq!(known_answers(&scene).expect("it can be proved"), kept.collect::<Vec<_>>());
 }

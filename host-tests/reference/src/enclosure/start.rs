@@ -6,7 +6,7 @@ use double_pendulum::{Bounds, Motion, Parameters, Pendulum};
 
 use super::equations::Constants;
 use super::fixed::Fixed;
-use super::set::{Enclosure, Fineness};
+use super::{Enclosure, Fineness};
 
 /// A pendulum and how it starts.
 #[derive(Clone, Copy, Debug)]
@@ -19,9 +19,6 @@ pub struct Start {
     pub degrees: [bool; 2],
 }
 
-/// The most that anything may turn by in a unit of time, rad.
-const UNIT: f64 = 4.0;
-
 impl Start {
     /// Every number as it is in `f64`.
     pub fn of(parameters: &Parameters<f64>, motion: &Motion<f64>) -> Self {
@@ -33,13 +30,12 @@ impl Start {
     /// The unit of time is so short that nothing turns by more than 4 rad, and 2^e is near the root of (m1 + m2)/m1: so the equations'
     /// numbers are neither large nor small, for masses and lengths within a factor of 1000 and 30 of each other.
     pub fn enclose(&self, rate: u16) -> Enclosure {
-        let (parameters, motion) = self.about;
+        let (parameters @ Parameters { m1, m2, l1, l2, g }, motion @ Motion { a1, a2, w1, w2 }) = self.about;
         let fastest = Pendulum::new(&parameters).map_or(1.0, |pendulum| {
             let Bounds { w1, w2, .. } = pendulum.bounds(&pendulum.to_state(&motion));
             pendulum.modes().map_or(0.0, |modes| modes.fast.frequency).max(w1).max(w2)
         });
-        let unit = (fastest / UNIT).log2().ceil() as i32;
-        let (Parameters { m1, m2, l1, l2, g }, Motion { a1, a2, w1, w2 }) = self.about;
+        let unit = (fastest / 4.0).log2().ceil() as i32;
         let e = (0.5 * (1.0 + m2 / m1).log2()).clamp(0.0, 7.0).round() as i32;
         let [by, by1, by2] = [m1.max(m2), l1, l2].map(|x| x.log2() as i32);
 

@@ -33,7 +33,7 @@ pub fn run(options: &Options) -> Result<ExitCode> {
     if points.len() < all {
         let percent = 100.0 * points.len() as f64 / all as f64;
         complain(format_args!("interrupted: {out} has {percent:.1} %; --resume goes on"));
-        return Ok(ExitCode::from(interrupted_by(stopped.load(Ordering::Relaxed) as i32) as u8));
+        return Ok(interrupted_by(stopped.load(Ordering::Relaxed)));
     }
     part.remove()?;
     let ([width, height], doubtful) = (map.square.size, doubtful(&map, &points));

@@ -5,13 +5,13 @@ use double_pendulum::{Error, Motion, Parameters};
 use firmware::config::HALF_PIXEL;
 use reference::enclosure::{Fixed, Start};
 
-/// Where the rods point, (sin, cos) each: a box.
-type Directions = [[Fixed; 2]; 2];
-
 /// A frame beside the exact motion.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame {
-    exact: Directions,
+    /// Where the rods point, (sin, cos) each.
+    exact: [[Fixed; 2]; 2],
+    /// So far that may be from the middle of the box.
+    width: f64,
     is_right: Option<bool>,
 }
 
@@ -24,44 +24,34 @@ pub fn frames(scene: &Problem, start: &Start, way: Way) -> Result<impl Iterator<
         let (exact, drawn) = (set.directions(), motion.advance(1));
         let shown = || motion.directions().map(|direction| direction.map(|x| Fixed::of(x.into())));
         last = drawn.map_or(Some(false), |()| are_near(&scene, &exact, &shown(), scene.tolerance));
-        Some(Frame { exact, is_right: last })
+        let width = exact.as_flattened().iter().map(|x| x.radius()).fold(0.0, f64::max);
+        Some(Frame { exact, width, is_right: last })
     }))
 }
 
 /// Whether both bobs are within `tolerance`, m, of each other in these directions; `None` if that depends on where in the boxes they are.
-fn are_near(scene: &Problem, one: &Directions, other: &Directions, tolerance: f64) -> Option<bool> {
+fn are_near(scene: &Problem, one: &[[Fixed; 2]; 2], other: &[[Fixed; 2]; 2], tolerance: f64) -> Option<bool> {
     let Parameters { l1, l2, .. } = scene.pendulum;
     // all over the longer rod, rounded
     let [l1, l2, tolerance] = [l1, l2, tolerance].map(|x| Fixed::of(x / l1.max(l2)).wider(f64::EPSILON));
     let off = |rod: usize, l: Fixed| [0, 1].map(|axis| (one[rod][axis] - other[rod][axis]) * l);
     let ([x1, y1], [x2, y2]) = (off(0, l1), off(1, l2));
-    let beyond = [[x1, y1], [x1 + x2, y1 + y2]].map(|[x, y]| x * x + y * y - tolerance * tolerance);
-    let is_far = beyond.iter().any(|beyond| beyond.is_positive());
-    let is_near = beyond.iter().all(|&beyond| (Fixed::ZERO - beyond).is_positive());
-    (is_near || is_far).then_some(is_near)
+    let beyond = [[x1, y1], [x1 + x2, y1 + y2]].map(|[x, y]| (x * x + y * y - tolerance * tolerance).is_positive());
+    if beyond.contains(&Some(true)) { Some(false) } else { (beyond == [Some(false); 2]).then_some(true) }
 }
 
-/// So many frames are right, from the start on.
-pub fn right(frames: &[Frame]) -> u32 {
-    frames.iter().take_while(|frame| frame.is_right == Some(true)).count() as u32
-}
-
-/// Frames of which neither is proved.
-pub fn open(frames: &[Frame]) -> usize {
-    frames.iter().filter(|frame| frame.is_right.is_none()).count()
+/// So many frames are right, from the start on; and of so many neither is proved.
+pub fn counts(frames: &[Frame]) -> (u32, usize) {
+    let right = frames.iter().take_while(|frame| frame.is_right == Some(true)).count();
+    (right as u32, frames.iter().filter(|frame| frame.is_right.is_none()).count())
 }
 
 impl Frame {
-    /// How far each direction of the exact motion may be from the middle of the box.
-    fn width(&self) -> f64 {
-        self.exact.as_flattened().iter().map(|x| x.radius()).fold(0.0, f64::max)
-    }
-
     /// At `time`, s: the middles of the box that the exact motion is in, how far it may be from them, and what is proved of the frame drawn.
     pub fn row(&self, time: f64) -> String {
         let middles = self.exact.as_flattened().iter().map(|x| x.about().to_string()).collect::<Vec<_>>().join(",");
         let verdict = self.is_right.map_or("open", |is_right| if is_right { "right" } else { "wrong" });
-        format!("{time},{middles},{:.1e},{verdict}", self.width())
+        format!("{time},{middles},{:.1e},{verdict}", self.width)
     }
 }
 
@@ -84,7 +74,7 @@ fn told_apart(scene: &Problem) -> Option<f64> {
 
 /// What is proved, a line each.
 pub fn words(scene: &Problem, plan: &Result<Plan, Limit>, Way { method, steps }: Way, frames: &[Frame]) -> String {
-    let (right, end) = (right(frames), scene.time(frames.len() as u32));
+    let ((right, open), end) = (counts(frames), scene.time(frames.len() as u32));
     let first = match frames.last() {
         Some(Frame { is_right: Some(false), .. }) => format!("wrong at {end:.3} s: more than {HALF_PIXEL} pixels off"),
         _ => format!("none wrong of all {} frames, until {end:.3} s", frames.len()),
@@ -94,19 +84,16 @@ pub fn words(scene: &Problem, plan: &Result<Plan, Limit>, Way { method, steps }:
         Err(_) => String::from("nothing that the chip can afford is right in any frame"),
     };
     let unknown = told_apart(scene).map_or(String::new(), |time| {
-        format!(
-            "\nunknown    where a bob is at {time:.3} s: two motions of the digits that the panel shows are a rod apart"
-        )
+        format!("\nunknown    where a bob is at {time:.3} s: two motions of the digits on the panel are a rod apart")
     });
     format!(
         "method     {method}, {steps} to a frame
 proved     right to half a pixel until {:.3} s, every one of {right} frames
            {first}
-open       {} frames between, neither right nor wrong by proof
+open       {open} frames between, neither right nor wrong by proof
 predicted  {predicted}
 known      the exact motion, each direction to {:.1e} at {end:.3} s{unknown}",
         scene.time(right),
-        open(frames),
-        frames.last().map_or(0.0, Frame::width),
+        frames.last().map_or(0.0, |frame| frame.width),
     )
 }
