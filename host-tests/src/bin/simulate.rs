@@ -4,7 +4,7 @@ use std::io::{self, BufWriter};
 use std::process::ExitCode;
 
 use anyhow::Context;
-use host_tests::commands::simulate::{CsvRows, Options, Place, Plan, choose, list, on_board, on_host, plan};
+use host_tests::commands::simulate::{CsvRows, Place, Plan, SimulateOptions, choose, list, on_board, on_host, plan};
 use host_tests::console::cli::{self, Refused, complain, say};
 use host_tests::console::progress::Bar;
 
@@ -12,7 +12,7 @@ fn main() -> ExitCode {
     cli::main(run)
 }
 
-fn run(options: &Options) -> anyhow::Result<()> {
+fn run(options: &SimulateOptions) -> anyhow::Result<()> {
     if options.list {
         return Ok(say(list())?);
     }
@@ -35,7 +35,7 @@ fn run(options: &Options) -> anyhow::Result<()> {
 }
 
 /// The motion to compute; warnings about it go to stderr first.
-fn planned(options: &Options) -> anyhow::Result<Plan> {
+fn planned(options: &SimulateOptions) -> anyhow::Result<Plan> {
     if let Some(tolerance) = &options.tolerance {
         let choice = choose(options, tolerance)?;
         complain(&choice);

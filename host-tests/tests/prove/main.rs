@@ -19,7 +19,7 @@ fn equal_rods(g: f64, rate: u16, p1: Fixed, fineness: Fineness) -> Enclosure {
     let set = Start::of(&parameters, &Motion::at_rest(2.0, 2.0)).enclose(rate);
     let mut start = set.hull().map(Fixed::middle);
     start[4] = p1;
-    Enclosure::new(set.constants, set.frame, start, fineness)
+    Enclosure::new(set.equations, set.frame, start, fineness)
 }
 
 /// Moves on by so many frames.

@@ -23,7 +23,7 @@ fn random(rng: &mut Rng) -> (Parameters<f64>, Motion<f64>) {
 fn is_inside(parameters: &Parameters<f64>, motion: &Motion<f64>, frames: u32) {
     let mut reference = Reference::new(parameters, motion);
     let mut set = Start::of(parameters, motion).enclose(RATE);
-    let energy = |set: &Enclosure| set.constants.energy(&set.hull());
+    let energy = |set: &Enclosure| set.equations.energy(&set.hull());
     let first = energy(&set);
     for frame in (5..=frames).step_by(5) {
         set = after(5, set);

@@ -4,7 +4,7 @@ use std::array::from_fn;
 
 use super::Fixed;
 
-/// The constants of the equations, time in any unit T.
+/// The equations by their constants, time in any unit T.
 ///
 /// With D = a1 - a2, S and C its sine and cosine, M = (m1 + m2)/2^e, P1 = p1 T/(M l1^2), P2 = p2 T/(m2 l2^2):
 ///
@@ -12,7 +12,7 @@ use super::Fixed;
 /// - P1' = -G1 sin a1 - c u v S, P2' = -G2 sin a2 + n u v S, where sin a2 = C sin a1 - S cos a1
 /// - k = m1/M, l = m2/M, n = l1/l2, c = l/n, G1 = 2^e g T^2/l1, G2 = g T^2/l2, in this order
 #[derive(Clone, Copy, Debug)]
-pub struct Constants {
+pub struct Equations {
     pub(super) upper: Fixed,
     pub(super) lower: Fixed,
     pub(super) rods: Fixed,
@@ -20,7 +20,7 @@ pub struct Constants {
     pub(super) gravity: [Fixed; 2],
 }
 
-impl Constants {
+impl Equations {
     /// The coefficients 0 to `order` of the power series of the six numbers (sin a1, cos a1, S, C, P1, P2) from `start`, their time in
     /// T by `step`.
     pub fn series(&self, start: &[Fixed; 6], order: usize, step: Fixed) -> [Vec<Fixed>; 6] {
@@ -80,13 +80,13 @@ const SHORTEST: f64 = 6.0;
 /// Theorem (Picard and Lindeloef for analytic equations; Hille, Ordinary Differential Equations in the Complex Domain, 2.3): if
 /// z0 + t f(B) is in the product of discs B for |t| <= T, one solution from z0 exists there, is analytic in t and z0, and stays in B. f
 /// has no pole in B, for else the radius of its inverse is infinite.
-pub fn discs(constants: &Constants, middle: &[Fixed; 6], extent: &[f64; 6], step: Fixed) -> Option<(f64, [f64; 6])> {
+pub fn discs(equations: &Equations, middle: &[Fixed; 6], extent: &[f64; 6], step: Fixed) -> Option<(f64, [f64; 6])> {
     let least = extent.map(|extent| LEAST[0].max(LEAST[1] * extent));
     let mut best = (0.0, least);
     for time in TIMES {
         let mut radii = least;
         for _ in 0..TRIES {
-            let slopes = constants.series(&from_fn(|i| middle[i].wider(radii[i])), 1, step).map(|z| z[1].size());
+            let slopes = equations.series(&from_fn(|i| middle[i].wider(radii[i])), 1, step).map(|z| z[1].size());
             // twice the share: what is rounded is far less
             let held = (0..6).map(|i| (1.0 - 2.0 * STARTS) * radii[i] / slopes[i]).fold(time, f64::min);
             if held > best.0 {

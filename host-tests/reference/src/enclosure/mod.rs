@@ -11,7 +11,7 @@ mod start;
 
 use std::array::from_fn;
 
-pub use equations::Constants;
+pub use equations::Equations;
 use equations::{STARTS, discs};
 pub use fixed::Fixed;
 use fixed::{MOST_TERMS, ULP, up};
@@ -48,7 +48,7 @@ impl Default for Fineness {
 #[derive(Clone, Debug)]
 pub struct Enclosure {
     /// Of the equations.
-    pub constants: Constants,
+    pub equations: Equations,
     /// Units of time in a second, a power of two, and frames.
     pub frame: (i32, u16),
     middle: [Fixed; 6],
@@ -63,11 +63,11 @@ pub struct Enclosure {
 
 impl Enclosure {
     /// From anywhere in `start`, with 2^`frame.0` units of time and `frame.1` frames in a second.
-    pub fn new(constants: Constants, frame: (i32, u16), start: [Fixed; 6], fineness: Fineness) -> Self {
+    pub fn new(equations: Equations, frame: (i32, u16), start: [Fixed; 6], fineness: Fineness) -> Self {
         // none is without length
         let about = start.map(|x| x.radius() + ULP);
         let (middle, segments) = (start.map(Fixed::middle), Vec::new());
-        let mut set = Self { constants, frame, middle, segments, start: about, about, steps: 0, fineness };
+        let mut set = Self { equations, frame, middle, segments, start: about, about, steps: 0, fineness };
         set.settle();
         set
     }
@@ -119,20 +119,20 @@ impl Enclosure {
         let (unit, rate) = self.frame;
         let (step, extent) = (Fixed::fraction(1, rate.into(), unit - halvings), self.extent(0));
         extent.iter().all(|&extent| extent < 1.0).then_some(())?;
-        let (time, radii) = discs(&self.constants, &self.middle, &extent, step)?;
+        let (time, radii) = discs(&self.equations, &self.middle, &extent, step)?;
         let Fineness { terms, tangents, beside, allowances: [rounding, rest, bend, turn] } = self.fineness;
 
         let tail = |order: usize| up((0..order).fold(1.0 / (time - 1.0), |power, _| power / time));
         let ends = |order: usize| radii.iter().all(|radius| radius * tail(order) < ULP);
         let order = (1..terms - 1).find(|&order| ends(order)).unwrap_or(terms - 1);
         let low = order.min(tangents);
-        let z = self.constants.series(&self.middle, order, step);
+        let z = self.equations.series(&self.middle, order, step);
         let (end, short) = (z.each_ref().map(|z| sum(z)), z.each_ref().map(|z| sum(&z[..=low])));
         let off = radii.map(|radius| (beside * radius).log2().floor().exp2());
         let columns: [[Fixed; 6]; 6] = from_fn(|j| {
             let mut start = self.middle;
             start[j] = start[j] + Fixed::of(off[j]);
-            let moved = self.constants.series(&start, low, step);
+            let moved = self.equations.series(&start, low, step);
             from_fn(|i| sum(&moved[i]) - short[i])
         });
         let v: [[f64; 6]; 6] = from_fn(|i| from_fn(|j| columns[j][i].about() / off[j]));

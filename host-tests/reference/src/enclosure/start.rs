@@ -4,7 +4,7 @@ use std::array::from_fn;
 
 use double_pendulum::{Bounds, Motion, Parameters, Pendulum};
 
-use super::equations::Constants;
+use super::equations::Equations;
 use super::fixed::Fixed;
 use super::{Enclosure, Fineness};
 
@@ -57,7 +57,7 @@ impl Start {
         let [w1, w2] = [w1(-unit), w2(-unit)].map(|w| radians(w, self.degrees[1]));
         let ([sin1, cos1], [s, c]) = (sin_cos(a1), sin_cos(a1 - a2));
         let start = [sin1, cos1, s, c, (upper + lower) * w1 + coupling * c * w2, w2 + rods * c * w1];
-        Enclosure::new(Constants { upper, lower, rods, coupling, gravity }, (unit, rate), start, Fineness::default())
+        Enclosure::new(Equations { upper, lower, rods, coupling, gravity }, (unit, rate), start, Fineness::default())
     }
 }
 

@@ -27,7 +27,7 @@ stopped. Bad input: one line on stderr, exit code 2.";
 /// Numbers are decimals (0.25, 1e-3) or fractions (1/256).
 #[derive(Debug, Parser)]
 #[command(name = "cargo flips", bin_name = "cargo flips", after_help = AFTER_HELP)]
-pub struct Options {
+pub struct FlipsOptions {
     /// Pixels: one number for a square, or two
     #[arg(long, value_name = "N|WxH", default_value = "512")]
     size: Size,
@@ -85,7 +85,7 @@ const MOST_STEPS: f64 = 1e9;
 /// A step of an `f32` angle of a turn, rad, of which a pixel must have several.
 const FINEST: f64 = 8.0 * 2.4e-7;
 
-impl Options {
+impl FlipsOptions {
     /// The map and the kind of file; an error names the option and its value.
     pub fn map(&self) -> Result<(Map, Kind), Refused> {
         let kind = Kind::of(&self.out)?;

@@ -17,7 +17,7 @@ use firmware::job::Reading;
 pub use board::on_board;
 pub use list::list;
 pub use number::Number;
-pub use options::{Options, Place};
+pub use options::{Place, SimulateOptions};
 pub use request::{Plan, plan};
 pub use start::{Pair, StartOptions};
 pub use table::{COLUMNS, Column, CsvRows};

@@ -46,7 +46,7 @@ the finite numbers later: its rows until then, one line on stderr, exit code 1."
 /// Computes a motion of the double pendulum and prints it as CSV, SI units. Numbers are decimals (0.25, 1e-3) or fractions (1/256).
 #[derive(Debug, Parser)]
 #[command(name = "cargo simulate", after_help = AFTER_HELP)]
-pub struct Options {
+pub struct SimulateOptions {
     /// What moves.
     #[command(flatten)]
     pub start: StartOptions,

@@ -4,11 +4,11 @@ use double_pendulum::{Equations, Integrator, Method, Numbers};
 use firmware::config::Processor;
 use firmware::job::ON_BOARDS;
 
-use super::{Options, Place};
+use super::{Place, SimulateOptions};
 
 /// What the options leave open, what a step of it costs, and in what: by the place's prices or, where it has none for any of it,
 /// by the evaluations of the equations.
-pub(super) fn candidates(options: &Options) -> (&'static str, Vec<(Method, f64)>) {
+pub(super) fn candidates(options: &SimulateOptions) -> (&'static str, Vec<(Method, f64)>) {
     let left: Vec<_> =
         methods(options.place).filter(|method| options.method.is_none_or(|asked| asked == *method)).collect();
     let priced = |price: &dyn Fn(Method) -> Option<f64>| {
