@@ -5,6 +5,7 @@ use double_pendulum::{Error, Method, Parameter};
 use firmware::job::{JobError, Request};
 use firmware::protocol::Field;
 
+use super::options::name;
 use super::price::methods;
 use super::{Number, SimulateOptions};
 
@@ -95,7 +96,7 @@ pub(super) fn accepted(options: &SimulateOptions, request: &Request) -> anyhow::
 /// The method asked for, or the first of the table, if the place asked for computes it.
 pub(super) fn method(options: &SimulateOptions) -> anyhow::Result<Method> {
     let method = options.method.unwrap_or(Method::ALL[0]);
-    let place = options.place.name();
+    let place = name(options.place);
     ensure!(
         methods(options.place).any(|one| one == method),
         "--method {method}: not on {place}; --list says where it runs"
