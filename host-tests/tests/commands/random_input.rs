@@ -18,7 +18,7 @@ use firmware::motion::settings::Settings;
 use firmware::protocol::{
     Ask, Decoder, Frame, LinkError, MAX_FIELDS, MAX_WIRE, Message, Refused, Set, Simulate, encode, frame,
 };
-use host_tests::commands::simulate::{Number, Options, plan};
+use host_tests::commands::simulate::{Number, SimulateOptions, plan};
 use host_tests::link::Received;
 use proptest::prelude::*;
 use proptest::sample::select;
@@ -248,7 +248,7 @@ proptest! {
             0..6,
         ),
     ) {
-        let options = Options::try_parse_from(std::iter::once(String::from("simulate")).chain(words));
+        let options = SimulateOptions::try_parse_from(std::iter::once(String::from("simulate")).chain(words));
         if let Ok(plan) = options.map_err(drop).and_then(|options| plan(&options).map_err(drop)) {
             prop_assert!(plan.every.is_positive() && plan.request.dt > 0.0);
         }

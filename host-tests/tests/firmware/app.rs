@@ -2,7 +2,8 @@
 
 use std::cell::Cell;
 
-use double_pendulum::{Parameters, Pendulum, State};
+use double_pendulum::plan::{PlannedRun, Way};
+use double_pendulum::{Method, Motion, Parameters, Pendulum, State};
 use embedded_io::{ErrorKind, ErrorType, Write};
 use firmware::app::command::Command;
 use firmware::app::controls::{Buttons, NoButtons, Pressed};
@@ -18,7 +19,6 @@ use firmware::motion::settings::Settings;
 use firmware::protocol::{Frame, Message, Restarted, Status};
 use firmware::scenes::SceneName;
 use host_tests::emulator::host::sheets;
-use host_tests::oracle::stream::Expected;
 use host_tests::oracle::tolerances::ENERGY_SHOWN;
 
 use crate::bench::{Plain, all, app, messages, starting_with, wire};
@@ -59,10 +59,12 @@ fn every_frame_carries_the_kernels_state_to_the_bit() {
     let start_angle = 120.0_f32.to_radians();
     let start_energy = pendulum.energy(&State::at_rest(start_angle, start_angle));
     let scale = start_energy - pendulum.least_energy();
-    let mut expected = Expected::new(1.0, start_angle);
+    let start = Motion::at_rest(start_angle.into(), start_angle.into());
+    let way = Way { method: Method::Extrapolation10Fixed64, steps: 1 };
+    let mut expected = PlannedRun::new(&pendulum.parameters().cast(), &start, TICK_RATE as u16, way).expect("good");
     for (sequence, frame) in (0..).zip(frames) {
-        expected.tick();
-        let state = expected.state();
+        expected.advance(1).expect("a finite motion");
+        let state = <[f32; 4]>::from(expected.rounded_state());
         assert_eq!(frame.state.map(f32::to_bits), state.map(f32::to_bits), "frame {sequence}");
         let step = sequence + 1;
         assert_eq!((frame.sequence, frame.dropped, frame.step), (sequence, 0, step));

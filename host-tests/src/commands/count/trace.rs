@@ -13,7 +13,7 @@ use anyhow::{Context, Result};
 use firmware::job::Request;
 
 use super::Target;
-use crate::emulator::process::{self, ProcessError};
+use crate::emulator::process;
 
 pub(super) const LIMIT: Duration = Duration::from_secs(1800);
 const VERSION_LIMIT: Duration = Duration::from_secs(10);
@@ -97,7 +97,7 @@ impl Target {
         }
         let status = match child.wait() {
             Ok(status) => Some(status),
-            Err(ProcessError::TimedOut(..)) => None,
+            Err(error) if error.kind() == io::ErrorKind::TimedOut => None,
             Err(error) => return Err(error.into()),
         };
         let output = stdout.and_then(|reader| reader.join().ok()).and_then(Result::ok).unwrap_or_default();

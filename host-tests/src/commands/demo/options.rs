@@ -16,7 +16,7 @@ use crate::emulator::boards::{BOARDS, Board, every_board};
 /// host cannot see is redrawn from the numbers that the board sends.
 #[derive(Clone, Debug, Parser)]
 #[command(name = "cargo demo", after_help = after_help())]
-pub struct Options {
+pub struct DemoOptions {
     /// The board
     #[arg(long, value_name = "NAME", default_value = BOARDS[0].name,
           value_parser = choice(every_board(), |board| board.name))]
@@ -85,7 +85,7 @@ fn asked() -> impl Iterator<Item = Asked> {
     std::iter::once(None).chain(Method::DRAWN.iter().copied().map(Some))
 }
 
-impl Options {
+impl DemoOptions {
     /// Refuses what is known to fail before anything is built: files that cannot be written, a method that the scene does not use.
     pub fn check(&self) -> Result<(), Refused> {
         for (option, file) in [("--record", &self.record), ("--screenshot", &self.screenshot)] {

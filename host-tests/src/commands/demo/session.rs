@@ -8,7 +8,7 @@ use firmware::config::TICK_RATE;
 use firmware::protocol::{Ask, Choose, Field, Frame, Set, Status, method_code};
 use firmware::scenes::SceneName;
 
-use super::Options;
+use super::DemoOptions;
 use super::readings::Readings;
 use super::record::{Recording, save};
 use super::source::Source;
@@ -18,7 +18,7 @@ use crate::emulator::qemu::Screenshot;
 const LATE: Duration = Duration::from_millis(100);
 
 pub struct Session<'a> {
-    options: &'a Options,
+    options: &'a DemoOptions,
     pub source: Source<'a>,
     pub readings: Readings,
     pub screenshot: Screenshot,
@@ -33,7 +33,7 @@ pub struct Session<'a> {
 }
 
 impl<'a> Session<'a> {
-    pub fn new(options: &'a Options, source: Source<'a>, recording: Option<Recording>, is_live: bool) -> Self {
+    pub fn new(options: &'a DemoOptions, source: Source<'a>, recording: Option<Recording>, is_live: bool) -> Self {
         let (readings, screenshot) = (Readings::default(), Screenshot::blank());
         let due = (is_live && matches!(source, Source::Pico(_))).then(Instant::now);
         Self { options, source, readings, screenshot, recording, now: None, begun: None, before: 0, due }

@@ -3,7 +3,7 @@
 use firmware::protocol::{MAX_WIRE, Message, encode};
 
 use crate::emulator::boards::{Board, PICO};
-use crate::emulator::pico;
+use crate::emulator::pico::PicoMachine;
 use crate::emulator::qemu::{Lockstep, LogLine, Machine, Screenshot};
 use crate::link::{Counts, Port, Received};
 
@@ -12,7 +12,7 @@ pub enum Source<'a> {
     Live(Machine, &'a Board),
     /// Emulated by QEMU, run from frame to frame.
     Lockstep(Lockstep, &'a Board),
-    Pico(Box<pico::Machine>),
+    Pico(Box<PicoMachine>),
     Port(Port),
 }
 

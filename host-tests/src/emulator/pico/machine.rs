@@ -24,7 +24,7 @@ const SLICE: Duration = Duration::from_millis(1);
 const PATIENCE: u32 = 5000;
 
 /// The board. Its time passes only in [`Self::run`], so all that it does is repeatable bit for bit. Dropping it ends it.
-pub struct Machine {
+pub struct PicoMachine {
     talk: Talk,
     _process: Running,
     _file: tempfile::NamedTempFile,
@@ -35,7 +35,7 @@ pub struct Machine {
     heard_by_uart: Vec<Received>,
 }
 
-impl Machine {
+impl PicoMachine {
     /// Switches a board on with this firmware in its flash: what `cargo pico` copies, and nothing else.
     pub fn start(emulator: &Rp2040js, elf: &Path, limit: Duration) -> anyhow::Result<Self> {
         let program = std::fs::read(elf)?;

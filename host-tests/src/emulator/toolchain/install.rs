@@ -12,7 +12,7 @@ use super::detect::{self, CORE_PACKAGES, Emulator, find, reason};
 use super::{ArmCore, target, workspace};
 use crate::console::cli::Refused;
 use crate::console::progress::Progress;
-use crate::emulator::process::{Output, ProcessError, run_watched};
+use crate::emulator::process::{Output, run_watched};
 
 /// For `rustup target add`: 40 MB. Where it can only hang, this is what that costs, once.
 const RUSTUP: Duration = Duration::from_secs(60);
@@ -108,7 +108,7 @@ pub(super) fn attempt(command: &mut Command, limit: Duration, doing: &str) -> Re
 }
 
 /// Runs a command to its end, within the limit, and shows meanwhile what is being done.
-pub(super) fn run_shown(command: &mut Command, limit: Duration, doing: &str) -> Result<Output, ProcessError> {
+pub(super) fn run_shown(command: &mut Command, limit: Duration, doing: &str) -> io::Result<Output> {
     let mut progress = Progress::start(doing);
     run_watched(command, limit, |line| progress.alive(line))
 }
