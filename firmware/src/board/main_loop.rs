@@ -12,35 +12,27 @@ use super::cortex_m::clock::Clock;
 use super::cortex_m::retained;
 use super::cortex_m::watchdog::Watchdog;
 use super::serial::receiver::Receiver;
-use crate::app::controls::Buttons;
-use crate::app::instruments::Instruments;
-use crate::app::player::News;
-use crate::app::warm_restart::{Journal, WarmRestart};
-use crate::app::{App, Event};
+use crate::app::{App, Buttons, Event, Instruments, Journal, News, WarmRestart};
 use crate::config::{HALF_PIXEL, Processor};
 use crate::display::Display;
-use crate::graphics::frame_buffers::FrameBuffers;
-use crate::motion::planner::Finding;
-use crate::motion::settings::Settings;
+use crate::graphics::FrameBuffers;
+use crate::motion::{Finding, Settings};
 use crate::protocol::BoardName;
 use crate::scenes::SceneName;
 
 /// A board, set up and running.
 pub struct Board<Panel, Link, Keys, Dog> {
-    /// Its panel, which may be absent.
     pub panel: Panel,
     /// The serial link outwards.
     pub link: Link,
     /// The serial link inwards.
     pub receiver: Receiver,
-    /// Its buttons.
     pub keys: Keys,
-    /// What it measures and tells of itself by.
     pub instruments: Instruments,
-    /// The tick.
     pub clock: Clock,
-    /// What resets it when it hangs.
     pub watchdog: Dog,
+    /// Whether the board's own register says that the watchdog caused the last reset.
+    pub reset_by_watchdog: bool,
 }
 
 /// The type of a board's application.
@@ -59,8 +51,7 @@ macro_rules! program {
     ($module:ident::$board:ident on $processor:ident) => {
         #[cortex_m_rt::entry]
         fn main() -> ! {
-            static mut BUFFERS: $crate::graphics::frame_buffers::FrameBuffers =
-                $crate::graphics::frame_buffers::FrameBuffers::BLANK;
+            static mut BUFFERS: $crate::graphics::FrameBuffers = $crate::graphics::FrameBuffers::BLANK;
             static mut APP: core::mem::MaybeUninit<
                 <$crate::board::$module::$board as $crate::board::Plays>::Application,
             > = core::mem::MaybeUninit::uninit();
@@ -78,11 +69,11 @@ impl<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons, Dog: Watchdog> Bo
         buffers: &'static mut FrameBuffers,
         processor: Processor,
     ) -> ! {
-        let Self { panel, link, receiver, keys, instruments, clock, watchdog } = self;
+        let Self { panel, link, receiver, keys, instruments, clock, watchdog, reset_by_watchdog } = self;
         let name = BoardName::from_code(instruments.identity.board).map_or("", BoardName::name);
         defmt::info!("boot: {=str}, {} Hz", name, instruments.identity.hertz);
         let app = application(place, buffers, panel, link, keys, processor);
-        run(app, receiver, instruments, clock, watchdog)
+        run(app, receiver, instruments, clock, watchdog, reset_by_watchdog)
     }
 }
 
@@ -115,9 +106,10 @@ fn run<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons>(
     instruments: Instruments,
     clock: Clock,
     mut watchdog: impl Watchdog,
+    reset_by_watchdog: bool,
 ) -> ! {
     app.use_instruments(instruments);
-    let mut journal = resume(app, &watchdog);
+    let mut journal = resume(app, reset_by_watchdog);
     let mut now = clock.ticks();
     app.count_from(now, 0);
     loop {
@@ -134,14 +126,14 @@ fn run<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons>(
 #[inline(never)]
 fn resume<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons>(
     app: &mut App<Panel, Link, Keys>,
-    watchdog: &impl Watchdog,
+    reset_by_watchdog: bool,
 ) -> Journal {
-    let restart = retained::recall(watchdog.has_reset());
+    let restart = retained::recall(reset_by_watchdog);
     if let Some(restart) = &restart {
         app.resume(restart, log);
     }
     let mut journal = Journal::new(restart.as_ref());
-    retained::keep(journal.note(app.player()));
+    retained::keep(journal.note(&app.player));
     journal
 }
 
@@ -152,10 +144,10 @@ fn run_to<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons>(
     journal: &mut Journal,
     watchdog: &mut impl Watchdog,
 ) -> bool {
-    let before = app.frames();
+    let before = app.frames;
     let caught_up = app.run_to(now, log);
-    if app.frames() != before {
-        retained::keep(journal.note(app.player()));
+    if app.frames != before {
+        retained::keep(journal.note(&app.player));
         watchdog.feed();
     }
     caught_up

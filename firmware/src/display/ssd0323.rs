@@ -9,7 +9,7 @@ use embedded_hal::digital::OutputPin;
 use embedded_hal::spi::SpiDevice;
 
 use super::Display;
-use crate::graphics::canvas::{Canvas, HEIGHT, Row, WIDTH};
+use crate::graphics::{Canvas, HEIGHT, Row, WIDTH};
 
 const LAST_COLUMN: u8 = (WIDTH / 2 - 1) as u8;
 const LAST_ROW: u8 = (HEIGHT - 1) as u8;
@@ -52,9 +52,7 @@ const WAKE: [&[u8]; 19] = [
 /// Why bytes did not reach the panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PanelError<Spi, Pin> {
-    /// The bus failed.
     Spi(Spi),
-    /// The data/command pin failed.
     Pin(Pin),
 }
 

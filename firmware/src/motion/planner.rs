@@ -8,7 +8,7 @@ use double_pendulum::Parameters;
 use double_pendulum::plan::{Limit, Plan, PlanError, Problem, Search, Way};
 
 use crate::config::{HALF_PIXEL, PLANNED, PLANNING_PIECE, Processor, SETTLED_TICKS, TICK_RATE};
-use crate::motion::settings::Settings;
+use crate::motion::Settings;
 use crate::protocol::{NO_METHOD, Planned, limit_code, method_code};
 
 /// How a scene shows its motion.
@@ -20,18 +20,15 @@ pub struct Shown {
     pub height: f32,
 }
 
-/// What has been found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Finding {
     /// The plan. One that was right to its end is looked at farther, and told again when that comes to an end.
     Plan(Plan),
     /// Nothing that this processor can afford is right in any frame; what forbids finer steps.
     NothingHolds(Limit),
-    /// The kernel refuses to plan it.
     Refused(PlanError),
 }
 
-/// Plans the scene that is played.
 #[derive(Clone, Copy, Debug)]
 pub struct Planner {
     processor: Processor,

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::io::{ErrorKind, Read, Write};
 use std::time::{Duration, Instant};
 
-use firmware::app::warm_restart::{Cause, LastShown};
+use firmware::app::{Cause, LastShown};
 use firmware::config::BAUD;
 use firmware::protocol::{LinkError, MAX_WIRE, Message, Restarted, VERSION, encode};
 use serialport::SerialPort;

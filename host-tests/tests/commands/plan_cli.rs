@@ -1,8 +1,8 @@
 //! `cargo plan` plans what the boards show; what it says and refuses is in the snapshots.
 
-use firmware::app::player::News;
+use firmware::app::News;
 use firmware::config::{CORTEX_M3, STM32F405};
-use firmware::motion::planner::Finding;
+use firmware::motion::Finding;
 use firmware::scenes::SceneName;
 use host_tests::emulator::host::Show;
 

@@ -3,8 +3,7 @@
 use double_pendulum::Method;
 use double_pendulum::plan::{Limit, Way};
 use firmware::config::{CORTEX_M3, CORTEX_M4F, PLANNED, PROCESSORS, Processor, SETTLED_TICKS, STM32F405};
-use firmware::motion::planner::{Finding, Planner, Shown};
-use firmware::motion::settings::Settings;
+use firmware::motion::{Finding, Planner, Settings, Shown};
 use firmware::protocol::{NO_METHOD, limit_code, method_code, method_of};
 
 /// The way that these begin in, which is right wherever any other is.

@@ -15,7 +15,6 @@ pub trait Outlet {
     fn put(&mut self, byte: u8);
 }
 
-/// The outward direction of a serial port.
 #[derive(Debug)]
 pub struct Transmitter<Port>(pub(in crate::board) Port);
 

@@ -26,7 +26,7 @@
 //! them: dilithium-cortexm on an ATSAM3X8E (3 figures, -9.2 to -2.7 %), whose bus matrix keeps the first load of each group
 //! waiting for a cycle; with that cycle they are within 0.2 %.
 
-use std::ops::{AddAssign, Sub};
+use std::ops::AddAssign;
 
 use super::instruction::Instruction;
 use super::row::Class;
@@ -55,18 +55,6 @@ impl AddAssign for Cost {
         self.instructions += other.instructions;
         self.cycles += other.cycles;
         self.stalls += other.stalls;
-    }
-}
-
-impl Sub for Cost {
-    type Output = Self;
-
-    fn sub(self, other: Self) -> Self {
-        Self {
-            instructions: self.instructions.saturating_sub(other.instructions),
-            cycles: self.cycles.saturating_sub(other.cycles),
-            stalls: self.stalls.saturating_sub(other.stalls),
-        }
     }
 }
 

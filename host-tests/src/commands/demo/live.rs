@@ -4,7 +4,7 @@ use std::io::stdout;
 use std::time::{Duration, Instant};
 
 use anyhow::ensure;
-use firmware::app::controls::Key;
+use firmware::app::Key;
 use firmware::config::TICK_RATE;
 use firmware::protocol::{Pause, Press, Step};
 use firmware::scenes::SceneName;

@@ -6,7 +6,7 @@ use clap::{Parser, value_parser};
 use double_pendulum::Method;
 use double_pendulum::plan::Way;
 use firmware::config::{BAUD, PROCESSOR};
-use firmware::motion::simulation::Means;
+use firmware::motion::Means;
 use firmware::scenes::{AnyScene, SceneName};
 
 use crate::console::cli::{Refused, check_writable, choice};

@@ -3,7 +3,7 @@
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use firmware::app::player::AUTO;
+use firmware::app::AUTO;
 use firmware::config::TICK_RATE;
 use firmware::protocol::{Ask, Choose, Field, Frame, Set, Status, method_code};
 use firmware::scenes::SceneName;

@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 use std::time::Duration;
 
 use anyhow::{Context, bail};
-use firmware::app::controls::Key;
+use firmware::app::Key;
 use firmware::protocol::{Frame, MAX_WIRE, Message, encode};
 
 use super::talk::{Said, Talk, digits};

@@ -8,7 +8,7 @@ use std::thread::sleep;
 use std::time::Duration;
 
 use anyhow::{Context, anyhow, bail};
-use firmware::app::controls::Key;
+use firmware::app::Key;
 use firmware::protocol::Message;
 use tempfile::TempDir;
 

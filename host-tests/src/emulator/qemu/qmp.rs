@@ -8,7 +8,7 @@ use std::os::unix::net::UnixStream;
 use std::path::Path;
 
 use anyhow::bail;
-use firmware::app::controls::Key;
+use firmware::app::Key;
 use serde_json::{Value, json};
 
 use super::Screenshot;

@@ -1,13 +1,9 @@
 //! The panel's screenshot, out of QEMU's screen dump.
 
-use firmware::graphics::canvas::Canvas;
-
 use anyhow::Context;
+use firmware::graphics::Canvas;
+pub use firmware::graphics::{HEIGHT, WIDTH};
 
-/// The panel's width, pixels.
-pub const WIDTH: usize = 128;
-/// The panel's height, pixels.
-pub const HEIGHT: usize = 64;
 /// QEMU shows each of the panel's pixels as a square of this many by as many.
 const MAGNIFIED: usize = 4;
 /// How the dump begins: colour, the magnified size, 255 levels.
