@@ -160,6 +160,7 @@ fn check_forward<R: Real>(dt: f64) -> Result<(), Error> {
 }
 
 /// Refuses a step of `dt` s that is NaN, infinite, zero or out of the range of `R`.
+#[inline(never)] // one copy
 pub(crate) fn check_step<R: Real>(dt: f64) -> Result<(), Error> {
     let (parameter, value) = (Parameter::Dt, dt);
     if !dt.is_finite() {

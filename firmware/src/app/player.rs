@@ -135,9 +135,7 @@ impl<'a> Player<'a> {
     /// Never inlined: what a motion needs to start would be on the stack of every frame.
     #[inline(never)]
     fn follow(&mut self, found: &Finding) {
-        if let (Finding::Plan(Plan { method, steps, .. }), None) =
-            (found, self.scene.shown().and_then(|shown| shown.way))
-        {
+        if let (Ok(Plan { method, steps, .. }), None) = (found, self.scene.shown().and_then(|shown| shown.way)) {
             let way = Way { method: *method, steps: (*steps).max(1) };
             if self.scene.planned().is_some_and(|motion| motion.way() != way) {
                 self.next = CatchingUp::new(&self.settings, way, &self.means.processor).ok();

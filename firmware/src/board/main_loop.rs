@@ -5,7 +5,7 @@ use core::mem::MaybeUninit;
 
 use defmt::Debug2Format;
 use double_pendulum::Parameters;
-use double_pendulum::plan::{Plan, Way};
+use double_pendulum::plan::{Plan, PlanError, Way};
 use embedded_io::Write;
 
 use super::cortex_m::clock::Clock;
@@ -16,7 +16,7 @@ use crate::app::{App, Buttons, Event, Instruments, Journal, News, WarmRestart};
 use crate::config::{HALF_PIXEL, Processor};
 use crate::display::Display;
 use crate::graphics::FrameBuffers;
-use crate::motion::{Finding, Settings};
+use crate::motion::Settings;
 use crate::protocol::BoardName;
 use crate::scenes::SceneName;
 
@@ -72,27 +72,12 @@ impl<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons, Dog: Watchdog> Bo
         let Self { panel, link, receiver, keys, instruments, clock, watchdog, reset_by_watchdog } = self;
         let name = BoardName::from_code(instruments.identity.board).map_or("", BoardName::name);
         defmt::info!("boot: {=str}, {} Hz", name, instruments.identity.hertz);
-        let app = application(place, buffers, panel, link, keys, processor);
-        run(app, receiver, instruments, clock, watchdog, reset_by_watchdog)
-    }
-}
-
-/// Makes the application as it is switched on, at its place.
-fn application<'a, Panel: Display, Link: Write, Keys: Buttons>(
-    place: &'a mut MaybeUninit<App<'a, Panel, Link, Keys>>,
-    buffers: &'a mut FrameBuffers,
-    panel: Panel,
-    link: Link,
-    keys: Keys,
-    processor: Processor,
-) -> &'a mut App<'a, Panel, Link, Keys> {
-    let app = place.write(App::idle(processor, Settings::default(), buffers, panel, link, keys));
-    match app.begin().map(|()| app) {
-        Ok(app) => app,
-        Err(error) => {
+        let app = place.write(App::idle(processor, Settings::default(), buffers, panel, link, keys));
+        if let Err(error) = app.begin() {
             defmt::error!("{}", error);
             panic!("the first settings describe no pendulum")
         }
+        run(app, receiver, instruments, clock, watchdog, reset_by_watchdog)
     }
 }
 
@@ -185,7 +170,7 @@ fn log<Panel: Debug, Link: Debug>(event: Event<Panel, Link>) {
         Event::Lost { bytes, total } => defmt::warn!("{} received bytes lost, {} since reset", bytes, total),
         Event::Stopped(error) => defmt::error!("stopped: {}", error),
         Event::StepTooLong(step) => defmt::warn!("the step is too long for this energy, {} s would do", step),
-        Event::Motion(News::Found(Finding::Plan(Plan { method, steps, error, cost, horizon, limit, .. }))) => {
+        Event::Motion(News::Found(Ok(Plan { method, steps, error, cost, horizon, limit, .. }))) => {
             defmt::info!(
                 "plan: {=str}, steps to a frame: {}, expected to be at most {}/1000 of a pixel off until {}.{:02} s ({=str}), {} cycles a frame",
                 method.name(),
@@ -197,13 +182,13 @@ fn log<Panel: Debug, Link: Debug>(event: Event<Panel, Link>) {
                 cost as u32,
             )
         }
-        Event::Motion(News::Found(Finding::NothingHolds(limit))) => {
+        Event::Motion(News::Found(Err(PlanError::NothingHolds { limit, .. }))) => {
             defmt::info!("plan: nothing affordable is right to half a pixel in any frame ({=str})", limit.name());
         }
         Event::Motion(News::Shown(Way { method, steps }, cost)) => {
             defmt::info!("shown: {=str}, steps to a frame: {}, {} cycles a frame", method.name(), steps, cost as u32);
         }
-        Event::Motion(News::Found(Finding::Refused(error))) => defmt::warn!("no plan: {}", error),
+        Event::Motion(News::Found(Err(error))) => defmt::warn!("no plan: {}", error),
         Event::Asked => defmt::info!("computing a motion on request"),
         Event::Link(error) => defmt::error!("serial link: {}", Debug2Format(&error)),
     }

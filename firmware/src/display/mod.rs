@@ -17,7 +17,7 @@ pub use any_panel::AnyPanel;
 pub use controller::{BUILT_FOR, By, Controller, Found};
 pub use i2c_recovery::free_bus;
 pub use outbox::{OutByte, Outbox, PanelBus, Sent};
-pub use ssd0323::{PanelError, Ssd0323};
+pub use ssd0323::Ssd0323;
 pub use ssd1306::{Ssd1306, Ssd1306Error};
 
 pub trait Display {

@@ -7,7 +7,6 @@ use firmware::graphics::{Canvas, FadeLayer, FrameBuffers};
 use firmware::motion::Settings;
 use firmware::scenes::{Report, SceneName};
 
-/// A scene as it is played.
 #[derive(Debug)]
 pub struct Show {
     pub player: Player<'static>,
@@ -35,7 +34,6 @@ impl Show {
         let _ = player.check();
     }
 
-    /// Draws the whole frame over what was there.
     pub fn draw(&self, canvas: &mut Canvas) {
         self.player.draw(canvas);
     }

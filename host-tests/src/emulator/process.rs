@@ -21,7 +21,6 @@ use nix::unistd::Pid;
 /// process ends, by any signal. Any Unix can do that, and it reaches the children's children.
 const WARDEN: &str = "(sleep $0; kill -KILL 0) & read -r _; kill -KILL 0";
 
-/// Why a child could not be run to its end.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ProcessError {
     /// The program, as it was called, does not exist or may not be run; the system's reason.

@@ -8,7 +8,6 @@ use fastrand::Rng;
 use firmware::app::{AUTO, Event, Instruments, Key, News};
 use firmware::config::{DT, MOST_MEASURED_STEPS, MOST_MESSAGES_PER_TICK, PLANNED, RECEIVE_QUEUE, TICK_RATE};
 use firmware::job::{OnBoards, Request, Run};
-use firmware::motion::Finding;
 use firmware::protocol::{
     Ask, AskPlan, Choose, Done, Field, Frame, Identify, Identity, MAX_WIRE, Measure, Measured, Message, Pause, Planned,
     Press, Refused, Restart, Sample, Set, Status, Step, TO_CHIP, frame, method_code,
@@ -216,7 +215,7 @@ fn the_plan_is_found_in_some_tick_told_when_asked_and_followed() {
     }
     tick += 1;
     app.run_to(tick, |event| news.push(event));
-    let [Event::Motion(News::Found(Finding::Plan(plan)))] = news[..] else { panic!("{news:?}") };
+    let [Event::Motion(News::Found(Ok(plan)))] = news[..] else { panic!("{news:?}") };
     let answer = asked(&mut app);
     assert_eq!((answer.found, answer.horizon), (FOUND, plan.horizon));
     assert!(answer.horizon > 19.0, "{answer:?}");

@@ -7,7 +7,7 @@ use std::convert::Infallible;
 use embedded_hal::digital::OutputPin;
 use embedded_hal::spi::{self, Operation, SpiDevice};
 use firmware::app::{App, NoButtons};
-use firmware::display::{Display, PanelError, Ssd0323};
+use firmware::display::{Display, Ssd0323};
 use firmware::graphics::Canvas;
 use firmware::motion::Settings;
 use host_tests::emulator::host::sheets;
@@ -165,8 +165,8 @@ fn hands_on_the_error_of_the_bus() {
     let controller = RefCell::new(Controller { fails_after: Some(0), ..Controller::new() });
     let mut memory = Canvas::default();
     let mut panel = panel(&controller, &mut memory);
-    assert_eq!(panel.init(), Err(PanelError::Spi(BusError)));
-    assert_eq!(panel.flush(&Canvas::default()), Err(PanelError::Spi(BusError)));
+    assert_eq!(panel.init(), Err(BusError));
+    assert_eq!(panel.flush(&Canvas::default()), Err(BusError));
 }
 
 /// What has not changed is not sent: of a row the words between two that have changed are. A row below one that was sent needs
@@ -201,7 +201,7 @@ fn shows_the_frame_after_one_that_failed() {
     panel.init().expect("the bus works");
     (0..64).for_each(|y| canvas.update(y, y, |_| 15));
     controller.borrow_mut().fails_after = Some(21);
-    assert_eq!(panel.flush(&canvas), Err(PanelError::Spi(BusError)));
+    assert_eq!(panel.flush(&canvas), Err(BusError));
     *controller.borrow_mut() = Controller { memory: vec![Some(7); 64 * 64], ..Controller::new() };
     assert_eq!(panel.flush(&canvas), Ok(()));
     assert_eq!(shown(&controller), canvas.bytes().collect::<Vec<_>>());

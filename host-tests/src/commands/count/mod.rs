@@ -45,7 +45,6 @@ const AFFORDABLE_INSTRUCTIONS: u64 = 300_000;
 pub struct StepCost {
     pub steps: u32,
     pub instructions: f64,
-    /// Estimated cycles.
     pub cycles: f64,
     /// Those of the cycles that wait for a floating-point result or for the unit that makes one.
     pub stalls: f64,

@@ -44,7 +44,6 @@ pub const ERROR_BAR: &str = "Cycles are estimated: 1.6 % off (root mean square) 
 pub struct Cost {
     /// Executed instructions. One whose condition fails counts like any other.
     pub instructions: u64,
-    /// Estimated cycles.
     pub cycles: u64,
     /// Those of the cycles that wait for a floating-point result or for the unit that makes one.
     pub stalls: u64,
@@ -63,11 +62,8 @@ impl AddAssign for Cost {
 pub struct Pipeline {
     core: Core,
     previous: Option<Instruction>,
-    /// Whether that one branched.
     branched: bool,
-    /// Cycles since the first instruction.
     now: u64,
-    /// When the floating-point unit is free.
     unit_free: u64,
     /// The register with the last floating-point result, and when that can be consumed.
     result: Option<(u32, u64)>,

@@ -94,7 +94,6 @@ fn finish(mut session: Session) -> anyhow::Result<bool> {
     Ok(session.readings.comparison.difference().is_none())
 }
 
-/// What a key of the keyboard means.
 enum Wish {
     Press(Key),
     /// Another scene, found from the present one.

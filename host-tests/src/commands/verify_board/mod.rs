@@ -48,7 +48,6 @@ struct Section {
     faults: Vec<String>,
 }
 
-/// Verifies the board and writes the report; whether all was well.
 pub fn run(options: &Options) -> anyhow::Result<bool> {
     let mut talk = Talk::new(demo::port(&options.port, options.baud)?)?;
     let identity: Identity = talk.ask(&Identify { request: 0 })?;

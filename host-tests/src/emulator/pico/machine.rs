@@ -18,7 +18,6 @@ use crate::emulator::toolchain::{Rp2040js, workspace};
 use crate::emulator::uf2::uf2;
 use crate::link::{Counts, Inbox, Received};
 
-/// From one look at the stream to the next.
 const SLICE: Duration = Duration::from_millis(1);
 /// A board that sends no frame for this many of them sends none.
 const PATIENCE: u32 = 5000;
@@ -95,7 +94,6 @@ impl Machine {
         self.tell(&format!("uart {}", digits(encode(message, &mut [0; MAX_WIRE]))))
     }
 
-    /// What the board has sent through the UART since the last call.
     pub fn heard_by_uart(&mut self) -> Vec<Received> {
         std::mem::take(&mut self.heard_by_uart)
     }

@@ -14,7 +14,6 @@ use serde_json::{Value, json};
 use super::Screenshot;
 use super::error::broken;
 
-/// The control channel of a running QEMU.
 #[derive(Debug)]
 pub(super) struct Monitor(BufReader<UnixStream>);
 

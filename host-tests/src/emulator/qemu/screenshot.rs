@@ -28,7 +28,6 @@ impl std::fmt::Debug for Screenshot {
 }
 
 impl Screenshot {
-    /// Reads QEMU's screen dump, a binary PPM file.
     pub(super) fn from_ppm(file: &[u8]) -> anyhow::Result<Self> {
         let pixels = file.strip_prefix(HEADER).context("the panel's screenshot is no PPM file of 512 x 256 pixels")?;
         let at = |x: usize, y: usize| {
@@ -56,7 +55,6 @@ impl Screenshot {
         if x < WIDTH { self.greys.get(y * WIDTH + x).copied().unwrap_or_default() } else { 0 }
     }
 
-    /// All greys, row by row.
     pub fn greys(&self) -> &[u8] {
         &self.greys
     }
