@@ -6,7 +6,7 @@ use double_pendulum::Method;
 use double_pendulum::plan::{Budget, Costs, Limit, Plan, PlanError, PlannedRun, Problem, Search, Way};
 use double_pendulum::{Error, Motion, Parameter, Parameters};
 use firmware::config::{CORTEX_M3, STM32F405};
-use firmware::motion::planner::half_pixel;
+use firmware::motion::half_pixel;
 
 const RATE: u16 = 60;
 const M3: Costs = CORTEX_M3.costs;

@@ -8,7 +8,6 @@ use super::error::PlanError;
 use super::limit::Limit;
 use super::pass::Pass;
 use super::problem::Problem;
-use super::run::greater;
 use super::way::{FIRST_STEP, MOST_STEPS, RESOLVING, Way, start_and_step, steps_to_frame};
 use crate::error::{Error, Parameter};
 use crate::pendulum::State;
@@ -89,7 +88,7 @@ impl Search {
             let Problem { pendulum, start, rate, .. } = problem;
             Way::fixed64(pendulum, start, *rate, longest * admissible, costs, frame).map(|way| way.steps)
         };
-        let exact = fine(RESOLVING, greater(budget.frame, budget.planning / problem.frames() as f32));
+        let exact = fine(RESOLVING, f32::INFINITY);
         let affordable = |steps: &u32| costs.of_frame(Method::Extrapolation10Fixed64, *steps) <= budget.frame;
         let coarser = || fine(FIRST_STEP, budget.frame).map(|steps| (steps, Limit::Budget));
         let cheap = if costs.fixed32 < costs.direction { Method::Rk4Fixed32 } else { Method::Rk4F32Direction };
