@@ -28,6 +28,22 @@ impl Trial {
         Self { parameters: Parameters::equal_rods(mass_ratio, 1.0, 9.81), start: State::at_rest(a1, a2), seconds }
     }
 
+    /// 0.5 rad, at rest: no chaos.
+    pub fn regular(seconds: f64) -> Self {
+        Self::at_rest(1.0, 0.5, 0.5, seconds)
+    }
+
+    /// 2 rad, at rest: chaotic, it turns over.
+    pub fn chaotic(seconds: f64) -> Self {
+        Self::at_rest(1.0, 2.0, 2.0, seconds)
+    }
+
+    /// Masses and lengths all different, in motion.
+    pub fn unlike(seconds: f64) -> Self {
+        let parameters = Parameters { m1: 0.7, m2: 1.3, l1: 0.6, l2: 1.1, g: 9.81 };
+        Self { parameters, start: State { a1: 0.3, a2: -0.2, p1: 0.1, p2: -0.1 }, seconds }
+    }
+
     /// The trial as `R` holds it: every number rounded.
     pub fn rounded<R: Real>(&self) -> (Parameters<R>, State<R>) {
         (self.parameters.cast(), self.start.cast())

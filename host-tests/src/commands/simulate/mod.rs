@@ -16,5 +16,5 @@ pub use number::Number;
 pub use options::{Place, SimulateOptions};
 pub use request::{Plan, plan};
 pub use start::{Pair, StartOptions};
-pub use table::{COLUMNS, Column, CsvRows};
+pub use table::{COLUMNS, Column, header, row};
 pub use tolerance::{Choice, choose};
