@@ -1,7 +1,6 @@
 //! The hard cases: motions that break a careless arithmetic, and how far off the direction form may be on them.
 
-use double_pendulum::Form;
-use double_pendulum::{Error, Parameter, Parameters, State};
+use double_pendulum::{Error, Form, Parameter, Parameters, State};
 
 use crate::oracle::trials::{Trial, largest_difference};
 

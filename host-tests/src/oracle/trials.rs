@@ -2,9 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use double_pendulum::Form;
 use double_pendulum::parts::Stepper;
-use double_pendulum::{Error, Parameters, Pendulum, Real, State};
+use double_pendulum::{Error, Form, Parameters, Pendulum, Real, State};
 
 use reference::taylor::Reference;
 

@@ -20,14 +20,9 @@ pub use options::FlipsOptions;
 pub fn run(options: &FlipsOptions) -> Result<()> {
     let (map, kind) = options.map()?;
     check_writable("--out", &options.out)?;
-    let ([width, height], rows) = (map.square.size, map.square.rows());
-    let bar = Bar::start("rows", rows as u64);
-    let mut points = Vec::new();
-    for first in (0..rows).step_by(map.band()) {
-        let band = first..rows.min(first + map.band());
-        bar.advance(band.len() as u64);
-        points.extend(map.points(band)?);
-    }
+    let [width, height] = map.square.size;
+    let bar = Bar::start("starts", (width * map.square.rows()) as u64);
+    let points = map.points(|done| bar.advance(done as u64))?;
     drop(bar);
     let (file, out) = (kind.file(&map, &points, options.doubt)?, options.out.display());
     fs::write(&options.out, file).with_context(|| format!("cannot write {out}"))?;
