@@ -19,7 +19,6 @@ pub(super) struct Part {
     file: Flock<File>,
 }
 
-/// Bytes of a point.
 const POINT: usize = 8;
 
 impl Part {

@@ -26,7 +26,6 @@ const EXAMPLES: &str = "Examples:
 #[derive(Debug, Parser)]
 #[command(name = "cargo plan", after_help = EXAMPLES)]
 pub struct Options {
-    /// What moves.
     #[command(flatten)]
     pub start: StartOptions,
     /// A scene of the boards as they start it, in place of all that moves: angles and masses are then the nearest `f32`

@@ -8,7 +8,6 @@ use firmware::job::{JobError, Request};
 use super::scene::{SAMPLES, Scene};
 use reference::taylor::Reference;
 
-/// The largest error over a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Error {
     /// Of an angle, rad, whole turns apart.
