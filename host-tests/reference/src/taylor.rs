@@ -63,6 +63,10 @@ impl<T: Number> Reference<T> {
 
     /// Moves to time `t`, s; goes forward only, an earlier time changes nothing.
     pub fn advance_to(&mut self, t: f64) {
+        T::advance(self, t);
+    }
+
+    fn advance_by_series(&mut self, t: f64) {
         while self.time < T::from(t) {
             let motion = self.series();
             let rest = T::from(t) - self.time;
