@@ -5,8 +5,6 @@ use std::ops::{Add, Div, Index, IndexMut, Mul, Neg, Sub};
 use twofloat::TwoFloat;
 use twofloat::consts::FRAC_PI_2;
 
-use super::Reference;
-
 /// The highest power that any number keeps.
 const MOST: usize = <TwoFloat as Number>::ORDER;
 
@@ -33,9 +31,6 @@ pub trait Number:
 
     /// Sine and cosine.
     fn sin_cos(self) -> (Self, Self);
-
-    /// [`Reference::advance_to`], compiled in this crate, which is optimised whatever the one that asks for it is.
-    fn advance(reference: &mut Reference<Self>, t: f64);
 }
 
 /// About 30 digits.
@@ -50,11 +45,6 @@ impl Number for TwoFloat {
     fn sin_cos(self) -> (Self, Self) {
         sin_cos(self)
     }
-
-    #[inline(never)]
-    fn advance(reference: &mut Reference<Self>, t: f64) {
-        reference.advance_by_series(t);
-    }
 }
 
 /// About 15 digits, in a fiftieth of the time.
@@ -68,11 +58,6 @@ impl Number for f64 {
 
     fn sin_cos(self) -> (Self, Self) {
         libm::sincos(self)
-    }
-
-    #[inline(never)]
-    fn advance(reference: &mut Reference<Self>, t: f64) {
-        reference.advance_by_series(t);
     }
 }
 

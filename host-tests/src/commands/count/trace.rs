@@ -45,16 +45,12 @@ impl Registers {
     }
 }
 
-/// The lines of an instruction: four of four words such as `R01=00000002`, each with a space or the line's end after it.
+/// Bytes of `R01=00000002` and what follows it: of an instruction there are four lines of four such words.
 const WORD: usize = 13;
-const FIRST: usize = 4 * WORD;
-const LINES: usize = 4 * FIRST;
-/// How they begin, which no other line does.
-const BEGINNING: &[u8] = b"R00=";
 
 /// The eight digits of a word, all at once, for millions are read.
 fn hexadecimal(word: &[u8]) -> u32 {
-    let digits = word[BEGINNING.len()..].first_chunk().map_or(0, |digits| u64::from_be_bytes(*digits));
+    let digits = word[4..].first_chunk().map_or(0, |digits| u64::from_be_bytes(*digits));
     // Letters are 9 more than their last four bits; then neighbours are put together.
     let is_letter = digits >> 6 & 0x0101_0101_0101_0101;
     let nibbles = (digits & 0x0f0f_0f0f_0f0f_0f0f) + 9 * is_letter;
@@ -142,21 +138,14 @@ impl Target {
 /// last.
 pub(super) fn for_each_instruction(log: impl Read, mut each: impl FnMut(Registers) -> Result<()>) -> Result<()> {
     let mut log = BufReader::with_capacity(1 << 20, log);
-    let (mut line, mut rest) = (Vec::new(), [0; LINES - FIRST]);
-    loop {
-        line.clear();
-        match log.read_until(b'\n', &mut line).context("QEMU's log")? {
-            0 => return Ok(()),
-            FIRST if line.starts_with(BEGINNING) => match log.read_exact(&mut rest) {
-                Err(error) if error.kind() == ErrorKind::UnexpectedEof => return Ok(()),
-                read => {
-                    read.context("QEMU's log")?;
-                    each(Registers::read(&line, &rest))?;
-                }
-            },
-            _ => {}
+    let (mut first, mut rest) = (Vec::new(), [0; 12 * WORD]);
+    while log.read_until(b'\n', &mut first).context("QEMU's log")? > 0 {
+        if first.starts_with(b"R00=") && log.read_exact(&mut rest).is_ok() {
+            each(Registers::read(&first, &rest))?;
         }
+        first.clear();
     }
+    Ok(())
 }
 
 #[cfg(test)]
