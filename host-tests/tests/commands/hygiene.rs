@@ -65,7 +65,7 @@ fn dependencies(manifest: &str) -> BTreeSet<String> {
 fn every_dependency_has_its_reason() {
     let own = ["peers/", "reference/", "vectors/"].map(|folder| format!("host-tests/{folder}"));
     let folders = ["", "kernel/", "firmware/", "host-tests/"].into_iter().chain(own.each_ref().map(|own| &**own));
-    let named: BTreeSet<_> = folders.flat_map(|folder| dependencies(&read(&format!("{folder}Cargo.toml")))).collect();
+    let named: BTreeSet<_> = folders.flat_map(|folder| dependencies(&read(format!("{folder}Cargo.toml")))).collect();
     let table = read(".ci/dependencies.md");
     let rows = table.lines().filter_map(|line| Some(line.strip_prefix("| `")?.split_once('`')?.0.to_owned()));
     assert_eq!(named, rows.collect());
