@@ -78,7 +78,6 @@ pub fn check_writable(option: &str, file: &Path) -> Result<(), Refused> {
     removed.map_err(|error| Refused::because(format_args!("{option}: cannot write {}: {error}", file.display())))
 }
 
-/// Accepts the names of a closed set of choices, and no others.
 pub fn choice<Choice>(
     choices: impl IntoIterator<Item = Choice>,
     name: impl Fn(Choice) -> &'static str,

@@ -6,7 +6,7 @@ use crate::support::code::Code;
 use crate::support::{LIMIT, application};
 use anyhow::Context;
 use double_pendulum::{Method, Parameters};
-use firmware::app::controls::Key;
+use firmware::app::Key;
 use firmware::app::warm_restart::Cause;
 use firmware::config::{GRAVITY, HOLD_TICKS, MOST_MEASURED_STEPS, RECEIVE_QUEUE, TICK_RATE, WATCHDOG_SECONDS};
 use firmware::graphics::bitmap::Bitmap;
@@ -64,7 +64,7 @@ fn next_frame(board: &mut PicoMachine) -> anyhow::Result<Frame> {
 /// The frame that the host would send in its place: all of it, but how long it took.
 fn expected(show: &mut Show, frame: &Frame) -> Frame {
     let Frame { sequence, dropped, lost, scene_cycles, busy_cycles, .. } = *frame;
-    Frame { sequence, dropped, lost, scene_cycles, busy_cycles, ..show.player().frame() }
+    Frame { sequence, dropped, lost, scene_cycles, busy_cycles, ..show.player.frame() }
 }
 
 #[test]
@@ -257,8 +257,8 @@ fn every_button_does_its_own() -> anyhow::Result<()> {
         board.run(6 * TICK)?;
         board.set_key(key, false)?;
         board.run(6 * TICK)?;
-        show.player().execute(key.tapped()).expect("within its range");
-        let (frame, here) = (next_frame(&mut board)?, show.player().frame());
+        show.player.execute(key.tapped()).expect("within its range");
+        let (frame, here) = (next_frame(&mut board)?, show.player.frame());
         assert_eq!((frame.mass_ratio, frame.start_angle), (here.mass_ratio, here.start_angle), "{}", key.name());
     }
     board.set_key(Key::Select, true)?;

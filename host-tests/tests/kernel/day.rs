@@ -6,9 +6,8 @@ use double_pendulum::{
     DirectionF32, DirectionF32Plain, DirectionF64, Error, Fixed32, Form, Method, Pendulum, Real, State,
 };
 use firmware::config::{STM32F405, TICK_RATE};
-use firmware::motion::simulation::{Means, Simulation};
-use firmware::scenes::SceneName;
-use firmware::scenes::scene::Report;
+use firmware::motion::{Means, Simulation};
+use firmware::scenes::{Report, SceneName};
 use host_tests::oracle::tolerances::{DAY_ENERGY, DAY_READING};
 use host_tests::oracle::trials::Trial;
 

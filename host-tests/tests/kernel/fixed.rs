@@ -6,7 +6,7 @@ use double_pendulum::parts::Stepper;
 use double_pendulum::{DirectionF32, DirectionF64, ExtrapolationF64, Fixed32, Fixed64, Form};
 use double_pendulum::{Error, Motion, Parameter, Parameters, Pendulum, State};
 use firmware::config::GRAVITY;
-use firmware::motion::planner::half_pixel;
+use firmware::motion::half_pixel;
 use host_tests::oracle::random::{self, log_uniform, symmetric};
 use host_tests::oracle::tolerances;
 use host_tests::oracle::trials::{Trial, largest_difference};

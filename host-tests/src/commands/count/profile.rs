@@ -17,11 +17,9 @@ use crate::emulator::process::timed_out;
 #[derive(Clone, Copy, Debug)]
 pub struct Spot {
     pub instruction: Instruction,
-    /// How often it was executed and what that cost.
     pub cost: Cost,
 }
 
-/// What one run of the counted function executed.
 #[derive(Clone, Debug, Default)]
 pub struct Profile {
     spots: BTreeMap<u32, Spot>,

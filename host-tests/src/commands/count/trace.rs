@@ -18,7 +18,6 @@ use crate::emulator::process;
 pub(super) const LIMIT: Duration = Duration::from_secs(1800);
 const VERSION_LIMIT: Duration = Duration::from_secs(10);
 
-/// The core's registers before an instruction is executed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Registers {
     /// r0 to r15.

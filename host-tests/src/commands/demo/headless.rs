@@ -14,7 +14,6 @@ use crate::console::progress::Progress;
 
 /// How long a run takes if nothing else is asked for, s.
 pub const DEFAULT_SECONDS: f64 = 10.0;
-/// How often a port is looked at.
 const LOOK: Duration = Duration::from_millis(4);
 /// A port from which no frame comes for so long is given up.
 const PATIENCE: Duration = Duration::from_secs(10);

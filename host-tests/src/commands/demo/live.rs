@@ -4,7 +4,7 @@ use std::io::stdout;
 use std::time::{Duration, Instant};
 
 use anyhow::ensure;
-use firmware::app::controls::Key;
+use firmware::app::Key;
 use firmware::config::TICK_RATE;
 use firmware::protocol::{Pause, Press, Step};
 use firmware::scenes::SceneName;
@@ -94,7 +94,6 @@ fn finish(mut session: Session) -> anyhow::Result<bool> {
     Ok(session.readings.comparison.difference().is_none())
 }
 
-/// What a key of the keyboard means.
 enum Wish {
     Press(Key),
     /// Another scene, found from the present one.

@@ -6,7 +6,7 @@ use clap::{Parser, value_parser};
 use double_pendulum::Method;
 use double_pendulum::plan::Way;
 use firmware::config::{BAUD, PROCESSOR};
-use firmware::motion::simulation::Means;
+use firmware::motion::Means;
 use firmware::scenes::{AnyScene, SceneName};
 
 use crate::console::cli::{Refused, check_writable, choice};
@@ -59,7 +59,6 @@ fn after_help() -> String {
     )
 }
 
-/// What a scene shows.
 fn shows(scene: SceneName) -> &'static str {
     match scene {
         SceneName::Page => "the book's animation: a motion from 120 degrees, soon chaotic",
@@ -95,7 +94,6 @@ impl DemoOptions {
         self.scene.or(first).map_or(Ok(()), |scene| self.check_method(scene))
     }
 
-    /// Refuses a method that a scene does not use.
     pub fn check_method(&self, scene: SceneName) -> Result<(), Refused> {
         let Some(Some(method)) = self.method else { return Ok(()) };
         let means = Means { processor: PROCESSOR, method: Some(method) };

@@ -3,7 +3,7 @@
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use firmware::app::player::AUTO;
+use firmware::app::AUTO;
 use firmware::config::TICK_RATE;
 use firmware::protocol::{Ask, Choose, Field, Frame, Set, Status, method_code};
 use firmware::scenes::SceneName;
@@ -86,7 +86,6 @@ impl<'a> Session<'a> {
         if self.readings.frame(*frame) { self.source.send(&Ask { request: 0 }) } else { Ok(()) }
     }
 
-    /// Looks at the panel, where it can be seen.
     pub fn look(&mut self) -> anyhow::Result<()> {
         if let Some(panel) = self.source.panel()? {
             self.screenshot = panel;
@@ -143,7 +142,6 @@ impl<'a> Session<'a> {
         found.into_iter().chain(difference.map(|difference| difference.to_string())).collect()
     }
 
-    /// Completes the files that were asked for.
     pub fn finish(&mut self) -> anyhow::Result<()> {
         self.recording.take().map_or(Ok(()), Recording::finish)?;
         self.options.screenshot.as_deref().map_or(Ok(()), |path| save(&self.screenshot, path))

@@ -17,7 +17,6 @@ pub enum Source<'a> {
 }
 
 impl Source<'_> {
-    /// What the user calls it.
     pub fn name(&self) -> &str {
         match self {
             Self::Live(_, board) | Self::Lockstep(_, board) => board.name,
@@ -89,7 +88,6 @@ impl Source<'_> {
         }
     }
 
-    /// Whether it is a board in the hand.
     pub fn is_port(&self) -> bool {
         matches!(self, Self::Port(_))
     }

@@ -5,7 +5,7 @@ use clap::Parser;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use double_pendulum::Motion;
 use double_pendulum::plan::{Limit, Plan, PlanError, Problem};
-use firmware::motion::planner::{Shown, half_pixel, problem};
+use firmware::motion::{Shown, half_pixel, problem};
 use firmware::scenes::SceneName;
 
 use super::target::{CHIPS, Chip};
@@ -62,8 +62,8 @@ impl SceneOptions {
     /// What a board of this class plans when it starts the scene.
     fn of_scene(&self, name: SceneName) -> anyhow::Result<Problem> {
         let settings = name.first_settings();
-        let mut show = Show::on(self.target.processor, name, &settings)?;
-        let answer = show.player().plan(0);
+        let show = Show::on(self.target.processor, name, &settings)?;
+        let answer = show.player.plan(0);
         ensure!(answer.found > 0, "--scene {}: has no motion to plan", name.name());
         Ok(problem(&settings, &Shown { way: None, height: answer.height as f32 }))
     }

@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 use std::time::Duration;
 
 use anyhow::{Context, bail};
-use firmware::app::controls::Key;
+use firmware::app::Key;
 use firmware::protocol::{Frame, MAX_WIRE, Message, encode};
 
 use super::talk::{Said, Talk, digits};
@@ -18,7 +18,6 @@ use crate::emulator::toolchain::{Rp2040js, workspace};
 use crate::emulator::uf2::uf2;
 use crate::link::{Counts, Inbox, Received};
 
-/// From one look at the stream to the next.
 const SLICE: Duration = Duration::from_millis(1);
 /// A board that sends no frame for this many of them sends none.
 const PATIENCE: u32 = 5000;
@@ -95,7 +94,6 @@ impl PicoMachine {
         self.tell(&format!("uart {}", digits(encode(message, &mut [0; MAX_WIRE]))))
     }
 
-    /// What the board has sent through the UART since the last call.
     pub fn heard_by_uart(&mut self) -> Vec<Received> {
         std::mem::take(&mut self.heard_by_uart)
     }

@@ -11,13 +11,10 @@ use super::spawn;
 /// How often the watcher is told that the child is alive.
 const TICK: Duration = Duration::from_millis(100);
 
-/// What a child said and how it ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Output {
     pub status: ExitStatus,
-    /// Its standard output; bytes that are not UTF-8 are replaced.
     pub stdout: String,
-    /// Its standard error; bytes that are not UTF-8 are replaced.
     pub stderr: String,
 }
 

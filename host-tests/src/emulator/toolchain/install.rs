@@ -18,7 +18,6 @@ use crate::emulator::process::{Output, run_watched};
 const RUSTUP: Duration = Duration::from_secs(60);
 /// For fetching and unpacking at most 400 MB, and for a turn at dpkg.
 const INSTALL: Duration = Duration::from_secs(1200);
-/// Unpacks QEMU's packages, in the workspace.
 const UNPACK_QEMU: &str = "host-tests/src/emulator/toolchain/unpack-qemu.sh";
 
 /// Waits for our turn at a set-up; it ends when this is dropped or the process ends, however it ends.
