@@ -122,7 +122,6 @@ pub const FLIPS_F405: FlipsPace = FlipsPace { steps: 5500, ..FLIPS_M4F };
 
 /// Length of either rod, m: a period of about 2 s, which is pleasant to watch.
 pub const ROD: f32 = 1.0;
-/// Gravitational acceleration, m/s^2.
 pub const GRAVITY: f64 = 9.81;
 /// The source page's, m/s^2: where its own figures are shown, this is.
 pub const PAGE_GRAVITY: f64 = 9.8;
@@ -167,9 +166,7 @@ pub const REACH: f32 = 28.5;
 pub const GREATEST_RADIUS: f32 = 3.0;
 /// No bob is drawn smaller than this.
 pub const LEAST_RADIUS: f32 = 1.5;
-/// Half the width of a rod.
 pub const ROD_HALF_WIDTH: f32 = 0.6;
-/// Half the width of bob 2's trail.
 pub const TRAIL_HALF_WIDTH: f32 = 0.8;
 /// Brightness of the trail at the bob, of 255: its grey is 11.
 pub const TRAIL_BRIGHTNESS: u8 = 184;

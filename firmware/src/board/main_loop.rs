@@ -20,12 +20,9 @@ use crate::motion::Settings;
 use crate::protocol::BoardName;
 use crate::scenes::SceneName;
 
-/// A board, set up and running.
 pub struct Board<Panel, Link, Keys, Dog> {
     pub panel: Panel,
-    /// The serial link outwards.
     pub link: Link,
-    /// The serial link inwards.
     pub receiver: Receiver,
     pub keys: Keys,
     pub instruments: Instruments,
@@ -35,9 +32,7 @@ pub struct Board<Panel, Link, Keys, Dog> {
     pub reset_by_watchdog: bool,
 }
 
-/// The type of a board's application.
 pub trait Plays {
-    /// See [`App`].
     type Application;
 }
 

@@ -61,8 +61,7 @@ impl<T: Scalar> Reference<T> {
         Self { constants, time: 0.0.into(), angles, velocities }
     }
 
-    /// Moves to time `t`, s; goes forward only, an earlier time changes nothing.
-    pub fn advance_to(&mut self, t: f64) {
+    fn advance(&mut self, t: f64) {
         while self.time < T::from(t) {
             let motion = self.series();
             let rest = T::from(t) - self.time;
@@ -142,6 +141,21 @@ impl<T: Scalar> Reference<T> {
         [a1, a2, w1, w2]
     }
 }
+
+/// Compiled in this crate, which is optimised whatever the one that calls it is.
+macro_rules! compiled_here {
+    ($($number:ty),*) => {$(
+        impl Reference<$number> {
+            /// Moves to time `t`, s; goes forward only, an earlier time changes nothing.
+            #[inline(never)]
+            pub fn advance_to(&mut self, t: f64) {
+                self.advance(t);
+            }
+        }
+    )*};
+}
+
+compiled_here!(TwoFloat, f64);
 
 /// The states at `times` (s, ascending) of the motion that starts as `start`.
 pub fn states(parameters: &Parameters<f64>, start: &Motion<f64>, times: &[f64]) -> Vec<State<f64>> {

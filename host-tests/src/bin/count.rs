@@ -15,6 +15,7 @@ use host_tests::commands::count::{
 use host_tests::console::cli::{self, Refused, complain, say};
 use host_tests::emulator::boards::{BOARDS, Board};
 use host_tests::emulator::toolchain::{self, Toolchain};
+use rayon::prelude::*;
 
 /// As in the report's regular scene, with which the figures here agree.
 const GRAVITY: f32 = 9.81;
@@ -22,7 +23,8 @@ const GRAVITY: f32 = 9.81;
 const MOST_STEPS: i64 = 65_536;
 
 const EXAMPLES: &str = "Examples:
-  cargo count                                             every method on all three cores
+  cargo count                                             every method on a Cortex-M3
+  cargo count fixed32 --on lm3s6965evb,lm3s6965evb-m4,lm3s6965evb-m0
   cargo count rk4-f32-direction --on lm3s6965evb-m4 --listing
   cargo count --elf firmware.elf --function step --seconds 5
 
@@ -36,9 +38,9 @@ struct Arguments {
     /// Only methods whose name contains this
     #[arg(default_value = "")]
     method: String,
-    /// Only this board; else the three of QEMU with a panel, a Cortex-M3, M4F and M0+; with --elf lm3s6965evb-m4
-    #[arg(long, value_name = "NAME", value_parser = cli::choice(&BOARDS, |board| board.name))]
-    on: Option<&'static Board>,
+    /// The boards, with commas between them; else lm3s6965evb, a Cortex-M3, with --elf lm3s6965evb-m4
+    #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = cli::choice(&BOARDS, |board| board.name))]
+    on: Vec<&'static Board>,
     /// Count a function of this program instead, with what interrupts it; the program ends itself by semihosting, or is
     /// ended after --seconds
     #[arg(long, value_name = "FILE", requires = "function",
@@ -87,7 +89,7 @@ fn run(arguments: &Arguments) -> anyhow::Result<()> {
         return Ok(say(write_prices(&prices(&toolchain)?)?.display())?);
     }
     let requests = arguments.requests().map_err(Refused::because)?;
-    let boards = BOARDS.iter().filter(|board| arguments.on.map_or(board.has_panel, |asked| asked == *board));
+    let boards = if arguments.on.is_empty() { vec![&BOARDS[0]] } else { arguments.on.clone() };
     let (toolchain, _) = toolchain::set_up()?;
     if !arguments.listing {
         say(arguments.setting())?;
@@ -96,16 +98,18 @@ fn run(arguments: &Arguments) -> anyhow::Result<()> {
     }
     for board in boards {
         let target = Target::build(&toolchain, board)?;
-        for request in &requests {
-            let given = arguments.steps.map(|stride| Request { stride, ..*request });
-            if arguments.listing {
-                let stride = given.map_or_else(|| affordable_steps(&target, request), |given| Ok(given.stride))?;
-                list(&target, &Request { stride, ..*request })?;
-            } else {
-                let cost =
-                    given.map_or_else(|| affordable_cost(&target, request), |given| step_cost(&target, &given))?;
-                say(row(request.method, board, &cost))?;
-            }
+        if arguments.listing {
+            requests.iter().try_for_each(|request| list(&target, request, arguments.steps))?;
+            continue;
+        }
+        // Some at a time, so that the first rows come soon.
+        for requests in requests.chunks(rayon::current_num_threads()) {
+            let rows = requests.par_iter().map(|request| {
+                let given = arguments.steps.map(|stride| Request { stride, ..*request });
+                let cost = given.map_or_else(|| affordable_cost(&target, request), |given| step_cost(&target, &given));
+                Ok(row(request.method, board, &cost?))
+            });
+            rows.collect::<anyhow::Result<Vec<_>>>()?.iter().try_for_each(say)?;
         }
     }
     Ok(())
@@ -154,7 +158,6 @@ impl Arguments {
     }
 }
 
-/// Titles and widths of the columns.
 const ROW: [(&str, usize); 9] = [
     ("method", 29),
     ("board", 16),
@@ -179,9 +182,10 @@ fn row(method: Method, board: &Board, cost: &StepCost) -> String {
 }
 
 /// Every instruction with its share of a step: address, executions, cycles, stalls, kind.
-fn list(target: &Target, request: &Request) -> anyhow::Result<()> {
+fn list(target: &Target, request: &Request, steps: Option<u32>) -> anyhow::Result<()> {
     let image = target.image();
-    let profile = Profile::of(target, request)?;
+    let stride = steps.map_or_else(|| affordable_steps(target, request), Ok)?;
+    let profile = Profile::of(target, &Request { stride, ..*request })?;
     say(format_args!("{} on {}: per step, executions, cycles (estimate), stalls", request.method, target.board.name))?;
     say(ERROR_BAR)?;
     let mut function = None;
@@ -191,7 +195,7 @@ fn list(target: &Target, request: &Request) -> anyhow::Result<()> {
             function = inside;
             say(format_args!("{}:", inside.map_or("?", |function| &function.name)))?;
         }
-        let per_step = |total: u64| total as f64 / f64::from(request.stride);
+        let per_step = |total: u64| total as f64 / f64::from(stride);
         let [executions, cycles, stalls] = [spot.cost.instructions, spot.cost.cycles, spot.cost.stalls].map(per_step);
         say(format_args!("{address:8x} {executions:9.2} {cycles:9.2} {stalls:7.2}  {}", spot.instruction.row.name))?;
     }
@@ -200,7 +204,7 @@ fn list(target: &Target, request: &Request) -> anyhow::Result<()> {
 
 /// What a function of any program costs, per call.
 fn count_calls(toolchain: &Toolchain, arguments: &Arguments, elf: &Path, function: &str) -> anyhow::Result<()> {
-    let board = arguments.on.unwrap_or(&BOARDS[1]);
+    let board = arguments.on.first().copied().unwrap_or(&BOARDS[1]);
     let target = Target::of(toolchain, board, elf.to_owned());
     let target = target.map_err(|error| Refused::because(format_args!("{error:#}")))?;
     let limit = Duration::from_secs(arguments.seconds.into());

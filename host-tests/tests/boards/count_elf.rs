@@ -61,6 +61,8 @@ fn panic(_: &core::panic::PanicInfo) -> ! { loop {} }
     elf
 }
 
+/// For a program that never ends by itself: many times what it takes to the wait, on a busy machine too.
+const SECONDS: [&str; 2] = ["--seconds", "5"];
 /// It ends itself, well or as failed; it waits for ever; it needs a floating-point unit.
 const ENDS: &str = "ldr r1, =0x20026";
 const FAILS: &str = "ldr r1, =0x020023";
@@ -104,9 +106,9 @@ fn functions_and_labels_are_counted_and_the_end_is_told() {
 #[test]
 fn a_program_that_is_stopped_is_counted_until_then() {
     let folder = folder();
-    let output = count(&program(folder.path(), "0x0", WAITS), "label", &["--seconds", "20"]);
+    let output = count(&program(folder.path(), "0x0", WAITS), "label", &SECONDS);
     assert!(output.status.success() && output.stdout.contains(": calls 3\n"), "{output:?}");
-    assert!(output.stderr.contains("stopped after 20 s and 3 calls"), "{output:?}");
+    assert!(output.stderr.contains("stopped after 5 s and 3 calls"), "{output:?}");
 }
 
 #[test]
@@ -129,7 +131,7 @@ fn what_cannot_be_counted_is_said_in_a_line() {
         (&elsewhere, "label", "never called: the program has nothing at 0x0, where lm3s6965evb reads its vectors", 2),
         (&floats, "never", "never was never called: vadd, vsub at ", 2),
     ] {
-        let output = count(elf, function, &["--seconds", "20"]);
+        let output = count(elf, function, &SECONDS);
         assert_eq!((output.status.code(), output.stdout.as_str()), (Some(code), ""), "{output:?}");
         assert!(output.stderr.lines().last().is_some_and(|line| line.contains(reason)), "{reason}: {output:?}");
     }

@@ -63,7 +63,7 @@ fn a_day(mass_ratio: f64, dt: f64) -> Result<(), Error> {
 
 #[test]
 fn a_day_costs_no_energy() -> Result<(), Error> {
-    a_day(0.2, 1.0 / 240.0)?;
+    a_day(0.2, 1.0 / 100.0)?;
     a_day(5.0, 1.0 / 100.0)
 }
 

@@ -238,8 +238,8 @@ impl Search {
     }
 
     /// Whether the next piece prepares a motion, which takes longer than any other.
-    #[must_use]
     #[doc(hidden)]
+    #[must_use]
     pub fn is_preparing(&self) -> bool {
         self.pass.is_none() || !self.prepared
     }
@@ -256,16 +256,16 @@ impl Search {
     }
 
     /// What planning has cost so far.
-    #[must_use]
     #[doc(hidden)]
+    #[must_use]
     pub fn spent(&self) -> f32 {
         self.spent
     }
 
     /// Until when `way` has been found right so far, s. In 64 bits, with steps that resolve the motion, it is so wherever any
     /// other is.
-    #[must_use]
     #[doc(hidden)]
+    #[must_use]
     pub fn horizon(&self, way: Way) -> f64 {
         let resolves = |(steps, limit)| limit == Limit::Growth && way.steps >= steps;
         let has_longest_horizon = way.method == Method::Extrapolation10Fixed64 && self.fine.is_some_and(resolves);

@@ -1,5 +1,7 @@
 //! One instruction as far as its timing goes.
 
+use std::sync::LazyLock;
+
 use super::row::{Class, Reads, Row};
 use super::timing::TIMINGS;
 use super::trace::Registers;
@@ -8,6 +10,12 @@ use crate::emulator::boards::Core;
 pub fn is_long(first: u16) -> bool {
     first >= 0xe800
 }
+
+/// The rows that an instruction may be of, by its first byte: millions are looked up.
+static ROWS: LazyLock<Vec<Vec<&Row>>> = LazyLock::new(|| {
+    let begin = |byte: u32| TIMINGS.iter().filter(move |row| (byte << 24 ^ row.value) & row.mask >> 24 << 24 == 0);
+    (0..=0xff).map(|byte| begin(byte).collect()).collect()
+});
 
 #[derive(Clone, Copy, Debug)]
 pub struct Instruction {
@@ -20,7 +28,7 @@ impl Instruction {
     /// `None` if the table has no row for it.
     pub fn decode(first: u16, second: u16) -> Option<Self> {
         let word = u32::from(first) << 16 | if is_long(first) { u32::from(second) } else { 0 };
-        let row = TIMINGS.iter().find(|row| word & row.mask == row.value)?;
+        let row = ROWS[(word >> 24) as usize].iter().find(|row| word & row.mask == row.value)?;
         Some(Self { word, row })
     }
 
@@ -123,17 +131,14 @@ impl Instruction {
         is_float_store && (first..first + words).contains(&s)
     }
 
-    /// The destination field Vd:D.
     fn d(&self) -> u32 {
         (self.word >> 12 & 0xf) << 1 | self.word >> 22 & 1
     }
 
-    /// The first operand Vn:N.
     fn n(&self) -> u32 {
         (self.word >> 16 & 0xf) << 1 | self.word >> 7 & 1
     }
 
-    /// The second operand Vm:M.
     fn m(&self) -> u32 {
         (self.word & 0xf) << 1 | self.word >> 5 & 1
     }

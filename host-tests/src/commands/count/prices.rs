@@ -61,9 +61,11 @@ fn in_application(board: &'static Board, toolchain: &Toolchain) -> Result<(f32, 
         let (field, value) = (Field::Method.code(), method_code(method).into());
         machine.machine().serial.send(&Set { request: 1, field, value })?;
         // Whether the command comes before this frame or the next is a matter of bytes.
-        for _ in 0..2 {
-            prepared = prepared.max(most(&mut machine, "PlannedRun::new")?);
+        let mut preparation = most(&mut machine, "PlannedRun::new")?;
+        if preparation == 0.0 {
+            preparation = most(&mut machine, "PlannedRun::new")?;
         }
+        prepared = prepared.max(preparation);
     }
     Ok((step, prepared))
 }

@@ -22,7 +22,6 @@ pub struct Judgement {
     pub points: usize,
     /// Of them, those whose time is more than a grey level off.
     pub wrong: usize,
-    /// Those in doubt.
     pub doubtful: usize,
     /// Those that are wrong and not in doubt.
     pub unsuspected: usize,

@@ -13,9 +13,7 @@ use crate::console::cli::Refused;
 /// A kind of file, by its name's end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// `.png`
     Picture,
-    /// `.csv`
     Table,
 }
 
@@ -40,7 +38,6 @@ impl Kind {
     }
 }
 
-/// Red, green, blue.
 pub type Colour = [u8; 3];
 
 /// There is not the energy for it; not within the limit; the two steps do not agree.

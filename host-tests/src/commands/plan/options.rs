@@ -16,7 +16,6 @@ use crate::emulator::host::Show;
 /// A scene, and the chip that computes it.
 #[derive(Debug, Parser)]
 pub struct SceneOptions {
-    /// What moves.
     #[command(flatten)]
     pub start: StartOptions,
     /// A scene of the boards as they start it, in place of all that moves: angles and masses are then the nearest `f32`

@@ -1,4 +1,4 @@
-//! `cargo bench --bench peers`: this kernel beside an integration library, on this machine and in one run.
+//! `cargo bench --package peers`: this kernel beside an integration library, on this machine and in one run.
 //!
 //! Times are taken in turns and given as ratios only, because a machine's speed drifts. The last lines set them against
 //! the project's goals.
