@@ -76,7 +76,7 @@ impl Processor {
 
 /// A Cortex-M3, which has no floating-point unit: at 50 MHz a tick has 833,000 cycles.
 pub const CORTEX_M3: Processor =
-    Processor { code: 0, costs: prices::CORTEX_M3, frame: 200_000.0, look_ahead: 320_000.0, flips: FLIPS_M3 };
+    Processor { code: 0, costs: prices::CORTEX_M3, frame: 200_000.0, look_ahead: 360_000.0, flips: FLIPS_M3 };
 /// A Cortex-M0+, which has no long product either, as on the Raspberry Pi Pico: at 125 MHz a tick has 2,083,000 cycles.
 pub const CORTEX_M0PLUS: Processor =
     Processor { code: 3, costs: prices::CORTEX_M0PLUS, frame: 300_000.0, look_ahead: 640_000.0, flips: FLIPS_M0PLUS };
