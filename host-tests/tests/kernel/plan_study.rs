@@ -16,10 +16,12 @@ const LIVELY: usize = 8;
 /// How many must cease to be right, so that the median of their shares says something.
 const LEAST_ENDING: usize = 6;
 
-/// Of 2,000 scenes: one is wanted. In 32 bits of fixed point, all that the runs lose alike is not seen.
-const VIOLATIONS: usize = 4;
+/// Of 2,000 scenes: where planning cannot pay for 64 bits, runs may have roundings alike by chance.
+const VIOLATIONS: usize = 1;
 /// The largest error of theirs, pixels.
 const LARGEST: f64 = 1.5;
+/// The predicted over the true horizon, in the median of those that cease to be right.
+const SHARE: f64 = 0.9;
 
 fn all() -> impl Iterator<Item = Problem> {
     scenes(SEED, 2.0..3.0).take(ALL)
@@ -79,7 +81,7 @@ fn thousands_of_scenes() {
         for chip in CHIPS {
             let of_chip: Vec<Case> = cases.iter().filter(|case| case.chip == chip).copied().collect();
             let share = median(check(&of_chip, VIOLATIONS, LARGEST).into_iter());
-            assert!(share >= PLAN_SHARE, "{}: {share}", chip.title);
+            assert!(share >= SHARE, "{}: {share}", chip.title);
         }
     }
 }

@@ -29,7 +29,7 @@ pub struct Plan {
     /// What computing a frame costs, without drawing it; never more than the budget.
     pub cost: f32,
     /// Until when every frame is predicted to be right to the tolerance, s: the time of the last of them. No proof: of 2,000
-    /// scenes one to four are wrong a little earlier (the repository's test `plan_study`).
+    /// scenes one may be wrong a little earlier (the repository's test `plan_study`).
     pub horizon: f64,
     /// What ends the horizon.
     pub limit: Limit,
