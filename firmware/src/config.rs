@@ -53,7 +53,6 @@ pub struct Processor {
     pub frame: f32,
     /// What is spent in each tick on planning, cycles; comparing frames takes up to a quarter more.
     pub look_ahead: f32,
-    /// What is spent on the map of flips.
     pub flips: FlipsPace,
 }
 
@@ -104,7 +103,6 @@ pub const PROCESSOR: Processor = if cfg!(target_abi = "eabihf") {
 /// What the map may take of each tick, in its own steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlipsPace {
-    /// Steps.
     pub steps: u32,
     /// How many steps a new start counts as.
     pub start: u32,

@@ -5,7 +5,8 @@ use core::panic::PanicInfo;
 
 use crate::config::WATCHDOG_SECONDS;
 
-/// The registers that tell why a HardFault was taken. A Cortex-M0+ has none of the last four: they are 0.
+/// The registers that tell why a HardFault was taken, the last four the Configurable and the HardFault Status Register and the
+/// MemManage and the BusFault Address Register. A Cortex-M0+ has none of those: they are 0.
 ///
 /// Source: ARM DDI 0403 (ARMv7-M Architecture Reference Manual), B3.2.15 to B3.2.18; ARM DDI 0419 (ARMv6-M), B3.2.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,13 +17,9 @@ pub struct Fault {
     pub sp: u32,
     /// The last call found on the stack: all there is to go by without the registers.
     pub last_call: Option<u32>,
-    /// Configurable Fault Status Register.
     pub cfsr: u32,
-    /// HardFault Status Register.
     pub hfsr: u32,
-    /// MemManage Fault Address Register.
     pub mmfar: u32,
-    /// BusFault Address Register.
     pub bfar: u32,
 }
 
@@ -33,7 +30,6 @@ pub struct Stacked {
     pub pc: u32,
     /// Link register: where the function that failed returns to, unless it has called others meanwhile.
     pub lr: u32,
-    /// Program status.
     pub xpsr: u32,
 }
 
@@ -85,7 +81,6 @@ impl Fault {
         cfsr & NOT_STACKED == 0
     }
 
-    /// The cause in words.
     pub fn cause(&self) -> &'static str {
         if self.is_stack_overflow() {
             return "stack overflow";
@@ -153,7 +148,6 @@ impl fmt::Display for Panic<'_> {
 pub struct Hang {
     /// Program counter: where it is.
     pub pc: u32,
-    /// Link register.
     pub lr: u32,
 }
 

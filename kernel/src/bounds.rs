@@ -151,13 +151,20 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
 /// W dt of the longest step that resolves a motion whose fastest rate is W.
 const RESOLVED: f64 = 0.25;
 
-/// Refuses a step that is NaN, infinite, zero, negative or out of the range of `R`.
+/// As [`check_step`], and refuses a step backwards.
 fn check_forward<R: Real>(dt: f64) -> Result<(), Error> {
+    if dt.is_finite() && dt <= 0.0 {
+        return Err(Error::NotPositive { parameter: Parameter::Dt, value: dt });
+    }
+    check_step::<R>(dt)
+}
+
+/// Refuses a step of `dt` s that is NaN, infinite, zero or out of the range of `R`.
+#[inline(never)] // one copy
+pub(crate) fn check_step<R: Real>(dt: f64) -> Result<(), Error> {
     let (parameter, value) = (Parameter::Dt, dt);
     if !dt.is_finite() {
         Err(Error::NotFinite { parameter, value })
-    } else if dt <= 0.0 {
-        Err(Error::NotPositive { parameter, value })
     } else if !R::from_f64(dt).is_normal() {
         Err(Error::OutOfRange { parameter, value })
     } else {

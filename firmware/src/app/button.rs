@@ -2,18 +2,14 @@
 
 use crate::config::{DEBOUNCE_TICKS, REPEAT_DELAY_TICKS, REPEAT_PERIOD_TICKS};
 
-/// What a button does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Change {
-    /// It is pressed.
     Pressed,
     /// Held long enough to count as pressed again.
     Repeated,
-    /// It is let go.
     Released,
 }
 
-/// One button's history.
 #[derive(Clone, Debug, Default)]
 pub struct Button {
     phase: Phase,
@@ -34,12 +30,10 @@ enum Phase {
 }
 
 impl Button {
-    /// Whether it counts as held.
     pub fn is_held(&self) -> bool {
         matches!(self.phase, Phase::Held { .. })
     }
 
-    /// Takes one reading.
     pub fn tick(&mut self, pressed: bool) -> Option<Change> {
         let contradicts = if self.phase == Phase::Unproven { !pressed } else { pressed != self.is_held() };
         self.contradictions = if contradicts { self.contradictions.saturating_add(1) } else { 0 };

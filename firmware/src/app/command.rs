@@ -6,7 +6,6 @@ use crate::protocol::{
 };
 use crate::scenes::SceneName;
 
-/// What the user asks for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(target_os = "none", derive(defmt::Format))]
 pub enum Command {
@@ -18,24 +17,17 @@ pub enum Command {
     TurnLeft,
     /// The start angle one step counter-clockwise.
     TurnRight,
-    /// From the start again.
     Restart,
-    /// The next scene of the catalogue.
     NextScene,
-    /// The one before.
     PreviousScene,
-    /// This scene.
     Choose(SceneName),
-    /// One parameter.
     Set {
-        /// Which.
         field: Field,
         /// Its value, in SI units.
         value: f64,
     },
     /// Stop the scene's time, or let it go on.
     Pause(bool),
-    /// Whichever of the two it is not doing.
     TogglePause,
     /// So many ticks, then stop.
     Step(u32),
@@ -47,7 +39,6 @@ pub enum Command {
     Identify,
     /// Nothing but an answer: how long steps of the motion asked for last take.
     Measure {
-        /// How many.
         steps: u32,
         /// By their code in memory, otherwise by that in flash.
         in_ram: bool,
@@ -55,7 +46,6 @@ pub enum Command {
 }
 
 choice! {
-    /// A button.
     Key {
         Up = 0, "up";
         Down = 1, "down";
@@ -94,7 +84,6 @@ impl Key {
 pub struct HostCommand {
     /// The number to answer it with.
     pub request: u16,
-    /// What it asks for.
     pub command: Command,
 }
 

@@ -1,29 +1,20 @@
 //! Five buttons become commands.
 
 use crate::app::button::{Button, Change};
-use crate::app::command::Command;
 use crate::app::one_button::OneButton;
-
-pub use crate::app::command::Key;
+use crate::app::{Command, Key};
 
 /// A reading of the five buttons; `true` is pressed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Pressed {
-    /// Up.
     pub up: bool,
-    /// Down.
     pub down: bool,
-    /// Left.
     pub left: bool,
-    /// Right.
     pub right: bool,
-    /// Select.
     pub select: bool,
 }
 
-/// Where readings come from.
 pub trait Buttons {
-    /// How the buttons are now.
     fn read(&mut self) -> Pressed;
 }
 

@@ -11,9 +11,7 @@ pub struct Instruments {
     /// Makes this many steps with interrupts off, running their code from RAM (`true`) or from flash. Returns the processor
     /// cycles taken; 0 without a cycle counter, or if the code is not in that memory.
     pub timed: fn(&mut OnBoards, u32, bool) -> u32,
-    /// The program in flash.
     pub image: fn() -> &'static [u8],
-    /// The board and its chip.
     pub identity: Identity,
 }
 

@@ -15,39 +15,40 @@ pub mod warm_restart;
 use double_pendulum::Error;
 use embedded_io::Write;
 
-use crate::app::command::{Command, HostCommand};
-use crate::app::controls::{Buttons, Controls};
-use crate::app::instruments::Instruments;
-use crate::app::player::{News, Player};
-use crate::app::service::{Received, Service};
-use crate::app::warm_restart::WarmRestart;
 use crate::config::{
     MOST_MEASURED_STEPS, MOST_MESSAGES_PER_TICK, MOST_TICKS_PER_FRAME, PROCESSOR, Processor, RECEIVE_QUEUE,
 };
 use crate::display::Display;
-use crate::graphics::canvas::Canvas;
-use crate::graphics::frame_buffers::FrameBuffers;
-use crate::motion::settings::Settings;
+use crate::graphics::{Canvas, FrameBuffers};
+use crate::motion::Settings;
 use crate::protocol::{Done, Field, Frame, LinkError, MAX_WIRE, Measured, Message, Refused, encode};
 use crate::scenes::SceneName;
 use throttle::{FaultEdge, ThrottledCounter};
 
+pub use command::{Command, HostCommand, Key};
+pub use controls::{Buttons, Controls, NoButtons, Pressed};
 pub use event::{Event, Log};
+pub use instruments::Instruments;
+pub use player::{AUTO, News, Player};
+pub use service::{Received, Service};
+pub use warm_restart::{Cause, Journal, Kept, LastShown, MOST_RESTARTS, SOUND_FRAMES, WarmRestart};
 
 /// The same on a board and in a test: a panel, a byte sink and buttons are all it needs.
 #[derive(Debug)]
 pub struct App<'a, Panel, Link, Keys> {
     panel: Panel,
-    link: Link,
+    /// The byte sink.
+    pub link: Link,
     keys: Keys,
     controls: Controls,
-    player: Player<'a>,
+    pub player: Player<'a>,
     service: Service,
-    canvas: &'a mut Canvas,
+    /// The last frame drawn.
+    pub canvas: &'a mut Canvas,
     /// Ticks done since reset.
     ticks: u32,
-    /// Frames drawn since reset.
-    frames: u32,
+    /// Frames drawn and sent since reset; wraps.
+    pub frames: u32,
     /// Ticks without a frame since reset.
     dropped: ThrottledCounter,
     /// Damaged messages since reset.
@@ -214,31 +215,6 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     /// Does a bounded piece of the planning that the next tick would do; whether there is more.
     pub fn look_ahead(&mut self) -> bool {
         self.player.look_ahead()
-    }
-
-    /// Frames drawn and sent since reset; wraps.
-    pub fn frames(&self) -> u32 {
-        self.frames
-    }
-
-    /// What is played.
-    pub fn player(&self) -> &Player<'a> {
-        &self.player
-    }
-
-    /// The last frame drawn.
-    pub fn canvas(&self) -> &Canvas {
-        self.canvas
-    }
-
-    /// The byte sink.
-    pub fn link(&self) -> &Link {
-        &self.link
-    }
-
-    /// The panel.
-    pub fn panel(&self) -> &Panel {
-        &self.panel
     }
 
     fn tick(&mut self, log: &mut impl Log<Panel, Link>) {

@@ -1,21 +1,19 @@
 //! All that one button can ask for, by how often it is tapped before it is held.
 
+use crate::app::Command;
 use crate::app::button::Change;
-use crate::app::command::Command;
 use crate::config::{HOLD_TICKS, MOST_TICKS_BETWEEN_TAPS, REPEAT_PERIOD_TICKS};
 
 /// What the button asks for when it is held after no tap, one, two, three, four; all but the first repeat.
 const HELD: [Command; 5] =
     [Command::NextScene, Command::Heavier, Command::Lighter, Command::TurnRight, Command::TurnLeft];
 
-/// One button's taps.
 #[derive(Clone, Debug, Default)]
 pub struct OneButton {
     /// Ticks that it has been held alone; `None` if it is not, or has served for something else.
     held: Option<u8>,
     /// It has asked for something since it was pressed.
     served: bool,
-    /// Taps in a row.
     taps: usize,
     /// Ticks since the last of them.
     since: u8,

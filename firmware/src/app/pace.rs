@@ -6,7 +6,6 @@ use crate::protocol::Field;
 /// Full speed, in the parts that a tick is made of.
 const WHOLE_TICK: u32 = 100;
 
-/// How the scene's time goes.
 #[derive(Clone, Copy, Debug)]
 pub struct Pace {
     paused: bool,
@@ -31,7 +30,6 @@ impl Pace {
         Self { paused, steps, speed, part: 0 }
     }
 
-    /// Whether it stands still.
     pub fn is_paused(&self) -> bool {
         self.paused
     }
@@ -59,7 +57,6 @@ impl Pace {
         ticks
     }
 
-    /// Pauses, or goes on.
     pub fn pause(&mut self, paused: bool) {
         (self.paused, self.steps) = (paused, 0);
     }

@@ -3,26 +3,19 @@
 use double_pendulum::plan::{Plan, Way};
 use double_pendulum::{Error, Method, Parameters};
 
-use crate::app::command::Command;
+use crate::app::Command;
 use crate::app::pace::Pace;
 use crate::config::{GREATEST_ANGLE, PROCESSOR, Processor};
-use crate::graphics::canvas::Canvas;
-use crate::graphics::fade_layer::FadeLayer;
-use crate::graphics::text;
-use crate::motion::planner::{Finding, Planner};
-use crate::motion::settings::Settings;
-use crate::motion::simulation::{CatchingUp, Means};
+use crate::graphics::{Canvas, FadeLayer, text};
+use crate::motion::{CatchingUp, Finding, Means, Planner, Settings};
 use crate::protocol::{Field, Frame, NO_METHOD, Planned, Status, method_code, method_of};
-use crate::scenes::scene::Report;
-use crate::scenes::{AnyScene, SceneName};
+use crate::scenes::{AnyScene, Report, SceneName};
 
 /// The value of [`Field::Method`] that leaves the way to the plan.
 pub const AUTO: f64 = NO_METHOD as f64;
 
-/// What becomes of the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum News {
-    /// The planner has found something.
     Found(Finding),
     /// The motion goes this way from now on; cycles of a frame.
     Shown(Way, f32),
@@ -142,9 +135,7 @@ impl<'a> Player<'a> {
     /// Never inlined: what a motion needs to start would be on the stack of every frame.
     #[inline(never)]
     fn follow(&mut self, found: &Finding) {
-        if let (Finding::Plan(Plan { method, steps, .. }), None) =
-            (found, self.scene.shown().and_then(|shown| shown.way))
-        {
+        if let (Ok(Plan { method, steps, .. }), None) = (found, self.scene.shown().and_then(|shown| shown.way)) {
             let way = Way { method: *method, steps: (*steps).max(1) };
             if self.scene.planned().is_some_and(|motion| motion.way() != way) {
                 self.next = CatchingUp::new(&self.settings, way, &self.means.processor).ok();
@@ -198,12 +189,10 @@ impl<'a> Player<'a> {
         }
     }
 
-    /// The scene played.
     pub fn name(&self) -> SceneName {
         self.name
     }
 
-    /// What the scene was started with.
     pub fn settings(&self) -> &Settings {
         &self.settings
     }
@@ -213,7 +202,6 @@ impl<'a> Player<'a> {
         self.report
     }
 
-    /// Whether the scene's time stands still.
     pub fn is_paused(&self) -> bool {
         self.pace.is_paused() || self.stopped
     }

@@ -1,11 +1,10 @@
 //! Messages that come over the serial link: commands are passed on, motions computed in the time that the frame
 //! leaves free.
 
-use crate::app::command::HostCommand;
+use crate::app::HostCommand;
 use crate::job::{Job, OnBoards, Reading, Request};
 use crate::protocol::{Decoder, Field, LinkError, Message, Refused, Sample, Simulate, StepTooLong, TO_CHIP};
 
-/// What a received message came to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Received {
     /// A motion is asked for; its samples follow.
@@ -68,7 +67,6 @@ impl Service {
         }
     }
 
-    /// Whether there is work to do.
     pub fn is_busy(&self) -> bool {
         self.work.as_ref().is_some_and(|work| !work.job.is_finished())
     }

@@ -7,13 +7,12 @@
 
 use core::fmt;
 
-use crate::app::player::Player;
+use crate::app::Player;
 use crate::config::TICK_RATE;
 use crate::protocol::choice::choice;
 use crate::protocol::{Decoder, MAX_WIRE, Message, Restarted, Status};
 use crate::scenes::SceneName;
 
-/// A message as it is kept.
 pub type Kept = [u8; MAX_WIRE];
 
 /// A scene may be what ends the board each time: after so many restarts in a row it starts with the first scene.
@@ -38,9 +37,7 @@ choice! {
 pub struct WarmRestart {
     /// What was played; `None` if it has been tried [often enough](MOST_RESTARTS).
     pub played: Option<Status>,
-    /// How it ended.
     pub end: Restarted,
-    /// The same, by name.
     pub cause: Cause,
 }
 

@@ -14,7 +14,6 @@ use super::cortex_m::crash;
 #[defmt::global_logger]
 struct Logger;
 
-/// What a line goes through.
 struct Path {
     encoder: Encoder,
     sink: Sink,

@@ -5,42 +5,34 @@ use core::mem::MaybeUninit;
 
 use defmt::Debug2Format;
 use double_pendulum::Parameters;
-use double_pendulum::plan::{Plan, Way};
+use double_pendulum::plan::{Plan, PlanError, Way};
 use embedded_io::Write;
 
 use super::cortex_m::clock::Clock;
 use super::cortex_m::retained;
 use super::cortex_m::watchdog::Watchdog;
 use super::serial::receiver::Receiver;
-use crate::app::controls::Buttons;
-use crate::app::instruments::Instruments;
-use crate::app::player::News;
-use crate::app::warm_restart::{Journal, WarmRestart};
-use crate::app::{App, Event};
+use crate::app::{App, Buttons, Event, Instruments, Journal, News, WarmRestart};
 use crate::config::{HALF_PIXEL, Processor};
 use crate::display::Display;
-use crate::graphics::frame_buffers::FrameBuffers;
-use crate::motion::planner::Finding;
-use crate::motion::settings::Settings;
+use crate::graphics::FrameBuffers;
+use crate::motion::Settings;
 use crate::protocol::BoardName;
 use crate::scenes::SceneName;
 
 /// A board, set up and running.
 pub struct Board<Panel, Link, Keys, Dog> {
-    /// Its panel, which may be absent.
     pub panel: Panel,
     /// The serial link outwards.
     pub link: Link,
     /// The serial link inwards.
     pub receiver: Receiver,
-    /// Its buttons.
     pub keys: Keys,
-    /// What it measures and tells of itself by.
     pub instruments: Instruments,
-    /// The tick.
     pub clock: Clock,
-    /// What resets it when it hangs.
     pub watchdog: Dog,
+    /// Whether the board's own register says that the watchdog caused the last reset.
+    pub reset_by_watchdog: bool,
 }
 
 /// The type of a board's application.
@@ -59,8 +51,7 @@ macro_rules! program {
     ($module:ident::$board:ident on $processor:ident) => {
         #[cortex_m_rt::entry]
         fn main() -> ! {
-            static mut BUFFERS: $crate::graphics::frame_buffers::FrameBuffers =
-                $crate::graphics::frame_buffers::FrameBuffers::BLANK;
+            static mut BUFFERS: $crate::graphics::FrameBuffers = $crate::graphics::FrameBuffers::BLANK;
             static mut APP: core::mem::MaybeUninit<
                 <$crate::board::$module::$board as $crate::board::Plays>::Application,
             > = core::mem::MaybeUninit::uninit();
@@ -78,30 +69,15 @@ impl<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons, Dog: Watchdog> Bo
         buffers: &'static mut FrameBuffers,
         processor: Processor,
     ) -> ! {
-        let Self { panel, link, receiver, keys, instruments, clock, watchdog } = self;
+        let Self { panel, link, receiver, keys, instruments, clock, watchdog, reset_by_watchdog } = self;
         let name = BoardName::from_code(instruments.identity.board).map_or("", BoardName::name);
         defmt::info!("boot: {=str}, {} Hz", name, instruments.identity.hertz);
-        let app = application(place, buffers, panel, link, keys, processor);
-        run(app, receiver, instruments, clock, watchdog)
-    }
-}
-
-/// Makes the application as it is switched on, at its place.
-fn application<'a, Panel: Display, Link: Write, Keys: Buttons>(
-    place: &'a mut MaybeUninit<App<'a, Panel, Link, Keys>>,
-    buffers: &'a mut FrameBuffers,
-    panel: Panel,
-    link: Link,
-    keys: Keys,
-    processor: Processor,
-) -> &'a mut App<'a, Panel, Link, Keys> {
-    let app = place.write(App::idle(processor, Settings::default(), buffers, panel, link, keys));
-    match app.begin().map(|()| app) {
-        Ok(app) => app,
-        Err(error) => {
+        let app = place.write(App::idle(processor, Settings::default(), buffers, panel, link, keys));
+        if let Err(error) = app.begin() {
             defmt::error!("{}", error);
             panic!("the first settings describe no pendulum")
         }
+        run(app, receiver, instruments, clock, watchdog, reset_by_watchdog)
     }
 }
 
@@ -115,9 +91,10 @@ fn run<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons>(
     instruments: Instruments,
     clock: Clock,
     mut watchdog: impl Watchdog,
+    reset_by_watchdog: bool,
 ) -> ! {
     app.use_instruments(instruments);
-    let mut journal = resume(app, &watchdog);
+    let mut journal = resume(app, reset_by_watchdog);
     let mut now = clock.ticks();
     app.count_from(now, 0);
     loop {
@@ -134,14 +111,14 @@ fn run<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons>(
 #[inline(never)]
 fn resume<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons>(
     app: &mut App<Panel, Link, Keys>,
-    watchdog: &impl Watchdog,
+    reset_by_watchdog: bool,
 ) -> Journal {
-    let restart = retained::recall(watchdog.has_reset());
+    let restart = retained::recall(reset_by_watchdog);
     if let Some(restart) = &restart {
         app.resume(restart, log);
     }
     let mut journal = Journal::new(restart.as_ref());
-    retained::keep(journal.note(app.player()));
+    retained::keep(journal.note(&app.player));
     journal
 }
 
@@ -152,10 +129,10 @@ fn run_to<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons>(
     journal: &mut Journal,
     watchdog: &mut impl Watchdog,
 ) -> bool {
-    let before = app.frames();
+    let before = app.frames;
     let caught_up = app.run_to(now, log);
-    if app.frames() != before {
-        retained::keep(journal.note(app.player()));
+    if app.frames != before {
+        retained::keep(journal.note(&app.player));
         watchdog.feed();
     }
     caught_up
@@ -193,7 +170,7 @@ fn log<Panel: Debug, Link: Debug>(event: Event<Panel, Link>) {
         Event::Lost { bytes, total } => defmt::warn!("{} received bytes lost, {} since reset", bytes, total),
         Event::Stopped(error) => defmt::error!("stopped: {}", error),
         Event::StepTooLong(step) => defmt::warn!("the step is too long for this energy, {} s would do", step),
-        Event::Motion(News::Found(Finding::Plan(Plan { method, steps, error, cost, horizon, limit, .. }))) => {
+        Event::Motion(News::Found(Ok(Plan { method, steps, error, cost, horizon, limit, .. }))) => {
             defmt::info!(
                 "plan: {=str}, steps to a frame: {}, expected to be at most {}/1000 of a pixel off until {}.{:02} s ({=str}), {} cycles a frame",
                 method.name(),
@@ -205,13 +182,13 @@ fn log<Panel: Debug, Link: Debug>(event: Event<Panel, Link>) {
                 cost as u32,
             )
         }
-        Event::Motion(News::Found(Finding::NothingHolds(limit))) => {
+        Event::Motion(News::Found(Err(PlanError::NothingHolds { limit, .. }))) => {
             defmt::info!("plan: nothing affordable is right to half a pixel in any frame ({=str})", limit.name());
         }
         Event::Motion(News::Shown(Way { method, steps }, cost)) => {
             defmt::info!("shown: {=str}, steps to a frame: {}, {} cycles a frame", method.name(), steps, cost as u32);
         }
-        Event::Motion(News::Found(Finding::Refused(error))) => defmt::warn!("no plan: {}", error),
+        Event::Motion(News::Found(Err(error))) => defmt::warn!("no plan: {}", error),
         Event::Asked => defmt::info!("computing a motion on request"),
         Event::Link(error) => defmt::error!("serial link: {}", Debug2Format(&error)),
     }

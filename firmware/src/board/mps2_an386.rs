@@ -9,11 +9,11 @@ use super::cortex_m::clock::Clock;
 use super::cortex_m::guard::guard_stack;
 use super::cortex_m::identity::instruments;
 use super::cortex_m::interrupt::Interrupt;
-use super::cortex_m::watchdog::{Call, Registers, TwoStage};
+use super::cortex_m::watchdog::{NMI, TwoStage};
 use super::register::{Device, Register};
 use super::serial::receiver::{Inlet, Receiver, Taken};
 use super::serial::transmitter::{Outlet, Transmitter};
-use crate::app::controls::NoButtons;
+use crate::app::NoButtons;
 use crate::config::BAUD;
 use crate::display::NoDisplay;
 use crate::protocol::BoardName;
@@ -43,7 +43,6 @@ const RECEIVED: u32 = 1 << 1;
 /// UART0's receiver.
 const INTERRUPT: Interrupt = Interrupt(0);
 
-/// The board.
 pub type Mps2An386 = Board<NoDisplay, Transmitter<CmsdkUart>, NoButtons, TwoStage>;
 
 /// Sets the board up; `None` the second time.
@@ -61,11 +60,11 @@ pub fn take() -> Option<Mps2An386> {
         keys: NoButtons,
         instruments: instruments(BoardName::Mps2An386, HERTZ, [0; 4], &core.CPUID, core.DCB, core.DWT),
         clock: Clock::start(core.SYST, HERTZ),
-        watchdog: TwoStage::start(Registers::of(WATCHDOG), HERTZ, Call::Nmi, false),
+        watchdog: TwoStage::start(WATCHDOG, HERTZ, NMI),
+        reset_by_watchdog: false,
     })
 }
 
-/// The port, running.
 #[derive(Debug)]
 pub struct CmsdkUart(());
 

@@ -5,7 +5,7 @@ use core::cell::Cell;
 use cortex_m::interrupt::{Mutex, free};
 use embedded_hal::i2c::ErrorKind;
 
-use crate::display::outbox::{Outbox, PanelBus, Sent};
+use crate::display::{Outbox, PanelBus, Sent};
 
 /// The chip's side of it.
 pub trait PanelPort {

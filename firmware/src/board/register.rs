@@ -26,14 +26,12 @@ impl Device {
 pub struct Register(usize);
 
 impl Register {
-    /// What it reads.
     #[inline]
     pub fn read(self) -> u32 {
         // SAFETY: by [`Device::at`] it is one; any 32-bit pattern is a `u32`.
         unsafe { (self.0 as *const u32).read_volatile() }
     }
 
-    /// Writes it.
     #[inline]
     pub fn write(self, value: u32) {
         // SAFETY: by [`Device::at`] it is one whose writes do not break memory safety.

@@ -2,7 +2,6 @@
 //!
 //! Source: the rule of L. Bank's OLED libraries (`ss_oled`); no data sheet promises it.
 
-/// A panel's controller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Controller {
     /// Most panels of 0.96 inches have it; the SSD1309 takes the same commands.
@@ -13,7 +12,6 @@ pub enum Controller {
     Sh1107,
 }
 
-/// How a controller was found out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum By {
     /// By the status byte, which the panel was asked for.
@@ -27,9 +25,7 @@ pub enum By {
 /// A panel that answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Found {
-    /// What it has.
     pub controller: Controller,
-    /// How that was found out.
     pub by: By,
 }
 

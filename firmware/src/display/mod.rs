@@ -2,31 +2,31 @@
 
 use core::convert::Infallible;
 
-use crate::graphics::canvas::Canvas;
+use crate::graphics::Canvas;
 
 #[cfg(feature = "colour-panel")]
 mod any_panel;
 pub mod controller;
-pub mod i2c_recovery;
+mod i2c_recovery;
 pub mod outbox;
 mod ssd0323;
 mod ssd1306;
 
 #[cfg(feature = "colour-panel")]
-pub use any_panel::{AnyPanel, binary, gray4, rgb565};
-pub use ssd0323::{PanelError, Ssd0323};
+pub use any_panel::AnyPanel;
+pub use controller::{BUILT_FOR, By, Controller, Found};
+pub use i2c_recovery::free_bus;
+pub use outbox::{OutByte, Outbox, PanelBus, Sent};
+pub use ssd0323::Ssd0323;
 pub use ssd1306::{Ssd1306, Ssd1306Error};
 
-/// A panel.
 pub trait Display {
-    /// Why a frame did not reach the panel.
     type Error;
 
-    /// Sends the frame.
     fn flush(&mut self, canvas: &Canvas) -> Result<(), Self::Error>;
 
     /// Which panel was found since this was last asked.
-    fn found(&mut self) -> Option<controller::Found> {
+    fn found(&mut self) -> Option<Found> {
         None
     }
 }

@@ -4,8 +4,7 @@
 use embedded_hal::i2c::ErrorKind;
 use heapless::Vec;
 
-use crate::graphics::bitmap::PAGES;
-use crate::graphics::canvas::WIDTH;
+use crate::graphics::{PAGES, WIDTH};
 
 /// A whole frame, of each page its window and its bytes, and all that wakes a panel.
 const CAPACITY: usize = PAGES * (5 + 2 + WIDTH) + 48;
@@ -24,10 +23,8 @@ pub struct Outbox {
     status: u8,
 }
 
-/// A byte that goes out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OutByte {
-    /// Its eight bits.
     pub value: u8,
     /// Whether it is the last of its message: a stop follows, or the start of the next message.
     pub ends_message: bool,
@@ -76,7 +73,6 @@ impl Outbox {
         self.status
     }
 
-    /// Where the messages go.
     pub fn address(&self) -> u8 {
         self.address
     }
@@ -118,7 +114,6 @@ impl Iterator for Outbox {
     }
 }
 
-/// What has become of messages.
 pub type Sent = Result<(), ErrorKind>;
 
 /// A bus that empties an outbox while the processor does something else.

@@ -5,11 +5,13 @@
 //!
 //! Source: Solomon Systech, SSD0323 data sheet; register values from the panel's application note (OSRAM AN018).
 
+use core::convert::Infallible;
+
 use embedded_hal::digital::OutputPin;
 use embedded_hal::spi::SpiDevice;
 
 use super::Display;
-use crate::graphics::canvas::{Canvas, HEIGHT, Row, WIDTH};
+use crate::graphics::{Canvas, HEIGHT, Row, WIDTH};
 
 const LAST_COLUMN: u8 = (WIDTH / 2 - 1) as u8;
 const LAST_ROW: u8 = (HEIGHT - 1) as u8;
@@ -49,15 +51,6 @@ const WAKE: [&[u8]; 19] = [
     &[0xAF],                    // display on
 ];
 
-/// Why bytes did not reach the panel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PanelError<Spi, Pin> {
-    /// The bus failed.
-    Spi(Spi),
-    /// The data/command pin failed.
-    Pin(Pin),
-}
-
 /// The panel: an SPI device and the pin that tells data (high) from commands (low).
 #[derive(Debug)]
 pub struct Ssd0323<'a, Spi, Pin> {
@@ -68,14 +61,14 @@ pub struct Ssd0323<'a, Spi, Pin> {
     is_known: bool,
 }
 
-impl<'a, Spi: SpiDevice, Pin: OutputPin> Ssd0323<'a, Spi, Pin> {
+impl<'a, Spi: SpiDevice, Pin: OutputPin<Error = Infallible>> Ssd0323<'a, Spi, Pin> {
     /// Takes the panel's wires, and a canvas to remember what it shows; nothing is sent yet.
     pub fn new(spi: Spi, data_not_command: Pin, memory: &'a mut Canvas) -> Self {
         Self { spi, data_not_command, memory, is_known: false }
     }
 
     /// Configures the controller, blanks its memory and switches the panel on.
-    pub fn init(&mut self) -> Result<(), PanelError<Spi::Error, Pin::Error>> {
+    pub fn init(&mut self) -> Result<(), Spi::Error> {
         self.command(&ALL_COLUMNS)?;
         self.command(&ALL_ROWS)?;
         (0..HEIGHT).try_for_each(|_| self.data(&[0; WIDTH / 2]))?;
@@ -85,7 +78,7 @@ impl<'a, Spi: SpiDevice, Pin: OutputPin> Ssd0323<'a, Spi, Pin> {
     }
 
     /// Sends what differs between the panel's memory and the frame; all of it if the memory is not known.
-    fn update(&mut self, canvas: &Canvas) -> Result<(), PanelError<Spi::Error, Pin::Error>> {
+    fn update(&mut self, canvas: &Canvas) -> Result<(), Spi::Error> {
         let mut next = None;
         for (y, new) in (0..).zip(canvas.rows()) {
             let Some(old) = self.memory.row_mut(y.into()) else { break };
@@ -103,15 +96,15 @@ impl<'a, Spi: SpiDevice, Pin: OutputPin> Ssd0323<'a, Spi, Pin> {
         Ok(())
     }
 
-    fn data(&mut self, bytes: &[u8]) -> Result<(), PanelError<Spi::Error, Pin::Error>> {
-        self.data_not_command.set_high().map_err(PanelError::Pin)?;
-        self.spi.write(bytes).map_err(PanelError::Spi)
+    fn data(&mut self, bytes: &[u8]) -> Result<(), Spi::Error> {
+        let Ok(()) = self.data_not_command.set_high();
+        self.spi.write(bytes)
     }
 
     /// Sends a command; this controller takes the arguments as commands, too.
-    fn command(&mut self, bytes: &[u8]) -> Result<(), PanelError<Spi::Error, Pin::Error>> {
-        self.data_not_command.set_low().map_err(PanelError::Pin)?;
-        self.spi.write(bytes).map_err(PanelError::Spi)
+    fn command(&mut self, bytes: &[u8]) -> Result<(), Spi::Error> {
+        let Ok(()) = self.data_not_command.set_low();
+        self.spi.write(bytes)
     }
 }
 
@@ -124,8 +117,8 @@ fn differing(Row(old): &Row, Row(new): &Row) -> Option<(usize, usize)> {
     Some((WORD * first, WORD * last + WORD - 1))
 }
 
-impl<Spi: SpiDevice, Pin: OutputPin> Display for Ssd0323<'_, Spi, Pin> {
-    type Error = PanelError<Spi::Error, Pin::Error>;
+impl<Spi: SpiDevice, Pin: OutputPin<Error = Infallible>> Display for Ssd0323<'_, Spi, Pin> {
+    type Error = Spi::Error;
 
     fn flush(&mut self, canvas: &Canvas) -> Result<(), Self::Error> {
         let sent = self.update(canvas);

@@ -15,8 +15,7 @@ use super::Display;
 use super::controller::{By, Controller, Found};
 use super::outbox::{Outbox, PanelBus, Sent};
 use crate::config::TICK_RATE;
-use crate::graphics::bitmap::{Bitmap, PAGES};
-use crate::graphics::canvas::{Canvas, HEIGHT, WIDTH};
+use crate::graphics::{Bitmap, Canvas, HEIGHT, PAGES, WIDTH};
 
 /// The two addresses that a panel can be set to.
 const ADDRESSES: [u8; 2] = [0x3C, 0x3D];

@@ -1,6 +1,6 @@
 //! The frame in one colour: for panels whose pixels are on or off.
 
-use crate::graphics::canvas::{Canvas, HEIGHT, Row, WIDTH};
+use crate::graphics::{Canvas, HEIGHT, Row, WIDTH};
 
 /// Rows that share a byte.
 const ROWS: usize = 8;
@@ -77,7 +77,6 @@ impl From<&Canvas> for Bitmap {
 }
 
 impl Bitmap {
-    /// The pages from the top.
     pub fn pages(&self) -> &[[u8; WIDTH]; PAGES] {
         &self.pages
     }

@@ -2,7 +2,7 @@
 
 use core::ops::Range;
 
-use crate::graphics::canvas::{Canvas, HEIGHT, WIDTH};
+use crate::graphics::{Canvas, HEIGHT, WIDTH};
 
 /// Subpixels in a pixel.
 pub const SUBPIXELS: i32 = 1 << SHIFT;
@@ -12,9 +12,7 @@ const HALF: i32 = SUBPIXELS / 2;
 /// A place on the canvas in subpixels from its top left corner; pixel i covers 64 i to 64 i + 63.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Spot {
-    /// To the right.
     pub x: i16,
-    /// Down.
     pub y: i16,
 }
 
@@ -36,11 +34,8 @@ impl Spot {
 /// All points within `radius` subpixels of the line from `from` to `to`: a disc if both are one spot.
 #[derive(Clone, Copy, Debug)]
 pub struct Stroke {
-    /// One end.
     pub from: Spot,
-    /// The other end.
     pub to: Spot,
-    /// Half the width, subpixels.
     pub radius: u8,
 }
 
@@ -69,14 +64,11 @@ impl Stroke {
     }
 }
 
-/// A disc that a dark gap sets off from what lies behind it.
+/// A disc of `radius` subpixels that a dark gap, as wide as `gap` says, sets off from what lies behind it.
 #[derive(Clone, Copy, Debug)]
 pub struct Disc {
-    /// Its middle.
     pub centre: Spot,
-    /// Its radius, subpixels.
     pub radius: u8,
-    /// The width of the gap, subpixels.
     pub gap: u8,
 }
 

@@ -43,10 +43,8 @@ impl Clone for Canvas {
 }
 
 impl Canvas {
-    /// Every pixel black.
     pub const BLACK: Self = Self { rows: [Row([0; ROW]); HEIGHT], all_greys: false };
 
-    /// Makes every pixel black.
     pub fn clear(&mut self) {
         self.rows.fill(Row([0; ROW]));
         self.all_greys = false;
@@ -57,7 +55,6 @@ impl Canvas {
         self.all_greys = true;
     }
 
-    /// Whether every grey matters.
     pub fn has_all_greys(&self) -> bool {
         self.all_greys
     }
@@ -67,7 +64,6 @@ impl Canvas {
         self.rows.iter().flat_map(|Row(row)| *row)
     }
 
-    /// The rows from the top.
     pub fn rows(&self) -> &[Row; HEIGHT] {
         &self.rows
     }

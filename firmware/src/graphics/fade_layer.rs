@@ -1,7 +1,6 @@
 //! What has been drawn and stays: a frame of its own that strokes are added to and that slowly fades.
 
-use crate::graphics::brush::Stroke;
-use crate::graphics::canvas::{Canvas, HEIGHT, Row};
+use crate::graphics::{Canvas, HEIGHT, Row, Stroke};
 
 /// How ink fades: every row loses one grey in [`HEIGHT`]/`rows` ticks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,7 +18,6 @@ impl Fading {
     pub const TRACE: Self = Self { rows: 1, last: 4 };
 }
 
-/// A frame that fades.
 #[derive(Clone, Debug)]
 pub struct FadeLayer {
     frame: Canvas,
@@ -28,10 +26,8 @@ pub struct FadeLayer {
 }
 
 impl FadeLayer {
-    /// Nothing has been drawn.
     pub const NONE: Self = Self { frame: Canvas::BLACK, row: 0 };
 
-    /// Wipes it all out.
     pub fn clear(&mut self) {
         self.frame.clear();
         self.row = 0;
@@ -43,7 +39,6 @@ impl FadeLayer {
         stroke.lighten(&mut self.frame, brightness);
     }
 
-    /// Fades by one tick.
     #[inline(never)]
     pub fn fade(&mut self, Fading { rows, last }: Fading) {
         for _ in 0..rows {
@@ -55,14 +50,33 @@ impl FadeLayer {
         }
     }
 
-    /// What is there now.
     pub fn frame(&self) -> &Canvas {
         &self.frame
     }
 
-    /// The same, to be drawn on.
     pub fn frame_mut(&mut self) -> &mut Canvas {
         &mut self.frame
+    }
+}
+
+/// The frames an application works on: nearly all of its memory.
+///
+/// It borrows them. They are made where they stay, on a board in a static: 8 KiB that neither stand on the
+/// stack nor are copied when a scene is made.
+#[derive(Clone, Debug)]
+pub struct FrameBuffers {
+    pub canvas: Canvas,
+    /// What stays of the frames before.
+    pub ink: FadeLayer,
+}
+
+impl FrameBuffers {
+    pub const BLANK: Self = Self { canvas: Canvas::BLACK, ink: FadeLayer::NONE };
+}
+
+impl Default for FrameBuffers {
+    fn default() -> Self {
+        Self::BLANK
     }
 }
 

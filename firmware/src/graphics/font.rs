@@ -1,7 +1,6 @@
 //! The characters of text: those of ASCII are [`embedded-graphics`](https://docs.rs/embedded-graphics)' font of 5 x 8 pixels
 //! (test `canvas`), as whole rows, which are drawn in a fifth of the time of its pixels.
 
-/// A character's pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Glyph {
     /// Columns with the gap after it.

@@ -1,7 +1,6 @@
 //! Curves over time or any other quantity: one value per column, drawn with soft edges in integer arithmetic.
 
-use crate::graphics::brush::SUBPIXELS;
-use crate::graphics::canvas::{Canvas, HEIGHT};
+use crate::graphics::{Canvas, HEIGHT, SUBPIXELS};
 
 /// Half the thickness of a curve, subpixels.
 const HALF_THICKNESS: i32 = 38;

@@ -1,7 +1,6 @@
 //! Text on the frame.
 
-use crate::graphics::canvas::{Canvas, HEIGHT, WIDTH};
-use crate::graphics::font::{Glyph, glyph};
+use crate::graphics::{Canvas, Glyph, HEIGHT, WIDTH, glyph};
 
 /// Grey of the text, of 15: below the motion's.
 const GREY: u8 = 11;
@@ -14,16 +13,11 @@ pub const LINE: i32 = 8;
 /// The top of the lowest line.
 pub const LOWEST: i32 = HEIGHT as i32 - MARGIN - LINE;
 
-/// Where a text goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
-    /// Into the top left corner.
     TopLeft,
-    /// Into the top right corner.
     TopRight,
-    /// Into the bottom left corner.
     BottomLeft,
-    /// Into the bottom right corner.
     BottomRight,
     /// Its first character's top left corner at (x, y).
     At(i32, i32),
@@ -33,7 +27,6 @@ pub enum Anchor {
     Centred(i32, i32),
 }
 
-/// Writes a line of text.
 pub fn write(canvas: &mut Canvas, text: &str, anchor: Anchor) {
     put(canvas, text, corner(anchor, text), GREY);
 }

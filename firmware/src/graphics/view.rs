@@ -3,8 +3,7 @@
 use double_pendulum::Parameters;
 
 use crate::config::{GREATEST_RADIUS, LEAST_RADIUS, PIVOT, REACH, ROD_HALF_WIDTH};
-use crate::graphics::brush::{Disc, SUBPIXELS, Spot, Stroke};
-use crate::graphics::canvas::Canvas;
+use crate::graphics::{Canvas, Disc, SUBPIXELS, Spot, Stroke};
 
 /// Where both rods point: (sin, cos) of their angles from the downward vertical.
 pub type RodDirections = [[f32; 2]; 2];
@@ -24,7 +23,6 @@ pub struct Place {
 }
 
 impl Place {
-    /// The whole panel.
     pub const WHOLE: Self = Self { pivot: PIVOT, reach: REACH };
     /// The left half below a line of text, and the right half: a circle of 25 pixels with room for a bob around it, and
     /// between the two for a line of text below.
@@ -66,7 +64,6 @@ impl View {
         [(x1, y1), (x1 + rod2 * sin2, y1 + rod2 * cos2)]
     }
 
-    /// As [`bobs`](Self::bobs), as spots.
     pub fn spots(&self, directions: RodDirections) -> [Spot; 2] {
         self.bobs(directions).map(|(x, y)| Spot::at(x, y))
     }

@@ -11,11 +11,9 @@ use crate::protocol::Field;
 /// Why a request cannot be computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum JobError {
-    /// The boards' applications do not link this method.
     NotOnBoards(Method),
     /// A message that is none, by the field that is wrong.
     Malformed(Field),
-    /// The kernel refuses a number.
     Refused(Error),
 }
 

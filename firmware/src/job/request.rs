@@ -12,7 +12,6 @@ use crate::protocol::{Field, MAX_FIELDS, Message, Simulate, method_code, method_
 /// As text it is the fields of its [`Simulate`] message, each byte as two hexadecimal digits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Request {
-    /// What it is computed by.
     pub method: Method,
     /// Masses, lengths and gravity.
     pub parameters: Parameters<f64>,
@@ -39,7 +38,6 @@ impl Request {
         pendulum.admissible_step(&pendulum.to_state(&Motion { a1, a2, w1, w2 })).ok()
     }
 
-    /// The message that carries it.
     pub fn message(&self, request: u16) -> Simulate {
         let Parameters { m1, m2, l1, l2, g } = self.parameters;
         Simulate {
@@ -68,7 +66,6 @@ impl Request {
         })
     }
 
-    /// Reads the text.
     pub fn parse(text: &str) -> Result<Self, Field> {
         let mut fields = Vec::<u8, MAX_FIELDS>::new();
         for digits in text.as_bytes().chunks(2) {

@@ -4,7 +4,7 @@ use double_pendulum::trig::{Own, SinCos};
 use double_pendulum::{Parameters, State, rk4};
 
 use crate::config::{DT, STEPS_PER_TICK};
-use crate::graphics::view::RodDirections;
+use crate::graphics::RodDirections;
 
 /// The denominator of a2' lacks the factor mu = m2/m1, so rod 2 turns mu times as fast as it should. Unless mu = 1 the equations
 /// are not Hamilton's of anything, and what should be the energy is not kept.
@@ -38,7 +38,6 @@ impl Misprinted {
         Self { mass_ratio: m2 / m1, gravity: g / l, inertia, z }
     }
 
-    /// Advances by one tick.
     pub fn tick(&mut self) {
         for _ in 0..STEPS_PER_TICK {
             self.z = rk4::step(|z| self.rates(z), &self.z, DT as f32);
@@ -48,7 +47,6 @@ impl Misprinted {
         self.z = [sin1, cos1, sin_d, cos_d, q1, q2];
     }
 
-    /// Where the rods point.
     pub fn directions(&self) -> RodDirections {
         let [sin1, cos1, sin_d, cos_d, ..] = self.z;
         [[sin1, cos1], [sin1 * cos_d - cos1 * sin_d, cos1 * cos_d + sin1 * sin_d]]

@@ -1,6 +1,11 @@
 //! The motion itself, apart from any frame of it: settings, stepping, planning.
 
-pub mod misprinted;
+mod misprinted;
 pub mod planner;
 pub mod settings;
 pub mod simulation;
+
+pub use misprinted::Misprinted;
+pub use planner::{Finding, Planner, Shown, half_pixel, problem};
+pub use settings::Settings;
+pub use simulation::{CatchingUp, Energy, Means, Simulation, start_beside};

@@ -8,7 +8,7 @@ use double_pendulum::Parameters;
 use double_pendulum::plan::{Limit, Plan, PlanError, Problem, Search, Way};
 
 use crate::config::{HALF_PIXEL, PLANNED, PLANNING_PIECE, Processor, SETTLED_TICKS, TICK_RATE};
-use crate::motion::settings::Settings;
+use crate::motion::Settings;
 use crate::protocol::{NO_METHOD, Planned, limit_code, method_code};
 
 /// How a scene shows its motion.
@@ -20,18 +20,9 @@ pub struct Shown {
     pub height: f32,
 }
 
-/// What has been found.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Finding {
-    /// The plan. One that was right to its end is looked at farther, and told again when that comes to an end.
-    Plan(Plan),
-    /// Nothing that this processor can afford is right in any frame; what forbids finer steps.
-    NothingHolds(Limit),
-    /// The kernel refuses to plan it.
-    Refused(PlanError),
-}
+/// The plan, or why there is none. One that was right to its end is looked at farther, and told again when that comes to an end.
+pub type Finding = Result<Plan, PlanError>;
 
-/// Plans the scene that is played.
 #[derive(Clone, Copy, Debug)]
 pub struct Planner {
     processor: Processor,
@@ -41,13 +32,12 @@ pub struct Planner {
     search: Option<Search>,
     /// Cycles of the ticks to come that have been spent.
     debt: f32,
-    /// The plan once it is found, or what forbids any.
-    plan: Option<Result<Plan, Limit>>,
+    plan: Option<Finding>,
     /// The way that the scene has begun in, and until when that is expected to be right, s.
     begun: Option<Way>,
     begun_horizon: f64,
-    /// What has been found and not yet told, and whether the next tick tells it.
-    finding: Option<Finding>,
+    /// Whether it has been found and not yet told, and whether the next tick tells it.
+    is_news: bool,
     is_due: bool,
 }
 
@@ -63,7 +53,7 @@ impl Planner {
             plan: None,
             begun: None,
             begun_horizon: 0.0,
-            finding: None,
+            is_news: false,
             is_due: false,
         }
     }
@@ -72,7 +62,7 @@ impl Planner {
     pub fn start(&mut self, settings: &Settings, shown: Option<Shown>, begun: Option<Way>) {
         (self.ticks, self.debt) = (0, 0.0);
         (self.begun, self.begun_horizon) = (begun, 0.0);
-        (self.search, self.plan, self.finding, self.is_due) = (None, None, None, false);
+        (self.search, self.plan, self.is_news, self.is_due) = (None, None, false, false);
         self.task = shown.map(|shown| (problem(settings, &shown), shown));
     }
 
@@ -81,14 +71,15 @@ impl Planner {
     pub fn tick(&mut self) -> Option<Finding> {
         self.ticks += 1;
         if core::mem::take(&mut self.is_due) {
-            return self.finding.take();
+            self.is_news = false;
+            return self.plan;
         }
         if self.ticks > SETTLED_TICKS {
             while self.work() {}
             self.debt = (self.debt - self.processor.look_ahead).max(0.0);
         }
         self.note();
-        self.is_due = self.finding.is_some();
+        self.is_due = self.is_news;
         None
     }
 
@@ -140,7 +131,7 @@ impl Planner {
     /// Never inlined: a profile of a frame tells planning by it.
     #[inline(never)]
     fn work(&mut self) -> bool {
-        if self.finding.is_some() || !self.is_looking() || self.is_far() {
+        if self.is_news || !self.is_looking() || self.is_far() {
             return false;
         }
         let is_preparing = self.search.as_ref().is_none_or(Search::is_preparing);
@@ -150,8 +141,7 @@ impl Planner {
         }
         let before = self.search.as_ref().map_or(0.0, Search::spent);
         if let Err(error) = self.advance() {
-            (self.task, self.search) = (None, None);
-            self.finding = Some(Finding::Refused(error));
+            (self.task, self.search, self.plan, self.is_news) = (None, None, Some(Err(error)), true);
         }
         let spent = self.search.as_ref().map_or(0.0, Search::spent) - before;
         let least = if before == 0.0 { long } else { self.processor.piece() };
@@ -183,7 +173,7 @@ impl Planner {
         match search.advance(PLANNING_PIECE) {
             Ok(None) => {}
             Ok(Some(plan)) => {
-                (self.plan, self.finding) = (Some(Ok(plan)), Some(Finding::Plan(plan)));
+                (self.plan, self.is_news) = (Some(Ok(plan)), true);
                 if plan.limit == Limit::End {
                     search.extend(FOR_EVER);
                 } else {
@@ -191,9 +181,8 @@ impl Planner {
                     self.search = None;
                 }
             }
-            Err(PlanError::NothingHolds { limit, .. }) => {
-                (self.plan, self.finding) = (Some(Err(limit)), Some(Finding::NothingHolds(limit)));
-                self.search = None;
+            Err(error @ PlanError::NothingHolds { .. }) => {
+                (self.search, self.plan, self.is_news) = (None, Some(Err(error)), true);
             }
             Err(error) => return Err(error),
         }
@@ -222,8 +211,10 @@ impl Planner {
                 (answer.error, answer.cycles) = (HALF_PIXEL * error, cost);
                 (answer.limit, answer.planning) = (limit_code(limit), spent);
             }
-            Some(Err(limit)) => (answer.method, answer.limit) = (NO_METHOD, limit_code(limit)),
-            None => {}
+            Some(Err(PlanError::NothingHolds { limit, .. })) => {
+                (answer.method, answer.limit) = (NO_METHOD, limit_code(limit));
+            }
+            Some(Err(_)) | None => {}
         }
         answer
     }

@@ -30,7 +30,6 @@ impl Settings {
         Self { parameters, degrees: [degrees; 2], velocities: [0.0; 2] }
     }
 
-    /// Mass ratio mu = m2/m1.
     pub fn mass_ratio(&self) -> f32 {
         self.parameters.mass_ratio()
     }

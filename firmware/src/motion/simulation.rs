@@ -4,7 +4,7 @@ use double_pendulum::plan::{Directions, PlannedRun, Way};
 use double_pendulum::{Error, Method, Motion, Pendulum, State};
 
 use crate::config::{Processor, TICK_RATE};
-use crate::motion::settings::Settings;
+use crate::motion::Settings;
 
 /// What a motion may be computed by.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,7 +56,6 @@ impl Simulation {
         Ok(Self { energy: Energy::new(pendulum, energy), motion, is_given: means.method.is_some() })
     }
 
-    /// Advances by one tick.
     #[inline(never)] // one copy
     pub fn tick(&mut self) {
         // A motion that is lost is seen by its state.
@@ -68,7 +67,6 @@ impl Simulation {
         self.is_given.then(|| self.way())
     }
 
-    /// The way it goes now.
     pub fn way(&self) -> Way {
         self.motion.way()
     }

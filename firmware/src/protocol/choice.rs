@@ -21,7 +21,6 @@ macro_rules! choice {
                 match self { $($name::$row => $text,)* }
             }
 
-            /// The choice with this code.
             pub fn from_code(code: u8) -> Option<Self> {
                 Self::ALL.iter().copied().find(|choice| choice.code() == code)
             }

@@ -27,7 +27,6 @@ pub const fn method_code(method: Method) -> u8 {
     method as u8
 }
 
-/// The method with this code.
 pub fn method_of(code: u8) -> Option<Method> {
     Method::ALL.get(usize::from(code)).copied()
 }

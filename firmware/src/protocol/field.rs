@@ -5,37 +5,25 @@ use double_pendulum::{Error, Parameter};
 use super::choice::choice;
 
 choice! {
-    /// What a request or a command can be wrong in.
     Field {
         /// The method, by its [`method_code`](super::method_code); to set the scene's, [`NO_METHOD`](super::NO_METHOD) is as
         /// the plan has it.
         Method = 0, "method";
-        /// Mass of bob 1.
         M1 = 2, "m1";
-        /// Mass of bob 2.
         M2 = 3, "m2";
-        /// Length of rod 1.
         L1 = 4, "l1";
-        /// Length of rod 2.
         L2 = 5, "l2";
-        /// Gravity.
         G = 6, "g";
-        /// Angle of rod 1.
         A1 = 7, "a1";
-        /// Angle of rod 2.
         A2 = 8, "a2";
-        /// Velocity of rod 1.
         W1 = 9, "w1";
-        /// Velocity of rod 2.
         W2 = 10, "w2";
         Dt = 11, "step size";
         /// Mass ratio m2/m1: sets m2.
         MassRatio = 12, "mu";
-        /// Both angles.
         Angle = 13, "angle";
         /// Simulated time per real time.
         Speed = 14, "speed";
-        /// The field to set.
         Field = 15, "field";
         Scene = 17, "scene";
         /// The message itself: of no known kind, or not with that kind's fields.

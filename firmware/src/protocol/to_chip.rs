@@ -27,7 +27,7 @@ numbered! {
     Set = 0x82 {
         /// What to set, by its [`code`](super::Field::code).
         field: u8,
-        /// The value, in SI units.
+        /// In SI units.
         value: f64,
     }
 }
@@ -56,7 +56,6 @@ numbered! {
 numbered! {
     /// Let the scene do so many ticks, one in each tick of the clock, then stop.
     Step = 0x86 {
-        /// How many.
         ticks: u32,
     }
 }
@@ -74,7 +73,7 @@ numbered! {
 numbered! {
     /// Do what a tap on one button asks for, as the keys of a host's terminal do.
     Press = 0x89 {
-        /// The button, by its [`code`](crate::app::controls::Key::code).
+        /// The button, by its [`code`](crate::app::Key::code).
         key: u8,
     }
 }
@@ -88,7 +87,6 @@ numbered! {
     /// Go on with the motion asked for last, so many steps at once and with interrupts off, and say how long they took. At most
     /// [`MOST_MEASURED_STEPS`](crate::config::MOST_MEASURED_STEPS) are made.
     Measure = 0x8B {
-        /// How many.
         steps: u32,
         /// By their code in memory if it is not 0, otherwise by that in flash.
         in_ram: u8,

@@ -19,7 +19,6 @@ message! {
         step: u32,
         /// Simulated time since the last restart, s: `step` times that.
         time: f64,
-        /// Mass ratio mu = m2/m1.
         mass_ratio: f32,
         /// Start angle of rod 1, rad; on the page that of both.
         start_angle: f32,
@@ -48,7 +47,6 @@ message! {
 numbered! {
     /// One sample of the motion asked for. The first one, index 0, is the start.
     Sample = 0x02 {
-        /// Counts the samples of the request.
         index: u32,
         /// a1, a2 (rad), p1, p2 (kg m^2/s); to the last digit carried; an f32 is widened, which loses nothing.
         state: [f64; 4],
@@ -175,7 +173,6 @@ numbered! {
     Identity = 0x09 {
         /// The board, by its [`code`](super::BoardName::code).
         board: u8,
-        /// The processor's clock, Hz.
         hertz: u32,
         /// What the processor says that it is: CPUID.
         processor: u32,
@@ -191,7 +188,6 @@ numbered! {
 numbered! {
     /// How long steps took.
     Measured = 0x0A {
-        /// Steps made.
         steps: u32,
         /// Processor cycles, what calls them included; 0 where nothing counts cycles, as in QEMU, or the code does not stand there.
         cycles: u32,

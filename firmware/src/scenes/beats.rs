@@ -4,16 +4,9 @@
 use double_pendulum::{Error, Modes, Oscillation, Parameters, SmallOscillations};
 
 use crate::config::{GRAVITY, ROD};
-use crate::graphics::brush::{Disc, Spot, Stroke};
-use crate::graphics::canvas::{Canvas, WIDTH};
-use crate::graphics::fade_layer::FadeLayer;
-use crate::graphics::text::{self, Anchor, LINE, LOWEST};
-use crate::graphics::{label, plot};
-use crate::motion::planner::Shown;
-use crate::motion::settings::Settings;
-use crate::motion::simulation::{Means, Simulation};
-use crate::scenes::horizon;
-use crate::scenes::scene::{Report, Scene};
+use crate::graphics::{Anchor, Canvas, Disc, FadeLayer, LINE, LOWEST, Spot, Stroke, WIDTH, label, plot, text};
+use crate::motion::{Means, Settings, Shown, Simulation};
+use crate::scenes::{Report, Scene, horizon};
 
 /// The middles of the two figures, and how far a mode reaches in them, pixels.
 const MIDDLES: [(f32, f32); 2] = [(23.5, 32.5), (104.5, 32.5)];

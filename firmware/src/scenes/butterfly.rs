@@ -4,18 +4,11 @@ use double_pendulum::Error;
 use double_pendulum::plan::PlannedRun;
 
 use crate::config::TICK_RATE;
-use crate::graphics::brush::{SUBPIXELS, Spot, Stroke};
-use crate::graphics::canvas::{Canvas, WIDTH};
-use crate::graphics::fade_layer::FadeLayer;
-use crate::graphics::label;
-use crate::graphics::plot::{self, Strip};
-use crate::graphics::text::{self, Anchor, LINE, LOWEST};
-use crate::graphics::view::{Place, View};
-use crate::motion::planner::Shown;
-use crate::motion::settings::Settings;
-use crate::motion::simulation::{self, Means, Simulation};
-use crate::scenes::horizon;
-use crate::scenes::scene::{Report, Scene};
+use crate::graphics::{
+    Anchor, Canvas, FadeLayer, LINE, LOWEST, Place, SUBPIXELS, Spot, Strip, Stroke, View, WIDTH, label, plot, text,
+};
+use crate::motion::{Means, Settings, Shown, Simulation, simulation};
+use crate::scenes::{Report, Scene, horizon};
 
 /// Angle 1 of the second twin ahead of the first's at the start, rad.
 const APART: f64 = 1e-6;

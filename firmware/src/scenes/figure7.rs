@@ -3,18 +3,9 @@
 use double_pendulum::{Error, Parameters};
 
 use crate::config::PAGE_GRAVITY;
-use crate::graphics::brush::{Spot, Stroke};
-use crate::graphics::canvas::{Canvas, WIDTH};
-use crate::graphics::fade_layer::FadeLayer;
-use crate::graphics::label;
-use crate::graphics::text::{self, Anchor, LINE, LOWEST};
-use crate::graphics::view::{Place, View};
-use crate::motion::misprinted::Misprinted;
-use crate::motion::planner::Shown;
-use crate::motion::settings::Settings;
-use crate::motion::simulation::{Means, Simulation};
-use crate::scenes::horizon;
-use crate::scenes::scene::{Report, Scene};
+use crate::graphics::{Anchor, Canvas, FadeLayer, LINE, LOWEST, Place, Spot, Stroke, View, WIDTH, label, text};
+use crate::motion::{Means, Misprinted, Settings, Shown, Simulation};
+use crate::scenes::{Report, Scene, horizon};
 
 /// Half the width of a trace, subpixels.
 const HALF_WIDTH: u8 = 30;

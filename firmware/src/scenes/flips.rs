@@ -8,13 +8,9 @@ use double_pendulum::flips::{Falling, Flip, Flips as Search, step_size};
 use double_pendulum::{Error, Form};
 
 use crate::config::{FlipsPace, TICK_RATE};
-use crate::graphics::canvas::{Canvas, HEIGHT, WIDTH};
-use crate::graphics::fade_layer::{FadeLayer, Fading};
-use crate::graphics::label;
-use crate::graphics::text::{self, Anchor};
-use crate::motion::settings::Settings;
-use crate::motion::simulation::Means;
-use crate::scenes::scene::{Report, Scene};
+use crate::graphics::{Anchor, Canvas, FadeLayer, Fading, HEIGHT, WIDTH, label, text};
+use crate::motion::{Means, Settings};
+use crate::scenes::{Report, Scene};
 
 /// A rod has so long to turn over, sqrt(l1/g).
 pub const LIMIT: f32 = 100.0;
@@ -39,72 +35,25 @@ type Float = Fixed;
 #[cfg(target_abi = "eabihf")]
 type Fixed = Float;
 
-/// The map as the processor computes it.
+/// The search, in the processor's own numbers, and the motion that it follows.
 #[cfg_attr(not(target_os = "none"), expect(clippy::large_enum_variant, reason = "the host has the room"))]
 #[derive(Clone, Debug)]
-pub enum Flips {
-    /// In `f32`.
-    Float(FlipsMap<Float>),
-    /// In fixed point.
-    Fixed(FlipsMap<Fixed>),
-}
-
-impl Flips {
-    /// Whether the map is finished.
-    pub fn is_done(&self) -> bool {
-        match self {
-            Self::Float(map) => map.is_done(),
-            Self::Fixed(map) => map.is_done(),
-        }
-    }
-}
-
-impl Scene for Flips {
-    const FADING: Fading = Fading::NEVER;
-
-    fn new(settings: &Settings, means: &Means) -> Result<Self, Error> {
-        let pace = means.processor.flips;
-        if means.processor.has_float() {
-            FlipsMap::at_pace(settings, pace).map(Self::Float)
-        } else {
-            FlipsMap::at_pace(settings, pace).map(Self::Fixed)
-        }
-    }
-
-    fn tick(&mut self, ink: &mut FadeLayer) {
-        match self {
-            Self::Float(map) => map.tick(ink),
-            Self::Fixed(map) => map.tick(ink),
-        }
-    }
-
-    fn draw(&self, _: &Report, canvas: &mut Canvas) {
-        match self {
-            Self::Float(map) => map.draw(canvas),
-            Self::Fixed(map) => map.draw(canvas),
-        }
-    }
-
-    fn report(&self) -> Report {
-        match self {
-            Self::Float(map) => Report::of_figure(map.ticks),
-            Self::Fixed(map) => Report::of_figure(map.ticks),
-        }
-    }
+enum Searching {
+    Float(Search<Float>, Option<Falling<Float>>),
+    Fixed(Search<Fixed>, Option<Falling<Fixed>>),
 }
 
 /// Both starting angles as axes, a1 across and a2 upwards, brightness the time of the first turn-over.
 ///
 /// The ink holds the map. The start angles of the settings do not matter, only the pendulum does.
 #[derive(Clone, Debug)]
-pub struct FlipsMap<F: Form<Real = f32>> {
-    search: Search<F>,
+pub struct Flips {
+    searching: Searching,
     pace: FlipsPace,
     mass_ratio: f32,
     /// sqrt(l1/g), s.
     unit: f32,
     block: Block,
-    falling: Option<Falling<F>>,
     /// Pixels of the upper half that are done.
     done: u32,
     ticks: u64,
@@ -151,6 +100,7 @@ impl Block {
     }
 
     /// Paints it, and what lies opposite.
+    #[inline(never)] // one copy
     fn paint(self, ink: &mut FadeLayer, grey: u8) {
         let map = ink.frame_mut();
         map.use_all_greys();
@@ -163,15 +113,21 @@ impl Block {
     }
 }
 
-impl<F: Form<Real = f32>> FlipsMap<F> {
-    /// As [`Scene::new`], at the pace of any processor.
-    pub fn at_pace(settings: &Settings, pace: FlipsPace) -> Result<Self, Error> {
+impl Flips {
+    /// As [`Scene::new`], at the pace of any processor, in `f32` or in fixed point.
+    #[inline(never)] // one copy
+    pub fn at_pace(settings: &Settings, pace: FlipsPace, in_float: bool) -> Result<Self, Error> {
         let parameters = &settings.parameters;
         let unit = libm::sqrtf(parameters.l1 / parameters.g);
         let dt = step_size(parameters)?;
-        let search = Search::new(parameters, dt, (LIMIT * unit / dt as f32) as u32)?;
+        let steps = (LIMIT * unit / dt as f32) as u32;
+        let searching = if in_float {
+            Searching::Float(Search::new(parameters, dt, steps)?, None)
+        } else {
+            Searching::Fixed(Search::new(parameters, dt, steps)?, None)
+        };
         let (mass_ratio, block) = (settings.mass_ratio(), Block::FIRST);
-        Ok(Self { search, pace, mass_ratio, unit, block, falling: None, done: 0, ticks: 0, elapsed: 0 })
+        Ok(Self { searching, pace, mass_ratio, unit, block, done: 0, ticks: 0, elapsed: 0 })
     }
 
     /// Whether the map is finished.
@@ -179,33 +135,35 @@ impl<F: Form<Real = f32>> FlipsMap<F> {
         self.block.size == 0
     }
 
-    /// At most `steps` steps; what they and a start have cost, in steps.
-    fn work(&mut self, steps: u32, ink: &mut FadeLayer) -> u32 {
-        let Some(falling) = &mut self.falling else {
-            let [a1, a2] = self.block.start();
-            // No angle of the map is refused.
-            let Ok(Some(falling)) = self.search.start(a1, a2) else {
-                self.found(Flip::Never, ink);
-                return self.pace.never;
-            };
-            self.falling = Some(falling);
-            return self.pace.start;
-        };
-        let before = falling.steps();
-        let flip = self.search.advance(falling, steps);
-        let made = falling.steps().wrapping_sub(before);
-        if let Some(flip) = flip {
-            self.found(flip, ink);
-        }
-        made.max(1)
-    }
-
     fn found(&mut self, flip: Flip<f32>, ink: &mut FadeLayer) {
         self.block.paint(ink, grey(flip, self.unit));
-        self.falling = None;
         self.block = self.block.next();
         self.done += 1;
     }
+}
+
+/// Makes at most `steps` steps from the start at these angles; what they and a start have cost, in steps, and what is known after
+/// them.
+#[inline(never)] // no second copy
+fn work<F: Form<Real = f32>>(
+    search: &Search<F>,
+    falling: &mut Option<Falling<F>>,
+    [a1, a2]: [f32; 2],
+    steps: u32,
+    pace: FlipsPace,
+) -> (u32, Option<Flip<f32>>) {
+    let Some(motion) = falling else {
+        // No angle of the map is refused.
+        *falling = search.start(a1, a2).ok().flatten();
+        return if falling.is_some() { (pace.start, None) } else { (pace.never, Some(Flip::Never)) };
+    };
+    let before = motion.steps();
+    let flip = search.advance(motion, steps);
+    let made = motion.steps().wrapping_sub(before);
+    if flip.is_some() {
+        *falling = None;
+    }
+    (made.max(1), flip)
 }
 
 /// The grey of a flip, where `unit` is sqrt(l1/g), s.
@@ -220,9 +178,14 @@ pub fn grey(flip: Flip<f32>, unit: f32) -> u8 {
     }
 }
 
-impl<F: Form<Real = f32>> FlipsMap<F> {
-    /// As [`Scene::tick`].
-    pub fn tick(&mut self, ink: &mut FadeLayer) {
+impl Scene for Flips {
+    const FADING: Fading = Fading::NEVER;
+
+    fn new(settings: &Settings, means: &Means) -> Result<Self, Error> {
+        Self::at_pace(settings, means.processor.flips, means.processor.has_float())
+    }
+
+    fn tick(&mut self, ink: &mut FadeLayer) {
         self.ticks = self.ticks.wrapping_add(1);
         if self.is_done() {
             return;
@@ -230,12 +193,19 @@ impl<F: Form<Real = f32>> FlipsMap<F> {
         self.elapsed = self.ticks;
         let mut left = self.pace.steps;
         while left > 0 && !self.is_done() {
-            left = left.saturating_sub(self.work(left, ink));
+            let (start, pace) = (self.block.start(), self.pace);
+            let (cost, flip) = match &mut self.searching {
+                Searching::Float(search, falling) => work(search, falling, start, left, pace),
+                Searching::Fixed(search, falling) => work(search, falling, start, left, pace),
+            };
+            left = left.saturating_sub(cost);
+            if let Some(flip) = flip {
+                self.found(flip, ink);
+            }
         }
     }
 
-    /// As [`Scene::draw`].
-    pub fn draw(&self, canvas: &mut Canvas) {
+    fn draw(&self, _: &Report, canvas: &mut Canvas) {
         let time = label::time(self.elapsed as f64 / f64::from(TICK_RATE));
         text::write_over(canvas, &time, Anchor::TopRight);
         let corner = if self.is_done() {
@@ -244,5 +214,9 @@ impl<F: Form<Real = f32>> FlipsMap<F> {
             label::percent((100 * self.done) / (WIDTH * ROWS) as u32)
         };
         text::write_over(canvas, &corner, Anchor::TopLeft);
+    }
+
+    fn report(&self) -> Report {
+        Report::of_figure(self.ticks)
     }
 }

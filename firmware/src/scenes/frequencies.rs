@@ -2,15 +2,9 @@
 
 use double_pendulum::{Error, Modes, Parameters};
 
-use crate::graphics::brush::{Disc, Spot};
-use crate::graphics::canvas::{Canvas, WIDTH};
-use crate::graphics::fade_layer::{FadeLayer, Fading};
-use crate::graphics::label;
-use crate::graphics::plot::{self, Height};
-use crate::graphics::text::{self, Anchor, LINE, LOWEST};
-use crate::motion::settings::Settings;
-use crate::motion::simulation::Means;
-use crate::scenes::scene::{Report, Scene};
+use crate::graphics::{Anchor, Canvas, Disc, FadeLayer, Fading, Height, LINE, LOWEST, Spot, WIDTH, label, plot, text};
+use crate::motion::{Means, Settings};
+use crate::scenes::{Report, Scene};
 
 /// The least range of mass ratios across the frame, that of the figure; a heavier bob 2 widens it.
 const LEAST_RANGE: f32 = 5.0;

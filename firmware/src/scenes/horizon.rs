@@ -1,9 +1,7 @@
 //! The accuracy clock: until when the frame of a motion is right to half a pixel.
 
-use crate::graphics::canvas::Canvas;
-use crate::graphics::label;
-use crate::graphics::text::{self, Anchor};
-use crate::scenes::scene::Report;
+use crate::graphics::{Anchor, Canvas, label, text};
+use crate::scenes::Report;
 
 /// A point of the frame, pixels right and down.
 pub type Point = (f32, f32);

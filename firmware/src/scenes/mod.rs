@@ -11,20 +11,18 @@ pub mod scene;
 mod small;
 mod upright;
 
+pub use flips::Flips;
+pub use scene::{Report, Scene};
+
 use double_pendulum::Error;
 
-use crate::graphics::canvas::Canvas;
-use crate::graphics::fade_layer::FadeLayer;
-use crate::motion::planner::Shown;
-use crate::motion::settings::Settings;
-use crate::motion::simulation::{Means, Simulation};
+use crate::graphics::{Canvas, FadeLayer};
+use crate::motion::{Means, Settings, Shown, Simulation};
 use crate::protocol::choice::choice;
-use crate::scenes::scene::{Report, Scene};
 
 macro_rules! catalogue {
     ($($(#[$doc:meta])* $row:ident = $code:literal, $name:literal, $scene:ty, $first:expr;)*) => {
         choice! {
-            /// A scene of the catalogue.
             SceneName { $($(#[$doc])* $row = $code, $name;)* }
         }
 
@@ -63,17 +61,14 @@ macro_rules! catalogue {
                 match self { $(Self::$row(scene) => scene.draw(report, canvas),)* }
             }
 
-            /// As [`Scene::shown`].
             pub fn shown(&self) -> Option<Shown> {
                 match self { $(Self::$row(scene) => scene.shown(),)* }
             }
 
-            /// As [`Scene::planned`].
             pub fn planned(&mut self) -> Option<&mut Simulation> {
                 match self { $(Self::$row(scene) => scene.planned(),)* }
             }
 
-            /// As [`Scene::report`].
             pub fn report(&self) -> Report {
                 match self { $(Self::$row(scene) => scene.report(),)* }
             }

@@ -3,17 +3,11 @@
 use double_pendulum::Error;
 
 use crate::config::{TRAIL_BRIGHTNESS, TRAIL_FADING, TRAIL_HALF_WIDTH};
-use crate::graphics::brush::{SUBPIXELS, Spot, Stroke};
-use crate::graphics::canvas::Canvas;
-use crate::graphics::fade_layer::{FadeLayer, Fading};
-use crate::graphics::label;
-use crate::graphics::text::{self, Anchor, LINE, LOWEST};
-use crate::graphics::view::{Place, View};
-use crate::motion::planner::Shown;
-use crate::motion::settings::Settings;
-use crate::motion::simulation::{Means, Simulation};
-use crate::scenes::horizon;
-use crate::scenes::scene::{Report, Scene};
+use crate::graphics::{
+    Anchor, Canvas, FadeLayer, Fading, LINE, LOWEST, Place, SUBPIXELS, Spot, Stroke, View, label, text,
+};
+use crate::motion::{Means, Settings, Shown, Simulation};
+use crate::scenes::{Report, Scene, horizon};
 
 /// One pendulum, bob 2's trail, and settings and time in the corners, the one place the motion never reaches.
 #[derive(Clone, Debug)]

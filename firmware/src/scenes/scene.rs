@@ -4,15 +4,11 @@ use double_pendulum::plan::Way;
 use double_pendulum::{Error, State};
 
 use crate::config::TICK_RATE;
-use crate::graphics::canvas::Canvas;
-use crate::graphics::fade_layer::{FadeLayer, Fading};
-use crate::motion::planner::Shown;
-use crate::motion::settings::Settings;
-use crate::motion::simulation::{Means, Simulation};
+use crate::graphics::{Canvas, FadeLayer, Fading};
+use crate::motion::{Means, Settings, Shown, Simulation};
 
 /// Something to watch: it starts from settings, moves tick by tick and is drawn when there is time for it.
 pub trait Scene: Sized {
-    /// How its ink fades.
     const FADING: Fading = Fading::TRACE;
 
     /// At the start; the kernel's error if the settings describe no pendulum, or none that this scene can show.
@@ -25,7 +21,6 @@ pub trait Scene: Sized {
     /// Draws over the ink; `report` is what it has just been told in numbers, which need not be found twice.
     fn draw(&self, report: &Report, canvas: &mut Canvas);
 
-    /// It in numbers.
     fn report(&self) -> Report;
 
     /// How it shows the motion of its settings; `None` if it shows nothing that can be planned.
@@ -42,7 +37,6 @@ pub trait Scene: Sized {
 /// A scene in numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Report {
-    /// Ticks since the start.
     pub step: u64,
     /// Simulated time since the start, s.
     pub time: f64,

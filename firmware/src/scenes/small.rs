@@ -5,16 +5,9 @@ use double_pendulum::trig::{DefaultTrig, SinCos};
 use double_pendulum::{Error, Method, Modes, Motion, Oscillation, Parameters, Pendulum, SmallOscillations};
 
 use crate::config::{PAGE_GRAVITY, TICK_RATE};
-use crate::graphics::canvas::{Canvas, WIDTH};
-use crate::graphics::fade_layer::{FadeLayer, Fading};
-use crate::graphics::label;
-use crate::graphics::plot::{self, Height};
-use crate::graphics::text::{self, Anchor, LINE, LOWEST};
-use crate::motion::planner::Shown;
-use crate::motion::settings::Settings;
-use crate::motion::simulation::Means;
-use crate::scenes::horizon;
-use crate::scenes::scene::{self, Report, Scene};
+use crate::graphics::{Anchor, Canvas, FadeLayer, Fading, Height, LINE, LOWEST, WIDTH, label, plot, text};
+use crate::motion::{Means, Settings, Shown};
+use crate::scenes::{Report, Scene, horizon, scene};
 
 /// The rows of rest of angle 1 and angle 2, pixels from the top, and the greatest swing about them.
 const ROWS: [f32; 2] = [20.5, 43.5];

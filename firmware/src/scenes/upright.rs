@@ -4,15 +4,10 @@ use double_pendulum::trig::{DefaultTrig, SinCos};
 use double_pendulum::{DirectionF32, Error, Run, State};
 
 use crate::config::{DT, HALF_PIXEL, STEPS_PER_TICK};
-use crate::graphics::brush::{Spot, Stroke};
-use crate::graphics::canvas::{Canvas, WIDTH};
-use crate::graphics::fade_layer::FadeLayer;
-use crate::graphics::text::{self, Anchor, LINE, LOWEST};
-use crate::graphics::view::{Place, RodDirections, View};
-use crate::motion::settings::Settings;
-use crate::motion::simulation::{Energy, Means};
+use crate::graphics::{Anchor, Canvas, FadeLayer, LINE, LOWEST, Place, RodDirections, Spot, Stroke, View, WIDTH, text};
+use crate::motion::{Energy, Means, Settings};
 use crate::scenes::horizon::{self, LastRight};
-use crate::scenes::scene::{self, Report, Scene};
+use crate::scenes::{Report, Scene, scene};
 
 /// Half the width of a trace, subpixels.
 const HALF_WIDTH: u8 = 30;

@@ -12,7 +12,7 @@ pub mod series;
 use double_pendulum::{Motion, Parameters, State};
 use twofloat::TwoFloat;
 
-use series::{Number, Series, Wave};
+use series::{Scalar, Series, Wave};
 
 /// Masses, lengths and gravity: as in [`Parameters`].
 #[derive(Clone, Copy, Debug)]
@@ -25,7 +25,7 @@ pub struct Constants<T = TwoFloat> {
     pub gravity: T,
 }
 
-impl<T: Number> From<&Parameters<f64>> for Constants<T> {
+impl<T: Scalar> From<&Parameters<f64>> for Constants<T> {
     fn from(&Parameters { m1, m2, l1, l2, g }: &Parameters<f64>) -> Self {
         Self { masses: [m1, m2].map(T::from), lengths: [l1, l2].map(T::from), gravity: g.into() }
     }
@@ -49,7 +49,7 @@ impl Reference {
     }
 }
 
-impl<T: Number> Reference<T> {
+impl<T: Scalar> Reference<T> {
     /// As [`Reference::new`], in any arithmetic.
     pub fn of(parameters: &Parameters<f64>, motion: &Motion<f64>) -> Self {
         let &Motion { a1, a2, w1, w2 } = motion;
@@ -172,7 +172,7 @@ pub fn states(parameters: &Parameters<f64>, start: &Motion<f64>, times: &[f64]) 
 /// The step at which the last terms of each series fall below the resolution of its value (A. Jorba, M. Zou, "A
 /// software package for the numerical integration of ODEs by means of high-order Taylor methods", 2005). Four terms
 /// are looked at, because a motion with a symmetry in time has only every second or fourth.
-fn longest_step<T: Number>(motion: &[Series<T>; 4]) -> f64 {
+fn longest_step<T: Scalar>(motion: &[Series<T>; 4]) -> f64 {
     let [a1, a2, w1, w2] = motion;
     let magnitude = |x: T| -> f64 { x.into().abs() };
     let rate = magnitude(w1[0]).max(magnitude(w2[0])).max(1.0);

@@ -1,5 +1,6 @@
 //! `cargo flash-f4`: the firmware of the STM32F405, built and flashed, through a debug probe or over the chip's own USB loader.
 
+use std::io;
 use std::os::unix::process::CommandExt;
 use std::process::{Command, ExitCode};
 use std::time::Duration;
@@ -9,7 +10,7 @@ use clap::Parser;
 use host_tests::console::cli::{self, Refused, complain};
 use host_tests::emulator::boards::STM32F405;
 use host_tests::emulator::flash::flash_image;
-use host_tests::emulator::process::{self, ProcessError};
+use host_tests::emulator::process;
 use host_tests::emulator::toolchain;
 
 /// For the program that flashes to say its version.
@@ -49,11 +50,9 @@ fn flash(arguments: &Arguments) -> anyhow::Result<()> {
         ("probe-rs", "https://probe.rs/docs/getting-started/installation")
     };
     // Before the build, which takes its time.
-    process::run(Command::new(program).arg("--version"), LIMIT).map_err(|error| match error {
-        ProcessError::Failed(..) => {
-            Refused::because(format_args!("flashing needs {program}, which is not installed; see {source}"))
-        }
-        error => Refused::because(error),
+    process::run(Command::new(program).arg("--version"), LIMIT).map_err(|error| match error.kind() {
+        io::ErrorKind::TimedOut => Refused::because(error),
+        _ => Refused::because(format_args!("flashing needs {program}, which is not installed; see {source}")),
     })?;
     let elf = toolchain::ready()?.build_for(&STM32F405)?;
     let mut command = Command::new(program);

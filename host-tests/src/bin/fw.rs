@@ -1,7 +1,7 @@
 //! `cargo fw`: builds and runs any firmware binary; also cargo's own runner for the ARM targets.
 
 use std::fs;
-use std::io::stdout;
+use std::io::{self, stdout};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
@@ -11,7 +11,7 @@ use clap::Parser;
 use host_tests::console::cli::{self, Refused, complain};
 use host_tests::emulator::boards::BOARDS;
 use host_tests::emulator::firmware_run::{board_for, run};
-use host_tests::emulator::process::{self, ProcessError};
+use host_tests::emulator::process;
 use host_tests::emulator::qemu::{Clock, Settings};
 use host_tests::emulator::toolchain::{self, Toolchain};
 
@@ -60,8 +60,9 @@ fn execute(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     let elf = if is_path { binary.clone() } else { toolchain.build(&name, board.target)? };
     let limit = arguments.seconds.map_or(LIMIT, |seconds| Duration::from_secs(seconds.into()));
     let settings = Settings { qemu: toolchain.qemu(), board, elf: &elf, clock: Clock::Real, debugger: true, limit };
+    let is_late = |error: &io::Error| error.kind() == io::ErrorKind::TimedOut;
     match (run(&settings, &mut stdout().lock()), arguments.seconds) {
-        (Err(error), Some(seconds)) if matches!(error.downcast_ref(), Some(ProcessError::TimedOut(..))) => {
+        (Err(error), Some(seconds)) if error.downcast_ref().is_some_and(is_late) => {
             complain(format_args!("ended after {seconds} s, as told"));
             Ok(ExitCode::SUCCESS)
         }

@@ -3,10 +3,49 @@
 use std::process::ExitCode;
 use std::sync::atomic::Ordering;
 
-use host_tests::commands::prove::{HEADING, Options, Proof, horizons, known_answers, moving, row, words};
-use host_tests::console::cli::{self, Refused, say};
+use clap::{Parser, value_parser};
+use double_pendulum::Method;
+use double_pendulum::plan::{Plan, Way};
+use host_tests::commands::plan::SceneOptions;
+use host_tests::commands::prove::{HEADING, frames, horizons, known_answers, moving, words};
+use host_tests::console::cli::{self, Refused, choice, say};
 use host_tests::console::progress::Bar;
 use host_tests::emulator::process::{interrupted, interrupted_by};
+use host_tests::oracle::known_answers;
+use reference::enclosure::Start;
+
+const EXAMPLES: &str = "Examples:
+  cargo prove --scene page
+  cargo prove --angles 120,120 --degrees --method rk4-f32-direction --steps 4
+
+Ctrl-C leaves what is proved until then.";
+
+/// Proves until when the frames that a chip draws are right to half a pixel: encloses the exact motion, rounding errors and
+/// all, and holds each frame of the planned method, which is bit-identical on every chip, against it.
+///
+/// The motion is that of the decimals and fractions given; with --scene it is that of the board's own numbers.
+#[derive(Debug, Parser)]
+#[command(name = "cargo prove", after_help = EXAMPLES)]
+struct Options {
+    /// What moves, and who draws it.
+    #[command(flatten)]
+    scene: SceneOptions,
+    /// Draws by this method in place of the planned one
+    #[arg(long, value_name = "NAME", value_parser = choice(Method::DRAWN.iter().copied(), Method::name))]
+    method: Option<Method>,
+    /// Its steps to a frame
+    #[arg(long, value_name = "N", requires = "method", default_value_t = 1, value_parser = value_parser!(u32).range(1..=65_536))]
+    steps: u32,
+    /// Prints the box that the exact motion is in at each frame, and the frame's verdict, as CSV
+    #[arg(long)]
+    csv: bool,
+    /// Prints the horizons of all scenes on all chips, predicted and proved, as a table
+    #[arg(long, conflicts_with_all = ["scene", "method", "csv"])]
+    table: bool,
+    /// Prints the table of known answers in host-tests/data anew, every digit of it proved
+    #[arg(long, conflicts_with_all = ["scene", "method", "csv", "table"])]
+    known_answers: bool,
+}
 
 fn main() -> ExitCode {
     cli::main(run)
@@ -14,39 +53,44 @@ fn main() -> ExitCode {
 
 fn run(options: &Options) -> anyhow::Result<ExitCode> {
     if options.table {
-        let bar = Bar::start("proving", moving().count() as u64);
-        let table = horizons(moving(), || bar.advance(1))?;
-        drop(bar);
-        say(table.markdown_rows().trim_end())?;
+        say(HEADING)?;
+        for &name in moving() {
+            say(horizons(name)?)?;
+        }
         return Ok(ExitCode::SUCCESS);
     }
     if options.known_answers {
-        known_answers(|_| true, say)?;
+        say(known_answers::HEADING)?;
+        for scene in known_answers::table()?.chunk_by(|one, next| one.scene == next.scene) {
+            known_answers(scene)?.iter().try_for_each(say)?;
+        }
         return Ok(ExitCode::SUCCESS);
     }
-    let (scene, start, plan) = options.scene().map_err(Refused::because)?;
-    let Some(way) = options.way(&plan) else {
+    let (scene, plan) = options.scene.plan().map_err(Refused::because)?;
+    let given = || options.scene.start.exact().ok_or("of a number, 18 digits at most can be enclosed");
+    let of_board = options.scene.scene.map(|_| Start::of(&scene.pendulum, &scene.start));
+    let start = of_board.map_or_else(given, Ok).map_err(Refused::because)?;
+    let asked = options.method.map(|method| Way { method, steps: options.steps });
+    let Some(way) = asked.or(plan.as_ref().ok().map(Plan::way)) else {
         say("nothing that the chip can afford is right in any frame")?;
         return Ok(ExitCode::SUCCESS);
     };
     let stopped = interrupted()?;
     if options.csv {
-        say(HEADING)?;
+        say("t,sin_a1,cos_a1,sin_a2,cos_a2,radius,verdict")?;
     }
-    let bar = Bar::start("proving", scene.frames().into());
-    let proof = Proof::of(&scene, &start, way, |frame, set, is_right| {
+    let (bar, mut proved) = (Bar::start("proving", scene.frames().into()), Vec::new());
+    let frames = frames(&scene, &start, way).map_err(Refused::because)?;
+    for frame in frames.take_while(|_| stopped.load(Ordering::Relaxed) == 0) {
         bar.advance(1);
+        proved.push(frame);
         if options.csv {
-            say(row(&scene, frame, set, is_right))?;
+            say(frame.row(scene.time(proved.len() as u32)))?;
         }
-        Ok(stopped.load(Ordering::Relaxed) == 0)
-    })?;
+    }
     drop(bar);
     if !options.csv {
-        words(&scene, &plan, &proof).iter().try_for_each(say)?;
+        say(words(&scene, &plan, way, &proved))?;
     }
-    match stopped.load(Ordering::Relaxed) {
-        0 => Ok(ExitCode::SUCCESS),
-        signal => Ok(ExitCode::from(interrupted_by(signal as i32) as u8)),
-    }
+    Ok(interrupted_by(stopped.load(Ordering::Relaxed)))
 }

@@ -4,7 +4,7 @@ use std::io::{self, BufWriter};
 use std::process::ExitCode;
 
 use anyhow::Context;
-use host_tests::commands::simulate::{CsvRows, Options, Place, Plan, choose, list, on_board, on_host, plan};
+use host_tests::commands::simulate::{CsvRows, Plan, SimulateOptions, choose, list, on_board, plan};
 use host_tests::console::cli::{self, Refused, complain, say};
 use host_tests::console::progress::Bar;
 
@@ -12,7 +12,7 @@ fn main() -> ExitCode {
     cli::main(run)
 }
 
-fn run(options: &Options) -> anyhow::Result<()> {
+fn run(options: &SimulateOptions) -> anyhow::Result<()> {
     if options.list {
         return Ok(say(list())?);
     }
@@ -20,13 +20,13 @@ fn run(options: &Options) -> anyhow::Result<()> {
     let output = BufWriter::new(io::stdout().lock());
     let mut table = CsvRows::new(output, &plan, options);
     let bar = Bar::start("rows", u64::from(plan.request.samples) + 1);
-    let row = |reading: &_| {
+    let mut row = |reading: &_| {
         bar.advance(1);
         table.row(reading)
     };
     let done = match options.place {
-        Place::Host => on_host(&plan, row),
-        Place::Board(board) => on_board(&plan, board, row),
+        None => plan.request.readings(|reading| Ok(row(reading)?)),
+        Some(board) => on_board(&plan, board, row),
     };
     drop(bar);
     // The rows until then are right, and stay.
@@ -35,7 +35,7 @@ fn run(options: &Options) -> anyhow::Result<()> {
 }
 
 /// The motion to compute; warnings about it go to stderr first.
-fn planned(options: &Options) -> anyhow::Result<Plan> {
+fn planned(options: &SimulateOptions) -> anyhow::Result<Plan> {
     if let Some(tolerance) = &options.tolerance {
         let choice = choose(options, tolerance)?;
         complain(&choice);

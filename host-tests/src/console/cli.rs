@@ -1,6 +1,6 @@
 //! What every command does alike: its options, what it says, one clear line for an error, and the exit code.
 
-use std::fmt::Display;
+use std::fmt::{self, Display};
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Write, stderr, stdout};
 use std::path::Path;
@@ -14,14 +14,21 @@ use clap::error::ErrorKind as OptionError;
 pub const REFUSED: u8 = 2;
 
 /// A request that cannot be served as asked, and why, in one line: exit code 2. Any other error is exit code 1.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{0}")]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Refused(String);
 
 impl Refused {
     /// With the reason that is printed after `error: `.
     pub fn because(reason: impl Display) -> Self {
         Self(reason.to_string())
+    }
+}
+
+impl std::error::Error for Refused {}
+
+impl Display for Refused {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
     }
 }
 
@@ -71,7 +78,6 @@ pub fn check_writable(option: &str, file: &Path) -> Result<(), Refused> {
     removed.map_err(|error| Refused::because(format_args!("{option}: cannot write {}: {error}", file.display())))
 }
 
-/// Accepts the names of a closed set of choices, and no others.
 pub fn choice<Choice>(
     choices: impl IntoIterator<Item = Choice>,
     name: impl Fn(Choice) -> &'static str,

@@ -7,9 +7,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use super::cli::complain;
 
-/// How often a plain line says that work goes on.
 const REMINDER: Duration = Duration::from_secs(15);
-/// How fast the spinner turns.
 const TURN: Duration = Duration::from_millis(120);
 /// How much of a child's latest line the spinner shows.
 const SHOWN: usize = 60;

@@ -2,7 +2,6 @@
 
 use firmware::config::{self, Processor};
 
-/// A board that QEMU emulates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Board {
     pub name: &'static str,
@@ -11,7 +10,6 @@ pub struct Board {
     /// QEMU's `-cpu`.
     pub cpu: &'static str,
     pub target: &'static str,
-    /// The firmware binary that runs on it.
     pub binary: &'static str,
     /// The cargo feature that this binary needs; empty if none.
     pub feature: &'static str,
@@ -44,7 +42,6 @@ impl Board {
         f64::from(1 << self.instruction_shift()) * 1e-9
     }
 
-    /// What a scene may cost there.
     pub fn processor(&self) -> Processor {
         match (self.binary, self.core()) {
             ("stm32f405", _) => config::STM32F405,
@@ -89,7 +86,6 @@ const LM3S6965EVB: Board = Board {
     has_panel: true,
 };
 
-/// Every board, the default one first.
 pub const BOARDS: [Board; 5] = [
     LM3S6965EVB,
     Board { name: "lm3s6965evb-m4", cpu: "cortex-m4", target: "thumbv7em-none-eabihf", ..LM3S6965EVB },

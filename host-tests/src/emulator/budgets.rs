@@ -19,7 +19,6 @@ pub struct Memory {
     pub data: u32,
     /// Statics that start as zeros or as anything.
     pub bss: u32,
-    /// The deepest that the stack reaches.
     pub stack: u32,
 }
 

@@ -1,19 +1,15 @@
 //! Scenes and applications on the host, with the memory that a board would give them.
 
 use double_pendulum::Error;
-use firmware::app::player::{News, Player};
+use firmware::app::{News, Player};
 use firmware::config::{PROCESSOR, Processor};
-use firmware::graphics::canvas::Canvas;
-use firmware::graphics::fade_layer::FadeLayer;
-use firmware::graphics::frame_buffers::FrameBuffers;
-use firmware::motion::settings::Settings;
-use firmware::scenes::SceneName;
-use firmware::scenes::scene::Report;
+use firmware::graphics::{Canvas, FadeLayer, FrameBuffers};
+use firmware::motion::Settings;
+use firmware::scenes::{Report, SceneName};
 
-/// A scene as it is played.
 #[derive(Debug)]
 pub struct Show {
-    player: Player<'static>,
+    pub player: Player<'static>,
     /// What planning has found, and the tick.
     pub news: Vec<(u64, News)>,
 }
@@ -38,7 +34,6 @@ impl Show {
         let _ = player.check();
     }
 
-    /// Draws the whole frame over what was there.
     pub fn draw(&self, canvas: &mut Canvas) {
         self.player.draw(canvas);
     }
@@ -52,13 +47,9 @@ impl Show {
     pub fn report(&self) -> Report {
         self.player.report()
     }
-
-    pub fn player(&mut self) -> &mut Player<'static> {
-        &mut self.player
-    }
 }
 
-/// FrameBuffers for an application that may live for ever, as those of a board do.
+/// Frame buffers for an application that may live for ever, as those of a board do.
 pub fn sheets() -> &'static mut FrameBuffers {
     Box::leak(Box::default())
 }

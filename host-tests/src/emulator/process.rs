@@ -21,17 +21,6 @@ use nix::unistd::Pid;
 /// process ends, by any signal. Any Unix can do that, and it reaches the children's children.
 const WARDEN: &str = "(sleep $0; kill -KILL 0) & read -r _; kill -KILL 0";
 
-/// Why a child could not be run to its end.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum ProcessError {
-    /// The program, as it was called, does not exist or may not be run; the system's reason.
-    #[error("cannot run {0}: {1}")]
-    Failed(String, String),
-    /// The time limit passed; the child and its group were killed.
-    #[error("{0} was still running after {seconds} s and was stopped", seconds = .1.as_secs_f32())]
-    TimedOut(String, Duration),
-}
-
 /// A running child. Dropping it kills its whole process group.
 #[derive(Debug)]
 pub struct Running {
@@ -40,7 +29,8 @@ pub struct Running {
     program: String,
     started: Instant,
     limit: Duration,
-    ended: Option<Result<ExitStatus, ProcessError>>,
+    /// How it ended, and whether too late.
+    ended: Option<(ExitStatus, bool)>,
     pub stdin: Option<ChildStdin>,
     pub stdout: Option<ChildStdout>,
     pub stderr: Option<ChildStderr>,
@@ -49,9 +39,9 @@ pub struct Running {
 /// Starts `command` in a process group of its own, to be killed at the latest after `limit`, waited for or not.
 ///
 /// A child in the background must not read the terminal, so give it `Stdio::null()` or a pipe as its standard input.
-pub fn spawn(command: &mut Command, limit: Duration) -> Result<Running, ProcessError> {
+pub fn spawn(command: &mut Command, limit: Duration) -> io::Result<Running> {
     let program = command.get_program().to_string_lossy().into_owned();
-    let failed = |error: io::Error| ProcessError::Failed(program.clone(), error.to_string());
+    let failed = |error: io::Error| io::Error::other(format!("cannot run {program}: {error}"));
     let started = Instant::now();
     let mut warden = Command::new("sh");
     warden.args(["-c", WARDEN, &limit.as_secs_f64().to_string()]);
@@ -78,28 +68,32 @@ impl Running {
         self.child.id()
     }
 
-    /// Waits for the child's end. What is left of its group is killed.
-    pub fn wait(&mut self) -> Result<ExitStatus, ProcessError> {
+    /// Waits for the child's end. What is left of its group is killed. If it was killed at its time limit, the error's kind says so.
+    pub fn wait(&mut self) -> io::Result<ExitStatus> {
         let status = self.child.wait();
-        self.end(status)
+        self.end(status?)
     }
 
     /// The child's exit status if it has ended, without waiting.
-    pub fn try_wait(&mut self) -> Result<Option<ExitStatus>, ProcessError> {
-        self.child.try_wait().transpose().map(|status| self.end(status)).transpose()
+    pub fn try_wait(&mut self) -> io::Result<Option<ExitStatus>> {
+        self.child.try_wait()?.map(|status| self.end(status)).transpose()
     }
 
-    fn end(&mut self, status: io::Result<ExitStatus>) -> Result<ExitStatus, ProcessError> {
+    fn end(&mut self, status: ExitStatus) -> io::Result<ExitStatus> {
         let Self { warden, program, started, limit, ended, .. } = self;
-        let how = || {
+        let (status, is_stopped) = *ended.get_or_insert_with(|| {
             let is_late = started.elapsed() >= *limit;
             end(warden);
-            let status = status.map_err(|error| ProcessError::Failed(program.clone(), error.to_string()))?;
-            let is_killed = status.signal() == Some(Signal::SIGKILL as i32);
-            if is_killed && is_late { Err(ProcessError::TimedOut(program.clone(), *limit)) } else { Ok(status) }
-        };
-        ended.get_or_insert_with(how).clone()
+            (status, is_late && status.signal() == Some(Signal::SIGKILL as i32))
+        });
+        if is_stopped { Err(timed_out(program, *limit)) } else { Ok(status) }
     }
+}
+
+/// The error of a program that was stopped at its time limit.
+pub fn timed_out(program: &str, limit: Duration) -> io::Error {
+    let seconds = limit.as_secs_f32();
+    io::Error::new(io::ErrorKind::TimedOut, format!("{program} was still running after {seconds} s and was stopped"))
 }
 
 impl Drop for Running {

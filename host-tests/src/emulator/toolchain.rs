@@ -30,10 +30,8 @@ pub struct Toolchain {
     qemu: PathBuf,
 }
 
-/// Where the ARM core library comes from.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum ArmCore {
-    /// Ready-made, beside the compiler in use.
     ReadyMade,
     /// Built from the sources that Debian's compiler carries, by that compiler.
     FromSource {

@@ -6,7 +6,6 @@ use serialport::{SerialPortInfo, SerialPortType};
 /// does not go by them.
 pub const AUTO: &str = "auto";
 
-/// The port that `name` means.
 pub fn find(name: &str) -> Result<String, String> {
     if name != AUTO {
         return Ok(name.to_owned());
@@ -14,7 +13,6 @@ pub fn find(name: &str) -> Result<String, String> {
     choose(&serialport::available_ports().unwrap_or_default())
 }
 
-/// The only one of `ports` that is a USB device's.
 fn choose(ports: &[SerialPortInfo]) -> Result<String, String> {
     let over_usb = |port: &SerialPortInfo| {
         let SerialPortType::UsbPort(usb) = &port.port_type else { return None };

@@ -2,19 +2,16 @@
 
 use firmware::protocol::{Decoder, Frame, LinkError, Message, Restarted};
 
-/// What the link has been through.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
     pub messages: u64,
     /// Messages damaged on the way: wrong CRC, framing, length or version.
     pub damaged: u64,
-    /// Frames whose sequence number was never seen.
     pub lost: u64,
     /// Times that the board began to count its frames anew.
     pub restarts: u64,
 }
 
-/// An intact message of any kind.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Received {
     pub kind: u8,
@@ -34,7 +31,6 @@ pub struct Inbox {
     counts: Counts,
     /// The sequence number the next frame should have.
     expected: Option<u32>,
-    /// What was wrong with the last damaged message.
     damage: Option<LinkError>,
     /// What comes may begin in the middle of a message.
     joins: bool,

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::io::{ErrorKind, Read, Write};
 use std::time::{Duration, Instant};
 
-use firmware::app::warm_restart::{Cause, LastShown};
+use firmware::app::{Cause, LastShown};
 use firmware::config::BAUD;
 use firmware::protocol::{LinkError, MAX_WIRE, Message, Restarted, VERSION, encode};
 use serialport::SerialPort;
@@ -15,14 +15,12 @@ use super::inbox::{Counts, Inbox, Received};
 const WAIT: Duration = Duration::from_millis(1);
 /// How long the port may take to accept a message, which the board takes within a tick.
 const ACCEPTANCE: Duration = Duration::from_millis(500);
-/// How often a port that is gone is looked for.
 const RETRY: Duration = Duration::from_millis(250);
 /// A board that plays sends 60 messages a second: without one for so long, something is the matter.
 const PATIENCE: Duration = Duration::from_secs(2);
 /// Bytes looked at in one go at most; a foreign device may send without end.
 const MOST_BYTES: usize = 1 << 16;
 
-/// A port by its name, open or not.
 pub struct Port {
     name: String,
     baud: u32,

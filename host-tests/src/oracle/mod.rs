@@ -5,7 +5,6 @@ pub mod known_answers;
 #[path = "../../../kernel/src/tests/random.rs"]
 pub mod random;
 pub mod snapshot;
-pub mod stream;
 pub mod textbook;
 pub mod tolerances;
 pub mod trials;

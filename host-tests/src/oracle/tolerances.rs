@@ -21,19 +21,10 @@ pub const LINEAR: f64 = 1e-9;
 /// Bounds along a motion by RK4 with 0.05 rad per step: its energy error over 100 steps (measured: no excess at all).
 pub const BOUNDS_DRIFT: f64 = 1e-6;
 
-/// How close to its bounds a chaotic motion comes in 600 s (measured 0.3 %).
-pub const BOUNDS_REACHED: f64 = 0.01;
-
 /// What one admissible step may miss, over (fastest rate) dt: rad in an angle, and the fastest rate's share in a velocity.
 /// Classical step and direction form; measured, for the worst motions that a search found over masses 1e-6..1e6
 /// and lengths 1:100..100:1: 2.8e-5 and 7.7e-5.
 pub const ADMISSIBLE: [f64; 2] = [3e-5, 8e-5];
-
-/// Mass ratio 1000 from (2, 1) rad after 0.6 s, rad: with 1/1024 s the motion is lost (measured 0.5),
-pub const UNRESOLVED: f64 = 0.1;
-
-/// and with admissible steps, 2e-5 s, it is not (measured 4e-8).
-pub const RESOLVED: f64 = 1e-6;
 
 /// The measured order of the method: 4, give or take the next order's share at the steps used.
 pub const ORDER: std::ops::RangeInclusive<f64> = 3.9..=4.1;
@@ -136,16 +127,10 @@ pub const STAYS: f64 = 0.05;
 /// least ten times (measured: to 6e-12 at most, to 7e-4 at least).
 pub const STABILITY_EDGE: [f64; 2] = [1e-6, 1e-4];
 
-/// Whirling compensated in f32 with 4096 steps a second, rad: roundings (measured 7e-7); a turn miscounted would be 6.3.
-pub const WHIRLING: f64 = 1e-5;
-
 /// Directions against the angles of the same motion, in epsilons: roundings of the sines and the lengths.
 pub const DIRECTIONS: f64 = 8.0;
 /// Their lengths against 1 with 64 steps a second: what restoring them to first order leaves (measured 3e-6).
 pub const LENGTHS: f64 = 1e-5;
-
-/// Regular motion from 999 rad against that from the same angles without their turns, rad: 999 rad is given to 1e-13.
-pub const FAR_ANGLE: f64 = 1e-12;
 
 /// Straight rods turning evenly without gravity, 20 s, rad and relative: in f32 some 5000 steps of plain sums, each
 /// rounded; in f64 the direction form's own error, 6e-11 rad a second at 2 rad/s.
@@ -251,9 +236,6 @@ pub const ORDER_MEASURABLE: f64 = 1e-11;
 /// How far a measured order of extrapolation may be off: with steps as coarse as high orders need to be above the roundings,
 /// the next power of the step has its share (measured 5.98, 7.91, 12.34, 15.25); the next order is 2 off.
 pub const ORDER_EXTRAPOLATED: f64 = 0.8;
-/// A step of order 12 and back, of 0.1 rad: some 70 roundings of the sums, 2e-16 each (measured 2e-16).
-pub const RETURN_OF_ONE_STEP: f64 = 1e-14;
-
 /// Points of a map of flips with a limit of 10 sqrt(l/g) that are right to a grey level, of those that may turn over: the goal.
 pub const FLIPS_RIGHT: f64 = 0.999;
 /// With a limit of 100 sqrt(l/g) chaos leaves fewer: at most so many are wrong, ...

@@ -63,18 +63,15 @@ impl Trial {
     }
 }
 
-/// The largest difference of the angles, rad, whole turns apart; infinite where one is not a number.
+/// How far apart two angles point, rad, at most pi; infinite if one is not a number.
+pub fn apart(a: f64, b: f64) -> f64 {
+    let turns = (a - b) / TAU;
+    let apart = (turns - turns.round()).abs() * TAU;
+    if apart.is_finite() { apart } else { f64::INFINITY }
+}
+
+/// The largest difference of the angles, rad, whole turns apart.
 pub fn largest_difference(states: &[State<f64>], others: &[State<f64>]) -> f64 {
-    let apart = |a: f64, b: f64| ((a - b) / TAU - ((a - b) / TAU).round()).abs() * TAU;
     let pairs = states.iter().zip(others);
-    let differences = pairs.flat_map(|(x, y)| [apart(x.a1, y.a1), apart(x.a2, y.a2)]);
-    differences.fold(0.0, |worst, apart| {
-        if apart <= worst {
-            worst
-        } else if apart.is_finite() {
-            apart
-        } else {
-            f64::INFINITY
-        }
-    })
+    pairs.flat_map(|(x, y)| [apart(x.a1, y.a1), apart(x.a2, y.a2)]).fold(0.0, f64::max)
 }

@@ -14,8 +14,9 @@ use firmware::scenes::SceneName;
 use host_tests::commands::count::{Cost, FrameProfile, Image};
 use host_tests::emulator::boards::{BOARDS, Board, PICO};
 use host_tests::emulator::budgets::{self, Memory};
+use host_tests::emulator::pico::PicoMachine;
 use host_tests::emulator::qemu::{Lockstep, PAINT, Stack};
-use host_tests::emulator::{pico, toolchain};
+use host_tests::emulator::toolchain;
 use host_tests::link::Received;
 use object::elf::{SHF_ALLOC, SHF_WRITE};
 use object::{Object, ObjectSection, SectionFlags, SectionKind};
@@ -62,7 +63,7 @@ impl Stepped for Lockstep {
     }
 }
 
-impl Stepped for pico::Machine {
+impl Stepped for PicoMachine {
     fn next(&mut self) -> anyhow::Result<Frame> {
         Ok(self.run_to_frame()?.iter().rev().find_map(Received::read).expect("it ends with one"))
     }
@@ -174,7 +175,7 @@ fn the_pico_keeps_within_its_memory_and_its_time() -> anyhow::Result<()> {
     let emulator = toolchain::ready_for_pico().unwrap_or_else(|missing| panic!("{missing}"));
     let elf = application(&PICO);
     let stack = Stack::of(&elf)?.addresses();
-    let mut board = pico::Machine::start(&emulator, &elf, LIMIT)?;
+    let mut board = PicoMachine::start(&emulator, &elf, LIMIT)?;
     board.fill(stack.clone(), PAINT)?;
     play(&mut board, FRAMES)?;
     let idle = 1.0 - f64::from(exercise(&mut board)? * TICK_RATE) / f64::from(PICO.hertz);

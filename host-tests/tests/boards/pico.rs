@@ -6,7 +6,7 @@ use crate::support::code::Code;
 use crate::support::{LIMIT, application};
 use anyhow::Context;
 use double_pendulum::{Method, Parameters};
-use firmware::app::controls::Key;
+use firmware::app::Key;
 use firmware::app::warm_restart::Cause;
 use firmware::config::{GRAVITY, HOLD_TICKS, MOST_MEASURED_STEPS, RECEIVE_QUEUE, TICK_RATE, WATCHDOG_SECONDS};
 use firmware::graphics::bitmap::Bitmap;
@@ -21,7 +21,7 @@ use host_tests::commands::count::{FULL_CYCLE, Target, affordable_steps, step_cos
 use host_tests::emulator::boards::{BOARDS, Core, PICO};
 use host_tests::emulator::flash::flash_image;
 use host_tests::emulator::host::Show;
-use host_tests::emulator::pico::Machine;
+use host_tests::emulator::pico::PicoMachine;
 use host_tests::emulator::toolchain;
 use host_tests::link::{Counts, Received};
 
@@ -32,9 +32,9 @@ const PICTURE: Duration = Duration::from_millis(50);
 const SHOWING: u32 = 200_000;
 const TICK: Duration = Duration::from_nanos(1_000_000_000 / TICK_RATE as u64);
 
-fn board() -> anyhow::Result<Machine> {
+fn board() -> anyhow::Result<PicoMachine> {
     let emulator = toolchain::ready_for_pico().unwrap_or_else(|missing| panic!("{missing}"));
-    Machine::start(&emulator, &application(&PICO), LIMIT)
+    PicoMachine::start(&emulator, &application(&PICO), LIMIT)
 }
 
 /// The host's own scene, as this board plays it.
@@ -43,7 +43,7 @@ fn show(name: SceneName, settings: &Settings) -> Show {
 }
 
 /// A board that has just been told to play `name`.
-fn board_in(name: SceneName) -> anyhow::Result<Machine> {
+fn board_in(name: SceneName) -> anyhow::Result<PicoMachine> {
     let mut board = board()?;
     board.run(PICTURE)?;
     board.send(&Choose { request: 1, scene: name.code() })?;
@@ -56,7 +56,7 @@ fn request(method: Method, samples: u32) -> Request {
     Request { method, parameters, angles: [0.5; 2], velocities: [0.0; 2], dt: 1.0 / 256.0, stride: 1, samples }
 }
 
-fn next_frame(board: &mut Machine) -> anyhow::Result<Frame> {
+fn next_frame(board: &mut PicoMachine) -> anyhow::Result<Frame> {
     let messages = board.run_to_frame()?;
     messages.iter().rev().find_map(Received::read).context("no frame")
 }
@@ -64,7 +64,7 @@ fn next_frame(board: &mut Machine) -> anyhow::Result<Frame> {
 /// The frame that the host would send in its place: all of it, but how long it took.
 fn expected(show: &mut Show, frame: &Frame) -> Frame {
     let Frame { sequence, dropped, lost, scene_cycles, busy_cycles, .. } = *frame;
-    Frame { sequence, dropped, lost, scene_cycles, busy_cycles, ..show.player().frame() }
+    Frame { sequence, dropped, lost, scene_cycles, busy_cycles, ..show.player.frame() }
 }
 
 #[test]
@@ -123,7 +123,7 @@ fn a_motion_asked_for_arrives_whole_through_the_uart() -> anyhow::Result<()> {
 }
 
 /// A board that goes on with a motion of this method.
-fn board_stepping(method: Method) -> anyhow::Result<Machine> {
+fn board_stepping(method: Method) -> anyhow::Result<PicoMachine> {
     let mut board = board()?;
     board.run(PICTURE)?;
     board.send(&request(method, 0).message(1))?;
@@ -132,7 +132,7 @@ fn board_stepping(method: Method) -> anyhow::Result<Machine> {
 }
 
 /// The cycles of its next steps.
-fn measured(board: &mut Machine, in_ram: u8) -> anyhow::Result<u32> {
+fn measured(board: &mut PicoMachine, in_ram: u8) -> anyhow::Result<u32> {
     board.send(&Measure { request: 2, steps: MOST_MEASURED_STEPS, in_ram })?;
     let messages = board.run(4 * TICK)?;
     Ok(messages.iter().find_map(Received::read).map_or(0, |Measured { cycles, .. }| cycles))
@@ -179,7 +179,7 @@ fn the_emulator_counts_the_cycles_that_are_estimated() -> anyhow::Result<()> {
 }
 
 /// The board stands still, so that the panel has time to take all of a picture.
-fn stand_still(board: &mut Machine) -> anyhow::Result<Frame> {
+fn stand_still(board: &mut PicoMachine) -> anyhow::Result<Frame> {
     board.send(&Pause { request: 9, paused: 1 })?;
     board.run(PICTURE)?;
     next_frame(board)
@@ -257,8 +257,8 @@ fn every_button_does_its_own() -> anyhow::Result<()> {
         board.run(6 * TICK)?;
         board.set_key(key, false)?;
         board.run(6 * TICK)?;
-        show.player().execute(key.tapped()).expect("within its range");
-        let (frame, here) = (next_frame(&mut board)?, show.player().frame());
+        show.player.execute(key.tapped()).expect("within its range");
+        let (frame, here) = (next_frame(&mut board)?, show.player.frame());
         assert_eq!((frame.mass_ratio, frame.start_angle), (here.mass_ratio, here.start_angle), "{}", key.name());
     }
     board.set_key(Key::Select, true)?;

@@ -1,7 +1,7 @@
 //! The board's buttons, pressed through QEMU, change the mass ratio and the start angle and restart the motion.
 
 use crate::support::on;
-use firmware::app::controls::Key;
+use firmware::app::Key;
 use firmware::config::{ANGLE_STEP, MASS_RATIOS};
 use firmware::protocol::Frame;
 use firmware::scenes::SceneName;

@@ -6,7 +6,6 @@ use double_pendulum::Method;
 use double_pendulum::plan::Plan;
 use firmware::app::player::News;
 use firmware::config::{HALF_PIXEL, TICK_RATE};
-use firmware::motion::planner::Finding;
 use firmware::protocol::{AskPlan, Choose, Done, Frame, NO_METHOD, Planned, limit_code, method_code};
 use firmware::scenes::SceneName;
 use host_tests::emulator::boards::{BOARDS, Board};
@@ -81,7 +80,7 @@ fn followed(machine: &mut Machine, board: &Board, name: SceneName) -> anyhow::Re
     let lines: Vec<_> = machine.log.arrived().map(|line| line.text).collect();
     let logged = |head: &str| lines.iter().filter(|line| line.starts_with(head)).count();
     let plan = show.news.iter().find_map(|(_, news)| match news {
-        News::Found(Finding::Plan(plan)) => Some(*plan),
+        News::Found(Ok(plan)) => Some(*plan),
         _ => None,
     });
     println!("{} {}: {} changes, {plan:?}", board.name, name.name(), changes);

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 use std::fs;
 
 use double_pendulum::{Motion, Pendulum, State};
-use firmware::graphics::canvas::{HEIGHT, WIDTH};
+use firmware::graphics::{HEIGHT, WIDTH};
 use firmware::scenes::SceneName;
 use host_tests::commands::demo::played;
 use host_tests::commands::figures::chaos::{self, Chaos};

@@ -11,28 +11,26 @@ use host_tests::emulator::toolchain::workspace;
 /// becomes of it.
 const UNSAFE: [&str; 3] = ["firmware/src/board/", "firmware/cores/", "firmware/src/bin/inject-stack-overflow.rs"];
 
-fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
-    for entry in fs::read_dir(folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display())) {
-        let path = entry.unwrap_or_else(|error| panic!("{error}")).path();
-        if path.is_dir() {
-            sources(&path, found);
-        } else if path.extension().is_some_and(|extension| extension == "rs") {
-            found.push(path);
-        }
-    }
+/// The paths of the sources in a folder of the project.
+pub fn sources(folder: &str) -> Vec<PathBuf> {
+    let folder = workspace().join(folder);
+    let entries = fs::read_dir(&folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
+    let paths = entries.map(|entry| entry.unwrap_or_else(|error| panic!("{error}")).path());
+    let within = |path: PathBuf| if path.is_dir() { sources(&path.to_string_lossy()) } else { vec![path] };
+    paths.flat_map(within).filter(|path| path.extension().is_some_and(|extension| extension == "rs")).collect()
 }
 
-fn read(path: &Path) -> String {
-    fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+/// The text of a file of the project.
+pub fn read(file: impl AsRef<Path>) -> String {
+    let file = workspace().join(file);
+    fs::read_to_string(&file).unwrap_or_else(|error| panic!("{}: {error}", file.display()))
 }
 
 #[test]
 fn unsafe_code_is_where_it_must_be() {
-    let mut files = Vec::new();
     let own = ["host-tests/src", "host-tests/reference/src", "host-tests/vectors/src"];
-    for folder in ["kernel/src", "firmware/src", "firmware/cores"].into_iter().chain(own) {
-        sources(&workspace().join(folder), &mut files);
-    }
+    let folders = ["kernel/src", "firmware/src", "firmware/cores"].into_iter().chain(own);
+    let files: Vec<_> = folders.flat_map(sources).collect();
     assert!(files.len() > 100, "{} files", files.len());
     for file in files {
         let code = read(&file)
@@ -65,11 +63,11 @@ fn dependencies(manifest: &str) -> BTreeSet<String> {
 
 #[test]
 fn every_dependency_has_its_reason() {
-    let own = ["peers/", "reference/", "vectors/"].map(|folder| format!("host-tests/{folder}"));
-    let folders = ["", "kernel/", "firmware/", "host-tests/"].into_iter().chain(own.each_ref().map(|own| &**own));
-    let manifests = folders.map(|folder| format!("{folder}Cargo.toml"));
-    let named: BTreeSet<_> = manifests.flat_map(|manifest| dependencies(&read(&workspace().join(manifest)))).collect();
-    let table = read(&workspace().join(".ci/dependencies.md"));
+    let folders =
+        ["", "kernel", "firmware", "host-tests", "host-tests/peers", "host-tests/reference", "host-tests/vectors"];
+    let manifests = folders.map(|folder| Path::new(folder).join("Cargo.toml"));
+    let named: BTreeSet<_> = manifests.iter().flat_map(|manifest| dependencies(&read(manifest))).collect();
+    let table = read(".ci/dependencies.md");
     let rows = table.lines().filter_map(|line| Some(line.strip_prefix("| `")?.split_once('`')?.0.to_owned()));
     assert_eq!(named, rows.collect());
 }

@@ -1,8 +1,7 @@
 //! `cargo plan` plans what the boards show; what it says and refuses is in the snapshots.
 
-use firmware::app::player::News;
+use firmware::app::News;
 use firmware::config::{CORTEX_M3, STM32F405};
-use firmware::motion::planner::Finding;
 use firmware::scenes::SceneName;
 use host_tests::emulator::host::Show;
 
@@ -16,7 +15,7 @@ fn a_scene_is_planned_as_the_boards_start_it() {
         let mut show = Show::on(processor, name, &name.first_settings()).expect("a scene of the catalogue");
         let horizon = loop {
             show.tick();
-            if let [.., (_, News::Found(Finding::Plan(plan)))] = show.news[..] {
+            if let [.., (_, News::Found(Ok(plan)))] = show.news[..] {
                 break plan.horizon;
             }
         };

@@ -8,17 +8,16 @@ use double_pendulum::{
     Modes, Motion, Parameters, Pendulum, Real, State, Units,
 };
 use fastrand::Rng;
-use firmware::app::App;
-use firmware::app::controls::NoButtons;
+use firmware::app::{App, NoButtons};
 use firmware::config::CORTEX_M4F;
 use firmware::display::NoDisplay;
-use firmware::graphics::frame_buffers::FrameBuffers;
+use firmware::graphics::FrameBuffers;
 use firmware::job::{Job, ON_BOARDS, Request};
-use firmware::motion::settings::Settings;
+use firmware::motion::Settings;
 use firmware::protocol::{
     Ask, Decoder, Frame, LinkError, MAX_FIELDS, MAX_WIRE, Message, Refused, Set, Simulate, encode, frame,
 };
-use host_tests::commands::simulate::{Number, Options, plan};
+use host_tests::commands::simulate::{Number, SimulateOptions, plan};
 use host_tests::link::Received;
 use proptest::prelude::*;
 use proptest::sample::select;
@@ -132,9 +131,9 @@ proptest! {
         let mut sheets = FrameBuffers::default();
         let mut app = App::new(Settings::default(), &mut sheets, NoDisplay, Vec::new(), NoButtons).expect("good settings");
         for (tick, (kind, fields)) in (1..).zip(commands) {
-            let (status, sent) = (app.player().status(0), app.link().len());
+            let (status, sent) = (app.player.status(0), app.link.len());
             app.receive(frame(kind, &fields, &mut [0; MAX_WIRE]).iter().copied(), |_| ());
-            let answers = received(&mut Decoder::default(), &app.link()[sent..]);
+            let answers = received(&mut Decoder::default(), &app.link[sent..]);
             let is_request = kind == Simulate::KIND && Simulate::read(&fields).is_some();
             let is_message_for_hosts = kind < 0x80;
             prop_assert!(
@@ -142,11 +141,11 @@ proptest! {
                 "{:?} to kind {} {:02x?}", answers, kind, fields
             );
             if let [Ok(Received { kind: Refused::KIND, .. })] = *answers {
-                prop_assert_eq!(app.player().status(0), status, "kind {} {:02x?}", kind, fields);
+                prop_assert_eq!(app.player.status(0), status, "kind {} {:02x?}", kind, fields);
             }
             app.run_to(tick, |_| ());
             app.work(|_| ());
-            prop_assert_eq!(app.player().report().state.check(), Ok(()));
+            prop_assert_eq!(app.player.report().state.check(), Ok(()));
         }
     }
 
@@ -248,7 +247,7 @@ proptest! {
             0..6,
         ),
     ) {
-        let options = Options::try_parse_from(std::iter::once(String::from("simulate")).chain(words));
+        let options = SimulateOptions::try_parse_from(std::iter::once(String::from("simulate")).chain(words));
         if let Ok(plan) = options.map_err(drop).and_then(|options| plan(&options).map_err(drop)) {
             prop_assert!(plan.every.is_positive() && plan.request.dt > 0.0);
         }

@@ -2,20 +2,17 @@
 //! they link to exists.
 
 use std::collections::BTreeSet;
-use std::fs;
 use std::path::Path;
 use std::process::Command;
 
 use host_tests::emulator::toolchain::workspace;
 
+use super::hygiene::read;
+
 /// The first page, and those of the crates.
 const README: [&str; 4] = ["README.md", "kernel/README.md", "firmware/README.md", "host-tests/README.md"];
 /// Commands that a README names and a user installs.
 const INSTALLED: [&str; 3] = ["deny", "mutants", "public-api"];
-
-fn read(file: &str) -> String {
-    fs::read_to_string(workspace().join(file)).unwrap_or_else(|error| panic!("{file}: {error}"))
-}
 
 /// The names of the project's commands.
 fn ours() -> BTreeSet<String> {
@@ -109,7 +106,7 @@ fn the_first_readme_is_short() {
 #[test]
 fn the_readme_lists_the_messages_as_they_are() {
     let page = read("firmware/README.md");
-    let sources = ["to_host", "to_chip"].map(|file| read(&format!("firmware/src/protocol/{file}.rs")));
+    let sources = ["to_host", "to_chip"].map(|file| read(format!("firmware/src/protocol/{file}.rs")));
     let declared = sources.iter().flat_map(|source| source.lines()).filter_map(|line| line.trim().split_once(" = 0x"));
     let mut count = 0;
     for (name, kind) in declared.map(|(name, rest)| (name, rest[..2].to_lowercase())) {

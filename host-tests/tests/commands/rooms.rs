@@ -1,10 +1,10 @@
 //! Rooms, the top modules of a crate: each imports only from those below it, there are few, and a public type has a name of its own.
 
 use std::collections::BTreeMap;
-use std::fs;
-use std::path::Path;
 
 use host_tests::emulator::toolchain::workspace;
+
+use super::hygiene::{read, sources};
 
 /// The most rooms that a crate has.
 const MOST: usize = 12;
@@ -19,28 +19,20 @@ const ROOMS: [(&str, &[&str]); 3] = [
     ("host-tests", &["commands", "oracle", "emulator", "console", "link"]),
 ];
 /// Crates in which no two public types have one name.
-const NAMED_APART: [&str; 2] = ["kernel", "firmware"];
+const NAMED_APART: [&str; 3] = ["kernel", "firmware", "host-tests"];
 
 /// The lines of each room's files; programs and the list of rooms itself stand above all.
 fn lines(krate: &str) -> Vec<(String, String)> {
     let source = workspace().join(krate).join("src");
     let mut lines = Vec::new();
-    walk(&source, &mut |path| {
+    for path in sources(&format!("{krate}/src")) {
         let room = path.strip_prefix(&source).expect("within").iter().next().expect("a file").to_string_lossy();
         let room = room.trim_end_matches(".rs").to_owned();
         if !["lib", "main", "bin"].contains(&&*room) {
-            let text = fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-            lines.extend(text.lines().map(|line| (room.clone(), line.trim().to_owned())));
+            lines.extend(read(path).lines().map(|line| (room.clone(), line.trim().to_owned())));
         }
-    });
-    lines
-}
-
-fn walk(folder: &Path, each: &mut impl FnMut(&Path)) {
-    for entry in fs::read_dir(folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display())) {
-        let path = entry.unwrap_or_else(|error| panic!("{error}")).path();
-        if path.is_dir() { walk(&path, each) } else { each(&path) }
     }
+    lines
 }
 
 /// The rooms that a line of code names, in an import or otherwise.

@@ -3,12 +3,12 @@
 use clap::Parser;
 use double_pendulum::Motion;
 use firmware::job::{JobError, Request};
-use host_tests::commands::simulate::{Choice, Options, choose};
+use host_tests::commands::simulate::{Choice, SimulateOptions, choose};
 use reference::taylor;
 
 fn chosen(arguments: &str) -> Result<Choice, String> {
     let words = std::iter::once("simulate").chain(arguments.split_whitespace());
-    let options = Options::try_parse_from(words).map_err(|error| error.to_string())?;
+    let options = SimulateOptions::try_parse_from(words).map_err(|error| error.to_string())?;
     let tolerance = options.tolerance.as_ref().ok_or("no tolerance")?;
     choose(&options, tolerance).map_err(|error| format!("{error:#}"))
 }

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 use crate::support::LIMIT;
 use crate::support::bench::{BOARD, Bench, at_port, intact};
-use firmware::app::controls::Key;
+use firmware::app::Key;
 use firmware::job::ON_BOARDS;
 use firmware::protocol::{Frame, MAX_WIRE, Measured, Sample, encode};
 use firmware::scenes::SceneName;

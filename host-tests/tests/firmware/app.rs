@@ -2,23 +2,17 @@
 
 use std::cell::Cell;
 
-use double_pendulum::{Parameters, Pendulum, State};
+use double_pendulum::plan::{PlannedRun, Way};
+use double_pendulum::{Method, Motion, Parameters, Pendulum, State};
 use embedded_io::{ErrorKind, ErrorType, Write};
-use firmware::app::command::Command;
-use firmware::app::controls::{Buttons, NoButtons, Pressed};
-use firmware::app::player::Player;
-use firmware::app::warm_restart::{Cause, WarmRestart};
-use firmware::app::{App, Event};
+use firmware::app::{App, Buttons, Cause, Command, Event, NoButtons, Player, Pressed, WarmRestart};
 use firmware::config::{GRAVITY, MOST_TICKS_PER_FRAME, ROD, TICK_RATE};
 use firmware::display::{Display, NoDisplay};
-use firmware::graphics::canvas::Canvas;
-use firmware::graphics::fade_layer::FadeLayer;
-use firmware::graphics::view::{Place, RodDirections, View};
-use firmware::motion::settings::Settings;
+use firmware::graphics::{Canvas, FadeLayer, Place, RodDirections, View};
+use firmware::motion::Settings;
 use firmware::protocol::{Frame, Message, Restarted, Status};
 use firmware::scenes::SceneName;
 use host_tests::emulator::host::sheets;
-use host_tests::oracle::stream::Expected;
 use host_tests::oracle::tolerances::ENERGY_SHOWN;
 
 use crate::bench::{Plain, all, app, messages, starting_with, wire};
@@ -44,25 +38,27 @@ fn the_state_and_the_picture_after_n_ticks_are_the_same_at_any_frame_rate() {
         ("uneven", run((0..600).filter(|n| n * n % 7 < 2).chain([600]))),
         ("all at once", run([600])),
     ] {
-        assert_eq!(other.player().report(), steady.player().report(), "{name}");
-        assert_eq!(other.canvas(), steady.canvas(), "{name}");
+        assert_eq!(other.player.report(), steady.player.report(), "{name}");
+        assert_eq!(other.canvas, steady.canvas, "{name}");
     }
 }
 
 #[test]
 fn every_frame_carries_the_kernels_state_to_the_bit() {
     let app = run(1..=600);
-    let frames = frames(app.link());
+    let frames = frames(&app.link);
     assert_eq!(frames.len(), 600);
 
     let pendulum = Pendulum::new(&Parameters::equal_rods(1.0, ROD, GRAVITY as f32)).expect("good");
     let start_angle = 120.0_f32.to_radians();
     let start_energy = pendulum.energy(&State::at_rest(start_angle, start_angle));
     let scale = start_energy - pendulum.least_energy();
-    let mut expected = Expected::new(1.0, start_angle);
+    let start = Motion::at_rest(start_angle.into(), start_angle.into());
+    let way = Way { method: Method::Extrapolation10Fixed64, steps: 1 };
+    let mut expected = PlannedRun::new(&pendulum.parameters().cast(), &start, TICK_RATE as u16, way).expect("good");
     for (sequence, frame) in (0..).zip(frames) {
-        expected.tick();
-        let state = expected.state();
+        expected.advance(1).expect("a finite motion");
+        let state = <[f32; 4]>::from(expected.rounded_state());
         assert_eq!(frame.state.map(f32::to_bits), state.map(f32::to_bits), "frame {sequence}");
         let step = sequence + 1;
         assert_eq!((frame.sequence, frame.dropped, frame.step), (sequence, 0, step));
@@ -86,7 +82,7 @@ fn dropped_pictures_are_counted_and_no_tick_is_lost() {
     assert!(app.run_to(late + 2, |event| events.push(event)));
     while !app.run_to(90, |event| events.push(event)) {}
 
-    let frames = frames(app.link());
+    let frames = frames(&app.link);
     let shown: Vec<_> = frames.iter().map(|frame| (frame.step, frame.dropped)).collect();
     let most = MOST_TICKS_PER_FRAME - 1;
     assert_eq!(shown, [(15, most), (30, 2 * most), (31, 2 * most), (33, 29), (48, 43), (63, 57), (78, 71), (90, 82)]);
@@ -104,7 +100,7 @@ fn lost_bytes_are_said_once_a_second_and_sent_with_each_frame() {
     }
     let said = |tick| (tick, Event::Lost { bytes: TICK_RATE, total: tick });
     assert_eq!(events, [TICK_RATE, 2 * TICK_RATE].map(said));
-    let counts = frames(app.link()).iter().map(|frame| frame.lost).collect::<Vec<_>>();
+    let counts = frames(&app.link).iter().map(|frame| frame.lost).collect::<Vec<_>>();
     assert_eq!(counts, (0..2 * TICK_RATE).collect::<Vec<_>>());
 }
 
@@ -119,7 +115,7 @@ fn counts_wrap_unnoticed() {
         for tick in (1..=2 * AHEAD).filter(|tick| tick % 3 != 0) {
             while !app.run_to(begin.wrapping_add(tick), |event| events.push(event)) {}
         }
-        (frames(app.link()), app.canvas().clone(), events)
+        (frames(&app.link), app.canvas.clone(), events)
     };
     let begin = 0_u32.wrapping_sub(AHEAD / 3);
     let (plain, wrapped) = (run(0), run(begin));
@@ -138,7 +134,7 @@ fn hanging_at_rest_has_no_energy_error() {
     let settings = Settings::equal_rods(1.0, 0.0);
     let mut app = starting_with(settings);
     app.run_to(10, |_| ());
-    assert_eq!(frames(app.link()).iter().map(|frame| frame.energy_error).collect::<Vec<_>>(), [0.0]);
+    assert_eq!(frames(&app.link).iter().map(|frame| frame.energy_error).collect::<Vec<_>>(), [0.0]);
 }
 
 /// Presses up at tick 10 and select at tick 50 for three ticks each.
@@ -165,7 +161,7 @@ fn buttons_restart_with_the_new_settings() {
     }
     let heavier = Settings::equal_rods(1.25, 120.0);
     assert_eq!(started, [11, 54].map(|now| (now, Event::Started(SceneName::Page, heavier))));
-    let frames = frames(app.link());
+    let frames = frames(&app.link);
     assert_eq!(frames[9].mass_ratio, 1.0);
     assert_eq!((frames[10].mass_ratio, frames[10].step), (1.25, 1));
     assert_eq!((frames[53].step, frames[53].sequence), (1, 53));
@@ -216,7 +212,7 @@ fn a_failing_link_is_reported_once_and_loses_only_its_own_frames() {
     // Writes: frames 0 to 3 (1 to 4), frames 4 to 8 broken off in the middle (5 to 9), then all is well.
     let sequence = |(_, fields): (u8, Vec<u8>)| Frame::read(&fields).map(|frame| frame.sequence);
     let received: Vec<_> =
-        messages(&app.link().bytes).into_iter().map(|message| message.ok().and_then(sequence)).collect();
+        messages(&app.link.bytes).into_iter().map(|message| message.ok().and_then(sequence)).collect();
     let expected: Vec<_> = (0..4).map(Some).chain([None; 5]).chain((9..20).map(Some)).collect();
     assert_eq!(received, expected);
 }
@@ -241,12 +237,12 @@ fn a_failing_panel_is_reported_once_and_does_not_stop_the_rest() {
         app.run_to(now, |event| events.push((now, event)));
     }
     assert_eq!(events, [(1, Event::Panel("bus")), (20, Event::Panel("bus"))]);
-    assert_eq!(frames(app.link()).len(), 30);
+    assert_eq!(frames(&app.link).len(), 30);
 }
 
 /// Where the rods point, by the state reported.
 fn directions(app: &Plain) -> RodDirections {
-    let State { a1, a2, .. } = app.player().report().state;
+    let State { a1, a2, .. } = app.player.report().state;
     [a1, a2].map(|angle| angle.sin_cos().into())
 }
 
@@ -255,9 +251,9 @@ fn bobs_are_drawn_where_the_state_puts_them() {
     let mut app = app();
     for now in 1..=1200 {
         app.run_to(now, |_| ());
-        let view = View::new(&app.player().settings().parameters, Place::WHOLE);
+        let view = View::new(&app.player.settings().parameters, Place::WHOLE);
         for (x, y) in view.bobs(directions(&app)) {
-            let grey = app.canvas().get(x as i32, y as i32);
+            let grey = app.canvas.get(x as i32, y as i32);
             assert_eq!(grey, Some(15), "tick {now}: ({x}, {y})");
         }
     }
@@ -270,7 +266,7 @@ fn the_motion_never_touches_the_labels() {
     let boxes = [(0..40, 0..8), (0..35, 56..64), (93..128, 0..8)];
     for now in 1..=3600 {
         app.run_to(now, |_| ());
-        let view = View::new(&app.player().settings().parameters, Place::WHOLE);
+        let view = View::new(&app.player.settings().parameters, Place::WHOLE);
         let radii = view.radii().map(|radius| f32::from(radius) / 64.0 + 0.5);
         for ((x, y), radius) in view.bobs(directions(&app)).into_iter().zip(radii) {
             for (columns, rows) in &boxes {
@@ -293,12 +289,12 @@ fn a_restart_goes_on_with_what_was_played() {
     let massless = Status { parameters: [0.0; 5], ..played };
     for (played, resumed) in [(Some(played), true), (Some(massless), false), (None, false)] {
         let mut app = app();
-        let first = app.player().status(0);
+        let first = app.player.status(0);
         let restart = WarmRestart { played, end, cause: Cause::Hang };
         let mut events = Vec::new();
         app.resume(&restart, |event| events.push(event));
         assert_eq!(events, [Event::Restarted(restart, resumed)]);
-        assert_eq!(app.player().status(0), played.filter(|_| resumed).unwrap_or(first));
-        assert_eq!(app.link(), &wire(&end));
+        assert_eq!(app.player.status(0), played.filter(|_| resumed).unwrap_or(first));
+        assert_eq!(&app.link, &wire(&end));
     }
 }

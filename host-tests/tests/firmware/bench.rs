@@ -1,11 +1,12 @@
-//! The application as it runs on the boards, without panel and buttons, and what it sends.
+//! The application as it runs on the boards, without panel and buttons, and what it sends; and a pin.
 
+use std::convert::Infallible;
 use std::fmt::Debug;
 
-use firmware::app::App;
-use firmware::app::controls::NoButtons;
+use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
+use firmware::app::{App, NoButtons};
 use firmware::display::NoDisplay;
-use firmware::motion::settings::Settings;
+use firmware::motion::Settings;
 use firmware::protocol::{Decoder, LinkError, MAX_WIRE, Message, encode};
 use host_tests::emulator::host::sheets;
 
@@ -38,4 +39,33 @@ pub fn all<M: Message + Debug>(bytes: &[u8]) -> Vec<M> {
     let undamaged = messages(bytes).into_iter().map(|message| message.expect("undamaged"));
     let own = undamaged.filter(|(kind, _)| *kind == M::KIND);
     own.map(|(_, fields)| M::read(&fields).expect("all fields")).collect()
+}
+
+/// A pin: what it does when it is set, and what it reads.
+pub struct Pin<Set, Read>(pub Set, pub Read);
+
+impl<Set, Read> ErrorType for Pin<Set, Read> {
+    type Error = Infallible;
+}
+
+impl<Set: FnMut(bool), Read> OutputPin for Pin<Set, Read> {
+    fn set_low(&mut self) -> Result<(), Infallible> {
+        self.0(false);
+        Ok(())
+    }
+
+    fn set_high(&mut self) -> Result<(), Infallible> {
+        self.0(true);
+        Ok(())
+    }
+}
+
+impl<Set, Read: FnMut() -> bool> InputPin for Pin<Set, Read> {
+    fn is_high(&mut self) -> Result<bool, Infallible> {
+        Ok(self.1())
+    }
+
+    fn is_low(&mut self) -> Result<bool, Infallible> {
+        Ok(!self.1())
+    }
 }

@@ -6,10 +6,7 @@ use embedded_graphics::mono_font::MonoFont;
 use embedded_graphics::mono_font::iso_8859_7::FONT_5X8;
 use embedded_graphics::pixelcolor::BinaryColor;
 use fastrand::Rng;
-use firmware::graphics::brush::{Disc, SUBPIXELS, Spot, Stroke};
-use firmware::graphics::canvas::{Canvas, HEIGHT, WIDTH};
-use firmware::graphics::font::{Glyph, glyph};
-use firmware::graphics::plot::Strip;
+use firmware::graphics::{Canvas, Disc, Glyph, HEIGHT, SUBPIXELS, Spot, Strip, Stroke, WIDTH, glyph};
 
 /// Greys are rounded down to one of 16, which shifts a disc's centre of light by far less than this, pixels.
 const CENTRE_TOLERANCE: f64 = 0.1;

@@ -3,8 +3,8 @@
 
 use double_pendulum::{Parameters, Pendulum};
 use firmware::config::{CORTEX_M3, CORTEX_M4F, HALF_PIXEL, MASS_RATIOS, Processor, REACH, TICK_RATE};
-use firmware::graphics::view::Place;
-use firmware::motion::settings::Settings;
+use firmware::graphics::Place;
+use firmware::motion::Settings;
 use firmware::scenes::SceneName;
 use host_tests::commands::plan::median;
 use host_tests::emulator::host::Show;
@@ -133,7 +133,7 @@ fn the_page_and_figure_7_are_right_for_as_long_as_they_should() {
             (0..ticks).for_each(|_| show.tick());
             let report = show.report();
             let way = report.way.expect("it moves");
-            let cost = show.player().cost(way);
+            let cost = show.player.cost(way);
             println!("{} {way:?} {cost} cycles, {} s", name.name(), report.horizon);
             assert!(f64::from(report.horizon) >= least && cost <= most, "{}: {report:?} {cost}", name.name());
         }

@@ -2,8 +2,8 @@
 
 use double_pendulum::{Parameters, Pendulum, State, rk4};
 use firmware::config::{HALF_PIXEL, TICK_RATE};
-use firmware::graphics::view::{Place, View};
-use firmware::motion::misprinted::Misprinted;
+use firmware::graphics::{Place, View};
+use firmware::motion::Misprinted;
 use host_tests::oracle::{textbook, tolerances};
 
 const MU: f64 = 2.75;

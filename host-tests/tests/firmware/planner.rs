@@ -1,10 +1,9 @@
 //! The planner beside the scene: what it does in a tick, what it finds, and how that is written on the wire.
 
 use double_pendulum::Method;
-use double_pendulum::plan::{Limit, Way};
+use double_pendulum::plan::{Limit, PlanError, Way};
 use firmware::config::{CORTEX_M3, CORTEX_M4F, PLANNED, PROCESSORS, Processor, SETTLED_TICKS, STM32F405};
-use firmware::motion::planner::{Finding, Planner, Shown};
-use firmware::motion::settings::Settings;
+use firmware::motion::{Finding, Planner, Settings, Shown};
 use firmware::protocol::{NO_METHOD, limit_code, method_code, method_of};
 
 /// The way that these begin in, which is right wherever any other is.
@@ -82,7 +81,7 @@ fn nothing_is_done_between_a_finding_and_its_telling() {
     }
     assert!(!planner.work_ahead());
     assert_eq!(planner.horizon(LASTING), PLANNED);
-    assert!(matches!(planner.tick(), Some(Finding::Plan(plan)) if plan.limit == Limit::End));
+    assert!(matches!(planner.tick(), Some(Ok(plan)) if plan.limit == Limit::End));
     assert!(planner.work_ahead());
 }
 
@@ -121,7 +120,7 @@ fn a_calm_motion_is_looked_at_for_as_long_as_it_is_played() {
 #[test]
 fn a_refused_motion_is_told_once() {
     let found = findings(planner(CORTEX_M3, &Settings::equal_rods(f32::NAN, 20.0)));
-    assert!(matches!(found[..], [(_, Finding::Refused(_))]), "{found:?}");
+    assert!(matches!(found[..], [(_, Err(PlanError::Refused(_)))]), "{found:?}");
 }
 
 /// A processor with 100 cycles for a frame can afford neither a step nor a closed form.
@@ -129,7 +128,7 @@ fn a_refused_motion_is_told_once() {
 fn where_nothing_holds_that_is_what_is_told() {
     let mut planner = planner(Processor { frame: 100.0, ..CORTEX_M4F }, &Settings::equal_rods(1.0, 120.0));
     let found = (0..PATIENCE).find_map(|_| planner.tick());
-    let Some(Finding::NothingHolds(limit)) = found else { panic!("{found:?}") };
+    let Some(Err(PlanError::NothingHolds { limit, .. })) = found else { panic!("{found:?}") };
     let answer = planner.answer(9);
     assert_eq!((answer.request, answer.found, answer.method, answer.limit), (9, 2, NO_METHOD, limit_code(limit)));
     assert_eq!((answer.cycles, answer.horizon, answer.steps), (0.0, 0.0, 0));
@@ -143,7 +142,7 @@ fn a_way_that_is_given_stays() {
     let way = Way { method: Method::Rk4F32Direction, steps: 4 };
     planner.start(&Settings::default(), Some(Shown { way: Some(way), ..SHOWN }), Some(way));
     let found = (0..PATIENCE).find_map(|_| planner.tick());
-    let Some(Finding::Plan(plan)) = found else { panic!("{found:?}") };
+    let Some(Ok(plan)) = found else { panic!("{found:?}") };
     assert_eq!((plan.method, plan.steps, plan.limit), (Method::Rk4F32Direction, 4, Limit::Method));
     assert!((7.0..=9.5).contains(&plan.horizon), "{plan:?}");
 }

@@ -1,24 +1,16 @@
 //! Every scene of the catalogue, on the host: its frame to the pixel, and what all scenes have in common.
 
-use double_pendulum::{DirectionF32Plain, Fixed32, Form, State};
-use firmware::app::App;
-use firmware::app::command::Command;
-use firmware::app::controls::NoButtons;
+use double_pendulum::State;
+use firmware::app::{App, Command, NoButtons};
 use firmware::config::{
-    CORTEX_M0PLUS, CORTEX_M3, CORTEX_M4F, FLIPS_F405, FLIPS_M0PLUS, FLIPS_M3, FLIPS_M4F, FlipsPace, PIVOT, PROCESSOR,
-    Processor, REACH, STM32F405, TRAIL_FADING, TRAIL_HALF_WIDTH,
+    CORTEX_M0PLUS, CORTEX_M3, CORTEX_M4F, FLIPS_F405, FLIPS_M0PLUS, FLIPS_M3, FLIPS_M4F, PIVOT, PROCESSOR, Processor,
+    REACH, STM32F405, TRAIL_FADING, TRAIL_HALF_WIDTH,
 };
 use firmware::display::NoDisplay;
-use firmware::graphics::canvas::{Canvas, HEIGHT, WIDTH};
-use firmware::graphics::fade_layer::FadeLayer;
-use firmware::graphics::plot;
-use firmware::graphics::text::{self, Anchor};
-use firmware::motion::planner::Shown;
-use firmware::motion::settings::Settings;
-use firmware::motion::simulation::Means;
+use firmware::graphics::{Anchor, Canvas, FadeLayer, HEIGHT, WIDTH, plot, text};
+use firmware::motion::{Means, Settings, Shown};
 use firmware::protocol::{MAX_WIRE, Pause, encode};
-use firmware::scenes::flips::FlipsMap;
-use firmware::scenes::{AnyScene, SceneName};
+use firmware::scenes::{AnyScene, Flips, Scene, SceneName};
 use host_tests::emulator::host::{Show, sheets};
 use host_tests::oracle::snapshot;
 use host_tests::oracle::tolerances::SHOWN_HEIGHT;
@@ -125,7 +117,7 @@ fn a_pause_is_marked_and_only_a_pause() {
     let mut pause = |paused: u8, clock: u32| {
         app.receive(encode(&Pause { request: 1, paused }, &mut [0; MAX_WIRE]).iter().copied(), |_| ());
         app.run_to(clock, |_| ());
-        app.canvas().clone()
+        app.canvas.clone()
     };
     let plain = |ticks| after(SceneName::Page, ticks).frame();
     assert!(pause(0, 1) == plain(1), "what moves has no mark");
@@ -160,18 +152,23 @@ fn the_map_of_flips_is_that_of_the_boards_processor() {
         (0..60).for_each(|_| show.tick());
         show.frame()
     };
-    fn map<F: Form<Real = f32>>(pace: FlipsPace) -> Canvas {
+    let map = |pace, in_float| {
         let (mut ink, settings) = (FadeLayer::NONE, Settings::default());
-        let mut map = FlipsMap::<F>::at_pace(&settings, pace).expect("a map");
+        let mut map = Flips::at_pace(&settings, pace, in_float).expect("a map");
         (0..60).for_each(|_| map.tick(&mut ink));
         let mut canvas = ink.frame().clone();
-        map.draw(&mut canvas);
+        map.draw(&map.report(), &mut canvas);
         canvas
+    };
+    assert!(map(FLIPS_F405, false) != map(FLIPS_F405, true), "they differ");
+    for (processor, pace, in_float) in [
+        (CORTEX_M3, FLIPS_M3, false),
+        (CORTEX_M0PLUS, FLIPS_M0PLUS, false),
+        (CORTEX_M4F, FLIPS_M4F, true),
+        (STM32F405, FLIPS_F405, true),
+    ] {
+        assert!(after(processor) == map(pace, in_float), "{processor:?}");
     }
-    assert!(after(CORTEX_M3) == map::<Fixed32>(FLIPS_M3));
-    assert!(after(CORTEX_M0PLUS) == map::<Fixed32>(FLIPS_M0PLUS));
-    assert!(after(CORTEX_M4F) == map::<DirectionF32Plain>(FLIPS_M4F));
-    assert!(after(STM32F405) == map::<DirectionF32Plain>(FLIPS_F405));
 }
 
 /// What shows no motion goes on when the start angle is turned.
@@ -181,7 +178,7 @@ fn only_what_starts_from_angles_starts_again_when_they_are_turned() {
         let mut show = scene(name);
         (0..20).for_each(|_| show.tick());
         for command in [Command::TurnLeft, Command::TurnRight] {
-            let started = show.player().execute(command).expect("an angle");
+            let started = show.player.execute(command).expect("an angle");
             assert_eq!(started, name.has_angles(), "{}", name.name());
         }
     }

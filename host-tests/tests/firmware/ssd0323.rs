@@ -4,14 +4,15 @@ use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::convert::Infallible;
 
-use embedded_hal::digital::{self, OutputPin};
+use embedded_hal::digital::OutputPin;
 use embedded_hal::spi::{self, Operation, SpiDevice};
-use firmware::app::App;
-use firmware::app::controls::NoButtons;
-use firmware::display::{Display, PanelError, Ssd0323};
-use firmware::graphics::canvas::Canvas;
-use firmware::motion::settings::Settings;
+use firmware::app::{App, NoButtons};
+use firmware::display::{Display, Ssd0323};
+use firmware::graphics::Canvas;
+use firmware::motion::Settings;
 use host_tests::emulator::host::sheets;
+
+use crate::bench::Pin;
 
 /// How many arguments a command takes, from the data sheet's command table.
 fn arguments(command: u8) -> usize {
@@ -124,22 +125,13 @@ impl SpiDevice for Bus<'_> {
     }
 }
 
-struct Pin<'a>(&'a RefCell<Controller>);
-
-impl digital::ErrorType for Pin<'_> {
-    type Error = Infallible;
-}
-
-impl OutputPin for Pin<'_> {
-    fn set_low(&mut self) -> Result<(), Infallible> {
-        self.0.borrow_mut().data = Some(false);
-        Ok(())
-    }
-
-    fn set_high(&mut self) -> Result<(), Infallible> {
-        self.0.borrow_mut().data = Some(true);
-        Ok(())
-    }
+/// The panel on such a bus, with a pin for data or command.
+fn panel<'a>(
+    controller: &'a RefCell<Controller>,
+    memory: &'a mut Canvas,
+) -> Ssd0323<'a, Bus<'a>, impl OutputPin<Error = Infallible> + 'a> {
+    let data = Pin(|high| controller.borrow_mut().data = Some(high), ());
+    Ssd0323::new(Bus(controller), data, memory)
 }
 
 fn shown(controller: &RefCell<Controller>) -> Vec<u8> {
@@ -149,7 +141,7 @@ fn shown(controller: &RefCell<Controller>) -> Vec<u8> {
 #[test]
 fn switches_on_with_a_black_frame() {
     let controller = RefCell::new(Controller::new());
-    Ssd0323::new(Bus(&controller), Pin(&controller), &mut Canvas::default()).init().expect("the bus works");
+    panel(&controller, &mut Canvas::default()).init().expect("the bus works");
     assert!(controller.borrow().on);
     assert_eq!(shown(&controller), [0; 4096]);
 }
@@ -158,23 +150,23 @@ fn switches_on_with_a_black_frame() {
 fn shows_exactly_the_frame() {
     let controller = RefCell::new(Controller::new());
     let mut memory = Canvas::default();
-    let mut panel = Ssd0323::new(Bus(&controller), Pin(&controller), &mut memory);
+    let mut panel = panel(&controller, &mut memory);
     panel.init().expect("the bus works");
     let mut app = App::new(Settings::default(), sheets(), panel, Vec::new(), NoButtons).expect("good");
     for now in 1..=20 {
         app.run_to(now, |event| panic!("{event:?}"));
-        assert_eq!(shown(&controller), app.canvas().bytes().collect::<Vec<_>>());
+        assert_eq!(shown(&controller), app.canvas.bytes().collect::<Vec<_>>());
     }
-    assert!(app.canvas().bytes().any(|byte| byte != 0));
+    assert!(app.canvas.bytes().any(|byte| byte != 0));
 }
 
 #[test]
 fn hands_on_the_error_of_the_bus() {
     let controller = RefCell::new(Controller { fails_after: Some(0), ..Controller::new() });
     let mut memory = Canvas::default();
-    let mut panel = Ssd0323::new(Bus(&controller), Pin(&controller), &mut memory);
-    assert_eq!(panel.init(), Err(PanelError::Spi(BusError)));
-    assert_eq!(panel.flush(&Canvas::default()), Err(PanelError::Spi(BusError)));
+    let mut panel = panel(&controller, &mut memory);
+    assert_eq!(panel.init(), Err(BusError));
+    assert_eq!(panel.flush(&Canvas::default()), Err(BusError));
 }
 
 /// What has not changed is not sent: of a row the words between two that have changed are. A row below one that was sent needs
@@ -182,7 +174,7 @@ fn hands_on_the_error_of_the_bus() {
 #[test]
 fn sends_what_has_changed() {
     let (controller, mut memory, mut canvas) = (RefCell::new(Controller::new()), Canvas::default(), Canvas::default());
-    let mut panel = Ssd0323::new(Bus(&controller), Pin(&controller), &mut memory);
+    let mut panel = panel(&controller, &mut memory);
     panel.init().expect("the bus works");
     let mut sent = |canvas: &Canvas| {
         controller.borrow_mut().received = 0;
@@ -205,11 +197,11 @@ fn sends_what_has_changed() {
 #[test]
 fn shows_the_frame_after_one_that_failed() {
     let (controller, mut memory, mut canvas) = (RefCell::new(Controller::new()), Canvas::default(), Canvas::default());
-    let mut panel = Ssd0323::new(Bus(&controller), Pin(&controller), &mut memory);
+    let mut panel = panel(&controller, &mut memory);
     panel.init().expect("the bus works");
     (0..64).for_each(|y| canvas.update(y, y, |_| 15));
     controller.borrow_mut().fails_after = Some(21);
-    assert_eq!(panel.flush(&canvas), Err(PanelError::Spi(BusError)));
+    assert_eq!(panel.flush(&canvas), Err(BusError));
     *controller.borrow_mut() = Controller { memory: vec![Some(7); 64 * 64], ..Controller::new() };
     assert_eq!(panel.flush(&canvas), Ok(()));
     assert_eq!(shown(&controller), canvas.bytes().collect::<Vec<_>>());

@@ -1,11 +1,9 @@
 //! What is kept across a reset is trusted only if it is intact, and is played again as it was.
 
 use fastrand::Rng;
-use firmware::app::command::Command;
-use firmware::app::player::Player;
-use firmware::app::warm_restart::{Cause, Journal, Kept, LastShown, MOST_RESTARTS, SOUND_FRAMES, WarmRestart};
-use firmware::graphics::fade_layer::FadeLayer;
-use firmware::motion::settings::Settings;
+use firmware::app::{Cause, Command, Journal, Kept, LastShown, MOST_RESTARTS, Player, SOUND_FRAMES, WarmRestart};
+use firmware::graphics::FadeLayer;
+use firmware::motion::Settings;
 use firmware::protocol::{Field, MAX_WIRE, Message, Restarted, Status, encode};
 use firmware::scenes::SceneName;
 

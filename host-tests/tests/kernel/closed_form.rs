@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_6, PI, TAU};
 
 use double_pendulum::{Modes, SmallOscillations};
 use firmware::config::TICK_RATE;
-use firmware::motion::settings::Settings;
+use firmware::motion::Settings;
 use firmware::scenes::SceneName;
 use host_tests::emulator::host::Show;
 use host_tests::oracle::tolerances::{CLOSED, CLOSED_FORM, NOT_CLOSED, RATIO};

@@ -5,9 +5,8 @@ use double_pendulum::parts::Stepper;
 use double_pendulum::plan::Way;
 use double_pendulum::{DirectionF32, DirectionF32Plain, DirectionF64, Error, Fixed32, Form, Pendulum, Real, State};
 use firmware::config::{STM32F405, TICK_RATE};
-use firmware::motion::simulation::{Means, Simulation};
-use firmware::scenes::SceneName;
-use firmware::scenes::scene::Report;
+use firmware::motion::{Means, Simulation};
+use firmware::scenes::{Report, SceneName};
 use host_tests::oracle::tolerances::{DAY_ENERGY, DAY_READING};
 use host_tests::oracle::trials::Trial;
 

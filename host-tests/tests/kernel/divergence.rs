@@ -6,12 +6,10 @@ use double_pendulum::{
     DirectionF32, DirectionF64, Error, ExtrapolationF64, Form, HamiltonF32, HamiltonF64, Method, Parameters, Pendulum,
     Real, State,
 };
-use firmware::app::controls::NoButtons;
-use firmware::app::service::Service;
-use firmware::app::{App, Event};
+use firmware::app::{App, Event, NoButtons, Service};
 use firmware::display::NoDisplay;
 use firmware::job::Request;
-use firmware::motion::settings::Settings;
+use firmware::motion::Settings;
 use firmware::protocol::{Field, Refused, Sample};
 use host_tests::emulator::host::sheets;
 
@@ -107,21 +105,21 @@ fn a_scene_stands_at_its_last_good_frame() {
     let mut stops = Vec::new();
     let mut last_good = None;
     for tick in 1..=600 {
-        let report = app.player().report();
+        let report = app.player.report();
         app.run_to(tick, |event| {
             if let Event::Stopped(error) = event {
                 stops.push(error);
                 last_good = Some(report);
             }
         });
-        assert_eq!(app.player().report().state.check(), Ok(()), "at tick {tick}");
+        assert_eq!(app.player.report().state.check(), Ok(()), "at tick {tick}");
     }
     assert!(matches!(*stops, [Error::Diverged { .. }]), "said once: {stops:?}");
-    assert_eq!(Some(app.player().report()), last_good);
-    assert!(app.player().is_paused());
-    let frame = app.canvas().clone();
+    assert_eq!(Some(app.player.report()), last_good);
+    assert!(app.player.is_paused());
+    let frame = app.canvas.clone();
     app.run_to(601, |event: Event<_, _>| no_news(event));
-    assert_eq!(*app.canvas(), frame);
+    assert_eq!(*app.canvas, frame);
 }
 
 fn no_news<Panel: Debug, Link: Debug>(event: Event<Panel, Link>) {

@@ -36,12 +36,3 @@ fn orders_that_there_are_not_are_refused() {
         assert!(matches!(Extrapolation::<f64>::new(order), Err(Error::OutOfRange { parameter: Parameter::Order, .. })));
     }
 }
-
-#[test]
-fn backwards_is_forwards_undone() -> Result<(), Error> {
-    let method = Extrapolation::new(12)?;
-    let spiral = |&[x, y]: &[f64; 2]| [y - 0.1 * x, -x];
-    let [x, y] = method.step(spiral, &method.step(spiral, &[1.0, 0.5], 0.1), -0.1);
-    assert!((x - 1.0).abs().max((y - 0.5).abs()) < tolerances::RETURN_OF_ONE_STEP);
-    Ok(())
-}

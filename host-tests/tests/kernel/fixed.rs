@@ -6,7 +6,7 @@ use double_pendulum::parts::Stepper;
 use double_pendulum::{DirectionF32, DirectionF64, ExtrapolationF64, Fixed32, Fixed64, Form};
 use double_pendulum::{Error, Motion, Parameter, Parameters, Pendulum, State};
 use firmware::config::GRAVITY;
-use firmware::motion::planner::half_pixel;
+use firmware::motion::half_pixel;
 use host_tests::oracle::random::{self, log_uniform, symmetric};
 use host_tests::oracle::tolerances;
 use host_tests::oracle::trials::{Trial, largest_difference};
@@ -152,19 +152,16 @@ fn a_fast_motion_stays_within_a_hundredth_of_half_a_pixel() -> Result<(), Error>
     const FRAMES: u32 = 834;
     let parameters = Parameters { m1: 1.0, m2: 0.0510598, l1: 1.0, l2: 0.116394, g: GRAVITY };
     let motion = Motion { a1: -2.7479, a2: 2.3154, w1: -11.11, w2: 55.97 };
-    let start = Pendulum::new(&parameters)?.to_state(&motion);
-    let mut stepper = Pendulum::new(&parameters)?.run::<Fixed32>(&start, 1.0 / (60.0 * 32.0))?;
+    let pendulum = Pendulum::new(&parameters)?;
+    let mut stepper = pendulum.run::<Fixed32>(&pendulum.to_state(&motion), 1.0 / (60.0 * 32.0))?;
     let mut reference = Reference::new(&parameters, &motion);
-    let places = |State { a1, a2, .. }: State<f64>| {
-        let [upper, lower] = [(a1, parameters.l1), (a2, parameters.l2)].map(|(a, l)| [l * a.sin(), l * a.cos()]);
-        [upper, [upper[0] + lower[0], upper[1] + lower[1]]]
-    };
     let mut largest = 0.0_f64;
     for frame in 1..=FRAMES {
         stepper.advance(32)?;
         reference.advance_to(f64::from(frame) / 60.0);
-        for ([x, y], [exact_x, exact_y]) in places(stepper.state()).into_iter().zip(places(reference.state())) {
-            largest = largest.max((x - exact_x).hypot(y - exact_y));
+        let [shown, exact] = [stepper.state(), reference.state()].map(|state| pendulum.positions(state.angles()));
+        for (shown, exact) in shown.into_iter().zip(exact) {
+            largest = largest.max((shown.x - exact.x).hypot(shown.y - exact.y));
         }
     }
     let half_pixels = largest / half_pixel(&parameters, 64.0);

@@ -196,19 +196,6 @@ fn turns_follow_an_angle_either_way() {
 }
 
 #[test]
-fn a_start_angle_of_many_turns_is_the_same_motion() -> Result<(), Error> {
-    let turns = 159.0 * TAU; // 999 rad
-    let near = Trial::at_rest(1.0, 0.5, -0.25, 5.0);
-    for turns in [turns, -turns] {
-        let far = Trial { start: State { a1: 0.5 + turns, a2: -0.25 - turns, ..near.start }, ..near };
-        let expected = near.states::<DirectionF64>(1.0 / 256.0)?;
-        let difference = largest_difference(&far.states::<DirectionF64>(1.0 / 256.0)?, &expected);
-        assert!(difference <= tolerances::FAR_ANGLE, "{difference:e}");
-    }
-    Ok(())
-}
-
-#[test]
 fn a_run_is_small() {
     assert!(size_of::<Run<DirectionF32>>() <= 256);
 }

@@ -73,11 +73,7 @@ fn kernel_keeps_its_budgets<R: Real>() {
 }
 
 #[test]
-fn kernel_keeps_its_budgets_f32() {
+fn the_kernel_keeps_its_budgets_in_either_precision() {
     kernel_keeps_its_budgets::<f32>();
-}
-
-#[test]
-fn kernel_keeps_its_budgets_f64() {
     kernel_keeps_its_budgets::<f64>();
 }

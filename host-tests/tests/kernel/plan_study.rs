@@ -3,7 +3,7 @@
 use double_pendulum::plan::Problem;
 use double_pendulum::{Motion, Parameters, Pendulum};
 use firmware::config::GRAVITY;
-use firmware::motion::planner::half_pixel;
+use firmware::motion::half_pixel;
 use host_tests::commands::plan::{CHIPS, Case, DURATIONS, median, scenes, study};
 use host_tests::oracle::tolerances::{PLAN_ERROR, PLAN_SHARE};
 

@@ -51,12 +51,8 @@ fn modes_to_the_last_places<R: Real>() {
 }
 
 #[test]
-fn modes_to_the_last_places_f32() {
+fn modes_are_right_to_the_last_places() {
     modes_to_the_last_places::<f32>();
-}
-
-#[test]
-fn modes_to_the_last_places_f64() {
     modes_to_the_last_places::<f64>();
 }
 

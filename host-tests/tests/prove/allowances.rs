@@ -1,18 +1,13 @@
 //! Each allowance is needed: without it the exact motion leaves the set.
 
-use reference::enclosure::{Enclosure, Fineness, Fixed};
+use reference::enclosure::{Fineness, Fixed};
 
 use crate::{RATE, after, equal_rods, meet};
 
 /// Whether a set that is a segment at the start, `reach` to both sides along P1, loses its end within a second.
 fn is_left(reach: f64, fineness: Fineness) -> bool {
-    let from = |p1: Fixed, fineness| {
-        let set = equal_rods(2.0, 9.81, RATE, fineness);
-        let mut start = set.hull().map(Fixed::middle);
-        start[4] = start[4] + p1;
-        Enclosure::new(set.constants, set.frame, start, fineness)
-    };
-    let (mut set, mut end) = (from(Fixed::ZERO.wider(reach), fineness), from(Fixed::of(reach), Fineness::default()));
+    let mut set = equal_rods(9.81, RATE, Fixed::ZERO.wider(reach), fineness);
+    let mut end = equal_rods(9.81, RATE, Fixed::of(reach), Fineness::default());
     (0..RATE)
         .map_while(|_| set.advance().and(end.advance()).map(|()| meet(&set.hull(), &end.hull(), 0.0)))
         .any(|meets| !meets)
@@ -22,9 +17,8 @@ fn is_left(reach: f64, fineness: Fineness) -> bool {
 #[test]
 fn what_the_derivatives_lack_is_counted() {
     let fine = Fineness::default();
-    for (reach, fineness) in
-        [(1e-7, Fineness { tangents: 4, ..fine }), (1e-3, fine), (1e-9, Fineness { beside: 1e-4, ..fine })]
-    {
+    let cases = [(1e-7, Fineness { tangents: 4, ..fine }), (1e-3, fine), (1e-9, Fineness { beside: 1e-4, ..fine })];
+    for (reach, fineness) in cases {
         let without = Fineness { allowances: [1.0, 1.0, 0.0, 1.0], ..fineness };
         assert!(!is_left(reach, fineness) && is_left(reach, without), "{fineness:?}");
     }
@@ -42,23 +36,19 @@ fn roundings_of_the_segments_are_counted() {
 fn the_series_of_the_midpoint_is_bounded_to_its_last_term() {
     let coarse = Fineness { terms: 8, ..Fineness::default() };
     let without = Fineness { allowances: [1.0, 0.0, 1.0, 1.0], ..coarse };
-    let [exact, coarse, without] =
-        [Fineness::default(), coarse, without].map(|fineness| after(10, equal_rods(2.0, 9.81, RATE, fineness)).hull());
-    assert!(meet(&exact, &coarse, 0.0) && !meet(&exact, &without, 0.0));
+    let hull = |fineness| after(10, equal_rods(9.81, RATE, Fixed::ZERO, fineness)).hull();
+    let exact = hull(Fineness::default());
+    assert!(meet(&exact, &hull(coarse), 0.0) && !meet(&exact, &hull(without), 0.0));
 }
 
 /// One point, in steps of two lengths, which have other roundings: a second later it is in both sets. (The rest of the series, which
 /// would hide that, is less than one rounding.)
 #[test]
 fn roundings_of_the_midpoint_are_counted() {
-    let meet = |rounding: f64| {
+    let hull = |rate: u16, rounding: f64| {
         let fineness = Fineness { allowances: [rounding, 0.0, 1.0, 1.0], ..Fineness::default() };
-        let moved = |rate: u16| {
-            let set = equal_rods(2.0, 9.81, rate, fineness);
-            let point = set.hull().map(Fixed::middle);
-            after(rate.into(), Enclosure::new(set.constants, set.frame, point, fineness)).hull()
-        };
-        meet(&moved(64)[..4], &moved(48)[..4], 0.0)
+        after(rate.into(), equal_rods(9.81, rate, Fixed::ZERO, fineness)).hull()
     };
+    let meet = |rounding: f64| meet(&hull(64, rounding)[..4], &hull(48, rounding)[..4], 0.0);
     assert!(meet(1.0) && !meet(0.0));
 }

@@ -3,6 +3,7 @@
 use core::fmt::Debug;
 
 use super::{Form, rk4};
+use crate::bounds::check_step;
 use crate::error::Error;
 use crate::numbers::trig::{DefaultTrig, SinCos};
 use crate::numbers::{Real, Sealed};
@@ -83,7 +84,7 @@ impl<R: Real + super::Side, E: Derivatives<R>> Form for Canonical<R, E> {
     const HAS_TURNS: bool = true;
 
     fn new(parameters: &Parameters<f64>, dt: f64) -> Result<Self, Error> {
-        super::scaling::check_step(dt)?;
+        check_step::<f64>(dt)?;
         let equations = E::prepare(&parameters.cast())?;
         Ok(Self { equations, dt: equations.step(R::from_f64(dt)) })
     }

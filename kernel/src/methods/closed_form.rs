@@ -1,8 +1,8 @@
 //! Small oscillations, read at any step.
 
 use super::{Form, Side};
+use crate::bounds::check_step;
 use crate::error::Error;
-use crate::methods::scaling::check_step;
 use crate::numbers::{Real, Sealed};
 use crate::pendulum::{Direction, Parameters, Pendulum, State};
 use crate::small::{Modes, SmallOscillations};
@@ -40,7 +40,7 @@ impl<R: Real + Side> Form for ClosedForm<R> {
     const HAS_TURNS: bool = true;
 
     fn new(parameters: &Parameters<f64>, dt: f64) -> Result<Self, Error> {
-        check_step(dt)?;
+        check_step::<f64>(dt)?;
         Modes::new(parameters)?;
         let whole = libm::rint(1.0 / dt);
         let rate = if 1.0 / whole == dt { whole } else { 1.0 / dt };

@@ -59,55 +59,22 @@ mod tests {
         step(f, &[0.0; N], 1.0)[0]
     }
 
-    fn assert_condition(value: f64, exact: f64) {
-        assert!((value - exact).abs() <= f64::EPSILON, "{value} instead of {exact}");
-    }
-
-    // The order conditions of [Hairer I], table II.2.1, with the weights b, the matrix a and the nodes c_i = sum_j a_ij.
-    // Each rooted tree has a system of equations whose only elementary differential is the tree's own.
-
+    /// The order conditions of [Hairer I], table II.2.1, with the weights b, the matrix a and the nodes c_i = sum_j a_ij. Each rooted
+    /// tree has a system of equations whose only elementary differential is the tree's own.
     #[test]
-    fn order_1_sum_b_is_1() {
-        assert_condition(weight(|_: &[f64; 1]| [1.0]), 1.0);
-    }
-
-    #[test]
-    fn order_2_sum_b_c_is_1_over_2() {
-        assert_condition(weight(|&[_, c]| [c, 1.0]), 1.0 / 2.0);
-    }
-
-    #[test]
-    fn order_3_sum_b_c_c_is_1_over_3() {
-        assert_condition(weight(|&[_, c]| [c * c, 1.0]), 1.0 / 3.0);
-    }
-
-    #[test]
-    fn order_3_sum_b_a_c_is_1_over_6() {
-        assert_condition(weight(|&[_, ac, c]| [ac, c, 1.0]), 1.0 / 6.0);
-    }
-
-    #[test]
-    fn order_4_sum_b_c_c_c_is_1_over_4() {
-        assert_condition(weight(|&[_, c]| [c * c * c, 1.0]), 1.0 / 4.0);
-    }
-
-    #[test]
-    fn order_4_sum_b_c_a_c_is_1_over_8() {
-        assert_condition(weight(|&[_, ac, c]| [c * ac, c, 1.0]), 1.0 / 8.0);
-    }
-
-    #[test]
-    fn order_4_sum_b_a_c_c_is_1_over_12() {
-        assert_condition(weight(|&[_, acc, c]| [acc, c * c, 1.0]), 1.0 / 12.0);
-    }
-
-    #[test]
-    fn order_4_sum_b_a_a_c_is_1_over_24() {
-        assert_condition(weight(|&[_, aac, ac, c]| [aac, ac, c, 1.0]), 1.0 / 24.0);
-    }
-
-    #[test]
-    fn order_5_is_not_reached_sum_b_c_c_c_c_is_5_over_24_not_1_over_5() {
-        assert_condition(weight(|&[_, c]| [c * c * c * c, 1.0]), 5.0 / 24.0);
+    fn order_4_is_reached_and_order_5_is_not() {
+        for (condition, value, exact) in [
+            ("order 1: sum b", weight(|_: &[f64; 1]| [1.0]), 1.0),
+            ("order 2: sum b c", weight(|&[_, c]| [c, 1.0]), 1.0 / 2.0),
+            ("order 3: sum b c c", weight(|&[_, c]| [c * c, 1.0]), 1.0 / 3.0),
+            ("order 3: sum b a c", weight(|&[_, ac, c]| [ac, c, 1.0]), 1.0 / 6.0),
+            ("order 4: sum b c c c", weight(|&[_, c]| [c * c * c, 1.0]), 1.0 / 4.0),
+            ("order 4: sum b c a c", weight(|&[_, ac, c]| [c * ac, c, 1.0]), 1.0 / 8.0),
+            ("order 4: sum b a c c", weight(|&[_, acc, c]| [acc, c * c, 1.0]), 1.0 / 12.0),
+            ("order 4: sum b a a c", weight(|&[_, aac, ac, c]| [aac, ac, c, 1.0]), 1.0 / 24.0),
+            ("order 5, not 1/5: sum b c c c c", weight(|&[_, c]| [c * c * c * c, 1.0]), 5.0 / 24.0),
+        ] {
+            assert!((value - exact).abs() <= f64::EPSILON, "{condition} is {value} instead of {exact}");
+        }
     }
 }

@@ -47,18 +47,6 @@ pub(crate) struct Shifts {
     pub lower: u32,
 }
 
-/// Refuses a step of `dt` s that no arithmetic takes: NaN, infinite, zero or subnormal.
-pub(crate) fn check_step(dt: f64) -> Result<(), Error> {
-    let (parameter, value) = (Parameter::Dt, dt);
-    if !dt.is_finite() {
-        Err(Error::NotFinite { parameter, value })
-    } else if !dt.is_normal() {
-        Err(Error::OutOfRange { parameter, value })
-    } else {
-        Ok(())
-    }
-}
-
 /// What [`Form::check`](super::Form::check) says of a motion in fixed point.
 pub(super) fn lost(is_lost: bool) -> Result<(), Error> {
     if is_lost { Err(Error::Diverged { parameter: Parameter::A1, value: f64::NAN }) } else { Ok(()) }

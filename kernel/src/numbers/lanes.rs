@@ -33,29 +33,19 @@ impl<R: Copy, const N: usize> Lanes<R, N> {
     }
 }
 
-impl<R: Copy + Add<Output = R>, const N: usize> Add for Lanes<R, N> {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        self.with(other, R::add)
-    }
+macro_rules! lane_by_lane {
+    ($($Operator:ident $operator:ident),*) => {$(
+        impl<R: Copy + $Operator<Output = R>, const N: usize> $Operator for Lanes<R, N> {
+            type Output = Self;
+            #[inline(always)]
+            fn $operator(self, other: Self) -> Self {
+                self.with(other, R::$operator)
+            }
+        }
+    )*};
 }
 
-impl<R: Copy + Sub<Output = R>, const N: usize> Sub for Lanes<R, N> {
-    type Output = Self;
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        self.with(other, R::sub)
-    }
-}
-
-impl<R: Copy + Mul<Output = R>, const N: usize> Mul for Lanes<R, N> {
-    type Output = Self;
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        self.with(other, R::mul)
-    }
-}
+lane_by_lane!(Add add, Sub sub, Mul mul);
 
 impl<R: Copy + Neg<Output = R>, const N: usize> Neg for Lanes<R, N> {
     type Output = Self;

@@ -2,22 +2,21 @@
 //! when it does.
 //!
 //! How fast an error grows is a property of the very motion: of two starts with the same energy one may be regular and
-//! the other chaotic, and no formula in the energy tells them apart. So a search plans. It runs the motion itself,
-//! from coarse steps to fine ones, beside perturbed runs that have other errors, and compares where the bobs would be:
+//! the other chaotic, and no formula in the energy tells them apart. So a search plans. It runs the motion itself, in coarse
+//! steps and in fine ones, and compares where the bobs would be:
 //!
-//! | error of | is measured by |
+//! | error of | is measured by the distance to |
 //! |---|---|
-//! | the step | a run with finer steps |
-//! | rounding, that of the numbers given too | two more with the same step; the numbers given to all three are an ulp off |
-//! | the closed form, plain `f32` | the distance to a run that has the errors above |
+//! | any method in 32 bits, the closed form | a run in 64 bits, in steps that resolve the motion |
+//! | the same, where planning cannot pay for that | three runs in finer steps, the numbers given to each an ulp off |
+//! | 64 bits | three such runs |
 //!
 //! The coarsest step at which anything stays within the tolerance to the end decides; of all that does the cheapest is
 //! taken. If nothing does (chaos), what does longest is; if nothing within the budgets is right in any frame,
 //! [`PlanError::NothingHolds`] says so. The search begins at a step that resolves all motions of the energy, by the proven
 //! bound of [`Pendulum::admissible_step`](crate::Pendulum::admissible_step), by compensated `f32` or 32 bits of fixed point,
-//! whichever costs less, and goes over to 64 bits where rounding is the larger error or these cost less. Planning costs
-//! a few times what the motion itself does in the cheap arithmetic, no heap, and is done in pieces that a busy caller can
-//! afford ([`Search`]).
+//! whichever costs less, and at half and a quarter of it. It goes over to 64 bits where rounding is the larger error or these
+//! cost less. Planning takes no heap, and is done in pieces that a busy caller can afford ([`Search`]).
 //!
 //! What a step costs is the caller's business: [`Costs`] is a price list in any unit.
 //!
@@ -44,6 +43,7 @@
 //! # Ok::<(), PlanError>(())
 //! ```
 
+mod candidate;
 mod cost;
 mod error;
 mod limit;
@@ -52,7 +52,6 @@ mod planned_run;
 mod problem;
 mod run;
 mod search;
-mod shadowed_run;
 mod way;
 
 use crate::error::Error;
@@ -63,8 +62,6 @@ pub use planned_run::PlannedRun;
 pub use problem::Problem;
 pub use run::Directions;
 pub use search::{Plan, Search};
-#[doc(hidden)]
-pub use shadowed_run::{ErrorEstimate, MARGINS, ShadowedRun};
 pub use way::Way;
 
 impl Plan {

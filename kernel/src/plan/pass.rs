@@ -1,198 +1,179 @@
-//! One step size tried: how wrong each method is, frame by frame.
+//! Step sizes tried side by side: how wrong each method is, frame by frame.
 
+use super::candidate::Candidate;
 use super::cost::Costs;
-use super::problem::Problem;
-use super::run::{Directions, Run, distance};
-use super::shadowed_run::{ErrorEstimate, ShadowedRun, steps_of_all};
-use super::way::Way;
+use super::problem::{Perturbation, Problem};
+use super::run::{Directions, Run, distance, greater};
 use crate::error::Error;
 use crate::methods::{DirectionF32Plain, Stepper};
 use crate::pendulum::State;
 use crate::small::{Modes, SmallOscillations};
 use crate::table::Method;
 
-/// A bob may be off by this much where the tolerance is the unit.
-const TOLERATED: f32 = 1.0;
+/// How much larger an error may be than the distance to a run in 64 bits, which lasts longer than any in 32.
+const BESIDE_64_BITS: f32 = 1.1;
 
-/// How a method has fared so far.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Candidate {
-    /// The method.
-    pub method: Method,
-    /// Steps to a frame.
-    pub steps: u32,
-    /// Frames it was right in, from the start on.
-    pub right: u32,
-    /// The largest error measured in them, over the tolerance.
-    pub error: f32,
-    /// Whether it has been wrong.
-    pub failed: bool,
-    /// Whether rounding made its bound when it failed: finer steps do not help.
-    pub by_rounding: bool,
+/// How much larger an error may be than the greatest distance to three runs in finer steps.
+///
+/// Of the error of the step it is no more than 1.7 times that to 5/4 as many steps (order 4), 1.12 times that to 7/4. Roundings are
+/// samples of one spread, the run's own and those of the three. In 32 bits of fixed point they have a larger one: all is rounded
+/// down. Test `plan_study` holds the bound against the exact motion.
+fn beside_finer_steps(method: Method) -> f32 {
+    if method == Method::Rk4Fixed32 { 2.25 } else { 1.75 }
 }
 
-impl Candidate {
-    /// At the start.
-    pub fn new(method: Method, steps: u32) -> Self {
-        Self { method, steps, right: 0, error: 0.0, failed: false, by_rounding: false }
-    }
-
-    /// In how many frames it shows `way` to be right; one that has the longest horizon of all is so wherever any is.
-    #[inline(never)] // one copy
-    pub fn right_of(&self, way: Way, has_longest_horizon: bool) -> u32 {
-        let is_same = self.steps == way.steps || way.method == Method::ClosedFormF32;
-        let is_shown = has_longest_horizon || self.method == way.method && is_same;
-        if is_shown { self.right } else { 0 }
-    }
-
-    /// Takes note of a frame that is `beside` off the shadowed one, whose own error is estimated. NaN is wrong.
-    #[inline(never)] // one copy
-    fn note(&mut self, beside: f32, estimate: ErrorEstimate) {
-        if self.failed {
-            return;
-        }
-        if beside + estimate.bound() <= TOLERATED {
-            let error = beside + estimate.error();
-            self.error = if error > self.error { error } else { self.error };
-            self.right += 1;
-        } else {
-            self.failed = true;
-            self.by_rounding = estimate.is_by_rounding();
-        }
-    }
+/// Steps of the finer runs for each frame: a quarter more, a half, three quarters. Fixed point has another unit of time in each, and
+/// with it other constants and roundings: what a word drops of a torque is the same for many steps while a pendulum hardly moves.
+/// Where a step is dear, one run is finer at least.
+fn finer(method: Method, steps: u32) -> [u32; 3] {
+    [1, 2, 3].map(|quarters: u32| {
+        let least = if method == Method::Extrapolation10Fixed64 { quarters / 3 } else { quarters };
+        let more = (u64::from(steps) * u64::from(quarters) / 4) as u32;
+        steps.saturating_add(if more > least { more } else { least })
+    })
 }
 
-/// One step size tried: a shadowed run, and what is compared with it.
+/// In 32 bits and beside 64 bits, these step sizes are tried, each half as long as the one before.
+const SIZES: [u32; 3] = [1, 2, 4];
+
+/// Step sizes tried side by side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pass {
-    shadowed: ShadowedRun,
-    /// Plain `f32`, which shows beside compensated sums what its roundings do.
+    /// In 32 bits, the first three candidates and the run in 64 bits that all are compared with. Or a single candidate and three
+    /// that it is compared with: in finer steps, their given numbers off by about as much as rounding may make them, each run's
+    /// in a way of its own.
+    runs: [Run; 4],
+    is_beside_64_bits: bool,
+    /// Plain `f32`, and the closed form: compared with the run in 64 bits, or with the single candidate.
     plain: Run<Stepper<DirectionF32Plain>>,
     closed: Option<SmallOscillations<f32>>,
     rods: [f32; 2],
-    /// The shadowed method, the closed form, and plain `f32`.
-    candidates: [Candidate; 3],
+    /// The first runs, plain `f32`, the closed form.
+    candidates: [Candidate; 5],
+    /// Whether rounding parts the single candidate from the finer runs.
+    by_rounding: bool,
 }
 
 impl Pass {
-    /// From `start`, with `steps` steps to a frame: `method` is shadowed, or compensated `f32` if it has no steps of its own.
-    pub fn new(method: Method, problem: &Problem, start: &State<f64>, steps: u32) -> Self {
-        let method = if matches!(method, Method::Rk4Fixed32 | Method::Extrapolation10Fixed64) {
-            method
-        } else {
-            Method::Rk4F32Direction
+    /// By `method` in `steps` steps to a frame, beside a run in 64 bits with so many steps, if these are given.
+    pub fn new(method: Method, problem: &Problem, start: &State<f64>, steps: u32, beside: Option<u32>) -> Self {
+        let run = |method, perturbation: Perturbation, steps| {
+            // What a method takes ends somewhere: a run just within may have its neighbour on one side beyond.
+            let given = [perturbation, perturbation.mirrored()].map(|by| problem.perturbed(start, by, method));
+            Run::new(method, given, problem.rate, steps)
         };
-        let given = (problem.pendulum, *start);
-        let methods = [method, Method::ClosedFormF32, Method::Rk4F32DirectionPlain];
+        let own = |method, steps| run(method, Perturbation::NONE, steps);
+        let sizes @ [_, second, third] = SIZES.map(|times| steps.saturating_mul(times));
+        let others = match beside {
+            Some(exact) => [own(method, second), own(method, third), own(Method::Extrapolation10Fixed64, exact)],
+            None => {
+                let ([one, two, three], [first, second, third]) = (Perturbation::ALL, finer(method, steps));
+                [run(method, one, first), run(method, two, second), run(method, three, third)]
+            }
+        };
+        let [second, third, last] = others;
+        let [own1, own2, own3] = sizes.map(|steps| Candidate::new(method, steps));
+        let others = [Method::Rk4F32DirectionPlain, Method::ClosedFormF32].map(|method| Candidate::new(method, steps));
+        let [plain, closed] = others;
         let mut pass = Self {
-            shadowed: ShadowedRun::from_state(method, problem, start, steps),
-            plain: Run::new(Method::Rk4F32DirectionPlain, [given; 2], problem.rate, steps),
+            runs: [own(method, steps), second, third, last],
+            is_beside_64_bits: beside.is_some(),
+            plain: Run::new(plain.method, [(problem.pendulum, *start); 2], problem.rate, steps),
             closed: Modes::new(&problem.pendulum)
                 .ok()
                 .map(|modes| SmallOscillations::new(modes, &problem.start.cast())),
             rods: problem.rods(),
-            candidates: methods.map(|method| Candidate::new(method, steps)),
+            candidates: [own1, own2, own3, plain, closed],
+            by_rounding: false,
         };
-        let [own, _, plain] = &mut pass.candidates;
-        plain.failed = own.method != Method::Rk4F32Direction;
+        let [_, second, third, plain, _] = &mut pass.candidates;
+        (second.failed, third.failed) = (beside.is_none(), beside.is_none());
+        plain.failed = method != Method::Rk4F32Direction;
         pass
+    }
+
+    /// What one costs that goes to the end, beside a run in 64 bits.
+    pub fn cost_beside(costs: &Costs, method: Method, steps: u32, beside: u32) -> f32 {
+        let candidates = SIZES.map(|times| costs.of_frame(method, steps.saturating_mul(times)));
+        candidates.into_iter().fold(costs.of_frame(Method::Extrapolation10Fixed64, beside), |sum, cost| sum + cost)
+    }
+
+    /// The runs that are still needed.
+    fn runs(&mut self) -> impl Iterator<Item = &mut Run> {
+        let (all, candidates) = (!self.is_beside_64_bits, &self.candidates);
+        let is_needed = move |index: &usize| all || *index == 3 || !candidates[*index].failed;
+        self.runs.iter_mut().enumerate().filter(move |(index, _)| is_needed(index)).map(|(_, run)| run)
+    }
+
+    fn has_plain(&self) -> bool {
+        let [.., plain, _] = &self.candidates;
+        !plain.failed
     }
 
     /// Prepares one motion; whether there was one to prepare.
     pub fn prepare(&mut self) -> Result<bool, Error> {
-        let [.., plain] = &self.candidates;
-        Ok(self.shadowed.prepare()? || !plain.failed && self.plain.prepare()?)
+        let prepared = self.runs().map(Run::prepare).find(|prepared| *prepared != Ok(false)).unwrap_or(Ok(false))?;
+        Ok(prepared || self.has_plain() && self.plain.prepare()?)
     }
 
     /// Makes steps of one motion towards the next frame, as many as `cost` pays for and one at least. What they cost; 0 if
     /// there is nothing left to do.
     pub fn advance(&mut self, costs: &Costs, cost: f32) -> f32 {
-        let [own, _, plain] = &self.candidates;
-        let most = |method: Method| steps_for(costs, method, cost);
-        let steps = self.shadowed.advance(most(own.method));
-        if steps > 0 || plain.failed {
-            return costs.of_frame(own.method, steps);
-        }
-        let steps = self.plain.advance(most(plain.method));
-        costs.of_frame(plain.method, steps)
+        let spent = self.runs().map(|run| run.advance(costs, cost)).find(|&spent| spent > 0.0);
+        let plain = |pass: &mut Self| if pass.has_plain() { pass.plain.advance(costs, cost) } else { 0.0 };
+        spent.unwrap_or_else(|| plain(self))
     }
 
     /// Compares the frames at time `t`, s, when all steps towards them are made. A method fails where it may be off by more
     /// than the tolerance.
     pub fn compare(&mut self, t: f64) {
-        let (frame, estimate) = self.shadowed.frame();
-        let beside = |other: Directions| distance(self.rods, &frame, &other);
-        let [own, closed, plain] = &mut self.candidates;
-        own.note(0.0, estimate);
-        if !closed.failed {
-            let beside = self.closed.map_or(f32::INFINITY, |motion| beside(motion.directions(t)));
-            closed.note(beside, estimate);
-        }
-        if !plain.failed {
-            plain.note(beside(self.plain.frame()), estimate);
+        let frames @ [own, second, third, last] = self.runs.each_mut().map(Run::frame);
+        let apart = |a: &Directions, b: &Directions| distance(self.rods, a, b);
+        let others = [second, third, last].map(|other| apart(&own, &other));
+        let greatest = others.into_iter().fold(0.0, greater);
+        let (judge, margin, error, bound) = if self.is_beside_64_bits {
+            (last, BESIDE_64_BITS, 0.0, 0.0)
+        } else {
+            self.by_rounding = others.into_iter().any(|other| 2.0 * other < greatest);
+            (own, 1.0, greatest, beside_finer_steps(self.candidates[0].method) * greatest)
+        };
+        let closed = self.closed.map_or([[f32::NAN; 2]; 2], |motion| motion.directions(t));
+        let shown = [frames[0], frames[1], frames[2], self.plain.frame(), closed];
+        for (candidate, shown) in self.candidates.iter_mut().zip(shown).filter(|(candidate, _)| !candidate.failed) {
+            let beside = distance(self.rods, &shown, &judge);
+            candidate.note(beside + error, margin * beside + bound);
         }
     }
 
-    /// Looks at `method` alone, beside the shadowed run.
-    pub fn only(&mut self, method: Method) {
-        let others = self.candidates.iter_mut().filter(|candidate| candidate.method != method);
-        others.for_each(|candidate| candidate.failed = true);
+    /// Looks no more at what is not `wanted`.
+    pub fn retain(&mut self, wanted: impl Fn(&Candidate) -> bool) {
+        self.candidates.iter_mut().filter(|candidate| !wanted(candidate)).for_each(|candidate| candidate.failed = true);
     }
 
     /// How the methods have fared.
-    pub fn candidates(&self) -> &[Candidate; 3] {
+    pub fn candidates(&self) -> &[Candidate; 5] {
         &self.candidates
     }
 
-    /// How the method of the shadowed run has fared.
-    pub fn shadowed(&self) -> &Candidate {
-        let [own, ..] = &self.candidates;
-        own
+    /// Whether its bounds are rough: with nothing in 64 bits beside it.
+    pub fn is_rough(&self) -> bool {
+        !self.is_beside_64_bits
+    }
+
+    /// Whether it was roundings that made all of them wrong, and finer steps do not help; else how many times as many to try.
+    pub fn finer(&self) -> Option<u32> {
+        let [_, second, third, ..] = &self.candidates;
+        match self.is_beside_64_bits {
+            true => third.outlasts(second).then_some(8),
+            false => (!self.by_rounding).then_some(2),
+        }
     }
 
     /// What the next frame costs.
-    pub fn cost(&self, costs: &Costs) -> f32 {
-        let [own, others @ ..] = &self.candidates;
-        let shadowed = costs.of_frame(own.method, steps_of_all(own.method, own.steps));
-        let others = others.iter().filter(|candidate| !candidate.failed);
-        others.fold(shadowed, |sum, candidate| sum + costs.of_frame(candidate.method, candidate.steps))
-    }
-}
-
-/// How many steps of `method` this `cost` pays for, one at least.
-fn steps_for(costs: &Costs, method: Method, cost: f32) -> u32 {
-    let steps = (cost / costs.of_frame(method, 1)) as u32;
-    if steps > 0 { steps } else { 1 }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_is_right_in_one_way_says_nothing_of_another() {
-        let candidate = Candidate { right: 7, ..Candidate::new(Method::Rk4F32Direction, 4) };
-        let right = |method, steps, has_longest_horizon| candidate.right_of(Way { method, steps }, has_longest_horizon);
-        assert_eq!(right(Method::Rk4F32Direction, 4, false), 7);
-        assert_eq!(right(Method::Rk4F32Direction, 2, false), 0);
-        assert_eq!(right(Method::Rk4F32DirectionPlain, 4, false), 0);
-        assert_eq!(right(Method::Extrapolation10Fixed64, 3, true), 7);
-        let closed = Candidate { right: 5, ..Candidate::new(Method::ClosedFormF32, 1) };
-        assert_eq!(closed.right_of(Way { method: Method::ClosedFormF32, steps: 0 }, false), 5);
-        assert_eq!(closed.right_of(Way { method: Method::Rk4F32Direction, steps: 1 }, false), 0);
-    }
-
-    #[test]
-    fn a_cost_pays_for_whole_steps_and_for_one_at_least() {
-        let costs = Costs {
-            closed_form: 10.0,
-            direction_plain: 100.0,
-            direction: 150.0,
-            fixed32: 120.0,
-            fixed64: 900.0,
-            preparation: 1000.0,
-        };
-        let steps = |cost| steps_for(&costs, Method::Rk4F32DirectionPlain, cost);
-        assert_eq!([50.0, 100.0, 399.0, 400.0].map(steps), [1, 1, 3, 4]);
+    pub fn cost(&mut self, costs: &Costs) -> f32 {
+        let plain = if self.has_plain() { self.plain.cost(costs) } else { 0.0 };
+        let [.., closed] = &self.candidates;
+        let closed = if closed.failed { 0.0 } else { closed.cost(costs) };
+        self.runs().fold(plain + closed, |sum, run| sum + run.cost(costs))
     }
 }

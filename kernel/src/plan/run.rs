@@ -1,6 +1,6 @@
 //! A motion by any method that a plan chooses from, and how far two of its frames are apart.
 
-use super::cost::ORDER;
+use super::cost::{Costs, ORDER};
 use crate::error::Error;
 use crate::methods::{ClosedFormF32, DirectionF32, DirectionF32Plain, Fixed32, Fixed64, Stepper};
 use crate::pendulum::{Direction, Parameters, State};
@@ -106,8 +106,9 @@ impl Stepped for AnyRun {
     fn steps(&mut self, steps: u32) {
         self.advance(steps);
     }
+    /// Nothing, if the motion is lost: it may have left its range where its directions do not show it.
     fn shown(&self) -> Directions {
-        self.directions()
+        self.check().map_or([[f32::NAN; 2]; 2], |()| self.directions())
     }
 }
 
@@ -128,6 +129,7 @@ impl Stepped for Stepper<DirectionF32Plain> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Run<M = AnyRun> {
     motion: Prepared<M>,
+    method: Method,
     per_frame: u32,
     /// Steps made since the last frame.
     made: u32,
@@ -136,7 +138,7 @@ pub(super) struct Run<M = AnyRun> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Prepared<M> {
     /// A pendulum and its start, others if these are refused, and steps a second.
-    NotYet(Method, [(Parameters<f64>, State<f64>); 2], f64),
+    NotYet([(Parameters<f64>, State<f64>); 2], f64),
     Ready(M),
 }
 
@@ -145,29 +147,34 @@ impl<M: Stepped> Run<M> {
     /// `rate` frames of a second.
     pub fn new(method: Method, given: [(Parameters<f64>, State<f64>); 2], rate: u16, per_frame: u32) -> Self {
         let per_second = f64::from(rate) * f64::from(per_frame);
-        Self { motion: Prepared::NotYet(method, given, per_second), per_frame, made: 0 }
+        Self { motion: Prepared::NotYet(given, per_second), method, per_frame, made: 0 }
     }
 
     /// Prepares the steps; whether they were not.
     #[inline(never)]
     pub fn prepare(&mut self) -> Result<bool, Error> {
-        let Prepared::NotYet(method, [first, other], per_second) = &self.motion else { return Ok(false) };
-        let run = M::prepared(*method, first, *per_second);
-        self.motion = Prepared::Ready(run.or_else(|_| M::prepared(*method, other, *per_second))?);
+        let Prepared::NotYet([first, other], per_second) = &self.motion else { return Ok(false) };
+        let run = M::prepared(self.method, first, *per_second);
+        self.motion = Prepared::Ready(run.or_else(|_| M::prepared(self.method, other, *per_second))?);
         Ok(true)
     }
 
-    /// Makes `most` of the steps towards the next frame, or as many as are left. How many that were: 0 if nothing was left to
-    /// do.
+    /// What a frame costs.
+    pub fn cost(&self, costs: &Costs) -> f32 {
+        costs.of_frame(self.method, self.per_frame)
+    }
+
+    /// Makes steps towards the next frame, as many as are left or as `cost` pays for, one at least. What they cost: 0 if nothing
+    /// was left to do.
     #[inline(never)]
-    pub fn advance(&mut self, most: u32) -> u32 {
+    pub fn advance(&mut self, costs: &Costs, cost: f32) -> f32 {
         let left = self.per_frame.saturating_sub(self.made);
-        let steps = if most < left { most } else { left };
+        let steps = steps_for(costs, self.method, cost).min(left);
         if let Prepared::Ready(motion) = &mut self.motion {
             motion.steps(steps);
         }
         self.made += steps;
-        steps
+        costs.of_frame(self.method, steps)
     }
 
     /// The frame, when nothing is left to do; the next steps lead to the next.
@@ -180,6 +187,13 @@ impl<M: Stepped> Run<M> {
         }
     }
 }
+
+/// How many steps of `method` this `cost` pays for, one at least.
+fn steps_for(costs: &Costs, method: Method, cost: f32) -> u32 {
+    let steps = (cost / costs.of_frame(method, 1)) as u32;
+    if steps > 0 { steps } else { 1 }
+}
+
 /// How far the farther of the two bobs is off, or bob 2 as seen from bob 1, where the rods are as long as `rods`, in their
 /// unit; NaN if anything is.
 ///
@@ -211,5 +225,19 @@ mod tests {
         assert_eq!(from([[3.0, 0.0], [-1.0, 0.0]]), 6.0);
         assert_eq!(from([[0.0, 1.0], [0.0, -2.0]]), 6.0);
         assert!(from([[0.0, f32::NAN], [0.0, 1.0]]).is_nan());
+    }
+
+    #[test]
+    fn a_cost_pays_for_whole_steps_and_for_one_at_least() {
+        let costs = Costs {
+            closed_form: 10.0,
+            direction_plain: 100.0,
+            direction: 150.0,
+            fixed32: 120.0,
+            fixed64: 900.0,
+            preparation: 1000.0,
+        };
+        let steps = |cost| steps_for(&costs, Method::Rk4F32DirectionPlain, cost);
+        assert_eq!([50.0, 100.0, 399.0, 400.0].map(steps), [1, 1, 3, 4]);
     }
 }

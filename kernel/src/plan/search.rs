@@ -2,10 +2,11 @@
 //!
 //! All of it is done in pieces that a busy caller can afford: a few steps of one motion, a comparison, a new step size.
 
+use super::candidate::Candidate;
 use super::cost::{Budget, Costs};
 use super::error::PlanError;
 use super::limit::Limit;
-use super::pass::{Candidate, Pass};
+use super::pass::Pass;
 use super::problem::Problem;
 use super::way::{FIRST_STEP, MOST_STEPS, RESOLVING, Way, start_and_step, steps_to_frame};
 use crate::error::{Error, Parameter};
@@ -36,8 +37,8 @@ pub struct Plan {
     pub spent: f32,
 }
 
-/// A costlier method must be right for this much longer to be worth it.
-const WORTH: f64 = 1.1;
+/// Finer steps, or a closer look, may find a motion right for so many times as long.
+const LONGER: u32 = 2;
 
 /// A search under way; [`advance`](Self::advance) it until there is a plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,7 +50,9 @@ pub struct Search {
     start: State<f64>,
     /// The cheaper method in 32 bits.
     cheap: Method,
-    /// Steps to a frame by [`Method::Extrapolation10Fixed64`], if they can be had, and what ends their horizon.
+    /// Steps to a frame by [`Method::Extrapolation10Fixed64`] that resolve the motion, if its numbers take it.
+    exact: Option<u32>,
+    /// Those that a frame pays for, and what ends their horizon.
     fine: Option<(u32, Limit)>,
     /// What is looked at, and in how many steps to a frame.
     method: Method,
@@ -81,11 +84,13 @@ impl Search {
         problem.check()?;
         costs.check()?;
         budget.check()?;
-        let fine = |longest: f64, limit: Limit| {
+        let fine = |longest: f64, frame: f32| {
             let Problem { pendulum, start, rate, .. } = problem;
-            let way = Way::fixed64(pendulum, start, *rate, longest * admissible, costs, budget.frame)?;
-            Some((way.steps, limit))
+            Way::fixed64(pendulum, start, *rate, longest * admissible, costs, frame).map(|way| way.steps)
         };
+        let exact = fine(RESOLVING, f32::INFINITY);
+        let affordable = |steps: &u32| costs.of_frame(Method::Extrapolation10Fixed64, *steps) <= budget.frame;
+        let coarser = || fine(FIRST_STEP, budget.frame).map(|steps| (steps, Limit::Budget));
         let cheap = if costs.fixed32 < costs.direction { Method::Rk4Fixed32 } else { Method::Rk4F32Direction };
         let steps = steps_to_frame(cheap, problem.rate, FIRST_STEP * admissible);
         Ok(Self {
@@ -94,7 +99,8 @@ impl Search {
             budget: *budget,
             start,
             cheap,
-            fine: fine(RESOLVING, Limit::Growth).or_else(|| fine(FIRST_STEP, Limit::Budget)),
+            exact,
+            fine: exact.filter(affordable).map(|steps| (steps, Limit::Growth)).or_else(coarser),
             method: cheap,
             steps,
             pass: None,
@@ -125,9 +131,11 @@ impl Search {
         }
         let mut search = Self::new(problem, costs, budget)?;
         search.steps = if steps > 0 { steps } else { 1 };
-        if method != Method::ClosedFormF32 {
-            search.method = method;
-        }
+        search.method = match method {
+            Method::ClosedFormF32 => search.method,
+            Method::Rk4F32DirectionPlain => Method::Rk4F32Direction,
+            method => method,
+        };
         (search.given, search.budget.frame) = (Some(method), f32::INFINITY);
         search.best = Some(Candidate::new(method, search.steps));
         Ok(search)
@@ -167,7 +175,8 @@ impl Search {
         if self.is_complete() {
             return self.plan(Limit::End).map(Some);
         }
-        self.go_on()
+        let times = self.pass.as_ref().and_then(Pass::finer);
+        self.go_on(times)
     }
 
     /// A form takes no steps so long, or no motion of so high an energy, or no such pendulum: finer ones, or `f32`, may.
@@ -180,7 +189,7 @@ impl Search {
                 self.begin(self.cheap, self.steps);
                 Ok(None)
             }
-            _ => self.go_on(),
+            _ => self.go_on(Some(2)),
         }
     }
 
@@ -199,11 +208,23 @@ impl Search {
             return self.plan(Limit::Planning).map(Some);
         }
         self.spent += self.costs.preparation;
-        let pass = self.pass.insert(Pass::new(self.method, &self.problem, &self.start, self.steps));
-        if let Some(method) = self.given {
-            pass.only(method);
-        }
+        let Self { method, steps, costs, budget, .. } = *self;
+        let beside = self.beside();
+        let pass = self.pass.insert(Pass::new(method, &self.problem, &self.start, steps, beside));
+        pass.retain(|one| match self.given {
+            Some(method) => one.method == method && one.steps == steps,
+            None => one.cost(&costs) <= budget.frame,
+        });
         Ok(None)
+    }
+
+    /// In 32 bits: steps of a run in 64 bits to compare with, if planning can pay for them as long as the next pass may last.
+    fn beside(&self) -> Option<u32> {
+        let (frames, right) = (self.problem.frames(), self.best.map_or(0, |best| best.right));
+        let frames = if right > 0 { frames.min(LONGER * right) } else { frames };
+        let left = (self.budget.planning - self.spent) / frames as f32;
+        let affordable = |&exact: &u32| Pass::cost_beside(&self.costs, self.method, self.steps, exact) <= left;
+        self.exact.filter(|_| self.method != Method::Extrapolation10Fixed64).filter(affordable)
     }
 
     /// Prepares a motion of the pass.
@@ -229,8 +250,8 @@ impl Search {
     }
 
     /// With finer steps, if there is anything finer to try.
-    fn go_on(&mut self) -> Result<Option<Plan>, PlanError> {
-        let limit = if self.given.is_some() { Some(Limit::Method) } else { self.refine() };
+    fn go_on(&mut self, times: Option<u32>) -> Result<Option<Plan>, PlanError> {
+        let limit = if self.given.is_some() { Some(Limit::Method) } else { self.refine(times) };
         limit.map(|limit| self.plan(limit)).transpose()
     }
 
@@ -257,7 +278,7 @@ impl Search {
     #[doc(hidden)]
     pub fn extend(&mut self, seconds: f64) {
         if let (Some(best), Some(pass)) = (self.best, &mut self.pass) {
-            pass.only(best.method);
+            pass.retain(|one| (one.method, one.steps) == (best.method, best.steps));
             self.given = Some(best.method);
             self.problem.duration += seconds;
             self.budget.planning = f32::INFINITY;
@@ -281,22 +302,25 @@ impl Search {
 
     /// Goes on to finer steps, or to 64 bits where rounding is what limits, or where they cost less; what forbids it, if
     /// anything does.
-    fn refine(&mut self) -> Option<Limit> {
-        let (method, steps) = (self.method, self.steps);
-        let by_rounding = self.pass.as_ref().is_some_and(|pass| pass.shadowed().by_rounding);
+    fn refine(&mut self, times: Option<u32>) -> Option<Limit> {
+        let method = self.method;
         if method == Method::Extrapolation10Fixed64 {
             return Some(self.fine.map_or(Limit::Budget, |(_, limit)| limit));
         }
-        let finer = steps.saturating_mul(2);
-        let cost = self.costs.of_frame(method, finer);
-        let is_worth = |&(steps, _): &(u32, Limit)| {
-            by_rounding || self.costs.of_frame(Method::Extrapolation10Fixed64, steps) <= cost
+        if times.is_none() && self.pass.as_ref().is_some_and(Pass::is_rough) && self.beside().is_some() {
+            self.begin(method, self.steps);
+            return None;
+        }
+        let finer = times.map(|times| self.steps.saturating_mul(times)).filter(|&steps| steps <= MOST_STEPS);
+        let cost = |&steps: &u32| self.costs.of_frame(method, steps);
+        let is_worth = |(steps, _): &(u32, Limit)| {
+            finer
+                .as_ref()
+                .is_none_or(|finer| self.costs.of_frame(Method::Extrapolation10Fixed64, *steps) <= cost(finer))
         };
-        let (method, steps) = match self.fine.filter(is_worth) {
-            Some((steps, _)) => (Method::Extrapolation10Fixed64, steps),
-            None if by_rounding || finer > MOST_STEPS || cost > self.budget.frame => return Some(Limit::Budget),
-            None => (method, finer),
-        };
+        let fine = self.fine.filter(is_worth).map(|(steps, _)| (Method::Extrapolation10Fixed64, steps));
+        let affordable = finer.filter(|finer| cost(finer) <= self.budget.frame).map(|finer| (method, finer));
+        let Some((method, steps)) = fine.or(affordable) else { return Some(Limit::Budget) };
         self.begin(method, steps);
         None
     }
@@ -304,16 +328,15 @@ impl Search {
     /// Whether `candidate` goes so much farther than the best so far, or as far and cheaper.
     #[inline(never)] // one copy
     fn is_better(&self, candidate: &Candidate) -> bool {
-        let cost = |candidate: &Candidate| self.costs.of_frame(candidate.method, candidate.steps);
+        let cost = |candidate: &Candidate| candidate.cost(&self.costs);
         if candidate.right == 0 || cost(candidate) > self.budget.frame {
             return false;
         }
         self.best.is_none_or(|best| {
             let is_it = (candidate.method, candidate.steps) == (best.method, best.steps);
             let reaches_end = candidate.right >= self.problem.frames() && best.right < candidate.right;
-            let farther = f64::from(candidate.right) > WORTH * f64::from(best.right);
             let cheaper = candidate.right >= best.right && cost(candidate) < cost(&best);
-            reaches_end || farther || cheaper || is_it && candidate.right > best.right
+            reaches_end || candidate.outlasts(&best) || cheaper || is_it && candidate.right > best.right
         })
     }
 
@@ -322,8 +345,7 @@ impl Search {
     fn plan(&self, limit: Limit) -> Result<Plan, PlanError> {
         let Some(best) = self.best else {
             // To plan for longer would help nothing of which a frame costs too much.
-            let affordable = |one: &Candidate| self.costs.of_frame(one.method, one.steps) <= self.budget.frame;
-            let is_open = |pass: &Pass| pass.candidates().iter().any(|one| !one.failed && affordable(one));
+            let is_open = |pass: &Pass| pass.candidates().iter().any(|one| !one.failed);
             let open = self.pass.as_ref().is_none_or(is_open);
             let limit = if limit == Limit::Planning && !open { Limit::Budget } else { limit };
             return Err(PlanError::NothingHolds { limit, spent: self.spent });
@@ -335,7 +357,7 @@ impl Search {
             steps,
             dt: if steps == 0 { 0.0 } else { 1.0 / (rate * f64::from(steps)) },
             error: best.error,
-            cost: self.costs.of_frame(best.method, best.steps),
+            cost: best.cost(&self.costs),
             horizon: if limit == Limit::End { self.problem.duration } else { self.problem.time(best.right) },
             limit,
             spent: self.spent,

@@ -1,7 +1,7 @@
 //! A method and its step.
 
 use super::cost::Costs;
-use crate::error::Error;
+use crate::error::{Error, Parameter};
 use crate::pendulum::{Motion, Parameters, Pendulum, State};
 use crate::table::Method;
 
@@ -74,7 +74,7 @@ impl Way {
             Self { method, steps }
         };
         let fixed = affordable(Method::Rk4Fixed32);
-        let is_fixed = costs.fixed32 < costs.direction && fixed.takes(parameters, start, rate);
+        let is_fixed = costs.fixed32 < costs.direction && fixed.check(parameters, start, rate).is_ok();
         Ok(if is_fixed { fixed } else { affordable(Method::Rk4F32Direction) })
     }
 
@@ -102,19 +102,23 @@ impl Way {
             steps: steps_to_frame(Method::Extrapolation10Fixed64, rate, longest),
         };
         while costs.of_frame(way.method, way.steps) <= frame && way.steps < MOST_STEPS {
-            if way.takes(parameters, start, rate) {
-                return Some(way);
+            match way.check(parameters, start, rate) {
+                Ok(()) => return Some(way),
+                Err(Error::TooLarge { parameter: Parameter::Dt, limit, .. }) => {
+                    let enough = steps_to_frame(way.method, rate, limit);
+                    way.steps = if enough > way.steps { enough } else { way.steps + 1 };
+                }
+                Err(_) => return None,
             }
-            way.steps *= 2;
         }
         None
     }
 
-    /// Whether a motion can be started in this way.
+    /// Refuses a motion that cannot be started in this way.
     ///
     /// Never inlined: the motion stands on the stack.
     #[inline(never)]
-    pub(super) fn takes(self, parameters: &Parameters<f64>, start: &Motion<f64>, rate: u16) -> bool {
-        super::PlannedRun::new(parameters, start, rate, self).is_ok()
+    fn check(self, parameters: &Parameters<f64>, start: &Motion<f64>, rate: u16) -> Result<(), Error> {
+        super::PlannedRun::new(parameters, start, rate, self).map(|_| ())
     }
 }

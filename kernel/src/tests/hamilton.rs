@@ -41,12 +41,8 @@ fn derivatives_are_the_pages<R: Real>() {
 }
 
 #[test]
-fn derivatives_are_the_pages_f32() {
+fn derivatives_are_the_pages_in_either_precision() {
     derivatives_are_the_pages::<f32>();
-}
-
-#[test]
-fn derivatives_are_the_pages_f64() {
     derivatives_are_the_pages::<f64>();
 }
 
@@ -124,12 +120,8 @@ fn equal_rods_are_the_general_form<R: Real>() {
 }
 
 #[test]
-fn equal_rods_are_the_general_form_f32() {
+fn equal_rods_are_the_general_form_in_either_precision() {
     equal_rods_are_the_general_form::<f32>();
-}
-
-#[test]
-fn equal_rods_are_the_general_form_f64() {
     equal_rods_are_the_general_form::<f64>();
 }
 

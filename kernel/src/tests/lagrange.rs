@@ -108,12 +108,8 @@ fn all<R: Real>() {
 }
 
 #[test]
-fn lagrange_f32() {
+fn lagrange_in_either_precision() {
     all::<f32>();
-}
-
-#[test]
-fn lagrange_f64() {
     all::<f64>();
 }
 

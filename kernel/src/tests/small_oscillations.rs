@@ -102,12 +102,8 @@ fn directions_are_those_of_the_angles<R: Real>() {
 }
 
 #[test]
-fn directions_are_those_of_the_angles_f32() {
+fn directions_are_those_of_the_angles_in_either_precision() {
     directions_are_those_of_the_angles::<f32>();
-}
-
-#[test]
-fn directions_are_those_of_the_angles_f64() {
     directions_are_those_of_the_angles::<f64>();
 }
 

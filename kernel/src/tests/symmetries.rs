@@ -85,16 +85,14 @@ fn scaling_laws<R: Real>() {
     });
 }
 
-#[test]
-fn symmetries_f32() {
-    reversal_of_the_derivatives::<f32>();
-    mirror_image::<f32>();
-    scaling_laws::<f32>();
+fn all<R: Real>() {
+    reversal_of_the_derivatives::<R>();
+    mirror_image::<R>();
+    scaling_laws::<R>();
 }
 
 #[test]
-fn symmetries_f64() {
-    reversal_of_the_derivatives::<f64>();
-    mirror_image::<f64>();
-    scaling_laws::<f64>();
+fn symmetries_in_either_precision() {
+    all::<f32>();
+    all::<f64>();
 }

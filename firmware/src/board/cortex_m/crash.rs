@@ -27,7 +27,7 @@ use cortex_m_semihosting::{debug, hio};
 
 use super::calls::{calls, instruction};
 use super::{fault_status, retained, watchdog};
-use crate::app::warm_restart::{Cause, LastShown};
+use crate::app::{Cause, LastShown};
 use crate::fault::{Fault, Hang, Panic, Stacked};
 
 /// A call to the debugger, `bkpt 0xAB`, and its length in bytes.

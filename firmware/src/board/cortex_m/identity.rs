@@ -3,7 +3,7 @@
 use cortex_m::peripheral::{CPUID, DCB, DWT};
 
 use super::{clock, stopwatch};
-use crate::app::instruments::Instruments;
+use crate::app::Instruments;
 use crate::job::{OnBoards, Run};
 use crate::protocol::{BoardName, Identity};
 

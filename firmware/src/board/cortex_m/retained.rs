@@ -3,10 +3,10 @@
 use core::hint::black_box;
 use core::sync::atomic::{AtomicU8, Ordering};
 
-use crate::app::warm_restart::{Cause, Kept, WarmRestart, read};
+use crate::app::warm_restart::read;
+use crate::app::{Cause, Kept, WarmRestart};
 use crate::protocol::{MAX_WIRE, Message, Restarted, Status, encode};
 
-/// What is played.
 // SAFETY: start-up leaves this section alone, and what stands there is bytes.
 #[unsafe(link_section = ".uninit.played")]
 static PLAYED: Memory = Memory::new();
@@ -63,7 +63,6 @@ pub fn last() -> Option<Restarted> {
     read(&END.read())
 }
 
-/// Keeps how it ended.
 #[inline(never)]
 pub fn end(cause: Cause, pc: u32, lr: u32, cfsr: u32) {
     END.write(&Restarted { cause: cause.code(), pc, lr, cfsr, ..last().unwrap_or_default() });

@@ -11,114 +11,76 @@ use cortex_m::peripheral::NVIC;
 
 use super::clock::ticks;
 use super::interrupt::Interrupt;
-use crate::board::register::{Device, Register};
+use crate::board::register::Device;
 use crate::config::{TICK_RATE, WATCHDOG_SECONDS};
 
 /// What the main loop needs of it.
 pub trait Watchdog {
     /// Begins its time anew.
     fn feed(&mut self);
-
-    /// Whether the board's own register says that it caused the last reset.
-    fn has_reset(&self) -> bool;
 }
 
 /// ARM's watchdog of two stages (SP805 and its sisters): when its time is over it interrupts, and when it is over once
 /// more it resets the board.
 #[derive(Debug)]
-pub struct TwoStage {
-    clear: Register,
-    lock: Register,
-    has_reset: bool,
-}
+pub struct TwoStage(Device);
 
-/// Its interrupt: one of the chip's own, or the one that cannot be masked.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::board) enum Call {
-    Own(u16),
-    Nmi,
-}
-
-pub(in crate::board) struct Registers {
-    load: Register,
-    control: Register,
-    clear: Register,
-    lock: Register,
-}
-
-impl Registers {
-    /// Where ARM puts them.
-    pub(in crate::board) const fn of(device: Device) -> Self {
-        Self {
-            load: device.register(0x000),
-            control: device.register(0x008),
-            clear: device.register(0x00c),
-            lock: device.register(0xc00),
-        }
-    }
-}
+/// Its registers: where it counts from, what is on, what begins the time anew, what locks the others.
+const LOAD: usize = 0x000;
+const CONTROL: usize = 0x008;
+const CLEAR: usize = 0x00c;
+const LOCK: usize = 0xc00;
 
 /// The interrupt and the reset, on.
 const ENABLE: u32 = 1 << 1 | 1 << 0;
 /// Writing this opens the other registers, any other number closes them.
-pub(in crate::board) const UNLOCK: u32 = 0x1ACC_E551;
+const UNLOCK: u32 = 0x1ACC_E551;
 const LOCKED: u32 = 1;
 
+/// Opens the registers of such a watchdog until it is fed.
+pub(in crate::board) fn unlock(device: Device) {
+    device.register(LOCK).write(UNLOCK);
+}
+
 impl TwoStage {
-    /// Starts it; it counts at `hertz`.
-    pub(in crate::board) fn start(registers: Registers, hertz: u32, call: Call, has_reset: bool) -> Self {
-        let Registers { load, control, clear, lock } = registers;
-        call.note();
-        lock.write(UNLOCK);
-        load.write(hertz.saturating_mul(WATCHDOG_SECONDS));
-        control.write(ENABLE);
-        let mut watchdog = Self { clear, lock, has_reset };
+    /// Starts it; it counts at `hertz` and interrupts by the `call`, as the processor numbers it.
+    pub(in crate::board) fn start(device: Device, hertz: u32, call: u16) -> Self {
+        CALL.store(call, Ordering::Relaxed);
+        unlock(device);
+        device.register(LOAD).write(hertz.saturating_mul(WATCHDOG_SECONDS));
+        device.register(CONTROL).write(ENABLE);
+        let mut watchdog = Self(device);
         watchdog.feed();
         watchdog
     }
 }
 
 impl Watchdog for TwoStage {
+    #[inline(never)] // no second copy
     fn feed(&mut self) {
-        self.lock.write(UNLOCK);
-        self.clear.write(1);
-        self.lock.write(LOCKED);
+        unlock(self.0);
+        self.0.register(CLEAR).write(1);
+        self.0.register(LOCK).write(LOCKED);
         FED.store(ticks(), Ordering::Relaxed);
         rearm();
-    }
-
-    fn has_reset(&self) -> bool {
-        self.has_reset
     }
 }
 
 /// What the processor calls the interrupt that cannot be masked, and the first of the chip's own.
-const NMI: u16 = 2;
-const FIRST: u16 = 16;
+pub(in crate::board) const NMI: u16 = 2;
+pub(in crate::board) const FIRST: u16 = 16;
 
 /// What the processor calls the watchdog's interrupt.
 static CALL: AtomicU16 = AtomicU16::new(NMI);
 
-impl Call {
-    fn note(self) {
-        CALL.store(self.number(), Ordering::Relaxed);
-    }
-
-    fn number(self) -> u16 {
-        match self {
-            Self::Own(interrupt) => interrupt.wrapping_add(FIRST),
-            Self::Nmi => NMI,
-        }
-    }
-
-    fn noted() -> Self {
-        CALL.load(Ordering::Relaxed).checked_sub(FIRST).map_or(Self::Nmi, Self::Own)
-    }
-}
-
 /// Whether the interrupt that the processor calls so is the watchdog's.
 pub(super) fn is_call(number: u32) -> bool {
-    number == Call::noted().number().into()
+    number == CALL.load(Ordering::Relaxed).into()
+}
+
+/// The watchdog's interrupt, if it can be masked.
+fn own() -> Option<Interrupt> {
+    CALL.load(Ordering::Relaxed).checked_sub(FIRST).map(Interrupt)
 }
 
 /// The tick when it was last fed.
@@ -147,15 +109,15 @@ pub(super) fn stall(stalls: bool) {
 
 /// Keeps its interrupt from coming again and again until it is fed; the one that cannot be masked comes once.
 pub(super) fn silence() {
-    if let Call::Own(interrupt) = Call::noted() {
-        NVIC::mask(Interrupt(interrupt));
+    if let Some(interrupt) = own() {
+        NVIC::mask(interrupt);
     }
 }
 
 /// Lets its interrupt through.
 fn rearm() {
-    if let Call::Own(interrupt) = Call::noted() {
-        NVIC::unpend(Interrupt(interrupt));
-        Interrupt(interrupt).unmask();
+    if let Some(interrupt) = own() {
+        NVIC::unpend(interrupt);
+        interrupt.unmask();
     }
 }

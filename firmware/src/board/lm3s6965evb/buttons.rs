@@ -1,7 +1,7 @@
 //! The five buttons.
 
 use super::gpio;
-use crate::app::controls::{Buttons, Pressed};
+use crate::app::{Buttons, Pressed};
 
 const UP: u8 = 1 << 0;
 const DOWN: u8 = 1 << 1;

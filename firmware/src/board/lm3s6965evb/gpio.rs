@@ -65,7 +65,6 @@ pub fn card_select() -> Output {
     D.use_for_output(1 << 0)
 }
 
-/// An output pin.
 #[derive(Debug)]
 pub struct Output(Register);
 

@@ -27,7 +27,7 @@ use crate::board::cortex_m::watchdog::TwoStage;
 use crate::board::serial::receiver::Receiver;
 use crate::board::serial::transmitter::Transmitter;
 use crate::display::Ssd0323;
-use crate::graphics::canvas::Canvas;
+use crate::graphics::Canvas;
 use crate::protocol::BoardName;
 
 use buttons::Keys;
@@ -35,7 +35,6 @@ use gpio::Output;
 use ssi::Ssi;
 use uart::Pl011;
 
-/// The board.
 pub type Lm3s6965evb = Board<Ssd0323<'static, Ssi, Output>, Transmitter<Pl011>, Keys, TwoStage>;
 
 /// Sets the board up; `None` the second time.
@@ -60,5 +59,6 @@ pub fn take() -> Option<Lm3s6965evb> {
         instruments: instruments(BoardName::Lm3s6965evb, hertz, system::chip(), &core.CPUID, core.DCB, core.DWT),
         clock: Clock::start(core.SYST, hertz),
         watchdog: watchdog::start(hertz),
+        reset_by_watchdog: system::reset_by_watchdog(),
     })
 }

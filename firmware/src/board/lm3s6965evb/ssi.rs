@@ -24,11 +24,9 @@ const BUSY: u32 = 1 << 4;
 /// Eight bits, clock idles high and data are taken on its first, falling edge.
 const MODE_2_BYTES: u32 = 1 << 6 | 7;
 
-/// The bus of the panel.
 #[derive(Debug)]
 pub struct Ssi(());
 
-/// Why bytes were not sent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SsiError {
     /// The bus did not finish in time.

@@ -29,7 +29,6 @@ const RECEIVED: u32 = 1 << 6 | 1 << 4;
 /// UART0's number on this chip.
 const INTERRUPT: Interrupt = Interrupt(5);
 
-/// The port, running.
 #[derive(Debug)]
 pub struct Pl011(());
 

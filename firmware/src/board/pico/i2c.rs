@@ -12,8 +12,7 @@ use rp2040_hal::pac::i2c0::RegisterBlock;
 use rp2040_hal::pac::{I2C0, Interrupt, RESETS, interrupt};
 
 use crate::board::panel_bus::{self, Bus, PanelPort};
-use crate::display::i2c_recovery::free_bus;
-use crate::display::outbox::{Outbox, Sent};
+use crate::display::{Outbox, Sent, free_bus};
 
 /// The bus's clock, Hz, and the part of a period that it is low.
 const SPEED: u32 = 400_000;
@@ -41,7 +40,6 @@ const ARBITRATION_LOST: u32 = 1 << 12;
 /// Its data and its clock.
 pub(super) type Lines = (Line<Gpio4>, Line<Gpio5>);
 
-/// I2C0 and its pins.
 pub struct I2c0 {
     port: I2C0,
     lines: Lines,

@@ -6,7 +6,7 @@ use core::cell::Cell;
 
 use cortex_m::interrupt::{Mutex, free};
 use cortex_m::singleton;
-use embedded_io::{ErrorType, Write};
+use embedded_io::{ErrorKind, ErrorType, Write};
 use heapless::Deque;
 use rp2040_hal::fugit::{HertzU32, RateExtU32};
 use rp2040_hal::gpio::bank0::{Gpio0, Gpio1};
@@ -16,7 +16,6 @@ use rp2040_hal::uart::{DataBits, StopBits, UartConfig, UartPeripheral};
 
 use super::usb;
 use crate::board::serial::receiver::{self, Inlet, Taken};
-use crate::board::serial::transmitter::Timeout;
 use crate::config::{BAUD, BUS_TRIES, UART_QUEUE};
 
 /// Both pins of UART0.
@@ -55,20 +54,20 @@ impl Link {
 }
 
 impl ErrorType for Link {
-    type Error = Timeout;
+    type Error = ErrorKind;
 }
 
 impl Write for Link {
-    fn write(&mut self, bytes: &[u8]) -> Result<usize, Timeout> {
+    fn write(&mut self, bytes: &[u8]) -> Result<usize, ErrorKind> {
         usb::send(bytes);
         if !(0..TRIES).any(|_| put(bytes)) {
-            return Err(Timeout);
+            return Err(ErrorKind::TimedOut);
         }
         NVIC::pend(Interrupt::UART0_IRQ);
         Ok(bytes.len())
     }
 
-    fn flush(&mut self) -> Result<(), Timeout> {
+    fn flush(&mut self) -> Result<(), ErrorKind> {
         Ok(())
     }
 }

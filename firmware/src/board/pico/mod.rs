@@ -18,24 +18,20 @@ use embedded_hal::digital::InputPin;
 use rp2040_hal::clocks::{Clock as _, init_clocks_and_plls};
 use rp2040_hal::gpio::bank0::{Gpio10, Gpio11, Gpio12, Gpio13, Gpio14};
 use rp2040_hal::gpio::{FunctionNull, FunctionSioInput, Pin, PinId, Pins, PullDown, PullUp, ValidFunction};
-use rp2040_hal::{Sio, pac};
+use rp2040_hal::{Sio, Watchdog, pac};
 
-use crate::app::controls::{Buttons, Pressed};
-use crate::app::instruments::Instruments;
+use crate::app::{Buttons, Instruments, Pressed};
 use crate::board::cortex_m::clock::Clock;
 use crate::board::cortex_m::guard::guard_stack;
 use crate::board::cortex_m::identity::instruments;
 use crate::board::panel_bus::Bus;
 use crate::board::serial::receiver::Receiver;
 use crate::board::{Board, log, steps};
-use crate::display::Ssd1306;
-use crate::display::controller::BUILT_FOR;
-use crate::display::outbox::Outbox;
+use crate::display::{BUILT_FOR, Outbox, Ssd1306};
 use crate::protocol::BoardName;
 
 use i2c::{I2c0, Line};
 use link::Link;
-use watchdog::Dog;
 
 /// What the chip's boot ROM runs first: it makes the flash readable as memory, if that is a W25Q080 or takes its commands.
 // SAFETY: the linker puts this section where the ROM looks for it, and nothing else into it.
@@ -46,8 +42,7 @@ static BOOT: [u8; 256] = rp2040_boot2::BOOT_LOADER_W25Q080;
 /// The Pico's crystal, Hz.
 const CRYSTAL: u32 = 12_000_000;
 
-/// The board.
-pub type Pico = Board<Ssd1306<Bus<I2c0>>, Link, PinKeys, Dog>;
+pub type Pico = Board<Ssd1306<Bus<I2c0>>, Link, PinKeys, Watchdog>;
 
 /// Sets the board up; `None` the second time, or if its clock does not start.
 pub fn take() -> Option<Pico> {
@@ -55,17 +50,9 @@ pub fn take() -> Option<Pico> {
     let mut chip = pac::Peripherals::take()?;
     log::into_memory();
     guard_stack(core.MPU);
-    let mut watchdog = Dog::new(chip.WATCHDOG, &chip.RESETS);
-    let clocks = init_clocks_and_plls(
-        CRYSTAL,
-        chip.XOSC,
-        chip.CLOCKS,
-        chip.PLL_SYS,
-        chip.PLL_USB,
-        &mut chip.RESETS,
-        watchdog.unit(),
-    )
-    .ok()?;
+    let reset_by_watchdog = watchdog::has_reset(&chip.WATCHDOG, &chip.RESETS);
+    let (pll, usb_pll, resets, mut unit) = (chip.PLL_SYS, chip.PLL_USB, &mut chip.RESETS, Watchdog::new(chip.WATCHDOG));
+    let clocks = init_clocks_and_plls(CRYSTAL, chip.XOSC, chip.CLOCKS, pll, usb_pll, resets, &mut unit).ok()?;
     let hertz = clocks.system_clock.freq().to_Hz();
     let pins = Pins::new(chip.IO_BANK0, chip.PADS_BANK0, Sio::new(chip.SIO).gpio_bank0, &mut chip.RESETS);
     let serial = (pins.gpio0.reconfigure(), pins.gpio1.reconfigure());
@@ -93,7 +80,8 @@ pub fn take() -> Option<Pico> {
             ..instruments(BoardName::Pico, hertz, chip_number, &core.CPUID, core.DCB, core.DWT)
         },
         clock: Clock::start(core.SYST, hertz),
-        watchdog: watchdog.start(),
+        watchdog: watchdog::start(unit),
+        reset_by_watchdog,
     })
 }
 

@@ -6,7 +6,8 @@
 //! Source: RP2040 data sheet, 2.8 (boot sequence), 2.13 (what the watchdog resets), 2.14 (subsystem resets), 4.7 (watchdog).
 
 use rp2040_hal::fugit::ExtU32;
-use rp2040_hal::{pac, watchdog as support};
+use rp2040_hal::pac;
+use rp2040_hal::watchdog::{ScratchRegister, Watchdog};
 
 use crate::board::cortex_m::watchdog;
 use crate::config::WATCHDOG_SECONDS;
@@ -15,32 +16,20 @@ use crate::config::WATCHDOG_SECONDS;
 /// restart the chip on purpose overwrites.
 const STARTED: u32 = 0x6ab7_3121;
 
-/// The watchdog.
-pub struct Dog {
-    unit: support::Watchdog,
-    has_reset: bool,
+/// Whether it caused the last reset. To be asked before anything is taken out of its reset: the watchdog puts all there is into
+/// reset, a debugger does not.
+pub(super) fn has_reset(unit: &pac::WATCHDOG, resets: &pac::RESETS) -> bool {
+    unit.reason().read().timer().bit_is_set()
+        && unit.scratch4().read().bits() == STARTED
+        && resets.reset().read().i2c0().bit_is_set()
 }
 
-impl Dog {
-    /// To be called before anything is taken out of its reset. The watchdog puts all there is into reset, a debugger does not.
-    pub(super) fn new(unit: pac::WATCHDOG, resets: &pac::RESETS) -> Self {
-        let has_reset = unit.reason().read().timer().bit_is_set()
-            && unit.scratch4().read().bits() == STARTED
-            && resets.reset().read().i2c0().bit_is_set();
-        Self { unit: support::Watchdog::new(unit), has_reset }
-    }
-
-    /// What the clocks' set-up wants, for it makes the chip's microseconds as well.
-    pub(super) fn unit(&mut self) -> &mut support::Watchdog {
-        &mut self.unit
-    }
-
-    pub(super) fn start(mut self) -> Self {
-        self.unit.write_scratch(support::ScratchRegister::Scratch4, STARTED);
-        self.unit.start((2 * WATCHDOG_SECONDS).secs());
-        watchdog::stall_by(stall);
-        self
-    }
+/// Starts it; the clocks' set-up has had it before, for it makes the chip's microseconds as well.
+pub(super) fn start(mut unit: Watchdog) -> Watchdog {
+    unit.write_scratch(ScratchRegister::Scratch4, STARTED);
+    unit.start((2 * WATCHDOG_SECONDS).secs());
+    watchdog::stall_by(stall);
+    unit
 }
 
 fn stall(stalls: bool) {
@@ -49,12 +38,8 @@ fn stall(stalls: bool) {
     unit.ctrl().modify(|_, w| w.pause_dbg0().bit(stalls).pause_dbg1().bit(stalls).pause_jtag().bit(stalls));
 }
 
-impl watchdog::Watchdog for Dog {
+impl watchdog::Watchdog for Watchdog {
     fn feed(&mut self) {
-        self.unit.feed();
-    }
-
-    fn has_reset(&self) -> bool {
-        self.has_reset
+        Self::feed(self);
     }
 }

@@ -18,7 +18,6 @@ pub(in crate::board) struct Inlet {
     pub take: fn() -> Taken,
 }
 
-/// What a serial port had.
 #[derive(Clone, Copy)]
 pub(in crate::board) struct Taken {
     /// The next byte; `None` once there is none.

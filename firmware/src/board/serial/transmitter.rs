@@ -1,8 +1,6 @@
 //! Bytes sent: each waits until the serial port takes it, but not without end.
 
-use core::fmt;
-
-use embedded_io::{Error, ErrorKind, ErrorType, Write};
+use embedded_io::{ErrorKind, ErrorType, Write};
 
 use crate::config::BUS_TRIES;
 
@@ -15,37 +13,18 @@ pub trait Outlet {
     fn put(&mut self, byte: u8);
 }
 
-/// The outward direction of a serial port.
 #[derive(Debug)]
 pub struct Transmitter<Port>(pub(in crate::board) Port);
 
-/// The port did not take a byte in time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Timeout;
-
-impl fmt::Display for Timeout {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("the serial port did not take a byte in time")
-    }
-}
-
-impl core::error::Error for Timeout {}
-
-impl Error for Timeout {
-    fn kind(&self) -> ErrorKind {
-        ErrorKind::TimedOut
-    }
-}
-
 impl<Port> ErrorType for Transmitter<Port> {
-    type Error = Timeout;
+    type Error = ErrorKind;
 }
 
 impl<Port: Outlet> Write for Transmitter<Port> {
-    fn write(&mut self, bytes: &[u8]) -> Result<usize, Timeout> {
+    fn write(&mut self, bytes: &[u8]) -> Result<usize, ErrorKind> {
         for &byte in bytes {
             if !(0..BUS_TRIES).any(|_| self.0.is_ready()) {
-                return Err(Timeout);
+                return Err(ErrorKind::TimedOut);
             }
             self.0.put(byte);
         }
@@ -53,7 +32,7 @@ impl<Port: Outlet> Write for Transmitter<Port> {
     }
 
     /// Bytes leave by themselves; there is nothing to wait for.
-    fn flush(&mut self) -> Result<(), Timeout> {
+    fn flush(&mut self) -> Result<(), ErrorKind> {
         Ok(())
     }
 }

@@ -15,8 +15,7 @@ use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::Rcc;
 
 use crate::board::panel_bus::{self, Bus, PanelPort};
-use crate::display::i2c_recovery::free_bus;
-use crate::display::outbox::{Outbox, Sent};
+use crate::display::{Outbox, Sent, free_bus};
 
 /// Half a clock of a slow 100 kHz, cycles of 168 MHz.
 const HALF_CLOCK: u32 = 840;
@@ -29,7 +28,6 @@ const ALL_SENT: u16 = 1 << 2;
 const BYTE_READ: u16 = 1 << 6;
 const READY_FOR_BYTE: u16 = 1 << 7;
 
-/// I2C1 and its pins.
 pub struct I2c1 {
     port: I2C1,
     pins: (Scl, Sda),

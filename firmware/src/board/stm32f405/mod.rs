@@ -20,9 +20,9 @@ use stm32f4xx_hal::pac::{self, DBGMCU, RCC, USART3};
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::{Config, Rcc};
 use stm32f4xx_hal::serial::Tx;
+use stm32f4xx_hal::watchdog::IndependentWatchdog;
 
-use crate::app::controls::{Buttons, Pressed};
-use crate::app::instruments::Instruments;
+use crate::app::{Buttons, Instruments, Pressed};
 use crate::board::cortex_m::clock::Clock;
 use crate::board::cortex_m::guard::guard_stack;
 use crate::board::cortex_m::identity::instruments;
@@ -30,13 +30,10 @@ use crate::board::panel_bus::Bus;
 use crate::board::serial::receiver::Receiver;
 use crate::board::serial::transmitter::Transmitter;
 use crate::board::{Board, log, steps};
-use crate::display::Ssd1306;
-use crate::display::controller::BUILT_FOR;
-use crate::display::outbox::Outbox;
+use crate::display::{BUILT_FOR, Outbox, Ssd1306};
 use crate::protocol::BoardName;
 
 use i2c::I2c1;
-use watchdog::Independent;
 
 /// The processor's clock, Hz: the fastest of this chip, and the fixed one of the emulated machine.
 const HERTZ: u32 = 168_000_000;
@@ -51,8 +48,7 @@ enum Runs {
     InEmulator,
 }
 
-/// The board.
-pub type Stm32f405 = Board<Ssd1306<Bus<I2c1>>, Transmitter<Tx<USART3>>, OneKey, Independent>;
+pub type Stm32f405 = Board<Ssd1306<Bus<I2c1>>, Transmitter<Tx<USART3>>, OneKey, IndependentWatchdog>;
 
 /// Sets the board up; `None` the second time.
 pub fn take() -> Option<Stm32f405> {
@@ -80,7 +76,8 @@ pub fn take() -> Option<Stm32f405> {
             ..instruments(BoardName::Stm32f405, HERTZ, chip_number(runs), &core.CPUID, core.DCB, core.DWT)
         },
         clock: Clock::start(core.SYST, HERTZ),
-        watchdog: Independent::start(chip.IWDG, &mut rcc),
+        watchdog: watchdog::start(chip.IWDG),
+        reset_by_watchdog: watchdog::has_reset(&mut rcc),
     })
 }
 

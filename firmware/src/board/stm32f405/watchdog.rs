@@ -8,22 +8,19 @@ use stm32f4xx_hal::watchdog::IndependentWatchdog;
 use crate::board::cortex_m::watchdog;
 use crate::config::WATCHDOG_SECONDS;
 
-/// The chip's watchdog.
-pub struct Independent {
-    unit: IndependentWatchdog,
-    has_reset: bool,
+/// Whether it caused the last reset. To be asked once.
+pub(super) fn has_reset(rcc: &mut Rcc) -> bool {
+    let has_reset = rcc.csr().read().wdgrstf().bit_is_set();
+    rcc.csr().modify(|_, w| w.rmvf().set_bit());
+    has_reset
 }
 
-impl Independent {
-    /// Starts it. Its oscillator is good for a factor of 2 (17 to 47 kHz instead of 32).
-    pub(super) fn start(unit: IWDG, rcc: &mut Rcc) -> Self {
-        let has_reset = rcc.csr().read().wdgrstf().bit_is_set();
-        rcc.csr().modify(|_, w| w.rmvf().set_bit());
-        let mut unit = IndependentWatchdog::new(unit);
-        watchdog::stall_by(stall);
-        unit.start((2 * 1000 * WATCHDOG_SECONDS).millis());
-        Self { unit, has_reset }
-    }
+/// Starts it. Its oscillator is good for a factor of 2 (17 to 47 kHz instead of 32).
+pub(super) fn start(unit: IWDG) -> IndependentWatchdog {
+    let mut unit = IndependentWatchdog::new(unit);
+    watchdog::stall_by(stall);
+    unit.start((2 * 1000 * WATCHDOG_SECONDS).millis());
+    unit
 }
 
 fn stall(stalls: bool) {
@@ -32,12 +29,8 @@ fn stall(stalls: bool) {
     debug.apb1_fz().modify(|_, w| w.dbg_iwdg_stop().bit(stalls));
 }
 
-impl watchdog::Watchdog for Independent {
+impl watchdog::Watchdog for IndependentWatchdog {
     fn feed(&mut self) {
-        self.unit.feed();
-    }
-
-    fn has_reset(&self) -> bool {
-        self.has_reset
+        Self::feed(self);
     }
 }

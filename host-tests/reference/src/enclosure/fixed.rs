@@ -1,8 +1,6 @@
 //! Balls of fixed point: 116 bits behind the point, 8 before it, and how far the true number may be from that. They are discs of the
 //! complex plane about a real number as well: every bound here holds for both.
 
-use std::ops::{Add, Mul, Sub};
-
 /// Bits behind the point.
 const FRACTION: u32 = 116;
 /// Every midpoint is smaller than this, so that no sum of [`MOST_TERMS`] products overflows.
@@ -32,6 +30,8 @@ impl Fixed {
     pub const ZERO: Self = Self { middle: 0, radius: 0.0 };
     /// 1.
     pub const ONE: Self = Self { middle: 1 << FRACTION, radius: 0.0 };
+    /// pi, cut after 116 bits.
+    pub const PI: Self = Self { middle: 0x32_43F6_A888_5A30_8D31_3198_A2E0_3707, radius: 1.0 };
 
     /// Nothing is known of what leaves the range.
     fn new(middle: i128, radius: f64) -> Self {
@@ -81,14 +81,9 @@ impl Fixed {
         Self::new(self.middle, self.radius + up(radius / ULP))
     }
 
-    /// Whether every number in it is above zero; `f64` has the midpoint to 2^-53.
-    pub fn is_positive(self) -> bool {
-        up(self.radius) < self.middle as f64
-    }
-
-    /// Whether 0 is in it.
-    pub fn holds_zero(self) -> bool {
-        !self.is_positive() && !(Self::ZERO - self).is_positive()
+    /// Whether every number in it is above zero, or every one below; `None` if 0 may be in it. `f64` has the midpoint to 2^-53.
+    pub fn is_positive(self) -> Option<bool> {
+        (up(self.radius) < (self.middle as f64).abs()).then_some(self.middle > 0)
     }
 
     /// All digits that are known, the last one to two units; no more than `most` of them.
@@ -141,26 +136,20 @@ impl Fixed {
     }
 }
 
-impl Add for Fixed {
-    type Output = Self;
+macro_rules! operators {
+    ($($operator:ident $name:ident $result:expr;)*) => {$(
+        impl std::ops::$operator for Fixed {
+            type Output = Self;
 
-    fn add(self, other: Self) -> Self {
-        Self::new(self.middle + other.middle, self.radius + other.radius)
-    }
+            fn $name(self, other: Self) -> Self {
+                $result(self, other)
+            }
+        }
+    )*};
 }
 
-impl Sub for Fixed {
-    type Output = Self;
-
-    fn sub(self, other: Self) -> Self {
-        Self::new(self.middle - other.middle, self.radius + other.radius)
-    }
-}
-
-impl Mul for Fixed {
-    type Output = Self;
-
-    fn mul(self, other: Self) -> Self {
-        Self::product(&[self], &[other])
-    }
+operators! {
+    Add add (|a: Self, b: Self| Self::new(a.middle + b.middle, a.radius + b.radius));
+    Sub sub (|a: Self, b: Self| Self::new(a.middle - b.middle, a.radius + b.radius));
+    Mul mul (|a, b| Self::product(&[a], &[b]));
 }

@@ -1,14 +1,174 @@
-//! The exact motion, enclosed: a set that it is proved to be in, frame by frame.
+//! The exact motion, enclosed: a set that it is proved to be in, step by step. It is a midpoint, and segments about it that the
+//! derivatives after the start turn and stretch (R. Lohner, "Enclosing the solutions of ordinary initial and boundary value problems",
+//! 1987; a sum of segments in place of his one parallelepiped: W. Kuehn, "Rigorously computed orbits of dynamical systems without the
+//! wrapping effect", 1998).
 //!
 //! Nothing here is estimated. Every bound names its theorem where it stands; what is rounded is counted.
 
-mod discs;
 mod equations;
 mod fixed;
-mod set;
 mod start;
 
-pub use equations::Constants;
+use std::array::from_fn;
+
+pub use equations::Equations;
+use equations::{STARTS, discs};
 pub use fixed::Fixed;
-pub use set::{Enclosure, Fineness};
-pub use start::{Given, Start, sin_cos};
+use fixed::{MOST_TERMS, ULP, up};
+pub use start::{Start, sin_cos};
+
+/// Steps whose errors are kept in a box, before they become segments.
+const STEPS: u32 = 64;
+/// The most segments, before a box takes the place of all but those of the start.
+const SEGMENTS: usize = 6 * 2048;
+/// The finest step: a frame by two to the power of this.
+const MOST_HALVINGS: i32 = 24;
+
+/// How fine the arithmetic is.
+#[derive(Clone, Copy, Debug)]
+pub struct Fineness {
+    /// The most terms of the midpoint's power series, up to 48.
+    pub terms: usize,
+    /// The highest power of the derivatives' power series.
+    pub tangents: usize,
+    /// How far beside the midpoint a difference is taken in place of a derivative, by the radius of the disc: 2^-100 at least.
+    pub beside: f64,
+    /// What each allowance is multiplied by, 1 but in a test that takes one away: for roundings of the midpoint, the rest of its series,
+    /// what the derivatives lack, roundings of the segments.
+    pub allowances: [f64; 4],
+}
+
+impl Default for Fineness {
+    fn default() -> Self {
+        Self { terms: MOST_TERMS, tangents: 10, beside: 1.0 / (1_u64 << 56) as f64, allowances: [1.0; 4] }
+    }
+}
+
+/// The true (sin a1, cos a1, S, C, P1, P2) is at middle + the sum of y_k segment_k + d, where |y_k| <= 1 and |d_i| <= about_i.
+#[derive(Clone, Debug)]
+pub struct Enclosure {
+    /// Of the equations.
+    pub equations: Equations,
+    /// Units of time in a second, a power of two, and frames.
+    pub frame: (i32, u16),
+    middle: [Fixed; 6],
+    /// Those of the start come first, ...
+    segments: Vec<[f64; 6]>,
+    /// ... which were so long.
+    start: [f64; 6],
+    about: [f64; 6],
+    steps: u32,
+    fineness: Fineness,
+}
+
+impl Enclosure {
+    /// From anywhere in `start`, with 2^`frame.0` units of time and `frame.1` frames in a second.
+    pub fn new(equations: Equations, frame: (i32, u16), start: [Fixed; 6], fineness: Fineness) -> Self {
+        // none is without length
+        let about = start.map(|x| x.radius() + ULP);
+        let (middle, segments) = (start.map(Fixed::middle), Vec::new());
+        let mut set = Self { equations, frame, middle, segments, start: about, about, steps: 0, fineness };
+        set.settle();
+        set
+    }
+
+    /// The smallest box about the set: (sin a1, cos a1, S, C, P1, P2).
+    pub fn hull(&self) -> [Fixed; 6] {
+        let extent = self.extent(0);
+        from_fn(|i| self.middle[i].wider(extent[i]))
+    }
+
+    /// How far each number may be from its middle, the first segments left out.
+    fn extent(&self, left_out: usize) -> [f64; 6] {
+        let add = |sum: [f64; 6], segment: &[f64; 6]| from_fn(|i| sum[i] + segment[i].abs());
+        self.segments[left_out..].iter().fold(self.about, add).map(up)
+    }
+
+    /// How many times larger a small error of the start has become, about.
+    pub fn growth(&self) -> f64 {
+        let of = |i: usize| self.segments.iter().zip(self.start).map(|(x, start)| x[i].abs() / start).sum();
+        (0..6).map(of).fold(0.0, f64::max)
+    }
+
+    /// Where the rods point, (sin, cos) each.
+    pub fn directions(&self) -> [[Fixed; 2]; 2] {
+        let [sin1, cos1, s, c, ..] = self.hull();
+        [[sin1, cos1], [sin1 * c - cos1 * s, cos1 * c + sin1 * s]]
+    }
+
+    /// Moves on by a frame; `None` if the set has grown too large to be followed, or its numbers too large for the arithmetic.
+    pub fn advance(&mut self) -> Option<()> {
+        let mut left = vec![0];
+        while let Some(halvings) = left.pop() {
+            if self.step(halvings).is_none() {
+                left.extend([(halvings < MOST_HALVINGS).then_some(halvings + 1)?; 2]);
+            }
+        }
+        Some(())
+    }
+
+    /// By 2^-`halvings` frames.
+    ///
+    /// What starts at e from the midpoint m ends at F(m + e); F is the sum of a series up to any order, and a rest.
+    ///
+    /// Theorem (Cauchy's estimate on the disc m + s e, |s| <= 1/t, `share` being t): |F(m + e) - F(m) - F'(m) e| <= B t^2/(1 - t) if F is
+    /// within B of m there, as every sum of the series is; and if F is at most b, |F(m + e) - F(m)| <= b t/(1 - t). The first for one
+    /// coordinate, e being `beside`, bounds what the quotient of a difference is off by from the derivative. In time: the coefficient of
+    /// t^k is at most the disc's radius by `time`^-k, and what a series has beyond an order `tail` of the radius.
+    fn step(&mut self, halvings: i32) -> Option<()> {
+        let (unit, rate) = self.frame;
+        let (step, extent) = (Fixed::fraction(1, rate.into(), unit - halvings), self.extent(0));
+        extent.iter().all(|&extent| extent < 1.0).then_some(())?;
+        let (time, radii) = discs(&self.equations, &self.middle, &extent, step)?;
+        let Fineness { terms, tangents, beside, allowances: [rounding, rest, bend, turn] } = self.fineness;
+
+        let tail = |order: usize| up((0..order).fold(1.0 / (time - 1.0), |power, _| power / time));
+        let ends = |order: usize| radii.iter().all(|radius| radius * tail(order) < ULP);
+        let order = (1..terms - 1).find(|&order| ends(order)).unwrap_or(terms - 1);
+        let low = order.min(tangents);
+        let z = self.equations.series(&self.middle, order, step);
+        let (end, short) = (z.each_ref().map(|z| sum(z)), z.each_ref().map(|z| sum(&z[..=low])));
+        let off = radii.map(|radius| (beside * radius).log2().floor().exp2());
+        let columns: [[Fixed; 6]; 6] = from_fn(|j| {
+            let mut start = self.middle;
+            start[j] = start[j] + Fixed::of(off[j]);
+            let moved = self.equations.series(&start, low, step);
+            from_fn(|i| sum(&moved[i]) - short[i])
+        });
+        let v: [[f64; 6]; 6] = from_fn(|i| from_fn(|j| columns[j][i].about() / off[j]));
+
+        let share = (0..6).map(|i| up(extent[i] / (STARTS * radii[i]))).fold(0.0, f64::max);
+        // the last term: six quotients, each off by no more than twice this
+        let lacking = bend * share / (1.0 - share) * (share + tail(low) + 12.0 * beside / STARTS);
+        // Higham, (3.5): a sum of six products is rounded by at most 7 u, u = 2^-53, times the sum of their sizes; one u is of v
+        let rounded = |i: usize, j: usize| columns[j][i].radius() / off[j] + 5.0 * f64::EPSILON * v[i][j].abs();
+        let about = from_fn(|i| {
+            let moved = (0..6).map(|j| v[i][j].abs() * self.about[j] + turn * rounded(i, j) * extent[j]).sum::<f64>();
+            up(rounding * end[i].radius() + radii[i] * (rest * tail(order) + lacking) + moved)
+        });
+        about.iter().all(|radius| radius.is_finite()).then_some(())?;
+        for segment in &mut self.segments {
+            *segment = v.map(|row| row.iter().zip(*segment).map(|(x, y)| x * y).sum());
+        }
+        (self.middle, self.about, self.steps) = (end.map(Fixed::middle), about, self.steps + 1);
+        if self.steps.is_multiple_of(STEPS) {
+            self.settle();
+        }
+        Some(())
+    }
+
+    /// Makes the box to segments along the axes.
+    fn settle(&mut self) {
+        if self.segments.len() >= SEGMENTS {
+            self.about = self.extent(6);
+            self.segments.truncate(6);
+        }
+        let about = std::mem::take(&mut self.about);
+        self.segments.extend((0..6).map(|i| -> [f64; 6] { from_fn(|j| if i == j { about[i] } else { 0.0 }) }));
+    }
+}
+
+/// Of the series after one step.
+fn sum(terms: &[Fixed]) -> Fixed {
+    terms.iter().rev().fold(Fixed::ZERO, |sum, &term| sum + term)
+}

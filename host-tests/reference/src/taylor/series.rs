@@ -6,10 +6,10 @@ use twofloat::TwoFloat;
 use twofloat::consts::FRAC_PI_2;
 
 /// The highest power that any number keeps.
-const MOST: usize = <TwoFloat as Number>::ORDER;
+const MOST: usize = <TwoFloat as Scalar>::ORDER;
 
 /// A number that a series is made of.
-pub trait Number:
+pub trait Scalar:
     Copy
     + PartialOrd
     + From<f64>
@@ -34,7 +34,7 @@ pub trait Number:
 }
 
 /// About 30 digits.
-impl Number for TwoFloat {
+impl Scalar for TwoFloat {
     const ORDER: usize = 36;
     const RESOLUTION: f64 = 1e-33;
 
@@ -48,7 +48,7 @@ impl Number for TwoFloat {
 }
 
 /// About 15 digits, in a fiftieth of the time.
-impl Number for f64 {
+impl Scalar for f64 {
     const ORDER: usize = 20;
     const RESOLUTION: f64 = 1e-17;
 
@@ -61,11 +61,11 @@ impl Number for f64 {
     }
 }
 
-/// sum of c_k h^k for k = 0..=[`ORDER`](Number::ORDER).
+/// sum of c_k h^k for k = 0..=[`ORDER`](Scalar::ORDER).
 #[derive(Clone, Debug)]
 pub struct Series<T>([T; MOST + 1]);
 
-impl<T: Number> Default for Series<T> {
+impl<T: Scalar> Default for Series<T> {
     fn default() -> Self {
         Self([T::from(0.0); MOST + 1])
     }
@@ -85,7 +85,7 @@ impl<T> IndexMut<usize> for Series<T> {
     }
 }
 
-impl<T: Number> Series<T> {
+impl<T: Scalar> Series<T> {
     /// The series of which only the value is known.
     pub fn new(value: T) -> Self {
         let mut series = Self::default();
@@ -118,7 +118,7 @@ pub struct Wave<T> {
     pub cos: Series<T>,
 }
 
-impl<T: Number> Wave<T> {
+impl<T: Scalar> Wave<T> {
     /// The values, from the value of `angle`.
     pub fn new(angle: &Series<T>) -> Self {
         let (sin, cos) = angle[0].sin_cos();

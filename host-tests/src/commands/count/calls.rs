@@ -28,7 +28,6 @@ pub struct Calls<'a> {
 
 #[derive(Clone, Copy, Debug)]
 struct Call {
-    /// The registers at its entry.
     caller: Registers,
     stream: Stream,
     cost: Cost,
@@ -55,7 +54,6 @@ impl Stream {
         (address, instruction, self.pipeline.execute(instruction, &self.before, branches))
     }
 
-    /// What is about to be executed.
     pub fn go_on(&mut self, image: &Image, next: Registers) -> Result<()> {
         (self.before, self.instruction) = (next, image.instruction_at(next.pc())?);
         Ok(())
@@ -67,7 +65,6 @@ impl<'a> Calls<'a> {
         Self { image, core, entries, running: None, profile: Profile::default(), ended: Vec::new() }
     }
 
-    /// Takes in the registers before the next instruction.
     pub fn see(&mut self, registers: Registers) -> Result<()> {
         match &mut self.running {
             Some(call) => {

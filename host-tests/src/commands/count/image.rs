@@ -13,7 +13,6 @@ use super::instruction::{Instruction, is_long};
 pub struct Image {
     path: PathBuf,
     loaded: Vec<(u32, Vec<u8>)>,
-    /// Of the code sections.
     code: Vec<(u32, Vec<u8>)>,
     functions: Vec<Function>,
     /// Names in code that the assembler was not told to be functions.
@@ -25,11 +24,9 @@ pub struct Image {
 /// A function: literal pools and paths never taken included.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Function {
-    /// Its first instruction.
     pub address: u32,
     /// Bytes; 0 if the assembler was not told.
     pub size: u32,
-    /// Demangled.
     pub name: String,
     /// As the linker knows it.
     pub symbol: String,
@@ -108,7 +105,6 @@ impl Image {
         self.loaded().any(|(start, bytes)| address.wrapping_sub(start) < bytes.len() as u32)
     }
 
-    /// That it has no such function.
     pub fn lacks(&self, function: &str) -> anyhow::Error {
         anyhow!("{}: no function {function}", self.path.display())
     }

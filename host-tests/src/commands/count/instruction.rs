@@ -7,7 +7,6 @@ use super::timing::TIMINGS;
 use super::trace::Registers;
 use crate::emulator::boards::Core;
 
-/// Whether a halfword begins an instruction of two.
 pub fn is_long(first: u16) -> bool {
     first >= 0xe800
 }
@@ -33,7 +32,6 @@ impl Instruction {
         Some(Self { word, row })
     }
 
-    /// Its length in bytes.
     pub fn size(&self) -> u32 {
         if is_long((self.word >> 16) as u16) { 4 } else { 2 }
     }
@@ -66,7 +64,6 @@ impl Instruction {
         self.row.cycles(core) == 0 && (self.row.class != Class::Divide || core == Core::M0Plus)
     }
 
-    /// Whether its address is made of a register that `before` writes.
     pub fn is_addressed_by(&self, before: &Self) -> bool {
         let registers =
             |fields: &'static [super::row::Field], word| fields.iter().map(move |field| field.register(word));

@@ -45,7 +45,6 @@ const AFFORDABLE_INSTRUCTIONS: u64 = 300_000;
 pub struct StepCost {
     pub steps: u32,
     pub instructions: f64,
-    /// Estimated cycles.
     pub cycles: f64,
     /// Those of the cycles that wait for a floating-point result or for the unit that makes one.
     pub stalls: f64,
@@ -76,13 +75,13 @@ pub fn step_cost(target: &Target, request: &Request) -> Result<StepCost> {
     let steps = request.stride;
     let run = |stride| Profile::of(target, &Request { stride, samples: 1, ..*request });
     let (once, twice) = (run(steps)?, run(2 * steps)?);
-    let cost = twice.cost() - once.cost();
-    let per_step = |total: u64| total as f64 / f64::from(steps);
+    let (calling, all) = (once.cost(), twice.cost());
+    let per_step = |all: u64, calling: u64| all.saturating_sub(calling) as f64 / f64::from(steps);
     Ok(StepCost {
         steps,
-        instructions: per_step(cost.instructions),
-        cycles: per_step(cost.cycles),
-        stalls: per_step(cost.stalls),
+        instructions: per_step(all.instructions, calling.instructions),
+        cycles: per_step(all.cycles, calling.cycles),
+        stalls: per_step(all.stalls, calling.stalls),
         hot_bytes: twice.hot_bytes(),
         code_bytes: twice.functions(target.image()).map(|function| function.size).sum(),
         stack_bytes: twice.stack_bytes(),

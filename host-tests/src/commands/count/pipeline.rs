@@ -26,7 +26,7 @@
 //! them: dilithium-cortexm on an ATSAM3X8E (3 figures, -9.2 to -2.7 %), whose bus matrix keeps the first load of each group
 //! waiting for a cycle; with that cycle they are within 0.2 %.
 
-use std::ops::{AddAssign, Sub};
+use std::ops::AddAssign;
 
 use super::instruction::Instruction;
 use super::row::Class;
@@ -44,7 +44,6 @@ pub const ERROR_BAR: &str = "Cycles are estimated: 1.6 % off (root mean square) 
 pub struct Cost {
     /// Executed instructions. One whose condition fails counts like any other.
     pub instructions: u64,
-    /// Estimated cycles.
     pub cycles: u64,
     /// Those of the cycles that wait for a floating-point result or for the unit that makes one.
     pub stalls: u64,
@@ -58,28 +57,13 @@ impl AddAssign for Cost {
     }
 }
 
-impl Sub for Cost {
-    type Output = Self;
-
-    fn sub(self, other: Self) -> Self {
-        Self {
-            instructions: self.instructions.saturating_sub(other.instructions),
-            cycles: self.cycles.saturating_sub(other.cycles),
-            stalls: self.stalls.saturating_sub(other.stalls),
-        }
-    }
-}
-
 /// The processor, one instruction after the other.
 #[derive(Clone, Copy, Debug)]
 pub struct Pipeline {
     core: Core,
     previous: Option<Instruction>,
-    /// Whether that one branched.
     branched: bool,
-    /// Cycles since the first instruction.
     now: u64,
-    /// When the floating-point unit is free.
     unit_free: u64,
     /// The register with the last floating-point result, and when that can be consumed.
     result: Option<(u32, u64)>,

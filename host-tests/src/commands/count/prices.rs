@@ -15,7 +15,6 @@ use crate::emulator::boards::Board;
 use crate::emulator::qemu::{Clock, Lockstep, Settings};
 use crate::emulator::toolchain::{Toolchain, workspace};
 
-/// A guard against hanging.
 const LIMIT: Duration = Duration::from_secs(1800);
 /// What stands before and after the lists in their file.
 const MARKS: [&str; 2] = ["// made by cargo count --write-prices\n", "// so far\n"];

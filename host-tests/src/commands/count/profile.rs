@@ -11,17 +11,15 @@ use super::instruction::Instruction;
 use super::pipeline::Cost;
 use super::trace::{Ended, LIMIT};
 use super::{COUNTED, Target};
-use crate::emulator::process::ProcessError;
+use crate::emulator::process::timed_out;
 
 /// An instruction of the program and what all its executions together cost.
 #[derive(Clone, Copy, Debug)]
 pub struct Spot {
     pub instruction: Instruction,
-    /// How often it was executed and what that cost.
     pub cost: Cost,
 }
 
-/// What one run of the counted function executed.
 #[derive(Clone, Debug, Default)]
 pub struct Profile {
     spots: BTreeMap<u32, Spot>,
@@ -36,7 +34,7 @@ impl Profile {
         let mut calls = Calls::of(image, target.core(), entries);
         match target.trace(&request.to_string(), LIMIT, |registers| calls.see(registers))? {
             Ended { status: Some(status), .. } if status.success() => {}
-            Ended { status: None, .. } => bail!(ProcessError::TimedOut(target.elf.display().to_string(), LIMIT)),
+            Ended { status: None, .. } => bail!(timed_out(&target.elf.display().to_string(), LIMIT)),
             Ended { output, .. } => bail!("{request}: {}", output.trim()),
         }
         let profile = calls.into_profile();

@@ -39,9 +39,7 @@ pub enum Class {
 pub enum Reads {
     /// None: a load or an immediate.
     Nothing,
-    /// The destination field.
     D,
-    /// The first operand.
     N,
     /// The half of a double register that the first operand's field names.
     Half,
@@ -49,32 +47,21 @@ pub enum Reads {
     M,
     /// The destination field and the second operand: a comparison.
     DM,
-    /// Both operands.
     NM,
 }
 
 /// Where an encoding names a core register.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Field {
-    /// Bits 2 to 0 of a 16-bit instruction.
     Low0,
-    /// Bits 5 to 3.
     Low3,
-    /// Bits 8 to 6.
     Low6,
-    /// Bits 10 to 8.
     Low8,
-    /// Bit 7 and bits 2 to 0: any register.
     Any,
-    /// The stack pointer, unnamed.
     Sp,
-    /// Bits 3 to 0 of the second halfword.
     Wide0,
-    /// Bits 11 to 8 of the second halfword.
     Wide8,
-    /// Bits 15 to 12 of the second halfword.
     Wide12,
-    /// Bits 3 to 0 of the first halfword.
     Wide16,
 }
 
@@ -100,7 +87,6 @@ impl Field {
 /// `word` is the first halfword in the upper half and the second, if there is one, in the lower half.
 #[derive(Clone, Copy, Debug)]
 pub struct Row {
-    /// The manual's mnemonics.
     pub name: &'static str,
     pub(super) mask: u32,
     pub(super) value: u32,

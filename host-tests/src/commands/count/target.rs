@@ -8,7 +8,6 @@ use super::Image;
 use crate::emulator::boards::{BOARDS, Board, Core};
 use crate::emulator::toolchain::Toolchain;
 
-/// The firmware's binary that runs a request.
 const PROGRAM: &str = "measure";
 
 /// An emulated board and a program built for it.

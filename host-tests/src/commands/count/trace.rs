@@ -4,7 +4,7 @@
 //! writes the processor's registers to its log (`-d cpu,nochain`): no plugin, nothing to compile, the same text since
 //! 2.x. The log comes through a pipe, a few hundred thousand instructions per second.
 
-use std::io::{BufRead, BufReader, ErrorKind, Read};
+use std::io::{self, BufRead, BufReader, Read};
 use std::process::{Command, ExitStatus, Stdio};
 use std::thread;
 use std::time::Duration;
@@ -13,12 +13,11 @@ use anyhow::{Context, Result};
 use firmware::job::Request;
 
 use super::Target;
-use crate::emulator::process::{self, ProcessError};
+use crate::emulator::process;
 
 pub(super) const LIMIT: Duration = Duration::from_secs(1800);
 const VERSION_LIMIT: Duration = Duration::from_secs(10);
 
-/// The core's registers before an instruction is executed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Registers {
     /// r0 to r15.
@@ -104,7 +103,7 @@ impl Target {
         }
         let status = match child.wait() {
             Ok(status) => Some(status),
-            Err(ProcessError::TimedOut(..)) => None,
+            Err(error) if error.kind() == io::ErrorKind::TimedOut => None,
             Err(error) => return Err(error.into()),
         };
         let output = stdout.and_then(|reader| reader.join().ok()).and_then(Result::ok).unwrap_or_default();

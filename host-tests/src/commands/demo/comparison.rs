@@ -27,7 +27,6 @@ pub struct Comparison {
     /// A frame that differs, unless the board says that it has started something else.
     doubt: Option<Difference>,
     last: Option<Frame>,
-    /// Frames since the board was asked.
     unanswered: Option<u32>,
     compared: u64,
     skipped: u64,
@@ -94,7 +93,6 @@ impl Comparison {
         self.mirror.as_mut().map_or_else(Screenshot::blank, |mirror| mirror.panel(frame))
     }
 
-    /// Whether no frame waits.
     pub fn is_settled(&self) -> bool {
         self.waiting.is_empty()
     }

@@ -7,14 +7,13 @@ use std::time::{Duration, Instant};
 use anyhow::ensure;
 use firmware::config::TICK_RATE;
 
-use super::Options;
+use super::DemoOptions;
 use super::session::Session;
 use crate::console::cli::{complain, say};
 use crate::console::progress::Progress;
 
 /// How long a run takes if nothing else is asked for, s.
 pub const DEFAULT_SECONDS: f64 = 10.0;
-/// How often a port is looked at.
 const LOOK: Duration = Duration::from_millis(4);
 /// A port from which no frame comes for so long is given up.
 const PATIENCE: Duration = Duration::from_secs(10);
@@ -23,7 +22,7 @@ const PATIENCE: Duration = Duration::from_secs(10);
 const ANSWER: u32 = 3 * TICK_RATE;
 
 /// Runs, prints the summary; whether all was well.
-pub fn run(options: &Options, mut session: Session) -> anyhow::Result<bool> {
+pub fn run(options: &DemoOptions, mut session: Session) -> anyhow::Result<bool> {
     let seconds = options.seconds.unwrap_or(DEFAULT_SECONDS);
     let name = session.source.name().to_owned();
     let mut progress = Progress::start(&format!("running {name} for {seconds} s of its time"));

@@ -4,7 +4,7 @@ use std::io::stdout;
 use std::time::{Duration, Instant};
 
 use anyhow::ensure;
-use firmware::app::controls::Key;
+use firmware::app::Key;
 use firmware::config::TICK_RATE;
 use firmware::protocol::{Pause, Press, Step};
 use firmware::scenes::SceneName;
@@ -13,7 +13,7 @@ use ratatui::crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, Ke
 use ratatui::crossterm::style::Colored;
 use ratatui::crossterm::{cursor, execute};
 
-use super::Options;
+use super::DemoOptions;
 use super::session::Session;
 use super::view::draw;
 use crate::console::cli::say;
@@ -25,7 +25,7 @@ const PERIOD: Duration = Duration::from_millis(33);
 const LOOK: Duration = Duration::from_millis(8);
 
 /// Shows the board until the user has seen enough; whether all was well.
-pub fn run(options: &Options, mut session: Session) -> anyhow::Result<bool> {
+pub fn run(options: &DemoOptions, mut session: Session) -> anyhow::Result<bool> {
     process::on_interrupt(|| {
         ratatui::restore();
         // It is too late to tell if this fails.
@@ -38,7 +38,7 @@ pub fn run(options: &Options, mut session: Session) -> anyhow::Result<bool> {
     finish(session)
 }
 
-fn show(options: &Options, session: &mut Session, mut terminal: DefaultTerminal) -> anyhow::Result<()> {
+fn show(options: &DemoOptions, session: &mut Session, mut terminal: DefaultTerminal) -> anyhow::Result<()> {
     let last = options.seconds.map(|seconds| (seconds * f64::from(TICK_RATE)).ceil() as u32);
     let colours = !Colored::ansi_color_disabled();
     loop {
@@ -94,7 +94,6 @@ fn finish(mut session: Session) -> anyhow::Result<bool> {
     Ok(session.readings.comparison.difference().is_none())
 }
 
-/// What a key of the keyboard means.
 enum Wish {
     Press(Key),
     /// Another scene, found from the present one.

@@ -2,11 +2,10 @@
 
 use std::fmt;
 
-use firmware::app::player::Player;
+use firmware::app::Player;
 use firmware::config::{PROCESSOR, PROCESSORS};
-use firmware::graphics::canvas::Canvas;
-use firmware::graphics::text;
-use firmware::motion::settings::Settings;
+use firmware::graphics::{Canvas, text};
+use firmware::motion::Settings;
 use firmware::protocol::{Field, Frame, NO_METHOD, Status};
 use firmware::scenes::SceneName;
 

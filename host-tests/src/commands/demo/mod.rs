@@ -17,7 +17,7 @@ mod source;
 mod tint;
 mod view;
 
-pub use options::Options;
+pub use options::DemoOptions;
 pub use record::played;
 
 use std::io::{IsTerminal, stdin, stdout};
@@ -29,8 +29,9 @@ use source::Source;
 
 use crate::console::cli::Refused;
 use crate::emulator::boards::PICO;
+use crate::emulator::pico::PicoMachine;
 use crate::emulator::qemu::{Clock, Lockstep, Machine, Settings};
-use crate::emulator::{pico, toolchain};
+use crate::emulator::toolchain;
 use crate::link::{Port, find};
 
 /// The most time that an emulated board may take without a terminal: so much, and so much for each second of its time.
@@ -39,7 +40,7 @@ const LIMIT: (Duration, f64) = (Duration::from_secs(60), 20.0);
 const LIVE_LIMIT: Duration = Duration::from_secs(24 * 3600);
 
 /// Sets everything up and runs the demonstration; whether all was well.
-pub fn run(options: &Options) -> anyhow::Result<bool> {
+pub fn run(options: &DemoOptions) -> anyhow::Result<bool> {
     let headless = options.headless || !(stdout().is_terminal() && stdin().is_terminal());
     options.check()?;
     // Before the build, which takes its time.
@@ -55,12 +56,12 @@ pub(crate) fn port(name: &str, baud: u32) -> Result<Port, Refused> {
     Port::open(&find(name).map_err(|error| refused(error.to_string()))?, baud).map_err(refused)
 }
 
-fn emulated(options: &Options, headless: bool) -> anyhow::Result<Source<'_>> {
+fn emulated(options: &DemoOptions, headless: bool) -> anyhow::Result<Source<'_>> {
     let (toolchain, _) = toolchain::set_up()?;
     let (board, limit) = (options.board, limit(options, headless));
     if *board == PICO {
         let (emulator, _) = toolchain::set_up_pico()?;
-        return Ok(Source::Pico(Box::new(pico::Machine::start(&emulator, &toolchain.build_for(board)?, limit)?)));
+        return Ok(Source::Pico(Box::new(PicoMachine::start(&emulator, &toolchain.build_for(board)?, limit)?)));
     }
     let elf = toolchain.build_for(board)?;
     let settings = Settings { qemu: toolchain.qemu(), board, elf: &elf, debugger: true, clock: Clock::Real, limit };
@@ -70,7 +71,7 @@ fn emulated(options: &Options, headless: bool) -> anyhow::Result<Source<'_>> {
     Ok(Source::Live(Machine::start(&settings)?, board))
 }
 
-fn limit(options: &Options, headless: bool) -> Duration {
+fn limit(options: &DemoOptions, headless: bool) -> Duration {
     let seconds = options.seconds.unwrap_or(headless::DEFAULT_SECONDS);
     if headless { LIMIT.0 + Duration::from_secs_f64(LIMIT.1 * seconds) } else { LIVE_LIMIT }
 }

@@ -18,7 +18,6 @@ const WIDEST: u16 = 24;
 pub const ROWS: u16 = 13;
 /// The least scale of the energy errors: what is below a tenth of it is rounding and nothing to look at.
 const LEAST_SCALE: f32 = 1e-6;
-/// What stands where there is no number.
 const NONE: &str = "-";
 
 /// Draws them, and the bars where there is room left.
@@ -63,7 +62,6 @@ fn lines((name, value): (&'static str, String), width: usize) -> Vec<Line<'stati
     vec![Line::from(name).dim(), Line::from(format!("{value:>width$}")).bold()]
 }
 
-/// With this many decimals at most.
 fn rounded(number: f32, decimals: i32) -> String {
     let unit = 10_f64.powi(decimals);
     ((f64::from(number) * unit).round() / unit).to_string()

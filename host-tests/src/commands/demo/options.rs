@@ -6,7 +6,7 @@ use clap::{Parser, value_parser};
 use double_pendulum::Method;
 use double_pendulum::plan::Way;
 use firmware::config::{BAUD, PROCESSOR};
-use firmware::motion::simulation::Means;
+use firmware::motion::Means;
 use firmware::scenes::{AnyScene, SceneName};
 
 use crate::console::cli::{Refused, check_writable, choice};
@@ -16,7 +16,7 @@ use crate::emulator::boards::{BOARDS, Board, every_board};
 /// host cannot see is redrawn from the numbers that the board sends.
 #[derive(Clone, Debug, Parser)]
 #[command(name = "cargo demo", after_help = after_help())]
-pub struct Options {
+pub struct DemoOptions {
     /// The board
     #[arg(long, value_name = "NAME", default_value = BOARDS[0].name,
           value_parser = choice(every_board(), |board| board.name))]
@@ -59,7 +59,6 @@ fn after_help() -> String {
     )
 }
 
-/// What a scene shows.
 fn shows(scene: SceneName) -> &'static str {
     match scene {
         SceneName::Page => "the book's animation: a motion from 120 degrees, soon chaotic",
@@ -85,7 +84,7 @@ fn asked() -> impl Iterator<Item = Asked> {
     std::iter::once(None).chain(Method::DRAWN.iter().copied().map(Some))
 }
 
-impl Options {
+impl DemoOptions {
     /// Refuses what is known to fail before anything is built: files that cannot be written, a method that the scene does not use.
     pub fn check(&self) -> Result<(), Refused> {
         for (option, file) in [("--record", &self.record), ("--screenshot", &self.screenshot)] {
@@ -95,7 +94,6 @@ impl Options {
         self.scene.or(first).map_or(Ok(()), |scene| self.check_method(scene))
     }
 
-    /// Refuses a method that a scene does not use.
     pub fn check_method(&self, scene: SceneName) -> Result<(), Refused> {
         let Some(Some(method)) = self.method else { return Ok(()) };
         let means = Means { processor: PROCESSOR, method: Some(method) };

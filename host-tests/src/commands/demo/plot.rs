@@ -21,7 +21,6 @@ const MARKERS: [Marker; 2] = [Marker::Braille, Marker::Dot];
 
 #[derive(Clone, Copy, Debug)]
 pub struct Moment {
-    /// Simulated time, s.
     pub time: f64,
     /// Both angles, degrees; turns count.
     pub angles: [f64; 2],
@@ -33,7 +32,6 @@ pub fn within_half_a_turn(degrees: f64) -> f64 {
     degrees - 2.0 * HALF_TURN * ((tenths - HALF_TURN) / (2.0 * HALF_TURN)).ceil()
 }
 
-/// Draws the chart of `past`, oldest first.
 pub fn draw(frame: &mut Frame, area: Rect, past: &VecDeque<Moment>) {
     let end = past.back().map_or(0.0, |last| last.time).max(SPAN);
     let strands: Vec<_> = (0..2).flat_map(|rod| strands(past, rod).map(move |strand| (rod, strand))).collect();

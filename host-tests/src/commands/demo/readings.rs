@@ -16,16 +16,13 @@ use crate::link::Counts;
 const GREATEST_ENERGY_ERROR: f32 = 1e-2;
 /// How many energy errors are remembered, each the largest of half a second.
 const PAST: usize = 240;
-/// Frames in half a second.
 const FRAMES_PER_BAR: u64 = TICK_RATE as u64 / 2;
-/// How many lines of the log are remembered.
 const LINES: usize = 100;
 /// The time over which frames per second are counted.
 const RATE_SPAN: Duration = Duration::from_secs(1);
 
 #[derive(Debug, Default)]
 pub struct Readings {
-    /// The latest frame; `None` until one has come.
     pub frame: Option<Frame>,
     /// The angles that the motion started from, degrees; `None` until the board has told.
     pub start: Option<[f32; 2]>,
@@ -34,7 +31,6 @@ pub struct Readings {
     pub energy_errors: VecDeque<f32>,
     /// Both angles over the last [`plot::SPAN`], oldest first.
     pub angles: VecDeque<Moment>,
-    /// Lines of the log, oldest first.
     pub lines: VecDeque<LogLine>,
     pub comparison: Comparison,
     /// Whether what they mean is shown in their place.
@@ -99,7 +95,6 @@ impl Readings {
         push(&mut self.lines, line, LINES);
     }
 
-    /// Frames that arrived in the last second.
     pub fn rate(&self) -> usize {
         self.arrivals.iter().filter(|arrival| arrival.elapsed() <= RATE_SPAN).count()
     }

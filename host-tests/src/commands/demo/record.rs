@@ -25,7 +25,6 @@ pub struct Recording {
     encoder: Encoder<BufWriter<File>>,
     /// The screenshot to be shown next, and since which tick; it is written when its end is known.
     pending: Option<(Screenshot, u32)>,
-    /// What the file shows so far.
     shown: Vec<u8>,
     /// The tick of the first screenshot.
     start: u32,
@@ -106,7 +105,6 @@ pub fn played(path: &Path) -> anyhow::Result<Vec<(Vec<u8>, u16)>> {
     Ok(played)
 }
 
-/// Writes one screenshot to a PNG file.
 pub fn save(screenshot: &Screenshot, path: &Path) -> anyhow::Result<()> {
     let unwritable = || format!("cannot write {}", path.display());
     png(screenshot, BufWriter::new(File::create(path).with_context(unwritable)?)).with_context(unwritable)

@@ -3,12 +3,12 @@
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use firmware::app::player::AUTO;
+use firmware::app::AUTO;
 use firmware::config::TICK_RATE;
 use firmware::protocol::{Ask, Choose, Field, Frame, Set, Status, method_code};
 use firmware::scenes::SceneName;
 
-use super::Options;
+use super::DemoOptions;
 use super::readings::Readings;
 use super::record::{Recording, save};
 use super::source::Source;
@@ -18,7 +18,7 @@ use crate::emulator::qemu::Screenshot;
 const LATE: Duration = Duration::from_millis(100);
 
 pub struct Session<'a> {
-    options: &'a Options,
+    options: &'a DemoOptions,
     pub source: Source<'a>,
     pub readings: Readings,
     pub screenshot: Screenshot,
@@ -33,7 +33,7 @@ pub struct Session<'a> {
 }
 
 impl<'a> Session<'a> {
-    pub fn new(options: &'a Options, source: Source<'a>, recording: Option<Recording>, is_live: bool) -> Self {
+    pub fn new(options: &'a DemoOptions, source: Source<'a>, recording: Option<Recording>, is_live: bool) -> Self {
         let (readings, screenshot) = (Readings::default(), Screenshot::blank());
         let due = (is_live && matches!(source, Source::Pico(_))).then(Instant::now);
         Self { options, source, readings, screenshot, recording, now: None, begun: None, before: 0, due }
@@ -86,7 +86,6 @@ impl<'a> Session<'a> {
         if self.readings.frame(*frame) { self.source.send(&Ask { request: 0 }) } else { Ok(()) }
     }
 
-    /// Looks at the panel, where it can be seen.
     pub fn look(&mut self) -> anyhow::Result<()> {
         if let Some(panel) = self.source.panel()? {
             self.screenshot = panel;
@@ -143,7 +142,6 @@ impl<'a> Session<'a> {
         found.into_iter().chain(difference.map(|difference| difference.to_string())).collect()
     }
 
-    /// Completes the files that were asked for.
     pub fn finish(&mut self) -> anyhow::Result<()> {
         self.recording.take().map_or(Ok(()), Recording::finish)?;
         self.options.screenshot.as_deref().map_or(Ok(()), |path| save(&self.screenshot, path))

@@ -3,7 +3,7 @@
 use firmware::protocol::{MAX_WIRE, Message, encode};
 
 use crate::emulator::boards::{Board, PICO};
-use crate::emulator::pico;
+use crate::emulator::pico::PicoMachine;
 use crate::emulator::qemu::{Lockstep, LogLine, Machine, Screenshot};
 use crate::link::{Counts, Port, Received};
 
@@ -12,12 +12,11 @@ pub enum Source<'a> {
     Live(Machine, &'a Board),
     /// Emulated by QEMU, run from frame to frame.
     Lockstep(Lockstep, &'a Board),
-    Pico(Box<pico::Machine>),
+    Pico(Box<PicoMachine>),
     Port(Port),
 }
 
 impl Source<'_> {
-    /// What the user calls it.
     pub fn name(&self) -> &str {
         match self {
             Self::Live(_, board) | Self::Lockstep(_, board) => board.name,
@@ -89,7 +88,6 @@ impl Source<'_> {
         }
     }
 
-    /// Whether it is a board in the hand.
     pub fn is_port(&self) -> bool {
         matches!(self, Self::Port(_))
     }

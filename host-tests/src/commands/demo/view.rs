@@ -80,7 +80,6 @@ fn angles(frame: &mut Frame, area: Rect, readings: &Readings) -> Rect {
     inside
 }
 
-/// What is played on which board.
 fn title(board: &str, now: Option<&Reading>) -> String {
     let scene = now.map(|now| SceneName::from_code(now.scene).map_or("?", SceneName::name));
     let paused = now.is_some_and(|now| now.paused != 0).then_some("paused");
@@ -93,7 +92,6 @@ fn words(readings: &Readings) -> String {
     shown.map_or("no frame came yet".to_owned(), |now| format!("{} · {}", way(now), readings.comparison))
 }
 
-/// Whether anything of the scene moves by angles.
 pub fn has_angles(now: &Reading) -> bool {
     SceneName::from_code(now.scene).is_none_or(SceneName::has_angles)
 }

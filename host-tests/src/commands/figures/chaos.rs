@@ -5,7 +5,7 @@ use double_pendulum::{Error, Parameters, Pendulum, State, rk4};
 use firmware::config::PAGE_GRAVITY;
 use plotters::prelude::*;
 
-use super::sheet::{Area, Axes, BLUE, Frame, ORANGE, TEXT, headed, line, pale, svg, text, units};
+use super::sheet::{Area, Axes, BLUE, Chart, ORANGE, TEXT, headed, line, pale, svg, text, units};
 use crate::oracle::textbook::misprinted_equal_rods;
 
 /// The figure's mass ratio, start angle of both rods (degrees) and rods (m).
@@ -76,7 +76,7 @@ impl Chaos {
             let name = format!("{name}; energy {energy}").replace('-', "−");
             let area = headed(area, &name, text(13).color(&colour))?;
             let range = [-REACH, REACH];
-            let frame = Frame { across: ("x, m", range), upwards: ("y, m", range), ticks: [9, 9] };
+            let frame = Chart { across: ("x, m", range), upwards: ("y, m", range), ticks: [9, 9] };
             let mut chart = frame.draw(&area)?;
             path.draw(&mut chart, colour)?;
             chart.draw_series([Cross::new((0.0, 0.0), units(5), line(TEXT, 12))])?;

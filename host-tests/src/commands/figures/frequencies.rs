@@ -4,7 +4,7 @@ use anyhow::Result;
 use double_pendulum::{Error, Modes, Parameters};
 use plotters::prelude::*;
 
-use super::sheet::{Area, BLUE, Frame, ORANGE, TEXT, headed, line, svg, text, units};
+use super::sheet::{Area, BLUE, Chart, ORANGE, TEXT, headed, line, svg, text, units};
 
 /// The figure's mass ratios are 0 to this; at 0 itself there are no modes.
 const GREATEST_MASS_RATIO: f64 = 5.0;
@@ -39,7 +39,7 @@ impl Frequencies {
 
     fn draw(&self, area: &Area) -> Result<()> {
         let area = headed(area, "Figure 2: both frequencies of small oscillations of equal rods", text(15))?;
-        let frame = Frame {
+        let frame = Chart {
             across: ("mass ratio μ = m₂/m₁", [0.0, GREATEST_MASS_RATIO]),
             upwards: ("frequency, √(g/l)", [0.0, 3.5]),
             ticks: [11, 8],

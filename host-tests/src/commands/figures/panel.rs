@@ -8,7 +8,7 @@ use clap::Parser;
 use firmware::config::TICK_RATE;
 use firmware::scenes::SceneName;
 
-use crate::commands::demo::{self, Options, record};
+use crate::commands::demo::{self, DemoOptions, record};
 use crate::console::cli::complain;
 use crate::emulator::host::Show;
 use crate::emulator::qemu::Screenshot;
@@ -49,7 +49,7 @@ pub fn record(scene: SceneName, folder: &Path) -> Result<()> {
     let (name, seconds) = (scene.name(), seconds(scene).to_string());
     complain(format_args!("cargo demo --scene {name} --headless --seconds {seconds} --record {}", path.display()));
     let words = ["cargo demo", "--scene", name, "--headless", "--seconds", &seconds, "--record"];
-    let options = Options::try_parse_from(words.iter().map(OsStr::new).chain([path.as_os_str()]))?;
+    let options = DemoOptions::try_parse_from(words.iter().map(OsStr::new).chain([path.as_os_str()]))?;
     ensure!(demo::run(&options)?, "not all was well in {}", scene.name());
     Ok(())
 }

@@ -56,7 +56,7 @@ pub fn headed<'a>(area: &Area<'a>, line: &str, style: TextStyle<'_>) -> Result<A
 
 /// What the axes of a chart are.
 #[derive(Clone, Debug)]
-pub struct Frame<'a> {
+pub struct Chart<'a> {
     /// The quantity across with its unit (empty: the chart below names it), and its range.
     pub across: (&'a str, [f64; 2]),
     /// The quantity upwards.
@@ -65,7 +65,7 @@ pub struct Frame<'a> {
     pub ticks: [usize; 2],
 }
 
-impl Frame<'_> {
+impl Chart<'_> {
     /// Draws the axes with their numbers and names.
     pub fn draw<'a>(&self, area: &Area<'a>) -> Result<Axes<'a>> {
         let ((across, [left, right]), (upwards, [bottom, top])) = (self.across, self.upwards);

@@ -7,7 +7,7 @@ use double_pendulum::{Error, Modes, Motion, Parameters, SmallOscillations};
 use firmware::config::PAGE_GRAVITY;
 use plotters::prelude::*;
 
-use super::sheet::{Area, BLUE, Frame, ORANGE, headed, line, svg, text, units};
+use super::sheet::{Area, BLUE, Chart, ORANGE, headed, line, svg, text, units};
 
 /// The book's rods, m.
 const ROD: f64 = 0.25;
@@ -72,7 +72,7 @@ impl Small {
         let (upper, lower) = area.split_vertically((area.dim_in_pixel().1 - units(20)) / 2);
         let rods = [(upper, "", "angle α₁, degrees", BLUE), (lower, "time, s", "angle α₂, degrees", ORANGE)];
         for (rod, (area, across, upwards, colour)) in rods.into_iter().enumerate() {
-            let frame = Frame { across: (across, [0.0, DURATION]), upwards: (upwards, [-32.0, 32.0]), ticks: [11, 7] };
+            let frame = Chart { across: (across, [0.0, DURATION]), upwards: (upwards, [-32.0, 32.0]), ticks: [11, 7] };
             let mut chart = frame.draw(&area)?;
             let edge = |sign: f64| self.points.iter().map(move |point| (point.time, sign * point.envelopes[rod]));
             let band: Vec<_> = edge(1.0).chain(edge(-1.0).rev()).collect();

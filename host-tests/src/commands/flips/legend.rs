@@ -1,6 +1,6 @@
 //! What the colours of a map say, in the panel's letters.
 
-use firmware::graphics::font::glyph;
+use firmware::graphics::glyph;
 
 use super::map::Map;
 use super::output::{Colour, DOUBT, LATER, NEVER, scale};

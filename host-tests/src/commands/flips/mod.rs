@@ -18,11 +18,11 @@ use crate::console::cli::{check_writable, complain, say};
 use crate::console::progress::Bar;
 use crate::emulator::process::{interrupted, interrupted_by};
 use map::{Followed, Map};
-pub use options::Options;
+pub use options::FlipsOptions;
 use part::Part;
 
 /// Computes the map and writes the file, or what of it is done when it is interrupted; says how much, or how much is in doubt.
-pub fn run(options: &Options) -> Result<ExitCode> {
+pub fn run(options: &FlipsOptions) -> Result<ExitCode> {
     let (map, kind) = options.map()?;
     check_writable("--out", &options.out)?;
     let (mut part, mut points) = Part::open(&options.out, &map, options.resume)?;
@@ -33,7 +33,7 @@ pub fn run(options: &Options) -> Result<ExitCode> {
     if points.len() < all {
         let percent = 100.0 * points.len() as f64 / all as f64;
         complain(format_args!("interrupted: {out} has {percent:.1} %; --resume goes on"));
-        return Ok(ExitCode::from(interrupted_by(stopped.load(Ordering::Relaxed) as i32) as u8));
+        return Ok(interrupted_by(stopped.load(Ordering::Relaxed)));
     }
     part.remove()?;
     let ([width, height], doubtful) = (map.square.size, doubtful(&map, &points));

@@ -2,7 +2,6 @@
 
 use std::f64::consts::PI;
 use std::path::PathBuf;
-use std::str::FromStr;
 
 use clap::Parser;
 use double_pendulum::Parameters;
@@ -27,10 +26,10 @@ stopped. Bad input: one line on stderr, exit code 2.";
 /// Numbers are decimals (0.25, 1e-3) or fractions (1/256).
 #[derive(Debug, Parser)]
 #[command(name = "cargo flips", bin_name = "cargo flips", after_help = AFTER_HELP)]
-pub struct Options {
+pub struct FlipsOptions {
     /// Pixels: one number for a square, or two
-    #[arg(long, value_name = "N|WxH", default_value = "512")]
-    size: Size,
+    #[arg(long, value_name = "N|WxH", default_value = "512", value_parser = size)]
+    size: [usize; 2],
     /// How long to wait for a turn-over, sqrt(l1/g)
     #[arg(long, value_name = "T", default_value = "1000", allow_hyphen_values = true)]
     limit: Number,
@@ -57,25 +56,18 @@ pub struct Options {
     pub out: PathBuf,
 }
 
-/// Pixels across and down.
-#[derive(Clone, Copy, Debug)]
-struct Size([usize; 2]);
-
 /// The least and the most pixels across or down.
 const SIZES: std::ops::RangeInclusive<usize> = 2..=32_768;
 
-impl FromStr for Size {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let number = |text: &str| {
-            let number = text.parse().map_err(|_| format!("'{text}' is no whole number"))?;
-            let (least, most) = (SIZES.start(), SIZES.end());
-            if SIZES.contains(&number) { Ok(number) } else { Err(format!("must be from {least} to {most}")) }
-        };
-        let (width, height) = text.split_once('x').unwrap_or((text, text));
-        Ok(Self([number(width)?, number(height)?]))
-    }
+/// Pixels across and down.
+fn size(text: &str) -> Result<[usize; 2], String> {
+    let number = |text: &str| {
+        let number = text.parse().map_err(|_| format!("'{text}' is no whole number"))?;
+        let (least, most) = (SIZES.start(), SIZES.end());
+        if SIZES.contains(&number) { Ok(number) } else { Err(format!("must be from {least} to {most}")) }
+    };
+    let (width, height) = text.split_once('x').unwrap_or((text, text));
+    Ok([number(width)?, number(height)?])
 }
 
 /// The least time waited for, sqrt(l1/g): colours go by its logarithm. The most steps to a start.
@@ -85,7 +77,7 @@ const MOST_STEPS: f64 = 1e9;
 /// A step of an `f32` angle of a turn, rad, of which a pixel must have several.
 const FINEST: f64 = 8.0 * 2.4e-7;
 
-impl Options {
+impl FlipsOptions {
     /// The map and the kind of file; an error names the option and its value.
     pub fn map(&self) -> Result<(Map, Kind), Refused> {
         let kind = Kind::of(&self.out)?;
@@ -95,8 +87,7 @@ impl Options {
         if limit.value() < LEAST_LIMIT {
             return wrong("limit", limit, "must be at least 2");
         }
-        let Size(size) = self.size;
-        let pixel = 2.0 * PI / zoom.value() / size[0].max(size[1]) as f64;
+        let pixel = 2.0 * PI / zoom.value() / self.size[0].max(self.size[1]) as f64;
         if !zoom.is_positive() || zoom.value() < 1.0 {
             return wrong("zoom", zoom, "must be at least 1");
         }
@@ -109,7 +100,7 @@ impl Options {
         }
         // Time in sqrt(l1/g), whatever g is.
         let parameters = Parameters { m1, m2, l1, l2, g: l1 }.cast::<f32>();
-        let square = Square { size, centre, half: PI / zoom.value() };
+        let square = Square { size: self.size, centre, half: PI / zoom.value() };
         let map = Map::new(parameters, limit.value() as f32, square)
             .and_then(|map| {
                 [1, 2].map(|finer| map.search(finer)).into_iter().try_fold(map, |map, search| search.map(|_| map))

@@ -7,7 +7,7 @@ use double_pendulum::plan::Problem;
 use double_pendulum::{Motion, Parameters};
 use fastrand::Rng;
 use firmware::config::GRAVITY;
-use firmware::motion::planner::half_pixel;
+use firmware::motion::half_pixel;
 
 use crate::oracle::random::{log_uniform, symmetric};
 

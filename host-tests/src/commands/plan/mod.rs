@@ -9,7 +9,7 @@ mod words;
 
 pub use draw::scenes;
 pub use judge::{Exact, Outcome, judge};
-pub use options::Options;
+pub use options::SceneOptions;
 pub use study::{Case, DURATIONS, median, study, summary};
 pub use target::{CHIPS, Chip, M3, M4F, PICO};
 pub use words::words;

@@ -1,11 +1,11 @@
-//! The command line of `cargo plan`.
+//! What is planned, as the command line has it.
 
 use anyhow::{anyhow, ensure};
+use clap::Parser;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use clap::{Parser, value_parser};
 use double_pendulum::plan::{Limit, Plan, PlanError, Problem};
 use double_pendulum::{Motion, Parameter};
-use firmware::motion::planner::{Shown, half_pixel, problem};
+use firmware::motion::{Shown, half_pixel, problem};
 use firmware::scenes::SceneName;
 
 use super::target::{CHIPS, Chip};
@@ -13,19 +13,9 @@ use crate::commands::simulate::{Number, StartOptions};
 use crate::console::cli::choice;
 use crate::emulator::host::Show;
 
-const EXAMPLES: &str = "Examples:
-  cargo plan --angles 90,90 --degrees --height 64 --duration 10
-  cargo plan --masses 1,2.75 --angles 171,171 --degrees --target m4f
-  cargo plan --scene figure-7 --target pico
-  cargo plan --study 100";
-
-/// Says how to compute a motion as cheaply as may be, right to half a pixel about the exact one, and until when that is
-/// expected; or that nothing the chip can afford is right in any frame, which is an answer, too (exit code 0).
-///
-/// Numbers are decimals (0.25, 1e-3) or fractions (1/256).
+/// A scene, and the chip that computes it.
 #[derive(Debug, Parser)]
-#[command(name = "cargo plan", after_help = EXAMPLES)]
-pub struct Options {
+pub struct SceneOptions {
     /// What moves.
     #[command(flatten)]
     pub start: StartOptions,
@@ -46,12 +36,6 @@ pub struct Options {
     #[arg(long, value_name = "CHIP", default_value = CHIPS[0].name,
           value_parser = PossibleValuesParser::new(CHIPS.iter().map(|chip| chip.name)).map(|name| chip(&name)))]
     pub target: Chip,
-    /// Plan this many scenes of all kinds for every chip instead, carry them out beside the reference, and print what came of it
-    #[arg(long, value_name = "SCENES", conflicts_with_all = ["scene", "target"], value_parser = value_parser!(u32).range(1..))]
-    pub study: Option<u32>,
-    /// Which scenes
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u32).range(0..))]
-    pub seed: u32,
 }
 
 /// The highest display, pixels: half of one is then eight times what the rods' directions are rounded to.
@@ -61,7 +45,7 @@ fn chip(name: &str) -> Chip {
     CHIPS.into_iter().find(|chip| chip.name == name).unwrap_or(CHIPS[0])
 }
 
-impl Options {
+impl SceneOptions {
     /// The scene with its plan, or with what forbids any; an error is one line that names the option and the value.
     pub fn plan(&self) -> anyhow::Result<(Problem, Result<Plan, Limit>)> {
         let problem = match self.scene {
@@ -75,8 +59,8 @@ impl Options {
     /// What a board of this class plans when it starts the scene.
     fn of_scene(&self, name: SceneName) -> anyhow::Result<Problem> {
         let settings = name.first_settings();
-        let mut show = Show::on(self.target.processor, name, &settings)?;
-        let answer = show.player().plan(0);
+        let show = Show::on(self.target.processor, name, &settings)?;
+        let answer = show.player.plan(0);
         ensure!(answer.found > 0, "--scene {}: has no motion to plan", name.name());
         Ok(problem(&settings, &Shown { way: None, height: answer.height as f32 }))
     }

@@ -1,61 +1,57 @@
 //! The frames a method draws, held against the exact motion.
 
-use std::io;
-
 use double_pendulum::plan::{Limit, Plan, PlannedRun, Problem, Way};
-use double_pendulum::{Motion, Parameters};
+use double_pendulum::{Error, Motion, Parameters};
 use firmware::config::HALF_PIXEL;
-use reference::enclosure::{Enclosure, Fineness, Fixed, Start};
+use reference::enclosure::{Fixed, Start};
 
-use crate::console::cli::Refused;
-
-/// What is proved of a method's frames.
+/// A frame beside the exact motion.
 #[derive(Clone, Copy, Debug)]
-pub struct Proof {
-    way: Way,
-    /// So many frames are right, from the start on.
-    pub right: u32,
-    wrong: Option<u32>,
-    /// Frames of which neither is proved.
-    pub open: u32,
-    /// So many have been looked at, ...
-    frames: u32,
-    /// ... and so far each direction of the exact motion may then be from the middle of the box.
+pub struct ProvedFrame {
+    /// Where the rods point, (sin, cos) each.
+    exact: [[Fixed; 2]; 2],
+    /// So far that may be from the middle of the box.
     width: f64,
+    is_right: Option<bool>,
 }
 
-impl Proof {
-    /// Judges every frame until a wrong one, or as long as the motion can be followed and `goes_on`, which is told the frame, the set that the
-    /// motion is in, and whether the frame is right, if that is proved.
-    pub fn of(
-        scene: &Problem,
-        start: &Start,
-        way: Way,
-        mut goes_on: impl FnMut(u32, &Enclosure, Option<bool>) -> io::Result<bool>,
-    ) -> anyhow::Result<Self> {
-        let stepper = PlannedRun::new(&scene.pendulum, &scene.start, scene.rate, way);
-        let (mut motion, mut set) =
-            (stepper.map_err(Refused::because)?, start.enclose(scene.rate, Fineness::default()));
-        let mut proof = Self { way, right: 0, wrong: None, open: 0, frames: 0, width: 0.0 };
-        while proof.wrong.is_none() && proof.frames < scene.frames() && set.advance().is_some() {
-            let has_diverged = motion.advance(1).is_err();
-            let shown = motion.directions().map(|direction| direction.map(|x| Fixed::of(x.into())));
-            let is_right = if has_diverged {
-                Some(false)
-            } else {
-                set.is_right(&shown, [scene.pendulum.l1, scene.pendulum.l2], scene.tolerance)
-            };
-            (proof.frames, proof.width) = (proof.frames + 1, set.width());
-            match is_right {
-                Some(true) => proof.right += u32::from(proof.right + 1 == proof.frames),
-                Some(false) => proof.wrong = Some(proof.frames),
-                None => proof.open += 1,
-            }
-            if !goes_on(proof.frames, &set, is_right)? {
-                break;
-            }
-        }
-        Ok(proof)
+/// Every frame until one that is proved wrong, as long as the motion can be followed.
+pub fn frames(scene: &Problem, start: &Start, way: Way) -> Result<impl Iterator<Item = ProvedFrame>, Error> {
+    let mut motion = PlannedRun::new(&scene.pendulum, &scene.start, scene.rate, way)?;
+    let (scene, mut set, mut last) = (*scene, start.enclose(scene.rate), None);
+    Ok((0..scene.frames()).map_while(move |_| {
+        (last != Some(false)).then(|| set.advance())??;
+        let (exact, drawn) = (set.directions(), motion.advance(1));
+        let shown = || motion.directions().map(|direction| direction.map(|x| Fixed::of(x.into())));
+        last = drawn.map_or(Some(false), |()| are_near(&scene, &exact, &shown(), scene.tolerance));
+        let width = exact.as_flattened().iter().map(|x| x.radius()).fold(0.0, f64::max);
+        Some(ProvedFrame { exact, width, is_right: last })
+    }))
+}
+
+/// Whether both bobs are within `tolerance`, m, of each other in these directions; `None` if that depends on where in the boxes they are.
+fn are_near(scene: &Problem, one: &[[Fixed; 2]; 2], other: &[[Fixed; 2]; 2], tolerance: f64) -> Option<bool> {
+    let Parameters { l1, l2, .. } = scene.pendulum;
+    // all over the longer rod, rounded
+    let [l1, l2, tolerance] = [l1, l2, tolerance].map(|x| Fixed::of(x / l1.max(l2)).wider(f64::EPSILON));
+    let off = |rod: usize, l: Fixed| [0, 1].map(|axis| (one[rod][axis] - other[rod][axis]) * l);
+    let ([x1, y1], [x2, y2]) = (off(0, l1), off(1, l2));
+    let beyond = [[x1, y1], [x1 + x2, y1 + y2]].map(|[x, y]| (x * x + y * y - tolerance * tolerance).is_positive());
+    if beyond.contains(&Some(true)) { Some(false) } else { (beyond == [Some(false); 2]).then_some(true) }
+}
+
+/// So many frames are right, from the start on; and of so many neither is proved.
+pub fn counts(frames: &[ProvedFrame]) -> (u32, usize) {
+    let right = frames.iter().take_while(|frame| frame.is_right == Some(true)).count();
+    (right as u32, frames.iter().filter(|frame| frame.is_right.is_none()).count())
+}
+
+impl ProvedFrame {
+    /// At `time`, s: the middles of the box that the exact motion is in, how far it may be from them, and what is proved of the frame drawn.
+    pub fn row(&self, time: f64) -> String {
+        let middles = self.exact.as_flattened().iter().map(|x| x.about().to_string()).collect::<Vec<_>>().join(",");
+        let verdict = self.is_right.map_or("open", |is_right| if is_right { "right" } else { "wrong" });
+        format!("{time},{middles},{:.1e},{verdict}", self.width)
     }
 }
 
@@ -67,51 +63,44 @@ fn told_apart(scene: &Problem) -> Option<f64> {
     let [mut one, mut other] = [-0.49, 0.49].map(|share| {
         let [a1, a2] = [scene.start.a1, scene.start.a2].map(|a| a + share * 1_f64.to_radians());
         let pendulum = Parameters { m2: m2 + share * digit, ..scene.pendulum };
-        Start::of(&pendulum, &Motion { a1, a2, ..scene.start }).enclose(scene.rate, Fineness::default())
+        Start::of(&pendulum, &Motion { a1, a2, ..scene.start }).enclose(scene.rate)
     });
-    (1..=scene.frames())
-        .map_while(|frame| {
-            one.advance()
-                .and(other.advance())
-                .map(|()| (frame, one.is_right(&other.directions(), [l1, l2], l1.max(l2))))
-        })
-        .find(|(_, are_near)| *are_near == Some(false))
-        .map(|(frame, _)| scene.time(frame))
-}
-
-/// The table's heading with `csv`.
-pub const HEADING: &str = "t,sin_a1,cos_a1,sin_a2,cos_a2,radius,verdict";
-
-/// A frame: the time, s, the middles of the box that the exact motion is in, how far it may be from them, and what is proved of the frame drawn.
-pub fn row(scene: &Problem, frame: u32, set: &Enclosure, is_right: Option<bool>) -> String {
-    let middles = set.directions().as_flattened().iter().map(|x| x.about().to_string()).collect::<Vec<_>>().join(",");
-    let verdict = is_right.map_or("open", |is_right| if is_right { "right" } else { "wrong" });
-    format!("{},{middles},{:.1e},{verdict}", scene.time(frame), set.width())
+    let mut verdicts = (1..=scene.frames()).map_while(|frame| {
+        one.advance().and(other.advance())?;
+        Some((frame, are_near(scene, &one.directions(), &other.directions(), l1.max(l2))))
+    });
+    verdicts.find(|(_, are_near)| *are_near == Some(false)).map(|(frame, _)| scene.time(frame))
 }
 
 /// What is proved, a line each.
-pub fn words(scene: &Problem, plan: &Result<Plan, Limit>, proof: &Proof) -> Vec<String> {
-    let &Proof { way, right, wrong, open, frames, width } = proof;
-    let of_plan = match plan {
-        Ok(plan) => format!("right until {:.3} s by {}, {} to a frame", plan.horizon, plan.method.name(), plan.steps),
+pub fn words(
+    scene: &Problem,
+    plan: &Result<Plan, Limit>,
+    Way { method, steps }: Way,
+    frames: &[ProvedFrame],
+) -> String {
+    let ((right, open), end) = (counts(frames), scene.time(frames.len() as u32));
+    let first = match frames.last() {
+        Some(ProvedFrame { is_right: Some(false), .. }) => {
+            format!("wrong at {end:.3} s: more than {HALF_PIXEL} pixels off")
+        }
+        _ => format!("none wrong of all {} frames, until {end:.3} s", frames.len()),
+    };
+    let predicted = match plan {
+        Ok(plan) => format!("right until {:.3} s by {}, {} to a frame", plan.horizon, plan.method, plan.steps),
         Err(_) => String::from("nothing that the chip can afford is right in any frame"),
     };
-    let first = match wrong {
-        Some(frame) => format!("wrong at {:.3} s: more than {HALF_PIXEL} pixels off", scene.time(frame)),
-        None => format!("none wrong of all {frames} frames, until {:.3} s", scene.time(frames)),
-    };
-    let mut lines = vec![
-        format!("method     {}, {} to a frame", way.method.name(), way.steps),
-        format!("proved     right to half a pixel until {:.3} s, every one of {right} frames", scene.time(right)),
-        format!("           {first}"),
-        format!("open       {open} frames between, neither right nor wrong by proof"),
-        format!("predicted  {of_plan}"),
-        format!("known      the exact motion, each direction to {width:.1e} at {:.3} s", scene.time(frames)),
-    ];
-    lines.extend(told_apart(scene).map(|time| {
-        format!(
-            "unknown    where a bob is at {time:.3} s: two motions of the digits that the panel shows are a rod apart"
-        )
-    }));
-    lines
+    let unknown = told_apart(scene).map_or(String::new(), |time| {
+        format!("\nunknown    where a bob is at {time:.3} s: two motions of the digits on the panel are a rod apart")
+    });
+    format!(
+        "method     {method}, {steps} to a frame
+proved     right to half a pixel until {:.3} s, every one of {right} frames
+           {first}
+open       {open} frames between, neither right nor wrong by proof
+predicted  {predicted}
+known      the exact motion, each direction to {:.1e} at {end:.3} s{unknown}",
+        scene.time(right),
+        frames.last().map_or(0.0, |frame| frame.width),
+    )
 }

@@ -1,11 +1,10 @@
 //! Errors against the reference, computed on the host: the bits are those of the target (see `identity`).
 
-use std::f64::consts::TAU;
-
-use double_pendulum::{Method, Motion};
+use double_pendulum::{Method, Motion, Pendulum};
 use firmware::job::{JobError, Request};
 
 use super::scene::{SAMPLES, Scene};
+use crate::oracle::trials::apart;
 use reference::taylor::Reference;
 
 /// The largest error over a scene.
@@ -101,32 +100,16 @@ fn error_of(request: &Request, scene: &Scene, exact: &[[f64; 2]]) -> Option<Erro
 
 /// The largest error of the angles a1, a2, at as many moments of the scene as there are; `exact` has them and more.
 pub fn worst(scene: &Scene, angles: &[[f64; 2]], exact: &[[f64; 2]]) -> Error {
+    let Ok(pendulum) = Pendulum::new(&scene.parameters()) else { return Error::LOST };
     let mut worst = Error { angle: 0.0, pixels: 0.0 };
     let apart_by = (exact.len() / angles.len().max(1)).max(1);
     for (&angles, &exact) in angles.iter().zip(exact.iter().skip(apart_by - 1).step_by(apart_by)) {
         let angle = apart(angles[0], exact[0]).max(apart(angles[1], exact[1]));
         worst.angle = worst.angle.max(angle);
-        worst.pixels = worst.pixels.max(pixels(scene, angles, exact));
+        let [drawn, right] = [angles, exact].map(|angles| pendulum.positions(angles));
+        let off = |bob: usize| libm::hypot(drawn[bob].x - right[bob].x, drawn[bob].y - right[bob].y);
+        let pixels = scene.scale() * off(0).max(off(1));
+        worst.pixels = worst.pixels.max(if angle.is_finite() { pixels } else { f64::INFINITY });
     }
     worst
-}
-
-/// How far apart two angles point, rad, at most pi: the direction form knows no whole turns. Infinite if one is no number.
-fn apart(angle: f64, exact: f64) -> f64 {
-    let turns = (angle - exact) / TAU;
-    let apart = (turns - turns.round()).abs() * TAU;
-    if apart.is_finite() { apart } else { f64::INFINITY }
-}
-
-/// The larger distance on the panel between where the bobs are drawn and where they belong.
-fn pixels(scene: &Scene, angles: [f64; 2], exact: [f64; 2]) -> f64 {
-    let parameters = scene.parameters();
-    let places = |[a1, a2]: [f64; 2]| {
-        let elbow = [parameters.l1 * libm::sin(a1), -parameters.l1 * libm::cos(a1)];
-        [elbow, [elbow[0] + parameters.l2 * libm::sin(a2), elbow[1] - parameters.l2 * libm::cos(a2)]]
-    };
-    let (drawn, right) = (places(angles), places(exact));
-    let distance = |bob: usize| libm::hypot(drawn[bob][0] - right[bob][0], drawn[bob][1] - right[bob][1]);
-    let metres = distance(0).max(distance(1));
-    if metres.is_finite() { scene.scale() * metres } else { f64::INFINITY }
 }

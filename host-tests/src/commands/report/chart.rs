@@ -1,9 +1,8 @@
 //! Cost against error as a picture: a few named lines, all others grey.
 
-use std::error::Error;
 use std::ops::Range;
 
-use anyhow::{Result, anyhow};
+use anyhow::Result;
 use firmware::config::REACH;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -69,10 +68,6 @@ fn named(lines: &[(&'static str, Vec<&Point>)]) -> Vec<&'static str> {
 
 /// Estimated cycles per simulated second against the error, as SVG.
 pub fn speed_against_error(points: &[Point], scene: &Scene, board: &Board) -> Result<String> {
-    draw(points, scene, board).map_err(|error| anyhow!("cannot draw: {error}"))
-}
-
-fn draw(points: &[Point], scene: &Scene, board: &Board) -> Result<String, Box<dyn Error>> {
     let lines = lines(points, scene, board);
     let named = named(&lines);
     let cycles = lines.iter().flat_map(|(_, points)| points).map(|point| point.cycles());

@@ -64,6 +64,6 @@ fn horizon(board: &Board, scene: SceneName) -> Option<String> {
         show.tick();
     }
     let report = show.report();
-    report.way.filter(|_| show.player().plan(0).found > 0)?;
+    report.way.filter(|_| show.player.plan(0).found > 0)?;
     Some(format!("{:.1}{}", report.horizon, if report.is_looking { " and on" } else { "" }))
 }

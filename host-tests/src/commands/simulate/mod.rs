@@ -10,20 +10,11 @@ mod start;
 mod table;
 mod tolerance;
 
-use std::io;
-
-use firmware::job::Reading;
-
 pub use board::on_board;
 pub use list::list;
 pub use number::Number;
-pub use options::{Options, Place};
+pub use options::{Place, SimulateOptions};
 pub use request::{Plan, plan};
 pub use start::{Pair, StartOptions};
 pub use table::{COLUMNS, Column, CsvRows};
 pub use tolerance::{Choice, choose};
-
-/// Computes the motion on the host and gives each reading to `row`.
-pub fn on_host(plan: &Plan, mut row: impl FnMut(&Reading) -> io::Result<()>) -> anyhow::Result<()> {
-    plan.request.readings(|reading| Ok(row(reading)?))
-}

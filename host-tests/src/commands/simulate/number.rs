@@ -3,8 +3,6 @@
 use std::fmt;
 use std::str::FromStr;
 
-use reference::enclosure::Given;
-
 /// A finite number as written.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Number {
@@ -29,8 +27,8 @@ impl Number {
     }
 
     /// Itself, if a numerator and a denominator of 63 bits are enough.
-    pub fn exact(&self) -> Option<Given> {
-        self.fraction.map(|(numerator, denominator)| Given::Fraction(numerator, denominator.unsigned_abs()))
+    pub fn exact(&self) -> Option<(i64, u64)> {
+        self.fraction.map(|(numerator, denominator)| (numerator, denominator.unsigned_abs()))
     }
 
     pub fn is_negative(&self) -> bool {

@@ -7,28 +7,13 @@ use super::{COLUMNS, Column, Number, StartOptions};
 use crate::console::cli::choice;
 use crate::emulator::boards::{BOARDS, Board};
 
-/// Where the motion is computed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
-    /// By this program.
-    Host,
-    /// By the firmware on an emulated board.
-    Board(&'static Board),
-}
+/// Where the motion is computed: by the firmware on an emulated board, or by this program.
+pub type Place = Option<&'static Board>;
 
-impl Place {
-    const HOST: &str = "host";
+const HOST: &str = "host";
 
-    fn all() -> impl Iterator<Item = Self> {
-        std::iter::once(Self::Host).chain(BOARDS.iter().map(Self::Board))
-    }
-
-    pub(super) fn name(self) -> &'static str {
-        match self {
-            Self::Host => Self::HOST,
-            Self::Board(board) => board.name,
-        }
-    }
+pub(super) fn name(place: Place) -> &'static str {
+    place.map_or(HOST, |board| board.name)
 }
 
 const AFTER_HELP: &str = "\
@@ -46,7 +31,7 @@ the finite numbers later: its rows until then, one line on stderr, exit code 1."
 /// Computes a motion of the double pendulum and prints it as CSV, SI units. Numbers are decimals (0.25, 1e-3) or fractions (1/256).
 #[derive(Debug, Parser)]
 #[command(name = "cargo simulate", after_help = AFTER_HELP)]
-pub struct Options {
+pub struct SimulateOptions {
     /// What moves.
     #[command(flatten)]
     pub start: StartOptions,
@@ -70,8 +55,8 @@ pub struct Options {
     #[arg(long, exclusive = true)]
     pub list: bool,
     /// Where it is computed: here, or by the firmware on an emulated board
-    #[arg(long = "on", value_name = "PLACE", default_value = Place::HOST,
-          value_parser = choice(Place::all(), Place::name))]
+    #[arg(long = "on", value_name = "PLACE", default_value = HOST,
+          value_parser = choice([None].into_iter().chain(BOARDS.iter().map(Some)), name))]
     pub place: Place,
     /// The columns, of t, a1, a2, p1, p2, w1, w2, energy, and x1, y1, x2, y2 of the bobs from the pivot, y upwards
     #[arg(long, value_name = "NAMES", value_delimiter = ',', default_value = "t,a1,a2,p1,p2,w1,w2,energy",

@@ -4,24 +4,24 @@ use double_pendulum::{Equations, Integrator, Method, Numbers};
 use firmware::config::Processor;
 use firmware::job::ON_BOARDS;
 
-use super::{Options, Place};
+use super::{Place, SimulateOptions};
 
 /// What the options leave open, what a step of it costs, and in what: by the place's prices or, where it has none for any of it,
 /// by the evaluations of the equations.
-pub(super) fn candidates(options: &Options) -> (&'static str, Vec<(Method, f64)>) {
+pub(super) fn candidates(options: &SimulateOptions) -> (&'static str, Vec<(Method, f64)>) {
     let left: Vec<_> =
         methods(options.place).filter(|method| options.method.is_none_or(|asked| asked == *method)).collect();
     let priced = |price: &dyn Fn(Method) -> Option<f64>| {
         left.iter().filter_map(|&method| Some((method, price(method)?))).collect::<Vec<_>>()
     };
-    if let Place::Board(board) = options.place {
+    if let Some(board) = options.place {
         let prices = priced(&|method| on_board(method, &board.processor()));
         if !prices.is_empty() {
             return ("cycles (estimate)", prices);
         }
     }
     let mut prices = priced(&on_host);
-    if prices.is_empty() || options.place != Place::Host {
+    if prices.is_empty() || options.place.is_some() {
         prices = priced(&|method| Some(evaluations(method)));
     }
     ("evaluations of the equations", prices)
@@ -29,7 +29,7 @@ pub(super) fn candidates(options: &Options) -> (&'static str, Vec<(Method, f64)>
 
 /// What is computed at a place.
 pub(super) fn methods(place: Place) -> impl Iterator<Item = Method> {
-    let methods = if place == Place::Host { Method::ALL } else { ON_BOARDS };
+    let methods = if place.is_none() { Method::ALL } else { ON_BOARDS };
     methods.iter().copied()
 }
 

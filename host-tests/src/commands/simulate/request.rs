@@ -5,8 +5,9 @@ use double_pendulum::{Error, Method, Parameter};
 use firmware::job::{JobError, Request};
 use firmware::protocol::Field;
 
+use super::options::name;
 use super::price::methods;
-use super::{Number, Options};
+use super::{Number, SimulateOptions};
 
 /// A checked request and the time from row to row.
 #[derive(Debug)]
@@ -18,7 +19,7 @@ pub struct Plan {
 
 impl Plan {
     /// What the user should know: the step is too long for some motion of this energy.
-    pub fn warning(&self, options: &Options) -> Option<String> {
+    pub fn warning(&self, options: &SimulateOptions) -> Option<String> {
         let admissible = self.request.admissible_step()?;
         let too_long = self.request.dt > admissible;
         too_long.then(|| {
@@ -29,8 +30,8 @@ impl Plan {
 }
 
 /// Checks everything there is to check before the first row; an error is one line that names the option and the value.
-pub fn plan(options: &Options) -> anyhow::Result<Plan> {
-    let Options { step, until, .. } = options;
+pub fn plan(options: &SimulateOptions) -> anyhow::Result<Plan> {
+    let SimulateOptions { step, until, .. } = options;
     let every = options.every.as_ref().unwrap_or(step);
     for (option, time) in [("--step", step), ("--every", every)] {
         ensure!(time.is_positive(), "{option} {time}: must be greater than zero");
@@ -60,7 +61,7 @@ pub(super) fn count((option, time): (&str, &Number), (unit_option, unit): (&str,
 }
 
 /// The motion that the options describe, by `method` in steps of `step`.
-pub(super) fn request(options: &Options, method: Method, step: &Number, stride: u32, samples: u32) -> Request {
+pub(super) fn request(options: &SimulateOptions, method: Method, step: &Number, stride: u32, samples: u32) -> Request {
     let start = &options.start;
     Request {
         method,
@@ -74,7 +75,7 @@ pub(super) fn request(options: &Options, method: Method, step: &Number, stride: 
 }
 
 /// Refuses what the kernel refuses, and names its option; and angles that leave the turns more digits than the direction.
-pub(super) fn accepted(options: &Options, request: &Request) -> anyhow::Result<()> {
+pub(super) fn accepted(options: &SimulateOptions, request: &Request) -> anyhow::Result<()> {
     let digits = if request.method.is_single() { f32::MANTISSA_DIGITS } else { f64::MANTISSA_DIGITS };
     let limit = f64::powi(2.0, digits as i32 / 2);
     if let Some(angle) = request.angles.into_iter().find(|angle| angle.abs() > limit) {
@@ -93,9 +94,9 @@ pub(super) fn accepted(options: &Options, request: &Request) -> anyhow::Result<(
 }
 
 /// The method asked for, or the first of the table, if the place asked for computes it.
-pub(super) fn method(options: &Options) -> anyhow::Result<Method> {
+pub(super) fn method(options: &SimulateOptions) -> anyhow::Result<Method> {
     let method = options.method.unwrap_or(Method::ALL[0]);
-    let place = options.place.name();
+    let place = name(options.place);
     ensure!(
         methods(options.place).any(|one| one == method),
         "--method {method}: not on {place}; --list says where it runs"

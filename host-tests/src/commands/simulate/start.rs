@@ -90,9 +90,9 @@ impl StartOptions {
         let angles = self.angles.clone().unwrap_or(Pair(first.clone(), first));
         let degrees = [self.degrees || self.angles.is_none(), self.degrees];
         let [m, l, a, w] = [&self.masses, &self.lengths, &angles, &self.velocities];
-        let numbers = [&m.0, &m.1, &l.0, &l.1, self.gravity.as_ref().or(gravity.as_ref())?, &a.0, &a.1, &w.0, &w.1];
-        let given = numbers.into_iter().map(Number::exact).collect::<Option<Vec<_>>>()?.try_into().ok()?;
-        Some(Exact { about: (self.parameters(), Motion { a1, a2, w1, w2 }), given, degrees })
+        let numbers = [&a.0, &a.1, &w.0, &w.1, &m.0, &m.1, &l.0, &l.1, self.gravity.as_ref().or(gravity.as_ref())?];
+        let fractions = numbers.into_iter().map(Number::exact).collect::<Option<Vec<_>>>()?.try_into().ok()?;
+        Some(Exact { about: (self.parameters(), Motion { a1, a2, w1, w2 }), fractions: Some(fractions), degrees })
     }
 
     fn radians(&self, angle: f64) -> f64 {

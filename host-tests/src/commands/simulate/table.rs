@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use double_pendulum::{Numbers, Parameters, Pendulum};
 use firmware::job::Reading;
 
-use super::{Number, Options, Plan};
+use super::{Number, Plan, SimulateOptions};
 
 /// A column: its name, its unit, and its number in a row.
 #[derive(Clone, Copy, Debug)]
@@ -52,7 +52,7 @@ impl Row<'_> {
 /// Writes readings as CSV, one row each, from t = 0.
 pub struct CsvRows<'a, W> {
     output: W,
-    options: &'a Options,
+    options: &'a SimulateOptions,
     parameters: Parameters<f64>,
     /// Whether numbers have the digits of an `f32`.
     single: bool,
@@ -62,7 +62,7 @@ pub struct CsvRows<'a, W> {
 
 impl<'a, W: Write> CsvRows<'a, W> {
     /// The rows of `plan`, with the columns of `options`. Nothing is written yet.
-    pub fn new(output: W, plan: &Plan, options: &'a Options) -> Self {
+    pub fn new(output: W, plan: &Plan, options: &'a SimulateOptions) -> Self {
         let single = plan.request.method.numbers() == Numbers::F32;
         Self { output, options, parameters: plan.request.parameters, single, every: plan.every.clone(), rows: 0 }
     }

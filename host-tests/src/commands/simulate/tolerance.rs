@@ -11,7 +11,7 @@ use firmware::job::{JobError, Request};
 
 use super::price::candidates;
 use super::request::{accepted, count, method, request};
-use super::{Number, Options, Plan};
+use super::{Number, Plan, SimulateOptions};
 use crate::commands::table::small;
 use crate::console::progress::Bar;
 use reference::taylor::Reference;
@@ -36,7 +36,7 @@ pub struct Choice {
 }
 
 /// Chooses among all that the options leave open; an error is one line that names the option and the value.
-pub fn choose(options: &Options, tolerance: &Number) -> anyhow::Result<Choice> {
+pub fn choose(options: &SimulateOptions, tolerance: &Number) -> anyhow::Result<Choice> {
     let search = Search::new(options, tolerance)?;
     search.check(method(options)?)?;
     let exact = search.exact();
@@ -74,14 +74,14 @@ impl fmt::Display for Choice {
 
 /// Which rows are wanted, and how well.
 struct Search<'a> {
-    options: &'a Options,
+    options: &'a SimulateOptions,
     every: Number,
     samples: u32,
 }
 
 impl<'a> Search<'a> {
-    fn new(options: &'a Options, tolerance: &Number) -> anyhow::Result<Self> {
-        let Options { until, every, .. } = options;
+    fn new(options: &'a SimulateOptions, tolerance: &Number) -> anyhow::Result<Self> {
+        let SimulateOptions { until, every, .. } = options;
         ensure!(tolerance.is_positive(), "--tolerance {tolerance}: must be greater than zero");
         ensure!(until.is_positive(), "--until {until}: must be greater than zero with --tolerance");
         let every = every.clone().unwrap_or_else(|| until.divided_by(ROWS));

@@ -26,7 +26,7 @@ use talk::Talk;
 /// times of the scenes, its buttons and its panel; and writes a report.
 #[derive(Clone, Debug, Parser)]
 #[command(name = "cargo verify-board", after_help = "Example: cargo verify-board --port auto --report feather")]
-pub struct Options {
+pub struct VerifyOptions {
     /// The serial port; `auto` is the only one over USB
     #[arg(long, value_name = "PATH")]
     pub port: String,
@@ -49,7 +49,7 @@ struct Section {
 }
 
 /// Verifies the board and writes the report; whether all was well.
-pub fn run(options: &Options) -> anyhow::Result<bool> {
+pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
     let mut talk = Talk::new(demo::port(&options.port, options.baud)?)?;
     let identity: Identity = talk.ask(&Identify { request: 0 })?;
     let name = BoardName::from_code(identity.board).map_or("unknown", BoardName::name);

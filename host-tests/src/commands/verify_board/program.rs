@@ -13,7 +13,6 @@ use crate::emulator::flash::flash_image;
 use crate::emulator::process;
 use crate::emulator::toolchain::{self, workspace};
 
-/// Guards against hanging.
 const LIMIT: Duration = Duration::from_secs(30);
 
 /// What the board says of its program beside the one that is built here for `board`, in a line.

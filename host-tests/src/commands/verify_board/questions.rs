@@ -4,7 +4,7 @@ use std::io::stdin;
 use std::sync::mpsc;
 use std::thread;
 
-use firmware::app::controls::Key;
+use firmware::app::Key;
 use firmware::protocol::{Choose, Done, Frame};
 use firmware::scenes::SceneName;
 

@@ -11,7 +11,6 @@ use super::talk::Talk;
 use crate::commands::demo::comparison::Comparison;
 use crate::commands::table::Table;
 
-/// Frames of each.
 const FRAMES: u32 = TICK_RATE;
 /// By so many it must have said what it plays.
 const PATIENCE: u32 = 10 * FRAMES;

@@ -11,7 +11,6 @@ use crate::link::{Port, Received};
 
 /// A board answers a command within a tick; the slowest motion asked for has a sample every second.
 const PATIENCE: Duration = Duration::from_secs(20);
-/// From one look at the port to the next.
 const LOOK: Duration = Duration::from_millis(1);
 
 pub struct Talk {
@@ -57,7 +56,6 @@ impl Talk {
         bail!("{}: the board plays, and does not answer; flash it anew", self.port.name())
     }
 
-    /// Sends a message and waits for the answer to it.
     pub fn ask<A: Message>(&mut self, message: &impl Message) -> anyhow::Result<A> {
         self.port.send(message);
         self.next()

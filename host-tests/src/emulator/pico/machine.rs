@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 use std::time::Duration;
 
 use anyhow::{Context, bail};
-use firmware::app::controls::Key;
+use firmware::app::Key;
 use firmware::protocol::{Frame, MAX_WIRE, Message, encode};
 
 use super::talk::{Said, Talk, digits};
@@ -18,13 +18,12 @@ use crate::emulator::toolchain::{Rp2040js, workspace};
 use crate::emulator::uf2::uf2;
 use crate::link::{Counts, Inbox, Received};
 
-/// From one look at the stream to the next.
 const SLICE: Duration = Duration::from_millis(1);
 /// A board that sends no frame for this many of them sends none.
 const PATIENCE: u32 = 5000;
 
 /// The board. Its time passes only in [`Self::run`], so all that it does is repeatable bit for bit. Dropping it ends it.
-pub struct Machine {
+pub struct PicoMachine {
     talk: Talk,
     _process: Running,
     _file: tempfile::NamedTempFile,
@@ -35,7 +34,7 @@ pub struct Machine {
     heard_by_uart: Vec<Received>,
 }
 
-impl Machine {
+impl PicoMachine {
     /// Switches a board on with this firmware in its flash: what `cargo pico` copies, and nothing else.
     pub fn start(emulator: &Rp2040js, elf: &Path, limit: Duration) -> anyhow::Result<Self> {
         let program = std::fs::read(elf)?;
@@ -95,7 +94,6 @@ impl Machine {
         self.tell(&format!("uart {}", digits(encode(message, &mut [0; MAX_WIRE]))))
     }
 
-    /// What the board has sent through the UART since the last call.
     pub fn heard_by_uart(&mut self) -> Vec<Received> {
         std::mem::take(&mut self.heard_by_uart)
     }

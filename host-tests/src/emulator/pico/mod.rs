@@ -3,4 +3,4 @@
 mod machine;
 mod talk;
 
-pub use machine::Machine;
+pub use machine::PicoMachine;

@@ -18,7 +18,6 @@ pub(super) struct Talk {
 }
 
 impl Talk {
-    /// Says a line; what is answered.
     pub fn ask(&mut self, line: &str) -> anyhow::Result<Vec<Said>> {
         self.exchange(line).map_err(|error| anyhow!("the emulator of the Pico no longer answers: {error}"))
     }

@@ -1,7 +1,7 @@
 //! What is put back when this process is interrupted. Its children end because it does.
 
 use std::path::Path;
-use std::process::exit;
+use std::process::{ExitCode, exit};
 use std::sync::atomic::AtomicUsize;
 use std::sync::{Arc, Mutex, Once, PoisonError};
 use std::{io, thread};
@@ -13,9 +13,9 @@ use signal_hook::iterator::Signals;
 /// The signals that interrupt a command: Ctrl-C, a request to end, a terminal that is closed.
 const INTERRUPTS: [i32; 3] = [SIGINT, SIGTERM, SIGHUP];
 
-/// The exit code that the shell has for a command ended by a signal: 130 after Ctrl-C.
-pub fn interrupted_by(signal: i32) -> i32 {
-    128 + signal
+/// The exit code that the shell has for a command ended by a signal, 130 after Ctrl-C; success for 0, which is none.
+pub fn interrupted_by(signal: usize) -> ExitCode {
+    ExitCode::from(if signal == 0 { 0 } else { 128 + signal as u8 })
 }
 
 /// The signal that has interrupted this process since, 0 as long as none has; it goes on meanwhile.
@@ -40,7 +40,7 @@ pub fn on_interrupt(hook: impl FnOnce() + Send + 'static) {
         thread::spawn(move || {
             let Some(signal) = signals.forever().next() else { return };
             hooks().drain(..).for_each(|hook| hook());
-            exit(interrupted_by(signal));
+            exit(128 + signal);
         });
     });
     hooks().push(Box::new(hook));

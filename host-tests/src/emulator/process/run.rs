@@ -1,38 +1,31 @@
 //! Running a child to its end with its output captured.
 
-use std::io::{BufRead, BufReader, Read};
+use std::io::{self, BufRead, BufReader, Read};
 use std::process::{Command, ExitStatus, Stdio};
 use std::sync::mpsc::{self, RecvTimeoutError, Sender};
 use std::thread;
 use std::time::Duration;
 
-use super::{ProcessError, spawn};
+use super::spawn;
 
 /// How often the watcher is told that the child is alive.
 const TICK: Duration = Duration::from_millis(100);
 
-/// What a child said and how it ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Output {
     pub status: ExitStatus,
-    /// Its standard output; bytes that are not UTF-8 are replaced.
     pub stdout: String,
-    /// Its standard error; bytes that are not UTF-8 are replaced.
     pub stderr: String,
 }
 
 /// Runs `command` to its end, captured, without input; at the latest after `limit` it is killed.
-pub fn run(command: &mut Command, limit: Duration) -> Result<Output, ProcessError> {
+pub fn run(command: &mut Command, limit: Duration) -> io::Result<Output> {
     run_watched(command, limit, |_| {})
 }
 
 /// As [`run`]; meanwhile `watch` is called with each line of either output, and with `None` at least ten times a second
 /// while there is none: the child is alive.
-pub fn run_watched(
-    command: &mut Command,
-    limit: Duration,
-    mut watch: impl FnMut(Option<&str>),
-) -> Result<Output, ProcessError> {
+pub fn run_watched(command: &mut Command, limit: Duration, mut watch: impl FnMut(Option<&str>)) -> io::Result<Output> {
     command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = spawn(command, limit)?;
     let (sender, lines) = mpsc::channel();

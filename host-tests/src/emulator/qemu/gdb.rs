@@ -13,9 +13,7 @@ use super::error::broken;
 
 /// The size of the instruction `wfi`, and what any breakpoint is said to take, bytes.
 const SIZE: u32 = 2;
-/// Bytes of memory asked for at once.
 const PIECE: u32 = 512;
-/// GDB's number of the program counter.
 const PC: &str = "f";
 
 /// Asks what registers there are; until then QEMU gives access to none.
@@ -73,7 +71,6 @@ impl Debugger {
         self.send("c").map_err(broken("debugger port"))
     }
 
-    /// Puts bytes into the machine's memory.
     pub(super) fn write(&mut self, address: u32, bytes: &[u8]) -> anyhow::Result<()> {
         for (start, piece) in (address..).step_by(PIECE as usize).zip(bytes.chunks(PIECE as usize)) {
             let digits: String = piece.iter().map(|byte| format!("{byte:02x}")).collect();

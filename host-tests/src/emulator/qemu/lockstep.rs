@@ -20,7 +20,6 @@ const PATIENCE: u32 = 1000;
 /// One instruction per translation block: QEMU's name for it since 8.1, and before.
 const SINGLE_STEP: [&str; 2] = ["one-insn-per-tb", "singlestep"];
 
-/// A register of the processor, with GDB's number of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Register {
     Sp = 13,
@@ -94,7 +93,6 @@ impl Lockstep {
         self.debug(|debugger| registers.iter().try_for_each(|(register, value)| debugger.set(*register as u32, *value)))
     }
 
-    /// Lets it run for good.
     pub fn run(&mut self) -> anyhow::Result<&mut Machine> {
         self.debugger.run()?;
         Ok(&mut self.machine)
@@ -116,12 +114,10 @@ impl Lockstep {
         act(&mut self.debugger).map_err(|error| self.machine.explain(error))
     }
 
-    /// The panel's screenshot of the last frame.
     pub fn screenshot(&mut self) -> anyhow::Result<Screenshot> {
         self.machine.screenshot()
     }
 
-    /// The machine, for its link, its counts and its log.
     pub fn machine(&mut self) -> &mut Machine {
         &mut self.machine
     }

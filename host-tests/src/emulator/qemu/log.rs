@@ -73,7 +73,6 @@ impl Log {
         Ok(Self { lines })
     }
 
-    /// The lines that have arrived since the last call, without waiting.
     pub fn arrived(&self) -> impl Iterator<Item = LogLine> {
         self.lines.try_iter()
     }
@@ -84,7 +83,6 @@ impl Log {
     }
 }
 
-/// Sends on each line of defmt's stream, to its end.
 fn decode(mut decoder: LogDecoder, mut stream: impl Read, lines: &Sender<LogLine>) {
     let mut buffer = [0; 4096];
     while let Ok(count @ 1..) = stream.read(&mut buffer) {

@@ -8,7 +8,7 @@ use std::thread::sleep;
 use std::time::Duration;
 
 use anyhow::{Context, anyhow, bail};
-use firmware::app::controls::Key;
+use firmware::app::Key;
 use firmware::protocol::Message;
 use tempfile::TempDir;
 
@@ -23,7 +23,6 @@ use crate::link::Received;
 /// How often a connection that is not there yet is looked for.
 const POLL: Duration = Duration::from_millis(2);
 
-/// What the board's clock goes by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Clock {
     /// The host's clock: as fast as the real board, as long as the host keeps up.
@@ -35,7 +34,6 @@ pub enum Clock {
 
 #[derive(Clone, Copy, Debug)]
 pub struct Settings<'a> {
-    /// The program `qemu-system-arm`.
     pub qemu: &'a Path,
     pub board: &'a Board,
     pub elf: &'a Path,
@@ -125,7 +123,6 @@ impl Machine {
         self.serial.next().ok_or_else(|| self.silence())
     }
 
-    /// The lines of the log that have arrived since the last call.
     pub fn said(&self) -> String {
         self.log.arrived().map(|line| format!("{line}\n")).collect()
     }
@@ -182,7 +179,6 @@ impl Machine {
         if error.is::<Broken>() { ended(&mut self.process, &self.log).unwrap_or(error) } else { error }
     }
 
-    /// Why no message comes any more.
     pub fn silence(&mut self) -> anyhow::Error {
         self.explain(broken("serial port")(ErrorKind::UnexpectedEof.into()))
     }

@@ -8,13 +8,12 @@ use std::os::unix::net::UnixStream;
 use std::path::Path;
 
 use anyhow::bail;
-use firmware::app::controls::Key;
+use firmware::app::Key;
 use serde_json::{Value, json};
 
 use super::Screenshot;
 use super::error::broken;
 
-/// The control channel of a running QEMU.
 #[derive(Debug)]
 pub(super) struct Monitor(BufReader<UnixStream>);
 

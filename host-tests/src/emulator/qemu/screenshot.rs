@@ -1,13 +1,9 @@
 //! The panel's screenshot, out of QEMU's screen dump.
 
-use firmware::graphics::canvas::Canvas;
-
 use anyhow::Context;
+use firmware::graphics::Canvas;
+pub use firmware::graphics::{HEIGHT, WIDTH};
 
-/// The panel's width, pixels.
-pub const WIDTH: usize = 128;
-/// The panel's height, pixels.
-pub const HEIGHT: usize = 64;
 /// QEMU shows each of the panel's pixels as a square of this many by as many.
 const MAGNIFIED: usize = 4;
 /// How the dump begins: colour, the magnified size, 255 levels.
@@ -32,7 +28,6 @@ impl std::fmt::Debug for Screenshot {
 }
 
 impl Screenshot {
-    /// Reads QEMU's screen dump, a binary PPM file.
     pub(super) fn from_ppm(file: &[u8]) -> anyhow::Result<Self> {
         let pixels = file.strip_prefix(HEADER).context("the panel's screenshot is no PPM file of 512 x 256 pixels")?;
         let at = |x: usize, y: usize| {
@@ -60,7 +55,6 @@ impl Screenshot {
         if x < WIDTH { self.greys.get(y * WIDTH + x).copied().unwrap_or_default() } else { 0 }
     }
 
-    /// All greys, row by row.
     pub fn greys(&self) -> &[u8] {
         &self.greys
     }

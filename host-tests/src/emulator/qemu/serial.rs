@@ -86,7 +86,6 @@ impl Serial {
         self.messages.try_iter()
     }
 
-    /// Those of one kind; others are passed over.
     pub fn arrived<M: Message>(&self) -> impl Iterator<Item = M> {
         self.all_arrived().filter_map(|message| message.read())
     }
@@ -113,7 +112,6 @@ impl Serial {
 #[derive(Debug)]
 pub struct Stopped<'a>(#[expect(dead_code, reason = "held, never used")] MutexGuard<'a, Reader>);
 
-/// Cuts what arrives into messages.
 #[derive(Debug)]
 struct Reader {
     pipe: File,

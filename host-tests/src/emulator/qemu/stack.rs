@@ -13,7 +13,6 @@ const SIZE: u32 = 32 * 1024;
 /// No byte that is common in memory.
 pub const PAINT: u8 = 0xA5;
 
-/// The addresses of a program's stack.
 #[derive(Clone, Debug)]
 pub struct Stack(Range<u32>);
 
@@ -41,7 +40,6 @@ impl Stack {
         board.fill(self.0.clone(), PAINT)
     }
 
-    /// The most bytes that the stack has held since it was painted.
     pub fn reached(&self, board: &mut Lockstep) -> anyhow::Result<u32> {
         Ok(Self::depth(&board.read(self.0.clone())?))
     }

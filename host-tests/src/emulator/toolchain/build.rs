@@ -53,7 +53,6 @@ impl Toolchain {
         target().join("firmware")
     }
 
-    /// Builds the board's application; returns the ELF file.
     pub fn build_for(&self, board: &Board) -> anyhow::Result<PathBuf> {
         self.build(board.binary, board.target)
     }
@@ -138,7 +137,6 @@ fn is_foreign(name: &OsString) -> bool {
     FOREIGN.iter().any(begins) && !OURS.iter().any(begins)
 }
 
-/// The PATH with one more folder in front.
 fn path_with(folder: PathBuf) -> OsString {
     let rest = env::var_os("PATH").unwrap_or_default();
     env::join_paths([folder].into_iter().chain(env::split_paths(&rest))).unwrap_or(rest)

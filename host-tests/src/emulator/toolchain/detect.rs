@@ -25,9 +25,7 @@ pub(super) struct Emulator {
     folder: &'static str,
 }
 
-/// Of whole boards.
 pub(super) const QEMU: Emulator = Emulator { program: "qemu-system-arm", package: "qemu-system-arm", folder: "qemu" };
-/// Of a RISC-V under Linux.
 pub(super) const QEMU_RISCV: Emulator = Emulator { program: "qemu-riscv32", package: "qemu-user", folder: "qemu-user" };
 
 /// The core library for these targets: ready-made beside the compiler in use, else Debian's sources.

@@ -12,13 +12,12 @@ use super::detect::{self, CORE_PACKAGES, Emulator, find, reason};
 use super::{ArmCore, target, workspace};
 use crate::console::cli::Refused;
 use crate::console::progress::Progress;
-use crate::emulator::process::{Output, ProcessError, run_watched};
+use crate::emulator::process::{Output, run_watched};
 
 /// For `rustup target add`: 40 MB. Where it can only hang, this is what that costs, once.
 const RUSTUP: Duration = Duration::from_secs(60);
 /// For fetching and unpacking at most 400 MB, and for a turn at dpkg.
 const INSTALL: Duration = Duration::from_secs(1200);
-/// Unpacks QEMU's packages, in the workspace.
 const UNPACK_QEMU: &str = "host-tests/src/emulator/toolchain/unpack-qemu.sh";
 
 /// Waits for our turn at a set-up; it ends when this is dropped or the process ends, however it ends.
@@ -108,7 +107,7 @@ pub(super) fn attempt(command: &mut Command, limit: Duration, doing: &str) -> Re
 }
 
 /// Runs a command to its end, within the limit, and shows meanwhile what is being done.
-pub(super) fn run_shown(command: &mut Command, limit: Duration, doing: &str) -> Result<Output, ProcessError> {
+pub(super) fn run_shown(command: &mut Command, limit: Duration, doing: &str) -> io::Result<Output> {
     let mut progress = Progress::start(doing);
     run_watched(command, limit, |line| progress.alive(line))
 }

@@ -10,9 +10,7 @@ use super::install::{attempt, install_packages};
 use super::{missing, workspace};
 use crate::console::cli::Refused;
 
-/// For npm to fetch one small package.
 const NPM: Duration = Duration::from_secs(120);
-/// The oldest Node.js that it runs under.
 const LEAST: u32 = 18;
 /// Says which version of the emulator is there, if it is the one to be had.
 const ASK: &str = "const [{ dependencies }, { version }] = ['.', './node_modules/rp2040js']

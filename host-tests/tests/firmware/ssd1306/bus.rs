@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 
 use embedded_hal::i2c::{ErrorKind, NoAcknowledgeSource};
-use firmware::display::outbox::{Outbox, PanelBus, Sent};
+use firmware::display::{Outbox, PanelBus, Sent};
 
 use super::controller::Controller;
 

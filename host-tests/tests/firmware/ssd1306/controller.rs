@@ -1,7 +1,6 @@
 //! The panel's controller, stricter than the real one.
 
-use firmware::graphics::bitmap::Bitmap;
-use firmware::graphics::canvas::{HEIGHT, WIDTH};
+use firmware::graphics::{Bitmap, HEIGHT, WIDTH};
 
 /// A kind of controller: what tells it from the other.
 #[derive(Clone, Copy, Debug)]

@@ -7,14 +7,11 @@ use std::cell::RefCell;
 
 use embedded_hal::i2c::{ErrorKind, NoAcknowledgeSource};
 use fastrand::Rng;
-use firmware::app::player::Player;
+use firmware::app::Player;
 use firmware::config::{STM32F405, TICK_RATE};
-use firmware::display::controller::{By, Controller as Name, Found};
-use firmware::display::{Display, Ssd1306, Ssd1306Error};
-use firmware::graphics::bitmap::Bitmap;
-use firmware::graphics::canvas::{Canvas, HEIGHT, WIDTH};
-use firmware::graphics::frame_buffers::FrameBuffers;
-use firmware::motion::settings::Settings;
+use firmware::display::{By, Controller as Name, Display, Found, Ssd1306, Ssd1306Error};
+use firmware::graphics::{Bitmap, Canvas, FrameBuffers, HEIGHT, WIDTH};
+use firmware::motion::Settings;
 use firmware::scenes::SceneName;
 use host_tests::emulator::host::Show;
 

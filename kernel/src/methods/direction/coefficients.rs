@@ -2,10 +2,10 @@
 
 use super::classical::rates;
 use super::lead::Lead;
+use crate::bounds::check_step;
 use crate::error::{Error, Parameter};
 use crate::numbers::Real;
-use crate::pendulum::directions::lower_ray;
-use crate::pendulum::directions::{Coefficients, increments};
+use crate::pendulum::directions::{Coefficients, increments, lower_ray};
 use crate::pendulum::{Parameters, State};
 
 /// A third, by which k1 + 2 k2 + 2 k3 + k4 becomes the increment of a step.
@@ -51,13 +51,7 @@ pub(crate) fn prepare<R: Real>(
     span: Span,
 ) -> Result<(Coefficients<R>, Scale), Error> {
     parameters.check()?;
-    let (parameter, value) = (Parameter::Dt, dt);
-    if !dt.is_finite() {
-        return Err(Error::NotFinite { parameter, value });
-    }
-    if !R::from_f64(dt).is_normal() {
-        return Err(Error::OutOfRange { parameter, value });
-    }
+    check_step::<R>(dt)?;
     let Parameters { m1, m2, l1, l2, g } = parameters.cast::<f64>();
     let norm = l1 / l2;
     let [inertia, total] = [m1, m1 + m2].map(|mass| mass / m2 * norm * norm);

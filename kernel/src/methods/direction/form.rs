@@ -10,8 +10,7 @@ use crate::error::{Error, Parameter, check_finite};
 use crate::methods::{Form, Side};
 use crate::numbers::trig::{Own, SinCos};
 use crate::numbers::{Real, Sealed};
-use crate::pendulum::directions::Coefficients;
-use crate::pendulum::directions::{heads, lower_direction};
+use crate::pendulum::directions::{Coefficients, heads, lower_direction};
 use crate::pendulum::{Direction, Parameters, State};
 
 /// The directions of the rods themselves are stepped: what a drawing needs, and no angle anywhere.

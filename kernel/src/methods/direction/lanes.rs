@@ -7,8 +7,7 @@ use super::form::DirectionState;
 use super::sum::Plain;
 use crate::numbers::{Lanes, Real, Scalar};
 use crate::pendulum::Direction;
-use crate::pendulum::directions::Coefficients;
-use crate::pendulum::directions::heads;
+use crate::pendulum::directions::{Coefficients, heads};
 
 /// As [`DirectionForm`] in plain numbers, to the bit, for `ROWS` times `N` motions of one pendulum side by side.
 ///

@@ -6,9 +6,10 @@ mod setting;
 mod step;
 mod upkeep;
 
+use crate::bounds::check_step;
 use crate::error::Error;
 use crate::methods::Form;
-use crate::methods::scaling::{Scaling, check_step, lost};
+use crate::methods::scaling::{Scaling, lost};
 use crate::numbers::fixed::{Q30, nearest, product};
 use crate::numbers::trig::{Own, SinCos};
 use crate::numbers::{Real, Scalar, Sealed};
@@ -89,7 +90,7 @@ impl Form for Fixed32 {
 
     fn new(parameters: &Parameters<f64>, dt: f64) -> Result<Self, Error> {
         parameters.check()?;
-        check_step(dt)?;
+        check_step::<f64>(dt)?;
         Ok(Self { parameters: *parameters, dt })
     }
 

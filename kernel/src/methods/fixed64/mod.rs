@@ -5,9 +5,10 @@ mod rows;
 
 use motion::Fixed64State;
 
+use crate::bounds::check_step;
 use crate::error::Error;
 use crate::methods::Form;
-use crate::methods::scaling::{check_step, lost};
+use crate::methods::scaling::lost;
 use crate::numbers::{Real, Sealed};
 use crate::pendulum::{Direction, Parameters, State};
 
@@ -44,7 +45,7 @@ impl<const ORDER: u32> Form for Fixed64<ORDER> {
 
     fn new(parameters: &Parameters<f64>, dt: f64) -> Result<Self, Error> {
         parameters.check()?;
-        check_step(dt)?;
+        check_step::<f64>(dt)?;
         Ok(Self { parameters: *parameters, dt })
     }
 
