@@ -76,10 +76,10 @@ impl Processor {
 
 /// A Cortex-M3, which has no floating-point unit: at 50 MHz a tick has 833,000 cycles.
 pub const CORTEX_M3: Processor =
-    Processor { code: 0, costs: prices::CORTEX_M3, frame: 200_000.0, look_ahead: 320_000.0, flips: FLIPS_M3 };
+    Processor { code: 0, costs: prices::CORTEX_M3, frame: 200_000.0, look_ahead: 360_000.0, flips: FLIPS_M3 };
 /// A Cortex-M0+, which has no long product either, as on the Raspberry Pi Pico: at 125 MHz a tick has 2,083,000 cycles.
 pub const CORTEX_M0PLUS: Processor =
-    Processor { code: 3, costs: prices::CORTEX_M0PLUS, frame: 300_000.0, look_ahead: 530_000.0, flips: FLIPS_M0PLUS };
+    Processor { code: 3, costs: prices::CORTEX_M0PLUS, frame: 300_000.0, look_ahead: 640_000.0, flips: FLIPS_M0PLUS };
 /// A Cortex-M4F, whose floating-point unit knows `f32` only: the slowest board, at 25 MHz, has 417,000 cycles in a tick. A
 /// plain step costs less than the closed form's two sincos.
 pub const CORTEX_M4F: Processor =
@@ -122,7 +122,6 @@ pub const FLIPS_F405: FlipsPace = FlipsPace { steps: 5500, ..FLIPS_M4F };
 
 /// Length of either rod, m: a period of about 2 s, which is pleasant to watch.
 pub const ROD: f32 = 1.0;
-/// Gravitational acceleration, m/s^2.
 pub const GRAVITY: f64 = 9.81;
 /// The source page's, m/s^2: where its own figures are shown, this is.
 pub const PAGE_GRAVITY: f64 = 9.8;
@@ -167,9 +166,7 @@ pub const REACH: f32 = 28.5;
 pub const GREATEST_RADIUS: f32 = 3.0;
 /// No bob is drawn smaller than this.
 pub const LEAST_RADIUS: f32 = 1.5;
-/// Half the width of a rod.
 pub const ROD_HALF_WIDTH: f32 = 0.6;
-/// Half the width of bob 2's trail.
 pub const TRAIL_HALF_WIDTH: f32 = 0.8;
 /// Brightness of the trail at the bob, of 255: its grey is 11.
 pub const TRAIL_BRIGHTNESS: u8 = 184;

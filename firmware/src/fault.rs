@@ -33,7 +33,6 @@ pub struct Stacked {
     pub xpsr: u32,
 }
 
-/// Bits of CFSR.
 const DATA_REFUSED: u32 = 1 << 1;
 const ENTRY_REFUSED: u32 = 1 << 4;
 const LAZY_ENTRY_REFUSED: u32 = 1 << 5;
@@ -122,7 +121,6 @@ impl fmt::Display for Fault {
     }
 }
 
-/// What is known of a panic.
 #[derive(Debug)]
 pub struct Panic<'a> {
     /// Where and why, in the program's own terms.
@@ -146,7 +144,6 @@ impl fmt::Display for Panic<'_> {
 /// What is known of a program that finishes nothing any more.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Hang {
-    /// Program counter: where it is.
     pub pc: u32,
     pub lr: u32,
 }

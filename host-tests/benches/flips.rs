@@ -84,7 +84,7 @@ fn rate_of_c(program: &PathBuf, map: &Map) -> Result<f64> {
 
 fn main() -> Result<()> {
     let map = Map::new(Parameters::equal_rods(1.0, 1.0, 1.0), LIMIT, Square::whole([SIDE, SIDE]))?;
-    let starts: Vec<_> = map.starts(0..map.square.rows()).collect();
+    let starts: Vec<_> = map.starts().collect();
     let program = compile()?;
     let (mut c, mut rates) = (0.0_f64, [0.0_f64; WAYS.len()]);
     for _ in 0..ROUNDS {

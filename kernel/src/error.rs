@@ -5,86 +5,46 @@ use core::fmt;
 use crate::numbers::Real;
 use crate::table::Method;
 
-/// A quantity the caller chooses. Displays as the book's symbol.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[non_exhaustive]
-pub enum Parameter {
-    /// Mass of bob 1, kg.
-    M1,
-    /// Mass of bob 2, kg.
-    M2,
-    /// Length of rod 1, m.
-    L1,
-    /// Length of rod 2, m.
-    L2,
-    /// Gravitational acceleration, m/s^2.
-    G,
-    /// Mass ratio m2/m1.
-    Mu,
-    /// Angle of rod 1, rad.
-    A1,
-    /// Angle of rod 2, rad.
-    A2,
-    /// Angular velocity of rod 1, rad/s.
-    W1,
-    /// Angular velocity of rod 2, rad/s.
-    W2,
-    /// Momentum conjugate to `a1`, kg m^2/s.
-    P1,
-    /// Momentum conjugate to `a2`, kg m^2/s.
-    P2,
-    /// Step of time, s.
-    Dt,
-    /// Order of a method.
-    Order,
-    /// Ratio of the normal frequencies, fast over slow.
-    FrequencyRatio,
-    /// The energy, J.
-    #[doc(hidden)]
-    Energy,
-    /// The method.
-    Method,
-    /// How far a bob may be off, m.
-    Tolerance,
-    /// How long a motion is shown, s.
-    Duration,
-    /// Frames per second.
-    Rate,
-    /// What a step costs, in the unit of the budget.
-    Cost,
-    /// What computing a frame, or planning, may cost.
-    Budget,
+macro_rules! parameters {
+    ($($(#[$hidden:meta])? $name:ident $symbol:literal $doc:literal;)*) => {
+        /// A quantity the caller chooses. Displays as the book's symbol.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+        #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+        #[non_exhaustive]
+        pub enum Parameter { $($(#[$hidden])? #[doc = $doc] $name,)* }
+
+        impl fmt::Display for Parameter {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str(match self { $(Parameter::$name => $symbol,)* })
+            }
+        }
+    };
 }
 
-impl fmt::Display for Parameter {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Parameter::M1 => "m1",
-            Parameter::M2 => "m2",
-            Parameter::L1 => "l1",
-            Parameter::L2 => "l2",
-            Parameter::G => "g",
-            Parameter::Mu => "mu",
-            Parameter::A1 => "a1",
-            Parameter::A2 => "a2",
-            Parameter::W1 => "w1",
-            Parameter::W2 => "w2",
-            Parameter::P1 => "p1",
-            Parameter::P2 => "p2",
-            Parameter::Dt => "dt",
-            Parameter::Order => "order",
-            Parameter::FrequencyRatio => "frequency ratio",
-            Parameter::Energy => "energy",
-            Parameter::Method => "method",
-            Parameter::Tolerance => "tolerance",
-            Parameter::Duration => "duration",
-            Parameter::Rate => "rate",
-            Parameter::Cost => "cost",
-            Parameter::Budget => "budget",
-        })
-    }
+parameters! {
+    M1 "m1" "Mass of bob 1, kg.";
+    M2 "m2" "Mass of bob 2, kg.";
+    L1 "l1" "Length of rod 1, m.";
+    L2 "l2" "Length of rod 2, m.";
+    G "g" "Gravitational acceleration, m/s^2.";
+    Mu "mu" "Mass ratio m2/m1.";
+    A1 "a1" "Angle of rod 1, rad.";
+    A2 "a2" "Angle of rod 2, rad.";
+    W1 "w1" "Angular velocity of rod 1, rad/s.";
+    W2 "w2" "Angular velocity of rod 2, rad/s.";
+    P1 "p1" "Momentum conjugate to `a1`, kg m^2/s.";
+    P2 "p2" "Momentum conjugate to `a2`, kg m^2/s.";
+    Dt "dt" "Step of time, s.";
+    Order "order" "Order of a method.";
+    FrequencyRatio "frequency ratio" "Ratio of the normal frequencies, fast over slow.";
+    #[doc(hidden)] Energy "energy" "The energy, J.";
+    Method "method" "The method.";
+    Tolerance "tolerance" "How far a bob may be off, m.";
+    Duration "duration" "How long a motion is shown, s.";
+    Rate "rate" "Frames per second.";
+    Cost "cost" "What a step costs, in the unit of the budget.";
+    Budget "budget" "What computing a frame, or planning, may cost.";
 }
 
 /// Why an input is refused: the parameter and the value it had.
@@ -169,9 +129,7 @@ impl Error {
             Error::NotDrawn { .. } => Parameter::Method,
         }
     }
-}
 
-impl Error {
     /// The same of a result, where it was of an input.
     pub(crate) fn diverged(self) -> Self {
         match self {

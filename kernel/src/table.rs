@@ -2,54 +2,13 @@
 
 use core::fmt;
 
-/// What is integrated.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[doc(hidden)]
-pub enum Equations {
-    /// Hamilton's equations of (a1, a2, p1, p2), SI units: [`Pendulum::derivatives`](crate::Pendulum::derivatives).
-    Hamilton,
-    /// The same for rods of one length, without dimensions: [`EqualRods`](crate::EqualRods).
-    EqualRods,
-    /// Hamilton's equations of rod directions and momenta, without sines: [`methods`](crate::methods).
-    Directions,
-    /// Hamilton's equations as `[math24]` prints them, nothing simplified: for comparison.
-    Textbook,
-    /// Small oscillations: [`SmallOscillations`](crate::SmallOscillations).
-    Linear,
-}
+macro_rules! named {
+    ($(#[$doc:meta])* $type:ident { $($variant:ident $name:literal $means:literal;)* }) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[doc(hidden)]
+        pub enum $type { $(#[doc = $means] $variant,)* }
 
-/// What is computed in. Compensated sums carry the rounding error of each addition into the next.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[doc(hidden)]
-pub enum Numbers {
-    /// Single precision.
-    F32,
-    /// Single precision, compensated sums.
-    CompensatedF32,
-    /// Double precision.
-    F64,
-    /// Double precision, compensated sums.
-    CompensatedF64,
-    /// Fixed point of 32 bits.
-    Fixed32,
-    /// Fixed point of 64 bits.
-    Fixed64,
-}
-
-/// How a step is made.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[doc(hidden)]
-pub enum Integrator {
-    /// The classical Runge-Kutta method.
-    Rk4,
-    /// Gragg's [`Extrapolation`](crate::methods::extrapolation::Extrapolation).
-    Extrapolation,
-    /// No steps at all: any time at once.
-    ClosedForm,
-}
-
-macro_rules! names {
-    ($type:ident: $($variant:ident $name:literal),*) => {
         impl fmt::Display for $type {
             fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
                 f.pad(match self { $(Self::$variant => $name),* })
@@ -58,9 +17,37 @@ macro_rules! names {
     };
 }
 
-names!(Equations: Hamilton "Hamilton", EqualRods "equal rods", Directions "directions", Textbook "textbook", Linear "linear");
-names!(Numbers: F32 "f32", CompensatedF32 "compensated f32", F64 "f64", CompensatedF64 "compensated f64", Fixed32 "fixed32", Fixed64 "fixed64");
-names!(Integrator: Rk4 "RK4", Extrapolation "extrapolation", ClosedForm "closed form");
+named! {
+    /// What is integrated.
+    Equations {
+        Hamilton "Hamilton" "Of (a1, a2, p1, p2), SI units: [`Pendulum::derivatives`](crate::Pendulum::derivatives).";
+        EqualRods "equal rods" "The same for rods of one length, without dimensions: [`EqualRods`](crate::EqualRods).";
+        Directions "directions" "Of rod directions and momenta, without sines.";
+        Textbook "textbook" "As `[math24]` prints them, nothing simplified: for comparison.";
+        Linear "linear" "Small oscillations: [`SmallOscillations`](crate::SmallOscillations).";
+    }
+}
+
+named! {
+    /// What is computed in.
+    Numbers {
+        F32 "f32" "Single precision.";
+        CompensatedF32 "compensated f32" "Sums carry the rounding error of each addition into the next.";
+        F64 "f64" "Double precision.";
+        CompensatedF64 "compensated f64" "Sums as above.";
+        Fixed32 "fixed32" "Fixed point of 32 bits.";
+        Fixed64 "fixed64" "Fixed point of 64 bits.";
+    }
+}
+
+named! {
+    /// How a step is made.
+    Integrator {
+        Rk4 "RK4" "The classical Runge-Kutta method.";
+        Extrapolation "extrapolation" "W. B. Gragg's, of any even order.";
+        ClosedForm "closed form" "No steps at all: any time at once.";
+    }
+}
 
 macro_rules! methods {
     ($($(#[cfg($when:meta)])? $method:ident $name:literal $equations:ident $numbers:ident $integrator:ident $order:literal;)*) => {
@@ -126,36 +113,16 @@ impl Method {
         self.row().0
     }
 
-    /// What it integrates.
+    /// The method of this name.
     #[must_use]
-    #[doc(hidden)]
-    pub const fn equations(self) -> Equations {
-        self.row().1
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.iter().copied().find(|method| method.name() == name)
     }
+}
 
-    /// What it computes in.
-    #[must_use]
-    #[doc(hidden)]
-    pub const fn numbers(self) -> Numbers {
-        self.row().2
-    }
-
-    /// How it makes a step.
-    #[must_use]
-    #[doc(hidden)]
-    pub const fn integrator(self) -> Integrator {
-        self.row().3
-    }
-
-    /// The order of its steps; 0 for the closed form.
-    #[must_use]
-    #[doc(hidden)]
-    pub const fn order(self) -> u32 {
-        self.row().4
-    }
-
+#[doc(hidden)]
+impl Method {
     /// What a [plan](crate::plan) chooses from.
-    #[doc(hidden)]
     pub const DRAWN: &[Method] = &[
         Method::ClosedFormF32,
         Method::Rk4F32DirectionPlain,
@@ -164,22 +131,35 @@ impl Method {
         Method::Extrapolation10Fixed64,
     ];
 
-    /// The method of this name.
     #[must_use]
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.iter().copied().find(|method| method.name() == name)
+    pub const fn equations(self) -> Equations {
+        self.row().1
+    }
+
+    #[must_use]
+    pub const fn numbers(self) -> Numbers {
+        self.row().2
+    }
+
+    #[must_use]
+    pub const fn integrator(self) -> Integrator {
+        self.row().3
+    }
+
+    /// The order of its steps; 0 for the closed form.
+    #[must_use]
+    pub const fn order(self) -> u32 {
+        self.row().4
     }
 
     /// Whether its numbers are those of an `f32`.
     #[must_use]
-    #[doc(hidden)]
     pub const fn is_single(self) -> bool {
         matches!(self.numbers(), Numbers::F32 | Numbers::CompensatedF32)
     }
 
     /// Whether its numbers are integers.
     #[must_use]
-    #[doc(hidden)]
     pub const fn is_fixed_point(self) -> bool {
         matches!(self.numbers(), Numbers::Fixed32 | Numbers::Fixed64)
     }

@@ -9,9 +9,7 @@ use crate::scenes::SceneName;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(target_os = "none", derive(defmt::Format))]
 pub enum Command {
-    /// The next larger mass ratio.
     Heavier,
-    /// The next smaller mass ratio.
     Lighter,
     /// The start angle one step clockwise.
     TurnLeft,
@@ -56,7 +54,6 @@ choice! {
 }
 
 impl Key {
-    /// What a tap on it alone asks for.
     pub const fn tapped(self) -> Command {
         match self {
             Self::Up => Command::Heavier,
@@ -79,7 +76,6 @@ impl Key {
     }
 }
 
-/// A command that came as a message.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HostCommand {
     /// The number to answer it with.
@@ -88,46 +84,35 @@ pub struct HostCommand {
 }
 
 impl HostCommand {
-    /// The command in an intact message, or why there is none.
+    /// The command in an intact message, even one of unknown kind, or why there is none.
     pub fn read(kind: u8, fields: &[u8]) -> Result<Self, Refused> {
-        // Even one of unknown kind is answered.
-        let (request, command) = known(kind, fields).unwrap_or((request(fields), Err(Field::Message)));
-        command.map(|command| Self { request, command }).map_err(|field| Refused { request, field: field.code() })
+        let request = request(fields);
+        let refuse = |field: Field| Refused { request, field: field.code() };
+        read(kind, fields).map(|command| Self { request, command }).map_err(refuse)
     }
 }
 
-/// `None` if there is no such kind or the fields are not that kind's.
-fn known(kind: u8, fields: &[u8]) -> Option<(u16, Result<Command, Field>)> {
-    Some(match kind {
+fn read(kind: u8, fields: &[u8]) -> Result<Command, Field> {
+    fn all<M: Message>(fields: &[u8]) -> Result<M, Field> {
+        M::read(fields).ok_or(Field::Message)
+    }
+    Ok(match kind {
         Set::KIND => {
-            let Set { request, field, value } = Message::read(fields)?;
-            let field = Field::from_code(field).ok_or(Field::Field);
-            (request, field.map(|field| Command::Set { field, value }))
+            let Set { field, value, .. } = all(fields)?;
+            Command::Set { field: Field::from_code(field).ok_or(Field::Field)?, value }
         }
-        Choose::KIND => {
-            let Choose { request, scene } = Message::read(fields)?;
-            (request, SceneName::from_code(scene).map(Command::Choose).ok_or(Field::Scene))
-        }
-        Pause::KIND => {
-            let Pause { request, paused } = Message::read(fields)?;
-            (request, Ok(Command::Pause(paused != 0)))
-        }
-        Step::KIND => {
-            let Step { request, ticks } = Message::read(fields)?;
-            (request, Ok(Command::Step(ticks)))
-        }
-        Press::KIND => {
-            let Press { request, key } = Message::read(fields)?;
-            (request, Key::from_code(key).map(Key::tapped).ok_or(Field::Key))
-        }
+        Choose::KIND => Command::Choose(SceneName::from_code(all::<Choose>(fields)?.scene).ok_or(Field::Scene)?),
+        Pause::KIND => Command::Pause(all::<Pause>(fields)?.paused != 0),
+        Step::KIND => Command::Step(all::<Step>(fields)?.ticks),
+        Press::KIND => Key::from_code(all::<Press>(fields)?.key).ok_or(Field::Key)?.tapped(),
         Measure::KIND => {
-            let Measure { request, steps, in_ram } = Message::read(fields)?;
-            (request, Ok(Command::Measure { steps, in_ram: in_ram != 0 }))
+            let Measure { steps, in_ram, .. } = all(fields)?;
+            Command::Measure { steps, in_ram: in_ram != 0 }
         }
-        Restart::KIND => (Restart::read(fields)?.request, Ok(Command::Restart)),
-        Ask::KIND => (Ask::read(fields)?.request, Ok(Command::Ask)),
-        AskPlan::KIND => (AskPlan::read(fields)?.request, Ok(Command::AskPlan)),
-        Identify::KIND => (Identify::read(fields)?.request, Ok(Command::Identify)),
-        _ => return None,
+        Restart::KIND => all::<Restart>(fields).map(|_| Command::Restart)?,
+        Ask::KIND => all::<Ask>(fields).map(|_| Command::Ask)?,
+        AskPlan::KIND => all::<AskPlan>(fields).map(|_| Command::AskPlan)?,
+        Identify::KIND => all::<Identify>(fields).map(|_| Command::Identify)?,
+        _ => return Err(Field::Message),
     })
 }

@@ -18,7 +18,6 @@ pub trait Buttons {
     fn read(&mut self) -> Pressed;
 }
 
-/// For a board without buttons.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NoButtons;
 

@@ -37,13 +37,11 @@ pub use warm_restart::{Cause, Journal, Kept, LastShown, MOST_RESTARTS, SOUND_FRA
 #[derive(Debug)]
 pub struct App<'a, Panel, Link, Keys> {
     panel: Panel,
-    /// The byte sink.
     pub link: Link,
     keys: Keys,
     controls: Controls,
     pub player: Player<'a>,
     service: Service,
-    /// The last frame drawn.
     pub canvas: &'a mut Canvas,
     /// Ticks done since reset.
     ticks: u32,
@@ -51,11 +49,8 @@ pub struct App<'a, Panel, Link, Keys> {
     pub frames: u32,
     /// Ticks without a frame since reset.
     dropped: ThrottledCounter,
-    /// Damaged messages since reset.
     damaged: ThrottledCounter,
-    /// Received bytes lost since reset.
     lost: ThrottledCounter,
-    /// What was wrong with the last of the damaged messages.
     last_damage: Option<LinkError>,
     panel_failing: FaultEdge,
     link_failing: FaultEdge,
@@ -111,7 +106,6 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         }
     }
 
-    /// Plays the first scene, from its start.
     pub fn begin(&mut self) -> Result<(), Error> {
         self.player.play(SceneName::Page, *self.player.settings())
     }

@@ -12,7 +12,6 @@ const HELD: [Command; 5] =
 pub struct OneButton {
     /// Ticks that it has been held alone; `None` if it is not, or has served for something else.
     held: Option<u8>,
-    /// It has asked for something since it was pressed.
     served: bool,
     taps: usize,
     /// Ticks since the last of them.

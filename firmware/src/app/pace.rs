@@ -9,7 +9,6 @@ const WHOLE_TICK: u32 = 100;
 #[derive(Clone, Copy, Debug)]
 pub struct Pace {
     paused: bool,
-    /// Ticks to do although paused.
     steps: u32,
     /// Ticks of the scene in [`WHOLE_TICK`] ticks of the clock.
     speed: u32,
@@ -24,7 +23,6 @@ impl Default for Pace {
 }
 
 impl Pace {
-    /// At the `speed` that a status told.
     pub fn resumed(paused: bool, steps: u32, speed: f32) -> Self {
         let speed = ((speed * WHOLE_TICK as f32 + 0.5) as u32).clamp(1, GREATEST_SPEED as u32 * WHOLE_TICK);
         Self { paused, steps, speed, part: 0 }
@@ -34,7 +32,6 @@ impl Pace {
         self.paused
     }
 
-    /// Ticks that are still to do although it is paused.
     pub fn steps(&self) -> u32 {
         self.steps
     }
@@ -61,7 +58,6 @@ impl Pace {
         (self.paused, self.steps) = (paused, 0);
     }
 
-    /// Pauses, but first does so many ticks.
     pub fn step(&mut self, ticks: u32) {
         (self.paused, self.steps) = (true, ticks);
     }

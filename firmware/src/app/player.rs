@@ -21,7 +21,6 @@ pub enum News {
     Shown(Way, f32),
 }
 
-/// A scene under way.
 #[derive(Debug)]
 pub struct Player<'a> {
     name: SceneName,
@@ -33,7 +32,6 @@ pub struct Player<'a> {
     next: Option<CatchingUp>,
     ink: &'a mut FadeLayer,
     pace: Pace,
-    /// As of the last check.
     report: Report,
     /// The motion has left the finite numbers.
     stopped: bool,
@@ -148,7 +146,6 @@ impl<'a> Player<'a> {
         !self.is_paused() && self.next.is_none() && self.planner.work_ahead()
     }
 
-    /// The answer to [`Command::AskPlan`].
     pub fn plan(&self, request: u16) -> Planned {
         self.planner.answer(request)
     }
@@ -197,7 +194,6 @@ impl<'a> Player<'a> {
         &self.settings
     }
 
-    /// The scene in numbers, as of the last check.
     pub fn report(&self) -> Report {
         self.report
     }
@@ -227,7 +223,6 @@ impl<'a> Player<'a> {
         }
     }
 
-    /// The answer to [`Command::Ask`].
     pub fn status(&self, request: u16) -> Status {
         let Settings { parameters, degrees, velocities } = self.settings;
         let Report { horizon, is_looking, way, .. } = self.report;

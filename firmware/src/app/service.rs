@@ -29,7 +29,6 @@ pub struct Service {
 #[derive(Debug)]
 struct Work {
     request: u16,
-    /// Samples given so far.
     index: u32,
     job: Job,
 }

@@ -6,9 +6,7 @@ use crate::config::TICK_RATE;
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct ThrottledCounter {
     total: u32,
-    /// The total when last said.
     said: u32,
-    /// The tick when last said.
     tick: u32,
 }
 

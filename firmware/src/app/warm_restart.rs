@@ -32,7 +32,6 @@ choice! {
     }
 }
 
-/// What was kept across a reset.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WarmRestart {
     /// What was played; `None` if it has been tried [often enough](MOST_RESTARTS).
@@ -69,7 +68,6 @@ pub fn read<M: Message>(kept: &Kept) -> Option<M> {
 /// What is kept after each frame, in case it is the last.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Journal {
-    /// What is kept as played.
     played: Option<Status>,
     /// In a row, so far.
     restarts: u8,
@@ -78,7 +76,6 @@ pub struct Journal {
 }
 
 impl Journal {
-    /// Of a board that starts with this.
     pub fn new(restart: Option<&WarmRestart>) -> Self {
         Self { restarts: restart.map_or(0, |restart| restart.end.restarts), ..Self::default() }
     }
@@ -96,7 +93,6 @@ impl Journal {
     }
 }
 
-/// What was shown last, in words.
 #[derive(Clone, Copy, Debug)]
 pub struct LastShown(pub Option<Restarted>);
 

@@ -9,7 +9,6 @@ use core::mem::MaybeUninit;
 use cortex_m_semihosting::debug;
 
 unsafe extern "C" {
-    /// The end of the statics.
     static __euninit: u8;
 }
 

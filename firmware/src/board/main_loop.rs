@@ -20,12 +20,9 @@ use crate::motion::Settings;
 use crate::protocol::BoardName;
 use crate::scenes::SceneName;
 
-/// A board, set up and running.
 pub struct Board<Panel, Link, Keys, Dog> {
     pub panel: Panel,
-    /// The serial link outwards.
     pub link: Link,
-    /// The serial link inwards.
     pub receiver: Receiver,
     pub keys: Keys,
     pub instruments: Instruments,
@@ -35,9 +32,7 @@ pub struct Board<Panel, Link, Keys, Dog> {
     pub reset_by_watchdog: bool,
 }
 
-/// The type of a board's application.
 pub trait Plays {
-    /// See [`App`].
     type Application;
 }
 
@@ -72,13 +67,27 @@ impl<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons, Dog: Watchdog> Bo
         let Self { panel, link, receiver, keys, instruments, clock, watchdog, reset_by_watchdog } = self;
         let name = BoardName::from_code(instruments.identity.board).map_or("", BoardName::name);
         defmt::info!("boot: {=str}, {} Hz", name, instruments.identity.hertz);
-        let app = place.write(App::idle(processor, Settings::default(), buffers, panel, link, keys));
-        if let Err(error) = app.begin() {
-            defmt::error!("{}", error);
-            panic!("the first settings describe no pendulum")
-        }
+        let app = application(place, buffers, panel, link, keys, processor);
         run(app, receiver, instruments, clock, watchdog, reset_by_watchdog)
     }
+}
+
+/// Never inlined: what it takes to make the application would be on the stack as long as that runs.
+#[inline(never)]
+fn application<'a, Panel: Display, Link: Write, Keys: Buttons>(
+    place: &'a mut MaybeUninit<App<'a, Panel, Link, Keys>>,
+    buffers: &'a mut FrameBuffers,
+    panel: Panel,
+    link: Link,
+    keys: Keys,
+    processor: Processor,
+) -> &'a mut App<'a, Panel, Link, Keys> {
+    let app = place.write(App::idle(processor, Settings::default(), buffers, panel, link, keys));
+    if let Err(error) = app.begin() {
+        defmt::error!("{}", error);
+        panic!("the first settings describe no pendulum")
+    }
+    app
 }
 
 /// Runs the application for ever; between ticks it works for the host, or sleeps.

@@ -7,7 +7,6 @@ use embedded_hal::i2c::ErrorKind;
 
 use crate::display::{Outbox, PanelBus, Sent};
 
-/// The chip's side of it.
 pub trait PanelPort {
     /// Begins a message to this address; the interrupt does the rest.
     fn begin(&mut self, address: u8);

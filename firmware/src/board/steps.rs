@@ -8,7 +8,6 @@ use crate::job::{OnBoards, Run};
 unsafe extern "C" {
     /// Where the linker has taken them to stand: in one of the two places.
     static __steps_start: u8;
-    /// The two places.
     static __steps_flash: u8;
     static __steps_ram: u8;
 }

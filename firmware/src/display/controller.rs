@@ -22,7 +22,6 @@ pub enum By {
     Build,
 }
 
-/// A panel that answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Found {
     pub controller: Controller,
@@ -30,7 +29,6 @@ pub struct Found {
 }
 
 impl Found {
-    /// A panel that does not tell.
     pub const SILENT: Self = Self { controller: Controller::Ssd1306, by: By::Silence };
 
     /// A panel of this status: what the lower half says, for the upper one says whether it is on.

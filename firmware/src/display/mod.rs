@@ -31,7 +31,6 @@ pub trait Display {
     }
 }
 
-/// For a board without a panel.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NoDisplay;
 

@@ -31,7 +31,6 @@ pub struct OutByte {
 }
 
 impl Outbox {
-    /// Without messages or an address.
     pub const fn new() -> Self {
         Self { address: 0, messages: Vec::new(), at: 0, left: 0, asks: false, status: 0 }
     }
@@ -58,17 +57,14 @@ impl Outbox {
         self.asks = true;
     }
 
-    /// Whether it is still to be read.
     pub fn asks(&self) -> bool {
         self.asks
     }
 
-    /// Takes what was read.
     pub fn answer(&mut self, status: u8) {
         (self.asks, self.status) = (false, status);
     }
 
-    /// What was read.
     pub fn status(&self) -> u8 {
         self.status
     }
@@ -82,7 +78,6 @@ impl Outbox {
         self.messages.len()
     }
 
-    /// Whether all messages have gone out.
     pub fn is_empty(&self) -> bool {
         self.at == self.messages.len()
     }

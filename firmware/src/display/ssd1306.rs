@@ -24,7 +24,6 @@ const COMMAND: u8 = 0x00;
 /// First byte of a message: bytes for the window follow.
 const DATA: u8 = 0x40;
 
-/// Switches the panel off.
 const OFF: &[u8] = &[0xAE];
 /// What wakes either, one command a row.
 #[rustfmt::skip]
@@ -48,7 +47,6 @@ const SSD1306: &[u8] = &[0x8D, 0x14, 0x20, 0x02, 0x2E];
 const SH1106: &[u8] = &[0xAD, 0x8B];
 /// Columns of the SH1106's 132 that are left of the panel's 128.
 const SH1106_LEFT: u8 = 2;
-/// Switches it on.
 const ON: &[u8] = &[0xAF];
 /// Frames between two tries of a panel that does not answer: 1 s.
 const RETRY: u32 = TICK_RATE;
@@ -63,7 +61,6 @@ const PATIENCE: u32 = 6;
 /// Columns that are better sent again than left out: to address what comes after them takes as many bytes.
 const GAP: usize = 7;
 
-/// Why a frame did not reach the panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ssd1306Error {
     /// No panel answers at either address; what the bus said.
@@ -259,7 +256,6 @@ fn draw(outbox: &mut Outbox, controller: Controller, memory: Option<&Bitmap>, fr
     }
 }
 
-/// Sends these columns of a page.
 fn write(outbox: &mut Outbox, controller: Controller, frame: &Bitmap, page: usize, columns: Range<usize>) {
     let first = columns.start as u8 + if controller == Controller::Sh1106 { SH1106_LEFT } else { 0 };
     outbox.put(COMMAND, &[0xB0 | page as u8, first & 0x0F, 0x10 | first >> 4]);

@@ -2,9 +2,7 @@
 
 use crate::graphics::{Canvas, HEIGHT, Row, WIDTH};
 
-/// Rows that share a byte.
 const ROWS: usize = 8;
-/// Pages of eight rows.
 pub const PAGES: usize = HEIGHT / ROWS;
 
 /// Bayer's matrix: the order in which the pixels of a square of 4 x 4 are lit as it becomes brighter.
@@ -47,14 +45,12 @@ pub struct Bitmap {
 }
 
 impl Default for Bitmap {
-    /// All dark.
     fn default() -> Self {
         Self { pages: [[0; WIDTH]; PAGES] }
     }
 }
 
 impl From<&Canvas> for Bitmap {
-    /// Eight pixels at once.
     fn from(canvas: &Canvas) -> Self {
         let mut bitmap = Self::default();
         let [drawing, picture] = &ROOM;

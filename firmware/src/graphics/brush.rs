@@ -4,7 +4,6 @@ use core::ops::Range;
 
 use crate::graphics::{Canvas, HEIGHT, WIDTH};
 
-/// Subpixels in a pixel.
 pub const SUBPIXELS: i32 = 1 << SHIFT;
 const SHIFT: u32 = 6;
 const HALF: i32 = SUBPIXELS / 2;
@@ -110,7 +109,6 @@ fn pixels([a, b]: [i16; 2], limit: i32, size: usize) -> Range<i32> {
     first.max(0)..(last + 1).min(size as i32)
 }
 
-/// The middle of a pixel, subpixels.
 fn middle(pixel: i32) -> i32 {
     pixel * SUBPIXELS + HALF
 }
@@ -188,7 +186,6 @@ impl Line {
         }
     }
 
-    /// From the line's start to the middle of a pixel.
     fn to(&self, x: i32, y: i32) -> (i32, i32) {
         (middle(x) - i32::from(self.from.x), middle(y) - i32::from(self.from.y))
     }
@@ -198,7 +195,6 @@ impl Line {
         Probe { progress: dot(self.along, to), across: self.along.0 * to.1 - self.along.1 * to.0 }
     }
 
-    /// To the pixel on the right.
     #[inline]
     fn advance(&self, probe: &mut Probe) {
         probe.progress += self.along.0 * SUBPIXELS;

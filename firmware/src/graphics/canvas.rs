@@ -1,10 +1,7 @@
 //! The frame: 128 x 64 pixels of 16 greys, in the layout the panel itself uses.
 
-/// Pixels across.
 pub const WIDTH: usize = 128;
-/// Pixels down.
 pub const HEIGHT: usize = 64;
-/// Bytes of a row.
 const ROW: usize = WIDTH / 2;
 
 /// A row of pixels from the left, two in a byte: the high nibble is the left one. It stands at a word's boundary, so that it is
@@ -104,7 +101,6 @@ impl Canvas {
         }
     }
 
-    /// As [`Row::lighten`].
     #[inline]
     pub fn lighten(&mut self, x: i32, y: i32, grey: u8) {
         if let Some(row) = self.row_mut(y) {
@@ -137,7 +133,6 @@ impl Canvas {
 }
 
 impl Row {
-    /// As [`Canvas::update`].
     #[inline]
     pub fn update(&mut self, x: i32, new: impl FnOnce(u8) -> u8) {
         if let Some(pair) = self.0.get_mut((x >> 1) as usize) {

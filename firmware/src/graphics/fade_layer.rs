@@ -12,7 +12,6 @@ pub struct Fading {
 }
 
 impl Fading {
-    /// Not at all.
     pub const NEVER: Self = Self { rows: 0, last: 15 };
     /// A trace that stays: it loses a grey in about a second.
     pub const TRACE: Self = Self { rows: 1, last: 4 };
@@ -21,7 +20,6 @@ impl Fading {
 #[derive(Clone, Debug)]
 pub struct FadeLayer {
     frame: Canvas,
-    /// The row that fades next.
     row: i32,
 }
 

@@ -7,7 +7,6 @@ pub type Label = String<16>;
 
 /// The names of both angles, and of both frequencies, the fast one first.
 pub const ANGLES: [&str; 2] = ["α₁", "α₂"];
-/// See [`ANGLES`].
 pub const FREQUENCIES: [&str; 2] = ["ω₁", "ω₂"];
 
 /// The mass ratio to three significant digits: `μ 100`, `μ 31.5`, `μ 2.75`, `μ 0.315`, `μ 0.0125`.

@@ -2,7 +2,6 @@
 
 use crate::graphics::{Canvas, HEIGHT, SUBPIXELS};
 
-/// Half the thickness of a curve, subpixels.
 const HALF_THICKNESS: i32 = 38;
 
 /// A height on the frame: subpixels down from the top edge.
@@ -79,7 +78,6 @@ pub fn scale_step(least: f32) -> f32 {
 /// The last `COLUMNS` values of a curve, scrolling.
 #[derive(Clone, Debug)]
 pub struct Strip<const COLUMNS: usize> {
-    /// The newest last.
     columns: [Height; COLUMNS],
     written: usize,
 }
@@ -91,13 +89,11 @@ impl<const COLUMNS: usize> Default for Strip<COLUMNS> {
 }
 
 impl<const COLUMNS: usize> Strip<COLUMNS> {
-    /// Adds the newest column.
     pub fn push(&mut self, height: Height) {
         self.columns.iter_mut().rev().fold(height, |newer, place| core::mem::replace(place, newer));
         self.written = COLUMNS.min(self.written + 1);
     }
 
-    /// The columns from the oldest to the newest.
     pub fn oldest_first(&self) -> impl Iterator<Item = Height> {
         self.columns.iter().copied().skip(COLUMNS.saturating_sub(self.written))
     }

@@ -8,9 +8,7 @@ const GREY: u8 = 11;
 const MARGIN: i32 = 1;
 const RIGHT: i32 = WIDTH as i32 - 1 - MARGIN;
 
-/// Height of a line, pixels.
 pub const LINE: i32 = 8;
-/// The top of the lowest line.
 pub const LOWEST: i32 = HEIGHT as i32 - MARGIN - LINE;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,7 +39,6 @@ pub fn write_over(canvas: &mut Canvas, text: &str, anchor: Anchor) {
     put_on(canvas, text, anchor, [15, 0]);
 }
 
-/// Writes in one grey on a ground of another.
 fn put_on(canvas: &mut Canvas, text: &str, anchor: Anchor, [ink, ground]: [u8; 2]) {
     let width = width(text);
     let (left, top) = corner(anchor, text);
@@ -56,7 +53,6 @@ fn width(text: &str) -> i32 {
     text.chars().map(|character| glyph(character).width).sum()
 }
 
-/// Where the top left corner of a text goes.
 fn corner(anchor: Anchor, text: &str) -> (i32, i32) {
     // The last character's gap may lie in the margin.
     let right = || RIGHT + 2 - width(text);
@@ -71,7 +67,6 @@ fn corner(anchor: Anchor, text: &str) -> (i32, i32) {
     }
 }
 
-/// Writes in a grey on what is there.
 #[inline(never)]
 fn put(canvas: &mut Canvas, text: &str, (mut left, top): (i32, i32), grey: u8) {
     for Glyph { width, rows } in text.chars().map(glyph) {

@@ -30,13 +30,10 @@ impl Place {
         [Self { pivot: (29.5, 36.0), reach: 25.0 }, Self { pivot: (98.5, 36.0), reach: 25.0 }];
 }
 
-/// A pendulum's look at its place.
 #[derive(Clone, Copy, Debug)]
 pub struct View {
     pivot: (f32, f32),
-    /// The rods' lengths, pixels.
     rods: [f32; 2],
-    /// Bob radii, subpixels.
     radii: [u8; 2],
 }
 

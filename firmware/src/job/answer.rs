@@ -8,7 +8,6 @@ use double_pendulum::{Error, Method, Pendulum};
 use super::{OnBoards, Reading, Request, Run};
 use crate::protocol::Field;
 
-/// Why a request cannot be computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum JobError {
     NotOnBoards(Method),

@@ -7,7 +7,7 @@
 
 mod answer;
 mod counted;
-mod linear;
+mod drawn;
 mod reading;
 mod request;
 mod run;

@@ -15,7 +15,6 @@ pub struct Reading {
 }
 
 impl Reading {
-    /// Of a `state` of the `pendulum`.
     pub(super) fn new(pendulum: &Pendulum<f64>, state: State<f64>) -> Self {
         let Motion { w1, w2, .. } = pendulum.to_motion(&state);
         Self { state: state.into(), velocities: [w1, w2], energy: pendulum.energy(&state) }

@@ -13,13 +13,9 @@ use crate::protocol::{Field, MAX_FIELDS, Message, Simulate, method_code, method_
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Request {
     pub method: Method,
-    /// Masses, lengths and gravity.
     pub parameters: Parameters<f64>,
-    /// a1, a2 at the start, rad.
     pub angles: [f64; 2],
-    /// w1, w2 at the start, rad/s.
     pub velocities: [f64; 2],
-    /// Step size, s.
     pub dt: f64,
     /// Steps from one sample to the next.
     pub stride: u32,

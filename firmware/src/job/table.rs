@@ -6,11 +6,11 @@
 use double_pendulum::parts::{Canonical, Dimensionless, Stepper};
 use double_pendulum::trig::{Libm, Micromath};
 use double_pendulum::{
-    DirectionF32, DirectionF32Plain, DirectionF64Plain, ExtrapolationF64, Fixed32, Fixed64, HamiltonF32, HamiltonF64,
-    Method, Pendulum, State,
+    ClosedFormF64, DirectionF32, DirectionF32Plain, DirectionF64Plain, ExtrapolationF64, Fixed32, Fixed64, HamiltonF32,
+    HamiltonF64, Method, Pendulum, State,
 };
 
-use super::linear::{Drawn, Linear};
+use super::drawn::Drawn;
 use super::textbook::Textbook;
 use super::{JobError, Reading, Request, Run, answer, counted};
 
@@ -22,7 +22,6 @@ macro_rules! table {
         /// The methods that every board's application links, the default first.
         pub const ON_BOARDS: &[Method] = &[$(Method::$method),*];
 
-        /// A motion by any of them.
         #[derive(Clone, Copy, Debug)]
         pub enum OnBoards { $(#[doc = concat!("[`Method::", stringify!($method), "`]")] $method($run),)* }
 
@@ -89,7 +88,7 @@ table! {
         Extrapolation10Fixed64: Stepper<Fixed64<10>>;
         Extrapolation12Fixed64: Stepper<Fixed64<12>>;
         Extrapolation16Fixed64: Stepper<Fixed64<16>>;
-        ClosedFormF64: Linear<f64>;
+        ClosedFormF64: Stepper<ClosedFormF64>;
     }
     elsewhere {
         ClosedFormF32: Drawn;

@@ -5,9 +5,7 @@ use double_pendulum::{Error, Parameters, Real};
 
 /// Sine and cosine as two routines of the `libm` crate, as the page calls them.
 pub trait Separate: Real {
-    /// The sine of an angle in rad.
     fn sin(self) -> Self;
-    /// The cosine of an angle in rad.
     fn cos(self) -> Self;
 }
 

@@ -18,7 +18,6 @@ use crate::graphics::RodDirections;
 /// that no step here resolves it. Plain `f32` is right to half a pixel at figure 7 for 10 s (test `misprint`).
 #[derive(Clone, Copy, Debug)]
 pub struct Misprinted {
-    /// mu.
     mass_ratio: f32,
     /// G, 1/s^2.
     gravity: f32,

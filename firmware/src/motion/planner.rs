@@ -26,7 +26,6 @@ pub type Finding = Result<Plan, PlanError>;
 #[derive(Clone, Copy, Debug)]
 pub struct Planner {
     processor: Processor,
-    /// Ticks of the scene.
     ticks: u64,
     task: Option<(Problem, Shown)>,
     search: Option<Search>,
@@ -42,7 +41,6 @@ pub struct Planner {
 }
 
 impl Planner {
-    /// For a class of processors; nothing to do yet.
     pub fn new(processor: Processor) -> Self {
         Self {
             processor,
@@ -189,7 +187,6 @@ impl Planner {
         Ok(())
     }
 
-    /// What has been found, as an answer.
     pub fn answer(&self, request: u16) -> Planned {
         let Some((problem, Shown { height, .. })) = &self.task else {
             return Planned { request, ..Planned::default() };
@@ -223,7 +220,6 @@ impl Planner {
 /// Longer than anything is played, s: four months.
 const FOR_EVER: f64 = 1e7;
 
-/// What the kernel is asked to plan.
 pub fn problem(settings: &Settings, shown: &Shown) -> Problem {
     let pendulum = settings.parameters.cast();
     Problem {

@@ -8,7 +8,6 @@ use crate::config::{ANGLE_STEP, FIRST_ANGLE, FIRST_MASS_RATIO, GRAVITY, GREATEST
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(target_os = "none", derive(defmt::Format))]
 pub struct Settings {
-    /// Masses, lengths, gravity.
     pub parameters: Parameters<f32>,
     /// Start angles of rod 1 and rod 2, degrees from the downward vertical.
     pub degrees: [f32; 2],
@@ -16,7 +15,6 @@ pub struct Settings {
     pub velocities: [f32; 2],
 }
 
-/// At power-on.
 impl Default for Settings {
     fn default() -> Self {
         Self::equal_rods(FIRST_MASS_RATIO, FIRST_ANGLE)
@@ -68,7 +66,6 @@ impl Settings {
         Pendulum::new(&self.parameters)
     }
 
-    /// Where it starts, by angles and angular velocities.
     pub fn motion(&self) -> Motion<f32> {
         let ([a1, a2], [w1, w2]) = (self.angles(), self.velocities);
         Motion { a1, a2, w1, w2 }

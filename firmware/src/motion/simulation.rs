@@ -102,7 +102,6 @@ impl Simulation {
         self.energy.error(pendulum.energy_at(self.directions(), [state.p1, state.p2]))
     }
 
-    /// What its energy is measured by.
     pub fn energy(&self) -> &Energy {
         &self.energy
     }
@@ -147,7 +146,6 @@ impl CatchingUp {
 #[derive(Clone, Debug)]
 pub struct Energy {
     pendulum: Pendulum<f32>,
-    /// J.
     start: f32,
 }
 
@@ -157,7 +155,6 @@ impl Energy {
         Self { pendulum, start }
     }
 
-    /// The equations of motion it belongs to.
     pub fn pendulum(&self) -> &Pendulum<f32> {
         &self.pendulum
     }

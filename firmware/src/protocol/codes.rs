@@ -6,7 +6,6 @@ use double_pendulum::plan::Limit;
 use super::choice::choice;
 
 choice! {
-    /// A board that the firmware is built for.
     BoardName {
         /// Stellaris' evaluation board.
         Lm3s6965evb = 0, "lm3s6965evb";

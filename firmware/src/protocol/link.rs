@@ -60,7 +60,6 @@ pub fn frame<'wire>(kind: u8, fields: &[u8], wire: &'wire mut [u8; MAX_WIRE]) ->
     wire.get(..=end).unwrap_or_default()
 }
 
-/// Why received bytes are not a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(target_os = "none", derive(defmt::Format))]
 pub enum LinkError {
@@ -68,7 +67,6 @@ pub enum LinkError {
     TooLong,
     /// Not a COBS encoding, or shorter than the shortest message.
     Malformed,
-    /// The CRC does not match.
     Checksum,
     /// The sender speaks another version.
     Version(u8),

@@ -3,12 +3,9 @@
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-/// The most bytes that a message's fields may take.
 pub const MAX_FIELDS: usize = 96;
 
-/// A message.
 pub trait Message: Serialize + DeserializeOwned {
-    /// Tells it from the other messages.
     const KIND: u8;
 
     /// Reads the fields; `None` unless `bytes` holds just these.
@@ -27,9 +24,9 @@ pub fn request(bytes: &[u8]) -> u16 {
     postcard::take_from_bytes(bytes).map_or(0, |(request, _)| request)
 }
 
-/// Declares a message: `Name = kind { field: type, ... }`.
-macro_rules! message {
-    ($(#[$doc:meta])* $name:ident = $kind:literal { $($(#[$field_doc:meta])* $field:ident: $type:ty,)* }) => {
+/// Declares messages: `Name = kind { field: type, ... }`.
+macro_rules! messages {
+    ($($(#[$doc:meta])* $name:ident = $kind:literal { $($(#[$field_doc:meta])* $field:ident: $type:ty,)* })*) => {$(
         $(#[$doc])*
         #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
         pub struct $name { $($(#[$field_doc])* pub $field: $type,)* }
@@ -37,20 +34,20 @@ macro_rules! message {
         impl $crate::protocol::Message for $name {
             const KIND: u8 = $kind;
         }
-    };
+    )*};
 }
 
-/// Declares a command or an answer: a message that begins with a number.
+/// Declares commands or answers: messages that begin with a number.
 macro_rules! numbered {
-    ($(#[$doc:meta])* $name:ident = $kind:literal { $($fields:tt)* }) => {
-        $crate::protocol::message::message! {
+    ($($(#[$doc:meta])* $name:ident = $kind:literal { $($fields:tt)* })*) => {
+        $crate::protocol::message::messages! {$(
             $(#[$doc])* $name = $kind {
                 /// Chosen by the host; every answer repeats it.
                 request: u16,
                 $($fields)*
             }
-        }
+        )*}
     };
 }
 
-pub(super) use {message, numbered};
+pub(super) use {messages, numbered};

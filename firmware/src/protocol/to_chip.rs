@@ -20,9 +20,6 @@ numbered! {
         /// Samples after the one at the start.
         samples: u32,
     }
-}
-
-numbered! {
     /// Set one parameter and start again with it. Speed does not start again.
     Set = 0x82 {
         /// What to set, by its [`code`](super::Field::code).
@@ -30,60 +27,33 @@ numbered! {
         /// In SI units.
         value: f64,
     }
-}
-
-numbered! {
     /// Play a scene with the settings that are its own.
     Choose = 0x83 {
         /// The scene, by its [`code`](crate::scenes::SceneName::code).
         scene: u8,
     }
-}
-
-numbered! {
     /// Start again with the same settings.
     Restart = 0x84 {}
-}
-
-numbered! {
     /// Stop the scene's time, or let it go on.
     Pause = 0x85 {
         /// 0: go on; any other: stop.
         paused: u8,
     }
-}
-
-numbered! {
     /// Let the scene do so many ticks, one in each tick of the clock, then stop.
     Step = 0x86 {
         ticks: u32,
     }
-}
-
-numbered! {
     /// Say what is played.
     Ask = 0x87 {}
-}
-
-numbered! {
     /// Say what the plan of the scene is, as far as it is found.
     AskPlan = 0x88 {}
-}
-
-numbered! {
     /// Do what a tap on one button asks for, as the keys of a host's terminal do.
     Press = 0x89 {
         /// The button, by its [`code`](crate::app::Key::code).
         key: u8,
     }
-}
-
-numbered! {
     /// Say what you are.
     Identify = 0x8A {}
-}
-
-numbered! {
     /// Go on with the motion asked for last, so many steps at once and with interrupts off, and say how long they took. At most
     /// [`MOST_MEASURED_STEPS`](crate::config::MOST_MEASURED_STEPS) are made.
     Measure = 0x8B {

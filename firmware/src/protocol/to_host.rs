@@ -1,8 +1,8 @@
 //! What a board sends: a frame after each that it has drawn, and answers.
 
-use super::message::{message, numbered};
+use super::message::{messages, numbered};
 
-message! {
+messages! {
     /// One drawn frame, sent as soon as it is on the panel.
     Frame = 0x01 {
         /// Drawn frames since reset; a gap is a frame lost on the way, unless the board has [`Restarted`].
@@ -42,6 +42,24 @@ message! {
         /// The same for all of the frame before, sending it to the panel and over the link included.
         busy_cycles: u32,
     }
+    /// The board has restarted by itself and plays on, from the start of its scene. The frames after it are counted from 0 again.
+    /// What is said of the program and the scene is how things stood before.
+    Restarted = 0x08 {
+        /// Why, by its [`code`](crate::app::warm_restart::Cause::code).
+        cause: u8,
+        /// Restarts in a row, this one included; the board forgets them after a minute without one.
+        restarts: u8,
+        /// Where the program was, as far as that could be found out, else 0.
+        pc: u32,
+        /// Where it would have returned to, likewise.
+        lr: u32,
+        /// The processor's Configurable Fault Status Register.
+        cfsr: u32,
+        /// The scene that was shown, by its [`code`](crate::scenes::SceneName::code).
+        scene: u8,
+        /// The integration step of the last frame shown; its low 32 bits, as in a frame.
+        step: u32,
+    }
 }
 
 numbered! {
@@ -55,22 +73,13 @@ numbered! {
         /// The energy, J; zero potential at the pivot.
         energy: f64,
     }
-}
-
-numbered! {
     /// The request cannot be computed, or not to its end, or the command not executed; nothing was changed.
     Refused = 0x03 {
         /// The field that is wrong, by its [`code`](super::Field::code).
         field: u8,
     }
-}
-
-numbered! {
     /// The command has been executed.
     Done = 0x04 {}
-}
-
-numbered! {
     /// What is played, and from what start.
     Status = 0x05 {
         /// The scene, by its [`code`](crate::scenes::SceneName::code).
@@ -103,17 +112,11 @@ numbered! {
         /// 1 if that is a lower bound so far, else 0.
         is_looking: u8,
     }
-}
-
-numbered! {
     /// The motion asked for follows, but its step is too long to resolve every motion of its energy.
     StepTooLong = 0x06 {
         /// The longest step that would, s.
         admissible_step: f64,
     }
-}
-
-numbered! {
     /// The plan of the scene. What is not found yet is 0.
     Planned = 0x07 {
         /// 0: there is nothing to plan, no motion is shown or the kernel refuses it; 1: the search is under way; 2: the
@@ -145,30 +148,6 @@ numbered! {
         /// What planning may cost, cycles.
         planning_budget: f32,
     }
-}
-
-message! {
-    /// The board has restarted by itself and plays on, from the start of its scene. The frames after it are counted from 0 again.
-    /// What is said of the program and the scene is how things stood before.
-    Restarted = 0x08 {
-        /// Why, by its [`code`](crate::app::warm_restart::Cause::code).
-        cause: u8,
-        /// Restarts in a row, this one included; the board forgets them after a minute without one.
-        restarts: u8,
-        /// Where the program was, as far as that could be found out, else 0.
-        pc: u32,
-        /// Where it would have returned to, likewise.
-        lr: u32,
-        /// The processor's Configurable Fault Status Register.
-        cfsr: u32,
-        /// The scene that was shown, by its [`code`](crate::scenes::SceneName::code).
-        scene: u8,
-        /// The integration step of the last frame shown; its low 32 bits, as in a frame.
-        step: u32,
-    }
-}
-
-numbered! {
     /// What the board is.
     Identity = 0x09 {
         /// The board, by its [`code`](super::BoardName::code).
@@ -183,9 +162,6 @@ numbered! {
         /// Bytes of that.
         image_bytes: u32,
     }
-}
-
-numbered! {
     /// How long steps took.
     Measured = 0x0A {
         steps: u32,

@@ -38,9 +38,7 @@ pub struct Beats {
     settings: Settings,
     simulation: Simulation,
     linear: SmallOscillations<f32>,
-    /// The slow mode's shape.
     shape: [f32; 2],
-    /// Pixels per radian.
     scale: f32,
     spots: [Spot; 2],
 }

@@ -42,7 +42,6 @@ pub struct Butterfly {
     first: Simulation,
     second: PlannedRun,
     view: View,
-    /// The bobs of both.
     bobs: [[Spot; 2]; 2],
     strip: Strip<PLOT_COLUMNS>,
 }

@@ -23,12 +23,10 @@ pub struct Figure7 {
     right: Simulation,
     misprinted: Misprinted,
     views: [View; 2],
-    /// The bobs of both pendulums.
     bobs: [[Spot; 2]; 2],
 }
 
 impl Figure7 {
-    /// Where the bobs of both pendulums are.
     fn places(&self) -> [[Spot; 2]; 2] {
         let [left_view, right_view] = &self.views;
         [left_view.spots(self.right.directions()), right_view.spots(self.misprinted.directions())]

@@ -99,7 +99,6 @@ impl Block {
         [angle(2 * x + 1 - WIDTH as i32, WIDTH), angle(HEIGHT as i32 - 1 - 2 * y, HEIGHT)]
     }
 
-    /// Paints it, and what lies opposite.
     #[inline(never)] // one copy
     fn paint(self, ink: &mut FadeLayer, grey: u8) {
         let map = ink.frame_mut();
@@ -130,7 +129,6 @@ impl Flips {
         Ok(Self { searching, pace, mass_ratio, unit, block, done: 0, ticks: 0, elapsed: 0 })
     }
 
-    /// Whether the map is finished.
     pub fn is_done(&self) -> bool {
         self.block.size == 0
     }

@@ -30,7 +30,6 @@ pub struct Frequencies {
     /// Pixels per sqrt(g/l).
     scale: f32,
     mass_ratio: f32,
-    /// At the mass ratio, fast and slow.
     marked: [f32; 2],
     ticks: u64,
     /// Columns of the curves drawn so far, and where they end.

@@ -33,7 +33,6 @@ macro_rules! catalogue {
             }
         }
 
-        /// A scene of the catalogue, playing.
         #[expect(clippy::large_enum_variant, reason = "without a heap there is nowhere else to keep it")]
         #[derive(Clone, Debug)]
         pub enum AnyScene { $($(#[$doc])* $row($scene),)* }

@@ -34,7 +34,6 @@ pub trait Scene: Sized {
     }
 }
 
-/// A scene in numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Report {
     pub step: u64,

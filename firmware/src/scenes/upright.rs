@@ -28,7 +28,6 @@ pub fn straight_up() -> Settings {
 #[derive(Clone, Debug)]
 pub struct Upright {
     plain: State<f32>,
-    /// Where its rods point.
     plain_directions: RodDirections,
     compensated: Run<DirectionF32>,
     energy: Energy,

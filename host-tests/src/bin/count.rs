@@ -158,7 +158,6 @@ impl Arguments {
     }
 }
 
-/// Titles and widths of the columns.
 const ROW: [(&str, usize); 9] = [
     ("method", 29),
     ("board", 16),

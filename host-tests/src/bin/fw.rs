@@ -70,7 +70,6 @@ fn execute(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     }
 }
 
-/// What can be run, and where.
 fn runnable() -> String {
     let boards = BOARDS.map(|board| format!("  {:16}{}, {} MHz", board.name, board.cpu, board.hertz / 1_000_000));
     format!(
@@ -84,7 +83,6 @@ fn set_up() -> Result<Toolchain, Refused> {
     toolchain::set_up().map(|(toolchain, _)| toolchain)
 }
 
-/// The names of the firmware's binaries, sorted.
 fn binaries() -> Vec<String> {
     let Ok(files) = fs::read_dir(toolchain::workspace().join("firmware/src/bin")) else { return Vec::new() };
     let stem = |file: fs::DirEntry| Some(file.path().file_stem()?.to_string_lossy().into_owned());

@@ -58,7 +58,6 @@ fn write_through(to: &Path, bytes: &[u8]) -> io::Result<()> {
     file.sync_all()
 }
 
-/// A folder that is an RP2040's drive.
 fn drive(folder: &str) -> Result<PathBuf, String> {
     let label = fs::read_to_string(Path::new(folder).join(LABEL));
     match label {

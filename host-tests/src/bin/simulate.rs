@@ -1,10 +1,10 @@
 //! `cargo simulate`: any motion as a table.
 
-use std::io::{self, BufWriter};
+use std::io::{self, BufWriter, Write};
 use std::process::ExitCode;
 
 use anyhow::Context;
-use host_tests::commands::simulate::{CsvRows, Plan, SimulateOptions, choose, list, on_board, plan};
+use host_tests::commands::simulate::{Plan, SimulateOptions, choose, header, list, on_board, plan, row};
 use host_tests::console::cli::{self, Refused, complain, say};
 use host_tests::console::progress::Bar;
 
@@ -17,21 +17,25 @@ fn run(options: &SimulateOptions) -> anyhow::Result<()> {
         return Ok(say(list())?);
     }
     let plan = planned(options).map_err(|error| Refused::because(format_args!("{error:#}")))?;
-    let output = BufWriter::new(io::stdout().lock());
-    let mut table = CsvRows::new(output, &plan, options);
-    let bar = Bar::start("rows", u64::from(plan.request.samples) + 1);
-    let mut row = |reading: &_| {
+    let mut output = BufWriter::new(io::stdout().lock());
+    let (bar, mut rows) = (Bar::start("rows", u64::from(plan.request.samples) + 1), 0);
+    let mut write = |reading: &_| {
         bar.advance(1);
-        table.row(reading)
+        if rows == 0 {
+            writeln!(output, "{}", header(options))?;
+        }
+        writeln!(output, "{}", row(&plan, options, rows, reading))?;
+        rows += 1;
+        Ok(())
     };
     let done = match options.place {
-        None => plan.request.readings(|reading| Ok(row(reading)?)),
-        Some(board) => on_board(&plan, board, row),
+        None => plan.request.readings(|reading| Ok(write(reading)?)),
+        Some(board) => on_board(&plan, board, write),
     };
     drop(bar);
     // The rows until then are right, and stay.
-    done.with_context(|| format!("after {} rows", table.rows()))?;
-    Ok(table.finish()?)
+    done.with_context(|| format!("after {rows} rows"))?;
+    Ok(output.flush()?)
 }
 
 /// The motion to compute; warnings about it go to stderr first.

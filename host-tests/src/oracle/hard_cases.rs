@@ -1,7 +1,6 @@
 //! The hard cases: motions that break a careless arithmetic, and how far off the direction form may be on them.
 
-use double_pendulum::Form;
-use double_pendulum::{Error, Parameter, Parameters, State};
+use double_pendulum::{Error, Form, Parameter, Parameters, State};
 
 use crate::oracle::trials::{Trial, largest_difference};
 
@@ -18,6 +17,13 @@ pub struct HardCase {
     pub floor: f64,
     /// The error of `f64` with the finest steps, at most, rad: the method's own.
     pub method: f64,
+    /// The error in fixed point of 32 and 64 bits below which a halved step need not be better, and within which the finest is, rad:
+    /// twice to four times what was measured, at most `floor` but with a heavy elbow and near the upright position. With a heavy elbow
+    /// the unit of time in 32 bits, which goes with the step, is half of what it may be (in steps a quarter longer the error is a third,
+    /// measured 2.8e-8). Near the upright position 2^-30 of a sine near 0 is more than an `f32` would lose; in 64 bits the roundings of
+    /// each step add up, for no sum is compensated. NaN: what is refused, for masses of too unlike a size, or because the light elbow
+    /// needs steps finer than any here.
+    pub fixed: [f64; 2],
     /// By how much halving the step may make a typical error grow.
     pub growth: f64,
     /// Why it is hard, and why the budgets are what they are.
@@ -40,6 +46,7 @@ const REGULAR: HardCase = HardCase {
     },
     spread: 1e-3,
     floor: 1.2e-8,
+    fixed: [2e-9, 2e-12],
     method: 1e-14,
     growth: 1.5,
     reason: "no chaos: what is left is the rounding of the evaluations, 6e-8 each, averaged over the steps",
@@ -66,6 +73,7 @@ pub const HARD_CASES: [HardCase; 11] = [
         name: "chaotic",
         trial: trial(parameters(EVEN, EVEN, G), [2.0, 2.0, 0.0, 0.0], 3.0),
         floor: 1.5e-7,
+        fixed: [3e-8, 3e-11],
         method: 1e-12,
         reason: "it turns over; a small error grows by 10 or more in 3 s",
         ..REGULAR
@@ -75,6 +83,7 @@ pub const HARD_CASES: [HardCase; 11] = [
         trial: trial(parameters(EVEN, EVEN, G), [NEAR_UPRIGHT, NEAR_UPRIGHT, 0.0, 0.0], 4.0),
         spread: -1e-5,
         floor: 6e-7,
+        fixed: [5e-5, 1e-8],
         method: 3e-12,
         growth: 15.0,
         reason: "179.9 degrees: a small error grows by e every 0.17 s while it falls",
@@ -83,6 +92,7 @@ pub const HARD_CASES: [HardCase; 11] = [
         name: "heavy elbow",
         trial: trial(parameters([1.0, 1e-3], EVEN, G), HALF, 2.0),
         floor: 6e-8,
+        fixed: [1.7e-7, 3e-11],
         reason: "mass ratio 1e-3: bob 2 hardly moves bob 1, whose momentum is a thousand times its own",
         ..REGULAR
     },
@@ -90,6 +100,7 @@ pub const HARD_CASES: [HardCase; 11] = [
         name: "far heavier elbow",
         trial: trial(parameters([1.0, 1e-6], EVEN, G), HALF, 2.0),
         floor: 8e-8,
+        fixed: [f64::NAN; 2],
         reason: "mass ratio 1e-6: near resonance, whose growth bob 1 alone limits",
         ..REGULAR
     },
@@ -97,6 +108,7 @@ pub const HARD_CASES: [HardCase; 11] = [
         name: "light elbow",
         trial: trial(parameters([1.0, 1e3], EVEN, G), HALF, 1.0),
         floor: 3e-6,
+        fixed: [f64::NAN, 5e-10],
         method: 1e-10,
         reason: "mass ratio 1e3: p1 - p2 cos D is a thousandth of its terms, and so are the digits left of it in f32",
         ..REGULAR
@@ -105,6 +117,7 @@ pub const HARD_CASES: [HardCase; 11] = [
         name: "rods 100:1",
         trial: trial(parameters(EVEN, [1.0, 0.01], G), HALF, 1.0),
         floor: 3e-7,
+        fixed: [3e-7, 4e-12],
         method: 1e-11,
         reason: "the short rod 2 swings seven times as fast as rod 1",
         ..REGULAR
@@ -113,6 +126,7 @@ pub const HARD_CASES: [HardCase; 11] = [
         name: "rods 1:100",
         trial: trial(parameters(EVEN, [0.01, 1.0], G), HALF, 1.0),
         floor: 2.5e-7,
+        fixed: [5e-8, 3e-12],
         method: 3e-10,
         reason: "the short rod 1 swings at 44 rad/s: a step of 2^-4 s is beyond the limit of stability",
         ..REGULAR
@@ -121,6 +135,7 @@ pub const HARD_CASES: [HardCase; 11] = [
         name: "no gravity",
         trial: trial(parameters(EVEN, EVEN, 0.0), [0.5, -0.5, 2.0, 1.0], 2.0),
         floor: 1.6e-8,
+        fixed: [4e-9, 3e-12],
         method: 2e-15,
         reason: "the unit of time is not that of gravity; at the floor in f64 too, a few roundings",
         ..REGULAR
@@ -129,6 +144,7 @@ pub const HARD_CASES: [HardCase; 11] = [
         name: "whirling",
         trial: trial(parameters(EVEN, EVEN, G), [0.0, 0.0, 150.0, 100.0], 1.0),
         floor: 3e-7,
+        fixed: [1e-7, 4e-12],
         method: 2e-9,
         reason: "50 rad/s: eight turns in the second",
         ..REGULAR
@@ -137,6 +153,7 @@ pub const HARD_CASES: [HardCase; 11] = [
         name: "far angles",
         trial: trial(parameters(EVEN, EVEN, G), [1000.0, -1000.0, 0.0, 0.0], 2.0),
         floor: 3e-8,
+        fixed: [7e-9, 6e-12],
         method: 1e-12,
         growth: 2.0,
         reason: "159 turns away: in a plain f32 the angle's last place is 6e-5 rad",

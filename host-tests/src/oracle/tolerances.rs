@@ -70,9 +70,6 @@ pub const FIGURE_7_ORDER_8: f64 = 1e-10;
 /// Models of a swing of 1e-4 rad after 1 s, rad: the cubic term of the linear one, (1e-4)^3 w t/16 (measured 1.8e-13).
 pub const SMALL_SWING: f64 = 1e-12;
 
-/// Regular motion in plain f32 with 256 steps per second after 10 s, rad: measured 2e-6, rounding walks at random.
-pub const PLAIN_SINGLE: f64 = 1e-5;
-
 /// The kernel against a known answer: growth of a small error times the errors made on the way.
 ///
 /// - Truncation: RK4 misses an oscillation of rate W by (W dt)^5/120 in each step, W being the larger of the fast normal
@@ -198,26 +195,6 @@ pub const FIXED_64: f64 = 1e-12;
 /// From 120/120 degrees after 17 s, 60 steps a second of order 12, rad: the goal (measured 1.0e-5, `f64` 1.6e-5): roundings,
 /// which have grown by 3e10.
 pub const FIXED_64_PAGE: f64 = 4e-5;
-
-/// The hard cases in fixed point of 32 and 64 bits: the error below which a halved step need not be better, and within
-/// which the finest is, rad. It is twice to four times what was measured, at most what compensated `f32` is held to but with a
-/// heavy elbow and near the upright position. With a heavy elbow the unit of time in 32 bits, which goes with the step, is half
-/// of what it may be (in steps a quarter longer the error is a third, measured 2.8e-8). Near the upright position 2^-30 of a sine near 0 is
-/// more than an `f32` would lose; in 64 bits the roundings of each step add up, for no sum is compensated. NaN: what is refused, for masses of
-/// too unlike a size, or because the light elbow needs steps finer than any here.
-pub const FIXED_FLOORS: [(&str, [f64; 2]); 11] = [
-    ("regular", [2e-9, 2e-12]),
-    ("chaotic", [3e-8, 3e-11]),
-    ("near-upright", [5e-5, 1e-8]),
-    ("heavy elbow", [1.7e-7, 3e-11]),
-    ("far heavier elbow", [f64::NAN; 2]),
-    ("light elbow", [f64::NAN, 5e-10]),
-    ("rods 100:1", [3e-7, 4e-12]),
-    ("rods 1:100", [5e-8, 3e-12]),
-    ("no gravity", [4e-9, 3e-12]),
-    ("whirling", [1e-7, 4e-12]),
-    ("far angles", [7e-9, 6e-12]),
-];
 
 /// Chaotic, the 64-bit fixed point against `f64` at the same steps; where both are at their floors, the floor, rad.
 pub const FIXED_64_AGAINST_DOUBLE: f64 = 2.0;

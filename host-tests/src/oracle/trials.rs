@@ -2,9 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use double_pendulum::Form;
 use double_pendulum::parts::Stepper;
-use double_pendulum::{Error, Parameters, Pendulum, Real, State};
+use double_pendulum::{Error, Form, Parameters, Pendulum, Real, State};
 
 use reference::taylor::Reference;
 
@@ -26,6 +25,22 @@ impl Trial {
     /// Held still at (`a1`, `a2`), rad: rods of 1 m, a bob 1 of 1 kg, g = 9.81 m/s^2.
     pub fn at_rest(mass_ratio: f64, a1: f64, a2: f64, seconds: f64) -> Self {
         Self { parameters: Parameters::equal_rods(mass_ratio, 1.0, 9.81), start: State::at_rest(a1, a2), seconds }
+    }
+
+    /// 0.5 rad, at rest: no chaos.
+    pub fn regular(seconds: f64) -> Self {
+        Self::at_rest(1.0, 0.5, 0.5, seconds)
+    }
+
+    /// 2 rad, at rest: chaotic, it turns over.
+    pub fn chaotic(seconds: f64) -> Self {
+        Self::at_rest(1.0, 2.0, 2.0, seconds)
+    }
+
+    /// Masses and lengths all different, in motion.
+    pub fn unlike(seconds: f64) -> Self {
+        let parameters = Parameters { m1: 0.7, m2: 1.3, l1: 0.6, l2: 1.1, g: 9.81 };
+        Self { parameters, start: State { a1: 0.3, a2: -0.2, p1: 0.1, p2: -0.1 }, seconds }
     }
 
     /// The trial as `R` holds it: every number rounded.

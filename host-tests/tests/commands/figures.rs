@@ -106,19 +106,10 @@ fn figures_3_to_5_show_the_frequencies_envelopes_and_amplitudes_of_the_table() {
             assert_close(2.0 * half_period, envelope, tolerances::PLOTTED_FREQUENCY, "envelope");
             let highest = points.iter().map(|point| point.envelopes[rod]).fold(0.0, f64::max);
             assert_close(highest, largest, tolerances::PLOTTED_AMPLITUDE, "amplitude");
-        }
-    }
-}
-
-#[test]
-fn the_curves_of_figures_3_to_5_touch_their_envelopes_and_never_leave_them() {
-    for (number, [mu, ..]) in SMALL {
-        let Small { points, .. } = Small::new(number, mu).expect("a pendulum");
-        for rod in 0..2 {
+            // The curve touches it and never leaves it.
             let beyond = |point: &CurvePoint| point.angles[rod].abs() - point.envelopes[rod];
             let farthest = points.iter().map(beyond).fold(f64::NEG_INFINITY, f64::max);
             assert!(farthest < tolerances::FORMULAS.double * START, "figure {number}, rod {rod}: {farthest} beyond");
-            let highest = points.iter().map(|point| point.envelopes[rod]).fold(0.0, f64::max);
             let touches = points.iter().filter(|point| {
                 point.envelopes[rod] > highest / 2.0 && beyond(point) > -tolerances::PLOTTED_AMPLITUDE * highest
             });

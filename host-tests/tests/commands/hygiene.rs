@@ -63,10 +63,9 @@ fn dependencies(manifest: &str) -> BTreeSet<String> {
 
 #[test]
 fn every_dependency_has_its_reason() {
-    let folders =
-        ["", "kernel", "firmware", "host-tests", "host-tests/peers", "host-tests/reference", "host-tests/vectors"];
-    let manifests = folders.map(|folder| Path::new(folder).join("Cargo.toml"));
-    let named: BTreeSet<_> = manifests.iter().flat_map(|manifest| dependencies(&read(manifest))).collect();
+    let own = ["peers/", "reference/", "vectors/"].map(|folder| format!("host-tests/{folder}"));
+    let folders = ["", "kernel/", "firmware/", "host-tests/"].into_iter().chain(own.each_ref().map(|own| &**own));
+    let named: BTreeSet<_> = folders.flat_map(|folder| dependencies(&read(format!("{folder}Cargo.toml")))).collect();
     let table = read(".ci/dependencies.md");
     let rows = table.lines().filter_map(|line| Some(line.strip_prefix("| `")?.split_once('`')?.0.to_owned()));
     assert_eq!(named, rows.collect());

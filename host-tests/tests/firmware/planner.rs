@@ -136,6 +136,7 @@ fn where_nothing_holds_that_is_what_is_told() {
 }
 
 /// Only the way that was asked for is looked at, even if it costs more than a frame allows.
+/// `cargo prove --scene page --method rk4-f32-direction --steps 4` proves it right until 10.5 s.
 #[test]
 fn a_way_that_is_given_stays() {
     let mut planner = Planner::new(STM32F405);
@@ -144,7 +145,7 @@ fn a_way_that_is_given_stays() {
     let found = (0..PATIENCE).find_map(|_| planner.tick());
     let Some(Ok(plan)) = found else { panic!("{found:?}") };
     assert_eq!((plan.method, plan.steps, plan.limit), (Method::Rk4F32Direction, 4, Limit::Method));
-    assert!((7.0..=9.5).contains(&plan.horizon), "{plan:?}");
+    assert!((9.5..=10.5).contains(&plan.horizon), "{plan:?}");
 }
 
 /// What hosts know: a code never changes its meaning, whatever becomes of the order of methods and limits.

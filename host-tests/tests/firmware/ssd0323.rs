@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use std::convert::Infallible;
 
 use embedded_hal::digital::OutputPin;
-use embedded_hal::spi::{self, Operation, SpiDevice};
+use embedded_hal::spi::{ErrorKind, ErrorType, Operation, SpiDevice};
 use firmware::app::{App, NoButtons};
 use firmware::display::{Display, Ssd0323};
 use firmware::graphics::Canvas;
@@ -92,27 +92,20 @@ fn window(arguments: &mut impl Iterator<Item = u8>, most: u8) -> (u8, u8) {
     (first, last)
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct BusError;
-
-impl spi::Error for BusError {
-    fn kind(&self) -> spi::ErrorKind {
-        spi::ErrorKind::Other
-    }
-}
+const BUS_ERROR: ErrorKind = ErrorKind::Other;
 
 struct Bus<'a>(&'a RefCell<Controller>);
 
-impl spi::ErrorType for Bus<'_> {
-    type Error = BusError;
+impl ErrorType for Bus<'_> {
+    type Error = ErrorKind;
 }
 
 impl SpiDevice for Bus<'_> {
-    fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), BusError> {
+    fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), ErrorKind> {
         let mut controller = self.0.borrow_mut();
         for operation in operations {
             match controller.fails_after.as_mut() {
-                Some(0) => return Err(BusError),
+                Some(0) => return Err(BUS_ERROR),
                 Some(left) => *left -= 1,
                 None => {}
             }
@@ -165,8 +158,8 @@ fn hands_on_the_error_of_the_bus() {
     let controller = RefCell::new(Controller { fails_after: Some(0), ..Controller::new() });
     let mut memory = Canvas::default();
     let mut panel = panel(&controller, &mut memory);
-    assert_eq!(panel.init(), Err(BusError));
-    assert_eq!(panel.flush(&Canvas::default()), Err(BusError));
+    assert_eq!(panel.init(), Err(BUS_ERROR));
+    assert_eq!(panel.flush(&Canvas::default()), Err(BUS_ERROR));
 }
 
 /// What has not changed is not sent: of a row the words between two that have changed are. A row below one that was sent needs
@@ -201,7 +194,7 @@ fn shows_the_frame_after_one_that_failed() {
     panel.init().expect("the bus works");
     (0..64).for_each(|y| canvas.update(y, y, |_| 15));
     controller.borrow_mut().fails_after = Some(21);
-    assert_eq!(panel.flush(&canvas), Err(BusError));
+    assert_eq!(panel.flush(&canvas), Err(BUS_ERROR));
     *controller.borrow_mut() = Controller { memory: vec![Some(7); 64 * 64], ..Controller::new() };
     assert_eq!(panel.flush(&canvas), Ok(()));
     assert_eq!(shown(&controller), canvas.bytes().collect::<Vec<_>>());

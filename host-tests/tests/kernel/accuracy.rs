@@ -2,7 +2,7 @@
 
 use double_pendulum::{Motion, Parameters, Pendulum, rk4};
 use host_tests::oracle::tolerances;
-use reference::taylor::{self, Reference};
+use reference::taylor::Reference;
 
 /// Regular motions, in which an error grows no faster than the time: masses and lengths alike and unlike.
 fn regular() -> [(Parameters<f64>, Motion<f64>); 3] {
@@ -40,23 +40,6 @@ fn order_is_4() {
         for order in orders {
             assert!(tolerances::ORDER.contains(&order), "order {order} for {parameters:?}");
         }
-    }
-}
-
-#[test]
-fn plain_f32_stays_within_its_roundings() {
-    for (parameters, start) in regular() {
-        let single = parameters.cast::<f32>();
-        let pendulum = Pendulum::new(&single).expect("valid parameters");
-        let start = start.cast();
-        let mut state = pendulum.to_state(&start);
-        for _ in 0..10 * 256 {
-            state = pendulum.step(&state, 1.0 / 256.0);
-        }
-        // the motion of the very numbers that f32 holds
-        let exact = taylor::states(&single.cast(), &start.cast(), &[10.0])[0];
-        let error = (f64::from(state.a1) - exact.a1).abs().max((f64::from(state.a2) - exact.a2).abs());
-        assert!(error < tolerances::PLAIN_SINGLE, "{error:e} rad after 10 s for {parameters:?}");
     }
 }
 

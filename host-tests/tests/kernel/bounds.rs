@@ -2,8 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use double_pendulum::{Bounds, Error, Motion, Parameters, Pendulum, Real, State};
-use double_pendulum::{DirectionF64, Form};
+use double_pendulum::{Bounds, DirectionF64, Error, Form, Motion, Parameters, Pendulum, Real, State};
 use fastrand::Rng;
 use host_tests::oracle::{random, tolerances};
 use reference::taylor::Reference;

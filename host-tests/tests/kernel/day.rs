@@ -1,9 +1,10 @@
 //! A simulated day: no method that steps in 32 bits loses its energy or its time to its number type.
 
-use double_pendulum::Method;
 use double_pendulum::parts::Stepper;
 use double_pendulum::plan::Way;
-use double_pendulum::{DirectionF32, DirectionF32Plain, DirectionF64, Error, Fixed32, Form, Pendulum, Real, State};
+use double_pendulum::{
+    DirectionF32, DirectionF32Plain, DirectionF64, Error, Fixed32, Form, Method, Pendulum, Real, State,
+};
 use firmware::config::{STM32F405, TICK_RATE};
 use firmware::motion::{Means, Simulation};
 use firmware::scenes::{Report, SceneName};

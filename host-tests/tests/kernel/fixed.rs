@@ -15,25 +15,15 @@ use reference::taylor::Reference;
 /// Starts that are searched.
 const TRIALS: u32 = 3000;
 
-/// 0.5 rad, at rest: no chaos.
-fn regular(seconds: f64) -> Trial {
-    Trial::at_rest(1.0, 0.5, 0.5, seconds)
-}
-
-/// 2 rad, at rest: chaotic, it turns over.
-fn chaotic() -> Trial {
-    Trial::at_rest(1.0, 2.0, 2.0, 5.0)
-}
-
 #[test]
 fn thirty_two_bits_keep_their_promise() -> Result<(), Error> {
     let [promise, chaos] = tolerances::FIXED_32;
-    let error = regular(10.0).error::<f64, Fixed32>(1.0 / 256.0)?;
+    let error = Trial::regular(10.0).error::<f64, Fixed32>(1.0 / 256.0)?;
     assert!(error <= promise, "{error:e} rad");
-    let error = chaotic().error::<f64, Fixed32>(1.0 / 240.0)?;
+    let error = Trial::chaotic(5.0).error::<f64, Fixed32>(1.0 / 240.0)?;
     assert!(error <= chaos, "chaotic: {error:e} rad");
     for steps in [1024.0, 4096.0] {
-        let error = regular(10.0).error::<f64, Fixed32>(1.0 / steps)?;
+        let error = Trial::regular(10.0).error::<f64, Fixed32>(1.0 / steps)?;
         assert!(error <= tolerances::FIXED_32_FLOOR, "{error:e} rad with {steps} steps a second");
     }
     Ok(())
@@ -42,11 +32,10 @@ fn thirty_two_bits_keep_their_promise() -> Result<(), Error> {
 /// Its momenta are told and taken in units of their own.
 #[test]
 fn thirty_two_bits_keep_their_promise_of_a_moving_start() -> Result<(), Error> {
-    let parameters = Parameters { m1: 0.7, m2: 1.3, l1: 0.6, l2: 1.1, g: 9.81 };
-    let trial = Trial { parameters, start: State { a1: 0.3, a2: -0.2, p1: 0.1, p2: -0.1 }, seconds: 10.0 };
+    let trial = Trial::unlike(10.0);
     let error = trial.error::<f64, Fixed32>(1.0 / 1024.0)?;
     assert!(error <= tolerances::FIXED_32_UNLIKE, "{error:e} rad");
-    let start = Pendulum::new(&parameters)?.run::<Fixed32>(&trial.start, 1.0 / 1024.0)?.state();
+    let start = Pendulum::new(&trial.parameters)?.run::<Fixed32>(&trial.start, 1.0 / 1024.0)?.state();
     for (told, taken) in [(start.p1, trial.start.p1), (start.p2, trial.start.p2)] {
         assert!((told - taken).abs() <= tolerances::FIXED_32_FLOOR, "{told} for {taken} kg m^2/s");
     }
@@ -55,7 +44,7 @@ fn thirty_two_bits_keep_their_promise_of_a_moving_start() -> Result<(), Error> {
 
 #[test]
 fn sixty_four_bits_keep_their_promise() -> Result<(), Error> {
-    let error = regular(12.0).error::<f64, Fixed64<12>>(1.0 / 12.0)?;
+    let error = Trial::regular(12.0).error::<f64, Fixed64<12>>(1.0 / 12.0)?;
     assert!(error <= tolerances::FIXED_64, "{error:e} rad");
     Ok(())
 }
@@ -76,7 +65,7 @@ fn after_17_seconds_of_the_page() -> Result<(), Error> {
 
 #[test]
 fn chaos_is_as_good_as_in_double_precision() -> Result<(), Error> {
-    let trial = chaotic();
+    let trial = Trial::chaotic(5.0);
     let exact = trial.exact::<f64>()?;
     for steps in [32.0, 48.0, 64.0, 80.0, 128.0, 256.0, 512.0] {
         let dt = 1.0 / steps;
@@ -109,9 +98,9 @@ fn no_pendulum_is_worse_off_than_in_single_precision() -> Result<(), Error> {
         start: State { a1: 0.3, a2: -0.2, p1: 0.0, p2: 0.0 },
         seconds: 5.0,
     };
-    let moving = Trial { start: State { a1: 0.5, a2: -0.5, p1: 2.0, p2: 1.0 }, ..regular(5.0) };
+    let moving = Trial { start: State { a1: 0.5, a2: -0.5, p1: 2.0, p2: 1.0 }, ..Trial::regular(5.0) };
     for trial in [
-        regular(5.0),
+        Trial::regular(5.0),
         Trial::at_rest(0.0078125, 0.5, 0.5, 5.0),
         Trial::at_rest(0.1, 0.5, 0.5, 5.0),
         Trial::at_rest(0.125, 0.5, 0.5, 5.0),

@@ -11,26 +11,10 @@ use fastrand::Rng;
 use host_tests::oracle::trials::{Trial, largest_difference};
 use host_tests::oracle::{random, tolerances};
 
-/// 0.5 rad, at rest: no chaos.
-fn regular(seconds: f64) -> Trial {
-    Trial::at_rest(1.0, 0.5, 0.5, seconds)
-}
-
-/// 2 rad, at rest: chaotic, it turns over.
-fn chaotic(seconds: f64) -> Trial {
-    Trial::at_rest(1.0, 2.0, 2.0, seconds)
-}
-
-/// Masses and lengths all different, in motion.
-fn unlike(seconds: f64) -> Trial {
-    let parameters = Parameters { m1: 0.7, m2: 1.3, l1: 0.6, l2: 1.1, g: 9.81 };
-    Trial { parameters, start: State { a1: 0.3, a2: -0.2, p1: 0.1, p2: -0.1 }, seconds }
-}
-
 #[test]
 fn compensated_single_precision_keeps_its_budget() -> Result<(), Error> {
     for (i, seconds) in [10.0, 100.0].into_iter().enumerate() {
-        let direction = regular(seconds).error::<f32, DirectionF32>(1.0 / 256.0)?;
+        let direction = Trial::regular(seconds).error::<f32, DirectionF32>(1.0 / 256.0)?;
         println!("{seconds} s: {direction:.2e}");
         assert!(direction <= tolerances::DIRECTION_FORM[i], "direction form, {seconds} s: {direction:e}");
     }
@@ -75,7 +59,7 @@ fn a_step_that_f32_cannot_hold_is_taken_exactly() -> Result<(), Error> {
 #[test]
 fn compensation_pays() -> Result<(), Error> {
     for dt in [1.0 / 256.0, 1.0 / 1024.0] {
-        let trial = regular(10.0);
+        let trial = Trial::regular(10.0);
         let gain = trial.error::<f32, DirectionF32Plain>(dt)? / trial.error::<f32, DirectionF32>(dt)?;
         assert!(gain >= tolerances::COMPENSATION_GAIN, "{gain}");
     }
@@ -141,7 +125,7 @@ fn directions_are_those_of_the_angles() -> Result<(), Error> {
         }
         Ok(())
     }
-    for trial in [chaotic(1.0), unlike(1.0)] {
+    for trial in [Trial::chaotic(1.0), Trial::unlike(1.0)] {
         agree::<f32, DirectionF32>(&trial)?;
         agree::<f64, DirectionF64>(&trial)?;
         agree::<f64, ExtrapolationF64<12>>(&trial)?;

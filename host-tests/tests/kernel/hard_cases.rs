@@ -34,16 +34,15 @@ fn refining_pays<F: Form>(case: &HardCase, starts: &Starts, growth: f64, least: 
 
 /// Every kind of number on one case: its own floor each, and of the error of a method in `f64` one start says all.
 fn is_taken(case: &HardCase) -> Result<(), Error> {
-    let &HardCase { name, floor, method, growth, .. } = case;
+    let &HardCase { floor, method, fixed: [words, long_words], growth, .. } = case;
     let single = |trial: Trial| Ok((trial, trial.exact::<f32>()?));
     let single = case.starts().map(single).collect::<Result<Vec<_>, Error>>()?;
     refining_pays::<DirectionF32>(case, &single, growth, growth * method * f64::from(f32::EPSILON), floor)?;
     let double = |trial: Trial| Ok((trial, trial.exact::<f64>()?));
     let double = case.starts().take(8).map(double).collect::<Result<Vec<_>, Error>>()?;
     refining_pays::<DirectionF64>(case, &double[..1], growth, growth * method * f64::EPSILON, method)?;
-    let (_, [words, long_words]) = tolerances::FIXED_FLOORS.iter().find(|(of, _)| *of == name).expect("a floor");
-    refining_pays::<Fixed32>(case, &double, 1.5, *words, *words)?;
-    refining_pays::<Fixed64<12>>(case, &double[..1], 1.5, *long_words, *long_words)
+    refining_pays::<Fixed32>(case, &double, 1.5, words, words)?;
+    refining_pays::<Fixed64<12>>(case, &double[..1], 1.5, long_words, long_words)
 }
 
 #[test]

@@ -5,7 +5,6 @@ mod bounds;
 mod closed_form;
 mod day;
 mod divergence;
-mod extrapolation;
 mod fixed;
 mod flips;
 mod forms;

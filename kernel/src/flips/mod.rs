@@ -61,7 +61,6 @@ pub struct Falling<F: Form> {
 
 impl<F: Form> Falling<F> {
     /// Steps made.
-    #[must_use]
     #[doc(hidden)]
     pub fn steps(&self) -> u32 {
         self.steps

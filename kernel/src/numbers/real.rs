@@ -27,62 +27,48 @@ pub trait Real:
     + MulAssign
     + 'static
 {
-    /// 0.
     #[doc(hidden)]
     const ZERO: Self;
-    /// 1.
     #[doc(hidden)]
     const ONE: Self;
-    /// 2.
     #[doc(hidden)]
     const TWO: Self;
-    /// 1/2.
     #[doc(hidden)]
     const HALF: Self;
-    /// pi, rounded to nearest.
     #[doc(hidden)]
     const PI: Self;
     /// The distance from 1 to the next larger number.
     #[doc(hidden)]
     const EPSILON: Self;
 
-    /// The number nearest to `value`.
-    #[must_use]
     #[doc(hidden)]
     fn from_f64(value: f64) -> Self;
-    /// The same number as an `f64`; exact.
     #[doc(hidden)]
     fn to_f64(self) -> f64;
-    /// The number nearest to this whole one.
     #[doc(hidden)]
     fn from_i64(value: i64) -> Self;
-    /// The number of `S` nearest to this one.
     #[inline(always)]
     #[doc(hidden)]
     fn cast<S: Real>(self) -> S {
         S::from_f64(self.to_f64())
     }
-    /// The absolute value.
-    #[must_use]
     #[doc(hidden)]
+    #[must_use]
     fn abs(self) -> Self;
     /// The square root, correctly rounded; NaN below 0.
-    #[must_use]
     #[doc(hidden)]
+    #[must_use]
     fn sqrt(self) -> Self;
-    /// The bit pattern.
     #[doc(hidden)]
     fn bits(self) -> u64;
-    /// Neither infinite nor NaN.
-    #[must_use]
     #[doc(hidden)]
     fn is_finite(self) -> bool;
     /// Finite, not zero and not subnormal: holds its full relative precision.
     #[doc(hidden)]
     fn is_normal(self) -> bool;
     /// The angle of the point (`x`, `self`) from the positive x axis, rad, in [-pi, pi]; by the `libm` crate.
-    #[must_use]
     #[doc(hidden)]
+    #[must_use]
     fn atan2(self, x: Self) -> Self;
     /// Sine and cosine by the `libm` crate.
     #[doc(hidden)]

@@ -33,13 +33,11 @@ pub trait Scalar:
     /// The torque of gravity in a direction.
     fn weight(gravity: Self::Gravity, direction: Self) -> Self::Torque;
     /// `value`, of any size, as a whole number and the rest: [`times`](Self::times) the one and a product with the other.
-    #[doc(hidden)]
     #[must_use]
     fn split(value: f64) -> (i32, Self) {
         (0, Self::constant(value))
     }
     /// The product with a whole number.
-    #[doc(hidden)]
     #[must_use]
     fn times(self, whole: i32) -> Self {
         self * Self::constant(f64::from(whole))

@@ -14,7 +14,6 @@ use crate::numbers::{Real, Sealed};
 /// One run uses one source, on the host and on the chip alike: results agree bit for bit only within a source.
 pub trait SinCos<R: Real>: Sealed + Copy + core::fmt::Debug + PartialEq + 'static {
     /// (sin `angle`, cos `angle`), `angle` in rad.
-    #[must_use]
     fn sin_cos(angle: R) -> (R, R);
 }
 

@@ -41,7 +41,6 @@ impl<R: Real> EqualRods<R> {
     }
 
     /// The same pendulum as masses, lengths and gravity, in its own units: m1 = l1 = l2 = g = 1, m2 = mu.
-    #[must_use]
     #[doc(hidden)]
     pub fn parameters(&self) -> Parameters<R> {
         Parameters::equal_rods(self.mu, R::ONE, R::ONE)

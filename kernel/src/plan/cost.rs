@@ -36,9 +36,9 @@ impl Costs {
     }
 
     /// What a frame costs that is computed by `method` with `steps`; infinite for what no plan chooses from.
-    #[must_use]
     #[inline(never)] // one copy
     #[doc(hidden)]
+    #[must_use]
     pub fn of_frame(&self, method: Method, steps: u32) -> f32 {
         let step = match method {
             Method::ClosedFormF32 => return self.closed_form,

@@ -20,8 +20,8 @@ pub enum Limit {
 
 impl Limit {
     /// In words.
-    #[must_use]
     #[doc(hidden)]
+    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Limit::End => "the end of the time asked for",

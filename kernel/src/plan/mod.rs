@@ -79,8 +79,8 @@ impl Plan {
     }
 
     /// The method and its steps.
-    #[must_use]
     #[doc(hidden)]
+    #[must_use]
     pub fn way(&self) -> Way {
         Way { method: self.method, steps: self.steps.max(1) }
     }

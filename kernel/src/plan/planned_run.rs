@@ -36,8 +36,8 @@ impl PlannedRun {
     }
 
     /// The method and its steps.
-    #[must_use]
     #[doc(hidden)]
+    #[must_use]
     pub fn way(&self) -> Way {
         self.way
     }
@@ -54,8 +54,8 @@ impl PlannedRun {
     }
 
     /// Frames since the start.
-    #[must_use]
     #[doc(hidden)]
+    #[must_use]
     pub fn frame(&self) -> u64 {
         self.frame
     }
@@ -81,9 +81,9 @@ impl PlannedRun {
 
     /// The canonical state in SI units when the rods point to the [`directions`](Self::directions), rounded to `f32`, the angles
     /// with all their turns: what a picture needs, and far cheaper than [`state`](Self::state) where `f64` is software.
-    #[must_use]
     #[inline(never)]
     #[doc(hidden)]
+    #[must_use]
     pub fn rounded_state(&self) -> State<f32> {
         let ([a1, a2], [p1, p2]) = (self.angles(), self.run.momenta());
         State { a1, a2, p1, p2 }

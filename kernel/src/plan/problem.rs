@@ -40,17 +40,17 @@ impl Problem {
     }
 
     /// Frames shown after the one at the start, at least one.
-    #[must_use]
     #[inline(never)] // one copy
     #[doc(hidden)]
+    #[must_use]
     pub fn frames(&self) -> u32 {
         let frames = libm::rint(self.duration * f64::from(self.rate)) as u32;
         if frames == 0 { 1 } else { frames }
     }
 
     /// The time of frame `frame`, s.
-    #[must_use]
     #[doc(hidden)]
+    #[must_use]
     pub fn time(&self, frame: u32) -> f64 {
         f64::from(frame) / f64::from(self.rate)
     }

@@ -10,7 +10,7 @@ use super::pass::Pass;
 use super::problem::Problem;
 use super::way::{FIRST_STEP, MOST_STEPS, RESOLVING, Way, start_and_step, steps_to_frame};
 use crate::error::{Error, Parameter};
-use crate::pendulum::State;
+use crate::pendulum::Pendulum;
 use crate::table::Method;
 
 /// The cheapest method found, and what it brings.
@@ -37,8 +37,8 @@ pub struct Plan {
     pub spent: f32,
 }
 
-/// Finer steps, or a closer look, may find a motion right for so many times as long.
-const LONGER: u32 = 2;
+/// A closer look, or finer steps, must be paid for at least so many times as long as a motion was found right before.
+const LONGER: f32 = 1.25;
 
 /// A search under way; [`advance`](Self::advance) it until there is a plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,8 +46,6 @@ pub struct Search {
     problem: Problem,
     costs: Costs,
     budget: Budget,
-    /// Angles and momenta at the start.
-    start: State<f64>,
     /// The cheaper method in 32 bits.
     cheap: Method,
     /// Steps to a frame by [`Method::Extrapolation10Fixed64`] that resolve the motion, if its numbers take it.
@@ -80,7 +78,7 @@ impl Search {
     /// Never inlined, nor is [`of`](Self::of): a search stands on the stack while it is made.
     #[inline(never)]
     pub fn new(problem: &Problem, costs: &Costs, budget: &Budget) -> Result<Self, PlanError> {
-        let (start, admissible) = start_and_step(&problem.pendulum, &problem.start)?;
+        let (_, admissible) = start_and_step(&problem.pendulum, &problem.start)?;
         problem.check()?;
         costs.check()?;
         budget.check()?;
@@ -97,7 +95,6 @@ impl Search {
             problem: *problem,
             costs: *costs,
             budget: *budget,
-            start,
             cheap,
             exact,
             fine: exact.filter(affordable).map(|steps| (steps, Limit::Growth)).or_else(coarser),
@@ -210,7 +207,8 @@ impl Search {
         self.spent += self.costs.preparation;
         let Self { method, steps, costs, budget, .. } = *self;
         let beside = self.beside();
-        let pass = self.pass.insert(Pass::new(method, &self.problem, &self.start, steps, beside));
+        let start = Pendulum::new(&self.problem.pendulum)?.to_state(&self.problem.start);
+        let pass = self.pass.insert(Pass::new(method, &self.problem, &start, steps, beside));
         pass.retain(|one| match self.given {
             Some(method) => one.method == method && one.steps == steps,
             None => one.cost(&costs) <= budget.frame,
@@ -220,9 +218,10 @@ impl Search {
 
     /// In 32 bits: steps of a run in 64 bits to compare with, if planning can pay for them as long as the next pass may last.
     fn beside(&self) -> Option<u32> {
-        let (frames, right) = (self.problem.frames(), self.best.map_or(0, |best| best.right));
-        let frames = if right > 0 { frames.min(LONGER * right) } else { frames };
-        let left = (self.budget.planning - self.spent) / frames as f32;
+        let (frames, right) = (self.problem.frames() as f32, self.best.map_or(0, |best| best.right));
+        let longer = LONGER * right as f32;
+        let frames = if 0.0 < longer && longer < frames { longer } else { frames };
+        let left = (self.budget.planning - self.spent) / frames;
         let affordable = |&exact: &u32| Pass::cost_beside(&self.costs, self.method, self.steps, exact) <= left;
         self.exact.filter(|_| self.method != Method::Extrapolation10Fixed64).filter(affordable)
     }
@@ -238,8 +237,8 @@ impl Search {
     }
 
     /// Whether the next piece prepares a motion, which takes longer than any other.
-    #[must_use]
     #[doc(hidden)]
+    #[must_use]
     pub fn is_preparing(&self) -> bool {
         self.pass.is_none() || !self.prepared
     }
@@ -256,16 +255,16 @@ impl Search {
     }
 
     /// What planning has cost so far.
-    #[must_use]
     #[doc(hidden)]
+    #[must_use]
     pub fn spent(&self) -> f32 {
         self.spent
     }
 
     /// Until when `way` has been found right so far, s. In 64 bits, with steps that resolve the motion, it is so wherever any
     /// other is.
-    #[must_use]
     #[doc(hidden)]
+    #[must_use]
     pub fn horizon(&self, way: Way) -> f64 {
         let resolves = |(steps, limit)| limit == Limit::Growth && way.steps >= steps;
         let has_longest_horizon = way.method == Method::Extrapolation10Fixed64 && self.fine.is_some_and(resolves);

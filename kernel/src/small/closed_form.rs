@@ -71,7 +71,6 @@ impl<R: Real, T: SinCos<R>> SmallOscillations<R, T> {
     /// As [`SmallOscillations::new`], with the source of sine and cosine given by the type.
     ///
     /// C1 = (r2 a1 - a2)/(r2 - r1), C2 = (a2 - r1 a1)/(r2 - r1); w1 S1 and w2 S2 are the same with velocities.
-    #[must_use]
     #[doc(hidden)]
     pub fn with_trig(modes: Modes<f64>, start: &Motion<R>) -> Self {
         let turns = [modes.fast, modes.slow].map(|mode| mode.frequency / core::f64::consts::TAU);
@@ -91,14 +90,12 @@ impl<R: Real, T: SinCos<R>> SmallOscillations<R, T> {
     }
 
     /// The fast mode's part.
-    #[must_use]
     #[doc(hidden)]
     pub fn fast(&self) -> Oscillation<R> {
         self.fast
     }
 
     /// The slow mode's part.
-    #[must_use]
     #[doc(hidden)]
     pub fn slow(&self) -> Oscillation<R> {
         self.slow

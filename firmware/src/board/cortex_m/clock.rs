@@ -13,7 +13,6 @@ use crate::config::TICK_RATE;
 const FIRST: u32 = 0_u32.wrapping_sub(5 * TICK_RATE);
 /// Ticks since [`Clock::start`], and [`FIRST`].
 static TICKS: AtomicU32 = AtomicU32::new(FIRST);
-/// Processor cycles per tick.
 static PERIOD: AtomicU32 = AtomicU32::new(0);
 
 #[exception]

@@ -172,7 +172,6 @@ fn crash((cause, pc, lr, cfsr): (Cause, u32, u32, u32), report: &dyn Display) ->
     SCB::sys_reset()
 }
 
-/// The report, and what was shown last.
 #[inline(never)]
 fn say(report: &dyn Display) {
     if let Ok(mut stderr) = hio::hstderr() {

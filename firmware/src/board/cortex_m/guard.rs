@@ -32,13 +32,10 @@ const REGION_ON: u32 = 1 << 0;
 const UNIT_ON: u32 = 1 << 2 | 1 << 0;
 
 unsafe extern "C" {
-    /// The start of memory.
     static _ram_start: u8;
-    /// The end of the statics.
     static __euninit: u8;
 }
 
-/// The addresses that are refused.
 pub fn addresses() -> Range<u32> {
     let start = &raw const _ram_start as u32;
     let statics = (&raw const __euninit as u32).wrapping_sub(start);

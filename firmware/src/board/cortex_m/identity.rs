@@ -8,9 +8,7 @@ use crate::job::{OnBoards, Run};
 use crate::protocol::{BoardName, Identity};
 
 unsafe extern "C" {
-    /// The start of the program in flash.
     static __vector_table: u8;
-    /// The end of its constants.
     static __erodata: u8;
 }
 

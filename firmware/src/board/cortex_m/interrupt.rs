@@ -49,7 +49,6 @@ unsafe impl InterruptNumber for Interrupt {
 }
 
 impl Interrupt {
-    /// Lets it through.
     pub fn unmask(self) {
         // SAFETY: no critical section relies on a masked interrupt.
         unsafe { NVIC::unmask(self) };

@@ -57,7 +57,6 @@ pub fn keep((played, end): (Option<Status>, Restarted)) {
     END.write(&end);
 }
 
-/// Where things stand, if that is known.
 #[inline(never)]
 pub fn last() -> Option<Restarted> {
     read(&END.read())

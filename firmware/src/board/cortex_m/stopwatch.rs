@@ -2,7 +2,6 @@
 
 use cortex_m::peripheral::{DCB, DWT};
 
-/// Starts the cycle counter, where there is one.
 #[cfg(not(armv6m))]
 pub fn start(mut dcb: DCB, mut dwt: DWT) {
     dcb.enable_trace();

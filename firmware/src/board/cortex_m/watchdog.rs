@@ -14,9 +14,7 @@ use super::interrupt::Interrupt;
 use crate::board::register::Device;
 use crate::config::{TICK_RATE, WATCHDOG_SECONDS};
 
-/// What the main loop needs of it.
 pub trait Watchdog {
-    /// Begins its time anew.
     fn feed(&mut self);
 }
 
@@ -78,12 +76,10 @@ pub(super) fn is_call(number: u32) -> bool {
     number == CALL.load(Ordering::Relaxed).into()
 }
 
-/// The watchdog's interrupt, if it can be masked.
 fn own() -> Option<Interrupt> {
     CALL.load(Ordering::Relaxed).checked_sub(FIRST).map(Interrupt)
 }
 
-/// The tick when it was last fed.
 static FED: AtomicU32 = AtomicU32::new(0);
 
 /// Whether the ticks of the time that it gives have been counted as well. If not, the processor was held up from outside, as an
@@ -102,7 +98,6 @@ pub(in crate::board) fn stall_by(stall: Stall) {
     stall(true);
 }
 
-/// Whether it does so.
 pub(super) fn stall(stalls: bool) {
     free(|token| STALL.borrow(token).get())(stalls);
 }
@@ -114,7 +109,6 @@ pub(super) fn silence() {
     }
 }
 
-/// Lets its interrupt through.
 fn rearm() {
     if let Some(interrupt) = own() {
         NVIC::unpend(interrupt);

@@ -6,17 +6,13 @@ use embedded_hal::digital::{ErrorType, OutputPin};
 
 use crate::board::register::{Device, Register};
 
-/// A port, by its base address.
 #[derive(Clone, Copy, Debug)]
 pub struct Pins(Device);
 
-/// Port A: serial port and panel.
 pub const A: Pins = port(0x4000_4000);
 const C: Pins = port(0x4000_6000);
 const D: Pins = port(0x4000_7000);
-/// Port E: four buttons.
 pub const E: Pins = port(0x4002_4000);
-/// Port F: the fifth button.
 pub const F: Pins = port(0x4002_5000);
 
 const fn port(base: usize) -> Pins {

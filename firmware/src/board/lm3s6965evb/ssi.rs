@@ -29,7 +29,6 @@ pub struct Ssi(());
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SsiError {
-    /// The bus did not finish in time.
     Late,
     /// No wire leads back from the panel.
     WriteOnly,

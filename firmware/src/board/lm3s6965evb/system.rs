@@ -2,7 +2,6 @@
 
 use crate::board::register::{Device, Register};
 
-/// Frequency of the board's crystal, Hz.
 const CRYSTAL: u32 = 8_000_000;
 /// The PLL's 400 MHz halved and divided by SYSDIV + 1 = 4, Hz.
 const FULL_SPEED: u32 = 50_000_000;

@@ -26,7 +26,6 @@ const EIGHT_BITS_QUEUED: u32 = 0b11 << 5 | 1 << 4;
 const ENABLE: u32 = 1 << 9 | 1 << 8 | 1 << 0;
 const RECEIVED: u32 = 1 << 6 | 1 << 4;
 
-/// UART0's number on this chip.
 const INTERRUPT: Interrupt = Interrupt(5);
 
 #[derive(Debug)]

@@ -26,18 +26,15 @@ const TRIES: u32 = 500;
 /// Half a clock of a slow 100 kHz, cycles of 125 MHz.
 const HALF_CLOCK: u32 = 625;
 
-/// Interrupts.
 const NOTHING: u32 = 0;
 const FEW_LEFT: u32 = 1 << 4;
 const ABORTED: u32 = 1 << 6;
 const STOPPED: u32 = 1 << 9;
 
-/// Why it was aborted.
 const ADDRESS_REFUSED: u32 = 1 << 0;
 const DATA_REFUSED: u32 = 1 << 3;
 const ARBITRATION_LOST: u32 = 1 << 12;
 
-/// Its data and its clock.
 pub(super) type Lines = (Line<Gpio4>, Line<Gpio5>);
 
 pub struct I2c0 {
@@ -164,7 +161,6 @@ fn error(reason: u32) -> ErrorKind {
     }
 }
 
-/// Lets these interrupts through, and no others.
 fn listen(port: &RegisterBlock, to: u32) {
     // SAFETY: a bit for each interrupt.
     port.ic_intr_mask().write(|w| unsafe { w.bits(to) });
@@ -174,7 +170,6 @@ fn listen(port: &RegisterBlock, to: u32) {
 pub struct Line<I: PinId>(pub(super) Pin<I, FunctionI2C, PullUp>);
 
 impl<I: PinId + ValidFunction<FunctionI2C>> Line<I> {
-    /// Leaves it to the device.
     fn release(&mut self) {
         self.0.set_output_enable_override(OutputEnableOverride::Normal);
         self.0.set_output_override(OutputOverride::DontInvert);

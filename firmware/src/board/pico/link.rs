@@ -18,7 +18,6 @@ use super::usb;
 use crate::board::serial::receiver::{self, Inlet, Taken};
 use crate::config::{BAUD, BUS_TRIES, UART_QUEUE};
 
-/// Both pins of UART0.
 pub(super) type SerialPins = (Pin<Gpio0, FunctionUart, PullNone>, Pin<Gpio1, FunctionUart, PullUp>);
 
 /// How often room for a message is waited for, which takes 2.6 ms at most: these tries take at least 8.
@@ -38,7 +37,6 @@ fn with<T>(act: impl FnOnce(&mut Queue) -> T) -> Option<T> {
     })
 }
 
-/// The outward direction.
 pub struct Link(());
 
 impl Link {

@@ -85,7 +85,6 @@ pub fn take() -> Option<Pico> {
     })
 }
 
-/// A button between a pin and ground.
 type Button<I> = Pin<I, FunctionSioInput, PullUp>;
 
 fn button<I: PinId + ValidFunction<FunctionSioInput>>(pin: Pin<I, FunctionNull, PullDown>) -> Button<I> {

@@ -20,13 +20,10 @@ use crate::config::USB_QUEUE;
 const IDS: UsbVidPid = UsbVidPid(0x16c0, 0x27dd);
 pub(super) const PACKET: usize = 64;
 
-/// The device, and bytes on their way.
 struct Usb {
     device: UsbDevice<'static, UsbBus>,
     port: CdcAcmClass<'static, UsbBus>,
-    /// Not yet sent.
     leaving: Deque<u8, USB_QUEUE>,
-    /// Received and not yet taken.
     arrived: Deque<u8, PACKET>,
 }
 
@@ -72,7 +69,6 @@ pub(super) fn poll(has_room: bool) {
     with(|usb| usb.poll(has_room));
 }
 
-/// The next byte received, if there is one.
 pub(super) fn take() -> Option<u8> {
     with(|usb| usb.arrived.pop_front()).flatten()
 }

@@ -8,13 +8,11 @@ use heapless::spsc::{Consumer, Producer, Queue};
 
 use crate::config::RECEIVE_QUEUE;
 
-/// A serial port as the interrupt sees it.
 #[derive(Clone, Copy)]
 pub(in crate::board) struct Inlet {
     /// Ends the interrupt, given for how many bytes there is room. Done before the bytes are taken, so that one that comes
     /// meanwhile interrupts anew.
     pub clear: fn(usize),
-    /// Takes out what is next.
     pub take: fn() -> Taken,
 }
 
@@ -54,7 +52,6 @@ pub(in crate::board) fn receive() {
     }
 }
 
-/// The bytes received so far and not yet taken.
 pub struct Receiver {
     queue: Consumer<'static, u8>,
 }
@@ -78,7 +75,6 @@ impl Receiver {
 impl Iterator for Receiver {
     type Item = u8;
 
-    /// The next byte, if one has come.
     fn next(&mut self) -> Option<u8> {
         self.queue.dequeue()
     }

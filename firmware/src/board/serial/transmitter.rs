@@ -4,7 +4,6 @@ use embedded_io::{ErrorKind, ErrorType, Write};
 
 use crate::config::BUS_TRIES;
 
-/// A serial port as the transmitter sees it.
 pub trait Outlet {
     /// Whether it takes a byte now.
     fn is_ready(&self) -> bool;

@@ -33,7 +33,6 @@ struct Call {
     cost: Cost,
 }
 
-/// Instructions as they are executed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Stream {
     /// The registers before the instruction that is about to be executed.

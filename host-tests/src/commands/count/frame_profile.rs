@@ -18,7 +18,6 @@ use crate::emulator::boards::Core;
 use crate::emulator::process::remove_on_interrupt;
 use crate::emulator::qemu::Lockstep;
 
-/// A part of the work for a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Part {
     /// The scene's tick, without what it draws.
@@ -111,7 +110,6 @@ fn next_frame_read<T: Send>(board: &mut Lockstep, read: impl FnOnce(File) -> Res
     })
 }
 
-/// Tells by the registers which part is at work.
 struct Parts {
     beginnings: BTreeMap<u32, Part>,
     /// The parts at work, each with where its function returns to: the address and the stack pointer.

@@ -8,7 +8,6 @@ use object::{Architecture, Object, ObjectSection, ObjectSegment, ObjectSymbol, S
 
 use super::instruction::{Instruction, is_long};
 
-/// Code sections and functions of an ELF file.
 #[derive(Debug)]
 pub struct Image {
     path: PathBuf,

@@ -131,17 +131,14 @@ impl Instruction {
         is_float_store && (first..first + words).contains(&s)
     }
 
-    /// The destination field Vd:D.
     fn d(&self) -> u32 {
         (self.word >> 12 & 0xf) << 1 | self.word >> 22 & 1
     }
 
-    /// The first operand Vn:N.
     fn n(&self) -> u32 {
         (self.word >> 16 & 0xf) << 1 | self.word >> 7 & 1
     }
 
-    /// The second operand Vm:M.
     fn m(&self) -> u32 {
         (self.word & 0xf) << 1 | self.word >> 5 & 1
     }

@@ -40,7 +40,6 @@ const REGULAR: u64 = 32;
 const LEAST_STEPS: u64 = 4;
 const AFFORDABLE_INSTRUCTIONS: u64 = 300_000;
 
-/// The cost of one step, on average over a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepCost {
     pub steps: u32,

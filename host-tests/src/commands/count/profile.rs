@@ -64,7 +64,6 @@ impl Profile {
         functions.into_iter()
     }
 
-    /// Bytes of the distinct instructions executed.
     pub fn hot_bytes(&self) -> u32 {
         self.spots.values().map(|spot| spot.instruction.size()).sum()
     }

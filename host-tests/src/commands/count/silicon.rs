@@ -83,7 +83,6 @@ fn run(core: Core, times: usize, code: &[Word], [r0, r1, r2]: [u32; 3]) -> Cost 
     total
 }
 
-/// The cycles of a branch that is taken.
 fn taken(core: Core, word: Word) -> u64 {
     Pipeline::new(core).execute(decoded(word), &Registers::default(), true).cycles
 }

@@ -103,7 +103,7 @@ impl Target {
         }
         let status = match child.wait() {
             Ok(status) => Some(status),
-            Err(error) if error.kind() == io::ErrorKind::TimedOut => None,
+            Err(error) if error.kind() == ErrorKind::TimedOut => None,
             Err(error) => return Err(error.into()),
         };
         let output = stdout.and_then(|reader| reader.join().ok()).and_then(Result::ok).unwrap_or_default();

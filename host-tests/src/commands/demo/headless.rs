@@ -21,7 +21,6 @@ const PATIENCE: Duration = Duration::from_secs(10);
 /// Ticks for which an answer to the last question of the comparison is waited for.
 const ANSWER: u32 = 3 * TICK_RATE;
 
-/// Runs, prints the summary; whether all was well.
 pub fn run(options: &DemoOptions, mut session: Session) -> anyhow::Result<bool> {
     let seconds = options.seconds.unwrap_or(DEFAULT_SECONDS);
     let name = session.source.name().to_owned();

@@ -12,7 +12,6 @@ use firmware::scenes::SceneName;
 use crate::emulator::host::sheets;
 use crate::emulator::qemu::Screenshot;
 
-/// A scene beside the board's.
 #[derive(Debug)]
 pub struct Mirror {
     player: Player<'static>,
@@ -83,7 +82,6 @@ impl fmt::Display for Difference {
     }
 }
 
-/// What a frame tells of the motion, bit for bit.
 fn numbers(frame: &Frame) -> [(&'static str, u64); 11] {
     let [a1, a2, p1, p2] = frame.state.map(|number| u64::from(number.to_bits()));
     [

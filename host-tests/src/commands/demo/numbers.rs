@@ -20,7 +20,6 @@ pub const ROWS: u16 = 13;
 const LEAST_SCALE: f32 = 1e-6;
 const NONE: &str = "-";
 
-/// Draws them, and the bars where there is room left.
 pub fn draw(frame: &mut Frame, area: Rect, readings: &Readings) {
     let area = Rect { width: area.width.min(WIDEST), ..area };
     let lines: Vec<_> = rows(readings).into_iter().flat_map(|row| lines(row, area.width.into())).collect();

@@ -151,7 +151,6 @@ pub fn way(&Frame { method, way_steps, horizon, is_looking, .. }: &Frame) -> Str
     format!("{name}{steps}, right to half a pixel until {at_least}{horizon:.1} s")
 }
 
-/// Keeps the last `most`.
 fn push<T>(queue: &mut VecDeque<T>, item: T, most: usize) {
     if queue.len() >= most {
         queue.pop_front();

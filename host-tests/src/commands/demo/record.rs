@@ -26,7 +26,6 @@ pub struct Recording {
     /// The screenshot to be shown next, and since which tick; it is written when its end is known.
     pending: Option<(Screenshot, u32)>,
     shown: Vec<u8>,
-    /// The tick of the first screenshot.
     start: u32,
 }
 
@@ -79,7 +78,6 @@ impl Recording {
     }
 }
 
-/// Of a file's picture, in its own dots.
 fn size<N: TryFrom<usize> + Default>() -> [N; 2] {
     [WIDTH, HEIGHT].map(|pixels| N::try_from(pixels * SCALE).unwrap_or_default())
 }

@@ -6,7 +6,6 @@ use ratatui::style::Color;
 const BRIGHTEST: [u32; 3] = [255, 200, 64];
 /// Of black: the panel's glass is not quite dark.
 const DARKEST: [u32; 3] = [10, 8, 4];
-/// The greys, 0 to this.
 const BRIGHTEST_GREY: u8 = 15;
 /// The same among the 256 colours that terminals have in common: black, a few greys too dark to have a hue, then amber. Chosen
 /// by hand, for by distance the dark ones would come out olive and red.
@@ -21,7 +20,6 @@ pub fn colour(grey: u8) -> [u8; 3] {
     })
 }
 
-/// The same in a terminal.
 pub fn in_terminal(grey: u8) -> Color {
     Color::Indexed(TERMINAL[usize::from(grey.min(BRIGHTEST_GREY))])
 }

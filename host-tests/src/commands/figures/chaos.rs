@@ -29,7 +29,6 @@ pub struct Chaos {
     pub paths: [Path; 2],
 }
 
-/// A path of bob 2.
 #[derive(Clone, Debug)]
 pub struct Path {
     /// Its points, m right of the pivot and above it.

@@ -15,7 +15,6 @@ const MARKED: [f64; 3] = [0.2, 1.0, 5.0];
 /// Mass ratios and both frequencies there, fast and slow, of equal rods in sqrt(g/l).
 #[derive(Clone, Debug)]
 pub struct Frequencies {
-    /// The curves' points: mass ratio, fast, slow.
     pub points: Vec<[f64; 3]>,
     marks: Vec<[f64; 3]>,
 }

@@ -15,12 +15,10 @@ use firmware::scenes::SceneName;
 
 use crate::emulator::toolchain::workspace;
 
-/// The folder in which they are kept.
 pub fn folder() -> PathBuf {
     workspace().join("host-tests/pictures")
 }
 
-/// Those in it.
 pub const FOLDERS: [&str; 2] = ["figures", "panel"];
 
 /// Every file that the command writes: its name in that folder and what is in it.

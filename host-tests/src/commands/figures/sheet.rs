@@ -13,7 +13,6 @@ const TYPEFACE: &str = "sans-serif";
 
 /// Black is hard on white.
 pub const TEXT: RGBColor = RGBColor(34, 34, 34);
-/// Lines behind the curves.
 pub const GRID: RGBColor = RGBColor(225, 225, 225);
 /// Two colours that anybody can tell apart.
 pub const BLUE: RGBColor = RGBColor(0, 95, 175);
@@ -21,15 +20,12 @@ pub const ORANGE: RGBColor = RGBColor(205, 85, 15);
 
 /// Where a figure, or a part of it, is drawn.
 pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-/// An area with axes.
 pub type Axes<'a> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
-/// A length in units as dots.
 pub const fn units(length: u32) -> u32 {
     length * DOTS
 }
 
-/// A line `width` tenths of a unit wide.
 pub fn line(colour: RGBColor, width: u32) -> ShapeStyle {
     colour.stroke_width(units(width).div_ceil(10))
 }
@@ -40,7 +36,6 @@ pub fn pale(RGBColor(red, green, blue): RGBColor, strength: f64) -> RGBColor {
     RGBColor(red, green, blue)
 }
 
-/// Text `height` units high.
 pub fn text(height: u32) -> TextStyle<'static> {
     (TYPEFACE, units(height)).into_font().color(&TEXT)
 }
@@ -54,19 +49,16 @@ pub fn headed<'a>(area: &Area<'a>, line: &str, style: TextStyle<'_>) -> Result<A
     Ok(rest)
 }
 
-/// What the axes of a chart are.
 #[derive(Clone, Debug)]
 pub struct Chart<'a> {
     /// The quantity across with its unit (empty: the chart below names it), and its range.
     pub across: (&'a str, [f64; 2]),
-    /// The quantity upwards.
     pub upwards: (&'a str, [f64; 2]),
     /// At most so many numbers along each.
     pub ticks: [usize; 2],
 }
 
 impl Chart<'_> {
-    /// Draws the axes with their numbers and names.
     pub fn draw<'a>(&self, area: &Area<'a>) -> Result<Axes<'a>> {
         let ((across, [left, right]), (upwards, [bottom, top])) = (self.across, self.upwards);
         let mut chart = ChartBuilder::on(area)

@@ -23,10 +23,8 @@ pub struct Small {
     pub points: Vec<CurvePoint>,
 }
 
-/// What a figure shows of one moment.
 #[derive(Clone, Copy, Debug)]
 pub struct CurvePoint {
-    /// Since the start, s.
     pub time: f64,
     /// Both angles, degrees.
     pub angles: [f64; 2],

@@ -22,7 +22,6 @@ pub struct Judgement {
     pub points: usize,
     /// Of them, those whose time is more than a grey level off.
     pub wrong: usize,
-    /// Those in doubt.
     pub doubtful: usize,
     /// Those that are wrong and not in doubt.
     pub unsuspected: usize,
@@ -31,8 +30,8 @@ pub struct Judgement {
 /// Has the reference judge so many points of the upper half of a map that may turn over, drawn at random, the same in each run:
 /// 0.1 s each. How many of them are more than a grey level off.
 pub fn sample(map: &Map, judged: usize) -> Result<usize, Error> {
-    let points = map.points(0..map.square.rows())?;
-    let starts = map.starts(0..map.square.rows()).zip(points);
+    let points = map.points(|_| ())?;
+    let starts = map.starts().zip(points);
     let mut candidates: Vec<_> = starts.filter(|(_, point)| point.flip != Flip::Never).collect();
     Rng::with_seed(1).shuffle(&mut candidates);
     let is_wrong = |(start, point): &([f32; 2], Followed)| map.differ(point.flip, exact(map, *start));
@@ -41,11 +40,11 @@ pub fn sample(map: &Map, judged: usize) -> Result<usize, Error> {
 
 /// Judges all points of the upper half of a map by fine steps in `f64`.
 pub fn judge(map: &Map) -> Result<Judgement, Error> {
-    let points = map.points(0..map.square.rows())?;
+    let points = map.points(|_| ())?;
     let dt = map.dt / f64::from(FINER);
     let fine = Flips::<DirectionF64>::new(&map.parameters.cast(), dt, (f64::from(map.limit) / dt) as u32)?;
     let mut verdict = Judgement::default();
-    for (start, point) in map.starts(0..map.square.rows()).zip(points) {
+    for (start, point) in map.starts().zip(points) {
         let [a1, a2] = start.map(f64::from);
         let exact = match fine.of(a1, a2)? {
             _ if point.flip == Flip::Never => continue,

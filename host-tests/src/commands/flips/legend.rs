@@ -68,7 +68,6 @@ impl Legend {
         }
     }
 
-    /// Writes words; where they end.
     fn text(&mut self, [mut x, y]: [usize; 2], words: &str) -> usize {
         for glyph in words.chars().map(glyph) {
             for bit in (0..64).filter(|bit| glyph.rows << bit >> 63 == 1) {

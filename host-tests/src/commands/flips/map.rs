@@ -38,27 +38,24 @@ impl Map {
         Search::new(&self.parameters, dt, (f64::from(self.limit) / dt).ceil() as u32)
     }
 
-    /// Rows computed at once: work for every thread.
-    pub fn band(&self) -> usize {
-        let [width, _] = self.square.size;
-        (2 * rayon::current_num_threads() * PORTION).div_ceil(width)
-    }
-
     /// A pendulum's map with the step that suits it, for a time `limit`, sqrt(l1/g), of the pendulum's l1 being its g.
     pub fn new(parameters: Parameters<f32>, limit: f32, square: Square) -> Result<Self, Error> {
         Ok(Self { parameters, dt: step_size(&parameters)?, limit, square })
     }
 
-    pub fn starts(&self, rows: std::ops::Range<usize>) -> impl Iterator<Item = [f32; 2]> + '_ {
+    /// Row by row; of a whole square, the upper half.
+    pub fn starts(&self) -> impl Iterator<Item = [f32; 2]> + '_ {
         let [width, _] = self.square.size;
-        rows.flat_map(move |row| (0..width).map(move |column| self.square.start([column, row])))
+        (0..self.square.rows()).flat_map(move |row| (0..width).map(move |column| self.square.start([column, row])))
     }
 
-    pub fn points(&self, rows: std::ops::Range<usize>) -> Result<Vec<Followed>, Error> {
-        let starts: Vec<[f32; 2]> = self.starts(rows).collect();
+    /// What becomes of each; `tick` is told how many more are done.
+    pub fn points(&self, tick: impl Fn(usize) + Sync) -> Result<Vec<Followed>, Error> {
+        let starts: Vec<[f32; 2]> = self.starts().collect();
         let searches = [self.search(1)?, self.search(2)?];
         let portions = starts.par_chunks(PORTION).map(|portion| {
             let [flips, checks] = [flips(&searches[0], portion)?, flips(&searches[1], portion)?];
+            tick(portion.len());
             Ok(flips.into_iter().zip(checks).map(|(flip, check)| Followed { flip, check }).collect::<Vec<_>>())
         });
         Ok(portions.collect::<Result<Vec<_>, Error>>()?.concat())

@@ -17,8 +17,7 @@ Examples:
   cargo flips --size 1024 --out flips.png
   cargo flips --size 512 --limit 100 --centre 1.9,2.2 --zoom 8 --doubt --out corner.png
 
-Ctrl-C leaves what is done as a picture; the same command with --resume goes on, to the same bytes as if it had never
-stopped. Bad input: one line on stderr, exit code 2.";
+Bad input: one line on stderr, exit code 2.";
 
 /// Draws when a rod first turns over, for every start from rest: a1 across, a2 upwards, colour the time.
 ///
@@ -48,9 +47,6 @@ pub struct FlipsOptions {
     /// Show the starts of which the two steps differ by more than a grey level of the panel
     #[arg(long)]
     pub doubt: bool,
-    /// Go on where an interrupted run of the same map has stopped
-    #[arg(long)]
-    pub resume: bool,
     /// What to write: a picture (.png) or a table (.csv)
     #[arg(long, value_name = "FILE", default_value = "flips.png")]
     pub out: PathBuf,

@@ -13,9 +13,7 @@ use crate::console::cli::Refused;
 /// A kind of file, by its name's end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// `.png`
     Picture,
-    /// `.csv`
     Table,
 }
 
@@ -28,11 +26,11 @@ impl Kind {
         }
     }
 
-    /// The file of a map, of which the first `points` are done; `doubt` has a colour of its own where it is asked for.
+    /// The file of a map; `doubt` has a colour of its own where it is asked for.
     pub fn file(self, map: &Map, points: &[Followed], doubt: bool) -> Result<Vec<u8>> {
         let [width, height] = map.square.size;
         let places = (0..height).flat_map(|row| (0..width).map(move |column| [column, row]));
-        let pixels = places.map(|place| (place, points.get(map.square.place(place)).copied()));
+        let pixels = places.map(|place| (place, points[map.square.place(place)]));
         match self {
             Self::Picture => picture(map, pixels.map(|(_, point)| colour(map, point, doubt)), doubt),
             Self::Table => table(map, pixels),
@@ -40,28 +38,23 @@ impl Kind {
     }
 }
 
-/// Red, green, blue.
 pub type Colour = [u8; 3];
 
-/// There is not the energy for it; not within the limit; the two steps do not agree; not computed yet.
+/// There is not the energy for it; not within the limit; the two steps do not agree.
 pub const NEVER: Colour = [0, 0, 0];
 pub const LATER: Colour = [110, 110, 118];
 pub const DOUBT: Colour = [255, 0, 90];
-const UNDONE: Colour = [255, 255, 255];
 
 /// The colour of a share of the scale: viridis, in which equal steps look equal; bright is early.
 pub fn scale(share: f32) -> Colour {
     colorous::VIRIDIS.eval_continuous(f64::from(1.0 - share)).as_array()
 }
 
-fn colour(map: &Map, point: Option<Followed>, doubt: bool) -> Colour {
-    match point {
-        None => UNDONE,
-        Some(point) if doubt && map.is_in_doubt(point) => DOUBT,
-        Some(Followed { flip, .. }) => match flip {
-            Flip::Never => NEVER,
-            _ => map.share(flip).map_or(LATER, scale),
-        },
+fn colour(map: &Map, point: Followed, doubt: bool) -> Colour {
+    match point.flip {
+        _ if doubt && map.is_in_doubt(point) => DOUBT,
+        Flip::Never => NEVER,
+        flip => map.share(flip).map_or(LATER, scale),
     }
 }
 
@@ -80,16 +73,15 @@ fn picture(map: &Map, pixels: impl Iterator<Item = Colour>, doubt: bool) -> Resu
 }
 
 /// A row for each pixel, from the top left corner.
-fn table(map: &Map, pixels: impl Iterator<Item = ([usize; 2], Option<Followed>)>) -> Result<Vec<u8>> {
+fn table(map: &Map, pixels: impl Iterator<Item = ([usize; 2], Followed)>) -> Result<Vec<u8>> {
     let mut text = String::from("a1,a2,time,half_step\n");
     let word = |flip: Flip<f32>| match flip {
         Flip::Never => "never".to_owned(),
         Flip::After(time) => time.to_string(),
         Flip::Later => "later".to_owned(),
     };
-    for (place, point) in pixels {
-        let ([a1, a2], point) = (map.square.start(place), point.map(|point| [point.flip, point.check].map(word)));
-        let [time, check] = point.unwrap_or_default();
+    for (place, Followed { flip, check }) in pixels {
+        let ([a1, a2], [time, check]) = (map.square.start(place), [flip, check].map(word));
         writeln!(text, "{a1},{a2},{time},{check}")?;
     }
     Ok(text.into_bytes())

@@ -3,9 +3,7 @@
 /// A rectangle of starts, a1 across and a2 upwards.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Square {
-    /// Pixels across and down.
     pub size: [usize; 2],
-    /// The start in the middle, rad.
     pub centre: [f64; 2],
     /// From the middle to each side, rad.
     pub half: f64,

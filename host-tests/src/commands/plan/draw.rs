@@ -13,7 +13,6 @@ use crate::oracle::random::{log_uniform, symmetric};
 
 /// The height of the display, pixels: half of one may be missed.
 pub const HEIGHT: f64 = 64.0;
-/// Frames per second.
 pub const RATE: u16 = 60;
 /// The length of rod 1, m: with gravity given, too, the mass and length ratios are all there is.
 const ROD: f64 = 1.0;

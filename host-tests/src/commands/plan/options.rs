@@ -3,20 +3,19 @@
 use anyhow::{anyhow, ensure};
 use clap::Parser;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
+use double_pendulum::Motion;
 use double_pendulum::plan::{Limit, Plan, PlanError, Problem};
-use double_pendulum::{Motion, Parameter};
 use firmware::motion::{Shown, half_pixel, problem};
 use firmware::scenes::SceneName;
 
 use super::target::{CHIPS, Chip};
-use crate::commands::simulate::{Number, StartOptions};
+use crate::commands::simulate::{Number, StartOptions, option_of};
 use crate::console::cli::choice;
 use crate::emulator::host::Show;
 
 /// A scene, and the chip that computes it.
 #[derive(Debug, Parser)]
 pub struct SceneOptions {
-    /// What moves.
     #[command(flatten)]
     pub start: StartOptions,
     /// A scene of the boards as they start it, in place of all that moves: angles and masses are then the nearest `f32`
@@ -52,8 +51,11 @@ impl SceneOptions {
             Some(name) => self.of_scene(name)?,
             None => self.given()?,
         };
-        let plan = self.target.plan(&problem);
-        Ok((problem, plan.map_err(|error| anyhow!("{}: {error}", option_of(&error)))?))
+        let plan = self.target.plan(&problem).map_err(|error| match error {
+            PlanError::Refused(error) => anyhow!("{}: {error}", option_of(&error, "the scene")),
+            error => anyhow!("the scene: {error}"),
+        });
+        Ok((problem, plan?))
     }
 
     /// What a board of this class plans when it starts the scene.
@@ -84,23 +86,5 @@ impl SceneOptions {
             duration: self.duration.value(),
             rate: rate.value() as u16,
         })
-    }
-}
-
-/// The option that sets what is refused.
-fn option_of(error: &PlanError) -> &'static str {
-    match error {
-        PlanError::Refused(error) => match error.parameter() {
-            Parameter::M1 | Parameter::M2 | Parameter::Mu => "--masses",
-            Parameter::L1 | Parameter::L2 => "--lengths",
-            Parameter::G => "--gravity",
-            Parameter::A1 | Parameter::A2 => "--angles",
-            Parameter::W1 | Parameter::W2 | Parameter::P1 | Parameter::P2 => "--velocities",
-            Parameter::Tolerance => "--height",
-            Parameter::Duration => "--duration",
-            Parameter::Rate => "--rate",
-            _ => "the scene",
-        },
-        _ => "the scene",
     }
 }

@@ -14,7 +14,6 @@ use crate::commands::table::{Table, small};
 /// How long the scenes of a study last, s.
 pub const DURATIONS: Range<f64> = 2.0..30.0;
 
-/// A scene with its plan and what became of it.
 #[derive(Clone, Copy, Debug)]
 pub struct Case {
     /// Its place in the drawing, from 0.

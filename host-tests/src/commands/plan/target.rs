@@ -8,7 +8,6 @@ use firmware::config::{CORTEX_M0PLUS, CORTEX_M3, CORTEX_M4F, Processor, STM32F40
 pub struct Chip {
     pub name: &'static str,
     pub title: &'static str,
-    /// Its clock, Hz.
     pub clock: f32,
     /// What its steps cost, and what may be spent.
     pub processor: Processor,

@@ -36,7 +36,6 @@ pub fn words(scene: &Problem, plan: &Result<Plan, Limit>, chip: &Chip) -> Vec<St
     lines
 }
 
-/// Rounded up.
 fn pixels(error: f32) -> String {
     if error < 1e-3 {
         String::from("a thousandth of a pixel")
@@ -83,7 +82,6 @@ fn limit(plan: &Plan, frame: f32) -> String {
     }
 }
 
-/// Why nothing holds.
 fn forbidden(limit: Limit, frame: f32) -> String {
     match limit {
         Limit::Budget => format!("steps fine enough cost more than the {frame:.0} cycles allowed for a frame"),
@@ -92,7 +90,6 @@ fn forbidden(limit: Limit, frame: f32) -> String {
     }
 }
 
-/// What the proven bounds say.
 fn energy(scene: &Problem) -> Option<String> {
     let pendulum = Pendulum::new(&scene.pendulum).ok()?;
     let state = pendulum.to_state(&scene.start);

@@ -7,7 +7,7 @@ use reference::enclosure::{Fixed, Start};
 
 /// A frame beside the exact motion.
 #[derive(Clone, Copy, Debug)]
-pub struct ProvedFrame {
+pub struct Verdict {
     /// Where the rods point, (sin, cos) each.
     exact: [[Fixed; 2]; 2],
     /// So far that may be from the middle of the box.
@@ -16,7 +16,7 @@ pub struct ProvedFrame {
 }
 
 /// Every frame until one that is proved wrong, as long as the motion can be followed.
-pub fn frames(scene: &Problem, start: &Start, way: Way) -> Result<impl Iterator<Item = ProvedFrame>, Error> {
+pub fn frames(scene: &Problem, start: &Start, way: Way) -> Result<impl Iterator<Item = Verdict>, Error> {
     let mut motion = PlannedRun::new(&scene.pendulum, &scene.start, scene.rate, way)?;
     let (scene, mut set, mut last) = (*scene, start.enclose(scene.rate), None);
     Ok((0..scene.frames()).map_while(move |_| {
@@ -25,7 +25,7 @@ pub fn frames(scene: &Problem, start: &Start, way: Way) -> Result<impl Iterator<
         let shown = || motion.directions().map(|direction| direction.map(|x| Fixed::of(x.into())));
         last = drawn.map_or(Some(false), |()| are_near(&scene, &exact, &shown(), scene.tolerance));
         let width = exact.as_flattened().iter().map(|x| x.radius()).fold(0.0, f64::max);
-        Some(ProvedFrame { exact, width, is_right: last })
+        Some(Verdict { exact, width, is_right: last })
     }))
 }
 
@@ -41,12 +41,12 @@ fn are_near(scene: &Problem, one: &[[Fixed; 2]; 2], other: &[[Fixed; 2]; 2], tol
 }
 
 /// So many frames are right, from the start on; and of so many neither is proved.
-pub fn counts(frames: &[ProvedFrame]) -> (u32, usize) {
+pub fn counts(frames: &[Verdict]) -> (u32, usize) {
     let right = frames.iter().take_while(|frame| frame.is_right == Some(true)).count();
     (right as u32, frames.iter().filter(|frame| frame.is_right.is_none()).count())
 }
 
-impl ProvedFrame {
+impl Verdict {
     /// At `time`, s: the middles of the box that the exact motion is in, how far it may be from them, and what is proved of the frame drawn.
     pub fn row(&self, time: f64) -> String {
         let middles = self.exact.as_flattened().iter().map(|x| x.about().to_string()).collect::<Vec<_>>().join(",");
@@ -73,17 +73,10 @@ fn told_apart(scene: &Problem) -> Option<f64> {
 }
 
 /// What is proved, a line each.
-pub fn words(
-    scene: &Problem,
-    plan: &Result<Plan, Limit>,
-    Way { method, steps }: Way,
-    frames: &[ProvedFrame],
-) -> String {
+pub fn words(scene: &Problem, plan: &Result<Plan, Limit>, Way { method, steps }: Way, frames: &[Verdict]) -> String {
     let ((right, open), end) = (counts(frames), scene.time(frames.len() as u32));
-    let first = match frames.last() {
-        Some(ProvedFrame { is_right: Some(false), .. }) => {
-            format!("wrong at {end:.3} s: more than {HALF_PIXEL} pixels off")
-        }
+    let first = match frames.last().map(|frame| frame.is_right) {
+        Some(Some(false)) => format!("wrong at {end:.3} s: more than {HALF_PIXEL} pixels off"),
         _ => format!("none wrong of all {} frames, until {end:.3} s", frames.len()),
     };
     let predicted = match plan {

@@ -11,7 +11,7 @@ use crate::commands::plan::{M3, M4F, PICO, SceneOptions};
 use crate::commands::simulate::Number;
 use crate::oracle::known_answers::KnownAnswer;
 use horizon::counts;
-pub use horizon::{ProvedFrame, frames, words};
+pub use horizon::{Verdict, frames, words};
 
 /// The scenes that move, if only in the end.
 pub fn moving() -> impl Iterator<Item = &'static SceneName> {

@@ -7,7 +7,6 @@ use super::scene::{SAMPLES, Scene};
 use crate::oracle::trials::apart;
 use reference::taylor::Reference;
 
-/// The largest error over a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Error {
     /// Of an angle, rad, whole turns apart.

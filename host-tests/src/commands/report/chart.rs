@@ -12,7 +12,6 @@ use super::join::Point;
 use super::scene::Scene;
 use crate::emulator::boards::Board;
 
-/// Pixels.
 const SIZE: (u32, u32) = (860, 460);
 /// Points outside are not drawn. Errors fall to the right.
 const ERRORS: Range<f64> = 1e-15..0.1;

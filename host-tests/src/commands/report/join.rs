@@ -22,10 +22,8 @@ pub struct Point {
     pub name: &'static str,
     pub scene: &'static Scene,
     pub board: &'static Board,
-    /// Steps a second.
     pub rate: u32,
     pub step: StepCost,
-    /// The largest over the scene.
     pub error: Error,
     /// Another point of the scene and board has neither more cycles nor a larger error, and less of one.
     pub dominated: bool,

@@ -15,6 +15,6 @@ pub use list::list;
 pub use number::Number;
 pub use options::{Place, SimulateOptions};
 pub use request::{Plan, plan};
-pub use start::{Pair, StartOptions};
-pub use table::{COLUMNS, Column, CsvRows};
+pub use start::{Pair, StartOptions, option_of};
+pub use table::{COLUMNS, Column, header, row};
 pub use tolerance::{Choice, choose};

@@ -31,10 +31,6 @@ impl Number {
         self.fraction.map(|(numerator, denominator)| (numerator, denominator.unsigned_abs()))
     }
 
-    pub fn is_negative(&self) -> bool {
-        self.value < 0.0
-    }
-
     pub fn is_positive(&self) -> bool {
         self.value > 0.0
     }

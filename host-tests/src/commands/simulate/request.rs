@@ -3,11 +3,10 @@
 use anyhow::{Context, anyhow, bail, ensure};
 use double_pendulum::{Error, Method, Parameter};
 use firmware::job::{JobError, Request};
-use firmware::protocol::Field;
 
 use super::options::name;
 use super::price::methods;
-use super::{Number, SimulateOptions};
+use super::{Number, SimulateOptions, option_of};
 
 /// A checked request and the time from row to row.
 #[derive(Debug)]
@@ -36,7 +35,7 @@ pub fn plan(options: &SimulateOptions) -> anyhow::Result<Plan> {
     for (option, time) in [("--step", step), ("--every", every)] {
         ensure!(time.is_positive(), "{option} {time}: must be greater than zero");
     }
-    ensure!(!until.is_negative(), "--until {until}: must not be negative");
+    ensure!(until.value() >= 0.0, "--until {until}: must not be negative");
     let total = count(("--until", until), ("--step", step))?;
     let stride = count(("--every", every), ("--step", step))?;
     ensure!(total % stride == 0, "--until {until}: must be a whole multiple of --every {every}");
@@ -89,7 +88,7 @@ pub(super) fn accepted(options: &SimulateOptions, request: &Request) -> anyhow::
         JobError::Refused(Error::Diverged { parameter: Parameter::Energy, .. }) => {
             anyhow!("--velocities {}: the energy at the start is too large a number", options.start.velocities)
         }
-        JobError::Refused(error) => anyhow!("{}: {error}", option_of(error.into())),
+        JobError::Refused(error) => anyhow!("{}: {error}", option_of(&error, "--step")),
     })
 }
 
@@ -102,19 +101,4 @@ pub(super) fn method(options: &SimulateOptions) -> anyhow::Result<Method> {
         "--method {method}: not on {place}; --list says where it runs"
     );
     Ok(method)
-}
-
-/// The option that sets a field of the request.
-fn option_of(field: Field) -> &'static str {
-    match field {
-        Field::Method => "--method",
-        Field::M1 | Field::M2 => "--masses",
-        Field::L1 | Field::L2 => "--lengths",
-        Field::G => "--gravity",
-        Field::A1 | Field::A2 => "--angles",
-        Field::W1 | Field::W2 => "--velocities",
-        Field::Dt => "--step",
-        // What only a command has.
-        other => other.name(),
-    }
 }

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 use std::fmt;
 
 use clap::Args;
-use double_pendulum::{Motion, Parameters};
+use double_pendulum::{Error, Motion, Parameter, Parameters};
 use firmware::config::{FIRST_ANGLE, GRAVITY};
 
 use super::Number;
@@ -97,5 +97,21 @@ impl StartOptions {
 
     fn radians(&self, angle: f64) -> f64 {
         if self.degrees { angle * DEGREE } else { angle }
+    }
+}
+
+/// The option that sets what is refused, if it is of this pendulum or how it is shown.
+pub fn option_of(error: &Error, otherwise: &'static str) -> &'static str {
+    match error.parameter() {
+        _ if matches!(error, Error::Diverged { .. }) => otherwise,
+        Parameter::M1 | Parameter::M2 | Parameter::Mu => "--masses",
+        Parameter::L1 | Parameter::L2 => "--lengths",
+        Parameter::G => "--gravity",
+        Parameter::A1 | Parameter::A2 => "--angles",
+        Parameter::W1 | Parameter::W2 | Parameter::P1 | Parameter::P2 => "--velocities",
+        Parameter::Tolerance => "--height",
+        Parameter::Duration => "--duration",
+        Parameter::Rate => "--rate",
+        _ => otherwise,
     }
 }

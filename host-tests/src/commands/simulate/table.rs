@@ -1,11 +1,9 @@
 //! The rows of the CSV.
 
-use std::io::{self, Write};
-
 use double_pendulum::{Numbers, Parameters, Pendulum};
 use firmware::job::Reading;
 
-use super::{Number, Plan, SimulateOptions};
+use super::{Plan, SimulateOptions};
 
 /// A column: its name, its unit, and its number in a row.
 #[derive(Clone, Copy, Debug)]
@@ -49,62 +47,31 @@ impl Row<'_> {
     }
 }
 
-/// Writes readings as CSV, one row each, from t = 0.
-pub struct CsvRows<'a, W> {
-    output: W,
-    options: &'a SimulateOptions,
-    parameters: Parameters<f64>,
-    /// Whether numbers have the digits of an `f32`.
-    single: bool,
-    every: Number,
-    rows: u64,
+/// The first line: what the columns are.
+pub fn header(options: &SimulateOptions) -> String {
+    let columns = options.columns.iter().map(|Column { name, unit, .. }| match options.units {
+        true => format!("{name} [{unit}]"),
+        false => (*name).to_owned(),
+    });
+    let bits = ["a1_bits", "a2_bits", "p1_bits", "p2_bits"].into_iter().filter(|_| options.bits);
+    columns.chain(bits.map(str::to_owned)).collect::<Vec<_>>().join(",")
 }
 
-impl<'a, W: Write> CsvRows<'a, W> {
-    /// The rows of `plan`, with the columns of `options`. Nothing is written yet.
-    pub fn new(output: W, plan: &Plan, options: &'a SimulateOptions) -> Self {
-        let single = plan.request.method.numbers() == Numbers::F32;
-        Self { output, options, parameters: plan.request.parameters, single, every: plan.every.clone(), rows: 0 }
-    }
-
-    /// Writes the next row, and the header before the first.
-    pub fn row(&mut self, reading: &Reading) -> io::Result<()> {
-        if self.rows == 0 {
-            self.header()?;
-        }
-        let row = Row { time: self.every.times(self.rows), reading, parameters: self.parameters };
-        let numbers = self.options.columns.iter().map(|Column { name, number, .. }| match (number(&row), *name) {
-            (time, "t") => shortest(time, time),
-            (number, _) if self.single => shortest(number as f32, number as f32),
-            (number, _) => shortest(number, number),
-        });
-        let bits = reading.state.iter().filter(|_| self.options.bits).map(|&number| match self.single {
-            true => format!("{:08x}", (number as f32).to_bits()),
-            false => format!("{:016x}", number.to_bits()),
-        });
-        let cells: Vec<_> = numbers.chain(bits).collect();
-        writeln!(self.output, "{}", cells.join(","))?;
-        self.rows += 1;
-        Ok(())
-    }
-
-    fn header(&mut self) -> io::Result<()> {
-        let columns = self.options.columns.iter().map(|Column { name, unit, .. }| match self.options.units {
-            true => format!("{name} [{unit}]"),
-            false => (*name).to_owned(),
-        });
-        let bits = ["a1_bits", "a2_bits", "p1_bits", "p2_bits"].into_iter().filter(|_| self.options.bits);
-        let cells: Vec<_> = columns.chain(bits.map(str::to_owned)).collect();
-        writeln!(self.output, "{}", cells.join(","))
-    }
-
-    pub fn rows(&self) -> u64 {
-        self.rows
-    }
-
-    pub fn finish(mut self) -> io::Result<()> {
-        self.output.flush()
-    }
+/// Row `number`, from 0.
+pub fn row(plan: &Plan, options: &SimulateOptions, number: u64, reading: &Reading) -> String {
+    // whether numbers have the digits of an f32
+    let is_single = plan.request.method.numbers() == Numbers::F32;
+    let row = Row { time: plan.every.times(number), reading, parameters: plan.request.parameters };
+    let numbers = options.columns.iter().map(|Column { name, number, .. }| match (number(&row), *name) {
+        (time, "t") => shortest(time, time),
+        (number, _) if is_single => shortest(number as f32, number as f32),
+        (number, _) => shortest(number, number),
+    });
+    let bits = reading.state.iter().filter(|_| options.bits).map(|&number| match is_single {
+        true => format!("{:08x}", (number as f32).to_bits()),
+        false => format!("{:016x}", number.to_bits()),
+    });
+    numbers.chain(bits).collect::<Vec<_>>().join(",")
 }
 
 /// The fewest digits that read back as the same number; in exponent form where that is shorter.

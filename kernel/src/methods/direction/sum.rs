@@ -2,26 +2,21 @@
 
 use core::fmt::Debug;
 
-use crate::numbers::{Real, Sealed};
+use crate::numbers::Real;
 
-/// A running sum: the number itself is kept elsewhere, what its additions lose is kept here; sealed.
-pub trait Sum<R: Real>: Sealed + Copy + Debug + PartialEq + 'static {
+/// A running sum: the number itself is kept elsewhere, what its additions lose is kept here.
+pub trait Sum<R: Real>: Copy + Debug + PartialEq + 'static {
     /// For a sum that starts at `value`, of which the number keeps as many digits as it has.
-    #[doc(hidden)]
     fn new(value: f64) -> Self;
     /// `number` + `increment`.
-    #[doc(hidden)]
     fn add(&mut self, number: R, increment: R) -> R;
     /// What the number lacks.
-    #[doc(hidden)]
     fn lost(&self) -> R;
 }
 
 /// Adds. Each addition rounds, and the error of n of them grows at least like sqrt(n).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plain;
-
-impl Sealed for Plain {}
 
 impl<R: Real> Sum<R> for Plain {
     #[inline]
@@ -43,8 +38,6 @@ impl<R: Real> Sum<R> for Plain {
 /// Three additions more for each. Source: W. Kahan, "Further remarks on reducing truncation errors", CACM 8, 1965.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Compensated<R>(R);
-
-impl<R: Real> Sealed for Compensated<R> {}
 
 impl<R: Real> Sum<R> for Compensated<R> {
     #[inline]
