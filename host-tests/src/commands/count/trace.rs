@@ -4,7 +4,7 @@
 //! writes the processor's registers to its log (`-d cpu,nochain`): no plugin, nothing to compile, the same text since
 //! 2.x. The log comes through a pipe, a few hundred thousand instructions per second.
 
-use std::io::{self, BufRead, BufReader, Read};
+use std::io::{BufRead, BufReader, ErrorKind, Read};
 use std::process::{Command, ExitStatus, Stdio};
 use std::thread;
 use std::time::Duration;
