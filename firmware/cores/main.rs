@@ -1,4 +1,4 @@
-//! Every method of the kernel for 2,000 steps: the CRC of its bits, a line each. For cores that no board here has; it knows of a
+//! Every method of the kernel for 10,000 steps: the CRC of its bits, a line each. For cores that no board here has; it knows of a
 //! machine only how to say something and how to end.
 #![no_std]
 #![no_main]
