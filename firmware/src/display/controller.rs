@@ -42,7 +42,7 @@ impl Found {
     }
 }
 
-/// What the program is built for, whatever the panel says.
+/// The controller that the build variable `PANEL` names; it overrides the status byte.
 pub const BUILT_FOR: Option<Controller> = match option_env!("PANEL") {
     None => None,
     Some(name) => match name.as_bytes() {

@@ -18,8 +18,9 @@ pub struct Outbox {
     at: usize,
     /// Bytes that are left of the message which is going out.
     left: u8,
-    /// Whether the panel's status is to be read after the messages; and what was read.
+    /// Whether to read the panel's status byte after the messages.
     asks: bool,
+    /// The status byte last read.
     status: u8,
 }
 
@@ -52,7 +53,7 @@ impl Outbox {
         }
     }
 
-    /// After the messages the panel's status is to be read.
+    /// Requests a read of the panel's status byte after the messages.
     pub fn ask(&mut self) {
         self.asks = true;
     }

@@ -50,9 +50,9 @@ const SH1106_LEFT: u8 = 2;
 const ON: &[u8] = &[0xAF];
 /// Frames between two tries of a panel that does not answer: 1 s.
 const RETRY: u32 = TICK_RATE;
-/// Columns of a part of the picture that is told again.
+/// Columns of a part of the picture that is sent again.
 const PART: usize = 16;
-/// So many parts, and two that wake the panel: all of it in 1.1 s.
+/// Parts of the picture; with the two messages that wake the panel, one a frame, all are sent again within 1.1 s.
 const PARTS: usize = PAGES * WIDTH / PART;
 /// Bytes of a frame beside which there is room for a part in a tick: it takes 23, and the bus carries 740.
 const SHORT: usize = 700;
@@ -78,12 +78,12 @@ pub enum Ssd1306Error {
 
 /// The panel: an I2C bus that it may be on.
 ///
-/// A panel that does not answer is absent: frames for it are refused at once. Once a second it is looked for, so that
-/// it may be plugged in at any time. Which controller it has it is asked then, unless that was said. What becomes of a frame is told
-/// with one of the next.
+/// A panel that does not answer is absent: its frames are refused at once. It is probed once a second, so it may be plugged in at
+/// any time. The probe also reads which controller it has, unless the build names one. The result of a frame is returned with a
+/// later one.
 ///
-/// A panel that was without power for a moment is dark, and answers all the same. So with every frame that leaves room for it in its
-/// tick, a part of the picture, or of what woke the panel, is told again.
+/// A panel that lost power for a moment is dark, yet acknowledges. So every frame that leaves room in its tick sends again a part of
+/// the picture, or one of the messages that wake the panel.
 #[derive(Debug)]
 pub struct Ssd1306<Bus> {
     bus: Bus,

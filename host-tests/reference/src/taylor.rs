@@ -142,7 +142,7 @@ impl<T: Scalar> Reference<T> {
     }
 }
 
-/// Compiled in this crate, which is optimised whatever the one that calls it is.
+/// Instantiated here, because this crate is optimised in debug builds and its callers are not.
 macro_rules! compiled_here {
     ($($number:ty),*) => {$(
         impl Reference<$number> {

@@ -32,7 +32,7 @@ fn the_map_of_a_board_is_the_hosts() -> anyhow::Result<()> {
 }
 
 #[test]
-#[ignore = "minutes: finished on every board"]
+#[ignore = "minutes: every board to the end of its map"]
 fn the_map_of_every_board_is_the_hosts() -> anyhow::Result<()> {
     BOARDS.par_iter().try_for_each(|board| map_is_the_hosts(board, 2))
 }

@@ -74,7 +74,7 @@ fn half_a_pixel_is_kept_until_the_predicted_horizon() {
 
 /// The whole study: `cargo plan --study 2000 --seed 1` makes its table.
 #[test]
-#[ignore = "ten minutes"]
+#[ignore = "four minutes"]
 fn thousands_of_scenes() {
     for seed in 1..=3 {
         let cases = study(scenes(seed, DURATIONS).take(2_000), &CHIPS, || ()).expect("good scenes");

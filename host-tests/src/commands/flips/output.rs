@@ -26,7 +26,7 @@ impl Kind {
         }
     }
 
-    /// The file of a map; `doubt` has a colour of its own where it is asked for.
+    /// The file's bytes; with `doubt`, points whose time is uncertain get a colour of their own.
     pub fn file(self, map: &Map, points: &[Followed], doubt: bool) -> Result<Vec<u8>> {
         let [width, height] = map.square.size;
         let places = (0..height).flat_map(|row| (0..width).map(move |column| [column, row]));

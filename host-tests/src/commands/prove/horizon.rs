@@ -40,7 +40,7 @@ fn are_near(scene: &Problem, one: &[[Fixed; 2]; 2], other: &[[Fixed; 2]; 2], tol
     if beyond.contains(&Some(true)) { Some(false) } else { (beyond == [Some(false); 2]).then_some(true) }
 }
 
-/// So many frames are right, from the start on; and of so many neither is proved.
+/// The number of frames proved right from the start on, and of those left open.
 pub fn counts(frames: &[Verdict]) -> (u32, usize) {
     let right = frames.iter().take_while(|frame| frame.is_right == Some(true)).count();
     (right as u32, frames.iter().filter(|frame| frame.is_right.is_none()).count())
