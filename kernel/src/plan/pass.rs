@@ -3,7 +3,7 @@
 use super::candidate::Candidate;
 use super::cost::Costs;
 use super::problem::{Perturbation, Problem};
-use super::run::{Directions, Run, distance, greater};
+use super::run::{Run, distance, greater};
 use crate::error::Error;
 use crate::methods::{DirectionF32Plain, Stepper};
 use crate::pendulum::State;
@@ -25,7 +25,7 @@ fn beside_finer_steps(method: Method) -> f32 {
 /// Steps of the finer runs for each frame: a quarter more, a half, three quarters. Fixed point has another unit of time in each, and
 /// with it other constants and roundings: what a word drops of a torque is the same for many steps while a pendulum hardly moves.
 /// Where a step is dear, one run is finer at least.
-fn finer(method: Method, steps: u32) -> [u32; 3] {
+fn steps_beside(method: Method, steps: u32) -> [u32; 3] {
     [1, 2, 3].map(|quarters: u32| {
         let least = if method == Method::Extrapolation10Fixed64 { quarters / 3 } else { quarters };
         let more = (u64::from(steps) * u64::from(quarters) / 4) as u32;
@@ -33,7 +33,7 @@ fn finer(method: Method, steps: u32) -> [u32; 3] {
     })
 }
 
-/// In 32 bits and beside 64 bits, these step sizes are tried, each half as long as the one before.
+/// Beside a run in 64 bits, a method is tried with so many times the steps to a frame.
 const SIZES: [u32; 3] = [1, 2, 4];
 
 /// Step sizes tried side by side.
@@ -67,7 +67,7 @@ impl Pass {
         let others = match beside {
             Some(exact) => [own(method, second), own(method, third), own(Method::Extrapolation10Fixed64, exact)],
             None => {
-                let ([one, two, three], [first, second, third]) = (Perturbation::ALL, finer(method, steps));
+                let ([one, two, three], [first, second, third]) = (Perturbation::ALL, steps_beside(method, steps));
                 [run(method, one, first), run(method, two, second), run(method, three, third)]
             }
         };
@@ -128,12 +128,11 @@ impl Pass {
     /// than the tolerance.
     pub fn compare(&mut self, t: f64) {
         let frames @ [own, second, third, last] = self.runs.each_mut().map(Run::frame);
-        let apart = |a: &Directions, b: &Directions| distance(self.rods, a, b);
-        let others = [second, third, last].map(|other| apart(&own, &other));
-        let greatest = others.into_iter().fold(0.0, greater);
         let (judge, margin, error, bound) = if self.is_beside_64_bits {
             (last, BESIDE_64_BITS, 0.0, 0.0)
         } else {
+            let others = [second, third, last].map(|other| distance(self.rods, &own, &other));
+            let greatest = others.into_iter().fold(0.0, greater);
             self.by_rounding = others.into_iter().any(|other| 2.0 * other < greatest);
             (own, 1.0, greatest, beside_finer_steps(self.candidates[0].method) * greatest)
         };
@@ -163,10 +162,8 @@ impl Pass {
     /// Whether it was roundings that made all of them wrong, and finer steps do not help; else how many times as many to try.
     pub fn finer(&self) -> Option<u32> {
         let [_, second, third, ..] = &self.candidates;
-        match self.is_beside_64_bits {
-            true => third.outlasts(second).then_some(8),
-            false => (!self.by_rounding).then_some(2),
-        }
+        let (helps, times) = if self.is_beside_64_bits { (third.outlasts(second), 8) } else { (!self.by_rounding, 2) };
+        helps.then_some(times)
     }
 
     /// What the next frame costs.

@@ -37,7 +37,7 @@ pub struct Plan {
     pub spent: f32,
 }
 
-/// A closer look, or finer steps, must be paid for at least so many times as long as a motion was found right before.
+/// A comparison with 64 bits is made only if the planning budget covers this many times the horizon found so far.
 const LONGER: f32 = 1.25;
 
 /// A search under way; [`advance`](Self::advance) it until there is a plan.

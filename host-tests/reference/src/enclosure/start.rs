@@ -35,7 +35,8 @@ impl Start {
             let Bounds { w1, w2, .. } = pendulum.bounds(&pendulum.to_state(&motion));
             pendulum.modes().map_or(0.0, |modes| modes.fast.frequency).max(w1).max(w2)
         });
-        let unit = (fastest / 4.0).log2().ceil() as i32;
+        // Where next to nothing moves any unit will do.
+        let unit = (fastest / 4.0).log2().ceil().max(-64.0) as i32;
         let e = (0.5 * (1.0 + m2 / m1).log2()).clamp(0.0, 7.0).round() as i32;
         let [by, by1, by2] = [m1.max(m2), l1, l2].map(|x| x.log2() as i32);
 

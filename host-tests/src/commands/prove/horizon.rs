@@ -55,14 +55,15 @@ impl Verdict {
     }
 }
 
-/// When two motions are more than the longer rod apart that start with the same digits on the panel: a mass ratio of three, angles to a
-/// degree. Where a bob is then, these digits do not say.
+/// When two motions whose starts read the same on the panel (the mass ratio to three digits, angles to a degree) are first more than
+/// the longer rod apart: from then on what the panel says of the start does not determine where a bob is.
 fn told_apart(scene: &Problem) -> Option<f64> {
     let Parameters { m1, m2, l1, l2, .. } = scene.pendulum;
     let digit = m1 * 10_f64.powf((m2 / m1).log10().floor() - 2.0);
+    let shown = [scene.start.a1, scene.start.a2].map(|a| a.to_degrees().round());
     let [mut one, mut other] = [-0.49, 0.49].map(|share| {
-        let [a1, a2] = [scene.start.a1, scene.start.a2].map(|a| a + share * 1_f64.to_radians());
-        let pendulum = Parameters { m2: m2 + share * digit, ..scene.pendulum };
+        let [a1, a2] = shown.map(|degrees| (degrees + share).to_radians());
+        let pendulum = Parameters { m2: ((m2 / digit).round() + share) * digit, ..scene.pendulum };
         Start::of(&pendulum, &Motion { a1, a2, ..scene.start }).enclose(scene.rate)
     });
     let mut verdicts = (1..=scene.frames()).map_while(|frame| {
