@@ -10,7 +10,7 @@ pub fn address(elf: &Path, name: &str) -> u32 {
     let bytes = std::fs::read(elf).unwrap_or_else(|error| panic!("{}: {error}", elf.display()));
     let file = object::File::parse(&*bytes).unwrap_or_else(|error| panic!("{}: {error}", elf.display()));
     let is_it = |mangled: &str| {
-        let whole = addr2line::demangle_auto(mangled.into(), None).replace(['<', '>'], "");
+        let whole = format!("{:#}", rustc_demangle::demangle(mangled)).replace(['<', '>'], "");
         whole == name || whole.ends_with(&format!("::{name}"))
     };
     let symbol = file.symbols().find(|symbol| symbol.name().is_ok_and(is_it));

@@ -55,7 +55,7 @@ impl Image {
                 // bit 0 only says that the code is Thumb
                 address: address & !1,
                 size: symbol.size() as u32,
-                name: addr2line::demangle_auto(name.into(), None).into_owned(),
+                name: format!("{:#}", rustc_demangle::demangle(name)),
                 symbol: name.to_owned(),
             };
             match name.split('.').next() {

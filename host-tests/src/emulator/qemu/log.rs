@@ -54,11 +54,11 @@ pub struct Log {
 impl Log {
     /// Of the firmware in the file `elf`: defmt on `stdout`, plain text on `stderr`.
     pub(super) fn new(elf: &Path, stdout: Option<ChildStdout>, stderr: Option<ChildStderr>) -> anyhow::Result<Self> {
-        let decoder = LogDecoder::new(elf)?;
+        let table = table(elf)?;
         let (sender, lines) = mpsc::channel();
         if let Some(stdout) = stdout {
             let sender = sender.clone();
-            thread::spawn(move || decode(decoder, stdout, &sender));
+            thread::spawn(move || decode(LogDecoder::of(table), stdout, &sender));
         }
         if let Some(stderr) = stderr {
             thread::spawn(move || {
@@ -92,24 +92,32 @@ fn decode(mut decoder: LogDecoder, mut stream: impl Read, lines: &Sender<LogLine
     }
 }
 
+/// The format strings in a program and where each stands in the source, if it has a log; in memory for good.
+fn table(elf: &Path) -> anyhow::Result<Option<(&'static Table, Locations)>> {
+    let program = std::fs::read(elf).with_context(|| elf.display().to_string())?;
+    let Some(table) = Table::parse(&program)? else { return Ok(None) };
+    let locations = table.get_locations(&program)?;
+    Ok(Some((Box::leak(Box::new(table)), locations)))
+}
+
 /// Makes lines of defmt's stream.
 pub struct LogDecoder {
     /// None, once the stream is damaged for good, or if the program has no log.
-    stream: Option<Box<dyn StreamDecoder + Send + Sync>>,
+    stream: Option<Box<dyn StreamDecoder>>,
     can_recover: bool,
     locations: Locations,
 }
 
 impl LogDecoder {
-    /// Of the firmware in the file `elf`. Its table stays in memory for good.
+    /// Of the firmware in the file `elf`.
     pub fn new(elf: &Path) -> anyhow::Result<Self> {
-        let program = std::fs::read(elf).with_context(|| elf.display().to_string())?;
-        let Some(table) = Table::parse(&program)? else {
-            return Ok(Self { stream: None, can_recover: false, locations: Locations::new() });
-        };
-        let locations = table.get_locations(&program)?;
-        let can_recover = table.encoding().can_recover();
-        Ok(Self { stream: Some(Box::leak(Box::new(table)).new_stream_decoder()), can_recover, locations })
+        Ok(Self::of(table(elf)?))
+    }
+
+    fn of(table: Option<(&'static Table, Locations)>) -> Self {
+        let can_recover = table.as_ref().is_some_and(|(table, _)| table.encoding().can_recover());
+        let (stream, locations) = table.map(|(table, locations)| (table.new_stream_decoder(), locations)).unzip();
+        Self { stream, can_recover, locations: locations.unwrap_or_default() }
     }
 
     /// Takes the next bytes; the lines that they complete.

@@ -7,8 +7,10 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use addr2line::Loader;
+use addr2line::Context;
+use addr2line::gimli::{self, Dwarf, EndianSlice, LittleEndian, SectionId};
 use host_tests::emulator::boards::{BOARDS, every_board};
+use object::{Object, ObjectSection};
 
 use crate::support::code::Code;
 
@@ -67,7 +69,7 @@ fn is_helper(name: &str) -> bool {
 /// The places outside of the core library's helpers where a panic begins.
 fn places(elf: &Path) -> Vec<Place> {
     let code = Code::read(elf).unwrap_or_else(|error| panic!("{}: {error}", elf.display()));
-    let lines = Loader::new(elf).unwrap_or_else(|error| panic!("{}: {error}", elf.display()));
+    let lines = lines(elf).unwrap_or_else(|error| panic!("{}: {error}", elf.display()));
     let mut panicking: Vec<_> = code.functions_named(|name| name.ends_with("rust_begin_unwind")).collect();
     assert_eq!(panicking.len(), 1, "one panic handler in {}", elf.display());
     let mut places = BTreeSet::new();
@@ -92,9 +94,22 @@ fn places(elf: &Path) -> Vec<Place> {
     places.into_iter().collect()
 }
 
-fn frames(lines: &Loader, address: u32) -> Vec<(String, String)> {
+/// Which function and line each instruction is of.
+type Lines = Context<EndianSlice<'static, LittleEndian>>;
+
+fn lines(elf: &Path) -> anyhow::Result<Lines> {
+    let file = object::File::parse(&*std::fs::read(elf)?.leak())?;
+    let section = |id: SectionId| {
+        let data = file.section_by_name(id.name()).and_then(|section| section.data().ok());
+        Ok::<_, gimli::Error>(EndianSlice::new(data.unwrap_or_default(), LittleEndian))
+    };
+    Ok(Context::from_dwarf(Dwarf::load(section)?)?)
+}
+
+fn frames(lines: &Lines, address: u32) -> Vec<(String, String)> {
     let mut frames = Vec::new();
-    let mut found = lines.find_frames(address.into()).unwrap_or_else(|error| panic!("{address:#x}: {error}"));
+    let found = lines.find_frames(address.into()).skip_all_loads();
+    let mut found = found.unwrap_or_else(|error| panic!("{address:#x}: {error}"));
     while let Some(frame) = found.next().unwrap_or_else(|error| panic!("{address:#x}: {error}")) {
         let name = frame.function.and_then(|function| Some(function.demangle().ok()?.into_owned())).unwrap_or_default();
         let line = frame.location.and_then(|at| Some(format!("{}:{}", at.file?, at.line?))).unwrap_or_default();
