@@ -2,7 +2,8 @@
 
 use std::env;
 use std::ffi::OsString;
-use std::path::{Path, PathBuf};
+use std::fs;
+use std::path::PathBuf;
 use std::process::Command;
 use std::sync::Mutex;
 use std::time::Duration;
@@ -65,7 +66,7 @@ impl Toolchain {
         let this = (binary.to_owned(), target.to_owned());
         if !BUILT.lock().is_ok_and(|built| built.contains(&this)) {
             let feature = every_board().find(|board| board.binary == binary).map_or("", |board| board.feature);
-            let mut command = self.for_targets("build", &[target], &Self::folder());
+            let mut command = self.for_targets("build", &[target]);
             command.args(["--bin", binary, "--features", feature]);
             self.finish(command, &format!("building {binary} for {target}"))?;
             BUILT.lock().into_iter().for_each(|mut built| built.push(this.clone()));
@@ -75,21 +76,27 @@ impl Toolchain {
 
     /// Builds the image of every method for a target; for a processor of this name that computes `f64` itself, if there is one.
     pub fn build_cores(&self, target: &str, double: Option<&str>) -> anyhow::Result<PathBuf> {
-        let folder = double.map_or_else(Self::folder, |cpu| Self::folder().join(cpu));
-        let mut command = self.for_targets("build", &[target], &folder);
+        // Both kinds come out under one name: until it is moved away, no other is built.
+        static TURN: Mutex<()> = Mutex::new(());
+        let _turn = TURN.lock();
+        let mut command = self.for_targets("build", &[target]);
         command.args(["--bin", "cores", "--features", "cores"]);
         if let Some(cpu) = double {
             // In place of the flags of the configuration, which are those of a Cortex-M4F.
             command.args(["--features", "double-pendulum-kernel/double-fpu"]);
             command.env("RUSTFLAGS", format!("-Ctarget-cpu={cpu}"));
         }
-        self.finish(command, &format!("building cores for {}", double.unwrap_or(target)))?;
-        Ok(folder.join(target).join("release/cores"))
+        let core = double.unwrap_or(target);
+        self.finish(command, &format!("building cores for {core}"))?;
+        let (built, kept) =
+            (Self::folder().join(target).join("release/cores"), Self::folder().join(format!("cores-{core}")));
+        fs::copy(built, &kept)?;
+        Ok(kept)
     }
 
     /// Builds what is run on every target, side by side.
     pub fn build_ahead(&self) -> anyhow::Result<()> {
-        let mut command = self.for_targets("build", &TARGETS, &Self::folder());
+        let mut command = self.for_targets("build", &TARGETS);
         command.args(AHEAD.iter().flat_map(|binary| ["--bin", binary]));
         self.finish(command, "building the firmware for all targets")
     }
@@ -101,8 +108,7 @@ impl Toolchain {
             let features = every_board().filter(|board| board.target == target).map(|board| board.feature);
             let features = features.collect::<Vec<_>>().join(",");
             let is_ready_made = self.core == ArmCore::ReadyMade;
-            let mut command =
-                self.for_targets(if is_ready_made { "clippy" } else { "check" }, &[target], &Self::folder());
+            let mut command = self.for_targets(if is_ready_made { "clippy" } else { "check" }, &[target]);
             command.args(["--bins", "--example", "embassy", "--features", &features]);
             if features.contains(PICO.feature) {
                 command.args(["--example", "colour_panel", "--features", "colour-panel"]);
@@ -118,9 +124,9 @@ impl Toolchain {
     }
 
     /// What cargo is to do with the optimised firmware for some targets.
-    fn for_targets(&self, what: &str, targets: &[&str], folder: &Path) -> Command {
+    fn for_targets(&self, what: &str, targets: &[&str]) -> Command {
         let mut command = self.cargo();
-        command.args([what, "--release", "--package", "firmware", "--target-dir"]).arg(folder);
+        command.args([what, "--release", "--package", "firmware", "--target-dir"]).arg(Self::folder());
         command.args(targets.iter().flat_map(|target| ["--target", target]));
         command
     }
