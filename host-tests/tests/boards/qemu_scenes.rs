@@ -21,9 +21,8 @@ const SETTLING: u32 = 6;
 /// Frames of a scene that are watched. On the M3 the butterfly's curve grows, and the most expensive one comes after 10 s.
 fn watched(board: &Board, name: SceneName) -> u32 {
     match (board.core(), name) {
-        (Core::M4F | Core::M0Plus, _) => 3 * EVERY,
         (Core::M3, SceneName::Butterfly) => 10 * TICK_RATE,
-        (Core::M3, _) => 3 * TICK_RATE,
+        _ => 3 * EVERY,
     }
 }
 
