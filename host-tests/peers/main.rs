@@ -7,9 +7,8 @@ use std::hint::black_box;
 use std::iter::successors;
 use std::time::Instant;
 
-use double_pendulum::parts::Stepper;
-use double_pendulum::trig::Own;
-use double_pendulum::{DirectionF64, DirectionF64Plain, ExtrapolationF64, Form};
+use double_pendulum::parts::{DirectionForm, Plain, Stepper};
+use double_pendulum::{DirectionF64, ExtrapolationF64, Form};
 use double_pendulum::{Motion, Parameters, State};
 use host_tests::oracle::trials::largest_difference;
 use ode_solvers::dop_shared::OutputType;
@@ -58,7 +57,7 @@ const CLASSICAL: &[Contestant] = &[
         let (pendulum, dt) = (pendulum(), scene.part / f64::from(steps));
         (0..parts * steps).fold(scene.start.into(), |state, _| pendulum.step(&state, dt)).into()
     }),
-    own(DIRECTION, form::<DirectionF64Plain>),
+    own(DIRECTION, form::<DirectionForm<f64, Plain>>),
     own("double-pendulum, direction form compensated", form::<DirectionF64>),
     peer("ode_solvers, the book's equations", 8192, |scene, parts, steps| library_rk4(book, scene, parts, steps)),
     peer("ode_solvers, this kernel's equations", 8192, |scene, parts, steps| library_rk4(ours(), scene, parts, steps)),
@@ -74,8 +73,8 @@ const TIGHT: &[Contestant] = &[
     }),
 ];
 
-fn pendulum() -> double_pendulum::Pendulum<f64, Own> {
-    double_pendulum::Pendulum::with_trig(&PARAMETERS).unwrap_or_else(|error| panic!("{error}"))
+fn pendulum() -> double_pendulum::Pendulum<f64> {
+    double_pendulum::Pendulum::new(&PARAMETERS).unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn form<F: Form>(scene: Scene, parts: u32, steps: u32) -> [f64; 4] {

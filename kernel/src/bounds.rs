@@ -2,7 +2,6 @@
 
 use crate::error::{Error, Parameter};
 use crate::numbers::Real;
-use crate::numbers::trig::SinCos;
 use crate::pendulum::{Parameters, Pendulum, State};
 use crate::small::Modes;
 
@@ -48,7 +47,7 @@ impl<R: Real> Bounds<R> {
     }
 }
 
-impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
+impl<R: Real> Pendulum<R> {
     /// The bounds of the motion through `state`.
     ///
     /// ```
@@ -103,7 +102,7 @@ impl<R: Real> Modes<R> {
     }
 }
 
-impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
+impl<R: Real> Pendulum<R> {
     /// As [`Modes::check_step`]; without gravity there are no modes and every step forward is accepted.
     pub fn check_step(&self, dt: f64) -> Result<(), Error> {
         if self.parameters().g == R::ZERO { check_forward::<R>(dt) } else { self.modes()?.check_step(dt) }

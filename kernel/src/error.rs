@@ -28,7 +28,6 @@ parameters! {
     L1 "l1" "Length of rod 1, m.";
     L2 "l2" "Length of rod 2, m.";
     G "g" "Gravitational acceleration, m/s^2.";
-    Mu "mu" "Mass ratio m2/m1.";
     A1 "a1" "Angle of rod 1, rad.";
     A2 "a2" "Angle of rod 2, rad.";
     W1 "w1" "Angular velocity of rod 1, rad/s.";
@@ -85,7 +84,7 @@ pub enum Error {
         /// The least value allowed.
         limit: f64,
     },
-    /// The equal-rod form was asked for, but the rods differ; names rod 2.
+    /// The book's misprinted equations are of equal rods, but these differ; names rod 2.
     UnequalRods {
         /// Length of rod 1, m.
         l1: f64,

@@ -7,7 +7,7 @@
 //! |---|---|
 //! | Lagrange's equations | [`Pendulum::lagrangian`], [`Pendulum::accelerations`] |
 //! | Legendre transformation | [`Pendulum::to_state`], [`Pendulum::to_motion`] |
-//! | Hamilton's equations, H | [`Pendulum::derivatives`], [`Pendulum::energy`]; equal rods: [`EqualRods`] |
+//! | Hamilton's equations, H | [`Pendulum::derivatives`], [`Pendulum::energy`]; equal rods: [`Parameters::equal_rods`] |
 //! | Runge-Kutta method | [`Pendulum::step`], [`rk4::step`] |
 //! | small oscillations | [`Modes`], [`SmallOscillations`] |
 //! | coordinates | [`Pendulum::positions`], [`Pendulum::velocities`] |
@@ -43,15 +43,15 @@
 //! documentation may change at any time.
 //!
 //! A change of any bit of a step is a major version. Steps use IEEE 754 arithmetic alone (and `sqrt` and `rint`, which are
-//! correctly rounded) as long as sines come from [`trig::Own`] for angles it reduces itself. The bits of
-//! [`trig::Libm`], of larger angles and of the `atan2` in [`Run::state`] are those of the `libm`
-//! crate that your lock file names (0.2.16 or later): to compare machines, build both with the same.
+//! correctly rounded) for angles up to 12,867 rad in `f32` and 1,647,098 rad in `f64`. The sines of larger ones and the
+//! `atan2` in [`Run::state`] are those of the `libm` crate that your lock file names (0.2.16 or later): to compare
+//! machines, build both with the same.
 //!
 //! # References
 //!
 //! - `[math24]` "Double Pendulum", math24.net, 23 August 2021: the book of this crate. Three of its formulas are
 //!   misprinted and corrected here: p2's second term ([`Pendulum::to_state`]), the sign of the quadratic Lagrangian's last
-//!   term, and the equal-rod form's second equation ([`EqualRods::derivatives`]).
+//!   term, and the equal-rod form's second equation, which lacks the factor mu in its denominator.
 //! - `[Landau]` L. D. Landau, E. M. Lifshitz, *Mechanics*, 3rd ed., Pergamon 1976.
 //! - `[Hairer I]` E. Hairer, S. P. Norsett, G. Wanner, *Solving Ordinary Differential Equations I*, 2nd ed.,
 //!   Springer 1993.
@@ -83,22 +83,18 @@ pub use bounds::{Bounds, ROUNDING_MARGIN};
 pub use error::{Error, Parameter};
 pub use methods::extrapolation::Extrapolation;
 pub use methods::{
-    ClosedFormF32, ClosedFormF64, DirectionF32, DirectionF32Plain, DirectionF64, DirectionF64Plain, ExtrapolationF64,
-    Fixed32, Fixed64, Form, HamiltonF32, HamiltonF64, Run, rk4,
+    ClosedFormF32, ClosedFormF64, DirectionF32, DirectionF32Plain, DirectionF64, ExtrapolationF64, Fixed32, Fixed64,
+    Form, HamiltonF32, HamiltonF64, Run, rk4,
 };
 pub use numbers::Real;
-#[doc(hidden)]
-pub use numbers::trig;
-pub use pendulum::{Direction, EqualRods, Motion, Parameters, Pendulum, State, Units, Vector};
+pub use pendulum::{Direction, Motion, Parameters, Pendulum, State, Vector};
 pub use small::{Mode, Modes, Oscillation, SmallOscillations, periodic_mass_ratio};
 pub use table::{Equations, Integrator, Method, Numbers};
 
 /// What the methods are made of, for tools and tests; it may change at any time.
 #[doc(hidden)]
 pub mod parts {
-    pub use crate::methods::{
-        Canonical, ClosedForm, Derivatives, Dimensionless, DirectionForm, Plain, Side, Stepper, Turns,
-    };
+    pub use crate::methods::{Canonical, ClosedForm, Derivatives, DirectionForm, Plain, Side, Stepper, Turns};
     pub use crate::numbers::{Lanes, Scalar};
 }
 

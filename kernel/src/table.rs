@@ -20,11 +20,10 @@ macro_rules! named {
 named! {
     /// What is integrated.
     Equations {
-        Hamilton "Hamilton" "Of (a1, a2, p1, p2), SI units: [`Pendulum::derivatives`](crate::Pendulum::derivatives).";
-        EqualRods "equal rods" "The same for rods of one length, without dimensions: [`EqualRods`](crate::EqualRods).";
-        Directions "directions" "Of rod directions and momenta, without sines.";
-        Textbook "textbook" "As `[math24]` prints them, nothing simplified: for comparison.";
-        Linear "linear" "Small oscillations: [`SmallOscillations`](crate::SmallOscillations).";
+        Hamilton "Hamilton" "Hamilton's equations in angles and momenta: [`Pendulum::derivatives`](crate::Pendulum::derivatives).";
+        Directions "directions" "Hamilton's equations in rod directions and momenta: no sines.";
+        Textbook "textbook" "Hamilton's equations as `[math24]` prints them, nothing simplified: for comparison.";
+        Linear "linear" "The linear equations of small oscillations: [`SmallOscillations`](crate::SmallOscillations).";
     }
 }
 
@@ -32,11 +31,11 @@ named! {
     /// What is computed in.
     Numbers {
         F32 "f32" "Single precision.";
-        CompensatedF32 "compensated f32" "Sums carry the rounding error of each addition into the next.";
+        CompensatedF32 "compensated f32" "Single precision; the rounding error of each sum is carried into the next.";
         F64 "f64" "Double precision.";
-        CompensatedF64 "compensated f64" "Sums as above.";
-        Fixed32 "fixed32" "Fixed point of 32 bits.";
-        Fixed64 "fixed64" "Fixed point of 64 bits.";
+        CompensatedF64 "compensated f64" "Double precision, likewise.";
+        Fixed32 "fixed32" "Fixed point in 32 bits.";
+        Fixed64 "fixed64" "Fixed point in 64 bits.";
     }
 }
 
@@ -44,8 +43,8 @@ named! {
     /// How a step is made.
     Integrator {
         Rk4 "RK4" "The classical Runge-Kutta method.";
-        Extrapolation "extrapolation" "W. B. Gragg's, of any even order.";
-        ClosedForm "closed form" "No steps at all: any time at once.";
+        Extrapolation "extrapolation" "W. B. Gragg's extrapolation, of any even order.";
+        ClosedForm "closed form" "The solution at any time at once, without steps.";
     }
 }
 
@@ -83,8 +82,6 @@ macro_rules! methods {
 methods! {
     Rk4F64                "rk4-f64"                 Hamilton   F64            Rk4           4;
     Rk4F32                "rk4-f32"                 Hamilton   F32            Rk4           4;
-    Rk4F64EqualRods       "rk4-f64-equal-rods"      EqualRods  F64            Rk4           4;
-    Rk4F64Direction       "rk4-f64-direction"       Directions F64            Rk4           4;
     Rk4F32Direction       "rk4-f32-direction"       Directions CompensatedF32 Rk4           4;
     Rk4F32DirectionPlain  "rk4-f32-direction-plain" Directions F32            Rk4           4;
     Rk4Fixed32            "rk4-fixed32"             Directions Fixed32        Rk4           4;
@@ -96,10 +93,8 @@ methods! {
     Extrapolation16F64    "extrapolation16-f64"     Directions CompensatedF64 Extrapolation 16;
     ClosedFormF64         "closed-form-f64"         Linear     F64            ClosedForm    0;
     ClosedFormF32         "closed-form-f32"         Linear     F32            ClosedForm    0;
-    Rk4F32Libm            "rk4-f32-libm"            Hamilton   F32            Rk4           4;
     Rk4F32Micromath       "rk4-f32-micromath"       Hamilton   F32            Rk4           4;
     TextbookF32           "textbook-f32"            Textbook   F32            Rk4           4;
-    TextbookF64           "textbook-f64"            Textbook   F64            Rk4           4;
     #[cfg(test)] Rk4F64Lagrange "rk4-f64-lagrange"  Hamilton   F64            Rk4           4;
 }
 

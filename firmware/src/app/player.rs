@@ -71,7 +71,7 @@ impl<'a> Player<'a> {
     pub fn play(&mut self, name: SceneName, settings: Settings) -> Result<(), Error> {
         self.scene.start(name, &settings, &self.means)?;
         (self.name, self.settings, self.stopped, self.next) = (name, settings, false, None);
-        self.planner.start(&settings, self.scene.shown(), self.scene.report().way);
+        self.planner.start(&settings, self.scene.viewport(), self.scene.report().way);
         self.ink.clear();
         self.report = self.now();
         Ok(())
@@ -133,7 +133,8 @@ impl<'a> Player<'a> {
     /// Never inlined: what a motion needs to start would be on the stack of every frame.
     #[inline(never)]
     fn follow(&mut self, found: &Finding) {
-        if let (Ok(Plan { method, steps, .. }), None) = (found, self.scene.shown().and_then(|shown| shown.way)) {
+        if let (Ok(Plan { method, steps, .. }), None) = (found, self.scene.viewport().and_then(|viewport| viewport.way))
+        {
             let way = Way { method: *method, steps: (*steps).max(1) };
             if self.scene.planned().is_some_and(|motion| motion.way() != way) {
                 self.next = CatchingUp::new(&self.settings, way, &self.means.processor).ok();
@@ -158,7 +159,7 @@ impl<'a> Player<'a> {
     /// The scene in numbers, with what the planner knows of it.
     fn now(&self) -> Report {
         let report = self.scene.report();
-        let (Some(_), Some(way)) = (self.scene.shown(), report.way) else { return report };
+        let (Some(_), Some(way)) = (self.scene.viewport(), report.way) else { return report };
         Report { horizon: self.planner.horizon(way) as f32, is_looking: self.planner.is_looking(), ..report }
     }
 

@@ -191,7 +191,7 @@ fn log<Panel: Debug, Link: Debug>(event: Event<Panel, Link>) {
                 cost as u32,
             )
         }
-        Event::Motion(News::Found(Err(PlanError::NothingHolds { limit, .. }))) => {
+        Event::Motion(News::Found(Err(PlanError::NoMethod { limit, .. }))) => {
             defmt::info!("plan: nothing affordable is right to half a pixel in any frame ({=str})", limit.name());
         }
         Event::Motion(News::Shown(Way { method, steps }, cost)) => {

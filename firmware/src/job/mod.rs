@@ -6,16 +6,16 @@
 //! and costs counted on the chip.
 
 mod answer;
+mod comparison;
 mod counted;
 mod drawn;
 mod reading;
 mod request;
 mod run;
 mod table;
-mod textbook;
 
 pub use answer::{Job, JobError};
 pub use reading::Reading;
 pub use request::Request;
 pub use run::Run;
-pub use table::{ON_BOARDS, OnBoards};
+pub use table::{AnyRun, ON_BOARDS, OnBoards};

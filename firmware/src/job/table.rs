@@ -3,34 +3,39 @@
 //! The first block is what every board's application computes on request. The second is computed on the host and counted on the
 //! chips by the `measure` program, and takes no flash of an application.
 
-use double_pendulum::parts::{Canonical, Dimensionless, Stepper};
-use double_pendulum::trig::{Libm, Micromath};
+use double_pendulum::parts::{Canonical, Stepper};
 use double_pendulum::{
-    ClosedFormF64, DirectionF32, DirectionF32Plain, DirectionF64Plain, ExtrapolationF64, Fixed32, Fixed64, HamiltonF32,
-    HamiltonF64, Method, Pendulum, State,
+    ClosedFormF32, ClosedFormF64, Direction, DirectionF32, DirectionF32Plain, Error, ExtrapolationF64, Fixed32,
+    Fixed64, HamiltonF32, HamiltonF64, Method, Pendulum, Real, State,
 };
 
+use super::comparison::{Micromath, Textbook};
 use super::drawn::Drawn;
-use super::textbook::Textbook;
 use super::{JobError, Reading, Request, Run, answer, counted};
+
+/// What computes a method: its form's steps, unless another type is given.
+macro_rules! run {
+    ($form:ty) => { Stepper<$form> };
+    ($form:ty, $run:ty) => { $run };
+}
 
 macro_rules! table {
     (
-        on_boards { $($method:ident: $run:ty;)* }
-        elsewhere { $($other:ident: $other_run:ty;)* }
+        on_boards { $($method:ident: $form:ty;)* }
+        elsewhere { $($other:ident: $other_form:ty $(, $other_run:ty)?;)* }
     ) => {
         /// The methods that every board's application links, the default first.
         pub const ON_BOARDS: &[Method] = &[$(Method::$method),*];
 
         #[derive(Clone, Copy, Debug)]
-        pub enum OnBoards { $(#[doc = concat!("[`Method::", stringify!($method), "`]")] $method($run),)* }
+        pub enum OnBoards { $(#[doc = concat!("[`Method::", stringify!($method), "`]")] $method(Stepper<$form>),)* }
 
         impl Run for OnBoards {
             // Apart from what else is done with a request: compilers shuffle so large a value word by word.
             #[inline(never)]
             fn start(request: &Request) -> Result<Self, JobError> {
                 match request.method {
-                    $(Method::$method => <$run>::start(request).map(Self::$method),)*
+                    $(Method::$method => Stepper::<$form>::start(request).map(Self::$method),)*
                     method => Err(JobError::NotOnBoards(method)),
                 }
             }
@@ -54,12 +59,52 @@ macro_rules! table {
             }
         }
 
+        /// A [`Run`](double_pendulum::Run) by whatever method.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub enum AnyRun { $($method(double_pendulum::Run<$form>),)* $($other(double_pendulum::Run<$other_form>),)* }
+
+        /// `$body` with the run of whichever method as `$run`.
+        macro_rules! any {
+            ($any:expr, $run:ident => $body:expr) => {
+                match $any { $(AnyRun::$method($run) => $body,)* $(AnyRun::$other($run) => $body,)* }
+            };
+        }
+
+        impl AnyRun {
+            pub fn new(method: Method, pendulum: &Pendulum<f64>, start: &State<f64>, dt: f64) -> Result<Self, Error> {
+                Ok(match method {
+                    $(Method::$method => Self::$method(pendulum.run(start, dt)?),)*
+                    $(Method::$other => Self::$other(pendulum.run(start, dt)?),)*
+                })
+            }
+
+            pub fn advance(&mut self, steps: u32) -> Result<(), Error> {
+                any!(self, run => run.advance(steps))
+            }
+
+            pub fn state(&self) -> State<f64> {
+                any!(self, run => run.state())
+            }
+
+            pub fn directions(&self) -> [Direction<f64>; 2] {
+                any!(self, run => run.directions().map(|direction| direction.map(Real::to_f64)))
+            }
+
+            pub fn angles(&self) -> [f64; 2] {
+                any!(self, run => run.angles().map(Real::to_f64))
+            }
+
+            pub fn energy(&self) -> f64 {
+                any!(self, run => run.energy().to_f64())
+            }
+        }
+
         impl Request {
             /// Gives every reading to `each`, the one at the start first, until it refuses one.
             pub fn readings<E: From<JobError>>(&self, each: impl FnMut(&Reading) -> Result<(), E>) -> Result<(), E> {
                 match self.method {
-                    $(Method::$method => answer::readings::<$run, E>(self, each),)*
-                    $(Method::$other => answer::readings::<$other_run, E>(self, each),)*
+                    $(Method::$method => answer::readings::<Stepper<$form>, E>(self, each),)*
+                    $(Method::$other => answer::readings::<run!($other_form $(, $other_run)?), E>(self, each),)*
                 }
             }
 
@@ -67,8 +112,8 @@ macro_rules! table {
             /// are bit-identical if theirs are equal.
             pub fn crc(&self) -> Result<u32, JobError> {
                 match self.method {
-                    $(Method::$method => counted::crc::<$run>(self),)*
-                    $(Method::$other => counted::crc::<$other_run>(self),)*
+                    $(Method::$method => counted::crc::<Stepper<$form>>(self),)*
+                    $(Method::$other => counted::crc::<run!($other_form $(, $other_run)?)>(self),)*
                 }
             }
         }
@@ -77,26 +122,22 @@ macro_rules! table {
 
 table! {
     on_boards {
-        Rk4F64: Stepper<HamiltonF64>;
-        Rk4F32: Stepper<HamiltonF32>;
-        Rk4F64EqualRods: Stepper<Canonical<f64, Dimensionless<f64>>>;
-        Rk4F64Direction: Stepper<DirectionF64Plain>;
-        Rk4F32Direction: Stepper<DirectionF32>;
-        Rk4F32DirectionPlain: Stepper<DirectionF32Plain>;
-        Rk4Fixed32: Stepper<Fixed32>;
-        Extrapolation8Fixed64: Stepper<Fixed64<8>>;
-        Extrapolation10Fixed64: Stepper<Fixed64<10>>;
-        Extrapolation12Fixed64: Stepper<Fixed64<12>>;
-        Extrapolation16Fixed64: Stepper<Fixed64<16>>;
-        ClosedFormF64: Stepper<ClosedFormF64>;
+        Rk4F64: HamiltonF64;
+        Rk4F32: HamiltonF32;
+        Rk4F32Direction: DirectionF32;
+        Rk4F32DirectionPlain: DirectionF32Plain;
+        Rk4Fixed32: Fixed32;
+        Extrapolation8Fixed64: Fixed64<8>;
+        Extrapolation10Fixed64: Fixed64<10>;
+        Extrapolation12Fixed64: Fixed64<12>;
+        Extrapolation16Fixed64: Fixed64<16>;
+        ClosedFormF64: ClosedFormF64;
     }
     elsewhere {
-        ClosedFormF32: Drawn;
-        Extrapolation12F64: Stepper<ExtrapolationF64<12>>;
-        Extrapolation16F64: Stepper<ExtrapolationF64<16>>;
-        Rk4F32Libm: Stepper<Canonical<f32, Pendulum<f32, Libm>>>;
-        Rk4F32Micromath: Stepper<Canonical<f32, Pendulum<f32, Micromath>>>;
-        TextbookF32: Stepper<Canonical<f32, Textbook<f32>>>;
-        TextbookF64: Stepper<Canonical<f64, Textbook<f64>>>;
+        ClosedFormF32: ClosedFormF32, Drawn;
+        Extrapolation12F64: ExtrapolationF64<12>;
+        Extrapolation16F64: ExtrapolationF64<16>;
+        Rk4F32Micromath: Canonical<f32, Micromath>;
+        TextbookF32: Canonical<f32, Textbook>;
     }
 }

@@ -1,7 +1,6 @@
 //! The motion by the equal-rod equations that the page prints.
 
-use double_pendulum::trig::{Own, SinCos};
-use double_pendulum::{Parameters, State, rk4};
+use double_pendulum::{Parameters, Real, State, rk4};
 
 use crate::config::{DT, STEPS_PER_TICK};
 use crate::graphics::RodDirections;
@@ -31,8 +30,8 @@ impl Misprinted {
     /// Equal rods, let go at `start`.
     pub fn new(&Parameters { m1, m2, l1: l, g, .. }: &Parameters<f32>, start: &State<f32>) -> Self {
         let inertia = m1 * l * l;
-        let (sin1, cos1) = Own::sin_cos(start.a1);
-        let (sin_d, cos_d) = Own::sin_cos(start.a1 - start.a2);
+        let (sin1, cos1) = start.a1.own_sin_cos();
+        let (sin_d, cos_d) = (start.a1 - start.a2).own_sin_cos();
         let z = [sin1, cos1, sin_d, cos_d, start.p1 / inertia, start.p2 / inertia];
         Self { mass_ratio: m2 / m1, gravity: g / l, inertia, z }
     }

@@ -6,6 +6,6 @@ pub mod settings;
 pub mod simulation;
 
 pub use misprinted::Misprinted;
-pub use planner::{Finding, Planner, Shown, half_pixel, problem};
+pub use planner::{Finding, Planner, Viewport, half_pixel, problem};
 pub use settings::Settings;
 pub use simulation::{CatchingUp, Energy, Means, Simulation, start_beside};

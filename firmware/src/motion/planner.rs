@@ -11,9 +11,9 @@ use crate::config::{HALF_PIXEL, PLANNED, PLANNING_PIECE, Processor, SETTLED_TICK
 use crate::motion::Settings;
 use crate::protocol::{NO_METHOD, Planned, limit_code, method_code};
 
-/// How a scene shows its motion.
+/// How a scene shows its motion: by which way, and how large.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Shown {
+pub struct Viewport {
     /// The way it is tied to; `None` if it follows the plan.
     pub way: Option<Way>,
     /// The height of a display, pixels, that shows the motion as large: both rods together are half of it long.
@@ -27,7 +27,7 @@ pub type Finding = Result<Plan, PlanError>;
 pub struct Planner {
     processor: Processor,
     ticks: u64,
-    task: Option<(Problem, Shown)>,
+    task: Option<(Problem, Viewport)>,
     search: Option<Search>,
     /// Cycles of the ticks to come that have been spent.
     debt: f32,
@@ -57,11 +57,11 @@ impl Planner {
     }
 
     /// Begins anew for a scene that starts with `settings`, and in the way `begun`; one that shows no motion has no plan.
-    pub fn start(&mut self, settings: &Settings, shown: Option<Shown>, begun: Option<Way>) {
+    pub fn start(&mut self, settings: &Settings, viewport: Option<Viewport>, begun: Option<Way>) {
         (self.ticks, self.debt) = (0, 0.0);
         (self.begun, self.begun_horizon) = (begun, 0.0);
         (self.search, self.plan, self.is_news, self.is_due) = (None, None, false, false);
-        self.task = shown.map(|shown| (problem(settings, &shown), shown));
+        self.task = viewport.map(|viewport| (problem(settings, &viewport), viewport));
     }
 
     /// Does all that this tick of the scene may spend, but what has been done before. What is found the next one tells, and does
@@ -159,7 +159,7 @@ impl Planner {
     /// Never inlined: a search stands on the stack while it is made.
     #[inline(never)]
     fn advance(&mut self) -> Result<(), PlanError> {
-        let Some((problem, Shown { way, .. })) = &self.task else { return Ok(()) };
+        let Some((problem, Viewport { way, .. })) = &self.task else { return Ok(()) };
         let Some(search) = &mut self.search else {
             let (costs, budget) = (&self.processor.costs, self.processor.budget(problem));
             self.search = Some(match way {
@@ -179,7 +179,7 @@ impl Planner {
                     self.search = None;
                 }
             }
-            Err(error @ PlanError::NothingHolds { .. }) => {
+            Err(error @ PlanError::NoMethod { .. }) => {
                 (self.search, self.plan, self.is_news) = (None, Some(Err(error)), true);
             }
             Err(error) => return Err(error),
@@ -188,7 +188,7 @@ impl Planner {
     }
 
     pub fn answer(&self, request: u16) -> Planned {
-        let Some((problem, Shown { height, .. })) = &self.task else {
+        let Some((problem, Viewport { height, .. })) = &self.task else {
             return Planned { request, ..Planned::default() };
         };
         let budget = self.processor.budget(problem);
@@ -208,7 +208,7 @@ impl Planner {
                 (answer.error, answer.cycles) = (HALF_PIXEL * error, cost);
                 (answer.limit, answer.planning) = (limit_code(limit), spent);
             }
-            Some(Err(PlanError::NothingHolds { limit, .. })) => {
+            Some(Err(PlanError::NoMethod { limit, .. })) => {
                 (answer.method, answer.limit) = (NO_METHOD, limit_code(limit));
             }
             Some(Err(_)) | None => {}
@@ -220,12 +220,12 @@ impl Planner {
 /// Longer than anything is played, s: four months.
 const FOR_EVER: f64 = 1e7;
 
-pub fn problem(settings: &Settings, shown: &Shown) -> Problem {
+pub fn problem(settings: &Settings, viewport: &Viewport) -> Problem {
     let pendulum = settings.parameters.cast();
     Problem {
         pendulum,
         start: settings.motion().cast(),
-        tolerance: half_pixel(&pendulum, shown.height.into()),
+        tolerance: half_pixel(&pendulum, viewport.height.into()),
         duration: PLANNED,
         rate: TICK_RATE as u16,
     }

@@ -18,7 +18,7 @@ choice! {
     }
 }
 
-/// The code of no method: nothing affordable holds.
+/// The code of no method: none that can be afforded meets the tolerance.
 pub const NO_METHOD: u8 = u8::MAX;
 
 /// A method's code: its place in the table.

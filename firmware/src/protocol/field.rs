@@ -39,7 +39,7 @@ impl From<Error> for Field {
         }
         match error.parameter() {
             Parameter::M1 => Field::M1,
-            Parameter::M2 | Parameter::Mu => Field::M2,
+            Parameter::M2 => Field::M2,
             Parameter::L1 => Field::L1,
             Parameter::L2 => Field::L2,
             Parameter::G => Field::G,

@@ -5,7 +5,7 @@ use double_pendulum::{Error, Modes, Oscillation, Parameters, SmallOscillations};
 
 use crate::config::{GRAVITY, ROD};
 use crate::graphics::{Anchor, Canvas, Disc, FadeLayer, LINE, LOWEST, Spot, Stroke, WIDTH, label, plot, text};
-use crate::motion::{Means, Settings, Shown, Simulation};
+use crate::motion::{Means, Settings, Simulation, Viewport};
 use crate::scenes::{Report, Scene, horizon};
 
 /// The middles of the two figures, and how far a mode reaches in them, pixels.
@@ -107,8 +107,8 @@ impl Scene for Beats {
         Report::of(&self.simulation)
     }
 
-    fn shown(&self) -> Option<Shown> {
-        Shown::curves(self.simulation.given(), self.scale)
+    fn viewport(&self) -> Option<Viewport> {
+        Viewport::curves(self.simulation.given(), self.scale)
     }
 
     fn planned(&mut self) -> Option<&mut Simulation> {

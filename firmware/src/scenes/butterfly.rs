@@ -7,7 +7,7 @@ use crate::config::TICK_RATE;
 use crate::graphics::{
     Anchor, Canvas, FadeLayer, LINE, LOWEST, Place, SUBPIXELS, Spot, Strip, Stroke, View, WIDTH, label, plot, text,
 };
-use crate::motion::{Means, Settings, Shown, Simulation, simulation};
+use crate::motion::{Means, Settings, Simulation, Viewport, simulation};
 use crate::scenes::{Report, Scene, horizon};
 
 /// Angle 1 of the second twin ahead of the first's at the start, rad.
@@ -108,7 +108,7 @@ impl Scene for Butterfly {
         Report::of(&self.first)
     }
 
-    fn shown(&self) -> Option<Shown> {
-        Shown::pendulum(Some(self.first.way()), Place::HALVES[0].reach)
+    fn viewport(&self) -> Option<Viewport> {
+        Viewport::pendulum(Some(self.first.way()), Place::HALVES[0].reach)
     }
 }

@@ -4,7 +4,7 @@ use double_pendulum::{Error, Parameters};
 
 use crate::config::PAGE_GRAVITY;
 use crate::graphics::{Anchor, Canvas, FadeLayer, LINE, LOWEST, Place, Spot, Stroke, View, WIDTH, label, text};
-use crate::motion::{Means, Misprinted, Settings, Shown, Simulation};
+use crate::motion::{Means, Misprinted, Settings, Simulation, Viewport};
 use crate::scenes::{Report, Scene, horizon};
 
 /// Half the width of a trace, subpixels.
@@ -76,8 +76,8 @@ impl Scene for Figure7 {
         Report::of(&self.right)
     }
 
-    fn shown(&self) -> Option<Shown> {
-        Shown::pendulum(self.right.given(), Place::HALVES[0].reach)
+    fn viewport(&self) -> Option<Viewport> {
+        Viewport::pendulum(self.right.given(), Place::HALVES[0].reach)
     }
 
     fn planned(&mut self) -> Option<&mut Simulation> {

@@ -17,7 +17,7 @@ pub use scene::{Report, Scene};
 use double_pendulum::Error;
 
 use crate::graphics::{Canvas, FadeLayer};
-use crate::motion::{Means, Settings, Shown, Simulation};
+use crate::motion::{Means, Settings, Simulation, Viewport};
 use crate::protocol::choice::choice;
 
 macro_rules! catalogue {
@@ -60,8 +60,8 @@ macro_rules! catalogue {
                 match self { $(Self::$row(scene) => scene.draw(report, canvas),)* }
             }
 
-            pub fn shown(&self) -> Option<Shown> {
-                match self { $(Self::$row(scene) => scene.shown(),)* }
+            pub fn viewport(&self) -> Option<Viewport> {
+                match self { $(Self::$row(scene) => scene.viewport(),)* }
             }
 
             pub fn planned(&mut self) -> Option<&mut Simulation> {

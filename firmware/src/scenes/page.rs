@@ -6,7 +6,7 @@ use crate::config::{TRAIL_BRIGHTNESS, TRAIL_FADING, TRAIL_HALF_WIDTH};
 use crate::graphics::{
     Anchor, Canvas, FadeLayer, Fading, LINE, LOWEST, Place, SUBPIXELS, Spot, Stroke, View, label, text,
 };
-use crate::motion::{Means, Settings, Shown, Simulation};
+use crate::motion::{Means, Settings, Simulation, Viewport};
 use crate::scenes::{Report, Scene, horizon};
 
 /// One pendulum, bob 2's trail, and settings and time in the corners, the one place the motion never reaches.
@@ -54,8 +54,8 @@ impl Scene for Page {
         Report::of(&self.simulation)
     }
 
-    fn shown(&self) -> Option<Shown> {
-        Shown::pendulum(self.simulation.given(), Place::WHOLE.reach)
+    fn viewport(&self) -> Option<Viewport> {
+        Viewport::pendulum(self.simulation.given(), Place::WHOLE.reach)
     }
 
     fn planned(&mut self) -> Option<&mut Simulation> {

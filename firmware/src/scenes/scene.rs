@@ -5,7 +5,7 @@ use double_pendulum::{Error, State};
 
 use crate::config::TICK_RATE;
 use crate::graphics::{Canvas, FadeLayer, Fading};
-use crate::motion::{Means, Settings, Shown, Simulation};
+use crate::motion::{Means, Settings, Simulation, Viewport};
 
 /// Something to watch: it starts from settings, moves tick by tick and is drawn when there is time for it.
 pub trait Scene: Sized {
@@ -24,7 +24,7 @@ pub trait Scene: Sized {
     fn report(&self) -> Report;
 
     /// How it shows the motion of its settings; `None` if it shows nothing that can be planned.
-    fn shown(&self) -> Option<Shown> {
+    fn viewport(&self) -> Option<Viewport> {
         None
     }
 
@@ -73,7 +73,7 @@ pub fn time(ticks: u64) -> f64 {
     ticks as f64 / f64::from(TICK_RATE)
 }
 
-impl Shown {
+impl Viewport {
     /// As a pendulum whose rods together are `reach` pixels long.
     pub fn pendulum(way: Option<Way>, reach: f32) -> Option<Self> {
         Some(Self { way, height: 2.0 * reach })

@@ -1,12 +1,11 @@
 //! Figures 3 to 5: small oscillations, both angles as scrolling curves within their envelopes, in closed form.
 
 use double_pendulum::plan::Way;
-use double_pendulum::trig::{DefaultTrig, SinCos};
-use double_pendulum::{Error, Method, Modes, Motion, Oscillation, Parameters, Pendulum, SmallOscillations};
+use double_pendulum::{Error, Method, Modes, Motion, Oscillation, Parameters, Pendulum, Real, SmallOscillations};
 
 use crate::config::{PAGE_GRAVITY, TICK_RATE};
 use crate::graphics::{Anchor, Canvas, FadeLayer, Fading, Height, LINE, LOWEST, WIDTH, label, plot, text};
-use crate::motion::{Means, Settings, Shown};
+use crate::motion::{Means, Settings, Viewport};
 use crate::scenes::{Report, Scene, horizon, scene};
 
 /// The rows of rest of angle 1 and angle 2, pixels from the top, and the greatest swing about them.
@@ -130,8 +129,8 @@ impl Scene for Small {
         Report { state, way: Some(CLOSED_FORM), ..Report::of_figure(self.ticks) }
     }
 
-    fn shown(&self) -> Option<Shown> {
-        Shown::curves(Some(CLOSED_FORM), self.scale)
+    fn viewport(&self) -> Option<Viewport> {
+        Viewport::curves(Some(CLOSED_FORM), self.scale)
     }
 }
 
@@ -159,7 +158,7 @@ impl Envelopes {
     fn at(&self, t: f64) -> [f32; 2] {
         let turns = self.exchange * t;
         let exchanged = (turns - libm::rint(turns)) as f32 * core::f32::consts::TAU;
-        let (_, cos) = DefaultTrig::sin_cos(exchanged + self.phase);
+        let (_, cos) = (exchanged + self.phase).own_sin_cos();
         self.amplitudes.map(|[c1, c2]| libm::sqrtf((c1 * c1 + c2 * c2 + 2.0 * c1 * c2 * cos).max(0.0)))
     }
 

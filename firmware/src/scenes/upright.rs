@@ -1,7 +1,6 @@
 //! Upright: both rods at exactly 180 degrees, where the pendulum would stand for ever if the number pi could be held.
 
-use double_pendulum::trig::{DefaultTrig, SinCos};
-use double_pendulum::{DirectionF32, Error, Run, State};
+use double_pendulum::{DirectionF32, Error, Real, Run, State};
 
 use crate::config::{DT, HALF_PIXEL, STEPS_PER_TICK};
 use crate::graphics::{Anchor, Canvas, FadeLayer, LINE, LOWEST, Place, RodDirections, Spot, Stroke, View, WIDTH, text};
@@ -52,7 +51,7 @@ impl Upright {
 }
 
 fn directions(state: &State<f32>) -> RodDirections {
-    state.angles().map(|angle| DefaultTrig::sin_cos(angle).into())
+    state.angles().map(|angle| angle.own_sin_cos().into())
 }
 
 impl Scene for Upright {

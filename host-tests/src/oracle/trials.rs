@@ -1,11 +1,22 @@
-//! A form of the pendulum run beside the reference.
+//! Methods of the table run beside the reference.
 
 use std::f64::consts::TAU;
 
-use double_pendulum::parts::Stepper;
-use double_pendulum::{Error, Form, Parameters, Pendulum, Real, State};
+use double_pendulum::{Equations, Error, Form, Method, Parameters, Pendulum, Real, State};
+use firmware::job::AnyRun;
 
 use reference::taylor::Reference;
+
+/// All methods but those whose errors are not the steps': in closed form of their equations, in `micromath` of the sines.
+pub fn exact_methods() -> impl Iterator<Item = Method> {
+    let is_exact = |method: &Method| method.equations() != Equations::Linear && *method != Method::Rk4F32Micromath;
+    Method::ALL.iter().copied().filter(is_exact)
+}
+
+/// The motion of a pendulum from its start by `method`, in steps of `dt` s.
+pub fn run(method: Method, parameters: &Parameters<f64>, start: &State<f64>, dt: f64) -> Result<AnyRun, Error> {
+    AnyRun::new(method, &Pendulum::new(parameters)?, start, dt)
+}
 
 /// A motion to try: everything in SI units.
 #[derive(Clone, Copy, Debug)]
@@ -48,15 +59,21 @@ impl Trial {
         (self.parameters.cast(), self.start.cast())
     }
 
-    /// The states of the form `F` at the moments, in steps of `dt`, s.
+    /// The states of the form `F` at the moments, in steps of `dt`, s; NaN once the motion is lost.
     pub fn states<F: Form>(&self, dt: f64) -> Result<Vec<State<f64>>, Error> {
-        let mut stepper = Stepper::<F>::new(&self.parameters, &self.start, dt)?;
+        let mut run = Pendulum::new(&self.parameters)?.run::<F>(&self.start, dt)?;
+        Ok(self.sampled(dt, |steps| run.advance(steps).map(|()| run.state())))
+    }
+
+    /// The same by `method`.
+    pub fn states_by(&self, method: Method, dt: f64) -> Result<Vec<State<f64>>, Error> {
+        let mut run = run(method, &self.parameters, &self.start, dt)?;
+        Ok(self.sampled(dt, |steps| run.advance(steps).map(|()| run.state())))
+    }
+
+    fn sampled(&self, dt: f64, mut next: impl FnMut(u32) -> Result<State<f64>, Error>) -> Vec<State<f64>> {
         let steps = (self.seconds / dt / f64::from(SAMPLES)).round() as u32;
-        let mut next = || {
-            stepper.advance(steps);
-            stepper.state()
-        };
-        Ok((0..SAMPLES).map(|_| next()).collect())
+        (0..SAMPLES).map(|_| next(steps).unwrap_or([f64::NAN; 4].into())).collect()
     }
 
     /// The exact states at the moments, for the numbers as `R` holds them.

@@ -32,7 +32,7 @@ fn targets() -> Vec<Target> {
 fn steps(target: &Target, method: Method) -> u32 {
     let [full, in_software, without_products] = STEPS;
     // The libm crate's sines are computed in double precision.
-    let is_single = method.is_single() && !matches!(method, Method::Rk4F32Libm | Method::TextbookF32);
+    let is_single = method.is_single() && method != Method::TextbookF32;
     match target.core() {
         Core::M0Plus => without_products,
         Core::M4F if is_single => full,

@@ -1,5 +1,7 @@
 //! The steps of every method, which real boards have twice, in flash and in memory: they run wherever they are copied.
 
+use std::collections::BTreeSet;
+
 use crate::support::application;
 use crate::support::code::Code;
 use host_tests::emulator::boards::{PICO, STM32F405};
@@ -37,5 +39,30 @@ fn no_branch_leads_out_of_the_steps() -> anyhow::Result<()> {
             code.functions_named(|name| name.contains("Thunk")).filter(|at| steps.contains(at)).map(name).collect();
         assert!(far.is_empty(), "{}: {far:#?}", board.name);
     }
+    Ok(())
+}
+
+/// The functions that steps of the form `form` reach in the Pico's application.
+fn reached(code: &Code, form: &str) -> BTreeSet<String> {
+    let is_step = |name: &str| name.contains(form) && name.contains("Form>") && name.ends_with("advance");
+    let mut found: Vec<u32> = code.functions_named(is_step).collect();
+    let mut seen = 0;
+    while let Some(&function) = found.get(seen) {
+        seen += 1;
+        let calls = code.calls_from(function).filter_map(|to| code.function_at(to)).map(|(start, _)| start);
+        let new: Vec<u32> = calls.filter(|to| !found.contains(to)).collect();
+        found.extend(new);
+    }
+    found.into_iter().filter_map(|function| Some(code.function_at(function)?.1.to_owned())).collect()
+}
+
+/// As the kernel's example `fixed_point` says: on a Cortex-M0+ a step in 32 bits is made of integers, one of `f32` is not.
+#[test]
+fn steps_in_fixed_point_reach_no_soft_float() -> anyhow::Result<()> {
+    let code = Code::read(&application(&PICO))?;
+    let is_soft = |name: &String| name.starts_with("__aeabi_f") || name.starts_with("__aeabi_d");
+    let [fixed, float] = ["Fixed32 as", "DirectionForm<"].map(|form| reached(&code, form));
+    assert!(float.iter().any(is_soft), "{float:#?}");
+    assert!(!fixed.is_empty() && !fixed.iter().any(is_soft), "{fixed:#?}");
     Ok(())
 }

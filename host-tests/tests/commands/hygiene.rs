@@ -70,3 +70,20 @@ fn every_dependency_has_its_reason() {
     let rows = table.lines().filter_map(|line| Some(line.strip_prefix("| `")?.split_once('`')?.0.to_owned()));
     assert_eq!(named, rows.collect());
 }
+
+/// No more lines of the kernel's examples, nor names that each imports from it.
+const LINES: usize = 25;
+const NAMES: usize = 6;
+
+#[test]
+fn the_kernels_examples_are_short() {
+    let examples = sources("kernel/examples");
+    assert!(examples.len() >= 5);
+    for path in examples {
+        let example = read(&path);
+        let imports = example.lines().filter_map(|line| line.strip_prefix("use double_pendulum::"));
+        let names: usize = imports.map(|names| names.rsplit("::").next().unwrap_or_default().split(',').count()).sum();
+        let lines = example.lines().count();
+        assert!(lines <= LINES && (1..=NAMES).contains(&names), "{}: {lines} lines, {names} names", path.display());
+    }
+}

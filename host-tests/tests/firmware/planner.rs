@@ -3,18 +3,18 @@
 use double_pendulum::Method;
 use double_pendulum::plan::{Limit, PlanError, Way};
 use firmware::config::{CORTEX_M3, CORTEX_M4F, PLANNED, PROCESSORS, Processor, SETTLED_TICKS, STM32F405};
-use firmware::motion::{Finding, Planner, Settings, Shown};
+use firmware::motion::{Finding, Planner, Settings, Viewport};
 use firmware::protocol::{NO_METHOD, limit_code, method_code, method_of};
 
 /// The way that these begin in, which is right wherever any other is.
 const LASTING: Way = Way { method: Method::Extrapolation10Fixed64, steps: 1 };
-const SHOWN: Shown = Shown { way: None, height: 57.0 };
+const VIEWPORT: Viewport = Viewport { way: None, height: 57.0 };
 /// Ticks by which everything here is found.
 const PATIENCE: u64 = 1200;
 
 fn planner(processor: Processor, settings: &Settings) -> Planner {
     let mut planner = Planner::new(processor);
-    planner.start(settings, Some(SHOWN), Some(LASTING));
+    planner.start(settings, Some(VIEWPORT), Some(LASTING));
     planner
 }
 
@@ -68,7 +68,7 @@ fn there_is_nothing_to_do_without_a_motion_or_when_all_is_found() {
     assert_eq!(planner.answer(1).found, 2);
     assert!(!planner.work_ahead() && planner.tick().is_some(), "it is told in a tick of its own");
     assert!(!planner.work_ahead() && planner.tick().is_none());
-    planner.start(&Settings::equal_rods(1.0, 30.0), Some(SHOWN), Some(LASTING));
+    planner.start(&Settings::equal_rods(1.0, 30.0), Some(VIEWPORT), Some(LASTING));
     assert_eq!((planner.answer(1).found, planner.horizon(LASTING)), (1, 0.0), "it begins anew");
 }
 
@@ -96,7 +96,7 @@ fn only_steps_that_resolve_a_motion_are_right_wherever_others_are() {
     for (steps, is_right) in [(2, false), (4, true)] {
         let begun = Way { method: Method::Extrapolation10Fixed64, steps };
         let mut planner = Planner::new(CORTEX_M3);
-        planner.start(&Settings::equal_rods(2.75, 171.0), Some(SHOWN), Some(begun));
+        planner.start(&Settings::equal_rods(2.75, 171.0), Some(VIEWPORT), Some(begun));
         while in_32_bits(&planner) < 1.0 {
             assert!(planner.tick().is_none());
         }
@@ -128,11 +128,11 @@ fn a_refused_motion_is_told_once() {
 fn where_nothing_holds_that_is_what_is_told() {
     let mut planner = planner(Processor { frame: 100.0, ..CORTEX_M4F }, &Settings::equal_rods(1.0, 120.0));
     let found = (0..PATIENCE).find_map(|_| planner.tick());
-    let Some(Err(PlanError::NothingHolds { limit, .. })) = found else { panic!("{found:?}") };
+    let Some(Err(PlanError::NoMethod { limit, .. })) = found else { panic!("{found:?}") };
     let answer = planner.answer(9);
     assert_eq!((answer.request, answer.found, answer.method, answer.limit), (9, 2, NO_METHOD, limit_code(limit)));
     assert_eq!((answer.cycles, answer.horizon, answer.steps), (0.0, 0.0, 0));
-    assert_eq!((answer.duration, answer.height, answer.frame_budget), (PLANNED, SHOWN.height.into(), 100.0));
+    assert_eq!((answer.duration, answer.height, answer.frame_budget), (PLANNED, VIEWPORT.height.into(), 100.0));
 }
 
 /// Only the way that was asked for is looked at, even if it costs more than a frame allows.
@@ -141,7 +141,7 @@ fn where_nothing_holds_that_is_what_is_told() {
 fn a_way_that_is_given_stays() {
     let mut planner = Planner::new(STM32F405);
     let way = Way { method: Method::Rk4F32Direction, steps: 4 };
-    planner.start(&Settings::default(), Some(Shown { way: Some(way), ..SHOWN }), Some(way));
+    planner.start(&Settings::default(), Some(Viewport { way: Some(way), ..VIEWPORT }), Some(way));
     let found = (0..PATIENCE).find_map(|_| planner.tick());
     let Some(Ok(plan)) = found else { panic!("{found:?}") };
     assert_eq!((plan.method, plan.steps, plan.limit), (Method::Rk4F32Direction, 4, Limit::Method));

@@ -2,7 +2,6 @@
 
 use std::f64::consts::PI;
 
-use double_pendulum::parts::Stepper;
 use double_pendulum::{DirectionF32, DirectionF64, ExtrapolationF64, Fixed32, Fixed64, Form};
 use double_pendulum::{Error, Motion, Parameter, Parameters, Pendulum, State};
 use firmware::config::GRAVITY;
@@ -172,8 +171,9 @@ fn thirty_two_bits_are_of_order_four_at_any_speed() -> Result<(), Error> {
         let parameters = Parameters { m1: 1.0, m2, l1: 1.0, l2, g: GRAVITY };
         let speed = log_uniform(&mut rng, 1.0, 60.0);
         let [a1, a2, w1, w2] = [PI, PI, speed, speed].map(|most| most * symmetric(&mut rng));
-        let start = Pendulum::new(&parameters)?.to_state(&Motion { a1, a2, w1, w2 });
-        let limit = match Stepper::<Fixed32>::new(&parameters, &start, 1e3) {
+        let pendulum = Pendulum::new(&parameters)?;
+        let start = pendulum.to_state(&Motion { a1, a2, w1, w2 });
+        let limit = match pendulum.run::<Fixed32>(&start, 1e3).map(drop) {
             Err(Error::TooLarge { limit, .. }) => limit,
             other => panic!("{other:?}"),
         };
@@ -211,21 +211,13 @@ fn what_has_no_room_is_refused_by_name() -> Result<(), Error> {
     let good = Parameters::equal_rods(1.0, 1.0, 9.81);
     let start = State::at_rest(2.0, 2.0);
     fn refusal<F: Form>(parameters: &Parameters<f64>, start: &State<f64>, dt: f64) -> Option<Error> {
-        Stepper::<F>::new(parameters, start, dt).err()
+        Pendulum::new(parameters).ok()?.run::<F>(start, dt).err()
     }
     for refuse in [refusal::<Fixed32>, refusal::<Fixed64<12>>] {
         assert_eq!(refuse(&good, &start, 1.0 / 64.0), None);
         for dt in [0.5, -0.5, 1e300] {
             let refused = refuse(&good, &start, dt);
             assert!(matches!(refused, Some(Error::TooLarge { parameter: Parameter::Dt, .. })), "{refused:?}");
-        }
-        for dt in [f64::NAN, f64::INFINITY] {
-            let refused = refuse(&good, &start, dt);
-            assert!(matches!(refused, Some(Error::NotFinite { parameter: Parameter::Dt, .. })), "{refused:?}");
-        }
-        for dt in [0.0, 1e-310] {
-            let refused = refuse(&good, &start, dt);
-            assert!(matches!(refused, Some(Error::OutOfRange { parameter: Parameter::Dt, .. })), "{refused:?}");
         }
         for (parameters, parameter, value) in [
             (Parameters { m2: 1e5, ..good }, Parameter::M2, 1e5),
@@ -259,17 +251,17 @@ fn a_motion_of_64_bits_is_right_or_said_to_be_lost() -> Result<(), Error> {
     fn compared<const ORDER: u32>(rng: &mut fastrand::Rng) -> Result<Option<f64>, Error> {
         let parameters = random::parameters(rng);
         let start = random::state(rng, &parameters);
-        let limit = match Stepper::<Fixed64<ORDER>>::new(&parameters, &start, 1e3) {
+        let pendulum = Pendulum::new(&parameters)?;
+        let limit = match pendulum.run::<Fixed64<ORDER>>(&start, 1e3).map(drop) {
             Err(Error::TooLarge { limit, .. }) => limit,
             other => panic!("{other:?}"),
         };
         let dt = limit * (0.5 + 0.5 * rng.f64());
-        let mut fixed = Stepper::<Fixed64<ORDER>>::new(&parameters, &start, dt)?;
-        let mut double = Stepper::<ExtrapolationF64<ORDER>>::new(&parameters, &start, dt)?;
-        fixed.advance(3);
-        double.advance(3);
-        let [fixed, double] = [fixed.state(), double.state()];
-        Ok(fixed.finite().ok().map(|fixed| largest_difference(&[fixed], &[double])))
+        let mut fixed = pendulum.run::<Fixed64<ORDER>>(&start, dt)?;
+        let mut double = pendulum.run::<ExtrapolationF64<ORDER>>(&start, dt)?;
+        let is_right = fixed.advance(3).is_ok();
+        double.advance(3)?;
+        Ok(is_right.then(|| largest_difference(&[fixed.state()], &[double.state()])))
     }
     let mut rng = fastrand::Rng::with_seed(14);
     let mut lost = 0;

@@ -1,28 +1,34 @@
-//! The hard cases: each form in each arithmetic, on motions that break a careless one.
+//! The hard cases: every method of the table on motions that break a careless one.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use double_pendulum::{
-    DirectionF32, DirectionF32Plain, DirectionF64, DirectionF64Plain, Error, Fixed32, Fixed64, Form, HamiltonF32,
-    HamiltonF64, Modes, Motion, Parameters, Pendulum, Real, Run, State,
+    DirectionF64, Equations, Error, Integrator, Method, Modes, Motion, Numbers, Parameters, Pendulum, State,
 };
 use host_tests::oracle::hard_cases::{HALVINGS, HARD_CASES, HardCase};
 use host_tests::oracle::tolerances;
-use host_tests::oracle::trials::Trial;
+use host_tests::oracle::trials::{self, Trial, exact_methods};
 use rayon::prelude::*;
 use reference::taylor::Reference;
 
-/// A motion and those like it, with their exact states.
-type Starts = [(Trial, Vec<State<f64>>)];
-
 /// Halving the step never makes the typical error worse by more than `growth` above `least`, and in the end it is within `last`;
 /// where that is NaN all is refused.
-fn refining_pays<F: Form>(case: &HardCase, starts: &Starts, growth: f64, least: f64, last: f64) -> Result<(), Error> {
-    let errors = match HardCase::typical_errors::<F>(starts) {
+fn refining_pays(case: &HardCase, method: Method) -> Result<(), Error> {
+    let [growth, least, last] = case.budget(method);
+    let starts: Vec<Trial> = case.starts().collect();
+    // of an error of the method itself one start says all
+    let starts = match method.numbers() {
+        Numbers::CompensatedF32 => &starts[..],
+        Numbers::F32 | Numbers::Fixed32 => &starts[..8],
+        _ => &starts[..1],
+    };
+    let exact = if method.is_single() { Trial::exact::<f32> } else { Trial::exact::<f64> };
+    let starts = starts.iter().map(|trial| Ok((*trial, exact(trial)?))).collect::<Result<Vec<_>, Error>>()?;
+    let errors = match HardCase::typical_errors(method, &starts) {
         Err(Error::OutOfRange { .. }) => Vec::new(),
         errors => errors?,
     };
-    let about = format!("{}, {} ({}): {errors:?}", case.name, std::any::type_name::<F>(), case.reason);
+    let about = format!("{}, {method} ({}): {errors:?}", case.name, case.reason);
     assert_eq!(errors.is_empty(), last.is_nan(), "{about}");
     for pair in errors.windows(2) {
         // beyond a tenth of a radian an error says nothing but that the motion is lost
@@ -32,52 +38,16 @@ fn refining_pays<F: Form>(case: &HardCase, starts: &Starts, growth: f64, least: 
     Ok(())
 }
 
-/// Every kind of number on one case: its own floor each, and of the error of a method in `f64` one start says all.
-fn is_taken(case: &HardCase) -> Result<(), Error> {
-    let &HardCase { floor, method, fixed: [words, long_words], growth, .. } = case;
-    let single = |trial: Trial| Ok((trial, trial.exact::<f32>()?));
-    let single = case.starts().map(single).collect::<Result<Vec<_>, Error>>()?;
-    refining_pays::<DirectionF32>(case, &single, growth, growth * method * f64::from(f32::EPSILON), floor)?;
-    let double = |trial: Trial| Ok((trial, trial.exact::<f64>()?));
-    let double = case.starts().take(8).map(double).collect::<Result<Vec<_>, Error>>()?;
-    refining_pays::<DirectionF64>(case, &double[..1], growth, growth * method * f64::EPSILON, method)?;
-    refining_pays::<Fixed32>(case, &double, 1.5, words, words)?;
-    refining_pays::<Fixed64<12>>(case, &double[..1], 1.5, long_words, long_words)
-}
-
 #[test]
 fn every_hard_case_is_taken() -> Result<(), Error> {
-    HARD_CASES.par_iter().try_for_each(is_taken)
-}
-
-/// Tests of all forms in floating point, compensated and plain.
-macro_rules! every_form {
-    ($($test:ident: $holds:ident;)*) => {$(
-        #[test]
-        fn $test() -> Result<(), Error> {
-            $holds::<DirectionF32>()?;
-            $holds::<DirectionF32Plain>()?;
-            $holds::<DirectionF64>()?;
-            $holds::<DirectionF64Plain>()
-        }
-    )*};
-}
-
-every_form! {
-    upright_falls_when_theory_says: upright_falls;
-    straight_rods_turn_evenly_without_gravity: turns_straight;
-    what_is_at_rest_stays: rest_stays;
-    denormals_do_no_harm: tiny_swings;
-    the_edge_of_stability_is_where_it_should_be: stability_edge;
+    let all = |case| exact_methods().map(move |method| (case, method));
+    let all: Vec<_> = HARD_CASES.iter().flat_map(all).collect();
+    all.into_par_iter().try_for_each(|(case, method)| refining_pays(case, method))
 }
 
 /// Rods of 1 m and bobs of 1 kg.
 fn even(gravity: f64) -> Parameters<f64> {
     Parameters::equal_rods(1.0, 1.0, gravity)
-}
-
-fn run<F: Form>(parameters: &Parameters<f64>, start: &State<f64>, dt: f64) -> Result<Run<F>, Error> {
-    Pendulum::new(parameters)?.run(start, dt)
 }
 
 /// When rod 1 is a radian from where it started, s; looked at every 1/64 s.
@@ -87,113 +57,139 @@ fn fall(mut angle: impl FnMut() -> f64) -> f64 {
     looks.map_or(f64::INFINITY, |looks| f64::from(looks) / 64.0)
 }
 
-/// Straight up, to the last digit that the form has: it falls when the exact motion from there does, whatever the step.
-fn upright_falls<F: Form>() -> Result<(), Error> {
-    let (up, parameters) = (F::Real::PI.to_f64(), even(9.81_f64 as f32 as f64));
-    let mut reference = Reference::new(&parameters, &Motion::at_rest(up, up));
-    let mut time = 0.0;
-    let exact = fall(|| {
-        reference.advance_to(time);
-        time += 1.0 / 64.0;
-        reference.motion().a1
-    });
-    assert!(exact.is_finite());
-    for halvings in HALVINGS.skip(2) {
-        let mut motion = run::<F>(&parameters, &State::at_rest(up, up), 0.5_f64.powi(halvings))?;
-        let mut steps = 0;
-        let falls = fall(|| {
-            motion.advance(steps).expect("a finite motion");
-            steps = 1 << (halvings - 6);
-            motion.angles()[0].to_f64().rem_euclid(TAU)
+/// Straight up, to the last digit that an angle has: directions in floating point fall when the exact motion from there does,
+/// whatever the step. (In angles increments are lost, see below; in fixed point a sine has too few digits.)
+#[test]
+fn upright_falls_when_theory_says() -> Result<(), Error> {
+    let is_meant = |method: &&Method| method.equations() == Equations::Directions && !method.is_fixed_point();
+    for &method in Method::ALL.iter().filter(is_meant) {
+        let single = f64::from(std::f32::consts::PI);
+        let (up, parameters) = (if method.is_single() { single } else { PI }, even(9.81_f64 as f32 as f64));
+        let mut reference = Reference::new(&parameters, &Motion::at_rest(up, up));
+        let mut time = 0.0;
+        let exact = fall(|| {
+            reference.advance_to(time);
+            time += 1.0 / 64.0;
+            reference.motion().a1
         });
-        assert!((falls - exact).abs() <= tolerances::FALL, "2^-{halvings} s: after {falls} s instead of {exact} s");
+        assert!(exact.is_finite());
+        for halvings in HALVINGS.skip(2) {
+            let mut motion = trials::run(method, &parameters, &State::at_rest(up, up), 0.5_f64.powi(halvings))?;
+            let mut steps = 0;
+            let falls = fall(|| {
+                motion.advance(steps).expect("a finite motion");
+                steps = 1 << (halvings - 6);
+                motion.angles()[0].rem_euclid(TAU)
+            });
+            assert!(
+                (falls - exact).abs() <= tolerances::FALL,
+                "{method}, 2^-{halvings} s: after {falls} s instead of {exact} s"
+            );
+        }
     }
     Ok(())
 }
 
 /// As one writes the method down, the angle stands still until an increment reaches half a unit of its last place: the
 /// momentum grows by the torque, so after (ulp/2)/(g error dt), the error being that of pi. Then it falls.
-fn upright_stays_where_increments_are_lost<R: Real>(error: f64) -> Result<(), Error> {
-    let pendulum = Pendulum::new(&even(9.81).cast::<R>())?;
-    let ulp = 2.0 * R::EPSILON.to_f64();
-    for steps_per_second in [64_u32, 256] {
-        let dt = 1.0 / f64::from(steps_per_second);
-        let stays = 0.5 * ulp / (9.81 * error * dt);
-        let mut state = State::at_rest(R::PI, R::PI);
-        let mut steps = 0_u32;
-        while state.a1 == R::PI && steps < 100 * steps_per_second {
-            state = pendulum.step(&state, R::from_f64(dt));
-            steps += 1;
-        }
-        let stayed = f64::from(steps) * dt;
-        assert!((stayed / stays - 1.0).abs() <= tolerances::STAYS, "{stayed} s instead of {stays} s");
-    }
-    Ok(())
-}
-
 #[test]
 fn upright_stays_as_long_as_theory_says_in_plain_sums() -> Result<(), Error> {
-    upright_stays_where_increments_are_lost::<f32>(f64::from(std::f32::consts::PI) - std::f64::consts::PI)?;
-    upright_stays_where_increments_are_lost::<f64>(1.224_646_799_147_353_2e-16)
+    let single = f64::from(std::f32::consts::PI);
+    for (method, up, ulp, error) in [
+        (Method::Rk4F32, single, 2.0 * f64::from(f32::EPSILON), single - PI),
+        (Method::Rk4F64, PI, 2.0 * f64::EPSILON, 1.224_646_799_147_353_2e-16),
+    ] {
+        for steps_per_second in [64_u32, 256] {
+            let dt = 1.0 / f64::from(steps_per_second);
+            let stays = 0.5 * ulp / (9.81 * error * dt);
+            let mut motion = trials::run(method, &even(9.81), &State::at_rest(up, up), dt)?;
+            let mut steps = 0_u32;
+            while motion.state().a1 == up && steps < 100 * steps_per_second {
+                motion.advance(1)?;
+                steps += 1;
+            }
+            let stayed = f64::from(steps) * dt;
+            assert!((stayed / stays - 1.0).abs() <= tolerances::STAYS, "{method}: {stayed} s instead of {stays} s");
+        }
+    }
+    Ok(())
 }
 
 /// Straight and turning as one, without gravity: a = a(0) + w t, to the roundings of the turning.
-fn turns_straight<F: Form>() -> Result<(), Error> {
+#[test]
+fn straight_rods_turn_evenly_without_gravity() -> Result<(), Error> {
     let parameters = Parameters { l2: 0.5, ..even(0.0) };
-    let state = Pendulum::new(&parameters)?.to_state(&Motion { a1: 1.0, a2: 1.0, w1: 2.0, w2: 2.0 });
-    let mut motion = run::<F>(&parameters, &state, 1.0 / 256.0)?;
-    for seconds in 1..=20 {
-        motion.advance(256)?;
-        let State { a1, a2, p1, p2 } = motion.state();
-        let miss = [a1, a2].map(|angle| (angle - 1.0 - 2.0 * f64::from(seconds)).abs()).into_iter().fold(0.0, f64::max);
-        assert!(miss <= tolerances::STRAIGHT.of::<F::Real>(), "{miss:e} rad after {seconds} s");
-        let lost = ((p1 + p2) / (state.p1 + state.p2) - 1.0).abs();
-        assert!(lost <= tolerances::STRAIGHT.of::<F::Real>(), "angular momentum: {lost:e} after {seconds} s");
+    let start = Pendulum::new(&parameters)?.to_state(&Motion { a1: 1.0, a2: 1.0, w1: 2.0, w2: 2.0 });
+    for method in exact_methods() {
+        let mut motion = trials::run(method, &parameters, &start, 1.0 / 256.0)?;
+        for seconds in 1..=20 {
+            motion.advance(256)?;
+            let State { a1, a2, p1, p2 } = motion.state();
+            let [miss1, miss2] = [a1, a2].map(|angle| (angle - 1.0 - 2.0 * f64::from(seconds)).abs());
+            let lost = ((p1 + p2) / (start.p1 + start.p2) - 1.0).abs();
+            let worst = miss1.max(miss2).max(lost);
+            assert!(worst <= tolerances::STRAIGHT.by(method), "{method}: {worst:e} rad or relative after {seconds} s");
+        }
     }
     Ok(())
 }
 
-/// Hanging, and without gravity anywhere: what is at rest stays there, to the bit.
-fn rest_stays<F: Form>() -> Result<(), Error> {
-    for (gravity, a1, a2) in [(9.81, 0.0, 0.0), (0.0, 3.0, -2.0)] {
-        let mut motion = run::<F>(&even(gravity), &State::at_rest(a1, a2), 1.0 / 64.0)?;
-        let start = motion.state();
-        motion.advance(10_000)?;
-        let now = motion.state();
-        let moved = (now.a1 - start.a1).abs().max((now.a2 - start.a2).abs());
-        assert!(moved <= F::Real::EPSILON.to_f64() && now.p1 == 0.0 && now.p2 == 0.0, "{now:?} from {start:?}");
+/// Hanging, and without gravity anywhere: what is at rest stays there, to the bit but for 64-bit fixed point.
+#[test]
+fn what_is_at_rest_stays() -> Result<(), Error> {
+    for &method in Method::ALL {
+        for (gravity, a1, a2) in [(9.81, 0.0, 0.0), (0.0, 3.0, -2.0)] {
+            if gravity == 0.0 && method.equations() == Equations::Linear {
+                continue; // nothing swings
+            }
+            let mut motion = trials::run(method, &even(gravity), &State::at_rest(a1, a2), 1.0 / 64.0)?;
+            let start = motion.state();
+            motion.advance(10_000)?;
+            let now = motion.state();
+            let moved = (now.a1 - start.a1).abs().max((now.a2 - start.a2).abs());
+            let [angle, momentum] = match method.numbers() {
+                Numbers::Fixed64 => [tolerances::REST_OF_FIXED_64; 2],
+                _ if method.is_single() => [f32::EPSILON.into(), 0.0],
+                _ => [f64::EPSILON, 0.0],
+            };
+            let pushed = now.p1.abs().max(now.p2.abs());
+            assert!(moved <= angle && pushed <= momentum, "{method}: {now:?} from {start:?}");
+        }
     }
     Ok(())
 }
 
-/// A swing so small that every square vanishes is the linear one; one of subnormal numbers stays as small as it was.
-fn tiny_swings<F: Form>() -> Result<(), Error> {
+/// In floating point, a swing so small that every square vanishes is the linear one; one of subnormal numbers stays as small as
+/// it was.
+#[test]
+fn denormals_do_no_harm() -> Result<(), Error> {
     let parameters = even(9.81);
     let slow = Modes::new(&parameters)?.slow;
-    // far above the least normal number, and at a few units of the least of all
-    let (tiny, subnormal) = if F::Real::EPSILON.to_f64() > f64::EPSILON {
-        (2f64.powi(-80), 2f64.powi(-146))
-    } else {
-        (2f64.powi(-900), 2f64.powi(-1071))
-    };
-    let mut motion = run::<F>(&parameters, &State::at_rest(tiny, tiny * slow.shape), 1.0 / 256.0)?;
-    for step in 1..=10 * 64 {
-        motion.advance(4)?;
-        let expected = (slow.frequency * f64::from(step) / 64.0).cos();
-        let miss = (motion.state().a1 / tiny - expected).abs();
-        assert!(miss <= tolerances::TINY.of::<F::Real>(), "{miss:e} at step {step}");
+    for method in exact_methods().filter(|method| !method.is_fixed_point()) {
+        // far above the least normal number, and at a few units of the least of all
+        let [tiny, subnormal] = if method.is_single() { [-80, -146] } else { [-900, -1071] }.map(|n| 2_f64.powi(n));
+        let mut motion = trials::run(method, &parameters, &State::at_rest(tiny, tiny * slow.shape), 1.0 / 256.0)?;
+        for step in 1..=10 * 64 {
+            motion.advance(4)?;
+            let expected = (slow.frequency * f64::from(step) / 64.0).cos();
+            let miss = (motion.state().a1 / tiny - expected).abs();
+            assert!(miss <= tolerances::TINY.by(method), "{method}: {miss:e} at step {step}");
+        }
+        let mut motion = trials::run(method, &parameters, &State::at_rest(subnormal, subnormal), 1.0 / 256.0)?;
+        motion.advance(10_000)?;
+        let State { a1, a2, .. } = motion.state();
+        let most = 1000.0 * subnormal;
+        assert!(a1.abs() <= most && a2.abs() <= most, "{method}: {a1:e}, {a2:e} from {subnormal:e}");
     }
-    let mut motion = run::<F>(&parameters, &State::at_rest(subnormal, subnormal), 1.0 / 256.0)?;
-    motion.advance(10_000)?;
-    let State { a1, a2, .. } = motion.state();
-    assert!(a1.abs() <= 1000.0 * subnormal && a2.abs() <= 1000.0 * subnormal, "{a1:e}, {a2:e} from {subnormal:e}");
     Ok(())
 }
 
-/// The fast mode just below the step limit decays, just above it grows: by 15 % a step, until it is so wide that its
-/// frequency is another, which may be at less than 0.001 rad.
-fn stability_edge<F: Form>() -> Result<(), Error> {
+/// The fast mode just below the step limit of RK4 decays, just above it grows: by 15 % a step, until it is so wide that its
+/// frequency is another, which may be at less than 0.001 rad. Fixed point refuses such steps.
+#[test]
+fn the_edge_of_stability_is_where_it_should_be() -> Result<(), Error> {
     const SMALL: f64 = 1e-5;
+    let is_meant = |method: &Method| method.integrator() == Integrator::Rk4 && !method.is_fixed_point();
     for parameters in [even(9.81), Parameters { m2: 1000.0, ..even(9.81) }, Parameters { l2: 0.01, ..even(9.81) }] {
         let modes = Modes::new(&parameters)?;
         assert_eq!(modes.check_step(modes.step_limit()), Ok(()));
@@ -201,30 +197,23 @@ fn stability_edge<F: Form>() -> Result<(), Error> {
         let shape = modes.fast.shape;
         let start =
             if shape.abs() > 1.0 { State::at_rest(SMALL / shape, SMALL) } else { State::at_rest(SMALL, SMALL * shape) };
-        let swing = |share: f64| -> Result<f64, Error> {
-            let mut motion = run::<F>(&parameters, &start, modes.step_limit() * share)?;
-            let mut late = 0.0_f64;
-            for step in 0..200 {
-                motion.advance(1)?;
-                let State { a1, a2, .. } = motion.state();
-                if step >= 100 {
-                    late = late.max(a1.abs()).max(a2.abs());
-                }
-            }
-            Ok(late)
-        };
-        let [below, above] = [swing(0.98)?, swing(1.02)?];
-        let [decayed, grown] = tolerances::STABILITY_EDGE;
-        assert!(below < decayed, "{below:e} below the limit");
-        assert!(above > grown, "{above:e} above the limit");
+        for method in exact_methods().filter(is_meant) {
+            let swing = |share: f64| {
+                let mut motion = trials::run(method, &parameters, &start, modes.step_limit() * share)?;
+                motion.advance(100)?;
+                (100..200).try_fold(0.0, |late: f64, _| {
+                    motion.advance(1)?;
+                    let State { a1, a2, .. } = motion.state();
+                    Ok(late.max(a1.abs()).max(a2.abs()))
+                })
+            };
+            let [below, above]: [f64; 2] = [swing(0.98)?, swing(1.02)?];
+            let [decayed, grown] = tolerances::STABILITY_EDGE;
+            assert!(below < decayed, "{method}: {below:e} below the limit");
+            assert!(above > grown, "{method}: {above:e} above the limit");
+        }
     }
     Ok(())
-}
-
-#[test]
-fn the_edge_is_where_it_should_be_in_plain_sums() -> Result<(), Error> {
-    stability_edge::<HamiltonF32>()?;
-    stability_edge::<HamiltonF64>()
 }
 
 /// A million steps of 2^-13 s: compensated sums do not care how many there are.
@@ -232,14 +221,12 @@ fn the_edge_is_where_it_should_be_in_plain_sums() -> Result<(), Error> {
 fn a_million_steps() -> Result<(), Error> {
     let trial = Trial::at_rest(1.0, 0.5, 0.5, 1_000_000.0 / 8192.0);
     let (single, double) = (trial.exact::<f32>()?, trial.exact::<f64>()?);
-    let error = |states: Vec<State<f64>>, exact| host_tests::oracle::trials::largest_difference(&states, exact);
+    let error = |states: Vec<State<f64>>, exact| trials::largest_difference(&states, exact);
     let dt = 1.0 / 8192.0;
-    for (form, miss, budget) in [
-        ("f32", error(trial.states::<DirectionF32>(dt)?, &single), tolerances::MILLION_STEPS.single),
-        ("f64", error(trial.states::<DirectionF64>(dt)?, &double), tolerances::MILLION_STEPS.double),
-    ] {
-        println!("{form}: {miss:.1e} rad");
-        assert!(miss <= budget, "{form}: {miss:e} rad");
-    }
+    let single = error(trial.states_by(Method::Rk4F32Direction, dt)?, &single);
+    let double = error(trial.states::<DirectionF64>(dt)?, &double);
+    println!("{single:.1e} rad, {double:.1e} rad");
+    let tolerances::PerPrecision { single: most, double: least } = tolerances::MILLION_STEPS;
+    assert!(single <= most && double <= least, "{single:e} rad, {double:e} rad");
     Ok(())
 }

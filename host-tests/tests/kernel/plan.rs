@@ -65,7 +65,7 @@ fn looking_ahead_ends_where_the_frame_does() {
     let frugal = within(5e3).expect("a good scene");
     assert!(frugal.limit == Limit::Budget && frugal.spent < 1e8, "{frugal:?}");
     let poor = within(300.0).expect_err("one step is too coarse");
-    assert!(matches!(poor, PlanError::NothingHolds { limit: Limit::Budget, spent } if spent < 4e6), "{poor:?}");
+    assert!(matches!(poor, PlanError::NoMethod { limit: Limit::Budget, spent } if spent < 4e6), "{poor:?}");
 }
 
 /// A costlier way that is right for less than a tenth longer is worth it if it is right to the end.
@@ -115,7 +115,7 @@ fn budgets_are_kept() {
                         assert!(plan.spent <= planning && plan.cost <= frame && plan.horizon > 0.0, "{plan:?}");
                         found += 1;
                     }
-                    Err(PlanError::NothingHolds { spent, .. }) => assert!(spent <= planning, "{spent}"),
+                    Err(PlanError::NoMethod { spent, .. }) => assert!(spent <= planning, "{spent}"),
                     Err(error) => panic!("{error}"),
                 }
             }
@@ -206,10 +206,10 @@ fn a_way_that_can_be_gone_is_looked_at() {
 /// A light elbow at 90 degrees: steps that resolve it cost several times what a Cortex-M3 has, and the closed form is wrong
 /// from the first frame on.
 #[test]
-fn where_nothing_holds_there_is_no_plan_but_a_method_asked_for_is_told() {
+fn where_no_method_is_right_there_is_no_plan_but_a_method_asked_for_is_told() {
     let scene = Problem { tolerance: 2.0 / 240.0, ..scene(1e3, 90.0, 20.0) };
     let budget = CORTEX_M3.budget(&scene);
-    let Err(PlanError::NothingHolds { limit, spent }) = Plan::search(&scene, &M3, &budget) else {
+    let Err(PlanError::NoMethod { limit, spent }) = Plan::search(&scene, &M3, &budget) else {
         panic!("{:?}", Plan::search(&scene, &M3, &budget))
     };
     assert!(limit != Limit::End && spent <= budget.planning, "{limit:?} {spent}");
@@ -284,7 +284,7 @@ fn every_scene_gets_a_plan_or_a_refusal() {
     assert!(planned > 20, "{planned}");
 }
 
-/// Where nothing holds, the limit is what to raise: the planning budget while an affordable candidate has not failed yet, else the
+/// Where no method meets the tolerance, the limit is what to raise: the planning budget while an affordable candidate has not failed yet, else the
 /// frame budget.
 #[test]
 fn the_limit_is_what_would_help() {
@@ -292,7 +292,7 @@ fn the_limit_is_what_would_help() {
     let light = Problem { tolerance: 2.0 / 240.0, ..scene(1e3, 90.0, 20.0) };
     let costs = Costs { closed_form: 10.0, ..M3 };
     let limit = |frame, planning| match Plan::search(&light, &costs, &Budget { frame, planning }) {
-        Err(PlanError::NothingHolds { limit, .. }) => limit,
+        Err(PlanError::NoMethod { limit, .. }) => limit,
         other => panic!("{other:?}"),
     };
     let begun = 1.2 * M3.preparation;

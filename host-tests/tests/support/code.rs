@@ -70,6 +70,12 @@ impl Code {
         self.branches.iter().filter(move |(at, to)| *to == function && is_other(*at)).map(|(at, _)| *at)
     }
 
+    /// Where `function` branches to, itself included.
+    pub fn calls_from(&self, function: u32) -> impl Iterator<Item = u32> {
+        let is_own = move |at| self.function_at(at).is_some_and(|(caller, _)| caller == function);
+        self.branches.iter().filter(move |(at, _)| is_own(*at)).map(|(_, to)| *to)
+    }
+
     /// Where the address of `function` is kept, by which it could be called.
     pub fn pointers_to(&self, function: u32) -> impl Iterator<Item = u32> {
         self.numbers.iter().filter(move |(_, number)| *number == function | THUMB).map(|(at, _)| *at)

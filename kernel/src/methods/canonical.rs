@@ -5,34 +5,21 @@ use core::fmt::Debug;
 use super::{Form, rk4};
 use crate::bounds::check_step;
 use crate::error::Error;
-use crate::numbers::trig::{DefaultTrig, SinCos};
 use crate::numbers::{Real, Sealed};
-use crate::pendulum::{Direction, EqualRods, Parameters, Pendulum, State, Units};
+use crate::pendulum::{Direction, Parameters, Pendulum, State};
 
-/// Derivatives of motion, with the units they have.
-pub trait Derivatives<R: Real>: Copy + Debug + PartialEq {
+/// Equations of motion.
+pub trait Derivatives<R: Real>: Copy + Debug + PartialEq + 'static {
     /// Refuses what they do not hold for.
     fn prepare(parameters: &Parameters<R>) -> Result<Self, Error>;
     /// The time derivatives of (a1, a2, p1, p2).
     fn derivatives(&self, z: &[R; 4]) -> [R; 4];
-    /// `state` in these units.
-    fn own(&self, state: &State<R>) -> State<R> {
-        *state
-    }
-    /// `state` of these units in SI units.
-    fn si(&self, state: &State<R>) -> State<R> {
-        *state
-    }
-    /// `dt` s in these units.
-    fn step(&self, dt: R) -> R {
-        dt
-    }
 }
 
 #[doc(hidden)]
-impl<R: Real, T: SinCos<R>> Derivatives<R> for Pendulum<R, T> {
+impl<R: Real> Derivatives<R> for Pendulum<R> {
     fn prepare(parameters: &Parameters<R>) -> Result<Self, Error> {
-        Pendulum::with_trig(parameters)
+        Pendulum::new(parameters)
     }
     #[inline(always)]
     fn derivatives(&self, z: &[R; 4]) -> [R; 4] {
@@ -40,37 +27,10 @@ impl<R: Real, T: SinCos<R>> Derivatives<R> for Pendulum<R, T> {
     }
 }
 
-/// Rods of one length, in their own units.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Dimensionless<R> {
-    rods: EqualRods<R>,
-    units: Units<R>,
-}
-
-impl<R: Real> Derivatives<R> for Dimensionless<R> {
-    fn prepare(parameters: &Parameters<R>) -> Result<Self, Error> {
-        Ok(Self { units: Units::of(parameters)?, rods: EqualRods::new(parameters.mass_ratio())? })
-    }
-    #[inline(always)]
-    fn derivatives(&self, z: &[R; 4]) -> [R; 4] {
-        self.rods.derivatives(z)
-    }
-    fn own(&self, state: &State<R>) -> State<R> {
-        self.units.from_si(state)
-    }
-    fn si(&self, state: &State<R>) -> State<R> {
-        self.units.to_si(state)
-    }
-    fn step(&self, dt: R) -> R {
-        dt / self.units.time
-    }
-}
-
 /// The state stepped by the equations `E`; nothing is carried along but the state.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Canonical<R, E = Pendulum<R, DefaultTrig>> {
+pub struct Canonical<R, E = Pendulum<R>> {
     equations: E,
-    /// In the units of the equations.
     dt: R,
 }
 
@@ -85,14 +45,13 @@ impl<R: Real + super::Side, E: Derivatives<R>> Form for Canonical<R, E> {
 
     fn new(parameters: &Parameters<f64>, dt: f64) -> Result<Self, Error> {
         check_step::<f64>(dt)?;
-        let equations = E::prepare(&parameters.cast())?;
-        Ok(Self { equations, dt: equations.step(R::from_f64(dt)) })
+        Ok(Self { equations: E::prepare(&parameters.cast())?, dt: R::from_f64(dt) })
     }
 
     fn start(&self, state: &State<f64>) -> Result<State<R>, Error> {
         let state = state.cast();
         state.check()?;
-        Ok(self.equations.own(&state))
+        Ok(state)
     }
 
     #[inline(always)]
@@ -115,12 +74,11 @@ impl<R: Real + super::Side, E: Derivatives<R>> Form for Canonical<R, E> {
     }
 
     fn momenta<Q: Real>(&self, carried: &State<R>) -> [Q; 2] {
-        let State { p1, p2, .. } = self.equations.si(carried);
-        [p1.cast(), p2.cast()]
+        [carried.p1.cast(), carried.p2.cast()]
     }
 
     fn state(&self, carried: &State<R>) -> State<f64> {
-        self.equations.si(carried).cast()
+        carried.cast()
     }
 
     fn bits(carried: &State<R>, feed: impl FnMut(u64)) {

@@ -15,7 +15,7 @@ pub(crate) mod side;
 mod stepper;
 mod turns;
 
-pub use canonical::{Canonical, Derivatives, Dimensionless};
+pub use canonical::{Canonical, Derivatives};
 pub use closed_form::ClosedForm;
 pub use direction::{DirectionForm, ExtrapolationF64, Plain};
 pub use fixed32::Fixed32;
@@ -42,8 +42,6 @@ pub type DirectionF32 = DirectionForm<f32>;
 pub type DirectionF32Plain = DirectionForm<f32, Plain>;
 /// The same in `f64`, compensated.
 pub type DirectionF64 = DirectionForm<f64>;
-/// The same in `f64`, plain: `rk4-f64-direction`.
-pub type DirectionF64Plain = DirectionForm<f64, Plain>;
 /// Small oscillations at any time without a step, in `f32`: `closed-form-f32`.
 pub type ClosedFormF32 = ClosedForm<f32>;
 /// The same in `f64`.
@@ -57,13 +55,13 @@ pub type ClosedFormF64 = ClosedForm<f64>;
 /// A step of 1/240 s is as good as one of 1/256 s, though no `f32` holds it: constants are rounded so that a step is longer
 /// than dt by a share that is known, up to 2e-6 in `f32`. Half a step ahead, one step is left out; [`Run::state`] takes back
 /// the rest. Directions may be half a step ahead.
-pub trait Form: Sealed + Copy + Debug + PartialEq {
+pub trait Form: Sealed + Copy + Debug + PartialEq + 'static {
     /// What [`Run::directions`] and [`Run::angles`] are told in.
     #[doc(hidden)]
     type Real: Real;
     /// A motion: what is carried from step to step.
     #[doc(hidden)]
-    type Carried: Copy + Debug + PartialEq;
+    type Carried: Copy + Debug + PartialEq + 'static;
     /// What [`heads`](Self::heads) are made of.
     #[doc(hidden)]
     type Side: Side;

@@ -1,8 +1,7 @@
 //! The classical Runge-Kutta step of order 4, for any system of first-order equations.
 
 use crate::numbers::Real;
-use crate::numbers::trig::SinCos;
-use crate::pendulum::{EqualRods, Pendulum, State};
+use crate::pendulum::{Pendulum, State};
 
 /// One step of the classical Runge-Kutta method for z' = f(z): the state a time `dt` after `z`.
 ///
@@ -28,21 +27,12 @@ fn advanced<R: Real, const N: usize>(z: &[R; N], dt: R, k: &[R; N]) -> [R; N] {
     core::array::from_fn(|i| z[i] + dt * k[i])
 }
 
-impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
+impl<R: Real> Pendulum<R> {
     /// The state a time `dt` (s) after `state`, by one classical RK4 step; a negative `dt` steps backwards.
     ///
     /// Nothing is refused: a state or a step that is NaN gives NaN, and a step too long for the motion gives what has
     /// nothing to do with it, infinite or NaN in the end. Ask [`check_step`](Self::check_step) or
     /// [`admissible_step`](Self::admissible_step) before the first step, and [`State::finite`] after each.
-    #[must_use]
-    #[inline]
-    pub fn step(&self, state: &State<R>, dt: R) -> State<R> {
-        step(|z| self.derivatives(z), &(*state).into(), dt).into()
-    }
-}
-
-impl<R: Real> EqualRods<R> {
-    /// The state a time `dt`, in sqrt(l/g), after `state`, by one classical RK4 step.
     #[must_use]
     #[inline]
     pub fn step(&self, state: &State<R>, dt: R) -> State<R> {

@@ -3,7 +3,6 @@
 use super::{Fixed32, Form, Stepper, Turns};
 use crate::error::Error;
 use crate::numbers::Real;
-use crate::numbers::trig::SinCos;
 use crate::pendulum::{Direction, Pendulum, State};
 
 /// A motion by the method that `F` is: made by [`Pendulum::run`].
@@ -18,7 +17,7 @@ pub struct Run<F: Form> {
     steps: u64,
 }
 
-impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
+impl<R: Real> Pendulum<R> {
     /// The motion from `start` in steps of `dt` seconds by the method that `F` is; a negative step runs backwards.
     ///
     /// Only that method is linked. Refuses a step that is NaN, infinite, zero or subnormal, a start that is not finite, and

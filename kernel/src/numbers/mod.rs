@@ -6,7 +6,6 @@ mod real;
 mod scalar;
 mod sealed;
 mod sine;
-pub mod trig;
 
 pub use lanes::Lanes;
 pub use real::Real;

@@ -70,10 +70,15 @@ pub trait Real:
     #[doc(hidden)]
     #[must_use]
     fn atan2(self, x: Self) -> Self;
-    /// Sine and cosine by the `libm` crate.
-    #[doc(hidden)]
-    fn libm_sin_cos(self) -> (Self, Self);
-    /// Sine and cosine by the kernel's own routine.
+    /// (sin, cos) of an angle, rad, by the kernel's own routine.
+    ///
+    /// | | largest error | arithmetic | cost on a Cortex-M4F |
+    /// |---|---|---|---|
+    /// | `f32` | 9e-8 to pi, 1e-7 to 1e4 | 13 multiplies, 12 adds | about 40 cycles (estimate) |
+    /// | `f64` | 2 ulp | 19 multiplies, 21 adds | 40 calls of soft float |
+    ///
+    /// Beyond 12,867 an `f32` is taken in double precision, beyond 1,647,098 the `libm` crate answers: correct, slow. Of
+    /// infinity and NaN both are NaN. Asserted by the kernel's tests; for all floats of [-pi, pi] on demand.
     #[doc(hidden)]
     fn own_sin_cos(self) -> (Self, Self);
 }
@@ -102,7 +107,7 @@ twice_by_bits!(twice_single, f32);
 twice_by_bits!(twice_double, f64);
 
 macro_rules! real {
-    ($float:ident, $twice:ident in software if $software:meta, $sqrt:path, $atan2:path, $sin_cos:path, $own:ident) => {
+    ($float:ident, $twice:ident in software if $software:meta, $sqrt:path, $atan2:path, $own:ident) => {
         impl Sealed for $float {}
 
         impl Scalar for $float {
@@ -182,10 +187,6 @@ macro_rules! real {
                 $atan2(self, x)
             }
             #[inline]
-            fn libm_sin_cos(self) -> (Self, Self) {
-                $sin_cos(self)
-            }
-            #[inline]
             fn own_sin_cos(self) -> (Self, Self) {
                 sine::$own::sin_cos(self)
             }
@@ -193,8 +194,8 @@ macro_rules! real {
     };
 }
 
-real!(f32, twice_single in software if all(target_arch = "arm", target_abi = "eabi"), libm::sqrtf, libm::atan2f, libm::sincosf, own_f32);
-real!(f64, twice_double in software if all(target_arch = "arm", any(target_abi = "eabi", target_os = "none"), not(feature = "double-fpu")), libm::sqrt, libm::atan2, libm::sincos, own_f64);
+real!(f32, twice_single in software if all(target_arch = "arm", target_abi = "eabi"), libm::sqrtf, libm::atan2f, own_f32);
+real!(f64, twice_double in software if all(target_arch = "arm", any(target_abi = "eabi", target_os = "none"), not(feature = "double-fpu")), libm::sqrt, libm::atan2, own_f64);
 
 #[cfg(test)]
 mod tests {

@@ -1,17 +1,14 @@
 //! Hamilton's canonical equations for any masses and lengths.
 
-use core::marker::PhantomData;
-
 use crate::error::Error;
 use crate::numbers::Real;
-use crate::numbers::trig::{DefaultTrig, SinCos};
 use crate::pendulum::{Parameters, State};
 
 /// A double pendulum: validated parameters and the products of them that the equations use.
 ///
-/// It is configuration only and drives any number of [`State`]s. `T` is the source of sine and cosine.
+/// It is configuration only and drives any number of [`State`]s.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pendulum<R, T = DefaultTrig> {
+pub struct Pendulum<R> {
     parameters: Parameters<R>,
     /// 1/l1 and 1/l2.
     inverse_length: [R; 2],
@@ -21,23 +18,14 @@ pub struct Pendulum<R, T = DefaultTrig> {
     coupling: R,
     /// (m1 + m2) g l1 and m2 g l2: the greatest torque of gravity on each joint.
     torque: [R; 2],
-    trig: PhantomData<T>,
 }
 
 impl<R: Real> Pendulum<R> {
-    /// Checks the parameters and prepares the equations, with the default source of sine and cosine.
+    /// Checks the parameters and prepares the equations.
     ///
     /// Refuses NaN, infinite, zero or negative masses and lengths, negative gravity, and combinations whose products
     /// leave the range of `R`; the [`Error`] names the parameter and its value.
     pub fn new(parameters: &Parameters<R>) -> Result<Self, Error> {
-        Self::with_trig(parameters)
-    }
-}
-
-impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
-    /// As [`Pendulum::new`], with the source of sine and cosine given by the type.
-    #[doc(hidden)]
-    pub fn with_trig(parameters: &Parameters<R>) -> Result<Self, Error> {
         parameters.check()?;
         let &Parameters { m1, m2, l1, l2, g } = parameters;
         let pendulum = Self {
@@ -46,7 +34,6 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
             total_over_m2: (m1 + m2) / m2,
             coupling: m2 * l1 * l2,
             torque: [(m1 + m2) * g * l1, m2 * g * l2],
-            trig: PhantomData,
         };
         let [inverse_l1, inverse_l2] = pendulum.inverse_length;
         // 1/m1 is the greatest that 1/den becomes.
@@ -81,12 +68,17 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     #[inline]
     pub fn derivatives(&self, z: &[R; 4]) -> [R; 4] {
         let &[a1, a2, p1, p2] = z;
+        self.derivatives_at([a1.own_sin_cos(), a2.own_sin_cos()], [p1, p2])
+    }
+
+    /// As [`derivatives`](Self::derivatives), where rods 1 and 2 point to (sin, cos): the trigonometry is the caller's.
+    #[doc(hidden)]
+    #[inline]
+    pub fn derivatives_at(&self, [(sin1, cos1), (sin2, cos2)]: [(R, R); 2], [p1, p2]: [R; 2]) -> [R; 4] {
         let Parameters { m1, m2, .. } = self.parameters;
         let [inverse_l1, inverse_l2] = self.inverse_length;
         let [torque1, torque2] = self.torque;
 
-        let (sin1, cos1) = T::sin_cos(a1);
-        let (sin2, cos2) = T::sin_cos(a2);
         let sin_d = sin1 * cos2 - cos1 * sin2;
         let cos_d = cos1 * cos2 + sin1 * sin2;
 
@@ -109,9 +101,9 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     /// is its minimum). Costs three sincos and two divisions.
     #[must_use]
     pub fn energy(&self, state: &State<R>) -> R {
-        let (_, cos1) = T::sin_cos(state.a1);
-        let (_, cos2) = T::sin_cos(state.a2);
-        self.kinetic_energy_of(T::sin_cos(state.a1 - state.a2), [state.p1, state.p2])
+        let (_, cos1) = state.a1.own_sin_cos();
+        let (_, cos2) = state.a2.own_sin_cos();
+        self.kinetic_energy_of((state.a1 - state.a2).own_sin_cos(), [state.p1, state.p2])
             - self.torque[0] * cos1
             - self.torque[1] * cos2
     }
@@ -131,9 +123,9 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     /// it keeps its relative precision down to the smallest motions, where H and min V nearly cancel.
     #[must_use]
     pub fn energy_above_rest(&self, state: &State<R>) -> R {
-        let height1 = one_minus_cos(T::sin_cos(state.a1));
-        let height2 = one_minus_cos(T::sin_cos(state.a2));
-        self.kinetic_energy_of(T::sin_cos(state.a1 - state.a2), [state.p1, state.p2])
+        let height1 = one_minus_cos(state.a1.own_sin_cos());
+        let height2 = one_minus_cos(state.a2.own_sin_cos());
+        self.kinetic_energy_of((state.a1 - state.a2).own_sin_cos(), [state.p1, state.p2])
             + self.torque[0] * height1
             + self.torque[1] * height2
     }

@@ -3,10 +3,9 @@
 //! It shares no formula with [`hamiltonian`](crate::Pendulum::derivatives), which makes each a check of the other.
 
 use crate::numbers::Real;
-use crate::numbers::trig::SinCos;
 use crate::pendulum::{Motion, Parameters, Pendulum};
 
-impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
+impl<R: Real> Pendulum<R> {
     /// The kinetic energy, J (`[math24]`, "Lagrange equations").
     ///
     /// T = (m1 + m2)/2 l1^2 w1^2 + m2/2 l2^2 w2^2 + m2 l1 l2 w1 w2 cos(a1 - a2)
@@ -14,7 +13,7 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     pub fn kinetic_energy(&self, motion: &Motion<R>) -> R {
         let &Motion { a1, a2, w1, w2 } = motion;
         let &Parameters { m1, m2, l1, l2, .. } = self.parameters();
-        let (_, cos_d) = T::sin_cos(a1 - a2);
+        let (_, cos_d) = (a1 - a2).own_sin_cos();
         let v1 = l1 * w1;
         let v2 = l2 * w2;
         R::HALF * (m1 + m2) * v1 * v1 + R::HALF * m2 * v2 * v2 + m2 * v1 * v2 * cos_d
@@ -26,8 +25,8 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     #[must_use]
     pub fn potential_energy(&self, [a1, a2]: [R; 2]) -> R {
         let &Parameters { m1, m2, l1, l2, g } = self.parameters();
-        let (_, cos1) = T::sin_cos(a1);
-        let (_, cos2) = T::sin_cos(a2);
+        let (_, cos1) = a1.own_sin_cos();
+        let (_, cos2) = a2.own_sin_cos();
         -(m1 + m2) * g * l1 * cos1 - m2 * g * l2 * cos2
     }
 
@@ -50,9 +49,9 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
         let &Motion { a1, a2, w1, w2 } = motion;
         let &Parameters { m1, m2, l1, l2, g } = self.parameters();
         let total = m1 + m2;
-        let (sin1, _) = T::sin_cos(a1);
-        let (sin2, _) = T::sin_cos(a2);
-        let (sin_d, cos_d) = T::sin_cos(a1 - a2);
+        let (sin1, _) = a1.own_sin_cos();
+        let (sin2, _) = a2.own_sin_cos();
+        let (sin_d, cos_d) = (a1 - a2).own_sin_cos();
 
         let f1 = -m2 * l2 * w2 * w2 * sin_d - total * g * sin1;
         let f2 = l1 * w1 * w1 * sin_d - g * sin2;

@@ -1,10 +1,9 @@
 //! The Legendre transformation between angular velocities and canonical momenta, both ways.
 
 use crate::numbers::Real;
-use crate::numbers::trig::SinCos;
 use crate::pendulum::{Motion, Parameters, Pendulum, State};
 
-impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
+impl<R: Real> Pendulum<R> {
     /// The mass matrix M at the angle D = a1 - a2 between the rods, kg m^2, row by row; `cos_d` is cos D.
     ///
     /// M = [[(m1 + m2) l1^2, m2 l1 l2 cos D], [m2 l1 l2 cos D, m2 l2^2]], so that T = w.M w/2 and p = M w.
@@ -24,7 +23,7 @@ impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
     #[must_use]
     pub fn to_state(&self, motion: &Motion<R>) -> State<R> {
         let &Motion { a1, a2, w1, w2 } = motion;
-        let (_, cos_d) = T::sin_cos(a1 - a2);
+        let (_, cos_d) = (a1 - a2).own_sin_cos();
         let [[m11, m12], [m21, m22]] = self.mass_matrix(cos_d);
         State { a1, a2, p1: m11 * w1 + m12 * w2, p2: m21 * w1 + m22 * w2 }
     }

@@ -1,7 +1,6 @@
 //! The pendulum and its equations of motion, each as the book has it.
 
 pub(crate) mod directions;
-mod equal_rods;
 mod geometry;
 pub(crate) mod hamiltonian;
 mod lagrangian;
@@ -10,7 +9,6 @@ mod parameters;
 mod state;
 
 pub use directions::Direction;
-pub use equal_rods::{EqualRods, Units};
 pub use geometry::Vector;
 pub use hamiltonian::Pendulum;
 pub use parameters::Parameters;

@@ -22,6 +22,9 @@ pub struct Parameters<R> {
 
 impl<R: Real> Parameters<R> {
     /// Equal rods of length `l` and a bob 1 of 1 kg, so that only the mass ratio mu = m2/m1 is left to choose.
+    ///
+    /// With `l` and `g` of 1 the equations are the book's dimensionless ones for equal rods: time is counted in sqrt(l/g),
+    /// momenta in m1 l^2 sqrt(g/l), energy in m1 g l.
     #[must_use]
     pub fn equal_rods(mu: R, l: R, g: R) -> Self {
         Self { m1: R::ONE, m2: mu, l1: l, l2: l, g }

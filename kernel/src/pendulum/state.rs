@@ -3,51 +3,83 @@
 use crate::error::{Error, Parameter, check_finite};
 use crate::numbers::Real;
 
-/// Angles and canonical momenta: a point of the phase space.
-///
-/// Angles are measured from the downward vertical, positive counter-clockwise, and are not wrapped.
-/// [`Pendulum::to_motion`](crate::Pendulum::to_motion) turns it into angular velocities.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct State<R> {
-    /// Angle of rod 1, rad.
-    pub a1: R,
-    /// Angle of rod 2, rad.
-    pub a2: R,
-    /// Momentum conjugate to `a1`, kg m^2/s.
-    pub p1: R,
-    /// Momentum conjugate to `a2`, kg m^2/s.
-    pub p2: R,
+macro_rules! both_rods {
+    ($(#[$about:meta])* $point:ident: $a1:ident, $a2:ident, $x1:ident $X1:ident $first:literal, $x2:ident $X2:ident $second:literal) => {
+        $(#[$about])*
+        #[derive(Clone, Copy, Debug, Default, PartialEq)]
+        pub struct $point<R> {
+            /// Angle of rod 1, rad.
+            pub $a1: R,
+            /// Angle of rod 2, rad.
+            pub $a2: R,
+            #[doc = $first]
+            pub $x1: R,
+            #[doc = $second]
+            pub $x2: R,
+        }
+
+        impl<R: Real> $point<R> {
+            /// Held still at the angles `a1`, `a2`, rad.
+            #[must_use]
+            pub fn at_rest($a1: R, $a2: R) -> Self {
+                Self { $a1, $a2, $x1: R::ZERO, $x2: R::ZERO }
+            }
+
+            /// Both angles, rad.
+            #[must_use]
+            pub fn angles(&self) -> [R; 2] {
+                [self.$a1, self.$a2]
+            }
+
+            /// The same numbers in the arithmetic `S`, each rounded once; exact from `f32` to `f64`.
+            #[must_use]
+            pub fn cast<S: Real>(self) -> $point<S> {
+                <[R; 4]>::from(self).map(R::cast).into()
+            }
+
+            /// Refuses NaN and infinite values.
+            #[inline(never)] // cold: once in flash, not once for each caller
+            #[doc(hidden)]
+            pub fn check(&self) -> Result<(), Error> {
+                let &Self { $a1, $a2, $x1, $x2 } = self;
+                check_finite([(Parameter::A1, $a1), (Parameter::A2, $a2), (Parameter::$X1, $x1), (Parameter::$X2, $x2)])
+            }
+        }
+
+        /// Angles first, as the book has them.
+        impl<R> From<[R; 4]> for $point<R> {
+            fn from([$a1, $a2, $x1, $x2]: [R; 4]) -> Self {
+                Self { $a1, $a2, $x1, $x2 }
+            }
+        }
+
+        /// Angles first, as the book has them.
+        impl<R> From<$point<R>> for [R; 4] {
+            fn from($point { $a1, $a2, $x1, $x2 }: $point<R>) -> Self {
+                [$a1, $a2, $x1, $x2]
+            }
+        }
+    };
+}
+
+both_rods! {
+    /// Angles and canonical momenta: a point of the phase space.
+    ///
+    /// Angles are measured from the downward vertical, positive counter-clockwise, and are not wrapped.
+    /// [`Pendulum::to_motion`](crate::Pendulum::to_motion) turns it into angular velocities.
+    #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+    #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+    State: a1, a2, p1 P1 "Momentum conjugate to `a1`, kg m^2/s.", p2 P2 "Momentum conjugate to `a2`, kg m^2/s."
+}
+
+both_rods! {
+    /// Angles and angular velocities: the Lagrangian's variables, w = da/dt.
+    ///
+    /// Angles as in [`State`]; [`Pendulum::to_state`](crate::Pendulum::to_state) turns it into canonical momenta.
+    Motion: a1, a2, w1 W1 "Angular velocity of rod 1, rad/s.", w2 W2 "Angular velocity of rod 2, rad/s."
 }
 
 impl<R: Real> State<R> {
-    /// Held still at the angles `a1`, `a2` (rad): both momenta are zero.
-    #[must_use]
-    pub fn at_rest(a1: R, a2: R) -> Self {
-        Self { a1, a2, p1: R::ZERO, p2: R::ZERO }
-    }
-
-    /// Both angles, rad.
-    #[must_use]
-    pub fn angles(&self) -> [R; 2] {
-        [self.a1, self.a2]
-    }
-
-    /// The same numbers in the arithmetic `S`, each rounded once; exact from `f32` to `f64`.
-    #[must_use]
-    pub fn cast<S: Real>(self) -> State<S> {
-        <[R; 4]>::from(self).map(R::cast).into()
-    }
-
-    /// Refuses NaN and infinite values.
-    #[inline(never)] // cold: once in flash, not once for each caller
-    #[doc(hidden)]
-    pub fn check(&self) -> Result<(), Error> {
-        let &Self { a1, a2, p1, p2 } = self;
-        check_finite([(Parameter::A1, a1), (Parameter::A2, a2), (Parameter::P1, p1), (Parameter::P2, p2)])
-    }
-
     /// The state itself if all its numbers are finite, else [`Error::Diverged`]: to be asked after a step.
     ///
     /// A step from a good state is finite whenever it resolves the motion; one too long for it may lead anywhere
@@ -70,80 +102,5 @@ impl<R: Real> State<R> {
     /// ```
     pub fn finite(self) -> Result<Self, Error> {
         self.check().map(|()| self).map_err(Error::diverged)
-    }
-}
-
-/// In the book's order: a1, a2, p1, p2.
-impl<R> From<[R; 4]> for State<R> {
-    fn from([a1, a2, p1, p2]: [R; 4]) -> Self {
-        Self { a1, a2, p1, p2 }
-    }
-}
-
-/// In the book's order: a1, a2, p1, p2.
-impl<R> From<State<R>> for [R; 4] {
-    fn from(State { a1, a2, p1, p2 }: State<R>) -> Self {
-        [a1, a2, p1, p2]
-    }
-}
-
-/// Angles and angular velocities: the Lagrangian's variables, w = da/dt.
-///
-/// Angles as in [`State`]; [`Pendulum::to_state`](crate::Pendulum::to_state) turns it into canonical momenta.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Motion<R> {
-    /// Angle of rod 1, rad.
-    pub a1: R,
-    /// Angle of rod 2, rad.
-    pub a2: R,
-    /// Angular velocity of rod 1, rad/s.
-    pub w1: R,
-    /// Angular velocity of rod 2, rad/s.
-    pub w2: R,
-}
-
-impl<R: Real> Motion<R> {
-    /// Held still at the angles `a1`, `a2` (rad).
-    #[must_use]
-    pub fn at_rest(a1: R, a2: R) -> Self {
-        Self { a1, a2, w1: R::ZERO, w2: R::ZERO }
-    }
-
-    /// Both angles, rad.
-    #[must_use]
-    pub fn angles(&self) -> [R; 2] {
-        [self.a1, self.a2]
-    }
-
-    /// The same numbers in the arithmetic `S`, each rounded once; exact from `f32` to `f64`.
-    #[must_use]
-    pub fn cast<S: Real>(self) -> Motion<S> {
-        <[R; 4]>::from(self).map(R::cast).into()
-    }
-
-    /// Refuses NaN and infinite values.
-    #[inline(never)] // cold: once in flash, not once for each caller
-    #[doc(hidden)]
-    pub fn check(&self) -> Result<(), Error> {
-        let &Self { a1, a2, w1, w2 } = self;
-        check_finite([(Parameter::A1, a1), (Parameter::A2, a2), (Parameter::W1, w1), (Parameter::W2, w2)])
-    }
-}
-
-/// In the book's order: a1, a2, w1, w2.
-#[doc(hidden)]
-impl<R> From<[R; 4]> for Motion<R> {
-    fn from([a1, a2, w1, w2]: [R; 4]) -> Self {
-        Self { a1, a2, w1, w2 }
-    }
-}
-
-/// In the book's order: a1, a2, w1, w2.
-#[doc(hidden)]
-impl<R> From<Motion<R>> for [R; 4] {
-    fn from(Motion { a1, a2, w1, w2 }: Motion<R>) -> Self {
-        [a1, a2, w1, w2]
     }
 }

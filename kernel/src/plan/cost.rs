@@ -11,8 +11,6 @@ pub(super) const ORDER: u32 = Method::Extrapolation10Fixed64.order();
 /// The price list: what a step costs by each method, what a frame costs in closed form. In cycles, or in any other unit
 /// that the [`Budget`] is given in, too.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Costs {
     /// [`Method::ClosedFormF32`], for each frame.
     pub closed_form: f32,
@@ -54,8 +52,6 @@ impl Costs {
 
 /// What may be spent, in the unit of the [`Costs`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Budget {
     /// On computing a frame.
     pub frame: f32,

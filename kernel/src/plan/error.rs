@@ -14,8 +14,8 @@ pub enum PlanError {
     /// The pendulum or its start describes no motion, or none that `f32` can hold; or a tolerance, duration, rate, cost or budget
     /// is none.
     Refused(Error),
-    /// Every input was good, but nothing within the budgets was right in any frame.
-    NothingHolds {
+    /// Every input was good, but no method within the budgets meets the tolerance in any frame.
+    NoMethod {
         /// What forbids finer steps.
         limit: Limit,
         /// Spent on planning.
@@ -33,12 +33,9 @@ impl fmt::Display for PlanError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             PlanError::Refused(error) => error.fmt(f),
-            PlanError::NothingHolds { limit, .. } => {
-                write!(
-                    f,
-                    "nothing within the budgets is right in any frame; finer steps are forbidden by {}",
-                    limit.name()
-                )
+            PlanError::NoMethod { limit, .. } => {
+                let limit = limit.name();
+                write!(f, "no method within the budgets meets the tolerance; finer steps are forbidden by {limit}")
             }
         }
     }
@@ -48,7 +45,7 @@ impl core::error::Error for PlanError {
     fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
         match self {
             PlanError::Refused(error) => Some(error),
-            PlanError::NothingHolds { .. } => None,
+            PlanError::NoMethod { .. } => None,
         }
     }
 }

@@ -12,8 +12,8 @@
 //! | 64 bits | three such runs |
 //!
 //! The coarsest step at which anything stays within the tolerance to the end decides; of all that does the cheapest is
-//! taken. If nothing does (chaos), what does longest is; if nothing within the budgets is right in any frame,
-//! [`PlanError::NothingHolds`] says so. The search begins at a step that resolves all motions of the energy, by the proven
+//! taken. If nothing does (chaos), what does longest is; if no method within the budgets meets the
+//! tolerance in any frame, [`PlanError::NoMethod`] says so. The search begins at a step that resolves all motions of the energy, by the proven
 //! bound of [`Pendulum::admissible_step`](crate::Pendulum::admissible_step), by compensated `f32` or 32 bits of fixed point,
 //! whichever costs less, and at half and a quarter of it. It goes over to 64 bits where rounding is the larger error or these
 //! cost less. Planning takes no heap, and is done in pieces that a busy caller can afford ([`Search`]).
@@ -39,7 +39,7 @@
 //! let [[_sin1, _cos1], [_sin2, _cos2]] = run.directions();
 //!
 //! let poor = Budget { frame: 500.0, ..budget };
-//! assert!(matches!(Plan::search(&small, &costs, &poor), Err(PlanError::NothingHolds { .. })));
+//! assert!(matches!(Plan::search(&small, &costs, &poor), Err(PlanError::NoMethod { .. })));
 //! # Ok::<(), PlanError>(())
 //! ```
 
@@ -67,8 +67,7 @@ pub use way::Way;
 impl Plan {
     /// The plan for `problem` at once: [`Search`] to its end.
     ///
-    /// Refuses what [`Search::new`] and [`Search::advance`] refuse; [`PlanError::NothingHolds`] if nothing within the budgets is
-    /// right in any frame.
+    /// Refuses what [`Search::new`] and [`Search::advance`] refuse; [`PlanError::NoMethod`] if none meets the tolerance.
     pub fn search(problem: &Problem, costs: &Costs, budget: &Budget) -> Result<Self, PlanError> {
         let mut search = Search::new(problem, costs, budget)?;
         loop {

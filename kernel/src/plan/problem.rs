@@ -7,8 +7,6 @@ use crate::table::{Method, Numbers};
 
 /// A pendulum, its start, how it is shown, and how wrong that may be.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Problem {
     /// Masses, lengths and gravity.
     pub pendulum: Parameters<f64>,

@@ -311,14 +311,10 @@ impl Search {
             return None;
         }
         let finer = times.map(|times| self.steps.saturating_mul(times)).filter(|&steps| steps <= MOST_STEPS);
-        let cost = |&steps: &u32| self.costs.of_frame(method, steps);
-        let is_worth = |(steps, _): &(u32, Limit)| {
-            finer
-                .as_ref()
-                .is_none_or(|finer| self.costs.of_frame(Method::Extrapolation10Fixed64, *steps) <= cost(finer))
-        };
-        let fine = self.fine.filter(is_worth).map(|(steps, _)| (Method::Extrapolation10Fixed64, steps));
-        let affordable = finer.filter(|finer| cost(finer) <= self.budget.frame).map(|finer| (method, finer));
+        let cost = |method, steps| self.costs.of_frame(method, steps);
+        let fine = self.fine.map(|(steps, _)| (Method::Extrapolation10Fixed64, steps));
+        let fine = fine.filter(|&(fine, steps)| finer.is_none_or(|finer| cost(fine, steps) <= cost(method, finer)));
+        let affordable = finer.filter(|&finer| cost(method, finer) <= self.budget.frame).map(|finer| (method, finer));
         let Some((method, steps)) = fine.or(affordable) else { return Some(Limit::Budget) };
         self.begin(method, steps);
         None
@@ -347,7 +343,7 @@ impl Search {
             let is_open = |pass: &Pass| pass.candidates().iter().any(|one| !one.failed);
             let open = self.pass.as_ref().is_none_or(is_open);
             let limit = if limit == Limit::Planning && !open { Limit::Budget } else { limit };
-            return Err(PlanError::NothingHolds { limit, spent: self.spent });
+            return Err(PlanError::NoMethod { limit, spent: self.spent });
         };
         let steps = if best.method == Method::ClosedFormF32 { 0 } else { best.steps };
         let rate = f64::from(self.problem.rate);

@@ -7,8 +7,6 @@ use crate::table::Method;
 
 /// How a motion is computed: a method, and how fine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[doc(hidden)]
 pub struct Way {
     /// The method.

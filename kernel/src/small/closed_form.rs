@@ -1,9 +1,6 @@
 //! The motion of small oscillations in closed form: both angles at any time without a step.
 
-use core::marker::PhantomData;
-
 use crate::numbers::Real;
-use crate::numbers::trig::{DefaultTrig, SinCos};
 use crate::pendulum::{Direction, Motion};
 use crate::small::{Mode, Modes};
 
@@ -50,29 +47,20 @@ impl<R: Real> Oscillation<R> {
 /// # Ok::<(), double_pendulum::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SmallOscillations<R, T = DefaultTrig> {
+pub struct SmallOscillations<R> {
     /// The frequencies in turns per second, in `f64`: after a day in `f32` the phase would be anywhere.
     turns: [f64; 2],
     modes: [Mode<R>; 2],
     fast: Oscillation<R>,
     slow: Oscillation<R>,
-    trig: PhantomData<T>,
 }
 
 impl<R: Real> SmallOscillations<R> {
-    /// The motion that starts as `start`, with the default source of sine and cosine.
-    #[must_use]
-    pub fn new(modes: Modes<f64>, start: &Motion<R>) -> Self {
-        Self::with_trig(modes, start)
-    }
-}
-
-impl<R: Real, T: SinCos<R>> SmallOscillations<R, T> {
-    /// As [`SmallOscillations::new`], with the source of sine and cosine given by the type.
+    /// The motion that starts as `start`.
     ///
     /// C1 = (r2 a1 - a2)/(r2 - r1), C2 = (a2 - r1 a1)/(r2 - r1); w1 S1 and w2 S2 are the same with velocities.
-    #[doc(hidden)]
-    pub fn with_trig(modes: Modes<f64>, start: &Motion<R>) -> Self {
+    #[must_use]
+    pub fn new(modes: Modes<f64>, start: &Motion<R>) -> Self {
         let turns = [modes.fast, modes.slow].map(|mode| mode.frequency / core::f64::consts::TAU);
         let modes = [modes.fast, modes.slow]
             .map(|Mode { frequency, shape }| Mode { frequency: R::from_f64(frequency), shape: R::from_f64(shape) });
@@ -85,7 +73,6 @@ impl<R: Real, T: SinCos<R>> SmallOscillations<R, T> {
             modes,
             fast: Oscillation { cosine: c1, sine: v1 / fast },
             slow: Oscillation { cosine: c2, sine: v2 / slow },
-            trig: PhantomData,
         }
     }
 
@@ -132,7 +119,7 @@ impl<R: Real, T: SinCos<R>> SmallOscillations<R, T> {
     fn phases(&self, t: f64) -> [(R, R); 2] {
         self.turns.map(|turns| {
             let turns = turns * t;
-            T::sin_cos(R::from_f64(turns - libm::rint(turns)) * R::from_f64(core::f64::consts::TAU))
+            (R::from_f64(turns - libm::rint(turns)) * R::from_f64(core::f64::consts::TAU)).own_sin_cos()
         })
     }
 

@@ -2,7 +2,6 @@
 
 use crate::error::{Error, Parameter};
 use crate::numbers::Real;
-use crate::numbers::trig::SinCos;
 use crate::pendulum::{Parameters, Pendulum};
 
 /// One normal mode: both angles oscillate at one frequency, in a fixed ratio.
@@ -95,7 +94,7 @@ impl<R: Real> Modes<R> {
     }
 }
 
-impl<R: Real, T: SinCos<R>> Pendulum<R, T> {
+impl<R: Real> Pendulum<R> {
     /// The stiffness matrix K of small oscillations, N m/rad, row by row: diag((m1 + m2) g l1, m2 g l2).
     #[must_use]
     pub fn stiffness(&self) -> [[R; 2]; 2] {

@@ -2,7 +2,7 @@
 //!
 //! Every float of [-pi, pi]: `cargo test --release --package double-pendulum-kernel --lib -- --ignored` (2 minutes).
 
-use double_pendulum::trig::{DefaultTrig, Libm, Own, SinCos};
+use double_pendulum::Real;
 
 /// Own `f32` pair on [-pi, pi] (measured: 8.56e-8): half an ulp from rounding the reduced argument, half from the last
 /// addition, a little from the terms between.
@@ -13,16 +13,10 @@ const FAR: f64 = 1e-7;
 /// own 0.6 is taken off.
 const ULPS: f64 = 2.0 - 0.6;
 
-/// The sines of `libm` in `f32` up to pi: half a unit in the last place of 1, 3.0e-8.
-const HALF_ULP: f64 = 3.1e-8;
-/// The sines of `micromath` up to pi: as wrong as its documentation says, and no better.
-#[cfg(feature = "micromath")]
-const MICROMATH: core::ops::Range<f64> = 1e-4..2e-3;
-
 /// The largest absolute error of sine or cosine over every `stride`-th float of [-`limit`, `limit`], smallest first.
-fn largest_error<T: SinCos<f32>>(limit: f32, stride: usize) -> f64 {
+fn largest_error(limit: f32, stride: usize) -> f64 {
     let error = |x: f32| {
-        let (sine, cosine) = T::sin_cos(x);
+        let (sine, cosine) = x.own_sin_cos();
         let (true_sine, true_cosine) = f64::from(x).sin_cos();
         (f64::from(sine) - true_sine).abs().max((f64::from(cosine) - true_cosine).abs())
     };
@@ -38,21 +32,21 @@ fn ulps(value: f64, truth: f64) -> f64 {
 
 #[test]
 fn own_f32_is_within_its_bound_on_a_stride_of_the_floats_to_pi() {
-    let error = largest_error::<Own>(core::f32::consts::PI, 1009);
+    let error = largest_error(core::f32::consts::PI, 1009);
     assert!(error <= NEAR, "{error:.3e}");
 }
 
 #[test]
 #[ignore = "two minutes: every float of [-pi, pi]"]
 fn own_f32_is_within_its_bound_on_every_float_to_pi() {
-    let error = largest_error::<Own>(core::f32::consts::PI, 1);
+    let error = largest_error(core::f32::consts::PI, 1);
     std::println!("largest error on [-pi, pi]: {error:.4e}");
     assert!(error <= NEAR, "{error:.3e}");
 }
 
 #[test]
 fn own_f32_is_within_its_bound_to_ten_thousand() {
-    let error = largest_error::<Own>(1e4, 251);
+    let error = largest_error(1e4, 251);
     assert!(error <= FAR, "{error:.3e}");
 }
 
@@ -61,7 +55,7 @@ fn own_f32_holds_where_the_reduction_cancels() {
     for k in 1..=6366 {
         let nearest = (f64::from(k) * core::f64::consts::FRAC_PI_2) as f32;
         for x in [nearest.to_bits() - 1, nearest.to_bits(), nearest.to_bits() + 1].map(f32::from_bits) {
-            let (sine, cosine) = Own::sin_cos(x);
+            let (sine, cosine) = x.own_sin_cos();
             let (true_sine, true_cosine) = f64::from(x).sin_cos();
             assert!((f64::from(sine) - true_sine).abs() <= FAR, "sin {x:e}");
             assert!((f64::from(cosine) - true_cosine).abs() <= FAR, "cos {x:e}");
@@ -77,7 +71,7 @@ fn own_f64_is_within_two_units_of_the_last_place() {
     let every_size = (0..4_000_000).map(|i| f64::from_bits(0x3c00_0000_0000_0000 + i * 0x2_4000_0000));
     let cancelling = (1..1_000_000).map(|k| f64::from(k) * core::f64::consts::FRAC_PI_2);
     for x in uniform.chain(huge).chain(every_size).chain(cancelling) {
-        let (sine, cosine) = Own::sin_cos(x);
+        let (sine, cosine) = x.own_sin_cos();
         let (true_sine, true_cosine) = x.sin_cos();
         worst = worst.max(ulps(sine, true_sine)).max(ulps(cosine, true_cosine));
     }
@@ -90,7 +84,7 @@ fn own_f64_is_within_two_units_of_the_last_place() {
 fn every_bit_pattern_has_a_defined_result() {
     for bits in (0..=u32::MAX).step_by(65_521) {
         let x = f32::from_bits(bits);
-        let (sine, cosine) = DefaultTrig::sin_cos(x);
+        let (sine, cosine) = x.own_sin_cos();
         if x.is_finite() {
             assert!(sine.abs() <= 1.0 + f32::EPSILON && cosine.abs() <= 1.0 + f32::EPSILON, "{x:e}");
         } else {
@@ -98,13 +92,13 @@ fn every_bit_pattern_has_a_defined_result() {
         }
     }
     for x in [f32::MAX, 1e20, 12_868.0] {
-        assert_eq!(Own::sin_cos(x), Libm::sin_cos(x));
+        assert_eq!(x.own_sin_cos(), libm::sincosf(x));
     }
     for x in [f64::MAX, 1e200, 1_647_100.0] {
-        assert_eq!(Own::sin_cos(x), Libm::sin_cos(x));
+        assert_eq!(x.own_sin_cos(), libm::sincos(x));
     }
     for x in [f64::INFINITY, f64::NEG_INFINITY, f64::NAN] {
-        let (sine, cosine): (f64, f64) = Own::sin_cos(x);
+        let (sine, cosine) = x.own_sin_cos();
         assert!(sine.is_nan() && cosine.is_nan());
     }
 }
@@ -112,21 +106,6 @@ fn every_bit_pattern_has_a_defined_result() {
 #[test]
 fn small_arguments_pass_through() {
     for x in [0.0, -0.0, 1e-45, -1e-45, 1e-30, 1e-10_f32] {
-        assert_eq!(Own::sin_cos(x), (x, 1.0));
+        assert_eq!(x.own_sin_cos(), (x, 1.0));
     }
-}
-
-/// A source for comparison.
-#[test]
-fn libm_is_within_half_a_unit_of_the_last_place() {
-    let error = largest_error::<Libm>(core::f32::consts::PI, 100_003);
-    assert!(error <= HALF_ULP, "{error:.3e}");
-}
-
-/// Another.
-#[cfg(feature = "micromath")]
-#[test]
-fn micromath_is_as_wrong_as_it_says() {
-    let error = largest_error::<double_pendulum::trig::Micromath>(core::f32::consts::PI, 100_003);
-    assert!(MICROMATH.contains(&error), "{error:.3e}");
 }

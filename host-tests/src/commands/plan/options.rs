@@ -5,7 +5,7 @@ use clap::Parser;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use double_pendulum::Motion;
 use double_pendulum::plan::{Limit, Plan, PlanError, Problem};
-use firmware::motion::{Shown, half_pixel, problem};
+use firmware::motion::{Viewport, half_pixel, problem};
 use firmware::scenes::SceneName;
 
 use super::target::{CHIPS, Chip};
@@ -64,7 +64,7 @@ impl SceneOptions {
         let show = Show::on(self.target.processor, name, &settings)?;
         let answer = show.player.plan(0);
         ensure!(answer.found > 0, "--scene {}: has no motion to plan", name.name());
-        Ok(problem(&settings, &Shown { way: None, height: answer.height as f32 }))
+        Ok(problem(&settings, &Viewport { way: None, height: answer.height as f32 }))
     }
 
     fn given(&self) -> anyhow::Result<Problem> {

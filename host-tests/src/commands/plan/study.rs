@@ -20,7 +20,7 @@ pub struct Case {
     pub number: usize,
     pub chip: Chip,
     pub scene: Problem,
-    /// The plan; if nothing holds, what forbids it.
+    /// The plan; if no method meets the tolerance, what forbids it.
     pub plan: Result<Plan, Limit>,
     /// What became of it; nothing without one.
     pub verdict: Outcome,
@@ -32,7 +32,7 @@ impl Case {
         self.verdict.error > f64::from(HALF_PIXEL)
     }
 
-    /// The predicted horizon over the true one; 0 if nothing holds.
+    /// The predicted horizon over the true one; 0 if no method meets the tolerance.
     pub fn share(&self) -> f64 {
         let predicted = self.plan.map_or(0.0, |plan| plan.horizon);
         if self.verdict.horizon > 0.0 { predicted / self.verdict.horizon } else { 0.0 }
@@ -90,8 +90,8 @@ pub fn summary(cases: &[Case]) -> Table {
     Table {
         title: "Plans",
         note: format!(
-            "Every scene is planned for each processor, carried out and compared with the reference at each frame. Nothing holds: no \
-             method that is affordable is right in any frame. End early: cease to be right to half a pixel within the scene. \
+            "Every scene is planned for each processor, carried out and compared with the reference at each frame. No method: \
+             none that is affordable meets the tolerance in any frame. End early: cease to be right to half a pixel within the scene. \
              Violations: scenes with a frame more than half a pixel off before the predicted horizon. Largest error: until then. \
              Predicted: the predicted horizon over the true one in the median, of all scenes with a plan and of those that end early. Cycles: \
              the median. {ERROR_BAR}",
@@ -99,7 +99,7 @@ pub fn summary(cases: &[Case]) -> Table {
         columns: &[
             "processor",
             "scenes",
-            "nothing holds",
+            "no method",
             "end early",
             "violations",
             "largest error (pixels)",

@@ -25,10 +25,10 @@ pub const PICO: Chip = Chip { name: "pico", title: "Cortex-M0+ at 125 MHz", cloc
 pub const CHIPS: [Chip; 4] = [M3, M4F, SLOW_M4F, PICO];
 
 impl Chip {
-    /// The plan that a board of this class finds; if nothing holds, what forbids finer steps.
+    /// The plan that a board of this class finds; if no method meets the tolerance, what forbids finer steps.
     pub fn plan(&self, problem: &Problem) -> Result<Result<Plan, Limit>, PlanError> {
         match Plan::search(problem, &self.processor.costs, &self.processor.budget(problem)) {
-            Err(PlanError::NothingHolds { limit, .. }) => Ok(Err(limit)),
+            Err(PlanError::NoMethod { limit, .. }) => Ok(Err(limit)),
             found => found.map(Ok),
         }
     }

@@ -6,7 +6,7 @@ use firmware::config::HALF_PIXEL;
 
 use super::target::Chip;
 
-/// The plan with its reasons, a line each; or that nothing holds.
+/// The plan with its reasons, a line each; or that no method meets the tolerance.
 pub fn words(scene: &Problem, plan: &Result<Plan, Limit>, chip: &Chip) -> Vec<String> {
     let frame = chip.processor.frame;
     let mut lines = match plan {

@@ -104,7 +104,7 @@ impl StartOptions {
 pub fn option_of(error: &Error, otherwise: &'static str) -> &'static str {
     match error.parameter() {
         _ if matches!(error, Error::Diverged { .. }) => otherwise,
-        Parameter::M1 | Parameter::M2 | Parameter::Mu => "--masses",
+        Parameter::M1 | Parameter::M2 => "--masses",
         Parameter::L1 | Parameter::L2 => "--lengths",
         Parameter::G => "--gravity",
         Parameter::A1 | Parameter::A2 => "--angles",

@@ -8,7 +8,6 @@ use super::lead::BLOCK;
 use super::sum::{Compensated, Sum};
 use crate::error::{Error, Parameter, check_finite};
 use crate::methods::{Form, Side};
-use crate::numbers::trig::{Own, SinCos};
 use crate::numbers::{Real, Sealed};
 use crate::pendulum::directions::{Coefficients, heads, lower_direction};
 use crate::pendulum::{Direction, Parameters, State};
@@ -55,8 +54,8 @@ impl<R: Real + Side, S: Sum<R>> Form for DirectionForm<R, S> {
         state.check()?;
         let norm = self.coefficients.norm.to_f64();
         let [a1, a2] = [state.a1.to_f64(), state.a2.to_f64()];
-        let (sin1, cos1) = Own::sin_cos(a1);
-        let (sin_d, cos_d) = Own::sin_cos(a1 - a2);
+        let (sin1, cos1) = a1.own_sin_cos();
+        let (sin_d, cos_d) = (a1 - a2).own_sin_cos();
         let [p1, p2] = self.scale.momenta(state)?;
         let z = [sin1, cos1, norm * sin_d, norm * cos_d, p1, p2];
         let inverse = R::ONE / self.coefficients.denominator(R::from_f64(z[2]));

@@ -11,7 +11,6 @@ use crate::error::Error;
 use crate::methods::Form;
 use crate::methods::scaling::{Scaling, lost};
 use crate::numbers::fixed::{Q30, nearest, product};
-use crate::numbers::trig::{Own, SinCos};
 use crate::numbers::{Real, Scalar, Sealed};
 use crate::pendulum::directions::{heads, lower_direction, lower_ray};
 use crate::pendulum::{Direction, Parameters, Pendulum, State};
@@ -157,8 +156,8 @@ impl Fixed32State {
     /// The motion that starts from `state`, of the energy that the units are for or less.
     fn starting(units: Setting, state: &State<f64>) -> Self {
         let State { a1, a2, p1, p2 } = *state;
-        let (sin1, cos1) = Own::sin_cos(a1);
-        let (sin_d, cos_d) = Own::sin_cos(a1 - a2);
+        let (sin1, cos1) = a1.own_sin_cos();
+        let (sin_d, cos_d) = (a1 - a2).own_sin_cos();
         let Scaling { norm, momenta: [unit1, unit2], .. } = units.scaling;
         let z = [sin1, cos1, norm * sin_d, norm * cos_d, p1 * unit1, p2 * unit2];
         let inverse = Q30::constant(1.0 / units.scaling.denominator(z[2]));

@@ -7,7 +7,6 @@ use crate::bounds::Bounds;
 use crate::error::{Error, Parameter};
 use crate::methods::scaling::Scaling;
 use crate::numbers::fixed::{FixedPoint, Q64};
-use crate::numbers::trig::{Own, SinCos};
 use crate::numbers::{Real, Scalar};
 use crate::pendulum::directions::{heads, lower_ray};
 use crate::pendulum::{Direction, Parameters, Pendulum, State};
@@ -77,8 +76,8 @@ impl Fixed64State {
         let energy = Pendulum::new(parameters)?.energy_above_rest(state);
         let motion = Self::new(parameters, energy, dt, order)?;
         let &State { a1, a2, p1, p2 } = state;
-        let (sin1, cos1) = Own::sin_cos(a1);
-        let (sin_d, cos_d) = Own::sin_cos(a1 - a2);
+        let (sin1, cos1) = a1.own_sin_cos();
+        let (sin_d, cos_d) = (a1 - a2).own_sin_cos();
         let Self { norm, momenta: [unit1, unit2], .. } = motion;
         let eighths = [sin1, cos1, norm * sin_d, norm * cos_d].map(|direction| direction * EIGHTH);
         let [sin1, cos1, s, c] = eighths;

@@ -1,4 +1,4 @@
-//! The kernel's own sines and cosines, a routine for each precision; [`Own`](crate::numbers::trig::Own) offers them by type.
+//! The kernel's own sines and cosines: the argument less a multiple of pi/2 (Cody-Waite reduction), then minimax polynomials.
 
 pub mod own_f32;
 pub mod own_f64;
