@@ -3,10 +3,7 @@
 
 use clap::Parser;
 use double_pendulum::plan::{Budget, Limit, Problem, Search};
-use double_pendulum::{
-    DirectionF32, DirectionF32Plain, DirectionF64, Error, ExtrapolationF64, Fixed32, Fixed64, Form, Method, Modes,
-    Motion, Parameters, Pendulum, Real, State,
-};
+use double_pendulum::{Error, Method, Modes, Motion, Parameters, Pendulum, Real, State};
 use fastrand::Rng;
 use firmware::app::{App, NoButtons};
 use firmware::config::CORTEX_M4F;
@@ -19,6 +16,7 @@ use firmware::protocol::{
 };
 use host_tests::commands::simulate::{Number, SimulateOptions, plan};
 use host_tests::link::Received;
+use host_tests::oracle::trials;
 use proptest::prelude::*;
 use proptest::sample::select;
 use proptest::test_runner::RngSeed;
@@ -76,9 +74,9 @@ fn command() -> impl Strategy<Value = (u8, Vec<u8>)> {
     prop_oneof![4 => set, 4 => short, 1 => (any::<u8>(), prop::collection::vec(any::<u8>(), 0..=MAX_FIELDS))]
 }
 
-/// What a form's steps lead to: twelve of them at most, each finite or refused.
-fn stepped<F: Form>(parameters: &Parameters<f64>, dt: f64, start: State<f64>) -> Result<(), Error> {
-    let mut run = Pendulum::new(parameters)?.run::<F>(&start, dt)?;
+/// What a method's steps lead to: twelve of them at most, each finite or refused.
+fn stepped(method: Method, parameters: &Parameters<f64>, dt: f64, start: &State<f64>) -> Result<(), Error> {
+    let mut run = trials::run(method, parameters, start, dt)?;
     for _ in 0..12 {
         run.advance(1)?;
         assert_eq!(run.state().check(), Ok(()));
@@ -170,17 +168,9 @@ proptest! {
     #[test]
     fn the_kernel_refuses_or_stays_finite(parameters in parameters(), dt in number(), state in numbers::<4>()) {
         let state = State::from(state);
-        let outcomes = [
-            constructed::<f32>(parameters, dt, state),
-            constructed::<f64>(parameters, dt, state),
-            stepped::<DirectionF32Plain>(&parameters, dt, state),
-            stepped::<DirectionF32>(&parameters, dt, state),
-            stepped::<DirectionF64>(&parameters, dt, state),
-            stepped::<ExtrapolationF64<12>>(&parameters, dt, state),
-            stepped::<Fixed32>(&parameters, dt, state),
-            stepped::<Fixed64<10>>(&parameters, dt, state),
-        ];
-        for error in outcomes.into_iter().filter_map(Result::err) {
+        let constructed = [constructed::<f32>(parameters, dt, state), constructed::<f64>(parameters, dt, state)];
+        let stepped = Method::ALL.iter().map(|&method| stepped(method, &parameters, dt, &state));
+        for error in constructed.into_iter().chain(stepped).filter_map(Result::err) {
             prop_assert!(!error.to_string().is_empty());
         }
     }

@@ -15,7 +15,8 @@ pub const ROWS: usize = 8;
 /// The orders 6, 8, 12 and 16 are measured by the repository's tests.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extrapolation<R> {
-    rows: usize,
+    /// K.
+    pub(super) rows: usize,
     /// 1/(n/2), the share of the step between every second midpoint.
     shares: [Factor<R>; ROWS],
     /// w_n.
@@ -103,12 +104,6 @@ impl<R: Scalar> Extrapolation<R> {
     /// How many of a row's slopes add up to where a step ends: n/2 by its weight.
     pub(crate) fn slopes(&self, row: usize) -> f64 {
         weight(row, self.rows) * half(row)
-    }
-
-    /// The order, 2 K.
-    #[doc(hidden)]
-    pub fn order(&self) -> u32 {
-        2 * self.rows as u32
     }
 
     /// The row that a `lane` of `L` goes through after so many others, the long ones first; then there and back, so that
@@ -211,14 +206,7 @@ impl<R: Real> Extrapolation<R> {
     /// ```
     #[inline]
     pub fn step<const N: usize>(&self, f: impl Fn(&[R; N]) -> [R; N], z: &[R; N], dt: R) -> [R; N] {
-        let change = self.increment(f, z, dt);
+        let change = self.end(&mut Any { f, z, dt, method: self, share: dt }, &[R::ZERO; N]);
         core::array::from_fn(|i| z[i] + change[i])
-    }
-
-    /// What [`step`](Self::step) adds to `z`, for those who carry the rounding error of that addition along.
-    #[inline]
-    #[doc(hidden)]
-    pub fn increment<const N: usize>(&self, f: impl Fn(&[R; N]) -> [R; N], z: &[R; N], dt: R) -> [R; N] {
-        self.end(&mut Any { f, z, dt, method: self, share: dt }, &[R::ZERO; N])
     }
 }

@@ -24,21 +24,6 @@ impl<R: Real> Pendulum<R> {
     /// what is out of the range of the method's numbers. Not a step that is too long for RK4, because that depends on the
     /// motion: ask [`check_step`](Self::check_step) for what no motion survives and
     /// [`admissible_step`](Self::admissible_step) for what resolves every motion of an energy.
-    ///
-    /// ```
-    /// use double_pendulum::{DirectionF32, Parameters, Pendulum, State};
-    ///
-    /// let pendulum = Pendulum::new(&Parameters::equal_rods(1.0, 1.0, 9.81))?;
-    /// let mut run = pendulum.run::<DirectionF32>(&State::at_rest(3.0, 3.0), 1.0 / 240.0)?;
-    /// for _frame in 0..600 {
-    ///     run.advance(4)?;
-    ///     let [[sin1, cos1], _] = run.directions(); // enough to draw rod 1
-    ///     assert!((sin1 * sin1 + cos1 * cos1 - 1.0).abs() < 1e-5);
-    /// }
-    /// let [_, a2] = run.angles();
-    /// assert!(run.time() == 10.0 && a2.abs() > 6.0, "{a2}"); // rod 2 has turned over
-    /// # Ok::<(), double_pendulum::Error>(())
-    /// ```
     pub fn run<F: Form>(&self, start: &State<R>, dt: f64) -> Result<Run<F>, Error> {
         let parameters = self.parameters().cast();
         let motion = Stepper::<F>::new(&parameters, &start.cast(), dt)?;

@@ -2,7 +2,7 @@
 
 use crate::bounds::Bounds;
 use crate::error::{Error, Parameter};
-use crate::numbers::fixed::{FixedPoint, scaled};
+use crate::numbers::fixed::{Q30, Torque, scaled};
 use crate::pendulum::Parameters;
 use crate::pendulum::directions::Units;
 
@@ -135,22 +135,22 @@ impl Scaling {
     }
 }
 
-impl<R: FixedPoint> Units<R> for Shifts {
+impl Units<Q30> for Shifts {
     #[inline(always)]
-    fn momentum(&self, product: R) -> R {
+    fn momentum(&self, product: Q30) -> Q30 {
         product.down(self.momentum)
     }
     #[inline(always)]
-    fn rate(&self, momentum: R, inverse: R) -> R {
+    fn rate(&self, momentum: Q30, inverse: Q30) -> Q30 {
         momentum.product_up(inverse, self.inverse)
     }
     #[inline(always)]
-    fn turns(&self, [u, v]: [R; 2]) -> [R; 2] {
+    fn turns(&self, [u, v]: [Q30; 2]) -> [Q30; 2] {
         [u.down(self.upper), v.down(self.lower)]
     }
     #[inline(always)]
-    fn forces(&self, force: R::Torque) -> [R::Torque; 2] {
-        [R::torque_down(force, self.upper + self.momentum), R::torque_down(force, self.lower)]
+    fn forces(&self, Torque(force): Torque) -> [Torque; 2] {
+        [self.upper + self.momentum, self.lower].map(|by| Torque(force >> by))
     }
 }
 

@@ -1,7 +1,7 @@
 //! The two floating-point types the kernel computes in.
 
-use core::fmt::{Debug, Display};
-use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
+use core::fmt::Display;
+use core::ops::Div;
 
 use crate::numbers::sine;
 use crate::numbers::{Scalar, Sealed};
@@ -11,21 +11,7 @@ use crate::numbers::{Scalar, Sealed};
 /// Every operation is either IEEE 754 arithmetic or a pure-Rust routine built on it, so that a result is the same
 /// to the bit on every machine.
 pub trait Real:
-    Scalar<Gravity = Self, Slope = Self, Torque = Self>
-    + Copy
-    + Default
-    + PartialOrd
-    + Debug
-    + Display
-    + Add<Output = Self>
-    + Sub<Output = Self>
-    + Mul<Output = Self>
-    + Div<Output = Self>
-    + Neg<Output = Self>
-    + AddAssign
-    + SubAssign
-    + MulAssign
-    + 'static
+    Scalar<Gravity = Self, Slope = Self, Torque = Self> + Default + PartialOrd + Display + Div<Output = Self>
 {
     #[doc(hidden)]
     const ZERO: Self;

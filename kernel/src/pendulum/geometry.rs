@@ -22,16 +22,6 @@ impl<R: Real> Pendulum<R> {
     /// The positions of bob 1 and bob 2 where both rods are at their `angles` (a1, a2), rad; in m.
     ///
     /// x1 = l1 sin a1, y1 = -l1 cos a1, x2 = x1 + l2 sin a2, y2 = y1 - l2 cos a2 (`[math24]`)
-    ///
-    /// ```
-    /// use double_pendulum::{Parameters, Pendulum, State};
-    ///
-    /// let pendulum = Pendulum::new(&Parameters { m1: 1.0, m2: 2.0, l1: 1.0, l2: 0.5, g: 9.81 })?;
-    /// let hanging: State<f64> = State::default();
-    /// let [bob1, bob2] = pendulum.positions(hanging.angles());
-    /// assert_eq!([bob1.y, bob2.y], [-1.0, -1.5]);
-    /// # Ok::<(), double_pendulum::Error>(())
-    /// ```
     #[must_use]
     pub fn positions(&self, [a1, a2]: [R; 2]) -> [Vector<R>; 2] {
         let rod = |l: R, a: R| {

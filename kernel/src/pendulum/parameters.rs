@@ -63,12 +63,6 @@ impl<R: Real> Parameters<R> {
         Ok(())
     }
 
-    /// As [`Parameters::check`], and refuses zero gravity as well: without it nothing swings.
-    pub(crate) fn check_swinging(&self) -> Result<(), Error> {
-        self.check()?;
-        if self.g > R::ZERO { Ok(()) } else { Err(Error::NotPositive { parameter: Parameter::G, value: 0.0 }) }
-    }
-
     /// The error for parameters whose products overflow or underflow: it names the value farthest from 1.
     #[inline(never)] // cold: once in flash, not once for each caller
     pub(crate) fn out_of_range(&self) -> Error {

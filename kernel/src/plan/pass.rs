@@ -43,7 +43,8 @@ pub(super) struct Pass {
     /// that it is compared with: in finer steps, their given numbers off by about as much as rounding may make them, each run's
     /// in a way of its own.
     runs: [Run; 4],
-    is_beside_64_bits: bool,
+    /// If not, the bounds are rough.
+    pub is_beside_64_bits: bool,
     /// Plain `f32`, and the closed form: compared with the run in 64 bits, or with the single candidate.
     plain: Run<Stepper<DirectionF32Plain>>,
     closed: Option<SmallOscillations<f32>>,
@@ -152,11 +153,6 @@ impl Pass {
     /// How the methods have fared.
     pub fn candidates(&self) -> &[Candidate; 5] {
         &self.candidates
-    }
-
-    /// Whether its bounds are rough: with nothing in 64 bits beside it.
-    pub fn is_rough(&self) -> bool {
-        !self.is_beside_64_bits
     }
 
     /// Whether it was roundings that made all of them wrong, and finer steps do not help; else how many times as many to try.

@@ -35,33 +35,6 @@ macro_rules! with {
 }
 
 impl AnyRun {
-    /// A pendulum from its start, with so many steps a second.
-    ///
-    /// Refuses what [`Pendulum::run`](crate::Pendulum::run) refuse, what has no normal
-    /// modes if the method is the closed form, and a method that is none of [`Method::DRAWN`].
-    #[inline(never)] // each kind's preparations would stand side by side on the stack
-    pub fn new(
-        method: Method,
-        (parameters, start): &(Parameters<f64>, State<f64>),
-        per_second: f64,
-    ) -> Result<Self, Error> {
-        let dt = 1.0 / per_second;
-        Ok(match method {
-            Method::ClosedFormF32 => Self::ClosedForm(Stepper::new(parameters, start, dt)?),
-            Method::Rk4F32DirectionPlain => Self::DirectionPlain(Stepper::new(parameters, start, dt)?),
-            Method::Rk4F32Direction => Self::Direction(Stepper::new(parameters, start, dt)?),
-            Method::Rk4Fixed32 => Self::Fixed32(Stepper::new(parameters, start, dt)?),
-            Method::Extrapolation10Fixed64 => Self::Fixed64(Stepper::new(parameters, start, dt)?),
-            method => return Err(Error::NotDrawn { method }),
-        })
-    }
-
-    /// Makes `steps` steps.
-    #[inline(never)] // never inlined: a copy of every method for each caller
-    pub fn advance(&mut self, steps: u32) {
-        with!(self, run => run.advance(steps));
-    }
-
     /// Refuses a motion that has left the finite numbers.
     pub fn check(&self) -> Result<(), Error> {
         with!(self, run => run.check())
@@ -94,19 +67,39 @@ impl AnyRun {
 
 /// What a [`Run`] steps: a motion by any method, or by one where that takes less memory.
 pub(super) trait Stepped: Sized {
-    fn prepared(method: Method, given: &(Parameters<f64>, State<f64>), per_second: f64) -> Result<Self, Error>;
-    fn steps(&mut self, steps: u32);
+    /// A pendulum from its start, with so many steps a second.
+    ///
+    /// Refuses what [`Pendulum::run`](crate::Pendulum::run) refuses, what has no normal modes if the method is the closed form,
+    /// and a method that is none of [`Method::DRAWN`].
+    fn new(method: Method, given: &(Parameters<f64>, State<f64>), per_second: f64) -> Result<Self, Error>;
+    fn advance(&mut self, steps: u32);
+    /// NaN, if the motion is lost: it may have left its range where its directions do not show it.
     fn shown(&self) -> Directions;
 }
 
 impl Stepped for AnyRun {
-    fn prepared(method: Method, given: &(Parameters<f64>, State<f64>), per_second: f64) -> Result<Self, Error> {
-        Self::new(method, given, per_second)
+    #[inline(never)] // each kind's preparations would stand side by side on the stack
+    fn new(
+        method: Method,
+        (parameters, start): &(Parameters<f64>, State<f64>),
+        per_second: f64,
+    ) -> Result<Self, Error> {
+        let dt = 1.0 / per_second;
+        Ok(match method {
+            Method::ClosedFormF32 => Self::ClosedForm(Stepper::new(parameters, start, dt)?),
+            Method::Rk4F32DirectionPlain => Self::DirectionPlain(Stepper::new(parameters, start, dt)?),
+            Method::Rk4F32Direction => Self::Direction(Stepper::new(parameters, start, dt)?),
+            Method::Rk4Fixed32 => Self::Fixed32(Stepper::new(parameters, start, dt)?),
+            Method::Extrapolation10Fixed64 => Self::Fixed64(Stepper::new(parameters, start, dt)?),
+            method => return Err(Error::NotDrawn { method }),
+        })
     }
-    fn steps(&mut self, steps: u32) {
-        self.advance(steps);
+
+    #[inline(never)] // never inlined: a copy of every method for each caller
+    fn advance(&mut self, steps: u32) {
+        with!(self, run => run.advance(steps));
     }
-    /// Nothing, if the motion is lost: it may have left its range where its directions do not show it.
+
     fn shown(&self) -> Directions {
         self.check().map_or([[f32::NAN; 2]; 2], |()| self.directions())
     }
@@ -114,10 +107,10 @@ impl Stepped for AnyRun {
 
 impl Stepped for Stepper<DirectionF32Plain> {
     #[inline(never)]
-    fn prepared(_: Method, given: &(Parameters<f64>, State<f64>), per_second: f64) -> Result<Self, Error> {
-        Self::new(&given.0, &given.1, 1.0 / per_second)
+    fn new(_: Method, (parameters, start): &(Parameters<f64>, State<f64>), per_second: f64) -> Result<Self, Error> {
+        Self::new(parameters, start, 1.0 / per_second)
     }
-    fn steps(&mut self, steps: u32) {
+    fn advance(&mut self, steps: u32) {
         self.advance(steps);
     }
     fn shown(&self) -> Directions {
@@ -154,8 +147,8 @@ impl<M: Stepped> Run<M> {
     #[inline(never)]
     pub fn prepare(&mut self) -> Result<bool, Error> {
         let Prepared::NotYet([first, other], per_second) = &self.motion else { return Ok(false) };
-        let run = M::prepared(self.method, first, *per_second);
-        self.motion = Prepared::Ready(run.or_else(|_| M::prepared(self.method, other, *per_second))?);
+        let run = M::new(self.method, first, *per_second);
+        self.motion = Prepared::Ready(run.or_else(|_| M::new(self.method, other, *per_second))?);
         Ok(true)
     }
 
@@ -171,7 +164,7 @@ impl<M: Stepped> Run<M> {
         let left = self.per_frame.saturating_sub(self.made);
         let steps = steps_for(costs, self.method, cost).min(left);
         if let Prepared::Ready(motion) = &mut self.motion {
-            motion.steps(steps);
+            motion.advance(steps);
         }
         self.made += steps;
         costs.of_frame(self.method, steps)

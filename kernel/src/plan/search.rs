@@ -169,7 +169,7 @@ impl Search {
             return Ok(None);
         }
         self.keep_best();
-        if self.is_complete() {
+        if self.best.is_some_and(|best| best.right >= self.problem.frames()) {
             return self.plan(Limit::End).map(Some);
         }
         let times = self.pass.as_ref().and_then(Pass::finer);
@@ -294,11 +294,6 @@ impl Search {
         }
     }
 
-    /// Whether something is right to the end.
-    fn is_complete(&self) -> bool {
-        self.best.is_some_and(|best| best.right >= self.problem.frames())
-    }
-
     /// Goes on to finer steps, or to 64 bits where rounding is what limits, or where they cost less; what forbids it, if
     /// anything does.
     fn refine(&mut self, times: Option<u32>) -> Option<Limit> {
@@ -306,7 +301,8 @@ impl Search {
         if method == Method::Extrapolation10Fixed64 {
             return Some(self.fine.map_or(Limit::Budget, |(_, limit)| limit));
         }
-        if times.is_none() && self.pass.as_ref().is_some_and(Pass::is_rough) && self.beside().is_some() {
+        if times.is_none() && self.pass.as_ref().is_some_and(|pass| !pass.is_beside_64_bits) && self.beside().is_some()
+        {
             self.begin(method, self.steps);
             return None;
         }

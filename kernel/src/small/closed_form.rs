@@ -37,15 +37,6 @@ impl<R: Real> Oscillation<R> {
 ///
 /// It is the exact motion's limit for small angles; at 30 degrees and equal masses the two are 1 degree apart after
 /// 0.07 s, at 5 degrees they stay within 0.4 pixels of a 240-pixel display for 10 s.
-///
-/// ```
-/// use double_pendulum::{Modes, Motion, Parameters, SmallOscillations};
-///
-/// let modes = Modes::new(&Parameters::equal_rods(1.0, 0.25, 9.8))?;
-/// let motion = SmallOscillations::new(modes, &Motion::at_rest(0.0_f64, 0.1));
-/// assert!((motion.at(0.0).a2 - 0.1).abs() < 1e-15);
-/// # Ok::<(), double_pendulum::Error>(())
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SmallOscillations<R> {
     /// The frequencies in turns per second, in `f64`: after a day in `f32` the phase would be anywhere.

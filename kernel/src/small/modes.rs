@@ -19,15 +19,6 @@ pub struct Mode<R> {
 /// det(K - w^2 M) = 0, that is (m1 + m2) g^2 - w^2 (m1 + m2)(l1 + l2) g + w^4 m1 l1 l2 = 0.
 ///
 /// The same two numbers are the growth rates about the inverted rest (pi, pi), where K changes its sign.
-///
-/// ```
-/// use double_pendulum::{Modes, Parameters};
-///
-/// let modes = Modes::new(&Parameters::equal_rods(1.0, 0.25, 9.8))?;
-/// assert!((modes.fast.frequency - 11.568802_f64).abs() < 1e-6);
-/// assert!((modes.slow.frequency - 4.791955).abs() < 1e-6);
-/// # Ok::<(), double_pendulum::Error>(())
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Modes<R> {
     /// w1, the faster: the rods swing against each other, its shape is negative.
@@ -46,11 +37,13 @@ impl<R: Real> Modes<R> {
     ///
     /// (for d < 0 with c + d = 4 m2 l1 l2 / (M (c - d))): nothing is subtracted but l1 - l2, so nothing cancels.
     ///
-    /// Both frequencies are within 4 ulp in either precision for m2/m1 in 1e-7..1e7 and l1/l2 in 1e-3..1e3
-    ///. Refuses what [`Pendulum::new`] refuses, zero gravity, and results out of range.
+    /// Both frequencies are within 4 ulp in either precision for m2/m1 in 1e-7..1e7 and l1/l2 in 1e-3..1e3. Refuses what [`Pendulum::new`] refuses, zero gravity, and results out of range.
     pub fn new(parameters: &Parameters<R>) -> Result<Self, Error> {
-        parameters.check_swinging()?;
+        parameters.check()?;
         let &Parameters { m1, m2, l1, l2, g } = parameters;
+        if g == R::ZERO {
+            return Err(Error::NotPositive { parameter: Parameter::G, value: 0.0 });
+        }
         let total = m1 + m2;
         let sum = l1 + l2;
         let difference = l1 - l2;
@@ -116,12 +109,6 @@ impl<R: Real> Pendulum<R> {
 ///
 /// Refuses lengths that are not positive, a `slow` of 0, and any ratio p/q not above sqrt of the longer over the shorter
 /// rod, which no masses can give.
-///
-/// ```
-/// # use double_pendulum::periodic_mass_ratio;
-/// assert_eq!(periodic_mass_ratio(3, 2, [1.0, 1.0])?, 25.0 / 144.0);
-/// # Ok::<(), double_pendulum::Error>(())
-/// ```
 pub fn periodic_mass_ratio<R: Real>(fast: u16, slow: u16, lengths: [R; 2]) -> Result<R, Error> {
     let [l1, l2] = lengths;
     Parameters { m1: R::ONE, m2: R::ONE, l1, l2, g: R::ONE }.check()?;

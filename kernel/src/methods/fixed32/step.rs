@@ -4,7 +4,7 @@ use super::Fixed32State;
 use super::setting::Setting;
 use crate::methods::scaling::Shifts;
 use crate::numbers::Scalar;
-use crate::numbers::fixed::{FixedPoint, IN_HALVES, Q30, Slope, Torque, product, word};
+use crate::numbers::fixed::{IN_HALVES, Q30, Slope, Torque, product, word};
 use crate::pendulum::directions::{Reverse, turning};
 
 /// Whether to compile the step once for every usual length, with shifts that cost nothing. A chip with a floating-point unit

@@ -6,7 +6,7 @@ use super::rows::{EIGHTH, Rows, unit_of_time};
 use crate::bounds::Bounds;
 use crate::error::{Error, Parameter};
 use crate::methods::scaling::Scaling;
-use crate::numbers::fixed::{FixedPoint, Q64};
+use crate::numbers::fixed::Q64;
 use crate::numbers::{Real, Scalar};
 use crate::pendulum::directions::{heads, lower_ray};
 use crate::pendulum::{Direction, Parameters, Pendulum, State};

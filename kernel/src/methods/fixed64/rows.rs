@@ -5,7 +5,7 @@ use core::cell::Cell;
 use crate::error::Error;
 use crate::methods::extrapolation::{Extrapolation, ROWS, System};
 use crate::methods::scaling::{Scaling, Shifts};
-use crate::numbers::fixed::{FixedPoint, Q64, nearest, scaled};
+use crate::numbers::fixed::{Q64, nearest, scaled};
 use crate::numbers::{Lanes, Scalar};
 use crate::pendulum::directions::{Coefficients, Units, increments};
 
@@ -83,8 +83,8 @@ impl Rows {
     /// One for each weighted difference of rows, and back for each torque of gravity on rod 1, which is taken away. All other
     /// products are made the middle of what they may have been. Small as these are, they would add up from step to step.
     pub fn floored(&self) -> [i16; 2] {
-        let differences = (self.method.order() / 2) as i16 - 1;
-        let slopes: f64 = (0..self.method.order() as usize / 2).map(|row| self.method.slopes(row)).sum();
+        let differences = self.method.rows as i16 - 1;
+        let slopes: f64 = (0..self.method.rows).map(|row| self.method.slopes(row)).sum();
         [differences - nearest(slopes) as i16, differences]
     }
 

@@ -10,20 +10,6 @@ pub(crate) use q30::watch;
 pub(crate) use q30::{Gravity, Q30, Slope, Torque, word};
 pub(crate) use q64::Q64;
 
-use crate::numbers::Scalar;
-
-/// What fixed point does where floating point has exponents.
-pub(crate) trait FixedPoint: Scalar {
-    /// The number times 2^-`by`.
-    fn down(self, by: u32) -> Self;
-    /// The number times 2^`by`.
-    fn up(self, by: u32) -> Self;
-    /// The torque times 2^-`by`.
-    fn torque_down(torque: Self::Torque, by: u32) -> Self::Torque;
-    /// The product with `factor` times 2^`by`.
-    fn product_up(self, factor: Self, by: u32) -> Self;
-}
-
 /// `value` times 2^`exponent`; one copy, as is [`nearest`].
 #[inline(never)]
 pub(crate) fn scaled(value: f64, exponent: i32) -> f64 {

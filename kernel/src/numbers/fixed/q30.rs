@@ -3,7 +3,7 @@
 use core::ops::{Add, Mul, Neg, Sub};
 
 use super::product::{product, upper};
-use super::{FixedPoint, nearest, scaled};
+use super::{nearest, scaled};
 use crate::numbers::{Scalar, Sealed};
 
 /// The word that holds a number. That it does is what [`Scaling`](crate::methods::scaling::Scaling) sees to; unit tests are stopped if not.
@@ -155,21 +155,18 @@ impl Scalar for Q30 {
     }
 }
 
-impl FixedPoint for Q30 {
+impl Q30 {
     #[inline(always)]
-    fn down(self, by: u32) -> Self {
+    pub fn down(self, by: u32) -> Self {
         Self(self.0 >> by)
     }
     #[inline(always)]
-    fn up(self, by: u32) -> Self {
+    pub fn up(self, by: u32) -> Self {
         Self(word(i64::from(self.0) << by))
     }
+    /// The product with `factor` times 2^`by`.
     #[inline(always)]
-    fn torque_down(torque: Torque, by: u32) -> Torque {
-        Torque(torque.0 >> by)
-    }
-    #[inline(always)]
-    fn product_up(self, factor: Self, by: u32) -> Self {
+    pub fn product_up(self, factor: Self, by: u32) -> Self {
         Self(word(product(self.0, factor.0) >> (30 - by)))
     }
 }

@@ -2,8 +2,8 @@
 
 use core::ops::{Add, Mul, Neg, Sub};
 
+use super::nearest;
 use super::product::product;
-use super::{FixedPoint, nearest};
 use crate::numbers::{Real, Scalar, Sealed};
 
 /// A number from -1/2 to below 1/2 in 64 bits, in steps of 2^-64: no shift follows a product.
@@ -143,24 +143,16 @@ impl Scalar for Q64 {
     }
 }
 
-impl FixedPoint for Q64 {
+impl Q64 {
     /// Rounded to nearest.
     #[inline(always)]
-    fn down(self, by: u32) -> Self {
+    pub fn down(self, by: u32) -> Self {
         Self(self.0.wrapping_add(i64::from(1_u32 << by >> 1)) >> by)
     }
     /// Made the middle of what it may have been before it was rounded down: no bias is left. `by` is 1 or more.
     #[inline(always)]
-    fn up(self, by: u32) -> Self {
+    pub fn up(self, by: u32) -> Self {
         Self(self.0 << by | 1 << (by - 1))
-    }
-    #[inline(always)]
-    fn torque_down(torque: Self, by: u32) -> Self {
-        torque.down(by)
-    }
-    #[inline(always)]
-    fn product_up(self, factor: Self, by: u32) -> Self {
-        (self * factor).up(by)
     }
 }
 
