@@ -14,29 +14,12 @@ use twofloat::TwoFloat;
 
 use series::{Scalar, Series, Wave};
 
-/// Masses, lengths and gravity: as in [`Parameters`].
-#[derive(Clone, Copy, Debug)]
-pub struct Constants<T = TwoFloat> {
-    /// m1 and m2, kg.
-    pub masses: [T; 2],
-    /// l1 and l2, m.
-    pub lengths: [T; 2],
-    /// g, m/s^2.
-    pub gravity: T,
-}
-
-impl<T: Scalar> From<&Parameters<f64>> for Constants<T> {
-    fn from(&Parameters { m1, m2, l1, l2, g }: &Parameters<f64>) -> Self {
-        Self { masses: [m1, m2].map(T::from), lengths: [l1, l2].map(T::from), gravity: g.into() }
-    }
-}
-
 /// A double pendulum in exact motion, to about 30 digits.
 ///
 /// Costs about 0.3 ms for each step of its own, of which a rod of 1 m needs 20 to 50 a second.
 #[derive(Clone, Debug)]
 pub struct Reference<T = TwoFloat> {
-    constants: Constants<T>,
+    parameters: Parameters<T>,
     time: T,
     angles: [T; 2],
     velocities: [T; 2],
@@ -52,13 +35,14 @@ impl Reference {
 impl<T: Scalar> Reference<T> {
     /// As [`Reference::new`], in any arithmetic.
     pub fn of(parameters: &Parameters<f64>, motion: &Motion<f64>) -> Self {
-        let &Motion { a1, a2, w1, w2 } = motion;
-        Self::exact(parameters.into(), [a1, a2].map(T::from), [w1, w2].map(T::from))
+        let (&Parameters { m1, m2, l1, l2, g }, &Motion { a1, a2, w1, w2 }) = (parameters, motion);
+        let [m1, m2, l1, l2, g] = [m1, m2, l1, l2, g].map(T::from);
+        Self::exact(Parameters { m1, m2, l1, l2, g }, [a1, a2].map(T::from), [w1, w2].map(T::from))
     }
 
     /// As [`Reference::new`] from numbers of full precision: angles in rad, velocities in rad/s.
-    pub fn exact(constants: Constants<T>, angles: [T; 2], velocities: [T; 2]) -> Self {
-        Self { constants, time: 0.0.into(), angles, velocities }
+    pub fn exact(parameters: Parameters<T>, angles: [T; 2], velocities: [T; 2]) -> Self {
+        Self { parameters, time: 0.0.into(), angles, velocities }
     }
 
     fn advance(&mut self, t: f64) {
@@ -94,7 +78,7 @@ impl<T: Scalar> Reference<T> {
 
     /// (a1, a2, p1, p2) now, in full precision: p_i = dL/dw_i.
     pub fn exact_state(&self) -> [T; 4] {
-        let Constants { masses: [m1, m2], lengths: [l1, l2], .. } = self.constants;
+        let Parameters { m1, m2, l1, l2, .. } = self.parameters;
         let ([a1, a2], [w1, w2]) = (self.angles, self.velocities);
         let (_, cos_d) = (a1 - a2).sin_cos();
         let p1 = (m1 + m2) * l1 * l1 * w1 + m2 * l1 * l2 * w2 * cos_d;
@@ -104,7 +88,7 @@ impl<T: Scalar> Reference<T> {
 
     /// The power series of a1, a2, w1, w2 about now.
     fn series(&self) -> [Series<T>; 4] {
-        let Constants { masses: [m1, m2], lengths: [l1, l2], gravity: g } = self.constants;
+        let Parameters { m1, m2, l1, l2, g } = self.parameters;
         let total = m1 + m2;
         let [mut a1, mut a2] = self.angles.map(Series::new);
         let [mut w1, mut w2] = self.velocities.map(Series::new);

@@ -9,8 +9,8 @@ use double_pendulum::{Bounds, Motion, Parameters, Pendulum};
 use reference::twofloat::TwoFloat;
 use reference::twofloat::consts::PI;
 
+use reference::taylor::Reference;
 use reference::taylor::series::divide;
-use reference::taylor::{Constants, Reference};
 
 /// One line of the table: a scene at one time.
 #[derive(Clone, Debug)]
@@ -20,7 +20,7 @@ pub struct KnownAnswer {
     /// Its name, what is given, and the time: as written.
     pub given: &'static str,
     /// Masses (kg), lengths (m), gravity (m/s^2).
-    pub constants: Constants,
+    pub constants: Parameters<TwoFloat>,
     /// The angles at the start, rad.
     pub start_angles: [TwoFloat; 2],
     /// The angular velocities at the start, rad/s.
@@ -58,13 +58,13 @@ impl KnownAnswer {
         let places = |text: &str| text.split_once('.').map_or(0, |(_, places)| places.len() as i32);
         let radii: Vec<f64> = numbers.split(',').map(|text| 2.0 * 10_f64.powi(-places(text))).collect();
         let numbers: Vec<TwoFloat> = numbers.split(',').map(decimal).collect::<Option<_>>()?;
-        let &[a1, a2, w1, w2, m1, m2, l1, l2, gravity, time, z1, z2, z3, z4, growth] = numbers.as_slice() else {
+        let &[a1, a2, w1, w2, m1, m2, l1, l2, g, time, z1, z2, z3, z4, growth] = numbers.as_slice() else {
             return None;
         };
         Some(Self {
             scene,
             given: &line[..end],
-            constants: Constants { masses: [m1, m2], lengths: [l1, l2], gravity },
+            constants: Parameters { m1, m2, l1, l2, g },
             start_angles: [a1, a2].map(|degrees| degrees * PI / 180.0),
             start_velocities: [w1, w2],
             time: time.into(),
@@ -81,8 +81,9 @@ impl KnownAnswer {
 
     /// The parameters, rounded to f64.
     pub fn parameters(&self) -> Parameters<f64> {
-        let Constants { masses: [m1, m2], lengths: [l1, l2], gravity } = self.constants;
-        Parameters { m1: m1.into(), m2: m2.into(), l1: l1.into(), l2: l2.into(), g: gravity.into() }
+        let Parameters { m1, m2, l1, l2, g } = self.constants;
+        let [m1, m2, l1, l2, g] = [m1, m2, l1, l2, g].map(f64::from);
+        Parameters { m1, m2, l1, l2, g }
     }
 
     /// The start, rounded to f64.

@@ -60,7 +60,6 @@ pub struct Falling<F: Form> {
 }
 
 impl<F: Form> Falling<F> {
-    /// Steps made.
     #[doc(hidden)]
     pub fn steps(&self) -> u32 {
         self.steps

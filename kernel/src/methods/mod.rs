@@ -1,6 +1,4 @@
 //! How each method of the [table](crate::Method) makes its steps: the types that [`Pendulum::run`](crate::Pendulum::run) is called with.
-//!
-//! Everything behind `methods` is machinery that may change at any time; what is meant to be used stands at the crate's root.
 
 mod canonical;
 mod closed_form;
@@ -84,7 +82,7 @@ pub trait Form: Sealed + Copy + Debug + PartialEq + 'static {
     #[doc(hidden)]
     fn advance(&self, carried: &mut Self::Carried, steps: u32);
 
-    /// As [`advance`](Self::advance) by one step, for a loop that looks at each.
+    /// [`advance`](Self::advance) by one step, for a loop that looks at each.
     #[doc(hidden)]
     #[inline(always)]
     fn advance_one(&self, carried: &mut Self::Carried) {

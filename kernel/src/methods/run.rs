@@ -34,7 +34,6 @@ impl<R: Real> Pendulum<R> {
 
 impl<F: Form> Run<F> {
     /// Makes `steps` steps, or none: [`Error::Diverged`] if they led out of the finite numbers, and the run stays as it was.
-    ///
     /// How steps are dealt out to calls makes no difference to any bit.
     pub fn advance(&mut self, steps: u32) -> Result<(), Error> {
         let Stepper { form, mut carried } = self.motion;

@@ -4,10 +4,8 @@ pub(crate) mod fixed;
 mod lanes;
 mod real;
 mod scalar;
-mod sealed;
 mod sine;
 
 pub use lanes::Lanes;
 pub use real::Real;
-pub use scalar::Scalar;
-pub use sealed::Sealed;
+pub use scalar::{Scalar, Sealed};

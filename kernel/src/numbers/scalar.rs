@@ -3,7 +3,8 @@
 use core::fmt::Debug;
 use core::ops::{Add, Mul, Neg, Sub};
 
-use crate::numbers::Sealed;
+/// Keeps a public trait to the types of this crate, so that it may get new methods.
+pub trait Sealed {}
 
 /// A number that the equations of motion can be computed in: `f32`, `f64`, or fixed point.
 ///

@@ -13,7 +13,6 @@ const WORTH: f64 = 1.1;
 /// How a method has fared so far.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Candidate {
-    /// The method.
     pub method: Method,
     /// Steps to a frame.
     pub steps: u32,
@@ -26,12 +25,10 @@ pub(super) struct Candidate {
 }
 
 impl Candidate {
-    /// At the start.
     pub fn new(method: Method, steps: u32) -> Self {
         Self { method, steps, right: 0, error: 0.0, failed: false }
     }
 
-    /// What a frame costs.
     pub fn cost(&self, costs: &Costs) -> f32 {
         costs.of_frame(self.method, self.steps)
     }

@@ -46,7 +46,6 @@
 mod candidate;
 mod cost;
 mod error;
-mod limit;
 mod pass;
 mod planned_run;
 mod problem;
@@ -56,8 +55,7 @@ mod way;
 
 use crate::error::Error;
 pub use cost::{Budget, Costs};
-pub use error::PlanError;
-pub use limit::Limit;
+pub use error::{Limit, PlanError};
 pub use planned_run::PlannedRun;
 pub use problem::Problem;
 pub use run::Directions;
@@ -77,7 +75,6 @@ impl Plan {
         }
     }
 
-    /// The method and its steps.
     #[doc(hidden)]
     #[must_use]
     pub fn way(&self) -> Way {

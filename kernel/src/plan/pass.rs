@@ -150,7 +150,6 @@ impl Pass {
         self.candidates.iter_mut().filter(|candidate| !wanted(candidate)).for_each(|candidate| candidate.failed = true);
     }
 
-    /// How the methods have fared.
     pub fn candidates(&self) -> &[Candidate; 5] {
         &self.candidates
     }
@@ -162,7 +161,6 @@ impl Pass {
         helps.then_some(times)
     }
 
-    /// What the next frame costs.
     pub fn cost(&mut self, costs: &Costs) -> f32 {
         let plain = if self.has_plain() { self.plain.cost(costs) } else { 0.0 };
         let [.., closed] = &self.candidates;

@@ -35,7 +35,6 @@ impl PlannedRun {
         Ok(Self { way: Way { steps, ..way }, rate, frame: 0, run, turns })
     }
 
-    /// The method and its steps.
     #[doc(hidden)]
     #[must_use]
     pub fn way(&self) -> Way {

@@ -35,24 +35,20 @@ macro_rules! with {
 }
 
 impl AnyRun {
-    /// Refuses a motion that has left the finite numbers.
     pub fn check(&self) -> Result<(), Error> {
         with!(self, run => run.check())
     }
 
-    /// The signs of the directions.
     #[inline(never)]
     pub fn sides(&self) -> [[i32; 2]; 2] {
         with!(self, run => run.sides())
     }
 
-    /// Where the rods point.
     #[inline(never)]
     pub fn directions(&self) -> Directions {
         with!(self, run => run.directions())
     }
 
-    /// The momenta that go with the directions.
     #[inline(never)]
     pub fn momenta(&self) -> [f32; 2] {
         with!(self, run => run.momenta())

@@ -4,8 +4,7 @@
 
 use super::candidate::Candidate;
 use super::cost::{Budget, Costs};
-use super::error::PlanError;
-use super::limit::Limit;
+use super::error::{Limit, PlanError};
 use super::pass::Pass;
 use super::problem::Problem;
 use super::way::{FIRST_STEP, MOST_STEPS, RESOLVING, Way, start_and_step, steps_to_frame};
@@ -74,9 +73,7 @@ impl Search {
     ///
     /// Refuses a problem without a tolerance, a duration or a rate, a pendulum that the kernel refuses, and costs or
     /// budgets that are not positive.
-    ///
-    /// Never inlined, nor is [`of`](Self::of): a search stands on the stack while it is made.
-    #[inline(never)]
+    #[inline(never)] // a search stands on the stack while it is made
     pub fn new(problem: &Problem, costs: &Costs, budget: &Budget) -> Result<Self, PlanError> {
         let (_, admissible) = start_and_step(&problem.pendulum, &problem.start)?;
         problem.check()?;
@@ -190,16 +187,13 @@ impl Search {
         }
     }
 
-    /// The next pass is to be this.
     fn begin(&mut self, method: Method, steps: u32) {
         (self.method, self.steps, self.pass) = (method, steps, None);
         (self.frame, self.begun, self.prepared) = (0, false, false);
     }
 
     /// Makes the pass, which costs as much as to prepare a motion.
-    ///
-    /// Never inlined: it stands on the stack.
-    #[inline(never)]
+    #[inline(never)] // it stands on the stack
     fn make(&mut self) -> Result<Option<Plan>, PlanError> {
         if self.spent + self.costs.preparation > self.budget.planning {
             return self.plan(Limit::Planning).map(Some);
@@ -226,7 +220,6 @@ impl Search {
         self.exact.filter(|_| self.method != Method::Extrapolation10Fixed64).filter(affordable)
     }
 
-    /// Prepares a motion of the pass.
     fn prepare(&mut self) -> Result<Option<Plan>, PlanError> {
         match self.pass.as_mut().map_or(Ok(false), Pass::prepare) {
             Ok(true) => self.spent += self.costs.preparation,
@@ -243,7 +236,6 @@ impl Search {
         self.pass.is_none() || !self.prepared
     }
 
-    /// How the methods have fared in this pass.
     fn candidates(&self) -> &[Candidate] {
         self.pass.as_ref().map_or(&[], |pass| pass.candidates())
     }

@@ -9,7 +9,6 @@ use crate::table::Method;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[doc(hidden)]
 pub struct Way {
-    /// The method.
     pub method: Method,
     /// Steps to a frame; of no meaning to the closed form, which has none.
     pub steps: u32,
@@ -76,9 +75,7 @@ impl Way {
         Ok(if is_fixed { fixed } else { affordable(Method::Rk4F32Direction) })
     }
 
-    /// By `method`, in the longest steps that resolve every motion of this energy.
-    ///
-    /// Refuses what [`lasting`](Self::lasting) refuses.
+    /// By `method`, in the longest steps that resolve every motion of this energy. Refuses what [`lasting`](Self::lasting) refuses.
     #[doc(hidden)]
     pub fn of(parameters: &Parameters<f64>, start: &Motion<f64>, rate: u16, method: Method) -> Result<Self, Error> {
         let (_, admissible) = start_and_step(parameters, start)?;
@@ -113,9 +110,7 @@ impl Way {
     }
 
     /// Refuses a motion that cannot be started in this way.
-    ///
-    /// Never inlined: the motion stands on the stack.
-    #[inline(never)]
+    #[inline(never)] // the motion stands on the stack
     fn check(self, parameters: &Parameters<f64>, start: &Motion<f64>, rate: u16) -> Result<(), Error> {
         super::PlannedRun::new(parameters, start, rate, self).map(|_| ())
     }

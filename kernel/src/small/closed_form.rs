@@ -67,13 +67,11 @@ impl<R: Real> SmallOscillations<R> {
         }
     }
 
-    /// The fast mode's part.
     #[doc(hidden)]
     pub fn fast(&self) -> Oscillation<R> {
         self.fast
     }
 
-    /// The slow mode's part.
     #[doc(hidden)]
     pub fn slow(&self) -> Oscillation<R> {
         self.slow

@@ -63,7 +63,6 @@ impl<R: Real, const N: usize, const ROWS: usize> DirectionLanes<R, N, ROWS> {
         }
     }
 
-    /// Makes a step of each.
     #[inline(always)]
     pub fn step(&mut self) {
         let Self { coefficients, rows, .. } = self;
@@ -85,7 +84,6 @@ impl<R: Real, const N: usize, const ROWS: usize> DirectionLanes<R, N, ROWS> {
         }
     }
 
-    /// Restores the lengths of each.
     #[inline(always)]
     pub fn restore_lengths(&mut self) {
         let ways = [(0, Lanes::splat(R::ONE), R::HALF), (2, self.coefficients.norm, self.half_inverse_square)];

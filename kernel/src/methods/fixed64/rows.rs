@@ -46,7 +46,6 @@ struct Row {
 }
 
 impl Rows {
-    /// For steps of `dt` s.
     pub fn new(order: u32, scaling: &Scaling, dt: f64) -> Result<Self, Error> {
         let Scaling { norm, inertia, gravity: [gravity1, gravity2], shifts, time, .. } = *scaling;
         let step = dt / time;
@@ -88,7 +87,6 @@ impl Rows {
         [differences - nearest(slopes) as i16, differences]
     }
 
-    /// nu by 8.
     pub fn norm(&self) -> Q64 {
         self.coefficients.norm
     }
