@@ -46,120 +46,84 @@ parameters! {
     Budget "budget" "What computing a frame, or planning, may cost.";
 }
 
-/// Why an input is refused: the parameter and the value it had.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[non_exhaustive]
-pub enum Error {
-    /// NaN or infinite.
-    NotFinite {
-        /// The offending parameter.
-        parameter: Parameter,
-        /// Its value.
-        value: f64,
-    },
-    /// Must be greater than zero.
-    NotPositive {
-        /// The offending parameter.
-        parameter: Parameter,
-        /// Its value.
-        value: f64,
-    },
-    /// Must not exceed a limit that the other parameters set.
-    TooLarge {
-        /// The offending parameter.
-        parameter: Parameter,
-        /// Its value.
-        value: f64,
-        /// The greatest value allowed.
-        limit: f64,
-    },
-    /// Must not fall below a limit that the other parameters set.
-    TooSmall {
-        /// The offending parameter.
-        parameter: Parameter,
-        /// Its value.
-        value: f64,
-        /// The least value allowed.
-        limit: f64,
-    },
-    /// The book's misprinted equations are of equal rods, but these differ; names rod 2.
-    UnequalRods {
-        /// Length of rod 1, m.
-        l1: f64,
-        /// Length of rod 2, m.
-        l2: f64,
-    },
-    /// A plan does not choose from it: none of [`Method::DRAWN`].
-    NotDrawn {
-        /// The method.
-        method: Method,
-    },
-    /// Every input was good, but a step was too long for the motion and led out of the finite numbers.
-    Diverged {
-        /// The first quantity that is no longer finite.
-        parameter: Parameter,
-        /// Its value: infinite or NaN.
-        value: f64,
-    },
-    /// Each value alone is fine, but a product of them leaves the range of the arithmetic;
-    /// names the value farthest from 1.
-    OutOfRange {
-        /// The offending parameter.
-        parameter: Parameter,
-        /// Its value.
-        value: f64,
-    },
+macro_rules! errors {
+    ($($variant:ident { $parameter:ident, $value:ident $(, $limit:ident)? } $doc:literal $reason:literal;)*) => {
+        /// Why an input is refused: the parameter and the value it had.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+        #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+        #[non_exhaustive]
+        pub enum Error {
+            $(#[doc = $doc]
+            $variant {
+                /// The offending parameter.
+                $parameter: Parameter,
+                /// Its value.
+                $value: f64,
+                $(/// The most or the least there may be.
+                $limit: f64,)?
+            },)*
+            /// The book's misprinted equations are of equal rods, but these differ; names rod 2.
+            UnequalRods {
+                /// Length of rod 1, m.
+                l1: f64,
+                /// Length of rod 2, m.
+                l2: f64,
+            },
+            /// A plan does not choose from it: none of [`Method::DRAWN`].
+            NotDrawn {
+                /// The method.
+                method: Method,
+            },
+        }
+
+        impl Error {
+            /// The offending parameter.
+            #[must_use]
+            pub const fn parameter(&self) -> Parameter {
+                match *self {
+                    $(Error::$variant { $parameter, .. } => $parameter,)*
+                    Error::UnequalRods { .. } => Parameter::L2,
+                    Error::NotDrawn { .. } => Parameter::Method,
+                }
+            }
+        }
+
+        impl fmt::Display for Error {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                match self {
+                    $(Error::$variant { $parameter, $value $(, $limit)? } => {
+                        write!(f, "{} = {:?}: ", $parameter, $value)?;
+                        write!(f, $reason)
+                    })*
+                    Error::UnequalRods { l1, l2 } => write!(f, "l2 = {l2:?}: the equal-rod form needs l2 = l1 = {l1:?}"),
+                    Error::NotDrawn { method } => write!(f, "{method}: not a method that frames are drawn by"),
+                }
+            }
+        }
+    };
+}
+
+#[rustfmt::skip]
+errors! {
+    NotFinite { parameter, value } "NaN or infinite." "must be a finite number";
+    NotPositive { parameter, value } "Must be greater than zero." "must be greater than zero";
+    TooLarge { parameter, value, limit } "Must not exceed a limit that the other parameters set." "must not exceed {limit:?}";
+    TooSmall { parameter, value, limit } "Must not fall below a limit that the other parameters set." "must be at least {limit:?}";
+    Diverged { parameter, value }
+        "Every input was good, but a step was too long for the motion and led out of the finite numbers: the first that is none."
+        "the motion has left the finite numbers; the step is too long for it";
+    OutOfRange { parameter, value }
+        "Each value alone is fine, but a product of them leaves the range of the arithmetic; names the value farthest from 1."
+        "too extreme for this arithmetic in combination with the others";
 }
 
 impl Error {
-    /// The offending parameter.
-    #[must_use]
-    pub const fn parameter(&self) -> Parameter {
-        match *self {
-            Error::NotFinite { parameter, .. }
-            | Error::NotPositive { parameter, .. }
-            | Error::TooLarge { parameter, .. }
-            | Error::TooSmall { parameter, .. }
-            | Error::Diverged { parameter, .. }
-            | Error::OutOfRange { parameter, .. } => parameter,
-            Error::UnequalRods { .. } => Parameter::L2,
-            Error::NotDrawn { .. } => Parameter::Method,
-        }
-    }
-
     /// The same of a result, where it was of an input.
     pub(crate) fn diverged(self) -> Self {
         match self {
             Error::NotFinite { parameter, value } => Error::Diverged { parameter, value },
             other => other,
-        }
-    }
-}
-
-impl fmt::Display for Error {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Error::NotFinite { parameter, value } => write!(f, "{parameter} = {value:?}: must be a finite number"),
-            Error::NotPositive { parameter, value } => write!(f, "{parameter} = {value:?}: must be greater than zero"),
-            Error::TooLarge { parameter, value, limit } => {
-                write!(f, "{parameter} = {value:?}: must not exceed {limit:?}")
-            }
-            Error::TooSmall { parameter, value, limit } => {
-                write!(f, "{parameter} = {value:?}: must be at least {limit:?}")
-            }
-            Error::Diverged { parameter, value } => {
-                write!(
-                    f,
-                    "{parameter} = {value:?}: the motion has left the finite numbers; the step is too long for it"
-                )
-            }
-            Error::UnequalRods { l1, l2 } => write!(f, "l2 = {l2:?}: the equal-rod form needs l2 = l1 = {l1:?}"),
-            Error::NotDrawn { method } => write!(f, "{method}: not a method that frames are drawn by"),
-            Error::OutOfRange { parameter, value } => {
-                write!(f, "{parameter} = {value:?}: too extreme for this arithmetic in combination with the others")
-            }
         }
     }
 }

@@ -67,7 +67,7 @@ impl Scene for Beats {
         let linear = SmallOscillations::new(modes, &settings.motion());
         let amplitude = |part: Oscillation<f32>, shape: f32| part.amplitude() * shape.abs();
         let shape = [modes.fast.shape, modes.slow.shape].map(|shape| shape as f32);
-        let greatest = amplitude(linear.fast(), shape[0]).max(amplitude(linear.slow(), shape[1]));
+        let greatest = amplitude(linear.fast, shape[0]).max(amplitude(linear.slow, shape[1]));
         let scale = if greatest > 0.0 { REACH / greatest } else { 0.0 };
         let spots = [Spot::default(); 2];
         let mut scene = Self { settings: *settings, simulation, linear, shape, scale, spots };

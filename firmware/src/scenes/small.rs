@@ -148,7 +148,7 @@ struct Envelopes {
 
 impl Envelopes {
     fn new(modes: &Modes<f64>, motion: &SmallOscillations<f32>) -> Self {
-        let (fast, slow) = (motion.fast(), motion.slow());
+        let (fast, slow) = (motion.fast, motion.slow);
         let [c1, c2] = [fast, slow].map(|part: Oscillation<f32>| part.amplitude());
         let amplitudes = [[c1, c2], [modes.fast.shape as f32 * c1, modes.slow.shape as f32 * c2]];
         Self { amplitudes, exchange: modes.exchange() / core::f64::consts::TAU, phase: fast.phase() - slow.phase() }

@@ -215,18 +215,4 @@ mod tests {
         assert_eq!(from([[0.0, 1.0], [0.0, -2.0]]), 6.0);
         assert!(from([[0.0, f32::NAN], [0.0, 1.0]]).is_nan());
     }
-
-    #[test]
-    fn a_cost_pays_for_whole_steps_and_for_one_at_least() {
-        let costs = Costs {
-            closed_form: 10.0,
-            direction_plain: 100.0,
-            direction: 150.0,
-            fixed32: 120.0,
-            fixed64: 900.0,
-            preparation: 1000.0,
-        };
-        let steps = |cost| steps_for(&costs, Method::Rk4F32DirectionPlain, cost);
-        assert_eq!([50.0, 100.0, 399.0, 400.0].map(steps), [1, 1, 3, 4]);
-    }
 }

@@ -42,8 +42,10 @@ pub struct SmallOscillations<R> {
     /// The frequencies in turns per second, in `f64`: after a day in `f32` the phase would be anywhere.
     turns: [f64; 2],
     modes: [Mode<R>; 2],
-    fast: Oscillation<R>,
-    slow: Oscillation<R>,
+    #[doc(hidden)]
+    pub fast: Oscillation<R>,
+    #[doc(hidden)]
+    pub slow: Oscillation<R>,
 }
 
 impl<R: Real> SmallOscillations<R> {
@@ -65,16 +67,6 @@ impl<R: Real> SmallOscillations<R> {
             fast: Oscillation { cosine: c1, sine: v1 / fast },
             slow: Oscillation { cosine: c2, sine: v2 / slow },
         }
-    }
-
-    #[doc(hidden)]
-    pub fn fast(&self) -> Oscillation<R> {
-        self.fast
-    }
-
-    #[doc(hidden)]
-    pub fn slow(&self) -> Oscillation<R> {
-        self.slow
     }
 
     /// Angles and angular velocities a time `t` (s) after the start; `t` may be negative.

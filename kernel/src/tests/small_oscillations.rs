@@ -32,7 +32,7 @@ fn figures_3_to_5_to_all_digits() {
         assert!((TAU / modes.exchange() - envelope).abs() < 0.5e-6, "{mu}: {} s", TAU / modes.exchange());
         let sums = [modes.carrier() + modes.modulation() - w1, modes.carrier() - modes.modulation() - w2];
         assert!(sums.iter().all(|off| off.abs() < 0.5e-6), "{mu}: {sums:?}");
-        let amplitude = (motion.fast().amplitude() + motion.slow().amplitude()).to_degrees();
+        let amplitude = (motion.fast.amplitude() + motion.slow.amplitude()).to_degrees();
         assert!((amplitude - largest_a1).abs() < 0.5e-4, "{mu}: {amplitude} degrees");
     }
 }
@@ -85,7 +85,7 @@ fn amplitude_and_phase_are_the_same_oscillation() {
         let [a1, a2, w1, w2] = [0; 4].map(|_| symmetric(&mut rng));
         let motion = SmallOscillations::<f64>::new(modes, &Motion { a1, a2, w1, w2 });
         let t = 3.0 * rng.f64();
-        let (fast, slow) = (motion.fast(), motion.slow());
+        let (fast, slow) = (motion.fast, motion.slow);
         let a1 = fast.amplitude() * (modes.fast.frequency * t + fast.phase()).cos()
             + slow.amplitude() * (modes.slow.frequency * t + slow.phase()).cos();
         let scale = (fast.amplitude() + slow.amplitude()) * (1.0 + modes.fast.frequency * t);

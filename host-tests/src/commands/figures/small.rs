@@ -84,7 +84,7 @@ impl Small {
 
 /// The amplitudes of C1 cos w1 t + C2 cos w2 t in either angle: sqrt(C1^2 + C2^2 + 2 C1 C2 cos (w1 - w2) t), rad.
 fn envelopes(modes: &Modes<f64>, motion: &SmallOscillations<f64>, time: f64) -> [f64; 2] {
-    let [fast, slow] = [motion.fast().cosine, motion.slow().cosine];
+    let [fast, slow] = [motion.fast.cosine, motion.slow.cosine];
     let cos = libm::cos(modes.exchange() * time);
     let amplitude = |c1: f64, c2: f64| (c1 * c1 + c2 * c2 + 2.0 * c1 * c2 * cos).max(0.0).sqrt();
     [amplitude(fast, slow), amplitude(modes.fast.shape * fast, modes.slow.shape * slow)]

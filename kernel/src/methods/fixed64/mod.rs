@@ -1,16 +1,18 @@
 //! The direction form in 64 bits of fixed point, by extrapolation: many digits for chips without a unit for them.
 
-mod motion;
 mod rows;
 
-use motion::Fixed64State;
+use core::cell::Cell;
 
-use crate::bounds::check_step;
-use crate::error::Error;
+use crate::bounds::{Bounds, check_step};
+use crate::error::{Error, Parameter};
 use crate::methods::Form;
-use crate::methods::scaling::lost;
-use crate::numbers::{Real, Sealed};
-use crate::pendulum::{Direction, Parameters, State};
+use crate::methods::scaling::{Scaling, lost};
+use crate::numbers::fixed::Q64;
+use crate::numbers::{Real, Scalar, Sealed};
+use crate::pendulum::directions::{heads, lower_ray};
+use crate::pendulum::{Direction, Parameters, Pendulum, State};
+use rows::{EIGHTH, Rows, unit_of_time};
 
 /// As [`ExtrapolationF64`](super::ExtrapolationF64), but on integers of 64 bits, row after row. For any masses and rods whose
 /// scaled ratios are below some 4,000 (others are refused by name), and any start.
@@ -34,6 +36,40 @@ pub struct Fixed64<const ORDER: u32> {
     parameters: Parameters<f64>,
     dt: f64,
 }
+
+/// A motion in fixed point, with the units that its energy chose: what [`Fixed64`] carries from step
+/// to step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fixed64State {
+    rows: Rows,
+    /// P1 and P2 to a kg m^2/s.
+    momenta: [f64; 2],
+    /// 1/(2 nu^2) by 8.
+    half_inverse_square: Q64,
+    /// sin a1, cos a1, S, C by 8; P1, P2.
+    z: [Q64; 6],
+    lost: bool,
+    /// nu and 1/nu.
+    norm: f64,
+    inverse_norm: f64,
+    /// What a step loses by rounding down.
+    floored: [i16; 2],
+}
+
+/// The greatest rate, the greatest torque of gravity, and the longest step in the units of the motion.
+const RATE: f64 = 0.125;
+const TORQUE: f64 = 1.0 / 256.0;
+const STEP: f64 = 15.0;
+
+/// 1 as the square of a length, by 64, and 1/2 by 8.
+const ONE: Q64 = Q64(1 << 58);
+const HALF: Q64 = Q64(1 << 60);
+
+/// By how much a rod may turn in a step, rad.
+const TURN: f64 = 1.5;
+
+/// 2^-8, by how much a step may alter the square of a length, by 64.
+const LENGTH: u64 = 1 << 50;
 
 impl<const ORDER: u32> Sealed for Fixed64<ORDER> {}
 
@@ -60,11 +96,11 @@ impl<const ORDER: u32> Form for Fixed64<ORDER> {
     }
 
     fn check(&self, carried: &Self::Carried) -> Result<(), Error> {
-        lost(carried.is_lost())
+        lost(carried.lost)
     }
 
     fn heads(carried: &Self::Carried) -> [Direction<i32>; 2] {
-        carried.heads()
+        heads(&carried.z).map(|direction| direction.map(|x| (x.0 >> 32) as i32))
     }
 
     fn directions<R: Real>(&self, carried: &Self::Carried) -> [Direction<R>; 2] {
@@ -79,7 +115,114 @@ impl<const ORDER: u32> Form for Fixed64<ORDER> {
         carried.state()
     }
 
-    fn bits(carried: &Self::Carried, feed: impl FnMut(u64)) {
-        carried.bits(feed);
+    fn bits(carried: &Self::Carried, mut feed: impl FnMut(u64)) {
+        carried.z.iter().for_each(|&z| feed(z.0 as u64));
+        feed(u64::from(carried.lost));
     }
+}
+
+impl Fixed64State {
+    /// At no place yet, for motions of `energy` J above rest.
+    #[inline(never)]
+    fn new(parameters: &Parameters<f64>, energy: f64, dt: f64, order: u32) -> Result<Self, Error> {
+        let bounds = Bounds::new(parameters, energy);
+        let scaling = Scaling::new(parameters, &bounds, [RATE, TORQUE], |[by_rates, by_torques]| {
+            let longest = libm::fmin(by_rates, by_torques);
+            let limit = libm::fmin(STEP * longest, TURN / RATE * by_rates);
+            if libm::fabs(dt) > limit {
+                return Err(Error::TooLarge { parameter: Parameter::Dt, value: dt, limit });
+            }
+            Ok(unit_of_time(longest, dt))
+        })?;
+        let rows = Rows::new(order, &scaling, dt)?;
+        Ok(Self {
+            floored: rows.floored(),
+            rows,
+            momenta: scaling.momenta,
+            norm: scaling.norm,
+            half_inverse_square: Q64::constant(0.5 / (scaling.norm * scaling.norm) * EIGHTH),
+            z: [Q64(0); 6],
+            inverse_norm: 1.0 / scaling.norm,
+            lost: false,
+        })
+    }
+
+    #[inline(never)]
+    fn start(parameters: &Parameters<f64>, dt: f64, order: u32, state: &State<f64>) -> Result<Self, Error> {
+        let energy = Pendulum::new(parameters)?.energy_above_rest(state);
+        let motion = Self::new(parameters, energy, dt, order)?;
+        let &State { a1, a2, p1, p2 } = state;
+        let (sin1, cos1) = a1.own_sin_cos();
+        let (sin_d, cos_d) = (a1 - a2).own_sin_cos();
+        let Self { norm, momenta: [unit1, unit2], .. } = motion;
+        let eighths = [sin1, cos1, norm * sin_d, norm * cos_d].map(|direction| direction * EIGHTH);
+        let [sin1, cos1, s, c] = eighths;
+        Ok(Self { z: [sin1, cos1, s, c, p1 * unit1, p2 * unit2].map(Q64::constant), ..motion })
+    }
+
+    #[inline(never)]
+    fn advance(&mut self, steps: u32) {
+        for _ in 0..steps {
+            self.step();
+        }
+    }
+
+    fn step(&mut self) {
+        let reach = Cell::new(0);
+        let end = self.rows.end(&self.z, &reach);
+        // Half of 2^-64 is rounded as the last digit has it, which is as often 1 as 0.
+        let unfloored = |z: Q64, floored: i16| Q64(z.0.wrapping_add((i64::from(floored) + (z.0 & 1)) >> 1));
+        let [of_p1, others] = self.floored;
+        let [sin1, cos1, s, c, _, p2] = end.map(|z| unfloored(z, others));
+        let p1 = unfloored(end[4], of_p1);
+        let norm = self.rows.norm();
+        let ([sin1, cos1], missing1) = restored([sin1, cos1], ONE, HALF);
+        let ([s, c], missing2) = restored([s, c], norm * norm, self.half_inverse_square);
+        self.z = [sin1, cos1, s, c, p1, p2];
+        let reach = self.z.iter().fold(reach.get(), |reach, z| reach | z.reach(2));
+        self.lost |= reach != 0 || [missing1, missing2].into_iter().any(|missing| missing.0.unsigned_abs() > LENGTH);
+    }
+
+    // one copy
+    #[inline(never)]
+    fn values(&self) -> [f64; 6] {
+        self.z.map(Q64::value)
+    }
+
+    fn directions<R: Real>(&self) -> [Direction<R>; 2] {
+        let [sin1, cos1, s, c, ..] = self.z;
+        let inverse = R::from_f64(self.inverse_norm);
+        let lower = lower_ray([sin1, cos1], [s, c]).map(|z| z.over::<R>(EIGHTH * EIGHTH) * inverse);
+        [[sin1, cos1].map(|z| z.over(EIGHTH)), lower]
+    }
+
+    #[inline(never)]
+    fn state(&self) -> State<f64> {
+        if self.lost {
+            return State { a1: f64::NAN, a2: f64::NAN, p1: f64::NAN, p2: f64::NAN };
+        }
+        let [sin1, cos1, s, c, p1, p2] = self.values();
+        let [sin2, cos2] = lower_ray([sin1, cos1], [s, c]);
+        let [unit1, unit2] = self.momenta;
+        State { a1: libm::atan2(sin1, cos1), a2: libm::atan2(sin2, cos2), p1: p1 / unit1, p2: p2 / unit2 }
+    }
+
+    /// p1 and p2 in SI units, rounded to `R`.
+    #[inline(never)] // one copy
+    fn momenta<R: Real>(&self) -> [R; 2] {
+        let ([.., p1, p2], [unit1, unit2]) = (self.z, self.momenta);
+        let momentum =
+            |p: Q64, unit: f64| if self.lost { R::from_f64(f64::NAN) } else { p.over::<R>(1.0) / R::from_f64(unit) };
+        [momentum(p1, unit1), momentum(p2, unit2)]
+    }
+}
+
+/// The direction with its length restored to first order in what its `square` misses, and what that was; `gain` is half the
+/// inverse of the square.
+#[inline(always)]
+fn restored([s, c]: [Q64; 2], square: Q64, gain: Q64) -> ([Q64; 2], Q64) {
+    let missing = square - s * s - c * c;
+    let relative = missing.up(7) * gain;
+    let restored = |x: Q64| x + (x * relative).up(2);
+    ([restored(s), restored(c)], missing)
 }
