@@ -4,7 +4,7 @@
 //!
 //! | room | what is in it |
 //! |---|---|
-//! | `bin/` | one file a command: parses its options, calls, prints |
+//! | `main.rs` | the command of each name |
 //! | [`commands`] | what the commands do: demo, simulate, plan, prove, flips, count, report, figures, verify-board |
 //! | [`emulator`] | the emulated boards: QEMU, toolchain and set-up, processes, budgets |
 //! | [`link`] | the serial link: bytes to messages, and a real port |

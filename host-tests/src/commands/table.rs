@@ -29,7 +29,21 @@ impl Table {
     }
 }
 
+/// `page` with something else between its two marks, if it has them.
+pub fn between(page: &str, [start, end]: [&str; 2], text: &str) -> Option<String> {
+    let (head, rest) = page.split_once(start)?;
+    let (_, tail) = rest.split_once(end)?;
+    Some(format!("{head}{start}{text}{end}{tail}"))
+}
+
 /// An error or a drift: two digits, or what it is not.
 pub fn small(value: f64) -> String {
     if value.is_finite() { format!("{value:.1e}") } else { String::from("none") }
+}
+
+#[test]
+fn what_stands_between_the_marks_is_replaced() {
+    let [old, new] = ["old", "new"].map(|text| format!("before [{text}] after"));
+    assert_eq!(between(&old, ["[", "]"], "new"), Some(new));
+    assert_eq!(between("before ] after [", ["[", "]"], "new"), None);
 }

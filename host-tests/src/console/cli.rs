@@ -1,5 +1,6 @@
 //! What every command does alike: its options, what it says, one clear line for an error, and the exit code.
 
+use std::env;
 use std::fmt::{self, Display};
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Write, stderr, stdout};
@@ -95,10 +96,15 @@ fn parse<Options: Parser>() -> Result<Options, ExitCode> {
     // A number is the value of its option with a sign, too: what is wrong with it, the option says.
     let command = Options::command();
     let name = command.get_name().to_owned();
-    let command = command.bin_name(name).mut_args(|option| {
+    let own = name.trim_start_matches("cargo ");
+    let command = command.bin_name(&name).mut_args(|option| {
         if option.get_action().takes_values() { option.allow_negative_numbers(true) } else { option }
     });
-    let options = command.try_get_matches().and_then(|matches| Options::from_arg_matches(&matches));
+    // Its name comes first.
+    let words = env::args_os().enumerate().filter(|(place, word)| *place != 1 || word.to_str() != Some(own));
+    let options = command
+        .try_get_matches_from(words.map(|(_, word)| word))
+        .and_then(|matches| Options::from_arg_matches(&matches));
     options.map_err(|error| match error.kind() {
         OptionError::DisplayHelp
         | OptionError::DisplayVersion

@@ -132,7 +132,7 @@ fn measure(board: &'static Board) -> anyhow::Result<(Memory, f64)> {
     stack.paint(&mut machine)?;
     play(&mut machine, FRAMES)?;
     let (_, profile) = FrameProfile::of_next(&mut machine, &image, board.core())?;
-    let Cost { instructions, cycles, .. } = profile.whole();
+    let Cost { instructions, cycles, .. } = profile.whole;
     let highest = exercise(&mut machine)?;
     let stack = stack.reached(&mut machine)?;
     let executed = f64::from(highest) / f64::from(board.hertz) / board.instruction();

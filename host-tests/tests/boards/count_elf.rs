@@ -70,8 +70,8 @@ const WAITS: &str = "b wait";
 const NEEDS_FLOATS: &str = ".inst.w 0xee300a00 @ vadd.f32 s0, s0, s0";
 
 fn count(elf: &Path, function: &str, more: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_count"));
-    command.args(["--on", BOARDS[0].name, "--function", function, "--elf"]).arg(elf).args(more);
+    let mut command = Command::new(env!("CARGO_BIN_EXE_host-tests"));
+    command.args(["count", "--on", BOARDS[0].name, "--function", function, "--elf"]).arg(elf).args(more);
     process::run(&mut command, crate::support::LIMIT).unwrap_or_else(|error| panic!("{error}"))
 }
 
@@ -114,7 +114,7 @@ fn a_program_that_is_stopped_is_counted_until_then() {
 #[test]
 fn what_cannot_be_counted_is_said_in_a_line() {
     let measure = measure();
-    let host = Path::new(env!("CARGO_BIN_EXE_count"));
+    let host = Path::new(env!("CARGO_BIN_EXE_host-tests"));
     let folder = folder();
     let [ends, fails, floats] = [ENDS, FAILS, NEEDS_FLOATS].map(|last| program(folder.path(), "0x0", last));
     let elsewhere = program(folder.path(), "0x8000000", ENDS);

@@ -58,7 +58,7 @@ fn map_is_the_hosts(board: &Board, compared: usize) -> anyhow::Result<()> {
         }
         if ticks == EARLY {
             let (_, profile) = FrameProfile::of_next(&mut machine, &image, board.core())?;
-            let Cost { instructions, cycles, .. } = profile.whole();
+            let Cost { instructions, cycles, .. } = profile.whole;
             cycles_per_instruction = cycles as f64 / instructions as f64;
         }
     }

@@ -6,7 +6,7 @@ use firmware::config::TICK_RATE;
 use firmware::graphics::canvas::{HEIGHT, WIDTH};
 use firmware::protocol::{Choose, Done, Frame};
 use firmware::scenes::SceneName;
-use host_tests::commands::count::{Cost, FrameProfile, Image, Part};
+use host_tests::commands::count::{Cost, FrameProfile, Image};
 use host_tests::emulator::boards::{BOARDS, Board, Core};
 use host_tests::emulator::budgets;
 use host_tests::emulator::host::Show;
@@ -89,11 +89,11 @@ fn too_costly(board: &Board) -> anyhow::Result<Vec<String>> {
             continue;
         }
         let (_, profile) = FrameProfile::of_next(&mut machine, &image, board.core())?;
-        let showing = profile.cost(Part::Drawing).cycles + profile.cost(Part::Sending).cycles;
+        let showing = profile.showing.cycles;
         if board.core() == Core::M3 && showing > budgets::SHOWING {
             too_costly.push(format!("{}: {} is drawn and sent in {showing} cycles", board.name, name.name()));
         }
-        let Cost { instructions, cycles, .. } = profile.whole();
+        let Cost { instructions, cycles, .. } = profile.whole;
         let cycles_per_instruction = cycles as f64 / instructions as f64;
         let [scene, busy] =
             [scene, busy].map(|cycles| f64::from(cycles) / f64::from(board.hertz) / board.instruction());

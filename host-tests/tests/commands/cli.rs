@@ -15,7 +15,9 @@ use crate::support::LIMIT;
 
 /// A command of this project.
 pub fn program(name: &str) -> Command {
-    Command::new(Path::new(env!("CARGO_BIN_EXE_demo")).with_file_name(name))
+    let mut command = Command::new(env!("CARGO_BIN_EXE_host-tests"));
+    command.arg(name);
+    command
 }
 
 /// What it says, and how it ends.

@@ -2,10 +2,11 @@
 
 use std::fs::File;
 use std::io::{Read, Write};
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 use std::thread::{sleep, spawn};
 use std::time::{Duration, Instant};
 
+use super::cli::program;
 use crate::support::bench::{Bench, WAIT, at_port, board, intact};
 use firmware::protocol::{Frame, MAX_WIRE, encode};
 use host_tests::emulator::process::Output;
@@ -20,7 +21,7 @@ const SILENCE: Duration = Duration::from_secs(3);
 const FOREIGN: Duration = Duration::from_secs(4);
 
 fn demo(bench: &mut Bench, arguments: &[&str], play: impl FnMut(&mut Bench)) -> Output {
-    at_port(bench, Command::new(env!("CARGO_BIN_EXE_demo")).arg("--headless").args(arguments), play)
+    at_port(bench, program("demo").arg("--headless").args(arguments), play)
 }
 
 #[test]
@@ -115,7 +116,7 @@ fn of_a_silent_or_foreign_device_the_terminal_shows_no_number() {
         let mut bench = Bench::new();
         let size = Winsize { ws_row: 24, ws_col: 80, ws_xpixel: 0, ws_ypixel: 0 };
         let OpenptyResult { master, slave } = openpty(&size, None).expect("a terminal");
-        let mut command = Command::new(env!("CARGO_BIN_EXE_demo"));
+        let mut command = program("demo");
         command.stdin(slave.try_clone().expect("a terminal")).stdout(slave).stderr(Stdio::piped());
         let child = command.arg("--port").arg(&bench.name).spawn().expect("it starts");
         drop(command);

@@ -2,11 +2,11 @@
 //! they link to exists.
 
 use std::collections::BTreeSet;
-use std::path::Path;
 use std::process::Command;
 
 use host_tests::emulator::toolchain::workspace;
 
+use super::cli::{output, program};
 use super::hygiene::read;
 
 /// The first page, and those of the crates.
@@ -26,10 +26,8 @@ fn helps() -> Vec<(String, String)> {
     let config = read(".cargo/config.toml");
     let help = |line: &str| {
         let (name, command) = line.split_once(" = \"run ")?;
-        let binary = command.split(' ').skip_while(|word| *word != "--bin").nth(1)?;
-        let program = Path::new(env!("CARGO_BIN_EXE_demo")).with_file_name(binary);
-        let output = Command::new(program).arg("--help").output().unwrap_or_else(|error| panic!("{name}: {error}"));
-        Some((name.to_owned(), String::from_utf8(output.stdout).expect("text")))
+        let (_, called) = command.trim_end_matches('"').split_once(" -- ")?;
+        Some((name.to_owned(), output(program(called).arg("--help")).stdout))
     };
     config.lines().filter_map(help).collect()
 }

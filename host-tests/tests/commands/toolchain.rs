@@ -9,7 +9,7 @@ use std::process::Command;
 fn the_project_is_the_one_that_a_command_is_run_in() {
     let folder = tempfile::tempdir().expect("a folder");
     let (copy, checkout) = (folder.path().join("fw"), folder.path().join("checkout"));
-    fs::copy(env!("CARGO_BIN_EXE_fw"), &copy).expect("a copy");
+    fs::copy(env!("CARGO_BIN_EXE_host-tests"), &copy).expect("a copy");
     for file in ["kernel/Cargo.toml", "firmware/Cargo.toml", "host-tests/Cargo.toml", "firmware/src/bin/elsewhere.rs"] {
         let file = checkout.join(file);
         fs::create_dir_all(file.parent().expect("a folder")).expect("a folder");
@@ -17,7 +17,7 @@ fn the_project_is_the_one_that_a_command_is_run_in() {
     }
     let help = |within: &Path| {
         Command::new(&copy)
-            .arg("--help")
+            .args(["fw", "--help"])
             .current_dir(within)
             .env_remove("CARGO_MANIFEST_DIR")
             .output()

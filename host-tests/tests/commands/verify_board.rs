@@ -3,11 +3,12 @@
 use std::fs;
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 use std::sync::mpsc::{Receiver, channel};
 use std::thread::spawn;
 use std::time::{Duration, Instant};
 
+use super::cli::program;
 use crate::support::LIMIT;
 use crate::support::bench::{BOARD, Bench, at_port, intact};
 use firmware::app::Key;
@@ -22,7 +23,7 @@ use host_tests::link::Received;
 const UNCOUNTED: &str = "| no cycle counter | no cycle counter | - |";
 
 fn verify(report: &Path, wire: impl Fn(&Received) -> Vec<u8>) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_verify-board"));
+    let mut command = program("verify-board");
     command.args(["--no-questions", "--report"]).arg(report);
     at_port(&mut Bench::new(), &mut command, |bench| bench.carry(&wire))
 }
@@ -106,7 +107,7 @@ fn what_the_person_says_and_the_chip_counts_is_in_the_report() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut bench = Bench::of(&BOARDS[0]);
     bench.machine.wake_keys().expect("buttons");
-    let mut command = Command::new(env!("CARGO_BIN_EXE_verify-board"));
+    let mut command = program("verify-board");
     command.arg("--port").arg(&bench.name).arg("--report").arg(folder.path().join("asked"));
     command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::piped());
     let mut verification = process::spawn(&mut command, LIMIT).expect("it starts");

@@ -1,19 +1,20 @@
 //! The calls of a function in an executed stream: from its first instruction to its return, with all that it calls and that
 //! interrupts it.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::time::Duration;
 
-use anyhow::{Result, bail};
+use anyhow::{Result, bail, ensure};
+use firmware::job::Request;
 
-use super::Target;
 use super::image::{Function, Image};
 use super::instruction::Instruction;
 use super::pipeline::{Cost, Pipeline};
-use super::profile::Profile;
-use super::trace::{Ended, Registers};
+use super::trace::{Ended, LIMIT, Registers};
+use super::{COUNTED, Target};
 use crate::console::progress::Progress;
 use crate::emulator::boards::Core;
+use crate::emulator::process::timed_out;
 
 /// Every call of one of the functions that begin at some addresses.
 #[derive(Debug)]
@@ -21,16 +22,14 @@ pub struct Calls<'a> {
     image: &'a Image,
     core: Core,
     entries: BTreeSet<u32>,
-    running: Option<Call>,
-    profile: Profile,
-    ended: Vec<Cost>,
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Call {
-    caller: Registers,
-    stream: Stream,
-    cost: Cost,
+    /// Where the call that is running came from, the stream since then, and what it has cost.
+    running: Option<(Registers, Stream, Cost)>,
+    /// What each call that returned cost, in order.
+    pub ended: Vec<Cost>,
+    /// By its address, an instruction and what all its executions together cost.
+    pub spots: BTreeMap<u32, (Instruction, Cost)>,
+    /// The deepest the stack pointer went below where the caller had it.
+    pub stack_bytes: u32,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -61,56 +60,69 @@ impl Stream {
 
 impl<'a> Calls<'a> {
     pub fn of(image: &'a Image, core: Core, entries: BTreeSet<u32>) -> Self {
-        Self { image, core, entries, running: None, profile: Profile::default(), ended: Vec::new() }
+        let (ended, spots) = (Vec::new(), BTreeMap::new());
+        Self { image, core, entries, running: None, ended, spots, stack_bytes: 0 }
+    }
+
+    /// Runs `request` on `target`, all calls of the counted function together.
+    pub fn counted(target: &'a Target, request: &Request) -> Result<Self> {
+        let entries = target.image().functions_named(COUNTED).map(|function| function.address).collect();
+        let mut calls = Self::of(target.image(), target.core(), entries);
+        match target.trace(&request.to_string(), LIMIT, |registers| calls.see(registers))? {
+            Ended { status: Some(status), .. } if status.success() => {}
+            Ended { status: None, .. } => bail!(timed_out(&target.elf.display().to_string(), LIMIT)),
+            Ended { output, .. } => bail!("{request}: {}", output.trim()),
+        }
+        ensure!(!calls.ended.is_empty(), "{COUNTED} was never called");
+        Ok(calls)
     }
 
     pub fn see(&mut self, registers: Registers) -> Result<()> {
         match &mut self.running {
-            Some(call) => {
-                let executed = call.stream.execute(&registers);
-                self.profile.add(executed, call.caller.sp().saturating_sub(registers.sp()));
-                call.cost += executed.2;
-                if registers.pc() == call.caller.lr() & !1 && registers.sp() == call.caller.sp() {
-                    self.ended.push(call.cost);
-                    self.running = None;
-                } else {
-                    return call.stream.go_on(self.image, registers);
+            Some((caller, stream, cost)) => {
+                let (address, instruction, executed) = stream.execute(&registers);
+                self.spots.entry(address).or_insert((instruction, Cost::default())).1 += executed;
+                self.stack_bytes = self.stack_bytes.max(caller.sp().saturating_sub(registers.sp()));
+                *cost += executed;
+                if registers.pc() != caller.lr() & !1 || registers.sp() != caller.sp() {
+                    return stream.go_on(self.image, registers);
                 }
+                self.ended.push(*cost);
+                self.running = None;
             }
             None if self.entries.contains(&registers.pc()) => {
-                let stream = Stream::begin(self.image, self.core, registers)?;
-                self.running = Some(Call { caller: registers, stream, cost: Cost::default() });
+                self.running = Some((registers, Stream::begin(self.image, self.core, registers)?, Cost::default()));
             }
             None => {}
         }
         Ok(())
     }
 
-    /// What each call that returned cost, in order.
-    pub fn into_ended(self) -> Vec<Cost> {
-        self.ended
+    /// Of all calls that returned.
+    pub fn cost(&self) -> Cost {
+        self.ended.iter().copied().sum()
     }
 
-    pub fn into_profile(self) -> Profile {
-        self.profile
+    /// Bytes of the distinct instructions executed.
+    pub fn hot_bytes(&self) -> u32 {
+        self.spots.values().map(|(instruction, _)| instruction.size()).sum()
+    }
+
+    /// Bytes of the functions entered.
+    pub fn code_bytes(&self) -> u32 {
+        let functions: BTreeSet<_> = self.spots.keys().filter_map(|&address| self.image.function_at(address)).collect();
+        functions.into_iter().map(|function| function.size).sum()
     }
 }
 
-#[derive(Debug)]
-pub struct CallCosts {
-    pub function: Function,
-    /// Each call that returned, in order; one at least, unless the program says that it failed.
-    pub calls: Vec<Cost>,
-    pub ended: Ended,
-}
-
-/// Counts the calls of `function` until the program on `target` ends or the time is up.
-pub fn calls_of(target: &Target, function: &str, limit: Duration) -> Result<CallCosts> {
+/// Counts the calls of `function` until the program on `target` ends or the time is up: the function, what each call that returned
+/// cost, one at least unless the program says that it failed, and how it ended.
+pub fn calls_of<'a>(target: &'a Target, function: &str, limit: Duration) -> Result<(&'a Function, Vec<Cost>, Ended)> {
     let (image, core) = (target.image(), target.core());
-    let function = image.function(function)?.clone();
+    let function = image.function(function)?;
     target.check_memory()?;
     let mut calls = Calls::of(image, core, BTreeSet::from([function.address]));
-    let mut progress = Progress::start(&format!("counts the calls of {}", function.name));
+    let progress = Progress::start(&format!("counts the calls of {}", function.name));
     let (mut instructions, mut before, mut unknown) = (0_u64, Registers::default(), None);
     let ended = target.trace("", limit, |registers| {
         instructions += 1;
@@ -128,16 +140,12 @@ pub fn calls_of(target: &Target, function: &str, limit: Duration) -> Result<Call
     let name = &function.name;
     let failed = ended.status.is_some_and(|status| !status.success());
     if calls.ended.is_empty() && !failed {
-        match unknown {
-            _ if calls.running.is_some() => bail!("{name} was called and never returned"),
-            Some((address, instruction)) => {
-                let (instruction, cpu) = (instruction.row.name, target.board.cpu);
-                bail!("{name} was never called: {instruction} at {address:#x} is no instruction of a {cpu}; see --on")
-            }
-            None => bail!("{name} was never called"),
-        }
+        ensure!(calls.running.is_none(), "{name} was called and never returned");
+        let Some((address, instruction)) = unknown else { bail!("{name} was never called") };
+        let (instruction, cpu) = (instruction.row.name, target.board.cpu);
+        bail!("{name} was never called: {instruction} at {address:#x} is no instruction of a {cpu}; see --on");
     }
-    Ok(CallCosts { function, calls: calls.ended, ended })
+    Ok((function, calls.ended, ended))
 }
 
 /// Instructions between two words about them.

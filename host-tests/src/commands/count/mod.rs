@@ -2,12 +2,12 @@
 //! the published instruction timings), bytes of code and bytes of stack.
 
 mod calls;
+mod command;
 mod frame_profile;
 mod image;
 mod instruction;
 mod pipeline;
 mod prices;
-mod profile;
 mod row;
 #[cfg(test)]
 mod silicon;
@@ -15,13 +15,13 @@ mod target;
 pub mod timing;
 mod trace;
 
-pub use calls::{CallCosts, calls_of};
-pub use frame_profile::{FrameProfile, Part, calls_in_next};
+pub use calls::{Calls, calls_of};
+pub use command::{CountOptions, run};
+pub use frame_profile::{FrameProfile, calls_in_next};
 pub use image::{Function, Image};
 pub use instruction::Instruction;
 pub use pipeline::{Cost, ERROR_BAR, Pipeline};
-pub use prices::{prices, write_prices};
-pub use profile::{Profile, Spot};
+pub use prices::prices;
 pub use target::Target;
 pub use trace::{Ended, Registers};
 
@@ -40,7 +40,7 @@ const REGULAR: u64 = 32;
 const LEAST_STEPS: u64 = 4;
 const AFFORDABLE_INSTRUCTIONS: u64 = 300_000;
 
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepCost {
     pub steps: u32,
     pub instructions: f64,
@@ -57,7 +57,7 @@ pub struct StepCost {
 
 /// The steps to count so that the counting takes a few seconds: [`FULL_CYCLE`] of a cheap method, fewer of a costly one.
 pub fn affordable_steps(target: &Target, request: &Request) -> Result<u32> {
-    let one = Profile::of(target, &Request { stride: 1, samples: 1, ..*request })?.cost().instructions;
+    let one = Calls::counted(target, &Request { stride: 1, samples: 1, ..*request })?.cost().instructions;
     let steps = (AFFORDABLE_INSTRUCTIONS / one.max(1)).clamp(LEAST_STEPS, FULL_CYCLE.into());
     Ok(if steps < REGULAR { steps } else { steps - steps % REGULAR } as u32)
 }
@@ -72,9 +72,9 @@ pub fn affordable_cost(target: &Target, request: &Request) -> Result<StepCost> {
 /// A run of twice the steps minus a run of once the steps, so that calling and returning cancel.
 pub fn step_cost(target: &Target, request: &Request) -> Result<StepCost> {
     let steps = request.stride;
-    let run = |stride| Profile::of(target, &Request { stride, samples: 1, ..*request });
-    let (once, twice) = (run(steps)?, run(2 * steps)?);
-    let (calling, all) = (once.cost(), twice.cost());
+    let run = |stride| Calls::counted(target, &Request { stride, samples: 1, ..*request });
+    let (calling, twice) = (run(steps)?.cost(), run(2 * steps)?);
+    let all = twice.cost();
     let per_step = |all: u64, calling: u64| all.saturating_sub(calling) as f64 / f64::from(steps);
     Ok(StepCost {
         steps,
@@ -82,7 +82,7 @@ pub fn step_cost(target: &Target, request: &Request) -> Result<StepCost> {
         cycles: per_step(all.cycles, calling.cycles),
         stalls: per_step(all.stalls, calling.stalls),
         hot_bytes: twice.hot_bytes(),
-        code_bytes: twice.functions(target.image()).map(|function| function.size).sum(),
-        stack_bytes: twice.stack_bytes(),
+        code_bytes: twice.code_bytes(),
+        stack_bytes: twice.stack_bytes,
     })
 }

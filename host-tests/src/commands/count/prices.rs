@@ -11,6 +11,7 @@ use firmware::protocol::{Field, Set, method_code};
 use rayon::prelude::*;
 
 use super::{FULL_CYCLE, Image, Target, affordable_cost, calls_in_next};
+use crate::commands::table::between;
 use crate::emulator::boards::Board;
 use crate::emulator::qemu::{Clock, Lockstep, Settings};
 use crate::emulator::toolchain::{Toolchain, workspace};
@@ -74,10 +75,9 @@ fn in_application(board: &'static Board, toolchain: &Toolchain) -> Result<(f32, 
 pub fn write_prices(prices: &[(&Board, Costs)]) -> Result<PathBuf> {
     let path = workspace().join("firmware/src/prices.rs");
     let old = std::fs::read_to_string(&path)?;
-    let place = old.split_once(MARKS[0]).and_then(|(head, rest)| Some((head, rest.split_once(MARKS[1])?.1)));
-    let (head, tail) = place.with_context(|| format!("{} has no place for them", path.display()))?;
     let lists: String = prices.iter().map(|(board, costs)| list(board, costs)).collect();
-    std::fs::write(&path, format!("{head}{}{lists}{}{tail}", MARKS[0], MARKS[1]))?;
+    let new = between(&old, MARKS, &lists).with_context(|| format!("{} has no place for them", path.display()))?;
+    std::fs::write(&path, new)?;
     Ok(path)
 }
 

@@ -24,7 +24,7 @@ const ANSWER: u32 = 3 * TICK_RATE;
 pub fn run(options: &DemoOptions, mut session: Session) -> anyhow::Result<bool> {
     let seconds = options.seconds.unwrap_or(DEFAULT_SECONDS);
     let name = session.source.name().to_owned();
-    let mut progress = Progress::start(&format!("running {name} for {seconds} s of its time"));
+    let progress = Progress::start(&format!("running {name} for {seconds} s of its time"));
     let ticks = (seconds * f64::from(TICK_RATE)).ceil() as u32;
     let mut last = (0, Instant::now());
     let is_over = |session: &Session| {

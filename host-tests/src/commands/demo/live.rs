@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use anyhow::ensure;
 use firmware::app::Key;
 use firmware::config::TICK_RATE;
-use firmware::protocol::{Pause, Press, Step};
+use firmware::protocol::{Choose, Pause, Press, Step};
 use firmware::scenes::SceneName;
 use ratatui::DefaultTerminal;
 use ratatui::crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
@@ -53,7 +53,7 @@ fn show(options: &DemoOptions, session: &mut Session, mut terminal: DefaultTermi
     }
 }
 
-/// Until the next screenshot is due: sends what the keys ask for. Whether the user wants to quit.
+/// Until the next screenshot is due: does what the keys ask for. Whether the user wants to quit.
 fn keys(session: &mut Session) -> anyhow::Result<bool> {
     let due = Instant::now() + PERIOD;
     loop {
@@ -65,24 +65,38 @@ fn keys(session: &mut Session) -> anyhow::Result<bool> {
             }
             continue;
         }
-        match wish(&event::read()?) {
-            Some(Wish::Quit) => return Ok(true),
-            Some(Wish::Help) => {
-                session.readings.help = !session.readings.help;
-                return Ok(false);
-            }
-            Some(Wish::Press(key)) => session.source.send(&Press { request: 0, key: key.code() })?,
-            Some(Wish::Scene(other)) => {
-                let now = session.readings.frame.and_then(|now| SceneName::from_code(now.scene));
-                now.map_or(Ok(()), |now| session.play(other(now)))?;
-            }
-            Some(Wish::Pause) => {
-                let paused = u8::from(session.readings.frame.is_some_and(|now| now.paused == 0));
-                session.source.send(&Pause { request: 0, paused })?;
-            }
-            Some(Wish::Step) => session.source.send(&Step { request: 0, ticks: 1 })?,
-            None => {}
+        match event::read()? {
+            Event::Key(KeyEvent { kind: KeyEventKind::Release, .. }) => {}
+            Event::Key(KeyEvent { code: KeyCode::Char('q') | KeyCode::Esc, .. }) => return Ok(true),
+            Event::Key(KeyEvent { code: KeyCode::Char('c'), modifiers: KeyModifiers::CONTROL, .. }) => return Ok(true),
+            Event::Key(KeyEvent { code, .. }) => obey(session, code)?,
+            _ => {}
         }
+    }
+}
+
+fn obey(Session { source, readings, .. }: &mut Session, code: KeyCode) -> anyhow::Result<()> {
+    let press = |key: Key| Press { request: 0, key: key.code() };
+    let now = readings.frame;
+    let scene = now.and_then(|now| SceneName::from_code(now.scene)).unwrap_or(SceneName::Page);
+    let choose = |scene: SceneName| Choose { request: 0, scene: scene.code() };
+    match code {
+        KeyCode::Up => source.send(&press(Key::Up)),
+        KeyCode::Down => source.send(&press(Key::Down)),
+        KeyCode::Left => source.send(&press(Key::Left)),
+        KeyCode::Right => source.send(&press(Key::Right)),
+        KeyCode::Char(' ') | KeyCode::Enter => source.send(&press(Key::Select)),
+        KeyCode::Tab | KeyCode::Char('n') => source.send(&choose(scene.next())),
+        KeyCode::BackTab | KeyCode::Char('N') => source.send(&choose(scene.previous())),
+        KeyCode::Char('p') => {
+            source.send(&Pause { request: 0, paused: u8::from(now.is_some_and(|now| now.paused == 0)) })
+        }
+        KeyCode::Char('.') => source.send(&Step { request: 0, ticks: 1 }),
+        KeyCode::Char('?') => {
+            readings.help = !readings.help;
+            Ok(())
+        }
+        _ => Ok(()),
     }
 }
 
@@ -92,36 +106,4 @@ fn finish(mut session: Session) -> anyhow::Result<bool> {
     ensure!(session.readings.frame.is_some(), "{}: no frame came", session.source.name());
     say(session.readings.report())?;
     Ok(session.readings.comparison.difference().is_none())
-}
-
-enum Wish {
-    Press(Key),
-    /// Another scene, found from the present one.
-    Scene(fn(SceneName) -> SceneName),
-    Pause,
-    Step,
-    Help,
-    Quit,
-}
-
-fn wish(event: &Event) -> Option<Wish> {
-    let Event::Key(KeyEvent { code, modifiers, kind, .. }) = event else { return None };
-    if *kind == KeyEventKind::Release {
-        return None;
-    }
-    Some(match code {
-        KeyCode::Up => Wish::Press(Key::Up),
-        KeyCode::Down => Wish::Press(Key::Down),
-        KeyCode::Left => Wish::Press(Key::Left),
-        KeyCode::Right => Wish::Press(Key::Right),
-        KeyCode::Char(' ') | KeyCode::Enter => Wish::Press(Key::Select),
-        KeyCode::Tab | KeyCode::Char('n') => Wish::Scene(SceneName::next),
-        KeyCode::BackTab | KeyCode::Char('N') => Wish::Scene(SceneName::previous),
-        KeyCode::Char('p') => Wish::Pause,
-        KeyCode::Char('.') => Wish::Step,
-        KeyCode::Char('?') => Wish::Help,
-        KeyCode::Char('q') | KeyCode::Esc => Wish::Quit,
-        KeyCode::Char('c') if modifiers.contains(KeyModifiers::CONTROL) => Wish::Quit,
-        _ => return None,
-    })
 }

@@ -66,12 +66,7 @@ impl<'a> Session<'a> {
 
     fn frame(&mut self, frame: &Frame) -> anyhow::Result<()> {
         match self.now {
-            None => {
-                self.options.scene.map_or(Ok(()), |scene| self.play_after(frame, scene))?;
-                let playing = self.options.scene.or(SceneName::from_code(frame.scene));
-                playing.map_or(Ok(()), |scene| self.options.check_method(scene))?;
-                self.go()?;
-            }
+            None => self.begin(frame)?,
             // The board counts from 0 again.
             Some(now) if (self.tick(frame).wrapping_sub(now) as i32) < 0 => {
                 self.before = now.wrapping_add(1).wrapping_sub(tick(frame));
@@ -84,6 +79,18 @@ impl<'a> Session<'a> {
             self.begun.get_or_insert(now);
         }
         if self.readings.frame(*frame) { self.source.send(&Ask { request: 0 }) } else { Ok(()) }
+    }
+
+    /// Has the board play, and in the way, what was asked for.
+    fn begin(&mut self, first: &Frame) -> anyhow::Result<()> {
+        let playing = SceneName::from_code(first.scene);
+        if let Some(scene) = self.options.scene.filter(|scene| playing != Some(*scene)) {
+            self.source.send(&Choose { request: 0, scene: scene.code() })?;
+        }
+        self.options.scene.or(playing).map_or(Ok(()), |scene| self.options.check_method(scene))?;
+        let Some(method) = self.options.method else { return Ok(()) };
+        let value = method.map_or(AUTO, |method| method_code(method).into());
+        self.source.send(&Set { request: 0, field: Field::Method.code(), value })
     }
 
     pub fn look(&mut self) -> anyhow::Result<()> {
@@ -113,25 +120,6 @@ impl<'a> Session<'a> {
     /// Ticks since the first frame of the scene that was asked for, that one included.
     pub fn ticks(&self) -> u32 {
         self.begun.zip(self.now).map_or(0, |(begun, now)| now.wrapping_sub(begun).wrapping_add(1))
-    }
-
-    /// Has the board play a scene, unless it does already.
-    pub fn play(&mut self, scene: SceneName) -> anyhow::Result<()> {
-        self.readings.frame.map_or(Ok(()), |last| self.play_after(&last, scene))
-    }
-
-    fn play_after(&mut self, last: &Frame, scene: SceneName) -> anyhow::Result<()> {
-        if last.scene == scene.code() {
-            return Ok(());
-        }
-        self.source.send(&Choose { request: 0, scene: scene.code() })
-    }
-
-    /// Has the board go the way that was asked for.
-    fn go(&mut self) -> anyhow::Result<()> {
-        let Some(method) = self.options.method else { return Ok(()) };
-        let value = method.map_or(AUTO, |method| method_code(method).into());
-        self.source.send(&Set { request: 0, field: Field::Method.code(), value })
     }
 
     /// What is not well; empty if all is. A board in the hand may drop frames, and its cable may flip bits: both are told, and

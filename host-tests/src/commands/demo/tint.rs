@@ -6,7 +6,7 @@ use ratatui::style::Color;
 const BRIGHTEST: [u32; 3] = [255, 200, 64];
 /// Of black: the panel's glass is not quite dark.
 const DARKEST: [u32; 3] = [10, 8, 4];
-const BRIGHTEST_GREY: u8 = 15;
+pub const BRIGHTEST_GREY: u8 = 15;
 /// The same among the 256 colours that terminals have in common: black, a few greys too dark to have a hue, then amber. Chosen
 /// by hand, for by distance the dark ones would come out olive and red.
 const TERMINAL: [u8; 16] = [16, 233, 234, 235, 237, 239, 94, 94, 130, 136, 136, 172, 178, 214, 214, 221];

@@ -9,9 +9,8 @@ use ratatui::style::{Color, Stylize};
 use ratatui::text::{Line, Text};
 use ratatui::widgets::{Block, Paragraph};
 
-use super::panel::Panel;
 use super::readings::{Readings, way};
-use super::{help, numbers, plot};
+use super::{help, numbers, panel, plot};
 use crate::emulator::qemu::{LogLine, Screenshot, WIDTH};
 
 /// The panel's widths, columns: a pixel each; in Braille two of them; no narrower than makes sense.
@@ -32,7 +31,7 @@ const KEYS: [&str; 8] =
 
 pub fn draw(frame: &mut Frame, board: &str, screenshot: &Screenshot, readings: &Readings, colours: bool) {
     let area = frame.area();
-    let Some(width) = panel_width(area) else {
+    let Some(width) = panel_width(area, colours) else {
         let least = (NARROWEST + GAP + numbers::NARROWEST, numbers::ROWS + WORDS);
         let text = format!("terminal too small: {} x {}\nneeded: {} x {}", area.width, area.height, least.0, least.1);
         frame.render_widget(Paragraph::new(text), area);
@@ -48,11 +47,11 @@ pub fn draw(frame: &mut Frame, board: &str, screenshot: &Screenshot, readings: &
     let [title_at, top, words_at, lower, keys_at] =
         Layout::vertical(heights.into_iter().chain([Constraint::Min(0), Constraint::Length(keys.len() as u16)]))
             .areas(area);
-    let [panel, _, side] =
+    let [panel_at, _, side] =
         Layout::horizontal([Constraint::Length(width), Constraint::Length(GAP), Constraint::Min(0)]).areas(top);
 
     frame.render_widget(Line::from(title(board, readings.frame.as_ref())).bold(), title_at);
-    frame.render_widget(Panel { screenshot, colours }, Rect { height: width / 4, ..panel });
+    panel::draw(frame, Rect { height: width / 4, ..panel_at }, screenshot);
     numbers::draw(frame, side, readings);
     frame.render_widget(Paragraph::new(words.join("\n")), words_at);
     let log = if lower.height < ANGLES { lower } else { angles(frame, lower, readings) };
@@ -96,13 +95,14 @@ pub fn has_angles(now: &Reading) -> bool {
     SceneName::from_code(now.scene).is_none_or(SceneName::has_angles)
 }
 
-/// The width of a panel of which each pixel is a character or a Braille pattern's dot; where there is no room for that the
-/// widest that keeps its shape; `None` if there is none.
-fn panel_width(area: Rect) -> Option<u16> {
+/// The width of a panel of which each pixel is half a character, which takes colours, or a Braille pattern's dot; where there is no
+/// room for that the widest that keeps its shape; `None` if there is none.
+fn panel_width(area: Rect, colours: bool) -> Option<u16> {
     let columns = area.width.checked_sub(GAP + numbers::NARROWEST)?;
     let rows = area.height.checked_sub(WORDS)?;
     let most = columns.min(4 * rows);
-    let width = [PIXELS, BRAILLE].into_iter().find(|width| *width <= most).unwrap_or(most / 4 * 4);
+    let widths = if colours { &[PIXELS, BRAILLE][..] } else { &[BRAILLE] };
+    let width = widths.iter().copied().find(|width| *width <= most).unwrap_or(most / 4 * 4);
     (width >= NARROWEST && rows >= numbers::ROWS).then_some(width)
 }
 

@@ -12,7 +12,7 @@ use std::fs;
 use anyhow::{Context, Result};
 
 use crate::console::cli::{check_writable, say};
-use crate::console::progress::Bar;
+use crate::console::progress::Progress;
 use map::{Followed, Map};
 pub use options::FlipsOptions;
 
@@ -21,7 +21,7 @@ pub fn run(options: &FlipsOptions) -> Result<()> {
     let (map, kind) = options.map()?;
     check_writable("--out", &options.out)?;
     let [width, height] = map.square.size;
-    let bar = Bar::start("starts", (width * map.square.rows()) as u64);
+    let bar = Progress::of("starts", (width * map.square.rows()) as u64);
     let points = map.points(|done| bar.advance(done as u64))?;
     drop(bar);
     let (file, out) = (kind.file(&map, &points, options.doubt)?, options.out.display());

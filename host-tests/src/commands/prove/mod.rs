@@ -1,68 +1,98 @@
-//! What is proved of a method's frames, and tables whose every line is proved: horizons, and known answers.
+//! `cargo prove`: until when the frames of a chip are right, as a theorem.
 
 mod horizon;
+mod tables;
 
-use anyhow::{Context, Result};
-use clap::Parser;
-use firmware::scenes::SceneName;
+pub use tables::{HEADING, horizons, known_answers, moving};
+
+use std::process::ExitCode;
+use std::sync::atomic::Ordering;
+
+use clap::{Parser, value_parser};
+use double_pendulum::Method;
+use double_pendulum::plan::{Plan, Way};
+
+use crate::commands::plan::SceneOptions;
+use crate::console::cli::{Refused, choice, say};
+use crate::console::progress::Progress;
+use crate::emulator::process::{interrupted, interrupted_by};
+use crate::oracle::known_answers;
+use horizon::{frames, words};
 use reference::enclosure::Start;
 
-use crate::commands::plan::{M3, M4F, PICO, SceneOptions};
-use crate::commands::simulate::Number;
-use crate::oracle::known_answers::KnownAnswer;
-use horizon::counts;
-pub use horizon::{Verdict, frames, words};
+const EXAMPLES: &str = "Examples:
+  cargo prove --scene page
+  cargo prove --angles 120,120 --degrees --method rk4-f32-direction --steps 4
 
-/// The scenes that move, if only in the end.
-pub fn moving() -> impl Iterator<Item = &'static SceneName> {
-    SceneName::ALL.iter().filter(|name| name.has_angles() && **name != SceneName::Upright)
+Ctrl-C leaves what is proved until then.";
+
+/// Proves until when the frames that a chip draws are right to half a pixel: encloses the exact motion, rounding errors and
+/// all, and holds each frame of the planned method, which is bit-identical on every chip, against it.
+///
+/// The motion is that of the decimals and fractions given; with --scene it is that of the board's own numbers.
+#[derive(Debug, Parser)]
+#[command(name = "cargo prove", after_help = EXAMPLES)]
+pub struct ProveOptions {
+    /// What moves, and who draws it.
+    #[command(flatten)]
+    scene: SceneOptions,
+    /// Draws by this method in place of the planned one
+    #[arg(long, value_name = "NAME", value_parser = choice(Method::DRAWN.iter().copied(), Method::name))]
+    method: Option<Method>,
+    /// Its steps to a frame
+    #[arg(long, value_name = "N", requires = "method", default_value_t = 1, value_parser = value_parser!(u32).range(1..=65_536))]
+    steps: u32,
+    /// Prints the box that the exact motion is in at each frame, and the frame's verdict, as CSV
+    #[arg(long)]
+    csv: bool,
+    /// Prints the horizons of all scenes on all chips, predicted and proved, as a table
+    #[arg(long, conflicts_with_all = ["scene", "method", "csv"])]
+    table: bool,
+    /// Prints the table of known answers in host-tests/data anew, every digit of it proved
+    #[arg(long, conflicts_with_all = ["scene", "method", "csv", "table"])]
+    known_answers: bool,
 }
 
-/// The heading of the table of horizons.
-pub const HEADING: &str = "\
-| scene | M3: plan | proved | M4F: plan | proved | M0+: plan | proved | open |
-| --- | --- | --- | --- | --- | --- | --- | --- |";
-
-/// Its line of one scene: predicted and proved.
-pub fn horizons(name: SceneName) -> Result<String> {
-    let (mut cells, mut unproved) = (vec![name.name().to_owned()], 0);
-    for chip in [M3, M4F, PICO] {
-        let words = ["plan", "--scene", name.name(), "--target", chip.name];
-        let (scene, plan) = SceneOptions::try_parse_from(words)?.plan()?;
-        cells.extend(match plan {
-            Err(_) => ["none", "none"].map(String::from),
-            Ok(plan) => {
-                let start = Start::of(&scene.pendulum, &scene.start);
-                let (right, open) = counts(&frames(&scene, &start, plan.way())?.collect::<Vec<_>>());
-                unproved += open;
-                [plan.horizon, scene.time(right)].map(|time| format!("{time:.2}"))
-            }
-        });
-    }
-    Ok(format!("| {} | {unproved} |", cells.join(" | ")))
-}
-
-/// Frames per second: the known answers' times are whole seconds.
-const RATE: u16 = 64;
-/// The most digits written of them.
-const DIGITS: f64 = 33.0;
-
-/// The known answers of one scene, a line each, made anew from what is given. Each number is off by at most two units of its last digit,
-/// but for how many times larger a small error has become, which is about.
-pub fn known_answers(scene: &[KnownAnswer]) -> Result<Vec<String>> {
-    let exact = |text: &str| text.parse::<Number>().ok()?.exact();
-    let fractions = scene[0].given.split(',').skip(1).take(9).map(exact).collect::<Option<Vec<_>>>();
-    let fractions = fractions.and_then(|all| all.try_into().ok()).context("more digits than can be enclosed")?;
-    let about = (scene[0].parameters(), scene[0].start());
-    let mut set = Start { about, fractions: Some(fractions), degrees: [true, false] }.enclose(RATE);
-    let mut frame = 0;
-    let line = |row: &KnownAnswer| {
-        while f64::from(frame) < row.time * f64::from(RATE) {
-            set.advance().context("the set has grown too large to be followed")?;
-            frame += 1;
+pub fn run(options: &ProveOptions) -> anyhow::Result<ExitCode> {
+    if options.table {
+        say(HEADING)?;
+        for &name in moving() {
+            say(horizons(name)?)?;
         }
-        let exact = set.directions().as_flattened().iter().map(|x| x.decimal(DIGITS)).collect::<Vec<_>>().join(",");
-        Ok(format!("{},{exact},{:.2e}", row.given, set.growth()))
+        return Ok(ExitCode::SUCCESS);
+    }
+    if options.known_answers {
+        say(known_answers::HEADING)?;
+        for scene in known_answers::table()?.chunk_by(|one, next| one.scene == next.scene) {
+            tables::known_answers(scene)?.iter().try_for_each(say)?;
+        }
+        return Ok(ExitCode::SUCCESS);
+    }
+    let (scene, plan) = options.scene.plan().map_err(Refused::because)?;
+    let given = || options.scene.start.exact().ok_or("of a number, 18 digits at most can be enclosed");
+    let of_board = options.scene.scene.map(|_| Start::of(&scene.pendulum, &scene.start));
+    let start = of_board.map_or_else(given, Ok).map_err(Refused::because)?;
+    let asked = options.method.map(|method| Way { method, steps: options.steps });
+    let Some(way) = asked.or(plan.as_ref().ok().map(Plan::way)) else {
+        say("nothing that the chip can afford is right in any frame")?;
+        return Ok(ExitCode::SUCCESS);
     };
-    scene.iter().map(line).collect()
+    let stopped = interrupted()?;
+    if options.csv {
+        say("t,sin_a1,cos_a1,sin_a2,cos_a2,radius,verdict")?;
+    }
+    let (bar, mut proved) = (Progress::of("proving", scene.frames().into()), Vec::new());
+    let frames = frames(&scene, &start, way).map_err(Refused::because)?;
+    for frame in frames.take_while(|_| stopped.load(Ordering::Relaxed) == 0) {
+        bar.advance(1);
+        proved.push(frame);
+        if options.csv {
+            say(frame.row(scene.time(proved.len() as u32)))?;
+        }
+    }
+    drop(bar);
+    if !options.csv {
+        say(words(&scene, &plan, way, &proved))?;
+    }
+    Ok(interrupted_by(stopped.load(Ordering::Relaxed)))
 }

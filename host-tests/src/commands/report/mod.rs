@@ -1,4 +1,4 @@
-//! `cargo write-report`: every method's cost on the target against its error, as CSV files and charts.
+//! `cargo write-report`: every method's cost on the target against its error, as CSV and charts.
 //!
 //! Costs are counted on the emulated targets, errors are computed on the host, which is allowed because the bits are the
 //! same (test `identity`). Nothing is timed, so two runs write the same files.
@@ -6,54 +6,69 @@
 pub mod accuracy;
 mod c_peers;
 mod chart;
-mod frames;
 pub mod join;
 mod readme;
 pub mod scene;
 
 use std::fs;
-use std::path::Path;
+use std::path::PathBuf;
 
-use anyhow::{Context, Result};
-use firmware::scenes::SceneName;
+use anyhow::{Context, Result, ensure};
+use clap::Parser;
 
 use crate::commands::count::Target;
-use crate::console::progress::Bar;
-use crate::emulator::boards::BOARDS;
-use crate::emulator::toolchain::Toolchain;
-pub use readme::Blocks;
+use crate::console::cli::{Refused, say};
+use crate::console::progress::Progress;
+use crate::emulator::toolchain;
 use scene::{LONG, SCENES, Scene};
 
-/// Computes the report and writes it into `folder`, costs on one board for each kind of core.
-///
-/// All of it takes an hour; `quick`, some minutes: the first two scenes, and of frames a Cortex-M3's and a Cortex-M4F's. Gives what
-/// the READMEs show of it, and what had to be left out, a line each.
-pub fn write(quick: bool, toolchain: &Toolchain, folder: &Path, bar: &Bar) -> Result<(Blocks, Vec<String>)> {
-    let [scenes, boards] = if quick { [2, 2] } else { [SCENES.len(), BOARDS.len()] };
-    let targets = Target::build_all(toolchain)?;
-    let scenes: Vec<&'static Scene> = SCENES.iter().take(scenes).chain([&LONG]).collect();
-    let runs = join::methods().count() * (scenes.len() + targets.len()) + boards * SceneName::ALL.len();
-    bar.set_length(runs as u64);
-    let tick = || bar.advance(1);
+/// Measures every method's cost on the target and its error, and writes them as CSV and as charts.
+#[derive(Debug, Parser)]
+#[command(name = "cargo write-report", after_help = "Example: cargo write-report --quick --folder /tmp/report")]
+pub struct ReportOptions {
+    /// Two scenes, in some minutes; all take an hour
+    #[arg(long)]
+    quick: bool,
+    /// Puts what to take, the main table and the charts into the READMEs
+    #[arg(long)]
+    readme: bool,
+    /// Where to write [default: host-tests/report of the project]
+    #[arg(long)]
+    folder: Option<PathBuf>,
+}
+
+pub fn run(options: &ReportOptions) -> Result<()> {
+    let (toolchain, _) = toolchain::set_up()?;
+    let folder = options.folder.clone().unwrap_or_else(|| toolchain::workspace().join("host-tests/report"));
+    let created = fs::create_dir_all(&folder);
+    created.map_err(|error| Refused::because(format_args!("--folder: cannot write {}: {error}", folder.display())))?;
     let save = |name: &str, text: &str| {
         let path = folder.join(name);
         fs::write(&path, text).with_context(|| format!("cannot write {}", path.display()))
     };
-    bar.say("comparing with the reference, counting");
-    let (mut points, absent) = join::join(toolchain, &targets, &scenes, &tick)?;
+    let targets = Target::build_all(&toolchain)?;
+    let scenes = &SCENES[..if options.quick { 2 } else { SCENES.len() }];
+    let all: Vec<&'static Scene> = scenes.iter().chain([&LONG]).collect();
+    let bar = Progress::of("comparing and counting", (join::methods().count() * (all.len() + targets.len())) as u64);
+    let (mut points, absent) = join::join(&toolchain, &targets, &all, &|| bar.advance(1))?;
+    drop(bar);
     join::mark_dominated(&mut points);
     save("speed-against-error.csv", &join::table(&points).csv())?;
     let mut charts = Vec::new();
-    for scene in scenes.into_iter().filter(|scene| **scene != LONG) {
-        for target in &targets {
-            let name = format!("{}-{}.svg", scene.name, target.board.cpu);
-            let svg = chart::speed_against_error(&points, scene, target.board)?;
-            save(&name, &svg)?;
-            charts.push((name, svg));
-        }
+    for (scene, target) in scenes.iter().flat_map(|scene| targets.iter().map(move |target| (scene, target))) {
+        let name = format!("{}-{}.svg", scene.name, target.board.cpu);
+        let svg = chart::speed_against_error(&points, scene, target.board)?;
+        save(&name, &svg)?;
+        charts.push((name, svg));
     }
-    bar.say("counting frames");
-    save("frames.csv", &frames::count(toolchain, boards, &tick)?.csv())?;
-    charts.retain(|(name, _)| name.starts_with(SCENES[0].name));
-    Ok((Blocks::new(&points, charts), absent))
+    let advice = readme::advice(&points);
+    absent.iter().chain(&advice).try_for_each(say)?;
+    let block = |rows| readme::block(&advice, &points, rows);
+    if options.readme {
+        ensure!(absent.is_empty(), "the READMEs keep their figures: some are missing in these");
+        readme::put(block, charts.iter().filter(|(name, _)| name.starts_with(SCENES[0].name)))?;
+    } else if !readme::has(block)? {
+        say("the READMEs show other figures; cargo write-report --readme puts these there")?;
+    }
+    Ok(say(folder.display())?)
 }

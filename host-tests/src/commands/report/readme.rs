@@ -2,12 +2,12 @@
 
 use std::fs;
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result};
 
 use super::c_peers::PROGRAMS;
 use super::join::Point;
 use super::scene::{LONG, SCENES, Scene};
-use crate::commands::table::{Table, small};
+use crate::commands::table::{Table, between, small};
 use crate::emulator::boards::{BOARDS, Board};
 use crate::emulator::toolchain::workspace;
 
@@ -39,51 +39,35 @@ const PURPOSES: [Purpose; 3] = [
     ("keeps 1e-12 rad", |point| point.error.angle <= 1e-12),
 ];
 
-/// What is machine-made in the READMEs.
-#[derive(Clone, Debug)]
-pub struct Blocks {
-    /// What to take on each core through a regular and a chaotic motion, a sentence each, in Markdown.
-    pub advice: Vec<String>,
-    table: Table,
-    charts: Vec<(String, String)>,
+/// Whether the READMEs show the `block` of as many rows.
+pub fn has(block: impl Fn(usize) -> String) -> Result<bool> {
+    let shown = READMES.map(|(file, rows)| Ok(read(file)?.contains(&block(rows))));
+    shown.into_iter().try_fold(true, |all, shown: Result<bool>| Ok(all && shown?))
 }
 
-impl Blocks {
-    /// Of all points; `charts` are of the regular scene.
-    pub fn new(points: &[Point], charts: Vec<(String, String)>) -> Self {
-        Self { advice: advice(points), table: table(points), charts }
+/// Puts it there, and the charts beside them.
+pub fn put<'a>(block: impl Fn(usize) -> String, charts: impl Iterator<Item = &'a (String, String)>) -> Result<()> {
+    for (file, rows) in READMES {
+        let page = between(&read(file)?, MARKS, &format!("\n{}\n", block(rows)));
+        fs::write(workspace().join(file), page.with_context(|| format!("{file} has no place for it"))?)?;
     }
+    fs::create_dir_all(workspace().join(CHARTS))?;
+    charts.into_iter().try_for_each(|(name, svg)| Ok(fs::write(workspace().join(CHARTS).join(name), svg)?))
+}
 
-    pub fn is_in_readmes(&self) -> Result<bool> {
-        let shown = READMES.map(|(file, rows)| Ok(read(file)?.contains(&self.block(rows))));
-        shown.into_iter().try_fold(true, |all, shown: Result<bool>| Ok(all && shown?))
-    }
-
-    pub fn put_into_readmes(&self) -> Result<()> {
-        for (file, rows) in READMES {
-            fs::write(workspace().join(file), with_block(&read(file)?, &self.block(rows))?)?;
-        }
-        fs::create_dir_all(workspace().join(CHARTS))?;
-        self.charts.iter().try_for_each(|(name, svg)| Ok(fs::write(workspace().join(CHARTS).join(name), svg)?))
-    }
-
-    /// The advice as a list, and the first rows of the table.
-    fn block(&self, rows: usize) -> String {
-        let items: String = self.advice.iter().map(|sentence| format!("- {sentence}\n")).collect();
-        let rows = self.table.rows.iter().take(rows).cloned().collect();
-        format!("{items}\n{}", Table { rows, ..self.table.clone() }.markdown_rows())
-    }
+/// The advice as a list, and the first rows of the table.
+pub fn block(advice: &[String], points: &[Point], rows: usize) -> String {
+    let items: String = advice.iter().map(|sentence| format!("- {sentence}\n")).collect();
+    format!("{items}\n{}", table(points, &ROWS[..rows]).markdown_rows())
 }
 
 fn read(file: &str) -> Result<String> {
     fs::read_to_string(workspace().join(file)).with_context(|| format!("no {file}"))
 }
 
-fn boards(points: &[Point]) -> impl Iterator<Item = &'static Board> {
-    BOARDS.iter().filter(|board| points.iter().any(|point| point.board == *board))
-}
-
-fn advice(points: &[Point]) -> Vec<String> {
+/// What to take on each core through a regular and a chaotic motion, a sentence each, in Markdown.
+pub fn advice(points: &[Point]) -> Vec<String> {
+    let boards = BOARDS.iter().filter(|board| points.iter().any(|point| point.board == *board));
     let sentence = |board: &Board, scene: &Scene| {
         let of = points.iter().filter(|point| point.scene == scene && point.board == board);
         let parts = PURPOSES.map(|(words, serves)| {
@@ -95,7 +79,7 @@ fn advice(points: &[Point]) -> Vec<String> {
         });
         format!("{}, {} motion, cycles a second: {}.", board.core().name(), scene.name, parts.join("; "))
     };
-    boards(points).flat_map(|board| [&SCENES[0], &SCENES[1]].map(|scene| sentence(board, scene))).collect()
+    boards.flat_map(|board| [&SCENES[0], &SCENES[1]].map(|scene| sentence(board, scene))).collect()
 }
 
 /// To three digits, in thousands.
@@ -108,7 +92,7 @@ fn thousands(cycles: f64) -> String {
 }
 
 /// Cycles of a step and errors through the regular scene and the long one.
-fn table(points: &[Point]) -> Table {
+fn table(points: &[Point], names: &[&str]) -> Table {
     let row = |&name: &&str| {
         let long = points.iter().find(|point| point.name == name && point.scene == &LONG)?;
         let same = points.iter().filter(|point| point.name == name && point.rate == long.rate);
@@ -128,33 +112,13 @@ fn table(points: &[Point]) -> Table {
         "error in 10 s (rad)",
         "error in 100 s (rad)",
     ];
-    Table { columns, rows: ROWS.iter().filter_map(row).collect(), ..Table::default() }
-}
-
-fn with_block(readme: &str, block: &str) -> Result<String> {
-    let places = MARKS.map(|mark| readme.find(mark));
-    ensure!(
-        matches!(places, [Some(start), Some(end)] if start < end),
-        "a README has no place for what is machine-made"
-    );
-    let [start, end] = places.map(Option::unwrap_or_default);
-    Ok(format!("{}\n{block}\n{}", &readme[..start + MARKS[0].len()], &readme[end..]))
+    Table { columns, rows: names.iter().filter_map(row).collect(), ..Table::default() }
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::join::tests::point;
     use super::*;
-
-    #[test]
-    fn a_block_replaces_the_one_between_the_marks() -> Result<()> {
-        let old = format!("before\n{}old\n{}after\n", MARKS[0], MARKS[1]);
-        let new = with_block(&old, "- take a\n")?;
-        assert_eq!(new, format!("before\n{}\n- take a\n\n{}after\n", MARKS[0], MARKS[1]));
-        assert_eq!(with_block(&new, "- take a\n")?, new);
-        assert!(with_block("no marks", "").is_err());
-        Ok(())
-    }
 
     #[test]
     fn a_sentence_has_25_words_at_most_and_names_the_cheapest() {

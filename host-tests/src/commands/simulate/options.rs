@@ -3,7 +3,8 @@
 use clap::{ArgAction, Parser};
 use double_pendulum::Method;
 
-use super::{COLUMNS, Column, Number, StartOptions};
+use super::table::{COLUMNS, Column};
+use super::{Number, StartOptions};
 use crate::console::cli::choice;
 use crate::emulator::boards::{BOARDS, Board};
 
@@ -60,7 +61,7 @@ pub struct SimulateOptions {
     pub place: Place,
     /// The columns, of t, a1, a2, p1, p2, w1, w2, energy, and x1, y1, x2, y2 of the bobs from the pivot, y upwards
     #[arg(long, value_name = "NAMES", value_delimiter = ',', default_value = "t,a1,a2,p1,p2,w1,w2,energy",
-          value_parser = choice(COLUMNS, |column| column.name), hide_possible_values = true)]
+          value_parser = choice(COLUMNS, |(name, ..)| name), hide_possible_values = true)]
     pub columns: Vec<Column>,
     /// What the first line says: the names of the columns, or their units as well
     #[arg(long = "header", value_name = "KIND", default_value = "names", action = ArgAction::Set,

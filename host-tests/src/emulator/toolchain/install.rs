@@ -108,6 +108,6 @@ pub(super) fn attempt(command: &mut Command, limit: Duration, doing: &str) -> Re
 
 /// Runs a command to its end, within the limit, and shows meanwhile what is being done.
 pub(super) fn run_shown(command: &mut Command, limit: Duration, doing: &str) -> io::Result<Output> {
-    let mut progress = Progress::start(doing);
+    let progress = Progress::start(doing);
     run_watched(command, limit, |line| progress.alive(line))
 }

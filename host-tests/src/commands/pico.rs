@@ -3,15 +3,14 @@
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
+use crate::console::cli::say;
+use crate::emulator::boards::PICO;
+use crate::emulator::flash::flash_image;
+use crate::emulator::toolchain::{self, target};
+use crate::emulator::uf2::uf2;
 use anyhow::Context;
 use clap::Parser;
-use host_tests::console::cli::{self, say};
-use host_tests::emulator::boards::PICO;
-use host_tests::emulator::flash::flash_image;
-use host_tests::emulator::toolchain::{self, target};
-use host_tests::emulator::uf2::uf2;
 
 /// The file, and the one by which a board's drive says whose it is.
 const FILE: &str = "pico.uf2";
@@ -22,17 +21,13 @@ const OURS: &str = "Board-ID: RPI-RP2";
 /// Builds the firmware of the Raspberry Pi Pico as a file, and copies it onto the board if that shows itself as a drive.
 #[derive(Debug, Parser)]
 #[command(name = "cargo pico", after_help = "Example: cargo pico --drive /media/$USER/RPI-RP2")]
-struct Arguments {
+pub struct PicoOptions {
     /// The board's drive, which is there when BOOTSEL is held while the cable goes in [default: looked for]
     #[arg(long, value_name = "FOLDER", value_parser = drive)]
     drive: Option<PathBuf>,
 }
 
-fn main() -> ExitCode {
-    cli::main(make)
-}
-
-fn make(arguments: &Arguments) -> anyhow::Result<()> {
+pub fn run(options: &PicoOptions) -> anyhow::Result<()> {
     let (toolchain, _) = toolchain::set_up()?;
     let elf = fs::read(toolchain.build_for(&PICO)?)?;
     let (start, image) = flash_image(&elf)?;
@@ -40,7 +35,7 @@ fn make(arguments: &Arguments) -> anyhow::Result<()> {
     let blocks = uf2(start, &image);
     fs::write(&file, &blocks).with_context(|| file.display().to_string())?;
     say(format_args!("{}: {} bytes of flash", file.display(), image.len()))?;
-    let Some(drive) = arguments.drive.clone().or_else(|| mounted(&fs::read_to_string("/proc/mounts").ok()?)) else {
+    let Some(drive) = options.drive.clone().or_else(|| mounted(&fs::read_to_string("/proc/mounts").ok()?)) else {
         say(
             "hold BOOTSEL while you plug the Pico in, then copy this file onto the drive RPI-RP2; it starts by itself",
         )?;

@@ -1,21 +1,20 @@
 //! `cargo count`: what each method costs on the target, per step; or any function of any program, per call.
 
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 use std::time::Duration;
 
 use anyhow::{bail, ensure};
 use clap::Parser;
 use double_pendulum::{Method, Parameters};
 use firmware::job::Request;
-use host_tests::commands::count::{
-    CallCosts, ERROR_BAR, FULL_CYCLE, Profile, StepCost, Target, affordable_cost, affordable_steps, calls_of, prices,
-    step_cost, write_prices,
-};
-use host_tests::console::cli::{self, Refused, complain, say};
-use host_tests::emulator::boards::{BOARDS, Board};
-use host_tests::emulator::toolchain::{self, Toolchain};
 use rayon::prelude::*;
+
+use super::prices::{prices, write_prices};
+use super::{Calls, Cost, ERROR_BAR, FULL_CYCLE, StepCost, Target};
+use super::{affordable_cost, affordable_steps, calls_of, step_cost};
+use crate::console::cli::{self, Refused, complain, say};
+use crate::emulator::boards::{BOARDS, Board};
+use crate::emulator::toolchain::{self, Toolchain};
 
 /// As in the report's regular scene, with which the figures here agree.
 const GRAVITY: f32 = 9.81;
@@ -34,7 +33,7 @@ each argument. What the program prints, and how it ended, goes to stderr. If it 
 /// Counts executed instructions (exact) and Cortex-M cycles (an estimate from the published instruction timings).
 #[derive(Debug, Parser)]
 #[command(name = "cargo count", after_help = EXAMPLES)]
-struct Arguments {
+pub struct CountOptions {
     /// Only methods whose name contains this
     #[arg(default_value = "")]
     method: String,
@@ -75,37 +74,32 @@ struct Arguments {
     write_prices: bool,
 }
 
-fn main() -> ExitCode {
-    cli::main(run)
-}
-
-fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    if let (Some(elf), Some(function)) = (&arguments.elf, &arguments.function) {
-        let (toolchain, _) = toolchain::set_up()?;
-        return count_calls(&toolchain, arguments, elf, function);
+pub fn run(options: &CountOptions) -> anyhow::Result<()> {
+    if let (Some(elf), Some(function)) = (&options.elf, &options.function) {
+        return count_calls(&toolchain::set_up()?.0, options, elf, function);
     }
-    if arguments.write_prices {
+    if options.write_prices {
         let (toolchain, _) = toolchain::set_up()?;
         return Ok(say(write_prices(&prices(&toolchain)?)?.display())?);
     }
-    let requests = arguments.requests().map_err(Refused::because)?;
-    let boards = if arguments.on.is_empty() { vec![&BOARDS[0]] } else { arguments.on.clone() };
+    let requests = options.requests().map_err(Refused::because)?;
+    let boards = if options.on.is_empty() { vec![&BOARDS[0]] } else { options.on.clone() };
     let (toolchain, _) = toolchain::set_up()?;
-    if !arguments.listing {
-        say(arguments.setting())?;
+    if !options.listing {
+        say(options.setting())?;
         say(ERROR_BAR)?;
         say(columns(ROW.map(|(title, _)| title.to_owned())))?;
     }
     for board in boards {
         let target = Target::build(&toolchain, board)?;
-        if arguments.listing {
-            requests.iter().try_for_each(|request| list(&target, request, arguments.steps))?;
+        if options.listing {
+            requests.iter().try_for_each(|request| list(&target, request, options.steps))?;
             continue;
         }
         // Some at a time, so that the first rows come soon.
         for requests in requests.chunks(rayon::current_num_threads()) {
             let rows = requests.par_iter().map(|request| {
-                let given = arguments.steps.map(|stride| Request { stride, ..*request });
+                let given = options.steps.map(|stride| Request { stride, ..*request });
                 let cost = given.map_or_else(|| affordable_cost(&target, request), |given| step_cost(&target, &given));
                 Ok(row(request.method, board, &cost?))
             });
@@ -115,29 +109,12 @@ fn run(arguments: &Arguments) -> anyhow::Result<()> {
     Ok(())
 }
 
-impl Arguments {
+impl CountOptions {
     /// What is asked for of each method with this in its name, but of those that refuse such a pendulum, which the host
     /// finds out before anything is built or printed; one at least.
     fn requests(&self) -> anyhow::Result<Vec<Request>> {
-        let methods: Vec<_> =
-            Method::ALL.iter().copied().filter(|method| method.name().contains(&self.method)).collect();
-        if methods.is_empty() {
-            let names = Method::ALL.iter().map(|method| method.name()).collect::<Vec<_>>().join(", ");
-            bail!("no method '{}'; there are {names}", self.method);
-        }
-        let request = |method| self.request(method);
-        let started =
-            methods.into_iter().map(|method| Request { stride: 1, ..request(method) }.crc().map(|_| request(method)));
-        let (accepted, refused): (Vec<_>, Vec<_>) = started.partition(Result::is_ok);
-        match refused.into_iter().find_map(Result::err) {
-            Some(error) if accepted.is_empty() => Err(error.into()),
-            _ => Ok(accepted.into_iter().flatten().collect()),
-        }
-    }
-
-    fn request(&self, method: Method) -> Request {
         let Self { m2, l2, angle, .. } = *self;
-        Request {
+        let request = |method| Request {
             method,
             parameters: Parameters { m1: 1.0, m2, l1: 1.0, l2, g: GRAVITY.into() },
             angles: [angle; 2],
@@ -145,6 +122,22 @@ impl Arguments {
             dt: f64::powi(0.5, self.halvings.into()),
             stride: FULL_CYCLE,
             samples: 1,
+        };
+        let (mut accepted, mut refused) = (Vec::new(), None);
+        for request in Method::ALL.iter().filter(|method| method.name().contains(&self.method)).map(|&one| request(one))
+        {
+            match (Request { stride: 1, ..request }).crc() {
+                Ok(_) => accepted.push(request),
+                Err(error) => drop(refused.get_or_insert(error)),
+            }
+        }
+        match refused {
+            _ if !accepted.is_empty() => Ok(accepted),
+            Some(error) => Err(error.into()),
+            None => {
+                let names = Method::ALL.iter().map(|method| method.name()).collect::<Vec<_>>().join(", ");
+                bail!("no method '{}'; there are {names}", self.method)
+            }
         }
     }
 
@@ -183,33 +176,31 @@ fn row(method: Method, board: &Board, cost: &StepCost) -> String {
 
 /// Every instruction with its share of a step: address, executions, cycles, stalls, kind.
 fn list(target: &Target, request: &Request, steps: Option<u32>) -> anyhow::Result<()> {
-    let image = target.image();
     let stride = steps.map_or_else(|| affordable_steps(target, request), Ok)?;
-    let profile = Profile::of(target, &Request { stride, ..*request })?;
+    let calls = Calls::counted(target, &Request { stride, ..*request })?;
     say(format_args!("{} on {}: per step, executions, cycles (estimate), stalls", request.method, target.board.name))?;
     say(ERROR_BAR)?;
     let mut function = None;
-    for (address, spot) in profile.spots() {
-        let inside = image.function_at(address);
+    for (address, (instruction, Cost { instructions, cycles, stalls })) in calls.spots {
+        let inside = target.image().function_at(address);
         if inside != function {
             function = inside;
             say(format_args!("{}:", inside.map_or("?", |function| &function.name)))?;
         }
-        let per_step = |total: u64| total as f64 / f64::from(stride);
-        let [executions, cycles, stalls] = [spot.cost.instructions, spot.cost.cycles, spot.cost.stalls].map(per_step);
-        say(format_args!("{address:8x} {executions:9.2} {cycles:9.2} {stalls:7.2}  {}", spot.instruction.row.name))?;
+        let [executions, cycles, stalls] = [instructions, cycles, stalls].map(|all| all as f64 / f64::from(stride));
+        say(format_args!("{address:8x} {executions:9.2} {cycles:9.2} {stalls:7.2}  {}", instruction.row.name))?;
     }
     Ok(())
 }
 
 /// What a function of any program costs, per call.
-fn count_calls(toolchain: &Toolchain, arguments: &Arguments, elf: &Path, function: &str) -> anyhow::Result<()> {
-    let board = arguments.on.first().copied().unwrap_or(&BOARDS[1]);
-    let target = Target::of(toolchain, board, elf.to_owned());
-    let target = target.map_err(|error| Refused::because(format_args!("{error:#}")))?;
-    let limit = Duration::from_secs(arguments.seconds.into());
-    let costs = calls_of(&target, function, limit).map_err(|error| Refused::because(format_args!("{error:#}")))?;
-    let (CallCosts { function, calls, ended }, number) = (&costs, costs.calls.len());
+fn count_calls(toolchain: &Toolchain, options: &CountOptions, elf: &Path, function: &str) -> anyhow::Result<()> {
+    let refused = |error: anyhow::Error| Refused::because(format_args!("{error:#}"));
+    let board = options.on.first().copied().unwrap_or(&BOARDS[1]);
+    let target = Target::of(toolchain, board, elf.to_owned()).map_err(refused)?;
+    let limit = Duration::from_secs(options.seconds.into());
+    let (function, calls, ended) = calls_of(&target, function, limit).map_err(refused)?;
+    let number = calls.len();
     if let Some(status) = ended.status {
         ensure!(status.success(), "the program failed after {number} calls, {status}: {}", ended.output.trim());
     }
@@ -221,11 +212,12 @@ fn count_calls(toolchain: &Toolchain, arguments: &Arguments, elf: &Path, functio
     say(format_args!("{} on {}, from its first instruction to its return: calls {number}", function.name, board.name))?;
     say(ERROR_BAR)?;
     say(format_args!("{:12} {:>12} {:>12} {:>12}", "per call", "mean", "least", "most"))?;
-    let instructions = calls.iter().map(|cost| cost.instructions).collect();
-    let cycles: Vec<u64> = calls.iter().map(|cost| cost.cycles).collect();
-    for (title, counts) in [("instructions", instructions), ("cycles", cycles)] {
-        let (least, most) = (counts.iter().min().unwrap_or(&0), counts.iter().max().unwrap_or(&0));
-        let mean = counts.iter().sum::<u64>() as f64 / number as f64;
+    let rows: [(&str, fn(&Cost) -> u64); 2] =
+        [("instructions", |cost| cost.instructions), ("cycles", |cost| cost.cycles)];
+    for (title, count) in rows {
+        let counts = || calls.iter().map(count);
+        let (least, most) = (counts().min().unwrap_or(0), counts().max().unwrap_or(0));
+        let mean = counts().sum::<u64>() as f64 / number as f64;
         say(format_args!("{title:12} {mean:12.1} {least:12} {most:12}"))?;
     }
     Ok(())

@@ -2,16 +2,16 @@
 
 use std::io;
 use std::os::unix::process::CommandExt;
-use std::process::{Command, ExitCode};
+use std::process::Command;
 use std::time::Duration;
 
+use crate::console::cli::{Refused, complain};
+use crate::emulator::boards::STM32F405;
+use crate::emulator::flash::flash_image;
+use crate::emulator::process;
+use crate::emulator::toolchain;
 use anyhow::{Context, bail};
 use clap::Parser;
-use host_tests::console::cli::{self, Refused, complain};
-use host_tests::emulator::boards::STM32F405;
-use host_tests::emulator::flash::flash_image;
-use host_tests::emulator::process;
-use host_tests::emulator::toolchain;
 
 /// For the program that flashes to say its version.
 const LIMIT: Duration = Duration::from_secs(30);
@@ -24,7 +24,7 @@ const CHIPS: [&str; 4] = ["STM32F405", "STM32F407", "STM32F415", "STM32F417"];
     name = "cargo flash-f4",
     after_help = "Examples:\n  cargo flash-f4 --chip STM32F407VGTx\n  cargo flash-f4 --dfu    (BOOT0 at 3.3 V, then reset: the chip waits at its USB port; afterwards the wire off, then reset)"
 )]
-struct Arguments {
+pub struct FlashOptions {
     /// The chip, by probe-rs's name: an STM32F405 or F407
     #[arg(long, default_value = "STM32F405RGTx", value_parser = chip)]
     chip: String,
@@ -39,12 +39,8 @@ fn chip(name: &str) -> Result<String, String> {
     if is_it { Ok(name.to_owned()) } else { Err(format!("the firmware is for {}", CHIPS.join(", "))) }
 }
 
-fn main() -> ExitCode {
-    cli::main(flash)
-}
-
-fn flash(arguments: &Arguments) -> anyhow::Result<()> {
-    let (program, source) = if arguments.dfu {
+pub fn run(options: &FlashOptions) -> anyhow::Result<()> {
+    let (program, source) = if options.dfu {
         ("dfu-util", "https://dfu-util.sourceforge.net, in Debian: apt-get install dfu-util")
     } else {
         ("probe-rs", "https://probe.rs/docs/getting-started/installation")
@@ -56,7 +52,7 @@ fn flash(arguments: &Arguments) -> anyhow::Result<()> {
     })?;
     let elf = toolchain::ready()?.build_for(&STM32F405)?;
     let mut command = Command::new(program);
-    if arguments.dfu {
+    if options.dfu {
         let (start, image) = flash_image(&std::fs::read(&elf)?)?;
         let file = elf.with_extension("bin");
         std::fs::write(&file, image).with_context(|| file.display().to_string())?;
@@ -64,7 +60,7 @@ fn flash(arguments: &Arguments) -> anyhow::Result<()> {
         command.args(["-d", "0483:df11", "-a", "0", "-s", &format!("{start:#010x}:leave"), "-D"]).arg(file);
         complain(format_args!("{command:?}"));
     } else {
-        command.args(["run", "--chip", &arguments.chip]).arg(elf);
+        command.args(["run", "--chip", &options.chip]).arg(elf);
     }
     // It takes the place of this process, so that the terminal, Ctrl-C and the exit code are its own.
     let error = command.exec();

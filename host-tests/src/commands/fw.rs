@@ -6,14 +6,14 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
 
+use crate::console::cli::{Refused, complain};
+use crate::emulator::boards::BOARDS;
+use crate::emulator::firmware_run::{self, board_for};
+use crate::emulator::process;
+use crate::emulator::qemu::{Clock, Settings};
+use crate::emulator::toolchain::{self, Toolchain};
 use anyhow::bail;
 use clap::Parser;
-use host_tests::console::cli::{self, Refused, complain};
-use host_tests::emulator::boards::BOARDS;
-use host_tests::emulator::firmware_run::{board_for, run};
-use host_tests::emulator::process;
-use host_tests::emulator::qemu::{Clock, Settings};
-use host_tests::emulator::toolchain::{self, Toolchain};
 
 /// How long a firmware may run if `--seconds` does not say.
 const LIMIT: Duration = Duration::from_secs(3600);
@@ -21,7 +21,7 @@ const LIMIT: Duration = Duration::from_secs(3600);
 /// Builds a firmware binary, runs it in QEMU and prints its log; exits as the firmware does.
 #[derive(Debug, Parser)]
 #[command(name = "cargo fw", after_help = runnable())]
-struct Arguments {
+pub struct FwOptions {
     /// A binary of the firmware, or the path of an ELF file that is built already
     #[arg(value_name = "BIN", required_unless_present = "check")]
     binary: Option<PathBuf>,
@@ -36,19 +36,15 @@ struct Arguments {
     check: bool,
 }
 
-fn main() -> ExitCode {
-    cli::main(execute)
-}
-
-fn execute(arguments: &Arguments) -> anyhow::Result<ExitCode> {
-    let Some(binary) = &arguments.binary else {
+pub fn run(options: &FwOptions) -> anyhow::Result<ExitCode> {
+    let Some(binary) = &options.binary else {
         set_up()?.check()?;
         return Ok(ExitCode::SUCCESS);
     };
     let unknown = |kind: &str, name: &str, names: &[String]| {
         Refused::because(format_args!("no {kind} {name}; there are {}", names.join(", ")))
     };
-    let asked = arguments.board.as_deref();
+    let asked = options.board.as_deref();
     let board = board_for(asked, binary)
         .ok_or_else(|| unknown("board", asked.unwrap_or_default(), &BOARDS.map(|board| board.name.to_owned())))?;
     let name = binary.to_string_lossy();
@@ -58,10 +54,10 @@ fn execute(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     }
     let toolchain = set_up()?;
     let elf = if is_path { binary.clone() } else { toolchain.build(&name, board.target)? };
-    let limit = arguments.seconds.map_or(LIMIT, |seconds| Duration::from_secs(seconds.into()));
+    let limit = options.seconds.map_or(LIMIT, |seconds| Duration::from_secs(seconds.into()));
     let settings = Settings { qemu: toolchain.qemu(), board, elf: &elf, clock: Clock::Real, debugger: true, limit };
     let is_late = |error: &io::Error| error.kind() == io::ErrorKind::TimedOut;
-    match (run(&settings, &mut stdout().lock()), arguments.seconds) {
+    match (firmware_run::run(&settings, &mut stdout().lock()), options.seconds) {
         (Err(error), Some(seconds)) if error.downcast_ref().is_some_and(is_late) => {
             complain(format_args!("ended after {seconds} s, as told"));
             Ok(ExitCode::SUCCESS)

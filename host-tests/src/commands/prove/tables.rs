@@ -1,0 +1,65 @@
+//! Tables whose every line is proved: horizons, and known answers.
+
+use anyhow::{Context, Result};
+use clap::Parser;
+use firmware::scenes::SceneName;
+use reference::enclosure::Start;
+
+use super::horizon::{counts, frames};
+use crate::commands::plan::{M3, M4F, PICO, SceneOptions};
+use crate::commands::simulate::Number;
+use crate::oracle::known_answers::KnownAnswer;
+
+/// The scenes that move, if only in the end.
+pub fn moving() -> impl Iterator<Item = &'static SceneName> {
+    SceneName::ALL.iter().filter(|name| name.has_angles() && **name != SceneName::Upright)
+}
+
+/// The heading of the table of horizons.
+pub const HEADING: &str = "\
+| scene | M3: plan | proved | M4F: plan | proved | M0+: plan | proved | open |
+| --- | --- | --- | --- | --- | --- | --- | --- |";
+
+/// Its line of one scene: predicted and proved.
+pub fn horizons(name: SceneName) -> Result<String> {
+    let (mut cells, mut unproved) = (vec![name.name().to_owned()], 0);
+    for chip in [M3, M4F, PICO] {
+        let words = ["plan", "--scene", name.name(), "--target", chip.name];
+        let (scene, plan) = SceneOptions::try_parse_from(words)?.plan()?;
+        cells.extend(match plan {
+            Err(_) => ["none", "none"].map(String::from),
+            Ok(plan) => {
+                let start = Start::of(&scene.pendulum, &scene.start);
+                let (right, open) = counts(&frames(&scene, &start, plan.way())?.collect::<Vec<_>>());
+                unproved += open;
+                [plan.horizon, scene.time(right)].map(|time| format!("{time:.2}"))
+            }
+        });
+    }
+    Ok(format!("| {} | {unproved} |", cells.join(" | ")))
+}
+
+/// Frames per second: the known answers' times are whole seconds.
+const RATE: u16 = 64;
+/// The most digits written of them.
+const DIGITS: f64 = 33.0;
+
+/// The known answers of one scene, a line each, made anew from what is given. Each number is off by at most two units of its last digit,
+/// but for how many times larger a small error has become, which is about.
+pub fn known_answers(scene: &[KnownAnswer]) -> Result<Vec<String>> {
+    let exact = |text: &str| text.parse::<Number>().ok()?.exact();
+    let fractions = scene[0].given.split(',').skip(1).take(9).map(exact).collect::<Option<Vec<_>>>();
+    let fractions = fractions.and_then(|all| all.try_into().ok()).context("more digits than can be enclosed")?;
+    let about = (scene[0].parameters(), scene[0].start());
+    let mut set = Start { about, fractions: Some(fractions), degrees: [true, false] }.enclose(RATE);
+    let mut frame = 0;
+    let line = |row: &KnownAnswer| {
+        while f64::from(frame) < row.time * f64::from(RATE) {
+            set.advance().context("the set has grown too large to be followed")?;
+            frame += 1;
+        }
+        let exact = set.directions().as_flattened().iter().map(|x| x.decimal(DIGITS)).collect::<Vec<_>>().join(",");
+        Ok(format!("{},{exact},{:.2e}", row.given, set.growth()))
+    };
+    scene.iter().map(line).collect()
+}
