@@ -3,6 +3,7 @@
 
 use double_pendulum::flips::{Flip, Flips};
 use double_pendulum::{DirectionF32Plain, Error};
+use multiversion::multiversion;
 
 /// The kernel's search with the cheapest steps.
 pub type Search = Flips<DirectionF32Plain>;
@@ -11,32 +12,23 @@ pub type Search = Flips<DirectionF32Plain>;
 const LANES: usize = 8;
 
 /// The flips of some starts, by the widest vectors that this processor has.
+#[multiversion(targets("x86_64+avx2+bmi1+bmi2+fma+lzcnt+popcnt"))]
 pub fn flips(search: &Search, starts: &[[f32; 2]]) -> Result<Vec<Flip<f32>>, Error> {
-    pulp::Arch::new().dispatch(Each { search, starts })
+    each(search, starts)
 }
 
 /// The same for any processor of this kind, without a look at what this one has.
 pub fn baseline(search: &Search, starts: &[[f32; 2]]) -> Result<Vec<Flip<f32>>, Error> {
-    pulp::NullaryFnOnce::call(Each { search, starts })
+    each(search, starts)
 }
 
-/// A closure would be compiled by itself, for any processor.
-struct Each<'a> {
-    search: &'a Search,
-    starts: &'a [[f32; 2]],
-}
-
-impl pulp::NullaryFnOnce for Each<'_> {
-    type Output = Result<Vec<Flip<f32>>, Error>;
-
-    #[inline(always)]
-    fn call(self) -> Self::Output {
-        let mut flips = vec![Flip::Never; self.starts.len()];
-        self.search.of_each::<LANES>(self.starts.iter().copied(), |start, flip| {
-            if let Some(place) = flips.get_mut(start) {
-                *place = flip;
-            }
-        })?;
-        Ok(flips)
-    }
+#[inline(always)]
+fn each(search: &Search, starts: &[[f32; 2]]) -> Result<Vec<Flip<f32>>, Error> {
+    let mut flips = vec![Flip::Never; starts.len()];
+    search.of_each::<LANES>(starts.iter().copied(), |start, flip| {
+        if let Some(place) = flips.get_mut(start) {
+            *place = flip;
+        }
+    })?;
+    Ok(flips)
 }
