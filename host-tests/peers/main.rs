@@ -30,45 +30,34 @@ struct Scene {
     part: f64,
 }
 
-/// One way to follow a scene: the state after so many parts of it. The effort, the last argument, is the number of steps to a
-/// part, or for an integrator that chooses its steps a tolerance of 10^(-effort/8).
-struct Contestant {
-    name: &'static str,
-    own: bool,
-    /// The greatest effort worth trying; below a tolerance of 1e-16 there is nothing.
-    most: u32,
-    run: fn(Scene, u32, u32) -> [f64; 4],
-}
-
-const fn own(name: &'static str, run: fn(Scene, u32, u32) -> [f64; 4]) -> Contestant {
-    Contestant { name, own: true, most: 8192, run }
-}
-
-const fn peer(name: &'static str, most: u32, run: fn(Scene, u32, u32) -> [f64; 4]) -> Contestant {
-    Contestant { name, own: false, most, run }
-}
+/// One way to follow a scene: its name, whether it is ours, the greatest effort worth trying, and the state after so many parts of
+/// the scene. The effort, the last argument, is the number of steps to a part, or for an integrator that chooses its steps a
+/// tolerance of 10^(-effort/8); below 1e-16 there is nothing.
+type Contestant = (&'static str, bool, u32, fn(Scene, u32, u32) -> [f64; 4]);
 
 const DIRECTION: &str = "double-pendulum, direction form";
 const EXTRAPOLATED: &str = "double-pendulum, extrapolated to order 16";
 
 /// Classical RK4, 256 steps a second.
 const CLASSICAL: &[Contestant] = &[
-    own("double-pendulum", |scene, parts, steps| {
+    ("double-pendulum", true, 8192, |scene, parts, steps| {
         let (pendulum, dt) = (pendulum(), scene.part / f64::from(steps));
         (0..parts * steps).fold(scene.start.into(), |state, _| pendulum.step(&state, dt)).into()
     }),
-    own(DIRECTION, form::<DirectionForm<f64, Plain>>),
-    own("double-pendulum, direction form compensated", form::<DirectionF64>),
-    peer("ode_solvers, the book's equations", 8192, |scene, parts, steps| library_rk4(book, scene, parts, steps)),
-    peer("ode_solvers, this kernel's equations", 8192, |scene, parts, steps| library_rk4(ours(), scene, parts, steps)),
+    (DIRECTION, true, 8192, form::<DirectionForm<f64, Plain>>),
+    ("double-pendulum, direction form compensated", true, 8192, form::<DirectionF64>),
+    ("ode_solvers, the book's equations", false, 8192, |scene, parts, steps| library_rk4(book, scene, parts, steps)),
+    ("ode_solvers, this kernel's equations", false, 8192, |scene, parts, steps| {
+        library_rk4(ours(), scene, parts, steps)
+    }),
 ];
 
 /// For tight errors.
 const TIGHT: &[Contestant] = &[
-    own(EXTRAPOLATED, form::<ExtrapolationF64<16>>),
-    own("double-pendulum, direction form of RK4", form::<DirectionF64>),
-    peer("ode_solvers DOP853, the book's equations", 128, |scene, parts, effort| dop853(book, scene, parts, effort)),
-    peer("ode_solvers DOP853, this kernel's equations", 128, |scene, parts, effort| {
+    (EXTRAPOLATED, true, 8192, form::<ExtrapolationF64<16>>),
+    ("double-pendulum, direction form of RK4", true, 8192, form::<DirectionF64>),
+    ("ode_solvers DOP853, the book's equations", false, 128, |scene, parts, effort| dop853(book, scene, parts, effort)),
+    ("ode_solvers DOP853, this kernel's equations", false, 128, |scene, parts, effort| {
         dop853(ours(), scene, parts, effort)
     }),
 ];
@@ -135,9 +124,9 @@ fn dop853(equations: impl Fn(&[f64; 4]) -> [f64; 4], scene: Scene, parts: u32, e
     ended.and_then(|_| stepper.y_out().last().copied()).map_or(LOST, Into::into)
 }
 
-/// A contestant with its effort, what it errs by, rad, and the fastest time.
+/// A contestant's name and whether it is ours; its effort, what it errs by, rad, and the fastest time.
 struct Entry {
-    contestant: &'static Contestant,
+    contestant: Contestant,
     effort: u32,
     error: f64,
     time: f64,
@@ -145,18 +134,18 @@ struct Entry {
 
 /// Every contestant at the `effort` given, or at the least that errs by at most `asked`, rad (those that never do are left
 /// out), and the fastest of its runs in turns.
-fn race(contestants: &'static [Contestant], scene: Scene, effort: Option<u32>, asked: f64) -> Vec<Entry> {
+fn race(contestants: &[Contestant], scene: Scene, effort: Option<u32>, asked: f64) -> Vec<Entry> {
     let mut reference = Reference::new(&PARAMETERS, &Motion::at_rest(scene.start[0], scene.start[1]));
     let exact = (PARTS / 2 + 1..=PARTS).map(|parts| {
         reference.advance_to(scene.part * f64::from(parts));
         (parts, reference.state())
     });
     let exact: Vec<(u32, State<f64>)> = exact.collect();
-    let entry = |contestant: &'static Contestant| {
+    let entry = |&contestant: &Contestant| {
         let from = effort.unwrap_or(4);
         let efforts = successors(Some(from), |last| Some(last + 1 + last / 128));
-        let mut tries = efforts.take_while(|&next| next <= contestant.most).map(|effort| {
-            let end = |parts| (contestant.run)(scene, parts, effort).into();
+        let mut tries = efforts.take_while(|&next| next <= contestant.2).map(|effort| {
+            let end = |parts| (contestant.3)(scene, parts, effort).into();
             let errors = exact.iter().map(|&(parts, exact)| largest_difference(&[end(parts)], &[exact]));
             Entry { contestant, effort, error: errors.fold(0.0, f64::max), time: f64::INFINITY }
         });
@@ -166,7 +155,7 @@ fn race(contestants: &'static [Contestant], scene: Scene, effort: Option<u32>, a
     for _ in 0..ROUNDS {
         for entry in &mut entries {
             let start = Instant::now();
-            black_box((entry.contestant.run)(scene, PARTS, black_box(entry.effort)));
+            black_box((entry.contestant.3)(scene, PARTS, black_box(entry.effort)));
             entry.time = start.elapsed().as_secs_f64().min(entry.time);
         }
     }
@@ -177,14 +166,14 @@ fn race(contestants: &'static [Contestant], scene: Scene, effort: Option<u32>, a
 fn ratio(title: &str, entries: &[Entry], time: fn(&Entry) -> f64, counts: fn(&str) -> bool) -> f64 {
     println!("\n{title}\n{:51} {:>7} {:>9} {:>6}", "", "effort", "error", "time");
     let least = |who: &dyn Fn(&Contestant) -> bool| {
-        entries.iter().filter(|entry| who(entry.contestant)).map(time).fold(f64::INFINITY, f64::min)
+        entries.iter().filter(|entry| who(&entry.contestant)).map(time).fold(f64::INFINITY, f64::min)
     };
-    let peer = least(&|one| !one.own);
+    let peer = least(&|(_, own, ..)| !own);
     for entry in entries {
-        let Entry { contestant: Contestant { name, .. }, effort, error, .. } = entry;
+        let Entry { contestant: (name, ..), effort, error, .. } = entry;
         println!("{name:51} {effort:7} {error:9.1e} {:6.2}", time(entry) / peer);
     }
-    least(&|one| one.own && counts(one.name)) / peer
+    least(&|(name, own, ..)| *own && counts(name)) / peer
 }
 
 fn main() {

@@ -153,17 +153,17 @@ mod tests {
         Flips::new(parameters, dt, (LIMIT / dt) as u32 | 1)
     }
 
-    /// The flips of all starts. A closure would be compiled by itself, for any processor.
-    struct All<'a>(&'a Flips<DirectionF32Plain>);
+    /// The flips of all starts, in vectors as this processor has them or as any has.
+    #[multiversion::multiversion(targets("x86_64+avx2+fma"))]
+    fn all(flips: &Flips<DirectionF32Plain>) -> Result<Vec<Option<Flip<f32>>>, Error> {
+        any(flips)
+    }
 
-    impl pulp::NullaryFnOnce for All<'_> {
-        type Output = Result<Vec<Option<Flip<f32>>>, Error>;
-        #[inline(always)]
-        fn call(self) -> Self::Output {
-            let mut found = std::vec![None; SIDE * SIDE];
-            self.0.of_each::<8>(starts(SIDE), |start, flip| assert_eq!(found[start].replace(flip), None))?;
-            Ok(found)
-        }
+    #[inline(always)]
+    fn any(flips: &Flips<DirectionF32Plain>) -> Result<Vec<Option<Flip<f32>>>, Error> {
+        let mut found = std::vec![None; SIDE * SIDE];
+        flips.of_each::<8>(starts(SIDE), |start, flip| assert_eq!(found[start].replace(flip), None))?;
+        Ok(found)
     }
 
     #[test]
@@ -173,8 +173,8 @@ mod tests {
         {
             let flips = flips(&parameters)?;
             let flips = Flips { form: flips.form.leaving_out_more(), ..flips };
-            let found = pulp::NullaryFnOnce::call(All(&flips))?;
-            assert_eq!(found, pulp::Arch::new().dispatch(All(&flips))?, "vectors as this processor has them");
+            let found = any(&flips)?;
+            assert_eq!(found, all(&flips)?, "vectors as this processor has them");
             for (flip, [a1, a2]) in found.iter().zip(starts(SIDE)) {
                 assert_eq!(*flip, Some(flips.of(a1, a2)?), "{a1} {a2}");
             }

@@ -1,11 +1,11 @@
 //! Errors against the reference, computed on the host: the bits are those of the target (see `identity`).
 
-use double_pendulum::{Method, Motion, Pendulum};
+use double_pendulum::{Method, Motion, Pendulum, State};
 use firmware::job::{JobError, Request};
 
 use super::scene::{SAMPLES, Scene};
 use crate::oracle::trials::apart;
-use reference::taylor::Reference;
+use reference::taylor;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Error {
@@ -28,14 +28,9 @@ pub fn exact(scene: &Scene) -> Vec<[f64; 2]> {
 /// The exact motion after each of `steps` equal steps through a scene.
 fn exact_after(scene: &Scene, steps: u32) -> Vec<[f64; 2]> {
     let [a1, a2] = scene.angles();
-    let mut reference = Reference::new(&scene.parameters(), &Motion::at_rest(a1, a2));
-    (1..=steps)
-        .map(|step| {
-            reference.advance_to(f64::from(step * scene.duration) / f64::from(steps));
-            let Motion { a1, a2, .. } = reference.motion();
-            [a1, a2]
-        })
-        .collect()
+    let times: Vec<_> = (1..=steps).map(|step| f64::from(step * scene.duration) / f64::from(steps)).collect();
+    let states = taylor::states(&scene.parameters(), &Motion::at_rest(a1, a2), &times);
+    states.iter().map(State::angles).collect()
 }
 
 /// How many states of a motion with `rate` steps a second are compared in each: as many as fall on whole steps.

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::accuracy::{self, Error, rates, request, usual_rate};
 use super::c_peers::{self, Program};
-use super::scene::{LONG, Scene};
+use super::scene::{LONG, SCENES, Scene};
 use crate::commands::count::{StepCost, Target, affordable_cost};
 use crate::commands::table::{Table, small};
 use crate::emulator::boards::Board;
@@ -48,54 +48,30 @@ pub fn methods() -> impl Iterator<Item = Method> + Clone {
     Method::ALL.iter().copied().filter(|method| method.integrator() != Integrator::ClosedForm)
 }
 
-/// Every method and every program in C through `scenes` on all targets; the long scene with as many steps as are usual.
+/// Every method and every program in C through the scenes on all targets; the long scene with as many steps as are usual.
 /// `tick` is called after each method. Also says what had to be left out, a line each.
-pub fn join(
-    toolchain: &Toolchain,
-    targets: &[Target],
-    scenes: &[&'static Scene],
-    tick: &(dyn Fn() + Sync),
-) -> Result<(Vec<Point>, Vec<String>)> {
-    let exact: Vec<_> = scenes.par_iter().map(|scene| (*scene, accuracy::exact(scene))).collect();
+pub fn join(toolchain: &Toolchain, targets: &[Target], tick: &(dyn Fn() + Sync)) -> Result<(Vec<Point>, Vec<String>)> {
+    let scenes = [&SCENES[0], &SCENES[1], &LONG].map(|scene| (scene, accuracy::exact(scene)));
     let methods: Vec<Method> = methods().collect();
-    let pairs: Vec<_> = exact.iter().flat_map(|scene| methods.iter().map(move |&method| (scene, method))).collect();
-    let errors = pairs.into_par_iter().map(|(&(scene, ref exact), method)| {
-        let rates = rates(method, FINEST).filter(|&rate| scene != &LONG || rate == usual_rate(method));
-        let errors = rates.filter_map(|rate| Some((rate, accuracy::error(method, scene, rate, exact)?)));
-        let errors: Vec<_> = errors.collect();
-        tick();
-        (scene, method, errors)
-    });
-    let errors: Vec<_> = errors.collect();
-    let runs: Vec<_> = targets.iter().flat_map(|target| methods.iter().map(move |&method| (target, method))).collect();
-    let points = runs.into_par_iter().map(|(target, method)| {
-        // Only in fixed point are rods and masses unlike each other stepped by other code.
-        let mut counted: Vec<(&Scene, StepCost)> = Vec::new();
+    let points = methods.par_iter().map(|&method| {
+        // The pendulum is the same in all scenes, and so is the code that steps it.
+        let cost = |target| affordable_cost(target, &request(method, &SCENES[0], usual_rate(method)));
+        let costs = targets.iter().map(|target| Ok((target.board, cost(target)?))).collect::<Result<Vec<_>>>()?;
         let mut points = Vec::new();
-        for &(scene, _, ref errors) in errors.iter().filter(|(_, of, _)| *of == method) {
-            let alike = |known: &Scene| !method.is_fixed_point() || known.parameters() == scene.parameters();
-            let step = match counted.iter().find(|(known, _)| alike(known)) {
-                Some(&(_, step)) => step,
-                None => {
-                    let Some(&(rate, _)) = errors.iter().find(|(rate, _)| *rate >= usual_rate(method)) else {
-                        continue;
-                    };
-                    let step = affordable_cost(target, &request(method, scene, rate))?;
-                    counted.push((scene, step));
-                    step
-                }
-            };
-            let (name, board) = (method.name(), target.board);
-            let point =
-                |&(rate, error): &(u32, Error)| Point { name, scene, board, rate, step, error, dominated: false };
-            points.extend(errors.iter().map(point));
+        for &(scene, ref exact) in &scenes {
+            for rate in rates(method, FINEST).filter(|&rate| scene != &LONG || rate == usual_rate(method)) {
+                let Some(error) = accuracy::error(method, scene, rate, exact) else { continue };
+                let name = method.name();
+                let point = |&(board, step)| Point { name, scene, board, rate, step, error, dominated: false };
+                points.extend(costs.iter().map(point));
+            }
         }
         tick();
         Ok(points)
     });
     let mut points = points.collect::<Result<Vec<_>>>()?.concat();
     let (programs, absent) = c_peers::compile(toolchain, targets)?;
-    let peers = programs.par_iter().map(|program: &Program| program.points(&exact)).collect::<Result<Vec<_>>>()?;
+    let peers = programs.par_iter().map(|program: &Program| program.points(&scenes)).collect::<Result<Vec<_>>>()?;
     points.extend(peers.concat());
     Ok((points, absent))
 }
@@ -144,21 +120,12 @@ pub fn table(points: &[Point]) -> Table {
 
 #[cfg(test)]
 pub(super) mod tests {
-    use super::super::scene::SCENES;
     use super::*;
     use crate::emulator::boards::BOARDS;
 
     /// A method's point in the regular scene on the first board.
     pub fn point(name: &'static str, cycles: f64, angle: f64) -> Point {
-        let step = StepCost {
-            steps: 1,
-            instructions: 0.0,
-            cycles: cycles / 64.0,
-            stalls: 0.0,
-            hot_bytes: 0,
-            code_bytes: 0,
-            stack_bytes: 0,
-        };
+        let step = StepCost { cycles: cycles / 64.0, ..StepCost::default() };
         let error = Error { angle, pixels: 10.0 * angle };
         Point { name, scene: &SCENES[0], board: &BOARDS[0], rate: 64, step, error, dominated: false }
     }

@@ -20,15 +20,12 @@ use crate::commands::count::Target;
 use crate::console::cli::{Refused, say};
 use crate::console::progress::Progress;
 use crate::emulator::toolchain;
-use scene::{LONG, SCENES, Scene};
+use scene::SCENES;
 
 /// Measures every method's cost on the target and its error, and writes them as CSV and as charts.
 #[derive(Debug, Parser)]
-#[command(name = "cargo write-report", after_help = "Example: cargo write-report --quick --folder /tmp/report")]
+#[command(name = "cargo write-report", after_help = "Example: cargo write-report --folder /tmp/report")]
 pub struct ReportOptions {
-    /// Two scenes, in some minutes; all take an hour
-    #[arg(long)]
-    quick: bool,
     /// Puts what to take, the main table and the charts into the READMEs
     #[arg(long)]
     readme: bool,
@@ -47,15 +44,13 @@ pub fn run(options: &ReportOptions) -> Result<()> {
         fs::write(&path, text).with_context(|| format!("cannot write {}", path.display()))
     };
     let targets = Target::build_all(&toolchain)?;
-    let scenes = &SCENES[..if options.quick { 2 } else { SCENES.len() }];
-    let all: Vec<&'static Scene> = scenes.iter().chain([&LONG]).collect();
-    let bar = Progress::of("comparing and counting", (join::methods().count() * (all.len() + targets.len())) as u64);
-    let (mut points, absent) = join::join(&toolchain, &targets, &all, &|| bar.advance(1))?;
+    let bar = Progress::of("comparing and counting", join::methods().count() as u64);
+    let (mut points, absent) = join::join(&toolchain, &targets, &|| bar.advance(1))?;
     drop(bar);
     join::mark_dominated(&mut points);
     save("speed-against-error.csv", &join::table(&points).csv())?;
     let mut charts = Vec::new();
-    for (scene, target) in scenes.iter().flat_map(|scene| targets.iter().map(move |target| (scene, target))) {
+    for (scene, target) in SCENES.iter().flat_map(|scene| targets.iter().map(move |target| (scene, target))) {
         let name = format!("{}-{}.svg", scene.name, target.board.cpu);
         let svg = chart::speed_against_error(&points, scene, target.board)?;
         save(&name, &svg)?;
