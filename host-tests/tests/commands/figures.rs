@@ -1,10 +1,9 @@
-//! `cargo figures`: the curves against what is known of them, and the committed files against the kernel.
+//! `cargo figures` and `cargo flips`: the curves against what is known of them, and the committed files against the kernel.
 
 use std::f64::consts::PI;
 use std::fs;
 
 use double_pendulum::{Motion, Pendulum, State};
-use firmware::graphics::{HEIGHT, WIDTH};
 use firmware::scenes::SceneName;
 use host_tests::commands::demo::played;
 use host_tests::commands::figures::chaos::{self, Chaos};
@@ -12,8 +11,11 @@ use host_tests::commands::figures::frequencies::Frequencies;
 use host_tests::commands::figures::small::{CurvePoint, Small};
 use host_tests::commands::figures::{files, folder, panel};
 use host_tests::emulator::host::Show;
+use host_tests::emulator::qemu::Screenshot;
 use host_tests::oracle::tolerances;
 use reference::taylor::Reference;
+
+use super::cli::{output, program};
 
 /// Figures 3 to 5: number, mu, w1, w2 (rad/s), the envelope's period (s), the largest |a1| (degrees).
 const SMALL: [(u32, [f64; 5]); 3] = [
@@ -55,21 +57,11 @@ fn is_shown(name: SceneName) -> bool {
 fn is_shown_from(late: usize, name: SceneName, frames: &[(Vec<u8>, u16)]) -> bool {
     let mut scene = Show::new(name, &name.first_settings()).expect("a scene of the catalogue");
     (0..late).for_each(|_| scene.tick());
-    frames.iter().enumerate().all(|(number, (dots, _))| {
+    frames.iter().enumerate().all(|(number, (greys, _))| {
         if number > 0 {
             (0..TICKS_PER_FRAME).for_each(|_| scene.tick());
         }
-        !number.is_multiple_of(EVERY) || is_shown_as(&scene, dots)
-    })
-}
-
-/// Whether the dots, a square of them for each pixel, are what the scene draws.
-fn is_shown_as(scene: &Show, dots: &[u8]) -> bool {
-    let canvas = scene.frame();
-    let scale = (dots.len() / (WIDTH * HEIGHT)).isqrt();
-    dots.iter().enumerate().all(|(i, &dot)| {
-        let (x, y) = (i % (WIDTH * scale) / scale, i / (WIDTH * scale) / scale);
-        canvas.get(x as i32, y as i32) == Some(dot)
+        !number.is_multiple_of(EVERY) || Screenshot::from(&scene.frame()).greys() == greys
     })
 }
 
@@ -172,4 +164,31 @@ fn the_printed_path_of_figure_7_does_not_depend_on_the_step() {
         tolerances::MISPRINT_SWING.iter().all(|energy| (least..greatest).contains(energy)),
         "{least} J to {greatest} J"
     );
+}
+
+/// The file that `cargo flips` writes.
+fn flips(arguments: &[&str], name: &str) -> Vec<u8> {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join(name);
+    let output = output(program("flips").args(arguments).arg("--out").arg(&out));
+    assert!(output.status.success(), "{output:?}");
+    fs::read(out).expect("a file")
+}
+
+#[test]
+fn the_committed_picture_is_what_it_draws() {
+    let committed = fs::read(folder().join("figures/flips.png")).expect("a picture");
+    assert!(flips(&["--limit", "100"], "flips.png") == committed, "accept by the README's `cargo flips`");
+}
+
+#[test]
+fn a_table_has_every_start_and_is_its_own_mirror_image() {
+    let table = String::from_utf8(flips(&["--size", "12x6", "--limit", "20"], "map.csv")).expect("text");
+    let times: Vec<_> = table.lines().skip(1).filter_map(|line| line.split(',').nth(2)).collect();
+    assert_eq!(times.len(), 72);
+    // Both angles mirrored: the same motion.
+    assert!(times.iter().eq(times.iter().rev()));
+    let [never, later] = ["never", "later"].map(|word| times.iter().filter(|time| **time == word).count());
+    assert!(never > 10 && never < 40 && later > 0, "{table}");
+    assert!(times.iter().filter_map(|time| time.parse::<f32>().ok()).all(|time| time > 0.0 && time <= 20.0), "{table}");
 }

@@ -1,7 +1,9 @@
-//! `cargo fw`: how it ends.
+//! `cargo fw`: how it ends, and which project it works on.
 
+use std::fs;
 use std::io::{BufRead, BufReader};
-use std::process::Stdio;
+use std::path::Path;
+use std::process::{Command, Stdio};
 
 use host_tests::emulator::process::{Output, spawn};
 use nix::sys::signal::{Signal, kill};
@@ -36,9 +38,35 @@ fn an_interrupt_leaves_nothing_in_the_temporary_folder() {
     let mut fw = spawn(&mut command, LIMIT).unwrap_or_else(|error| panic!("{error}"));
     let mut log = BufReader::new(fw.stdout.take().expect("piped"));
     log.read_line(&mut String::new()).expect("the board says something");
-    let left = || std::fs::read_dir(temporary.path()).expect("it is there").count();
+    let left = || fs::read_dir(temporary.path()).expect("it is there").count();
     assert!(left() > 0, "the board has its folder there");
     kill(Pid::from_raw(fw.id().cast_signed()), Signal::SIGTERM).expect("it runs");
     assert_eq!(fw.wait().expect("it ends").code(), Some(143));
     assert_eq!(left(), 0);
+}
+
+/// A command that was built in one checkout and is run in another works on that one; outside of any it says so.
+#[test]
+fn the_project_is_the_one_that_a_command_is_run_in() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (copy, checkout) = (folder.path().join("fw"), folder.path().join("checkout"));
+    fs::copy(env!("CARGO_BIN_EXE_host-tests"), &copy).expect("a copy");
+    for file in ["kernel/Cargo.toml", "firmware/Cargo.toml", "host-tests/Cargo.toml", "firmware/src/bin/elsewhere.rs"] {
+        let file = checkout.join(file);
+        fs::create_dir_all(file.parent().expect("a folder")).expect("a folder");
+        fs::write(file, "").expect("a file");
+    }
+    let help = |within: &Path| {
+        Command::new(&copy)
+            .args(["fw", "--help"])
+            .current_dir(within)
+            .env_remove("CARGO_MANIFEST_DIR")
+            .output()
+            .expect("it runs")
+    };
+    let inside = help(&checkout.join("firmware/src"));
+    assert!(inside.status.success() && String::from_utf8_lossy(&inside.stdout).contains("Binaries:\n  elsewhere\n"));
+    let outside = help(folder.path());
+    let line = String::from_utf8(outside.stderr).expect("text");
+    assert_eq!((outside.status.code(), outside.stdout.len(), line.lines().count()), (Some(2), 0, 1), "{line}");
 }

@@ -6,12 +6,9 @@ mod demo_cli;
 mod demo_port;
 mod figures;
 mod flash_cli;
-mod flips_cli;
-mod frontier;
 mod fw_cli;
 mod hygiene;
 mod package;
-mod pico_cli;
 mod plan_cli;
 mod process;
 mod random_input;
@@ -21,5 +18,4 @@ mod simulate_cli;
 #[path = "../support/mod.rs"]
 mod support;
 mod tolerance;
-mod toolchain;
 mod verify_board;

@@ -79,7 +79,7 @@ fn energy_errors(frame: &mut Frame, scale: Rect, area: Rect, readings: &Readings
     let greatest = errors.iter().copied().fold(LEAST_SCALE, f32::max);
     let exponent = greatest.log10().ceil() as i32;
     frame.render_widget(Line::from(format!("error 0 to 1e{exponent}")).dim(), scale);
-    let shown = errors.iter().skip(errors.len().saturating_sub(usize::from(area.width)));
-    let bars = shown.map(|error| (error / 10.0_f32.powi(exponent) * HEIGHT) as u64).collect::<Vec<_>>();
+    let shown = &errors[errors.len().saturating_sub(usize::from(area.width))..];
+    let bars = shown.iter().map(|error| (error / 10.0_f32.powi(exponent) * HEIGHT) as u64).collect::<Vec<_>>();
     frame.render_widget(Sparkline::default().data(bars).max(HEIGHT as u64).fg(Color::Yellow), area);
 }

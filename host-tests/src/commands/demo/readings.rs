@@ -14,10 +14,7 @@ use crate::link::Counts;
 
 /// An energy error beyond this is no rounding or step error: the motion is wrong.
 const GREATEST_ENERGY_ERROR: f32 = 1e-2;
-/// How many energy errors are remembered, each the largest of half a second.
-const PAST: usize = 240;
 const FRAMES_PER_BAR: u64 = TICK_RATE as u64 / 2;
-const LINES: usize = 100;
 /// The time over which frames per second are counted.
 const RATE_SPAN: Duration = Duration::from_secs(1);
 
@@ -28,10 +25,10 @@ pub struct Readings {
     pub start: Option<[f32; 2]>,
     pub counts: Counts,
     /// The largest size of the energy error in each half second, oldest first.
-    pub energy_errors: VecDeque<f32>,
+    pub energy_errors: Vec<f32>,
     /// Both angles over the last [`plot::SPAN`], oldest first.
     pub angles: VecDeque<Moment>,
-    pub lines: VecDeque<LogLine>,
+    pub lines: Vec<LogLine>,
     pub comparison: Comparison,
     /// Whether what they mean is shown in their place.
     pub help: bool,
@@ -63,9 +60,9 @@ impl Readings {
 
         let error = frame.energy_error.abs();
         self.greatest_energy_error = self.greatest_energy_error.max(error);
-        match self.energy_errors.back_mut() {
+        match self.energy_errors.last_mut() {
             Some(largest) if !self.frames.is_multiple_of(FRAMES_PER_BAR) => *largest = largest.max(error),
-            _ => push(&mut self.energy_errors, error, PAST),
+            _ => self.energy_errors.push(error),
         }
         self.frames += 1;
         let [a1, a2, ..] = frame.state.map(|number| f64::from(number).to_degrees());
@@ -92,7 +89,7 @@ impl Readings {
         if line.is_bad() {
             self.complaints.push(line.to_string());
         }
-        push(&mut self.lines, line, LINES);
+        self.lines.push(line);
     }
 
     pub fn rate(&self) -> usize {
@@ -149,13 +146,6 @@ pub fn way(&Frame { method, way_steps, horizon, is_looking, .. }: &Frame) -> Str
     }
     let at_least = if is_looking != 0 { "at least " } else { "" };
     format!("{name}{steps}, right to half a pixel until {at_least}{horizon:.1} s")
-}
-
-fn push<T>(queue: &mut VecDeque<T>, item: T, most: usize) {
-    if queue.len() >= most {
-        queue.pop_front();
-    }
-    queue.push_back(item);
 }
 
 #[cfg(test)]

@@ -13,6 +13,7 @@ use crate::emulator::qemu::{HEIGHT, Screenshot, WIDTH};
 
 /// Every pixel of the panel becomes a square of this many by as many.
 const SCALE: usize = 3;
+const SIZE: [u16; 2] = [(WIDTH * SCALE) as u16, (HEIGHT * SCALE) as u16];
 /// The board's ticks from one screenshot to the next: 60/2 = 30 frames per second.
 const TICKS_PER_FRAME: u32 = TICK_RATE / 30;
 /// In a picture after the first: as it was. Few pixels change, which leaves long runs of this. The palette's first colour after
@@ -32,7 +33,7 @@ pub struct Recording {
 impl Recording {
     pub fn create(path: &Path) -> anyhow::Result<Self> {
         let file = File::create(path).with_context(|| format!("cannot write {}", path.display()))?;
-        let [width, height] = size();
+        let [width, height] = SIZE;
         let palette = [tint::palette(), vec![0; 3]].concat();
         let mut encoder = Encoder::new(BufWriter::new(file), width, height, &palette)?;
         encoder.set_repeat(Repeat::Infinite)?;
@@ -68,7 +69,7 @@ impl Recording {
         let Some((screenshot, since)) = self.pending.take() else { return Ok(()) };
         let hundredths = |tick: u32| (tick.wrapping_sub(self.start) * GIF_RATE + TICK_RATE / 2) / TICK_RATE;
         let delay = u16::try_from(hundredths(tick) - hundredths(since)).unwrap_or(u16::MAX);
-        let [width, height] = size();
+        let [width, height] = SIZE;
         let now = magnified(&screenshot);
         let before = std::mem::replace(&mut self.shown, now.clone());
         let change = |(index, grey)| if before.get(index) == Some(&grey) { UNCHANGED } else { grey };
@@ -78,17 +79,13 @@ impl Recording {
     }
 }
 
-fn size<N: TryFrom<usize> + Default>() -> [N; 2] {
-    [WIDTH, HEIGHT].map(|pixels| N::try_from(pixels * SCALE).unwrap_or_default())
-}
-
 /// The panel's greys, magnified, row by row.
 fn magnified(screenshot: &Screenshot) -> Vec<u8> {
     let at = |index: usize| screenshot.grey(index % (WIDTH * SCALE) / SCALE, index / (WIDTH * SCALE) / SCALE);
     (0..WIDTH * SCALE * HEIGHT * SCALE).map(at).collect()
 }
 
-/// Reads an animation back, for tests: the greys of each of its pictures, dot by dot, and the hundredths of a second it stays.
+/// Reads an animation back, for tests: the greys of each of its pictures, and the hundredths of a second it stays.
 pub fn played(path: &Path) -> anyhow::Result<Vec<(Vec<u8>, u16)>> {
     let mut options = DecodeOptions::new();
     options.set_color_output(ColorOutput::Indexed);
@@ -98,7 +95,8 @@ pub fn played(path: &Path) -> anyhow::Result<Vec<(Vec<u8>, u16)>> {
         shown.resize(frame.buffer.len(), 0);
         let dots = shown.iter_mut().zip(frame.buffer.iter());
         dots.filter(|(_, dot)| frame.transparent != Some(**dot)).for_each(|(shown, dot)| *shown = *dot);
-        played.push((shown.clone(), frame.delay));
+        let greys = shown.chunks(WIDTH * SCALE).step_by(SCALE).flat_map(|row| row.iter().step_by(SCALE).copied());
+        played.push((greys.collect(), frame.delay));
     }
     Ok(played)
 }
@@ -109,7 +107,7 @@ pub fn save(screenshot: &Screenshot, path: &Path) -> anyhow::Result<()> {
 }
 
 pub fn png(screenshot: &Screenshot, file: impl Write) -> anyhow::Result<()> {
-    let [width, height] = size();
+    let [width, height] = SIZE.map(u32::from);
     let mut encoder = png::Encoder::new(file, width, height);
     encoder.set_color(png::ColorType::Indexed);
     encoder.set_palette(tint::palette());
@@ -136,7 +134,7 @@ mod tests {
                 canvas.update(rng.i32(0..WIDTH as i32), rng.i32(0..HEIGHT as i32), |_| rng.u8(0..16));
             }
             recording.add(Screenshot::from(&canvas), number * TICKS_PER_FRAME).expect("it can be written");
-            frames.push(magnified(&Screenshot::from(&canvas)));
+            frames.push(Screenshot::from(&canvas).greys().to_vec());
         }
         recording.finish().expect("it can be written");
         let (greys, delays): (Vec<_>, Vec<_>) = played(file.path()).expect("a GIF file").into_iter().unzip();

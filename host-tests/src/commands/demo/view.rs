@@ -55,7 +55,8 @@ pub fn draw(frame: &mut Frame, board: &str, screenshot: &Screenshot, readings: &
     numbers::draw(frame, side, readings);
     frame.render_widget(Paragraph::new(words.join("\n")), words_at);
     let log = if lower.height < ANGLES { lower } else { angles(frame, lower, readings) };
-    let lines: Vec<_> = readings.lines.iter().flat_map(|line| wrapped(line, log.width)).collect();
+    let latest = &readings.lines[readings.lines.len().saturating_sub(log.height.into())..];
+    let lines: Vec<_> = latest.iter().flat_map(|line| wrapped(line, log.width)).collect();
     let first = lines.len().saturating_sub(log.height.into());
     frame.render_widget(Paragraph::new(Text::from_iter(lines.into_iter().skip(first))), log);
     frame.render_widget(Paragraph::new(keys.join("\n")).dim(), keys_at);

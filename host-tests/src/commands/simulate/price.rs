@@ -9,22 +9,14 @@ use super::{Place, SimulateOptions};
 /// What the options leave open, what a step of it costs, and in what: by the place's prices or, where it has none for any of it,
 /// by the evaluations of the equations.
 pub(super) fn candidates(options: &SimulateOptions) -> (&'static str, Vec<(Method, f64)>) {
-    let left: Vec<_> =
-        methods(options.place).filter(|method| options.method.is_none_or(|asked| asked == *method)).collect();
-    let priced = |price: &dyn Fn(Method) -> Option<f64>| {
-        left.iter().filter_map(|&method| Some((method, price(method)?))).collect::<Vec<_>>()
-    };
-    if let Some(board) = options.place {
-        let prices = priced(&|method| on_board(method, &board.processor()));
-        if !prices.is_empty() {
-            return ("cycles (estimate)", prices);
-        }
+    let left = || methods(options.place).filter(|method| options.method.is_none_or(|asked| asked == *method));
+    let price = |method| options.place.map_or(on_host(method), |board| on_board(method, &board.processor()));
+    let priced: Vec<_> = left().filter_map(|method| Some((method, price(method)?))).collect();
+    match options.place {
+        Some(_) if !priced.is_empty() => ("cycles (estimate)", priced),
+        None if !priced.is_empty() => ("evaluations of the equations", priced),
+        _ => ("evaluations of the equations", left().map(|method| (method, evaluations(method))).collect()),
     }
-    let mut prices = priced(&on_host);
-    if prices.is_empty() || options.place.is_some() {
-        prices = priced(&|method| Some(evaluations(method)));
-    }
-    ("evaluations of the equations", prices)
 }
 
 /// What is computed at a place.

@@ -1,0 +1,131 @@
+//! `cargo setup`, `cargo fw` and `cargo verify`: the tools brought, any firmware run on an emulated board, every test run.
+
+use std::io::{self, stdout};
+use std::path::PathBuf;
+use std::process::{Command, ExitCode, Stdio};
+use std::thread::available_parallelism;
+use std::time::Duration;
+use std::{env, fs};
+
+use anyhow::bail;
+use clap::Parser;
+
+use crate::console::cli::{Refused, complain, say};
+use crate::emulator::boards::BOARDS;
+use crate::emulator::firmware_run::{board_for, run};
+use crate::emulator::process;
+use crate::emulator::qemu::{Clock, Settings};
+use crate::emulator::toolchain;
+
+/// Finds or brings all that builds and runs the firmware: the ARM core library, QEMU, and rp2040js for the Pico.
+#[derive(Debug, Parser)]
+#[command(name = "cargo setup")]
+pub struct SetupOptions {}
+
+pub fn setup(_: &SetupOptions) -> anyhow::Result<()> {
+    let (toolchain, mut done) = toolchain::set_up()?;
+    say(toolchain)?;
+    let (emulator, more) = toolchain::set_up_pico()?;
+    say(emulator)?;
+    done.extend(more);
+    if done.is_empty() {
+        say("nothing had to be done")?;
+    }
+    Ok(done.iter().try_for_each(|step| say(format_args!("done: {step}")))?)
+}
+
+/// How long a firmware may run if `--seconds` does not say.
+const LIMIT: Duration = Duration::from_secs(3600);
+
+/// Builds a firmware binary, runs it in QEMU and prints its log; exits as the firmware does.
+#[derive(Debug, Parser)]
+#[command(name = "cargo fw", after_help = runnable())]
+pub struct FwOptions {
+    /// A binary of the firmware, or the path of an ELF file that is built already
+    #[arg(value_name = "BIN", required_unless_present = "check")]
+    binary: Option<PathBuf>,
+    /// The board to run it on; else the first that it is made for
+    #[arg(long, value_name = "NAME")]
+    board: Option<String>,
+    /// End it after this long, successfully; else it is given an hour, and to need more is an error
+    #[arg(long, value_name = "N")]
+    seconds: Option<u32>,
+    /// Only check that all binaries compile for all targets without a warning, clippy's included if it is installed
+    #[arg(long, conflicts_with = "binary")]
+    check: bool,
+}
+
+/// Also cargo's own runner for the ARM targets.
+pub fn fw(options: &FwOptions) -> anyhow::Result<ExitCode> {
+    let Some(binary) = &options.binary else {
+        toolchain::set_up()?.0.check()?;
+        return Ok(ExitCode::SUCCESS);
+    };
+    let asked = options.board.as_deref();
+    let Some(board) = board_for(asked, binary) else {
+        let (asked, names) = (asked.unwrap_or_default(), BOARDS.map(|board| board.name).join(", "));
+        bail!(Refused::because(format_args!("no board {asked}; there are {names}")));
+    };
+    let name = binary.to_string_lossy();
+    let is_path = name.contains('/');
+    if !is_path && !binaries().iter().any(|binary| *binary == name) {
+        bail!(Refused::because(format_args!("no binary {name}; there are {}", binaries().join(", "))));
+    }
+    let (toolchain, _) = toolchain::set_up()?;
+    let elf = if is_path { binary.clone() } else { toolchain.build(&name, board.target)? };
+    let limit = options.seconds.map_or(LIMIT, |seconds| Duration::from_secs(seconds.into()));
+    let settings = Settings { qemu: toolchain.qemu(), board, elf: &elf, clock: Clock::Real, debugger: true, limit };
+    let is_late = |error: &io::Error| error.kind() == io::ErrorKind::TimedOut;
+    match (run(&settings, &mut stdout().lock()), options.seconds) {
+        (Err(error), Some(seconds)) if error.downcast_ref().is_some_and(is_late) => {
+            complain(format_args!("ended after {seconds} s, as told"));
+            Ok(ExitCode::SUCCESS)
+        }
+        (ended, _) => Ok(process::exit_code(ended?)),
+    }
+}
+
+fn runnable() -> String {
+    let boards = BOARDS.map(|board| format!("  {:16}{}, {} MHz", board.name, board.cpu, board.hertz / 1_000_000));
+    let (binaries, boards) = (binaries().join("\n  "), boards.join("\n"));
+    format!("Example: cargo fw mps2-an386 --seconds 10\n\nBinaries:\n  {binaries}\n\nBoards:\n{boards}")
+}
+
+fn binaries() -> Vec<String> {
+    let Ok(files) = fs::read_dir(toolchain::workspace().join("firmware/src/bin")) else { return Vec::new() };
+    let stem = |file: fs::DirEntry| Some(file.path().file_stem()?.to_string_lossy().into_owned());
+    let mut names: Vec<_> = files.flatten().filter_map(stem).collect();
+    names.sort();
+    names
+}
+
+/// Sets everything up and runs every test, those in QEMU included.
+#[derive(Debug, Parser)]
+#[command(name = "cargo verify", after_help = "Example: cargo verify --long")]
+pub struct TestOptions {
+    /// Run the tests that take hours, too
+    #[arg(long)]
+    long: bool,
+}
+
+/// For every test, the compiling included, on a slow, busy machine; and for the long ones too.
+const LIMITS: [Duration; 2] = [Duration::from_secs(3600), Duration::from_secs(12 * 3600)];
+/// How many tests run side by side. Unless the user has set it, twice as many as there are processors: many wait for an
+/// emulator or a clock.
+const THREADS: &str = "RUST_TEST_THREADS";
+
+/// The set-up, the firmware, then exactly `cargo test`, with its own output and exit code.
+pub fn verify(options: &TestOptions) -> anyhow::Result<ExitCode> {
+    let (toolchain, _) = toolchain::set_up()?;
+    toolchain::set_up_pico()?;
+    toolchain.build_ahead()?;
+    let mut command = Command::new("cargo");
+    command.arg("test").current_dir(toolchain::workspace()).stdin(Stdio::null());
+    if options.long {
+        command.args(["--", "--include-ignored"]);
+    }
+    if env::var_os(THREADS).is_none() {
+        command.env(THREADS, (2 * available_parallelism()?.get()).to_string());
+    }
+    Ok(process::exit_code(process::spawn(&mut command, LIMITS[usize::from(options.long)])?.wait()?))
+}
