@@ -1,28 +1,20 @@
 //! A table, in two notations.
 
-/// Columns with their headings, rows of as many cells.
+/// Headings of the columns, with units, and rows of as many cells.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Table {
-    pub title: &'static str,
-    /// What the columns mean and where the numbers come from.
-    pub note: String,
-    /// Headings of the columns, with units.
     pub columns: &'static [&'static str],
     pub rows: Vec<Vec<String>>,
 }
 
 impl Table {
-    /// Comma-separated, without title and note; no cell contains a comma or a quote.
+    /// Comma-separated; no cell contains a comma or a quote.
     pub fn csv(&self) -> String {
         let lines = std::iter::once(self.columns.join(",")).chain(self.rows.iter().map(|row| row.join(",")));
         lines.map(|line| line + "\n").collect()
     }
 
     pub fn markdown(&self) -> String {
-        format!("## {}\n\n{}\n\n{}", self.title, self.note, self.markdown_rows())
-    }
-
-    pub fn markdown_rows(&self) -> String {
         let heads = [self.columns.join(" | "), vec!["---"; self.columns.len()].join(" | ")];
         let lines = heads.into_iter().chain(self.rows.iter().map(|row| row.join(" | ")));
         lines.map(|cells| format!("| {cells} |\n")).collect()

@@ -6,10 +6,8 @@ use std::fs;
 use double_pendulum::{Motion, Pendulum, State};
 use firmware::scenes::SceneName;
 use host_tests::commands::demo::played;
-use host_tests::commands::figures::chaos::{self, Chaos};
-use host_tests::commands::figures::frequencies::Frequencies;
 use host_tests::commands::figures::small::{CurvePoint, Small};
-use host_tests::commands::figures::{files, folder, panel};
+use host_tests::commands::figures::{chaos, files, folder, frequencies, panel};
 use host_tests::emulator::host::Show;
 use host_tests::emulator::qemu::Screenshot;
 use host_tests::oracle::tolerances;
@@ -113,7 +111,7 @@ fn figures_3_to_5_show_the_frequencies_envelopes_and_amplitudes_of_the_table() {
 /// In sqrt(g/l) the squares of the frequencies of equal rods solve x^2 - 2 (1 + mu) x + (1 + mu) = 0.
 #[test]
 fn figure_2_solves_the_auxiliary_equation() {
-    let Frequencies { points, .. } = Frequencies::new().expect("pendulums");
+    let points = frequencies::points().expect("pendulums");
     assert_eq!(points.last().map(|point| point[0]), Some(5.0));
     for [mu, fast, slow] in points {
         assert!(fast > slow, "mu = {mu}");
@@ -136,7 +134,7 @@ fn distance([x, y]: [f64; 2], [other_x, other_y]: [f64; 2]) -> f64 {
 fn the_right_path_of_figure_7_is_the_exact_one() {
     let (pendulum, State { a1, a2, .. }) = (chaos::pendulum().expect("a pendulum"), chaos::start());
     let mut exact = Reference::new(pendulum.parameters(), &Motion::at_rest(a1, a2));
-    let [right, _] = Chaos::new(1).expect("a pendulum").paths;
+    let [right, _] = chaos::paths(1).expect("a pendulum");
     let last = right.points.len() - 1;
     for (i, point) in right.points.into_iter().enumerate() {
         exact.advance_to(f64::from(chaos::DURATION) * i as f64 / last as f64);
@@ -151,7 +149,7 @@ fn the_right_path_of_figure_7_is_the_exact_one() {
 /// There is no exact solution of a misprint at hand, so its path is compared with one of half the step.
 #[test]
 fn the_printed_path_of_figure_7_does_not_depend_on_the_step() {
-    let [coarse, fine] = [1, 2].map(|refinement| Chaos::new(refinement).expect("a pendulum").paths);
+    let [coarse, fine] = [1, 2].map(|refinement| chaos::paths(refinement).expect("a pendulum"));
     let [[_, coarse], [_, fine]] = [coarse, fine];
     assert_eq!(coarse.points.len(), fine.points.len());
     for (i, (&point, &finer)) in coarse.points.iter().zip(&fine.points).enumerate() {

@@ -5,7 +5,7 @@ use double_pendulum::{Error, Parameters, Pendulum, State, rk4};
 use firmware::config::PAGE_GRAVITY;
 use plotters::prelude::*;
 
-use super::sheet::{Area, Axes, BLUE, Chart, ORANGE, TEXT, headed, line, pale, svg, text, units};
+use super::sheet::{Axes, BLUE, ORANGE, TEXT, axes, headed, line, pale, svg, text, units};
 use crate::oracle::textbook::misprinted_equal_rods;
 
 /// The figure's mass ratio, start angle of both rods (degrees) and rods (m).
@@ -24,12 +24,6 @@ const REACH: f64 = 2.1;
 const MARKED: u32 = 1;
 
 #[derive(Clone, Debug)]
-pub struct Chaos {
-    /// By the right equations and by the printed ones.
-    pub paths: [Path; 2],
-}
-
-#[derive(Clone, Debug)]
 pub struct Path {
     /// Its points, m right of the pivot and above it.
     pub points: Vec<[f64; 2]>,
@@ -45,20 +39,17 @@ pub fn start() -> State<f64> {
     State::at_rest(START.to_radians(), START.to_radians())
 }
 
-impl Chaos {
-    /// Computes the figure with `refinement` times its steps: 1 for the figure itself.
-    pub fn new(refinement: u32) -> Result<Self, Error> {
-        let pendulum = pendulum()?;
-        let right = path(&pendulum, refinement, |z| pendulum.derivatives(z));
-        let printed = path(&pendulum, refinement, |z| misprinted_equal_rods(MASS_RATIO, ROD, PAGE_GRAVITY, z));
-        Ok(Self { paths: [right, printed] })
-    }
+/// By the right equations and by the printed ones, with `refinement` times the figure's steps: 1 for the figure itself.
+pub fn paths(refinement: u32) -> Result<[Path; 2], Error> {
+    let pendulum = pendulum()?;
+    let right = path(&pendulum, refinement, |z| pendulum.derivatives(z));
+    let printed = path(&pendulum, refinement, |z| misprinted_equal_rods(MASS_RATIO, ROD, PAGE_GRAVITY, z));
+    Ok([right, printed])
+}
 
-    pub fn svg(&self) -> Result<String> {
-        svg([800, 468], |area| self.draw(area))
-    }
-
-    fn draw(&self, area: &Area) -> Result<()> {
+pub fn figure() -> Result<String> {
+    let paths = paths(1)?;
+    svg([800, 468], |area| {
         let title = format!("Figure 7: path of bob 2 in the first {DURATION} s");
         let particulars = format!(
             "mass ratio {MASS_RATIO}, both rods let go at rest at {START}°; l = {ROD} m, g = {PAGE_GRAVITY} m/s², m₁ = 1 kg"
@@ -66,22 +57,19 @@ impl Chaos {
         let marks =
             format!("○ start, ● end; · every {MARKED} s, with the seconds; paler earlier, darker later; × pivot");
         let area = headed(&headed(area, &title, text(15))?, &particulars, text(12))?;
-        let area = headed(&area, &marks, text(12))?;
-        let halves = area.split_evenly((1, 2));
+        let halves = headed(&area, &marks, text(12))?.split_evenly((1, 2));
         let names = ["the right equations", "as printed, a factor μ missing"];
-        for (((area, name), colour), path) in halves.iter().zip(names).zip([BLUE, ORANGE]).zip(&self.paths) {
+        for (((area, name), colour), path) in halves.iter().zip(names).zip([BLUE, ORANGE]).zip(&paths) {
             let [least, greatest] = path.energies.map(|energy| format!("{energy:.1} J"));
             let energy = if least == greatest { least } else { format!("{least} to {greatest}") };
             let name = format!("{name}; energy {energy}").replace('-', "−");
             let area = headed(area, &name, text(13).color(&colour))?;
-            let range = [-REACH, REACH];
-            let frame = Chart { across: ("x, m", range), upwards: ("y, m", range), ticks: [9, 9] };
-            let mut chart = frame.draw(&area)?;
+            let mut chart = axes(&area, ("x, m", [-REACH, REACH]), ("y, m", [-REACH, REACH]), [9, 9])?;
             path.draw(&mut chart, colour)?;
             chart.draw_series([Cross::new((0.0, 0.0), units(5), line(TEXT, 12))])?;
         }
         Ok(())
-    }
+    })
 }
 
 fn path(pendulum: &Pendulum<f64>, refinement: u32, rhs: impl Fn(&[f64; 4]) -> [f64; 4]) -> Path {

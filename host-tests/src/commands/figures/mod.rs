@@ -36,9 +36,9 @@ pub fn folder() -> PathBuf {
 
 /// Every file that the command writes: its name in that folder and what is in it.
 pub fn files() -> Result<Vec<(String, Vec<u8>)>> {
-    let mut figures = vec![(2, frequencies::Frequencies::new()?.svg()?), (7, chaos::Chaos::new(1)?.svg()?)];
+    let mut figures = vec![(2, frequencies::figure()?), (7, chaos::figure()?)];
     for (number, mass_ratio) in [(3, 0.2), (4, 1.0), (5, 5.0)] {
-        figures.push((number, small::Small::new(number, mass_ratio)?.svg()?));
+        figures.push((number, small::Small::new(number, mass_ratio)?.figure()?));
     }
     let figures =
         figures.into_iter().map(|(number, svg)| Ok((format!("figures/figure-{number}.svg"), svg.into_bytes())));

@@ -49,43 +49,36 @@ pub fn headed<'a>(area: &Area<'a>, line: &str, style: TextStyle<'_>) -> Result<A
     Ok(rest)
 }
 
-#[derive(Clone, Debug)]
-pub struct Chart<'a> {
-    /// The quantity across with its unit (empty: the chart below names it), and its range.
-    pub across: (&'a str, [f64; 2]),
-    pub upwards: (&'a str, [f64; 2]),
-    /// At most so many numbers along each.
-    pub ticks: [usize; 2],
-}
-
-impl Chart<'_> {
-    pub fn draw<'a>(&self, area: &Area<'a>) -> Result<Axes<'a>> {
-        let ((across, [left, right]), (upwards, [bottom, top])) = (self.across, self.upwards);
-        let mut chart = ChartBuilder::on(area)
-            .margin(units(6))
-            .margin_right(units(16))
-            .x_label_area_size(units(if across.is_empty() { 20 } else { 40 }))
-            .y_label_area_size(units(54))
-            .build_cartesian_2d(left..right, bottom..top)?;
-        let [columns, rows] = self.ticks;
-        let mut mesh = chart.configure_mesh();
-        if !across.is_empty() {
-            mesh.x_desc(across);
-        }
-        mesh.y_desc(upwards)
-            .x_labels(columns)
-            .y_labels(rows)
-            .x_label_formatter(&plain)
-            .y_label_formatter(&plain)
-            .label_style(text(12))
-            .axis_desc_style(text(13))
-            .set_all_tick_mark_size(units(5))
-            .axis_style(line(TEXT, 10))
-            .bold_line_style(line(GRID, 10))
-            .light_line_style(TRANSPARENT)
-            .draw()?;
-        Ok(chart)
+/// Axes with the quantity on each, its unit (empty: the chart below names it) and its range, and at most so many numbers along each.
+pub fn axes<'a>(
+    area: &Area<'a>,
+    (across, [left, right]): (&str, [f64; 2]),
+    (upwards, [bottom, top]): (&str, [f64; 2]),
+    [columns, rows]: [usize; 2],
+) -> Result<Axes<'a>> {
+    let mut chart = ChartBuilder::on(area)
+        .margin(units(6))
+        .margin_right(units(16))
+        .x_label_area_size(units(if across.is_empty() { 20 } else { 40 }))
+        .y_label_area_size(units(54))
+        .build_cartesian_2d(left..right, bottom..top)?;
+    let mut mesh = chart.configure_mesh();
+    if !across.is_empty() {
+        mesh.x_desc(across);
     }
+    mesh.y_desc(upwards)
+        .x_labels(columns)
+        .y_labels(rows)
+        .x_label_formatter(&plain)
+        .y_label_formatter(&plain)
+        .label_style(text(12))
+        .axis_desc_style(text(13))
+        .set_all_tick_mark_size(units(5))
+        .axis_style(line(TEXT, 10))
+        .bold_line_style(line(GRID, 10))
+        .light_line_style(TRANSPARENT)
+        .draw()?;
+    Ok(chart)
 }
 
 /// A number of an axis without needless digits.

@@ -7,7 +7,7 @@ use double_pendulum::{Error, Modes, Motion, Parameters, SmallOscillations};
 use firmware::config::PAGE_GRAVITY;
 use plotters::prelude::*;
 
-use super::sheet::{Area, BLUE, Chart, ORANGE, headed, line, svg, text, units};
+use super::sheet::{BLUE, ORANGE, axes, headed, line, svg, text, units};
 
 /// The book's rods, m.
 const ROD: f64 = 0.25;
@@ -50,35 +50,31 @@ impl Small {
         Ok(Self { number, mass_ratio, modes, points: (0..=POINTS).map(point).collect() })
     }
 
-    pub fn svg(&self) -> Result<String> {
-        svg([720, 503], |area| self.draw(area))
-    }
-
-    fn draw(&self, area: &Area) -> Result<()> {
-        let Modes { fast, slow, .. } = &self.modes;
-        let title = format!("Figure {}: small oscillations, mass ratio {}", self.number, self.mass_ratio);
-        let particulars = format!(
-            "l = {ROD} m, g = {PAGE_GRAVITY} m/s²; ω₁ = {:.3} rad/s, ω₂ = {:.3} rad/s; the envelope repeats every {:.3} s",
-            fast.frequency,
-            slow.frequency,
-            TAU / self.modes.exchange()
-        );
-        let start =
-            "let go at rest at α₁ = 0°, α₂ = 30°; line: the angle; shade: how far it can swing while the modes beat";
-        let area = headed(&headed(area, &title, text(15))?, start, text(12))?;
-        let area = headed(&area, &particulars, text(12))?;
-        let (upper, lower) = area.split_vertically((area.dim_in_pixel().1 - units(20)) / 2);
-        let rods = [(upper, "", "angle α₁, degrees", BLUE), (lower, "time, s", "angle α₂, degrees", ORANGE)];
-        for (rod, (area, across, upwards, colour)) in rods.into_iter().enumerate() {
-            let frame = Chart { across: (across, [0.0, DURATION]), upwards: (upwards, [-32.0, 32.0]), ticks: [11, 7] };
-            let mut chart = frame.draw(&area)?;
-            let edge = |sign: f64| self.points.iter().map(move |point| (point.time, sign * point.envelopes[rod]));
-            let band: Vec<_> = edge(1.0).chain(edge(-1.0).rev()).collect();
-            chart.draw_series([Polygon::new(band, colour.mix(0.15))])?;
-            let curve = self.points.iter().map(|point| (point.time, point.angles[rod]));
-            chart.draw_series(LineSeries::new(curve, line(colour, 16)))?;
-        }
-        Ok(())
+    pub fn figure(&self) -> Result<String> {
+        svg([720, 503], |area| {
+            let Modes { fast, slow, .. } = &self.modes;
+            let title = format!("Figure {}: small oscillations, mass ratio {}", self.number, self.mass_ratio);
+            let particulars = format!(
+                "l = {ROD} m, g = {PAGE_GRAVITY} m/s²; ω₁ = {:.3} rad/s, ω₂ = {:.3} rad/s; the envelope repeats every {:.3} s",
+                fast.frequency,
+                slow.frequency,
+                TAU / self.modes.exchange()
+            );
+            let start = "let go at rest at α₁ = 0°, α₂ = 30°; line: the angle; shade: how far it can swing while the modes beat";
+            let area = headed(&headed(area, &title, text(15))?, start, text(12))?;
+            let area = headed(&area, &particulars, text(12))?;
+            let (upper, lower) = area.split_vertically((area.dim_in_pixel().1 - units(20)) / 2);
+            let rods = [(upper, "", "angle α₁, degrees", BLUE), (lower, "time, s", "angle α₂, degrees", ORANGE)];
+            for (rod, (area, across, upwards, colour)) in rods.into_iter().enumerate() {
+                let mut chart = axes(&area, (across, [0.0, DURATION]), (upwards, [-32.0, 32.0]), [11, 7])?;
+                let edge = |sign: f64| self.points.iter().map(move |point| (point.time, sign * point.envelopes[rod]));
+                let band: Vec<_> = edge(1.0).chain(edge(-1.0).rev()).collect();
+                chart.draw_series([Polygon::new(band, colour.mix(0.15))])?;
+                let curve = self.points.iter().map(|point| (point.time, point.angles[rod]));
+                chart.draw_series(LineSeries::new(curve, line(colour, 16)))?;
+            }
+            Ok(())
+        })
     }
 }
 

@@ -115,7 +115,7 @@ pub fn table(points: &[Point]) -> Table {
         "resolved",
         "verdict",
     ];
-    Table { columns, rows: points.iter().map(row).collect(), ..Table::default() }
+    Table { columns, rows: points.iter().map(row).collect() }
 }
 
 #[cfg(test)]

@@ -58,7 +58,7 @@ pub fn put<'a>(block: impl Fn(usize) -> String, charts: impl Iterator<Item = &'a
 /// The advice as a list, and the first rows of the table.
 pub fn block(advice: &[String], points: &[Point], rows: usize) -> String {
     let items: String = advice.iter().map(|sentence| format!("- {sentence}\n")).collect();
-    format!("{items}\n{}", table(points, &ROWS[..rows]).markdown_rows())
+    format!("{items}\n{}", table(points, &ROWS[..rows]).markdown())
 }
 
 fn read(file: &str) -> Result<String> {
@@ -112,7 +112,7 @@ fn table(points: &[Point], names: &[&str]) -> Table {
         "error in 10 s (rad)",
         "error in 100 s (rad)",
     ];
-    Table { columns, rows: names.iter().filter_map(row).collect(), ..Table::default() }
+    Table { columns, rows: names.iter().filter_map(row).collect() }
 }
 
 #[cfg(test)]

@@ -1,7 +1,6 @@
 //! `cargo verify-board`: what the tests prove in emulation, proven on a board in the hand, with a report to be sent in.
 
-mod bits;
-mod cycles;
+mod methods;
 mod program;
 mod questions;
 mod scenes;
@@ -41,11 +40,18 @@ pub struct VerifyOptions {
     pub report: PathBuf,
 }
 
-/// A part of the report, and what in it is not well, a line each.
+/// A part of the report: its title, what the columns mean and where the numbers come from, and what is not well, a line each.
 #[derive(Debug, Default)]
 struct Section {
+    head: [&'static str; 2],
     table: Table,
     faults: Vec<String>,
+}
+
+impl Section {
+    fn new(title: &'static str, note: &'static str, columns: &'static [&'static str]) -> Self {
+        Self { head: [title, note], table: Table { columns, rows: Vec::new() }, faults: Vec::new() }
+    }
 }
 
 /// Verifies the board and writes the report; whether all was well.
@@ -55,12 +61,12 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
     let name = BoardName::from_code(identity.board).map_or("unknown", BoardName::name);
     let board = every_board().find(|board| board.name == name);
     let progress = Progress::start(&format!("verifying {name} at {}", talk.port.name()));
-    let (bits, measured) = (bits::check(&mut talk)?, cycles::measure(&mut talk)?);
+    let (bits, measured) = (methods::compare(&mut talk)?, methods::measure(&mut talk)?);
     let scenes = scenes::watch(&mut talk, identity.hertz)?;
     drop(progress);
     let asked = if options.no_questions { Section::default() } else { questions::ask(&mut talk, name)? };
     let program = program::compare(board, &identity)?;
-    let sections = [bits, cycles::estimate(measured, board)?, scenes, asked];
+    let sections = [bits, methods::estimate(measured, board)?, scenes, asked];
 
     let faults: Vec<&String> = sections.iter().flat_map(|section| &section.faults).collect();
     let verdict = if faults.is_empty() { "every bit the host's".into() } else { format!("{} not well", faults.len()) };
@@ -70,7 +76,9 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
     let mut text = format!("# {name}\n\n{headline}.\n\n");
     text += &format!("- chip {chip}, processor {:08x}, {} Hz\n- {program}\n", identity.processor, identity.hertz);
     let told = sections.iter().filter(|section| !section.table.rows.is_empty());
-    told.for_each(|section| text += &format!("\n{}", section.table.markdown()));
+    told.for_each(|Section { head: [title, note], table, .. }| {
+        text += &format!("\n## {title}\n\n{note}\n\n{}", table.markdown());
+    });
     let path = options.report.with_extension("md");
     fs::write(&path, text).with_context(|| path.display().to_string())?;
     faults.iter().for_each(|fault| complain(format_args!("not well: {fault}")));

@@ -10,7 +10,6 @@ use firmware::scenes::SceneName;
 
 use super::Section;
 use super::talk::Talk;
-use crate::commands::table::Table;
 use crate::console::cli::complain;
 
 /// Frames that may still be on their way when the person answers.
@@ -24,7 +23,7 @@ pub fn ask(talk: &mut Talk, name: &str) -> anyhow::Result<Section> {
         _ => (false, &[]),
     };
     talk.ask::<Done>(&Choose { request: 0, scene: SceneName::Page.code() })?;
-    let mut section = Section::default();
+    let mut section = Section::new("Seen and pressed", "By the person at the board.", &["what", "is so"]);
     let mut note = |what: String, is_so: Option<bool>| {
         let answer = is_so.map_or("not answered", |is_so| if is_so { "yes" } else { "no" });
         section.faults.extend((is_so == Some(false)).then(|| format!("not so: {what}")));
@@ -46,12 +45,6 @@ pub fn ask(talk: &mut Talk, name: &str) -> anyhow::Result<Section> {
         let is_tapped = !matches!(answer.trim(), "n" | "no") && !answer.is_empty();
         note(format!("a tap on the button '{key}' starts the motion again"), is_tapped.then_some(restarted));
     }
-    section.table = Table {
-        title: "Seen and pressed",
-        note: "By the person at the board.".to_owned(),
-        columns: &["what", "is so"],
-        ..section.table
-    };
     Ok(section)
 }
 

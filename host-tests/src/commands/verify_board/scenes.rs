@@ -6,10 +6,8 @@ use firmware::protocol::{Ask, Choose, Frame, Status};
 use firmware::scenes::SceneName;
 
 use super::Section;
-use super::bits::verdict;
 use super::talk::Talk;
 use crate::commands::demo::comparison::Comparison;
-use crate::commands::table::Table;
 
 const FRAMES: u32 = TICK_RATE;
 /// By so many it must have said what it plays.
@@ -17,15 +15,14 @@ const PATIENCE: u32 = 10 * FRAMES;
 
 /// Plays every scene on the board, whose processor has a clock of `hertz`.
 pub fn watch(talk: &mut Talk, hertz: u32) -> anyhow::Result<Section> {
-    let (mut rows, mut faults) = (Vec::new(), Vec::new());
+    let columns = &["scene", "frames", "bits", "dropped", "moving and drawing (ms)", "with panel and link (ms)"];
+    let mut section = Section::new("Scenes", "The longest of a second's frames, by the board's tick clock.", columns);
     for &scene in SceneName::ALL {
         let (row, difference) = play(talk, scene, hertz)?;
-        rows.push(row);
-        faults.extend(difference.map(|difference| format!("{}: {difference}", scene.name())));
+        section.table.rows.push(row);
+        section.faults.extend(difference.map(|difference| format!("{}: {difference}", scene.name())));
     }
-    let note = "The longest of a second's frames, by the board's tick clock.".into();
-    let columns = &["scene", "frames", "bits", "dropped", "moving and drawing (ms)", "with panel and link (ms)"];
-    Ok(Section { table: Table { title: "Scenes", note, columns, rows }, faults })
+    Ok(section)
 }
 
 /// A scene's row, and the first number that differs.
@@ -58,7 +55,7 @@ fn play(talk: &mut Talk, name: SceneName, hertz: u32) -> anyhow::Result<(Vec<Str
     let difference = comparison.difference().map(|difference| difference.to_string());
     let milliseconds = |cycles: u32| format!("{:.2}", 1e3 * f64::from(cycles) / f64::from(hertz.max(1)));
     let [compared, dropped] = [compared, dropped].map(|count| count.to_string());
-    let bits = verdict(difference.as_deref());
+    let bits = difference.clone().unwrap_or_else(|| "the host's".to_owned());
     let row = vec![name.name().into(), compared, bits, dropped, milliseconds(computing), milliseconds(whole)];
     Ok((row, difference))
 }
