@@ -17,10 +17,12 @@
 //! | [`config`] | every number that may be tuned |
 //! | [`prices`] | what steps cost on each core, as counted |
 #![cfg_attr(not(test), no_std)]
+#![deny(unsafe_code)]
 #![allow(missing_docs, reason = "what name and type say is not said again")]
 
 pub mod app;
 #[cfg(all(target_arch = "arm", target_os = "none", not(feature = "cores")))]
+#[allow(unsafe_code, reason = "here the hardware is reached")]
 pub mod board;
 pub mod config;
 pub mod display;

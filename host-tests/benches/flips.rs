@@ -3,7 +3,6 @@
 //! The C program, the page's equations in `f32` with the system's `sinf`, is compiled here by `cc -O3`. Every way takes the same
 //! starts, step and limit; the fastest of its runs counts.
 
-use std::path::PathBuf;
 use std::process::Command;
 use std::time::Instant;
 
@@ -23,76 +22,57 @@ const LIMIT: f32 = 100.0;
 const ROUNDS: usize = 30;
 /// Starts that a thread takes at once.
 const PORTION: usize = 1024;
-/// Times the speed of C that are asked on one thread of vectors of 8 numbers, and of 4: 280 and 130 million steps a second where
-/// plain C made 11.
-const GOALS: [f64; 2] = [280.0 / 11.0, 130.0 / 11.0];
 
 type Found = Result<Vec<Flip<f32>>, Error>;
+/// A name, how the flips are found, and how many times the speed of C are asked on one thread: of vectors of 8 numbers, and of 4,
+/// 280 and 130 million steps a second where plain C made 11.
 type Way = (&'static str, fn(&Search, &[[f32; 2]]) -> Found, Option<f64>);
 
 const WAYS: [Way; 4] = [
-    (
-        "this kernel: one start after the other",
-        |search, starts| starts.iter().map(|&[a1, a2]| search.of(a1, a2)).collect(),
-        None,
-    ),
-    ("24 side by side, any x86-64", vectors::baseline, Some(GOALS[1])),
-    ("24 side by side, vectors as this processor has them", vectors::flips, Some(GOALS[0])),
+    ("this kernel: one start after the other", one_by_one, None),
+    ("24 side by side, any x86-64", vectors::baseline, Some(130.0 / 11.0)),
+    ("24 side by side, vectors as this processor has them", vectors::flips, Some(280.0 / 11.0)),
     ("the same on all threads", threads, None),
 ];
+
+fn one_by_one(search: &Search, starts: &[[f32; 2]]) -> Found {
+    starts.iter().map(|&[a1, a2]| search.of(a1, a2)).collect()
+}
 
 fn threads(search: &Search, starts: &[[f32; 2]]) -> Found {
     let portions = starts.par_chunks(PORTION).map(|portion| vectors::flips(search, portion));
     Ok(portions.collect::<Result<Vec<_>, _>>()?.concat())
 }
 
-/// Million steps a second of a way, and what it found.
-fn rate(way: &Way, map: &Map, starts: &[[f32; 2]]) -> Result<(f64, Vec<Flip<f32>>)> {
-    let search = map.search(1)?;
-    let start = Instant::now();
-    let found = way.1(&search, starts)?;
-    let seconds = start.elapsed().as_secs_f64();
+fn main() -> Result<()> {
+    let map = Map::new(Parameters::equal_rods(1.0, 1.0, 1.0), LIMIT, Square::whole([SIDE, SIDE]))?;
+    let (starts, search): (Vec<_>, _) = (map.starts().collect(), map.search(1)?);
+    let most = (f64::from(map.limit) / map.dt).ceil();
     let steps = |flip: &Flip<f32>| match *flip {
         Flip::Never => 0.0,
         Flip::After(time) => (f64::from(time) / map.dt).ceil(),
-        Flip::Later => (f64::from(map.limit) / map.dt).ceil(),
+        Flip::Later => most,
     };
-    Ok((found.iter().map(steps).sum::<f64>() / seconds / 1e6, found))
-}
+    let program = workspace().join("target/peers-c-flips");
+    let mut cc = Command::new("cc");
+    cc.current_dir(workspace().join("host-tests/peers-c"));
+    cc.args(["-O3", "-DSIN=sinf", "-DCOS=cosf", "flips.c", "textbook.c", "-lm", "-o"]).arg(&program);
+    ensure!(cc.status().context("no C compiler")?.success(), "cc refuses flips.c");
 
-/// The C program.
-fn compile() -> Result<PathBuf> {
-    let folder = workspace().join("target/peers-c");
-    std::fs::create_dir_all(&folder)?;
-    let program = folder.join("flips");
-    let mut command = Command::new("cc");
-    command.current_dir(workspace().join("host-tests/peers-c"));
-    command.args(["-O3", "-DSIN=sinf", "-DCOS=cosf", "flips.c", "textbook.c", "-lm", "-o"]).arg(&program);
-    ensure!(command.status().context("no C compiler")?.success(), "cc refuses flips.c");
-    Ok(program)
-}
-
-/// Its million steps a second.
-fn rate_of_c(program: &PathBuf, map: &Map) -> Result<f64> {
-    let most = (f64::from(map.limit) / map.dt).ceil();
-    let output = Command::new(program).args([SIDE.to_string(), map.dt.to_string(), most.to_string()]).output()?;
-    let text = String::from_utf8(output.stdout)?;
-    let numbers: Vec<f64> = text.split_whitespace().map(str::parse).collect::<Result<_, _>>()?;
-    let [steps, nanoseconds] = numbers[..] else { anyhow::bail!("flips.c says {text:?}") };
-    Ok(1e3 * steps / nanoseconds)
-}
-
-fn main() -> Result<()> {
-    let map = Map::new(Parameters::equal_rods(1.0, 1.0, 1.0), LIMIT, Square::whole([SIDE, SIDE]))?;
-    let starts: Vec<_> = map.starts().collect();
-    let program = compile()?;
+    // Million steps a second.
     let (mut c, mut rates) = (0.0_f64, [0.0_f64; WAYS.len()]);
     for _ in 0..ROUNDS {
-        c = c.max(rate_of_c(&program, &map)?);
+        let output = Command::new(&program).args([SIDE.to_string(), map.dt.to_string(), most.to_string()]).output()?;
+        let text = String::from_utf8(output.stdout)?;
+        let numbers: Vec<f64> = text.split_whitespace().map(str::parse).collect::<Result<_, _>>()?;
+        let [steps_of_c, nanoseconds] = numbers[..] else { anyhow::bail!("flips.c says {text:?}") };
+        c = c.max(1e3 * steps_of_c / nanoseconds);
         let mut all = Vec::new();
-        for (way, best) in WAYS.iter().zip(&mut rates) {
-            let (rate, found) = rate(way, &map, &starts)?;
-            *best = best.max(rate);
+        for ((_, find, _), best) in WAYS.iter().zip(&mut rates) {
+            let start = Instant::now();
+            let found = find(&search, &starts)?;
+            let seconds = start.elapsed().as_secs_f64();
+            *best = best.max(found.iter().map(steps).sum::<f64>() / seconds / 1e6);
             all.push(found);
         }
         ensure!(all.iter().all(|found| *found == all[0]), "not the same flips");

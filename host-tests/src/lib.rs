@@ -11,6 +11,7 @@
 //! | [`oracle`] | known answers, hard cases and the one table of tolerances |
 //! | [`console`] | how every command talks: options, errors, progress |
 
+#![forbid(unsafe_code)]
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 #![allow(missing_docs, reason = "nobody builds on this package: what name and type say is not said again")]
 

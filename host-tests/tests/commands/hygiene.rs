@@ -1,15 +1,11 @@
-//! What the project is made of: every dependency has its reason, and `unsafe` stands where the hardware is reached. That each of
-//! its blocks says why it is sound, `clippy::undocumented_unsafe_blocks` sees to.
+//! What the project is made of: every dependency has its reason. That `unsafe` stands where the hardware is reached, `unsafe_code`
+//! sees to, and that each of its blocks says why it is sound, `clippy::undocumented_unsafe_blocks`.
 
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use host_tests::emulator::toolchain::workspace;
-
-/// Where `unsafe` may stand: the boards, the image for cores without one, and a program that overflows its stack to see what
-/// becomes of it.
-const UNSAFE: [&str; 3] = ["firmware/src/board/", "firmware/cores/", "firmware/src/bin/inject-stack-overflow.rs"];
 
 /// The paths of the sources in a folder of the project.
 pub fn sources(folder: &str) -> Vec<PathBuf> {
@@ -24,24 +20,6 @@ pub fn sources(folder: &str) -> Vec<PathBuf> {
 pub fn read(file: impl AsRef<Path>) -> String {
     let file = workspace().join(file);
     fs::read_to_string(&file).unwrap_or_else(|error| panic!("{}: {error}", file.display()))
-}
-
-#[test]
-fn unsafe_code_is_where_it_must_be() {
-    let own = ["host-tests/src", "host-tests/reference/src", "host-tests/vectors/src"];
-    let folders = ["kernel/src", "firmware/src", "firmware/cores"].into_iter().chain(own);
-    let files: Vec<_> = folders.flat_map(sources).collect();
-    assert!(files.len() > 100, "{} files", files.len());
-    for file in files {
-        let code = read(&file)
-            .lines()
-            .map(|line| line.split("//").next().unwrap_or_default().to_owned() + " ")
-            .collect::<String>();
-        let mut words = code.split(|c: char| !c.is_alphanumeric() && c != '_');
-        let name = file.strip_prefix(workspace()).expect("a file of ours").to_string_lossy().into_owned();
-        let may = UNSAFE.iter().any(|place| name.starts_with(place));
-        assert!(may || !words.any(|word| word == "unsafe"), "{name}");
-    }
 }
 
 /// The names in a manifest's tables of dependencies, this project's own crates apart.
