@@ -23,7 +23,6 @@ const MOST_BYTES: usize = 1 << 16;
 
 pub struct Port {
     name: String,
-    baud: u32,
     open: Option<Box<dyn SerialPort>>,
     inbox: Inbox,
     notices: VecDeque<String>,
@@ -35,13 +34,12 @@ pub struct Port {
 
 impl Port {
     /// Opens it; what is wrong in one line.
-    pub fn open(name: &str, baud: u32) -> Result<Self, String> {
-        let open = Some(open(name, baud).map_err(|error| reason(name, &error))?);
+    pub fn open(name: &str) -> Result<Self, String> {
+        let open = Some(open(name).map_err(|error| reason(name, &error))?);
         let mut inbox = Inbox::default();
         inbox.join();
         Ok(Self {
             name: name.to_owned(),
-            baud,
             open,
             inbox,
             notices: VecDeque::new(),
@@ -121,7 +119,7 @@ impl Port {
             return;
         }
         (self.since, self.bytes, self.complained) = (Instant::now(), 0, false);
-        self.open = open(&self.name, self.baud).ok();
+        self.open = open(&self.name).ok();
         if self.open.is_some() {
             self.inbox.join();
             self.notices.push_back(format!("{} is back", self.name));
@@ -142,16 +140,13 @@ impl Port {
     }
 
     fn silence(&self) -> String {
-        let Self { name, bytes, baud, .. } = self;
+        let Self { name, bytes, .. } = self;
         match self.inbox.damage() {
             _ if *bytes == 0 => format!("{name}: nothing comes; is the board on, and its TX at the adapter's RX?"),
             Some(LinkError::Version(version)) => {
                 format!(
                     "{name}: the board speaks version {version} of the protocol, this program {VERSION}; flash it anew"
                 )
-            }
-            _ if *baud != BAUD => {
-                format!("{name}: {bytes} bytes and no message at {baud} baud; the boards send at {BAUD}")
             }
             _ => format!("{name}: {bytes} bytes and no message: another device, or its link at another speed"),
         }
@@ -167,8 +162,8 @@ fn restart(messages: &[Received]) -> String {
     format!("the board has restarted after a {cause} in {}", LastShown(Some(end)))
 }
 
-fn open(name: &str, baud: u32) -> serialport::Result<Box<dyn SerialPort>> {
-    serialport::new(name, baud).timeout(WAIT).open()
+fn open(name: &str) -> serialport::Result<Box<dyn SerialPort>> {
+    serialport::new(name, BAUD).timeout(WAIT).open()
 }
 
 /// Why a port does not open, in one line.
@@ -201,10 +196,8 @@ mod tests {
         assert!(told.contains("no right to open it") && told.contains("dialout"), "{told}");
         assert!(refused(serialport::ErrorKind::NoDevice).contains("another program"));
         assert!(refused(serialport::ErrorKind::Unknown).contains("Not a typewriter"));
-        let error = Port::open("/nowhere/tty", BAUD).err();
+        let error = Port::open("/nowhere/tty").err();
         assert!(error.is_some_and(|told| told.starts_with("/nowhere/tty: there is no such port")));
-        assert!(
-            Port::open("/dev/null", BAUD).err().is_some_and(|told| told.contains("cannot be used as a serial port"))
-        );
+        assert!(Port::open("/dev/null").err().is_some_and(|told| told.contains("cannot be used as a serial port")));
     }
 }

@@ -146,26 +146,3 @@ pub(super) fn for_each_instruction(log: impl Read, mut each: impl FnMut(Register
     }
     Ok(())
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn an_instruction_has_four_lines_of_registers() -> Result<()> {
-        let log = "R00=00000001 R01=00000002 R02=00000003 R03=00000004\n\
-                   R04=00000005 R05=00000006 R06=00000007 R07=00000008\n\
-                   R08=fffffbfc R09=00000000 R10=00000000 R11=0000000c\n\
-                   R12=fffffbfd R13=2000fc98 R14=000009c7 R15=000025e2\n\
-                   XPSR=81000000 N--- T priv-thread\n";
-        let mut seen = Vec::new();
-        for_each_instruction(log.as_bytes(), |registers| {
-            seen.push(registers);
-            Ok(())
-        })?;
-        let general = [1, 2, 3, 4, 5, 6, 7, 8, 0xffff_fbfc, 0, 0, 12, 0xffff_fbfd, 0x2000_fc98, 0x9c7, 0x25e2];
-        assert_eq!(seen, [Registers { general }]);
-        assert_eq!((seen[0].sp(), seen[0].lr(), seen[0].pc()), (0x2000_fc98, 0x9c7, 0x25e2));
-        Ok(())
-    }
-}

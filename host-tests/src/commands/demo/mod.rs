@@ -44,16 +44,16 @@ pub fn run(options: &DemoOptions) -> anyhow::Result<bool> {
     let headless = options.headless || !(stdout().is_terminal() && stdin().is_terminal());
     options.check()?;
     // Before the build, which takes its time.
-    let port = options.port.as_ref().map(|name| port(name, options.baud)).transpose()?;
+    let port = options.port.as_deref().map(port).transpose()?;
     let source = port.map_or_else(|| emulated(options, headless), |port| Ok(Source::Port(port)))?;
     let recording = options.record.as_deref().map(Recording::create).transpose();
     let session = Session::new(options, source, recording?, !headless);
     if headless { headless::run(options, session) } else { live::run(options, session) }
 }
 
-pub(crate) fn port(name: &str, baud: u32) -> Result<Port, Refused> {
+pub(crate) fn port(name: &str) -> Result<Port, Refused> {
     let refused = |reason: String| Refused::because(format_args!("--port {reason}"));
-    Port::open(&find(name).map_err(|error| refused(error.to_string()))?, baud).map_err(refused)
+    Port::open(&find(name).map_err(refused)?).map_err(refused)
 }
 
 fn emulated(options: &DemoOptions, headless: bool) -> anyhow::Result<Source<'_>> {

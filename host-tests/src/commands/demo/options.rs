@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
-use clap::{Parser, value_parser};
+use clap::Parser;
 use double_pendulum::Method;
 use double_pendulum::plan::Way;
-use firmware::config::{BAUD, PROCESSOR};
+use firmware::config::PROCESSOR;
 use firmware::motion::Means;
 use firmware::scenes::{AnyScene, SceneName};
 
@@ -24,9 +24,6 @@ pub struct DemoOptions {
     /// Not an emulated board but the one at this serial port; `auto` finds it by its USB id
     #[arg(long, value_name = "PATH", conflicts_with = "board")]
     pub port: Option<String>,
-    /// Bits per second of that port
-    #[arg(long, value_name = "N", default_value_t = BAUD, requires = "port", value_parser = value_parser!(u32).range(1..))]
-    pub baud: u32,
     /// The scene [default: what the board plays, page when it is switched on]
     #[arg(long, value_name = "NAME", value_parser = choice(SceneName::ALL.iter().copied(), SceneName::name))]
     pub scene: Option<SceneName>,

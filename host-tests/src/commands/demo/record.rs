@@ -115,30 +115,3 @@ pub fn png(screenshot: &Screenshot, file: impl Write) -> anyhow::Result<()> {
     writer.write_image_data(&magnified(screenshot))?;
     Ok(writer.finish()?)
 }
-
-#[cfg(test)]
-mod tests {
-    use fastrand::Rng;
-    use firmware::graphics::canvas::Canvas;
-
-    use super::*;
-
-    #[test]
-    fn an_animation_shows_every_picture_as_it_was() {
-        let (mut rng, mut canvas) = (Rng::with_seed(1), Canvas::default());
-        let file = tempfile::NamedTempFile::new().expect("a file");
-        let mut recording = Recording::create(file.path()).expect("it can be written");
-        let mut frames = Vec::new();
-        for (number, changes) in (0..).zip([0, 1, 30, 20_000, 0]) {
-            for _ in 0..changes {
-                canvas.update(rng.i32(0..WIDTH as i32), rng.i32(0..HEIGHT as i32), |_| rng.u8(0..16));
-            }
-            recording.add(Screenshot::from(&canvas), number * TICKS_PER_FRAME).expect("it can be written");
-            frames.push(Screenshot::from(&canvas).greys().to_vec());
-        }
-        recording.finish().expect("it can be written");
-        let (greys, delays): (Vec<_>, Vec<_>) = played(file.path()).expect("a GIF file").into_iter().unzip();
-        assert!(greys == frames);
-        assert_eq!(delays, [3, 4, 3, 3, 4]);
-    }
-}

@@ -11,20 +11,21 @@ use std::fs;
 
 use anyhow::{Context, Result};
 
-use crate::console::cli::{check_writable, say};
+use crate::console::cli::{Refused, check_writable, say};
 use crate::console::progress::Progress;
 use map::{Followed, Map};
 pub use options::FlipsOptions;
 
 /// Computes the map and writes the file; says how much of it is in doubt.
 pub fn run(options: &FlipsOptions) -> Result<()> {
-    let (map, kind) = options.map()?;
+    let map = options.map().map_err(|error| Refused::because(format_args!("{error:#}")))?;
     check_writable("--out", &options.out)?;
     let [width, height] = map.square.size;
     let bar = Progress::of("starts", (width * map.square.rows()) as u64);
     let points = map.points(|done| bar.advance(done as u64))?;
     drop(bar);
-    let (file, out) = (kind.file(&map, &points, options.doubt)?, options.out.display());
+    let file = output::file(&options.out, &map, &points, options.doubt)?;
+    let out = options.out.display();
     fs::write(&options.out, file).with_context(|| format!("cannot write {out}"))?;
     let (all, doubtful) = (width * height, doubtful(&map, &points));
     let percent = 100.0 * doubtful as f64 / all as f64;

@@ -3,14 +3,13 @@
 use std::f64::consts::PI;
 use std::path::PathBuf;
 
+use anyhow::{Context, Result, ensure};
 use clap::Parser;
 use double_pendulum::Parameters;
 
 use super::map::Map;
-use super::output::Kind;
 use super::square::Square;
 use crate::commands::simulate::{Number, Pair};
-use crate::console::cli::Refused;
 
 const AFTER_HELP: &str = "\
 Examples:
@@ -48,7 +47,7 @@ pub struct FlipsOptions {
     #[arg(long)]
     pub doubt: bool,
     /// What to write: a picture (.png) or a table (.csv)
-    #[arg(long, value_name = "FILE", default_value = "flips.png")]
+    #[arg(long, value_name = "FILE", default_value = "flips.png", value_parser = picture_or_table)]
     pub out: PathBuf,
 }
 
@@ -66,6 +65,11 @@ fn size(text: &str) -> Result<[usize; 2], String> {
     Ok([number(width)?, number(height)?])
 }
 
+fn picture_or_table(file: &str) -> Result<PathBuf, &'static str> {
+    let is_it = [".png", ".csv"].into_iter().any(|end| file.ends_with(end));
+    if is_it { Ok(file.into()) } else { Err("must end in .png or .csv") }
+}
+
 /// The least time waited for, sqrt(l1/g): colours go by its logarithm. The most steps to a start.
 const LEAST_LIMIT: f64 = 2.0;
 const MOST_STEPS: f64 = 1e9;
@@ -74,37 +78,22 @@ const MOST_STEPS: f64 = 1e9;
 const FINEST: f64 = 8.0 * 2.4e-7;
 
 impl FlipsOptions {
-    /// The map and the kind of file; an error names the option and its value.
-    pub fn map(&self) -> Result<(Map, Kind), Refused> {
-        let kind = Kind::of(&self.out)?;
-        let Self { limit, zoom, .. } = self;
-        let wrong =
-            |option: &str, value: &Number, what: &str| Err(Refused::because(format!("--{option} {value}: {what}")));
-        if limit.value() < LEAST_LIMIT {
-            return wrong("limit", limit, "must be at least 2");
-        }
-        let pixel = 2.0 * PI / zoom.value() / self.size[0].max(self.size[1]) as f64;
-        if !zoom.is_positive() || zoom.value() < 1.0 {
-            return wrong("zoom", zoom, "must be at least 1");
-        }
-        if pixel < FINEST {
-            return wrong("zoom", zoom, "f32 has no angles so close");
-        }
+    /// An error names the option and its value.
+    pub fn map(&self) -> Result<Map> {
+        let Self { limit, zoom, size, .. } = self;
+        ensure!(limit.value() >= LEAST_LIMIT, "--limit {limit}: must be at least {LEAST_LIMIT}");
+        ensure!(zoom.value() >= 1.0, "--zoom {zoom}: must be at least 1");
+        let pixel = 2.0 * PI / zoom.value() / size[0].max(size[1]) as f64;
+        ensure!(pixel >= FINEST, "--zoom {zoom}: f32 has no angles so close");
         let [centre, [m1, m2], [l1, l2]] = [&self.centre, &self.masses, &self.lengths].map(Pair::values);
-        if centre.iter().any(|angle| angle.abs() > PI) {
-            return Err(Refused::because(format!("--centre {}: must be within -pi and pi", self.centre)));
-        }
+        let is_inside = centre.iter().all(|angle| angle.abs() <= PI);
+        ensure!(is_inside, "--centre {}: must be within -pi and pi", self.centre);
         // Time in sqrt(l1/g), whatever g is.
         let parameters = Parameters { m1, m2, l1, l2, g: l1 }.cast::<f32>();
-        let square = Square { size: self.size, centre, half: PI / zoom.value() };
-        let map = Map::new(parameters, limit.value() as f32, square)
-            .and_then(|map| {
-                [1, 2].map(|finer| map.search(finer)).into_iter().try_fold(map, |map, search| search.map(|_| map))
-            })
-            .map_err(|error| Refused::because(format!("--masses, --lengths: {error}")))?;
-        if 2.0 * limit.value() / map.dt > MOST_STEPS {
-            return wrong("limit", limit, "more than a thousand million steps");
-        }
-        Ok((map, kind))
+        let square = Square { size: *size, centre, half: PI / zoom.value() };
+        let map = Map::new(parameters, limit.value() as f32, square).context("--masses, --lengths")?;
+        [1, 2].into_iter().try_for_each(|finer| map.search(finer).map(drop)).context("--masses, --lengths")?;
+        ensure!(2.0 * limit.value() / map.dt <= MOST_STEPS, "--limit {limit}: more than a thousand million steps");
+        Ok(map)
     }
 }

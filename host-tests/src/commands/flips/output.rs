@@ -8,34 +8,16 @@ use double_pendulum::flips::Flip;
 
 use super::legend;
 use super::map::{Followed, Map};
-use crate::console::cli::Refused;
 
-/// A kind of file, by its name's end.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
-    Picture,
-    Table,
-}
-
-impl Kind {
-    pub fn of(file: &Path) -> Result<Self, Refused> {
-        match file.extension().and_then(|end| end.to_str()) {
-            Some("png") => Ok(Self::Picture),
-            Some("csv") => Ok(Self::Table),
-            _ => Err(Refused::because(format!("--out {}: must end in .png or .csv", file.display()))),
-        }
+/// The bytes of a file of this name; with `doubt`, points of a picture whose time is uncertain get a colour of their own.
+pub fn file(name: &Path, map: &Map, points: &[Followed], doubt: bool) -> Result<Vec<u8>> {
+    let [width, height] = map.square.size;
+    let places = (0..height).flat_map(|row| (0..width).map(move |column| [column, row]));
+    let pixels = places.map(|place| (place, points[map.square.place(place)]));
+    if name.extension().is_some_and(|end| end == "csv") {
+        return table(map, pixels);
     }
-
-    /// The file's bytes; with `doubt`, points whose time is uncertain get a colour of their own.
-    pub fn file(self, map: &Map, points: &[Followed], doubt: bool) -> Result<Vec<u8>> {
-        let [width, height] = map.square.size;
-        let places = (0..height).flat_map(|row| (0..width).map(move |column| [column, row]));
-        let pixels = places.map(|place| (place, points[map.square.place(place)]));
-        match self {
-            Self::Picture => picture(map, pixels.map(|(_, point)| colour(map, point, doubt)), doubt),
-            Self::Table => table(map, pixels),
-        }
-    }
+    picture(map, pixels.map(|(_, point)| colour(map, point, doubt)), doubt)
 }
 
 pub type Colour = [u8; 3];

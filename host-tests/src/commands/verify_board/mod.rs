@@ -10,8 +10,7 @@ use std::fs;
 use std::path::PathBuf;
 
 use anyhow::Context;
-use clap::{Parser, value_parser};
-use firmware::config::BAUD;
+use clap::Parser;
 use firmware::protocol::{BoardName, Identify, Identity};
 
 use crate::commands::demo;
@@ -29,9 +28,6 @@ pub struct VerifyOptions {
     /// The serial port; `auto` is the only one over USB
     #[arg(long, value_name = "PATH")]
     pub port: String,
-    /// Bits per second of that port
-    #[arg(long, value_name = "N", default_value_t = BAUD, value_parser = value_parser!(u32).range(1..))]
-    pub baud: u32,
     /// Do not ask about buttons and panel
     #[arg(long)]
     pub no_questions: bool,
@@ -56,7 +52,7 @@ impl Section {
 
 /// Verifies the board and writes the report; whether all was well.
 pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
-    let mut talk = Talk::new(demo::port(&options.port, options.baud)?)?;
+    let mut talk = Talk::new(demo::port(&options.port)?)?;
     let identity: Identity = talk.ask(&Identify { request: 0 })?;
     let name = BoardName::from_code(identity.board).map_or("unknown", BoardName::name);
     let board = every_board().find(|board| board.name == name);
