@@ -9,7 +9,6 @@ use std::process::{ExitCode, Termination};
 
 use clap::Parser;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use clap::error::ErrorKind as OptionError;
 
 /// The exit code for a request that cannot be served as asked: wrong options, missing tools.
 pub const REFUSED: u8 = 2;
@@ -41,9 +40,11 @@ pub fn main<Options: Parser, Done: Termination>(run: impl FnOnce(&Options) -> an
         Ok(options) => options,
         Err(code) => return code,
     };
+    // The reader of our output has seen enough. (A broken pipe to a child comes wrapped in an error of its own.)
+    let is_closed = |error: &io::Error| error.kind() == ErrorKind::BrokenPipe;
     match run(&options) {
         Ok(done) => done.report(),
-        Err(error) if is_closed_output(&error) => ExitCode::SUCCESS,
+        Err(error) if error.downcast_ref().is_some_and(is_closed) => ExitCode::SUCCESS,
         Err(error) => {
             complain(format_args!("error: {error:#}"));
             if error.is::<Refused>() { ExitCode::from(REFUSED) } else { ExitCode::FAILURE }
@@ -53,7 +54,7 @@ pub fn main<Options: Parser, Done: Termination>(run: impl FnOnce(&Options) -> an
 
 /// The exit code of a command that has looked for faults: whether all was well.
 pub fn verdict(well: bool) -> ExitCode {
-    if well { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+    ExitCode::from(u8::from(!well))
 }
 
 /// Prints a line of the command's result. A closed output is an error that [`main`] takes for a quiet end.
@@ -64,11 +65,6 @@ pub fn say(line: impl Display) -> io::Result<()> {
 /// Prints a line beside the result: an error, a warning, progress. That it cannot be read is no failure.
 pub fn complain(line: impl Display) {
     let _ = writeln!(stderr(), "{line}");
-}
-
-/// The reader of our output has seen enough. (A broken pipe to a child comes wrapped in an error of its own.)
-pub fn is_closed_output(error: &anyhow::Error) -> bool {
-    error.downcast_ref::<io::Error>().is_some_and(|error| error.kind() == ErrorKind::BrokenPipe)
 }
 
 /// Refuses a file that cannot be written, before the work for it begins. What is there stays as it is.
@@ -102,21 +98,15 @@ fn parse<Options: Parser>() -> Result<Options, ExitCode> {
     });
     // Its name comes first.
     let words = env::args_os().enumerate().filter(|(place, word)| *place != 1 || word.to_str() != Some(own));
-    let options = command
-        .try_get_matches_from(words.map(|(_, word)| word))
-        .and_then(|matches| Options::from_arg_matches(&matches));
-    options.map_err(|error| match error.kind() {
-        OptionError::DisplayHelp
-        | OptionError::DisplayVersion
-        | OptionError::DisplayHelpOnMissingArgumentOrSubcommand => {
-            // A closed output is no failure of ours.
-            let _ = error.print();
-            ExitCode::SUCCESS
-        }
-        _ => {
+    let matches = command.try_get_matches_from(words.map(|(_, word)| word));
+    matches.and_then(|matches| Options::from_arg_matches(&matches)).map_err(|error| {
+        if error.use_stderr() {
             complain(one_line(&error.to_string()));
-            ExitCode::from(REFUSED)
+            return ExitCode::from(REFUSED);
         }
+        // Help was asked for. A closed output is no failure of ours.
+        let _ = error.print();
+        ExitCode::SUCCESS
     })
 }
 

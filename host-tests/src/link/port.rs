@@ -1,6 +1,5 @@
 //! A real serial port, with a board at its other end or not: it says what is the matter, and goes on when the board is back.
 
-use std::collections::VecDeque;
 use std::io::{ErrorKind, Read, Write};
 use std::time::{Duration, Instant};
 
@@ -22,10 +21,10 @@ const PATIENCE: Duration = Duration::from_secs(2);
 const MOST_BYTES: usize = 1 << 16;
 
 pub struct Port {
-    name: String,
+    pub name: String,
     open: Option<Box<dyn SerialPort>>,
     inbox: Inbox,
-    notices: VecDeque<String>,
+    notices: Vec<String>,
     /// When an intact message came last, or the port was opened, or last tried.
     since: Instant,
     bytes: usize,
@@ -36,21 +35,10 @@ impl Port {
     /// Opens it; what is wrong in one line.
     pub fn open(name: &str) -> Result<Self, String> {
         let open = Some(open(name).map_err(|error| reason(name, &error))?);
-        let mut inbox = Inbox::default();
-        inbox.join();
-        Ok(Self {
-            name: name.to_owned(),
-            open,
-            inbox,
-            notices: VecDeque::new(),
-            since: Instant::now(),
-            bytes: 0,
-            complained: false,
-        })
-    }
-
-    pub fn name(&self) -> &str {
-        &self.name
+        let (inbox, notices, since) = (Inbox::default(), Vec::new(), Instant::now());
+        let mut port = Self { name: name.to_owned(), open, inbox, notices, since, bytes: 0, complained: false };
+        port.inbox.join();
+        Ok(port)
     }
 
     pub fn counts(&self) -> Counts {
@@ -71,7 +59,7 @@ impl Port {
         let bytes = self.read();
         let messages: Vec<_> = bytes.into_iter().filter_map(|byte| self.inbox.take(byte)).collect();
         if self.inbox.counts().restarts > restarts {
-            self.notices.push_back(restart(&messages));
+            self.notices.push(restart(&messages));
         }
         self.note(&messages);
         messages
@@ -111,7 +99,7 @@ impl Port {
     fn gone(&mut self, why: &str) {
         self.open = None;
         self.since = Instant::now();
-        self.notices.push_back(format!("{} is gone ({why}): is the cable out? Waiting for it", self.name));
+        self.notices.push(format!("{} is gone ({why}): is the cable out? Waiting for it", self.name));
     }
 
     fn reopen(&mut self) {
@@ -122,7 +110,7 @@ impl Port {
         self.open = open(&self.name).ok();
         if self.open.is_some() {
             self.inbox.join();
-            self.notices.push_back(format!("{} is back", self.name));
+            self.notices.push(format!("{} is back", self.name));
         }
     }
 
@@ -130,12 +118,12 @@ impl Port {
     fn note(&mut self, messages: &[Received]) {
         if !messages.is_empty() {
             if self.complained {
-                self.notices.push_back(format!("{}: the board sends again", self.name));
+                self.notices.push(format!("{}: the board sends again", self.name));
             }
             (self.since, self.bytes, self.complained) = (Instant::now(), 0, false);
         } else if self.open.is_some() && !self.complained && self.since.elapsed() >= PATIENCE {
             self.complained = true;
-            self.notices.push_back(self.silence());
+            self.notices.push(self.silence());
         }
     }
 

@@ -21,7 +21,7 @@ impl Source<'_> {
         match self {
             Self::Live(_, board) | Self::Lockstep(_, board) => board.name,
             Self::Pico(_) => PICO.name,
-            Self::Port(port) => port.name(),
+            Self::Port(port) => &port.name,
         }
     }
 

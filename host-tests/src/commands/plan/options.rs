@@ -2,8 +2,6 @@
 
 use anyhow::{anyhow, ensure};
 use clap::Parser;
-use clap::builder::{PossibleValuesParser, TypedValueParser};
-use double_pendulum::Motion;
 use double_pendulum::plan::{Limit, Plan, PlanError, Problem};
 use firmware::motion::{Viewport, half_pixel, problem};
 use firmware::scenes::SceneName;
@@ -33,16 +31,12 @@ pub struct SceneOptions {
     pub rate: Number,
     /// The chip that computes it
     #[arg(long, value_name = "CHIP", default_value = CHIPS[0].name,
-          value_parser = PossibleValuesParser::new(CHIPS.iter().map(|chip| chip.name)).map(|name| chip(&name)))]
+          value_parser = choice(CHIPS, |chip| chip.name))]
     pub target: Chip,
 }
 
 /// The highest display, pixels: half of one is then eight times what the rods' directions are rounded to.
 const HIGHEST: f64 = 1e6;
-
-fn chip(name: &str) -> Chip {
-    CHIPS.into_iter().find(|chip| chip.name == name).unwrap_or(CHIPS[0])
-}
 
 impl SceneOptions {
     /// The scene with its plan, or with what forbids any; an error is one line that names the option and the value.
@@ -68,20 +62,18 @@ impl SceneOptions {
     }
 
     fn given(&self) -> anyhow::Result<Problem> {
-        let rate = &self.rate;
+        let Self { rate, height, .. } = self;
         let whole = rate.value().fract() == 0.0 && rate.is_positive();
         ensure!(whole, "--rate {rate}: must be a whole number of frames per second, at least 1");
         ensure!(rate.value() <= f64::from(u16::MAX), "--rate {rate}: more than {}", u16::MAX);
-        let height = &self.height;
         ensure!(height.is_positive(), "--height {height}: must be greater than zero");
         ensure!(
             height.value() <= HIGHEST,
             "--height {height}: more than {HIGHEST}, finer than the rods' directions in f32"
         );
-        let ([a1, a2], [w1, w2]) = (self.start.angles(), self.start.velocities());
         Ok(Problem {
             pendulum: self.start.parameters(),
-            start: Motion { a1, a2, w1, w2 },
+            start: self.start.motion(),
             tolerance: half_pixel(&self.start.parameters(), height.value()),
             duration: self.duration.value(),
             rate: rate.value() as u16,

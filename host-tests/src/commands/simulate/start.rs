@@ -82,9 +82,13 @@ impl StartOptions {
         self.velocities.values().map(|velocity| self.radians(velocity))
     }
 
+    pub fn motion(&self) -> Motion<f64> {
+        let ([a1, a2], [w1, w2]) = (self.angles(), self.velocities());
+        Motion { a1, a2, w1, w2 }
+    }
+
     /// All of it to the last digit given; `None` if a number has too many.
     pub fn exact(&self) -> Option<Exact> {
-        let ([a1, a2], [w1, w2]) = (self.angles(), self.velocities());
         let [gravity, first] = [GRAVITY.to_string(), FIRST_ANGLE.to_string()].map(|text| text.parse::<Number>().ok());
         let first = first?;
         let angles = self.angles.clone().unwrap_or(Pair(first.clone(), first));
@@ -92,7 +96,7 @@ impl StartOptions {
         let [m, l, a, w] = [&self.masses, &self.lengths, &angles, &self.velocities];
         let numbers = [&a.0, &a.1, &w.0, &w.1, &m.0, &m.1, &l.0, &l.1, self.gravity.as_ref().or(gravity.as_ref())?];
         let fractions = numbers.into_iter().map(Number::exact).collect::<Option<Vec<_>>>()?.try_into().ok()?;
-        Some(Exact { about: (self.parameters(), Motion { a1, a2, w1, w2 }), fractions: Some(fractions), degrees })
+        Some(Exact { about: (self.parameters(), self.motion()), fractions: Some(fractions), degrees })
     }
 
     fn radians(&self, angle: f64) -> f64 {

@@ -6,7 +6,7 @@
 use std::fmt;
 
 use anyhow::{Context, bail, ensure};
-use double_pendulum::{Integrator, Method, Motion};
+use double_pendulum::{Integrator, Method};
 use firmware::job::Request;
 
 use super::price::candidates;
@@ -95,8 +95,7 @@ fn divisions(method: Method, samples: u32) -> impl Iterator<Item = u32> {
 
 /// The angles of every row, rad, by the reference.
 fn exact(options: &SimulateOptions, every: &Number, samples: u32) -> Vec<[f64; 2]> {
-    let ([a1, a2], [w1, w2]) = (options.start.angles(), options.start.velocities());
-    let mut reference = Reference::new(&options.start.parameters(), &Motion { a1, a2, w1, w2 });
+    let mut reference = Reference::new(&options.start.parameters(), &options.start.motion());
     let bar = Progress::of("reference, rows", samples.into());
     let row = |row| {
         bar.advance(1);

@@ -56,7 +56,7 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
     let identity: Identity = talk.ask(&Identify { request: 0 })?;
     let name = BoardName::from_code(identity.board).map_or("unknown", BoardName::name);
     let board = every_board().find(|board| board.name == name);
-    let progress = Progress::start(&format!("verifying {name} at {}", talk.port.name()));
+    let progress = Progress::start(&format!("verifying {name} at {}", talk.port.name));
     let (bits, measured) = (methods::compare(&mut talk)?, methods::measure(&mut talk)?);
     let scenes = scenes::watch(&mut talk, identity.hertz)?;
     drop(progress);

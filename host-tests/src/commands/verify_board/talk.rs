@@ -34,7 +34,7 @@ impl Talk {
             self.arrived.extend(self.port.messages());
             told.extend(self.port.notices());
             if since.elapsed() > PATIENCE {
-                let name = self.port.name();
+                let name = &self.port.name;
                 bail!("{}", told.pop().unwrap_or_else(|| format!("{name}: no message for {} s", PATIENCE.as_secs())));
             }
             sleep(LOOK);
@@ -53,7 +53,7 @@ impl Talk {
                 bail!("the board refuses: {}", Field::from_code(field).map_or("unknown field", Field::name));
             }
         }
-        bail!("{}: the board plays, and does not answer; flash it anew", self.port.name())
+        bail!("{}: the board plays, and does not answer; flash it anew", self.port.name)
     }
 
     pub fn ask<A: Message>(&mut self, message: &impl Message) -> anyhow::Result<A> {
