@@ -7,8 +7,7 @@ use std::path::Path;
 use std::thread::sleep;
 use std::time::Duration;
 
-use crate::support::program::address;
-use crate::support::{application, guarded, on};
+use crate::support::{address, application, guarded, on};
 use firmware::app::warm_restart::{Cause, MOST_RESTARTS};
 use firmware::protocol::{Choose, Field, Frame, Restarted, Set};
 use firmware::scenes::SceneName;

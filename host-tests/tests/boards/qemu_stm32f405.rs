@@ -1,7 +1,6 @@
 //! The image that is flashed runs in the emulator as well, where it finds neither clock control nor panel nor button.
 
-use crate::support::program::address;
-use crate::support::{application, on};
+use crate::support::{address, application, on};
 use double_pendulum::Parameters;
 use firmware::config::{GRAVITY, MOST_MEASURED_STEPS};
 use firmware::job::{ON_BOARDS, Request};

@@ -4,7 +4,6 @@
 pub mod bench;
 pub mod branch;
 pub mod code;
-pub mod program;
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -12,6 +11,7 @@ use std::time::Duration;
 use host_tests::emulator::boards::{BOARDS, Board};
 use host_tests::emulator::qemu::{Clock, Settings};
 use host_tests::emulator::toolchain::{self, Toolchain};
+use object::{Object, ObjectSymbol};
 
 /// Guards against hanging, nothing else: many times what any of these runs takes, on a slow and busy machine too.
 pub const LIMIT: Duration = Duration::from_secs(900);
@@ -40,4 +40,17 @@ pub fn on<M>(board: &Board, start: impl FnOnce(&Settings) -> anyhow::Result<M>) 
 /// The boards with a memory protection unit, which tell the cause of a fault.
 pub fn guarded() -> impl Iterator<Item = &'static Board> {
     BOARDS.iter().filter(|board| board.is_guarded())
+}
+
+/// The address of a symbol, by its name without the path before it: `Player::execute`, which one version of the compiler calls
+/// `firmware::app::player::Player::execute` and the next `<firmware::app::player::Player>::execute`.
+pub fn address(elf: &Path, name: &str) -> u32 {
+    let bytes = std::fs::read(elf).unwrap_or_else(|error| panic!("{}: {error}", elf.display()));
+    let file = object::File::parse(&*bytes).unwrap_or_else(|error| panic!("{}: {error}", elf.display()));
+    let is_it = |mangled: &str| {
+        let whole = format!("{:#}", rustc_demangle::demangle(mangled)).replace(['<', '>'], "");
+        whole == name || whole.ends_with(&format!("::{name}"))
+    };
+    let symbol = file.symbols().find(|symbol| symbol.name().is_ok_and(is_it));
+    symbol.map_or_else(|| panic!("no {name} in {}", elf.display()), |symbol| symbol.address() as u32 & !1)
 }

@@ -88,7 +88,7 @@ pub fn run(options: &CountOptions) -> anyhow::Result<()> {
     if !options.listing {
         say(options.setting())?;
         say(ERROR_BAR)?;
-        say(columns(ROW.map(|(title, _)| title.to_owned())))?;
+        say(line(TITLES.map(str::to_owned)))?;
     }
     for board in boards {
         let target = Target::build(&toolchain, board)?;
@@ -151,27 +151,21 @@ impl CountOptions {
     }
 }
 
-const ROW: [(&str, usize); 9] = [
-    ("method", 29),
-    ("board", 16),
-    ("steps", 5),
-    ("instructions", 12),
-    ("cycles (estimate)", 17),
-    ("stalls", 8),
-    ("hot bytes", 9),
-    ("code bytes", 10),
-    ("stack bytes", 11),
+#[rustfmt::skip]
+const TITLES: [&str; 9] = [
+    "method", "board", "steps", "instructions", "cycles (estimate)", "stalls", "hot bytes", "code bytes", "stack bytes",
 ];
 
-fn columns(cells: [String; 9]) -> String {
-    cells.iter().zip(ROW).map(|(cell, (_, width))| format!("{cell:>width$}")).collect::<Vec<_>>().join(" ")
+fn line([method, board, steps, instructions, cycles, stalls, hot, code, stack]: [String; 9]) -> String {
+    let counts = format!("{steps:>5} {instructions:>12} {cycles:>17} {stalls:>8}");
+    format!("{method:>29} {board:>16} {counts} {hot:>9} {code:>10} {stack:>11}")
 }
 
 fn row(method: Method, board: &Board, cost: &StepCost) -> String {
     let StepCost { steps, instructions, cycles, stalls, hot_bytes, code_bytes, stack_bytes } = cost;
     let [instructions, cycles, stalls] = [instructions, cycles, stalls].map(|count| format!("{count:.1}"));
     let [steps, hot, code, stack] = [steps, hot_bytes, code_bytes, stack_bytes].map(u32::to_string);
-    columns([method.to_string(), board.name.to_owned(), steps, instructions, cycles, stalls, hot, code, stack])
+    line([method.to_string(), board.name.to_owned(), steps, instructions, cycles, stalls, hot, code, stack])
 }
 
 /// Every instruction with its share of a step: address, executions, cycles, stalls, kind.
@@ -212,9 +206,8 @@ fn count_calls(toolchain: &Toolchain, options: &CountOptions, elf: &Path, functi
     say(format_args!("{} on {}, from its first instruction to its return: calls {number}", function.name, board.name))?;
     say(ERROR_BAR)?;
     say(format_args!("{:12} {:>12} {:>12} {:>12}", "per call", "mean", "least", "most"))?;
-    let rows: [(&str, fn(&Cost) -> u64); 2] =
-        [("instructions", |cost| cost.instructions), ("cycles", |cost| cost.cycles)];
-    for (title, count) in rows {
+    for (title, is_instructions) in [("instructions", true), ("cycles", false)] {
+        let count = |cost: &Cost| if is_instructions { cost.instructions } else { cost.cycles };
         let counts = || calls.iter().map(count);
         let (least, most) = (counts().min().unwrap_or(0), counts().max().unwrap_or(0));
         let mean = counts().sum::<u64>() as f64 / number as f64;

@@ -45,13 +45,13 @@ pub fn run(options: &DemoOptions, mut session: Session) -> anyhow::Result<bool> 
             ensure!(last.1.elapsed() < PATIENCE, "{name}: no frame for {} s", PATIENCE.as_secs());
             sleep(LOOK);
         }
-        lines.into_iter().for_each(|line| session.readings.line(line));
+        session.readings.lines.extend(lines);
         progress.alive(None);
     }
     drop(progress);
     session.look()?;
     session.finish()?;
-    session.source.lines().into_iter().for_each(|line| session.readings.line(line));
+    session.readings.lines.extend(session.source.lines());
     let faults = session.faults();
     faults.iter().for_each(|fault| complain(format_args!("not well: {fault}")));
     let said = say(format_args!("board                 {name}\n{}", session.readings.report()));

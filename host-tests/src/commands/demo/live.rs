@@ -43,7 +43,7 @@ fn show(options: &DemoOptions, session: &mut Session, mut terminal: DefaultTermi
     let colours = !Colored::ansi_color_disabled();
     loop {
         session.hear()?;
-        session.source.lines().into_iter().for_each(|line| session.readings.line(line));
+        session.readings.lines.extend(session.source.lines());
         session.look()?;
         terminal.draw(|frame| draw(frame, session.source.name(), &session.screenshot, &session.readings, colours))?;
         let is_over = last.is_some_and(|last| session.ticks() >= last);
