@@ -14,13 +14,11 @@ pub struct Image {
     loaded: Vec<(u32, Vec<u8>)>,
     code: Vec<(u32, Vec<u8>)>,
     functions: Vec<Function>,
-    /// Names in code that the assembler was not told to be functions.
-    labels: Vec<Function>,
     /// Where code begins (`true`) and where data in the midst of it, by the mapping symbols `$t` and `$d`.
     marks: BTreeMap<u32, bool>,
 }
 
-/// A function: literal pools and paths never taken included.
+/// A function, literal pools and paths never taken included; or a label in code that the assembler was not told to be one.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Function {
     pub address: u32,
@@ -48,28 +46,25 @@ impl Image {
             let section = symbol.section_index().and_then(|index| file.section_by_index(index).ok());
             section.is_some_and(|section| section.kind() == SectionKind::Text)
         };
-        let (mut functions, mut labels, mut marks) = (Vec::new(), Vec::new(), BTreeMap::new());
+        let (mut functions, mut marks) = (Vec::new(), BTreeMap::new());
         for symbol in file.symbols() {
             let (address, name) = (symbol.address() as u32, symbol.name().unwrap_or_default());
-            let function = || Function {
-                // bit 0 only says that the code is Thumb
-                address: address & !1,
-                size: symbol.size() as u32,
-                name: format!("{:#}", rustc_demangle::demangle(name)),
-                symbol: name.to_owned(),
-            };
+            let is_function = symbol.kind() == SymbolKind::Text;
             match name.split('.').next() {
-                _ if symbol.kind() == SymbolKind::Text => functions.push(function()),
-                _ if !is_in_code(&symbol) => {}
-                Some(mark @ ("$t" | "$d")) => {
-                    marks.insert(address, mark == "$t");
-                }
-                _ => labels.push(function()),
+                _ if !is_function && !is_in_code(&symbol) => {}
+                Some(mark @ ("$t" | "$d")) => drop(marks.insert(address, mark == "$t")),
+                _ => functions.push(Function {
+                    // bit 0 only says that the code is Thumb
+                    address: address & !1,
+                    size: symbol.size() as u32,
+                    name: format!("{:#}", rustc_demangle::demangle(name)),
+                    symbol: name.to_owned(),
+                }),
             }
         }
         functions.sort();
         let (loaded, code) = (loaded.collect::<Result<_>>()?, code.collect::<Result<_>>()?);
-        Ok(Self { path: path.to_owned(), loaded, code, functions, labels, marks })
+        Ok(Self { path: path.to_owned(), loaded, code, functions, marks })
     }
 
     pub fn functions_named(&self, part: &str) -> impl Iterator<Item = &Function> {
@@ -79,7 +74,7 @@ impl Image {
     /// The one function or label of this name, mangled or demangled, or the one function whose demangled name contains it.
     pub fn function(&self, name: &str) -> Result<&Function> {
         let is_it = |function: &&Function| function.name == name || function.symbol == name;
-        let mut found: Vec<_> = self.functions.iter().chain(&self.labels).filter(is_it).collect();
+        let mut found: Vec<_> = self.functions.iter().filter(is_it).collect();
         if found.is_empty() {
             found = self.functions_named(name).collect();
         }

@@ -92,12 +92,7 @@ impl Target {
         command.args(self.single_step()?).args(["-d", "cpu,nochain", "-D", "/dev/stderr"]);
         command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
         let mut child = process::spawn(&mut command, limit)?;
-        let stdout = child.stdout.take().map(|mut stdout| {
-            thread::spawn(move || {
-                let mut text = String::new();
-                stdout.read_to_string(&mut text).map(|_| text)
-            })
-        });
+        let stdout = child.stdout.take().map(|stdout| thread::spawn(move || std::io::read_to_string(stdout)));
         if let Some(log) = child.stderr.take() {
             for_each_instruction(log, each)?;
         }
