@@ -11,7 +11,6 @@ mod prices;
 mod row;
 #[cfg(test)]
 mod silicon;
-mod target;
 pub mod timing;
 mod trace;
 
@@ -22,8 +21,7 @@ pub use image::{Function, Image};
 pub use instruction::Instruction;
 pub use pipeline::{Cost, ERROR_BAR, Pipeline};
 pub use prices::prices;
-pub use target::Target;
-pub use trace::{Ended, Registers};
+pub use trace::{Ended, Registers, Target};
 
 use anyhow::Result;
 use firmware::job::Request;

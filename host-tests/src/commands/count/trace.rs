@@ -1,19 +1,22 @@
-//! The executed stream, out of QEMU's log.
+//! A board with the program that measures, and the stream that it executes, out of QEMU's log.
 //!
 //! QEMU runs one instruction per translation block (`-singlestep`, since 8.1 `one-insn-per-tb`) and, before each,
 //! writes the processor's registers to its log (`-d cpu,nochain`): no plugin, nothing to compile, the same text since
 //! 2.x. The log comes through a pipe, a few hundred thousand instructions per second.
 
 use std::io::{BufRead, BufReader, ErrorKind, Read};
+use std::path::PathBuf;
 use std::process::{Command, ExitStatus, Stdio};
 use std::thread;
 use std::time::Duration;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use firmware::job::Request;
 
-use super::Target;
+use super::Image;
+use crate::emulator::boards::{BOARDS, Board, Core};
 use crate::emulator::process;
+use crate::emulator::toolchain::Toolchain;
 
 pub(super) const LIMIT: Duration = Duration::from_secs(1800);
 const VERSION_LIMIT: Duration = Duration::from_secs(10);
@@ -65,7 +68,51 @@ pub struct Ended {
     pub output: String,
 }
 
+const PROGRAM: &str = "measure";
+
+/// An emulated board and a program built for it.
+#[derive(Debug)]
+pub struct Target {
+    pub board: &'static Board,
+    pub(super) qemu: PathBuf,
+    pub(super) elf: PathBuf,
+    image: Image,
+}
+
 impl Target {
+    pub fn build(toolchain: &Toolchain, board: &'static Board) -> Result<Self> {
+        Self::of(toolchain, board, toolchain.build(PROGRAM, board.target)?)
+    }
+
+    /// Another program. One that takes the same requests makes its steps in a function called `counted_steps`.
+    pub fn of(toolchain: &Toolchain, board: &'static Board, elf: PathBuf) -> Result<Self> {
+        let image = Image::read(&elf)?;
+        Ok(Self { board, qemu: toolchain.qemu().to_owned(), elf, image })
+    }
+
+    /// One board for each kind of core: the same machine with a Cortex-M3, a Cortex-M4F and a Cortex-M0+.
+    pub fn build_all(toolchain: &Toolchain) -> Result<Vec<Self>> {
+        BOARDS.iter().filter(|board| board.has_panel).map(|board| Self::build(toolchain, board)).collect()
+    }
+
+    pub fn image(&self) -> &Image {
+        &self.image
+    }
+
+    pub fn core(&self) -> Core {
+        self.board.core()
+    }
+
+    /// Refuses a program that is not where the board looks for its vectors: it would never run.
+    pub(super) fn check_memory(&self) -> Result<()> {
+        let (vectors, board) = (self.board.flash(), self.board.name);
+        ensure!(
+            self.image.holds(vectors),
+            "never called: the program has nothing at {vectors:#x}, where {board} reads its vectors; see --on"
+        );
+        Ok(())
+    }
+
     /// Runs `request` at full speed: its CRC, and the ticks of the board's clock under `-icount`, where an
     /// instruction takes 1 ns.
     pub fn run(&self, request: &Request) -> Result<(u32, u64)> {

@@ -14,7 +14,6 @@ mod readings;
 pub(crate) mod record;
 mod session;
 mod source;
-mod tint;
 mod view;
 
 pub use options::DemoOptions;

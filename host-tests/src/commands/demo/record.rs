@@ -8,7 +8,7 @@ use anyhow::Context;
 use firmware::config::TICK_RATE;
 use gif::{ColorOutput, DecodeOptions, Encoder, Frame, Repeat};
 
-use super::tint;
+use super::panel::palette;
 use crate::emulator::qemu::{HEIGHT, Screenshot, WIDTH};
 
 /// Every pixel of the panel becomes a square of this many by as many.
@@ -34,7 +34,7 @@ impl Recording {
     pub fn create(path: &Path) -> anyhow::Result<Self> {
         let file = File::create(path).with_context(|| format!("cannot write {}", path.display()))?;
         let [width, height] = SIZE;
-        let palette = [tint::palette(), vec![0; 3]].concat();
+        let palette = [palette(), vec![0; 3]].concat();
         let mut encoder = Encoder::new(BufWriter::new(file), width, height, &palette)?;
         encoder.set_repeat(Repeat::Infinite)?;
         Ok(Self { encoder, pending: None, shown: Vec::new(), start: 0 })
@@ -110,7 +110,7 @@ pub fn png(screenshot: &Screenshot, file: impl Write) -> anyhow::Result<()> {
     let [width, height] = SIZE.map(u32::from);
     let mut encoder = png::Encoder::new(file, width, height);
     encoder.set_color(png::ColorType::Indexed);
-    encoder.set_palette(tint::palette());
+    encoder.set_palette(palette());
     let mut writer = encoder.write_header()?;
     writer.write_image_data(&magnified(screenshot))?;
     Ok(writer.finish()?)

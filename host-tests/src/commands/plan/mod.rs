@@ -1,16 +1,13 @@
 //! `cargo plan`: how to compute a scene as cheaply as may be; and the planner held against the reference.
 
 mod draw;
-mod judge;
 mod options;
 mod study;
-mod target;
 mod words;
 
 pub use draw::scenes;
-pub use options::SceneOptions;
+pub use options::{CHIPS, Chip, M3, M4F, PICO, SceneOptions};
 pub use study::{Case, DURATIONS, median, study};
-pub use target::{CHIPS, Chip, M3, M4F, PICO};
 
 use clap::Parser;
 

@@ -4,7 +4,7 @@ use double_pendulum::plan::{Limit, Plan, Problem};
 use double_pendulum::{Method, Pendulum};
 use firmware::config::HALF_PIXEL;
 
-use super::target::Chip;
+use super::options::Chip;
 
 /// The plan with its reasons, a line each; or that no method meets the tolerance.
 pub fn words(scene: &Problem, plan: &Result<Plan, Limit>, chip: &Chip) -> Vec<String> {

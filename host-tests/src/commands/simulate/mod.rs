@@ -3,7 +3,6 @@
 mod board;
 mod number;
 mod options;
-mod price;
 mod request;
 mod start;
 mod table;

@@ -5,7 +5,7 @@ use double_pendulum::{Error, Method, Parameter};
 use firmware::job::{JobError, Request};
 
 use super::options::name;
-use super::price::methods;
+use super::tolerance::methods;
 use super::{Number, SimulateOptions, option_of};
 
 /// A checked request and the time from row to row.
