@@ -77,7 +77,7 @@ fn half_a_pixel_is_kept_until_the_predicted_horizon() {
 #[test]
 #[ignore = "four minutes"]
 fn thousands_of_scenes() {
-    println!("| processor | nothing holds | end early | violations | largest error (pixels) | predicted |");
+    println!("| processor | no method | end early | violations | largest error (pixels) | predicted |");
     for seed in 1..=3 {
         let cases = study(scenes(seed, DURATIONS).take(2_000), &CHIPS).expect("good scenes");
         for chip in CHIPS {
