@@ -22,7 +22,7 @@ use crc::{CRC_32_ISO_HDLC, Crc, Table};
 use super::{MAX_FIELDS, Message};
 
 /// The version of the protocol; the first byte of every message.
-pub const VERSION: u8 = 9;
+pub const VERSION: u8 = 10;
 /// Set in the kind of every message to the chip, and in no other's.
 pub const TO_CHIP: u8 = 0x80;
 /// The most bytes a message takes before framing: version, kind, fields, CRC.
