@@ -1,5 +1,6 @@
 //! The emulated boards: one row each, with all that QEMU and the build need to know.
 
+use cycles::Core;
 use firmware::config::{self, Processor};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -131,27 +132,4 @@ pub const PICO: Board = Board {
 /// Every board that the firmware is built for: those that QEMU emulates, and the Pico.
 pub fn every_board() -> impl Iterator<Item = &'static Board> + Clone {
     BOARDS.iter().chain([&PICO])
-}
-
-/// The processors whose timings are known.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Core {
-    /// Cortex-M3, no floating-point unit.
-    M3,
-    /// Cortex-M4 with the single-precision floating-point unit.
-    M4F,
-    /// Cortex-M0+ with the multiplier of 1 cycle, no floating-point unit. QEMU knows it as the Cortex-M0, whose instructions are the
-    /// same.
-    M0Plus,
-}
-
-impl Core {
-    /// As on its manual.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::M3 => "Cortex-M3",
-            Self::M4F => "Cortex-M4F",
-            Self::M0Plus => "Cortex-M0+",
-        }
-    }
 }

@@ -6,12 +6,13 @@
 use std::path::Path;
 
 use crate::support::{LIMIT, application, settings, toolchain};
+use cycles::{Cost, Image};
 use double_pendulum::Parameters;
 use firmware::config::TICK_RATE;
 use firmware::job::{ON_BOARDS, Request};
 use firmware::protocol::{Ask, Choose, Field, Frame, MAX_WIRE, Message, Pause, Restart, Set, Step, encode};
 use firmware::scenes::SceneName;
-use host_tests::commands::count::{Cost, FrameProfile, Image};
+use host_tests::commands::count::FrameProfile;
 use host_tests::emulator::boards::{BOARDS, Board, PICO};
 use host_tests::emulator::budgets::{self, Memory};
 use host_tests::emulator::pico::PicoMachine;

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use host_tests::commands::count::ERROR_BAR;
+use cycles::ERROR_BAR;
 use host_tests::emulator::boards::BOARDS;
 use host_tests::emulator::process::{self, Output};
 

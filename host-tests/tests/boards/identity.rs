@@ -5,12 +5,13 @@ use std::io::Write;
 use std::process::{Command, Stdio};
 
 use anyhow::Result;
+use cycles::Core;
+use cycles::Instruction;
 use double_pendulum::{Integrator, Method};
 use firmware::job::Request;
-use host_tests::commands::count::{Instruction, Target};
+use host_tests::commands::count::Target;
 use host_tests::commands::report::accuracy::request;
 use host_tests::commands::report::scene::{SCENES, Scene};
-use host_tests::emulator::boards::Core;
 use host_tests::emulator::toolchain;
 use rayon::prelude::*;
 

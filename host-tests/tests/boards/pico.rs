@@ -5,6 +5,7 @@ use std::time::Duration;
 use crate::support::code::Code;
 use crate::support::{LIMIT, application};
 use anyhow::Context;
+use cycles::Core;
 use double_pendulum::{Method, Parameters};
 use firmware::app::Key;
 use firmware::app::warm_restart::Cause;
@@ -18,7 +19,7 @@ use firmware::protocol::{
 };
 use firmware::scenes::SceneName;
 use host_tests::commands::count::{FULL_CYCLE, Target, affordable_steps, step_cost};
-use host_tests::emulator::boards::{BOARDS, Core, PICO};
+use host_tests::emulator::boards::{BOARDS, PICO};
 use host_tests::emulator::flash::flash_image;
 use host_tests::emulator::host::Show;
 use host_tests::emulator::pico::PicoMachine;

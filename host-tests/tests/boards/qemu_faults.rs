@@ -1,8 +1,8 @@
 //! A crash of the firmware ends the run with exit code 1 and a report that a person can read.
 
 use crate::support::{guarded, on, settings, toolchain};
+use cycles::Image;
 use firmware::protocol::Frame;
-use host_tests::commands::count::Image;
 use host_tests::emulator::boards::{BOARDS, Board};
 use host_tests::emulator::qemu::{Lockstep, Machine};
 use object::{Object, ObjectSymbol};

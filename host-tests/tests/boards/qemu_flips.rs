@@ -1,6 +1,7 @@
 //! The map of flips on the emulated boards, with a floating-point unit and without: frame by frame, and finished, the host's.
 
 use crate::support::{application, on};
+use cycles::{Cost, Image};
 use firmware::config::TICK_RATE;
 use firmware::graphics::canvas::{Canvas, HEIGHT, WIDTH};
 use firmware::graphics::fade_layer::FadeLayer;
@@ -10,7 +11,7 @@ use firmware::protocol::Choose;
 use firmware::scenes::SceneName;
 use firmware::scenes::flips::Flips;
 use firmware::scenes::scene::Scene;
-use host_tests::commands::count::{Cost, FrameProfile, Image};
+use host_tests::commands::count::FrameProfile;
 use host_tests::emulator::boards::{BOARDS, Board, STM32F405};
 use host_tests::emulator::budgets;
 use host_tests::emulator::qemu::{Lockstep, Screenshot};

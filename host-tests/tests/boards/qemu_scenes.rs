@@ -1,13 +1,15 @@
 //! The scenes on the emulated boards: the panel shows what the host draws, within the budgets, garbage or not.
 
 use crate::support::{application, on};
+use cycles::Core;
+use cycles::{Cost, Image};
 use fastrand::Rng;
 use firmware::config::TICK_RATE;
 use firmware::graphics::canvas::{HEIGHT, WIDTH};
 use firmware::protocol::{Choose, Done, Frame};
 use firmware::scenes::SceneName;
-use host_tests::commands::count::{Cost, FrameProfile, Image};
-use host_tests::emulator::boards::{BOARDS, Board, Core};
+use host_tests::commands::count::FrameProfile;
+use host_tests::emulator::boards::{BOARDS, Board};
 use host_tests::emulator::budgets;
 use host_tests::emulator::host::Show;
 use host_tests::emulator::qemu::{Lockstep, Machine};

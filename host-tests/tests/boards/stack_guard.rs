@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::support::application;
-use host_tests::commands::count::Image;
+use cycles::Image;
 use host_tests::emulator::boards::BOARDS;
 use object::{Object, ObjectSymbol};
 

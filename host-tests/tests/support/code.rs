@@ -4,7 +4,7 @@
 use std::ops::Range;
 use std::path::Path;
 
-use host_tests::commands::count::Image;
+use cycles::Image;
 
 use super::branch::{Names, names};
 

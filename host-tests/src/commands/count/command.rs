@@ -10,11 +10,12 @@ use firmware::job::Request;
 use rayon::prelude::*;
 
 use super::prices::{prices, write_prices};
-use super::{Calls, Cost, ERROR_BAR, FULL_CYCLE, StepCost, Target};
-use super::{affordable_cost, affordable_steps, calls_of, step_cost};
+use super::{FULL_CYCLE, StepCost, Target};
+use super::{affordable_cost, affordable_steps, calls_of, counted, step_cost};
 use crate::console::cli::{self, Refused, complain, say};
 use crate::emulator::boards::{BOARDS, Board};
 use crate::emulator::toolchain::{self, Toolchain};
+use cycles::{Cost, ERROR_BAR};
 
 /// As in the report's regular scene, with which the figures here agree.
 const GRAVITY: f32 = 9.81;
@@ -171,7 +172,7 @@ fn row(method: Method, board: &Board, cost: &StepCost) -> String {
 /// Every instruction with its share of a step: address, executions, cycles, stalls, kind.
 fn list(target: &Target, request: &Request, steps: Option<u32>) -> anyhow::Result<()> {
     let stride = steps.map_or_else(|| affordable_steps(target, request), Ok)?;
-    let calls = Calls::counted(target, &Request { stride, ..*request })?;
+    let calls = counted(target, &Request { stride, ..*request })?;
     say(format_args!("{} on {}: per step, executions, cycles (estimate), stalls", request.method, target.board.name))?;
     say(ERROR_BAR)?;
     let mut function = None;

@@ -5,15 +5,11 @@ use std::fs::File;
 use std::thread;
 
 use anyhow::Result;
+use cycles::{Calls, Core, Cost, Image, Stream, for_each_instruction};
 use firmware::protocol::Frame;
 use nix::sys::stat::Mode;
 use nix::unistd::mkfifo;
 
-use super::calls::{Calls, Stream};
-use super::image::Image;
-use super::pipeline::Cost;
-use super::trace::for_each_instruction;
-use crate::emulator::boards::Core;
 use crate::emulator::process::remove_on_interrupt;
 use crate::emulator::qemu::Lockstep;
 
@@ -42,11 +38,11 @@ impl FrameProfile {
     pub fn of_next(board: &mut Lockstep, image: &Image, core: Core) -> Result<(Frame, Self)> {
         let showing = SHOWING.into_iter().map(|(module, name)| address(image, module, name));
         let showing = showing.collect::<Result<BTreeSet<_>>>()?;
-        next_frame_read(board, |log| {
+        next_frame_read(board, |mut log| {
             let (mut profile, mut stream) = (Self::default(), None::<Stream>);
             // Where the outermost function that shows returns to: the address and the stack pointer.
             let mut shows_until = None;
-            for_each_instruction(log, |registers| {
+            for_each_instruction(&mut log, &mut |registers| {
                 match &mut stream {
                     Some(stream) => {
                         let (.., cost) = stream.execute(&registers);
@@ -80,9 +76,9 @@ fn address(image: &Image, module: &str, name: &str) -> Result<u32> {
 /// Lets `board` run to its next frame and counts the calls of `function` on the way, those that return.
 pub fn calls_in_next(board: &mut Lockstep, image: &Image, core: Core, function: &str) -> Result<(Frame, Vec<Cost>)> {
     let entry = BTreeSet::from([image.function(function)?.address]);
-    next_frame_read(board, |log| {
+    next_frame_read(board, |mut log| {
         let mut calls = Calls::of(image, core, entry);
-        for_each_instruction(log, |registers| calls.see(registers))?;
+        for_each_instruction(&mut log, &mut |registers| calls.see(registers))?;
         Ok(calls.ended)
     })
 }

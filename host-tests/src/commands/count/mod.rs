@@ -4,24 +4,14 @@
 mod calls;
 mod command;
 mod frame_profile;
-mod image;
-mod instruction;
-mod pipeline;
 mod prices;
-mod row;
-#[cfg(test)]
-mod silicon;
-pub mod timing;
 mod trace;
 
-pub use calls::{Calls, calls_of};
+pub use calls::{calls_of, counted};
 pub use command::{CountOptions, run};
 pub use frame_profile::{FrameProfile, calls_in_next};
-pub use image::{Function, Image};
-pub use instruction::Instruction;
-pub use pipeline::{Cost, ERROR_BAR, Pipeline};
 pub use prices::prices;
-pub use trace::{Ended, Registers, Target};
+pub use trace::{Ended, Target};
 
 use anyhow::Result;
 use firmware::job::Request;
@@ -55,7 +45,7 @@ pub struct StepCost {
 
 /// The steps to count so that the counting takes a few seconds: [`FULL_CYCLE`] of a cheap method, fewer of a costly one.
 pub fn affordable_steps(target: &Target, request: &Request) -> Result<u32> {
-    let one = Calls::counted(target, &Request { stride: 1, samples: 1, ..*request })?.cost().instructions;
+    let one = counted(target, &Request { stride: 1, samples: 1, ..*request })?.cost().instructions;
     let steps = (AFFORDABLE_INSTRUCTIONS / one.max(1)).clamp(LEAST_STEPS, FULL_CYCLE.into());
     Ok(if steps < REGULAR { steps } else { steps - steps % REGULAR } as u32)
 }
@@ -70,7 +60,7 @@ pub fn affordable_cost(target: &Target, request: &Request) -> Result<StepCost> {
 /// A run of twice the steps minus a run of once the steps, so that calling and returning cancel.
 pub fn step_cost(target: &Target, request: &Request) -> Result<StepCost> {
     let steps = request.stride;
-    let run = |stride| Calls::counted(target, &Request { stride, samples: 1, ..*request });
+    let run = |stride| counted(target, &Request { stride, samples: 1, ..*request });
     let (calling, twice) = (run(steps)?.cost(), run(2 * steps)?);
     let all = twice.cost();
     let per_step = |all: u64, calling: u64| all.saturating_sub(calling) as f64 / f64::from(steps);

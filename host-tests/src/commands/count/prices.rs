@@ -10,11 +10,12 @@ use firmware::job::Request;
 use firmware::protocol::{Field, Set, method_code};
 use rayon::prelude::*;
 
-use super::{FULL_CYCLE, Image, Target, affordable_cost, calls_in_next};
+use super::{FULL_CYCLE, Target, affordable_cost, calls_in_next};
 use crate::commands::table::between;
 use crate::emulator::boards::Board;
 use crate::emulator::qemu::{Clock, Lockstep, Settings};
 use crate::emulator::toolchain::{Toolchain, workspace};
+use cycles::Image;
 
 const LIMIT: Duration = Duration::from_secs(1800);
 /// What stands before and after the lists in their file.

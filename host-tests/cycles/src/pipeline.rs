@@ -29,11 +29,11 @@
 use std::iter::Sum;
 use std::ops::AddAssign;
 
-use super::instruction::Instruction;
-use super::row::Class;
-use super::timing::{DIRECT_REFILL, INDIRECT_REFILL, RESULT_USE_STALL, UNALIGNED_TARGET};
-use super::trace::Registers;
-use crate::emulator::boards::Core;
+use crate::Core;
+use crate::instruction::Instruction;
+use crate::log::Registers;
+use crate::row::Class;
+use crate::timing::{DIRECT_REFILL, INDIRECT_REFILL, RESULT_USE_STALL, UNALIGNED_TARGET};
 
 /// What every table of cycles says about them.
 pub const ERROR_BAR: &str = "Cycles are estimated: 1.6 % off (root mean square) and at most 5.0 % for 76 published kernels, 3 to 5 % \

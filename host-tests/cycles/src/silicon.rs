@@ -5,10 +5,10 @@
 //! and the examples of the Cortex-M3's manual (DDI 0337, "Load/store timings"). No counts were found for vmul, vsqrt, vfma,
 //! vldm, and for vldr and vstr in a row: where a test here has one of those, the manual alone stands behind it.
 
-use super::instruction::Instruction;
-use super::pipeline::{Cost, Pipeline};
-use super::trace::Registers;
-use crate::emulator::boards::Core::{self, M0Plus, M3, M4F};
+use crate::Core::{self, M0Plus, M3, M4F};
+use crate::instruction::Instruction;
+use crate::log::Registers;
+use crate::pipeline::{Cost, Pipeline};
 
 /// An instruction's halfwords as one number; a 16-bit one has the lower half 0.
 type Word = u32;

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use object::{Architecture, Object, ObjectSection, ObjectSegment, ObjectSymbol, SectionKind, SymbolKind};
 
-use super::instruction::{Instruction, is_long};
+use crate::instruction::{Instruction, is_long};
 
 #[derive(Debug)]
 pub struct Image {

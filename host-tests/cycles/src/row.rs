@@ -1,6 +1,6 @@
 //! What a row of the timing table says of its instructions.
 
-use crate::emulator::boards::Core;
+use crate::Core;
 
 /// What else decides the time of an instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

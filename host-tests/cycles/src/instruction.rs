@@ -2,10 +2,10 @@
 
 use std::sync::LazyLock;
 
-use super::row::{Class, Reads, Row};
-use super::timing::TIMINGS;
-use super::trace::Registers;
-use crate::emulator::boards::Core;
+use crate::Core;
+use crate::log::Registers;
+use crate::row::{Class, Reads, Row};
+use crate::timing::TIMINGS;
 
 pub fn is_long(first: u16) -> bool {
     first >= 0xe800

@@ -9,12 +9,12 @@
 //! that is what fits published measurements best. A single store takes 1 as measured, where table 3-1 has 2; so vstr is
 //! taken to, for which no measurement was found. What neighbours do to each other is in `pipeline`.
 
-use super::row::Class::{
+use crate::row::Class::{
     Arithmetic, Aside, Branch, Divide, Fixed, FloatList, IfThen, Load, LoadList, LoadPair, Move, Store, StoreList,
 };
-use super::row::Field::{Any, Low0, Low3, Low6, Low8, Sp, Wide0, Wide8, Wide12, Wide16};
-use super::row::Reads::{D, DM, Half, M, N, NM, Nothing};
-use super::row::{Row, row};
+use crate::row::Field::{Any, Low0, Low3, Low6, Low8, Sp, Wide0, Wide8, Wide12, Wide16};
+use crate::row::Reads::{D, DM, Half, M, N, NM, Nothing};
+use crate::row::{Row, row};
 
 /// Cycles to refill the pipeline after a taken branch to an address that the instruction holds: "normally 1" (DDI 0337,
 /// table 3-1 of older issues).
