@@ -63,15 +63,8 @@ pub const FIGURE_7_ENERGY: f64 = 0.01;
 /// The right form's share above the pivot, about 50.7 %: what 32 chaotic runs of 100 s differ by (measured 52.0 %).
 pub const FIGURE_7_ABOVE: f64 = 0.03;
 
-/// Figure 7 in f64 with 4096 steps per second after 5 s, rad and kg m^2/s: the goal.
-pub const FIGURE_7: f64 = 1e-7;
-
 /// Figure 7 after 3 s with 4096 steps a second in 32 bits, rad: roundings of 6e-8, grown (measured 2.7e-6).
 pub const FIGURE_7_IN_32_BITS: f64 = 1e-5;
-
-/// The same by order 8 with 512 steps a second against RK4 with 16384, rad: the latter's error (measured 1.1e-11); RK4 with
-/// 512 would miss 2e-5.
-pub const FIGURE_7_ORDER_8: f64 = 1e-10;
 
 /// Models of a swing of 1e-4 rad after 1 s, rad: the cubic term of the linear one, (1e-4)^3 w t/16 (measured 1.8e-13).
 pub const SMALL_SWING: f64 = 1e-12;
