@@ -52,33 +52,29 @@ fn step(scene: &Problem, plan: &Plan) -> String {
     }
 }
 
-fn method(method: Method) -> &'static str {
+fn method(method: Method) -> String {
+    let directions = |why| format!("to draw, directions are enough and no angles needed; {why}");
     match method {
-        Method::ClosedFormF32 => "until the horizon the linear motion is expected to be right to half a pixel",
-        Method::Rk4F32DirectionPlain => {
-            "to draw, directions are enough and no angles needed; the roundings of plain sums do not show"
-        }
-        Method::Rk4F32Direction => {
-            "to draw, directions are enough and no angles needed; the roundings of plain sums would show"
-        }
-        Method::Rk4Fixed32 => "to draw, directions are enough and no angles needed; integers are cheapest here",
-        Method::Extrapolation10Fixed64 => "32 bits show before, or take as many steps as cost more",
-        other => other.name(),
+        Method::ClosedFormF32 => "until the horizon the linear motion is expected to be right to half a pixel".into(),
+        Method::Rk4F32DirectionPlain => directions("the roundings of plain sums do not show"),
+        Method::Rk4F32Direction => directions("the roundings of plain sums would show"),
+        Method::Rk4Fixed32 => directions("integers are cheapest here"),
+        Method::Extrapolation10Fixed64 => "32 bits show before, or take as many steps as cost more".into(),
+        other => other.name().into(),
     }
 }
 
 fn limit(plan: &Plan, frame: f32) -> String {
+    let grow = |why: &str| format!("errors grow until they show{why}");
     match plan.limit {
         Limit::End if plan.steps > 1 => {
-            String::from("with half the steps errors would show, or the fastest motion could be missed")
+            "with half the steps errors would show, or the fastest motion could be missed".into()
         }
-        Limit::End => String::from("nothing cheaper that was tried is right to the end"),
-        Limit::Growth => String::from("errors grow until they show, in 64 bits as well; nothing here goes farther"),
-        Limit::Budget => {
-            format!("errors grow until they show; what goes farther costs more than the {frame:.0} cycles allowed")
-        }
-        Limit::Planning => String::from("looking farther ahead costs more than the scene has time for"),
-        other => other.name().to_owned(),
+        Limit::End => "nothing cheaper that was tried is right to the end".into(),
+        Limit::Growth => grow(", in 64 bits as well; nothing here goes farther"),
+        Limit::Budget => grow(&format!("; what goes farther costs more than the {frame:.0} cycles allowed")),
+        Limit::Planning => "looking farther ahead costs more than the scene has time for".into(),
+        other => other.name().into(),
     }
 }
 
