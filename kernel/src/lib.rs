@@ -3,18 +3,20 @@
 //! Bob 1 hangs on rod 1 from a fixed pivot, bob 2 on rod 2 from bob 1; rods are rigid and massless, pivots frictionless.
 //! Angles are measured from the downward vertical, counter-clockwise positive; y points up; SI units throughout.
 //!
-//! | the book says | here |
-//! |---|---|
-//! | Lagrange's equations | [`Pendulum::lagrangian`], [`Pendulum::accelerations`] |
-//! | Legendre transformation | [`Pendulum::to_state`], [`Pendulum::to_motion`] |
-//! | Hamilton's equations, H | [`Pendulum::derivatives`], [`Pendulum::energy`]; equal rods: [`Parameters::equal_rods`] |
-//! | Runge-Kutta method | [`Pendulum::step`], [`rk4::step`] |
-//! | small oscillations | [`Modes`], [`SmallOscillations`] |
-//! | coordinates | [`Pendulum::positions`], [`Pendulum::velocities`] |
-//! | (not in the book) bounds from the energy | [`Bounds`], [`Pendulum::cannot_turn_over`], [`Pendulum::admissible_step`], [`Modes::step_limit`] |
-//! | (not in the book) when a rod first turns over | [`flips`] |
-//! | (not in the book) every way to compute a motion | [`Method`]; [`Pendulum::run`] with [`HamiltonF64`], [`DirectionF32`], [`Fixed32`], [`Fixed64`], [`ExtrapolationF64`], [`ClosedFormF32`] |
-//! | (not in the book) the cheapest method that keeps to a tolerance | [`plan`](mod@plan) |
+//! | the book says | here | the test that fails when it is wrong |
+//! |---|---|---|
+//! | Lagrange's equations | [`Pendulum::lagrangian`], [`Pendulum::accelerations`] | `tests::lagrange` |
+//! | Legendre transformation | [`Pendulum::to_state`], [`Pendulum::to_motion`] | `tests::lagrange` |
+//! | Hamilton's equations, H | [`Pendulum::derivatives`], [`Pendulum::energy`]; equal rods: [`Parameters::equal_rods`] | `tests::hamilton` |
+//! | Runge-Kutta method | [`Pendulum::step`], [`rk4::step`] | `methods::rk4::tests` |
+//! | small oscillations | [`Modes`], [`SmallOscillations`] | `tests::small_oscillations` |
+//! | coordinates | [`Pendulum::positions`], [`Pendulum::velocities`] | `tests::lagrange` |
+//! | (not in the book) bounds from the energy | [`Bounds`], [`Pendulum::cannot_turn_over`], [`Pendulum::admissible_step`], [`Modes::step_limit`] | host: `bounds`, `hard_cases` |
+//! | (not in the book) when a rod first turns over | [`flips`] | host: `flips` |
+//! | (not in the book) every way to compute a motion | [`Method`]; [`Pendulum::run`] with [`HamiltonF64`], [`DirectionF32`], [`Fixed32`], [`Fixed64`], [`ExtrapolationF64`], [`ClosedFormF32`] | host: `known_answers`, `hard_cases`, `methods` |
+//! | (not in the book) the cheapest method that keeps to a tolerance | [`plan`](mod@plan) | host: `plan`, `plan_study` |
+//!
+//! Tests of this crate, and of the repository's host-tests (`--test kernel`).
 //!
 //! The equations are generic over `f32` and `f64` ([`Real`]); methods compute in these or in fixed point. No heap, no panics,
 //! and the same bits on every machine.

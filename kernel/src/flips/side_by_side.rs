@@ -5,7 +5,7 @@ use core::array::from_fn;
 use super::{Falling, Flip, Flips, passes};
 use crate::error::Error;
 use crate::methods::direction::{BLOCK, DirectionLanes};
-use crate::methods::side::turns_over;
+use crate::methods::turns::turns_over;
 use crate::methods::{DirectionF32Plain, Form, Side};
 use crate::numbers::Lanes;
 use crate::pendulum::{Direction, State};

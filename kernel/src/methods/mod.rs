@@ -9,9 +9,8 @@ mod fixed64;
 pub mod rk4;
 mod run;
 mod scaling;
-pub(crate) mod side;
 mod stepper;
-mod turns;
+pub(crate) mod turns;
 
 pub use canonical::{Canonical, Derivatives};
 pub use closed_form::ClosedForm;
@@ -19,9 +18,8 @@ pub use direction::{DirectionForm, ExtrapolationF64, Plain};
 pub use fixed32::Fixed32;
 pub use fixed64::Fixed64;
 pub use run::Run;
-pub use side::Side;
 pub use stepper::Stepper;
-pub use turns::Turns;
+pub use turns::{Side, Turns};
 
 use core::fmt::Debug;
 
