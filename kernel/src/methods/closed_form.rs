@@ -2,9 +2,9 @@
 
 use super::{Form, Side};
 use crate::bounds::check_step;
-use crate::error::Error;
+use crate::error::{Error, Parameter};
 use crate::numbers::{Real, Sealed};
-use crate::pendulum::{Direction, Parameters, Pendulum, State};
+use crate::pendulum::{Direction, Motion, Parameters, Pendulum, State};
 use crate::small::{Modes, SmallOscillations};
 
 /// The [`SmallOscillations`] of a pendulum: a step costs nothing, only to read it does.
@@ -51,6 +51,12 @@ impl<R: Real + Side> Form for ClosedForm<R> {
         state.check()?;
         let motion = Pendulum::new(&self.parameters)?.to_motion(state);
         let oscillations = SmallOscillations::new(Modes::new(&self.parameters)?, &motion.cast());
+        // wherever it is, momenta and the fourth powers that directions are made of are finite
+        let [angle, velocity]: [R; 2] = oscillations.greatest();
+        let fastest = Motion { w1: velocity, w2: velocity, ..Motion::default() };
+        if !(angle * angle * angle * angle).is_finite() || self.pendulum.to_state(&fastest).check().is_err() {
+            return Err(Error::OutOfRange { parameter: Parameter::A1, value: angle.to_f64() });
+        }
         Ok(Oscillating { oscillations, rate: self.rate, steps: 0 })
     }
 
@@ -59,7 +65,7 @@ impl<R: Real + Side> Form for ClosedForm<R> {
     }
 
     fn check(&self, carried: &Oscillating<R>) -> Result<(), Error> {
-        carried.oscillations.at(0.0).check().map_err(Error::diverged)
+        carried.oscillations.at(carried.steps as f64 / self.rate).check().map_err(Error::diverged)
     }
 
     fn heads(carried: &Oscillating<R>) -> [Direction<R>; 2] {

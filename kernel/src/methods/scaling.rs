@@ -82,11 +82,13 @@ impl Scaling {
     pub fn in_seconds(parameters: &Parameters<f64>) -> Result<Self, Error> {
         let &Parameters { m1, m2, l1, l2, g } = parameters;
         let nu = l1 / l2;
-        let sigma = libm::ceil(libm::log2(nu)) as i32;
+        // one more than there may be is enough to refuse it
+        let places = |places: f64| (places as i32).clamp(-MOST - 1, MOST + 1);
+        let sigma = places(libm::ceil(libm::log2(nu)));
         let norm = scaled(nu, -sigma);
         let (upper, lower) = (sigma.max(0), (-sigma).max(0));
         let ratio = m1 / m2 * norm * norm;
-        let parts = libm::floor(libm::log2(ratio)) as i32;
+        let parts = places(libm::floor(libm::log2(ratio)));
         let (momentum, inverse) = (parts.max(0), (-parts).max(0));
         if upper.max(lower).max(momentum).max(inverse) > MOST {
             return Err(parameters.out_of_range());

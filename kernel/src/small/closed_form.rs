@@ -95,6 +95,15 @@ impl<R: Real> SmallOscillations<R> {
         })
     }
 
+    /// An angle, rad, and an angular velocity, rad/s, that neither rod ever exceeds.
+    pub(crate) fn greatest(&self) -> [R; 2] {
+        let [fast, slow] = [(self.modes[0], self.fast), (self.modes[1], self.slow)].map(|(mode, part)| {
+            let angle = (part.cosine.abs() + part.sine.abs()) * (R::ONE + mode.shape.abs());
+            [angle, angle * mode.frequency]
+        });
+        [fast[0] + slow[0], fast[1] + slow[1]]
+    }
+
     /// (sin wt, cos wt) of the fast and the slow mode.
     #[inline]
     fn phases(&self, t: f64) -> [(R, R); 2] {

@@ -79,7 +79,7 @@ impl<R: Real + Side, S: Sum<R>> Form for DirectionForm<R, S> {
 
     fn check(&self, carried: &Self::Carried) -> Result<(), Error> {
         let [sin1, cos1, s, c, p1, p2] = carried.z;
-        let [_, [sin2, cos2]] = heads(&carried.z);
+        let [_, [sin2, cos2]] = self.directions::<R>(carried);
         let rods = [(Parameter::A1, [sin1, cos1]), (Parameter::A2, [s, c]), (Parameter::A2, [sin2, cos2])];
         let rods = rods.into_iter().flat_map(|(parameter, numbers)| numbers.map(|number| (parameter, number)));
         let unit = R::from_f64(self.scale.momentum);
