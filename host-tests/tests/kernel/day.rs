@@ -7,6 +7,7 @@ use firmware::motion::{Means, Simulation};
 use firmware::scenes::{Report, SceneName};
 use host_tests::oracle::tolerances::{DAY_ENERGY, DAY_READING};
 use host_tests::oracle::trials::{self, Trial};
+use reference::advance;
 
 const DAY: f64 = 86_400.0;
 /// Looks at the motion, one in three minutes.
@@ -23,7 +24,7 @@ fn narrow() -> impl Iterator<Item = Method> {
 fn exact(trial: &Trial, dt: f64) -> Result<Vec<State<f64>>, Error> {
     let mut run = Pendulum::new(&trial.parameters)?.run::<DirectionF64>(&trial.start, dt)?;
     let steps = (trial.seconds / dt / f64::from(SAMPLES)).round() as u32;
-    (0..SAMPLES).map(|_| run.advance(steps).map(|()| run.state())).collect()
+    (0..SAMPLES).map(|_| advance(&mut run, steps).map(|()| run.state())).collect()
 }
 
 /// The same by `method`, and the greatest difference of the energy that directions and momenta have from that of the state, over
@@ -128,7 +129,7 @@ fn a_frame_tells_the_energy_of_one_instant_all_day() -> Result<(), Error> {
             let lost = if method == Method::Extrapolation10Fixed64 {
                 0.0
             } else {
-                exact.advance(ticks * steps)?;
+                advance(&mut exact, ticks * steps)?;
                 pendulum.energy_above_rest(&exact.state()) / energy - 1.0
             };
             worst = worst.max((f64::from(Report::of(&simulation).energy_error) - lost).abs());
