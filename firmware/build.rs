@@ -6,7 +6,7 @@ use std::path::Path;
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");
     println!("cargo:rerun-if-changed=../memory.x");
-    // What a Cortex-M0+ lacks is asked for by this name.
+    // The code asks by this name for what a Cortex-M0+ lacks.
     println!("cargo:rustc-check-cfg=cfg(armv6m)");
     if env::var("TARGET").is_ok_and(|target| target.starts_with("thumbv6m")) {
         println!("cargo:rustc-cfg=armv6m");
@@ -22,19 +22,19 @@ fn main() {
         println!("cargo:rustc-link-search={}", Path::new("firmware").join(&script).with_file_name("").display());
         println!("cargo:rerun-if-changed={}", script.display());
     }
-    // The emulated boards' flash starts at 0, this chip's elsewhere, and it has 1 MiB.
+    // The emulated boards' flash starts at 0; this chip's starts elsewhere and has 1 MiB.
     for argument in ["--defsym=flash_origin=0x08000000", "--defsym=flash_length=0x00100000", "-Tstm32f405.x"] {
         println!("cargo:rustc-link-arg-bin=stm32f405={argument}");
     }
-    // This one's flash begins with what its boot ROM runs first.
+    // The Pico's flash begins with the stage that its boot ROM runs first.
     let pico = ["--defsym=flash_origin=0x10000100", "--defsym=flash_length=0x001fff00", "-Tpico.x"];
     let any = ["-Tlink.x", "-Tdefmt.x", "--nmagic"];
     pico.iter().for_each(|argument| println!("cargo:rustc-link-arg-bin=pico={argument}"));
-    // The example with a colour panel is for it, too.
+    // The example with a colour panel is for the Pico, too.
     if env::var_os("CARGO_FEATURE_COLOUR_PANEL").is_some() {
         pico.iter().chain(&any).for_each(|argument| println!("cargo:rustc-link-arg-examples={argument}"));
     }
-    // Of a Cortex-M33 or M55 this is what its secure side sees, as it does after reset.
+    // A Cortex-M33 or M55 starts on its secure side, which sees its memory here.
     if is("TARGET", "thumbv8m.main-none-eabihf") {
         for place in ["flash_origin=0x10000000", "ram_origin=0x30000000", "ram_length=0x00008000"] {
             println!("cargo:rustc-link-arg-bin=cores=--defsym={place}");

@@ -1,5 +1,5 @@
-//! Every method of the kernel for 10,000 steps: the CRC of its bits, a line each. For cores that no board here has; it knows of a
-//! machine only how to say something and how to end.
+//! Runs every method of the kernel for 10,000 steps and prints the CRC of its bits, one line each. For cores that no board here
+//! has: all it needs of a machine is a way to print and a way to exit.
 #![no_std]
 #![no_main]
 
@@ -8,7 +8,7 @@ use core::fmt::{self, Write};
 use double_pendulum::Method;
 use firmware::job::Request;
 
-/// All of it.
+/// Prints all lines.
 fn say(output: &mut impl Write) -> fmt::Result {
     Method::ALL.iter().try_for_each(|&method| match Request::on_any_core(method).crc() {
         Ok(crc) => writeln!(output, "{} {crc:08x}", method.name()),

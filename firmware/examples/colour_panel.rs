@@ -10,12 +10,12 @@ use core::convert::Infallible;
 use embedded_graphics_core::geometry::Point;
 use embedded_graphics_core::pixelcolor::Rgb565;
 use embedded_hal_bus::spi::ExclusiveDevice;
-use firmware::board::cortex_m::clock::Clock;
+use firmware::board::cortex_m::clock::{Clock, ticks};
 use firmware::config::PROCESSOR;
 use firmware::display::{AnyPanel, Display};
 use firmware::graphics::FrameBuffers;
 use firmware::motion::Settings;
-use firmware::{app::player::Player, scenes::SceneName};
+use firmware::{app::Player, scenes::SceneName};
 use mipidsi::interface::SpiInterface;
 use mipidsi::options::ColorInversion;
 use mipidsi::{Builder, models::ST7789};
@@ -63,7 +63,7 @@ fn play(buffers: &mut FrameBuffers, batch: &mut [u8]) -> Option<Infallible> {
     let mut panel = AnyPanel { target, corner: CORNER, colour: Rgb565::from };
     let mut player = Player::on(PROCESSOR, SceneName::Page, Settings::default(), &mut buffers.ink).ok()?;
     let clock = Clock::start(core.SYST, clocks.system_clock.freq().to_Hz());
-    let mut now = clock.ticks();
+    let mut now = ticks();
     loop {
         now = clock.wait_after(now);
         player.tick(|_| ());

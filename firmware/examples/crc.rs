@@ -3,12 +3,11 @@
 use std::error::Error;
 use std::io::{self, BufRead};
 
-use firmware::job::{JobError, Request};
+use firmware::job::Request;
 
 fn main() -> Result<(), Box<dyn Error>> {
     for line in io::stdin().lock().lines() {
-        let request = Request::parse(&line?).map_err(JobError::Malformed)?;
-        println!("{:08x}", request.crc()?);
+        println!("{:08x}", Request::parse(&line?)?.crc()?);
     }
     Ok(())
 }

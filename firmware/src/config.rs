@@ -76,17 +76,22 @@ impl Processor {
 
 /// A Cortex-M3, which has no floating-point unit: at 50 MHz a tick has 833,000 cycles.
 pub const CORTEX_M3: Processor =
-    Processor { code: 0, costs: prices::CORTEX_M3, frame: 200_000.0, look_ahead: 360_000.0, flips: FLIPS_M3 };
+    Processor { code: 0, costs: prices::CORTEX_M3, frame: 200_000.0, look_ahead: 360_000.0, flips: FIXED };
 /// A Cortex-M0+, which has no long product either, as on the Raspberry Pi Pico: at 125 MHz a tick has 2,083,000 cycles.
 pub const CORTEX_M0PLUS: Processor =
-    Processor { code: 3, costs: prices::CORTEX_M0PLUS, frame: 300_000.0, look_ahead: 640_000.0, flips: FLIPS_M0PLUS };
+    Processor { code: 3, costs: prices::CORTEX_M0PLUS, frame: 300_000.0, look_ahead: 640_000.0, flips: FIXED };
 /// A Cortex-M4F, whose floating-point unit knows `f32` only: the slowest board, at 25 MHz, has 417,000 cycles in a tick. A
 /// plain step costs less than the closed form's two sincos.
 pub const CORTEX_M4F: Processor =
-    Processor { code: 1, costs: prices::CORTEX_M4F, frame: 150_000.0, look_ahead: 190_000.0, flips: FLIPS_M4F };
+    Processor { code: 1, costs: prices::CORTEX_M4F, frame: 150_000.0, look_ahead: 190_000.0, flips: FLOAT };
 /// The STM32F405's at 168 MHz: 2,800,000 cycles in a tick. Less planning ends before the errors of a light elbow show.
-pub const STM32F405: Processor =
-    Processor { code: 2, frame: 700_000.0, look_ahead: 1_300_000.0, flips: FLIPS_F405, ..CORTEX_M4F };
+pub const STM32F405: Processor = Processor {
+    code: 2,
+    frame: 700_000.0,
+    look_ahead: 1_300_000.0,
+    flips: FlipsPace { steps: 5500, ..FLOAT },
+    ..CORTEX_M4F
+};
 /// Every class, by its code on the wire.
 pub const PROCESSORS: [Processor; 4] = [CORTEX_M3, CORTEX_M4F, STM32F405, CORTEX_M0PLUS];
 /// The class of a board that names no other.
@@ -109,14 +114,10 @@ pub struct FlipsPace {
     /// The same of a start that has not the energy to turn over.
     pub never: u32,
 }
-/// Fixed point on a Cortex-M3 at 50 MHz: 920 cycles a step, nearly half of a frame.
-pub const FLIPS_M3: FlipsPace = FlipsPace { steps: 400, start: 42, never: 13 };
-/// The same on a Cortex-M0+ at 125 MHz: 2,200 cycles a step.
-pub const FLIPS_M0PLUS: FlipsPace = FLIPS_M3;
-/// `f32` on a Cortex-M4F: 230 cycles a step, of 417,000 in a frame at 25 MHz, ...
-pub const FLIPS_M4F: FlipsPace = FlipsPace { steps: 650, start: 60, never: 10 };
-/// ... and of 2,800,000 at 168 MHz.
-pub const FLIPS_F405: FlipsPace = FlipsPace { steps: 5500, ..FLIPS_M4F };
+/// Fixed point: 920 cycles a step on a Cortex-M3 at 50 MHz, nearly half of a frame, and 2,200 on a Cortex-M0+ at 125 MHz.
+const FIXED: FlipsPace = FlipsPace { steps: 400, start: 42, never: 13 };
+/// `f32` on a Cortex-M4F: 230 cycles a step, of 417,000 in a frame at 25 MHz, and of 2,800,000 at 168 MHz.
+const FLOAT: FlipsPace = FlipsPace { steps: 650, start: 60, never: 10 };
 
 // ---- The pendulum ---------------------------------------------------------------------------------------------------
 
@@ -183,8 +184,7 @@ pub const MOST_MEASURED_STEPS: u32 = 16;
 /// How often a bus is asked whether it is done before it counts as stuck. A try takes at least 4 processor cycles, so this is
 /// 0.24 ms of the fastest board; the slowest thing waited for is a byte of the panel's I2C, 9/400,000 s = 23 us.
 pub const BUS_TRIES: u32 = 10_000;
-/// Received bytes waiting for the application; one tick brings at most 460,800/10/60 = 768 (the queue holds one less
-/// than its size).
+/// Received bytes waiting for the application; one tick brings at most 460,800/10/60 = 768.
 pub const RECEIVE_QUEUE: usize = 1024;
 /// Bytes waiting for the USB host, which fetches 63 about every 0.1 ms: a dozen frames, should it be late.
 pub const USB_QUEUE: usize = 1024;

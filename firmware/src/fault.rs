@@ -1,9 +1,6 @@
 //! What a crashed Cortex-M says about itself, in words.
 
 use core::fmt;
-use core::panic::PanicInfo;
-
-use crate::config::WATCHDOG_SECONDS;
 
 /// The registers that tell why a HardFault was taken, the last four the Configurable and the HardFault Status Register and the
 /// MemManage and the BusFault Address Register. A Cortex-M0+ has none of those: they are 0.
@@ -118,40 +115,6 @@ impl fmt::Display for Fault {
             return Ok(());
         }
         write!(f, "  cfsr {cfsr:#010x}  hfsr {hfsr:#010x}  mmfar {mmfar:#010x}  bfar {bfar:#010x}")
-    }
-}
-
-#[derive(Debug)]
-pub struct Panic<'a> {
-    /// Where and why, in the program's own terms.
-    pub info: &'a PanicInfo<'a>,
-    /// Where the panic handler was called; found on the stack, as the registers hold something else by now.
-    pub pc: Option<u32>,
-    /// Where the function that did so was called, found likewise: where the panic is, unless a helper was between.
-    pub lr: Option<u32>,
-    /// Configurable Fault Status Register: of a fault before, if it is not zero.
-    pub cfsr: u32,
-}
-
-impl fmt::Display for Panic<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Panic { info, pc, lr, cfsr } = self;
-        let [pc, lr] = [pc, lr].map(|address| address.unwrap_or_default());
-        write!(f, "PANIC: {info}\n  pc {pc:#010x}  lr {lr:#010x}  cfsr {cfsr:#010x}")
-    }
-}
-
-/// What is known of a program that finishes nothing any more.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Hang {
-    pub pc: u32,
-    pub lr: u32,
-}
-
-impl fmt::Display for Hang {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Hang { pc, lr } = self;
-        write!(f, "HANG: no frame finished for {WATCHDOG_SECONDS} s\n  pc {pc:#010x}  lr {lr:#010x}")
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::protocol::choice::choice;
 use crate::protocol::{
-    Ask, AskPlan, Choose, Field, Identify, Measure, Message, Pause, Press, Refused, Restart, Set, Step, request,
+    Ask, AskPlan, Choose, Field, Identify, Measure, Message, Pause, Press, Request, Restart, Set, Simulate, Step,
 };
 use crate::scenes::SceneName;
 
@@ -35,6 +35,8 @@ pub enum Command {
     AskPlan,
     /// Nothing but an answer: what the board is.
     Identify,
+    /// Nothing but answers: the samples of this motion, computed in the time that frames leave free.
+    Simulate(Request),
     /// Nothing but an answer: how long steps of the motion asked for last take.
     Measure {
         steps: u32,
@@ -76,43 +78,31 @@ impl Key {
     }
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HostCommand {
-    /// The number to answer it with.
-    pub request: u16,
-    pub command: Command,
-}
-
-impl HostCommand {
-    /// The command in an intact message, even one of unknown kind, or why there is none.
-    pub fn read(kind: u8, fields: &[u8]) -> Result<Self, Refused> {
-        let request = request(fields);
-        let refuse = |field: Field| Refused { request, field: field.code() };
-        read(kind, fields).map(|command| Self { request, command }).map_err(refuse)
-    }
-}
-
-fn read(kind: u8, fields: &[u8]) -> Result<Command, Field> {
-    fn all<M: Message>(fields: &[u8]) -> Result<M, Field> {
-        M::read(fields).ok_or(Field::Message)
-    }
-    Ok(match kind {
-        Set::KIND => {
-            let Set { field, value, .. } = all(fields)?;
-            Command::Set { field: Field::from_code(field).ok_or(Field::Field)?, value }
+impl Command {
+    /// The command in an intact message, or what is wrong with it: of one of an unknown kind, the message itself.
+    pub(super) fn read(kind: u8, fields: &[u8]) -> Result<Self, Field> {
+        fn all<M: Message>(fields: &[u8]) -> Result<M, Field> {
+            M::read(fields).ok_or(Field::Message)
         }
-        Choose::KIND => Command::Choose(SceneName::from_code(all::<Choose>(fields)?.scene).ok_or(Field::Scene)?),
-        Pause::KIND => Command::Pause(all::<Pause>(fields)?.paused != 0),
-        Step::KIND => Command::Step(all::<Step>(fields)?.ticks),
-        Press::KIND => Key::from_code(all::<Press>(fields)?.key).ok_or(Field::Key)?.tapped(),
-        Measure::KIND => {
-            let Measure { steps, in_ram, .. } = all(fields)?;
-            Command::Measure { steps, in_ram: in_ram != 0 }
-        }
-        Restart::KIND => all::<Restart>(fields).map(|_| Command::Restart)?,
-        Ask::KIND => all::<Ask>(fields).map(|_| Command::Ask)?,
-        AskPlan::KIND => all::<AskPlan>(fields).map(|_| Command::AskPlan)?,
-        Identify::KIND => all::<Identify>(fields).map(|_| Command::Identify)?,
-        _ => return Err(Field::Message),
-    })
+        Ok(match kind {
+            Simulate::KIND => Self::Simulate(all::<Simulate>(fields)?.motion),
+            Set::KIND => {
+                let Set { field, value, .. } = all(fields)?;
+                Self::Set { field: Field::from_code(field).ok_or(Field::Field)?, value }
+            }
+            Choose::KIND => Self::Choose(SceneName::from_code(all::<Choose>(fields)?.scene).ok_or(Field::Scene)?),
+            Pause::KIND => Self::Pause(all::<Pause>(fields)?.paused != 0),
+            Step::KIND => Self::Step(all::<Step>(fields)?.ticks),
+            Press::KIND => Key::from_code(all::<Press>(fields)?.key).ok_or(Field::Key)?.tapped(),
+            Measure::KIND => {
+                let Measure { steps, in_ram, .. } = all(fields)?;
+                Self::Measure { steps, in_ram: in_ram != 0 }
+            }
+            Restart::KIND => all::<Restart>(fields).map(|_| Self::Restart)?,
+            Ask::KIND => all::<Ask>(fields).map(|_| Self::Ask)?,
+            AskPlan::KIND => all::<AskPlan>(fields).map(|_| Self::AskPlan)?,
+            Identify::KIND => all::<Identify>(fields).map(|_| Self::Identify)?,
+            _ => return Err(Field::Message),
+        })
+    }
 }

@@ -1,8 +1,8 @@
-//! Five buttons become commands.
+//! Five buttons become commands, or one: by how often it is tapped before it is held.
 
 use crate::app::button::{Button, Change};
-use crate::app::one_button::OneButton;
 use crate::app::{Command, Key};
+use crate::config::{HOLD_TICKS, MOST_TICKS_BETWEEN_TAPS, REPEAT_PERIOD_TICKS};
 
 /// A reading of the five buttons; `true` is pressed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -38,7 +38,7 @@ const ARROWS: [Key; 4] = [Key::Up, Key::Down, Key::Left, Key::Right];
 /// | left | start angle clockwise | scene before |
 /// | right | start angle counter-clockwise | next scene |
 ///
-/// Select alone does for all: let go it asks for a restart, held for [`HOLD_TICKS`](crate::config::HOLD_TICKS) for the next
+/// Select alone does for all: let go it asks for a restart, held for [`HOLD_TICKS`] for the next
 /// scene, and held after taps for another mass ratio or start angle.
 #[derive(Clone, Debug, Default)]
 pub struct Controls {
@@ -66,5 +66,53 @@ impl Controls {
         }
         let alone = self.alone.tick(select, asked.iter().any(Option::is_some));
         asked.into_iter().flatten().chain(alone)
+    }
+}
+
+/// What select asks for when it is held after no tap, one, two, three, four; all but the first repeat.
+const HELD: [Command; 5] =
+    [Command::NextScene, Command::Heavier, Command::Lighter, Command::TurnRight, Command::TurnLeft];
+
+/// The select button's history, as far as it is pressed alone.
+#[derive(Clone, Debug, Default)]
+struct OneButton {
+    /// Ticks that it has been held alone; `None` if it is not, or has served for something else.
+    held: Option<u8>,
+    served: bool,
+    taps: usize,
+    /// Ticks since the last of them.
+    since: u8,
+}
+
+impl OneButton {
+    /// Takes what the button does in this tick; what that asks for. A tap asks for a restart.
+    fn tick(&mut self, change: Option<Change>, with_another: bool) -> Option<Command> {
+        self.since = self.since.saturating_add(1);
+        match change {
+            Some(Change::Pressed) => {
+                if self.since > MOST_TICKS_BETWEEN_TAPS {
+                    self.taps = 0;
+                }
+                (self.held, self.served) = (Some(0), false);
+            }
+            Some(Change::Released) => {
+                let tapped = self.held.take().is_some() && !self.served;
+                (self.taps, self.since) = (if tapped { self.taps.saturating_add(1) } else { 0 }, 0);
+                return tapped.then_some(Command::Restart);
+            }
+            Some(Change::Repeated) | None => {}
+        }
+        if with_another {
+            self.held = None;
+        }
+        let held = self.held.as_mut()?;
+        *held = held.saturating_add(1);
+        if *held < HOLD_TICKS {
+            return None;
+        }
+        self.served = true;
+        let command = HELD.get(self.taps).copied();
+        self.held = command.filter(|command| *command != Command::NextScene).map(|_| HOLD_TICKS - REPEAT_PERIOD_TICKS);
+        command
     }
 }

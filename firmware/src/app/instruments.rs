@@ -26,7 +26,7 @@ impl Default for Instruments {
 }
 
 impl Instruments {
-    /// The answer to [`Command::Identify`](crate::app::command::Command::Identify).
+    /// The answer to [`Command::Identify`](crate::app::Command::Identify).
     pub fn identity(&self, request: u16) -> Identity {
         let image = (self.image)();
         Identity { request, image: CRC.checksum(image), image_bytes: image.len() as u32, ..self.identity }

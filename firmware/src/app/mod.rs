@@ -1,16 +1,14 @@
 //! The application: reads the buttons, moves the scene, draws it and sends it, tick by tick.
 
 mod button;
-pub mod command;
-pub mod controls;
+mod command;
+mod controls;
 mod event;
-pub mod instruments;
-mod one_button;
+mod instruments;
 mod pace;
-pub mod player;
-pub mod service;
+mod player;
 mod throttle;
-pub mod warm_restart;
+mod warm_restart;
 
 use double_pendulum::Error;
 use embedded_io::Write;
@@ -20,18 +18,21 @@ use crate::config::{
 };
 use crate::display::Display;
 use crate::graphics::{Canvas, FrameBuffers};
+use crate::job::Job;
 use crate::motion::Settings;
-use crate::protocol::{Done, Field, Frame, LinkError, MAX_WIRE, Measured, Message, Refused, encode};
+use crate::protocol::{
+    Decoder, Done, Field, Frame, LinkError, MAX_WIRE, Measured, Message, Refused, Request, Sample, StepTooLong,
+    TO_CHIP, encode, request,
+};
 use crate::scenes::SceneName;
 use throttle::{FaultEdge, ThrottledCounter};
 
-pub use command::{Command, HostCommand, Key};
+pub use command::{Command, Key};
 pub use controls::{Buttons, Controls, NoButtons, Pressed};
 pub use event::{Event, Log};
 pub use instruments::Instruments;
 pub use player::{AUTO, News, Player};
-pub use service::{Received, Service};
-pub use warm_restart::{Cause, Journal, Kept, LastShown, MOST_RESTARTS, SOUND_FRAMES, WarmRestart};
+pub use warm_restart::{Cause, Journal, Kept, LastShown, MOST_RESTARTS, SOUND_FRAMES, WarmRestart, read};
 
 /// The same on a board and in a test: a panel, a byte sink and buttons are all it needs.
 #[derive(Debug)]
@@ -41,7 +42,9 @@ pub struct App<'a, Panel, Link, Keys> {
     keys: Keys,
     controls: Controls,
     pub player: Player<'a>,
-    service: Service,
+    decoder: Decoder,
+    /// The motion asked for last, and the number to answer it with.
+    work: Option<(u16, Job)>,
     pub canvas: &'a mut Canvas,
     /// Ticks done since reset.
     ticks: u32,
@@ -75,7 +78,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
 
     /// The same for a class of processors, before it [begins](Self::begin), which takes much of the stack: better when it is at its place.
     ///
-    /// Never inlined: so it is made at its place, and no copy of it stands on the stack.
+    /// Never inlined: while it is made one of it stands on the stack, and not two.
     #[inline(never)]
     pub fn idle(
         processor: Processor,
@@ -91,7 +94,8 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
             keys,
             controls: Controls::default(),
             player: Player::idle(processor, settings, ink),
-            service: Service::default(),
+            decoder: Decoder::default(),
+            work: None,
             canvas,
             ticks: 0,
             frames: 0,
@@ -144,7 +148,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         }
         self.dropped.add(ticks - 1);
         if let Some(ticks) = self.dropped.news(self.ticks) {
-            log(Event::Dropped { ticks, total: self.dropped.total() });
+            log(Event::Dropped { ticks, total: self.dropped.total });
         }
         if let Err(error) = self.player.check() {
             log(Event::Stopped(error));
@@ -161,17 +165,17 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     pub fn receive(&mut self, bytes: impl IntoIterator<Item = u8>, mut log: impl Log<Panel, Link>) {
         let mut left = MOST_MESSAGES_PER_TICK;
         for byte in bytes.into_iter().take(RECEIVE_QUEUE) {
-            let Some(received) = self.service.receive(byte) else { continue };
-            match received {
-                Received::Accepted => log(Event::Asked),
-                Received::StepTooLong(coarse) => {
-                    log(Event::Asked);
-                    log(Event::StepTooLong(coarse.admissible_step));
-                    self.send(&coarse, &mut log);
+            match self.decoder.push(byte) {
+                None => continue,
+                // An answer, perhaps its own, looped back: to answer that would have no end.
+                Some(Ok((kind, _))) if kind & TO_CHIP == 0 => continue,
+                Some(Ok((kind, fields))) => {
+                    let (request, command) = (request(fields), Command::read(kind, fields));
+                    if let Err(field) = command.and_then(|command| self.reply(request, command, &mut log)) {
+                        self.send(&Refused { request, field: field.code() }, &mut log);
+                    }
                 }
-                Received::HostCommand(command) => self.reply(command, &mut log),
-                Received::Refused(refused) => self.send(&refused, &mut log),
-                Received::Damaged(error) => {
+                Some(Err(error)) => {
                     self.damaged.add(1);
                     self.last_damage = Some(error);
                 }
@@ -184,26 +188,29 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         if let Some(last) = self.last_damage
             && let Some(messages) = self.damaged.news(self.ticks)
         {
-            log(Event::Damaged { messages, total: self.damaged.total(), last });
+            log(Event::Damaged { messages, total: self.damaged.total, last });
         }
     }
 
     /// Takes note of how many received bytes have been lost since reset; may wrap.
     pub fn note_lost(&mut self, total: u32, mut log: impl Log<Panel, Link>) {
-        self.lost.set(total);
+        self.lost.total = total;
         if let Some(bytes) = self.lost.news(self.ticks) {
             log(Event::Lost { bytes, total });
         }
     }
 
-    /// Does a bounded piece of the work asked for over the link, a step at most; whether there is more.
+    /// Does a bounded piece of the work asked for over the link, a step at most; whether there is more. A refusal ends it: the step
+    /// is too long for the motion, which has left the finite numbers.
     pub fn work(&mut self, mut log: impl Log<Panel, Link>) -> bool {
-        match self.service.work() {
-            Some(Ok(sample)) => self.send(&sample, &mut log),
-            Some(Err(refused)) => self.send(&refused, &mut log),
-            None => {}
+        let Some((request, job)) = &mut self.work else { return false };
+        let (request, index, reading, is_finished) = (*request, job.given(), job.advance(), job.is_finished());
+        match reading {
+            Ok(Some(reading)) => self.send(&Sample { request, index, reading }, &mut log),
+            Ok(None) => {}
+            Err(error) => self.send(&Refused { request, field: Field::from(error).code() }, &mut log),
         }
-        self.service.is_busy()
+        !is_finished
     }
 
     /// Does a bounded piece of the planning that the next tick would do; whether there is more.
@@ -231,24 +238,37 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         Ok(())
     }
 
-    /// Executes a command that came over the link, and answers it.
-    fn reply(&mut self, HostCommand { request, command }: HostCommand, log: &mut impl Log<Panel, Link>) {
-        if let Err(field) = self.execute(command, log) {
-            return self.send(&Refused { request, field: field.code() }, log);
-        }
+    /// Executes a command that came over the link, and answers it; what is wrong with it, if it cannot be.
+    fn reply(&mut self, request: u16, command: Command, log: &mut impl Log<Panel, Link>) -> Result<(), Field> {
+        self.execute(command, log)?;
         match command {
             Command::Ask => self.send(&self.player.status(request), log),
             Command::AskPlan => self.send(&self.player.plan(request), log),
             Command::Identify => self.send(&self.instruments.identity(request), log),
             Command::Measure { steps, in_ram } => {
                 let (steps, timed) = (steps.min(MOST_MEASURED_STEPS), self.instruments.timed);
-                match self.service.measure(|motion| timed(motion, steps, in_ram)) {
-                    Some(cycles) => self.send(&Measured { request, steps, cycles }, log),
-                    None => self.send(&Refused { request, field: Field::Message.code() }, log),
-                }
+                let (_, job) = self.work.as_mut().ok_or(Field::Message)?;
+                let cycles = job.measure(|motion| timed(motion, steps, in_ram));
+                self.send(&Measured { request, steps, cycles }, log);
             }
+            Command::Simulate(motion) => self.begin_work(request, &motion, log)?,
             _ => self.send(&Done { request }, log),
         }
+        Ok(())
+    }
+
+    /// The samples of the motion follow; first what a step too long for its energy should be.
+    ///
+    /// Never inlined: what it takes to prepare a motion would be on the stack of every command.
+    #[inline(never)]
+    fn begin_work(&mut self, request: u16, motion: &Request, log: &mut impl Log<Panel, Link>) -> Result<(), Field> {
+        self.work = Some((request, Job::new(motion)?));
+        log(Event::Asked);
+        if let Some(admissible_step) = motion.admissible_step().filter(|step| motion.dt > *step) {
+            log(Event::StepTooLong(admissible_step));
+            self.send(&StepTooLong { request, admissible_step }, log);
+        }
+        Ok(())
     }
 
     #[inline(never)]
@@ -260,8 +280,8 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         }
         let frame = Frame {
             sequence: self.frames,
-            dropped: self.dropped.total(),
-            lost: self.lost.total(),
+            dropped: self.dropped.total,
+            lost: self.lost.total,
             scene_cycles,
             busy_cycles: self.busy_cycles,
             ..self.player.frame()

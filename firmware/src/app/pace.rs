@@ -8,8 +8,9 @@ const WHOLE_TICK: u32 = 100;
 
 #[derive(Clone, Copy, Debug)]
 pub struct Pace {
-    paused: bool,
-    steps: u32,
+    pub paused: bool,
+    /// Ticks still to do, one in each tick of the clock, while it is paused.
+    pub steps: u32,
     /// Ticks of the scene in [`WHOLE_TICK`] ticks of the clock.
     speed: u32,
     /// The part of the scene's next tick that has passed.
@@ -26,14 +27,6 @@ impl Pace {
     pub fn resumed(paused: bool, steps: u32, speed: f32) -> Self {
         let speed = ((speed * WHOLE_TICK as f32 + 0.5) as u32).clamp(1, GREATEST_SPEED as u32 * WHOLE_TICK);
         Self { paused, steps, speed, part: 0 }
-    }
-
-    pub fn is_paused(&self) -> bool {
-        self.paused
-    }
-
-    pub fn steps(&self) -> u32 {
-        self.steps
     }
 
     /// 1 is full speed.

@@ -26,7 +26,8 @@ pub struct Player<'a> {
     name: SceneName,
     settings: Settings,
     scene: AnyScene,
-    means: Means,
+    /// The method that is asked for; `None` leaves it to the plan.
+    method: Option<Method>,
     planner: Planner,
     /// The motion in the way of the plan, until it takes over; meanwhile nothing is planned.
     next: Option<CatchingUp>,
@@ -57,11 +58,10 @@ impl<'a> Player<'a> {
 
     /// The same before it plays anything that moves.
     pub fn idle(processor: Processor, settings: Settings, ink: &'a mut FadeLayer) -> Self {
-        let means = Means { processor, method: None };
         let scene = AnyScene::empty();
         let (name, report) = (SceneName::Frequencies, scene.report());
         let (planner, pace, stopped) = (Planner::new(processor), Pace::default(), false);
-        Self { name, settings, scene, means, planner, next: None, ink, pace, report, stopped }
+        Self { name, settings, scene, method: None, planner, next: None, ink, pace, report, stopped }
     }
 
     /// Plays a scene with `settings`; the kernel's error if they describe no pendulum, and nothing is changed.
@@ -69,7 +69,7 @@ impl<'a> Player<'a> {
     /// Never inlined: what a scene needs to start would be on the stack of every frame.
     #[inline(never)]
     pub fn play(&mut self, name: SceneName, settings: Settings) -> Result<(), Error> {
-        self.scene.start(name, &settings, &self.means)?;
+        self.scene.start(name, &settings, &Means { processor: self.planner.processor, method: self.method })?;
         (self.name, self.settings, self.stopped, self.next) = (name, settings, false, None);
         self.planner.start(&settings, self.scene.viewport(), self.scene.report().way);
         self.ink.clear();
@@ -99,9 +99,9 @@ impl<'a> Player<'a> {
             // What the new value makes impossible, it is the new value that is wrong.
             Command::Set { field, value } => return self.start(self.name, self.with(field, value)?).map_err(|_| field),
             Command::Pause(paused) => self.pace.pause(paused),
-            Command::TogglePause => self.pace.pause(!self.pace.is_paused()),
+            Command::TogglePause => self.pace.pause(!self.pace.paused),
             Command::Step(ticks) => self.pace.step(ticks),
-            Command::Ask | Command::AskPlan | Command::Identify | Command::Measure { .. } => {}
+            Command::Ask | Command::AskPlan | Command::Identify | Command::Measure { .. } | Command::Simulate(_) => {}
         }
         Ok(false)
     }
@@ -119,7 +119,7 @@ impl<'a> Player<'a> {
                 self.planner.rest();
                 if self.scene.planned().is_none_or(|motion| next.tick(motion)) {
                     self.next = None;
-                    if let Some(way) = self.scene.planned().map(|motion| motion.way()) {
+                    if let Some(way) = self.scene.planned().map(|simulation| simulation.motion.way()) {
                         tell(News::Shown(way, self.cost(way)));
                     }
                 }
@@ -136,8 +136,8 @@ impl<'a> Player<'a> {
         if let (Ok(Plan { method, steps, .. }), None) = (found, self.scene.viewport().and_then(|viewport| viewport.way))
         {
             let way = Way { method: *method, steps: (*steps).max(1) };
-            if self.scene.planned().is_some_and(|motion| motion.way() != way) {
-                self.next = CatchingUp::new(&self.settings, way, &self.means.processor).ok();
+            if self.scene.planned().is_some_and(|simulation| simulation.motion.way() != way) {
+                self.next = CatchingUp::new(&self.settings, way, &self.planner.processor).ok();
             }
         }
     }
@@ -153,7 +153,7 @@ impl<'a> Player<'a> {
 
     /// Cycles of a frame that is computed this way.
     pub fn cost(&self, Way { method, steps }: Way) -> f32 {
-        self.means.processor.costs.of_frame(method, steps)
+        self.planner.processor.costs.of_frame(method, steps)
     }
 
     /// The scene in numbers, with what the planner knows of it.
@@ -200,7 +200,7 @@ impl<'a> Player<'a> {
     }
 
     pub fn is_paused(&self) -> bool {
-        self.pace.is_paused() || self.stopped
+        self.pace.paused || self.stopped
     }
 
     /// The frame as it is told to the host, but for what only the board's clock and link know.
@@ -229,8 +229,8 @@ impl<'a> Player<'a> {
         let Report { horizon, is_looking, way, .. } = self.report;
         Status {
             request,
-            processor: self.means.processor.code,
-            asked: self.means.method.map_or(NO_METHOD, method_code),
+            processor: self.planner.processor.code,
+            asked: self.method.map_or(NO_METHOD, method_code),
             method: way.map_or(NO_METHOD, |way| method_code(way.method)),
             way_steps: way.map_or(0, |way| way.steps),
             cycles: way.map_or(0.0, |way| self.cost(way)),
@@ -238,7 +238,7 @@ impl<'a> Player<'a> {
             is_looking: is_looking.into(),
             scene: self.name.code(),
             paused: self.is_paused().into(),
-            steps: self.pace.steps(),
+            steps: self.pace.steps,
             speed: self.pace.speed(),
             parameters: [parameters.m1, parameters.m2, parameters.l1, parameters.l2, parameters.g],
             degrees,
@@ -251,9 +251,9 @@ impl<'a> Player<'a> {
         let name = SceneName::from_code(status.scene).ok_or(Field::Scene)?;
         let [m1, m2, l1, l2, g] = status.parameters;
         let parameters = Parameters { m1, m2, l1, l2, g };
-        let before = core::mem::replace(&mut self.means.method, method_of(status.asked));
+        let before = core::mem::replace(&mut self.method, method_of(status.asked));
         let settings = Settings { parameters, degrees: status.degrees, velocities: status.velocities };
-        self.start(name, settings).inspect_err(|_| self.means.method = before)?;
+        self.start(name, settings).inspect_err(|_| self.method = before)?;
         self.pace = Pace::resumed(status.paused != 0, status.steps, status.speed);
         Ok(())
     }
@@ -273,8 +273,8 @@ impl<'a> Player<'a> {
         if value != AUTO && method.is_none_or(|method| value != f64::from(method_code(method))) {
             return Err(Field::Method);
         }
-        let before = core::mem::replace(&mut self.means.method, method);
-        self.start(self.name, self.settings).inspect_err(|_| self.means.method = before).map_err(|_| Field::Method)
+        let before = core::mem::replace(&mut self.method, method);
+        self.start(self.name, self.settings).inspect_err(|_| self.method = before).map_err(|_| Field::Method)
     }
 
     /// The settings with one of them changed; refuses an angle beyond straight up.

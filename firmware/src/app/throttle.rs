@@ -5,7 +5,7 @@ use crate::config::TICK_RATE;
 /// A count that wraps. How it has grown is said at most once a second, so that saying it does not make it worse.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct ThrottledCounter {
-    total: u32,
+    pub(super) total: u32,
     said: u32,
     tick: u32,
 }
@@ -18,15 +18,6 @@ impl ThrottledCounter {
 
     pub(super) fn add(&mut self, count: u32) {
         self.total = self.total.wrapping_add(count);
-    }
-
-    /// Takes the total of an external counter.
-    pub(super) fn set(&mut self, total: u32) {
-        self.total = total;
-    }
-
-    pub(super) fn total(&self) -> u32 {
-        self.total
     }
 
     /// By how much it has grown, if it has and it is time to say so.

@@ -1,15 +1,17 @@
 //! Where the log of a real chip goes: into memory that a debug probe reads while the processor runs (RTT), which costs next to
 //! nothing and never waits; or, where the same image runs in QEMU, to its standard output, as on the other boards.
 
-use core::cell::UnsafeCell;
+use core::cell::RefCell;
 
+use cortex_m::interrupt::{Mutex, disable, enable};
+use cortex_m::register::primask;
 #[cfg(feature = "stm32f405")]
 use cortex_m_semihosting::hio::{self, HostStream};
-use critical_section::RestoreState;
 use defmt::Encoder;
 use rtt_target::{ChannelMode, UpChannel, rtt_init};
 
 use super::cortex_m::crash;
+use super::cortex_m::interrupt::{Shared, with};
 
 #[defmt::global_logger]
 struct Logger;
@@ -18,7 +20,7 @@ struct Path {
     encoder: Encoder,
     sink: Sink,
     /// Whether interrupts were on before the line that is being written.
-    interrupts: Option<RestoreState>,
+    interrupts: bool,
 }
 
 enum Sink {
@@ -28,12 +30,8 @@ enum Sink {
     Emulator(HostStream),
 }
 
-struct Shared(UnsafeCell<Path>);
-
-// SAFETY: it is used with interrupts off only, on the one core there is.
-unsafe impl Sync for Shared {}
-
-static PATH: Shared = Shared(UnsafeCell::new(Path { encoder: Encoder::new(), sink: Sink::Nowhere, interrupts: None }));
+static PATH: Shared<Path> =
+    Mutex::new(RefCell::new(Path { encoder: Encoder::new(), sink: Sink::Nowhere, interrupts: false }));
 
 /// Opens the log of a chip; before that, lines are lost.
 pub fn into_memory() {
@@ -48,8 +46,7 @@ pub fn into_emulator() {
 }
 
 fn open(sink: Sink) {
-    // SAFETY: interrupts are off, and no line is being written.
-    critical_section::with(|_| unsafe { (*PATH.0.get()).sink = sink });
+    with(&PATH, |path| path.sink = sink);
 }
 
 impl Sink {
@@ -73,29 +70,25 @@ impl Sink {
 // passed on in order.
 unsafe impl defmt::Logger for Logger {
     fn acquire() {
-        // SAFETY: ended by `release`.
-        let interrupts = unsafe { critical_section::acquire() };
-        // SAFETY: interrupts are off.
-        let path = unsafe { &mut *PATH.0.get() };
-        assert!(path.interrupts.replace(interrupts).is_none(), "a line of the log within a line");
-        path.encoder.start_frame(|bytes| path.sink.write(bytes));
+        let interrupts = primask::read().is_active();
+        disable();
+        with(&PATH, |path| {
+            path.interrupts = interrupts;
+            path.encoder.start_frame(|bytes| path.sink.write(bytes));
+        });
     }
 
     unsafe fn flush() {}
 
     unsafe fn release() {
-        // SAFETY: interrupts are off since `acquire`.
-        let path = unsafe { &mut *PATH.0.get() };
-        path.encoder.end_frame(|bytes| path.sink.write(bytes));
-        if let Some(interrupts) = path.interrupts.take() {
-            // SAFETY: begun by `acquire`.
-            unsafe { critical_section::release(interrupts) };
+        with(&PATH, |path| path.encoder.end_frame(|bytes| path.sink.write(bytes)));
+        if with(&PATH, |path| path.interrupts) == Some(true) {
+            // SAFETY: `acquire` has switched them off, and they were on before.
+            unsafe { enable() };
         }
     }
 
     unsafe fn write(bytes: &[u8]) {
-        // SAFETY: interrupts are off since `acquire`.
-        let path = unsafe { &mut *PATH.0.get() };
-        path.encoder.write(bytes, |bytes| path.sink.write(bytes));
+        with(&PATH, |path| path.encoder.write(bytes, |bytes| path.sink.write(bytes)));
     }
 }

@@ -8,17 +8,16 @@ use double_pendulum::Parameters;
 use double_pendulum::plan::{Plan, PlanError, Way};
 use embedded_io::Write;
 
-use super::cortex_m::clock::Clock;
+use super::cortex_m::clock::{Clock, ticks};
 use super::cortex_m::retained;
 use super::cortex_m::watchdog::Watchdog;
-use super::serial::receiver::Receiver;
+use super::serial::Receiver;
 use crate::app::{App, Buttons, Event, Instruments, Journal, News, WarmRestart};
 use crate::config::{HALF_PIXEL, Processor};
 use crate::display::Display;
 use crate::graphics::FrameBuffers;
 use crate::motion::Settings;
 use crate::protocol::BoardName;
-use crate::scenes::SceneName;
 
 pub struct Board<Panel, Link, Keys, Dog> {
     pub panel: Panel,
@@ -104,14 +103,23 @@ fn run<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons>(
 ) -> ! {
     app.use_instruments(instruments);
     let mut journal = resume(app, reset_by_watchdog);
-    let mut now = clock.ticks();
+    let mut now = ticks();
     app.count_from(now, 0);
     loop {
-        while !run_to(now, app, &mut journal, &mut watchdog) {}
+        let mut is_late = true;
+        while is_late {
+            let before = app.frames;
+            is_late = !app.run_to(now, log);
+            // A frame that is finished, drawn and sent is noted, and feeds the watchdog: nothing else does.
+            if app.frames != before {
+                retained::keep(journal.note(&app.player));
+                watchdog.feed();
+            }
+        }
         app.receive(&mut receiver, log);
         app.note_lost(receiver.lost(), log);
-        while clock.ticks() == now && app.work(log) {}
-        while clock.ticks() == now && app.look_ahead() {}
+        while ticks() == now && app.work(log) {}
+        while ticks() == now && app.look_ahead() {}
         now = clock.wait_after(now);
     }
 }
@@ -131,28 +139,6 @@ fn resume<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons>(
     journal
 }
 
-/// As [`App::run_to`]; a frame that is finished, drawn and sent, is noted, and feeds the watchdog: nothing else does.
-fn run_to<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons>(
-    now: u32,
-    app: &mut App<Panel, Link, Keys>,
-    journal: &mut Journal,
-    watchdog: &mut impl Watchdog,
-) -> bool {
-    let before = app.frames;
-    let caught_up = app.run_to(now, log);
-    if app.frames != before {
-        retained::keep(journal.note(&app.player));
-        watchdog.feed();
-    }
-    caught_up
-}
-
-fn started(scene: SceneName, settings: &Settings) {
-    let Settings { parameters: Parameters { m1, m2, l1, l2, g }, degrees: [a1, a2], velocities: [w1, w2] } = *settings;
-    defmt::info!("{=str} starts at {} and {} degrees, {} and {} rad/s", scene.name(), a1, a2, w1, w2);
-    defmt::info!("masses {} and {} kg, rods {} and {} m, g {} m/s2", m1, m2, l1, l2, g);
-}
-
 #[inline(never)]
 fn log<Panel: Debug, Link: Debug>(event: Event<Panel, Link>) {
     match event {
@@ -168,7 +154,11 @@ fn log<Panel: Debug, Link: Debug>(event: Event<Panel, Link>) {
                 defmt::warn!("too often: now with the first scene");
             }
         }
-        Event::Started(scene, settings) => started(scene, &settings),
+        Event::Started(scene, Settings { parameters, degrees: [a1, a2], velocities: [w1, w2] }) => {
+            let Parameters { m1, m2, l1, l2, g } = parameters;
+            defmt::info!("{=str} starts at {} and {} degrees, {} and {} rad/s", scene.name(), a1, a2, w1, w2);
+            defmt::info!("masses {} and {} kg, rods {} and {} m, g {} m/s2", m1, m2, l1, l2, g);
+        }
         Event::Refused(command, field) => defmt::warn!("refused {}: {}", command, field),
         Event::Dropped { ticks, total } => defmt::warn!("dropped {} frames, {} since reset", ticks, total),
         Event::Panel(error) => defmt::warn!("panel: {}", Debug2Format(&error)),

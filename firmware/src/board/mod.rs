@@ -9,18 +9,18 @@
 //! | `log` | where a real chip's log goes |
 //! | `steps` | the steps of every arithmetic, which real chips have twice, in flash and in memory |
 //! | [`cortex_m`] | what every Cortex-M has: the tick, the stack's guard, crash reports, memory kept across a reset |
-//! | [`panel_bus`] | a panel's bus that an interrupt drives |
-//! | [`serial`] | bytes in and out of any board's serial port |
+//! | `panel_bus` | a panel's bus that an interrupt drives |
+//! | `serial` | bytes in and out of any board's serial port |
 //! | `register` | a device register |
 
 pub mod cortex_m;
 pub mod lm3s6965evb;
 pub mod mps2_an386;
 #[cfg(any(feature = "pico", feature = "stm32f405"))]
-pub mod panel_bus;
+mod panel_bus;
 #[cfg(feature = "pico")]
 pub mod pico;
-pub mod serial;
+mod serial;
 #[cfg(feature = "stm32f405")]
 pub mod stm32f405;
 

@@ -11,8 +11,7 @@ use super::cortex_m::identity::instruments;
 use super::cortex_m::interrupt::Interrupt;
 use super::cortex_m::watchdog::{NMI, TwoStage};
 use super::register::{Device, Register};
-use super::serial::receiver::{Inlet, Receiver, Taken};
-use super::serial::transmitter::{Outlet, Transmitter};
+use super::serial::{self, Port, Taken, Transmitter};
 use crate::app::NoButtons;
 use crate::config::BAUD;
 use crate::display::NoDisplay;
@@ -43,19 +42,19 @@ const RECEIVED: u32 = 1 << 1;
 /// UART0's receiver.
 const INTERRUPT: Interrupt = Interrupt(0);
 
-pub type Mps2An386 = Board<NoDisplay, Transmitter<CmsdkUart>, NoButtons, TwoStage>;
+pub type Mps2An386 = Board<NoDisplay, Transmitter, NoButtons, TwoStage>;
 
 /// Sets the board up; `None` the second time.
 pub fn take() -> Option<Mps2An386> {
     let core = Peripherals::take()?;
     guard_stack(core.MPU);
-    let receiver = Receiver::new(INLET)?;
+    let (link, receiver) = serial::start(PORT);
     DIVISOR.write(HERTZ / BAUD);
     CONTROL.write(ENABLE);
     INTERRUPT.unmask();
     Some(Board {
         panel: NoDisplay,
-        link: Transmitter(CmsdkUart(())),
+        link,
         receiver,
         keys: NoButtons,
         instruments: instruments(BoardName::Mps2An386, HERTZ, [0; 4], &core.CPUID, core.DCB, core.DWT),
@@ -65,20 +64,7 @@ pub fn take() -> Option<Mps2An386> {
     })
 }
 
-#[derive(Debug)]
-pub struct CmsdkUart(());
-
-impl Outlet for CmsdkUart {
-    fn is_ready(&self) -> bool {
-        STATE.read() & TRANSMITTER_FULL == 0
-    }
-
-    fn put(&mut self, byte: u8) {
-        DATA.write(byte.into());
-    }
-}
-
-const INLET: Inlet = Inlet {
+const PORT: Port = Port {
     clear: |_| INTERRUPT_CLEAR.write(RECEIVED),
     take: || {
         let state = STATE.read();
@@ -87,4 +73,6 @@ const INLET: Inlet = Inlet {
         }
         Taken { byte: (state & RECEIVER_FULL != 0).then(|| DATA.read() as u8), overrun: state & RECEIVER_OVERRUN != 0 }
     },
+    is_ready: || STATE.read() & TRANSMITTER_FULL == 0,
+    put: |byte| DATA.write(byte.into()),
 };

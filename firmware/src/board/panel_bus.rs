@@ -1,10 +1,11 @@
 //! A panel's bus: the main loop fills an outbox and hands it to the bus's interrupt, which hands it back when it is empty.
 
-use core::cell::Cell;
+use core::cell::RefCell;
 
-use cortex_m::interrupt::{Mutex, free};
+use cortex_m::interrupt::Mutex;
 use embedded_hal::i2c::ErrorKind;
 
+use super::cortex_m::interrupt::{Shared, with};
 use crate::display::{Outbox, PanelBus, Sent};
 
 pub trait PanelPort {
@@ -28,31 +29,16 @@ struct Outgoing {
     sent: Option<Sent>,
 }
 
-static OUTGOING: Mutex<Cell<Option<Outgoing>>> = Mutex::new(Cell::new(None));
-
-fn replace(outgoing: Option<Outgoing>) -> Option<Outgoing> {
-    free(|token| OUTGOING.borrow(token).replace(outgoing))
-}
-
-/// The outbox that the interrupt is done with, if it is. Looked at and put back within one critical section: an interrupt that
-/// found no outbox would do nothing, and fire again at once.
-fn returned() -> Option<(&'static mut Outbox, Sent)> {
-    free(|token| match OUTGOING.borrow(token).take() {
-        Some(Outgoing { outbox, sent: Some(sent) }) => Some((outbox, sent)),
-        under_way => {
-            OUTGOING.borrow(token).set(under_way);
-            None
-        }
-    })
-}
+static OUTGOING: Shared<Option<Outgoing>> = Mutex::new(RefCell::new(None));
 
 /// For the bus's interrupt: `advance` does what is due, and says what has become of the messages once nothing more is; from
 /// then on the bus must not interrupt until [`PanelPort::begin`].
 pub(in crate::board) fn serve(advance: impl FnOnce(&mut Outbox) -> Option<Sent>) {
-    if let Some(Outgoing { outbox, sent }) = replace(None) {
-        let sent = sent.or_else(|| advance(outbox));
-        replace(Some(Outgoing { outbox, sent }));
-    }
+    with(&OUTGOING, |outgoing| {
+        if let Some(Outgoing { outbox, sent: sent @ None }) = outgoing {
+            *sent = advance(outbox);
+        }
+    });
 }
 
 impl<P: PanelPort> Bus<P> {
@@ -64,7 +50,8 @@ impl<P: PanelPort> Bus<P> {
 
 impl<P: PanelPort> PanelBus for Bus<P> {
     fn outbox(&mut self) -> Option<(&mut Outbox, Sent)> {
-        if let Some((outbox, sent)) = returned() {
+        let returned = with(&OUTGOING, |outgoing| outgoing.take_if(|outgoing| outgoing.sent.is_some())).flatten();
+        if let Some(Outgoing { outbox, sent: Some(sent) }) = returned {
             if !matches!(sent, Ok(()) | Err(ErrorKind::NoAcknowledge(_))) {
                 self.port.reset();
             }
@@ -75,15 +62,15 @@ impl<P: PanelPort> PanelBus for Bus<P> {
 
     fn send(&mut self) {
         if let Some(outbox) = self.outbox.take() {
-            let address = outbox.address();
-            replace(Some(Outgoing { outbox, sent: None }));
+            let address = outbox.address;
+            with(&OUTGOING, |outgoing| *outgoing = Some(Outgoing { outbox, sent: None }));
             self.port.begin(address);
         }
     }
 
     fn give_up(&mut self) {
         self.port.reset();
-        if let Some(Outgoing { outbox, .. }) = replace(None) {
+        if let Some(Outgoing { outbox, .. }) = with(&OUTGOING, Option::take).flatten() {
             (self.outbox, self.sent) = (Some(outbox), Err(ErrorKind::Other));
         }
     }

@@ -2,7 +2,7 @@
 //! keeps them together with all that they call (`steps.x`) and no branch leads out of there (test `steps`), so that they run
 //! wherever they are copied.
 
-use super::cortex_m::stopwatch;
+use super::cortex_m::identity::cycles_of;
 use crate::job::{OnBoards, Run};
 
 unsafe extern "C" {
@@ -33,12 +33,12 @@ core::arch::global_asm!(
     ".pool",
 );
 
-/// As [`Instruments::timed`](crate::app::instruments::Instruments::timed).
+/// As [`Instruments::timed`](crate::app::Instruments::timed).
 pub fn timed(motion: &mut OnBoards, steps: u32, in_ram: bool) -> u32 {
     let advance = <OnBoards as Run>::advance as *const ();
     let place = if in_ram { &raw const __steps_ram } else { &raw const __steps_flash };
     let distance = (place as usize).wrapping_sub(&raw const __steps_start as usize);
     // SAFETY: at this distance from the function stands a copy of it and of all that it calls.
     let advance: fn(&mut OnBoards, u32) = unsafe { core::mem::transmute(advance.wrapping_byte_add(distance)) };
-    stopwatch::timed(|| advance(motion, steps))
+    cycles_of(|| advance(motion, steps))
 }

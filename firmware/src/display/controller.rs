@@ -1,4 +1,4 @@
-//! Which controller a panel on I2C has: they look alike, and take other commands.
+//! Which controller a panel on I2C has: the panels look alike but take different commands.
 //!
 //! Source: the rule of L. Bank's OLED libraries (`ss_oled`); no data sheet promises it.
 

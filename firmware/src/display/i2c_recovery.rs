@@ -5,9 +5,18 @@
 //!
 //! Source: NXP UM10204, I2C-bus specification, 3.1.16 (bus clear).
 
-use core::convert::Infallible;
+/// The two lines of a bus, high unless somebody pulls them low.
+pub trait Lines {
+    /// Pulls the clock low or lets it go.
+    fn set_clock(&mut self, high: bool);
 
-use embedded_hal::digital::{InputPin, OutputPin};
+    fn set_data(&mut self, high: bool);
+
+    fn is_data_high(&mut self) -> bool;
+
+    /// Lets half a clock pass.
+    fn wait(&mut self);
+}
 
 /// The most clocks that a panel can be waiting for: the eight bits of a byte and its acknowledgement.
 const MOST_CLOCKS: u32 = 9;
@@ -15,32 +24,27 @@ const MOST_CLOCKS: u32 = 9;
 /// Clocks the bus until the data line is high, at most nine times, then makes a stop. A bus whose data line is high already is
 /// left alone. Whether the line is high in the end: if not, the panel is defective, or the line is short of a resistor.
 ///
-/// Both pins are open-drain outputs that are high at first; `wait` lets half a clock pass.
-pub fn free_bus(
-    clock: &mut impl OutputPin<Error = Infallible>,
-    data: &mut (impl InputPin<Error = Infallible> + OutputPin<Error = Infallible>),
-    mut wait: impl FnMut(),
-) -> bool {
-    let Ok(is_free) = data.is_high();
-    if is_free {
+/// Both lines have been let go before.
+pub fn free_bus(lines: &mut impl Lines) -> bool {
+    if lines.is_data_high() {
         return true;
     }
     for _ in 0..MOST_CLOCKS {
-        let Ok(()) = clock.set_low();
-        wait();
-        let Ok(()) = clock.set_high();
-        wait();
-        if data.is_high() == Ok(true) {
+        lines.set_clock(false);
+        lines.wait();
+        lines.set_clock(true);
+        lines.wait();
+        if lines.is_data_high() {
             break;
         }
     }
     // A stop: the data line rises while the clock is high.
-    let Ok(()) = clock.set_low();
-    let Ok(()) = data.set_low();
-    wait();
-    let Ok(()) = clock.set_high();
-    wait();
-    let Ok(()) = data.set_high();
-    wait();
-    data.is_high() == Ok(true)
+    lines.set_clock(false);
+    lines.set_data(false);
+    lines.wait();
+    lines.set_clock(true);
+    lines.wait();
+    lines.set_data(true);
+    lines.wait();
+    lines.is_data_high()
 }

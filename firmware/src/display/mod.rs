@@ -6,16 +6,16 @@ use crate::graphics::Canvas;
 
 #[cfg(feature = "colour-panel")]
 mod any_panel;
-pub mod controller;
+mod controller;
 mod i2c_recovery;
-pub mod outbox;
+mod outbox;
 mod ssd0323;
 mod ssd1306;
 
 #[cfg(feature = "colour-panel")]
 pub use any_panel::AnyPanel;
 pub use controller::{BUILT_FOR, By, Controller, Found};
-pub use i2c_recovery::free_bus;
+pub use i2c_recovery::{Lines, free_bus};
 pub use outbox::{OutByte, Outbox, PanelBus, Sent};
 pub use ssd0323::Ssd0323;
 pub use ssd1306::{Ssd1306, Ssd1306Error};

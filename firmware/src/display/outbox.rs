@@ -12,16 +12,17 @@ const CAPACITY: usize = PAGES * (5 + 2 + WIDTH) + 48;
 /// Messages to one address, each as its length and its bytes.
 #[derive(Debug, Default)]
 pub struct Outbox {
-    address: u8,
+    /// Whom the messages are for, set by [`address_to`](Self::address_to).
+    pub address: u8,
     messages: Vec<u8, CAPACITY>,
     /// The place of what goes out next.
     at: usize,
     /// Bytes that are left of the message which is going out.
     left: u8,
     /// Whether to read the panel's status byte after the messages.
-    asks: bool,
+    pub asks: bool,
     /// The status byte last read.
-    status: u8,
+    pub status: u8,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,27 +52,6 @@ impl Outbox {
             let parts: [&[u8]; 2] = [&[length, head], body];
             parts.iter().for_each(|part| drop(self.messages.extend_from_slice(part)));
         }
-    }
-
-    /// Requests a read of the panel's status byte after the messages.
-    pub fn ask(&mut self) {
-        self.asks = true;
-    }
-
-    pub fn asks(&self) -> bool {
-        self.asks
-    }
-
-    pub fn answer(&mut self, status: u8) {
-        (self.asks, self.status) = (false, status);
-    }
-
-    pub fn status(&self) -> u8 {
-        self.status
-    }
-
-    pub fn address(&self) -> u8 {
-        self.address
     }
 
     /// Bytes of the messages in it, their addresses included.

@@ -1,4 +1,4 @@
-//! The SSD1306 controller of a 128 x 64 OLED panel in one colour, over I2C, and the SH1106, which looks the same on four wires.
+//! The SSD1306 controller of a 128 x 64 OLED panel in one colour, over I2C, and the SH1106, whose panels look the same.
 //!
 //! A whole frame takes 1,080 bytes of 9 bits, 24 ms at the bus's 400 kHz and longer than a tick. So only what has
 //! changed is sent, and no frame waits for it: one that is ready before the bus is done with an earlier one is not shown, and
@@ -25,7 +25,7 @@ const COMMAND: u8 = 0x00;
 const DATA: u8 = 0x40;
 
 const OFF: &[u8] = &[0xAE];
-/// What wakes either, one command a row.
+/// What wakes either of them, one command a row.
 #[rustfmt::skip]
 const SETTINGS: &[u8] = &[
     0xD5, 0x80,                // clock as after reset, not divided
@@ -41,9 +41,9 @@ const SETTINGS: &[u8] = &[
     0xA4,                      // show what is in memory
     0xA6,                      // not inverted
 ];
-/// What wakes the SSD1306 besides: charge pump on; data stays within the page, as the SH1106's does; no scrolling.
+/// What an SSD1306 needs as well: charge pump on; data stays within the page, as an SH1106's always does; no scrolling.
 const SSD1306: &[u8] = &[0x8D, 0x14, 0x20, 0x02, 0x2E];
-/// What wakes the SH1106 besides: its converter on.
+/// What an SH1106 needs as well: its converter on.
 const SH1106: &[u8] = &[0xAD, 0x8B];
 /// Columns of the SH1106's 132 that are left of the panel's 128.
 const SH1106_LEFT: u8 = 2;
@@ -95,7 +95,7 @@ pub struct Ssd1306<Bus> {
     told: Result<(), Ssd1306Error>,
     /// Frames for which the bus has been busy.
     waiting: u32,
-    /// The part that is told again next.
+    /// The part that is sent again next.
     part: usize,
     /// Frames since they were last counted, and those of them that the bus has taken.
     counted: u32,
@@ -130,12 +130,13 @@ impl<Bus: PanelBus> Ssd1306<Bus> {
         self.waiting = 0;
         let found = match (self.state, self.built_for, sent) {
             (State::Looking { .. }, Some(controller), Ok(())) => Some(Found { controller, by: By::Build }),
-            (State::Asking { .. }, _, Ok(())) => Some(Found::told(outbox.status())),
+            (State::Asking { .. }, _, Ok(())) => Some(Found::told(outbox.status)),
             (State::Asking { .. }, _, Err(ErrorKind::NoAcknowledge(_))) => Some(Found::SILENT),
             _ => None,
         };
         let (state, news) = self.state.after(sent, found);
-        if let State::Waking { .. } = state {
+        // One that is refused is looked for again and again, and reported once.
+        if found.is_some() && news.is_none_or(|told| told != self.told) {
             self.found = found;
         }
         self.state = state;
@@ -151,7 +152,7 @@ impl<Bus: PanelBus> Ssd1306<Bus> {
             State::Asking { address } => {
                 outbox.address_to(address);
                 outbox.put(COMMAND, &[]);
-                outbox.ask();
+                outbox.asks = true;
             }
             State::Waking { address, controller } => {
                 self.memory = Bitmap::from(canvas);
@@ -246,10 +247,10 @@ fn wake(outbox: &mut Outbox, controller: Controller, half: usize) {
     }
 }
 
-/// Sends what differs between the panel's memory and the frame; all of it if the memory is not known.
+/// Puts what differs between the panel's memory and the frame into the outbox; all of it if the memory is not known.
 fn draw(outbox: &mut Outbox, controller: Controller, memory: Option<&Bitmap>, frame: &Bitmap) {
-    for (page, new) in frame.pages().iter().enumerate() {
-        let old = memory.and_then(|memory| memory.pages().get(page));
+    for (page, new) in frame.pages.iter().enumerate() {
+        let old = memory.and_then(|memory| memory.pages.get(page));
         for columns in runs(|column| old.is_none_or(|old| old.get(column) != new.get(column))) {
             write(outbox, controller, frame, page, columns);
         }
@@ -259,7 +260,7 @@ fn draw(outbox: &mut Outbox, controller: Controller, memory: Option<&Bitmap>, fr
 fn write(outbox: &mut Outbox, controller: Controller, frame: &Bitmap, page: usize, columns: Range<usize>) {
     let first = columns.start as u8 + if controller == Controller::Sh1106 { SH1106_LEFT } else { 0 };
     outbox.put(COMMAND, &[0xB0 | page as u8, first & 0x0F, 0x10 | first >> 4]);
-    outbox.put(DATA, frame.pages().get(page).and_then(|page| page.get(columns)).unwrap_or_default());
+    outbox.put(DATA, frame.pages.get(page).and_then(|page| page.get(columns)).unwrap_or_default());
 }
 
 /// The columns that differ, from the first to the last of each run; short gaps belong to it.

@@ -41,7 +41,7 @@ const ROOM: [[[u32; 2]; 4]; 2] = [room(false), room(true)];
 /// every column from the left, in that the lowest bit on top.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Bitmap {
-    pages: [[u8; WIDTH]; PAGES],
+    pub pages: [[u8; WIDTH]; PAGES],
 }
 
 impl Default for Bitmap {
@@ -54,7 +54,7 @@ impl From<&Canvas> for Bitmap {
     fn from(canvas: &Canvas) -> Self {
         let mut bitmap = Self::default();
         let [drawing, picture] = &ROOM;
-        let room = if canvas.has_all_greys() { picture } else { drawing };
+        let room = if canvas.all_greys { picture } else { drawing };
         for (page, rows) in bitmap.pages.iter_mut().zip(canvas.rows().as_chunks::<ROWS>().0) {
             for (word, columns) in page.as_chunks_mut::<8>().0.iter_mut().enumerate() {
                 let mut lit = [0; 2];
@@ -69,16 +69,5 @@ impl From<&Canvas> for Bitmap {
             }
         }
         bitmap
-    }
-}
-
-impl Bitmap {
-    pub fn pages(&self) -> &[[u8; WIDTH]; PAGES] {
-        &self.pages
-    }
-
-    /// Whether the pixel is lit; `false` outside.
-    pub fn is_lit(&self, x: usize, y: usize) -> bool {
-        self.pages.get(y / ROWS).and_then(|page| page.get(x)).is_some_and(|byte| byte >> (y % ROWS) & 1 != 0)
     }
 }

@@ -14,7 +14,8 @@ pub struct Row(pub [u8; ROW]);
 #[derive(Debug, PartialEq, Eq)]
 pub struct Canvas {
     rows: [Row; HEIGHT],
-    all_greys: bool,
+    /// Whether it is a picture in which every grey matters, where a drawing is bright on dark.
+    pub all_greys: bool,
 }
 
 impl Default for Canvas {
@@ -45,15 +46,6 @@ impl Canvas {
     pub fn clear(&mut self) {
         self.rows.fill(Row([0; ROW]));
         self.all_greys = false;
-    }
-
-    /// From now on it is a picture in which every grey matters, where a drawing is bright on dark.
-    pub fn use_all_greys(&mut self) {
-        self.all_greys = true;
-    }
-
-    pub fn has_all_greys(&self) -> bool {
-        self.all_greys
     }
 
     /// The bytes as the panel takes them.

@@ -19,7 +19,7 @@ impl Fading {
 
 #[derive(Clone, Debug)]
 pub struct FadeLayer {
-    frame: Canvas,
+    pub frame: Canvas,
     row: i32,
 }
 
@@ -46,35 +46,6 @@ impl FadeLayer {
             }
             self.row = (self.row + 1) % HEIGHT as i32;
         }
-    }
-
-    pub fn frame(&self) -> &Canvas {
-        &self.frame
-    }
-
-    pub fn frame_mut(&mut self) -> &mut Canvas {
-        &mut self.frame
-    }
-}
-
-/// The frames an application works on: nearly all of its memory.
-///
-/// It borrows them. They are made where they stay, on a board in a static: 8 KiB that neither stand on the
-/// stack nor are copied when a scene is made.
-#[derive(Clone, Debug)]
-pub struct FrameBuffers {
-    pub canvas: Canvas,
-    /// What stays of the frames before.
-    pub ink: FadeLayer,
-}
-
-impl FrameBuffers {
-    pub const BLANK: Self = Self { canvas: Canvas::BLACK, ink: FadeLayer::NONE };
-}
-
-impl Default for FrameBuffers {
-    fn default() -> Self {
-        Self::BLANK
     }
 }
 

@@ -18,33 +18,13 @@ pub fn mass_ratio(ratio: f32) -> Label {
         0.1.. => 3,
         _ => 4,
     };
-    label("μ", " ", ratio, decimals, "")
+    label(["μ", " "], ratio, decimals, "")
 }
 
 /// A start angle with its name: `α 120°`, with one decimal if it is no whole number of degrees.
 pub fn degrees(name: &str, degrees: f32) -> Label {
     let decimals = if degrees == (degrees as i32) as f32 { 0 } else { 1 };
-    label(name, " ", degrees, decimals, "°")
-}
-
-/// The amplitude of an angle, degrees: `30°`.
-pub fn swing(degrees: f32) -> Label {
-    label("", "", degrees, 0, "°")
-}
-
-/// How far an axis reaches either way, degrees: `±12°`.
-pub fn reach(degrees: f32) -> Label {
-    label("±", "", degrees, 0, "°")
-}
-
-/// A frequency in sqrt(g/l) with its name: `ω₁ 1.848`.
-pub fn frequency(name: &str, frequency: f32) -> Label {
-    label(name, " ", frequency, 3, "")
-}
-
-/// Whose energy is how much: `true -18.7 J`.
-pub fn energy(whose: &str, joules: f32) -> Label {
-    label(whose, " ", joules, 1, " J")
+    label([name, " "], degrees, decimals, "°")
 }
 
 /// A number of an axis: `10`, `0.2 s`.
@@ -54,22 +34,17 @@ pub fn tick(value: f32, unit: &str) -> Label {
         0.01..0.1 => 2,
         _ => 0,
     };
-    label("", "", value, decimals, unit)
+    label([""; 2], value, decimals, unit)
 }
 
 /// Until when the frame is right to half a pixel: `½px 8.4 s`, `½px>8.4 s` if it may be for longer, `½px ok` if for ever.
 pub fn trust(until: f32, is_looking: bool) -> Label {
     let gap = if is_looking { ">" } else { " " };
     match until {
-        0.0..1e3 => label("½px", gap, until, 1, " s"),
-        1e3..1e9 => label("½px", gap, until, 0, " s"),
+        0.0..1e3 => label(["½px", gap], until, 1, " s"),
+        1e3..1e9 => label(["½px", gap], until, 0, " s"),
         _ => Label::try_from("½px ok").unwrap_or_default(),
     }
-}
-
-/// How much is done: `43 %`.
-pub fn percent(percent: u32) -> Label {
-    label("", "", percent as f32, 0, " %")
 }
 
 /// The time since the start to a tenth of a second: `12.3 s`.
@@ -77,9 +52,9 @@ pub fn time(seconds: f64) -> Label {
     written([""; 3], (seconds * 10.0) as u32, 10, " s")
 }
 
-/// `value` rounded to `decimals` places after a name and a gap, and before a unit.
+/// `value` rounded to `decimals` places after a name and a gap, and before a unit: `±12°`, `ω₁ 1.848`, `true -18.7 J`.
 #[inline(never)]
-fn label(name: &str, gap: &str, value: f32, decimals: u32, unit: &str) -> Label {
+pub fn label([name, gap]: [&str; 2], value: f32, decimals: u32, unit: &str) -> Label {
     let one = 10_u32.saturating_pow(decimals);
     let sign = if value < 0.0 { "-" } else { "" };
     written([name, gap, sign], (value.abs() * one as f32 + 0.5) as u32, one, unit)

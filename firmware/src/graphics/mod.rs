@@ -1,9 +1,9 @@
 //! Drawing: a canvas of grey pixels, and all that draws on it.
 
-pub mod bitmap;
-pub mod brush;
-pub mod canvas;
-pub mod fade_layer;
+mod bitmap;
+mod brush;
+mod canvas;
+mod fade_layer;
 mod font;
 pub mod label;
 pub mod plot;
@@ -13,8 +13,21 @@ mod view;
 pub use bitmap::{Bitmap, PAGES};
 pub use brush::{Disc, SUBPIXELS, Spot, Stroke};
 pub use canvas::{Canvas, HEIGHT, Row, WIDTH};
-pub use fade_layer::{FadeLayer, Fading, FrameBuffers};
+pub use fade_layer::{FadeLayer, Fading};
 pub use font::{Glyph, glyph};
-pub use plot::{Height, Strip};
+pub use plot::Height;
 pub use text::{Anchor, LINE, LOWEST};
-pub use view::{Place, RodDirections, View};
+pub use view::{Place, RodDirections, TRACE_HALF_WIDTH, View};
+
+/// The frames that an application draws on. It borrows them: they are made where they stay, on a board in a static, so that their
+/// 8 KiB are neither on the stack nor copied when a scene is made.
+#[derive(Clone, Debug)]
+pub struct FrameBuffers {
+    pub canvas: Canvas,
+    /// What stays of the frames before.
+    pub ink: FadeLayer,
+}
+
+impl FrameBuffers {
+    pub const BLANK: Self = Self { canvas: Canvas::BLACK, ink: FadeLayer::NONE };
+}

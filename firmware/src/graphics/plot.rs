@@ -18,7 +18,7 @@ pub const fn height(value: f32, zero: f32, scale: f32) -> Height {
 /// brighter already, it stays.
 #[inline(never)]
 pub fn column(canvas: &mut Canvas, x: i32, from: Height, to: Height, brightness: u8) {
-    /// As in [`crate::graphics::brush`]: 255 = 17 x 15.
+    /// As of a [`Stroke`](crate::graphics::Stroke): 255 = 17 x 15.
     const GREY: u16 = 17 * SUBPIXELS as u16;
     let top = i32::from(from.min(to)) - HALF_THICKNESS;
     let bottom = i32::from(from.max(to)) + HALF_THICKNESS;
@@ -75,35 +75,11 @@ pub fn scale_step(least: f32) -> f32 {
     STEPS.into_iter().find(|step| *step >= least).unwrap_or(100.0)
 }
 
-/// The last `COLUMNS` values of a curve, scrolling.
-#[derive(Clone, Debug)]
-pub struct Strip<const COLUMNS: usize> {
-    columns: [Height; COLUMNS],
-    written: usize,
-}
-
-impl<const COLUMNS: usize> Default for Strip<COLUMNS> {
-    fn default() -> Self {
-        Self { columns: [0; COLUMNS], written: 0 }
-    }
-}
-
-impl<const COLUMNS: usize> Strip<COLUMNS> {
-    pub fn push(&mut self, height: Height) {
-        self.columns.iter_mut().rev().fold(height, |newer, place| core::mem::replace(place, newer));
-        self.written = COLUMNS.min(self.written + 1);
-    }
-
-    pub fn oldest_first(&self) -> impl Iterator<Item = Height> {
-        self.columns.iter().copied().skip(COLUMNS.saturating_sub(self.written))
-    }
-
-    /// Draws them with a brightness of 0 to 255, the oldest in column `left`.
-    pub fn draw(&self, canvas: &mut Canvas, left: i32, brightness: u8) {
-        let mut before = None;
-        for (x, height) in (left..).zip(self.oldest_first()) {
-            column(canvas, x, before.unwrap_or(height), height, brightness);
-            before = Some(height);
-        }
+/// Draws a curve with a brightness of 0 to 255, its first height in column `left`.
+pub fn curve(canvas: &mut Canvas, left: i32, heights: impl Iterator<Item = Height>, brightness: u8) {
+    let mut before = None;
+    for (x, height) in (left..).zip(heights) {
+        column(canvas, x, before.unwrap_or(height), height, brightness);
+        before = Some(height);
     }
 }

@@ -3,7 +3,7 @@
 use double_pendulum::Parameters;
 
 use crate::config::{GREATEST_RADIUS, LEAST_RADIUS, PIVOT, REACH, ROD_HALF_WIDTH};
-use crate::graphics::{Canvas, Disc, SUBPIXELS, Spot, Stroke};
+use crate::graphics::{Canvas, Disc, FadeLayer, SUBPIXELS, Spot, Stroke};
 
 /// Where both rods point: (sin, cos) of their angles from the downward vertical.
 pub type RodDirections = [[f32; 2]; 2];
@@ -12,6 +12,8 @@ pub type RodDirections = [[f32; 2]; 2];
 const ROD_BRIGHTNESS: u8 = 190;
 /// The dark gap that sets a bob off from what lies behind it, subpixels.
 const GAP: u8 = SUBPIXELS as u8;
+/// Half the width of a trace that stays, subpixels.
+pub const TRACE_HALF_WIDTH: u8 = 30;
 
 /// Where on the frame a pendulum hangs, in pixels.
 #[derive(Clone, Copy, Debug)]
@@ -30,27 +32,33 @@ impl Place {
         [Self { pivot: (29.5, 36.0), reach: 25.0 }, Self { pivot: (98.5, 36.0), reach: 25.0 }];
 }
 
+/// A pendulum on the frame.
 #[derive(Clone, Copy, Debug)]
 pub struct View {
     pivot: (f32, f32),
     rods: [f32; 2],
-    radii: [u8; 2],
+    /// Of bob 1 and bob 2, subpixels.
+    pub radii: [u8; 2],
+    /// Where bob 1 and bob 2 are drawn.
+    spots: [Spot; 2],
 }
 
 impl View {
-    /// Both rods stretched out reach `place.reach` pixels.
+    /// Pointing to these directions; both rods stretched out reach `place.reach` pixels.
     ///
     /// The bobs are spheres of one material, so a radius goes with the cube root of the mass; the heavier bob has
     /// [`GREATEST_RADIUS`], in a smaller place less in proportion, and none less than [`LEAST_RADIUS`].
-    pub fn new(parameters: &Parameters<f32>, place: Place) -> Self {
+    pub fn new(parameters: &Parameters<f32>, place: Place, directions: RodDirections) -> Self {
         let &Parameters { m1, m2, l1, l2, .. } = parameters;
         let greatest = GREATEST_RADIUS * place.reach / REACH;
         let radius = |mass: f32| {
             let pixels = greatest * libm::cbrtf(mass / m1.max(m2));
             (pixels.max(LEAST_RADIUS) * SUBPIXELS as f32) as u8
         };
-        let scale = place.reach / (l1 + l2);
-        Self { pivot: place.pivot, rods: [scale * l1, scale * l2], radii: [radius(m1), radius(m2)] }
+        let (scale, radii) = (place.reach / (l1 + l2), [radius(m1), radius(m2)]);
+        let mut view = Self { pivot: place.pivot, rods: [scale * l1, scale * l2], radii, spots: Default::default() };
+        view.turn(directions);
+        view
     }
 
     /// The centres of bob 1 and bob 2, in pixels right and down from the panel's top left corner: a rod that points to
@@ -61,18 +69,21 @@ impl View {
         [(x1, y1), (x1 + rod2 * sin2, y1 + rod2 * cos2)]
     }
 
-    pub fn spots(&self, directions: RodDirections) -> [Spot; 2] {
-        self.bobs(directions).map(|(x, y)| Spot::at(x, y))
+    pub fn turn(&mut self, directions: RodDirections) {
+        self.spots = self.bobs(directions).map(|(x, y)| Spot::at(x, y));
     }
 
-    /// The radii of bob 1 and bob 2, subpixels.
-    pub fn radii(&self) -> [u8; 2] {
-        self.radii
+    /// The same, and bob 2 leaves a stroke `2 * half_width` subpixels wide, with a brightness of 0 to 255.
+    pub fn trace(&mut self, directions: RodDirections, ink: &mut FadeLayer, half_width: u8, brightness: u8) {
+        let [_, from] = self.spots;
+        self.turn(directions);
+        let [_, to] = self.spots;
+        ink.add(Stroke { from, to, radius: half_width }, brightness);
     }
 
-    /// Draws pivot, rods and bobs, the bobs at the centres given and with a brightness of 0 to 255.
-    pub fn draw(&self, canvas: &mut Canvas, [bob1, bob2]: [Spot; 2], brightness: u8) {
-        let pivot = Spot::at(self.pivot.0, self.pivot.1);
+    /// Draws pivot, rods and bobs, these with a brightness of 0 to 255.
+    pub fn draw(&self, canvas: &mut Canvas, brightness: u8) {
+        let (pivot, [bob1, bob2]) = (Spot::at(self.pivot.0, self.pivot.1), self.spots);
         let half_width = (ROD_HALF_WIDTH * SUBPIXELS as f32) as u8;
         let rod_brightness = ROD_BRIGHTNESS.min(brightness);
         for (from, to) in [(pivot, bob1), (bob1, bob2)] {

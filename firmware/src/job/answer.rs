@@ -3,7 +3,7 @@
 use core::fmt;
 
 use double_pendulum::parts::Turns;
-use double_pendulum::{Error, Method, Pendulum};
+use double_pendulum::{Error, Method, Motion, Parameter, Pendulum};
 
 use super::{OnBoards, Reading, Request, Run};
 use crate::protocol::Field;
@@ -11,8 +11,8 @@ use crate::protocol::Field;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum JobError {
     NotOnBoards(Method),
-    /// A message that is none, by the field that is wrong.
-    Malformed(Field),
+    /// What is no text of a request.
+    Malformed,
     Refused(Error),
 }
 
@@ -20,7 +20,7 @@ impl fmt::Display for JobError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             JobError::NotOnBoards(method) => write!(f, "{method}: not in the boards' applications"),
-            JobError::Malformed(field) => write!(f, "not a request: {}", field.name()),
+            JobError::Malformed => write!(f, "not a request"),
             JobError::Refused(error) => write!(f, "{error}"),
         }
     }
@@ -38,7 +38,7 @@ impl From<JobError> for Field {
     fn from(error: JobError) -> Self {
         match error {
             JobError::NotOnBoards(_) => Field::Method,
-            JobError::Malformed(field) => field,
+            JobError::Malformed => Field::Message,
             JobError::Refused(error) => error.into(),
         }
     }
@@ -54,6 +54,8 @@ pub struct Job<R = OnBoards> {
     /// Of a motion that does not count its own.
     turns: Option<[Turns; 2]>,
     stride: u32,
+    /// Samples given so far; wraps.
+    given: u32,
     /// Samples still to come, the one at the start included.
     left: u32,
     /// Steps until the next of them.
@@ -69,7 +71,12 @@ impl<R: Run> Job<R> {
         let parameters = if method.is_single() { parameters.cast::<f32>().cast() } else { parameters };
         let pendulum = Pendulum::new(&parameters)?;
         let turns = run.sides().map(|sides| Turns::of(angles, sides));
-        Ok(Self { run, pendulum, turns, stride, left: samples.saturating_add(1), steps: 0 })
+        Ok(Self { run, pendulum, turns, stride, given: 0, left: samples.saturating_add(1), steps: 0 })
+    }
+
+    /// Samples given so far; wraps.
+    pub fn given(&self) -> u32 {
+        self.given
     }
 
     /// Whether every sample has been given.
@@ -90,9 +97,8 @@ impl<R: Run> Job<R> {
         if self.steps > 0 {
             return Ok(None);
         }
-        self.left -= 1;
-        self.steps = self.stride;
-        self.reading().finite().map(Some).inspect_err(|_| self.left = 0)
+        (self.given, self.left, self.steps) = (self.given.wrapping_add(1), self.left - 1, self.stride);
+        self.reading().map(Some).inspect_err(|_| self.left = 0)
     }
 
     /// Lets `advance` make steps and nothing else, for their time to be measured: no sample after them is right.
@@ -109,9 +115,16 @@ impl<R: Run> Job<R> {
         }
     }
 
-    fn reading(&self) -> Reading {
+    fn reading(&self) -> Result<Reading, Error> {
         let state = self.run.state();
-        Reading::new(&self.pendulum, self.turns.map_or(state, |turns| Turns::unwrap(&turns, state)))
+        let state = self.turns.map_or(state, |turns| Turns::unwrap(&turns, state)).finite()?;
+        let (Motion { w1, w2, .. }, energy) = (self.pendulum.to_motion(&state), self.pendulum.energy(&state));
+        for (parameter, value) in [(Parameter::W1, w1), (Parameter::W2, w2), (Parameter::Energy, energy)] {
+            if !value.is_finite() {
+                return Err(Error::Diverged { parameter, value });
+            }
+        }
+        Ok(Reading { state: state.into(), velocities: [w1, w2], energy })
     }
 }
 

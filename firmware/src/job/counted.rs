@@ -15,6 +15,12 @@ impl Request {
     }
 }
 
+impl Default for Request {
+    fn default() -> Self {
+        Self::on_any_core(Method::Rk4F64)
+    }
+}
+
 /// CRC-32 of all that is carried at every sample but the one at the start, and of the last state.
 pub(super) fn crc<R: Run>(request: &Request) -> Result<u32, JobError> {
     let mut run = R::start(request)?;

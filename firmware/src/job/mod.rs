@@ -9,13 +9,11 @@ mod answer;
 mod comparison;
 mod counted;
 mod drawn;
-mod reading;
 mod request;
 mod run;
 mod table;
 
+pub use crate::protocol::{Reading, Request};
 pub use answer::{Job, JobError};
-pub use reading::Reading;
-pub use request::Request;
 pub use run::Run;
 pub use table::{AnyRun, ON_BOARDS, OnBoards};

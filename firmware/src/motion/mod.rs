@@ -1,9 +1,9 @@
 //! The motion itself, apart from any frame of it: settings, stepping, planning.
 
 mod misprinted;
-pub mod planner;
-pub mod settings;
-pub mod simulation;
+mod planner;
+mod settings;
+mod simulation;
 
 pub use misprinted::Misprinted;
 pub use planner::{Finding, Planner, Viewport, half_pixel, problem};

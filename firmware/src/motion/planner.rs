@@ -25,7 +25,7 @@ pub type Finding = Result<Plan, PlanError>;
 
 #[derive(Clone, Copy, Debug)]
 pub struct Planner {
-    processor: Processor,
+    pub processor: Processor,
     ticks: u64,
     task: Option<(Problem, Viewport)>,
     search: Option<Search>,
@@ -33,35 +33,25 @@ pub struct Planner {
     debt: f32,
     plan: Option<Finding>,
     /// The way that the scene has begun in, and until when that is expected to be right, s.
-    begun: Option<Way>,
-    begun_horizon: f64,
-    /// Whether it has been found and not yet told, and whether the next tick tells it.
+    begun: Option<(Way, f64)>,
+    /// Something has been found that no tick has told yet.
     is_news: bool,
+    /// The next tick tells it, and does nothing else.
     is_due: bool,
 }
 
 impl Planner {
     pub fn new(processor: Processor) -> Self {
-        Self {
-            processor,
-            ticks: 0,
-            task: None,
-            search: None,
-            debt: 0.0,
-            plan: None,
-            begun: None,
-            begun_horizon: 0.0,
-            is_news: false,
-            is_due: false,
-        }
+        let (task, search, plan, begun) = (None, None, None, None);
+        Self { processor, ticks: 0, task, search, debt: 0.0, plan, begun, is_news: false, is_due: false }
     }
 
     /// Begins anew for a scene that starts with `settings`, and in the way `begun`; one that shows no motion has no plan.
     pub fn start(&mut self, settings: &Settings, viewport: Option<Viewport>, begun: Option<Way>) {
-        (self.ticks, self.debt) = (0, 0.0);
-        (self.begun, self.begun_horizon) = (begun, 0.0);
-        (self.search, self.plan, self.is_news, self.is_due) = (None, None, false, false);
-        self.task = viewport.map(|viewport| (problem(settings, &viewport), viewport));
+        let (task, begun) =
+            (viewport.map(|viewport| (problem(settings, &viewport), viewport)), begun.map(|way| (way, 0.0)));
+        (self.task, self.search, self.plan, self.begun) = (task, None, None, begun);
+        (self.ticks, self.debt, self.is_news, self.is_due) = (0, 0.0, false, false);
     }
 
     /// Does all that this tick of the scene may spend, but what has been done before. What is found the next one tells, and does
@@ -84,9 +74,7 @@ impl Planner {
     /// Takes note of how far the way that the scene has begun in has been looked at.
     #[inline(never)] // one copy
     fn note(&mut self) {
-        if let Some(way) = self.begun {
-            self.begun_horizon = self.begun_horizon.max(self.looked_at(way));
-        }
+        self.begun = self.begun.map(|(way, horizon)| (way, horizon.max(self.looked_at(way))));
     }
 
     /// Lets a tick of the scene pass that has no time for this.
@@ -101,8 +89,8 @@ impl Planner {
 
     /// Until when the frames are expected to be right of a scene that goes this `way`, s.
     pub fn horizon(&self, way: Way) -> f64 {
-        let looked_at = if self.begun == Some(way) { self.begun_horizon } else { self.looked_at(way) };
-        looked_at.max(self.planned(way))
+        let begun = self.begun.filter(|(begun, _)| *begun == way).map(|(_, horizon)| horizon);
+        begun.unwrap_or_else(|| self.looked_at(way)).max(self.planned(way))
     }
 
     /// Until when the search has found this way right so far.

@@ -1,6 +1,6 @@
-//! The motion itself, apart from any frame of it: the state after n ticks, and what its energy has become.
+//! The motion itself, apart from any frame of it, and what its energy has become.
 
-use double_pendulum::plan::{Directions, PlannedRun, Way};
+use double_pendulum::plan::{PlannedRun, Way};
 use double_pendulum::{Error, Method, Motion, Pendulum, State};
 
 use crate::config::{Processor, TICK_RATE};
@@ -40,8 +40,9 @@ pub fn start_beside(settings: &Settings, apart: f64, way: Way) -> Result<Planned
 /// A pendulum in motion since its last restart.
 #[derive(Clone, Debug)]
 pub struct Simulation {
-    energy: Energy,
-    motion: PlannedRun,
+    pub energy: Energy,
+    /// To be read: only [`tick`](Self::tick) moves it.
+    pub motion: PlannedRun,
     /// Whether its method was asked for.
     is_given: bool,
 }
@@ -52,8 +53,8 @@ impl Simulation {
         let pendulum = settings.pendulum()?;
         let start = settings.start(&pendulum)?;
         let motion = means.start(settings, &pendulum)?;
-        let energy = pendulum.energy_at(motion.directions(), [start.p1, start.p2]);
-        Ok(Self { energy: Energy::new(pendulum, energy), motion, is_given: means.method.is_some() })
+        let start = pendulum.energy_at(motion.directions(), [start.p1, start.p2]);
+        Ok(Self { energy: Energy { pendulum, start }, motion, is_given: means.method.is_some() })
     }
 
     #[inline(never)] // one copy
@@ -64,46 +65,12 @@ impl Simulation {
 
     /// The way that was asked for in place of the plan's, if one was.
     pub fn given(&self) -> Option<Way> {
-        self.is_given.then(|| self.way())
+        self.is_given.then(|| self.motion.way())
     }
 
-    pub fn way(&self) -> Way {
-        self.motion.way()
-    }
-
-    /// Where the rods point: all that most frames need.
-    pub fn directions(&self) -> Directions {
-        self.motion.directions()
-    }
-
-    /// The canonical state when the rods point to the [`directions`](Self::directions), rounded to `f32`, its angles unwrapped.
-    pub fn state(&self) -> State<f32> {
-        self.motion.rounded_state()
-    }
-
-    /// The canonical state to the last digit carried.
-    pub fn precise_state(&self) -> State<f64> {
-        self.motion.state()
-    }
-
-    /// Ticks since the start. They never wrap: that would take ten thousand million years.
-    pub fn step(&self) -> u64 {
-        self.motion.frame()
-    }
-
-    /// Simulated time since the start, s.
-    pub fn time(&self) -> f64 {
-        self.motion.time()
-    }
-
-    /// The error of its energy in this `state`, which is that of the [`directions`](Self::directions) now ([`Energy::error`]).
+    /// The error of its energy in this `state`, the present one ([`Energy::error`]).
     pub fn energy_error(&self, state: &State<f32>) -> f32 {
-        let Energy { pendulum, .. } = &self.energy;
-        self.energy.error(pendulum.energy_at(self.directions(), [state.p1, state.p2]))
-    }
-
-    pub fn energy(&self) -> &Energy {
-        &self.energy
+        self.energy.error(self.energy.pendulum.energy_at(self.motion.directions(), [state.p1, state.p2]))
     }
 }
 
@@ -145,20 +112,12 @@ impl CatchingUp {
 /// The energy a motion started with, to hold what it has become against.
 #[derive(Clone, Debug)]
 pub struct Energy {
-    pendulum: Pendulum<f32>,
-    start: f32,
+    pub pendulum: Pendulum<f32>,
+    /// J.
+    pub start: f32,
 }
 
 impl Energy {
-    /// Of a motion of `pendulum` that starts with so much, J.
-    pub fn new(pendulum: Pendulum<f32>, start: f32) -> Self {
-        Self { pendulum, start }
-    }
-
-    pub fn pendulum(&self) -> &Pendulum<f32> {
-        &self.pendulum
-    }
-
     /// (E - E0)/(E0 - Emin), with E0 the energy at the start and Emin that of hanging at rest; 0 if the start is
     /// hanging at rest, which it never leaves.
     pub fn error(&self, energy: f32) -> f32 {

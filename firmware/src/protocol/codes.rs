@@ -30,14 +30,7 @@ pub fn method_of(code: u8) -> Option<Method> {
     Method::ALL.get(usize::from(code)).copied()
 }
 
-/// The code of what ends a horizon.
+/// The code of what ends a horizon, likewise.
 pub const fn limit_code(limit: Limit) -> u8 {
-    match limit {
-        Limit::End => 0,
-        Limit::Growth => 1,
-        Limit::Budget => 2,
-        Limit::Planning => 3,
-        Limit::Method => 4,
-        _ => u8::MAX,
-    }
+    limit as u8
 }

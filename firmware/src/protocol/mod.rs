@@ -4,7 +4,7 @@
 //! each; the fields of each kind are a struct here, in SI units, in postcard's format; the CRC is CRC-32/ISO-HDLC over
 //! everything before it, little-endian.
 
-pub mod choice;
+pub(crate) mod choice;
 mod codes;
 mod field;
 mod link;
@@ -16,5 +16,5 @@ pub use codes::{BoardName, NO_METHOD, limit_code, method_code, method_of};
 pub use field::Field;
 pub use link::{CRC, Decoder, LinkError, MAX_WIRE, TO_CHIP, VERSION, encode, frame};
 pub use message::{MAX_FIELDS, Message, request};
-pub use to_chip::{Ask, AskPlan, Choose, Identify, Measure, Pause, Press, Restart, Set, Simulate, Step};
-pub use to_host::{Done, Frame, Identity, Measured, Planned, Refused, Restarted, Sample, Status, StepTooLong};
+pub use to_chip::{Ask, AskPlan, Choose, Identify, Measure, Pause, Press, Request, Restart, Set, Simulate, Step};
+pub use to_host::{Done, Frame, Identity, Measured, Planned, Reading, Refused, Restarted, Sample, Status, StepTooLong};

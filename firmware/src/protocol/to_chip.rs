@@ -1,24 +1,31 @@
 //! What the host asks for. Every intact message is answered, with its number.
 
+use double_pendulum::{Method, Parameters};
+
 use super::message::numbered;
+
+/// A motion to compute, by a method that the chip's application has or not.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[cfg_attr(target_os = "none", derive(defmt::Format))]
+pub struct Request {
+    pub method: Method,
+    pub parameters: Parameters<f64>,
+    /// a1, a2 at the start, rad.
+    pub angles: [f64; 2],
+    /// w1, w2 at the start, rad/s.
+    pub velocities: [f64; 2],
+    /// Step size, s.
+    pub dt: f64,
+    /// Steps from one sample to the next.
+    pub stride: u32,
+    /// Samples after the one at the start.
+    pub samples: u32,
+}
 
 numbered! {
     /// Compute this motion and send its samples. A new request replaces one under way.
     Simulate = 0x81 {
-        /// The method, by its [`method_code`](super::method_code).
-        method: u8,
-        /// m1, m2 (kg), l1, l2 (m), g (m/s^2).
-        parameters: [f64; 5],
-        /// a1, a2 at the start, rad.
-        angles: [f64; 2],
-        /// w1, w2 at the start, rad/s.
-        velocities: [f64; 2],
-        /// Step size, s.
-        dt: f64,
-        /// Steps from one sample to the next.
-        stride: u32,
-        /// Samples after the one at the start.
-        samples: u32,
+        motion: Request,
     }
     /// Set one parameter and start again with it. Speed does not start again.
     Set = 0x82 {

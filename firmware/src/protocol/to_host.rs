@@ -2,6 +2,18 @@
 
 use super::message::{messages, numbered};
 
+/// What is told of a motion asked for. The state is widened, which loses nothing, and of the fast forms given to the last digit
+/// they carry; what follows from it is computed in double precision.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Reading {
+    /// a1, a2 (rad), p1, p2 (kg m^2/s).
+    pub state: [f64; 4],
+    /// w1, w2, rad/s.
+    pub velocities: [f64; 2],
+    /// Energy, J; zero potential at the pivot.
+    pub energy: f64,
+}
+
 messages! {
     /// One drawn frame, sent as soon as it is on the panel.
     Frame = 0x01 {
@@ -45,7 +57,7 @@ messages! {
     /// The board has restarted by itself and plays on, from the start of its scene. The frames after it are counted from 0 again.
     /// What is said of the program and the scene is how things stood before.
     Restarted = 0x08 {
-        /// Why, by its [`code`](crate::app::warm_restart::Cause::code).
+        /// Why, by its [`code`](crate::app::Cause::code).
         cause: u8,
         /// Restarts in a row, this one included; the board forgets them after a minute without one.
         restarts: u8,
@@ -66,12 +78,7 @@ numbered! {
     /// One sample of the motion asked for. The first one, index 0, is the start.
     Sample = 0x02 {
         index: u32,
-        /// a1, a2 (rad), p1, p2 (kg m^2/s); to the last digit carried; an f32 is widened, which loses nothing.
-        state: [f64; 4],
-        /// w1, w2, rad/s.
-        velocities: [f64; 2],
-        /// The energy, J; zero potential at the pivot.
-        energy: f64,
+        reading: Reading,
     }
     /// The request cannot be computed, or not to its end, or the command not executed; nothing was changed.
     Refused = 0x03 {

@@ -6,7 +6,7 @@ use double_pendulum::{Error, Modes, Oscillation, Parameters, SmallOscillations};
 use crate::config::{GRAVITY, ROD};
 use crate::graphics::{Anchor, Canvas, Disc, FadeLayer, LINE, LOWEST, Spot, Stroke, WIDTH, label, plot, text};
 use crate::motion::{Means, Settings, Simulation, Viewport};
-use crate::scenes::{Report, Scene, horizon};
+use crate::scenes::{Report, Scene, scene};
 
 /// The middles of the two figures, and how far a mode reaches in them, pixels.
 const MIDDLES: [(f32, f32); 2] = [(23.5, 32.5), (104.5, 32.5)];
@@ -54,8 +54,8 @@ impl Beats {
 
     /// Where the linear and the exact motion are, each in its figure.
     fn spots(&self) -> [Spot; 2] {
-        let linear = self.linear.at(self.simulation.time());
-        let [a1, a2] = self.simulation.directions().map(|[sin, cos]| libm::atan2f(sin, cos));
+        let linear = self.linear.at(self.simulation.motion.time());
+        let [a1, a2] = self.simulation.motion.directions().map(|[sin, cos]| libm::atan2f(sin, cos));
         [self.spot(MIDDLES[0], linear.a1, linear.a2), self.spot(MIDDLES[1], a1, a2)]
     }
 }
@@ -99,8 +99,8 @@ impl Scene for Beats {
         let reach = if self.scale > 0.0 { (REACH / self.scale).to_degrees() } else { 0.0 };
         text::write(canvas, "↑ fast", middle(3 * LINE));
         text::write(canvas, "→ slow", middle(4 * LINE));
-        text::write(canvas, &label::reach(reach), middle(5 * LINE));
-        horizon::draw_clock(canvas, report, middle(LINE + 2), middle(LOWEST));
+        text::write(canvas, &label::label(["±", ""], reach, 0, "°"), middle(5 * LINE));
+        scene::draw_clock(canvas, report, middle(LINE + 2), middle(LOWEST));
     }
 
     fn report(&self) -> Report {

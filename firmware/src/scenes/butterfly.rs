@@ -2,13 +2,14 @@
 
 use double_pendulum::Error;
 use double_pendulum::plan::PlannedRun;
+use heapless::Deque;
 
 use crate::config::TICK_RATE;
 use crate::graphics::{
-    Anchor, Canvas, FadeLayer, LINE, LOWEST, Place, SUBPIXELS, Spot, Strip, Stroke, View, WIDTH, label, plot, text,
+    Anchor, Canvas, FadeLayer, Height, LINE, LOWEST, Place, SUBPIXELS, TRACE_HALF_WIDTH, View, WIDTH, label, plot, text,
 };
-use crate::motion::{Means, Settings, Simulation, Viewport, simulation};
-use crate::scenes::{Report, Scene, horizon};
+use crate::motion::{Means, Settings, Simulation, Viewport, start_beside};
+use crate::scenes::{Report, Scene, scene};
 
 /// Angle 1 of the second twin ahead of the first's at the start, rad.
 const APART: f64 = 1e-6;
@@ -24,8 +25,6 @@ const CURVE: u8 = 255;
 /// The plot holds 60 columns of a quarter of a second: 15 s.
 const COLUMNS_PER_SECOND: u64 = 4;
 const TICKS_PER_COLUMN: u64 = TICK_RATE as u64 / COLUMNS_PER_SECOND;
-/// Half the width of the first twin's trace, subpixels.
-const HALF_WIDTH: u8 = 30;
 /// Brightness of the second twin, of 255.
 const SECOND: u8 = 110;
 
@@ -41,15 +40,15 @@ const fn row(e_foldings: f32) -> i32 {
 pub struct Butterfly {
     first: Simulation,
     second: PlannedRun,
-    view: View,
-    bobs: [[Spot; 2]; 2],
-    strip: Strip<PLOT_COLUMNS>,
+    views: [View; 2],
+    /// The e-foldings in the plot, the oldest first.
+    strip: Deque<Height, PLOT_COLUMNS>,
 }
 
 impl Butterfly {
     /// The distance of the twins in the plane of the angles, rad; whole turns do not count.
     fn separation(&self) -> f64 {
-        let ([first, second], turn) = ([self.first.precise_state(), self.second.state()], core::f64::consts::TAU);
+        let ([first, second], turn) = ([self.first.motion.state(), self.second.state()], core::f64::consts::TAU);
         let [d1, d2] =
             [second.a1 - first.a1, second.a2 - first.a2].map(|apart| apart - turn * libm::rint(apart / turn));
         libm::sqrt(d1 * d1 + d2 * d2)
@@ -58,7 +57,10 @@ impl Butterfly {
     fn put_down(&mut self) {
         let ratio = (self.separation() / APART) as f32;
         let e_foldings = libm::logf(ratio.max(f32::MIN_POSITIVE));
-        self.strip.push(plot::height(e_foldings, ZERO_ROW, SCALE));
+        if self.strip.is_full() {
+            self.strip.pop_front();
+        }
+        let _there_is_room = self.strip.push_back(plot::height(e_foldings, ZERO_ROW, SCALE));
     }
 }
 
@@ -67,10 +69,10 @@ impl Scene for Butterfly {
     #[inline(never)]
     fn new(settings: &Settings, means: &Means) -> Result<Self, Error> {
         let first = Simulation::new(settings, means)?;
-        let second = simulation::start_beside(settings, APART, first.way())?;
-        let view = View::new(&settings.parameters, Place::HALVES[0]);
-        let bobs = [first.directions(), second.directions()].map(|directions| view.spots(directions));
-        let mut scene = Self { first, second, view, bobs, strip: Strip::default() };
+        let second = start_beside(settings, APART, first.motion.way())?;
+        let views = [first.motion.directions(), second.directions()]
+            .map(|directions| View::new(&settings.parameters, Place::HALVES[0], directions));
+        let mut scene = Self { first, second, views, strip: Deque::new() };
         scene.put_down();
         Ok(scene)
     }
@@ -78,30 +80,29 @@ impl Scene for Butterfly {
     fn tick(&mut self, ink: &mut FadeLayer) {
         self.first.tick();
         let _is_lost = self.second.advance(1);
-        let bobs = [self.first.directions(), self.second.directions()].map(|directions| self.view.spots(directions));
-        let ([[_, from], _], [[_, to], _]) = (self.bobs, bobs);
-        ink.add(Stroke { from, to, radius: HALF_WIDTH }, u8::MAX);
-        self.bobs = bobs;
-        if self.first.step().is_multiple_of(TICKS_PER_COLUMN) {
+        let [first, second] = &mut self.views;
+        first.trace(self.first.motion.directions(), ink, TRACE_HALF_WIDTH, u8::MAX);
+        second.turn(self.second.directions());
+        if self.first.motion.frame().is_multiple_of(TICKS_PER_COLUMN) {
             self.put_down();
         }
     }
 
     fn draw(&self, report: &Report, canvas: &mut Canvas) {
-        let [first, second] = self.bobs;
-        self.view.draw(canvas, second, SECOND);
-        self.view.draw(canvas, first, u8::MAX);
+        let [first, second] = &self.views;
+        second.draw(canvas, SECOND);
+        first.draw(canvas, u8::MAX);
         for (row, e_foldings) in AXES {
             plot::axis(canvas, PLOT_LEFT, WIDTH as i32, row);
             text::write(canvas, e_foldings, Anchor::EndingAt(PLOT_LEFT, row - LINE / 2));
         }
-        self.strip.draw(canvas, PLOT_LEFT, CURVE);
+        plot::curve(canvas, PLOT_LEFT, self.strip.iter().copied(), CURVE);
         let span = (PLOT_COLUMNS as u64 / COLUMNS_PER_SECOND) as f32;
         let end = (report.time as f32).max(span);
         text::write(canvas, &label::tick(end - span, ""), Anchor::At(PLOT_LEFT, LOWEST));
         text::write(canvas, &label::tick(end, " s"), Anchor::BottomRight);
         text::write(canvas, "e-folds", Anchor::TopRight);
-        horizon::draw_clock(canvas, report, Anchor::TopLeft, Anchor::Centred(WIDTH as i32 / 2, 0));
+        scene::draw_clock(canvas, report, Anchor::TopLeft, Anchor::Centred(WIDTH as i32 / 2, 0));
     }
 
     fn report(&self) -> Report {
@@ -109,6 +110,6 @@ impl Scene for Butterfly {
     }
 
     fn viewport(&self) -> Option<Viewport> {
-        Viewport::pendulum(Some(self.first.way()), Place::HALVES[0].reach)
+        Viewport::pendulum(Some(self.first.motion.way()), Place::HALVES[0].reach)
     }
 }

@@ -3,12 +3,9 @@
 use double_pendulum::{Error, Parameters};
 
 use crate::config::PAGE_GRAVITY;
-use crate::graphics::{Anchor, Canvas, FadeLayer, LINE, LOWEST, Place, Spot, Stroke, View, WIDTH, label, text};
+use crate::graphics::{Anchor, Canvas, FadeLayer, LINE, LOWEST, Place, TRACE_HALF_WIDTH, View, WIDTH, label, text};
 use crate::motion::{Means, Misprinted, Settings, Simulation, Viewport};
-use crate::scenes::{Report, Scene, horizon};
-
-/// Half the width of a trace, subpixels.
-const HALF_WIDTH: u8 = 30;
+use crate::scenes::{Report, Scene, scene};
 
 /// The figure's start: mass ratio 2.75, both rods at 171 degrees, let go from rest. The page gives no more; gravity is that
 /// of its worked example, and the rods are 1 m.
@@ -23,14 +20,6 @@ pub struct Figure7 {
     right: Simulation,
     misprinted: Misprinted,
     views: [View; 2],
-    bobs: [[Spot; 2]; 2],
-}
-
-impl Figure7 {
-    fn places(&self) -> [[Spot; 2]; 2] {
-        let [left_view, right_view] = &self.views;
-        [left_view.spots(self.right.directions()), right_view.spots(self.misprinted.directions())]
-    }
 }
 
 impl Scene for Figure7 {
@@ -42,34 +31,28 @@ impl Scene for Figure7 {
             return Err(Error::UnequalRods { l1: l1.into(), l2: l2.into() });
         }
         let right = Simulation::new(settings, means)?;
-        let views = Place::HALVES.map(|place| View::new(&settings.parameters, place));
-        let start = right.state();
-        let misprinted = Misprinted::new(&settings.parameters, &start);
-        let mut scene = Self { right, misprinted, views, bobs: Default::default() };
-        scene.bobs = scene.places();
-        Ok(scene)
+        let misprinted = Misprinted::new(&settings.parameters, &right.motion.rounded_state());
+        let view = |place, directions| View::new(&settings.parameters, place, directions);
+        let [left, right_half] = Place::HALVES;
+        let views = [view(left, right.motion.directions()), view(right_half, misprinted.directions())];
+        Ok(Self { right, misprinted, views })
     }
 
     fn tick(&mut self, ink: &mut FadeLayer) {
         self.right.tick();
         self.misprinted.tick();
-        let bobs = self.places();
-        for ([_, from], [_, to]) in self.bobs.into_iter().zip(bobs) {
-            ink.add(Stroke { from, to, radius: HALF_WIDTH }, u8::MAX);
-        }
-        self.bobs = bobs;
+        let [left, right] = &mut self.views;
+        left.trace(self.right.motion.directions(), ink, TRACE_HALF_WIDTH, u8::MAX);
+        right.trace(self.misprinted.directions(), ink, TRACE_HALF_WIDTH, u8::MAX);
     }
 
     fn draw(&self, report: &Report, canvas: &mut Canvas) {
-        for (view, bobs) in self.views.iter().zip(self.bobs) {
-            view.draw(canvas, bobs, u8::MAX);
-        }
-        let (right, misprinted) = (self.right.energy().of_error(report.energy_error), self.misprinted.energy());
-        let [right, misprinted] = [label::energy("true", right), label::energy("book", misprinted)];
-        text::write(canvas, &right, Anchor::TopLeft);
-        text::write(canvas, &misprinted, Anchor::TopRight);
+        self.views.iter().for_each(|view| view.draw(canvas, u8::MAX));
+        let (right, misprinted) = (self.right.energy.of_error(report.energy_error), self.misprinted.energy());
+        text::write(canvas, &label::label(["true", " "], right, 1, " J"), Anchor::TopLeft);
+        text::write(canvas, &label::label(["book", " "], misprinted, 1, " J"), Anchor::TopRight);
         let middle = |row| Anchor::Centred(WIDTH as i32 / 2, row);
-        horizon::draw_clock(canvas, report, middle(LINE + 1), middle(LOWEST));
+        scene::draw_clock(canvas, report, middle(LINE + 1), middle(LOWEST));
     }
 
     fn report(&self) -> Report {

@@ -101,8 +101,8 @@ impl Block {
 
     #[inline(never)] // one copy
     fn paint(self, ink: &mut FadeLayer, grey: u8) {
-        let map = ink.frame_mut();
-        map.use_all_greys();
+        let map = &mut ink.frame;
+        map.all_greys = true;
         for y in self.y as i32..(self.y + self.size) as i32 {
             for x in self.x as i32..(self.x + self.size) as i32 {
                 map.update(x, y, |_| grey);
@@ -209,7 +209,7 @@ impl Scene for Flips {
         let corner = if self.is_done() {
             label::mass_ratio(self.mass_ratio)
         } else {
-            label::percent((100 * self.done) / (WIDTH * ROWS) as u32)
+            label::label([""; 2], ((100 * self.done) / (WIDTH * ROWS) as u32) as f32, 0, " %")
         };
         text::write_over(canvas, &corner, Anchor::TopLeft);
     }

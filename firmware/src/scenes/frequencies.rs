@@ -71,7 +71,7 @@ impl Scene for Frequencies {
     fn tick(&mut self, ink: &mut FadeLayer) {
         self.ticks = self.ticks.wrapping_add(1);
         for _ in 0..COLUMNS_PER_TICK.min(COLUMNS as u32 - self.drawn) {
-            self.extend(ink.frame_mut());
+            self.extend(&mut ink.frame);
         }
     }
 
@@ -93,8 +93,8 @@ impl Scene for Frequencies {
             Disc { centre, radius: MARK_RADIUS, gap: MARK_RADIUS }.draw(canvas, u8::MAX);
         }
         let ([fast, slow], [fast_name, slow_name]) = (self.marked, label::FREQUENCIES);
-        text::write(canvas, &label::frequency(fast_name, fast), Anchor::TopLeft);
-        text::write(canvas, &label::frequency(slow_name, slow), Anchor::Centred(width / 2, 0));
+        text::write(canvas, &label::label([fast_name, " "], fast, 3, ""), Anchor::TopLeft);
+        text::write(canvas, &label::label([slow_name, " "], slow, 3, ""), Anchor::Centred(width / 2, 0));
         text::write(canvas, &label::mass_ratio(self.mass_ratio), Anchor::TopRight);
         text::write(canvas, "ω in √(g/l)", Anchor::At(LEFT + 1, LOWEST));
         text::write(canvas, &label::mass_ratio(self.range), Anchor::BottomRight);

@@ -5,9 +5,8 @@ mod butterfly;
 mod figure7;
 pub mod flips;
 mod frequencies;
-pub mod horizon;
 mod page;
-pub mod scene;
+mod scene;
 mod small;
 mod upright;
 
@@ -56,7 +55,7 @@ macro_rules! catalogue {
 
             /// Draws the whole frame over what was there; `report` is the scene's, as of now.
             pub fn draw(&self, report: &Report, ink: &FadeLayer, canvas: &mut Canvas) {
-                canvas.clone_from(ink.frame());
+                canvas.clone_from(&ink.frame);
                 match self { $(Self::$row(scene) => scene.draw(report, canvas),)* }
             }
 

@@ -3,11 +3,9 @@
 use double_pendulum::Error;
 
 use crate::config::{TRAIL_BRIGHTNESS, TRAIL_FADING, TRAIL_HALF_WIDTH};
-use crate::graphics::{
-    Anchor, Canvas, FadeLayer, Fading, LINE, LOWEST, Place, SUBPIXELS, Spot, Stroke, View, label, text,
-};
+use crate::graphics::{Anchor, Canvas, FadeLayer, Fading, LINE, LOWEST, Place, SUBPIXELS, View, label, text};
 use crate::motion::{Means, Settings, Simulation, Viewport};
-use crate::scenes::{Report, Scene, horizon};
+use crate::scenes::{Report, Scene, scene};
 
 /// One pendulum, bob 2's trail, and settings and time in the corners, the one place the motion never reaches.
 #[derive(Clone, Debug)]
@@ -15,7 +13,6 @@ pub struct Page {
     settings: Settings,
     simulation: Simulation,
     view: View,
-    bobs: [Spot; 2],
 }
 
 impl Scene for Page {
@@ -23,21 +20,18 @@ impl Scene for Page {
 
     fn new(settings: &Settings, means: &Means) -> Result<Self, Error> {
         let simulation = Simulation::new(settings, means)?;
-        let view = View::new(&settings.parameters, Place::WHOLE);
-        let bobs = view.spots(simulation.directions());
-        Ok(Self { settings: *settings, simulation, view, bobs })
+        let view = View::new(&settings.parameters, Place::WHOLE, simulation.motion.directions());
+        Ok(Self { settings: *settings, simulation, view })
     }
 
     fn tick(&mut self, ink: &mut FadeLayer) {
         self.simulation.tick();
-        let bobs = self.view.spots(self.simulation.directions());
-        let ([_, from], [_, to]) = (self.bobs, bobs);
-        ink.add(Stroke { from, to, radius: (TRAIL_HALF_WIDTH * SUBPIXELS as f32) as u8 }, TRAIL_BRIGHTNESS);
-        self.bobs = bobs;
+        let half_width = (TRAIL_HALF_WIDTH * SUBPIXELS as f32) as u8;
+        self.view.trace(self.simulation.motion.directions(), ink, half_width, TRAIL_BRIGHTNESS);
     }
 
     fn draw(&self, report: &Report, canvas: &mut Canvas) {
-        self.view.draw(canvas, self.bobs, u8::MAX);
+        self.view.draw(canvas, u8::MAX);
         let [degrees1, degrees2] = self.settings.degrees;
         text::write(canvas, &label::mass_ratio(self.settings.mass_ratio()), Anchor::TopLeft);
         if degrees1 == degrees2 {
@@ -47,7 +41,7 @@ impl Scene for Page {
             text::write(canvas, &label::degrees(name1, degrees1), Anchor::At(1, LOWEST - LINE));
             text::write(canvas, &label::degrees(name2, degrees2), Anchor::BottomLeft);
         }
-        horizon::draw_clock(canvas, report, Anchor::TopRight, Anchor::BottomRight);
+        scene::draw_clock(canvas, report, Anchor::TopRight, Anchor::BottomRight);
     }
 
     fn report(&self) -> Report {

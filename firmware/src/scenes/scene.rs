@@ -1,10 +1,10 @@
-//! What every scene is.
+//! What every scene is, and the accuracy clock on its frame.
 
 use double_pendulum::plan::Way;
 use double_pendulum::{Error, State};
 
 use crate::config::TICK_RATE;
-use crate::graphics::{Canvas, FadeLayer, Fading};
+use crate::graphics::{Anchor, Canvas, FadeLayer, Fading, label, text};
 use crate::motion::{Means, Settings, Simulation, Viewport};
 
 /// Something to watch: it starts from settings, moves tick by tick and is drawn when there is time for it.
@@ -62,9 +62,9 @@ impl Report {
     /// Of a scene whose first pendulum is `simulation`.
     #[inline(never)] // no second copy
     pub fn of(simulation: &Simulation) -> Self {
-        let state = simulation.state();
-        let (energy_error, way) = (simulation.energy_error(&state), Some(simulation.way()));
-        Self { state, energy_error, way, ..Self::of_figure(simulation.step()) }
+        let state = simulation.motion.rounded_state();
+        let (energy_error, way) = (simulation.energy_error(&state), Some(simulation.motion.way()));
+        Self { state, energy_error, way, ..Self::of_figure(simulation.motion.frame()) }
     }
 }
 
@@ -83,4 +83,13 @@ impl Viewport {
     pub fn curves(way: Option<Way>, scale: f32) -> Option<Self> {
         (scale > 0.0).then_some(Self { way, height: 4.0 * scale })
     }
+}
+
+/// Writes the time and until when the frame can be trusted; the time stands out once it is known that it no longer can.
+pub fn draw_clock(canvas: &mut Canvas, report: &Report, time_at: Anchor, trust_at: Anchor) {
+    let &Report { time, horizon: until, is_looking, .. } = report;
+    let passed = !is_looking && time > f64::from(until);
+    let write = if passed { text::write_marked } else { text::write };
+    write(canvas, &label::time(time), time_at);
+    text::write(canvas, &label::trust(until, is_looking), trust_at);
 }

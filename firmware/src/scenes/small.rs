@@ -6,7 +6,7 @@ use double_pendulum::{Error, Method, Modes, Motion, Oscillation, Parameters, Pen
 use crate::config::{PAGE_GRAVITY, TICK_RATE};
 use crate::graphics::{Anchor, Canvas, FadeLayer, Fading, Height, LINE, LOWEST, WIDTH, label, plot, text};
 use crate::motion::{Means, Settings, Viewport};
-use crate::scenes::{Report, Scene, horizon, scene};
+use crate::scenes::{Report, Scene, scene};
 
 /// The rows of rest of angle 1 and angle 2, pixels from the top, and the greatest swing about them.
 const ROWS: [f32; 2] = [20.5, 43.5];
@@ -101,11 +101,11 @@ impl Scene for Small {
 
     fn tick(&mut self, ink: &mut FadeLayer) {
         if self.ends.is_none() {
-            self.extend(ink.frame_mut());
+            self.extend(&mut ink.frame);
         }
         self.ticks = self.ticks.wrapping_add(1);
         if self.ticks.is_multiple_of(self.ticks_per_column.into()) {
-            self.extend(ink.frame_mut());
+            self.extend(&mut ink.frame);
         }
     }
 
@@ -116,12 +116,12 @@ impl Scene for Small {
             plot::axis(canvas, LEFT, WIDTH as i32, row);
             plot::bar(canvas, (LEFT - 1, row - swing), (LEFT - 1, row + swing));
             text::write(canvas, name, Anchor::EndingAt(LEFT - 2, row - LINE / 2));
-            text::write(canvas, &label::swing(greatest), Anchor::EndingAt(LEFT - 2, row - swing));
+            text::write(canvas, &label::label([""; 2], greatest, 0, "°"), Anchor::EndingAt(LEFT - 2, row - swing));
         }
         self.draw_seconds(canvas);
         text::write(canvas, &label::mass_ratio(self.settings.mass_ratio()), Anchor::TopLeft);
         text::write(canvas, "linear", Anchor::Centred(WIDTH as i32 / 2, 0));
-        horizon::draw_clock(canvas, report, Anchor::BottomRight, Anchor::TopRight);
+        scene::draw_clock(canvas, report, Anchor::BottomRight, Anchor::TopRight);
     }
 
     fn report(&self) -> Report {

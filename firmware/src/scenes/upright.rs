@@ -3,13 +3,12 @@
 use double_pendulum::{DirectionF32, Error, Real, Run, State};
 
 use crate::config::{DT, HALF_PIXEL, STEPS_PER_TICK};
-use crate::graphics::{Anchor, Canvas, FadeLayer, LINE, LOWEST, Place, RodDirections, Spot, Stroke, View, WIDTH, text};
+use crate::graphics::{
+    Anchor, Canvas, FadeLayer, LINE, LOWEST, Place, RodDirections, TRACE_HALF_WIDTH, View, WIDTH, text,
+};
 use crate::motion::{Energy, Means, Settings};
-use crate::scenes::horizon::{self, LastRight};
 use crate::scenes::{Report, Scene, scene};
 
-/// Half the width of a trace, subpixels.
-const HALF_WIDTH: u8 = 30;
 /// Straight up is this many degrees.
 const STRAIGHT_UP: f32 = 180.0;
 
@@ -32,21 +31,20 @@ pub struct Upright {
     energy: Energy,
     ticks: u64,
     views: [View; 2],
-    bobs: [[Spot; 2]; 2],
-    horizon: LastRight,
+    /// The time of the last right frame; infinity as long as all are.
+    horizon: f32,
 }
 
 impl Upright {
-    fn places(&self) -> [[Spot; 2]; 2] {
-        let [left, right] = &self.views;
-        [left.spots(self.plain_directions), right.spots(self.compensated.directions())]
-    }
-
     /// Whether the plain motion is no longer shown where the compensated one is.
     fn have_parted(&self) -> bool {
         let [left, _] = &self.views;
         let [plain, compensated] = [self.plain_directions, self.compensated.directions()].map(|to| left.bobs(to));
-        horizon::are_apart(plain, compensated, HALF_PIXEL)
+        let is_near = |((x, y), (exact_x, exact_y)): ((f32, f32), (f32, f32))| {
+            let (dx, dy) = (x - exact_x, y - exact_y);
+            dx * dx + dy * dy <= HALF_PIXEL * HALF_PIXEL
+        };
+        !plain.into_iter().zip(compensated).all(is_near)
     }
 }
 
@@ -59,46 +57,43 @@ impl Scene for Upright {
         let pendulum = settings.pendulum()?;
         pendulum.check_step(DT)?;
         let plain = settings.start(&pendulum)?;
-        let views = Place::HALVES.map(|place| View::new(&settings.parameters, place));
         let compensated = pendulum.run(&plain, DT)?;
-        let (plain_directions, horizon, ticks) = (directions(&plain), LastRight::default(), 0);
-        let energy = Energy::new(pendulum, pendulum.energy_at(plain_directions, [plain.p1, plain.p2]));
-        let bobs = Default::default();
-        let mut scene = Self { plain, plain_directions, compensated, energy, ticks, views, bobs, horizon };
-        scene.bobs = scene.places();
-        Ok(scene)
+        let (plain_directions, horizon, ticks) = (directions(&plain), f32::INFINITY, 0);
+        let view = |place, directions| View::new(&settings.parameters, place, directions);
+        let [left, right] = Place::HALVES;
+        let views = [view(left, plain_directions), view(right, compensated.directions())];
+        let start = pendulum.energy_at(plain_directions, [plain.p1, plain.p2]);
+        let energy = Energy { pendulum, start };
+        Ok(Self { plain, plain_directions, compensated, energy, ticks, views, horizon })
     }
 
     fn tick(&mut self, ink: &mut FadeLayer) {
         for _ in 0..STEPS_PER_TICK {
-            self.plain = self.energy.pendulum().step(&self.plain, DT as f32);
+            self.plain = self.energy.pendulum.step(&self.plain, DT as f32);
         }
         self.plain_directions = directions(&self.plain);
         // One that is lost stands still.
         let _stays = self.compensated.advance(STEPS_PER_TICK);
-        self.ticks = self.ticks.wrapping_add(1);
-        let is_right = !self.have_parted();
-        self.horizon.note(scene::time(self.ticks), is_right);
-        let places = self.places();
-        for ([_, from], [_, to]) in self.bobs.into_iter().zip(places) {
-            ink.add(Stroke { from, to, radius: HALF_WIDTH }, u8::MAX);
+        if self.horizon.is_infinite() && self.have_parted() {
+            self.horizon = scene::time(self.ticks) as f32;
         }
-        self.bobs = places;
+        self.ticks = self.ticks.wrapping_add(1);
+        let [left, right] = &mut self.views;
+        left.trace(self.plain_directions, ink, TRACE_HALF_WIDTH, u8::MAX);
+        right.trace(self.compensated.directions(), ink, TRACE_HALF_WIDTH, u8::MAX);
     }
 
     fn draw(&self, report: &Report, canvas: &mut Canvas) {
-        for (view, bobs) in self.views.iter().zip(self.bobs) {
-            view.draw(canvas, bobs, u8::MAX);
-        }
+        self.views.iter().for_each(|view| view.draw(canvas, u8::MAX));
         text::write(canvas, "plain", Anchor::TopLeft);
         text::write(canvas, "compensated", Anchor::TopRight);
         let middle = |row| Anchor::Centred(WIDTH as i32 / 2, row);
-        horizon::draw_clock(canvas, report, middle(LINE + 1), middle(LOWEST));
+        scene::draw_clock(canvas, report, middle(LINE + 1), middle(LOWEST));
     }
 
     fn report(&self) -> Report {
-        let energy = self.energy.pendulum().energy_at(self.plain_directions, [self.plain.p1, self.plain.p2]);
-        let (energy_error, horizon) = (self.energy.error(energy), self.horizon.until());
+        let energy = self.energy.pendulum.energy_at(self.plain_directions, [self.plain.p1, self.plain.p2]);
+        let (energy_error, horizon) = (self.energy.error(energy), self.horizon);
         Report { state: self.plain, energy_error, horizon, ..Report::of_figure(self.ticks) }
     }
 }

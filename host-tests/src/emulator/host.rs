@@ -5,6 +5,7 @@ use firmware::app::{News, Player};
 use firmware::config::{PROCESSOR, Processor};
 use firmware::graphics::{Canvas, FadeLayer, FrameBuffers};
 use firmware::motion::Settings;
+use firmware::protocol::Frame;
 use firmware::scenes::{Report, SceneName};
 
 #[derive(Debug)]
@@ -44,6 +45,15 @@ impl Show {
         canvas
     }
 
+    /// Goes on to the tick of a board's `frame`: what the board should have sent, but for what only it can know.
+    pub fn expected(&mut self, frame: &Frame) -> Frame {
+        while self.report().step < frame.step.into() {
+            self.tick();
+        }
+        let Frame { sequence, dropped, lost, scene_cycles, busy_cycles, .. } = *frame;
+        Frame { sequence, dropped, lost, scene_cycles, busy_cycles, ..self.player.frame() }
+    }
+
     pub fn report(&self) -> Report {
         self.player.report()
     }
@@ -51,5 +61,5 @@ impl Show {
 
 /// Frame buffers for an application that may live for ever, as those of a board do.
 pub fn sheets() -> &'static mut FrameBuffers {
-    Box::leak(Box::default())
+    Box::leak(Box::new(FrameBuffers::BLANK))
 }

@@ -7,7 +7,6 @@ use std::path::Path;
 
 use crate::support::{LIMIT, application, settings, toolchain};
 use cycles::{Cost, Image};
-use double_pendulum::Parameters;
 use firmware::config::TICK_RATE;
 use firmware::job::{ON_BOARDS, Request};
 use firmware::protocol::{Ask, Choose, Field, Frame, MAX_WIRE, Message, Pause, Restart, Set, Step, encode};
@@ -18,7 +17,6 @@ use host_tests::emulator::budgets::{self, Memory};
 use host_tests::emulator::pico::PicoMachine;
 use host_tests::emulator::qemu::{Lockstep, PAINT, Stack};
 use host_tests::emulator::toolchain;
-use host_tests::link::Received;
 use object::elf::{SHF_ALLOC, SHF_WRITE};
 use object::{Object, ObjectSection, SectionFlags, SectionKind};
 use rayon::prelude::*;
@@ -48,80 +46,48 @@ fn sections(elf: &Path) -> Memory {
     memory
 }
 
-/// A board that goes from frame to frame.
-trait Stepped {
-    fn next(&mut self) -> anyhow::Result<Frame>;
-    fn say(&mut self, bytes: &[u8]) -> anyhow::Result<()>;
+/// What a board sends as its next frame when it has been told this.
+type Next<'a> = &'a mut dyn FnMut(&[u8]) -> anyhow::Result<Frame>;
+
+/// Tells it this and lets so many frames be drawn; the highest one's cost, counts of the board's clock.
+fn play(next: Next, words: &[u8], frames: usize) -> anyhow::Result<u32> {
+    let first = next(words)?.busy_cycles;
+    (1..frames).try_fold(first, |highest, _| Ok(highest.max(next(&[])?.busy_cycles)))
 }
 
-impl Stepped for Lockstep {
-    fn next(&mut self) -> anyhow::Result<Frame> {
-        self.next_frame()
-    }
-
-    fn say(&mut self, bytes: &[u8]) -> anyhow::Result<()> {
-        self.machine().serial.send_bytes(bytes)
-    }
-}
-
-impl Stepped for PicoMachine {
-    fn next(&mut self) -> anyhow::Result<Frame> {
-        Ok(self.run_to_frame()?.iter().rev().find_map(Received::read).expect("it ends with one"))
-    }
-
-    fn say(&mut self, bytes: &[u8]) -> anyhow::Result<()> {
-        self.send_bytes(bytes)
-    }
-}
-
-/// Lets so many frames be drawn; the highest one's cost, counts of the board's clock.
-fn play(board: &mut impl Stepped, frames: usize) -> anyhow::Result<u32> {
-    (0..frames).try_fold(0, |highest, _| Ok(highest.max(board.next()?.busy_cycles)))
-}
-
-fn send<M: Message>(board: &mut impl Stepped, message: M) -> anyhow::Result<()> {
-    board.say(encode(&message, &mut [0; MAX_WIRE]))
+fn wire(message: impl Message) -> Vec<u8> {
+    encode(&message, &mut [0; MAX_WIRE]).to_vec()
 }
 
 /// Plays every scene and sends every command, good and bad, requests of every kind, and garbage; what the highest frame
 /// of a scene's own start cost, counts of the board's clock.
-fn exercise(board: &mut impl Stepped) -> anyhow::Result<u32> {
+fn exercise(next: Next) -> anyhow::Result<u32> {
     let mut highest = 0;
     for &name in SceneName::ALL {
-        send(board, Choose { request: 1, scene: name.code() })?;
-        play(board, SETTLING)?;
-        highest = highest.max(play(board, FRAMES)?);
+        play(next, &wire(Choose { request: 1, scene: name.code() }), SETTLING)?;
+        highest = highest.max(play(next, &[], FRAMES)?);
     }
     for field in Field::ALL {
         for value in [0.75, f64::NAN, -1e30] {
-            send(board, Set { request: 2, field: field.code(), value })?;
-            play(board, 1)?;
+            play(next, &wire(Set { request: 2, field: field.code(), value }), 1)?;
         }
     }
-    send(board, Set { request: 3, field: Field::Speed.code(), value: 1.0 })?;
-    send(board, Choose { request: 4, scene: u8::MAX })?;
-    play(board, 1)?;
-    send(board, Pause { request: 5, paused: 1 })?;
-    send(board, Step { request: 6, ticks: 2 })?;
-    send(board, Ask { request: 7 })?;
-    play(board, FRAMES)?;
-    send(board, Restart { request: 8 })?;
-    send(board, Pause { request: 9, paused: 0 })?;
+    let [speed, none] =
+        [wire(Set { request: 3, field: Field::Speed.code(), value: 1.0 }), wire(Choose { request: 4, scene: u8::MAX })];
+    play(next, &[speed, none].concat(), 1)?;
+    let stepped =
+        [wire(Pause { request: 5, paused: 1 }), wire(Step { request: 6, ticks: 2 }), wire(Ask { request: 7 })];
+    play(next, &stepped.concat(), FRAMES)?;
+    next(&[wire(Restart { request: 8 }), wire(Pause { request: 9, paused: 0 })].concat())?;
     for &method in ON_BOARDS {
         for dt in [1.0 / 256.0, 0.5, 0.0] {
-            let parameters = Parameters { m1: 1.0, m2: 1.0, l1: 1.0, l2: 1.0, g: 9.81 };
-            let (angles, velocities) = ([2.0, 1.0], [0.5, -0.5]);
-            let (stride, samples) = (4, 20);
-            let request = Request { method, parameters, angles, velocities, dt, stride, samples };
-            send(board, request.message(10))?;
-            play(board, COMPUTING)?;
+            let request = Request { dt, stride: 4, samples: 20, ..Request::on_any_core(method) };
+            play(next, &wire(request.message(10)), COMPUTING)?;
         }
     }
-    board.say(&[0x55; 300])?;
-    play(board, FRAMES)?;
-    board.say(&[0; 2])?;
+    play(next, &[0x55; 300], FRAMES)?;
     // A line of the log says that frames were dropped, if any were.
-    play(board, TICK_RATE as usize)?;
+    play(next, &[0; 2], TICK_RATE as usize)?;
     Ok(highest)
 }
 
@@ -131,10 +97,13 @@ fn measure(board: &'static Board) -> anyhow::Result<(Memory, f64)> {
     let stack = Stack::of(&elf)?;
     let mut machine = Lockstep::start(&settings(&toolchain, board, &elf))?;
     stack.paint(&mut machine)?;
-    play(&mut machine, FRAMES)?;
+    (0..FRAMES).try_for_each(|_| machine.next_frame().map(drop))?;
     let (_, profile) = FrameProfile::of_next(&mut machine, &image, board.core())?;
     let Cost { instructions, cycles, .. } = profile.whole;
-    let highest = exercise(&mut machine)?;
+    let highest = exercise(&mut |words| {
+        machine.machine().serial.send_bytes(words)?;
+        machine.next_frame()
+    })?;
     let stack = stack.reached(&mut machine)?;
     let executed = f64::from(highest) / f64::from(board.hertz) / board.instruction();
     let cycles = executed * cycles as f64 / instructions as f64;
@@ -178,8 +147,12 @@ fn the_pico_keeps_within_its_memory_and_its_time() -> anyhow::Result<()> {
     let stack = Stack::of(&elf)?.addresses();
     let mut board = PicoMachine::start(&emulator, &elf, LIMIT)?;
     board.fill(stack.clone(), PAINT)?;
-    play(&mut board, FRAMES)?;
-    let idle = 1.0 - f64::from(exercise(&mut board)? * TICK_RATE) / f64::from(PICO.hertz);
+    (0..FRAMES).try_for_each(|_| board.next_frame().map(drop))?;
+    let highest = exercise(&mut |words| {
+        (!words.is_empty()).then(|| board.send_bytes(words)).transpose()?;
+        board.next_frame()
+    })?;
+    let idle = 1.0 - f64::from(highest * TICK_RATE) / f64::from(PICO.hertz);
     let stack = Stack::depth(&board.read(stack)?);
     let too_much = beyond(PICO.name, (Memory { stack, ..sections(&elf) }, idle), &budgets::PICO);
     assert!(too_much.is_empty(), "{too_much:#?}");

@@ -9,7 +9,6 @@ mod no_panic;
 mod pico;
 mod qemu_buttons;
 mod qemu_faults;
-mod qemu_flips;
 mod qemu_plan;
 mod qemu_restart;
 mod qemu_scenes;

@@ -4,15 +4,14 @@ use std::time::Duration;
 
 use crate::support::code::Code;
 use crate::support::{LIMIT, application};
-use anyhow::Context;
 use cycles::Core;
-use double_pendulum::{Method, Parameters};
+use double_pendulum::Method;
+use firmware::app::Cause;
 use firmware::app::Key;
-use firmware::app::warm_restart::Cause;
-use firmware::config::{GRAVITY, HOLD_TICKS, MOST_MEASURED_STEPS, RECEIVE_QUEUE, TICK_RATE, WATCHDOG_SECONDS};
-use firmware::graphics::bitmap::Bitmap;
+use firmware::config::{HOLD_TICKS, MOST_MEASURED_STEPS, RECEIVE_QUEUE, TICK_RATE, WATCHDOG_SECONDS};
+use firmware::graphics::Bitmap;
 use firmware::job::Request;
-use firmware::motion::settings::Settings;
+use firmware::motion::Settings;
 use firmware::protocol::{
     Ask, BoardName, CRC, Choose, Done, Field, Frame, Identify, Identity, MAX_WIRE, Measure, Measured, Message, Pause,
     Press, Restarted, Sample, Set, Status, encode,
@@ -53,19 +52,7 @@ fn board_in(name: SceneName) -> anyhow::Result<PicoMachine> {
 
 /// A motion with a sample after each of its steps.
 fn request(method: Method, samples: u32) -> Request {
-    let parameters = Parameters { m1: 1.0, m2: 1.0, l1: 1.0, l2: 1.0, g: GRAVITY };
-    Request { method, parameters, angles: [0.5; 2], velocities: [0.0; 2], dt: 1.0 / 256.0, stride: 1, samples }
-}
-
-fn next_frame(board: &mut PicoMachine) -> anyhow::Result<Frame> {
-    let messages = board.run_to_frame()?;
-    messages.iter().rev().find_map(Received::read).context("no frame")
-}
-
-/// The frame that the host would send in its place: all of it, but how long it took.
-fn expected(show: &mut Show, frame: &Frame) -> Frame {
-    let Frame { sequence, dropped, lost, scene_cycles, busy_cycles, .. } = *frame;
-    Frame { sequence, dropped, lost, scene_cycles, busy_cycles, ..show.player.frame() }
+    Request { angles: [0.5; 2], stride: 1, samples, ..Request::on_any_core(method) }
 }
 
 #[test]
@@ -88,10 +75,9 @@ fn usb_and_uart_stream_the_hosts_bits() -> anyhow::Result<()> {
     let mut show = show(SceneName::Page, &Settings::default());
     let mut sent = Vec::new();
     for sequence in 0..FRAMES {
-        let frame = next_frame(&mut board)?;
-        show.tick();
+        let frame = board.next_frame()?;
         assert_eq!((frame.sequence, frame.dropped, frame.step), (sequence, 0, sequence + 1));
-        assert_eq!(frame, expected(&mut show, &frame));
+        assert_eq!(frame, show.expected(&frame));
         sent.push(frame);
     }
     board.run(TICK / 4)?;
@@ -183,7 +169,7 @@ fn the_emulator_counts_the_cycles_that_are_estimated() -> anyhow::Result<()> {
 fn stand_still(board: &mut PicoMachine) -> anyhow::Result<Frame> {
     board.send(&Pause { request: 9, paused: 1 })?;
     board.run(PICTURE)?;
-    next_frame(board)
+    board.next_frame()
 }
 
 #[test]
@@ -211,7 +197,7 @@ fn the_panel_shows_the_hosts_picture_whichever_it_is_and_however_often_it_is_pul
         let mut canvas = show.frame();
         firmware::graphics::text::pause_mark(&mut canvas);
         let (shown, picture) = (board.panel()?, Bitmap::from(&canvas));
-        let expected = if status == 0 { &[] } else { picture.pages().as_flattened() };
+        let expected = if status == 0 { &[] } else { picture.pages.as_flattened() };
         assert!(shown == expected, "{}: {:?}", name.name(), board.screenshot()?);
     }
     Ok(())
@@ -228,7 +214,7 @@ fn commands_are_obeyed_from_either_side() -> anyhow::Result<()> {
         let answers: Vec<_> = heard.iter().filter_map(Received::read).map(|Done { request }| request).collect();
         assert_eq!(answers, [1, 2]);
     }
-    let frame = next_frame(&mut board)?;
+    let frame = board.next_frame()?;
     assert_eq!((frame.scene, frame.mass_ratio), (SceneName::Butterfly.code(), 2.5));
     Ok(())
 }
@@ -259,12 +245,12 @@ fn every_button_does_its_own() -> anyhow::Result<()> {
         board.set_key(key, false)?;
         board.run(6 * TICK)?;
         show.player.execute(key.tapped()).expect("within its range");
-        let (frame, here) = (next_frame(&mut board)?, show.player.frame());
+        let (frame, here) = (board.next_frame()?, show.player.frame());
         assert_eq!((frame.mass_ratio, frame.start_angle), (here.mass_ratio, here.start_angle), "{}", key.name());
     }
     board.set_key(Key::Select, true)?;
     board.run(TICK * (u32::from(HOLD_TICKS) + 6))?;
-    assert_eq!(next_frame(&mut board)?.scene, SceneName::Page.next().code());
+    assert_eq!(board.next_frame()?.scene, SceneName::Page.next().code());
     Ok(())
 }
 
@@ -281,7 +267,7 @@ fn a_flood_over_usb_loses_nothing() -> anyhow::Result<()> {
     let messages = board.run(60 * TICK)?;
     let answers = messages.iter().filter_map(Received::read).map(|Status { request, .. }| request);
     assert!(answers.eq(0..100));
-    let frame = next_frame(&mut board)?;
+    let frame = board.next_frame()?;
     assert_eq!((frame.lost, frame.dropped), (0, 0));
     Ok(())
 }
@@ -291,7 +277,7 @@ fn the_watchdog_restarts_the_board_in_its_scene() -> anyhow::Result<()> {
     let mut board = board_in(SceneName::Butterfly)?;
     board.send(&Press { request: 2, key: Key::Up.code() })?;
     board.run(10 * TICK)?;
-    let before = next_frame(&mut board)?;
+    let before = board.next_frame()?;
     board.run(TICK / 4)?;
     board.hang()?;
     let messages = board.run(Duration::from_secs(u64::from(WATCHDOG_SECONDS) * 2) + 8 * PICTURE)?;
@@ -299,7 +285,7 @@ fn the_watchdog_restarts_the_board_in_its_scene() -> anyhow::Result<()> {
     let Restarted { cause, restarts, scene, step, .. } = *restarted.first().expect("it says so");
     assert_eq!((Cause::from_code(cause), restarts), (Some(Cause::Hang), 1));
     assert_eq!((scene, step), (before.scene, before.step));
-    let frame = next_frame(&mut board)?;
+    let frame = board.next_frame()?;
     assert_eq!((frame.scene, frame.mass_ratio), (before.scene, before.mass_ratio));
     assert_eq!((frame.step, frame.dropped), (frame.sequence + 1, 0), "from its start, and all frames since");
     // A reset from outside starts afresh: it is not for the watchdog's that was before, nor for the one by which the boot ROM does it.
@@ -307,7 +293,7 @@ fn the_watchdog_restarts_the_board_in_its_scene() -> anyhow::Result<()> {
         board.reset(after_download)?;
         let messages = board.run(8 * PICTURE)?;
         assert!(messages.iter().all(|message| message.kind != Restarted::KIND), "{after_download}");
-        assert_eq!(next_frame(&mut board)?.scene, SceneName::Page.code());
+        assert_eq!(board.next_frame()?.scene, SceneName::Page.code());
         board.send(&Choose { request: 3, scene: SceneName::Butterfly.code() })?;
         board.run(4 * TICK)?;
     }

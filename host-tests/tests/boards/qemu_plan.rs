@@ -4,9 +4,9 @@
 use crate::support::on;
 use double_pendulum::Method;
 use double_pendulum::plan::Plan;
-use firmware::app::player::News;
+use firmware::app::News;
 use firmware::config::{HALF_PIXEL, TICK_RATE};
-use firmware::protocol::{AskPlan, Choose, Done, Frame, NO_METHOD, Planned, limit_code, method_code};
+use firmware::protocol::{AskPlan, Choose, Done, Frame, Planned, limit_code, method_code};
 use firmware::scenes::SceneName;
 use host_tests::emulator::boards::{BOARDS, Board};
 use host_tests::emulator::host::Show;
@@ -17,15 +17,6 @@ use rayon::prelude::*;
 const SCENES: [SceneName; 4] = [SceneName::Beats2To1, SceneName::Frequencies, SceneName::Page, SceneName::SmallLight];
 /// By then all is found, ticks.
 const FOLLOWED: u32 = 18 * TICK_RATE;
-
-/// The way as a frame tells it, until when it is right, and whether that may be later yet.
-type Told = (u8, u16, f32, u8);
-
-fn told(show: &Show) -> Told {
-    let report = show.report();
-    let way = report.way.map_or((NO_METHOD, 0), |way| (method_code(way.method), way.steps as u16));
-    (way.0, way.1, report.horizon, report.is_looking.into())
-}
 
 #[test]
 fn every_board_finds_the_hosts_plan_and_follows_it_from_the_same_tick() -> anyhow::Result<()> {
@@ -57,24 +48,15 @@ fn every_board_plans(scenes: &[SceneName]) -> anyhow::Result<()> {
 /// Frame by frame as the host shows it, then the answer and the log.
 fn followed(machine: &mut Machine, board: &Board, name: SceneName) -> anyhow::Result<()> {
     let mut show = Show::on(board.processor(), name, &name.first_settings()).expect("a scene of the catalogue");
-    let mut changes = 0;
     loop {
         let frame: Frame = machine.wait_for()?;
-        let at = format!("{}: {}, tick {}", board.name, name.name(), frame.step);
-        assert_eq!(frame.dropped, 0, "{at}, busy {}", frame.busy_cycles);
-        while show.report().step < frame.step.into() {
-            let before = show.report().way;
-            show.tick();
-            changes += usize::from(show.report().way != before);
-        }
-        let received = (frame.method, frame.way_steps, frame.horizon, frame.is_looking);
-        assert_eq!(received, told(&show), "{at}");
-        let state: [f32; 4] = show.report().state.into();
-        assert_eq!(frame.state.map(f32::to_bits), state.map(f32::to_bits), "{at}");
+        assert_eq!(frame.dropped, 0, "{}: {frame:?}", board.name);
+        assert_eq!(frame, show.expected(&frame), "{}: {}", board.name, name.name());
         if frame.step >= FOLLOWED {
             break;
         }
     }
+    let changes = show.news.iter().filter(|(_, news)| matches!(news, News::Shown(..))).count();
     machine.serial.send(&AskPlan { request: 2 })?;
     let answer: Planned = machine.wait_for()?;
     let lines: Vec<_> = machine.log.arrived().map(|line| line.text).collect();

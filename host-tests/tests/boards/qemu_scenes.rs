@@ -1,18 +1,15 @@
-//! The scenes on the emulated boards: the panel shows what the host draws, within the budgets, garbage or not.
+//! The scenes on the emulated boards: the panel shows what the host draws, within the budgets.
 
 use crate::support::{application, on};
-use cycles::Core;
-use cycles::{Cost, Image};
-use fastrand::Rng;
+use cycles::{Core, Cost, Image};
 use firmware::config::TICK_RATE;
-use firmware::graphics::canvas::{HEIGHT, WIDTH};
-use firmware::protocol::{Choose, Done, Frame};
+use firmware::protocol::{Choose, Frame};
 use firmware::scenes::SceneName;
 use host_tests::commands::count::FrameProfile;
 use host_tests::emulator::boards::{BOARDS, Board};
 use host_tests::emulator::budgets;
 use host_tests::emulator::host::Show;
-use host_tests::emulator::qemu::{Lockstep, Machine};
+use host_tests::emulator::qemu::{Lockstep, Screenshot};
 use rayon::prelude::*;
 
 /// Every so many frames the panel is compared.
@@ -26,30 +23,6 @@ fn watched(board: &Board, name: SceneName) -> u32 {
         (Core::M3, SceneName::Butterfly) => 10 * TICK_RATE,
         _ => 3 * EVERY,
     }
-}
-
-/// Chooses a scene; the first frame of it.
-fn choose(machine: &mut Lockstep, name: SceneName) -> anyhow::Result<Frame> {
-    machine.machine().serial.send(&Choose { request: 1, scene: name.code() })?;
-    loop {
-        let frame = machine.next_frame()?;
-        if frame.scene == name.code() && frame.time < 0.1 {
-            return Ok(frame);
-        }
-    }
-}
-
-/// The panel shows of `board` what the host draws in the same tick.
-fn compare(machine: &mut Lockstep, board: &Board, frame: &Frame, show: &mut Show) -> anyhow::Result<()> {
-    let ticks = (frame.time * f64::from(TICK_RATE)).round();
-    while show.report().time < ticks / f64::from(TICK_RATE) - 1e-9 {
-        show.tick();
-    }
-    let (canvas, screenshot) = (show.frame(), machine.screenshot()?);
-    let host = (0..WIDTH * HEIGHT).map(|i| canvas.get((i % WIDTH) as i32, (i / WIDTH) as i32));
-    let is_same = host.eq(screenshot.greys().iter().copied().map(Some));
-    assert!(is_same, "{}: {} at {} s\n{screenshot:?}", board.name, frame.scene, frame.time);
-    Ok(())
 }
 
 #[test]
@@ -69,11 +42,9 @@ fn too_costly(board: &Board) -> anyhow::Result<Vec<String>> {
     let image = Image::read(&application(board))?;
     let mut machine = on(board, Lockstep::start)?;
     for &name in SceneName::ALL {
-        choose(&mut machine, name)?;
+        machine.machine().serial.send(&Choose { request: 1, scene: name.code() })?;
+        while !matches!(machine.next_frame()?, Frame { scene, step: ..6, .. } if scene == name.code()) {}
         let mut show = Show::on(board.processor(), name, &name.first_settings()).expect("a scene of the catalogue");
-        // The map of flips is computed in another arithmetic and at another pace where there is a floating-point unit: test
-        // `qemu_flips`.
-        let is_compared = name != SceneName::Flips || board.core() != Core::M4F;
         let (mut scene, mut busy) = (0, 0);
         for number in 1..=watched(board, name) {
             let frame = machine.next_frame()?;
@@ -82,8 +53,10 @@ fn too_costly(board: &Board) -> anyhow::Result<Vec<String>> {
             if number > SETTLING {
                 (scene, busy) = (scene.max(frame.scene_cycles), busy.max(frame.busy_cycles));
             }
-            if is_compared && number % EVERY == 0 {
-                compare(&mut machine, board, &frame, &mut show)?;
+            if number % EVERY == 0 {
+                assert_eq!(frame, show.expected(&frame), "{}", board.name);
+                let screenshot = machine.screenshot()?;
+                assert!(screenshot == Screenshot::from(&show.frame()), "{}: {frame:?}\n{screenshot:?}", board.name);
             }
         }
         // Far below its budget, as test `budgets` finds.
@@ -117,33 +90,4 @@ fn too_costly(board: &Board) -> anyhow::Result<Vec<String>> {
         }
     }
     Ok(too_costly)
-}
-
-/// Messages waited for until a command is repeated.
-const PATIENCE: usize = 60;
-
-#[test]
-fn garbage_on_the_link_disturbs_nothing() -> anyhow::Result<()> {
-    let mut machine = on(&BOARDS[0], Machine::start)?;
-    let mut rng = Rng::with_seed(7);
-    for frame in 0..15 * TICK_RATE {
-        let length = rng.usize(..600);
-        let garbage: Vec<u8> = std::iter::repeat_with(|| rng.u8(..)).take(length).collect();
-        machine.serial.send_bytes(&garbage)?;
-        let received: Frame = machine.wait_for()?;
-        assert_eq!((received.sequence, received.dropped), (frame, 0));
-    }
-    assert_eq!((machine.serial.counts().damaged, machine.serial.counts().lost), (0, 0));
-    // The flood still waits in the host's pipe, on a busy machine for many seconds, and fills the board's queue, which
-    // may cost a command: it is repeated until it is answered. Two delimiters end what the garbage left unfinished.
-    loop {
-        machine.serial.send_bytes(&[0, 0])?;
-        machine.serial.send(&Choose { request: 5, scene: SceneName::Figure7.code() })?;
-        for _ in 0..PATIENCE {
-            if let Some(done) = machine.receive()?.read::<Done>() {
-                assert_eq!(done.request, 5);
-                return machine.quit();
-            }
-        }
-    }
 }

@@ -1,8 +1,7 @@
 //! The image that is flashed runs in the emulator as well, where it finds neither clock control nor panel nor button.
 
 use crate::support::{address, application, on};
-use double_pendulum::Parameters;
-use firmware::config::{GRAVITY, MOST_MEASURED_STEPS};
+use firmware::config::MOST_MEASURED_STEPS;
 use firmware::job::{ON_BOARDS, Request};
 use firmware::protocol::{Frame, Measure, Measured};
 use host_tests::emulator::boards::STM32F405;
@@ -55,18 +54,8 @@ fn its_steps_run_in_flash_and_in_memory() -> anyhow::Result<()> {
     let mut machine = on(&STM32F405, Machine::start)?;
     // It listens from here on.
     machine.wait_for::<Frame>()?;
-    let parameters = Parameters { m1: 1.0, m2: 1.0, l1: 1.0, l2: 1.0, g: GRAVITY };
     for (&method, request) in ON_BOARDS.iter().zip(0..) {
-        let motion = Request {
-            method,
-            parameters,
-            angles: [0.5; 2],
-            velocities: [0.0; 2],
-            dt: 1.0 / 256.0,
-            stride: 1,
-            samples: 0,
-        };
-        machine.serial.send(&motion.message(request))?;
+        machine.serial.send(&Request { samples: 0, ..Request::on_any_core(method) }.message(request))?;
         for in_ram in [0, 1] {
             machine.serial.send(&Measure { request, steps: MOST_MEASURED_STEPS, in_ram })?;
             // QEMU counts none.

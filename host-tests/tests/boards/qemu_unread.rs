@@ -4,7 +4,7 @@ use std::thread::sleep;
 use std::time::Duration;
 
 use crate::support::on;
-use firmware::motion::settings::Settings;
+use firmware::motion::Settings;
 use firmware::protocol::Frame;
 use firmware::scenes::SceneName;
 use host_tests::emulator::boards::BOARDS;
@@ -31,15 +31,12 @@ fn a_host_that_stops_reading_loses_frames_and_nothing_else() -> anyhow::Result<(
     }
     drop(stopped);
 
-    let mut expected =
+    let mut show =
         Show::on(board.processor(), SceneName::Page, &Settings::default()).expect("a scene of the catalogue");
-    let (mut steps, mut last, mut after) = (0, first, 0);
+    let (mut last, mut after) = (first, 0);
     while after < FRAMES {
         let frame: Frame = machine.wait_for()?;
-        (steps..frame.step).for_each(|_| expected.tick());
-        steps = frame.step;
-        let state: [f32; 4] = expected.report().state.into();
-        assert_eq!(frame.state.map(f32::to_bits), state.map(f32::to_bits), "frame {}", frame.sequence);
+        assert_eq!(frame, show.expected(&frame));
         // No tick is left out, even if its frame is.
         assert_eq!(frame.step, frame.sequence + 1 + frame.dropped);
         after += usize::from(after > 0 || frame.sequence > last.sequence + 1);

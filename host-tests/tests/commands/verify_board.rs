@@ -51,7 +51,8 @@ fn a_flipped_bit_is_named_and_fails() {
     let flipped = |message: &Received| {
         let mut wire = [0; MAX_WIRE];
         if let Some(mut sample) = message.read::<Sample>().filter(|sample| (sample.request, sample.index) == (3, 5)) {
-            sample.velocities[1] = f64::from_bits(sample.velocities[1].to_bits() ^ 1);
+            let [_, w2] = &mut sample.reading.velocities;
+            *w2 = f64::from_bits(w2.to_bits() ^ 1);
             return encode(&sample, &mut wire).to_vec();
         }
         let is_it = |frame: &Frame| frame.scene == SceneName::Butterfly.code() && frame.step == 20;

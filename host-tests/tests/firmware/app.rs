@@ -4,18 +4,17 @@ use std::cell::Cell;
 
 use double_pendulum::plan::{PlannedRun, Way};
 use double_pendulum::{Method, Motion, Parameters, Pendulum, State};
-use embedded_io::{ErrorKind, ErrorType, Write};
 use firmware::app::{App, Buttons, Cause, Command, Event, NoButtons, Player, Pressed, WarmRestart};
 use firmware::config::{GRAVITY, MOST_TICKS_PER_FRAME, ROD, TICK_RATE};
 use firmware::display::{Display, NoDisplay};
 use firmware::graphics::{Canvas, FadeLayer, Place, RodDirections, View};
 use firmware::motion::Settings;
-use firmware::protocol::{Frame, Message, Restarted, Status};
+use firmware::protocol::{Frame, LinkError, Restarted, Status};
 use firmware::scenes::SceneName;
 use host_tests::emulator::host::sheets;
 use host_tests::oracle::tolerances::ENERGY_SHOWN;
 
-use crate::bench::{Plain, all, app, messages, starting_with, wire};
+use crate::bench::{Plain, all, app, starting_with, wire};
 
 /// Runs to each of the clock's readings in turn.
 fn run(clock: impl IntoIterator<Item = u32>) -> Plain {
@@ -90,16 +89,21 @@ fn dropped_pictures_are_counted_and_no_tick_is_lost() {
 }
 
 #[test]
-fn lost_bytes_are_said_once_a_second_and_sent_with_each_frame() {
+fn losses_are_said_once_a_second_and_lost_bytes_sent_with_each_frame() {
     let mut app = app();
     let mut events = Vec::new();
-    // Each tick one more is lost.
+    // Each tick one more is lost, and a message damaged.
     for tick in 1..=2 * TICK_RATE {
         app.run_to(tick, |_| ());
         app.note_lost(tick, |event| events.push((tick, event)));
+        app.receive([1, 0], |event| events.push((tick, event)));
     }
-    let said = |tick| (tick, Event::Lost { bytes: TICK_RATE, total: tick });
-    assert_eq!(events, [TICK_RATE, 2 * TICK_RATE].map(said));
+    let said = |tick| {
+        let (grown, last) = (TICK_RATE, LinkError::Malformed);
+        [Event::Lost { bytes: grown, total: tick }, Event::Damaged { messages: grown, total: tick, last }]
+            .map(|event| (tick, event))
+    };
+    assert_eq!(events, [TICK_RATE, 2 * TICK_RATE].map(said).concat());
     let counts = frames(&app.link).iter().map(|frame| frame.lost).collect::<Vec<_>>();
     assert_eq!(counts, (0..2 * TICK_RATE).collect::<Vec<_>>());
 }
@@ -176,47 +180,6 @@ fn impossible_settings_are_refused() {
     }
 }
 
-/// Fails for the writes from 5 to 9, each time after half of the bytes.
-#[derive(Default)]
-struct Faulty {
-    bytes: Vec<u8>,
-    writes: u32,
-}
-
-impl ErrorType for Faulty {
-    type Error = ErrorKind;
-}
-
-impl Write for Faulty {
-    fn write(&mut self, bytes: &[u8]) -> Result<usize, ErrorKind> {
-        self.writes += 1;
-        let fails = (5..10).contains(&self.writes);
-        let sent = if fails { &bytes[..bytes.len() / 2] } else { bytes };
-        self.bytes.extend_from_slice(sent);
-        if fails { Err(ErrorKind::TimedOut) } else { Ok(bytes.len()) }
-    }
-
-    fn flush(&mut self) -> Result<(), ErrorKind> {
-        Ok(())
-    }
-}
-
-#[test]
-fn a_failing_link_is_reported_once_and_loses_only_its_own_frames() {
-    let mut app = App::new(Settings::default(), sheets(), NoDisplay, Faulty::default(), NoButtons).expect("good");
-    let mut events = Vec::new();
-    for now in 1..=20 {
-        app.run_to(now, |event| events.push(event));
-    }
-    assert_eq!(events, [Event::Link(ErrorKind::TimedOut)]);
-    // Writes: frames 0 to 3 (1 to 4), frames 4 to 8 broken off in the middle (5 to 9), then all is well.
-    let sequence = |(_, fields): (u8, Vec<u8>)| Frame::read(&fields).map(|frame| frame.sequence);
-    let received: Vec<_> =
-        messages(&app.link.bytes).into_iter().map(|message| message.ok().and_then(sequence)).collect();
-    let expected: Vec<_> = (0..4).map(Some).chain([None; 5]).chain((9..20).map(Some)).collect();
-    assert_eq!(received, expected);
-}
-
 struct BrokenPanel<'a>(&'a Cell<bool>);
 
 impl Display for BrokenPanel<'_> {
@@ -246,13 +209,16 @@ fn directions(app: &Plain) -> RodDirections {
     [a1, a2].map(|angle| angle.sin_cos().into())
 }
 
+fn view(app: &Plain) -> View {
+    View::new(&app.player.settings().parameters, Place::WHOLE, directions(app))
+}
+
 #[test]
 fn bobs_are_drawn_where_the_state_puts_them() {
     let mut app = app();
     for now in 1..=1200 {
         app.run_to(now, |_| ());
-        let view = View::new(&app.player.settings().parameters, Place::WHOLE);
-        for (x, y) in view.bobs(directions(&app)) {
+        for (x, y) in view(&app).bobs(directions(&app)) {
             let grey = app.canvas.get(x as i32, y as i32);
             assert_eq!(grey, Some(15), "tick {now}: ({x}, {y})");
         }
@@ -266,8 +232,8 @@ fn the_motion_never_touches_the_labels() {
     let boxes = [(0..40, 0..8), (0..35, 56..64), (93..128, 0..8)];
     for now in 1..=3600 {
         app.run_to(now, |_| ());
-        let view = View::new(&app.player.settings().parameters, Place::WHOLE);
-        let radii = view.radii().map(|radius| f32::from(radius) / 64.0 + 0.5);
+        let view = view(&app);
+        let radii = view.radii.map(|radius| f32::from(radius) / 64.0 + 0.5);
         for ((x, y), radius) in view.bobs(directions(&app)).into_iter().zip(radii) {
             for (columns, rows) in &boxes {
                 let dx = x - x.clamp(columns.start as f32, columns.end as f32);

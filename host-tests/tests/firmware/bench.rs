@@ -3,7 +3,7 @@
 use std::convert::Infallible;
 use std::fmt::Debug;
 
-use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
+use embedded_hal::digital::{ErrorType, OutputPin};
 use firmware::app::{App, NoButtons};
 use firmware::display::NoDisplay;
 use firmware::motion::Settings;
@@ -41,14 +41,14 @@ pub fn all<M: Message + Debug>(bytes: &[u8]) -> Vec<M> {
     own.map(|(_, fields)| M::read(&fields).expect("all fields")).collect()
 }
 
-/// A pin: what it does when it is set, and what it reads.
-pub struct Pin<Set, Read>(pub Set, pub Read);
+/// A pin: what it does when it is set.
+pub struct Pin<Set>(pub Set);
 
-impl<Set, Read> ErrorType for Pin<Set, Read> {
+impl<Set> ErrorType for Pin<Set> {
     type Error = Infallible;
 }
 
-impl<Set: FnMut(bool), Read> OutputPin for Pin<Set, Read> {
+impl<Set: FnMut(bool)> OutputPin for Pin<Set> {
     fn set_low(&mut self) -> Result<(), Infallible> {
         self.0(false);
         Ok(())
@@ -57,15 +57,5 @@ impl<Set: FnMut(bool), Read> OutputPin for Pin<Set, Read> {
     fn set_high(&mut self) -> Result<(), Infallible> {
         self.0(true);
         Ok(())
-    }
-}
-
-impl<Set, Read: FnMut() -> bool> InputPin for Pin<Set, Read> {
-    fn is_high(&mut self) -> Result<bool, Infallible> {
-        Ok(self.1())
-    }
-
-    fn is_low(&mut self) -> Result<bool, Infallible> {
-        Ok(!self.1())
     }
 }

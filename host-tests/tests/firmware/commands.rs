@@ -2,11 +2,11 @@
 
 use std::f64::consts::PI;
 
+use double_pendulum::Method;
 use double_pendulum::plan::Way;
-use double_pendulum::{Method, Parameters};
 use fastrand::Rng;
 use firmware::app::{AUTO, Event, Instruments, Key, News};
-use firmware::config::{DT, MOST_MEASURED_STEPS, MOST_MESSAGES_PER_TICK, PLANNED, RECEIVE_QUEUE, TICK_RATE};
+use firmware::config::{MOST_MEASURED_STEPS, MOST_MESSAGES_PER_TICK, PLANNED, RECEIVE_QUEUE, TICK_RATE};
 use firmware::job::{OnBoards, Request, Run};
 use firmware::protocol::{
     Ask, AskPlan, Choose, Done, Field, Frame, Identify, Identity, MAX_WIRE, Measure, Measured, Message, Pause, Planned,
@@ -88,10 +88,7 @@ fn a_board_tells_what_it_is_and_how_long_steps_take() {
     let measure = |request, in_ram| wire(&Measure { request, steps: u32::MAX, in_ram });
     app.receive(measure(2, 0), |_| ());
     assert_eq!(last::<Refused>(&app), Refused { request: 2, field: Field::Message.code() }, "no motion was asked for");
-    let method = Method::Rk4F32;
-    let parameters = Parameters { m1: 1.0, m2: 1.0, l1: 1.0, l2: 1.0, g: 9.81 };
-    let [angles, velocities] = [[0.5; 2], [0.0; 2]];
-    let request = Request { method, parameters, angles, velocities, dt: DT, stride: 1, samples: 1 };
+    let request = Request { samples: 1, ..Request::on_any_core(Method::Rk4F32) };
     app.receive(wire(&request.message(3)), |_| ());
     while app.work(|_| ()) {}
     for (request, in_ram, cycles) in [(4, 0, 1600), (5, 1, 800), (6, 0, 1600)] {
@@ -206,25 +203,12 @@ fn the_plan_is_found_in_some_tick_told_when_asked_and_followed() {
         assert_eq!(answer.request, 3);
         answer
     };
-    assert_eq!(asked(&mut app).found, NOT_YET);
-    let mut news = Vec::new();
-    let mut tick = 0;
-    while asked(&mut app).found == NOT_YET {
-        tick += 1;
-        app.run_to(tick, |event| news.push(event));
-    }
-    tick += 1;
-    app.run_to(tick, |event| news.push(event));
-    let [Event::Motion(News::Found(Ok(plan)))] = news[..] else { panic!("{news:?}") };
-    let answer = asked(&mut app);
-    assert_eq!((answer.found, answer.horizon), (FOUND, plan.horizon));
-    assert!(answer.horizon > 19.0, "{answer:?}");
-    let frame = app.player.frame();
-    assert_eq!((frame.method, u32::from(frame.way_steps)), (answer.method, answer.steps));
-
+    let (mut news, mut tick) = (Vec::new(), 0);
     app.receive(wire(&set(Field::Angle, 20_f64.to_radians())), |_| ());
-    assert_eq!(asked(&mut app), Planned { request: 3, found: NOT_YET, ..blank(&answer) });
-    news.clear();
+    let answer = asked(&mut app);
+    let Planned { height, duration, frame_budget, planning_budget, .. } = answer;
+    let given = Planned { height, duration, frame_budget, planning_budget, ..Planned::default() };
+    assert_eq!(answer, Planned { found: NOT_YET, request: 3, ..given });
     while asked(&mut app).found == NOT_YET {
         tick += 1;
         app.run_to(tick, |event| news.push(event));
@@ -240,10 +224,7 @@ fn the_plan_is_found_in_some_tick_told_when_asked_and_followed() {
     app.receive(wire(&Ask { request: 9 }), |_| ());
     let status: Status = last(&app);
     assert_eq!((status.method, status.way_steps, status.cycles), (calm.method, calm.steps, calm.cycles));
-    assert!(
-        status.cycles < answer.cycles && f64::from(status.horizon) > PLANNED && status.is_looking == 1,
-        "{status:?}"
-    );
+    assert!(f64::from(status.horizon) > PLANNED && status.is_looking == 1, "{status:?}");
 
     app.receive(wire(&Choose { request: 1, scene: SceneName::Frequencies.code() }), |_| ());
     assert!(!app.look_ahead());
@@ -270,12 +251,6 @@ fn a_way_can_be_forced() {
     }
 }
 
-/// What an answer says before anything is found.
-fn blank(answer: &Planned) -> Planned {
-    let &Planned { height, duration, frame_budget, planning_budget, .. } = answer;
-    Planned { height, duration, frame_budget, planning_budget, ..Planned::default() }
-}
-
 #[test]
 fn speed_is_exact_in_the_long_run() {
     for (speed, ticks) in [(0.01, 6), (0.25, 150), (0.99, 594), (1.0, 600), (2.5, 1500), (4.0, 2400)] {
@@ -298,7 +273,7 @@ fn flood(mut bytes: impl Iterator<Item = u8>, seconds: u32) -> Plain {
     for clock in 1..=seconds * TICK_RATE {
         assert!(app.run_to(clock, |event| lines += u32::from(!matches!(event, Event::Motion(_)))));
         waiting.extend(bytes.by_ref().take(BYTES_PER_TICK));
-        waiting.truncate(1023); // the queue of the boards
+        waiting.truncate(RECEIVE_QUEUE); // the queue of the boards
         let is_asked_for = |event: &Event<_, _>| matches!(event, Event::Started(..) | Event::Motion(_) | Event::Asked);
         let mut counted = |event: Event<_, _>| lines += u32::from(!is_asked_for(&event));
         app.receive(std::iter::from_fn(|| waiting.pop_front()), &mut counted);
@@ -327,13 +302,4 @@ fn noise_half_commands_and_floods_do_not_disturb_the_stream() {
     let restarts = flood(wire(&Restart { request: 6 }).into_iter().cycle(), 10);
     let (answered, most) = (all::<Done>(&restarts.link).len(), MOST_MESSAGES_PER_TICK * (10 * TICK_RATE) as usize);
     assert!((most / 2..=most).contains(&answered), "{answered}: of more than can wait, the rest is lost");
-}
-
-#[test]
-fn a_command_after_noise_is_executed() {
-    let mut app = app();
-    let mut rng = Rng::with_seed(6);
-    app.receive(std::iter::repeat_with(|| rng.u8(1..)).take(5000), |_| ());
-    app.receive(wire(&Choose { request: 3, scene: SceneName::Figure7.code() }), |_| ());
-    assert_eq!((last::<Done>(&app), app.player.name()), (Done { request: 3 }, SceneName::Figure7));
 }

@@ -147,6 +147,6 @@ fn labels_show_what_is_set() {
 fn labels_of_any_numbers_are_safe() {
     for number in [f32::NAN, f32::INFINITY, f32::MAX, -f32::MAX, 1e-30] {
         let _ = (label::mass_ratio(number), label::degrees("α", number), label::time(number.into()));
-        let _ = (label::trust(number, true), label::tick(number, " s"), label::energy("true", number));
+        let _ = (label::trust(number, true), label::tick(number, " s"), label::label(["true", " "], number, 1, " J"));
     }
 }

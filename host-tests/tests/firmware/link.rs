@@ -3,8 +3,8 @@
 use std::collections::HashSet;
 
 use firmware::protocol::{
-    Decoder, Frame, Identity, LinkError, MAX_FIELDS, MAX_WIRE, Message, Planned, Sample, Simulate, Status, VERSION,
-    frame,
+    Decoder, Frame, Identity, LinkError, MAX_FIELDS, MAX_WIRE, Message, Planned, Request, Sample, Simulate, Status,
+    VERSION, frame,
 };
 
 /// What the decoder says of a wire.
@@ -86,14 +86,14 @@ fn a_wrong_check_is_refused() {
 /// The longest messages, their whole numbers as large as they can be.
 #[test]
 fn every_message_fits() {
-    let (request, u8, u16, u32) = (u16::MAX, u8::MAX, u16::MAX, u32::MAX);
+    let (request, u16, u32) = (u16::MAX, u16::MAX, u32::MAX);
     let frame = Frame { sequence: u32, dropped: u32, lost: u32, step: u32, way_steps: u16, ..Frame::default() };
     let identity = Identity { request, hertz: u32, processor: u32, chip: [u32; 4], ..Identity::default() };
-    let simulate = Simulate { request, method: u8, stride: u32, samples: u32, ..Simulate::default() };
+    let motion = Request { stride: u32, samples: u32, ..Request::default() };
     let lengths = [
         length(Frame { scene_cycles: u32, busy_cycles: u32, ..frame }),
         length(Identity { image: u32, image_bytes: u32, ..identity }),
-        length(simulate),
+        length(Simulate { request, motion }),
         length(Planned { request, steps: u32, ..Planned::default() }),
         length(Sample { request, index: u32, ..Sample::default() }),
         length(Status { request, steps: u32, way_steps: u32, ..Status::default() }),

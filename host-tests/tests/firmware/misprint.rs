@@ -82,8 +82,8 @@ fn with_equal_masses_the_printed_form_is_right() {
 fn what_is_shown_of_the_printed_form_is_right_to_half_a_pixel_for_10_s() {
     const STEPS_PER_TICK: usize = 64;
     let (pendulum, start) = figure_7();
-    let view = View::new(&pendulum.parameters().cast(), Place::HALVES[1]);
     let mut shown = Misprinted::new(&pendulum.parameters().cast(), &start.cast());
+    let view = View::new(&pendulum.parameters().cast(), Place::HALVES[1], shown.directions());
     let mut z = start.into();
     for tick in 1..=10 * TICK_RATE {
         shown.tick();

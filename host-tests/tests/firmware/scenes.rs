@@ -3,8 +3,8 @@
 use double_pendulum::State;
 use firmware::app::{App, Command, NoButtons};
 use firmware::config::{
-    CORTEX_M0PLUS, CORTEX_M3, CORTEX_M4F, FLIPS_F405, FLIPS_M0PLUS, FLIPS_M3, FLIPS_M4F, PIVOT, PROCESSOR, Processor,
-    REACH, STM32F405, TRAIL_FADING, TRAIL_HALF_WIDTH,
+    CORTEX_M0PLUS, CORTEX_M3, CORTEX_M4F, PIVOT, PROCESSOR, Processor, REACH, STM32F405, TICK_RATE, TRAIL_FADING,
+    TRAIL_HALF_WIDTH,
 };
 use firmware::display::NoDisplay;
 use firmware::graphics::{Anchor, Canvas, FadeLayer, HEIGHT, WIDTH, plot, text};
@@ -84,7 +84,7 @@ fn the_trail_is_the_path_and_fades_with_age() {
     let mut compared = 0;
     for (x, y) in (0..WIDTH as i32).flat_map(|x| (0..HEIGHT as i32).map(move |y| (x, y))) {
         let middle = (x as f32 + 0.5, y as f32 + 0.5);
-        let grey = f64::from(ink.frame().get(x, y).expect("inside"));
+        let grey = f64::from(ink.frame.get(x, y).expect("inside"));
         let far: Vec<_> = path.windows(2).map(|piece| distance(middle, [piece[0], piece[1]])).collect();
         let covers = |far: &f32| *far < TRAIL_HALF_WIDTH - 0.5;
         let touches = |far: &f32| *far < TRAIL_HALF_WIDTH + 0.6;
@@ -152,22 +152,28 @@ fn the_map_of_flips_is_that_of_the_boards_processor() {
         (0..60).for_each(|_| show.tick());
         show.frame()
     };
-    let map = |pace, in_float| {
+    let map = |processor: Processor, in_float| {
         let (mut ink, settings) = (FadeLayer::NONE, Settings::default());
-        let mut map = Flips::at_pace(&settings, pace, in_float).expect("a map");
+        let mut map = Flips::at_pace(&settings, processor.flips, in_float).expect("a map");
         (0..60).for_each(|_| map.tick(&mut ink));
-        let mut canvas = ink.frame().clone();
+        let mut canvas = ink.frame.clone();
         map.draw(&map.report(), &mut canvas);
         canvas
     };
-    assert!(map(FLIPS_F405, false) != map(FLIPS_F405, true), "they differ");
-    for (processor, pace, in_float) in [
-        (CORTEX_M3, FLIPS_M3, false),
-        (CORTEX_M0PLUS, FLIPS_M0PLUS, false),
-        (CORTEX_M4F, FLIPS_M4F, true),
-        (STM32F405, FLIPS_F405, true),
-    ] {
-        assert!(after(processor) == map(pace, in_float), "{processor:?}");
+    assert!(map(STM32F405, false) != map(STM32F405, true), "they differ");
+    for (processor, in_float) in [(CORTEX_M3, false), (CORTEX_M0PLUS, false), (CORTEX_M4F, true), (STM32F405, true)] {
+        assert!(after(processor) == map(processor, in_float), "{processor:?}");
+    }
+}
+
+/// On the chip of 168 MHz, and on those that are slower or have no floating-point unit.
+#[test]
+fn the_map_of_flips_is_finished_in_time() {
+    for (processor, seconds) in [(STM32F405, 5), (CORTEX_M4F, 60), (CORTEX_M3, 60), (CORTEX_M0PLUS, 60)] {
+        let (mut ink, means) = (FadeLayer::NONE, Means { processor, method: None });
+        let mut map = Flips::new(&Settings::default(), &means).expect("a map");
+        (0..seconds * TICK_RATE).for_each(|_| map.tick(&mut ink));
+        assert!(map.is_done(), "{processor:?}");
     }
 }
 

@@ -1,4 +1,4 @@
-//! The panel's driver against a controller that is stricter than the real one.
+//! The panel's driver against a controller that is stricter than the real one; QEMU's shows every scene (test `boards qemu_scenes`).
 
 use std::cell::RefCell;
 use std::collections::VecDeque;
@@ -6,11 +6,8 @@ use std::convert::Infallible;
 
 use embedded_hal::digital::OutputPin;
 use embedded_hal::spi::{ErrorKind, ErrorType, Operation, SpiDevice};
-use firmware::app::{App, NoButtons};
 use firmware::display::{Display, Ssd0323};
 use firmware::graphics::Canvas;
-use firmware::motion::Settings;
-use host_tests::emulator::host::sheets;
 
 use crate::bench::Pin;
 
@@ -123,7 +120,7 @@ fn panel<'a>(
     controller: &'a RefCell<Controller>,
     memory: &'a mut Canvas,
 ) -> Ssd0323<'a, Bus<'a>, impl OutputPin<Error = Infallible> + 'a> {
-    let data = Pin(|high| controller.borrow_mut().data = Some(high), ());
+    let data = Pin(|high| controller.borrow_mut().data = Some(high));
     Ssd0323::new(Bus(controller), data, memory)
 }
 
@@ -137,20 +134,6 @@ fn switches_on_with_a_black_frame() {
     panel(&controller, &mut Canvas::default()).init().expect("the bus works");
     assert!(controller.borrow().on);
     assert_eq!(shown(&controller), [0; 4096]);
-}
-
-#[test]
-fn shows_exactly_the_frame() {
-    let controller = RefCell::new(Controller::new());
-    let mut memory = Canvas::default();
-    let mut panel = panel(&controller, &mut memory);
-    panel.init().expect("the bus works");
-    let mut app = App::new(Settings::default(), sheets(), panel, Vec::new(), NoButtons).expect("good");
-    for now in 1..=20 {
-        app.run_to(now, |event| panic!("{event:?}"));
-        assert_eq!(shown(&controller), app.canvas.bytes().collect::<Vec<_>>());
-    }
-    assert!(app.canvas.bytes().any(|byte| byte != 0));
 }
 
 #[test]

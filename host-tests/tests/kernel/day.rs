@@ -118,7 +118,7 @@ fn a_frame_tells_the_energy_of_one_instant_all_day() -> Result<(), Error> {
     let energy = pendulum.energy_above_rest(&start);
     for method in [None, Some(Method::Rk4F32DirectionPlain), Some(Method::Rk4F32Direction), Some(Method::Rk4Fixed32)] {
         let mut simulation = Simulation::new(&settings, &Means { processor: STM32F405, method })?;
-        let Way { method, steps } = simulation.way();
+        let Way { method, steps } = simulation.motion.way();
         let dt = 1.0 / f64::from(TICK_RATE * steps);
         let mut exact = pendulum.run::<DirectionF64>(&start, dt)?;
         let mut worst: f64 = 0.0;

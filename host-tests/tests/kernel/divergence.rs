@@ -3,11 +3,11 @@
 use std::fmt::Debug;
 
 use double_pendulum::{Error, Integrator, Method, Parameter, Parameters, State};
-use firmware::app::{App, Event, NoButtons, Service};
+use firmware::app::{App, Event, NoButtons};
 use firmware::display::NoDisplay;
-use firmware::job::Request;
+use firmware::job::{Job, Reading, Request};
 use firmware::motion::Settings;
-use firmware::protocol::{Field, Refused, Sample};
+use firmware::protocol::Field;
 use host_tests::emulator::host::sheets;
 use host_tests::oracle::trials;
 
@@ -50,20 +50,15 @@ fn too_quick() -> Request {
 
 #[test]
 fn a_job_is_refused_when_its_motion_is_lost() {
-    let mut service = Service::default();
-    let mut wire = [0; firmware::protocol::MAX_WIRE];
-    for byte in firmware::protocol::encode(&too_quick().message(5), &mut wire) {
-        service.receive(*byte);
-    }
-    let answers: Vec<Result<Sample, Refused>> =
-        std::iter::from_fn(|| service.is_busy().then(|| service.work())).flatten().collect();
-    let (last, samples) = answers.split_last().expect("answers");
-    assert_eq!(*last, Err(Refused { request: 5, field: Field::Dt.code() }), "after {} samples", samples.len());
-    let is_finite = |answer: &Result<Sample, Refused>| {
-        answer.is_ok_and(|sample| sample.state.iter().chain(&sample.velocities).all(|number| number.is_finite()))
+    let mut job: Job = Job::new(&too_quick()).expect("within the limit");
+    let answers: Vec<_> = std::iter::from_fn(|| (!job.is_finished()).then(|| job.advance())).collect();
+    let (last, readings) = answers.split_last().expect("answers");
+    assert_eq!(last.map_err(Field::from), Err(Field::Dt), "after {} readings", readings.len());
+    let is_finite = |answer: &Result<Option<Reading>, Error>| {
+        let reading = answer.unwrap_or_default().unwrap_or_default();
+        answer.is_ok() && reading.state.iter().chain(&reading.velocities).all(|number| number.is_finite())
     };
-    assert!(!samples.is_empty() && samples.iter().all(is_finite));
-    assert!(!service.is_busy());
+    assert!(!readings.is_empty() && readings.iter().all(is_finite));
 }
 
 /// A pendulum so short that the scenes' step only just suits its small motions.

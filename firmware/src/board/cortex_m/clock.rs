@@ -38,21 +38,16 @@ impl Clock {
         Self(())
     }
 
-    /// Counts ticks, from any number on; wraps.
-    pub fn ticks(&self) -> u32 {
-        ticks()
-    }
-
     /// Sleeps until the tick after `last`; returns at once if it has passed already.
     pub fn wait_after(&self, last: u32) -> u32 {
         // An interrupt between the test and the sleep stays pending only while interrupts are masked: with them
         // masked `wfi` still wakes, so no tick is slept through.
         loop {
             let now = cortex_m::interrupt::free(|_| {
-                if self.ticks() == last {
+                if ticks() == last {
                     cortex_m::asm::wfi();
                 }
-                self.ticks()
+                ticks()
             });
             if now != last {
                 return now;
@@ -61,7 +56,8 @@ impl Clock {
     }
 }
 
-pub(super) fn ticks() -> u32 {
+/// Counts ticks, from any number on; wraps.
+pub fn ticks() -> u32 {
     TICKS.load(Ordering::Relaxed)
 }
 

@@ -28,7 +28,8 @@ use cortex_m_semihosting::{debug, hio};
 use super::calls::{calls, instruction};
 use super::{fault_status, retained, watchdog};
 use crate::app::{Cause, LastShown};
-use crate::fault::{Fault, Hang, Panic, Stacked};
+use crate::config::WATCHDOG_SECONDS;
+use crate::fault::{Fault, Stacked};
 
 /// A call to the debugger, `bkpt 0xAB`, and its length in bytes.
 const DEBUGGER_CALL: (u16, u32) = (0xBEAB, 2);
@@ -50,11 +51,14 @@ unsafe impl Sync for Stack {}
 
 #[panic_handler]
 fn panic(info: &PanicInfo) -> ! {
+    // Where this handler was called, and where the function that did so was: found on the stack, as the registers hold something
+    // else by now. The second is where the panic is, unless a helper was between.
     let mut calls = calls(stack_pointer());
-    let (pc, lr) = (calls.next(), calls.next());
-    let [cfsr, ..] = fault_status::read();
-    let [known_pc, known_lr] = [pc, lr].map(Option::unwrap_or_default);
-    crash((Cause::Panic, known_pc, known_lr, cfsr), &Panic { info, pc, lr, cfsr })
+    let [pc, lr] = [(); 2].map(|()| calls.next().unwrap_or_default());
+    // Of a fault before, if it is not zero.
+    let [cfsr, ..] = fault_status::read(false);
+    let report = format_args!("PANIC: {info}\n  pc {pc:#010x}  lr {lr:#010x}  cfsr {cfsr:#010x}");
+    crash((Cause::Panic, pc, lr, cfsr), &report)
 }
 
 /// Every fault ends here, since none has a handler of its own, on a stack of its own. Passes on where the processor put
@@ -87,7 +91,7 @@ unsafe extern "C" fn HardFault() {
 
 /// `exception` is what the link register holds on the way into a handler.
 extern "C" fn hard_fault(frame: *mut ExceptionFrame, exception: u32) {
-    let [cfsr, hfsr, mmfar, bfar] = fault_status::read();
+    let [cfsr, hfsr, mmfar, bfar] = fault_status::read(false);
     // SAFETY: the processor has put the frame there, and nothing else knows of it.
     let frame = Fault::has_stacked(cfsr).then(|| unsafe { &mut *frame }).ok_or(frame as u32);
     let (stacked, bottom) = match frame {
@@ -95,7 +99,7 @@ extern "C" fn hard_fault(frame: *mut ExceptionFrame, exception: u32) {
             // A breakpoint is the one fault that leaves CFSR clear, where there is one. (It also sets HFSR.DEBUGEVT, but not in
             // QEMU.)
             if cfsr == 0 && step_over_debugger_call(frame) {
-                fault_status::clear();
+                fault_status::read(true);
                 return;
             }
             let stacked = Stacked { pc: frame.pc(), lr: frame.lr(), xpsr: frame.xpsr() };
@@ -142,7 +146,7 @@ pub(super) fn hang(interrupted: &ExceptionFrame) {
     retained::end(Cause::Hang, pc, lr, 0);
     if watchdog::has_ticked() && !ALONE.load(Ordering::Relaxed) {
         watchdog::stall(false);
-        say(&Hang { pc, lr });
+        say(&format_args!("HANG: no frame finished for {WATCHDOG_SECONDS} s\n  pc {pc:#010x}  lr {lr:#010x}"));
         watchdog::stall(true);
     }
 }

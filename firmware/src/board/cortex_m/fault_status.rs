@@ -1,30 +1,18 @@
 //! The registers that tell why a fault was taken: CFSR, HFSR, MMFAR and BFAR. A Cortex-M0+ has none of them.
 
-/// What they read; zeros where there are none.
+/// What they read, zeros where there are none; if `clears`, HFSR forgets it.
 #[cfg(not(armv6m))]
-pub fn read() -> [u32; 4] {
-    let control = control();
+pub fn read(clears: bool) -> [u32; 4] {
+    // SAFETY: it is always there, and nothing else uses these registers.
+    let control = unsafe { &*cortex_m::peripheral::SCB::PTR };
+    if clears {
+        // SAFETY: writing the bits back only clears them.
+        unsafe { control.hfsr.modify(|bits| bits) };
+    }
     [control.cfsr.read(), control.hfsr.read(), control.mmfar.read(), control.bfar.read()]
 }
 
-/// Forgets what HFSR says.
-#[cfg(not(armv6m))]
-pub fn clear() {
-    let hfsr = &control().hfsr;
-    // SAFETY: writing the bits back only clears them.
-    unsafe { hfsr.write(hfsr.read()) };
-}
-
-#[cfg(not(armv6m))]
-fn control() -> &'static cortex_m::peripheral::scb::RegisterBlock {
-    // SAFETY: it is always there, and nothing else uses these registers.
-    unsafe { &*cortex_m::peripheral::SCB::PTR }
-}
-
 #[cfg(armv6m)]
-pub fn read() -> [u32; 4] {
+pub fn read(_: bool) -> [u32; 4] {
     [0; 4]
 }
-
-#[cfg(armv6m)]
-pub fn clear() {}

@@ -1,13 +1,22 @@
-//! Every interrupt but the tick's comes here: received bytes, and the first call of a watchdog.
+//! Every interrupt but the tick's comes here: received bytes, and the first call of a watchdog. And what an interrupt shares.
 
 use core::arch::naked_asm;
+use core::cell::RefCell;
 
-use cortex_m::interrupt::InterruptNumber;
+use cortex_m::interrupt::{InterruptNumber, Mutex, free};
 use cortex_m::peripheral::NVIC;
 use cortex_m_rt::ExceptionFrame;
 
 use super::{crash, watchdog};
-use crate::board::serial::receiver;
+use crate::board::serial;
+
+/// What an interrupt shares with the main loop.
+pub(in crate::board) type Shared<T> = Mutex<RefCell<T>>;
+
+/// Does something with it, undisturbed; `None` within itself.
+pub(in crate::board) fn with<T, R>(shared: &Shared<T>, act: impl FnOnce(&mut T) -> R) -> Option<R> {
+    free(|token| shared.borrow(token).try_borrow_mut().ok().map(|mut shared| act(&mut shared)))
+}
 
 /// Passes on where the processor put the registers of what was interrupted, and the number of the interrupt.
 ///
@@ -33,7 +42,7 @@ extern "C" fn interrupt(interrupted: &ExceptionFrame, number: u32) {
         watchdog::silence();
         crash::hang(interrupted);
     } else {
-        receiver::receive();
+        serial::receive();
     }
 }
 

@@ -1,15 +1,14 @@
 //! What every Cortex-M has.
 
 pub mod clock;
-pub mod guard;
-pub mod identity;
 pub mod semihosting;
-pub mod watchdog;
 
 pub(super) mod crash;
+pub(super) mod guard;
+pub(super) mod identity;
 pub(super) mod interrupt;
 pub(super) mod retained;
-pub(super) mod stopwatch;
+pub(super) mod watchdog;
 
 mod calls;
 mod fault_status;

@@ -3,8 +3,7 @@
 use core::hint::black_box;
 use core::sync::atomic::{AtomicU8, Ordering};
 
-use crate::app::warm_restart::read;
-use crate::app::{Cause, Kept, WarmRestart};
+use crate::app::{Cause, Kept, WarmRestart, read};
 use crate::protocol::{MAX_WIRE, Message, Restarted, Status, encode};
 
 // SAFETY: start-up leaves this section alone, and what stands there is bytes.

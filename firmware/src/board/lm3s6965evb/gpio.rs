@@ -10,8 +10,8 @@ use crate::board::register::{Device, Register};
 pub struct Pins(Device);
 
 pub const A: Pins = port(0x4000_4000);
-const C: Pins = port(0x4000_6000);
-const D: Pins = port(0x4000_7000);
+pub const C: Pins = port(0x4000_6000);
+pub const D: Pins = port(0x4000_7000);
 pub const E: Pins = port(0x4002_4000);
 pub const F: Pins = port(0x4002_5000);
 
@@ -39,7 +39,7 @@ impl Pins {
         self.0.register(0x51C).modify(0, pins.into());
     }
 
-    fn use_for_output(self, pins: u8) -> Output {
+    pub fn use_for_output(self, pins: u8) -> Output {
         self.0.register(0x400).modify(0, pins.into());
         self.0.register(0x51C).modify(0, pins.into());
         Output(self.data(pins))
@@ -49,16 +49,6 @@ impl Pins {
     pub fn read(self, pins: u8) -> u8 {
         self.data(pins).read() as u8
     }
-}
-
-/// PC7: the panel's data (high) or command (low).
-pub fn data_not_command() -> Output {
-    C.use_for_output(1 << 7)
-}
-
-/// PD0: low selects the memory card, which shares the panel's bus.
-pub fn card_select() -> Output {
-    D.use_for_output(1 << 0)
 }
 
 #[derive(Debug)]

@@ -9,45 +9,40 @@
 //! | buttons | PE0 up, PE1 down, PE2 left, PE3 right, PF1 select; pressed reads 0 |
 //! | serial link | UART0: PA0 in, PA1 out |
 
-mod buttons;
 mod gpio;
 mod ssi;
 mod system;
 mod uart;
-mod watchdog;
 
 use cortex_m::Peripherals;
 use embedded_hal::digital::OutputPin;
 
+use crate::app::{Buttons, Pressed};
 use crate::board::Board;
 use crate::board::cortex_m::clock::Clock;
 use crate::board::cortex_m::guard::guard_stack;
 use crate::board::cortex_m::identity::instruments;
 use crate::board::cortex_m::watchdog::TwoStage;
-use crate::board::serial::receiver::Receiver;
-use crate::board::serial::transmitter::Transmitter;
+use crate::board::serial::Transmitter;
 use crate::display::Ssd0323;
 use crate::graphics::Canvas;
 use crate::protocol::BoardName;
 
-use buttons::Keys;
 use gpio::Output;
 use ssi::Ssi;
-use uart::Pl011;
 
-pub type Lm3s6965evb = Board<Ssd0323<'static, Ssi, Output>, Transmitter<Pl011>, Keys, TwoStage>;
+pub type Lm3s6965evb = Board<Ssd0323<'static, Ssi, Output>, Transmitter, Keys, TwoStage>;
 
 /// Sets the board up; `None` the second time.
 pub fn take() -> Option<Lm3s6965evb> {
     let core = Peripherals::take()?;
     guard_stack(core.MPU);
     let hertz = system::start();
-    let Ok(()) = gpio::card_select().set_high();
-    let link = uart::start(hertz);
-    let receiver = Receiver::new(uart::INLET)?;
-    uart::enable_receiver();
+    // The memory card shares the panel's bus.
+    let Ok(()) = gpio::D.use_for_output(1 << 0).set_high();
+    let (link, receiver) = uart::start(hertz);
     let memory = cortex_m::singleton!(: Canvas = Canvas::BLACK)?;
-    let mut panel = Ssd0323::new(Ssi::start(hertz), gpio::data_not_command(), memory);
+    let mut panel = Ssd0323::new(Ssi::start(hertz), gpio::C.use_for_output(1 << 7), memory);
     if panel.init().is_err() {
         defmt::error!("the panel does not answer");
     }
@@ -58,7 +53,38 @@ pub fn take() -> Option<Lm3s6965evb> {
         keys: Keys::start(),
         instruments: instruments(BoardName::Lm3s6965evb, hertz, system::chip(), &core.CPUID, core.DCB, core.DWT),
         clock: Clock::start(core.SYST, hertz),
-        watchdog: watchdog::start(hertz),
+        watchdog: system::start_watchdog(hertz),
         reset_by_watchdog: system::reset_by_watchdog(),
     })
+}
+
+const UP: u8 = 1 << 0;
+const DOWN: u8 = 1 << 1;
+const LEFT: u8 = 1 << 2;
+const RIGHT: u8 = 1 << 3;
+const SELECT: u8 = 1 << 1;
+
+/// PE0 to PE3 and PF1, each low while pressed.
+#[derive(Debug)]
+pub struct Keys(());
+
+impl Keys {
+    pub(super) fn start() -> Self {
+        gpio::E.use_for_input(UP | DOWN | LEFT | RIGHT);
+        gpio::F.use_for_input(SELECT);
+        Self(())
+    }
+}
+
+impl Buttons for Keys {
+    fn read(&mut self) -> Pressed {
+        let low = !gpio::E.read(UP | DOWN | LEFT | RIGHT);
+        Pressed {
+            up: low & UP != 0,
+            down: low & DOWN != 0,
+            left: low & LEFT != 0,
+            right: low & RIGHT != 0,
+            select: !gpio::F.read(SELECT) & SELECT != 0,
+        }
+    }
 }

@@ -1,5 +1,6 @@
-//! System control: the clock and the power of the peripherals.
+//! System control: the clock, the power of the peripherals, the watchdog.
 
+use crate::board::cortex_m::watchdog::{self, FIRST, TwoStage};
 use crate::board::register::{Device, Register};
 
 const CRYSTAL: u32 = 8_000_000;
@@ -81,4 +82,20 @@ pub fn reset_by_watchdog() -> bool {
     let causes = RESC.read();
     RESC.write(0);
     causes & WATCHDOG != 0
+}
+
+// SAFETY: the watchdog of the data sheet, chapter 11; without DMA it cannot break memory safety.
+const WATCHDOG_TIMER: Device = unsafe { Device::at(0x4000_0000) };
+const TEST: Register = WATCHDOG_TIMER.register(0x418);
+/// It stops while a debugger halts the processor.
+const STALL: u32 = 1 << 8;
+const CALL: u16 = FIRST + 18;
+
+pub fn start_watchdog(hertz: u32) -> TwoStage {
+    // The next feeding locks the registers again.
+    watchdog::stall_by(|stalls| {
+        watchdog::unlock(WATCHDOG_TIMER);
+        TEST.write(if stalls { STALL } else { 0 });
+    });
+    TwoStage::start(WATCHDOG_TIMER, hertz, CALL)
 }

@@ -3,8 +3,7 @@
 use super::gpio;
 use crate::board::cortex_m::interrupt::Interrupt;
 use crate::board::register::{Device, Register};
-use crate::board::serial::receiver::{Inlet, Taken};
-use crate::board::serial::transmitter::{Outlet, Transmitter};
+use crate::board::serial::{self, Port, Receiver, Taken, Transmitter};
 use crate::config::BAUD;
 
 // SAFETY: UART0 of the data sheet, chapter 12; without DMA it cannot break memory safety.
@@ -28,10 +27,7 @@ const RECEIVED: u32 = 1 << 6 | 1 << 4;
 
 const INTERRUPT: Interrupt = Interrupt(5);
 
-#[derive(Debug)]
-pub struct Pl011(());
-
-pub(super) fn start(hertz: u32) -> Transmitter<Pl011> {
+pub(super) fn start(hertz: u32) -> (Transmitter, Receiver) {
     gpio::A.use_for_device(1 << 0 | 1 << 1);
     CONTROL.write(0);
     // The divisor hertz/(16 baud) in 64ths, rounded: 50 MHz / (16 x 460,800) = 6 + 50/64, 0.005 % off.
@@ -40,20 +36,13 @@ pub(super) fn start(hertz: u32) -> Transmitter<Pl011> {
     DIVISOR_FRACTION.write(divisor % 64);
     LINE_CONTROL.write(EIGHT_BITS_QUEUED);
     CONTROL.write(ENABLE);
-    Transmitter(Pl011(()))
+    let link = serial::start(PORT);
+    INTERRUPT_MASK.write(RECEIVED);
+    INTERRUPT.unmask();
+    link
 }
 
-impl Outlet for Pl011 {
-    fn is_ready(&self) -> bool {
-        FLAGS.read() & TRANSMITTER_FULL == 0
-    }
-
-    fn put(&mut self, byte: u8) {
-        DATA.write(byte.into());
-    }
-}
-
-pub(super) const INLET: Inlet = Inlet {
+const PORT: Port = Port {
     clear: |_| INTERRUPT_CLEAR.write(RECEIVED),
     take: || {
         let overrun = RECEIVE_STATUS.read() & OVERRUN != 0;
@@ -62,9 +51,6 @@ pub(super) const INLET: Inlet = Inlet {
         }
         Taken { byte: (FLAGS.read() & RECEIVER_EMPTY == 0).then(|| DATA.read() as u8), overrun }
     },
+    is_ready: || FLAGS.read() & TRANSMITTER_FULL == 0,
+    put: |byte| DATA.write(byte.into()),
 };
-
-pub(super) fn enable_receiver() {
-    INTERRUPT_MASK.write(RECEIVED);
-    INTERRUPT.unmask();
-}

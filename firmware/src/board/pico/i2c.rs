@@ -4,21 +4,20 @@
 
 use cortex_m::asm::delay;
 use cortex_m::peripheral::NVIC;
-use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
 use embedded_hal::i2c::{ErrorKind, NoAcknowledgeSource};
+use rp2040_hal::I2C;
+use rp2040_hal::fugit::{HertzU32, RateExtU32};
 use rp2040_hal::gpio::bank0::{Gpio4, Gpio5};
-use rp2040_hal::gpio::{FunctionI2C, OutputEnableOverride, OutputOverride, Pin, PinId, PullUp, ValidFunction};
+use rp2040_hal::gpio::{FunctionI2C, Pin, PullUp};
 use rp2040_hal::pac::i2c0::RegisterBlock;
-use rp2040_hal::pac::{I2C0, Interrupt, RESETS, interrupt};
+use rp2040_hal::pac::io_bank0::GPIO;
+use rp2040_hal::pac::{I2C0, IO_BANK0, Interrupt, RESETS, interrupt};
 
 use crate::board::panel_bus::{self, Bus, PanelPort};
-use crate::display::{Outbox, Sent, free_bus};
+use crate::display::{Lines, Outbox, Sent, free_bus};
 
-/// The bus's clock, Hz, and the part of a period that it is low.
+/// The bus's clock, Hz.
 const SPEED: u32 = 400_000;
-const LOW: (u32, u32) = (3, 5);
-/// The data line is held for so long after the clock has fallen: 300 ns.
-const HOLD: (u32, u32) = (3, 10_000_000);
 /// Bytes left when the next are fetched: 90 us before the last is sent.
 const FEW: u8 = 4;
 /// How often a stop is waited for, which takes 5 us: these tries take at least 12.
@@ -35,49 +34,32 @@ const ADDRESS_REFUSED: u32 = 1 << 0;
 const DATA_REFUSED: u32 = 1 << 3;
 const ARBITRATION_LOST: u32 = 1 << 12;
 
-pub(super) type Lines = (Line<Gpio4>, Line<Gpio5>);
+pub struct I2c0(());
 
-pub struct I2c0 {
-    port: I2C0,
-    lines: Lines,
-}
+/// The pins 4 and 5 of the bus.
+pub(super) type Pins = (Pin<Gpio4, FunctionI2C, PullUp>, Pin<Gpio5, FunctionI2C, PullUp>);
 
-/// Starts it from a clock of `hertz`; `None` if the device does not come out of its reset.
+/// Starts it from this clock. The support library sets it up and lets go of it.
 pub(super) fn start(
     port: I2C0,
-    lines: Lines,
+    pins: Pins,
+    clock: HertzU32,
     resets: &mut RESETS,
-    hertz: u32,
     outbox: &'static mut Outbox,
-) -> Option<Bus<I2c0>> {
-    resets.reset().modify(|_, w| w.i2c0().set_bit());
-    resets.reset().modify(|_, w| w.i2c0().clear_bit());
-    if !(0..TRIES).any(|_| resets.reset_done().read().i2c0().bit_is_set()) {
-        return None;
-    }
-    let period = hertz / SPEED;
-    let low = period * LOW.0 / LOW.1;
-    port.ic_con().write(|w| {
-        w.speed().fast().master_mode().enabled().ic_slave_disable().slave_disabled().ic_restart_en().enabled()
-    });
-    // SAFETY: the fields take these numbers.
-    unsafe {
-        port.ic_fs_scl_hcnt().write(|w| w.ic_fs_scl_hcnt().bits((period - low) as u16));
-        port.ic_fs_scl_lcnt().write(|w| w.ic_fs_scl_lcnt().bits(low as u16));
-        port.ic_fs_spklen().write(|w| w.ic_fs_spklen().bits((low / 16) as u8));
-        port.ic_sda_hold().write(|w| w.ic_sda_tx_hold().bits((hertz / HOLD.1 * HOLD.0 + 1) as u16));
-        port.ic_tx_tl().write(|w| w.tx_tl().bits(FEW));
-    }
-    let mut port = I2c0 { port, lines };
+) -> Bus<I2c0> {
+    I2C::i2c0(port, pins.0, pins.1, SPEED.Hz(), resets, clock);
+    // SAFETY: the field takes this number.
+    registers().ic_tx_tl().write(|w| unsafe { w.tx_tl().bits(FEW) });
+    let mut port = I2c0(());
     port.reset();
     // SAFETY: no critical section relies on this interrupt being masked.
     unsafe { NVIC::unmask(Interrupt::I2C0_IRQ) };
-    Some(Bus::new(port, outbox))
+    Bus::new(port, outbox)
 }
 
 impl PanelPort for I2c0 {
     fn begin(&mut self, address: u8) {
-        let port = &self.port;
+        let port = registers();
         // The last stop may still be under way.
         let _ = (0..TRIES).any(|_| port.ic_status().read().mst_activity().is_idle());
         port.ic_enable().write(|w| w.enable().disabled());
@@ -88,12 +70,12 @@ impl PanelPort for I2c0 {
     }
 
     fn reset(&mut self) {
-        listen(&self.port, NOTHING);
-        self.port.ic_enable().write(|w| w.enable().disabled());
-        let (data, clock) = &mut self.lines;
-        free_bus(clock, data, || delay(HALF_CLOCK));
-        data.release();
-        clock.release();
+        listen(registers(), NOTHING);
+        registers().ic_enable().write(|w| w.enable().disabled());
+        free_bus(&mut ByHand);
+        for line in [DATA, CLOCK] {
+            pin(line).gpio_ctrl().modify(|_, w| w.oeover().normal().outover().normal());
+        }
     }
 }
 
@@ -103,7 +85,7 @@ fn I2C0_IRQ() {
 }
 
 fn registers() -> &'static RegisterBlock {
-    // SAFETY: while there is something in the outbox the bus is the interrupt's.
+    // SAFETY: the support library has let go of them; while there is something in the outbox the bus is the interrupt's.
     unsafe { &*I2C0::ptr() }
 }
 
@@ -122,10 +104,10 @@ fn advance(port: &RegisterBlock, outbox: &mut Outbox) -> Option<Sent> {
         }
         // It may be that of a message before.
         let _ = port.ic_clr_stop_det().read();
-        let (status, asks) = (port.ic_status().read(), outbox.asks());
+        let (status, asks) = (port.ic_status().read(), outbox.asks);
         return (status.tfe().is_empty() && (!asks || status.rfne().is_not_empty())).then(|| {
             if asks {
-                outbox.answer(port.ic_data_cmd().read().dat().bits());
+                outbox.status = port.ic_data_cmd().read().dat().bits();
             }
             listen(port, NOTHING);
             Ok(())
@@ -138,7 +120,7 @@ fn advance(port: &RegisterBlock, outbox: &mut Outbox) -> Option<Sent> {
         port.ic_data_cmd().write(|w| unsafe { w.dat().bits(byte.value).stop().bit(byte.ends_message) });
     }
     if outbox.is_empty() {
-        if outbox.asks() {
+        if outbox.asks {
             // There is room: the message before it is a short one.
             port.ic_data_cmd().write(|w| w.cmd().read().stop().enable());
         }
@@ -166,39 +148,37 @@ fn listen(port: &RegisterBlock, to: u32) {
     port.ic_intr_mask().write(|w| unsafe { w.bits(to) });
 }
 
-/// A line of the bus, which can be pulled low by hand.
-pub struct Line<I: PinId>(pub(super) Pin<I, FunctionI2C, PullUp>);
+/// The bus's lines, driven by hand.
+struct ByHand;
 
-impl<I: PinId + ValidFunction<FunctionI2C>> Line<I> {
-    fn release(&mut self) {
-        self.0.set_output_enable_override(OutputEnableOverride::Normal);
-        self.0.set_output_override(OutputOverride::DontInvert);
-    }
+const DATA: usize = 4;
+const CLOCK: usize = 5;
+
+fn pin(number: usize) -> &'static GPIO {
+    // SAFETY: nothing else uses the registers of these pins.
+    unsafe { &*IO_BANK0::ptr() }.gpio(number)
 }
 
-impl<I: PinId> ErrorType for Line<I> {
-    type Error = core::convert::Infallible;
+fn drive(number: usize, high: bool) {
+    pin(number)
+        .gpio_ctrl()
+        .modify(|_, w| if high { w.oeover().disable() } else { w.outover().low().oeover().enable() });
 }
 
-impl<I: PinId> OutputPin for Line<I> {
-    fn set_low(&mut self) -> Result<(), Self::Error> {
-        self.0.set_output_override(OutputOverride::AlwaysLow);
-        self.0.set_output_enable_override(OutputEnableOverride::Enable);
-        Ok(())
+impl Lines for ByHand {
+    fn set_clock(&mut self, high: bool) {
+        drive(CLOCK, high);
     }
 
-    fn set_high(&mut self) -> Result<(), Self::Error> {
-        self.0.set_output_enable_override(OutputEnableOverride::Disable);
-        Ok(())
-    }
-}
-
-impl<I: PinId> InputPin for Line<I> {
-    fn is_high(&mut self) -> Result<bool, Self::Error> {
-        self.0.as_input().is_high()
+    fn set_data(&mut self, high: bool) {
+        drive(DATA, high);
     }
 
-    fn is_low(&mut self) -> Result<bool, Self::Error> {
-        self.is_high().map(|is_high| !is_high)
+    fn is_data_high(&mut self) -> bool {
+        pin(DATA).gpio_status().read().infrompad().bit_is_set()
+    }
+
+    fn wait(&mut self) {
+        delay(HALF_CLOCK);
     }
 }

@@ -2,10 +2,9 @@
 //! the same moment spoil each other's messages. The UART's interrupt sends what is in its queue, so no frame waits; a motion asked
 //! for, whose samples may come faster than the UART sends them, waits for room in it.
 
-use core::cell::Cell;
+use core::cell::RefCell;
 
-use cortex_m::interrupt::{Mutex, free};
-use cortex_m::singleton;
+use cortex_m::interrupt::Mutex;
 use embedded_io::{ErrorKind, ErrorType, Write};
 use heapless::Deque;
 use rp2040_hal::fugit::{HertzU32, RateExtU32};
@@ -15,7 +14,8 @@ use rp2040_hal::pac::{Interrupt, NVIC, RESETS, UART0, interrupt};
 use rp2040_hal::uart::{DataBits, StopBits, UartConfig, UartPeripheral};
 
 use super::usb;
-use crate::board::serial::receiver::{self, Inlet, Taken};
+use crate::board::cortex_m::interrupt::{Shared, with};
+use crate::board::serial::{self, Port, Taken};
 use crate::config::{BAUD, BUS_TRIES, UART_QUEUE};
 
 pub(super) type SerialPins = (Pin<Gpio0, FunctionUart, PullNone>, Pin<Gpio1, FunctionUart, PullUp>);
@@ -24,29 +24,16 @@ pub(super) type SerialPins = (Pin<Gpio0, FunctionUart, PullNone>, Pin<Gpio1, Fun
 const TRIES: u32 = 4 * BUS_TRIES;
 
 /// Bytes that the UART has not taken yet.
-type Queue = Deque<u8, UART_QUEUE>;
-static QUEUE: Mutex<Cell<Option<&'static mut Queue>>> = Mutex::new(Cell::new(None));
-
-/// Does something with the queue, undisturbed by the interrupt; `None` before the start.
-fn with<T>(act: impl FnOnce(&mut Queue) -> T) -> Option<T> {
-    free(|token| {
-        let queue = QUEUE.borrow(token).take()?;
-        let result = act(queue);
-        QUEUE.borrow(token).set(Some(queue));
-        Some(result)
-    })
-}
+static QUEUE: Shared<Deque<u8, UART_QUEUE>> = Mutex::new(RefCell::new(Deque::new()));
 
 pub struct Link(());
 
 impl Link {
-    /// Starts the UART; `None` the second time, or if no divisor of the clock makes its speed.
+    /// Starts the UART; `None` if no divisor of the clock makes its speed.
     pub(super) fn start(device: UART0, pins: SerialPins, clock: HertzU32, resets: &mut RESETS) -> Option<Self> {
         let config = UartConfig::new(BAUD.Hz(), DataBits::Eight, None, StopBits::One);
         let mut uart = UartPeripheral::new(device, pins, resets).enable(config, clock).ok()?;
         uart.enable_rx_interrupt();
-        let queue = singleton!(: Queue = Queue::new())?;
-        free(|token| QUEUE.borrow(token).set(Some(queue)));
         Some(Self(()))
     }
 }
@@ -77,7 +64,7 @@ fn uart() -> &'static rp2040_hal::pac::uart0::RegisterBlock {
 
 /// Puts a message into the queue, if there is room for all of it.
 fn put(message: &[u8]) -> bool {
-    let put = with(|queue| {
+    let put = with(&QUEUE, |queue| {
         let has_room = queue.capacity().saturating_sub(queue.len()) >= message.len();
         if has_room {
             for &byte in message {
@@ -92,12 +79,12 @@ fn put(message: &[u8]) -> bool {
 #[interrupt]
 fn UART0_IRQ() {
     pass_on();
-    receiver::receive();
+    serial::receive();
 }
 
 /// Gives the UART as many bytes as it takes; while there are more it interrupts again when it has sent half of them.
 fn pass_on() {
-    with(|queue| {
+    with(&QUEUE, |queue| {
         while uart().uartfr().read().txff().bit_is_clear()
             && let Some(byte) = queue.pop_front()
         {
@@ -108,8 +95,8 @@ fn pass_on() {
     });
 }
 
-/// The inward direction: to look at USB and to read what has come ends the interrupts of both.
-pub(super) const INLET: Inlet = Inlet { clear, take };
+/// The inward direction: to look at USB and to read what has come ends the interrupts of both. Outwards there is the [`Link`].
+pub(super) const PORT: Port = Port { clear, take, is_ready: || false, put: |_| () };
 
 /// A USB packet for which there is no room stays where it is, and the host waits. As long as it does, its interrupt would come again
 /// and again; meanwhile the UART's does, which is asked for with each frame.

@@ -16,8 +16,7 @@ mod watchdog;
 
 use embedded_hal::digital::InputPin;
 use rp2040_hal::clocks::{Clock as _, init_clocks_and_plls};
-use rp2040_hal::gpio::bank0::{Gpio10, Gpio11, Gpio12, Gpio13, Gpio14};
-use rp2040_hal::gpio::{FunctionNull, FunctionSioInput, Pin, PinId, Pins, PullDown, PullUp, ValidFunction};
+use rp2040_hal::gpio::{DynPinId, FunctionSioInput, Pin, Pins, PullUp};
 use rp2040_hal::{Sio, Watchdog, pac};
 
 use crate::app::{Buttons, Instruments, Pressed};
@@ -25,12 +24,11 @@ use crate::board::cortex_m::clock::Clock;
 use crate::board::cortex_m::guard::guard_stack;
 use crate::board::cortex_m::identity::instruments;
 use crate::board::panel_bus::Bus;
-use crate::board::serial::receiver::Receiver;
-use crate::board::{Board, log, steps};
+use crate::board::{Board, log, serial, steps};
 use crate::display::{BUILT_FOR, Outbox, Ssd1306};
 use crate::protocol::BoardName;
 
-use i2c::{I2c0, Line};
+use i2c::I2c0;
 use link::Link;
 
 /// What the chip's boot ROM runs first: it makes the flash readable as memory, if that is a W25Q080 or takes its commands.
@@ -57,24 +55,24 @@ pub fn take() -> Option<Pico> {
     let pins = Pins::new(chip.IO_BANK0, chip.PADS_BANK0, Sio::new(chip.SIO).gpio_bank0, &mut chip.RESETS);
     let serial = (pins.gpio0.reconfigure(), pins.gpio1.reconfigure());
     let link = Link::start(chip.UART0, serial, clocks.peripheral_clock.freq(), &mut chip.RESETS)?;
-    let receiver = Receiver::new(link::INLET)?;
+    let (_, receiver) = serial::start(link::PORT);
     usb::start(chip.USBCTRL_REGS, chip.USBCTRL_DPRAM, clocks.usb_clock, &mut chip.RESETS)?;
     link::enable_interrupts();
     let outbox = cortex_m::singleton!(: Outbox = Outbox::new())?;
-    let lines = (Line(pins.gpio4.reconfigure()), Line(pins.gpio5.reconfigure()));
-    let bus = i2c::start(chip.I2C0, lines, &mut chip.RESETS, hertz, outbox)?;
+    let wires = (pins.gpio4.reconfigure(), pins.gpio5.reconfigure());
+    let bus = i2c::start(chip.I2C0, wires, clocks.system_clock.freq(), &mut chip.RESETS, outbox);
     let chip_number = [chip.SYSINFO.chip_id().read().bits(), 0, 0, 0];
     Some(Board {
         panel: Ssd1306::new(bus, BUILT_FOR),
         link,
         receiver,
-        keys: PinKeys {
-            up: button(pins.gpio10),
-            down: button(pins.gpio11),
-            left: button(pins.gpio12),
-            right: button(pins.gpio13),
-            select: button(pins.gpio14),
-        },
+        keys: PinKeys([
+            pins.gpio10.into_pull_up_input().into_dyn_pin(),
+            pins.gpio11.into_pull_up_input().into_dyn_pin(),
+            pins.gpio12.into_pull_up_input().into_dyn_pin(),
+            pins.gpio13.into_pull_up_input().into_dyn_pin(),
+            pins.gpio14.into_pull_up_input().into_dyn_pin(),
+        ]),
         instruments: Instruments {
             timed: steps::timed,
             ..instruments(BoardName::Pico, hertz, chip_number, &core.CPUID, core.DCB, core.DWT)
@@ -85,26 +83,12 @@ pub fn take() -> Option<Pico> {
     })
 }
 
-type Button<I> = Pin<I, FunctionSioInput, PullUp>;
-
-fn button<I: PinId + ValidFunction<FunctionSioInput>>(pin: Pin<I, FunctionNull, PullDown>) -> Button<I> {
-    pin.reconfigure()
-}
-
 /// The five buttons; those that are not there are never pressed, and select alone does for all.
-pub struct PinKeys {
-    up: Button<Gpio10>,
-    down: Button<Gpio11>,
-    left: Button<Gpio12>,
-    right: Button<Gpio13>,
-    select: Button<Gpio14>,
-}
+pub struct PinKeys([Pin<DynPinId, FunctionSioInput, PullUp>; 5]);
 
 impl Buttons for PinKeys {
     fn read(&mut self) -> Pressed {
-        let Self { up, down, left, right, select } = self;
-        let [up, down, left, right, select] =
-            [up.is_low(), down.is_low(), left.is_low(), right.is_low(), select.is_low()].map(|Ok(is_low)| is_low);
+        let [up, down, left, right, select] = self.0.each_mut().map(|pin| pin.is_low() == Ok(true));
         Pressed { up, down, left, right, select }
     }
 }

@@ -4,6 +4,7 @@
 
 use cortex_m::asm::delay;
 use cortex_m::peripheral::NVIC;
+use embedded_hal::digital::{InputPin, OutputPin};
 use embedded_hal::i2c::{ErrorKind, NoAcknowledgeSource};
 use stm32f4xx_hal::gpio::alt::i2c1::{Scl, Sda};
 use stm32f4xx_hal::gpio::{PB6, PB7, PinState};
@@ -15,7 +16,7 @@ use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::Rcc;
 
 use crate::board::panel_bus::{self, Bus, PanelPort};
-use crate::display::{Outbox, Sent, free_bus};
+use crate::display::{Lines, Outbox, Sent, free_bus};
 
 /// Half a clock of a slow 100 kHz, cycles of 168 MHz.
 const HALF_CLOCK: u32 = 840;
@@ -59,7 +60,7 @@ impl PanelPort for I2c1 {
         silence(port);
         if let (Scl::PB6(clock), Sda::PB7(data)) = &mut self.pins {
             clock.with_open_drain_output_in_state(PinState::High, |clock| {
-                data.with_open_drain_output_in_state(PinState::High, |data| free_bus(clock, data, || delay(HALF_CLOCK)))
+                data.with_open_drain_output_in_state(PinState::High, |data| free_bus(&mut ByHand(clock, data)))
             });
         }
         let (frequency, clock, rise) = (port.cr2().read().bits(), port.ccr().read().bits(), port.trise().read().bits());
@@ -72,6 +73,27 @@ impl PanelPort for I2c1 {
         // SAFETY: as above.
         port.trise().write(|w| unsafe { w.bits(rise) });
         port.cr1().write(|w| w.pe().set_bit());
+    }
+}
+
+/// The bus's lines, driven by hand.
+struct ByHand<'a, Clock, Data>(&'a mut Clock, &'a mut Data);
+
+impl<Clock: OutputPin, Data: OutputPin + InputPin> Lines for ByHand<'_, Clock, Data> {
+    fn set_clock(&mut self, high: bool) {
+        let _ = self.0.set_state(high.into());
+    }
+
+    fn set_data(&mut self, high: bool) {
+        let _ = self.1.set_state(high.into());
+    }
+
+    fn is_data_high(&mut self) -> bool {
+        self.1.is_high().unwrap_or_default()
+    }
+
+    fn wait(&mut self) {
+        delay(HALF_CLOCK);
     }
 }
 
@@ -94,9 +116,9 @@ fn registers() -> &'static RegisterBlock {
 fn advance(port: &RegisterBlock, outbox: &mut Outbox) -> Option<Sent> {
     let status = port.sr1().read().bits();
     // What is left then is to read the status.
-    let reads = outbox.is_empty() && outbox.asks();
+    let reads = outbox.is_empty() && outbox.asks;
     let is_ready = if status & START_SENT != 0 {
-        port.dr().write(|w| w.dr().set(outbox.address() << 1 | u8::from(reads)));
+        port.dr().write(|w| w.dr().set(outbox.address << 1 | u8::from(reads)));
         false
     } else if status & ADDRESS_SENT != 0 {
         let _ = port.sr2().read(); // Only this ends the address phase.
@@ -107,7 +129,7 @@ fn advance(port: &RegisterBlock, outbox: &mut Outbox) -> Option<Sent> {
         }
         !reads
     } else if reads && status & BYTE_READ != 0 {
-        outbox.answer(port.dr().read().dr().bits());
+        outbox.status = port.dr().read().dr().bits();
         silence(port);
         return Some(Ok(()));
     } else {

@@ -16,10 +16,9 @@ mod uart;
 mod watchdog;
 
 use stm32f4xx_hal::gpio::PC7;
-use stm32f4xx_hal::pac::{self, DBGMCU, RCC, USART3};
+use stm32f4xx_hal::pac::{self, DBGMCU, RCC};
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::{Config, Rcc};
-use stm32f4xx_hal::serial::Tx;
 use stm32f4xx_hal::watchdog::IndependentWatchdog;
 
 use crate::app::{Buttons, Instruments, Pressed};
@@ -27,8 +26,7 @@ use crate::board::cortex_m::clock::Clock;
 use crate::board::cortex_m::guard::guard_stack;
 use crate::board::cortex_m::identity::instruments;
 use crate::board::panel_bus::Bus;
-use crate::board::serial::receiver::Receiver;
-use crate::board::serial::transmitter::Transmitter;
+use crate::board::serial::Transmitter;
 use crate::board::{Board, log, steps};
 use crate::display::{BUILT_FOR, Outbox, Ssd1306};
 use crate::protocol::BoardName;
@@ -41,30 +39,22 @@ const HERTZ: u32 = 168_000_000;
 /// The chip's unique number (RM0090, 39.1), in its system memory.
 const UNIQUE_NUMBER: *const [u32; 3] = core::ptr::without_provenance(0x1fff_7a10);
 
-/// Where the image runs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Runs {
-    OnChip,
-    InEmulator,
-}
-
-pub type Stm32f405 = Board<Ssd1306<Bus<I2c1>>, Transmitter<Tx<USART3>>, OneKey, IndependentWatchdog>;
+pub type Stm32f405 = Board<Ssd1306<Bus<I2c1>>, Transmitter, OneKey, IndependentWatchdog>;
 
 /// Sets the board up; `None` the second time.
 pub fn take() -> Option<Stm32f405> {
     let core = cortex_m::Peripherals::take()?;
     let chip = pac::Peripherals::take()?;
-    let (mut rcc, runs) = start_clock(chip.RCC);
-    match runs {
-        Runs::OnChip => log::into_memory(),
-        Runs::InEmulator => log::into_emulator(),
+    let (mut rcc, is_emulated) = start_clock(chip.RCC);
+    if is_emulated {
+        log::into_emulator()
+    } else {
+        log::into_memory()
     }
     guard_stack(core.MPU);
     let (b, c) = (chip.GPIOB.split(&mut rcc), chip.GPIOC.split(&mut rcc));
     // There is a divisor for this baud rate at either clock, so this does not fail.
-    let link = uart::start(chip.USART3, (b.pb10, b.pb11), &mut rcc).ok()?;
-    let receiver = Receiver::new(uart::INLET)?;
-    uart::enable_receiver();
+    let (link, receiver) = uart::start(chip.USART3, (b.pb10, b.pb11), &mut rcc).ok()?;
     let outbox = cortex_m::singleton!(: Outbox = Outbox::new())?;
     Some(Board {
         panel: Ssd1306::new(i2c::start(chip.I2C1, b.pb6, b.pb7, &mut rcc, outbox), BUILT_FOR),
@@ -73,7 +63,14 @@ pub fn take() -> Option<Stm32f405> {
         keys: OneKey(c.pc7.into_pull_up_input()),
         instruments: Instruments {
             timed: steps::timed,
-            ..instruments(BoardName::Stm32f405, HERTZ, chip_number(runs), &core.CPUID, core.DCB, core.DWT)
+            ..instruments(
+                BoardName::Stm32f405,
+                HERTZ,
+                if is_emulated { [0; 4] } else { chip_number() },
+                &core.CPUID,
+                core.DCB,
+                core.DWT,
+            )
         },
         clock: Clock::start(core.SYST, HERTZ),
         watchdog: watchdog::start(chip.IWDG),
@@ -91,26 +88,23 @@ impl Buttons for OneKey {
 }
 
 /// What the chip says that it is, and its unique number.
-fn chip_number(runs: Runs) -> [u32; 4] {
-    if runs == Runs::InEmulator {
-        return [0; 4];
-    }
+fn chip_number() -> [u32; 4] {
     // SAFETY: both are only read, and nothing else uses them.
     let (debug, unique) = unsafe { (&*DBGMCU::ptr(), &*UNIQUE_NUMBER) };
     let [a, b, c] = *unique;
     [debug.idcode().read().bits(), a, b, c]
 }
 
-/// Starts the clock, and finds out where it is doing so.
+/// Starts the clock, and finds out whether it does so in an emulator.
 ///
 /// The source is the chip's own oscillator, true to 1 % at room temperature, which is near enough for the eye and for
 /// the serial port. So the image fits boards with any crystal (8, 12 and 25 MHz are in use), and none can fail to start.
-fn start_clock(rcc: RCC) -> (Rcc, Runs) {
+fn start_clock(rcc: RCC) -> (Rcc, bool) {
     // A chip comes out of reset running from this oscillator.
     if rcc.cr().read().hsirdy().bit_is_set() {
-        (rcc.freeze(Config::hsi().sysclk(HERTZ.Hz())), Runs::OnChip)
+        (rcc.freeze(Config::hsi().sysclk(HERTZ.Hz())), false)
     } else {
         // There is no PLL to wait for, either.
-        (rcc.freeze(Config::hsi()), Runs::InEmulator)
+        (rcc.freeze(Config::hsi()), true)
     }
 }

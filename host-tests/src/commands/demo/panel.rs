@@ -56,7 +56,7 @@ pub fn palette() -> Vec<u8> {
 
 #[cfg(test)]
 mod tests {
-    use firmware::graphics::canvas::Canvas;
+    use firmware::graphics::Canvas;
     use ratatui::Terminal;
     use ratatui::backend::TestBackend;
     use ratatui::style::Color;

@@ -139,7 +139,7 @@ fn wrapped(line: &LogLine, width: u16) -> Vec<Line<'static>> {
 #[cfg(test)]
 mod tests {
     use double_pendulum::Method;
-    use firmware::graphics::canvas::Canvas;
+    use firmware::graphics::Canvas;
     use firmware::graphics::text::{self, Anchor};
     use firmware::protocol::method_code;
     use ratatui::Terminal;

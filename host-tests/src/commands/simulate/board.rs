@@ -38,9 +38,9 @@ pub fn readings(
             let field = Field::from_code(field).map_or("unknown field", Field::name);
             bail!("{}: the board refuses the request: {field}", board.name);
         }
-        if let Some(Sample { index, state, velocities, energy, .. }) = message.read() {
+        if let Some(Sample { index, reading, .. }) = message.read() {
             ensure!(index == expected, "{}: row {expected} was lost on the way", board.name);
-            row(&Reading { state, velocities, energy })?;
+            row(&reading)?;
             expected += 1;
         }
     }

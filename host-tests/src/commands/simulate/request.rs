@@ -84,7 +84,7 @@ pub(super) fn accepted(options: &SimulateOptions, request: &Request) -> anyhow::
         );
     }
     Request { samples: 0, ..*request }.readings(|_| Ok(())).map_err(|error: JobError| match error {
-        JobError::NotOnBoards(_) | JobError::Malformed(_) => anyhow!("{error}"),
+        JobError::NotOnBoards(_) | JobError::Malformed => anyhow!("{error}"),
         JobError::Refused(Error::Diverged { parameter: Parameter::Energy, .. }) => {
             anyhow!("--velocities {}: the energy at the start is too large a number", options.start.velocities)
         }

@@ -56,7 +56,7 @@ pub fn compare(talk: &mut Talk) -> anyhow::Result<Section> {
 /// The first number of the board's that is not the host's.
 fn difference(talk: &mut Talk, request: &Request, number: u16, readings: &[Reading]) -> anyhow::Result<Option<String>> {
     const NAMES: [&str; 7] = ["a1", "a2", "p1", "p2", "w1", "w2", "energy"];
-    let bits = |[a1, a2, p1, p2]: [f64; 4], [w1, w2]: [f64; 2], energy: f64| {
+    let bits = |&Reading { state: [a1, a2, p1, p2], velocities: [w1, w2], energy }: &Reading| {
         [a1, a2, p1, p2, w1, w2, energy].map(f64::to_bits)
     };
     talk.port.send(&request.message(number));
@@ -64,8 +64,7 @@ fn difference(talk: &mut Talk, request: &Request, number: u16, readings: &[Readi
     for (index, reading) in (0..).zip(readings) {
         let sample = sample(talk, number)?;
         ensure!(sample.index == index, "sample {index} was lost on the way");
-        let board = bits(sample.state, sample.velocities, sample.energy);
-        let host = bits(reading.state, reading.velocities, reading.energy);
+        let (board, host) = (bits(&sample.reading), bits(reading));
         let differs = NAMES.iter().zip(board.iter().zip(&host)).find(|(_, (board, host))| board != host);
         if let Some((name, (board, host))) = differs {
             let step = index * request.stride;

@@ -23,7 +23,7 @@ const PERMITTED: [(&str, &str); 18] = [
     ("firmware::board::main_loop::application", "start-up: the default settings are a pendulum"),
     ("stm32f4xx_hal::rcc::", "start-up: the clock is set up with constant numbers"),
     ("stm32f4xx_hal::i2c::", "start-up: the bus is set up with constant numbers"),
-    ("firmware::board::log::", "a line of the log within a line: interrupts are off from its start to its end"),
+    ("rp2040_hal::i2c::", "as above"),
     (
         "usb_device::",
         "the USB device is set up with constant numbers; if a host could lead it astray, the board would restart",
@@ -32,9 +32,9 @@ const PERMITTED: [(&str, &str); 18] = [
     ("rp2040_hal::usb::", "as above"),
     ("rp2040_pac::usbctrl_dpram::", "as above"),
     ("firmware::board::pico::usb::", "the same, inlined"),
-    ("defmt_semihosting::", "a line of the log within a line, as above"),
+    ("firmware::board::log::into_memory", "start-up: the log's memory is taken once"),
+    ("defmt_semihosting::", "a line of the log within a line: interrupts are off from its start to its end"),
     ("semihosting::fd::", "a console that could not be opened: then there is no log, and nothing is written"),
-    ("heapless::spsc::", "a queue of length zero, kept at run time: the receiver's is a constant"),
     ("core::fmt::float::", "digits of numbers as text: only `measure` prints, and it is no application"),
     ("core::num::", "as above; one version of the core library keeps it in `flt2dec`, the next in `imp::flt2dec`"),
 ];

@@ -37,7 +37,7 @@ impl Line {
     pub fn run(&mut self, bits: u32) {
         self.time = if self.hangs { 0 } else { self.time.saturating_add(bits) };
         while let Some((outbox, sent @ None)) = &mut self.outgoing {
-            let needed = match (outbox.is_within_message(), outbox.is_empty() && !outbox.asks()) {
+            let needed = match (outbox.is_within_message(), outbox.is_empty() && !outbox.asks) {
                 (true, _) => BYTE,
                 (false, true) => 1,
                 (false, false) => 1 + 2 * BYTE,
@@ -47,7 +47,7 @@ impl Line {
             }
             self.time -= needed;
             self.taken += needed;
-            if !self.panel.plugged_in || outbox.address() != self.panel.address {
+            if !self.panel.plugged_in || outbox.address != self.panel.address {
                 let source = if outbox.has_begun() { NoAcknowledgeSource::Data } else { NoAcknowledgeSource::Address };
                 *sent = Some(Err(ErrorKind::NoAcknowledge(source)));
                 self.message.clear();
@@ -57,11 +57,9 @@ impl Line {
                     self.panel.take(&self.message);
                     self.message.clear();
                 }
-            } else if outbox.asks() {
-                match self.panel.status() {
-                    Some(status) => outbox.answer(status),
-                    None => *sent = Some(Err(ErrorKind::NoAcknowledge(NoAcknowledgeSource::Address))),
-                }
+            } else if outbox.asks {
+                let silence = ErrorKind::NoAcknowledge(NoAcknowledgeSource::Address);
+                *sent = Some(self.panel.status().map(|status| outbox.status = status).ok_or(silence));
             } else {
                 *sent = Some(Ok(()));
             }

@@ -124,6 +124,6 @@ impl Controller {
         let Kind { columns, left, needed, .. } = self.kind;
         let seen = |page: &[Option<u8>], new: &[u8; WIDTH]| page[left..][..WIDTH] == new.map(Some);
         let is_set = needed.iter().all(|needed| self.given.iter().any(|given| given == needed));
-        self.on && is_set && self.memory.chunks(columns).zip(frame.pages()).all(|(page, new)| seen(page, new))
+        self.on && is_set && self.memory.chunks(columns).zip(&frame.pages).all(|(page, new)| seen(page, new))
     }
 }

@@ -7,13 +7,12 @@ use std::cell::RefCell;
 
 use embedded_hal::i2c::{ErrorKind, NoAcknowledgeSource};
 use fastrand::Rng;
-use firmware::app::Player;
 use firmware::config::{STM32F405, TICK_RATE};
 use firmware::display::{By, Controller as Name, Display, Found, Ssd1306, Ssd1306Error};
-use firmware::graphics::{Bitmap, Canvas, FrameBuffers, HEIGHT, WIDTH};
-use firmware::motion::Settings;
+use firmware::graphics::{Bitmap, Canvas, HEIGHT, WIDTH};
 use firmware::scenes::SceneName;
 use host_tests::emulator::host::Show;
+use host_tests::emulator::qemu::Screenshot;
 
 use bus::{BYTE, Bus, Line};
 use controller::{Controller, Kind, SH1106, SILENT, SSD1306};
@@ -25,13 +24,15 @@ const TICK: u32 = 400_000 / TICK_RATE;
 /// As much time as any frame needs, with all that wakes the panel.
 const LONG: u32 = 4 * TICK;
 
+fn shown(name: SceneName) -> Show {
+    Show::on(STM32F405, name, &name.first_settings()).expect("a scene of the catalogue")
+}
+
 /// The application's first scene after some ticks.
 fn scene(ticks: u32) -> Canvas {
-    let FrameBuffers { mut canvas, mut ink } = FrameBuffers::default();
-    let mut player = Player::new(Settings::default(), &mut ink).expect("the default settings are a pendulum");
-    (0..ticks).for_each(|_| player.tick(|_| ()));
-    player.draw(&mut canvas);
-    canvas
+    let mut show = shown(SceneName::Page);
+    (0..ticks).for_each(|_| show.tick());
+    show.frame()
 }
 
 #[test]
@@ -39,11 +40,11 @@ fn black_is_dark_and_the_upper_half_of_the_greys_is_solid() {
     let share = |grey: u8, all_greys: bool| {
         let mut canvas = Canvas::default();
         if all_greys {
-            canvas.use_all_greys();
+            canvas.all_greys = true;
         }
         (0..HEIGHT as i32).for_each(|y| (0..WIDTH as i32).for_each(|x| canvas.update(x, y, |_| grey)));
         let bitmap = Bitmap::from(&canvas);
-        bitmap.pages().as_flattened().iter().map(|byte| byte.count_ones()).sum::<u32>() as usize * 16 / (WIDTH * HEIGHT)
+        bitmap.pages.as_flattened().iter().map(|byte| byte.count_ones()).sum::<u32>() as usize * 16 / (WIDTH * HEIGHT)
     };
     let shares: Vec<_> = (0..16).map(|grey| share(grey, false)).collect();
     assert_eq!(shares, [0, 0, 0, 3, 6, 8, 11, 14, 16, 16, 16, 16, 16, 16, 16, 16], "lit pixels of 16");
@@ -56,9 +57,7 @@ fn every_pixel_is_in_its_place() {
     for (x, y) in [(0, 0), (127, 0), (0, 63), (127, 63), (5, 9), (64, 32)] {
         let mut canvas = Canvas::default();
         canvas.update(x, y, |_| 15);
-        let bitmap = Bitmap::from(&canvas);
-        let lit = (0..HEIGHT).flat_map(|y| (0..WIDTH).map(move |x| (x, y))).filter(|&(x, y)| bitmap.is_lit(x, y));
-        assert_eq!(lit.collect::<Vec<_>>(), [(x as usize, y as usize)]);
+        assert!(Screenshot::from_pages(Bitmap::from(&canvas).pages.as_flattened()) == Screenshot::from(&canvas));
     }
 }
 
@@ -97,28 +96,30 @@ const FIRST: u32 = 3;
 fn controllers_are_told_apart_or_the_build_says_which_it_is() {
     let says = |status, kind: Kind| Kind { status: Some(status), ..kind };
     let other = |status| says(status, SSD1306);
-    let by = |status: u8, controller| Some(Found { controller, by: By::Status(status) });
-    let built = |controller| Some(Found { controller, by: By::Build });
+    let by = |status: u8, controller| Found { controller, by: By::Status(status) };
+    let built = |controller| Found { controller, by: By::Build };
     for (kind, built_for, found, told) in [
         (SSD1306, None, by(0x46, Name::Ssd1306), Ok(())),
         (other(0x03), None, by(0x43, Name::Ssd1306), Ok(())),
         (SH1106, None, by(0x48, Name::Sh1106), Ok(())),
         (other(0x00), None, by(0x40, Name::Ssd1306), Ok(())),
-        (SILENT, None, Some(Found { controller: Name::Ssd1306, by: By::Silence }), Ok(())),
+        (SILENT, None, Found::SILENT, Ok(())),
         (says(0x06, SH1106), Some(Name::Sh1106), built(Name::Sh1106), Ok(())),
         (other(0x08), Some(Name::Ssd1306), built(Name::Ssd1306), Ok(())),
-        (other(0x07), None, None, Err(Ssd1306Error::Sh1107)),
-        (other(0x0F), None, None, Err(Ssd1306Error::Sh1107)),
+        (other(0x07), None, by(0x47, Name::Sh1107), Err(Ssd1306Error::Sh1107)),
+        (other(0x0F), None, by(0x4F, Name::Sh1107), Err(Ssd1306Error::Sh1107)),
     ] {
-        let line = Line::to(Controller::new(kind, 0x3C));
-        let mut panel = Ssd1306::new(Bus::new(&line), built_for);
-        for _ in 0..FIRST {
-            let _ = panel.flush(&scene(1));
+        let line = Line::to(Controller::new(kind, 0x3C).plugged(false));
+        let (mut panel, frame, mut all_found) = (Ssd1306::new(Bus::new(&line), built_for), scene(1), Vec::new());
+        // It is plugged in later, looked for within a second, and found once.
+        for number in 0..3 * TICK_RATE {
+            line.borrow_mut().panel.plugged_in = number > FIRST;
+            let _ = panel.flush(&frame);
             line.borrow_mut().run(LONG);
+            all_found.extend(panel.found());
         }
-        assert_eq!((panel.flush(&scene(1)), panel.found()), (told, found), "{kind:?}");
-        assert_eq!(panel.found(), None, "it is said once");
-        assert_eq!(line.borrow().panel.shows(&Bitmap::from(&scene(1))), told.is_ok(), "{kind:?}");
+        assert_eq!((panel.flush(&frame), &all_found[..]), (told, &[found][..]), "{kind:?}");
+        assert_eq!(line.borrow().panel.shows(&Bitmap::from(&frame)), told.is_ok(), "{kind:?}");
     }
 }
 
@@ -128,7 +129,7 @@ const fn bits(columns: u32) -> u32 {
 }
 
 #[test]
-fn what_has_not_changed_is_not_sent_but_for_the_part_that_is_told_again() {
+fn what_has_not_changed_is_not_sent_but_for_the_part_that_is_sent_again() {
     let line = Line::to(Controller::at(0x3C));
     let mut panel = Ssd1306::new(Bus::new(&line), None);
     let mut canvas = scene(30);
@@ -170,10 +171,6 @@ impl<'a> Played<'a> {
         self.line.borrow_mut().run(TICK);
         was_idle.then_some(shows)
     }
-}
-
-fn shown(name: SceneName) -> Show {
-    Show::on(STM32F405, name, &name.first_settings()).expect("a scene of the catalogue")
 }
 
 /// A frame is held back by nothing but the bus: by what the one before has left to send when it comes.

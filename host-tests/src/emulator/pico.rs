@@ -1,16 +1,16 @@
-//! Starting the emulated board, and letting its time pass.
+//! The Raspberry Pi Pico in rp2040js, as an instrument: its serial link, log, panel and buttons. A conversation of lines, bytes as
+//! hexadecimal digits; see `host-tests/rp2040/main.js`.
 
-use std::io::BufReader;
+use std::io::{BufRead, BufReader, Write};
 use std::ops::Range;
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::{ChildStdin, ChildStdout, Command, Stdio};
 use std::time::Duration;
 
-use anyhow::{Context, bail};
+use anyhow::{Context, bail, ensure};
 use firmware::app::Key;
 use firmware::protocol::{Frame, MAX_WIRE, Message, encode};
 
-use super::talk::{Said, Talk, digits};
 use crate::emulator::flash::flash_image;
 use crate::emulator::process::{self, Running};
 use crate::emulator::qemu::{LogDecoder, LogLine, Screenshot};
@@ -24,7 +24,8 @@ const PATIENCE: u32 = 5000;
 
 /// The board. Its time passes only in [`Self::run`], so all that it does is repeatable bit for bit. Dropping it ends it.
 pub struct PicoMachine {
-    talk: Talk,
+    input: ChildStdin,
+    output: BufReader<ChildStdout>,
     _process: Running,
     _file: tempfile::NamedTempFile,
     usb: Inbox,
@@ -47,16 +48,17 @@ impl PicoMachine {
         let mut process = process::spawn(&mut command, limit)?;
         let pipes = process.stdin.take().zip(process.stdout.take());
         let (input, output) = pipes.context("the emulator of the Pico has no pipes")?;
-        let talk = Talk { input, output: BufReader::new(output) };
+        let output = BufReader::new(output);
         let log = LogDecoder::new(elf)?;
         let (usb, uart) = (Inbox::default(), Inbox::default());
-        Ok(Self { talk, _process: process, _file: file, usb, uart, log, lines: Vec::new(), heard_by_uart: Vec::new() })
+        let (lines, heard_by_uart) = (Vec::new(), Vec::new());
+        Ok(Self { input, output, _process: process, _file: file, usb, uart, log, lines, heard_by_uart })
     }
 
     /// Lets time pass by the board's clock; what it has sent over USB.
     pub fn run(&mut self, time: Duration) -> anyhow::Result<Vec<Received>> {
         let mut messages = Vec::new();
-        for Said { word, bytes } in self.talk.ask(&format!("run {}", time.as_micros()))? {
+        for (word, bytes) in self.ask(&format!("run {}", time.as_micros()))? {
             match &*word {
                 "usb" => messages.extend(bytes.iter().filter_map(|&byte| self.usb.take(byte))),
                 "uart" => self.heard_by_uart.extend(bytes.iter().filter_map(|&byte| self.uart.take(byte))),
@@ -80,6 +82,10 @@ impl PicoMachine {
             }
         }
         bail!("the board sends no frames")
+    }
+
+    pub fn next_frame(&mut self) -> anyhow::Result<Frame> {
+        self.run_to_frame()?.iter().rev().find_map(Received::read).context("it ends with one")
     }
 
     pub fn send_bytes(&mut self, bytes: &[u8]) -> anyhow::Result<()> {
@@ -152,11 +158,33 @@ impl PicoMachine {
     }
 
     fn bytes(&mut self, line: &str) -> anyhow::Result<Vec<u8>> {
-        let said = self.talk.ask(line)?;
-        Ok(said.into_iter().next().map(|said| said.bytes).unwrap_or_default())
+        Ok(self.ask(line)?.into_iter().next().map(|(_, bytes)| bytes).unwrap_or_default())
     }
 
     fn tell(&mut self, line: &str) -> anyhow::Result<()> {
-        self.talk.ask(line).map(drop)
+        self.ask(line).map(drop)
     }
+
+    /// Says a line to the emulator; what it answers, each a word and bytes.
+    fn ask(&mut self, line: &str) -> anyhow::Result<Vec<(String, Vec<u8>)>> {
+        const GONE: &str = "the emulator of the Pico no longer answers";
+        writeln!(self.input, "{line}").and_then(|()| self.input.flush()).context(GONE)?;
+        let mut answers = Vec::new();
+        loop {
+            let mut answer = String::new();
+            ensure!(self.output.read_line(&mut answer).context(GONE)? > 0, GONE);
+            let (word, digits) = answer.trim_end().split_once(' ').unwrap_or((answer.trim_end(), ""));
+            if word == "done" {
+                return Ok(answers);
+            }
+            let byte = |pair: &[u8]| u8::from_str_radix(std::str::from_utf8(pair).ok()?, 16).ok();
+            let bytes = digits.as_bytes().chunks(2).map(byte).collect::<Option<_>>();
+            answers.push((word.to_owned(), bytes.context(GONE)?));
+        }
+    }
+}
+
+/// Bytes as the emulator takes them.
+fn digits(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }

@@ -1,0 +1,105 @@
+//! Bytes over a board's serial port: an interrupt puts those received into a queue, from which the application takes them; each
+//! one sent waits until the port takes it, but not without end.
+
+use core::cell::RefCell;
+
+use cortex_m::interrupt::Mutex;
+use embedded_io::{ErrorKind, ErrorType, Write};
+use heapless::Deque;
+
+use super::cortex_m::interrupt::{Shared, with};
+use crate::config::{BUS_TRIES, RECEIVE_QUEUE};
+
+#[derive(Clone, Copy)]
+pub(in crate::board) struct Port {
+    /// Ends the receiver's interrupt, given for how many bytes there is room. Done before the bytes are taken, so that one that
+    /// comes meanwhile interrupts anew.
+    pub clear: fn(usize),
+    pub take: fn() -> Taken,
+    /// Whether it takes a byte to be sent now.
+    pub is_ready: fn() -> bool,
+    /// Gives it a byte to be sent, once it is ready.
+    pub put: fn(u8),
+}
+
+#[derive(Clone, Copy)]
+pub(in crate::board) struct Taken {
+    /// The next byte; `None` once there is none.
+    pub byte: Option<u8>,
+    /// Whether the port has had no room for a byte, or for several in a row, since it was last asked.
+    pub overrun: bool,
+}
+
+struct Link {
+    port: Option<Port>,
+    received: Deque<u8, RECEIVE_QUEUE>,
+    lost: u32,
+}
+
+static LINK: Shared<Link> = Mutex::new(RefCell::new(Link { port: None, received: Deque::new(), lost: 0 }));
+
+/// Lets the interrupt fill the queue from this port.
+pub(in crate::board) fn start(port: Port) -> (Transmitter, Receiver) {
+    with(&LINK, |link| link.port = Some(port));
+    (Transmitter(()), Receiver(()))
+}
+
+/// Moves what has come into the queue; for the receiver's interrupt.
+pub(in crate::board) fn receive() {
+    with(&LINK, |Link { port, received, lost }| {
+        let Some(Port { clear, take, .. }) = *port else { return };
+        clear(received.capacity().saturating_sub(received.len()));
+        loop {
+            let Taken { byte, overrun } = take();
+            let is_refused = byte.is_some_and(|byte| received.push_back(byte).is_err());
+            *lost = lost.wrapping_add(u32::from(overrun) + u32::from(is_refused));
+            if byte.is_none() {
+                break;
+            }
+        }
+    });
+}
+
+/// The application's end of the queue.
+pub struct Receiver(());
+
+impl Receiver {
+    /// Bytes lost since reset because they were not taken in time; at least so many, since a port does not say how many it had no
+    /// room for. Wraps.
+    pub fn lost(&self) -> u32 {
+        with(&LINK, |link| link.lost).unwrap_or_default()
+    }
+}
+
+impl Iterator for Receiver {
+    type Item = u8;
+
+    fn next(&mut self) -> Option<u8> {
+        with(&LINK, |link| link.received.pop_front()).flatten()
+    }
+}
+
+/// The port's outward direction.
+pub struct Transmitter(());
+
+impl ErrorType for Transmitter {
+    type Error = ErrorKind;
+}
+
+impl Write for Transmitter {
+    fn write(&mut self, bytes: &[u8]) -> Result<usize, ErrorKind> {
+        let Some(port) = with(&LINK, |link| link.port).flatten() else { return Err(ErrorKind::NotConnected) };
+        for &byte in bytes {
+            if !(0..BUS_TRIES).any(|_| (port.is_ready)()) {
+                return Err(ErrorKind::TimedOut);
+            }
+            (port.put)(byte);
+        }
+        Ok(bytes.len())
+    }
+
+    /// Bytes leave by themselves; there is nothing to wait for.
+    fn flush(&mut self) -> Result<(), ErrorKind> {
+        Ok(())
+    }
+}
