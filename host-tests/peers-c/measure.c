@@ -11,16 +11,37 @@ static int semihosting(int operation, const void *argument) {
     return r0;
 }
 
-/* The fields of a request, as firmware/src/protocol/simulate.rs lists them; little-endian, as this processor is. */
-struct __attribute__((packed)) request {
-    uint16_t number;
-    uint8_t method;
-    double parameters[5], angles[2], velocities[2], dt;
-    uint32_t stride, samples;
-};
+/* The fields of a request, as postcard writes them: integers in sevens of bits, the lowest first, of the seven with more after
+   them the eighth bit set; numbers little-endian, as this processor is. */
+static const char *text;
 
 static unsigned digit(char c) {
     return (unsigned)(c <= '9' ? c - '0' : c - 'a' + 10);
+}
+
+static uint8_t byte(void) {
+    const unsigned high = digit(*text++);
+    return (uint8_t)(high << 4 | digit(*text++));
+}
+
+static uint32_t integer(void) {
+    uint32_t value = 0;
+    for (int shift = 0; shift < 32; shift += 7) {
+        const uint8_t seven = byte();
+        value |= (uint32_t)(seven & 0x7f) << shift;
+        if (seven < 0x80) {
+            break;
+        }
+    }
+    return value;
+}
+
+static float number(void) {
+    union { double value; uint8_t bytes[8]; } word;
+    for (int i = 0; i < 8; i++) {
+        word.bytes[i] = byte();
+    }
+    return (float)word.value;
 }
 
 static void print(int output, float value, char end) {
@@ -38,22 +59,26 @@ static void run(void) {
     static char buffer[256];
     const struct { char *text; int length; } block = { buffer, sizeof buffer };
     semihosting(SYS_GET_CMDLINE, &block);
-    struct request request;
-    for (unsigned i = 0; i < sizeof request; i++) {
-        ((uint8_t *)&request)[i] = (uint8_t)(digit(buffer[2 * i]) << 4 | digit(buffer[2 * i + 1]));
-    }
+    text = buffer;
+    integer(); /* the request's number */
+    integer(); /* the method */
     struct textbook pendulum;
-    pendulum.m1 = (float)request.parameters[0];
-    pendulum.m2 = (float)request.parameters[1];
-    pendulum.l1 = (float)request.parameters[2];
-    pendulum.l2 = (float)request.parameters[3];
-    pendulum.g = (float)request.parameters[4];
-    float z[4] = { (float)request.angles[0], (float)request.angles[1] };
-    const float dt = (float)request.dt;
+    pendulum.m1 = number();
+    pendulum.m2 = number();
+    pendulum.l1 = number();
+    pendulum.l2 = number();
+    pendulum.g = number();
+    float z[4] = { 0 };
+    z[0] = number();
+    z[1] = number();
+    number(); /* from rest */
+    number();
+    const float dt = number();
+    const uint32_t stride = integer(), samples = integer();
     const struct { const char *name; int mode, length; } console = { ":tt", 4 /* to be written */, 3 };
     const int output = semihosting(SYS_OPEN, &console);
-    for (uint32_t sample = 0; sample < request.samples; sample++) {
-        counted_steps(&pendulum, z, dt, request.stride);
+    for (uint32_t sample = 0; sample < samples; sample++) {
+        counted_steps(&pendulum, z, dt, stride);
         for (int i = 0; i < 4; i++) {
             print(output, z[i], i < 3 ? ' ' : '\n');
         }

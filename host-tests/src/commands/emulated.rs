@@ -118,14 +118,19 @@ const THREADS: &str = "RUST_TEST_THREADS";
 pub fn verify(options: &TestOptions) -> anyhow::Result<ExitCode> {
     let (toolchain, _) = toolchain::set_up()?;
     toolchain::set_up_pico()?;
+    let limit = LIMITS[usize::from(options.long)];
+    let test = |arguments: &[&str]| {
+        let mut command = Command::new("cargo");
+        command.arg("test").args(arguments).current_dir(toolchain::workspace()).stdin(Stdio::null());
+        if env::var_os(THREADS).is_none() {
+            command.env(THREADS, (2 * available_parallelism()?.get()).to_string());
+        }
+        process::spawn(&mut command, limit)
+    };
+    // Tests and firmware are compiled side by side: neither keeps all processors busy by itself.
+    let mut compiling = test(&["--no-run", "--quiet"])?;
     toolchain.build_ahead()?;
-    let mut command = Command::new("cargo");
-    command.arg("test").current_dir(toolchain::workspace()).stdin(Stdio::null());
-    if options.long {
-        command.args(["--", "--include-ignored"]);
-    }
-    if env::var_os(THREADS).is_none() {
-        command.env(THREADS, (2 * available_parallelism()?.get()).to_string());
-    }
-    Ok(process::exit_code(process::spawn(&mut command, LIMITS[usize::from(options.long)])?.wait()?))
+    compiling.wait()?;
+    let arguments: &[&str] = if options.long { &["--", "--include-ignored"] } else { &[] };
+    Ok(process::exit_code(test(arguments)?.wait()?))
 }

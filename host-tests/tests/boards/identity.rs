@@ -5,8 +5,7 @@ use std::io::Write;
 use std::process::{Command, Stdio};
 
 use anyhow::Result;
-use cycles::Core;
-use cycles::Instruction;
+use cycles::{Core, Instruction};
 use double_pendulum::{Integrator, Method};
 use firmware::job::Request;
 use host_tests::commands::count::Target;
@@ -64,10 +63,8 @@ fn host_and_targets_agree_after_every_one_of_a_million_steps() -> Result<()> {
 /// The kernel's own code, and what it is compiled with, unoptimised: overflow checks and all.
 #[test]
 fn unoptimised_code_computes_the_same_bits() {
-    let requests: Vec<Request> = Method::ALL
-        .iter()
-        .flat_map(|&method| MOTIONS.map(|scene| every_state(method, scene, STEPS_UNOPTIMISED)))
-        .collect();
+    let requests: Vec<Request> =
+        Method::ALL.iter().map(|&method| every_state(method, MOTIONS[1], STEPS_UNOPTIMISED)).collect();
     let mut cargo = Command::new(env!("CARGO"));
     cargo.current_dir(toolchain::workspace()).args(["run", "--quiet", "--package", "firmware", "--example", "crc"]);
     for package in ["double-pendulum-kernel", "firmware", "libm"] {

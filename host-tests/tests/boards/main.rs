@@ -1,9 +1,11 @@
 //! The firmware on emulated boards: bits, frames, faults, costs.
 
+mod all_scenes;
 mod budgets;
 mod cores;
 mod count;
 mod count_elf;
+mod endurance;
 mod identity;
 mod no_panic;
 mod pico;
@@ -11,10 +13,8 @@ mod qemu_buttons;
 mod qemu_faults;
 mod qemu_plan;
 mod qemu_restart;
-mod qemu_scenes;
 mod qemu_stm32f405;
 mod qemu_unread;
-mod soak;
 mod stack_guard;
 mod steps;
 #[path = "../support/mod.rs"]

@@ -94,11 +94,12 @@ impl Toolchain {
         Ok(kept)
     }
 
-    /// Builds what is run on every target, side by side.
+    /// Builds what is run on every target, side by side, and every board's application.
     pub fn build_ahead(&self) -> anyhow::Result<()> {
         let mut command = self.for_targets("build", &TARGETS);
         command.args(AHEAD.iter().flat_map(|binary| ["--bin", binary]));
-        self.finish(command, "building the firmware for all targets")
+        self.finish(command, "building the firmware for all targets")?;
+        every_board().try_for_each(|board| self.build_for(board).map(drop))
     }
 
     /// Checks all of the firmware's binaries and its examples for chips for every target; a warning is an error, of

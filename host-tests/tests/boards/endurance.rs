@@ -2,7 +2,7 @@
 //! bit, and the stack the second time no deeper than an interrupt takes it. Drift, leaks or a count that runs over show.
 //!
 //! The clock of the board is the counted one, so that an hour of it takes minutes and any run can be repeated. The long one:
-//! `cargo test -p host-tests --test boards soak:: -- --ignored`, or `cargo verify --long`.
+//! `cargo test -p host-tests --test boards endurance:: -- --ignored`, or `cargo verify --long`.
 
 use std::time::Duration;
 
