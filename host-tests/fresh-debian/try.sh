@@ -46,7 +46,7 @@ bring_project() {
     [ ! -e "$base/opt/double-pendulum/target" ] || mv "$base/opt/double-pendulum/target" "$base/opt/new/"
     rm -rf "$base/opt/double-pendulum"
     mv "$base/opt/new" "$base/opt/double-pendulum"
-    echo 'cargo build --quiet --package host-tests --bin setup' | enter "$base"
+    echo 'cargo build --quiet --package host-tests' | enter "$base"
 }
 
 # Makes rustup believe that no ARM target was ever added.
@@ -102,7 +102,7 @@ said() { grep --quiet -- "$1" "$folder/said" || fail "it does not say: $1"; }
 # The next run ends well, the one after it finds nothing to do.
 sets_up() {
     enter "$folder/root" > "$folder/said" 2>&1 <<'END' || fail "it does not set up"
-        target/debug/setup && target/debug/setup
+        target/debug/host-tests setup && target/debug/host-tests setup
 END
     said "nothing had to be done"
 }
@@ -119,8 +119,8 @@ ends() {
 
 twice-at-once() {
     enter "$folder/root" > "$folder/said" 2>&1 <<'END' || fail "one of the two failed"
-        target/debug/setup &
-        target/debug/setup && wait $!
+        target/debug/host-tests setup &
+        target/debug/host-tests setup && wait $!
 END
     sets_up
 }
@@ -131,16 +131,16 @@ broken-qemu() {
 
 without-root() {
     chown nobody "$folder/root/opt/double-pendulum/target" # as it is for whoever made the clone
-    ends 'setpriv --reuid=nobody --regid=nogroup --clear-groups target/debug/setup' 2
+    ends 'setpriv --reuid=nobody --regid=nogroup --clear-groups target/debug/host-tests setup' 2
     said "only root may install packages" && said "what brings it: " && sets_up
 }
 
 without-network() {
-    ends target/debug/setup 2 --net
+    ends target/debug/host-tests setup 2 --net
     said "apt-get: " && said "what brings it: " && sets_up
 }
 
-full-disk() { ends target/debug/setup 2 && said "No space left\|free space"; }
+full-disk() { ends target/debug/host-tests setup 2 && said "No space left\|free space"; }
 
 # Debian 12 has had several versions of these packages; its first release keeps the oldest.
 oldest-rust() {

@@ -33,6 +33,9 @@ pub const BOUNDS_DRIFT: f64 = 1e-6;
 /// and lengths 1:100..100:1: 2.8e-5 and 7.7e-5.
 pub const ADMISSIBLE: [f64; 2] = [3e-5, 8e-5];
 
+/// The measured order of the method: 4, give or take the next order's share at the steps used.
+pub const ORDER: std::ops::RangeInclusive<f64> = 3.9..=4.1;
+
 /// The reference outside what is proved of the motion, to be multiplied by the growth of a small error: the roundings (1e-32) of some
 /// hundred steps of double-double arithmetic (measured: within 3e-32, and within all digits of the table of known answers).
 pub const REFERENCE: f64 = 1e-31;

@@ -4,13 +4,16 @@
 use clap::Parser;
 use double_pendulum::plan::{Budget, Limit, Problem, Search};
 use double_pendulum::{Error, Method, Modes, Motion, Parameters, Pendulum, Real, State};
+use fastrand::Rng;
 use firmware::app::{App, NoButtons};
 use firmware::config::CORTEX_M4F;
 use firmware::display::NoDisplay;
 use firmware::graphics::FrameBuffers;
 use firmware::job::{Job, ON_BOARDS, Request};
 use firmware::motion::Settings;
-use firmware::protocol::{Ask, Decoder, LinkError, MAX_FIELDS, MAX_WIRE, Message, Refused, Set, Simulate, frame};
+use firmware::protocol::{
+    Ask, Decoder, Frame, LinkError, MAX_FIELDS, MAX_WIRE, Message, Refused, Set, Simulate, encode, frame,
+};
 use host_tests::commands::simulate::{Number, SimulateOptions, plan};
 use host_tests::link::Received;
 use host_tests::oracle::trials;
@@ -234,4 +237,36 @@ proptest! {
             prop_assert!(plan.every.is_positive() && plan.request.dt > 0.0);
         }
     }
+}
+
+/// Frames over a link that flips each bit with this `chance`: no damaged one is taken for good, and no good one is missed.
+fn bits_flipped(chance: f64, frames: u32) {
+    let mut rng = Rng::with_seed(2);
+    let mut decoder = Decoder::default();
+    let mut damaged_frames = 0;
+    for sequence in 0..frames {
+        let sent = Frame { sequence, step: rng.u32(..), time: rng.f64(), mass_ratio: rng.f32(), ..Frame::default() };
+        let mut bytes = encode(&sent, &mut [0; MAX_WIRE]).to_vec();
+        let mut damaged = false;
+        for byte in &mut bytes {
+            for bit in 0..8 {
+                if rng.f64() < chance {
+                    *byte ^= 1 << bit;
+                    damaged = true;
+                }
+            }
+        }
+        let frames: Vec<_> = received(&mut decoder, &bytes).into_iter().flatten().collect();
+        let frames: Vec<Option<Frame>> = frames.iter().map(Received::read).collect();
+        assert_eq!(frames, if damaged { vec![] } else { vec![Some(sent)] }, "frame {sequence}");
+        damaged_frames += u32::from(damaged);
+    }
+    assert!(damaged_frames > frames / 50, "the link is under fire: {damaged_frames} of {frames}");
+}
+
+#[test]
+fn no_damaged_frame_is_taken_for_good_and_no_good_one_is_missed() {
+    bits_flipped(1e-4, 20_000);
+    // Here almost every frame is damaged, and there are more forgeries to catch.
+    bits_flipped(1e-2, 20_000);
 }

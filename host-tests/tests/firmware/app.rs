@@ -4,17 +4,18 @@ use std::cell::Cell;
 
 use double_pendulum::plan::{PlannedRun, Way};
 use double_pendulum::{Method, Motion, Parameters, Pendulum, State};
+use embedded_io::{ErrorKind, ErrorType, Write};
 use firmware::app::{App, Buttons, Cause, Command, Event, NoButtons, Player, Pressed, WarmRestart};
 use firmware::config::{GRAVITY, MOST_TICKS_PER_FRAME, ROD, TICK_RATE};
 use firmware::display::{Display, NoDisplay};
 use firmware::graphics::{Canvas, FadeLayer, Place, RodDirections, View};
 use firmware::motion::Settings;
-use firmware::protocol::{Frame, LinkError, Restarted, Status};
+use firmware::protocol::{Frame, LinkError, Message, Restarted, Status};
 use firmware::scenes::SceneName;
 use host_tests::emulator::host::sheets;
 use host_tests::oracle::tolerances::ENERGY_SHOWN;
 
-use crate::bench::{Plain, all, app, starting_with, wire};
+use crate::bench::{Plain, all, app, messages, starting_with, wire};
 
 /// Runs to each of the clock's readings in turn.
 fn run(clock: impl IntoIterator<Item = u32>) -> Plain {
@@ -207,6 +208,47 @@ fn a_failing_panel_is_reported_once_and_does_not_stop_the_rest() {
 fn directions(app: &Plain) -> RodDirections {
     let State { a1, a2, .. } = app.player.report().state;
     [a1, a2].map(|angle| angle.sin_cos().into())
+}
+
+/// Fails for the writes from 5 to 9, each time after half of the bytes.
+#[derive(Default)]
+struct Faulty {
+    bytes: Vec<u8>,
+    writes: u32,
+}
+
+impl ErrorType for Faulty {
+    type Error = ErrorKind;
+}
+
+impl Write for Faulty {
+    fn write(&mut self, bytes: &[u8]) -> Result<usize, ErrorKind> {
+        self.writes += 1;
+        let fails = (5..10).contains(&self.writes);
+        let sent = if fails { &bytes[..bytes.len() / 2] } else { bytes };
+        self.bytes.extend_from_slice(sent);
+        if fails { Err(ErrorKind::TimedOut) } else { Ok(bytes.len()) }
+    }
+
+    fn flush(&mut self) -> Result<(), ErrorKind> {
+        Ok(())
+    }
+}
+
+#[test]
+fn a_failing_link_is_reported_once_and_loses_only_its_own_frames() {
+    let mut app = App::new(Settings::default(), sheets(), NoDisplay, Faulty::default(), NoButtons).expect("good");
+    let mut events = Vec::new();
+    for now in 1..=20 {
+        app.run_to(now, |event| events.push(event));
+    }
+    assert_eq!(events, [Event::Link(ErrorKind::TimedOut)]);
+    // Writes: frames 0 to 3 (1 to 4), frames 4 to 8 broken off in the middle (5 to 9), then all is well.
+    let sequence = |(_, fields): (u8, Vec<u8>)| Frame::read(&fields).map(|frame| frame.sequence);
+    let received: Vec<_> =
+        messages(&app.link.bytes).into_iter().map(|message| message.ok().and_then(sequence)).collect();
+    let expected: Vec<_> = (0..4).map(Some).chain([None; 5]).chain((9..20).map(Some)).collect();
+    assert_eq!(received, expected);
 }
 
 fn view(app: &Plain) -> View {

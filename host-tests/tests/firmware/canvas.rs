@@ -159,3 +159,38 @@ fn a_gap_sets_a_disc_off() {
         assert!(error < GREY_TOLERANCE, "{exact} at {column}, {row}, not {}", grey(&canvas, column, row));
     }
 }
+
+#[test]
+fn a_line_is_as_bright_in_every_direction() {
+    let length = 20.0;
+    let total = |degrees: f32| {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        let mut canvas = Canvas::default();
+        let (from, to) = (Spot::at(60.0, 30.0), Spot::at(60.0 + length * cos, 30.0 + length * sin));
+        Stroke { from, to, radius: SUBPIXELS as u8 }.lighten(&mut canvas, u8::MAX);
+        f64::from(light(&canvas))
+    };
+    // A stroke 2 wide and 20 long with round ends, all white: (2 x 20 + pi) x 15.
+    let expected = (2.0 * f64::from(length) + std::f64::consts::PI) * 15.0;
+    for degrees in 0..360 {
+        let ratio = total(degrees as f32) / expected;
+        assert!((0.97..1.03).contains(&ratio), "{degrees} degrees: {ratio}");
+    }
+}
+
+#[test]
+fn a_disc_has_a_soft_edge() {
+    let mut canvas = Canvas::default();
+    disc(4.0, 4.0, 3.0).draw(&mut canvas, u8::MAX);
+    let expected = [
+        "00000000", //
+        "009ee900", "09ffff90", "0effffe0", "0effffe0", "09ffff90", "009ee900", "00000000",
+    ];
+    assert_eq!(frame(&canvas, 8, 8), expected);
+}
+
+/// The top left corner, a character per pixel.
+fn frame(canvas: &Canvas, width: i32, height: i32) -> Vec<String> {
+    let row = |y| (0..width).map(|x| char::from_digit(grey(canvas, x, y).into(), 16).expect("a grey")).collect();
+    (0..height).map(row).collect()
+}

@@ -117,3 +117,20 @@ fn what_cannot_be_played_changes_nothing() {
         assert_eq!(player.status(0), before);
     }
 }
+
+#[test]
+fn any_flipped_bit_is_noticed() {
+    let (played, played_length) = (kept(&status()), encode(&status(), &mut [0; MAX_WIRE]).len());
+    let (end, end_length) = (kept(&end()), encode(&end(), &mut [0; MAX_WIRE]).len());
+    let flipped = |kept: Kept, bit: usize| {
+        let mut flipped = kept;
+        flipped[bit / 8] ^= 1 << (bit % 8);
+        flipped
+    };
+    for bit in 0..8 * played_length {
+        assert_eq!(WarmRestart::recall(&flipped(played, bit), &end, true), None, "bit {bit} of what was played");
+    }
+    for bit in 0..8 * end_length {
+        assert_eq!(WarmRestart::recall(&played, &flipped(end, bit), true), None, "bit {bit} of how it ended");
+    }
+}

@@ -206,3 +206,16 @@ fn a_step_is_admissible_in_either_precision() -> Result<(), Error> {
     admissible_step::<f32>()?;
     admissible_step::<f64>()
 }
+
+/// Equal rods from rest: certified exactly where (1 + mu) cos a1 + mu cos a2 > 1.
+#[test]
+fn equal_rods_certificate_is_the_cosine_rule() {
+    let mut rng = Rng::with_seed(4);
+    for _ in 0..10_000 {
+        let mu = random::log_uniform(&mut rng, 0.01, 100.0);
+        let (a1, a2) = (PI * random::symmetric(&mut rng), PI * random::symmetric(&mut rng));
+        let general = Pendulum::new(&Parameters::equal_rods(mu, 0.3, 9.8)).expect("valid parameters");
+        let certain = general.cannot_turn_over(&State::at_rest(a1, a2));
+        assert_eq!(certain, (1.0 + mu) * a1.cos() + mu * a2.cos() > 1.0, "mu = {mu}, {a1}, {a2}");
+    }
+}

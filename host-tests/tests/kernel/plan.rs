@@ -305,3 +305,27 @@ fn a_piece_of_the_search_is_no_larger_than_allowed() {
         }
     }
 }
+
+/// Weightless and motionless, as far from reason as numbers go: a plan or a refusal, never a panic.
+#[test]
+fn every_scene_gets_a_plan_or_a_refusal() {
+    let values = [1e-300, 1e-30, 1e-3, 1.0, 1e3, 1e30, 1e300];
+    let budget = Budget { frame: 1e6, planning: 1e7 };
+    let mut planned = 0;
+    for m2 in values {
+        for l2 in values {
+            for g in [0.0, 9.81, 1e30] {
+                for w2 in [0.0, 1.0, 1e30] {
+                    let pendulum = Parameters { m1: 1.0, m2, l1: 1.0, l2, g };
+                    let start = Motion { w2, ..Motion::at_rest(3.0, -1.0) };
+                    let scene = Problem { pendulum, start, tolerance: 0.1, duration: 2.0, rate: RATE };
+                    if let Ok(plan) = Plan::search(&scene, &M4F, &budget) {
+                        planned += 1;
+                        assert!((0.0..=2.0).contains(&plan.horizon), "{plan:?} for {scene:?}");
+                    }
+                }
+            }
+        }
+    }
+    assert!(planned > 20, "{planned}");
+}

@@ -82,3 +82,22 @@ fn energy_above_rest_keeps_its_precision_in_the_smallest_motion() {
     let exact = 9.8 * (2.0 * 1e-20 + 4e-20) / 2.0; // K = ((m1 + m2) g l1 a1^2 + m2 g l2 a2^2)/2
     assert!((f64::from(above) / exact - 1.0).abs() < tolerances::FORMULAS.single, "{above} instead of {exact}");
 }
+
+/// The divergence of the phase flow relative to its largest term.
+const DIVERGENCE: f64 = 1e-7;
+
+#[test]
+fn phase_flow_has_no_divergence() {
+    each_state::<f64>(4, 10_000, |parameters, pendulum, state| {
+        let z: [f64; 4] = (*state).into();
+        let moved = |i: usize, by: f64| {
+            let mut z = z;
+            z[i] += by;
+            pendulum.derivatives(&z)[i]
+        };
+        let slopes: [f64; 4] = core::array::from_fn(|i| (moved(i, STEP) - moved(i, -STEP)) / (2.0 * STEP));
+        let largest = slopes.iter().fold(1.0_f64, |largest, slope| largest.max(slope.abs()));
+        let divergence = slopes.iter().sum::<f64>().abs() / largest;
+        assert!(divergence < DIVERGENCE, "divergence {divergence:e} for {parameters:?}");
+    });
+}

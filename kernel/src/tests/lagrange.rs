@@ -1,6 +1,6 @@
 //! The Lagrangian form, the Legendre transformation and the geometry, each against another road to the same number.
 
-use double_pendulum::{Motion, Parameters, Pendulum, Real};
+use double_pendulum::{Motion, Parameters, Pendulum, Real, State};
 use fastrand::Rng;
 
 use super::{assert_near, random, tolerances};
@@ -123,4 +123,12 @@ fn bobs_are_where_the_rods_point() {
     assert!(near(bob1.x, 0.0) && near(bob1.y, -3.0) && near(bob2.x, 4.0) && near(bob2.y, -3.0), "{bob1:?} {bob2:?}");
     let [v1, v2] = pendulum.velocities(&Motion { a1: 0.0, a2: quarter, w1: 1.0, w2: 2.0 });
     assert!(near(v1.x, 3.0) && near(v1.y, 0.0) && near(v2.x, 3.0) && near(v2.y, 8.0), "{v1:?} {v2:?}");
+}
+
+#[test]
+fn at_rest_both_ways() {
+    let parameters = Parameters { m1: 1.0, m2: 2.0, l1: 3.0, l2: 4.0, g: 9.8 };
+    let pendulum = Pendulum::new(&parameters).expect("valid parameters");
+    assert_eq!(pendulum.to_state(&Motion::at_rest(1.0, 2.0)), State::at_rest(1.0, 2.0));
+    assert_eq!(pendulum.to_motion(&State::at_rest(1.0, 2.0)), Motion::at_rest(1.0, 2.0));
 }

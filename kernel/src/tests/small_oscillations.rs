@@ -1,8 +1,10 @@
 //! Small oscillations: the book's figures, and what modes and motions in them are.
 
-use core::f64::consts::{FRAC_PI_6, TAU};
+use core::f64::consts::{FRAC_PI_6, PI, TAU};
 
-use double_pendulum::{Error, Modes, Motion, Parameter, Parameters, Real, SmallOscillations, periodic_mass_ratio};
+use double_pendulum::{
+    Error, Mode, Modes, Motion, Parameter, Parameters, Pendulum, Real, SmallOscillations, periodic_mass_ratio,
+};
 use fastrand::Rng;
 
 use super::random::symmetric;
@@ -119,4 +121,47 @@ fn impossible_periods_are_refused() {
     assert_eq!(refusal(2, 1, [4.0, 1.0]), too_small(2.0, 2.0));
     assert_eq!(refusal(2, 1, [1.0, 4.0]), too_small(2.0, 2.0));
     assert_eq!(refusal(3, 2, [0.0, 1.0]), Error::NotPositive { parameter: Parameter::L1, value: 0.0 });
+}
+
+/// K h = w^2 M h for both modes, h = (1, r).
+#[test]
+fn modes_solve_the_matrix_equation() {
+    let mut rng = Rng::with_seed(2);
+    for _ in 0..1000 {
+        let pendulum = Pendulum::new(&random::parameters(&mut rng)).expect("valid parameters");
+        let (mass, stiffness) = (pendulum.mass_matrix(1.0), pendulum.stiffness());
+        let modes = pendulum.modes().expect("there is gravity");
+        for Mode { frequency, shape } in [modes.fast, modes.slow] {
+            for row in 0..2 {
+                let force = stiffness[row][0] + stiffness[row][1] * shape;
+                let inertia = frequency * frequency * (mass[row][0] + mass[row][1] * shape);
+                let scale = frequency * frequency * (mass[row][0] + mass[row][1] * shape.abs());
+                let error = (force - inertia).abs() / scale;
+                assert!(error < tolerances::FORMULAS.double, "{error:e} for {:?}", pendulum.parameters());
+            }
+        }
+    }
+}
+
+#[test]
+fn periodic_mass_ratios_of_equal_rods() {
+    for (fast, slow, mu) in [(3, 2, 25.0 / 144.0), (2, 1, 9.0 / 16.0), (5, 2, 441.0 / 400.0), (3, 1, 16.0 / 9.0)] {
+        assert_eq!(periodic_mass_ratio(fast, slow, [1.0, 1.0]), Ok(mu));
+    }
+}
+
+/// a1 = (pi/12) sqrt(mu/(1 + mu)) (cos w2 t - cos w1 t), a2 = (pi/12)(cos w1 t + cos w2 t).
+#[test]
+fn worked_example() {
+    for mu in [0.2, 1.0, 5.0] {
+        let (modes, motion) = figure(mu);
+        let (w1, w2) = (modes.fast.frequency, modes.slow.frequency);
+        for t in (0..1000).map(|n| f64::from(n) / 100.0) {
+            let a1 = PI / 12.0 * (mu / (1.0 + mu)).sqrt() * ((w2 * t).cos() - (w1 * t).cos());
+            let a2 = PI / 12.0 * ((w1 * t).cos() + (w2 * t).cos());
+            let now = motion.at(t);
+            let error = (now.a1 - a1).abs().max((now.a2 - a2).abs());
+            assert!(error < tolerances::FORMULAS.double, "mu = {mu}, t = {t}: off by {error:e}");
+        }
+    }
 }

@@ -1,9 +1,9 @@
-//! Time reversal, mirror image and the scaling laws, bit for bit.
+//! Time reversal, mirror image and the scaling laws. All but the return to the start hold bit for bit.
 
 use double_pendulum::{Parameters, Pendulum, Real, State};
 use fastrand::Rng;
 
-use super::random;
+use super::{assert_near, random, tolerances};
 
 fn run<R: Real>(parameters: &Parameters<R>, start: State<R>, dt: R) -> State<R> {
     let pendulum = Pendulum::new(parameters).expect("valid parameters");
@@ -47,4 +47,22 @@ fn hold<R: Real>() {
 fn symmetries_hold_in_either_precision() {
     hold::<f32>();
     hold::<f64>();
+}
+
+#[test]
+fn reversed_momenta_bring_the_start_back() {
+    let mut rng = Rng::with_seed(1);
+    for _ in 0..200 {
+        let parameters = random::parameters(&mut rng);
+        let start = random::state(&mut rng, &parameters);
+        let bounds = Pendulum::new(&parameters).expect("valid parameters").bounds(&start);
+        let dt = 0.002 / bounds.w1.max(bounds.w2);
+        let back = stronger(run(&parameters, stronger(run(&parameters, start, dt), -1.0), dt), -1.0);
+        let near =
+            |name: &str, back, start, scale| assert_near(name, back, start, scale, tolerances::RETURN, &parameters);
+        near("a1", back.a1, start.a1, 1.0);
+        near("a2", back.a2, start.a2, 1.0);
+        near("p1", back.p1, start.p1, bounds.p1);
+        near("p2", back.p2, start.p2, bounds.p2);
+    }
 }
