@@ -203,12 +203,25 @@ fn the_plan_is_found_in_some_tick_told_when_asked_and_followed() {
         assert_eq!(answer.request, 3);
         answer
     };
-    let (mut news, mut tick) = (Vec::new(), 0);
-    app.receive(wire(&set(Field::Angle, 20_f64.to_radians())), |_| ());
+    assert_eq!(asked(&mut app).found, NOT_YET);
+    let mut news = Vec::new();
+    let mut tick = 0;
+    while asked(&mut app).found == NOT_YET {
+        tick += 1;
+        app.run_to(tick, |event| news.push(event));
+    }
+    tick += 1;
+    app.run_to(tick, |event| news.push(event));
+    let [Event::Motion(News::Found(Ok(plan)))] = news[..] else { panic!("{news:?}") };
     let answer = asked(&mut app);
-    let Planned { height, duration, frame_budget, planning_budget, .. } = answer;
-    let given = Planned { height, duration, frame_budget, planning_budget, ..Planned::default() };
-    assert_eq!(answer, Planned { found: NOT_YET, request: 3, ..given });
+    assert_eq!((answer.found, answer.horizon), (FOUND, plan.horizon));
+    assert!(answer.horizon > 19.0, "{answer:?}");
+    let frame = app.player.frame();
+    assert_eq!((frame.method, u32::from(frame.way_steps)), (answer.method, answer.steps));
+
+    app.receive(wire(&set(Field::Angle, 20_f64.to_radians())), |_| ());
+    assert_eq!(asked(&mut app), Planned { request: 3, found: NOT_YET, ..blank(&answer) });
+    news.clear();
     while asked(&mut app).found == NOT_YET {
         tick += 1;
         app.run_to(tick, |event| news.push(event));
@@ -224,11 +237,20 @@ fn the_plan_is_found_in_some_tick_told_when_asked_and_followed() {
     app.receive(wire(&Ask { request: 9 }), |_| ());
     let status: Status = last(&app);
     assert_eq!((status.method, status.way_steps, status.cycles), (calm.method, calm.steps, calm.cycles));
-    assert!(f64::from(status.horizon) > PLANNED && status.is_looking == 1, "{status:?}");
+    assert!(
+        status.cycles < answer.cycles && f64::from(status.horizon) > PLANNED && status.is_looking == 1,
+        "{status:?}"
+    );
 
     app.receive(wire(&Choose { request: 1, scene: SceneName::Frequencies.code() }), |_| ());
     assert!(!app.look_ahead());
     assert_eq!(asked(&mut app), Planned { request: 3, found: NOTHING, ..Planned::default() });
+}
+
+/// What an answer says before anything is found.
+fn blank(answer: &Planned) -> Planned {
+    let &Planned { height, duration, frame_budget, planning_budget, .. } = answer;
+    Planned { height, duration, frame_budget, planning_budget, ..Planned::default() }
 }
 
 /// A method that is asked for by its code is taken, and stays; no other number is a method.
@@ -302,4 +324,13 @@ fn noise_half_commands_and_floods_do_not_disturb_the_stream() {
     let restarts = flood(wire(&Restart { request: 6 }).into_iter().cycle(), 10);
     let (answered, most) = (all::<Done>(&restarts.link).len(), MOST_MESSAGES_PER_TICK * (10 * TICK_RATE) as usize);
     assert!((most / 2..=most).contains(&answered), "{answered}: of more than can wait, the rest is lost");
+}
+
+#[test]
+fn a_command_after_noise_is_executed() {
+    let mut app = app();
+    let mut rng = Rng::with_seed(6);
+    app.receive(std::iter::repeat_with(|| rng.u8(1..)).take(5000), |_| ());
+    app.receive(wire(&Choose { request: 3, scene: SceneName::Figure7.code() }), |_| ());
+    assert_eq!((last::<Done>(&app), app.player.name()), (Done { request: 3 }, SceneName::Figure7));
 }
