@@ -73,7 +73,8 @@ unsafe impl defmt::Logger for Logger {
         let interrupts = primask::read().is_active();
         disable();
         with(&PATH, |path| {
-            path.interrupts = interrupts;
+            // A line within a line is garbled, but leaves interrupts as they were.
+            path.interrupts |= interrupts;
             path.encoder.start_frame(|bytes| path.sink.write(bytes));
         });
     }
@@ -82,7 +83,7 @@ unsafe impl defmt::Logger for Logger {
 
     unsafe fn release() {
         with(&PATH, |path| path.encoder.end_frame(|bytes| path.sink.write(bytes)));
-        if with(&PATH, |path| path.interrupts) == Some(true) {
+        if with(&PATH, |path| core::mem::take(&mut path.interrupts)) == Some(true) {
             // SAFETY: `acquire` has switched them off, and they were on before.
             unsafe { enable() };
         }

@@ -8,7 +8,9 @@ use super::message::numbered;
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[cfg_attr(target_os = "none", derive(defmt::Format))]
 pub struct Request {
+    /// By its place in the table, which is its [`method_code`](super::method_code); any other makes the message unreadable.
     pub method: Method,
+    /// m1, m2 (kg), l1, l2 (m), g (m/s^2), in this order.
     pub parameters: Parameters<f64>,
     /// a1, a2 at the start, rad.
     pub angles: [f64; 2],

@@ -38,7 +38,9 @@ fn emulated(core: &Core) -> anyhow::Result<Command> {
 }
 
 fn computes_the_hosts_bits(core: &Core) {
+    let is_ours = toolchain::TARGETS.contains(&core.target) && core.double.is_none();
     let mut command = match emulated(core) {
+        Err(missing) if is_ours => panic!("{}: {missing}", core.name),
         Ok(command) => command,
         // The test's output is captured; this is not.
         Err(missing) => return writeln!(stderr(), "SKIPPED, {}: {missing}", core.name).expect("someone listens"),

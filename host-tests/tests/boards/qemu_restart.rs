@@ -103,7 +103,8 @@ fn a_fault_in_a_picture_tells_the_scene_and_the_step() -> anyhow::Result<()> {
 
 #[test]
 fn a_stack_that_overflows_in_a_picture_meets_the_guard_and_changes_nothing_below() -> anyhow::Result<()> {
-    let parts = ["HARDFAULT: stack overflow", "pc and lr are lost"];
+    let parts =
+        ["HARDFAULT: stack overflow", "pc and lr are lost; the last call on the stack is at 0x", "cfsr 0x000000"];
     boards_say(guarded(), SceneName::Butterfly, &parts, |probe, elf| {
         let statics = address(elf, "_ram_start")..address(elf, "__euninit");
         let before = probe.read(statics.clone())?;
