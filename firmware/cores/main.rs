@@ -1,4 +1,4 @@
-//! Runs every method of the kernel for 10,000 steps and prints the CRC of its bits, one line each. For cores that no board here
+//! Runs every method of the kernel for 2,560 steps and prints the CRC of its bits, one line each. For cores that no board here
 //! has: all it needs of a machine is a way to print and a way to exit.
 #![no_std]
 #![no_main]

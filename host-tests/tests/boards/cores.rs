@@ -1,4 +1,4 @@
-//! The same bits on cores that people own, boards or not: every method, 10,000 steps of a chaotic motion.
+//! The same bits on cores that people own, boards or not: every method, 2,560 steps of a chaotic motion.
 //!
 //! What a core needs is fetched by its test alone: the compiler's core library, QEMU. Where it cannot be had the test says so.
 

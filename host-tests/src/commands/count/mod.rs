@@ -55,22 +55,22 @@ pub fn affordable_cost(target: &Target, request: &Request) -> Result<StepCost> {
     step_cost(target, &Request { stride: affordable_steps(target, request)?, ..*request })
 }
 
-/// The cost of one step of `request` on `target`, averaged over the steps to its first sample.
+/// The cost of one step of `request` on `target`, averaged over the steps after the first; as many as to its first sample.
 ///
-/// A run of twice the steps minus a run of once the steps, so that calling and returning cancel.
+/// A run of one step more minus a run of one step, so that calling and returning cancel.
 pub fn step_cost(target: &Target, request: &Request) -> Result<StepCost> {
     let steps = request.stride;
     let run = |stride| counted(target, &Request { stride, samples: 1, ..*request });
-    let (calling, twice) = (run(steps)?.cost(), run(2 * steps)?);
-    let all = twice.cost();
+    let (calling, whole) = (run(1)?.cost(), run(1 + steps)?);
+    let all = whole.cost();
     let per_step = |all: u64, calling: u64| all.saturating_sub(calling) as f64 / f64::from(steps);
     Ok(StepCost {
         steps,
         instructions: per_step(all.instructions, calling.instructions),
         cycles: per_step(all.cycles, calling.cycles),
         stalls: per_step(all.stalls, calling.stalls),
-        hot_bytes: twice.hot_bytes(),
-        code_bytes: twice.code_bytes(),
-        stack_bytes: twice.stack_bytes,
+        hot_bytes: whole.hot_bytes(),
+        code_bytes: whole.code_bytes(),
+        stack_bytes: whole.stack_bytes,
     })
 }
