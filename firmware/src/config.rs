@@ -20,10 +20,9 @@ pub const MOST_TICKS_PER_FRAME: u32 = 15;
 /// 15/60 s. The watchdog says so then, and when as much time again has passed it resets the board.
 pub const WATCHDOG_SECONDS: u32 = 1;
 
-/// The slowest and the fastest a scene may be played, simulated time per real time.
-pub const LEAST_SPEED: f64 = 0.01;
-/// At 4 ticks of the scene per tick even the Cortex-M3 still shows most frames.
-pub const GREATEST_SPEED: f64 = 4.0;
+/// The fastest a scene may be played, simulated time per real time: at 4 ticks of the scene per tick even the Cortex-M3 still
+/// shows most frames. The slowest is a hundredth.
+pub const GREATEST_SPEED: u32 = 4;
 
 // ---- What counts as right -------------------------------------------------------------------------------------------
 

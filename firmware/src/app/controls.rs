@@ -1,8 +1,7 @@
-//! Five buttons become commands, or one: by how often it is tapped before it is held.
+//! Five buttons, debounced, become commands, or one: by how often it is tapped before it is held.
 
-use crate::app::button::{Button, Change};
 use crate::app::{Command, Key};
-use crate::config::{HOLD_TICKS, MOST_TICKS_BETWEEN_TAPS, REPEAT_PERIOD_TICKS};
+use crate::config::{DEBOUNCE_TICKS, HOLD_TICKS, MOST_TICKS_BETWEEN_TAPS, REPEAT_DELAY_TICKS, REPEAT_PERIOD_TICKS};
 
 /// A reading of the five buttons; `true` is pressed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -114,5 +113,56 @@ impl OneButton {
         let command = HELD.get(self.taps).copied();
         self.held = command.filter(|command| *command != Command::NextScene).map(|_| HOLD_TICKS - REPEAT_PERIOD_TICKS);
         command
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Change {
+    Pressed,
+    /// Held long enough to count as pressed again.
+    Repeated,
+    Released,
+}
+
+/// One button, repeated while held.
+#[derive(Clone, Debug, Default)]
+struct Button {
+    phase: Phase,
+    /// Readings in a row that contradict the phase.
+    contradictions: u8,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Phase {
+    /// Not yet seen released: a line that reads pressed from the first may be stuck or not driven, so it is ignored.
+    #[default]
+    Unproven,
+    Released,
+    /// Held, with this many ticks left until it counts as pressed again.
+    Held {
+        repeats_in: u8,
+    },
+}
+
+impl Button {
+    fn is_held(&self) -> bool {
+        matches!(self.phase, Phase::Held { .. })
+    }
+
+    fn tick(&mut self, pressed: bool) -> Option<Change> {
+        let contradicts = if self.phase == Phase::Unproven { !pressed } else { pressed != self.is_held() };
+        self.contradictions = if contradicts { self.contradictions.saturating_add(1) } else { 0 };
+        if self.contradictions >= DEBOUNCE_TICKS {
+            self.contradictions = 0;
+            let proven = self.phase != Phase::Unproven;
+            self.phase = if pressed { Phase::Held { repeats_in: REPEAT_DELAY_TICKS } } else { Phase::Released };
+            return proven.then_some(if pressed { Change::Pressed } else { Change::Released });
+        }
+        let Phase::Held { repeats_in } = &mut self.phase else { return None };
+        *repeats_in = repeats_in.saturating_sub(1);
+        (*repeats_in == 0).then(|| {
+            *repeats_in = REPEAT_PERIOD_TICKS;
+            Change::Repeated
+        })
     }
 }

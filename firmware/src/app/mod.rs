@@ -1,6 +1,5 @@
 //! The application: reads the buttons, moves the scene, draws it and sends it, tick by tick.
 
-mod button;
 mod command;
 mod controls;
 mod event;
@@ -57,7 +56,7 @@ pub struct App<'a, Panel, Link, Keys> {
     last_damage: Option<LinkError>,
     panel_failing: FaultEdge,
     link_failing: FaultEdge,
-    instruments: Instruments,
+    pub instruments: Instruments,
     /// Processor cycles of the frame before, from the first tick to the end of its sending.
     busy_cycles: u32,
 }
@@ -112,11 +111,6 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
 
     pub fn begin(&mut self) -> Result<(), Error> {
         self.player.play(SceneName::Page, *self.player.settings())
-    }
-
-    /// Measures and tells of itself by these.
-    pub fn use_instruments(&mut self, instruments: Instruments) {
-        self.instruments = instruments;
     }
 
     /// Goes by a clock that stands at `clock` now, and counts frames and ticks without one from `frames` on.
@@ -211,11 +205,6 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
             Err(error) => self.send(&Refused { request, field: Field::from(error).code() }, &mut log),
         }
         !is_finished
-    }
-
-    /// Does a bounded piece of the planning that the next tick would do; whether there is more.
-    pub fn look_ahead(&mut self) -> bool {
-        self.player.look_ahead()
     }
 
     fn tick(&mut self, log: &mut impl Log<Panel, Link>) {

@@ -1,9 +1,9 @@
 //! How a scene's time goes: at full speed, slower, faster, or step by step.
 
-use crate::config::{GREATEST_SPEED, LEAST_SPEED};
+use crate::config::GREATEST_SPEED;
 use crate::protocol::Field;
 
-/// Full speed, in the parts that a tick is made of.
+/// Full speed, in the parts that a tick is made of: one of them is the least speed.
 const WHOLE_TICK: u32 = 100;
 
 #[derive(Clone, Copy, Debug)]
@@ -24,11 +24,6 @@ impl Default for Pace {
 }
 
 impl Pace {
-    pub fn resumed(paused: bool, steps: u32, speed: f32) -> Self {
-        let speed = ((speed * WHOLE_TICK as f32 + 0.5) as u32).clamp(1, GREATEST_SPEED as u32 * WHOLE_TICK);
-        Self { paused, steps, speed, part: 0 }
-    }
-
     /// 1 is full speed.
     pub fn speed(&self) -> f32 {
         self.speed as f32 / WHOLE_TICK as f32
@@ -55,12 +50,10 @@ impl Pace {
         (self.paused, self.steps) = (true, ticks);
     }
 
-    /// Sets the speed; refuses one that is out of range.
+    /// Sets the speed, to the nearest part; refuses one that is out of range.
     pub fn set_speed(&mut self, speed: f64) -> Result<(), Field> {
-        if !(LEAST_SPEED..=GREATEST_SPEED).contains(&speed) {
-            return Err(Field::Speed);
-        }
-        self.speed = (speed * f64::from(WHOLE_TICK) + 0.5) as u32;
+        let parts = (speed * f64::from(WHOLE_TICK) + 0.5) as u32;
+        self.speed = (1..=GREATEST_SPEED * WHOLE_TICK).contains(&parts).then_some(parts).ok_or(Field::Speed)?;
         Ok(())
     }
 }

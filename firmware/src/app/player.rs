@@ -1,13 +1,13 @@
 //! What is played: a scene with its settings, and how its time goes.
 
-use double_pendulum::plan::{Plan, Way};
+use double_pendulum::plan::Way;
 use double_pendulum::{Error, Method, Parameters};
 
 use crate::app::Command;
 use crate::app::pace::Pace;
-use crate::config::{GREATEST_ANGLE, PROCESSOR, Processor};
+use crate::config::{GREATEST_ANGLE, Processor};
 use crate::graphics::{Canvas, FadeLayer, text};
-use crate::motion::{CatchingUp, Finding, Means, Planner, Settings};
+use crate::motion::{CatchingUp, Finding, Means, Planner, Settings, Viewport};
 use crate::protocol::{Field, Frame, NO_METHOD, Planned, Status, method_code, method_of};
 use crate::scenes::{AnyScene, Report, SceneName};
 
@@ -39,12 +39,7 @@ pub struct Player<'a> {
 }
 
 impl<'a> Player<'a> {
-    /// Plays the page with `settings`; the kernel's error if they describe no pendulum.
-    pub fn new(settings: Settings, ink: &'a mut FadeLayer) -> Result<Self, Error> {
-        Self::on(PROCESSOR, SceneName::Page, settings, ink)
-    }
-
-    /// Plays a scene with `settings` as it goes on this class of processors.
+    /// Plays a scene with `settings` as it goes on this class of processors; the kernel's error if they describe no pendulum.
     pub fn on(
         processor: Processor,
         name: SceneName,
@@ -71,7 +66,9 @@ impl<'a> Player<'a> {
     pub fn play(&mut self, name: SceneName, settings: Settings) -> Result<(), Error> {
         self.scene.start(name, &settings, &Means { processor: self.planner.processor, method: self.method })?;
         (self.name, self.settings, self.stopped, self.next) = (name, settings, false, None);
-        self.planner.start(&settings, self.scene.viewport(), self.scene.report().way);
+        let begun = self.scene.report().way;
+        let way = begun.filter(|_| self.method.is_some() || self.scene.planned().is_none());
+        self.planner.start(&settings, self.scene.height().map(|height| Viewport { way, height }), begun);
         self.ink.clear();
         self.report = self.now();
         Ok(())
@@ -133,9 +130,8 @@ impl<'a> Player<'a> {
     /// Never inlined: what a motion needs to start would be on the stack of every frame.
     #[inline(never)]
     fn follow(&mut self, found: &Finding) {
-        if let (Ok(Plan { method, steps, .. }), None) = (found, self.scene.viewport().and_then(|viewport| viewport.way))
-        {
-            let way = Way { method: *method, steps: (*steps).max(1) };
+        if let (Ok(plan), None) = (found, self.method) {
+            let way = plan.way();
             if self.scene.planned().is_some_and(|simulation| simulation.motion.way() != way) {
                 self.next = CatchingUp::new(&self.settings, way, &self.planner.processor).ok();
             }
@@ -159,7 +155,7 @@ impl<'a> Player<'a> {
     /// The scene in numbers, with what the planner knows of it.
     fn now(&self) -> Report {
         let report = self.scene.report();
-        let (Some(_), Some(way)) = (self.scene.viewport(), report.way) else { return report };
+        let (Some(_), Some(way)) = (self.scene.height(), report.way) else { return report };
         Report { horizon: self.planner.horizon(way) as f32, is_looking: self.planner.is_looking(), ..report }
     }
 
@@ -251,10 +247,13 @@ impl<'a> Player<'a> {
         let name = SceneName::from_code(status.scene).ok_or(Field::Scene)?;
         let [m1, m2, l1, l2, g] = status.parameters;
         let parameters = Parameters { m1, m2, l1, l2, g };
+        let mut pace = Pace::default();
+        (pace.paused, pace.steps) = (status.paused != 0, status.steps);
+        pace.set_speed(status.speed.into())?;
         let before = core::mem::replace(&mut self.method, method_of(status.asked));
         let settings = Settings { parameters, degrees: status.degrees, velocities: status.velocities };
         self.start(name, settings).inspect_err(|_| self.method = before)?;
-        self.pace = Pace::resumed(status.paused != 0, status.steps, status.speed);
+        self.pace = pace;
         Ok(())
     }
 

@@ -101,7 +101,7 @@ fn run<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons>(
     mut watchdog: impl Watchdog,
     reset_by_watchdog: bool,
 ) -> ! {
-    app.use_instruments(instruments);
+    app.instruments = instruments;
     let mut journal = resume(app, reset_by_watchdog);
     let mut now = ticks();
     app.count_from(now, 0);
@@ -119,7 +119,7 @@ fn run<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons>(
         app.receive(&mut receiver, log);
         app.note_lost(receiver.lost(), log);
         while ticks() == now && app.work(log) {}
-        while ticks() == now && app.look_ahead() {}
+        while ticks() == now && app.player.look_ahead() {}
         now = clock.wait_after(now);
     }
 }

@@ -11,7 +11,7 @@ use super::cortex_m::identity::instruments;
 use super::cortex_m::interrupt::Interrupt;
 use super::cortex_m::watchdog::{NMI, TwoStage};
 use super::register::{Device, Register};
-use super::serial::{self, Port, Taken, Transmitter};
+use super::serial::{self, Inward, Taken, Transmitter};
 use crate::app::NoButtons;
 use crate::config::BAUD;
 use crate::display::NoDisplay;
@@ -48,13 +48,13 @@ pub type Mps2An386 = Board<NoDisplay, Transmitter, NoButtons, TwoStage>;
 pub fn take() -> Option<Mps2An386> {
     let core = Peripherals::take()?;
     guard_stack(core.MPU);
-    let (link, receiver) = serial::start(PORT);
+    let receiver = serial::receive_from(Inward { clear: |_| INTERRUPT_CLEAR.write(RECEIVED), take: received });
     DIVISOR.write(HERTZ / BAUD);
     CONTROL.write(ENABLE);
     INTERRUPT.unmask();
     Some(Board {
         panel: NoDisplay,
-        link,
+        link: Transmitter { is_ready: || STATE.read() & TRANSMITTER_FULL == 0, put: |byte| DATA.write(byte.into()) },
         receiver,
         keys: NoButtons,
         instruments: instruments(BoardName::Mps2An386, HERTZ, [0; 4], &core.CPUID, core.DCB, core.DWT),
@@ -64,15 +64,11 @@ pub fn take() -> Option<Mps2An386> {
     })
 }
 
-const PORT: Port = Port {
-    clear: |_| INTERRUPT_CLEAR.write(RECEIVED),
-    take: || {
-        let state = STATE.read();
-        if state & RECEIVER_OVERRUN != 0 {
-            STATE.write(RECEIVER_OVERRUN); // Written back, it is cleared.
-        }
-        Taken { byte: (state & RECEIVER_FULL != 0).then(|| DATA.read() as u8), overrun: state & RECEIVER_OVERRUN != 0 }
-    },
-    is_ready: || STATE.read() & TRANSMITTER_FULL == 0,
-    put: |byte| DATA.write(byte.into()),
-};
+fn received() -> Taken {
+    let state = STATE.read();
+    let overrun = state & RECEIVER_OVERRUN != 0;
+    if overrun {
+        STATE.write(RECEIVER_OVERRUN); // Written back, it is cleared.
+    }
+    Taken { byte: (state & RECEIVER_FULL != 0).then(|| DATA.read() as u8), overrun }
+}

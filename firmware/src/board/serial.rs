@@ -10,19 +10,15 @@ use heapless::Deque;
 use super::cortex_m::interrupt::{Shared, with};
 use crate::config::{BUS_TRIES, RECEIVE_QUEUE};
 
+/// The inward direction of a port.
 #[derive(Clone, Copy)]
-pub(in crate::board) struct Port {
+pub(in crate::board) struct Inward {
     /// Ends the receiver's interrupt, given for how many bytes there is room. Done before the bytes are taken, so that one that
     /// comes meanwhile interrupts anew.
     pub clear: fn(usize),
     pub take: fn() -> Taken,
-    /// Whether it takes a byte to be sent now.
-    pub is_ready: fn() -> bool,
-    /// Gives it a byte to be sent, once it is ready.
-    pub put: fn(u8),
 }
 
-#[derive(Clone, Copy)]
 pub(in crate::board) struct Taken {
     /// The next byte; `None` once there is none.
     pub byte: Option<u8>,
@@ -31,7 +27,7 @@ pub(in crate::board) struct Taken {
 }
 
 struct Link {
-    port: Option<Port>,
+    port: Option<Inward>,
     received: Deque<u8, RECEIVE_QUEUE>,
     lost: u32,
 }
@@ -39,15 +35,15 @@ struct Link {
 static LINK: Shared<Link> = Mutex::new(RefCell::new(Link { port: None, received: Deque::new(), lost: 0 }));
 
 /// Lets the interrupt fill the queue from this port.
-pub(in crate::board) fn start(port: Port) -> (Transmitter, Receiver) {
+pub(in crate::board) fn receive_from(port: Inward) -> Receiver {
     with(&LINK, |link| link.port = Some(port));
-    (Transmitter(()), Receiver(()))
+    Receiver(())
 }
 
 /// Moves what has come into the queue; for the receiver's interrupt.
 pub(in crate::board) fn receive() {
     with(&LINK, |Link { port, received, lost }| {
-        let Some(Port { clear, take, .. }) = *port else { return };
+        let Some(Inward { clear, take }) = *port else { return };
         clear(received.capacity().saturating_sub(received.len()));
         loop {
             let Taken { byte, overrun } = take();
@@ -64,8 +60,7 @@ pub(in crate::board) fn receive() {
 pub struct Receiver(());
 
 impl Receiver {
-    /// Bytes lost since reset because they were not taken in time; at least so many, since a port does not say how many it had no
-    /// room for. Wraps.
+    /// A lower bound on the bytes that have overrun the port or the queue since reset: a port may report several at once. Wraps.
     pub fn lost(&self) -> u32 {
         with(&LINK, |link| link.lost).unwrap_or_default()
     }
@@ -79,8 +74,13 @@ impl Iterator for Receiver {
     }
 }
 
-/// The port's outward direction.
-pub struct Transmitter(());
+/// The outward direction of a port.
+pub struct Transmitter {
+    /// Whether it takes a byte to be sent now.
+    pub(in crate::board) is_ready: fn() -> bool,
+    /// Gives it a byte to be sent, once it is ready.
+    pub(in crate::board) put: fn(u8),
+}
 
 impl ErrorType for Transmitter {
     type Error = ErrorKind;
@@ -88,12 +88,11 @@ impl ErrorType for Transmitter {
 
 impl Write for Transmitter {
     fn write(&mut self, bytes: &[u8]) -> Result<usize, ErrorKind> {
-        let Some(port) = with(&LINK, |link| link.port).flatten() else { return Err(ErrorKind::NotConnected) };
         for &byte in bytes {
-            if !(0..BUS_TRIES).any(|_| (port.is_ready)()) {
+            if !(0..BUS_TRIES).any(|_| (self.is_ready)()) {
                 return Err(ErrorKind::TimedOut);
             }
-            (port.put)(byte);
+            (self.put)(byte);
         }
         Ok(bytes.len())
     }

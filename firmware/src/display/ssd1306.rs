@@ -86,7 +86,7 @@ pub enum Ssd1306Error {
 /// the picture, or one of the messages that wake the panel.
 #[derive(Debug)]
 pub struct Ssd1306<Bus> {
-    bus: Bus,
+    pub bus: Bus,
     state: State,
     built_for: Option<Controller>,
     found: Option<Found>,

@@ -7,8 +7,6 @@
 
 mod answer;
 mod comparison;
-mod counted;
-mod drawn;
 mod request;
 mod run;
 mod table;

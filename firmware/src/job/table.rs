@@ -10,8 +10,8 @@ use double_pendulum::{
 };
 
 use super::comparison::{Micromath, Textbook};
-use super::drawn::Drawn;
-use super::{JobError, Reading, Request, Run, answer, counted};
+use super::run::Drawn;
+use super::{JobError, Reading, Request, Run, answer, request};
 
 /// What computes a method: its form's steps, unless another type is given.
 macro_rules! run {
@@ -59,7 +59,7 @@ macro_rules! table {
             }
         }
 
-        /// A [`Run`](double_pendulum::Run) by whatever method.
+        /// A [`Run`](double_pendulum::Run) whose method is chosen at run time.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub enum AnyRun { $($method(double_pendulum::Run<$form>),)* $($other(double_pendulum::Run<$other_form>),)* }
 
@@ -112,8 +112,8 @@ macro_rules! table {
             /// are bit-identical if theirs are equal.
             pub fn crc(&self) -> Result<u32, JobError> {
                 match self.method {
-                    $(Method::$method => counted::crc::<Stepper<$form>>(self),)*
-                    $(Method::$other => counted::crc::<run!($other_form $(, $other_run)?)>(self),)*
+                    $(Method::$method => request::crc::<Stepper<$form>>(self),)*
+                    $(Method::$other => request::crc::<run!($other_form $(, $other_run)?)>(self),)*
                 }
             }
         }

@@ -8,4 +8,4 @@ mod simulation;
 pub use misprinted::Misprinted;
 pub use planner::{Finding, Planner, Viewport, half_pixel, problem};
 pub use settings::Settings;
-pub use simulation::{CatchingUp, Energy, Means, Simulation, start_beside};
+pub use simulation::{CatchingUp, Energy, Means, Simulation};

@@ -48,9 +48,8 @@ impl Planner {
 
     /// Begins anew for a scene that starts with `settings`, and in the way `begun`; one that shows no motion has no plan.
     pub fn start(&mut self, settings: &Settings, viewport: Option<Viewport>, begun: Option<Way>) {
-        let (task, begun) =
-            (viewport.map(|viewport| (problem(settings, &viewport), viewport)), begun.map(|way| (way, 0.0)));
-        (self.task, self.search, self.plan, self.begun) = (task, None, None, begun);
+        let task = viewport.map(|viewport| (problem(settings, &viewport), viewport));
+        (self.task, self.search, self.plan, self.begun) = (task, None, None, begun.map(|way| (way, 0.0)));
         (self.ticks, self.debt, self.is_news, self.is_due) = (0, 0.0, false, false);
     }
 
@@ -102,8 +101,7 @@ impl Planner {
     /// The plan's horizon, if it is of this way.
     fn planned(&self, way: Way) -> f64 {
         let plan = self.plan.and_then(Result::ok);
-        let is_of = |plan: &Plan| plan.method == way.method && plan.steps.max(1) == way.steps;
-        plan.filter(is_of).map_or(0.0, |plan| plan.horizon)
+        plan.filter(|plan| plan.way() == way).map_or(0.0, |plan| plan.horizon)
     }
 
     /// Whether it may turn out that they are for longer.
@@ -140,7 +138,7 @@ impl Planner {
         let plan = self.plan.and_then(Result::ok);
         plan.is_some_and(|plan| {
             let far = self.ticks as f64 / f64::from(TICK_RATE) + PLANNED;
-            self.looked_at(Way { method: plan.method, steps: plan.steps.max(1) }) >= far
+            self.looked_at(plan.way()) >= far
         })
     }
 

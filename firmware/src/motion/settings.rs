@@ -1,8 +1,9 @@
 //! What a motion starts from: the pendulum, and where it is let go.
 
+use double_pendulum::plan::{PlannedRun, Way};
 use double_pendulum::{Error, Motion, Parameters, Pendulum, State};
 
-use crate::config::{ANGLE_STEP, FIRST_ANGLE, FIRST_MASS_RATIO, GRAVITY, GREATEST_ANGLE, MASS_RATIOS, ROD};
+use crate::config::{ANGLE_STEP, FIRST_ANGLE, FIRST_MASS_RATIO, GRAVITY, GREATEST_ANGLE, MASS_RATIOS, ROD, TICK_RATE};
 
 /// A double pendulum and its start.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,22 +62,24 @@ impl Settings {
         self.degrees.map(f32::to_radians)
     }
 
-    /// The pendulum; the kernel's error if the parameters describe none.
-    pub fn pendulum(&self) -> Result<Pendulum<f32>, Error> {
-        Pendulum::new(&self.parameters)
-    }
-
     pub fn motion(&self) -> Motion<f32> {
         let ([a1, a2], [w1, w2]) = (self.angles(), self.velocities);
         Motion { a1, a2, w1, w2 }
     }
 
-    /// Where `pendulum` starts, by angles and momenta; the kernel's error if they are not finite.
-    pub fn start(&self, pendulum: &Pendulum<f32>) -> Result<State<f32>, Error> {
-        let motion = self.motion();
+    /// The pendulum and where it starts; the kernel's error if they describe none, or no finite state.
+    pub fn start(&self) -> Result<(Pendulum<f32>, State<f32>), Error> {
+        let (pendulum, motion) = (Pendulum::new(&self.parameters)?, self.motion());
         motion.check()?;
         let state = pendulum.to_state(&motion);
         state.check()?;
-        Ok(state)
+        Ok((pendulum, state))
+    }
+
+    /// The motion this `way`, with rod 1 ahead by `apart` rad.
+    pub fn run(&self, apart: f64, way: Way) -> Result<PlannedRun, Error> {
+        let start = self.motion().cast();
+        let start = Motion { a1: start.a1 + apart, ..start };
+        PlannedRun::new(&self.parameters.cast(), &start, TICK_RATE as u16, way)
     }
 }

@@ -1,7 +1,7 @@
 //! The motion itself, apart from any frame of it, and what its energy has become.
 
 use double_pendulum::plan::{PlannedRun, Way};
-use double_pendulum::{Error, Method, Motion, Pendulum, State};
+use double_pendulum::{Error, Method, Pendulum, State};
 
 use crate::config::{Processor, TICK_RATE};
 use crate::motion::Settings;
@@ -15,57 +15,34 @@ pub struct Means {
     pub method: Option<Method>,
 }
 
-impl Means {
-    /// `settings` in motion: in the way that lasts longest by all that is known before planning, or that is asked for.
-    ///
-    /// The kernel's error if the `pendulum` is too quick for what may be spent.
-    fn start(&self, settings: &Settings, pendulum: &Pendulum<f32>) -> Result<PlannedRun, Error> {
-        let (parameters, start, rate) = (settings.parameters.cast(), settings.motion().cast(), TICK_RATE as u16);
-        let way = match self.method {
-            Some(method) => Way::of(&parameters, &start, rate, method)?,
-            None => Way::lasting(&parameters, &start, rate, &self.processor.costs, self.processor.frame)?,
-        };
-        pendulum.check_step(1.0 / (f64::from(rate) * f64::from(way.steps)))?;
-        PlannedRun::new(&parameters, &start, rate, way)
-    }
-}
-
-/// `settings` in motion in this `way`, but with rod 1 ahead by `apart` rad.
-pub fn start_beside(settings: &Settings, apart: f64, way: Way) -> Result<PlannedRun, Error> {
-    let start = settings.motion().cast();
-    let beside = Motion { a1: start.a1 + apart, ..start };
-    PlannedRun::new(&settings.parameters.cast(), &beside, TICK_RATE as u16, way)
-}
-
 /// A pendulum in motion since its last restart.
 #[derive(Clone, Debug)]
 pub struct Simulation {
     pub energy: Energy,
     /// To be read: only [`tick`](Self::tick) moves it.
     pub motion: PlannedRun,
-    /// Whether its method was asked for.
-    is_given: bool,
 }
 
 impl Simulation {
-    /// At the start; refuses what [`Means::start`] refuses.
-    pub fn new(settings: &Settings, means: &Means) -> Result<Self, Error> {
-        let pendulum = settings.pendulum()?;
-        let start = settings.start(&pendulum)?;
-        let motion = means.start(settings, &pendulum)?;
+    /// At the start, in the way that is asked for, or that lasts longest by all that is known before planning; the kernel's error
+    /// if the pendulum is too quick for what may be spent.
+    pub fn new(settings: &Settings, &Means { ref processor, method }: &Means) -> Result<Self, Error> {
+        let (pendulum, start) = settings.start()?;
+        let (parameters, motion, rate) = (settings.parameters.cast(), settings.motion().cast(), TICK_RATE as u16);
+        let way = match method {
+            Some(method) => Way::of(&parameters, &motion, rate, method)?,
+            None => Way::lasting(&parameters, &motion, rate, &processor.costs, processor.frame)?,
+        };
+        pendulum.check_step(1.0 / (f64::from(rate) * f64::from(way.steps)))?;
+        let motion = settings.run(0.0, way)?;
         let start = pendulum.energy_at(motion.directions(), [start.p1, start.p2]);
-        Ok(Self { energy: Energy { pendulum, start }, motion, is_given: means.method.is_some() })
+        Ok(Self { energy: Energy { pendulum, start }, motion })
     }
 
     #[inline(never)] // one copy
     pub fn tick(&mut self) {
         // A motion that is lost is seen by its state.
         let _is_lost = self.motion.advance(1);
-    }
-
-    /// The way that was asked for in place of the plan's, if one was.
-    pub fn given(&self) -> Option<Way> {
-        self.is_given.then(|| self.motion.way())
     }
 
     /// The error of its energy in this `state`, the present one ([`Energy::error`]).
@@ -84,14 +61,11 @@ pub struct CatchingUp {
 }
 
 impl CatchingUp {
-    /// Refuses what [`PlannedRun::new`] refuses.
     pub fn new(settings: &Settings, way: Way, processor: &Processor) -> Result<Self, Error> {
-        let (parameters, start) = (settings.parameters.cast(), settings.motion().cast());
         let frame = processor.costs.of_frame(way.method, way.steps).max(processor.piece());
         let affordable = (processor.look_ahead / frame) as u32;
-        let motion = PlannedRun::new(&parameters, &start, TICK_RATE as u16, way)?;
         // With fewer frames in a tick nothing catches up.
-        Ok(Self { motion, most: affordable.max(2) })
+        Ok(Self { motion: settings.run(0.0, way)?, most: affordable.max(2) })
     }
 
     /// Makes a tick's frames; whether it has caught up with `simulation`, which then goes on as this.

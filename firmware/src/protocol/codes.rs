@@ -1,7 +1,7 @@
-//! Codes on the wire of what has its names elsewhere.
+//! Codes on the wire: of boards, of what a request or a command is about and can be wrong in, and of what has its names elsewhere.
 
-use double_pendulum::Method;
 use double_pendulum::plan::Limit;
+use double_pendulum::{Error, Method, Parameter};
 
 use super::choice::choice;
 
@@ -33,4 +33,53 @@ pub fn method_of(code: u8) -> Option<Method> {
 /// The code of what ends a horizon, likewise.
 pub const fn limit_code(limit: Limit) -> u8 {
     limit as u8
+}
+
+choice! {
+    Field {
+        /// The method, by its [`method_code`](super::method_code); to set the scene's, [`NO_METHOD`](super::NO_METHOD) is as
+        /// the plan has it.
+        Method = 0, "method";
+        M1 = 2, "m1";
+        M2 = 3, "m2";
+        L1 = 4, "l1";
+        L2 = 5, "l2";
+        G = 6, "g";
+        A1 = 7, "a1";
+        A2 = 8, "a2";
+        W1 = 9, "w1";
+        W2 = 10, "w2";
+        Dt = 11, "step size";
+        /// Mass ratio m2/m1: sets m2.
+        MassRatio = 12, "mu";
+        Angle = 13, "angle";
+        /// Simulated time per real time.
+        Speed = 14, "speed";
+        Field = 15, "field";
+        Scene = 17, "scene";
+        /// The message itself: of no known kind, or not with that kind's fields.
+        Message = 18, "message";
+        Key = 22, "key";
+    }
+}
+
+impl From<Error> for Field {
+    fn from(error: Error) -> Self {
+        if let Error::Diverged { .. } = error {
+            return Field::Dt;
+        }
+        match error.parameter() {
+            Parameter::M1 => Field::M1,
+            Parameter::M2 => Field::M2,
+            Parameter::L1 => Field::L1,
+            Parameter::L2 => Field::L2,
+            Parameter::G => Field::G,
+            Parameter::A1 => Field::A1,
+            Parameter::A2 => Field::A2,
+            // A momentum at the start is the velocity times masses and lengths.
+            Parameter::W1 | Parameter::P1 => Field::W1,
+            Parameter::W2 | Parameter::P2 => Field::W2,
+            _ => Field::Dt,
+        }
+    }
 }

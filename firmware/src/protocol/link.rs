@@ -63,9 +63,7 @@ pub fn frame<'wire>(kind: u8, fields: &[u8], wire: &'wire mut [u8; MAX_WIRE]) ->
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(target_os = "none", derive(defmt::Format))]
 pub enum LinkError {
-    /// More bytes without a delimiter than any message has.
-    TooLong,
-    /// Not a COBS encoding, or shorter than the shortest message.
+    /// Not a COBS encoding, or shorter or longer than any message.
     Malformed,
     Checksum,
     /// The sender speaks another version.
@@ -99,14 +97,15 @@ impl Decoder {
                 self.received = self.received.saturating_add(1);
                 None
             }
-            Ok(DecodeResult::DataComplete) => Some(self.finish().and_then(open)),
-            Err(_) => Some(self.finish().and(Err(LinkError::Malformed))),
+            Ok(DecodeResult::DataComplete) => {
+                let body = self.body.get(..core::mem::take(&mut self.received));
+                Some(body.ok_or(LinkError::Malformed).and_then(open))
+            }
+            Err(_) => {
+                self.received = 0;
+                Some(Err(LinkError::Malformed))
+            }
         }
-    }
-
-    /// The body that the delimiter ends.
-    fn finish(&mut self) -> Result<&[u8], LinkError> {
-        self.body.get(..core::mem::take(&mut self.received)).ok_or(LinkError::TooLong)
     }
 }
 

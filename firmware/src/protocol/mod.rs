@@ -6,14 +6,12 @@
 
 pub(crate) mod choice;
 mod codes;
-mod field;
 mod link;
 mod message;
 mod to_chip;
 mod to_host;
 
-pub use codes::{BoardName, NO_METHOD, limit_code, method_code, method_of};
-pub use field::Field;
+pub use codes::{BoardName, Field, NO_METHOD, limit_code, method_code, method_of};
 pub use link::{CRC, Decoder, LinkError, MAX_WIRE, TO_CHIP, VERSION, encode, frame};
 pub use message::{MAX_FIELDS, Message, request};
 pub use to_chip::{Ask, AskPlan, Choose, Identify, Measure, Pause, Press, Request, Restart, Set, Simulate, Step};

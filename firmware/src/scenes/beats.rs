@@ -5,7 +5,7 @@ use double_pendulum::{Error, Modes, Oscillation, Parameters, SmallOscillations};
 
 use crate::config::{GRAVITY, ROD};
 use crate::graphics::{Anchor, Canvas, Disc, FadeLayer, LINE, LOWEST, Spot, Stroke, WIDTH, label, plot, text};
-use crate::motion::{Means, Settings, Simulation, Viewport};
+use crate::motion::{Means, Settings, Simulation};
 use crate::scenes::{Report, Scene, scene};
 
 /// The middles of the two figures, and how far a mode reaches in them, pixels.
@@ -107,8 +107,8 @@ impl Scene for Beats {
         Report::of(&self.simulation)
     }
 
-    fn viewport(&self) -> Option<Viewport> {
-        Viewport::curves(self.simulation.given(), self.scale)
+    fn height(&self) -> Option<f32> {
+        scene::height_of_curves(self.scale)
     }
 
     fn planned(&mut self) -> Option<&mut Simulation> {

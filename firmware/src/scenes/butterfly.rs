@@ -8,7 +8,7 @@ use crate::config::TICK_RATE;
 use crate::graphics::{
     Anchor, Canvas, FadeLayer, Height, LINE, LOWEST, Place, SUBPIXELS, TRACE_HALF_WIDTH, View, WIDTH, label, plot, text,
 };
-use crate::motion::{Means, Settings, Simulation, Viewport, start_beside};
+use crate::motion::{Means, Settings, Simulation};
 use crate::scenes::{Report, Scene, scene};
 
 /// Angle 1 of the second twin ahead of the first's at the start, rad.
@@ -69,7 +69,7 @@ impl Scene for Butterfly {
     #[inline(never)]
     fn new(settings: &Settings, means: &Means) -> Result<Self, Error> {
         let first = Simulation::new(settings, means)?;
-        let second = start_beside(settings, APART, first.motion.way())?;
+        let second = settings.run(APART, first.motion.way())?;
         let views = [first.motion.directions(), second.directions()]
             .map(|directions| View::new(&settings.parameters, Place::HALVES[0], directions));
         let mut scene = Self { first, second, views, strip: Deque::new() };
@@ -109,7 +109,7 @@ impl Scene for Butterfly {
         Report::of(&self.first)
     }
 
-    fn viewport(&self) -> Option<Viewport> {
-        Viewport::pendulum(Some(self.first.motion.way()), Place::HALVES[0].reach)
+    fn height(&self) -> Option<f32> {
+        Some(2.0 * Place::HALVES[0].reach)
     }
 }

@@ -4,7 +4,7 @@ use double_pendulum::{Error, Parameters};
 
 use crate::config::PAGE_GRAVITY;
 use crate::graphics::{Anchor, Canvas, FadeLayer, LINE, LOWEST, Place, TRACE_HALF_WIDTH, View, WIDTH, label, text};
-use crate::motion::{Means, Misprinted, Settings, Simulation, Viewport};
+use crate::motion::{Means, Misprinted, Settings, Simulation};
 use crate::scenes::{Report, Scene, scene};
 
 /// The figure's start: mass ratio 2.75, both rods at 171 degrees, let go from rest. The page gives no more; gravity is that
@@ -59,8 +59,8 @@ impl Scene for Figure7 {
         Report::of(&self.right)
     }
 
-    fn viewport(&self) -> Option<Viewport> {
-        Viewport::pendulum(self.right.given(), Place::HALVES[0].reach)
+    fn height(&self) -> Option<f32> {
+        Some(2.0 * Place::HALVES[0].reach)
     }
 
     fn planned(&mut self) -> Option<&mut Simulation> {

@@ -16,7 +16,7 @@ pub use scene::{Report, Scene};
 use double_pendulum::Error;
 
 use crate::graphics::{Canvas, FadeLayer};
-use crate::motion::{Means, Settings, Simulation, Viewport};
+use crate::motion::{Means, Settings, Simulation};
 use crate::protocol::choice::choice;
 
 macro_rules! catalogue {
@@ -59,8 +59,8 @@ macro_rules! catalogue {
                 match self { $(Self::$row(scene) => scene.draw(report, canvas),)* }
             }
 
-            pub fn viewport(&self) -> Option<Viewport> {
-                match self { $(Self::$row(scene) => scene.viewport(),)* }
+            pub fn height(&self) -> Option<f32> {
+                match self { $(Self::$row(scene) => scene.height(),)* }
             }
 
             pub fn planned(&mut self) -> Option<&mut Simulation> {

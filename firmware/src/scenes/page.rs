@@ -4,7 +4,7 @@ use double_pendulum::Error;
 
 use crate::config::{TRAIL_BRIGHTNESS, TRAIL_FADING, TRAIL_HALF_WIDTH};
 use crate::graphics::{Anchor, Canvas, FadeLayer, Fading, LINE, LOWEST, Place, SUBPIXELS, View, label, text};
-use crate::motion::{Means, Settings, Simulation, Viewport};
+use crate::motion::{Means, Settings, Simulation};
 use crate::scenes::{Report, Scene, scene};
 
 /// One pendulum, bob 2's trail, and settings and time in the corners, the one place the motion never reaches.
@@ -48,8 +48,8 @@ impl Scene for Page {
         Report::of(&self.simulation)
     }
 
-    fn viewport(&self) -> Option<Viewport> {
-        Viewport::pendulum(self.simulation.given(), Place::WHOLE.reach)
+    fn height(&self) -> Option<f32> {
+        Some(2.0 * Place::WHOLE.reach)
     }
 
     fn planned(&mut self) -> Option<&mut Simulation> {

@@ -5,7 +5,7 @@ use double_pendulum::{Error, State};
 
 use crate::config::TICK_RATE;
 use crate::graphics::{Anchor, Canvas, FadeLayer, Fading, label, text};
-use crate::motion::{Means, Settings, Simulation, Viewport};
+use crate::motion::{Means, Settings, Simulation};
 
 /// Something to watch: it starts from settings, moves tick by tick and is drawn when there is time for it.
 pub trait Scene: Sized {
@@ -23,12 +23,13 @@ pub trait Scene: Sized {
 
     fn report(&self) -> Report;
 
-    /// How it shows the motion of its settings; `None` if it shows nothing that can be planned.
-    fn viewport(&self) -> Option<Viewport> {
+    /// The height of a display, pixels, on which two rods as long as those shown reach from the middle to the edge; `None` if
+    /// nothing is shown that can be planned.
+    fn height(&self) -> Option<f32> {
         None
     }
 
-    /// The motion that goes the way of the plan, if it shows one.
+    /// The motion that the plan may change the way of.
     fn planned(&mut self) -> Option<&mut Simulation> {
         None
     }
@@ -73,16 +74,9 @@ pub fn time(ticks: u64) -> f64 {
     ticks as f64 / f64::from(TICK_RATE)
 }
 
-impl Viewport {
-    /// As a pendulum whose rods together are `reach` pixels long.
-    pub fn pendulum(way: Option<Way>, reach: f32) -> Option<Self> {
-        Some(Self { way, height: 2.0 * reach })
-    }
-
-    /// As curves of the angles, `scale` pixels to a radian; the rods of a display that shows as much are as long each.
-    pub fn curves(way: Option<Way>, scale: f32) -> Option<Self> {
-        (scale > 0.0).then_some(Self { way, height: 4.0 * scale })
-    }
+/// The [`height`](Scene::height) of curves of the angles, `scale` pixels to a radian: there each rod is as long.
+pub fn height_of_curves(scale: f32) -> Option<f32> {
+    (scale > 0.0).then_some(4.0 * scale)
 }
 
 /// Writes the time and until when the frame can be trusted; the time stands out once it is known that it no longer can.

@@ -5,7 +5,7 @@ use double_pendulum::{Error, Method, Modes, Motion, Oscillation, Parameters, Pen
 
 use crate::config::{PAGE_GRAVITY, TICK_RATE};
 use crate::graphics::{Anchor, Canvas, FadeLayer, Fading, Height, LINE, LOWEST, WIDTH, label, plot, text};
-use crate::motion::{Means, Settings, Viewport};
+use crate::motion::{Means, Settings};
 use crate::scenes::{Report, Scene, scene};
 
 /// The rows of rest of angle 1 and angle 2, pixels from the top, and the greatest swing about them.
@@ -79,8 +79,7 @@ impl Scene for Small {
     const FADING: Fading = Fading::NEVER;
 
     fn new(settings: &Settings, _: &Means) -> Result<Self, Error> {
-        let pendulum = settings.pendulum()?;
-        settings.start(&pendulum)?;
+        let (pendulum, _) = settings.start()?;
         let modes = Modes::new(&settings.parameters.cast())?;
         let motion = SmallOscillations::new(modes, &settings.motion());
         let envelopes = Envelopes::new(&modes, &motion);
@@ -129,8 +128,8 @@ impl Scene for Small {
         Report { state, way: Some(CLOSED_FORM), ..Report::of_figure(self.ticks) }
     }
 
-    fn viewport(&self) -> Option<Viewport> {
-        Viewport::curves(Some(CLOSED_FORM), self.scale)
+    fn height(&self) -> Option<f32> {
+        scene::height_of_curves(self.scale)
     }
 }
 

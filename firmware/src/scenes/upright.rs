@@ -54,9 +54,8 @@ fn directions(state: &State<f32>) -> RodDirections {
 
 impl Scene for Upright {
     fn new(settings: &Settings, _: &Means) -> Result<Self, Error> {
-        let pendulum = settings.pendulum()?;
+        let (pendulum, plain) = settings.start()?;
         pendulum.check_step(DT)?;
-        let plain = settings.start(&pendulum)?;
         let compensated = pendulum.run(&plain, DT)?;
         let (plain_directions, horizon, ticks) = (directions(&plain), f32::INFINITY, 0);
         let view = |place, directions| View::new(&settings.parameters, place, directions);

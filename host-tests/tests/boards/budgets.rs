@@ -49,7 +49,7 @@ fn sections(elf: &Path) -> Memory {
 /// What a board sends as its next frame when it has been told this.
 type Next<'a> = &'a mut dyn FnMut(&[u8]) -> anyhow::Result<Frame>;
 
-/// Tells it this and lets so many frames be drawn; the highest one's cost, counts of the board's clock.
+/// The highest cost of the so many frames that follow this command, counts of the board's clock.
 fn play(next: Next, words: &[u8], frames: usize) -> anyhow::Result<u32> {
     let first = next(words)?.busy_cycles;
     (1..frames).try_fold(first, |highest, _| Ok(highest.max(next(&[])?.busy_cycles)))

@@ -5,17 +5,17 @@ use std::cell::Cell;
 use double_pendulum::plan::{PlannedRun, Way};
 use double_pendulum::{Method, Motion, Parameters, Pendulum, State};
 use embedded_io::{ErrorKind, ErrorType, Write};
-use firmware::app::{App, Buttons, Cause, Command, Event, NoButtons, Player, Pressed, WarmRestart};
+use firmware::app::{Buttons, Cause, Event, NoButtons, Pressed, WarmRestart};
 use firmware::config::{GRAVITY, MOST_TICKS_PER_FRAME, ROD, TICK_RATE};
 use firmware::display::{Display, NoDisplay};
-use firmware::graphics::{Canvas, FadeLayer, Place, RodDirections, View};
+use firmware::graphics::{Canvas, Place, RodDirections, View};
 use firmware::motion::Settings;
 use firmware::protocol::{Frame, LinkError, Message, Restarted, Status};
 use firmware::scenes::SceneName;
-use host_tests::emulator::host::sheets;
+use host_tests::emulator::host::Show;
 use host_tests::oracle::tolerances::ENERGY_SHOWN;
 
-use crate::bench::{Plain, all, app, messages, starting_with, wire};
+use crate::bench::{Plain, all, app, messages, of, starting_with, wire};
 
 /// Runs to each of the clock's readings in turn.
 fn run(clock: impl IntoIterator<Item = u32>) -> Plain {
@@ -136,8 +136,7 @@ fn counts_wrap_unnoticed() {
 
 #[test]
 fn hanging_at_rest_has_no_energy_error() {
-    let settings = Settings::equal_rods(1.0, 0.0);
-    let mut app = starting_with(settings);
+    let mut app = starting_with(Settings::equal_rods(1.0, 0.0));
     app.run_to(10, |_| ());
     assert_eq!(frames(&app.link).iter().map(|frame| frame.energy_error).collect::<Vec<_>>(), [0.0]);
 }
@@ -155,7 +154,7 @@ impl Buttons for Script {
 
 #[test]
 fn buttons_restart_with_the_new_settings() {
-    let mut app = App::new(Settings::default(), sheets(), NoDisplay, Vec::new(), Script::default()).expect("good");
+    let mut app = of(NoDisplay, Vec::new(), Script::default());
     let mut started = Vec::new();
     for now in 1..=60 {
         app.run_to(now, |event| {
@@ -176,7 +175,7 @@ fn buttons_restart_with_the_new_settings() {
 fn impossible_settings_are_refused() {
     for mass_ratio in [0.0, -1.0, f32::NAN, f32::INFINITY] {
         let settings = Settings::equal_rods(mass_ratio, 120.0);
-        let message = App::new(settings, sheets(), NoDisplay, Vec::new(), NoButtons).expect_err("refused").to_string();
+        let message = Show::new(SceneName::Page, &settings).expect_err("refused").to_string();
         assert!(message.starts_with("m2 = "), "{message}");
     }
 }
@@ -194,7 +193,7 @@ impl Display for BrokenPanel<'_> {
 #[test]
 fn a_failing_panel_is_reported_once_and_does_not_stop_the_rest() {
     let broken = Cell::new(true);
-    let mut app = App::new(Settings::default(), sheets(), BrokenPanel(&broken), Vec::new(), NoButtons).expect("good");
+    let mut app = of(BrokenPanel(&broken), Vec::new(), NoButtons);
     let mut events = Vec::new();
     for now in 1..=30 {
         broken.set(!(10..20).contains(&now));
@@ -237,7 +236,7 @@ impl Write for Faulty {
 
 #[test]
 fn a_failing_link_is_reported_once_and_loses_only_its_own_frames() {
-    let mut app = App::new(Settings::default(), sheets(), NoDisplay, Faulty::default(), NoButtons).expect("good");
+    let mut app = of(NoDisplay, Faulty::default(), NoButtons);
     let mut events = Vec::new();
     for now in 1..=20 {
         app.run_to(now, |event| events.push(event));
@@ -289,10 +288,8 @@ fn the_motion_never_touches_the_labels() {
 /// What was played before a restart goes on, and the host is told why the board restarted; what cannot be played is left.
 #[test]
 fn a_restart_goes_on_with_what_was_played() {
-    let mut ink = FadeLayer::NONE;
-    let mut before = Player::new(Settings::equal_rods(2.5, 90.0), &mut ink).expect("good");
-    before.execute(Command::Choose(SceneName::Butterfly)).expect("possible");
-    let played = before.status(0);
+    let before = Show::new(SceneName::Butterfly, &Settings::equal_rods(2.5, 90.0)).expect("good");
+    let played = before.player.status(0);
     let end = Restarted { cause: Cause::Hang.code(), restarts: 1, pc: 2, lr: 3, cfsr: 0, scene: 4, step: 5 };
     let massless = Status { parameters: [0.0; 5], ..played };
     for (played, resumed) in [(Some(played), true), (Some(massless), false), (None, false)] {

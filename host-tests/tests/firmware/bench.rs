@@ -4,8 +4,9 @@ use std::convert::Infallible;
 use std::fmt::Debug;
 
 use embedded_hal::digital::{ErrorType, OutputPin};
-use firmware::app::{App, NoButtons};
-use firmware::display::NoDisplay;
+use embedded_io::Write;
+use firmware::app::{App, Buttons, NoButtons};
+use firmware::display::{Display, NoDisplay};
 use firmware::motion::Settings;
 use firmware::protocol::{Decoder, LinkError, MAX_WIRE, Message, encode};
 use host_tests::emulator::host::sheets;
@@ -18,6 +19,11 @@ pub fn app() -> Plain {
 
 pub fn starting_with(settings: Settings) -> Plain {
     App::new(settings, sheets(), NoDisplay, Vec::new(), NoButtons).expect("good settings")
+}
+
+/// The application with such devices.
+pub fn of<P: Display, L: Write, K: Buttons>(panel: P, link: L, keys: K) -> App<'static, P, L, K> {
+    App::new(Settings::default(), sheets(), panel, link, keys).expect("good settings")
 }
 
 pub fn wire<M: Message>(message: &M) -> Vec<u8> {

@@ -80,7 +80,7 @@ fn a_board_tells_what_it_is_and_how_long_steps_take() {
         motion.advance(steps);
         if in_ram { 800 } else { 1600 }
     };
-    app.use_instruments(Instruments { identity, timed, image: || b"123456789", ..Instruments::default() });
+    app.instruments = Instruments { identity, timed, image: || b"123456789", ..Instruments::default() };
     app.receive(wire(&Identify { request: 1 }), |_| ());
     // The check value of CRC-32/ISO-HDLC.
     assert_eq!(last::<Identity>(&app), Identity { request: 1, image: 0xCBF4_3926, image_bytes: 9, ..identity });
@@ -243,7 +243,7 @@ fn the_plan_is_found_in_some_tick_told_when_asked_and_followed() {
     );
 
     app.receive(wire(&Choose { request: 1, scene: SceneName::Frequencies.code() }), |_| ());
-    assert!(!app.look_ahead());
+    assert!(!app.player.look_ahead());
     assert_eq!(asked(&mut app), Planned { request: 3, found: NOTHING, ..Planned::default() });
 }
 

@@ -8,7 +8,7 @@ use firmware::config::{
 };
 use firmware::display::NoDisplay;
 use firmware::graphics::{Anchor, Canvas, FadeLayer, HEIGHT, WIDTH, plot, text};
-use firmware::motion::{Means, Settings, Viewport};
+use firmware::motion::{Means, Settings};
 use firmware::protocol::{MAX_WIRE, Pause, encode};
 use firmware::scenes::{AnyScene, Flips, Scene, SceneName};
 use host_tests::emulator::host::{Show, sheets};
@@ -133,15 +133,16 @@ fn a_pause_is_marked_and_only_a_pause() {
 /// is on the frame.
 #[test]
 fn what_is_planned_is_what_is_shown() {
-    let viewport = |name: SceneName| AnyScene::new(name, &name.first_settings(), &MEANS).expect("a scene").viewport();
+    let scene = |name: SceneName| AnyScene::new(name, &name.first_settings(), &MEANS).expect("a scene");
     for name in [SceneName::Beats3To2, SceneName::Beats2To1, SceneName::Beats5To2, SceneName::Beats3To1] {
-        let Some(Viewport { way, height }) = viewport(name) else { panic!("{} moves", name.name()) };
-        assert_eq!(way, None, "{} follows its plan", name.name());
+        let mut scene = scene(name);
+        let height = scene.height().expect("it moves");
+        assert!(scene.planned().is_some(), "{} follows its plan", name.name());
         // Its greatest swing, 12 degrees, is 21.5 pixels long.
         let expected = 4.0 * 21.5 / 12.0_f32.to_radians();
         assert!((height / expected - 1.0).abs() < SHOWN_HEIGHT, "{}: {height} for {expected}", name.name());
     }
-    assert_eq!(viewport(SceneName::Frequencies), None);
+    assert_eq!(scene(SceneName::Frequencies).height(), None);
 }
 
 /// The map as each class of processors computes it, on any host: in `f32` where there is a unit for that.

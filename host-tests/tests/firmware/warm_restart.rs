@@ -2,10 +2,10 @@
 
 use fastrand::Rng;
 use firmware::app::{Cause, Command, Journal, Kept, LastShown, MOST_RESTARTS, Player, SOUND_FRAMES, WarmRestart};
-use firmware::graphics::FadeLayer;
 use firmware::motion::Settings;
 use firmware::protocol::{Field, MAX_WIRE, Message, Restarted, Status, encode};
 use firmware::scenes::SceneName;
+use host_tests::emulator::host::Show;
 
 fn kept<M: Message>(message: &M) -> Kept {
     let mut kept = [0; MAX_WIRE];
@@ -13,9 +13,16 @@ fn kept<M: Message>(message: &M) -> Kept {
     kept
 }
 
+fn recall(played: &Status, end: &Restarted, by_watchdog: bool) -> Option<WarmRestart> {
+    WarmRestart::recall(&kept(played), &kept(end), by_watchdog)
+}
+
+fn player() -> Player<'static> {
+    Show::new(SceneName::Page, &Settings::default()).expect("good").player
+}
+
 fn status() -> Status {
-    let mut ink = FadeLayer::NONE;
-    let mut player = Player::new(Settings::default(), &mut ink).expect("good");
+    let mut player = player();
     for command in [Command::Choose(SceneName::Butterfly), Command::Set { field: Field::MassRatio, value: 0.7 }] {
         player.execute(command).expect("possible");
     }
@@ -29,7 +36,7 @@ fn end() -> Restarted {
 
 #[test]
 fn it_is_recalled_as_it_was_kept() {
-    let restart = WarmRestart::recall(&kept(&status()), &kept(&end()), false).expect("intact");
+    let restart = recall(&status(), &end(), false).expect("intact");
     let expected = WarmRestart { played: Some(status()), end: Restarted { restarts: 2, ..end() }, cause: Cause::Fault };
     assert_eq!(restart, expected);
     assert_eq!(LastShown(Some(restart.end)).to_string(), "scene butterfly, step 480");
@@ -53,19 +60,18 @@ fn what_memory_holds_when_it_is_switched_on_is_not_trusted() {
 
 #[test]
 fn a_reset_from_outside_starts_anew_and_one_by_the_watchdog_does_not() {
-    let running = kept(&Restarted { cause: 0, ..end() });
-    assert_eq!(WarmRestart::recall(&kept(&status()), &running, false), None);
-    let hung = WarmRestart::recall(&kept(&status()), &running, true).expect("intact");
-    assert_eq!((hung.cause, hung.end.cause), (Cause::Hang, Cause::Hang.code()));
-    let unknown = kept(&Restarted { cause: 77, ..end() });
-    assert_eq!(WarmRestart::recall(&kept(&status()), &unknown, false), None);
+    for no_cause in [0, 77] {
+        let running = Restarted { cause: no_cause, ..end() };
+        assert_eq!(recall(&status(), &running, false), None);
+        let hung = recall(&status(), &running, true).expect("intact");
+        assert_eq!((hung.cause, hung.end.cause), (Cause::Hang, Cause::Hang.code()));
+    }
 }
 
 #[test]
 fn what_ends_the_board_each_time_is_given_up() {
     for restarts in [0, 1, MOST_RESTARTS - 1, MOST_RESTARTS, u8::MAX] {
-        let restart = WarmRestart::recall(&kept(&status()), &kept(&Restarted { restarts, ..end() }), false);
-        let restart = restart.expect("intact");
+        let restart = recall(&status(), &Restarted { restarts, ..end() }, false).expect("intact");
         assert_eq!(restart.end.restarts, restarts.saturating_add(1));
         assert_eq!(restart.played.is_some(), restarts < MOST_RESTARTS, "after {restarts}");
     }
@@ -73,9 +79,7 @@ fn what_ends_the_board_each_time_is_given_up() {
 
 #[test]
 fn a_minute_without_a_restart_forgets_those_before() {
-    let restart = WarmRestart::recall(&kept(&status()), &kept(&end()), false).expect("intact");
-    let mut ink = FadeLayer::NONE;
-    let mut player = Player::new(Settings::default(), &mut ink).expect("good");
+    let (mut player, restart) = (player(), recall(&status(), &end(), false).expect("intact"));
     let mut journal = Journal::new(Some(&restart));
     for frame in 1..=SOUND_FRAMES + 10 {
         let (played, end) = journal.note(&player);
@@ -90,10 +94,8 @@ fn a_minute_without_a_restart_forgets_those_before() {
 #[test]
 fn every_scene_is_resumed_with_its_settings() {
     for &name in SceneName::ALL {
-        let (mut ink, mut other) = (FadeLayer::NONE, FadeLayer::NONE);
-        let mut player = Player::new(Settings::default(), &mut ink).expect("good");
+        let (mut player, mut resumed) = (player(), player());
         let speed = |value| Command::Set { field: Field::Speed, value };
-        let mut resumed = Player::new(Settings::default(), &mut other).expect("good");
         for value in [0.01, 0.7, 4.0] {
             for command in [Command::Choose(name), Command::TurnLeft, speed(value), Command::Step(7)] {
                 player.execute(command).expect("possible");
@@ -107,12 +109,12 @@ fn every_scene_is_resumed_with_its_settings() {
 
 #[test]
 fn what_cannot_be_played_changes_nothing() {
-    let mut ink = FadeLayer::NONE;
-    let mut player = Player::new(Settings::default(), &mut ink).expect("good");
+    let mut player = player();
     let before = player.status(0);
-    let mut massless = status();
-    massless.parameters[0] = -1.0;
-    for impossible in [Status { scene: 200, ..status() }, massless] {
+    let good = status();
+    for impossible in
+        [Status { scene: 200, ..good }, Status { parameters: [-1.0; 5], ..good }, Status { speed: f32::NAN, ..good }]
+    {
         assert!(player.resume(&impossible).is_err());
         assert_eq!(player.status(0), before);
     }
@@ -120,17 +122,15 @@ fn what_cannot_be_played_changes_nothing() {
 
 #[test]
 fn any_flipped_bit_is_noticed() {
-    let (played, played_length) = (kept(&status()), encode(&status(), &mut [0; MAX_WIRE]).len());
-    let (end, end_length) = (kept(&end()), encode(&end(), &mut [0; MAX_WIRE]).len());
-    let flipped = |kept: Kept, bit: usize| {
-        let mut flipped = kept;
-        flipped[bit / 8] ^= 1 << (bit % 8);
-        flipped
+    let (played, end) = (kept(&status()), kept(&end()));
+    let flipped = |kept: Kept| {
+        let length = kept.iter().rposition(|byte| *byte != 0).expect("a message") + 2;
+        (0..8 * length).map(move |bit| {
+            let mut flipped = kept;
+            flipped[bit / 8] ^= 1 << (bit % 8);
+            flipped
+        })
     };
-    for bit in 0..8 * played_length {
-        assert_eq!(WarmRestart::recall(&flipped(played, bit), &end, true), None, "bit {bit} of what was played");
-    }
-    for bit in 0..8 * end_length {
-        assert_eq!(WarmRestart::recall(&played, &flipped(end, bit), true), None, "bit {bit} of how it ended");
-    }
+    assert!(flipped(played).all(|played| WarmRestart::recall(&played, &end, true).is_none()));
+    assert!(flipped(end).all(|end| WarmRestart::recall(&played, &end, true).is_none()));
 }

@@ -26,7 +26,7 @@ use cortex_m_rt::ExceptionFrame;
 use cortex_m_semihosting::{debug, hio};
 
 use super::calls::{calls, instruction};
-use super::{fault_status, retained, watchdog};
+use super::{retained, watchdog};
 use crate::app::{Cause, LastShown};
 use crate::config::WATCHDOG_SECONDS;
 use crate::fault::{Fault, Stacked};
@@ -56,7 +56,7 @@ fn panic(info: &PanicInfo) -> ! {
     let mut calls = calls(stack_pointer());
     let [pc, lr] = [(); 2].map(|()| calls.next().unwrap_or_default());
     // Of a fault before, if it is not zero.
-    let [cfsr, ..] = fault_status::read(false);
+    let [cfsr, ..] = fault_status(false);
     let report = format_args!("PANIC: {info}\n  pc {pc:#010x}  lr {lr:#010x}  cfsr {cfsr:#010x}");
     crash((Cause::Panic, pc, lr, cfsr), &report)
 }
@@ -91,7 +91,7 @@ unsafe extern "C" fn HardFault() {
 
 /// `exception` is what the link register holds on the way into a handler.
 extern "C" fn hard_fault(frame: *mut ExceptionFrame, exception: u32) {
-    let [cfsr, hfsr, mmfar, bfar] = fault_status::read(false);
+    let [cfsr, hfsr, mmfar, bfar] = fault_status(false);
     // SAFETY: the processor has put the frame there, and nothing else knows of it.
     let frame = Fault::has_stacked(cfsr).then(|| unsafe { &mut *frame }).ok_or(frame as u32);
     let (stacked, bottom) = match frame {
@@ -99,7 +99,7 @@ extern "C" fn hard_fault(frame: *mut ExceptionFrame, exception: u32) {
             // A breakpoint is the one fault that leaves CFSR clear, where there is one. (It also sets HFSR.DEBUGEVT, but not in
             // QEMU.)
             if cfsr == 0 && step_over_debugger_call(frame) {
-                fault_status::read(true);
+                fault_status(true);
                 return;
             }
             let stacked = Stacked { pc: frame.pc(), lr: frame.lr(), xpsr: frame.xpsr() };
@@ -181,4 +181,21 @@ fn say(report: &dyn Display) {
     if let Ok(mut stderr) = hio::hstderr() {
         let _ = writeln!(stderr, "{report}\n  {}", LastShown(retained::last()));
     }
+}
+
+/// Why a fault was taken: CFSR, HFSR, MMFAR and BFAR, zeros on a Cortex-M0+, which has none; if `clears`, HFSR forgets it.
+#[cfg(not(armv6m))]
+fn fault_status(clears: bool) -> [u32; 4] {
+    // SAFETY: it is always there, and nothing else uses these registers.
+    let control = unsafe { &*cortex_m::peripheral::SCB::PTR };
+    if clears {
+        // SAFETY: writing the bits back only clears them.
+        unsafe { control.hfsr.modify(|bits| bits) };
+    }
+    [control.cfsr.read(), control.hfsr.read(), control.mmfar.read(), control.bfar.read()]
+}
+
+#[cfg(armv6m)]
+fn fault_status(_: bool) -> [u32; 4] {
+    [0; 4]
 }

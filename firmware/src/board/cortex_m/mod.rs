@@ -11,6 +11,5 @@ pub(super) mod retained;
 pub(super) mod watchdog;
 
 mod calls;
-mod fault_status;
 #[cfg(armv6m)]
 mod long_product;

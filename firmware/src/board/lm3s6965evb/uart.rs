@@ -3,7 +3,7 @@
 use super::gpio;
 use crate::board::cortex_m::interrupt::Interrupt;
 use crate::board::register::{Device, Register};
-use crate::board::serial::{self, Port, Receiver, Taken, Transmitter};
+use crate::board::serial::{self, Inward, Receiver, Taken, Transmitter};
 use crate::config::BAUD;
 
 // SAFETY: UART0 of the data sheet, chapter 12; without DMA it cannot break memory safety.
@@ -36,21 +36,16 @@ pub(super) fn start(hertz: u32) -> (Transmitter, Receiver) {
     DIVISOR_FRACTION.write(divisor % 64);
     LINE_CONTROL.write(EIGHT_BITS_QUEUED);
     CONTROL.write(ENABLE);
-    let link = serial::start(PORT);
+    let receiver = serial::receive_from(Inward { clear: |_| INTERRUPT_CLEAR.write(RECEIVED), take });
     INTERRUPT_MASK.write(RECEIVED);
     INTERRUPT.unmask();
-    link
+    (Transmitter { is_ready: || FLAGS.read() & TRANSMITTER_FULL == 0, put: |byte| DATA.write(byte.into()) }, receiver)
 }
 
-const PORT: Port = Port {
-    clear: |_| INTERRUPT_CLEAR.write(RECEIVED),
-    take: || {
-        let overrun = RECEIVE_STATUS.read() & OVERRUN != 0;
-        if overrun {
-            RECEIVE_STATUS.write(0); // Any write clears it.
-        }
-        Taken { byte: (FLAGS.read() & RECEIVER_EMPTY == 0).then(|| DATA.read() as u8), overrun }
-    },
-    is_ready: || FLAGS.read() & TRANSMITTER_FULL == 0,
-    put: |byte| DATA.write(byte.into()),
-};
+fn take() -> Taken {
+    let overrun = RECEIVE_STATUS.read() & OVERRUN != 0;
+    if overrun {
+        RECEIVE_STATUS.write(0); // Any write clears it.
+    }
+    Taken { byte: (FLAGS.read() & RECEIVER_EMPTY == 0).then(|| DATA.read() as u8), overrun }
+}

@@ -15,7 +15,7 @@ use rp2040_hal::uart::{DataBits, StopBits, UartConfig, UartPeripheral};
 
 use super::usb;
 use crate::board::cortex_m::interrupt::{Shared, with};
-use crate::board::serial::{self, Port, Taken};
+use crate::board::serial::{self, Inward, Taken};
 use crate::config::{BAUD, BUS_TRIES, UART_QUEUE};
 
 pub(super) type SerialPins = (Pin<Gpio0, FunctionUart, PullNone>, Pin<Gpio1, FunctionUart, PullUp>);
@@ -95,8 +95,8 @@ fn pass_on() {
     });
 }
 
-/// The inward direction: to look at USB and to read what has come ends the interrupts of both. Outwards there is the [`Link`].
-pub(super) const PORT: Port = Port { clear, take, is_ready: || false, put: |_| () };
+/// To look at USB and to read what has come ends the interrupts of both.
+pub(super) const INWARD: Inward = Inward { clear, take };
 
 /// A USB packet for which there is no room stays where it is, and the host waits. As long as it does, its interrupt would come again
 /// and again; meanwhile the UART's does, which is asked for with each frame.

@@ -1,7 +1,8 @@
 //! Raspberry Pi Pico: an RP2040, Cortex-M0+ at 125 MHz, of which one core is used; an SSD1306 or SH1106 panel on I2C0, up to five buttons,
 //! and the serial link over USB and UART0 at once.
 //!
-//! Source: RP2040 data sheet; Raspberry Pi Pico data sheet, for what is on which pin.
+//! Source: RP2040 data sheet, for the watchdog 2.8 (boot sequence), 2.13 (what it resets), 2.14 (subsystem resets), 4.7; Raspberry
+//! Pi Pico data sheet, for what is on which pin.
 //!
 //! | what | GPIO |
 //! |---|---|
@@ -12,19 +13,22 @@
 mod i2c;
 mod link;
 mod usb;
-mod watchdog;
 
 use embedded_hal::digital::InputPin;
 use rp2040_hal::clocks::{Clock as _, init_clocks_and_plls};
+use rp2040_hal::fugit::ExtU32;
 use rp2040_hal::gpio::{DynPinId, FunctionSioInput, Pin, Pins, PullUp};
-use rp2040_hal::{Sio, Watchdog, pac};
+use rp2040_hal::watchdog::{ScratchRegister, Watchdog};
+use rp2040_hal::{Sio, pac};
 
 use crate::app::{Buttons, Instruments, Pressed};
 use crate::board::cortex_m::clock::Clock;
 use crate::board::cortex_m::guard::guard_stack;
 use crate::board::cortex_m::identity::instruments;
+use crate::board::cortex_m::watchdog;
 use crate::board::panel_bus::Bus;
 use crate::board::{Board, log, serial, steps};
+use crate::config::WATCHDOG_SECONDS;
 use crate::display::{BUILT_FOR, Outbox, Ssd1306};
 use crate::protocol::BoardName;
 
@@ -48,14 +52,14 @@ pub fn take() -> Option<Pico> {
     let mut chip = pac::Peripherals::take()?;
     log::into_memory();
     guard_stack(core.MPU);
-    let reset_by_watchdog = watchdog::has_reset(&chip.WATCHDOG, &chip.RESETS);
+    let reset_by_watchdog = reset_by_watchdog(&chip.WATCHDOG, &chip.RESETS);
     let (pll, usb_pll, resets, mut unit) = (chip.PLL_SYS, chip.PLL_USB, &mut chip.RESETS, Watchdog::new(chip.WATCHDOG));
     let clocks = init_clocks_and_plls(CRYSTAL, chip.XOSC, chip.CLOCKS, pll, usb_pll, resets, &mut unit).ok()?;
     let hertz = clocks.system_clock.freq().to_Hz();
     let pins = Pins::new(chip.IO_BANK0, chip.PADS_BANK0, Sio::new(chip.SIO).gpio_bank0, &mut chip.RESETS);
     let serial = (pins.gpio0.reconfigure(), pins.gpio1.reconfigure());
     let link = Link::start(chip.UART0, serial, clocks.peripheral_clock.freq(), &mut chip.RESETS)?;
-    let (_, receiver) = serial::start(link::PORT);
+    let receiver = serial::receive_from(link::INWARD);
     usb::start(chip.USBCTRL_REGS, chip.USBCTRL_DPRAM, clocks.usb_clock, &mut chip.RESETS)?;
     link::enable_interrupts();
     let outbox = cortex_m::singleton!(: Outbox = Outbox::new())?;
@@ -78,7 +82,7 @@ pub fn take() -> Option<Pico> {
             ..instruments(BoardName::Pico, hertz, chip_number, &core.CPUID, core.DCB, core.DWT)
         },
         clock: Clock::start(core.SYST, hertz),
-        watchdog: watchdog::start(unit),
+        watchdog: start_watchdog(unit),
         reset_by_watchdog,
     })
 }
@@ -90,5 +94,38 @@ impl Buttons for PinKeys {
     fn read(&mut self) -> Pressed {
         let [up, down, left, right, select] = self.0.each_mut().map(|pin| pin.is_low() == Ok(true));
         Pressed { up, down, left, right, select }
+    }
+}
+
+/// What the SDK's `watchdog_enable` writes into a scratch register, which a reset leaves alone, but whoever uses the watchdog to
+/// restart the chip on purpose overwrites.
+const STARTED: u32 = 0x6ab7_3121;
+
+/// Whether the watchdog caused the last reset. To be asked before anything is taken out of its reset: the watchdog puts all there is
+/// into reset, a debugger does not.
+///
+/// The watchdog's own word for it, REASON, is not enough. The boot ROM resets the chip by the same watchdog after each download, and a
+/// debugger's reset, which is one of the processor alone (SYSRESETREQ), leaves what REASON said before.
+fn reset_by_watchdog(unit: &pac::WATCHDOG, resets: &pac::RESETS) -> bool {
+    unit.reason().read().timer().bit_is_set()
+        && unit.scratch4().read().bits() == STARTED
+        && resets.reset().read().i2c0().bit_is_set()
+}
+
+/// Starts the watchdog, which has no interrupt; the clocks' set-up has had it before, for it makes the chip's microseconds as well.
+fn start_watchdog(mut unit: Watchdog) -> Watchdog {
+    unit.write_scratch(ScratchRegister::Scratch4, STARTED);
+    unit.start((2 * WATCHDOG_SECONDS).secs());
+    watchdog::stall_by(|stalls| {
+        // SAFETY: the support library uses other bits of this register, and not any more.
+        let unit = unsafe { &*pac::WATCHDOG::ptr() };
+        unit.ctrl().modify(|_, w| w.pause_dbg0().bit(stalls).pause_dbg1().bit(stalls).pause_jtag().bit(stalls));
+    });
+    unit
+}
+
+impl watchdog::Watchdog for Watchdog {
+    fn feed(&mut self) {
+        Self::feed(self);
     }
 }

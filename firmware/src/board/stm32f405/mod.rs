@@ -12,22 +12,25 @@
 //! | serial link | USART3: PB10 out, PB11 in |
 
 mod i2c;
-mod uart;
-mod watchdog;
 
-use stm32f4xx_hal::gpio::PC7;
-use stm32f4xx_hal::pac::{self, DBGMCU, RCC};
+use stm32f4xx_hal::gpio::{PB10, PB11, PC7};
+use stm32f4xx_hal::pac::usart1::RegisterBlock;
+use stm32f4xx_hal::pac::{self, DBGMCU, IWDG, Interrupt, NVIC, RCC, USART3};
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::{Config, Rcc};
+use stm32f4xx_hal::serial::config::InvalidConfig;
+use stm32f4xx_hal::serial::{self as port, Event};
 use stm32f4xx_hal::watchdog::IndependentWatchdog;
 
 use crate::app::{Buttons, Instruments, Pressed};
 use crate::board::cortex_m::clock::Clock;
 use crate::board::cortex_m::guard::guard_stack;
 use crate::board::cortex_m::identity::instruments;
+use crate::board::cortex_m::watchdog::{self, Watchdog};
 use crate::board::panel_bus::Bus;
-use crate::board::serial::Transmitter;
+use crate::board::serial::{self, Inward, Receiver, Taken, Transmitter};
 use crate::board::{Board, log, steps};
+use crate::config::{BAUD, WATCHDOG_SECONDS};
 use crate::display::{BUILT_FOR, Outbox, Ssd1306};
 use crate::protocol::BoardName;
 
@@ -54,7 +57,7 @@ pub fn take() -> Option<Stm32f405> {
     guard_stack(core.MPU);
     let (b, c) = (chip.GPIOB.split(&mut rcc), chip.GPIOC.split(&mut rcc));
     // There is a divisor for this baud rate at either clock, so this does not fail.
-    let (link, receiver) = uart::start(chip.USART3, (b.pb10, b.pb11), &mut rcc).ok()?;
+    let (link, receiver) = start_link(chip.USART3, (b.pb10, b.pb11), &mut rcc).ok()?;
     let outbox = cortex_m::singleton!(: Outbox = Outbox::new())?;
     Some(Board {
         panel: Ssd1306::new(i2c::start(chip.I2C1, b.pb6, b.pb7, &mut rcc, outbox), BUILT_FOR),
@@ -73,8 +76,8 @@ pub fn take() -> Option<Stm32f405> {
             )
         },
         clock: Clock::start(core.SYST, HERTZ),
-        watchdog: watchdog::start(chip.IWDG),
-        reset_by_watchdog: watchdog::has_reset(&mut rcc),
+        watchdog: start_watchdog(chip.IWDG),
+        reset_by_watchdog: reset_by_watchdog(&mut rcc),
     })
 }
 
@@ -106,5 +109,58 @@ fn start_clock(rcc: RCC) -> (Rcc, bool) {
     } else {
         // There is no PLL to wait for, either.
         (rcc.freeze(Config::hsi()), true)
+    }
+}
+
+/// Starts the serial port. The support library sets it up and lets go of it.
+fn start_link(port: USART3, pins: (PB10, PB11), rcc: &mut Rcc) -> Result<(Transmitter, Receiver), InvalidConfig> {
+    let mut port = port.serial::<u8>(pins, port::config::Config::default().baudrate(BAUD.bps()), rcc)?;
+    port.listen(Event::RxNotEmpty);
+    let put = |byte: u8| {
+        uart().dr().write(|w| w.dr().set(byte.into()));
+    };
+    // To read a byte ends its interrupt; there is nothing else to clear.
+    let receiver = serial::receive_from(Inward { clear: |_| (), take: received });
+    // SAFETY: no critical section relies on this interrupt being masked.
+    unsafe { NVIC::unmask(Interrupt::USART3) };
+    Ok((Transmitter { is_ready: || uart().sr().read().txe().bit_is_set(), put }, receiver))
+}
+
+fn uart() -> &'static RegisterBlock {
+    // SAFETY: of these registers either direction uses other bits, and reading does not change the other's.
+    unsafe { &*USART3::ptr() }
+}
+
+fn received() -> Taken {
+    let status = uart().sr().read();
+    // A byte that came before the last one was read is lost, and interrupts until the data are read.
+    let (has_byte, overrun) = (status.rxne().bit_is_set(), status.ore().bit_is_set());
+    let data = (has_byte || overrun).then(|| uart().dr().read().dr().bits() as u8);
+    Taken { byte: data.filter(|_| has_byte), overrun }
+}
+
+/// Starts the independent watchdog, which has no interrupt, and an oscillator of its own, good for a factor of 2 (17 to 47 kHz
+/// instead of 32). In the emulator there is none.
+fn start_watchdog(unit: IWDG) -> IndependentWatchdog {
+    let mut unit = IndependentWatchdog::new(unit);
+    watchdog::stall_by(|stalls| {
+        // SAFETY: of this register nothing else uses anything.
+        let debug = unsafe { &*DBGMCU::ptr() };
+        debug.apb1_fz().modify(|_, w| w.dbg_iwdg_stop().bit(stalls));
+    });
+    unit.start((2 * 1000 * WATCHDOG_SECONDS).millis());
+    unit
+}
+
+/// Whether it caused the last reset. To be asked once.
+fn reset_by_watchdog(rcc: &mut Rcc) -> bool {
+    let has_reset = rcc.csr().read().wdgrstf().bit_is_set();
+    rcc.csr().modify(|_, w| w.rmvf().set_bit());
+    has_reset
+}
+
+impl Watchdog for IndependentWatchdog {
+    fn feed(&mut self) {
+        Self::feed(self);
     }
 }

@@ -1,7 +1,5 @@
 //! The panel's bus at its time.
 
-use std::cell::RefCell;
-
 use embedded_hal::i2c::{ErrorKind, NoAcknowledgeSource};
 use firmware::display::{Outbox, PanelBus, Sent};
 
@@ -13,8 +11,9 @@ pub const BYTE: u32 = 9;
 /// The bus as an interrupt drives it, and the panel at its end.
 pub struct Line {
     pub panel: Controller,
-    /// What is going out, and what has become of it.
-    outgoing: Option<(Outbox, Option<Sent>)>,
+    outbox: Outbox,
+    /// What has become of what was in it; `None` as long as it is going out.
+    outcome: Option<Sent>,
     message: Vec<u8>,
     /// Bits there is time for.
     time: u32,
@@ -28,15 +27,16 @@ pub struct Line {
 }
 
 impl Line {
-    pub fn to(panel: Controller) -> RefCell<Self> {
-        let (outgoing, message) = (None, Vec::new());
-        RefCell::new(Self { panel, outgoing, message, time: 0, taken: 0, hangs: false, freed: 0, sent: 0 })
+    pub fn to(panel: Controller) -> Self {
+        let (outbox, outcome, message) = (Outbox::new(), Some(Ok(())), Vec::new());
+        Self { panel, outbox, outcome, message, time: 0, taken: 0, hangs: false, freed: 0, sent: 0 }
     }
 
     /// Lets the time of `bits` bits pass on the bus.
     pub fn run(&mut self, bits: u32) {
         self.time = if self.hangs { 0 } else { self.time.saturating_add(bits) };
-        while let Some((outbox, sent @ None)) = &mut self.outgoing {
+        let Self { outbox, panel, message, .. } = self;
+        while self.outcome.is_none() {
             let needed = match (outbox.is_within_message(), outbox.is_empty() && !outbox.asks) {
                 (true, _) => BYTE,
                 (false, true) => 1,
@@ -47,66 +47,43 @@ impl Line {
             }
             self.time -= needed;
             self.taken += needed;
-            if !self.panel.plugged_in || outbox.address != self.panel.address {
+            if !panel.plugged_in || outbox.address != panel.address {
                 let source = if outbox.has_begun() { NoAcknowledgeSource::Data } else { NoAcknowledgeSource::Address };
-                *sent = Some(Err(ErrorKind::NoAcknowledge(source)));
-                self.message.clear();
+                self.outcome = Some(Err(ErrorKind::NoAcknowledge(source)));
+                message.clear();
             } else if let Some(byte) = outbox.next() {
-                self.message.push(byte.value);
+                message.push(byte.value);
                 if byte.ends_message {
-                    self.panel.take(&self.message);
-                    self.message.clear();
+                    panel.take(message);
+                    message.clear();
                 }
             } else if outbox.asks {
                 let silence = ErrorKind::NoAcknowledge(NoAcknowledgeSource::Address);
-                *sent = Some(self.panel.status().map(|status| outbox.status = status).ok_or(silence));
+                self.outcome = Some(panel.status().map(|status| outbox.status = status).ok_or(silence));
             } else {
-                *sent = Some(Ok(()));
+                self.outcome = Some(Ok(()));
             }
         }
         self.time = 0;
     }
 
     pub fn is_idle(&self) -> bool {
-        !matches!(self.outgoing, Some((_, None)))
+        self.outcome.is_some()
     }
 }
 
-/// The driver's end of the bus.
-pub struct Bus<'a> {
-    line: &'a RefCell<Line>,
-    outbox: Option<Outbox>,
-    sent: Sent,
-}
-
-impl<'a> Bus<'a> {
-    pub fn new(line: &'a RefCell<Line>) -> Self {
-        Self { line, outbox: Some(Outbox::new()), sent: Ok(()) }
-    }
-}
-
-impl PanelBus for Bus<'_> {
+impl PanelBus for Line {
     fn outbox(&mut self) -> Option<(&mut Outbox, Sent)> {
-        let mut line = self.line.borrow_mut();
-        if line.is_idle()
-            && let Some((outbox, Some(sent))) = line.outgoing.take()
-        {
-            (self.outbox, self.sent) = (Some(outbox), sent);
-        }
-        self.outbox.as_mut().map(|outbox| (outbox, self.sent))
+        self.outcome.map(|sent| (&mut self.outbox, sent))
     }
 
     fn send(&mut self) {
-        let mut line = self.line.borrow_mut();
-        line.outgoing = Some((self.outbox.take().expect("sent once"), None));
-        (line.taken, line.sent) = (0, line.sent + 1);
+        (self.outcome, self.taken, self.sent) = (None, 0, self.sent + 1);
     }
 
     fn give_up(&mut self) {
-        let mut line = self.line.borrow_mut();
-        let (outbox, _) = line.outgoing.take().expect("something to give up");
-        line.freed += 1;
-        line.message.clear();
-        (self.outbox, self.sent) = (Some(outbox), Err(ErrorKind::Other));
+        self.freed += 1;
+        self.message.clear();
+        self.outcome = Some(Err(ErrorKind::Other));
     }
 }

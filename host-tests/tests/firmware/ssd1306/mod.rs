@@ -3,8 +3,6 @@
 mod bus;
 mod controller;
 
-use std::cell::RefCell;
-
 use embedded_hal::i2c::{ErrorKind, NoAcknowledgeSource};
 use fastrand::Rng;
 use firmware::config::{STM32F405, TICK_RATE};
@@ -14,7 +12,7 @@ use firmware::scenes::SceneName;
 use host_tests::emulator::host::Show;
 use host_tests::emulator::qemu::Screenshot;
 
-use bus::{BYTE, Bus, Line};
+use bus::{BYTE, Line};
 use controller::{Controller, Kind, SH1106, SILENT, SSD1306};
 
 /// No answer.
@@ -23,6 +21,24 @@ const SILENCE: ErrorKind = ErrorKind::NoAcknowledge(NoAcknowledgeSource::Address
 const TICK: u32 = 400_000 / TICK_RATE;
 /// As much time as any frame needs, with all that wakes the panel.
 const LONG: u32 = 4 * TICK;
+
+type Panel = Ssd1306<Line>;
+
+/// The driver of such a panel.
+fn panel(controller: Controller) -> Panel {
+    Ssd1306::new(Line::to(controller), None)
+}
+
+/// Sends a frame, and lets the bus have the time of so many bits.
+fn flush(panel: &mut Panel, frame: &Canvas, bits: u32) -> Result<(), Ssd1306Error> {
+    let told = panel.flush(frame);
+    panel.bus.run(bits);
+    told
+}
+
+fn shows(panel: &Panel, frame: &Canvas) -> bool {
+    panel.bus.panel.shows(&Bitmap::from(frame))
+}
 
 fn shown(name: SceneName) -> Show {
     Show::on(STM32F405, name, &name.first_settings()).expect("a scene of the catalogue")
@@ -76,15 +92,13 @@ fn the_panel_shows_each_picture_at_either_address() {
     let noise = [2, 2, 1000, 300, 100, 30, 10, 3].map(|rarity| pixels(|| rng.u32(..rarity) == 0));
     let frames: Vec<_> = [0, 1, 2, 30, 31, 400].map(scene).into_iter().chain(noise).collect();
     for (kind, address) in [(SSD1306, 0x3C), (SSD1306, 0x3D), (SH1106, 0x3C), (SH1106, 0x3D), (SILENT, 0x3C)] {
-        let line = Line::to(Controller::new(kind, address));
-        let mut panel = Ssd1306::new(Bus::new(&line), None);
+        let mut panel = panel(Controller::new(kind, address));
         for (number, frame) in frames.iter().enumerate() {
             // It is looked for, asked and woken with the first frame, at the second address with one more.
             for _ in 0..if number == 0 { FIRST + 1 } else { 1 } {
-                assert_eq!(panel.flush(frame), Ok(()));
-                line.borrow_mut().run(LONG);
+                assert_eq!(flush(&mut panel, frame, LONG), Ok(()));
             }
-            assert!(line.borrow().panel.shows(&Bitmap::from(frame)), "frame {number}, {kind:?} at {address:#04x}");
+            assert!(shows(&panel, frame), "frame {number}, {kind:?} at {address:#04x}");
         }
     }
 }
@@ -110,16 +124,15 @@ fn controllers_are_told_apart_or_the_build_says_which_it_is() {
         (other(0x0F), None, by(0x4F, Name::Sh1107), Err(Ssd1306Error::Sh1107)),
     ] {
         let line = Line::to(Controller::new(kind, 0x3C).plugged(false));
-        let (mut panel, frame, mut all_found) = (Ssd1306::new(Bus::new(&line), built_for), scene(1), Vec::new());
+        let (mut panel, frame, mut all_found) = (Ssd1306::new(line, built_for), scene(1), Vec::new());
         // It is plugged in later, looked for within a second, and found once.
         for number in 0..3 * TICK_RATE {
-            line.borrow_mut().panel.plugged_in = number > FIRST;
-            let _ = panel.flush(&frame);
-            line.borrow_mut().run(LONG);
+            panel.bus.panel.plugged_in = number > FIRST;
+            let _ = flush(&mut panel, &frame, LONG);
             all_found.extend(panel.found());
         }
         assert_eq!((panel.flush(&frame), &all_found[..]), (told, &[found][..]), "{kind:?}");
-        assert_eq!(line.borrow().panel.shows(&Bitmap::from(&frame)), told.is_ok(), "{kind:?}");
+        assert_eq!(shows(&panel, &frame), told.is_ok(), "{kind:?}");
     }
 }
 
@@ -130,14 +143,11 @@ const fn bits(columns: u32) -> u32 {
 
 #[test]
 fn what_has_not_changed_is_not_sent_but_for_the_part_that_is_sent_again() {
-    let line = Line::to(Controller::at(0x3C));
-    let mut panel = Ssd1306::new(Bus::new(&line), None);
-    let mut canvas = scene(30);
+    let (mut panel, mut canvas) = (panel(Controller::at(0x3C)), scene(30));
     let taken = [&[][..], &[], &[], &[], &[20], &[20, 90]].map(|changed| {
         changed.iter().for_each(|&x| canvas.update(x, 7, |grey| 15 - grey));
-        assert_eq!(panel.flush(&canvas), Ok(()));
-        line.borrow_mut().run(LONG);
-        line.borrow().taken
+        assert_eq!(flush(&mut panel, &canvas, LONG), Ok(()));
+        panel.bus.taken
     });
     assert_eq!(taken[3..], [0, 1, 2].map(|changed| changed * bits(1) + bits(16) + 1), "and the stop");
 }
@@ -146,29 +156,27 @@ fn what_has_not_changed_is_not_sent_but_for_the_part_that_is_sent_again() {
 const FRAMES: u32 = 5 * TICK_RATE;
 
 /// A panel that is given a frame in each tick.
-struct Played<'a> {
-    line: &'a RefCell<Line>,
-    panel: Ssd1306<Bus<'a>>,
+struct Played {
+    panel: Panel,
     /// What was sent last.
-    held: Bitmap,
+    held: Canvas,
 }
 
-impl<'a> Played<'a> {
-    fn on(line: &'a RefCell<Line>) -> Self {
-        Self { line, panel: Ssd1306::new(Bus::new(line), None), held: Bitmap::default() }
+impl Played {
+    fn on(controller: Controller) -> Self {
+        Self { panel: panel(controller), held: Canvas::default() }
     }
 
     /// Whether the panel shows the last frame when this one comes; `None` if the bus is still busy with that.
-    fn tick(&mut self, canvas: &Canvas) -> Option<bool> {
-        let (was_idle, sent) = (self.line.borrow().is_idle(), self.line.borrow().sent);
-        let shows = self.line.borrow().panel.shows(&self.held);
-        let _ = self.panel.flush(canvas);
+    fn tick(&mut self, canvas: Canvas) -> Option<bool> {
+        let Self { panel, held } = self;
+        let (was_idle, sent, shows) = (panel.bus.is_idle(), panel.bus.sent, shows(panel, held));
+        let _ = flush(panel, &canvas, TICK);
         if was_idle {
-            self.held = Bitmap::from(canvas);
+            *held = canvas;
         } else {
-            assert_eq!(self.line.borrow().sent, sent, "it disturbs the one before");
+            assert_eq!(panel.bus.sent, sent, "it disturbs the one before");
         }
-        self.line.borrow_mut().run(TICK);
         was_idle.then_some(shows)
     }
 }
@@ -178,17 +186,16 @@ impl<'a> Played<'a> {
 fn as_many_frames_are_shown_as_the_bus_can_carry() {
     for (kind, &name) in [SSD1306, SH1106].iter().flat_map(|kind| SceneName::ALL.iter().map(move |name| (*kind, name)))
     {
-        let line = Line::to(Controller::new(kind, 0x3C));
-        let (mut panel, mut scene, mut most) = (Played::on(&line), shown(name), 0);
+        let (mut played, mut scene, mut most) = (Played::on(Controller::new(kind, 0x3C)), shown(name), 0);
         for _ in 0..2 * FIRST {
-            panel.tick(&scene.frame());
+            played.tick(scene.frame());
         }
         for frame in 0..FRAMES {
             scene.tick();
-            let sent = line.borrow().sent;
-            assert_eq!(panel.tick(&scene.frame()), Some(true), "{}, frame {frame}, {kind:?}", name.name());
-            if line.borrow().sent != sent {
-                most = most.max(line.borrow().taken);
+            let sent = played.panel.bus.sent;
+            assert_eq!(played.tick(scene.frame()), Some(true), "{}, frame {frame}, {kind:?}", name.name());
+            if played.panel.bus.sent != sent {
+                most = most.max(played.panel.bus.taken);
             }
         }
         println!("{:12} {:.1} ms at most", name.name(), f64::from(most) / 400.0);
@@ -206,22 +213,21 @@ const BACK: u32 = 2 * TICK_RATE;
 fn a_panel_that_is_unplugged_and_plugged_in_again_shows_the_picture_within_two_seconds() {
     let runs = [SSD1306, SH1106].into_iter().flat_map(|kind| [false, true].map(|is_paused| (kind, is_paused)));
     for ((kind, is_paused), &name) in runs.flat_map(|run| SceneName::ALL.iter().map(move |name| (run, name))) {
-        let line = Line::to(Controller::new(kind, 0x3C));
-        let (mut panel, mut scene, mut longest) = (Played::on(&line), shown(name), 0);
-        let mut tick = || {
+        let (mut played, mut scene, mut longest) = (Played::on(Controller::new(kind, 0x3C)), shown(name), 0);
+        let mut tick = |played: &mut Played| {
             if !is_paused {
                 scene.tick();
             }
-            panel.tick(&scene.frame())
+            played.tick(scene.frame())
         };
         for (away, moment) in AWAY.into_iter().zip([97, 101, 83, 89, 103]).cycle().take(MOMENTS) {
-            assert_eq!((0..moment).map(|_| tick()).last(), Some(Some(true)), "{}", name.name());
-            line.borrow_mut().panel = Controller::new(kind, 0x3C).plugged(false);
+            assert_eq!((0..moment).map(|_| tick(&mut played)).last(), Some(Some(true)), "{}", name.name());
+            played.panel.bus.panel = Controller::new(kind, 0x3C).plugged(false);
             for _ in 0..away {
-                tick();
+                tick(&mut played);
             }
-            line.borrow_mut().panel.plugged_in = true;
-            let back = (0..BACK).find(|_| tick() == Some(true));
+            played.panel.bus.panel.plugged_in = true;
+            let back = (0..BACK).find(|_| tick(&mut played) == Some(true));
             longest = longest.max(back.unwrap_or_else(|| panic!("{}, paused {is_paused}, {kind:?}", name.name())));
         }
         println!("{:12} paused {is_paused}: back after {longest} ticks at most", name.name());
@@ -231,21 +237,17 @@ fn a_panel_that_is_unplugged_and_plugged_in_again_shows_the_picture_within_two_s
 #[test]
 fn a_panel_whose_bus_is_too_slow_says_so() {
     let mut rng = Rng::with_seed(2);
-    let line = Line::to(Controller::at(0x3C));
-    let mut panel = Ssd1306::new(Bus::new(&line), None);
+    let mut panel = panel(Controller::at(0x3C));
     let mut second = |is_noisy: bool| {
         let mut still = Canvas::default();
-        let mut told: Vec<_> = (0..2 * TICK_RATE)
-            .map(|_| {
-                if is_noisy {
-                    still = pixels(|| rng.bool());
-                }
-                let told = panel.flush(&still);
-                line.borrow_mut().run(TICK);
-                told
-            })
-            .collect();
-        told.pop().expect("a frame")
+        let mut told = Ok(());
+        for _ in 0..2 * TICK_RATE {
+            if is_noisy {
+                still = pixels(|| rng.bool());
+            }
+            told = flush(&mut panel, &still, TICK);
+        }
+        told
     };
     assert_eq!(second(false), Ok(()));
     // A whole frame takes a tick and a half, and the next one comes after two.
@@ -255,58 +257,43 @@ fn a_panel_whose_bus_is_too_slow_says_so() {
 
 #[test]
 fn an_absent_panel_is_looked_for_once_a_second_and_may_come_and_go() {
-    let line = Line::to(Controller::at(0x3C).plugged(false));
-    let plug = |plugged_in| line.borrow_mut().panel = Controller::at(0x3C).plugged(plugged_in);
-    let mut panel = Ssd1306::new(Bus::new(&line), None);
-    let mut flush = |ticks| {
-        let told = panel.flush(&scene(ticks));
-        line.borrow_mut().run(TICK);
-        told
-    };
+    let plug = |panel: &mut Panel, plugged_in| panel.bus.panel = Controller::at(0x3C).plugged(plugged_in);
+    let flush = |panel: &mut Panel, ticks| flush(panel, &scene(ticks), TICK);
+    let mut panel = panel(Controller::at(0x3C).plugged(false));
     let absent = Err(Ssd1306Error::Absent(SILENCE));
     // No answer at the first address, nor at the second.
-    assert_eq!([flush(1), flush(1), flush(1)], [Ok(()), Ok(()), absent]);
+    assert_eq!([1; 3].map(|ticks| flush(&mut panel, ticks)), [Ok(()), Ok(()), absent]);
     for _ in 0..TICK_RATE {
-        assert_eq!(flush(1), absent);
+        assert_eq!(flush(&mut panel, 1), absent);
     }
-    assert_eq!(line.borrow().sent, 2, "no other try within the second");
-    assert_eq!(flush(1), absent);
-    assert_eq!(line.borrow().sent, 3);
+    assert_eq!(panel.bus.sent, 2, "no other try within the second");
+    assert_eq!((flush(&mut panel, 1), panel.bus.sent), (absent, 3));
 
-    plug(true);
-    let told: Vec<_> = (0..TICK_RATE + 10).map(|_| flush(1)).collect();
-    assert!(told.contains(&absent) && told.last() == Some(&Ok(())), "within a second");
-    assert!(line.borrow().panel.shows(&Bitmap::from(&scene(1))));
-
-    plug(false);
-    assert_eq!([flush(2), flush(3)], [Ok(()), Err(Ssd1306Error::Lost)]);
-    plug(true);
-    let told: Vec<_> = (0..TICK_RATE + 10).map(|_| flush(4)).collect();
-    assert!(told.contains(&Err(Ssd1306Error::Lost)) && told.last() == Some(&Ok(())));
-    assert!(line.borrow().panel.shows(&Bitmap::from(&scene(4))));
+    for (ticks, before) in [(1, absent), (4, Err(Ssd1306Error::Lost))] {
+        plug(&mut panel, true);
+        let told: Vec<_> = (0..TICK_RATE + 10).map(|_| flush(&mut panel, ticks)).collect();
+        assert!(told.contains(&before) && told.last() == Some(&Ok(())), "within a second");
+        assert!(shows(&panel, &scene(ticks)));
+        plug(&mut panel, false);
+        assert_eq!([2, 3].map(|ticks| flush(&mut panel, ticks)), [Ok(()), Err(Ssd1306Error::Lost)]);
+    }
 }
 
 #[test]
 fn a_bus_that_hangs_holds_up_nothing_and_is_freed() {
-    let line = Line::to(Controller::at(0x3C));
-    let mut panel = Ssd1306::new(Bus::new(&line), None);
-    let mut flush = |ticks| {
-        let told = panel.flush(&scene(ticks));
-        line.borrow_mut().run(TICK);
-        told
-    };
-    (0..5).for_each(|ticks| assert_eq!(flush(ticks), Ok(())));
-    line.borrow_mut().hangs = true;
-    let told: Vec<_> = (5..20).map(&mut flush).collect();
+    let flush = |panel: &mut Panel, ticks| flush(panel, &scene(ticks), TICK);
+    let mut panel = panel(Controller::at(0x3C));
+    (0..5).for_each(|ticks| assert_eq!(flush(&mut panel, ticks), Ok(())));
+    panel.bus.hangs = true;
+    let told: Vec<_> = (5..20).map(|ticks| flush(&mut panel, ticks)).collect();
     assert!(told.starts_with(&[Ok(()); 5]) && told.ends_with(&[Err(Ssd1306Error::Lost); 5]), "{told:?}");
-    assert_eq!(line.borrow().freed, 1);
+    assert_eq!(panel.bus.freed, 1);
     // As long as it hangs it is freed once a second.
     for _ in 0..2 * TICK_RATE {
-        let _ = flush(20);
+        let _ = flush(&mut panel, 20);
     }
-    assert_eq!((flush(20), line.borrow().freed), (Err(Ssd1306Error::Absent(ErrorKind::Other)), 2));
-    line.borrow_mut().hangs = false;
-    let told: Vec<_> = (0..TICK_RATE + 10).map(|_| flush(21)).collect();
-    assert_eq!(told.last(), Some(&Ok(())));
-    assert!(line.borrow().panel.shows(&Bitmap::from(&scene(21))));
+    assert_eq!((flush(&mut panel, 20), panel.bus.freed), (Err(Ssd1306Error::Absent(ErrorKind::Other)), 2));
+    panel.bus.hangs = false;
+    let told = (0..TICK_RATE + 10).map(|_| flush(&mut panel, 21)).last();
+    assert!(told == Some(Ok(())) && shows(&panel, &scene(21)));
 }
