@@ -1,6 +1,6 @@
 //! What can be asked of the player, by button or over the serial link.
 
-use crate::protocol::choice::choice;
+use crate::protocol::choice;
 use crate::protocol::{
     Ask, AskPlan, Choose, Field, Identify, Measure, Message, Pause, Press, Request, Restart, Set, Simulate, Step,
 };

@@ -76,9 +76,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     }
 
     /// The same for a class of processors, before it [begins](Self::begin), which takes much of the stack: better when it is at its place.
-    ///
-    /// Never inlined: while it is made one of it stands on the stack, and not two.
-    #[inline(never)]
+    #[inline(never)] // while it is made one of it stands on the stack, and not two
     pub fn idle(
         processor: Processor,
         settings: Settings,
@@ -247,9 +245,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     }
 
     /// The samples of the motion follow; first what a step too long for its energy should be.
-    ///
-    /// Never inlined: what it takes to prepare a motion would be on the stack of every command.
-    #[inline(never)]
+    #[inline(never)] // what it takes to prepare a motion would be on the stack of every command
     fn begin_work(&mut self, request: u16, motion: &Request, log: &mut impl Log<Panel, Link>) -> Result<(), Field> {
         self.work = Some((request, Job::new(motion)?));
         log(Event::Asked);

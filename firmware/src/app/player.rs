@@ -60,9 +60,7 @@ impl<'a> Player<'a> {
     }
 
     /// Plays a scene with `settings`; the kernel's error if they describe no pendulum, and nothing is changed.
-    ///
-    /// Never inlined: what a scene needs to start would be on the stack of every frame.
-    #[inline(never)]
+    #[inline(never)] // what a scene needs to start would be on the stack of every frame
     pub fn play(&mut self, name: SceneName, settings: Settings) -> Result<(), Error> {
         self.scene.start(name, &settings, &Means { processor: self.planner.processor, method: self.method })?;
         (self.name, self.settings, self.stopped, self.next) = (name, settings, false, None);
@@ -76,9 +74,7 @@ impl<'a> Player<'a> {
 
     /// Executes a command; if that cannot be, nothing is changed and the error names what is wrong. Whether the scene
     /// was started again.
-    ///
-    /// Never inlined: what scenes need to start would be on the stack of every frame.
-    #[inline(never)]
+    #[inline(never)] // what scenes need to start would be on the stack of every frame
     pub fn execute(&mut self, command: Command) -> Result<bool, Field> {
         match command {
             Command::Heavier => return self.start(self.name, self.settings.heavier()),
@@ -127,8 +123,7 @@ impl<'a> Player<'a> {
         }
     }
 
-    /// Never inlined: what a motion needs to start would be on the stack of every frame.
-    #[inline(never)]
+    #[inline(never)] // what a motion needs to start would be on the stack of every frame
     fn follow(&mut self, found: &Finding) {
         if let (Ok(plan), None) = (found, self.method) {
             let way = plan.way();

@@ -9,7 +9,7 @@ use core::fmt;
 
 use crate::app::Player;
 use crate::config::TICK_RATE;
-use crate::protocol::choice::choice;
+use crate::protocol::choice;
 use crate::protocol::{Decoder, MAX_WIRE, Message, Restarted, Status};
 use crate::scenes::SceneName;
 

@@ -71,8 +71,7 @@ impl<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons, Dog: Watchdog> Bo
     }
 }
 
-/// Never inlined: what it takes to make the application would be on the stack as long as that runs.
-#[inline(never)]
+#[inline(never)] // what it takes to make the application would be on the stack as long as that runs
 fn application<'a, Panel: Display, Link: Write, Keys: Buttons>(
     place: &'a mut MaybeUninit<App<'a, Panel, Link, Keys>>,
     buffers: &'a mut FrameBuffers,
@@ -90,9 +89,7 @@ fn application<'a, Panel: Display, Link: Write, Keys: Buttons>(
 }
 
 /// Runs the application for ever; between ticks it works for the host, or sleeps.
-///
-/// Kept apart from the start-up code, which may panic; this may not (test `no_panic`).
-#[inline(never)]
+#[inline(never)] // apart from the start-up code, which may panic; this may not (test `no_panic`)
 fn run<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons>(
     app: &'static mut App<Panel, Link, Keys>,
     mut receiver: Receiver,

@@ -62,9 +62,7 @@ fn rounded<R: Real>(request: &Request) -> (Parameters<R>, Motion<R>) {
 }
 
 /// The pendulum and its state at the start, checked and computed in the arithmetic `R`.
-///
-/// Never inlined: flash has room for one of it, not for one of each row.
-#[inline(never)]
+#[inline(never)] // flash has room for one of it, not for one of each row
 fn checked<R: Real>(request: &Request) -> Result<(Parameters<f64>, State<f64>), Error> {
     let (parameters, start) = rounded::<R>(request);
     start.check()?;

@@ -31,8 +31,7 @@ macro_rules! table {
         pub enum OnBoards { $(#[doc = concat!("[`Method::", stringify!($method), "`]")] $method(Stepper<$form>),)* }
 
         impl Run for OnBoards {
-            // Apart from what else is done with a request: compilers shuffle so large a value word by word.
-            #[inline(never)]
+            #[inline(never)] // compilers shuffle so large a value word by word
             fn start(request: &Request) -> Result<Self, JobError> {
                 match request.method {
                     $(Method::$method => Stepper::<$form>::start(request).map(Self::$method),)*

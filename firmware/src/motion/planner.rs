@@ -111,9 +111,7 @@ impl Planner {
 
     /// Does a piece of the search, if the tick has time for it; whether it has done one. A preparation that a tick has no time
     /// for waits for one that has nothing else to do.
-    ///
-    /// Never inlined: a profile of a frame tells planning by it.
-    #[inline(never)]
+    #[inline(never)] // a profile of a frame tells planning by it
     fn work(&mut self) -> bool {
         if self.is_news || !self.is_looking() || self.is_far() {
             return false;
@@ -142,8 +140,7 @@ impl Planner {
         })
     }
 
-    /// Never inlined: a search stands on the stack while it is made.
-    #[inline(never)]
+    #[inline(never)] // a search stands on the stack while it is made
     fn advance(&mut self) -> Result<(), PlanError> {
         let Some((problem, Viewport { way, .. })) = &self.task else { return Ok(()) };
         let Some(search) = &mut self.search else {

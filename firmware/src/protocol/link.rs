@@ -39,9 +39,7 @@ pub fn encode<'wire, M: Message>(message: &M, wire: &'wire mut [u8; MAX_WIRE]) -
 }
 
 /// A message of any kind, its fields being given as bytes; nothing if they are more than [`MAX_FIELDS`].
-///
-/// Never inlined: flash has room for one of it, not for one of each kind.
-#[inline(never)]
+#[inline(never)] // flash has room for one of it, not for one of each kind
 pub fn frame<'wire>(kind: u8, fields: &[u8], wire: &'wire mut [u8; MAX_WIRE]) -> &'wire [u8] {
     if fields.len() > MAX_FIELDS {
         return &[];

@@ -4,13 +4,13 @@
 //! each; the fields of each kind are a struct here, in SI units, in postcard's format; the CRC is CRC-32/ISO-HDLC over
 //! everything before it, little-endian.
 
-pub(crate) mod choice;
 mod codes;
 mod link;
 mod message;
 mod to_chip;
 mod to_host;
 
+pub(crate) use codes::choice;
 pub use codes::{BoardName, Field, NO_METHOD, limit_code, method_code, method_of};
 pub use link::{CRC, Decoder, LinkError, MAX_WIRE, TO_CHIP, VERSION, encode, frame};
 pub use message::{MAX_FIELDS, Message, request};

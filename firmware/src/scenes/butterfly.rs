@@ -65,8 +65,7 @@ impl Butterfly {
 }
 
 impl Scene for Butterfly {
-    /// Never inlined: all scenes' preparations would stand side by side on the stack.
-    #[inline(never)]
+    #[inline(never)] // all scenes' preparations would stand side by side on the stack
     fn new(settings: &Settings, means: &Means) -> Result<Self, Error> {
         let first = Simulation::new(settings, means)?;
         let second = settings.run(APART, first.motion.way())?;

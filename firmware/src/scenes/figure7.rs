@@ -23,8 +23,7 @@ pub struct Figure7 {
 }
 
 impl Scene for Figure7 {
-    /// Never inlined: all scenes' preparations would stand side by side on the stack.
-    #[inline(never)]
+    #[inline(never)] // all scenes' preparations would stand side by side on the stack
     fn new(settings: &Settings, means: &Means) -> Result<Self, Error> {
         let &Parameters { l1, l2, .. } = &settings.parameters;
         if l1 != l2 {

@@ -17,7 +17,7 @@ use double_pendulum::Error;
 
 use crate::graphics::{Canvas, FadeLayer};
 use crate::motion::{Means, Settings, Simulation};
-use crate::protocol::choice::choice;
+use crate::protocol::choice;
 
 macro_rules! catalogue {
     ($($(#[$doc:meta])* $row:ident = $code:literal, $name:literal, $scene:ty, $first:expr;)*) => {
@@ -109,8 +109,7 @@ impl AnyScene {
         Self::Frequencies(frequencies::Frequencies::default())
     }
 
-    /// Kept apart, for else the scenes of all the catalogue would stand side by side on the stack of who chooses one.
-    #[inline(never)]
+    #[inline(never)] // the scenes of all the catalogue would stand side by side on the stack of who chooses one
     fn become_one<S: Scene>(&mut self, settings: &Settings, means: &Means, one: fn(S) -> Self) -> Result<(), Error> {
         *self = one(S::new(settings, means)?);
         Ok(())

@@ -7,6 +7,7 @@ use embedded_hal::digital::{ErrorType, OutputPin};
 use embedded_io::Write;
 use firmware::app::{App, Buttons, NoButtons};
 use firmware::display::{Display, NoDisplay};
+use firmware::graphics::{HEIGHT, WIDTH};
 use firmware::motion::Settings;
 use firmware::protocol::{Decoder, LinkError, MAX_WIRE, Message, encode};
 use host_tests::emulator::host::sheets;
@@ -45,6 +46,11 @@ pub fn all<M: Message + Debug>(bytes: &[u8]) -> Vec<M> {
     let undamaged = messages(bytes).into_iter().map(|message| message.expect("undamaged"));
     let own = undamaged.filter(|(kind, _)| *kind == M::KIND);
     own.map(|(_, fields)| M::read(&fields).expect("all fields")).collect()
+}
+
+/// All pixels of the frame, row by row.
+pub fn places() -> impl Iterator<Item = (i32, i32)> {
+    (0..HEIGHT as i32).flat_map(|y| (0..WIDTH as i32).map(move |x| (x, y)))
 }
 
 /// A pin: what it does when it is set.

@@ -8,6 +8,8 @@ use embedded_graphics::pixelcolor::BinaryColor;
 use fastrand::Rng;
 use firmware::graphics::{Canvas, Disc, Glyph, HEIGHT, SUBPIXELS, Spot, Stroke, WIDTH, glyph};
 
+use crate::bench::places;
+
 /// Greys are rounded down to one of 16, which shifts a disc's centre of light by far less than this, pixels.
 const CENTRE_TOLERANCE: f64 = 0.1;
 
@@ -78,7 +80,7 @@ fn a_disc_is_where_it_was_put() {
         let mut canvas = Canvas::default();
         disc(x, y, 1.5).draw(&mut canvas, u8::MAX);
         let mut sum = [0.0; 3];
-        for (row, column) in (0..HEIGHT as i32).flat_map(|row| (0..WIDTH as i32).map(move |column| (row, column))) {
+        for (column, row) in places() {
             let grey = f64::from(grey(&canvas, column, row));
             sum = [sum[0] + grey, sum[1] + grey * (f64::from(column) + 0.5), sum[2] + grey * (f64::from(row) + 0.5)];
         }
@@ -136,7 +138,7 @@ fn a_pixel_is_as_bright_as_it_is_covered() {
         let spot = |(x, y): (f64, f64)| Spot::at(x as f32, y as f32);
         let mut canvas = Canvas::default();
         Stroke { from: spot(from), to: spot(to), radius }.lighten(&mut canvas, u8::MAX);
-        for (x, y) in (0..WIDTH as i32).flat_map(|x| (0..HEIGHT as i32).map(move |y| (x, y))) {
+        for (x, y) in places() {
             let exact = 15.0 * covered((x, y), [from, to], f64::from(radius) / f64::from(SUBPIXELS));
             let error = (f64::from(grey(&canvas, x, y)) - exact).abs();
             assert!(error < GREY_TOLERANCE, "{from:?} to {to:?}, radius {radius}: {exact} at {x}, {y}");
@@ -149,10 +151,10 @@ fn a_pixel_is_as_bright_as_it_is_covered() {
 #[test]
 fn a_gap_sets_a_disc_off() {
     let mut canvas = Canvas::default();
-    (0..HEIGHT as i32).for_each(|y| (0..WIDTH as i32).for_each(|x| canvas.update(x, y, |_| 15)));
+    places().for_each(|(x, y)| canvas.update(x, y, |_| 15));
     let (x, y) = (30.3_f32, 20.7_f32);
     Disc { gap: 2 * SUBPIXELS as u8, ..disc(x, y, 3.0) }.draw(&mut canvas, u8::MAX);
-    for (column, row) in (0..WIDTH as i32).flat_map(|column| (0..HEIGHT as i32).map(move |row| (column, row))) {
+    for (column, row) in places() {
         let share = |radius: f64| covered((column, row), [(x.into(), y.into()); 2], radius);
         let exact = 15.0 * (1.0 - share(5.0) + share(3.0));
         let error = (f64::from(grey(&canvas, column, row)) - exact).abs();
@@ -176,21 +178,4 @@ fn a_line_is_as_bright_in_every_direction() {
         let ratio = total(degrees as f32) / expected;
         assert!((0.97..1.03).contains(&ratio), "{degrees} degrees: {ratio}");
     }
-}
-
-#[test]
-fn a_disc_has_a_soft_edge() {
-    let mut canvas = Canvas::default();
-    disc(4.0, 4.0, 3.0).draw(&mut canvas, u8::MAX);
-    let expected = [
-        "00000000", //
-        "009ee900", "09ffff90", "0effffe0", "0effffe0", "09ffff90", "009ee900", "00000000",
-    ];
-    assert_eq!(frame(&canvas, 8, 8), expected);
-}
-
-/// The top left corner, a character per pixel.
-fn frame(canvas: &Canvas, width: i32, height: i32) -> Vec<String> {
-    let row = |y| (0..width).map(|x| char::from_digit(grey(canvas, x, y).into(), 16).expect("a grey")).collect();
-    (0..height).map(row).collect()
 }

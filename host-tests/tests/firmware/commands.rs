@@ -22,9 +22,14 @@ fn last<M: Message>(app: &Plain) -> M {
     M::read(&fields).expect("all fields")
 }
 
-fn status(app: &mut Plain) -> Status {
-    app.receive(wire(&Ask { request: 0 }), |_| ());
+/// The answer to a command.
+fn answer<A: Message>(app: &mut Plain, command: &impl Message) -> A {
+    app.receive(wire(command), |_| ());
     last(app)
+}
+
+fn status(app: &mut Plain) -> Status {
+    answer(app, &Ask { request: 0 })
 }
 
 fn set(field: Field, value: f64) -> Set {
@@ -48,8 +53,7 @@ fn every_parameter_is_set_in_si_units() {
         (Field::Speed, 0.5, |s| s.speed, 0.5),
     ] {
         let mut app = app();
-        app.receive(wire(&set(field, value)), |_| ());
-        assert_eq!(last::<Done>(&app), Done { request: 9 }, "{field:?}");
+        assert_eq!(answer::<Done>(&mut app, &set(field, value)), Done { request: 9 }, "{field:?}");
         assert_eq!(read(&status(&mut app)), expected, "{field:?}");
     }
 }
@@ -67,8 +71,8 @@ fn no_tap_is_lost_however_quick() {
     }
     assert_eq!(*app.player.settings(), before.turned(1).turned(1).turned(1).turned(1));
     assert_eq!(all::<Done>(&app.link).len(), taps.len());
-    app.receive(wire(&Press { request: 2, key: 0xEE }), |_| ());
-    assert_eq!(all::<Refused>(&app.link), [Refused { request: 2, field: Field::Key.code() }]);
+    let refused: Refused = answer(&mut app, &Press { request: 2, key: 0xEE });
+    assert_eq!(refused, Refused { request: 2, field: Field::Key.code() });
 }
 
 /// A board of 1 MHz whose steps take 100 cycles, and that knows what it is.
@@ -81,19 +85,19 @@ fn a_board_tells_what_it_is_and_how_long_steps_take() {
         if in_ram { 800 } else { 1600 }
     };
     app.instruments = Instruments { identity, timed, image: || b"123456789", ..Instruments::default() };
-    app.receive(wire(&Identify { request: 1 }), |_| ());
     // The check value of CRC-32/ISO-HDLC.
-    assert_eq!(last::<Identity>(&app), Identity { request: 1, image: 0xCBF4_3926, image_bytes: 9, ..identity });
+    let expected = Identity { request: 1, image: 0xCBF4_3926, image_bytes: 9, ..identity };
+    assert_eq!(answer::<Identity>(&mut app, &Identify { request: 1 }), expected);
 
-    let measure = |request, in_ram| wire(&Measure { request, steps: u32::MAX, in_ram });
-    app.receive(measure(2, 0), |_| ());
-    assert_eq!(last::<Refused>(&app), Refused { request: 2, field: Field::Message.code() }, "no motion was asked for");
+    let measure = |request, in_ram| Measure { request, steps: u32::MAX, in_ram };
+    let refused: Refused = answer(&mut app, &measure(2, 0));
+    assert_eq!(refused, Refused { request: 2, field: Field::Message.code() }, "no motion was asked for");
     let request = Request { samples: 1, ..Request::on_any_core(Method::Rk4F32) };
     app.receive(wire(&request.message(3)), |_| ());
     while app.work(|_| ()) {}
     for (request, in_ram, cycles) in [(4, 0, 1600), (5, 1, 800), (6, 0, 1600)] {
-        app.receive(measure(request, in_ram), |_| ());
-        assert_eq!(last::<Measured>(&app), Measured { request, steps: MOST_MEASURED_STEPS, cycles });
+        let measured: Measured = answer(&mut app, &measure(request, in_ram));
+        assert_eq!(measured, Measured { request, steps: MOST_MEASURED_STEPS, cycles });
     }
     assert!(!app.work(|_| ()), "and no sample follows");
     assert_eq!(all::<Sample>(&app.link).len(), 2);
@@ -122,23 +126,22 @@ fn a_bad_command_is_answered_with_the_field_and_changes_nothing() {
         (Set { field: 0xEE, ..set(Field::M1, 1.0) }, Field::Field),
         (set(Field::Scene, 1.0), Field::Field),
     ] {
-        app.receive(wire(&message), |_| ());
-        assert_eq!(last::<Refused>(&app), Refused { request: 9, field: field.code() }, "{message:?}");
+        assert_eq!(answer::<Refused>(&mut app, &message), Refused { request: 9, field: field.code() }, "{message:?}");
     }
-    app.receive(wire(&Choose { request: 9, scene: 0xEE }), |_| ());
-    assert_eq!(last::<Refused>(&app), Refused { request: 9, field: Field::Scene.code() });
+    let refused: Refused = answer(&mut app, &Choose { request: 9, scene: 0xEE });
+    assert_eq!(refused, Refused { request: 9, field: Field::Scene.code() });
     assert_eq!((status(&mut app), app.player.report()), before);
 }
 
 #[test]
 fn an_intact_message_of_unknown_kind_is_answered_too() {
     let mut app = app();
-    for (kind, fields) in [(0xEE, &[77, 1, 2, 3][..]), (Pause::KIND, &[77]), (Pause::KIND, &[77, 0, 0])] {
+    for (kind, fields, request) in
+        [(0xEE, &[77, 1, 2, 3][..], 77), (Pause::KIND, &[77], 77), (Pause::KIND, &[77, 0, 0], 77), (0xEE, &[], 0)]
+    {
         app.receive(frame(kind, fields, &mut [0; MAX_WIRE]).iter().copied(), |_| ());
-        assert_eq!(last::<Refused>(&app), Refused { request: 77, field: Field::Message.code() });
+        assert_eq!(last::<Refused>(&app), Refused { request, field: Field::Message.code() });
     }
-    app.receive(frame(0xEE, &[], &mut [0; MAX_WIRE]).iter().copied(), |_| ());
-    assert_eq!(last::<Refused>(&app), Refused { request: 0, field: Field::Message.code() });
 }
 
 /// Of a link that is looped back the board hears what it has sent.
@@ -198,20 +201,20 @@ const FOUND: u8 = 2;
 fn the_plan_is_found_in_some_tick_told_when_asked_and_followed() {
     let mut app = app();
     let asked = |app: &mut Plain| {
-        app.receive(wire(&AskPlan { request: 3 }), |_| ());
-        let answer: Planned = last(app);
+        let answer: Planned = answer(app, &AskPlan { request: 3 });
         assert_eq!(answer.request, 3);
         answer
     };
-    assert_eq!(asked(&mut app).found, NOT_YET);
-    let mut news = Vec::new();
-    let mut tick = 0;
-    while asked(&mut app).found == NOT_YET {
+    let (mut news, mut tick) = (Vec::new(), 0);
+    let mut run = |app: &mut Plain, news: &mut Vec<_>| {
         tick += 1;
         app.run_to(tick, |event| news.push(event));
+    };
+    assert_eq!(asked(&mut app).found, NOT_YET);
+    while asked(&mut app).found == NOT_YET {
+        run(&mut app, &mut news);
     }
-    tick += 1;
-    app.run_to(tick, |event| news.push(event));
+    run(&mut app, &mut news);
     let [Event::Motion(News::Found(Ok(plan)))] = news[..] else { panic!("{news:?}") };
     let answer = asked(&mut app);
     assert_eq!((answer.found, answer.horizon), (FOUND, plan.horizon));
@@ -223,19 +226,14 @@ fn the_plan_is_found_in_some_tick_told_when_asked_and_followed() {
     assert_eq!(asked(&mut app), Planned { request: 3, found: NOT_YET, ..blank(&answer) });
     news.clear();
     while asked(&mut app).found == NOT_YET {
-        tick += 1;
-        app.run_to(tick, |event| news.push(event));
+        run(&mut app, &mut news);
     }
     let calm = asked(&mut app);
     assert!(calm.found == FOUND && calm.horizon >= PLANNED, "{calm:?}");
-    for _ in 0..TICK_RATE {
-        tick += 1;
-        app.run_to(tick, |event| news.push(event));
-    }
+    (0..TICK_RATE).for_each(|_| run(&mut app, &mut news));
     let way = Way { method: Method::Rk4Fixed32, steps: calm.steps };
     assert_eq!(news.last(), Some(&Event::Motion(News::Shown(way, calm.cycles))), "the cheaper way is taken");
-    app.receive(wire(&Ask { request: 9 }), |_| ());
-    let status: Status = last(&app);
+    let status = status(&mut app);
     assert_eq!((status.method, status.way_steps, status.cycles), (calm.method, calm.steps, calm.cycles));
     assert!(
         status.cycles < answer.cycles && f64::from(status.horizon) > PLANNED && status.is_looking == 1,
@@ -259,9 +257,7 @@ fn a_way_can_be_forced() {
     let mut app = app();
     let mut go = |value: f64| {
         app.receive(wire(&set(Field::Method, value)), |_| ());
-        app.receive(wire(&Ask { request: 2 }), |_| ());
-        let status: Status = last(&app);
-        status.method
+        status(&mut app).method
     };
     let fixed64 = method_code(Method::Extrapolation10Fixed64);
     for method in Method::DRAWN.iter().map(|&method| method_code(method)) {
@@ -331,6 +327,6 @@ fn a_command_after_noise_is_executed() {
     let mut app = app();
     let mut rng = Rng::with_seed(6);
     app.receive(std::iter::repeat_with(|| rng.u8(1..)).take(5000), |_| ());
-    app.receive(wire(&Choose { request: 3, scene: SceneName::Figure7.code() }), |_| ());
-    assert_eq!((last::<Done>(&app), app.player.name()), (Done { request: 3 }, SceneName::Figure7));
+    let done: Done = answer(&mut app, &Choose { request: 3, scene: SceneName::Figure7.code() });
+    assert_eq!((done, app.player.name()), (Done { request: 3 }, SceneName::Figure7));
 }

@@ -1,19 +1,20 @@
 //! Every scene of the catalogue, on the host: its frame to the pixel, and what all scenes have in common.
 
 use double_pendulum::State;
-use firmware::app::{App, Command, NoButtons};
+use firmware::app::Command;
 use firmware::config::{
     CORTEX_M0PLUS, CORTEX_M3, CORTEX_M4F, PIVOT, PROCESSOR, Processor, REACH, STM32F405, TICK_RATE, TRAIL_FADING,
     TRAIL_HALF_WIDTH,
 };
-use firmware::display::NoDisplay;
 use firmware::graphics::{Anchor, Canvas, FadeLayer, HEIGHT, WIDTH, plot, text};
 use firmware::motion::{Means, Settings};
-use firmware::protocol::{MAX_WIRE, Pause, encode};
+use firmware::protocol::Pause;
 use firmware::scenes::{AnyScene, Flips, Scene, SceneName};
-use host_tests::emulator::host::{Show, sheets};
+use host_tests::emulator::host::Show;
 use host_tests::oracle::snapshot;
 use host_tests::oracle::tolerances::SHOWN_HEIGHT;
+
+use crate::bench::{app, places, wire};
 
 /// What a board without a floating-point unit may spend.
 const MEANS: Means = Means { processor: PROCESSOR, method: None };
@@ -32,8 +33,7 @@ fn after(name: SceneName, ticks: u32) -> Show {
 }
 
 fn greys(canvas: &Canvas) -> Vec<u8> {
-    let pixels = (0..HEIGHT as i32).flat_map(|y| (0..WIDTH as i32).map(move |x| (x, y)));
-    pixels.map(|(x, y)| canvas.get(x, y).unwrap_or_default()).collect()
+    places().map(|(x, y)| canvas.get(x, y).unwrap_or_default()).collect()
 }
 
 #[test]
@@ -82,7 +82,7 @@ fn the_trail_is_the_path_and_fades_with_age() {
         (at.0 - from.0 - part * along.0).hypot(at.1 - from.1 - part * along.1)
     };
     let mut compared = 0;
-    for (x, y) in (0..WIDTH as i32).flat_map(|x| (0..HEIGHT as i32).map(move |y| (x, y))) {
+    for (x, y) in places() {
         let middle = (x as f32 + 0.5, y as f32 + 0.5);
         let grey = f64::from(ink.frame.get(x, y).expect("inside"));
         let far: Vec<_> = path.windows(2).map(|piece| distance(middle, [piece[0], piece[1]])).collect();
@@ -105,17 +105,15 @@ fn the_trail_is_the_path_and_fades_with_age() {
 
 /// The pixels where two frames differ.
 fn differing(one: &Canvas, other: &Canvas) -> Vec<(i32, i32)> {
-    let pixels = (0..HEIGHT as i32).flat_map(|y| (0..WIDTH as i32).map(move |x| (x, y)));
-    pixels.filter(|&(x, y)| one.get(x, y) != other.get(x, y)).collect()
+    places().filter(|&(x, y)| one.get(x, y) != other.get(x, y)).collect()
 }
 
 /// Time that stands still is marked by two bars below the top right corner, and by nothing else.
 #[test]
 fn a_pause_is_marked_and_only_a_pause() {
-    let settings = Settings::default();
-    let mut app = App::new(settings, sheets(), NoDisplay, Vec::new(), NoButtons).expect("good settings");
+    let mut app = app();
     let mut pause = |paused: u8, clock: u32| {
-        app.receive(encode(&Pause { request: 1, paused }, &mut [0; MAX_WIRE]).iter().copied(), |_| ());
+        app.receive(wire(&Pause { request: 1, paused }), |_| ());
         app.run_to(clock, |_| ());
         app.canvas.clone()
     };

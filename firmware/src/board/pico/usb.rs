@@ -52,9 +52,7 @@ fn with<T>(act: impl FnOnce(&mut Usb) -> T) -> Option<T> {
 }
 
 /// Sends a message, if somebody listens and there is room for all of it.
-///
-/// Never inlined, for the libraries may panic, and the main loop may not (test `no_panic`).
-#[inline(never)]
+#[inline(never)] // for the libraries may panic, and the main loop may not (test `no_panic`)
 pub(super) fn send(message: &[u8]) {
     with(|usb| usb.send(message));
 }

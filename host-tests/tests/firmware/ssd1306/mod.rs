@@ -12,6 +12,7 @@ use firmware::scenes::SceneName;
 use host_tests::emulator::host::Show;
 use host_tests::emulator::qemu::Screenshot;
 
+use crate::bench::places;
 use bus::{BYTE, Line};
 use controller::{Controller, Kind, SH1106, SILENT, SSD1306};
 
@@ -58,7 +59,7 @@ fn black_is_dark_and_the_upper_half_of_the_greys_is_solid() {
         if all_greys {
             canvas.all_greys = true;
         }
-        (0..HEIGHT as i32).for_each(|y| (0..WIDTH as i32).for_each(|x| canvas.update(x, y, |_| grey)));
+        places().for_each(|(x, y)| canvas.update(x, y, |_| grey));
         let bitmap = Bitmap::from(&canvas);
         bitmap.pages.as_flattened().iter().map(|byte| byte.count_ones()).sum::<u32>() as usize * 16 / (WIDTH * HEIGHT)
     };
@@ -80,8 +81,7 @@ fn every_pixel_is_in_its_place() {
 /// A frame of these pixels.
 fn pixels(mut is_lit: impl FnMut() -> bool) -> Canvas {
     let mut canvas = Canvas::default();
-    let places = (0..HEIGHT as i32).flat_map(|y| (0..WIDTH as i32).map(move |x| (x, y)));
-    places.filter(|_| is_lit()).for_each(|(x, y)| canvas.update(x, y, |_| 15));
+    places().filter(|_| is_lit()).for_each(|(x, y)| canvas.update(x, y, |_| 15));
     canvas
 }
 
