@@ -27,18 +27,15 @@ fn main() -> ! {
 fn run(buffer: &mut [u8]) -> Result<(), ()> {
     let mut output = hio::hstdout()?;
     let mut peripherals = Peripherals::take().ok_or(())?;
-    start_clock(&mut peripherals.SYST);
+    let clock = &mut peripherals.SYST;
+    clock.set_clock_source(SystClkSource::Core);
+    clock.set_reload(FULL);
+    clock.clear_current();
+    clock.enable_counter();
     let outcome = Request::parse(semihosting::command_line(buffer).ok_or(())?).and_then(|request| request.crc());
     let ticks = FULL - SYST::get_current();
     match outcome {
         Ok(crc) => writeln!(output, "{crc:08x} {ticks}").map_err(|_| ()),
         Err(error) => writeln!(output, "{error}").map_err(|_| ()).and(Err(())),
     }
-}
-
-fn start_clock(clock: &mut SYST) {
-    clock.set_clock_source(SystClkSource::Core);
-    clock.set_reload(FULL);
-    clock.clear_current();
-    clock.enable_counter();
 }

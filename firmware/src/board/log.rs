@@ -1,9 +1,7 @@
 //! Where the log of a real chip goes: into memory that a debug probe reads while the processor runs (RTT), which costs next to
 //! nothing and never waits; or, where the same image runs in QEMU, to its standard output, as on the other boards.
 
-use core::cell::RefCell;
-
-use cortex_m::interrupt::{Mutex, disable, enable};
+use cortex_m::interrupt::{disable, enable};
 use cortex_m::register::primask;
 #[cfg(feature = "stm32f405")]
 use cortex_m_semihosting::hio::{self, HostStream};
@@ -11,7 +9,7 @@ use defmt::Encoder;
 use rtt_target::{ChannelMode, UpChannel, rtt_init};
 
 use super::cortex_m::crash;
-use super::cortex_m::interrupt::{Shared, with};
+use super::cortex_m::interrupt::Shared;
 
 #[defmt::global_logger]
 struct Logger;
@@ -30,8 +28,7 @@ enum Sink {
     Emulator(HostStream),
 }
 
-static PATH: Shared<Path> =
-    Mutex::new(RefCell::new(Path { encoder: Encoder::new(), sink: Sink::Nowhere, interrupts: false }));
+static PATH: Shared<Path> = Shared::new(Path { encoder: Encoder::new(), sink: Sink::Nowhere, interrupts: false });
 
 /// Opens the log of a chip; before that, lines are lost.
 pub fn into_memory() {
@@ -46,7 +43,7 @@ pub fn into_emulator() {
 }
 
 fn open(sink: Sink) {
-    with(&PATH, |path| path.sink = sink);
+    PATH.with(|path| path.sink = sink);
 }
 
 impl Sink {
@@ -72,7 +69,7 @@ unsafe impl defmt::Logger for Logger {
     fn acquire() {
         let interrupts = primask::read().is_active();
         disable();
-        with(&PATH, |path| {
+        PATH.with(|path| {
             // A line within a line is garbled, but leaves interrupts as they were.
             path.interrupts |= interrupts;
             path.encoder.start_frame(|bytes| path.sink.write(bytes));
@@ -82,14 +79,14 @@ unsafe impl defmt::Logger for Logger {
     unsafe fn flush() {}
 
     unsafe fn release() {
-        with(&PATH, |path| path.encoder.end_frame(|bytes| path.sink.write(bytes)));
-        if with(&PATH, |path| core::mem::take(&mut path.interrupts)) == Some(true) {
+        PATH.with(|path| path.encoder.end_frame(|bytes| path.sink.write(bytes)));
+        if PATH.with(|path| core::mem::take(&mut path.interrupts)) == Some(true) {
             // SAFETY: `acquire` has switched them off, and they were on before.
             unsafe { enable() };
         }
     }
 
     unsafe fn write(bytes: &[u8]) {
-        with(&PATH, |path| path.encoder.write(bytes, |bytes| path.sink.write(bytes)));
+        PATH.with(|path| path.encoder.write(bytes, |bytes| path.sink.write(bytes)));
     }
 }

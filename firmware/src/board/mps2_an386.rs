@@ -5,11 +5,9 @@
 use cortex_m::Peripherals;
 
 use super::Board;
-use super::cortex_m::clock::Clock;
-use super::cortex_m::guard::guard_stack;
-use super::cortex_m::identity::instruments;
 use super::cortex_m::interrupt::Interrupt;
 use super::cortex_m::watchdog::{NMI, TwoStage};
+use super::cortex_m::{Clock, guard_stack, instruments};
 use super::register::{Device, Register};
 use super::serial::{self, Inward, Taken, Transmitter};
 use crate::app::NoButtons;

@@ -1,11 +1,8 @@
 //! A panel's bus: the main loop fills an outbox and hands it to the bus's interrupt, which hands it back when it is empty.
 
-use core::cell::RefCell;
-
-use cortex_m::interrupt::Mutex;
 use embedded_hal::i2c::ErrorKind;
 
-use super::cortex_m::interrupt::{Shared, with};
+use super::cortex_m::interrupt::Shared;
 use crate::display::{Outbox, PanelBus, Sent};
 
 pub trait PanelPort {
@@ -29,12 +26,12 @@ struct Outgoing {
     sent: Option<Sent>,
 }
 
-static OUTGOING: Shared<Option<Outgoing>> = Mutex::new(RefCell::new(None));
+static OUTGOING: Shared<Option<Outgoing>> = Shared::new(None);
 
 /// For the bus's interrupt: `advance` does what is due, and says what has become of the messages once nothing more is; from
 /// then on the bus must not interrupt until [`PanelPort::begin`].
 pub(in crate::board) fn serve(advance: impl FnOnce(&mut Outbox) -> Option<Sent>) {
-    with(&OUTGOING, |outgoing| {
+    OUTGOING.with(|outgoing| {
         if let Some(Outgoing { outbox, sent: sent @ None }) = outgoing {
             *sent = advance(outbox);
         }
@@ -50,7 +47,7 @@ impl<P: PanelPort> Bus<P> {
 
 impl<P: PanelPort> PanelBus for Bus<P> {
     fn outbox(&mut self) -> Option<(&mut Outbox, Sent)> {
-        let returned = with(&OUTGOING, |outgoing| outgoing.take_if(|outgoing| outgoing.sent.is_some())).flatten();
+        let returned = OUTGOING.with(|outgoing| outgoing.take_if(|outgoing| outgoing.sent.is_some())).flatten();
         if let Some(Outgoing { outbox, sent: Some(sent) }) = returned {
             if !matches!(sent, Ok(()) | Err(ErrorKind::NoAcknowledge(_))) {
                 self.port.reset();
@@ -63,14 +60,14 @@ impl<P: PanelPort> PanelBus for Bus<P> {
     fn send(&mut self) {
         if let Some(outbox) = self.outbox.take() {
             let address = outbox.address;
-            with(&OUTGOING, |outgoing| *outgoing = Some(Outgoing { outbox, sent: None }));
+            OUTGOING.with(|outgoing| *outgoing = Some(Outgoing { outbox, sent: None }));
             self.port.begin(address);
         }
     }
 
     fn give_up(&mut self) {
         self.port.reset();
-        if let Some(Outgoing { outbox, .. }) = with(&OUTGOING, Option::take).flatten() {
+        if let Some(Outgoing { outbox, .. }) = OUTGOING.with(Option::take).flatten() {
             (self.outbox, self.sent) = (Some(outbox), Err(ErrorKind::Other));
         }
     }

@@ -1,13 +1,10 @@
 //! Bytes over a board's serial port: an interrupt puts those received into a queue, from which the application takes them; each
 //! one sent waits until the port takes it, but not without end.
 
-use core::cell::RefCell;
-
-use cortex_m::interrupt::Mutex;
 use embedded_io::{ErrorKind, ErrorType, Write};
 use heapless::Deque;
 
-use super::cortex_m::interrupt::{Shared, with};
+use super::cortex_m::interrupt::Shared;
 use crate::config::{BUS_TRIES, RECEIVE_QUEUE};
 
 /// The inward direction of a port.
@@ -32,17 +29,17 @@ struct Link {
     lost: u32,
 }
 
-static LINK: Shared<Link> = Mutex::new(RefCell::new(Link { port: None, received: Deque::new(), lost: 0 }));
+static LINK: Shared<Link> = Shared::new(Link { port: None, received: Deque::new(), lost: 0 });
 
 /// Lets the interrupt fill the queue from this port.
 pub(in crate::board) fn receive_from(port: Inward) -> Receiver {
-    with(&LINK, |link| link.port = Some(port));
+    LINK.with(|link| link.port = Some(port));
     Receiver(())
 }
 
 /// Moves what has come into the queue; for the receiver's interrupt.
 pub(in crate::board) fn receive() {
-    with(&LINK, |Link { port, received, lost }| {
+    LINK.with(|Link { port, received, lost }| {
         let Some(Inward { clear, take }) = *port else { return };
         clear(received.capacity().saturating_sub(received.len()));
         loop {
@@ -62,7 +59,7 @@ pub struct Receiver(());
 impl Receiver {
     /// A lower bound on the bytes that have overrun the port or the queue since reset: a port may report several at once. Wraps.
     pub fn lost(&self) -> u32 {
-        with(&LINK, |link| link.lost).unwrap_or_default()
+        LINK.with(|link| link.lost).unwrap_or_default()
     }
 }
 
@@ -70,7 +67,7 @@ impl Iterator for Receiver {
     type Item = u8;
 
     fn next(&mut self) -> Option<u8> {
-        with(&LINK, |link| link.received.pop_front()).flatten()
+        LINK.with(|link| link.received.pop_front()).flatten()
     }
 }
 

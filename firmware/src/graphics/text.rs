@@ -21,8 +21,8 @@ pub enum Anchor {
     At(i32, i32),
     /// Its last character before column x, its top at row y.
     EndingAt(i32, i32),
-    /// Its middle at column x, its top at row y.
-    Centred(i32, i32),
+    /// Centred, its top at row y.
+    Middle(i32),
 }
 
 pub fn write(canvas: &mut Canvas, text: &str, anchor: Anchor) {
@@ -63,7 +63,7 @@ fn corner(anchor: Anchor, text: &str) -> (i32, i32) {
         Anchor::BottomRight => (right(), LOWEST),
         Anchor::At(x, y) => (x, y),
         Anchor::EndingAt(x, y) => (x - width(text), y),
-        Anchor::Centred(x, y) => (x - (width(text) - 1) / 2, y),
+        Anchor::Middle(y) => (WIDTH as i32 / 2 - (width(text) - 1) / 2, y),
     }
 }
 

@@ -4,7 +4,7 @@
 use double_pendulum::{Error, Modes, Oscillation, Parameters, SmallOscillations};
 
 use crate::config::{GRAVITY, ROD};
-use crate::graphics::{Anchor, Canvas, Disc, FadeLayer, LINE, LOWEST, Spot, Stroke, WIDTH, label, plot, text};
+use crate::graphics::{Anchor, Canvas, Disc, FadeLayer, LINE, LOWEST, Spot, Stroke, label, plot, text};
 use crate::motion::{Means, Settings, Simulation};
 use crate::scenes::{Report, Scene, scene};
 
@@ -94,13 +94,12 @@ impl Scene for Beats {
         }
         text::write(canvas, "linear", Anchor::TopLeft);
         text::write(canvas, "exact", Anchor::TopRight);
-        let middle = |row| Anchor::Centred(WIDTH as i32 / 2, row);
-        text::write(canvas, &label::mass_ratio(self.settings.mass_ratio()), middle(0));
+        text::write(canvas, &label::mass_ratio(self.settings.mass_ratio()), Anchor::Middle(0));
         let reach = if self.scale > 0.0 { (REACH / self.scale).to_degrees() } else { 0.0 };
-        text::write(canvas, "↑ fast", middle(3 * LINE));
-        text::write(canvas, "→ slow", middle(4 * LINE));
-        text::write(canvas, &label::label(["±", ""], reach, 0, "°"), middle(5 * LINE));
-        scene::draw_clock(canvas, report, middle(LINE + 2), middle(LOWEST));
+        text::write(canvas, "↑ fast", Anchor::Middle(3 * LINE));
+        text::write(canvas, "→ slow", Anchor::Middle(4 * LINE));
+        text::write(canvas, &label::label(["±", ""], reach, 0, "°"), Anchor::Middle(5 * LINE));
+        scene::draw_clock(canvas, report, Anchor::Middle(LINE + 2), Anchor::Middle(LOWEST));
     }
 
     fn report(&self) -> Report {

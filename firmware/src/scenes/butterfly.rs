@@ -101,7 +101,7 @@ impl Scene for Butterfly {
         text::write(canvas, &label::tick(end - span, ""), Anchor::At(PLOT_LEFT, LOWEST));
         text::write(canvas, &label::tick(end, " s"), Anchor::BottomRight);
         text::write(canvas, "e-folds", Anchor::TopRight);
-        scene::draw_clock(canvas, report, Anchor::TopLeft, Anchor::Centred(WIDTH as i32 / 2, 0));
+        scene::draw_clock(canvas, report, Anchor::TopLeft, Anchor::Middle(0));
     }
 
     fn report(&self) -> Report {

@@ -3,7 +3,7 @@
 use double_pendulum::{Error, Parameters};
 
 use crate::config::PAGE_GRAVITY;
-use crate::graphics::{Anchor, Canvas, FadeLayer, LINE, LOWEST, Place, TRACE_HALF_WIDTH, View, WIDTH, label, text};
+use crate::graphics::{Anchor, Canvas, FadeLayer, LINE, LOWEST, Place, TRACE_HALF_WIDTH, View, label, text};
 use crate::motion::{Means, Misprinted, Settings, Simulation};
 use crate::scenes::{Report, Scene, scene};
 
@@ -50,8 +50,7 @@ impl Scene for Figure7 {
         let (right, misprinted) = (self.right.energy.of_error(report.energy_error), self.misprinted.energy());
         text::write(canvas, &label::label(["true", " "], right, 1, " J"), Anchor::TopLeft);
         text::write(canvas, &label::label(["book", " "], misprinted, 1, " J"), Anchor::TopRight);
-        let middle = |row| Anchor::Centred(WIDTH as i32 / 2, row);
-        scene::draw_clock(canvas, report, middle(LINE + 1), middle(LOWEST));
+        scene::draw_clock(canvas, report, Anchor::Middle(LINE + 1), Anchor::Middle(LOWEST));
     }
 
     fn report(&self) -> Report {

@@ -94,7 +94,7 @@ impl Scene for Frequencies {
         }
         let ([fast, slow], [fast_name, slow_name]) = (self.marked, label::FREQUENCIES);
         text::write(canvas, &label::label([fast_name, " "], fast, 3, ""), Anchor::TopLeft);
-        text::write(canvas, &label::label([slow_name, " "], slow, 3, ""), Anchor::Centred(width / 2, 0));
+        text::write(canvas, &label::label([slow_name, " "], slow, 3, ""), Anchor::Middle(0));
         text::write(canvas, &label::mass_ratio(self.mass_ratio), Anchor::TopRight);
         text::write(canvas, "ω in √(g/l)", Anchor::At(LEFT + 1, LOWEST));
         text::write(canvas, &label::mass_ratio(self.range), Anchor::BottomRight);

@@ -119,7 +119,7 @@ impl Scene for Small {
         }
         self.draw_seconds(canvas);
         text::write(canvas, &label::mass_ratio(self.settings.mass_ratio()), Anchor::TopLeft);
-        text::write(canvas, "linear", Anchor::Centred(WIDTH as i32 / 2, 0));
+        text::write(canvas, "linear", Anchor::Middle(0));
         scene::draw_clock(canvas, report, Anchor::BottomRight, Anchor::TopRight);
     }
 

@@ -3,9 +3,7 @@
 use double_pendulum::{DirectionF32, Error, Real, Run, State};
 
 use crate::config::{DT, HALF_PIXEL, STEPS_PER_TICK};
-use crate::graphics::{
-    Anchor, Canvas, FadeLayer, LINE, LOWEST, Place, RodDirections, TRACE_HALF_WIDTH, View, WIDTH, text,
-};
+use crate::graphics::{Anchor, Canvas, FadeLayer, LINE, LOWEST, Place, RodDirections, TRACE_HALF_WIDTH, View, text};
 use crate::motion::{Energy, Means, Settings};
 use crate::scenes::{Report, Scene, scene};
 
@@ -86,8 +84,7 @@ impl Scene for Upright {
         self.views.iter().for_each(|view| view.draw(canvas, u8::MAX));
         text::write(canvas, "plain", Anchor::TopLeft);
         text::write(canvas, "compensated", Anchor::TopRight);
-        let middle = |row| Anchor::Centred(WIDTH as i32 / 2, row);
-        scene::draw_clock(canvas, report, middle(LINE + 1), middle(LOWEST));
+        scene::draw_clock(canvas, report, Anchor::Middle(LINE + 1), Anchor::Middle(LOWEST));
     }
 
     fn report(&self) -> Report {

@@ -11,11 +11,17 @@ use super::{crash, watchdog};
 use crate::board::serial;
 
 /// What an interrupt shares with the main loop.
-pub(in crate::board) type Shared<T> = Mutex<RefCell<T>>;
+pub(in crate::board) struct Shared<T>(Mutex<RefCell<T>>);
 
-/// Does something with it, undisturbed; `None` within itself.
-pub(in crate::board) fn with<T, R>(shared: &Shared<T>, act: impl FnOnce(&mut T) -> R) -> Option<R> {
-    free(|token| shared.borrow(token).try_borrow_mut().ok().map(|mut shared| act(&mut shared)))
+impl<T> Shared<T> {
+    pub const fn new(value: T) -> Self {
+        Self(Mutex::new(RefCell::new(value)))
+    }
+
+    /// Does something with it, undisturbed; `None` within itself.
+    pub fn with<R>(&self, act: impl FnOnce(&mut T) -> R) -> Option<R> {
+        free(|token| self.0.borrow(token).try_borrow_mut().ok().map(|mut shared| act(&mut shared)))
+    }
 }
 
 /// Passes on where the processor put the registers of what was interrupted, and the number of the interrupt.

@@ -18,11 +18,9 @@ use embedded_hal::digital::OutputPin;
 
 use crate::app::{Buttons, Pressed};
 use crate::board::Board;
-use crate::board::cortex_m::clock::Clock;
-use crate::board::cortex_m::guard::guard_stack;
-use crate::board::cortex_m::identity::instruments;
 use crate::board::cortex_m::interrupt::Interrupt;
 use crate::board::cortex_m::watchdog::TwoStage;
+use crate::board::cortex_m::{Clock, guard_stack, instruments};
 use crate::board::register::{Device, Register};
 use crate::board::serial::{self, Inward, Receiver, Taken, Transmitter};
 use crate::config::BAUD;

@@ -2,9 +2,6 @@
 //! the same moment spoil each other's messages. The UART's interrupt sends what is in its queue, so no frame waits; a motion asked
 //! for, whose samples may come faster than the UART sends them, waits for room in it.
 
-use core::cell::RefCell;
-
-use cortex_m::interrupt::Mutex;
 use embedded_io::{ErrorKind, ErrorType, Write};
 use heapless::Deque;
 use rp2040_hal::fugit::{HertzU32, RateExtU32};
@@ -14,7 +11,7 @@ use rp2040_hal::pac::{Interrupt, NVIC, RESETS, UART0, interrupt};
 use rp2040_hal::uart::{DataBits, StopBits, UartConfig, UartPeripheral};
 
 use super::usb;
-use crate::board::cortex_m::interrupt::{Shared, with};
+use crate::board::cortex_m::interrupt::Shared;
 use crate::board::serial::{self, Inward, Taken};
 use crate::config::{BAUD, BUS_TRIES, UART_QUEUE};
 
@@ -24,7 +21,7 @@ pub(super) type SerialPins = (Pin<Gpio0, FunctionUart, PullNone>, Pin<Gpio1, Fun
 const TRIES: u32 = 4 * BUS_TRIES;
 
 /// Bytes that the UART has not taken yet.
-static QUEUE: Shared<Deque<u8, UART_QUEUE>> = Mutex::new(RefCell::new(Deque::new()));
+static QUEUE: Shared<Deque<u8, UART_QUEUE>> = Shared::new(Deque::new());
 
 pub struct Link(());
 
@@ -64,7 +61,7 @@ fn uart() -> &'static rp2040_hal::pac::uart0::RegisterBlock {
 
 /// Puts a message into the queue, if there is room for all of it.
 fn put(message: &[u8]) -> bool {
-    let put = with(&QUEUE, |queue| {
+    let put = QUEUE.with(|queue| {
         let has_room = queue.capacity().saturating_sub(queue.len()) >= message.len();
         if has_room {
             for &byte in message {
@@ -84,7 +81,7 @@ fn UART0_IRQ() {
 
 /// Gives the UART as many bytes as it takes; while there are more it interrupts again when it has sent half of them.
 fn pass_on() {
-    with(&QUEUE, |queue| {
+    QUEUE.with(|queue| {
         while uart().uartfr().read().txff().bit_is_clear()
             && let Some(byte) = queue.pop_front()
         {

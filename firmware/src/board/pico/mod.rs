@@ -22,10 +22,7 @@ use rp2040_hal::watchdog::{ScratchRegister, Watchdog};
 use rp2040_hal::{Sio, pac};
 
 use crate::app::{Buttons, Instruments, Pressed};
-use crate::board::cortex_m::clock::Clock;
-use crate::board::cortex_m::guard::guard_stack;
-use crate::board::cortex_m::identity::instruments;
-use crate::board::cortex_m::watchdog;
+use crate::board::cortex_m::{Clock, guard_stack, instruments, watchdog};
 use crate::board::panel_bus::Bus;
 use crate::board::{Board, log, serial, steps};
 use crate::config::WATCHDOG_SECONDS;

@@ -1,9 +1,6 @@
 //! The serial port at the USB socket (CDC-ACM): the same stream, for a host that has opened it. It never waits for the host: a
 //! message that does not fit into the queue is dropped whole.
 
-use core::cell::RefCell;
-
-use cortex_m::interrupt::Mutex;
 use cortex_m::singleton;
 use heapless::Deque;
 use rp2040_hal::clocks::UsbClock;
@@ -13,7 +10,7 @@ use usb_device::bus::UsbBusAllocator;
 use usb_device::device::{StringDescriptors, UsbDevice, UsbDeviceBuilder, UsbDeviceState, UsbVidPid};
 use usbd_serial::{CdcAcmClass, USB_CLASS_CDC};
 
-use crate::board::cortex_m::interrupt::{self, Shared};
+use crate::board::cortex_m::interrupt::Shared;
 use crate::config::USB_QUEUE;
 
 /// What anybody may use for a serial port (V-USB's shared ids). Without a serial number, as long as no program goes by them to find
@@ -28,7 +25,7 @@ struct Usb {
     arrived: Deque<u8, PACKET>,
 }
 
-static USB: Shared<Option<&'static mut Usb>> = Mutex::new(RefCell::new(None));
+static USB: Shared<Option<&'static mut Usb>> = Shared::new(None);
 
 /// Begins to show the board to a host; `None` the second time.
 pub(super) fn start(
@@ -43,12 +40,12 @@ pub(super) fn start(
     let names = StringDescriptors::default().manufacturer("double-pendulum").product("Double pendulum");
     let device = UsbDeviceBuilder::new(bus, IDS).strings(&[names]).ok()?.device_class(USB_CLASS_CDC).build();
     let usb = singleton!(: Usb = Usb { device, port, leaving: Deque::new(), arrived: Deque::new() })?;
-    interrupt::with(&USB, |place| *place = Some(usb))
+    USB.with(|place| *place = Some(usb))
 }
 
 /// Does something with the device, undisturbed by its interrupt; `None` before the start.
 fn with<T>(act: impl FnOnce(&mut Usb) -> T) -> Option<T> {
-    interrupt::with(&USB, |usb| usb.as_deref_mut().map(act)).flatten()
+    USB.with(|usb| usb.as_deref_mut().map(act)).flatten()
 }
 
 /// Sends a message, if somebody listens and there is room for all of it.

@@ -23,10 +23,8 @@ use stm32f4xx_hal::serial::{self as port, Event};
 use stm32f4xx_hal::watchdog::IndependentWatchdog;
 
 use crate::app::{Buttons, Instruments, Pressed};
-use crate::board::cortex_m::clock::Clock;
-use crate::board::cortex_m::guard::guard_stack;
-use crate::board::cortex_m::identity::instruments;
 use crate::board::cortex_m::watchdog::{self, Watchdog};
+use crate::board::cortex_m::{Clock, guard_stack, instruments};
 use crate::board::panel_bus::Bus;
 use crate::board::serial::{self, Inward, Receiver, Taken, Transmitter};
 use crate::board::{Board, log, steps};
