@@ -196,7 +196,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     /// is too long for the motion, which has left the finite numbers.
     pub fn work(&mut self, mut log: impl Log<Panel, Link>) -> bool {
         let Some((request, job)) = &mut self.work else { return false };
-        let (request, index, reading, is_finished) = (*request, job.given(), job.advance(), job.is_finished());
+        let (request, index, reading, is_finished) = (*request, job.given, job.advance(), job.is_finished());
         match reading {
             Ok(Some(reading)) => self.send(&Sample { request, index, reading }, &mut log),
             Ok(None) => {}

@@ -80,7 +80,7 @@ impl<'a, Spi: SpiDevice, Pin: OutputPin<Error = Infallible>> Ssd0323<'a, Spi, Pi
     /// Sends what differs between the panel's memory and the frame; all of it if the memory is not known.
     fn update(&mut self, canvas: &Canvas) -> Result<(), Spi::Error> {
         let mut next = None;
-        for (y, new) in (0..).zip(canvas.rows()) {
+        for (y, new) in (0..).zip(&canvas.rows) {
             let Some(old) = self.memory.row_mut(y.into()) else { break };
             let all = (0, WIDTH / 2 - 1);
             if let Some((first, last)) = if self.is_known { differing(old, new) } else { Some(all) } {

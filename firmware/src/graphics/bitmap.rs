@@ -55,7 +55,7 @@ impl From<&Canvas> for Bitmap {
         let mut bitmap = Self::default();
         let [drawing, picture] = &ROOM;
         let room = if canvas.all_greys { picture } else { drawing };
-        for (page, rows) in bitmap.pages.iter_mut().zip(canvas.rows().as_chunks::<ROWS>().0) {
+        for (page, rows) in bitmap.pages.iter_mut().zip(canvas.rows.as_chunks::<ROWS>().0) {
             for (word, columns) in page.as_chunks_mut::<8>().0.iter_mut().enumerate() {
                 let mut lit = [0; 2];
                 for ((y, Row(row)), room) in rows.iter().enumerate().zip(room.iter().cycle()) {

@@ -16,7 +16,7 @@ pub struct Spot {
 }
 
 impl Spot {
-    /// The spot at (x, y) pixels, held within one canvas of the canvas so that no sum below can overflow.
+    /// The spot at (x, y) pixels, held so near to the canvas, one size of it away, that no sum below can overflow.
     pub fn at(x: f32, y: f32) -> Self {
         let subpixels = |pixels: f32, size: usize| {
             let size = size as i32 * SUBPIXELS;
@@ -204,7 +204,7 @@ impl Line {
     /// How many subpixels of a pixel are covered: `limit`, which is more than all, where its middle is within `whole` of the line;
     /// none beyond `limit`. Only between the two it takes a division.
     ///
-    /// Spots lie within one canvas of the canvas, so differences are below 3 x 128 x 64 = 24,576 across and half that
+    /// Spots lie no farther from the canvas than its size, so differences are below 3 x 128 x 64 = 24,576 across and half that
     /// down, and sums of two products below 24,576^2 x 1.25 = 7.6e8: 31 bits hold them.
     #[inline(always)]
     fn covered(&self, x: i32, y: i32, probe: &Probe) -> i32 {

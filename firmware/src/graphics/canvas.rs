@@ -13,7 +13,7 @@ pub struct Row(pub [u8; ROW]);
 /// A framebuffer: rows from the top. Drawing cannot fail: what lies outside is not drawn.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Canvas {
-    rows: [Row; HEIGHT],
+    pub rows: [Row; HEIGHT],
     /// Whether it is a picture in which every grey matters, where a drawing is bright on dark.
     pub all_greys: bool,
 }
@@ -51,10 +51,6 @@ impl Canvas {
     /// The bytes as the panel takes them.
     pub fn bytes(&self) -> impl Iterator<Item = u8> + Clone {
         self.rows.iter().flat_map(|Row(row)| *row)
-    }
-
-    pub fn rows(&self) -> &[Row; HEIGHT] {
-        &self.rows
     }
 
     /// A row from the top; none outside.

@@ -55,7 +55,7 @@ pub struct Job<R = OnBoards> {
     turns: Option<[Turns; 2]>,
     stride: u32,
     /// Samples given so far; wraps.
-    given: u32,
+    pub given: u32,
     /// Samples still to come, the one at the start included.
     left: u32,
     /// Steps until the next of them.
@@ -72,11 +72,6 @@ impl<R: Run> Job<R> {
         let pendulum = Pendulum::new(&parameters)?;
         let turns = run.sides().map(|sides| Turns::of(angles, sides));
         Ok(Self { run, pendulum, turns, stride, given: 0, left: samples.saturating_add(1), steps: 0 })
-    }
-
-    /// Samples given so far; wraps.
-    pub fn given(&self) -> u32 {
-        self.given
     }
 
     /// Whether every sample has been given.

@@ -4,6 +4,7 @@ use double_pendulum::plan::{PlannedRun, Way};
 use double_pendulum::{Error, Method, Pendulum, State};
 
 use crate::config::{Processor, TICK_RATE};
+use crate::graphics::RodDirections;
 use crate::motion::Settings;
 
 /// What a motion may be computed by.
@@ -35,19 +36,13 @@ impl Simulation {
         };
         pendulum.check_step(1.0 / (f64::from(rate) * f64::from(way.steps)))?;
         let motion = settings.run(0.0, way)?;
-        let start = pendulum.energy_at(motion.directions(), [start.p1, start.p2]);
-        Ok(Self { energy: Energy { pendulum, start }, motion })
+        Ok(Self { energy: Energy::new(pendulum, motion.directions(), &start), motion })
     }
 
     #[inline(never)] // one copy
     pub fn tick(&mut self) {
         // A motion that is lost is seen by its state.
         let _is_lost = self.motion.advance(1);
-    }
-
-    /// The error of its energy in this `state`, the present one ([`Energy::error`]).
-    pub fn energy_error(&self, state: &State<f32>) -> f32 {
-        self.energy.error(self.energy.pendulum.energy_at(self.motion.directions(), [state.p1, state.p2]))
     }
 }
 
@@ -92,9 +87,15 @@ pub struct Energy {
 }
 
 impl Energy {
+    pub fn new(pendulum: Pendulum<f32>, directions: RodDirections, start: &State<f32>) -> Self {
+        let start = pendulum.energy_at(directions, [start.p1, start.p2]);
+        Self { pendulum, start }
+    }
+
     /// (E - E0)/(E0 - Emin), with E0 the energy at the start and Emin that of hanging at rest; 0 if the start is
-    /// hanging at rest, which it never leaves.
-    pub fn error(&self, energy: f32) -> f32 {
+    /// hanging at rest, which it never leaves. Rods that point to these `directions` now have the momenta of `state`.
+    pub fn error(&self, directions: RodDirections, state: &State<f32>) -> f32 {
+        let energy = self.pendulum.energy_at(directions, [state.p1, state.p2]);
         let scale = self.start - self.pendulum.least_energy();
         if scale > 0.0 { (energy - self.start) / scale } else { 0.0 }
     }

@@ -107,7 +107,7 @@ impl Scene for Beats {
     }
 
     fn height(&self) -> Option<f32> {
-        scene::height_of_curves(self.scale)
+        (self.scale > 0.0).then_some(4.0 * self.scale)
     }
 
     fn planned(&mut self) -> Option<&mut Simulation> {

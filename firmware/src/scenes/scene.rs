@@ -23,8 +23,8 @@ pub trait Scene: Sized {
 
     fn report(&self) -> Report;
 
-    /// The height of a display, pixels, on which two rods as long as those shown reach from the middle to the edge; `None` if
-    /// nothing is shown that can be planned.
+    /// The height of a display, pixels, on which two rods as long as those shown reach from the middle to the edge; where angles
+    /// are shown as curves, a rod is a radian long. `None` if nothing is shown that can be planned.
     fn height(&self) -> Option<f32> {
         None
     }
@@ -64,7 +64,8 @@ impl Report {
     #[inline(never)] // no second copy
     pub fn of(simulation: &Simulation) -> Self {
         let state = simulation.motion.rounded_state();
-        let (energy_error, way) = (simulation.energy_error(&state), Some(simulation.motion.way()));
+        let (energy_error, way) =
+            (simulation.energy.error(simulation.motion.directions(), &state), Some(simulation.motion.way()));
         Self { state, energy_error, way, ..Self::of_figure(simulation.motion.frame()) }
     }
 }
@@ -72,11 +73,6 @@ impl Report {
 /// The simulated time after so many ticks, s.
 pub fn time(ticks: u64) -> f64 {
     ticks as f64 / f64::from(TICK_RATE)
-}
-
-/// The [`height`](Scene::height) of curves of the angles, `scale` pixels to a radian: there each rod is as long.
-pub fn height_of_curves(scale: f32) -> Option<f32> {
-    (scale > 0.0).then_some(4.0 * scale)
 }
 
 /// Writes the time and until when the frame can be trusted; the time stands out once it is known that it no longer can.

@@ -59,8 +59,7 @@ impl Scene for Upright {
         let view = |place, directions| View::new(&settings.parameters, place, directions);
         let [left, right] = Place::HALVES;
         let views = [view(left, plain_directions), view(right, compensated.directions())];
-        let start = pendulum.energy_at(plain_directions, [plain.p1, plain.p2]);
-        let energy = Energy { pendulum, start };
+        let energy = Energy::new(pendulum, plain_directions, &plain);
         Ok(Self { plain, plain_directions, compensated, energy, ticks, views, horizon })
     }
 
@@ -88,8 +87,7 @@ impl Scene for Upright {
     }
 
     fn report(&self) -> Report {
-        let energy = self.energy.pendulum.energy_at(self.plain_directions, [self.plain.p1, self.plain.p2]);
-        let (energy_error, horizon) = (self.energy.error(energy), self.horizon);
+        let (energy_error, horizon) = (self.energy.error(self.plain_directions, &self.plain), self.horizon);
         Report { state: self.plain, energy_error, horizon, ..Report::of_figure(self.ticks) }
     }
 }

@@ -1,9 +1,7 @@
-//! The application as it runs on the boards, without panel and buttons, and what it sends; and a pin.
+//! The application as it runs on the boards, without panel and buttons, what it sends, and the places of a frame.
 
-use std::convert::Infallible;
 use std::fmt::Debug;
 
-use embedded_hal::digital::{ErrorType, OutputPin};
 use embedded_io::Write;
 use firmware::app::{App, Buttons, NoButtons};
 use firmware::display::{Display, NoDisplay};
@@ -51,23 +49,4 @@ pub fn all<M: Message + Debug>(bytes: &[u8]) -> Vec<M> {
 /// All pixels of the frame, row by row.
 pub fn places() -> impl Iterator<Item = (i32, i32)> {
     (0..HEIGHT as i32).flat_map(|y| (0..WIDTH as i32).map(move |x| (x, y)))
-}
-
-/// A pin: what it does when it is set.
-pub struct Pin<Set>(pub Set);
-
-impl<Set> ErrorType for Pin<Set> {
-    type Error = Infallible;
-}
-
-impl<Set: FnMut(bool)> OutputPin for Pin<Set> {
-    fn set_low(&mut self) -> Result<(), Infallible> {
-        self.0(false);
-        Ok(())
-    }
-
-    fn set_high(&mut self) -> Result<(), Infallible> {
-        self.0(true);
-        Ok(())
-    }
 }

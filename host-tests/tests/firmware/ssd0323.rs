@@ -4,12 +4,10 @@ use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::convert::Infallible;
 
-use embedded_hal::digital::OutputPin;
+use embedded_hal::digital::{self, OutputPin};
 use embedded_hal::spi::{ErrorKind, ErrorType, Operation, SpiDevice};
 use firmware::display::{Display, Ssd0323};
 use firmware::graphics::Canvas;
-
-use crate::bench::Pin;
 
 /// How many arguments a command takes, from the data sheet's command table.
 fn arguments(command: u8) -> usize {
@@ -115,13 +113,27 @@ impl SpiDevice for Bus<'_> {
     }
 }
 
-/// The panel on such a bus, with a pin for data or command.
-fn panel<'a>(
-    controller: &'a RefCell<Controller>,
-    memory: &'a mut Canvas,
-) -> Ssd0323<'a, Bus<'a>, impl OutputPin<Error = Infallible> + 'a> {
-    let data = Pin(|high| controller.borrow_mut().data = Some(high));
-    Ssd0323::new(Bus(controller), data, memory)
+/// The pin for data (high) or command.
+struct Pin<'a>(&'a RefCell<Controller>);
+
+impl digital::ErrorType for Pin<'_> {
+    type Error = Infallible;
+}
+
+impl OutputPin for Pin<'_> {
+    fn set_low(&mut self) -> Result<(), Infallible> {
+        self.0.borrow_mut().data = Some(false);
+        Ok(())
+    }
+
+    fn set_high(&mut self) -> Result<(), Infallible> {
+        self.0.borrow_mut().data = Some(true);
+        Ok(())
+    }
+}
+
+fn panel<'a>(controller: &'a RefCell<Controller>, memory: &'a mut Canvas) -> Ssd0323<'a, Bus<'a>, Pin<'a>> {
+    Ssd0323::new(Bus(controller), Pin(controller), memory)
 }
 
 fn shown(controller: &RefCell<Controller>) -> Vec<u8> {
