@@ -71,11 +71,11 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         keys: Keys,
     ) -> Result<Self, Error> {
         let mut app = Self::idle(PROCESSOR, settings, buffers, panel, link, keys);
-        app.begin()?;
+        app.player.play(SceneName::Page, settings)?;
         Ok(app)
     }
 
-    /// The same for a class of processors, before it [begins](Self::begin), which takes much of the stack: better when it is at its place.
+    /// The same for a class of processors, before it plays, which takes much of the stack: better when it is at its place.
     #[inline(never)] // while it is made one of it stands on the stack, and not two
     pub fn idle(
         processor: Processor,
@@ -105,10 +105,6 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
             instruments: Instruments::default(),
             busy_cycles: 0,
         }
-    }
-
-    pub fn begin(&mut self) -> Result<(), Error> {
-        self.player.play(SceneName::Page, *self.player.settings())
     }
 
     /// Goes by a clock that stands at `clock` now, and counts frames and ticks without one from `frames` on.

@@ -18,6 +18,7 @@ use crate::display::Display;
 use crate::graphics::FrameBuffers;
 use crate::motion::Settings;
 use crate::protocol::BoardName;
+use crate::scenes::SceneName;
 
 pub struct Board<Panel, Link, Keys, Dog> {
     pub panel: Panel,
@@ -80,8 +81,9 @@ fn application<'a, Panel: Display, Link: Write, Keys: Buttons>(
     keys: Keys,
     processor: Processor,
 ) -> &'a mut App<'a, Panel, Link, Keys> {
-    let app = place.write(App::idle(processor, Settings::default(), buffers, panel, link, keys));
-    if let Err(error) = app.begin() {
+    let settings = Settings::default();
+    let app = place.write(App::idle(processor, settings, buffers, panel, link, keys));
+    if let Err(error) = app.player.play(SceneName::Page, settings) {
         defmt::error!("{}", error);
         panic!("the first settings describe no pendulum")
     }

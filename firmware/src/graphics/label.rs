@@ -5,10 +5,6 @@ use heapless::String;
 /// A label: at most the bytes of what fits beside the motion.
 pub type Label = String<16>;
 
-/// The names of both angles, and of both frequencies, the fast one first.
-pub const ANGLES: [&str; 2] = ["α₁", "α₂"];
-pub const FREQUENCIES: [&str; 2] = ["ω₁", "ω₂"];
-
 /// The mass ratio to three significant digits: `μ 100`, `μ 31.5`, `μ 2.75`, `μ 0.315`, `μ 0.0125`.
 pub fn mass_ratio(ratio: f32) -> Label {
     let decimals = match ratio {
@@ -18,13 +14,13 @@ pub fn mass_ratio(ratio: f32) -> Label {
         0.1.. => 3,
         _ => 4,
     };
-    label(["μ", " "], ratio, decimals, "")
+    label("μ ", ratio, decimals, "")
 }
 
-/// A start angle with its name: `α 120°`, with one decimal if it is no whole number of degrees.
+/// A start angle after its name: `α 120°`, with one decimal if it is no whole number of degrees.
 pub fn degrees(name: &str, degrees: f32) -> Label {
     let decimals = if degrees == (degrees as i32) as f32 { 0 } else { 1 };
-    label([name, " "], degrees, decimals, "°")
+    label(name, degrees, decimals, "°")
 }
 
 /// A number of an axis: `10`, `0.2 s`.
@@ -34,35 +30,35 @@ pub fn tick(value: f32, unit: &str) -> Label {
         0.01..0.1 => 2,
         _ => 0,
     };
-    label([""; 2], value, decimals, unit)
+    label("", value, decimals, unit)
 }
 
 /// Until when the frame is right to half a pixel: `½px 8.4 s`, `½px>8.4 s` if it may be for longer, `½px ok` if for ever.
 pub fn trust(until: f32, is_looking: bool) -> Label {
-    let gap = if is_looking { ">" } else { " " };
+    let name = if is_looking { "½px>" } else { "½px " };
     match until {
-        0.0..1e3 => label(["½px", gap], until, 1, " s"),
-        1e3..1e9 => label(["½px", gap], until, 0, " s"),
+        0.0..1e3 => label(name, until, 1, " s"),
+        1e3..1e9 => label(name, until, 0, " s"),
         _ => Label::try_from("½px ok").unwrap_or_default(),
     }
 }
 
 /// The time since the start to a tenth of a second: `12.3 s`.
 pub fn time(seconds: f64) -> Label {
-    written([""; 3], (seconds * 10.0) as u32, 10, " s")
+    written([""; 2], (seconds * 10.0) as u32, 10, " s")
 }
 
-/// `value` rounded to `decimals` places after a name and a gap, and before a unit: `±12°`, `ω₁ 1.848`, `true -18.7 J`.
+/// `value` rounded to `decimals` places after a name and before a unit: `±12°`, `ω₁ 1.848`, `true -18.7 J`.
 #[inline(never)]
-pub fn label([name, gap]: [&str; 2], value: f32, decimals: u32, unit: &str) -> Label {
+pub fn label(name: &str, value: f32, decimals: u32, unit: &str) -> Label {
     let one = 10_u32.saturating_pow(decimals);
     let sign = if value < 0.0 { "-" } else { "" };
-    written([name, gap, sign], (value.abs() * one as f32 + 0.5) as u32, one, unit)
+    written([name, sign], (value.abs() * one as f32 + 0.5) as u32, one, unit)
 }
 
 /// A number of which `one`, a power of ten, is 1.
 #[inline(never)]
-fn written(head: [&str; 3], number: u32, one: u32, unit: &str) -> Label {
+fn written(head: [&str; 2], number: u32, one: u32, unit: &str) -> Label {
     let mut label = Label::new();
     let mut write = || {
         head.iter().try_for_each(|part| label.push_str(part))?;

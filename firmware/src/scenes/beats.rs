@@ -98,7 +98,7 @@ impl Scene for Beats {
         let reach = if self.scale > 0.0 { (REACH / self.scale).to_degrees() } else { 0.0 };
         text::write(canvas, "↑ fast", Anchor::Middle(3 * LINE));
         text::write(canvas, "→ slow", Anchor::Middle(4 * LINE));
-        text::write(canvas, &label::label(["±", ""], reach, 0, "°"), Anchor::Middle(5 * LINE));
+        text::write(canvas, &label::label("±", reach, 0, "°"), Anchor::Middle(5 * LINE));
         scene::draw_clock(canvas, report, Anchor::Middle(LINE + 2), Anchor::Middle(LOWEST));
     }
 

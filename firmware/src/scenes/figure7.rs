@@ -48,8 +48,8 @@ impl Scene for Figure7 {
     fn draw(&self, report: &Report, canvas: &mut Canvas) {
         self.views.iter().for_each(|view| view.draw(canvas, u8::MAX));
         let (right, misprinted) = (self.right.energy.of_error(report.energy_error), self.misprinted.energy());
-        text::write(canvas, &label::label(["true", " "], right, 1, " J"), Anchor::TopLeft);
-        text::write(canvas, &label::label(["book", " "], misprinted, 1, " J"), Anchor::TopRight);
+        text::write(canvas, &label::label("true ", right, 1, " J"), Anchor::TopLeft);
+        text::write(canvas, &label::label("book ", misprinted, 1, " J"), Anchor::TopRight);
         scene::draw_clock(canvas, report, Anchor::Middle(LINE + 1), Anchor::Middle(LOWEST));
     }
 

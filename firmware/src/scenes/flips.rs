@@ -132,12 +132,6 @@ impl Flips {
     pub fn is_done(&self) -> bool {
         self.block.size == 0
     }
-
-    fn found(&mut self, flip: Flip<f32>, ink: &mut FadeLayer) {
-        self.block.paint(ink, grey(flip, self.unit));
-        self.block = self.block.next();
-        self.done += 1;
-    }
 }
 
 /// Makes at most `steps` steps from the start at these angles; what they and a start have cost, in steps, and what is known after
@@ -198,7 +192,8 @@ impl Scene for Flips {
             };
             left = left.saturating_sub(cost);
             if let Some(flip) = flip {
-                self.found(flip, ink);
+                self.block.paint(ink, grey(flip, self.unit));
+                (self.block, self.done) = (self.block.next(), self.done + 1);
             }
         }
     }
@@ -209,7 +204,7 @@ impl Scene for Flips {
         let corner = if self.is_done() {
             label::mass_ratio(self.mass_ratio)
         } else {
-            label::label([""; 2], ((100 * self.done) / (WIDTH * ROWS) as u32) as f32, 0, " %")
+            label::label("", ((100 * self.done) / (WIDTH * ROWS) as u32) as f32, 0, " %")
         };
         text::write_over(canvas, &corner, Anchor::TopLeft);
     }

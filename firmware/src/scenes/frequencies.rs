@@ -92,9 +92,9 @@ impl Scene for Frequencies {
             let centre = Spot::at(x, ZERO_ROW - self.scale * frequency);
             Disc { centre, radius: MARK_RADIUS, gap: MARK_RADIUS }.draw(canvas, u8::MAX);
         }
-        let ([fast, slow], [fast_name, slow_name]) = (self.marked, label::FREQUENCIES);
-        text::write(canvas, &label::label([fast_name, " "], fast, 3, ""), Anchor::TopLeft);
-        text::write(canvas, &label::label([slow_name, " "], slow, 3, ""), Anchor::Middle(0));
+        let [fast, slow] = self.marked;
+        text::write(canvas, &label::label("ω₁ ", fast, 3, ""), Anchor::TopLeft);
+        text::write(canvas, &label::label("ω₂ ", slow, 3, ""), Anchor::Middle(0));
         text::write(canvas, &label::mass_ratio(self.mass_ratio), Anchor::TopRight);
         text::write(canvas, "ω in √(g/l)", Anchor::At(LEFT + 1, LOWEST));
         text::write(canvas, &label::mass_ratio(self.range), Anchor::BottomRight);

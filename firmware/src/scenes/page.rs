@@ -35,11 +35,10 @@ impl Scene for Page {
         let [degrees1, degrees2] = self.settings.degrees;
         text::write(canvas, &label::mass_ratio(self.settings.mass_ratio()), Anchor::TopLeft);
         if degrees1 == degrees2 {
-            text::write(canvas, &label::degrees("α", degrees1), Anchor::BottomLeft);
+            text::write(canvas, &label::degrees("α ", degrees1), Anchor::BottomLeft);
         } else {
-            let [name1, name2] = label::ANGLES;
-            text::write(canvas, &label::degrees(name1, degrees1), Anchor::At(1, LOWEST - LINE));
-            text::write(canvas, &label::degrees(name2, degrees2), Anchor::BottomLeft);
+            text::write(canvas, &label::degrees("α₁ ", degrees1), Anchor::At(1, LOWEST - LINE));
+            text::write(canvas, &label::degrees("α₂ ", degrees2), Anchor::BottomLeft);
         }
         scene::draw_clock(canvas, report, Anchor::TopRight, Anchor::BottomRight);
     }

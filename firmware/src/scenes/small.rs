@@ -110,12 +110,12 @@ impl Scene for Small {
 
     fn draw(&self, report: &Report, canvas: &mut Canvas) {
         let greatest = if self.scale > 0.0 { (SWING / self.scale).to_degrees() } else { 0.0 };
-        for (row, name) in ROWS.map(|row| row as i32).into_iter().zip(label::ANGLES) {
+        for (row, name) in ROWS.map(|row| row as i32).into_iter().zip(["α₁", "α₂"]) {
             let swing = SWING as i32;
             plot::axis(canvas, LEFT, WIDTH as i32, row);
             plot::bar(canvas, (LEFT - 1, row - swing), (LEFT - 1, row + swing));
             text::write(canvas, name, Anchor::EndingAt(LEFT - 2, row - LINE / 2));
-            text::write(canvas, &label::label([""; 2], greatest, 0, "°"), Anchor::EndingAt(LEFT - 2, row - swing));
+            text::write(canvas, &label::label("", greatest, 0, "°"), Anchor::EndingAt(LEFT - 2, row - swing));
         }
         self.draw_seconds(canvas);
         text::write(canvas, &label::mass_ratio(self.settings.mass_ratio()), Anchor::TopLeft);

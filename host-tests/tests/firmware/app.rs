@@ -26,10 +26,6 @@ fn run(clock: impl IntoIterator<Item = u32>) -> Plain {
     app
 }
 
-fn frames(bytes: &[u8]) -> Vec<Frame> {
-    all(bytes)
-}
-
 #[test]
 fn the_state_and_the_picture_after_n_ticks_are_the_same_at_any_frame_rate() {
     let steady = run(1..=600);
@@ -46,7 +42,7 @@ fn the_state_and_the_picture_after_n_ticks_are_the_same_at_any_frame_rate() {
 #[test]
 fn every_frame_carries_the_kernels_state_to_the_bit() {
     let app = run(1..=600);
-    let frames = frames(&app.link);
+    let frames: Vec<Frame> = all(&app.link);
     assert_eq!(frames.len(), 600);
 
     let pendulum = Pendulum::new(&Parameters::equal_rods(1.0, ROD, GRAVITY as f32)).expect("good");
@@ -82,7 +78,7 @@ fn dropped_pictures_are_counted_and_no_tick_is_lost() {
     assert!(app.run_to(late + 2, |event| events.push(event)));
     while !app.run_to(90, |event| events.push(event)) {}
 
-    let frames = frames(&app.link);
+    let frames: Vec<Frame> = all(&app.link);
     let shown: Vec<_> = frames.iter().map(|frame| (frame.step, frame.dropped)).collect();
     let most = MOST_TICKS_PER_FRAME - 1;
     assert_eq!(shown, [(15, most), (30, 2 * most), (31, 2 * most), (33, 29), (48, 43), (63, 57), (78, 71), (90, 82)]);
@@ -105,7 +101,7 @@ fn losses_are_said_once_a_second_and_lost_bytes_sent_with_each_frame() {
             .map(|event| (tick, event))
     };
     assert_eq!(events, [TICK_RATE, 2 * TICK_RATE].map(said).concat());
-    let counts = frames(&app.link).iter().map(|frame| frame.lost).collect::<Vec<_>>();
+    let counts = all::<Frame>(&app.link).iter().map(|frame| frame.lost).collect::<Vec<_>>();
     assert_eq!(counts, (0..2 * TICK_RATE).collect::<Vec<_>>());
 }
 
@@ -120,7 +116,7 @@ fn counts_wrap_unnoticed() {
         for tick in (1..=2 * AHEAD).filter(|tick| tick % 3 != 0) {
             while !app.run_to(begin.wrapping_add(tick), |event| events.push(event)) {}
         }
-        (frames(&app.link), app.canvas.clone(), events)
+        (all::<Frame>(&app.link), app.canvas.clone(), events)
     };
     let begin = 0_u32.wrapping_sub(AHEAD / 3);
     let (plain, wrapped) = (run(0), run(begin));
@@ -138,7 +134,7 @@ fn counts_wrap_unnoticed() {
 fn hanging_at_rest_has_no_energy_error() {
     let mut app = starting_with(Settings::equal_rods(1.0, 0.0));
     app.run_to(10, |_| ());
-    assert_eq!(frames(&app.link).iter().map(|frame| frame.energy_error).collect::<Vec<_>>(), [0.0]);
+    assert_eq!(all::<Frame>(&app.link).iter().map(|frame| frame.energy_error).collect::<Vec<_>>(), [0.0]);
 }
 
 /// Presses up at tick 10 and select at tick 50 for three ticks each.
@@ -165,7 +161,7 @@ fn buttons_restart_with_the_new_settings() {
     }
     let heavier = Settings::equal_rods(1.25, 120.0);
     assert_eq!(started, [11, 54].map(|now| (now, Event::Started(SceneName::Page, heavier))));
-    let frames = frames(&app.link);
+    let frames: Vec<Frame> = all(&app.link);
     assert_eq!(frames[9].mass_ratio, 1.0);
     assert_eq!((frames[10].mass_ratio, frames[10].step), (1.25, 1));
     assert_eq!((frames[53].step, frames[53].sequence), (1, 53));
@@ -200,7 +196,7 @@ fn a_failing_panel_is_reported_once_and_does_not_stop_the_rest() {
         app.run_to(now, |event| events.push((now, event)));
     }
     assert_eq!(events, [(1, Event::Panel("bus")), (20, Event::Panel("bus"))]);
-    assert_eq!(frames(&app.link).len(), 30);
+    assert_eq!(all::<Frame>(&app.link).len(), 30);
 }
 
 /// Where the rods point, by the state reported.

@@ -131,7 +131,7 @@ fn labels_show_what_is_set() {
     let ratios = [0.01, 0.0125, 0.1, 0.315, 1.0, 2.75, 9.0 / 16.0, 12.5, 31.5, 100.0].map(label::mass_ratio);
     let expected = ["0.0100", "0.0125", "0.100", "0.315", "1.00", "2.75", "0.563", "12.5", "31.5", "100"];
     assert_eq!(ratios.map(|label| label.to_string()), expected.map(|text| format!("μ {text}")));
-    let angles = [0.0, 120.0, -7.0, 171.5, -0.5].map(|degrees| label::degrees("α", degrees));
+    let angles = [0.0, 120.0, -7.0, 171.5, -0.5].map(|degrees| label::degrees("α ", degrees));
     let expected = ["α 0°", "α 120°", "α -7°", "α 171.5°", "α -0.5°"];
     assert_eq!(angles.map(|label| label.to_string()), expected);
     let times = [0.0, 0.099, 59.96, 3600.0].map(label::time);
@@ -146,7 +146,7 @@ fn labels_show_what_is_set() {
 #[test]
 fn labels_of_any_numbers_are_safe() {
     for number in [f32::NAN, f32::INFINITY, f32::MAX, -f32::MAX, 1e-30] {
-        let _ = (label::mass_ratio(number), label::degrees("α", number), label::time(number.into()));
-        let _ = (label::trust(number, true), label::tick(number, " s"), label::label(["true", " "], number, 1, " J"));
+        let _ = (label::mass_ratio(number), label::degrees("α ", number), label::time(number.into()));
+        let _ = (label::trust(number, true), label::tick(number, " s"), label::label("true ", number, 1, " J"));
     }
 }
