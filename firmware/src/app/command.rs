@@ -65,6 +65,17 @@ impl Key {
             Self::Select => Command::Restart,
         }
     }
+
+    /// What an arrow asks for while select is held.
+    pub(super) const fn with_select(self) -> Command {
+        match self {
+            Self::Up => Command::TogglePause,
+            Self::Down => Command::Step(1),
+            Self::Left => Command::PreviousScene,
+            Self::Right => Command::NextScene,
+            Self::Select => Command::Restart,
+        }
+    }
 }
 
 impl Command {

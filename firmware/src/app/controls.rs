@@ -1,6 +1,6 @@
 //! Five buttons, debounced, become commands, or one: by how often it is tapped before it is held.
 
-use crate::app::Command;
+use crate::app::{Command, Key};
 use crate::config::{DEBOUNCE_TICKS, HOLD_TICKS, MOST_TICKS_BETWEEN_TAPS, REPEAT_DELAY_TICKS, REPEAT_PERIOD_TICKS};
 
 /// A reading of the five buttons; `true` is pressed.
@@ -26,13 +26,7 @@ impl Buttons for NoButtons {
     }
 }
 
-/// What up, down, left and right ask for alone, and with select held.
-const ARROWS: [[Command; 2]; 4] = [
-    [Command::Heavier, Command::TogglePause],
-    [Command::Lighter, Command::Step(1)],
-    [Command::TurnLeft, Command::PreviousScene],
-    [Command::TurnRight, Command::NextScene],
-];
+const ARROWS: [Key; 4] = [Key::Up, Key::Down, Key::Left, Key::Right];
 
 /// The five buttons' history.
 ///
@@ -62,10 +56,10 @@ impl Controls {
         let with_select = self.select.is_held();
         let mut asked = [None; 4];
         let arrows = ARROWS.into_iter().zip(&mut self.arrows).zip([up, down, left, right]);
-        for (asked, (([tapped, shifted], button), pressed)) in asked.iter_mut().zip(arrows) {
+        for (asked, ((key, button), pressed)) in asked.iter_mut().zip(arrows) {
             *asked = match button.tick(pressed) {
-                Some(Change::Pressed) if with_select => Some(shifted),
-                Some(Change::Pressed | Change::Repeated) if !with_select => Some(tapped),
+                Some(Change::Pressed) if with_select => Some(key.with_select()),
+                Some(Change::Pressed | Change::Repeated) if !with_select => Some(key.tapped()),
                 _ => None,
             };
         }
