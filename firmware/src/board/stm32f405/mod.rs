@@ -18,8 +18,7 @@ use stm32f4xx_hal::pac::usart1::RegisterBlock;
 use stm32f4xx_hal::pac::{self, DBGMCU, IWDG, Interrupt, NVIC, RCC, USART3};
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::{Config, Rcc};
-use stm32f4xx_hal::serial::config::InvalidConfig;
-use stm32f4xx_hal::serial::{self as port, Event};
+use stm32f4xx_hal::serial::{Event, config};
 use stm32f4xx_hal::watchdog::IndependentWatchdog;
 
 use crate::app::{Buttons, Instruments, Pressed};
@@ -54,8 +53,7 @@ pub fn take() -> Option<Stm32f405> {
     }
     guard_stack(core.MPU);
     let (b, c) = (chip.GPIOB.split(&mut rcc), chip.GPIOC.split(&mut rcc));
-    // There is a divisor for this baud rate at either clock, so this does not fail.
-    let (link, receiver) = start_link(chip.USART3, (b.pb10, b.pb11), &mut rcc).ok()?;
+    let (link, receiver) = start_link(chip.USART3, (b.pb10, b.pb11), &mut rcc)?;
     let outbox = cortex_m::singleton!(: Outbox = Outbox::new())?;
     Some(Board {
         panel: Ssd1306::new(i2c::start(chip.I2C1, b.pb6, b.pb7, &mut rcc, outbox), BUILT_FOR),
@@ -111,8 +109,9 @@ fn start_clock(rcc: RCC) -> (Rcc, bool) {
 }
 
 /// Starts the serial port. The support library sets it up and lets go of it.
-fn start_link(port: USART3, pins: (PB10, PB11), rcc: &mut Rcc) -> Result<(Transmitter, Receiver), InvalidConfig> {
-    let mut port = port.serial::<u8>(pins, port::config::Config::default().baudrate(BAUD.bps()), rcc)?;
+fn start_link(port: USART3, pins: (PB10, PB11), rcc: &mut Rcc) -> Option<(Transmitter, Receiver)> {
+    // There is a divisor for this baud rate at either clock, so this does not fail.
+    let mut port = port.serial::<u8>(pins, config::Config::default().baudrate(BAUD.bps()), rcc).ok()?;
     port.listen(Event::RxNotEmpty);
     let put = |byte: u8| {
         uart().dr().write(|w| w.dr().set(byte.into()));
@@ -121,7 +120,7 @@ fn start_link(port: USART3, pins: (PB10, PB11), rcc: &mut Rcc) -> Result<(Transm
     let receiver = serial::receive_from(Inward { clear: |_| (), take: received });
     // SAFETY: no critical section relies on this interrupt being masked.
     unsafe { NVIC::unmask(Interrupt::USART3) };
-    Ok((Transmitter { is_ready: || uart().sr().read().txe().bit_is_set(), put }, receiver))
+    Some((Transmitter { is_ready: || uart().sr().read().txe().bit_is_set(), put }, receiver))
 }
 
 fn uart() -> &'static RegisterBlock {
