@@ -119,3 +119,17 @@ fn what_cannot_be_played_changes_nothing() {
         assert_eq!(player.status(0), before);
     }
 }
+
+#[test]
+fn any_flipped_bit_is_noticed() {
+    let (played, end) = (kept(&status()), kept(&end()));
+    for bit in 0..8 * MAX_WIRE {
+        let is_kept = |kept: &Kept| kept[bit / 8..].iter().any(|byte| *byte > 0);
+        let flipped = |mut kept: Kept| {
+            kept[bit / 8] ^= 1 << (bit % 8);
+            kept
+        };
+        assert!(!is_kept(&played) || WarmRestart::recall(&flipped(played), &end, true).is_none(), "played, bit {bit}");
+        assert!(!is_kept(&end) || WarmRestart::recall(&played, &flipped(end), true).is_none(), "end, bit {bit}");
+    }
+}
