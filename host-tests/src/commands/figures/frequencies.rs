@@ -18,13 +18,11 @@ fn point(mass_ratio: f64) -> Result<[f64; 3], Error> {
     Ok([mass_ratio, modes.fast.frequency, modes.slow.frequency])
 }
 
-/// The curves, denser towards 0, where they are steep.
-pub fn points() -> Result<Vec<[f64; 3]>, Error> {
-    (1..=POINTS).map(|i| point(GREATEST_MASS_RATIO * (f64::from(i) / f64::from(POINTS)).powi(2))).collect()
-}
-
 pub fn figure() -> Result<String> {
-    let (points, marks) = (points()?, MARKED.into_iter().map(point).collect::<Result<Vec<_>, _>>()?);
+    // Denser towards 0, where the curves are steep.
+    let ratios = (1..=POINTS).map(|i| GREATEST_MASS_RATIO * (f64::from(i) / f64::from(POINTS)).powi(2));
+    let points = ratios.map(point).collect::<Result<Vec<_>, _>>()?;
+    let marks = MARKED.into_iter().map(point).collect::<Result<Vec<_>, _>>()?;
     svg([640, 400], |area| {
         let area = headed(area, "Figure 2: both frequencies of small oscillations of equal rods", text(15))?;
         let across = ("mass ratio μ = m₂/m₁", [0.0, GREATEST_MASS_RATIO]);

@@ -27,9 +27,7 @@ pub fn file(scene: SceneName, kind: &str) -> String {
 pub fn screenshot(name: SceneName) -> Result<Vec<u8>> {
     let mut scene = Show::new(name, &name.first_settings())?;
     (0..moment(name)).for_each(|_| scene.tick());
-    let mut file = Vec::new();
-    record::png(&Screenshot::from(&scene.frame()), &mut file)?;
-    Ok(file)
+    record::png(&Screenshot::from(&scene.frame()))
 }
 
 /// How long the animation of a scene is, s: until all that it has to show has been seen.

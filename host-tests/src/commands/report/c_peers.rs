@@ -8,12 +8,11 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
 
-use anyhow::{Result, bail, ensure};
+use anyhow::{Result, ensure};
 use double_pendulum::Method;
 
-use super::accuracy::{Error, request, worst};
+use super::accuracy::{Error, LONG, SCENES, Scene, request, worst};
 use super::join::Point;
-use super::scene::{LONG, SCENES, Scene};
 use crate::commands::count::{Target, affordable_cost};
 use crate::emulator::boards::Board;
 use crate::emulator::process;
@@ -127,16 +126,14 @@ impl Program {
 
     /// The error of the states that it prints.
     fn error(&self, scene: &Scene, rate: u32, exact: &[[f64; 2]]) -> Result<Error> {
-        let printed = self.target.output(&request(TEXTBOOK, scene, rate))?;
+        let request = request(TEXTBOOK, scene, rate);
+        let printed = self.target.output(&request)?;
         let state = |line: &str| {
-            let bits: Result<Vec<_>, _> =
-                line.split_ascii_whitespace().map(|word| u64::from_str_radix(word, 16)).collect();
-            if let [a1, a2, ..] = bits.ok()?[..] { Some([a1, a2].map(f64::from_bits)) } else { None }
+            let mut bits = line.split_ascii_whitespace().map_while(|word| u64::from_str_radix(word, 16).ok());
+            Some([bits.next()?, bits.next()?].map(f64::from_bits))
         };
         let states: Vec<_> = printed.lines().filter_map(state).collect();
-        if states.len() != exact.len() {
-            bail!("{}: {}", self.name, printed.trim());
-        }
-        Ok(worst(scene, &states, exact))
+        ensure!(states.len() == exact.len(), "{}: {}", self.name, printed.trim());
+        Ok(worst(&request.parameters, &states, exact))
     }
 }

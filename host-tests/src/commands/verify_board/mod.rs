@@ -46,7 +46,7 @@ struct Section {
 
 impl Section {
     fn new(title: &'static str, note: &'static str, columns: &'static [&'static str]) -> Self {
-        Self { head: [title, note], table: Table { columns, rows: Vec::new() }, faults: Vec::new() }
+        Self { head: [title, note], table: Table { columns: columns.to_vec(), rows: Vec::new() }, faults: Vec::new() }
     }
 }
 
