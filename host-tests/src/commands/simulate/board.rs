@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use anyhow::{Context, bail, ensure};
 use firmware::job::{Reading, Request};
-use firmware::protocol::{Field, Frame, Refused, Sample};
+use firmware::protocol::{Frame, Sample};
 
 use crate::emulator::boards::Board;
 use crate::emulator::qemu::{Clock, Machine, Settings};
@@ -34,8 +34,7 @@ pub fn readings(
     let mut expected = 0;
     while expected <= request.samples {
         let message = machine.receive().context(board.name)?;
-        if let Some(Refused { field, .. }) = message.read() {
-            let field = Field::from_code(field).map_or("unknown field", Field::name);
+        if let Some(field) = message.refused() {
             bail!("{}: the board refuses the request: {field}", board.name);
         }
         if let Some(Sample { index, reading, .. }) = message.read() {

@@ -37,13 +37,11 @@ pub fn compare(talk: &mut Talk) -> anyhow::Result<Section> {
     let all = ON_BOARDS.iter().flat_map(|&method| MOTIONS.map(|motion| (method, motion)));
     for (number, (method, motion)) in (0..).zip(all) {
         let (request, mut readings) = (request(method, motion), Vec::new());
-        let accepted = request.readings(|reading| {
+        let accepted = request.readings::<JobError>(|reading| {
             readings.push(*reading);
-            Ok::<_, JobError>(())
+            Ok(())
         });
-        if accepted.is_err() {
-            continue;
-        }
+        let Ok(()) = accepted else { continue };
         let difference = difference(talk, &request, number, &readings)?;
         let steps = (request.stride * request.samples).to_string();
         let verdict = difference.clone().unwrap_or_else(|| "the host's".to_owned());
