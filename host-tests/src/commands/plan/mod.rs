@@ -1,13 +1,11 @@
 //! `cargo plan`: how to compute a scene as cheaply as may be; and the planner held against the reference.
 
-mod draw;
 mod options;
 mod study;
 mod words;
 
-pub use draw::scenes;
 pub use options::{CHIPS, Chip, M3, M4F, PICO, SceneOptions};
-pub use study::{Case, DURATIONS, median, study};
+pub use study::{Case, DURATIONS, median, scenes, study};
 
 use clap::Parser;
 
