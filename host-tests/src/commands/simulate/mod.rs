@@ -12,7 +12,7 @@ pub use number::Number;
 pub use options::{Place, SimulateOptions};
 pub use request::{Plan, plan};
 pub use start::{Pair, StartOptions, option_of};
-pub use tolerance::{Choice, choose};
+pub use tolerance::choose;
 
 use std::io::{self, BufWriter, Write};
 
@@ -25,7 +25,12 @@ pub fn run(options: &SimulateOptions) -> anyhow::Result<()> {
     if options.list {
         return Ok(say(table::methods())?);
     }
-    let plan = planned(options).map_err(|error| Refused::because(format_args!("{error:#}")))?;
+    let planned = match &options.tolerance {
+        Some(tolerance) => choose(options, tolerance).map(|(plan, _)| plan),
+        None => plan(options),
+    };
+    let plan = planned.map_err(|error| Refused::because(format_args!("{error:#}")))?;
+    plan.note.iter().for_each(complain);
     let mut output = BufWriter::new(io::stdout().lock());
     let (bar, mut rows) = (Progress::of("rows", u64::from(plan.request.samples) + 1), 0);
     let mut write = |reading: &_| {
@@ -45,18 +50,4 @@ pub fn run(options: &SimulateOptions) -> anyhow::Result<()> {
     // The rows until then are right, and stay.
     done.with_context(|| format!("after {rows} rows"))?;
     Ok(output.flush()?)
-}
-
-/// The motion to compute; warnings about it go to stderr first.
-fn planned(options: &SimulateOptions) -> anyhow::Result<Plan> {
-    if let Some(tolerance) = &options.tolerance {
-        let choice = choose(options, tolerance)?;
-        complain(&choice);
-        return Ok(choice.plan);
-    }
-    let plan = plan(options)?;
-    if let Some(warning) = plan.warning(options) {
-        complain(format_args!("warning: {warning}"));
-    }
-    Ok(plan)
 }

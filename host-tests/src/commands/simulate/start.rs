@@ -71,19 +71,12 @@ impl StartOptions {
         Parameters { m1, m2, l1, l2, g: self.gravity.as_ref().map_or(GRAVITY, Number::value) }
     }
 
-    /// a1, a2, rad.
-    pub fn angles(&self) -> [f64; 2] {
-        let first = [f64::from(FIRST_ANGLE) * DEGREE; 2];
-        self.angles.as_ref().map_or(first, |angles| angles.values().map(|angle| self.radians(angle)))
-    }
-
-    /// w1, w2, rad/s.
-    pub fn velocities(&self) -> [f64; 2] {
-        self.velocities.values().map(|velocity| self.radians(velocity))
-    }
-
+    /// Angles and velocities, rad and rad/s.
     pub fn motion(&self) -> Motion<f64> {
-        let ([a1, a2], [w1, w2]) = (self.angles(), self.velocities());
+        let radians = |angle| if self.degrees { angle * DEGREE } else { angle };
+        let first = [f64::from(FIRST_ANGLE) * DEGREE; 2];
+        let [a1, a2] = self.angles.as_ref().map_or(first, |angles| angles.values().map(radians));
+        let [w1, w2] = self.velocities.values().map(radians);
         Motion { a1, a2, w1, w2 }
     }
 
@@ -97,10 +90,6 @@ impl StartOptions {
         let numbers = [&a.0, &a.1, &w.0, &w.1, &m.0, &m.1, &l.0, &l.1, self.gravity.as_ref().or(gravity.as_ref())?];
         let fractions = numbers.into_iter().map(Number::exact).collect::<Option<Vec<_>>>()?.try_into().ok()?;
         Some(Exact { about: (self.parameters(), self.motion()), fractions: Some(fractions), degrees })
-    }
-
-    fn radians(&self, angle: f64) -> f64 {
-        if self.degrees { angle * DEGREE } else { angle }
     }
 }
 
