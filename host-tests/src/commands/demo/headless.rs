@@ -5,7 +5,6 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use anyhow::ensure;
-use firmware::config::TICK_RATE;
 
 use super::DemoOptions;
 use super::session::Session;
@@ -18,18 +17,17 @@ const LOOK: Duration = Duration::from_millis(4);
 /// A port from which no frame comes for so long is given up.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// Ticks for which an answer to the last question of the comparison is waited for.
-const ANSWER: u32 = 3 * TICK_RATE;
+/// How long an answer to the last question of the comparison is waited for, s of the board's time.
+const ANSWER: f64 = 3.0;
 
 pub fn run(options: &DemoOptions, mut session: Session) -> anyhow::Result<bool> {
     let seconds = options.seconds.unwrap_or(DEFAULT_SECONDS);
     let name = session.source.name().to_owned();
     let progress = Progress::start(&format!("running {name} for {seconds} s of its time"));
-    let ticks = (seconds * f64::from(TICK_RATE)).ceil() as u32;
-    let mut last = (0, Instant::now());
+    let mut last = (0.0, Instant::now());
     let is_over = |session: &Session| {
-        let is_settled = session.readings.comparison.is_settled() || session.ticks() > ticks + ANSWER;
-        session.ticks() >= ticks && is_settled
+        let is_settled = session.readings.comparison.is_settled() || session.seconds() > seconds + ANSWER;
+        session.seconds() >= seconds && is_settled
     };
     while !is_over(&session) {
         session.hear()?;
@@ -39,8 +37,8 @@ pub fn run(options: &DemoOptions, mut session: Session) -> anyhow::Result<bool> 
         let lines = session.source.lines();
         if session.source.is_port() {
             lines.iter().for_each(|line| complain(&line.text));
-            if last.0 != session.ticks() {
-                last = (session.ticks(), Instant::now());
+            if last.0 != session.seconds() {
+                last = (session.seconds(), Instant::now());
             }
             ensure!(last.1.elapsed() < PATIENCE, "{name}: no frame for {} s", PATIENCE.as_secs());
             sleep(LOOK);

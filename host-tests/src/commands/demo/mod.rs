@@ -5,7 +5,6 @@ pub(crate) mod comparison;
 mod headless;
 mod help;
 mod live;
-mod mirror;
 mod numbers;
 mod options;
 mod panel;
@@ -57,7 +56,8 @@ pub(crate) fn port(name: &str) -> Result<Port, Refused> {
 
 fn emulated(options: &DemoOptions, headless: bool) -> anyhow::Result<Source<'_>> {
     let (toolchain, _) = toolchain::set_up()?;
-    let (board, limit) = (options.board, limit(options, headless));
+    let (board, seconds) = (options.board, options.seconds.unwrap_or(headless::DEFAULT_SECONDS));
+    let limit = if headless { LIMIT.0 + Duration::from_secs_f64(LIMIT.1 * seconds) } else { LIVE_LIMIT };
     if *board == PICO {
         let (emulator, _) = toolchain::set_up_pico()?;
         return Ok(Source::Pico(Box::new(PicoMachine::start(&emulator, &toolchain.build_for(board)?, limit)?)));
@@ -68,9 +68,4 @@ fn emulated(options: &DemoOptions, headless: bool) -> anyhow::Result<Source<'_>>
         return Ok(Source::Lockstep(Lockstep::start(&settings)?, board));
     }
     Ok(Source::Live(Machine::start(&settings)?, board))
-}
-
-fn limit(options: &DemoOptions, headless: bool) -> Duration {
-    let seconds = options.seconds.unwrap_or(headless::DEFAULT_SECONDS);
-    if headless { LIMIT.0 + Duration::from_secs_f64(LIMIT.1 * seconds) } else { LIVE_LIMIT }
 }

@@ -30,7 +30,7 @@ pub struct Readings {
     pub comparison: Comparison,
     /// Whether what they mean is shown in their place.
     pub help: bool,
-    pub(super) arrivals: VecDeque<Instant>,
+    pub(super) arrivals: Vec<Instant>,
     frames: u64,
     greatest_energy_error: f32,
     /// Of all scenes and restarts together, s.
@@ -60,13 +60,9 @@ impl Readings {
         if self.angles.back().is_none_or(|last| frame.time > last.time) {
             self.angles.push_back(Moment { time: frame.time, angles: [a1, a2] });
         }
-        while self.angles.front().is_some_and(|first| frame.time - first.time > plot::SPAN) {
-            self.angles.pop_front();
-        }
-        self.arrivals.push_back(Instant::now());
-        while self.arrivals.front().is_some_and(|arrival| arrival.elapsed() > RATE_SPAN) {
-            self.arrivals.pop_front();
-        }
+        self.angles.retain(|moment| frame.time - moment.time <= plot::SPAN);
+        self.arrivals.push(Instant::now());
+        self.arrivals.retain(|arrival| arrival.elapsed() <= RATE_SPAN);
         self.comparison.frame(&frame)
     }
 
