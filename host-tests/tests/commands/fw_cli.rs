@@ -57,16 +57,10 @@ fn the_project_is_the_one_that_a_command_is_run_in() {
         fs::write(file, "").expect("a file");
     }
     let help = |within: &Path| {
-        Command::new(&copy)
-            .args(["fw", "--help"])
-            .current_dir(within)
-            .env_remove("CARGO_MANIFEST_DIR")
-            .output()
-            .expect("it runs")
+        output(Command::new(&copy).args(["fw", "--help"]).current_dir(within).env_remove("CARGO_MANIFEST_DIR"))
     };
     let inside = help(&checkout.join("firmware/src"));
-    assert!(inside.status.success() && String::from_utf8_lossy(&inside.stdout).contains("Binaries:\n  elsewhere\n"));
-    let outside = help(folder.path());
-    let line = String::from_utf8(outside.stderr).expect("text");
-    assert_eq!((outside.status.code(), outside.stdout.len(), line.lines().count()), (Some(2), 0, 1), "{line}");
+    assert!(inside.status.success() && inside.stdout.contains("Binaries:\n  elsewhere\n"), "{inside:?}");
+    let Output { status, stdout, stderr } = help(folder.path());
+    assert_eq!((status.code(), &*stdout, stderr.lines().count()), (Some(2), "", 1), "{stderr}");
 }

@@ -1,7 +1,6 @@
 //! The commands as they are called, the READMEs and what the report says.
 
 mod cli;
-mod closed_output;
 mod demo_cli;
 mod demo_port;
 mod figures;
@@ -9,7 +8,6 @@ mod flash_cli;
 mod fw_cli;
 mod hygiene;
 mod package;
-mod plan_cli;
 mod process;
 mod random_input;
 mod readmes;

@@ -26,16 +26,12 @@ fn last(arguments: &str) -> Vec<f64> {
 
 #[test]
 fn digits_read_back_exactly_and_bits_say_the_same() {
-    for (method, is_single) in [("rk4-f64", false), ("rk4-f32", true)] {
-        for row in rows(&format!("--angles 1,-2 --velocities 1e-12,0 --step 1/64 --until 1/2 --bits --method {method}"))
-        {
-            for column in 1..5 {
-                let double: f64 = row[column].parse().expect("a number");
-                let single: f32 = row[column].parse().expect("a number");
-                let bits =
-                    if is_single { format!("{:08x}", single.to_bits()) } else { format!("{:016x}", double.to_bits()) };
-                assert_eq!(bits, row[column + 7], "{method}: {row:?}");
-            }
+    let single = |digits: &str| digits.parse::<f32>().map(|number| format!("{:08x}", number.to_bits()));
+    let double = |digits: &str| digits.parse::<f64>().map(|number| format!("{:016x}", number.to_bits()));
+    let motion = "--angles 1,-2 --velocities 1e-12,0 --step 1/64 --until 1/2 --bits";
+    for (method, bits) in [("rk4-f64", &double as &dyn Fn(&str) -> _), ("rk4-f32", &single)] {
+        for row in rows(&format!("{motion} --method {method}")) {
+            (1..5).for_each(|column| assert_eq!(bits(&row[column]), Ok(row[column + 7].clone()), "{method}: {row:?}"));
         }
     }
 }
