@@ -47,14 +47,13 @@ pub fn paths(refinement: u32) -> Result<[Path; 2], Error> {
 
 pub fn figure() -> Result<String> {
     let paths = paths(1)?;
-    svg([800, 468], |area| {
-        let title = format!("Figure 7: path of bob 2 in the first {DURATION} s");
-        let particulars = format!(
-            "mass ratio {MASS_RATIO}, both rods let go at rest at {START}°; l = {ROD} m, g = {PAGE_GRAVITY} m/s², m₁ = 1 kg"
-        );
-        let marks = "○ start, ● end; · every 1 s, with the seconds; paler earlier, darker later; × pivot";
-        let area = headed(&headed(area, &title, text(15))?, &particulars, text(12))?;
-        let halves = headed(&area, marks, text(12))?.split_evenly((1, 2));
+    let title = format!("Figure 7: path of bob 2 in the first {DURATION} s");
+    let particulars = format!(
+        "mass ratio {MASS_RATIO}, both rods let go at rest at {START}°; l = {ROD} m, g = {PAGE_GRAVITY} m/s², m₁ = 1 kg"
+    );
+    let marks = "○ start, ● end; · every 1 s, with the seconds; paler earlier, darker later; × pivot";
+    svg([800, 468], [&title, &particulars, marks], |area| {
+        let halves = area.split_evenly((1, 2));
         let names = ["the right equations", "as printed, a factor μ missing"];
         for (((area, name), colour), path) in halves.iter().zip(names).zip([BLUE, ORANGE]).zip(&paths) {
             let [least, greatest] = path.energies.map(|energy| format!("{energy:.1} J"));

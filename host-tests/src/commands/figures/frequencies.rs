@@ -4,7 +4,7 @@ use anyhow::Result;
 use double_pendulum::{Error, Modes, Parameters};
 use plotters::prelude::*;
 
-use super::sheet::{BLUE, ORANGE, TEXT, axes, headed, line, svg, text, units};
+use super::sheet::{BLUE, ORANGE, TEXT, axes, line, svg, text, units};
 
 /// The figure's mass ratios are 0 to this; at 0 itself there are no modes.
 const GREATEST_MASS_RATIO: f64 = 5.0;
@@ -23,10 +23,9 @@ pub fn figure() -> Result<String> {
     let ratios = (1..=POINTS).map(|i| GREATEST_MASS_RATIO * (f64::from(i) / f64::from(POINTS)).powi(2));
     let points = ratios.map(point).collect::<Result<Vec<_>, _>>()?;
     let marks = MARKED.into_iter().map(point).collect::<Result<Vec<_>, _>>()?;
-    svg([640, 400], |area| {
-        let area = headed(area, "Figure 2: both frequencies of small oscillations of equal rods", text(15))?;
+    svg([640, 400], ["Figure 2: both frequencies of small oscillations of equal rods"], |area| {
         let across = ("mass ratio μ = m₂/m₁", [0.0, GREATEST_MASS_RATIO]);
-        let mut chart = axes(&area, across, ("frequency, √(g/l)", [0.0, 3.5]), [11, 8])?;
+        let mut chart = axes(area, across, ("frequency, √(g/l)", [0.0, 3.5]), [11, 8])?;
         let curves = [
             (1, BLUE, "ω₁ fast: the rods swing against each other", (0.45, 2.85)),
             (2, ORANGE, "ω₂ slow: the rods swing together", (2.0, 1.0)),

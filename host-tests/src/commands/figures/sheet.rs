@@ -88,13 +88,18 @@ fn plain(number: &f64) -> String {
     rounded.to_string().replace('-', "−")
 }
 
-/// A figure so many units wide and high, drawn on white, as an SVG file.
-pub fn svg([width, height]: [u32; 2], draw: impl FnOnce(&Area) -> Result<()>) -> Result<String> {
+/// A figure so many units wide and high, drawn on white below its title and other lines, as an SVG file.
+pub fn svg<const N: usize>(
+    [width, height]: [u32; 2],
+    lines: [&str; N],
+    draw: impl FnOnce(&Area) -> Result<()>,
+) -> Result<String> {
     let mut file = String::new();
     {
         let area = SVGBackend::with_string(&mut file, (units(width), units(height))).into_drawing_area();
         area.fill(&WHITE)?;
-        draw(&area)?;
+        let styles = [15].into_iter().chain(std::iter::repeat(12)).map(text);
+        draw(&lines.into_iter().zip(styles).try_fold(area.clone(), |area, (line, style)| headed(&area, line, style))?)?;
         area.present()?;
     }
     // It is shown in its own size; its coordinates stay dots.

@@ -7,7 +7,7 @@ use double_pendulum::{Error, Modes, Motion, Parameters, SmallOscillations};
 use firmware::config::PAGE_GRAVITY;
 use plotters::prelude::*;
 
-use super::sheet::{BLUE, ORANGE, axes, headed, line, svg, text, units};
+use super::sheet::{BLUE, ORANGE, axes, line, svg, units};
 
 /// The book's rods, m.
 const ROD: f64 = 0.25;
@@ -48,18 +48,16 @@ pub fn points(modes: Modes<f64>) -> Vec<CurvePoint> {
 pub fn figure(number: u32, mass_ratio: f64) -> Result<String> {
     let modes = modes(mass_ratio)?;
     let points = points(modes);
-    svg([720, 503], |area| {
-        let title = format!("Figure {number}: small oscillations, mass ratio {mass_ratio}");
-        let particulars = format!(
-            "l = {ROD} m, g = {PAGE_GRAVITY} m/s²; ω₁ = {:.3} rad/s, ω₂ = {:.3} rad/s; the envelope repeats every {:.3} s",
-            modes.fast.frequency,
-            modes.slow.frequency,
-            TAU / modes.exchange()
-        );
-        let start =
-            "let go at rest at α₁ = 0°, α₂ = 30°; line: the angle; shade: how far it can swing while the modes beat";
-        let area = headed(&headed(area, &title, text(15))?, start, text(12))?;
-        let area = headed(&area, &particulars, text(12))?;
+    let title = format!("Figure {number}: small oscillations, mass ratio {mass_ratio}");
+    let start =
+        "let go at rest at α₁ = 0°, α₂ = 30°; line: the angle; shade: how far it can swing while the modes beat";
+    let particulars = format!(
+        "l = {ROD} m, g = {PAGE_GRAVITY} m/s²; ω₁ = {:.3} rad/s, ω₂ = {:.3} rad/s; the envelope repeats every {:.3} s",
+        modes.fast.frequency,
+        modes.slow.frequency,
+        TAU / modes.exchange()
+    );
+    svg([720, 503], [&title, start, &particulars], |area| {
         let (upper, lower) = area.split_vertically((area.dim_in_pixel().1 - units(20)) / 2);
         let rods = [(upper, "", "angle α₁, degrees", BLUE), (lower, "time, s", "angle α₂, degrees", ORANGE)];
         for (rod, (area, across, upwards, colour)) in rods.into_iter().enumerate() {
