@@ -3,7 +3,6 @@
 
 pub(crate) mod comparison;
 mod headless;
-mod help;
 mod live;
 mod numbers;
 mod options;

@@ -1,10 +1,10 @@
-//! The latest numbers in a column beside the panel, the energy error's past as bars below them.
+//! The latest numbers in a column beside the panel, the energy error's past as bars below them; and what they mean.
 
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::style::{Color, Stylize};
 use ratatui::text::{Line, Text};
-use ratatui::widgets::{Paragraph, Sparkline};
+use ratatui::widgets::{Block, Clear, Paragraph, Sparkline, Wrap};
 
 use super::plot;
 use super::readings::Readings;
@@ -76,4 +76,27 @@ fn energy_errors(frame: &mut Frame, scale: Rect, area: Rect, readings: &Readings
     let shown = &errors[errors.len().saturating_sub(usize::from(area.width))..];
     let bars = shown.iter().map(|error| (error / 10.0_f32.powi(exponent) * HEIGHT) as u64).collect::<Vec<_>>();
     frame.render_widget(Sparkline::default().data(bars).max(HEIGHT as u64).fg(Color::Yellow), area);
+}
+
+const MEANINGS: [(&str, &str); 11] = [
+    ("½px>19.8 s on the panel", "right to half a pixel until 19.8 s at least; ½px ok: for ever"),
+    ("μ, mass ratio", "mass of bob 2 over that of bob 1"),
+    ("time", "simulated, since the motion began"),
+    ("start, angle 1, angle 2", "of the rods, from hanging straight down"),
+    ("frames/s", "frames that came in the last second; 60 are due"),
+    ("dropped", "frames that the board had no time to send"),
+    ("CRC errors", "messages that were damaged on the way"),
+    ("energy error", "what the arithmetic has added, relative to the energy above rest"),
+    ("bars below it", "its size, the largest of each half second"),
+    ("every bit the host's", "each frame is equal to one computed here"),
+    ("not compared", "frames before the board said what it plays"),
+];
+
+/// What each number on the panel and in the terminal means, over all of the terminal.
+pub fn draw_help(frame: &mut Frame) {
+    let line = |(name, meaning): (&str, &'static str)| Line::from(vec![format!("{name}: ").bold(), meaning.into()]);
+    let text: Text = MEANINGS.into_iter().map(line).collect();
+    let block = Block::bordered().title("what the numbers mean; ? goes back");
+    frame.render_widget(Clear, frame.area());
+    frame.render_widget(Paragraph::new(text).wrap(Wrap { trim: true }).block(block), frame.area());
 }

@@ -11,7 +11,7 @@ use ratatui::text::Line;
 use ratatui::widgets::{Block, Paragraph};
 
 use super::readings::{Readings, way};
-use super::{help, numbers, panel, plot};
+use super::{numbers, panel, plot};
 use crate::emulator::qemu::{LogLine, Screenshot, WIDTH};
 
 /// The panel's widths, columns: a pixel each; in Braille two of them; no narrower than makes sense.
@@ -39,7 +39,7 @@ pub fn draw(frame: &mut Frame, board: &str, screenshot: &Screenshot, readings: &
         return;
     };
     if readings.help {
-        return help::draw(frame);
+        return numbers::draw_help(frame);
     }
     let words = flow(words(readings).split(' '), " ", area.width);
     let keys = flow(KEYS, "  ", area.width);

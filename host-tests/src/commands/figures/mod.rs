@@ -3,7 +3,6 @@
 //! Nothing in these files depends on the machine, so two runs write the same files.
 
 pub mod chaos;
-mod frequencies;
 pub mod panel;
 mod sheet;
 pub mod small;
@@ -37,7 +36,7 @@ pub fn folder() -> PathBuf {
 pub fn files() -> Result<Vec<(String, Vec<u8>)>> {
     let small = |number, mass_ratio| Ok((number, small::figure(number, mass_ratio)?));
     let figures =
-        [Ok((2, frequencies::figure()?)), small(3, 0.2), small(4, 1.0), small(5, 5.0), Ok((7, chaos::figure()?))];
+        [Ok((2, small::frequencies()?)), small(3, 0.2), small(4, 1.0), small(5, 5.0), Ok((7, chaos::figure()?))];
     let figures = figures
         .into_iter()
         .map(|figure| figure.map(|(number, svg)| (format!("figures/figure-{number}.svg"), svg.into())));
