@@ -66,12 +66,6 @@ pub const FIGURE_7_ENERGY: f64 = 0.01;
 /// The right form's share above the pivot, about 50.7 %: what 32 chaotic runs of 100 s differ by (measured 52.0 %).
 pub const FIGURE_7_ABOVE: f64 = 0.03;
 
-/// Figure 7 after 3 s with 4096 steps a second in 32 bits, rad: roundings of 6e-8, grown (measured 2.7e-6).
-pub const FIGURE_7_IN_32_BITS: f64 = 1e-5;
-
-/// Models of a swing of 1e-4 rad after 1 s, rad: the cubic term of the linear one, (1e-4)^3 w t/16 (measured 1.8e-13).
-pub const SMALL_SWING: f64 = 1e-12;
-
 /// A method against a known answer: growth of a small error times the errors made on the way by plain RK4 in 4096 steps a second,
 /// which no other exceeds.
 ///
