@@ -117,7 +117,7 @@ impl fmt::Display for Comparison {
         write!(f, "{} frames, every bit the host's", grouped(self.compared))?;
         match self.skipped + self.waiting.len() as u64 {
             0 => Ok(()),
-            skipped => write!(f, " ({} not compared)", grouped(skipped)),
+            skipped => write!(f, " ({} before the start was known)", grouped(skipped)),
         }
     }
 }

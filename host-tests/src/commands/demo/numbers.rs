@@ -78,7 +78,7 @@ fn energy_errors(frame: &mut Frame, scale: Rect, area: Rect, readings: &Readings
     frame.render_widget(Sparkline::default().data(bars).max(HEIGHT as u64).fg(Color::Yellow), area);
 }
 
-const MEANINGS: [(&str, &str); 11] = [
+const MEANINGS: [(&str, &str); 10] = [
     ("½px>19.8 s on the panel", "right to half a pixel until 19.8 s at least; ½px ok: for ever"),
     ("μ, mass ratio", "mass of bob 2 over that of bob 1"),
     ("time", "simulated, since the motion began"),
@@ -88,8 +88,7 @@ const MEANINGS: [(&str, &str); 11] = [
     ("CRC errors", "messages that were damaged on the way"),
     ("energy error", "what the arithmetic has added, relative to the energy above rest"),
     ("bars below it", "its size, the largest of each half second"),
-    ("every bit the host's", "each frame is equal to one computed here"),
-    ("not compared", "frames before the board said what it plays"),
+    ("every bit the host's", "each frame is equal to one computed here, once the board has said what it plays"),
 ];
 
 /// What each number on the panel and in the terminal means, over all of the terminal.
