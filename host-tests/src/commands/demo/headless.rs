@@ -24,7 +24,7 @@ pub fn run(options: &DemoOptions, mut session: Session) -> anyhow::Result<bool> 
     let seconds = options.seconds.unwrap_or(DEFAULT_SECONDS);
     let name = session.source.name().to_owned();
     let progress = Progress::start(&format!("running {name} for {seconds} s of its time"));
-    let mut last = (0.0, Instant::now());
+    let start = Instant::now();
     let is_over = |session: &Session| {
         let is_settled = session.readings.comparison.is_settled() || session.seconds() > seconds + ANSWER;
         session.seconds() >= seconds && is_settled
@@ -34,16 +34,12 @@ pub fn run(options: &DemoOptions, mut session: Session) -> anyhow::Result<bool> 
         if session.is_recording_due() {
             session.look()?;
         }
-        let lines = session.source.lines();
         if session.source.is_port() {
-            lines.iter().for_each(|line| complain(&line.text));
-            if last.0 != session.seconds() {
-                last = (session.seconds(), Instant::now());
-            }
-            ensure!(last.1.elapsed() < PATIENCE, "{name}: no frame for {} s", PATIENCE.as_secs());
+            session.readings.lines.drain(..).for_each(|line| complain(line.text));
+            let last = session.readings.arrivals.last().unwrap_or(&start);
+            ensure!(last.elapsed() < PATIENCE, "{name}: no frame for {} s", PATIENCE.as_secs());
             sleep(LOOK);
         }
-        session.readings.lines.extend(lines);
         progress.alive(None);
     }
     drop(progress);

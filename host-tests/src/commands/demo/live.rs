@@ -41,7 +41,6 @@ fn show(options: &DemoOptions, session: &mut Session, mut terminal: DefaultTermi
     let colours = !Colored::ansi_color_disabled();
     loop {
         session.hear()?;
-        session.readings.lines.extend(session.source.lines());
         session.look()?;
         terminal.draw(|frame| draw(frame, session.source.name(), &session.screenshot, &session.readings, colours))?;
         let is_over = options.seconds.is_some_and(|seconds| session.seconds() >= seconds);

@@ -62,6 +62,7 @@ impl<'a> Session<'a> {
                 self.record(self.tick(&frame))?;
             }
         }
+        self.readings.lines.extend(self.source.lines());
         self.readings.counts = self.source.counts();
         Ok(())
     }
@@ -106,8 +107,7 @@ impl<'a> Session<'a> {
     }
 
     fn record(&mut self, tick: i64) -> anyhow::Result<()> {
-        let has_begun = self.begun.is_some_and(|begun| tick >= begun);
-        let recording = self.recording.as_mut().filter(|_| has_begun);
+        let recording = self.recording.as_mut().filter(|_| self.begun.is_some_and(|begun| tick >= begun));
         recording.map_or(Ok(()), |recording| recording.add(self.screenshot.clone(), tick))
     }
 
