@@ -11,7 +11,6 @@ use super::session::Session;
 use crate::console::cli::{complain, say};
 use crate::console::progress::Progress;
 
-/// How long a run takes if nothing else is asked for, s.
 pub const DEFAULT_SECONDS: f64 = 10.0;
 const LOOK: Duration = Duration::from_millis(4);
 /// A port from which no frame comes for so long is given up.

@@ -36,7 +36,6 @@ const LIMIT: (Duration, f64) = (Duration::from_secs(60), 20.0);
 /// With one: no one watches longer.
 const LIVE_LIMIT: Duration = Duration::from_secs(24 * 3600);
 
-/// Sets everything up and runs the demonstration; whether all was well.
 pub fn run(options: &DemoOptions) -> anyhow::Result<bool> {
     let headless = options.headless || !(stdout().is_terminal() && stdin().is_terminal());
     options.check()?;

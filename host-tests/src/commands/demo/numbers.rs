@@ -91,7 +91,6 @@ const MEANINGS: [(&str, &str); 10] = [
     ("every bit the host's", "each frame is equal to one computed here, once the board has said what it plays"),
 ];
 
-/// What each number on the panel and in the terminal means, over all of the terminal.
 pub fn draw_help(frame: &mut Frame) {
     let line = |(name, meaning): (&str, &'static str)| Line::from(vec![format!("{name}: ").bold(), meaning.into()]);
     let text: Text = MEANINGS.into_iter().map(line).collect();

@@ -40,7 +40,6 @@ impl Recording {
         Ok(Self { encoder, pending: None, shown: Vec::new(), start: None })
     }
 
-    /// Whether a screenshot of `tick` does not come too soon after the last.
     pub fn is_due(&self, tick: i64) -> bool {
         self.pending.as_ref().is_none_or(|(_, since)| tick - since >= TICKS_PER_FRAME)
     }
@@ -77,7 +76,6 @@ impl Recording {
     }
 }
 
-/// The panel's greys, magnified, row by row.
 fn magnified(screenshot: &Screenshot) -> Vec<u8> {
     let at = |index: usize| screenshot.grey(index % (WIDTH * SCALE) / SCALE, index / (WIDTH * SCALE) / SCALE);
     (0..WIDTH * SCALE * HEIGHT * SCALE).map(at).collect()
@@ -99,7 +97,6 @@ pub fn played(path: &Path) -> anyhow::Result<Vec<(Vec<u8>, u16)>> {
     Ok(played)
 }
 
-/// The file of a screenshot.
 pub fn png(screenshot: &Screenshot) -> anyhow::Result<Vec<u8>> {
     let ([width, height], mut file) = (SIZE.map(u32::from), Vec::new());
     let mut encoder = png::Encoder::new(&mut file, width, height);

@@ -17,7 +17,7 @@ pub enum Source<'a> {
 }
 
 impl Source<'_> {
-    /// The emulated board.
+    /// `None` at a port.
     fn board(&self) -> Option<&Board> {
         match self {
             Self::Live(_, board) | Self::Lockstep(_, board) => Some(board),

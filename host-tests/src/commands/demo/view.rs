@@ -84,7 +84,6 @@ fn title(board: &str, now: Option<&Reading>) -> String {
     [Some(board), scene, paused].into_iter().flatten().collect::<Vec<_>>().join(" · ")
 }
 
-/// How it is computed, and how it compares.
 fn words(readings: &Readings) -> String {
     let shown = readings.frame.as_ref();
     shown.map_or("no frame came yet".to_owned(), |now| format!("{} · {}", way(now), readings.comparison))

@@ -18,7 +18,6 @@ fn moment(scene: SceneName) -> u32 {
     TICK_RATE * if scene == SceneName::Flips { 60 } else { 8 }
 }
 
-/// The file of a scene in the folder of frames.
 pub fn file(scene: SceneName, kind: &str) -> String {
     format!("panel/{}.{kind}", scene.name())
 }

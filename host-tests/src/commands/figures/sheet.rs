@@ -18,7 +18,6 @@ pub const GRID: RGBColor = RGBColor(225, 225, 225);
 pub const BLUE: RGBColor = RGBColor(0, 95, 175);
 pub const ORANGE: RGBColor = RGBColor(205, 85, 15);
 
-/// Where a figure, or a part of it, is drawn.
 pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 pub type Axes<'a> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
@@ -81,7 +80,6 @@ pub fn axes<'a>(
     Ok(chart)
 }
 
-/// A number of an axis without needless digits.
 fn plain(number: &f64) -> String {
     // The ticks are multiples of a round number, give or take a rounding; -0 would be shown as such.
     let rounded = (number * 1e6).round() / 1e6 + 0.0;

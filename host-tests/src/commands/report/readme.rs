@@ -51,7 +51,6 @@ pub fn pages(block: impl Fn(usize) -> String) -> Result<Vec<(PathBuf, [String; 2
     READMES.into_iter().map(page).collect()
 }
 
-/// The advice as a list, and the first rows of the table.
 pub fn block(advice: &[String], points: &[Point], rows: usize) -> String {
     let items: String = advice.iter().map(|sentence| format!("- {sentence}\n")).collect();
     format!("{items}\n{}", table(points, &ROWS[..rows]).markdown())

@@ -24,7 +24,6 @@ impl Pair {
     }
 }
 
-/// As it was written.
 impl fmt::Display for Pair {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{},{}", self.0, self.1)
@@ -65,13 +64,11 @@ pub struct StartOptions {
 }
 
 impl StartOptions {
-    /// Masses, lengths and gravity, as given.
     pub fn parameters(&self) -> Parameters<f64> {
         let [[m1, m2], [l1, l2]] = [&self.masses, &self.lengths].map(Pair::values);
         Parameters { m1, m2, l1, l2, g: self.gravity.as_ref().map_or(GRAVITY, Number::value) }
     }
 
-    /// Angles and velocities, rad and rad/s.
     pub fn motion(&self) -> Motion<f64> {
         let radians = |angle| if self.degrees { angle * DEGREE } else { angle };
         let first = [f64::from(FIRST_ANGLE) * DEGREE; 2];

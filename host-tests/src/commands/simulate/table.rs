@@ -40,14 +40,12 @@ impl Sampled<'_> {
     }
 }
 
-/// The first line: what the columns are.
 pub fn header(options: &SimulateOptions) -> String {
     let named = |(name, unit, _): &Column| if options.units { format!("{name} [{unit}]") } else { (*name).to_owned() };
     let bits = ["a1_bits", "a2_bits", "p1_bits", "p2_bits"].into_iter().filter(|_| options.bits);
     options.columns.iter().map(named).chain(bits.map(str::to_owned)).collect::<Vec<_>>().join(",")
 }
 
-/// Row `number`, from 0.
 pub fn row(plan: &Plan, options: &SimulateOptions, number: u64, reading: &Reading) -> String {
     // whether numbers have the digits of an f32
     let is_single = plan.request.method.numbers() == Numbers::F32;

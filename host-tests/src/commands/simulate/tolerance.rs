@@ -116,7 +116,6 @@ fn candidates(options: &SimulateOptions) -> (&'static str, Vec<(Method, f64)>) {
     }
 }
 
-/// What is computed at a place.
 pub(super) fn methods(place: Place) -> &'static [Method] {
     if place.is_none() { Method::ALL } else { ON_BOARDS }
 }

@@ -19,15 +19,9 @@ const MOTIONS: [(&str, f64, f64); 2] = [("regular", 1.0, 0.5), ("chaotic", 2.75,
 
 /// A motion as a request of the board: 2 s in steps of 1/256 s. A chaotic one has by then made thousands of one wrong bit.
 fn request(method: Method, (_, m2, angle): (&str, f64, f64)) -> Request {
-    Request {
-        method,
-        parameters: Parameters { m1: 1.0, m2, l1: 1.0, l2: 1.0, g: GRAVITY },
-        angles: [angle; 2],
-        velocities: [0.0; 2],
-        dt: 1.0 / 256.0,
-        stride: 32,
-        samples: 16,
-    }
+    let parameters = Parameters { m1: 1.0, m2, l1: 1.0, l2: 1.0, g: GRAVITY };
+    let (angles, velocities) = ([angle; 2], [0.0; 2]);
+    Request { method, parameters, angles, velocities, dt: 1.0 / 256.0, stride: 32, samples: 16 }
 }
 
 /// Every method of the boards, in both motions.

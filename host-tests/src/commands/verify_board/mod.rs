@@ -55,7 +55,6 @@ impl Section {
     }
 }
 
-/// Verifies the board and writes the report; whether all was well.
 pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
     let mut talk = Talk::new(demo::port(&options.port)?)?;
     let identity: Identity = talk.ask(&Identify { request: 0 })?;
