@@ -6,7 +6,7 @@ use double_pendulum::{Motion, State};
 use firmware::scenes::SceneName;
 use host_tests::commands::demo::played;
 use host_tests::commands::figures::small::{CurvePoint, modes, points};
-use host_tests::commands::figures::{chaos, files, folder, panel};
+use host_tests::commands::figures::{chaos, files, folder, panel_file};
 use host_tests::emulator::host::Show;
 use host_tests::emulator::qemu::Screenshot;
 use host_tests::oracle::tolerances;
@@ -43,7 +43,7 @@ fn the_committed_animations_show_what_the_host_draws() {
 
 /// A recording starts with the first screenshot that was drawn, at most two ticks after the start.
 fn is_shown(name: SceneName) -> bool {
-    let Ok(frames) = played(&folder().join(panel::file(name, "gif"))) else { return false };
+    let Ok(frames) = played(&folder().join(panel_file(name, "gif"))) else { return false };
     let is_shown_from = |late| {
         let mut scene = Show::new(name, &name.first_settings()).expect("a scene of the catalogue");
         (0..late).for_each(|_| scene.tick());

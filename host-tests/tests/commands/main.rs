@@ -14,5 +14,4 @@ mod rooms;
 mod simulate_cli;
 #[path = "../support/mod.rs"]
 mod support;
-mod tolerance;
 mod verify_board;

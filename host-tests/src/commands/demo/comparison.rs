@@ -9,6 +9,7 @@ use firmware::graphics::{Canvas, text};
 use firmware::motion::Settings;
 use firmware::protocol::{Field, Frame, NO_METHOD, Status};
 use firmware::scenes::SceneName;
+use indicatif::HumanCount;
 
 use crate::emulator::host::Show;
 use crate::emulator::qemu::Screenshot;
@@ -114,19 +115,12 @@ impl fmt::Display for Comparison {
         if let Some(difference) = self.first {
             return difference.fmt(f);
         }
-        write!(f, "{} frames, every bit the host's", grouped(self.compared))?;
+        write!(f, "{} frames, every bit the host's", HumanCount(self.compared))?;
         match self.skipped + self.waiting.len() as u64 {
             0 => Ok(()),
-            skipped => write!(f, " ({} before the start was known)", grouped(skipped)),
+            skipped => write!(f, " ({} before the start was known)", HumanCount(skipped)),
         }
     }
-}
-
-/// With a comma after every three digits.
-fn grouped(number: u64) -> String {
-    let digits = number.to_string();
-    let groups = digits.as_bytes().rchunks(3).rev().map(String::from_utf8_lossy);
-    groups.collect::<Vec<_>>().join(",")
 }
 
 /// What the board plays from such a start; the field of it that cannot be.

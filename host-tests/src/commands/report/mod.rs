@@ -51,13 +51,13 @@ pub fn run(options: &ReportOptions) -> Result<()> {
     charts.iter().try_for_each(|(name, svg)| write(&folder.join(name), svg))?;
     let advice = readme::advice(&points);
     absent.iter().chain(&advice).try_for_each(say)?;
-    let pages = readme::pages(|rows| readme::block(&advice, &points, rows))?;
+    let pages = readme::pages(&advice, &points)?;
     if options.readme {
         ensure!(absent.is_empty(), "the READMEs keep their figures: some are missing in these");
         pages.iter().try_for_each(|(path, [_, made])| fs::write(path, made))?;
         let shown = toolchain::workspace().join(readme::CHARTS);
-        let regular = charts.iter().filter(|(name, _)| name.starts_with(SCENES[0].name));
-        regular.into_iter().try_for_each(|(name, svg)| write(&shown.join(name), svg))?;
+        let mut regular = charts.iter().filter(|(name, _)| name.starts_with(SCENES[0].name));
+        regular.try_for_each(|(name, svg)| write(&shown.join(name), svg))?;
     } else if pages.iter().any(|(_, [page, made])| page != made) {
         say("the READMEs show other figures; cargo write-report --readme puts these there")?;
     }

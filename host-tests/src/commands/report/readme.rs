@@ -4,6 +4,7 @@ use std::fs;
 use std::path::PathBuf;
 
 use anyhow::{Context, Result};
+use firmware::config::HALF_PIXEL;
 
 use super::accuracy::{LONG, SCENES, Scene};
 use super::c_peers::PROGRAMS;
@@ -30,30 +31,24 @@ const ROWS: [&str; 8] = [
     "extrapolation16-fixed64",
 ];
 
-/// No larger an error is seen on the panel, pixels.
-const HALF_PIXEL: f64 = 0.5;
 /// What one may want to compute a motion for, in words before the cycles.
 type Purpose = (&'static str, fn(&Point) -> bool);
 const PURPOSES: [Purpose; 3] = [
-    ("draws at 60 fps", |point| point.rate >= 60 && point.error.pixels <= HALF_PIXEL),
+    ("draws at 60 fps", |point| point.rate >= 60 && point.error.pixels <= f64::from(HALF_PIXEL)),
     ("keeps 1e-9 rad", |point| point.error.angle <= 1e-9),
     ("keeps 1e-12 rad", |point| point.error.angle <= 1e-12),
 ];
 
-/// The READMEs, each as it is and with its `block` of as many rows.
-pub fn pages(block: impl Fn(usize) -> String) -> Result<Vec<(PathBuf, [String; 2])>> {
-    let page = |(file, rows)| {
+/// The READMEs, each as it is and with its block: the advice as a list, and as many rows of the table as it shows.
+pub fn pages(advice: &[String], points: &[Point]) -> Result<Vec<(PathBuf, [String; 2])>> {
+    let items: String = advice.iter().map(|sentence| format!("- {sentence}\n")).collect();
+    let page = |(file, rows): (&str, usize)| {
         let path = workspace().join(file);
         let page = fs::read_to_string(&path).with_context(|| format!("no {file}"))?;
-        let made = between(&page, MARKS, &format!("\n{}\n", block(rows)));
+        let made = between(&page, MARKS, &format!("\n{items}\n{}\n", table(points, &ROWS[..rows]).markdown()));
         Ok((path, [page, made.with_context(|| format!("{file} has no place for it"))?]))
     };
     READMES.into_iter().map(page).collect()
-}
-
-pub fn block(advice: &[String], points: &[Point], rows: usize) -> String {
-    let items: String = advice.iter().map(|sentence| format!("- {sentence}\n")).collect();
-    format!("{items}\n{}", table(points, &ROWS[..rows]).markdown())
 }
 
 /// What to take on each core through a regular and a chaotic motion, a sentence each, in Markdown.
