@@ -82,7 +82,7 @@ fn carried_out(number: usize, scene: &Problem, chips: &[Chip]) -> Result<Vec<Cas
         if cases.iter().all(|(_, motion)| motion.is_none()) {
             break;
         }
-        let exact = exact.at(time);
+        let exact = exact.at(scene, time);
         for (case, motion) in cases.iter_mut().filter_map(|(case, motion)| Some((case, motion.as_mut()?))) {
             // One that has diverged shows nothing.
             let has_diverged = motion.advance(1).is_err();
@@ -110,8 +110,7 @@ pub fn median(values: impl Iterator<Item = f64>) -> f64 {
 type Directions = [Direction<f64>; 2];
 
 /// The exact motion of a scene: in `f64` as long as that is enough by far, from then on by the reference.
-struct Exact<'a> {
-    scene: &'a Problem,
+struct Exact {
     /// One, and another that starts [`APART`] from it.
     quick: [Reference<f64>; 2],
     slow: Option<Reference>,
@@ -122,27 +121,25 @@ const APART: f64 = 1e-13;
 /// As long as both are not farther apart, pixels, neither is off by more.
 const ENOUGH: f64 = 1e-2;
 
-impl<'a> Exact<'a> {
+impl Exact {
     /// The reference is given the scene's own numbers, a plan those that its arithmetic can hold.
-    fn new(scene: &'a Problem) -> Self {
-        let Motion { a1, a2, w1, w2 } = scene.start;
+    fn new(Problem { pendulum, start, .. }: &Problem) -> Self {
+        let Motion { a1, a2, w1, w2 } = *start;
         let beside = Motion { a1: a1 * (1.0 + APART), a2: a2 * (1.0 - APART), w1: w1 * (1.0 + APART), w2 };
-        Self { scene, quick: [scene.start, beside].map(|start| Reference::of(&scene.pendulum, &start)), slow: None }
+        Self { quick: [*start, beside].map(|start| Reference::of(pendulum, &start)), slow: None }
     }
 
     /// At a time, s, no earlier than the one before.
-    fn at(&mut self, time: f64) -> Directions {
+    fn at(&mut self, scene: &Problem, time: f64) -> Directions {
         let directions = |motion: Motion<f64>| motion.angles().map(|a| [libm::sin(a), libm::cos(a)]);
         if self.slow.is_none() {
-            let [one, other] = self.quick.each_mut().map(|quick| {
-                quick.advance_to(time);
-                directions(quick.motion())
-            });
-            if distance(self.scene, &one, &other) <= ENOUGH {
+            self.quick.iter_mut().for_each(|quick| quick.advance_to(time));
+            let [one, other] = self.quick.each_ref().map(|quick| directions(quick.motion()));
+            if distance(scene, &one, &other) <= ENOUGH {
                 return one;
             }
         }
-        let slow = self.slow.get_or_insert_with(|| Reference::new(&self.scene.pendulum, &self.scene.start));
+        let slow = self.slow.get_or_insert_with(|| Reference::new(&scene.pendulum, &scene.start));
         slow.advance_to(time);
         directions(slow.motion())
     }
