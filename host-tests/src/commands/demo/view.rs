@@ -109,7 +109,7 @@ fn flow<'a>(parts: impl IntoIterator<Item = &'a str>, gap: &str, width: u16) -> 
     let mut rows: Vec<String> = Vec::new();
     for part in parts {
         match rows.last_mut() {
-            Some(row) if (row.chars().count() + gap.len() + part.chars().count()) <= width.into() => {
+            Some(row) if row.chars().count() + gap.len() + part.chars().count() <= width.into() => {
                 *row = [row, part].join(gap);
             }
             _ => rows.push(part.to_owned()),
