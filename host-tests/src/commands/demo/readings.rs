@@ -1,6 +1,5 @@
 //! What a board has sent: the latest numbers, a little of their past for the terminal, and whether all was well.
 
-use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
 use double_pendulum::Method;
@@ -25,7 +24,7 @@ pub struct Readings {
     /// The largest size of the energy error in each half second, oldest first.
     pub energy_errors: Vec<f32>,
     /// Both angles over the last [`plot::SPAN`], oldest first.
-    pub angles: VecDeque<Moment>,
+    pub angles: Vec<Moment>,
     pub lines: Vec<LogLine>,
     pub comparison: Comparison,
     /// Whether what they mean is shown in their place.
@@ -57,10 +56,10 @@ impl Readings {
         }
         self.frames += 1;
         let [a1, a2, ..] = frame.state.map(|number| f64::from(number).to_degrees());
-        if self.angles.back().is_none_or(|last| frame.time > last.time) {
-            self.angles.push_back(Moment { time: frame.time, angles: [a1, a2] });
+        if self.angles.last().is_none_or(|(last, _)| frame.time > *last) {
+            self.angles.push((frame.time, [a1, a2]));
         }
-        self.angles.retain(|moment| frame.time - moment.time <= plot::SPAN);
+        self.angles.retain(|(time, _)| frame.time - time <= plot::SPAN);
         self.arrivals.push(Instant::now());
         self.arrivals.retain(|arrival| arrival.elapsed() <= RATE_SPAN);
         self.comparison.frame(&frame)
