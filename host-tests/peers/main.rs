@@ -9,11 +9,11 @@ use std::time::Instant;
 
 use double_pendulum::parts::{DirectionForm, Plain, Stepper};
 use double_pendulum::{DirectionF64, ExtrapolationF64, Form};
-use double_pendulum::{Motion, Parameters, State};
+use double_pendulum::{Motion, Parameters};
 use host_tests::oracle::trials::largest_difference;
 use ode_solvers::dop_shared::OutputType;
 use ode_solvers::{Dop853, Rk4, System, Vector4};
-use reference::taylor::Reference;
+use reference::taylor;
 
 const PARAMETERS: Parameters<f64> = Parameters { m1: 1.0, m2: 1.0, l1: 1.0, l2: 1.0, g: 9.81 };
 /// Motions from rest: both angles, rad, and how long they are followed, s.
@@ -30,36 +30,34 @@ struct Scene {
     part: f64,
 }
 
-/// One way to follow a scene: its name, whether it is ours, the greatest effort worth trying, and the state after so many parts of
-/// the scene. The effort, the last argument, is the number of steps to a part, or for an integrator that chooses its steps a
-/// tolerance of 10^(-effort/8); below 1e-16 there is nothing.
-type Contestant = (&'static str, bool, u32, fn(Scene, u32, u32) -> [f64; 4]);
+/// One way to follow a scene: its name, the greatest effort worth trying, and the state after so many parts of the scene. The
+/// effort, the last argument, is the number of steps to a part, or for an integrator that chooses its steps a tolerance of
+/// 10^(-effort/8); below 1e-16 there is nothing.
+type Contestant = (&'static str, u32, fn(Scene, u32, u32) -> [f64; 4]);
 
+/// How the names of ours begin, and those that the goals are set for.
+const OURS: &str = "double-pendulum";
 const DIRECTION: &str = "double-pendulum, direction form";
 const EXTRAPOLATED: &str = "double-pendulum, extrapolated to order 16";
 
 /// Classical RK4, 256 steps a second.
 const CLASSICAL: &[Contestant] = &[
-    ("double-pendulum", true, 8192, |scene, parts, steps| {
+    (OURS, 8192, |scene, parts, steps| {
         let (pendulum, dt) = (pendulum(), scene.part / f64::from(steps));
         (0..parts * steps).fold(scene.start.into(), |state, _| pendulum.step(&state, dt)).into()
     }),
-    (DIRECTION, true, 8192, form::<DirectionForm<f64, Plain>>),
-    ("double-pendulum, direction form compensated", true, 8192, form::<DirectionF64>),
-    ("ode_solvers, the book's equations", false, 8192, |scene, parts, steps| library_rk4(book, scene, parts, steps)),
-    ("ode_solvers, this kernel's equations", false, 8192, |scene, parts, steps| {
-        library_rk4(ours(), scene, parts, steps)
-    }),
+    (DIRECTION, 8192, form::<DirectionForm<f64, Plain>>),
+    ("double-pendulum, direction form compensated", 8192, form::<DirectionF64>),
+    ("ode_solvers, the book's equations", 8192, |scene, parts, steps| library_rk4(book, scene, parts, steps)),
+    ("ode_solvers, this kernel's equations", 8192, |scene, parts, steps| library_rk4(ours(), scene, parts, steps)),
 ];
 
 /// For tight errors.
 const TIGHT: &[Contestant] = &[
-    (EXTRAPOLATED, true, 8192, form::<ExtrapolationF64<16>>),
-    ("double-pendulum, direction form of RK4", true, 8192, form::<DirectionF64>),
-    ("ode_solvers DOP853, the book's equations", false, 128, |scene, parts, effort| dop853(book, scene, parts, effort)),
-    ("ode_solvers DOP853, this kernel's equations", false, 128, |scene, parts, effort| {
-        dop853(ours(), scene, parts, effort)
-    }),
+    (EXTRAPOLATED, 8192, form::<ExtrapolationF64<16>>),
+    ("double-pendulum, direction form of RK4", 8192, form::<DirectionF64>),
+    ("ode_solvers DOP853, the book's equations", 128, |scene, parts, effort| dop853(book, scene, parts, effort)),
+    ("ode_solvers DOP853, this kernel's equations", 128, |scene, parts, effort| dop853(ours(), scene, parts, effort)),
 ];
 
 fn pendulum() -> double_pendulum::Pendulum<f64> {
@@ -124,7 +122,7 @@ fn dop853(equations: impl Fn(&[f64; 4]) -> [f64; 4], scene: Scene, parts: u32, e
     ended.and_then(|_| stepper.y_out().last().copied()).map_or(LOST, Into::into)
 }
 
-/// A contestant's name and whether it is ours; its effort, what it errs by, rad, and the fastest time.
+/// A contestant, its effort, what it errs by, rad, and the fastest time.
 struct Entry {
     contestant: Contestant,
     effort: u32,
@@ -135,19 +133,15 @@ struct Entry {
 /// Every contestant at the `effort` given, or at the least that errs by at most `asked`, rad (those that never do are left
 /// out), and the fastest of its runs in turns.
 fn race(contestants: &[Contestant], scene: Scene, effort: Option<u32>, asked: f64) -> Vec<Entry> {
-    let mut reference = Reference::new(&PARAMETERS, &Motion::at_rest(scene.start[0], scene.start[1]));
-    let exact = (PARTS / 2 + 1..=PARTS).map(|parts| {
-        reference.advance_to(scene.part * f64::from(parts));
-        (parts, reference.state())
-    });
-    let exact: Vec<(u32, State<f64>)> = exact.collect();
+    let parts = PARTS / 2 + 1..=PARTS;
+    let times: Vec<f64> = parts.clone().map(|parts| scene.part * f64::from(parts)).collect();
+    let exact = taylor::states(&PARAMETERS, &Motion::at_rest(scene.start[0], scene.start[1]), &times);
     let entry = |&contestant: &Contestant| {
-        let from = effort.unwrap_or(4);
-        let efforts = successors(Some(from), |last| Some(last + 1 + last / 128));
-        let mut tries = efforts.take_while(|&next| next <= contestant.2).map(|effort| {
-            let end = |parts| (contestant.3)(scene, parts, effort).into();
-            let errors = exact.iter().map(|&(parts, exact)| largest_difference(&[end(parts)], &[exact]));
-            Entry { contestant, effort, error: errors.fold(0.0, f64::max), time: f64::INFINITY }
+        let (_, most, follow) = contestant;
+        let efforts = successors(Some(effort.unwrap_or(4)), |last| Some(last + 1 + last / 128));
+        let mut tries = efforts.take_while(|&next| next <= most).map(|effort| {
+            let ends: Vec<_> = parts.clone().map(|parts| follow(scene, parts, effort).into()).collect();
+            Entry { contestant, effort, error: largest_difference(&ends, &exact), time: f64::INFINITY }
         });
         tries.find(|entry| effort.is_some() || entry.error <= asked)
     };
@@ -155,25 +149,23 @@ fn race(contestants: &[Contestant], scene: Scene, effort: Option<u32>, asked: f6
     for _ in 0..ROUNDS {
         for entry in &mut entries {
             let start = Instant::now();
-            black_box((entry.contestant.3)(scene, PARTS, black_box(entry.effort)));
+            black_box((entry.contestant.2)(scene, PARTS, black_box(entry.effort)));
             entry.time = start.elapsed().as_secs_f64().min(entry.time);
         }
     }
     entries
 }
 
-/// Prints the entries with `time` relative to the fastest peer's; the least such ratio of ours that `counts`.
-fn ratio(title: &str, entries: &[Entry], time: fn(&Entry) -> f64, counts: fn(&str) -> bool) -> f64 {
+/// Prints the entries with `time` relative to the fastest peer's; that of our contestant `counted`.
+fn ratio(title: &str, entries: &[Entry], time: fn(&Entry) -> f64, counted: &str) -> f64 {
     println!("\n{title}\n{:51} {:>7} {:>9} {:>6}", "", "effort", "error", "time");
-    let least = |who: &dyn Fn(&Contestant) -> bool| {
-        entries.iter().filter(|entry| who(&entry.contestant)).map(time).fold(f64::INFINITY, f64::min)
-    };
-    let peer = least(&|(_, own, ..)| !own);
+    let peers = entries.iter().filter(|entry| !entry.contestant.0.starts_with(OURS));
+    let peer = peers.map(time).fold(f64::INFINITY, f64::min);
     for entry in entries {
         let Entry { contestant: (name, ..), effort, error, .. } = entry;
         println!("{name:51} {effort:7} {error:9.1e} {:6.2}", time(entry) / peer);
     }
-    least(&|(name, own, ..)| *own && counts(name)) / peer
+    entries.iter().find(|entry| entry.contestant.0 == counted).map_or(f64::INFINITY, |entry| time(entry) / peer)
 }
 
 fn main() {
@@ -184,12 +176,12 @@ fn main() {
         // In proportion to the time for an error that all share: it falls with the fourth power of the number of steps.
         let at_equal_error = |entry: &Entry| entry.time * entry.error.powf(0.25);
         let title = format!("{name}: RK4, 256 steps a second, time for an error that all share");
-        let measured = ratio(&title, &entries, at_equal_error, |name| name == DIRECTION);
+        let measured = ratio(&title, &entries, at_equal_error, DIRECTION);
         goals.push((format!("{name}: RK4 in the direction form, of every peer's time"), measured, 0.45));
         for error in [1e-9, 1e-12] {
             let entries = race(TIGHT, scene, None, error);
             let title = format!("{name}: time to an error of {error:e} rad");
-            let measured = ratio(&title, &entries, |entry| entry.time, |name| name == EXTRAPOLATED);
+            let measured = ratio(&title, &entries, |entry| entry.time, EXTRAPOLATED);
             let most = if (name, error) == ("regular", 1e-12) { 0.2 } else { 1.0 / 1.5 };
             goals.push((format!("{name}: extrapolation, of DOP853's time to {error:e} rad"), measured, most));
         }

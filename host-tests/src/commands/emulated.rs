@@ -1,7 +1,7 @@
 //! `cargo setup`, `cargo fw` and `cargo verify`: the tools brought, any firmware run on an emulated board, every test run.
 
-use std::io::{self, stdout};
-use std::path::PathBuf;
+use std::io::{self, Write, stdout};
+use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
 use std::thread::available_parallelism;
 use std::time::Duration;
@@ -10,11 +10,10 @@ use std::{env, fs};
 use anyhow::bail;
 use clap::Parser;
 
-use crate::console::cli::{Refused, complain, say};
-use crate::emulator::boards::BOARDS;
-use crate::emulator::firmware_run::{board_for, run};
+use crate::console::cli::{Refused, choice, complain, say};
+use crate::emulator::boards::{BOARDS, Board};
 use crate::emulator::process;
-use crate::emulator::qemu::{Clock, Settings};
+use crate::emulator::qemu::{Clock, Machine, Settings};
 use crate::emulator::toolchain;
 
 /// Finds or brings all that builds and runs the firmware: the ARM core library, QEMU, and rp2040js for the Pico.
@@ -45,8 +44,8 @@ pub struct FwOptions {
     #[arg(value_name = "BIN", required_unless_present = "check")]
     binary: Option<PathBuf>,
     /// The board to run it on; else the first that it is made for
-    #[arg(long, value_name = "NAME")]
-    board: Option<String>,
+    #[arg(long, value_name = "NAME", value_parser = choice(&BOARDS, |board| board.name), hide_possible_values = true)]
+    board: Option<&'static Board>,
     /// End it after this long, successfully; else it is given an hour, and to need more is an error
     #[arg(long, value_name = "N")]
     seconds: Option<u32>,
@@ -61,28 +60,43 @@ pub fn fw(options: &FwOptions) -> anyhow::Result<ExitCode> {
         toolchain::set_up()?.0.check()?;
         return Ok(ExitCode::SUCCESS);
     };
-    let asked = options.board.as_deref();
-    let Some(board) = board_for(asked, binary) else {
-        let (asked, names) = (asked.unwrap_or_default(), BOARDS.map(|board| board.name).join(", "));
-        bail!(Refused::because(format_args!("no board {asked}; there are {names}")));
-    };
     let name = binary.to_string_lossy();
     let is_path = name.contains('/');
     if !is_path && !binaries().iter().any(|binary| *binary == name) {
         bail!(Refused::because(format_args!("no binary {name}; there are {}", binaries().join(", "))));
     }
+    let board = options.board.unwrap_or_else(|| board_for(binary));
     let (toolchain, _) = toolchain::set_up()?;
     let elf = if is_path { binary.clone() } else { toolchain.build(&name, board.target)? };
     let limit = options.seconds.map_or(LIMIT, |seconds| Duration::from_secs(seconds.into()));
     let settings = Settings { qemu: toolchain.qemu(), board, elf: &elf, clock: Clock::Real, debugger: true, limit };
-    let is_late = |error: &io::Error| error.kind() == io::ErrorKind::TimedOut;
-    match (run(&settings, &mut stdout().lock()), options.seconds) {
-        (Err(error), Some(seconds)) if error.downcast_ref().is_some_and(is_late) => {
+    let mut machine = Machine::start(&settings)?;
+    let mut output = stdout().lock();
+    for line in machine.log.rest() {
+        // Whoever stops reading does not stop the board.
+        let _ = writeln!(output, "{line}").and_then(|()| output.flush());
+    }
+    match (machine.wait(), options.seconds) {
+        (Err(error), Some(seconds)) if error.downcast_ref::<io::Error>().is_some_and(is_late) => {
             complain(format_args!("ended after {seconds} s, as told"));
             Ok(ExitCode::SUCCESS)
         }
-        (ended, _) => Ok(process::exit_code(ended?)),
+        (ended, _) => Ok(process::exit_code(ended?.0)),
     }
+}
+
+fn is_late(error: &io::Error) -> bool {
+    error.kind() == io::ErrorKind::TimedOut
+}
+
+/// The first board that has a binary as its application; else the first. Where the file says its target, as in
+/// `target/thumbv7m-none-eabi/release/x`, only boards of that target count.
+fn board_for(binary: &Path) -> &'static Board {
+    let is_target = |board: &&Board| binary.components().any(|folder| folder.as_os_str() == board.target);
+    let of_target: Vec<_> = BOARDS.iter().filter(is_target).collect();
+    let boards = if of_target.is_empty() { BOARDS.iter().collect() } else { of_target };
+    let runs_it = |board: &&&Board| binary.file_name().is_some_and(|file| file == board.binary);
+    boards.iter().find(runs_it).unwrap_or(&boards[0])
 }
 
 fn runnable() -> String {
@@ -133,4 +147,17 @@ pub fn verify(options: &TestOptions) -> anyhow::Result<ExitCode> {
     compiling.wait()?;
     let arguments: &[&str] = if options.long { &["--", "--include-ignored"] } else { &[] };
     Ok(process::exit_code(test(arguments)?.wait()?))
+}
+
+#[test]
+fn the_board_follows_from_the_binary() {
+    for (binary, name) in [
+        ("lm3s6965evb", "lm3s6965evb"),
+        ("mps2-an386", "mps2-an386"),
+        ("inject-panic", "lm3s6965evb"),
+        ("target/thumbv7em-none-eabihf/release/lm3s6965evb", "lm3s6965evb-m4"),
+        ("target/thumbv7em-none-eabihf/release/inject-panic", "lm3s6965evb-m4"),
+    ] {
+        assert_eq!(board_for(Path::new(binary)).name, name, "{binary}");
+    }
 }

@@ -84,7 +84,6 @@ pub struct FlashOptions {
     dfu: bool,
 }
 
-/// A chip that the firmware is for.
 fn chip(name: &str) -> Result<String, String> {
     let is_it = CHIPS.iter().any(|chip| name.to_ascii_uppercase().starts_with(chip));
     if is_it { Ok(name.to_owned()) } else { Err(format!("the firmware is for {}", CHIPS.join(", "))) }

@@ -3,7 +3,7 @@
 /// Headings of the columns, with units, and rows of as many cells.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Table {
-    pub columns: &'static [&'static str],
+    pub columns: Vec<&'static str>,
     pub rows: Vec<Vec<String>>,
 }
 

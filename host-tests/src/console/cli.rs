@@ -72,7 +72,17 @@ pub fn check_writable(option: &str, file: &Path) -> Result<(), Refused> {
     let was_there = file.exists();
     let opened = File::options().create(true).append(true).open(file);
     let removed = opened.and_then(|_| if was_there { Ok(()) } else { fs::remove_file(file) });
-    removed.map_err(|error| Refused::because(format_args!("{option}: cannot write {}: {error}", file.display())))
+    removed.map_err(|error| unwritable(option, file, &error))
+}
+
+/// Writes a file of the folder that `--out` names, which is made.
+pub fn write(file: &Path, bytes: impl AsRef<[u8]>) -> Result<(), Refused> {
+    let made = file.parent().map_or(Ok(()), fs::create_dir_all);
+    made.and_then(|()| fs::write(file, bytes)).map_err(|error| unwritable("--out", file, &error))
+}
+
+pub fn unwritable(option: &str, path: &Path, error: &io::Error) -> Refused {
+    Refused::because(format_args!("{option}: cannot write {}: {error}", path.display()))
 }
 
 pub fn choice<Choice>(

@@ -1,13 +1,14 @@
 //! What a command is doing and that it is alive: a spinner or a bar on a terminal, elsewhere a plain line now and then.
 
-use std::sync::Mutex;
-use std::time::{Duration, Instant};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::cli::complain;
 
-const REMINDER: Duration = Duration::from_secs(15);
+/// Seconds from one line to the next.
+const REMINDER: u64 = 15;
 const TURN: Duration = Duration::from_millis(120);
 /// How much of a child's latest line the spinner shows.
 const SHOWN: usize = 60;
@@ -16,7 +17,7 @@ const SHOWN: usize = 60;
 #[derive(Debug)]
 pub struct Progress {
     bar: ProgressBar,
-    reminded: Mutex<Instant>,
+    reminders: AtomicU64,
 }
 
 impl Progress {
@@ -39,7 +40,7 @@ impl Progress {
 
     fn new(doing: &str, bar: ProgressBar, style: &str) -> Self {
         let style = ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar());
-        Self { bar: bar.with_style(style).with_prefix(doing.to_owned()), reminded: Mutex::new(Instant::now()) }
+        Self { bar: bar.with_style(style).with_prefix(doing.to_owned()), reminders: AtomicU64::new(0) }
     }
 
     pub fn advance(&self, pieces: u64) {
@@ -56,12 +57,11 @@ impl Progress {
     }
 
     fn remind(&self) {
-        let Self { bar, reminded } = self;
-        let Ok(mut last) = reminded.lock() else { return };
-        if bar.is_hidden() && last.elapsed() >= REMINDER {
-            *last = Instant::now();
+        let (bar, seconds) = (&self.bar, self.bar.elapsed().as_secs());
+        let due = seconds / REMINDER;
+        if bar.is_hidden() && self.reminders.fetch_max(due, Ordering::Relaxed) < due {
             let pieces = bar.length().map_or(String::new(), |length| format!("{} of {length}, ", bar.position()));
-            complain(format_args!("{} ... {pieces}{} s", bar.prefix(), bar.elapsed().as_secs()));
+            complain(format_args!("{} ... {pieces}{seconds} s", bar.prefix()));
         }
     }
 }

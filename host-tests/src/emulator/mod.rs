@@ -2,7 +2,6 @@
 
 pub mod boards;
 pub mod budgets;
-pub mod firmware_run;
 pub mod flash;
 pub mod host;
 pub mod pico;

@@ -1,6 +1,6 @@
 //! Bytes that arrive, cut into messages and counted.
 
-use firmware::protocol::{Decoder, Frame, LinkError, Message, Restarted};
+use firmware::protocol::{Decoder, Field, Frame, LinkError, Message, Refused, Restarted};
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
@@ -21,6 +21,16 @@ pub struct Received {
 impl Received {
     pub fn read<M: Message>(&self) -> Option<M> {
         if self.kind == M::KIND { M::read(&self.fields) } else { None }
+    }
+
+    /// If it is a refusal: of what.
+    pub fn refused(&self) -> Option<&'static str> {
+        let Refused { field, .. } = self.read()?;
+        Some(match Field::from_code(field) {
+            // It can read what this host sends, unless that has another table of methods.
+            Some(Field::Message) => "message; its firmware is not of this version, flash it anew",
+            field => field.map_or("unknown field", Field::name),
+        })
     }
 }
 
@@ -85,7 +95,12 @@ impl Inbox {
 
 #[cfg(test)]
 mod tests {
-    use firmware::protocol::{MAX_WIRE, encode};
+    use firmware::app::{App, NoButtons};
+    use firmware::display::NoDisplay;
+    use firmware::graphics::FrameBuffers;
+    use firmware::job::Request;
+    use firmware::motion::Settings;
+    use firmware::protocol::{MAX_FIELDS, MAX_WIRE, Simulate, encode, frame};
 
     use super::*;
 
@@ -114,5 +129,19 @@ mod tests {
         let stream = [&wire[20..], wire, &wire[..9], &[wire[9] ^ 0x10], &wire[10..]].concat();
         assert_eq!(stream.into_iter().filter_map(|byte| inbox.take(byte)).count(), 1);
         assert_eq!(inbox.counts(), Counts { messages: 1, damaged: 1, ..Counts::default() });
+    }
+
+    #[test]
+    fn a_board_that_does_not_know_a_method_is_to_be_flashed() {
+        let mut sheets = FrameBuffers::BLANK;
+        let app = App::new(Settings::default(), &mut sheets, NoDisplay, Vec::new(), NoButtons);
+        let mut app = app.expect("good settings");
+        let mut fields = Request::default().message(1).write(&mut [0; MAX_FIELDS]).to_vec();
+        // Where its method stands.
+        fields[1] = 0x7f;
+        app.receive(frame(Simulate::KIND, &fields, &mut [0; MAX_WIRE]).iter().copied(), |_| ());
+        let mut inbox = Inbox::default();
+        let refused: Vec<_> = app.link.iter().filter_map(|&byte| inbox.take(byte)?.refused()).collect();
+        assert!(matches!(refused[..], [words] if words.ends_with("flash it anew")), "{refused:?}");
     }
 }

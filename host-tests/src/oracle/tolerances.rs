@@ -66,12 +66,6 @@ pub const FIGURE_7_ENERGY: f64 = 0.01;
 /// The right form's share above the pivot, about 50.7 %: what 32 chaotic runs of 100 s differ by (measured 52.0 %).
 pub const FIGURE_7_ABOVE: f64 = 0.03;
 
-/// Figure 7 after 3 s with 4096 steps a second in 32 bits, rad: roundings of 6e-8, grown (measured 2.7e-6).
-pub const FIGURE_7_IN_32_BITS: f64 = 1e-5;
-
-/// Models of a swing of 1e-4 rad after 1 s, rad: the cubic term of the linear one, (1e-4)^3 w t/16 (measured 1.8e-13).
-pub const SMALL_SWING: f64 = 1e-12;
-
 /// A method against a known answer: growth of a small error times the errors made on the way by plain RK4 in 4096 steps a second,
 /// which no other exceeds.
 ///
@@ -149,11 +143,6 @@ pub const MILLION_STEPS: PerPrecision = PerPrecision { single: 5e-7, double: 3e-
 
 /// How much better a compensated form is than a plain one on the regular scene in 10 s, at least (measured: 30 to 70).
 pub const COMPENSATION_GAIN: f64 = 10.0;
-
-/// A frequency or period read off a plotted curve where it crosses a level, relative: half of the last digit given of the
-/// shortest, 1.3e-6, and the shift of a crossing by joining the points with straight lines, (w dt)^3/16 of a radian or
-/// 2e-5 for the fastest curve, over the 23 rad shown at least.
-pub const PLOTTED_FREQUENCY: f64 = 3e-6;
 
 /// The greatest of a plotted curve's points, relative to that of the curve: between two points it is at most
 /// (w dt/2)^2/2 higher, 4e-4 for the fastest envelope.

@@ -9,8 +9,7 @@ use double_pendulum::plan::Costs;
 use double_pendulum::{Method, Numbers, Parameters};
 use firmware::job::Request;
 use host_tests::commands::count::{FULL_CYCLE, Target, affordable_cost, prices, step_cost};
-use host_tests::commands::report::accuracy::{self, exact};
-use host_tests::commands::report::scene::SCENES;
+use host_tests::commands::report::accuracy::{self, SCENES, exact};
 
 /// A tick of the board's clock, 12.5 MHz after reset, under `-icount`, where an instruction takes 1 ns.
 const INSTRUCTIONS_PER_TICK: f64 = 80.0;
@@ -103,7 +102,8 @@ fn a_simulated_second_costs_no_more_than_its_goal() -> Result<()> {
             let scene = &SCENES[index];
             let keeps = |found: Option<accuracy::Error>| found.is_some_and(|found| found.angle <= error);
             let wholes = costs.iter().filter_map(|&(method, cycles)| {
-                let is_few = |rate: &u32| keeps(accuracy::error(method, scene, *rate, &exact[index]));
+                let request = |rate| accuracy::request(method, scene, rate);
+                let is_few = |rate: &u32| keeps(accuracy::error(&request(*rate), &exact[index]));
                 Some((method, accuracy::rates(method, 8).find(is_few)? * scene.duration, cycles))
             });
             let wholes: Vec<_> = wholes.collect();

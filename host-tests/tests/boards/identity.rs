@@ -9,8 +9,7 @@ use cycles::{Core, Instruction};
 use double_pendulum::{Integrator, Method};
 use firmware::job::Request;
 use host_tests::commands::count::Target;
-use host_tests::commands::report::accuracy::request;
-use host_tests::commands::report::scene::{SCENES, Scene};
+use host_tests::commands::report::accuracy::{SCENES, Scene, request};
 use host_tests::emulator::toolchain;
 use rayon::prelude::*;
 

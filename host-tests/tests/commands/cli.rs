@@ -1,17 +1,22 @@
 //! The commands' own words: `snapshots/*.txt` hold command lines, and what each says and ends with. `BLESS=1` writes them anew.
 //!
 //! After `$` a command and its arguments; then a line for each on stdout, after `> `, and on stderr, after `! `; and the exit code.
+//! And a reader who has seen enough of them (`| head`).
 
-use std::fs;
 use std::path::Path;
-use std::process::Command;
+use std::process::{Command, Stdio};
+use std::{fs, io};
 
+use firmware::app::News;
+use firmware::config::{CORTEX_M3, STM32F405};
+use firmware::scenes::SceneName;
+use host_tests::emulator::host::Show;
 use host_tests::emulator::process::{Output, run};
 use host_tests::emulator::toolchain::workspace;
 use host_tests::oracle::snapshot::BLESS;
 use rayon::prelude::*;
 
-use crate::support::LIMIT;
+use crate::support::{LIMIT, toolchain};
 
 /// A command of this project.
 pub fn program(name: &str) -> Command {
@@ -62,4 +67,68 @@ fn commands_say_what_they_said() {
     }
     assert_eq!(fs::read_dir(&empty).expect("a folder").count(), 0, "something is written");
     assert!(differences.is_empty(), "accept by {BLESS}=1:\n{}", differences.join("\n"));
+}
+
+/// What ends after little work; of others, what is their own to print.
+const COMMANDS: [&str; 12] = [
+    "count closed-form-f32 --on lm3s6965evb --steps 4",
+    "count closed-form-f32 --on lm3s6965evb --steps 4 --listing",
+    "count --help",
+    "demo --headless --seconds 0.1",
+    "figures --out FOLDER",
+    "flash-f4 --help",
+    "fw mps2-an386 --seconds 2",
+    "plan --angles 1,1",
+    "write-report --help",
+    "setup",
+    "simulate --angles 1,1",
+    "verify --help",
+];
+
+/// A pipe that is closed at its other end.
+fn closed() -> io::Result<Stdio> {
+    let (reader, writer) = io::pipe()?;
+    drop(reader);
+    Ok(writer.into())
+}
+
+#[test]
+fn a_closed_output_ends_every_command_quietly() -> io::Result<()> {
+    toolchain();
+    let folder = tempfile::tempdir()?;
+    for line in COMMANDS {
+        let line = line.replace("FOLDER", &folder.path().to_string_lossy());
+        let (name, arguments) = line.split_once(' ').unwrap_or((&line, ""));
+        let output = program(name).args(arguments.split_whitespace()).stdout(closed()?).output()?;
+        let report = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(0), "{line}: {report}");
+        // What is going on may be said there, but nothing went wrong.
+        assert!(!report.contains("error") && !report.contains("panicked"), "{line}: {report}");
+    }
+    Ok(())
+}
+
+/// An error that is read by no one is still told by the exit code.
+#[test]
+fn with_both_outputs_closed_a_refusal_is_still_exit_code_2() -> io::Result<()> {
+    let status = program("simulate").args(["--until", "-1"]).stdout(closed()?).stderr(closed()?).status()?;
+    assert_eq!(status.code(), Some(2));
+    Ok(())
+}
+
+/// The boards' own scene starts from the nearest `f32` to 120 degrees, which is another motion in the end.
+#[test]
+fn a_scene_is_planned_as_the_boards_start_it() {
+    let name = SceneName::Page;
+    for (target, processor) in [("m3", CORTEX_M3), ("m4f", STM32F405)] {
+        let mut show = Show::on(processor, name, &name.first_settings()).expect("a scene of the catalogue");
+        let horizon = loop {
+            show.tick();
+            if let [.., (_, News::Found(Ok(plan)))] = show.news[..] {
+                break plan.horizon;
+            }
+        };
+        let said = output(program("plan").args(["--scene", "page", "--target", target])).stdout;
+        assert!(said.contains(&format!("until {horizon:.2} s of 30 s")), "{horizon} {said}");
+    }
 }

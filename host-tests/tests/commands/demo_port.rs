@@ -9,7 +9,6 @@ use std::time::{Duration, Instant};
 use super::cli::program;
 use crate::support::bench::{Bench, WAIT, at_port, board, intact};
 use firmware::protocol::{Frame, MAX_WIRE, encode};
-use host_tests::emulator::process::Output;
 use host_tests::link::Received;
 use nix::pty::{OpenptyResult, Winsize, openpty};
 
@@ -17,16 +16,21 @@ use nix::pty::{OpenptyResult, Winsize, openpty};
 const OUT: Duration = Duration::from_millis(700);
 /// A terminal is looked at for so long.
 const SILENCE: Duration = Duration::from_secs(3);
-/// A foreign device is there for so long.
+/// A foreign device, and how long it is there.
+const FOREIGNER: &[u8] = b"$GPGGA,123519,4807.038,N,01131.000,E,1,08,0.9,545.4,M,46.9,M,,*47\r\n";
 const FOREIGN: Duration = Duration::from_secs(4);
 
-fn demo(bench: &mut Bench, arguments: &[&str], play: impl FnMut(&mut Bench)) -> Output {
-    at_port(bench, program("demo").arg("--headless").args(arguments), play)
+/// What it says when it has ended with `code`, on stdout and on stderr.
+fn demo(code: i32, arguments: &str, play: impl FnMut(&mut Bench)) -> [String; 2] {
+    let mut command = program("demo");
+    command.arg("--headless").args(arguments.split_whitespace());
+    let output = at_port(&mut Bench::new(), &mut command, play);
+    assert_eq!(output.status.code(), Some(code), "{output:?}");
+    [output.stdout, output.stderr]
 }
 
 #[test]
 fn every_frame_of_a_board_at_a_port_is_compared_and_a_damaged_one_counted() {
-    let mut bench = Bench::new();
     let damaged = |message: &Received| {
         let mut wire = intact(message);
         if message.read::<Frame>().is_some_and(|frame| frame.sequence == 400) {
@@ -34,15 +38,13 @@ fn every_frame_of_a_board_at_a_port_is_compared_and_a_damaged_one_counted() {
         }
         wire
     };
-    let output = demo(&mut bench, &["--scene", "butterfly", "--seconds", "8"], |bench| bench.carry(damaged));
-    assert_eq!(output.status.code(), Some(0), "{output:?}");
-    assert!(output.stdout.contains("frames, every bit the host's"), "{}", output.stdout);
-    assert!(output.stdout.contains("CRC errors            1\nlost frames           1\n"), "{}", output.stdout);
+    let [said, _] = demo(0, "--scene butterfly --seconds 8", |bench| bench.carry(damaged));
+    assert!(said.contains("frames, every bit the host's"), "{said}");
+    assert!(said.contains("CRC errors            1\nlost frames           1\n"), "{said}");
 }
 
 #[test]
 fn one_flipped_bit_is_named_and_fails() {
-    let mut bench = Bench::new();
     let flipped = |message: &Received| match message.read::<Frame>() {
         Some(mut frame) if frame.sequence == 300 => {
             frame.state[2] = f32::from_bits(frame.state[2].to_bits() ^ 1);
@@ -50,32 +52,28 @@ fn one_flipped_bit_is_named_and_fails() {
         }
         _ => intact(message),
     };
-    let output = demo(&mut bench, &["--seconds", "8"], |bench| bench.carry(flipped));
-    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    let [_, told] = demo(1, "--seconds 8", |bench| bench.carry(flipped));
     let is_it = |line: &str| line.starts_with("not well: frame 300, step ") && line.contains(": p1 is 0x");
-    assert!(output.stderr.lines().any(is_it), "{}", output.stderr);
+    assert!(told.lines().any(is_it), "{told}");
 }
 
 #[test]
 fn a_board_that_restarts_is_followed_again() {
-    let mut bench = Bench::new();
     let mut restarted = false;
-    let output = demo(&mut bench, &["--seconds", "8"], |bench| {
+    let [said, told] = demo(0, "--seconds 8", |bench| {
         bench.carry(intact);
         if !restarted && bench.heard && bench.frame > 200 {
             (bench.machine, restarted) = (board(), true);
         }
     });
-    assert_eq!(output.status.code(), Some(0), "{output:?}");
-    assert!(output.stderr.contains("the board has been switched on or reset"), "{}", output.stderr);
-    assert!(output.stdout.contains("frames, every bit the host's"), "{}", output.stdout);
+    assert!(told.contains("the board has been switched on or reset"), "{told}");
+    assert!(said.contains("frames, every bit the host's"), "{said}");
 }
 
 #[test]
 fn a_pulled_cable_is_said_and_waited_for() {
-    let mut bench = Bench::new();
     let mut pulled = None;
-    let output = demo(&mut bench, &["--seconds", "8"], |bench| {
+    let [said, told] = demo(0, "--seconds 8", |bench| {
         bench.carry(intact);
         match pulled {
             None if bench.heard && bench.frame > 200 => {
@@ -86,33 +84,30 @@ fn a_pulled_cable_is_said_and_waited_for() {
             _ => {}
         }
     });
-    assert_eq!(output.status.code(), Some(0), "{output:?}");
-    let told: Vec<_> = output.stderr.lines().filter(|line| line.contains("ttyACM0 is ")).collect();
-    assert!(told.len() == 2 && told[0].contains("is gone") && told[1].ends_with("is back"), "{}", output.stderr);
-    assert!(output.stdout.contains("frames, every bit the host's"), "{}", output.stdout);
+    let lines: Vec<_> = told.lines().filter(|line| line.contains("ttyACM0 is ")).collect();
+    assert!(lines.len() == 2 && lines[0].contains("is gone") && lines[1].ends_with("is back"), "{told}");
+    assert!(said.contains("frames, every bit the host's"), "{said}");
 }
 
 #[test]
 fn a_foreign_device_is_said_and_a_board_in_its_place_is_taken() {
-    let mut bench = Bench::new();
     let mut foreign = None;
-    let output = demo(&mut bench, &["--seconds", "2"], |bench| {
+    let [_, told] = demo(0, "--seconds 2", |bench| {
         if bench.is_heard() && foreign.get_or_insert_with(Instant::now).elapsed() < FOREIGN {
-            bench.say(b"$GPGGA,123519,4807.038,N,01131.000,E,1,08,0.9,545.4,M,46.9,M,,*47\r\n");
+            bench.say(FOREIGNER);
             sleep(Duration::from_millis(20));
         } else {
             bench.carry(intact);
         }
     });
-    assert_eq!(output.status.code(), Some(0), "{output:?}");
-    assert_eq!(output.stderr.matches("no message: another device").count(), 1, "{}", output.stderr);
-    assert_eq!(output.stderr.matches("the board sends again").count(), 1, "{}", output.stderr);
+    let count = |words| told.matches(words).count();
+    assert_eq!(["no message: another device", "the board sends again"].map(count), [1, 1], "{told}");
 }
 
 /// In a terminal nothing is given up: the one who looks at it ends it, and is told no number that did not come.
 #[test]
 fn of_a_silent_or_foreign_device_the_terminal_shows_no_number() {
-    for says in [&b""[..], b"$GPGGA,123519,4807.038,N,01131.000,E,1,08,0.9,545.4,M,46.9,M,,*47\r\n"] {
+    for says in [b"", FOREIGNER] {
         let mut bench = Bench::new();
         let size = Winsize { ws_row: 24, ws_col: 80, ws_xpixel: 0, ws_ypixel: 0 };
         let OpenptyResult { master, slave } = openpty(&size, None).expect("a terminal");
@@ -145,9 +140,6 @@ fn of_a_silent_or_foreign_device_the_terminal_shows_no_number() {
 
 #[test]
 fn a_port_where_nothing_comes_is_given_up() {
-    let mut bench = Bench::new();
-    let output = demo(&mut bench, &[], |_| sleep(WAIT));
-    assert_eq!((output.status.code(), output.stdout.as_str()), (Some(1), ""), "{output:?}");
-    let said = ["nothing comes", "no frame for 10 s"].map(|words| output.stderr.contains(words));
-    assert_eq!(said, [true; 2], "{}", output.stderr);
+    let [said, told] = demo(1, "", |_| sleep(WAIT));
+    assert!(said.is_empty() && told.contains("nothing comes") && told.contains("no frame for 10 s"), "{said}{told}");
 }

@@ -1,15 +1,12 @@
 //! The commands as they are called, the READMEs and what the report says.
 
 mod cli;
-mod closed_output;
 mod demo_cli;
 mod demo_port;
 mod figures;
-mod flash_cli;
-mod fw_cli;
+mod firmware_cli;
 mod hygiene;
 mod package;
-mod plan_cli;
 mod process;
 mod random_input;
 mod readmes;
@@ -17,5 +14,4 @@ mod rooms;
 mod simulate_cli;
 #[path = "../support/mod.rs"]
 mod support;
-mod tolerance;
 mod verify_board;

@@ -5,20 +5,22 @@ use std::path::Path;
 use std::process::Command;
 use std::time::Duration;
 
-use host_tests::emulator::process::run;
+use host_tests::emulator::process::{self, Output};
 use host_tests::emulator::toolchain::workspace;
 
 /// A guard against hanging: many times what cargo takes, on a slow and busy machine too.
 const LIMIT: Duration = Duration::from_secs(600);
 
+/// Runs a program in a folder.
+fn run(program: &str, arguments: &[&str], folder: &Path) -> Output {
+    process::run(Command::new(program).args(arguments).current_dir(folder), LIMIT)
+        .unwrap_or_else(|error| panic!("{error}"))
+}
+
 /// Runs cargo with what is on this machine, and only if that is not enough with the registry.
 fn cargo(arguments: &[&str], folder: &Path) {
-    let try_with = |network: &[&str]| {
-        let mut cargo = Command::new(env!("CARGO"));
-        run(cargo.args(arguments).args(network).current_dir(folder), LIMIT).unwrap_or_else(|error| panic!("{error}"))
-    };
-    if !try_with(&["--offline"]).status.success() {
-        let output = try_with(&[]);
+    if !run(env!("CARGO"), &[arguments, &["--offline"]].concat(), folder).status.success() {
+        let output = run(env!("CARGO"), arguments, folder);
         assert!(output.status.success(), "cargo {arguments:?}: {}", output.stderr);
     }
 }
@@ -38,9 +40,7 @@ fn the_readmes_example_runs_in_an_empty_crate() {
     cargo(&[&package[..], &[target]].concat(), workspace());
 
     let name = concat!("double-pendulum-kernel-", env!("CARGO_PKG_VERSION"));
-    let mut unpack = Command::new("tar");
-    unpack.arg("-xf").arg(format!("{target}/package/{name}.crate")).current_dir(&folder);
-    let unpacked = run(&mut unpack, LIMIT).unwrap_or_else(|error| panic!("{error}"));
+    let unpacked = run("tar", &["-xf", &format!("{target}/package/{name}.crate")], folder.path());
     assert!(unpacked.status.success(), "{}", unpacked.stderr);
 
     let readme = fs::read_to_string(folder.path().join(name).join("README.md")).expect("the package has its README");

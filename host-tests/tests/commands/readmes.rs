@@ -40,18 +40,15 @@ fn every_help_has_examples_of_what_it_lists() {
 fn built_in() -> BTreeSet<String> {
     let nowhere = tempfile::tempdir().expect("a temporary folder");
     let mut cargo = Command::new(env!("CARGO"));
-    cargo.arg("--list").current_dir(&nowhere).env("CARGO_HOME", nowhere.path()).env("PATH", "");
-    let list = cargo.output().expect("cargo runs").stdout;
-    let list = String::from_utf8(list).expect("text");
+    let list =
+        output(cargo.arg("--list").current_dir(&nowhere).env("CARGO_HOME", nowhere.path()).env("PATH", "")).stdout;
     list.lines().skip(1).filter_map(|line| Some(line.split_whitespace().next()?.to_owned())).collect()
 }
 
 #[test]
 fn no_command_is_shadowed() {
     let built_in = built_in();
-    assert!(built_in.contains("run"), "{built_in:?}");
-    let shadowed: Vec<_> = ours().into_iter().filter(|name| built_in.contains(name)).collect();
-    assert!(shadowed.is_empty(), "cargo has its own {shadowed:?}");
+    assert!(built_in.contains("run") && ours().is_disjoint(&built_in), "{built_in:?}");
 }
 
 /// The commands in a page's text: in `backquotes` and in indented blocks.
@@ -64,11 +61,9 @@ fn named(page: &str) -> BTreeSet<String> {
 #[test]
 fn the_readmes_name_every_command_and_no_other() {
     let named: BTreeSet<_> = README.iter().flat_map(|file| named(&read(file))).collect();
-    let missing: Vec<_> = ours().into_iter().filter(|command| !named.contains(command)).collect();
-    assert!(missing.is_empty(), "in no README: {missing:?}");
-    let known: BTreeSet<_> = ours().into_iter().chain(built_in()).chain(INSTALLED.map(String::from)).collect();
-    let unknown: Vec<_> = named.difference(&known).collect();
-    assert!(unknown.is_empty(), "in the READMEs alone: {unknown:?}");
+    let known = &(&ours() | &built_in()) | &INSTALLED.map(String::from).into();
+    let [missing, unknown] = [&ours() - &named, &named - &known];
+    assert!(missing.is_empty() && unknown.is_empty(), "in no README: {missing:?}, in READMEs alone: {unknown:?}");
 }
 
 /// Every file and folder that a README links to is there.
@@ -94,13 +89,12 @@ fn the_readme_lists_the_messages_as_they_are() {
     let page = read("firmware/README.md");
     let sources = ["to_host", "to_chip"].map(|file| read(format!("firmware/src/protocol/{file}.rs")));
     let declared = sources.iter().flat_map(|source| source.lines()).filter_map(|line| line.trim().split_once(" = 0x"));
-    let mut count = 0;
-    for (name, kind) in declared.map(|(name, rest)| (name, rest[..2].to_lowercase())) {
-        let row = page.lines().find(|line| line.starts_with(&format!("| 0x{kind} | `{name}` |")));
-        assert!(row.is_some(), "0x{kind} {name}");
-        count += 1;
+    let rows: Vec<_> = page.lines().filter(|line| line.starts_with("| 0x")).collect();
+    assert_eq!(rows.len(), declared.clone().count());
+    for (name, kind) in declared {
+        let start = format!("| 0x{} | `{name}` |", kind[..2].to_lowercase());
+        assert!(rows.iter().any(|row| row.starts_with(&start)), "{start}");
     }
-    assert_eq!(page.lines().filter(|line| line.starts_with("| 0x")).count(), count);
     let version = format!("version is {};", firmware::protocol::VERSION);
     assert!(page.contains(&version), "{version}");
 }

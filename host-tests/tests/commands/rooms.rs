@@ -1,6 +1,6 @@
 //! Rooms, the top modules of a crate: each imports only from those below it, there are few, and a public type has a name of its own.
 
-use std::collections::BTreeMap;
+use std::collections::BTreeSet;
 
 use host_tests::emulator::toolchain::workspace;
 
@@ -18,9 +18,6 @@ const ROOMS: [(&str, &[&str]); 3] = [
     ),
     ("host-tests", &["commands", "oracle", "emulator", "console", "link"]),
 ];
-/// Crates in which no two public types have one name.
-const NAMED_APART: [&str; 3] = ["kernel", "firmware", "host-tests"];
-
 /// The lines of each room's files; programs and the list of rooms itself stand above all.
 fn lines(krate: &str) -> Vec<(String, String)> {
     let source = workspace().join(krate).join("src");
@@ -35,10 +32,9 @@ fn lines(krate: &str) -> Vec<(String, String)> {
     lines
 }
 
-/// The rooms that a line of code names, in an import or otherwise.
-fn named(line: &str) -> impl Iterator<Item = &str> {
-    let code = line.split("//").next().unwrap_or_default();
-    code.split("crate::").skip(1).filter_map(|rest| rest.split(|c: char| !c.is_alphanumeric() && c != '_').next())
+/// The name at the head of a text.
+fn name(text: &str) -> &str {
+    text.split(|c: char| !c.is_alphanumeric() && c != '_').next().unwrap_or_default()
 }
 
 #[test]
@@ -46,38 +42,27 @@ fn a_room_imports_only_from_those_below_it() {
     for (krate, rooms) in ROOMS {
         let place = |room: &str| rooms.iter().position(|known| *known == room);
         let lines = lines(krate);
-        let mut found: Vec<_> = lines.iter().map(|(room, _)| room.as_str()).collect();
-        found.dedup();
-        let unknown: Vec<_> = found.iter().filter(|room| place(room).is_none()).collect();
-        assert!(
-            unknown.is_empty() && found.len() == rooms.len(),
-            "{krate}: rooms not listed {unknown:?}, of {found:?}"
-        );
+        let found: BTreeSet<_> = lines.iter().map(|(room, _)| room.as_str()).collect();
+        assert_eq!(found, rooms.iter().copied().collect(), "{krate}");
         assert!(rooms.len() <= MOST, "{krate} has {} rooms", rooms.len());
-        let upwards: Vec<_> = lines
-            .iter()
-            .flat_map(|(room, line)| named(line).map(move |other| (room, other, line)))
-            .filter(|(room, other, _)| place(other).is_some() && place(other) < place(room))
-            .collect();
+        // In an import or otherwise.
+        let code = lines.iter().map(|(room, line)| (room, line.split("//").next().unwrap_or_default()));
+        let imports = code.flat_map(|(room, code)| code.split("crate::").skip(1).map(move |rest| (room, name(rest))));
+        let upwards: Vec<_> =
+            imports.filter(|(room, other)| place(other).is_some() && place(other) < place(room)).collect();
         assert!(upwards.is_empty(), "{krate}: {upwards:#?}");
     }
 }
 
 #[test]
 fn a_public_type_has_a_name_of_its_own() {
-    for krate in NAMED_APART {
-        let mut places = BTreeMap::<String, Vec<String>>::new();
-        for (room, line) in lines(krate) {
-            let keyword = ["pub struct ", "pub enum ", "pub trait ", "pub type "].into_iter();
-            if let Some(rest) = keyword.filter_map(|keyword| line.strip_prefix(keyword)).next() {
-                let name = rest.split(|c: char| !c.is_alphanumeric() && c != '_').next().unwrap_or_default();
-                // A macro's placeholder is no name.
-                if !name.is_empty() {
-                    places.entry(name.to_owned()).or_default().push(room);
-                }
-            }
-        }
-        let twice: Vec<_> = places.iter().filter(|(_, rooms)| rooms.len() > 1).collect();
+    for (krate, _) in ROOMS {
+        let mut seen = BTreeSet::new();
+        let lines = lines(krate);
+        let types = ["pub struct ", "pub enum ", "pub trait ", "pub type "];
+        let declared = lines.iter().filter_map(|(_, line)| types.iter().find_map(|keyword| line.strip_prefix(keyword)));
+        // A macro's placeholder is no name.
+        let twice: Vec<_> = declared.map(name).filter(|name| !name.is_empty() && !seen.insert(*name)).collect();
         assert!(twice.is_empty(), "{krate}: {twice:?}");
     }
 }

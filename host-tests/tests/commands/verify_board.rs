@@ -147,17 +147,10 @@ fn what_the_person_says_and_the_chip_counts_is_in_the_report() {
     said.extend(lines);
     assert_eq!(status.code(), Some(1), "{said:#?}");
     let markdown = fs::read_to_string(folder.path().join("asked.md")).expect("the report");
-    let panel = "the panel shows a swinging pendulum, upright and sharp";
-    let button = |key: &str| format!("a tap on the button '{key}' starts the motion again");
-    let answers = [
-        (panel.to_owned(), "no"),
-        (button("up"), "yes"),
-        (button("down"), "no"),
-        (button("left"), "not answered"),
-        (button("right"), "yes"),
-        (button("select"), "not answered"),
-    ];
-    for (what, answer) in answers {
+    let panel = "the panel shows a swinging pendulum, upright and sharp".to_owned();
+    let button = |key: &Key| format!("a tap on the button '{}' starts the motion again", key.name());
+    let answers = ["no", "yes", "no", "not answered", "yes", "not answered"];
+    for (what, answer) in [panel].into_iter().chain(Key::ALL.iter().map(button)).zip(answers) {
         assert!(markdown.contains(&format!("| {what} | {answer} |")), "{what}: not {answer} in {markdown}");
         assert_eq!(said.contains(&format!("not well: not so: {what}")), answer == "no", "{said:#?}");
     }

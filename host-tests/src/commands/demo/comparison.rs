@@ -1,13 +1,17 @@
 //! Every frame of a board beside the host's own. Frames do not tell all that a scene starts from, so the host asks the board;
-//! the frames wait for its answer.
+//! the frames wait for its answer, and the same scene code, started as the board says, is moved and drawn here.
 
 use std::collections::VecDeque;
 use std::fmt;
 
-use firmware::config::TICK_RATE;
-use firmware::protocol::{Frame, Status};
+use firmware::config::{PROCESSOR, PROCESSORS, TICK_RATE};
+use firmware::graphics::{Canvas, text};
+use firmware::motion::Settings;
+use firmware::protocol::{Field, Frame, NO_METHOD, Status};
+use firmware::scenes::SceneName;
+use indicatif::HumanCount;
 
-use super::mirror::{Difference, Mirror, start_of};
+use crate::emulator::host::Show;
 use crate::emulator::qemu::Screenshot;
 
 /// After this many frames without an answer the host asks again.
@@ -17,9 +21,9 @@ const MOST_TICKS: u32 = 2000;
 
 #[derive(Debug, Default)]
 pub struct Comparison {
-    mirror: Option<Mirror>,
-    /// What the mirror plays; `None` until the board has said it.
-    playing: Option<Status>,
+    /// What the board plays, from its start, and played here; `None` until the board has said it.
+    playing: Option<(Status, Show)>,
+    canvas: Canvas,
     /// Frames since the start that are not yet compared, oldest first.
     waiting: VecDeque<Frame>,
     /// How many of them came before the board said what it plays. It may have started something else in between.
@@ -44,11 +48,7 @@ impl Comparison {
         }
         self.last = Some(*frame);
         self.waiting.push_back(*frame);
-        self.is_to_ask()
-    }
-
-    /// Whether an answer is wanted, and none on its way.
-    fn is_to_ask(&mut self) -> bool {
+        // Whether an answer is wanted, and none on its way.
         if self.playing.is_some() && self.doubt.is_none() {
             return false;
         }
@@ -59,25 +59,27 @@ impl Comparison {
 
     pub fn status(&mut self, status: &Status) {
         self.unanswered = None;
-        let start = start_of(status);
-        match self.doubt.take() {
-            Some(doubt) if self.playing == Some(start) => {
+        // What is played by its start alone: how its time goes is another matter.
+        let (method, way_steps, cycles, horizon, is_looking) = (NO_METHOD, 0, 0.0, 0.0, 0);
+        let time = Status { request: 0, paused: 0, steps: 0, speed: 1.0, ..*status };
+        let start = Status { method, way_steps, cycles, horizon, is_looking, ..time };
+        match (self.doubt.take(), &self.playing) {
+            (Some(doubt), Some((playing, _))) if *playing == start => {
                 self.first.get_or_insert(doubt);
-                return;
             }
-            None if self.playing.is_some() => return,
-            _ => {}
+            (None, Some(_)) => {}
+            _ => {
+                self.playing = played(&start).ok().map(|show| (start, show));
+                self.unsure = self.waiting.len();
+            }
         }
-        self.mirror = Mirror::of(&start).ok();
-        self.playing = self.mirror.is_some().then_some(start);
-        self.unsure = self.waiting.len();
     }
 
     /// Compares the next frame that waits; `None` if there is none, or the host is not there yet.
     pub fn follow(&mut self) -> Option<Frame> {
-        let mirror = self.mirror.as_mut().filter(|_| self.playing.is_some() && self.doubt.is_none())?;
-        let frame = self.waiting.front().copied().filter(|frame| mirror.advance(frame, MOST_TICKS))?;
-        let difference = mirror.difference(&frame);
+        let (_, show) = self.playing.as_mut().filter(|_| self.doubt.is_none())?;
+        let frame = self.waiting.front().copied().filter(|frame| is_reached(show, frame))?;
+        let difference = difference(&frame, &show.player.frame());
         if difference.is_some() && self.first.is_none() && self.unsure == 0 {
             self.doubt = difference;
             return None;
@@ -90,7 +92,13 @@ impl Comparison {
 
     /// The panel, redrawn here as the compared `frame` shows it.
     pub fn panel(&mut self, frame: &Frame) -> Screenshot {
-        self.mirror.as_mut().map_or_else(Screenshot::blank, |mirror| mirror.panel(frame))
+        if let Some((_, show)) = &self.playing {
+            show.draw(&mut self.canvas);
+        }
+        if frame.paused != 0 {
+            text::pause_mark(&mut self.canvas);
+        }
+        Screenshot::from(&self.canvas)
     }
 
     pub fn is_settled(&self) -> bool {
@@ -107,17 +115,69 @@ impl fmt::Display for Comparison {
         if let Some(difference) = self.first {
             return difference.fmt(f);
         }
-        write!(f, "{} frames, every bit the host's", grouped(self.compared))?;
+        write!(f, "{} frames, every bit the host's", HumanCount(self.compared))?;
         match self.skipped + self.waiting.len() as u64 {
             0 => Ok(()),
-            skipped => write!(f, " ({} not compared)", grouped(skipped)),
+            skipped => write!(f, " ({} before the start was known)", HumanCount(skipped)),
         }
     }
 }
 
-/// With a comma after every three digits.
-fn grouped(number: u64) -> String {
-    let digits = number.to_string();
-    let groups = digits.as_bytes().rchunks(3).rev().map(String::from_utf8_lossy);
-    groups.collect::<Vec<_>>().join(",")
+/// What the board plays from such a start; the field of it that cannot be.
+fn played(start: &Status) -> Result<Show, Field> {
+    let processor = PROCESSORS.get(usize::from(start.processor)).copied().unwrap_or(PROCESSOR);
+    let mut show = Show::on(processor, SceneName::Page, &Settings::default())?;
+    show.player.resume(start)?;
+    Ok(show)
+}
+
+/// Goes on towards the step of `frame`; whether it is there.
+fn is_reached(show: &mut Show, frame: &Frame) -> bool {
+    let left = |show: &Show| frame.step.wrapping_sub(show.report().step as u32) as i32;
+    for _ in 0..MOST_TICKS {
+        if left(show) <= 0 || show.player.is_paused() {
+            return true;
+        }
+        show.tick();
+    }
+    left(show) <= 0
+}
+
+/// A number that board and host do not have alike, by its bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Difference {
+    sequence: u32,
+    step: u32,
+    number: &'static str,
+    bits: [u64; 2],
+}
+
+impl fmt::Display for Difference {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { sequence, step, number, bits: [board, here] } = self;
+        write!(f, "frame {sequence}, step {step}: {number} is {board:#x}, the host's {here:#x}")
+    }
+}
+
+/// The first number of the board's frame that is not the host's.
+fn difference(board: &Frame, here: &Frame) -> Option<Difference> {
+    let numbers = |frame: &Frame| {
+        let [a1, a2, p1, p2] = frame.state.map(|number| u64::from(number.to_bits()));
+        [
+            ("scene", frame.scene.into()),
+            ("step", frame.step.into()),
+            ("time", frame.time.to_bits()),
+            ("mass ratio", frame.mass_ratio.to_bits().into()),
+            ("start angle", frame.start_angle.to_bits().into()),
+            ("a1", a1),
+            ("a2", a2),
+            ("p1", p1),
+            ("p2", p2),
+            ("energy error", frame.energy_error.to_bits().into()),
+            ("horizon", frame.horizon.to_bits().into()),
+        ]
+    };
+    let ((number, board_bits), (_, here_bits)) =
+        numbers(board).into_iter().zip(numbers(here)).find(|(board, here)| board != here)?;
+    Some(Difference { sequence: board.sequence, step: board.step, number, bits: [board_bits, here_bits] })
 }

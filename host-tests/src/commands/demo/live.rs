@@ -5,7 +5,6 @@ use std::time::{Duration, Instant};
 
 use anyhow::ensure;
 use firmware::app::Key;
-use firmware::config::TICK_RATE;
 use firmware::protocol::{Choose, Pause, Press, Step};
 use firmware::scenes::SceneName;
 use ratatui::DefaultTerminal;
@@ -39,14 +38,12 @@ pub fn run(options: &DemoOptions, mut session: Session) -> anyhow::Result<bool> 
 }
 
 fn show(options: &DemoOptions, session: &mut Session, mut terminal: DefaultTerminal) -> anyhow::Result<()> {
-    let last = options.seconds.map(|seconds| (seconds * f64::from(TICK_RATE)).ceil() as u32);
     let colours = !Colored::ansi_color_disabled();
     loop {
         session.hear()?;
-        session.readings.lines.extend(session.source.lines());
         session.look()?;
         terminal.draw(|frame| draw(frame, session.source.name(), &session.screenshot, &session.readings, colours))?;
-        let is_over = last.is_some_and(|last| session.ticks() >= last);
+        let is_over = options.seconds.is_some_and(|seconds| session.seconds() >= seconds);
         if is_over || keys(session)? {
             return Ok(());
         }

@@ -1,7 +1,5 @@
 //! Both angles over the last seconds, as a chart of characters.
 
-use std::collections::VecDeque;
-
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::style::{Color, Style};
@@ -19,12 +17,8 @@ const HALF_TURN: f64 = 180.0;
 const COLOURS: [Color; 2] = [Color::Cyan, Color::Yellow];
 const MARKERS: [Marker; 2] = [Marker::Braille, Marker::Dot];
 
-#[derive(Clone, Copy, Debug)]
-pub struct Moment {
-    pub time: f64,
-    /// Both angles, degrees; turns count.
-    pub angles: [f64; 2],
-}
+/// A time, s, and both angles then, degrees; turns count.
+pub type Moment = (f64, [f64; 2]);
 
 /// An angle, degrees, in (-180, 180] as it is shown: what rounds to straight up at a tenth of a degree is 180, never -180.
 pub fn within_half_a_turn(degrees: f64) -> f64 {
@@ -32,9 +26,10 @@ pub fn within_half_a_turn(degrees: f64) -> f64 {
     degrees - 2.0 * HALF_TURN * ((tenths - HALF_TURN) / (2.0 * HALF_TURN)).ceil()
 }
 
-pub fn draw(frame: &mut Frame, area: Rect, past: &VecDeque<Moment>) {
-    let end = past.back().map_or(0.0, |last| last.time).max(SPAN);
-    let strands: Vec<_> = (0..2).flat_map(|rod| strands(past, rod).map(move |strand| (rod, strand))).collect();
+pub fn draw(frame: &mut Frame, area: Rect, past: &[Moment]) {
+    let end = past.last().map_or(0.0, |(time, _)| *time).max(SPAN);
+    let strands: Vec<_> =
+        (0..2).flat_map(|rod| strands(past, rod).into_iter().map(move |strand| (rod, strand))).collect();
     let largest = strands.iter().flat_map(|(_, strand)| strand).fold(0.0_f64, |most, (_, angle)| most.max(angle.abs()));
     let reach = REACHES.into_iter().find(|reach| *reach >= largest).unwrap_or(HALF_TURN);
     let lines = strands.iter().map(|(rod, strand)| {
@@ -59,20 +54,11 @@ pub fn draw(frame: &mut Frame, area: Rect, past: &VecDeque<Moment>) {
 }
 
 /// An angle over time within half a turn either way, cut where it passes straight up.
-fn strands(past: &VecDeque<Moment>, rod: usize) -> impl Iterator<Item = Vec<(f64, f64)>> {
-    let mut strands: Vec<Vec<(f64, f64)>> = Vec::new();
-    for moment in past {
-        // A hair above straight up is drawn on the chart's edge, not left out.
-        let angle = within_half_a_turn(moment.angles[rod]).clamp(-HALF_TURN, HALF_TURN);
-        let point = (moment.time, angle);
-        match strands.last_mut() {
-            Some(strand) if strand.last().is_some_and(|(_, before)| (angle - before).abs() < HALF_TURN) => {
-                strand.push(point);
-            }
-            _ => strands.push(vec![point]),
-        }
-    }
-    strands.into_iter()
+fn strands(past: &[Moment], rod: usize) -> Vec<Vec<(f64, f64)>> {
+    // A hair above straight up is drawn on the chart's edge, not left out.
+    let angle = |angles: [f64; 2]| within_half_a_turn(angles[rod]).clamp(-HALF_TURN, HALF_TURN);
+    let points: Vec<_> = past.iter().map(|&(time, angles)| (time, angle(angles))).collect();
+    points.chunk_by(|(_, one), (_, next)| (one - next).abs() < HALF_TURN).map(<[_]>::to_vec).collect()
 }
 
 #[cfg(test)]
@@ -81,13 +67,12 @@ mod tests {
 
     #[test]
     fn a_turning_rod_is_cut_where_it_passes_straight_up() {
-        let turning = |tenth: u32| Moment { time: f64::from(tenth) / 10.0, angles: [f64::from(tenth) * 36.0, 0.0] };
-        let past = (0..=20).map(turning).collect();
-        let cut: Vec<_> = strands(&past, 0).collect();
+        let past: Vec<_> = (0..=20).map(f64::from).map(|tenth| (tenth / 10.0, [tenth * 36.0, 0.0])).collect();
+        let cut = strands(&past, 0);
         // From 0 to 180 degrees, then on from just beyond, straight up and all around.
         assert_eq!(cut.iter().map(Vec::len).collect::<Vec<_>>(), [6, 10, 5]);
         assert!(cut.iter().flatten().all(|(_, angle)| *angle > -HALF_TURN && *angle <= HALF_TURN));
-        assert_eq!(strands(&past, 1).count(), 1, "the other rod hangs");
+        assert_eq!(strands(&past, 1).len(), 1, "the other rod hangs");
     }
 
     #[test]

@@ -1,6 +1,5 @@
 //! What a board has sent: the latest numbers, a little of their past for the terminal, and whether all was well.
 
-use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
 use double_pendulum::Method;
@@ -25,12 +24,12 @@ pub struct Readings {
     /// The largest size of the energy error in each half second, oldest first.
     pub energy_errors: Vec<f32>,
     /// Both angles over the last [`plot::SPAN`], oldest first.
-    pub angles: VecDeque<Moment>,
+    pub angles: Vec<Moment>,
     pub lines: Vec<LogLine>,
     pub comparison: Comparison,
     /// Whether what they mean is shown in their place.
     pub help: bool,
-    pub(super) arrivals: VecDeque<Instant>,
+    pub(super) arrivals: Vec<Instant>,
     frames: u64,
     greatest_energy_error: f32,
     /// Of all scenes and restarts together, s.
@@ -57,16 +56,12 @@ impl Readings {
         }
         self.frames += 1;
         let [a1, a2, ..] = frame.state.map(|number| f64::from(number).to_degrees());
-        if self.angles.back().is_none_or(|last| frame.time > last.time) {
-            self.angles.push_back(Moment { time: frame.time, angles: [a1, a2] });
+        if self.angles.last().is_none_or(|(last, _)| frame.time > *last) {
+            self.angles.push((frame.time, [a1, a2]));
         }
-        while self.angles.front().is_some_and(|first| frame.time - first.time > plot::SPAN) {
-            self.angles.pop_front();
-        }
-        self.arrivals.push_back(Instant::now());
-        while self.arrivals.front().is_some_and(|arrival| arrival.elapsed() > RATE_SPAN) {
-            self.arrivals.pop_front();
-        }
+        self.angles.retain(|(time, _)| frame.time - time <= plot::SPAN);
+        self.arrivals.push(Instant::now());
+        self.arrivals.retain(|arrival| arrival.elapsed() <= RATE_SPAN);
         self.comparison.frame(&frame)
     }
 

@@ -1,7 +1,7 @@
 //! Screenshot files: what the panel showed as an animation (GIF) or one screenshot of it (PNG).
 
 use std::fs::File;
-use std::io::{BufWriter, Write};
+use std::io::BufWriter;
 use std::path::Path;
 
 use anyhow::Context;
@@ -15,19 +15,19 @@ use crate::emulator::qemu::{HEIGHT, Screenshot, WIDTH};
 const SCALE: usize = 3;
 const SIZE: [u16; 2] = [(WIDTH * SCALE) as u16, (HEIGHT * SCALE) as u16];
 /// The board's ticks from one screenshot to the next: 60/2 = 30 frames per second.
-const TICKS_PER_FRAME: u32 = TICK_RATE / 30;
+const TICKS_PER_FRAME: i64 = TICK_RATE as i64 / 30;
 /// In a picture after the first: as it was. Few pixels change, which leaves long runs of this. The palette's first colour after
 /// the greys.
 const UNCHANGED: u8 = 16;
 /// GIF counts time in hundredths of a second.
-const GIF_RATE: u32 = 100;
+const GIF_RATE: i64 = 100;
 
 pub struct Recording {
     encoder: Encoder<BufWriter<File>>,
     /// The screenshot to be shown next, and since which tick; it is written when its end is known.
-    pending: Option<(Screenshot, u32)>,
+    pending: Option<(Screenshot, i64)>,
     shown: Vec<u8>,
-    start: u32,
+    start: Option<i64>,
 }
 
 impl Recording {
@@ -37,37 +37,34 @@ impl Recording {
         let palette = [palette(), vec![0; 3]].concat();
         let mut encoder = Encoder::new(BufWriter::new(file), width, height, &palette)?;
         encoder.set_repeat(Repeat::Infinite)?;
-        Ok(Self { encoder, pending: None, shown: Vec::new(), start: 0 })
+        Ok(Self { encoder, pending: None, shown: Vec::new(), start: None })
     }
 
-    /// Whether a screenshot of `tick` does not come too soon after the last.
-    pub fn is_due(&self, tick: u32) -> bool {
-        self.pending.as_ref().is_none_or(|(_, since)| tick.wrapping_sub(*since) >= TICKS_PER_FRAME)
+    pub fn is_due(&self, tick: i64) -> bool {
+        self.pending.as_ref().is_none_or(|(_, since)| tick - since >= TICKS_PER_FRAME)
     }
 
     /// Takes the screenshot that the panel shows from `tick` on; one that comes too soon after the last is left out.
-    pub fn add(&mut self, screenshot: Screenshot, tick: u32) -> anyhow::Result<()> {
-        if !self.is_due(tick) {
-            return Ok(());
+    pub fn add(&mut self, screenshot: Screenshot, tick: i64) -> anyhow::Result<()> {
+        if self.is_due(tick) {
+            self.flush(tick)?;
+            self.start.get_or_insert(tick);
+            self.pending = Some((screenshot, tick));
         }
-        if self.pending.is_none() {
-            self.start = tick;
-        }
-        self.flush(tick)?;
-        self.pending = Some((screenshot, tick));
         Ok(())
     }
 
     /// Writes the last screenshot, shown as long as the others, and completes the file.
     pub fn finish(mut self) -> anyhow::Result<()> {
-        let end = self.pending.as_ref().map_or(0, |(_, since)| since.wrapping_add(TICKS_PER_FRAME));
+        let end = self.pending.as_ref().map_or(0, |(_, since)| since + TICKS_PER_FRAME);
         self.flush(end)
     }
 
     /// Writes the pending screenshot, whose time ends at `tick`.
-    fn flush(&mut self, tick: u32) -> anyhow::Result<()> {
-        let Some((screenshot, since)) = self.pending.take() else { return Ok(()) };
-        let hundredths = |tick: u32| (tick.wrapping_sub(self.start) * GIF_RATE + TICK_RATE / 2) / TICK_RATE;
+    fn flush(&mut self, tick: i64) -> anyhow::Result<()> {
+        let Some(((screenshot, since), start)) = self.pending.take().zip(self.start) else { return Ok(()) };
+        let rate = i64::from(TICK_RATE);
+        let hundredths = |tick: i64| ((tick - start) * GIF_RATE + rate / 2) / rate;
         let delay = u16::try_from(hundredths(tick) - hundredths(since)).unwrap_or(u16::MAX);
         let [width, height] = SIZE;
         let now = magnified(&screenshot);
@@ -79,7 +76,6 @@ impl Recording {
     }
 }
 
-/// The panel's greys, magnified, row by row.
 fn magnified(screenshot: &Screenshot) -> Vec<u8> {
     let at = |index: usize| screenshot.grey(index % (WIDTH * SCALE) / SCALE, index / (WIDTH * SCALE) / SCALE);
     (0..WIDTH * SCALE * HEIGHT * SCALE).map(at).collect()
@@ -101,17 +97,13 @@ pub fn played(path: &Path) -> anyhow::Result<Vec<(Vec<u8>, u16)>> {
     Ok(played)
 }
 
-pub fn save(screenshot: &Screenshot, path: &Path) -> anyhow::Result<()> {
-    let unwritable = || format!("cannot write {}", path.display());
-    png(screenshot, BufWriter::new(File::create(path).with_context(unwritable)?)).with_context(unwritable)
-}
-
-pub fn png(screenshot: &Screenshot, file: impl Write) -> anyhow::Result<()> {
-    let [width, height] = SIZE.map(u32::from);
-    let mut encoder = png::Encoder::new(file, width, height);
+pub fn png(screenshot: &Screenshot) -> anyhow::Result<Vec<u8>> {
+    let ([width, height], mut file) = (SIZE.map(u32::from), Vec::new());
+    let mut encoder = png::Encoder::new(&mut file, width, height);
     encoder.set_color(png::ColorType::Indexed);
     encoder.set_palette(palette());
     let mut writer = encoder.write_header()?;
     writer.write_image_data(&magnified(screenshot))?;
-    Ok(writer.finish()?)
+    writer.finish()?;
+    Ok(file)
 }

@@ -1,8 +1,10 @@
 //! A board being watched, with a terminal or without: its messages are taken, its scene chosen, its panel recorded.
 
+use std::fs;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
+use anyhow::Context;
 use firmware::app::AUTO;
 use firmware::config::TICK_RATE;
 use firmware::protocol::{Ask, Choose, Field, Frame, Set, Status, method_code};
@@ -10,7 +12,7 @@ use firmware::scenes::SceneName;
 
 use super::DemoOptions;
 use super::readings::Readings;
-use super::record::{Recording, save};
+use super::record::{Recording, png};
 use super::source::Source;
 use crate::emulator::qemu::Screenshot;
 
@@ -24,10 +26,10 @@ pub struct Session<'a> {
     pub screenshot: Screenshot,
     recording: Option<Recording>,
     /// The latest tick, and that of the first frame of the scene that was asked for.
-    now: Option<u32>,
-    begun: Option<u32>,
+    now: Option<i64>,
+    begun: Option<i64>,
     /// What the ticks of the board's clock lack since it was last restarted.
-    before: u32,
+    before: i64,
     /// When the emulated Pico's next frame is due, which in a terminal goes no faster than a real one.
     due: Option<Instant>,
 }
@@ -60,6 +62,7 @@ impl<'a> Session<'a> {
                 self.record(self.tick(&frame))?;
             }
         }
+        self.readings.lines.extend(self.source.lines());
         self.readings.counts = self.source.counts();
         Ok(())
     }
@@ -68,13 +71,10 @@ impl<'a> Session<'a> {
         match self.now {
             None => self.begin(frame)?,
             // The board counts from 0 again.
-            Some(now) if (self.tick(frame).wrapping_sub(now) as i32) < 0 => {
-                self.before = now.wrapping_add(1).wrapping_sub(tick(frame));
-            }
+            Some(now) if self.tick(frame) < now => self.before += now + 1 - self.tick(frame),
             Some(_) => {}
         }
-        let now = self.tick(frame);
-        self.now = Some(now);
+        let now = *self.now.insert(self.tick(frame));
         if self.options.scene.is_none_or(|scene| scene.code() == frame.scene) {
             self.begun.get_or_insert(now);
         }
@@ -106,20 +106,19 @@ impl<'a> Session<'a> {
         self.begun.and(self.now).zip(self.recording.as_ref()).is_some_and(|(now, recording)| recording.is_due(now))
     }
 
-    fn record(&mut self, tick: u32) -> anyhow::Result<()> {
-        let has_begun = self.begun.is_some_and(|begun| tick.wrapping_sub(begun) as i32 >= 0);
-        let recording = self.recording.as_mut().filter(|_| has_begun);
+    fn record(&mut self, tick: i64) -> anyhow::Result<()> {
+        let recording = self.recording.as_mut().filter(|_| self.begun.is_some_and(|begun| tick >= begun));
         recording.map_or(Ok(()), |recording| recording.add(self.screenshot.clone(), tick))
     }
 
-    /// The tick that a frame belongs to, those before restarts of the board included.
-    fn tick(&self, frame: &Frame) -> u32 {
-        tick(frame).wrapping_add(self.before)
+    /// The tick of the board's clock that a frame belongs to, those before its restarts included.
+    fn tick(&self, frame: &Frame) -> i64 {
+        self.before + i64::from(frame.sequence) + i64::from(frame.dropped)
     }
 
-    /// Ticks since the first frame of the scene that was asked for, that one included.
-    pub fn ticks(&self) -> u32 {
-        self.begun.zip(self.now).map_or(0, |(begun, now)| now.wrapping_sub(begun).wrapping_add(1))
+    /// Seconds since the first frame of the scene that was asked for, that one included.
+    pub fn seconds(&self) -> f64 {
+        self.begun.zip(self.now).map_or(0.0, |(begun, now)| (now - begun + 1) as f64 / f64::from(TICK_RATE))
     }
 
     /// What is not well; empty if all is. A board in the hand may drop frames, and its cable may flip bits: both are told, and
@@ -132,11 +131,7 @@ impl<'a> Session<'a> {
 
     pub fn finish(&mut self) -> anyhow::Result<()> {
         self.recording.take().map_or(Ok(()), Recording::finish)?;
-        self.options.screenshot.as_deref().map_or(Ok(()), |path| save(&self.screenshot, path))
+        let Some(path) = &self.options.screenshot else { return Ok(()) };
+        fs::write(path, png(&self.screenshot)?).with_context(|| format!("cannot write {}", path.display()))
     }
-}
-
-/// The tick of the board's clock that a frame belongs to.
-fn tick(frame: &Frame) -> u32 {
-    frame.sequence.wrapping_add(frame.dropped)
 }

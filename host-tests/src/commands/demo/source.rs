@@ -17,12 +17,25 @@ pub enum Source<'a> {
 }
 
 impl Source<'_> {
-    pub fn name(&self) -> &str {
+    /// `None` at a port.
+    fn board(&self) -> Option<&Board> {
         match self {
-            Self::Live(_, board) | Self::Lockstep(_, board) => board.name,
-            Self::Pico(_) => PICO.name,
-            Self::Port(port) => &port.name,
+            Self::Live(_, board) | Self::Lockstep(_, board) => Some(board),
+            Self::Pico(_) => Some(&PICO),
+            Self::Port(_) => None,
         }
+    }
+
+    pub fn name(&self) -> &str {
+        if let Self::Port(port) = self { &port.name } else { self.board().map_or("", |board| board.name) }
+    }
+
+    pub fn is_port(&self) -> bool {
+        self.board().is_none()
+    }
+
+    pub fn has_panel(&self) -> bool {
+        self.board().is_some_and(|board| board.has_panel)
     }
 
     /// The messages since the last call; of one that goes frame by frame those up to the next.
@@ -70,25 +83,14 @@ impl Source<'_> {
         }
     }
 
-    pub fn has_panel(&self) -> bool {
-        match self {
-            Self::Live(_, board) | Self::Lockstep(_, board) => board.has_panel,
-            Self::Pico(_) => true,
-            Self::Port(_) => false,
-        }
-    }
-
     /// What its panel shows; `None` where the host cannot see one.
     pub fn panel(&mut self) -> anyhow::Result<Option<Screenshot>> {
+        let has_panel = self.has_panel();
         match self {
-            Self::Live(machine, board) if board.has_panel => machine.screenshot().map(Some),
-            Self::Lockstep(lockstep, board) if board.has_panel => lockstep.screenshot().map(Some),
-            Self::Pico(machine) => Ok(Some(machine.screenshot()?)),
+            Self::Live(machine, _) if has_panel => machine.screenshot().map(Some),
+            Self::Lockstep(lockstep, _) if has_panel => lockstep.screenshot().map(Some),
+            Self::Pico(machine) => machine.screenshot().map(Some),
             _ => Ok(None),
         }
-    }
-
-    pub fn is_port(&self) -> bool {
-        matches!(self, Self::Port(_))
     }
 }

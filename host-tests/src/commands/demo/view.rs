@@ -4,13 +4,14 @@
 use firmware::protocol::Frame as Reading;
 use firmware::scenes::SceneName;
 use ratatui::Frame;
-use ratatui::layout::{Constraint, Layout, Rect};
+use ratatui::layout::Constraint::{Fill, Length, Min, Percentage};
+use ratatui::layout::{Layout, Rect};
 use ratatui::style::{Color, Stylize};
-use ratatui::text::{Line, Text};
+use ratatui::text::Line;
 use ratatui::widgets::{Block, Paragraph};
 
 use super::readings::{Readings, way};
-use super::{help, numbers, panel, plot};
+use super::{numbers, panel, plot};
 use crate::emulator::qemu::{LogLine, Screenshot, WIDTH};
 
 /// The panel's widths, columns: a pixel each; in Braille two of them; no narrower than makes sense.
@@ -38,17 +39,14 @@ pub fn draw(frame: &mut Frame, board: &str, screenshot: &Screenshot, readings: &
         return;
     };
     if readings.help {
-        return help::draw(frame);
+        return numbers::draw_help(frame);
     }
     let words = flow(words(readings).split(' '), " ", area.width);
     let keys = flow(KEYS, "  ", area.width);
     let top = (width / 4).max(numbers::ROWS);
-    let heights = [1, top, words.len() as u16].map(Constraint::Length);
-    let [title_at, top, words_at, lower, keys_at] =
-        Layout::vertical(heights.into_iter().chain([Constraint::Min(0), Constraint::Length(keys.len() as u16)]))
-            .areas(area);
-    let [panel_at, _, side] =
-        Layout::horizontal([Constraint::Length(width), Constraint::Length(GAP), Constraint::Min(0)]).areas(top);
+    let rows = [Length(1), Length(top), Length(words.len() as u16), Min(0), Length(keys.len() as u16)];
+    let [title_at, top, words_at, lower, keys_at] = Layout::vertical(rows).areas(area);
+    let [panel_at, side] = Layout::horizontal([Length(width), Min(0)]).spacing(GAP).areas(top);
 
     frame.render_widget(Line::from(title(board, readings.frame.as_ref())).bold(), title_at);
     panel::draw(frame, Rect { height: width / 4, ..panel_at }, screenshot);
@@ -57,8 +55,8 @@ pub fn draw(frame: &mut Frame, board: &str, screenshot: &Screenshot, readings: &
     let log = if lower.height < ANGLES { lower } else { angles(frame, lower, readings) };
     let latest = &readings.lines[readings.lines.len().saturating_sub(log.height.into())..];
     let lines: Vec<_> = latest.iter().flat_map(|line| wrapped(line, log.width)).collect();
-    let first = lines.len().saturating_sub(log.height.into());
-    frame.render_widget(Paragraph::new(Text::from_iter(lines.into_iter().skip(first))), log);
+    let above = lines.len().saturating_sub(log.height.into());
+    frame.render_widget(Paragraph::new(lines).scroll((above as u16, 0)), log);
     frame.render_widget(Paragraph::new(keys.join("\n")).dim(), keys_at);
     if !colours {
         frame.buffer_mut().content.iter_mut().for_each(|cell| (cell.fg, cell.bg) = (Color::Reset, Color::Reset));
@@ -67,7 +65,7 @@ pub fn draw(frame: &mut Frame, board: &str, screenshot: &Screenshot, readings: &
 
 /// Draws the angles and a frame for the log beside them; where the log may stand.
 fn angles(frame: &mut Frame, area: Rect, readings: &Readings) -> Rect {
-    let [angles, log] = Layout::horizontal([Constraint::Percentage(ANGLES_WIDTH), Constraint::Fill(1)]).areas(area);
+    let [angles, log] = Layout::horizontal([Percentage(ANGLES_WIDTH), Fill(1)]).areas(area);
     if readings.frame.as_ref().is_none_or(has_angles) {
         plot::draw(frame, angles, &readings.angles);
     } else {
@@ -86,7 +84,6 @@ fn title(board: &str, now: Option<&Reading>) -> String {
     [Some(board), scene, paused].into_iter().flatten().collect::<Vec<_>>().join(" · ")
 }
 
-/// How it is computed, and how it compares.
 fn words(readings: &Readings) -> String {
     let shown = readings.frame.as_ref();
     shown.map_or("no frame came yet".to_owned(), |now| format!("{} · {}", way(now), readings.comparison))
@@ -113,8 +110,7 @@ fn flow<'a>(parts: impl IntoIterator<Item = &'a str>, gap: &str, width: u16) -> 
     for part in parts {
         match rows.last_mut() {
             Some(row) if row.chars().count() + gap.len() + part.chars().count() <= width.into() => {
-                row.push_str(gap);
-                row.push_str(part);
+                *row = [row, part].join(gap);
             }
             _ => rows.push(part.to_owned()),
         }
@@ -122,7 +118,7 @@ fn flow<'a>(parts: impl IntoIterator<Item = &'a str>, gap: &str, width: u16) -> 
     rows
 }
 
-/// A line of the log in as many rows as it takes; where it was written is left out.
+/// A line of the log in as many rows as it takes, each but the first standing back; where it was written is left out.
 fn wrapped(line: &LogLine, width: u16) -> Vec<Line<'static>> {
     let (level, colour) = match line.level.as_deref() {
         None => ("", Color::Red),
@@ -131,9 +127,8 @@ fn wrapped(line: &LogLine, width: u16) -> Vec<Line<'static>> {
         Some(_) => ("", Color::Reset),
     };
     let rows = flow(format!("{level}{}", line.text).split_whitespace(), " ", width.saturating_sub(FRAME));
-    // What continues a line stands back.
-    let indented = rows.into_iter().enumerate().map(|(number, row)| if number == 0 { row } else { format!("  {row}") });
-    indented.map(|row| Line::from(row).fg(colour)).collect()
+    let margins = std::iter::once("").chain(std::iter::repeat("  "));
+    margins.zip(rows).map(|(margin, row)| Line::from(format!("{margin}{row}")).fg(colour)).collect()
 }
 
 #[cfg(test)]

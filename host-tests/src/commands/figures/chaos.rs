@@ -20,8 +20,6 @@ const STEPS_PER_POINT: u32 = 32;
 
 /// The axes are this long either way, m.
 const REACH: f64 = 2.1;
-/// From one mark of time on a path to the next, s.
-const MARKED: u32 = 1;
 
 #[derive(Clone, Debug)]
 pub struct Path {
@@ -49,15 +47,13 @@ pub fn paths(refinement: u32) -> Result<[Path; 2], Error> {
 
 pub fn figure() -> Result<String> {
     let paths = paths(1)?;
-    svg([800, 468], |area| {
-        let title = format!("Figure 7: path of bob 2 in the first {DURATION} s");
-        let particulars = format!(
-            "mass ratio {MASS_RATIO}, both rods let go at rest at {START}°; l = {ROD} m, g = {PAGE_GRAVITY} m/s², m₁ = 1 kg"
-        );
-        let marks =
-            format!("○ start, ● end; · every {MARKED} s, with the seconds; paler earlier, darker later; × pivot");
-        let area = headed(&headed(area, &title, text(15))?, &particulars, text(12))?;
-        let halves = headed(&area, &marks, text(12))?.split_evenly((1, 2));
+    let title = format!("Figure 7: path of bob 2 in the first {DURATION} s");
+    let particulars = format!(
+        "mass ratio {MASS_RATIO}, both rods let go at rest at {START}°; l = {ROD} m, g = {PAGE_GRAVITY} m/s², m₁ = 1 kg"
+    );
+    let marks = "○ start, ● end; · every 1 s, with the seconds; paler earlier, darker later; × pivot";
+    svg([800, 468], [&title, &particulars, marks], |area| {
+        let halves = area.split_evenly((1, 2));
         let names = ["the right equations", "as printed, a factor μ missing"];
         for (((area, name), colour), path) in halves.iter().zip(names).zip([BLUE, ORANGE]).zip(&paths) {
             let [least, greatest] = path.energies.map(|energy| format!("{energy:.1} J"));
@@ -75,8 +71,7 @@ pub fn figure() -> Result<String> {
 fn path(pendulum: &Pendulum<f64>, refinement: u32, rhs: impl Fn(&[f64; 4]) -> [f64; 4]) -> Path {
     let mut state = start();
     let dt = 1.0 / f64::from(STEPS * refinement);
-    let mut points = Vec::new();
-    let (mut least, mut greatest) = (f64::INFINITY, f64::NEG_INFINITY);
+    let (mut points, [mut least, mut greatest]) = (Vec::new(), [f64::INFINITY, f64::NEG_INFINITY]);
     for step in 0..=DURATION * STEPS * refinement {
         if step.is_multiple_of(STEPS_PER_POINT * refinement) {
             let [_, bob2] = pendulum.positions(state.angles());
@@ -106,8 +101,7 @@ impl Path {
         }
         let (Some(&start), Some(&end)) = (points.first(), points.last()) else { return Ok(()) };
         let per_second = (STEPS / STEPS_PER_POINT) as usize;
-        for second in (MARKED..DURATION).step_by(MARKED as usize) {
-            let Some(&(x, y)) = points.get(second as usize * per_second) else { break };
+        for (second, &(x, y)) in points.iter().step_by(per_second).enumerate().take(DURATION as usize).skip(1) {
             chart.draw_series([Circle::new((x, y), units(2), TEXT.filled())])?;
             chart.draw_series([Text::new(second.to_string(), (x + 0.05, y + 0.02), text(10))])?;
         }

@@ -18,7 +18,6 @@ pub const GRID: RGBColor = RGBColor(225, 225, 225);
 pub const BLUE: RGBColor = RGBColor(0, 95, 175);
 pub const ORANGE: RGBColor = RGBColor(205, 85, 15);
 
-/// Where a figure, or a part of it, is drawn.
 pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 pub type Axes<'a> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
@@ -81,20 +80,24 @@ pub fn axes<'a>(
     Ok(chart)
 }
 
-/// A number of an axis without needless digits.
 fn plain(number: &f64) -> String {
     // The ticks are multiples of a round number, give or take a rounding; -0 would be shown as such.
     let rounded = (number * 1e6).round() / 1e6 + 0.0;
     rounded.to_string().replace('-', "−")
 }
 
-/// A figure so many units wide and high, drawn on white, as an SVG file.
-pub fn svg([width, height]: [u32; 2], draw: impl FnOnce(&Area) -> Result<()>) -> Result<String> {
+/// A figure so many units wide and high, drawn on white below its title and other lines, as an SVG file.
+pub fn svg<const N: usize>(
+    [width, height]: [u32; 2],
+    lines: [&str; N],
+    draw: impl FnOnce(&Area) -> Result<()>,
+) -> Result<String> {
     let mut file = String::new();
     {
         let area = SVGBackend::with_string(&mut file, (units(width), units(height))).into_drawing_area();
         area.fill(&WHITE)?;
-        draw(&area)?;
+        let styles = [15].into_iter().chain(std::iter::repeat(12)).map(text);
+        draw(&lines.into_iter().zip(styles).try_fold(area.clone(), |area, (line, style)| headed(&area, line, style))?)?;
         area.present()?;
     }
     // It is shown in its own size; its coordinates stay dots.

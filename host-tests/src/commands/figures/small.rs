@@ -1,4 +1,4 @@
-//! Figures 3 to 5: both angles of small oscillations over time, within their envelopes.
+//! Figures 2 to 5, small oscillations: both frequencies over the mass ratio, and both angles over time, within their envelopes.
 
 use std::f64::consts::{FRAC_PI_6, TAU};
 
@@ -7,21 +7,13 @@ use double_pendulum::{Error, Modes, Motion, Parameters, SmallOscillations};
 use firmware::config::PAGE_GRAVITY;
 use plotters::prelude::*;
 
-use super::sheet::{BLUE, ORANGE, axes, headed, line, svg, text, units};
+use super::sheet::{BLUE, ORANGE, TEXT, axes, line, svg, text, units};
 
 /// The book's rods, m.
 const ROD: f64 = 0.25;
 /// How long the motion is shown, s, and how finely.
 const DURATION: f64 = 5.0;
 const POINTS: u32 = 1500;
-
-#[derive(Clone, Debug)]
-pub struct Small {
-    number: u32,
-    mass_ratio: f64,
-    modes: Modes<f64>,
-    pub points: Vec<CurvePoint>,
-}
 
 #[derive(Clone, Copy, Debug)]
 pub struct CurvePoint {
@@ -32,56 +24,87 @@ pub struct CurvePoint {
     pub envelopes: [f64; 2],
 }
 
-impl Small {
-    /// Computes figure `number` with its mass ratio: a1 = 0, a2 = 30 degrees, let go from rest.
-    pub fn new(number: u32, mass_ratio: f64) -> Result<Self, Error> {
-        let modes = Modes::new(&Parameters::equal_rods(mass_ratio, ROD, PAGE_GRAVITY))?;
-        let motion = SmallOscillations::new(modes, &Motion::at_rest(0.0, FRAC_PI_6));
-        let point = |i: u32| {
-            let time = DURATION * f64::from(i) / f64::from(POINTS);
-            let now = motion.at(time);
-            let envelopes = envelopes(&modes, &motion, time);
-            CurvePoint {
-                time,
-                angles: [now.a1, now.a2].map(f64::to_degrees),
-                envelopes: envelopes.map(f64::to_degrees),
-            }
-        };
-        Ok(Self { number, mass_ratio, modes, points: (0..=POINTS).map(point).collect() })
-    }
-
-    pub fn figure(&self) -> Result<String> {
-        svg([720, 503], |area| {
-            let Modes { fast, slow, .. } = &self.modes;
-            let title = format!("Figure {}: small oscillations, mass ratio {}", self.number, self.mass_ratio);
-            let particulars = format!(
-                "l = {ROD} m, g = {PAGE_GRAVITY} m/s²; ω₁ = {:.3} rad/s, ω₂ = {:.3} rad/s; the envelope repeats every {:.3} s",
-                fast.frequency,
-                slow.frequency,
-                TAU / self.modes.exchange()
-            );
-            let start = "let go at rest at α₁ = 0°, α₂ = 30°; line: the angle; shade: how far it can swing while the modes beat";
-            let area = headed(&headed(area, &title, text(15))?, start, text(12))?;
-            let area = headed(&area, &particulars, text(12))?;
-            let (upper, lower) = area.split_vertically((area.dim_in_pixel().1 - units(20)) / 2);
-            let rods = [(upper, "", "angle α₁, degrees", BLUE), (lower, "time, s", "angle α₂, degrees", ORANGE)];
-            for (rod, (area, across, upwards, colour)) in rods.into_iter().enumerate() {
-                let mut chart = axes(&area, (across, [0.0, DURATION]), (upwards, [-32.0, 32.0]), [11, 7])?;
-                let edge = |sign: f64| self.points.iter().map(move |point| (point.time, sign * point.envelopes[rod]));
-                let band: Vec<_> = edge(1.0).chain(edge(-1.0).rev()).collect();
-                chart.draw_series([Polygon::new(band, colour.mix(0.15))])?;
-                let curve = self.points.iter().map(|point| (point.time, point.angles[rod]));
-                chart.draw_series(LineSeries::new(curve, line(colour, 16)))?;
-            }
-            Ok(())
-        })
-    }
+pub fn modes(mass_ratio: f64) -> Result<Modes<f64>, Error> {
+    Modes::new(&Parameters::equal_rods(mass_ratio, ROD, PAGE_GRAVITY))
 }
 
+/// The motion from a1 = 0, a2 = 30 degrees, let go from rest.
+///
 /// The amplitudes of C1 cos w1 t + C2 cos w2 t in either angle: sqrt(C1^2 + C2^2 + 2 C1 C2 cos (w1 - w2) t), rad.
-fn envelopes(modes: &Modes<f64>, motion: &SmallOscillations<f64>, time: f64) -> [f64; 2] {
+pub fn points(modes: Modes<f64>) -> Vec<CurvePoint> {
+    let motion = SmallOscillations::new(modes, &Motion::at_rest(0.0, FRAC_PI_6));
     let [fast, slow] = [motion.fast.cosine, motion.slow.cosine];
-    let cos = libm::cos(modes.exchange() * time);
-    let amplitude = |c1: f64, c2: f64| (c1 * c1 + c2 * c2 + 2.0 * c1 * c2 * cos).max(0.0).sqrt();
-    [amplitude(fast, slow), amplitude(modes.fast.shape * fast, modes.slow.shape * slow)]
+    let point = |i: u32| {
+        let time = DURATION * f64::from(i) / f64::from(POINTS);
+        let cos = libm::cos(modes.exchange() * time);
+        let amplitude = |c1: f64, c2: f64| (c1 * c1 + c2 * c2 + 2.0 * c1 * c2 * cos).max(0.0).sqrt();
+        let envelopes = [amplitude(fast, slow), amplitude(modes.fast.shape * fast, modes.slow.shape * slow)];
+        let angles = motion.at(time).angles();
+        CurvePoint { time, angles: angles.map(f64::to_degrees), envelopes: envelopes.map(f64::to_degrees) }
+    };
+    (0..=POINTS).map(point).collect()
+}
+
+pub fn figure(number: u32, mass_ratio: f64) -> Result<String> {
+    let modes = modes(mass_ratio)?;
+    let points = points(modes);
+    let title = format!("Figure {number}: small oscillations, mass ratio {mass_ratio}");
+    let start =
+        "let go at rest at α₁ = 0°, α₂ = 30°; line: the angle; shade: how far it can swing while the modes beat";
+    let particulars = format!(
+        "l = {ROD} m, g = {PAGE_GRAVITY} m/s²; ω₁ = {:.3} rad/s, ω₂ = {:.3} rad/s; the envelope repeats every {:.3} s",
+        modes.fast.frequency,
+        modes.slow.frequency,
+        TAU / modes.exchange()
+    );
+    svg([720, 503], [&title, start, &particulars], |area| {
+        let (upper, lower) = area.split_vertically((area.dim_in_pixel().1 - units(20)) / 2);
+        let rods = [(upper, "", "angle α₁, degrees", BLUE), (lower, "time, s", "angle α₂, degrees", ORANGE)];
+        for (rod, (area, across, upwards, colour)) in rods.into_iter().enumerate() {
+            let mut chart = axes(&area, (across, [0.0, DURATION]), (upwards, [-32.0, 32.0]), [11, 7])?;
+            let edge = |sign: f64| points.iter().map(move |point| (point.time, sign * point.envelopes[rod]));
+            let band: Vec<_> = edge(1.0).chain(edge(-1.0).rev()).collect();
+            chart.draw_series([Polygon::new(band, colour.mix(0.15))])?;
+            let curve = points.iter().map(|point| (point.time, point.angles[rod]));
+            chart.draw_series(LineSeries::new(curve, line(colour, 16)))?;
+        }
+        Ok(())
+    })
+}
+
+/// Figure 2's mass ratios are 0 to this; at 0 itself there are no modes.
+const GREATEST_MASS_RATIO: f64 = 5.0;
+const RATIOS: u32 = 500;
+/// The mass ratios of figures 3 to 5, which are marked.
+const MARKED: [f64; 3] = [0.2, 1.0, 5.0];
+
+/// A mass ratio and both frequencies there, fast and slow, of equal rods in sqrt(g/l).
+fn at_ratio(mass_ratio: f64) -> Result<[f64; 3], Error> {
+    let modes = Modes::new(&Parameters::equal_rods(mass_ratio, 1.0, 1.0))?;
+    Ok([mass_ratio, modes.fast.frequency, modes.slow.frequency])
+}
+
+/// Figure 2: both frequencies over the mass ratio.
+pub fn frequencies() -> Result<String> {
+    // Denser towards 0, where the curves are steep.
+    let ratios = (1..=RATIOS).map(|i| GREATEST_MASS_RATIO * (f64::from(i) / f64::from(RATIOS)).powi(2));
+    let points = ratios.map(at_ratio).collect::<Result<Vec<_>, _>>()?;
+    let marks = MARKED.into_iter().map(at_ratio).collect::<Result<Vec<_>, _>>()?;
+    svg([640, 400], ["Figure 2: both frequencies of small oscillations of equal rods"], |area| {
+        let across = ("mass ratio μ = m₂/m₁", [0.0, GREATEST_MASS_RATIO]);
+        let mut chart = axes(area, across, ("frequency, √(g/l)", [0.0, 3.5]), [11, 8])?;
+        let curves = [
+            (1, BLUE, "ω₁ fast: the rods swing against each other", (0.45, 2.85)),
+            (2, ORANGE, "ω₂ slow: the rods swing together", (2.0, 1.0)),
+        ];
+        for (curve, colour, name, place) in curves {
+            let places = points.iter().map(|point| (point[0], point[curve]));
+            chart.draw_series(LineSeries::new(places, line(colour, 20)))?;
+            chart.draw_series([Text::new(name, place, text(13).color(&colour))])?;
+            let marks = marks.iter().map(|mark| (mark[0], mark[curve]));
+            chart.draw_series(marks.map(|mark| Circle::new(mark, units(4), TEXT.filled())))?;
+        }
+        chart.draw_series([Text::new("●  figures 3, 4 and 5", (2.0, 0.3), text(12))])?;
+        Ok(())
+    })
 }

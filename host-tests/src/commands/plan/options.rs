@@ -1,7 +1,7 @@
 //! What is planned, as the command line has it.
 
 use anyhow::{anyhow, ensure};
-use clap::Parser;
+use clap::{Parser, value_parser};
 use double_pendulum::plan::{Limit, Plan, PlanError, Problem};
 use firmware::config::{CORTEX_M0PLUS, CORTEX_M3, CORTEX_M4F, Processor, STM32F405};
 use firmware::motion::{Viewport, half_pixel, problem};
@@ -27,8 +27,8 @@ pub struct SceneOptions {
     #[arg(long, value_name = "T", default_value = "30", allow_hyphen_values = true)]
     pub duration: Number,
     /// Frames per second, 1 to 65535
-    #[arg(long, value_name = "N", default_value = "60", allow_hyphen_values = true)]
-    pub rate: Number,
+    #[arg(long, value_name = "N", default_value_t = 60, value_parser = value_parser!(u16).range(1..))]
+    pub rate: u16,
     /// The chip that computes it
     #[arg(long, value_name = "CHIP", default_value = CHIPS[0].name,
           value_parser = choice(CHIPS, |chip| chip.name))]
@@ -41,10 +41,7 @@ const HIGHEST: f64 = 1e6;
 impl SceneOptions {
     /// The scene with its plan, or with what forbids any; an error is one line that names the option and the value.
     pub fn plan(&self) -> anyhow::Result<(Problem, Result<Plan, Limit>)> {
-        let problem = match self.scene {
-            Some(name) => self.of_scene(name)?,
-            None => self.given()?,
-        };
+        let problem = self.scene.map_or_else(|| self.given(), |name| self.of_scene(name))?;
         let plan = self.target.plan(&problem).map_err(|error| match error {
             PlanError::Refused(error) => anyhow!("{}: {error}", option_of(&error, "the scene")),
             error => anyhow!("the scene: {error}"),
@@ -62,10 +59,7 @@ impl SceneOptions {
     }
 
     fn given(&self) -> anyhow::Result<Problem> {
-        let Self { rate, height, .. } = self;
-        let whole = rate.value().fract() == 0.0 && rate.is_positive();
-        ensure!(whole, "--rate {rate}: must be a whole number of frames per second, at least 1");
-        ensure!(rate.value() <= f64::from(u16::MAX), "--rate {rate}: more than {}", u16::MAX);
+        let height = &self.height;
         ensure!(height.is_positive(), "--height {height}: must be greater than zero");
         ensure!(
             height.value() <= HIGHEST,
@@ -76,7 +70,7 @@ impl SceneOptions {
             start: self.start.motion(),
             tolerance: half_pixel(&self.start.parameters(), height.value()),
             duration: self.duration.value(),
-            rate: rate.value() as u16,
+            rate: self.rate,
         })
     }
 }

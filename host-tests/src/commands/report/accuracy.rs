@@ -1,11 +1,35 @@
-//! Errors against the reference, computed on the host: the bits are those of the target (see `identity`).
+//! Errors against the reference through the motions that the report measures on, computed on the host: the bits are those of
+//! the target (see `identity`).
 
-use double_pendulum::{Method, Motion, Pendulum, State};
+use double_pendulum::{Method, Motion, Parameters, Pendulum, State};
+use firmware::config::{GRAVITY, REACH};
 use firmware::job::{JobError, Request};
 
-use super::scene::{SAMPLES, Scene};
 use crate::oracle::trials::apart;
 use reference::taylor;
+
+/// Equal rods and bobs from rest. Every number is one that an `f32` holds, so that all arithmetics are given the same pendulum.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scene {
+    pub name: &'static str,
+    pub title: &'static str,
+    /// Both angles at the start, rad.
+    angle: f64,
+    /// How long it is followed, whole seconds: short where neighbouring motions part quickly.
+    pub duration: u32,
+}
+
+/// The most states that are compared with the reference in each second.
+const SAMPLES: u32 = 4;
+
+/// A regular and a chaotic one.
+pub const SCENES: [Scene; 2] = [
+    Scene { name: "regular", title: "regular: 0.5/0.5 rad", angle: 0.5, duration: 10 },
+    Scene { name: "chaotic", title: "chaotic: 2/2 rad", angle: 2.0, duration: 5 },
+];
+/// The regular motion for ten times as long.
+pub const LONG: Scene =
+    Scene { name: "regular-long", title: "regular: 0.5/0.5 rad, 100 s", duration: 100, ..SCENES[0] };
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Error {
@@ -15,10 +39,8 @@ pub struct Error {
     pub pixels: f64,
 }
 
-impl Error {
-    /// Of a motion that has left the finite numbers.
-    const LOST: Self = Self { angle: f64::INFINITY, pixels: f64::INFINITY };
-}
+/// Of a motion that has left the finite numbers.
+const LOST: Error = Error { angle: f64::INFINITY, pixels: f64::INFINITY };
 
 /// The exact motion through a scene, [`SAMPLES`] times a second: a1, a2.
 pub fn exact(scene: &Scene) -> Vec<[f64; 2]> {
@@ -27,10 +49,9 @@ pub fn exact(scene: &Scene) -> Vec<[f64; 2]> {
 
 /// The exact motion after each of `steps` equal steps through a scene.
 fn exact_after(scene: &Scene, steps: u32) -> Vec<[f64; 2]> {
-    let [a1, a2] = scene.angles();
+    let Request { parameters, angles: [a1, a2], .. } = request(Method::Rk4F64, scene, 1);
     let times: Vec<_> = (1..=steps).map(|step| f64::from(step * scene.duration) / f64::from(steps)).collect();
-    let states = taylor::states(&scene.parameters(), &Motion::at_rest(a1, a2), &times);
-    states.iter().map(State::angles).collect()
+    taylor::states(&parameters, &Motion::at_rest(a1, a2), &times).iter().map(State::angles).collect()
 }
 
 /// How many states of a motion with `rate` steps a second are compared in each: as many as fall on whole steps.
@@ -42,8 +63,8 @@ fn samples(rate: u32) -> u32 {
 pub fn request(method: Method, scene: &Scene, rate: u32) -> Request {
     Request {
         method,
-        parameters: scene.parameters(),
-        angles: scene.angles(),
+        parameters: Parameters::equal_rods(1.0, 1.0, (GRAVITY as f32).into()),
+        angles: [scene.angle; 2],
         velocities: [0.0; 2],
         dt: 1.0 / f64::from(rate),
         stride: rate / samples(rate),
@@ -66,35 +87,31 @@ pub fn rates(method: Method, finest: u32) -> impl Iterator<Item = u32> + Clone {
     few.iter().copied().chain((7..=finest).map(|halvings| 1 << halvings))
 }
 
-/// The error of `method`; `None` if it does not apply to the scene or the step. A motion that was lost has an infinite error.
-pub fn error(method: Method, scene: &Scene, rate: u32, exact: &[[f64; 2]]) -> Option<Error> {
-    error_of(&request(method, scene, rate), scene, exact)
-}
-
 /// The error of `method` in `steps` equal steps through the scene, compared after each; a second need not be a whole number of them.
 pub fn error_after(method: Method, scene: &Scene, steps: u32) -> Option<Error> {
     let dt = f64::from(scene.duration) / f64::from(steps);
     let request = Request { dt, stride: 1, samples: steps, ..request(method, scene, 1) };
-    error_of(&request, scene, &exact_after(scene, steps))
+    error(&request, &exact_after(scene, steps))
 }
 
-fn error_of(request: &Request, scene: &Scene, exact: &[[f64; 2]]) -> Option<Error> {
+/// The error of a request; `None` if its method does not apply to the scene or the step. A motion that was lost has an infinite one.
+pub fn error(request: &Request, exact: &[[f64; 2]]) -> Option<Error> {
     let mut angles = Vec::new();
-    let run = request.readings(|reading| {
-        let [a1, a2, ..] = reading.state;
-        angles.push([a1, a2]);
-        Ok::<_, JobError>(())
+    let run = request.readings::<JobError>(|reading| {
+        angles.push([reading.state[0], reading.state[1]]);
+        Ok(())
     });
     match (run, &angles[..]) {
-        (Ok(()), [_start, angles @ ..]) => Some(worst(scene, angles, exact)),
-        (Err(JobError::Refused(double_pendulum::Error::Diverged { .. })), _) => Some(Error::LOST),
+        (Ok(()), [_start, angles @ ..]) => Some(worst(&request.parameters, angles, exact)),
+        (Err(JobError::Refused(double_pendulum::Error::Diverged { .. })), _) => Some(LOST),
         _ => None,
     }
 }
 
 /// The largest error of the angles a1, a2, at as many moments of the scene as there are; `exact` has them and more.
-pub fn worst(scene: &Scene, angles: &[[f64; 2]], exact: &[[f64; 2]]) -> Error {
-    let Ok(pendulum) = Pendulum::new(&scene.parameters()) else { return Error::LOST };
+pub fn worst(parameters: &Parameters<f64>, angles: &[[f64; 2]], exact: &[[f64; 2]]) -> Error {
+    let Ok(pendulum) = Pendulum::new(parameters) else { return LOST };
+    let scale = f64::from(REACH) / (parameters.l1 + parameters.l2);
     let mut worst = Error { angle: 0.0, pixels: 0.0 };
     let apart_by = (exact.len() / angles.len().max(1)).max(1);
     for (&angles, &exact) in angles.iter().zip(exact.iter().skip(apart_by - 1).step_by(apart_by)) {
@@ -102,7 +119,7 @@ pub fn worst(scene: &Scene, angles: &[[f64; 2]], exact: &[[f64; 2]]) -> Error {
         worst.angle = worst.angle.max(angle);
         let [drawn, right] = [angles, exact].map(|angles| pendulum.positions(angles));
         let off = |bob: usize| libm::hypot(drawn[bob].x - right[bob].x, drawn[bob].y - right[bob].y);
-        let pixels = scene.scale() * off(0).max(off(1));
+        let pixels = scale * off(0).max(off(1));
         worst.pixels = worst.pixels.max(if angle.is_finite() { pixels } else { f64::INFINITY });
     }
     worst

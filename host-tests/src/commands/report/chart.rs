@@ -7,9 +7,9 @@ use firmware::config::REACH;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
+use super::accuracy::Scene;
 use super::c_peers::PROGRAMS;
 use super::join::Point;
-use super::scene::Scene;
 use crate::emulator::boards::Board;
 
 const SIZE: (u32, u32) = (860, 460);
@@ -131,8 +131,8 @@ pub fn speed_against_error(points: &[Point], scene: &Scene, board: &Board) -> Re
 
 #[cfg(test)]
 mod tests {
+    use super::super::accuracy::SCENES;
     use super::super::join::{mark_dominated, tests::point};
-    use super::super::scene::SCENES;
     use super::*;
     use crate::emulator::boards::BOARDS;
 

@@ -4,9 +4,8 @@ use anyhow::Result;
 use double_pendulum::{Integrator, Method};
 use rayon::prelude::*;
 
-use super::accuracy::{self, Error, rates, request, usual_rate};
+use super::accuracy::{self, Error, LONG, SCENES, Scene, rates, request, usual_rate};
 use super::c_peers::{self, Program};
-use super::scene::{LONG, SCENES, Scene};
 use crate::commands::count::{StepCost, Target, affordable_cost};
 use crate::commands::table::{Table, small};
 use crate::emulator::boards::Board;
@@ -60,7 +59,7 @@ pub fn join(toolchain: &Toolchain, targets: &[Target], tick: &(dyn Fn() + Sync))
         let mut points = Vec::new();
         for &(scene, ref exact) in &scenes {
             for rate in rates(method, FINEST).filter(|&rate| scene != &LONG || rate == usual_rate(method)) {
-                let Some(error) = accuracy::error(method, scene, rate, exact) else { continue };
+                let Some(error) = accuracy::error(&request(method, scene, rate), exact) else { continue };
                 let name = method.name();
                 let point = |&(board, step)| Point { name, scene, board, rate, step, error, dominated: false };
                 points.extend(costs.iter().map(point));
@@ -93,29 +92,15 @@ pub fn table(points: &[Point]) -> Table {
         row.extend([step.hot_bytes, step.code_bytes, step.stack_bytes].map(|bytes| bytes.to_string()));
         row.push(format!("{:.0}", point.cycles()));
         row.extend([error.angle, error.pixels].map(small));
-        let is_resolved = 1.0 / f64::from(rate) <= scene.admissible_step();
+        let request = request(Method::Rk4F64, scene, rate);
+        let is_resolved = request.admissible_step().is_some_and(|longest| request.dt <= longest);
         row.push(String::from(if is_resolved { "yes" } else { "no" }));
         row.push(String::from(if dominated { "dominated" } else { "best" }));
         row
     };
-    let columns = &[
-        "scene",
-        "processor",
-        "method",
-        "step (s)",
-        "instructions of a step",
-        "cycles of a step (estimate)",
-        "stalls",
-        "hot bytes",
-        "code bytes",
-        "stack bytes",
-        "cycles per s (estimate)",
-        "error (rad)",
-        "error (pixels)",
-        "resolved",
-        "verdict",
-    ];
-    Table { columns, rows: points.iter().map(row).collect() }
+    const COLUMNS: &str = "scene,processor,method,step (s),instructions of a step,cycles of a step (estimate),stalls,hot bytes,\
+                           code bytes,stack bytes,cycles per s (estimate),error (rad),error (pixels),resolved,verdict";
+    Table { columns: COLUMNS.split(',').collect(), rows: points.iter().map(row).collect() }
 }
 
 #[cfg(test)]

@@ -1,18 +1,20 @@
 //! What the READMEs show of the report: what to take on each core, what a step costs and how far it is off, and a chart a core.
 
 use std::fs;
+use std::path::PathBuf;
 
 use anyhow::{Context, Result};
+use firmware::config::HALF_PIXEL;
 
+use super::accuracy::{LONG, SCENES, Scene};
 use super::c_peers::PROGRAMS;
 use super::join::Point;
-use super::scene::{LONG, SCENES, Scene};
 use crate::commands::table::{Table, between, small};
 use crate::emulator::boards::{BOARDS, Board};
 use crate::emulator::toolchain::workspace;
 
-/// Where the charts are kept, in the workspace.
-const CHARTS: &str = "host-tests/pictures/report";
+/// Where they show the charts from, in the workspace.
+pub const CHARTS: &str = "host-tests/pictures/report";
 /// What stands before and after a README's block.
 const MARKS: [&str; 2] = ["<!-- made by cargo write-report --readme -->\n", "<!-- so far -->\n"];
 /// The READMEs, and how many of the rows they show.
@@ -29,40 +31,24 @@ const ROWS: [&str; 8] = [
     "extrapolation16-fixed64",
 ];
 
-/// No larger an error is seen on the panel, pixels.
-const HALF_PIXEL: f64 = 0.5;
 /// What one may want to compute a motion for, in words before the cycles.
 type Purpose = (&'static str, fn(&Point) -> bool);
 const PURPOSES: [Purpose; 3] = [
-    ("draws at 60 fps", |point| point.rate >= 60 && point.error.pixels <= HALF_PIXEL),
+    ("draws at 60 fps", |point| point.rate >= 60 && point.error.pixels <= f64::from(HALF_PIXEL)),
     ("keeps 1e-9 rad", |point| point.error.angle <= 1e-9),
     ("keeps 1e-12 rad", |point| point.error.angle <= 1e-12),
 ];
 
-/// Whether the READMEs show the `block` of as many rows.
-pub fn has(block: impl Fn(usize) -> String) -> Result<bool> {
-    let shown = READMES.map(|(file, rows)| Ok(read(file)?.contains(&block(rows))));
-    shown.into_iter().try_fold(true, |all, shown: Result<bool>| Ok(all && shown?))
-}
-
-/// Puts it there, and the charts beside them.
-pub fn put<'a>(block: impl Fn(usize) -> String, charts: impl Iterator<Item = &'a (String, String)>) -> Result<()> {
-    for (file, rows) in READMES {
-        let page = between(&read(file)?, MARKS, &format!("\n{}\n", block(rows)));
-        fs::write(workspace().join(file), page.with_context(|| format!("{file} has no place for it"))?)?;
-    }
-    fs::create_dir_all(workspace().join(CHARTS))?;
-    charts.into_iter().try_for_each(|(name, svg)| Ok(fs::write(workspace().join(CHARTS).join(name), svg)?))
-}
-
-/// The advice as a list, and the first rows of the table.
-pub fn block(advice: &[String], points: &[Point], rows: usize) -> String {
+/// The READMEs, each as it is and with its block: the advice as a list, and as many rows of the table as it shows.
+pub fn pages(advice: &[String], points: &[Point]) -> Result<Vec<(PathBuf, [String; 2])>> {
     let items: String = advice.iter().map(|sentence| format!("- {sentence}\n")).collect();
-    format!("{items}\n{}", table(points, &ROWS[..rows]).markdown())
-}
-
-fn read(file: &str) -> Result<String> {
-    fs::read_to_string(workspace().join(file)).with_context(|| format!("no {file}"))
+    let page = |(file, rows): (&str, usize)| {
+        let path = workspace().join(file);
+        let page = fs::read_to_string(&path).with_context(|| format!("no {file}"))?;
+        let made = between(&page, MARKS, &format!("\n{items}\n{}\n", table(points, &ROWS[..rows]).markdown()));
+        Ok((path, [page, made.with_context(|| format!("{file} has no place for it"))?]))
+    };
+    READMES.into_iter().map(page).collect()
 }
 
 /// What to take on each core through a regular and a chaotic motion, a sentence each, in Markdown.
@@ -103,16 +89,9 @@ fn table(points: &[Point], names: &[&str]) -> Table {
         let errors = [short, long].map(|point| small(point.error.angle));
         Some([vec![name.to_owned(), long.rate.to_string()], cycles.to_vec(), errors.to_vec()].concat())
     };
-    let columns = &[
-        "method",
-        "steps a second",
-        "M4F cycles a step",
-        "M3 cycles",
-        "M0+ cycles",
-        "error in 10 s (rad)",
-        "error in 100 s (rad)",
-    ];
-    Table { columns, rows: names.iter().filter_map(row).collect() }
+    const COLUMNS: &str =
+        "method,steps a second,M4F cycles a step,M3 cycles,M0+ cycles,error in 10 s (rad),error in 100 s (rad)";
+    Table { columns: COLUMNS.split(',').collect(), rows: names.iter().filter_map(row).collect() }
 }
 
 #[cfg(test)]

@@ -1,6 +1,5 @@
-//! `cargo simulate`: any motion as a table, computed here or by the firmware on a board.
+//! `cargo simulate`: any motion as a table, computed here or, the same request, by the firmware on an emulated board.
 
-mod board;
 mod number;
 mod options;
 mod request;
@@ -12,20 +11,31 @@ pub use number::Number;
 pub use options::{Place, SimulateOptions};
 pub use request::{Plan, plan};
 pub use start::{Pair, StartOptions, option_of};
-pub use tolerance::{Choice, choose};
+pub use tolerance::choose;
 
 use std::io::{self, BufWriter, Write};
+use std::time::Duration;
 
-use anyhow::Context;
+use anyhow::{Context, bail, ensure};
+use firmware::job::{Reading, Request};
+use firmware::protocol::{Frame, Sample};
 
 use crate::console::cli::{Refused, complain, say};
 use crate::console::progress::Progress;
+use crate::emulator::boards::Board;
+use crate::emulator::qemu::{Clock, Machine, Settings};
+use crate::emulator::toolchain;
 
 pub fn run(options: &SimulateOptions) -> anyhow::Result<()> {
     if options.list {
         return Ok(say(table::methods())?);
     }
-    let plan = planned(options).map_err(|error| Refused::because(format_args!("{error:#}")))?;
+    let planned = match &options.tolerance {
+        Some(tolerance) => choose(options, tolerance).map(|(plan, _)| plan),
+        None => plan(options),
+    };
+    let plan = planned.map_err(|error| Refused::because(format_args!("{error:#}")))?;
+    plan.note.iter().for_each(complain);
     let mut output = BufWriter::new(io::stdout().lock());
     let (bar, mut rows) = (Progress::of("rows", u64::from(plan.request.samples) + 1), 0);
     let mut write = |reading: &_| {
@@ -39,7 +49,7 @@ pub fn run(options: &SimulateOptions) -> anyhow::Result<()> {
     };
     let done = match options.place {
         None => plan.request.readings(|reading| Ok(write(reading)?)),
-        Some(board) => board::readings(&plan.request, board, write),
+        Some(board) => on_board(&plan.request, board, write),
     };
     drop(bar);
     // The rows until then are right, and stay.
@@ -47,16 +57,37 @@ pub fn run(options: &SimulateOptions) -> anyhow::Result<()> {
     Ok(output.flush()?)
 }
 
-/// The motion to compute; warnings about it go to stderr first.
-fn planned(options: &SimulateOptions) -> anyhow::Result<Plan> {
-    if let Some(tolerance) = &options.tolerance {
-        let choice = choose(options, tolerance)?;
-        complain(&choice);
-        return Ok(choice.plan);
+/// To start QEMU and to send the rows.
+const OVERHEAD: Duration = Duration::from_secs(120);
+/// A step takes at most 200,000 instructions (f64 in steps of order 8, `cargo count`); a busy host executes 10 million a
+/// second.
+const PER_STEP: Duration = Duration::from_millis(20);
+
+/// Sends the request to the firmware on `board` and gives each reading that comes back to `row`.
+fn on_board(
+    request: &Request,
+    board: &'static Board,
+    mut row: impl FnMut(&Reading) -> io::Result<()>,
+) -> anyhow::Result<()> {
+    let (toolchain, _) = toolchain::set_up()?;
+    let elf = toolchain.build_for(board)?;
+    let limit = OVERHEAD.saturating_add(PER_STEP.saturating_mul(request.stride.saturating_mul(request.samples)));
+    let settings = Settings { qemu: toolchain.qemu(), board, elf: &elf, clock: Clock::Real, debugger: true, limit };
+    let mut machine = Machine::start(&settings)?;
+    // Its first frame says that it listens.
+    machine.wait_for::<Frame>().context(board.name)?;
+    machine.serial.send(&request.message(1))?;
+    let mut expected = 0;
+    while expected <= request.samples {
+        let message = machine.receive().context(board.name)?;
+        if let Some(field) = message.refused() {
+            bail!("{}: the board refuses the request: {field}", board.name);
+        }
+        if let Some(Sample { index, reading, .. }) = message.read() {
+            ensure!(index == expected, "{}: row {expected} was lost on the way", board.name);
+            row(&reading)?;
+            expected += 1;
+        }
     }
-    let plan = plan(options)?;
-    if let Some(warning) = plan.warning(options) {
-        complain(format_args!("warning: {warning}"));
-    }
-    Ok(plan)
+    machine.quit()
 }

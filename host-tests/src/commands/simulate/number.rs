@@ -123,10 +123,6 @@ fn nearest((above, below): Fraction) -> f64 {
 mod tests {
     use super::*;
 
-    fn number(text: &str) -> Number {
-        text.parse().unwrap_or_else(|error| panic!("{text}: {error}"))
-    }
-
     #[test]
     fn decimals_and_fractions_round_once_and_what_is_none_is_refused() {
         for (text, value) in [
@@ -150,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn multiples_and_parts_are_exact() {
+    fn multiples_and_parts_are_exact() -> Result<(), &'static str> {
         for (time, step, count) in [
             ("10", "0.1", Some(100)),
             ("5", "1/4096", Some(20480)),
@@ -159,12 +155,16 @@ mod tests {
             ("-1", "0.5", None),
             ("1", "0", None),
         ] {
-            assert_eq!(number(time).whole_multiple_of(&number(step)), count, "{time} of {step}");
+            assert_eq!(time.parse::<Number>()?.whole_multiple_of(&step.parse()?), count, "{time} of {step}");
         }
-        assert_eq!([number("0.1").times(3), number("-1.5").times(2)], [0.3, -3.0]);
-        let parts = [("0.1", 3, "1/30"), ("3", 3, "1"), ("1e-30", 2, "0.0000000000000000000000000000005")];
-        for (number, parts, part) in parts.map(|(text, parts, part)| (text.parse::<Number>(), parts, part)) {
-            assert_eq!(number.map(|number| number.divided_by(parts).to_string()), Ok(part.to_owned()));
+        for (part, count, product) in [("0.1", 3, 0.3), ("-1.5", 2, -3.0)] {
+            assert_eq!(part.parse::<Number>()?.times(count), product, "{count} times {part}");
         }
+        for (whole, parts, part) in
+            [("0.1", 3, "1/30"), ("3", 3, "1"), ("1e-30", 2, "0.0000000000000000000000000000005")]
+        {
+            assert_eq!(whole.parse::<Number>()?.divided_by(parts).to_string(), part, "{whole} in {parts}");
+        }
+        Ok(())
     }
 }

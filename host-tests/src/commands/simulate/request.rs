@@ -1,7 +1,7 @@
 //! From options to a request that the kernel accepts, and the times of its rows.
 
 use anyhow::{Context, anyhow, bail, ensure};
-use double_pendulum::{Error, Method, Parameter};
+use double_pendulum::{Error, Method, Motion, Parameter};
 use firmware::job::{JobError, Request};
 
 use super::options::name;
@@ -14,18 +14,8 @@ pub struct Plan {
     pub request: Request,
     /// Row n is at n times this.
     pub every: Number,
-}
-
-impl Plan {
-    /// What the user should know: the step is too long for some motion of this energy.
-    pub fn warning(&self, options: &SimulateOptions) -> Option<String> {
-        let admissible = self.request.admissible_step()?;
-        let too_long = self.request.dt > admissible;
-        too_long.then(|| {
-            let step = &options.step;
-            format!("--step {step}: too long to resolve every motion of this energy; {admissible:.1e} s would do")
-        })
-    }
+    /// What the user should know before the rows.
+    pub note: Option<String>,
 }
 
 /// Checks everything there is to check before the first row; an error is one line that names the option and the value.
@@ -46,14 +36,17 @@ pub fn plan(options: &SimulateOptions) -> anyhow::Result<Plan> {
     Request { stride: 1, samples: request.samples.min(1), ..request }
         .readings(|_| Ok::<_, JobError>(()))
         .with_context(|| format!("--step {step}: not even one step can be made"))?;
-    Ok(Plan { request, every: every.clone() })
+    let longest = request.admissible_step().filter(|longest| request.dt > *longest);
+    let note = longest.map(|longest| {
+        format!("warning: --step {step}: too long to resolve every motion of this energy; {longest:.1e} s would do")
+    });
+    Ok(Plan { request, every: every.clone(), note })
 }
 
 /// How many times one option's time goes into another's.
 pub(super) fn count((option, time): (&str, &Number), (unit_option, unit): (&str, &Number)) -> anyhow::Result<u32> {
-    let count = time
-        .whole_multiple_of(unit)
-        .with_context(|| format!("{option} {time}: must be a whole multiple of {unit_option} {unit}"))?;
+    let count = time.whole_multiple_of(unit);
+    let count = count.with_context(|| format!("{option} {time}: must be a whole multiple of {unit_option} {unit}"))?;
     u32::try_from(count)
         .ok()
         .with_context(|| format!("{option} {time}: more than {} times {unit_option} {unit}", u32::MAX))
@@ -61,16 +54,9 @@ pub(super) fn count((option, time): (&str, &Number), (unit_option, unit): (&str,
 
 /// The motion that the options describe, by `method` in steps of `step`.
 pub(super) fn request(options: &SimulateOptions, method: Method, step: &Number, stride: u32, samples: u32) -> Request {
-    let start = &options.start;
-    Request {
-        method,
-        parameters: start.parameters(),
-        angles: start.angles(),
-        velocities: start.velocities(),
-        dt: step.value(),
-        stride,
-        samples,
-    }
+    let (parameters, Motion { a1, a2, w1, w2 }) = (options.start.parameters(), options.start.motion());
+    let (angles, velocities, dt) = ([a1, a2], [w1, w2], step.value());
+    Request { method, parameters, angles, velocities, dt, stride, samples }
 }
 
 /// Refuses what the kernel refuses, and names its option; and angles that leave the turns more digits than the direction.
@@ -95,10 +81,7 @@ pub(super) fn accepted(options: &SimulateOptions, request: &Request) -> anyhow::
 /// The method asked for, or the first of the table, if the place asked for computes it.
 pub(super) fn method(options: &SimulateOptions) -> anyhow::Result<Method> {
     let method = options.method.unwrap_or(Method::ALL[0]);
-    let place = name(options.place);
-    ensure!(
-        methods(options.place).any(|one| one == method),
-        "--method {method}: not on {place}; --list says where it runs"
-    );
+    let is_there = methods(options.place).contains(&method);
+    ensure!(is_there, "--method {method}: not on {}; --list says where it runs", name(options.place));
     Ok(method)
 }

@@ -24,7 +24,6 @@ impl Pair {
     }
 }
 
-/// As it was written.
 impl fmt::Display for Pair {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{},{}", self.0, self.1)
@@ -65,25 +64,16 @@ pub struct StartOptions {
 }
 
 impl StartOptions {
-    /// Masses, lengths and gravity, as given.
     pub fn parameters(&self) -> Parameters<f64> {
         let [[m1, m2], [l1, l2]] = [&self.masses, &self.lengths].map(Pair::values);
         Parameters { m1, m2, l1, l2, g: self.gravity.as_ref().map_or(GRAVITY, Number::value) }
     }
 
-    /// a1, a2, rad.
-    pub fn angles(&self) -> [f64; 2] {
-        let first = [f64::from(FIRST_ANGLE) * DEGREE; 2];
-        self.angles.as_ref().map_or(first, |angles| angles.values().map(|angle| self.radians(angle)))
-    }
-
-    /// w1, w2, rad/s.
-    pub fn velocities(&self) -> [f64; 2] {
-        self.velocities.values().map(|velocity| self.radians(velocity))
-    }
-
     pub fn motion(&self) -> Motion<f64> {
-        let ([a1, a2], [w1, w2]) = (self.angles(), self.velocities());
+        let radians = |angle| if self.degrees { angle * DEGREE } else { angle };
+        let first = [f64::from(FIRST_ANGLE) * DEGREE; 2];
+        let [a1, a2] = self.angles.as_ref().map_or(first, |angles| angles.values().map(radians));
+        let [w1, w2] = self.velocities.values().map(radians);
         Motion { a1, a2, w1, w2 }
     }
 
@@ -97,10 +87,6 @@ impl StartOptions {
         let numbers = [&a.0, &a.1, &w.0, &w.1, &m.0, &m.1, &l.0, &l.1, self.gravity.as_ref().or(gravity.as_ref())?];
         let fractions = numbers.into_iter().map(Number::exact).collect::<Option<Vec<_>>>()?.try_into().ok()?;
         Some(Exact { about: (self.parameters(), self.motion()), fractions: Some(fractions), degrees })
-    }
-
-    fn radians(&self, angle: f64) -> f64 {
-        if self.degrees { angle * DEGREE } else { angle }
     }
 }
 

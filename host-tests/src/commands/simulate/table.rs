@@ -1,5 +1,7 @@
 //! The rows of the CSV, and the table of methods.
 
+use std::fmt::{Display, LowerExp};
+
 use double_pendulum::{Method, Numbers, Parameters, Pendulum};
 use firmware::job::{ON_BOARDS, Reading};
 
@@ -38,23 +40,19 @@ impl Sampled<'_> {
     }
 }
 
-/// The first line: what the columns are.
 pub fn header(options: &SimulateOptions) -> String {
-    let columns = options.columns.iter();
-    let columns =
-        columns.map(|(name, unit, _)| if options.units { format!("{name} [{unit}]") } else { (*name).to_owned() });
+    let named = |(name, unit, _): &Column| if options.units { format!("{name} [{unit}]") } else { (*name).to_owned() };
     let bits = ["a1_bits", "a2_bits", "p1_bits", "p2_bits"].into_iter().filter(|_| options.bits);
-    columns.chain(bits.map(str::to_owned)).collect::<Vec<_>>().join(",")
+    options.columns.iter().map(named).chain(bits.map(str::to_owned)).collect::<Vec<_>>().join(",")
 }
 
-/// Sampled `number`, from 0.
 pub fn row(plan: &Plan, options: &SimulateOptions, number: u64, reading: &Reading) -> String {
     // whether numbers have the digits of an f32
     let is_single = plan.request.method.numbers() == Numbers::F32;
     let row = Sampled { time: plan.every.times(number), reading, parameters: plan.request.parameters };
     let numbers = options.columns.iter().map(|(name, _, number)| match number(&row) {
-        number if is_single && *name != "t" => shortest(number as f32, number as f32),
-        number => shortest(number, number),
+        number if is_single && *name != "t" => shortest(number as f32),
+        number => shortest(number),
     });
     let bits = reading.state.iter().filter(|_| options.bits).map(|&number| match is_single {
         true => format!("{:08x}", (number as f32).to_bits()),
@@ -64,8 +62,8 @@ pub fn row(plan: &Plan, options: &SimulateOptions, number: u64, reading: &Readin
 }
 
 /// The fewest digits that read back as the same number; in exponent form where that is shorter.
-fn shortest(plain: impl std::fmt::Display, exponent: impl std::fmt::LowerExp) -> String {
-    let (plain, exponent) = (plain.to_string(), format!("{exponent:e}"));
+fn shortest(number: impl Display + LowerExp) -> String {
+    let (plain, exponent) = (number.to_string(), format!("{number:e}"));
     if exponent.len() < plain.len() { exponent } else { plain }
 }
 

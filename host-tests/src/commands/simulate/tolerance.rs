@@ -3,8 +3,6 @@
 //! What may be taken is tried in the order of its price; the first that stays so near to the double-double reference in every
 //! row is the cheapest.
 
-use std::fmt;
-
 use anyhow::{Context, bail, ensure};
 use double_pendulum::{Equations, Integrator, Method, Numbers};
 use firmware::config::Processor;
@@ -23,20 +21,9 @@ const MOST_ROWS: u32 = 10_000;
 /// Rows where no time between them is given.
 const ROWS: u32 = 100;
 
-/// What was chosen, and its error by the reference.
-#[derive(Debug)]
-pub struct Choice {
-    pub plan: Plan,
-    step: Number,
-    /// Of a simulated second.
-    price: f64,
-    unit: &'static str,
-    /// How far any angle of any row is from the exact one at most, rad.
-    pub error: f64,
-}
-
-/// Chooses among all that the options leave open; an error is one line that names the option and the value.
-pub fn choose(options: &SimulateOptions, tolerance: &Number) -> anyhow::Result<Choice> {
+/// The cheapest of all that the options leave open, and how far any angle of any row is from the exact one at most, rad; an error
+/// is one line that names the option and the value.
+pub fn choose(options: &SimulateOptions, tolerance: &Number) -> anyhow::Result<(Plan, f64)> {
     let SimulateOptions { until, every, .. } = options;
     ensure!(tolerance.is_positive(), "--tolerance {tolerance}: must be greater than zero");
     ensure!(until.is_positive(), "--until {until}: must be greater than zero with --tolerance");
@@ -54,11 +41,11 @@ pub fn choose(options: &SimulateOptions, tolerance: &Number) -> anyhow::Result<C
     accepted(options, &in_parts(asked, divisions(asked, samples).last().unwrap_or(1)).0)?;
 
     let exact = exact(options, &every, samples);
-    let mut trials = Vec::new();
     let (unit, methods) = candidates(options);
-    for (method, price) in methods {
-        trials.extend(divisions(method, samples).map(|parts| (f64::from(parts) * price, method, parts)));
-    }
+    let trials = methods.into_iter().flat_map(|(method, price)| {
+        divisions(method, samples).map(move |parts| (f64::from(parts) * price, method, parts))
+    });
+    let mut trials: Vec<_> = trials.collect();
     trials.sort_by(|(one, ..), (other, ..)| one.total_cmp(other));
     let bar = Progress::of("trials", trials.len() as u64);
     let mut reached = 0;
@@ -67,22 +54,17 @@ pub fn choose(options: &SimulateOptions, tolerance: &Number) -> anyhow::Result<C
         let (request, step) = in_parts(method, parts);
         let (rows, error) = agreement(&request, &exact, tolerance.value());
         if rows == exact.len() {
-            let price = price / every.value();
-            return Ok(Choice { plan: Plan { request, every }, step, price, unit, error });
+            let (price, worst) = (price / every.value(), small(error));
+            let note = format!(
+                "takes {method} in steps of {step} s, {price:.0} {unit} a simulated second: \
+                 off by {worst} rad at most, by the double-double reference"
+            );
+            return Ok((Plan { request, every, note: Some(note) }, error));
         }
         reached = reached.max(rows);
     }
     let until = every.times((reached as u64).saturating_sub(1));
     bail!("--tolerance {tolerance}: nothing that may be taken keeps it beyond {until} s")
-}
-
-impl fmt::Display for Choice {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { plan, step, price, unit, error } = self;
-        let (method, error) = (plan.request.method, small(*error));
-        write!(f, "takes {method} in steps of {step} s, {price:.0} {unit} a simulated second: ")?;
-        write!(f, "off by {error} rad at most, by the double-double reference")
-    }
 }
 
 /// The numbers of steps from row to row that are tried: 1, 2, 3, 4, 6, 8, 12 and so on; the closed form needs none.
@@ -122,21 +104,20 @@ fn agreement(request: &Request, exact: &[[f64; 2]], limit: f64) -> (usize, f64) 
 
 /// What the options leave open, what a step of it costs, and in what: by the place's prices or, where it has none for any of it,
 /// by the evaluations of the equations.
-pub(super) fn candidates(options: &SimulateOptions) -> (&'static str, Vec<(Method, f64)>) {
-    let left = || methods(options.place).filter(|method| options.method.is_none_or(|asked| asked == *method));
+fn candidates(options: &SimulateOptions) -> (&'static str, Vec<(Method, f64)>) {
+    const EVALUATIONS: &str = "evaluations of the equations";
+    let left = methods(options.place).iter().copied();
+    let left = left.filter(|method| options.method.is_none_or(|asked| asked == *method));
     let price = |method| options.place.map_or(on_host(method), |board| on_board(method, &board.processor()));
-    let priced: Vec<_> = left().filter_map(|method| Some((method, price(method)?))).collect();
-    match options.place {
-        Some(_) if !priced.is_empty() => ("cycles (estimate)", priced),
-        None if !priced.is_empty() => ("evaluations of the equations", priced),
-        _ => ("evaluations of the equations", left().map(|method| (method, evaluations(method))).collect()),
+    let priced: Vec<_> = left.clone().filter_map(|method| Some((method, price(method)?))).collect();
+    match priced.is_empty() {
+        true => (EVALUATIONS, left.map(|method| (method, evaluations(method))).collect()),
+        false => (options.place.map_or(EVALUATIONS, |_| "cycles (estimate)"), priced),
     }
 }
 
-/// What is computed at a place.
-pub(super) fn methods(place: Place) -> impl Iterator<Item = Method> {
-    let methods = if place.is_none() { Method::ALL } else { ON_BOARDS };
-    methods.iter().copied()
+pub(super) fn methods(place: Place) -> &'static [Method] {
+    if place.is_none() { Method::ALL } else { ON_BOARDS }
 }
 
 /// A processor of the host computes in `f64` as fast as in anything else: the evaluations count. `None` of what is no frontier:

@@ -1,23 +1,28 @@
 //! `cargo verify-board`: what the tests prove in emulation, proven on a board in the hand, with a report to be sent in.
 
 mod methods;
-mod program;
 mod questions;
 mod scenes;
 mod talk;
 
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Duration;
 
 use anyhow::Context;
 use clap::Parser;
-use firmware::protocol::{BoardName, Identify, Identity};
+use firmware::protocol::{BoardName, CRC, Identify, Identity};
+use object::{Object, ObjectSymbol};
 
 use crate::commands::demo;
 use crate::commands::table::Table;
 use crate::console::cli::{complain, say};
 use crate::console::progress::Progress;
-use crate::emulator::boards::every_board;
+use crate::emulator::boards::{Board, every_board};
+use crate::emulator::flash::flash_image;
+use crate::emulator::process;
+use crate::emulator::toolchain::{self, workspace};
 use talk::Talk;
 
 /// Verifies a board at a serial port: the bits of every method and scene beside the host's, the cycles of every method, the
@@ -46,11 +51,10 @@ struct Section {
 
 impl Section {
     fn new(title: &'static str, note: &'static str, columns: &'static [&'static str]) -> Self {
-        Self { head: [title, note], table: Table { columns, rows: Vec::new() }, faults: Vec::new() }
+        Self { head: [title, note], table: Table { columns: columns.to_vec(), rows: Vec::new() }, faults: Vec::new() }
     }
 }
 
-/// Verifies the board and writes the report; whether all was well.
 pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
     let mut talk = Talk::new(demo::port(&options.port)?)?;
     let identity: Identity = talk.ask(&Identify { request: 0 })?;
@@ -61,7 +65,7 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
     let scenes = scenes::watch(&mut talk, identity.hertz)?;
     drop(progress);
     let asked = if options.no_questions { Section::default() } else { questions::ask(&mut talk, name)? };
-    let program = program::compare(board, &identity)?;
+    let program = program(board, &identity)?;
     let sections = [bits, methods::estimate(measured, board)?, scenes, asked];
 
     let faults: Vec<&String> = sections.iter().flat_map(|section| &section.faults).collect();
@@ -80,4 +84,41 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
     faults.iter().for_each(|fault| complain(format_args!("not well: {fault}")));
     say(format_args!("{headline}\nreport: {}", path.display()))?;
     Ok(faults.is_empty())
+}
+
+/// For git and the compiler to say which they are.
+const LIMIT: Duration = Duration::from_secs(30);
+
+/// Whether the program in the board's flash is the one that is built here, from which commit, by which compiler: what the board
+/// says of it beside the one that is built here for `board`, in a line.
+fn program(board: Option<&Board>, identity: &Identity) -> anyhow::Result<String> {
+    let built = board.map(|board| anyhow::Ok(crc(&toolchain::ready()?.build_for(board)?)?)).transpose()?;
+    let said = |program: &str, arguments: &[&str]| {
+        let output = process::run(Command::new(program).args(arguments).current_dir(workspace()), LIMIT);
+        output.map_or_else(|_| "unknown".to_owned(), |output| output.stdout.trim().to_owned())
+    };
+    // With a plus where files have been changed since.
+    let changed = if said("git", &["status", "--porcelain"]).is_empty() { "" } else { "+" };
+    let (commit, compiler) = (said("git", &["rev-parse", "--short=12", "HEAD"]), said("rustc", &["--version"]));
+    let Identity { image, image_bytes, .. } = *identity;
+    let whose = if built == Some((image, image_bytes)) {
+        format!("built from commit {commit}{changed} by {compiler}")
+    } else {
+        format!("not the one that commit {commit}{changed} and {compiler} build")
+    };
+    Ok(format!("program of {image_bytes} bytes, CRC {image:08x}: {whose}"))
+}
+
+/// CRC and length of what a board takes for its program, by the ELF file.
+fn crc(elf: &Path) -> anyhow::Result<(u32, u32)> {
+    let bytes = fs::read(elf).with_context(|| elf.display().to_string())?;
+    let file = object::File::parse(&*bytes)?;
+    let (first, image) = flash_image(&bytes)?;
+    let place = |name: &str| {
+        let address = file.symbols().find(|symbol| symbol.name() == Ok(name))?.address();
+        Some(address.checked_sub(first.into())? as usize)
+    };
+    let image = place("__vector_table").zip(place("__erodata")).and_then(|(start, end)| image.get(start..end));
+    let image = image.with_context(|| format!("{}: the program is not where its names say", elf.display()))?;
+    Ok((CRC.checksum(image), image.len() as u32))
 }

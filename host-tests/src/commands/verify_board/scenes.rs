@@ -11,7 +11,7 @@ use crate::commands::demo::comparison::Comparison;
 
 const FRAMES: u32 = TICK_RATE;
 /// By so many it must have said what it plays.
-const PATIENCE: u32 = 10 * FRAMES;
+const PATIENCE: usize = 10 * FRAMES as usize;
 
 /// Plays every scene on the board, whose processor has a clock of `hertz`.
 pub fn watch(talk: &mut Talk, hertz: u32) -> anyhow::Result<Section> {
@@ -28,34 +28,30 @@ pub fn watch(talk: &mut Talk, hertz: u32) -> anyhow::Result<Section> {
 /// A scene's row, and the first number that differs.
 fn play(talk: &mut Talk, name: SceneName, hertz: u32) -> anyhow::Result<(Vec<String>, Option<String>)> {
     talk.port.send(&Choose { request: 0, scene: name.code() });
-    let mut comparison = Comparison::default();
-    let (mut first, mut compared, mut dropped, mut computing, mut whole) = (None, 0, 0, 0, 0);
+    let (mut comparison, mut frames, mut compared) = (Comparison::default(), Vec::new(), 0);
     while compared < FRAMES && comparison.difference().is_none() {
         let message = talk.receive()?;
         if let Some(status) = message.read::<Status>() {
             comparison.status(&status);
         }
         let Some(frame) = message.read::<Frame>().filter(|frame| frame.scene == name.code()) else { continue };
+        frames.push(frame);
+        ensure!(frames.len() < PATIENCE, "{}: of {} frames {compared} could be compared", name.name(), frames.len());
         if comparison.frame(&frame) {
             talk.port.send(&Ask { request: 0 });
-        }
-        let first: &Frame = first.get_or_insert(frame);
-        let arrived = frame.sequence.wrapping_sub(first.sequence);
-        ensure!(arrived < PATIENCE, "{}: of {arrived} frames {compared} could be compared", name.name());
-        dropped = frame.dropped.wrapping_sub(first.dropped);
-        computing = computing.max(frame.scene_cycles);
-        // It is told of the frame before, which is another scene's at first.
-        if frame.sequence != first.sequence {
-            whole = whole.max(frame.busy_cycles);
         }
         while comparison.follow().is_some() {
             compared += 1;
         }
     }
     let difference = comparison.difference().map(|difference| difference.to_string());
-    let milliseconds = |cycles: u32| format!("{:.2}", 1e3 * f64::from(cycles) / f64::from(hertz.max(1)));
-    let [compared, dropped] = [compared, dropped].map(|count| count.to_string());
     let bits = difference.clone().unwrap_or_else(|| "the host's".to_owned());
-    let row = vec![name.name().into(), compared, bits, dropped, milliseconds(computing), milliseconds(whole)];
+    let dropped = frames[frames.len() - 1].dropped.wrapping_sub(frames[0].dropped);
+    let longest =
+        |cycles: Option<u32>| format!("{:.2}", 1e3 * f64::from(cycles.unwrap_or(0)) / f64::from(hertz.max(1)));
+    let computing = longest(frames.iter().map(|frame| frame.scene_cycles).max());
+    // It is told of the frame before, which is another scene's at first.
+    let whole = longest(frames[1..].iter().map(|frame| frame.busy_cycles).max());
+    let row = vec![name.name().into(), compared.to_string(), bits, dropped.to_string(), computing, whole];
     Ok((row, difference))
 }

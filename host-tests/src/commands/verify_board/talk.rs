@@ -5,7 +5,7 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use anyhow::bail;
-use firmware::protocol::{Field, Frame, Message, Refused};
+use firmware::protocol::{Frame, Message};
 
 use crate::link::{Port, Received};
 
@@ -26,19 +26,17 @@ impl Talk {
     }
 
     pub fn receive(&mut self) -> anyhow::Result<Received> {
-        let (since, mut told) = (Instant::now(), Vec::new());
-        loop {
+        let (since, mut told) = (Instant::now(), None);
+        while since.elapsed() <= PATIENCE {
             if let Some(message) = self.arrived.pop_front() {
                 return Ok(message);
             }
             self.arrived.extend(self.port.messages());
-            told.extend(self.port.notices());
-            if since.elapsed() > PATIENCE {
-                let name = &self.port.name;
-                bail!("{}", told.pop().unwrap_or_else(|| format!("{name}: no message for {} s", PATIENCE.as_secs())));
-            }
+            told = self.port.notices().last().or(told);
             sleep(LOOK);
         }
+        let silence = || format!("{}: no message for {} s", self.port.name, PATIENCE.as_secs());
+        bail!(told.unwrap_or_else(silence))
     }
 
     /// The next message of one kind; others on the way to it are passed over, but not a refusal.
@@ -49,8 +47,8 @@ impl Talk {
             if let Some(wanted) = message.read() {
                 return Ok(wanted);
             }
-            if let Some(Refused { field, .. }) = message.read() {
-                bail!("the board refuses: {}", Field::from_code(field).map_or("unknown field", Field::name));
+            if let Some(field) = message.refused() {
+                bail!("the board refuses: {field}");
             }
         }
         bail!("{}: the board plays, and does not answer; flash it anew", self.port.name)

@@ -1,9 +1,9 @@
-//! `cargo flash-f4` with a stand-in for `probe-rs`, and without any; `cargo pico`, the file that it makes, and the drive that it
-//! copies it onto.
+//! `cargo fw`: how it ends, and which project it works on. `cargo flash-f4` with a stand-in for `probe-rs`, and without any;
+//! `cargo pico`, the file that it makes, and the drive that it copies it onto.
 
 use std::env;
 use std::fs::{self, Permissions};
-use std::io::{self, BufReader, Read};
+use std::io::{self, BufRead, BufReader, Read};
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -14,9 +14,64 @@ use host_tests::emulator::flash::flash_image;
 use host_tests::emulator::process::{self, Output};
 use host_tests::emulator::toolchain;
 use host_tests::link::Inbox;
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
 
 use super::cli::{output, program};
 use crate::support::LIMIT;
+
+fn fw(arguments: &[&str]) -> Output {
+    output(program("fw").args(arguments))
+}
+
+#[test]
+fn what_runs_for_ever_ends_well_when_it_is_told_to() {
+    let told = fw(&["mps2-an386", "--seconds", "2"]);
+    assert_eq!(told.status.code(), Some(0), "{}", told.stderr);
+    assert!(told.stdout.contains("boot: mps2-an386"), "{}", told.stdout);
+    assert_eq!(told.stderr.lines().last(), Some("ended after 2 s, as told"));
+}
+
+#[test]
+fn a_failure_is_one_however_long_it_may_run() {
+    assert_eq!(fw(&["inject-panic", "--seconds", "600"]).status.code(), Some(1));
+}
+
+#[test]
+fn an_interrupt_leaves_nothing_in_the_temporary_folder() {
+    let temporary = tempfile::tempdir().expect("there is room for it");
+    let mut command = program("fw");
+    command.arg("lm3s6965evb").env("TMPDIR", temporary.path());
+    command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::null());
+    let mut fw = process::spawn(&mut command, LIMIT).unwrap_or_else(|error| panic!("{error}"));
+    let mut log = BufReader::new(fw.stdout.take().expect("piped"));
+    log.read_line(&mut String::new()).expect("the board says something");
+    let left = || fs::read_dir(temporary.path()).expect("it is there").count();
+    assert!(left() > 0, "the board has its folder there");
+    kill(Pid::from_raw(fw.id().cast_signed()), Signal::SIGTERM).expect("it runs");
+    assert_eq!(fw.wait().expect("it ends").code(), Some(143));
+    assert_eq!(left(), 0);
+}
+
+/// A command that was built in one checkout and is run in another works on that one; outside of any it says so.
+#[test]
+fn the_project_is_the_one_that_a_command_is_run_in() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (copy, checkout) = (folder.path().join("fw"), folder.path().join("checkout"));
+    fs::copy(env!("CARGO_BIN_EXE_host-tests"), &copy).expect("a copy");
+    for file in ["kernel/Cargo.toml", "firmware/Cargo.toml", "host-tests/Cargo.toml", "firmware/src/bin/elsewhere.rs"] {
+        let file = checkout.join(file);
+        fs::create_dir_all(file.parent().expect("a folder")).expect("a folder");
+        fs::write(file, "").expect("a file");
+    }
+    let help = |within: &Path| {
+        output(Command::new(&copy).args(["fw", "--help"]).current_dir(within).env_remove("CARGO_MANIFEST_DIR"))
+    };
+    let inside = help(&checkout.join("firmware/src"));
+    assert!(inside.status.success() && inside.stdout.contains("Binaries:\n  elsewhere\n"), "{inside:?}");
+    let Output { status, stdout, stderr } = help(folder.path());
+    assert_eq!((status.code(), &*stdout, stderr.lines().count()), (Some(2), "", 1), "{stderr}");
+}
 
 fn flash(arguments: &[&str], path: impl IntoIterator<Item = PathBuf>) -> Output {
     output(program("flash-f4").args(arguments).env("PATH", env::join_paths(path).expect("no colon in a folder's name")))
@@ -32,43 +87,33 @@ fn without_probe_rs_it_says_what_is_missing() -> io::Result<()> {
     Ok(())
 }
 
-/// A folder with a program of this name, which says its arguments and ends with exit code 7.
-fn stand_in(name: &str) -> io::Result<tempfile::TempDir> {
+/// With a stand-in of this name found first, which says its arguments, `said`, and ends with an exit code that is then the
+/// command's; the last of them, a file.
+fn handed(name: &str, arguments: &[&str], said: &str) -> io::Result<PathBuf> {
     let folder = tempfile::tempdir()?;
     let stand_in = folder.path().join(name);
     fs::write(&stand_in, "#!/bin/sh\necho \"$@\"\nexit 7\n")?;
     fs::set_permissions(&stand_in, Permissions::from_mode(0o755))?;
-    Ok(folder)
-}
-
-/// With a stand-in found first.
-fn path_with(folder: &tempfile::TempDir) -> Vec<PathBuf> {
     let rest = env::var_os("PATH").unwrap_or_default();
-    [folder.path().to_owned()].into_iter().chain(env::split_paths(&rest)).collect()
+    let output = flash(arguments, [folder.path().to_owned()].into_iter().chain(env::split_paths(&rest)));
+    assert!(output.stdout.starts_with(said) && output.status.code() == Some(7), "{output:?}");
+    Ok(output.stdout.split_whitespace().last().unwrap_or_default().into())
 }
 
 #[test]
 fn it_hands_the_image_to_probe_rs() -> io::Result<()> {
-    let folder = stand_in("probe-rs")?;
-    let output = flash(&["--chip", "STM32F407VGTx"], path_with(&folder));
-    assert!(output.stdout.starts_with("run --chip STM32F407VGTx /"), "{output:?}");
-    let image = output.stdout.split_whitespace().last().unwrap_or_default();
-    assert!(image.ends_with("thumbv7em-none-eabihf/release/stm32f405"), "{image}");
+    let image = handed("probe-rs", &["--chip", "STM32F407VGTx"], "run --chip STM32F407VGTx /")?;
+    assert!(image.ends_with("thumbv7em-none-eabihf/release/stm32f405"), "{}", image.display());
     assert_eq!(fs::read(image)?.get(..4), Some(&b"\x7fELF"[..]));
-    assert_eq!(output.status.code(), Some(7), "its exit code is the command's");
     Ok(())
 }
 
 /// What goes over USB is the program: QEMU, which gets nothing else, runs it.
 #[test]
 fn it_hands_the_bytes_of_the_flash_to_dfu_util() -> io::Result<()> {
-    let folder = stand_in("dfu-util")?;
-    let output = flash(&["--dfu"], path_with(&folder));
-    assert!(output.stdout.starts_with("-d 0483:df11 -a 0 -s 0x08000000:leave -D /"), "{output:?}");
-    assert_eq!(output.status.code(), Some(7), "its exit code is the command's");
-    let bin = output.stdout.split_whitespace().last().unwrap_or_default();
+    let bin = handed("dfu-util", &["--dfu"], "-d 0483:df11 -a 0 -s 0x08000000:leave -D /")?;
     let mut qemu = Command::new(toolchain::ready().expect("the tools").qemu());
-    qemu.args(["-machine", STM32F405.machine, "-cpu", STM32F405.cpu, "-display", "none", "-kernel", bin]);
+    qemu.args(["-machine", STM32F405.machine, "-cpu", STM32F405.cpu, "-display", "none", "-kernel"]).arg(bin);
     qemu.args(["-serial", "null", "-serial", "null", "-serial", "stdio"]).stdin(Stdio::null());
     let mut qemu = process::spawn(qemu.stdout(Stdio::piped()).stderr(Stdio::null()), LIMIT).expect("QEMU");
     let mut inbox = Inbox::default();
