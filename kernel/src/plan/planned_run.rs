@@ -1,6 +1,6 @@
 //! A motion carried out as a plan has it.
 
-use super::run::{AnyRun, Directions, Stepped};
+use super::run::{AnyRun, Directions};
 use super::way::Way;
 use crate::error::Error;
 use crate::methods::Turns;

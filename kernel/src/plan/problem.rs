@@ -95,13 +95,14 @@ const OFF: f64 = 1.0 + 1.0 / 1024.0;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Perturbation([f64; 4]);
 
-impl Perturbation {
-    /// Nothing is off.
-    pub const NONE: Self = Self([0.0; 4]);
-    /// One half of the numbers off one way, the other half the other way: three such halves.
-    pub const ALL: [Self; 3] =
-        [Self([OFF, OFF, -OFF, -OFF]), Self([OFF, -OFF, OFF, -OFF]), Self([OFF, -OFF, -OFF, OFF])];
+/// Nothing is off.
+pub(super) const NONE: Perturbation = Perturbation([0.0; 4]);
 
+/// One half of the numbers off one way, the other half the other way: three such halves.
+pub(super) const PERTURBATIONS: [Perturbation; 3] =
+    [Perturbation([OFF, OFF, -OFF, -OFF]), Perturbation([OFF, -OFF, OFF, -OFF]), Perturbation([OFF, -OFF, -OFF, OFF])];
+
+impl Perturbation {
     /// All of them the other way.
     pub fn mirrored(self) -> Self {
         Self(self.0.map(|by| -by))
@@ -127,8 +128,8 @@ mod tests {
                 let [a1, a2, p1, p2] = <[f64; 4]>::from(state);
                 [m2, g, a1, a2, p1, p2].map(|x| if method.is_single() { f64::from(x as f32) } else { x })
             };
-            let [first, second, third] = Perturbation::ALL.map(numbers);
-            let own = numbers(Perturbation::NONE);
+            let [first, second, third] = PERTURBATIONS.map(numbers);
+            let own = numbers(NONE);
             assert!(first != second && second != third && third != first, "{first:?} {second:?} {third:?}");
             for other in [first, second, third] {
                 assert_ne!(own, other);

@@ -2,7 +2,7 @@
 
 use super::cost::Costs;
 use crate::error::{Error, Parameter};
-use crate::pendulum::{Motion, Parameters, Pendulum, State};
+use crate::pendulum::{Motion, Parameters, Pendulum};
 use crate::table::Method;
 
 /// How a motion is computed: a method, and how fine.
@@ -33,14 +33,13 @@ pub(super) fn steps_to_frame(method: Method, rate: u16, longest: f64) -> u32 {
     if method == Method::Extrapolation10Fixed64 { fewest } else { fewest.next_power_of_two() }
 }
 
-/// Angles and momenta of `start`, and the longest step that resolves every motion of its energy, s.
+/// The longest step that resolves every motion of the energy of `start`, s.
 ///
 /// Refuses what [`Pendulum::new`] and [`Pendulum::admissible_step`] refuse.
 #[inline(never)] // one copy
-pub(super) fn start_and_step(parameters: &Parameters<f64>, start: &Motion<f64>) -> Result<(State<f64>, f64), Error> {
+pub(super) fn admissible_step(parameters: &Parameters<f64>, start: &Motion<f64>) -> Result<f64, Error> {
     let pendulum = Pendulum::new(parameters)?;
-    let state = pendulum.to_state(start);
-    Ok((state, pendulum.admissible_step(&state)?))
+    pendulum.admissible_step(&pendulum.to_state(start))
 }
 
 impl Way {
@@ -57,7 +56,7 @@ impl Way {
         costs: &Costs,
         frame: f32,
     ) -> Result<Self, Error> {
-        let (_, admissible) = start_and_step(parameters, start)?;
+        let admissible = admissible_step(parameters, start)?;
         for longest in [RESOLVING, FIRST_STEP] {
             if let Some(way) = Self::fixed64(parameters, start, rate, longest * admissible, costs, frame) {
                 return Ok(way);
@@ -78,7 +77,7 @@ impl Way {
     /// By `method`, in the longest steps that resolve every motion of this energy. Refuses what [`lasting`](Self::lasting) refuses.
     #[doc(hidden)]
     pub fn of(parameters: &Parameters<f64>, start: &Motion<f64>, rate: u16, method: Method) -> Result<Self, Error> {
-        let (_, admissible) = start_and_step(parameters, start)?;
+        let admissible = admissible_step(parameters, start)?;
         let longest = if method == Method::Extrapolation10Fixed64 { RESOLVING } else { FIRST_STEP };
         Ok(Self { method, steps: steps_to_frame(method, rate, longest * admissible) })
     }
@@ -92,10 +91,8 @@ impl Way {
         costs: &Costs,
         frame: f32,
     ) -> Option<Self> {
-        let mut way = Self {
-            method: Method::Extrapolation10Fixed64,
-            steps: steps_to_frame(Method::Extrapolation10Fixed64, rate, longest),
-        };
+        let method = Method::Extrapolation10Fixed64;
+        let mut way = Self { method, steps: steps_to_frame(method, rate, longest) };
         while costs.of_frame(way.method, way.steps) <= frame && way.steps < MOST_STEPS {
             match way.check(parameters, start, rate) {
                 Ok(()) => return Some(way),

@@ -245,8 +245,9 @@ mod tests {
         let parameters = Parameters::equal_rods(1.0, 1.0, 9.81);
         let dt = 1.0 / 64.0;
         let bounds = Bounds::new(&parameters, 50.0);
-        let unit = |[by_rates, by_torques]: [f64; 2]| Ok(unit_of_time(libm::fmin(by_rates, by_torques), dt));
-        let scaling = Scaling::new(&parameters, &bounds, [0.125, 1.0 / 256.0], unit)?;
+        let seconds = Scaling::in_seconds(&parameters)?;
+        let [by_rates, by_torques] = seconds.longest(&bounds, [0.125, 1.0 / 256.0]);
+        let scaling = seconds.in_unit(unit_of_time(libm::fmin(by_rates, by_torques), dt));
         let reach = Cell::new(0);
         Rows::new(2, &scaling, dt)?.end(&z.map(Q64::constant), &reach);
         Ok(reach.get() != 0)
