@@ -5,8 +5,7 @@ use std::f64::consts::PI;
 use double_pendulum::flips::{Flip, Flips};
 use double_pendulum::{DirectionF64, Error, Motion, Parameters};
 use fastrand::Rng;
-use host_tests::commands::flips::map::{Followed, Map};
-use host_tests::commands::flips::square::Square;
+use host_tests::commands::flips::map::{Followed, Map, Square};
 use host_tests::oracle::tolerances;
 use reference::taylor::Reference;
 

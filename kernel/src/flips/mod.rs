@@ -21,7 +21,7 @@ mod side_by_side;
 use crate::error::Error;
 use crate::methods::turns::turns_over;
 use crate::methods::{Form, Side};
-use crate::numbers::Real;
+use crate::numbers::{Real, Scalar};
 use crate::pendulum::{Direction, Parameters, Pendulum, State};
 
 /// When a rod first turns over.

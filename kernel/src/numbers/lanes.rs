@@ -62,8 +62,8 @@ impl<R: Scalar, const N: usize> Scalar for Lanes<R, N> {
     type Gravity = Lanes<R::Gravity, N>;
     type Torque = Lanes<R::Torque, N>;
     #[inline(always)]
-    fn constant(value: f64) -> Self {
-        Self::splat(R::constant(value))
+    fn from_f64(value: f64) -> Self {
+        Self::splat(R::from_f64(value))
     }
     #[inline(always)]
     fn twice(self) -> Self {

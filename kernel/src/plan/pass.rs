@@ -58,7 +58,7 @@ impl Pass {
     pub fn new(way @ Way { method, steps }: Way, problem: &Problem, start: &State<f64>, beside: Option<u32>) -> Self {
         let run = |way: Way, perturbation: Perturbation| {
             // What a method takes ends somewhere: a run just within may have its neighbour on one side beyond.
-            let given = [perturbation, perturbation.mirrored()].map(|by| problem.perturbed(start, by, way.method));
+            let given = [perturbation, perturbation.map(|by| -by)].map(|by| problem.perturbed(start, by, way.method));
             Run::new(way, given, problem.rate)
         };
         let [_, second, third] = SIZES.map(|times| Way { method, steps: steps.saturating_mul(times) });

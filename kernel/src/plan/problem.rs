@@ -64,7 +64,7 @@ impl Problem {
     pub(super) fn perturbed(
         &self,
         start: &State<f64>,
-        Perturbation([by_g, by_l2, by_m2, by_a1]): Perturbation,
+        [by_g, by_l2, by_m2, by_a1]: Perturbation,
         method: Method,
     ) -> (Parameters<f64>, State<f64>) {
         let epsilon = epsilon(method);
@@ -92,22 +92,14 @@ const OFF: f64 = 1.0 + 1.0 / 1024.0;
 ///
 /// What a motion does goes by quotients of these, as a fast one by g/l2 or m2 g/l2, and two errors may make up for each other.
 /// What one of the perturbations leaves as it is, another alters.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Perturbation([f64; 4]);
+pub(super) type Perturbation = [f64; 4];
 
 /// Nothing is off.
-pub(super) const NONE: Perturbation = Perturbation([0.0; 4]);
+pub(super) const NONE: Perturbation = [0.0; 4];
 
 /// One half of the numbers off one way, the other half the other way: three such halves.
 pub(super) const PERTURBATIONS: [Perturbation; 3] =
-    [Perturbation([OFF, OFF, -OFF, -OFF]), Perturbation([OFF, -OFF, OFF, -OFF]), Perturbation([OFF, -OFF, -OFF, OFF])];
-
-impl Perturbation {
-    /// All of them the other way.
-    pub fn mirrored(self) -> Self {
-        Self(self.0.map(|by| -by))
-    }
-}
+    [[OFF, OFF, -OFF, -OFF], [OFF, -OFF, OFF, -OFF], [OFF, -OFF, -OFF, OFF]];
 
 #[cfg(test)]
 mod tests {

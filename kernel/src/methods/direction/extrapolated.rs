@@ -1,6 +1,6 @@
 //! The direction form by extrapolation: the exact motion to the last digits of an `f64`, cheaply.
 
-use super::sum::Sum;
+use super::Sum;
 use crate::error::Error;
 use crate::methods::extrapolation::{Extrapolation, ROWS, System};
 use crate::methods::{DirectionF64, Form};

@@ -3,7 +3,7 @@
 use super::classical::{self, Point};
 use super::coefficients::{Scale, classical_step, prepare, third};
 use super::lead::BLOCK;
-use super::sum::{Compensated, Sum};
+use super::{Compensated, Sum};
 use crate::error::{Error, Parameter, check_finite};
 use crate::methods::{Form, Side};
 use crate::numbers::{Real, Sealed};

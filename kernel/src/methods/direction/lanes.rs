@@ -1,9 +1,9 @@
 //! The plain direction form for many motions at once.
 
 use super::DirectionForm;
+use super::Plain;
 use super::classical::{Point, Stage, missing, newton_inverse};
 use super::coefficients::third;
-use super::sum::Plain;
 use crate::numbers::{Lanes, Real, Scalar};
 use crate::pendulum::Direction;
 use crate::pendulum::directions::{Coefficients, heads};
@@ -89,7 +89,7 @@ impl<R: Real, const N: usize, const ROWS: usize> DirectionLanes<R, N, ROWS> {
         for Row { start: Point { z, .. }, .. } in &mut self.rows {
             for (i, length, gain) in ways {
                 let [s, c] = [z[i], z[i + 1]];
-                let missing = missing([s, c], Lanes::constant(0.0), length, Lanes::splat(gain));
+                let missing = missing([s, c], Lanes::from_f64(0.0), length, Lanes::splat(gain));
                 z[i] = s + s * missing;
                 z[i + 1] = c + c * missing;
             }

@@ -148,7 +148,7 @@ impl Fixed32 {
     /// The motion that starts from `state`, of the energy that the units are for or less.
     fn of(units: Setting, state: &State<f64>) -> Self {
         let z = quantities(state, units.scaling.norm, units.scaling.momenta);
-        let inverse = Q30::constant(1.0 / units.scaling.denominator(z[2]));
+        let inverse = Q30::from_f64(1.0 / units.scaling.denominator(z[2]));
         let z = z.map(|z| nearest(z * ONE) as i64 + OFFSET);
         let mut motion = Self { units, z, inverse, weights: [0; 2], lost: false, steps: 0 };
         motion.weights = motion.weights_now();

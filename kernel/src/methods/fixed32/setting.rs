@@ -67,11 +67,11 @@ impl Setting {
         }
         let halvings = libm::fmin(fit, f64::from(FINEST)) as u32;
         let scaling = seconds.in_unit(scaled(sixth, halvings as i32));
-        let gravity = scaling.gravity.map(Gravity::constant);
+        let gravity = scaling.gravity.map(Gravity::from_f64);
         let run = scaled(f64::from(6 * UPKEEP), 60 - halvings as i32);
         let missed = |i: usize| nearest(gravity[i].missed(scaling.gravity[i]) * run) as i32;
         let norm = scaling.norm;
-        let coefficients = Coefficients { norm: Q30::constant(norm), inertia: Q30::constant(scaling.inertia), gravity };
+        let coefficients = Coefficients { norm: Q30::from_f64(norm), inertia: Q30::from_f64(scaling.inertia), gravity };
         let energy_unit = scaled(1.0, 60 - (scaling.shifts.momentum + scaling.shifts.upper) as i32)
             / scaled(1.0, scaling.shifts.lower as i32);
         let most_energy = (1.0 + GROWTH) * kinetic * scaling.time * scaling.time + ROOM * RATE * RATE / (2.0 * sum);

@@ -135,7 +135,7 @@ impl Fixed64State {
             rows,
             momenta: scaling.momenta,
             norm: scaling.norm,
-            half_inverse_square: Q64::constant(0.5 / (scaling.norm * scaling.norm) * EIGHTH),
+            half_inverse_square: Q64::from_f64(0.5 / (scaling.norm * scaling.norm) * EIGHTH),
             z: [Q64(0); 6],
             inverse_norm: 1.0 / scaling.norm,
             lost: false,
@@ -146,7 +146,7 @@ impl Fixed64State {
     fn started(&self, start: &State<f64>) -> Self {
         let [sin1, cos1, s, c, p1, p2] = quantities(start, self.norm, self.momenta);
         let [sin1, cos1, s, c] = [sin1, cos1, s, c].map(|direction| direction * EIGHTH);
-        Self { z: [sin1, cos1, s, c, p1, p2].map(Q64::constant), lost: false, ..*self }
+        Self { z: [sin1, cos1, s, c, p1, p2].map(Q64::from_f64), lost: false, ..*self }
     }
 
     #[inline(never)]

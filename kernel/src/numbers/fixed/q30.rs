@@ -95,7 +95,7 @@ impl Gravity {
     /// Steps in 1.
     pub const STEPS: f64 = (1_u64 << 33) as f64;
 
-    pub fn constant(value: f64) -> Self {
+    pub fn from_f64(value: f64) -> Self {
         Self(word(nearest(value * Self::STEPS) as i64))
     }
 
@@ -128,7 +128,7 @@ impl Scalar for Q30 {
     type Slope = Slope;
     type Gravity = Gravity;
     type Torque = Torque;
-    fn constant(value: f64) -> Self {
+    fn from_f64(value: f64) -> Self {
         Self(word(nearest(scaled(value, 30)) as i64))
     }
     #[inline(always)]
