@@ -90,17 +90,6 @@ impl Scale {
         }
     }
 
-    /// The momenta (p1, p2) that are (P1, P2).
-    #[must_use]
-    pub fn in_si<R: Real>(&self, momenta: [R; 2]) -> [R; 2] {
-        momenta.map(|p| R::from_f64(p.to_f64() / self.momentum))
-    }
-
-    /// By how much the motion is ahead of the time told after `count` steps, tau.
-    pub fn ahead(&self, count: u64) -> f64 {
-        self.lead.ahead(count) * self.step
-    }
-
     /// The state in SI units at the time told after `count` steps, of a motion that is at `z`, and `lost` more.
     ///
     /// The motion is ahead of that time by a part of a step. It is taken back over it by four stages, of which each starts
@@ -108,7 +97,7 @@ impl Scale {
     #[must_use]
     #[inline(never)] // cold: once in flash, not once for each caller
     pub fn state<R: Real>(&self, coefficients: &Coefficients<R>, z: &[R; 6], lost: [R; 6], count: u64) -> State<f64> {
-        let span = R::from_f64(-self.ahead(count));
+        let span = R::from_f64(-self.lead.ahead(count) * self.step);
         let mut change = [R::ZERO; 6];
         for share in [0.25, 1.0 / 3.0, 0.5, 1.0] {
             let at: [R; 6] = core::array::from_fn(|i| z[i] + change[i]);

@@ -85,7 +85,7 @@ impl<R: Real + Side, S: Sum<R>> Form for DirectionForm<R, S> {
     }
 
     fn momenta<Q: Real>(&self) -> [Q; 2] {
-        self.scale.in_si([self.z[4], self.z[5]]).map(R::cast)
+        [self.z[4], self.z[5]].map(|p| R::from_f64(p.to_f64() / self.scale.momentum).cast())
     }
 
     fn state(&self) -> State<f64> {

@@ -7,17 +7,11 @@ use crate::methods::Form;
 use crate::methods::scaling::Scaling;
 use crate::numbers::fixed::watch;
 use crate::pendulum::{Parameters, Pendulum, State};
+use fastrand::Rng;
 
-/// Numbers in (-1, 1), the same in every run (G. Marsaglia's xorshift).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-    }
+/// A number between -1 and 1.
+fn symmetric(rng: &mut Rng) -> f64 {
+    2.0 * rng.f64() - 1.0
 }
 
 /// What is searched: powers of two of m2/m1 and l2/l1, where it is, the direction of its momenta, the energy, and how much
@@ -26,14 +20,14 @@ impl Random {
 struct Candidate([f64; 7]);
 
 impl Candidate {
-    fn random(random: &mut Random) -> Self {
-        let mut most = |most: f64| most * random.next();
+    fn random(rng: &mut Rng) -> Self {
+        let mut most = |most: f64| most * symmetric(rng);
         let [mass, length] = [most(1.0), most(1.0)].map(|x| 11.0 * x * x * x);
         Self([mass, length, most(3.2), most(3.2), most(3.2), most(6.0), most(0.5) + 0.5])
     }
 
-    fn near(self, random: &mut Random, distance: f64) -> Self {
-        Self(self.0.map(|x| x + distance * random.next()))
+    fn near(self, rng: &mut Rng, distance: f64) -> Self {
+        Self(self.0.map(|x| x + distance * symmetric(rng)))
     }
 
     fn parameters(&self) -> Parameters<f64> {
@@ -86,13 +80,13 @@ impl Candidate {
 /// Climbs from many places; each step shorter than the last where it leads nowhere.
 #[test]
 fn the_motion_that_leads_furthest_stays_in_range() -> Result<(), Error> {
-    let mut random = Random(1);
+    let mut rng = Rng::with_seed(1);
     let mut furthest = (0.0, Candidate([0.0; 7]));
     for _ in 0..400 {
-        let mut candidate = Candidate::random(&mut random);
+        let mut candidate = Candidate::random(&mut rng);
         let (mut reach, mut distance) = (candidate.reach()?, 1.0);
         while distance > 1e-3 {
-            let next = candidate.near(&mut random, distance);
+            let next = candidate.near(&mut rng, distance);
             let next_reach = next.reach()?;
             if next_reach > reach {
                 (candidate, reach) = (next, next_reach);
@@ -128,9 +122,9 @@ fn too_much_energy_is_noticed() -> Result<(), Error> {
 /// The energy as the words have it is that of the state.
 #[test]
 fn the_energy_of_the_words_is_that_of_the_motion() -> Result<(), Error> {
-    let mut random = Random(2);
+    let mut rng = Rng::with_seed(2);
     for _ in 0..200 {
-        let candidate = Candidate::random(&mut random);
+        let candidate = Candidate::random(&mut rng);
         let Ok(motion) = candidate.motion() else { continue };
         let energy = Pendulum::new(&candidate.parameters())?.energy_above_rest(&motion.state());
         let Scaling { momenta: [_, unit2], time, shifts, .. } = motion.units.scaling;

@@ -2,8 +2,7 @@
 
 use core::ops::{Add, Mul, Neg, Sub};
 
-use super::product::{product, upper};
-use super::{nearest, scaled};
+use super::{nearest, product, scaled, upper};
 use crate::numbers::{Scalar, Sealed};
 
 /// The word that holds a number. That it does is what [`Scaling`](crate::methods::scaling::Scaling) sees to; unit tests are stopped if not.

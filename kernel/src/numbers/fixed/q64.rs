@@ -2,8 +2,7 @@
 
 use core::ops::{Add, Mul, Neg, Sub};
 
-use super::nearest;
-use super::product::product;
+use super::{nearest, product};
 use crate::numbers::{Real, Scalar, Sealed};
 
 /// A number from -1/2 to below 1/2 in 64 bits, in steps of 2^-64: no shift follows a product.
