@@ -104,7 +104,7 @@ impl Reference {
             f2[k] = l1 * square1.product(sin_d, k) - g * wave2.sin[k];
             den[k] = m2 * sin_d.product(sin_d, k);
             if k == 0 {
-                den[0] = den[0] + m1;
+                den[0] += m1;
             }
             acceleration1[k] = acceleration1.quotient(divide(f1[k] - m2 * f2.product(cos_d, k), l1), &den, k);
             acceleration2[k] = acceleration2.quotient(divide(total * f2[k] - f1.product(cos_d, k), l2), &den, k);

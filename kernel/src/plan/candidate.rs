@@ -1,7 +1,6 @@
 //! A method that is tried.
 
-use super::cost::Costs;
-use super::way::Way;
+use super::cost::{Costs, Way};
 use crate::table::Method;
 
 /// A bob may be off by this much where the tolerance is the unit.

@@ -1,10 +1,9 @@
 //! Step sizes tried side by side: how wrong each method is, frame by frame.
 
 use super::candidate::Candidate;
-use super::cost::Costs;
+use super::cost::{Costs, Way};
 use super::problem::{NONE, PERTURBATIONS, Perturbation, Problem};
 use super::run::{Run, distance, greater};
-use super::way::Way;
 use crate::error::Error;
 use crate::pendulum::State;
 use crate::small::{Modes, SmallOscillations};

@@ -1,7 +1,7 @@
 //! A motion carried out as a plan has it.
 
+use super::cost::Way;
 use super::run::{AnyRun, Directions};
-use super::way::Way;
 use crate::error::Error;
 use crate::methods::Turns;
 use crate::pendulum::{Motion, Parameters, Pendulum, State};

@@ -1,7 +1,6 @@
 //! A motion by any method that a plan chooses from, and how far two of its frames are apart.
 
-use super::cost::{Costs, ORDER};
-use super::way::Way;
+use super::cost::{Costs, ORDER, Way};
 use crate::error::Error;
 use crate::methods::{ClosedFormF32, DirectionF32, DirectionF32Plain, Fixed32, Fixed64, Form};
 use crate::pendulum::{Direction, Parameters, State};

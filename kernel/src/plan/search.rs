@@ -3,11 +3,10 @@
 //! All of it is done in pieces that a busy caller can afford: a few steps of one motion, a comparison, a new step size.
 
 use super::candidate::Candidate;
-use super::cost::{Budget, Costs};
+use super::cost::{Budget, Costs, FIRST_STEP, MOST_STEPS, RESOLVING, Way, admissible_step, steps_to_frame};
 use super::error::{Limit, PlanError};
 use super::pass::Pass;
 use super::problem::Problem;
-use super::way::{FIRST_STEP, MOST_STEPS, RESOLVING, Way, admissible_step, steps_to_frame};
 use crate::error::{Error, Parameter};
 use crate::pendulum::Pendulum;
 use crate::table::Method;
