@@ -7,7 +7,7 @@ use std::hint::black_box;
 use std::iter::successors;
 use std::time::Instant;
 
-use double_pendulum::parts::{DirectionForm, Plain, Stepper};
+use double_pendulum::parts::{DirectionForm, Plain};
 use double_pendulum::{DirectionF64, ExtrapolationF64, Form};
 use double_pendulum::{Motion, Parameters};
 use host_tests::oracle::trials::largest_difference;
@@ -66,7 +66,7 @@ fn pendulum() -> double_pendulum::Pendulum<f64> {
 
 fn form<F: Form>(scene: Scene, parts: u32, steps: u32) -> [f64; 4] {
     let dt = scene.part / f64::from(steps);
-    let motion = Stepper::<F>::new(&PARAMETERS, &scene.start.into(), dt);
+    let motion = F::new(&PARAMETERS, &scene.start.into(), dt);
     let mut motion = motion.unwrap_or_else(|error| panic!("{error}"));
     motion.advance(parts * steps);
     motion.state().into()

@@ -1,6 +1,5 @@
 //! What a row of the table is: a motion that can be started, stepped and read.
 
-use double_pendulum::parts::Stepper;
 use double_pendulum::{
     Direction, Error, Form, Integrator, Modes, Motion, Parameters, Pendulum, Real, SmallOscillations, State,
 };
@@ -29,29 +28,29 @@ pub trait Run: Copy {
 }
 
 /// By any method of the kernel that makes steps.
-impl<F: Form> Run for Stepper<F> {
+impl<F: Form> Run for F {
     #[inline(never)]
     fn start(request: &Request) -> Result<Self, JobError> {
         let checked = if request.method.is_single() { checked::<f32> } else { checked::<f64> };
         let (parameters, state) = checked(request)?;
-        Ok(Self::new(&parameters, &state, request.dt)?)
+        Ok(Form::new(&parameters, &state, request.dt)?)
     }
 
     #[inline(always)]
     fn advance(&mut self, steps: u32) {
-        Stepper::advance(self, steps);
+        Form::advance(self, steps);
     }
 
     fn state(&self) -> State<f64> {
-        Stepper::state(self)
+        Form::state(self)
     }
 
     fn sides(&self) -> Option<[[i32; 2]; 2]> {
-        (!F::HAS_TURNS).then(|| Stepper::sides(self))
+        (!F::HAS_TURNS).then(|| Form::sides(self))
     }
 
     fn bits(&self, feed: impl FnMut(u64)) {
-        Stepper::bits(self, feed);
+        Form::bits(self, feed);
     }
 }
 

@@ -3,7 +3,7 @@
 //! The first block is what every board's application computes on request. The second is computed on the host and counted on the
 //! chips by the `measure` program, and takes no flash of an application.
 
-use double_pendulum::parts::{Canonical, Stepper};
+use double_pendulum::parts::Canonical;
 use double_pendulum::{
     ClosedFormF32, ClosedFormF64, Direction, DirectionF32, DirectionF32Plain, Error, ExtrapolationF64, Fixed32,
     Fixed64, HamiltonF32, HamiltonF64, Method, Pendulum, Real, State,
@@ -15,8 +15,12 @@ use super::{JobError, Reading, Request, Run, answer, request};
 
 /// What computes a method: its form's steps, unless another type is given.
 macro_rules! run {
-    ($form:ty) => { Stepper<$form> };
-    ($form:ty, $run:ty) => { $run };
+    ($form:ty) => {
+        $form
+    };
+    ($form:ty, $run:ty) => {
+        $run
+    };
 }
 
 macro_rules! table {
@@ -28,13 +32,13 @@ macro_rules! table {
         pub const ON_BOARDS: &[Method] = &[$(Method::$method),*];
 
         #[derive(Clone, Copy, Debug)]
-        pub enum OnBoards { $(#[doc = concat!("[`Method::", stringify!($method), "`]")] $method(Stepper<$form>),)* }
+        pub enum OnBoards { $(#[doc = concat!("[`Method::", stringify!($method), "`]")] $method($form),)* }
 
         impl Run for OnBoards {
             #[inline(never)] // compilers shuffle so large a value word by word
             fn start(request: &Request) -> Result<Self, JobError> {
                 match request.method {
-                    $(Method::$method => Stepper::<$form>::start(request).map(Self::$method),)*
+                    $(Method::$method => <$form as Run>::start(request).map(Self::$method),)*
                     method => Err(JobError::NotOnBoards(method)),
                 }
             }
@@ -102,7 +106,7 @@ macro_rules! table {
             /// Gives every reading to `each`, the one at the start first, until it refuses one.
             pub fn readings<E: From<JobError>>(&self, each: impl FnMut(&Reading) -> Result<(), E>) -> Result<(), E> {
                 match self.method {
-                    $(Method::$method => answer::readings::<Stepper<$form>, E>(self, each),)*
+                    $(Method::$method => answer::readings::<$form, E>(self, each),)*
                     $(Method::$other => answer::readings::<run!($other_form $(, $other_run)?), E>(self, each),)*
                 }
             }
@@ -111,7 +115,7 @@ macro_rules! table {
             /// are bit-identical if theirs are equal.
             pub fn crc(&self) -> Result<u32, JobError> {
                 match self.method {
-                    $(Method::$method => request::crc::<Stepper<$form>>(self),)*
+                    $(Method::$method => request::crc::<$form>(self),)*
                     $(Method::$other => request::crc::<run!($other_form $(, $other_run)?)>(self),)*
                 }
             }

@@ -2,7 +2,7 @@
 //!
 //! Lagrange's two second-order equations (not Hamilton's), written anew from the book, as power series in time of order
 //! 36 (not Runge-Kutta), in double-double arithmetic of 106 bits (not f32 or f64). Of the kernel it uses the plain
-//! structures of numbers only. The same in `f64` is a hundred times faster, and right for half as long where errors grow.
+//! structures of numbers only.
 //!
 //! It is inside what the [enclosure](crate::enclosure) proves of random motions, the hard cases and the scenes, to 1e-31 times the growth
 //! of a small error (tests `known_answers` and `motions`).
@@ -12,44 +12,38 @@ pub mod series;
 use double_pendulum::{Motion, Parameters, State};
 use twofloat::TwoFloat;
 
-use series::{Scalar, Series, Wave};
+use series::{ORDER, Series, Wave, divide, sin_cos};
 
 /// A double pendulum in exact motion, to about 30 digits.
 ///
 /// Costs about 0.3 ms for each step of its own, of which a rod of 1 m needs 20 to 50 a second.
 #[derive(Clone, Debug)]
-pub struct Reference<T = TwoFloat> {
-    parameters: Parameters<T>,
-    time: T,
-    angles: [T; 2],
-    velocities: [T; 2],
+pub struct Reference {
+    parameters: Parameters<TwoFloat>,
+    time: TwoFloat,
+    angles: [TwoFloat; 2],
+    velocities: [TwoFloat; 2],
 }
 
 impl Reference {
     /// Starts at time 0 from `motion`; every f64 given is taken as exact.
     pub fn new(parameters: &Parameters<f64>, motion: &Motion<f64>) -> Self {
-        Self::of(parameters, motion)
-    }
-}
-
-impl<T: Scalar> Reference<T> {
-    /// As [`Reference::new`], in any arithmetic.
-    pub fn of(parameters: &Parameters<f64>, motion: &Motion<f64>) -> Self {
         let (&Parameters { m1, m2, l1, l2, g }, &Motion { a1, a2, w1, w2 }) = (parameters, motion);
-        let [m1, m2, l1, l2, g] = [m1, m2, l1, l2, g].map(T::from);
-        Self::exact(Parameters { m1, m2, l1, l2, g }, [a1, a2].map(T::from), [w1, w2].map(T::from))
+        let [m1, m2, l1, l2, g] = [m1, m2, l1, l2, g].map(TwoFloat::from);
+        Self::exact(Parameters { m1, m2, l1, l2, g }, [a1, a2].map(TwoFloat::from), [w1, w2].map(TwoFloat::from))
     }
 
     /// As [`Reference::new`] from numbers of full precision: angles in rad, velocities in rad/s.
-    pub fn exact(parameters: Parameters<T>, angles: [T; 2], velocities: [T; 2]) -> Self {
+    pub fn exact(parameters: Parameters<TwoFloat>, angles: [TwoFloat; 2], velocities: [TwoFloat; 2]) -> Self {
         Self { parameters, time: 0.0.into(), angles, velocities }
     }
 
-    fn advance(&mut self, t: f64) {
-        while self.time < T::from(t) {
+    /// Moves to time `t`, s; goes forward only, an earlier time changes nothing.
+    pub fn advance_to(&mut self, t: f64) {
+        while self.time < TwoFloat::from(t) {
             let motion = self.series();
-            let rest = T::from(t) - self.time;
-            let longest = T::from(longest_step(&motion));
+            let rest = TwoFloat::from(t) - self.time;
+            let longest = TwoFloat::from(longest_step(&motion));
             let last = longest >= rest;
             let step = if last { rest } else { longest };
             let [a1, a2, w1, w2] = motion.map(|series| series.at(step));
@@ -67,27 +61,27 @@ impl<T: Scalar> Reference<T> {
 
     /// Angles and canonical momenta now.
     pub fn state(&self) -> State<f64> {
-        self.exact_state().map(T::into).into()
+        self.exact_state().map(f64::from).into()
     }
 
     /// (sin a1, cos a1, sin a2, cos a2) now, in full precision.
-    pub fn directions(&self) -> [T; 4] {
-        let [(sin1, cos1), (sin2, cos2)] = self.angles.map(T::sin_cos);
+    pub fn directions(&self) -> [TwoFloat; 4] {
+        let [(sin1, cos1), (sin2, cos2)] = self.angles.map(sin_cos);
         [sin1, cos1, sin2, cos2]
     }
 
     /// (a1, a2, p1, p2) now, in full precision: p_i = dL/dw_i.
-    pub fn exact_state(&self) -> [T; 4] {
+    pub fn exact_state(&self) -> [TwoFloat; 4] {
         let Parameters { m1, m2, l1, l2, .. } = self.parameters;
         let ([a1, a2], [w1, w2]) = (self.angles, self.velocities);
-        let (_, cos_d) = (a1 - a2).sin_cos();
+        let (_, cos_d) = sin_cos(a1 - a2);
         let p1 = (m1 + m2) * l1 * l1 * w1 + m2 * l1 * l2 * w2 * cos_d;
         let p2 = m2 * l2 * l2 * w2 + m2 * l1 * l2 * w1 * cos_d;
         [a1, a2, p1, p2]
     }
 
     /// The power series of a1, a2, w1, w2 about now.
-    fn series(&self) -> [Series<T>; 4] {
+    fn series(&self) -> [Series; 4] {
         let Parameters { m1, m2, l1, l2, g } = self.parameters;
         let total = m1 + m2;
         let [mut a1, mut a2] = self.angles.map(Series::new);
@@ -97,7 +91,7 @@ impl<T: Scalar> Reference<T> {
         let [mut square1, mut square2, mut f1, mut f2, mut den] = [(); 5].map(|()| Series::default());
         let [mut acceleration1, mut acceleration2] = [(); 2].map(|()| Series::default());
 
-        for k in 0..T::ORDER {
+        for k in 0..ORDER {
             wave1.extend(&a1, k);
             wave2.extend(&a2, k);
             wave_d.extend(&d, k);
@@ -110,10 +104,10 @@ impl<T: Scalar> Reference<T> {
             f2[k] = l1 * square1.product(sin_d, k) - g * wave2.sin[k];
             den[k] = m2 * sin_d.product(sin_d, k);
             if k == 0 {
-                den[0] = den[0] + m1;
+                den[0] += m1;
             }
-            acceleration1[k] = acceleration1.quotient((f1[k] - m2 * f2.product(cos_d, k)).over(l1), &den, k);
-            acceleration2[k] = acceleration2.quotient((total * f2[k] - f1.product(cos_d, k)).over(l2), &den, k);
+            acceleration1[k] = acceleration1.quotient(divide(f1[k] - m2 * f2.product(cos_d, k), l1), &den, k);
+            acceleration2[k] = acceleration2.quotient(divide(total * f2[k] - f1.product(cos_d, k), l2), &den, k);
 
             let next = (k + 1) as f64;
             a1[k + 1] = w1[k] / next;
@@ -125,21 +119,6 @@ impl<T: Scalar> Reference<T> {
         [a1, a2, w1, w2]
     }
 }
-
-/// Instantiated here, because this crate is optimised in debug builds and its callers are not.
-macro_rules! compiled_here {
-    ($($number:ty),*) => {$(
-        impl Reference<$number> {
-            /// Moves to time `t`, s; goes forward only, an earlier time changes nothing.
-            #[inline(never)]
-            pub fn advance_to(&mut self, t: f64) {
-                self.advance(t);
-            }
-        }
-    )*};
-}
-
-compiled_here!(TwoFloat, f64);
 
 /// The states at `times` (s, ascending) of the motion that starts as `start`.
 pub fn states(parameters: &Parameters<f64>, start: &Motion<f64>, times: &[f64]) -> Vec<State<f64>> {
@@ -153,18 +132,21 @@ pub fn states(parameters: &Parameters<f64>, start: &Motion<f64>, times: &[f64]) 
         .collect()
 }
 
+/// The least term of a series kept, relative to the rates of the motion.
+const RESOLUTION: f64 = 1e-33;
+
 /// The step at which the last terms of each series fall below the resolution of its value (A. Jorba, M. Zou, "A
 /// software package for the numerical integration of ODEs by means of high-order Taylor methods", 2005). Four terms
 /// are looked at, because a motion with a symmetry in time has only every second or fourth.
-fn longest_step<T: Scalar>(motion: &[Series<T>; 4]) -> f64 {
+fn longest_step(motion: &[Series; 4]) -> f64 {
     let [a1, a2, w1, w2] = motion;
-    let magnitude = |x: T| -> f64 { x.into().abs() };
+    let magnitude = |x: TwoFloat| f64::from(x).abs();
     let rate = magnitude(w1[0]).max(magnitude(w2[0])).max(1.0);
-    let limit = |series: &Series<T>, scale: f64, k: usize| {
+    let limit = |series: &Series, scale: f64, k: usize| {
         let last = magnitude(series[k]).max(f64::MIN_POSITIVE);
-        (T::RESOLUTION * scale / last).powf(1.0 / k as f64)
+        (RESOLUTION * scale / last).powf(1.0 / k as f64)
     };
-    (T::ORDER - 3..=T::ORDER)
+    (ORDER - 3..=ORDER)
         .flat_map(|k| [limit(a1, 1.0, k), limit(a2, 1.0, k), limit(w1, rate, k), limit(w2, rate, k)])
         .fold(f64::INFINITY, f64::min)
 }

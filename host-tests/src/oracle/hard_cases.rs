@@ -199,7 +199,7 @@ impl HardCase {
         let mut errors = Vec::new();
         for halvings in HALVINGS {
             let error = |(trial, exact): &(Trial, Vec<State<f64>>)| {
-                let states = trial.states_by(method, 0.5_f64.powi(halvings))?;
+                let states = trial.states(method, 0.5_f64.powi(halvings))?;
                 Ok(largest_difference(&states, exact).max(f64::MIN_POSITIVE).ln())
             };
             match starts.iter().map(error).sum::<Result<f64, Error>>() {

@@ -5,7 +5,7 @@
 use std::str::FromStr;
 
 use anyhow::Context;
-use double_pendulum::{Bounds, Motion, Parameters, Pendulum};
+use double_pendulum::{Motion, Parameters};
 use reference::twofloat::TwoFloat;
 use reference::twofloat::consts::PI;
 
@@ -90,13 +90,6 @@ impl KnownAnswer {
     pub fn start(&self) -> Motion<f64> {
         let ([a1, a2], [w1, w2]) = (self.start_angles, self.start_velocities);
         Motion { a1: a1.into(), a2: a2.into(), w1: w1.into(), w2: w2.into() }
-    }
-
-    /// The fastest rate in the motion, 1/s: the fast normal frequency or the greatest angular velocity.
-    pub fn fastest_rate(&self) -> f64 {
-        let Ok(pendulum) = Pendulum::<f64>::new(&self.parameters()) else { return f64::NAN };
-        let Bounds { w1, w2, .. } = pendulum.bounds(&pendulum.to_state(&self.start()));
-        pendulum.modes().map_or(0.0, |modes| modes.fast.frequency).max(w1).max(w2)
     }
 }
 

@@ -1,6 +1,7 @@
 //! The one table of budgets: how far a number may be off in a test, and why just so far.
 
 use double_pendulum::{Method, Numbers, Parameters, State};
+use reference::enclosure::fastest_rate;
 
 use crate::oracle::known_answers::KnownAnswer;
 
@@ -79,7 +80,7 @@ pub const FIGURE_7_ABOVE: f64 = 0.03;
 /// Beyond the horizon of trust it exceeds 1 and claims nothing; [`KNOWN_ANSWERS_CLAIMED`] counts the rows before it.
 pub fn known_answer(row: &KnownAnswer, method: Method, &State { a1, a2, .. }: &State<f64>) -> f64 {
     const STEPS_PER_SECOND: f64 = 4096.0;
-    let rate = row.fastest_rate();
+    let rate = fastest_rate(&row.parameters(), &row.start());
     let epsilon = PerPrecision { single: f32::EPSILON.into(), double: f64::EPSILON }.by(method);
     let truncation = rate.powi(5) / STEPS_PER_SECOND.powi(4) * row.time / 120.0;
     let angle = a1.abs().max(a2.abs()).max(4.0);

@@ -2,10 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use double_pendulum::{Equations, Error, Form, Method, Parameters, Pendulum, Real, State};
+use double_pendulum::{DirectionF64, Equations, Error, Method, Parameters, Pendulum, State};
 use firmware::job::AnyRun;
-
-use reference::taylor::Reference;
+use reference::{advance, taylor};
 
 /// All methods but those whose errors are not the steps': in closed form of their equations, in `micromath` of the sines.
 pub fn exact_methods() -> impl Iterator<Item = Method> {
@@ -30,7 +29,7 @@ pub struct Trial {
 }
 
 /// Moments at which the errors are taken, evenly spread.
-const SAMPLES: u32 = 16;
+pub const MOMENTS: u32 = 16;
 
 impl Trial {
     /// Held still at (`a1`, `a2`), rad: rods of 1 m, a bob 1 of 1 kg, g = 9.81 m/s^2.
@@ -54,44 +53,47 @@ impl Trial {
         Self { parameters, start: State { a1: 0.3, a2: -0.2, p1: 0.1, p2: -0.1 }, seconds }
     }
 
-    /// The trial as `R` holds it: every number rounded.
-    pub fn rounded<R: Real>(&self) -> (Parameters<R>, State<R>) {
-        (self.parameters.cast(), self.start.cast())
+    /// The trial as the numbers of `method` hold it, each rounded once.
+    pub fn held_by(&self, method: Method) -> Self {
+        if !method.is_single() {
+            return *self;
+        }
+        let (parameters, start) = (self.parameters.cast::<f32>(), self.start.cast::<f32>());
+        Self { parameters: parameters.cast(), start: start.cast(), ..*self }
     }
 
-    /// The states of the form `F` at the moments, in steps of `dt`, s; NaN once the motion is lost.
-    pub fn states<F: Form>(&self, dt: f64) -> Result<Vec<State<f64>>, Error> {
-        let mut run = Pendulum::new(&self.parameters)?.run::<F>(&self.start, dt)?;
-        Ok(self.sampled(dt, |steps| run.advance(steps).map(|()| run.state())))
+    /// The steps of `dt`, s, from one of so many moments to the next.
+    fn steps(&self, dt: f64, moments: u32) -> u32 {
+        (self.seconds / dt / f64::from(moments)).round() as u32
     }
 
-    /// The same by `method`.
-    pub fn states_by(&self, method: Method, dt: f64) -> Result<Vec<State<f64>>, Error> {
+    /// The states by `method` at the moments, in steps of `dt`, s; NaN once the motion is lost.
+    pub fn states(&self, method: Method, dt: f64) -> Result<Vec<State<f64>>, Error> {
         let mut run = run(method, &self.parameters, &self.start, dt)?;
-        Ok(self.sampled(dt, |steps| run.advance(steps).map(|()| run.state())))
+        let steps = self.steps(dt, MOMENTS);
+        let next = |_| run.advance(steps).map_or([f64::NAN; 4].into(), |()| run.state());
+        Ok((0..MOMENTS).map(next).collect())
     }
 
-    fn sampled(&self, dt: f64, mut next: impl FnMut(u32) -> Result<State<f64>, Error>) -> Vec<State<f64>> {
-        let steps = (self.seconds / dt / f64::from(SAMPLES)).round() as u32;
-        (0..SAMPLES).map(|_| next(steps).unwrap_or([f64::NAN; 4].into())).collect()
+    /// The same at so many moments by RK4 in compensated `f64`, which is none of the table.
+    pub fn states_in_f64(&self, dt: f64, moments: u32) -> Result<Vec<State<f64>>, Error> {
+        let mut run = Pendulum::new(&self.parameters)?.run::<DirectionF64>(&self.start, dt)?;
+        let steps = self.steps(dt, moments);
+        (0..moments).map(|_| advance(&mut run, steps).map(|()| run.state())).collect()
     }
 
-    /// The exact states at the moments, for the numbers as `R` holds them.
-    pub fn exact<R: Real>(&self) -> Result<Vec<State<f64>>, Error> {
-        let (parameters, start) = self.rounded::<R>();
-        let pendulum = Pendulum::new(&parameters.cast())?;
-        let mut reference = Reference::new(pendulum.parameters(), &pendulum.to_motion(&start.cast()));
-        let mut at = |sample: u32| {
-            reference.advance_to(self.seconds * f64::from(sample) / f64::from(SAMPLES));
-            pendulum.to_state(&reference.motion())
-        };
-        Ok((1..=SAMPLES).map(&mut at).collect())
+    /// The exact states at the moments.
+    pub fn exact(&self) -> Result<Vec<State<f64>>, Error> {
+        let pendulum = Pendulum::new(&self.parameters)?;
+        let at = |moment: u32| self.seconds * f64::from(moment) / f64::from(MOMENTS);
+        let times: Vec<f64> = (1..=MOMENTS).map(at).collect();
+        Ok(taylor::states(&self.parameters, &pendulum.to_motion(&self.start), &times))
     }
 
-    /// The largest error of an angle, rad, of the form `F` with steps of `dt`, s, beside the exact motion of the numbers as `R`
-    /// holds them.
-    pub fn error<R: Real, F: Form>(&self, dt: f64) -> Result<f64, Error> {
-        Ok(largest_difference(&self.states::<F>(dt)?, &self.exact::<R>()?))
+    /// The largest error of an angle, rad, by `method` with steps of `dt`, s, beside the exact motion of the numbers as it holds
+    /// them.
+    pub fn error(&self, method: Method, dt: f64) -> Result<f64, Error> {
+        Ok(largest_difference(&self.states(method, dt)?, &self.held_by(method).exact()?))
     }
 }
 

@@ -20,19 +20,10 @@ fn narrow() -> impl Iterator<Item = Method> {
     Method::ALL.iter().copied().filter(|method| method.equations() == Equations::Directions).filter(is_narrow)
 }
 
-/// The states at the looks in steps of `dt`, s, by compensated `f64`.
-fn exact(trial: &Trial, dt: f64) -> Result<Vec<State<f64>>, Error> {
-    let mut run = Pendulum::new(&trial.parameters)?.run::<DirectionF64>(&trial.start, dt)?;
-    let steps = (trial.seconds / dt / f64::from(SAMPLES)).round() as u32;
-    (0..SAMPLES).map(|_| advance(&mut run, steps).map(|()| run.state())).collect()
-}
-
-/// The same by `method`, and the greatest difference of the energy that directions and momenta have from that of the state, over
-/// the energy above rest.
+/// The states at the looks by `method`, and the greatest difference of the energy that directions and momenta have from that of the
+/// state, over the energy above rest.
 fn followed(trial: &Trial, method: Method, dt: f64) -> Result<(Vec<State<f64>>, f64), Error> {
-    let rounded = trial.rounded::<f32>();
-    let (parameters, start) =
-        if method.is_single() { (rounded.0.cast(), rounded.1.cast()) } else { (trial.parameters, trial.start) };
+    let Trial { parameters, start, .. } = trial.held_by(method);
     let pendulum = Pendulum::new(&parameters)?;
     let mut run = trials::run(method, &parameters, &start, dt)?;
     let steps = (trial.seconds / dt / f64::from(SAMPLES)).round() as u32;
@@ -50,7 +41,7 @@ fn a_day(mass_ratio: f64, dt: f64) -> Result<(), Error> {
     let trial = Trial::at_rest(mass_ratio, 0.5, 0.5, DAY);
     let pendulum = Pendulum::new(&trial.parameters)?;
     let energy = |state: &State<f64>| pendulum.energy_above_rest(state) / pendulum.energy_above_rest(&trial.start);
-    let exact = exact(&trial, dt)?;
+    let exact = trial.states_in_f64(dt, SAMPLES)?;
     for method in narrow() {
         let (states, apart) = match followed(&trial, method, dt) {
             // with a light bob 1 steps of 1/100 s are too long for it, and it says so
@@ -93,7 +84,7 @@ fn after_a_day_the_time_told_is_right_to_one_step() -> Result<(), Error> {
         let pendulum = Pendulum::new(&Trial::at_rest(mass_ratio, 0.0, 0.0, DAY).parameters)?;
         let slow = pendulum.modes()?.slow;
         let trial = Trial::at_rest(mass_ratio, 0.01, 0.01 * slow.shape, DAY);
-        let exact = exact(&trial, dt)?;
+        let exact = trial.states_in_f64(dt, SAMPLES)?;
         // momentum and angle turn at the mode's frequency
         let scale = trial.parameters.m2 * slow.frequency;
         let phase = |state: &State<f64>| (state.p2 / scale / (1.0 + 1.0 / slow.shape)).atan2(state.a2);

@@ -3,10 +3,7 @@
 use std::f64::consts::TAU;
 
 use double_pendulum::parts::Turns;
-use double_pendulum::{
-    DirectionF32, DirectionF32Plain, Error, ExtrapolationF64, Method, Motion, Numbers, Parameter, Parameters, Pendulum,
-    Run, State,
-};
+use double_pendulum::{DirectionF32, Error, Method, Motion, Numbers, Parameter, Parameters, Pendulum, Run, State};
 use fastrand::Rng;
 use host_tests::oracle::trials::{self, Trial, exact_methods, largest_difference};
 use host_tests::oracle::{random, tolerances};
@@ -19,10 +16,8 @@ fn typical_error(seconds: f64, dt: f64) -> Result<f64, Error> {
     for i in 0..STARTS {
         let on = f64::from(i) * 6e-5;
         let trial = Trial::at_rest(1.0, 0.5 + on, 0.5 - 0.5 * on, seconds);
-        let (parameters, start) = trial.rounded::<f32>();
-        let rounded = Trial { parameters: parameters.cast(), start: start.cast(), seconds };
-        let exact = rounded.states::<ExtrapolationF64<16>>(1.0 / 16.0)?;
-        squares += largest_difference(&trial.states::<DirectionF32>(dt)?, &exact).powi(2);
+        let exact = trial.held_by(Method::Rk4F32Direction).states(Method::Extrapolation16F64, 1.0 / 16.0)?;
+        squares += largest_difference(&trial.states(Method::Rk4F32Direction, dt)?, &exact).powi(2);
     }
     Ok((squares / f64::from(STARTS)).sqrt())
 }
@@ -31,7 +26,7 @@ fn typical_error(seconds: f64, dt: f64) -> Result<f64, Error> {
 #[test]
 fn compensated_single_precision_keeps_its_budgets() -> Result<(), Error> {
     for (i, seconds) in [10.0, 100.0].into_iter().enumerate() {
-        let error = Trial::regular(seconds).error::<f32, DirectionF32>(1.0 / 256.0)?;
+        let error = Trial::regular(seconds).error(Method::Rk4F32Direction, 1.0 / 256.0)?;
         println!("{seconds} s: {error:.2e}");
         assert!(error <= tolerances::DIRECTION_FORM[i], "{seconds} s: {error:e}");
     }
@@ -48,8 +43,8 @@ fn compensated_single_precision_keeps_its_budgets() -> Result<(), Error> {
 #[test]
 fn compensation_pays() -> Result<(), Error> {
     for dt in [1.0 / 256.0, 1.0 / 1024.0] {
-        let trial = Trial::regular(10.0);
-        let gain = trial.error::<f32, DirectionF32Plain>(dt)? / trial.error::<f32, DirectionF32>(dt)?;
+        let error = |method| Trial::regular(10.0).error(method, dt);
+        let gain = error(Method::Rk4F32DirectionPlain)? / error(Method::Rk4F32Direction)?;
         assert!(gain >= tolerances::COMPENSATION_GAIN, "{gain}");
     }
     Ok(())

@@ -1,6 +1,5 @@
 //! The kernel, held against the reference, closed forms and its own symmetries.
 
-mod accuracy;
 mod bounds;
 mod closed_form;
 mod day;

@@ -1,6 +1,6 @@
-//! What holds for every method of the table that makes steps, and for extrapolation of any equation.
+//! The order of each method: of all of the table that make steps, of the plain step, and of extrapolation of any equation.
 
-use double_pendulum::{Error, Extrapolation, Integrator, Method, Motion, Parameter, Parameters};
+use double_pendulum::{Error, Extrapolation, Integrator, Method, Motion, Parameter, Parameters, Pendulum};
 use firmware::job::{JobError, Request};
 use host_tests::oracle::tolerances;
 use reference::taylor;
@@ -46,6 +46,44 @@ fn every_method_is_of_its_order() -> Result<(), JobError> {
         assert!(apart <= tolerances::ORDER_OF_METHODS, "{method}: order {order}");
     }
     Ok(())
+}
+
+/// How far an angle of a regular motion, in which an error grows no faster than the time, is off in 20 s, looked at every second.
+fn error_of_plain_steps(parameters: &Parameters<f64>, start: &Motion<f64>, steps_per_second: u32) -> f64 {
+    let pendulum = Pendulum::new(parameters).expect("valid parameters");
+    let exact = taylor::states(parameters, start, &std::array::from_fn::<f64, 20, _>(|second| second as f64 + 1.0));
+    let mut state = pendulum.to_state(start);
+    let off = exact.iter().map(|exact| {
+        for _ in 0..steps_per_second {
+            state = pendulum.step(&state, 1.0 / f64::from(steps_per_second));
+        }
+        (state.a1 - exact.a1).abs().max((state.a2 - exact.a2).abs())
+    });
+    off.fold(0.0, f64::max)
+}
+
+/// Masses and lengths alike and unlike; steps so fine that the next order is small, and so coarse that rounding is.
+#[test]
+fn the_plain_step_is_of_order_4() {
+    let half = 30_f64.to_radians();
+    for (parameters, start, steps) in [
+        (Parameters::equal_rods(1.0, 1.0, 9.8), Motion::at_rest(half, half), 128),
+        (
+            Parameters { m1: 0.7, m2: 1.3, l1: 0.6, l2: 1.1, g: 9.81 },
+            Motion { a1: 0.3, a2: -0.2, w1: 0.4, w2: -0.5 },
+            1024,
+        ),
+        (
+            Parameters { m1: 3.0, m2: 0.5, l1: 1.0, l2: 0.4, g: 1.62 },
+            Motion { a1: -0.4, a2: 0.6, w1: 0.0, w2: 1.0 },
+            256,
+        ),
+    ] {
+        let errors = [1, 2, 4].map(|finer| error_of_plain_steps(&parameters, &start, finer * steps));
+        for order in errors.windows(2).map(|pair| (pair[0] / pair[1]).log2()) {
+            assert!(tolerances::ORDER.contains(&order), "order {order} for {parameters:?}");
+        }
+    }
 }
 
 /// A swing z'' = -z followed for 20 s.

@@ -222,38 +222,34 @@ fn where_no_method_is_right_there_is_no_plan_but_a_method_asked_for_is_told() {
 fn what_is_refused_is_named_with_its_value() {
     let good = scene(1.0, 90.0, 10.0);
     let budget = STM32F405.budget(&good);
-    let refused = |scene: &Problem| format!("{:?}", Plan::search(scene, &M4F, &budget).expect_err("refused"));
-    let not_positive = |parameter, value: f64| {
-        let finite = value.is_finite();
-        let error =
-            if finite { Error::NotPositive { parameter, value } } else { Error::NotFinite { parameter, value } };
-        format!("{:?}", PlanError::Refused(error))
+    let refused = |scene: Problem, costs: Costs, budget: Budget, expected: Error| {
+        let found = Plan::search(&scene, &costs, &budget).expect_err("refused");
+        assert_eq!(format!("{found:?}"), format!("{:?}", PlanError::Refused(expected)));
     };
-    for bad in [f64::NAN, f64::INFINITY, 0.0, -1.0] {
-        assert_eq!(refused(&Problem { tolerance: bad, ..good }), not_positive(Parameter::Tolerance, bad));
-        assert_eq!(refused(&Problem { duration: bad, ..good }), not_positive(Parameter::Duration, bad));
-        let pendulum = Parameters { m2: bad, ..good.pendulum };
-        let Err(PlanError::Refused(error)) = Plan::search(&Problem { pendulum, ..good }, &M4F, &budget) else {
-            panic!("m2 = {bad} is accepted")
+    for value in [f64::NAN, f64::INFINITY, 0.0, -1.0] {
+        let error = |parameter| match value.is_finite() {
+            true => Error::NotPositive { parameter, value },
+            false => Error::NotFinite { parameter, value },
         };
-        assert_eq!(error.parameter(), Parameter::M2);
-        let single = bad as f32;
-        let of =
-            |costs: &Costs, budget: &Budget| format!("{:?}", Plan::search(&good, costs, budget).expect_err("refused"));
-        assert_eq!(of(&Costs { direction: single, ..M4F }, &budget), not_positive(Parameter::Cost, bad));
-        assert_eq!(of(&M4F, &Budget { frame: single, ..budget }), not_positive(Parameter::Budget, bad));
-        assert_eq!(of(&M4F, &Budget { planning: single, ..budget }), not_positive(Parameter::Budget, bad));
+        let (single, pendulum) = (value as f32, Parameters { m2: value, ..good.pendulum });
+        refused(Problem { tolerance: value, ..good }, M4F, budget, error(Parameter::Tolerance));
+        refused(Problem { duration: value, ..good }, M4F, budget, error(Parameter::Duration));
+        refused(Problem { pendulum, ..good }, M4F, budget, error(Parameter::M2));
+        refused(good, Costs { direction: single, ..M4F }, budget, error(Parameter::Cost));
+        refused(good, M4F, Budget { frame: single, ..budget }, error(Parameter::Budget));
+        refused(good, M4F, Budget { planning: single, ..budget }, error(Parameter::Budget));
     }
-    assert_eq!(refused(&Problem { rate: 0, ..good }), not_positive(Parameter::Rate, 0.0));
+    let parameter = Parameter::Rate;
+    refused(Problem { rate: 0, ..good }, M4F, budget, Error::NotPositive { parameter, value: 0.0 });
+    let (parameter, value) = (Parameter::W1, f64::NEG_INFINITY);
+    let start = Motion { w1: value, ..good.start };
+    refused(Problem { start, ..good }, M4F, budget, Error::NotFinite { parameter, value });
+    let (parameter, limit) = (Parameter::Duration, f64::from(u32::MAX) / f64::from(RATE));
+    let too_long = Error::TooLarge { parameter, value: 1e9, limit };
+    refused(Problem { duration: 1e9, ..good }, M4F, budget, too_long);
     // Out of the range of f32.
     let pendulum = Parameters { m1: 1e60, m2: 1e60, ..good.pendulum };
     assert!(matches!(Plan::search(&Problem { pendulum, ..good }, &M4F, &budget), Err(PlanError::Refused(_))));
-    let start = Motion { w1: f64::NEG_INFINITY, ..good.start };
-    let motion = PlanError::Refused(Error::NotFinite { parameter: Parameter::W1, value: f64::NEG_INFINITY });
-    assert_eq!(Plan::search(&Problem { start, ..good }, &M4F, &budget), Err(motion));
-    let limit = f64::from(u32::MAX) / f64::from(RATE);
-    let too_long = PlanError::Refused(Error::TooLarge { parameter: Parameter::Duration, value: 1e9, limit });
-    assert_eq!(Plan::search(&Problem { duration: 1e9, ..good }, &M4F, &budget), Err(too_long));
 }
 
 /// Where no method meets the tolerance, the limit is what to raise: the planning budget while an affordable candidate has not failed yet, else the

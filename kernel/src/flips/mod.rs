@@ -21,7 +21,7 @@ mod side_by_side;
 use crate::error::Error;
 use crate::methods::turns::turns_over;
 use crate::methods::{Form, Side};
-use crate::numbers::Real;
+use crate::numbers::{Real, Scalar};
 use crate::pendulum::{Direction, Parameters, Pendulum, State};
 
 /// When a rod first turns over.
@@ -42,10 +42,9 @@ pub enum Flip<R> {
 /// [`step_size`] the repository's tests assert: of equal rods and bobs 99.9 % within 10 sqrt(l/g), in any arithmetic.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flips<F: Form> {
-    form: F,
     pendulum: Pendulum<F::Real>,
     /// The motion from straight up, which has the most energy.
-    highest: F::Carried,
+    highest: F,
     dt: F::Real,
     steps: u32,
 }
@@ -54,7 +53,7 @@ pub struct Flips<F: Form> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct Falling<F: Form> {
-    carried: F::Carried,
+    motion: F,
     heads: [Direction<F::Side>; 2],
     steps: u32,
 }
@@ -87,9 +86,8 @@ impl<F: Form> Flips<F> {
     ///
     /// Refuses what the form refuses, of parameters, steps and the energy of the highest start.
     pub fn new(parameters: &Parameters<F::Real>, dt: f64, steps: u32) -> Result<Self, Error> {
-        let form = F::new(&parameters.cast(), dt)?;
-        let highest = form.start(&State::at_rest(F::Real::PI, F::Real::PI).cast())?;
-        Ok(Self { form, pendulum: Pendulum::new(parameters)?, highest, dt: F::Real::from_f64(dt), steps })
+        let highest = F::new(&parameters.cast(), &State::at_rest(F::Real::PI, F::Real::PI).cast(), dt)?;
+        Ok(Self { pendulum: Pendulum::new(parameters)?, highest, dt: F::Real::from_f64(dt), steps })
     }
 
     /// The motion let go at the angles `a1`, `a2`, rad; none if it never turns over.
@@ -102,8 +100,8 @@ impl<F: Form> Flips<F> {
         if self.pendulum.cannot_turn_over(&state) {
             return Ok(None);
         }
-        let carried = self.form.start_below(&self.highest, &state.cast())?;
-        Ok(Some(Falling { carried, heads: F::heads(&carried), steps: 0 }))
+        let motion = self.highest.started(&state.cast())?;
+        Ok(Some(Falling { motion, heads: motion.heads(), steps: 0 }))
     }
 
     /// Makes at most `steps` steps; what is known after them.
@@ -114,8 +112,8 @@ impl<F: Form> Flips<F> {
             if falling.steps >= self.steps {
                 return Some(Flip::Later);
             }
-            self.form.advance_one(&mut falling.carried);
-            let before = core::mem::replace(&mut falling.heads, F::heads(&falling.carried));
+            falling.motion.advance_one();
+            let before = core::mem::replace(&mut falling.heads, falling.motion.heads());
             if passes(&before, &falling.heads) < 0 {
                 return Some(self.passage(falling.steps, before, falling.heads));
             }

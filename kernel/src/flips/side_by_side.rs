@@ -10,7 +10,6 @@ use crate::methods::{DirectionF32Plain, Form, Side};
 use crate::numbers::Lanes;
 use crate::pendulum::{Direction, State};
 
-type Motion = <DirectionF32Plain as Form>::Carried;
 type Motions<const N: usize> = DirectionLanes<f32, N, ROWS>;
 type Heads<const N: usize> = [Direction<Lanes<f32, N>>; 2];
 
@@ -39,8 +38,8 @@ impl Flips<DirectionF32Plain> {
         mut give: impl FnMut(usize, Flip<f32>),
     ) -> Result<(), Error> {
         let mut starts = starts.into_iter().enumerate();
-        let hanging = self.form.start(&State::at_rest(0.0, 0.0))?;
-        let mut motions = Motions::<N>::new(&self.form, &hanging);
+        let hanging = self.highest.started(&State::at_rest(0.0, 0.0))?;
+        let mut motions = Motions::<N>::new(&hanging);
         let mut lanes: [[Option<Lane>; N]; ROWS] = [[None; N]; ROWS];
         loop {
             for (place, lane) in lanes.as_flattened_mut().iter_mut().enumerate() {
@@ -65,10 +64,10 @@ impl Flips<DirectionF32Plain> {
         &self,
         starts: &mut impl Iterator<Item = (usize, [f32; 2])>,
         give: &mut impl FnMut(usize, Flip<f32>),
-    ) -> Result<Option<(usize, Motion)>, Error> {
+    ) -> Result<Option<(usize, DirectionF32Plain)>, Error> {
         for (start, [a1, a2]) in starts {
             match self.start(a1, a2)? {
-                Some(Falling { carried, .. }) => return Ok(Some((start, carried))),
+                Some(Falling { motion, .. }) => return Ok(Some((start, motion))),
                 None => give(start, Flip::Never),
             }
         }
@@ -90,7 +89,7 @@ impl Flips<DirectionF32Plain> {
             if let Some(kept) = kept {
                 for (place, lane) in lanes.as_flattened().iter().enumerate() {
                     let count = |lane: &Lane| u64::from(self.steps) - u64::from(lane.left) + u64::from(BLOCK);
-                    if lane.as_ref().is_some_and(|lane| self.form.leaves_out(count(lane))) {
+                    if lane.as_ref().is_some_and(|lane| self.highest.leaves_out(count(lane))) {
                         motions.keep(place, &kept);
                     }
                 }
@@ -172,7 +171,7 @@ mod tests {
             [Parameters::equal_rods(1.0, 1.0, 1.0), Parameters { m1: 2.0, m2: 1.0, l1: 1.0, l2: 0.6, g: 1.0 }]
         {
             let flips = flips(&parameters)?;
-            let flips = Flips { form: flips.form.leaving_out_more(), ..flips };
+            let flips = Flips { highest: flips.highest.leaving_out_more(), ..flips };
             let found = any(&flips)?;
             assert_eq!(found, all(&flips)?, "vectors as this processor has them");
             for (flip, [a1, a2]) in found.iter().zip(starts(SIDE)) {

@@ -32,6 +32,7 @@ impl<R: Real> Derivatives<R> for Pendulum<R> {
 pub struct Canonical<R, E = Pendulum<R>> {
     equations: E,
     dt: R,
+    state: State<R>,
 }
 
 impl<R, E> Sealed for Canonical<R, E> {}
@@ -39,49 +40,49 @@ impl<R, E> Sealed for Canonical<R, E> {}
 #[doc(hidden)]
 impl<R: Real + super::Side, E: Derivatives<R>> Form for Canonical<R, E> {
     type Real = R;
-    type Carried = State<R>;
     type Side = R;
     const HAS_TURNS: bool = true;
 
-    fn new(parameters: &Parameters<f64>, dt: f64) -> Result<Self, Error> {
+    fn new(parameters: &Parameters<f64>, start: &State<f64>, dt: f64) -> Result<Self, Error> {
         check_step::<f64>(dt)?;
-        Ok(Self { equations: E::prepare(&parameters.cast())?, dt: R::from_f64(dt) })
+        let equations = E::prepare(&parameters.cast())?;
+        Self { equations, dt: R::from_f64(dt), state: State::default() }.started(start)
     }
 
-    fn start(&self, state: &State<f64>) -> Result<State<R>, Error> {
-        let state = state.cast();
+    fn started(&self, start: &State<f64>) -> Result<Self, Error> {
+        let state = start.cast();
         state.check()?;
-        Ok(state)
+        Ok(Self { state, ..*self })
     }
 
     #[inline(always)]
-    fn advance(&self, carried: &mut State<R>, steps: u32) {
+    fn advance(&mut self, steps: u32) {
         for _ in 0..steps {
-            *carried = rk4::step(|z| self.equations.derivatives(z), &(*carried).into(), self.dt).into();
+            self.state = rk4::step(|z| self.equations.derivatives(z), &self.state.into(), self.dt).into();
         }
     }
 
-    fn check(&self, carried: &State<R>) -> Result<(), Error> {
-        carried.finite().map(drop)
+    fn check(&self) -> Result<(), Error> {
+        self.state.finite().map(drop)
     }
 
-    fn heads(carried: &State<R>) -> [Direction<R>; 2] {
-        carried.angles().map(|angle| angle.own_sin_cos().into())
+    fn heads(&self) -> [Direction<R>; 2] {
+        self.state.angles().map(|angle| angle.own_sin_cos().into())
     }
 
-    fn directions<Q: Real>(&self, carried: &State<R>) -> [Direction<Q>; 2] {
-        Self::heads(carried).map(|head| head.map(R::cast))
+    fn directions<Q: Real>(&self) -> [Direction<Q>; 2] {
+        self.heads().map(|head| head.map(R::cast))
     }
 
-    fn momenta<Q: Real>(&self, carried: &State<R>) -> [Q; 2] {
-        [carried.p1.cast(), carried.p2.cast()]
+    fn momenta<Q: Real>(&self) -> [Q; 2] {
+        [self.state.p1.cast(), self.state.p2.cast()]
     }
 
-    fn state(&self, carried: &State<R>) -> State<f64> {
-        carried.cast()
+    fn state(&self) -> State<f64> {
+        self.state.cast()
     }
 
-    fn bits(carried: &State<R>, feed: impl FnMut(u64)) {
-        <[R; 4]>::from(*carried).map(R::bits).into_iter().for_each(feed);
+    fn bits(&self, feed: impl FnMut(u64)) {
+        <[R; 4]>::from(self.state).map(R::bits).into_iter().for_each(feed);
     }
 }

@@ -9,7 +9,6 @@ mod fixed64;
 pub mod rk4;
 mod run;
 mod scaling;
-mod stepper;
 pub(crate) mod turns;
 
 pub use canonical::{Canonical, Derivatives};
@@ -18,7 +17,6 @@ pub use direction::{DirectionForm, ExtrapolationF64, Plain};
 pub use fixed32::Fixed32;
 pub use fixed64::Fixed64;
 pub use run::Run;
-pub use stepper::Stepper;
 pub use turns::{Side, Turns};
 
 use core::fmt::Debug;
@@ -43,10 +41,10 @@ pub type ClosedFormF32 = ClosedForm<f32>;
 /// The same in `f64`.
 pub type ClosedFormF64 = ClosedForm<f64>;
 
-/// A method's equations, numbers and integrator as one type, with a pendulum and a step prepared; sealed.
+/// A method's equations, numbers and integrator as one type: a motion of a pendulum in steps, unchecked and without its turns;
+/// sealed.
 ///
-/// [`Pendulum::run`](crate::Pendulum::run) is called with it. Its items are machinery: what is carried from step to step is
-/// apart from the form, so that one form may drive many motions.
+/// [`Pendulum::run`](crate::Pendulum::run) is called with it. Its items are machinery.
 ///
 /// A step of 1/240 s is as good as one of 1/256 s, though no `f32` holds it: constants are rounded so that a step is longer
 /// than dt by a share that is known, up to 2e-6 in `f32`. Half a step ahead, one step is left out; [`Run::state`] takes back
@@ -55,57 +53,55 @@ pub trait Form: Sealed + Copy + Debug + PartialEq + 'static {
     /// What [`Run::directions`] and [`Run::angles`] are told in.
     #[doc(hidden)]
     type Real: Real;
-    /// A motion: what is carried from step to step.
-    #[doc(hidden)]
-    type Carried: Copy + Debug + PartialEq + 'static;
     /// What [`heads`](Self::heads) are made of.
     #[doc(hidden)]
     type Side: Side;
 
-    /// Checks the parameters and prepares steps of `dt` seconds; a negative one runs backwards.
+    /// Checks the parameters and prepares the motion from `start` in steps of `dt` seconds; a negative one runs backwards.
     #[doc(hidden)]
-    fn new(parameters: &Parameters<f64>, dt: f64) -> Result<Self, Error>;
+    fn new(parameters: &Parameters<f64>, start: &State<f64>, dt: f64) -> Result<Self, Error>;
 
-    /// The motion that starts from `state`.
+    /// The same pendulum from another start, whose energy is no greater: in the same units.
     #[doc(hidden)]
-    fn start(&self, state: &State<f64>) -> Result<Self::Carried, Error>;
-
-    /// The motion that starts from `state`, whose energy is at most that of `above`: in the same units.
-    #[doc(hidden)]
-    fn start_below(&self, _above: &Self::Carried, state: &State<f64>) -> Result<Self::Carried, Error> {
-        self.start(state)
-    }
+    fn started(&self, start: &State<f64>) -> Result<Self, Error>;
 
     /// Makes `steps` steps. How they are dealt out to calls makes no difference to any bit.
     #[doc(hidden)]
-    fn advance(&self, carried: &mut Self::Carried, steps: u32);
+    fn advance(&mut self, steps: u32);
 
     /// [`advance`](Self::advance) by one step, for a loop that looks at each.
     #[doc(hidden)]
     #[inline(always)]
-    fn advance_one(&self, carried: &mut Self::Carried) {
-        self.advance(carried, 1);
+    fn advance_one(&mut self) {
+        self.advance(1);
     }
 
     /// Refuses a motion that has left the finite numbers, at the cost of a few comparisons.
     #[doc(hidden)]
-    fn check(&self, carried: &Self::Carried) -> Result<(), Error>;
+    fn check(&self) -> Result<(), Error>;
 
     /// Directions as they are carried, each as long as it likes: their signs tell when a rod turns over.
     #[doc(hidden)]
-    fn heads(carried: &Self::Carried) -> [Direction<Self::Side>; 2];
+    fn heads(&self) -> [Direction<Self::Side>; 2];
+
+    /// The signs of the directions.
+    #[doc(hidden)]
+    #[inline]
+    fn sides(&self) -> [[i32; 2]; 2] {
+        self.heads().map(|direction| direction.map(Side::sign))
+    }
 
     /// The directions of both rods, in `Q`; no trigonometry where they are what is carried.
     #[doc(hidden)]
-    fn directions<Q: Real>(&self, carried: &Self::Carried) -> [Direction<Q>; 2];
+    fn directions<Q: Real>(&self) -> [Direction<Q>; 2];
 
     /// The momenta p1 and p2, kg m^2/s, when the rods point to the [`directions`](Self::directions).
     #[doc(hidden)]
-    fn momenta<Q: Real>(&self, carried: &Self::Carried) -> [Q; 2];
+    fn momenta<Q: Real>(&self) -> [Q; 2];
 
     /// The canonical state in SI units, to the last digit carried, at the number of steps times dt.
     #[doc(hidden)]
-    fn state(&self, carried: &Self::Carried) -> State<f64>;
+    fn state(&self) -> State<f64>;
 
     /// Whether [`state`](Self::state) has angles with all their turns.
     #[doc(hidden)]
@@ -113,5 +109,5 @@ pub trait Form: Sealed + Copy + Debug + PartialEq + 'static {
 
     /// Gives `feed` the bit patterns of all that is carried, the number of steps among them, to compare machines by.
     #[doc(hidden)]
-    fn bits(carried: &Self::Carried, feed: impl FnMut(u64));
+    fn bits(&self, feed: impl FnMut(u64));
 }

@@ -1,6 +1,6 @@
 //! A motion under way: checked, and its turns counted.
 
-use super::{Fixed32, Form, Stepper, Turns};
+use super::{Fixed32, Form, Turns};
 use crate::error::Error;
 use crate::numbers::Real;
 use crate::pendulum::{Direction, Pendulum, State};
@@ -11,7 +11,7 @@ use crate::pendulum::{Direction, Pendulum, State};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Run<F: Form> {
     pendulum: Pendulum<F::Real>,
-    motion: Stepper<F>,
+    motion: F,
     turns: [Turns; 2],
     dt: f64,
     steps: u64,
@@ -26,7 +26,7 @@ impl<R: Real> Pendulum<R> {
     /// [`admissible_step`](Self::admissible_step) for what resolves every motion of an energy.
     pub fn run<F: Form>(&self, start: &State<R>, dt: f64) -> Result<Run<F>, Error> {
         let parameters = self.parameters().cast();
-        let motion = Stepper::<F>::new(&parameters, &start.cast(), dt)?;
+        let motion = F::new(&parameters, &start.cast(), dt)?;
         let turns = Turns::of(start.angles().map(R::to_f64), motion.sides());
         Ok(Run { pendulum: Pendulum::new(&parameters.cast())?, motion, turns, dt, steps: 0 })
     }
@@ -36,16 +36,15 @@ impl<F: Form> Run<F> {
     /// Makes `steps` steps, or none: [`Error::Diverged`] if they led out of the finite numbers, and the run stays as it was.
     /// How steps are dealt out to calls makes no difference to any bit.
     pub fn advance(&mut self, steps: u32) -> Result<(), Error> {
-        let Stepper { form, mut carried } = self.motion;
-        let mut turns = self.turns;
+        let Self { mut motion, mut turns, .. } = *self;
         for _ in 0..steps {
-            form.advance(&mut carried, 1);
+            motion.advance(1);
             if !F::HAS_TURNS {
-                Turns::observe(&mut turns, F::heads(&carried).map(|head| head.map(super::Side::sign)));
+                Turns::observe(&mut turns, motion.sides());
             }
         }
-        form.check(&carried)?;
-        (self.motion.carried, self.turns) = (carried, turns);
+        motion.check()?;
+        (self.motion, self.turns) = (motion, turns);
         self.steps += u64::from(steps);
         Ok(())
     }
@@ -96,6 +95,6 @@ impl Run<Fixed32> {
     /// Steps are made of integers, too: no soft float is linked into such a loop.
     #[must_use]
     pub fn directions_q30(&self) -> [Direction<i32>; 2] {
-        self.motion.carried.directions_q30()
+        self.motion.q30()
     }
 }

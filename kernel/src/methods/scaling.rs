@@ -53,19 +53,6 @@ pub(super) fn lost(is_lost: bool) -> Result<(), Error> {
 }
 
 impl Scaling {
-    /// For a motion within `bounds`, no rate of which may exceed `rate` and no torque of gravity `torque` in these units:
-    /// `unit` chooses T and is told the longest, s, by rates and by torques.
-    pub fn new(
-        parameters: &Parameters<f64>,
-        bounds: &Bounds<f64>,
-        [rate, torque]: [f64; 2],
-        unit: impl FnOnce([f64; 2]) -> Result<f64, Error>,
-    ) -> Result<Self, Error> {
-        let scaling = Self::in_seconds(parameters)?;
-        let longest = scaling.longest(bounds, [rate, torque]);
-        Ok(scaling.in_unit(unit(longest)?))
-    }
-
     /// The same in another unit of time, `time` of this one's.
     #[must_use]
     pub fn in_unit(self, time: f64) -> Self {
@@ -115,7 +102,7 @@ impl Scaling {
 
     /// The longest T in which no rate of a motion within `bounds` exceeds `rate`, and that in which no torque of gravity
     /// exceeds `torque`.
-    fn longest(&self, bounds: &Bounds<f64>, [rate, torque]: [f64; 2]) -> [f64; 2] {
+    pub fn longest(&self, bounds: &Bounds<f64>, [rate, torque]: [f64; 2]) -> [f64; 2] {
         let [momentum1, momentum2] = self.momenta;
         let rates = [
             bounds.elbow,
@@ -128,9 +115,7 @@ impl Scaling {
         let [gravity1, gravity2] = self.gravity;
         [rate / fastest, libm::sqrt(torque / libm::fmax(gravity1, gravity2 * self.norm))]
     }
-}
 
-impl Scaling {
     /// m + S^2, by the powers of two that keep its inverse at most 1.
     pub fn denominator(&self, s: f64) -> f64 {
         self.inertia + scaled(s * s, self.shifts.inverse as i32 - self.shifts.momentum as i32)

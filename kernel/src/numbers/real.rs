@@ -28,8 +28,6 @@ pub trait Real:
     const EPSILON: Self;
 
     #[doc(hidden)]
-    fn from_f64(value: f64) -> Self;
-    #[doc(hidden)]
     fn to_f64(self) -> f64;
     #[doc(hidden)]
     fn from_i64(value: i64) -> Self;
@@ -101,7 +99,7 @@ macro_rules! real {
             type Gravity = Self;
             type Torque = Self;
             #[inline(always)]
-            fn constant(value: f64) -> Self {
+            fn from_f64(value: f64) -> Self {
                 value as $float
             }
             #[inline(always)]
@@ -135,10 +133,6 @@ macro_rules! real {
             const PI: Self = core::$float::consts::PI;
             const EPSILON: Self = $float::EPSILON;
 
-            #[inline(always)]
-            fn from_f64(value: f64) -> Self {
-                value as $float
-            }
             #[inline(always)]
             fn to_f64(self) -> f64 {
                 self as f64

@@ -20,7 +20,7 @@ pub trait Scalar:
     /// The rate of change of a momentum.
     type Torque: Copy + Debug + Add<Output = Self::Torque> + Sub<Output = Self::Torque> + Neg<Output = Self::Torque>;
     /// The number nearest to `value`.
-    fn constant(value: f64) -> Self;
+    fn from_f64(value: f64) -> Self;
     /// Twice the number: an addition, or a step of the exponent where an addition would be a call of 100 cycles and more.
     #[must_use]
     fn twice(self) -> Self;
@@ -36,11 +36,11 @@ pub trait Scalar:
     /// `value`, of any size, as a whole number and the rest: [`times`](Self::times) the one and a product with the other.
     #[must_use]
     fn split(value: f64) -> (i32, Self) {
-        (0, Self::constant(value))
+        (0, Self::from_f64(value))
     }
     /// The product with a whole number.
     #[must_use]
     fn times(self, whole: i32) -> Self {
-        self * Self::constant(f64::from(whole))
+        self * Self::from_f64(f64::from(whole))
     }
 }

@@ -1,6 +1,7 @@
 //! Hamilton's equations, written once for every kind of number.
 
 use crate::numbers::{Real, Scalar};
+use crate::pendulum::State;
 
 /// (sin, cos) of an angle from the downward vertical.
 pub type Direction<R> = [R; 2];
@@ -13,8 +14,8 @@ pub type Direction<R> = [R; 2];
 /// - r = 1/(m + S^2); u = a1' = (P1 - C P2) r; v = a2' = P2 - C u; F = u v S
 /// - P1' = -G1 sin a1 - F; P2' = -G2 nu sin a2 + F, where nu sin a2 = C sin a1 - S cos a1
 ///
-/// Rods of any lengths cost what equal rods do. Floating point counts time in tau, a step or half of one
-/// ([`Span`](super::coefficients::Span)), so that no rate is multiplied by dt.
+/// Rods of any lengths cost what equal rods do. Floating point counts time in tau, a step or half of one, so that no rate is
+/// multiplied by dt.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Coefficients<R, G = R> {
     /// nu.
@@ -166,6 +167,21 @@ pub(crate) fn increments<R: Scalar<Gravity = R, Slope = R, Torque = R>>(z: &[R; 
     let [sin1, cos1, s, c] = turning(z, rates.angles);
     let [p1, p2] = rates.momenta;
     [sin1, cos1, s, c, p1, p2]
+}
+
+/// sin a1, cos a1, S, C, P1, P2 of a state, nu being `norm` and momenta being counted `units` to a kg m^2/s.
+#[inline(never)] // one copy
+pub(crate) fn quantities(&State { a1, a2, p1, p2 }: &State<f64>, norm: f64, [unit1, unit2]: [f64; 2]) -> [f64; 6] {
+    let (sin1, cos1) = a1.own_sin_cos();
+    let (sin_d, cos_d) = (a1 - a2).own_sin_cos();
+    [sin1, cos1, norm * sin_d, norm * cos_d, p1 * unit1, p2 * unit2]
+}
+
+/// The way back, angles within a turn.
+#[inline(never)] // one copy
+pub(crate) fn state_of([sin1, cos1, s, c, p1, p2]: [f64; 6], [unit1, unit2]: [f64; 2]) -> State<f64> {
+    let [sin2, cos2] = lower_ray([sin1, cos1], [s, c]);
+    State { a1: libm::atan2(sin1, cos1), a2: libm::atan2(sin2, cos2), p1: p1 / unit1, p2: p2 / unit2 }
 }
 
 /// The direction of rod 2 from that of rod 1 and (S, C) = `norm` (sin D, cos D), a2 = a1 - D.

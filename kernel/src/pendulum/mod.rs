@@ -4,7 +4,6 @@ pub(crate) mod directions;
 mod geometry;
 pub(crate) mod hamiltonian;
 mod lagrangian;
-mod legendre;
 mod parameters;
 mod state;
 

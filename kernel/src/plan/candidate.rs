@@ -1,7 +1,6 @@
 //! A method that is tried.
 
-use super::cost::Costs;
-use super::way::Way;
+use super::cost::{Costs, Way};
 use crate::table::Method;
 
 /// A bob may be off by this much where the tolerance is the unit.
@@ -13,9 +12,7 @@ const WORTH: f64 = 1.1;
 /// How a method has fared so far.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Candidate {
-    pub method: Method,
-    /// Steps to a frame.
-    pub steps: u32,
+    pub way: Way,
     /// Frames it was right in, from the start on.
     pub right: u32,
     /// The largest error measured in them, over the tolerance.
@@ -25,12 +22,12 @@ pub(super) struct Candidate {
 }
 
 impl Candidate {
-    pub fn new(method: Method, steps: u32) -> Self {
-        Self { method, steps, right: 0, error: 0.0, failed: false }
+    pub fn new(way: Way) -> Self {
+        Self { way, right: 0, error: 0.0, failed: false }
     }
 
     pub fn cost(&self, costs: &Costs) -> f32 {
-        costs.of_frame(self.method, self.steps)
+        costs.of_frame(self.way.method, self.way.steps)
     }
 
     /// Whether it is right for so much longer than `other` that it is worth more.
@@ -41,8 +38,8 @@ impl Candidate {
     /// In how many frames it shows `way` to be right; one that has the longest horizon of all is so wherever any is.
     #[inline(never)] // one copy
     pub fn right_of(&self, way: Way, has_longest_horizon: bool) -> u32 {
-        let is_same = self.steps == way.steps || way.method == Method::ClosedFormF32;
-        let is_shown = has_longest_horizon || self.method == way.method && is_same;
+        let is_same = self.way.steps == way.steps || way.method == Method::ClosedFormF32;
+        let is_shown = has_longest_horizon || self.way.method == way.method && is_same;
         if is_shown { self.right } else { 0 }
     }
 
@@ -64,14 +61,16 @@ mod tests {
 
     #[test]
     fn what_is_right_in_one_way_says_nothing_of_another() {
-        let candidate = Candidate { right: 7, ..Candidate::new(Method::Rk4F32Direction, 4) };
-        let right = |method, steps, has_longest_horizon| candidate.right_of(Way { method, steps }, has_longest_horizon);
-        assert_eq!(right(Method::Rk4F32Direction, 4, false), 7);
-        assert_eq!(right(Method::Rk4F32Direction, 2, false), 0);
-        assert_eq!(right(Method::Rk4F32DirectionPlain, 4, false), 0);
-        assert_eq!(right(Method::Extrapolation10Fixed64, 3, true), 7);
-        let closed = Candidate { right: 5, ..Candidate::new(Method::ClosedFormF32, 1) };
-        assert_eq!(closed.right_of(Way { method: Method::ClosedFormF32, steps: 0 }, false), 5);
-        assert_eq!(closed.right_of(Way { method: Method::Rk4F32Direction, steps: 1 }, false), 0);
+        let right = |of: (Method, u32), method, steps, has_longest_horizon| {
+            let candidate = Candidate { right: 7, ..Candidate::new(Way { method: of.0, steps: of.1 }) };
+            candidate.right_of(Way { method, steps }, has_longest_horizon)
+        };
+        let direction = (Method::Rk4F32Direction, 4);
+        assert_eq!(right(direction, Method::Rk4F32Direction, 4, false), 7);
+        assert_eq!(right(direction, Method::Rk4F32Direction, 2, false), 0);
+        assert_eq!(right(direction, Method::Rk4F32DirectionPlain, 4, false), 0);
+        assert_eq!(right(direction, Method::Extrapolation10Fixed64, 3, true), 7);
+        assert_eq!(right((Method::ClosedFormF32, 1), Method::ClosedFormF32, 0, false), 7);
+        assert_eq!(right((Method::ClosedFormF32, 1), Method::Rk4F32Direction, 1, false), 0);
     }
 }

@@ -1,7 +1,9 @@
-//! What each method costs, and what may be spent.
+//! What each method costs, what may be spent, and the ways that are to be had for it.
 
+use super::PlannedRun;
 use super::error::check_positive;
 use crate::error::{Error, Parameter};
+use crate::pendulum::{Motion, Parameters, Pendulum};
 use crate::table::Method;
 
 /// The order of the steps in 64 bits of fixed point. 8 lasts less long, 12 costs 1.4 times as much and lasts no longer: the
@@ -62,5 +64,113 @@ pub struct Budget {
 impl Budget {
     pub(super) fn check(&self) -> Result<(), Error> {
         check_positive(Parameter::Budget, &[self.frame.into(), self.planning.into()])
+    }
+}
+
+/// How a motion is computed: a method, and how fine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[doc(hidden)]
+pub struct Way {
+    pub method: Method,
+    /// Steps to a frame; of no meaning to the closed form, which has none.
+    pub steps: u32,
+}
+
+/// At so many admissible steps or less in one, the roundings of [`Method::Extrapolation10Fixed64`] are what ends its horizon, not its steps.
+pub(super) const RESOLVING: f64 = 2.1;
+
+/// The first step looked at is no longer than this many admissible ones: the fastest rate that the energy allows turns a
+/// radian in it. In longer steps two runs could miss alike what neither sees.
+pub(super) const FIRST_STEP: f64 = 4.0;
+
+/// Finer steps than this many to a frame are never tried.
+pub(super) const MOST_STEPS: u32 = 1 << 16;
+
+/// The fewest steps by `method` to a frame, of which there are `rate` in a second, that are no longer than `longest` s; in 32
+/// bits a power of two, as the steps that refine them.
+#[inline(never)] // one copy
+pub(super) fn steps_to_frame(method: Method, rate: u16, longest: f64) -> u32 {
+    let fewest = libm::ceil(1.0 / (longest * f64::from(rate)));
+    let fewest = (fewest as u32).clamp(1, MOST_STEPS);
+    if method == Method::Extrapolation10Fixed64 { fewest } else { fewest.next_power_of_two() }
+}
+
+/// The longest step that resolves every motion of the energy of `start`, s.
+///
+/// Refuses what [`Pendulum::new`] and [`Pendulum::admissible_step`] refuse.
+#[inline(never)] // one copy
+pub(super) fn admissible_step(parameters: &Parameters<f64>, start: &Motion<f64>) -> Result<f64, Error> {
+    let pendulum = Pendulum::new(parameters)?;
+    pendulum.admissible_step(&pendulum.to_state(start))
+}
+
+impl Way {
+    /// The way that a motion may be shown in while nothing is known of it but its energy: by [`Method::Extrapolation10Fixed64`] where
+    /// `frame`, which a frame may cost, allows for it, in steps that resolve all there may be or, if those cost too much, the
+    /// longest that are looked at; else by such steps in 32 bits, or as many as can be had.
+    ///
+    /// Refuses what [`Pendulum::new`] and [`Pendulum::admissible_step`] refuse.
+    #[doc(hidden)]
+    pub fn lasting(
+        parameters: &Parameters<f64>,
+        start: &Motion<f64>,
+        rate: u16,
+        costs: &Costs,
+        frame: f32,
+    ) -> Result<Self, Error> {
+        let admissible = admissible_step(parameters, start)?;
+        for longest in [RESOLVING, FIRST_STEP] {
+            if let Some(way) = Self::fixed64(parameters, start, rate, longest * admissible, costs, frame) {
+                return Ok(way);
+            }
+        }
+        let affordable = |method| {
+            let mut steps = steps_to_frame(method, rate, FIRST_STEP * admissible);
+            while steps > 1 && costs.of_frame(method, steps) > frame {
+                steps /= 2;
+            }
+            Self { method, steps }
+        };
+        let fixed = affordable(Method::Rk4Fixed32);
+        let is_fixed = costs.fixed32 < costs.direction && fixed.check(parameters, start, rate).is_ok();
+        Ok(if is_fixed { fixed } else { affordable(Method::Rk4F32Direction) })
+    }
+
+    /// By `method`, in the longest steps that resolve every motion of this energy. Refuses what [`lasting`](Self::lasting) refuses.
+    #[doc(hidden)]
+    pub fn of(parameters: &Parameters<f64>, start: &Motion<f64>, rate: u16, method: Method) -> Result<Self, Error> {
+        let admissible = admissible_step(parameters, start)?;
+        let longest = if method == Method::Extrapolation10Fixed64 { RESOLVING } else { FIRST_STEP };
+        Ok(Self { method, steps: steps_to_frame(method, rate, longest * admissible) })
+    }
+
+    /// By [`Method::Extrapolation10Fixed64`] in steps of `longest` s or less, as coarse as its numbers take, if they cost no more than `frame`.
+    pub(super) fn fixed64(
+        parameters: &Parameters<f64>,
+        start: &Motion<f64>,
+        rate: u16,
+        longest: f64,
+        costs: &Costs,
+        frame: f32,
+    ) -> Option<Self> {
+        let method = Method::Extrapolation10Fixed64;
+        let mut way = Self { method, steps: steps_to_frame(method, rate, longest) };
+        while costs.of_frame(way.method, way.steps) <= frame && way.steps < MOST_STEPS {
+            match way.check(parameters, start, rate) {
+                Ok(()) => return Some(way),
+                Err(Error::TooLarge { parameter: Parameter::Dt, limit, .. }) => {
+                    let enough = steps_to_frame(way.method, rate, limit);
+                    way.steps = if enough > way.steps { enough } else { way.steps + 1 };
+                }
+                Err(_) => return None,
+            }
+        }
+        None
+    }
+
+    /// Refuses a motion that cannot be started in this way.
+    #[inline(never)] // the motion stands on the stack
+    fn check(self, parameters: &Parameters<f64>, start: &Motion<f64>, rate: u16) -> Result<(), Error> {
+        PlannedRun::new(parameters, start, rate, self).map(|_| ())
     }
 }

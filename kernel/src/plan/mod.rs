@@ -51,16 +51,14 @@ mod planned_run;
 mod problem;
 mod run;
 mod search;
-mod way;
 
 use crate::error::Error;
-pub use cost::{Budget, Costs};
+pub use cost::{Budget, Costs, Way};
 pub use error::{Limit, PlanError};
 pub use planned_run::PlannedRun;
 pub use problem::Problem;
 pub use run::Directions;
 pub use search::{Plan, Search};
-pub use way::Way;
 
 impl Plan {
     /// The plan for `problem` at once: [`Search`] to its end.

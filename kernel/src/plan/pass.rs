@@ -1,11 +1,10 @@
 //! Step sizes tried side by side: how wrong each method is, frame by frame.
 
 use super::candidate::Candidate;
-use super::cost::Costs;
-use super::problem::{Perturbation, Problem};
+use super::cost::{Costs, Way};
+use super::problem::{NONE, PERTURBATIONS, Perturbation, Problem};
 use super::run::{Run, distance, greater};
 use crate::error::Error;
-use crate::methods::{DirectionF32Plain, Stepper};
 use crate::pendulum::State;
 use crate::small::{Modes, SmallOscillations};
 use crate::table::Method;
@@ -25,7 +24,7 @@ fn beside_finer_steps(method: Method) -> f32 {
 /// Steps of the finer runs for each frame: a quarter more, a half, three quarters. Fixed point has another unit of time in each, and
 /// with it other constants and roundings: what a word drops of a torque is the same for many steps while a pendulum hardly moves.
 /// Where a step is dear, one run is finer at least.
-fn steps_beside(method: Method, steps: u32) -> [u32; 3] {
+fn steps_beside(Way { method, steps }: Way) -> [u32; 3] {
     [1, 2, 3].map(|quarters: u32| {
         let least = if method == Method::Extrapolation10Fixed64 { quarters / 3 } else { quarters };
         let more = (u64::from(steps) * u64::from(quarters) / 4) as u32;
@@ -41,12 +40,10 @@ const SIZES: [u32; 3] = [1, 2, 4];
 pub(super) struct Pass {
     /// In 32 bits, the first three candidates and the run in 64 bits that all are compared with. Or a single candidate and three
     /// that it is compared with: in finer steps, their given numbers off by about as much as rounding may make them, each run's
-    /// in a way of its own.
-    runs: [Run; 4],
+    /// in a way of its own. The last is plain `f32`.
+    runs: [Run; 5],
     /// If not, the bounds are rough.
     pub is_beside_64_bits: bool,
-    /// Plain `f32`, and the closed form: compared with the run in 64 bits, or with the single candidate.
-    plain: Run<Stepper<DirectionF32Plain>>,
     closed: Option<SmallOscillations<f32>>,
     rods: [f32; 2],
     /// The first runs, plain `f32`, the closed form.
@@ -56,89 +53,75 @@ pub(super) struct Pass {
 }
 
 impl Pass {
-    /// By `method` in `steps` steps to a frame, beside a run in 64 bits with so many steps, if these are given.
-    pub fn new(method: Method, problem: &Problem, start: &State<f64>, steps: u32, beside: Option<u32>) -> Self {
-        let run = |method, perturbation: Perturbation, steps| {
+    /// In this `way`, beside a run in 64 bits with so many steps to a frame, if these are given.
+    pub fn new(way @ Way { method, steps }: Way, problem: &Problem, start: &State<f64>, beside: Option<u32>) -> Self {
+        let run = |way: Way, perturbation: Perturbation| {
             // What a method takes ends somewhere: a run just within may have its neighbour on one side beyond.
-            let given = [perturbation, perturbation.mirrored()].map(|by| problem.perturbed(start, by, method));
-            Run::new(method, given, problem.rate, steps)
+            let given = [perturbation, perturbation.map(|by| -by)].map(|by| problem.perturbed(start, by, way.method));
+            Run::new(way, given, problem.rate)
         };
-        let own = |method, steps| run(method, Perturbation::NONE, steps);
-        let sizes @ [_, second, third] = SIZES.map(|times| steps.saturating_mul(times));
+        let [_, second, third] = SIZES.map(|times| Way { method, steps: steps.saturating_mul(times) });
+        let [plain, closed] = [Method::Rk4F32DirectionPlain, Method::ClosedFormF32].map(|method| Way { method, steps });
         let others = match beside {
-            Some(exact) => [own(method, second), own(method, third), own(Method::Extrapolation10Fixed64, exact)],
-            None => {
-                let ([one, two, three], [first, second, third]) = (Perturbation::ALL, steps_beside(method, steps));
-                [run(method, one, first), run(method, two, second), run(method, three, third)]
+            Some(steps) => {
+                [second, third, Way { method: Method::Extrapolation10Fixed64, steps }].map(|way| (way, NONE))
             }
+            None => core::array::from_fn(|i| (Way { method, steps: steps_beside(way)[i] }, PERTURBATIONS[i])),
         };
-        let [second, third, last] = others;
-        let [own1, own2, own3] = sizes.map(|steps| Candidate::new(method, steps));
-        let others = [Method::Rk4F32DirectionPlain, Method::ClosedFormF32].map(|method| Candidate::new(method, steps));
-        let [plain, closed] = others;
-        let mut pass = Self {
-            runs: [own(method, steps), second, third, last],
+        let [beside2, beside3, judge] = others.map(|(way, perturbation)| run(way, perturbation));
+        let mut candidates = [way, second, third, plain, closed].map(Candidate::new);
+        (candidates[1].failed, candidates[2].failed) = (beside.is_none(), beside.is_none());
+        candidates[3].failed = method != Method::Rk4F32Direction;
+        Self {
+            runs: [run(way, NONE), beside2, beside3, judge, run(plain, NONE)],
             is_beside_64_bits: beside.is_some(),
-            plain: Run::new(plain.method, [(problem.pendulum, *start); 2], problem.rate, steps),
             closed: Modes::new(&problem.pendulum)
                 .ok()
                 .map(|modes| SmallOscillations::new(modes, &problem.start.cast())),
             rods: problem.rods(),
-            candidates: [own1, own2, own3, plain, closed],
+            candidates,
             by_rounding: false,
-        };
-        let [_, second, third, plain, _] = &mut pass.candidates;
-        (second.failed, third.failed) = (beside.is_none(), beside.is_none());
-        plain.failed = method != Method::Rk4F32Direction;
-        pass
+        }
     }
 
     /// What one costs that goes to the end, beside a run in 64 bits.
-    pub fn cost_beside(costs: &Costs, method: Method, steps: u32, beside: u32) -> f32 {
+    pub fn cost_beside(costs: &Costs, Way { method, steps }: Way, beside: u32) -> f32 {
         let candidates = SIZES.map(|times| costs.of_frame(method, steps.saturating_mul(times)));
         candidates.into_iter().fold(costs.of_frame(Method::Extrapolation10Fixed64, beside), |sum, cost| sum + cost)
     }
 
     /// The runs that are still needed.
     fn runs(&mut self) -> impl Iterator<Item = &mut Run> {
-        let (all, candidates) = (!self.is_beside_64_bits, &self.candidates);
-        let is_needed = move |index: &usize| all || *index == 3 || !candidates[*index].failed;
-        self.runs.iter_mut().enumerate().filter(move |(index, _)| is_needed(index)).map(|(_, run)| run)
-    }
-
-    fn has_plain(&self) -> bool {
-        let [.., plain, _] = &self.candidates;
-        !plain.failed
+        let (all, [own, second, third, plain, _]) = (!self.is_beside_64_bits, self.candidates.map(|one| !one.failed));
+        let needed = [all || own, all || second, all || third, true, plain];
+        self.runs.iter_mut().zip(needed).filter(|(_, is_needed)| *is_needed).map(|(run, _)| run)
     }
 
     /// Prepares one motion; whether there was one to prepare.
     pub fn prepare(&mut self) -> Result<bool, Error> {
-        let prepared = self.runs().map(Run::prepare).find(|prepared| *prepared != Ok(false)).unwrap_or(Ok(false))?;
-        Ok(prepared || self.has_plain() && self.plain.prepare()?)
+        self.runs().map(Run::prepare).find(|prepared| *prepared != Ok(false)).unwrap_or(Ok(false))
     }
 
     /// Makes steps of one motion towards the next frame, as many as `cost` pays for and one at least. What they cost; 0 if
     /// there is nothing left to do.
     pub fn advance(&mut self, costs: &Costs, cost: f32) -> f32 {
-        let spent = self.runs().map(|run| run.advance(costs, cost)).find(|&spent| spent > 0.0);
-        let plain = |pass: &mut Self| if pass.has_plain() { pass.plain.advance(costs, cost) } else { 0.0 };
-        spent.unwrap_or_else(|| plain(self))
+        self.runs().map(|run| run.advance(costs, cost)).find(|&spent| spent > 0.0).unwrap_or(0.0)
     }
 
     /// Compares the frames at time `t`, s, when all steps towards them are made. A method fails where it may be off by more
     /// than the tolerance.
     pub fn compare(&mut self, t: f64) {
-        let frames @ [own, second, third, last] = self.runs.each_mut().map(Run::frame);
+        let [own, second, third, last, plain] = self.runs.each_mut().map(Run::frame);
         let (judge, margin, error, bound) = if self.is_beside_64_bits {
             (last, BESIDE_64_BITS, 0.0, 0.0)
         } else {
             let others = [second, third, last].map(|other| distance(self.rods, &own, &other));
             let greatest = others.into_iter().fold(0.0, greater);
             self.by_rounding = others.into_iter().any(|other| 2.0 * other < greatest);
-            (own, 1.0, greatest, beside_finer_steps(self.candidates[0].method) * greatest)
+            (own, 1.0, greatest, beside_finer_steps(self.candidates[0].way.method) * greatest)
         };
         let closed = self.closed.map_or([[f32::NAN; 2]; 2], |motion| motion.directions(t));
-        let shown = [frames[0], frames[1], frames[2], self.plain.frame(), closed];
+        let shown = [own, second, third, plain, closed];
         for (candidate, shown) in self.candidates.iter_mut().zip(shown).filter(|(candidate, _)| !candidate.failed) {
             let beside = distance(self.rods, &shown, &judge);
             candidate.note(beside + error, margin * beside + bound);
@@ -162,9 +145,8 @@ impl Pass {
     }
 
     pub fn cost(&mut self, costs: &Costs) -> f32 {
-        let plain = if self.has_plain() { self.plain.cost(costs) } else { 0.0 };
         let [.., closed] = &self.candidates;
         let closed = if closed.failed { 0.0 } else { closed.cost(costs) };
-        self.runs().fold(plain + closed, |sum, run| sum + run.cost(costs))
+        self.runs().fold(closed, |sum, run| sum + run.cost(costs))
     }
 }

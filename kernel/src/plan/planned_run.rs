@@ -1,7 +1,7 @@
 //! A motion carried out as a plan has it.
 
-use super::run::{AnyRun, Directions, Stepped};
-use super::way::Way;
+use super::cost::Way;
+use super::run::{AnyRun, Directions};
 use crate::error::Error;
 use crate::methods::Turns;
 use crate::pendulum::{Motion, Parameters, Pendulum, State};

@@ -64,7 +64,7 @@ impl Problem {
     pub(super) fn perturbed(
         &self,
         start: &State<f64>,
-        Perturbation([by_g, by_l2, by_m2, by_a1]): Perturbation,
+        [by_g, by_l2, by_m2, by_a1]: Perturbation,
         method: Method,
     ) -> (Parameters<f64>, State<f64>) {
         let epsilon = epsilon(method);
@@ -92,21 +92,14 @@ const OFF: f64 = 1.0 + 1.0 / 1024.0;
 ///
 /// What a motion does goes by quotients of these, as a fast one by g/l2 or m2 g/l2, and two errors may make up for each other.
 /// What one of the perturbations leaves as it is, another alters.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Perturbation([f64; 4]);
+pub(super) type Perturbation = [f64; 4];
 
-impl Perturbation {
-    /// Nothing is off.
-    pub const NONE: Self = Self([0.0; 4]);
-    /// One half of the numbers off one way, the other half the other way: three such halves.
-    pub const ALL: [Self; 3] =
-        [Self([OFF, OFF, -OFF, -OFF]), Self([OFF, -OFF, OFF, -OFF]), Self([OFF, -OFF, -OFF, OFF])];
+/// Nothing is off.
+pub(super) const NONE: Perturbation = [0.0; 4];
 
-    /// All of them the other way.
-    pub fn mirrored(self) -> Self {
-        Self(self.0.map(|by| -by))
-    }
-}
+/// One half of the numbers off one way, the other half the other way: three such halves.
+pub(super) const PERTURBATIONS: [Perturbation; 3] =
+    [[OFF, OFF, -OFF, -OFF], [OFF, -OFF, OFF, -OFF], [OFF, -OFF, -OFF, OFF]];
 
 #[cfg(test)]
 mod tests {
@@ -127,8 +120,8 @@ mod tests {
                 let [a1, a2, p1, p2] = <[f64; 4]>::from(state);
                 [m2, g, a1, a2, p1, p2].map(|x| if method.is_single() { f64::from(x as f32) } else { x })
             };
-            let [first, second, third] = Perturbation::ALL.map(numbers);
-            let own = numbers(Perturbation::NONE);
+            let [first, second, third] = PERTURBATIONS.map(numbers);
+            let own = numbers(NONE);
             assert!(first != second && second != third && third != first, "{first:?} {second:?} {third:?}");
             for other in [first, second, third] {
                 assert_ne!(own, other);

@@ -1,8 +1,8 @@
 //! A motion by any method that a plan chooses from, and how far two of its frames are apart.
 
-use super::cost::{Costs, ORDER};
+use super::cost::{Costs, ORDER, Way};
 use crate::error::Error;
-use crate::methods::{ClosedFormF32, DirectionF32, DirectionF32Plain, Fixed32, Fixed64, Stepper};
+use crate::methods::{ClosedFormF32, DirectionF32, DirectionF32Plain, Fixed32, Fixed64, Form};
 use crate::pendulum::{Direction, Parameters, State};
 use crate::table::Method;
 
@@ -14,11 +14,11 @@ pub type Directions = [Direction<f32>; 2];
 #[expect(clippy::large_enum_variant, reason = "without a heap there is nowhere else to keep it")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum AnyRun {
-    ClosedForm(Stepper<ClosedFormF32>),
-    DirectionPlain(Stepper<DirectionF32Plain>),
-    Direction(Stepper<DirectionF32>),
-    Fixed32(Stepper<Fixed32>),
-    Fixed64(Stepper<Fixed64<ORDER>>),
+    ClosedForm(ClosedFormF32),
+    DirectionPlain(DirectionF32Plain),
+    Direction(DirectionF32),
+    Fixed32(Fixed32),
+    Fixed64(Fixed64<ORDER>),
 }
 
 /// `$body` with the run of whichever method as `$run`.
@@ -35,6 +35,32 @@ macro_rules! with {
 }
 
 impl AnyRun {
+    /// A pendulum from its start, with so many steps a second.
+    ///
+    /// Refuses what [`Pendulum::run`](crate::Pendulum::run) refuses, what has no normal modes if the method is the closed form,
+    /// and a method that is none of [`Method::DRAWN`].
+    #[inline(never)] // each kind's preparations would stand side by side on the stack
+    pub fn new(
+        method: Method,
+        (parameters, start): &(Parameters<f64>, State<f64>),
+        per_second: f64,
+    ) -> Result<Self, Error> {
+        let dt = 1.0 / per_second;
+        Ok(match method {
+            Method::ClosedFormF32 => Self::ClosedForm(Form::new(parameters, start, dt)?),
+            Method::Rk4F32DirectionPlain => Self::DirectionPlain(Form::new(parameters, start, dt)?),
+            Method::Rk4F32Direction => Self::Direction(Form::new(parameters, start, dt)?),
+            Method::Rk4Fixed32 => Self::Fixed32(Form::new(parameters, start, dt)?),
+            Method::Extrapolation10Fixed64 => Self::Fixed64(Form::new(parameters, start, dt)?),
+            method => return Err(Error::NotDrawn { method }),
+        })
+    }
+
+    #[inline(never)] // never inlined: a copy of every method for each caller
+    pub fn advance(&mut self, steps: u32) {
+        with!(self, run => run.advance(steps));
+    }
+
     pub fn check(&self) -> Result<(), Error> {
         with!(self, run => run.check())
     }
@@ -61,126 +87,67 @@ impl AnyRun {
     }
 }
 
-/// What a [`Run`] steps: a motion by any method, or by one where that takes less memory.
-pub(super) trait Stepped: Sized {
-    /// A pendulum from its start, with so many steps a second.
-    ///
-    /// Refuses what [`Pendulum::run`](crate::Pendulum::run) refuses, what has no normal modes if the method is the closed form,
-    /// and a method that is none of [`Method::DRAWN`].
-    fn new(method: Method, given: &(Parameters<f64>, State<f64>), per_second: f64) -> Result<Self, Error>;
-    fn advance(&mut self, steps: u32);
-    /// NaN, if the motion is lost: it may have left its range where its directions do not show it.
-    fn shown(&self) -> Directions;
-}
-
-impl Stepped for AnyRun {
-    #[inline(never)] // each kind's preparations would stand side by side on the stack
-    fn new(
-        method: Method,
-        (parameters, start): &(Parameters<f64>, State<f64>),
-        per_second: f64,
-    ) -> Result<Self, Error> {
-        let dt = 1.0 / per_second;
-        Ok(match method {
-            Method::ClosedFormF32 => Self::ClosedForm(Stepper::new(parameters, start, dt)?),
-            Method::Rk4F32DirectionPlain => Self::DirectionPlain(Stepper::new(parameters, start, dt)?),
-            Method::Rk4F32Direction => Self::Direction(Stepper::new(parameters, start, dt)?),
-            Method::Rk4Fixed32 => Self::Fixed32(Stepper::new(parameters, start, dt)?),
-            Method::Extrapolation10Fixed64 => Self::Fixed64(Stepper::new(parameters, start, dt)?),
-            method => return Err(Error::NotDrawn { method }),
-        })
-    }
-
-    #[inline(never)] // never inlined: a copy of every method for each caller
-    fn advance(&mut self, steps: u32) {
-        with!(self, run => run.advance(steps));
-    }
-
-    fn shown(&self) -> Directions {
-        self.check().map_or([[f32::NAN; 2]; 2], |()| self.directions())
-    }
-}
-
-impl Stepped for Stepper<DirectionF32Plain> {
-    #[inline(never)]
-    fn new(_: Method, (parameters, start): &(Parameters<f64>, State<f64>), per_second: f64) -> Result<Self, Error> {
-        Self::new(parameters, start, 1.0 / per_second)
-    }
-    fn advance(&mut self, steps: u32) {
-        self.advance(steps);
-    }
-    fn shown(&self) -> Directions {
-        self.directions()
-    }
-}
-
 /// A motion that is prepared before its first step, and stepped from frame to frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Run<M = AnyRun> {
-    motion: Prepared<M>,
-    method: Method,
-    per_frame: u32,
+pub(super) struct Run {
+    motion: Prepared,
+    way: Way,
     /// Steps made since the last frame.
     made: u32,
 }
 
+#[expect(clippy::large_enum_variant, reason = "as above")]
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Prepared<M> {
+enum Prepared {
     /// A pendulum and its start, others if these are refused, and steps a second.
     NotYet([(Parameters<f64>, State<f64>); 2], f64),
-    Ready(M),
+    Ready(AnyRun),
 }
 
-impl<M: Stepped> Run<M> {
-    /// By `method`: a pendulum and its start, or the others if the first are refused, with `per_frame` steps for each of the
-    /// `rate` frames of a second.
-    pub fn new(method: Method, given: [(Parameters<f64>, State<f64>); 2], rate: u16, per_frame: u32) -> Self {
-        let per_second = f64::from(rate) * f64::from(per_frame);
-        Self { motion: Prepared::NotYet(given, per_second), method, per_frame, made: 0 }
+impl Run {
+    /// A pendulum and its start, or the others if the first are refused, in this `way` with `rate` frames in a second.
+    pub fn new(way: Way, given: [(Parameters<f64>, State<f64>); 2], rate: u16) -> Self {
+        Self { motion: Prepared::NotYet(given, f64::from(rate) * f64::from(way.steps)), way, made: 0 }
     }
 
     /// Prepares the steps; whether they were not.
     #[inline(never)]
     pub fn prepare(&mut self) -> Result<bool, Error> {
         let Prepared::NotYet([first, other], per_second) = &self.motion else { return Ok(false) };
-        let run = M::new(self.method, first, *per_second);
-        self.motion = Prepared::Ready(run.or_else(|_| M::new(self.method, other, *per_second))?);
+        let run = AnyRun::new(self.way.method, first, *per_second);
+        self.motion = Prepared::Ready(run.or_else(|_| AnyRun::new(self.way.method, other, *per_second))?);
         Ok(true)
     }
 
     /// What a frame costs.
     pub fn cost(&self, costs: &Costs) -> f32 {
-        costs.of_frame(self.method, self.per_frame)
+        costs.of_frame(self.way.method, self.way.steps)
     }
 
     /// Makes steps towards the next frame, as many as are left or as `cost` pays for, one at least. What they cost: 0 if nothing
     /// was left to do.
     #[inline(never)]
     pub fn advance(&mut self, costs: &Costs, cost: f32) -> f32 {
-        let left = self.per_frame.saturating_sub(self.made);
-        let steps = steps_for(costs, self.method, cost).min(left);
+        let paid = (cost / costs.of_frame(self.way.method, 1)) as u32;
+        let left = self.way.steps.saturating_sub(self.made);
+        let steps = left.min(if paid > 0 { paid } else { 1 });
         if let Prepared::Ready(motion) = &mut self.motion {
             motion.advance(steps);
         }
         self.made += steps;
-        costs.of_frame(self.method, steps)
+        costs.of_frame(self.way.method, steps)
     }
 
-    /// The frame, when nothing is left to do; the next steps lead to the next.
+    /// The frame, when nothing is left to do; the next steps lead to the next. NaN if the motion is lost: it may have left its
+    /// range where its directions do not show it.
     #[inline(never)]
     pub fn frame(&mut self) -> Directions {
         self.made = 0;
         match &self.motion {
-            Prepared::NotYet(..) => [[f32::NAN; 2]; 2],
-            Prepared::Ready(motion) => motion.shown(),
+            Prepared::Ready(motion) if motion.check().is_ok() => motion.directions(),
+            _ => [[f32::NAN; 2]; 2],
         }
     }
-}
-
-/// How many steps of `method` this `cost` pays for, one at least.
-fn steps_for(costs: &Costs, method: Method, cost: f32) -> u32 {
-    let steps = (cost / costs.of_frame(method, 1)) as u32;
-    if steps > 0 { steps } else { 1 }
 }
 
 /// How far the farther of the two bobs is off, or bob 2 as seen from bob 1, where the rods are as long as `rods`, in their

@@ -3,11 +3,10 @@
 //! All of it is done in pieces that a busy caller can afford: a few steps of one motion, a comparison, a new step size.
 
 use super::candidate::Candidate;
-use super::cost::{Budget, Costs};
+use super::cost::{Budget, Costs, FIRST_STEP, MOST_STEPS, RESOLVING, Way, admissible_step, steps_to_frame};
 use super::error::{Limit, PlanError};
 use super::pass::Pass;
 use super::problem::Problem;
-use super::way::{FIRST_STEP, MOST_STEPS, RESOLVING, Way, start_and_step, steps_to_frame};
 use crate::error::{Error, Parameter};
 use crate::pendulum::Pendulum;
 use crate::table::Method;
@@ -45,15 +44,12 @@ pub struct Search {
     problem: Problem,
     costs: Costs,
     budget: Budget,
-    /// The cheaper method in 32 bits.
-    cheap: Method,
     /// Steps to a frame by [`Method::Extrapolation10Fixed64`] that resolve the motion, if its numbers take it.
     exact: Option<u32>,
     /// Those that a frame pays for, and what ends their horizon.
     fine: Option<(u32, Limit)>,
-    /// What is looked at, and in how many steps to a frame.
-    method: Method,
-    steps: u32,
+    /// What is looked at.
+    way: Way,
     /// Made by a piece of its own.
     pass: Option<Pass>,
     /// Frames compared with these steps.
@@ -62,8 +58,8 @@ pub struct Search {
     prepared: bool,
     /// Whether the next frame is within the budget, and is being computed.
     begun: bool,
-    /// The only method that counts, if it and the step are given.
-    given: Option<Method>,
+    /// The only one that counts, if it is given.
+    given: Option<Way>,
     spent: f32,
     best: Option<Candidate>,
 }
@@ -75,7 +71,7 @@ impl Search {
     /// budgets that are not positive.
     #[inline(never)] // a search stands on the stack while it is made
     pub fn new(problem: &Problem, costs: &Costs, budget: &Budget) -> Result<Self, PlanError> {
-        let (_, admissible) = start_and_step(&problem.pendulum, &problem.start)?;
+        let admissible = admissible_step(&problem.pendulum, &problem.start)?;
         problem.check()?;
         costs.check()?;
         budget.check()?;
@@ -86,17 +82,15 @@ impl Search {
         let exact = fine(RESOLVING, f32::INFINITY);
         let affordable = |steps: &u32| costs.of_frame(Method::Extrapolation10Fixed64, *steps) <= budget.frame;
         let coarser = || fine(FIRST_STEP, budget.frame).map(|steps| (steps, Limit::Budget));
-        let cheap = if costs.fixed32 < costs.direction { Method::Rk4Fixed32 } else { Method::Rk4F32Direction };
-        let steps = steps_to_frame(cheap, problem.rate, FIRST_STEP * admissible);
+        let method = if costs.fixed32 < costs.direction { Method::Rk4Fixed32 } else { Method::Rk4F32Direction };
+        let steps = steps_to_frame(method, problem.rate, FIRST_STEP * admissible);
         Ok(Self {
             problem: *problem,
             costs: *costs,
             budget: *budget,
-            cheap,
             exact,
             fine: exact.filter(affordable).map(|steps| (steps, Limit::Growth)).or_else(coarser),
-            method: cheap,
-            steps,
+            way: Way { method, steps },
             pass: None,
             frame: 0,
             prepared: false,
@@ -124,14 +118,14 @@ impl Search {
             return Err(Error::NotDrawn { method }.into());
         }
         let mut search = Self::new(problem, costs, budget)?;
-        search.steps = if steps > 0 { steps } else { 1 };
-        search.method = match method {
-            Method::ClosedFormF32 => search.method,
+        let given = Way { method, steps: if steps > 0 { steps } else { 1 } };
+        search.way.steps = given.steps;
+        search.way.method = match method {
+            Method::ClosedFormF32 => search.way.method,
             Method::Rk4F32DirectionPlain => Method::Rk4F32Direction,
             method => method,
         };
-        (search.given, search.budget.frame) = (Some(method), f32::INFINITY);
-        search.best = Some(Candidate::new(method, search.steps));
+        (search.given, search.best, search.budget.frame) = (Some(given), Some(Candidate::new(given)), f32::INFINITY);
         Ok(search)
     }
 
@@ -176,20 +170,18 @@ impl Search {
     /// A form takes no steps so long, or no motion of so high an energy, or no such pendulum: finer ones, or `f32`, may.
     fn refused(&mut self, error: Error) -> Result<Option<Plan>, PlanError> {
         let is_step = matches!(error, Error::TooLarge { parameter: Parameter::Dt, .. });
-        match self.method {
+        match self.way.method {
             Method::Rk4F32Direction => Err(error.into()),
             Method::Rk4Fixed32 if !is_step && self.given.is_none() => {
-                self.cheap = Method::Rk4F32Direction;
-                self.begin(self.cheap, self.steps);
+                self.begin(Way { method: Method::Rk4F32Direction, ..self.way });
                 Ok(None)
             }
             _ => self.go_on(Some(2)),
         }
     }
 
-    fn begin(&mut self, method: Method, steps: u32) {
-        (self.method, self.steps, self.pass) = (method, steps, None);
-        (self.frame, self.begun, self.prepared) = (0, false, false);
+    fn begin(&mut self, way: Way) {
+        (self.way, self.pass, self.frame, self.begun, self.prepared) = (way, None, 0, false, false);
     }
 
     /// Makes the pass, which costs as much as to prepare a motion.
@@ -199,14 +191,11 @@ impl Search {
             return self.plan(Limit::Planning).map(Some);
         }
         self.spent += self.costs.preparation;
-        let Self { method, steps, costs, budget, .. } = *self;
+        let Self { way, costs, budget, .. } = *self;
         let beside = self.beside();
         let start = Pendulum::new(&self.problem.pendulum)?.to_state(&self.problem.start);
-        let pass = self.pass.insert(Pass::new(method, &self.problem, &start, steps, beside));
-        pass.retain(|one| match self.given {
-            Some(method) => one.method == method && one.steps == steps,
-            None => one.cost(&costs) <= budget.frame,
-        });
+        let pass = self.pass.insert(Pass::new(way, &self.problem, &start, beside));
+        pass.retain(|one| self.given.map_or(one.cost(&costs) <= budget.frame, |given| one.way == given));
         Ok(None)
     }
 
@@ -216,8 +205,8 @@ impl Search {
         let longer = LONGER * right as f32;
         let frames = if 0.0 < longer && longer < frames { longer } else { frames };
         let left = (self.budget.planning - self.spent) / frames;
-        let affordable = |&exact: &u32| Pass::cost_beside(&self.costs, self.method, self.steps, exact) <= left;
-        self.exact.filter(|_| self.method != Method::Extrapolation10Fixed64).filter(affordable)
+        let affordable = |&exact: &u32| Pass::cost_beside(&self.costs, self.way, exact) <= left;
+        self.exact.filter(|_| self.way.method != Method::Extrapolation10Fixed64).filter(affordable)
     }
 
     fn prepare(&mut self) -> Result<Option<Plan>, PlanError> {
@@ -269,8 +258,8 @@ impl Search {
     #[doc(hidden)]
     pub fn extend(&mut self, seconds: f64) {
         if let (Some(best), Some(pass)) = (self.best, &mut self.pass) {
-            pass.retain(|one| (one.method, one.steps) == (best.method, best.steps));
-            self.given = Some(best.method);
+            pass.retain(|one| one.way == best.way);
+            self.given = Some(best.way);
             self.problem.duration += seconds;
             self.budget.planning = f32::INFINITY;
         }
@@ -289,22 +278,22 @@ impl Search {
     /// Goes on to finer steps, or to 64 bits where rounding is what limits, or where they cost less; what forbids it, if
     /// anything does.
     fn refine(&mut self, times: Option<u32>) -> Option<Limit> {
-        let method = self.method;
+        let Way { method, steps } = self.way;
         if method == Method::Extrapolation10Fixed64 {
             return Some(self.fine.map_or(Limit::Budget, |(_, limit)| limit));
         }
         if times.is_none() && self.pass.as_ref().is_some_and(|pass| !pass.is_beside_64_bits) && self.beside().is_some()
         {
-            self.begin(method, self.steps);
+            self.begin(self.way);
             return None;
         }
-        let finer = times.map(|times| self.steps.saturating_mul(times)).filter(|&steps| steps <= MOST_STEPS);
+        let finer = times.map(|times| steps.saturating_mul(times)).filter(|&steps| steps <= MOST_STEPS);
         let cost = |method, steps| self.costs.of_frame(method, steps);
         let fine = self.fine.map(|(steps, _)| (Method::Extrapolation10Fixed64, steps));
         let fine = fine.filter(|&(fine, steps)| finer.is_none_or(|finer| cost(fine, steps) <= cost(method, finer)));
         let affordable = finer.filter(|&finer| cost(method, finer) <= self.budget.frame).map(|finer| (method, finer));
         let Some((method, steps)) = fine.or(affordable) else { return Some(Limit::Budget) };
-        self.begin(method, steps);
+        self.begin(Way { method, steps });
         None
     }
 
@@ -316,7 +305,7 @@ impl Search {
             return false;
         }
         self.best.is_none_or(|best| {
-            let is_it = (candidate.method, candidate.steps) == (best.method, best.steps);
+            let is_it = candidate.way == best.way;
             let reaches_end = candidate.right >= self.problem.frames() && best.right < candidate.right;
             let cheaper = candidate.right >= best.right && cost(candidate) < cost(&best);
             reaches_end || candidate.outlasts(&best) || cheaper || is_it && candidate.right > best.right
@@ -333,10 +322,11 @@ impl Search {
             let limit = if limit == Limit::Planning && !open { Limit::Budget } else { limit };
             return Err(PlanError::NoMethod { limit, spent: self.spent });
         };
-        let steps = if best.method == Method::ClosedFormF32 { 0 } else { best.steps };
+        let Way { method, steps } = best.way;
+        let steps = if method == Method::ClosedFormF32 { 0 } else { steps };
         let rate = f64::from(self.problem.rate);
         Ok(Plan {
-            method: best.method,
+            method,
             steps,
             dt: if steps == 0 { 0.0 } else { 1.0 / (rate * f64::from(steps)) },
             error: best.error,

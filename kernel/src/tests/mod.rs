@@ -6,7 +6,6 @@ mod added_method;
 mod forms;
 mod hamilton;
 mod lagrange;
-mod page;
 mod random;
 mod refusals;
 mod small_oscillations;

@@ -15,7 +15,7 @@ pub use equations::Equations;
 use equations::{STARTS, discs};
 pub use fixed::Fixed;
 use fixed::{MOST_TERMS, ULP, up};
-pub use start::{Start, sin_cos};
+pub use start::{Start, fastest_rate, sin_cos};
 
 /// Steps whose errors are kept in a box, before they become segments.
 const STEPS: u32 = 64;

@@ -8,6 +8,14 @@ use super::equations::Equations;
 use super::fixed::Fixed;
 use super::{Enclosure, Fineness};
 
+/// The fastest rate in a motion, 1/s: the fast normal frequency or the greatest angular velocity that its energy allows.
+pub fn fastest_rate(parameters: &Parameters<f64>, motion: &Motion<f64>) -> f64 {
+    Pendulum::new(parameters).map_or(1.0, |pendulum| {
+        let Bounds { w1, w2, .. } = pendulum.bounds(&pendulum.to_state(motion));
+        pendulum.modes().map_or(0.0, |modes| modes.fast.frequency).max(w1).max(w2)
+    })
+}
+
 /// A pendulum and how it starts.
 #[derive(Clone, Copy, Debug)]
 pub struct Start {
@@ -31,12 +39,8 @@ impl Start {
     /// numbers are neither large nor small, for masses and lengths within a factor of 1000 and 30 of each other.
     pub fn enclose(&self, rate: u16) -> Enclosure {
         let (parameters @ Parameters { m1, m2, l1, l2, g }, motion @ Motion { a1, a2, w1, w2 }) = self.about;
-        let fastest = Pendulum::new(&parameters).map_or(1.0, |pendulum| {
-            let Bounds { w1, w2, .. } = pendulum.bounds(&pendulum.to_state(&motion));
-            pendulum.modes().map_or(0.0, |modes| modes.fast.frequency).max(w1).max(w2)
-        });
         // Where next to nothing moves any unit will do.
-        let unit = (fastest / 4.0).log2().ceil().max(-64.0) as i32;
+        let unit = (fastest_rate(&parameters, &motion) / 4.0).log2().ceil().max(-64.0) as i32;
         let e = (0.5 * (1.0 + m2 / m1).log2()).clamp(0.0, 7.0).round() as i32;
         let [by, by1, by2] = [m1.max(m2), l1, l2].map(|x| x.log2() as i32);
 

@@ -1,11 +1,8 @@
 //! `cargo flips`: when a rod first turns over, for every start from rest, as a picture or as numbers.
 
-pub mod judge;
-mod legend;
 pub mod map;
 mod options;
 mod output;
-pub mod square;
 
 use std::fs;
 

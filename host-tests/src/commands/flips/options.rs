@@ -7,8 +7,7 @@ use anyhow::{Context, Result, ensure};
 use clap::Parser;
 use double_pendulum::Parameters;
 
-use super::map::Map;
-use super::square::Square;
+use super::map::{Map, Square};
 use crate::commands::simulate::{Number, Pair};
 
 const AFTER_HELP: &str = "\

@@ -1,12 +1,12 @@
-//! What is written: a picture or a table.
+//! What is written: a picture, with what its colours say in the panel's letters, or a table.
 
 use std::fmt::Write;
 use std::path::Path;
 
 use anyhow::Result;
 use double_pendulum::flips::Flip;
+use firmware::graphics::glyph;
 
-use super::legend;
 use super::map::{Followed, Map};
 
 /// The bytes of a file of this name; with `doubt`, points of a picture whose time is uncertain get a colour of their own.
@@ -20,15 +20,15 @@ pub fn file(name: &Path, map: &Map, points: &[Followed], doubt: bool) -> Result<
     picture(map, pixels.map(|(_, point)| colour(map, point, doubt)), doubt)
 }
 
-pub type Colour = [u8; 3];
+type Colour = [u8; 3];
 
 /// There is not the energy for it; not within the limit; the two steps do not agree.
-pub const NEVER: Colour = [0, 0, 0];
-pub const LATER: Colour = [110, 110, 118];
-pub const DOUBT: Colour = [255, 0, 90];
+const NEVER: Colour = [0, 0, 0];
+const LATER: Colour = [110, 110, 118];
+const DOUBT: Colour = [255, 0, 90];
 
 /// The colour of a share of the scale: viridis, in which equal steps look equal; bright is early.
-pub fn scale(share: f32) -> Colour {
+fn scale(share: f32) -> Colour {
     colorous::VIRIDIS.eval_continuous(f64::from(1.0 - share)).as_array()
 }
 
@@ -43,7 +43,7 @@ fn colour(map: &Map, point: Followed, doubt: bool) -> Colour {
 /// The map above its legend.
 fn picture(map: &Map, pixels: impl Iterator<Item = Colour>, doubt: bool) -> Result<Vec<u8>> {
     let [width, _] = map.square.size;
-    let colours: Vec<Colour> = pixels.chain(legend::pixels(map, doubt)).collect();
+    let colours: Vec<Colour> = pixels.chain(legend(map, doubt)).collect();
     let mut file = Vec::new();
     let mut encoder = png::Encoder::new(&mut file, width as u32, (colours.len() / width) as u32);
     encoder.set_color(png::ColorType::Rgb);
@@ -67,4 +67,78 @@ fn table(map: &Map, pixels: impl Iterator<Item = ([usize; 2], Followed)>) -> Res
         writeln!(text, "{a1},{a2},{time},{check}")?;
     }
     Ok(text.into_bytes())
+}
+
+/// Units across that there are at least, and down; a unit is a whole number of pixels.
+const WIDTH: usize = 400;
+const HEIGHT: usize = 42;
+/// Where the scale begins and how long it is; where the rest does.
+const LEFT: usize = 8;
+const LENGTH: usize = 160;
+const BESIDE: usize = LEFT + LENGTH + 20;
+
+const WHITE: Colour = [255; 3];
+const TEXT: Colour = [34; 3];
+
+/// Rows of pixels, each as wide as the map.
+struct Legend {
+    width: usize,
+    unit: usize,
+    pixels: Vec<Colour>,
+}
+
+/// The legend of `map`: red, green and blue of each pixel.
+fn legend(map: &Map, doubt: bool) -> Vec<Colour> {
+    let [width, _] = map.square.size;
+    let unit = (width / WIDTH).max(1);
+    let mut legend = Legend { width, unit, pixels: vec![WHITE; width * HEIGHT * unit] };
+    for x in 0..LENGTH {
+        legend.fill([LEFT + x, 4, 1, 10], scale((x as f32 + 0.5) / LENGTH as f32));
+    }
+    let tens = std::iter::successors(Some(1.0), |time| Some(10.0 * time));
+    let tens = tens.take_while(|time| *time < 0.7 * map.limit).chain([map.limit]);
+    for time in tens {
+        let (x, words) = (LEFT + (LENGTH as f32 * time.ln() / map.limit.ln()) as usize, time.to_string());
+        let half = words.chars().map(|character| glyph(character).width as usize).sum::<usize>() / 2;
+        legend.text([x.saturating_sub(half), 17], &words);
+    }
+    let mut x = BESIDE;
+    for (colour, name) in
+        [(NEVER, "cannot"), (LATER, "not by then"), (DOUBT, "in doubt")].into_iter().take(2 + usize::from(doubt))
+    {
+        legend.fill([x, 4, 10, 10], colour);
+        x = legend.text([x + 14, 5], name) + 12;
+    }
+    legend.text([BESIDE, 17], "first turn-over of a rod, √(l₁/g)");
+    let half = map.square.half.to_degrees();
+    let [a1, a2] =
+        map.square.centre.map(f64::to_degrees).map(|at| format!("{}° to {}°", short(at - half), short(at + half)));
+    let [masses, lengths] =
+        [map.parameters.m2 / map.parameters.m1, map.parameters.l2 / map.parameters.l1].map(|ratio| short(ratio.into()));
+    legend.text([LEFT, 30], &format!("let go at α₁ → {a1}, α₂ ↑ {a2}; m₂/m₁ = {masses}, l₂/l₁ = {lengths}"));
+    legend.pixels
+}
+
+/// To four digits after the point, at most.
+fn short(number: f64) -> f64 {
+    (number * 1e4).round() / 1e4 + 0.0
+}
+
+impl Legend {
+    fn fill(&mut self, place: [usize; 4], colour: Colour) {
+        let [x, y, width, height] = place.map(|units| units * self.unit);
+        for row in self.pixels.chunks_mut(self.width).skip(y).take(height) {
+            row.iter_mut().skip(x).take(width).for_each(|pixel| *pixel = colour);
+        }
+    }
+
+    fn text(&mut self, [mut x, y]: [usize; 2], words: &str) -> usize {
+        for glyph in words.chars().map(glyph) {
+            for bit in (0..64).filter(|bit| glyph.rows << bit >> 63 == 1) {
+                self.fill([x + bit % 8, y + bit / 8, 1, 1], TEXT);
+            }
+            x += glyph.width as usize;
+        }
+        x
+    }
 }

@@ -4,9 +4,10 @@ use std::f64::consts::PI;
 use std::ops::Range;
 
 use double_pendulum::plan::{Limit, Plan, PlanError, Problem};
-use double_pendulum::{Direction, Motion, Parameters};
+use double_pendulum::{Direction, Error, Method, Motion, Parameters, Pendulum, State};
 use fastrand::Rng;
 use firmware::config::{GRAVITY, HALF_PIXEL};
+use firmware::job::AnyRun;
 use firmware::motion::half_pixel;
 use rayon::prelude::*;
 use reference::taylor::Reference;
@@ -72,7 +73,7 @@ fn carried_out(number: usize, scene: &Problem, chips: &[Chip]) -> Result<Vec<Cas
         Ok((Case { number, chip, scene: *scene, plan, verdict }, motion))
     };
     let mut cases = chips.iter().map(start).collect::<Result<Vec<_>, PlanError>>()?;
-    let mut exact = Exact::new(scene);
+    let mut exact = Exact::new(scene)?;
     for frame in 1..=scene.frames() {
         let time = scene.time(frame);
         let is_predicted = |case: &Case| case.plan.is_ok_and(|plan| time <= plan.horizon);
@@ -82,7 +83,7 @@ fn carried_out(number: usize, scene: &Problem, chips: &[Chip]) -> Result<Vec<Cas
         if cases.iter().all(|(_, motion)| motion.is_none()) {
             break;
         }
-        let exact = exact.at(scene, time);
+        let exact = exact.next(scene, time);
         for (case, motion) in cases.iter_mut().filter_map(|(case, motion)| Some((case, motion.as_mut()?))) {
             // One that has diverged shows nothing.
             let has_diverged = motion.advance(1).is_err();
@@ -109,39 +110,48 @@ pub fn median(values: impl Iterator<Item = f64>) -> f64 {
 
 type Directions = [Direction<f64>; 2];
 
-/// The exact motion of a scene: in `f64` as long as that is enough by far, from then on by the reference.
+/// The exact motion of a scene: by extrapolation of order 16 in `f64` as long as that is enough by far, from then on by the reference.
 struct Exact {
-    /// One, and another that starts [`APART`] from it.
-    quick: [Reference<f64>; 2],
+    /// One, and another that starts [`APART`] from it; each in so many steps to a frame.
+    quick: [(AnyRun, u32); 2],
     slow: Option<Reference>,
 }
 
 /// What the other motion in `f64` starts apart, relative: many times what all roundings of a step come to.
 const APART: f64 = 1e-13;
+/// Admissible steps in one of the one's; the other's are half as long. Hardly any motion needs as fine ones.
+const LONG: f64 = 12.0;
 /// As long as both are not farther apart, pixels, neither is off by more.
 const ENOUGH: f64 = 1e-2;
 
 impl Exact {
     /// The reference is given the scene's own numbers, a plan those that its arithmetic can hold.
-    fn new(Problem { pendulum, start, .. }: &Problem) -> Self {
-        let Motion { a1, a2, w1, w2 } = *start;
-        let beside = Motion { a1: a1 * (1.0 + APART), a2: a2 * (1.0 - APART), w1: w1 * (1.0 + APART), w2 };
-        Self { quick: [*start, beside].map(|start| Reference::of(pendulum, &start)), slow: None }
+    fn new(scene: &Problem) -> Result<Self, Error> {
+        let pendulum = Pendulum::new(&scene.pendulum)?;
+        let start @ State { a1, a2, p1, p2 } = pendulum.to_state(&scene.start);
+        let beside = State { a1: a1 * (1.0 + APART), a2: a2 * (1.0 - APART), p1: p1 * (1.0 + APART), p2 };
+        let frame = 1.0 / f64::from(scene.rate);
+        let steps = (frame / (LONG * pendulum.admissible_step(&start)?)).ceil().max(1.0) as u32;
+        let run = |start, steps| {
+            Ok((AnyRun::new(Method::Extrapolation16F64, &pendulum, start, frame / f64::from(steps))?, steps))
+        };
+        Ok(Self { quick: [run(&start, steps)?, run(&beside, 2 * steps)?], slow: None })
     }
 
-    /// At a time, s, no earlier than the one before.
-    fn at(&mut self, scene: &Problem, time: f64) -> Directions {
-        let directions = |motion: Motion<f64>| motion.angles().map(|a| [libm::sin(a), libm::cos(a)]);
+    /// At the time of the next frame, s.
+    fn next(&mut self, scene: &Problem, time: f64) -> Directions {
+        let directions = |angles: [f64; 2]| angles.map(|a| [libm::sin(a), libm::cos(a)]);
         if self.slow.is_none() {
-            self.quick.iter_mut().for_each(|quick| quick.advance_to(time));
-            let [one, other] = self.quick.each_ref().map(|quick| directions(quick.motion()));
+            let [one, other] = self.quick.each_mut().map(|(quick, steps)| {
+                quick.advance(*steps).map_or([[f64::NAN; 2]; 2], |()| directions(quick.state().angles()))
+            });
             if distance(scene, &one, &other) <= ENOUGH {
                 return one;
             }
         }
         let slow = self.slow.get_or_insert_with(|| Reference::new(&scene.pendulum, &scene.start));
         slow.advance_to(time);
-        directions(slow.motion())
+        directions(slow.motion().angles())
     }
 }
 

@@ -101,7 +101,7 @@ pub(crate) fn rates<R: Scalar<Gravity = R, Slope = R, Torque = R>>(
 /// the step. A step that changes r by a third or more makes no sense with it, nor with RK4.
 #[inline(always)]
 pub(crate) fn newton_inverse<R: Scalar>(last: R, inertia: R, s: R) -> R {
-    last + last * ((R::constant(1.0) - inertia * last) - (s * last) * s)
+    last + last * ((R::from_f64(1.0) - inertia * last) - (s * last) * s)
 }
 
 /// By how much of itself a vector (`s`, `c`), whose sum lacks `lost` in direction of it, is shorter than `length`, to first

@@ -5,7 +5,7 @@ use super::lead::Lead;
 use crate::bounds::check_step;
 use crate::error::{Error, Parameter};
 use crate::numbers::Real;
-use crate::pendulum::directions::{Coefficients, increments, lower_ray};
+use crate::pendulum::directions::{Coefficients, increments, state_of};
 use crate::pendulum::{Parameters, State};
 
 /// A third, by which k1 + 2 k2 + 2 k3 + k4 becomes the increment of a step.
@@ -14,21 +14,9 @@ pub(crate) fn third<R: Real>() -> R {
     R::from_f64(1.0 / 3.0)
 }
 
-/// How far a step goes, tau: the sum of the weights of its slopes, times a factor as rounded.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Span {
-    pub weights: f64,
-    pub factor: f64,
-}
-
-impl Span {
-    /// The classical method's (k1 + 2 k2 + 2 k3 + k4) times a third: tau is half a step.
-    #[must_use]
-    pub fn classical<R: Real>() -> Self {
-        Self { weights: 6.0, factor: third::<R>().to_f64() }
-    }
-    /// One tau.
-    pub const STEP: Self = Self { weights: 1.0, factor: 1.0 };
+/// How far a step of the classical method goes, tau: (k1 + 2 k2 + 2 k3 + k4) times a third as rounded; tau is half a step.
+pub(crate) fn classical_step<R: Real>() -> f64 {
+    6.0 * third::<R>().to_f64()
 }
 
 /// How the units of the step translate to SI. In `f64`; used at input and output only.
@@ -44,11 +32,11 @@ pub(crate) struct Scale {
     pub lead: Lead,
 }
 
-/// Checks and prepares a pendulum and a step of `dt` seconds, which are `span`; a negative one runs backwards.
+/// Checks and prepares a pendulum and a step of `dt` seconds, which goes `step` tau; a negative one runs backwards.
 pub(crate) fn prepare<R: Real>(
     parameters: &Parameters<R>,
     dt: f64,
-    span: Span,
+    step: f64,
 ) -> Result<(Coefficients<R>, Scale), Error> {
     parameters.check()?;
     check_step::<R>(dt)?;
@@ -56,7 +44,6 @@ pub(crate) fn prepare<R: Real>(
     let norm = l1 / l2;
     let [inertia, total] = [m1, m1 + m2].map(|mass| mass / m2 * norm * norm);
 
-    let step = span.weights * span.factor;
     let unit = dt / libm::rint(step);
     let wished = unit * unit * g / l1;
     let gravity2 = factor_above::<R>(wished, total);
@@ -94,27 +81,13 @@ fn factor_above<R: Real>(value: f64, factor: f64) -> R {
 }
 
 impl Scale {
-    /// (P1, P2) of `state`.
-    #[inline(never)] // cold: once in flash, not once for each caller
-    pub fn momenta<R: Real>(&self, state: &State<R>) -> Result<[f64; 2], Error> {
-        let scaled = [state.p1, state.p2].map(|p| p.to_f64() * self.momentum);
-        for (i, parameter) in [Parameter::P1, Parameter::P2].into_iter().enumerate() {
-            if !R::from_f64(scaled[i]).is_finite() {
-                return Err(Error::OutOfRange { parameter, value: scaled[i] / self.momentum });
-            }
+    /// Refuses momenta that are too large for `R` in these units.
+    pub fn check<R: Real>(&self, momenta: [f64; 2]) -> Result<(), Error> {
+        let is_too_large = |(_, p): &(Parameter, f64)| !R::from_f64(*p).is_finite();
+        match [Parameter::P1, Parameter::P2].into_iter().zip(momenta).find(is_too_large) {
+            Some((parameter, p)) => Err(Error::OutOfRange { parameter, value: p / self.momentum }),
+            None => Ok(()),
         }
-        Ok(scaled)
-    }
-
-    /// The momenta (p1, p2) that are (P1, P2).
-    #[must_use]
-    pub fn in_si<R: Real>(&self, momenta: [R; 2]) -> [R; 2] {
-        momenta.map(|p| R::from_f64(p.to_f64() / self.momentum))
-    }
-
-    /// By how much the motion is ahead of the time told after `count` steps, tau.
-    pub fn ahead(&self, count: u64) -> f64 {
-        self.lead.ahead(count) * self.step
     }
 
     /// The state in SI units at the time told after `count` steps, of a motion that is at `z`, and `lost` more.
@@ -124,7 +97,7 @@ impl Scale {
     #[must_use]
     #[inline(never)] // cold: once in flash, not once for each caller
     pub fn state<R: Real>(&self, coefficients: &Coefficients<R>, z: &[R; 6], lost: [R; 6], count: u64) -> State<f64> {
-        let span = R::from_f64(-self.ahead(count));
+        let span = R::from_f64(-self.lead.ahead(count) * self.step);
         let mut change = [R::ZERO; 6];
         for share in [0.25, 1.0 / 3.0, 0.5, 1.0] {
             let at: [R; 6] = core::array::from_fn(|i| z[i] + change[i]);
@@ -136,9 +109,7 @@ impl Scale {
         if !change.into_iter().all(R::is_finite) {
             change = [R::ZERO; 6];
         }
-        let [sin1, cos1, s, c, p1, p2] = core::array::from_fn(|i| z[i].to_f64() + (lost[i] + change[i]).to_f64());
-        let [sin2, cos2] = lower_ray([sin1, cos1], [s, c]);
-        let [a1, a2] = [libm::atan2(sin1, cos1), libm::atan2(sin2, cos2)];
-        State { a1, a2, p1: p1 / self.momentum, p2: p2 / self.momentum }
+        let exact = core::array::from_fn(|i| z[i].to_f64() + (lost[i] + change[i]).to_f64());
+        state_of(exact, [self.momentum; 2])
     }
 }

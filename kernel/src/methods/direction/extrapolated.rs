@@ -1,7 +1,6 @@
 //! The direction form by extrapolation: the exact motion to the last digits of an `f64`, cheaply.
 
-use super::coefficients::Span;
-use super::sum::Sum;
+use super::Sum;
 use crate::error::Error;
 use crate::methods::extrapolation::{Extrapolation, ROWS, System};
 use crate::methods::{DirectionF64, Form};
@@ -77,54 +76,53 @@ impl<const ORDER: u32> Sealed for ExtrapolationF64<ORDER> {}
 #[doc(hidden)]
 impl<const ORDER: u32> Form for ExtrapolationF64<ORDER> {
     type Real = f64;
-    type Carried = <DirectionF64 as Form>::Carried;
     type Side = f64;
 
-    fn new(parameters: &Parameters<f64>, dt: f64) -> Result<Self, Error> {
-        let direction = DirectionF64::with_span(parameters, dt, Span::STEP)?;
+    fn new(parameters: &Parameters<f64>, start: &State<f64>, dt: f64) -> Result<Self, Error> {
+        let direction = DirectionF64::with_step(parameters, start, dt, 1.0)?;
         Ok(Self { direction, method: Extrapolation::new(ORDER)? })
     }
 
-    fn start(&self, state: &State<f64>) -> Result<Self::Carried, Error> {
-        self.direction.start(state)
+    fn started(&self, start: &State<f64>) -> Result<Self, Error> {
+        Ok(Self { direction: self.direction.started(start)?, ..*self })
     }
 
     // A call is nothing beside such a step: never inlined, to avoid a second copy.
     #[inline(never)]
-    fn advance(&self, carried: &mut Self::Carried, steps: u32) {
+    fn advance(&mut self, steps: u32) {
+        let Self { direction, method } = self;
         for _ in 0..steps {
-            let mut rows = Rows::new(&carried.z, &self.direction.coefficients);
-            let change = self.method.end(&mut rows, &[0.0; 6]);
+            let change = method.end(&mut Rows::new(&direction.z, &direction.coefficients), &[0.0; 6]);
             for (n, change) in change.into_iter().enumerate() {
-                carried.z[n] = carried.sums[n].add(carried.z[n], change);
+                direction.z[n] = direction.sums[n].add(direction.z[n], change);
             }
-            self.direction.restore_lengths(carried);
+            direction.restore_lengths();
         }
-        carried.inverse = 1.0 / self.direction.coefficients.denominator(carried.z[2]);
-        carried.steps += u64::from(steps);
+        direction.inverse = 1.0 / direction.coefficients.denominator(direction.z[2]);
+        direction.steps += u64::from(steps);
     }
 
-    fn check(&self, carried: &Self::Carried) -> Result<(), Error> {
-        self.direction.check(carried)
+    fn check(&self) -> Result<(), Error> {
+        self.direction.check()
     }
 
-    fn heads(carried: &Self::Carried) -> [Direction<f64>; 2] {
-        DirectionF64::heads(carried)
+    fn heads(&self) -> [Direction<f64>; 2] {
+        self.direction.heads()
     }
 
-    fn directions<Q: Real>(&self, carried: &Self::Carried) -> [Direction<Q>; 2] {
-        self.direction.directions(carried)
+    fn directions<Q: Real>(&self) -> [Direction<Q>; 2] {
+        self.direction.directions()
     }
 
-    fn momenta<Q: Real>(&self, carried: &Self::Carried) -> [Q; 2] {
-        self.direction.momenta(carried)
+    fn momenta<Q: Real>(&self) -> [Q; 2] {
+        self.direction.momenta()
     }
 
-    fn state(&self, carried: &Self::Carried) -> State<f64> {
-        self.direction.state(carried)
+    fn state(&self) -> State<f64> {
+        self.direction.state()
     }
 
-    fn bits(carried: &Self::Carried, feed: impl FnMut(u64)) {
-        DirectionF64::bits(carried, feed);
+    fn bits(&self, feed: impl FnMut(u64)) {
+        self.direction.bits(feed);
     }
 }

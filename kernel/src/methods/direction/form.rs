@@ -1,15 +1,13 @@
 //! The direction form: classical RK4 on (sin a1, cos a1, sin D, cos D, p1, p2), without trigonometry.
 
-use core::marker::PhantomData;
-
 use super::classical::{self, Point};
-use super::coefficients::{Scale, Span, prepare, third};
+use super::coefficients::{Scale, classical_step, prepare, third};
 use super::lead::BLOCK;
-use super::sum::{Compensated, Sum};
+use super::{Compensated, Sum};
 use crate::error::{Error, Parameter, check_finite};
 use crate::methods::{Form, Side};
 use crate::numbers::{Real, Sealed};
-use crate::pendulum::directions::{Coefficients, heads, lower_direction};
+use crate::pendulum::directions::{Coefficients, heads, lower_direction, quantities};
 use crate::pendulum::{Direction, Parameters, State};
 
 /// The directions of the rods themselves are stepped: what a drawing needs, and no angle anywhere.
@@ -24,12 +22,6 @@ pub struct DirectionForm<R, S = Compensated<R>> {
     scale: Scale,
     /// 1/(2 nu^2).
     pub(super) half_inverse_square: R,
-    sum: PhantomData<S>,
-}
-
-/// What the direction form carries from step to step: 64 bytes in compensated `f32`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DirectionState<R, S> {
     /// sin a1, cos a1, S, C, P1, P2.
     pub(super) z: [R; 6],
     pub(super) sums: [S; 6],
@@ -42,44 +34,39 @@ impl<R: Real, S: Sum<R>> Sealed for DirectionForm<R, S> {}
 #[doc(hidden)]
 impl<R: Real + Side, S: Sum<R>> Form for DirectionForm<R, S> {
     type Real = R;
-    type Carried = DirectionState<R, S>;
     type Side = R;
 
-    fn new(parameters: &Parameters<f64>, dt: f64) -> Result<Self, Error> {
-        Self::with_span(parameters, dt, Span::classical::<R>())
+    fn new(parameters: &Parameters<f64>, start: &State<f64>, dt: f64) -> Result<Self, Error> {
+        Self::with_step(parameters, start, dt, classical_step::<R>())
     }
 
-    fn start(&self, state: &State<f64>) -> Result<Self::Carried, Error> {
-        let state = &state.cast::<R>();
-        state.check()?;
-        let norm = self.coefficients.norm.to_f64();
-        let [a1, a2] = [state.a1.to_f64(), state.a2.to_f64()];
-        let (sin1, cos1) = a1.own_sin_cos();
-        let (sin_d, cos_d) = (a1 - a2).own_sin_cos();
-        let [p1, p2] = self.scale.momenta(state)?;
-        let z = [sin1, cos1, norm * sin_d, norm * cos_d, p1, p2];
+    fn started(&self, start: &State<f64>) -> Result<Self, Error> {
+        let start = start.cast::<R>();
+        start.check()?;
+        let z = quantities(&start.cast(), self.coefficients.norm.to_f64(), [self.scale.momentum; 2]);
+        self.scale.check::<R>([z[4], z[5]])?;
         let inverse = R::ONE / self.coefficients.denominator(R::from_f64(z[2]));
-        Ok(DirectionState { z: z.map(R::from_f64), sums: z.map(S::new), inverse, steps: 0 })
+        Ok(Self { z: z.map(R::from_f64), sums: z.map(S::new), inverse, steps: 0, ..*self })
     }
 
     #[inline(never)]
-    fn advance(&self, carried: &mut Self::Carried, steps: u32) {
+    fn advance(&mut self, steps: u32) {
         let mut left = steps;
         while left > 0 {
-            let run = left.min(BLOCK - carried.steps as u32 % BLOCK);
-            self.run(carried, run);
+            let run = left.min(BLOCK - self.steps as u32 % BLOCK);
+            self.run(run);
             left -= run;
         }
     }
 
     #[inline(always)]
-    fn advance_one(&self, carried: &mut Self::Carried) {
-        self.run(carried, 1);
+    fn advance_one(&mut self) {
+        self.run(1);
     }
 
-    fn check(&self, carried: &Self::Carried) -> Result<(), Error> {
-        let [sin1, cos1, s, c, p1, p2] = carried.z;
-        let [_, [sin2, cos2]] = self.directions::<R>(carried);
+    fn check(&self) -> Result<(), Error> {
+        let [sin1, cos1, s, c, p1, p2] = self.z;
+        let [_, [sin2, cos2]] = self.directions::<R>();
         let rods = [(Parameter::A1, [sin1, cos1]), (Parameter::A2, [s, c]), (Parameter::A2, [sin2, cos2])];
         let rods = rods.into_iter().flat_map(|(parameter, numbers)| numbers.map(|number| (parameter, number)));
         let unit = R::from_f64(self.scale.momentum);
@@ -87,37 +74,44 @@ impl<R: Real + Side, S: Sum<R>> Form for DirectionForm<R, S> {
     }
 
     #[inline(always)]
-    fn heads(carried: &Self::Carried) -> [Direction<R>; 2] {
-        heads(&carried.z)
+    fn heads(&self) -> [Direction<R>; 2] {
+        heads(&self.z)
     }
 
-    fn directions<Q: Real>(&self, carried: &Self::Carried) -> [Direction<Q>; 2] {
-        let [sin1, cos1, s, c, ..] = carried.z;
+    fn directions<Q: Real>(&self) -> [Direction<Q>; 2] {
+        let [sin1, cos1, s, c, ..] = self.z;
         let lower = lower_direction([sin1, cos1], [s, c], self.coefficients.norm);
         [[sin1, cos1], lower].map(|direction| direction.map(R::cast))
     }
 
-    fn momenta<Q: Real>(&self, carried: &Self::Carried) -> [Q; 2] {
-        self.scale.in_si([carried.z[4], carried.z[5]]).map(R::cast)
+    fn momenta<Q: Real>(&self) -> [Q; 2] {
+        [self.z[4], self.z[5]].map(|p| R::from_f64(p.to_f64() / self.scale.momentum).cast())
     }
 
-    fn state(&self, carried: &Self::Carried) -> State<f64> {
-        self.scale.state(&self.coefficients, &carried.z, carried.sums.map(|sum| sum.lost()), carried.steps)
+    fn state(&self) -> State<f64> {
+        self.scale.state(&self.coefficients, &self.z, self.sums.map(|sum| sum.lost()), self.steps)
     }
 
-    fn bits(carried: &Self::Carried, mut feed: impl FnMut(u64)) {
-        carried.z.iter().for_each(|z| feed(z.bits()));
-        carried.sums.iter().for_each(|sum| feed(sum.lost().bits()));
-        feed(carried.inverse.bits());
-        feed(carried.steps);
+    fn bits(&self, mut feed: impl FnMut(u64)) {
+        self.z.iter().for_each(|z| feed(z.bits()));
+        self.sums.iter().for_each(|sum| feed(sum.lost().bits()));
+        feed(self.inverse.bits());
+        feed(self.steps);
     }
 }
 
-impl<R: Real, S: Sum<R>> DirectionForm<R, S> {
-    pub(super) fn with_span(parameters: &Parameters<f64>, dt: f64, span: Span) -> Result<Self, Error> {
-        let (coefficients, scale) = prepare(&parameters.cast(), dt, span)?;
+impl<R: Real + Side, S: Sum<R>> DirectionForm<R, S> {
+    /// The step of `dt` s goes `step` tau.
+    pub(super) fn with_step(
+        parameters: &Parameters<f64>,
+        start: &State<f64>,
+        dt: f64,
+        step: f64,
+    ) -> Result<Self, Error> {
+        let (coefficients, scale) = prepare(&parameters.cast(), dt, step)?;
         let half_inverse_square = R::HALF / (coefficients.norm * coefficients.norm);
-        Ok(Self { coefficients, scale, half_inverse_square, sum: PhantomData })
+        let (z, sums) = ([R::ZERO; 6], [S::new(0.0); 6]);
+        Self { coefficients, scale, half_inverse_square, z, sums, inverse: R::ZERO, steps: 0 }.started(start)
     }
 
     /// Whether the step that ends at `count` is left out, the last of a block.
@@ -134,35 +128,35 @@ impl<R: Real, S: Sum<R>> DirectionForm<R, S> {
 
     /// Steps, at most to the end of a block, where the lengths are restored.
     #[inline(always)]
-    pub(super) fn run(&self, carried: &mut DirectionState<R, S>, steps: u32) {
-        carried.steps += u64::from(steps);
-        for _ in 0..self.scale.lead.made(steps, carried.steps) {
-            self.step(carried);
+    fn run(&mut self, steps: u32) {
+        self.steps += u64::from(steps);
+        for _ in 0..self.scale.lead.made(steps, self.steps) {
+            self.step();
         }
-        if carried.steps as u32 % BLOCK == 0 {
-            self.restore_lengths(carried);
+        if self.steps as u32 % BLOCK == 0 {
+            self.restore_lengths();
         }
     }
 
     #[inline(always)]
-    fn step(&self, carried: &mut DirectionState<R, S>) {
-        let DirectionState { z, inverse, .. } = *carried;
+    fn step(&mut self) {
+        let Self { z, inverse, .. } = *self;
         let (sum, last) = classical::stages(&self.coefficients, &Point { z, inverse });
         for i in 0..6 {
-            carried.z[i] = carried.sums[i].add(z[i], sum[i] * third());
+            self.z[i] = self.sums[i].add(z[i], sum[i] * third());
         }
-        carried.inverse = classical::newton_inverse(last, self.coefficients.inertia, carried.z[2]);
+        self.inverse = classical::newton_inverse(last, self.coefficients.inertia, self.z[2]);
     }
 
     /// Makes sin^2 a1 + cos^2 a1 = 1 and S^2 + C^2 = nu^2 again, to first order in what they miss.
     #[inline(always)]
-    pub(super) fn restore_lengths(&self, carried: &mut DirectionState<R, S>) {
+    pub(super) fn restore_lengths(&mut self) {
         for (i, length, gain) in [(0, R::ONE, R::HALF), (2, self.coefficients.norm, self.half_inverse_square)] {
-            let [s, c] = [carried.z[i], carried.z[i + 1]];
-            let lost = s * carried.sums[i].lost() + c * carried.sums[i + 1].lost();
+            let [s, c] = [self.z[i], self.z[i + 1]];
+            let lost = s * self.sums[i].lost() + c * self.sums[i + 1].lost();
             let missing = classical::missing([s, c], lost, length, gain);
-            carried.z[i] = carried.sums[i].add(s, s * missing);
-            carried.z[i + 1] = carried.sums[i + 1].add(c, c * missing);
+            self.z[i] = self.sums[i].add(s, s * missing);
+            self.z[i + 1] = self.sums[i + 1].add(c, c * missing);
         }
     }
 }

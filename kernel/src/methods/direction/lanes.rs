@@ -1,10 +1,9 @@
 //! The plain direction form for many motions at once.
 
 use super::DirectionForm;
+use super::Plain;
 use super::classical::{Point, Stage, missing, newton_inverse};
 use super::coefficients::third;
-use super::form::DirectionState;
-use super::sum::Plain;
 use crate::numbers::{Lanes, Real, Scalar};
 use crate::pendulum::Direction;
 use crate::pendulum::directions::{Coefficients, heads};
@@ -29,10 +28,10 @@ struct Row<R> {
 }
 
 impl<R: Real, const N: usize, const ROWS: usize> DirectionLanes<R, N, ROWS> {
-    /// Motions of `form`, all of them as `motion`.
+    /// All of them as `motion`.
     #[inline(always)]
-    pub fn new(form: &DirectionForm<R, Plain>, motion: &DirectionState<R, Plain>) -> Self {
-        let Coefficients { norm, inertia, gravity } = form.coefficients;
+    pub fn new(motion: &DirectionForm<R, Plain>) -> Self {
+        let Coefficients { norm, inertia, gravity } = motion.coefficients;
         let coefficients = Coefficients {
             norm: Lanes::splat(norm),
             inertia: Lanes::splat(inertia),
@@ -40,12 +39,12 @@ impl<R: Real, const N: usize, const ROWS: usize> DirectionLanes<R, N, ROWS> {
         };
         let start = Point { z: motion.z.map(Lanes::splat), inverse: Lanes::splat(motion.inverse) };
         let stage = Stage::first(&coefficients, &start);
-        Self { coefficients, half_inverse_square: form.half_inverse_square, rows: [Row { start, stage }; ROWS] }
+        Self { coefficients, half_inverse_square: motion.half_inverse_square, rows: [Row { start, stage }; ROWS] }
     }
 
     /// Puts another motion into a lane, counted through all rows; one that there is not is left alone.
     #[inline(always)]
-    pub fn put(&mut self, lane: usize, motion: &DirectionState<R, Plain>) {
+    pub fn put(&mut self, lane: usize, motion: &DirectionForm<R, Plain>) {
         let Some(Row { start, .. }) = self.rows.get_mut(lane / N) else { return };
         let places = start.z.iter_mut().chain([&mut start.inverse]);
         for (place, number) in places.zip(motion.z.into_iter().chain([motion.inverse])) {
@@ -90,7 +89,7 @@ impl<R: Real, const N: usize, const ROWS: usize> DirectionLanes<R, N, ROWS> {
         for Row { start: Point { z, .. }, .. } in &mut self.rows {
             for (i, length, gain) in ways {
                 let [s, c] = [z[i], z[i + 1]];
-                let missing = missing([s, c], Lanes::constant(0.0), length, Lanes::splat(gain));
+                let missing = missing([s, c], Lanes::from_f64(0.0), length, Lanes::splat(gain));
                 z[i] = s + s * missing;
                 z[i + 1] = c + c * missing;
             }

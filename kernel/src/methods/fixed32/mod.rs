@@ -9,10 +9,10 @@ mod upkeep;
 use crate::bounds::check_step;
 use crate::error::Error;
 use crate::methods::Form;
-use crate::methods::scaling::{Scaling, lost};
+use crate::methods::scaling::lost;
 use crate::numbers::fixed::{Q30, nearest, product};
 use crate::numbers::{Real, Scalar, Sealed};
-use crate::pendulum::directions::{heads, lower_direction, lower_ray};
+use crate::pendulum::directions::{heads, lower_direction, quantities, state_of};
 use crate::pendulum::{Direction, Parameters, Pendulum, State};
 use setting::Setting;
 
@@ -47,13 +47,7 @@ use setting::Setting;
 /// and steps of 2^-30 coarse beside them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fixed32 {
-    parameters: Parameters<f64>,
-    dt: f64,
-}
-
-/// A motion in fixed point, with the units that its energy chose: what [`Fixed32`] carries from step to step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Fixed32State {
+    /// What the energy at the start chose.
     units: Setting,
     /// sin a1, cos a1, S, C, P1, P2, with 62 bits after the point.
     z: [i64; 6],
@@ -65,7 +59,7 @@ pub struct Fixed32State {
     steps: u64,
 }
 
-/// Steps from one [`keep_up`](Fixed32State::keep_up) to the next.
+/// Steps from one [`keep_up`](Fixed32::keep_up) to the next.
 const UPKEEP: u32 = 32;
 
 /// 1 as the state has it.
@@ -84,83 +78,77 @@ impl Sealed for Fixed32 {}
 #[doc(hidden)]
 impl Form for Fixed32 {
     type Real = f32;
-    type Carried = Fixed32State;
     type Side = i32;
 
-    fn new(parameters: &Parameters<f64>, dt: f64) -> Result<Self, Error> {
+    #[inline(never)]
+    fn new(parameters: &Parameters<f64>, start: &State<f64>, dt: f64) -> Result<Self, Error> {
         parameters.check()?;
         check_step::<f64>(dt)?;
-        Ok(Self { parameters: *parameters, dt })
+        start.check()?;
+        let energy = Pendulum::new(parameters)?.energy_above_rest(start);
+        Ok(Self::of(Setting::new(parameters, energy, dt)?, start))
     }
 
-    #[inline(never)]
-    fn start(&self, state: &State<f64>) -> Result<Fixed32State, Error> {
-        state.check()?;
-        let energy = Pendulum::new(&self.parameters)?.energy_above_rest(state);
-        Ok(Fixed32State::starting(Setting::new(&self.parameters, energy, self.dt)?, state))
-    }
-
-    fn start_below(&self, above: &Fixed32State, state: &State<f64>) -> Result<Fixed32State, Error> {
-        state.check()?;
-        Ok(Fixed32State::starting(above.units, state))
+    fn started(&self, start: &State<f64>) -> Result<Self, Error> {
+        start.check()?;
+        Ok(Self::of(self.units, start))
     }
 
     // A call is nothing beside such a step, and a chip's flash holds it once.
     #[inline(never)]
-    fn advance(&self, carried: &mut Self::Carried, steps: u32) {
+    fn advance(&mut self, steps: u32) {
         let mut left = steps;
         while left > 0 {
-            let until_upkeep = UPKEEP - carried.steps as u32 % UPKEEP;
+            let until_upkeep = UPKEEP - self.steps as u32 % UPKEEP;
             let run = left.min(until_upkeep);
-            carried.advance(run);
-            carried.steps += u64::from(run);
+            self.make(run);
+            self.steps += u64::from(run);
             left -= run;
             if run == until_upkeep {
-                carried.keep_up();
+                self.keep_up();
             }
         }
     }
 
-    fn check(&self, carried: &Fixed32State) -> Result<(), Error> {
-        lost(carried.lost)
+    fn check(&self) -> Result<(), Error> {
+        lost(self.lost)
     }
 
     #[inline(always)]
-    fn heads(carried: &Fixed32State) -> [Direction<i32>; 2] {
-        heads(&carried.quantities()).map(|direction| direction.map(|part| part.0))
+    fn heads(&self) -> [Direction<i32>; 2] {
+        heads(&self.quantities()).map(|direction| direction.map(|part| part.0))
     }
 
-    fn directions<R: Real>(&self, carried: &Self::Carried) -> [Direction<R>; 2] {
-        let [sin1, cos1, s, c, ..] = carried.z.map(|z| R::from_f64(value(z)));
-        [[sin1, cos1], lower_direction([sin1, cos1], [s, c], R::from_f64(carried.units.scaling.norm))]
+    fn directions<R: Real>(&self) -> [Direction<R>; 2] {
+        let [sin1, cos1, s, c, ..] = self.z.map(|z| R::from_f64(value(z)));
+        [[sin1, cos1], lower_direction([sin1, cos1], [s, c], R::from_f64(self.units.scaling.norm))]
     }
 
-    fn momenta<R: Real>(&self, carried: &Self::Carried) -> [R; 2] {
-        carried.momenta().map(R::from_f64)
+    fn momenta<R: Real>(&self) -> [R; 2] {
+        let ([.., p1, p2], [unit1, unit2]) = (self.z.map(value), self.units.scaling.momenta);
+        if self.lost { [f64::NAN; 2] } else { [p1 / unit1, p2 / unit2] }.map(R::from_f64)
     }
 
-    fn state(&self, carried: &Self::Carried) -> State<f64> {
-        carried.state()
+    #[inline(never)]
+    fn state(&self) -> State<f64> {
+        let known = if self.lost { [f64::NAN; 6] } else { self.z.map(value) };
+        state_of(known, self.units.scaling.momenta)
     }
 
-    fn bits(carried: &Self::Carried, mut feed: impl FnMut(u64)) {
-        carried.z.iter().for_each(|&z| feed(z as u64));
-        feed(carried.inverse.0 as u64);
-        carried.weights.iter().for_each(|&weight| feed(weight as u64));
-        feed(u64::from(carried.lost));
-        feed(carried.steps);
+    fn bits(&self, mut feed: impl FnMut(u64)) {
+        self.z.iter().for_each(|&z| feed(z as u64));
+        feed(self.inverse.0 as u64);
+        self.weights.iter().for_each(|&weight| feed(weight as u64));
+        feed(u64::from(self.lost));
+        feed(self.steps);
     }
 }
 
-impl Fixed32State {
+impl Fixed32 {
     /// The motion that starts from `state`, of the energy that the units are for or less.
-    fn starting(units: Setting, state: &State<f64>) -> Self {
-        let State { a1, a2, p1, p2 } = *state;
-        let (sin1, cos1) = a1.own_sin_cos();
-        let (sin_d, cos_d) = (a1 - a2).own_sin_cos();
-        let Scaling { norm, momenta: [unit1, unit2], .. } = units.scaling;
-        let z = [sin1, cos1, norm * sin_d, norm * cos_d, p1 * unit1, p2 * unit2];
-        let inverse = Q30::constant(1.0 / units.scaling.denominator(z[2]));
+    fn of(units: Setting, state: &State<f64>) -> Self {
+        let z = quantities(state, units.scaling.norm, units.scaling.momenta);
+        let inverse = Q30::from_f64(1.0 / units.scaling.denominator(z[2]));
         let z = z.map(|z| nearest(z * ONE) as i64 + OFFSET);
         let mut motion = Self { units, z, inverse, weights: [0; 2], lost: false, steps: 0 };
         motion.weights = motion.weights_now();
@@ -174,26 +162,10 @@ impl Fixed32State {
     }
 
     /// (sin, cos) of both rods times 2^30.
-    pub(super) fn directions_q30(&self) -> [Direction<i32>; 2] {
+    pub(super) fn q30(&self) -> [Direction<i32>; 2] {
         let [upper, lower] = heads(&self.quantities());
         let ([_, inverse_square], norm) = (self.units.square, self.units.coefficients.norm);
         let over_norm = |x: Q30| ((product(x.0, norm.0) >> 30) * inverse_square) >> 29;
         [upper.map(|x| x.0), lower.map(|x| over_norm(x) as i32)]
-    }
-
-    fn momenta(&self) -> [f64; 2] {
-        let ([.., p1, p2], [unit1, unit2]) = (self.z.map(value), self.units.scaling.momenta);
-        if self.lost { [f64::NAN; 2] } else { [p1 / unit1, p2 / unit2] }
-    }
-
-    #[inline(never)]
-    fn state(&self) -> State<f64> {
-        if self.lost {
-            return State { a1: f64::NAN, a2: f64::NAN, p1: f64::NAN, p2: f64::NAN };
-        }
-        let [sin1, cos1, s, c, p1, p2] = self.z.map(value);
-        let [sin2, cos2] = lower_ray([sin1, cos1], [s, c]);
-        let [unit1, unit2] = self.units.scaling.momenta;
-        State { a1: libm::atan2(sin1, cos1), a2: libm::atan2(sin2, cos2), p1: p1 / unit1, p2: p2 / unit2 }
     }
 }

@@ -11,8 +11,6 @@ use crate::pendulum::directions::Coefficients;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Setting {
-    /// The energy above rest, J, which all of it follows from.
-    pub energy: f64,
     pub coefficients: Coefficients<Q30, Gravity>,
     /// The same with time reversed.
     pub reverse: Coefficients<Q30, Gravity>,
@@ -22,7 +20,7 @@ pub(super) struct Setting {
     pub missed: [i32; 2],
     /// nu^2 with 60 bits after the point, and its inverse with 29.
     pub square: [i64; 2],
-    /// The greatest energy in the units of [`Fixed32State::energy`](super::Fixed32State::energy).
+    /// The greatest energy in the units of [`Fixed32::energy`](super::Fixed32::energy).
     pub most_energy: i64,
     pub scaling: Scaling,
 }
@@ -69,16 +67,15 @@ impl Setting {
         }
         let halvings = libm::fmin(fit, f64::from(FINEST)) as u32;
         let scaling = seconds.in_unit(scaled(sixth, halvings as i32));
-        let gravity = scaling.gravity.map(Gravity::constant);
+        let gravity = scaling.gravity.map(Gravity::from_f64);
         let run = scaled(f64::from(6 * UPKEEP), 60 - halvings as i32);
         let missed = |i: usize| nearest(gravity[i].missed(scaling.gravity[i]) * run) as i32;
         let norm = scaling.norm;
-        let coefficients = Coefficients { norm: Q30::constant(norm), inertia: Q30::constant(scaling.inertia), gravity };
+        let coefficients = Coefficients { norm: Q30::from_f64(norm), inertia: Q30::from_f64(scaling.inertia), gravity };
         let energy_unit = scaled(1.0, 60 - (scaling.shifts.momentum + scaling.shifts.upper) as i32)
             / scaled(1.0, scaling.shifts.lower as i32);
         let most_energy = (1.0 + GROWTH) * kinetic * scaling.time * scaling.time + ROOM * RATE * RATE / (2.0 * sum);
         Ok(Self {
-            energy,
             coefficients,
             reverse: Coefficients { gravity: coefficients.gravity.map(|gravity| -gravity), ..coefficients },
             halvings,

@@ -1,6 +1,6 @@
 //! A step of RK4 in words of 32 bits.
 
-use super::Fixed32State;
+use super::Fixed32;
 use super::setting::Setting;
 use crate::methods::scaling::Shifts;
 use crate::numbers::Scalar;
@@ -17,8 +17,9 @@ fn shifted(word: i32, by: u32) -> i64 {
     i64::from(word >> (32 - by)) << 32 | i64::from((word as u32) << by)
 }
 
-impl Fixed32State {
-    pub(super) fn advance(&mut self, steps: u32) {
+impl Fixed32 {
+    /// Makes `steps` steps without upkeep.
+    pub(super) fn make(&mut self, steps: u32) {
         let shifts = self.units.scaling.shifts;
         if !SPECIALISED {
             self.run(shifts, self.units.halvings, steps);

@@ -1,14 +1,14 @@
 //! What is done every few steps: lengths are restored, gravity's last digits are made up for, the energy is looked at.
 
 use super::setting::Setting;
-use super::{Fixed32State, OFFSET, UPKEEP};
+use super::{Fixed32, OFFSET, UPKEEP};
 use crate::numbers::fixed::{Q30, product};
 use crate::pendulum::directions::Units;
 
 /// By how much the square of a length may be off, with 60 bits after the point.
 const LENGTH: u64 = 1 << 51;
 
-impl Fixed32State {
+impl Fixed32 {
     #[inline(never)]
     pub(super) fn keep_up(&mut self) {
         self.restore_lengths();

@@ -10,7 +10,7 @@ use crate::methods::Form;
 use crate::methods::scaling::{Scaling, lost};
 use crate::numbers::fixed::Q64;
 use crate::numbers::{Real, Scalar, Sealed};
-use crate::pendulum::directions::{heads, lower_ray};
+use crate::pendulum::directions::{heads, lower_ray, quantities, state_of};
 use crate::pendulum::{Direction, Parameters, Pendulum, State};
 use rows::{EIGHTH, Rows, unit_of_time};
 
@@ -32,13 +32,9 @@ use rows::{EIGHTH, Rows, unit_of_time};
 /// assert both). These come to 2e-13 rad by order 8, 7e-13 by order 12 and 3e-12 by order 16, however short the steps, in `f64`
 /// to 1e-13 or so. No rounding leans to one side, or all steps would add it up.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Fixed64<const ORDER: u32> {
-    parameters: Parameters<f64>,
-    dt: f64,
-}
+pub struct Fixed64<const ORDER: u32>(Fixed64State);
 
-/// A motion in fixed point, with the units that its energy chose: what [`Fixed64`] carries from step
-/// to step.
+/// The same of any order, in one copy.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fixed64State {
     rows: Rows,
@@ -76,88 +72,81 @@ impl<const ORDER: u32> Sealed for Fixed64<ORDER> {}
 #[doc(hidden)]
 impl<const ORDER: u32> Form for Fixed64<ORDER> {
     type Real = f32;
-    type Carried = Fixed64State;
     type Side = i32;
 
-    fn new(parameters: &Parameters<f64>, dt: f64) -> Result<Self, Error> {
-        parameters.check()?;
-        check_step::<f64>(dt)?;
-        Ok(Self { parameters: *parameters, dt })
+    fn new(parameters: &Parameters<f64>, start: &State<f64>, dt: f64) -> Result<Self, Error> {
+        Fixed64State::new(parameters, start, dt, ORDER).map(Self)
     }
 
-    fn start(&self, state: &State<f64>) -> Result<Self::Carried, Error> {
-        state.check()?;
-        Fixed64State::start(&self.parameters, self.dt, ORDER, state)
+    fn started(&self, start: &State<f64>) -> Result<Self, Error> {
+        start.check()?;
+        Ok(Self(self.0.started(start)))
     }
 
     #[inline]
-    fn advance(&self, carried: &mut Self::Carried, steps: u32) {
-        carried.advance(steps);
+    fn advance(&mut self, steps: u32) {
+        self.0.advance(steps);
     }
 
-    fn check(&self, carried: &Self::Carried) -> Result<(), Error> {
-        lost(carried.lost)
+    fn check(&self) -> Result<(), Error> {
+        lost(self.0.lost)
     }
 
-    fn heads(carried: &Self::Carried) -> [Direction<i32>; 2] {
-        heads(&carried.z).map(|direction| direction.map(|x| (x.0 >> 32) as i32))
+    fn heads(&self) -> [Direction<i32>; 2] {
+        heads(&self.0.z).map(|direction| direction.map(|x| (x.0 >> 32) as i32))
     }
 
-    fn directions<R: Real>(&self, carried: &Self::Carried) -> [Direction<R>; 2] {
-        carried.directions()
+    fn directions<R: Real>(&self) -> [Direction<R>; 2] {
+        self.0.directions()
     }
 
-    fn momenta<R: Real>(&self, carried: &Self::Carried) -> [R; 2] {
-        carried.momenta()
+    fn momenta<R: Real>(&self) -> [R; 2] {
+        self.0.momenta()
     }
 
-    fn state(&self, carried: &Self::Carried) -> State<f64> {
-        carried.state()
+    fn state(&self) -> State<f64> {
+        self.0.state()
     }
 
-    fn bits(carried: &Self::Carried, mut feed: impl FnMut(u64)) {
-        carried.z.iter().for_each(|&z| feed(z.0 as u64));
-        feed(u64::from(carried.lost));
+    fn bits(&self, mut feed: impl FnMut(u64)) {
+        self.0.z.iter().for_each(|&z| feed(z.0 as u64));
+        feed(u64::from(self.0.lost));
     }
 }
 
 impl Fixed64State {
-    /// At no place yet, for motions of `energy` J above rest.
     #[inline(never)]
-    fn new(parameters: &Parameters<f64>, energy: f64, dt: f64, order: u32) -> Result<Self, Error> {
-        let bounds = Bounds::new(parameters, energy);
-        let scaling = Scaling::new(parameters, &bounds, [RATE, TORQUE], |[by_rates, by_torques]| {
-            let longest = libm::fmin(by_rates, by_torques);
-            let limit = libm::fmin(STEP * longest, TURN / RATE * by_rates);
-            if libm::fabs(dt) > limit {
-                return Err(Error::TooLarge { parameter: Parameter::Dt, value: dt, limit });
-            }
-            Ok(unit_of_time(longest, dt))
-        })?;
+    fn new(parameters: &Parameters<f64>, start: &State<f64>, dt: f64, order: u32) -> Result<Self, Error> {
+        parameters.check()?;
+        check_step::<f64>(dt)?;
+        start.check()?;
+        let bounds = Bounds::new(parameters, Pendulum::new(parameters)?.energy_above_rest(start));
+        let seconds = Scaling::in_seconds(parameters)?;
+        let [by_rates, by_torques] = seconds.longest(&bounds, [RATE, TORQUE]);
+        let longest = libm::fmin(by_rates, by_torques);
+        let limit = libm::fmin(STEP * longest, TURN / RATE * by_rates);
+        if libm::fabs(dt) > limit {
+            return Err(Error::TooLarge { parameter: Parameter::Dt, value: dt, limit });
+        }
+        let scaling = seconds.in_unit(unit_of_time(longest, dt));
         let rows = Rows::new(order, &scaling, dt)?;
-        Ok(Self {
+        let motion = Self {
             floored: rows.floored(),
             rows,
             momenta: scaling.momenta,
             norm: scaling.norm,
-            half_inverse_square: Q64::constant(0.5 / (scaling.norm * scaling.norm) * EIGHTH),
+            half_inverse_square: Q64::from_f64(0.5 / (scaling.norm * scaling.norm) * EIGHTH),
             z: [Q64(0); 6],
             inverse_norm: 1.0 / scaling.norm,
             lost: false,
-        })
+        };
+        Ok(motion.started(start))
     }
 
-    #[inline(never)]
-    fn start(parameters: &Parameters<f64>, dt: f64, order: u32, state: &State<f64>) -> Result<Self, Error> {
-        let energy = Pendulum::new(parameters)?.energy_above_rest(state);
-        let motion = Self::new(parameters, energy, dt, order)?;
-        let &State { a1, a2, p1, p2 } = state;
-        let (sin1, cos1) = a1.own_sin_cos();
-        let (sin_d, cos_d) = (a1 - a2).own_sin_cos();
-        let Self { norm, momenta: [unit1, unit2], .. } = motion;
-        let eighths = [sin1, cos1, norm * sin_d, norm * cos_d].map(|direction| direction * EIGHTH);
-        let [sin1, cos1, s, c] = eighths;
-        Ok(Self { z: [sin1, cos1, s, c, p1 * unit1, p2 * unit2].map(Q64::constant), ..motion })
+    fn started(&self, start: &State<f64>) -> Self {
+        let [sin1, cos1, s, c, p1, p2] = quantities(start, self.norm, self.momenta);
+        let [sin1, cos1, s, c] = [sin1, cos1, s, c].map(|direction| direction * EIGHTH);
+        Self { z: [sin1, cos1, s, c, p1, p2].map(Q64::from_f64), lost: false, ..*self }
     }
 
     #[inline(never)]
@@ -183,12 +172,6 @@ impl Fixed64State {
         self.lost |= reach != 0 || [missing1, missing2].into_iter().any(|missing| missing.0.unsigned_abs() > LENGTH);
     }
 
-    // one copy
-    #[inline(never)]
-    fn values(&self) -> [f64; 6] {
-        self.z.map(Q64::value)
-    }
-
     fn directions<R: Real>(&self) -> [Direction<R>; 2] {
         let [sin1, cos1, s, c, ..] = self.z;
         let inverse = R::from_f64(self.inverse_norm);
@@ -198,13 +181,7 @@ impl Fixed64State {
 
     #[inline(never)]
     fn state(&self) -> State<f64> {
-        if self.lost {
-            return State { a1: f64::NAN, a2: f64::NAN, p1: f64::NAN, p2: f64::NAN };
-        }
-        let [sin1, cos1, s, c, p1, p2] = self.values();
-        let [sin2, cos2] = lower_ray([sin1, cos1], [s, c]);
-        let [unit1, unit2] = self.momenta;
-        State { a1: libm::atan2(sin1, cos1), a2: libm::atan2(sin2, cos2), p1: p1 / unit1, p2: p2 / unit2 }
+        state_of(if self.lost { [f64::NAN; 6] } else { self.z.map(Q64::value) }, self.momenta)
     }
 
     /// p1 and p2 in SI units, rounded to `R`.

@@ -50,7 +50,7 @@ impl Rows {
         let Scaling { norm, inertia, gravity: [gravity1, gravity2], shifts, time, .. } = *scaling;
         let step = dt / time;
         let share = nearest(step * SHARE) as i64;
-        let whole = [8.0 * step * gravity1, 4.0 * step * gravity2].map(|gravity| Q64::constant(gravity).0);
+        let whole = [8.0 * step * gravity1, 4.0 * step * gravity2].map(|gravity| Q64::from_f64(gravity).0);
         let method = Extrapolation::<Q64>::new(order)?;
         let mut rows = [Row { share: 0, gravity: [Q64(0); 2] }; ROWS];
         let mut errors = [0.0; 2];
@@ -69,8 +69,8 @@ impl Rows {
             method,
             shifts,
             coefficients: Coefficients {
-                norm: Q64::constant(norm * EIGHTH),
-                inertia: Q64::constant(inertia * EIGHTH * EIGHTH),
+                norm: Q64::from_f64(norm * EIGHTH),
+                inertia: Q64::from_f64(inertia * EIGHTH * EIGHTH),
                 gravity: [Q64(0); 2],
             },
             rows,
@@ -245,10 +245,11 @@ mod tests {
         let parameters = Parameters::equal_rods(1.0, 1.0, 9.81);
         let dt = 1.0 / 64.0;
         let bounds = Bounds::new(&parameters, 50.0);
-        let unit = |[by_rates, by_torques]: [f64; 2]| Ok(unit_of_time(libm::fmin(by_rates, by_torques), dt));
-        let scaling = Scaling::new(&parameters, &bounds, [0.125, 1.0 / 256.0], unit)?;
+        let seconds = Scaling::in_seconds(&parameters)?;
+        let [by_rates, by_torques] = seconds.longest(&bounds, [0.125, 1.0 / 256.0]);
+        let scaling = seconds.in_unit(unit_of_time(libm::fmin(by_rates, by_torques), dt));
         let reach = Cell::new(0);
-        Rows::new(2, &scaling, dt)?.end(&z.map(Q64::constant), &reach);
+        Rows::new(2, &scaling, dt)?.end(&z.map(Q64::from_f64), &reach);
         Ok(reach.get() != 0)
     }
 

@@ -2,8 +2,7 @@
 
 use core::ops::{Add, Mul, Neg, Sub};
 
-use super::product::{product, upper};
-use super::{nearest, scaled};
+use super::{nearest, product, scaled, upper};
 use crate::numbers::{Scalar, Sealed};
 
 /// The word that holds a number. That it does is what [`Scaling`](crate::methods::scaling::Scaling) sees to; unit tests are stopped if not.
@@ -95,7 +94,7 @@ impl Gravity {
     /// Steps in 1.
     pub const STEPS: f64 = (1_u64 << 33) as f64;
 
-    pub fn constant(value: f64) -> Self {
+    pub fn from_f64(value: f64) -> Self {
         Self(word(nearest(value * Self::STEPS) as i64))
     }
 
@@ -128,7 +127,7 @@ impl Scalar for Q30 {
     type Slope = Slope;
     type Gravity = Gravity;
     type Torque = Torque;
-    fn constant(value: f64) -> Self {
+    fn from_f64(value: f64) -> Self {
         Self(word(nearest(scaled(value, 30)) as i64))
     }
     #[inline(always)]

@@ -2,8 +2,7 @@
 
 use core::ops::{Add, Mul, Neg, Sub};
 
-use super::nearest;
-use super::product::product;
+use super::{nearest, product};
 use crate::numbers::{Real, Scalar, Sealed};
 
 /// A number from -1/2 to below 1/2 in 64 bits, in steps of 2^-64: no shift follows a product.
@@ -109,7 +108,7 @@ impl Scalar for Q64 {
     type Gravity = Self;
     type Torque = Self;
     #[inline(never)]
-    fn constant(value: f64) -> Self {
+    fn from_f64(value: f64) -> Self {
         Self(nearest(value * UNIT) as i64)
     }
     #[inline(always)]
@@ -135,7 +134,7 @@ impl Scalar for Q64 {
     }
     fn split(value: f64) -> (i32, Self) {
         let whole = libm::floor(value + 0.5); // the rest may be -1/2, but not 1/2
-        (whole as i32, Self::constant(value - whole))
+        (whole as i32, Self::from_f64(value - whole))
     }
     #[inline(always)]
     fn times(self, whole: i32) -> Self {
@@ -183,7 +182,7 @@ mod tests {
     fn inverses_are_within_their_bound() {
         let mut d = 1.0;
         while d < 8.0 {
-            let inverse = Q64::constant(d / 64.0).inverse().value() * 4.0;
+            let inverse = Q64::from_f64(d / 64.0).inverse().value() * 4.0;
             assert!((inverse * d - 1.0).abs() <= 0.6 * f64::EPSILON * 2.0, "{d}: {inverse:e}");
             d *= 1.000_123;
         }
@@ -206,7 +205,7 @@ mod tests {
     fn factors_of_any_size() {
         for value in [0.5, 1.0, 1.0 / 3.0, -17.4, 50.7, -0.5] {
             let (whole, rest) = Q64::split(value);
-            let product = (Q64::constant(0.003) * rest + Q64::constant(0.003).times(whole)).value();
+            let product = (Q64::from_f64(0.003) * rest + Q64::from_f64(0.003).times(whole)).value();
             assert!((product - 0.003 * value).abs() < 1e-15, "{value}: {product}");
         }
     }
