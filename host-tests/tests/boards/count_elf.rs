@@ -62,7 +62,7 @@ fn panic(_: &core::panic::PanicInfo) -> ! { loop {} }
 }
 
 /// For a program that never ends by itself: many times what it takes to the wait, on a busy machine too.
-const SECONDS: [&str; 2] = ["--seconds", "5"];
+const SECONDS: [&str; 2] = ["--seconds", "3"];
 /// It ends itself, well or as failed; it waits for ever; it needs a floating-point unit.
 const ENDS: &str = "ldr r1, =0x20026";
 const FAILS: &str = "ldr r1, =0x020023";
@@ -108,7 +108,7 @@ fn a_program_that_is_stopped_is_counted_until_then() {
     let folder = folder();
     let output = count(&program(folder.path(), "0x0", WAITS), "label", &SECONDS);
     assert!(output.status.success() && output.stdout.contains(": calls 3\n"), "{output:?}");
-    assert!(output.stderr.contains("stopped after 5 s and 3 calls"), "{output:?}");
+    assert!(output.stderr.contains("stopped after 3 s and 3 calls"), "{output:?}");
 }
 
 #[test]

@@ -7,9 +7,7 @@ use std::io::{BufRead, BufReader, Read, Write};
 use std::ops::Range;
 use std::os::unix::net::UnixStream;
 
-use anyhow::anyhow;
-
-use super::error::broken;
+use anyhow::{Context, anyhow};
 
 /// The size of the instruction `wfi`, and what any breakpoint is said to take, bytes.
 const SIZE: u32 = 2;
@@ -34,7 +32,7 @@ pub(super) struct Debugger {
 impl Debugger {
     /// Will run to the instructions `wfi` at these addresses.
     pub(super) fn new(socket: UnixStream, sleeps: Vec<u32>) -> anyhow::Result<Self> {
-        let writer = socket.try_clone().map_err(broken("debugger port"))?;
+        let writer = socket.try_clone()?;
         let mut debugger = Self { reader: BufReader::new(socket), writer, sleeps, asleep_at: None };
         debugger.ask(DESCRIBE)?;
         Ok(debugger)
@@ -68,7 +66,7 @@ impl Debugger {
     }
 
     pub(super) fn run(&mut self) -> anyhow::Result<()> {
-        self.send("c").map_err(broken("debugger port"))
+        self.send("c")
     }
 
     pub(super) fn write(&mut self, address: u32, bytes: &[u8]) -> anyhow::Result<()> {
@@ -107,22 +105,23 @@ impl Debugger {
         if reply.starts_with(answer) { Ok(()) } else { Err(unexpected(packet, &reply)) }
     }
 
-    fn ask(&mut self, packet: &str) -> anyhow::Result<String> {
-        self.exchange(packet).map_err(broken("debugger port"))
-    }
-
-    fn send(&mut self, packet: &str) -> std::io::Result<()> {
+    fn send(&mut self, packet: &str) -> anyhow::Result<()> {
         let checksum = packet.bytes().fold(0, u8::wrapping_add);
-        write!(self.writer, "${packet}#{checksum:02x}")
+        self.say(&format!("${packet}#{checksum:02x}"))
     }
 
-    fn exchange(&mut self, packet: &str) -> std::io::Result<String> {
+    fn say(&mut self, text: &str) -> anyhow::Result<()> {
+        // Not as it is: a broken pipe would be taken for a closed output, which is no failure.
+        self.writer.write_all(text.as_bytes()).map_err(|error| anyhow!("QEMU's debugger port: {error}"))
+    }
+
+    fn ask(&mut self, packet: &str) -> anyhow::Result<String> {
         self.send(packet)?;
         self.reader.skip_until(b'$')?;
         let mut reply = Vec::new();
         self.reader.read_until(b'#', &mut reply)?;
-        self.reader.read_exact(&mut [0; 2])?;
-        self.writer.write_all(b"+")?;
+        self.reader.read_exact(&mut [0; 2]).context("QEMU's debugger port")?;
+        self.say("+")?;
         reply.pop();
         Ok(String::from_utf8_lossy(&reply).into_owned())
     }

@@ -5,8 +5,8 @@ use std::ops::Range;
 use std::path::Path;
 
 use anyhow::{Context, bail};
+use cycles::Image;
 use firmware::protocol::{Frame, Message};
-use object::{Object, ObjectSection, SectionKind};
 
 use super::Screenshot;
 use super::gdb::Debugger;
@@ -41,7 +41,8 @@ pub struct Lockstep {
 impl Lockstep {
     /// Starts a board with its clock counted, even if `settings` say otherwise; it stands still at its first instruction.
     pub fn start(settings: &Settings) -> anyhow::Result<Self> {
-        let sleeps = sleeps(settings.elf)?;
+        let words = Image::read(settings.elf)?.words().into_iter();
+        let sleeps = words.filter(|(_, first, _)| *first == WFI).map(|(address, ..)| address).collect();
         let (machine, debugger) = Machine::start_stopped(&Settings { clock: Clock::Counted, ..*settings })?;
         Ok(Self { machine, debugger: Debugger::new(debugger, sleeps)? })
     }
@@ -102,10 +103,6 @@ impl Lockstep {
         self.debug(|debugger| debugger.write(address, bytes))
     }
 
-    pub fn fill(&mut self, addresses: Range<u32>, byte: u8) -> anyhow::Result<()> {
-        self.write(addresses.start, &vec![byte; addresses.len()])
-    }
-
     pub fn read(&mut self, addresses: Range<u32>) -> anyhow::Result<Vec<u8>> {
         self.debug(|debugger| debugger.read(addresses))
     }
@@ -121,17 +118,4 @@ impl Lockstep {
     pub fn machine(&mut self) -> &mut Machine {
         &mut self.machine
     }
-}
-
-/// The addresses in the program where `wfi` stands, or a constant that looks like it, which is never executed.
-fn sleeps(elf: &Path) -> anyhow::Result<Vec<u32>> {
-    let program = std::fs::read(elf).with_context(|| elf.display().to_string())?;
-    let program = object::File::parse(&*program)?;
-    let mut sleeps = Vec::new();
-    for section in program.sections().filter(|section| section.kind() == SectionKind::Text) {
-        let code = section.data()?;
-        let halfwords = (section.address() as u32..).step_by(2).zip(code.as_chunks().0);
-        sleeps.extend(halfwords.filter(|(_, bytes)| u16::from_le_bytes(**bytes) == WFI).map(|(address, _)| address));
-    }
-    Ok(sleeps)
 }
