@@ -2,7 +2,6 @@
 #![allow(dead_code)]
 
 pub mod bench;
-pub mod branch;
 pub mod code;
 
 use std::ops::Range;
