@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use cycles::ERROR_BAR;
+use cycles::{ERROR_BAR, Image};
 use host_tests::emulator::boards::BOARDS;
 use host_tests::emulator::process::{self, Output};
 
@@ -92,15 +92,12 @@ fn functions_and_labels_are_counted_and_the_end_is_told() {
     let mean = |line: &str| line.split_ascii_whitespace().nth(1).and_then(|mean| mean.parse::<f64>().ok());
     assert_eq!((mean(instructions), mean(cycles)), (Some(2.0), Some(4.0)), "a move, and a return with its refill");
 
-    let bytes = std::fs::read(&elf).unwrap_or_else(|error| panic!("{error}"));
-    let file = object::File::parse(&*bytes).unwrap_or_else(|error| panic!("{error}"));
-    use object::{Object, ObjectSymbol};
-    let names = file.symbols().filter_map(|symbol| symbol.name().ok().map(str::to_owned));
-    let mangled = names.into_iter().find(|name| name.contains("step")).unwrap_or_default();
+    let image = Image::read(&elf).unwrap_or_else(|error| panic!("{error}"));
+    let mangled = &image.function("program::inner::step").unwrap_or_else(|error| panic!("{error}")).symbol;
     let by_name = count(&elf, "program::inner::step", &[]);
     let is_it = |line: &str| line.starts_with("program::inner::step on") && line.ends_with(": calls 3");
     assert!(by_name.stdout.lines().next().is_some_and(is_it), "{by_name:?}");
-    assert_eq!(count(&elf, &mangled, &[]).stdout, by_name.stdout);
+    assert_eq!(count(&elf, mangled, &[]).stdout, by_name.stdout);
 }
 
 #[test]

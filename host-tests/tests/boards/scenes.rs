@@ -11,7 +11,7 @@ use crate::budgets::{Next, beyond, exercise, wire};
 use crate::support::{LIMIT, PAINT, application, depth, on, show, stack};
 use cycles::{Core, Cost, Image};
 use firmware::config::TICK_RATE;
-use firmware::protocol::{Choose, Frame};
+use firmware::protocol::{Choose, Frame, Message};
 use firmware::scenes::SceneName;
 use host_tests::commands::count::FrameProfile;
 use host_tests::emulator::boards::{BOARDS, Board, PICO};
@@ -42,40 +42,36 @@ const MOST_CYCLES: f64 = 3.0;
 
 /// Frames of a scene in a short run. Within 1.1 s the stack has been as deep as it gets in an hour, an interrupt apart, whichever
 /// tick a scene is left at. On the M3 the butterfly's curve grows, and the most expensive frame comes after 10 s.
-fn short(board: &Board, name: SceneName, round: usize) -> u32 {
-    match (board.core(), name) {
-        (Core::M3, SceneName::Butterfly) if round == 0 => 10 * TICK_RATE,
-        _ if board.has_panel => 3 * EVERY,
-        _ => EVERY,
-    }
+fn short(board: &Board, name: SceneName) -> u32 {
+    if (board.core(), name) == (Core::M3, SceneName::Butterfly) { 10 * TICK_RATE } else { 3 * EVERY }
 }
 
 #[test]
 fn every_board_plays_every_scene_as_the_host_does_within_its_budgets() -> anyhow::Result<()> {
-    every_board_plays(LIMIT, short, |board| 1 + usize::from(board == &BOARDS[0]))
+    every_board_plays(LIMIT, short)
 }
 
 #[test]
 #[ignore = "an hour of five boards"]
 fn every_board_plays_every_scene_for_an_hour() -> anyhow::Result<()> {
-    every_board_plays(LONG_LIMIT, |_, _, _| LONG, |_| 2)
+    every_board_plays(LONG_LIMIT, |_, _| LONG)
 }
 
-fn every_board_plays(
-    limit: Duration,
-    ticks: impl Fn(&Board, SceneName, usize) -> u32 + Sync,
-    rounds: impl Fn(&Board) -> usize + Sync,
-) -> anyhow::Result<()> {
+fn every_board_plays(limit: Duration, ticks: fn(&Board, SceneName) -> u32) -> anyhow::Result<()> {
     println!("| board | text | data | bss | stack | idle (estimated) |\n| --- | ---: | ---: | ---: | ---: | ---: |");
-    let plays = |board| plays(board, limit, |name, round| ticks(board, name, round), rounds(board));
-    let too_much = BOARDS.par_iter().map(plays).collect::<Result<Vec<_>, _>>()?.concat();
+    let too_much = BOARDS.par_iter().map(|board| plays(board, limit, ticks)).collect::<Result<Vec<_>, _>>()?.concat();
     assert!(too_much.is_empty(), "{too_much:#?}");
     Ok(())
 }
 
+/// Tells a board that runs freely something, and waits for its next frame.
 fn told(machine: &mut Lockstep, words: &[u8]) -> anyhow::Result<Vec<Received>> {
     machine.machine().serial.send_bytes(words)?;
-    machine.run_to_frame()
+    let mut messages = Vec::new();
+    while messages.last().is_none_or(|last: &Received| last.kind != Frame::KIND) {
+        messages.push(machine.machine().receive()?);
+    }
+    Ok(messages)
 }
 
 /// A scene on a board beside the same on the host.
@@ -95,19 +91,23 @@ impl<'a> Followed<'a> {
         Self { board, name, show: show(board, name), words, highest: [0; 2] }
     }
 
+    fn step(&self) -> u32 {
+        self.show.report().step as u32
+    }
+
     /// Goes on to a tick of the scene: each frame is the host's, none is late.
     fn to(&mut self, until: u32, next: Next) -> anyhow::Result<()> {
-        let Self { board, name, show, words, highest } = self;
-        while show.report().step < until.into() {
-            // More than one where the board had no time to sleep between them; the command may not have been executed yet.
-            let messages = next(&std::mem::take(words))?;
-            for frame in messages.iter().filter_map(Received::read::<Frame>).filter(|one| one.scene == name.code()) {
-                let step = show.report().step as u32 + 1;
-                assert_eq!((frame.step, frame.dropped), (step, 0), "{}: {}", board.name, name.name());
-                assert_eq!(frame, show.expected(&frame), "{}: {}", board.name, name.name());
+        while self.step() < until {
+            let messages = next(&std::mem::take(&mut self.words))?;
+            // The command may not have been executed yet.
+            let is_here = |frame: &Frame| frame.scene == self.name.code();
+            for frame in messages.iter().filter_map(Received::read).filter(is_here) {
+                let (place, step) = (format!("{}: {}", self.board.name, self.name.name()), self.step() + 1);
+                assert_eq!((frame.step, frame.dropped), (step, 0), "{place}");
+                assert_eq!(frame, self.show.expected(&frame), "{place}");
                 if step > SETTLING {
-                    let costs = [frame.scene_cycles, frame.busy_cycles];
-                    *highest = std::array::from_fn(|which| highest[which].max(costs[which]));
+                    let [scene, whole] = self.highest;
+                    self.highest = [scene.max(frame.scene_cycles), whole.max(frame.busy_cycles)];
                 }
             }
         }
@@ -115,13 +115,8 @@ impl<'a> Followed<'a> {
     }
 }
 
-/// Plays all scenes in rounds, the panel compared now and then; what is beyond the board's budgets.
-fn plays(
-    board: &'static Board,
-    limit: Duration,
-    ticks: impl Fn(SceneName, usize) -> u32,
-    rounds: usize,
-) -> anyhow::Result<Vec<String>> {
+/// Plays all scenes twice, the panel compared now and then; what is beyond the board's budgets.
+fn plays(board: &'static Board, limit: Duration, ticks: fn(&Board, SceneName) -> u32) -> anyhow::Result<Vec<String>> {
     let elf = application(board);
     let (image, stack) = (Image::read(&elf)?, stack(&elf));
     let mut machine = on(board, |settings| Lockstep::start(&Settings { limit, ..*settings }))?;
@@ -130,14 +125,18 @@ fn plays(
     (0..EVERY).try_for_each(|_| machine.next_frame().map(drop))?;
     let (mut too_much, mut reached, mut least_idle) = (Vec::new(), Vec::new(), 1.0_f64);
     let (_, mut profile) = FrameProfile::of_next(&mut machine, &image, board.core())?;
-    for round in 0..rounds {
+    for round in 0..2 {
         let mut name = SceneName::Page;
         for _ in SceneName::ALL {
             // Never the one that is on.
             name = name.next();
             let mut followed = Followed::new(board, name);
-            for until in (EVERY..=ticks(name, round)).step_by(EVERY as usize) {
+            for until in (EVERY..=ticks(board, name)).step_by(EVERY as usize) {
+                machine.run()?;
                 followed.to(until, &mut |words| told(&mut machine, words))?;
+                machine.stop()?;
+                // The panel shows exactly the frame that has come when the processor is about to sleep.
+                followed.to(followed.step() + 1, &mut |_| machine.run_to_frame())?;
                 let shown = board.has_panel.then(|| machine.screenshot()).transpose()?;
                 let is_it = shown.as_ref().is_none_or(|shown| *shown == Screenshot::from(&followed.show.frame()));
                 assert!(is_it, "{}: {}\n{shown:?}", board.name, name.name());
@@ -173,17 +172,15 @@ fn plays(
         }
         reached.push(depth(&machine.read(stack.clone())?));
     }
-    assert!(
-        reached[rounds - 1] <= reached[0] + INTERRUPT,
-        "{}: the stack reaches ever deeper: {reached:?}",
-        board.name
-    );
+    assert!(reached[1] <= reached[0] + INTERRUPT, "{}: the stack reaches ever deeper: {reached:?}", board.name);
     let Counts { damaged, lost, .. } = machine.machine().serial.counts();
     assert_eq!((damaged, lost), (0, 0), "{}", board.name);
     let lines = machine.machine().log.arrived().filter(|line| line.is_bad());
     let bad: Vec<_> = lines.filter(|line| board.has_panel || !line.text.contains(NO_PANEL)).collect();
     assert!(bad.is_empty(), "{}: {bad:#?}", board.name);
+    machine.run()?;
     exercise(&mut |words| told(&mut machine, words))?;
+    machine.stop()?;
     too_much.extend(beyond(board, &elf, depth(&machine.read(stack)?), least_idle));
     Ok(too_much)
 }

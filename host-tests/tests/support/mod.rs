@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use firmware::scenes::SceneName;
+use host_tests::commands::count::Target;
 use host_tests::emulator::boards::Board;
 use host_tests::emulator::host::Show;
 use host_tests::emulator::qemu::{Clock, Settings};
@@ -21,6 +22,11 @@ pub const LIMIT: Duration = Duration::from_secs(900);
 /// The tools; a test without them fails and says what brings them.
 pub fn toolchain() -> Toolchain {
     toolchain::ready().unwrap_or_else(|missing| panic!("{missing}"))
+}
+
+/// The program that measures, on a board for each kind of core.
+pub fn targets() -> Vec<Target> {
+    Target::build_all(&toolchain()).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// A board's application.

@@ -30,7 +30,12 @@ pub fn counted<'a>(target: &'a Target, request: &Request) -> Result<Calls<'a>> {
 pub fn calls_of<'a>(target: &'a Target, function: &str, limit: Duration) -> Result<(&'a Function, Vec<Cost>, Ended)> {
     let (image, core) = (target.image(), target.core());
     let function = image.function(function)?;
-    target.check_memory()?;
+    let (vectors, board) = (target.board.flash(), target.board.name);
+    // It would never run.
+    ensure!(
+        image.holds(vectors),
+        "never called: the program has nothing at {vectors:#x}, where {board} reads its vectors; see --on"
+    );
     let mut calls = Calls::of(image, core, BTreeSet::from([function.address]));
     let progress = Progress::start(&format!("counts the calls of {}", function.name));
     let (mut instructions, mut before, mut unknown) = (0_u64, Registers::default(), None);

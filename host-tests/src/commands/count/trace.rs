@@ -10,7 +10,7 @@ use std::process::{Command, ExitStatus, Stdio};
 use std::thread;
 use std::time::Duration;
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result};
 use cycles::{Core, Image, Registers, for_each_instruction};
 use firmware::job::Request;
 
@@ -61,16 +61,6 @@ impl Target {
 
     pub fn core(&self) -> Core {
         self.board.core()
-    }
-
-    /// Refuses a program that is not where the board looks for its vectors: it would never run.
-    pub(super) fn check_memory(&self) -> Result<()> {
-        let (vectors, board) = (self.board.flash(), self.board.name);
-        ensure!(
-            self.image.holds(vectors),
-            "never called: the program has nothing at {vectors:#x}, where {board} reads its vectors; see --on"
-        );
-        Ok(())
     }
 
     /// Runs `request` at full speed: its CRC, and the ticks of the board's clock under `-icount`, where an

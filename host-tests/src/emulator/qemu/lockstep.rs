@@ -94,9 +94,16 @@ impl Lockstep {
         self.debug(|debugger| registers.iter().try_for_each(|(register, value)| debugger.set(*register as u32, *value)))
     }
 
+    /// Lets it run freely, twenty times as fast as from frame to frame: QEMU forgets all that it has translated when it is stopped at
+    /// a place.
     pub fn run(&mut self) -> anyhow::Result<&mut Machine> {
-        self.debugger.run()?;
+        self.debug(Debugger::run)?;
         Ok(&mut self.machine)
+    }
+
+    /// Stops it wherever it is.
+    pub fn stop(&mut self) -> anyhow::Result<()> {
+        self.debug(Debugger::stop)
     }
 
     pub fn write(&mut self, address: u32, bytes: &[u8]) -> anyhow::Result<()> {
