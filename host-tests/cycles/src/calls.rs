@@ -78,7 +78,9 @@ impl<'a> Calls<'a> {
 
     /// Of all calls that returned.
     pub fn cost(&self) -> Cost {
-        self.ended.iter().copied().sum()
+        let mut all = Cost::default();
+        self.ended.iter().for_each(|call| all += *call);
+        all
     }
 
     /// Bytes of the distinct instructions executed.
