@@ -45,6 +45,7 @@ impl Debugger {
     /// Lets the machine run until its processor is about to sleep.
     pub(super) fn run_to_sleep(&mut self) -> anyhow::Result<()> {
         self.leave(true)?;
+        self.is_placed = false;
         self.expect("c", "T05")?;
         let answer = self.ask(&format!("p{PC}"))?;
         let address = u32::from_str_radix(&answer, 16).map_err(|_| unexpected("p", &answer))?;
@@ -68,6 +69,7 @@ impl Debugger {
 
     /// Lets the machine run until the instruction at this address is about to be executed, the next time if it stands there.
     pub(super) fn run_to(&mut self, address: u32) -> anyhow::Result<()> {
+        self.leave(false)?;
         // A machine that was stopped may be asleep, and then makes no step.
         if std::mem::replace(&mut self.is_placed, true) {
             self.expect("s", "T05")?;

@@ -84,7 +84,7 @@ impl Lockstep {
         self.machine.tell(&name).or_else(|_| self.machine.tell(&name_before))
     }
 
-    /// Runs until the instruction at this address is about to be executed. Not after a run to a frame.
+    /// Runs until the instruction at this address is about to be executed.
     pub fn run_to(&mut self, address: u32) -> anyhow::Result<()> {
         self.debug(|debugger| debugger.run_to(address))
     }
