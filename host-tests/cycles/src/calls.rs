@@ -18,7 +18,7 @@ pub struct Calls<'a> {
     core: Core,
     entries: BTreeSet<u32>,
     /// Where the call that is running came from, the stream since then, and what it has cost.
-    running: Option<(Registers, Stream, Cost)>,
+    running: Option<(Registers, Stream<'a>, Cost)>,
     /// What each call that returned cost, in order.
     pub ended: Vec<Cost>,
     /// By its address, an instruction and what all its executions together cost.
@@ -27,29 +27,26 @@ pub struct Calls<'a> {
     pub stack_bytes: u32,
 }
 
-#[derive(Clone, Copy, Debug)]
-pub struct Stream {
-    /// The registers before the instruction that is about to be executed.
-    before: Registers,
-    instruction: Instruction,
+/// What a core executes, one instruction after the other.
+#[derive(Debug)]
+pub struct Stream<'a> {
+    image: &'a Image,
     pipeline: Pipeline,
+    /// The registers before the instruction that is about to be executed.
+    before: Option<Registers>,
 }
 
-impl Stream {
-    pub fn begin(image: &Image, core: Core, before: Registers) -> Result<Self> {
-        Ok(Self { before, instruction: image.instruction_at(before.pc())?, pipeline: Pipeline::new(core) })
+impl<'a> Stream<'a> {
+    pub fn of(image: &'a Image, core: Core) -> Self {
+        Self { image, pipeline: Pipeline::new(core), before: None }
     }
 
-    /// The pending instruction has been executed and led to `next`: its address, itself and what it cost.
-    pub fn execute(&mut self, next: &Registers) -> (u32, Instruction, Cost) {
-        let (address, instruction) = (self.before.pc(), self.instruction);
-        let branches = next.pc() != address + instruction.size();
-        (address, instruction, self.pipeline.execute(instruction, &self.before, branches))
-    }
-
-    pub fn go_on(&mut self, image: &Image, next: Registers) -> Result<()> {
-        (self.before, self.instruction) = (next, image.instruction_at(next.pc())?);
-        Ok(())
+    /// Takes the registers before the next instruction; of the one before that, if there is one: its address, itself and its cost.
+    pub fn see(&mut self, next: Registers) -> Result<Option<(u32, Instruction, Cost)>> {
+        let Some(before) = self.before.replace(next) else { return Ok(None) };
+        let instruction = self.image.instruction_at(before.pc())?;
+        let branches = next.pc() != before.pc() + instruction.size();
+        Ok(Some((before.pc(), instruction, self.pipeline.execute(instruction, &before, branches))))
     }
 }
 
@@ -60,22 +57,17 @@ impl<'a> Calls<'a> {
     }
 
     pub fn see(&mut self, registers: Registers) -> Result<()> {
-        match &mut self.running {
-            Some((caller, stream, cost)) => {
-                let (address, instruction, executed) = stream.execute(&registers);
-                self.spots.entry(address).or_insert((instruction, Cost::default())).1 += executed;
-                self.stack_bytes = self.stack_bytes.max(caller.sp().saturating_sub(registers.sp()));
-                *cost += executed;
-                if registers.pc() != caller.lr() & !1 || registers.sp() != caller.sp() {
-                    return stream.go_on(self.image, registers);
-                }
-                self.ended.push(*cost);
-                self.running = None;
-            }
-            None if self.entries.contains(&registers.pc()) => {
-                self.running = Some((registers, Stream::begin(self.image, self.core, registers)?, Cost::default()));
-            }
-            None => {}
+        if self.running.is_none() && self.entries.contains(&registers.pc()) {
+            self.running = Some((registers, Stream::of(self.image, self.core), Cost::default()));
+        }
+        let Some((caller, stream, cost)) = &mut self.running else { return Ok(()) };
+        let Some((address, instruction, executed)) = stream.see(registers)? else { return Ok(()) };
+        self.spots.entry(address).or_insert((instruction, Cost::default())).1 += executed;
+        self.stack_bytes = self.stack_bytes.max(caller.sp().saturating_sub(registers.sp()));
+        *cost += executed;
+        if registers.pc() == caller.lr() & !1 && registers.sp() == caller.sp() {
+            self.ended.push(*cost);
+            self.running = None;
         }
         Ok(())
     }
@@ -86,7 +78,9 @@ impl<'a> Calls<'a> {
 
     /// Of all calls that returned.
     pub fn cost(&self) -> Cost {
-        self.ended.iter().copied().sum()
+        let mut all = Cost::default();
+        self.ended.iter().for_each(|call| all += *call);
+        all
     }
 
     /// Bytes of the distinct instructions executed.

@@ -26,7 +26,6 @@
 //! them: dilithium-cortexm on an ATSAM3X8E (3 figures, -9.2 to -2.7 %), whose bus matrix keeps the first load of each group
 //! waiting for a cycle; with that cycle they are within 0.2 %.
 
-use std::iter::Sum;
 use std::ops::AddAssign;
 
 use crate::Core;
@@ -55,15 +54,6 @@ impl AddAssign for Cost {
         self.instructions += other.instructions;
         self.cycles += other.cycles;
         self.stalls += other.stalls;
-    }
-}
-
-impl Sum for Cost {
-    fn sum<I: Iterator<Item = Self>>(costs: I) -> Self {
-        costs.fold(Self::default(), |mut sum, cost| {
-            sum += cost;
-            sum
-        })
     }
 }
 

@@ -22,15 +22,13 @@ use crate::emulator::toolchain;
 pub struct SetupOptions {}
 
 pub fn setup(_: &SetupOptions) -> anyhow::Result<()> {
-    let (toolchain, mut done) = toolchain::set_up()?;
-    say(toolchain)?;
-    let (emulator, more) = toolchain::set_up_pico()?;
-    say(emulator)?;
-    done.extend(more);
-    if done.is_empty() {
+    let is_ready = toolchain::ready().is_ok() && toolchain::ready_for_pico().is_ok();
+    say(toolchain::set_up()?)?;
+    say(format_args!("Raspberry Pi Pico: rp2040js under {}", toolchain::set_up_pico()?.display()))?;
+    if is_ready {
         say("nothing had to be done")?;
     }
-    Ok(done.iter().try_for_each(|step| say(format_args!("done: {step}")))?)
+    Ok(())
 }
 
 /// How long a firmware may run if `--seconds` does not say.
@@ -57,7 +55,7 @@ pub struct FwOptions {
 /// Also cargo's own runner for the ARM targets.
 pub fn fw(options: &FwOptions) -> anyhow::Result<ExitCode> {
     let Some(binary) = &options.binary else {
-        toolchain::set_up()?.0.check()?;
+        toolchain::set_up()?.check()?;
         return Ok(ExitCode::SUCCESS);
     };
     let name = binary.to_string_lossy();
@@ -66,7 +64,7 @@ pub fn fw(options: &FwOptions) -> anyhow::Result<ExitCode> {
         bail!(Refused::because(format_args!("no binary {name}; there are {}", binaries().join(", "))));
     }
     let board = options.board.unwrap_or_else(|| board_for(binary));
-    let (toolchain, _) = toolchain::set_up()?;
+    let toolchain = toolchain::set_up()?;
     let elf = if is_path { binary.clone() } else { toolchain.build(&name, board.target)? };
     let limit = options.seconds.map_or(LIMIT, |seconds| Duration::from_secs(seconds.into()));
     let settings = Settings { qemu: toolchain.qemu(), board, elf: &elf, clock: Clock::Real, debugger: true, limit };
@@ -130,7 +128,7 @@ const THREADS: &str = "RUST_TEST_THREADS";
 
 /// The set-up, the firmware, then exactly `cargo test`, with its own output and exit code.
 pub fn verify(options: &TestOptions) -> anyhow::Result<ExitCode> {
-    let (toolchain, _) = toolchain::set_up()?;
+    let toolchain = toolchain::set_up()?;
     toolchain::set_up_pico()?;
     let limit = LIMITS[usize::from(options.long)];
     let test = |arguments: &[&str]| {

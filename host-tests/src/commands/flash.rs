@@ -12,9 +12,9 @@ use clap::Parser;
 
 use crate::console::cli::{Refused, complain, say};
 use crate::emulator::boards::{PICO, STM32F405};
-use crate::emulator::flash::flash_image;
+use crate::emulator::flash::{flash_image, uf2};
+use crate::emulator::process;
 use crate::emulator::toolchain::{self, target};
-use crate::emulator::{process, uf2::uf2};
 
 /// The file, and the one by which a board's drive says whose it is.
 const FILE: &str = "pico.uf2";
@@ -32,7 +32,7 @@ pub struct PicoOptions {
 }
 
 pub fn pico(options: &PicoOptions) -> anyhow::Result<()> {
-    let (toolchain, _) = toolchain::set_up()?;
+    let toolchain = toolchain::set_up()?;
     let (start, image) = flash_image(&fs::read(toolchain.build_for(&PICO)?)?)?;
     let (file, blocks) = (target().join(FILE), uf2(start, &image));
     fs::write(&file, &blocks).with_context(|| file.display().to_string())?;

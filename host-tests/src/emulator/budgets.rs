@@ -29,16 +29,15 @@ pub struct Memory {
 /// nothing needs a start value but a few words. Bss: the two frames are 8 KiB, the application with its planner and a motion in two ways 9, the
 /// queue of received bytes 1, what a panel shows 4 more, or on the F405 with its log 2; a twentieth is left to grow, within what
 /// the memory map lets the statics have. Stack: making a scene takes most of it; an eighth of the 32 KiB that the guard leaves to
-/// the stack is for what no run has met: an interrupt at the deepest place, the report of a crash.
-pub const MEMORY: [(&str, Memory); 5] = [
+/// the stack is for what no run has met: an interrupt at the deepest place, the report of a crash. The Pico has 2 MiB of flash and
+/// more memory than the others: an M0+ takes more instructions, and there is USB.
+pub const MEMORY: [(&str, Memory); 6] = [
     ("lm3s6965evb", Memory { text: 240 * KIB, data: 256, bss: 24 * KIB, stack: 28 * KIB }),
     ("lm3s6965evb-m4", Memory { text: 240 * KIB, data: 256, bss: 24 * KIB, stack: 28 * KIB }),
     ("mps2-an386", Memory { text: 240 * KIB, data: 256, bss: 20 * KIB, stack: 28 * KIB }),
     ("stm32f405", Memory { text: 248 * KIB, data: 256, bss: 22 * KIB, stack: 28 * KIB }),
     ("lm3s6965evb-m0", Memory { text: 244 * KIB, data: 256, bss: 24 * KIB, stack: 28 * KIB }),
+    ("pico", Memory { text: 272 * KIB, data: 256, bss: 25 * KIB, stack: 28 * KIB }),
 ];
-/// The same for the Pico, which has 2 MiB of flash and more memory than that of the others: an M0+ takes more instructions, and
-/// there is USB.
-pub const PICO: Memory = Memory { text: 272 * KIB, data: 256, bss: 25 * KIB, stack: 28 * KIB };
 
 const KIB: u32 = 1024;

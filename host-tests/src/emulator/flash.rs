@@ -1,10 +1,22 @@
-//! What of an ELF file goes into flash, byte for byte.
+//! What of an ELF file goes into flash, byte for byte, and as UF2: what a chip's boot loader takes as a file on a drive, blocks of
+//! 512 bytes, each with its place in flash.
+//!
+//! Source: <https://github.com/microsoft/uf2>.
 
 use anyhow::{Context, Result, ensure};
 use object::Endianness;
 use object::elf::{FileHeader32, PT_LOAD};
 use object::read::elf::{FileHeader, ProgramHeader};
 
+/// The RP2040, and no other chip.
+const RP2040: u32 = 0xe48b_ff56;
+/// A family of chips is named.
+const HAS_FAMILY: u32 = 0x2000;
+const MAGIC: [u32; 2] = [0x0a32_4655, 0x9e5d_5157];
+const MAGIC_END: u32 = 0x0ab1_6f30;
+/// What a block brings, bytes, of the room that it has for that.
+const BROUGHT: usize = 256;
+const ROOM: usize = 476;
 /// What stands in flash where the program has nothing.
 const ERASED: u8 = 0xff;
 /// More than any chip's: a gap longer than this is none.
@@ -32,4 +44,21 @@ pub fn flash_image(elf: &[u8]) -> Result<(u32, Vec<u8>)> {
         image[from..from + data.len()].copy_from_slice(data);
     }
     Ok((start, image))
+}
+
+/// The file that puts `image` into an RP2040's flash at `start`.
+pub fn uf2(start: u32, image: &[u8]) -> Vec<u8> {
+    let parts = image.chunks(BROUGHT);
+    let count = parts.len() as u32;
+    let blocks = (0..).zip(parts).flat_map(|(number, part)| {
+        let place = start + number * BROUGHT as u32;
+        let head = [MAGIC[0], MAGIC[1], HAS_FAMILY, place, BROUGHT as u32, number, count, RP2040];
+        let mut block: Vec<u8> = head.into_iter().flat_map(u32::to_le_bytes).collect();
+        let end = block.len() + ROOM;
+        block.extend(part);
+        block.resize(end, 0);
+        block.extend(MAGIC_END.to_le_bytes());
+        block
+    });
+    blocks.collect()
 }

@@ -8,4 +8,3 @@ pub mod pico;
 pub mod process;
 pub mod qemu;
 pub mod toolchain;
-pub mod uf2;

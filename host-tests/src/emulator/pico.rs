@@ -2,7 +2,6 @@
 //! hexadecimal digits; see `host-tests/rp2040/main.js`.
 
 use std::io::{BufRead, BufReader, Write};
-use std::ops::Range;
 use std::path::Path;
 use std::process::{ChildStdin, ChildStdout, Command, Stdio};
 use std::time::Duration;
@@ -11,11 +10,10 @@ use anyhow::{Context, bail, ensure};
 use firmware::app::Key;
 use firmware::protocol::{Frame, MAX_WIRE, Message, encode};
 
-use crate::emulator::flash::flash_image;
+use crate::emulator::flash::{flash_image, uf2};
 use crate::emulator::process::{self, Running};
 use crate::emulator::qemu::{LogDecoder, LogLine, Screenshot};
-use crate::emulator::toolchain::{Rp2040js, workspace};
-use crate::emulator::uf2::uf2;
+use crate::emulator::toolchain::workspace;
 use crate::link::{Counts, Inbox, Received};
 
 const SLICE: Duration = Duration::from_millis(1);
@@ -32,17 +30,18 @@ pub struct PicoMachine {
     uart: Inbox,
     log: LogDecoder,
     lines: Vec<LogLine>,
+    heard_by_usb: Vec<Received>,
     heard_by_uart: Vec<Received>,
 }
 
 impl PicoMachine {
-    /// Switches a board on with this firmware in its flash: what `cargo pico` copies, and nothing else.
-    pub fn start(emulator: &Rp2040js, elf: &Path, limit: Duration) -> anyhow::Result<Self> {
+    /// Switches a board on with this firmware in its flash: what `cargo pico` copies, and nothing else. Node.js runs it.
+    pub fn start(node: &Path, elf: &Path, limit: Duration) -> anyhow::Result<Self> {
         let program = std::fs::read(elf)?;
         let (start, image) = flash_image(&program)?;
         let file = tempfile::NamedTempFile::new()?;
         std::fs::write(file.path(), uf2(start, &image))?;
-        let mut command = Command::new(emulator.node());
+        let mut command = Command::new(node);
         command.arg(workspace().join("host-tests/rp2040/main.js")).arg(file.path());
         command.stdin(Stdio::piped()).stdout(Stdio::piped());
         let mut process = process::spawn(&mut command, limit)?;
@@ -51,24 +50,14 @@ impl PicoMachine {
         let output = BufReader::new(output);
         let log = LogDecoder::new(elf)?;
         let (usb, uart) = (Inbox::default(), Inbox::default());
-        let (lines, heard_by_uart) = (Vec::new(), Vec::new());
-        Ok(Self { input, output, _process: process, _file: file, usb, uart, log, lines, heard_by_uart })
+        let (lines, heard_by_usb, heard_by_uart) = (Vec::new(), Vec::new(), Vec::new());
+        Ok(Self { input, output, _process: process, _file: file, usb, uart, log, lines, heard_by_usb, heard_by_uart })
     }
 
     /// Lets time pass by the board's clock; what it has sent over USB.
     pub fn run(&mut self, time: Duration) -> anyhow::Result<Vec<Received>> {
-        let mut messages = Vec::new();
-        for (word, bytes) in self.ask(&format!("run {}", time.as_micros()))? {
-            match &*word {
-                "usb" => messages.extend(bytes.iter().filter_map(|&byte| self.usb.take(byte))),
-                "uart" => self.heard_by_uart.extend(bytes.iter().filter_map(|&byte| self.uart.take(byte))),
-                "log" => self.lines.extend(self.log.take(&bytes)),
-                // Bytes cut off by it are no damage of the link's.
-                "restarted" => [&mut self.usb, &mut self.uart].into_iter().for_each(Inbox::restart),
-                _ => {}
-            }
-        }
-        Ok(messages)
+        self.tell(&format!("run {}", time.as_micros()))?;
+        Ok(std::mem::take(&mut self.heard_by_usb))
     }
 
     /// Runs to the next frame: all messages up to it.
@@ -89,7 +78,7 @@ impl PicoMachine {
     }
 
     pub fn send_bytes(&mut self, bytes: &[u8]) -> anyhow::Result<()> {
-        self.tell(&format!("usb {}", digits(bytes)))
+        self.tell(&format!("usb {}", digits(bytes))).map(drop)
     }
 
     pub fn send<M: Message>(&mut self, message: &M) -> anyhow::Result<()> {
@@ -97,7 +86,7 @@ impl PicoMachine {
     }
 
     pub fn send_through_uart<M: Message>(&mut self, message: &M) -> anyhow::Result<()> {
-        self.tell(&format!("uart {}", digits(encode(message, &mut [0; MAX_WIRE]))))
+        self.tell(&format!("uart {}", digits(encode(message, &mut [0; MAX_WIRE])))).map(drop)
     }
 
     pub fn heard_by_uart(&mut self) -> Vec<Received> {
@@ -113,13 +102,8 @@ impl PicoMachine {
         [self.usb.counts(), self.uart.counts()]
     }
 
-    /// The panel's memory, a byte for eight pixels, page after page; empty while the panel is off.
-    pub fn panel(&mut self) -> anyhow::Result<Vec<u8>> {
-        self.bytes("panel")
-    }
-
     pub fn screenshot(&mut self) -> anyhow::Result<Screenshot> {
-        Ok(Screenshot::from_pages(&self.panel()?))
+        Ok(Screenshot::from_pages(&self.tell("panel")?))
     }
 
     pub fn set_key(&mut self, key: Key, down: bool) -> anyhow::Result<()> {
@@ -130,56 +114,29 @@ impl PicoMachine {
             Key::Right => 13,
             Key::Select => 14,
         };
-        self.tell(&format!("button {pin} {}", u8::from(down)))
+        self.tell(&format!("button {pin} {}", u8::from(down))).map(drop)
     }
 
-    /// Plugs a panel in that has this status, 6 an SSD1306's and 8 an SH1106's; or pulls it: 0.
-    pub fn plug(&mut self, status: u8) -> anyhow::Result<()> {
-        self.tell(&format!("plug {status}"))
-    }
-
-    pub fn fill(&mut self, addresses: Range<u32>, byte: u8) -> anyhow::Result<()> {
-        self.tell(&format!("fill {} {} {byte}", addresses.start, addresses.len()))
-    }
-
-    pub fn read(&mut self, addresses: Range<u32>) -> anyhow::Result<Vec<u8>> {
-        self.bytes(&format!("read {} {}", addresses.start, addresses.len()))
-    }
-
-    /// Makes the processor turn in a circle, wherever it is.
-    pub fn hang(&mut self) -> anyhow::Result<()> {
-        self.tell("hang")
-    }
-
-    /// Resets it as a debugger does, or as the boot ROM does after a download.
-    pub fn reset(&mut self, after_download: bool) -> anyhow::Result<()> {
-        [&mut self.usb, &mut self.uart].into_iter().for_each(Inbox::restart);
-        self.tell(&format!("reset {}", u8::from(after_download)))
-    }
-
-    fn bytes(&mut self, line: &str) -> anyhow::Result<Vec<u8>> {
-        Ok(self.ask(line)?.into_iter().next().map(|(_, bytes)| bytes).unwrap_or_default())
-    }
-
-    fn tell(&mut self, line: &str) -> anyhow::Result<()> {
-        self.ask(line).map(drop)
-    }
-
-    /// Says a line to the emulator; what it answers, each a word and bytes.
-    fn ask(&mut self, line: &str) -> anyhow::Result<Vec<(String, Vec<u8>)>> {
+    /// Gives the emulator a command; the bytes that it asks for, if it asks for any: the panel's memory, the board's.
+    pub fn tell(&mut self, command: &str) -> anyhow::Result<Vec<u8>> {
         const GONE: &str = "the emulator of the Pico no longer answers";
-        writeln!(self.input, "{line}").and_then(|()| self.input.flush()).context(GONE)?;
-        let mut answers = Vec::new();
+        writeln!(self.input, "{command}").and_then(|()| self.input.flush()).context(GONE)?;
+        let mut asked = Vec::new();
         loop {
             let mut answer = String::new();
             ensure!(self.output.read_line(&mut answer).context(GONE)? > 0, GONE);
             let (word, digits) = answer.trim_end().split_once(' ').unwrap_or((answer.trim_end(), ""));
-            if word == "done" {
-                return Ok(answers);
+            let byte = |pair: &[u8]| u8::from_str_radix(str::from_utf8(pair).ok()?, 16).ok();
+            let bytes = digits.as_bytes().chunks(2).map(byte).collect::<Option<Vec<_>>>().context(GONE)?;
+            match word {
+                "usb" => self.heard_by_usb.extend(bytes.iter().filter_map(|&byte| self.usb.take(byte))),
+                "uart" => self.heard_by_uart.extend(bytes.iter().filter_map(|&byte| self.uart.take(byte))),
+                "log" => self.lines.extend(self.log.take(&bytes)),
+                // Bytes cut off by it are no damage of the link's.
+                "restarted" => [&mut self.usb, &mut self.uart].into_iter().for_each(Inbox::restart),
+                "done" => return Ok(asked),
+                _ => asked = bytes,
             }
-            let byte = |pair: &[u8]| u8::from_str_radix(std::str::from_utf8(pair).ok()?, 16).ok();
-            let bytes = digits.as_bytes().chunks(2).map(byte).collect::<Option<_>>();
-            answers.push((word.to_owned(), bytes.context(GONE)?));
         }
     }
 }

@@ -9,16 +9,13 @@ mod build;
 mod detect;
 mod install;
 mod rp2040js;
-mod workspace;
 
-pub use rp2040js::Rp2040js;
-pub use workspace::{target, workspace};
-
-use std::fmt;
-use std::path::{Path, PathBuf};
+use std::path::{Path, PathBuf, absolute};
+use std::process::exit;
 use std::sync::OnceLock;
+use std::{env, fmt};
 
-use crate::console::cli::Refused;
+use crate::console::cli::{REFUSED, Refused, complain};
 use crate::emulator::qemu;
 
 /// The compiler's targets, one for each kind of core.
@@ -51,17 +48,13 @@ pub fn ready() -> Result<Toolchain, Refused> {
     READY.get_or_init(|| both(detect::core(&TARGETS), detect::QEMU.find())).clone()
 }
 
-/// The tools, brought if need be; and a line for each thing that was done for it. Two set-ups at once take turns.
-pub fn set_up() -> Result<(Toolchain, Vec<String>), Refused> {
+/// The tools, brought if need be; what was done for it is said. Two set-ups at once take turns.
+pub fn set_up() -> Result<Toolchain, Refused> {
     qemu::check_folder().map_err(Refused::because)?;
-    if let Ok(toolchain) = ready() {
-        return Ok((toolchain, Vec::new()));
-    }
-    let _turn = install::turn()?;
-    let mut done = Vec::new();
-    let core = detect::core(&TARGETS).or_else(|_| install::core(&TARGETS, &mut done));
-    let qemu = detect::QEMU.find().or_else(|_| install::qemu(&detect::QEMU, &mut done));
-    Ok((both(core, qemu)?, done))
+    ready().or_else(|_| {
+        let _turn = install::turn()?;
+        both(install::core(&TARGETS), install::qemu(&detect::QEMU))
+    })
 }
 
 /// Both of them, or a line for each that is missing.
@@ -79,33 +72,30 @@ fn both(core: Result<ArmCore, String>, qemu: Result<PathBuf, String>) -> Result<
 
 /// The tools, brought if need be, with the core library for one more target.
 pub fn set_up_for(target: &str) -> Result<Toolchain, Refused> {
-    let (toolchain, _) = set_up()?;
+    let toolchain = set_up()?;
     let _turn = install::turn()?;
-    let core = detect::core(&[target]).or_else(|_| install::core(&[target], &mut Vec::new()));
-    let core = core.map_err(|why| Refused::because(format_args!("the core library for {target} is missing: {why}")))?;
-    Ok(Toolchain { core, ..toolchain })
+    let missing = |why| Refused::because(format_args!("the core library for {target} is missing: {why}"));
+    Ok(Toolchain { core: install::core(&[target]).map_err(missing)?, ..toolchain })
 }
 
 /// The emulator of a RISC-V under Linux, brought if need be.
 pub fn set_up_riscv() -> Result<PathBuf, Refused> {
     let _turn = install::turn()?;
     let emulator = &detect::QEMU_RISCV;
-    let found = emulator.find().or_else(|_| install::qemu(emulator, &mut Vec::new()));
-    found.map_err(|why| Refused::because(format_args!("{} is missing: {why}", emulator.program)))
+    install::qemu(emulator).map_err(|why| Refused::because(format_args!("{} is missing: {why}", emulator.program)))
 }
 
-/// The emulator of the Raspberry Pi Pico, if it is there; installs nothing.
-pub fn ready_for_pico() -> Result<Rp2040js, Refused> {
+/// Node.js with the emulator of the Raspberry Pi Pico, if it is there; installs nothing.
+pub fn ready_for_pico() -> Result<PathBuf, Refused> {
     rp2040js::detect()
 }
 
-/// The same, brought if need be; and a line for each thing that was done for it.
-pub fn set_up_pico() -> Result<(Rp2040js, Vec<String>), Refused> {
-    if let Ok(emulator) = rp2040js::detect() {
-        return Ok((emulator, Vec::new()));
-    }
-    let _turn = install::turn()?;
-    rp2040js::set_up()
+/// The same, brought if need be.
+pub fn set_up_pico() -> Result<PathBuf, Refused> {
+    rp2040js::detect().or_else(|_| {
+        let _turn = install::turn()?;
+        rp2040js::set_up()
+    })
 }
 
 impl Toolchain {
@@ -124,4 +114,33 @@ impl fmt::Display for Toolchain {
         }
         write!(f, "QEMU: {}", self.qemu.display())
     }
+}
+
+/// What the workspace alone has, and no folder above or beside it.
+const MARKS: [&str; 3] = ["kernel/Cargo.toml", "firmware/Cargo.toml", "host-tests/Cargo.toml"];
+
+/// The project's folder, found as a command runs, for a checkout may be moved or copied with its programs already built: above the package that cargo runs, else above the current folder, else above this program.
+/// Where there is none the process ends as any command does that cannot be served: one line, exit code 2.
+pub fn workspace() -> &'static Path {
+    static FOUND: OnceLock<PathBuf> = OnceLock::new();
+    FOUND.get_or_init(|| {
+        let run_by_cargo = env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from);
+        let starts = [run_by_cargo, env::current_dir().ok(), env::current_exe().ok()];
+        starts.into_iter().flatten().find_map(|start| above(&start)).unwrap_or_else(|| {
+            complain("error: the project's folder is neither above this one nor above the program: run it from there");
+            exit(REFUSED.into())
+        })
+    })
+}
+
+/// The workspace that `start` is in.
+fn above(start: &Path) -> Option<PathBuf> {
+    let is_it = |folder: &&Path| MARKS.iter().all(|mark| folder.join(mark).is_file());
+    start.ancestors().find(is_it).map(Path::to_owned)
+}
+
+/// Where everything built goes: `CARGO_TARGET_DIR`, as cargo has it, or else the workspace's own folder.
+pub fn target() -> PathBuf {
+    let chosen = env::var_os("CARGO_TARGET_DIR").filter(|folder| !folder.is_empty());
+    chosen.and_then(|folder| absolute(folder).ok()).unwrap_or_else(|| workspace().join("target"))
 }

@@ -4,19 +4,15 @@ use std::ops::RangeInclusive;
 
 use anyhow::Result;
 
-use crate::support::toolchain;
+use crate::support::{targets, toolchain};
 use double_pendulum::plan::Costs;
 use double_pendulum::{Method, Numbers, Parameters};
 use firmware::job::Request;
-use host_tests::commands::count::{FULL_CYCLE, Target, affordable_cost, prices, step_cost};
+use host_tests::commands::count::{FULL_CYCLE, affordable_cost, prices, step_cost};
 use host_tests::commands::report::accuracy::{self, SCENES, exact};
 
 /// A tick of the board's clock, 12.5 MHz after reset, under `-icount`, where an instruction takes 1 ns.
 const INSTRUCTIONS_PER_TICK: f64 = 80.0;
-
-fn targets() -> Vec<Target> {
-    Target::build_all(&toolchain()).unwrap_or_else(|error| panic!("{error}"))
-}
 
 /// Steps of 1/256 s from rest.
 fn request(method: Method, angle: f64, stride: u32) -> Request {

@@ -3,14 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use cycles::ERROR_BAR;
+use crate::support::{LIMIT, toolchain};
+use cycles::{ERROR_BAR, Image};
 use host_tests::emulator::boards::BOARDS;
 use host_tests::emulator::process::{self, Output};
-
-/// Says why it refuses an empty request and ends itself as failed, on a Cortex-M3.
-fn measure() -> PathBuf {
-    crate::support::toolchain().build("measure", BOARDS[0].target).unwrap_or_else(|error| panic!("{error}"))
-}
 
 /// A program at an address that calls a function and a label three times each and then executes `last`.
 fn program(folder: &Path, address: &str, last: &str) -> PathBuf {
@@ -56,13 +52,13 @@ fn panic(_: &core::panic::PanicInfo) -> ! { loop {} }
         rustc.arg(format!("-Clink-arg={option}"));
     }
     rustc.arg("-o").arg(&elf).arg(&source);
-    let output = process::run(&mut rustc, crate::support::LIMIT).unwrap_or_else(|error| panic!("{error}"));
+    let output = process::run(&mut rustc, LIMIT).unwrap_or_else(|error| panic!("{error}"));
     assert!(output.status.success(), "{output:?}");
     elf
 }
 
 /// For a program that never ends by itself: many times what it takes to the wait, on a busy machine too.
-const SECONDS: [&str; 2] = ["--seconds", "5"];
+const SECONDS: [&str; 2] = ["--seconds", "3"];
 /// It ends itself, well or as failed; it waits for ever; it needs a floating-point unit.
 const ENDS: &str = "ldr r1, =0x20026";
 const FAILS: &str = "ldr r1, =0x020023";
@@ -72,16 +68,12 @@ const NEEDS_FLOATS: &str = ".inst.w 0xee300a00 @ vadd.f32 s0, s0, s0";
 fn count(elf: &Path, function: &str, more: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_host-tests"));
     command.args(["count", "--on", BOARDS[0].name, "--function", function, "--elf"]).arg(elf).args(more);
-    process::run(&mut command, crate::support::LIMIT).unwrap_or_else(|error| panic!("{error}"))
-}
-
-fn folder() -> tempfile::TempDir {
-    tempfile::tempdir().unwrap_or_else(|error| panic!("{error}"))
+    process::run(&mut command, LIMIT).unwrap_or_else(|error| panic!("{error}"))
 }
 
 #[test]
-fn functions_and_labels_are_counted_and_the_end_is_told() {
-    let folder = folder();
+fn functions_and_labels_are_counted_and_the_end_is_told() -> anyhow::Result<()> {
+    let folder = tempfile::tempdir()?;
     let elf = program(folder.path(), "0x0", ENDS);
     let output = count(&elf, "label", &[]);
     assert!(output.stderr.contains("the program ended by itself, exit status: 0"), "{output:?}");
@@ -92,30 +84,26 @@ fn functions_and_labels_are_counted_and_the_end_is_told() {
     let mean = |line: &str| line.split_ascii_whitespace().nth(1).and_then(|mean| mean.parse::<f64>().ok());
     assert_eq!((mean(instructions), mean(cycles)), (Some(2.0), Some(4.0)), "a move, and a return with its refill");
 
-    let bytes = std::fs::read(&elf).unwrap_or_else(|error| panic!("{error}"));
-    let file = object::File::parse(&*bytes).unwrap_or_else(|error| panic!("{error}"));
-    use object::{Object, ObjectSymbol};
-    let names = file.symbols().filter_map(|symbol| symbol.name().ok().map(str::to_owned));
-    let mangled = names.into_iter().find(|name| name.contains("step")).unwrap_or_default();
+    let image = Image::read(&elf)?;
+    let mangled = &image.function("program::inner::step")?.symbol;
     let by_name = count(&elf, "program::inner::step", &[]);
     let is_it = |line: &str| line.starts_with("program::inner::step on") && line.ends_with(": calls 3");
     assert!(by_name.stdout.lines().next().is_some_and(is_it), "{by_name:?}");
-    assert_eq!(count(&elf, &mangled, &[]).stdout, by_name.stdout);
-}
+    assert_eq!(count(&elf, mangled, &[]).stdout, by_name.stdout);
 
-#[test]
-fn a_program_that_is_stopped_is_counted_until_then() {
-    let folder = folder();
+    // One that is stopped is counted until then.
     let output = count(&program(folder.path(), "0x0", WAITS), "label", &SECONDS);
     assert!(output.status.success() && output.stdout.contains(": calls 3\n"), "{output:?}");
-    assert!(output.stderr.contains("stopped after 5 s and 3 calls"), "{output:?}");
+    assert!(output.stderr.contains("stopped after 3 s and 3 calls"), "{output:?}");
+    Ok(())
 }
 
 #[test]
-fn what_cannot_be_counted_is_said_in_a_line() {
-    let measure = measure();
+fn what_cannot_be_counted_is_said_in_a_line() -> anyhow::Result<()> {
+    // Says why it refuses an empty request and ends itself as failed.
+    let measure = toolchain().build("measure", BOARDS[0].target)?;
     let host = Path::new(env!("CARGO_BIN_EXE_host-tests"));
-    let folder = folder();
+    let folder = tempfile::tempdir()?;
     let [ends, fails, floats] = [ENDS, FAILS, NEEDS_FLOATS].map(|last| program(folder.path(), "0x0", last));
     let elsewhere = program(folder.path(), "0x8000000", ENDS);
     for (elf, function, reason, code) in [
@@ -135,4 +123,5 @@ fn what_cannot_be_counted_is_said_in_a_line() {
         assert_eq!((output.status.code(), output.stdout.as_str()), (Some(code), ""), "{output:?}");
         assert!(output.stderr.lines().last().is_some_and(|line| line.contains(reason)), "{reason}: {output:?}");
     }
+    Ok(())
 }

@@ -4,6 +4,7 @@
 use std::io::Write;
 use std::process::{Command, Stdio};
 
+use crate::support::targets;
 use anyhow::Result;
 use cycles::{Core, Instruction};
 use double_pendulum::{Integrator, Method};
@@ -22,11 +23,6 @@ const STEPS_UNOPTIMISED: u32 = 10_000;
 const RATE: u32 = 256;
 /// A regular and a chaotic motion.
 const MOTIONS: [&Scene; 2] = [&SCENES[0], &SCENES[1]];
-
-fn targets() -> Vec<Target> {
-    let toolchain = toolchain::ready().unwrap_or_else(|error| panic!("{error}"));
-    Target::build_all(&toolchain).unwrap_or_else(|error| panic!("{error}"))
-}
 
 fn steps(target: &Target, method: Method) -> u32 {
     let [full, in_software, without_products] = STEPS;

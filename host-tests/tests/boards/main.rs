@@ -1,20 +1,18 @@
 //! The firmware on emulated boards: bits, frames, faults, costs.
 
-mod all_scenes;
 mod budgets;
 mod cores;
 mod count;
 mod count_elf;
-mod endurance;
 mod identity;
 mod no_panic;
 mod pico;
 mod qemu_buttons;
-mod qemu_faults;
 mod qemu_plan;
 mod qemu_restart;
 mod qemu_stm32f405;
 mod qemu_unread;
+mod scenes;
 mod stack_guard;
 mod steps;
 #[path = "../support/mod.rs"]

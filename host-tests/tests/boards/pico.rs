@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use crate::support::code::Code;
-use crate::support::{LIMIT, application};
+use crate::support::{LIMIT, application, show};
 use cycles::Core;
 use double_pendulum::Method;
 use firmware::app::Cause;
@@ -11,7 +11,6 @@ use firmware::app::Key;
 use firmware::config::{HOLD_TICKS, MOST_MEASURED_STEPS, RECEIVE_QUEUE, TICK_RATE, WATCHDOG_SECONDS};
 use firmware::graphics::Bitmap;
 use firmware::job::Request;
-use firmware::motion::Settings;
 use firmware::protocol::{
     Ask, BoardName, CRC, Choose, Done, Field, Frame, Identify, Identity, MAX_WIRE, Measure, Measured, Message, Pause,
     Press, Restarted, Sample, Set, Status, encode,
@@ -20,10 +19,9 @@ use firmware::scenes::SceneName;
 use host_tests::commands::count::{FULL_CYCLE, Target, affordable_steps, step_cost};
 use host_tests::emulator::boards::{BOARDS, PICO};
 use host_tests::emulator::flash::flash_image;
-use host_tests::emulator::host::Show;
 use host_tests::emulator::pico::PicoMachine;
 use host_tests::emulator::toolchain;
-use host_tests::link::{Counts, Received};
+use host_tests::link::Received;
 
 /// Long enough for the panel to take a whole picture.
 const PICTURE: Duration = Duration::from_millis(50);
@@ -35,19 +33,6 @@ const TICK: Duration = Duration::from_nanos(1_000_000_000 / TICK_RATE as u64);
 fn board() -> anyhow::Result<PicoMachine> {
     let emulator = toolchain::ready_for_pico().unwrap_or_else(|missing| panic!("{missing}"));
     PicoMachine::start(&emulator, &application(&PICO), LIMIT)
-}
-
-/// The host's own scene, as this board plays it.
-fn show(name: SceneName, settings: &Settings) -> Show {
-    Show::on(PICO.processor(), name, settings).expect("a scene of the catalogue")
-}
-
-/// A board that has just been told to play `name`.
-fn board_in(name: SceneName) -> anyhow::Result<PicoMachine> {
-    let mut board = board()?;
-    board.run(PICTURE)?;
-    board.send(&Choose { request: 1, scene: name.code() })?;
-    Ok(board)
 }
 
 /// A motion with a sample after each of its steps.
@@ -69,10 +54,11 @@ fn the_file_is_for_the_chips_flash_and_its_boot_rom() -> anyhow::Result<()> {
 }
 
 #[test]
-fn usb_and_uart_stream_the_hosts_bits() -> anyhow::Result<()> {
+fn usb_and_uart_carry_the_hosts_bits_and_every_command() -> anyhow::Result<()> {
     const FRAMES: u32 = 240;
+    const SAMPLES: u32 = 200;
     let mut board = board()?;
-    let mut show = show(SceneName::Page, &Settings::default());
+    let mut show = show(&PICO, SceneName::Page);
     let mut sent = Vec::new();
     for sequence in 0..FRAMES {
         let frame = board.next_frame()?;
@@ -86,74 +72,76 @@ fn usb_and_uart_stream_the_hosts_bits() -> anyhow::Result<()> {
     // No frame waits for the UART.
     let showing = sent.windows(2).map(|frames| frames[1].busy_cycles - frames[0].scene_cycles).max();
     assert!(showing < Some(SHOWING), "{showing:?}");
-    for Counts { damaged, lost, .. } in board.counts() {
-        assert_eq!((damaged, lost), (0, 0));
-    }
     // By its crystal and PLL.
     assert!(board.lines().iter().any(|line| line.text == "boot: pico, 125000000 Hz"));
-    Ok(())
-}
 
-/// The board makes samples faster than the UART sends them.
-#[test]
-fn a_motion_asked_for_arrives_whole_through_the_uart() -> anyhow::Result<()> {
-    const SAMPLES: u32 = 200;
-    let mut board = board()?;
-    board.run(PICTURE)?;
+    // Which board and which program it is.
+    let (_, image) = flash_image(&std::fs::read(application(&PICO))?)?;
+    board.send(&Identify { request: 1 })?;
+    let messages = board.run(4 * TICK)?;
+    let identity: Identity = messages.iter().find_map(Received::read).expect("an answer");
+    assert_eq!((identity.board, identity.hertz), (BoardName::Pico.code(), PICO.hertz));
+    let program = &image[256..][..identity.image_bytes as usize];
+    assert_eq!(identity.image, CRC.checksum(program));
+    assert!(image.len() - 256 - program.len() < 256, "nearly all of it");
+
+    // Samples that are made faster than the UART sends them arrive whole.
+    board.heard_by_uart();
     board.send(&request(Method::Rk4Fixed32, SAMPLES).message(1))?;
     board.run(60 * TICK)?;
     let samples = board.heard_by_uart();
     let samples = samples.iter().filter_map(Received::read).map(|Sample { index, .. }| index);
     assert!(samples.eq(0..=SAMPLES));
+
+    // Commands are obeyed from either side, and both hear both answers.
+    board.send(&Choose { request: 1, scene: SceneName::Butterfly.code() })?;
+    let mut messages = board.run(4 * TICK)?;
+    board.send_through_uart(&Set { request: 2, field: Field::M2.code(), value: 2.5 })?;
+    messages.extend(board.run(4 * TICK)?);
+    for heard in [messages, board.heard_by_uart()] {
+        let answers: Vec<_> = heard.iter().filter_map(Received::read).map(|Done { request }| request).collect();
+        assert_eq!(answers, [1, 2]);
+    }
+    let frame = board.next_frame()?;
+    assert_eq!((frame.scene, frame.mass_ratio), (SceneName::Butterfly.code(), 2.5));
+
+    // A flood over USB, more than it takes in many ticks, in which its queue is full, loses nothing: the host waits.
+    let mut flood = vec![1; 5 * RECEIVE_QUEUE];
+    for request in 0..100 {
+        flood.extend_from_slice(encode(&Ask { request }, &mut [0; MAX_WIRE]));
+    }
+    board.send_bytes(&flood)?;
+    let messages = board.run(60 * TICK)?;
+    let answers = messages.iter().filter_map(Received::read).map(|Status { request, .. }| request);
+    assert!(answers.eq(0..100));
+    let frame = board.next_frame()?;
+    assert_eq!((frame.lost, frame.dropped), (0, 0));
     assert_eq!(board.counts().map(|counts| counts.damaged + counts.lost), [0; 2]);
     Ok(())
 }
 
-/// A board that goes on with a motion of this method.
-fn board_stepping(method: Method) -> anyhow::Result<PicoMachine> {
-    let mut board = board()?;
-    board.run(PICTURE)?;
-    board.send(&request(method, 0).message(1))?;
-    board.run(4 * TICK)?;
-    Ok(board)
-}
-
-/// The cycles of its next steps.
+/// The cycles of the next steps of a motion, by how it is asked for.
 fn measured(board: &mut PicoMachine, in_ram: u8) -> anyhow::Result<u32> {
     board.send(&Measure { request: 2, steps: MOST_MEASURED_STEPS, in_ram })?;
     let messages = board.run(4 * TICK)?;
     Ok(messages.iter().find_map(Received::read).map_or(0, |Measured { cycles, .. }| cycles))
 }
 
-/// In the emulator neither waits, so both take the same; where the copy in memory is spoilt, only what runs there is.
+/// The emulator counts cycles by itself: a second opinion on the prices of `cargo count`, which QEMU's instructions are given. In it
+/// neither flash nor memory waits, so both take the same; where the copy in memory is spoilt, only what runs there is.
 #[test]
-fn steps_are_measured_in_flash_and_in_memory() -> anyhow::Result<()> {
-    const RETURN: [u8; 2] = 0x4770_u16.to_le_bytes();
-    let steps = Code::read(&application(&PICO)).expect("the program");
-    let entry = steps.functions_named(|name| name.contains("OnBoards as firmware::job::run::Run>::advance")).next();
-    let entry = entry.expect("the entry");
-    let mut board = board_stepping(Method::Rk4Fixed32)?;
-    let (flash, ram) = (measured(&mut board, 0)?, measured(&mut board, 1)?);
-    assert!(flash > 1000 * MOST_MEASURED_STEPS && flash.abs_diff(ram) < flash / 10, "{flash} and {ram} cycles");
-    for (address, byte) in (entry..).zip(RETURN) {
-        board.fill(address..address + 1, byte)?;
-    }
-    let spoilt = measured(&mut board, 1)?;
-    assert!(spoilt < 1000, "{spoilt} cycles for nothing");
-    assert!(measured(&mut board, 0)?.abs_diff(flash) < flash / 10);
-    Ok(())
-}
-
-/// The emulator counts cycles by itself: a second opinion on the prices of `cargo count`, which QEMU's instructions are given.
-#[test]
-fn the_emulator_counts_the_cycles_that_are_estimated() -> anyhow::Result<()> {
+fn the_emulator_counts_the_cycles_that_are_estimated_in_flash_and_in_memory() -> anyhow::Result<()> {
     // Found: 0.5 % more, 2.6 % less, 0.1 % less.
     const APART: f64 = 0.04;
+    const RETURN: [u8; 2] = 0x4770_u16.to_le_bytes();
+    let mut board = board()?;
+    board.run(PICTURE)?;
     let [single, fixed64] = [Method::Rk4F32DirectionPlain, Method::Extrapolation8Fixed64];
-    let board = BOARDS.iter().find(|board| board.core() == Core::M0Plus).expect("QEMU's");
-    let target = Target::build(&toolchain::ready()?, board)?;
-    for method in [Method::Rk4Fixed32, single, fixed64] {
-        let mut board = board_stepping(method)?;
+    let emulated = BOARDS.iter().find(|board| board.core() == Core::M0Plus).expect("QEMU's");
+    let target = Target::build(&toolchain::ready()?, emulated)?;
+    for method in [single, fixed64, Method::Rk4Fixed32] {
+        board.send(&request(method, 0).message(1))?;
+        board.run(4 * TICK)?;
         let steps = FULL_CYCLE / MOST_MEASURED_STEPS;
         let cycles = (0..steps).map(|_| measured(&mut board, 0)).sum::<Result<u32, _>>()?;
         let counted = f64::from(cycles) / f64::from(FULL_CYCLE);
@@ -162,6 +150,17 @@ fn the_emulator_counts_the_cycles_that_are_estimated() -> anyhow::Result<()> {
         let estimated = step_cost(&target, &request)?.cycles;
         assert!((counted / estimated - 1.0).abs() < APART, "{method}: {counted} counted, {estimated} estimated");
     }
+    let steps = Code::read(&application(&PICO)).expect("the program");
+    let entry = steps.functions_named(|name| name.contains("OnBoards as firmware::job::run::Run>::advance")).next();
+    let entry = entry.expect("the entry");
+    let (flash, ram) = (measured(&mut board, 0)?, measured(&mut board, 1)?);
+    assert!(flash > 1000 * MOST_MEASURED_STEPS && flash.abs_diff(ram) < flash / 10, "{flash} and {ram} cycles");
+    for (address, byte) in (entry..).zip(RETURN) {
+        board.tell(&format!("fill {address} 1 {byte}"))?;
+    }
+    let spoilt = measured(&mut board, 1)?;
+    assert!(spoilt < 1000, "{spoilt} cycles for nothing");
+    assert!(measured(&mut board, 0)?.abs_diff(flash) < flash / 10);
     Ok(())
 }
 
@@ -175,9 +174,9 @@ fn stand_still(board: &mut PicoMachine) -> anyhow::Result<Frame> {
 #[test]
 fn the_panel_shows_the_hosts_picture_whichever_it_is_and_however_often_it_is_pulled() -> anyhow::Result<()> {
     let mut board = board()?;
-    board.plug(0)?;
+    board.tell("plug 0")?;
     board.run(Duration::from_millis(300))?;
-    assert!(board.panel()?.is_empty(), "it is off");
+    assert!(board.tell("panel")?.is_empty(), "it is off");
     assert!(board.lines().iter().any(|line| line.text.starts_with("panel: Absent")));
     for (name, status, found) in [
         (SceneName::Page, 6, "panel: Found { controller: Ssd1306, by: Status(70) }"),
@@ -187,16 +186,16 @@ fn the_panel_shows_the_hosts_picture_whichever_it_is_and_however_often_it_is_pul
     ] {
         board.send(&Choose { request: 1, scene: name.code() })?;
         board.send(&Pause { request: 2, paused: 0 })?;
-        board.plug(status)?;
-        // It is looked for within a second, and has what was lost in one more.
-        board.run(Duration::from_millis(2000))?;
+        board.tell(&format!("plug {status}"))?;
+        // A new one is looked for within a second, and has what was lost in one more.
+        board.run(if status == 0 { 4 * PICTURE } else { Duration::from_millis(2000) })?;
         let frame = stand_still(&mut board)?;
         assert_eq!(board.lines().iter().any(|line| line.text == found), !found.is_empty(), "{}", name.name());
-        let mut show = show(name, &name.first_settings());
+        let mut show = show(&PICO, name);
         (0..frame.step).for_each(|_| show.tick());
         let mut canvas = show.frame();
         firmware::graphics::text::pause_mark(&mut canvas);
-        let (shown, picture) = (board.panel()?, Bitmap::from(&canvas));
+        let (shown, picture) = (board.tell("panel")?, Bitmap::from(&canvas));
         let expected = if status == 0 { &[] } else { picture.pages.as_flattened() };
         assert!(shown == expected, "{}: {:?}", name.name(), board.screenshot()?);
     }
@@ -204,41 +203,10 @@ fn the_panel_shows_the_hosts_picture_whichever_it_is_and_however_often_it_is_pul
 }
 
 #[test]
-fn commands_are_obeyed_from_either_side() -> anyhow::Result<()> {
-    let mut board = board_in(SceneName::Butterfly)?;
-    let mut messages = board.run(4 * TICK)?;
-    board.send_through_uart(&Set { request: 2, field: Field::M2.code(), value: 2.5 })?;
-    messages.extend(board.run(4 * TICK)?);
-    // Both hear both answers.
-    for heard in [messages, board.heard_by_uart()] {
-        let answers: Vec<_> = heard.iter().filter_map(Received::read).map(|Done { request }| request).collect();
-        assert_eq!(answers, [1, 2]);
-    }
-    let frame = board.next_frame()?;
-    assert_eq!((frame.scene, frame.mass_ratio), (SceneName::Butterfly.code(), 2.5));
-    Ok(())
-}
-
-#[test]
-fn it_says_which_board_and_which_program_it_is() -> anyhow::Result<()> {
-    let (_, image) = flash_image(&std::fs::read(application(&PICO))?)?;
-    let mut board = board()?;
-    board.run(PICTURE)?;
-    board.send(&Identify { request: 1 })?;
-    let messages = board.run(4 * TICK)?;
-    let identity: Identity = messages.iter().find_map(Received::read).expect("an answer");
-    assert_eq!((identity.board, identity.hertz), (BoardName::Pico.code(), PICO.hertz));
-    let program = &image[256..][..identity.image_bytes as usize];
-    assert_eq!(identity.image, CRC.checksum(program));
-    assert!(image.len() - 256 - program.len() < 256, "nearly all of it");
-    Ok(())
-}
-
-#[test]
 fn every_button_does_its_own() -> anyhow::Result<()> {
     let mut board = board()?;
     board.run(10 * TICK)?;
-    let mut show = show(SceneName::Page, &Settings::default());
+    let mut show = show(&PICO, SceneName::Page);
     for key in [Key::Up, Key::Up, Key::Left, Key::Right, Key::Right, Key::Down] {
         board.set_key(key, true)?;
         board.run(6 * TICK)?;
@@ -254,32 +222,16 @@ fn every_button_does_its_own() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// More than it takes in many ticks, in which its queue is full: the host waits.
-#[test]
-fn a_flood_over_usb_loses_nothing() -> anyhow::Result<()> {
-    let mut board = board()?;
-    board.run(PICTURE)?;
-    let mut flood = vec![1; 5 * RECEIVE_QUEUE];
-    for request in 0..100 {
-        flood.extend_from_slice(encode(&Ask { request }, &mut [0; MAX_WIRE]));
-    }
-    board.send_bytes(&flood)?;
-    let messages = board.run(60 * TICK)?;
-    let answers = messages.iter().filter_map(Received::read).map(|Status { request, .. }| request);
-    assert!(answers.eq(0..100));
-    let frame = board.next_frame()?;
-    assert_eq!((frame.lost, frame.dropped), (0, 0));
-    Ok(())
-}
-
 #[test]
 fn the_watchdog_restarts_the_board_in_its_scene() -> anyhow::Result<()> {
-    let mut board = board_in(SceneName::Butterfly)?;
+    let mut board = board()?;
+    board.run(PICTURE)?;
+    board.send(&Choose { request: 1, scene: SceneName::Butterfly.code() })?;
     board.send(&Press { request: 2, key: Key::Up.code() })?;
     board.run(10 * TICK)?;
     let before = board.next_frame()?;
     board.run(TICK / 4)?;
-    board.hang()?;
+    board.tell("hang")?;
     let messages = board.run(Duration::from_secs(u64::from(WATCHDOG_SECONDS) * 2) + 8 * PICTURE)?;
     let restarted: Vec<Restarted> = messages.iter().chain(&board.heard_by_uart()).filter_map(Received::read).collect();
     let Restarted { cause, restarts, scene, step, .. } = *restarted.first().expect("it says so");
@@ -290,7 +242,7 @@ fn the_watchdog_restarts_the_board_in_its_scene() -> anyhow::Result<()> {
     assert_eq!((frame.step, frame.dropped), (frame.sequence + 1, 0), "from its start, and all frames since");
     // A reset from outside starts afresh: it is not for the watchdog's that was before, nor for the one by which the boot ROM does it.
     for after_download in [false, true, false] {
-        board.reset(after_download)?;
+        board.tell(&format!("reset {}", u8::from(after_download)))?;
         let messages = board.run(8 * PICTURE)?;
         assert!(messages.iter().all(|message| message.kind != Restarted::KIND), "{after_download}");
         assert_eq!(board.next_frame()?.scene, SceneName::Page.code());

@@ -38,7 +38,7 @@ fn choose_and_restart(board: &Board) -> anyhow::Result<()> {
     // Held, it is for the next scene.
     let (_, after) = press(&mut machine, Key::Select)?;
     assert_eq!(after.scene, SceneName::Page.next().code(), "{}", board.name);
-    machine.quit()
+    Ok(())
 }
 
 /// Holds a button until a motion starts, and lets go: the frames before and after that.

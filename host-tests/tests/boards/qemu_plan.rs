@@ -1,7 +1,7 @@
 //! The plan on the emulated boards: found in the very tick, and followed from the very tick, that the host says, without
 //! delaying a frame; answered and logged.
 
-use crate::support::on;
+use crate::support::{on, show};
 use double_pendulum::Method;
 use double_pendulum::plan::Plan;
 use firmware::app::News;
@@ -9,7 +9,6 @@ use firmware::config::{HALF_PIXEL, TICK_RATE};
 use firmware::protocol::{AskPlan, Choose, Done, Frame, Planned, limit_code, method_code};
 use firmware::scenes::SceneName;
 use host_tests::emulator::boards::{BOARDS, Board};
-use host_tests::emulator::host::Show;
 use host_tests::emulator::qemu::Machine;
 use rayon::prelude::*;
 
@@ -41,13 +40,13 @@ fn every_board_plans(scenes: &[SceneName]) -> anyhow::Result<()> {
         }
         let counts = machine.serial.counts();
         assert_eq!((counts.damaged, counts.lost), (0, 0), "{}", board.name);
-        machine.quit()
+        Ok(())
     })
 }
 
 /// Frame by frame as the host shows it, then the answer and the log.
 fn followed(machine: &mut Machine, board: &Board, name: SceneName) -> anyhow::Result<()> {
-    let mut show = Show::on(board.processor(), name, &name.first_settings()).expect("a scene of the catalogue");
+    let mut show = show(board, name);
     loop {
         let frame: Frame = machine.wait_for()?;
         assert_eq!(frame.dropped, 0, "{}: {frame:?}", board.name);

@@ -1,15 +1,17 @@
-//! The host stops reading: the board's motion does not wait for it, and the stream goes on as soon as it reads again.
+//! The host stops reading: the board's motion does not wait for it, and the stream goes on as soon as it reads again. It sends
+//! more than the board reads, or stops the emulator.
 
 use std::thread::sleep;
 use std::time::Duration;
 
-use crate::support::on;
-use firmware::motion::Settings;
+use crate::support::{on, show};
 use firmware::protocol::Frame;
 use firmware::scenes::SceneName;
-use host_tests::emulator::boards::BOARDS;
-use host_tests::emulator::host::Show;
-use host_tests::emulator::qemu::Machine;
+use host_tests::emulator::boards::{BOARDS, STM32F405};
+use host_tests::emulator::qemu::{Clock, Machine, Settings};
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
+use rayon::prelude::*;
 
 /// How often the log is looked at.
 const POLL: Duration = Duration::from_millis(20);
@@ -31,8 +33,7 @@ fn a_host_that_stops_reading_loses_frames_and_nothing_else() -> anyhow::Result<(
     }
     drop(stopped);
 
-    let mut show =
-        Show::on(board.processor(), SceneName::Page, &Settings::default()).expect("a scene of the catalogue");
+    let mut show = show(board, SceneName::Page);
     let (mut last, mut after) = (first, 0);
     while after < FRAMES {
         let frame: Frame = machine.wait_for()?;
@@ -48,5 +49,53 @@ fn a_host_that_stops_reading_loses_frames_and_nothing_else() -> anyhow::Result<(
     said.extend(machine.log.arrived().map(|line| line.to_string()));
     let complaints = said.iter().filter(|line| line.contains("serial link")).count();
     assert_eq!(complaints, 1, "said once, not for every frame: {said:#?}");
-    machine.quit()
+    Ok(())
+}
+
+/// A host that stops QEMU, or has no time for it, is no fault of the firmware: its clock has not ticked meanwhile.
+#[test]
+fn a_board_whose_emulator_pauses_does_not_take_it_for_a_hang() -> anyhow::Result<()> {
+    /// Longer than the watchdog's two stages.
+    const PAUSE: Duration = Duration::from_millis(2500);
+    const FRAMES: usize = 20;
+    BOARDS.par_iter().filter(|board| **board != STM32F405).try_for_each(|board| {
+        let mut machine = on(board, |settings| Machine::start(&Settings { clock: Clock::Real, ..*settings }))?;
+        let emulator = Pid::from_raw(machine.id().cast_signed());
+        for pause in [true, false] {
+            for _ in 0..FRAMES {
+                machine.wait_for::<Frame>()?;
+            }
+            if pause {
+                kill(emulator, Signal::SIGSTOP)?;
+                sleep(PAUSE);
+                kill(emulator, Signal::SIGCONT)?;
+            }
+        }
+        let log = machine.said();
+        assert!(!log.contains("HANG") && !log.contains("restarted"), "{}: {log}", board.name);
+        Ok(())
+    })
+}
+
+/// A host that sends faster than the board reads is told how much it has lost.
+#[test]
+fn received_bytes_that_are_lost_are_counted() -> anyhow::Result<()> {
+    // Broken messages of a byte each, of which a board takes no more than four a tick: many times what its queue holds.
+    let flood = [0, 1].repeat(10_000);
+    for board in &BOARDS {
+        let mut machine = on(board, Machine::start)?;
+        assert_eq!(machine.wait_for::<Frame>()?.lost, 0, "{}", board.name);
+        machine.serial.send_bytes(&flood)?;
+        // The log comes by another way than the frames, and may be later.
+        let (mut lost, mut log) = (0, String::new());
+        while lost == 0 || !log.contains("received bytes lost") {
+            lost = machine.wait_for::<Frame>()?.lost;
+            log += &machine.said();
+        }
+        assert!(lost < flood.len() as u32, "{}: {lost}", board.name);
+        // From the start on.
+        let has_no_guard = log.contains("no memory protection unit: the stack has no guard");
+        assert_eq!(has_no_guard, !board.is_guarded(), "{}: {log}", board.name);
+    }
+    Ok(())
 }

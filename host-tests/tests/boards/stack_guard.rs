@@ -2,10 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use crate::support::application;
+use crate::support::{address, application};
 use cycles::Image;
 use host_tests::emulator::boards::BOARDS;
-use object::{Object, ObjectSymbol};
 
 /// The part of memory that statics and guard share, and what it can be divided by, as in `board/cortex_m/guard.rs`.
 const REGION: u32 = 32 * 1024;
@@ -69,16 +68,10 @@ fn no_function_steps_over_the_guard() {
             }
         }
         let (function, frame) = frames.into_iter().max_by_key(|(_, bytes)| *bytes).expect("functions have frames");
-        let guard = guard(&std::fs::read(&elf).unwrap_or_else(|error| panic!("{error}")));
+        // What the statics leave of the region, in whole eighths.
+        let guard = REGION - (address(&elf, "__euninit") - address(&elf, "_ram_start")).next_multiple_of(EIGHTH);
         let largest = function.map_or("", |function| &function.name);
         println!("{}: a guard of {guard} bytes; the largest frame is {frame}, of {largest}", board.name);
         assert!(frame.saturating_add(PUSHED) <= guard, "{}: {largest} takes {frame} of {guard}", board.name);
     }
-}
-
-/// The size of the guard: what the statics leave of the region, in whole eighths.
-fn guard(elf: &[u8]) -> u32 {
-    let file = object::File::parse(elf).unwrap_or_else(|error| panic!("{error}"));
-    let symbol = |name: &str| file.symbols().find(|symbol| symbol.name() == Ok(name)).expect(name).address() as u32;
-    REGION - (symbol("__euninit") - symbol("_ram_start")).next_multiple_of(EIGHTH)
 }

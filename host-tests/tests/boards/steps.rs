@@ -49,8 +49,7 @@ fn reached(code: &Code, form: &str) -> BTreeSet<String> {
     let mut seen = 0;
     while let Some(&function) = found.get(seen) {
         seen += 1;
-        let calls = code.calls_from(function).filter_map(|to| code.function_at(to)).map(|(start, _)| start);
-        let new: Vec<u32> = calls.filter(|to| !found.contains(to)).collect();
+        let new: Vec<u32> = code.named_by(function).filter(|to| !found.contains(to)).collect();
         found.extend(new);
     }
     found.into_iter().filter_map(|function| Some(code.function_at(function)?.1.to_owned())).collect()

@@ -34,7 +34,7 @@ fn the_committed_files_are_what_the_kernel_gives() {
 const EVERY: usize = 30;
 const TICKS_PER_FRAME: usize = 2;
 
-/// The host's frames are the emulated panel's (test `all_scenes`), so neither may be older than the firmware.
+/// The host's frames are the emulated panel's (test `boards scenes`), so neither may be older than the firmware.
 #[test]
 fn the_committed_animations_show_what_the_host_draws() {
     let outdated: Vec<_> = SceneName::ALL.iter().filter(|name| !is_shown(**name)).map(|name| name.name()).collect();

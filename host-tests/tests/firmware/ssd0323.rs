@@ -1,4 +1,4 @@
-//! The panel's driver against a controller that is stricter than the real one; QEMU's shows every scene (test `boards all_scenes`).
+//! The panel's driver against a controller that is stricter than the real one; QEMU's shows every scene (test `boards scenes`).
 
 use std::cell::RefCell;
 use std::collections::VecDeque;

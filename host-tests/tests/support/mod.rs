@@ -2,13 +2,16 @@
 #![allow(dead_code)]
 
 pub mod bench;
-pub mod branch;
 pub mod code;
 
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use host_tests::emulator::boards::{BOARDS, Board};
+use firmware::scenes::SceneName;
+use host_tests::commands::count::Target;
+use host_tests::emulator::boards::Board;
+use host_tests::emulator::host::Show;
 use host_tests::emulator::qemu::{Clock, Settings};
 use host_tests::emulator::toolchain::{self, Toolchain};
 use object::{Object, ObjectSymbol};
@@ -19,6 +22,11 @@ pub const LIMIT: Duration = Duration::from_secs(900);
 /// The tools; a test without them fails and says what brings them.
 pub fn toolchain() -> Toolchain {
     toolchain::ready().unwrap_or_else(|missing| panic!("{missing}"))
+}
+
+/// The program that measures, on a board for each kind of core.
+pub fn targets() -> Vec<Target> {
+    Target::build_all(&toolchain()).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// A board's application.
@@ -37,9 +45,25 @@ pub fn on<M>(board: &Board, start: impl FnOnce(&Settings) -> anyhow::Result<M>) 
     start(&settings(&toolchain, board, &elf))
 }
 
-/// The boards with a memory protection unit, which tell the cause of a fault.
-pub fn guarded() -> impl Iterator<Item = &'static Board> {
-    BOARDS.iter().filter(|board| board.is_guarded())
+/// The stack's share of memory, from its top (`board/cortex_m/guard.rs`).
+const STACK: u32 = 32 * 1024;
+/// No byte that is common in memory: where it is gone, the stack has been.
+pub const PAINT: u8 = 0xA5;
+
+/// The addresses of a program's stack.
+pub fn stack(elf: &Path) -> Range<u32> {
+    let top = address(elf, "_stack_start");
+    top - STACK..top
+}
+
+/// The most bytes that a stack has held since it was painted, by what stands there now.
+pub fn depth(memory: &[u8]) -> u32 {
+    STACK - memory.iter().take_while(|byte| **byte == PAINT).count() as u32
+}
+
+/// A scene of the host's, as this board plays it from its start.
+pub fn show(board: &Board, name: SceneName) -> Show {
+    Show::on(board.processor(), name, &name.first_settings()).expect("a scene of the catalogue")
 }
 
 /// The address of a symbol, by its name without the path before it: `Player::execute`, which one version of the compiler calls

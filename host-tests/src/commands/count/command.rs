@@ -77,15 +77,15 @@ pub struct CountOptions {
 
 pub fn run(options: &CountOptions) -> anyhow::Result<()> {
     if let (Some(elf), Some(function)) = (&options.elf, &options.function) {
-        return count_calls(&toolchain::set_up()?.0, options, elf, function);
+        return count_calls(&toolchain::set_up()?, options, elf, function);
     }
     if options.write_prices {
-        let (toolchain, _) = toolchain::set_up()?;
+        let toolchain = toolchain::set_up()?;
         return Ok(say(write_prices(&prices(&toolchain)?)?.display())?);
     }
     let requests = options.requests().map_err(Refused::because)?;
     let boards = if options.on.is_empty() { vec![&BOARDS[0]] } else { options.on.clone() };
-    let (toolchain, _) = toolchain::set_up()?;
+    let toolchain = toolchain::set_up()?;
     if !options.listing {
         say(options.setting())?;
         say(ERROR_BAR)?;

@@ -39,20 +39,14 @@ impl FrameProfile {
         let showing = SHOWING.into_iter().map(|(module, name)| address(image, module, name));
         let showing = showing.collect::<Result<BTreeSet<_>>>()?;
         next_frame_read(board, |mut log| {
-            let (mut profile, mut stream) = (Self::default(), None::<Stream>);
+            let (mut profile, mut stream) = (Self::default(), Stream::of(image, core));
             // Where the outermost function that shows returns to: the address and the stack pointer.
             let mut shows_until = None;
             for_each_instruction(&mut log, &mut |registers| {
-                match &mut stream {
-                    Some(stream) => {
-                        let (.., cost) = stream.execute(&registers);
-                        profile.whole += cost;
-                        if shows_until.is_some() {
-                            profile.showing += cost;
-                        }
-                        stream.go_on(image, registers)?;
-                    }
-                    None => stream = Some(Stream::begin(image, core, registers)?),
+                let cost = stream.see(registers)?.map(|(.., cost)| cost).unwrap_or_default();
+                profile.whole += cost;
+                if shows_until.is_some() {
+                    profile.showing += cost;
                 }
                 shows_until = shows_until.filter(|place| *place != (registers.pc(), registers.sp()));
                 if shows_until.is_none() && showing.contains(&registers.pc()) {

@@ -1,17 +1,15 @@
 //! Counts what a method costs on the target: executed instructions (exact), Cortex-M cycles (an **estimate** from
 //! the published instruction timings), bytes of code and bytes of stack.
 
-mod calls;
 mod command;
 mod frame_profile;
 mod prices;
 mod trace;
 
-pub use calls::{calls_of, counted};
 pub use command::{CountOptions, run};
 pub use frame_profile::{FrameProfile, calls_in_next};
 pub use prices::prices;
-pub use trace::{Ended, Target};
+pub use trace::{Ended, Target, calls_of, counted};
 
 use anyhow::Result;
 use firmware::job::Request;

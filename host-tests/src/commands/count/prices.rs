@@ -62,12 +62,8 @@ fn in_application(board: &'static Board, toolchain: &Toolchain) -> Result<(f32, 
     for &method in Method::DRAWN {
         let (field, value) = (Field::Method.code(), method_code(method).into());
         machine.machine().serial.send(&Set { request: 1, field, value })?;
-        // Whether the command comes before this frame or the next is a matter of bytes.
-        let mut preparation = most(&mut machine, "PlannedRun::new")?;
-        if preparation == 0.0 {
-            preparation = most(&mut machine, "PlannedRun::new")?;
-        }
-        prepared = prepared.max(preparation);
+        machine.run_to(image.function("PlannedRun::new")?.address)?;
+        prepared = prepared.max(most(&mut machine, "PlannedRun::new")?);
     }
     Ok((step, prepared))
 }

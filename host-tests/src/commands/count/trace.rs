@@ -4,21 +4,24 @@
 //! writes the processor's registers to its log (`-d cpu,nochain`): no plugin, nothing to compile, the same text since
 //! 2.x. The log comes through a pipe, a few hundred thousand instructions per second.
 
+use std::collections::BTreeSet;
 use std::io::ErrorKind;
 use std::path::PathBuf;
 use std::process::{Command, ExitStatus, Stdio};
 use std::thread;
 use std::time::Duration;
 
-use anyhow::{Context, Result, ensure};
-use cycles::{Core, Image, Registers, for_each_instruction};
+use anyhow::{Context, Result, bail, ensure};
+use cycles::{Calls, Core, Cost, Function, Image, Registers, for_each_instruction};
 use firmware::job::Request;
 
+use super::COUNTED;
+use crate::console::progress::Progress;
 use crate::emulator::boards::{BOARDS, Board};
 use crate::emulator::process;
 use crate::emulator::toolchain::Toolchain;
 
-pub(super) const LIMIT: Duration = Duration::from_secs(1800);
+const LIMIT: Duration = Duration::from_secs(1800);
 const VERSION_LIMIT: Duration = Duration::from_secs(10);
 
 #[derive(Debug)]
@@ -34,8 +37,8 @@ const PROGRAM: &str = "measure";
 #[derive(Debug)]
 pub struct Target {
     pub board: &'static Board,
-    pub(super) qemu: PathBuf,
-    pub(super) elf: PathBuf,
+    qemu: PathBuf,
+    elf: PathBuf,
     image: Image,
 }
 
@@ -63,16 +66,6 @@ impl Target {
         self.board.core()
     }
 
-    /// Refuses a program that is not where the board looks for its vectors: it would never run.
-    pub(super) fn check_memory(&self) -> Result<()> {
-        let (vectors, board) = (self.board.flash(), self.board.name);
-        ensure!(
-            self.image.holds(vectors),
-            "never called: the program has nothing at {vectors:#x}, where {board} reads its vectors; see --on"
-        );
-        Ok(())
-    }
-
     /// Runs `request` at full speed: its CRC, and the ticks of the board's clock under `-icount`, where an
     /// instruction takes 1 ns.
     pub fn run(&self, request: &Request) -> Result<(u32, u64)> {
@@ -89,12 +82,7 @@ impl Target {
 
     /// Runs the program with `argument` on its semihosting command line and calls `each` before every instruction, in
     /// order.
-    pub(super) fn trace(
-        &self,
-        argument: &str,
-        limit: Duration,
-        each: &mut dyn FnMut(Registers) -> Result<()>,
-    ) -> Result<Ended> {
+    fn trace(&self, argument: &str, limit: Duration, each: &mut dyn FnMut(Registers) -> Result<()>) -> Result<Ended> {
         let mut command = self.emulator(argument);
         command.args(self.single_step()?).args(["-d", "cpu,nochain", "-D", "/dev/stderr"]);
         command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
@@ -133,4 +121,63 @@ impl Target {
         let number = parts.with_context(|| format!("cannot tell QEMU's version from {version:?}"))?;
         Ok(if number < (8, 1) { &["-singlestep"] } else { &["-accel", "tcg,one-insn-per-tb=on"] })
     }
+}
+
+/// Runs `request` on `target`, all calls of the counted function together.
+pub fn counted<'a>(target: &'a Target, request: &Request) -> Result<Calls<'a>> {
+    let entries = target.image().functions_named(COUNTED).map(|function| function.address).collect();
+    let mut calls = Calls::of(target.image(), target.core(), entries);
+    match target.trace(&request.to_string(), LIMIT, &mut |registers| calls.see(registers))? {
+        Ended { status: Some(status), .. } if status.success() => {}
+        Ended { status: None, .. } => bail!(process::timed_out(&target.elf.display().to_string(), LIMIT)),
+        Ended { output, .. } => bail!("{request}: {}", output.trim()),
+    }
+    ensure!(!calls.ended.is_empty(), "{COUNTED} was never called");
+    Ok(calls)
+}
+
+/// Counts the calls of `function` until the program on `target` ends or the time is up: the function, what each call that returned
+/// cost, one at least unless the program says that it failed, and how it ended.
+pub fn calls_of<'a>(target: &'a Target, function: &str, limit: Duration) -> Result<(&'a Function, Vec<Cost>, Ended)> {
+    let (image, core) = (target.image(), target.core());
+    let function = image.function(function)?;
+    let (vectors, board) = (target.board.flash(), target.board.name);
+    // It would never run.
+    ensure!(
+        image.holds(vectors),
+        "never called: the program has nothing at {vectors:#x}, where {board} reads its vectors; see --on"
+    );
+    let mut calls = Calls::of(image, core, BTreeSet::from([function.address]));
+    let progress = Progress::start(&format!("counts the calls of {}", function.name));
+    let (mut instructions, mut before, mut unknown) = (0_u64, Registers::default(), None);
+    let ended = target.trace("", limit, &mut |registers| {
+        instructions += 1;
+        if instructions % TELL == 0 {
+            progress.alive(Some(&format!("{} calls, {instructions} instructions", calls.ended.len())));
+        }
+        // An exception right after an instruction that the processor does not have is for the lack of it.
+        if is_exception(&registers) && !is_exception(&before) {
+            let instruction = image.instruction_at(before.pc()).ok();
+            unknown = unknown.or(instruction.filter(|one| one.is_missing_on(core)).map(|one| (before.pc(), one)));
+        }
+        before = registers;
+        calls.see(registers)
+    })?;
+    let name = &function.name;
+    let failed = ended.status.is_some_and(|status| !status.success());
+    if calls.ended.is_empty() && !failed {
+        ensure!(!calls.is_running(), "{name} was called and never returned");
+        let Some((address, instruction)) = unknown else { bail!("{name} was never called") };
+        let (instruction, cpu) = (instruction.row.name, target.board.cpu);
+        bail!("{name} was never called: {instruction} at {address:#x} is no instruction of a {cpu}; see --on");
+    }
+    Ok((function, calls.ended, ended))
+}
+
+/// Instructions between two words about them.
+const TELL: u64 = 1 << 18;
+
+/// Whether the processor has just entered an exception: the link register then holds no address.
+fn is_exception(registers: &Registers) -> bool {
+    (0xffff_ffe0..u32::MAX).contains(&registers.lr())
 }

@@ -57,11 +57,11 @@ pub(crate) fn port(name: &str) -> Result<Port, Refused> {
 }
 
 fn emulated(options: &DemoOptions, is_live: bool) -> anyhow::Result<Source<'_>> {
-    let (toolchain, _) = toolchain::set_up()?;
+    let toolchain = toolchain::set_up()?;
     let (board, seconds) = (options.board, options.seconds.unwrap_or(DEFAULT_SECONDS));
     let limit = if is_live { LIVE_LIMIT } else { LIMIT.0 + Duration::from_secs_f64(LIMIT.1 * seconds) };
     if *board == PICO {
-        let (emulator, _) = toolchain::set_up_pico()?;
+        let emulator = toolchain::set_up_pico()?;
         return Ok(Source::Pico(Box::new(PicoMachine::start(&emulator, &toolchain.build_for(board)?, limit)?)));
     }
     let elf = toolchain.build_for(board)?;

@@ -68,7 +68,7 @@ pub fn panel_file(scene: SceneName, kind: &str) -> String {
     format!("panel/{}.{kind}", scene.name())
 }
 
-/// The screenshot of a scene as a PNG file. The panel of the emulated board shows the same (test `all_scenes`).
+/// The screenshot of a scene as a PNG file. The panel of the emulated board shows the same (test `boards scenes`).
 fn screenshot(name: SceneName) -> Result<Vec<u8>> {
     let mut scene = Show::new(name, &name.first_settings())?;
     (0..moment(name)).for_each(|_| scene.tick());

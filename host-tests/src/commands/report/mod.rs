@@ -34,7 +34,7 @@ pub struct ReportOptions {
 }
 
 pub fn run(options: &ReportOptions) -> Result<()> {
-    let (toolchain, _) = toolchain::set_up()?;
+    let toolchain = toolchain::set_up()?;
     let folder = options.out.clone().unwrap_or_else(|| toolchain::workspace().join("host-tests/report"));
     fs::create_dir_all(&folder).map_err(|error| unwritable("--out", &folder, &error))?;
     let targets = Target::build_all(&toolchain)?;

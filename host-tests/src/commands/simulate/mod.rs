@@ -69,7 +69,7 @@ fn on_board(
     board: &'static Board,
     mut row: impl FnMut(&Reading) -> io::Result<()>,
 ) -> anyhow::Result<()> {
-    let (toolchain, _) = toolchain::set_up()?;
+    let toolchain = toolchain::set_up()?;
     let elf = toolchain.build_for(board)?;
     let limit = OVERHEAD.saturating_add(PER_STEP.saturating_mul(request.stride.saturating_mul(request.samples)));
     let settings = Settings { qemu: toolchain.qemu(), board, elf: &elf, clock: Clock::Real, debugger: true, limit };
@@ -89,5 +89,5 @@ fn on_board(
             expected += 1;
         }
     }
-    machine.quit()
+    Ok(())
 }

@@ -7,9 +7,7 @@ use std::io::{BufRead, BufReader, Read, Write};
 use std::ops::Range;
 use std::os::unix::net::UnixStream;
 
-use anyhow::anyhow;
-
-use super::error::broken;
+use anyhow::{Context, anyhow};
 
 /// The size of the instruction `wfi`, and what any breakpoint is said to take, bytes.
 const SIZE: u32 = 2;
@@ -25,8 +23,11 @@ const DESCRIBE: &str = "qXfer:features:read:target.xml:0,10";
 pub(super) struct Debugger {
     reader: BufReader<UnixStream>,
     writer: UnixStream,
-    /// Where it stops when it is let run to the next of them.
+    /// Where it stops when it is let run to the next of them, and whether that is set.
     sleeps: Vec<u32>,
+    stops: bool,
+    /// The machine was run to a place, and stands there.
+    is_placed: bool,
     /// The machine stands at this `wfi`.
     asleep_at: Option<u32>,
 }
@@ -34,24 +35,17 @@ pub(super) struct Debugger {
 impl Debugger {
     /// Will run to the instructions `wfi` at these addresses.
     pub(super) fn new(socket: UnixStream, sleeps: Vec<u32>) -> anyhow::Result<Self> {
-        let writer = socket.try_clone().map_err(broken("debugger port"))?;
-        let mut debugger = Self { reader: BufReader::new(socket), writer, sleeps, asleep_at: None };
+        let writer = socket.try_clone()?;
+        let mut debugger =
+            Self { reader: BufReader::new(socket), writer, sleeps, stops: false, is_placed: false, asleep_at: None };
         debugger.ask(DESCRIBE)?;
         Ok(debugger)
     }
 
     /// Lets the machine run until its processor is about to sleep.
-    ///
-    /// The `wfi` it stands at is passed over: the architecture lets it wake at any time, and while the machine stood
-    /// still QEMU has put its clock forward to the next event, which is just what sleeping does.
     pub(super) fn run_to_sleep(&mut self) -> anyhow::Result<()> {
-        for address in std::mem::take(&mut self.sleeps) {
-            self.expect(&format!("Z0,{address:x},{SIZE}"), "OK")?;
-        }
-        if let Some(address) = self.asleep_at.take() {
-            let next = (address + SIZE).swap_bytes();
-            self.expect(&format!("P{PC}={next:08x}"), "OK")?;
-        }
+        self.leave(true)?;
+        self.is_placed = false;
         self.expect("c", "T05")?;
         let answer = self.ask(&format!("p{PC}"))?;
         let address = u32::from_str_radix(&answer, 16).map_err(|_| unexpected("p", &answer))?;
@@ -59,16 +53,44 @@ impl Debugger {
         Ok(())
     }
 
+    /// Whether the machine is to stop before it sleeps.
+    ///
+    /// The `wfi` it stands at is passed over: the architecture lets it wake at any time, and while the machine stood
+    /// still QEMU has put its clock forward to the next event, which is just what sleeping does.
+    fn leave(&mut self, stops: bool) -> anyhow::Result<()> {
+        if std::mem::replace(&mut self.stops, stops) != stops {
+            let kind = if stops { 'Z' } else { 'z' };
+            self.sleeps.clone().iter().try_for_each(|at| self.expect(&format!("{kind}0,{at:x},{SIZE}"), "OK"))?;
+        }
+        let Some(address) = self.asleep_at.take() else { return Ok(()) };
+        let next = (address + SIZE).swap_bytes();
+        self.expect(&format!("P{PC}={next:08x}"), "OK")
+    }
+
     /// Lets the machine run until the instruction at this address is about to be executed, the next time if it stands there.
     pub(super) fn run_to(&mut self, address: u32) -> anyhow::Result<()> {
-        self.expect("s", "T05")?;
+        self.leave(false)?;
+        // A machine that was stopped may be asleep, and then makes no step.
+        if std::mem::replace(&mut self.is_placed, true) {
+            self.expect("s", "T05")?;
+        }
         self.expect(&format!("Z0,{address:x},{SIZE}"), "OK")?;
         self.expect("c", "T05")?;
         self.expect(&format!("z0,{address:x},{SIZE}"), "OK")
     }
 
+    /// Lets the machine run until [`stop`](Self::stop).
     pub(super) fn run(&mut self) -> anyhow::Result<()> {
-        self.send("c").map_err(broken("debugger port"))
+        self.leave(false)?;
+        self.send("c")
+    }
+
+    /// Stops the machine wherever it is. QEMU takes no byte for anything else while it runs.
+    pub(super) fn stop(&mut self) -> anyhow::Result<()> {
+        self.is_placed = false;
+        self.say("\x03")?;
+        let reply = self.hear()?;
+        if reply.starts_with("T02") { Ok(()) } else { Err(unexpected("an interrupt", &reply)) }
     }
 
     pub(super) fn write(&mut self, address: u32, bytes: &[u8]) -> anyhow::Result<()> {
@@ -107,22 +129,27 @@ impl Debugger {
         if reply.starts_with(answer) { Ok(()) } else { Err(unexpected(packet, &reply)) }
     }
 
-    fn ask(&mut self, packet: &str) -> anyhow::Result<String> {
-        self.exchange(packet).map_err(broken("debugger port"))
-    }
-
-    fn send(&mut self, packet: &str) -> std::io::Result<()> {
+    fn send(&mut self, packet: &str) -> anyhow::Result<()> {
         let checksum = packet.bytes().fold(0, u8::wrapping_add);
-        write!(self.writer, "${packet}#{checksum:02x}")
+        self.say(&format!("${packet}#{checksum:02x}"))
     }
 
-    fn exchange(&mut self, packet: &str) -> std::io::Result<String> {
+    fn say(&mut self, text: &str) -> anyhow::Result<()> {
+        // Not as it is: a broken pipe would be taken for a closed output, which is no failure.
+        self.writer.write_all(text.as_bytes()).map_err(|error| anyhow!("QEMU's debugger port: {error}"))
+    }
+
+    fn ask(&mut self, packet: &str) -> anyhow::Result<String> {
         self.send(packet)?;
+        self.hear()
+    }
+
+    fn hear(&mut self) -> anyhow::Result<String> {
         self.reader.skip_until(b'$')?;
         let mut reply = Vec::new();
         self.reader.read_until(b'#', &mut reply)?;
-        self.reader.read_exact(&mut [0; 2])?;
-        self.writer.write_all(b"+")?;
+        self.reader.read_exact(&mut [0; 2]).context("QEMU's debugger port")?;
+        self.say("+")?;
         reply.pop();
         Ok(String::from_utf8_lossy(&reply).into_owned())
     }

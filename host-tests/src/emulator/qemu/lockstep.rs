@@ -5,8 +5,8 @@ use std::ops::Range;
 use std::path::Path;
 
 use anyhow::{Context, bail};
+use cycles::Image;
 use firmware::protocol::{Frame, Message};
-use object::{Object, ObjectSection, SectionKind};
 
 use super::Screenshot;
 use super::gdb::Debugger;
@@ -41,7 +41,8 @@ pub struct Lockstep {
 impl Lockstep {
     /// Starts a board with its clock counted, even if `settings` say otherwise; it stands still at its first instruction.
     pub fn start(settings: &Settings) -> anyhow::Result<Self> {
-        let sleeps = sleeps(settings.elf)?;
+        let words = Image::read(settings.elf)?.words().into_iter();
+        let sleeps = words.filter(|(_, first, _)| *first == WFI).map(|(address, ..)| address).collect();
         let (machine, debugger) = Machine::start_stopped(&Settings { clock: Clock::Counted, ..*settings })?;
         Ok(Self { machine, debugger: Debugger::new(debugger, sleeps)? })
     }
@@ -83,7 +84,7 @@ impl Lockstep {
         self.machine.tell(&name).or_else(|_| self.machine.tell(&name_before))
     }
 
-    /// Runs until the instruction at this address is about to be executed. Not after a run to a frame.
+    /// Runs until the instruction at this address is about to be executed.
     pub fn run_to(&mut self, address: u32) -> anyhow::Result<()> {
         self.debug(|debugger| debugger.run_to(address))
     }
@@ -93,17 +94,20 @@ impl Lockstep {
         self.debug(|debugger| registers.iter().try_for_each(|(register, value)| debugger.set(*register as u32, *value)))
     }
 
+    /// Lets it run freely, twenty times as fast as from frame to frame: QEMU forgets all that it has translated when it is stopped at
+    /// a place.
     pub fn run(&mut self) -> anyhow::Result<&mut Machine> {
-        self.debugger.run()?;
+        self.debug(Debugger::run)?;
         Ok(&mut self.machine)
+    }
+
+    /// Stops it wherever it is.
+    pub fn stop(&mut self) -> anyhow::Result<()> {
+        self.debug(Debugger::stop)
     }
 
     pub fn write(&mut self, address: u32, bytes: &[u8]) -> anyhow::Result<()> {
         self.debug(|debugger| debugger.write(address, bytes))
-    }
-
-    pub fn fill(&mut self, addresses: Range<u32>, byte: u8) -> anyhow::Result<()> {
-        self.write(addresses.start, &vec![byte; addresses.len()])
     }
 
     pub fn read(&mut self, addresses: Range<u32>) -> anyhow::Result<Vec<u8>> {
@@ -121,17 +125,4 @@ impl Lockstep {
     pub fn machine(&mut self) -> &mut Machine {
         &mut self.machine
     }
-}
-
-/// The addresses in the program where `wfi` stands, or a constant that looks like it, which is never executed.
-fn sleeps(elf: &Path) -> anyhow::Result<Vec<u32>> {
-    let program = std::fs::read(elf).with_context(|| elf.display().to_string())?;
-    let program = object::File::parse(&*program)?;
-    let mut sleeps = Vec::new();
-    for section in program.sections().filter(|section| section.kind() == SectionKind::Text) {
-        let code = section.data()?;
-        let halfwords = (section.address() as u32..).step_by(2).zip(code.as_chunks().0);
-        sleeps.extend(halfwords.filter(|(_, bytes)| u16::from_le_bytes(**bytes) == WFI).map(|(address, _)| address));
-    }
-    Ok(sleeps)
 }

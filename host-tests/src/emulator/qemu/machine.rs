@@ -1,5 +1,6 @@
 //! Starting and ending an emulated board.
 
+use std::env::temp_dir;
 use std::io::ErrorKind;
 use std::os::unix::net::{UnixListener, UnixStream};
 use std::path::Path;
@@ -12,12 +13,11 @@ use firmware::app::Key;
 use firmware::protocol::Message;
 use tempfile::TempDir;
 
-use super::error::{Broken, broken};
 use super::qmp::Monitor;
 use super::serial::Pipes;
-use super::{Log, LogLine, Screenshot, Serial, folder};
+use super::{Log, LogLine, Screenshot, Serial};
 use crate::emulator::boards::Board;
-use crate::emulator::process::{self, Running};
+use crate::emulator::process::{self, Running, remove_on_interrupt};
 use crate::link::Received;
 
 /// How often a connection that is not there yet is looked for.
@@ -57,28 +57,19 @@ pub struct Machine {
 impl Machine {
     /// Starts a board. Its first instruction is executed after the host is attached to it.
     pub fn start(settings: &Settings) -> anyhow::Result<Self> {
-        let (mut machine, _) = Self::launch(settings, false)?;
-        match machine.monitor.resume() {
-            // A firmware may end QEMU before QEMU can answer.
-            Err(error) if !error.is::<Broken>() => Err(error),
-            _ => Ok(machine),
-        }
+        let (mut machine, _) = Self::start_stopped(settings)?;
+        // A firmware may end QEMU before QEMU can answer.
+        let _: anyhow::Result<()> = machine.monitor.resume();
+        Ok(machine)
     }
 
     /// Starts a board that stands still at its first instruction, and gives its debugger port.
     pub(super) fn start_stopped(settings: &Settings) -> anyhow::Result<(Self, UnixStream)> {
-        let (machine, debugger) = Self::launch(settings, true)?;
-        let missing = || broken("debugger port")(ErrorKind::NotConnected.into());
-        Ok((machine, debugger.ok_or_else(missing)?))
-    }
-
-    /// A board that stands still at its first instruction, with its debugger port if it is `debugged`.
-    fn launch(settings: &Settings, debugged: bool) -> anyhow::Result<(Self, Option<UnixStream>)> {
-        let unusable = broken("folder of sockets");
         let elf = settings.elf.canonicalize().with_context(|| settings.elf.display().to_string())?;
-        let folder = folder::make().map_err(&unusable)?;
+        let folder = tempfile::Builder::new().prefix("double-pendulum-").tempdir()?;
+        remove_on_interrupt(folder.path());
         // QEMU connects to sockets that listen already: none of its bytes can be lost.
-        let listen = |name| UnixListener::bind(folder.path().join(name)).map_err(&unusable);
+        let listen = |name| UnixListener::bind(folder.path().join(name));
         let (monitor, debugger) = (listen("monitor")?, listen("debugger")?);
         let pipes = Pipes::make(&folder.path().join("serial"))?;
 
@@ -89,6 +80,7 @@ impl Machine {
         command.args(["-serial", "null"].repeat(settings.board.serial_port));
         command.args(["-chardev", "pipe,id=serial,path=serial", "-serial", "chardev:serial"]);
         command.args(["-chardev", "socket,id=monitor,path=monitor", "-mon", "chardev=monitor,mode=control"]);
+        command.args(["-chardev", "socket,id=debugger,path=debugger", "-gdb", "chardev:debugger", "-S"]);
         if settings.debugger {
             command.args(["-semihosting-config", "enable=on,target=native"]);
         }
@@ -99,16 +91,12 @@ impl Machine {
             // A host that holds QEMU up for seconds is no reason for the board to start again.
             Clock::Real => command.args(["-action", "watchdog=none"]),
         };
-        command.arg("-S");
-        if debugged {
-            command.args(["-chardev", "socket,id=debugger,path=debugger", "-gdb", "chardev:debugger"]);
-        }
         command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
 
         let mut process = process::spawn(&mut command, settings.limit)?;
         let log = Log::new(settings.elf, process.stdout.take(), process.stderr.take())?;
         let monitor = accept(&monitor, &mut process, &log)?;
-        let debugger = if debugged { Some(accept(&debugger, &mut process, &log)?) } else { None };
+        let debugger = accept(&debugger, &mut process, &log)?;
         // QEMU greets once all its connections are made.
         let monitor = Monitor::new(monitor)?;
         Ok((Self { serial: Serial::new(pipes)?, log, monitor, process, folder }, debugger))
@@ -120,7 +108,11 @@ impl Machine {
 
     /// The next message of one kind; others on the way to it are passed over.
     pub fn wait_for<M: Message>(&mut self) -> anyhow::Result<M> {
-        self.serial.next().ok_or_else(|| self.silence())
+        loop {
+            if let Some(message) = self.receive()?.read() {
+                return Ok(message);
+            }
+        }
     }
 
     pub fn said(&self) -> String {
@@ -167,38 +159,30 @@ impl Machine {
         Ok((status, self.log.rest().collect()))
     }
 
-    pub fn quit(mut self) -> anyhow::Result<()> {
-        // It may be gone before it has answered.
-        self.monitor.quit().or_else(|error| if error.is::<Broken>() { Ok(()) } else { Err(error) })?;
-        self.process.wait()?;
-        Ok(())
-    }
-
-    /// `error`, or what is behind it if QEMU has ended.
+    /// What is behind `error` if QEMU has ended.
     pub(super) fn explain(&mut self, error: anyhow::Error) -> anyhow::Error {
-        if error.is::<Broken>() { ended(&mut self.process, &self.log).unwrap_or(error) } else { error }
+        ended(&mut self.process, &self.log).unwrap_or(error)
     }
 
     pub fn silence(&mut self) -> anyhow::Error {
-        self.explain(broken("serial port")(ErrorKind::UnexpectedEof.into()))
+        self.explain(anyhow!("QEMU's serial port is closed"))
     }
 }
 
 /// The connection that QEMU makes as it starts.
 fn accept(listener: &UnixListener, process: &mut Running, log: &Log) -> anyhow::Result<UnixStream> {
-    let broken = broken("socket");
-    listener.set_nonblocking(true).map_err(&broken)?;
+    listener.set_nonblocking(true)?;
     loop {
         match listener.accept() {
             Ok((socket, _)) => {
-                socket.set_nonblocking(false).map_err(&broken)?;
+                socket.set_nonblocking(false)?;
                 return Ok(socket);
             }
             Err(error) if error.kind() == ErrorKind::WouldBlock => {}
-            Err(error) => return Err(broken(error)),
+            Err(error) => bail!(error),
         }
         if process.try_wait()?.is_some() {
-            return Err(ended(process, log).unwrap_or_else(|| broken(ErrorKind::NotConnected.into())));
+            bail!(ended(process, log).context("it has ended")?);
         }
         sleep(POLL);
     }
@@ -222,4 +206,11 @@ fn ended(process: &mut Running, log: &Log) -> Option<anyhow::Error> {
     let lines: Vec<_> = log.rest().map(|line| line.to_string()).collect();
     let said = lines[lines.len().saturating_sub(4)..].join("\n");
     Some(if said.is_empty() { anyhow!("QEMU ended ({how})") } else { anyhow!("QEMU ended ({how}):\n{said}") })
+}
+
+/// Why no machine can have its folder of sockets, in one line that names `TMPDIR`: it is no folder, or no socket's name is so long.
+pub(crate) fn check_folder() -> Result<(), String> {
+    let listened =
+        tempfile::tempdir().and_then(|folder| UnixListener::bind(folder.path().join("double-pendulum-debug")));
+    listened.map(drop).map_err(|error| format!("QEMU's sockets cannot be in TMPDIR={}: {error}", temp_dir().display()))
 }

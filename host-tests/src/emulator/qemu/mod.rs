@@ -2,8 +2,6 @@
 //!
 //! Every wait ends: at the latest when the machine's time limit ends QEMU, which closes all its connections.
 
-mod error;
-mod folder;
 mod gdb;
 mod lockstep;
 mod log;
@@ -11,12 +9,10 @@ mod machine;
 mod qmp;
 mod screenshot;
 mod serial;
-mod stack;
 
-pub(crate) use folder::check as check_folder;
 pub use lockstep::{Lockstep, Register};
 pub use log::{Log, LogDecoder, LogLine};
+pub(crate) use machine::check_folder;
 pub use machine::{Clock, Machine, Settings};
 pub use screenshot::{HEIGHT, Screenshot, WIDTH};
-pub use serial::{Serial, Stopped};
-pub use stack::{PAINT, Stack};
+pub use serial::Serial;

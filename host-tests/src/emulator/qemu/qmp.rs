@@ -3,16 +3,15 @@
 //! Source: QEMU, docs/interop/qmp-spec.rst: a greeting, `qmp_capabilities`, then commands, each answered by `return` or `error`;
 //! events come at any time.
 
-use std::io::{BufRead, BufReader, ErrorKind, Write};
+use std::io::{BufRead, BufReader, Write};
 use std::os::unix::net::UnixStream;
 use std::path::Path;
 
-use anyhow::bail;
+use anyhow::{anyhow, bail};
 use firmware::app::Key;
 use serde_json::{Value, json};
 
 use super::Screenshot;
-use super::error::broken;
 
 #[derive(Debug)]
 pub(super) struct Monitor(BufReader<UnixStream>);
@@ -29,8 +28,7 @@ impl Monitor {
     pub(super) fn screenshot(&mut self, folder: &Path) -> anyhow::Result<Screenshot> {
         let path = folder.join("panel.ppm");
         self.execute("screendump", json!({ "filename": path.to_string_lossy() }))?;
-        let file = std::fs::read(path).map_err(broken("screenshot"))?;
-        Screenshot::from_ppm(&file)
+        Screenshot::from_ppm(&std::fs::read(path)?)
     }
 
     /// Presses a button, or lets go of it. Lost while the machine stands still.
@@ -51,13 +49,10 @@ impl Monitor {
         self.execute("cont", json!({})).map(drop)
     }
 
-    pub(super) fn quit(&mut self) -> anyhow::Result<()> {
-        self.execute("quit", json!({})).map(drop)
-    }
-
     fn execute(&mut self, command: &'static str, arguments: Value) -> anyhow::Result<Value> {
         let line = json!({ "execute": command, "arguments": arguments });
-        writeln!(self.0.get_mut(), "{line}").map_err(broken("control channel"))?;
+        // Not as it is: a broken pipe would be taken for a closed output, which is no failure.
+        writeln!(self.0.get_mut(), "{line}").map_err(|error| anyhow!("QEMU's control channel: {error}"))?;
         loop {
             let mut answer = self.heard()?;
             if let Some(result) = answer.get_mut("return") {
@@ -71,10 +66,7 @@ impl Monitor {
 
     fn heard(&mut self) -> anyhow::Result<Value> {
         let mut line = String::new();
-        let read = self.0.read_line(&mut line).and_then(|count| match count {
-            0 => Err(ErrorKind::UnexpectedEof.into()),
-            _ => Ok(serde_json::from_str(&line)?),
-        });
-        read.map_err(broken("control channel"))
+        self.0.read_line(&mut line)?;
+        Ok(serde_json::from_str(&line)?)
     }
 }

@@ -1,6 +1,6 @@
 //! The panel's screenshot, out of QEMU's screen dump.
 
-use anyhow::Context;
+use anyhow::{Context, ensure};
 use firmware::graphics::Canvas;
 pub use firmware::graphics::{HEIGHT, WIDTH};
 
@@ -28,26 +28,27 @@ impl std::fmt::Debug for Screenshot {
 }
 
 impl Screenshot {
+    /// Of the grey of each pixel, `x` from the left and `y` from the top.
+    fn drawn(grey: impl Fn(usize, usize) -> u8) -> Self {
+        Self { greys: (0..WIDTH * HEIGHT).map(|index| grey(index % WIDTH, index / WIDTH)).collect() }
+    }
+
     pub(super) fn from_ppm(file: &[u8]) -> anyhow::Result<Self> {
         let pixels = file.strip_prefix(HEADER).context("the panel's screenshot is no PPM file of 512 x 256 pixels")?;
-        let at = |x: usize, y: usize| {
-            let index = 3 * ((MAGNIFIED * y + 1) * MAGNIFIED * WIDTH + MAGNIFIED * x + 1);
-            pixels.get(index).map(|level| level / GREY_UNIT)
-        };
-        let greys = (0..WIDTH * HEIGHT).map(|index| at(index % WIDTH, index / WIDTH)).collect::<Option<_>>();
-        Ok(Self { greys: greys.context("the panel's screenshot is cut short")? })
+        let index = |x: usize, y: usize| 3 * ((MAGNIFIED * y + 1) * MAGNIFIED * WIDTH + MAGNIFIED * x + 1);
+        ensure!(index(WIDTH - 1, HEIGHT - 1) < pixels.len(), "the panel's screenshot is cut short");
+        Ok(Self::drawn(|x, y| pixels[index(x, y)] / GREY_UNIT))
     }
 
     pub fn blank() -> Self {
-        Self { greys: vec![0; WIDTH * HEIGHT] }
+        Self::drawn(|_, _| 0)
     }
 
     /// Out of the memory of a one-colour panel, pages of eight rows from the top, a byte for every column of each; black where
     /// there is none.
     pub fn from_pages(memory: &[u8]) -> Self {
         let is_lit = |x: usize, y: usize| memory.get(y / 8 * WIDTH + x).is_some_and(|byte| byte >> (y % 8) & 1 != 0);
-        let grey = |index: usize| if is_lit(index % WIDTH, index / WIDTH) { 15 } else { 0 };
-        Self { greys: (0..WIDTH * HEIGHT).map(grey).collect() }
+        Self::drawn(|x, y| if is_lit(x, y) { 15 } else { 0 })
     }
 
     /// The grey, 0 to 15, of the pixel `x` from the left and `y` from the top; 0 outside the panel.
@@ -63,8 +64,7 @@ impl Screenshot {
 /// What the panel shows of a screenshot drawn here.
 impl From<&Canvas> for Screenshot {
     fn from(canvas: &Canvas) -> Self {
-        let grey = |index: usize| canvas.get((index % WIDTH) as i32, (index / WIDTH) as i32).unwrap_or_default();
-        Self { greys: (0..WIDTH * HEIGHT).map(grey).collect() }
+        Self::drawn(|x, y| canvas.get(x as i32, y as i32).unwrap_or_default())
     }
 }
 
@@ -75,11 +75,8 @@ mod tests {
     #[test]
     fn a_dump_is_sampled_inside_each_magnified_pixel() {
         let mut dump = HEADER.to_vec();
-        for y in 0..4 * HEIGHT {
-            for x in 0..4 * WIDTH {
-                dump.extend([(((x / 4) + (y / 4)) % 16) as u8 * GREY_UNIT; 3]);
-            }
-        }
+        let places = (0..4 * HEIGHT).flat_map(|y| (0..4 * WIDTH).map(move |x| (x / 4, y / 4)));
+        dump.extend(places.flat_map(|(x, y)| [((x + y) % 16) as u8 * GREY_UNIT; 3]));
         let screenshot = Screenshot::from_ppm(&dump).expect("a whole dump");
         for (x, y) in [(0, 0), (127, 0), (0, 63), (127, 63), (64, 32), (5, 60)] {
             assert_eq!(usize::from(screenshot.grey(x, y)), (x + y) % 16, "at {x}, {y}");

@@ -9,6 +9,7 @@ use std::sync::mpsc::{self, Receiver, Sender};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
 
+use anyhow::anyhow;
 use firmware::protocol::{MAX_WIRE, Message, encode};
 use nix::errno::Errno;
 use nix::fcntl::OFlag;
@@ -16,7 +17,6 @@ use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use nix::sys::stat::Mode;
 use nix::unistd::mkfifo;
 
-use super::error::broken;
 use crate::link::{Counts, Inbox, Received};
 
 /// The host's end of UART0. A thread of its own always reads, for QEMU stands still while no one does.
@@ -41,13 +41,9 @@ impl Pipes {
     pub(super) fn make(path: &Path) -> anyhow::Result<Self> {
         let (sender, receiver) = (path.with_extension("in"), path.with_extension("out"));
         for pipe in [&sender, &receiver] {
-            mkfifo(pipe, Mode::S_IRUSR | Mode::S_IWUSR).map_err(|error| broken("serial port")(error.into()))?;
+            mkfifo(pipe, Mode::S_IRUSR | Mode::S_IWUSR)?;
         }
-        let receiver = File::options()
-            .read(true)
-            .custom_flags(OFlag::O_NONBLOCK.bits())
-            .open(receiver)
-            .map_err(broken("serial port"))?;
+        let receiver = File::options().read(true).custom_flags(OFlag::O_NONBLOCK.bits()).open(receiver)?;
         Ok(Self { receiver, sender })
     }
 }
@@ -55,8 +51,8 @@ impl Pipes {
 impl Serial {
     /// To be called once QEMU has opened its ends.
     pub(super) fn new(pipes: Pipes) -> anyhow::Result<Self> {
-        let sender = File::options().write(true).open(pipes.sender).map_err(broken("serial port"))?;
-        let watched = pipes.receiver.try_clone().map_err(broken("serial port"))?;
+        let sender = File::options().write(true).open(pipes.sender)?;
+        let watched = pipes.receiver.try_clone()?;
         let (channel, messages) = mpsc::channel();
         let reader = Reader { pipe: pipes.receiver, inbox: Inbox::default(), channel: Some(channel) };
         let reader = Arc::new(Mutex::new(reader));
@@ -71,13 +67,8 @@ impl Serial {
     }
 
     /// The next message; `None` once QEMU has ended.
-    pub fn receive(&self) -> Option<Received> {
+    pub(super) fn receive(&self) -> Option<Received> {
         self.messages.recv().ok()
-    }
-
-    /// The next message of one kind; others on the way to it are passed over. `None` once QEMU has ended.
-    pub fn next<M: Message>(&self) -> Option<M> {
-        self.messages.iter().find_map(|message| message.read())
     }
 
     /// The messages that QEMU has sent since the last call, without waiting.
@@ -95,8 +86,8 @@ impl Serial {
     }
 
     /// Reads nothing until the result is dropped: what the board sends fills the pipe, and then its port.
-    pub fn stop_reading(&self) -> Stopped<'_> {
-        Stopped(lock(&self.reader))
+    pub fn stop_reading(&self) -> impl Drop {
+        lock(&self.reader)
     }
 
     pub fn send<M: Message>(&mut self, message: &M) -> anyhow::Result<()> {
@@ -104,13 +95,10 @@ impl Serial {
     }
 
     pub fn send_bytes(&mut self, bytes: &[u8]) -> anyhow::Result<()> {
-        self.sender.write_all(bytes).map_err(broken("serial port"))
+        // Not as it is: a broken pipe would be taken for a closed output, which is no failure.
+        self.sender.write_all(bytes).map_err(|error| anyhow!("QEMU's serial port: {error}"))
     }
 }
-
-/// While this lives no one reads the link.
-#[derive(Debug)]
-pub struct Stopped<'a>(#[expect(dead_code, reason = "held, never used")] MutexGuard<'a, Reader>);
 
 #[derive(Debug)]
 struct Reader {

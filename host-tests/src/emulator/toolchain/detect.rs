@@ -4,10 +4,10 @@ use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
-use std::{env, fs};
+use std::{env, fs, io};
 
 use super::{ArmCore, target, workspace};
-use crate::emulator::process::run;
+use crate::emulator::process::{Output, run};
 
 /// For a program that only says its version.
 const QUICK: Duration = Duration::from_secs(20);
@@ -43,12 +43,16 @@ pub(super) fn core(targets: &[&str]) -> Result<ArmCore, String> {
         return Err(format!("of Debian's {} not all are installed", CORE_PACKAGES.join(", ")));
     }
     let version = says(Command::new(DEBIAN_RUSTC).arg("--version"))?;
-    let minor = |version: &str| version.split('.').nth(1)?.parse::<u32>().ok();
     let least = env!("CARGO_PKG_RUST_VERSION");
-    if minor(&version) < minor(least) {
+    if number(&version, 1) < number(least, 1) {
         return Err(format!("Debian's {} is older than {least}", version.trim()));
     }
     Ok(ArmCore::FromSource { linker: linker()? })
+}
+
+/// A part of a version, the first of which is 0.
+pub(super) fn number(version: &str, part: usize) -> Option<u32> {
+    version.split('.').nth(part)?.trim_matches(|c: char| !c.is_ascii_digit()).parse().ok()
 }
 
 /// The folder of `rust-lld`, which Debian's packages do not have.
@@ -81,7 +85,7 @@ impl Emulator {
         for path in find(self.program).into_iter().chain(executable(self.own_folder().join(self.program))) {
             match says(Command::new(&path).arg("--version")) {
                 Ok(_) => return Ok(path),
-                Err(reason) => why = format!("{} does not run: {reason}", path.display()),
+                Err(reason) => why = reason,
             }
         }
         Err(why)
@@ -99,14 +103,20 @@ fn executable(path: PathBuf) -> Option<PathBuf> {
 
 /// What a quick command says, or why it fails.
 pub(super) fn says(command: &mut Command) -> Result<String, String> {
-    let output = run(command, QUICK).map_err(|error| error.to_string())?;
-    if output.status.success() { Ok(output.stdout) } else { Err(reason(&output.stderr)) }
+    let ran = run(command, QUICK);
+    said(command, ran)
 }
 
-/// Why a command failed, from what it said: the line in which it says so.
-pub(super) fn reason(said: &str) -> String {
+/// What a command has said, or why it failed: the line in which it says so.
+pub(super) fn said(command: &Command, ran: io::Result<Output>) -> Result<String, String> {
+    let output = ran.map_err(|error| error.to_string())?;
+    if output.status.success() {
+        return Ok(output.stdout);
+    }
     let full = |line: &&str| line.contains("No space left on device");
     let marked = |line: &&str| ["E: ", "error: ", "npm "].iter().any(|mark| line.starts_with(mark));
-    let line = said.lines().find(full).or_else(|| said.lines().find(marked)).or_else(|| said.lines().last());
-    line.unwrap_or("it fails without a word").chars().take(200).collect()
+    let lines = || output.stderr.lines();
+    let line = lines().find(full).or_else(|| lines().find(marked)).or_else(|| lines().last());
+    let line: String = line.unwrap_or("it fails without a word").chars().take(200).collect();
+    Err(format!("{}: {line}", command.get_program().to_string_lossy()))
 }

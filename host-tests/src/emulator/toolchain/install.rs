@@ -8,9 +8,9 @@ use std::time::Duration;
 
 use nix::fcntl::{Flock, FlockArg};
 
-use super::detect::{self, CORE_PACKAGES, Emulator, find, reason};
+use super::detect::{self, CORE_PACKAGES, Emulator, find, said};
 use super::{ArmCore, target, workspace};
-use crate::console::cli::Refused;
+use crate::console::cli::{Refused, complain};
 use crate::console::progress::Progress;
 use crate::emulator::process::{Output, run_watched};
 
@@ -29,45 +29,58 @@ pub(super) fn turn() -> Result<Flock<File>, Refused> {
     Flock::lock(file, FlockArg::LockExclusive).map_err(|(_, error)| refuse(error.into()))
 }
 
-/// The core library: ready-made by rustup, else Debian's sources and their compiler. A line more of what was done.
-pub(super) fn core(targets: &[&str], done: &mut Vec<String>) -> Result<ArmCore, String> {
-    let mut rustup = Command::new("rustup");
-    rustup.args(["target", "add"]).args(targets).current_dir(workspace()).env("RUSTUP_AUTO_INSTALL", "0");
-    let doing = format!("rustup fetches the core library, for at most {} s", RUSTUP.as_secs());
-    // Its success is not enough: it may skip a target it cannot have.
-    match attempt(&mut rustup, RUSTUP, &doing).and_then(|()| detect::core(targets)) {
-        Ok(core) => {
-            done.push(format!("rustup added {}", targets.join(", ")));
-            Ok(core)
-        }
-        Err(failure) => {
-            let brought = detect::linker().and_then(|_| install_packages(&CORE_PACKAGES));
-            let core = brought.and_then(|()| detect::core(targets)).map_err(|why| format!("{failure}; {why}"))?;
-            done.push(format!("apt-get installed {}, because {failure}", CORE_PACKAGES.join(", ")));
-            Ok(core)
+/// A way to bring something: what is said when it has, and how. Its success is not enough: what is wanted must be found then.
+type Way<'a> = (String, &'a dyn Fn() -> Result<(), String>);
+
+/// What `find` finds, else what the first of the `ways` brings that does; or why each fails.
+pub(super) fn bring<T>(find: impl Fn() -> Result<T, String>, ways: &[Way]) -> Result<T, String> {
+    let mut failures = Vec::new();
+    if let Ok(found) = find() {
+        return Ok(found);
+    }
+    for (done, way) in ways {
+        match way().and_then(|()| find()) {
+            Ok(found) => {
+                let because = failures.iter().map(|failure| format!(", because {failure}"));
+                complain(format_args!("done: {done}{}", because.collect::<String>()));
+                return Ok(found);
+            }
+            Err(failure) => failures.push(failure),
         }
     }
+    Err(failures.join("; "))
+}
+
+/// The core library: ready-made by rustup, else Debian's sources and their compiler.
+pub(super) fn core(targets: &[&str]) -> Result<ArmCore, String> {
+    let rustup = || {
+        let mut rustup = Command::new("rustup");
+        rustup.args(["target", "add"]).args(targets).current_dir(workspace()).env("RUSTUP_AUTO_INSTALL", "0");
+        let doing = format!("rustup fetches the core library, for at most {} s", RUSTUP.as_secs());
+        attempt(&mut rustup, RUSTUP, &doing)
+    };
+    let debian = || detect::linker().and_then(|_| install_packages(&CORE_PACKAGES));
+    let ways: [Way; 2] = [
+        (format!("rustup added {}", targets.join(", ")), &rustup),
+        (format!("apt-get installed {}", CORE_PACKAGES.join(", ")), &debian),
+    ];
+    bring(|| detect::core(targets), &ways)
 }
 
 /// An emulator from Debian's packages, installed, or unpacked for this project alone where they cannot be: where that would cost the
-/// user another package, or another may do it. A line more of what was done.
-pub(super) fn qemu(emulator: &Emulator, done: &mut Vec<String>) -> Result<PathBuf, String> {
-    let Emulator { program, package, .. } = emulator;
-    match install_packages(&[package]).and_then(|()| emulator.find()) {
-        Ok(qemu) => {
-            done.push(format!("apt-get installed {package}"));
-            Ok(qemu)
-        }
-        Err(failure) => {
-            let folder = emulator.own_folder();
-            let mut unpack = Command::new("sh");
-            unpack.arg(workspace().join(UNPACK_QEMU)).arg(&folder).args([package, program]).env("LC_ALL", "C");
-            let unpacked = attempt(&mut unpack, INSTALL, "unpacking QEMU, which cannot be installed");
-            let qemu = unpacked.and_then(|()| emulator.find()).map_err(|_| failure.clone())?;
-            done.push(format!("{package} unpacked into {}, because {failure}", folder.display()));
-            Ok(qemu)
-        }
-    }
+/// user another package, or another may do it.
+pub(super) fn qemu(emulator: &Emulator) -> Result<PathBuf, String> {
+    let (Emulator { program, package, .. }, folder) = (emulator, emulator.own_folder());
+    let unpack = || {
+        let mut unpack = Command::new("sh");
+        unpack.arg(workspace().join(UNPACK_QEMU)).arg(&folder).args([package, program]).env("LC_ALL", "C");
+        attempt(&mut unpack, INSTALL, "unpacking QEMU, which cannot be installed")
+    };
+    let ways: [Way; 2] = [
+        (format!("apt-get installed {package}"), &|| install_packages(&[package])),
+        (format!("{package} unpacked into {}", folder.display()), &unpack),
+    ];
+    bring(|| emulator.find(), &ways)
 }
 
 /// Installs packages of Debian's, by its newest lists: old ones may name packages that are gone.
@@ -99,11 +112,8 @@ fn apt_get(action: &str) -> Command {
 
 /// Runs a command to its end; if it fails, the line in which it says why.
 pub(super) fn attempt(command: &mut Command, limit: Duration, doing: &str) -> Result<(), String> {
-    let output = run_shown(command, limit, doing).map_err(|error| error.to_string())?;
-    if output.status.success() {
-        return Ok(());
-    }
-    Err(format!("{}: {}", command.get_program().to_string_lossy(), reason(&output.stderr)))
+    let ran = run_shown(command, limit, doing);
+    said(command, ran).map(drop)
 }
 
 /// Runs a command to its end, within the limit, and shows meanwhile what is being done.

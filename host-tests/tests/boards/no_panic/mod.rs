@@ -76,7 +76,7 @@ fn places(elf: &Path) -> Vec<Place> {
     let mut seen = 0;
     while let Some(&function) = panicking.get(seen) {
         seen += 1;
-        for address in code.calls_of(function).chain(code.pointers_to(function)) {
+        for address in code.names_of(function) {
             match code.function_at(address) {
                 Some((helper, name)) if is_helper(name) => {
                     if !panicking.contains(&helper) {
