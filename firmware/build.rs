@@ -28,7 +28,7 @@ fn main() {
     }
     // The Pico's flash begins with the stage that its boot ROM runs first.
     let pico = ["--defsym=flash_origin=0x10000100", "--defsym=flash_length=0x001fff00", "-Tpico.x"];
-    // With notes of what names which function, for the tests; none of it goes into flash.
+    // With relocations, which tell the tests who refers to which function; they take no flash.
     let any = ["-Tlink.x", "-Tdefmt.x", "--nmagic", "--emit-relocs"];
     pico.iter().for_each(|argument| println!("cargo:rustc-link-arg-bin=pico={argument}"));
     // The example with a colour panel is for the Pico, too.

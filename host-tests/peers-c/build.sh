@@ -17,9 +17,9 @@ if [ "$sine" = arm_sin_f32 ]; then
         python3 -m pip download --quiet --retries 1 --no-deps --no-binary cmsisdsp \
             --requirement "$here/cmsis-dsp.txt" --dest "$made"
         unpacking=$(mktemp -d "$made/unpacking.XXXXXX")
+        trap 'rm -rf "$unpacking"' EXIT
         tar -xzf "$made/$name.tar.gz" -C "$unpacking"
         mv "$unpacking/$name" "$cmsis"
-        rmdir "$unpacking"
     fi
     # __GNUC_PYTHON__ is the library's name for: without the headers of CMSIS-Core.
     set -- "$@" -D__GNUC_PYTHON__ "-I$cmsis/Include" "-I$cmsis/PrivateInclude" \

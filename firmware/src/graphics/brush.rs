@@ -16,7 +16,7 @@ pub struct Spot {
 }
 
 impl Spot {
-    /// The spot at (x, y) pixels, held so near to the canvas, one size of it away, that no sum below can overflow.
+    /// The spot at (x, y) pixels, kept within one canvas size of the canvas, so that no sum below can overflow.
     pub fn at(x: f32, y: f32) -> Self {
         let subpixels = |pixels: f32, size: usize| {
             let size = size as i32 * SUBPIXELS;

@@ -29,7 +29,7 @@ pub trait Scene: Sized {
         None
     }
 
-    /// The motion that the plan may change the way of.
+    /// The motion whose way the plan may change.
     fn planned(&mut self) -> Option<&mut Simulation> {
         None
     }

@@ -16,7 +16,7 @@ pub fn advance(run: &mut Run<DirectionF64>, steps: u32) -> Result<(), Error> {
     run.advance(steps)
 }
 
-/// When a rod first turns over by the same, as far as the map of flips is judged by it.
+/// When a rod first turns over, by the same method: the map of flips is judged by it.
 pub fn flip(search: &Flips<DirectionF64>, a1: f64, a2: f64) -> Result<Flip<f64>, Error> {
     search.of(a1, a2)
 }

@@ -52,7 +52,7 @@ pub fn spawn(command: &mut Command, limit: Duration) -> io::Result<Running> {
     Ok(Running { child, warden, program, started, limit, stdin, stdout, stderr })
 }
 
-/// Kills what is left of the warden's group: to wait for the warden closes its input.
+/// Kills what is left of the group: waiting for the warden closes its input, and it kills the group.
 fn end(warden: &mut Child) {
     let _ = warden.wait();
 }
@@ -85,6 +85,8 @@ pub fn timed_out(program: &str, limit: Duration) -> io::Error {
 impl Drop for Running {
     fn drop(&mut self) {
         end(&mut self.warden);
+        // Should the warden be gone.
+        let _ = self.child.kill();
         let _ = self.child.wait();
     }
 }

@@ -75,7 +75,7 @@ impl Trial {
         Ok((0..MOMENTS).map(next).collect())
     }
 
-    /// The same at so many moments by RK4 in compensated `f64`, which is none of the table.
+    /// The same at so many moments by RK4 in compensated `f64`, which is not in the table.
     pub fn states_in_f64(&self, dt: f64, moments: u32) -> Result<Vec<State<f64>>, Error> {
         let mut run = Pendulum::new(&self.parameters)?.run::<DirectionF64>(&self.start, dt)?;
         let steps = self.steps(dt, moments);

@@ -120,7 +120,7 @@ fn usb_and_uart_carry_the_hosts_bits_and_every_command() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The cycles of the next steps of a motion, by how it is asked for.
+/// The cycles of the motion's next steps, in flash or in memory.
 fn measured(board: &mut PicoMachine, in_ram: u8) -> anyhow::Result<u32> {
     board.send(&Measure { request: 2, steps: MOST_MEASURED_STEPS, in_ram })?;
     let messages = board.run(4 * TICK)?;

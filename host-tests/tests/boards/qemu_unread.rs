@@ -93,7 +93,7 @@ fn received_bytes_that_are_lost_are_counted() -> anyhow::Result<()> {
             log += &machine.said();
         }
         assert!(lost < flood.len() as u32, "{}: {lost}", board.name);
-        // From the start on.
+        // The log is complete from the start.
         let has_no_guard = log.contains("no memory protection unit: the stack has no guard");
         assert_eq!(has_no_guard, !board.is_guarded(), "{}: {log}", board.name);
     }

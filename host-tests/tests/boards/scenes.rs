@@ -141,7 +141,7 @@ fn plays(board: &'static Board, limit: Duration, ticks: fn(&Board, SceneName) ->
                 let is_it = shown.as_ref().is_none_or(|shown| *shown == Screenshot::from(&followed.show.frame()));
                 assert!(is_it, "{}: {}\n{shown:?}", board.name, name.name());
             }
-            // What it costs, the first time shows.
+            // The cost is taken in the first round.
             if round > 0 {
                 continue;
             }

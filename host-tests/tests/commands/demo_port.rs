@@ -70,6 +70,20 @@ fn a_board_that_restarts_is_followed_again() {
     assert!(said.contains("frames, every bit the host's"), "{said}");
 }
 
+/// Its frames come, and are of another scene for ever.
+#[test]
+fn a_board_that_does_not_play_what_it_is_told_is_given_up() {
+    let mut sequence = 0;
+    let [_, told] = demo(1, "--scene butterfly", |bench| {
+        sequence += 1;
+        let frame = Frame { sequence, step: sequence, ..Frame::default() };
+        bench.say(encode(&frame, &mut [0; MAX_WIRE]));
+        bench.is_heard();
+        sleep(Duration::from_millis(16));
+    });
+    assert!(told.contains("no frame for 10 s"), "{told}");
+}
+
 #[test]
 fn a_pulled_cable_is_said_and_waited_for() {
     let mut pulled = None;

@@ -122,7 +122,9 @@ fn a_bad_command_is_answered_with_the_field_and_changes_nothing() {
         (set(Field::W1, f64::INFINITY), Field::W1),
         (set(Field::MassRatio, 0.0), Field::MassRatio),
         (set(Field::Speed, 0.0), Field::Speed),
-        (set(Field::Speed, 5.0), Field::Speed),
+        (set(Field::Speed, 0.004), Field::Speed),
+        (set(Field::Speed, 4.006), Field::Speed),
+        (set(Field::Speed, f64::NAN), Field::Speed),
         (Set { field: 0xEE, ..set(Field::M1, 1.0) }, Field::Field),
         (set(Field::Scene, 1.0), Field::Field),
     ] {

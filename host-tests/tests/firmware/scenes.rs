@@ -1,7 +1,7 @@
 //! Every scene of the catalogue, on the host: its frame to the pixel, and what all scenes have in common.
 
 use double_pendulum::State;
-use firmware::app::Command;
+use firmware::app::{Command, News};
 use firmware::config::{
     CORTEX_M0PLUS, CORTEX_M3, CORTEX_M4F, PIVOT, PROCESSOR, Processor, REACH, STM32F405, TICK_RATE, TRAIL_FADING,
     TRAIL_HALF_WIDTH,
@@ -217,4 +217,15 @@ fn a_decimal_point_is_a_dot_on_the_line_and_both_frequencies_differ() {
 fn scales_have_round_steps() {
     let steps = [0.001, 0.3, 1.0, 1.1, 3.9, 30.0, 1e9].map(plot::scale_step);
     assert_eq!(steps, [0.01, 0.5, 1.0, 2.0, 5.0, 50.0, 100.0]);
+}
+
+/// What no plan can alter is looked at in the way that it goes.
+#[test]
+fn the_butterfly_is_looked_at_in_its_own_way() {
+    let mut show = Show::new(SceneName::Butterfly, &Settings::equal_rods(1.0, 20.0)).expect("a scene of the catalogue");
+    let found = (0..60 * TICK_RATE).find_map(|_| {
+        show.tick();
+        show.news.iter().find_map(|(_, news)| if let News::Found(Ok(plan)) = news { Some(plan.way()) } else { None })
+    });
+    assert!(found.is_some() && found == show.report().way, "{found:?}");
 }

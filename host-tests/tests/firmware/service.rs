@@ -68,7 +68,9 @@ fn every_method_moves_alike() {
     for &method in Method::ALL {
         let [double, single, micromath] = tolerances::TURNING;
         let (motion, near) = match method {
-            _ if method.equations() == Equations::Linear => (small, tolerances::LINEAR_IN_32_BITS),
+            _ if method.equations() == Equations::Linear => {
+                (small, tolerances::SMALL_MOTION[usize::from(method.is_single())])
+            }
             Method::Rk4F32Micromath => (turning, micromath),
             Method::Rk4Fixed32 => (turning, single),
             _ if method.is_single() => (turning, single),

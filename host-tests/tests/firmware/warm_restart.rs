@@ -124,7 +124,7 @@ fn what_cannot_be_played_changes_nothing() {
 fn any_flipped_bit_is_noticed() {
     let (played, end) = (kept(&status()), kept(&end()));
     for bit in 0..8 * MAX_WIRE {
-        let is_kept = |kept: &Kept| kept[bit / 8..].iter().any(|byte| *byte > 0);
+        let is_kept = |kept: &Kept| kept[(bit / 8).saturating_sub(1)..].iter().any(|byte| *byte > 0);
         let flipped = |mut kept: Kept| {
             kept[bit / 8] ^= 1 << (bit % 8);
             kept

@@ -1,4 +1,4 @@
-//! The order of each method: of all of the table that make steps, of the plain step, and of extrapolation of any equation.
+//! The order of each method: of all in the table that make steps, of the plain step, and of extrapolation of any equation.
 
 use double_pendulum::{Error, Extrapolation, Integrator, Method, Motion, Parameter, Parameters, Pendulum};
 use firmware::job::{JobError, Request};

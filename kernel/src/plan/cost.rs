@@ -1,4 +1,4 @@
-//! What each method costs, what may be spent, and the ways that are to be had for it.
+//! What each method costs, what may be spent, and the ways that it pays for.
 
 use super::PlannedRun;
 use super::error::check_positive;

@@ -91,51 +91,63 @@ impl AnyRun {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Run {
     motion: Prepared,
-    way: Way,
-    /// Steps made since the last frame.
+    /// Steps to a frame, and those made since the last. The method is not said again: a board's stack is short of a few words.
+    steps: u32,
     made: u32,
 }
 
 #[expect(clippy::large_enum_variant, reason = "as above")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Prepared {
-    /// A pendulum and its start, others if these are refused, and steps a second.
-    NotYet([(Parameters<f64>, State<f64>); 2], f64),
+    /// A pendulum and its start, others if these are refused, the method, and steps a second.
+    NotYet([(Parameters<f64>, State<f64>); 2], Method, f64),
     Ready(AnyRun),
 }
 
 impl Run {
     /// A pendulum and its start, or the others if the first are refused, in this `way` with `rate` frames in a second.
     pub fn new(way: Way, given: [(Parameters<f64>, State<f64>); 2], rate: u16) -> Self {
-        Self { motion: Prepared::NotYet(given, f64::from(rate) * f64::from(way.steps)), way, made: 0 }
+        let Way { method, steps } = way;
+        Self { motion: Prepared::NotYet(given, method, f64::from(rate) * f64::from(steps)), steps, made: 0 }
     }
 
     /// Prepares the steps; whether they were not.
     #[inline(never)]
     pub fn prepare(&mut self) -> Result<bool, Error> {
-        let Prepared::NotYet([first, other], per_second) = &self.motion else { return Ok(false) };
-        let run = AnyRun::new(self.way.method, first, *per_second);
-        self.motion = Prepared::Ready(run.or_else(|_| AnyRun::new(self.way.method, other, *per_second))?);
+        let Prepared::NotYet([first, other], method, per_second) = &self.motion else { return Ok(false) };
+        let run = AnyRun::new(*method, first, *per_second);
+        self.motion = Prepared::Ready(run.or_else(|_| AnyRun::new(*method, other, *per_second))?);
         Ok(true)
+    }
+
+    fn method(&self) -> Method {
+        match &self.motion {
+            Prepared::NotYet(_, method, _) => *method,
+            Prepared::Ready(AnyRun::ClosedForm(_)) => Method::ClosedFormF32,
+            Prepared::Ready(AnyRun::DirectionPlain(_)) => Method::Rk4F32DirectionPlain,
+            Prepared::Ready(AnyRun::Direction(_)) => Method::Rk4F32Direction,
+            Prepared::Ready(AnyRun::Fixed32(_)) => Method::Rk4Fixed32,
+            Prepared::Ready(AnyRun::Fixed64(_)) => Method::Extrapolation10Fixed64,
+        }
     }
 
     /// What a frame costs.
     pub fn cost(&self, costs: &Costs) -> f32 {
-        costs.of_frame(self.way.method, self.way.steps)
+        costs.of_frame(self.method(), self.steps)
     }
 
     /// Makes steps towards the next frame, as many as are left or as `cost` pays for, one at least. What they cost: 0 if nothing
     /// was left to do.
     #[inline(never)]
     pub fn advance(&mut self, costs: &Costs, cost: f32) -> f32 {
-        let paid = (cost / costs.of_frame(self.way.method, 1)) as u32;
-        let left = self.way.steps.saturating_sub(self.made);
+        let paid = (cost / costs.of_frame(self.method(), 1)) as u32;
+        let left = self.steps.saturating_sub(self.made);
         let steps = left.min(if paid > 0 { paid } else { 1 });
         if let Prepared::Ready(motion) = &mut self.motion {
             motion.advance(steps);
         }
         self.made += steps;
-        costs.of_frame(self.way.method, steps)
+        costs.of_frame(self.method(), steps)
     }
 
     /// The frame, when nothing is left to do; the next steps lead to the next. NaN if the motion is lost: it may have left its

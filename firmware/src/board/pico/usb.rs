@@ -49,7 +49,7 @@ fn with<T>(act: impl FnOnce(&mut Usb) -> T) -> Option<T> {
 }
 
 /// Sends a message, if somebody listens and there is room for all of it.
-#[inline(never)] // for the libraries may panic, and the main loop may not (test `no_panic`)
+#[inline(never)] // the libraries may panic, and the main loop may not (test `no_panic`)
 pub(super) fn send(message: &[u8]) {
     with(|usb| usb.send(message));
 }

@@ -118,7 +118,7 @@ impl fmt::Display for Comparison {
         write!(f, "{} frames, every bit the host's", HumanCount(self.compared))?;
         match self.skipped + self.waiting.len() as u64 {
             0 => Ok(()),
-            skipped => write!(f, " ({} before the start was known)", HumanCount(skipped)),
+            skipped => write!(f, " ({} not compared)", HumanCount(skipped)),
         }
     }
 }

@@ -73,7 +73,7 @@ fn emulated(options: &DemoOptions, is_live: bool) -> anyhow::Result<Source<'_>> 
 }
 
 const LOOK: Duration = Duration::from_millis(4);
-/// A port from which no frame comes for so long is given up.
+/// A port from which no frame of the scene that was asked for comes for so long is given up.
 const PATIENCE: Duration = Duration::from_secs(10);
 
 /// How long an answer to the last question of the comparison is waited for, s of the board's time.
@@ -84,7 +84,7 @@ fn headless(options: &DemoOptions, mut session: Session) -> anyhow::Result<bool>
     let seconds = options.seconds.unwrap_or(DEFAULT_SECONDS);
     let name = session.source.name().to_owned();
     let progress = Progress::start(&format!("running {name} for {seconds} s of its time"));
-    let start = Instant::now();
+    let (mut reached, mut since) = (0.0, Instant::now());
     let is_over = |session: &Session| {
         let is_settled = session.readings.comparison.is_settled() || session.seconds() > seconds + ANSWER;
         session.seconds() >= seconds && is_settled
@@ -96,8 +96,10 @@ fn headless(options: &DemoOptions, mut session: Session) -> anyhow::Result<bool>
         }
         if session.source.is_port() {
             session.readings.lines.drain(..).for_each(|line| complain(line.text));
-            let last = session.readings.arrivals.last().unwrap_or(&start);
-            ensure!(last.elapsed() < PATIENCE, "{name}: no frame for {} s", PATIENCE.as_secs());
+            if session.seconds() > reached {
+                (reached, since) = (session.seconds(), Instant::now());
+            }
+            ensure!(since.elapsed() < PATIENCE, "{name}: no frame for {} s", PATIENCE.as_secs());
             sleep(LOOK);
         }
         progress.alive(None);

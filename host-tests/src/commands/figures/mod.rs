@@ -15,7 +15,7 @@ use firmware::config::TICK_RATE;
 use firmware::scenes::SceneName;
 
 use crate::commands::demo::{self, DemoOptions, record::png};
-use crate::console::cli::{complain, say, write};
+use crate::console::cli::{complain, say, unwritable, write};
 use crate::emulator::host::Show;
 use crate::emulator::qemu::Screenshot;
 use crate::emulator::toolchain::workspace;
@@ -50,6 +50,7 @@ pub fn files() -> Result<Vec<(String, Vec<u8>)>> {
 
 pub fn run(options: &FiguresOptions) -> Result<()> {
     let folder = options.out.clone().unwrap_or_else(folder);
+    std::fs::create_dir_all(&folder).map_err(|error| unwritable("--out", &folder, &error))?;
     for (name, bytes) in files()? {
         write(&folder.join(name), &bytes)?;
     }

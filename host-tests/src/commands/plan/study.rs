@@ -119,7 +119,7 @@ struct Exact {
 
 /// What the other motion in `f64` starts apart, relative: many times what all roundings of a step come to.
 const APART: f64 = 1e-13;
-/// Admissible steps in one of the one's; the other's are half as long. Hardly any motion needs as fine ones.
+/// One step of the first motion, in admissible steps; the second's are half as long. Hardly any motion needs admissible steps.
 const LONG: f64 = 12.0;
 /// As long as both are not farther apart, pixels, neither is off by more.
 const ENOUGH: f64 = 1e-2;
@@ -208,4 +208,31 @@ fn scene(rng: &mut Rng, seconds: &Range<f64>) -> Problem {
     }
     let tolerance = half_pixel(&pendulum, HEIGHT);
     Problem { pendulum, start, tolerance, duration: log_uniform(rng, seconds.start, seconds.end), rate: RATE }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_quick_motion_is_the_references_as_long_as_it_is_taken() -> Result<(), Error> {
+        let mut compared = 0;
+        for scene in scenes(2, 2.0..4.0).take(8) {
+            let (mut exact, mut reference) = (Exact::new(&scene)?, Reference::new(&scene.pendulum, &scene.start));
+            for frame in 1..=scene.frames() {
+                let quick = exact.next(&scene, scene.time(frame));
+                if exact.slow.is_some() {
+                    break;
+                }
+                if frame % 30 == 0 {
+                    reference.advance_to(scene.time(frame));
+                    let right = reference.motion().angles().map(|a| [libm::sin(a), libm::cos(a)]);
+                    assert!(distance(&scene, &quick, &right) <= ENOUGH, "{scene:?}, frame {frame}");
+                    compared += 1;
+                }
+            }
+        }
+        assert!(compared > 16, "{compared} frames");
+        Ok(())
+    }
 }

@@ -7,7 +7,7 @@ use std::io::{BufRead, BufReader, Write};
 use std::os::unix::net::UnixStream;
 use std::path::Path;
 
-use anyhow::{anyhow, bail};
+use anyhow::{anyhow, bail, ensure};
 use firmware::app::Key;
 use serde_json::{Value, json};
 
@@ -66,7 +66,7 @@ impl Monitor {
 
     fn heard(&mut self) -> anyhow::Result<Value> {
         let mut line = String::new();
-        self.0.read_line(&mut line)?;
+        ensure!(self.0.read_line(&mut line)? > 0, "QEMU's control channel is closed");
         Ok(serde_json::from_str(&line)?)
     }
 }

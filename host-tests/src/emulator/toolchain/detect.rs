@@ -50,7 +50,7 @@ pub(super) fn core(targets: &[&str]) -> Result<ArmCore, String> {
     Ok(ArmCore::FromSource { linker: linker()? })
 }
 
-/// A part of a version, the first of which is 0.
+/// A number in a version; part 0 is the first.
 pub(super) fn number(version: &str, part: usize) -> Option<u32> {
     version.split('.').nth(part)?.trim_matches(|c: char| !c.is_ascii_digit()).parse().ok()
 }

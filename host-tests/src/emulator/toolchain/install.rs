@@ -29,7 +29,7 @@ pub(super) fn turn() -> Result<Flock<File>, Refused> {
     Flock::lock(file, FlockArg::LockExclusive).map_err(|(_, error)| refuse(error.into()))
 }
 
-/// A way to bring something: what is said when it has, and how. Its success is not enough: what is wanted must be found then.
+/// A way to install something: what to say when it worked, and the function that does it. It must be found afterwards, too.
 type Way<'a> = (String, &'a dyn Fn() -> Result<(), String>);
 
 /// What `find` finds, else what the first of the `ways` brings that does; or why each fails.

@@ -78,10 +78,12 @@ impl PanelBus for Line {
     }
 
     fn send(&mut self) {
+        assert!(self.is_idle(), "one at a time");
         (self.outcome, self.taken, self.sent) = (None, 0, self.sent + 1);
     }
 
     fn give_up(&mut self) {
+        assert!(!self.is_idle(), "nothing to give up");
         self.freed += 1;
         self.message.clear();
         self.outcome = Some(Err(ErrorKind::Other));

@@ -34,7 +34,7 @@ use rows::{EIGHTH, Rows, unit_of_time};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fixed64<const ORDER: u32>(Fixed64State);
 
-/// The same of any order, in one copy.
+/// A motion of whichever order: the code of all orders is here once.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fixed64State {
     rows: Rows,
