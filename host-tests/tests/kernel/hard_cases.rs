@@ -20,7 +20,7 @@ fn refining_pays(case: &HardCase, method: Method) -> Result<(), Error> {
         Numbers::F32 | Numbers::Fixed32 => &starts[..8],
         _ => &starts[..1],
     };
-    // beside 32 bits order 16 in f64 is exact, at a tenth of the reference's price
+    // beside 32 bits, order 16 in f64 is as good as exact, at a tenth of the reference's price
     let is_narrow = method.is_single() || method.numbers() == Numbers::Fixed32;
     let with_exact = |trial: &Trial| {
         let held = trial.held_by(method);

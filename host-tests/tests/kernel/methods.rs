@@ -48,7 +48,8 @@ fn every_method_is_of_its_order() -> Result<(), JobError> {
     Ok(())
 }
 
-/// How far an angle of a regular motion, in which an error grows no faster than the time, is off in 20 s, looked at every second.
+/// The largest error of an angle in 20 s of a regular motion, in which errors grow no faster than the time; looked at every
+/// second.
 fn error_of_plain_steps(parameters: &Parameters<f64>, start: &Motion<f64>, steps_per_second: u32) -> f64 {
     let pendulum = Pendulum::new(parameters).expect("valid parameters");
     let exact = taylor::states(parameters, start, &std::array::from_fn::<f64, 20, _>(|second| second as f64 + 1.0));

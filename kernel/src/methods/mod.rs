@@ -41,7 +41,7 @@ pub type ClosedFormF32 = ClosedForm<f32>;
 /// The same in `f64`.
 pub type ClosedFormF64 = ClosedForm<f64>;
 
-/// A method's equations, numbers and integrator as one type: a motion of a pendulum in steps, unchecked and without its turns;
+/// A method's equations, numbers and integrator as one type: a motion of a pendulum in steps, unchecked, and as a rule without its turns;
 /// sealed.
 ///
 /// [`Pendulum::run`](crate::Pendulum::run) is called with it. Its items are machinery.

@@ -118,7 +118,7 @@ fn flow<'a>(parts: impl IntoIterator<Item = &'a str>, gap: &str, width: u16) -> 
     rows
 }
 
-/// A line of the log in as many rows as it takes, each but the first standing back; where it was written is left out.
+/// A line of the log in as many rows as it takes, all but the first indented; where it was written is left out.
 fn wrapped(line: &LogLine, width: u16) -> Vec<Line<'static>> {
     let (level, colour) = match line.level.as_deref() {
         None => ("", Color::Red),

@@ -23,8 +23,9 @@ const DESCRIBE: &str = "qXfer:features:read:target.xml:0,10";
 pub(super) struct Debugger {
     reader: BufReader<UnixStream>,
     writer: UnixStream,
-    /// Where it stops when it is let run to the next of them, and whether that is set.
+    /// Where it stops when it is let run to the next of them.
     sleeps: Vec<u32>,
+    /// Whether breakpoints are set there.
     stops: bool,
     /// The machine was run to a place, and stands there.
     is_placed: bool,
@@ -53,7 +54,7 @@ impl Debugger {
         Ok(())
     }
 
-    /// Whether the machine is to stop before it sleeps.
+    /// Prepares the machine to run on; `stops` says whether it stops before it sleeps.
     ///
     /// The `wfi` it stands at is passed over: the architecture lets it wake at any time, and while the machine stood
     /// still QEMU has put its clock forward to the next event, which is just what sleeping does.

@@ -16,7 +16,8 @@ use core::fmt::Debug;
 
 use crate::numbers::Real;
 
-/// How increments are added to a state, a running sum: the number itself is kept elsewhere, what its additions lose is kept here.
+/// A running sum, by which increments are added to a state. The number itself is kept elsewhere; what its additions lose is kept
+/// here.
 pub trait Sum<R: Real>: Copy + Debug + PartialEq + 'static {
     /// For a sum that starts at `value`, of which the number keeps as many digits as it has.
     fn new(value: f64) -> Self;
