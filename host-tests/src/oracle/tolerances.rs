@@ -145,6 +145,10 @@ pub const MILLION_STEPS: PerPrecision = PerPrecision { single: 5e-7, double: 3e-
 /// How much better a compensated form is than a plain one on the regular scene in 10 s, at least (measured: 30 to 70).
 pub const COMPENSATION_GAIN: f64 = 10.0;
 
+/// A frequency or period read off a plotted curve where it crosses a level, relative: half of the last digit given of the
+/// shortest, 1.3e-6, and the shift of a crossing by joining the points with straight lines, (w dt)^3/16 of a radian or
+/// 2e-5 for the fastest curve, over the 23 rad shown at least.
+pub const PLOTTED_FREQUENCY: f64 = 3e-6;
 /// The greatest of a plotted curve's points, relative to that of the curve: between two points it is at most
 /// (w dt/2)^2/2 higher, 4e-4 for the fastest envelope.
 pub const PLOTTED_AMPLITUDE: f64 = 5e-4;

@@ -149,7 +149,7 @@ fn plays(board: &'static Board, limit: Duration, ticks: fn(&Board, SceneName) ->
             let [scene, whole] = followed.highest.map(|cycles| f64::from(cycles) / f64::from(board.hertz) / frame);
             let is_profiled = match board.core() {
                 Core::M3 => true,
-                Core::M0Plus => MOST_CYCLES * scene > budgets::SCENE,
+                Core::M0Plus => MOST_CYCLES * scene > budgets::SCENE || 1.0 - MOST_CYCLES * whole < budgets::IDLE,
                 Core::M4F => false,
             };
             if is_profiled {

@@ -1,5 +1,6 @@
 //! `cargo figures` and `cargo flips`: the curves against what is known of them, and the committed files against the kernel.
 
+use std::f64::consts::PI;
 use std::fs;
 
 use double_pendulum::{Motion, State};
@@ -14,9 +15,13 @@ use reference::taylor::Reference;
 
 use super::cli::{output, program};
 
-/// Figures 3 to 5: number, mu, the largest |a1| and |a2|, which is the start's (degrees).
-const SMALL: [(u32, f64, [f64; 2]); 3] =
-    [(3, 0.2, [12.2474, START]), (4, 1.0, [21.2132, START]), (5, 5.0, [27.3861, START])];
+/// Figures 3 to 5: number, mu, w1, w2 (rad/s), the envelope's period (s), the largest |a1| (degrees).
+const SMALL: [(u32, [f64; 5]); 3] = [
+    (3, [0.2, 8.139042, 5.275983, 2.194571, 12.2474]),
+    (4, [1.0, 11.568802, 4.791955, 0.927155, 21.2132]),
+    (5, [5.0, 21.211017, 4.526893, 0.376597, 27.3861]),
+];
+/// The angle 2 that they start with, degrees, which is also the largest.
 const START: f64 = 30.0;
 
 #[test]
@@ -56,14 +61,40 @@ fn is_shown(name: SceneName) -> bool {
     !frames.is_empty() && (0..=2).any(is_shown_from)
 }
 
-/// The frequencies are the kernel's (`kernel small_oscillations::`); an envelope out of step with them would be left.
+/// The mean time from one crossing of zero to the next, s.
+fn between_crossings(points: &[CurvePoint], value: impl Fn(&CurvePoint) -> f64) -> f64 {
+    let crossings: Vec<_> = points
+        .windows(2)
+        .filter_map(|pair| {
+            let [(t, before), (later, after)] = [&pair[0], &pair[1]].map(|point| (point.time, value(point)));
+            ((before < 0.0) != (after < 0.0)).then(|| t + (later - t) * before / (before - after))
+        })
+        .collect();
+    let [first, .., last] = crossings[..] else { panic!("{crossings:?}") };
+    (last - first) / (crossings.len() - 1) as f64
+}
+
+fn assert_close(value: f64, expected: f64, relative: f64, what: &str) {
+    assert!((value / expected - 1.0).abs() < relative, "{what}: {value} instead of {expected}");
+}
+
 #[test]
-fn figures_3_to_5_show_the_amplitudes_of_the_table_within_envelopes_that_the_curves_touch() {
-    for (number, mu, largest) in SMALL {
+fn figures_3_to_5_show_the_frequencies_envelopes_and_amplitudes_of_the_table() {
+    for (number, [mu, w1, w2, envelope, largest_a1]) in SMALL {
         let points = points(modes(mu).expect("a pendulum"));
-        for (rod, largest) in largest.into_iter().enumerate() {
+        // a2 - r a1 is the fast mode alone, a2 + r a1 the slow one.
+        let r = ((1.0 + mu) / mu).sqrt();
+        for (w, r) in [(w1, -r), (w2, r)] {
+            let half_period = between_crossings(&points, |point| point.angles[1] + r * point.angles[0]);
+            assert_close(PI / half_period, w, tolerances::PLOTTED_FREQUENCY, "frequency");
+        }
+        for (rod, largest) in [largest_a1, START].into_iter().enumerate() {
+            // Its square is a cosine about half its maximum.
+            let half_period = between_crossings(&points, |point| point.envelopes[rod].powi(2) - largest.powi(2) / 2.0);
+            assert_close(2.0 * half_period, envelope, tolerances::PLOTTED_FREQUENCY, "envelope");
             let highest = points.iter().map(|point| point.envelopes[rod]).fold(0.0, f64::max);
-            assert!((highest / largest - 1.0).abs() < tolerances::PLOTTED_AMPLITUDE, "figure {number}: {highest}");
+            assert_close(highest, largest, tolerances::PLOTTED_AMPLITUDE, "amplitude");
+            // The curve touches it and never leaves it.
             let beyond = |point: &CurvePoint| point.angles[rod].abs() - point.envelopes[rod];
             let farthest = points.iter().map(beyond).fold(f64::NEG_INFINITY, f64::max);
             assert!(farthest < tolerances::FORMULAS.double * START, "figure {number}, rod {rod}: {farthest} beyond");
