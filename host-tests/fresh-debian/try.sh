@@ -136,11 +136,11 @@ without-root() {
 }
 
 without-network() {
-    ends target/debug/host-tests setup 2 --net
+    ends 'target/debug/host-tests setup' 2 --net
     said "apt-get: " && said "what brings it: " && sets_up
 }
 
-full-disk() { ends target/debug/host-tests setup 2 && said "No space left\|free space"; }
+full-disk() { ends 'target/debug/host-tests setup' 2 && said "No space left\|free space"; }
 
 # Debian 12 has had several versions of these packages; its first release keeps the oldest.
 oldest-rust() {
