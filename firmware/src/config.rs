@@ -175,7 +175,7 @@ pub const TRAIL_FADING: u8 = 5;
 
 // ---- The serial link ------------------------------------------------------------------------------------------------
 
-/// Bits per second. A frame of at most 86 bytes takes 86 x 10/460,800 = 1.9 ms of the tick's 16.7 ms.
+/// Bits per second. A frame of at most 94 bytes takes 94 x 10/460,800 = 2.0 ms of the tick's 16.7 ms.
 pub const BAUD: u32 = 460_800;
 /// Steps that are measured at once, at most: of order 8 in `f64` they keep a Cortex-M3 at 50 MHz from everything else for
 /// 16 x 136,500/50e6 = 44 ms.

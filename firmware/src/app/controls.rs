@@ -1,7 +1,40 @@
 //! Five buttons, debounced, become commands, or one: by how often it is tapped before it is held.
 
-use crate::app::{Command, Key};
 use crate::config::{DEBOUNCE_TICKS, HOLD_TICKS, MOST_TICKS_BETWEEN_TAPS, REPEAT_DELAY_TICKS, REPEAT_PERIOD_TICKS};
+use crate::protocol::Command;
+
+choice! {
+    Key {
+        Up = "up";
+        Down = "down";
+        Left = "left";
+        Right = "right";
+        Select = "select";
+    }
+}
+
+impl Key {
+    pub const fn tapped(self) -> Command {
+        match self {
+            Self::Up => Command::Heavier,
+            Self::Down => Command::Lighter,
+            Self::Left => Command::TurnLeft,
+            Self::Right => Command::TurnRight,
+            Self::Select => Command::Restart,
+        }
+    }
+
+    /// What an arrow asks for while select is held.
+    const fn with_select(self) -> Command {
+        match self {
+            Self::Up => Command::TogglePause,
+            Self::Down => Command::Step(1),
+            Self::Left => Command::PreviousScene,
+            Self::Right => Command::NextScene,
+            Self::Select => Command::Restart,
+        }
+    }
+}
 
 /// A reading of the five buttons; `true` is pressed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -3,10 +3,10 @@
 use double_pendulum::Error;
 use embedded_io::ErrorType;
 
-use crate::app::{Command, News, WarmRestart};
+use crate::app::{News, WarmRestart};
 use crate::display::{Display, Found};
 use crate::motion::Settings;
-use crate::protocol::{Field, LinkError};
+use crate::protocol::{Command, Field, LinkError};
 use crate::scenes::SceneName;
 
 /// What is worth a line in the log. Totals are since reset, what is beside them since it was last said.

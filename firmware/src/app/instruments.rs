@@ -1,7 +1,7 @@
 //! What the board lends the application to tell of itself.
 
-use crate::job::{OnBoards, Run};
-use crate::protocol::{CRC, Identity};
+use crate::job::{CRC, OnBoards, Run};
+use crate::protocol::Identity;
 
 /// Nothing, by default, as on a host.
 #[derive(Clone, Copy, Debug)]
@@ -26,9 +26,9 @@ impl Default for Instruments {
 }
 
 impl Instruments {
-    /// The answer to [`Command::Identify`](crate::app::Command::Identify).
-    pub fn identity(&self, request: u16) -> Identity {
+    /// The answer to [`Command::Identify`](crate::protocol::Command::Identify).
+    pub fn identity(&self) -> Identity {
         let image = (self.image)();
-        Identity { request, image: CRC.checksum(image), image_bytes: image.len() as u32, ..self.identity }
+        Identity { image: CRC.checksum(image), image_bytes: image.len() as u32, ..self.identity }
     }
 }

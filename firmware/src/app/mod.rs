@@ -1,6 +1,5 @@
 //! The application: reads the buttons, moves the scene, draws it and sends it, tick by tick.
 
-mod command;
 mod controls;
 mod event;
 mod instruments;
@@ -17,21 +16,17 @@ use crate::config::{
 };
 use crate::display::Display;
 use crate::graphics::{Canvas, FrameBuffers};
-use crate::job::Job;
+use crate::job::{Job, Request};
 use crate::motion::Settings;
-use crate::protocol::{
-    Decoder, Done, Field, Frame, LinkError, MAX_WIRE, Measured, Message, Refused, Request, Sample, StepTooLong,
-    TO_CHIP, encode, request,
-};
+use crate::protocol::{Answer, Command, Decoder, Field, Frame, LinkError, MAX_WIRE, ToHost, decode_command, encode};
 use crate::scenes::SceneName;
 use throttle::{FaultEdge, ThrottledCounter};
 
-pub use command::{Command, Key};
-pub use controls::{Buttons, Controls, NoButtons, Pressed};
+pub use controls::{Buttons, Controls, Key, NoButtons, Pressed};
 pub use event::{Event, Log};
 pub use instruments::Instruments;
-pub use player::{AUTO, News, Player};
-pub use warm_restart::{Cause, Journal, Kept, LastShown, MOST_RESTARTS, SOUND_FRAMES, WarmRestart, read};
+pub use player::{News, Player};
+pub use warm_restart::{Journal, Kept, LastShown, MOST_RESTARTS, Record, SOUND_FRAMES, WarmRestart};
 
 /// The same on a board and in a test: a panel, a byte sink and buttons are all it needs.
 #[derive(Debug)]
@@ -116,7 +111,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     pub fn resume(&mut self, restart: &WarmRestart, mut log: impl Log<Panel, Link>) {
         let resumed = restart.played.is_some_and(|played| self.player.resume(&played).is_ok());
         log(Event::Restarted(*restart, resumed));
-        self.send(&restart.end, &mut log);
+        self.send(&ToHost::Restarted(restart.end), &mut log);
     }
 
     /// Catches up with the clock, which counts ticks since reset and may wrap, then draws and sends once.
@@ -153,14 +148,14 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     pub fn receive(&mut self, bytes: impl IntoIterator<Item = u8>, mut log: impl Log<Panel, Link>) {
         let mut left = MOST_MESSAGES_PER_TICK;
         for byte in bytes.into_iter().take(RECEIVE_QUEUE) {
-            match self.decoder.push(byte) {
-                None => continue,
-                // An answer, perhaps its own, looped back: to answer that would have no end.
-                Some(Ok((kind, _))) if kind & TO_CHIP == 0 => continue,
-                Some(Ok((kind, fields))) => {
-                    let (request, command) = (request(fields), Command::read(kind, fields));
-                    if let Err(field) = command.and_then(|command| self.reply(request, command, &mut log)) {
-                        self.send(&Refused { request, field: field.code() }, &mut log);
+            match self.decoder.push(byte).map(|message| message.map(decode_command)) {
+                // Of what is no command: an answer, perhaps its own, looped back. To answer that would have no end.
+                None | Some(Ok(None)) => continue,
+                Some(Ok(Some((request, command)))) => {
+                    let reply =
+                        command.ok_or(Field::Message).and_then(|command| self.reply(request, command, &mut log));
+                    if let Err(field) = reply {
+                        self.answer(request, Answer::Refused(field), &mut log);
                     }
                 }
                 Some(Err(error)) => {
@@ -194,9 +189,9 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         let Some((request, job)) = &mut self.work else { return false };
         let (request, index, reading, is_finished) = (*request, job.given, job.advance(), job.is_finished());
         match reading {
-            Ok(Some(reading)) => self.send(&Sample { request, index, reading }, &mut log),
+            Ok(Some(reading)) => self.answer(request, Answer::Sample { index, reading }, &mut log),
             Ok(None) => {}
-            Err(error) => self.send(&Refused { request, field: Field::from(error).code() }, &mut log),
+            Err(error) => self.answer(request, Answer::Refused(error.into()), &mut log),
         }
         !is_finished
     }
@@ -224,19 +219,19 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     /// Executes a command that came over the link, and answers it; what is wrong with it, if it cannot be.
     fn reply(&mut self, request: u16, command: Command, log: &mut impl Log<Panel, Link>) -> Result<(), Field> {
         self.execute(command, log)?;
-        match command {
-            Command::Ask => self.send(&self.player.status(request), log),
-            Command::AskPlan => self.send(&self.player.plan(request), log),
-            Command::Identify => self.send(&self.instruments.identity(request), log),
+        let answer = match command {
+            Command::Ask => Answer::Status(self.player.status()),
+            Command::AskPlan => Answer::Planned(self.player.plan()),
+            Command::Identify => Answer::Identity(self.instruments.identity()),
             Command::Measure { steps, in_ram } => {
                 let (steps, timed) = (steps.min(MOST_MEASURED_STEPS), self.instruments.timed);
                 let (_, job) = self.work.as_mut().ok_or(Field::Message)?;
-                let cycles = job.measure(|motion| timed(motion, steps, in_ram));
-                self.send(&Measured { request, steps, cycles }, log);
+                Answer::Measured { steps, cycles: job.measure(|motion| timed(motion, steps, in_ram)) }
             }
-            Command::Simulate(motion) => self.begin_work(request, &motion, log)?,
-            _ => self.send(&Done { request }, log),
-        }
+            Command::Simulate(motion) => return self.begin_work(request, &motion, log),
+            _ => Answer::Done,
+        };
+        self.answer(request, answer, log);
         Ok(())
     }
 
@@ -247,7 +242,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         log(Event::Asked);
         if let Some(admissible_step) = motion.admissible_step().filter(|step| motion.dt > *step) {
             log(Event::StepTooLong(admissible_step));
-            self.send(&StepTooLong { request, admissible_step }, log);
+            self.answer(request, Answer::StepTooLong(admissible_step), log);
         }
         Ok(())
     }
@@ -267,12 +262,16 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
             busy_cycles: self.busy_cycles,
             ..self.player.frame()
         };
-        self.send(&frame, log);
+        self.send(&ToHost::Frame(frame), log);
         self.frames = self.frames.wrapping_add(1);
     }
 
+    fn answer(&mut self, request: u16, answer: Answer, log: &mut impl Log<Panel, Link>) {
+        self.send(&ToHost::Answer(request, answer), log);
+    }
+
     /// Sends a message, or the part of it that the link takes in time.
-    fn send<M: Message>(&mut self, message: &M, log: &mut impl Log<Panel, Link>) {
+    fn send(&mut self, message: &ToHost, log: &mut impl Log<Panel, Link>) {
         let sent = write_whole(&mut self.link, encode(message, &mut [0; MAX_WIRE]));
         self.link_failing.note(sent, |error| log(Event::Link(error)));
     }

@@ -1,18 +1,14 @@
 //! What is played: a scene with its settings, and how its time goes.
 
 use double_pendulum::plan::Way;
-use double_pendulum::{Error, Method, Parameters};
+use double_pendulum::{Error, Method};
 
-use crate::app::Command;
 use crate::app::pace::Pace;
 use crate::config::{GREATEST_ANGLE, Processor};
 use crate::graphics::{Canvas, FadeLayer, text};
-use crate::motion::{CatchingUp, Finding, Means, Planner, Settings, Viewport};
-use crate::protocol::{Field, Frame, NO_METHOD, Planned, Status, method_code, method_of};
+use crate::motion::{CatchingUp, Finding, Means, Planned, Planner, Settings, Viewport};
+use crate::protocol::{Command, Field, Frame, Status};
 use crate::scenes::{AnyScene, Report, SceneName};
-
-/// The value of [`Field::Method`] that leaves the way to the plan.
-pub const AUTO: f64 = NO_METHOD as f64;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum News {
@@ -88,7 +84,7 @@ impl<'a> Player<'a> {
             Command::PreviousScene => return self.choose(self.name.previous()),
             Command::Choose(name) => return self.choose(name),
             Command::Set { field: Field::Speed, value } => self.pace.set_speed(value)?,
-            Command::Set { field: Field::Method, value } => return self.go(value),
+            Command::Method(method) => return self.go(method),
             // What the new value makes impossible, it is the new value that is wrong.
             Command::Set { field, value } => return self.start(self.name, self.with(field, value)?).map_err(|_| field),
             Command::Pause(paused) => self.pace.pause(paused),
@@ -138,8 +134,8 @@ impl<'a> Player<'a> {
         !self.is_paused() && self.next.is_none() && self.planner.work_ahead()
     }
 
-    pub fn plan(&self, request: u16) -> Planned {
-        self.planner.answer(request)
+    pub fn plan(&self) -> Option<Planned> {
+        self.planner.answer()
     }
 
     /// Cycles of a frame that is computed this way.
@@ -197,57 +193,23 @@ impl<'a> Player<'a> {
     /// The frame as it is told to the host, but for what only the board's clock and link know.
     pub fn frame(&self) -> Frame {
         let [start_angle, _] = self.settings.angles();
-        let Report { horizon, is_looking, way, .. } = self.report;
-        Frame {
-            scene: self.name.code(),
-            paused: self.is_paused().into(),
-            step: self.report.step as u32,
-            time: self.report.time,
-            mass_ratio: self.settings.mass_ratio(),
-            start_angle,
-            state: self.report.state.into(),
-            energy_error: self.report.energy_error,
-            method: way.map_or(NO_METHOD, |way| method_code(way.method)),
-            way_steps: way.map_or(0, |way| way.steps as u16),
-            horizon,
-            is_looking: is_looking.into(),
-            ..Frame::default()
-        }
+        let (scene, paused, mass_ratio) = (self.name, self.is_paused(), self.settings.mass_ratio());
+        Frame { scene, paused, mass_ratio, start_angle, report: self.report, ..Frame::default() }
     }
 
-    pub fn status(&self, request: u16) -> Status {
-        let Settings { parameters, degrees, velocities } = self.settings;
-        let Report { horizon, is_looking, way, .. } = self.report;
-        Status {
-            request,
-            processor: self.planner.processor.code,
-            asked: self.method.map_or(NO_METHOD, method_code),
-            method: way.map_or(NO_METHOD, |way| method_code(way.method)),
-            way_steps: way.map_or(0, |way| way.steps),
-            cycles: way.map_or(0.0, |way| self.cost(way)),
-            horizon,
-            is_looking: is_looking.into(),
-            scene: self.name.code(),
-            paused: self.is_paused().into(),
-            steps: self.pace.steps,
-            speed: self.pace.speed(),
-            parameters: [parameters.m1, parameters.m2, parameters.l1, parameters.l2, parameters.g],
-            degrees,
-            velocities,
-        }
+    pub fn status(&self) -> Status {
+        let Self { name: scene, settings, method, .. } = *self;
+        let (paused, steps, speed) = (self.is_paused(), self.pace.steps, self.pace.speed());
+        Status { scene, settings, method, processor: self.planner.processor.code, paused, steps, speed }
     }
 
     /// Plays what a status tells, from its start; if that cannot be, nothing is changed and the error names what is wrong.
     pub fn resume(&mut self, status: &Status) -> Result<(), Field> {
-        let name = SceneName::from_code(status.scene).ok_or(Field::Scene)?;
-        let [m1, m2, l1, l2, g] = status.parameters;
-        let parameters = Parameters { m1, m2, l1, l2, g };
+        let Status { scene, settings, method, paused, steps, speed, .. } = *status;
         let mut pace = Pace::default();
-        (pace.paused, pace.steps) = (status.paused != 0, status.steps);
-        pace.set_speed(status.speed.into())?;
-        let before = core::mem::replace(&mut self.method, method_of(status.asked));
-        let settings = Settings { parameters, degrees: status.degrees, velocities: status.velocities };
-        self.start(name, settings).inspect_err(|_| self.method = before)?;
+        (pace.paused, pace.steps) = (paused, steps);
+        pace.set_speed(speed.into())?;
+        self.start_by(method, scene, settings)?;
         self.pace = pace;
         Ok(())
     }
@@ -261,14 +223,17 @@ impl<'a> Player<'a> {
         Ok(true)
     }
 
-    /// Starts again by the method of this code and no other, or as the plan has it if `value` is [`AUTO`].
-    fn go(&mut self, value: f64) -> Result<bool, Field> {
-        let method = method_of(value as u8).filter(|method| Method::DRAWN.contains(method));
-        if value != AUTO && method.is_none_or(|method| value != f64::from(method_code(method))) {
+    /// Starts again by this method and no other, or as the plan has it.
+    fn go(&mut self, method: Option<Method>) -> Result<bool, Field> {
+        if method.is_some_and(|method| !Method::DRAWN.contains(&method)) {
             return Err(Field::Method);
         }
+        self.start_by(method, self.name, self.settings).map_err(|_| Field::Method)
+    }
+
+    fn start_by(&mut self, method: Option<Method>, name: SceneName, settings: Settings) -> Result<bool, Field> {
         let before = core::mem::replace(&mut self.method, method);
-        self.start(self.name, self.settings).inspect_err(|_| self.method = before).map_err(|_| Field::Method)
+        self.start(name, settings).inspect_err(|_| self.method = before)
     }
 
     /// The settings with one of them changed; refuses an angle beyond straight up.

@@ -17,7 +17,7 @@ use crate::config::{HALF_PIXEL, Processor};
 use crate::display::Display;
 use crate::graphics::FrameBuffers;
 use crate::motion::Settings;
-use crate::protocol::BoardName;
+use crate::protocol::Cause;
 use crate::scenes::SceneName;
 
 pub struct Board<Panel, Link, Keys, Dog> {
@@ -65,8 +65,7 @@ impl<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons, Dog: Watchdog> Bo
         processor: Processor,
     ) -> ! {
         let Self { panel, link, receiver, keys, instruments, clock, watchdog, reset_by_watchdog } = self;
-        let name = BoardName::from_code(instruments.identity.board).map_or("", BoardName::name);
-        defmt::info!("boot: {=str}, {} Hz", name, instruments.identity.hertz);
+        defmt::info!("boot: {=str}, {} Hz", instruments.identity.board.name(), instruments.identity.hertz);
         let app = application(place, buffers, panel, link, keys, processor);
         run(app, receiver, instruments, clock, watchdog, reset_by_watchdog)
     }
@@ -111,7 +110,7 @@ fn run<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons>(
             is_late = !app.run_to(now, log);
             // A frame that is finished, drawn and sent is noted, and feeds the watchdog: nothing else does.
             if app.frames != before {
-                retained::keep(journal.note(&app.player));
+                retained::keep(&journal.note(&app.player));
                 watchdog.feed();
             }
         }
@@ -134,17 +133,17 @@ fn resume<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons>(
         app.resume(restart, log);
     }
     let mut journal = Journal::new(restart.as_ref());
-    retained::keep(journal.note(&app.player));
+    retained::keep(&journal.note(&app.player));
     journal
 }
 
 #[inline(never)]
 fn log<Panel: Debug, Link: Debug>(event: Event<Panel, Link>) {
     match event {
-        Event::Restarted(WarmRestart { end, cause, .. }, resumed) => {
+        Event::Restarted(WarmRestart { end, .. }, resumed) => {
             defmt::warn!(
                 "restarted after a {}, {} in a row: pc {:#010x}, lr {:#010x}",
-                cause.name(),
+                end.cause.map_or("", Cause::name),
                 end.restarts,
                 end.pc,
                 end.lr

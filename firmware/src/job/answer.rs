@@ -6,7 +6,6 @@ use double_pendulum::parts::Turns;
 use double_pendulum::{Error, Method, Motion, Parameter, Pendulum};
 
 use super::{OnBoards, Reading, Request, Run};
-use crate::protocol::Field;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum JobError {
@@ -31,16 +30,6 @@ impl core::error::Error for JobError {}
 impl From<Error> for JobError {
     fn from(error: Error) -> Self {
         JobError::Refused(error)
-    }
-}
-
-impl From<JobError> for Field {
-    fn from(error: JobError) -> Self {
-        match error {
-            JobError::NotOnBoards(_) => Field::Method,
-            JobError::Malformed => Field::Message,
-            JobError::Refused(error) => error.into(),
-        }
     }
 }
 

@@ -11,7 +11,7 @@ mod request;
 mod run;
 mod table;
 
-pub use crate::protocol::{Reading, Request};
 pub use answer::{Job, JobError};
+pub use request::{CRC, Reading, Request};
 pub use run::Run;
 pub use table::{AnyRun, ON_BOARDS, OnBoards};

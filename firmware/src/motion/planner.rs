@@ -5,11 +5,10 @@
 //! time that a frame leaves free.
 
 use double_pendulum::Parameters;
-use double_pendulum::plan::{Limit, Plan, PlanError, Problem, Search, Way};
+use double_pendulum::plan::{Budget, Limit, Plan, PlanError, Problem, Search, Way};
 
 use crate::config::{HALF_PIXEL, PLANNED, PLANNING_PIECE, Processor, SETTLED_TICKS, TICK_RATE};
 use crate::motion::Settings;
-use crate::protocol::{NO_METHOD, Planned, limit_code, method_code};
 
 /// How a scene shows its motion: by which way, and how large.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,6 +21,21 @@ pub struct Viewport {
 
 /// The plan, or why there is none. One that was right to its end is looked at farther, and told again when that comes to an end.
 pub type Finding = Result<Plan, PlanError>;
+
+/// A plan, and what it is made for.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Planned {
+    /// `None` while the search is under way.
+    pub found: Option<Finding>,
+    /// The display's height, pixels: both rods together are half of it long.
+    pub height: f32,
+    /// For how long, s.
+    pub duration: f64,
+    /// What computing a frame may cost, cycles.
+    pub frame: f32,
+    /// What planning may cost, cycles.
+    pub planning: f32,
+}
 
 #[derive(Clone, Copy, Debug)]
 pub struct Planner {
@@ -170,33 +184,10 @@ impl Planner {
         Ok(())
     }
 
-    pub fn answer(&self, request: u16) -> Planned {
-        let Some((problem, Viewport { height, .. })) = &self.task else {
-            return Planned { request, ..Planned::default() };
-        };
-        let budget = self.processor.budget(problem);
-        let mut answer = Planned {
-            request,
-            found: 1 + u8::from(self.plan.is_some()),
-            horizon: self.plan.and_then(Result::ok).map_or(0.0, |plan| plan.horizon),
-            height: (*height).into(),
-            duration: problem.duration,
-            frame_budget: budget.frame,
-            planning_budget: budget.planning,
-            ..Planned::default()
-        };
-        match self.plan {
-            Some(Ok(Plan { method, steps, dt, error, cost, limit, spent, .. })) => {
-                (answer.method, answer.steps, answer.dt) = (method_code(method), steps, dt);
-                (answer.error, answer.cycles) = (HALF_PIXEL * error, cost);
-                (answer.limit, answer.planning) = (limit_code(limit), spent);
-            }
-            Some(Err(PlanError::NoMethod { limit, .. })) => {
-                (answer.method, answer.limit) = (NO_METHOD, limit_code(limit));
-            }
-            Some(Err(_)) | None => {}
-        }
-        answer
+    pub fn answer(&self) -> Option<Planned> {
+        let (problem, Viewport { height, .. }) = self.task.as_ref()?;
+        let Budget { frame, planning } = self.processor.budget(problem);
+        Some(Planned { found: self.plan, height: *height, duration: problem.duration, frame, planning })
     }
 }
 

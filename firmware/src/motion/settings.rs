@@ -6,7 +6,7 @@ use double_pendulum::{Error, Motion, Parameters, Pendulum, State};
 use crate::config::{ANGLE_STEP, FIRST_ANGLE, FIRST_MASS_RATIO, GRAVITY, GREATEST_ANGLE, MASS_RATIOS, ROD, TICK_RATE};
 
 /// A double pendulum and its start.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[cfg_attr(target_os = "none", derive(defmt::Format))]
 pub struct Settings {
     pub parameters: Parameters<f32>,

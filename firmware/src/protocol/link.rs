@@ -17,42 +17,44 @@
 //! the host. The frames dropped are missing from the sequence.
 
 use cobs::{CobsEncoder, DecodeResult, DecoderState};
-use crc::{CRC_32_ISO_HDLC, Crc, Table};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 
-use super::{MAX_FIELDS, Message};
+use crate::job::CRC;
 
 /// The version of the protocol; the first byte of every message.
-pub const VERSION: u8 = 10;
-/// Set in the kind of every message to the chip, and in no other's.
-pub const TO_CHIP: u8 = 0x80;
-/// The most bytes a message takes before framing: version, kind, fields, CRC.
-const MAX_BODY: usize = 2 + MAX_FIELDS + 4;
+pub const VERSION: u8 = 11;
+/// The most bytes that a message takes by itself.
+pub const MAX_MESSAGE: usize = 97;
+/// The most bytes it takes before framing: with version and CRC.
+const MAX_BODY: usize = 1 + MAX_MESSAGE + 4;
 /// The most bytes a message takes on the wire: COBS adds one byte (bodies are below 254), the delimiters another two.
 pub const MAX_WIRE: usize = MAX_BODY + 3;
 
-/// The reflected CRC-32 of zip and Ethernet.
-pub const CRC: Crc<u32, Table<1>> = Crc::<u32, Table<1>>::new(&CRC_32_ISO_HDLC);
-
-/// The message as it goes over the wire, between delimiters: the front of `wire`.
-pub fn encode<'wire, M: Message>(message: &M, wire: &'wire mut [u8; MAX_WIRE]) -> &'wire [u8] {
-    frame(M::KIND, message.write(&mut [0; MAX_FIELDS]), wire)
+/// The message as it goes over the wire, between delimiters: the front of `wire`. All messages fit (test `link`).
+pub fn encode<'wire>(message: &impl Serialize, wire: &'wire mut [u8; MAX_WIRE]) -> &'wire [u8] {
+    frame(postcard::to_slice(message, &mut [0; MAX_MESSAGE]).unwrap_or_default(), wire)
 }
 
-/// A message of any kind, its fields being given as bytes; nothing if they are more than [`MAX_FIELDS`].
+/// The message in `bytes`; `None` unless they hold just that.
+pub fn read<M: DeserializeOwned>(bytes: &[u8]) -> Option<M> {
+    postcard::take_from_bytes(bytes).ok().filter(|(_, rest)| rest.is_empty()).map(|(message, _)| message)
+}
+
+/// Any message, given as bytes; nothing if they are more than [`MAX_MESSAGE`].
 #[inline(never)] // flash has room for one of it, not for one of each kind
-pub fn frame<'wire>(kind: u8, fields: &[u8], wire: &'wire mut [u8; MAX_WIRE]) -> &'wire [u8] {
-    if fields.len() > MAX_FIELDS {
+pub fn frame<'wire>(message: &[u8], wire: &'wire mut [u8; MAX_WIRE]) -> &'wire [u8] {
+    if message.len() > MAX_MESSAGE {
         return &[];
     }
-    let head = [VERSION, kind];
     let mut crc = CRC.digest();
-    crc.update(&head);
-    crc.update(fields);
+    crc.update(&[VERSION]);
+    crc.update(message);
     let crc = crc.finalize().to_le_bytes();
     wire.fill(0);
     let [_, inside @ ..] = wire;
     let mut encoder = CobsEncoder::new(inside);
-    let framed = [&head, fields, &crc].into_iter().try_for_each(|part| encoder.push(part));
+    let framed = [&[VERSION], message, &crc].into_iter().try_for_each(|part| encoder.push(part));
     debug_assert!(framed.is_ok());
     let end = 1 + encoder.finalize();
     wire.get(..=end).unwrap_or_default()
@@ -84,8 +86,8 @@ impl Default for Decoder {
 }
 
 impl Decoder {
-    /// Takes one byte. At the end of a message: its kind and its fields, or what is wrong with it.
-    pub fn push(&mut self, byte: u8) -> Option<Result<(u8, &[u8]), LinkError>> {
+    /// Takes one byte. At the end of a message: the message, or what is wrong with it.
+    pub fn push(&mut self, byte: u8) -> Option<Result<&[u8], LinkError>> {
         match self.cobs.feed(byte) {
             Ok(DecodeResult::NoData | DecodeResult::DataStart) => None,
             Ok(DecodeResult::DataContinue(byte)) => {
@@ -107,14 +109,14 @@ impl Decoder {
     }
 }
 
-/// The kind and the fields of a body, if it is intact and of this version.
-fn open(body: &[u8]) -> Result<(u8, &[u8]), LinkError> {
+/// The message in a body, if it is intact and of this version.
+fn open(body: &[u8]) -> Result<&[u8], LinkError> {
     let (checked, crc) = body.split_last_chunk().ok_or(LinkError::Malformed)?;
     if CRC.checksum(checked) != u32::from_le_bytes(*crc) {
         return Err(LinkError::Checksum);
     }
     match checked {
-        [VERSION, kind, fields @ ..] => Ok((*kind, fields)),
+        [VERSION, message @ ..] => Ok(message),
         [version, ..] => Err(LinkError::Version(*version)),
         [] => Err(LinkError::Malformed),
     }

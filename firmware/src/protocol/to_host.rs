@@ -1,178 +1,153 @@
 //! What a board sends: a frame after each that it has drawn, and answers.
 
-use super::message::{messages, numbered};
+use double_pendulum::Method;
+use serde::{Deserialize, Serialize};
 
-/// What is told of a motion asked for. The state is widened, which loses nothing, and of the fast forms given to the last digit
-/// they carry; what follows from it is computed in double precision.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Reading {
-    /// a1, a2 (rad), p1, p2 (kg m^2/s).
-    pub state: [f64; 4],
-    /// w1, w2, rad/s.
-    pub velocities: [f64; 2],
-    /// Energy, J; zero potential at the pivot.
-    pub energy: f64,
-}
+use super::Field;
+use crate::job::Reading;
+use crate::motion::{Planned, Settings};
+use crate::scenes::{Report, SceneName};
 
-messages! {
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum ToHost {
     /// One drawn frame, sent as soon as it is on the panel.
-    Frame = 0x01 {
-        /// Drawn frames since reset; a gap is a frame lost on the way, unless the board has [`Restarted`].
-        sequence: u32,
-        /// Ticks whose frame was never drawn, since reset.
-        dropped: u32,
-        /// Bytes from the host that were lost because they came faster than they were taken, since reset; at least so many.
-        lost: u32,
-        /// The scene, by its [`code`](crate::scenes::SceneName::code).
-        scene: u8,
-        /// 1 if the scene's time stands still, else 0.
-        paused: u8,
-        /// Steps of 1/60 s since the last restart; their low 32 bits, which last 828 days.
-        step: u32,
-        /// Simulated time since the last restart, s: `step` times that.
-        time: f64,
-        mass_ratio: f32,
-        /// Start angle of rod 1, rad; on the page that of both.
-        start_angle: f32,
-        /// The canonical state a1, a2 (rad, turns counted), p1, p2 (kg m^2/s), to the last bit.
-        state: [f32; 4],
-        /// (E - E0)/(E0 - Emin): the energy error relative to the energy at the start above hanging at rest.
-        energy_error: f32,
-        /// The method by which the motion is computed, by its [`method_code`](super::method_code);
-        /// [`NO_METHOD`](super::NO_METHOD) where there is none to choose.
-        method: u8,
-        /// Its steps to a frame.
-        way_steps: u16,
-        /// Until when the frames are known to be right to half a pixel, s since the last restart; infinity where nothing can
-        /// be wrong.
-        horizon: f32,
-        /// 1 if that is a lower bound so far, else 0.
-        is_looking: u8,
-        /// Counts of the processor clock that the scene took for this frame, moving and drawing: cycles on a chip; QEMU
-        /// does not model cycles, there they say how much of the tick its own clock let pass.
-        scene_cycles: u32,
-        /// The same for all of the frame before, sending it to the panel and over the link included.
-        busy_cycles: u32,
+    Frame(Frame),
+    /// The board has restarted by itself and plays on, from the start of its scene. The frames after it are counted from 0
+    /// again.
+    Restarted(Restarted),
+    /// To the command of this number.
+    Answer(u16, Answer),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Answer {
+    /// The command has been executed.
+    Done,
+    /// This is wrong: the command is not executed, and nothing was changed; or the motion cannot be computed, or not to its end.
+    Refused(Field),
+    /// What is played, and from what start.
+    Status(Status),
+    /// The plan of the scene; `None` if it shows no motion.
+    Planned(Option<Planned>),
+    /// What the board is.
+    Identity(Identity),
+    /// One sample of the motion asked for. The first one, index 0, is the start.
+    Sample { index: u32, reading: Reading },
+    /// The motion asked for follows, but its step is too long to resolve every motion of its energy; the longest that would, s.
+    StepTooLong(f64),
+    /// How long steps took: processor cycles, what calls them included; 0 where nothing counts cycles, as in QEMU, or the code
+    /// does not stand there.
+    Measured { steps: u32, cycles: u32 },
+}
+
+impl ToHost {
+    pub fn frame(self) -> Option<Frame> {
+        if let Self::Frame(frame) = self { Some(frame) } else { None }
     }
-    /// The board has restarted by itself and plays on, from the start of its scene. The frames after it are counted from 0 again.
-    /// What is said of the program and the scene is how things stood before.
-    Restarted = 0x08 {
-        /// Why, by its [`code`](crate::app::Cause::code).
-        cause: u8,
-        /// Restarts in a row, this one included; the board forgets them after a minute without one.
-        restarts: u8,
-        /// Where the program was, as far as that could be found out, else 0.
-        pc: u32,
-        /// Where it would have returned to, likewise.
-        lr: u32,
-        /// The processor's Configurable Fault Status Register.
-        cfsr: u32,
-        /// The scene that was shown, by its [`code`](crate::scenes::SceneName::code).
-        scene: u8,
-        /// The integration step of the last frame shown; its low 32 bits, as in a frame.
-        step: u32,
+
+    pub fn restarted(self) -> Option<Restarted> {
+        if let Self::Restarted(restarted) = self { Some(restarted) } else { None }
+    }
+
+    /// With its number.
+    pub fn answer(self) -> Option<(u16, Answer)> {
+        if let Self::Answer(request, answer) = self { Some((request, answer)) } else { None }
     }
 }
 
-numbered! {
-    /// One sample of the motion asked for. The first one, index 0, is the start.
-    Sample = 0x02 {
-        index: u32,
-        reading: Reading,
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Frame {
+    /// Drawn frames since reset; a gap is a frame lost on the way, unless the board has [`Restarted`].
+    pub sequence: u32,
+    /// Ticks whose frame was never drawn, since reset.
+    pub dropped: u32,
+    /// Bytes from the host that were lost because they came faster than they were taken, since reset; at least so many.
+    pub lost: u32,
+    pub scene: SceneName,
+    /// The scene's time stands still.
+    pub paused: bool,
+    pub mass_ratio: f32,
+    /// Start angle of rod 1, rad; on the page that of both.
+    pub start_angle: f32,
+    /// The scene in numbers, to the last bit.
+    pub report: Report,
+    /// Counts of the processor clock that the scene took for this frame, moving and drawing: cycles on a chip; QEMU
+    /// does not model cycles, there they say how much of the tick its own clock let pass.
+    pub scene_cycles: u32,
+    /// The same for all of the frame before, sending it to the panel and over the link included.
+    pub busy_cycles: u32,
+}
+
+/// What is played, as far as it can be played again from it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Status {
+    pub scene: SceneName,
+    pub settings: Settings,
+    /// The method that was asked for; `None` leaves it to the plan.
+    pub method: Option<Method>,
+    /// The class of the processor, by its place in [`PROCESSORS`](crate::config::PROCESSORS).
+    pub processor: u8,
+    /// Its time stands still.
+    pub paused: bool,
+    /// Ticks still to do before it stops, if it was told to do some.
+    pub steps: u32,
+    /// Simulated time per real time.
+    pub speed: f32,
+}
+
+choice! {
+    /// Why the board restarted.
+    Cause {
+        /// No frame was finished for too long.
+        Hang = "hang";
+        /// The program found itself in a state that cannot be.
+        Panic = "panic";
+        /// The processor could not go on.
+        Fault = "fault";
     }
-    /// The request cannot be computed, or not to its end, or the command not executed; nothing was changed.
-    Refused = 0x03 {
-        /// The field that is wrong, by its [`code`](super::Field::code).
-        field: u8,
+}
+
+/// What is said of the program and the scene is how things stood before.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Restarted {
+    /// `None` where it cannot be found out.
+    pub cause: Option<Cause>,
+    /// Restarts in a row, this one included; the board forgets them after a minute without one.
+    pub restarts: u8,
+    /// Where the program was, as far as that could be found out, else 0.
+    pub pc: u32,
+    /// Where it would have returned to, likewise.
+    pub lr: u32,
+    /// The processor's Configurable Fault Status Register.
+    pub cfsr: u32,
+    /// The last frame shown: its scene and tick.
+    pub scene: SceneName,
+    pub step: u64,
+}
+
+choice! {
+    BoardName {
+        /// Stellaris' evaluation board.
+        Lm3s6965evb = "lm3s6965evb";
+        /// ARM's MPS2 with image AN386.
+        Mps2An386 = "mps2-an386";
+        /// Any board with an STM32F405 or F407.
+        Stm32f405 = "stm32f405";
+        /// Raspberry Pi's Pico.
+        Pico = "pico";
     }
-    /// The command has been executed.
-    Done = 0x04 {}
-    /// What is played, and from what start.
-    Status = 0x05 {
-        /// The scene, by its [`code`](crate::scenes::SceneName::code).
-        scene: u8,
-        /// 1 if its time stands still, else 0.
-        paused: u8,
-        /// Ticks still to do before it stops, if it was told to do some.
-        steps: u32,
-        /// Simulated time per real time.
-        speed: f32,
-        /// m1, m2 (kg), l1, l2 (m), g (m/s^2).
-        parameters: [f32; 5],
-        /// Start angles of rod 1 and rod 2, degrees: as the buttons set them.
-        degrees: [f32; 2],
-        /// Angular velocities of rod 1 and rod 2 at the start, rad/s.
-        velocities: [f32; 2],
-        /// The class of the processor, by its place in [`PROCESSORS`](crate::config::PROCESSORS).
-        processor: u8,
-        /// The method that was asked for, by its [`method_code`](super::method_code); [`NO_METHOD`](super::NO_METHOD): as the
-        /// plan has it.
-        asked: u8,
-        /// The method by which the motion is computed; [`NO_METHOD`](super::NO_METHOD) where there is none to choose.
-        method: u8,
-        /// Its steps to a frame.
-        way_steps: u32,
-        /// Cycles to compute a frame, without drawing it (estimate).
-        cycles: f32,
-        /// Until when the frames are known to be right to half a pixel, s since the start.
-        horizon: f32,
-        /// 1 if that is a lower bound so far, else 0.
-        is_looking: u8,
-    }
-    /// The motion asked for follows, but its step is too long to resolve every motion of its energy.
-    StepTooLong = 0x06 {
-        /// The longest step that would, s.
-        admissible_step: f64,
-    }
-    /// The plan of the scene. What is not found yet is 0.
-    Planned = 0x07 {
-        /// 0: there is nothing to plan, no motion is shown or the kernel refuses it; 1: the search is under way; 2: the
-        /// plan is found.
-        found: u8,
-        /// The cheapest method, by its [`method_code`](super::method_code); [`NO_METHOD`](super::NO_METHOD) if nothing affordable
-        /// is right in any frame, with no more about it but the limit.
-        method: u8,
-        /// Steps to a frame; 0 for the closed form.
-        steps: u32,
-        /// The step size, s; 0 for the closed form.
-        dt: f64,
-        /// The largest error expected until the horizon, pixels.
-        error: f32,
-        /// Cycles to compute a frame, without drawing it (estimate).
-        cycles: f32,
-        /// Until when it is right to half a pixel about the exact motion, s; as far as was looked when it was found.
-        horizon: f64,
-        /// What ends that, by its [`limit_code`](super::limit_code).
-        limit: u8,
-        /// Cycles spent on planning (estimate).
-        planning: f32,
-        /// The display's height that was planned for, pixels: both rods together are half of it long.
-        height: f64,
-        /// For how long the plan is made, s.
-        duration: f64,
-        /// What computing a frame may cost, cycles.
-        frame_budget: f32,
-        /// What planning may cost, cycles.
-        planning_budget: f32,
-    }
-    /// What the board is.
-    Identity = 0x09 {
-        /// The board, by its [`code`](super::BoardName::code).
-        board: u8,
-        hertz: u32,
-        /// What the processor says that it is: CPUID.
-        processor: u32,
-        /// What the chip says that it is, and its unique number; zeros where it has none.
-        chip: [u32; 4],
-        /// CRC-32 of the program in its flash, code and constants.
-        image: u32,
-        /// Bytes of that.
-        image_bytes: u32,
-    }
-    /// How long steps took.
-    Measured = 0x0A {
-        steps: u32,
-        /// Processor cycles, what calls them included; 0 where nothing counts cycles, as in QEMU, or the code does not stand there.
-        cycles: u32,
-    }
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Identity {
+    pub board: BoardName,
+    pub hertz: u32,
+    /// What the processor says that it is: CPUID.
+    pub processor: u32,
+    /// What the chip says that it is, and its unique number; zeros where it has none.
+    pub chip: [u32; 4],
+    /// CRC-32 of the program in its flash, code and constants.
+    pub image: u32,
+    /// Bytes of that.
+    pub image_bytes: u32,
 }

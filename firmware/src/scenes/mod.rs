@@ -1,4 +1,4 @@
-//! The catalogue of scenes: one row each gives the name, the code on the wire, what it is and what it starts with.
+//! The catalogue of scenes: one row each gives the name, what it is and what it starts with.
 
 mod beats;
 mod butterfly;
@@ -17,12 +17,11 @@ use double_pendulum::Error;
 
 use crate::graphics::{Canvas, FadeLayer};
 use crate::motion::{Means, Settings, Simulation};
-use crate::protocol::choice;
 
 macro_rules! catalogue {
-    ($($(#[$doc:meta])* $row:ident = $code:literal, $name:literal, $scene:ty, $first:expr;)*) => {
+    ($($(#[$doc:meta])* $row:ident = $name:literal, $scene:ty, $first:expr;)*) => {
         choice! {
-            SceneName { $($(#[$doc])* $row = $code, $name;)* }
+            SceneName { $($(#[$doc])* $row = $name;)* }
         }
 
         impl SceneName {
@@ -76,31 +75,31 @@ macro_rules! catalogue {
 
 catalogue! {
     /// The page's animation.
-    Page = 0, "page", page::Page, Settings::default();
+    Page = "page", page::Page, Settings::default();
     /// Figure 3: small oscillations, mass ratio 0.2.
-    SmallLight = 1, "small-0.2", small::Small, small::example(0.2);
+    SmallLight = "small-0.2", small::Small, small::example(0.2);
     /// Figure 4: small oscillations, mass ratio 1.
-    SmallEqual = 2, "small-1", small::Small, small::example(1.0);
+    SmallEqual = "small-1", small::Small, small::example(1.0);
     /// Figure 5: small oscillations, mass ratio 5.
-    SmallHeavy = 3, "small-5", small::Small, small::example(5.0);
+    SmallHeavy = "small-5", small::Small, small::example(5.0);
     /// Figure 2: frequencies over the mass ratio.
-    Frequencies = 4, "frequencies", frequencies::Frequencies, Settings::default();
+    Frequencies = "frequencies", frequencies::Frequencies, Settings::default();
     /// Frequencies as 3 to 2: mass ratio 25/144.
-    Beats3To2 = 5, "beats-3-2", beats::Beats, beats::closing(25.0 / 144.0);
+    Beats3To2 = "beats-3-2", beats::Beats, beats::closing(25.0 / 144.0);
     /// Frequencies as 2 to 1: mass ratio 9/16.
-    Beats2To1 = 6, "beats-2-1", beats::Beats, beats::closing(9.0 / 16.0);
+    Beats2To1 = "beats-2-1", beats::Beats, beats::closing(9.0 / 16.0);
     /// Frequencies as 5 to 2: mass ratio 441/400.
-    Beats5To2 = 7, "beats-5-2", beats::Beats, beats::closing(441.0 / 400.0);
+    Beats5To2 = "beats-5-2", beats::Beats, beats::closing(441.0 / 400.0);
     /// Frequencies as 3 to 1: mass ratio 16/9.
-    Beats3To1 = 8, "beats-3-1", beats::Beats, beats::closing(16.0 / 9.0);
+    Beats3To1 = "beats-3-1", beats::Beats, beats::closing(16.0 / 9.0);
     /// Figure 7: the right equations and the misprinted ones.
-    Figure7 = 9, "figure-7", figure7::Figure7, figure7::figure();
+    Figure7 = "figure-7", figure7::Figure7, figure7::figure();
     /// Twins a millionth of a radian apart.
-    Butterfly = 10, "butterfly", butterfly::Butterfly, Settings::default();
+    Butterfly = "butterfly", butterfly::Butterfly, Settings::default();
     /// Both rods at exactly 180 degrees.
-    Upright = 11, "upright", upright::Upright, upright::straight_up();
+    Upright = "upright", upright::Upright, upright::straight_up();
     /// From which starts a rod turns over, and when.
-    Flips = 12, "flips", flips::Flips, Settings::default();
+    Flips = "flips", flips::Flips, Settings::default();
 }
 
 impl AnyScene {

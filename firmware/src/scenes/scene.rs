@@ -35,12 +35,13 @@ pub trait Scene: Sized {
     }
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Report {
+    /// Ticks of 1/60 s since the start.
     pub step: u64,
     /// Simulated time since the start, s.
     pub time: f64,
-    /// The canonical state of the first pendulum shown; zeros where none moves.
+    /// The canonical state of the first pendulum shown, turns counted; zeros where none moves.
     pub state: State<f32>,
     /// (E - E0)/(E0 - Emin) of that pendulum: its energy error relative to the energy at the start above hanging at rest.
     pub energy_error: f32,

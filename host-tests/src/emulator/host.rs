@@ -47,7 +47,7 @@ impl Show {
 
     /// Goes on to the tick of a board's `frame`: what the board should have sent, but for what only it can know.
     pub fn expected(&mut self, frame: &Frame) -> Frame {
-        while self.report().step < frame.step.into() {
+        while self.report().step < frame.report.step {
             self.tick();
         }
         let Frame { sequence, dropped, lost, scene_cycles, busy_cycles, .. } = *frame;

@@ -8,13 +8,13 @@ use std::time::Duration;
 
 use anyhow::{Context, bail, ensure};
 use firmware::app::Key;
-use firmware::protocol::{Frame, MAX_WIRE, Message, encode};
+use firmware::protocol::{self, Frame, MAX_WIRE, ToHost, encode_command};
 
 use crate::emulator::flash::{flash_image, uf2};
 use crate::emulator::process::{self, Running};
 use crate::emulator::qemu::{LogDecoder, LogLine, Screenshot};
 use crate::emulator::toolchain::workspace;
-use crate::link::{Counts, Inbox, Received};
+use crate::link::{Counts, Inbox};
 
 const SLICE: Duration = Duration::from_millis(1);
 /// A board that sends no frame for this many of them sends none.
@@ -30,8 +30,8 @@ pub struct PicoMachine {
     uart: Inbox,
     log: LogDecoder,
     lines: Vec<LogLine>,
-    heard_by_usb: Vec<Received>,
-    heard_by_uart: Vec<Received>,
+    heard_by_usb: Vec<ToHost>,
+    heard_by_uart: Vec<ToHost>,
 }
 
 impl PicoMachine {
@@ -55,18 +55,18 @@ impl PicoMachine {
     }
 
     /// Lets time pass by the board's clock; what it has sent over USB.
-    pub fn run(&mut self, time: Duration) -> anyhow::Result<Vec<Received>> {
+    pub fn run(&mut self, time: Duration) -> anyhow::Result<Vec<ToHost>> {
         self.tell(&format!("run {}", time.as_micros()))?;
         Ok(std::mem::take(&mut self.heard_by_usb))
     }
 
     /// Runs to the next frame: all messages up to it.
-    pub fn run_to_frame(&mut self) -> anyhow::Result<Vec<Received>> {
+    pub fn run_to_frame(&mut self) -> anyhow::Result<Vec<ToHost>> {
         let mut messages = Vec::new();
         for _ in 0..PATIENCE {
             let before = messages.len();
             messages.extend(self.run(SLICE)?);
-            if messages[before..].iter().any(|message| message.kind == Frame::KIND) {
+            if messages[before..].iter().any(|message| message.frame().is_some()) {
                 return Ok(messages);
             }
         }
@@ -74,22 +74,22 @@ impl PicoMachine {
     }
 
     pub fn next_frame(&mut self) -> anyhow::Result<Frame> {
-        self.run_to_frame()?.iter().rev().find_map(Received::read).context("it ends with one")
+        self.run_to_frame()?.into_iter().rev().find_map(ToHost::frame).context("it ends with one")
     }
 
     pub fn send_bytes(&mut self, bytes: &[u8]) -> anyhow::Result<()> {
         self.tell(&format!("usb {}", digits(bytes))).map(drop)
     }
 
-    pub fn send<M: Message>(&mut self, message: &M) -> anyhow::Result<()> {
-        self.send_bytes(encode(message, &mut [0; MAX_WIRE]))
+    pub fn send(&mut self, request: u16, command: protocol::Command) -> anyhow::Result<()> {
+        self.send_bytes(encode_command(request, command, &mut [0; MAX_WIRE]))
     }
 
-    pub fn send_through_uart<M: Message>(&mut self, message: &M) -> anyhow::Result<()> {
-        self.tell(&format!("uart {}", digits(encode(message, &mut [0; MAX_WIRE])))).map(drop)
+    pub fn send_through_uart(&mut self, request: u16, command: protocol::Command) -> anyhow::Result<()> {
+        self.tell(&format!("uart {}", digits(encode_command(request, command, &mut [0; MAX_WIRE])))).map(drop)
     }
 
-    pub fn heard_by_uart(&mut self) -> Vec<Received> {
+    pub fn heard_by_uart(&mut self) -> Vec<ToHost> {
         std::mem::take(&mut self.heard_by_uart)
     }
 

@@ -1,36 +1,23 @@
 //! Bytes that arrive, cut into messages and counted.
 
-use firmware::protocol::{Decoder, Field, Frame, LinkError, Message, Refused, Restarted};
+use firmware::protocol::{Decoder, Field, Frame, LinkError, ToHost, read};
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
     pub messages: u64,
-    /// Messages damaged on the way: wrong CRC, framing, length or version.
+    /// Messages damaged on the way: wrong CRC, framing, length, version or fields.
     pub damaged: u64,
     pub lost: u64,
     /// Times that the board began to count its frames anew.
     pub restarts: u64,
 }
 
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Received {
-    pub kind: u8,
-    pub fields: Vec<u8>,
-}
-
-impl Received {
-    pub fn read<M: Message>(&self) -> Option<M> {
-        if self.kind == M::KIND { M::read(&self.fields) } else { None }
-    }
-
-    /// If it is a refusal: of what.
-    pub fn refused(&self) -> Option<&'static str> {
-        let Refused { field, .. } = self.read()?;
-        Some(match Field::from_code(field) {
-            // It can read what this host sends, unless that has another table of methods.
-            Some(Field::Message) => "message; its firmware is not of this version, flash it anew",
-            field => field.map_or("unknown field", Field::name),
-        })
+/// What a board refuses, in words.
+pub fn refusal(field: Field) -> &'static str {
+    match field {
+        // It can read what this host sends, unless that has another table of methods.
+        Field::Message => "message; its firmware is not of this version, flash it anew",
+        field => field.name(),
     }
 }
 
@@ -48,9 +35,9 @@ pub struct Inbox {
 
 impl Inbox {
     /// Takes a byte; the message that it ends.
-    pub fn take(&mut self, byte: u8) -> Option<Received> {
-        let message = match self.decoder.push(byte)? {
-            Ok((kind, fields)) => Received { kind, fields: fields.to_vec() },
+    pub fn take(&mut self, byte: u8) -> Option<ToHost> {
+        let message = match self.decoder.push(byte)?.and_then(|bytes| read(bytes).ok_or(LinkError::Malformed)) {
+            Ok(message) => message,
             Err(error) => {
                 self.counts.damaged += u64::from(!std::mem::take(&mut self.joins));
                 self.damage = Some(error);
@@ -59,17 +46,20 @@ impl Inbox {
         };
         self.joins = false;
         self.counts.messages += 1;
-        if let Some(Frame { sequence, .. }) = message.read() {
-            let missing = self.expected.map_or(0, |expected| sequence.wrapping_sub(expected));
-            // One that lies behind is of a board that has started to count anew.
-            let restarted = missing > u32::MAX / 2;
-            self.counts.restarts += u64::from(restarted);
-            self.counts.lost += if restarted { 0 } else { missing.into() };
-            self.expected = Some(sequence.wrapping_add(1));
-        }
-        if message.kind == Restarted::KIND {
-            self.counts.restarts += 1;
-            self.expected = Some(0);
+        match message {
+            ToHost::Frame(Frame { sequence, .. }) => {
+                let missing = self.expected.map_or(0, |expected| sequence.wrapping_sub(expected));
+                // One that lies behind is of a board that has started to count anew.
+                let restarted = missing > u32::MAX / 2;
+                self.counts.restarts += u64::from(restarted);
+                self.counts.lost += if restarted { 0 } else { missing.into() };
+                self.expected = Some(sequence.wrapping_add(1));
+            }
+            ToHost::Restarted(_) => {
+                self.counts.restarts += 1;
+                self.expected = Some(0);
+            }
+            ToHost::Answer(..) => {}
         }
         Some(message)
     }
@@ -100,15 +90,15 @@ mod tests {
     use firmware::graphics::FrameBuffers;
     use firmware::job::Request;
     use firmware::motion::Settings;
-    use firmware::protocol::{MAX_FIELDS, MAX_WIRE, Simulate, encode, frame};
+    use firmware::protocol::{Answer, Command, MAX_WIRE, encode, encode_command, frame};
 
     use super::*;
 
     fn counts(messages: impl IntoIterator<Item = u32>) -> Counts {
         let mut inbox = Inbox::default();
         for sequence in messages {
-            let frame = Frame { sequence, ..Frame::default() };
-            encode(&frame, &mut [0; MAX_WIRE]).iter().for_each(|&byte| drop(inbox.take(byte)));
+            let frame = ToHost::Frame(Frame { sequence, ..Frame::default() });
+            encode(&frame, &mut [0; MAX_WIRE]).iter().for_each(|&byte| _ = inbox.take(byte));
         }
         inbox.counts()
     }
@@ -125,7 +115,7 @@ mod tests {
         let mut inbox = Inbox::default();
         inbox.join();
         let mut wire = [0; MAX_WIRE];
-        let wire = encode(&Frame::default(), &mut wire);
+        let wire = encode(&ToHost::Frame(Frame::default()), &mut wire);
         let stream = [&wire[20..], wire, &wire[..9], &[wire[9] ^ 0x10], &wire[10..]].concat();
         assert_eq!(stream.into_iter().filter_map(|byte| inbox.take(byte)).count(), 1);
         assert_eq!(inbox.counts(), Counts { messages: 1, damaged: 1, ..Counts::default() });
@@ -136,12 +126,18 @@ mod tests {
         let mut sheets = FrameBuffers::BLANK;
         let app = App::new(Settings::default(), &mut sheets, NoDisplay, Vec::new(), NoButtons);
         let mut app = app.expect("good settings");
-        let mut fields = Request::default().message(1).write(&mut [0; MAX_FIELDS]).to_vec();
+        let mut wire = [0; MAX_WIRE];
+        let mut message = Vec::new();
+        let mut decoder = Decoder::default();
+        for &byte in encode_command(1, Command::Simulate(Request::default()), &mut wire) {
+            message.extend(decoder.push(byte).transpose().expect("intact").unwrap_or_default());
+        }
         // Where its method stands.
-        fields[1] = 0x7f;
-        app.receive(frame(Simulate::KIND, &fields, &mut [0; MAX_WIRE]).iter().copied(), |_| ());
+        message[3] = 0x7f;
+        app.receive(frame(&message, &mut wire).iter().copied(), |_| ());
         let mut inbox = Inbox::default();
-        let refused: Vec<_> = app.link.iter().filter_map(|&byte| inbox.take(byte)?.refused()).collect();
-        assert!(matches!(refused[..], [words] if words.ends_with("flash it anew")), "{refused:?}");
+        let answers: Vec<_> = app.link.iter().filter_map(|&byte| inbox.take(byte)).collect();
+        let [ToHost::Answer(1, Answer::Refused(field))] = answers[..] else { panic!("{answers:?}") };
+        assert!(refusal(field).ends_with("flash it anew"), "{field:?}");
     }
 }

@@ -5,5 +5,5 @@ mod inbox;
 mod port;
 
 pub use find::{AUTO, find};
-pub use inbox::{Counts, Inbox, Received};
+pub use inbox::{Counts, Inbox, refusal};
 pub use port::Port;

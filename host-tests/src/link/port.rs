@@ -3,12 +3,12 @@
 use std::io::{ErrorKind, Read, Write};
 use std::time::{Duration, Instant};
 
-use firmware::app::{Cause, LastShown};
+use firmware::app::LastShown;
 use firmware::config::BAUD;
-use firmware::protocol::{LinkError, MAX_WIRE, Message, Restarted, VERSION, encode};
+use firmware::protocol::{Cause, Command, LinkError, MAX_WIRE, ToHost, VERSION, encode_command};
 use serialport::SerialPort;
 
-use super::inbox::{Counts, Inbox, Received};
+use super::inbox::{Counts, Inbox};
 
 /// How long bytes are waited for: they are looked for often enough.
 const WAIT: Duration = Duration::from_millis(1);
@@ -51,7 +51,7 @@ impl Port {
     }
 
     /// The messages that have come since the last call. A port that is gone is opened again once it is back.
-    pub fn messages(&mut self) -> Vec<Received> {
+    pub fn messages(&mut self) -> Vec<ToHost> {
         if self.open.is_none() {
             self.reopen();
         }
@@ -65,10 +65,9 @@ impl Port {
         messages
     }
 
-    /// Sends a message; while the port is gone it goes nowhere.
-    pub fn send<M: Message>(&mut self, message: &M) {
-        let mut wire = [0; MAX_WIRE];
-        self.send_bytes(encode(message, &mut wire));
+    /// Sends a command; while the port is gone it goes nowhere.
+    pub fn send(&mut self, request: u16, command: Command) {
+        self.send_bytes(encode_command(request, command, &mut [0; MAX_WIRE]));
     }
 
     pub fn send_bytes(&mut self, bytes: &[u8]) {
@@ -115,7 +114,7 @@ impl Port {
     }
 
     /// What the messages, or their absence, say of the other end.
-    fn note(&mut self, messages: &[Received]) {
+    fn note(&mut self, messages: &[ToHost]) {
         if !messages.is_empty() {
             if self.complained {
                 self.notices.push(format!("{}: the board sends again", self.name));
@@ -142,11 +141,11 @@ impl Port {
 }
 
 /// What the board says of its restart, if it has not just been switched on.
-fn restart(messages: &[Received]) -> String {
-    let Some(end) = messages.iter().rev().find_map(Received::read::<Restarted>) else {
+fn restart(messages: &[ToHost]) -> String {
+    let Some(end) = messages.iter().rev().copied().find_map(ToHost::restarted) else {
         return "the board has been switched on or reset".to_owned();
     };
-    let cause = Cause::from_code(end.cause).map_or("reset", Cause::name);
+    let cause = end.cause.map_or("reset", Cause::name);
     format!("the board has restarted after a {cause} in {}", LastShown(Some(end)))
 }
 

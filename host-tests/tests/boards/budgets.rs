@@ -4,10 +4,9 @@ use std::path::Path;
 
 use firmware::config::TICK_RATE;
 use firmware::job::{ON_BOARDS, Request};
-use firmware::protocol::{Ask, Choose, Field, MAX_WIRE, Message, Pause, Restart, Set, Step, encode};
+use firmware::protocol::{Command, Field, MAX_WIRE, ToHost, encode_command, frame};
 use host_tests::emulator::boards::Board;
 use host_tests::emulator::budgets::{self, MEMORY, Memory};
-use host_tests::link::Received;
 use object::elf::{SHF_ALLOC, SHF_WRITE};
 use object::{Object, ObjectSection, SectionFlags, SectionKind};
 
@@ -16,10 +15,10 @@ const FRAMES: usize = 24;
 const COMPUTING: usize = 2;
 
 /// What a board sends up to its next frame when it has been told this.
-pub type Next<'a> = &'a mut dyn FnMut(&[u8]) -> anyhow::Result<Vec<Received>>;
+pub type Next<'a> = &'a mut dyn FnMut(&[u8]) -> anyhow::Result<Vec<ToHost>>;
 
-pub fn wire(message: impl Message) -> Vec<u8> {
-    encode(&message, &mut [0; MAX_WIRE]).to_vec()
+pub fn wire(command: Command) -> Vec<u8> {
+    encode_command(1, command, &mut [0; MAX_WIRE]).to_vec()
 }
 
 /// Sends every command, good and bad, requests of every kind, and garbage.
@@ -30,20 +29,17 @@ pub fn exercise(next: Next) -> anyhow::Result<()> {
     };
     for field in Field::ALL {
         for value in [0.75, f64::NAN, -1e30] {
-            play(&wire(Set { request: 2, field: field.code(), value }), 1)?;
+            play(&wire(Command::Set { field: *field, value }), 1)?;
         }
     }
-    let [speed, none] =
-        [wire(Set { request: 3, field: Field::Speed.code(), value: 1.0 }), wire(Choose { request: 4, scene: u8::MAX })];
-    play(&[speed, none].concat(), 1)?;
-    let stepped =
-        [wire(Pause { request: 5, paused: 1 }), wire(Step { request: 6, ticks: 2 }), wire(Ask { request: 7 })];
-    play(&stepped.concat(), FRAMES)?;
-    play(&[wire(Restart { request: 8 }), wire(Pause { request: 9, paused: 0 })].concat(), 1)?;
+    let unreadable = frame(&[0x80, 1, 0xEE], &mut [0; MAX_WIRE]).to_vec();
+    play(&[wire(Command::Set { field: Field::Speed, value: 1.0 }), unreadable].concat(), 1)?;
+    play(&[Command::Pause(true), Command::Step(2), Command::Ask].map(wire).concat(), FRAMES)?;
+    play(&[Command::Restart, Command::Pause(false)].map(wire).concat(), 1)?;
     for &method in ON_BOARDS {
         for dt in [1.0 / 256.0, 0.5, 0.0] {
             let request = Request { dt, stride: 4, samples: 20, ..Request::on_any_core(method) };
-            play(&wire(request.message(10)), COMPUTING)?;
+            play(&wire(Command::Simulate(request)), COMPUTING)?;
         }
     }
     play(&[0x55; 300], FRAMES)?;

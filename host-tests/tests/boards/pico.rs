@@ -6,14 +6,12 @@ use crate::support::code::Code;
 use crate::support::{LIMIT, application, show};
 use cycles::Core;
 use double_pendulum::Method;
-use firmware::app::Cause;
 use firmware::app::Key;
 use firmware::config::{HOLD_TICKS, MOST_MEASURED_STEPS, RECEIVE_QUEUE, TICK_RATE, WATCHDOG_SECONDS};
 use firmware::graphics::Bitmap;
-use firmware::job::Request;
+use firmware::job::{CRC, Request};
 use firmware::protocol::{
-    Ask, BoardName, CRC, Choose, Done, Field, Frame, Identify, Identity, MAX_WIRE, Measure, Measured, Message, Pause,
-    Press, Restarted, Sample, Set, Status, encode,
+    Answer, BoardName, Cause, Command, Field, Frame, MAX_WIRE, Restarted, ToHost, encode_command,
 };
 use firmware::scenes::SceneName;
 use host_tests::commands::count::{FULL_CYCLE, Target, affordable_steps, step_cost};
@@ -21,7 +19,6 @@ use host_tests::emulator::boards::{BOARDS, PICO};
 use host_tests::emulator::flash::flash_image;
 use host_tests::emulator::pico::PicoMachine;
 use host_tests::emulator::toolchain;
-use host_tests::link::Received;
 
 /// Long enough for the panel to take a whole picture.
 const PICTURE: Duration = Duration::from_millis(50);
@@ -62,12 +59,12 @@ fn usb_and_uart_carry_the_hosts_bits_and_every_command() -> anyhow::Result<()> {
     let mut sent = Vec::new();
     for sequence in 0..FRAMES {
         let frame = board.next_frame()?;
-        assert_eq!((frame.sequence, frame.dropped, frame.step), (sequence, 0, sequence + 1));
+        assert_eq!((frame.sequence, frame.dropped, frame.report.step), (sequence, 0, u64::from(sequence) + 1));
         assert_eq!(frame, show.expected(&frame));
         sent.push(frame);
     }
     board.run(TICK / 4)?;
-    let through_uart: Vec<Frame> = board.heard_by_uart().iter().filter_map(Received::read).collect();
+    let through_uart: Vec<Frame> = board.heard_by_uart().into_iter().filter_map(ToHost::frame).collect();
     assert_eq!(through_uart, sent);
     // No frame waits for the UART.
     let showing = sent.windows(2).map(|frames| frames[1].busy_cycles - frames[0].scene_cycles).max();
@@ -77,54 +74,58 @@ fn usb_and_uart_carry_the_hosts_bits_and_every_command() -> anyhow::Result<()> {
 
     // Which board and which program it is.
     let (_, image) = flash_image(&std::fs::read(application(&PICO))?)?;
-    board.send(&Identify { request: 1 })?;
-    let messages = board.run(4 * TICK)?;
-    let identity: Identity = messages.iter().find_map(Received::read).expect("an answer");
-    assert_eq!((identity.board, identity.hertz), (BoardName::Pico.code(), PICO.hertz));
+    board.send(1, Command::Identify)?;
+    let [(1, Answer::Identity(identity))] = answers(board.run(4 * TICK)?)[..] else { panic!("no answer") };
+    assert_eq!((identity.board, identity.hertz), (BoardName::Pico, PICO.hertz));
     let program = &image[256..][..identity.image_bytes as usize];
     assert_eq!(identity.image, CRC.checksum(program));
     assert!(image.len() - 256 - program.len() < 256, "nearly all of it");
 
     // Samples that are made faster than the UART sends them arrive whole.
     board.heard_by_uart();
-    board.send(&request(Method::Rk4Fixed32, SAMPLES).message(1))?;
+    board.send(1, Command::Simulate(request(Method::Rk4Fixed32, SAMPLES)))?;
     board.run(60 * TICK)?;
-    let samples = board.heard_by_uart();
-    let samples = samples.iter().filter_map(Received::read).map(|Sample { index, .. }| index);
-    assert!(samples.eq(0..=SAMPLES));
+    let indices = answers(board.heard_by_uart()).into_iter().map(|answer| match answer {
+        (1, Answer::Sample { index, .. }) => index,
+        other => panic!("{other:?}"),
+    });
+    assert!(indices.eq(0..=SAMPLES));
 
     // Commands are obeyed from either side, and both hear both answers.
-    board.send(&Choose { request: 1, scene: SceneName::Butterfly.code() })?;
+    board.send(1, Command::Choose(SceneName::Butterfly))?;
     let mut messages = board.run(4 * TICK)?;
-    board.send_through_uart(&Set { request: 2, field: Field::M2.code(), value: 2.5 })?;
+    board.send_through_uart(2, Command::Set { field: Field::M2, value: 2.5 })?;
     messages.extend(board.run(4 * TICK)?);
     for heard in [messages, board.heard_by_uart()] {
-        let answers: Vec<_> = heard.iter().filter_map(Received::read).map(|Done { request }| request).collect();
-        assert_eq!(answers, [1, 2]);
+        assert_eq!(answers(heard), [(1, Answer::Done), (2, Answer::Done)]);
     }
     let frame = board.next_frame()?;
-    assert_eq!((frame.scene, frame.mass_ratio), (SceneName::Butterfly.code(), 2.5));
+    assert_eq!((frame.scene, frame.mass_ratio), (SceneName::Butterfly, 2.5));
 
     // A flood over USB, more than it takes in many ticks, in which its queue is full, loses nothing: the host waits.
     let mut flood = vec![1; 5 * RECEIVE_QUEUE];
     for request in 0..100 {
-        flood.extend_from_slice(encode(&Ask { request }, &mut [0; MAX_WIRE]));
+        flood.extend_from_slice(encode_command(request, Command::Ask, &mut [0; MAX_WIRE]));
     }
     board.send_bytes(&flood)?;
-    let messages = board.run(60 * TICK)?;
-    let answers = messages.iter().filter_map(Received::read).map(|Status { request, .. }| request);
-    assert!(answers.eq(0..100));
+    assert!(answers(board.run(60 * TICK)?).into_iter().map(|(request, _)| request).eq(0..100));
     let frame = board.next_frame()?;
     assert_eq!((frame.lost, frame.dropped), (0, 0));
     assert_eq!(board.counts().map(|counts| counts.damaged + counts.lost), [0; 2]);
     Ok(())
 }
 
+fn answers(messages: Vec<ToHost>) -> Vec<(u16, Answer)> {
+    messages.into_iter().filter_map(ToHost::answer).collect()
+}
+
 /// The cycles of the motion's next steps, in flash or in memory.
-fn measured(board: &mut PicoMachine, in_ram: u8) -> anyhow::Result<u32> {
-    board.send(&Measure { request: 2, steps: MOST_MEASURED_STEPS, in_ram })?;
-    let messages = board.run(4 * TICK)?;
-    Ok(messages.iter().find_map(Received::read).map_or(0, |Measured { cycles, .. }| cycles))
+fn measured(board: &mut PicoMachine, in_ram: bool) -> anyhow::Result<u32> {
+    board.send(2, Command::Measure { steps: MOST_MEASURED_STEPS, in_ram })?;
+    match answers(board.run(4 * TICK)?)[..] {
+        [(2, Answer::Measured { cycles, .. })] => Ok(cycles),
+        ref others => panic!("{others:?}"),
+    }
 }
 
 /// The emulator counts cycles by itself: a second opinion on the prices of `cargo count`, which QEMU's instructions are given. In it
@@ -140,10 +141,10 @@ fn the_emulator_counts_the_cycles_that_are_estimated_in_flash_and_in_memory() ->
     let emulated = BOARDS.iter().find(|board| board.core() == Core::M0Plus).expect("QEMU's");
     let target = Target::build(&toolchain::ready()?, emulated)?;
     for method in [single, fixed64, Method::Rk4Fixed32] {
-        board.send(&request(method, 0).message(1))?;
+        board.send(1, Command::Simulate(request(method, 0)))?;
         board.run(4 * TICK)?;
         let steps = FULL_CYCLE / MOST_MEASURED_STEPS;
-        let cycles = (0..steps).map(|_| measured(&mut board, 0)).sum::<Result<u32, _>>()?;
+        let cycles = (0..steps).map(|_| measured(&mut board, false)).sum::<Result<u32, _>>()?;
         let counted = f64::from(cycles) / f64::from(FULL_CYCLE);
         let request = request(method, 1);
         let request = Request { stride: affordable_steps(&target, &request)?, ..request };
@@ -153,20 +154,20 @@ fn the_emulator_counts_the_cycles_that_are_estimated_in_flash_and_in_memory() ->
     let steps = Code::read(&application(&PICO)).expect("the program");
     let entry = steps.functions_named(|name| name.contains("OnBoards as firmware::job::run::Run>::advance")).next();
     let entry = entry.expect("the entry");
-    let (flash, ram) = (measured(&mut board, 0)?, measured(&mut board, 1)?);
+    let (flash, ram) = (measured(&mut board, false)?, measured(&mut board, true)?);
     assert!(flash > 1000 * MOST_MEASURED_STEPS && flash.abs_diff(ram) < flash / 10, "{flash} and {ram} cycles");
     for (address, byte) in (entry..).zip(RETURN) {
         board.tell(&format!("fill {address} 1 {byte}"))?;
     }
-    let spoilt = measured(&mut board, 1)?;
+    let spoilt = measured(&mut board, true)?;
     assert!(spoilt < 1000, "{spoilt} cycles for nothing");
-    assert!(measured(&mut board, 0)?.abs_diff(flash) < flash / 10);
+    assert!(measured(&mut board, false)?.abs_diff(flash) < flash / 10);
     Ok(())
 }
 
 /// The board stands still, so that the panel has time to take all of a picture.
 fn stand_still(board: &mut PicoMachine) -> anyhow::Result<Frame> {
-    board.send(&Pause { request: 9, paused: 1 })?;
+    board.send(9, Command::Pause(true))?;
     board.run(PICTURE)?;
     board.next_frame()
 }
@@ -184,15 +185,15 @@ fn the_panel_shows_the_hosts_picture_whichever_it_is_and_however_often_it_is_pul
         (SceneName::Butterfly, 8, "panel: Found { controller: Sh1106, by: Status(72) }"),
         (SceneName::Flips, 8, ""),
     ] {
-        board.send(&Choose { request: 1, scene: name.code() })?;
-        board.send(&Pause { request: 2, paused: 0 })?;
+        board.send(1, Command::Choose(name))?;
+        board.send(2, Command::Pause(false))?;
         board.tell(&format!("plug {status}"))?;
         // A new one is looked for within a second, and has what was lost in one more.
         board.run(if status == 0 { 4 * PICTURE } else { Duration::from_millis(2000) })?;
         let frame = stand_still(&mut board)?;
         assert_eq!(board.lines().iter().any(|line| line.text == found), !found.is_empty(), "{}", name.name());
         let mut show = show(&PICO, name);
-        (0..frame.step).for_each(|_| show.tick());
+        (0..frame.report.step).for_each(|_| show.tick());
         let mut canvas = show.frame();
         firmware::graphics::text::pause_mark(&mut canvas);
         let (shown, picture) = (board.tell("panel")?, Bitmap::from(&canvas));
@@ -218,7 +219,7 @@ fn every_button_does_its_own() -> anyhow::Result<()> {
     }
     board.set_key(Key::Select, true)?;
     board.run(TICK * (u32::from(HOLD_TICKS) + 6))?;
-    assert_eq!(board.next_frame()?.scene, SceneName::Page.next().code());
+    assert_eq!(board.next_frame()?.scene, SceneName::Page.next());
     Ok(())
 }
 
@@ -226,27 +227,31 @@ fn every_button_does_its_own() -> anyhow::Result<()> {
 fn the_watchdog_restarts_the_board_in_its_scene() -> anyhow::Result<()> {
     let mut board = board()?;
     board.run(PICTURE)?;
-    board.send(&Choose { request: 1, scene: SceneName::Butterfly.code() })?;
-    board.send(&Press { request: 2, key: Key::Up.code() })?;
+    board.send(1, Command::Choose(SceneName::Butterfly))?;
+    board.send(2, Key::Up.tapped())?;
     board.run(10 * TICK)?;
     let before = board.next_frame()?;
     board.run(TICK / 4)?;
     board.tell("hang")?;
     let messages = board.run(Duration::from_secs(u64::from(WATCHDOG_SECONDS) * 2) + 8 * PICTURE)?;
-    let restarted: Vec<Restarted> = messages.iter().chain(&board.heard_by_uart()).filter_map(Received::read).collect();
-    let Restarted { cause, restarts, scene, step, .. } = *restarted.first().expect("it says so");
-    assert_eq!((Cause::from_code(cause), restarts), (Some(Cause::Hang), 1));
-    assert_eq!((scene, step), (before.scene, before.step));
+    let restarted = messages.into_iter().chain(board.heard_by_uart()).find_map(ToHost::restarted);
+    let Restarted { cause, restarts, scene, step, .. } = restarted.expect("it says so");
+    assert_eq!((cause, restarts), (Some(Cause::Hang), 1));
+    assert_eq!((scene, step), (before.scene, before.report.step));
     let frame = board.next_frame()?;
     assert_eq!((frame.scene, frame.mass_ratio), (before.scene, before.mass_ratio));
-    assert_eq!((frame.step, frame.dropped), (frame.sequence + 1, 0), "from its start, and all frames since");
+    assert_eq!(
+        (frame.report.step, frame.dropped),
+        (u64::from(frame.sequence) + 1, 0),
+        "from its start, and all frames since"
+    );
     // A reset from outside starts afresh: it is not for the watchdog's that was before, nor for the one by which the boot ROM does it.
     for after_download in [false, true, false] {
         board.tell(&format!("reset {}", u8::from(after_download)))?;
         let messages = board.run(8 * PICTURE)?;
-        assert!(messages.iter().all(|message| message.kind != Restarted::KIND), "{after_download}");
-        assert_eq!(board.next_frame()?.scene, SceneName::Page.code());
-        board.send(&Choose { request: 3, scene: SceneName::Butterfly.code() })?;
+        assert!(messages.iter().all(|message| message.restarted().is_none()), "{after_download}");
+        assert_eq!(board.next_frame()?.scene, SceneName::Page);
+        board.send(3, Command::Choose(SceneName::Butterfly))?;
         board.run(4 * TICK)?;
     }
     Ok(())

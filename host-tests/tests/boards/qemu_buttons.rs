@@ -23,7 +23,7 @@ fn choose_and_restart(board: &Board) -> anyhow::Result<()> {
     settle(&mut machine)?;
     machine.wake_keys()?;
     let start = settle(&mut machine)?;
-    assert!(start.step > SETTLING as u32, "waking the buttons must not restart");
+    assert!(start.report.step > SETTLING as u64, "waking the buttons must not restart");
     let place = |frame: &Frame| MASS_RATIOS.iter().position(|ratio| *ratio == frame.mass_ratio).expect("one of them");
     let degrees = |frame: &Frame| frame.start_angle.to_degrees().round();
     for (key, ratios, turn) in
@@ -33,11 +33,11 @@ fn choose_and_restart(board: &Board) -> anyhow::Result<()> {
         let expected = (place(&before).checked_add_signed(ratios), degrees(&before) + turn);
         assert_eq!((Some(place(&after)), degrees(&after)), expected, "{}: {key:?}", board.name);
         let near = |angle: f32| (angle - after.start_angle).abs() < 0.01;
-        assert!(near(after.state[0]) && near(after.state[1]), "{key:?}: both rods near the start angle");
+        assert!(near(after.report.state.a1) && near(after.report.state.a2), "{key:?}: both rods near the start angle");
     }
     // Held, it is for the next scene.
     let (_, after) = press(&mut machine, Key::Select)?;
-    assert_eq!(after.scene, SceneName::Page.next().code(), "{}", board.name);
+    assert_eq!(after.scene, SceneName::Page.next(), "{}", board.name);
     Ok(())
 }
 
@@ -46,10 +46,10 @@ fn press(machine: &mut Machine, key: Key) -> anyhow::Result<(Frame, Frame)> {
     let mut before = settle(machine)?;
     machine.set_key(key, true)?;
     for _ in 0..PATIENCE {
-        let after: Frame = machine.wait_for()?;
-        if after.step < before.step {
+        let after = machine.next_frame()?;
+        if after.report.step < before.report.step {
             machine.set_key(key, false)?;
-            assert_eq!(after.step, 1, "{key:?}: restarted and moved by one tick");
+            assert_eq!(after.report.step, 1, "{key:?}: restarted and moved by one tick");
             return Ok((before, after));
         }
         before = after;
@@ -59,11 +59,11 @@ fn press(machine: &mut Machine, key: Key) -> anyhow::Result<(Frame, Frame)> {
 
 /// Lets go by what is under way; the last frame of it, since which nothing has restarted for a while.
 fn settle(machine: &mut Machine) -> anyhow::Result<Frame> {
-    let mut last: Frame = machine.wait_for()?;
+    let mut last = machine.next_frame()?;
     let mut quiet = 0;
     while quiet < SETTLING {
-        let frame: Frame = machine.wait_for()?;
-        quiet = if frame.step < last.step { 0 } else { quiet + 1 };
+        let frame = machine.next_frame()?;
+        quiet = if frame.report.step < last.report.step { 0 } else { quiet + 1 };
         last = frame;
     }
     Ok(last)

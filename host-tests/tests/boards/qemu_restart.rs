@@ -8,8 +8,8 @@ use std::time::Duration;
 
 use crate::support::{address, application, on, settings, toolchain};
 use cycles::Image;
-use firmware::app::{Cause, MOST_RESTARTS};
-use firmware::protocol::{Choose, Field, Frame, Restarted, Set};
+use firmware::app::MOST_RESTARTS;
+use firmware::protocol::{Cause, Command, Field, Frame, Restarted, ToHost};
 use firmware::scenes::SceneName;
 use host_tests::emulator::boards::{BOARDS, Board, STM32F405};
 use host_tests::emulator::qemu::{Lockstep, Machine, Register, Settings};
@@ -33,20 +33,20 @@ fn within(probe: &mut Lockstep, elf: &Path, scene: SceneName) -> anyhow::Result<
     let stopwatch = address(elf, STOPWATCH);
     probe.run_to(stopwatch)?;
     let serial = &mut probe.machine().serial;
-    serial.send(&Choose { request: 1, scene: scene.code() })?;
-    serial.send(&Set { request: 2, field: Field::MassRatio.code(), value: MASS_RATIO.into() })?;
+    serial.send(1, Command::Choose(scene))?;
+    serial.send(2, Command::Set { field: Field::MassRatio, value: MASS_RATIO.into() })?;
     // To stop rarely is quicker: QEMU then forgets what it has translated.
-    let is_it = |frame: &Frame| frame.scene == scene.code() && frame.mass_ratio == MASS_RATIO;
+    let is_it = |frame: &Frame| frame.scene == scene && frame.mass_ratio == MASS_RATIO;
     let machine = probe.run()?;
     let mut seen = 0;
     while seen < FRAMES {
-        seen += usize::from(is_it(&machine.wait_for()?));
+        seen += usize::from(is_it(&machine.next_frame()?));
     }
     probe.stop()?;
     probe.machine().serial.all_arrived().for_each(drop);
     loop {
         probe.run_to(stopwatch)?;
-        if let Some(frame) = probe.machine().serial.arrived::<Frame>().last() {
+        if let Some(frame) = probe.machine().serial.frames_arrived().last() {
             assert!(is_it(&frame), "{frame:?}");
             // This reading was for the end of the frame; the next is for the beginning, then the frame is drawn.
             probe.run_to(stopwatch)?;
@@ -90,7 +90,7 @@ fn says(
     spoil(&mut probe, &elf)?;
     let report = last_words(probe.run()?)?;
     assert_said(board, &report, parts);
-    assert_said(board, &report, &[&format!("scene {}, step {}\n", scene.name(), frame.step)]);
+    assert_said(board, &report, &[&format!("scene {}, step {}\n", scene.name(), frame.report.step)]);
     Ok(())
 }
 
@@ -178,16 +178,17 @@ fn a_board_that_hangs_comes_back_where_it_was_and_says_why() -> anyhow::Result<(
     watched(SceneName::Butterfly, true, |board, _, mut probe, before| {
         execute(&mut probe, HANG)?;
         let machine = probe.run()?;
-        let Restarted { cause, restarts, pc, scene, step, .. } = machine.wait_for()?;
-        assert_eq!((Cause::from_code(cause), restarts, pc), (Some(Cause::Hang), 1, UNUSED), "{}", board.name);
-        assert_eq!((scene, step), (SceneName::Butterfly.code(), before.step), "{}", board.name);
+        let Restarted { cause, restarts, pc, scene, step, .. } = machine.wait_for(ToHost::restarted)?;
+        assert_eq!((cause, restarts, pc), (Some(Cause::Hang), 1, UNUSED), "{}", board.name);
+        assert_eq!((scene, step), (SceneName::Butterfly, before.report.step), "{}", board.name);
         for sequence in 0..FRAMES as u32 {
-            let frame: Frame = machine.wait_for()?;
-            assert_eq!((frame.sequence, frame.step), (sequence, sequence + 1), "{}", board.name);
+            let frame = machine.next_frame()?;
+            let step = u64::from(sequence) + 1;
+            assert_eq!((frame.sequence, frame.report.step), (sequence, step), "{}", board.name);
             assert_eq!((frame.scene, frame.mass_ratio), (before.scene, MASS_RATIO), "{}", board.name);
         }
         assert_eq!((machine.serial.counts().damaged, machine.serial.counts().lost), (0, 0), "{}", board.name);
-        let (pc, place) = (format!("pc {UNUSED:#010x}"), format!("scene butterfly, step {}\n", before.step));
+        let (pc, place) = (format!("pc {UNUSED:#010x}"), format!("scene butterfly, step {}\n", before.report.step));
         let last = format!("restarted after a hang, 1 in a row: {pc}");
         assert_said(board, &machine.said(), &["HANG: no frame finished for 1 s\n", &pc, &place, &last]);
         Ok(())
@@ -205,18 +206,18 @@ fn without_a_debugger_a_fault_restarts_the_board() -> anyhow::Result<()> {
             while frame.is_none() {
                 probe.run_to(stopwatch)?;
                 for message in probe.machine().serial.all_arrived() {
-                    restarted = restarted.or(message.read::<Restarted>());
-                    frame = frame.or(message.read::<Frame>());
+                    restarted = restarted.or(message.restarted());
+                    frame = frame.or(message.frame());
                 }
             }
             let restarted = restarted.expect("said before the first frame");
             let cfsr = if board.is_guarded() { 1 << 16 } else { 0 };
-            assert_eq!(Cause::from_code(restarted.cause), Some(Cause::Fault), "{}", board.name);
+            assert_eq!(restarted.cause, Some(Cause::Fault), "{}", board.name);
             assert_eq!((restarted.restarts, restarted.pc, restarted.cfsr), (restarts, UNUSED, cfsr), "{}", board.name);
             assert_eq!(restarted.scene, before.scene, "{}", board.name);
             // What ends the board each time is given up.
             let scene = if restarts <= MOST_RESTARTS { SceneName::Figure7 } else { SceneName::Page };
-            assert_eq!(frame.map(|frame| frame.scene), Some(scene.code()), "{}: restart {restarts}", board.name);
+            assert_eq!(frame.map(|frame| frame.scene), Some(scene), "{}: restart {restarts}", board.name);
         }
         Ok(())
     })
@@ -230,8 +231,8 @@ fn a_report_that_takes_long_is_no_hang() -> anyhow::Result<()> {
         probe.run_to(address(elf, "crash::say"))?;
         execute(&mut probe, HANG)?;
         let machine = probe.run()?;
-        let restarted: Restarted = machine.wait_for()?;
-        assert_eq!(Cause::from_code(restarted.cause), Some(Cause::Fault), "{}", board.name);
+        let restarted = machine.wait_for(ToHost::restarted)?;
+        assert_eq!(restarted.cause, Some(Cause::Fault), "{}", board.name);
         let log = machine.said();
         assert!(!log.contains("HANG"), "{}: {log}", board.name);
         Ok(())

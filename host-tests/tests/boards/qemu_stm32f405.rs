@@ -3,7 +3,7 @@
 use crate::support::{address, application, on};
 use firmware::config::MOST_MEASURED_STEPS;
 use firmware::job::{ON_BOARDS, Request};
-use firmware::protocol::{Frame, Measure, Measured};
+use firmware::protocol::{Answer, Command};
 use host_tests::emulator::boards::STM32F405;
 use host_tests::emulator::qemu::Lockstep;
 use object::{Object, ObjectSegment};
@@ -32,22 +32,24 @@ fn it_starts_from_anywhere_goes_on_without_a_panel_and_steps_in_flash_and_in_mem
     assert_eq!(probe.read(VTOR..VTOR + 4)?, 0x0800_0000_u32.to_le_bytes());
     let machine = probe.run()?;
     for sequence in 0..FRAMES {
-        let frame: Frame = machine.wait_for()?;
+        let frame = machine.next_frame()?;
         assert_eq!((frame.sequence, frame.dropped), (sequence, 0), "looking for the panel holds up nothing");
-        assert_eq!(frame.step, sequence + 1, "a line that reads low for ever presses no button");
+        assert_eq!(frame.report.step, u64::from(sequence) + 1, "a line that reads low for ever presses no button");
     }
     // The plan's line comes as soon as it is found.
     let log: Vec<_> = machine.log.arrived().map(|line| line.text).filter(|text| !text.starts_with("plan: ")).collect();
     assert_eq!(log, ["boot: stm32f405, 168000000 Hz", "panel: Absent(Other)"]);
     // Every method's from its copy in memory: a branch into nowhere would end the application.
     for (&method, request) in ON_BOARDS.iter().zip(0..) {
-        machine.serial.send(&Request { samples: 0, ..Request::on_any_core(method) }.message(request))?;
-        for in_ram in [0, 1] {
-            machine.serial.send(&Measure { request, steps: MOST_MEASURED_STEPS, in_ram })?;
+        let motion = Request { samples: 0, ..Request::on_any_core(method) };
+        machine.serial.send(request, Command::Simulate(motion))?;
+        machine.next_answer()?;
+        for in_ram in [false, true] {
+            machine.serial.send(request, Command::Measure { steps: MOST_MEASURED_STEPS, in_ram })?;
             // QEMU counts none.
-            let measured = Measured { request, steps: MOST_MEASURED_STEPS, cycles: 0 };
-            assert_eq!(machine.wait_for::<Measured>()?, measured);
+            let measured = Answer::Measured { steps: MOST_MEASURED_STEPS, cycles: 0 };
+            assert_eq!(machine.next_answer()?, (request, measured));
         }
     }
-    machine.wait_for::<Frame>().map(drop)
+    machine.next_frame().map(drop)
 }

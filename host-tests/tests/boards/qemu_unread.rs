@@ -5,7 +5,6 @@ use std::thread::sleep;
 use std::time::Duration;
 
 use crate::support::{on, show};
-use firmware::protocol::Frame;
 use firmware::scenes::SceneName;
 use host_tests::emulator::boards::{BOARDS, STM32F405};
 use host_tests::emulator::qemu::{Clock, Machine, Settings};
@@ -23,7 +22,7 @@ const FRAMES: usize = 120;
 fn a_host_that_stops_reading_loses_frames_and_nothing_else() -> anyhow::Result<()> {
     let board = BOARDS.iter().find(|board| board.name == "mps2-an386").expect("it is a board");
     let mut machine = on(board, Machine::start)?;
-    let first: Frame = machine.wait_for()?;
+    let first = machine.next_frame()?;
 
     let stopped = machine.serial.stop_reading();
     let mut said = Vec::new();
@@ -36,10 +35,10 @@ fn a_host_that_stops_reading_loses_frames_and_nothing_else() -> anyhow::Result<(
     let mut show = show(board, SceneName::Page);
     let (mut last, mut after) = (first, 0);
     while after < FRAMES {
-        let frame: Frame = machine.wait_for()?;
+        let frame = machine.next_frame()?;
         assert_eq!(frame, show.expected(&frame));
         // No tick is left out, even if its frame is.
-        assert_eq!(frame.step, frame.sequence + 1 + frame.dropped);
+        assert_eq!(frame.report.step, u64::from(frame.sequence + 1 + frame.dropped));
         after += usize::from(after > 0 || frame.sequence > last.sequence + 1);
         last = frame;
     }
@@ -63,7 +62,7 @@ fn a_board_whose_emulator_pauses_does_not_take_it_for_a_hang() -> anyhow::Result
         let emulator = Pid::from_raw(machine.id().cast_signed());
         for pause in [true, false] {
             for _ in 0..FRAMES {
-                machine.wait_for::<Frame>()?;
+                machine.next_frame()?;
             }
             if pause {
                 kill(emulator, Signal::SIGSTOP)?;
@@ -84,12 +83,12 @@ fn received_bytes_that_are_lost_are_counted() -> anyhow::Result<()> {
     let flood = [0, 1].repeat(10_000);
     for board in &BOARDS {
         let mut machine = on(board, Machine::start)?;
-        assert_eq!(machine.wait_for::<Frame>()?.lost, 0, "{}", board.name);
+        assert_eq!(machine.next_frame()?.lost, 0, "{}", board.name);
         machine.serial.send_bytes(&flood)?;
         // The log comes by another way than the frames, and may be later.
         let (mut lost, mut log) = (0, String::new());
         while lost == 0 || !log.contains("received bytes lost") {
-            lost = machine.wait_for::<Frame>()?.lost;
+            lost = machine.next_frame()?.lost;
             log += &machine.said();
         }
         assert!(lost < flood.len() as u32, "{}: {lost}", board.name);

@@ -11,7 +11,7 @@ use crate::budgets::{Next, beyond, exercise, wire};
 use crate::support::{LIMIT, PAINT, application, depth, on, show, stack};
 use cycles::{Core, Cost, Image};
 use firmware::config::TICK_RATE;
-use firmware::protocol::{Choose, Frame, Message};
+use firmware::protocol::{Command, Frame, ToHost};
 use firmware::scenes::SceneName;
 use host_tests::commands::count::FrameProfile;
 use host_tests::emulator::boards::{BOARDS, Board, PICO};
@@ -20,7 +20,7 @@ use host_tests::emulator::host::Show;
 use host_tests::emulator::pico::PicoMachine;
 use host_tests::emulator::qemu::{Lockstep, Screenshot, Settings};
 use host_tests::emulator::toolchain;
-use host_tests::link::{Counts, Received};
+use host_tests::link::Counts;
 use rayon::prelude::*;
 
 /// Every so many frames the panel is compared.
@@ -65,10 +65,10 @@ fn every_board_plays(limit: Duration, ticks: fn(&Board, SceneName) -> u32) -> an
 }
 
 /// Tells a board that runs freely something, and waits for its next frame.
-fn told(machine: &mut Lockstep, words: &[u8]) -> anyhow::Result<Vec<Received>> {
+fn told(machine: &mut Lockstep, words: &[u8]) -> anyhow::Result<Vec<ToHost>> {
     machine.machine().serial.send_bytes(words)?;
     let mut messages = Vec::new();
-    while messages.last().is_none_or(|last: &Received| last.kind != Frame::KIND) {
+    while messages.last().is_none_or(|last: &ToHost| last.frame().is_none()) {
         messages.push(machine.machine().receive()?);
     }
     Ok(messages)
@@ -87,7 +87,7 @@ struct Followed<'a> {
 
 impl<'a> Followed<'a> {
     fn new(board: &'a Board, name: SceneName) -> Self {
-        let words = wire(Choose { request: 1, scene: name.code() });
+        let words = wire(Command::Choose(name));
         Self { board, name, show: show(board, name), words, highest: [0; 2] }
     }
 
@@ -100,10 +100,10 @@ impl<'a> Followed<'a> {
         while self.step() < until {
             let messages = next(&std::mem::take(&mut self.words))?;
             // The command may not have been executed yet.
-            let is_here = |frame: &Frame| frame.scene == self.name.code();
-            for frame in messages.iter().filter_map(Received::read).filter(is_here) {
+            let is_here = |frame: &Frame| frame.scene == self.name;
+            for frame in messages.into_iter().filter_map(ToHost::frame).filter(is_here) {
                 let (place, step) = (format!("{}: {}", self.board.name, self.name.name()), self.step() + 1);
-                assert_eq!((frame.step, frame.dropped), (step, 0), "{place}");
+                assert_eq!((frame.report.step, frame.dropped), (step.into(), 0), "{place}");
                 assert_eq!(frame, self.show.expected(&frame), "{place}");
                 if step > SETTLING {
                     let [scene, whole] = self.highest;

@@ -7,9 +7,9 @@ use std::thread::{sleep, spawn};
 use std::time::{Duration, Instant};
 
 use super::cli::program;
-use crate::support::bench::{Bench, WAIT, at_port, board, intact};
-use firmware::protocol::{Frame, MAX_WIRE, encode};
-use host_tests::link::Received;
+use crate::support::bench::{Bench, WAIT, at_port, board, wire};
+use firmware::protocol::{Frame, ToHost};
+use firmware::scenes::Report;
 use nix::pty::{OpenptyResult, Winsize, openpty};
 
 /// A cable stays out for so long.
@@ -31,9 +31,9 @@ fn demo(code: i32, arguments: &str, play: impl FnMut(&mut Bench)) -> [String; 2]
 
 #[test]
 fn every_frame_of_a_board_at_a_port_is_compared_and_a_damaged_one_counted() {
-    let damaged = |message: &Received| {
-        let mut wire = intact(message);
-        if message.read::<Frame>().is_some_and(|frame| frame.sequence == 400) {
+    let damaged = |message: ToHost| {
+        let mut wire = wire(message);
+        if message.frame().is_some_and(|frame| frame.sequence == 400) {
             wire[30] ^= 0x10;
         }
         wire
@@ -45,12 +45,13 @@ fn every_frame_of_a_board_at_a_port_is_compared_and_a_damaged_one_counted() {
 
 #[test]
 fn one_flipped_bit_is_named_and_fails() {
-    let flipped = |message: &Received| match message.read::<Frame>() {
-        Some(mut frame) if frame.sequence == 300 => {
-            frame.state[2] = f32::from_bits(frame.state[2].to_bits() ^ 1);
-            encode(&frame, &mut [0; MAX_WIRE]).to_vec()
+    let flipped = |mut message: ToHost| {
+        if let ToHost::Frame(frame) = &mut message
+            && frame.sequence == 300
+        {
+            frame.report.state.p1 = f32::from_bits(frame.report.state.p1.to_bits() ^ 1);
         }
-        _ => intact(message),
+        wire(message)
     };
     let [_, told] = demo(1, "--seconds 8", |bench| bench.carry(flipped));
     let is_it = |line: &str| line.starts_with("not well: frame 300, step ") && line.contains(": p1 is 0x");
@@ -61,7 +62,7 @@ fn one_flipped_bit_is_named_and_fails() {
 fn a_board_that_restarts_is_followed_again() {
     let mut restarted = false;
     let [said, told] = demo(0, "--seconds 8", |bench| {
-        bench.carry(intact);
+        bench.carry(wire);
         if !restarted && bench.heard && bench.frame > 200 {
             (bench.machine, restarted) = (board(), true);
         }
@@ -76,8 +77,8 @@ fn a_board_that_does_not_play_what_it_is_told_is_given_up() {
     let mut sequence = 0;
     let [_, told] = demo(1, "--scene butterfly", |bench| {
         sequence += 1;
-        let frame = Frame { sequence, step: sequence, ..Frame::default() };
-        bench.say(encode(&frame, &mut [0; MAX_WIRE]));
+        let report = Report { step: sequence.into(), ..Report::default() };
+        bench.say(&wire(ToHost::Frame(Frame { sequence, report, ..Frame::default() })));
         bench.is_heard();
         sleep(Duration::from_millis(16));
     });
@@ -88,7 +89,7 @@ fn a_board_that_does_not_play_what_it_is_told_is_given_up() {
 fn a_pulled_cable_is_said_and_waited_for() {
     let mut pulled = None;
     let [said, told] = demo(0, "--seconds 8", |bench| {
-        bench.carry(intact);
+        bench.carry(wire);
         match pulled {
             None if bench.heard && bench.frame > 200 => {
                 bench.unplug();
@@ -111,7 +112,7 @@ fn a_foreign_device_is_said_and_a_board_in_its_place_is_taken() {
             bench.say(FOREIGNER);
             sleep(Duration::from_millis(20));
         } else {
-            bench.carry(intact);
+            bench.carry(wire);
         }
     });
     let count = |words| told.matches(words).count();

@@ -8,7 +8,7 @@ use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use firmware::protocol::Frame;
+use firmware::protocol::ToHost;
 use host_tests::emulator::boards::{PICO, STM32F405};
 use host_tests::emulator::flash::flash_image;
 use host_tests::emulator::process::{self, Output};
@@ -118,8 +118,8 @@ fn it_hands_the_bytes_of_the_flash_to_dfu_util() -> io::Result<()> {
     let mut qemu = process::spawn(qemu.stdout(Stdio::piped()).stderr(Stdio::null()), LIMIT).expect("QEMU");
     let mut inbox = Inbox::default();
     let bytes = BufReader::new(qemu.stdout.take().expect("its serial port")).bytes();
-    let mut frames = bytes.map_while(Result::ok).filter_map(|byte| inbox.take(byte)?.read::<Frame>());
-    assert_eq!(frames.next().map(|frame| frame.step), Some(1));
+    let mut frames = bytes.map_while(Result::ok).filter_map(|byte| inbox.take(byte)).filter_map(ToHost::frame);
+    assert_eq!(frames.next().map(|frame| frame.report.step), Some(1));
     Ok(())
 }
 

@@ -9,11 +9,15 @@ use firmware::app::{App, NoButtons};
 use firmware::config::CORTEX_M4F;
 use firmware::display::NoDisplay;
 use firmware::graphics::FrameBuffers;
-use firmware::job::{Job, ON_BOARDS, Request};
+use firmware::job::{Job, ON_BOARDS, OnBoards, Request};
 use firmware::motion::Settings;
-use firmware::protocol::{Ask, Frame, MAX_FIELDS, MAX_WIRE, Message, Refused, Set, Simulate, encode, frame};
+use firmware::protocol::{
+    Answer, Command, Decoder, Field, Frame, MAX_MESSAGE, MAX_WIRE, ToHost, decode_command, encode, encode_command,
+    frame,
+};
+use firmware::scenes::Report;
 use host_tests::commands::simulate::{Number, SimulateOptions, plan};
-use host_tests::link::{Inbox, Received};
+use host_tests::link::Inbox;
 use host_tests::oracle::trials;
 use proptest::prelude::*;
 use proptest::sample::select;
@@ -40,15 +44,23 @@ fn numbers<const N: usize>() -> impl Strategy<Value = [f64; N]> {
     prop::collection::vec(number(), N).prop_map(|numbers| std::array::from_fn(|i| numbers[i]))
 }
 
-/// The intact messages in a stream.
-fn received(inbox: &mut Inbox, bytes: &[u8]) -> Vec<Received> {
+/// The messages for the host in a stream.
+fn received(inbox: &mut Inbox, bytes: &[u8]) -> Vec<ToHost> {
     bytes.iter().filter_map(|&byte| inbox.take(byte)).collect()
+}
+
+/// The intact messages in a stream.
+fn intact(decoder: &mut Decoder, bytes: &[u8]) -> Vec<Vec<u8>> {
+    bytes.iter().filter_map(|&byte| Some(decoder.push(byte)?.ok()?.to_vec())).collect()
+}
+
+fn wire(message: &[u8]) -> Vec<u8> {
+    frame(message, &mut [0; MAX_WIRE]).to_vec()
 }
 
 /// A part of a stream: noise, an intact message, or one with a byte changed.
 fn part() -> impl Strategy<Value = Vec<u8>> {
-    let fields = || prop::collection::vec(any::<u8>(), 0..=MAX_FIELDS);
-    let intact = (any::<u8>(), fields()).prop_map(|(kind, fields)| frame(kind, &fields, &mut [0; MAX_WIRE]).to_vec());
+    let intact = prop::collection::vec(any::<u8>(), 0..=MAX_MESSAGE).prop_map(|message| wire(&message));
     let damaged = (intact.clone(), any::<prop::sample::Index>(), 1..=255_u8).prop_map(|(mut wire, at, change)| {
         let at = at.index(wire.len());
         wire[at] ^= change;
@@ -57,13 +69,14 @@ fn part() -> impl Strategy<Value = Vec<u8>> {
     prop_oneof![prop::collection::vec(any::<u8>(), 0..200), intact, damaged]
 }
 
-/// A command of any kind, its fields as long as they should be or not.
-fn command() -> impl Strategy<Value = (u8, Vec<u8>)> {
-    let known = [0x81..=0x8d_u8].into_iter().flatten().collect::<Vec<_>>();
-    let set = (0..24_u8, number())
-        .prop_map(|(field, value)| (Set::KIND, Set { request: 1, field, value }.write(&mut [0; MAX_FIELDS]).to_vec()));
-    let short = (select(known), prop::collection::vec(any::<u8>(), 0..9));
-    prop_oneof![4 => set, 4 => short, 1 => (any::<u8>(), prop::collection::vec(any::<u8>(), 0..=MAX_FIELDS))]
+/// A command of any kind, its fields as long as they should be or not, as an intact message.
+fn command() -> impl Strategy<Value = Vec<u8>> {
+    let set = (select(Field::ALL), number())
+        .prop_map(|(field, value)| encode_command(1, Command::Set { field, value }, &mut [0; MAX_WIRE]).to_vec());
+    let short = (0..20_u8, prop::collection::vec(any::<u8>(), 0..9))
+        .prop_map(|(kind, fields)| wire(&[&[0x80, 1, kind], &fields[..]].concat()));
+    let any = prop::collection::vec(any::<u8>(), 0..=MAX_MESSAGE).prop_map(|message| wire(&message));
+    prop_oneof![4 => set, 4 => short, 1 => any]
 }
 
 /// What a method's steps lead to: twelve of them at most, each finite or refused.
@@ -101,14 +114,13 @@ proptest! {
     /// Whatever came before it, an intact message is received.
     #[test]
     fn the_decoder_recovers(stream in prop::collection::vec(part(), 0..5)) {
-        let mut inbox = Inbox::default();
-        for message in received(&mut inbox, &stream.concat()) {
-            prop_assert!(message.fields.len() <= MAX_FIELDS, "kind {}", message.kind);
-            let again = received(&mut Inbox::default(), frame(message.kind, &message.fields, &mut [0; MAX_WIRE]));
-            prop_assert_eq!(again, [message]);
+        let mut decoder = Decoder::default();
+        for message in intact(&mut decoder, &stream.concat()) {
+            prop_assert!(message.len() <= MAX_MESSAGE, "{message:02x?}");
+            prop_assert_eq!(intact(&mut Decoder::default(), &wire(&message)), [message]);
         }
-        let after = received(&mut inbox, frame(Ask::KIND, &[1, 2], &mut [0; MAX_WIRE]));
-        prop_assert_eq!(after.last(), Some(&Received { kind: Ask::KIND, fields: vec![1, 2] }));
+        let after = intact(&mut decoder, &wire(&[7, 1, 2]));
+        prop_assert_eq!(after.last(), Some(&vec![7, 1, 2]));
     }
 
     /// Each intact command has one answer, a refused one changes nothing, and the scene plays on.
@@ -116,20 +128,17 @@ proptest! {
     fn every_command_is_answered(commands in prop::collection::vec(command(), 1..3)) {
         let mut sheets = FrameBuffers::BLANK;
         let mut app = App::new(Settings::default(), &mut sheets, NoDisplay, Vec::new(), NoButtons).expect("good settings");
-        for (tick, (kind, fields)) in (1..).zip(commands) {
-            let (status, sent) = (app.player.status(0), app.link.len());
-            app.receive(frame(kind, &fields, &mut [0; MAX_WIRE]).iter().copied(), |_| ());
+        for (tick, bytes) in (1..).zip(commands) {
+            let (status, sent) = (app.player.status(), app.link.len());
+            app.receive(bytes.iter().copied(), |_| ());
             let mut inbox = Inbox::default();
             let answers = received(&mut inbox, &app.link[sent..]);
             prop_assert_eq!(inbox.damage(), None);
-            let is_request = kind == Simulate::KIND && Simulate::read(&fields).is_some();
-            let is_message_for_hosts = kind < 0x80;
-            prop_assert!(
-                matches!(*answers, [_]) || answers.is_empty() && (is_request || is_message_for_hosts),
-                "{:?} to kind {} {:02x?}", answers, kind, fields
-            );
-            if let [Received { kind: Refused::KIND, .. }] = *answers {
-                prop_assert_eq!(app.player.status(0), status, "kind {} {:02x?}", kind, fields);
+            let asked = intact(&mut Decoder::default(), &bytes).first().and_then(|message| decode_command(message));
+            let is_silent = matches!(asked, None | Some((_, Some(Command::Simulate(_)))));
+            prop_assert!(matches!(*answers, [_]) || answers.is_empty() && is_silent, "{answers:?} to {asked:?}");
+            if let [ToHost::Answer(_, Answer::Refused(_))] = *answers {
+                prop_assert_eq!(app.player.status(), status, "{:?}", asked);
             }
             app.run_to(tick, |_| ());
             app.work(|_| ());
@@ -144,7 +153,7 @@ proptest! {
         (dt, stride, samples) in (number(), any::<u8>(), any::<u32>()),
     ) {
         let request = Request { method, parameters, angles, velocities, dt, stride: stride.into(), samples };
-        let Ok(mut job) = Job::<firmware::job::OnBoards>::new(&request) else { return Ok(()) };
+        let Ok(mut job) = Job::<OnBoards>::new(&request) else { return Ok(()) };
         for _ in 0..24 {
             let Ok(reading) = job.advance() else {
                 prop_assert!(job.is_finished());
@@ -243,16 +252,16 @@ fn no_damaged_frame_is_taken_for_good_and_no_good_one_is_missed() {
     for chance in CHANCES {
         let (mut rng, mut inbox, mut damaged_frames) = (Rng::with_seed(2), Inbox::default(), 0);
         for sequence in 0..FRAMES {
-            let sent =
-                Frame { sequence, step: rng.u32(..), time: rng.f64(), mass_ratio: rng.f32(), ..Frame::default() };
+            let report = Report { step: rng.u64(..), time: rng.f64(), ..Report::default() };
+            let sent = ToHost::Frame(Frame { sequence, mass_ratio: rng.f32(), report, ..Frame::default() });
             let mut bytes = encode(&sent, &mut [0; MAX_WIRE]).to_vec();
             let mut flips = 0;
             for bit in (0..8 * bytes.len()).filter(|_| rng.f64() < chance) {
                 bytes[bit / 8] ^= 1 << (bit % 8);
                 flips += 1;
             }
-            let frames: Vec<Option<Frame>> = received(&mut inbox, &bytes).iter().map(Received::read).collect();
-            assert_eq!(frames, if flips > 0 { vec![] } else { vec![Some(sent)] }, "frame {sequence}");
+            let expected = if flips > 0 { vec![] } else { vec![sent] };
+            assert_eq!(received(&mut inbox, &bytes), expected, "frame {sequence}");
             damaged_frames += u32::from(flips > 0);
         }
         assert!(damaged_frames > FRAMES / 50, "the link is under fire: {damaged_frames}");

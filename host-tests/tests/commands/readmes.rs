@@ -83,17 +83,20 @@ fn the_first_readme_is_short() {
     assert!(read(README[0]).lines().count() <= 120);
 }
 
-/// Kind and name of the messages, and the version, as the firmware's README lists them.
+/// The messages, and the version, as the firmware's README lists them.
 #[test]
 fn the_readme_lists_the_messages_as_they_are() {
     let page = read("firmware/README.md");
-    let sources = ["to_host", "to_chip"].map(|file| read(format!("firmware/src/protocol/{file}.rs")));
-    let declared = sources.iter().flat_map(|source| source.lines()).filter_map(|line| line.trim().split_once(" = 0x"));
-    let rows: Vec<_> = page.lines().filter(|line| line.starts_with("| 0x")).collect();
-    assert_eq!(rows.len(), declared.clone().count());
-    for (name, kind) in declared {
-        let start = format!("| 0x{} | `{name}` |", kind[..2].to_lowercase());
-        assert!(rows.iter().any(|row| row.starts_with(&start)), "{start}");
+    let rows = page.lines().filter_map(|line| line.strip_prefix("| `")?.split_once("` |"));
+    let listed: BTreeSet<_> = rows.flat_map(|(names, _)| names.split("`, `")).collect();
+    let sources = ["to_host", "command"].map(|file| read(format!("firmware/src/protocol/{file}.rs"))).concat();
+    for message in ["ToHost", "Answer", "Command"] {
+        let (_, variants) = sources.split_once(&format!("pub enum {message} {{\n")).expect("it is there");
+        let variants = variants.lines().take_while(|line| *line != "}");
+        let names = variants.filter_map(|line| line.strip_prefix("    ")?.split(|c: char| !c.is_alphanumeric()).next());
+        for name in names.filter(|name| !name.is_empty() && *name != "Answer") {
+            assert!(listed.contains(name), "{message}::{name}");
+        }
     }
     let version = format!("version is {};", firmware::protocol::VERSION);
     assert!(page.contains(&version), "{version}");

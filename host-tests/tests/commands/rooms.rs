@@ -14,7 +14,7 @@ const ROOMS: [(&str, &[&str]); 3] = [
     ("kernel", &["tests", "flips", "plan", "methods", "bounds", "small", "pendulum", "error", "table", "numbers"]),
     (
         "firmware",
-        &["board", "app", "scenes", "job", "motion", "display", "graphics", "protocol", "fault", "config", "prices"],
+        &["board", "app", "protocol", "scenes", "job", "motion", "display", "graphics", "fault", "config", "prices"],
     ),
     ("host-tests", &["commands", "oracle", "emulator", "console", "link"]),
 ];

@@ -10,19 +10,18 @@ use std::time::{Duration, Instant};
 
 use super::cli::program;
 use crate::support::LIMIT;
-use crate::support::bench::{BOARD, Bench, at_port, intact};
+use crate::support::bench::{BOARD, Bench, at_port, wire};
 use firmware::app::Key;
 use firmware::job::ON_BOARDS;
-use firmware::protocol::{Frame, MAX_WIRE, Measured, Sample, encode};
+use firmware::protocol::{Answer, ToHost};
 use firmware::scenes::SceneName;
 use host_tests::emulator::boards::BOARDS;
 use host_tests::emulator::process::{self, Output};
-use host_tests::link::Received;
 
 /// Of a method whose cycles no one counts.
 const UNCOUNTED: &str = "| no cycle counter | no cycle counter | - |";
 
-fn verify(report: &Path, wire: impl Fn(&Received) -> Vec<u8>) -> Output {
+fn verify(report: &Path, wire: impl Fn(ToHost) -> Vec<u8>) -> Output {
     let mut command = program("verify-board");
     command.args(["--no-questions", "--report"]).arg(report);
     at_port(&mut Bench::new(), &mut command, |bench| bench.carry(&wire))
@@ -31,7 +30,7 @@ fn verify(report: &Path, wire: impl Fn(&Received) -> Vec<u8>) -> Output {
 #[test]
 fn a_board_with_the_hosts_bits_is_told_so_and_reported() {
     let folder = tempfile::tempdir().expect("a folder");
-    let output = verify(&folder.path().join("mps2"), intact);
+    let output = verify(&folder.path().join("mps2"), wire);
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     assert!(output.stdout.contains("every bit the host's"), "{}", output.stdout);
     let markdown = fs::read_to_string(folder.path().join("mps2.md")).expect("the report");
@@ -48,19 +47,19 @@ fn a_board_with_the_hosts_bits_is_told_so_and_reported() {
 #[test]
 fn a_flipped_bit_is_named_and_fails() {
     let folder = tempfile::tempdir().expect("a folder");
-    let flipped = |message: &Received| {
-        let mut wire = [0; MAX_WIRE];
-        if let Some(mut sample) = message.read::<Sample>().filter(|sample| (sample.request, sample.index) == (3, 5)) {
-            let [_, w2] = &mut sample.reading.velocities;
-            *w2 = f64::from_bits(w2.to_bits() ^ 1);
-            return encode(&sample, &mut wire).to_vec();
+    let flipped = |mut message: ToHost| {
+        match &mut message {
+            ToHost::Answer(3, Answer::Sample { index: 5, reading }) => {
+                let [_, w2] = &mut reading.velocities;
+                *w2 = f64::from_bits(w2.to_bits() ^ 1);
+            }
+            ToHost::Frame(frame) if frame.scene == SceneName::Butterfly && frame.report.step == 20 => {
+                let a1 = &mut frame.report.state.a1;
+                *a1 = f32::from_bits(a1.to_bits() ^ 1);
+            }
+            _ => {}
         }
-        let is_it = |frame: &Frame| frame.scene == SceneName::Butterfly.code() && frame.step == 20;
-        if let Some(mut frame) = message.read::<Frame>().filter(is_it) {
-            frame.state[0] = f32::from_bits(frame.state[0].to_bits() ^ 1);
-            return encode(&frame, &mut wire).to_vec();
-        }
-        intact(message)
+        wire(message)
     };
     let output = verify(&folder.path().join("flipped"), flipped);
     assert_eq!(output.status.code(), Some(1), "{output:?}");
@@ -92,15 +91,17 @@ fn person(question: &str) -> Option<(Option<Key>, Option<&'static str>)> {
 
 /// A chip that counts 100 cycles for a step of the second arithmetic from flash, 50 from RAM, and none else, which no emulated one
 /// does. Of an arithmetic that is not counted it is asked once for each place, of the others until 256 steps are made.
-fn counting(message: &Received, asked: &mut u32) -> Vec<u8> {
-    let Some(measured) = message.read::<Measured>() else { return intact(message) };
-    let cycles = match *asked {
-        2..18 => 100,
-        18..34 => 50,
-        _ => 0,
-    };
-    *asked += 1;
-    encode(&Measured { cycles: cycles * measured.steps, ..measured }, &mut [0; MAX_WIRE]).to_vec()
+fn counting(mut message: ToHost, asked: &mut u32) -> Vec<u8> {
+    if let ToHost::Answer(_, Answer::Measured { steps, cycles }) = &mut message {
+        *cycles = *steps
+            * match *asked {
+                2..18 => 100,
+                18..34 => 50,
+                _ => 0,
+            };
+        *asked += 1;
+    }
+    wire(message)
 }
 
 #[test]
@@ -118,7 +119,7 @@ fn what_the_person_says_and_the_chip_counts_is_in_the_report() {
     // The step that the motion has come to.
     let mut carry = |bench: &mut Bench| {
         bench.carry(|message| {
-            step = message.read::<Frame>().map_or(step, |frame| frame.step);
+            step = message.frame().map_or(step, |frame| frame.report.step);
             counting(message, &mut asked)
         });
         step

@@ -5,17 +5,18 @@ use std::cell::Cell;
 use double_pendulum::plan::{PlannedRun, Way};
 use double_pendulum::{Method, Motion, Parameters, Pendulum, State};
 use embedded_io::{ErrorKind, ErrorType, Write};
-use firmware::app::{Buttons, Cause, Event, NoButtons, Pressed, WarmRestart};
+use firmware::app::{Buttons, Event, NoButtons, Pressed, WarmRestart};
 use firmware::config::{GRAVITY, MOST_TICKS_PER_FRAME, ROD, TICK_RATE};
 use firmware::display::{Display, NoDisplay};
 use firmware::graphics::{Canvas, Place, RodDirections, View};
 use firmware::motion::Settings;
-use firmware::protocol::{Frame, LinkError, Message, Restarted, Status};
-use firmware::scenes::SceneName;
+use firmware::protocol::{Cause, LinkError, Restarted, Status, ToHost};
+use firmware::scenes::{Report, SceneName};
 use host_tests::emulator::host::Show;
+use host_tests::link::Inbox;
 use host_tests::oracle::tolerances::ENERGY_SHOWN;
 
-use crate::bench::{Plain, all, app, messages, of, starting_with, wire};
+use crate::bench::{Plain, app, frames, messages, of, starting_with};
 
 /// Runs to each of the clock's readings in turn.
 fn run(clock: impl IntoIterator<Item = u32>) -> Plain {
@@ -42,7 +43,7 @@ fn the_state_and_the_picture_after_n_ticks_are_the_same_at_any_frame_rate() {
 #[test]
 fn every_frame_carries_the_kernels_state_to_the_bit() {
     let app = run(1..=600);
-    let frames: Vec<Frame> = all(&app.link);
+    let frames = frames(&app.link);
     assert_eq!(frames.len(), 600);
 
     let pendulum = Pendulum::new(&Parameters::equal_rods(1.0, ROD, GRAVITY as f32)).expect("good");
@@ -54,14 +55,14 @@ fn every_frame_carries_the_kernels_state_to_the_bit() {
     let mut expected = PlannedRun::new(&pendulum.parameters().cast(), &start, TICK_RATE as u16, way).expect("good");
     for (sequence, frame) in (0..).zip(frames) {
         expected.advance(1).expect("a finite motion");
-        let state = <[f32; 4]>::from(expected.rounded_state());
-        assert_eq!(frame.state.map(f32::to_bits), state.map(f32::to_bits), "frame {sequence}");
-        let step = sequence + 1;
-        assert_eq!((frame.sequence, frame.dropped, frame.step), (sequence, 0, step));
-        assert_eq!(frame.time, f64::from(step) / 60.0);
+        let Report { step, time, state, energy_error, .. } = frame.report;
+        let bits = |state: State<f32>| <[f32; 4]>::from(state).map(f32::to_bits);
+        assert_eq!(bits(state), bits(expected.rounded_state()), "frame {sequence}");
+        assert_eq!((frame.sequence, frame.dropped, step), (sequence, 0, u64::from(sequence) + 1));
+        assert_eq!(time, f64::from(sequence + 1) / 60.0);
         assert_eq!((frame.mass_ratio, frame.start_angle), (1.0, start_angle));
-        let error = (pendulum.energy(&state.into()) - start_energy) / scale;
-        assert!((frame.energy_error - error).abs() <= ENERGY_SHOWN, "frame {sequence}: {} {error}", frame.energy_error);
+        let error = (pendulum.energy(&state) - start_energy) / scale;
+        assert!((energy_error - error).abs() <= ENERGY_SHOWN, "frame {sequence}: {energy_error} {error}");
     }
 }
 
@@ -78,8 +79,8 @@ fn dropped_pictures_are_counted_and_no_tick_is_lost() {
     assert!(app.run_to(late + 2, |event| events.push(event)));
     while !app.run_to(90, |event| events.push(event)) {}
 
-    let frames: Vec<Frame> = all(&app.link);
-    let shown: Vec<_> = frames.iter().map(|frame| (frame.step, frame.dropped)).collect();
+    let frames = frames(&app.link);
+    let shown: Vec<_> = frames.iter().map(|frame| (frame.report.step, frame.dropped)).collect();
     let most = MOST_TICKS_PER_FRAME - 1;
     assert_eq!(shown, [(15, most), (30, 2 * most), (31, 2 * most), (33, 29), (48, 43), (63, 57), (78, 71), (90, 82)]);
     assert_eq!(events, [Event::Dropped { ticks: 57, total: 57 }]);
@@ -101,7 +102,7 @@ fn losses_are_said_once_a_second_and_lost_bytes_sent_with_each_frame() {
             .map(|event| (tick, event))
     };
     assert_eq!(events, [TICK_RATE, 2 * TICK_RATE].map(said).concat());
-    let counts = all::<Frame>(&app.link).iter().map(|frame| frame.lost).collect::<Vec<_>>();
+    let counts = frames(&app.link).iter().map(|frame| frame.lost).collect::<Vec<_>>();
     assert_eq!(counts, (0..2 * TICK_RATE).collect::<Vec<_>>());
 }
 
@@ -116,7 +117,7 @@ fn counts_wrap_unnoticed() {
         for tick in (1..=2 * AHEAD).filter(|tick| tick % 3 != 0) {
             while !app.run_to(begin.wrapping_add(tick), |event| events.push(event)) {}
         }
-        (all::<Frame>(&app.link), app.canvas.clone(), events)
+        (frames(&app.link), app.canvas.clone(), events)
     };
     let begin = 0_u32.wrapping_sub(AHEAD / 3);
     let (plain, wrapped) = (run(0), run(begin));
@@ -134,7 +135,7 @@ fn counts_wrap_unnoticed() {
 fn hanging_at_rest_has_no_energy_error() {
     let mut app = starting_with(Settings::equal_rods(1.0, 0.0));
     app.run_to(10, |_| ());
-    assert_eq!(all::<Frame>(&app.link).iter().map(|frame| frame.energy_error).collect::<Vec<_>>(), [0.0]);
+    assert_eq!(frames(&app.link).iter().map(|frame| frame.report.energy_error).collect::<Vec<_>>(), [0.0]);
 }
 
 /// Presses up at tick 10 and select at tick 50 for three ticks each.
@@ -161,10 +162,10 @@ fn buttons_restart_with_the_new_settings() {
     }
     let heavier = Settings::equal_rods(1.25, 120.0);
     assert_eq!(started, [11, 54].map(|now| (now, Event::Started(SceneName::Page, heavier))));
-    let frames: Vec<Frame> = all(&app.link);
+    let frames = frames(&app.link);
     assert_eq!(frames[9].mass_ratio, 1.0);
-    assert_eq!((frames[10].mass_ratio, frames[10].step), (1.25, 1));
-    assert_eq!((frames[53].step, frames[53].sequence), (1, 53));
+    assert_eq!((frames[10].mass_ratio, frames[10].report.step), (1.25, 1));
+    assert_eq!((frames[53].report.step, frames[53].sequence), (1, 53));
 }
 
 #[test]
@@ -196,7 +197,7 @@ fn a_failing_panel_is_reported_once_and_does_not_stop_the_rest() {
         app.run_to(now, |event| events.push((now, event)));
     }
     assert_eq!(events, [(1, Event::Panel("bus")), (20, Event::Panel("bus"))]);
-    assert_eq!(all::<Frame>(&app.link).len(), 30);
+    assert_eq!(frames(&app.link).len(), 30);
 }
 
 /// Where the rods point, by the state reported.
@@ -239,11 +240,10 @@ fn a_failing_link_is_reported_once_and_loses_only_its_own_frames() {
     }
     assert_eq!(events, [Event::Link(ErrorKind::TimedOut)]);
     // Writes: frames 0 to 3 (1 to 4), frames 4 to 8 broken off in the middle (5 to 9), then all is well.
-    let sequence = |(_, fields): (u8, Vec<u8>)| Frame::read(&fields).map(|frame| frame.sequence);
-    let received: Vec<_> =
-        messages(&app.link.bytes).into_iter().map(|message| message.ok().and_then(sequence)).collect();
-    let expected: Vec<_> = (0..4).map(Some).chain([None; 5]).chain((9..20).map(Some)).collect();
-    assert_eq!(received, expected);
+    let mut inbox = Inbox::default();
+    let frames = app.link.bytes.iter().filter_map(|&byte| inbox.take(byte)?.frame());
+    assert!(frames.map(|frame| frame.sequence).eq((0..4).chain(9..20)));
+    assert_eq!(inbox.counts().damaged, 5);
 }
 
 fn view(app: &Plain) -> View {
@@ -285,17 +285,18 @@ fn the_motion_never_touches_the_labels() {
 #[test]
 fn a_restart_goes_on_with_what_was_played() {
     let before = Show::new(SceneName::Butterfly, &Settings::equal_rods(2.5, 90.0)).expect("good");
-    let played = before.player.status(0);
-    let end = Restarted { cause: Cause::Hang.code(), restarts: 1, pc: 2, lr: 3, cfsr: 0, scene: 4, step: 5 };
-    let massless = Status { parameters: [0.0; 5], ..played };
+    let played = before.player.status();
+    let (cause, scene) = (Some(Cause::Hang), SceneName::Butterfly);
+    let end = Restarted { cause, restarts: 1, pc: 2, lr: 3, cfsr: 0, scene, step: 5 };
+    let massless = Status { settings: Settings::equal_rods(0.0, 90.0), ..played };
     for (played, resumed) in [(Some(played), true), (Some(massless), false), (None, false)] {
         let mut app = app();
-        let first = app.player.status(0);
-        let restart = WarmRestart { played, end, cause: Cause::Hang };
+        let first = app.player.status();
+        let restart = WarmRestart { played, end };
         let mut events = Vec::new();
         app.resume(&restart, |event| events.push(event));
         assert_eq!(events, [Event::Restarted(restart, resumed)]);
-        assert_eq!(app.player.status(0), played.filter(|_| resumed).unwrap_or(first));
-        assert_eq!(&app.link, &wire(&end));
+        assert_eq!(app.player.status(), played.filter(|_| resumed).unwrap_or(first));
+        assert_eq!(messages(&app.link), [ToHost::Restarted(end)]);
     }
 }

@@ -1,14 +1,13 @@
 //! The application as it runs on the boards, without panel and buttons, what it sends, and the places of a frame.
 
-use std::fmt::Debug;
-
 use embedded_io::Write;
 use firmware::app::{App, Buttons, NoButtons};
 use firmware::display::{Display, NoDisplay};
 use firmware::graphics::{HEIGHT, WIDTH};
 use firmware::motion::Settings;
-use firmware::protocol::{Decoder, LinkError, MAX_WIRE, Message, encode};
+use firmware::protocol::{Answer, Command, Frame, MAX_WIRE, ToHost, encode_command};
 use host_tests::emulator::host::sheets;
+use host_tests::link::Inbox;
 
 pub type Plain = App<'static, NoDisplay, Vec<u8>, NoButtons>;
 
@@ -25,25 +24,24 @@ pub fn of<P: Display, L: Write, K: Buttons>(panel: P, link: L, keys: K) -> App<'
     App::new(Settings::default(), sheets(), panel, link, keys).expect("good settings")
 }
 
-pub fn wire<M: Message>(message: &M) -> Vec<u8> {
-    encode(message, &mut [0; MAX_WIRE]).to_vec()
+pub fn wire(request: u16, command: Command) -> Vec<u8> {
+    encode_command(request, command, &mut [0; MAX_WIRE]).to_vec()
 }
 
-/// The messages in a stream, kind and fields, or what is wrong with them.
-pub fn messages(bytes: &[u8]) -> Vec<Result<(u8, Vec<u8>), LinkError>> {
-    let mut decoder = Decoder::default();
-    let mut messages = Vec::new();
-    for &byte in bytes {
-        messages.extend(decoder.push(byte).map(|message| message.map(|(kind, fields)| (kind, fields.to_vec()))));
-    }
+/// The messages in a stream in which nothing is damaged.
+pub fn messages(bytes: &[u8]) -> Vec<ToHost> {
+    let mut inbox = Inbox::default();
+    let messages = bytes.iter().filter_map(|&byte| inbox.take(byte)).collect();
+    assert_eq!(inbox.damage(), None);
     messages
 }
 
-/// Those of one kind in a stream of undamaged ones.
-pub fn all<M: Message + Debug>(bytes: &[u8]) -> Vec<M> {
-    let undamaged = messages(bytes).into_iter().map(|message| message.expect("undamaged"));
-    let own = undamaged.filter(|(kind, _)| *kind == M::KIND);
-    own.map(|(_, fields)| M::read(&fields).expect("all fields")).collect()
+pub fn frames(bytes: &[u8]) -> Vec<Frame> {
+    messages(bytes).into_iter().filter_map(ToHost::frame).collect()
+}
+
+pub fn answers(bytes: &[u8]) -> Vec<(u16, Answer)> {
+    messages(bytes).into_iter().filter_map(ToHost::answer).collect()
 }
 
 /// All pixels of the frame, row by row.

@@ -5,55 +5,54 @@ use std::f64::consts::PI;
 use double_pendulum::Method;
 use double_pendulum::plan::Way;
 use fastrand::Rng;
-use firmware::app::{AUTO, Event, Instruments, Key, News};
+use firmware::app::{Event, Instruments, Key, News};
 use firmware::config::{MOST_MEASURED_STEPS, MOST_MESSAGES_PER_TICK, PLANNED, RECEIVE_QUEUE, TICK_RATE};
 use firmware::job::{OnBoards, Request, Run};
-use firmware::protocol::{
-    Ask, AskPlan, Choose, Done, Field, Frame, Identify, Identity, MAX_WIRE, Measure, Measured, Message, Pause, Planned,
-    Press, Refused, Restart, Sample, Set, Status, Step, TO_CHIP, frame, method_code,
-};
+use firmware::motion::Planned;
+use firmware::protocol::{Answer, BoardName, Command, Field, Frame, Identity, MAX_WIRE, Status, ToHost, encode, frame};
 use firmware::scenes::SceneName;
 
-use crate::bench::{Plain, all, app, messages, wire};
-
-fn last<M: Message>(app: &Plain) -> M {
-    let (kind, fields) = messages(&app.link).pop().expect("an answer").expect("undamaged");
-    assert_eq!(kind, M::KIND);
-    M::read(&fields).expect("all fields")
-}
+use crate::bench::{Plain, answers, app, frames, wire};
 
 /// The answer to a command.
-fn answer<A: Message>(app: &mut Plain, command: &impl Message) -> A {
-    app.receive(wire(command), |_| ());
-    last(app)
+fn answer(app: &mut Plain, command: Command) -> Answer {
+    app.receive(wire(9, command), |_| ());
+    last(app, 9)
+}
+
+fn last(app: &Plain, request: u16) -> Answer {
+    let (to, answer) = answers(&app.link).pop().expect("an answer");
+    assert_eq!(to, request);
+    answer
 }
 
 fn status(app: &mut Plain) -> Status {
-    answer(app, &Ask { request: 0 })
+    let Answer::Status(status) = answer(app, Command::Ask) else { panic!("no status") };
+    status
 }
 
-fn set(field: Field, value: f64) -> Set {
-    Set { request: 9, field: field.code(), value }
+fn set(field: Field, value: f64) -> Command {
+    Command::Set { field, value }
 }
 
 #[test]
 fn every_parameter_is_set_in_si_units() {
     for (field, value, read, expected) in [
-        (Field::M1, 2.0, (|s| s.parameters[0]) as fn(&Status) -> f32, 2.0),
-        (Field::M2, 0.5, |s| s.parameters[1], 0.5),
-        (Field::L1, 0.8, |s| s.parameters[2], 0.8),
-        (Field::L2, 0.7, |s| s.parameters[3], 0.7),
-        (Field::G, 1.62, |s| s.parameters[4], 1.62),
-        (Field::A1, PI / 2.0, |s| s.degrees[0], 90.0),
-        (Field::A2, -PI, |s| s.degrees[1], -180.0),
-        (Field::Angle, 171_f64.to_radians(), |s| s.degrees[0], 171.0),
-        (Field::W1, PI, |s| s.velocities[0], PI as f32),
-        (Field::W2, -1.5, |s| s.velocities[1], -1.5),
-        (Field::MassRatio, 2.75, |s| s.parameters[1], 2.75),
+        (Field::M1, 2.0, (|s| s.settings.parameters.m1) as fn(&Status) -> f32, 2.0),
+        (Field::M2, 0.5, |s| s.settings.parameters.m2, 0.5),
+        (Field::L1, 0.8, |s| s.settings.parameters.l1, 0.8),
+        (Field::L2, 0.7, |s| s.settings.parameters.l2, 0.7),
+        (Field::G, 1.62, |s| s.settings.parameters.g, 1.62),
+        (Field::A1, PI / 2.0, |s| s.settings.degrees[0], 90.0),
+        (Field::A2, -PI, |s| s.settings.degrees[1], -180.0),
+        (Field::Angle, 171_f64.to_radians(), |s| s.settings.degrees[0], 171.0),
+        (Field::W1, PI, |s| s.settings.velocities[0], PI as f32),
+        (Field::W2, -1.5, |s| s.settings.velocities[1], -1.5),
+        (Field::MassRatio, 2.75, |s| s.settings.parameters.m2, 2.75),
         (Field::Speed, 0.5, |s| s.speed, 0.5),
     ] {
         let mut app = app();
-        assert_eq!(answer::<Done>(&mut app, &set(field, value)), Done { request: 9 }, "{field:?}");
+        assert_eq!(answer(&mut app, set(field, value)), Answer::Done, "{field:?}");
         assert_eq!(read(&status(&mut app)), expected, "{field:?}");
     }
 }
@@ -64,43 +63,38 @@ fn no_tap_is_lost_however_quick() {
     let mut app = app();
     let before = *app.player.settings();
     let taps = [Key::Right, Key::Right, Key::Up, Key::Left, Key::Right, Key::Select, Key::Down, Key::Right, Key::Right];
-    let mut bytes =
-        taps.iter().flat_map(|key| wire(&Press { request: 1, key: key.code() })).collect::<Vec<_>>().into_iter();
+    let mut bytes = taps.iter().flat_map(|key| wire(1, key.tapped())).collect::<Vec<_>>().into_iter();
     while !bytes.as_slice().is_empty() {
         app.receive(bytes.by_ref(), |_| ());
     }
     assert_eq!(*app.player.settings(), before.turned(1).turned(1).turned(1).turned(1));
-    assert_eq!(all::<Done>(&app.link).len(), taps.len());
-    let refused: Refused = answer(&mut app, &Press { request: 2, key: 0xEE });
-    assert_eq!(refused, Refused { request: 2, field: Field::Key.code() });
+    assert_eq!(answers(&app.link), [(1, Answer::Done); 9]);
 }
 
 /// A board of 1 MHz whose steps take 100 cycles, and that knows what it is.
 #[test]
 fn a_board_tells_what_it_is_and_how_long_steps_take() {
     let mut app = app();
-    let identity = Identity { board: 1, hertz: 1_000_000, chip: [1, 2, 3, 4], ..Identity::default() };
+    let identity = Identity { board: BoardName::Pico, hertz: 1_000_000, chip: [1, 2, 3, 4], ..Identity::default() };
     let timed = |motion: &mut OnBoards, steps, in_ram| {
         motion.advance(steps);
         if in_ram { 800 } else { 1600 }
     };
     app.instruments = Instruments { identity, timed, image: || b"123456789", ..Instruments::default() };
     // The check value of CRC-32/ISO-HDLC.
-    let expected = Identity { request: 1, image: 0xCBF4_3926, image_bytes: 9, ..identity };
-    assert_eq!(answer::<Identity>(&mut app, &Identify { request: 1 }), expected);
+    let expected = Identity { image: 0xCBF4_3926, image_bytes: 9, ..identity };
+    assert_eq!(answer(&mut app, Command::Identify), Answer::Identity(expected));
 
-    let measure = |request, in_ram| Measure { request, steps: u32::MAX, in_ram };
-    let refused: Refused = answer(&mut app, &measure(2, 0));
-    assert_eq!(refused, Refused { request: 2, field: Field::Message.code() }, "no motion was asked for");
+    let measure = |in_ram| Command::Measure { steps: u32::MAX, in_ram };
+    assert_eq!(answer(&mut app, measure(false)), Answer::Refused(Field::Message), "no motion was asked for");
     let request = Request { samples: 1, ..Request::on_any_core(Method::Rk4F32) };
-    app.receive(wire(&request.message(3)), |_| ());
+    app.receive(wire(3, Command::Simulate(request)), |_| ());
     while app.work(|_| ()) {}
-    for (request, in_ram, cycles) in [(4, 0, 1600), (5, 1, 800), (6, 0, 1600)] {
-        let measured: Measured = answer(&mut app, &measure(request, in_ram));
-        assert_eq!(measured, Measured { request, steps: MOST_MEASURED_STEPS, cycles });
+    assert!(matches!(last(&app, 3), Answer::Sample { index: 1, .. }));
+    for (in_ram, cycles) in [(false, 1600), (true, 800), (false, 1600)] {
+        assert_eq!(answer(&mut app, measure(in_ram)), Answer::Measured { steps: MOST_MEASURED_STEPS, cycles });
     }
     assert!(!app.work(|_| ()), "and no sample follows");
-    assert_eq!(all::<Sample>(&app.link).len(), 2);
 }
 
 #[test]
@@ -125,33 +119,41 @@ fn a_bad_command_is_answered_with_the_field_and_changes_nothing() {
         (set(Field::Speed, 0.004), Field::Speed),
         (set(Field::Speed, 4.006), Field::Speed),
         (set(Field::Speed, f64::NAN), Field::Speed),
-        (Set { field: 0xEE, ..set(Field::M1, 1.0) }, Field::Field),
-        (set(Field::Scene, 1.0), Field::Field),
+        (set(Field::Dt, 1.0), Field::Field),
+        (set(Field::Method, 1.0), Field::Field),
+        (Command::Method(Some(Method::Rk4F64)), Field::Method),
     ] {
-        assert_eq!(answer::<Refused>(&mut app, &message), Refused { request: 9, field: field.code() }, "{message:?}");
+        assert_eq!(answer(&mut app, message), Answer::Refused(field), "{message:?}");
     }
-    let refused: Refused = answer(&mut app, &Choose { request: 9, scene: 0xEE });
-    assert_eq!(refused, Refused { request: 9, field: Field::Scene.code() });
     assert_eq!((status(&mut app), app.player.report()), before);
 }
 
+/// Of an unknown kind, with too few fields, too many, a scene or a setting that is none, and without a number.
 #[test]
-fn an_intact_message_of_unknown_kind_is_answered_too() {
+fn an_intact_command_that_cannot_be_read_is_answered_too() {
     let mut app = app();
-    for (kind, fields, request) in
-        [(0xEE, &[77, 1, 2, 3][..], 77), (Pause::KIND, &[77], 77), (Pause::KIND, &[77, 0, 0], 77), (0xEE, &[], 0)]
-    {
-        app.receive(frame(kind, fields, &mut [0; MAX_WIRE]).iter().copied(), |_| ());
-        assert_eq!(last::<Refused>(&app), Refused { request, field: Field::Message.code() });
+    for (message, request) in [
+        (&[0x80, 77, 0xEE][..], 77),
+        (&[0x80, 77, 10], 77),
+        (&[0x80, 77, 10, 0, 0], 77),
+        (&[0x80, 77, 7, 0xEE], 77),
+        (&[0x80, 77, 8, 0xEE, 0, 0, 0, 0, 0, 0, 0, 0], 77),
+        (&[0x80], 0),
+    ] {
+        app.receive(frame(message, &mut [0; MAX_WIRE]).iter().copied(), |_| ());
+        assert_eq!(last(&app, request), Answer::Refused(Field::Message), "{message:?}");
     }
 }
 
 /// Of a link that is looped back the board hears what it has sent.
 #[test]
-fn what_is_an_answer_itself_is_not_answered() {
+fn what_is_no_command_is_not_answered() {
     let mut app = app();
-    for kind in 0..TO_CHIP {
-        app.receive(frame(kind, &[7, 0, 1], &mut [0; MAX_WIRE]).iter().copied(), |event| panic!("{event:?}"));
+    for message in [ToHost::Frame(Frame::default()), ToHost::Answer(7, Answer::Refused(Field::Message))] {
+        app.receive(encode(&message, &mut [0; MAX_WIRE]).iter().copied(), |event| panic!("{event:?}"));
+    }
+    for kind in (0..=u8::MAX).filter(|kind| *kind != 0x80) {
+        app.receive(frame(&[kind, 7, 0, 1], &mut [0; MAX_WIRE]).iter().copied(), |event| panic!("{event:?}"));
     }
     assert!(app.link.is_empty());
 }
@@ -176,98 +178,74 @@ fn every_scene_can_be_chosen_restarts_pauses_and_steps() {
             }
             app.player.report()
         };
-        app.receive(wire(&Choose { request: 1, scene: name.code() }), |_| ());
+        app.receive(wire(1, Command::Choose(name)), |_| ());
         assert_eq!(app.player.name(), name);
         let one = run(&mut app, 1);
         let ten = run(&mut app, 9);
-        app.receive(wire(&Pause { request: 2, paused: 1 }), |_| ());
+        app.receive(wire(2, Command::Pause(true)), |_| ());
         assert_eq!(run(&mut app, 5), ten, "{}: paused", name.name());
-        app.receive(wire(&Step { request: 3, ticks: 2 }), |_| ());
+        app.receive(wire(3, Command::Step(2)), |_| ());
         let twelve = run(&mut app, 5);
         assert_eq!(twelve.step, 12 * one.step, "{}: two steps", name.name());
-        app.receive(wire(&Restart { request: 4 }), |_| ());
+        app.receive(wire(4, Command::Restart), |_| ());
         assert_eq!(run(&mut app, 3).step, 0, "{}: restarted, still paused", name.name());
-        app.receive(wire(&Pause { request: 5, paused: 0 }), |_| ());
+        app.receive(wire(5, Command::Pause(false)), |_| ());
         assert_eq!(run(&mut app, 12), twelve, "{}: the same again", name.name());
-        assert_eq!(all::<Done>(&app.link).iter().map(|done| done.request).collect::<Vec<_>>(), [1, 2, 3, 4, 5]);
-        assert!(all::<Frame>(&app.link).iter().all(|frame| frame.scene == name.code()));
+        assert_eq!(answers(&app.link), [1, 2, 3, 4, 5].map(|request| (request, Answer::Done)));
+        assert!(frames(&app.link).iter().all(|frame| frame.scene == name));
     }
 }
-
-/// What an answer says has been found: nothing to plan, nothing yet, the plan.
-const NOTHING: u8 = 0;
-const NOT_YET: u8 = 1;
-const FOUND: u8 = 2;
 
 #[test]
 fn the_plan_is_found_in_some_tick_told_when_asked_and_followed() {
     let mut app = app();
     let asked = |app: &mut Plain| {
-        let answer: Planned = answer(app, &AskPlan { request: 3 });
-        assert_eq!(answer.request, 3);
-        answer
+        let Answer::Planned(planned) = answer(app, Command::AskPlan) else { panic!("no plan") };
+        planned
     };
-    let (mut news, mut tick) = (Vec::new(), 0);
-    let mut run = |app: &mut Plain, news: &mut Vec<_>| {
-        tick += 1;
-        app.run_to(tick, |event| news.push(event));
+    let mut news = Vec::new();
+    let run = |app: &mut Plain, news: &mut Vec<_>| assert!(app.run_to(app.frames + 1, |event| news.push(event)));
+    let search = |app: &mut Plain, news: &mut Vec<_>| loop {
+        match asked(app).expect("a motion").found {
+            None => run(app, news),
+            Some(found) => break found.expect("a plan"),
+        }
     };
-    assert_eq!(asked(&mut app).found, NOT_YET);
-    while asked(&mut app).found == NOT_YET {
-        run(&mut app, &mut news);
-    }
+    let plan = search(&mut app, &mut news);
+    assert!(plan.horizon > 19.0, "{plan:?}");
     run(&mut app, &mut news);
-    let [Event::Motion(News::Found(Ok(plan)))] = news[..] else { panic!("{news:?}") };
-    let answer = asked(&mut app);
-    assert_eq!((answer.found, answer.horizon), (FOUND, plan.horizon));
-    assert!(answer.horizon > 19.0, "{answer:?}");
-    let frame = app.player.frame();
-    assert_eq!((frame.method, u32::from(frame.way_steps)), (answer.method, answer.steps));
+    assert_eq!(news, [Event::Motion(News::Found(Ok(plan)))]);
+    assert_eq!(app.player.report().way, Some(plan.way()));
 
-    app.receive(wire(&set(Field::Angle, 20_f64.to_radians())), |_| ());
-    assert_eq!(asked(&mut app), Planned { request: 3, found: NOT_YET, ..blank(&answer) });
-    news.clear();
-    while asked(&mut app).found == NOT_YET {
-        run(&mut app, &mut news);
-    }
-    let calm = asked(&mut app);
-    assert!(calm.found == FOUND && calm.horizon >= PLANNED, "{calm:?}");
+    let before = asked(&mut app).expect("a motion");
+    app.receive(wire(1, set(Field::Angle, 20_f64.to_radians())), |_| ());
+    assert_eq!(asked(&mut app), Some(Planned { found: None, ..before }));
+    let calm = search(&mut app, &mut news);
+    assert!(calm.horizon >= PLANNED && calm.cost < plan.cost, "{calm:?}");
     (0..TICK_RATE).for_each(|_| run(&mut app, &mut news));
     let way = Way { method: Method::Rk4Fixed32, steps: calm.steps };
-    assert_eq!(news.last(), Some(&Event::Motion(News::Shown(way, calm.cycles))), "the cheaper way is taken");
-    let status = status(&mut app);
-    assert_eq!((status.method, status.way_steps, status.cycles), (calm.method, calm.steps, calm.cycles));
-    assert!(
-        status.cycles < answer.cycles && f64::from(status.horizon) > PLANNED && status.is_looking == 1,
-        "{status:?}"
-    );
+    assert_eq!(news.last(), Some(&Event::Motion(News::Shown(way, calm.cost))), "the cheaper way is taken");
+    let report = app.player.report();
+    assert_eq!(report.way, Some(calm.way()));
+    assert!(f64::from(report.horizon) > PLANNED && report.is_looking, "{report:?}");
 
-    app.receive(wire(&Choose { request: 1, scene: SceneName::Frequencies.code() }), |_| ());
+    app.receive(wire(1, Command::Choose(SceneName::Frequencies)), |_| ());
     assert!(!app.player.look_ahead());
-    assert_eq!(asked(&mut app), Planned { request: 3, found: NOTHING, ..Planned::default() });
+    assert_eq!(asked(&mut app), None);
 }
 
-/// What an answer says before anything is found.
-fn blank(answer: &Planned) -> Planned {
-    let &Planned { height, duration, frame_budget, planning_budget, .. } = answer;
-    Planned { height, duration, frame_budget, planning_budget, ..Planned::default() }
-}
-
-/// A method that is asked for by its code is taken, and stays; no other number is a method.
+/// A method that is asked for is taken, and stays until the plan may choose again.
 #[test]
 fn a_way_can_be_forced() {
     let mut app = app();
-    let mut go = |value: f64| {
-        app.receive(wire(&set(Field::Method, value)), |_| ());
-        status(&mut app).method
+    let mut go = |method| {
+        assert_eq!(answer(&mut app, Command::Method(method)), Answer::Done);
+        assert_eq!(status(&mut app).method, method);
+        app.player.report().way.map(|way| way.method)
     };
-    let fixed64 = method_code(Method::Extrapolation10Fixed64);
-    for method in Method::DRAWN.iter().map(|&method| method_code(method)) {
-        assert_eq!(go(method.into()), method);
-        assert_eq!(go(AUTO), fixed64);
-    }
-    for wrong in [-1.0, 0.5, method_code(Method::Rk4F64).into(), 99.0, 256.0, f64::NAN] {
-        assert_eq!(go(wrong), fixed64, "{wrong}");
+    for &method in Method::DRAWN {
+        assert_eq!(go(Some(method)), Some(method));
+        assert_eq!(go(None), Some(Method::Extrapolation10Fixed64));
     }
 }
 
@@ -275,7 +253,7 @@ fn a_way_can_be_forced() {
 fn speed_is_exact_in_the_long_run() {
     for (speed, ticks) in [(0.01, 6), (0.25, 150), (0.99, 594), (1.0, 600), (2.5, 1500), (4.0, 2400)] {
         let mut app = app();
-        app.receive(wire(&set(Field::Speed, speed)), |_| ());
+        app.receive(wire(1, set(Field::Speed, speed)), |_| ());
         (1..=600).for_each(|clock| assert!(app.run_to(clock, |_| ())));
         assert_eq!(app.player.report().time, f64::from(ticks) / f64::from(TICK_RATE), "{speed}");
     }
@@ -298,7 +276,7 @@ fn flood(mut bytes: impl Iterator<Item = u8>, seconds: u32) -> Plain {
         let mut counted = |event: Event<_, _>| lines += u32::from(!is_asked_for(&event));
         app.receive(std::iter::from_fn(|| waiting.pop_front()), &mut counted);
     }
-    let frames = all::<Frame>(&app.link);
+    let frames = frames(&app.link);
     assert_eq!(frames.len(), (seconds * TICK_RATE) as usize);
     assert!((0..).zip(&frames).all(|(sequence, frame)| frame.sequence == sequence && frame.dropped == 0));
     assert!(lines <= seconds, "{lines} lines of log in {seconds} s");
@@ -309,18 +287,18 @@ fn flood(mut bytes: impl Iterator<Item = u8>, seconds: u32) -> Plain {
 fn noise_half_commands_and_floods_do_not_disturb_the_stream() {
     let mut rng = Rng::with_seed(5);
     let noise = flood(std::iter::repeat_with(move || rng.u8(..)), 60);
-    assert_eq!(all::<Done>(&noise.link), [], "noise is executed");
+    assert_eq!(answers(&noise.link), [], "noise is executed");
     assert_eq!(noise.player.report(), flood(std::iter::empty(), 60).player.report(), "and changes nothing");
 
     flood(std::iter::repeat(0), 10);
     flood(std::iter::repeat(1), 10); // one line without an end
-    let half = wire(&set(Field::Angle, 0.1));
+    let half = wire(1, set(Field::Angle, 0.1));
     let half = half[..half.len() / 2].to_vec();
     let halves = flood(half.into_iter().chain([0]).collect::<Vec<_>>().into_iter().cycle(), 10);
-    assert_eq!(all::<Done>(&halves.link), []);
+    assert_eq!(answers(&halves.link), []);
 
-    let restarts = flood(wire(&Restart { request: 6 }).into_iter().cycle(), 10);
-    let (answered, most) = (all::<Done>(&restarts.link).len(), MOST_MESSAGES_PER_TICK * (10 * TICK_RATE) as usize);
+    let restarts = flood(wire(6, Command::Restart).into_iter().cycle(), 10);
+    let (answered, most) = (answers(&restarts.link).len(), MOST_MESSAGES_PER_TICK * (10 * TICK_RATE) as usize);
     assert!((most / 2..=most).contains(&answered), "{answered}: of more than can wait, the rest is lost");
 }
 
@@ -329,6 +307,6 @@ fn a_command_after_noise_is_executed() {
     let mut app = app();
     let mut rng = Rng::with_seed(6);
     app.receive(std::iter::repeat_with(|| rng.u8(1..)).take(5000), |_| ());
-    let done: Done = answer(&mut app, &Choose { request: 3, scene: SceneName::Figure7.code() });
-    assert_eq!((done, app.player.name()), (Done { request: 3 }, SceneName::Figure7));
+    let done = answer(&mut app, Command::Choose(SceneName::Figure7));
+    assert_eq!((done, app.player.name()), (Answer::Done, SceneName::Figure7));
 }

@@ -1,9 +1,10 @@
 //! Buttons to commands, commands to settings, settings to labels.
 
-use firmware::app::{Command, Controls, Pressed};
+use firmware::app::{Controls, Pressed};
 use firmware::config::{DEBOUNCE_TICKS, HOLD_TICKS, MASS_RATIOS, REPEAT_DELAY_TICKS, REPEAT_PERIOD_TICKS};
 use firmware::graphics::label;
 use firmware::motion::Settings;
+use firmware::protocol::Command;
 
 const NONE: Pressed = Pressed { up: false, down: false, left: false, right: false, select: false };
 const UP: Pressed = Pressed { up: true, ..NONE };

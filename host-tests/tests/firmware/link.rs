@@ -2,25 +2,32 @@
 
 use std::collections::HashSet;
 
+use double_pendulum::Method;
+use double_pendulum::plan::{Limit, Plan, Way};
+use firmware::app::Record;
+use firmware::job::{Reading, Request};
+use firmware::motion::{Planned, Settings};
 use firmware::protocol::{
-    Decoder, Frame, Identity, LinkError, MAX_FIELDS, MAX_WIRE, Message, Planned, Request, Sample, Simulate, Status,
-    frame,
+    Answer, Cause, Command, Decoder, Frame, Identity, LinkError, MAX_MESSAGE, MAX_WIRE, Restarted, Status, ToHost,
+    decode_command, encode, encode_command, frame,
 };
+use firmware::scenes::{Report, SceneName};
+
+use crate::bench::messages;
 
 /// What the decoder says of a wire.
-fn decoded(wire: &[u8]) -> Option<Result<(u8, Vec<u8>), LinkError>> {
+fn decoded(wire: &[u8]) -> Option<Result<Vec<u8>, LinkError>> {
     let mut decoder = Decoder::default();
-    let own = |message: Result<(u8, &[u8]), LinkError>| message.map(|(kind, fields)| (kind, fields.to_vec()));
-    wire.iter().fold(None, |last, &byte| decoder.push(byte).map(own).or(last))
+    wire.iter().fold(None, |last, &byte| decoder.push(byte).map(|message| message.map(<[u8]>::to_vec)).or(last))
 }
 
-fn wire(kind: u8, fields: &[u8]) -> Vec<u8> {
-    frame(kind, fields, &mut [0; MAX_WIRE]).to_vec()
+fn wire(message: &[u8]) -> Vec<u8> {
+    frame(message, &mut [0; MAX_WIRE]).to_vec()
 }
 
-/// The four bytes of the check, found by what the decoder takes: the body is version, kind, fields, CRC.
-fn crc(kind: u8, fields: &[u8]) -> u32 {
-    let mut body = wire(kind, fields).split_off(1);
+/// The four bytes of the check, found by what the decoder takes: the body is version, message, CRC.
+fn crc(message: &[u8]) -> u32 {
+    let mut body = wire(message).split_off(1);
     let length = cobs::decode_in_place(&mut body).expect("a COBS encoding");
     let (_, crc) = body[..length].split_last_chunk().expect("a body");
     u32::from_le_bytes(*crc)
@@ -32,15 +39,14 @@ fn crc(kind: u8, fields: &[u8]) -> u32 {
 /// changes cancel, that is if two pairs of flips make the same change, or a single one that of three.
 #[test]
 fn every_change_of_four_bits_is_detected() {
-    let bits = 8 * (MAX_FIELDS + 2);
-    let clean = crc(0, &[0; MAX_FIELDS]);
-    // The longest message there is has 94 bytes of fields, so that its version lies where a flip here still reaches. A flip
-    // in the CRC changes one bit of it.
-    let mut changes: Vec<u32> = (8..bits)
+    let clean = crc(&[0; MAX_MESSAGE]);
+    // The version cannot be changed here, but stands at the head of a shorter message where a flip here reaches. A flip in the CRC
+    // changes one bit of it.
+    let mut changes: Vec<u32> = (0..8 * MAX_MESSAGE)
         .map(|bit| {
-            let mut message = [0; MAX_FIELDS + 1];
-            message[(bit - 8) / 8] ^= 1 << (bit % 8);
-            crc(message[0], &message[1..]) ^ clean
+            let mut message = [0; MAX_MESSAGE];
+            message[bit / 8] ^= 1 << (bit % 8);
+            crc(&message) ^ clean
         })
         .collect();
     changes.extend((0..32).map(|bit| 1_u32 << bit));
@@ -57,9 +63,9 @@ fn every_change_of_four_bits_is_detected() {
 /// it is the check that finds them.
 #[test]
 fn every_flipped_bit_on_the_wire_is_detected() {
-    let (kind, fields) = (0x82, [7, 0, 0, 255, 0, 1, 2, 0, 0, 3]);
-    let (good, next) = (wire(kind, &fields), wire(3, &[9; 96]));
-    assert_eq!(decoded(&good), Some(Ok((kind, fields.to_vec()))));
+    let message = [0x82, 7, 0, 0, 255, 0, 1, 2, 0, 0, 3];
+    let (good, next) = (wire(&message), wire(&[9; MAX_MESSAGE]));
+    assert_eq!(decoded(&good), Some(Ok(message.to_vec())));
     let mut by_check = 0;
     for bit in 0..8 * good.len() {
         let mut bad = good.clone();
@@ -67,7 +73,7 @@ fn every_flipped_bit_on_the_wire_is_detected() {
         let found = decoded(&bad);
         assert!(!matches!(found, Some(Ok(_))), "bit {bit}");
         by_check += usize::from(found == Some(Err(LinkError::Checksum)));
-        assert_eq!(decoded(&[bad, next.clone()].concat()), Some(Ok((3, vec![9; 96]))), "after bit {bit}");
+        assert_eq!(decoded(&[bad, next.clone()].concat()), Some(Ok(vec![9; MAX_MESSAGE])), "after bit {bit}");
     }
     assert!(by_check > 4 * good.len(), "{by_check} by the check");
 }
@@ -75,24 +81,49 @@ fn every_flipped_bit_on_the_wire_is_detected() {
 /// The longest messages, their whole numbers as large as they can be.
 #[test]
 fn every_message_fits() {
-    let (request, u16, u32) = (u16::MAX, u16::MAX, u32::MAX);
-    let frame = Frame { sequence: u32, dropped: u32, lost: u32, step: u32, way_steps: u16, ..Frame::default() };
-    let identity = Identity { request, hertz: u32, processor: u32, chip: [u32; 4], ..Identity::default() };
-    let motion = Request { stride: u32, samples: u32, ..Request::default() };
+    let (number, steps) = (u32::MAX, u32::MAX);
+    let method = Method::TextbookF32;
+    let report = Report { step: u64::MAX, way: Some(Way { method, steps }), ..Report::default() };
+    let counts = Frame { sequence: number, dropped: number, lost: number, report, ..Frame::default() };
+    let frame = Frame { scene_cycles: number, busy_cycles: number, ..counts };
+    let (cause, scene) = (Some(Cause::Fault), SceneName::Flips);
+    let end = Restarted { cause, restarts: u8::MAX, pc: number, lr: number, cfsr: number, scene, step: u64::MAX };
+    let board = Identity { hertz: number, processor: number, chip: [number; 4], ..Identity::default() };
+    let identity = Identity { image: number, image_bytes: number, ..board };
+    let (settings, method) = (Settings::default(), Some(method));
+    let status = Status { scene, settings, method, processor: 0, paused: true, steps, speed: 1.0 };
+    let plan = Plan {
+        method: Method::TextbookF32,
+        steps,
+        dt: 1.0,
+        error: 1.0,
+        cost: 1.0,
+        horizon: 1.0,
+        limit: Limit::End,
+        spent: 1.0,
+    };
+    let planned = Planned { found: Some(Ok(plan)), height: 1.0, duration: 1.0, frame: 1.0, planning: 1.0 };
+    let record = Record { played: status, end };
+    assert_eq!(Record::read(&record.write()), Some(record));
+    let answer = |answer| length(ToHost::Answer(u16::MAX, answer));
     let lengths = [
-        length(Frame { scene_cycles: u32, busy_cycles: u32, ..frame }),
-        length(Identity { image: u32, image_bytes: u32, ..identity }),
-        length(Simulate { request, motion }),
-        length(Planned { request, steps: u32, ..Planned::default() }),
-        length(Sample { request, index: u32, ..Sample::default() }),
-        length(Status { request, steps: u32, way_steps: u32, ..Status::default() }),
+        length(ToHost::Frame(frame)),
+        length(ToHost::Restarted(end)),
+        answer(Answer::Identity(identity)),
+        answer(Answer::Planned(Some(planned))),
+        answer(Answer::Sample { index: number, reading: Reading::default() }),
+        answer(Answer::Status(status)),
     ];
-    assert_eq!(lengths, [77, 44, 94, 63, 64, 67]);
+    assert_eq!(lengths, [94, 38, 54, 71, 74, 63]);
+    let command = Command::Simulate(Request { stride: number, samples: number, ..Request::default() });
+    let message = decoded(encode_command(u16::MAX, command, &mut [0; MAX_WIRE])).expect("a message").expect("intact");
+    assert_eq!((message.len(), decode_command(&message)), (96, Some((u16::MAX, Some(command)))));
 }
 
-fn length<M: Message + PartialEq + std::fmt::Debug>(message: M) -> usize {
-    let mut fields = [0; MAX_FIELDS];
-    let fields = message.write(&mut fields);
-    assert_eq!(M::read(fields), Some(message));
-    fields.len()
+/// Its bytes on the wire.
+fn length(message: ToHost) -> usize {
+    let mut wire = [0; MAX_WIRE];
+    let wire = encode(&message, &mut wire);
+    assert_eq!(messages(wire), [message]);
+    wire.len()
 }

@@ -1,14 +1,14 @@
 //! Every scene of the catalogue, on the host: its frame to the pixel, and what all scenes have in common.
 
 use double_pendulum::State;
-use firmware::app::{Command, News};
+use firmware::app::News;
 use firmware::config::{
     CORTEX_M0PLUS, CORTEX_M3, CORTEX_M4F, PIVOT, PROCESSOR, Processor, REACH, STM32F405, TICK_RATE, TRAIL_FADING,
     TRAIL_HALF_WIDTH,
 };
 use firmware::graphics::{Anchor, Canvas, FadeLayer, HEIGHT, WIDTH, plot, text};
 use firmware::motion::{Means, Settings};
-use firmware::protocol::Pause;
+use firmware::protocol::Command;
 use firmware::scenes::{AnyScene, Flips, Scene, SceneName};
 use host_tests::emulator::host::Show;
 use host_tests::oracle::snapshot;
@@ -112,19 +112,19 @@ fn differing(one: &Canvas, other: &Canvas) -> Vec<(i32, i32)> {
 #[test]
 fn a_pause_is_marked_and_only_a_pause() {
     let mut app = app();
-    let mut pause = |paused: u8, clock: u32| {
-        app.receive(wire(&Pause { request: 1, paused }), |_| ());
+    let mut pause = |paused: bool, clock: u32| {
+        app.receive(wire(1, Command::Pause(paused)), |_| ());
         app.run_to(clock, |_| ());
         app.canvas.clone()
     };
     let plain = |ticks| after(SceneName::Page, ticks).frame();
-    assert!(pause(0, 1) == plain(1), "what moves has no mark");
-    let marked = differing(&pause(1, 2), &plain(1));
+    assert!(pause(false, 1) == plain(1), "what moves has no mark");
+    let marked = differing(&pause(true, 2), &plain(1));
     let bar = |x: i32| (11..17).map(move |y| (x, y));
     let mut expected: Vec<_> = [121, 122, 125, 126].into_iter().flat_map(bar).collect();
     expected.sort_by_key(|&(x, y)| (y, x));
     assert_eq!(marked, expected);
-    assert!(pause(0, 3) == plain(2), "the mark goes when time goes on");
+    assert!(pause(false, 3) == plain(2), "the mark goes when time goes on");
 }
 
 /// A scene of curves shows its motion as large as it is drawn: the pendulum planned for has two rods as long as a radian

@@ -9,11 +9,10 @@ use std::process::Command;
 use std::thread::{scope, sleep};
 use std::time::Duration;
 
-use firmware::protocol::{Frame, MAX_WIRE, frame};
+use firmware::protocol::{MAX_WIRE, ToHost, encode};
 use host_tests::emulator::boards::{BOARDS, Board};
 use host_tests::emulator::process::{Output, run};
 use host_tests::emulator::qemu::{Clock, Machine, Settings};
-use host_tests::link::Received;
 use nix::fcntl::OFlag;
 use nix::pty::{PtyMaster, grantpt, posix_openpt, ptsname_r, unlockpt};
 
@@ -88,11 +87,11 @@ impl Bench {
     }
 
     /// Carries what is there both ways; `wire` makes bytes of the board's messages.
-    pub fn carry(&mut self, mut wire: impl FnMut(&Received) -> Vec<u8>) {
+    pub fn carry(&mut self, mut wire: impl FnMut(ToHost) -> Vec<u8>) {
         let is_heard = self.is_heard();
         let messages: Vec<_> = self.machine.serial.all_arrived().collect();
-        for message in messages.iter().filter(|_| is_heard) {
-            self.frame = message.read().map_or(self.frame, |Frame { sequence, .. }| sequence);
+        for message in messages.into_iter().filter(|_| is_heard) {
+            self.frame = message.frame().map_or(self.frame, |frame| frame.sequence);
             self.say(&wire(message));
         }
         sleep(WAIT);
@@ -110,8 +109,8 @@ fn machine(board: &Board) -> Machine {
 }
 
 /// A message as the board has sent it.
-pub fn intact(message: &Received) -> Vec<u8> {
-    frame(message.kind, &message.fields, &mut [0; MAX_WIRE]).to_vec()
+pub fn wire(message: ToHost) -> Vec<u8> {
+    encode(&message, &mut [0; MAX_WIRE]).to_vec()
 }
 
 /// Runs a command at the bench's port beside `play`, which is called until it has ended.

@@ -69,6 +69,7 @@ impl Budget {
 
 /// How a motion is computed: a method, and how fine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[doc(hidden)]
 pub struct Way {
     pub method: Method,

@@ -27,9 +27,10 @@ use cortex_m_semihosting::{debug, hio};
 
 use super::calls::{calls, instruction};
 use super::{retained, watchdog};
-use crate::app::{Cause, LastShown};
+use crate::app::LastShown;
 use crate::config::WATCHDOG_SECONDS;
 use crate::fault::{Fault, Stacked};
+use crate::protocol::Cause;
 
 /// A call to the debugger, `bkpt 0xAB`, and its length in bytes.
 const DEBUGGER_CALL: (u16, u32) = (0xBEAB, 2);

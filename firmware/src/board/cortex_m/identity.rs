@@ -15,7 +15,7 @@ unsafe extern "C" {
 /// The instruments of this processor, its cycle counter started; `chip` is what the chip says of itself.
 pub fn instruments(board: BoardName, hertz: u32, chip: [u32; 4], cpuid: &CPUID, dcb: DCB, dwt: DWT) -> Instruments {
     start(dcb, dwt);
-    let identity = Identity { board: board.code(), hertz, processor: cpuid.base.read(), chip, ..Identity::default() };
+    let identity = Identity { board, hertz, processor: cpuid.base.read(), chip, ..Identity::default() };
     Instruments { stopwatch: clock::cycles, timed, image, identity }
 }
 

@@ -7,7 +7,7 @@ use anyhow::{Context, Result};
 use double_pendulum::plan::Costs;
 use double_pendulum::{Method, Parameters};
 use firmware::job::Request;
-use firmware::protocol::{Field, Set, method_code};
+use firmware::protocol::Command;
 use rayon::prelude::*;
 
 use super::{FULL_CYCLE, Target, affordable_cost, calls_in_next};
@@ -60,8 +60,7 @@ fn in_application(board: &'static Board, toolchain: &Toolchain) -> Result<(f32, 
     let step = most(&mut machine, "Fixed64State::advance")?;
     let mut prepared: f32 = 0.0;
     for &method in Method::DRAWN {
-        let (field, value) = (Field::Method.code(), method_code(method).into());
-        machine.machine().serial.send(&Set { request: 1, field, value })?;
+        machine.machine().serial.send(1, Command::Method(Some(method)))?;
         machine.run_to(image.function("PlannedRun::new")?.address)?;
         prepared = prepared.max(most(&mut machine, "PlannedRun::new")?);
     }

@@ -7,7 +7,7 @@ use std::fmt;
 use firmware::config::{PROCESSOR, PROCESSORS, TICK_RATE};
 use firmware::graphics::{Canvas, text};
 use firmware::motion::Settings;
-use firmware::protocol::{Field, Frame, NO_METHOD, Status};
+use firmware::protocol::{Field, Frame, Status};
 use firmware::scenes::SceneName;
 use indicatif::HumanCount;
 
@@ -40,7 +40,7 @@ pub struct Comparison {
 impl Comparison {
     /// Takes a frame that has just arrived; whether to ask the board what it plays.
     pub fn frame(&mut self, frame: &Frame) -> bool {
-        let starts = |last: &Frame| frame.scene != last.scene || (frame.step.wrapping_sub(last.step) as i32) < 0;
+        let starts = |last: &Frame| frame.scene != last.scene || frame.report.step < last.report.step;
         if self.last.as_ref().is_none_or(starts) {
             self.skipped += self.waiting.len() as u64;
             self.waiting.clear();
@@ -60,9 +60,7 @@ impl Comparison {
     pub fn status(&mut self, status: &Status) {
         self.unanswered = None;
         // What is played by its start alone: how its time goes is another matter.
-        let (method, way_steps, cycles, horizon, is_looking) = (NO_METHOD, 0, 0.0, 0.0, 0);
-        let time = Status { request: 0, paused: 0, steps: 0, speed: 1.0, ..*status };
-        let start = Status { method, way_steps, cycles, horizon, is_looking, ..time };
+        let start = Status { paused: false, steps: 0, speed: 1.0, ..*status };
         match (self.doubt.take(), &self.playing) {
             (Some(doubt), Some((playing, _))) if *playing == start => {
                 self.first.get_or_insert(doubt);
@@ -95,7 +93,7 @@ impl Comparison {
         if let Some((_, show)) = &self.playing {
             show.draw(&mut self.canvas);
         }
-        if frame.paused != 0 {
+        if frame.paused {
             text::pause_mark(&mut self.canvas);
         }
         Screenshot::from(&self.canvas)
@@ -133,21 +131,21 @@ fn played(start: &Status) -> Result<Show, Field> {
 
 /// Goes on towards the step of `frame`; whether it is there.
 fn is_reached(show: &mut Show, frame: &Frame) -> bool {
-    let left = |show: &Show| frame.step.wrapping_sub(show.report().step as u32) as i32;
+    let is_there = |show: &Show| show.report().step >= frame.report.step;
     for _ in 0..MOST_TICKS {
-        if left(show) <= 0 || show.player.is_paused() {
+        if is_there(show) || show.player.is_paused() {
             return true;
         }
         show.tick();
     }
-    left(show) <= 0
+    is_there(show)
 }
 
 /// A number that board and host do not have alike, by its bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Difference {
     sequence: u32,
-    step: u32,
+    step: u64,
     number: &'static str,
     bits: [u64; 2],
 }
@@ -162,22 +160,23 @@ impl fmt::Display for Difference {
 /// The first number of the board's frame that is not the host's.
 fn difference(board: &Frame, here: &Frame) -> Option<Difference> {
     let numbers = |frame: &Frame| {
-        let [a1, a2, p1, p2] = frame.state.map(|number| u64::from(number.to_bits()));
+        let report = &frame.report;
+        let [a1, a2, p1, p2] = <[f32; 4]>::from(report.state).map(|number| u64::from(number.to_bits()));
         [
-            ("scene", frame.scene.into()),
-            ("step", frame.step.into()),
-            ("time", frame.time.to_bits()),
+            ("scene", frame.scene as u64),
+            ("step", report.step),
+            ("time", report.time.to_bits()),
             ("mass ratio", frame.mass_ratio.to_bits().into()),
             ("start angle", frame.start_angle.to_bits().into()),
             ("a1", a1),
             ("a2", a2),
             ("p1", p1),
             ("p2", p2),
-            ("energy error", frame.energy_error.to_bits().into()),
-            ("horizon", frame.horizon.to_bits().into()),
+            ("energy error", report.energy_error.to_bits().into()),
+            ("horizon", report.horizon.to_bits().into()),
         ]
     };
     let ((number, board_bits), (_, here_bits)) =
         numbers(board).into_iter().zip(numbers(here)).find(|(board, here)| board != here)?;
-    Some(Difference { sequence: board.sequence, step: board.step, number, bits: [board_bits, here_bits] })
+    Some(Difference { sequence: board.sequence, step: board.report.step, number, bits: [board_bits, here_bits] })
 }

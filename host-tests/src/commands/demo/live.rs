@@ -4,9 +4,7 @@ use std::io::stdout;
 use std::time::{Duration, Instant};
 
 use anyhow::ensure;
-use firmware::app::Key;
-use firmware::protocol::{Choose, Pause, Press, Step};
-use firmware::scenes::SceneName;
+use firmware::protocol::Command;
 use ratatui::DefaultTerminal;
 use ratatui::crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 use ratatui::crossterm::style::Colored;
@@ -73,22 +71,16 @@ fn keys(session: &mut Session) -> anyhow::Result<bool> {
 }
 
 fn obey(Session { source, readings, .. }: &mut Session, code: KeyCode) -> anyhow::Result<()> {
-    let press = |key: Key| Press { request: 0, key: key.code() };
-    let now = readings.frame;
-    let scene = now.and_then(|now| SceneName::from_code(now.scene)).unwrap_or(SceneName::Page);
-    let choose = |scene: SceneName| Choose { request: 0, scene: scene.code() };
     match code {
-        KeyCode::Up => source.send(&press(Key::Up)),
-        KeyCode::Down => source.send(&press(Key::Down)),
-        KeyCode::Left => source.send(&press(Key::Left)),
-        KeyCode::Right => source.send(&press(Key::Right)),
-        KeyCode::Char(' ') | KeyCode::Enter => source.send(&press(Key::Select)),
-        KeyCode::Tab | KeyCode::Char('n') => source.send(&choose(scene.next())),
-        KeyCode::BackTab | KeyCode::Char('N') => source.send(&choose(scene.previous())),
-        KeyCode::Char('p') => {
-            source.send(&Pause { request: 0, paused: u8::from(now.is_some_and(|now| now.paused == 0)) })
-        }
-        KeyCode::Char('.') => source.send(&Step { request: 0, ticks: 1 }),
+        KeyCode::Up => source.send(Command::Heavier),
+        KeyCode::Down => source.send(Command::Lighter),
+        KeyCode::Left => source.send(Command::TurnLeft),
+        KeyCode::Right => source.send(Command::TurnRight),
+        KeyCode::Char(' ') | KeyCode::Enter => source.send(Command::Restart),
+        KeyCode::Tab | KeyCode::Char('n') => source.send(Command::NextScene),
+        KeyCode::BackTab | KeyCode::Char('N') => source.send(Command::PreviousScene),
+        KeyCode::Char('p') => source.send(Command::TogglePause),
+        KeyCode::Char('.') => source.send(Command::Step(1)),
         KeyCode::Char('?') => {
             readings.help = !readings.help;
             Ok(())

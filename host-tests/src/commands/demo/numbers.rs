@@ -1,5 +1,6 @@
 //! The latest numbers in a column beside the panel, the energy error's past as bars below them; and what they mean.
 
+use double_pendulum::State;
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::style::{Color, Stylize};
@@ -37,9 +38,10 @@ fn rows(readings: &Readings) -> [(&'static str, String); 9] {
     // Those at the start, one if both rods have the same.
     let degrees = readings.start.unwrap_or([now.start_angle.to_degrees(); 2]).map(|degrees| rounded(degrees, 1) + "°");
     let start = if degrees[0] == degrees[1] { degrees[0].clone() } else { degrees.join(", ") };
-    let [angle_1, angle_2, ..] = now.state.map(|angle| plot::within_half_a_turn(f64::from(angle).to_degrees()));
+    let State { a1, a2, .. } = now.report.state;
+    let [angle_1, angle_2] = [a1, a2].map(|angle| plot::within_half_a_turn(f64::from(angle).to_degrees()));
     let rows = [
-        ("time", is_shown, format!("{:.2} s", now.time)),
+        ("time", is_shown, format!("{:.2} s", now.report.time)),
         ("mass ratio", is_shown, rounded(now.mass_ratio, 4)),
         ("start", moves, start),
         ("angle 1", moves, format!("{angle_1:.1}°")),
@@ -47,7 +49,7 @@ fn rows(readings: &Readings) -> [(&'static str, String); 9] {
         ("frames/s", is_shown, readings.rate().to_string()),
         ("dropped", is_shown, now.dropped.to_string()),
         ("CRC errors", true, readings.counts.damaged.to_string()),
-        ("energy error", moves, format!("{:+.1e}", now.energy_error)),
+        ("energy error", moves, format!("{:+.1e}", now.report.energy_error)),
     ];
     rows.map(|(name, is_known, value)| (name, if is_known { value } else { "-".to_owned() }))
 }

@@ -2,9 +2,10 @@
 
 use std::time::{Duration, Instant};
 
-use double_pendulum::Method;
+use double_pendulum::plan::Way;
 use firmware::config::TICK_RATE;
-use firmware::protocol::{Frame, Status, method_of};
+use firmware::protocol::{Frame, Status};
+use firmware::scenes::Report;
 
 use super::comparison::Comparison;
 use super::plot::{self, Moment};
@@ -40,26 +41,26 @@ impl Readings {
     /// Takes a frame that has just arrived; whether to ask the board what it plays.
     pub fn frame(&mut self, frame: Frame) -> bool {
         let last = self.frame.replace(frame);
-        let before = last.filter(|last| last.scene == frame.scene && last.time <= frame.time);
+        let Report { time, energy_error, state, .. } = frame.report;
+        let before = last.filter(|last| last.scene == frame.scene && last.report.time <= time);
         if before.is_none() {
             self.start = None;
             self.energy_errors.clear();
             self.angles.clear();
         }
-        self.simulated += frame.time - before.map_or(0.0, |last| last.time);
+        self.simulated += time - before.map_or(0.0, |last| last.report.time);
 
-        let error = frame.energy_error.abs();
+        let error = energy_error.abs();
         self.greatest_energy_error = self.greatest_energy_error.max(error);
         match self.energy_errors.last_mut() {
             Some(largest) if !self.frames.is_multiple_of(FRAMES_PER_BAR) => *largest = largest.max(error),
             _ => self.energy_errors.push(error),
         }
         self.frames += 1;
-        let [a1, a2, ..] = frame.state.map(|number| f64::from(number).to_degrees());
-        if self.angles.last().is_none_or(|(last, _)| frame.time > *last) {
-            self.angles.push((frame.time, [a1, a2]));
+        if self.angles.last().is_none_or(|(last, _)| time > *last) {
+            self.angles.push((time, [state.a1, state.a2].map(|angle| f64::from(angle).to_degrees())));
         }
-        self.angles.retain(|(time, _)| frame.time - time <= plot::SPAN);
+        self.angles.retain(|(past, _)| time - past <= plot::SPAN);
         self.arrivals.push(Instant::now());
         self.arrivals.retain(|arrival| arrival.elapsed() <= RATE_SPAN);
         self.comparison.frame(&frame)
@@ -67,7 +68,7 @@ impl Readings {
 
     /// Takes what the board says that it plays: frames tell of rod 1 only.
     pub fn status(&mut self, status: &Status) {
-        self.start = Some(status.degrees);
+        self.start = Some(status.settings.degrees);
         self.comparison.status(status);
     }
 
@@ -101,7 +102,7 @@ impl Readings {
              lost frames           {}\n\
              dropped frames        {}\n\
              bits                  {comparison}",
-            way(&last),
+            way(&last.report),
             counts.damaged,
             counts.lost,
             last.dropped
@@ -110,29 +111,34 @@ impl Readings {
 }
 
 /// How a frame is computed and until when such frames are right, in one line.
-pub fn way(&Frame { method, way_steps, horizon, is_looking, .. }: &Frame) -> String {
-    let name = method_of(method).map_or("nothing to plan", Method::name);
-    let steps = match way_steps {
-        0 => String::new(),
-        1 => ", a step to a frame".to_owned(),
-        steps => format!(", {steps} steps to a frame"),
+pub fn way(&Report { way, horizon, is_looking, .. }: &Report) -> String {
+    let way = match way {
+        None => "nothing to plan".to_owned(),
+        Some(Way { method, steps: 0 }) => method.to_string(),
+        Some(Way { method, steps: 1 }) => format!("{method}, a step to a frame"),
+        Some(Way { method, steps }) => format!("{method}, {steps} steps to a frame"),
     };
     if horizon.is_infinite() {
-        return format!("{name}{steps}");
+        return way;
     }
-    let at_least = if is_looking != 0 { "at least " } else { "" };
-    format!("{name}{steps}, right to half a pixel until {at_least}{horizon:.1} s")
+    let at_least = if is_looking { "at least " } else { "" };
+    format!("{way}, right to half a pixel until {at_least}{horizon:.1} s")
 }
 
 #[cfg(test)]
 mod tests {
+    use firmware::scenes::SceneName;
+
     use super::*;
 
     #[test]
     fn the_simulated_time_is_that_of_all_restarts_and_scenes() {
         let mut readings = Readings::default();
-        for (scene, time) in [(0, 0.25), (0, 0.5), (0, 0.5), (0, 0.125), (0, 0.75), (1, 0.875), (1, 1.0)] {
-            readings.frame(Frame { scene, time, ..Frame::default() });
+        let [page, butterfly] = [SceneName::Page, SceneName::Butterfly];
+        for (scene, times) in [(page, &[0.25, 0.5, 0.5, 0.125, 0.75][..]), (butterfly, &[0.875, 1.0])] {
+            for &time in times {
+                readings.frame(Frame { scene, report: Report { time, ..Report::default() }, ..Frame::default() });
+            }
         }
         assert!(readings.report().contains("simulated time        2.250 s"), "{}", readings.report());
     }

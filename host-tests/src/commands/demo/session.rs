@@ -5,10 +5,8 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use anyhow::Context;
-use firmware::app::AUTO;
 use firmware::config::TICK_RATE;
-use firmware::protocol::{Ask, Choose, Field, Frame, Set, Status, method_code};
-use firmware::scenes::SceneName;
+use firmware::protocol::{Answer, Command, Frame, ToHost};
 
 use super::DemoOptions;
 use super::readings::Readings;
@@ -49,11 +47,10 @@ impl<'a> Session<'a> {
             *due = if due.elapsed() > LATE { Instant::now() } else { *due } + Duration::from_secs(1) / TICK_RATE;
         }
         for message in self.source.messages()? {
-            if let Some(status) = message.read::<Status>() {
-                self.readings.status(&status);
-            }
-            if let Some(frame) = message.read() {
-                self.frame(&frame)?;
+            match message {
+                ToHost::Answer(_, Answer::Status(status)) => self.readings.status(&status),
+                ToHost::Frame(frame) => self.frame(&frame)?,
+                _ => {}
             }
         }
         while let Some(frame) = self.readings.comparison.follow() {
@@ -75,22 +72,19 @@ impl<'a> Session<'a> {
             Some(_) => {}
         }
         let now = *self.now.insert(self.tick(frame));
-        if self.options.scene.is_none_or(|scene| scene.code() == frame.scene) {
+        if self.options.scene.is_none_or(|scene| scene == frame.scene) {
             self.begun.get_or_insert(now);
         }
-        if self.readings.frame(*frame) { self.source.send(&Ask { request: 0 }) } else { Ok(()) }
+        if self.readings.frame(*frame) { self.source.send(Command::Ask) } else { Ok(()) }
     }
 
     /// Has the board play, and in the way, what was asked for.
     fn begin(&mut self, first: &Frame) -> anyhow::Result<()> {
-        let playing = SceneName::from_code(first.scene);
-        if let Some(scene) = self.options.scene.filter(|scene| playing != Some(*scene)) {
-            self.source.send(&Choose { request: 0, scene: scene.code() })?;
+        if let Some(scene) = self.options.scene.filter(|scene| *scene != first.scene) {
+            self.source.send(Command::Choose(scene))?;
         }
-        self.options.scene.or(playing).map_or(Ok(()), |scene| self.options.check_method(scene))?;
-        let Some(method) = self.options.method else { return Ok(()) };
-        let value = method.map_or(AUTO, |method| method_code(method).into());
-        self.source.send(&Set { request: 0, field: Field::Method.code(), value })
+        self.options.check_method(self.options.scene.unwrap_or(first.scene))?;
+        self.options.method.map_or(Ok(()), |method| self.source.send(Command::Method(method)))
     }
 
     pub fn look(&mut self) -> anyhow::Result<()> {

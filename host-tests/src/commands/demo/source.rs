@@ -1,11 +1,11 @@
 //! Where the stream comes from: an emulated board, at the speed of the real one or frame by frame, or a board at a serial port.
 
-use firmware::protocol::{MAX_WIRE, Message, encode};
+use firmware::protocol::{Command, MAX_WIRE, ToHost, encode_command};
 
 use crate::emulator::boards::{Board, PICO};
 use crate::emulator::pico::PicoMachine;
 use crate::emulator::qemu::{Lockstep, LogLine, Machine, Screenshot};
-use crate::link::{Counts, Port, Received};
+use crate::link::{Counts, Port};
 
 pub enum Source<'a> {
     /// Emulated by QEMU, its clock the host's.
@@ -39,7 +39,7 @@ impl Source<'_> {
     }
 
     /// The messages since the last call; of one that goes frame by frame those up to the next.
-    pub fn messages(&mut self) -> anyhow::Result<Vec<Received>> {
+    pub fn messages(&mut self) -> anyhow::Result<Vec<ToHost>> {
         match self {
             Self::Live(machine, _) => match machine.ended()? {
                 Some(_) => Err(machine.silence()),
@@ -51,9 +51,9 @@ impl Source<'_> {
         }
     }
 
-    pub fn send(&mut self, message: &impl Message) -> anyhow::Result<()> {
+    pub fn send(&mut self, command: Command) -> anyhow::Result<()> {
         let mut wire = [0; MAX_WIRE];
-        let wire = encode(message, &mut wire);
+        let wire = encode_command(0, command, &mut wire);
         match self {
             Self::Live(machine, _) => machine.serial.send_bytes(wire)?,
             Self::Lockstep(lockstep, _) => lockstep.machine().serial.send_bytes(wire)?,

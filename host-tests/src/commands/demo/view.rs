@@ -2,7 +2,6 @@
 //! the keys.
 
 use firmware::protocol::Frame as Reading;
-use firmware::scenes::SceneName;
 use ratatui::Frame;
 use ratatui::layout::Constraint::{Fill, Length, Min, Percentage};
 use ratatui::layout::{Layout, Rect};
@@ -79,18 +78,18 @@ fn angles(frame: &mut Frame, area: Rect, readings: &Readings) -> Rect {
 }
 
 fn title(board: &str, now: Option<&Reading>) -> String {
-    let scene = now.map(|now| SceneName::from_code(now.scene).map_or("?", SceneName::name));
-    let paused = now.is_some_and(|now| now.paused != 0).then_some("paused");
+    let scene = now.map(|now| now.scene.name());
+    let paused = now.is_some_and(|now| now.paused).then_some("paused");
     [Some(board), scene, paused].into_iter().flatten().collect::<Vec<_>>().join(" · ")
 }
 
 fn words(readings: &Readings) -> String {
     let shown = readings.frame.as_ref();
-    shown.map_or("no frame came yet".to_owned(), |now| format!("{} · {}", way(now), readings.comparison))
+    shown.map_or("no frame came yet".to_owned(), |now| format!("{} · {}", way(&now.report), readings.comparison))
 }
 
 pub fn has_angles(now: &Reading) -> bool {
-    SceneName::from_code(now.scene).is_none_or(SceneName::has_angles)
+    now.scene.has_angles()
 }
 
 /// The width of a panel of which each pixel is half a character, which takes colours, or a Braille pattern's dot; where there is no
@@ -133,10 +132,11 @@ fn wrapped(line: &LogLine, width: u16) -> Vec<Line<'static>> {
 
 #[cfg(test)]
 mod tests {
-    use double_pendulum::Method;
+    use double_pendulum::plan::Way;
+    use double_pendulum::{Method, State};
     use firmware::graphics::Canvas;
     use firmware::graphics::text::{self, Anchor};
-    use firmware::protocol::method_code;
+    use firmware::scenes::{Report, SceneName};
     use ratatui::Terminal;
     use ratatui::backend::TestBackend;
 
@@ -152,17 +152,19 @@ mod tests {
             let time = 86_399.0 + f64::from(tick) / 60.0;
             readings.frame(Reading {
                 sequence: tick,
-                scene: scene.code(),
-                paused: 1,
-                time,
+                scene,
+                paused: true,
                 mass_ratio: 25.0 / 144.0,
-                state: [0.5 * (6.0 * time).sin() as f32, -2.0, 0.0, 0.0],
-                energy_error: -2.5e-7,
                 dropped: 123_456,
-                method: method_code(Method::Extrapolation10Fixed64),
-                way_steps: 12,
-                horizon: 86_400.0,
-                is_looking: 1,
+                report: Report {
+                    time,
+                    state: State { a1: 0.5 * (6.0 * time).sin() as f32, a2: -2.0, ..State::default() },
+                    energy_error: -2.5e-7,
+                    way: Some(Way { method: Method::Extrapolation10Fixed64, steps: 12 }),
+                    horizon: 86_400.0,
+                    is_looking: true,
+                    ..Report::default()
+                },
                 ..Reading::default()
             });
         }

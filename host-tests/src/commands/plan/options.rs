@@ -1,6 +1,6 @@
 //! What is planned, as the command line has it.
 
-use anyhow::{anyhow, ensure};
+use anyhow::{Context, anyhow, ensure};
 use clap::{Parser, value_parser};
 use double_pendulum::plan::{Limit, Plan, PlanError, Problem};
 use firmware::config::{CORTEX_M0PLUS, CORTEX_M3, CORTEX_M4F, Processor, STM32F405};
@@ -53,9 +53,8 @@ impl SceneOptions {
     fn of_scene(&self, name: SceneName) -> anyhow::Result<Problem> {
         let settings = name.first_settings();
         let show = Show::on(self.target.processor, name, &settings)?;
-        let answer = show.player.plan(0);
-        ensure!(answer.found > 0, "--scene {}: has no motion to plan", name.name());
-        Ok(problem(&settings, &Viewport { way: None, height: answer.height as f32 }))
+        let planned = show.player.plan().with_context(|| format!("--scene {}: has no motion to plan", name.name()))?;
+        Ok(problem(&settings, &Viewport { way: None, height: planned.height }))
     }
 
     fn given(&self) -> anyhow::Result<Problem> {

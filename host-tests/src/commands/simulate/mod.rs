@@ -18,13 +18,14 @@ use std::time::Duration;
 
 use anyhow::{Context, bail, ensure};
 use firmware::job::{Reading, Request};
-use firmware::protocol::{Frame, Sample};
+use firmware::protocol::{Answer, Command};
 
 use crate::console::cli::{Refused, complain, say};
 use crate::console::progress::Progress;
 use crate::emulator::boards::Board;
 use crate::emulator::qemu::{Clock, Machine, Settings};
 use crate::emulator::toolchain;
+use crate::link::refusal;
 
 pub fn run(options: &SimulateOptions) -> anyhow::Result<()> {
     if options.list {
@@ -75,18 +76,18 @@ fn on_board(
     let settings = Settings { qemu: toolchain.qemu(), board, elf: &elf, clock: Clock::Real, debugger: true, limit };
     let mut machine = Machine::start(&settings)?;
     // Its first frame says that it listens.
-    machine.wait_for::<Frame>().context(board.name)?;
-    machine.serial.send(&request.message(1))?;
+    machine.next_frame().context(board.name)?;
+    machine.serial.send(1, Command::Simulate(*request))?;
     let mut expected = 0;
     while expected <= request.samples {
-        let message = machine.receive().context(board.name)?;
-        if let Some(field) = message.refused() {
-            bail!("{}: the board refuses the request: {field}", board.name);
-        }
-        if let Some(Sample { index, reading, .. }) = message.read() {
-            ensure!(index == expected, "{}: row {expected} was lost on the way", board.name);
-            row(&reading)?;
-            expected += 1;
+        match machine.next_answer().context(board.name)? {
+            (_, Answer::Refused(field)) => bail!("{}: the board refuses the request: {}", board.name, refusal(field)),
+            (_, Answer::Sample { index, reading }) => {
+                ensure!(index == expected, "{}: row {expected} was lost on the way", board.name);
+                row(&reading)?;
+                expected += 1;
+            }
+            _ => {}
         }
     }
     Ok(())

@@ -5,7 +5,7 @@ use anyhow::ensure;
 use double_pendulum::{Method, Parameters};
 use firmware::config::{GRAVITY, MOST_MEASURED_STEPS};
 use firmware::job::{ON_BOARDS, Reading, Request};
-use firmware::protocol::{Measure, Measured, Sample};
+use firmware::protocol::{Answer, Command};
 
 use super::Section;
 use super::talk::Talk;
@@ -46,12 +46,12 @@ fn difference(talk: &mut Talk, request: &Request, number: u16) -> anyhow::Result
     let bits = |&Reading { state: [a1, a2, p1, p2], velocities: [w1, w2], energy }: &Reading| {
         [a1, a2, p1, p2, w1, w2, energy].map(f64::to_bits)
     };
-    talk.port.send(&request.message(number));
+    talk.port.send(number, Command::Simulate(*request));
     let (mut difference, mut index) = (None, 0);
     request.readings::<anyhow::Error>(|reading| {
-        let sample = sample(talk, number)?;
-        ensure!(sample.index == index, "sample {index} was lost on the way");
-        let (board, host) = (bits(&sample.reading), bits(reading));
+        let (given, sample) = sample(talk, number)?;
+        ensure!(given == index, "sample {index} was lost on the way");
+        let (board, host) = (bits(&sample), bits(reading));
         let differs = NAMES.iter().zip(board.iter().zip(&host)).find(|(_, (board, host))| board != host);
         if let Some((name, (board, host))) = differs {
             let step = index * request.stride;
@@ -64,13 +64,11 @@ fn difference(talk: &mut Talk, request: &Request, number: u16) -> anyhow::Result
 }
 
 /// The next of the samples that were asked for by this number.
-fn sample(talk: &mut Talk, number: u16) -> anyhow::Result<Sample> {
-    loop {
-        let sample: Sample = talk.next()?;
-        if sample.request == number {
-            return Ok(sample);
-        }
-    }
+fn sample(talk: &mut Talk, number: u16) -> anyhow::Result<(u32, Reading)> {
+    talk.answer(number, |answer| match answer {
+        Answer::Sample { index, reading } => Some((index, reading)),
+        _ => None,
+    })
 }
 
 const REQUEST: u16 = u16::MAX;
@@ -80,21 +78,25 @@ type Cycles = (Method, [Option<f64>; 2]);
 
 /// Measures a step of every method, as `cargo count` counts it: on average over the first second from rest.
 pub fn measure(talk: &mut Talk) -> anyhow::Result<Vec<Cycles>> {
-    let row = |&method: &Method| Ok((method, [step(talk, method, 0)?, step(talk, method, 1)?]));
+    let row = |&method: &Method| Ok((method, [step(talk, method, false)?, step(talk, method, true)?]));
     ON_BOARDS.iter().map(row).collect()
 }
 
-fn step(talk: &mut Talk, method: Method, in_ram: u8) -> anyhow::Result<Option<f64>> {
-    talk.port.send(&Request { samples: 0, ..request(method, MOTIONS[0]) }.message(REQUEST));
+fn step(talk: &mut Talk, method: Method, in_ram: bool) -> anyhow::Result<Option<f64>> {
+    talk.port.send(REQUEST, Command::Simulate(Request { samples: 0, ..request(method, MOTIONS[0]) }));
     sample(talk, REQUEST)?;
     let (mut steps, mut cycles) = (0, 0.0);
     while steps < FULL_CYCLE {
-        let measured: Measured = talk.ask(&Measure { request: REQUEST, steps: MOST_MEASURED_STEPS, in_ram })?;
-        if measured.cycles == 0 || measured.steps == 0 {
+        let (made, taken) =
+            talk.ask(Command::Measure { steps: MOST_MEASURED_STEPS, in_ram }, |answer| match answer {
+                Answer::Measured { steps, cycles } => Some((steps, cycles)),
+                _ => None,
+            })?;
+        if taken == 0 || made == 0 {
             return Ok(None);
         }
-        steps += measured.steps;
-        cycles += f64::from(measured.cycles);
+        steps += made;
+        cycles += f64::from(taken);
     }
     Ok(Some(cycles / f64::from(steps)))
 }

@@ -12,7 +12,8 @@ use std::time::Duration;
 
 use anyhow::Context;
 use clap::Parser;
-use firmware::protocol::{BoardName, CRC, Identify, Identity};
+use firmware::job::CRC;
+use firmware::protocol::{self, Answer, Identity};
 use object::{Object, ObjectSymbol};
 
 use crate::commands::demo;
@@ -57,8 +58,11 @@ impl Section {
 
 pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
     let mut talk = Talk::new(demo::port(&options.port)?)?;
-    let identity: Identity = talk.ask(&Identify { request: 0 })?;
-    let name = BoardName::from_code(identity.board).map_or("unknown", BoardName::name);
+    let identity = talk.ask(protocol::Command::Identify, |answer| match answer {
+        Answer::Identity(identity) => Some(identity),
+        _ => None,
+    })?;
+    let name = identity.board.name();
     let board = every_board().find(|board| board.name == name);
     let progress = Progress::start(&format!("verifying {name} at {}", talk.port.name));
     let (bits, measured) = (methods::compare(&mut talk)?, methods::measure(&mut talk)?);

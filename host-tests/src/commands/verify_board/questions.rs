@@ -5,7 +5,7 @@ use std::sync::mpsc;
 use std::thread;
 
 use firmware::app::Key;
-use firmware::protocol::{Choose, Done, Frame};
+use firmware::protocol::{Answer, Command};
 use firmware::scenes::SceneName;
 
 use super::Section;
@@ -22,7 +22,7 @@ pub fn ask(talk: &mut Talk, name: &str) -> anyhow::Result<Section> {
         "stm32f405" => (true, &[Key::Select]),
         _ => (false, &[]),
     };
-    talk.ask::<Done>(&Choose { request: 0, scene: SceneName::Page.code() })?;
+    talk.ask(Command::Choose(SceneName::Page), |answer| (answer == Answer::Done).then_some(()))?;
     let mut section = Section::new("Seen and pressed", "By the person at the board.", &["what", "is so"]);
     let mut note = |what: String, is_so: Option<bool>| {
         let answer = is_so.map_or("not answered", |is_so| if is_so { "yes" } else { "no" });
@@ -58,12 +58,12 @@ fn answer(talk: &mut Talk, question: &str) -> anyhow::Result<(String, bool)> {
         entered.send(if read.is_ok() { line } else { String::new() })
     });
     let (mut answer, mut restarted) = (None, false);
-    let mut last: Frame = talk.next()?;
+    let mut last = talk.next_frame()?.report;
     let mut left = UNDER_WAY;
     while left > 0 {
-        let frame: Frame = talk.next()?;
-        restarted |= frame.step < last.step;
-        last = frame;
+        let report = talk.next_frame()?.report;
+        restarted |= report.step < last.step;
+        last = report;
         answer = answer.or_else(|| answers.try_recv().ok());
         left -= u32::from(answer.is_some());
     }

@@ -2,7 +2,7 @@
 
 use anyhow::ensure;
 use firmware::config::TICK_RATE;
-use firmware::protocol::{Ask, Choose, Frame, Status};
+use firmware::protocol::{Answer, Command, ToHost};
 use firmware::scenes::SceneName;
 
 use super::Section;
@@ -27,18 +27,21 @@ pub fn watch(talk: &mut Talk, hertz: u32) -> anyhow::Result<Section> {
 
 /// A scene's row, and the first number that differs.
 fn play(talk: &mut Talk, name: SceneName, hertz: u32) -> anyhow::Result<(Vec<String>, Option<String>)> {
-    talk.port.send(&Choose { request: 0, scene: name.code() });
+    talk.port.send(0, Command::Choose(name));
     let (mut comparison, mut frames, mut compared) = (Comparison::default(), Vec::new(), 0);
     while compared < FRAMES && comparison.difference().is_none() {
-        let message = talk.receive()?;
-        if let Some(status) = message.read::<Status>() {
-            comparison.status(&status);
-        }
-        let Some(frame) = message.read::<Frame>().filter(|frame| frame.scene == name.code()) else { continue };
+        let frame = match talk.receive()? {
+            ToHost::Frame(frame) if frame.scene == name => frame,
+            ToHost::Answer(_, Answer::Status(status)) => {
+                comparison.status(&status);
+                continue;
+            }
+            _ => continue,
+        };
         frames.push(frame);
         ensure!(frames.len() < PATIENCE, "{}: of {} frames {compared} could be compared", name.name(), frames.len());
         if comparison.frame(&frame) {
-            talk.port.send(&Ask { request: 0 });
+            talk.port.send(0, Command::Ask);
         }
         while comparison.follow().is_some() {
             compared += 1;

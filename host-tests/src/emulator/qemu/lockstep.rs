@@ -6,12 +6,11 @@ use std::path::Path;
 
 use anyhow::{Context, bail};
 use cycles::Image;
-use firmware::protocol::{Frame, Message};
+use firmware::protocol::{Frame, ToHost};
 
 use super::Screenshot;
 use super::gdb::Debugger;
 use super::machine::{Clock, Machine, Settings};
-use crate::link::Received;
 
 /// The instruction `wfi`: sleep until an interrupt.
 const WFI: u16 = 0xBF30;
@@ -49,17 +48,17 @@ impl Lockstep {
 
     pub fn next_frame(&mut self) -> anyhow::Result<Frame> {
         let messages = self.run_to_frame()?;
-        messages.iter().rev().find_map(Received::read).context("the board sends no frames")
+        messages.into_iter().rev().find_map(ToHost::frame).context("the board sends no frames")
     }
 
     /// Runs to the next frame: all messages up to it.
-    pub fn run_to_frame(&mut self) -> anyhow::Result<Vec<Received>> {
+    pub fn run_to_frame(&mut self) -> anyhow::Result<Vec<ToHost>> {
         let mut messages = Vec::new();
         for _ in 0..PATIENCE {
             self.debug(Debugger::run_to_sleep)?;
             let before = messages.len();
             messages.extend(self.machine.serial.all_arrived());
-            if messages[before..].iter().any(|message| message.kind == Frame::KIND) {
+            if messages[before..].iter().any(|message| message.frame().is_some()) {
                 return Ok(messages);
             }
         }

@@ -10,7 +10,7 @@ use std::time::Duration;
 
 use anyhow::{Context, anyhow, bail};
 use firmware::app::Key;
-use firmware::protocol::Message;
+use firmware::protocol::{Answer, Frame, ToHost};
 use tempfile::TempDir;
 
 use super::qmp::Monitor;
@@ -18,7 +18,6 @@ use super::serial::Pipes;
 use super::{Log, LogLine, Screenshot, Serial};
 use crate::emulator::boards::Board;
 use crate::emulator::process::{self, Running, remove_on_interrupt};
-use crate::link::Received;
 
 /// How often a connection that is not there yet is looked for.
 const POLL: Duration = Duration::from_millis(2);
@@ -102,17 +101,25 @@ impl Machine {
         Ok((Self { serial: Serial::new(pipes)?, log, monitor, process, folder }, debugger))
     }
 
-    pub fn receive(&mut self) -> anyhow::Result<Received> {
+    pub fn receive(&mut self) -> anyhow::Result<ToHost> {
         self.serial.receive().ok_or_else(|| self.silence())
     }
 
     /// The next message of one kind; others on the way to it are passed over.
-    pub fn wait_for<M: Message>(&mut self) -> anyhow::Result<M> {
+    pub fn wait_for<M>(&mut self, kind: impl Fn(ToHost) -> Option<M>) -> anyhow::Result<M> {
         loop {
-            if let Some(message) = self.receive()?.read() {
+            if let Some(message) = kind(self.receive()?) {
                 return Ok(message);
             }
         }
+    }
+
+    pub fn next_frame(&mut self) -> anyhow::Result<Frame> {
+        self.wait_for(ToHost::frame)
+    }
+
+    pub fn next_answer(&mut self) -> anyhow::Result<(u16, Answer)> {
+        self.wait_for(ToHost::answer)
     }
 
     pub fn said(&self) -> String {

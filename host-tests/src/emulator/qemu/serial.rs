@@ -10,14 +10,14 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
 
 use anyhow::anyhow;
-use firmware::protocol::{MAX_WIRE, Message, encode};
+use firmware::protocol::{Command, Frame, MAX_WIRE, ToHost, encode_command};
 use nix::errno::Errno;
 use nix::fcntl::OFlag;
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use nix::sys::stat::Mode;
 use nix::unistd::mkfifo;
 
-use crate::link::{Counts, Inbox, Received};
+use crate::link::{Counts, Inbox};
 
 /// The host's end of UART0. A thread of its own always reads, for QEMU stands still while no one does.
 ///
@@ -26,7 +26,7 @@ use crate::link::{Counts, Inbox, Received};
 #[derive(Debug)]
 pub struct Serial {
     sender: File,
-    messages: Receiver<Received>,
+    messages: Receiver<ToHost>,
     reader: Arc<Mutex<Reader>>,
 }
 
@@ -67,18 +67,18 @@ impl Serial {
     }
 
     /// The next message; `None` once QEMU has ended.
-    pub(super) fn receive(&self) -> Option<Received> {
+    pub(super) fn receive(&self) -> Option<ToHost> {
         self.messages.recv().ok()
     }
 
     /// The messages that QEMU has sent since the last call, without waiting.
-    pub fn all_arrived(&self) -> impl Iterator<Item = Received> {
+    pub fn all_arrived(&self) -> impl Iterator<Item = ToHost> {
         lock(&self.reader).read();
         self.messages.try_iter()
     }
 
-    pub fn arrived<M: Message>(&self) -> impl Iterator<Item = M> {
-        self.all_arrived().filter_map(|message| message.read())
+    pub fn frames_arrived(&self) -> impl Iterator<Item = Frame> {
+        self.all_arrived().filter_map(ToHost::frame)
     }
 
     pub fn counts(&self) -> Counts {
@@ -90,8 +90,8 @@ impl Serial {
         lock(&self.reader)
     }
 
-    pub fn send<M: Message>(&mut self, message: &M) -> anyhow::Result<()> {
-        self.send_bytes(encode(message, &mut [0; MAX_WIRE]))
+    pub fn send(&mut self, request: u16, command: Command) -> anyhow::Result<()> {
+        self.send_bytes(encode_command(request, command, &mut [0; MAX_WIRE]))
     }
 
     pub fn send_bytes(&mut self, bytes: &[u8]) -> anyhow::Result<()> {
@@ -105,7 +105,7 @@ struct Reader {
     pipe: File,
     inbox: Inbox,
     /// Gone once QEMU has ended, which ends the messages.
-    channel: Option<Sender<Received>>,
+    channel: Option<Sender<ToHost>>,
 }
 
 impl Reader {
