@@ -7,12 +7,12 @@
 //! It is inside what the [enclosure](crate::enclosure) proves of random motions, the hard cases and the scenes, to 1e-31 times the growth
 //! of a small error (tests `known_answers` and `motions`).
 
-pub mod series;
-
 use double_pendulum::{Motion, Parameters, State};
 use twofloat::TwoFloat;
+use twofloat::consts::FRAC_PI_2;
 
-use series::{ORDER, Series, Wave, divide, sin_cos};
+/// The highest power of time kept.
+const ORDER: usize = 36;
 
 /// A double pendulum in exact motion, to about 30 digits.
 ///
@@ -21,8 +21,8 @@ use series::{ORDER, Series, Wave, divide, sin_cos};
 pub struct Reference {
     parameters: Parameters<TwoFloat>,
     time: TwoFloat,
-    angles: [TwoFloat; 2],
-    velocities: [TwoFloat; 2],
+    /// a1, a2 (rad); w1, w2 (rad/s).
+    motion: [TwoFloat; 4],
 }
 
 impl Reference {
@@ -30,12 +30,12 @@ impl Reference {
     pub fn new(parameters: &Parameters<f64>, motion: &Motion<f64>) -> Self {
         let (&Parameters { m1, m2, l1, l2, g }, &Motion { a1, a2, w1, w2 }) = (parameters, motion);
         let [m1, m2, l1, l2, g] = [m1, m2, l1, l2, g].map(TwoFloat::from);
-        Self::exact(Parameters { m1, m2, l1, l2, g }, [a1, a2].map(TwoFloat::from), [w1, w2].map(TwoFloat::from))
+        Self::exact(Parameters { m1, m2, l1, l2, g }, [a1, a2, w1, w2].map(TwoFloat::from))
     }
 
     /// As [`Reference::new`] from numbers of full precision: angles in rad, velocities in rad/s.
-    pub fn exact(parameters: Parameters<TwoFloat>, angles: [TwoFloat; 2], velocities: [TwoFloat; 2]) -> Self {
-        Self { parameters, time: 0.0.into(), angles, velocities }
+    pub fn exact(parameters: Parameters<TwoFloat>, motion: [TwoFloat; 4]) -> Self {
+        Self { parameters, time: 0.0.into(), motion }
     }
 
     /// Moves to time `t`, s; goes forward only, an earlier time changes nothing.
@@ -46,17 +46,16 @@ impl Reference {
             let longest = TwoFloat::from(longest_step(&motion));
             let last = longest >= rest;
             let step = if last { rest } else { longest };
-            let [a1, a2, w1, w2] = motion.map(|series| series.at(step));
-            self.angles = [a1, a2];
-            self.velocities = [w1, w2];
+            let at_step = |series: Vec<_>| series.into_iter().rev().fold(TwoFloat::from(0.0), |sum, c| sum * step + c);
+            self.motion = motion.map(at_step);
             self.time = if last { t.into() } else { self.time + step };
         }
     }
 
     /// Angles and velocities now.
     pub fn motion(&self) -> Motion<f64> {
-        let ([a1, a2], [w1, w2]) = (self.angles, self.velocities);
-        Motion { a1: a1.into(), a2: a2.into(), w1: w1.into(), w2: w2.into() }
+        let [a1, a2, w1, w2] = self.motion.map(f64::from);
+        Motion { a1, a2, w1, w2 }
     }
 
     /// Angles and canonical momenta now.
@@ -66,58 +65,98 @@ impl Reference {
 
     /// (sin a1, cos a1, sin a2, cos a2) now, in full precision.
     pub fn directions(&self) -> [TwoFloat; 4] {
-        let [(sin1, cos1), (sin2, cos2)] = self.angles.map(sin_cos);
+        let [a1, a2, ..] = self.motion;
+        let [[sin1, cos1], [sin2, cos2]] = [a1, a2].map(sin_cos);
         [sin1, cos1, sin2, cos2]
     }
 
     /// (a1, a2, p1, p2) now, in full precision: p_i = dL/dw_i.
     pub fn exact_state(&self) -> [TwoFloat; 4] {
         let Parameters { m1, m2, l1, l2, .. } = self.parameters;
-        let ([a1, a2], [w1, w2]) = (self.angles, self.velocities);
-        let (_, cos_d) = sin_cos(a1 - a2);
+        let [a1, a2, w1, w2] = self.motion;
+        let [_, cos_d] = sin_cos(a1 - a2);
         let p1 = (m1 + m2) * l1 * l1 * w1 + m2 * l1 * l2 * w2 * cos_d;
         let p2 = m2 * l2 * l2 * w2 + m2 * l1 * l2 * w1 * cos_d;
         [a1, a2, p1, p2]
     }
 
-    /// The power series of a1, a2, w1, w2 about now.
-    fn series(&self) -> [Series; 4] {
+    /// The power series of a1, a2, w1, w2 about now: their coefficients up to [`ORDER`].
+    ///
+    /// Beside them those of the sine and cosine of a1, a2 and D = a1 - a2 by s' = c a' and c' = -s a'.
+    fn series(&self) -> [Vec<TwoFloat>; 4] {
         let Parameters { m1, m2, l1, l2, g } = self.parameters;
-        let total = m1 + m2;
-        let [mut a1, mut a2] = self.angles.map(Series::new);
-        let [mut w1, mut w2] = self.velocities.map(Series::new);
-        let mut d = Series::new(self.angles[0] - self.angles[1]);
-        let (mut wave1, mut wave2, mut wave_d) = (Wave::new(&a1), Wave::new(&a2), Wave::new(&d));
-        let [mut square1, mut square2, mut f1, mut f2, mut den] = [(); 5].map(|()| Series::default());
-        let [mut acceleration1, mut acceleration2] = [(); 2].map(|()| Series::default());
+        let (total, [a1, a2, w1, w2]) = (m1 + m2, self.motion);
+        let [[sin1, cos1], [sin2, cos2], [sin_d, cos_d]] = [a1, a2, a1 - a2].map(sin_cos);
+        let mut z = [a1, a2, w1, w2, sin1, cos1, sin2, cos2, sin_d, cos_d].map(|value| vec![value]);
+        let [mut square1, mut square2, mut f1, mut f2, mut den, mut turn] = [(); 6].map(|()| Vec::new());
+        let [mut acceleration1, mut acceleration2] = [(); 2].map(|()| Vec::new());
 
         for k in 0..ORDER {
-            wave1.extend(&a1, k);
-            wave2.extend(&a2, k);
-            wave_d.extend(&d, k);
-            let Wave { sin: sin_d, cos: cos_d } = &wave_d;
-
+            let [_, _, w1, w2, sin1, cos1, sin2, cos2, sin_d, cos_d] = &z;
             // (m1 + m2) l1 w1' + m2 l2 w2' cos D = f1,  l1 w1' cos D + l2 w2' = f2
-            square1[k] = w1.product(&w1, k);
-            square2[k] = w2.product(&w2, k);
-            f1[k] = -m2 * l2 * square2.product(sin_d, k) - total * g * wave1.sin[k];
-            f2[k] = l1 * square1.product(sin_d, k) - g * wave2.sin[k];
-            den[k] = m2 * sin_d.product(sin_d, k);
-            if k == 0 {
-                den[0] += m1;
-            }
-            acceleration1[k] = acceleration1.quotient(divide(f1[k] - m2 * f2.product(cos_d, k), l1), &den, k);
-            acceleration2[k] = acceleration2.quotient(divide(total * f2[k] - f1.product(cos_d, k), l2), &den, k);
+            square1.push(product(w1, w1));
+            square2.push(product(w2, w2));
+            f1.push(-m2 * l2 * product(&square2, sin_d) - total * g * sin1[k]);
+            f2.push(l1 * product(&square1, sin_d) - g * sin2[k]);
+            let square = m2 * product(sin_d, sin_d);
+            den.push(if k == 0 { square + m1 } else { square });
+            let quotient = |n: TwoFloat, before: &[TwoFloat]| divide(n - product(&den[1..], before), den[0]);
+            acceleration1.push(quotient(divide(f1[k] - m2 * product(&f2, cos_d), l1), &acceleration1));
+            acceleration2.push(quotient(divide(total * f2[k] - product(&f1, cos_d), l2), &acceleration2));
+            turn.push(w1[k] - w2[k]);
 
-            let next = (k + 1) as f64;
-            a1[k + 1] = w1[k] / next;
-            a2[k + 1] = w2[k] / next;
-            d[k + 1] = a1[k + 1] - a2[k + 1];
-            w1[k + 1] = acceleration1[k] / next;
-            w2[k + 1] = acceleration2[k] / next;
+            let slopes = [
+                w1[k],
+                w2[k],
+                acceleration1[k],
+                acceleration2[k],
+                product(w1, cos1),
+                -product(w1, sin1),
+                product(w2, cos2),
+                -product(w2, sin2),
+                product(&turn, cos_d),
+                -product(&turn, sin_d),
+            ];
+            for (z, slope) in z.iter_mut().zip(slopes) {
+                z.push(slope / (k + 1) as f64);
+            }
         }
+        let [a1, a2, w1, w2, ..] = z;
         [a1, a2, w1, w2]
     }
+}
+
+/// Coefficient k of the product of two power series, of which `a` and `b` are the coefficients 0 to k.
+fn product(a: &[TwoFloat], b: &[TwoFloat]) -> TwoFloat {
+    a.iter().zip(b.iter().rev()).fold(TwoFloat::from(0.0), |sum, (&a, &b)| sum + a * b)
+}
+
+/// The sine and cosine by their own power series about the nearest multiple of pi/2.
+fn sin_cos(angle: TwoFloat) -> [TwoFloat; 2] {
+    let quarter_turns = f64::from(angle / FRAC_PI_2).round();
+    let x = angle - FRAC_PI_2 * quarter_turns;
+    let alternating = |first: TwoFloat, mut power: f64| {
+        let (mut sum, mut term) = (first, first);
+        while term.hi().abs() > 1e-36 {
+            term = -(term * x * x) / ((power + 1.0) * (power + 2.0));
+            sum += term;
+            power += 2.0;
+        }
+        sum
+    };
+    let (sin, cos) = (alternating(x, 1.0), alternating(1.0.into(), 0.0));
+    match quarter_turns.rem_euclid(4.0) as u8 {
+        0 => [sin, cos],
+        1 => [cos, -sin],
+        2 => [-sin, -cos],
+        _ => [-cos, sin],
+    }
+}
+
+/// a/b to full precision: the quotient of twofloat 0.8.4 is good to 1e-16 only, so its remainder is divided as well.
+pub fn divide(a: TwoFloat, b: TwoFloat) -> TwoFloat {
+    let quotient = a / b;
+    quotient + (a - quotient * b) / b
 }
 
 /// The states at `times` (s, ascending) of the motion that starts as `start`.
@@ -138,15 +177,14 @@ const RESOLUTION: f64 = 1e-33;
 /// The step at which the last terms of each series fall below the resolution of its value (A. Jorba, M. Zou, "A
 /// software package for the numerical integration of ODEs by means of high-order Taylor methods", 2005). Four terms
 /// are looked at, because a motion with a symmetry in time has only every second or fourth.
-fn longest_step(motion: &[Series; 4]) -> f64 {
-    let [a1, a2, w1, w2] = motion;
+fn longest_step(motion: &[Vec<TwoFloat>; 4]) -> f64 {
     let magnitude = |x: TwoFloat| f64::from(x).abs();
-    let rate = magnitude(w1[0]).max(magnitude(w2[0])).max(1.0);
-    let limit = |series: &Series, scale: f64, k: usize| {
-        let last = magnitude(series[k]).max(f64::MIN_POSITIVE);
-        (RESOLUTION * scale / last).powf(1.0 / k as f64)
-    };
-    (ORDER - 3..=ORDER)
-        .flat_map(|k| [limit(a1, 1.0, k), limit(a2, 1.0, k), limit(w1, rate, k), limit(w2, rate, k)])
-        .fold(f64::INFINITY, f64::min)
+    let rate = magnitude(motion[2][0]).max(magnitude(motion[3][0])).max(1.0);
+    let limits = motion.iter().zip([1.0, 1.0, rate, rate]).flat_map(|(series, scale)| {
+        (ORDER - 3..=ORDER).map(move |k| {
+            let last = magnitude(series[k]).max(f64::MIN_POSITIVE);
+            (RESOLUTION * scale / last).powf(1.0 / k as f64)
+        })
+    });
+    limits.fold(f64::INFINITY, f64::min)
 }

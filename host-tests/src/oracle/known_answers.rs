@@ -9,8 +9,7 @@ use double_pendulum::{Motion, Parameters};
 use reference::twofloat::TwoFloat;
 use reference::twofloat::consts::PI;
 
-use reference::taylor::Reference;
-use reference::taylor::series::divide;
+use reference::taylor::{Reference, divide};
 
 /// One line of the table: a scene at one time.
 #[derive(Clone, Debug)]
@@ -21,10 +20,8 @@ pub struct KnownAnswer {
     pub given: &'static str,
     /// Masses (kg), lengths (m), gravity (m/s^2).
     pub constants: Parameters<TwoFloat>,
-    /// The angles at the start, rad.
-    pub start_angles: [TwoFloat; 2],
-    /// The angular velocities at the start, rad/s.
-    pub start_velocities: [TwoFloat; 2],
+    /// Angles (rad) and angular velocities (rad/s) at the start.
+    pub start: [TwoFloat; 4],
     /// The time, s.
     pub time: f64,
     /// (sin a1, cos a1, sin a2, cos a2) at that time.
@@ -65,8 +62,7 @@ impl KnownAnswer {
             scene,
             given: &line[..end],
             constants: Parameters { m1, m2, l1, l2, g },
-            start_angles: [a1, a2].map(|degrees| degrees * PI / 180.0),
-            start_velocities: [w1, w2],
+            start: [a1 * PI / 180.0, a2 * PI / 180.0, w1, w2],
             time: time.into(),
             directions: [z1, z2, z3, z4],
             radius: radii[10..14].try_into().ok()?,
@@ -76,7 +72,7 @@ impl KnownAnswer {
 
     /// The scene at its start, in full precision.
     pub fn reference(&self) -> Reference {
-        Reference::exact(self.constants, self.start_angles, self.start_velocities)
+        Reference::exact(self.constants, self.start)
     }
 
     /// The parameters, rounded to f64.
@@ -88,8 +84,8 @@ impl KnownAnswer {
 
     /// The start, rounded to f64.
     pub fn start(&self) -> Motion<f64> {
-        let ([a1, a2], [w1, w2]) = (self.start_angles, self.start_velocities);
-        Motion { a1: a1.into(), a2: a2.into(), w1: w1.into(), w2: w2.into() }
+        let [a1, a2, w1, w2] = self.start.map(f64::from);
+        Motion { a1, a2, w1, w2 }
     }
 }
 
