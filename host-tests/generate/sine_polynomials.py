@@ -1,4 +1,4 @@
-"""Makes the polynomials and the parts of pi/2 in kernel/src/sine/own_f32.rs and own_f64.rs.
+"""Makes the polynomials and the parts of pi/2 in kernel/src/numbers/sine.rs.
 
     python3 -m pip install mpmath numpy
     python3 host-tests/generate/sine_polynomials.py

@@ -8,7 +8,7 @@
 //! | Lagrange's equations | [`Pendulum::lagrangian`], [`Pendulum::accelerations`] | `tests::lagrange` |
 //! | Legendre transformation | [`Pendulum::to_state`], [`Pendulum::to_motion`] | `tests::lagrange` |
 //! | Hamilton's equations, H | [`Pendulum::derivatives`], [`Pendulum::energy`]; equal rods: [`Parameters::equal_rods`] | `tests::hamilton` |
-//! | Runge-Kutta method | [`Pendulum::step`], [`rk4::step`] | `methods::rk4::tests` |
+//! | Runge-Kutta method | [`Pendulum::step`], [`rk4::step`] | host: `methods` |
 //! | small oscillations | [`Modes`], [`SmallOscillations`] | `tests::small_oscillations` |
 //! | coordinates | [`Pendulum::positions`], [`Pendulum::velocities`] | `tests::lagrange` |
 //! | (not in the book) bounds from the energy | [`Bounds`], [`Pendulum::cannot_turn_over`], [`Pendulum::admissible_step`], [`Modes::step_limit`] | host: `bounds`, `hard_cases` |
@@ -86,11 +86,11 @@ pub use error::{Error, Parameter};
 pub use methods::extrapolation::Extrapolation;
 pub use methods::{
     ClosedFormF32, ClosedFormF64, DirectionF32, DirectionF32Plain, DirectionF64, ExtrapolationF64, Fixed32, Fixed64,
-    Form, HamiltonF32, HamiltonF64, Run, rk4,
+    Form, HamiltonF32, HamiltonF64, Oscillation, Run, SmallOscillations, rk4,
 };
 pub use numbers::Real;
 pub use pendulum::{Direction, Motion, Parameters, Pendulum, State, Vector};
-pub use small::{Mode, Modes, Oscillation, SmallOscillations, periodic_mass_ratio};
+pub use small::{Mode, Modes, periodic_mass_ratio};
 pub use table::{Equations, Integrator, Method, Numbers};
 
 /// What the methods are made of, for tools and tests; it may change at any time.

@@ -19,7 +19,7 @@
 mod side_by_side;
 
 use crate::error::Error;
-use crate::methods::turns::turns_over;
+use crate::methods::run::turns_over;
 use crate::methods::{Form, Side};
 use crate::numbers::{Real, Scalar};
 use crate::pendulum::{Direction, Parameters, Pendulum, State};

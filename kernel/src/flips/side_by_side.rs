@@ -5,7 +5,7 @@ use core::array::from_fn;
 use super::{Falling, Flip, Flips, passes};
 use crate::error::Error;
 use crate::methods::direction::{BLOCK, DirectionLanes};
-use crate::methods::turns::turns_over;
+use crate::methods::run::turns_over;
 use crate::methods::{DirectionF32Plain, Form, Side};
 use crate::numbers::Lanes;
 use crate::pendulum::{Direction, State};
@@ -133,7 +133,6 @@ mod tests {
     use crate::flips::step_size;
     use crate::methods::Fixed32;
     use crate::pendulum::Parameters;
-    extern crate std;
     use std::vec::Vec;
 
     const LIMIT: f64 = 30.0;

@@ -1,11 +1,130 @@
-//! Small oscillations, read at any step.
+//! The motion of small oscillations in closed form: both angles at any time without a step; and read step by step.
 
 use super::{Form, Side};
 use crate::bounds::check_step;
 use crate::error::{Error, Parameter};
 use crate::numbers::{Real, Sealed};
 use crate::pendulum::{Direction, Motion, Parameters, Pendulum, State};
-use crate::small::{Modes, SmallOscillations};
+use crate::small::{Mode, Modes};
+
+/// What one mode contributes to the angle of rod 1: C cos wt + S sin wt.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(hidden)]
+pub struct Oscillation<R> {
+    /// C, rad.
+    pub cosine: R,
+    /// S, rad.
+    pub sine: R,
+}
+
+impl<R: Real> Oscillation<R> {
+    /// The amplitude sqrt(C^2 + S^2) of rod 1, rad; that of rod 2 is the mode's shape times this.
+    #[must_use]
+    pub fn amplitude(&self) -> R {
+        (self.cosine * self.cosine + self.sine * self.sine).sqrt()
+    }
+
+    /// The phase, rad, in [-pi, pi]: C cos wt + S sin wt = amplitude cos(wt + phase).
+    #[must_use]
+    pub fn phase(&self) -> R {
+        (-self.sine).atan2(self.cosine)
+    }
+}
+
+/// The linear motion of a pendulum from given angles and velocities (`[math24]`, "Small oscillations").
+///
+/// With r1, r2 the shapes of the fast mode w1 and the slow mode w2,
+///
+/// - a1(t) = C1 cos w1 t + S1 sin w1 t + C2 cos w2 t + S2 sin w2 t
+/// - a2(t) = r1 (C1 cos w1 t + S1 sin w1 t) + r2 (C2 cos w2 t + S2 sin w2 t)
+///
+/// It is the exact motion's limit for small angles; at 30 degrees and equal masses the two are 1 degree apart after
+/// 0.07 s, at 5 degrees they stay within 0.4 pixels of a 240-pixel display for 10 s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SmallOscillations<R> {
+    /// The frequencies in turns per second, in `f64`: after a day in `f32` the phase would be anywhere.
+    turns: [f64; 2],
+    modes: [Mode<R>; 2],
+    #[doc(hidden)]
+    pub fast: Oscillation<R>,
+    #[doc(hidden)]
+    pub slow: Oscillation<R>,
+}
+
+impl<R: Real> SmallOscillations<R> {
+    /// The motion that starts as `start`.
+    ///
+    /// C1 = (r2 a1 - a2)/(r2 - r1), C2 = (a2 - r1 a1)/(r2 - r1); w1 S1 and w2 S2 are the same with velocities.
+    #[must_use]
+    pub fn new(modes: Modes<f64>, start: &Motion<R>) -> Self {
+        let turns = [modes.fast, modes.slow].map(|mode| mode.frequency / core::f64::consts::TAU);
+        let modes = [modes.fast, modes.slow]
+            .map(|Mode { frequency, shape }| Mode { frequency: R::from_f64(frequency), shape: R::from_f64(shape) });
+        let [Mode { frequency: fast, shape: r1 }, Mode { frequency: slow, shape: r2 }] = modes;
+        let split = |x1: R, x2: R| [(r2 * x1 - x2) / (r2 - r1), (x2 - r1 * x1) / (r2 - r1)];
+        let [c1, c2] = split(start.a1, start.a2);
+        let [v1, v2] = split(start.w1, start.w2);
+        Self {
+            turns,
+            modes,
+            fast: Oscillation { cosine: c1, sine: v1 / fast },
+            slow: Oscillation { cosine: c2, sine: v2 / slow },
+        }
+    }
+
+    /// Angles and angular velocities a time `t` (s) after the start; `t` may be negative.
+    ///
+    /// The phase w t is reduced to a turn in `f64`: its error grows as some roundings of w t there, 1e-9 rad in a day.
+    #[must_use]
+    pub fn at(&self, t: f64) -> Motion<R> {
+        let phases = self.phases(t);
+        let [a1, a2] = self.angles(phases);
+        let ([fast, slow], [(sin_fast, cos_fast), (sin_slow, cos_slow)]) = (&self.modes, phases);
+        let w_fast = fast.frequency * (self.fast.sine * cos_fast - self.fast.cosine * sin_fast);
+        let w_slow = slow.frequency * (self.slow.sine * cos_slow - self.slow.cosine * sin_slow);
+        Motion { a1, a2, w1: w_fast + w_slow, w2: fast.shape * w_fast + slow.shape * w_slow }
+    }
+
+    /// (sin, cos) of both angles a time `t` (s) after the start: all that a drawing needs.
+    ///
+    /// By the first terms of their series, sin a = a - a^3/6 and cos a = 1 - a^2/2 + a^4/24: off by a^5/120, far less than
+    /// the linear motion itself. Two sincos and no division.
+    #[must_use]
+    pub fn directions(&self, t: f64) -> [Direction<R>; 2] {
+        self.angles(self.phases(t)).map(|a| {
+            let square = a * a;
+            let [sixth, twelfth] = [R::from_f64(1.0 / 6.0), R::from_f64(1.0 / 12.0)];
+            [a - a * square * sixth, R::ONE - R::HALF * square * (R::ONE - square * twelfth)]
+        })
+    }
+
+    /// An angle, rad, and an angular velocity, rad/s, that neither rod ever exceeds.
+    fn greatest(&self) -> [R; 2] {
+        let [fast, slow] = [(self.modes[0], self.fast), (self.modes[1], self.slow)].map(|(mode, part)| {
+            let angle = (part.cosine.abs() + part.sine.abs()) * (R::ONE + mode.shape.abs());
+            [angle, angle * mode.frequency]
+        });
+        [fast[0] + slow[0], fast[1] + slow[1]]
+    }
+
+    /// (sin wt, cos wt) of the fast and the slow mode.
+    #[inline]
+    fn phases(&self, t: f64) -> [(R, R); 2] {
+        self.turns.map(|turns| {
+            let turns = turns * t;
+            (R::from_f64(turns - libm::rint(turns)) * R::from_f64(core::f64::consts::TAU)).own_sin_cos()
+        })
+    }
+
+    /// a1 and a2 at these phases.
+    #[inline]
+    fn angles(&self, [(sin_fast, cos_fast), (sin_slow, cos_slow)]: [(R, R); 2]) -> [R; 2] {
+        let a_fast = self.fast.cosine * cos_fast + self.fast.sine * sin_fast;
+        let a_slow = self.slow.cosine * cos_slow + self.slow.sine * sin_slow;
+        let [fast, slow] = self.modes;
+        [a_fast + a_slow, fast.shape * a_fast + slow.shape * a_slow]
+    }
+}
 
 /// The [`SmallOscillations`] of a pendulum: a step costs nothing, only to read it does.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,23 +1,20 @@
 //! How each method of the [table](crate::Method) makes its steps: the types that [`Pendulum::run`](crate::Pendulum::run) is called with.
 
-mod canonical;
 mod closed_form;
 pub(crate) mod direction;
 pub mod extrapolation;
 mod fixed32;
 mod fixed64;
 pub mod rk4;
-mod run;
+pub(crate) mod run;
 mod scaling;
-pub(crate) mod turns;
 
-pub use canonical::{Canonical, Derivatives};
-pub use closed_form::ClosedForm;
+pub use closed_form::{ClosedForm, Oscillation, SmallOscillations};
 pub use direction::{DirectionForm, ExtrapolationF64, Plain};
 pub use fixed32::Fixed32;
 pub use fixed64::Fixed64;
-pub use run::Run;
-pub use turns::{Side, Turns};
+pub use rk4::{Canonical, Derivatives};
+pub use run::{Run, Side, Turns};
 
 use core::fmt::Debug;
 

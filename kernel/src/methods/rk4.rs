@@ -1,7 +1,12 @@
-//! The classical Runge-Kutta step of order 4, for any system of first-order equations.
+//! The classical Runge-Kutta step of order 4, for any system of first-order equations, and the motions made of it.
 
-use crate::numbers::Real;
-use crate::pendulum::{Pendulum, State};
+use core::fmt::Debug;
+
+use super::Form;
+use crate::bounds::check_step;
+use crate::error::Error;
+use crate::numbers::{Real, Sealed};
+use crate::pendulum::{Direction, Parameters, Pendulum, State};
 
 /// One step of the classical Runge-Kutta method for z' = f(z): the state a time `dt` after `z`.
 ///
@@ -40,31 +45,83 @@ impl<R: Real> Pendulum<R> {
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::step;
+/// Equations of motion.
+#[doc(hidden)]
+pub trait Derivatives<R: Real>: Copy + Debug + PartialEq + 'static {
+    /// Refuses what they do not hold for.
+    fn prepare(parameters: &Parameters<R>) -> Result<Self, Error>;
+    /// The time derivatives of (a1, a2, p1, p2).
+    fn derivatives(&self, z: &[R; 4]) -> [R; 4];
+}
 
-    /// One step of length 1 from 0: the first component is the left-hand side of the order condition that `f` isolates.
-    fn weight<const N: usize>(f: fn(&[f64; N]) -> [f64; N]) -> f64 {
-        step(f, &[0.0; N], 1.0)[0]
+#[doc(hidden)]
+impl<R: Real> Derivatives<R> for Pendulum<R> {
+    fn prepare(parameters: &Parameters<R>) -> Result<Self, Error> {
+        Pendulum::new(parameters)
+    }
+    #[inline(always)]
+    fn derivatives(&self, z: &[R; 4]) -> [R; 4] {
+        Pendulum::derivatives(self, z)
+    }
+}
+
+/// The state (a1, a2, p1, p2) stepped by the equations `E`; nothing is carried along but the state.
+#[doc(hidden)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Canonical<R, E = Pendulum<R>> {
+    equations: E,
+    dt: R,
+    state: State<R>,
+}
+
+impl<R, E> Sealed for Canonical<R, E> {}
+
+#[doc(hidden)]
+impl<R: Real + super::Side, E: Derivatives<R>> Form for Canonical<R, E> {
+    type Real = R;
+    type Side = R;
+    const HAS_TURNS: bool = true;
+
+    fn new(parameters: &Parameters<f64>, start: &State<f64>, dt: f64) -> Result<Self, Error> {
+        check_step::<f64>(dt)?;
+        let equations = E::prepare(&parameters.cast())?;
+        Self { equations, dt: R::from_f64(dt), state: State::default() }.started(start)
     }
 
-    /// The order conditions of [Hairer I], table II.2.1, with the weights b, the matrix a and the nodes c_i = sum_j a_ij. Each rooted
-    /// tree has a system of equations whose only elementary differential is the tree's own.
-    #[test]
-    fn order_4_is_reached_and_order_5_is_not() {
-        for (condition, value, exact) in [
-            ("order 1: sum b", weight(|_: &[f64; 1]| [1.0]), 1.0),
-            ("order 2: sum b c", weight(|&[_, c]| [c, 1.0]), 1.0 / 2.0),
-            ("order 3: sum b c c", weight(|&[_, c]| [c * c, 1.0]), 1.0 / 3.0),
-            ("order 3: sum b a c", weight(|&[_, ac, c]| [ac, c, 1.0]), 1.0 / 6.0),
-            ("order 4: sum b c c c", weight(|&[_, c]| [c * c * c, 1.0]), 1.0 / 4.0),
-            ("order 4: sum b c a c", weight(|&[_, ac, c]| [c * ac, c, 1.0]), 1.0 / 8.0),
-            ("order 4: sum b a c c", weight(|&[_, acc, c]| [acc, c * c, 1.0]), 1.0 / 12.0),
-            ("order 4: sum b a a c", weight(|&[_, aac, ac, c]| [aac, ac, c, 1.0]), 1.0 / 24.0),
-            ("order 5, not 1/5: sum b c c c c", weight(|&[_, c]| [c * c * c * c, 1.0]), 5.0 / 24.0),
-        ] {
-            assert!((value - exact).abs() <= f64::EPSILON, "{condition} is {value} instead of {exact}");
+    fn started(&self, start: &State<f64>) -> Result<Self, Error> {
+        let state = start.cast();
+        state.check()?;
+        Ok(Self { state, ..*self })
+    }
+
+    #[inline(always)]
+    fn advance(&mut self, steps: u32) {
+        for _ in 0..steps {
+            self.state = step(|z| self.equations.derivatives(z), &self.state.into(), self.dt).into();
         }
+    }
+
+    fn check(&self) -> Result<(), Error> {
+        self.state.finite().map(drop)
+    }
+
+    fn heads(&self) -> [Direction<R>; 2] {
+        self.state.angles().map(|angle| angle.own_sin_cos().into())
+    }
+
+    fn directions<Q: Real>(&self) -> [Direction<Q>; 2] {
+        self.heads().map(|head| head.map(R::cast))
+    }
+
+    fn momenta<Q: Real>(&self) -> [Q; 2] {
+        [self.state.p1.cast(), self.state.p2.cast()]
+    }
+
+    fn state(&self) -> State<f64> {
+        self.state.cast()
+    }
+
+    fn bits(&self, feed: impl FnMut(u64)) {
+        <[R; 4]>::from(self.state).map(R::bits).into_iter().for_each(feed);
     }
 }

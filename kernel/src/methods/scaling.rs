@@ -144,10 +144,4 @@ impl Units<Q30> for Shifts {
 impl Shifts {
     /// Rods and masses that are about equal.
     pub const NONE: Self = Self { momentum: 0, inverse: 0, upper: 0, lower: 0 };
-
-    /// S^2 r beside m r, as a product of two words.
-    #[inline(always)]
-    pub fn inverse_product(&self, product: i64) -> i64 {
-        (product << self.inverse) >> self.momentum
-    }
 }

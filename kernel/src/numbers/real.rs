@@ -3,8 +3,7 @@
 use core::fmt::Display;
 use core::ops::Div;
 
-use crate::numbers::sine;
-use crate::numbers::{Scalar, Sealed};
+use crate::numbers::{Scalar, Sealed, sine};
 
 /// `f32` or `f64`, and no other type: the few operations the formulas need, one row each.
 ///
@@ -168,14 +167,14 @@ macro_rules! real {
             }
             #[inline]
             fn own_sin_cos(self) -> (Self, Self) {
-                sine::$own::sin_cos(self)
+                sine::$own(self)
             }
         }
     };
 }
 
-real!(f32, twice_single in software if all(target_arch = "arm", target_abi = "eabi"), libm::sqrtf, libm::atan2f, own_f32);
-real!(f64, twice_double in software if all(target_arch = "arm", any(target_abi = "eabi", target_os = "none"), not(feature = "double-fpu")), libm::sqrt, libm::atan2, own_f64);
+real!(f32, twice_single in software if all(target_arch = "arm", target_abi = "eabi"), libm::sqrtf, libm::atan2f, single);
+real!(f64, twice_double in software if all(target_arch = "arm", any(target_abi = "eabi", target_os = "none"), not(feature = "double-fpu")), libm::sqrt, libm::atan2, double);
 
 #[cfg(test)]
 mod tests {

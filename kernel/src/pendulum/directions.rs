@@ -1,6 +1,6 @@
 //! Hamilton's equations, written once for every kind of number.
 
-use crate::numbers::{Real, Scalar};
+use crate::numbers::{Lanes, Real, Scalar};
 use crate::pendulum::State;
 
 /// (sin, cos) of an angle from the downward vertical.
@@ -127,19 +127,26 @@ impl<R: Scalar, U: Units<R>> Units<R> for Reverse<U> {
     }
 }
 
-impl<R: Scalar, G> Coefficients<R, G> {
+impl<R: Scalar> Coefficients<R> {
     /// m + S^2, whose inverse is r.
     #[inline(always)]
     pub fn denominator(&self, s: R) -> R {
         self.inertia + s * s
     }
+
+    /// The same in every lane.
+    #[inline(always)]
+    pub fn splat<const N: usize>(&self) -> Coefficients<Lanes<R, N>> {
+        let Self { norm, inertia, gravity } = *self;
+        Coefficients { norm: Lanes::splat(norm), inertia: Lanes::splat(inertia), gravity: gravity.map(Lanes::splat) }
+    }
 }
 
 impl<R: Scalar> Coefficients<R, R::Gravity> {
-    /// The rates where `upper` is (sin a1, cos a1), `elbow` is (S, C), `momenta` is (P1, P2), and `inverse` is r.
+    /// The rates at sin a1, cos a1, S, C, P1, P2, where `inverse` is r.
     #[inline(always)]
-    pub fn rates(&self, units: &impl Units<R>, upper: [R; 2], elbow: [R; 2], [p1, p2]: [R; 2], inverse: R) -> Rates<R> {
-        let ([sin1, cos1], [s, c], [gravity1, gravity2]) = (upper, elbow, self.gravity);
+    pub fn rates(&self, units: &impl Units<R>, &[sin1, cos1, s, c, p1, p2]: &[R; 6], inverse: R) -> Rates<R> {
+        let [gravity1, gravity2] = self.gravity;
         let u = units.rate(p1 - units.momentum(c * p2), inverse);
         let v = p2 - units.swing(c * u);
         let u = units.paced(u);
@@ -184,21 +191,21 @@ pub(crate) fn state_of([sin1, cos1, s, c, p1, p2]: [f64; 6], [unit1, unit2]: [f6
     State { a1: libm::atan2(sin1, cos1), a2: libm::atan2(sin2, cos2), p1: p1 / unit1, p2: p2 / unit2 }
 }
 
-/// The direction of rod 2 from that of rod 1 and (S, C) = `norm` (sin D, cos D), a2 = a1 - D.
-#[inline]
-pub(crate) fn lower_direction<R: Real>(upper: Direction<R>, elbow: [R; 2], norm: R) -> Direction<R> {
-    let inverse = R::ONE / norm;
-    lower_ray(upper, elbow).map(|x| x * inverse)
-}
-
-/// The same, as long as (S, C): enough to tell the angle by.
+/// The direction of rod 2 from that of rod 1 and (S, C), a2 = a1 - D, and as long as (S, C): enough to tell the angle by.
 #[inline(always)]
 pub(crate) fn lower_ray<R: Scalar>([sin1, cos1]: [R; 2], [s, c]: [R; 2]) -> [R; 2] {
     [sin1 * c - cos1 * s, cos1 * c + sin1 * s]
 }
 
-/// The directions of both rods from sin a1, cos a1, S, C; that of rod 2 by the length of (S, C).
+/// The directions of both rods from sin a1, cos a1, S, C; that of rod 2 as long as (S, C).
 #[inline(always)]
 pub(crate) fn heads<R: Scalar>(&[sin1, cos1, s, c, ..]: &[R; 6]) -> [Direction<R>; 2] {
     [[sin1, cos1], lower_ray([sin1, cos1], [s, c])]
+}
+
+/// The same in full: each of length 1, nu being `norm`.
+#[inline]
+pub(crate) fn directions<R: Real>(z: &[R; 6], norm: R) -> [Direction<R>; 2] {
+    let ([upper, lower], inverse) = (heads(z), R::ONE / norm);
+    [upper, lower.map(|x| x * inverse)]
 }

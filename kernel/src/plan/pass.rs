@@ -5,8 +5,9 @@ use super::cost::{Costs, Way};
 use super::problem::{NONE, PERTURBATIONS, Perturbation, Problem};
 use super::run::{Run, distance, greater};
 use crate::error::Error;
+use crate::methods::SmallOscillations;
 use crate::pendulum::State;
-use crate::small::{Modes, SmallOscillations};
+use crate::small::Modes;
 use crate::table::Method;
 
 /// How much larger an error may be than the distance to a run in 64 bits, which lasts longer than any in 32.

@@ -66,7 +66,7 @@ impl<R: Scalar<Gravity = R, Slope = R, Torque = R>> Stage<R> {
 impl<R: Scalar<Gravity = R, Slope = R, Torque = R>> Point<R> {
     #[inline(always)]
     fn rates(&self, coefficients: &Coefficients<R>) -> Rates<R> {
-        rates(coefficients, &self.z, self.inverse)
+        coefficients.rates(&Same, &self.z, self.inverse)
     }
 
     /// The point `k` further, where `k` was found at `from`: the inverse falls by 2 S S' r^2.
@@ -85,16 +85,6 @@ fn with<R: Copy>(one: &[R; 6], other: &[R; 6], operation: impl Fn(R, R) -> R) ->
         *one = operation(*one, *other);
     }
     all
-}
-
-/// The rates at `z`, where the inverse is `inverse`.
-#[inline(always)]
-pub(crate) fn rates<R: Scalar<Gravity = R, Slope = R, Torque = R>>(
-    coefficients: &Coefficients<R>,
-    &[sin1, cos1, s, c, p1, p2]: &[R; 6],
-    inverse: R,
-) -> Rates<R> {
-    coefficients.rates(&Same, [sin1, cos1], [s, c], [p1, p2], inverse)
 }
 
 /// r = 1/(m + S^2) at the end of a step, by one Newton step from that of its last stage, which is off by the third power of

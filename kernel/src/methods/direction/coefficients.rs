@@ -1,11 +1,9 @@
-//! The constants of the equations in the units of the step, and the way there and back.
+//! The constants of the equations in the units of the step, the way there and back, and what keeps the time.
 
-use super::classical::rates;
-use super::lead::Lead;
 use crate::bounds::check_step;
 use crate::error::{Error, Parameter};
 use crate::numbers::Real;
-use crate::pendulum::directions::{Coefficients, increments, state_of};
+use crate::pendulum::directions::{Coefficients, Same, increments, state_of};
 use crate::pendulum::{Parameters, State};
 
 /// A third, by which k1 + 2 k2 + 2 k3 + k4 becomes the increment of a step.
@@ -102,7 +100,7 @@ impl Scale {
         for share in [0.25, 1.0 / 3.0, 0.5, 1.0] {
             let at: [R; 6] = core::array::from_fn(|i| z[i] + change[i]);
             let inverse = R::ONE / coefficients.denominator(at[2]);
-            let slopes = increments(&at, rates(coefficients, &at, inverse));
+            let slopes = increments(&at, coefficients.rates(&Same, &at, inverse));
             change = slopes.map(|slope| slope * (span * R::from_f64(share)));
         }
         // Of a motion about to leave the finite numbers there is nothing to take back.
@@ -111,5 +109,71 @@ impl Scale {
         }
         let exact = core::array::from_fn(|i| z[i].to_f64() + (lost[i] + change[i]).to_f64());
         state_of(exact, [self.momentum; 2])
+    }
+}
+
+/// Steps from one look at the lead to the next; the direction form restores lengths as often.
+pub(crate) const BLOCK: u32 = 32;
+
+/// By how much a step is longer than dt, in steps: rounded constants alter the unit of time, never to a shorter one.
+///
+/// When a motion would be more than half a step ahead of the time told, the last step of a block is left out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Lead {
+    /// In 2^-64 of a step, so that a product with the count, wrapped, is the lead beyond whole steps.
+    each: u64,
+}
+
+/// A step in the units of a [`Lead`].
+const STEP: f64 = (1_u128 << 64) as f64;
+
+impl Lead {
+    /// Of steps of `step` instead of `dt`, in any unit; none where rounding leaves the step a little short.
+    pub fn new(step: f64, dt: f64) -> Self {
+        Self { each: ((step - dt) / step * STEP) as u64 }
+    }
+
+    /// How many steps to make for the next `steps`, with which the count becomes `count`; not beyond the end of a block.
+    #[inline(always)]
+    pub fn made(self, steps: u32, count: u64) -> u32 {
+        if count as u32 % BLOCK == 0 { steps - u32::from(self.is_left_out(count)) } else { steps }
+    }
+
+    /// Whether the last step of the block that ends at `count` is left out: within the block the lead exceeded half a step.
+    #[inline(always)]
+    pub fn is_left_out(self, count: u64) -> bool {
+        let after = count.wrapping_mul(self.each) as i64;
+        after < i64::MIN + (self.each * u64::from(BLOCK)) as i64
+    }
+
+    /// By how many steps the motion is ahead at `count`: half a step at most, and what a block adds to it.
+    #[inline(never)] // cold: once in flash
+    pub fn ahead(self, count: u64) -> f64 {
+        let within = count % u64::from(BLOCK);
+        let before = (count - within).wrapping_mul(self.each) as i64;
+        (before as f64 + within as f64 * self.each as f64) / STEP
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Steps made as a form makes them, and the lead by sums; a step that is short by a rounding counts as dt.
+    #[test]
+    fn the_motion_is_never_more_than_half_a_step_ahead_and_the_lead_says_how_far() {
+        for longer in [-f64::EPSILON, 0.0, 1e-16, 1.9e-6, 3e-4, 0.01] {
+            let (step, lead) = (1.0 + longer, Lead::new(1.0 + longer, 1.0));
+            let (mut count, mut made) = (0_u64, 0_u64);
+            for call in 0..200_000_u32 {
+                let steps = (call % 7 + 1).min(BLOCK - count as u32 % BLOCK);
+                count += u64::from(steps);
+                made += u64::from(lead.made(steps, count));
+                let ahead = (made as f64 * step - count as f64) / step;
+                assert!((ahead - lead.ahead(count)).abs() < 1e-9, "{longer} after {count}: {ahead}");
+                assert!(ahead.abs() <= 0.5 + f64::from(BLOCK) * longer, "{longer} after {count}: {ahead}");
+            }
+            assert_eq!(made < count, longer > 1e-6, "{longer}");
+        }
     }
 }

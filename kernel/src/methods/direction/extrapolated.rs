@@ -46,10 +46,7 @@ impl Units<Numbers> for Pace {
 
 impl<'a> Rows<'a> {
     fn new(z: &'a [f64; 6], step: &'a Coefficients<f64>) -> Self {
-        let Coefficients { norm, inertia, gravity } = *step;
-        let gravity = gravity.map(Lanes::splat);
-        let paced = Coefficients { norm: Lanes::splat(norm), inertia: Lanes::splat(inertia), gravity };
-        Self { z, step, paced, pace: Pace(Lanes::splat(1.0)) }
+        Self { z, step, paced: step.splat(), pace: Pace(Lanes::splat(1.0)) }
     }
 }
 
@@ -65,9 +62,8 @@ impl System<f64, LANES, 6> for Rows<'_> {
     #[inline(always)]
     fn slope(&mut self, at: &[Numbers; 6]) -> [Numbers; 6] {
         let z: [Numbers; 6] = core::array::from_fn(|i| Lanes::splat(self.z[i]) + at[i]);
-        let [sin1, cos1, s, c, p1, p2] = z;
-        let inverse = Lanes((self.paced.inertia + s * s).0.map(|denominator| 1.0 / denominator));
-        increments(&z, self.paced.rates(&self.pace, [sin1, cos1], [s, c], [p1, p2], inverse))
+        let inverse = Lanes(self.paced.denominator(z[2]).0.map(|denominator| 1.0 / denominator));
+        increments(&z, self.paced.rates(&self.pace, &z, inverse))
     }
 }
 

@@ -1,13 +1,12 @@
 //! The direction form: classical RK4 on (sin a1, cos a1, sin D, cos D, p1, p2), without trigonometry.
 
 use super::classical::{self, Point};
-use super::coefficients::{Scale, classical_step, prepare, third};
-use super::lead::BLOCK;
+use super::coefficients::{BLOCK, Scale, classical_step, prepare, third};
 use super::{Compensated, Sum};
 use crate::error::{Error, Parameter, check_finite};
 use crate::methods::{Form, Side};
 use crate::numbers::{Real, Sealed};
-use crate::pendulum::directions::{Coefficients, heads, lower_direction, quantities};
+use crate::pendulum::directions::{Coefficients, directions, heads, quantities};
 use crate::pendulum::{Direction, Parameters, State};
 
 /// The directions of the rods themselves are stepped: what a drawing needs, and no angle anywhere.
@@ -79,9 +78,7 @@ impl<R: Real + Side, S: Sum<R>> Form for DirectionForm<R, S> {
     }
 
     fn directions<Q: Real>(&self) -> [Direction<Q>; 2] {
-        let [sin1, cos1, s, c, ..] = self.z;
-        let lower = lower_direction([sin1, cos1], [s, c], self.coefficients.norm);
-        [[sin1, cos1], lower].map(|direction| direction.map(R::cast))
+        directions(&self.z, self.coefficients.norm).map(|direction| direction.map(R::cast))
     }
 
     fn momenta<Q: Real>(&self) -> [Q; 2] {
@@ -122,7 +119,7 @@ impl<R: Real + Side, S: Sum<R>> DirectionForm<R, S> {
     /// As this, but every hundredth step is left out.
     #[cfg(test)]
     pub(crate) fn leaving_out_more(mut self) -> Self {
-        self.scale.lead = super::lead::Lead::new(1.0, 0.99);
+        self.scale.lead = super::coefficients::Lead::new(1.0, 0.99);
         self
     }
 

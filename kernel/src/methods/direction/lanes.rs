@@ -31,12 +31,7 @@ impl<R: Real, const N: usize, const ROWS: usize> DirectionLanes<R, N, ROWS> {
     /// All of them as `motion`.
     #[inline(always)]
     pub fn new(motion: &DirectionForm<R, Plain>) -> Self {
-        let Coefficients { norm, inertia, gravity } = motion.coefficients;
-        let coefficients = Coefficients {
-            norm: Lanes::splat(norm),
-            inertia: Lanes::splat(inertia),
-            gravity: gravity.map(Lanes::splat),
-        };
+        let coefficients = motion.coefficients.splat();
         let start = Point { z: motion.z.map(Lanes::splat), inverse: Lanes::splat(motion.inverse) };
         let stage = Stage::first(&coefficients, &start);
         Self { coefficients, half_inverse_square: motion.half_inverse_square, rows: [Row { start, stage }; ROWS] }

@@ -5,12 +5,11 @@ mod coefficients;
 mod extrapolated;
 mod form;
 mod lanes;
-mod lead;
 
+pub(crate) use coefficients::BLOCK;
 pub use extrapolated::ExtrapolationF64;
 pub use form::DirectionForm;
 pub(crate) use lanes::DirectionLanes;
-pub(crate) use lead::BLOCK;
 
 use core::fmt::Debug;
 

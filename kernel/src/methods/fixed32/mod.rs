@@ -12,7 +12,7 @@ use crate::methods::Form;
 use crate::methods::scaling::lost;
 use crate::numbers::fixed::{Q30, nearest, product};
 use crate::numbers::{Real, Scalar, Sealed};
-use crate::pendulum::directions::{heads, lower_direction, quantities, state_of};
+use crate::pendulum::directions::{directions, heads, quantities, state_of};
 use crate::pendulum::{Direction, Parameters, Pendulum, State};
 use setting::Setting;
 
@@ -120,8 +120,7 @@ impl Form for Fixed32 {
     }
 
     fn directions<R: Real>(&self) -> [Direction<R>; 2] {
-        let [sin1, cos1, s, c, ..] = self.z.map(|z| R::from_f64(value(z)));
-        [[sin1, cos1], lower_direction([sin1, cos1], [s, c], R::from_f64(self.units.scaling.norm))]
+        directions(&self.z.map(|z| R::from_f64(value(z))), R::from_f64(self.units.scaling.norm))
     }
 
     fn momenta<R: Real>(&self) -> [R; 2] {

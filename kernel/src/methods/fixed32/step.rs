@@ -5,7 +5,7 @@ use super::setting::Setting;
 use crate::methods::scaling::Shifts;
 use crate::numbers::Scalar;
 use crate::numbers::fixed::{IN_HALVES, Q30, Slope, Torque, product, word};
-use crate::pendulum::directions::{Reverse, turning};
+use crate::pendulum::directions::{Rates, Reverse, turning};
 
 /// Whether to compile the step once for every usual length, with shifts that cost nothing. A chip with a floating-point unit
 /// has a faster form and better use for its flash.
@@ -54,14 +54,7 @@ impl Fixed32 {
         let Setting { coefficients, reverse, .. } = &self.units;
         let z = self.quantities();
         let inverse = self.inverse;
-        let rates = |z: &[Q30; 6], r: Q30| {
-            let &[sin1, cos1, s, c, p1, p2] = z;
-            coefficients.rates(&units, [sin1, cos1], [s, c], [p1, p2], r)
-        };
-        let reversed = |z: &[Q30; 6], r: Q30| {
-            let &[sin1, cos1, s, c, p1, p2] = z;
-            reverse.rates(&Reverse(units), [sin1, cos1], [s, c], [p1, p2], r)
-        };
+        let slopes = |z: &[Q30; 6], rates: Rates<Q30>| (turning(z, rates.angles), rates.momenta);
         // half a step of a rate of change, or a whole one with one halving less
         let moved = |turns: [Slope; 4], torques: [Torque; 2], halvings: u32| {
             let [sin1, cos1, s, c] = turns.map(|k| Q30((k + k + k).0 >> (halvings - 2)));
@@ -77,22 +70,19 @@ impl Fixed32 {
 
         // All is rounded down. Every second slope is taken backwards in time, with reversed momenta, so that as much is
         // rounded up.
-        let rates1 = rates(&z, inverse);
-        let (turns1, torques1) = (turning(&z, rates1.angles), rates1.momenta);
+        let (turns1, torques1) = slopes(&z, coefficients.rates(&units, &z, inverse));
         let [sin1, cos1, s, c, p1, p2] = moved(turns1, torques1, halvings);
         let z2 = [z[0] + sin1, z[1] + cos1, z[2] + s, z[3] + c, -z[4] - p1, -z[5] - p2];
         let fall1 = half_fall(turns1[2], z[2], inverse);
         let r2 = inverse - fallen(fall1);
 
-        let rates2 = reversed(&z2, r2);
-        let (turns2, torques2) = (turning(&z2, rates2.angles), rates2.momenta);
+        let (turns2, torques2) = slopes(&z2, reverse.rates(&Reverse(units), &z2, r2));
         let change = moved(turns2, torques2, halvings);
         let z3: [Q30; 6] = core::array::from_fn(|i| z[i] - change[i]);
         let fall2 = half_fall(turns2[2], z2[2], r2);
         let r3 = inverse + fallen(fall2);
 
-        let rates3 = rates(&z3, r3);
-        let (turns3, torques3) = (turning(&z3, rates3.angles), rates3.momenta);
+        let (turns3, torques3) = slopes(&z3, coefficients.rates(&units, &z3, r3));
         let middle: [Slope; 4] = core::array::from_fn(|i| turns3[i] - turns2[i]);
         let middle_torques: [Torque; 2] = core::array::from_fn(|i| torques3[i] - torques2[i]);
         let [sin1, cos1, s, c, p1, p2] = moved(turns3, torques3, halvings - 1);
@@ -100,8 +90,7 @@ impl Fixed32 {
         let fall3 = half_fall(turns3[2], z3[2], r3);
         let r4 = inverse - fallen(fall3).twice();
 
-        let rates4 = reversed(&z4, r4);
-        let (turns4, torques4) = (turning(&z4, rates4.angles), rates4.momenta);
+        let (turns4, torques4) = slopes(&z4, reverse.rates(&Reverse(units), &z4, r4));
         for i in 0..4 {
             let sum = (turns1[i] - turns4[i]) + middle[i] + middle[i];
             self.z[i] += shifted(sum.0, 34 - halvings);
@@ -120,7 +109,7 @@ impl Q30 {
     #[inline(always)]
     pub fn inverse_of(self, inertia: Self, s: Self, shifts: &Shifts) -> Self {
         let part = word((product(s.0, self.0) + (1 << 29)) >> 30);
-        let square = shifts.inverse_product(product(part, s.0));
+        let square = (product(part, s.0) << shifts.inverse) >> shifts.momentum; // S^2 r beside m r
         let missing = (1 << 60) - product(inertia.0, self.0) - square;
         // what is missing is small: 32 bits after the point
         let change = product(self.0, word(missing >> 28));

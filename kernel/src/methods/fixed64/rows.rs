@@ -127,10 +127,8 @@ impl<const UNLIKE: bool, const INVERSE: bool> System<Q64, 1, 6> for Stage<'_, UN
         let z = at.map(|Lanes([z])| z);
         // sines and cosines below 2, momenta below 1/4
         z.into_iter().for_each(|z| self.units.guard(z, 2));
-        let [sin1, cos1, s, c, p1, p2] = z;
-        let inverse = self.units.inverse(self.coefficients.inertia, s * s);
-        let rates = self.coefficients.rates(&self.units, [sin1, cos1], [s, c], [p1, p2], inverse);
-        increments(&z, rates).map(|slope| Lanes([slope]))
+        let inverse = self.units.inverse(self.coefficients.inertia, z[2] * z[2]);
+        increments(&z, self.coefficients.rates(&self.units, &z, inverse)).map(|slope| Lanes([slope]))
     }
 }
 

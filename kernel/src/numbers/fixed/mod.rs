@@ -1,5 +1,36 @@
 //! Fixed point: numbers of 32 and 64 bits that hold one motion, in units that its energy chooses.
 
+/// A number whose sums are those of its words, of which `$narrowed` puts what is twice as wide back into a word.
+macro_rules! fixed_point {
+    ($(#[$doc:meta])* $type:ident($word:ident), $narrowed:ident($wide:ident)) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub(crate) struct $type(pub $word);
+
+        impl core::ops::Add for $type {
+            type Output = Self;
+            #[inline(always)]
+            fn add(self, other: Self) -> Self {
+                Self($narrowed($wide::from(self.0) + $wide::from(other.0)))
+            }
+        }
+        impl core::ops::Sub for $type {
+            type Output = Self;
+            #[inline(always)]
+            fn sub(self, other: Self) -> Self {
+                Self($narrowed($wide::from(self.0) - $wide::from(other.0)))
+            }
+        }
+        impl core::ops::Neg for $type {
+            type Output = Self;
+            #[inline(always)]
+            fn neg(self) -> Self {
+                Self($narrowed(-$wide::from(self.0)))
+            }
+        }
+    };
+}
+
 mod q30;
 mod q64;
 

@@ -1,6 +1,6 @@
 //! Numbers of 32 bits: products of one instruction each where there is no floating-point unit.
 
-use core::ops::{Add, Mul, Neg, Sub};
+use core::ops::Mul;
 
 use super::{nearest, product, scaled, upper};
 use crate::numbers::{Scalar, Sealed};
@@ -9,23 +9,21 @@ use crate::numbers::{Scalar, Sealed};
 #[inline(always)]
 pub(crate) fn word(number: i64) -> i32 {
     #[cfg(test)]
-    watch::look_at("", number);
+    watch::look_at(number);
     number as i32
 }
 
 /// Looks at every number on its way into its word.
 #[cfg(test)]
 pub(crate) mod watch {
-    extern crate std;
-
     use core::cell::Cell;
 
     std::thread_local! {
         static LARGEST: Cell<u64> = const { Cell::new(0) };
     }
 
-    pub fn look_at(kind: &str, number: i64) {
-        assert!(i32::try_from(number).is_ok(), "{kind} {number:#x} does not fit");
+    pub fn look_at(number: i64) {
+        assert!(i32::try_from(number).is_ok(), "{number:#x} does not fit");
         LARGEST.set(LARGEST.get().max(number.unsigned_abs()));
     }
 
@@ -37,57 +35,21 @@ pub(crate) mod watch {
     }
 }
 
-macro_rules! fixed_point {
-    ($(#[$doc:meta])* $type:ident) => {
-        $(#[$doc])*
-        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-        pub(crate) struct $type(pub i32);
-
-        impl Add for $type {
-            type Output = Self;
-            #[inline(always)]
-            fn add(self, other: Self) -> Self {
-                let sum = i64::from(self.0) + i64::from(other.0);
-                #[cfg(test)]
-                watch::look_at(stringify!($type), sum);
-                Self(sum as i32)
-            }
-        }
-        impl Neg for $type {
-            type Output = Self;
-            #[inline(always)]
-            fn neg(self) -> Self {
-                Self(word(-i64::from(self.0)))
-            }
-        }
-        impl Sub for $type {
-            type Output = Self;
-            #[inline(always)]
-            fn sub(self, other: Self) -> Self {
-                let difference = i64::from(self.0) - i64::from(other.0);
-                #[cfg(test)]
-                watch::look_at(stringify!($type), difference);
-                Self(difference as i32)
-            }
-        }
-    };
-}
-
 fixed_point! {
     /// A direction, a rate, a momentum or r: below 2, in steps of 2^-30.
-    Q30
+    Q30(i32), word(i64)
 }
 fixed_point! {
     /// The rate of change of a direction: below 8, in steps of 2^-28.
-    Slope
+    Slope(i32), word(i64)
 }
 fixed_point! {
     /// The greatest torque of gravity: below 1/4, in steps of 2^-33.
-    Gravity
+    Gravity(i32), word(i64)
 }
 fixed_point! {
     /// The rate of change of a momentum: below 1, in steps of 2^-31.
-    Torque
+    Torque(i32), word(i64)
 }
 
 impl Gravity {

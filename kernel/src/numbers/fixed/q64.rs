@@ -1,15 +1,21 @@
 //! Fractions of 64 bits: the digits of an `f64` at a fraction of its price where that is software.
 
-use core::ops::{Add, Mul, Neg, Sub};
+use core::ops::Mul;
 
 use super::{nearest, product};
 use crate::numbers::{Real, Scalar, Sealed};
 
-/// A number from -1/2 to below 1/2 in 64 bits, in steps of 2^-64: no shift follows a product.
-///
-/// A sum that has no room wraps; [`reach`](Self::reach) is what tells whether it can.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Q64(pub i64);
+fixed_point! {
+    /// A number from -1/2 to below 1/2 in 64 bits, in steps of 2^-64: no shift follows a product.
+    ///
+    /// A sum that has no room wraps; [`reach`](Self::reach) is what tells whether it can.
+    Q64(i64), wrapped(i128)
+}
+
+#[inline(always)]
+fn wrapped(sum: i128) -> i64 {
+    sum as i64
+}
 
 /// 2^64.
 const UNIT: f64 = 18_446_744_073_709_551_616.0;
@@ -63,30 +69,6 @@ impl Q64 {
         let square = ((i64::from(residue) * i64::from(residue)) >> 56) as i32;
         let correction = i64::from(word) * i64::from(residue.wrapping_add(square));
         Self((i64::from(word) << 32).wrapping_add(correction >> 24))
-    }
-}
-
-impl Add for Q64 {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        Self(self.0.wrapping_add(other.0))
-    }
-}
-
-impl Sub for Q64 {
-    type Output = Self;
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        Self(self.0.wrapping_sub(other.0))
-    }
-}
-
-impl Neg for Q64 {
-    type Output = Self;
-    #[inline(always)]
-    fn neg(self) -> Self {
-        Self(self.0.wrapping_neg())
     }
 }
 
