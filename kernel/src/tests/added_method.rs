@@ -50,8 +50,5 @@ fn a_method_is_a_row_and_a_type() -> Result<(), Error> {
 
 #[test]
 fn every_method_has_a_name_of_its_own() {
-    for (i, method) in Method::ALL.iter().enumerate() {
-        assert_eq!(Method::from_name(method.name()), Some(*method));
-        assert!(Method::ALL[..i].iter().all(|other| other.name() != method.name()), "{method}");
-    }
+    Method::ALL.iter().for_each(|method| assert_eq!(Method::from_name(method.name()), Some(*method)));
 }

@@ -2,56 +2,58 @@
 
 use std::string::ToString;
 
-use double_pendulum::{Error, Modes, Motion, Parameter, Parameters, Pendulum, State};
+use double_pendulum::Parameter::{A2, Dt, FrequencyRatio, G, L1, M1, M2};
+use double_pendulum::{Error, Modes, Motion, Parameters, Pendulum, State, periodic_mass_ratio};
 
 const GOOD: Parameters<f64> = Parameters { m1: 1.0, m2: 2.0, l1: 3.0, l2: 4.0, g: 9.8 };
 
-fn refusal(parameters: Parameters<f64>) -> Error {
-    Pendulum::new(&parameters).expect_err("these parameters must be refused")
+fn pendulum(parameters: Parameters<f64>) -> Result<(), Error> {
+    Pendulum::new(&parameters).map(drop)
+}
+
+fn periods(fast: u16, slow: u16, lengths: [f64; 2]) -> Result<(), Error> {
+    periodic_mass_ratio(fast, slow, lengths).map(drop)
 }
 
 #[test]
-fn parameters() {
-    let parameter = Parameter::L1;
-    assert_eq!(refusal(Parameters { l1: 0.0, ..GOOD }), Error::NotPositive { parameter, value: 0.0 });
-    assert_eq!(refusal(Parameters { l1: -1.0, ..GOOD }), Error::NotPositive { parameter, value: -1.0 });
-    assert_eq!(refusal(Parameters { l1: f64::INFINITY, ..GOOD }), Error::NotFinite { parameter, value: f64::INFINITY });
-    assert!(matches!(
-        refusal(Parameters { m2: f64::NAN, ..GOOD }),
-        Error::NotFinite { parameter: Parameter::M2, value } if value.is_nan()
-    ));
-    assert_eq!(
-        refusal(Parameters { g: -9.8, ..GOOD }),
-        Error::TooSmall { parameter: Parameter::G, value: -9.8, limit: 0.0 }
-    );
-    assert_eq!(
-        refusal(Parameters { m1: 1e300, l1: 1e200, ..GOOD }),
-        Error::OutOfRange { parameter: Parameter::M1, value: 1e300 }
-    );
-    assert!(Pendulum::new(&Parameters { g: 0.0, ..GOOD }).is_ok());
-}
-
-#[test]
-fn modes_need_gravity() {
-    let error = Error::NotPositive { parameter: Parameter::G, value: 0.0 };
-    assert_eq!(Modes::new(&Parameters { g: 0.0, ..GOOD }), Err(error));
-}
-
-#[test]
-fn states_and_motions() {
-    let parameter = Parameter::A2;
-    let value = f64::INFINITY;
-    assert_eq!(State::at_rest(0.0, value).check(), Err(Error::NotFinite { parameter, value }));
-    assert_eq!(Motion::at_rest(0.0, value).check(), Err(Error::NotFinite { parameter, value }));
-    assert_eq!(State::at_rest(1.0, 2.0).check(), Ok(()));
-    assert_eq!(Motion::at_rest(1.0, 2.0).check(), Ok(()));
+fn what_is_refused_is_named_with_its_value() {
+    let infinite = f64::INFINITY;
+    let not_finite = |parameter, value| Error::NotFinite { parameter, value };
+    let not_positive = |parameter, value| Error::NotPositive { parameter, value };
+    let too_small = |parameter, value, limit| Error::TooSmall { parameter, value, limit };
+    for (refused, error) in [
+        (pendulum(Parameters { l1: 0.0, ..GOOD }), not_positive(L1, 0.0)),
+        (pendulum(Parameters { l1: -1.0, ..GOOD }), not_positive(L1, -1.0)),
+        (pendulum(Parameters { l1: infinite, ..GOOD }), not_finite(L1, infinite)),
+        (pendulum(Parameters { g: -9.8, ..GOOD }), too_small(G, -9.8, 0.0)),
+        (pendulum(Parameters { m1: 1e300, l1: 1e200, ..GOOD }), Error::OutOfRange { parameter: M1, value: 1e300 }),
+        (Modes::new(&Parameters { g: 0.0, ..GOOD }).map(drop), not_positive(G, 0.0)),
+        (State::at_rest(0.0, infinite).check(), not_finite(A2, infinite)),
+        (Motion::at_rest(0.0, infinite).check(), not_finite(A2, infinite)),
+        (periods(3, 0, [1.0, 1.0]), not_finite(FrequencyRatio, infinite)),
+        (periods(1, 1, [1.0, 1.0]), too_small(FrequencyRatio, 1.0, 1.0)),
+        (periods(3, 2, [4.0, 1.0]), too_small(FrequencyRatio, 1.5, 2.0)),
+        // at the limit bob 2 would have no mass
+        (periods(2, 1, [4.0, 1.0]), too_small(FrequencyRatio, 2.0, 2.0)),
+        (periods(2, 1, [1.0, 4.0]), too_small(FrequencyRatio, 2.0, 2.0)),
+        (periods(3, 2, [0.0, 1.0]), not_positive(L1, 0.0)),
+    ] {
+        assert_eq!(refused, Err(error));
+    }
+    let nan = pendulum(Parameters { m2: f64::NAN, ..GOOD });
+    assert!(matches!(nan, Err(Error::NotFinite { parameter: M2, value }) if value.is_nan()), "{nan:?}");
+    let good =
+        [pendulum(Parameters { g: 0.0, ..GOOD }), State::at_rest(1.0, 2.0).check(), Motion::at_rest(1.0, 2.0).check()];
+    assert_eq!(good, [Ok(()); 3]);
 }
 
 #[test]
 fn one_line_each() {
-    let line = |error: Error| error.to_string();
-    assert_eq!(line(refusal(Parameters { l1: 0.0, ..GOOD })), "l1 = 0.0: must be greater than zero");
-    let step = Error::TooLarge { parameter: Parameter::Dt, value: 2.0, limit: 0.5 };
-    assert_eq!(line(step), "dt = 2.0: must not exceed 0.5");
-    assert_eq!(line(Error::UnequalRods { l1: 3.0, l2: 4.0 }), "l2 = 4.0: the equal-rod form needs l2 = l1 = 3.0");
+    for (error, line) in [
+        (Error::NotPositive { parameter: L1, value: 0.0 }, "l1 = 0.0: must be greater than zero"),
+        (Error::TooLarge { parameter: Dt, value: 2.0, limit: 0.5 }, "dt = 2.0: must not exceed 0.5"),
+        (Error::UnequalRods { l1: 3.0, l2: 4.0 }, "l2 = 4.0: the equal-rod form needs l2 = l1 = 3.0"),
+    ] {
+        assert_eq!(error.to_string(), line);
+    }
 }

@@ -1,7 +1,6 @@
 //! Time reversal, mirror image and the scaling laws. All but the return to the start hold bit for bit.
 
 use double_pendulum::{Parameters, Pendulum, Real, State};
-use fastrand::Rng;
 
 use super::{assert_near, random, tolerances};
 
@@ -17,23 +16,18 @@ fn stronger<R: Real>(State { a1, a2, p1, p2 }: State<R>, by: R) -> State<R> {
 /// Lengths x 4: time x 2, momenta x 8. Gravity x 4: time / 2, momenta x 2. Masses x 2: momenta x 2.
 fn hold<R: Real>() {
     let [two, four, eight] = [2.0, 4.0, 8.0].map(R::from_f64);
-    let mut rng = Rng::with_seed(3);
-    for _ in 0..200 {
-        let parameters = random::parameters(&mut rng);
-        let start = random::state(&mut rng, &parameters).cast::<R>();
-        let parameters = &parameters.cast();
-        let pendulum = Pendulum::new(parameters).expect("valid parameters");
+    for (pendulum, start) in random::pendulums::<R>(3, 200) {
         let [w1, w2, f1, f2] = pendulum.derivatives(&start.into());
         assert_eq!(pendulum.derivatives(&stronger(start, -R::ONE).into()), [-w1, -w2, f1, f2]);
 
         // neither rod can turn by more than a twentieth of a radian
         let bounds = pendulum.bounds(&start);
         let dt = R::from_f64(0.05) / (bounds.w1 + bounds.w2);
+        let parameters @ &Parameters { m1, m2, l1, l2, g } = pendulum.parameters();
         let end = run(parameters, start, dt);
         let mirrored = |state: State<R>| State::from(<[R; 4]>::from(state).map(|x| -x));
         assert_eq!(run(parameters, mirrored(start), dt), mirrored(end));
 
-        let &Parameters { m1, m2, l1, l2, g } = parameters;
         let longer = Parameters { l1: l1 * four, l2: l2 * four, ..*parameters };
         assert_eq!(run(&longer, stronger(start, eight), dt * two), stronger(end, eight));
         let heavier = Parameters { g: g * four, ..*parameters };
@@ -51,18 +45,17 @@ fn symmetries_hold_in_either_precision() {
 
 #[test]
 fn reversed_momenta_bring_the_start_back() {
-    let mut rng = Rng::with_seed(1);
-    for _ in 0..200 {
-        let parameters = random::parameters(&mut rng);
-        let start = random::state(&mut rng, &parameters);
-        let bounds = Pendulum::new(&parameters).expect("valid parameters").bounds(&start);
+    for (pendulum, start) in random::pendulums::<f64>(1, 200) {
+        let (parameters, bounds) = (pendulum.parameters(), pendulum.bounds(&start));
         let dt = 0.002 / bounds.w1.max(bounds.w2);
-        let back = stronger(run(&parameters, stronger(run(&parameters, start, dt), -1.0), dt), -1.0);
-        let near =
-            |name: &str, back, start, scale| assert_near(name, back, start, scale, tolerances::RETURN, &parameters);
-        near("a1", back.a1, start.a1, 1.0);
-        near("a2", back.a2, start.a2, 1.0);
-        near("p1", back.p1, start.p1, bounds.p1);
-        near("p2", back.p2, start.p2, bounds.p2);
+        let back = stronger(run(parameters, stronger(run(parameters, start, dt), -1.0), dt), -1.0);
+        for (name, back, start, scale) in [
+            ("a1", back.a1, start.a1, 1.0),
+            ("a2", back.a2, start.a2, 1.0),
+            ("p1", back.p1, start.p1, bounds.p1),
+            ("p2", back.p2, start.p2, bounds.p2),
+        ] {
+            assert_near(name, back, start, scale, tolerances::RETURN, parameters);
+        }
     }
 }
