@@ -11,7 +11,7 @@
 //! | Runge-Kutta method | [`Pendulum::step`], [`rk4::step`] | host: `methods` |
 //! | small oscillations | [`Modes`], [`SmallOscillations`] | `tests::small_oscillations` |
 //! | coordinates | [`Pendulum::positions`], [`Pendulum::velocities`] | `tests::lagrange` |
-//! | (not in the book) bounds from the energy | [`Bounds`], [`Pendulum::cannot_turn_over`], [`Pendulum::admissible_step`], [`Modes::step_limit`] | host: `bounds`, `hard_cases` |
+//! | (not in the book) bounds from the energy | [`Bounds`], [`Pendulum::cannot_turn_over`], [`Pendulum::admissible_step`], [`Modes::step_limit`] | host: `bounds`, `limits` |
 //! | (not in the book) when a rod first turns over | [`flips`] | host: `flips` |
 //! | (not in the book) every way to compute a motion | [`Method`]; [`Pendulum::run`] with [`HamiltonF64`], [`DirectionF32`], [`Fixed32`], [`Fixed64`], [`ExtrapolationF64`], [`ClosedFormF32`] | host: `known_answers`, `hard_cases`, `methods` |
 //! | (not in the book) the cheapest method that keeps to a tolerance | [`plan`](mod@plan) | host: `plan`, `plan_study` |

@@ -16,11 +16,9 @@ impl PerPrecision {
     }
 }
 
-/// Normal frequencies, in units in the last place: nine roundings, halved by the square root.
-pub const FREQUENCY_ULP: f64 = 4.0;
-
-/// Mode shapes and the exchange frequency, units in the last place: up to ten roundings each.
-pub const MODE_ULP: f64 = 10.0;
+/// Normal frequencies, fast and slow, mode shapes and the exchange frequency, in units in the last place: nine roundings, halved by
+/// the square root, and up to ten roundings.
+pub const MODES: [f64; 5] = [4.0, 4.0, 10.0, 10.0, 10.0];
 
 /// Linear against exact motion at 1e-6 rad, relative to the amplitude: the neglected cubic term, 1e-12, times the
 /// radians swung in the ten seconds (up to 200).
@@ -174,45 +172,21 @@ pub const CLOSED: f64 = 5.0 * f32::EPSILON as f64 * 2.0 * 5.0 * std::f64::consts
 /// How far the exact motion is then from its start at the least, pixels: farther than a line is wide.
 pub const NOT_CLOSED: f64 = 1.0;
 
-/// The 32-bit fixed point, regular for 10 s with 256 steps a second and chaotic for 5 s with 240, rad: the method's own
-/// 1.2e-8 and 2.9e-6 (measured 1.2e-8 and 2.5e-6).
-pub const FIXED_32: [f64; 2] = [2e-8, 3e-6];
-
 /// The floor of the 32-bit fixed point with steps so fine that the method errs less, regular for 10 s, rad (measured
 /// 2e-9; compensated `f32` has 3e-8).
 pub const FIXED_32_FLOOR: f64 = 5e-9;
-/// The same of rods and masses all different, from a moving start (measured 2.3e-8: their units leave some bits empty).
-pub const FIXED_32_UNLIKE: f64 = 5e-8;
 
-/// A light, short rod 2 that whirls at 56 rad/s for 13.9 s, 32 steps a frame, half pixels: the goal (measured 6e-4, as in `f64`).
-pub const FIXED_32_WHIRLING: f64 = 0.01;
 /// What the order of 32 bits is measured by, rad: what roundings leave scatters from step to step, and is less in most of the
 /// motions tried.
 pub const FIXED_32_ORDER_MEASURABLE: f64 = 5e-6;
-
-/// The 64-bit fixed point by extrapolation of order 12, regular, 12 steps a second, rad (measured 3e-13).
-pub const FIXED_64: f64 = 1e-12;
-
-/// From 120/120 degrees after 17 s, 60 steps a second of order 12, rad: the goal (measured 1.0e-5, `f64` 1.6e-5): roundings,
-/// which have grown by 3e10.
-pub const FIXED_64_PAGE: f64 = 4e-5;
 
 /// Chaotic, the 64-bit fixed point against `f64` at the same steps; where both are at their floors, the floor, rad.
 pub const FIXED_64_AGAINST_DOUBLE: f64 = 2.0;
 /// That floor: roundings of 2^-61, as often as weights of order 12 enlarge them, grow 2000-fold in these 5 s.
 pub const FIXED_64_FLOOR: f64 = 1e-12;
 
-/// A short, light rod 2 that whirls for 8 s in steps of 1/7680 s, rad: three times what is measured (1.9e-8), a sixth of what it is with roundings
-/// that lean to one side (3e-7).
-pub const FIXED_64_WHIRLING: f64 = 6e-8;
-
-/// A bob 1 of a 128th of bob 2, 0.5 rad for 2 s in steps of 2^-12 s, 32 bits, rad: twice what compensated `f32` has.
-pub const FIXED_32_LIGHT_BOB: f64 = 4e-7;
-
-/// What an order is measured by: the roundings of a hundred steps, which high orders enlarge, are a hundredth of it.
-pub const ORDER_MEASURABLE: f64 = 1e-11;
-/// How far a measured order of extrapolation may be off: with steps as coarse as high orders need to be above the roundings,
-/// the next power of the step has its share (measured 5.98, 7.91, 12.34, 15.25); the next order is 2 off.
+/// How far a measured order of extrapolation may be off: with steps as coarse as high orders need to be above the roundings of a hundred
+/// steps, which they enlarge, the next power of the step has its share (measured 5.98, 7.91, 12.34, 15.25); the next order is 2 off.
 pub const ORDER_EXTRAPOLATED: f64 = 0.8;
 /// Points of a map of flips with a limit of 10 sqrt(l/g) that are right to a grey level, of those that may turn over: the goal.
 pub const FLIPS_RIGHT: f64 = 0.999;
@@ -246,5 +220,5 @@ pub const DAY_READING: f64 = 1e-4;
 pub const RETURN_OF_32_BITS: [f64; 2] = [1e-7, 4e-6];
 
 /// What a method's measured order may differ by, of itself: the next order has its share, and of order 16 the roundings
-/// (measured 4.25, 7.87, 9.67, 11.09 and 13.7).
-pub const ORDER_OF_METHODS: f64 = 0.15;
+/// (measured 3.73, 8.08, 10.04, 11.75 and 15.0).
+pub const ORDER_OF_METHODS: f64 = 0.1;

@@ -18,35 +18,44 @@ fn shares<R: Real>(pendulum: &Pendulum<R>, bounds: &Bounds<R>, state: &State<R>)
     std::array::from_fn(|i| (reached[i] / bounds[i]).to_f64())
 }
 
-#[test]
-fn never_exceeded() {
-    fn by<R: Real>() {
-        let mut rng = Rng::with_seed(1);
-        for _ in 0..10_000 {
-            let given = random::parameters(&mut rng);
-            let pendulum = Pendulum::new(&given.cast()).expect("valid parameters");
-            let start = random::state(&mut rng, &given).cast::<R>();
-            let bounds = pendulum.bounds(&start);
-            let dt = R::from_f64(0.05) / (bounds.w1 + bounds.w2);
-            let mut state = start;
-            for _ in 0..100 {
-                state = pendulum.step(&state, dt);
-                let shares = shares(&pendulum, &bounds, &state);
-                let are_kept = shares.iter().all(|share| *share <= 1.0 + tolerances::BOUNDS_DRIFT);
-                assert!(are_kept, "{shares:?} for {given:?} from {start:?}");
-            }
+/// Bounds are never exceeded; and the admissible step is the same in either precision. Without energy every step will do, and
+/// without gravity only the speed counts.
+fn hold<R: Real>() -> Result<(), Error> {
+    let in_f64 = random::pendulums::<f64>(1, 10_000);
+    for ((pendulum, start), (exact, start_in_f64)) in random::pendulums::<R>(1, 10_000).zip(in_f64) {
+        let bounds = pendulum.bounds(&start);
+        let dt = R::from_f64(0.05) / (bounds.w1 + bounds.w2);
+        let mut state = start;
+        for _ in 0..100 {
+            state = pendulum.step(&state, dt);
+            let shares = shares(&pendulum, &bounds, &state);
+            let are_kept = shares.iter().all(|share| *share <= 1.0 + tolerances::BOUNDS_DRIFT);
+            assert!(are_kept, "{shares:?} for {:?} from {start:?}", pendulum.parameters());
         }
+        let step = pendulum.admissible_step(&start)?.to_f64();
+        let error = (step / exact.admissible_step(&start_in_f64)? - 1.0).abs();
+        assert!(error <= tolerances::FORMULAS.of::<R>(), "{error:e} for {:?} from {start:?}", pendulum.parameters());
     }
-    by::<f32>();
-    by::<f64>();
+    let free = Pendulum::new(&Parameters::equal_rods(R::ONE, R::ONE, R::ZERO))?;
+    let hanging = State::at_rest(R::ZERO, R::ZERO);
+    assert!(!free.admissible_step(&hanging)?.is_finite());
+    let [once, twice] = [R::ONE, R::TWO].map(|p1| free.admissible_step(&State { p1, ..hanging }));
+    assert_eq!(once?, twice? + twice?);
+    let hung = Pendulum::new(&Parameters::equal_rods(R::ONE, R::ONE, R::from_f64(9.81)))?;
+    assert!(hung.admissible_step(&hanging)? < hung.modes()?.step_limit());
+    Ok(())
+}
+
+#[test]
+fn bounds_and_admissible_steps_hold_in_either_precision() -> Result<(), Error> {
+    hold::<f32>()?;
+    hold::<f64>()
 }
 
 /// Hanging straight, one push each that spends all its energy on one quantity.
 #[test]
 fn each_bound_is_reached_by_some_state() {
-    let mut rng = Rng::with_seed(2);
-    for _ in 0..1000 {
-        let pendulum = Pendulum::new(&random::parameters(&mut rng)).expect("valid parameters");
+    for (pendulum, _) in random::pendulums::<f64>(2, 1000) {
         let &Parameters { m1, m2, l1, l2, .. } = pendulum.parameters();
         let still2 = Motion { w1: 1.0, w2: -l1 / l2, ..Motion::default() }; // bob 2 at rest: all in w1, v1
         let opposed = Motion { w1: -m2 * l2 / ((m1 + m2) * l1), w2: 1.0, ..Motion::default() }; // p1 = 0: all in w2
@@ -65,14 +74,11 @@ fn each_bound_is_reached_by_some_state() {
     }
 }
 
-/// No certified motion turns over.
 #[test]
 fn certified_motions_do_not_turn_over() {
-    let mut rng = Rng::with_seed(3);
     let mut certified = 0;
-    for _ in 0..2000 {
-        let pendulum = Pendulum::new(&random::parameters(&mut rng)).expect("valid parameters");
-        let start = State::at_rest(PI * random::symmetric(&mut rng), PI * random::symmetric(&mut rng));
+    for (pendulum, State { a1, a2, .. }) in random::pendulums::<f64>(3, 2000) {
+        let start = State::at_rest(0.5 * a1, 0.5 * a2);
         if pendulum.cannot_turn_over(&start) {
             certified += 1;
             let bounds = pendulum.bounds(&start);
@@ -167,33 +173,6 @@ fn an_admissible_step_resolves_every_motion() -> Result<(), Error> {
         assert!(largest >= allowed / 3.0, "never above {largest:e}: the limit is timid");
     }
     Ok(())
-}
-
-/// In either precision; without energy every step will do, and without gravity only the speed counts.
-fn admissible_step<R: Real>() -> Result<(), Error> {
-    let mut rng = Rng::with_seed(6);
-    for _ in 0..1000 {
-        let given = random::parameters(&mut rng);
-        let state = random::state(&mut rng, &given);
-        let exact = Pendulum::new(&given)?.admissible_step(&state)?;
-        let step = Pendulum::new(&given.cast::<R>())?.admissible_step(&state.cast())?;
-        let error = (step.to_f64() / exact - 1.0).abs();
-        assert!(error <= tolerances::FORMULAS.of::<R>(), "{error:e} for {given:?} from {state:?}");
-    }
-    let free = Pendulum::new(&Parameters::equal_rods(R::ONE, R::ONE, R::ZERO))?;
-    let hanging = State::at_rest(R::ZERO, R::ZERO);
-    assert!(!free.admissible_step(&hanging)?.is_finite());
-    let [once, twice] = [R::ONE, R::TWO].map(|p1| free.admissible_step(&State { p1, ..hanging }));
-    assert_eq!(once?, twice? + twice?);
-    let hung = Pendulum::new(&Parameters::equal_rods(R::ONE, R::ONE, R::from_f64(9.81)))?;
-    assert!(hung.admissible_step(&hanging)? < hung.modes()?.step_limit());
-    Ok(())
-}
-
-#[test]
-fn a_step_is_admissible_in_either_precision() -> Result<(), Error> {
-    admissible_step::<f32>()?;
-    admissible_step::<f64>()
 }
 
 /// Equal rods from rest: certified exactly where (1 + mu) cos a1 + mu cos a2 > 1.

@@ -4,7 +4,6 @@ use std::f64::consts::{FRAC_PI_6, PI, TAU};
 
 use double_pendulum::{Modes, SmallOscillations};
 use firmware::config::TICK_RATE;
-use firmware::motion::Settings;
 use firmware::scenes::SceneName;
 use host_tests::emulator::host::Show;
 use host_tests::oracle::tolerances::{CLOSED, CLOSED_FORM, NOT_CLOSED, RATIO};
@@ -64,63 +63,50 @@ fn small_oscillations_are_played_as_the_theory_has_them() {
 }
 
 /// Where the figures of the beats are at angles (a1, a2), pixels.
-fn place([x, y]: [f64; 2], mass_ratio: f64, a1: f64, a2: f64) -> [f64; 2] {
+fn place([x, y]: [f64; 2], mass_ratio: f64, [a1, a2]: [f64; 2]) -> [f64; 2] {
     // a2/a1 in the modes is -shape (fast) and +shape (slow).
     let shape = ((1.0 + mass_ratio) / mass_ratio).sqrt();
     let (slow, fast) = ((a2 + shape * a1) / 2.0, (a2 - shape * a1) / 2.0);
     [x + REACH / AMPLITUDE * slow, y - REACH / AMPLITUDE * fast]
 }
 
+/// In both figures the spot is drawn where it should be: on the left by cos w2 t and sin w1 t, on the right by the
+/// high-precision motion. When the frequencies say so the left one closes, and the right one does not.
 #[test]
-fn beats_close_when_their_frequencies_say_so_and_the_exact_motion_does_not() {
+fn the_beats_are_where_the_theory_has_them_and_only_the_linear_ones_close() {
     for (name, mass_ratio, [fast, slow]) in BEATS {
-        let settings = name.first_settings();
         let [w1, w2] = frequencies(mass_ratio, 9.81, 1.0);
         assert!((w1 / w2 - fast / slow).abs() < RATIO, "{name:?}: {}", w1 / w2);
         let period = fast * TAU / w1;
-
-        let modes = Modes::new(&settings.parameters.cast()).expect("a pendulum");
-        let linear = SmallOscillations::new(modes, &settings.motion());
-        let [start, end] = [0.0, period].map(|t| linear.at(t));
-        let parted = |a: f32, b: f32| f64::from((a - b).abs()) / AMPLITUDE;
-        let missed = parted(end.a1, start.a1).max(parted(end.a2, start.a2));
-        assert!(missed < CLOSED, "{name:?}: the linear motion misses its start by {missed:e}");
-
-        let mut exact = reference(&settings);
-        exact.advance_to(period);
-        let [x0, y0] = place([0.0; 2], mass_ratio, settings.angles()[0].into(), settings.angles()[1].into());
-        let [x, y] = place([0.0; 2], mass_ratio, exact.motion().a1, exact.motion().a2);
-        let missed = (x - x0).hypot(y - y0);
-        println!("{}: closes after {period:.3} s; the exact motion misses by {missed:.2} pixels", name.name());
-        assert!(missed > NOT_CLOSED, "{name:?}: the exact motion closes to {missed} pixels");
-    }
-}
-
-fn reference(settings: &Settings) -> Reference {
-    Reference::new(&settings.parameters.cast(), &settings.motion().cast())
-}
-
-/// In both figures the spot is drawn where it should be: on the left by cos w2 t and sin w1 t, on the right by the
-/// high-precision motion.
-#[test]
-fn the_spots_of_the_beats_are_where_the_theory_has_them() {
-    for (name, mass_ratio, [fast, _]) in BEATS {
+        let settings = name.first_settings();
+        let mut exact = Reference::new(&settings.parameters.cast(), &settings.motion().cast());
+        let start = exact.motion();
         let mut scene = show(name);
-        let [w1, w2] = frequencies(mass_ratio, 9.81, 1.0);
-        let mut exact = reference(&name.first_settings());
-        for tick in 1..=(fast * TAU / w1 * f64::from(TICK_RATE)) as u32 {
+        for tick in 1..=(period * f64::from(TICK_RATE)) as u32 {
             scene.tick();
             let t = f64::from(tick) / f64::from(TICK_RATE);
             exact.advance_to(t);
             let [left, right] = MIDDLES;
             let places = [
                 [left[0] + REACH * (w2 * t).cos(), left[1] - REACH * (w1 * t).sin()],
-                place(right, mass_ratio, exact.motion().a1, exact.motion().a2),
+                place(right, mass_ratio, exact.motion().angles()),
             ];
             let canvas = scene.frame();
             for [x, y] in places {
                 assert_eq!(canvas.get(x as i32, y as i32), Some(15), "{name:?} at {t} s: ({x:.2}, {y:.2})");
             }
         }
+
+        let modes = Modes::new(&settings.parameters.cast()).expect("a pendulum");
+        let linear = SmallOscillations::new(modes, &settings.motion());
+        let [first, last] = [0.0, period].map(|t| linear.at(t));
+        let parted = |a: f32, b: f32| f64::from((a - b).abs()) / AMPLITUDE;
+        let missed = parted(last.a1, first.a1).max(parted(last.a2, first.a2));
+        assert!(missed < CLOSED, "{name:?}: the linear motion misses its start by {missed:e}");
+        exact.advance_to(period);
+        let [[x0, y0], [x, y]] = [start, exact.motion()].map(|motion| place([0.0; 2], mass_ratio, motion.angles()));
+        let missed = (x - x0).hypot(y - y0);
+        println!("{}: closes after {period:.3} s; the exact motion misses by {missed:.2} pixels", name.name());
+        assert!(missed > NOT_CLOSED, "{name:?}: the exact motion closes to {missed} pixels");
     }
 }

@@ -9,6 +9,7 @@ mod flips;
 mod forms;
 mod hard_cases;
 mod known_answers;
+mod limits;
 mod methods;
 mod plan;
 mod plan_study;

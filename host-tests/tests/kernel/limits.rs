@@ -1,0 +1,181 @@
+//! Where the answer is known without a computation: upright, straight, at rest, tiny, and at the edge of stability.
+
+use std::f64::consts::{PI, TAU};
+
+use double_pendulum::{Equations, Error, Integrator, Method, Modes, Motion, Numbers, Parameters, Pendulum, State};
+use host_tests::oracle::tolerances;
+use host_tests::oracle::trials::{exact_methods, run};
+use reference::taylor::Reference;
+
+use super::hard_cases::HALVINGS;
+
+/// Rods of 1 m and bobs of 1 kg.
+fn even(gravity: f64) -> Parameters<f64> {
+    Parameters::equal_rods(1.0, 1.0, gravity)
+}
+
+/// When rod 1 is a radian from where it started, s; looked at every 1/64 s.
+fn fall(mut angle: impl FnMut() -> f64) -> f64 {
+    let start = angle();
+    let looks = (1..=16 * 64).find(|_| (angle() - start).abs() > 1.0);
+    looks.map_or(f64::INFINITY, |looks| f64::from(looks) / 64.0)
+}
+
+/// Straight up, to the last digit that an angle has: directions in floating point fall when the exact motion from there does,
+/// whatever the step. (In angles increments are lost, see below; in fixed point a sine has too few digits.)
+#[test]
+fn upright_falls_when_theory_says() -> Result<(), Error> {
+    let is_meant = |method: &&Method| method.equations() == Equations::Directions && !method.is_fixed_point();
+    for &method in Method::ALL.iter().filter(is_meant) {
+        let single = f64::from(std::f32::consts::PI);
+        let (up, parameters) = (if method.is_single() { single } else { PI }, even(9.81_f64 as f32 as f64));
+        let mut reference = Reference::new(&parameters, &Motion::at_rest(up, up));
+        let mut time = 0.0;
+        let exact = fall(|| {
+            reference.advance_to(time);
+            time += 1.0 / 64.0;
+            reference.motion().a1
+        });
+        assert!(exact.is_finite());
+        for halvings in HALVINGS.skip(2) {
+            let mut motion = run(method, &parameters, &State::at_rest(up, up), 0.5_f64.powi(halvings))?;
+            let mut steps = 0;
+            let falls = fall(|| {
+                motion.advance(steps).expect("a finite motion");
+                steps = 1 << (halvings - 6);
+                motion.angles()[0].rem_euclid(TAU)
+            });
+            assert!(
+                (falls - exact).abs() <= tolerances::FALL,
+                "{method}, 2^-{halvings} s: after {falls} s instead of {exact} s"
+            );
+        }
+    }
+    Ok(())
+}
+
+/// As one writes the method down, the angle stands still until an increment reaches half a unit of its last place: the
+/// momentum grows by the torque, so after (ulp/2)/(g error dt), the error being that of pi. Then it falls.
+#[test]
+fn upright_stays_as_long_as_theory_says_in_plain_sums() -> Result<(), Error> {
+    let single = f64::from(std::f32::consts::PI);
+    for (method, up, ulp, error) in [
+        (Method::Rk4F32, single, 2.0 * f64::from(f32::EPSILON), single - PI),
+        (Method::Rk4F64, PI, 2.0 * f64::EPSILON, 1.224_646_799_147_353_2e-16),
+    ] {
+        for steps_per_second in [64_u32, 256] {
+            let dt = 1.0 / f64::from(steps_per_second);
+            let stays = 0.5 * ulp / (9.81 * error * dt);
+            let mut motion = run(method, &even(9.81), &State::at_rest(up, up), dt)?;
+            let mut steps = 0_u32;
+            while motion.state().a1 == up && steps < 100 * steps_per_second {
+                motion.advance(1)?;
+                steps += 1;
+            }
+            let stayed = f64::from(steps) * dt;
+            assert!((stayed / stays - 1.0).abs() <= tolerances::STAYS, "{method}: {stayed} s instead of {stays} s");
+        }
+    }
+    Ok(())
+}
+
+/// Straight and turning as one, without gravity: a = a(0) + w t, to the roundings of the turning.
+#[test]
+fn straight_rods_turn_evenly_without_gravity() -> Result<(), Error> {
+    let parameters = Parameters { l2: 0.5, ..even(0.0) };
+    let start = Pendulum::new(&parameters)?.to_state(&Motion { a1: 1.0, a2: 1.0, w1: 2.0, w2: 2.0 });
+    for method in exact_methods() {
+        let mut motion = run(method, &parameters, &start, 1.0 / 256.0)?;
+        for seconds in 1..=20 {
+            motion.advance(256)?;
+            let State { a1, a2, p1, p2 } = motion.state();
+            let [miss1, miss2] = [a1, a2].map(|angle| (angle - 1.0 - 2.0 * f64::from(seconds)).abs());
+            let lost = ((p1 + p2) / (start.p1 + start.p2) - 1.0).abs();
+            let worst = miss1.max(miss2).max(lost);
+            assert!(worst <= tolerances::STRAIGHT.by(method), "{method}: {worst:e} rad or relative after {seconds} s");
+        }
+    }
+    Ok(())
+}
+
+/// Hanging, and without gravity anywhere: what is at rest stays there, to the bit but for 64-bit fixed point.
+#[test]
+fn what_is_at_rest_stays() -> Result<(), Error> {
+    for &method in Method::ALL {
+        for (gravity, a1, a2) in [(9.81, 0.0, 0.0), (0.0, 3.0, -2.0)] {
+            if gravity == 0.0 && method.equations() == Equations::Linear {
+                continue; // nothing swings
+            }
+            let mut motion = run(method, &even(gravity), &State::at_rest(a1, a2), 1.0 / 64.0)?;
+            let start = motion.state();
+            motion.advance(10_000)?;
+            let now = motion.state();
+            let moved = (now.a1 - start.a1).abs().max((now.a2 - start.a2).abs());
+            let [angle, momentum] = match method.numbers() {
+                Numbers::Fixed64 => [tolerances::REST_OF_FIXED_64; 2],
+                _ if method.is_single() => [f32::EPSILON.into(), 0.0],
+                _ => [f64::EPSILON, 0.0],
+            };
+            let pushed = now.p1.abs().max(now.p2.abs());
+            assert!(moved <= angle && pushed <= momentum, "{method}: {now:?} from {start:?}");
+        }
+    }
+    Ok(())
+}
+
+/// In floating point, a swing so small that every square vanishes is the linear one; one of subnormal numbers stays as small as
+/// it was.
+#[test]
+fn denormals_do_no_harm() -> Result<(), Error> {
+    let parameters = even(9.81);
+    let slow = Modes::new(&parameters)?.slow;
+    for method in exact_methods().filter(|method| !method.is_fixed_point()) {
+        // far above the least normal number, and at a few units of the least of all
+        let [tiny, subnormal] = if method.is_single() { [-80, -146] } else { [-900, -1071] }.map(|n| 2_f64.powi(n));
+        let mut motion = run(method, &parameters, &State::at_rest(tiny, tiny * slow.shape), 1.0 / 256.0)?;
+        for step in 1..=10 * 64 {
+            motion.advance(4)?;
+            let expected = (slow.frequency * f64::from(step) / 64.0).cos();
+            let miss = (motion.state().a1 / tiny - expected).abs();
+            assert!(miss <= tolerances::TINY.by(method), "{method}: {miss:e} at step {step}");
+        }
+        let mut motion = run(method, &parameters, &State::at_rest(subnormal, subnormal), 1.0 / 256.0)?;
+        motion.advance(10_000)?;
+        let State { a1, a2, .. } = motion.state();
+        let most = 1000.0 * subnormal;
+        assert!(a1.abs() <= most && a2.abs() <= most, "{method}: {a1:e}, {a2:e} from {subnormal:e}");
+    }
+    Ok(())
+}
+
+/// The fast mode just below the step limit of RK4 decays, just above it grows: by 15 % a step, until it is so wide that its
+/// frequency is another, which may be at less than 0.001 rad. Fixed point refuses such steps.
+#[test]
+fn the_edge_of_stability_is_where_it_should_be() -> Result<(), Error> {
+    const SMALL: f64 = 1e-5;
+    let is_meant = |method: &Method| method.integrator() == Integrator::Rk4 && !method.is_fixed_point();
+    for parameters in [even(9.81), Parameters { m2: 1000.0, ..even(9.81) }, Parameters { l2: 0.01, ..even(9.81) }] {
+        let modes = Modes::new(&parameters)?;
+        assert_eq!(modes.check_step(modes.step_limit()), Ok(()));
+        assert!([1.01 * modes.step_limit(), 0.0, f64::NAN].iter().all(|dt| modes.check_step(*dt).is_err()));
+        let shape = modes.fast.shape;
+        let start =
+            if shape.abs() > 1.0 { State::at_rest(SMALL / shape, SMALL) } else { State::at_rest(SMALL, SMALL * shape) };
+        for method in exact_methods().filter(is_meant) {
+            let swing = |share: f64| {
+                let mut motion = run(method, &parameters, &start, modes.step_limit() * share)?;
+                motion.advance(100)?;
+                (100..200).try_fold(0.0, |late: f64, _| {
+                    motion.advance(1)?;
+                    let State { a1, a2, .. } = motion.state();
+                    Ok(late.max(a1.abs()).max(a2.abs()))
+                })
+            };
+            let [below, above]: [f64; 2] = [swing(0.98)?, swing(1.02)?];
+            let [decayed, grown] = tolerances::STABILITY_EDGE;
+            assert!(below < decayed, "{method}: {below:e} below the limit");
+            assert!(above > grown, "{method}: {above:e} above the limit");
+        }
+    }
+    Ok(())
+}
