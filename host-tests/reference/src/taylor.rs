@@ -23,6 +23,11 @@ pub struct Reference {
     time: TwoFloat,
     /// a1, a2 (rad); w1, w2 (rad/s).
     motion: [TwoFloat; 4],
+    /// Their power series about an earlier time, ...
+    series: [Vec<TwoFloat>; 4],
+    about: TwoFloat,
+    /// ... and until when these are the motion.
+    end: TwoFloat,
 }
 
 impl Reference {
@@ -35,20 +40,22 @@ impl Reference {
 
     /// As [`Reference::new`] from numbers of full precision: angles in rad, velocities in rad/s.
     pub fn exact(parameters: Parameters<TwoFloat>, motion: [TwoFloat; 4]) -> Self {
-        Self { parameters, time: 0.0.into(), motion }
+        let zero = TwoFloat::from(0.0);
+        Self { parameters, time: zero, motion, series: [const { Vec::new() }; 4], about: zero, end: zero }
     }
 
     /// Moves to time `t`, s; goes forward only, an earlier time changes nothing.
     pub fn advance_to(&mut self, t: f64) {
-        while self.time < TwoFloat::from(t) {
-            let motion = self.series();
-            let rest = TwoFloat::from(t) - self.time;
-            let longest = TwoFloat::from(longest_step(&motion));
-            let last = longest >= rest;
-            let step = if last { rest } else { longest };
-            let at_step = |series: Vec<_>| series.into_iter().rev().fold(TwoFloat::from(0.0), |sum, c| sum * step + c);
-            self.motion = motion.map(at_step);
-            self.time = if last { t.into() } else { self.time + step };
+        let t = TwoFloat::from(t);
+        while self.time < t {
+            if self.time >= self.end {
+                (self.series, self.about) = (self.series_now(), self.time);
+                self.end = self.time + longest_step(&self.series);
+            }
+            self.time = if self.end < t { self.end } else { t };
+            let h = self.time - self.about;
+            let sum = |series: &Vec<_>| series.iter().rev().fold(TwoFloat::from(0.0), |sum, &c| sum * h + c);
+            self.motion = self.series.each_ref().map(sum);
         }
     }
 
@@ -80,10 +87,10 @@ impl Reference {
         [a1, a2, p1, p2]
     }
 
-    /// The power series of a1, a2, w1, w2 about now: their coefficients up to [`ORDER`].
+    /// The coefficients up to [`ORDER`] of the power series of a1, a2, w1, w2 about now.
     ///
     /// Beside them those of the sine and cosine of a1, a2 and D = a1 - a2 by s' = c a' and c' = -s a'.
-    fn series(&self) -> [Vec<TwoFloat>; 4] {
+    fn series_now(&self) -> [Vec<TwoFloat>; 4] {
         let Parameters { m1, m2, l1, l2, g } = self.parameters;
         let (total, [a1, a2, w1, w2]) = (m1 + m2, self.motion);
         let [[sin1, cos1], [sin2, cos2], [sin_d, cos_d]] = [a1, a2, a1 - a2].map(sin_cos);

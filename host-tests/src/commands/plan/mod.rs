@@ -1,10 +1,8 @@
-//! `cargo plan`: how to compute a scene as cheaply as may be; and the planner held against the reference.
+//! `cargo plan`: how to compute a scene as cheaply as may be.
 
 mod options;
-mod study;
 
-pub use options::{CHIPS, Chip, M3, M4F, PICO, SceneOptions};
-pub use study::{Case, DURATIONS, median, scenes, study};
+pub use options::{CHIPS, Chip, SceneOptions};
 
 use clap::Parser;
 use double_pendulum::plan::{Limit, Plan, Problem};

@@ -1,6 +1,6 @@
 //! What is planned, as the command line has it.
 
-use anyhow::{Context, anyhow, ensure};
+use anyhow::{Context, bail, ensure};
 use clap::{Parser, value_parser};
 use double_pendulum::plan::{Limit, Plan, PlanError, Problem};
 use firmware::config::{CORTEX_M0PLUS, CORTEX_M3, CORTEX_M4F, Processor, STM32F405};
@@ -42,11 +42,13 @@ impl SceneOptions {
     /// The scene with its plan, or with what forbids any; an error is one line that names the option and the value.
     pub fn plan(&self) -> anyhow::Result<(Problem, Result<Plan, Limit>)> {
         let problem = self.scene.map_or_else(|| self.given(), |name| self.of_scene(name))?;
-        let plan = self.target.plan(&problem).map_err(|error| match error {
-            PlanError::Refused(error) => anyhow!("{}: {error}", option_of(&error, "the scene")),
-            error => anyhow!("the scene: {error}"),
-        });
-        Ok((problem, plan?))
+        let Processor { costs, .. } = &self.target.processor;
+        match Plan::search(&problem, costs, &self.target.processor.budget(&problem)) {
+            Ok(plan) => Ok((problem, Ok(plan))),
+            Err(PlanError::NoMethod { limit, .. }) => Ok((problem, Err(limit))),
+            Err(PlanError::Refused(error)) => bail!("{}: {error}", option_of(&error, "the scene")),
+            Err(error) => bail!("the scene: {error}"),
+        }
     }
 
     /// What a board of this class plans when it starts the scene.
@@ -79,28 +81,17 @@ impl SceneOptions {
 pub struct Chip {
     pub name: &'static str,
     pub title: &'static str,
+    /// Hz.
     pub clock: f32,
     /// What its steps cost, and what may be spent.
     pub processor: Processor,
 }
 
-/// The LM3S6965, without a floating-point unit.
-pub const M3: Chip = Chip { name: "m3", title: "Cortex-M3 at 50 MHz", clock: 50e6, processor: CORTEX_M3 };
-/// The STM32F405, with one for `f32`.
-pub const M4F: Chip = Chip { name: "m4f", title: "Cortex-M4F at 168 MHz", clock: 168e6, processor: STM32F405 };
-/// The slowest board's, with one.
-pub const SLOW_M4F: Chip = Chip { name: "slow-m4f", title: "Cortex-M4F at 25 MHz", clock: 25e6, processor: CORTEX_M4F };
-/// The Raspberry Pi Pico's, whose products have 32 bits only.
-pub const PICO: Chip = Chip { name: "pico", title: "Cortex-M0+ at 125 MHz", clock: 125e6, processor: CORTEX_M0PLUS };
-/// Every chip, the default first.
-pub const CHIPS: [Chip; 4] = [M3, M4F, SLOW_M4F, PICO];
-
-impl Chip {
-    /// The plan that a board of this class finds; if no method meets the tolerance, what forbids finer steps.
-    pub fn plan(&self, problem: &Problem) -> Result<Result<Plan, Limit>, PlanError> {
-        match Plan::search(problem, &self.processor.costs, &self.processor.budget(problem)) {
-            Err(PlanError::NoMethod { limit, .. }) => Ok(Err(limit)),
-            found => found.map(Ok),
-        }
-    }
-}
+/// Every chip, the default first: the LM3S6965, without a floating-point unit; the STM32F405, with one for `f32`; the slowest board's,
+/// with one; the Raspberry Pi Pico's, whose products have 32 bits only.
+pub const CHIPS: [Chip; 4] = [
+    Chip { name: "m3", title: "Cortex-M3 at 50 MHz", clock: 50e6, processor: CORTEX_M3 },
+    Chip { name: "m4f", title: "Cortex-M4F at 168 MHz", clock: 168e6, processor: STM32F405 },
+    Chip { name: "slow-m4f", title: "Cortex-M4F at 25 MHz", clock: 25e6, processor: CORTEX_M4F },
+    Chip { name: "pico", title: "Cortex-M0+ at 125 MHz", clock: 125e6, processor: CORTEX_M0PLUS },
+];

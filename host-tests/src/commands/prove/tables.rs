@@ -6,7 +6,7 @@ use firmware::scenes::SceneName;
 use reference::enclosure::Start;
 
 use super::horizon::{counts, frames};
-use crate::commands::plan::{M3, M4F, PICO, SceneOptions};
+use crate::commands::plan::SceneOptions;
 use crate::commands::simulate::Number;
 use crate::oracle::known_answers::KnownAnswer;
 
@@ -23,8 +23,8 @@ pub const HEADING: &str = "\
 /// Its line of one scene: predicted and proved.
 pub fn horizons(name: SceneName) -> Result<String> {
     let (mut cells, mut unproved) = (vec![name.name().to_owned()], 0);
-    for chip in [M3, M4F, PICO] {
-        let words = ["plan", "--scene", name.name(), "--target", chip.name];
+    for chip in ["m3", "m4f", "pico"] {
+        let words = ["plan", "--scene", name.name(), "--target", chip];
         let (scene, plan) = SceneOptions::try_parse_from(words)?.plan()?;
         cells.extend(match plan {
             Err(_) => ["none", "none"].map(String::from),
