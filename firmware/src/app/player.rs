@@ -139,8 +139,8 @@ impl<'a> Player<'a> {
     }
 
     /// Cycles of a frame that is computed this way.
-    pub fn cost(&self, Way { method, steps }: Way) -> f32 {
-        self.planner.processor.costs.of_frame(method, steps)
+    pub fn cost(&self, way: Way) -> f32 {
+        self.planner.processor.costs.of_frame(way)
     }
 
     /// The scene in numbers, with what the planner knows of it.

@@ -41,7 +41,7 @@ pub struct Planned {
 pub struct Planner {
     pub processor: Processor,
     ticks: u64,
-    task: Option<(Problem, Viewport)>,
+    task: Option<(Settings, Viewport)>,
     search: Option<Search>,
     /// Cycles of the ticks to come that have been spent.
     debt: f32,
@@ -62,7 +62,7 @@ impl Planner {
 
     /// Begins anew for a scene that starts with `settings`, and in the way `begun`; one that shows no motion has no plan.
     pub fn start(&mut self, settings: &Settings, viewport: Option<Viewport>, begun: Option<Way>) {
-        let task = viewport.map(|viewport| (problem(settings, &viewport), viewport));
+        let task = viewport.map(|viewport| (*settings, viewport));
         (self.task, self.search, self.plan, self.begun) = (task, None, None, begun.map(|way| (way, 0.0)));
         (self.ticks, self.debt, self.is_news, self.is_due) = (0, 0.0, false, false);
     }
@@ -103,19 +103,14 @@ impl Planner {
     /// Until when the frames are expected to be right of a scene that goes this `way`, s.
     pub fn horizon(&self, way: Way) -> f64 {
         let begun = self.begun.filter(|(begun, _)| *begun == way).map(|(_, horizon)| horizon);
-        begun.unwrap_or_else(|| self.looked_at(way)).max(self.planned(way))
+        let plan = self.plan.and_then(Result::ok).filter(|plan| plan.way() == way);
+        begun.unwrap_or_else(|| self.looked_at(way)).max(plan.map_or(0.0, |plan| plan.horizon))
     }
 
     /// Until when the search has found this way right so far.
     #[inline(never)] // one copy
     fn looked_at(&self, way: Way) -> f64 {
         self.search.as_ref().map_or(0.0, |search| search.horizon(way))
-    }
-
-    /// The plan's horizon, if it is of this way.
-    fn planned(&self, way: Way) -> f64 {
-        let plan = self.plan.and_then(Result::ok);
-        plan.filter(|plan| plan.way() == way).map_or(0.0, |plan| plan.horizon)
     }
 
     /// Whether it may turn out that they are for longer.
@@ -136,58 +131,57 @@ impl Planner {
             return false;
         }
         let before = self.search.as_ref().map_or(0.0, Search::spent);
-        if let Err(error) = self.advance() {
-            (self.task, self.search, self.plan, self.is_news) = (None, None, Some(Err(error)), true);
-        }
+        let found = self.advance().transpose();
         let spent = self.search.as_ref().map_or(0.0, Search::spent) - before;
         let least = if before == 0.0 { long } else { self.processor.piece() };
         self.debt += spent.max(least);
+        if let Some(found) = found {
+            self.take(found);
+        }
         true
     }
 
     /// Whether a plan that was right to its end has been looked at far enough for now.
     fn is_far(&self) -> bool {
-        let plan = self.plan.and_then(Result::ok);
-        plan.is_some_and(|plan| {
+        self.plan.and_then(Result::ok).is_some_and(|plan| {
             let far = self.ticks as f64 / f64::from(TICK_RATE) + PLANNED;
             self.looked_at(plan.way()) >= far
         })
     }
 
     #[inline(never)] // a search stands on the stack while it is made
-    fn advance(&mut self) -> Result<(), PlanError> {
-        let Some((problem, Viewport { way, .. })) = &self.task else { return Ok(()) };
+    fn advance(&mut self) -> Result<Option<Plan>, PlanError> {
+        let Some((settings, viewport)) = &self.task else { return Ok(None) };
         let Some(search) = &mut self.search else {
-            let (costs, budget) = (&self.processor.costs, self.processor.budget(problem));
-            self.search = Some(match way {
-                None => Search::new(problem, costs, &budget)?,
-                Some(Way { method, steps }) => Search::of(*method, *steps, problem, costs, &budget)?,
+            let problem = problem(settings, viewport);
+            let (costs, budget) = (&self.processor.costs, self.processor.budget(&problem));
+            self.search = Some(match viewport.way {
+                None => Search::new(&problem, costs, &budget)?,
+                Some(Way { method, steps }) => Search::of(method, steps, &problem, costs, &budget)?,
             });
-            return Ok(());
+            return Ok(None);
         };
-        match search.advance(PLANNING_PIECE) {
-            Ok(None) => {}
-            Ok(Some(plan)) => {
-                (self.plan, self.is_news) = (Some(Ok(plan)), true);
-                if plan.limit == Limit::End {
-                    search.extend(FOR_EVER);
-                } else {
-                    self.note();
-                    self.search = None;
-                }
+        search.advance(PLANNING_PIECE)
+    }
+
+    /// What is right to the end is looked at farther; all else ends the search.
+    fn take(&mut self, found: Finding) {
+        (self.plan, self.is_news) = (Some(found), true);
+        match (&mut self.search, found) {
+            (Some(search), Ok(Plan { limit: Limit::End, .. })) => search.extend(FOR_EVER),
+            _ => {
+                self.note();
+                self.search = None;
             }
-            Err(error @ PlanError::NoMethod { .. }) => {
-                (self.search, self.plan, self.is_news) = (None, Some(Err(error)), true);
-            }
-            Err(error) => return Err(error),
         }
-        Ok(())
     }
 
     pub fn answer(&self) -> Option<Planned> {
-        let (problem, Viewport { height, .. }) = self.task.as_ref()?;
-        let Budget { frame, planning } = self.processor.budget(problem);
-        Some(Planned { found: self.plan, height: *height, duration: problem.duration, frame, planning })
+        let (settings, viewport) = self.task.as_ref()?;
+        let problem = problem(settings, viewport);
+        let Budget { frame, planning } = self.processor.budget(&problem);
+        let (height, duration) = (viewport.height, problem.duration);
+        Some(Planned { found: self.plan, height, duration, frame, planning })
     }
 }
 

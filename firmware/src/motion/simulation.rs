@@ -57,7 +57,7 @@ pub struct CatchingUp {
 
 impl CatchingUp {
     pub fn new(settings: &Settings, way: Way, processor: &Processor) -> Result<Self, Error> {
-        let frame = processor.costs.of_frame(way.method, way.steps).max(processor.piece());
+        let frame = processor.costs.of_frame(way).max(processor.piece());
         let affordable = (processor.look_ahead / frame) as u32;
         // With fewer frames in a tick nothing catches up.
         Ok(Self { motion: settings.run(0.0, way)?, most: affordable.max(2) })

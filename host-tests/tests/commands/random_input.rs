@@ -177,7 +177,8 @@ proptest! {
         }
     }
 
-    /// A plan keeps to its budget and its scene, or is refused by name.
+    /// A plan keeps to its budget and its scene, or is refused by name; a piece of the search makes steps that together cost no more
+    /// than is allowed, or one that does.
     #[test]
     fn a_plan_is_within_its_budget(
         (pendulum, [a1, a2, w1, w2], rate) in (parameters(), numbers(), prop_oneof![Just(60), any::<u16>()]),
@@ -194,9 +195,13 @@ proptest! {
         };
         let Ok(mut search) = search else { return Ok(()) };
         for _ in 0..60 {
-            match search.advance(piece) {
+            let before = search.spent();
+            let most = if search.is_preparing() { costs.preparation } else { piece.max(costs.fixed64) };
+            let found = search.advance(piece);
+            prop_assert!(search.spent() - before <= most + 1e-6 * search.spent(), "{before} {}", search.spent());
+            match found {
                 Err(error) => {
-                    prop_assert!(!error.to_string().is_empty());
+                    prop_assert!(!error.to_string().is_empty() && search.spent() <= planning, "{error:?} {}", search.spent());
                     break;
                 }
                 Ok(None) => {}

@@ -1,7 +1,7 @@
-//! A method that is tried.
+//! How wrong a method is that is tried: how far two frames are apart, and in how many it was right.
 
-use super::cost::{Costs, Way};
-use crate::table::Method;
+use super::cost::Way;
+use super::run::Directions;
 
 /// A bob may be off by this much where the tolerance is the unit.
 const TOLERATED: f32 = 1.0;
@@ -26,21 +26,9 @@ impl Candidate {
         Self { way, right: 0, error: 0.0, failed: false }
     }
 
-    pub fn cost(&self, costs: &Costs) -> f32 {
-        costs.of_frame(self.way.method, self.way.steps)
-    }
-
     /// Whether it is right for so much longer than `other` that it is worth more.
     pub fn outlasts(&self, other: &Self) -> bool {
         f64::from(self.right) > WORTH * f64::from(other.right)
-    }
-
-    /// In how many frames it shows `way` to be right; one that has the longest horizon of all is so wherever any is.
-    #[inline(never)] // one copy
-    pub fn right_of(&self, way: Way, has_longest_horizon: bool) -> u32 {
-        let is_same = self.way.steps == way.steps || way.method == Method::ClosedFormF32;
-        let is_shown = has_longest_horizon || self.way.method == way.method && is_same;
-        if is_shown { self.right } else { 0 }
     }
 
     /// Takes note of a frame with an error of about `error`, and hardly ever more than `bound`. NaN is wrong.
@@ -55,22 +43,36 @@ impl Candidate {
     }
 }
 
+/// How far the farther of the two bobs is off, or bob 2 as seen from bob 1, where the rods are as long as `rods`, in their
+/// unit; NaN if anything is.
+///
+/// The last keeps curves of the angles right, too: opposite errors of both may leave bob 2 where it belongs.
+#[inline(never)] // one copy
+pub(super) fn distance(rods: [f32; 2], a: &Directions, b: &Directions) -> f32 {
+    let difference = |rod: usize, axis: usize| rods[rod] * (a[rod][axis] - b[rod][axis]);
+    let [bob1, relative] = [0, 1].map(|rod| [difference(rod, 0), difference(rod, 1)]);
+    let bob2 = [bob1[0] + relative[0], bob1[1] + relative[1]];
+    let [bob1, relative, bob2] = [bob1, relative, bob2].map(|[x, y]| x * x + y * y);
+    libm::sqrtf(greater(greater(bob1, relative), bob2))
+}
+
+/// The greater; NaN if either is.
+pub(super) fn greater(a: f32, b: f32) -> f32 {
+    if a > b || a.is_nan() { a } else { b }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    /// Bob 2 is where both rods lead, and may be less far off than either.
     #[test]
-    fn what_is_right_in_one_way_says_nothing_of_another() {
-        let right = |of: (Method, u32), method, steps, has_longest_horizon| {
-            let candidate = Candidate { right: 7, ..Candidate::new(Way { method: of.0, steps: of.1 }) };
-            candidate.right_of(Way { method, steps }, has_longest_horizon)
-        };
-        let direction = (Method::Rk4F32Direction, 4);
-        assert_eq!(right(direction, Method::Rk4F32Direction, 4, false), 7);
-        assert_eq!(right(direction, Method::Rk4F32Direction, 2, false), 0);
-        assert_eq!(right(direction, Method::Rk4F32DirectionPlain, 4, false), 0);
-        assert_eq!(right(direction, Method::Extrapolation10Fixed64, 3, true), 7);
-        assert_eq!(right((Method::ClosedFormF32, 1), Method::ClosedFormF32, 0, false), 7);
-        assert_eq!(right((Method::ClosedFormF32, 1), Method::Rk4F32Direction, 1, false), 0);
+    fn the_farthest_of_what_is_seen_counts() {
+        let from = |a: Directions| distance([2.0, 3.0], &a, &[[0.0; 2]; 2]);
+        assert_eq!(from([[1.0, 0.0], [0.0, 1.0]]), 13.0_f32.sqrt());
+        assert_eq!(from([[0.5, 0.0], [1.0, 0.0]]), 4.0);
+        assert_eq!(from([[3.0, 0.0], [-1.0, 0.0]]), 6.0);
+        assert_eq!(from([[0.0, 1.0], [0.0, -2.0]]), 6.0);
+        assert!(from([[0.0, f32::NAN], [0.0, 1.0]]).is_nan());
     }
 }

@@ -1,14 +1,9 @@
 //! What each method costs, what may be spent, and the ways that it pays for.
 
 use super::PlannedRun;
-use super::error::check_positive;
 use crate::error::{Error, Parameter};
 use crate::pendulum::{Motion, Parameters, Pendulum};
 use crate::table::Method;
-
-/// The order of the steps in 64 bits of fixed point. 8 lasts less long, 12 costs 1.4 times as much and lasts no longer: the
-/// roundings end the horizon.
-pub(super) const ORDER: u32 = Method::Extrapolation10Fixed64.order();
 
 /// The price list: what a step costs by each method, what a frame costs in closed form. In cycles, or in any other unit
 /// that the [`Budget`] is given in, too.
@@ -29,17 +24,11 @@ pub struct Costs {
 }
 
 impl Costs {
-    pub(super) fn check(&self) -> Result<(), Error> {
-        let Self { closed_form, direction_plain, direction, fixed32, fixed64, preparation } = *self;
-        let costs = [closed_form, direction_plain, direction, fixed32, fixed64, preparation];
-        check_positive(Parameter::Cost, &costs.map(f64::from))
-    }
-
-    /// What a frame costs that is computed by `method` with `steps`; infinite for what no plan chooses from.
+    /// What a frame costs that is computed this way; infinite for what no plan chooses from.
     #[inline(never)] // one copy
     #[doc(hidden)]
     #[must_use]
-    pub fn of_frame(&self, method: Method, steps: u32) -> f32 {
+    pub fn of_frame(&self, Way { method, steps }: Way) -> f32 {
         let step = match method {
             Method::ClosedFormF32 => return self.closed_form,
             Method::Rk4F32DirectionPlain => self.direction_plain,
@@ -59,12 +48,6 @@ pub struct Budget {
     pub frame: f32,
     /// On planning.
     pub planning: f32,
-}
-
-impl Budget {
-    pub(super) fn check(&self) -> Result<(), Error> {
-        check_positive(Parameter::Budget, &[self.frame.into(), self.planning.into()])
-    }
 }
 
 /// How a motion is computed: a method, and how fine.
@@ -127,7 +110,7 @@ impl Way {
         }
         let affordable = |method| {
             let mut steps = steps_to_frame(method, rate, FIRST_STEP * admissible);
-            while steps > 1 && costs.of_frame(method, steps) > frame {
+            while steps > 1 && costs.of_frame(Self { method, steps }) > frame {
                 steps /= 2;
             }
             Self { method, steps }
@@ -156,7 +139,7 @@ impl Way {
     ) -> Option<Self> {
         let method = Method::Extrapolation10Fixed64;
         let mut way = Self { method, steps: steps_to_frame(method, rate, longest) };
-        while costs.of_frame(way.method, way.steps) <= frame && way.steps < MOST_STEPS {
+        while costs.of_frame(way) <= frame && way.steps < MOST_STEPS {
             match way.check(parameters, start, rate) {
                 Ok(()) => return Some(way),
                 Err(Error::TooLarge { parameter: Parameter::Dt, limit, .. }) => {

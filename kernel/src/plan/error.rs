@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use crate::error::{Error, Parameter};
+use crate::error::Error;
 
 /// What ends a horizon.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,21 +73,4 @@ impl fmt::Display for PlanError {
     }
 }
 
-impl core::error::Error for PlanError {
-    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
-        match self {
-            PlanError::Refused(error) => Some(error),
-            PlanError::NoMethod { .. } => None,
-        }
-    }
-}
-
-/// Refuses the first of `values` that is not a finite number greater than zero.
-#[inline(never)] // never inlined, to avoid a second copy
-pub(super) fn check_positive(parameter: Parameter, values: &[f64]) -> Result<(), Error> {
-    match values.iter().find(|value| !value.is_finite() || **value <= 0.0) {
-        Some(&value) if value.is_finite() => Err(Error::NotPositive { parameter, value }),
-        Some(&value) => Err(Error::NotFinite { parameter, value }),
-        None => Ok(()),
-    }
-}
+impl core::error::Error for PlanError {}

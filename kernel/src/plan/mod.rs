@@ -47,18 +47,41 @@ mod candidate;
 mod cost;
 mod error;
 mod pass;
-mod planned_run;
 mod problem;
 mod run;
 mod search;
 
 use crate::error::Error;
+use crate::table::Method;
 pub use cost::{Budget, Costs, Way};
 pub use error::{Limit, PlanError};
-pub use planned_run::PlannedRun;
 pub use problem::Problem;
-pub use run::Directions;
-pub use search::{Plan, Search};
+pub use run::{Directions, PlannedRun};
+pub use search::Search;
+
+/// The cheapest method found, and what it brings.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Plan {
+    /// The method to compute the motion by.
+    pub method: Method,
+    /// Steps to a frame; 0 for the closed form.
+    pub steps: u32,
+    /// The step size, s; 0 for the closed form.
+    pub dt: f64,
+    /// The largest error expected until the horizon, over the tolerance.
+    pub error: f32,
+    /// What computing a frame costs, without drawing it; never more than the budget.
+    pub cost: f32,
+    /// Until when every frame is predicted to be right to the tolerance, s: the time of the last of them. No proof: of 2,000
+    /// scenes one may be wrong a little earlier (the repository's test `plan_study`).
+    pub horizon: f64,
+    /// What ends the horizon.
+    pub limit: Limit,
+    /// What planning has cost; never more than the budget.
+    pub spent: f32,
+}
 
 impl Plan {
     /// The plan for `problem` at once: [`Search`] to its end.

@@ -1,14 +1,54 @@
-//! Step sizes tried side by side: how wrong each method is, frame by frame.
+//! Step sizes tried side by side, frame by frame.
 
-use super::candidate::Candidate;
+use super::candidate::{Candidate, distance, greater};
 use super::cost::{Costs, Way};
-use super::problem::{NONE, PERTURBATIONS, Perturbation, Problem};
-use super::run::{Run, distance, greater};
+use super::problem::{NONE, PERTURBATIONS, Problem};
+use super::run::{AnyRun, Directions};
 use crate::error::Error;
+<<<<<<< HEAD
 use crate::methods::SmallOscillations;
 use crate::pendulum::State;
 use crate::small::Modes;
+=======
+use crate::pendulum::Pendulum;
+use crate::small::{Modes, SmallOscillations};
+>>>>>>> b49b38b (Plan: what is tried is prepared from the problem itself, a search's end is its limit, and a frame's price is asked by its way)
 use crate::table::Method;
+
+/// A motion that is prepared before its first step, and stepped from frame to frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Run {
+    way: Way,
+    /// Steps since the last frame.
+    made: u32,
+    /// `None` until it is prepared.
+    motion: Option<AnyRun>,
+}
+
+impl Run {
+    /// Makes steps towards the next frame, as many as are left or as `cost` pays for, one at least. What they cost: 0 if nothing
+    /// was left to do.
+    #[inline(never)]
+    fn advance(&mut self, costs: &Costs, cost: f32) -> f32 {
+        let paid = (cost / costs.of_frame(Way { steps: 1, ..self.way })) as u32;
+        let left = self.way.steps.saturating_sub(self.made);
+        let steps = left.min(if paid > 0 { paid } else { 1 });
+        if let Some(motion) = &mut self.motion {
+            motion.advance(steps);
+        }
+        self.made += steps;
+        costs.of_frame(Way { steps, ..self.way })
+    }
+
+    /// The frame, when nothing is left to do; the next steps lead to the next. NaN if the motion is lost: it may have left its
+    /// range where its directions do not show it.
+    #[inline(never)]
+    fn frame(&mut self) -> Directions {
+        self.made = 0;
+        let motion = self.motion.as_ref().filter(|motion| motion.check().is_ok());
+        motion.map_or([[f32::NAN; 2]; 2], AnyRun::directions)
+    }
+}
 
 /// How much larger an error may be than the distance to a run in 64 bits, which lasts longer than any in 32.
 const BESIDE_64_BITS: f32 = 1.1;
@@ -48,33 +88,25 @@ pub(super) struct Pass {
     closed: Option<SmallOscillations<f32>>,
     rods: [f32; 2],
     /// The first runs, plain `f32`, the closed form.
-    candidates: [Candidate; 5],
+    pub candidates: [Candidate; 5],
     /// Whether rounding parts the single candidate from the finer runs.
     by_rounding: bool,
 }
 
 impl Pass {
-    /// In this `way`, beside a run in 64 bits with so many steps to a frame, if these are given.
-    pub fn new(way @ Way { method, steps }: Way, problem: &Problem, start: &State<f64>, beside: Option<u32>) -> Self {
-        let run = |way: Way, perturbation: Perturbation| {
-            // What a method takes ends somewhere: a run just within may have its neighbour on one side beyond.
-            let given = [perturbation, perturbation.map(|by| -by)].map(|by| problem.perturbed(start, by, way.method));
-            Run::new(way, given, problem.rate)
+    /// In this `way`, beside a run in 64 bits, if one is given.
+    pub fn new(way: Way, problem: &Problem, beside: Option<Way>) -> Self {
+        let tried = SIZES.map(|times| Way { steps: way.steps.saturating_mul(times), ..way });
+        let [beside2, beside3, judge] = match beside {
+            Some(beside) => [tried[1], tried[2], beside],
+            None => steps_beside(way).map(|steps| Way { steps, ..way }),
         };
-        let [_, second, third] = SIZES.map(|times| Way { method, steps: steps.saturating_mul(times) });
-        let [plain, closed] = [Method::Rk4F32DirectionPlain, Method::ClosedFormF32].map(|method| Way { method, steps });
-        let others = match beside {
-            Some(steps) => {
-                [second, third, Way { method: Method::Extrapolation10Fixed64, steps }].map(|way| (way, NONE))
-            }
-            None => core::array::from_fn(|i| (Way { method, steps: steps_beside(way)[i] }, PERTURBATIONS[i])),
-        };
-        let [beside2, beside3, judge] = others.map(|(way, perturbation)| run(way, perturbation));
-        let mut candidates = [way, second, third, plain, closed].map(Candidate::new);
+        let [plain, closed] = [Method::Rk4F32DirectionPlain, Method::ClosedFormF32].map(|method| Way { method, ..way });
+        let mut candidates = [tried[0], tried[1], tried[2], plain, closed].map(Candidate::new);
         (candidates[1].failed, candidates[2].failed) = (beside.is_none(), beside.is_none());
-        candidates[3].failed = method != Method::Rk4F32Direction;
+        candidates[3].failed = way.method != Method::Rk4F32Direction;
         Self {
-            runs: [run(way, NONE), beside2, beside3, judge, run(plain, NONE)],
+            runs: [way, beside2, beside3, judge, plain].map(|way| Run { way, made: 0, motion: None }),
             is_beside_64_bits: beside.is_some(),
             closed: Modes::new(&problem.pendulum)
                 .ok()
@@ -86,27 +118,40 @@ impl Pass {
     }
 
     /// What one costs that goes to the end, beside a run in 64 bits.
-    pub fn cost_beside(costs: &Costs, Way { method, steps }: Way, beside: u32) -> f32 {
-        let candidates = SIZES.map(|times| costs.of_frame(method, steps.saturating_mul(times)));
-        candidates.into_iter().fold(costs.of_frame(Method::Extrapolation10Fixed64, beside), |sum, cost| sum + cost)
+    pub fn cost_beside(costs: &Costs, way: Way, beside: Way) -> f32 {
+        let tried = SIZES.map(|times| Way { steps: way.steps.saturating_mul(times), ..way });
+        tried.into_iter().fold(costs.of_frame(beside), |sum, way| sum + costs.of_frame(way))
     }
 
-    /// The runs that are still needed.
-    fn runs(&mut self) -> impl Iterator<Item = &mut Run> {
+    /// The runs that are still needed, by their places.
+    fn runs(&mut self) -> impl Iterator<Item = (usize, &mut Run)> {
         let (all, [own, second, third, plain, _]) = (!self.is_beside_64_bits, self.candidates.map(|one| !one.failed));
         let needed = [all || own, all || second, all || third, true, plain];
-        self.runs.iter_mut().zip(needed).filter(|(_, is_needed)| *is_needed).map(|(run, _)| run)
+        self.runs.iter_mut().enumerate().filter(move |(place, _)| needed[*place])
     }
 
     /// Prepares one motion; whether there was one to prepare.
-    pub fn prepare(&mut self) -> Result<bool, Error> {
-        self.runs().map(Run::prepare).find(|prepared| *prepared != Ok(false)).unwrap_or(Ok(false))
+    ///
+    /// What a method takes ends somewhere: a run just within may have its neighbour on one side beyond.
+    #[inline(never)]
+    pub fn prepare(&mut self, problem: &Problem) -> Result<bool, Error> {
+        let is_beside_64_bits = self.is_beside_64_bits;
+        let Some((place, run)) = self.runs().find(|(_, run)| run.motion.is_none()) else { return Ok(false) };
+        let by = if !is_beside_64_bits && (1..4).contains(&place) { PERTURBATIONS[place - 1] } else { NONE };
+        let Way { method, steps } = run.way;
+        let start = Pendulum::new(&problem.pendulum)?.to_state(&problem.start);
+        let prepared = |by| {
+            let given = problem.perturbed(&start, by, method);
+            AnyRun::new(method, &given, f64::from(problem.rate) * f64::from(steps))
+        };
+        run.motion = Some(prepared(by).or_else(|_| prepared(by.map(|by| -by)))?);
+        Ok(true)
     }
 
     /// Makes steps of one motion towards the next frame, as many as `cost` pays for and one at least. What they cost; 0 if
     /// there is nothing left to do.
     pub fn advance(&mut self, costs: &Costs, cost: f32) -> f32 {
-        self.runs().map(|run| run.advance(costs, cost)).find(|&spent| spent > 0.0).unwrap_or(0.0)
+        self.runs().map(|(_, run)| run.advance(costs, cost)).find(|&spent| spent > 0.0).unwrap_or(0.0)
     }
 
     /// Compares the frames at time `t`, s, when all steps towards them are made. A method fails where it may be off by more
@@ -134,10 +179,6 @@ impl Pass {
         self.candidates.iter_mut().filter(|candidate| !wanted(candidate)).for_each(|candidate| candidate.failed = true);
     }
 
-    pub fn candidates(&self) -> &[Candidate; 5] {
-        &self.candidates
-    }
-
     /// Whether it was roundings that made all of them wrong, and finer steps do not help; else how many times as many to try.
     pub fn finer(&self) -> Option<u32> {
         let [_, second, third, ..] = &self.candidates;
@@ -145,9 +186,10 @@ impl Pass {
         helps.then_some(times)
     }
 
+    /// What a frame costs.
     pub fn cost(&mut self, costs: &Costs) -> f32 {
         let [.., closed] = &self.candidates;
-        let closed = if closed.failed { 0.0 } else { closed.cost(costs) };
-        self.runs().fold(closed, |sum, run| sum + run.cost(costs))
+        let closed = if closed.failed { 0.0 } else { costs.of_frame(closed.way) };
+        self.runs().fold(closed, |sum, (_, run)| sum + costs.of_frame(run.way))
     }
 }

@@ -1,6 +1,6 @@
 //! What is planned.
 
-use super::error::check_positive;
+use super::cost::{Budget, Costs};
 use crate::error::{Error, Parameter};
 use crate::pendulum::{Motion, Parameters, State};
 use crate::table::{Method, Numbers};
@@ -21,20 +21,27 @@ pub struct Problem {
 }
 
 impl Problem {
-    /// Refuses NaN and infinite values, and a tolerance, duration or rate that is not positive.
-    ///
-    /// The pendulum is checked where it is used.
-    #[doc(hidden)]
-    pub fn check(&self) -> Result<(), Error> {
+    /// Refuses NaN and infinite values; a tolerance, duration, rate, cost or budget that is not positive; and more frames than can be
+    /// counted. The pendulum is checked where it is used.
+    pub(super) fn check(&self, costs: &Costs, budget: &Budget) -> Result<(), Error> {
         self.start.check()?;
-        check_positive(Parameter::Tolerance, &[self.tolerance])?;
-        check_positive(Parameter::Duration, &[self.duration])?;
-        check_positive(Parameter::Rate, &[self.rate.into()])?;
-        let limit = f64::from(u32::MAX) / f64::from(self.rate);
-        if self.duration > limit {
-            return Err(Error::TooLarge { parameter: Parameter::Duration, value: self.duration, limit });
+        let Costs { closed_form, direction_plain, direction, fixed32, fixed64, preparation } = *costs;
+        let of = |parameter| move |value: f32| (parameter, f64::from(value));
+        let costs = [closed_form, direction_plain, direction, fixed32, fixed64, preparation].map(of(Parameter::Cost));
+        let budgets = [budget.frame, budget.planning].map(of(Parameter::Budget));
+        let shown = [(Parameter::Tolerance, self.tolerance), (Parameter::Duration, self.duration)];
+        let rate = [(Parameter::Rate, f64::from(self.rate))];
+        for &(parameter, value) in [&shown[..], &rate, &costs, &budgets].into_iter().flatten() {
+            if !value.is_finite() {
+                return Err(Error::NotFinite { parameter, value });
+            }
+            if value <= 0.0 {
+                return Err(Error::NotPositive { parameter, value });
+            }
         }
-        Ok(())
+        let (parameter, value, limit) =
+            (Parameter::Duration, self.duration, f64::from(u32::MAX) / f64::from(self.rate));
+        if value > limit { Err(Error::TooLarge { parameter, value, limit }) } else { Ok(()) }
     }
 
     /// Frames shown after the one at the start, at least one.

@@ -1,10 +1,14 @@
-//! A motion by any method that a plan chooses from, and how far two of its frames are apart.
+//! A motion by any method that a plan chooses from.
 
-use super::cost::{Costs, ORDER, Way};
+use super::cost::Way;
 use crate::error::Error;
-use crate::methods::{ClosedFormF32, DirectionF32, DirectionF32Plain, Fixed32, Fixed64, Form};
-use crate::pendulum::{Direction, Parameters, State};
+use crate::methods::{ClosedFormF32, DirectionF32, DirectionF32Plain, Fixed32, Fixed64, Form, Turns};
+use crate::pendulum::{Direction, Motion, Parameters, Pendulum, State};
 use crate::table::Method;
+
+/// The order of the steps in 64 bits of fixed point. 8 lasts less long, 12 costs 1.4 times as much and lasts no longer: the
+/// roundings end the horizon.
+const ORDER: u32 = Method::Extrapolation10Fixed64.order();
 
 /// The directions of both rods as they would be drawn.
 #[doc(hidden)]
@@ -74,124 +78,93 @@ impl AnyRun {
     pub fn directions(&self) -> Directions {
         with!(self, run => run.directions())
     }
+}
 
-    #[inline(never)]
-    pub fn momenta(&self) -> [f32; 2] {
-        with!(self, run => run.momenta())
+/// A motion, frame by frame, by the method that was chosen for it: bit-identical to what the search looked at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlannedRun {
+    way: Way,
+    rate: u16,
+    /// Frames since the start.
+    frame: u64,
+    run: AnyRun,
+    turns: [Turns; 2],
+}
+
+impl PlannedRun {
+    /// At `start`, with `rate` frames to a second. No steps count as one.
+    ///
+    /// Refuses what [`Pendulum::run`] refuses, what has no normal modes if it is the closed form, and a method
+    /// that is none of [`Method::DRAWN`].
+    #[inline(never)] // one copy
+    #[doc(hidden)]
+    pub fn new(parameters: &Parameters<f64>, start: &Motion<f64>, rate: u16, way: Way) -> Result<Self, Error> {
+        start.check()?;
+        let is_closed = way.method == Method::ClosedFormF32;
+        let steps = if way.steps == 0 || is_closed { 1 } else { way.steps };
+        let state = Pendulum::new(parameters)?.to_state(start);
+        let run = AnyRun::new(way.method, &(*parameters, state), f64::from(rate) * f64::from(steps))?;
+        let turns = Turns::of(state.angles(), run.sides());
+        Ok(Self { way: Way { steps, ..way }, rate, frame: 0, run, turns })
     }
 
-    /// The canonical state, angles within a turn but in closed form.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn way(&self) -> Way {
+        self.way
+    }
+
+    /// Moves on by so many frames; [`Error::Diverged`] if that has led out of the finite numbers, and ever after.
+    #[inline(never)] // never inlined, to avoid a second copy
+    pub fn advance(&mut self, frames: u32) -> Result<(), Error> {
+        for _ in 0..frames.saturating_mul(self.way.steps) {
+            self.run.advance(1);
+            Turns::observe(&mut self.turns, self.run.sides());
+        }
+        self.frame += u64::from(frames);
+        self.run.check()
+    }
+
+    /// Frames since the start.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn frame(&self) -> u64 {
+        self.frame
+    }
+
+    /// Seconds since the start.
+    #[must_use]
+    pub fn time(&self) -> f64 {
+        self.frame as f64 / f64::from(self.rate)
+    }
+
+    /// Where the rods point, (sin, cos) each.
+    #[must_use]
+    pub fn directions(&self) -> Directions {
+        self.run.directions()
+    }
+
+    /// Both angles with all their turns, rad, when the rods point to the [`directions`](Self::directions).
+    #[must_use]
+    pub fn angles(&self) -> [f32; 2] {
+        let ([turns1, turns2], [direction1, direction2]) = (&self.turns, self.directions());
+        [turns1.angle(direction1), turns2.angle(direction2)]
+    }
+
+    /// The canonical state in SI units when the rods point to the [`directions`](Self::directions), rounded to `f32`, the angles
+    /// with all their turns: what a picture needs, and far cheaper than [`state`](Self::state) where `f64` is software.
+    #[inline(never)]
+    #[doc(hidden)]
+    #[must_use]
+    pub fn rounded_state(&self) -> State<f32> {
+        let ([a1, a2], [p1, p2]) = (self.angles(), with!(&self.run, run => run.momenta()));
+        State { a1, a2, p1, p2 }
+    }
+
+    /// The canonical state in SI units to the last digit carried, the angles with all their turns.
+    #[must_use]
     #[inline(never)]
     pub fn state(&self) -> State<f64> {
-        with!(self, run => run.state())
-    }
-}
-
-/// A motion that is prepared before its first step, and stepped from frame to frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Run {
-    motion: Prepared,
-    /// Steps to a frame, and those made since the last. The method is not said again: a board's stack is short of a few words.
-    steps: u32,
-    made: u32,
-}
-
-#[expect(clippy::large_enum_variant, reason = "as above")]
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Prepared {
-    /// A pendulum and its start, others if these are refused, the method, and steps a second.
-    NotYet([(Parameters<f64>, State<f64>); 2], Method, f64),
-    Ready(AnyRun),
-}
-
-impl Run {
-    /// A pendulum and its start, or the others if the first are refused, in this `way` with `rate` frames in a second.
-    pub fn new(way: Way, given: [(Parameters<f64>, State<f64>); 2], rate: u16) -> Self {
-        let Way { method, steps } = way;
-        Self { motion: Prepared::NotYet(given, method, f64::from(rate) * f64::from(steps)), steps, made: 0 }
-    }
-
-    /// Prepares the steps; whether they were not.
-    #[inline(never)]
-    pub fn prepare(&mut self) -> Result<bool, Error> {
-        let Prepared::NotYet([first, other], method, per_second) = &self.motion else { return Ok(false) };
-        let run = AnyRun::new(*method, first, *per_second);
-        self.motion = Prepared::Ready(run.or_else(|_| AnyRun::new(*method, other, *per_second))?);
-        Ok(true)
-    }
-
-    fn method(&self) -> Method {
-        match &self.motion {
-            Prepared::NotYet(_, method, _) => *method,
-            Prepared::Ready(AnyRun::ClosedForm(_)) => Method::ClosedFormF32,
-            Prepared::Ready(AnyRun::DirectionPlain(_)) => Method::Rk4F32DirectionPlain,
-            Prepared::Ready(AnyRun::Direction(_)) => Method::Rk4F32Direction,
-            Prepared::Ready(AnyRun::Fixed32(_)) => Method::Rk4Fixed32,
-            Prepared::Ready(AnyRun::Fixed64(_)) => Method::Extrapolation10Fixed64,
-        }
-    }
-
-    /// What a frame costs.
-    pub fn cost(&self, costs: &Costs) -> f32 {
-        costs.of_frame(self.method(), self.steps)
-    }
-
-    /// Makes steps towards the next frame, as many as are left or as `cost` pays for, one at least. What they cost: 0 if nothing
-    /// was left to do.
-    #[inline(never)]
-    pub fn advance(&mut self, costs: &Costs, cost: f32) -> f32 {
-        let paid = (cost / costs.of_frame(self.method(), 1)) as u32;
-        let left = self.steps.saturating_sub(self.made);
-        let steps = left.min(if paid > 0 { paid } else { 1 });
-        if let Prepared::Ready(motion) = &mut self.motion {
-            motion.advance(steps);
-        }
-        self.made += steps;
-        costs.of_frame(self.method(), steps)
-    }
-
-    /// The frame, when nothing is left to do; the next steps lead to the next. NaN if the motion is lost: it may have left its
-    /// range where its directions do not show it.
-    #[inline(never)]
-    pub fn frame(&mut self) -> Directions {
-        self.made = 0;
-        match &self.motion {
-            Prepared::Ready(motion) if motion.check().is_ok() => motion.directions(),
-            _ => [[f32::NAN; 2]; 2],
-        }
-    }
-}
-
-/// How far the farther of the two bobs is off, or bob 2 as seen from bob 1, where the rods are as long as `rods`, in their
-/// unit; NaN if anything is.
-///
-/// The last keeps curves of the angles right, too: opposite errors of both may leave bob 2 where it belongs.
-#[inline(never)] // one copy
-pub(super) fn distance(rods: [f32; 2], a: &Directions, b: &Directions) -> f32 {
-    let difference = |rod: usize, axis: usize| rods[rod] * (a[rod][axis] - b[rod][axis]);
-    let [bob1, relative] = [0, 1].map(|rod| [difference(rod, 0), difference(rod, 1)]);
-    let bob2 = [bob1[0] + relative[0], bob1[1] + relative[1]];
-    let [bob1, relative, bob2] = [bob1, relative, bob2].map(|[x, y]| x * x + y * y);
-    libm::sqrtf(greater(greater(bob1, relative), bob2))
-}
-
-/// The greater; NaN if either is.
-pub(super) fn greater(a: f32, b: f32) -> f32 {
-    if a > b || a.is_nan() { a } else { b }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Bob 2 is where both rods lead, and may be less far off than either.
-    #[test]
-    fn the_farthest_of_what_is_seen_counts() {
-        let from = |a: Directions| distance([2.0, 3.0], &a, &[[0.0; 2]; 2]);
-        assert_eq!(from([[1.0, 0.0], [0.0, 1.0]]), 13.0_f32.sqrt());
-        assert_eq!(from([[0.5, 0.0], [1.0, 0.0]]), 4.0);
-        assert_eq!(from([[3.0, 0.0], [-1.0, 0.0]]), 6.0);
-        assert_eq!(from([[0.0, 1.0], [0.0, -2.0]]), 6.0);
-        assert!(from([[0.0, f32::NAN], [0.0, 1.0]]).is_nan());
+        Turns::unwrap(&self.turns, with!(&self.run, run => run.state()))
     }
 }

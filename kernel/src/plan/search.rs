@@ -3,37 +3,11 @@
 //! All of it is done in pieces that a busy caller can afford: a few steps of one motion, a comparison, a new step size.
 
 use super::candidate::Candidate;
-use super::cost::{Budget, Costs, FIRST_STEP, MOST_STEPS, RESOLVING, Way, admissible_step, steps_to_frame};
-use super::error::{Limit, PlanError};
+use super::cost::{FIRST_STEP, MOST_STEPS, RESOLVING, admissible_step, steps_to_frame};
 use super::pass::Pass;
-use super::problem::Problem;
+use super::{Budget, Costs, Limit, Plan, PlanError, Problem, Way};
 use crate::error::{Error, Parameter};
-use crate::pendulum::Pendulum;
 use crate::table::Method;
-
-/// The cheapest method found, and what it brings.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Plan {
-    /// The method to compute the motion by.
-    pub method: Method,
-    /// Steps to a frame; 0 for the closed form.
-    pub steps: u32,
-    /// The step size, s; 0 for the closed form.
-    pub dt: f64,
-    /// The largest error expected until the horizon, over the tolerance.
-    pub error: f32,
-    /// What computing a frame costs, without drawing it; never more than the budget.
-    pub cost: f32,
-    /// Until when every frame is predicted to be right to the tolerance, s: the time of the last of them. No proof: of 2,000
-    /// scenes one may be wrong a little earlier (the repository's test `plan_study`).
-    pub horizon: f64,
-    /// What ends the horizon.
-    pub limit: Limit,
-    /// What planning has cost; never more than the budget.
-    pub spent: f32,
-}
 
 /// A comparison with 64 bits is made only if the planning budget covers this many times the horizon found so far.
 const LONGER: f32 = 1.25;
@@ -44,10 +18,10 @@ pub struct Search {
     problem: Problem,
     costs: Costs,
     budget: Budget,
-    /// Steps to a frame by [`Method::Extrapolation10Fixed64`] that resolve the motion, if its numbers take it.
-    exact: Option<u32>,
-    /// Those that a frame pays for, and what ends their horizon.
-    fine: Option<(u32, Limit)>,
+    /// By [`Method::Extrapolation10Fixed64`] in steps that resolve the motion, if its numbers take it.
+    exact: Option<Way>,
+    /// In those that a frame pays for, and what ends their horizon.
+    fine: Option<(Way, Limit)>,
     /// What is looked at.
     way: Way,
     /// Made by a piece of its own.
@@ -72,16 +46,14 @@ impl Search {
     #[inline(never)] // a search stands on the stack while it is made
     pub fn new(problem: &Problem, costs: &Costs, budget: &Budget) -> Result<Self, PlanError> {
         let admissible = admissible_step(&problem.pendulum, &problem.start)?;
-        problem.check()?;
-        costs.check()?;
-        budget.check()?;
+        problem.check(costs, budget)?;
         let fine = |longest: f64, frame: f32| {
             let Problem { pendulum, start, rate, .. } = problem;
-            Way::fixed64(pendulum, start, *rate, longest * admissible, costs, frame).map(|way| way.steps)
+            Way::fixed64(pendulum, start, *rate, longest * admissible, costs, frame)
         };
         let exact = fine(RESOLVING, f32::INFINITY);
-        let affordable = |steps: &u32| costs.of_frame(Method::Extrapolation10Fixed64, *steps) <= budget.frame;
-        let coarser = || fine(FIRST_STEP, budget.frame).map(|steps| (steps, Limit::Budget));
+        let affordable = |way: &Way| costs.of_frame(*way) <= budget.frame;
+        let coarser = || fine(FIRST_STEP, budget.frame).map(|way| (way, Limit::Budget));
         let method = if costs.fixed32 < costs.direction { Method::Rk4Fixed32 } else { Method::Rk4F32Direction };
         let steps = steps_to_frame(method, problem.rate, FIRST_STEP * admissible);
         Ok(Self {
@@ -89,7 +61,7 @@ impl Search {
             costs: *costs,
             budget: *budget,
             exact,
-            fine: exact.filter(affordable).map(|steps| (steps, Limit::Growth)).or_else(coarser),
+            fine: exact.filter(affordable).map(|way| (way, Limit::Growth)).or_else(coarser),
             way: Way { method, steps },
             pass: None,
             frame: 0,
@@ -135,87 +107,85 @@ impl Search {
     /// Refuses what [`Pendulum::run`](crate::Pendulum::run) refuses: a pendulum out of the range of `f32`. And if nothing within the
     /// budgets is right in any frame, that is the error at the end of the search.
     pub fn advance(&mut self, cost: f32) -> Result<Option<Plan>, PlanError> {
-        let Some(pass) = &mut self.pass else { return self.make() };
+        self.piece(cost)?.map(|limit| self.plan(limit)).transpose()
+    }
+
+    /// Does a piece; what ends the search, if anything does.
+    fn piece(&mut self, cost: f32) -> Result<Option<Limit>, Error> {
+        let preparation = self.costs.preparation;
         if !self.begun {
-            let next = if self.prepared { pass.cost(&self.costs) } else { self.costs.preparation };
+            let next = self.pass.as_mut().filter(|_| self.prepared);
+            let next = next.map_or(preparation, |pass| pass.cost(&self.costs));
             if self.spent + next > self.budget.planning {
                 self.keep_best();
-                return self.plan(Limit::Planning).map(Some);
+                return Ok(Some(Limit::Planning));
             }
-            if !self.prepared {
-                return self.prepare();
-            }
-            self.begun = true;
         }
-        let spent = pass.advance(&self.costs, cost);
-        if spent > 0.0 {
-            self.spent += spent;
+        let Some(pass) = &mut self.pass else {
+            self.spent += preparation;
+            self.make();
+            return Ok(None);
+        };
+        if !self.prepared {
+            match pass.prepare(&self.problem) {
+                Ok(true) => self.spent += preparation,
+                Ok(false) => self.prepared = true,
+                Err(error) => return self.refused(error),
+            }
             return Ok(None);
         }
-        self.begun = false;
+        let spent = pass.advance(&self.costs, cost);
+        self.spent += spent;
+        self.begun = spent > 0.0;
+        if self.begun {
+            return Ok(None);
+        }
         self.frame += 1;
         pass.compare(self.problem.time(self.frame));
         let at_end = self.frame >= self.problem.frames();
-        if !at_end && pass.candidates().iter().any(|candidate| !candidate.failed) {
+        if !at_end && pass.candidates.iter().any(|candidate| !candidate.failed) {
             return Ok(None);
         }
+        let times = pass.finer();
         self.keep_best();
-        if self.best.is_some_and(|best| best.right >= self.problem.frames()) {
-            return self.plan(Limit::End).map(Some);
-        }
-        let times = self.pass.as_ref().and_then(Pass::finer);
-        self.go_on(times)
+        let is_right = self.best.is_some_and(|best| best.right >= self.problem.frames());
+        Ok(if is_right { Some(Limit::End) } else { self.refine(times) })
     }
 
     /// A form takes no steps so long, or no motion of so high an energy, or no such pendulum: finer ones, or `f32`, may.
-    fn refused(&mut self, error: Error) -> Result<Option<Plan>, PlanError> {
+    fn refused(&mut self, error: Error) -> Result<Option<Limit>, Error> {
         let is_step = matches!(error, Error::TooLarge { parameter: Parameter::Dt, .. });
         match self.way.method {
-            Method::Rk4F32Direction => Err(error.into()),
+            Method::Rk4F32Direction => Err(error),
             Method::Rk4Fixed32 if !is_step && self.given.is_none() => {
                 self.begin(Way { method: Method::Rk4F32Direction, ..self.way });
                 Ok(None)
             }
-            _ => self.go_on(Some(2)),
+            _ => Ok(self.refine(Some(2))),
         }
     }
 
     fn begin(&mut self, way: Way) {
-        (self.way, self.pass, self.frame, self.begun, self.prepared) = (way, None, 0, false, false);
+        (self.way, self.pass, self.frame, self.prepared) = (way, None, 0, false);
     }
 
     /// Makes the pass, which costs as much as to prepare a motion.
     #[inline(never)] // it stands on the stack
-    fn make(&mut self) -> Result<Option<Plan>, PlanError> {
-        if self.spent + self.costs.preparation > self.budget.planning {
-            return self.plan(Limit::Planning).map(Some);
-        }
-        self.spent += self.costs.preparation;
-        let Self { way, costs, budget, .. } = *self;
+    fn make(&mut self) {
+        let Self { way, costs, budget, given, .. } = *self;
         let beside = self.beside();
-        let start = Pendulum::new(&self.problem.pendulum)?.to_state(&self.problem.start);
-        let pass = self.pass.insert(Pass::new(way, &self.problem, &start, beside));
-        pass.retain(|one| self.given.map_or(one.cost(&costs) <= budget.frame, |given| one.way == given));
-        Ok(None)
+        let pass = self.pass.insert(Pass::new(way, &self.problem, beside));
+        pass.retain(|one| given.map_or(costs.of_frame(one.way) <= budget.frame, |given| one.way == given));
     }
 
-    /// In 32 bits: steps of a run in 64 bits to compare with, if planning can pay for them as long as the next pass may last.
-    fn beside(&self) -> Option<u32> {
+    /// In 32 bits: a run in 64 bits to compare with, if planning can pay for it as long as the next pass may last.
+    fn beside(&self) -> Option<Way> {
         let (frames, right) = (self.problem.frames() as f32, self.best.map_or(0, |best| best.right));
         let longer = LONGER * right as f32;
         let frames = if 0.0 < longer && longer < frames { longer } else { frames };
         let left = (self.budget.planning - self.spent) / frames;
-        let affordable = |&exact: &u32| Pass::cost_beside(&self.costs, self.way, exact) <= left;
-        self.exact.filter(|_| self.way.method != Method::Extrapolation10Fixed64).filter(affordable)
-    }
-
-    fn prepare(&mut self) -> Result<Option<Plan>, PlanError> {
-        match self.pass.as_mut().map_or(Ok(false), Pass::prepare) {
-            Ok(true) => self.spent += self.costs.preparation,
-            Ok(false) => self.prepared = true,
-            Err(error) => return self.refused(error),
-        }
-        Ok(None)
+        let affordable = |&exact: &Way| Pass::cost_beside(&self.costs, self.way, exact) <= left;
+        self.exact.filter(|exact| self.way.method != exact.method).filter(affordable)
     }
 
     /// Whether the next piece prepares a motion, which takes longer than any other.
@@ -223,16 +193,6 @@ impl Search {
     #[must_use]
     pub fn is_preparing(&self) -> bool {
         self.pass.is_none() || !self.prepared
-    }
-
-    fn candidates(&self) -> &[Candidate] {
-        self.pass.as_ref().map_or(&[], |pass| pass.candidates())
-    }
-
-    /// With finer steps, if there is anything finer to try.
-    fn go_on(&mut self, times: Option<u32>) -> Result<Option<Plan>, PlanError> {
-        let limit = if self.given.is_some() { Some(Limit::Method) } else { self.refine(times) };
-        limit.map(|limit| self.plan(limit)).transpose()
     }
 
     /// What planning has cost so far.
@@ -247,10 +207,12 @@ impl Search {
     #[doc(hidden)]
     #[must_use]
     pub fn horizon(&self, way: Way) -> f64 {
-        let resolves = |(steps, limit)| limit == Limit::Growth && way.steps >= steps;
-        let has_longest_horizon = way.method == Method::Extrapolation10Fixed64 && self.fine.is_some_and(resolves);
-        let looked_at = self.candidates().iter().chain(&self.best);
-        self.problem.time(looked_at.fold(0, |right, candidate| right.max(candidate.right_of(way, has_longest_horizon))))
+        let is_finer = |(fine, limit): (Way, _)| limit == Limit::Growth && way.steps >= fine.steps;
+        let resolves = way.method == Method::Extrapolation10Fixed64 && self.fine.is_some_and(is_finer);
+        let is_same = |one: &Way| one.steps == way.steps || way.method == Method::ClosedFormF32;
+        let is_shown = |one: &&Candidate| resolves || one.way.method == way.method && is_same(&one.way);
+        let looked_at = self.pass.iter().flat_map(|pass| &pass.candidates).chain(&self.best);
+        self.problem.time(looked_at.filter(is_shown).map(|one| one.right).max().unwrap_or(0))
     }
 
     /// Goes on with the method of a plan that was right to its end, for `seconds` longer; [`Self::advance`] gives the plan
@@ -265,21 +227,13 @@ impl Search {
         }
     }
 
-    /// Takes the best of the candidates so far.
-    fn keep_best(&mut self) {
-        let Some(pass) = &self.pass else { return };
-        for candidate in *pass.candidates() {
-            if self.is_better(&candidate) {
-                self.best = Some(candidate);
-            }
-        }
-    }
-
     /// Goes on to finer steps, or to 64 bits where rounding is what limits, or where they cost less; what forbids it, if
     /// anything does.
     fn refine(&mut self, times: Option<u32>) -> Option<Limit> {
-        let Way { method, steps } = self.way;
-        if method == Method::Extrapolation10Fixed64 {
+        if self.given.is_some() {
+            return Some(Limit::Method);
+        }
+        if self.way.method == Method::Extrapolation10Fixed64 {
             return Some(self.fine.map_or(Limit::Budget, |(_, limit)| limit));
         }
         if times.is_none() && self.pass.as_ref().is_some_and(|pass| !pass.is_beside_64_bits) && self.beside().is_some()
@@ -287,20 +241,30 @@ impl Search {
             self.begin(self.way);
             return None;
         }
-        let finer = times.map(|times| steps.saturating_mul(times)).filter(|&steps| steps <= MOST_STEPS);
-        let cost = |method, steps| self.costs.of_frame(method, steps);
-        let fine = self.fine.map(|(steps, _)| (Method::Extrapolation10Fixed64, steps));
-        let fine = fine.filter(|&(fine, steps)| finer.is_none_or(|finer| cost(fine, steps) <= cost(method, finer)));
-        let affordable = finer.filter(|&finer| cost(method, finer) <= self.budget.frame).map(|finer| (method, finer));
-        let Some((method, steps)) = fine.or(affordable) else { return Some(Limit::Budget) };
-        self.begin(Way { method, steps });
+        let cost = |way| self.costs.of_frame(way);
+        let finer = times.map(|times| Way { steps: self.way.steps.saturating_mul(times), ..self.way });
+        let finer = finer.filter(|finer| finer.steps <= MOST_STEPS);
+        let fine = self.fine.map(|(fine, _)| fine);
+        let fine = fine.filter(|&fine| finer.is_none_or(|finer| cost(fine) <= cost(finer)));
+        let affordable = finer.filter(|&finer| cost(finer) <= self.budget.frame);
+        let Some(way) = fine.or(affordable) else { return Some(Limit::Budget) };
+        self.begin(way);
         None
+    }
+
+    /// Takes the best of the candidates so far.
+    fn keep_best(&mut self) {
+        for candidate in self.pass.iter().flat_map(|pass| pass.candidates) {
+            if self.is_better(&candidate) {
+                self.best = Some(candidate);
+            }
+        }
     }
 
     /// Whether `candidate` goes so much farther than the best so far, or as far and cheaper.
     #[inline(never)] // one copy
     fn is_better(&self, candidate: &Candidate) -> bool {
-        let cost = |candidate: &Candidate| candidate.cost(&self.costs);
+        let cost = |candidate: &Candidate| self.costs.of_frame(candidate.way);
         if candidate.right == 0 || cost(candidate) > self.budget.frame {
             return false;
         }
@@ -317,8 +281,7 @@ impl Search {
     fn plan(&self, limit: Limit) -> Result<Plan, PlanError> {
         let Some(best) = self.best else {
             // To plan for longer would help nothing of which a frame costs too much.
-            let is_open = |pass: &Pass| pass.candidates().iter().any(|one| !one.failed);
-            let open = self.pass.as_ref().is_none_or(is_open);
+            let open = self.pass.as_ref().is_none_or(|pass| pass.candidates.iter().any(|one| !one.failed));
             let limit = if limit == Limit::Planning && !open { Limit::Budget } else { limit };
             return Err(PlanError::NoMethod { limit, spent: self.spent });
         };
@@ -330,7 +293,7 @@ impl Search {
             steps,
             dt: if steps == 0 { 0.0 } else { 1.0 / (rate * f64::from(steps)) },
             error: best.error,
-            cost: best.cost(&self.costs),
+            cost: self.costs.of_frame(best.way),
             horizon: if limit == Limit::End { self.problem.duration } else { self.problem.time(best.right) },
             limit,
             spent: self.spent,
