@@ -264,16 +264,14 @@ impl Search {
     /// Whether `candidate` goes so much farther than the best so far, or as far and cheaper.
     #[inline(never)] // one copy
     fn is_better(&self, candidate: &Candidate) -> bool {
-        let cost = |candidate: &Candidate| self.costs.of_frame(candidate.way);
-        if candidate.right == 0 || cost(candidate) > self.budget.frame {
-            return false;
-        }
-        self.best.is_none_or(|best| {
+        let is_better = |best: Candidate| {
             let is_it = candidate.way == best.way;
             let reaches_end = candidate.right >= self.problem.frames() && best.right < candidate.right;
-            let cheaper = candidate.right >= best.right && cost(candidate) < cost(&best);
+            let is_cheaper = self.costs.of_frame(candidate.way) < self.costs.of_frame(best.way);
+            let cheaper = candidate.right >= best.right && is_cheaper;
             reaches_end || candidate.outlasts(&best) || cheaper || is_it && candidate.right > best.right
-        })
+        };
+        candidate.right > 0 && self.best.is_none_or(is_better)
     }
 
     /// The best candidate as a plan, if there is one.
