@@ -86,11 +86,11 @@ impl Flips<DirectionF32Plain> {
         for step in 0..BLOCK {
             let kept = (step + 1 == BLOCK).then_some(*motions);
             motions.step();
-            if let Some(kept) = kept {
+            if let Some(mut kept) = kept {
                 for (place, lane) in lanes.as_flattened().iter().enumerate() {
                     let count = |lane: &Lane| u64::from(self.steps) - u64::from(lane.left) + u64::from(BLOCK);
                     if lane.as_ref().is_some_and(|lane| self.highest.leaves_out(count(lane))) {
-                        motions.keep(place, &kept);
+                        motions.keep(place, &mut kept);
                     }
                 }
                 motions.restore_lengths();

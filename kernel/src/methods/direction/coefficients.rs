@@ -6,15 +6,9 @@ use crate::numbers::Real;
 use crate::pendulum::directions::{Coefficients, Same, increments, state_of};
 use crate::pendulum::{Parameters, State};
 
-/// A third, by which k1 + 2 k2 + 2 k3 + k4 becomes the increment of a step.
-#[inline(always)]
-pub(crate) fn third<R: Real>() -> R {
-    R::from_f64(1.0 / 3.0)
-}
-
 /// How far a step of the classical method goes, tau: (k1 + 2 k2 + 2 k3 + k4) times a third as rounded; tau is half a step.
 pub(crate) fn classical_step<R: Real>() -> f64 {
-    6.0 * third::<R>().to_f64()
+    6.0 * R::from_f64(1.0 / 3.0).to_f64()
 }
 
 /// How the units of the step translate to SI. In `f64`; used at input and output only.

@@ -88,13 +88,13 @@ impl<const ORDER: u32> Form for ExtrapolationF64<ORDER> {
     fn advance(&mut self, steps: u32) {
         let Self { direction, method } = self;
         for _ in 0..steps {
-            let change = method.end(&mut Rows::new(&direction.z, &direction.coefficients), &[0.0; 6]);
+            let change = method.end(&mut Rows::new(&direction.at.z, &direction.coefficients), &[0.0; 6]);
             for (n, change) in change.into_iter().enumerate() {
-                direction.z[n] = direction.sums[n].add(direction.z[n], change);
+                direction.at.z[n] = direction.sums[n].add(direction.at.z[n], change);
             }
             direction.restore_lengths();
         }
-        direction.inverse = 1.0 / direction.coefficients.denominator(direction.z[2]);
+        direction.at.inverse = 1.0 / direction.coefficients.denominator(direction.at.z[2]);
         direction.steps += u64::from(steps);
     }
 

@@ -1,7 +1,7 @@
 //! The direction form: classical RK4 on (sin a1, cos a1, sin D, cos D, p1, p2), without trigonometry.
 
-use super::classical::{self, Point};
-use super::coefficients::{BLOCK, Scale, classical_step, prepare, third};
+use super::classical::Point;
+use super::coefficients::{BLOCK, Scale, classical_step, prepare};
 use super::{Compensated, Sum};
 use crate::error::{Error, Parameter, check_finite};
 use crate::methods::{Form, Side};
@@ -21,10 +21,9 @@ pub struct DirectionForm<R, S = Compensated<R>> {
     scale: Scale,
     /// 1/(2 nu^2).
     pub(super) half_inverse_square: R,
-    /// sin a1, cos a1, S, C, P1, P2.
-    pub(super) z: [R; 6],
+    pub(super) at: Point<R>,
+    /// Of z.
     pub(super) sums: [S; 6],
-    pub(super) inverse: R,
     pub(super) steps: u64,
 }
 
@@ -45,7 +44,7 @@ impl<R: Real + Side, S: Sum<R>> Form for DirectionForm<R, S> {
         let z = quantities(&start.cast(), self.coefficients.norm.to_f64(), [self.scale.momentum; 2]);
         self.scale.check::<R>([z[4], z[5]])?;
         let inverse = R::ONE / self.coefficients.denominator(R::from_f64(z[2]));
-        Ok(Self { z: z.map(R::from_f64), sums: z.map(S::new), inverse, steps: 0, ..*self })
+        Ok(Self { at: Point { z: z.map(R::from_f64), inverse }, sums: z.map(S::new), steps: 0, ..*self })
     }
 
     #[inline(never)]
@@ -64,7 +63,7 @@ impl<R: Real + Side, S: Sum<R>> Form for DirectionForm<R, S> {
     }
 
     fn check(&self) -> Result<(), Error> {
-        let [sin1, cos1, s, c, p1, p2] = self.z;
+        let [sin1, cos1, s, c, p1, p2] = self.at.z;
         let [_, [sin2, cos2]] = self.directions::<R>();
         let rods = [(Parameter::A1, [sin1, cos1]), (Parameter::A2, [s, c]), (Parameter::A2, [sin2, cos2])];
         let rods = rods.into_iter().flat_map(|(parameter, numbers)| numbers.map(|number| (parameter, number)));
@@ -74,25 +73,25 @@ impl<R: Real + Side, S: Sum<R>> Form for DirectionForm<R, S> {
 
     #[inline(always)]
     fn heads(&self) -> [Direction<R>; 2] {
-        heads(&self.z)
+        heads(&self.at.z)
     }
 
     fn directions<Q: Real>(&self) -> [Direction<Q>; 2] {
-        directions(&self.z, self.coefficients.norm).map(|direction| direction.map(R::cast))
+        directions(&self.at.z, self.coefficients.norm).map(|direction| direction.map(R::cast))
     }
 
     fn momenta<Q: Real>(&self) -> [Q; 2] {
-        [self.z[4], self.z[5]].map(|p| R::from_f64(p.to_f64() / self.scale.momentum).cast())
+        [self.at.z[4], self.at.z[5]].map(|p| R::from_f64(p.to_f64() / self.scale.momentum).cast())
     }
 
     fn state(&self) -> State<f64> {
-        self.scale.state(&self.coefficients, &self.z, self.sums.map(|sum| sum.lost()), self.steps)
+        self.scale.state(&self.coefficients, &self.at.z, self.sums.map(|sum| sum.lost()), self.steps)
     }
 
     fn bits(&self, mut feed: impl FnMut(u64)) {
-        self.z.iter().for_each(|z| feed(z.bits()));
+        self.at.z.iter().for_each(|z| feed(z.bits()));
         self.sums.iter().for_each(|sum| feed(sum.lost().bits()));
-        feed(self.inverse.bits());
+        feed(self.at.inverse.bits());
         feed(self.steps);
     }
 }
@@ -107,8 +106,8 @@ impl<R: Real + Side, S: Sum<R>> DirectionForm<R, S> {
     ) -> Result<Self, Error> {
         let (coefficients, scale) = prepare(&parameters.cast(), dt, step)?;
         let half_inverse_square = R::HALF / (coefficients.norm * coefficients.norm);
-        let (z, sums) = ([R::ZERO; 6], [S::new(0.0); 6]);
-        Self { coefficients, scale, half_inverse_square, z, sums, inverse: R::ZERO, steps: 0 }.started(start)
+        let at = Point { z: [R::ZERO; 6], inverse: R::ZERO };
+        Self { coefficients, scale, half_inverse_square, at, sums: [S::new(0.0); 6], steps: 0 }.started(start)
     }
 
     /// Whether the step that ends at `count` is left out, the last of a block.
@@ -128,7 +127,7 @@ impl<R: Real + Side, S: Sum<R>> DirectionForm<R, S> {
     fn run(&mut self, steps: u32) {
         self.steps += u64::from(steps);
         for _ in 0..self.scale.lead.made(steps, self.steps) {
-            self.step();
+            self.at.step(&self.coefficients, &mut self.sums);
         }
         if self.steps as u32 % BLOCK == 0 {
             self.restore_lengths();
@@ -136,24 +135,7 @@ impl<R: Real + Side, S: Sum<R>> DirectionForm<R, S> {
     }
 
     #[inline(always)]
-    fn step(&mut self) {
-        let Self { z, inverse, .. } = *self;
-        let (sum, last) = classical::stages(&self.coefficients, &Point { z, inverse });
-        for i in 0..6 {
-            self.z[i] = self.sums[i].add(z[i], sum[i] * third());
-        }
-        self.inverse = classical::newton_inverse(last, self.coefficients.inertia, self.z[2]);
-    }
-
-    /// Makes sin^2 a1 + cos^2 a1 = 1 and S^2 + C^2 = nu^2 again, to first order in what they miss.
-    #[inline(always)]
     pub(super) fn restore_lengths(&mut self) {
-        for (i, length, gain) in [(0, R::ONE, R::HALF), (2, self.coefficients.norm, self.half_inverse_square)] {
-            let [s, c] = [self.z[i], self.z[i + 1]];
-            let lost = s * self.sums[i].lost() + c * self.sums[i + 1].lost();
-            let missing = classical::missing([s, c], lost, length, gain);
-            self.z[i] = self.sums[i].add(s, s * missing);
-            self.z[i + 1] = self.sums[i + 1].add(c, c * missing);
-        }
+        self.at.restore_lengths(self.coefficients.norm, self.half_inverse_square, &mut self.sums);
     }
 }

@@ -4,20 +4,19 @@ mod classical;
 mod coefficients;
 mod extrapolated;
 mod form;
-mod lanes;
 
+pub(crate) use classical::DirectionLanes;
 pub(crate) use coefficients::BLOCK;
 pub use extrapolated::ExtrapolationF64;
 pub use form::DirectionForm;
-pub(crate) use lanes::DirectionLanes;
 
 use core::fmt::Debug;
 
-use crate::numbers::Real;
+use crate::numbers::{Real, Scalar};
 
 /// A running sum, by which increments are added to a state. The number itself is kept elsewhere; what its additions lose is kept
 /// here.
-pub trait Sum<R: Real>: Copy + Debug + PartialEq + 'static {
+pub trait Sum<R>: Copy + Debug + PartialEq + 'static {
     /// For a sum that starts at `value`, of which the number keeps as many digits as it has.
     fn new(value: f64) -> Self;
     /// `number` + `increment`.
@@ -30,7 +29,7 @@ pub trait Sum<R: Real>: Copy + Debug + PartialEq + 'static {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plain;
 
-impl<R: Real> Sum<R> for Plain {
+impl<R: Scalar> Sum<R> for Plain {
     #[inline]
     fn new(_: f64) -> Self {
         Self
@@ -41,7 +40,7 @@ impl<R: Real> Sum<R> for Plain {
     }
     #[inline(always)]
     fn lost(&self) -> R {
-        R::ZERO
+        R::from_f64(0.0)
     }
 }
 
