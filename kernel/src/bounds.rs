@@ -59,13 +59,13 @@ impl<R: Real> Pendulum<R> {
     /// It is the lower of the two saddles V(pi, 0) and V(0, pi), above min V.
     #[must_use]
     pub fn turnover_energy(&self) -> R {
-        let [torque1, torque2] = self.torque();
+        let [torque1, torque2] = self.torque;
         R::TWO * if torque1 < torque2 { torque1 } else { torque2 }
     }
 
     /// Whether it is certain that neither rod ever turns over: K below [`turnover_energy`](Self::turnover_energy).
     ///
-    /// `false` says nothing. Energies within [`ROUNDING_MARGIN`] roundings of the limit are not certified.
+    /// `false` says nothing. Energies within 16 roundings of the limit are not certified.
     #[must_use]
     pub fn cannot_turn_over(&self, state: &State<R>) -> bool {
         let margin = R::ONE + R::from_f64(ROUNDING_MARGIN) * R::EPSILON;
@@ -165,5 +165,4 @@ pub(crate) fn check_step<R: Real>(dt: f64) -> Result<(), Error> {
 
 /// How many roundings, relative to K, a certificate keeps clear of its limit: more than the evaluation of K makes
 /// when no kinetic term cancels.
-#[doc(hidden)]
-pub const ROUNDING_MARGIN: f64 = 16.0;
+const ROUNDING_MARGIN: f64 = 16.0;

@@ -81,7 +81,7 @@ mod table;
 #[cfg(test)]
 mod tests;
 
-pub use bounds::{Bounds, ROUNDING_MARGIN};
+pub use bounds::Bounds;
 pub use error::{Error, Parameter};
 pub use methods::extrapolation::Extrapolation;
 pub use methods::{
@@ -96,8 +96,7 @@ pub use table::{Equations, Integrator, Method, Numbers};
 /// What the methods are made of, for tools and tests; it may change at any time.
 #[doc(hidden)]
 pub mod parts {
-    pub use crate::methods::{Canonical, ClosedForm, Derivatives, DirectionForm, Plain, Side, Turns};
-    pub use crate::numbers::{Lanes, Scalar};
+    pub use crate::methods::{Canonical, Derivatives, DirectionForm, Plain, Turns};
 }
 
 /// The README's examples, as tests.

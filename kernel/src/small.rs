@@ -91,7 +91,7 @@ impl<R: Real> Pendulum<R> {
     /// The stiffness matrix K of small oscillations, N m/rad, row by row: diag((m1 + m2) g l1, m2 g l2).
     #[must_use]
     pub fn stiffness(&self) -> [[R; 2]; 2] {
-        let [k1, k2] = self.torque();
+        let [k1, k2] = self.torque;
         [[k1, R::ZERO], [R::ZERO, k2]]
     }
 

@@ -149,9 +149,9 @@ fn work<F: Form<Real = f32>>(
         *falling = search.start(a1, a2).ok().flatten();
         return if falling.is_some() { (pace.start, None) } else { (pace.never, Some(Flip::Never)) };
     };
-    let before = motion.steps();
+    let before = motion.steps;
     let flip = search.advance(motion, steps);
-    let made = motion.steps().wrapping_sub(before);
+    let made = motion.steps.wrapping_sub(before);
     if flip.is_some() {
         *falling = None;
     }

@@ -55,14 +55,8 @@ pub struct Flips<F: Form> {
 pub struct Falling<F: Form> {
     motion: F,
     heads: [Direction<F::Side>; 2],
-    steps: u32,
-}
-
-impl<F: Form> Falling<F> {
     #[doc(hidden)]
-    pub fn steps(&self) -> u32 {
-        self.steps
-    }
+    pub steps: u32,
 }
 
 /// The longest step, s, that resolves what a pendulum does wherever it is let go: twice the
@@ -133,7 +127,12 @@ impl<F: Form> Flips<F> {
     /// When it was, after `steps` steps and within the next.
     fn passage(&self, steps: u32, before: [Direction<F::Side>; 2], after: [Direction<F::Side>; 2]) -> Flip<F::Real> {
         let share = |[from, _]: Direction<F::Side>, [to, cos]: Direction<F::Side>| {
-            if turns_over([from, to, cos].map(F::Side::sign)) < 0 { from.share(to) } else { F::Real::ONE }
+            if turns_over([from, to, cos].map(Side::sign)) < 0 {
+                let [before, after] = [from, to].map(|sine| F::Real::from_f64(sine.into()));
+                before / (before - after)
+            } else {
+                F::Real::ONE
+            }
         };
         let ([upper_before, lower_before], [upper_after, lower_after]) = (before, after);
         let (upper, lower) = (share(upper_before, upper_after), share(lower_before, lower_after));

@@ -100,11 +100,9 @@ impl Run<Fixed32> {
 }
 
 /// A sine or cosine, of which the sign tells the side; sealed.
-pub trait Side: Sealed + Copy + core::fmt::Debug + PartialEq + 'static {
+pub trait Side: Sealed + Copy + core::fmt::Debug + PartialEq + Into<f64> + 'static {
     /// All bits where it is negative; 0 where not. A negative zero is.
     fn sign(self) -> i32;
-    /// How far it is to zero, on the way to `next`, as a share of the way.
-    fn share<R: Real>(self, next: Self) -> R;
 }
 
 macro_rules! side {
@@ -113,10 +111,6 @@ macro_rules! side {
             #[inline(always)]
             fn sign(self) -> i32 {
                 $sign(self)
-            }
-            fn share<R: Real>(self, next: Self) -> R {
-                let [before, after] = [self, next].map(|part| R::from_f64(part.into()));
-                before / (before - after)
             }
         }
     };

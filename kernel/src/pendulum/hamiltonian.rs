@@ -16,8 +16,8 @@ pub struct Pendulum<R> {
     total_over_m2: R,
     /// m2 l1 l2.
     coupling: R,
-    /// (m1 + m2) g l1 and m2 g l2: the greatest torque of gravity on each joint.
-    torque: [R; 2],
+    /// (m1 + m2) g l1 and m2 g l2: the greatest torque of gravity on each joint, N m.
+    pub(crate) torque: [R; 2],
 }
 
 impl<R: Real> Pendulum<R> {
@@ -136,11 +136,6 @@ impl<R: Real> Pendulum<R> {
         -(self.torque[0] + self.torque[1])
     }
 
-    /// The greatest torque of gravity on each joint, (m1 + m2) g l1 and m2 g l2, N m.
-    pub(crate) fn torque(&self) -> [R; 2] {
-        self.torque
-    }
-
     /// T as a function of (sin D, cos D) and the momenta.
     #[inline(never)] // one copy
     fn kinetic_energy_of(&self, (sin_d, cos_d): (R, R), [p1, p2]: [R; 2]) -> R {
@@ -154,6 +149,6 @@ impl<R: Real> Pendulum<R> {
 }
 
 /// 1 - cos a from (sin a, cos a), without cancellation for small a: sin^2 a / (1 + cos a) while cos a > 0.
-pub(crate) fn one_minus_cos<R: Real>((sin, cos): (R, R)) -> R {
+fn one_minus_cos<R: Real>((sin, cos): (R, R)) -> R {
     if cos > R::ZERO { sin * sin / (R::ONE + cos) } else { R::ONE - cos }
 }

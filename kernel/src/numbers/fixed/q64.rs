@@ -182,13 +182,4 @@ mod tests {
             }
         }
     }
-
-    #[test]
-    fn factors_of_any_size() {
-        for value in [0.5, 1.0, 1.0 / 3.0, -17.4, 50.7, -0.5] {
-            let (whole, rest) = Q64::split(value);
-            let product = (Q64::from_f64(0.003) * rest + Q64::from_f64(0.003).times(whole)).value();
-            assert!((product - 0.003 * value).abs() < 1e-15, "{value}: {product}");
-        }
-    }
 }
