@@ -5,14 +5,9 @@ use super::cost::{Costs, Way};
 use super::problem::{NONE, PERTURBATIONS, Problem};
 use super::run::{AnyRun, Directions};
 use crate::error::Error;
-<<<<<<< HEAD
 use crate::methods::SmallOscillations;
-use crate::pendulum::State;
-use crate::small::Modes;
-=======
 use crate::pendulum::Pendulum;
-use crate::small::{Modes, SmallOscillations};
->>>>>>> b49b38b (Plan: what is tried is prepared from the problem itself, a search's end is its limit, and a frame's price is asked by its way)
+use crate::small::Modes;
 use crate::table::Method;
 
 /// A motion that is prepared before its first step, and stepped from frame to frame.
