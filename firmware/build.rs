@@ -1,7 +1,6 @@
 //! Links the firmware's binaries for a chip: the memory map, the vector table and defmt's string table.
 
 use std::env;
-use std::path::Path;
 
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");
@@ -17,17 +16,15 @@ fn main() {
     }
     // From the workspace's folder, in which the linker runs: a checkout that was moved keeps what it has built.
     println!("cargo:rustc-link-search=.");
-    for script in ["steps.x", "pico/pico.x", "stm32f405/stm32f405.x"].map(|script| Path::new("src/board").join(script))
-    {
-        println!("cargo:rustc-link-search={}", Path::new("firmware").join(&script).with_file_name("").display());
-        println!("cargo:rerun-if-changed={}", script.display());
-    }
+    println!("cargo:rustc-link-search=firmware/src/board");
+    println!("cargo:rerun-if-changed=src/board");
     // The emulated boards' flash starts at 0; this chip's starts elsewhere and has 1 MiB.
-    for argument in ["--defsym=flash_origin=0x08000000", "--defsym=flash_length=0x00100000", "-Tstm32f405.x"] {
+    for argument in ["--defsym=flash_origin=0x08000000", "--defsym=flash_length=0x00100000", "-Tstm32f405/stm32f405.x"]
+    {
         println!("cargo:rustc-link-arg-bin=stm32f405={argument}");
     }
     // The Pico's flash begins with the stage that its boot ROM runs first.
-    let pico = ["--defsym=flash_origin=0x10000100", "--defsym=flash_length=0x001fff00", "-Tpico.x"];
+    let pico = ["--defsym=flash_origin=0x10000100", "--defsym=flash_length=0x001fff00", "-Tpico/pico.x"];
     // With relocations, which tell the tests who refers to which function; they take no flash.
     let any = ["-Tlink.x", "-Tdefmt.x", "--nmagic", "--emit-relocs"];
     pico.iter().for_each(|argument| println!("cargo:rustc-link-arg-bin=pico={argument}"));

@@ -10,7 +10,7 @@ use core::convert::Infallible;
 use embedded_graphics_core::geometry::Point;
 use embedded_graphics_core::pixelcolor::Rgb565;
 use embedded_hal_bus::spi::ExclusiveDevice;
-use firmware::board::cortex_m::clock::{Clock, ticks};
+use firmware::board::cortex_m::clock;
 use firmware::config::PROCESSOR;
 use firmware::display::{AnyPanel, Display};
 use firmware::graphics::FrameBuffers;
@@ -19,7 +19,7 @@ use firmware::{app::Player, scenes::SceneName};
 use mipidsi::interface::SpiInterface;
 use mipidsi::options::ColorInversion;
 use mipidsi::{Builder, models::ST7789};
-use rp2040_hal::clocks::{Clock as _, init_clocks_and_plls};
+use rp2040_hal::clocks::{Clock, init_clocks_and_plls};
 use rp2040_hal::fugit::RateExtU32;
 use rp2040_hal::gpio::{FunctionSpi, Pins};
 use rp2040_hal::{Sio, Spi, Timer, Watchdog, pac};
@@ -34,10 +34,7 @@ const CORNER: Point = Point::new((240 - 128) / 2, (240 - 64) / 2);
 fn main() -> ! {
     static mut BUFFERS: FrameBuffers = FrameBuffers::BLANK;
     static mut BATCH: [u8; 512] = [0; 512];
-    match play(BUFFERS, BATCH) {
-        Some(never) => match never {},
-        None => panic!("the chip, its clock or the panel does not start, or the panel fails"),
-    }
+    match play(BUFFERS, BATCH).expect("the chip, its clock and the panel start, and the panel does not fail") {}
 }
 
 /// For ever; `None` if it cannot.
@@ -62,10 +59,10 @@ fn play(buffers: &mut FrameBuffers, batch: &mut [u8]) -> Option<Infallible> {
 
     let mut panel = AnyPanel { target, corner: CORNER, colour: Rgb565::from };
     let mut player = Player::on(PROCESSOR, SceneName::Page, Settings::default(), &mut buffers.ink).ok()?;
-    let clock = Clock::start(core.SYST, clocks.system_clock.freq().to_Hz());
-    let mut now = ticks();
+    clock::start(core.SYST, clocks.system_clock.freq().to_Hz());
+    let mut now = clock::ticks();
     loop {
-        now = clock.wait_after(now);
+        now = clock::wait_after(now);
         player.tick(|_| ());
         player.draw(&mut buffers.canvas);
         panel.flush(&buffers.canvas).ok()?;

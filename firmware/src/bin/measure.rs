@@ -6,7 +6,7 @@ use core::fmt::Write;
 
 use cortex_m::peripheral::{Peripherals, SYST, syst::SystClkSource};
 use cortex_m_semihosting::{debug, hio};
-use firmware::board::cortex_m::semihosting;
+use firmware::board::cortex_m::command_line;
 use firmware::job::Request;
 
 /// SysTick counts down from here; a run must take fewer ticks.
@@ -32,7 +32,7 @@ fn run(buffer: &mut [u8]) -> Result<(), ()> {
     clock.set_reload(FULL);
     clock.clear_current();
     clock.enable_counter();
-    let outcome = Request::parse(semihosting::command_line(buffer).ok_or(())?).and_then(|request| request.crc());
+    let outcome = Request::parse(command_line(buffer).ok_or(())?).and_then(|request| request.crc());
     let ticks = FULL - SYST::get_current();
     match outcome {
         Ok(crc) => writeln!(output, "{crc:08x} {ticks}").map_err(|_| ()),

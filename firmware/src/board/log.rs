@@ -33,17 +33,14 @@ static PATH: Shared<Path> = Shared::new(Path { encoder: Encoder::new(), sink: Si
 /// Opens the log of a chip; before that, lines are lost.
 pub fn into_memory() {
     crash::expect_no_debugger();
-    open(Sink::Memory(rtt_init! { up: { 0: { size: 1024, name: "defmt" } } }.up.0));
+    let channel = rtt_init! { up: { 0: { size: 1024, name: "defmt" } } }.up.0;
+    PATH.with(|path| path.sink = Sink::Memory(channel));
 }
 
 /// Opens the log of an emulated chip.
 #[cfg(feature = "stm32f405")]
 pub fn into_emulator() {
-    open(hio::hstdout().map_or(Sink::Nowhere, Sink::Emulator));
-}
-
-fn open(sink: Sink) {
-    PATH.with(|path| path.sink = sink);
+    PATH.with(|path| path.sink = hio::hstdout().map_or(Sink::Nowhere, Sink::Emulator));
 }
 
 impl Sink {

@@ -1,6 +1,7 @@
 //! The application of every board, its main loop and its log.
 
 use core::fmt::Debug;
+use core::iter::from_fn;
 use core::mem::MaybeUninit;
 
 use defmt::Debug2Format;
@@ -8,10 +9,10 @@ use double_pendulum::Parameters;
 use double_pendulum::plan::{Plan, PlanError, Way};
 use embedded_io::Write;
 
-use super::cortex_m::clock::{Clock, ticks};
+use super::cortex_m::clock::{ticks, wait_after};
 use super::cortex_m::retained;
 use super::cortex_m::watchdog::Watchdog;
-use super::serial::Receiver;
+use super::serial;
 use crate::app::{App, Buttons, Event, Instruments, Journal, News, WarmRestart};
 use crate::config::{HALF_PIXEL, Processor};
 use crate::display::Display;
@@ -23,10 +24,8 @@ use crate::scenes::SceneName;
 pub struct Board<Panel, Link, Keys, Dog> {
     pub panel: Panel,
     pub link: Link,
-    pub receiver: Receiver,
     pub keys: Keys,
     pub instruments: Instruments,
-    pub clock: Clock,
     pub watchdog: Dog,
     /// Whether the board's own register says that the watchdog caused the last reset.
     pub reset_by_watchdog: bool,
@@ -64,10 +63,11 @@ impl<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons, Dog: Watchdog> Bo
         buffers: &'static mut FrameBuffers,
         processor: Processor,
     ) -> ! {
-        let Self { panel, link, receiver, keys, instruments, clock, watchdog, reset_by_watchdog } = self;
+        let Self { panel, link, keys, instruments, watchdog, reset_by_watchdog } = self;
         defmt::info!("boot: {=str}, {} Hz", instruments.identity.board.name(), instruments.identity.hertz);
         let app = application(place, buffers, panel, link, keys, processor);
-        run(app, receiver, instruments, clock, watchdog, reset_by_watchdog)
+        app.instruments = instruments;
+        run(app, watchdog, reset_by_watchdog)
     }
 }
 
@@ -93,13 +93,9 @@ fn application<'a, Panel: Display, Link: Write, Keys: Buttons>(
 #[inline(never)] // apart from the start-up code, which may panic; this may not (test `no_panic`)
 fn run<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons>(
     app: &'static mut App<Panel, Link, Keys>,
-    mut receiver: Receiver,
-    instruments: Instruments,
-    clock: Clock,
     mut watchdog: impl Watchdog,
     reset_by_watchdog: bool,
 ) -> ! {
-    app.instruments = instruments;
     let mut journal = resume(app, reset_by_watchdog);
     let mut now = ticks();
     app.count_from(now, 0);
@@ -114,11 +110,11 @@ fn run<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons>(
                 watchdog.feed();
             }
         }
-        app.receive(&mut receiver, log);
-        app.note_lost(receiver.lost(), log);
+        app.receive(from_fn(serial::received), log);
+        app.note_lost(serial::lost(), log);
         while ticks() == now && app.work(log) {}
         while ticks() == now && app.player.look_ahead() {}
-        now = clock.wait_after(now);
+        now = wait_after(now);
     }
 }
 

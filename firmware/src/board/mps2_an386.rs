@@ -5,11 +5,11 @@
 use cortex_m::Peripherals;
 
 use super::Board;
-use super::cortex_m::interrupt::Interrupt;
+use super::cortex_m::interrupt::{Interrupt, unmask};
+use super::cortex_m::start;
 use super::cortex_m::watchdog::{NMI, TwoStage};
-use super::cortex_m::{Clock, guard_stack, instruments};
 use super::register::{Device, Register};
-use super::serial::{self, Inward, Taken, Transmitter};
+use super::serial::{Inbox, Outward, receive_by, send};
 use crate::app::NoButtons;
 use crate::config::BAUD;
 use crate::display::NoDisplay;
@@ -40,33 +40,32 @@ const RECEIVED: u32 = 1 << 1;
 /// UART0's receiver.
 const INTERRUPT: Interrupt = Interrupt(0);
 
-pub type Mps2An386 = Board<NoDisplay, Transmitter, NoButtons, TwoStage>;
+pub type Mps2An386 = Board<NoDisplay, Outward, NoButtons, TwoStage>;
 
 /// Sets the board up; `None` the second time.
 pub fn take() -> Option<Mps2An386> {
-    let core = Peripherals::take()?;
-    guard_stack(core.MPU);
-    let receiver = serial::receive_from(Inward { clear: |_| INTERRUPT_CLEAR.write(RECEIVED), take: received });
+    let instruments = start(Peripherals::take()?, BoardName::Mps2An386, HERTZ, [0; 4]);
+    receive_by(receive);
     DIVISOR.write(HERTZ / BAUD);
     CONTROL.write(ENABLE);
-    INTERRUPT.unmask();
+    unmask(INTERRUPT);
     Some(Board {
         panel: NoDisplay,
-        link: Transmitter { is_ready: || STATE.read() & TRANSMITTER_FULL == 0, put: |byte| DATA.write(byte.into()) },
-        receiver,
+        link: Outward(|bytes| send(bytes, || STATE.read() & TRANSMITTER_FULL == 0, |byte| DATA.write(byte.into()))),
         keys: NoButtons,
-        instruments: instruments(BoardName::Mps2An386, HERTZ, [0; 4], &core.CPUID, core.DCB, core.DWT),
-        clock: Clock::start(core.SYST, HERTZ),
+        instruments,
         watchdog: TwoStage::start(WATCHDOG, HERTZ, NMI),
         reset_by_watchdog: false,
     })
 }
 
-fn received() -> Taken {
-    let state = STATE.read();
-    let overrun = state & RECEIVER_OVERRUN != 0;
-    if overrun {
-        STATE.write(RECEIVER_OVERRUN); // Written back, it is cleared.
+fn receive(inbox: &mut Inbox) {
+    INTERRUPT_CLEAR.write(RECEIVED);
+    while STATE.read() & RECEIVER_FULL != 0 {
+        inbox.push(DATA.read() as u8);
     }
-    Taken { byte: (state & RECEIVER_FULL != 0).then(|| DATA.read() as u8), overrun }
+    if STATE.read() & RECEIVER_OVERRUN != 0 {
+        STATE.write(RECEIVER_OVERRUN); // Written back, it is cleared.
+        inbox.note_overrun(true);
+    }
 }

@@ -17,58 +17,61 @@ pub trait PanelPort {
 pub struct Bus<P> {
     port: P,
     outbox: Option<&'static mut Outbox>,
-    sent: Sent,
 }
 
-/// What the interrupt has: an outbox, and once that is done with, what has become of the messages in it.
-struct Outgoing {
-    outbox: &'static mut Outbox,
-    sent: Option<Sent>,
-}
+/// How often a start or stop is waited for, which takes 5 us: these tries take at least 12.
+pub const TRIES: u32 = 500;
 
-static OUTGOING: Shared<Option<Outgoing>> = Shared::new(None);
+/// The outbox that the interrupt has.
+static OUTGOING: Shared<Option<&'static mut Outbox>> = Shared::new(None);
 
 /// For the bus's interrupt: `advance` does what is due, and says what has become of the messages once nothing more is; from
 /// then on the bus must not interrupt until [`PanelPort::begin`].
 pub(in crate::board) fn serve(advance: impl FnOnce(&mut Outbox) -> Option<Sent>) {
     OUTGOING.with(|outgoing| {
-        if let Some(Outgoing { outbox, sent: sent @ None }) = outgoing {
-            *sent = advance(outbox);
+        if let Some(outbox) = outgoing
+            && outbox.sent.is_none()
+        {
+            outbox.sent = advance(outbox);
         }
     });
 }
 
 impl<P: PanelPort> Bus<P> {
     /// There is one at most: the interrupt knows no other.
-    pub(in crate::board) fn new(port: P, outbox: &'static mut Outbox) -> Self {
-        Self { port, outbox: Some(outbox), sent: Ok(()) }
+    pub(in crate::board) fn new(mut port: P) -> Option<Self> {
+        port.reset();
+        Some(Self { port, outbox: Some(cortex_m::singleton!(: Outbox = Outbox::default())?) })
     }
 }
 
 impl<P: PanelPort> PanelBus for Bus<P> {
     fn outbox(&mut self) -> Option<(&mut Outbox, Sent)> {
-        let returned = OUTGOING.with(|outgoing| outgoing.take_if(|outgoing| outgoing.sent.is_some())).flatten();
-        if let Some(Outgoing { outbox, sent: Some(sent) }) = returned {
-            if !matches!(sent, Ok(()) | Err(ErrorKind::NoAcknowledge(_))) {
+        if let Some(outbox) = OUTGOING.with(|outgoing| outgoing.take_if(|outbox| outbox.sent.is_some())).flatten() {
+            if !matches!(outbox.sent, Some(Ok(()) | Err(ErrorKind::NoAcknowledge(_)))) {
                 self.port.reset();
             }
-            (self.outbox, self.sent) = (Some(outbox), sent);
+            self.outbox = Some(outbox);
         }
-        self.outbox.as_deref_mut().map(|outbox| (outbox, self.sent))
+        let outbox = self.outbox.as_deref_mut()?;
+        let sent = outbox.sent?;
+        Some((outbox, sent))
     }
 
     fn send(&mut self) {
         if let Some(outbox) = self.outbox.take() {
             let address = outbox.address;
-            OUTGOING.with(|outgoing| *outgoing = Some(Outgoing { outbox, sent: None }));
+            outbox.sent = None;
+            OUTGOING.with(|outgoing| *outgoing = Some(outbox));
             self.port.begin(address);
         }
     }
 
     fn give_up(&mut self) {
         self.port.reset();
-        if let Some(Outgoing { outbox, .. }) = OUTGOING.with(Option::take).flatten() {
-            (self.outbox, self.sent) = (Some(outbox), Err(ErrorKind::Other));
+        if let Some(outbox) = OUTGOING.with(Option::take).flatten() {
+            outbox.sent = Some(Err(ErrorKind::Other));
+            self.outbox = Some(outbox);
         }
     }
 }

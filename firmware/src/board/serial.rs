@@ -1,5 +1,5 @@
-//! Bytes over a board's serial port: an interrupt puts those received into a queue, from which the application takes them; each
-//! one sent waits until the port takes it, but not without end.
+//! Bytes over a board's serial port: an interrupt puts those received into a queue, from which the application takes them; those
+//! sent wait until the port takes them, but not without end.
 
 use embedded_io::{ErrorKind, ErrorType, Write};
 use heapless::Deque;
@@ -7,91 +7,69 @@ use heapless::Deque;
 use super::cortex_m::interrupt::Shared;
 use crate::config::{BUS_TRIES, RECEIVE_QUEUE};
 
-/// The inward direction of a port.
-#[derive(Clone, Copy)]
-pub(in crate::board) struct Inward {
-    /// Ends the receiver's interrupt, given for how many bytes there is room. Done before the bytes are taken, so that one that
-    /// comes meanwhile interrupts anew.
-    pub clear: fn(usize),
-    pub take: fn() -> Taken,
-}
-
-pub(in crate::board) struct Taken {
-    /// The next byte; `None` once there is none.
-    pub byte: Option<u8>,
-    /// Whether the port has had no room for a byte, or for several in a row, since it was last asked.
-    pub overrun: bool,
-}
-
-struct Link {
-    port: Option<Inward>,
-    received: Deque<u8, RECEIVE_QUEUE>,
+/// What has come and is not taken yet, and how the interrupt receives.
+pub(in crate::board) struct Inbox {
+    receive: Option<fn(&mut Inbox)>,
+    pub received: Deque<u8, RECEIVE_QUEUE>,
     lost: u32,
 }
 
-static LINK: Shared<Link> = Shared::new(Link { port: None, received: Deque::new(), lost: 0 });
+static INBOX: Shared<Inbox> = Shared::new(Inbox { receive: None, received: Deque::new(), lost: 0 });
 
-/// Lets the interrupt fill the queue from this port.
-pub(in crate::board) fn receive_from(port: Inward) -> Receiver {
-    LINK.with(|link| link.port = Some(port));
-    Receiver(())
+impl Inbox {
+    pub fn push(&mut self, byte: u8) {
+        let is_refused = self.received.push_back(byte).is_err();
+        self.note_overrun(is_refused);
+    }
+
+    /// Whether the port has had no room for a byte, or for several in a row.
+    pub fn note_overrun(&mut self, overrun: bool) {
+        self.lost = self.lost.wrapping_add(overrun.into());
+    }
 }
 
-/// Moves what has come into the queue; for the receiver's interrupt.
+/// How the interrupt receives. A port's interrupt is ended before its bytes are taken, so that one that comes meanwhile
+/// interrupts anew.
+pub(in crate::board) fn receive_by(receive: fn(&mut Inbox)) {
+    INBOX.with(|inbox| inbox.receive = Some(receive));
+}
+
+/// For the receiver's interrupt.
 pub(in crate::board) fn receive() {
-    LINK.with(|Link { port, received, lost }| {
-        let Some(Inward { clear, take }) = *port else { return };
-        clear(received.capacity().saturating_sub(received.len()));
-        loop {
-            let Taken { byte, overrun } = take();
-            let is_refused = byte.is_some_and(|byte| received.push_back(byte).is_err());
-            *lost = lost.wrapping_add(u32::from(overrun) + u32::from(is_refused));
-            if byte.is_none() {
-                break;
-            }
-        }
-    });
+    INBOX.with(|inbox| inbox.receive.map(|receive| receive(inbox)));
 }
 
 /// The application's end of the queue.
-pub struct Receiver(());
-
-impl Receiver {
-    /// A lower bound on the bytes that have overrun the port or the queue since reset: a port may report several at once. Wraps.
-    pub fn lost(&self) -> u32 {
-        LINK.with(|link| link.lost).unwrap_or_default()
-    }
+pub fn received() -> Option<u8> {
+    INBOX.with(|inbox| inbox.received.pop_front()).flatten()
 }
 
-impl Iterator for Receiver {
-    type Item = u8;
-
-    fn next(&mut self) -> Option<u8> {
-        LINK.with(|link| link.received.pop_front()).flatten()
-    }
+/// A lower bound on the bytes that have overrun the port or the queue since reset: a port may report several at once. Wraps.
+pub fn lost() -> u32 {
+    INBOX.with(|inbox| inbox.lost).unwrap_or_default()
 }
 
-/// The outward direction of a port.
-pub struct Transmitter {
-    /// Whether it takes a byte to be sent now.
-    pub(in crate::board) is_ready: fn() -> bool,
-    /// Gives it a byte to be sent, once it is ready.
-    pub(in crate::board) put: fn(u8),
+/// The outward direction of a port: sends bytes; whether it has taken them in time.
+pub struct Outward(pub(in crate::board) fn(&[u8]) -> bool);
+
+/// Sends bytes one by one: each waits until the port `is_ready` for it.
+pub(in crate::board) fn send(bytes: &[u8], is_ready: impl Fn() -> bool, put: impl Fn(u8)) -> bool {
+    bytes.iter().all(|&byte| {
+        let is_ready = (0..BUS_TRIES).any(|_| is_ready());
+        if is_ready {
+            put(byte);
+        }
+        is_ready
+    })
 }
 
-impl ErrorType for Transmitter {
+impl ErrorType for Outward {
     type Error = ErrorKind;
 }
 
-impl Write for Transmitter {
+impl Write for Outward {
     fn write(&mut self, bytes: &[u8]) -> Result<usize, ErrorKind> {
-        for &byte in bytes {
-            if !(0..BUS_TRIES).any(|_| (self.is_ready)()) {
-                return Err(ErrorKind::TimedOut);
-            }
-            (self.put)(byte);
-        }
-        Ok(bytes.len())
+        if (self.0)(bytes) { Ok(bytes.len()) } else { Err(ErrorKind::TimedOut) }
     }
 
     /// Bytes leave by themselves; there is nothing to wait for.

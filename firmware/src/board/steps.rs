@@ -2,7 +2,7 @@
 //! keeps them together with all that they call (`steps.x`) and no branch leads out of there (test `steps`), so that they run
 //! wherever they are copied.
 
-use super::cortex_m::identity::cycles_of;
+use super::cortex_m::instruments::cycles_of;
 use crate::job::{OnBoards, Run};
 
 unsafe extern "C" {

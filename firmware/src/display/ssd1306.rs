@@ -11,9 +11,8 @@ use core::ops::Range;
 
 use embedded_hal::i2c::ErrorKind;
 
-use super::Display;
-use super::controller::{By, Controller, Found};
-use super::outbox::{Outbox, PanelBus, Sent};
+use super::bus::{Outbox, PanelBus, Sent};
+use super::{By, Controller, Display, Found};
 use crate::config::TICK_RATE;
 use crate::graphics::{Bitmap, Canvas, HEIGHT, PAGES, WIDTH};
 
@@ -49,7 +48,7 @@ const SH1106: &[u8] = &[0xAD, 0x8B];
 const SH1106_LEFT: u8 = 2;
 const ON: &[u8] = &[0xAF];
 /// Frames between two tries of a panel that does not answer: 1 s.
-const RETRY: u32 = TICK_RATE;
+const RETRY: u8 = TICK_RATE as u8;
 /// Columns of a part of the picture that is sent again.
 const PART: usize = 16;
 /// Parts of the picture; with the two messages that wake the panel, one a frame, all are sent again within 1.1 s.
@@ -88,6 +87,8 @@ pub enum Ssd1306Error {
 pub struct Ssd1306<Bus> {
     pub bus: Bus,
     state: State,
+    /// Where it is, or is looked for.
+    address: u8,
     built_for: Option<Controller>,
     found: Option<Found>,
     /// What the panel's memory holds once all that was sent has arrived.
@@ -104,18 +105,18 @@ pub struct Ssd1306<Bus> {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum State {
-    Absent { retry_in: u32 },
-    Looking { address: u8 },
-    Asking { address: u8 },
-    Waking { address: u8, controller: Controller },
-    Awake { address: u8, controller: Controller },
+    Absent { retry_in: u8 },
+    Looking,
+    Asking,
+    Waking(Controller),
+    Awake(Controller),
 }
 
 impl<Bus: PanelBus> Ssd1306<Bus> {
     /// Takes the bus, and the controller if that is not to be asked for; the panel is looked for with the first frame.
     pub fn new(bus: Bus, built_for: Option<Controller>) -> Self {
-        let (state, memory, told) = (State::Absent { retry_in: 0 }, Bitmap::default(), Ok(()));
-        Self { bus, state, built_for, found: None, memory, told, waiting: 0, part: 0, counted: 0, shown: 0 }
+        let (state, address, memory, told) = (State::Absent { retry_in: 0 }, ADDRESSES[0], Bitmap::default(), Ok(()));
+        Self { bus, state, address, built_for, found: None, memory, told, waiting: 0, part: 0, counted: 0, shown: 0 }
     }
 
     /// Sends the frame if the bus is free; whether it is.
@@ -129,12 +130,12 @@ impl<Bus: PanelBus> Ssd1306<Bus> {
         };
         self.waiting = 0;
         let found = match (self.state, self.built_for, sent) {
-            (State::Looking { .. }, Some(controller), Ok(())) => Some(Found { controller, by: By::Build }),
-            (State::Asking { .. }, _, Ok(())) => Some(Found::told(outbox.status)),
-            (State::Asking { .. }, _, Err(ErrorKind::NoAcknowledge(_))) => Some(Found::SILENT),
+            (State::Looking, Some(controller), Ok(())) => Some(Found { controller, by: By::Build }),
+            (State::Asking, _, Ok(())) => Some(Found::told(outbox.status)),
+            (State::Asking, _, Err(ErrorKind::NoAcknowledge(_))) => Some(Found::SILENT),
             _ => None,
         };
-        let (state, news) = self.state.after(sent, found);
+        let (state, news) = self.state.after(&mut self.address, sent, found);
         // One that is refused is looked for again and again, and reported once.
         if found.is_some() && news.is_none_or(|told| told != self.told) {
             self.found = found;
@@ -143,26 +144,21 @@ impl<Bus: PanelBus> Ssd1306<Bus> {
         if let Some(told) = news {
             (self.told, self.counted, self.shown) = (told, 0, 0);
         }
+        outbox.address_to(self.address);
         match state {
             State::Absent { .. } => return true,
-            State::Looking { address } => {
-                outbox.address_to(address);
-                outbox.put(COMMAND, OFF);
-            }
-            State::Asking { address } => {
-                outbox.address_to(address);
+            State::Looking => outbox.put(COMMAND, OFF),
+            State::Asking => {
                 outbox.put(COMMAND, &[]);
                 outbox.asks = true;
             }
-            State::Waking { address, controller } => {
+            State::Waking(controller) => {
                 self.memory = Bitmap::from(canvas);
-                outbox.address_to(address);
                 draw(outbox, controller, None, &self.memory);
                 (0..2).for_each(|half| wake(outbox, controller, half));
             }
-            State::Awake { address, controller } => {
+            State::Awake(controller) => {
                 let frame = Bitmap::from(canvas);
-                outbox.address_to(address);
                 draw(outbox, controller, Some(&self.memory), &frame);
                 self.memory = frame;
                 if outbox.len() <= SHORT {
@@ -197,25 +193,25 @@ impl<Bus: PanelBus> Ssd1306<Bus> {
 
 impl State {
     /// The next state, given how the last messages fared and which panel was found by them, and what there is to report.
-    fn after(self, sent: Sent, found: Option<Found>) -> (Self, Option<Result<(), Ssd1306Error>>) {
+    fn after(self, address: &mut u8, sent: Sent, found: Option<Found>) -> (Self, Option<Result<(), Ssd1306Error>>) {
         let [first, second] = ADDRESSES;
         let absent = |error| (Self::Absent { retry_in: RETRY }, Some(Err(error)));
         match (self, sent, found) {
-            (Self::Absent { retry_in: 0 }, ..) => (Self::Looking { address: first }, None),
+            (.., Some(Found { controller: Controller::Sh1107, .. })) => absent(Ssd1306Error::Sh1107),
+            (.., Some(Found { controller, .. })) => (Self::Waking(controller), None),
+            (Self::Absent { retry_in: 0 }, ..) => {
+                *address = first;
+                (Self::Looking, None)
+            }
             (Self::Absent { retry_in }, ..) => (Self::Absent { retry_in: retry_in - 1 }, None),
-            (Self::Looking { .. } | Self::Asking { .. }, _, Some(Found { controller: Controller::Sh1107, .. })) => {
-                absent(Ssd1306Error::Sh1107)
+            (Self::Looking, Ok(()), _) => (Self::Asking, None),
+            (Self::Looking, Err(ErrorKind::NoAcknowledge(_)), _) if *address == first => {
+                *address = second;
+                (self, None)
             }
-            (Self::Looking { address } | Self::Asking { address }, _, Some(Found { controller, .. })) => {
-                (Self::Waking { address, controller }, None)
-            }
-            (Self::Looking { address }, Ok(()), None) => (Self::Asking { address }, None),
-            (Self::Looking { address }, Err(ErrorKind::NoAcknowledge(_)), None) if address == first => {
-                (Self::Looking { address: second }, None)
-            }
-            (Self::Waking { address, controller }, Ok(()), _) => (Self::Awake { address, controller }, Some(Ok(()))),
-            (Self::Awake { .. }, Ok(()), _) => (self, None),
-            (Self::Awake { .. }, Err(_), _) => absent(Ssd1306Error::Lost),
+            (Self::Waking(controller), Ok(()), _) => (Self::Awake(controller), Some(Ok(()))),
+            (Self::Awake(_), Ok(()), _) => (self, None),
+            (Self::Awake(_), Err(_), _) => absent(Ssd1306Error::Lost),
             (_, sent, _) => absent(Ssd1306Error::Absent(sent.err().unwrap_or(ErrorKind::Other))),
         }
     }
@@ -226,7 +222,7 @@ impl<Bus: PanelBus> Display for Ssd1306<Bus> {
 
     fn flush(&mut self, canvas: &Canvas) -> Result<(), Ssd1306Error> {
         let is_shown = self.offer(canvas);
-        if let State::Awake { .. } = self.state {
+        if let State::Awake(_) = self.state {
             self.count(is_shown);
         }
         self.told

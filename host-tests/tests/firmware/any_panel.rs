@@ -1,16 +1,16 @@
 //! Panels by other people's drivers: every scene in a frame buffer of embedded-graphics' own.
 
 use embedded_graphics::framebuffer::{Framebuffer, buffer_size};
-use embedded_graphics::geometry::Point;
+use embedded_graphics::geometry::{Dimensions, Point};
 use embedded_graphics::image::GetPixel;
 use embedded_graphics::pixelcolor::raw::{LittleEndian, RawU16};
 use embedded_graphics::pixelcolor::{Gray4, Rgb565};
+use embedded_graphics::primitives::PointsIter;
 use firmware::display::{AnyPanel, Display};
 use firmware::scenes::SceneName;
 use host_tests::emulator::host::Show;
 
-/// The panel's size, and where on it the frame is.
-const PANEL: (usize, usize) = (160, 80);
+/// Where on the panel the frame is.
 const CORNER: Point = Point::new(11, 9);
 /// Frames of each scene.
 const FRAMES: usize = 30;
@@ -18,14 +18,7 @@ const FRAMES: usize = 30;
 /// On a black panel, which stays black around the frame.
 #[test]
 fn every_scene_is_the_canvas_through_the_map_of_colours() {
-    type Target = Framebuffer<
-        Rgb565,
-        RawU16,
-        LittleEndian,
-        { PANEL.0 },
-        { PANEL.1 },
-        { buffer_size::<Rgb565>(PANEL.0, PANEL.1) },
-    >;
+    type Target = Framebuffer<Rgb565, RawU16, LittleEndian, 160, 80, { buffer_size::<Rgb565>(160, 80) }>;
     let mut panel = AnyPanel { target: Target::new(), corner: CORNER, colour: Rgb565::from };
     for &name in SceneName::ALL {
         let mut scene = Show::new(name, &name.first_settings()).expect("a scene of the catalogue");
@@ -33,7 +26,7 @@ fn every_scene_is_the_canvas_through_the_map_of_colours() {
             scene.tick();
             let canvas = scene.frame();
             panel.flush(&canvas).expect("it never fails");
-            for at in (0..PANEL.1).flat_map(|y| (0..PANEL.0).map(move |x| Point::new(x as i32, y as i32))) {
+            for at in panel.target.bounding_box().points() {
                 let place = at - CORNER;
                 let grey = Gray4::new(canvas.get(place.x, place.y).unwrap_or(0));
                 assert_eq!(panel.target.pixel(at), Some(grey.into()), "{} at {at}", name.name());

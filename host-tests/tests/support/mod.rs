@@ -45,7 +45,7 @@ pub fn on<M>(board: &Board, start: impl FnOnce(&Settings) -> anyhow::Result<M>) 
     start(&settings(&toolchain, board, &elf))
 }
 
-/// The stack's share of memory, from its top (`board/cortex_m/guard.rs`).
+/// The stack's share of memory, from its top (`board/cortex_m/stack.rs`).
 const STACK: u32 = 32 * 1024;
 /// No byte that is common in memory: where it is gone, the stack has been.
 pub const PAINT: u8 = 0xA5;

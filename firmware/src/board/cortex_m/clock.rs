@@ -11,7 +11,7 @@ use crate::config::TICK_RATE;
 /// Where the ticks are counted from: 5 s before they wrap, so that what goes wrong there does so in every test and not
 /// after 828 days.
 const FIRST: u32 = 0_u32.wrapping_sub(5 * TICK_RATE);
-/// Ticks since [`Clock::start`], and [`FIRST`].
+/// Ticks since the [`start`], and [`FIRST`].
 static TICKS: AtomicU32 = AtomicU32::new(FIRST);
 static PERIOD: AtomicU32 = AtomicU32::new(0);
 
@@ -21,37 +21,30 @@ fn SysTick() {
     TICKS.store(ticks().wrapping_add(1), Ordering::Relaxed);
 }
 
-/// A running clock of [`TICK_RATE`] ticks per second.
-#[derive(Debug)]
-pub struct Clock(());
+/// Starts a clock of [`TICK_RATE`] ticks per second from the processor's of `hertz`. The period is rounded down to whole processor
+/// cycles: at 50 MHz 833,333 instead of 833,333.3, which is 0.4 parts per million fast.
+pub fn start(mut systick: SYST, hertz: u32) {
+    systick.set_clock_source(SystClkSource::Core);
+    PERIOD.store(hertz / TICK_RATE, Ordering::Relaxed);
+    systick.set_reload((hertz / TICK_RATE).saturating_sub(1));
+    systick.clear_current();
+    systick.enable_interrupt();
+    systick.enable_counter();
+}
 
-impl Clock {
-    /// Starts it from the processor's clock of `hertz`. The period is rounded down to whole processor cycles: at
-    /// 50 MHz 833,333 instead of 833,333.3, which is 0.4 parts per million fast.
-    pub fn start(mut systick: SYST, hertz: u32) -> Self {
-        systick.set_clock_source(SystClkSource::Core);
-        PERIOD.store(hertz / TICK_RATE, Ordering::Relaxed);
-        systick.set_reload((hertz / TICK_RATE).saturating_sub(1));
-        systick.clear_current();
-        systick.enable_interrupt();
-        systick.enable_counter();
-        Self(())
-    }
-
-    /// Sleeps until the tick after `last`; returns at once if it has passed already.
-    pub fn wait_after(&self, last: u32) -> u32 {
-        // An interrupt between the test and the sleep stays pending only while interrupts are masked: with them
-        // masked `wfi` still wakes, so no tick is slept through.
-        loop {
-            let now = cortex_m::interrupt::free(|_| {
-                if ticks() == last {
-                    cortex_m::asm::wfi();
-                }
-                ticks()
-            });
-            if now != last {
-                return now;
+/// Sleeps until the tick after `last`; returns at once if it has passed already.
+pub fn wait_after(last: u32) -> u32 {
+    // An interrupt between the test and the sleep stays pending only while interrupts are masked: with them
+    // masked `wfi` still wakes, so no tick is slept through.
+    loop {
+        let now = cortex_m::interrupt::free(|_| {
+            if ticks() == last {
+                cortex_m::asm::wfi();
             }
+            ticks()
+        });
+        if now != last {
+            return now;
         }
     }
 }

@@ -15,17 +15,18 @@
 //! begins, at `crash`. A log line that goes by such a call waits for a gone probe, too, with the watchdog standing still: the
 //! LM3S6965's does until it loses power; the STM32F405's log is in memory and waits for no one.
 
-use core::arch::{asm, naked_asm};
+use core::arch::naked_asm;
 use core::cell::UnsafeCell;
 use core::fmt::{Display, Write};
 use core::panic::PanicInfo;
 use core::sync::atomic::{AtomicBool, Ordering};
 
 use cortex_m::peripheral::{DCB, SCB};
+use cortex_m::register::msp;
 use cortex_m_rt::ExceptionFrame;
 use cortex_m_semihosting::{debug, hio};
 
-use super::calls::{calls, instruction};
+use super::stack::{calls, instruction};
 use super::{retained, watchdog};
 use crate::app::LastShown;
 use crate::config::WATCHDOG_SECONDS;
@@ -54,7 +55,7 @@ unsafe impl Sync for Stack {}
 fn panic(info: &PanicInfo) -> ! {
     // Where this handler was called, and where the function that did so was: found on the stack, as the registers hold something
     // else by now. The second is where the panic is, unless a helper was between.
-    let mut calls = calls(stack_pointer());
+    let mut calls = calls(msp::read());
     let [pc, lr] = [(); 2].map(|()| calls.next().unwrap_or_default());
     // Of a fault before, if it is not zero.
     let [cfsr, ..] = fault_status(false);
@@ -93,22 +94,18 @@ unsafe extern "C" fn HardFault() {
 /// `exception` is what the link register holds on the way into a handler.
 extern "C" fn hard_fault(frame: *mut ExceptionFrame, exception: u32) {
     let [cfsr, hfsr, mmfar, bfar] = fault_status(false);
+    let sp = (frame as u32).wrapping_add(Stacked::size(exception));
     // SAFETY: the processor has put the frame there, and nothing else knows of it.
-    let frame = Fault::has_stacked(cfsr).then(|| unsafe { &mut *frame }).ok_or(frame as u32);
-    let (stacked, bottom) = match frame {
-        Ok(frame) => {
-            // A breakpoint is the one fault that leaves CFSR clear, where there is one. (It also sets HFSR.DEBUGEVT, but not in
-            // QEMU.)
-            if cfsr == 0 && step_over_debugger_call(frame) {
-                fault_status(true);
-                return;
-            }
-            let stacked = Stacked { pc: frame.pc(), lr: frame.lr(), xpsr: frame.xpsr() };
-            (Some(stacked), &raw const *frame as u32)
-        }
-        Err(bottom) => (None, bottom),
-    };
-    let sp = bottom.wrapping_add(Stacked::size(exception));
+    let mut frame = Fault::has_stacked(cfsr).then(|| unsafe { &mut *frame });
+    // A breakpoint is the one fault that leaves CFSR clear, where there is one. (It also sets HFSR.DEBUGEVT, but not in QEMU.)
+    if cfsr == 0
+        && let Some(frame) = &mut frame
+        && step_over_debugger_call(frame)
+    {
+        fault_status(true);
+        return;
+    }
+    let stacked = frame.map(|frame| Stacked { pc: frame.pc(), lr: frame.lr(), xpsr: frame.xpsr() });
     let last_call = calls(sp).next();
     let (pc, lr) = stacked.map_or((0, last_call.unwrap_or_default()), |stacked| (stacked.pc, stacked.lr));
     crash((Cause::Fault, pc, lr, cfsr), &Fault { stacked, sp, last_call, cfsr, hfsr, mmfar, bfar })
@@ -127,13 +124,6 @@ fn step_over_debugger_call(frame: &mut ExceptionFrame) -> bool {
         }
     }
     is_call
-}
-
-fn stack_pointer() -> u32 {
-    let sp;
-    // SAFETY: only reads it.
-    unsafe { asm!("mov {}, sp", out(reg) sp, options(nomem, nostack, preserves_flags)) };
-    sp
 }
 
 /// The program has finished no frame for too long; `interrupted` is where it is.

@@ -63,9 +63,7 @@ unsafe impl InterruptNumber for Interrupt {
     }
 }
 
-impl Interrupt {
-    pub fn unmask(self) {
-        // SAFETY: no critical section relies on a masked interrupt.
-        unsafe { NVIC::unmask(self) };
-    }
+pub(in crate::board) fn unmask(interrupt: impl InterruptNumber) {
+    // SAFETY: no critical section relies on a masked interrupt.
+    unsafe { NVIC::unmask(interrupt) };
 }

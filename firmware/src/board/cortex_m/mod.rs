@@ -1,19 +1,29 @@
 //! What every Cortex-M has.
 
 pub mod clock;
-pub mod semihosting;
 
 pub(super) mod crash;
-pub(super) mod identity;
+pub(super) mod instruments;
 pub(super) mod interrupt;
 pub(super) mod retained;
 pub(super) mod watchdog;
 
-mod calls;
-mod guard;
 #[cfg(armv6m)]
 mod long_product;
+mod stack;
 
-pub(super) use clock::Clock;
-pub(super) use guard::guard_stack;
-pub(super) use identity::instruments;
+use core::str;
+
+use cortex_m_semihosting::{nr, syscall1};
+
+pub(super) use instruments::start;
+
+/// The command line that a debugger, or QEMU, has for the program; `None` if it does not fit `buffer` or is not text.
+pub fn command_line(buffer: &mut [u8]) -> Option<&str> {
+    let mut block = [buffer.as_mut_ptr() as usize, buffer.len()];
+    // SAFETY: SYS_GET_CMDLINE takes the address and length of a buffer, writes a string of at most that length into it
+    // and the string's length into the second word; both outlive the call and nothing else refers to them.
+    let status = unsafe { syscall1(nr::GET_CMDLINE, block.as_mut_ptr() as usize) };
+    let length = block[1];
+    if status == 0 { str::from_utf8(buffer.get(..length)?).ok() } else { None }
+}

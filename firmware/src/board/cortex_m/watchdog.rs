@@ -3,14 +3,12 @@
 //! It is fed in one place, by the main loop, when a frame has been drawn and sent (`main_loop.rs`). An interrupt would
 //! be the wrong one to feed it: the tick's goes on for ever while the program turns in circles.
 
-use core::cell::Cell;
 use core::sync::atomic::{AtomicU16, AtomicU32, Ordering};
 
-use cortex_m::interrupt::{Mutex, free};
 use cortex_m::peripheral::NVIC;
 
 use super::clock::ticks;
-use super::interrupt::Interrupt;
+use super::interrupt::{Interrupt, Shared, unmask};
 use crate::board::register::Device;
 use crate::config::{TICK_RATE, WATCHDOG_SECONDS};
 
@@ -60,7 +58,10 @@ impl Watchdog for TwoStage {
         self.0.register(CLEAR).write(1);
         self.0.register(LOCK).write(LOCKED);
         FED.store(ticks(), Ordering::Relaxed);
-        rearm();
+        if let Some(interrupt) = own() {
+            NVIC::unpend(interrupt);
+            unmask(interrupt);
+        }
     }
 }
 
@@ -90,28 +91,23 @@ pub(super) fn has_ticked() -> bool {
 
 /// Makes the board's watchdog stand still while a debugger halts the processor, or lets it go on.
 type Stall = fn(bool);
-static STALL: Mutex<Cell<Stall>> = Mutex::new(Cell::new(|_| ()));
+static STALL: Shared<Stall> = Shared::new(|_| ());
 
 /// The watchdog stands still while a debugger halts the processor, from now on until a report.
-pub(in crate::board) fn stall_by(stall: Stall) {
-    free(|token| STALL.borrow(token).set(stall));
-    stall(true);
+pub(in crate::board) fn stall_by(by: Stall) {
+    STALL.with(|stall| *stall = by);
+    by(true);
 }
 
 pub(super) fn stall(stalls: bool) {
-    free(|token| STALL.borrow(token).get())(stalls);
+    if let Some(stall) = STALL.with(|stall| *stall) {
+        stall(stalls);
+    }
 }
 
 /// Keeps its interrupt from coming again and again until it is fed; the one that cannot be masked comes once.
 pub(super) fn silence() {
     if let Some(interrupt) = own() {
         NVIC::mask(interrupt);
-    }
-}
-
-fn rearm() {
-    if let Some(interrupt) = own() {
-        NVIC::unpend(interrupt);
-        interrupt.unmask();
     }
 }

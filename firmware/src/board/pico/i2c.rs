@@ -3,8 +3,7 @@
 //! Source: RP2040 data sheet, 4.3.
 
 use cortex_m::asm::delay;
-use cortex_m::peripheral::NVIC;
-use embedded_hal::i2c::{ErrorKind, NoAcknowledgeSource};
+use embedded_hal::i2c::ErrorKind;
 use rp2040_hal::I2C;
 use rp2040_hal::fugit::{HertzU32, RateExtU32};
 use rp2040_hal::gpio::bank0::{Gpio4, Gpio5};
@@ -13,15 +12,14 @@ use rp2040_hal::pac::i2c0::RegisterBlock;
 use rp2040_hal::pac::io_bank0::GPIO;
 use rp2040_hal::pac::{I2C0, IO_BANK0, Interrupt, RESETS, interrupt};
 
-use crate::board::panel_bus::{self, Bus, PanelPort};
-use crate::display::{Lines, Outbox, Sent, free_bus};
+use crate::board::cortex_m::interrupt::unmask;
+use crate::board::panel_bus::{self, Bus, PanelPort, TRIES};
+use crate::display::{Outbox, SILENCE, Sent, free_bus};
 
 /// The bus's clock, Hz.
 const SPEED: u32 = 400_000;
 /// Bytes left when the next are fetched: 90 us before the last is sent.
 const FEW: u8 = 4;
-/// How often a stop is waited for, which takes 5 us: these tries take at least 12.
-const TRIES: u32 = 500;
 /// Half a clock of a slow 100 kHz, cycles of 125 MHz.
 const HALF_CLOCK: u32 = 625;
 
@@ -30,31 +28,26 @@ const FEW_LEFT: u32 = 1 << 4;
 const ABORTED: u32 = 1 << 6;
 const STOPPED: u32 = 1 << 9;
 
-const ADDRESS_REFUSED: u32 = 1 << 0;
-const DATA_REFUSED: u32 = 1 << 3;
-const ARBITRATION_LOST: u32 = 1 << 12;
+/// Why it aborted: an address or a byte was not acknowledged.
+const REFUSED: u32 = 1 << 3 | 1 << 0;
+
+/// The GPIO of the bus's lines.
+const DATA: usize = 4;
+const CLOCK: usize = 5;
 
 pub struct I2c0(());
 
 /// The pins 4 and 5 of the bus.
 pub(super) type Pins = (Pin<Gpio4, FunctionI2C, PullUp>, Pin<Gpio5, FunctionI2C, PullUp>);
 
-/// Starts it from this clock. The support library sets it up and lets go of it.
-pub(super) fn start(
-    port: I2C0,
-    pins: Pins,
-    clock: HertzU32,
-    resets: &mut RESETS,
-    outbox: &'static mut Outbox,
-) -> Bus<I2c0> {
+/// Starts it from this clock; `None` the second time. The support library sets it up and lets go of it.
+pub(super) fn start(port: I2C0, pins: Pins, clock: HertzU32, resets: &mut RESETS) -> Option<Bus<I2c0>> {
     I2C::i2c0(port, pins.0, pins.1, SPEED.Hz(), resets, clock);
     // SAFETY: the field takes this number.
     registers().ic_tx_tl().write(|w| unsafe { w.tx_tl().bits(FEW) });
-    let mut port = I2c0(());
-    port.reset();
-    // SAFETY: no critical section relies on this interrupt being masked.
-    unsafe { NVIC::unmask(Interrupt::I2C0_IRQ) };
-    Bus::new(port, outbox)
+    let bus = Bus::new(I2c0(()))?;
+    unmask(Interrupt::I2C0_IRQ);
+    Some(bus)
 }
 
 impl PanelPort for I2c0 {
@@ -72,7 +65,12 @@ impl PanelPort for I2c0 {
     fn reset(&mut self) {
         listen(registers(), NOTHING);
         registers().ic_enable().write(|w| w.enable().disabled());
-        free_bus(&mut ByHand);
+        free_bus(|clock, data| {
+            drive(CLOCK, clock);
+            drive(DATA, data);
+            delay(HALF_CLOCK);
+            pin(DATA).gpio_status().read().infrompad().bit_is_set()
+        });
         for line in [DATA, CLOCK] {
             pin(line).gpio_ctrl().modify(|_, w| w.oeover().normal().outover().normal());
         }
@@ -96,7 +94,7 @@ fn advance(port: &RegisterBlock, outbox: &mut Outbox) -> Option<Sent> {
         let reason = port.ic_tx_abrt_source().read().bits();
         let _ = port.ic_clr_tx_abrt().read();
         listen(port, NOTHING);
-        return Some(Err(error(reason)));
+        return Some(Err(if reason & REFUSED != 0 { SILENCE } else { ErrorKind::Other }));
     }
     if outbox.is_empty() {
         if !status.stop_det().is_active() {
@@ -131,54 +129,19 @@ fn advance(port: &RegisterBlock, outbox: &mut Outbox) -> Option<Sent> {
     None
 }
 
-fn error(reason: u32) -> ErrorKind {
-    if reason & ADDRESS_REFUSED != 0 {
-        ErrorKind::NoAcknowledge(NoAcknowledgeSource::Address)
-    } else if reason & DATA_REFUSED != 0 {
-        ErrorKind::NoAcknowledge(NoAcknowledgeSource::Data)
-    } else if reason & ARBITRATION_LOST != 0 {
-        ErrorKind::ArbitrationLoss
-    } else {
-        ErrorKind::Other
-    }
-}
-
 fn listen(port: &RegisterBlock, to: u32) {
     // SAFETY: a bit for each interrupt.
     port.ic_intr_mask().write(|w| unsafe { w.bits(to) });
 }
-
-/// The bus's lines, driven by hand.
-struct ByHand;
-
-const DATA: usize = 4;
-const CLOCK: usize = 5;
 
 fn pin(number: usize) -> &'static GPIO {
     // SAFETY: nothing else uses the registers of these pins.
     unsafe { &*IO_BANK0::ptr() }.gpio(number)
 }
 
+/// Lets a line go, or pulls it low, whatever the bus does with it.
 fn drive(number: usize, high: bool) {
     pin(number)
         .gpio_ctrl()
         .modify(|_, w| if high { w.oeover().disable() } else { w.outover().low().oeover().enable() });
-}
-
-impl Lines for ByHand {
-    fn set_clock(&mut self, high: bool) {
-        drive(CLOCK, high);
-    }
-
-    fn set_data(&mut self, high: bool) {
-        drive(DATA, high);
-    }
-
-    fn is_data_high(&mut self) -> bool {
-        pin(DATA).gpio_status().read().infrompad().bit_is_set()
-    }
-
-    fn wait(&mut self) {
-        delay(HALF_CLOCK);
-    }
 }

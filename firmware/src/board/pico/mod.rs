@@ -15,22 +15,22 @@ mod link;
 mod usb;
 
 use embedded_hal::digital::InputPin;
-use rp2040_hal::clocks::{Clock as _, init_clocks_and_plls};
+use rp2040_hal::clocks::{Clock, init_clocks_and_plls};
 use rp2040_hal::fugit::ExtU32;
 use rp2040_hal::gpio::{DynPinId, FunctionSioInput, Pin, Pins, PullUp};
 use rp2040_hal::watchdog::{ScratchRegister, Watchdog};
 use rp2040_hal::{Sio, pac};
 
-use crate::app::{Buttons, Instruments, Pressed};
-use crate::board::cortex_m::{Clock, guard_stack, instruments, watchdog};
+use crate::app::{Buttons, Pressed};
+use crate::board::cortex_m::{start, watchdog};
 use crate::board::panel_bus::Bus;
-use crate::board::{Board, log, serial, steps};
+use crate::board::serial::Outward;
+use crate::board::{Board, log};
 use crate::config::WATCHDOG_SECONDS;
-use crate::display::{BUILT_FOR, Outbox, Ssd1306};
+use crate::display::{BUILT_FOR, Ssd1306};
 use crate::protocol::BoardName;
 
 use i2c::I2c0;
-use link::Link;
 
 /// What the chip's boot ROM runs first: it makes the flash readable as memory, if that is a W25Q080 or takes its commands.
 // SAFETY: the linker puts this section where the ROM looks for it, and nothing else into it.
@@ -41,32 +41,28 @@ static BOOT: [u8; 256] = rp2040_boot2::BOOT_LOADER_W25Q080;
 /// The Pico's crystal, Hz.
 const CRYSTAL: u32 = 12_000_000;
 
-pub type Pico = Board<Ssd1306<Bus<I2c0>>, Link, PinKeys, Watchdog>;
+pub type Pico = Board<Ssd1306<Bus<I2c0>>, Outward, PinKeys, Watchdog>;
 
 /// Sets the board up; `None` the second time, or if its clock does not start.
 pub fn take() -> Option<Pico> {
     let core = cortex_m::Peripherals::take()?;
     let mut chip = pac::Peripherals::take()?;
     log::into_memory();
-    guard_stack(core.MPU);
     let reset_by_watchdog = reset_by_watchdog(&chip.WATCHDOG, &chip.RESETS);
     let (pll, usb_pll, resets, mut unit) = (chip.PLL_SYS, chip.PLL_USB, &mut chip.RESETS, Watchdog::new(chip.WATCHDOG));
     let clocks = init_clocks_and_plls(CRYSTAL, chip.XOSC, chip.CLOCKS, pll, usb_pll, resets, &mut unit).ok()?;
-    let hertz = clocks.system_clock.freq().to_Hz();
+    let chip_number = [chip.SYSINFO.chip_id().read().bits(), 0, 0, 0];
+    let instruments = start(core, BoardName::Pico, clocks.system_clock.freq().to_Hz(), chip_number);
     let pins = Pins::new(chip.IO_BANK0, chip.PADS_BANK0, Sio::new(chip.SIO).gpio_bank0, &mut chip.RESETS);
     let serial = (pins.gpio0.reconfigure(), pins.gpio1.reconfigure());
-    let link = Link::start(chip.UART0, serial, clocks.peripheral_clock.freq(), &mut chip.RESETS)?;
-    let receiver = serial::receive_from(link::INWARD);
+    let link = link::start(chip.UART0, serial, clocks.peripheral_clock.freq(), &mut chip.RESETS)?;
     usb::start(chip.USBCTRL_REGS, chip.USBCTRL_DPRAM, clocks.usb_clock, &mut chip.RESETS)?;
     link::enable_interrupts();
-    let outbox = cortex_m::singleton!(: Outbox = Outbox::new())?;
     let wires = (pins.gpio4.reconfigure(), pins.gpio5.reconfigure());
-    let bus = i2c::start(chip.I2C0, wires, clocks.system_clock.freq(), &mut chip.RESETS, outbox);
-    let chip_number = [chip.SYSINFO.chip_id().read().bits(), 0, 0, 0];
+    let bus = i2c::start(chip.I2C0, wires, clocks.system_clock.freq(), &mut chip.RESETS)?;
     Some(Board {
         panel: Ssd1306::new(bus, BUILT_FOR),
         link,
-        receiver,
         keys: PinKeys([
             pins.gpio10.into_pull_up_input().into_dyn_pin(),
             pins.gpio11.into_pull_up_input().into_dyn_pin(),
@@ -74,11 +70,7 @@ pub fn take() -> Option<Pico> {
             pins.gpio13.into_pull_up_input().into_dyn_pin(),
             pins.gpio14.into_pull_up_input().into_dyn_pin(),
         ]),
-        instruments: Instruments {
-            timed: steps::timed,
-            ..instruments(BoardName::Pico, hertz, chip_number, &core.CPUID, core.DCB, core.DWT)
-        },
-        clock: Clock::start(core.SYST, hertz),
+        instruments,
         watchdog: start_watchdog(unit),
         reset_by_watchdog,
     })

@@ -11,18 +11,18 @@ use usb_device::device::{StringDescriptors, UsbDevice, UsbDeviceBuilder, UsbDevi
 use usbd_serial::{CdcAcmClass, USB_CLASS_CDC};
 
 use crate::board::cortex_m::interrupt::Shared;
+use crate::board::serial::Inbox;
 use crate::config::USB_QUEUE;
 
 /// What anybody may use for a serial port (V-USB's shared ids). Without a serial number, as long as no program goes by them to find
 /// the board (rule 7 of V-USB's `USB-IDs-for-free.txt`): none of ours does.
 const IDS: UsbVidPid = UsbVidPid(0x16c0, 0x27dd);
-pub(super) const PACKET: usize = 64;
+const PACKET: usize = 64;
 
 struct Usb {
     device: UsbDevice<'static, UsbBus>,
     port: CdcAcmClass<'static, UsbBus>,
     leaving: Deque<u8, USB_QUEUE>,
-    arrived: Deque<u8, PACKET>,
 }
 
 static USB: Shared<Option<&'static mut Usb>> = Shared::new(None);
@@ -39,7 +39,7 @@ pub(super) fn start(
     let port = CdcAcmClass::new(bus, PACKET as u16);
     let names = StringDescriptors::default().manufacturer("double-pendulum").product("Double pendulum");
     let device = UsbDeviceBuilder::new(bus, IDS).strings(&[names]).ok()?.device_class(USB_CLASS_CDC).build();
-    let usb = singleton!(: Usb = Usb { device, port, leaving: Deque::new(), arrived: Deque::new() })?;
+    let usb = singleton!(: Usb = Usb { device, port, leaving: Deque::new() })?;
     USB.with(|place| *place = Some(usb))
 }
 
@@ -51,45 +51,31 @@ fn with<T>(act: impl FnOnce(&mut Usb) -> T) -> Option<T> {
 /// Sends a message, if somebody listens and there is room for all of it.
 #[inline(never)] // the libraries may panic, and the main loop may not (test `no_panic`)
 pub(super) fn send(message: &[u8]) {
-    with(|usb| usb.send(message));
+    with(|usb| {
+        let is_heard = usb.device.state() == UsbDeviceState::Configured && usb.port.dtr();
+        if !is_heard {
+            usb.leaving.clear();
+        } else if put(&mut usb.leaving, message) {
+            usb.pass_on();
+        }
+    });
 }
 
-/// Does what the device's interrupt asks for; takes a packet only if there is room for it.
-pub(super) fn poll(has_room: bool) {
-    with(|usb| usb.poll(has_room));
-}
-
-pub(super) fn take() -> Option<u8> {
-    with(|usb| usb.arrived.pop_front()).flatten()
+/// Does what the device's interrupt asks for; takes a packet only if there is room for it, and says whether there is.
+pub(super) fn poll(inbox: &mut Inbox) -> bool {
+    let has_room = room(&inbox.received) >= PACKET;
+    with(|usb| {
+        usb.device.poll(&mut [&mut usb.port]);
+        let mut packet = [0; PACKET];
+        if has_room && let Ok(length) = usb.port.read_packet(&mut packet) {
+            packet.into_iter().take(length).for_each(|byte| inbox.push(byte));
+        }
+        usb.pass_on();
+    });
+    has_room
 }
 
 impl Usb {
-    fn send(&mut self, message: &[u8]) {
-        let is_heard = self.device.state() == UsbDeviceState::Configured && self.port.dtr();
-        if !is_heard {
-            self.leaving.clear();
-        } else if self.leaving.capacity().saturating_sub(self.leaving.len()) >= message.len() {
-            for byte in message {
-                let _ = self.leaving.push_back(*byte);
-            }
-            self.pass_on();
-        }
-    }
-
-    fn poll(&mut self, has_room: bool) {
-        self.device.poll(&mut [&mut self.port]);
-        let mut packet = [0; PACKET];
-        if has_room
-            && self.arrived.is_empty()
-            && let Ok(length) = self.port.read_packet(&mut packet)
-        {
-            for byte in packet.into_iter().take(length) {
-                let _ = self.arrived.push_back(byte);
-            }
-        }
-        self.pass_on();
-    }
-
     /// Gives the device its next packet, if it has sent the last. No packet is a full one: after that the host would wait for more.
     fn pass_on(&mut self) {
         let mut packet = [0; PACKET - 1];
@@ -100,4 +86,13 @@ impl Usb {
             }
         }
     }
+}
+
+fn room<const N: usize>(queue: &Deque<u8, N>) -> usize {
+    queue.capacity().saturating_sub(queue.len())
+}
+
+/// Puts a message into a queue if there is room for all of it; whether there was.
+pub(super) fn put<const N: usize>(queue: &mut Deque<u8, N>, message: &[u8]) -> bool {
+    room(queue) >= message.len() && message.iter().all(|byte| queue.push_back(*byte).is_ok())
 }

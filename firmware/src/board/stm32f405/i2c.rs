@@ -3,9 +3,7 @@
 //! Source: ST RM0090, 27.3.3 (master transmitter and receiver), 27.3.4 (errors); ES0182, the chip's errata.
 
 use cortex_m::asm::delay;
-use cortex_m::peripheral::NVIC;
-use embedded_hal::digital::{InputPin, OutputPin};
-use embedded_hal::i2c::{ErrorKind, NoAcknowledgeSource};
+use embedded_hal::i2c::ErrorKind;
 use stm32f4xx_hal::gpio::alt::i2c1::{Scl, Sda};
 use stm32f4xx_hal::gpio::{PB6, PB7, PinState};
 use stm32f4xx_hal::i2c::I2c;
@@ -15,13 +13,12 @@ use stm32f4xx_hal::pac::{I2C1, Interrupt};
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::Rcc;
 
-use crate::board::panel_bus::{self, Bus, PanelPort};
-use crate::display::{Lines, Outbox, Sent, free_bus};
+use crate::board::cortex_m::interrupt::unmask;
+use crate::board::panel_bus::{self, Bus, PanelPort, TRIES};
+use crate::display::{Outbox, SILENCE, Sent, free_bus};
 
 /// Half a clock of a slow 100 kHz, cycles of 168 MHz.
 const HALF_CLOCK: u32 = 840;
-/// How often a start or stop is waited for, which takes 5 us: these tries take at least 12.
-const TRIES: u32 = 500;
 
 const START_SENT: u16 = 1 << 0;
 const ADDRESS_SENT: u16 = 1 << 1;
@@ -34,16 +31,12 @@ pub struct I2c1 {
     pins: (Scl, Sda),
 }
 
-pub(super) fn start(port: I2C1, clock: PB6, data: PB7, rcc: &mut Rcc, outbox: &'static mut Outbox) -> Bus<I2c1> {
+/// `None` the second time.
+pub(super) fn start(port: I2C1, clock: PB6, data: PB7, rcc: &mut Rcc) -> Option<Bus<I2c1>> {
     let (port, pins) = I2c::new(port, (clock, data), 400.kHz(), rcc).release();
-    let mut port = I2c1 { port, pins };
-    port.reset();
-    // SAFETY: no critical section relies on these interrupts being masked.
-    unsafe {
-        NVIC::unmask(Interrupt::I2C1_EV);
-        NVIC::unmask(Interrupt::I2C1_ER);
-    }
-    Bus::new(port, outbox)
+    let bus = Bus::new(I2c1 { port, pins })?;
+    [Interrupt::I2C1_EV, Interrupt::I2C1_ER].into_iter().for_each(unmask);
+    Some(bus)
 }
 
 impl PanelPort for I2c1 {
@@ -60,40 +53,26 @@ impl PanelPort for I2c1 {
         silence(port);
         if let (Scl::PB6(clock), Sda::PB7(data)) = &mut self.pins {
             clock.with_open_drain_output_in_state(PinState::High, |clock| {
-                data.with_open_drain_output_in_state(PinState::High, |data| free_bus(&mut ByHand(clock, data)))
+                data.with_open_drain_output_in_state(PinState::High, |data| {
+                    free_bus(|high_clock, high_data| {
+                        clock.set_state(high_clock.into());
+                        data.set_state(high_data.into());
+                        delay(HALF_CLOCK);
+                        data.is_high()
+                    })
+                })
             });
         }
         let (frequency, clock, rise) = (port.cr2().read().bits(), port.ccr().read().bits(), port.trise().read().bits());
         port.cr1().write(|w| w.swrst().set_bit());
         port.cr1().write(|w| w.swrst().clear_bit());
         // SAFETY: they are what these registers held before.
-        port.cr2().write(|w| unsafe { w.bits(frequency) });
-        // SAFETY: as above.
-        port.ccr().write(|w| unsafe { w.bits(clock) });
-        // SAFETY: as above.
-        port.trise().write(|w| unsafe { w.bits(rise) });
+        unsafe {
+            port.cr2().write(|w| w.bits(frequency));
+            port.ccr().write(|w| w.bits(clock));
+            port.trise().write(|w| w.bits(rise));
+        }
         port.cr1().write(|w| w.pe().set_bit());
-    }
-}
-
-/// The bus's lines, driven by hand.
-struct ByHand<'a, Clock, Data>(&'a mut Clock, &'a mut Data);
-
-impl<Clock: OutputPin, Data: OutputPin + InputPin> Lines for ByHand<'_, Clock, Data> {
-    fn set_clock(&mut self, high: bool) {
-        let _ = self.0.set_state(high.into());
-    }
-
-    fn set_data(&mut self, high: bool) {
-        let _ = self.1.set_state(high.into());
-    }
-
-    fn is_data_high(&mut self) -> bool {
-        self.1.is_high().unwrap_or_default()
-    }
-
-    fn wait(&mut self) {
-        delay(HALF_CLOCK);
     }
 }
 
@@ -104,7 +83,7 @@ fn I2C1_EV() {
 
 #[interrupt]
 fn I2C1_ER() {
-    panel_bus::serve(|outbox| fail(registers(), outbox));
+    panel_bus::serve(|_| fail(registers()));
 }
 
 fn registers() -> &'static RegisterBlock {
@@ -159,18 +138,15 @@ fn advance(port: &RegisterBlock, outbox: &mut Outbox) -> Option<Sent> {
 
 /// A bus error is none: a master may detect one where there is none, so it is cleared and the transfer goes on (ES0182,
 /// "Spurious bus error detection in master mode"). A bus that has really been disturbed hangs, and is freed for that.
-fn fail(port: &RegisterBlock, outbox: &Outbox) -> Option<Sent> {
+fn fail(port: &RegisterBlock) -> Option<Sent> {
     let status = port.sr1().read();
     // To write 1 leaves a flag as it is: one that has come up meanwhile.
     port.sr1()
         .write(|w| w.af().bit(!status.af().bit()).arlo().bit(!status.arlo().bit()).berr().bit(!status.berr().bit()));
-    let error = if status.af().bit_is_set() {
-        let source = if outbox.has_begun() { NoAcknowledgeSource::Data } else { NoAcknowledgeSource::Address };
-        ErrorKind::NoAcknowledge(source)
-    } else if status.arlo().bit_is_set() {
-        ErrorKind::ArbitrationLoss
-    } else {
-        return None;
+    let error = match (status.af().bit(), status.arlo().bit()) {
+        (true, _) => SILENCE,
+        (_, true) => ErrorKind::Other,
+        _ => return None,
     };
     stop(port);
     Some(Err(error))

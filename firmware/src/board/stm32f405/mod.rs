@@ -15,20 +15,21 @@ mod i2c;
 
 use stm32f4xx_hal::gpio::{PB10, PB11, PC7};
 use stm32f4xx_hal::pac::usart1::RegisterBlock;
-use stm32f4xx_hal::pac::{self, DBGMCU, IWDG, Interrupt, NVIC, RCC, USART3};
+use stm32f4xx_hal::pac::{self, DBGMCU, IWDG, Interrupt, RCC, USART3};
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::{Config, Rcc};
 use stm32f4xx_hal::serial::{Event, config};
 use stm32f4xx_hal::watchdog::IndependentWatchdog;
 
-use crate::app::{Buttons, Instruments, Pressed};
+use crate::app::{Buttons, Pressed};
+use crate::board::cortex_m::interrupt::unmask;
+use crate::board::cortex_m::start;
 use crate::board::cortex_m::watchdog::{self, Watchdog};
-use crate::board::cortex_m::{Clock, guard_stack, instruments};
 use crate::board::panel_bus::Bus;
-use crate::board::serial::{self, Inward, Receiver, Taken, Transmitter};
-use crate::board::{Board, log, steps};
+use crate::board::serial::{Inbox, Outward, receive_by, send};
+use crate::board::{Board, log};
 use crate::config::{BAUD, WATCHDOG_SECONDS};
-use crate::display::{BUILT_FOR, Outbox, Ssd1306};
+use crate::display::{BUILT_FOR, Ssd1306};
 use crate::protocol::BoardName;
 
 use i2c::I2c1;
@@ -39,7 +40,7 @@ const HERTZ: u32 = 168_000_000;
 /// The chip's unique number (RM0090, 39.1), in its system memory.
 const UNIQUE_NUMBER: *const [u32; 3] = core::ptr::without_provenance(0x1fff_7a10);
 
-pub type Stm32f405 = Board<Ssd1306<Bus<I2c1>>, Transmitter, OneKey, IndependentWatchdog>;
+pub type Stm32f405 = Board<Ssd1306<Bus<I2c1>>, Outward, OneKey, IndependentWatchdog>;
 
 /// Sets the board up; `None` the second time.
 pub fn take() -> Option<Stm32f405> {
@@ -51,27 +52,14 @@ pub fn take() -> Option<Stm32f405> {
     } else {
         log::into_memory()
     }
-    guard_stack(core.MPU);
+    let chip_number = if is_emulated { [0; 4] } else { chip_number() };
+    let instruments = start(core, BoardName::Stm32f405, HERTZ, chip_number);
     let (b, c) = (chip.GPIOB.split(&mut rcc), chip.GPIOC.split(&mut rcc));
-    let (link, receiver) = start_link(chip.USART3, (b.pb10, b.pb11), &mut rcc)?;
-    let outbox = cortex_m::singleton!(: Outbox = Outbox::new())?;
     Some(Board {
-        panel: Ssd1306::new(i2c::start(chip.I2C1, b.pb6, b.pb7, &mut rcc, outbox), BUILT_FOR),
-        link,
-        receiver,
+        panel: Ssd1306::new(i2c::start(chip.I2C1, b.pb6, b.pb7, &mut rcc)?, BUILT_FOR),
+        link: start_link(chip.USART3, (b.pb10, b.pb11), &mut rcc)?,
         keys: OneKey(c.pc7.into_pull_up_input()),
-        instruments: Instruments {
-            timed: steps::timed,
-            ..instruments(
-                BoardName::Stm32f405,
-                HERTZ,
-                if is_emulated { [0; 4] } else { chip_number() },
-                &core.CPUID,
-                core.DCB,
-                core.DWT,
-            )
-        },
-        clock: Clock::start(core.SYST, HERTZ),
+        instruments,
         watchdog: start_watchdog(chip.IWDG),
         reset_by_watchdog: reset_by_watchdog(&mut rcc),
     })
@@ -109,18 +97,17 @@ fn start_clock(rcc: RCC) -> (Rcc, bool) {
 }
 
 /// Starts the serial port. The support library sets it up and lets go of it.
-fn start_link(port: USART3, pins: (PB10, PB11), rcc: &mut Rcc) -> Option<(Transmitter, Receiver)> {
+fn start_link(port: USART3, pins: (PB10, PB11), rcc: &mut Rcc) -> Option<Outward> {
     // There is a divisor for this baud rate at either clock, so this does not fail.
     let mut port = port.serial::<u8>(pins, config::Config::default().baudrate(BAUD.bps()), rcc).ok()?;
     port.listen(Event::RxNotEmpty);
-    let put = |byte: u8| {
-        uart().dr().write(|w| w.dr().set(byte.into()));
-    };
-    // To read a byte ends its interrupt; there is nothing else to clear.
-    let receiver = serial::receive_from(Inward { clear: |_| (), take: received });
-    // SAFETY: no critical section relies on this interrupt being masked.
-    unsafe { NVIC::unmask(Interrupt::USART3) };
-    Some((Transmitter { is_ready: || uart().sr().read().txe().bit_is_set(), put }, receiver))
+    receive_by(receive);
+    unmask(Interrupt::USART3);
+    Some(Outward(|bytes| send(bytes, || uart().sr().read().txe().bit_is_set(), put)))
+}
+
+fn put(byte: u8) {
+    uart().dr().write(|w| w.dr().set(byte.into()));
 }
 
 fn uart() -> &'static RegisterBlock {
@@ -128,12 +115,20 @@ fn uart() -> &'static RegisterBlock {
     unsafe { &*USART3::ptr() }
 }
 
-fn received() -> Taken {
-    let status = uart().sr().read();
-    // A byte that came before the last one was read is lost, and interrupts until the data are read.
-    let (has_byte, overrun) = (status.rxne().bit_is_set(), status.ore().bit_is_set());
-    let data = (has_byte || overrun).then(|| uart().dr().read().dr().bits() as u8);
-    Taken { byte: data.filter(|_| has_byte), overrun }
+/// To read a byte ends its interrupt. One that came before the last was read is lost, and interrupts until the data are read.
+fn receive(inbox: &mut Inbox) {
+    loop {
+        let status = uart().sr().read();
+        let (has_byte, overrun) = (status.rxne().bit_is_set(), status.ore().bit_is_set());
+        if !has_byte && !overrun {
+            return;
+        }
+        let byte = uart().dr().read().dr().bits() as u8;
+        inbox.note_overrun(overrun);
+        if has_byte {
+            inbox.push(byte);
+        }
+    }
 }
 
 /// Starts the independent watchdog, which has no interrupt, and an oscillator of its own, good for a factor of 2 (17 to 47 kHz

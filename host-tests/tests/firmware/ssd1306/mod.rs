@@ -1,23 +1,19 @@
 //! The one-colour panel: its frame, and its driver against controllers that are stricter than the real ones.
 
 mod bus;
-mod controller;
 
-use embedded_hal::i2c::{ErrorKind, NoAcknowledgeSource};
+use embedded_hal::i2c::ErrorKind;
 use fastrand::Rng;
 use firmware::config::{STM32F405, TICK_RATE};
-use firmware::display::{By, Controller as Name, Display, Found, Ssd1306, Ssd1306Error};
+use firmware::display::{By, Controller as Name, Display, Found, SILENCE, Ssd1306, Ssd1306Error};
 use firmware::graphics::{Bitmap, Canvas, HEIGHT, WIDTH};
 use firmware::scenes::SceneName;
 use host_tests::emulator::host::Show;
 use host_tests::emulator::qemu::Screenshot;
 
 use crate::bench::places;
-use bus::{BYTE, Line};
-use controller::{Controller, Kind, SH1106, SILENT, SSD1306};
+use bus::{BYTE, Controller, Kind, Line, SH1106, SILENT, SSD1306};
 
-/// No answer.
-const SILENCE: ErrorKind = ErrorKind::NoAcknowledge(NoAcknowledgeSource::Address);
 /// Bits that 400 kHz carry in a tick.
 const TICK: u32 = 400_000 / TICK_RATE;
 /// As much time as any frame needs, with all that wakes the panel.
@@ -53,20 +49,18 @@ fn scene(ticks: u32) -> Canvas {
 }
 
 #[test]
-fn black_is_dark_and_the_upper_half_of_the_greys_is_solid() {
-    let share = |grey: u8, all_greys: bool| {
-        let mut canvas = Canvas::default();
-        if all_greys {
-            canvas.all_greys = true;
+fn black_is_dark_and_the_upper_half_of_the_greys_is_solid_but_in_a_picture() {
+    for (all_greys, lit) in [
+        (false, [0, 0, 0, 3, 6, 8, 11, 14, 16, 16, 16, 16, 16, 16, 16, 16]),
+        (true, [0, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16]),
+    ] {
+        for (grey, lit) in (0..).zip(lit) {
+            let mut canvas = Canvas { all_greys, ..Canvas::default() };
+            places().for_each(|(x, y)| canvas.update(x, y, |_| grey));
+            let ones: u32 = Bitmap::from(&canvas).pages.as_flattened().iter().map(|byte| byte.count_ones()).sum();
+            assert_eq!(ones * 16 / (WIDTH * HEIGHT) as u32, lit, "pixels of 16 at {grey}, in a picture: {all_greys}");
         }
-        places().for_each(|(x, y)| canvas.update(x, y, |_| grey));
-        let bitmap = Bitmap::from(&canvas);
-        bitmap.pages.as_flattened().iter().map(|byte| byte.count_ones()).sum::<u32>() as usize * 16 / (WIDTH * HEIGHT)
-    };
-    let shares: Vec<_> = (0..16).map(|grey| share(grey, false)).collect();
-    assert_eq!(shares, [0, 0, 0, 3, 6, 8, 11, 14, 16, 16, 16, 16, 16, 16, 16, 16], "lit pixels of 16");
-    let shares: Vec<_> = (0..16).map(|grey| share(grey, true)).collect();
-    assert_eq!(shares, [0, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16], "lit pixels of 16 in a picture");
+    }
 }
 
 #[test]
@@ -143,63 +137,13 @@ const fn bits(columns: u32) -> u32 {
 
 #[test]
 fn what_has_not_changed_is_not_sent_but_for_the_part_that_is_sent_again() {
-    let (mut panel, mut canvas) = (panel(Controller::at(0x3C)), scene(30));
+    let (mut panel, mut canvas) = (panel(Controller::new(SSD1306, 0x3C)), scene(30));
     let taken = [&[][..], &[], &[], &[], &[20], &[20, 90]].map(|changed| {
         changed.iter().for_each(|&x| canvas.update(x, 7, |grey| 15 - grey));
         assert_eq!(flush(&mut panel, &canvas, LONG), Ok(()));
         panel.bus.taken
     });
     assert_eq!(taken[3..], [0, 1, 2].map(|changed| changed * bits(1) + bits(16) + 1), "and the stop");
-}
-
-/// Frames of each scene: 5 s.
-const FRAMES: u32 = 5 * TICK_RATE;
-
-/// A panel that is given a frame in each tick.
-struct Played {
-    panel: Panel,
-    /// What was sent last.
-    held: Canvas,
-}
-
-impl Played {
-    fn on(controller: Controller) -> Self {
-        Self { panel: panel(controller), held: Canvas::default() }
-    }
-
-    /// Whether the panel shows the last frame when this one comes; `None` if the bus is still busy with that.
-    fn tick(&mut self, canvas: Canvas) -> Option<bool> {
-        let Self { panel, held } = self;
-        let (was_idle, sent, shows) = (panel.bus.is_idle(), panel.bus.sent, shows(panel, held));
-        let _ = flush(panel, &canvas, TICK);
-        if was_idle {
-            *held = canvas;
-        } else {
-            assert_eq!(panel.bus.sent, sent, "it disturbs the one before");
-        }
-        was_idle.then_some(shows)
-    }
-}
-
-/// A frame is held back by nothing but the bus: by what the one before has left to send when it comes.
-#[test]
-fn as_many_frames_are_shown_as_the_bus_can_carry() {
-    for (kind, &name) in [SSD1306, SH1106].iter().flat_map(|kind| SceneName::ALL.iter().map(move |name| (*kind, name)))
-    {
-        let (mut played, mut scene, mut most) = (Played::on(Controller::new(kind, 0x3C)), shown(name), 0);
-        for _ in 0..2 * FIRST {
-            played.tick(scene.frame());
-        }
-        for frame in 0..FRAMES {
-            scene.tick();
-            let sent = played.panel.bus.sent;
-            assert_eq!(played.tick(scene.frame()), Some(true), "{}, frame {frame}, {kind:?}", name.name());
-            if played.panel.bus.sent != sent {
-                most = most.max(played.panel.bus.taken);
-            }
-        }
-        println!("{:12} {:.1} ms at most", name.name(), f64::from(most) / 400.0);
-    }
 }
 
 /// Ticks for which the panel is away: between two of them, for so short a time that nobody misses an answer, in one, for longer.
@@ -209,35 +153,50 @@ const MOMENTS: usize = 15;
 /// Ticks in which the picture must be back: 2 s.
 const BACK: u32 = 2 * TICK_RATE;
 
+/// A frame is held back by nothing but the bus: by what the one before has left to send when it comes.
 #[test]
-fn a_panel_that_is_unplugged_and_plugged_in_again_shows_the_picture_within_two_seconds() {
+fn as_many_frames_are_shown_as_the_bus_can_carry_within_two_seconds_of_plugging_the_panel_in() {
     let runs = [SSD1306, SH1106].into_iter().flat_map(|kind| [false, true].map(|is_paused| (kind, is_paused)));
     for ((kind, is_paused), &name) in runs.flat_map(|run| SceneName::ALL.iter().map(move |name| (run, name))) {
-        let (mut played, mut scene, mut longest) = (Played::on(Controller::new(kind, 0x3C)), shown(name), 0);
-        let mut tick = |played: &mut Played| {
+        let (mut panel, mut held, mut scene) = (panel(Controller::new(kind, 0x3C)), Canvas::default(), shown(name));
+        let (mut longest, mut most) = (0, 0);
+        let run = format!("{:12} paused {is_paused}, {} columns", name.name(), kind.columns);
+        // Whether the panel shows the last frame when the next one comes; not if the bus is still busy with that.
+        let mut tick = |panel: &mut Panel| {
             if !is_paused {
                 scene.tick();
             }
-            played.tick(scene.frame())
+            let (was_idle, sent, is_shown) = (panel.bus.is_idle(), panel.bus.sent, shows(panel, &held));
+            let frame = scene.frame();
+            let _ = flush(panel, &frame, TICK);
+            if was_idle {
+                held = frame;
+            } else {
+                assert_eq!(panel.bus.sent, sent, "it disturbs the one before");
+            }
+            was_idle && is_shown
         };
         for (away, moment) in AWAY.into_iter().zip([97, 101, 83, 89, 103]).cycle().take(MOMENTS) {
-            assert_eq!((0..moment).map(|_| tick(&mut played)).last(), Some(Some(true)), "{}", name.name());
-            played.panel.bus.panel = Controller::new(kind, 0x3C).plugged(false);
-            for _ in 0..away {
-                tick(&mut played);
+            let back = (0..BACK).find(|_| tick(&mut panel));
+            longest = longest.max(back.unwrap_or_else(|| panic!("{run}: it is not back")));
+            for _ in 0..moment {
+                assert!(tick(&mut panel), "{run}");
+                most = most.max(panel.bus.taken);
             }
-            played.panel.bus.panel.plugged_in = true;
-            let back = (0..BACK).find(|_| tick(&mut played) == Some(true));
-            longest = longest.max(back.unwrap_or_else(|| panic!("{}, paused {is_paused}, {kind:?}", name.name())));
+            panel.bus.panel = Controller::new(kind, 0x3C).plugged(false);
+            for _ in 0..away {
+                tick(&mut panel);
+            }
+            panel.bus.panel.plugged_in = true;
         }
-        println!("{:12} paused {is_paused}: back after {longest} ticks at most", name.name());
+        println!("{run}: {:.1} ms at most, back after {longest} ticks at most", f64::from(most) / 400.0);
     }
 }
 
 #[test]
 fn a_panel_whose_bus_is_too_slow_says_so() {
     let mut rng = Rng::with_seed(2);
-    let mut panel = panel(Controller::at(0x3C));
+    let mut panel = panel(Controller::new(SSD1306, 0x3C));
     let mut second = |is_noisy: bool| {
         let mut still = Canvas::default();
         let mut told = Ok(());
@@ -257,9 +216,9 @@ fn a_panel_whose_bus_is_too_slow_says_so() {
 
 #[test]
 fn an_absent_panel_is_looked_for_once_a_second_and_may_come_and_go() {
-    let plug = |panel: &mut Panel, plugged_in| panel.bus.panel = Controller::at(0x3C).plugged(plugged_in);
+    let plug = |panel: &mut Panel, plugged_in| panel.bus.panel = Controller::new(SSD1306, 0x3C).plugged(plugged_in);
     let flush = |panel: &mut Panel, ticks| flush(panel, &scene(ticks), TICK);
-    let mut panel = panel(Controller::at(0x3C).plugged(false));
+    let mut panel = panel(Controller::new(SSD1306, 0x3C).plugged(false));
     let absent = Err(Ssd1306Error::Absent(SILENCE));
     // No answer at the first address, nor at the second.
     assert_eq!([1; 3].map(|ticks| flush(&mut panel, ticks)), [Ok(()), Ok(()), absent]);
@@ -282,7 +241,7 @@ fn an_absent_panel_is_looked_for_once_a_second_and_may_come_and_go() {
 #[test]
 fn a_bus_that_hangs_holds_up_nothing_and_is_freed() {
     let flush = |panel: &mut Panel, ticks| flush(panel, &scene(ticks), TICK);
-    let mut panel = panel(Controller::at(0x3C));
+    let mut panel = panel(Controller::new(SSD1306, 0x3C));
     (0..5).for_each(|ticks| assert_eq!(flush(&mut panel, ticks), Ok(())));
     panel.bus.hangs = true;
     let told: Vec<_> = (5..20).map(|ticks| flush(&mut panel, ticks)).collect();

@@ -1,4 +1,5 @@
-//! The stack's guard: a stack that grows too long is stopped before it writes on anything.
+//! The stack's guard: a stack that grows too long is stopped before it writes on anything. And the calls found on the stack: where a
+//! crashed program came from when nothing else tells.
 //!
 //! The upper 32 KB of memory are the stack's, and it grows downwards. The statics are at the bottom of the lower 32 KB;
 //! what they leave of it, in eighths of 4 KB, the memory protection unit refuses to everyone. `memory.x` sees to it that
@@ -15,6 +16,8 @@
 use core::ops::Range;
 
 use cortex_m::peripheral::MPU;
+
+use crate::fault::call_size;
 
 /// The part of memory that the unit's one region covers, bytes from the start of memory; the rest is the stack's.
 const REGION: u32 = 32 * 1024;
@@ -34,9 +37,13 @@ const UNIT_ON: u32 = 1 << 2 | 1 << 0;
 unsafe extern "C" {
     static _ram_start: u8;
     static __euninit: u8;
+    static _stack_start: u8;
+    static __stext: u8;
+    static __etext: u8;
 }
 
-pub fn addresses() -> Range<u32> {
+/// Where the guard is.
+fn guard() -> Range<u32> {
     let start = &raw const _ram_start as u32;
     let statics = (&raw const __euninit as u32).wrapping_sub(start);
     start.wrapping_add(statics.next_multiple_of(EIGHTH).min(REGION))..start.wrapping_add(REGION)
@@ -51,7 +58,7 @@ pub fn guard_stack(unit: MPU) {
         defmt::warn!("no memory protection unit: the stack has no guard");
         return;
     }
-    let Range { start, end } = addresses();
+    let Range { start, end } = guard();
     let base = end.wrapping_sub(REGION);
     // A bit for each eighth that is not refused, from the lowest.
     let statics = (1_u32 << (start.wrapping_sub(base) / EIGHTH)) - 1;
@@ -63,4 +70,27 @@ pub fn guard_stack(unit: MPU) {
     }
     cortex_m::asm::dsb();
     cortex_m::asm::isb();
+}
+
+/// The addresses of the calls, the last one first, that stand on the stack from `sp` upwards. Some may have ended before:
+/// the stack is not swept.
+pub fn calls(sp: u32) -> impl Iterator<Item = u32> {
+    let bottom = sp.max(guard().end).next_multiple_of(4);
+    let words = (bottom..&raw const _stack_start as u32).step_by(4);
+    // SAFETY: these are whole words of the stack; any pattern is a `u32`.
+    words.filter_map(|address| call_before(unsafe { (address as *const u32).read_volatile() }))
+}
+
+/// The halfword at an address in the code.
+pub fn instruction(address: u32) -> Option<u16> {
+    let code = &raw const __stext as u32..&raw const __etext as u32;
+    // SAFETY: any two bytes of the code are a `u16`.
+    (address & 1 == 0 && code.contains(&address)).then(|| unsafe { (address as *const u16).read_volatile() })
+}
+
+/// The call that returns to this address, if it is one that a call returns to: in the code, marked as Thumb code, and a
+/// call before it.
+fn call_before(address: u32) -> Option<u32> {
+    let before = |back: u32| instruction(address.wrapping_sub(back + 1));
+    Some(address.wrapping_sub(call_size([before(4)?, before(2)?])? + 1))
 }

@@ -1,7 +1,7 @@
-//! Messages on their way to a panel: filled while its bus stands still, emptied by the bus's interrupt while the next frame
-//! is computed.
+//! A panel's I2C bus: the messages on their way, filled in while it stands still and sent by its interrupt while the next frame is
+//! computed; and how it is freed.
 
-use embedded_hal::i2c::ErrorKind;
+use embedded_hal::i2c::{ErrorKind, NoAcknowledgeSource};
 use heapless::Vec;
 
 use crate::graphics::{PAGES, WIDTH};
@@ -10,7 +10,7 @@ use crate::graphics::{PAGES, WIDTH};
 const CAPACITY: usize = PAGES * (5 + 2 + WIDTH) + 48;
 
 /// Messages to one address, each as its length and its bytes.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Outbox {
     /// Whom the messages are for, set by [`address_to`](Self::address_to).
     pub address: u8,
@@ -23,7 +23,14 @@ pub struct Outbox {
     pub asks: bool,
     /// The status byte last read.
     pub status: u8,
+    /// What has become of the messages; `None` as long as they are going out.
+    pub sent: Option<Sent>,
 }
+
+pub type Sent = Result<(), ErrorKind>;
+
+/// What a panel says that does not acknowledge: there is none.
+pub const SILENCE: ErrorKind = ErrorKind::NoAcknowledge(NoAcknowledgeSource::Unknown);
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OutByte {
@@ -32,14 +39,16 @@ pub struct OutByte {
     pub ends_message: bool,
 }
 
-impl Outbox {
-    pub const fn new() -> Self {
-        Self { address: 0, messages: Vec::new(), at: 0, left: 0, asks: false, status: 0 }
+impl Default for Outbox {
+    fn default() -> Self {
+        Self { address: 0, messages: Vec::new(), at: 0, left: 0, asks: false, status: 0, sent: Some(Ok(())) }
     }
+}
 
+impl Outbox {
     /// Empties it: what is put in from now on is for this address.
     pub fn address_to(&mut self, address: u8) {
-        *self = Self { address, ..Self::new() };
+        *self = Self { address, ..Self::default() };
     }
 
     /// Puts a message in: a byte that tells what follows, and what follows, up to 254 bytes. One that does not fit is dropped; the
@@ -61,11 +70,6 @@ impl Outbox {
 
     pub fn is_empty(&self) -> bool {
         self.at == self.messages.len()
-    }
-
-    /// Whether anything has gone out; if not, what failed was the address.
-    pub fn has_begun(&self) -> bool {
-        self.at != 0
     }
 
     /// Whether a message goes out, its last byte still to come.
@@ -90,8 +94,6 @@ impl Iterator for Outbox {
     }
 }
 
-pub type Sent = Result<(), ErrorKind>;
-
 /// A bus that empties an outbox while the processor does something else.
 pub trait PanelBus {
     /// The outbox, and what has become of the messages put in last; `None` as long as they are going out.
@@ -102,4 +104,34 @@ pub trait PanelBus {
 
     /// Aborts the transfer, which then has failed, and frees a bus that hangs.
     fn give_up(&mut self);
+}
+
+/// The most clocks that a panel can be waiting for: the eight bits of a byte and its acknowledgement.
+const MOST_CLOCKS: u32 = 9;
+
+/// Frees a bus whose data line a panel holds low: clocks it until that line is high, at most nine times, then makes a stop. A bus
+/// whose data line is high already is left alone. Whether the line is high in the end: if not, the panel is defective, or the line is
+/// short of a resistor.
+///
+/// A board that is reset in the middle of a byte, or a panel plugged in while the bus runs, leaves the panel in the middle of
+/// an answer: it holds the line for a bit that is never fetched, and no start can be made.
+///
+/// `drive` lets the clock and the data line go (`true`) or pulls them low, in this order, lets half a clock pass, and says whether
+/// the data line is high then.
+///
+/// Source: NXP UM10204, I2C-bus specification, 3.1.16 (bus clear).
+pub fn free_bus(mut drive: impl FnMut(bool, bool) -> bool) -> bool {
+    if drive(true, true) {
+        return true;
+    }
+    for _ in 0..MOST_CLOCKS {
+        drive(false, true);
+        if drive(true, true) {
+            break;
+        }
+    }
+    // A stop: the data line rises while the clock is high.
+    drive(false, false);
+    drive(true, false);
+    drive(true, true)
 }

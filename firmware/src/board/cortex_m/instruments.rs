@@ -1,10 +1,13 @@
 //! What every Cortex-M can tell of itself: its kind, its program, the cycles that something takes.
 
-use cortex_m::peripheral::{CPUID, DCB, DWT};
+use cortex_m::Peripherals;
+use cortex_m::peripheral::{DCB, DWT};
 
 use super::clock;
+use super::stack::guard_stack;
 use crate::app::Instruments;
-use crate::job::{OnBoards, Run};
+#[cfg(any(feature = "pico", feature = "stm32f405"))]
+use crate::board::steps::timed;
 use crate::protocol::{BoardName, Identity};
 
 unsafe extern "C" {
@@ -12,16 +15,21 @@ unsafe extern "C" {
     static __erodata: u8;
 }
 
-/// The instruments of this processor, its cycle counter started; `chip` is what the chip says of itself.
-pub fn instruments(board: BoardName, hertz: u32, chip: [u32; 4], cpuid: &CPUID, dcb: DCB, dwt: DWT) -> Instruments {
-    start(dcb, dwt);
-    let identity = Identity { board, hertz, processor: cpuid.base.read(), chip, ..Identity::default() };
+/// Starts what the processor has, at its clock of `hertz`: the stack's guard, the tick, the cycle counter. `chip` is what the chip says
+/// of itself.
+pub fn start(core: Peripherals, board: BoardName, hertz: u32, chip: [u32; 4]) -> Instruments {
+    guard_stack(core.MPU);
+    clock::start(core.SYST, hertz);
+    start_counter(core.DCB, core.DWT);
+    let processor = core.CPUID.base.read();
+    let identity = Identity { board, hertz, processor, chip, ..Identity::default() };
     Instruments { stopwatch: clock::cycles, timed, image, identity }
 }
 
 /// From flash alone.
-fn timed(motion: &mut OnBoards, steps: u32, in_ram: bool) -> u32 {
-    if in_ram { 0 } else { cycles_of(|| motion.advance(steps)) }
+#[cfg(not(any(feature = "pico", feature = "stm32f405")))]
+fn timed(motion: &mut crate::job::OnBoards, steps: u32, in_ram: bool) -> u32 {
+    if in_ram { 0 } else { cycles_of(|| crate::job::Run::advance(motion, steps)) }
 }
 
 fn image() -> &'static [u8] {
@@ -32,7 +40,7 @@ fn image() -> &'static [u8] {
 }
 
 #[cfg(not(armv6m))]
-fn start(mut dcb: DCB, mut dwt: DWT) {
+fn start_counter(mut dcb: DCB, mut dwt: DWT) {
     dcb.enable_trace();
     dwt.enable_cycle_counter();
 }
@@ -48,7 +56,7 @@ pub(in crate::board) fn cycles_of(work: impl FnOnce()) -> u32 {
 }
 
 #[cfg(armv6m)]
-fn start(_: DCB, _: DWT) {}
+fn start_counter(_: DCB, _: DWT) {}
 
 /// A Cortex-M0+ has no other counter than the tick's, which is borrowed: the present tick begins anew afterwards. Up to 2^24
 /// cycles, 134 ms at 125 MHz.
@@ -56,18 +64,16 @@ fn start(_: DCB, _: DWT) {}
 pub(in crate::board) fn cycles_of(work: impl FnOnce()) -> u32 {
     use cortex_m::peripheral::SYST;
     const FULL: u32 = (1 << 24) - 1;
-    // SAFETY: interrupts stay off until the clock's reload value is restored, so nothing reads the counter in between.
-    let begin = |reload: u32| unsafe {
-        let counter = &*SYST::PTR;
-        counter.rvr.write(reload);
-        counter.cvr.write(0);
-    };
     cortex_m::interrupt::free(|_| {
+        // SAFETY: interrupts stay off until the clock's reload value is restored, so nothing reads the counter in between.
+        let mut counter = unsafe { Peripherals::steal() }.SYST;
         let reload = SYST::get_reload();
-        begin(FULL);
+        counter.set_reload(FULL);
+        counter.clear_current();
         work();
         let taken = FULL.wrapping_sub(SYST::get_current());
-        begin(reload);
+        counter.set_reload(reload);
+        counter.clear_current();
         taken
     })
 }
