@@ -3,8 +3,7 @@
 //! All but the panic are injected into the images that are flashed, from outside: a debugger stops the board in the middle of a frame
 //! that is drawn but not yet sent, and sends its processor elsewhere.
 
-use std::path::Path;
-use std::time::Duration;
+use std::path::PathBuf;
 
 use crate::support::{address, application, on, settings, toolchain};
 use cycles::Image;
@@ -26,11 +25,13 @@ const STOPWATCH: &str = "clock::cycles";
 /// The mass ratio that the tests set, unlike any scene's own.
 const MASS_RATIO: f32 = 0.7;
 
-/// A board that stands still in the middle of a frame of `scene`, with a mass ratio of its own: the last frame it has
-/// sent.
-fn within(probe: &mut Lockstep, elf: &Path, scene: SceneName) -> anyhow::Result<Frame> {
+/// A board, with a debugger that takes its log or without, that stands still in the middle of a frame of `scene`, with a mass ratio of
+/// its own: its program, and the last frame it has sent.
+fn within(board: &Board, scene: SceneName, debugger: bool) -> anyhow::Result<(PathBuf, Lockstep, Frame)> {
+    let elf = application(board);
+    let mut probe = on(board, |settings| Lockstep::start(&Settings { debugger, ..*settings }))?;
     // A serial port that is not yet on takes no bytes.
-    let stopwatch = address(elf, STOPWATCH);
+    let stopwatch = address(&elf, STOPWATCH);
     probe.run_to(stopwatch)?;
     let serial = &mut probe.machine().serial;
     serial.send(1, Command::Choose(scene))?;
@@ -51,7 +52,7 @@ fn within(probe: &mut Lockstep, elf: &Path, scene: SceneName) -> anyhow::Result<
             // This reading was for the end of the frame; the next is for the beginning, then the frame is drawn.
             probe.run_to(stopwatch)?;
             probe.run_to(stopwatch)?;
-            return Ok(frame);
+            return Ok((elf, probe, frame));
         }
     }
 }
@@ -62,6 +63,16 @@ fn execute(probe: &mut Lockstep, instruction: [u8; 2]) -> anyhow::Result<()> {
     probe.divert(&[(Register::Pc, UNUSED)])
 }
 
+/// The boards whose watchdog is emulated.
+fn watched() -> impl Iterator<Item = &'static Board> {
+    BOARDS.iter().filter(|board| **board != STM32F405)
+}
+
+/// Where a report says that the board was.
+fn place(frame: &Frame) -> String {
+    format!("scene {}, step {}\n", frame.scene.name(), frame.report.step)
+}
+
 /// Holds that a board has said all `parts`.
 fn assert_said(board: &Board, said: &str, parts: &[&str]) {
     for part in parts {
@@ -69,62 +80,45 @@ fn assert_said(board: &Board, said: &str, parts: &[&str]) {
     }
 }
 
-/// The last words of a machine that ends as a failure.
-fn last_words(machine: &mut Machine) -> anyhow::Result<String> {
+/// The last words of a machine that ends as a failure, which hold all `parts`.
+fn last_words(board: &Board, machine: &mut Machine, parts: &[&str]) -> anyhow::Result<String> {
     let (status, lines) = machine.wait()?;
     let report = lines.iter().map(|line| format!("{line}\n")).collect::<String>();
     assert_eq!(status.code(), Some(1), "{report}");
-    Ok(report)
-}
-
-/// Spoils a board in the middle of a frame of `scene`; its last words must hold all `parts`, and where it was.
-fn says(
-    board: &Board,
-    scene: SceneName,
-    parts: &[&str],
-    spoil: impl Fn(&mut Lockstep, &Path) -> anyhow::Result<()>,
-) -> anyhow::Result<()> {
-    let elf = application(board);
-    let mut probe = on(board, Lockstep::start)?;
-    let frame = within(&mut probe, &elf, scene)?;
-    spoil(&mut probe, &elf)?;
-    let report = last_words(probe.run()?)?;
     assert_said(board, &report, parts);
-    assert_said(board, &report, &[&format!("scene {}, step {}\n", scene.name(), frame.report.step)]);
-    Ok(())
+    Ok(report)
 }
 
 #[test]
 fn a_fault_in_a_picture_tells_the_scene_and_the_step() -> anyhow::Result<()> {
     let registers = format!("pc {UNUSED:#010x}  lr 0x12345679");
     for board in &BOARDS {
-        let parts = match board.is_guarded() {
-            true => ["HARDFAULT: undefined instruction", &registers, "cfsr 0x00010000"],
-            false => ["HARDFAULT: unknown cause (a Cortex-M0+ tells none)", &registers, ""],
+        let [why, cfsr] = match board.is_guarded() {
+            true => ["HARDFAULT: undefined instruction", "cfsr 0x00010000"],
+            false => ["HARDFAULT: unknown cause (a Cortex-M0+ tells none)", ""],
         };
-        says(board, SceneName::Figure7, &parts, |probe, _| {
-            execute(probe, UNDEFINED)?;
-            probe.divert(&[(Register::Lr, 0x1234_5679)])
-        })?;
+        let (_, mut probe, frame) = within(board, SceneName::Figure7, true)?;
+        execute(&mut probe, UNDEFINED)?;
+        probe.divert(&[(Register::Lr, 0x1234_5679)])?;
+        last_words(board, probe.run()?, &[why, &registers, cfsr, &place(&frame)])?;
     }
     Ok(())
 }
 
 #[test]
 fn a_stack_that_overflows_in_a_picture_meets_the_guard_and_changes_nothing_below() -> anyhow::Result<()> {
-    let parts =
-        ["HARDFAULT: stack overflow", "pc and lr are lost; the last call on the stack is at 0x", "cfsr 0x000000"];
-    BOARDS.iter().filter(|board| board.is_guarded()).try_for_each(|board| {
-        says(board, SceneName::Butterfly, &parts, |probe, elf| {
-            let statics = address(elf, "_ram_start")..address(elf, "__euninit");
-            let before = probe.read(statics.clone())?;
-            assert!(before.len() > 1024, "there is something to damage");
-            probe.divert(&[(Register::Sp, UNUSED), (Register::Pc, address(elf, "Player::execute"))])?;
-            probe.run_to(address(elf, "HardFault"))?;
-            assert!(probe.read(statics)? == before, "the statics are damaged");
-            Ok(())
-        })
-    })
+    for board in BOARDS.iter().filter(|board| board.is_guarded()) {
+        let (elf, mut probe, frame) = within(board, SceneName::Butterfly, true)?;
+        let statics = address(&elf, "_ram_start")..address(&elf, "__euninit");
+        let before = probe.read(statics.clone())?;
+        assert!(before.len() > 1024, "there is something to damage");
+        probe.divert(&[(Register::Sp, UNUSED), (Register::Pc, address(&elf, "Player::execute"))])?;
+        probe.run_to(address(&elf, "HardFault"))?;
+        assert!(probe.read(statics)? == before, "the statics are damaged");
+        let lost = "pc and lr are lost; the last call on the stack is at 0x";
+        last_words(board, probe.run()?, &["HARDFAULT: stack overflow", lost, "cfsr 0x000000", &place(&frame)])?;
+    }
+    Ok(())
 }
 
 /// The name of the function at the address that the report gives after `what`.
@@ -140,10 +134,9 @@ fn a_panic_tells_where_and_why_and_ends_the_run_as_a_failure() -> anyhow::Result
     let toolchain = toolchain();
     for board in &BOARDS {
         let elf = toolchain.build("inject-panic", board.target)?;
-        let report = last_words(&mut Machine::start(&settings(&toolchain, board, &elf))?)?;
         let parts =
             ["boot: about to panic", "PANIC", "inject-panic.rs:", "injected with the number 42", "cfsr 0x00000000"];
-        assert_said(board, &report, &parts);
+        let report = last_words(board, &mut Machine::start(&settings(&toolchain, board, &elf))?, &parts)?;
         let image = Image::read(&elf)?;
         for (what, name) in [("pc", "panic_fmt"), ("lr", "main")] {
             let caller = function_after(what, &report, &image);
@@ -153,34 +146,15 @@ fn a_panic_tells_where_and_why_and_ends_the_run_as_a_failure() -> anyhow::Result
     Ok(())
 }
 
-/// A board that nothing restarts is given up after this long, by the host's clock: many times what a restart takes.
-const PATIENCE: Duration = Duration::from_secs(120);
-
-/// Each board whose watchdog is emulated, with a debugger that takes its log or without, in the middle of a frame of `scene`, and
-/// that frame's predecessor.
-fn watched(
-    scene: SceneName,
-    debugger: bool,
-    mut check: impl FnMut(&Board, &Path, Lockstep, Frame) -> anyhow::Result<()>,
-) -> anyhow::Result<()> {
-    for board in BOARDS.iter().filter(|board| **board != STM32F405) {
-        let elf = application(board);
-        let start = |settings: &Settings| Lockstep::start(&Settings { debugger, limit: PATIENCE, ..*settings });
-        let mut probe = on(board, start)?;
-        let before = within(&mut probe, &elf, scene)?;
-        check(board, &elf, probe, before)?;
-    }
-    Ok(())
-}
-
 #[test]
 fn a_board_that_hangs_comes_back_where_it_was_and_says_why() -> anyhow::Result<()> {
-    watched(SceneName::Butterfly, true, |board, _, mut probe, before| {
+    for board in watched() {
+        let (_, mut probe, before) = within(board, SceneName::Butterfly, true)?;
         execute(&mut probe, HANG)?;
         let machine = probe.run()?;
         let Restarted { cause, restarts, pc, scene, step, .. } = machine.wait_for(ToHost::restarted)?;
         assert_eq!((cause, restarts, pc), (Some(Cause::Hang), 1, UNUSED), "{}", board.name);
-        assert_eq!((scene, step), (SceneName::Butterfly, before.report.step), "{}", board.name);
+        assert_eq!((scene, step), (before.scene, before.report.step), "{}", board.name);
         for sequence in 0..FRAMES as u32 {
             let frame = machine.next_frame()?;
             let step = u64::from(sequence) + 1;
@@ -188,20 +162,21 @@ fn a_board_that_hangs_comes_back_where_it_was_and_says_why() -> anyhow::Result<(
             assert_eq!((frame.scene, frame.mass_ratio), (before.scene, MASS_RATIO), "{}", board.name);
         }
         assert_eq!((machine.serial.counts().damaged, machine.serial.counts().lost), (0, 0), "{}", board.name);
-        let (pc, place) = (format!("pc {UNUSED:#010x}"), format!("scene butterfly, step {}\n", before.report.step));
+        let pc = format!("pc {UNUSED:#010x}");
         let last = format!("restarted after a hang, 1 in a row: {pc}");
-        assert_said(board, &machine.said(), &["HANG: no frame finished for 1 s\n", &pc, &place, &last]);
-        Ok(())
-    })
+        assert_said(board, &machine.said(), &["HANG: no frame finished for 1 s\n", &pc, &place(&before), &last]);
+    }
+    Ok(())
 }
 
 #[test]
 fn without_a_debugger_a_fault_restarts_the_board() -> anyhow::Result<()> {
-    watched(SceneName::Figure7, false, |board, elf, mut probe, before| {
+    for board in watched() {
+        let (elf, mut probe, before) = within(board, SceneName::Figure7, false)?;
         for restarts in 1..=MOST_RESTARTS + 1 {
             execute(&mut probe, UNDEFINED)?;
             // To the first frame after the restart.
-            let stopwatch = address(elf, STOPWATCH);
+            let stopwatch = address(&elf, STOPWATCH);
             let (mut restarted, mut frame) = (None, None);
             while frame.is_none() {
                 probe.run_to(stopwatch)?;
@@ -219,22 +194,23 @@ fn without_a_debugger_a_fault_restarts_the_board() -> anyhow::Result<()> {
             let scene = if restarts <= MOST_RESTARTS { SceneName::Figure7 } else { SceneName::Page };
             assert_eq!(frame.map(|frame| frame.scene), Some(scene), "{}: restart {restarts}", board.name);
         }
-        Ok(())
-    })
+    }
+    Ok(())
 }
 
 /// The watchdog's call that cannot be masked comes in the middle of a report that takes long: the fault stays the reason.
 #[test]
 fn a_report_that_takes_long_is_no_hang() -> anyhow::Result<()> {
-    watched(SceneName::Butterfly, true, |board, elf, mut probe, _| {
+    for board in watched() {
+        let (elf, mut probe, _) = within(board, SceneName::Butterfly, true)?;
         execute(&mut probe, UNDEFINED)?;
-        probe.run_to(address(elf, "crash::say"))?;
+        probe.run_to(address(&elf, "crash::say"))?;
         execute(&mut probe, HANG)?;
         let machine = probe.run()?;
         let restarted = machine.wait_for(ToHost::restarted)?;
         assert_eq!(restarted.cause, Some(Cause::Fault), "{}", board.name);
         let log = machine.said();
         assert!(!log.contains("HANG"), "{}: {log}", board.name);
-        Ok(())
-    })
+    }
+    Ok(())
 }

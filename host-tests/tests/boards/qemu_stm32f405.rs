@@ -6,19 +6,6 @@ use firmware::job::{ON_BOARDS, Request};
 use firmware::protocol::{Answer, Command};
 use host_tests::emulator::boards::STM32F405;
 use host_tests::emulator::qemu::Lockstep;
-use object::{Object, ObjectSegment};
-
-#[test]
-fn the_image_is_for_the_chips_memory() -> anyhow::Result<()> {
-    let bytes = std::fs::read(application(&STM32F405))?;
-    let image = object::File::parse(&*bytes)?;
-    let (flash, ram) = (0x0800_0000..0x0810_0000, 0x2000_0000..0x2002_0000);
-    let mut starts = image.segments().map(|segment| segment.address()).filter(|address| flash.contains(address));
-    assert_eq!(starts.next(), Some(flash.start), "the vector table");
-    assert!(image.segments().all(|part| flash.contains(&part.address()) || ram.contains(&part.address())));
-    assert!(flash.contains(&image.entry()));
-    Ok(())
-}
 
 #[test]
 fn it_starts_from_anywhere_goes_on_without_a_panel_and_steps_in_flash_and_in_memory() -> anyhow::Result<()> {

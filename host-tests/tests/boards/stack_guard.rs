@@ -6,7 +6,7 @@ use crate::support::{address, application};
 use cycles::Image;
 use host_tests::emulator::boards::BOARDS;
 
-/// The part of memory that statics and guard share, and what it can be divided by, as in `board/cortex_m/guard.rs`.
+/// The part of memory that statics and guard share, and what it can be divided by, as in `board/cortex_m/stack.rs`.
 const REGION: u32 = 32 * 1024;
 const EIGHTH: u32 = REGION / 8;
 /// Registers that a function pushes before it takes what it needs: 9 of 4 bytes and 8 of 8, and those that it may be
