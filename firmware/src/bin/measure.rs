@@ -14,11 +14,7 @@ const FULL: u32 = 0x00ff_ffff;
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
-    let mut buffer = [0; 256];
-    match run(&mut buffer) {
-        Ok(()) => debug::exit(debug::EXIT_SUCCESS),
-        Err(()) => debug::exit(debug::EXIT_FAILURE),
-    }
+    debug::exit(run(&mut [0; 256]));
     loop {
         cortex_m::asm::wfi();
     }

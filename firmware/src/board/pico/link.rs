@@ -45,14 +45,9 @@ fn uart() -> &'static rp2040_hal::pac::uart0::RegisterBlock {
     unsafe { &*UART0::ptr() }
 }
 
+/// Gives the UART as many bytes as it takes; while there are more it interrupts again when it has sent half of them.
 #[interrupt]
 fn UART0_IRQ() {
-    pass_on();
-    serial::receive();
-}
-
-/// Gives the UART as many bytes as it takes; while there are more it interrupts again when it has sent half of them.
-fn pass_on() {
     QUEUE.with(|queue| {
         while uart().uartfr().read().txff().bit_is_clear()
             && let Some(byte) = queue.pop_front()
@@ -62,6 +57,7 @@ fn pass_on() {
         }
         uart().uartimsc().modify(|_, w| w.txim().bit(!queue.is_empty()));
     });
+    serial::receive();
 }
 
 /// To look at USB and to read what has come ends the interrupts of both.

@@ -26,22 +26,19 @@ const ALL_SENT: u16 = 1 << 2;
 const BYTE_READ: u16 = 1 << 6;
 const READY_FOR_BYTE: u16 = 1 << 7;
 
-pub struct I2c1 {
-    port: I2C1,
-    pins: (Scl, Sda),
-}
+pub struct I2c1((Scl, Sda));
 
 /// `None` the second time.
 pub(super) fn start(port: I2C1, clock: PB6, data: PB7, rcc: &mut Rcc) -> Option<Bus<I2c1>> {
-    let (port, pins) = I2c::new(port, (clock, data), 400.kHz(), rcc).release();
-    let bus = Bus::new(I2c1 { port, pins })?;
+    let (_, pins) = I2c::new(port, (clock, data), 400.kHz(), rcc).release();
+    let bus = Bus::new(I2c1(pins))?;
     [Interrupt::I2C1_EV, Interrupt::I2C1_ER].into_iter().for_each(unmask);
     Some(bus)
 }
 
 impl PanelPort for I2c1 {
     fn begin(&mut self, _: u8) {
-        let port = &self.port;
+        let port = registers();
         // The control register is not to be written before.
         let _ = (0..TRIES).any(|_| port.cr1().read().stop().bit_is_clear());
         port.cr2().modify(|_, w| w.itevten().set_bit().iterren().set_bit());
@@ -49,9 +46,9 @@ impl PanelPort for I2c1 {
     }
 
     fn reset(&mut self) {
-        let port = &self.port;
+        let port = registers();
         silence(port);
-        if let (Scl::PB6(clock), Sda::PB7(data)) = &mut self.pins {
+        if let (Scl::PB6(clock), Sda::PB7(data)) = &mut self.0 {
             clock.with_open_drain_output_in_state(PinState::High, |clock| {
                 data.with_open_drain_output_in_state(PinState::High, |data| {
                     free_bus(|high_clock, high_data| {
