@@ -5,11 +5,10 @@
 use std::str::FromStr;
 
 use anyhow::Context;
-use double_pendulum::{Motion, Parameters};
+use double_pendulum::Parameters;
+use reference::taylor::{Reference, divide};
 use reference::twofloat::TwoFloat;
 use reference::twofloat::consts::PI;
-
-use reference::taylor::{Reference, divide};
 
 /// One line of the table: a scene at one time.
 #[derive(Clone, Debug)]
@@ -18,10 +17,10 @@ pub struct KnownAnswer {
     pub scene: &'static str,
     /// Its name, what is given, and the time: as written.
     pub given: &'static str,
-    /// Masses (kg), lengths (m), gravity (m/s^2).
-    pub constants: Parameters<TwoFloat>,
-    /// Angles (rad) and angular velocities (rad/s) at the start.
-    pub start: [TwoFloat; 4],
+    /// The scene at its start, in full precision.
+    pub start: Reference,
+    /// Its masses (kg), lengths (m), gravity (m/s^2), rounded to f64.
+    pub parameters: Parameters<f64>,
     /// The time, s.
     pub time: f64,
     /// (sin a1, cos a1, sin a2, cos a2) at that time.
@@ -61,31 +60,13 @@ impl KnownAnswer {
         Some(Self {
             scene,
             given: &line[..end],
-            constants: Parameters { m1, m2, l1, l2, g },
-            start: [a1 * PI / 180.0, a2 * PI / 180.0, w1, w2],
+            start: Reference::exact(Parameters { m1, m2, l1, l2, g }, [a1 * PI / 180.0, a2 * PI / 180.0, w1, w2]),
+            parameters: Parameters { m1: m1.into(), m2: m2.into(), l1: l1.into(), l2: l2.into(), g: g.into() },
             time: time.into(),
             directions: [z1, z2, z3, z4],
             radius: radii[10..14].try_into().ok()?,
             growth: growth.into(),
         })
-    }
-
-    /// The scene at its start, in full precision.
-    pub fn reference(&self) -> Reference {
-        Reference::exact(self.constants, self.start)
-    }
-
-    /// The parameters, rounded to f64.
-    pub fn parameters(&self) -> Parameters<f64> {
-        let Parameters { m1, m2, l1, l2, g } = self.constants;
-        let [m1, m2, l1, l2, g] = [m1, m2, l1, l2, g].map(f64::from);
-        Parameters { m1, m2, l1, l2, g }
-    }
-
-    /// The start, rounded to f64.
-    pub fn start(&self) -> Motion<f64> {
-        let [a1, a2, w1, w2] = self.start.map(f64::from);
-        Motion { a1, a2, w1, w2 }
     }
 }
 

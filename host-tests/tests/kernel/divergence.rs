@@ -24,31 +24,25 @@ fn every_method_stops_at_its_last_good_state() -> Result<(), Error> {
             Err(Error::TooLarge { parameter: Parameter::Dt, .. }) if method.is_fixed_point() => continue,
             run => run?,
         };
-        let mut before = run.state();
         let stopped = (0..MANY).find_map(|_| {
-            let advanced = run.advance(1);
-            if advanced.is_ok() {
-                before = run.state();
-            }
-            advanced.err()
+            let before = run.state();
+            run.advance(1).err().map(|error| (error, before))
         });
-        assert!(matches!(stopped, Some(Error::Diverged { .. })), "{stopped:?} of {method}");
+        let Some((Error::Diverged { .. }, before)) = stopped else { panic!("{stopped:?} of {method}") };
         assert_eq!(run.state(), before, "{method}: the run stays as it was");
         assert_eq!(before.check(), Ok(()), "{method}");
     }
     Ok(())
 }
 
-/// Within the limit for small motions, which is all that can be known beforehand, but too long for this one.
-fn too_quick() -> Request {
-    let parameters = Parameters { m2: 100.0, ..EVEN };
-    let (angles, velocities) = ([3.0, 1.0], [3000.0, -3000.0]);
-    Request { method: Method::Rk4F32, parameters, angles, velocities, dt: 0.06, stride: 1, samples: MANY }
-}
-
+/// A step within the limit for small motions, which is all that can be known beforehand, but too long for this one.
 #[test]
 fn a_job_is_refused_when_its_motion_is_lost() {
-    let mut job: Job = Job::new(&too_quick()).expect("within the limit");
+    let parameters = Parameters { m2: 100.0, ..EVEN };
+    let (angles, velocities) = ([3.0, 1.0], [3000.0, -3000.0]);
+    let request =
+        Request { method: Method::Rk4F32, parameters, angles, velocities, dt: 0.06, stride: 1, samples: MANY };
+    let mut job: Job = Job::new(&request).expect("within the limit");
     let answers: Vec<_> = std::iter::from_fn(|| (!job.is_finished()).then(|| job.advance())).collect();
     let (last, readings) = answers.split_last().expect("answers");
     assert_eq!(last.map_err(Field::from), Err(Field::Dt), "after {} readings", readings.len());
@@ -60,15 +54,12 @@ fn a_job_is_refused_when_its_motion_is_lost() {
 }
 
 /// A pendulum so short that the scenes' step only just suits its small motions.
-fn too_short() -> Settings {
-    let parameters = Parameters { m1: 1.0, m2: 1.0, l1: 1e-4, l2: 1e-4, g: 9.8 };
-    Settings { parameters, degrees: [179.0, 60.0], velocities: [3e4, -3e4] }
-}
-
 #[test]
 fn a_scene_stands_at_its_last_good_frame() {
+    let parameters = Parameters { m1: 1.0, m2: 1.0, l1: 1e-4, l2: 1e-4, g: 9.8 };
+    let settings = Settings { parameters, degrees: [179.0, 60.0], velocities: [3e4, -3e4] };
     let mut app =
-        App::new(too_short(), sheets(), NoDisplay, Vec::new(), NoButtons).unwrap_or_else(|error| panic!("{error}"));
+        App::new(settings, sheets(), NoDisplay, Vec::new(), NoButtons).unwrap_or_else(|error| panic!("{error}"));
     let mut stops = Vec::new();
     let mut last_good = None;
     for tick in 1..=600 {

@@ -150,10 +150,7 @@ fn turns_follow_an_angle_either_way() {
     assert!(farthest > 10.0 * TAU, "{farthest}");
 }
 
-#[test]
-fn a_run_is_small() {
-    assert!(size_of::<Run<DirectionF32>>() <= 256);
-}
+const _: () = assert!(size_of::<Run<DirectionF32>>() <= 256, "a run is small");
 
 #[test]
 fn bad_input_is_refused_by_name() -> Result<(), Error> {

@@ -16,14 +16,12 @@ fn distance(row: &KnownAnswer, directions: [TwoFloat; 4]) -> f64 {
 
 /// Every row with the reference there.
 fn rows() -> Vec<(KnownAnswer, Reference)> {
-    let mut rows: Vec<(KnownAnswer, Reference)> = Vec::new();
-    for row in table().expect("the table can be read") {
-        let before = rows.last().filter(|(before, _)| before.scene == row.scene);
-        let mut reference = before.map_or_else(|| row.reference(), |(_, reference)| reference.clone());
+    let at_its_time = |row: KnownAnswer| {
+        let mut reference = row.start.clone();
         reference.advance_to(row.time);
-        rows.push((row, reference));
-    }
-    rows
+        (row, reference)
+    };
+    table().expect("the table can be read").into_par_iter().map(at_its_time).collect()
 }
 
 #[test]
@@ -39,8 +37,8 @@ fn keeps_its_budgets(method: Method, rows: &[(KnownAnswer, Reference)]) {
     let mut tested = 0_u32;
     for scene in rows.chunk_by(|(one, _), (next, _)| one.scene == next.scene) {
         let (first, _) = &scene[0];
-        let (parameters, start) = (first.parameters(), first.reference().state());
-        let mut run = match trials::run(method, &parameters, &start, 1.0 / f64::from(steps_per_second)) {
+        let dt = 1.0 / f64::from(steps_per_second);
+        let mut run = match trials::run(method, &first.parameters, &first.start.state(), dt) {
             Err(Error::TooLarge { parameter: Parameter::Dt, .. }) if method.is_fixed_point() => continue,
             run => run.unwrap_or_else(|error| panic!("{method}, {}: {error}", first.scene)),
         };

@@ -45,10 +45,8 @@ fn upright_falls_when_theory_says() -> Result<(), Error> {
                 steps = 1 << (halvings - 6);
                 motion.angles()[0].rem_euclid(TAU)
             });
-            assert!(
-                (falls - exact).abs() <= tolerances::FALL,
-                "{method}, 2^-{halvings} s: after {falls} s instead of {exact} s"
-            );
+            let error = (falls - exact).abs();
+            assert!(error <= tolerances::FALL, "{method}, 2^-{halvings} s: after {falls} s instead of {exact} s");
         }
     }
     Ok(())

@@ -1,9 +1,9 @@
 //! How a method is added: a row in the table (here `rk4-f64-lagrange`, in tests alone) and its type.
 
 use double_pendulum::parts::{Canonical, Derivatives};
-use double_pendulum::{Error, Form, HamiltonF64, Method, Motion, Parameters, Pendulum, Real, State};
+use double_pendulum::{Error, Method, Motion, Parameters, Pendulum, Real, State};
 
-use super::tolerances;
+use super::forms;
 
 /// Lagrange's equations in the momenta: a' = M^-1 p, p' = dL/da.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,25 +27,11 @@ fn sin_cos<R: Real>(angle: R) -> [R; 2] {
     angle.own_sin_cos().into()
 }
 
-/// The state after 2 s of a moving start, in so many steps.
-fn end<F: Form>(steps: u32) -> Result<[f64; 4], Error> {
-    let pendulum = Pendulum::new(&Parameters { m1: 0.75, m2: 1.25, l1: 0.625, l2: 1.125, g: 9.8125 })?;
-    let mut run = pendulum.run::<F>(&State { a1: 0.875, a2: -0.5, p1: 1.0, p2: -1.0 }, 2.0 / f64::from(steps))?;
-    run.advance(steps)?;
-    Ok(run.state().into())
-}
-
 #[test]
-fn a_method_is_a_row_and_a_type() -> Result<(), Error> {
-    type Added = Canonical<f64, Lagrange<f64>>;
+fn a_method_is_a_row_and_a_type() {
     let method = Method::from_name("rk4-f64-lagrange").expect("a row of the table");
     assert!(Method::ALL.contains(&method) && method.order() == 4);
-    let apart = |one: [f64; 4], other: [f64; 4]| (one[0] - other[0]).abs().max((one[1] - other[1]).abs());
-    assert!(apart(end::<Added>(2048)?, end::<HamiltonF64>(2048)?) <= tolerances::RETURN, "the same motion");
-    let exact = end::<Added>(16_384)?;
-    let order = (apart(end::<Added>(1024)?, exact) / apart(end::<Added>(2048)?, exact)).log2();
-    assert!((order - f64::from(method.order())).abs() <= 0.2, "order {order}");
-    Ok(())
+    forms::is_that_of_hamiltons_equations::<Canonical<f64, Lagrange<f64>>>(forms::RK4);
 }
 
 #[test]

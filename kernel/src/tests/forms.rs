@@ -24,12 +24,12 @@ const MOTIONS: [(Parameters<f64>, Motion<f64>); 2] = [
 
 /// Rates relative to the greatest that the energy allows: what RK4 misses in steps of 1/256 s and roundings of 24 bits
 /// (measured 1.1e-8; of fixed point with 30 bits 5e-9).
-const RK4: f64 = 3e-8;
+pub const RK4: f64 = 3e-8;
 /// What the other side misses where the form does not, and roundings of 53 and 61 bits (measured 4e-14).
 const ORDER_12: f64 = 2e-13;
 
 #[track_caller]
-fn is_that_of_hamiltons_equations<F: Form>(tolerance: f64) {
+pub fn is_that_of_hamiltons_equations<F: Form>(tolerance: f64) {
     let form = core::any::type_name::<F>();
     for (parameters, motion) in MOTIONS {
         // the motion of the very numbers that it holds

@@ -50,7 +50,7 @@ pub fn known_answers(scene: &[KnownAnswer]) -> Result<Vec<String>> {
     let exact = |text: &str| text.parse::<Number>().ok()?.exact();
     let fractions = scene[0].given.split(',').skip(1).take(9).map(exact).collect::<Option<Vec<_>>>();
     let fractions = fractions.and_then(|all| all.try_into().ok()).context("more digits than can be enclosed")?;
-    let about = (scene[0].parameters(), scene[0].start());
+    let about = (scene[0].parameters, scene[0].start.motion());
     let mut set = Start { about, fractions: Some(fractions), degrees: [true, false] }.enclose(RATE);
     let mut frame = 0;
     let line = |row: &KnownAnswer| {
