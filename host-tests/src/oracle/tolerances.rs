@@ -157,9 +157,6 @@ pub const PLAN_ERROR: f64 = 0.75;
 /// The predicted over the true horizon, in the median of all scenes that cease to be right.
 pub const PLAN_SHARE: f64 = 0.7;
 
-/// The ratio of two frequencies, in `f64`: the roundings of both.
-pub const RATIO: f64 = 1e-12;
-
 /// The height that a scene of curves is planned for, relative: the digits of the swing in pixels, 21.5.
 pub const SHOWN_HEIGHT: f32 = 1e-3;
 

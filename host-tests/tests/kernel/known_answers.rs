@@ -1,5 +1,7 @@
 //! The table of known answers: the reference to its last digits, every method within each row's budget.
 
+use std::sync::LazyLock;
+
 use double_pendulum::{Error, Method, Parameter, State};
 use host_tests::oracle::known_answers::{KnownAnswer, table};
 use host_tests::oracle::tolerances;
@@ -15,27 +17,27 @@ fn distance(row: &KnownAnswer, directions: [TwoFloat; 4]) -> f64 {
 }
 
 /// Every row with the reference there.
-fn rows() -> Vec<(KnownAnswer, Reference)> {
+static ROWS: LazyLock<Vec<(KnownAnswer, Reference)>> = LazyLock::new(|| {
     let at_its_time = |row: KnownAnswer| {
         let mut reference = row.start.clone();
         reference.advance_to(row.time);
         (row, reference)
     };
     table().expect("the table can be read").into_par_iter().map(at_its_time).collect()
-}
+});
 
 #[test]
 fn reference_reaches_the_tables_digits() {
-    for (row, reference) in rows() {
-        let (distance, budget) = (distance(&row, reference.directions()), tolerances::REFERENCE * row.growth);
+    for (row, reference) in &*ROWS {
+        let (distance, budget) = (distance(row, reference.directions()), tolerances::REFERENCE * row.growth);
         assert!(distance <= budget, "{} at {} s: {distance:e}, budget {budget:e}", row.scene, row.time);
     }
 }
 
-fn keeps_its_budgets(method: Method, rows: &[(KnownAnswer, Reference)]) {
+fn keeps_its_budgets(method: Method) {
     let steps_per_second = if method.order() == 4 { 4096 } else { 1024 };
     let mut tested = 0_u32;
-    for scene in rows.chunk_by(|(one, _), (next, _)| one.scene == next.scene) {
+    for scene in ROWS.chunk_by(|(one, _), (next, _)| one.scene == next.scene) {
         let (first, _) = &scene[0];
         let dt = 1.0 / f64::from(steps_per_second);
         let mut run = match trials::run(method, &first.parameters, &first.start.state(), dt) {
@@ -60,6 +62,5 @@ fn keeps_its_budgets(method: Method, rows: &[(KnownAnswer, Reference)]) {
 
 #[test]
 fn every_method_keeps_its_budgets() {
-    let rows = rows();
-    exact_methods().collect::<Vec<_>>().into_par_iter().for_each(|method| keeps_its_budgets(method, &rows));
+    exact_methods().collect::<Vec<_>>().into_par_iter().for_each(keeps_its_budgets);
 }
