@@ -8,7 +8,7 @@
 //! | [`commands`] | what the commands do: demo, simulate, plan, prove, flips, count, report, figures, verify-board |
 //! | [`emulator`] | the emulated boards: QEMU, toolchain and set-up, processes, budgets |
 //! | [`link`] | the serial link: bytes to messages, and a real port |
-//! | [`oracle`] | known answers, hard cases and the one table of tolerances |
+//! | [`oracle`] | known answers, hard cases, tolerances |
 //! | [`console`] | how every command talks: options, errors, progress |
 
 #![forbid(unsafe_code)]

@@ -1,4 +1,4 @@
-//! The one table of budgets: how far a number may be off in a test, and why just so far.
+//! Budgets: how far a number may be off in a test, and why just so far. That of one motion stands with the motion.
 
 use double_pendulum::{Method, Numbers, Parameters, State};
 use reference::enclosure::fastest_rate;
@@ -92,21 +92,8 @@ pub const KNOWN_ANSWERS_CLAIMED: PerPrecision = PerPrecision { single: 36.0, dou
 /// excited by the rounding of the shape, add.
 pub const INVERTED_GROWTH: f64 = 1e-9;
 
-/// Compensated `f32` on the regular scene (0.5 rad, dt = 1/256 s) after 10 s and 100 s, rad: the goal of this one motion
-/// (measured: 4.0e-8 and 2.5e-7). Plain sums miss it by far.
-pub const DIRECTION_FORM: [f64; 2] = [5e-8, 2.5e-7];
-
-/// The same over neighbouring starts, root mean square: what one may count on, for a single motion is 3 times luckier or
-/// less. The method's own error is 1.1e-8 and 1.0e-7; the rest are the roundings of the evaluations, 6e-8 each, of which
-/// none stands out. (Measured: 4.3e-8 and 4.0e-7.)
-pub const TYPICAL_DIRECTION_FORM: [f64; 2] = [5e-8, 4.5e-7];
-
 /// By how much of itself a step may be longer than dt, epsilons: the unit of time by half of what gravity may be rounded.
 pub const LONGER: f64 = 17.0;
-
-/// By how much steps of 1/240 s may err more than those of 1/256 s, for which the budgets are: RK4's own error does so by
-/// (256/240)^4 (measured over 192 starts: 1.32 times 4.2e-8, 1.20 to 1.42 over 32 of them; with 1/240 rounded to `f32` 30 times).
-pub const LONGER_STEP: f64 = 1.3;
 
 /// When a pendulum that stood upright is a radian down, s: one look, and RK4's error of the growth rate at 2^-6 s.
 pub const FALL: f64 = 1.5 / 64.0;

@@ -22,20 +22,23 @@ fn typical_error(seconds: f64, dt: f64) -> Result<f64, Error> {
     Ok((squares / f64::from(STARTS)).sqrt())
 }
 
-/// Of a step of 1/240 s `f32` would make one that is 3e-7 s longer in 10 s, and 1e-6 rad.
+/// One regular motion, and what one may count on, for a single motion is 3 times luckier or less. What is not the method's own error
+/// are the roundings of the evaluations, 6e-8 each, of which none stands out.
 #[test]
 fn compensated_single_precision_keeps_its_budgets() -> Result<(), Error> {
-    for (i, seconds) in [10.0, 100.0].into_iter().enumerate() {
-        let error = Trial::regular(seconds).error(Method::Rk4F32Direction, 1.0 / 256.0)?;
-        println!("{seconds} s: {error:.2e}");
-        assert!(error <= tolerances::DIRECTION_FORM[i], "{seconds} s: {error:e}");
-    }
-    let [short, long] = tolerances::TYPICAL_DIRECTION_FORM;
-    let longer = short * tolerances::LONGER_STEP;
-    for (seconds, steps, most) in [(10.0, 256.0, short), (100.0, 256.0, long), (10.0, 240.0, longer)] {
-        let error = typical_error(seconds, 1.0 / steps)?;
-        println!("{seconds} s, {steps} steps a second, typically: {error:.2e}");
-        assert!(error <= most, "{seconds} s, {steps} steps a second: {error:e}");
+    for (seconds, steps, goal, typical) in [
+        // the method's own error is 1.1e-8 (measured 4.0e-8 and typically 4.3e-8); plain sums miss the goal by far
+        (10.0, 256.0, 5e-8, 5e-8),
+        // 1.0e-7 (measured 2.5e-7 and 4.0e-7)
+        (100.0, 256.0, 2.5e-7, 4.5e-7),
+        // (256/240)^4 of that with 256 (measured over 192 starts: 1.32 times 4.2e-8, 1.20 to 1.42 over 32 of them); of a step of
+        // 1/240 s `f32` would make one that is 3e-7 s longer in 10 s, and the error 30 times
+        (10.0, 240.0, 6.5e-8, 6.5e-8),
+    ] {
+        let error = Trial::regular(seconds).error(Method::Rk4F32Direction, 1.0 / steps)?;
+        let typically = typical_error(seconds, 1.0 / steps)?;
+        println!("{seconds} s, {steps} steps a second: {error:.2e}, typically {typically:.2e}");
+        assert!(error <= goal && typically <= typical, "{seconds} s, {steps} steps a second: {error:e} {typically:e}");
     }
     Ok(())
 }
