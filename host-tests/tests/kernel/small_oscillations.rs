@@ -28,17 +28,11 @@ fn ulps<R: Real>(value: R, exact: TwoFloat) -> f64 {
 fn modes_to_the_last_places<R: Real>() {
     let mut rng = Rng::with_seed(1);
     for n in 0..50_000 {
-        let rounded = |x: f64| R::from_f64(x).to_f64();
-        let m1 = rounded(log_uniform(&mut rng, 0.1, 10.0));
-        let l1 = rounded(log_uniform(&mut rng, 0.1, 10.0));
-        let parameters = Parameters {
-            m1,
-            m2: rounded(m1 * log_uniform(&mut rng, 1e-7, 1e7)),
-            l1,
-            // every other pendulum has equal rods, where the plain formula cancels
-            l2: if n % 2 == 0 { l1 } else { rounded(l1 * log_uniform(&mut rng, 1e-3, 1e3)) },
-            g: rounded(log_uniform(&mut rng, 1.0, 20.0)),
-        };
+        let [m1, masses, l1, rods, g] = [(0.1, 10.0), (1e-7, 1e7), (0.1, 10.0), (1e-3, 1e3), (1.0, 20.0)]
+            .map(|(low, high)| log_uniform(&mut rng, low, high));
+        // every other pendulum has equal rods, where the plain formula cancels
+        let l2 = if n % 2 == 0 { l1 } else { l1 * rods };
+        let parameters = Parameters { m1, m2: m1 * masses, l1, l2, g }.cast::<R>().cast::<f64>();
         let modes = Modes::new(&parameters.cast::<R>()).expect("valid parameters");
         let values = [modes.fast.frequency, modes.slow.frequency, modes.fast.shape, modes.slow.shape, modes.exchange()];
         for ((value, exact), most) in values.into_iter().zip(exact_modes(&parameters)).zip(tolerances::MODES) {
