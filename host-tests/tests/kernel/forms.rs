@@ -83,10 +83,8 @@ fn backwards_is_forwards_undone_and_how_steps_are_dealt_out_changes_nothing() ->
 fn directions_are_those_of_the_angles() -> Result<(), Error> {
     /// No rod turns faster in these motions, rad/s.
     const FASTEST: f64 = 10.0;
-    for (trial, method) in [Trial::chaotic(1.0), Trial::unlike(1.0)]
-        .iter()
-        .flat_map(|trial| exact_methods().map(move |method| (trial, method)))
-    {
+    let both = |method| [Trial::chaotic(1.0), Trial::unlike(1.0)].map(|trial| (method, trial));
+    for (method, trial) in exact_methods().flat_map(both) {
         let mut motion = trials::run(method, &trial.parameters, &trial.start, 1.0 / 64.0)?;
         // fixed point tells them in single precision
         let is_double = matches!(method.numbers(), Numbers::F64 | Numbers::CompensatedF64);
