@@ -6,7 +6,7 @@ use double_pendulum::{Error, Method};
 use crate::app::pace::Pace;
 use crate::config::{GREATEST_ANGLE, Processor};
 use crate::graphics::{Canvas, FadeLayer, text};
-use crate::motion::{CatchingUp, Finding, Means, Planned, Planner, Settings, Viewport};
+use crate::motion::{CatchingUp, Finding, Means, Planned, Planner, Settings};
 use crate::protocol::{Command, Field, Frame, Status};
 use crate::scenes::{AnyScene, Report, SceneName};
 
@@ -61,8 +61,8 @@ impl<'a> Player<'a> {
         self.scene.start(name, &settings, &Means { processor: self.planner.processor, method: self.method })?;
         (self.name, self.settings, self.stopped, self.next) = (name, settings, false, None);
         let begun = self.scene.report().way;
-        let way = begun.filter(|_| self.method.is_some() || self.scene.planned().is_none());
-        self.planner.start(&settings, self.scene.height().map(|height| Viewport { way, height }), begun);
+        let is_tied = self.method.is_some() || self.scene.planned().is_none();
+        self.planner.start(&settings, self.scene.height(), begun, is_tied);
         self.ink.clear();
         self.report = self.now();
         Ok(())

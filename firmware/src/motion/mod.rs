@@ -6,6 +6,6 @@ mod settings;
 mod simulation;
 
 pub use misprinted::Misprinted;
-pub use planner::{Finding, Planned, Planner, Viewport, half_pixel, problem};
-pub use settings::Settings;
+pub use planner::{Finding, Planned, Planner};
+pub use settings::{Settings, half_pixel};
 pub use simulation::{CatchingUp, Energy, Means, Simulation};

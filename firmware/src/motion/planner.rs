@@ -4,20 +4,10 @@
 //! all boards of a class: so what has been found after n ticks is, too. The work itself may be done before the tick, in the
 //! time that a frame leaves free.
 
-use double_pendulum::Parameters;
-use double_pendulum::plan::{Budget, Limit, Plan, PlanError, Problem, Search, Way};
+use double_pendulum::plan::{Budget, Limit, Plan, PlanError, Search, Way};
 
-use crate::config::{HALF_PIXEL, PLANNED, PLANNING_PIECE, Processor, SETTLED_TICKS, TICK_RATE};
+use crate::config::{PLANNED, PLANNING_PIECE, Processor, SETTLED_TICKS, TICK_RATE};
 use crate::motion::Settings;
-
-/// How a scene shows its motion: by which way, and how large.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Viewport {
-    /// The way it is tied to; `None` if it follows the plan.
-    pub way: Option<Way>,
-    /// The height of a display, pixels, that shows the motion as large: both rods together are half of it long.
-    pub height: f32,
-}
 
 /// The plan, or why there is none. One that was right to its end is looked at farther, and told again when that comes to an end.
 pub type Finding = Result<Plan, PlanError>;
@@ -41,13 +31,16 @@ pub struct Planned {
 pub struct Planner {
     pub processor: Processor,
     ticks: u64,
-    task: Option<(Settings, Viewport)>,
+    /// The settings, and the height of a display, pixels, that shows them as large: both rods together are half of it long.
+    task: Option<(Settings, f32)>,
     search: Option<Search>,
     /// Cycles of the ticks to come that have been spent.
     debt: f32,
     plan: Option<Finding>,
     /// The way that the scene has begun in, and until when that is expected to be right, s.
     begun: Option<(Way, f64)>,
+    /// It goes no other way, whatever the plan.
+    is_tied: bool,
     /// Something has been found that no tick has told yet.
     is_news: bool,
     /// The next tick tells it, and does nothing else.
@@ -57,13 +50,15 @@ pub struct Planner {
 impl Planner {
     pub fn new(processor: Processor) -> Self {
         let (task, search, plan, begun) = (None, None, None, None);
-        Self { processor, ticks: 0, task, search, debt: 0.0, plan, begun, is_news: false, is_due: false }
+        let (is_tied, is_news, is_due) = (false, false, false);
+        Self { processor, ticks: 0, task, search, debt: 0.0, plan, begun, is_tied, is_news, is_due }
     }
 
-    /// Begins anew for a scene that starts with `settings`, and in the way `begun`; one that shows no motion has no plan.
-    pub fn start(&mut self, settings: &Settings, viewport: Option<Viewport>, begun: Option<Way>) {
-        let task = viewport.map(|viewport| (*settings, viewport));
-        (self.task, self.search, self.plan, self.begun) = (task, None, None, begun.map(|way| (way, 0.0)));
+    /// Begins anew for a scene that starts with `settings`, in the way `begun`, to which it may be tied; one without a height shows no
+    /// motion, and has no plan.
+    pub fn start(&mut self, settings: &Settings, height: Option<f32>, begun: Option<Way>, is_tied: bool) {
+        self.task = height.map(|height| (*settings, height));
+        (self.search, self.plan, self.begun, self.is_tied) = (None, None, begun.map(|way| (way, 0.0)), is_tied);
         (self.ticks, self.debt, self.is_news, self.is_due) = (0, 0.0, false, false);
     }
 
@@ -151,13 +146,15 @@ impl Planner {
 
     #[inline(never)] // a search stands on the stack while it is made
     fn advance(&mut self) -> Result<Option<Plan>, PlanError> {
-        let Some((settings, viewport)) = &self.task else { return Ok(None) };
+        let Some((settings, height)) = self.task else { return Ok(None) };
         let Some(search) = &mut self.search else {
-            let problem = problem(settings, viewport);
+            let problem = settings.problem(height);
             let (costs, budget) = (&self.processor.costs, self.processor.budget(&problem));
-            self.search = Some(match viewport.way {
-                None => Search::new(&problem, costs, &budget)?,
-                Some(Way { method, steps }) => Search::of(method, steps, &problem, costs, &budget)?,
+            self.search = Some(match self.begun {
+                Some((Way { method, steps }, _)) if self.is_tied => {
+                    Search::of(method, steps, &problem, costs, &budget)?
+                }
+                _ => Search::new(&problem, costs, &budget)?,
             });
             return Ok(None);
         };
@@ -177,29 +174,12 @@ impl Planner {
     }
 
     pub fn answer(&self) -> Option<Planned> {
-        let (settings, viewport) = self.task.as_ref()?;
-        let problem = problem(settings, viewport);
+        let (settings, height) = self.task?;
+        let problem = settings.problem(height);
         let Budget { frame, planning } = self.processor.budget(&problem);
-        let (height, duration) = (viewport.height, problem.duration);
-        Some(Planned { found: self.plan, height, duration, frame, planning })
+        Some(Planned { found: self.plan, height, duration: problem.duration, frame, planning })
     }
 }
 
 /// Longer than anything is played, s: four months.
 const FOR_EVER: f64 = 1e7;
-
-pub fn problem(settings: &Settings, viewport: &Viewport) -> Problem {
-    let pendulum = settings.parameters.cast();
-    Problem {
-        pendulum,
-        start: settings.motion().cast(),
-        tolerance: half_pixel(&pendulum, viewport.height.into()),
-        duration: PLANNED,
-        rate: TICK_RATE as u16,
-    }
-}
-
-/// [`HALF_PIXEL`] in metres on a display `height` pixels high: both rods together are half of it long.
-pub fn half_pixel(&Parameters { l1, l2, .. }: &Parameters<f64>, height: f64) -> f64 {
-    f64::from(HALF_PIXEL) * (l1 + l2) / (0.5 * height)
-}

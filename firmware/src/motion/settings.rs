@@ -1,9 +1,13 @@
 //! What a motion starts from: the pendulum, and where it is let go.
 
-use double_pendulum::plan::{PlannedRun, Way};
+use double_pendulum::plan::{PlannedRun, Problem, Way};
 use double_pendulum::{Error, Motion, Parameters, Pendulum, State};
 
-use crate::config::{ANGLE_STEP, FIRST_ANGLE, FIRST_MASS_RATIO, GRAVITY, GREATEST_ANGLE, MASS_RATIOS, ROD, TICK_RATE};
+use crate::config::{
+    ANGLE_STEP, FIRST_ANGLE, FIRST_MASS_RATIO, GRAVITY, GREATEST_ANGLE, HALF_PIXEL, MASS_RATIOS, PLANNED, ROD,
+    TICK_RATE,
+};
+use crate::graphics::HEIGHT;
 
 /// A double pendulum and its start.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -76,10 +80,27 @@ impl Settings {
         Ok((pendulum, state))
     }
 
+    /// As it is planned on a display `height` pixels high.
+    pub fn problem(&self, height: f32) -> Problem {
+        let pendulum = self.parameters.cast();
+        Problem {
+            pendulum,
+            start: self.motion().cast(),
+            tolerance: half_pixel(&pendulum, height.into()),
+            duration: PLANNED,
+            rate: TICK_RATE as u16,
+        }
+    }
+
     /// The motion this `way`, with rod 1 ahead by `apart` rad.
     pub fn run(&self, apart: f64, way: Way) -> Result<PlannedRun, Error> {
-        let start = self.motion().cast();
-        let start = Motion { a1: start.a1 + apart, ..start };
-        PlannedRun::new(&self.parameters.cast(), &start, TICK_RATE as u16, way)
+        let mut problem = self.problem(HEIGHT as f32);
+        problem.start.a1 += apart;
+        PlannedRun::new(&problem, way)
     }
+}
+
+/// [`HALF_PIXEL`] in metres on a display `height` pixels high: both rods together are half of it long.
+pub fn half_pixel(&Parameters { l1, l2, .. }: &Parameters<f64>, height: f64) -> f64 {
+    f64::from(HALF_PIXEL) * (l1 + l2) / (0.5 * height)
 }

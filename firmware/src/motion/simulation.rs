@@ -3,8 +3,8 @@
 use double_pendulum::plan::{PlannedRun, Way};
 use double_pendulum::{Error, Method, Pendulum, State};
 
-use crate::config::{Processor, TICK_RATE};
-use crate::graphics::RodDirections;
+use crate::config::Processor;
+use crate::graphics::{HEIGHT, RodDirections};
 use crate::motion::Settings;
 
 /// What a motion may be computed by.
@@ -29,12 +29,12 @@ impl Simulation {
     /// if the pendulum is too quick for what may be spent.
     pub fn new(settings: &Settings, &Means { ref processor, method }: &Means) -> Result<Self, Error> {
         let (pendulum, start) = settings.start()?;
-        let (parameters, motion, rate) = (settings.parameters.cast(), settings.motion().cast(), TICK_RATE as u16);
+        let problem = settings.problem(HEIGHT as f32);
         let way = match method {
-            Some(method) => Way::of(&parameters, &motion, rate, method)?,
-            None => Way::lasting(&parameters, &motion, rate, &processor.costs, processor.frame)?,
+            Some(method) => Way::of(&problem, method)?,
+            None => Way::lasting(&problem, &processor.costs, processor.frame)?,
         };
-        pendulum.check_step(1.0 / (f64::from(rate) * f64::from(way.steps)))?;
+        pendulum.check_step(1.0 / (f64::from(problem.rate) * f64::from(way.steps)))?;
         let motion = settings.run(0.0, way)?;
         Ok(Self { energy: Energy::new(pendulum, motion.directions(), &start), motion })
     }

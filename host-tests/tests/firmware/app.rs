@@ -2,8 +2,8 @@
 
 use std::cell::Cell;
 
-use double_pendulum::plan::{PlannedRun, Way};
-use double_pendulum::{Method, Motion, Parameters, Pendulum, State};
+use double_pendulum::plan::Way;
+use double_pendulum::{Method, Parameters, Pendulum, State};
 use embedded_io::{ErrorKind, ErrorType, Write};
 use firmware::app::{Buttons, Event, NoButtons, Pressed, WarmRestart};
 use firmware::config::{GRAVITY, MOST_TICKS_PER_FRAME, ROD, TICK_RATE};
@@ -50,9 +50,8 @@ fn every_frame_carries_the_kernels_state_to_the_bit() {
     let start_angle = 120.0_f32.to_radians();
     let start_energy = pendulum.energy(&State::at_rest(start_angle, start_angle));
     let scale = start_energy - pendulum.least_energy();
-    let start = Motion::at_rest(start_angle.into(), start_angle.into());
     let way = Way { method: Method::Extrapolation10Fixed64, steps: 1 };
-    let mut expected = PlannedRun::new(&pendulum.parameters().cast(), &start, TICK_RATE as u16, way).expect("good");
+    let mut expected = Settings::default().run(0.0, way).expect("good");
     for (sequence, frame) in (0..).zip(frames) {
         expected.advance(1).expect("a finite motion");
         let Report { step, time, state, energy_error, .. } = frame.report;

@@ -3,17 +3,17 @@
 use double_pendulum::Method;
 use double_pendulum::plan::{Limit, PlanError, Way};
 use firmware::config::{CORTEX_M3, CORTEX_M4F, PLANNED, PROCESSORS, Processor, SETTLED_TICKS, STM32F405};
-use firmware::motion::{Planner, Settings, Viewport};
+use firmware::motion::{Planner, Settings};
 
 /// The way that these begin in, which is right wherever any other is.
 const LASTING: Way = Way { method: Method::Extrapolation10Fixed64, steps: 1 };
-const VIEWPORT: Viewport = Viewport { way: None, height: 57.0 };
+const HEIGHT: f32 = 57.0;
 /// Ticks by which everything here is found.
 const PATIENCE: u64 = 1200;
 
 fn planner(processor: Processor, settings: &Settings) -> Planner {
     let mut planner = Planner::new(processor);
-    planner.start(settings, Some(VIEWPORT), Some(LASTING));
+    planner.start(settings, Some(HEIGHT), Some(LASTING), false);
     planner
 }
 
@@ -52,7 +52,7 @@ fn what_is_found_in_a_tick_does_not_depend_on_when_the_work_is_done() {
 fn there_is_nothing_to_do_without_a_motion_or_when_all_is_found() {
     let mut still = Planner::new(CORTEX_M3);
     assert!(still.tick().is_none() && !still.work_ahead() && !still.is_looking());
-    still.start(&Settings::default(), None, None);
+    still.start(&Settings::default(), None, None, false);
     assert!(still.tick().is_none() && !still.work_ahead() && !still.is_looking());
 
     let mut planner = planner(STM32F405, &Settings::default());
@@ -62,7 +62,7 @@ fn there_is_nothing_to_do_without_a_motion_or_when_all_is_found() {
     assert!(planner.answer().is_some_and(|answer| answer.found.is_some()));
     assert!(!planner.work_ahead() && planner.tick().is_some(), "it is told in a tick of its own");
     assert!(!planner.work_ahead() && planner.tick().is_none());
-    planner.start(&Settings::equal_rods(1.0, 30.0), Some(VIEWPORT), Some(LASTING));
+    planner.start(&Settings::equal_rods(1.0, 30.0), Some(HEIGHT), Some(LASTING), false);
     assert_eq!(
         (planner.answer().map(|answer| answer.found), planner.horizon(LASTING)),
         (Some(None), 0.0),
@@ -94,7 +94,7 @@ fn only_steps_that_resolve_a_motion_are_right_wherever_others_are() {
     for (steps, is_right) in [(2, false), (4, true)] {
         let begun = Way { method: Method::Extrapolation10Fixed64, steps };
         let mut planner = Planner::new(CORTEX_M3);
-        planner.start(&Settings::equal_rods(2.75, 171.0), Some(VIEWPORT), Some(begun));
+        planner.start(&Settings::equal_rods(2.75, 171.0), Some(HEIGHT), Some(begun), false);
         while in_32_bits(&planner) < 1.0 {
             assert!(planner.tick().is_none());
         }
@@ -130,7 +130,7 @@ fn where_nothing_holds_that_is_what_is_told() {
     assert!(matches!(found, Some(Err(PlanError::NoMethod { .. }))), "{found:?}");
     let answer = planner.answer().expect("a motion");
     assert_eq!(answer.found, found);
-    assert_eq!((answer.duration, answer.height, answer.frame), (PLANNED, VIEWPORT.height, 100.0));
+    assert_eq!((answer.duration, answer.height, answer.frame), (PLANNED, HEIGHT, 100.0));
 }
 
 /// Only the way that was asked for is looked at, even if it costs more than a frame allows.
@@ -139,7 +139,7 @@ fn where_nothing_holds_that_is_what_is_told() {
 fn a_way_that_is_given_stays() {
     let mut planner = Planner::new(STM32F405);
     let way = Way { method: Method::Rk4F32Direction, steps: 4 };
-    planner.start(&Settings::default(), Some(Viewport { way: Some(way), ..VIEWPORT }), Some(way));
+    planner.start(&Settings::default(), Some(HEIGHT), Some(way), true);
     let found = (0..PATIENCE).find_map(|_| planner.tick());
     let Some(Ok(plan)) = found else { panic!("{found:?}") };
     assert_eq!((plan.method, plan.steps, plan.limit), (Method::Rk4F32Direction, 4, Limit::Method));

@@ -131,9 +131,9 @@ fn a_budget_that_is_just_enough_is_enough() {
 #[test]
 fn the_lasting_way_is_what_a_frame_can_pay_for() {
     for degrees in [60.0, 120.0, 171.0] {
-        let Problem { pendulum, start, .. } = scene(2.75, degrees, 20.0);
+        let scene = scene(2.75, degrees, 20.0);
         for costs in [&M3, &M4F] {
-            let within = |frame| Way::lasting(&pendulum, &start, RATE, costs, frame).expect("a pendulum");
+            let within = |frame| Way::lasting(&scene, costs, frame).expect("a pendulum");
             let cost = |way: Way| costs.of_frame(way);
             let lavish = within(1e7);
             assert_eq!((lavish.method, within(cost(lavish))), (Method::Extrapolation10Fixed64, lavish));
@@ -141,7 +141,7 @@ fn the_lasting_way_is_what_a_frame_can_pay_for() {
             assert!(cost(frugal) < cost(lavish), "{frugal:?} {lavish:?}");
             let poor = within(costs.fixed64.next_down());
             assert!(poor.method != Method::Extrapolation10Fixed64 && cost(poor) < costs.fixed64, "{poor:?}");
-            let resolving = Way::of(&pendulum, &start, RATE, poor.method).expect("a pendulum");
+            let resolving = Way::of(&scene, poor.method).expect("a pendulum");
             let is_finest = costs.of_frame(Way { steps: 2 * poor.steps, ..poor }) >= costs.fixed64;
             assert!(resolving == poor || resolving.steps > poor.steps && is_finest, "{poor:?} {resolving:?}");
             let poorer = within(cost(poor).next_down());
@@ -154,18 +154,18 @@ fn the_lasting_way_is_what_a_frame_can_pay_for() {
 #[test]
 fn the_lasting_way_can_be_gone() {
     for (mass_ratio, method) in [(1.0, Method::Rk4Fixed32), (1e5, Method::Rk4F32Direction)] {
-        let Problem { pendulum, start, .. } = scene(mass_ratio, 10.0, 20.0);
-        let way = Way::lasting(&pendulum, &start, RATE, &M3, M3.fixed64.next_down()).expect("a pendulum");
+        let scene = scene(mass_ratio, 10.0, 20.0);
+        let way = Way::lasting(&scene, &M3, M3.fixed64.next_down()).expect("a pendulum");
         assert_eq!(way.method, method);
-        assert!(PlannedRun::new(&pendulum, &start, RATE, way).is_ok(), "{way:?}");
+        assert!(PlannedRun::new(&scene, way).is_ok(), "{way:?}");
     }
 }
 
 /// In steps as long as resolve the motion: in 64 bits those are of a high order, but shorter than the first that others try.
 #[test]
 fn a_method_that_is_asked_for_resolves_the_motion() {
-    let Problem { pendulum, start, .. } = scene(2.75, 171.0, 20.0);
-    let steps = |method| Way::of(&pendulum, &start, RATE, method).expect("a pendulum").steps;
+    let scene = scene(2.75, 171.0, 20.0);
+    let steps = |method| Way::of(&scene, method).expect("a pendulum").steps;
     assert_eq!([Method::Extrapolation10Fixed64, Method::Rk4Fixed32, Method::Rk4F32Direction].map(steps), [3, 2, 2]);
 }
 
@@ -175,8 +175,8 @@ fn a_way_that_can_be_gone_is_looked_at() {
     for degrees in [60.0, 90.0, 120.0] {
         let scene = scene(1.0, degrees, 1.0);
         for method in [Method::Rk4Fixed32, Method::Rk4F32Direction, Method::Extrapolation10Fixed64] {
-            let way = Way::of(&scene.pendulum, &scene.start, RATE, method).expect("a pendulum");
-            assert!(PlannedRun::new(&scene.pendulum, &scene.start, RATE, way).is_ok(), "{way:?} at {degrees}");
+            let way = Way::of(&scene, method).expect("a pendulum");
+            assert!(PlannedRun::new(&scene, way).is_ok(), "{way:?} at {degrees}");
             let mut search =
                 Search::of(method, way.steps, &scene, &M3, &CORTEX_M3.budget(&scene)).expect("a good scene");
             let plan = finished(&mut search);

@@ -1,8 +1,8 @@
 //! What each method costs, what may be spent, and the ways that it pays for.
 
-use super::PlannedRun;
+use super::{PlannedRun, Problem};
 use crate::error::{Error, Parameter};
-use crate::pendulum::{Motion, Parameters, Pendulum};
+use crate::pendulum::Pendulum;
 use crate::table::Method;
 
 /// The price list: what a step costs by each method, what a frame costs in closed form. In cycles, or in any other unit
@@ -79,13 +79,13 @@ pub(super) fn steps_to_frame(method: Method, rate: u16, longest: f64) -> u32 {
     if method == Method::Extrapolation10Fixed64 { fewest } else { fewest.next_power_of_two() }
 }
 
-/// The longest step that resolves every motion of the energy of `start`, s.
+/// The longest step that resolves every motion of the problem's energy, s.
 ///
 /// Refuses what [`Pendulum::new`] and [`Pendulum::admissible_step`] refuse.
 #[inline(never)] // one copy
-pub(super) fn admissible_step(parameters: &Parameters<f64>, start: &Motion<f64>) -> Result<f64, Error> {
-    let pendulum = Pendulum::new(parameters)?;
-    pendulum.admissible_step(&pendulum.to_state(start))
+pub(super) fn admissible_step(problem: &Problem) -> Result<f64, Error> {
+    let pendulum = Pendulum::new(&problem.pendulum)?;
+    pendulum.admissible_step(&pendulum.to_state(&problem.start))
 }
 
 impl Way {
@@ -95,55 +95,42 @@ impl Way {
     ///
     /// Refuses what [`Pendulum::new`] and [`Pendulum::admissible_step`] refuse.
     #[doc(hidden)]
-    pub fn lasting(
-        parameters: &Parameters<f64>,
-        start: &Motion<f64>,
-        rate: u16,
-        costs: &Costs,
-        frame: f32,
-    ) -> Result<Self, Error> {
-        let admissible = admissible_step(parameters, start)?;
+    pub fn lasting(problem: &Problem, costs: &Costs, frame: f32) -> Result<Self, Error> {
+        let admissible = admissible_step(problem)?;
         for longest in [RESOLVING, FIRST_STEP] {
-            if let Some(way) = Self::fixed64(parameters, start, rate, longest * admissible, costs, frame) {
+            if let Some(way) = Self::fixed64(problem, longest * admissible, costs, frame) {
                 return Ok(way);
             }
         }
         let affordable = |method| {
-            let mut steps = steps_to_frame(method, rate, FIRST_STEP * admissible);
+            let mut steps = steps_to_frame(method, problem.rate, FIRST_STEP * admissible);
             while steps > 1 && costs.of_frame(Self { method, steps }) > frame {
                 steps /= 2;
             }
             Self { method, steps }
         };
         let fixed = affordable(Method::Rk4Fixed32);
-        let is_fixed = costs.fixed32 < costs.direction && fixed.check(parameters, start, rate).is_ok();
+        let is_fixed = costs.fixed32 < costs.direction && fixed.check(problem).is_ok();
         Ok(if is_fixed { fixed } else { affordable(Method::Rk4F32Direction) })
     }
 
     /// By `method`, in the longest steps that resolve every motion of this energy. Refuses what [`lasting`](Self::lasting) refuses.
     #[doc(hidden)]
-    pub fn of(parameters: &Parameters<f64>, start: &Motion<f64>, rate: u16, method: Method) -> Result<Self, Error> {
-        let admissible = admissible_step(parameters, start)?;
+    pub fn of(problem: &Problem, method: Method) -> Result<Self, Error> {
+        let admissible = admissible_step(problem)?;
         let longest = if method == Method::Extrapolation10Fixed64 { RESOLVING } else { FIRST_STEP };
-        Ok(Self { method, steps: steps_to_frame(method, rate, longest * admissible) })
+        Ok(Self { method, steps: steps_to_frame(method, problem.rate, longest * admissible) })
     }
 
     /// By [`Method::Extrapolation10Fixed64`] in steps of `longest` s or less, as coarse as its numbers take, if they cost no more than `frame`.
-    pub(super) fn fixed64(
-        parameters: &Parameters<f64>,
-        start: &Motion<f64>,
-        rate: u16,
-        longest: f64,
-        costs: &Costs,
-        frame: f32,
-    ) -> Option<Self> {
+    pub(super) fn fixed64(problem: &Problem, longest: f64, costs: &Costs, frame: f32) -> Option<Self> {
         let method = Method::Extrapolation10Fixed64;
-        let mut way = Self { method, steps: steps_to_frame(method, rate, longest) };
+        let mut way = Self { method, steps: steps_to_frame(method, problem.rate, longest) };
         while costs.of_frame(way) <= frame && way.steps < MOST_STEPS {
-            match way.check(parameters, start, rate) {
+            match way.check(problem) {
                 Ok(()) => return Some(way),
                 Err(Error::TooLarge { parameter: Parameter::Dt, limit, .. }) => {
-                    let enough = steps_to_frame(way.method, rate, limit);
+                    let enough = steps_to_frame(method, problem.rate, limit);
                     way.steps = if enough > way.steps { enough } else { way.steps + 1 };
                 }
                 Err(_) => return None,
@@ -154,7 +141,7 @@ impl Way {
 
     /// Refuses a motion that cannot be started in this way.
     #[inline(never)] // the motion stands on the stack
-    fn check(self, parameters: &Parameters<f64>, start: &Motion<f64>, rate: u16) -> Result<(), Error> {
-        PlannedRun::new(parameters, start, rate, self).map(|_| ())
+    fn check(self, problem: &Problem) -> Result<(), Error> {
+        PlannedRun::new(problem, self).map(|_| ())
     }
 }

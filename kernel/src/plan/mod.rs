@@ -106,6 +106,6 @@ impl Plan {
     ///
     /// Refuses what [`PlannedRun::new`] refuses.
     pub fn run(&self, problem: &Problem) -> Result<PlannedRun, Error> {
-        PlannedRun::new(&problem.pendulum, &problem.start, problem.rate, self.way())
+        PlannedRun::new(problem, self.way())
     }
 }

@@ -1,9 +1,9 @@
 //! A motion by any method that a plan chooses from.
 
-use super::cost::Way;
+use super::{Problem, Way};
 use crate::error::Error;
 use crate::methods::{ClosedFormF32, DirectionF32, DirectionF32Plain, Fixed32, Fixed64, Form, Turns};
-use crate::pendulum::{Direction, Motion, Parameters, Pendulum, State};
+use crate::pendulum::{Direction, Parameters, Pendulum, State};
 use crate::table::Method;
 
 /// The order of the steps in 64 bits of fixed point. 8 lasts less long, 12 costs 1.4 times as much and lasts no longer: the
@@ -92,18 +92,18 @@ pub struct PlannedRun {
 }
 
 impl PlannedRun {
-    /// At `start`, with `rate` frames to a second. No steps count as one.
+    /// The motion of `problem` at its start. No steps count as one.
     ///
     /// Refuses what [`Pendulum::run`] refuses, what has no normal modes if it is the closed form, and a method
     /// that is none of [`Method::DRAWN`].
     #[inline(never)] // one copy
     #[doc(hidden)]
-    pub fn new(parameters: &Parameters<f64>, start: &Motion<f64>, rate: u16, way: Way) -> Result<Self, Error> {
+    pub fn new(&Problem { pendulum, start, rate, .. }: &Problem, way: Way) -> Result<Self, Error> {
         start.check()?;
         let is_closed = way.method == Method::ClosedFormF32;
         let steps = if way.steps == 0 || is_closed { 1 } else { way.steps };
-        let state = Pendulum::new(parameters)?.to_state(start);
-        let run = AnyRun::new(way.method, &(*parameters, state), f64::from(rate) * f64::from(steps))?;
+        let state = Pendulum::new(&pendulum)?.to_state(&start);
+        let run = AnyRun::new(way.method, &(pendulum, state), f64::from(rate) * f64::from(steps))?;
         let turns = Turns::of(state.angles(), run.sides());
         Ok(Self { way: Way { steps, ..way }, rate, frame: 0, run, turns })
     }

@@ -45,12 +45,9 @@ impl Search {
     /// budgets that are not positive.
     #[inline(never)] // a search stands on the stack while it is made
     pub fn new(problem: &Problem, costs: &Costs, budget: &Budget) -> Result<Self, PlanError> {
-        let admissible = admissible_step(&problem.pendulum, &problem.start)?;
+        let admissible = admissible_step(problem)?;
         problem.check(costs, budget)?;
-        let fine = |longest: f64, frame: f32| {
-            let Problem { pendulum, start, rate, .. } = problem;
-            Way::fixed64(pendulum, start, *rate, longest * admissible, costs, frame)
-        };
+        let fine = |longest: f64, frame: f32| Way::fixed64(problem, longest * admissible, costs, frame);
         let exact = fine(RESOLVING, f32::INFINITY);
         let affordable = |way: &Way| costs.of_frame(*way) <= budget.frame;
         let coarser = || fine(FIRST_STEP, budget.frame).map(|way| (way, Limit::Budget));

@@ -4,7 +4,7 @@ use anyhow::{Context, bail, ensure};
 use clap::{Parser, value_parser};
 use double_pendulum::plan::{Limit, Plan, PlanError, Problem};
 use firmware::config::{CORTEX_M0PLUS, CORTEX_M3, CORTEX_M4F, Processor, STM32F405};
-use firmware::motion::{Viewport, half_pixel, problem};
+use firmware::motion::half_pixel;
 use firmware::scenes::SceneName;
 
 use crate::commands::simulate::{Number, StartOptions, option_of};
@@ -56,7 +56,7 @@ impl SceneOptions {
         let settings = name.first_settings();
         let show = Show::on(self.target.processor, name, &settings)?;
         let planned = show.player.plan().with_context(|| format!("--scene {}: has no motion to plan", name.name()))?;
-        Ok(problem(&settings, &Viewport { way: None, height: planned.height }))
+        Ok(settings.problem(planned.height))
     }
 
     fn given(&self) -> anyhow::Result<Problem> {

@@ -17,7 +17,7 @@ pub struct Verdict {
 
 /// Every frame until one that is proved wrong, as long as the motion can be followed.
 pub fn frames(scene: &Problem, start: &Start, way: Way) -> Result<impl Iterator<Item = Verdict>, Error> {
-    let mut motion = PlannedRun::new(&scene.pendulum, &scene.start, scene.rate, way)?;
+    let mut motion = PlannedRun::new(scene, way)?;
     let (scene, mut set, mut last) = (*scene, start.enclose(scene.rate), None);
     Ok((0..scene.frames()).map_while(move |_| {
         (last != Some(false)).then(|| set.advance())??;
