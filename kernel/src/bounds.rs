@@ -47,6 +47,27 @@ impl<R: Real> Bounds<R> {
     }
 }
 
+impl<R: Real> Modes<R> {
+    /// The longest step with which RK4 is stable on the fast mode, s: 2 sqrt(2)/w1 (`[Hairer II]`, section IV.2).
+    ///
+    /// A limit, not advice: the phase is useless long before it.
+    #[must_use]
+    pub fn step_limit(&self) -> R {
+        R::from_f64(8.0).sqrt() / self.fast.frequency
+    }
+
+    /// Refuses a step `dt` (s) that is NaN, infinite, zero, negative, out of the range of `R`, or above
+    /// [`step_limit`](Self::step_limit).
+    pub fn check_step(&self, dt: f64) -> Result<(), Error> {
+        check_forward::<R>(dt)?;
+        let limit = self.step_limit().to_f64();
+        if dt > limit {
+            return Err(Error::TooLarge { parameter: Parameter::Dt, value: dt, limit });
+        }
+        Ok(())
+    }
+}
+
 impl<R: Real> Pendulum<R> {
     /// The bounds of the motion through `state`.
     #[must_use]
@@ -71,30 +92,7 @@ impl<R: Real> Pendulum<R> {
         let margin = R::ONE + R::from_f64(ROUNDING_MARGIN) * R::EPSILON;
         self.energy_above_rest(state) * margin < self.turnover_energy()
     }
-}
 
-impl<R: Real> Modes<R> {
-    /// The longest step with which RK4 is stable on the fast mode, s: 2 sqrt(2)/w1 (`[Hairer II]`, section IV.2).
-    ///
-    /// A limit, not advice: the phase is useless long before it.
-    #[must_use]
-    pub fn step_limit(&self) -> R {
-        R::from_f64(8.0).sqrt() / self.fast.frequency
-    }
-
-    /// Refuses a step `dt` (s) that is NaN, infinite, zero, negative, out of the range of `R`, or above
-    /// [`step_limit`](Self::step_limit).
-    pub fn check_step(&self, dt: f64) -> Result<(), Error> {
-        check_forward::<R>(dt)?;
-        let limit = self.step_limit().to_f64();
-        if dt > limit {
-            return Err(Error::TooLarge { parameter: Parameter::Dt, value: dt, limit });
-        }
-        Ok(())
-    }
-}
-
-impl<R: Real> Pendulum<R> {
     /// As [`Modes::check_step`]; without gravity there are no modes and every step forward is accepted.
     pub fn check_step(&self, dt: f64) -> Result<(), Error> {
         if self.parameters().g == R::ZERO { check_forward::<R>(dt) } else { self.modes()?.check_step(dt) }

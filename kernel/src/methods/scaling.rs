@@ -115,11 +115,6 @@ impl Scaling {
         let [gravity1, gravity2] = self.gravity;
         [rate / fastest, libm::sqrt(torque / libm::fmax(gravity1, gravity2 * self.norm))]
     }
-
-    /// m + S^2, by the powers of two that keep its inverse at most 1.
-    pub fn denominator(&self, s: f64) -> f64 {
-        self.inertia + scaled(s * s, self.shifts.inverse as i32 - self.shifts.momentum as i32)
-    }
 }
 
 impl Units<Q30> for Shifts {

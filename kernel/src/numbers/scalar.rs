@@ -23,10 +23,8 @@ pub trait Scalar:
     /// The number nearest to `value`.
     fn from_f64(value: f64) -> Self;
     /// Twice the number: an addition, or a step of the exponent where an addition would be a call of 100 cycles and more.
-    #[must_use]
     fn twice(self) -> Self;
     /// Half the number.
-    #[must_use]
     fn half(self) -> Self;
     /// The product as the rate of change of a direction.
     fn slope(self, factor: Self) -> Self::Slope;
@@ -35,12 +33,10 @@ pub trait Scalar:
     /// The torque of gravity in a direction.
     fn weight(gravity: Self::Gravity, direction: Self) -> Self::Torque;
     /// `value`, of any size, as a whole number and the rest: [`times`](Self::times) the one and a product with the other.
-    #[must_use]
     fn split(value: f64) -> (i32, Self) {
         (0, Self::from_f64(value))
     }
     /// The product with a whole number.
-    #[must_use]
     fn times(self, whole: i32) -> Self {
         self * Self::from_f64(f64::from(whole))
     }
@@ -57,7 +53,6 @@ pub struct Lanes<R, const N: usize>(pub [R; N]);
 impl<R: Copy, const N: usize> Lanes<R, N> {
     /// The same number in every lane.
     #[inline(always)]
-    #[must_use]
     pub fn splat(number: R) -> Self {
         Self([number; N])
     }

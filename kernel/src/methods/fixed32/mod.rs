@@ -9,8 +9,8 @@ mod upkeep;
 use crate::bounds::check_step;
 use crate::error::Error;
 use crate::methods::Form;
-use crate::methods::scaling::lost;
-use crate::numbers::fixed::{Q30, nearest, product};
+use crate::methods::scaling::{Scaling, lost};
+use crate::numbers::fixed::{Q30, nearest, product, scaled};
 use crate::numbers::{Real, Scalar, Sealed};
 use crate::pendulum::directions::{directions, heads, quantities, state_of};
 use crate::pendulum::{Direction, Parameters, Pendulum, State};
@@ -82,11 +82,10 @@ impl Form for Fixed32 {
 
     #[inline(never)]
     fn new(parameters: &Parameters<f64>, start: &State<f64>, dt: f64) -> Result<Self, Error> {
-        parameters.check()?;
+        let pendulum = Pendulum::new(parameters)?;
         check_step::<f64>(dt)?;
         start.check()?;
-        let energy = Pendulum::new(parameters)?.energy_above_rest(start);
-        Ok(Self::of(Setting::new(parameters, energy, dt)?, start))
+        Ok(Self::of(Setting::new(parameters, pendulum.energy_above_rest(start), dt)?, start))
     }
 
     fn started(&self, start: &State<f64>) -> Result<Self, Error> {
@@ -147,7 +146,9 @@ impl Fixed32 {
     /// The motion that starts from `state`, of the energy that the units are for or less.
     fn of(units: Setting, state: &State<f64>) -> Self {
         let z = quantities(state, units.scaling.norm, units.scaling.momenta);
-        let inverse = Q30::from_f64(1.0 / units.scaling.denominator(z[2]));
+        let Scaling { inertia, shifts, .. } = units.scaling;
+        let square = scaled(z[2] * z[2], shifts.inverse as i32 - shifts.momentum as i32);
+        let inverse = Q30::from_f64(1.0 / (inertia + square));
         let z = z.map(|z| nearest(z * ONE) as i64 + OFFSET);
         let mut motion = Self { units, z, inverse, weights: [0; 2], lost: false, steps: 0 };
         motion.weights = motion.weights_now();

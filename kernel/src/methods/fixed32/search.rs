@@ -14,6 +14,13 @@ fn symmetric(rng: &mut Rng) -> f64 {
     2.0 * rng.f64() - 1.0
 }
 
+/// Makes the momenta so many times as large.
+fn speed_up(motion: &mut Fixed32, times: f64) {
+    for momentum in &mut motion.z[4..] {
+        *momentum = libm::rint((*momentum - OFFSET) as f64 * times) as i64 + OFFSET;
+    }
+}
+
 /// What is searched: powers of two of m2/m1 and l2/l1, where it is, the direction of its momenta, the energy, and how much
 /// shorter than the coarsest the step is, as a power of two.
 #[derive(Clone, Copy, Debug)]
@@ -67,9 +74,7 @@ impl Candidate {
         still.z[4..].fill(OFFSET);
         let (potential, most) = (still.energy(), motion.units.most_energy);
         let more = libm::sqrt((most - potential) as f64 / (motion.energy() - potential).max(1) as f64);
-        for momentum in &mut motion.z[4..] {
-            *momentum = libm::rint((*momentum - OFFSET) as f64 * more) as i64 + OFFSET;
-        }
+        speed_up(&mut motion, more);
         Ok(watch::largest(|| {
             motion.make(UPKEEP);
             motion.keep_up();
@@ -110,9 +115,7 @@ fn too_much_energy_is_noticed() -> Result<(), Error> {
     for (more, lost) in [(1.0, false), (1.2, true)] {
         let mut motion = motion;
         motion.advance(UPKEEP);
-        for momentum in &mut motion.z[4..] {
-            *momentum = libm::rint((*momentum - OFFSET) as f64 * more) as i64 + OFFSET;
-        }
+        speed_up(&mut motion, more);
         motion.advance(UPKEEP);
         assert_eq!((motion.lost, motion.state().a1.is_nan()), (lost, lost), "momenta times {more}");
     }

@@ -4,7 +4,7 @@ mod rows;
 
 use core::cell::Cell;
 
-use crate::bounds::{Bounds, check_step};
+use crate::bounds::check_step;
 use crate::error::{Error, Parameter};
 use crate::methods::Form;
 use crate::methods::scaling::{Scaling, lost};
@@ -97,11 +97,19 @@ impl<const ORDER: u32> Form for Fixed64<ORDER> {
     }
 
     fn directions<R: Real>(&self) -> [Direction<R>; 2] {
-        self.0.directions()
+        let [sin1, cos1, s, c, ..] = self.0.z;
+        let inverse = R::from_f64(self.0.inverse_norm);
+        let lower = lower_ray([sin1, cos1], [s, c]).map(|z| z.over::<R>(EIGHTH * EIGHTH) * inverse);
+        [[sin1, cos1].map(|z| z.over(EIGHTH)), lower]
     }
 
+    #[inline(never)] // one copy
     fn momenta<R: Real>(&self) -> [R; 2] {
-        self.0.momenta()
+        let ([.., p1, p2], [unit1, unit2]) = (self.0.z, self.0.momenta);
+        let lost = self.0.lost;
+        let momentum =
+            |p: Q64, unit: f64| if lost { R::from_f64(f64::NAN) } else { p.over::<R>(1.0) / R::from_f64(unit) };
+        [momentum(p1, unit1), momentum(p2, unit2)]
     }
 
     fn state(&self) -> State<f64> {
@@ -117,10 +125,10 @@ impl<const ORDER: u32> Form for Fixed64<ORDER> {
 impl Fixed64State {
     #[inline(never)]
     fn new(parameters: &Parameters<f64>, start: &State<f64>, dt: f64, order: u32) -> Result<Self, Error> {
-        parameters.check()?;
+        let pendulum = Pendulum::new(parameters)?;
         check_step::<f64>(dt)?;
         start.check()?;
-        let bounds = Bounds::new(parameters, Pendulum::new(parameters)?.energy_above_rest(start));
+        let bounds = pendulum.bounds(start);
         let seconds = Scaling::in_seconds(parameters)?;
         let [by_rates, by_torques] = seconds.longest(&bounds, [RATE, TORQUE]);
         let longest = libm::fmin(by_rates, by_torques);
@@ -172,25 +180,9 @@ impl Fixed64State {
         self.lost |= reach != 0 || [missing1, missing2].into_iter().any(|missing| missing.0.unsigned_abs() > LENGTH);
     }
 
-    fn directions<R: Real>(&self) -> [Direction<R>; 2] {
-        let [sin1, cos1, s, c, ..] = self.z;
-        let inverse = R::from_f64(self.inverse_norm);
-        let lower = lower_ray([sin1, cos1], [s, c]).map(|z| z.over::<R>(EIGHTH * EIGHTH) * inverse);
-        [[sin1, cos1].map(|z| z.over(EIGHTH)), lower]
-    }
-
     #[inline(never)]
     fn state(&self) -> State<f64> {
         state_of(if self.lost { [f64::NAN; 6] } else { self.z.map(Q64::value) }, self.momenta)
-    }
-
-    /// p1 and p2 in SI units, rounded to `R`.
-    #[inline(never)] // one copy
-    fn momenta<R: Real>(&self) -> [R; 2] {
-        let ([.., p1, p2], [unit1, unit2]) = (self.z, self.momenta);
-        let momentum =
-            |p: Q64, unit: f64| if self.lost { R::from_f64(f64::NAN) } else { p.over::<R>(1.0) / R::from_f64(unit) };
-        [momentum(p1, unit1), momentum(p2, unit2)]
     }
 }
 
