@@ -18,7 +18,7 @@ pub struct Calls<'a> {
     core: Core,
     entries: BTreeSet<u32>,
     /// Where the call that is running came from, the stream since then, and what it has cost.
-    running: Option<(Registers, Stream<'a>, Cost)>,
+    pub running: Option<(Registers, Stream<'a>, Cost)>,
     /// What each call that returned cost, in order.
     pub ended: Vec<Cost>,
     /// By its address, an instruction and what all its executions together cost.
@@ -70,10 +70,6 @@ impl<'a> Calls<'a> {
             self.running = None;
         }
         Ok(())
-    }
-
-    pub fn is_running(&self) -> bool {
-        self.running.is_some()
     }
 
     /// Of all calls that returned.

@@ -11,6 +11,7 @@ use crate::instruction::{Instruction, is_long};
 #[derive(Debug)]
 pub struct Image {
     path: PathBuf,
+    /// Start address and bytes of all that is loaded, functions that run in RAM included.
     loaded: Vec<(u32, Vec<u8>)>,
     code: Vec<(u32, Vec<u8>)>,
     functions: Vec<Function>,
@@ -90,13 +91,8 @@ impl Image {
         }
     }
 
-    /// Start address and bytes of all that is loaded, functions that run in RAM included.
-    pub fn loaded(&self) -> impl Iterator<Item = (u32, &[u8])> {
-        self.loaded.iter().map(|(start, bytes)| (*start, &bytes[..]))
-    }
-
     pub fn holds(&self, address: u32) -> bool {
-        self.loaded().any(|(start, bytes)| address.wrapping_sub(start) < bytes.len() as u32)
+        self.loaded.iter().any(|(start, bytes)| address.wrapping_sub(*start) < bytes.len() as u32)
     }
 
     pub fn lacks(&self, function: &str) -> anyhow::Error {
@@ -126,8 +122,8 @@ impl Image {
 
     pub fn instruction_at(&self, address: u32) -> Result<Instruction> {
         let halfword = |address: u32| {
-            self.loaded().find_map(|(start, bytes)| {
-                let at = address.checked_sub(start)? as usize;
+            self.loaded.iter().find_map(|(start, bytes)| {
+                let at = address.checked_sub(*start)? as usize;
                 Some(u16::from_le_bytes(bytes.get(at..at + 2)?.try_into().ok()?))
             })
         };

@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 
 use crate::Core;
 use crate::log::Registers;
-use crate::row::{Class, Reads, Row};
+use crate::row::{Class, Field, Float, Row};
 use crate::timing::TIMINGS;
 
 pub fn is_long(first: u16) -> bool {
@@ -65,8 +65,7 @@ impl Instruction {
     }
 
     pub fn is_addressed_by(&self, before: &Self) -> bool {
-        let registers =
-            |fields: &'static [super::row::Field], word| fields.iter().map(move |field| field.register(word));
+        let registers = |fields: &'static [Field], word| fields.iter().map(move |field| field.register(word));
         // A comparison has the program counter where others have what they write.
         let written = |register| register != 15 && registers(before.row.writes, before.word).any(|it| it == register);
         registers(self.row.address, self.word).any(written)
@@ -74,21 +73,15 @@ impl Instruction {
 
     /// The floating-point register whose value comes late, if it has one.
     pub fn late_result(&self) -> Option<u32> {
-        matches!(self.row.class, Class::Arithmetic(_) | Class::Aside(_)).then(|| self.d())
+        matches!(self.row.class, Class::Arithmetic(_) | Class::Aside(_)).then(|| Float::D.register(self.word))
     }
 
     /// Whether it needs the floating-point register `s` at its start.
     pub fn consumes(&self, s: u32) -> bool {
         match self.row.class {
-            Class::Arithmetic(reads) | Class::Aside(reads) | Class::Move(reads) => match reads {
-                Reads::Nothing => false,
-                Reads::D => self.d() == s,
-                Reads::N => self.n() == s,
-                Reads::Half => 2 * (self.n() >> 1) + (self.word >> 21 & 1) == s,
-                Reads::M => self.m() == s,
-                Reads::DM => self.d() == s || self.m() == s,
-                Reads::NM => self.n() == s || self.m() == s,
-            },
+            Class::Arithmetic(reads) | Class::Aside(reads) | Class::Move(reads) => {
+                reads.iter().any(|field| field.register(self.word) == s)
+            }
             _ => self.stores(s),
         }
     }
@@ -122,24 +115,13 @@ impl Instruction {
     fn stores(&self, s: u32) -> bool {
         let is_float_store = self.word & 0xfe10_0e00 == 0xec00_0a00;
         let double = self.word & 0x100 != 0;
-        let first = if double { 2 * (self.d() >> 1 | (self.d() & 1) << 4) } else { self.d() };
+        let d = Float::D.register(self.word);
+        let first = if double { 2 * (d >> 1 | (d & 1) << 4) } else { d };
         let words = match self.row.class {
             Class::FloatList => self.word & 0xff,
             _ if double => 2,
             _ => 1,
         };
         is_float_store && (first..first + words).contains(&s)
-    }
-
-    fn d(&self) -> u32 {
-        (self.word >> 12 & 0xf) << 1 | self.word >> 22 & 1
-    }
-
-    fn n(&self) -> u32 {
-        (self.word >> 16 & 0xf) << 1 | self.word >> 7 & 1
-    }
-
-    fn m(&self) -> u32 {
-        (self.word & 0xf) << 1 | self.word >> 5 & 1
     }
 }

@@ -32,22 +32,33 @@ pub enum Class {
     Move(Reads),
 }
 
-/// Which of the encoding's floating-point registers an instruction reads early.
+/// The floating-point registers that an instruction reads early.
 ///
 /// A multiply-accumulate reads its addend `d` a cycle later than its factors, so it never waits for that one.
+pub type Reads = &'static [Float];
+
+/// Where an encoding names a floating-point register.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Reads {
-    /// None: a load or an immediate.
-    Nothing,
+pub enum Float {
+    /// The destination.
     D,
+    /// The first operand.
     N,
     /// The half of a double register that the first operand's field names.
     Half,
     /// The second operand, or the only one.
     M,
-    /// The destination field and the second operand: a comparison.
-    DM,
-    NM,
+}
+
+impl Float {
+    pub fn register(self, word: u32) -> u32 {
+        match self {
+            Self::D => (word >> 12 & 0xf) << 1 | word >> 22 & 1,
+            Self::N => (word >> 16 & 0xf) << 1 | word >> 7 & 1,
+            Self::Half => (word >> 16 & 0xf) << 1 | word >> 21 & 1,
+            Self::M => (word & 0xf) << 1 | word >> 5 & 1,
+        }
+    }
 }
 
 /// Where an encoding names a core register.
@@ -93,19 +104,15 @@ pub struct Row {
     /// On the M3, the M4 and the M0+.
     pub(super) cycles: [u64; 3],
     pub class: Class,
+    pub(super) writes: &'static [Field],
     /// What a load or store makes its address of.
     pub(super) address: &'static [Field],
-    pub(super) writes: &'static [Field],
 }
 
 impl Row {
     /// The cycles before anything that [`Class`], a refill or the instruction before adds.
     pub fn cycles(&self, core: Core) -> u64 {
-        match core {
-            Core::M3 => self.cycles[0],
-            Core::M4F => self.cycles[1],
-            Core::M0Plus => self.cycles[2],
-        }
+        self.cycles[core as usize]
     }
 
     /// Whether it leaves a new address in the register that it made its own of: pre- and post-indexed.
@@ -114,7 +121,6 @@ impl Row {
     }
 }
 
-/// An instruction that touches no memory.
 pub(super) const fn row(
     name: &'static str,
     mask: u32,
@@ -122,13 +128,7 @@ pub(super) const fn row(
     cycles: [u64; 3],
     class: Class,
     writes: &'static [Field],
+    address: &'static [Field],
 ) -> Row {
-    Row { name, mask, value, cycles, class, address: &[], writes }
-}
-
-impl Row {
-    /// The same instruction with an address made of these registers.
-    pub(super) const fn at(self, address: &'static [Field]) -> Self {
-        Self { address, ..self }
-    }
+    Row { name, mask, value, cycles, class, writes, address }
 }

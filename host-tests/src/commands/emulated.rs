@@ -67,24 +67,19 @@ pub fn fw(options: &FwOptions) -> anyhow::Result<ExitCode> {
     let toolchain = toolchain::set_up()?;
     let elf = if is_path { binary.clone() } else { toolchain.build(&name, board.target)? };
     let limit = options.seconds.map_or(LIMIT, |seconds| Duration::from_secs(seconds.into()));
-    let settings = Settings { qemu: toolchain.qemu(), board, elf: &elf, clock: Clock::Real, debugger: true, limit };
+    let settings = Settings { qemu: &toolchain.qemu, board, elf: &elf, clock: Clock::Real, debugger: true, limit };
     let mut machine = Machine::start(&settings)?;
     let mut output = stdout().lock();
-    for line in machine.log.rest() {
-        // Whoever stops reading does not stop the board.
-        let _ = writeln!(output, "{line}").and_then(|()| output.flush());
-    }
-    match (machine.wait(), options.seconds) {
-        (Err(error), Some(seconds)) if error.downcast_ref::<io::Error>().is_some_and(is_late) => {
+    // Whoever stops reading does not stop the board.
+    let ended = machine.wait(|line| drop(writeln!(output, "{line}").and_then(|()| output.flush())));
+    let is_late = |error: &anyhow::Error| error.downcast_ref().map(io::Error::kind) == Some(io::ErrorKind::TimedOut);
+    match (ended, options.seconds) {
+        (Err(error), Some(seconds)) if is_late(&error) => {
             complain(format_args!("ended after {seconds} s, as told"));
             Ok(ExitCode::SUCCESS)
         }
-        (ended, _) => Ok(process::exit_code(ended?.0)),
+        (ended, _) => Ok(process::exit_code(ended?)),
     }
-}
-
-fn is_late(error: &io::Error) -> bool {
-    error.kind() == io::ErrorKind::TimedOut
 }
 
 /// The first board that has a binary as its application; else the first. Where the file says its target, as in

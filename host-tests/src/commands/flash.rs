@@ -1,11 +1,10 @@
 //! `cargo pico` and `cargo flash-f4`: the firmware brought onto a board, as a file or by a program that flashes.
 
 use std::fs;
-use std::io::{self, Write};
+use std::io::Write;
 use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::time::Duration;
 
 use anyhow::{Context, bail};
 use clap::Parser;
@@ -13,7 +12,6 @@ use clap::Parser;
 use crate::console::cli::{Refused, complain, say};
 use crate::emulator::boards::{PICO, STM32F405};
 use crate::emulator::flash::{flash_image, uf2};
-use crate::emulator::process;
 use crate::emulator::toolchain::{self, target};
 
 /// The file, and the one by which a board's drive says whose it is.
@@ -63,8 +61,6 @@ fn mounted(mounts: &str) -> Option<PathBuf> {
     folders.map(|folder| folder.replace("\\040", " ")).find_map(|folder| drive(&folder).ok())
 }
 
-/// For the program that flashes to say its version.
-const LIMIT: Duration = Duration::from_secs(30);
 /// Chips alike in all that the firmware uses.
 const CHIPS: [&str; 4] = ["STM32F405", "STM32F407", "STM32F415", "STM32F417"];
 
@@ -96,10 +92,9 @@ pub fn stm32f405(options: &FlashOptions) -> anyhow::Result<()> {
         ("probe-rs", "https://probe.rs/docs/getting-started/installation")
     };
     // Before the build, which takes its time.
-    process::run(Command::new(program).arg("--version"), LIMIT).map_err(|error| match error.kind() {
-        io::ErrorKind::TimedOut => Refused::because(error),
-        _ => Refused::because(format_args!("flashing needs {program}, which is not installed; see {source}")),
-    })?;
+    if toolchain::find(program).is_none() {
+        bail!(Refused::because(format_args!("flashing needs {program}, which is not installed; see {source}")));
+    }
     let elf = toolchain::ready()?.build_for(&STM32F405)?;
     let mut command = Command::new(program);
     if options.dfu {

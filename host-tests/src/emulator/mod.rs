@@ -7,4 +7,22 @@ pub mod host;
 pub mod pico;
 pub mod process;
 pub mod qemu;
+pub mod stream;
 pub mod toolchain;
+
+use anyhow::bail;
+use firmware::protocol::ToHost;
+
+/// What `next` gives up to a frame: all messages. A board that sends none however often it is asked sends none.
+fn up_to_frame(often: u32, mut next: impl FnMut() -> anyhow::Result<Vec<ToHost>>) -> anyhow::Result<Vec<ToHost>> {
+    let mut messages = Vec::new();
+    for _ in 0..often {
+        let new = next()?;
+        let is_last = new.iter().any(|message| message.frame().is_some());
+        messages.extend(new);
+        if is_last {
+            return Ok(messages);
+        }
+    }
+    bail!("the board sends no frames")
+}

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::{ChildStdin, ChildStdout, Command, Stdio};
 use std::time::Duration;
 
-use anyhow::{Context, bail, ensure};
+use anyhow::{Context, ensure};
 use firmware::app::Key;
 use firmware::protocol::{self, Frame, MAX_WIRE, ToHost, encode_command};
 
@@ -14,6 +14,7 @@ use crate::emulator::flash::{flash_image, uf2};
 use crate::emulator::process::{self, Running};
 use crate::emulator::qemu::{LogDecoder, LogLine, Screenshot};
 use crate::emulator::toolchain::workspace;
+use crate::emulator::up_to_frame;
 use crate::link::{Counts, Inbox};
 
 const SLICE: Duration = Duration::from_millis(1);
@@ -45,7 +46,7 @@ impl PicoMachine {
         command.arg(workspace().join("host-tests/rp2040/main.js")).arg(file.path());
         command.stdin(Stdio::piped()).stdout(Stdio::piped());
         let mut process = process::spawn(&mut command, limit)?;
-        let pipes = process.stdin.take().zip(process.stdout.take());
+        let pipes = process.child.stdin.take().zip(process.child.stdout.take());
         let (input, output) = pipes.context("the emulator of the Pico has no pipes")?;
         let output = BufReader::new(output);
         let log = LogDecoder::new(elf)?;
@@ -62,15 +63,7 @@ impl PicoMachine {
 
     /// Runs to the next frame: all messages up to it.
     pub fn run_to_frame(&mut self) -> anyhow::Result<Vec<ToHost>> {
-        let mut messages = Vec::new();
-        for _ in 0..PATIENCE {
-            let before = messages.len();
-            messages.extend(self.run(SLICE)?);
-            if messages[before..].iter().any(|message| message.frame().is_some()) {
-                return Ok(messages);
-            }
-        }
-        bail!("the board sends no frames")
+        up_to_frame(PATIENCE, || self.run(SLICE))
     }
 
     pub fn next_frame(&mut self) -> anyhow::Result<Frame> {

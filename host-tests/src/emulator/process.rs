@@ -3,12 +3,11 @@
 //!
 //! A shell in the group, the warden, does it. Groups within groups end too, for each has a warden of its own.
 
-use std::io::{self, BufRead, BufReader, Read};
+use std::io::{self, ErrorKind};
 use std::os::unix::process::{CommandExt, ExitStatusExt};
 use std::path::Path;
-use std::process::{Child, ChildStderr, ChildStdin, ChildStdout, Command, ExitCode, ExitStatus, Stdio, exit};
+use std::process::{Child, Command, ExitCode, ExitStatus, Stdio, exit};
 use std::sync::atomic::AtomicUsize;
-use std::sync::mpsc::{self, RecvTimeoutError, Sender};
 use std::sync::{Arc, Mutex, Once, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -17,6 +16,8 @@ use signal_hook::consts::{SIGHUP, SIGINT, SIGKILL, SIGTERM};
 use signal_hook::flag::register_usize;
 use signal_hook::iterator::Signals;
 
+use super::stream::{Stream, wait};
+
 /// Kills the group when the time is up, and when the other end of its input closes, which this process alone has: when this
 /// process ends, by any signal. Any Unix can do that, and it reaches the children's children.
 const WARDEN: &str = "(sleep $0; kill -KILL 0) & read -r _; kill -KILL 0";
@@ -24,14 +25,11 @@ const WARDEN: &str = "(sleep $0; kill -KILL 0) & read -r _; kill -KILL 0";
 /// A running child. Dropping it kills its whole process group.
 #[derive(Debug)]
 pub struct Running {
-    child: Child,
+    pub child: Child,
     warden: Child,
     program: String,
     started: Instant,
     limit: Duration,
-    pub stdin: Option<ChildStdin>,
-    pub stdout: Option<ChildStdout>,
-    pub stderr: Option<ChildStderr>,
 }
 
 /// Starts `command` in a process group of its own, to be killed at the latest after `limit`, waited for or not.
@@ -47,9 +45,8 @@ pub fn spawn(command: &mut Command, limit: Duration) -> io::Result<Running> {
     // Is in the group from before the child, and gives it its number.
     let mut warden = warden.process_group(0).spawn().map_err(failed)?;
     let child = command.process_group(warden.id().cast_signed()).spawn();
-    let mut child = child.map_err(failed).inspect_err(|_| end(&mut warden))?;
-    let (stdin, stdout, stderr) = (child.stdin.take(), child.stdout.take(), child.stderr.take());
-    Ok(Running { child, warden, program, started, limit, stdin, stdout, stderr })
+    let child = child.map_err(failed).inspect_err(|_| end(&mut warden))?;
+    Ok(Running { child, warden, program, started, limit })
 }
 
 /// Kills what is left of the group: waiting for the warden closes its input, and it kills the group.
@@ -58,28 +55,32 @@ fn end(warden: &mut Child) {
 }
 
 impl Running {
-    pub fn id(&self) -> u32 {
-        self.child.id()
-    }
-
     /// Waits for the child's end. What is left of its group is killed. If it was killed at its time limit, the error's kind says so.
     pub fn wait(&mut self) -> io::Result<ExitStatus> {
         let status = self.child.wait()?;
         end(&mut self.warden);
         let is_stopped = status.signal() == Some(SIGKILL) && self.started.elapsed() >= self.limit;
-        if is_stopped { Err(timed_out(&self.program, self.limit)) } else { Ok(status) }
+        let (program, seconds) = (&self.program, self.limit.as_secs_f32());
+        let late = || format!("{program} was still running after {seconds} s and was stopped");
+        if is_stopped { Err(io::Error::new(ErrorKind::TimedOut, late())) } else { Ok(status) }
     }
 
     /// The child's exit status if it has ended, without waiting.
     pub fn try_wait(&mut self) -> io::Result<Option<ExitStatus>> {
         self.child.try_wait()?.map(|_| self.wait()).transpose()
     }
-}
 
-/// The error of a program that was stopped at its time limit.
-pub fn timed_out(program: &str, limit: Duration) -> io::Error {
-    let seconds = limit.as_secs_f32();
-    io::Error::new(io::ErrorKind::TimedOut, format!("{program} was still running after {seconds} s and was stopped"))
+    /// As [`Self::try_wait`]; but if these [`streams`](Self::streams) have ended, the child's end is near, and waited for.
+    pub fn ended(&mut self, streams: &[Stream]) -> io::Result<Option<ExitStatus>> {
+        if streams.iter().any(|stream| stream.is_open) { self.try_wait() } else { self.wait().map(Some) }
+    }
+
+    /// Both outputs, which are pipes.
+    pub fn streams(&mut self) -> io::Result<[Stream; 2]> {
+        let pipes = self.child.stdout.take().zip(self.child.stderr.take());
+        let (stdout, stderr) = pipes.ok_or_else(|| io::Error::other("a child without pipes"))?;
+        Ok([Stream::of(stdout)?, Stream::of(stderr)?])
+    }
 }
 
 impl Drop for Running {
@@ -108,45 +109,23 @@ pub fn run(command: &mut Command, limit: Duration) -> io::Result<Output> {
     run_watched(command, limit, |_| {})
 }
 
-/// As [`run`]; meanwhile `watch` is called with each line of either output, and with `None` at least ten times a second
-/// while there is none: the child is alive.
+/// As [`run`]; meanwhile `watch` is called with the last line that has come, and with `None` at least ten times a second while
+/// there is none: the child is alive.
 pub fn run_watched(command: &mut Command, limit: Duration, mut watch: impl FnMut(Option<&str>)) -> io::Result<Output> {
-    const TICK: Duration = Duration::from_millis(100);
     command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = spawn(command, limit)?;
-    let (sender, lines) = mpsc::channel();
-    forward(0, child.stdout.take(), sender.clone());
-    forward(1, child.stderr.take(), sender);
-    let mut said = [String::new(), String::new()];
-    let mut has_ended = false;
+    let mut streams = child.streams()?;
     loop {
-        match lines.recv_timeout(TICK) {
-            Ok((stream, line)) => {
-                watch(Some(line.trim_end()));
-                said[stream].push_str(&line);
-            }
-            // A process that has left the group may hold the pipes open.
-            Err(RecvTimeoutError::Timeout) if has_ended => break,
-            Err(RecvTimeoutError::Timeout) => watch(None),
-            Err(RecvTimeoutError::Disconnected) => break,
+        // Whoever has left the group may hold the pipes open for longer.
+        let ended = child.ended(&streams)?;
+        let new = streams.iter_mut().map(Stream::take_in).filter(|new| !new.is_empty()).last();
+        watch(new.map(String::from_utf8_lossy).as_deref().and_then(|text| text.lines().last()));
+        if let Some(status) = ended {
+            let [stdout, stderr] = streams.map(|stream| String::from_utf8_lossy(&stream.bytes).into_owned());
+            return Ok(Output { status, stdout, stderr });
         }
-        has_ended = has_ended || child.try_wait()?.is_some();
+        wait(streams.iter());
     }
-    let [stdout, stderr] = said;
-    Ok(Output { status: child.wait()?, stdout, stderr })
-}
-
-/// Sends each line of a numbered stream on, until its end or until no one listens.
-fn forward(stream: usize, source: Option<impl Read + Send + 'static>, lines: Sender<(usize, String)>) {
-    let Some(source) = source else { return };
-    thread::spawn(move || {
-        let (mut source, mut line) = (BufReader::new(source), Vec::new());
-        while source.read_until(b'\n', &mut line).is_ok_and(|count| count > 0)
-            && lines.send((stream, String::from_utf8_lossy(&line).into_owned())).is_ok()
-        {
-            line.clear();
-        }
-    });
 }
 
 /// The signals that interrupt a command: Ctrl-C, a request to end, a terminal that is closed.

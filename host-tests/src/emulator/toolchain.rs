@@ -5,36 +5,30 @@
 //! Debian's source packages; QEMU from Debian's packages, installed, or unpacked into `qemu` in the target folder where they
 //! cannot be. Both ways build the same firmware with the same flags.
 
+mod bring;
 mod build;
-mod detect;
-mod install;
-mod rp2040js;
+mod tools;
 
 use std::path::{Path, PathBuf, absolute};
 use std::process::exit;
 use std::sync::OnceLock;
 use std::{env, fmt};
 
+use bring::turn;
+pub use tools::find;
+use tools::{CORE_PACKAGES, Emulator, QEMU, QEMU_RISCV};
+
 use crate::console::cli::{REFUSED, Refused, complain};
-use crate::emulator::qemu;
 
 /// The compiler's targets, one for each kind of core.
 pub const TARGETS: [&str; 3] = ["thumbv6m-none-eabi", "thumbv7m-none-eabi", "thumbv7em-none-eabihf"];
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Toolchain {
-    core: ArmCore,
-    qemu: PathBuf,
-}
-
-#[derive(Clone, Debug, PartialEq, Eq)]
-enum ArmCore {
-    ReadyMade,
-    /// Built from the sources that Debian's compiler carries, by that compiler.
-    FromSource {
-        /// The folder that holds `rust-lld`.
-        linker: PathBuf,
-    },
+    /// Where the core library is not ready-made but built from the sources that Debian's compiler carries, by that compiler: the
+    /// folder that holds `rust-lld`.
+    linker: Option<PathBuf>,
+    pub qemu: PathBuf,
 }
 
 /// That something is missing: why, and what brings it, in a line.
@@ -45,71 +39,57 @@ fn missing(what: &str, why: &str, by_hand: &str) -> Refused {
 /// The tools, if all are there; installs nothing. Looks once per process.
 pub fn ready() -> Result<Toolchain, Refused> {
     static READY: OnceLock<Result<Toolchain, Refused>> = OnceLock::new();
-    READY.get_or_init(|| both(detect::core(&TARGETS), detect::QEMU.find())).clone()
+    READY.get_or_init(|| both(false, &TARGETS, &QEMU)).clone()
 }
 
 /// The tools, brought if need be; what was done for it is said. Two set-ups at once take turns.
 pub fn set_up() -> Result<Toolchain, Refused> {
-    qemu::check_folder().map_err(Refused::because)?;
+    let refused = |error| Refused::because(format_args!("QEMU's pipes: TMPDIR={}: {error}", env::temp_dir().display()));
+    tempfile::tempdir().map_err(refused)?;
     ready().or_else(|_| {
-        let _turn = install::turn()?;
-        both(install::core(&TARGETS), install::qemu(&detect::QEMU))
+        let _turn = turn()?;
+        both(true, &TARGETS, &QEMU)
     })
 }
 
+/// The same for another target: its core library and its emulator, which for a RISC-V is that of its programs under Linux.
+pub fn set_up_for(target: &str) -> Result<Toolchain, Refused> {
+    let _turn = turn()?;
+    both(true, &[target], if target.starts_with("riscv") { &QEMU_RISCV } else { &QEMU })
+}
+
 /// Both of them, or a line for each that is missing.
-fn both(core: Result<ArmCore, String>, qemu: Result<PathBuf, String>) -> Result<Toolchain, Refused> {
-    let packages = format!("rustup target add {}, or Debian's {}", TARGETS.join(" "), detect::CORE_PACKAGES.join(" "));
-    let core = core.map_err(|why| missing("the ARM core library", &why, &packages));
+fn both(installs: bool, targets: &[&str], emulator: &Emulator) -> Result<Toolchain, Refused> {
+    let packages = format!("rustup target add {}, or Debian's {}", targets.join(" "), CORE_PACKAGES.join(" "));
+    let core = tools::core(installs, targets).map_err(|why| missing("the ARM core library", &why, &packages));
     let by_hand = "this system's package of that name (Homebrew: qemu)";
-    let qemu = qemu.map_err(|why| missing(detect::QEMU.program, &why, by_hand));
+    let qemu = tools::qemu(installs, emulator).map_err(|why| missing(emulator.program, &why, by_hand));
     match (core, qemu) {
-        (Ok(core), Ok(qemu)) => Ok(Toolchain { core, qemu }),
+        (Ok(linker), Ok(qemu)) => Ok(Toolchain { linker, qemu }),
         (Err(core), Err(qemu)) => Err(Refused::because(format_args!("{core}\n{qemu}"))),
         (Err(missing), _) | (_, Err(missing)) => Err(missing),
     }
 }
 
-/// The tools, brought if need be, with the core library for one more target.
-pub fn set_up_for(target: &str) -> Result<Toolchain, Refused> {
-    let toolchain = set_up()?;
-    let _turn = install::turn()?;
-    let missing = |why| Refused::because(format_args!("the core library for {target} is missing: {why}"));
-    Ok(Toolchain { core: install::core(&[target]).map_err(missing)?, ..toolchain })
-}
-
-/// The emulator of a RISC-V under Linux, brought if need be.
-pub fn set_up_riscv() -> Result<PathBuf, Refused> {
-    let _turn = install::turn()?;
-    let emulator = &detect::QEMU_RISCV;
-    install::qemu(emulator).map_err(|why| Refused::because(format_args!("{} is missing: {why}", emulator.program)))
-}
-
 /// Node.js with the emulator of the Raspberry Pi Pico, if it is there; installs nothing.
 pub fn ready_for_pico() -> Result<PathBuf, Refused> {
-    rp2040js::detect()
+    tools::rp2040js(false)
 }
 
 /// The same, brought if need be.
 pub fn set_up_pico() -> Result<PathBuf, Refused> {
-    rp2040js::detect().or_else(|_| {
-        let _turn = install::turn()?;
-        rp2040js::set_up()
+    ready_for_pico().or_else(|_| {
+        let _turn = turn()?;
+        tools::rp2040js(true)
     })
-}
-
-impl Toolchain {
-    pub fn qemu(&self) -> &Path {
-        &self.qemu
-    }
 }
 
 impl fmt::Display for Toolchain {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match &self.core {
-            ArmCore::ReadyMade => writeln!(f, "ARM core library: ready-made, for {}", TARGETS.join(", "))?,
-            ArmCore::FromSource { linker } => {
-                writeln!(f, "ARM core library: from Debian's sources, linked by rust-lld of {}", linker.display())?;
+        match &self.linker {
+            None => writeln!(f, "ARM core library: ready-made, for {}", TARGETS.join(", "))?,
+            Some(folder) => {
+                writeln!(f, "ARM core library: from Debian's sources, linked by rust-lld of {}", folder.display())?;
             }
         }
         write!(f, "QEMU: {}", self.qemu.display())

@@ -6,19 +6,17 @@ use anyhow::Result;
 
 use crate::support::{targets, toolchain};
 use double_pendulum::plan::Costs;
-use double_pendulum::{Method, Numbers, Parameters};
+use double_pendulum::{Method, Parameters};
 use firmware::job::Request;
 use host_tests::commands::count::{FULL_CYCLE, affordable_cost, prices, step_cost};
-use host_tests::commands::report::accuracy::{self, SCENES, exact};
+use host_tests::commands::report::accuracy::{self, SCENES};
 
 /// A tick of the board's clock, 12.5 MHz after reset, under `-icount`, where an instruction takes 1 ns.
 const INSTRUCTIONS_PER_TICK: f64 = 80.0;
 
 /// Steps of 1/256 s from rest.
 fn request(method: Method, angle: f64, stride: u32) -> Request {
-    let parameters = Parameters::equal_rods(1.0, 1.0, 9.81);
-    let (angles, velocities, dt) = ([angle; 2], [0.0; 2], 1.0 / 256.0);
-    Request { method, parameters, angles, velocities, dt, stride, samples: 1 }
+    Request { angles: [angle; 2], stride, samples: 1, ..Request::on_any_core(method) }
 }
 
 #[test]
@@ -73,58 +71,27 @@ fn a_step_costs_no_more_than_its_goal() -> Result<()> {
     Ok(())
 }
 
-/// The most cycles (estimated) that a second of a scene may cost in 64 bits of fixed point, by the order and the number of
-/// steps through the scene that make it cheapest and keep an error, rad.
-const SECONDS: [(usize, f64, &str, f64); 4] = [
-    (0, 1e-9, M4F, 120_000.0), // 62 steps in 10 s: seven a second, the fewest whole ones, come to 131,000
-    (0, 1e-12, M4F, 210_000.0), // order 16 is cheaper than 12
-    (0, 1e-12, M3, 300_000.0), // likewise
-    (1, 3.5e-10, M4F, 750_000.0), // chaotic
+/// The most cycles (estimated) that a second of a scene may cost with an error, rad: by the method, and the number of steps
+/// through the scene, that were found to be the cheapest.
+const SECONDS: [(usize, f64, &str, Method, u32, f64); 4] = [
+    (0, 1e-9, M4F, Method::Extrapolation12Fixed64, 62, 120_000.0), // seven a second, the fewest whole ones: 131,000
+    (0, 1e-12, M4F, Method::Extrapolation16Fixed64, 58, 210_000.0), // cheaper than order 12
+    (0, 1e-12, M3, Method::Extrapolation16Fixed64, 58, 300_000.0), // likewise
+    (1, 3.5e-10, M4F, Method::Extrapolation10Fixed64, 183, 750_000.0), // chaotic
 ];
 
 #[test]
 fn a_simulated_second_costs_no_more_than_its_goal() -> Result<()> {
-    let exact: Vec<_> = SCENES[..2].iter().map(exact).collect();
-    for target in &targets() {
-        let goals = || SECONDS.iter().filter(|goal| goal.2 == target.board.cpu);
-        let mut costs = Vec::new();
-        for &method in
-            Method::ALL.iter().filter(|method| method.numbers() == Numbers::Fixed64 && goals().next().is_some())
-        {
-            let request = accuracy::request(method, &SCENES[0], accuracy::usual_rate(method));
-            costs.push((method, affordable_cost(target, &request)?.cycles));
-        }
-        for &(index, error, cpu, most) in goals() {
-            let scene = &SCENES[index];
-            let keeps = |found: Option<accuracy::Error>| found.is_some_and(|found| found.angle <= error);
-            let wholes = costs.iter().filter_map(|&(method, cycles)| {
-                let request = |rate| accuracy::request(method, scene, rate);
-                let is_few = |rate: &u32| keeps(accuracy::error(&request(*rate), &exact[index]));
-                Some((method, accuracy::rates(method, 8).find(is_few)? * scene.duration, cycles))
-            });
-            let wholes: Vec<_> = wholes.collect();
-            let a_second = |steps: u32, cycles: f64| f64::from(steps) * cycles / f64::from(scene.duration);
-            let whole = wholes.iter().map(|&(_, steps, cycles)| a_second(steps, cycles)).fold(f64::INFINITY, f64::min);
-            // From the fewest whole steps a second by halves down to the fewest steps through the scene, a sixth less at most.
-            let fewest = |method, few| {
-                let (mut too_few, mut enough) = (few - few / 6, few);
-                while enough - too_few > 1 {
-                    let steps = u32::midpoint(too_few, enough);
-                    let is_enough = keeps(accuracy::error_after(method, scene, steps));
-                    *(if is_enough { &mut enough } else { &mut too_few }) = steps;
-                }
-                enough
-            };
-            let cheapest = wholes
-                .iter()
-                .filter(|(_, few, cycles)| a_second(few - few / 6, *cycles) < whole)
-                .map(|&(method, few, cycles)| (method, fewest(method, few), cycles))
-                .map(|(method, steps, cycles)| (a_second(steps, cycles), steps, method))
-                .min_by(|one, other| one.0.total_cmp(&other.0));
-            let (cycles, steps, method) = cheapest.expect("an order that keeps the error");
-            println!("{error:e} rad on {cpu}: {cycles:.0} cycles a second by {method}, {steps} steps in all");
-            assert!(cycles <= most, "{error:e} rad on {cpu}: {cycles} by {method}, {steps} steps, {most} asked");
-        }
+    let targets = targets();
+    for (index, error, cpu, method, steps, most) in SECONDS {
+        let scene = &SCENES[index];
+        let target = targets.iter().find(|target| target.board.cpu == cpu).expect("a board");
+        let found = accuracy::error_after(method, scene, steps).expect("a motion");
+        assert!(found.angle <= error, "{method}, {steps} steps: {found:?}, {error:e} asked");
+        let request = accuracy::request(method, &SCENES[0], accuracy::usual_rate(method));
+        let cycles = f64::from(steps) * affordable_cost(target, &request)?.cycles / f64::from(scene.duration);
+        println!("{error:e} rad on {cpu}: {cycles:.0} cycles a second by {method}");
+        assert!(cycles <= most, "{error:e} rad on {cpu}: {cycles} by {method}, {most} asked");
     }
     Ok(())
 }

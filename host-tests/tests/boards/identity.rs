@@ -9,7 +9,6 @@ use anyhow::Result;
 use cycles::{Core, Instruction};
 use double_pendulum::Method;
 use firmware::job::Request;
-use host_tests::commands::count::Target;
 use host_tests::commands::report::accuracy::{SCENES, Scene, request};
 use host_tests::emulator::toolchain;
 use rayon::prelude::*;
@@ -23,10 +22,6 @@ const RATE: u32 = 256;
 /// A regular and a chaotic motion.
 const MOTIONS: [&Scene; 2] = [&SCENES[0], &SCENES[1]];
 
-fn steps(target: &Target) -> u32 {
-    STEPS[usize::from(target.core() == Core::M0Plus)]
-}
-
 /// Whose CRC is over all that is carried from step to step, after each of the first steps.
 fn every_state(method: Method, scene: &Scene, steps: u32) -> Request {
     Request { samples: steps, stride: 1, ..request(method, scene, RATE) }
@@ -39,7 +34,8 @@ fn host_and_targets_agree_after_every_one_of_a_million_steps() -> Result<()> {
     let motions = || MOTIONS.iter().flat_map(|scene| Method::ALL.iter().map(move |&method| (scene, method)));
     let runs: Vec<_> = targets.iter().flat_map(|target| motions().map(move |motion| (target, motion))).collect();
     runs.into_par_iter().try_for_each(|(target, (scene, method))| {
-        let request = every_state(method, scene, steps(target));
+        let steps = STEPS[usize::from(target.board.core() == Core::M0Plus)];
+        let request = every_state(method, scene, steps);
         let (host, (crc, _)) = (request.crc()?, target.run(&request)?);
         assert_eq!(crc, host, "{method}, {} on {}", scene.name, target.board.name);
         Ok(())
@@ -78,7 +74,7 @@ const SEPARATE: [&str; 2] = ["vmul, vnmul", "vadd, vsub"];
 #[test]
 fn nothing_is_contracted() {
     for target in targets().iter().filter(|target| target.board.cpu == "cortex-m4") {
-        let words = target.image().words().into_iter();
+        let words = target.image.words().into_iter();
         let row = |(at, first, second): (u32, u16, Option<u16>)| {
             Some((at, Instruction::decode(first, second.unwrap_or_default())?.row.name))
         };
@@ -87,7 +83,7 @@ fn nothing_is_contracted() {
             assert!(rows.iter().filter(|(_, row)| *row == name).count() > 500, "{name}");
         }
         let found = rows.iter().find(|(_, row)| CONTRACTED.contains(row));
-        let place = found.map(|(at, row)| (target.image().function_at(*at), row));
+        let place = found.map(|(at, row)| (target.image.function_at(*at), row));
         assert_eq!(place, None, "in {}", target.board.name);
     }
 }

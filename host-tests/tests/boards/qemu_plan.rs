@@ -33,12 +33,12 @@ fn every_board_plans(scenes: &[SceneName]) -> anyhow::Result<()> {
         let mut machine = on(board, Machine::start)?;
         machine.next_frame()?;
         for &name in scenes {
-            machine.serial.send(1, Command::Choose(name))?;
+            machine.send(1, Command::Choose(name))?;
             assert_eq!(machine.next_answer()?, (1, Answer::Done));
-            machine.log.arrived().for_each(drop);
+            machine.lines();
             followed(&mut machine, board, name)?;
         }
-        let counts = machine.serial.counts();
+        let counts = machine.counts();
         assert_eq!((counts.damaged, counts.lost), (0, 0), "{}", board.name);
         Ok(())
     })
@@ -56,9 +56,9 @@ fn followed(machine: &mut Machine, board: &Board, name: SceneName) -> anyhow::Re
         }
     }
     let changes = show.news.iter().filter(|(_, news)| matches!(news, News::Shown(..))).count();
-    machine.serial.send(2, Command::AskPlan)?;
+    machine.send(2, Command::AskPlan)?;
     let (2, Answer::Planned(answer)) = machine.next_answer()? else { panic!("no plan") };
-    let lines: Vec<_> = machine.log.arrived().map(|line| line.text).collect();
+    let lines: Vec<_> = machine.lines().into_iter().map(|line| line.text).collect();
     let logged = |head: &str| lines.iter().filter(|line| line.starts_with(head)).count();
     let plan = show.news.iter().find_map(|(_, news)| match news {
         News::Found(Ok(plan)) => Some(plan),

@@ -11,7 +11,7 @@ use firmware::app::MOST_RESTARTS;
 use firmware::protocol::{Cause, Command, Field, Frame, Restarted, ToHost};
 use firmware::scenes::SceneName;
 use host_tests::emulator::boards::{BOARDS, Board, STM32F405};
-use host_tests::emulator::qemu::{Lockstep, Machine, Register, Settings};
+use host_tests::emulator::qemu::{Machine, Register, Settings};
 
 /// The lowest addresses of the stack, where it never reaches.
 const UNUSED: u32 = 0x2000_8000;
@@ -27,15 +27,14 @@ const MASS_RATIO: f32 = 0.7;
 
 /// A board, with a debugger that takes its log or without, that stands still in the middle of a frame of `scene`, with a mass ratio of
 /// its own: its program, and the last frame it has sent.
-fn within(board: &Board, scene: SceneName, debugger: bool) -> anyhow::Result<(PathBuf, Lockstep, Frame)> {
+fn within(board: &Board, scene: SceneName, debugger: bool) -> anyhow::Result<(PathBuf, Machine, Frame)> {
     let elf = application(board);
-    let mut probe = on(board, |settings| Lockstep::start(&Settings { debugger, ..*settings }))?;
+    let mut probe = on(board, |settings| Machine::halted(&Settings { debugger, ..*settings }))?;
     // A serial port that is not yet on takes no bytes.
     let stopwatch = address(&elf, STOPWATCH);
     probe.run_to(stopwatch)?;
-    let serial = &mut probe.machine().serial;
-    serial.send(1, Command::Choose(scene))?;
-    serial.send(2, Command::Set { field: Field::MassRatio, value: MASS_RATIO.into() })?;
+    probe.send(1, Command::Choose(scene))?;
+    probe.send(2, Command::Set { field: Field::MassRatio, value: MASS_RATIO.into() })?;
     // To stop rarely is quicker: QEMU then forgets what it has translated.
     let is_it = |frame: &Frame| frame.scene == scene && frame.mass_ratio == MASS_RATIO;
     let machine = probe.run()?;
@@ -44,10 +43,10 @@ fn within(board: &Board, scene: SceneName, debugger: bool) -> anyhow::Result<(Pa
         seen += usize::from(is_it(&machine.next_frame()?));
     }
     probe.stop()?;
-    probe.machine().serial.all_arrived().for_each(drop);
+    probe.messages()?;
     loop {
         probe.run_to(stopwatch)?;
-        if let Some(frame) = probe.machine().serial.frames_arrived().last() {
+        if let Some(frame) = probe.messages()?.into_iter().rev().find_map(ToHost::frame) {
             assert!(is_it(&frame), "{frame:?}");
             // This reading was for the end of the frame; the next is for the beginning, then the frame is drawn.
             probe.run_to(stopwatch)?;
@@ -58,7 +57,7 @@ fn within(board: &Board, scene: SceneName, debugger: bool) -> anyhow::Result<(Pa
 }
 
 /// Puts an instruction where it disturbs nothing, and the processor there.
-fn execute(probe: &mut Lockstep, instruction: [u8; 2]) -> anyhow::Result<()> {
+fn execute(probe: &mut Machine, instruction: [u8; 2]) -> anyhow::Result<()> {
     probe.write(UNUSED, &instruction)?;
     probe.divert(&[(Register::Pc, UNUSED)])
 }
@@ -82,8 +81,8 @@ fn assert_said(board: &Board, said: &str, parts: &[&str]) {
 
 /// The last words of a machine that ends as a failure, which hold all `parts`.
 fn last_words(board: &Board, machine: &mut Machine, parts: &[&str]) -> anyhow::Result<String> {
-    let (status, lines) = machine.wait()?;
-    let report = lines.iter().map(|line| format!("{line}\n")).collect::<String>();
+    let mut report = String::new();
+    let status = machine.wait(|line| report += &format!("{line}\n"))?;
     assert_eq!(status.code(), Some(1), "{report}");
     assert_said(board, &report, parts);
     Ok(report)
@@ -161,7 +160,7 @@ fn a_board_that_hangs_comes_back_where_it_was_and_says_why() -> anyhow::Result<(
             assert_eq!((frame.sequence, frame.report.step), (sequence, step), "{}", board.name);
             assert_eq!((frame.scene, frame.mass_ratio), (before.scene, MASS_RATIO), "{}", board.name);
         }
-        assert_eq!((machine.serial.counts().damaged, machine.serial.counts().lost), (0, 0), "{}", board.name);
+        assert_eq!((machine.counts().damaged, machine.counts().lost), (0, 0), "{}", board.name);
         let pc = format!("pc {UNUSED:#010x}");
         let last = format!("restarted after a hang, 1 in a row: {pc}");
         assert_said(board, &machine.said(), &["HANG: no frame finished for 1 s\n", &pc, &place(&before), &last]);
@@ -180,7 +179,7 @@ fn without_a_debugger_a_fault_restarts_the_board() -> anyhow::Result<()> {
             let (mut restarted, mut frame) = (None, None);
             while frame.is_none() {
                 probe.run_to(stopwatch)?;
-                for message in probe.machine().serial.all_arrived() {
+                for message in probe.messages()? {
                     restarted = restarted.or(message.restarted());
                     frame = frame.or(message.frame());
                 }

@@ -5,7 +5,7 @@ use firmware::config::MOST_MEASURED_STEPS;
 use firmware::job::{ON_BOARDS, Request};
 use firmware::protocol::{Answer, Command};
 use host_tests::emulator::boards::STM32F405;
-use host_tests::emulator::qemu::Lockstep;
+use host_tests::emulator::qemu::Machine;
 
 #[test]
 fn it_starts_from_anywhere_goes_on_without_a_panel_and_steps_in_flash_and_in_memory() -> anyhow::Result<()> {
@@ -13,7 +13,7 @@ fn it_starts_from_anywhere_goes_on_without_a_panel_and_steps_in_flash_and_in_mem
     /// Long enough for the panel to be looked for again, several times.
     const FRAMES: u32 = 300;
     // The chip's own loader starts the program while its ROM stands at address 0: the processor must be told where the vectors are.
-    let mut probe = on(&STM32F405, Lockstep::start)?;
+    let mut probe = on(&STM32F405, Machine::halted)?;
     assert_eq!(probe.read(VTOR..VTOR + 4)?, [0; 4]);
     probe.run_to(address(&application(&STM32F405), "clock::cycles"))?;
     assert_eq!(probe.read(VTOR..VTOR + 4)?, 0x0800_0000_u32.to_le_bytes());
@@ -24,15 +24,16 @@ fn it_starts_from_anywhere_goes_on_without_a_panel_and_steps_in_flash_and_in_mem
         assert_eq!(frame.report.step, u64::from(sequence) + 1, "a line that reads low for ever presses no button");
     }
     // The plan's line comes as soon as it is found.
-    let log: Vec<_> = machine.log.arrived().map(|line| line.text).filter(|text| !text.starts_with("plan: ")).collect();
+    let log: Vec<_> =
+        machine.lines().into_iter().map(|line| line.text).filter(|text| !text.starts_with("plan: ")).collect();
     assert_eq!(log, ["boot: stm32f405, 168000000 Hz", "panel: Absent(Other)"]);
     // Every method's from its copy in memory: a branch into nowhere would end the application.
     for (&method, request) in ON_BOARDS.iter().zip(0..) {
         let motion = Request { samples: 0, ..Request::on_any_core(method) };
-        machine.serial.send(request, Command::Simulate(motion))?;
+        machine.send(request, Command::Simulate(motion))?;
         machine.next_answer()?;
         for in_ram in [false, true] {
-            machine.serial.send(request, Command::Measure { steps: MOST_MEASURED_STEPS, in_ram })?;
+            machine.send(request, Command::Measure { steps: MOST_MEASURED_STEPS, in_ram })?;
             // QEMU counts none.
             let measured = Answer::Measured { steps: MOST_MEASURED_STEPS, cycles: 0 };
             assert_eq!(machine.next_answer()?, (request, measured));

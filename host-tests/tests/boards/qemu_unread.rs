@@ -24,13 +24,13 @@ fn a_host_that_stops_reading_loses_frames_and_nothing_else() -> anyhow::Result<(
     let mut machine = on(BOARD, Machine::start)?;
     let first = machine.next_frame()?;
 
-    let stopped = machine.serial.stop_reading();
+    machine.listens = false;
     let mut said = String::new();
     while !said.contains("serial link") {
         said += &machine.said();
         sleep(POLL);
     }
-    drop(stopped);
+    machine.listens = true;
 
     let mut show = show(BOARD, SceneName::Page);
     let (mut last, mut after) = (first, 0);
@@ -42,7 +42,7 @@ fn a_host_that_stops_reading_loses_frames_and_nothing_else() -> anyhow::Result<(
         after += usize::from(after > 0 || frame.sequence > last.sequence + 1);
         last = frame;
     }
-    let counts = machine.serial.counts();
+    let counts = machine.counts();
     assert!(counts.lost > 0, "{counts:?}");
     assert!(counts.damaged <= 1, "the frame that was cut short, no other: {counts:?}");
     said += &machine.said();
@@ -83,7 +83,7 @@ fn received_bytes_that_are_lost_are_counted() -> anyhow::Result<()> {
     for board in &BOARDS {
         let mut machine = on(board, Machine::start)?;
         assert_eq!(machine.next_frame()?.lost, 0, "{}", board.name);
-        machine.serial.send_bytes(&flood)?;
+        machine.send_bytes(&flood)?;
         // The log comes by another way than the frames, and may be later.
         let (mut lost, mut log) = (0, String::new());
         while lost == 0 || !log.contains("received bytes lost") {

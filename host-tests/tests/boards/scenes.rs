@@ -18,7 +18,7 @@ use host_tests::emulator::boards::{BOARDS, Board, PICO};
 use host_tests::emulator::budgets;
 use host_tests::emulator::host::Show;
 use host_tests::emulator::pico::PicoMachine;
-use host_tests::emulator::qemu::{Lockstep, Screenshot, Settings};
+use host_tests::emulator::qemu::{Machine, Screenshot, Settings};
 use host_tests::emulator::toolchain;
 use host_tests::link::Counts;
 use rayon::prelude::*;
@@ -65,11 +65,11 @@ fn every_board_plays(limit: Duration, ticks: fn(&Board, SceneName) -> u32) -> an
 }
 
 /// Tells a board that runs freely something, and waits for its next frame.
-fn told(machine: &mut Lockstep, words: &[u8]) -> anyhow::Result<Vec<ToHost>> {
-    machine.machine().serial.send_bytes(words)?;
+fn told(machine: &mut Machine, words: &[u8]) -> anyhow::Result<Vec<ToHost>> {
+    machine.send_bytes(words)?;
     let mut messages = Vec::new();
     while messages.last().is_none_or(|last: &ToHost| last.frame().is_none()) {
-        messages.push(machine.machine().receive()?);
+        messages.push(machine.receive()?);
     }
     Ok(messages)
 }
@@ -119,12 +119,12 @@ impl<'a> Followed<'a> {
 fn plays(board: &'static Board, limit: Duration, ticks: fn(&Board, SceneName) -> u32) -> anyhow::Result<Vec<String>> {
     let elf = application(board);
     let (image, stack) = (Image::read(&elf)?, stack(&elf));
-    let mut machine = on(board, |settings| Lockstep::start(&Settings { limit, ..*settings }))?;
+    let mut machine = on(board, |settings| Machine::halted(&Settings { limit, ..*settings }))?;
     machine.write(stack.start, &vec![PAINT; stack.len()])?;
     // The link is up once a frame has come.
-    (0..EVERY).try_for_each(|_| machine.next_frame().map(drop))?;
+    (0..EVERY).try_for_each(|_| machine.run_to_frame().map(drop))?;
     let (mut too_much, mut reached, mut least_idle) = (Vec::new(), Vec::new(), 1.0_f64);
-    let (_, mut profile) = FrameProfile::of_next(&mut machine, &image, board.core())?;
+    let mut profile = FrameProfile::of_next(&mut machine, &image, board.core())?;
     for round in 0..2 {
         let mut name = SceneName::Page;
         for _ in SceneName::ALL {
@@ -153,7 +153,7 @@ fn plays(board: &'static Board, limit: Duration, ticks: fn(&Board, SceneName) ->
                 Core::M4F => false,
             };
             if is_profiled {
-                profile = FrameProfile::of_next(&mut machine, &image, board.core())?.1;
+                profile = FrameProfile::of_next(&mut machine, &image, board.core())?;
             }
             // The board's clock counts instructions; how many cycles one takes is estimated on a frame that QEMU logs whole.
             let Cost { instructions, cycles, .. } = profile.whole;
@@ -177,9 +177,9 @@ fn plays(board: &'static Board, limit: Duration, ticks: fn(&Board, SceneName) ->
         reached.push(depth(&machine.read(stack.clone())?));
     }
     assert!(reached[1] <= reached[0] + INTERRUPT, "{}: the stack reaches ever deeper: {reached:?}", board.name);
-    let Counts { damaged, lost, .. } = machine.machine().serial.counts();
+    let Counts { damaged, lost, .. } = machine.counts();
     assert_eq!((damaged, lost), (0, 0), "{}", board.name);
-    let lines = machine.machine().log.arrived().filter(|line| line.is_bad());
+    let lines = machine.lines().into_iter().filter(|line| line.is_bad());
     let bad: Vec<_> = lines.filter(|line| board.has_panel || !line.text.contains(NO_PANEL)).collect();
     assert!(bad.is_empty(), "{}: {bad:#?}", board.name);
     machine.run()?;

@@ -91,20 +91,15 @@ fn of_a_board_without_a_panel_the_redrawn_one_is_shown() {
     assert_eq!(played.len(), 30);
     for (number, (greys, _)) in played.iter().enumerate() {
         scene.tick();
-        assert!(Screenshot::from(&scene.frame()).greys() == greys, "screenshot {number}");
+        assert!(Screenshot::from(&scene.frame()).greys == *greys, "screenshot {number}");
         scene.tick();
     }
 }
 
 /// What QEMU is reached by lies there.
 #[test]
-fn a_folder_for_sockets_that_cannot_be_had_is_named() {
-    let long = tempfile::tempdir().expect("a folder").path().join("long".repeat(20));
-    std::fs::create_dir_all(&long).expect("a folder");
-    for folder in [Path::new("/dev/null"), &long] {
-        let output = output(program("demo").args(["--headless", "--seconds", "0.1"]).env("TMPDIR", folder));
-        assert_eq!((output.status.code(), output.stdout.as_str()), (Some(2), ""), "{output:?}");
-        let named = format!("TMPDIR={}", folder.display());
-        assert!(output.stderr.lines().count() == 1 && output.stderr.contains(&named), "{}", output.stderr);
-    }
+fn a_folder_for_pipes_that_cannot_be_had_is_named() {
+    let output = output(program("demo").args(["--headless", "--seconds", "0.1"]).env("TMPDIR", "/dev/null"));
+    assert_eq!((output.status.code(), output.stdout.as_str()), (Some(2), ""), "{output:?}");
+    assert!(output.stderr.lines().count() == 1 && output.stderr.contains("TMPDIR=/dev/null"), "{}", output.stderr);
 }

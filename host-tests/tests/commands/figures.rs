@@ -55,7 +55,7 @@ fn is_shown(name: SceneName) -> bool {
         frames.iter().step_by(EVERY).enumerate().all(|(number, (greys, _))| {
             let ticks = if number > 0 { EVERY * TICKS_PER_FRAME } else { 0 };
             (0..ticks).for_each(|_| scene.tick());
-            Screenshot::from(&scene.frame()).greys() == greys
+            Screenshot::from(&scene.frame()).greys == *greys
         })
     };
     !frames.is_empty() && (0..=2).any(is_shown_from)

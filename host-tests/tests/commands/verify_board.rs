@@ -113,8 +113,8 @@ fn what_the_person_says_and_the_chip_counts_is_in_the_report() {
     command.arg("--port").arg(&bench.name).arg("--report").arg(folder.path().join("asked"));
     command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::piped());
     let mut verification = process::spawn(&mut command, LIMIT).expect("it starts");
-    let mut input = verification.stdin.take();
-    let lines = lines(BufReader::new(verification.stderr.take().expect("a pipe")));
+    let mut input = verification.child.stdin.take();
+    let lines = lines(BufReader::new(verification.child.stderr.take().expect("a pipe")));
     let (mut said, mut asked, mut step) = (Vec::new(), 0, 0);
     // The step that the motion has come to.
     let mut carry = |bench: &mut Bench| {

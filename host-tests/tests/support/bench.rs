@@ -66,7 +66,7 @@ impl Bench {
         let mut bytes = [0; 256];
         match cable.read(&mut bytes) {
             Ok(count) => {
-                self.machine.serial.send_bytes(&bytes[..count]).expect("the board takes it");
+                self.machine.send_bytes(&bytes[..count]).expect("the board takes it");
                 self.heard = true;
                 true
             }
@@ -89,7 +89,7 @@ impl Bench {
     /// Carries what is there both ways; `wire` makes bytes of the board's messages.
     pub fn carry(&mut self, mut wire: impl FnMut(ToHost) -> Vec<u8>) {
         let is_heard = self.is_heard();
-        let messages: Vec<_> = self.machine.serial.all_arrived().collect();
+        let messages = self.machine.messages().unwrap_or_else(|error| panic!("{error}"));
         for message in messages.into_iter().filter(|_| is_heard) {
             self.frame = message.frame().map_or(self.frame, |frame| frame.sequence);
             self.say(&wire(message));

@@ -36,7 +36,7 @@ pub fn application(board: &Board) -> PathBuf {
 
 /// Repeatable bit for bit.
 pub fn settings<'a>(toolchain: &'a Toolchain, board: &'a Board, elf: &'a Path) -> Settings<'a> {
-    Settings { qemu: toolchain.qemu(), board, elf, clock: Clock::Counted, debugger: true, limit: LIMIT }
+    Settings { qemu: &toolchain.qemu, board, elf, clock: Clock::Counted, debugger: true, limit: LIMIT }
 }
 
 /// What `start` makes of a board with its application: a machine that runs, or one in lockstep.

@@ -9,9 +9,9 @@ use double_pendulum::{Method, Parameters};
 use firmware::job::Request;
 use rayon::prelude::*;
 
-use super::prices::{prices, write_prices};
-use super::{FULL_CYCLE, StepCost, Target};
-use super::{affordable_cost, affordable_steps, calls_of, counted, step_cost};
+use super::application::{prices, write_prices};
+use super::trace::{calls_of, counted};
+use super::{StepCost, Target, affordable_cost, affordable_steps, step_cost};
 use crate::console::cli::{self, Refused, complain, say};
 use crate::emulator::boards::{BOARDS, Board};
 use crate::emulator::toolchain::{self, Toolchain};
@@ -116,30 +116,22 @@ impl CountOptions {
     fn requests(&self) -> anyhow::Result<Vec<Request>> {
         let Self { m2, l2, angle, .. } = *self;
         let request = |method| Request {
-            method,
             parameters: Parameters { m1: 1.0, m2, l1: 1.0, l2, g: GRAVITY.into() },
             angles: [angle; 2],
-            velocities: [0.0; 2],
             dt: f64::powi(0.5, self.halvings.into()),
-            stride: FULL_CYCLE,
-            samples: 1,
+            ..Request::on_any_core(method)
         };
-        let (mut accepted, mut refused) = (Vec::new(), None);
-        for request in Method::ALL.iter().filter(|method| method.name().contains(&self.method)).map(|&one| request(one))
-        {
-            match (Request { stride: 1, ..request }).crc() {
-                Ok(_) => accepted.push(request),
-                Err(error) => drop(refused.get_or_insert(error)),
-            }
+        let check = |request| Request { stride: 1, samples: 1, ..request }.crc().map(|_| request);
+        let methods = Method::ALL.iter().filter(|method| method.name().contains(&self.method));
+        let checked: Vec<_> = methods.map(|&method| check(request(method))).collect();
+        if checked.is_empty() {
+            let names = Method::ALL.iter().map(|method| method.name()).collect::<Vec<_>>().join(", ");
+            bail!("no method '{}'; there are {names}", self.method)
         }
-        match refused {
-            _ if !accepted.is_empty() => Ok(accepted),
-            Some(error) => Err(error.into()),
-            None => {
-                let names = Method::ALL.iter().map(|method| method.name()).collect::<Vec<_>>().join(", ");
-                bail!("no method '{}'; there are {names}", self.method)
-            }
+        if checked.iter().all(Result::is_err) {
+            return Ok(checked.into_iter().collect::<Result<_, _>>()?);
         }
+        Ok(checked.into_iter().flatten().collect())
     }
 
     /// What is stepped: arithmetic in software takes other ways for other numbers, so its counts depend on all of it.
@@ -177,7 +169,7 @@ fn list(target: &Target, request: &Request, steps: Option<u32>) -> anyhow::Resul
     say(ERROR_BAR)?;
     let mut function = None;
     for (address, (instruction, Cost { instructions, cycles, stalls })) in calls.spots {
-        let inside = target.image().function_at(address);
+        let inside = target.image.function_at(address);
         if inside != function {
             function = inside;
             say(format_args!("{}:", inside.map_or("?", |function| &function.name)))?;
@@ -196,13 +188,13 @@ fn count_calls(toolchain: &Toolchain, options: &CountOptions, elf: &Path, functi
     let limit = Duration::from_secs(options.seconds.into());
     let (function, calls, ended) = calls_of(&target, function, limit).map_err(refused)?;
     let number = calls.len();
-    if let Some(status) = ended.status {
+    if let Ok(status) = &ended.status {
         ensure!(status.success(), "the program failed after {number} calls, {status}: {}", ended.output.trim());
     }
     ended.output.lines().for_each(complain);
     match ended.status {
-        Some(status) => complain(format_args!("the program ended by itself, {status}")),
-        None => complain(format_args!("stopped after {} s and {number} calls; see --seconds", limit.as_secs())),
+        Ok(status) => complain(format_args!("the program ended by itself, {status}")),
+        Err(_) => complain(format_args!("stopped after {} s and {number} calls; see --seconds", limit.as_secs())),
     }
     say(format_args!("{} on {}, from its first instruction to its return: calls {number}", function.name, board.name))?;
     say(ERROR_BAR)?;

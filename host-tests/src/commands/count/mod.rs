@@ -1,18 +1,17 @@
 //! Counts what a method costs on the target: executed instructions (exact), Cortex-M cycles (an **estimate** from
 //! the published instruction timings), bytes of code and bytes of stack.
 
+mod application;
 mod command;
-mod frame_profile;
-mod prices;
 mod trace;
 
+pub use application::{FrameProfile, prices};
 pub use command::{CountOptions, run};
-pub use frame_profile::{FrameProfile, calls_in_next};
-pub use prices::prices;
-pub use trace::{Ended, Target, calls_of, counted};
+pub use trace::Target;
 
 use anyhow::Result;
 use firmware::job::Request;
+use trace::counted;
 
 /// Name of the function, one per method, that is counted from its first instruction to its return.
 const COUNTED: &str = "counted_steps";

@@ -5,14 +5,14 @@
 //! 2.x. The log comes through a pipe, a few hundred thousand instructions per second.
 
 use std::collections::BTreeSet;
-use std::io::ErrorKind;
+use std::io;
 use std::path::PathBuf;
 use std::process::{Command, ExitStatus, Stdio};
 use std::thread;
 use std::time::Duration;
 
 use anyhow::{Context, Result, bail, ensure};
-use cycles::{Calls, Core, Cost, Function, Image, Registers, for_each_instruction};
+use cycles::{Calls, Cost, Function, Image, Registers, for_each_instruction};
 use firmware::job::Request;
 
 use super::COUNTED;
@@ -21,13 +21,12 @@ use crate::emulator::boards::{BOARDS, Board};
 use crate::emulator::process;
 use crate::emulator::toolchain::Toolchain;
 
-const LIMIT: Duration = Duration::from_secs(1800);
-const VERSION_LIMIT: Duration = Duration::from_secs(10);
+pub(super) const LIMIT: Duration = Duration::from_secs(1800);
 
 #[derive(Debug)]
 pub struct Ended {
-    /// What QEMU's exit says of it; `None` if its time was up.
-    pub status: Option<ExitStatus>,
+    /// What QEMU's exit says of it; an error if its time was up.
+    pub status: io::Result<ExitStatus>,
     pub output: String,
 }
 
@@ -39,7 +38,7 @@ pub struct Target {
     pub board: &'static Board,
     qemu: PathBuf,
     elf: PathBuf,
-    image: Image,
+    pub image: Image,
 }
 
 impl Target {
@@ -50,20 +49,12 @@ impl Target {
     /// Another program. One that takes the same requests makes its steps in a function called `counted_steps`.
     pub fn of(toolchain: &Toolchain, board: &'static Board, elf: PathBuf) -> Result<Self> {
         let image = Image::read(&elf)?;
-        Ok(Self { board, qemu: toolchain.qemu().to_owned(), elf, image })
+        Ok(Self { board, qemu: toolchain.qemu.clone(), elf, image })
     }
 
     /// One board for each kind of core: the same machine with a Cortex-M3, a Cortex-M4F and a Cortex-M0+.
     pub fn build_all(toolchain: &Toolchain) -> Result<Vec<Self>> {
         BOARDS.iter().filter(|board| board.has_panel).map(|board| Self::build(toolchain, board)).collect()
-    }
-
-    pub fn image(&self) -> &Image {
-        &self.image
-    }
-
-    pub fn core(&self) -> Core {
-        self.board.core()
     }
 
     /// Runs `request` at full speed: its CRC, and the ticks of the board's clock under `-icount`, where an
@@ -87,15 +78,11 @@ impl Target {
         command.args(self.single_step()?).args(["-d", "cpu,nochain", "-D", "/dev/stderr"]);
         command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
         let mut child = process::spawn(&mut command, limit)?;
-        let stdout = child.stdout.take().map(|stdout| thread::spawn(move || std::io::read_to_string(stdout)));
-        if let Some(mut log) = child.stderr.take() {
+        let stdout = child.child.stdout.take().map(|stdout| thread::spawn(move || io::read_to_string(stdout)));
+        if let Some(mut log) = child.child.stderr.take() {
             for_each_instruction(&mut log, each)?;
         }
-        let status = match child.wait() {
-            Ok(status) => Some(status),
-            Err(error) if error.kind() == ErrorKind::TimedOut => None,
-            Err(error) => return Err(error.into()),
-        };
+        let status = child.wait();
         let output = stdout.and_then(|reader| reader.join().ok()).and_then(Result::ok).unwrap_or_default();
         Ok(Ended { status, output })
     }
@@ -113,25 +100,18 @@ impl Target {
 
     /// The options for one instruction per translation block, which QEMU 8.1 renamed.
     fn single_step(&self) -> Result<&'static [&'static str]> {
-        let version = process::run(Command::new(&self.qemu).arg("--version"), VERSION_LIMIT)?.stdout;
-        let mut words = version.split_ascii_whitespace();
-        let number = words.find(|word| word.starts_with(|first: char| first.is_ascii_digit()));
-        let mut parts = number.unwrap_or_default().split('.').map_while(|part| part.parse::<u32>().ok());
-        let parts = parts.next().zip(parts.next());
-        let number = parts.with_context(|| format!("cannot tell QEMU's version from {version:?}"))?;
-        Ok(if number < (8, 1) { &["-singlestep"] } else { &["-accel", "tcg,one-insn-per-tb=on"] })
+        let help = process::run(Command::new(&self.qemu).arg("--help"), LIMIT)?.stdout;
+        let is_renamed = help.contains("one-insn-per-tb");
+        Ok(if is_renamed { &["-accel", "tcg,one-insn-per-tb=on"] } else { &["-singlestep"] })
     }
 }
 
 /// Runs `request` on `target`, all calls of the counted function together.
 pub fn counted<'a>(target: &'a Target, request: &Request) -> Result<Calls<'a>> {
-    let entries = target.image().functions_named(COUNTED).map(|function| function.address).collect();
-    let mut calls = Calls::of(target.image(), target.core(), entries);
-    match target.trace(&request.to_string(), LIMIT, &mut |registers| calls.see(registers))? {
-        Ended { status: Some(status), .. } if status.success() => {}
-        Ended { status: None, .. } => bail!(process::timed_out(&target.elf.display().to_string(), LIMIT)),
-        Ended { output, .. } => bail!("{request}: {}", output.trim()),
-    }
+    let entries = target.image.functions_named(COUNTED).map(|function| function.address).collect();
+    let mut calls = Calls::of(&target.image, target.board.core(), entries);
+    let ended = target.trace(&request.to_string(), LIMIT, &mut |registers| calls.see(registers))?;
+    ensure!(ended.status?.success(), "{request}: {}", ended.output.trim());
     ensure!(!calls.ended.is_empty(), "{COUNTED} was never called");
     Ok(calls)
 }
@@ -139,7 +119,7 @@ pub fn counted<'a>(target: &'a Target, request: &Request) -> Result<Calls<'a>> {
 /// Counts the calls of `function` until the program on `target` ends or the time is up: the function, what each call that returned
 /// cost, one at least unless the program says that it failed, and how it ended.
 pub fn calls_of<'a>(target: &'a Target, function: &str, limit: Duration) -> Result<(&'a Function, Vec<Cost>, Ended)> {
-    let (image, core) = (target.image(), target.core());
+    let (image, core) = (&target.image, target.board.core());
     let function = image.function(function)?;
     let (vectors, board) = (target.board.flash(), target.board.name);
     // It would never run.
@@ -149,24 +129,20 @@ pub fn calls_of<'a>(target: &'a Target, function: &str, limit: Duration) -> Resu
     );
     let mut calls = Calls::of(image, core, BTreeSet::from([function.address]));
     let progress = Progress::start(&format!("counts the calls of {}", function.name));
-    let (mut instructions, mut before, mut unknown) = (0_u64, Registers::default(), None);
+    let (mut instructions, mut unknown) = (0_u64, None);
     let ended = target.trace("", limit, &mut |registers| {
         instructions += 1;
         if instructions % TELL == 0 {
             progress.alive(Some(&format!("{} calls, {instructions} instructions", calls.ended.len())));
         }
-        // An exception right after an instruction that the processor does not have is for the lack of it.
-        if is_exception(&registers) && !is_exception(&before) {
-            let instruction = image.instruction_at(before.pc()).ok();
-            unknown = unknown.or(instruction.filter(|one| one.is_missing_on(core)).map(|one| (before.pc(), one)));
-        }
-        before = registers;
+        let missing = image.instruction_at(registers.pc()).ok().filter(|instruction| instruction.is_missing_on(core));
+        unknown = unknown.or(missing.map(|instruction| (registers.pc(), instruction)));
         calls.see(registers)
     })?;
     let name = &function.name;
-    let failed = ended.status.is_some_and(|status| !status.success());
+    let failed = ended.status.as_ref().is_ok_and(|status| !status.success());
     if calls.ended.is_empty() && !failed {
-        ensure!(!calls.is_running(), "{name} was called and never returned");
+        ensure!(calls.running.is_none(), "{name} was called and never returned");
         let Some((address, instruction)) = unknown else { bail!("{name} was never called") };
         let (instruction, cpu) = (instruction.row.name, target.board.cpu);
         bail!("{name} was never called: {instruction} at {address:#x} is no instruction of a {cpu}; see --on");
@@ -176,8 +152,3 @@ pub fn calls_of<'a>(target: &'a Target, function: &str, limit: Duration) -> Resu
 
 /// Instructions between two words about them.
 const TELL: u64 = 1 << 18;
-
-/// Whether the processor has just entered an exception: the link register then holds no address.
-fn is_exception(registers: &Registers) -> bool {
-    (0xffff_ffe0..u32::MAX).contains(&registers.lr())
-}

@@ -29,7 +29,7 @@ use crate::console::cli::{Refused, complain, say};
 use crate::console::progress::Progress;
 use crate::emulator::boards::PICO;
 use crate::emulator::pico::PicoMachine;
-use crate::emulator::qemu::{Clock, Lockstep, Machine, Settings};
+use crate::emulator::qemu::{Clock, Machine, Settings};
 use crate::emulator::toolchain;
 use crate::link::{Port, find};
 
@@ -65,11 +65,11 @@ fn emulated(options: &DemoOptions, is_live: bool) -> anyhow::Result<Source<'_>> 
         return Ok(Source::Pico(Box::new(PicoMachine::start(&emulator, &toolchain.build_for(board)?, limit)?)));
     }
     let elf = toolchain.build_for(board)?;
-    let settings = Settings { qemu: toolchain.qemu(), board, elf: &elf, debugger: true, clock: Clock::Real, limit };
+    let settings = Settings { qemu: &toolchain.qemu, board, elf: &elf, debugger: true, clock: Clock::Real, limit };
     if is_live {
         return Ok(Source::Live(Machine::start(&settings)?, board));
     }
-    Ok(Source::Lockstep(Lockstep::start(&settings)?, board))
+    Ok(Source::Lockstep(Machine::halted(&settings)?, board))
 }
 
 const LOOK: Duration = Duration::from_millis(4);

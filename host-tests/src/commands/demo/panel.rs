@@ -19,7 +19,7 @@ pub fn draw(frame: &mut Frame, area: Rect, screenshot: &Screenshot) {
     let canvas = canvas.paint(|context| {
         // The brightest last: it gives a character its colour.
         for grey in if in_greys { 0 } else { SET }..=BRIGHTEST_GREY {
-            let lit = screenshot.greys().iter().enumerate().filter(|(_, pixel)| **pixel == grey);
+            let lit = screenshot.greys.iter().enumerate().filter(|(_, pixel)| **pixel == grey);
             let coords: Vec<_> = lit.map(|(i, _)| ((i % WIDTH) as f64, -((i / WIDTH) as f64))).collect();
             context.draw(&Points { coords: &coords, color: in_terminal(grey) });
         }

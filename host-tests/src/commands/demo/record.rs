@@ -77,7 +77,7 @@ impl Recording {
 }
 
 fn magnified(screenshot: &Screenshot) -> Vec<u8> {
-    let at = |index: usize| screenshot.grey(index % (WIDTH * SCALE) / SCALE, index / (WIDTH * SCALE) / SCALE);
+    let at = |index: usize| screenshot.greys[index / (WIDTH * SCALE) / SCALE * WIDTH + index % (WIDTH * SCALE) / SCALE];
     (0..WIDTH * SCALE * HEIGHT * SCALE).map(at).collect()
 }
 

@@ -34,7 +34,7 @@ pub struct Session<'a> {
 
 impl<'a> Session<'a> {
     pub fn new(options: &'a DemoOptions, source: Source<'a>, recording: Option<Recording>, is_live: bool) -> Self {
-        let (readings, screenshot) = (Readings::default(), Screenshot::blank());
+        let (readings, screenshot) = (Readings::default(), Screenshot::from_pages(&[]));
         let due = (is_live && matches!(source, Source::Pico(_))).then(Instant::now);
         Self { options, source, readings, screenshot, recording, now: None, begun: None, before: 0, due }
     }

@@ -4,14 +4,14 @@ use firmware::protocol::{Command, MAX_WIRE, ToHost, encode_command};
 
 use crate::emulator::boards::{Board, PICO};
 use crate::emulator::pico::PicoMachine;
-use crate::emulator::qemu::{Lockstep, LogLine, Machine, Screenshot};
+use crate::emulator::qemu::{LogLine, Machine, Screenshot};
 use crate::link::{Counts, Port};
 
 pub enum Source<'a> {
     /// Emulated by QEMU, its clock the host's.
     Live(Machine, &'a Board),
     /// Emulated by QEMU, run from frame to frame.
-    Lockstep(Lockstep, &'a Board),
+    Lockstep(Machine, &'a Board),
     Pico(Box<PicoMachine>),
     Port(Port),
 }
@@ -41,11 +41,8 @@ impl Source<'_> {
     /// The messages since the last call; of one that goes frame by frame those up to the next.
     pub fn messages(&mut self) -> anyhow::Result<Vec<ToHost>> {
         match self {
-            Self::Live(machine, _) => match machine.ended()? {
-                Some(_) => Err(machine.silence()),
-                None => Ok(machine.serial.all_arrived().collect()),
-            },
-            Self::Lockstep(lockstep, _) => lockstep.run_to_frame(),
+            Self::Live(machine, _) => machine.messages(),
+            Self::Lockstep(machine, _) => machine.run_to_frame(),
             Self::Pico(machine) => machine.run_to_frame(),
             Self::Port(port) => Ok(port.messages()),
         }
@@ -55,8 +52,7 @@ impl Source<'_> {
         let mut wire = [0; MAX_WIRE];
         let wire = encode_command(0, command, &mut wire);
         match self {
-            Self::Live(machine, _) => machine.serial.send_bytes(wire)?,
-            Self::Lockstep(lockstep, _) => lockstep.machine().serial.send_bytes(wire)?,
+            Self::Live(machine, _) | Self::Lockstep(machine, _) => machine.send_bytes(wire)?,
             Self::Pico(machine) => machine.send_bytes(wire)?,
             Self::Port(port) => port.send_bytes(wire),
         }
@@ -67,8 +63,7 @@ impl Source<'_> {
     pub fn lines(&mut self) -> Vec<LogLine> {
         let notice = |text: String| LogLine { level: Some("warn".to_owned()), text, place: None };
         match self {
-            Self::Live(machine, _) => machine.log.arrived().collect(),
-            Self::Lockstep(lockstep, _) => lockstep.machine().log.arrived().collect(),
+            Self::Live(machine, _) | Self::Lockstep(machine, _) => machine.lines(),
             Self::Pico(machine) => machine.lines(),
             Self::Port(port) => port.notices().map(notice).collect(),
         }
@@ -76,8 +71,7 @@ impl Source<'_> {
 
     pub fn counts(&mut self) -> Counts {
         match self {
-            Self::Live(machine, _) => machine.serial.counts(),
-            Self::Lockstep(lockstep, _) => lockstep.machine().serial.counts(),
+            Self::Live(machine, _) | Self::Lockstep(machine, _) => machine.counts(),
             Self::Pico(machine) => machine.counts()[0],
             Self::Port(port) => port.counts(),
         }
@@ -87,8 +81,7 @@ impl Source<'_> {
     pub fn panel(&mut self) -> anyhow::Result<Option<Screenshot>> {
         let has_panel = self.has_panel();
         match self {
-            Self::Live(machine, _) if has_panel => machine.screenshot().map(Some),
-            Self::Lockstep(lockstep, _) if has_panel => lockstep.screenshot().map(Some),
+            Self::Live(machine, _) | Self::Lockstep(machine, _) if has_panel => machine.screenshot().map(Some),
             Self::Pico(machine) => machine.screenshot().map(Some),
             _ => Ok(None),
         }

@@ -73,11 +73,11 @@ fn on_board(
     let toolchain = toolchain::set_up()?;
     let elf = toolchain.build_for(board)?;
     let limit = OVERHEAD.saturating_add(PER_STEP.saturating_mul(request.stride.saturating_mul(request.samples)));
-    let settings = Settings { qemu: toolchain.qemu(), board, elf: &elf, clock: Clock::Real, debugger: true, limit };
+    let settings = Settings { qemu: &toolchain.qemu, board, elf: &elf, clock: Clock::Real, debugger: true, limit };
     let mut machine = Machine::start(&settings)?;
     // Its first frame says that it listens.
     machine.next_frame().context(board.name)?;
-    machine.serial.send(1, Command::Simulate(*request))?;
+    machine.send(1, Command::Simulate(*request))?;
     let mut expected = 0;
     while expected <= request.samples {
         match machine.next_answer().context(board.name)? {

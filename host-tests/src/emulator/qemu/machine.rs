@@ -1,26 +1,22 @@
-//! Starting and ending an emulated board.
+//! An emulated board: how it starts, what comes from it, and how it ends.
 
-use std::env::temp_dir;
-use std::io::ErrorKind;
-use std::os::unix::net::{UnixListener, UnixStream};
+use std::collections::VecDeque;
+use std::io::{self, Write};
 use std::path::Path;
 use std::process::{Command, ExitStatus, Stdio};
-use std::thread::sleep;
 use std::time::Duration;
 
-use anyhow::{Context, anyhow, bail};
-use firmware::app::Key;
-use firmware::protocol::{Answer, Frame, ToHost};
+use anyhow::{Context, bail};
+use firmware::protocol::{self, Answer, Frame, MAX_WIRE, ToHost, encode_command};
+use serde_json::json;
 use tempfile::TempDir;
 
-use super::qmp::Monitor;
-use super::serial::Pipes;
-use super::{Log, LogLine, Screenshot, Serial};
+use super::debugger::{DESCRIBE, Places};
+use super::{LogDecoder, LogLine};
 use crate::emulator::boards::Board;
 use crate::emulator::process::{self, Running, remove_on_interrupt};
-
-/// How often a connection that is not there yet is looked for.
-const POLL: Duration = Duration::from_millis(2);
+use crate::emulator::stream::{self, Channel, Stream};
+use crate::link::{Counts, Inbox};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Clock {
@@ -43,43 +39,51 @@ pub struct Settings<'a> {
     pub limit: Duration,
 }
 
-/// A running board. Dropping it ends QEMU.
-#[derive(Debug)]
+/// What QEMU says at every start of this machine and no one needs to read.
+const CHATTER: [&str; 2] = ["Timer with period zero, disabling", "has no peer"];
+
+/// An emulated board. Whoever waits for anything of it also reads all that comes, for QEMU stands still while no one does. Dropping it
+/// ends QEMU.
 pub struct Machine {
-    pub serial: Serial,
-    pub log: Log,
-    monitor: Monitor,
+    /// If not, what the board sends fills the pipe, and then its port.
+    pub listens: bool,
+    pub(super) monitor: Channel,
+    pub(super) debugger: Channel,
+    serial: Channel,
+    /// The firmware's log; and what QEMU says, and the firmware of a crash, in plain text.
+    log: [Stream; 2],
+    decoder: LogDecoder,
+    inbox: Inbox,
+    messages: VecDeque<ToHost>,
+    lines: Vec<LogLine>,
+    pub(super) places: Places,
+    pub(super) folder: TempDir,
     process: Running,
-    folder: TempDir,
 }
 
 impl Machine {
     /// Starts a board. Its first instruction is executed after the host is attached to it.
     pub fn start(settings: &Settings) -> anyhow::Result<Self> {
-        let (mut machine, _) = Self::start_stopped(settings)?;
-        // A firmware may end QEMU before QEMU can answer.
-        let _: anyhow::Result<()> = machine.monitor.resume();
+        let mut machine = Self::boot(settings)?;
+        machine.run()?;
         Ok(machine)
     }
 
-    /// Starts a board that stands still at its first instruction, and gives its debugger port.
-    pub(super) fn start_stopped(settings: &Settings) -> anyhow::Result<(Self, UnixStream)> {
+    /// Starts a board that stands still at its first instruction.
+    pub(super) fn boot(settings: &Settings) -> anyhow::Result<Self> {
         let elf = settings.elf.canonicalize().with_context(|| settings.elf.display().to_string())?;
         let folder = tempfile::Builder::new().prefix("double-pendulum-").tempdir()?;
         remove_on_interrupt(folder.path());
-        // QEMU connects to sockets that listen already: none of its bytes can be lost.
-        let listen = |name| UnixListener::bind(folder.path().join(name));
-        let (monitor, debugger) = (listen("monitor")?, listen("debugger")?);
-        let pipes = Pipes::make(&folder.path().join("serial"))?;
-
         let mut command = Command::new(settings.qemu);
         command.current_dir(folder.path());
         command.args(["-machine", settings.board.machine, "-cpu", settings.board.cpu]).arg("-kernel").arg(elf);
-        command.args(["-display", "none"]);
-        command.args(["-serial", "null"].repeat(settings.board.serial_port));
-        command.args(["-chardev", "pipe,id=serial,path=serial", "-serial", "chardev:serial"]);
-        command.args(["-chardev", "socket,id=monitor,path=monitor", "-mon", "chardev=monitor,mode=control"]);
-        command.args(["-chardev", "socket,id=debugger,path=debugger", "-gdb", "chardev:debugger", "-S"]);
+        let mut channel = |name: &str| {
+            command.args(["-chardev", &format!("pipe,id={name},path={name}")]);
+            Channel::make(&folder.path().join(name))
+        };
+        let (monitor, debugger, serial) = (channel("monitor")?, channel("debugger")?, channel("serial")?);
+        command.args(["-display", "none", "-mon", "chardev=monitor,mode=control", "-gdb", "chardev:debugger", "-S"]);
+        command.args(["-serial", "null"].repeat(settings.board.serial_port)).args(["-serial", "chardev:serial"]);
         if settings.debugger {
             command.args(["-semihosting-config", "enable=on,target=native"]);
         }
@@ -92,26 +96,78 @@ impl Machine {
         };
         command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
 
+        let decoder = LogDecoder::new(settings.elf)?;
         let mut process = process::spawn(&mut command, settings.limit)?;
-        let log = Log::new(settings.elf, process.stdout.take(), process.stderr.take())?;
-        let monitor = accept(&monitor, &mut process, &log)?;
-        let debugger = accept(&debugger, &mut process, &log)?;
-        // QEMU greets once all its connections are made.
-        let monitor = Monitor::new(monitor)?;
-        Ok((Self { serial: Serial::new(pipes)?, log, monitor, process, folder }, debugger))
+        let log = process.streams()?;
+        let mut machine = Self {
+            listens: true,
+            monitor,
+            debugger,
+            serial,
+            log,
+            decoder,
+            inbox: Inbox::default(),
+            messages: VecDeque::new(),
+            lines: Vec::new(),
+            places: Places::default(),
+            folder,
+            process,
+        };
+        machine.execute("qmp_capabilities", json!({}))?;
+        machine.ask(DESCRIBE)?;
+        Ok(machine)
+    }
+
+    /// Takes all that has come; how QEMU has ended, if it has.
+    fn take_in(&mut self) -> io::Result<Option<ExitStatus>> {
+        // What was said before the end is all there then.
+        let ended = self.process.ended(&self.log)?;
+        let Self { monitor, debugger, serial, log, .. } = self;
+        let serial = if self.listens { Some(&mut serial.stream) } else { None };
+        for stream in [&mut monitor.stream, &mut debugger.stream].into_iter().chain(log).chain(serial) {
+            stream.take_in();
+        }
+        let received = self.serial.stream.bytes.drain(..);
+        self.messages.extend(received.filter_map(|byte| self.inbox.take(byte)));
+        let [firmware, plain] = &mut self.log;
+        self.lines.extend(self.decoder.take(&std::mem::take(&mut firmware.bytes)));
+        while let Some(line) = plain.line() {
+            if !CHATTER.iter().any(|chatter| line.contains(chatter)) {
+                self.lines.push(LogLine::plain(&line));
+            }
+        }
+        Ok(ended)
+    }
+
+    /// Waits until `found` finds something in what has come; the error tells how QEMU has ended.
+    pub(super) fn wait_until<T>(&mut self, mut found: impl FnMut(&mut Self) -> Option<T>) -> anyhow::Result<T> {
+        loop {
+            let ended = self.take_in()?;
+            if let Some(found) = found(self) {
+                return Ok(found);
+            }
+            self.go_on(ended)?;
+        }
+    }
+
+    /// Waits until something may have come; the error of a QEMU that has ended has the last it said.
+    fn go_on(&self, ended: Option<ExitStatus>) -> anyhow::Result<()> {
+        if let Some(status) = ended {
+            let last = &self.lines[self.lines.len().saturating_sub(4)..];
+            bail!(last.iter().fold(format!("QEMU ended ({status})"), |said, line| format!("{said}\n{line}")));
+        }
+        let channels = [&self.monitor, &self.debugger, &self.serial].map(|channel| &channel.stream);
+        stream::wait(channels.into_iter().chain(&self.log));
+        Ok(())
     }
 
     pub fn receive(&mut self) -> anyhow::Result<ToHost> {
-        self.serial.receive().ok_or_else(|| self.silence())
+        self.wait_until(|machine| machine.messages.pop_front())
     }
 
     /// The next message of one kind; others on the way to it are passed over.
     pub fn wait_for<M>(&mut self, kind: impl Fn(ToHost) -> Option<M>) -> anyhow::Result<M> {
-        loop {
-            if let Some(message) = kind(self.receive()?) {
-                return Ok(message);
-            }
-        }
+        self.wait_until(|machine| std::iter::from_fn(|| machine.messages.pop_front()).find_map(&kind))
     }
 
     pub fn next_frame(&mut self) -> anyhow::Result<Frame> {
@@ -122,102 +178,52 @@ impl Machine {
         self.wait_for(ToHost::answer)
     }
 
-    pub fn said(&self) -> String {
-        self.log.arrived().map(|line| format!("{line}\n")).collect()
+    /// The messages that have come; the error tells how QEMU has ended.
+    pub fn messages(&mut self) -> anyhow::Result<Vec<ToHost>> {
+        match self.take_in()? {
+            None => Ok(self.messages.drain(..).collect()),
+            ended => self.go_on(ended).map(|()| Vec::new()),
+        }
     }
 
-    /// What the panel shows now. While the board runs this may be a mixture of two frames.
-    pub fn screenshot(&mut self) -> anyhow::Result<Screenshot> {
-        self.monitor.screenshot(self.folder.path()).map_err(|error| self.explain(error))
+    pub fn send(&mut self, request: u16, command: protocol::Command) -> anyhow::Result<()> {
+        self.send_bytes(encode_command(request, command, &mut [0; MAX_WIRE]))
     }
 
-    /// Gives QEMU's console a line that it has nothing to say to.
-    pub(super) fn tell(&mut self, line: &str) -> anyhow::Result<()> {
-        let said = self.monitor.console(line).map_err(|error| self.explain(error))?;
-        let reason = said.trim();
-        if reason.is_empty() { Ok(()) } else { bail!("QEMU refuses console: {reason}") }
+    pub fn send_bytes(&mut self, bytes: &[u8]) -> anyhow::Result<()> {
+        Ok(self.serial.sender.write_all(bytes)?)
     }
 
-    pub fn set_key(&mut self, key: Key, down: bool) -> anyhow::Result<()> {
-        self.monitor.set_key(key, down).map_err(|error| self.explain(error))
+    /// What the link has been through.
+    pub fn counts(&self) -> Counts {
+        self.inbox.counts()
     }
 
-    /// Presses and lets go of every button once, too early for the firmware to take it for a command: only then does
-    /// this board's emulated hardware tell a released button from a pressed one.
-    pub fn wake_keys(&mut self) -> anyhow::Result<()> {
-        Key::ALL.iter().try_for_each(|&key| {
-            self.set_key(key, true)?;
-            self.set_key(key, false)
-        })
+    /// The lines of the log that have come.
+    pub fn lines(&mut self) -> Vec<LogLine> {
+        // Of one that has ended, too.
+        let _ = self.take_in();
+        std::mem::take(&mut self.lines)
+    }
+
+    pub fn said(&mut self) -> String {
+        self.lines().iter().map(|line| format!("{line}\n")).collect()
     }
 
     pub fn id(&self) -> u32 {
-        self.process.id()
+        self.process.child.id()
     }
 
-    /// Whether QEMU has ended by itself, and how.
-    pub fn ended(&mut self) -> anyhow::Result<Option<ExitStatus>> {
-        Ok(self.process.try_wait()?)
-    }
-
-    /// Waits until QEMU ends by itself: how, and what was said until then.
-    pub fn wait(&mut self) -> anyhow::Result<(ExitStatus, Vec<LogLine>)> {
-        let status = self.process.wait()?;
-        Ok((status, self.log.rest().collect()))
-    }
-
-    /// What is behind `error` if QEMU has ended.
-    pub(super) fn explain(&mut self, error: anyhow::Error) -> anyhow::Error {
-        ended(&mut self.process, &self.log).unwrap_or(error)
-    }
-
-    pub fn silence(&mut self) -> anyhow::Error {
-        self.explain(anyhow!("QEMU's serial port is closed"))
-    }
-}
-
-/// The connection that QEMU makes as it starts.
-fn accept(listener: &UnixListener, process: &mut Running, log: &Log) -> anyhow::Result<UnixStream> {
-    listener.set_nonblocking(true)?;
-    loop {
-        match listener.accept() {
-            Ok((socket, _)) => {
-                socket.set_nonblocking(false)?;
-                return Ok(socket);
+    /// Waits until QEMU ends by itself: how. Gives `each` line that is said until then.
+    pub fn wait(&mut self, mut each: impl FnMut(LogLine)) -> anyhow::Result<ExitStatus> {
+        loop {
+            let ended = self.take_in()?;
+            self.lines.drain(..).for_each(&mut each);
+            self.messages.clear();
+            if let Some(status) = ended {
+                return Ok(status);
             }
-            Err(error) if error.kind() == ErrorKind::WouldBlock => {}
-            Err(error) => bail!(error),
+            self.go_on(None)?;
         }
-        if process.try_wait()?.is_some() {
-            bail!(ended(process, log).context("it has ended")?);
-        }
-        sleep(POLL);
     }
-}
-
-/// How QEMU ended and the last it said; `None` if it runs on.
-fn ended(process: &mut Running, log: &Log) -> Option<anyhow::Error> {
-    /// A broken connection is noticed a moment before the process can be seen to end.
-    const GRACE: Duration = Duration::from_millis(500);
-    let mut waited = Duration::ZERO;
-    let how = loop {
-        match process.try_wait() {
-            Ok(Some(status)) => break status.to_string(),
-            Ok(None) if waited < GRACE => {}
-            Ok(None) => return None,
-            Err(error) => return Some(error.into()),
-        }
-        sleep(POLL);
-        waited += POLL;
-    };
-    let lines: Vec<_> = log.rest().map(|line| line.to_string()).collect();
-    let said = lines[lines.len().saturating_sub(4)..].join("\n");
-    Some(if said.is_empty() { anyhow!("QEMU ended ({how})") } else { anyhow!("QEMU ended ({how}):\n{said}") })
-}
-
-/// Why no machine can have its folder of sockets, in one line that names `TMPDIR`: it is no folder, or no socket's name is so long.
-pub(crate) fn check_folder() -> Result<(), String> {
-    let listened =
-        tempfile::tempdir().and_then(|folder| UnixListener::bind(folder.path().join("double-pendulum-debug")));
-    listened.map(drop).map_err(|error| format!("QEMU's sockets cannot be in TMPDIR={}: {error}", temp_dir().display()))
 }

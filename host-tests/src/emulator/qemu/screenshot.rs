@@ -14,7 +14,7 @@ const GREY_UNIT: u8 = 17;
 /// What the panel shows: 4-bit greys, row by row from the top left.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Screenshot {
-    greys: Vec<u8>,
+    pub greys: Vec<u8>,
 }
 
 impl std::fmt::Debug for Screenshot {
@@ -40,24 +40,11 @@ impl Screenshot {
         Ok(Self::drawn(|x, y| pixels[index(x, y)] / GREY_UNIT))
     }
 
-    pub fn blank() -> Self {
-        Self::drawn(|_, _| 0)
-    }
-
     /// Out of the memory of a one-colour panel, pages of eight rows from the top, a byte for every column of each; black where
     /// there is none.
     pub fn from_pages(memory: &[u8]) -> Self {
         let is_lit = |x: usize, y: usize| memory.get(y / 8 * WIDTH + x).is_some_and(|byte| byte >> (y % 8) & 1 != 0);
         Self::drawn(|x, y| if is_lit(x, y) { 15 } else { 0 })
-    }
-
-    /// The grey, 0 to 15, of the pixel `x` from the left and `y` from the top; 0 outside the panel.
-    pub fn grey(&self, x: usize, y: usize) -> u8 {
-        if x < WIDTH { self.greys.get(y * WIDTH + x).copied().unwrap_or_default() } else { 0 }
-    }
-
-    pub fn greys(&self) -> &[u8] {
-        &self.greys
     }
 }
 
@@ -65,24 +52,5 @@ impl Screenshot {
 impl From<&Canvas> for Screenshot {
     fn from(canvas: &Canvas) -> Self {
         Self::drawn(|x, y| canvas.get(x as i32, y as i32).unwrap_or_default())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_dump_is_sampled_inside_each_magnified_pixel() {
-        let mut dump = HEADER.to_vec();
-        let places = (0..4 * HEIGHT).flat_map(|y| (0..4 * WIDTH).map(move |x| (x / 4, y / 4)));
-        dump.extend(places.flat_map(|(x, y)| [((x + y) % 16) as u8 * GREY_UNIT; 3]));
-        let screenshot = Screenshot::from_ppm(&dump).expect("a whole dump");
-        for (x, y) in [(0, 0), (127, 0), (0, 63), (127, 63), (64, 32), (5, 60)] {
-            assert_eq!(usize::from(screenshot.grey(x, y)), (x + y) % 16, "at {x}, {y}");
-        }
-        dump.truncate(dump.len() - 4 * 512 * 3);
-        assert!(Screenshot::from_ppm(&dump).is_err(), "cut short");
-        assert!(Screenshot::from_ppm(b"P6\n720 400\n255\n").is_err(), "another display");
     }
 }

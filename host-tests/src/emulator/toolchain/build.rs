@@ -2,7 +2,6 @@
 
 use std::env;
 use std::ffi::OsString;
-use std::fs;
 use std::path::PathBuf;
 use std::process::Command;
 use std::sync::Mutex;
@@ -10,9 +9,9 @@ use std::time::Duration;
 
 use anyhow::ensure;
 
-use super::detect::{DEBIAN_CARGO, DEBIAN_RUSTC};
-use super::install::run_shown;
-use super::{ArmCore, TARGETS, Toolchain, target, workspace};
+use super::bring::run_shown;
+use super::tools::{DEBIAN_CARGO, DEBIAN_RUSTC};
+use super::{TARGETS, Toolchain, target, workspace};
 use crate::emulator::boards::{Board, PICO, every_board};
 
 /// What this process has built, each binary with its target: to ask cargo again takes half a second.
@@ -31,17 +30,14 @@ const FOREIGN: [&str; 5] = ["CARGO", "RUST", "LD_LIBRARY_PATH", "DYLD_", "OUT_DI
 const OURS: [&str; 5] = ["CARGO_HOME", "CARGO_HTTP_", "CARGO_NET_", "CARGO_REGISTR", "RUSTUP_"];
 
 impl Toolchain {
-    /// Cargo as it builds for a chip, in the workspace's folder; its output belongs into [`Self::folder`].
-    pub fn cargo(&self) -> Command {
-        let mut command = match &self.core {
-            ArmCore::ReadyMade => Command::new("cargo"),
-            ArmCore::FromSource { .. } => Command::new(DEBIAN_CARGO),
-        };
+    /// Cargo as it builds for a chip, in the workspace's folder.
+    fn cargo(&self) -> Command {
+        let mut command = Command::new(if self.linker.is_some() { DEBIAN_CARGO } else { "cargo" });
         for (name, _) in env::vars_os().filter(|(name, _)| is_foreign(name)) {
             command.env_remove(name);
         }
         command.current_dir(workspace()).env("RUSTUP_AUTO_INSTALL", "0");
-        if let ArmCore::FromSource { linker } = &self.core {
+        if let Some(linker) = &self.linker {
             // Debian's cargo is a stable one; building core is still called unstable.
             command.env("RUSTC", DEBIAN_RUSTC).env("RUSTC_BOOTSTRAP", "1").env("CARGO_UNSTABLE_BUILD_STD", "core");
             command.env("PATH", path_with(linker.clone()));
@@ -50,7 +46,7 @@ impl Toolchain {
     }
 
     /// Where the firmware is built: apart from the host's programs, so that neither waits for the other.
-    pub fn folder() -> PathBuf {
+    fn folder() -> PathBuf {
         target().join("firmware")
     }
 
@@ -76,22 +72,17 @@ impl Toolchain {
 
     /// Builds the image of every method for a target; for a processor of this name that computes `f64` itself, if there is one.
     pub fn build_cores(&self, target: &str, double: Option<&str>) -> anyhow::Result<PathBuf> {
-        // Both kinds come out under one name: until it is moved away, no other is built.
-        static TURN: Mutex<()> = Mutex::new(());
-        let _turn = TURN.lock();
         let mut command = self.for_targets("build", &[target]);
-        command.args(["--bin", "cores", "--features", "cores"]);
+        // Both kinds come out under one name.
+        let folder = double.map_or_else(Self::folder, |cpu| Self::folder().join(cpu));
+        command.args(["--bin", "cores", "--features", "cores"]).env("CARGO_TARGET_DIR", &folder);
         if let Some(cpu) = double {
             // In place of the flags of the configuration, which are those of a Cortex-M4F.
             command.args(["--features", "double-pendulum-kernel/double-fpu"]);
             command.env("RUSTFLAGS", format!("-Ctarget-cpu={cpu}"));
         }
-        let core = double.unwrap_or(target);
-        self.finish(command, &format!("building cores for {core}"))?;
-        let (built, kept) =
-            (Self::folder().join(target).join("release/cores"), Self::folder().join(format!("cores-{core}")));
-        fs::copy(built, &kept)?;
-        Ok(kept)
+        self.finish(command, &format!("building cores for {}", double.unwrap_or(target)))?;
+        Ok(folder.join(target).join("release/cores"))
     }
 
     /// Builds what is run on every target, side by side, and every board's application.
@@ -108,7 +99,7 @@ impl Toolchain {
         for target in TARGETS {
             let features = every_board().filter(|board| board.target == target).map(|board| board.feature);
             let features = features.collect::<Vec<_>>().join(",");
-            let is_ready_made = self.core == ArmCore::ReadyMade;
+            let is_ready_made = self.linker.is_none();
             let mut command = self.for_targets(if is_ready_made { "clippy" } else { "check" }, &[target]);
             command.args(["--bins", "--example", "embassy", "--features", &features]);
             if features.contains(PICO.feature) {
@@ -127,7 +118,7 @@ impl Toolchain {
     /// What cargo is to do with the optimised firmware for some targets.
     fn for_targets(&self, what: &str, targets: &[&str]) -> Command {
         let mut command = self.cargo();
-        command.args([what, "--release", "--package", "firmware", "--target-dir"]).arg(Self::folder());
+        command.args([what, "--release", "--package", "firmware"]).env("CARGO_TARGET_DIR", Self::folder());
         command.args(targets.iter().flat_map(|target| ["--target", target]));
         command
     }

@@ -1,0 +1,139 @@
+//! What an application executes for a frame: all of it, what shows it, the calls of a function; and the planner's price lists,
+//! which are counted with it.
+
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+
+use anyhow::{Context, Result};
+use cycles::{Calls, Core, Cost, Image, Stream, for_each_instruction};
+use double_pendulum::Method;
+use double_pendulum::plan::Costs;
+use firmware::job::Request;
+use firmware::protocol::Command;
+use rayon::prelude::*;
+
+use super::trace::LIMIT;
+use super::{Target, affordable_cost};
+use crate::commands::table::between;
+use crate::emulator::boards::Board;
+use crate::emulator::qemu::{Clock, Machine, Settings};
+use crate::emulator::toolchain::{Toolchain, workspace};
+
+/// The functions that show a frame, the module's path and the name: they draw it, and bring it to the panel and over the link. They
+/// are not inlined, and once in a program.
+const SHOWING: [(&str, &str); 7] = [
+    ("firmware::graphics::fade_layer::", "::add"),
+    ("firmware::graphics::fade_layer::", "::fade"),
+    ("firmware::graphics::canvas::", "::scroll"),
+    ("firmware::app::player::", "::draw"),
+    ("firmware::app::player::", "::check"),
+    ("firmware::app::App", "::show"),
+    ("firmware::board::cortex_m::retained::", "keep"),
+];
+
+/// What a frame executed.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct FrameProfile {
+    pub whole: Cost,
+    /// In the functions that show it, with all that they call.
+    pub showing: Cost,
+}
+
+impl FrameProfile {
+    /// Lets `board` run to its next frame and profiles all that it executes for it.
+    pub fn of_next(board: &mut Machine, image: &Image, core: Core) -> Result<Self> {
+        let showing = SHOWING.into_iter().map(|(module, name)| address(image, module, name));
+        let (whole, calls) = next_frame(board, image, core, showing.collect::<Result<_>>()?)?;
+        Ok(Self { whole, showing: calls.cost() })
+    }
+}
+
+/// Where a function of an application begins; the error names one that it lacks.
+fn address(image: &Image, module: &str, name: &str) -> Result<u32> {
+    // One version of the compiler writes <path::Type>::name, the next path::Type::name.
+    let is_it = |path: &str| path.trim_start_matches('<').starts_with(module) && path.ends_with(name);
+    let function = image.functions_named(name).find(|function| is_it(&function.name));
+    function.map(|function| function.address).ok_or_else(|| image.lacks(&format!("{module}..{name}")))
+}
+
+/// Lets `board` run to its next frame: what that takes, and on the way the calls of the functions that begin at `entries`.
+fn next_frame<'a>(
+    board: &mut Machine,
+    image: &'a Image,
+    core: Core,
+    entries: BTreeSet<u32>,
+) -> Result<(Cost, Calls<'a>)> {
+    board.next_frame_logged(|mut log| {
+        let (mut whole, mut stream) = (Cost::default(), Stream::of(image, core));
+        let mut calls = Calls::of(image, core, entries);
+        for_each_instruction(&mut log, &mut |registers| {
+            whole += stream.see(registers)?.map_or(Cost::default(), |(.., cost)| cost);
+            calls.see(registers)
+        })?;
+        Ok((whole, calls))
+    })
+}
+
+/// What stands before and after the lists in their file.
+const MARKS: [&str; 2] = ["// made by cargo count --write-prices\n", "// so far\n"];
+
+/// What a step costs by each method that a plan chooses from, on one board for each kind of core.
+pub fn prices(toolchain: &Toolchain) -> Result<Vec<(&'static Board, Costs)>> {
+    let targets = Target::build_all(toolchain)?;
+    targets.par_iter().map(|target| Ok((target.board, on(target, toolchain)?))).collect()
+}
+
+fn on(target: &Target, toolchain: &Toolchain) -> Result<Costs> {
+    let step = |method| {
+        let request = Request { angles: [0.5; 2], ..Request::on_any_core(method) };
+        anyhow::Ok(affordable_cost(target, &request)?.cycles as f32)
+    };
+    let (fixed64, preparation) = in_application(target.board, toolchain)?;
+    Ok(Costs {
+        closed_form: step(Method::ClosedFormF32)?,
+        direction_plain: step(Method::Rk4F32DirectionPlain)?,
+        direction: step(Method::Rk4F32Direction)?,
+        fixed32: step(Method::Rk4Fixed32)?,
+        fixed64,
+        preparation,
+    })
+}
+
+/// What only the application does: a step in 64 bits of the plans' order, and the preparation of a motion, the most expensive.
+fn in_application(board: &'static Board, toolchain: &Toolchain) -> Result<(f32, f32)> {
+    let elf = toolchain.build_for(board)?;
+    let image = Image::read(&elf)?;
+    let qemu = &toolchain.qemu;
+    let settings = Settings { qemu, board, elf: &elf, clock: Clock::Counted, debugger: true, limit: LIMIT };
+    let mut machine = Machine::halted(&settings)?;
+    let most = |machine: &mut Machine, entry: u32| {
+        let (_, calls) = next_frame(machine, &image, board.core(), BTreeSet::from([entry]))?;
+        anyhow::Ok(calls.ended.iter().map(|call| call.cycles as f32).fold(0.0, f32::max))
+    };
+    machine.run_to_frame()?;
+    let step = most(&mut machine, image.function("Fixed64State::advance")?.address)?;
+    let preparation = image.function("PlannedRun::new")?.address;
+    let mut prepared: f32 = 0.0;
+    for &method in Method::DRAWN {
+        machine.send(1, Command::Method(Some(method)))?;
+        machine.run_to(preparation)?;
+        prepared = prepared.max(most(&mut machine, preparation)?);
+    }
+    Ok((step, prepared))
+}
+
+/// Writes them into the firmware's source; the file.
+pub fn write_prices(prices: &[(&Board, Costs)]) -> Result<PathBuf> {
+    let path = workspace().join("firmware/src/prices.rs");
+    let old = std::fs::read_to_string(&path)?;
+    let lists: String = prices.iter().map(|(board, costs)| list(board, costs)).collect();
+    let new = between(&old, MARKS, &lists).with_context(|| format!("{} has no place for them", path.display()))?;
+    std::fs::write(&path, new)?;
+    Ok(path)
+}
+
+fn list(board: &Board, costs: &Costs) -> String {
+    let title = board.core().name();
+    let name = title.to_uppercase().replace('-', "_").replace('+', "PLUS");
+    format!("/// A {title}.\npub const {name}: Costs = {costs:#.1?};\n")
+}

@@ -1,0 +1,191 @@
+//! A board under a debugger, frame by frame: the machine stands still at a moment when its panel shows exactly the frame just
+//! received, or at any place in its program.
+//!
+//! It is stopped from outside, through QEMU's debugger port, when the firmware has done its work and goes to sleep: a frame is then
+//! on the panel and sent, and the next not begun. The firmware need not know, and its clock is the counted one, so nothing it
+//! computes depends on how long it stood still.
+//!
+//! Of GDB's remote protocol the few packets that this takes. Source: GDB manual, appendix E (Remote Serial Protocol):
+//! `$text#checksum`, each acknowledged with `+`.
+
+use std::fs::File;
+use std::io::Write;
+use std::{panic, thread};
+
+use anyhow::anyhow;
+use cycles::Image;
+use firmware::protocol::ToHost;
+use nix::sys::stat::Mode;
+use nix::unistd::mkfifo;
+
+use super::machine::{Clock, Machine, Settings};
+use crate::emulator::up_to_frame;
+
+/// The instruction `wfi`, sleep until an interrupt, and its size, which any breakpoint is said to take, bytes.
+const WFI: u16 = 0xBF30;
+const SIZE: u32 = 2;
+/// A board that sleeps this often without sending a frame sends none.
+const PATIENCE: u32 = 1000;
+const PIECE: u32 = 512;
+/// Asks what registers there are; until then QEMU gives access to none.
+pub(super) const DESCRIBE: &str = "qXfer:features:read:target.xml:0,10";
+
+/// A register of the processor, by GDB's number of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Register {
+    Sp = 13,
+    Lr = 14,
+    Pc = 15,
+}
+
+/// Places in the program that a machine is stopped at.
+#[derive(Debug, Default)]
+pub(super) struct Places {
+    /// Every `wfi`.
+    sleeps: Vec<u32>,
+    breakpoints: Vec<u32>,
+    /// The breakpoint at which it stands.
+    here: Option<u32>,
+}
+
+impl Machine {
+    /// Starts a board with its clock counted, even if `settings` say otherwise; it stands still at its first instruction.
+    pub fn halted(settings: &Settings) -> anyhow::Result<Self> {
+        let mut machine = Self::boot(&Settings { clock: Clock::Counted, ..*settings })?;
+        let words = Image::read(settings.elf)?.words().into_iter();
+        machine.places.sleeps = words.filter(|(_, first, _)| *first == WFI).map(|(address, ..)| address).collect();
+        Ok(machine)
+    }
+
+    /// Runs to the next frame: all messages up to it.
+    pub fn run_to_frame(&mut self) -> anyhow::Result<Vec<ToHost>> {
+        let sleeps = self.places.sleeps.clone();
+        up_to_frame(PATIENCE, || {
+            self.run_until(&sleeps)?;
+            self.messages()
+        })
+    }
+
+    /// Runs to the next frame while `read` reads what QEMU logs: the processor's registers before every instruction, hundreds of
+    /// bytes each time.
+    pub fn next_frame_logged<T: Send>(
+        &mut self,
+        read: impl FnOnce(File) -> anyhow::Result<T> + Send,
+    ) -> anyhow::Result<T> {
+        let folder = tempfile::tempdir_in(self.folder.path())?;
+        let path = folder.path().join("log");
+        mkfifo(&path, Mode::S_IRUSR | Mode::S_IWUSR)?;
+        thread::scope(|scope| {
+            // The pipe opens for QEMU once it is open here, and the other way about.
+            let reader = scope.spawn(|| read(File::open(&path)?));
+            self.console(&format!("logfile {}", path.display()))?;
+            self.console("log cpu,nochain")?;
+            self.single_step("on")?;
+            let frame = self.run_to_frame();
+            self.single_step("off")?;
+            self.console("log none")?;
+            self.console("logfile /dev/null")?;
+            let read = reader.join().unwrap_or_else(|panic| panic::resume_unwind(panic));
+            frame.and(read)
+        })
+    }
+
+    /// Runs until the instruction at this address is about to be executed, the next time if it stands there.
+    pub fn run_to(&mut self, address: u32) -> anyhow::Result<()> {
+        self.run_until(&[address])
+    }
+
+    /// Lets it run freely, twenty times as fast as from frame to frame: QEMU forgets all that it has translated when it is stopped at
+    /// a place.
+    pub fn run(&mut self) -> anyhow::Result<&mut Self> {
+        self.leave(&[])?;
+        self.say("c").map(|()| self)
+    }
+
+    /// Stops it wherever it is.
+    pub fn stop(&mut self) -> anyhow::Result<()> {
+        self.debugger.sender.write_all(b"\x03")?;
+        let reply = self.hear()?;
+        if reply.starts_with("T02") { Ok(()) } else { Err(unexpected("an interrupt", &reply)) }
+    }
+
+    /// Makes the processor go on elsewhere: the values of some registers.
+    pub fn divert(&mut self, registers: &[(Register, u32)]) -> anyhow::Result<()> {
+        self.places.here = None;
+        registers.iter().try_for_each(|(register, value)| self.set(*register, *value))
+    }
+
+    pub fn write(&mut self, address: u32, bytes: &[u8]) -> anyhow::Result<()> {
+        for (start, piece) in (address..).step_by(PIECE as usize).zip(bytes.chunks(PIECE as usize)) {
+            let digits: String = piece.iter().map(|byte| format!("{byte:02x}")).collect();
+            self.expect(&format!("M{start:x},{:x}:{digits}", piece.len()), "OK")?;
+        }
+        Ok(())
+    }
+
+    /// Lets it run until one of these instructions is about to be executed.
+    fn run_until(&mut self, places: &[u32]) -> anyhow::Result<()> {
+        self.leave(places)?;
+        self.expect("c", "T05")?;
+        let answer = self.ask(&format!("p{:x}", Register::Pc as u32))?;
+        let here = u32::from_str_radix(&answer, 16).map_err(|_| unexpected("p", &answer))?;
+        self.places.here = Some(here.swap_bytes());
+        Ok(())
+    }
+
+    /// Prepares it to run on, with breakpoints at `places`.
+    ///
+    /// The `wfi` it stands at is passed over: the architecture lets it wake at any time, and while the machine stood
+    /// still QEMU has put its clock forward to the next event, which is just what sleeping does.
+    fn leave(&mut self, places: &[u32]) -> anyhow::Result<()> {
+        let set = std::mem::replace(&mut self.places.breakpoints, places.to_vec());
+        for (change, these, others) in [('z', &set[..], places), ('Z', places, &set[..])] {
+            for place in these.iter().filter(|place| !others.contains(place)) {
+                self.expect(&format!("{change}0,{place:x},{SIZE}"), "OK")?;
+            }
+        }
+        match self.places.here.take() {
+            Some(here) if self.places.sleeps.contains(&here) => self.set(Register::Pc, here + SIZE),
+            // Not where it was stopped otherwise: it may be asleep, and then makes no step.
+            Some(here) if places.contains(&here) => self.expect("s", "T05"),
+            _ => Ok(()),
+        }
+    }
+
+    fn set(&mut self, register: Register, value: u32) -> anyhow::Result<()> {
+        self.expect(&format!("P{:x}={:08x}", register as u32, value.swap_bytes()), "OK")
+    }
+
+    /// Sends a packet whose answer must begin with `answer`.
+    fn expect(&mut self, packet: &str, answer: &str) -> anyhow::Result<()> {
+        let reply = self.ask(packet)?;
+        if reply.starts_with(answer) { Ok(()) } else { Err(unexpected(packet, &reply)) }
+    }
+
+    pub(super) fn ask(&mut self, packet: &str) -> anyhow::Result<String> {
+        self.say(packet)?;
+        self.hear()
+    }
+
+    fn say(&mut self, packet: &str) -> anyhow::Result<()> {
+        let checksum = packet.bytes().fold(0, u8::wrapping_add);
+        Ok(write!(self.debugger.sender, "${packet}#{checksum:02x}")?)
+    }
+
+    fn hear(&mut self) -> anyhow::Result<String> {
+        let reply = self.wait_until(|machine| {
+            let bytes = &mut machine.debugger.stream.bytes;
+            let [start, end] = [b'$', b'#'].map(|mark| bytes.iter().position(|byte| *byte == mark));
+            let (start, end) = start.zip(end.filter(|end| end + 2 < bytes.len()))?;
+            let reply = String::from_utf8_lossy(&bytes[start + 1..end]).into_owned();
+            bytes.drain(..end + 3);
+            Some(reply)
+        })?;
+        self.debugger.sender.write_all(b"+")?;
+        Ok(reply)
+    }
+}
+
+fn unexpected(packet: &str, reply: &str) -> anyhow::Error {
+    anyhow!("QEMU refuses the debugger: {packet} was answered with {reply:?}")
+}

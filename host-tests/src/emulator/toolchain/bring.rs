@@ -1,0 +1,104 @@
+//! Bringing what is missing.
+
+use std::fs::{self, File};
+use std::io;
+use std::process::Command;
+use std::time::Duration;
+
+use nix::fcntl::{Flock, FlockArg};
+
+use super::target;
+use super::tools::find;
+use crate::console::cli::{Refused, complain};
+use crate::console::progress::Progress;
+use crate::emulator::process::{Output, run, run_watched};
+
+/// For a program that only says its version.
+const QUICK: Duration = Duration::from_secs(20);
+/// For fetching and unpacking at most 400 MB, and for a turn at dpkg.
+pub(super) const INSTALL: Duration = Duration::from_secs(1200);
+
+/// Waits for our turn at a set-up; it ends when this is dropped or the process ends, however it ends.
+pub(super) fn turn() -> Result<Flock<File>, Refused> {
+    let refuse = |error: io::Error| Refused::because(format_args!("cannot lock {}: {error}", target().display()));
+    let folder = fs::create_dir_all(target()).and_then(|()| File::open(target())).map_err(refuse)?;
+    Flock::lock(folder, FlockArg::LockExclusive).map_err(|(_, error)| refuse(error.into()))
+}
+
+/// A way to install something: what to say when it worked, and the function that does it. It must be found afterwards, too.
+pub(super) type Way<'a> = (String, &'a dyn Fn() -> Result<(), String>);
+
+/// What `find` finds, else, if it `installs`, what the first of the `ways` brings that does; or why each fails.
+pub(super) fn bring<T>(installs: bool, find: impl Fn() -> Result<T, String>, ways: &[Way]) -> Result<T, String> {
+    let mut failures = match find() {
+        Ok(found) => return Ok(found),
+        Err(why) => vec![why],
+    };
+    for (done, way) in ways.iter().filter(|_| installs) {
+        match way().and_then(|()| find()) {
+            Ok(found) => {
+                complain(format_args!("done: {done}, because {}", failures.join("; ")));
+                return Ok(found);
+            }
+            Err(failure) => failures.push(failure),
+        }
+    }
+    Err(failures.join("; "))
+}
+
+/// Installs packages of Debian's, by its newest lists: old ones may name packages that are gone.
+pub(super) fn install_packages(packages: &[&str]) -> Result<(), String> {
+    if find("apt-get").is_none() {
+        return Err("this system has no apt-get, the only package manager this command runs".to_owned());
+    }
+    if !nix::unistd::geteuid().is_root() {
+        return Err("only root may install packages".to_owned());
+    }
+    let updated = attempt(&mut apt_get("update"), INSTALL, "apt-get fetches the lists of packages");
+    let mut install = apt_get("install");
+    install.args(["--no-install-recommends", "--no-remove", "--reinstall"]).args(packages);
+    // One bad source of many does not stop the install; where it fails too, the lists are the cause.
+    attempt(&mut install, INSTALL, &format!("apt-get installs {}", packages.join(", ")))
+        .map_err(|failure| updated.err().unwrap_or(failure))
+}
+
+/// `apt-get` that asks nothing, waits its turn and does not wait for a dead network.
+fn apt_get(action: &str) -> Command {
+    let mut command = Command::new("apt-get");
+    command.args([action, "--yes", "--quiet"]);
+    for option in ["DPkg::Lock::Timeout=120", "Dpkg::Use-Pty=0", "Acquire::http::Timeout=30", "Acquire::Retries=1"] {
+        command.args(["-o", option]);
+    }
+    command.env("DEBIAN_FRONTEND", "noninteractive").env("LC_ALL", "C");
+    command
+}
+
+/// Runs a command to its end; if it fails, the line in which it says why.
+pub(super) fn attempt(command: &mut Command, limit: Duration, doing: &str) -> Result<(), String> {
+    said(command, |command| run_shown(command, limit, doing)).map(drop)
+}
+
+/// Runs a command to its end, within the limit, and shows meanwhile what is being done.
+pub(super) fn run_shown(command: &mut Command, limit: Duration, doing: &str) -> io::Result<Output> {
+    let progress = Progress::start(doing);
+    run_watched(command, limit, |line| progress.alive(line))
+}
+
+/// What a quick command says, or why it fails.
+pub(super) fn says(command: &mut Command) -> Result<String, String> {
+    said(command, |command| run(command, QUICK))
+}
+
+/// What a command has said, or why it failed: the line in which it says so.
+fn said(command: &mut Command, run: impl FnOnce(&mut Command) -> io::Result<Output>) -> Result<String, String> {
+    let output = run(command).map_err(|error| error.to_string())?;
+    if output.status.success() {
+        return Ok(output.stdout);
+    }
+    let lines = || output.stderr.lines();
+    let marked = |mark: &&str| lines().find(|line| line.starts_with(mark) || line.ends_with(mark));
+    let marks = ["No space left on device", "E: ", "error: ", "npm "];
+    let line = marks.iter().find_map(marked).or_else(|| lines().last());
+    let line: String = line.unwrap_or("it fails without a word").chars().take(200).collect();
+    Err(format!("{}: {line}", command.get_program().to_string_lossy()))
+}
