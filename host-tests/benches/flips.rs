@@ -9,7 +9,7 @@ use std::time::Instant;
 use anyhow::{Context, Result, ensure};
 use double_pendulum::flips::Flip;
 use double_pendulum::{Error, Parameters};
-use host_tests::commands::flips::map::{Map, Square};
+use host_tests::commands::flips::map::Map;
 use host_tests::emulator::toolchain::workspace;
 use rayon::prelude::*;
 use vectors::Search;
@@ -44,8 +44,8 @@ fn threads(search: &Search, starts: &[[f32; 2]]) -> Found {
 }
 
 fn main() -> Result<()> {
-    let map = Map::new(Parameters::equal_rods(1.0, 1.0, 1.0), LIMIT, Square::whole([SIDE, SIDE]))?;
-    let (starts, search): (Vec<_>, _) = (map.starts().collect(), map.search(1)?);
+    let map = Map::new(Parameters::equal_rods(1.0, 1.0, 1.0), LIMIT, [SIDE, SIDE])?;
+    let (starts, [search, _]) = (map.starts(), map.searches);
     let most = (f64::from(map.limit) / map.dt).ceil();
     let steps = |flip: &Flip<f32>| match *flip {
         Flip::Never => 0.0,

@@ -50,7 +50,7 @@ impl<'a> Player<'a> {
     /// The same before it plays anything that moves.
     pub fn idle(processor: Processor, settings: Settings, ink: &'a mut FadeLayer) -> Self {
         let scene = AnyScene::empty();
-        let (name, report) = (SceneName::Frequencies, scene.report());
+        let (name, report) = (SceneName::Frequencies, scene.report(0));
         let (planner, pace, stopped) = (Planner::new(processor), Pace::default(), false);
         Self { name, settings, scene, method: None, planner, next: None, ink, pace, report, stopped }
     }
@@ -58,12 +58,13 @@ impl<'a> Player<'a> {
     /// Plays a scene with `settings`; the kernel's error if they describe no pendulum, and nothing is changed.
     #[inline(never)] // what a scene needs to start would be on the stack of every frame
     pub fn play(&mut self, name: SceneName, settings: Settings) -> Result<(), Error> {
-        self.scene.start(name, &settings, &Means { processor: self.planner.processor, method: self.method })?;
+        let means = Means { processor: self.planner.processor, method: self.method };
+        let height = self.scene.start(name, &settings, &means)?;
         (self.name, self.settings, self.stopped, self.next) = (name, settings, false, None);
-        let begun = self.scene.report().way;
+        let begun = self.scene.report(0).way;
         let is_tied = self.method.is_some() || self.scene.planned().is_none();
-        self.planner.start(&settings, self.scene.height(), begun, is_tied);
-        self.ink.clear();
+        self.planner.start(&settings, height, begun, is_tied);
+        *self.ink = FadeLayer::NONE;
         self.report = self.now();
         Ok(())
     }
@@ -103,7 +104,7 @@ impl<'a> Player<'a> {
             return;
         }
         for _ in 0..self.pace.tick() {
-            self.scene.tick(self.ink);
+            self.scene.tick(self.planner.ticks + 1, self.ink);
             if let Some(next) = &mut self.next {
                 self.planner.rest();
                 if self.scene.planned().is_none_or(|motion| next.tick(motion)) {
@@ -145,8 +146,8 @@ impl<'a> Player<'a> {
 
     /// The scene in numbers, with what the planner knows of it.
     fn now(&self) -> Report {
-        let report = self.scene.report();
-        let (Some(_), Some(way)) = (self.scene.height(), report.way) else { return report };
+        let report = self.scene.report(self.planner.ticks);
+        let Some(way) = report.way.filter(|_| self.planner.task.is_some()) else { return report };
         Report { horizon: self.planner.horizon(way) as f32, is_looking: self.planner.is_looking(), ..report }
     }
 

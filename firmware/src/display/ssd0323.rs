@@ -72,7 +72,7 @@ impl<'a, Spi: SpiDevice, Pin: OutputPin<Error = Infallible>> Ssd0323<'a, Spi, Pi
         self.command(&ALL_COLUMNS)?;
         self.command(&ALL_ROWS)?;
         (0..HEIGHT).try_for_each(|_| self.data(&[0; WIDTH / 2]))?;
-        self.memory.clear();
+        *self.memory = Canvas::BLACK;
         self.is_known = true;
         WAKE.iter().try_for_each(|command| self.command(command))
     }

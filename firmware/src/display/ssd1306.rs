@@ -115,7 +115,7 @@ enum State {
 impl<Bus: PanelBus> Ssd1306<Bus> {
     /// Takes the bus, and the controller if that is not to be asked for; the panel is looked for with the first frame.
     pub fn new(bus: Bus, built_for: Option<Controller>) -> Self {
-        let (state, address, memory, told) = (State::Absent { retry_in: 0 }, ADDRESSES[0], Bitmap::default(), Ok(()));
+        let (state, address, memory, told) = (State::Absent { retry_in: 0 }, ADDRESSES[0], Bitmap::BLACK, Ok(()));
         Self { bus, state, address, built_for, found: None, memory, told, waiting: 0, part: 0, counted: 0, shown: 0 }
     }
 

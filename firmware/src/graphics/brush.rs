@@ -24,10 +24,6 @@ impl Spot {
         };
         Self { x: subpixels(x, WIDTH), y: subpixels(y, HEIGHT) }
     }
-
-    fn to(self, end: Spot) -> (i32, i32) {
-        (i32::from(end.x) - i32::from(self.x), i32::from(end.y) - i32::from(self.y))
-    }
 }
 
 /// All points within `radius` subpixels of the line from `from` to `to`: a disc if both are one spot.
@@ -40,6 +36,7 @@ pub struct Stroke {
 
 impl Stroke {
     /// Draws it with a brightness of 0 to 255; where the canvas is brighter already, it stays.
+    #[inline(never)] // once in a program
     pub fn lighten(&self, canvas: &mut Canvas, brightness: u8) {
         let limit = i32::from(self.radius) + HALF;
         let line = Line::new(self.from, self.to, limit);
@@ -51,13 +48,16 @@ impl Stroke {
             let near = band.next();
             let columns = columns.start.max(near.start)..columns.end.min(near.end);
             let Some(row) = canvas.row_mut(y) else { return };
-            let mut probe = line.probe(columns.start, y);
+            let to = line.to(columns.start, y);
+            let mut progress = dot(line.along, to);
+            let mut across = line.along.0 * to.1 - line.along.1 * to.0;
             for x in columns {
-                let covered = line.covered(x, y, &probe);
+                let covered = line.covered((x, y), progress, across);
                 if covered > 0 {
                     row.lighten(x, grey(covered));
                 }
-                line.advance(&mut probe);
+                progress += line.along.0 * SUBPIXELS;
+                across -= line.along.1 * SUBPIXELS;
             }
         }
     }
@@ -134,12 +134,6 @@ struct Line {
     whole: i32,
 }
 
-/// The middle of a pixel as a line sees it: from the line's start along the line and across it, each times the line's length.
-struct Probe {
-    progress: i32,
-    across: i32,
-}
-
 /// The pixels of each row, from one row down to the next, that can be near the line made infinitely long: on a slope they are
 /// few.
 struct Band {
@@ -162,11 +156,8 @@ impl Band {
 }
 
 impl Line {
-    /// Subpixels that a band is wider than the line: of the divisions and the slope each is off by less than one.
-    const ROUNDED: i32 = 4;
-
     fn new(from: Spot, to: Spot, limit: i32) -> Self {
-        let along = from.to(to);
+        let along = (i32::from(to.x) - i32::from(from.x), i32::from(to.y) - i32::from(from.y));
         let length_squared = dot(along, along);
         let length = length_squared.unsigned_abs().isqrt() as i32;
         Self { from, along, length_squared, length, limit, whole: (limit - SUBPIXELS).max(0) }
@@ -174,6 +165,8 @@ impl Line {
 
     /// From the row `y` on. A line that is nearly level, or is but a spot, is near all pixels of its rows.
     fn band(&self, y: i32) -> Band {
+        /// Subpixels that a band is wider than the line: of the divisions and the slope each is off by less than one.
+        const ROUNDED: i32 = 4;
         let (dx, dy) = self.along;
         let over = |product: i32| product.checked_div(dy).unwrap_or_default();
         if dx.abs() >= 8 * dy.abs() {
@@ -182,7 +175,7 @@ impl Line {
         Band {
             middle: (i32::from(self.from.x) + over(dx * (middle(y) - i32::from(self.from.y)))) << Band::PARTS,
             slope: over(dx << (Band::PARTS + SHIFT)),
-            half: over(self.limit * (self.length + 1)).abs() + Self::ROUNDED,
+            half: over(self.limit * (self.length + 1)).abs() + ROUNDED,
         }
     }
 
@@ -190,34 +183,24 @@ impl Line {
         (middle(x) - i32::from(self.from.x), middle(y) - i32::from(self.from.y))
     }
 
-    fn probe(&self, x: i32, y: i32) -> Probe {
-        let to = self.to(x, y);
-        Probe { progress: dot(self.along, to), across: self.along.0 * to.1 - self.along.1 * to.0 }
-    }
-
-    #[inline]
-    fn advance(&self, probe: &mut Probe) {
-        probe.progress += self.along.0 * SUBPIXELS;
-        probe.across -= self.along.1 * SUBPIXELS;
-    }
-
-    /// How many subpixels of a pixel are covered: `limit`, which is more than all, where its middle is within `whole` of the line;
-    /// none beyond `limit`. Only between the two it takes a division.
+    /// How many subpixels of the pixel at (x, y) are covered, whose middle is `progress` along the line from its start and `across`
+    /// from it, each times the line's length: `limit`, which is more than all, where that is within `whole` of the line; none
+    /// beyond `limit`. Only between the two it takes a division.
     ///
     /// Spots lie no farther from the canvas than its size, so differences are below 3 x 128 x 64 = 24,576 across and half that
     /// down, and sums of two products below 24,576^2 x 1.25 = 7.6e8: 31 bits hold them.
     #[inline(always)]
-    fn covered(&self, x: i32, y: i32, probe: &Probe) -> i32 {
+    fn covered(&self, (x, y): (i32, i32), progress: i32, across: i32) -> i32 {
         let &Self { along, length, limit, whole, .. } = self;
-        if probe.progress > 0 && probe.progress < self.length_squared {
-            return match probe.across.abs() {
+        if progress > 0 && progress < self.length_squared {
+            return match across.abs() {
                 across if across >= limit * length => 0,
                 across if across < whole * length => limit,
                 across => limit - across.checked_div(length).unwrap_or_default(),
             };
         }
         let (dx, dy) = self.to(x, y);
-        let end = if probe.progress <= 0 { (dx, dy) } else { (dx - along.0, dy - along.1) };
+        let end = if progress <= 0 { (dx, dy) } else { (dx - along.0, dy - along.1) };
         match dot(end, end) {
             squared if squared >= limit * limit => 0,
             squared if squared < whole * whole => limit,

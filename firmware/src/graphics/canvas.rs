@@ -1,4 +1,4 @@
-//! The frame: 128 x 64 pixels of 16 greys, in the layout the panel itself uses.
+//! The frame: 128 x 64 pixels of 16 greys, in the layout the panel itself uses; and the layer of what stays and fades.
 
 pub const WIDTH: usize = 128;
 pub const HEIGHT: usize = 64;
@@ -10,11 +10,11 @@ const ROW: usize = WIDTH / 2;
 #[repr(align(4))]
 pub struct Row(pub [u8; ROW]);
 
-/// A framebuffer: rows from the top. Drawing cannot fail: what lies outside is not drawn.
+/// Rows from the top. Drawing cannot fail: what lies outside is not drawn.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Canvas {
     pub rows: [Row; HEIGHT],
-    /// Whether it is a picture in which every grey matters, where a drawing is bright on dark.
+    /// Whether every grey matters, as in a picture; a drawing is bright on dark.
     pub all_greys: bool,
 }
 
@@ -42,11 +42,6 @@ impl Clone for Canvas {
 
 impl Canvas {
     pub const BLACK: Self = Self { rows: [Row([0; ROW]); HEIGHT], all_greys: false };
-
-    pub fn clear(&mut self) {
-        self.rows.fill(Row([0; ROW]));
-        self.all_greys = false;
-    }
 
     /// The bytes as the panel takes them.
     pub fn bytes(&self) -> impl Iterator<Item = u8> + Clone {
@@ -134,6 +129,56 @@ impl Row {
     pub fn lighten(&mut self, x: i32, grey: u8) {
         self.update(x, |old| old.max(grey));
     }
+}
+
+/// How ink fades: every row loses one grey in [`HEIGHT`]/`rows` ticks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Fading {
+    /// Rows that lose a grey in a tick.
+    pub rows: u8,
+    /// Grey that ink fades to and keeps.
+    pub last: u8,
+}
+
+impl Fading {
+    pub const NEVER: Self = Self { rows: 0, last: 15 };
+    /// A trace that stays: it loses a grey in about a second.
+    pub const TRACE: Self = Self { rows: 1, last: 4 };
+}
+
+/// What stays of the frames before.
+#[derive(Clone, Debug)]
+pub struct FadeLayer {
+    pub frame: Canvas,
+    row: i32,
+}
+
+impl FadeLayer {
+    pub const NONE: Self = Self { frame: Canvas::BLACK, row: 0 };
+
+    #[inline(never)]
+    pub fn fade(&mut self, Fading { rows, last }: Fading) {
+        let room = u32::from(15_u8.saturating_sub(last)) * ONES;
+        for _ in 0..rows {
+            if let Some(Row(row)) = self.frame.row_mut(self.row) {
+                for word in row.as_chunks_mut().0 {
+                    let greys = u32::from_ne_bytes(*word);
+                    let paled = greys - carried(greys, room) - (carried(greys >> 4, room) << 4);
+                    *word = paled.to_ne_bytes();
+                }
+            }
+            self.row = (self.row + 1) % HEIGHT as i32;
+        }
+    }
+}
+
+/// One in every other nibble.
+const ONES: u32 = 0x0101_0101;
+
+/// Every other one of eight greys, from the lowest: 1 where adding `room` to it carries out of its nibble.
+#[inline(always)]
+pub(super) fn carried(greys: u32, room: u32) -> u32 {
+    (((greys & (15 * ONES)) + room) >> 4) & ONES
 }
 
 /// How far left in its byte a pixel's nibble lies.

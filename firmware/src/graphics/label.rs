@@ -7,14 +7,8 @@ pub type Label = String<16>;
 
 /// The mass ratio to three significant digits: `μ 100`, `μ 31.5`, `μ 2.75`, `μ 0.315`, `μ 0.0125`.
 pub fn mass_ratio(ratio: f32) -> Label {
-    let decimals = match ratio {
-        100.0.. => 0,
-        10.0.. => 1,
-        1.0.. => 2,
-        0.1.. => 3,
-        _ => 4,
-    };
-    label("μ ", ratio, decimals, "")
+    let decimals = [100.0, 10.0, 1.0, 0.1].into_iter().take_while(|least| ratio < *least).count();
+    label("μ ", ratio, decimals as u32, "")
 }
 
 /// A start angle after its name: `α 120°`, with one decimal if it is no whole number of degrees.

@@ -3,8 +3,6 @@
 mod bitmap;
 mod brush;
 mod canvas;
-mod fade_layer;
-mod font;
 pub mod label;
 pub mod plot;
 pub mod text;
@@ -12,11 +10,9 @@ mod view;
 
 pub use bitmap::{Bitmap, PAGES};
 pub use brush::{Disc, SUBPIXELS, Spot, Stroke};
-pub use canvas::{Canvas, HEIGHT, Row, WIDTH};
-pub use fade_layer::{FadeLayer, Fading};
-pub use font::{Glyph, glyph};
+pub use canvas::{Canvas, FadeLayer, Fading, HEIGHT, Row, WIDTH};
 pub use plot::Height;
-pub use text::{Anchor, LINE, LOWEST};
+pub use text::{Anchor, Glyph, LINE, LOWEST, glyph};
 pub use view::{Place, RodDirections, TRACE_HALF_WIDTH, View};
 
 /// The frames that an application draws on. It borrows them: they are made where they stay, on a board in a static, so that their
@@ -24,7 +20,6 @@ pub use view::{Place, RodDirections, TRACE_HALF_WIDTH, View};
 #[derive(Clone, Debug)]
 pub struct FrameBuffers {
     pub canvas: Canvas,
-    /// What stays of the frames before.
     pub ink: FadeLayer,
 }
 

@@ -31,11 +31,6 @@ pub fn column(canvas: &mut Canvas, x: i32, from: Height, to: Height, brightness:
     }
 }
 
-/// Draws a dot of one pixel's size at a height.
-pub fn dot(canvas: &mut Canvas, x: i32, at: Height, grey: u8) {
-    canvas.lighten(x, i32::from(at).div_euclid(SUBPIXELS), grey);
-}
-
 /// Grey of axes and of the lines that carry a scale: enough for a panel of one colour.
 pub const AXIS_GREY: u8 = 8;
 
@@ -47,7 +42,7 @@ pub fn axis(canvas: &mut Canvas, from: i32, to: i32, y: i32) {
     }
 }
 
-/// Draws a line down rows `from` to `to` (exclusive) in column `x`, dotted.
+/// The same down rows `from` to `to` in column `x`.
 pub fn upright_axis(canvas: &mut Canvas, x: i32, from: i32, to: i32) {
     (from..to).step_by(3).for_each(|y| axis_dot(canvas, x, y));
 }
@@ -73,13 +68,4 @@ fn axis_dot(canvas: &mut Canvas, x: i32, y: i32) {
 pub fn scale_step(least: f32) -> f32 {
     const STEPS: [f32; 12] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0];
     STEPS.into_iter().find(|step| *step >= least).unwrap_or(100.0)
-}
-
-/// Draws a curve with a brightness of 0 to 255, its first height in column `left`.
-pub fn curve(canvas: &mut Canvas, left: i32, heights: impl Iterator<Item = Height>, brightness: u8) {
-    let mut before = None;
-    for (x, height) in (left..).zip(heights) {
-        column(canvas, x, before.unwrap_or(height), height, brightness);
-        before = Some(height);
-    }
 }

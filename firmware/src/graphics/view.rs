@@ -15,12 +15,10 @@ const GAP: u8 = SUBPIXELS as u8;
 /// Half the width of a trace that stays, subpixels.
 pub const TRACE_HALF_WIDTH: u8 = 30;
 
-/// Where on the frame a pendulum hangs, in pixels.
+/// Where on the frame a pendulum hangs, pixels right and down from the panel's top left corner, and how far both rods reach.
 #[derive(Clone, Copy, Debug)]
 pub struct Place {
-    /// The pivot, right and down from the panel's top left corner.
     pub pivot: (f32, f32),
-    /// How far both rods reach when stretched out.
     pub reach: f32,
 }
 
@@ -44,8 +42,6 @@ pub struct View {
 }
 
 impl View {
-    /// Pointing to these directions; both rods stretched out reach `place.reach` pixels.
-    ///
     /// The bobs are spheres of one material, so a radius goes with the cube root of the mass; the heavier bob has
     /// [`GREATEST_RADIUS`], in a smaller place less in proportion, and none less than [`LEAST_RADIUS`].
     pub fn new(parameters: &Parameters<f32>, place: Place, directions: RodDirections) -> Self {
@@ -73,12 +69,12 @@ impl View {
         self.spots = self.bobs(directions).map(|(x, y)| Spot::at(x, y));
     }
 
-    /// The same, and bob 2 leaves a stroke `2 * half_width` subpixels wide, with a brightness of 0 to 255.
+    /// Bob 2 leaves a stroke `2 * half_width` subpixels wide, with a brightness of 0 to 255.
     pub fn trace(&mut self, directions: RodDirections, ink: &mut FadeLayer, half_width: u8, brightness: u8) {
         let [_, from] = self.spots;
         self.turn(directions);
         let [_, to] = self.spots;
-        ink.add(Stroke { from, to, radius: half_width }, brightness);
+        Stroke { from, to, radius: half_width }.lighten(&mut ink.frame, brightness);
     }
 
     /// Draws pivot, rods and bobs, these with a brightness of 0 to 255.

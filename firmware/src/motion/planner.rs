@@ -30,9 +30,10 @@ pub struct Planned {
 #[derive(Clone, Copy, Debug)]
 pub struct Planner {
     pub processor: Processor,
-    ticks: u64,
+    /// Of the scene since its start.
+    pub ticks: u64,
     /// The settings, and the height of a display, pixels, that shows them as large: both rods together are half of it long.
-    task: Option<(Settings, f32)>,
+    pub task: Option<(Settings, f32)>,
     search: Option<Search>,
     /// Cycles of the ticks to come that have been spent.
     debt: f32,

@@ -6,7 +6,7 @@ use double_pendulum::{Error, Modes, Oscillation, Parameters, SmallOscillations};
 use crate::config::{GRAVITY, ROD};
 use crate::graphics::{Anchor, Canvas, Disc, FadeLayer, LINE, LOWEST, Spot, Stroke, label, plot, text};
 use crate::motion::{Means, Settings, Simulation};
-use crate::scenes::{Report, Scene, scene};
+use crate::scenes::{Report, Scene, draw_clock};
 
 /// The middles of the two figures, and how far a mode reaches in them, pixels.
 const MIDDLES: [(f32, f32); 2] = [(23.5, 32.5), (104.5, 32.5)];
@@ -35,7 +35,6 @@ pub fn closing(mass_ratio: f32) -> Settings {
 /// clock is that of the right one; what the left one misses is what the scene is about.
 #[derive(Clone, Debug)]
 pub struct Beats {
-    settings: Settings,
     simulation: Simulation,
     linear: SmallOscillations<f32>,
     shape: [f32; 2],
@@ -44,24 +43,22 @@ pub struct Beats {
 }
 
 impl Beats {
-    /// The slow mode's share of angle 2 across, the fast mode's upwards.
-    fn spot(&self, (x, y): (f32, f32), a1: f32, a2: f32) -> Spot {
-        let [fast_shape, slow_shape] = self.shape;
-        let across = slow_shape * (a2 - fast_shape * a1) / (slow_shape - fast_shape);
-        let up = a2 - across;
-        Spot::at(x + self.scale * across, y - self.scale * up)
-    }
-
     /// Where the linear and the exact motion are, each in its figure.
     fn spots(&self) -> [Spot; 2] {
-        let linear = self.linear.at(self.simulation.motion.time());
-        let [a1, a2] = self.simulation.motion.directions().map(|[sin, cos]| libm::atan2f(sin, cos));
-        [self.spot(MIDDLES[0], linear.a1, linear.a2), self.spot(MIDDLES[1], a1, a2)]
+        let [fast_shape, slow_shape] = self.shape;
+        let spot = |(x, y): (f32, f32), [a1, a2]: [f32; 2]| {
+            // The slow mode's share of angle 2 across, the fast mode's upwards.
+            let across = slow_shape * (a2 - fast_shape * a1) / (slow_shape - fast_shape);
+            Spot::at(x + self.scale * across, y - self.scale * (a2 - across))
+        };
+        let (motion, [left, right]) = (&self.simulation.motion, MIDDLES);
+        let exact = motion.directions().map(|[sin, cos]| libm::atan2f(sin, cos));
+        [spot(left, self.linear.at(motion.time()).angles()), spot(right, exact)]
     }
 }
 
 impl Scene for Beats {
-    fn new(settings: &Settings, means: &Means) -> Result<Self, Error> {
+    fn new(settings: &Settings, means: &Means) -> Result<(Self, Option<f32>), Error> {
         let simulation = Simulation::new(settings, means)?;
         let modes = Modes::new(&settings.parameters.cast())?;
         let linear = SmallOscillations::new(modes, &settings.motion());
@@ -70,16 +67,16 @@ impl Scene for Beats {
         let greatest = amplitude(linear.fast, shape[0]).max(amplitude(linear.slow, shape[1]));
         let scale = if greatest > 0.0 { REACH / greatest } else { 0.0 };
         let spots = [Spot::default(); 2];
-        let mut scene = Self { settings: *settings, simulation, linear, shape, scale, spots };
+        let mut scene = Self { simulation, linear, shape, scale, spots };
         scene.spots = scene.spots();
-        Ok(scene)
+        Ok((scene, (scale > 0.0).then_some(4.0 * scale)))
     }
 
-    fn tick(&mut self, ink: &mut FadeLayer) {
+    fn tick(&mut self, _: u64, ink: &mut FadeLayer) {
         self.simulation.tick();
         let spots = self.spots();
         for (from, to) in self.spots.into_iter().zip(spots) {
-            ink.add(Stroke { from, to, radius: HALF_WIDTH }, u8::MAX);
+            Stroke { from, to, radius: HALF_WIDTH }.lighten(&mut ink.frame, u8::MAX);
         }
         self.spots = spots;
     }
@@ -92,22 +89,19 @@ impl Scene for Beats {
         for centre in self.spots {
             Disc { centre, radius: SPOT_RADIUS, gap: GAP }.draw(canvas, u8::MAX);
         }
-        text::write(canvas, "linear", Anchor::TopLeft);
-        text::write(canvas, "exact", Anchor::TopRight);
-        text::write(canvas, &label::mass_ratio(self.settings.mass_ratio()), Anchor::Middle(0));
+        text::write(canvas, "linear", Anchor::Left(0));
+        text::write(canvas, "exact", Anchor::Right(0));
+        let mass_ratio = self.simulation.energy.pendulum.parameters().mass_ratio();
+        text::write(canvas, &label::mass_ratio(mass_ratio), Anchor::Middle(0));
         let reach = if self.scale > 0.0 { (REACH / self.scale).to_degrees() } else { 0.0 };
         text::write(canvas, "↑ fast", Anchor::Middle(3 * LINE));
         text::write(canvas, "→ slow", Anchor::Middle(4 * LINE));
         text::write(canvas, &label::label("±", reach, 0, "°"), Anchor::Middle(5 * LINE));
-        scene::draw_clock(canvas, report, Anchor::Middle(LINE + 2), Anchor::Middle(LOWEST));
+        draw_clock(canvas, report, Anchor::Middle(LINE + 2), Anchor::Middle(LOWEST));
     }
 
-    fn report(&self) -> Report {
+    fn report(&self, _: u64) -> Report {
         Report::of(&self.simulation)
-    }
-
-    fn height(&self) -> Option<f32> {
-        (self.scale > 0.0).then_some(4.0 * self.scale)
     }
 
     fn planned(&mut self) -> Option<&mut Simulation> {

@@ -9,7 +9,7 @@ use crate::graphics::{
     Anchor, Canvas, FadeLayer, Height, LINE, LOWEST, Place, SUBPIXELS, TRACE_HALF_WIDTH, View, WIDTH, label, plot, text,
 };
 use crate::motion::{Means, Settings, Simulation};
-use crate::scenes::{Report, Scene, scene};
+use crate::scenes::{Report, Scene, draw_clock};
 
 /// Angle 1 of the second twin ahead of the first's at the start, rad.
 const APART: f64 = 1e-6;
@@ -21,7 +21,6 @@ const ZERO_ROW: f32 = 53.0;
 const SCALE: f32 = 2.6;
 /// The rows that carry the scale, and what they are.
 const AXES: [(i32, &str); 4] = [(row(0.0), "0"), (row(5.0), "5"), (row(10.0), "10"), (row(15.0), "15")];
-const CURVE: u8 = 255;
 /// The plot holds 60 columns of a quarter of a second: 15 s.
 const COLUMNS_PER_SECOND: u64 = 4;
 const TICKS_PER_COLUMN: u64 = TICK_RATE as u64 / COLUMNS_PER_SECOND;
@@ -66,23 +65,23 @@ impl Butterfly {
 
 impl Scene for Butterfly {
     #[inline(never)] // all scenes' preparations would stand side by side on the stack
-    fn new(settings: &Settings, means: &Means) -> Result<Self, Error> {
+    fn new(settings: &Settings, means: &Means) -> Result<(Self, Option<f32>), Error> {
         let first = Simulation::new(settings, means)?;
         let second = settings.run(APART, first.motion.way())?;
         let views = [first.motion.directions(), second.directions()]
             .map(|directions| View::new(&settings.parameters, Place::HALVES[0], directions));
         let mut scene = Self { first, second, views, strip: Deque::new() };
         scene.put_down();
-        Ok(scene)
+        Ok((scene, Some(2.0 * Place::HALVES[0].reach)))
     }
 
-    fn tick(&mut self, ink: &mut FadeLayer) {
+    fn tick(&mut self, ticks: u64, ink: &mut FadeLayer) {
         self.first.tick();
         let _is_lost = self.second.advance(1);
         let [first, second] = &mut self.views;
         first.trace(self.first.motion.directions(), ink, TRACE_HALF_WIDTH, u8::MAX);
         second.turn(self.second.directions());
-        if self.first.motion.frame().is_multiple_of(TICKS_PER_COLUMN) {
+        if ticks.is_multiple_of(TICKS_PER_COLUMN) {
             self.put_down();
         }
     }
@@ -95,20 +94,20 @@ impl Scene for Butterfly {
             plot::axis(canvas, PLOT_LEFT, WIDTH as i32, row);
             text::write(canvas, e_foldings, Anchor::EndingAt(PLOT_LEFT, row - LINE / 2));
         }
-        plot::curve(canvas, PLOT_LEFT, self.strip.iter().copied(), CURVE);
+        let mut before = self.strip.front();
+        for (x, now) in (PLOT_LEFT..).zip(&self.strip) {
+            plot::column(canvas, x, *before.unwrap_or(now), *now, u8::MAX);
+            before = Some(now);
+        }
         let span = (PLOT_COLUMNS as u64 / COLUMNS_PER_SECOND) as f32;
         let end = (report.time as f32).max(span);
         text::write(canvas, &label::tick(end - span, ""), Anchor::At(PLOT_LEFT, LOWEST));
-        text::write(canvas, &label::tick(end, " s"), Anchor::BottomRight);
-        text::write(canvas, "e-folds", Anchor::TopRight);
-        scene::draw_clock(canvas, report, Anchor::TopLeft, Anchor::Middle(0));
+        text::write(canvas, &label::tick(end, " s"), Anchor::Right(LOWEST));
+        text::write(canvas, "e-folds", Anchor::Right(0));
+        draw_clock(canvas, report, Anchor::Left(0), Anchor::Middle(0));
     }
 
-    fn report(&self) -> Report {
+    fn report(&self, _: u64) -> Report {
         Report::of(&self.first)
-    }
-
-    fn height(&self) -> Option<f32> {
-        Some(2.0 * Place::HALVES[0].reach)
     }
 }

@@ -1,19 +1,22 @@
 //! Flips: from which starts a rod ever turns over, and when, computed here, coarse first.
 
-#[cfg(any(target_abi = "eabihf", not(target_os = "none")))]
-use double_pendulum::DirectionF32Plain;
-#[cfg(not(target_abi = "eabihf"))]
-use double_pendulum::Fixed32;
 use double_pendulum::flips::{Falling, Flip, Flips as Search, step_size};
+// What a processor with a floating-point unit computes in, and one without. A board links its own alone.
+#[cfg(target_abi = "eabihf")]
+use double_pendulum::{DirectionF32Plain as Float, DirectionF32Plain as Fixed};
+#[cfg(not(target_os = "none"))]
+use double_pendulum::{DirectionF32Plain as Float, Fixed32 as Fixed};
 use double_pendulum::{Error, Form};
+#[cfg(all(target_os = "none", not(target_abi = "eabihf")))]
+use double_pendulum::{Fixed32 as Float, Fixed32 as Fixed};
 
-use crate::config::{FlipsPace, TICK_RATE};
+use crate::config::FlipsPace;
 use crate::graphics::{Anchor, Canvas, FadeLayer, Fading, HEIGHT, WIDTH, label, text};
 use crate::motion::{Means, Settings};
-use crate::scenes::{Report, Scene};
+use crate::scenes::{Report, Scene, time};
 
 /// A rod has so long to turn over, sqrt(l1/g).
-pub const LIMIT: f32 = 100.0;
+const LIMIT: f32 = 100.0;
 /// Greys for the time of the turn-over, by its logarithm from sqrt(l1/g) to the limit: 15 is soonest. The last one is
 /// for a rod that has not by then, and black for one that cannot.
 pub const GREYS: u8 = 14;
@@ -23,17 +26,6 @@ const LATER: u8 = 1;
 const COARSEST: usize = 8;
 /// The lower half is the upper one turned by half a turn: both starts are mirrored.
 const ROWS: usize = HEIGHT / 2;
-
-/// What a processor with a floating-point unit computes in, and one without.
-#[cfg(any(target_abi = "eabihf", not(target_os = "none")))]
-type Float = DirectionF32Plain;
-#[cfg(not(target_abi = "eabihf"))]
-type Fixed = Fixed32;
-// A board links its own alone.
-#[cfg(all(target_os = "none", not(target_abi = "eabihf")))]
-type Float = Fixed;
-#[cfg(target_abi = "eabihf")]
-type Fixed = Float;
 
 /// The search, in the processor's own numbers, and the motion that it follows.
 #[cfg_attr(not(target_os = "none"), expect(clippy::large_enum_variant, reason = "the host has the room"))]
@@ -56,7 +48,6 @@ pub struct Flips {
     block: Block,
     /// Pixels of the upper half that are done.
     done: u32,
-    ticks: u64,
     /// Ticks until all was done.
     elapsed: u64,
 }
@@ -70,12 +61,10 @@ struct Block {
 }
 
 impl Block {
-    const FIRST: Self = Self { size: COARSEST, x: 0, y: 0 };
-
     /// The next one that is not part of a larger one with the same start.
     fn next(self) -> Self {
         let Self { mut size, mut x, mut y } = self;
-        while size > 0 {
+        loop {
             x += size;
             if x >= WIDTH {
                 (x, y) = (0, y + size);
@@ -83,12 +72,10 @@ impl Block {
             if y >= ROWS {
                 (size, x, y) = (size / 2, 0, 0);
             }
-            let is_done = size < COARSEST && (x | y) & size == 0;
-            if !is_done {
-                break;
+            if size == 0 || size == COARSEST || (x | y) & size != 0 {
+                return Self { size, x, y };
             }
         }
-        Self { size, x, y }
     }
 
     /// Where it starts, rad: the middle of its pixel.
@@ -125,8 +112,8 @@ impl Flips {
         } else {
             Searching::Fixed(Search::new(parameters, dt, steps)?, None)
         };
-        let (mass_ratio, block) = (settings.mass_ratio(), Block::FIRST);
-        Ok(Self { searching, pace, mass_ratio, unit, block, done: 0, ticks: 0, elapsed: 0 })
+        let (mass_ratio, block) = (settings.mass_ratio(), Block { size: COARSEST, x: 0, y: 0 });
+        Ok(Self { searching, pace, mass_ratio, unit, block, done: 0, elapsed: 0 })
     }
 
     pub fn is_done(&self) -> bool {
@@ -159,7 +146,7 @@ fn work<F: Form<Real = f32>>(
 }
 
 /// The grey of a flip, where `unit` is sqrt(l1/g), s.
-pub fn grey(flip: Flip<f32>, unit: f32) -> u8 {
+fn grey(flip: Flip<f32>, unit: f32) -> u8 {
     match flip {
         Flip::Never => 0,
         Flip::Later => LATER,
@@ -173,16 +160,15 @@ pub fn grey(flip: Flip<f32>, unit: f32) -> u8 {
 impl Scene for Flips {
     const FADING: Fading = Fading::NEVER;
 
-    fn new(settings: &Settings, means: &Means) -> Result<Self, Error> {
-        Self::at_pace(settings, means.processor.flips, means.processor.has_float())
+    fn new(settings: &Settings, means: &Means) -> Result<(Self, Option<f32>), Error> {
+        Ok((Self::at_pace(settings, means.processor.flips, means.processor.has_float())?, None))
     }
 
-    fn tick(&mut self, ink: &mut FadeLayer) {
-        self.ticks = self.ticks.wrapping_add(1);
+    fn tick(&mut self, ticks: u64, ink: &mut FadeLayer) {
         if self.is_done() {
             return;
         }
-        self.elapsed = self.ticks;
+        self.elapsed = ticks;
         let mut left = self.pace.steps;
         while left > 0 && !self.is_done() {
             let (start, pace) = (self.block.start(), self.pace);
@@ -199,17 +185,12 @@ impl Scene for Flips {
     }
 
     fn draw(&self, _: &Report, canvas: &mut Canvas) {
-        let time = label::time(self.elapsed as f64 / f64::from(TICK_RATE));
-        text::write_over(canvas, &time, Anchor::TopRight);
+        text::write_on(canvas, &label::time(time(self.elapsed)), Anchor::Right(0), text::WHITE_ON_BLACK);
         let corner = if self.is_done() {
             label::mass_ratio(self.mass_ratio)
         } else {
             label::label("", ((100 * self.done) / (WIDTH * ROWS) as u32) as f32, 0, " %")
         };
-        text::write_over(canvas, &corner, Anchor::TopLeft);
-    }
-
-    fn report(&self) -> Report {
-        Report::of_figure(self.ticks)
+        text::write_on(canvas, &corner, Anchor::Left(0), text::WHITE_ON_BLACK);
     }
 }

@@ -31,7 +31,6 @@ pub struct Frequencies {
     scale: f32,
     mass_ratio: f32,
     marked: [f32; 2],
-    ticks: u64,
     /// Columns of the curves drawn so far, and where they end.
     drawn: u32,
     ends: Option<[Height; 2]>,
@@ -43,35 +42,27 @@ fn frequencies(mass_ratio: f32) -> Result<[f32; 2], Error> {
     Ok([modes.fast.frequency, modes.slow.frequency])
 }
 
-impl Frequencies {
-    fn extend(&mut self, ink: &mut Canvas) {
-        // The middle of the column; mass ratio 0 itself has no modes.
-        let mass_ratio = (self.drawn as f32 + 0.5) * self.range / COLUMNS as f32;
-        if let Ok(frequencies) = frequencies(mass_ratio) {
-            let heights = frequencies.map(|frequency| plot::height(frequency, ZERO_ROW, self.scale));
-            for (before, now) in self.ends.unwrap_or(heights).into_iter().zip(heights) {
-                plot::column(ink, LEFT + self.drawn as i32, before, now, CURVE);
-            }
-            (self.drawn, self.ends) = (self.drawn + 1, Some(heights));
-        }
-    }
-}
-
 impl Scene for Frequencies {
     const FADING: Fading = Fading::NEVER;
 
-    fn new(settings: &Settings, _: &Means) -> Result<Self, Error> {
+    fn new(settings: &Settings, _: &Means) -> Result<(Self, Option<f32>), Error> {
         let mass_ratio = settings.mass_ratio();
         let marked = frequencies(mass_ratio)?;
         let range = (mass_ratio / FARTHEST_MARK).max(LEAST_RANGE);
         let [greatest, _] = frequencies(range)?;
-        Ok(Self { range, scale: RISE / greatest, mass_ratio, marked, ticks: 0, drawn: 0, ends: None })
+        Ok((Self { range, scale: RISE / greatest, mass_ratio, marked, drawn: 0, ends: None }, None))
     }
 
-    fn tick(&mut self, ink: &mut FadeLayer) {
-        self.ticks = self.ticks.wrapping_add(1);
+    fn tick(&mut self, _: u64, ink: &mut FadeLayer) {
         for _ in 0..COLUMNS_PER_TICK.min(COLUMNS as u32 - self.drawn) {
-            self.extend(&mut ink.frame);
+            // The middle of the column; mass ratio 0 itself has no modes.
+            let mass_ratio = (self.drawn as f32 + 0.5) * self.range / COLUMNS as f32;
+            let Ok(frequencies) = frequencies(mass_ratio) else { return };
+            let heights = frequencies.map(|frequency| plot::height(frequency, ZERO_ROW, self.scale));
+            for (before, now) in self.ends.unwrap_or(heights).into_iter().zip(heights) {
+                plot::column(&mut ink.frame, LEFT + self.drawn as i32, before, now, CURVE);
+            }
+            (self.drawn, self.ends) = (self.drawn + 1, Some(heights));
         }
     }
 
@@ -93,14 +84,10 @@ impl Scene for Frequencies {
             Disc { centre, radius: MARK_RADIUS, gap: MARK_RADIUS }.draw(canvas, u8::MAX);
         }
         let [fast, slow] = self.marked;
-        text::write(canvas, &label::label("ω₁ ", fast, 3, ""), Anchor::TopLeft);
+        text::write(canvas, &label::label("ω₁ ", fast, 3, ""), Anchor::Left(0));
         text::write(canvas, &label::label("ω₂ ", slow, 3, ""), Anchor::Middle(0));
-        text::write(canvas, &label::mass_ratio(self.mass_ratio), Anchor::TopRight);
+        text::write(canvas, &label::mass_ratio(self.mass_ratio), Anchor::Right(0));
         text::write(canvas, "ω in √(g/l)", Anchor::At(LEFT + 1, LOWEST));
-        text::write(canvas, &label::mass_ratio(self.range), Anchor::BottomRight);
-    }
-
-    fn report(&self) -> Report {
-        Report::of_figure(self.ticks)
+        text::write(canvas, &label::mass_ratio(self.range), Anchor::Right(LOWEST));
     }
 }

@@ -1,27 +1,102 @@
-//! The catalogue of scenes: one row each gives the name, what it is and what it starts with.
+//! What a scene is, and the catalogue: a row each gives the name, the scene and what it starts with.
 
 mod beats;
 mod butterfly;
-mod figure7;
 pub mod flips;
 mod frequencies;
-mod page;
-mod scene;
+mod pendulums;
 mod small;
-mod upright;
 
 pub use flips::Flips;
-pub use scene::{Report, Scene};
 
-use double_pendulum::Error;
+use double_pendulum::plan::Way;
+use double_pendulum::{Error, State};
 
-use crate::graphics::{Canvas, FadeLayer};
+use crate::config::{GREATEST_ANGLE, TICK_RATE};
+use crate::graphics::{Anchor, Canvas, FadeLayer, Fading, label, text};
 use crate::motion::{Means, Settings, Simulation};
 
+/// Something to watch: it starts from settings, moves tick by tick and is drawn when there is time for it.
+pub trait Scene: Sized {
+    const FADING: Fading = Fading::TRACE;
+
+    /// At the start, and the height of a display, pixels, on which two rods as long as those shown reach from the middle to the edge;
+    /// where angles are shown as curves, a rod is a radian long; `None` if nothing is shown that can be planned. The kernel's error if
+    /// the settings describe no pendulum, or none that this scene can show.
+    fn new(settings: &Settings, means: &Means) -> Result<(Self, Option<f32>), Error>;
+
+    /// Advances by one tick, to so many `ticks` after the start, and adds to the ink what stays. The frame does not depend on
+    /// which of those before were drawn.
+    fn tick(&mut self, ticks: u64, ink: &mut FadeLayer);
+
+    /// Draws over the ink; `report` is what it has just been told in numbers, which need not be found twice.
+    fn draw(&self, report: &Report, canvas: &mut Canvas);
+
+    fn report(&self, ticks: u64) -> Report {
+        Report::at(ticks)
+    }
+
+    /// The motion whose way the plan may change.
+    fn planned(&mut self) -> Option<&mut Simulation> {
+        None
+    }
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Report {
+    /// Ticks of 1/60 s since the start.
+    pub step: u64,
+    /// Simulated time since the start, s.
+    pub time: f64,
+    /// The canonical state of the first pendulum shown, turns counted; zeros where none moves.
+    pub state: State<f32>,
+    /// (E - E0)/(E0 - Emin) of that pendulum: its energy error relative to the energy at the start above hanging at rest.
+    pub energy_error: f32,
+    /// Until when the frame is known to be right to [half a pixel](crate::config::HALF_PIXEL) about the exact motion, s after
+    /// the start; infinity where nothing can be wrong.
+    pub horizon: f32,
+    /// Whether that may yet turn out to be later.
+    pub is_looking: bool,
+    /// The way that it is computed; `None` where no motion is.
+    pub way: Option<Way>,
+}
+
+impl Report {
+    /// Of a figure in which no pendulum moves.
+    fn at(ticks: u64) -> Self {
+        Self { step: ticks, time: time(ticks), horizon: f32::INFINITY, ..Self::default() }
+    }
+
+    /// Of a scene whose first pendulum is `simulation`.
+    #[inline(never)] // no second copy
+    pub fn of(simulation: &Simulation) -> Self {
+        let (motion, state) = (&simulation.motion, simulation.motion.rounded_state());
+        let energy_error = simulation.energy.error(motion.directions(), &state);
+        Self { state, energy_error, way: Some(motion.way()), ..Self::at(motion.frame()) }
+    }
+}
+
+/// The simulated time after so many ticks, s.
+fn time(ticks: u64) -> f64 {
+    ticks as f64 / f64::from(TICK_RATE)
+}
+
+/// Writes the time and until when the frame can be trusted; the time stands out once it is known that it no longer can.
+fn draw_clock(canvas: &mut Canvas, report: &Report, time_at: Anchor, trust_at: Anchor) {
+    let &Report { time, horizon: until, is_looking, .. } = report;
+    let shown = label::time(time);
+    if !is_looking && time > f64::from(until) {
+        text::write_on(canvas, &shown, time_at, text::MARKED);
+    } else {
+        text::write(canvas, &shown, time_at);
+    }
+    text::write(canvas, &label::trust(until, is_looking), trust_at);
+}
+
 macro_rules! catalogue {
-    ($($(#[$doc:meta])* $row:ident = $name:literal, $scene:ty, $first:expr;)*) => {
+    ($($row:ident = $name:literal, $scene:ty, $first:expr;)*) => {
         choice! {
-            SceneName { $($(#[$doc])* $row = $name;)* }
+            SceneName { $($row = $name;)* }
         }
 
         impl SceneName {
@@ -33,22 +108,17 @@ macro_rules! catalogue {
 
         #[expect(clippy::large_enum_variant, reason = "without a heap there is nowhere else to keep it")]
         #[derive(Clone, Debug)]
-        pub enum AnyScene { $($(#[$doc])* $row($scene),)* }
+        pub enum AnyScene { $($row($scene),)* }
 
         impl AnyScene {
-            /// The scene `name` at the start; the error of a scene that cannot show `settings`.
-            pub fn new(name: SceneName, settings: &Settings, means: &Means) -> Result<Self, Error> {
-                match name { $(SceneName::$row => <$scene>::new(settings, means).map(Self::$row),)* }
-            }
-
-            /// Starts the scene `name` in the place of this one; if it cannot show `settings`, this one goes on.
-            pub fn start(&mut self, name: SceneName, settings: &Settings, means: &Means) -> Result<(), Error> {
+            /// Starts the scene `name` in the place of this one, and its height; if it cannot show `settings`, this one goes on.
+            pub fn start(&mut self, name: SceneName, settings: &Settings, means: &Means) -> Result<Option<f32>, Error> {
                 match name { $(SceneName::$row => self.become_one(settings, means, Self::$row),)* }
             }
 
-            /// Advances by one tick, as [`Scene::tick`]; the ink, which was clear at the start, fades.
-            pub fn tick(&mut self, ink: &mut FadeLayer) {
-                let fading = match self { $(Self::$row(scene) => { scene.tick(ink); <$scene>::FADING })* };
+            /// As [`Scene::tick`]; the ink, which was clear at the start, fades.
+            pub fn tick(&mut self, ticks: u64, ink: &mut FadeLayer) {
+                let fading = match self { $(Self::$row(scene) => { scene.tick(ticks, ink); <$scene>::FADING })* };
                 ink.fade(fading);
             }
 
@@ -58,47 +128,30 @@ macro_rules! catalogue {
                 match self { $(Self::$row(scene) => scene.draw(report, canvas),)* }
             }
 
-            pub fn height(&self) -> Option<f32> {
-                match self { $(Self::$row(scene) => scene.height(),)* }
-            }
-
             pub fn planned(&mut self) -> Option<&mut Simulation> {
                 match self { $(Self::$row(scene) => scene.planned(),)* }
             }
 
-            pub fn report(&self) -> Report {
-                match self { $(Self::$row(scene) => scene.report(),)* }
+            pub fn report(&self, ticks: u64) -> Report {
+                match self { $(Self::$row(scene) => scene.report(ticks),)* }
             }
         }
     };
 }
 
 catalogue! {
-    /// The page's animation.
-    Page = "page", page::Page, Settings::default();
-    /// Figure 3: small oscillations, mass ratio 0.2.
+    Page = "page", pendulums::Page, Settings::default();
     SmallLight = "small-0.2", small::Small, small::example(0.2);
-    /// Figure 4: small oscillations, mass ratio 1.
     SmallEqual = "small-1", small::Small, small::example(1.0);
-    /// Figure 5: small oscillations, mass ratio 5.
     SmallHeavy = "small-5", small::Small, small::example(5.0);
-    /// Figure 2: frequencies over the mass ratio.
     Frequencies = "frequencies", frequencies::Frequencies, Settings::default();
-    /// Frequencies as 3 to 2: mass ratio 25/144.
     Beats3To2 = "beats-3-2", beats::Beats, beats::closing(25.0 / 144.0);
-    /// Frequencies as 2 to 1: mass ratio 9/16.
     Beats2To1 = "beats-2-1", beats::Beats, beats::closing(9.0 / 16.0);
-    /// Frequencies as 5 to 2: mass ratio 441/400.
     Beats5To2 = "beats-5-2", beats::Beats, beats::closing(441.0 / 400.0);
-    /// Frequencies as 3 to 1: mass ratio 16/9.
     Beats3To1 = "beats-3-1", beats::Beats, beats::closing(16.0 / 9.0);
-    /// Figure 7: the right equations and the misprinted ones.
-    Figure7 = "figure-7", figure7::Figure7, figure7::figure();
-    /// Twins a millionth of a radian apart.
+    Figure7 = "figure-7", pendulums::Figure7, pendulums::figure_7();
     Butterfly = "butterfly", butterfly::Butterfly, Settings::default();
-    /// Both rods at exactly 180 degrees.
-    Upright = "upright", upright::Upright, upright::straight_up();
-    /// From which starts a rod turns over, and when.
+    Upright = "upright", pendulums::Upright, Settings::equal_rods(1.0, GREATEST_ANGLE);
     Flips = "flips", flips::Flips, Settings::default();
 }
 
@@ -109,9 +162,15 @@ impl AnyScene {
     }
 
     #[inline(never)] // the scenes of all the catalogue would stand side by side on the stack of who chooses one
-    fn become_one<S: Scene>(&mut self, settings: &Settings, means: &Means, one: fn(S) -> Self) -> Result<(), Error> {
-        *self = one(S::new(settings, means)?);
-        Ok(())
+    fn become_one<S: Scene>(
+        &mut self,
+        settings: &Settings,
+        means: &Means,
+        one: fn(S) -> Self,
+    ) -> Result<Option<f32>, Error> {
+        let (scene, height) = S::new(settings, means)?;
+        *self = one(scene);
+        Ok(height)
     }
 }
 

@@ -6,8 +6,8 @@ use std::fs;
 use double_pendulum::{Motion, State};
 use firmware::scenes::SceneName;
 use host_tests::commands::demo::played;
-use host_tests::commands::figures::small::{CurvePoint, modes, points};
-use host_tests::commands::figures::{chaos, files, folder, panel_file};
+use host_tests::commands::figures::small::{CurvePoint, MASS_RATIOS, modes, points};
+use host_tests::commands::figures::{animation, chaos, figures, folder};
 use host_tests::emulator::host::Show;
 use host_tests::emulator::qemu::Screenshot;
 use host_tests::oracle::tolerances;
@@ -15,24 +15,20 @@ use reference::taylor::Reference;
 
 use super::cli::{output, program};
 
-/// Figures 3 to 5: number, mu, w1, w2 (rad/s), the envelope's period (s), the largest |a1| (degrees).
-const SMALL: [(u32, [f64; 5]); 3] = [
-    (3, [0.2, 8.139042, 5.275983, 2.194571, 12.2474]),
-    (4, [1.0, 11.568802, 4.791955, 0.927155, 21.2132]),
-    (5, [5.0, 21.211017, 4.526893, 0.376597, 27.3861]),
+/// Figures 3 to 5: w1, w2 (rad/s), the envelope's period (s), the largest |a1| (degrees).
+const SMALL: [[f64; 4]; 3] = [
+    [8.139042, 5.275983, 2.194571, 12.2474],
+    [11.568802, 4.791955, 0.927155, 21.2132],
+    [21.211017, 4.526893, 0.376597, 27.3861],
 ];
 /// The angle 2 that they start with, degrees, which is also the largest.
 const START: f64 = 30.0;
 
 #[test]
 fn the_committed_files_are_what_the_kernel_gives() {
-    let wrong: Vec<_> = files()
-        .expect("the figures can be drawn")
-        .into_iter()
-        .filter(|(name, bytes)| fs::read(folder().join(name)).ok().as_ref() != Some(bytes))
-        .map(|(name, _)| name)
-        .collect();
-    assert!(wrong.is_empty(), "accept by `cargo figures`: {wrong:?}");
+    for (name, svg) in figures().expect("the figures can be drawn") {
+        assert!(fs::read_to_string(folder().join(&name)).ok() == Some(svg), "accept by `cargo figures`: {name}");
+    }
 }
 
 /// Every so many frames of an animation are compared; two ticks pass from one to the next.
@@ -48,7 +44,7 @@ fn the_committed_animations_show_what_the_host_draws() {
 
 /// A recording starts with the first screenshot that was drawn, at most two ticks after the start.
 fn is_shown(name: SceneName) -> bool {
-    let Ok(frames) = played(&folder().join(panel_file(name, "gif"))) else { return false };
+    let Ok(frames) = played(&animation(name, &folder())) else { return false };
     let is_shown_from = |late| {
         let mut scene = Show::new(name, &name.first_settings()).expect("a scene of the catalogue");
         (0..late).for_each(|_| scene.tick());
@@ -63,13 +59,11 @@ fn is_shown(name: SceneName) -> bool {
 
 /// The mean time from one crossing of zero to the next, s.
 fn between_crossings(points: &[CurvePoint], value: impl Fn(&CurvePoint) -> f64) -> f64 {
-    let crossings: Vec<_> = points
-        .windows(2)
-        .filter_map(|pair| {
-            let [(t, before), (later, after)] = [&pair[0], &pair[1]].map(|point| (point.time, value(point)));
-            ((before < 0.0) != (after < 0.0)).then(|| t + (later - t) * before / (before - after))
-        })
-        .collect();
+    let crossing = |pair: &[CurvePoint]| {
+        let [(t, before), (later, after)] = [&pair[0], &pair[1]].map(|point| (point.time, value(point)));
+        ((before < 0.0) != (after < 0.0)).then(|| t + (later - t) * before / (before - after))
+    };
+    let crossings: Vec<_> = points.windows(2).filter_map(crossing).collect();
     let [first, .., last] = crossings[..] else { panic!("{crossings:?}") };
     (last - first) / (crossings.len() - 1) as f64
 }
@@ -80,7 +74,7 @@ fn assert_close(value: f64, expected: f64, relative: f64, what: &str) {
 
 #[test]
 fn figures_3_to_5_show_the_frequencies_envelopes_and_amplitudes_of_the_table() {
-    for (number, [mu, w1, w2, envelope, largest_a1]) in SMALL {
+    for (mu, [w1, w2, envelope, largest_a1]) in MASS_RATIOS.into_iter().zip(SMALL) {
         let points = points(modes(mu).expect("a pendulum"));
         // a2 - r a1 is the fast mode alone, a2 + r a1 the slow one.
         let r = ((1.0 + mu) / mu).sqrt();
@@ -97,11 +91,11 @@ fn figures_3_to_5_show_the_frequencies_envelopes_and_amplitudes_of_the_table() {
             // The curve touches it and never leaves it.
             let beyond = |point: &CurvePoint| point.angles[rod].abs() - point.envelopes[rod];
             let farthest = points.iter().map(beyond).fold(f64::NEG_INFINITY, f64::max);
-            assert!(farthest < tolerances::FORMULAS.double * START, "figure {number}, rod {rod}: {farthest} beyond");
+            assert!(farthest < tolerances::FORMULAS.double * START, "mass ratio {mu}, rod {rod}: {farthest} beyond");
             let touches = points.iter().filter(|point| {
                 point.envelopes[rod] > highest / 2.0 && beyond(point) > -tolerances::PLOTTED_AMPLITUDE * highest
             });
-            assert!(touches.count() > 2, "figure {number}, rod {rod}");
+            assert!(touches.count() > 2, "mass ratio {mu}, rod {rod}");
         }
     }
 }
@@ -116,11 +110,11 @@ fn the_right_path_of_figure_7_is_the_exact_one_and_the_printed_one_does_not_depe
     let exact = (0..=last).map(|i| {
         exact.advance_to(f64::from(chaos::DURATION) * i as f64 / last as f64);
         let [_, bob2] = pendulum.positions(exact.motion().angles());
-        [bob2.x, bob2.y]
+        (bob2.x, bob2.y)
     });
     for (path, other) in [(&right, exact.collect()), (&printed, finer.points)] {
         assert_eq!(path.points.len(), other.len());
-        for (i, ([x, y], [other_x, other_y])) in path.points.iter().zip(other).enumerate() {
+        for (i, ((x, y), (other_x, other_y))) in path.points.iter().zip(other).enumerate() {
             let off = (x - other_x).hypot(y - other_y);
             assert!(off < tolerances::FIGURE_7_PATH, "{off} m off at point {i}");
         }

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use double_pendulum::flips::{Flip, Flips};
 use double_pendulum::{DirectionF64, Error, Motion, Parameters};
 use fastrand::Rng;
-use host_tests::commands::flips::map::{Followed, Map, Square};
+use host_tests::commands::flips::map::{Followed, Map};
 use host_tests::oracle::tolerances;
 use reference::taylor::Reference;
 
@@ -18,13 +18,19 @@ const JUDGED: usize = 60;
 
 /// Equal rods and bobs; times in sqrt(l/g).
 fn map(limit: f32, size: usize) -> Map {
-    Map::new(Parameters::equal_rods(1.0, 1.0, 1.0), limit, Square::whole([size, size])).expect("a pendulum")
+    Map::new(Parameters::equal_rods(1.0, 1.0, 1.0), limit, [size, size]).expect("a pendulum")
 }
 
-/// The points of the upper half of a map that may turn over, with their starts.
+/// The points of the upper half of a map that may turn over, with their starts: the energy says that no rod turns over where
+/// 2 cos a1 + cos a2 > 1.
 fn turning(map: &Map) -> Result<Vec<([f32; 2], Followed)>, Error> {
-    let points = map.starts().zip(map.points(|_| ())?);
-    Ok(points.filter(|(_, point)| point.flip != Flip::Never).collect())
+    let points = map.starts().into_iter().zip(map.points(|_| ())?);
+    let may_turn = |([a1, a2], [flip, _]): &([f32; 2], Followed)| {
+        let cannot = 2.0 * a1.cos() + a2.cos() > 1.0;
+        assert_eq!(*flip == Flip::Never, cannot, "{a1} {a2}");
+        !cannot
+    };
+    Ok(points.filter(may_turn).collect())
 }
 
 /// How a map's points are judged by fine steps in `f64`: how many are more than a grey level off, how many of these are not in
@@ -39,7 +45,7 @@ fn judge(map: &Map) -> Result<[usize; 4], Error> {
             Flip::After(time) => Flip::After(time as f32),
             Flip::Later => Flip::Later,
         };
-        let (wrong, doubtful) = (map.differ(point.flip, exact), map.is_in_doubt(point));
+        let (wrong, doubtful) = (map.differ([point[0], exact]), map.differ(point));
         let these = [wrong, wrong && !doubtful, doubtful, true];
         Ok(std::array::from_fn(|i| counts[i] + usize::from(these[i])))
     })
@@ -63,33 +69,21 @@ fn exact(map: &Map, [a1, a2]: [f32; 2]) -> Flip<f32> {
     Flip::Later
 }
 
-/// What the energy says: no rod turns over where 2 cos a1 + cos a2 > 1, and many do just outside.
-#[test]
-fn the_boundary_is_where_the_energy_has_it() {
-    let map = map(100.0, 48);
-    let points = map.points(|_| ()).expect("points");
-    let (mut inside, mut flipped) = (0, 0);
-    for ([a1, a2], Followed { flip, .. }) in map.starts().zip(points) {
-        let cannot = 2.0 * a1.cos() + a2.cos() > 1.0;
-        assert_eq!(flip == Flip::Never, cannot, "{a1} {a2}");
-        inside += usize::from(cannot);
-        flipped += usize::from(matches!(flip, Flip::After(_)));
-    }
-    assert!(inside > 300 && flipped > 600, "{inside} {flipped}");
-}
-
 /// All of a map by fine steps in `f64`, and those steps on some points, the same in each run, by the reference.
 #[test]
 fn points_are_right_to_a_grey_level() -> Result<(), Error> {
     let short = map(10.0, 64);
     let [wrong, .., points] = judge(&short)?;
     println!("limit 10: {wrong} of {points} wrong");
-    assert!(points > 1000 && wrong as f64 <= (1.0 - tolerances::FLIPS_RIGHT) * points as f64, "{wrong} of {points}");
+    assert!(
+        (1000..1700).contains(&points) && wrong as f64 <= (1.0 - tolerances::FLIPS_RIGHT) * points as f64,
+        "{wrong} of {points}"
+    );
 
     let mut sample = turning(&short)?;
     Rng::with_seed(1).shuffle(&mut sample);
     for (start, point) in &sample[..JUDGED] {
-        assert!(!short.differ(point.flip, exact(&short, *start)), "{start:?}: {point:?}");
+        assert!(!short.differ([point[0], exact(&short, *start)]), "{start:?}: {point:?}");
     }
     Ok(())
 }

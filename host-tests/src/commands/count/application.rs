@@ -22,8 +22,8 @@ use crate::emulator::toolchain::{Toolchain, workspace};
 /// The functions that show a frame, the module's path and the name: they draw it, and bring it to the panel and over the link. They
 /// are not inlined, and once in a program.
 const SHOWING: [(&str, &str); 7] = [
-    ("firmware::graphics::fade_layer::", "::add"),
-    ("firmware::graphics::fade_layer::", "::fade"),
+    ("firmware::graphics::brush::", "::lighten"),
+    ("firmware::graphics::canvas::", "::fade"),
     ("firmware::graphics::canvas::", "::scroll"),
     ("firmware::app::player::", "::draw"),
     ("firmware::app::player::", "::check"),

@@ -96,7 +96,8 @@ impl DemoOptions {
         let means = Means { processor: PROCESSOR, method: Some(method) };
         let refused =
             |why: &str| Err(Refused::because(format_args!("--method {method}: --scene {} {why}", scene.name())));
-        match AnyScene::new(scene, &scene.first_settings(), &means).map(|scene| scene.report().way) {
+        let mut started = AnyScene::empty();
+        match started.start(scene, &scene.first_settings(), &means).map(|_| started.report(0).way) {
             Ok(Some(Way { method: gone, .. })) if gone == method => Ok(()),
             Ok(_) => refused("has no use for it"),
             Err(_) => refused("cannot be computed so"),

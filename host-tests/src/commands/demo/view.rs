@@ -179,7 +179,7 @@ mod tests {
     fn rows(readings: &Readings, colours: bool, (width, height): (u16, u16)) -> String {
         let mut canvas = Canvas::default();
         (0..128).for_each(|x| [0, x / 2, 63].into_iter().for_each(|y| canvas.update(x, y, |_| 15)));
-        text::write(&mut canvas, "μ 2.75", Anchor::TopLeft);
+        text::write(&mut canvas, "μ 2.75", Anchor::Left(0));
         let mut terminal = Terminal::new(TestBackend::new(width, height)).expect("a terminal of characters");
         let drawn = |frame: &mut Frame| draw(frame, "lm3s6965evb-m4", &Screenshot::from(&canvas), readings, colours);
         terminal.draw(drawn).expect("it is drawn");

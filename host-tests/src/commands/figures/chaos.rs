@@ -15,16 +15,15 @@ const ROD: f64 = 1.0;
 /// How long the motion is followed, s: as long as the frame is right (test `figures`).
 pub const DURATION: u32 = 10;
 /// Integration steps per second, and how many make a point of the path.
-pub const STEPS: u32 = 8192;
+const STEPS: u32 = 8192;
 const STEPS_PER_POINT: u32 = 32;
 
 /// The axes are this long either way, m.
 const REACH: f64 = 2.1;
 
-#[derive(Clone, Debug)]
 pub struct Path {
     /// Its points, m right of the pivot and above it.
-    pub points: Vec<[f64; 2]>,
+    pub points: Vec<(f64, f64)>,
     /// The least and the greatest energy, J.
     pub energies: [f64; 2],
 }
@@ -45,6 +44,22 @@ pub fn paths(refinement: u32) -> Result<[Path; 2], Error> {
     Ok([right, printed])
 }
 
+fn path(pendulum: &Pendulum<f64>, refinement: u32, rhs: impl Fn(&[f64; 4]) -> [f64; 4]) -> Path {
+    let mut state = start();
+    let dt = 1.0 / f64::from(STEPS * refinement);
+    let (mut points, [mut least, mut greatest]) = (Vec::new(), [f64::INFINITY, f64::NEG_INFINITY]);
+    for step in 0..=DURATION * STEPS * refinement {
+        if step.is_multiple_of(STEPS_PER_POINT * refinement) {
+            let [_, bob2] = pendulum.positions(state.angles());
+            points.push((bob2.x, bob2.y));
+            let energy = pendulum.energy(&state);
+            (least, greatest) = (least.min(energy), greatest.max(energy));
+        }
+        state = rk4::step(&rhs, &state.into(), dt).into();
+    }
+    Path { points, energies: [least, greatest] }
+}
+
 pub fn figure() -> Result<String> {
     let paths = paths(1)?;
     let title = format!("Figure 7: path of bob 2 in the first {DURATION} s");
@@ -61,53 +76,33 @@ pub fn figure() -> Result<String> {
             let name = format!("{name}; energy {energy}").replace('-', "−");
             let area = headed(area, &name, text(13).color(&colour))?;
             let mut chart = axes(&area, ("x, m", [-REACH, REACH]), ("y, m", [-REACH, REACH]), [9, 9])?;
-            path.draw(&mut chart, colour)?;
-            chart.draw_series([Cross::new((0.0, 0.0), units(5), line(TEXT, 12))])?;
+            draw(&path.points, &mut chart, colour)?;
         }
         Ok(())
     })
-}
-
-fn path(pendulum: &Pendulum<f64>, refinement: u32, rhs: impl Fn(&[f64; 4]) -> [f64; 4]) -> Path {
-    let mut state = start();
-    let dt = 1.0 / f64::from(STEPS * refinement);
-    let (mut points, [mut least, mut greatest]) = (Vec::new(), [f64::INFINITY, f64::NEG_INFINITY]);
-    for step in 0..=DURATION * STEPS * refinement {
-        if step.is_multiple_of(STEPS_PER_POINT * refinement) {
-            let [_, bob2] = pendulum.positions(state.angles());
-            points.push([bob2.x, bob2.y]);
-            let energy = pendulum.energy(&state);
-            (least, greatest) = (least.min(energy), greatest.max(energy));
-        }
-        state = rk4::step(&rhs, &state.into(), dt).into();
-    }
-    Path { points, energies: [least, greatest] }
 }
 
 /// The shades of a path, from its start to its end.
 const SHADES: usize = 10;
 const PALEST: f64 = 0.35;
 
-impl Path {
-    /// Draws it the darker the later, with its start, its end, and a mark for every second.
-    fn draw(&self, chart: &mut Axes, colour: RGBColor) -> Result<()> {
-        let points: Vec<_> = self.points.iter().map(|&[x, y]| (x, y)).collect();
-        let length = points.len().div_ceil(SHADES);
-        for shade in 0..SHADES {
-            // Each piece begins where the one before ends.
-            let piece = points.iter().copied().skip(shade * length).take(length + 1);
-            let strength = PALEST + (1.0 - PALEST) * shade as f64 / (SHADES - 1) as f64;
-            chart.draw_series(LineSeries::new(piece, pale(colour, strength).stroke_width(units(9).div_ceil(10))))?;
-        }
-        let (Some(&start), Some(&end)) = (points.first(), points.last()) else { return Ok(()) };
-        let per_second = (STEPS / STEPS_PER_POINT) as usize;
-        for (second, &(x, y)) in points.iter().step_by(per_second).enumerate().take(DURATION as usize).skip(1) {
-            chart.draw_series([Circle::new((x, y), units(2), TEXT.filled())])?;
-            chart.draw_series([Text::new(second.to_string(), (x + 0.05, y + 0.02), text(10))])?;
-        }
-        chart.draw_series([Circle::new(start, units(5), WHITE.filled())])?;
-        chart.draw_series([Circle::new(start, units(5), line(TEXT, 12))])?;
-        chart.draw_series([Circle::new(end, units(5), TEXT.filled())])?;
-        Ok(())
+/// Draws a path the darker the later, with its start, its end, and a mark for every second.
+fn draw(points: &[(f64, f64)], chart: &mut Axes, colour: RGBColor) -> Result<()> {
+    let length = points.len().div_ceil(SHADES);
+    for shade in 0..SHADES {
+        // Each piece begins where the one before ends.
+        let piece = points.iter().copied().skip(shade * length).take(length + 1);
+        let strength = PALEST + (1.0 - PALEST) * shade as f64 / (SHADES - 1) as f64;
+        chart.draw_series(LineSeries::new(piece, line(pale(colour, strength), 9)))?;
     }
+    let per_second = (STEPS / STEPS_PER_POINT) as usize;
+    for (second, &(x, y)) in points.iter().step_by(per_second).enumerate().take(DURATION as usize).skip(1) {
+        chart.draw_series([Circle::new((x, y), units(2), TEXT.filled())])?;
+        chart.draw_series([Text::new(second.to_string(), (x + 0.05, y + 0.02), text(10))])?;
+    }
+    let [start, .., end] = *points else { return Ok(()) };
+    for (place, style) in [(start, WHITE.filled()), (start, line(TEXT, 12)), (end, TEXT.filled())] {
+        chart.draw_series([Circle::new(place, units(5), style)])?;
+    }
+    Ok(chart.draw_series([Cross::new((0.0, 0.0), units(5), line(TEXT, 12))]).map(drop)?)
 }

@@ -93,13 +93,12 @@ pub fn svg<const N: usize>(
     draw: impl FnOnce(&Area) -> Result<()>,
 ) -> Result<String> {
     let mut file = String::new();
-    {
-        let area = SVGBackend::with_string(&mut file, (units(width), units(height))).into_drawing_area();
-        area.fill(&WHITE)?;
-        let styles = [15].into_iter().chain(std::iter::repeat(12)).map(text);
-        draw(&lines.into_iter().zip(styles).try_fold(area.clone(), |area, (line, style)| headed(&area, line, style))?)?;
-        area.present()?;
-    }
+    let area = SVGBackend::with_string(&mut file, (units(width), units(height))).into_drawing_area();
+    area.fill(&WHITE)?;
+    let styles = [15].into_iter().chain(std::iter::repeat(12)).map(text);
+    draw(&lines.into_iter().zip(styles).try_fold(area.clone(), |area, (line, style)| headed(&area, line, style))?)?;
+    area.present()?;
+    drop(area);
     // It is shown in its own size; its coordinates stay dots.
     let in_dots = format!("<svg width=\"{}\" height=\"{}\"", units(width), units(height));
     Ok(file.replacen(&in_dots, &format!("<svg width=\"{width}\" height=\"{height}\""), 1))

@@ -72,11 +72,9 @@ pub fn figure(number: u32, mass_ratio: f64) -> Result<String> {
     })
 }
 
-/// Figure 2's mass ratios are 0 to this; at 0 itself there are no modes.
-const GREATEST_MASS_RATIO: f64 = 5.0;
+/// The mass ratios of figures 3 to 5, which are marked in figure 2, whose mass ratios are 0 to the last; at 0 itself there are no modes.
+pub const MASS_RATIOS: [f64; 3] = [0.2, 1.0, 5.0];
 const RATIOS: u32 = 500;
-/// The mass ratios of figures 3 to 5, which are marked.
-const MARKED: [f64; 3] = [0.2, 1.0, 5.0];
 
 /// A mass ratio and both frequencies there, fast and slow, of equal rods in sqrt(g/l).
 fn at_ratio(mass_ratio: f64) -> Result<[f64; 3], Error> {
@@ -87,11 +85,12 @@ fn at_ratio(mass_ratio: f64) -> Result<[f64; 3], Error> {
 /// Figure 2: both frequencies over the mass ratio.
 pub fn frequencies() -> Result<String> {
     // Denser towards 0, where the curves are steep.
-    let ratios = (1..=RATIOS).map(|i| GREATEST_MASS_RATIO * (f64::from(i) / f64::from(RATIOS)).powi(2));
+    let [.., greatest] = MASS_RATIOS;
+    let ratios = (1..=RATIOS).map(|i| greatest * (f64::from(i) / f64::from(RATIOS)).powi(2));
     let points = ratios.map(at_ratio).collect::<Result<Vec<_>, _>>()?;
-    let marks = MARKED.into_iter().map(at_ratio).collect::<Result<Vec<_>, _>>()?;
+    let marks = MASS_RATIOS.into_iter().map(at_ratio).collect::<Result<Vec<_>, _>>()?;
     svg([640, 400], ["Figure 2: both frequencies of small oscillations of equal rods"], |area| {
-        let across = ("mass ratio μ = m₂/m₁", [0.0, GREATEST_MASS_RATIO]);
+        let across = ("mass ratio μ = m₂/m₁", [0.0, greatest]);
         let mut chart = axes(area, across, ("frequency, √(g/l)", [0.0, 3.5]), [11, 8])?;
         let curves = [
             (1, BLUE, "ω₁ fast: the rods swing against each other", (0.45, 2.85)),

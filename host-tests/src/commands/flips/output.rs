@@ -11,13 +11,20 @@ use super::map::{Followed, Map};
 
 /// The bytes of a file of this name; with `doubt`, points of a picture whose time is uncertain get a colour of their own.
 pub fn file(name: &Path, map: &Map, points: &[Followed], doubt: bool) -> Result<Vec<u8>> {
-    let [width, height] = map.square.size;
-    let places = (0..height).flat_map(|row| (0..width).map(move |column| [column, row]));
-    let pixels = places.map(|place| (place, points[map.square.place(place)]));
+    let pixels = map.shown(points);
     if name.extension().is_some_and(|end| end == "csv") {
         return table(map, pixels);
     }
-    picture(map, pixels.map(|(_, point)| colour(map, point, doubt)), doubt)
+    // The map above its legend.
+    let colours: Vec<_> = pixels.map(|(_, point)| colour(map, point, doubt)).chain(legend(map, doubt)).collect();
+    let ([width, _], mut file) = (map.size, Vec::new());
+    let mut encoder = png::Encoder::new(&mut file, width as u32, (colours.len() / width) as u32);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_compression(png::Compression::High);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(colours.as_flattened())?;
+    writer.finish()?;
+    Ok(file)
 }
 
 type Colour = [u8; 3];
@@ -33,25 +40,11 @@ fn scale(share: f32) -> Colour {
 }
 
 fn colour(map: &Map, point: Followed, doubt: bool) -> Colour {
-    match point.flip {
-        _ if doubt && map.is_in_doubt(point) => DOUBT,
+    match point[0] {
+        _ if doubt && map.differ(point) => DOUBT,
         Flip::Never => NEVER,
         flip => map.share(flip).map_or(LATER, scale),
     }
-}
-
-/// The map above its legend.
-fn picture(map: &Map, pixels: impl Iterator<Item = Colour>, doubt: bool) -> Result<Vec<u8>> {
-    let [width, _] = map.square.size;
-    let colours: Vec<Colour> = pixels.chain(legend(map, doubt)).collect();
-    let mut file = Vec::new();
-    let mut encoder = png::Encoder::new(&mut file, width as u32, (colours.len() / width) as u32);
-    encoder.set_color(png::ColorType::Rgb);
-    encoder.set_compression(png::Compression::High);
-    let mut writer = encoder.write_header()?;
-    writer.write_image_data(colours.as_flattened())?;
-    writer.finish()?;
-    Ok(file)
 }
 
 /// A row for each pixel, from the top left corner.
@@ -62,8 +55,8 @@ fn table(map: &Map, pixels: impl Iterator<Item = ([usize; 2], Followed)>) -> Res
         Flip::After(time) => time.to_string(),
         Flip::Later => "later".to_owned(),
     };
-    for (place, Followed { flip, check }) in pixels {
-        let ([a1, a2], [time, check]) = (map.square.start(place), [flip, check].map(word));
+    for (place, point) in pixels {
+        let ([a1, a2], [time, check]) = (map.start(place), point.map(word));
         writeln!(text, "{a1},{a2},{time},{check}")?;
     }
     Ok(text.into_bytes())
@@ -89,7 +82,7 @@ struct Legend {
 
 /// The legend of `map`: red, green and blue of each pixel.
 fn legend(map: &Map, doubt: bool) -> Vec<Colour> {
-    let [width, _] = map.square.size;
+    let [width, _] = map.size;
     let unit = (width / WIDTH).max(1);
     let mut legend = Legend { width, unit, pixels: vec![WHITE; width * HEIGHT * unit] };
     for x in 0..LENGTH {
@@ -110,9 +103,8 @@ fn legend(map: &Map, doubt: bool) -> Vec<Colour> {
         x = legend.text([x + 14, 5], name) + 12;
     }
     legend.text([BESIDE, 17], "first turn-over of a rod, √(l₁/g)");
-    let half = map.square.half.to_degrees();
-    let [a1, a2] =
-        map.square.centre.map(f64::to_degrees).map(|at| format!("{}° to {}°", short(at - half), short(at + half)));
+    let half = map.half.to_degrees();
+    let [a1, a2] = map.centre.map(f64::to_degrees).map(|at| format!("{}° to {}°", short(at - half), short(at + half)));
     let [masses, lengths] =
         [map.parameters.m2 / map.parameters.m1, map.parameters.l2 / map.parameters.l1].map(|ratio| short(ratio.into()));
     legend.text([LEFT, 30], &format!("let go at α₁ → {a1}, α₂ ↑ {a2}; m₂/m₁ = {masses}, l₂/l₁ = {lengths}"));
