@@ -1,7 +1,8 @@
 //! The board's buttons, pressed through QEMU, change the mass ratio and the start angle and restart the motion.
 
-use crate::support::{on, show};
+use crate::support::on;
 use firmware::app::Key;
+use firmware::config::{ANGLE_STEP, MASS_RATIOS};
 use firmware::protocol::Frame;
 use firmware::scenes::SceneName;
 use host_tests::emulator::boards::{BOARDS, Board};
@@ -23,20 +24,25 @@ fn choose_and_restart(board: &Board) -> anyhow::Result<()> {
     machine.wake_keys()?;
     let start = settle(&mut machine)?;
     assert!(start.report.step > SETTLING as u64, "waking the buttons must not restart");
-    let mut here = show(board, SceneName::Page);
-    for key in [Key::Up, Key::Down, Key::Right, Key::Left] {
-        let after = press(&mut machine, key)?;
-        here.player.execute(key.tapped()).expect("within its range");
-        assert_eq!(after, here.expected(&after), "{}: {key:?}", board.name);
+    let place = |frame: &Frame| MASS_RATIOS.iter().position(|ratio| *ratio == frame.mass_ratio).expect("one of them");
+    let degrees = |frame: &Frame| frame.start_angle.to_degrees().round();
+    for (key, ratios, turn) in
+        [(Key::Up, 1, 0.0), (Key::Down, -1, 0.0), (Key::Right, 0, ANGLE_STEP), (Key::Left, 0, -ANGLE_STEP)]
+    {
+        let (before, after) = press(&mut machine, key)?;
+        let expected = (place(&before).checked_add_signed(ratios), degrees(&before) + turn);
+        assert_eq!((Some(place(&after)), degrees(&after)), expected, "{}: {key:?}", board.name);
+        let near = |angle: f32| (angle - after.start_angle).abs() < 0.01;
+        assert!(near(after.report.state.a1) && near(after.report.state.a2), "{key:?}: both rods near the start angle");
     }
     // Held, it is for the next scene.
-    let after = press(&mut machine, Key::Select)?;
+    let (_, after) = press(&mut machine, Key::Select)?;
     assert_eq!(after.scene, SceneName::Page.next(), "{}", board.name);
     Ok(())
 }
 
-/// Holds a button until a motion starts, and lets go: the first frame of that.
-fn press(machine: &mut Machine, key: Key) -> anyhow::Result<Frame> {
+/// Holds a button until a motion starts, and lets go: the frames before and after that.
+fn press(machine: &mut Machine, key: Key) -> anyhow::Result<(Frame, Frame)> {
     let mut before = settle(machine)?;
     machine.set_key(key, true)?;
     for _ in 0..PATIENCE {
@@ -44,7 +50,7 @@ fn press(machine: &mut Machine, key: Key) -> anyhow::Result<Frame> {
         if after.report.step < before.report.step {
             machine.set_key(key, false)?;
             assert_eq!(after.report.step, 1, "{key:?}: restarted and moved by one tick");
-            return Ok(after);
+            return Ok((before, after));
         }
         before = after;
     }

@@ -105,13 +105,11 @@ fn frames(lines: &Lines, address: u32) -> Frames {
     frames
 }
 
-/// The images of all boards, each built once, and the one with every arithmetic.
-fn images() -> Vec<PathBuf> {
+/// The images of all boards, and the one with every arithmetic.
+fn images() -> BTreeSet<PathBuf> {
     let toolchain = crate::support::toolchain();
-    let binaries = every_board().flat_map(|board| [(board.binary, board.target), ("measure", board.target)]);
-    let binaries: BTreeSet<_> = binaries.collect();
     let build = |(binary, target)| toolchain.build(binary, target).unwrap_or_else(|error| panic!("{error}"));
-    binaries.into_iter().map(build).collect()
+    every_board().flat_map(|board| [(board.binary, board.target), ("measure", board.target)]).map(build).collect()
 }
 
 #[test]
