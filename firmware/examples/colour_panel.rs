@@ -58,7 +58,8 @@ fn play(buffers: &mut FrameBuffers, batch: &mut [u8]) -> Option<Infallible> {
         .ok()?;
 
     let mut panel = AnyPanel { target, corner: CORNER, colour: Rgb565::from };
-    let mut player = Player::on(PROCESSOR, SceneName::Page, Settings::default(), &mut buffers.ink).ok()?;
+    let mut player = Player::new(PROCESSOR, &mut buffers.ink);
+    player.play(SceneName::Page, Settings::default()).ok()?;
     clock::start(core.SYST, clocks.system_clock.freq().to_Hz());
     let mut now = clock::ticks();
     loop {

@@ -7,7 +7,7 @@ use firmware::job::Request;
 
 fn main() -> Result<(), Box<dyn Error>> {
     for line in io::stdin().lock().lines() {
-        println!("{:08x}", Request::parse(&line?)?.crc()?);
+        println!("{:08x}", Request::parse(&line?).ok_or("no request")?.crc()?);
     }
     Ok(())
 }

@@ -30,14 +30,11 @@ pub struct Stacked {
     pub xpsr: u32,
 }
 
-const DATA_REFUSED: u32 = 1 << 1;
-const ENTRY_REFUSED: u32 = 1 << 4;
-const LAZY_ENTRY_REFUSED: u32 = 1 << 5;
-const ADDRESS_KNOWN: u32 = 1 << 7;
-const ENTRY_FAILED: u32 = 1 << 12;
-const LAZY_ENTRY_FAILED: u32 = 1 << 13;
-/// The stack did not take the registers, or not all of them.
-const NOT_STACKED: u32 = ENTRY_REFUSED | LAZY_ENTRY_REFUSED | ENTRY_FAILED | LAZY_ENTRY_FAILED;
+/// The stack did not take the registers, or not all of them: on the way into an exception or, of the floating-point unit, later
+/// (MSTKERR, MLSPERR, STKERR, LSPERR).
+const NOT_STACKED: u32 = 1 << 4 | 1 << 5 | 1 << 12 | 1 << 13;
+/// Data is refused by the memory protection unit, at an address that is known (DACCVIOL, MMARVALID).
+const REFUSED: u32 = 1 << 1 | 1 << 7;
 
 /// The bit of the program status that is set as long as the processor executes Thumb code, which is all it can.
 const THUMB: u32 = 1 << 24;
@@ -95,9 +92,8 @@ impl Fault {
 
     /// The stack took no more: not the registers of an exception, or not what was being pushed.
     fn is_stack_overflow(&self) -> bool {
-        let refused = DATA_REFUSED | ADDRESS_KNOWN;
         let below = self.sp.wrapping_sub(self.mmfar);
-        !Self::has_stacked(self.cfsr) || self.cfsr & refused == refused && (1..=LONGEST_PUSH).contains(&below)
+        !Self::has_stacked(self.cfsr) || self.cfsr & REFUSED == REFUSED && (1..=LONGEST_PUSH).contains(&below)
     }
 }
 

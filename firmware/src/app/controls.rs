@@ -4,35 +4,13 @@ use crate::config::{DEBOUNCE_TICKS, HOLD_TICKS, MOST_TICKS_BETWEEN_TAPS, REPEAT_
 use crate::protocol::Command;
 
 choice! {
+    /// A button.
     Key {
         Up = "up";
         Down = "down";
         Left = "left";
         Right = "right";
         Select = "select";
-    }
-}
-
-impl Key {
-    pub const fn tapped(self) -> Command {
-        match self {
-            Self::Up => Command::Heavier,
-            Self::Down => Command::Lighter,
-            Self::Left => Command::TurnLeft,
-            Self::Right => Command::TurnRight,
-            Self::Select => Command::Restart,
-        }
-    }
-
-    /// What an arrow asks for while select is held.
-    const fn with_select(self) -> Command {
-        match self {
-            Self::Up => Command::TogglePause,
-            Self::Down => Command::Step(1),
-            Self::Left => Command::PreviousScene,
-            Self::Right => Command::NextScene,
-            Self::Select => Command::Restart,
-        }
     }
 }
 
@@ -59,7 +37,13 @@ impl Buttons for NoButtons {
     }
 }
 
-const ARROWS: [Key; 4] = [Key::Up, Key::Down, Key::Left, Key::Right];
+/// What up, down, left and right ask for alone, and with select held.
+const ARROWS: [[Command; 2]; 4] = [
+    [Command::Heavier, Command::TogglePause],
+    [Command::Lighter, Command::Step(1)],
+    [Command::TurnLeft, Command::PreviousScene],
+    [Command::TurnRight, Command::NextScene],
+];
 
 /// The five buttons' history.
 ///
@@ -89,10 +73,10 @@ impl Controls {
         let with_select = self.select.is_held();
         let mut asked = [None; 4];
         let arrows = ARROWS.into_iter().zip(&mut self.arrows).zip([up, down, left, right]);
-        for (asked, ((key, button), pressed)) in asked.iter_mut().zip(arrows) {
+        for (asked, (([alone, held], button), pressed)) in asked.iter_mut().zip(arrows) {
             *asked = match button.tick(pressed) {
-                Some(Change::Pressed) if with_select => Some(key.with_select()),
-                Some(Change::Pressed | Change::Repeated) if !with_select => Some(key.tapped()),
+                Some(Change::Pressed) if with_select => Some(held),
+                Some(Change::Pressed | Change::Repeated) if !with_select => Some(alone),
                 _ => None,
             };
         }

@@ -5,28 +5,22 @@ mod event;
 mod instruments;
 mod pace;
 mod player;
-mod throttle;
 mod warm_restart;
 
-use double_pendulum::Error;
 use embedded_io::Write;
 
-use crate::config::{
-    MOST_MEASURED_STEPS, MOST_MESSAGES_PER_TICK, MOST_TICKS_PER_FRAME, PROCESSOR, Processor, RECEIVE_QUEUE,
-};
+use crate::config::{MOST_MEASURED_STEPS, MOST_MESSAGES_PER_TICK, MOST_TICKS_PER_FRAME, Processor, RECEIVE_QUEUE};
 use crate::display::Display;
 use crate::graphics::{Canvas, FrameBuffers};
-use crate::job::{Job, Request};
-use crate::motion::Settings;
+use crate::job::{Job, OnBoards, Request};
 use crate::protocol::{Answer, Command, Decoder, Field, Frame, LinkError, MAX_WIRE, ToHost, decode_command, encode};
-use crate::scenes::SceneName;
-use throttle::{FaultEdge, ThrottledCounter};
+use event::{FaultEdge, ThrottledCounter};
 
 pub use controls::{Buttons, Controls, Key, NoButtons, Pressed};
 pub use event::{Event, Log};
 pub use instruments::Instruments;
 pub use player::{News, Player};
-pub use warm_restart::{Journal, Kept, LastShown, MOST_RESTARTS, Record, SOUND_FRAMES, WarmRestart};
+pub use warm_restart::{Journal, Kept, MOST_RESTARTS, Record, SOUND_FRAMES};
 
 /// The same on a board and in a test: a panel, a byte sink and buttons are all it needs.
 #[derive(Debug)]
@@ -57,24 +51,10 @@ pub struct App<'a, Panel, Link, Keys> {
 }
 
 impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> {
-    /// Plays the page with `settings`, at tick 0; the kernel's error if they describe no pendulum.
-    pub fn new(
-        settings: Settings,
-        buffers: &'a mut FrameBuffers,
-        panel: Panel,
-        link: Link,
-        keys: Keys,
-    ) -> Result<Self, Error> {
-        let mut app = Self::idle(PROCESSOR, settings, buffers, panel, link, keys);
-        app.player.play(SceneName::Page, settings)?;
-        Ok(app)
-    }
-
-    /// The same for a class of processors, before it plays, which takes much of the stack: better when it is at its place.
+    /// Before it plays, which takes much of the stack: better when this is at its place.
     #[inline(never)] // while it is made one of it stands on the stack, and not two
-    pub fn idle(
+    pub fn new(
         processor: Processor,
-        settings: Settings,
         FrameBuffers { canvas, ink }: &'a mut FrameBuffers,
         panel: Panel,
         link: Link,
@@ -85,7 +65,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
             link,
             keys,
             controls: Controls::default(),
-            player: Player::idle(processor, settings, ink),
+            player: Player::new(processor, ink),
             decoder: Decoder::default(),
             work: None,
             canvas,
@@ -108,9 +88,9 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     }
 
     /// Goes on after a restart with what was played before it, and tells the host.
-    pub fn resume(&mut self, restart: &WarmRestart, mut log: impl Log<Panel, Link>) {
-        let resumed = restart.played.is_some_and(|played| self.player.resume(&played).is_ok());
-        log(Event::Restarted(*restart, resumed));
+    pub fn resume(&mut self, restart: &Record, mut log: impl Log<Panel, Link>) {
+        let resumed = !restart.is_given_up() && self.player.resume(&restart.played).is_ok();
+        log(Event::Restarted(restart.end, resumed));
         self.send(&ToHost::Restarted(restart.end), &mut log);
     }
 
@@ -208,8 +188,8 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
 
     fn execute(&mut self, command: Command, log: &mut impl Log<Panel, Link>) -> Result<(), Field> {
         if self.player.execute(command)? {
-            log(Event::Started(self.player.name(), *self.player.settings()));
-            if let Some(way) = self.player.report().way {
+            log(Event::Started(self.player.name, self.player.settings));
+            if let Some(way) = self.player.report.way {
                 log(Event::Motion(News::Shown(way, self.player.cost(way))));
             }
         }
@@ -238,7 +218,8 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     /// The samples of the motion follow; first what a step too long for its energy should be.
     #[inline(never)] // what it takes to prepare a motion would be on the stack of every command
     fn begin_work(&mut self, request: u16, motion: &Request, log: &mut impl Log<Panel, Link>) -> Result<(), Field> {
-        self.work = Some((request, Job::new(motion)?));
+        let run = OnBoards::start(motion).ok_or(Field::Method)??;
+        self.work = Some((request, Job::new(run, motion)?));
         log(Event::Asked);
         if let Some(admissible_step) = motion.admissible_step().filter(|step| motion.dt > *step) {
             log(Event::StepTooLong(admissible_step));
@@ -272,16 +253,12 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
 
     /// Sends a message, or the part of it that the link takes in time.
     fn send(&mut self, message: &ToHost, log: &mut impl Log<Panel, Link>) {
-        let sent = write_whole(&mut self.link, encode(message, &mut [0; MAX_WIRE]));
+        let (mut wire, mut sent) = ([0; MAX_WIRE], Ok(()));
+        let mut left = encode(message, &mut wire);
+        while !left.is_empty() && sent.is_ok() {
+            // A link that takes nothing and says so is no reason to panic: the byte counts as sent.
+            sent = self.link.write(left).map(|count| left = left.get(count.max(1)..).unwrap_or_default());
+        }
         self.link_failing.note(sent, |error| log(Event::Link(error)));
     }
-}
-
-/// As [`Write::write_all`], but a link that takes nothing and says so is no reason to panic: the byte counts as sent.
-fn write_whole<Link: Write>(link: &mut Link, mut bytes: &[u8]) -> Result<(), Link::Error> {
-    while !bytes.is_empty() {
-        let sent = link.write(bytes)?;
-        bytes = bytes.get(sent.max(1)..).unwrap_or_default();
-    }
-    Ok(())
 }

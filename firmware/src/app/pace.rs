@@ -42,14 +42,6 @@ impl Pace {
         ticks
     }
 
-    pub fn pause(&mut self, paused: bool) {
-        (self.paused, self.steps) = (paused, 0);
-    }
-
-    pub fn step(&mut self, ticks: u32) {
-        (self.paused, self.steps) = (true, ticks);
-    }
-
     /// Sets the speed, to the nearest part; refuses one that is out of range.
     pub fn set_speed(&mut self, speed: f64) -> Result<(), Field> {
         let parts = (speed * f64::from(WHOLE_TICK) + 0.5) as u32;

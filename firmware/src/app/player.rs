@@ -19,8 +19,9 @@ pub enum News {
 
 #[derive(Debug)]
 pub struct Player<'a> {
-    name: SceneName,
-    settings: Settings,
+    /// What is played, to be read, as the settings and the report are: commands and ticks change it.
+    pub name: SceneName,
+    pub settings: Settings,
     scene: AnyScene,
     /// The method that is asked for; `None` leaves it to the plan.
     method: Option<Method>,
@@ -29,27 +30,15 @@ pub struct Player<'a> {
     next: Option<CatchingUp>,
     ink: &'a mut FadeLayer,
     pace: Pace,
-    report: Report,
+    pub report: Report,
     /// The motion has left the finite numbers.
     stopped: bool,
 }
 
 impl<'a> Player<'a> {
-    /// Plays a scene with `settings` as it goes on this class of processors; the kernel's error if they describe no pendulum.
-    pub fn on(
-        processor: Processor,
-        name: SceneName,
-        settings: Settings,
-        ink: &'a mut FadeLayer,
-    ) -> Result<Self, Error> {
-        let mut player = Self::idle(processor, settings, ink);
-        player.play(name, settings)?;
-        Ok(player)
-    }
-
-    /// The same before it plays anything that moves.
-    pub fn idle(processor: Processor, settings: Settings, ink: &'a mut FadeLayer) -> Self {
-        let scene = AnyScene::empty();
+    /// As it goes on this class of processors, before it plays anything that moves.
+    pub fn new(processor: Processor, ink: &'a mut FadeLayer) -> Self {
+        let (scene, settings) = (AnyScene::empty(), Settings::default());
         let (name, report) = (SceneName::Frequencies, scene.report(0));
         let (planner, pace, stopped) = (Planner::new(processor), Pace::default(), false);
         Self { name, settings, scene, method: None, planner, next: None, ink, pace, report, stopped }
@@ -88,9 +77,9 @@ impl<'a> Player<'a> {
             Command::Method(method) => return self.go(method),
             // What the new value makes impossible, it is the new value that is wrong.
             Command::Set { field, value } => return self.start(self.name, self.with(field, value)?).map_err(|_| field),
-            Command::Pause(paused) => self.pace.pause(paused),
-            Command::TogglePause => self.pace.pause(!self.pace.paused),
-            Command::Step(ticks) => self.pace.step(ticks),
+            Command::Pause(paused) => (self.pace.paused, self.pace.steps) = (paused, 0),
+            Command::TogglePause => (self.pace.paused, self.pace.steps) = (!self.pace.paused, 0),
+            Command::Step(ticks) => (self.pace.paused, self.pace.steps) = (true, ticks),
             Command::Ask | Command::AskPlan | Command::Identify | Command::Measure { .. } | Command::Simulate(_) => {}
         }
         Ok(false)
@@ -173,18 +162,6 @@ impl<'a> Player<'a> {
         if self.is_paused() {
             text::pause_mark(canvas);
         }
-    }
-
-    pub fn name(&self) -> SceneName {
-        self.name
-    }
-
-    pub fn settings(&self) -> &Settings {
-        &self.settings
-    }
-
-    pub fn report(&self) -> Report {
-        self.report
     }
 
     pub fn is_paused(&self) -> bool {

@@ -5,8 +5,6 @@
 //! and the board starts as at the first time. So it does after a reset from outside, by its button or by a debugger:
 //! whoever does that wants a fresh start.
 
-use core::fmt;
-
 use serde::{Deserialize, Serialize};
 
 use crate::app::Player;
@@ -44,22 +42,17 @@ impl Record {
         }
         None
     }
-}
 
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WarmRestart {
-    /// What was played; `None` if it has been tried [often enough](MOST_RESTARTS).
-    pub played: Option<Status>,
-    pub end: Restarted,
-}
+    /// The restart that it tells of, counted; `None` of a reset from outside. Where nothing noted a cause, it may have been the
+    /// watchdog, by the board's own register.
+    pub fn restart(self, by_watchdog: bool) -> Option<Self> {
+        let cause = Some(self.end.cause.or(by_watchdog.then_some(Cause::Hang))?);
+        Some(Self { end: Restarted { cause, restarts: self.end.restarts.saturating_add(1), ..self.end }, ..self })
+    }
 
-impl WarmRestart {
-    /// From what was kept. Where nothing noted a cause, it may have been the watchdog, by the board's own register.
-    pub fn recall(Record { played, end }: Record, by_watchdog: bool) -> Option<Self> {
-        let cause = end.cause.or(by_watchdog.then_some(Cause::Hang))?;
-        let restarts = end.restarts.saturating_add(1);
-        let played = (restarts <= MOST_RESTARTS).then_some(played);
-        Some(Self { played, end: Restarted { cause: Some(cause), restarts, ..end } })
+    /// Whether what was played has been tried often enough.
+    pub fn is_given_up(&self) -> bool {
+        self.end.restarts > MOST_RESTARTS
     }
 }
 
@@ -73,7 +66,7 @@ pub struct Journal {
 }
 
 impl Journal {
-    pub fn new(restart: Option<&WarmRestart>) -> Self {
+    pub fn new(restart: Option<&Record>) -> Self {
         Self { restarts: restart.map_or(0, |restart| restart.end.restarts), frames: 0 }
     }
 
@@ -83,19 +76,7 @@ impl Journal {
         if self.frames >= SOUND_FRAMES {
             self.restarts = 0;
         }
-        let (restarts, scene, step) = (self.restarts, player.name(), player.report().step);
+        let (restarts, scene, step) = (self.restarts, player.name, player.report.step);
         Record { played: player.status(), end: Restarted { restarts, scene, step, ..Restarted::default() } }
-    }
-}
-
-#[derive(Clone, Copy, Debug)]
-pub struct LastShown(pub Option<Restarted>);
-
-impl fmt::Display for LastShown {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.0 {
-            Some(Restarted { scene, step, .. }) => write!(f, "scene {}, step {step}", scene.name()),
-            None => write!(f, "no scene yet"),
-        }
     }
 }

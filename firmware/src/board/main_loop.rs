@@ -13,7 +13,7 @@ use super::cortex_m::clock::{ticks, wait_after};
 use super::cortex_m::retained;
 use super::cortex_m::watchdog::Watchdog;
 use super::serial;
-use crate::app::{App, Buttons, Event, Instruments, Journal, News, WarmRestart};
+use crate::app::{App, Buttons, Event, Instruments, Journal, News};
 use crate::config::{HALF_PIXEL, Processor};
 use crate::display::Display;
 use crate::graphics::FrameBuffers;
@@ -80,9 +80,8 @@ fn application<'a, Panel: Display, Link: Write, Keys: Buttons>(
     keys: Keys,
     processor: Processor,
 ) -> &'a mut App<'a, Panel, Link, Keys> {
-    let settings = Settings::default();
-    let app = place.write(App::idle(processor, settings, buffers, panel, link, keys));
-    if let Err(error) = app.player.play(SceneName::Page, settings) {
+    let app = place.write(App::new(processor, buffers, panel, link, keys));
+    if let Err(error) = app.player.play(SceneName::Page, Settings::default()) {
         defmt::error!("{}", error);
         panic!("the first settings describe no pendulum")
     }
@@ -136,7 +135,7 @@ fn resume<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons>(
 #[inline(never)]
 fn log<Panel: Debug, Link: Debug>(event: Event<Panel, Link>) {
     match event {
-        Event::Restarted(WarmRestart { end, .. }, resumed) => {
+        Event::Restarted(end, resumed) => {
             defmt::warn!(
                 "restarted after a {}, {} in a row: pc {:#010x}, lr {:#010x}",
                 end.cause.map_or("", Cause::name),

@@ -1,37 +1,9 @@
-//! A request being answered, and the error that refuses one.
-
-use core::fmt;
+//! A request being answered.
 
 use double_pendulum::parts::Turns;
-use double_pendulum::{Error, Method, Motion, Parameter, Pendulum};
+use double_pendulum::{Error, Motion, Parameter, Pendulum};
 
 use super::{OnBoards, Reading, Request, Run};
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum JobError {
-    NotOnBoards(Method),
-    /// What is no text of a request.
-    Malformed,
-    Refused(Error),
-}
-
-impl fmt::Display for JobError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            JobError::NotOnBoards(method) => write!(f, "{method}: not in the boards' applications"),
-            JobError::Malformed => write!(f, "not a request"),
-            JobError::Refused(error) => write!(f, "{error}"),
-        }
-    }
-}
-
-impl core::error::Error for JobError {}
-
-impl From<Error> for JobError {
-    fn from(error: Error) -> Self {
-        JobError::Refused(error)
-    }
-}
 
 /// A request being answered: computes the samples one after the other, a bounded amount of work at a time. It counts the
 /// whole turns of a motion that does not.
@@ -52,10 +24,9 @@ pub struct Job<R = OnBoards> {
 }
 
 impl<R: Run> Job<R> {
-    /// Refuses a method that `R` does not have, and parameters, angles, velocities and step sizes that the kernel refuses.
-    pub fn new(request: &Request) -> Result<Self, JobError> {
+    /// By the request's motion at its start.
+    pub fn new(run: R, request: &Request) -> Result<Self, Error> {
         let Request { method, angles, stride, samples, .. } = *request;
-        let run = R::start(request)?;
         let parameters = request.parameters;
         let parameters = if method.is_single() { parameters.cast::<f32>().cast() } else { parameters };
         let pendulum = Pendulum::new(&parameters)?;
@@ -113,13 +84,14 @@ impl<R: Run> Job<R> {
 }
 
 /// Gives every reading of `request` to `each`, the one at the start first.
-pub(super) fn readings<R: Run, E: From<JobError>>(
+pub(super) fn readings<E: From<Error>>(
+    run: impl Run,
     request: &Request,
     mut each: impl FnMut(&Reading) -> Result<(), E>,
 ) -> Result<(), E> {
-    let mut job = Job::<R>::new(request)?;
+    let mut job = Job::new(run, request)?;
     while !job.is_finished() {
-        if let Some(reading) = job.advance().map_err(JobError::from)? {
+        if let Some(reading) = job.advance()? {
             each(&reading)?;
         }
     }

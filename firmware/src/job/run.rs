@@ -4,13 +4,10 @@ use double_pendulum::{
     Direction, Error, Form, Integrator, Modes, Motion, Parameters, Pendulum, Real, SmallOscillations, State,
 };
 
-use super::{JobError, Request};
+use super::Request;
 
 /// One motion under way, with all that its arithmetic carries along: the one trait that a new row's type implements.
 pub trait Run: Copy {
-    /// At step 0, with the request's angles and velocities; refuses what the kernel refuses.
-    fn start(request: &Request) -> Result<Self, JobError>;
-
     /// Makes `steps` steps. How they are dealt out to calls makes no difference to any bit.
     fn advance(&mut self, steps: u32);
 
@@ -27,15 +24,16 @@ pub trait Run: Copy {
     fn bits(&self, feed: impl FnMut(u64));
 }
 
+/// At step 0, with the request's angles and velocities; refuses what the kernel refuses.
+#[inline(never)]
+pub(super) fn start<F: Form>(request: &Request) -> Result<F, Error> {
+    let checked = if request.method.is_single() { checked::<f32> } else { checked::<f64> };
+    let (parameters, state) = checked(request)?;
+    Form::new(&parameters, &state, request.dt)
+}
+
 /// By any method of the kernel that makes steps.
 impl<F: Form> Run for F {
-    #[inline(never)]
-    fn start(request: &Request) -> Result<Self, JobError> {
-        let checked = if request.method.is_single() { checked::<f32> } else { checked::<f64> };
-        let (parameters, state) = checked(request)?;
-        Ok(Form::new(&parameters, &state, request.dt)?)
-    }
-
     #[inline(always)]
     fn advance(&mut self, steps: u32) {
         Form::advance(self, steps);
@@ -86,13 +84,8 @@ pub struct Drawn {
 }
 
 impl Drawn {
-    fn time(&self) -> f64 {
-        f64::from(self.steps) * self.dt
-    }
-}
-
-impl Run for Drawn {
-    fn start(request: &Request) -> Result<Self, JobError> {
+    /// As [`start`].
+    pub(super) fn start(request: &Request) -> Result<Self, Error> {
         let (parameters, start) = rounded::<f32>(request);
         start.check()?;
         let pendulum = Pendulum::new(&parameters.cast())?;
@@ -100,6 +93,12 @@ impl Run for Drawn {
         Ok(Self { oscillations, directions: oscillations.directions(0.0), pendulum, dt: request.dt, steps: 0 })
     }
 
+    fn time(&self) -> f64 {
+        f64::from(self.steps) * self.dt
+    }
+}
+
+impl Run for Drawn {
     #[inline(always)]
     fn advance(&mut self, steps: u32) {
         for _ in 0..steps {

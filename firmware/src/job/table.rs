@@ -10,16 +10,16 @@ use double_pendulum::{
 };
 
 use super::comparison::{Micromath, Textbook};
-use super::run::Drawn;
-use super::{JobError, Reading, Request, Run, answer, request};
+use super::run::{Drawn, start};
+use super::{Reading, Request, Run, answer, crc};
 
-/// What computes a method: its form's steps, unless another type is given.
-macro_rules! run {
-    ($form:ty) => {
-        $form
+/// What computes a request by a method: its form's steps, unless another type is given.
+macro_rules! start {
+    ($request:expr, $form:ty) => {
+        start::<$form>($request)
     };
-    ($form:ty, $run:ty) => {
-        $run
+    ($request:expr, $form:ty, $run:ty) => {
+        <$run>::start($request)
     };
 }
 
@@ -34,15 +34,18 @@ macro_rules! table {
         #[derive(Clone, Copy, Debug)]
         pub enum OnBoards { $(#[doc = concat!("[`Method::", stringify!($method), "`]")] $method($form),)* }
 
-        impl Run for OnBoards {
+        impl OnBoards {
+            /// At the start of the request, which the kernel may refuse; `None` by a method that boards have not.
             #[inline(never)] // compilers shuffle so large a value word by word
-            fn start(request: &Request) -> Result<Self, JobError> {
-                match request.method {
-                    $(Method::$method => <$form as Run>::start(request).map(Self::$method),)*
-                    method => Err(JobError::NotOnBoards(method)),
-                }
+            pub fn start(request: &Request) -> Option<Result<Self, Error>> {
+                Some(match request.method {
+                    $(Method::$method => start::<$form>(request).map(Self::$method),)*
+                    _ => return None,
+                })
             }
+        }
 
+        impl Run for OnBoards {
             // Never inlined: a board may have it twice, in flash and in memory.
             #[inline(never)]
             fn advance(&mut self, steps: u32) {
@@ -104,20 +107,20 @@ macro_rules! table {
 
         impl Request {
             /// Gives every reading to `each`, the one at the start first, until it refuses one.
-            pub fn readings<E: From<JobError>>(&self, each: impl FnMut(&Reading) -> Result<(), E>) -> Result<(), E> {
+            pub fn readings<E: From<Error>>(&self, each: impl FnMut(&Reading) -> Result<(), E>) -> Result<(), E> {
                 match self.method {
-                    $(Method::$method => answer::readings::<$form, E>(self, each),)*
-                    $(Method::$other => answer::readings::<run!($other_form $(, $other_run)?), E>(self, each),)*
+                    $(Method::$method => answer::readings(start::<$form>(self)?, self, each),)*
+                    $(Method::$other => answer::readings(start!(self, $other_form $(, $other_run)?)?, self, each),)*
                 }
             }
 
             /// CRC-32 of all that is carried at every sample but the one at the start, and of the last state: two runs
             /// are bit-identical if theirs are equal.
-            pub fn crc(&self) -> Result<u32, JobError> {
-                match self.method {
-                    $(Method::$method => request::crc::<$form>(self),)*
-                    $(Method::$other => request::crc::<run!($other_form $(, $other_run)?)>(self),)*
-                }
+            pub fn crc(&self) -> Result<u32, Error> {
+                Ok(match self.method {
+                    $(Method::$method => crc(start::<$form>(self)?, self),)*
+                    $(Method::$other => crc(start!(self, $other_form $(, $other_run)?)?, self),)*
+                })
             }
         }
     };

@@ -4,7 +4,7 @@ use double_pendulum::{Error, Method, Parameter};
 use serde::{Deserialize, Serialize};
 
 use super::{MAX_WIRE, encode, read};
-use crate::job::{JobError, Request};
+use crate::job::Request;
 use crate::scenes::SceneName;
 
 /// What is asked of the application, by button or over the serial link.
@@ -111,16 +111,6 @@ impl From<Error> for Field {
             Parameter::W1 | Parameter::P1 => Field::W1,
             Parameter::W2 | Parameter::P2 => Field::W2,
             _ => Field::Dt,
-        }
-    }
-}
-
-impl From<JobError> for Field {
-    fn from(error: JobError) -> Self {
-        match error {
-            JobError::NotOnBoards(_) => Field::Method,
-            JobError::Malformed => Field::Message,
-            JobError::Refused(error) => error.into(),
         }
     }
 }

@@ -1,5 +1,7 @@
 //! What a board sends: a frame after each that it has drawn, and answers.
 
+use core::fmt;
+
 use double_pendulum::Method;
 use serde::{Deserialize, Serialize};
 
@@ -123,6 +125,13 @@ pub struct Restarted {
     /// The last frame shown: its scene and tick.
     pub scene: SceneName,
     pub step: u64,
+}
+
+/// Where it stood.
+impl fmt::Display for Restarted {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "scene {}, step {}", self.scene.name(), self.step)
+    }
 }
 
 choice! {

@@ -24,12 +24,14 @@ impl Show {
     /// The same as a board of this class plays it.
     pub fn on(processor: Processor, name: SceneName, settings: &Settings) -> Result<Self, Error> {
         let ink = Box::leak(Box::new(FadeLayer::NONE));
-        Ok(Self { player: Player::on(processor, name, *settings, ink)?, news: Vec::new() })
+        let mut player = Player::new(processor, ink);
+        player.play(name, *settings)?;
+        Ok(Self { player, news: Vec::new() })
     }
 
     pub fn tick(&mut self) {
         let Self { player, news } = self;
-        let step = player.report().step + 1;
+        let step = player.report.step + 1;
         player.tick(|one| news.push((step, one)));
         // What is not finite is told by the report.
         let _ = player.check();
@@ -55,7 +57,7 @@ impl Show {
     }
 
     pub fn report(&self) -> Report {
-        self.player.report()
+        self.player.report
     }
 }
 

@@ -92,7 +92,7 @@ impl PicoMachine {
 
     /// What the USB link has been through, and the UART.
     pub fn counts(&self) -> [Counts; 2] {
-        [self.usb.counts(), self.uart.counts()]
+        [self.usb.counts, self.uart.counts]
     }
 
     pub fn screenshot(&mut self) -> anyhow::Result<Screenshot> {
@@ -126,7 +126,7 @@ impl PicoMachine {
                 "uart" => self.heard_by_uart.extend(bytes.iter().filter_map(|&byte| self.uart.take(byte))),
                 "log" => self.lines.extend(self.log.take(&bytes)),
                 // Bytes cut off by it are no damage of the link's.
-                "restarted" => [&mut self.usb, &mut self.uart].into_iter().for_each(Inbox::restart),
+                "restarted" => [&mut self.usb, &mut self.uart].into_iter().for_each(Inbox::join),
                 "done" => return Ok(asked),
                 _ => asked = bytes,
             }

@@ -25,10 +25,10 @@ pub fn refusal(field: Field) -> &'static str {
 #[derive(Debug, Default)]
 pub struct Inbox {
     decoder: Decoder,
-    counts: Counts,
+    pub counts: Counts,
     /// The sequence number the next frame should have.
     expected: Option<u32>,
-    damage: Option<LinkError>,
+    pub damage: Option<LinkError>,
     /// What comes may begin in the middle of a message.
     joins: bool,
 }
@@ -64,33 +64,15 @@ impl Inbox {
         Some(message)
     }
 
-    /// A connection begins, to a board that may be in the middle of a message and of its count.
+    /// A connection begins, to a board that may be in the middle of a message and of its count, or the board does.
     pub fn join(&mut self) {
         (self.decoder, self.expected, self.damage, self.joins) = (Decoder::default(), None, None, true);
-    }
-
-    /// The board has been reset, in the middle of a message perhaps.
-    pub fn restart(&mut self) {
-        self.decoder = Decoder::default();
-    }
-
-    pub fn counts(&self) -> Counts {
-        self.counts
-    }
-
-    pub fn damage(&self) -> Option<LinkError> {
-        self.damage
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use firmware::app::{App, NoButtons};
-    use firmware::display::NoDisplay;
-    use firmware::graphics::FrameBuffers;
-    use firmware::job::Request;
-    use firmware::motion::Settings;
-    use firmware::protocol::{Answer, Command, MAX_WIRE, encode, encode_command, frame};
+    use firmware::protocol::{MAX_WIRE, encode};
 
     use super::*;
 
@@ -100,7 +82,7 @@ mod tests {
             let frame = ToHost::Frame(Frame { sequence, ..Frame::default() });
             encode(&frame, &mut [0; MAX_WIRE]).iter().for_each(|&byte| _ = inbox.take(byte));
         }
-        inbox.counts()
+        inbox.counts
     }
 
     #[test]
@@ -118,26 +100,6 @@ mod tests {
         let wire = encode(&ToHost::Frame(Frame::default()), &mut wire);
         let stream = [&wire[20..], wire, &wire[..9], &[wire[9] ^ 0x10], &wire[10..]].concat();
         assert_eq!(stream.into_iter().filter_map(|byte| inbox.take(byte)).count(), 1);
-        assert_eq!(inbox.counts(), Counts { messages: 1, damaged: 1, ..Counts::default() });
-    }
-
-    #[test]
-    fn a_board_that_does_not_know_a_method_is_to_be_flashed() {
-        let mut sheets = FrameBuffers::BLANK;
-        let app = App::new(Settings::default(), &mut sheets, NoDisplay, Vec::new(), NoButtons);
-        let mut app = app.expect("good settings");
-        let mut wire = [0; MAX_WIRE];
-        let mut message = Vec::new();
-        let mut decoder = Decoder::default();
-        for &byte in encode_command(1, Command::Simulate(Request::default()), &mut wire) {
-            message.extend(decoder.push(byte).transpose().expect("intact").unwrap_or_default());
-        }
-        // Where its method stands.
-        message[3] = 0x7f;
-        app.receive(frame(&message, &mut wire).iter().copied(), |_| ());
-        let mut inbox = Inbox::default();
-        let answers: Vec<_> = app.link.iter().filter_map(|&byte| inbox.take(byte)).collect();
-        let [ToHost::Answer(1, Answer::Refused(field))] = answers[..] else { panic!("{answers:?}") };
-        assert!(refusal(field).ends_with("flash it anew"), "{field:?}");
+        assert_eq!(inbox.counts, Counts { messages: 1, damaged: 1, ..Counts::default() });
     }
 }

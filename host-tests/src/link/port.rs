@@ -3,12 +3,11 @@
 use std::io::{ErrorKind, Read, Write};
 use std::time::{Duration, Instant};
 
-use firmware::app::LastShown;
 use firmware::config::BAUD;
 use firmware::protocol::{Cause, Command, LinkError, MAX_WIRE, ToHost, VERSION, encode_command};
 use serialport::SerialPort;
 
-use super::inbox::{Counts, Inbox};
+use super::{AUTO, Inbox, choose};
 
 /// How long bytes are waited for: they are looked for often enough.
 const WAIT: Duration = Duration::from_millis(1);
@@ -23,8 +22,9 @@ const MOST_BYTES: usize = 1 << 16;
 pub struct Port {
     pub name: String,
     open: Option<Box<dyn SerialPort>>,
-    inbox: Inbox,
-    notices: Vec<String>,
+    pub inbox: Inbox,
+    /// What is the matter, or is well again: a line each, said once. To be drained.
+    pub notices: Vec<String>,
     /// When an intact message came last, or the port was opened, or last tried.
     since: Instant,
     bytes: usize,
@@ -32,22 +32,17 @@ pub struct Port {
 }
 
 impl Port {
-    /// Opens it; what is wrong in one line.
+    /// Opens the port of this name, or the only one over USB; what is wrong in one line.
     pub fn open(name: &str) -> Result<Self, String> {
-        let open = Some(open(name).map_err(|error| reason(name, &error))?);
+        let name = match name {
+            AUTO => choose(&serialport::available_ports().unwrap_or_default())?,
+            name => name.to_owned(),
+        };
+        let open = Some(open(&name).map_err(|error| reason(&name, &error))?);
         let (inbox, notices, since) = (Inbox::default(), Vec::new(), Instant::now());
-        let mut port = Self { name: name.to_owned(), open, inbox, notices, since, bytes: 0, complained: false };
+        let mut port = Self { name, open, inbox, notices, since, bytes: 0, complained: false };
         port.inbox.join();
         Ok(port)
-    }
-
-    pub fn counts(&self) -> Counts {
-        self.inbox.counts()
-    }
-
-    /// What is the matter, or is well again: a line each, said once.
-    pub fn notices(&mut self) -> impl Iterator<Item = String> {
-        self.notices.drain(..)
     }
 
     /// The messages that have come since the last call. A port that is gone is opened again once it is back.
@@ -55,10 +50,10 @@ impl Port {
         if self.open.is_none() {
             self.reopen();
         }
-        let restarts = self.inbox.counts().restarts;
+        let restarts = self.inbox.counts.restarts;
         let bytes = self.read();
         let messages: Vec<_> = bytes.into_iter().filter_map(|byte| self.inbox.take(byte)).collect();
-        if self.inbox.counts().restarts > restarts {
+        if self.inbox.counts.restarts > restarts {
             self.notices.push(restart(&messages));
         }
         self.note(&messages);
@@ -128,7 +123,7 @@ impl Port {
 
     fn silence(&self) -> String {
         let Self { name, bytes, .. } = self;
-        match self.inbox.damage() {
+        match self.inbox.damage {
             _ if *bytes == 0 => format!("{name}: nothing comes; is the board on, and its TX at the adapter's RX?"),
             Some(LinkError::Version(version)) => {
                 format!(
@@ -146,7 +141,7 @@ fn restart(messages: &[ToHost]) -> String {
         return "the board has been switched on or reset".to_owned();
     };
     let cause = end.cause.map_or("reset", Cause::name);
-    format!("the board has restarted after a {cause} in {}", LastShown(Some(end)))
+    format!("the board has restarted after a {cause} in {end}")
 }
 
 fn open(name: &str) -> serialport::Result<Box<dyn SerialPort>> {

@@ -208,12 +208,14 @@ fn every_button_does_its_own() -> anyhow::Result<()> {
     let mut board = board()?;
     board.run(10 * TICK)?;
     let mut show = show(&PICO, SceneName::Page);
-    for key in [Key::Up, Key::Up, Key::Left, Key::Right, Key::Right, Key::Down] {
+    let [up, right] = [(Key::Up, Command::Heavier), (Key::Right, Command::TurnRight)];
+    let [down, left] = [(Key::Down, Command::Lighter), (Key::Left, Command::TurnLeft)];
+    for (key, command) in [up, up, left, right, right, down] {
         board.set_key(key, true)?;
         board.run(6 * TICK)?;
         board.set_key(key, false)?;
         board.run(6 * TICK)?;
-        show.player.execute(key.tapped()).expect("within its range");
+        show.player.execute(command).expect("within its range");
         let (frame, here) = (board.next_frame()?, show.player.frame());
         assert_eq!((frame.mass_ratio, frame.start_angle), (here.mass_ratio, here.start_angle), "{}", key.name());
     }
@@ -228,7 +230,7 @@ fn the_watchdog_restarts_the_board_in_its_scene() -> anyhow::Result<()> {
     let mut board = board()?;
     board.run(PICTURE)?;
     board.send(1, Command::Choose(SceneName::Butterfly))?;
-    board.send(2, Key::Up.tapped())?;
+    board.send(2, Command::Heavier)?;
     board.run(10 * TICK)?;
     let before = board.next_frame()?;
     board.run(TICK / 4)?;

@@ -15,7 +15,7 @@ use firmware::protocol::{
     Answer, Command, Decoder, Field, Frame, MAX_MESSAGE, MAX_WIRE, ToHost, decode_command, encode, encode_command,
     frame,
 };
-use firmware::scenes::Report;
+use firmware::scenes::{Report, SceneName};
 use host_tests::commands::simulate::{Number, SimulateOptions, plan};
 use host_tests::link::Inbox;
 use host_tests::oracle::trials;
@@ -127,13 +127,14 @@ proptest! {
     #[test]
     fn every_command_is_answered(commands in prop::collection::vec(command(), 1..3)) {
         let mut sheets = FrameBuffers::BLANK;
-        let mut app = App::new(Settings::default(), &mut sheets, NoDisplay, Vec::new(), NoButtons).expect("good settings");
+        let mut app = App::new(CORTEX_M4F, &mut sheets, NoDisplay, Vec::new(), NoButtons);
+        app.player.play(SceneName::Page, Settings::default()).expect("good settings");
         for (tick, bytes) in (1..).zip(commands) {
             let (status, sent) = (app.player.status(), app.link.len());
             app.receive(bytes.iter().copied(), |_| ());
             let mut inbox = Inbox::default();
             let answers = received(&mut inbox, &app.link[sent..]);
-            prop_assert_eq!(inbox.damage(), None);
+            prop_assert_eq!(inbox.damage, None);
             let asked = intact(&mut Decoder::default(), &bytes).first().and_then(|message| decode_command(message));
             let is_silent = matches!(asked, None | Some((_, Some(Command::Simulate(_)))));
             prop_assert!(matches!(*answers, [_]) || answers.is_empty() && is_silent, "{answers:?} to {asked:?}");
@@ -142,7 +143,7 @@ proptest! {
             }
             app.run_to(tick, |_| ());
             app.work(|_| ());
-            prop_assert_eq!(app.player.report().state.check(), Ok(()));
+            prop_assert_eq!(app.player.report.state.check(), Ok(()));
         }
     }
 
@@ -153,7 +154,8 @@ proptest! {
         (dt, stride, samples) in (number(), any::<u8>(), any::<u32>()),
     ) {
         let request = Request { method, parameters, angles, velocities, dt, stride: stride.into(), samples };
-        let Ok(mut job) = Job::<OnBoards>::new(&request) else { return Ok(()) };
+        let run = OnBoards::start(&request).expect("a method of the boards");
+        let Ok(mut job) = run.and_then(|run| Job::new(run, &request)) else { return Ok(()) };
         for _ in 0..24 {
             let Ok(reading) = job.advance() else {
                 prop_assert!(job.is_finished());

@@ -3,7 +3,7 @@
 
 use clap::Parser;
 use double_pendulum::Motion;
-use firmware::job::{JobError, Request};
+use firmware::job::Request;
 use host_tests::commands::simulate::{Plan, SimulateOptions, choose};
 use host_tests::emulator::boards::BOARDS;
 use reference::taylor;
@@ -73,9 +73,9 @@ fn chosen(arguments: &str) -> Result<(Plan, f64), String> {
 }
 
 /// The largest error of an angle in any row, rad, by the double-double reference.
-fn error(request: &Request) -> Result<f64, JobError> {
+fn error(request: &Request) -> Result<f64, double_pendulum::Error> {
     let mut rows = Vec::new();
-    request.readings::<JobError>(|reading| {
+    request.readings::<double_pendulum::Error>(|reading| {
         rows.push(reading.state);
         Ok(())
     })?;

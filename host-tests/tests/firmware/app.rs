@@ -1,11 +1,9 @@
 //! The application as it runs on the boards, with a panel in memory, a growing byte vector and scripted buttons.
 
-use std::cell::Cell;
-
 use double_pendulum::plan::Way;
 use double_pendulum::{Method, Parameters, Pendulum, State};
 use embedded_io::{ErrorKind, ErrorType, Write};
-use firmware::app::{Buttons, Event, NoButtons, Pressed, WarmRestart};
+use firmware::app::{Buttons, Event, MOST_RESTARTS, NoButtons, Pressed, Record};
 use firmware::config::{GRAVITY, MOST_TICKS_PER_FRAME, ROD, TICK_RATE};
 use firmware::display::{Display, NoDisplay};
 use firmware::graphics::{Canvas, Place, RodDirections, View};
@@ -35,7 +33,7 @@ fn the_state_and_the_picture_after_n_ticks_are_the_same_at_any_frame_rate() {
         ("uneven", run((0..600).filter(|n| n * n % 7 < 2).chain([600]))),
         ("all at once", run([600])),
     ] {
-        assert_eq!(other.player.report(), steady.player.report(), "{name}");
+        assert_eq!(other.player.report, steady.player.report, "{name}");
         assert_eq!(other.canvas, steady.canvas, "{name}");
     }
 }
@@ -167,42 +165,17 @@ fn buttons_restart_with_the_new_settings() {
     assert_eq!((frames[53].report.step, frames[53].sequence), (1, 53));
 }
 
-#[test]
-fn impossible_settings_are_refused() {
-    for mass_ratio in [0.0, -1.0, f32::NAN, f32::INFINITY] {
-        let settings = Settings::equal_rods(mass_ratio, 120.0);
-        let message = Show::new(SceneName::Page, &settings).expect_err("refused").to_string();
-        assert!(message.starts_with("m2 = "), "{message}");
-    }
-}
+/// Fails in the first frame, and from the tenth to the nineteenth.
+#[derive(Default)]
+struct BrokenPanel(u32);
 
-struct BrokenPanel<'a>(&'a Cell<bool>);
-
-impl Display for BrokenPanel<'_> {
+impl Display for BrokenPanel {
     type Error = &'static str;
 
     fn flush(&mut self, _: &Canvas) -> Result<(), &'static str> {
-        if self.0.get() { Err("bus") } else { Ok(()) }
+        self.0 += 1;
+        if self.0 == 1 || (10..20).contains(&self.0) { Err("bus") } else { Ok(()) }
     }
-}
-
-#[test]
-fn a_failing_panel_is_reported_once_and_does_not_stop_the_rest() {
-    let broken = Cell::new(true);
-    let mut app = of(BrokenPanel(&broken), Vec::new(), NoButtons);
-    let mut events = Vec::new();
-    for now in 1..=30 {
-        broken.set(!(10..20).contains(&now));
-        app.run_to(now, |event| events.push((now, event)));
-    }
-    assert_eq!(events, [(1, Event::Panel("bus")), (20, Event::Panel("bus"))]);
-    assert_eq!(frames(&app.link).len(), 30);
-}
-
-/// Where the rods point, by the state reported.
-fn directions(app: &Plain) -> RodDirections {
-    let State { a1, a2, .. } = app.player.report().state;
-    [a1, a2].map(|angle| angle.sin_cos().into())
 }
 
 /// Fails for the writes from 5 to 9, each time after half of the bytes.
@@ -231,22 +204,29 @@ impl Write for Faulty {
 }
 
 #[test]
-fn a_failing_link_is_reported_once_and_loses_only_its_own_frames() {
-    let mut app = of(NoDisplay, Faulty::default(), NoButtons);
+fn a_failing_panel_or_link_is_reported_once_and_only_what_the_link_cut_is_lost() {
+    let mut app = of(BrokenPanel::default(), Faulty::default(), NoButtons);
     let mut events = Vec::new();
-    for now in 1..=20 {
-        app.run_to(now, |event| events.push(event));
+    for now in 1..=30 {
+        app.run_to(now, |event| events.push((now, event)));
     }
-    assert_eq!(events, [Event::Link(ErrorKind::TimedOut)]);
+    let link = (5, Event::Link(ErrorKind::TimedOut));
+    assert_eq!(events, [(1, Event::Panel("bus")), link, (10, Event::Panel("bus"))]);
     // Writes: frames 0 to 3 (1 to 4), frames 4 to 8 broken off in the middle (5 to 9), then all is well.
     let mut inbox = Inbox::default();
     let frames = app.link.bytes.iter().filter_map(|&byte| inbox.take(byte)?.frame());
-    assert!(frames.map(|frame| frame.sequence).eq((0..4).chain(9..20)));
-    assert_eq!(inbox.counts().damaged, 5);
+    assert!(frames.map(|frame| frame.sequence).eq((0..4).chain(9..30)));
+    assert_eq!(inbox.counts.damaged, 5);
+}
+
+/// Where the rods point, by the state reported.
+fn directions(app: &Plain) -> RodDirections {
+    let State { a1, a2, .. } = app.player.report.state;
+    [a1, a2].map(|angle| angle.sin_cos().into())
 }
 
 fn view(app: &Plain) -> View {
-    View::new(&app.player.settings().parameters, Place::WHOLE, directions(app))
+    View::new(&app.player.settings.parameters, Place::WHOLE, directions(app))
 }
 
 #[test]
@@ -287,15 +267,18 @@ fn a_restart_goes_on_with_what_was_played() {
     let played = before.player.status();
     let (cause, scene) = (Some(Cause::Hang), SceneName::Butterfly);
     let end = Restarted { cause, restarts: 1, pc: 2, lr: 3, cfsr: 0, scene, step: 5 };
+    let given_up = Restarted { restarts: MOST_RESTARTS + 1, ..end };
     let massless = Status { settings: Settings::equal_rods(0.0, 90.0), ..played };
-    for (played, resumed) in [(Some(played), true), (Some(massless), false), (None, false)] {
+    let timeless = Status { speed: f32::NAN, ..played };
+    for (played, end, resumed) in
+        [(played, end, true), (massless, end, false), (timeless, end, false), (played, given_up, false)]
+    {
         let mut app = app();
         let first = app.player.status();
-        let restart = WarmRestart { played, end };
         let mut events = Vec::new();
-        app.resume(&restart, |event| events.push(event));
-        assert_eq!(events, [Event::Restarted(restart, resumed)]);
-        assert_eq!(app.player.status(), played.filter(|_| resumed).unwrap_or(first));
+        app.resume(&Record { played, end }, |event| events.push(event));
+        assert_eq!(events, [Event::Restarted(end, resumed)]);
+        assert_eq!(app.player.status(), if resumed { played } else { first });
         assert_eq!(messages(&app.link), [ToHost::Restarted(end)]);
     }
 }

@@ -2,26 +2,32 @@
 
 use embedded_io::Write;
 use firmware::app::{App, Buttons, NoButtons};
+use firmware::config::PROCESSOR;
 use firmware::display::{Display, NoDisplay};
 use firmware::graphics::{HEIGHT, WIDTH};
 use firmware::motion::Settings;
 use firmware::protocol::{Answer, Command, Frame, MAX_WIRE, ToHost, encode_command};
+use firmware::scenes::SceneName;
 use host_tests::emulator::host::sheets;
 use host_tests::link::Inbox;
 
 pub type Plain = App<'static, NoDisplay, Vec<u8>, NoButtons>;
 
+/// The application as it begins, with such devices.
+pub fn of<P: Display, L: Write, K: Buttons>(panel: P, link: L, keys: K) -> App<'static, P, L, K> {
+    let mut app = App::new(PROCESSOR, sheets(), panel, link, keys);
+    app.player.play(SceneName::Page, Settings::default()).expect("good settings");
+    app
+}
+
 pub fn app() -> Plain {
-    starting_with(Settings::default())
+    of(NoDisplay, Vec::new(), NoButtons)
 }
 
 pub fn starting_with(settings: Settings) -> Plain {
-    App::new(settings, sheets(), NoDisplay, Vec::new(), NoButtons).expect("good settings")
-}
-
-/// The application with such devices.
-pub fn of<P: Display, L: Write, K: Buttons>(panel: P, link: L, keys: K) -> App<'static, P, L, K> {
-    App::new(Settings::default(), sheets(), panel, link, keys).expect("good settings")
+    let mut app = app();
+    app.player.play(SceneName::Page, settings).expect("good settings");
+    app
 }
 
 pub fn wire(request: u16, command: Command) -> Vec<u8> {
@@ -32,7 +38,7 @@ pub fn wire(request: u16, command: Command) -> Vec<u8> {
 pub fn messages(bytes: &[u8]) -> Vec<ToHost> {
     let mut inbox = Inbox::default();
     let messages = bytes.iter().filter_map(|&byte| inbox.take(byte)).collect();
-    assert_eq!(inbox.damage(), None);
+    assert_eq!(inbox.damage, None);
     messages
 }
 

@@ -35,31 +35,36 @@ fn a_button_held_since_reset_counts_only_once_released() {
 }
 
 #[test]
-fn bounces_do_not_count() {
-    let mut controls = proven();
-    assert_eq!(commands(&mut controls, [UP, NONE, UP, NONE, UP, NONE]), []);
-    let first = usize::from(DEBOUNCE_TICKS) - 1;
-    assert_eq!(commands(&mut controls, [UP; 10]), [(first, Command::Heavier)]);
-    assert_eq!(commands(&mut controls, [NONE, UP, NONE, UP, UP, UP]), [], "bouncing while let go");
-}
-
-#[test]
-fn a_held_button_repeats() {
+fn readings_become_commands() {
+    let held =
+        |readings: &[(Pressed, usize)]| readings.iter().flat_map(|&(one, ticks)| vec![one; ticks]).collect::<Vec<_>>();
     let first = usize::from(DEBOUNCE_TICKS) - 1;
     let (delay, period) = (usize::from(REPEAT_DELAY_TICKS), usize::from(REPEAT_PERIOD_TICKS));
-    let expected = [first, first + delay, first + delay + period, first + delay + 2 * period];
-    let fired = commands(&mut proven(), [UP; 36]);
-    assert_eq!(fired, expected.map(|tick| (tick, Command::Heavier)));
-}
-
-#[test]
-fn select_restarts_when_let_go_and_changes_the_scene_when_held() {
-    let (tap, debounce) = (10, usize::from(DEBOUNCE_TICKS) - 1);
-    let readings = [SELECT; 10].into_iter().chain([NONE; 10]);
-    assert_eq!(commands(&mut proven(), readings), [(tap + debounce, Command::Restart)]);
-    let held = debounce + usize::from(HOLD_TICKS) - 1;
-    let readings = [SELECT; 200].into_iter().chain([NONE; 10]);
-    assert_eq!(commands(&mut proven(), readings), [(held, Command::NextScene)], "once, and no restart after it");
+    let repeated = [first, first + delay, first + delay + period, first + delay + 2 * period];
+    let next_scene = first + usize::from(HOLD_TICKS) - 1;
+    let mut cases = vec![
+        ("bounces do not count", [UP, NONE].repeat(3), vec![]),
+        (
+            "nor when let go",
+            [vec![UP; 10], [NONE, UP].repeat(2), vec![UP; 2]].concat(),
+            vec![(first, Command::Heavier)],
+        ),
+        ("held, it repeats", vec![UP; 36], repeated.map(|tick| (tick, Command::Heavier)).to_vec()),
+        ("let go, it restarts", held(&[(SELECT, 10), (NONE, 10)]), vec![(10 + first, Command::Restart)]),
+        ("once, and no restart after it", held(&[(SELECT, 200), (NONE, 10)]), vec![(next_scene, Command::NextScene)]),
+    ];
+    for (arrow, command) in [
+        (Pressed { up: true, ..SELECT }, Command::TogglePause),
+        (Pressed { down: true, ..SELECT }, Command::Step(1)),
+        (Pressed { left: true, ..SELECT }, Command::PreviousScene),
+        (Pressed { right: true, ..SELECT }, Command::NextScene),
+    ] {
+        let readings = held(&[(SELECT, 10), (arrow, 100), (SELECT, 100), (NONE, 10)]);
+        cases.push(("with select it neither repeats nor restarts", readings, vec![(10 + first, command)]));
+    }
+    for (what, readings, fired) in cases {
+        assert_eq!(commands(&mut proven(), readings), fired, "{what}");
+    }
 }
 
 /// With one button: so many taps, and then it is held.
@@ -81,20 +86,6 @@ fn taps_before_a_hold_choose_what_the_hold_does() {
     }
     assert_eq!(after(5, 0, held), [], "there is nothing for five taps");
     assert_eq!(after(3, 0, 20), [], "not held long enough");
-}
-
-#[test]
-fn arrows_mean_something_else_while_select_is_held() {
-    for (arrow, command) in [
-        (Pressed { up: true, ..SELECT }, Command::TogglePause),
-        (Pressed { down: true, ..SELECT }, Command::Step(1)),
-        (Pressed { left: true, ..SELECT }, Command::PreviousScene),
-        (Pressed { right: true, ..SELECT }, Command::NextScene),
-    ] {
-        let readings = [SELECT; 10].into_iter().chain([arrow; 100]).chain([SELECT; 100]).chain([NONE; 10]);
-        let fired = [(10 + usize::from(DEBOUNCE_TICKS) - 1, command)];
-        assert_eq!(commands(&mut proven(), readings), fired, "neither repeats nor restarts");
-    }
 }
 
 #[test]

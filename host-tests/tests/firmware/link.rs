@@ -8,7 +8,7 @@ use firmware::app::Record;
 use firmware::job::{Reading, Request};
 use firmware::motion::{Planned, Settings};
 use firmware::protocol::{
-    Answer, Cause, Command, Decoder, Frame, Identity, LinkError, MAX_MESSAGE, MAX_WIRE, Restarted, Status, ToHost,
+    Answer, Cause, Command, Decoder, Frame, LinkError, MAX_MESSAGE, MAX_WIRE, Restarted, Status, ToHost,
     decode_command, encode, encode_command, frame,
 };
 use firmware::scenes::{Report, SceneName};
@@ -81,41 +81,25 @@ fn every_flipped_bit_on_the_wire_is_detected() {
 /// The longest messages, their whole numbers as large as they can be.
 #[test]
 fn every_message_fits() {
-    let (number, steps) = (u32::MAX, u32::MAX);
-    let method = Method::TextbookF32;
-    let report = Report { step: u64::MAX, way: Some(Way { method, steps }), ..Report::default() };
+    let (method, steps, number, step) = (Method::TextbookF32, u32::MAX, u32::MAX, u64::MAX);
+    let report = Report { step, way: Some(Way { method, steps }), ..Report::default() };
     let counts = Frame { sequence: number, dropped: number, lost: number, report, ..Frame::default() };
     let frame = Frame { scene_cycles: number, busy_cycles: number, ..counts };
+    let (dt, horizon, error, cost, spent, limit) = (1.0, 1.0, 1.0, 1.0, 1.0, Limit::End);
+    let found = Some(Ok(Plan { method, steps, dt, error, cost, horizon, limit, spent }));
+    let planned = Planned { found, height: 1.0, duration: 1.0, frame: 1.0, planning: 1.0 };
+    let sample = Answer::Sample { index: number, reading: Reading::default() };
+    let answers = [Answer::Planned(Some(planned)), sample].map(|answer| ToHost::Answer(u16::MAX, answer));
+    assert_eq!([ToHost::Frame(frame), answers[0], answers[1]].map(length), [94, 71, 74]);
+
     let (cause, scene) = (Some(Cause::Fault), SceneName::Flips);
-    let end = Restarted { cause, restarts: u8::MAX, pc: number, lr: number, cfsr: number, scene, step: u64::MAX };
-    let board = Identity { hertz: number, processor: number, chip: [number; 4], ..Identity::default() };
-    let identity = Identity { image: number, image_bytes: number, ..board };
+    let end = Restarted { cause, restarts: u8::MAX, pc: number, lr: number, cfsr: number, scene, step };
     let (settings, method) = (Settings::default(), Some(method));
-    let status = Status { scene, settings, method, processor: 0, paused: true, steps, speed: 1.0 };
-    let plan = Plan {
-        method: Method::TextbookF32,
-        steps,
-        dt: 1.0,
-        error: 1.0,
-        cost: 1.0,
-        horizon: 1.0,
-        limit: Limit::End,
-        spent: 1.0,
-    };
-    let planned = Planned { found: Some(Ok(plan)), height: 1.0, duration: 1.0, frame: 1.0, planning: 1.0 };
-    let record = Record { played: status, end };
-    assert_eq!(Record::read(&record.write()), Some(record));
-    let answer = |answer| length(ToHost::Answer(u16::MAX, answer));
-    let lengths = [
-        length(ToHost::Frame(frame)),
-        length(ToHost::Restarted(end)),
-        answer(Answer::Identity(identity)),
-        answer(Answer::Planned(Some(planned))),
-        answer(Answer::Sample { index: number, reading: Reading::default() }),
-        answer(Answer::Status(status)),
-    ];
-    assert_eq!(lengths, [94, 38, 54, 71, 74, 63]);
-    let command = Command::Simulate(Request { stride: number, samples: number, ..Request::default() });
+    let played = Status { scene, settings, method, processor: 0, paused: true, steps, speed: 1.0 };
+    assert_eq!(Record::read(&Record { played, end }.write()), Some(Record { played, end }));
+
+    let command =
+        Command::Simulate(Request { stride: number, samples: number, ..Request::on_any_core(Method::Rk4F64) });
     let message = decoded(encode_command(u16::MAX, command, &mut [0; MAX_WIRE])).expect("a message").expect("intact");
     assert_eq!((message.len(), decode_command(&message)), (96, Some((u16::MAX, Some(command)))));
 }

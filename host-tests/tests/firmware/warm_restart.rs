@@ -1,7 +1,7 @@
 //! What is kept across a reset is trusted only if it is intact, and is played again as it was.
 
 use fastrand::Rng;
-use firmware::app::{Journal, LastShown, MOST_RESTARTS, Player, Record, SOUND_FRAMES, WarmRestart};
+use firmware::app::{Journal, MOST_RESTARTS, Player, Record, SOUND_FRAMES};
 use firmware::motion::Settings;
 use firmware::protocol::{Cause, Command, Field, MAX_WIRE, Restarted, Status};
 use firmware::scenes::SceneName;
@@ -34,10 +34,8 @@ fn ended(end: Restarted) -> Record {
 fn it_is_recalled_as_it_was_kept() {
     let kept = Record::read(&record().write()).expect("intact");
     assert_eq!(kept, record());
-    let end = Restarted { restarts: 2, ..kept.end };
-    assert_eq!(WarmRestart::recall(kept, false), Some(WarmRestart { played: Some(kept.played), end }));
-    assert_eq!(LastShown(Some(end)).to_string(), "scene butterfly, step 480");
-    assert_eq!(LastShown(None).to_string(), "no scene yet");
+    assert_eq!(kept.restart(false), Some(ended(Restarted { restarts: 2, ..kept.end })));
+    assert_eq!(kept.end.to_string(), "scene butterfly, step 480");
 }
 
 #[test]
@@ -54,23 +52,22 @@ fn what_memory_holds_when_it_is_switched_on_is_not_trusted() {
 #[test]
 fn a_reset_from_outside_starts_anew_and_one_by_the_watchdog_does_not() {
     let running = ended(Restarted { cause: None, ..record().end });
-    assert_eq!(WarmRestart::recall(running, false), None);
-    let hung = WarmRestart::recall(running, true).expect("the watchdog's");
-    assert_eq!(hung.end.cause, Some(Cause::Hang));
+    assert_eq!(running.restart(false), None);
+    assert_eq!(running.restart(true).map(|hung| hung.end.cause), Some(Some(Cause::Hang)));
 }
 
 #[test]
 fn what_ends_the_board_each_time_is_given_up() {
     for restarts in [0, 1, MOST_RESTARTS - 1, MOST_RESTARTS, u8::MAX] {
-        let restart = WarmRestart::recall(ended(Restarted { restarts, ..record().end }), false).expect("a fault");
+        let restart = ended(Restarted { restarts, ..record().end }).restart(false).expect("a fault");
         assert_eq!(restart.end.restarts, restarts.saturating_add(1));
-        assert_eq!(restart.played.is_some(), restarts < MOST_RESTARTS, "after {restarts}");
+        assert_eq!(restart.is_given_up(), restarts >= MOST_RESTARTS, "after {restarts}");
     }
 }
 
 #[test]
 fn a_minute_without_a_restart_forgets_those_before() {
-    let (player, restart) = (player(), WarmRestart::recall(record(), false));
+    let (player, restart) = (player(), record().restart(false));
     let mut journal = Journal::new(restart.as_ref());
     for frame in 1..=SOUND_FRAMES + 10 {
         let restarts = if frame < SOUND_FRAMES { 2 } else { 0 };
@@ -92,28 +89,5 @@ fn every_scene_is_resumed_with_its_settings() {
             resumed.resume(&status).expect("it was possible before");
             assert_eq!(resumed.status(), status, "{}", name.name());
         }
-    }
-}
-
-#[test]
-fn what_cannot_be_played_changes_nothing() {
-    let mut player = player();
-    let before = player.status();
-    let good = status();
-    let massless = Settings::equal_rods(0.0, 90.0);
-    for impossible in [Status { settings: massless, ..good }, Status { speed: f32::NAN, ..good }] {
-        assert!(player.resume(&impossible).is_err());
-        assert_eq!(player.status(), before);
-    }
-}
-
-#[test]
-fn any_flipped_bit_is_noticed() {
-    let kept = record().write();
-    let end = 1 + kept.iter().rposition(|byte| *byte > 0).expect("it is not empty");
-    for bit in 0..8 * (end + 1) {
-        let mut kept = kept;
-        kept[bit / 8] ^= 1 << (bit % 8);
-        assert_eq!(Record::read(&kept), None, "bit {bit}");
     }
 }

@@ -2,10 +2,12 @@
 
 use double_pendulum::{Error, Integrator, Method, Parameter, Parameters, State};
 use firmware::app::{App, Event, NoButtons};
+use firmware::config::PROCESSOR;
 use firmware::display::NoDisplay;
-use firmware::job::{Job, Reading, Request};
+use firmware::job::{Job, OnBoards, Reading, Request};
 use firmware::motion::Settings;
 use firmware::protocol::Field;
+use firmware::scenes::SceneName;
 use host_tests::emulator::host::sheets;
 use host_tests::oracle::trials;
 
@@ -42,7 +44,8 @@ fn a_job_is_refused_when_its_motion_is_lost() {
     let (angles, velocities) = ([3.0, 1.0], [3000.0, -3000.0]);
     let request =
         Request { method: Method::Rk4F32, parameters, angles, velocities, dt: 0.06, stride: 1, samples: MANY };
-    let mut job: Job = Job::new(&request).expect("within the limit");
+    let run = OnBoards::start(&request).expect("of the boards").expect("within the limit");
+    let mut job = Job::new(run, &request).expect("a pendulum");
     let answers: Vec<_> = std::iter::from_fn(|| (!job.is_finished()).then(|| job.advance())).collect();
     let (last, readings) = answers.split_last().expect("answers");
     assert_eq!(last.map_err(Field::from), Err(Field::Dt), "after {} readings", readings.len());
@@ -58,22 +61,22 @@ fn a_job_is_refused_when_its_motion_is_lost() {
 fn a_scene_stands_at_its_last_good_frame() {
     let parameters = Parameters { m1: 1.0, m2: 1.0, l1: 1e-4, l2: 1e-4, g: 9.8 };
     let settings = Settings { parameters, degrees: [179.0, 60.0], velocities: [3e4, -3e4] };
-    let mut app =
-        App::new(settings, sheets(), NoDisplay, Vec::new(), NoButtons).unwrap_or_else(|error| panic!("{error}"));
+    let mut app = App::new(PROCESSOR, sheets(), NoDisplay, Vec::new(), NoButtons);
+    app.player.play(SceneName::Page, settings).unwrap_or_else(|error| panic!("{error}"));
     let mut stops = Vec::new();
     let mut last_good = None;
     for tick in 1..=600 {
-        let report = app.player.report();
+        let report = app.player.report;
         app.run_to(tick, |event| {
             if let Event::Stopped(error) = event {
                 stops.push(error);
                 last_good = Some(report);
             }
         });
-        assert_eq!(app.player.report().state.check(), Ok(()), "at tick {tick}");
+        assert_eq!(app.player.report.state.check(), Ok(()), "at tick {tick}");
     }
     assert!(matches!(*stops, [Error::Diverged { .. }]), "said once: {stops:?}");
-    assert_eq!(Some(app.player.report()), last_good);
+    assert_eq!(Some(app.player.report), last_good);
     assert!(app.player.is_paused());
     let frame = app.canvas.clone();
     app.run_to(601, |event| panic!("{event:?}"));

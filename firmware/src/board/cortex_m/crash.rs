@@ -28,7 +28,6 @@ use cortex_m_semihosting::{debug, hio};
 
 use super::stack::{calls, instruction};
 use super::{retained, watchdog};
-use crate::app::LastShown;
 use crate::config::WATCHDOG_SECONDS;
 use crate::fault::{Fault, Stacked};
 use crate::protocol::Cause;
@@ -170,7 +169,10 @@ fn crash((cause, pc, lr, cfsr): (Cause, u32, u32, u32), report: &dyn Display) ->
 #[inline(never)]
 fn say(report: &dyn Display) {
     if let Ok(mut stderr) = hio::hstderr() {
-        let _ = writeln!(stderr, "{report}\n  {}", LastShown(retained::last()));
+        let _ = match retained::last() {
+            Some(last) => writeln!(stderr, "{report}\n  {last}"),
+            None => writeln!(stderr, "{report}\n  no scene yet"),
+        };
     }
 }
 

@@ -3,7 +3,7 @@
 use core::hint::black_box;
 use core::sync::atomic::{AtomicU8, Ordering};
 
-use crate::app::{Record, WarmRestart};
+use crate::app::Record;
 use crate::protocol::{Cause, MAX_WIRE, Restarted};
 
 /// A watchdog's interrupt may write in the middle of the main loop's writing: what comes of two at once is found out by
@@ -32,8 +32,8 @@ fn kept() -> Option<Record> {
 }
 
 /// What was kept across the last reset, if that was no planned one.
-pub fn recall(by_watchdog: bool) -> Option<WarmRestart> {
-    WarmRestart::recall(kept()?, by_watchdog)
+pub fn recall(by_watchdog: bool) -> Option<Record> {
+    kept()?.restart(by_watchdog)
 }
 
 pub fn last() -> Option<Restarted> {

@@ -31,7 +31,7 @@ use crate::emulator::boards::PICO;
 use crate::emulator::pico::PicoMachine;
 use crate::emulator::qemu::{Clock, Machine, Settings};
 use crate::emulator::toolchain;
-use crate::link::{Port, find};
+use crate::link::Port;
 
 /// How long a run without a terminal takes if nothing else is asked for.
 const DEFAULT_SECONDS: f64 = 10.0;
@@ -52,8 +52,7 @@ pub fn run(options: &DemoOptions) -> anyhow::Result<bool> {
 }
 
 pub(crate) fn port(name: &str) -> Result<Port, Refused> {
-    let refused = |reason: String| Refused::because(format_args!("--port {reason}"));
-    Port::open(&find(name).map_err(refused)?).map_err(refused)
+    Port::open(name).map_err(|reason| Refused::because(format_args!("--port {reason}")))
 }
 
 fn emulated(options: &DemoOptions, is_live: bool) -> anyhow::Result<Source<'_>> {

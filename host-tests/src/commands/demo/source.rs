@@ -65,7 +65,7 @@ impl Source<'_> {
         match self {
             Self::Live(machine, _) | Self::Lockstep(machine, _) => machine.lines(),
             Self::Pico(machine) => machine.lines(),
-            Self::Port(port) => port.notices().map(notice).collect(),
+            Self::Port(port) => port.notices.drain(..).map(notice).collect(),
         }
     }
 
@@ -73,7 +73,7 @@ impl Source<'_> {
         match self {
             Self::Live(machine, _) | Self::Lockstep(machine, _) => machine.counts(),
             Self::Pico(machine) => machine.counts()[0],
-            Self::Port(port) => port.counts(),
+            Self::Port(port) => port.inbox.counts,
         }
     }
 

@@ -3,7 +3,7 @@
 
 use double_pendulum::{Method, Motion, Parameters, Pendulum, State};
 use firmware::config::{GRAVITY, REACH};
-use firmware::job::{JobError, Request};
+use firmware::job::Request;
 
 use crate::oracle::trials::apart;
 use reference::taylor;
@@ -97,13 +97,13 @@ pub fn error_after(method: Method, scene: &Scene, steps: u32) -> Option<Error> {
 /// The error of a request; `None` if its method does not apply to the scene or the step. A motion that was lost has an infinite one.
 pub fn error(request: &Request, exact: &[[f64; 2]]) -> Option<Error> {
     let mut angles = Vec::new();
-    let run = request.readings::<JobError>(|reading| {
+    let run = request.readings::<double_pendulum::Error>(|reading| {
         angles.push([reading.state[0], reading.state[1]]);
         Ok(())
     });
     match (run, &angles[..]) {
         (Ok(()), [_start, angles @ ..]) => Some(worst(&request.parameters, angles, exact)),
-        (Err(JobError::Refused(double_pendulum::Error::Diverged { .. })), _) => Some(LOST),
+        (Err(double_pendulum::Error::Diverged { .. }), _) => Some(LOST),
         _ => None,
     }
 }

@@ -2,7 +2,7 @@
 
 use anyhow::{Context, anyhow, bail, ensure};
 use double_pendulum::{Error, Method, Motion, Parameter};
-use firmware::job::{JobError, Request};
+use firmware::job::Request;
 
 use super::options::name;
 use super::tolerance::methods;
@@ -34,7 +34,7 @@ pub fn plan(options: &SimulateOptions) -> anyhow::Result<Plan> {
     accepted(options, &request)?;
     // Numbers that overflow at once are refused before anything is printed.
     Request { stride: 1, samples: request.samples.min(1), ..request }
-        .readings(|_| Ok::<_, JobError>(()))
+        .readings(|_| Ok::<_, Error>(()))
         .with_context(|| format!("--step {step}: not even one step can be made"))?;
     let longest = request.admissible_step().filter(|longest| request.dt > *longest);
     let note = longest.map(|longest| {
@@ -69,12 +69,11 @@ pub(super) fn accepted(options: &SimulateOptions, request: &Request) -> anyhow::
             "--angles: {angle:?} rad: must not exceed {limit}, beyond which {numbers} has too few digits for a direction"
         );
     }
-    Request { samples: 0, ..*request }.readings(|_| Ok(())).map_err(|error: JobError| match error {
-        JobError::NotOnBoards(_) | JobError::Malformed => anyhow!("{error}"),
-        JobError::Refused(Error::Diverged { parameter: Parameter::Energy, .. }) => {
+    Request { samples: 0, ..*request }.readings(|_| Ok(())).map_err(|error: Error| match error {
+        Error::Diverged { parameter: Parameter::Energy, .. } => {
             anyhow!("--velocities {}: the energy at the start is too large a number", options.start.velocities)
         }
-        JobError::Refused(error) => anyhow!("{}: {error}", option_of(&error, "--step")),
+        error => anyhow!("{}: {error}", option_of(&error, "--step")),
     })
 }
 

@@ -1,12 +1,10 @@
 //! `cargo verify-board`: what the tests prove in emulation, proven on a board in the hand, with a report to be sent in.
 
-mod methods;
-mod questions;
-mod scenes;
+mod compare;
 mod talk;
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::Command;
 use std::time::Duration;
 
@@ -54,23 +52,32 @@ impl Section {
     fn new(title: &'static str, note: &'static str, columns: &'static [&'static str]) -> Self {
         Self { head: [title, note], table: Table { columns: columns.to_vec(), rows: Vec::new() }, faults: Vec::new() }
     }
+
+    fn add(&mut self, row: Vec<String>, fault: Option<String>) {
+        self.table.rows.push(row);
+        self.faults.extend(fault);
+    }
+}
+
+/// The cell of bits that differ or not.
+fn verdict(difference: Option<String>) -> String {
+    difference.unwrap_or_else(|| "the host's".to_owned())
 }
 
 pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
     let mut talk = Talk::new(demo::port(&options.port)?)?;
-    let identity = talk.ask(protocol::Command::Identify, |answer| match answer {
-        Answer::Identity(identity) => Some(identity),
-        _ => None,
+    let identity = talk.ask(protocol::Command::Identify, |answer| {
+        if let Answer::Identity(identity) = answer { Some(identity) } else { None }
     })?;
     let name = identity.board.name();
     let board = every_board().find(|board| board.name == name);
     let progress = Progress::start(&format!("verifying {name} at {}", talk.port.name));
-    let (bits, measured) = (methods::compare(&mut talk)?, methods::measure(&mut talk)?);
-    let scenes = scenes::watch(&mut talk, identity.hertz)?;
+    let (methods, scenes) = (compare::methods(&mut talk)?, compare::scenes(&mut talk, identity.hertz)?);
+    let cycles = compare::cycles(&mut talk, board)?;
     drop(progress);
-    let asked = if options.no_questions { Section::default() } else { questions::ask(&mut talk, name)? };
+    let asked = if options.no_questions { Section::default() } else { talk::ask_person(&mut talk, name)? };
     let program = program(board, &identity)?;
-    let sections = [bits, methods::estimate(measured, board)?, scenes, asked];
+    let sections = [methods, cycles, scenes, asked];
 
     let faults: Vec<&String> = sections.iter().flat_map(|section| &section.faults).collect();
     let verdict = if faults.is_empty() { "every bit the host's".into() } else { format!("{} not well", faults.len()) };
@@ -93,10 +100,9 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
 /// For git and the compiler to say which they are.
 const LIMIT: Duration = Duration::from_secs(30);
 
-/// Whether the program in the board's flash is the one that is built here, from which commit, by which compiler: what the board
-/// says of it beside the one that is built here for `board`, in a line.
+/// The program in the board's flash, and whether it is the one that is built here for `board`, from which commit, by which compiler,
+/// in a line.
 fn program(board: Option<&Board>, identity: &Identity) -> anyhow::Result<String> {
-    let built = board.map(|board| anyhow::Ok(crc(&toolchain::ready()?.build_for(board)?)?)).transpose()?;
     let said = |program: &str, arguments: &[&str]| {
         let output = process::run(Command::new(program).args(arguments).current_dir(workspace()), LIMIT);
         output.map_or_else(|_| "unknown".to_owned(), |output| output.stdout.trim().to_owned())
@@ -105,7 +111,7 @@ fn program(board: Option<&Board>, identity: &Identity) -> anyhow::Result<String>
     let changed = if said("git", &["status", "--porcelain"]).is_empty() { "" } else { "+" };
     let (commit, compiler) = (said("git", &["rev-parse", "--short=12", "HEAD"]), said("rustc", &["--version"]));
     let Identity { image, image_bytes, .. } = *identity;
-    let whose = if built == Some((image, image_bytes)) {
+    let whose = if board.map_or(Ok(false), |board| is_built(board, identity))? {
         format!("built from commit {commit}{changed} by {compiler}")
     } else {
         format!("not the one that commit {commit}{changed} and {compiler} build")
@@ -113,16 +119,13 @@ fn program(board: Option<&Board>, identity: &Identity) -> anyhow::Result<String>
     Ok(format!("program of {image_bytes} bytes, CRC {image:08x}: {whose}"))
 }
 
-/// CRC and length of what a board takes for its program, by the ELF file.
-fn crc(elf: &Path) -> anyhow::Result<(u32, u32)> {
-    let bytes = fs::read(elf).with_context(|| elf.display().to_string())?;
-    let file = object::File::parse(&*bytes)?;
-    let (first, image) = flash_image(&bytes)?;
-    let place = |name: &str| {
-        let address = file.symbols().find(|symbol| symbol.name() == Ok(name))?.address();
-        Some(address.checked_sub(first.into())? as usize)
-    };
-    let image = place("__vector_table").zip(place("__erodata")).and_then(|(start, end)| image.get(start..end));
-    let image = image.with_context(|| format!("{}: the program is not where its names say", elf.display()))?;
-    Ok((CRC.checksum(image), image.len() as u32))
+/// Whether what is built here for `board` has, from its vectors on, what the board says of itself.
+fn is_built(board: &Board, identity: &Identity) -> anyhow::Result<bool> {
+    let elf = fs::read(toolchain::ready()?.build_for(board)?)?;
+    let (first, flash) = flash_image(&elf)?;
+    let file = object::File::parse(&*elf)?;
+    let vectors = file.symbols().find(|symbol| symbol.name() == Ok("__vector_table")).context("no vectors")?;
+    let start = vectors.address() as usize - first as usize;
+    let image = flash.get(start..start + identity.image_bytes as usize);
+    Ok(image.is_some_and(|image| CRC.checksum(image) == identity.image))
 }

@@ -1,12 +1,17 @@
-//! Question and answer over a serial port.
+//! Question and answer: with the board over its port, and with the person at it, who alone can see its panel and press its buttons.
 
-use std::collections::VecDeque;
-use std::thread::sleep;
+use std::io::stdin;
+use std::sync::mpsc;
+use std::thread::{sleep, spawn};
 use std::time::{Duration, Instant};
 
 use anyhow::bail;
+use firmware::app::Key;
 use firmware::protocol::{Answer, Command, Frame, ToHost};
+use firmware::scenes::SceneName;
 
+use super::Section;
+use crate::console::cli::complain;
 use crate::link::{Port, refusal};
 
 /// A board answers a command within a tick; the slowest motion asked for has a sample every second.
@@ -15,43 +20,35 @@ const LOOK: Duration = Duration::from_millis(1);
 
 pub struct Talk {
     pub port: Port,
-    arrived: VecDeque<ToHost>,
+    arrived: std::vec::IntoIter<ToHost>,
 }
 
 impl Talk {
     pub fn new(port: Port) -> anyhow::Result<Self> {
-        let mut talk = Self { port, arrived: VecDeque::new() };
+        let mut talk = Self { port, arrived: Vec::new().into_iter() };
         talk.next_frame()?;
         Ok(talk)
     }
 
-    pub fn receive(&mut self) -> anyhow::Result<ToHost> {
-        let (since, mut told) = (Instant::now(), None);
-        while since.elapsed() <= PATIENCE {
-            if let Some(message) = self.arrived.pop_front() {
-                return Ok(message);
-            }
-            self.arrived.extend(self.port.messages());
-            told = self.port.notices().last().or(told);
-            sleep(LOOK);
-        }
-        let silence = || format!("{}: no message for {} s", self.port.name, PATIENCE.as_secs());
-        bail!(told.unwrap_or_else(silence))
-    }
-
     /// The next message of one kind; others on the way to it are passed over, but not a refusal.
     pub fn next<M>(&mut self, kind: impl Fn(ToHost) -> Option<M>) -> anyhow::Result<M> {
-        let since = Instant::now();
+        let (since, mut told) = (Instant::now(), None);
+        let mut silence = format!("{}: no message for {} s", self.port.name, PATIENCE.as_secs());
         while since.elapsed() < PATIENCE {
-            let message = self.receive()?;
-            if let ToHost::Answer(_, Answer::Refused(field)) = message {
-                bail!("the board refuses: {}", refusal(field));
+            for message in self.arrived.by_ref() {
+                if let ToHost::Answer(_, Answer::Refused(field)) = message {
+                    bail!("the board refuses: {}", refusal(field));
+                }
+                if let Some(wanted) = kind(message) {
+                    return Ok(wanted);
+                }
+                silence = format!("{}: the board plays, and does not answer; flash it anew", self.port.name);
             }
-            if let Some(wanted) = kind(message) {
-                return Ok(wanted);
-            }
+            self.arrived = self.port.messages().into_iter();
+            told = self.port.notices.drain(..).next_back().or(told);
+            sleep(LOOK);
         }
-        bail!("{}: the board plays, and does not answer; flash it anew", self.port.name)
+        bail!(told.unwrap_or(silence))
     }
 
     pub fn next_frame(&mut self) -> anyhow::Result<Frame> {
@@ -67,4 +64,61 @@ impl Talk {
         self.port.send(0, command);
         self.answer(0, kind)
     }
+}
+
+/// Frames that may still be on their way when the person answers.
+const UNDER_WAY: u32 = 12;
+
+/// Asks the person about what the board `name` has.
+pub fn ask_person(talk: &mut Talk, name: &str) -> anyhow::Result<Section> {
+    let (has_panel, keys): (_, &[Key]) = match name {
+        "lm3s6965evb" | "pico" => (true, Key::ALL),
+        "stm32f405" => (true, &[Key::Select]),
+        _ => (false, &[]),
+    };
+    talk.ask(Command::Choose(SceneName::Page), |answer| (answer == Answer::Done).then_some(()))?;
+    let mut section = Section::new("Seen and pressed", "By the person at the board.", &["what", "is so"]);
+    let mut note = |what: String, is_so: Option<bool>| {
+        let answer = is_so.map_or("not answered", |is_so| if is_so { "yes" } else { "no" });
+        let fault = (is_so == Some(false)).then(|| format!("not so: {what}"));
+        section.add(vec![what, answer.to_owned()], fault);
+    };
+    if has_panel {
+        let what = "the panel shows a swinging pendulum, upright and sharp";
+        let (answer, _) = entered(talk, &format!("{what}? [y/n, anything else: cannot say]"))?;
+        let is_so = match answer.trim() {
+            "y" | "yes" => Some(true),
+            "n" | "no" => Some(false),
+            _ => None,
+        };
+        note(what.to_owned(), is_so);
+    }
+    for key in keys.iter().map(|key| key.name()) {
+        let question = format!("tap the button '{key}', then press enter [n: there is none]");
+        let (answer, restarted) = entered(talk, &question)?;
+        let is_tapped = !matches!(answer.trim(), "n" | "no") && !answer.is_empty();
+        note(format!("a tap on the button '{key}' starts the motion again"), is_tapped.then_some(restarted));
+    }
+    Ok(section)
+}
+
+/// The line that the person enters, empty where input has ended, and whether the motion started again meanwhile.
+fn entered(talk: &mut Talk, question: &str) -> anyhow::Result<(String, bool)> {
+    complain(question);
+    let (line, lines) = mpsc::channel();
+    spawn(move || {
+        let mut text = String::new();
+        let read = stdin().read_line(&mut text);
+        line.send(if read.is_ok() { text } else { String::new() })
+    });
+    let (mut answer, mut restarted, mut left) = (None, false, UNDER_WAY);
+    let mut last = talk.next_frame()?.report.step;
+    while left > 0 {
+        let step = talk.next_frame()?.report.step;
+        restarted |= step < last;
+        last = step;
+        answer = answer.or_else(|| lines.try_recv().ok());
+        left -= u32::from(answer.is_some());
+    }
+    Ok((answer.unwrap_or_default(), restarted))
 }

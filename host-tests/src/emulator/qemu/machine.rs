@@ -196,7 +196,7 @@ impl Machine {
 
     /// What the link has been through.
     pub fn counts(&self) -> Counts {
-        self.inbox.counts()
+        self.inbox.counts
     }
 
     /// The lines of the log that have come.

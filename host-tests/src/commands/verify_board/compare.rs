@@ -1,0 +1,165 @@
+//! What the board computes beside the host's own: the motions of every method, and every scene for a second; and the time that it
+//! takes, of the methods beside the estimate of `cargo count`.
+
+use anyhow::ensure;
+use double_pendulum::{Method, Parameters};
+use firmware::config::{GRAVITY, MOST_MEASURED_STEPS, TICK_RATE};
+use firmware::job::{ON_BOARDS, Reading, Request};
+use firmware::protocol::{Answer, Command, ToHost};
+use firmware::scenes::SceneName;
+
+use super::talk::Talk;
+use super::{Section, verdict};
+use crate::commands::count::{FULL_CYCLE, Target, affordable_cost};
+use crate::commands::demo::comparison::Comparison;
+use crate::emulator::boards::{BOARDS, Board};
+use crate::emulator::toolchain;
+
+/// From rest: a name, the mass of bob 2, kg (bob 1 has 1 kg, the rods are 1 m long), and both angles, rad. The first is the
+/// one that costs are measured in.
+const MOTIONS: [(&str, f64, f64); 2] = [("regular", 1.0, 0.5), ("chaotic", 2.75, 2.98)];
+
+/// A motion as a request of the board: 2 s in steps of 1/256 s. A chaotic one has by then made thousands of one wrong bit.
+fn request(method: Method, (_, m2, angle): (&str, f64, f64)) -> Request {
+    let parameters = Parameters { m1: 1.0, m2, l1: 1.0, l2: 1.0, g: GRAVITY };
+    let (angles, velocities) = ([angle; 2], [0.0; 2]);
+    Request { method, parameters, angles, velocities, dt: 1.0 / 256.0, stride: 32, samples: 16 }
+}
+
+/// Every method of the boards, in both motions.
+pub fn methods(talk: &mut Talk) -> anyhow::Result<Section> {
+    let note = "Motions from rest in steps of 1/256 s, computed by the board on request.";
+    let mut section = Section::new("Bits", note, &["method", "motion", "steps", "bits"]);
+    let all = ON_BOARDS.iter().flat_map(|&method| MOTIONS.map(|motion| (method, motion)));
+    for (number, (method, motion)) in (0..).zip(all) {
+        let request = request(method, motion);
+        let difference = difference(talk, &request, number)?;
+        let steps = (request.stride * request.samples).to_string();
+        let fault = difference.as_ref().map(|difference| format!("{method}, {}: {difference}", motion.0));
+        section.add(vec![method.to_string(), motion.0.into(), steps, verdict(difference)], fault);
+    }
+    Ok(section)
+}
+
+/// The first number of the board's that is not the host's.
+fn difference(talk: &mut Talk, request: &Request, number: u16) -> anyhow::Result<Option<String>> {
+    const NAMES: [&str; 7] = ["a1", "a2", "p1", "p2", "w1", "w2", "energy"];
+    let bits = |&Reading { state: [a1, a2, p1, p2], velocities: [w1, w2], energy }: &Reading| {
+        [a1, a2, p1, p2, w1, w2, energy].map(f64::to_bits)
+    };
+    talk.port.send(number, Command::Simulate(*request));
+    let (mut difference, mut index) = (None, 0);
+    request.readings::<anyhow::Error>(|reading| {
+        let (given, sample) = sample(talk, number)?;
+        ensure!(given == index, "sample {index} was lost on the way");
+        let (board, host) = (bits(&sample), bits(reading));
+        let differs = NAMES.iter().zip(board.iter().zip(&host)).find(|(_, (board, host))| board != host);
+        if let Some((name, (board, host))) = differs {
+            let step = index * request.stride;
+            difference.get_or_insert(format!("step {step}: {name} is {board:#018x}, the host's {host:#018x}"));
+        }
+        index += 1;
+        Ok(())
+    })?;
+    Ok(difference)
+}
+
+/// The next of the samples that were asked for by this number.
+fn sample(talk: &mut Talk, number: u16) -> anyhow::Result<(u32, Reading)> {
+    talk.answer(
+        number,
+        |answer| {
+            if let Answer::Sample { index, reading } = answer { Some((index, reading)) } else { None }
+        },
+    )
+}
+
+const REQUEST: u16 = u16::MAX;
+
+/// The cycles of a step of every method, as `cargo count` counts them, on average over the first second from rest: measured from
+/// flash and from RAM, and estimated. Instructions are counted in QEMU, on a board with the same processor.
+pub fn cycles(talk: &mut Talk, board: Option<&Board>) -> anyhow::Result<Section> {
+    let note = "Measured by the processor's cycle counter, interrupts off, over 256 steps of the regular motion, by the code in \
+                flash and, where there is one, by its copy in RAM (constants are read from flash by both); estimated for memory \
+                without wait states, over as many steps or, of the expensive ones, fewer.";
+    let mut section = Section::new("Cycles of a step", note, &["method", "from flash", "from RAM", "estimated"]);
+    let board = board.and_then(|board| BOARDS.iter().find(|counted| counted.target == board.target));
+    let mut target = None;
+    for &method in ON_BOARDS {
+        let [flash, ram] = [step(talk, method, false)?, step(talk, method, true)?];
+        if let (None, Some(_), Some(board)) = (&target, flash, board) {
+            target = Some(Target::build(&toolchain::ready()?, board)?);
+        }
+        let target = target.as_ref().filter(|_| flash.is_some());
+        let estimated = target.map(|target| affordable_cost(target, &request(method, MOTIONS[0]))).transpose()?;
+        let cell = |cycles: Option<f64>, none: &str| cycles.map_or(none.to_owned(), |cycles| format!("{cycles:.1}"));
+        let none = "no cycle counter";
+        let (ram, estimated) = (cell(ram, flash.map_or(none, |_| "-")), cell(estimated.map(|cost| cost.cycles), "-"));
+        section.add(vec![method.to_string(), cell(flash, none), ram, estimated], None);
+    }
+    Ok(section)
+}
+
+/// The cycles of a step; `None` where the board counts none, or has no copy in RAM.
+fn step(talk: &mut Talk, method: Method, in_ram: bool) -> anyhow::Result<Option<f64>> {
+    talk.port.send(REQUEST, Command::Simulate(Request { samples: 0, ..request(method, MOTIONS[0]) }));
+    sample(talk, REQUEST)?;
+    let (mut steps, mut cycles) = (0, 0.0);
+    while steps < FULL_CYCLE {
+        let (made, taken) = talk.ask(Command::Measure { steps: MOST_MEASURED_STEPS, in_ram }, |answer| {
+            if let Answer::Measured { steps, cycles } = answer { Some((steps, cycles)) } else { None }
+        })?;
+        if taken == 0 || made == 0 {
+            return Ok(None);
+        }
+        steps += made;
+        cycles += f64::from(taken);
+    }
+    Ok(Some(cycles / f64::from(steps)))
+}
+
+const FRAMES: u32 = TICK_RATE;
+/// By so many it must have said what it plays.
+const PATIENCE: usize = 10 * FRAMES as usize;
+
+/// Plays every scene on the board, whose processor has a clock of `hertz`.
+pub fn scenes(talk: &mut Talk, hertz: u32) -> anyhow::Result<Section> {
+    let columns = &["scene", "frames", "bits", "dropped", "moving and drawing (ms)", "with panel and link (ms)"];
+    let mut section = Section::new("Scenes", "The longest of a second's frames, by the board's tick clock.", columns);
+    SceneName::ALL.iter().try_for_each(|&scene| play(talk, scene, hertz, &mut section))?;
+    Ok(section)
+}
+
+fn play(talk: &mut Talk, name: SceneName, hertz: u32, section: &mut Section) -> anyhow::Result<()> {
+    talk.port.send(0, Command::Choose(name));
+    let (mut comparison, mut frames, mut compared) = (Comparison::default(), Vec::new(), 0);
+    while compared < FRAMES && comparison.difference().is_none() {
+        let frame = match talk.next(Some)? {
+            ToHost::Frame(frame) if frame.scene == name => frame,
+            ToHost::Answer(_, Answer::Status(status)) => {
+                comparison.status(&status);
+                continue;
+            }
+            _ => continue,
+        };
+        frames.push(frame);
+        ensure!(frames.len() < PATIENCE, "{}: of {} frames {compared} could be compared", name.name(), frames.len());
+        if comparison.frame(&frame) {
+            talk.port.send(0, Command::Ask);
+        }
+        while comparison.follow().is_some() {
+            compared += 1;
+        }
+    }
+    let difference = comparison.difference().map(|difference| difference.to_string());
+    let fault = difference.as_ref().map(|difference| format!("{}: {difference}", name.name()));
+    let dropped = frames[frames.len() - 1].dropped.wrapping_sub(frames[0].dropped);
+    let longest =
+        |cycles: Option<u32>| format!("{:.2}", 1e3 * f64::from(cycles.unwrap_or(0)) / f64::from(hertz.max(1)));
+    let computing = longest(frames.iter().map(|frame| frame.scene_cycles).max());
+    // It is told of the frame before, which is another scene's at first.
+    let whole = longest(frames[1..].iter().map(|frame| frame.busy_cycles).max());
+    let (compared, dropped) = (compared.to_string(), dropped.to_string());
+    section.add(vec![name.name().into(), compared, verdict(difference), dropped, computing, whole], fault);
+    Ok(())
+}
