@@ -35,14 +35,6 @@ pub(crate) struct Rates<R: Scalar> {
     pub momenta: [R::Torque; 2],
 }
 
-impl<R: Scalar<Torque = R>> Rates<R> {
-    /// Twice these.
-    #[inline(always)]
-    pub fn doubled(self) -> Self {
-        Self { angles: self.angles.map(R::twice), momenta: self.momenta.map(R::twice) }
-    }
-}
-
 /// The units the quantities are counted in, where they are not all the same: what of one makes what of another.
 ///
 /// The default is no difference, at no cost.
@@ -99,33 +91,6 @@ pub(crate) trait Units<R: Scalar>: Copy {
 pub(crate) struct Same;
 
 impl<R: Scalar> Units<R> for Same {}
-
-/// The `units` where time and momenta are reversed; [`Coefficients::gravity`] is to be reversed with them.
-#[derive(Clone, Copy)]
-pub(crate) struct Reverse<U>(pub U);
-
-impl<R: Scalar, U: Units<R>> Units<R> for Reverse<U> {
-    #[inline(always)]
-    fn momentum(&self, product: R) -> R {
-        self.0.momentum(product)
-    }
-    #[inline(always)]
-    fn rate(&self, momentum: R, inverse: R) -> R {
-        self.0.rate(momentum, inverse)
-    }
-    #[inline(always)]
-    fn paced(&self, u: R) -> R {
-        -u
-    }
-    #[inline(always)]
-    fn turns(&self, [u, v]: [R; 2]) -> [R; 2] {
-        self.0.turns([-u, v])
-    }
-    #[inline(always)]
-    fn forces(&self, force: R::Torque) -> [R::Torque; 2] {
-        self.0.forces(force)
-    }
-}
 
 impl<R: Scalar> Coefficients<R> {
     /// m + S^2, whose inverse is r.

@@ -41,7 +41,9 @@ impl<R: Scalar<Gravity = R, Slope = R, Torque = R>> Stage<R> {
     /// After k3.
     #[inline(always)]
     fn third(&mut self, coefficients: &Coefficients<R>, start: &Point<R>) {
-        let twice_k3 = increments(&self.at.z, self.at.rates(coefficients).doubled());
+        let Rates { angles, momenta } = self.at.rates(coefficients);
+        let doubled = Rates { angles: angles.map(R::twice), momenta: momenta.map(R::twice) };
+        let twice_k3 = increments(&self.at.z, doubled);
         self.sum = with(&self.sum, &twice_k3, R::add);
         self.at = start.ahead(&twice_k3, &self.at);
     }

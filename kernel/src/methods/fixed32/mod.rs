@@ -4,7 +4,6 @@
 mod search;
 mod setting;
 mod step;
-mod upkeep;
 
 use crate::bounds::check_step;
 use crate::error::Error;
