@@ -8,7 +8,7 @@
 //! | Lagrange's equations | [`Pendulum::lagrangian`], [`Pendulum::accelerations`] | `tests::lagrange` |
 //! | Legendre transformation | [`Pendulum::to_state`], [`Pendulum::to_motion`] | `tests::lagrange` |
 //! | Hamilton's equations, H | [`Pendulum::derivatives`], [`Pendulum::energy`]; equal rods: [`Parameters::equal_rods`] | `tests::hamilton` |
-//! | Runge-Kutta method | [`Pendulum::step`], [`rk4::step`] | host: `methods` |
+//! | Runge-Kutta method | [`Pendulum::step`], [`rk4::step`] | `tests::added_method`; host: `methods` |
 //! | small oscillations | [`Modes`], [`SmallOscillations`] | `tests::small_oscillations` |
 //! | coordinates | [`Pendulum::positions`], [`Pendulum::velocities`] | `tests::lagrange` |
 //! | (not in the book) bounds from the energy | [`Bounds`], [`Pendulum::cannot_turn_over`], [`Pendulum::admissible_step`], [`Modes::step_limit`] | host: `bounds`, `limits` |
