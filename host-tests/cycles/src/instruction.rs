@@ -3,8 +3,8 @@
 use std::sync::LazyLock;
 
 use crate::Core;
-use crate::log::Registers;
 use crate::row::{Class, Field, Float, Row};
+use crate::stream::Registers;
 use crate::timing::TIMINGS;
 
 pub fn is_long(first: u16) -> bool {

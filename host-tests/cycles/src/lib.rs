@@ -6,21 +6,19 @@
 #![forbid(unsafe_code)]
 #![allow(missing_docs, reason = "nobody builds on this package: what name and type say is not said again")]
 
-mod calls;
 mod image;
 mod instruction;
-mod log;
 mod pipeline;
 mod row;
 #[cfg(test)]
 mod silicon;
-pub mod timing;
+mod stream;
+mod timing;
 
-pub use calls::{Calls, Stream};
 pub use image::{Function, Image};
 pub use instruction::Instruction;
-pub use log::{Registers, for_each_instruction};
 pub use pipeline::{Cost, ERROR_BAR, Pipeline};
+pub use stream::{Calls, Registers, Stream, for_each_instruction};
 
 /// The processors whose timings are known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -30,8 +30,8 @@ use std::ops::AddAssign;
 
 use crate::Core;
 use crate::instruction::Instruction;
-use crate::log::Registers;
 use crate::row::Class;
+use crate::stream::Registers;
 use crate::timing::{DIRECT_REFILL, INDIRECT_REFILL, RESULT_USE_STALL, UNALIGNED_TARGET};
 
 /// What every table of cycles says about them.

@@ -7,8 +7,8 @@
 
 use crate::Core::{self, M0Plus, M3, M4F};
 use crate::instruction::Instruction;
-use crate::log::Registers;
 use crate::pipeline::{Cost, Pipeline};
+use crate::stream::Registers;
 
 /// An instruction's halfwords as one number; a 16-bit one has the lower half 0.
 type Word = u32;

@@ -37,13 +37,9 @@ impl Show {
         let _ = player.check();
     }
 
-    pub fn draw(&self, canvas: &mut Canvas) {
-        self.player.draw(canvas);
-    }
-
     pub fn frame(&self) -> Canvas {
         let mut canvas = Canvas::default();
-        self.draw(&mut canvas);
+        self.player.draw(&mut canvas);
         canvas
     }
 

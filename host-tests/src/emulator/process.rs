@@ -26,6 +26,7 @@ const WARDEN: &str = "(sleep $0; kill -KILL 0) & read -r _; kill -KILL 0";
 #[derive(Debug)]
 pub struct Running {
     pub child: Child,
+    /// Waiting for it closes its input, and it kills what is left of the group.
     warden: Child,
     program: String,
     started: Instant,
@@ -45,20 +46,15 @@ pub fn spawn(command: &mut Command, limit: Duration) -> io::Result<Running> {
     // Is in the group from before the child, and gives it its number.
     let mut warden = warden.process_group(0).spawn().map_err(failed)?;
     let child = command.process_group(warden.id().cast_signed()).spawn();
-    let child = child.map_err(failed).inspect_err(|_| end(&mut warden))?;
+    let child = child.map_err(failed).inspect_err(|_| drop(warden.wait()))?;
     Ok(Running { child, warden, program, started, limit })
-}
-
-/// Kills what is left of the group: waiting for the warden closes its input, and it kills the group.
-fn end(warden: &mut Child) {
-    let _ = warden.wait();
 }
 
 impl Running {
     /// Waits for the child's end. What is left of its group is killed. If it was killed at its time limit, the error's kind says so.
     pub fn wait(&mut self) -> io::Result<ExitStatus> {
         let status = self.child.wait()?;
-        end(&mut self.warden);
+        let _ = self.warden.wait();
         let is_stopped = status.signal() == Some(SIGKILL) && self.started.elapsed() >= self.limit;
         let (program, seconds) = (&self.program, self.limit.as_secs_f32());
         let late = || format!("{program} was still running after {seconds} s and was stopped");
@@ -85,7 +81,7 @@ impl Running {
 
 impl Drop for Running {
     fn drop(&mut self) {
-        end(&mut self.warden);
+        let _ = self.warden.wait();
         // Should the warden be gone.
         let _ = self.child.kill();
         let _ = self.child.wait();

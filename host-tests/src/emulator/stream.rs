@@ -70,7 +70,7 @@ impl Channel {
             let path = path.with_extension(end);
             mkfifo(&path, Mode::S_IRUSR | Mode::S_IWUSR)?;
             // Open for both, it waits for nobody at the other end.
-            io::Result::Ok(File::options().read(true).write(true).open(path)?)
+            File::options().read(true).write(true).open(path)
         };
         Ok(Self { sender: pipe("in")?, stream: Stream::of(pipe("out")?)? })
     }

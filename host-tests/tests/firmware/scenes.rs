@@ -43,7 +43,7 @@ fn every_scene_looks_as_it_did() {
     let before = after(SceneName::Page, 100).frame();
     let check = |name: SceneName, ticks| {
         let mut canvas = before.clone();
-        after(name, ticks).draw(&mut canvas);
+        after(name, ticks).player.draw(&mut canvas);
         snapshot::check(&format!("{}-{ticks}", name.name()), &picture(&canvas))
     };
     let differences: Vec<_> = SceneName::ALL

@@ -30,9 +30,7 @@ pub struct Ended {
     pub output: String,
 }
 
-const PROGRAM: &str = "measure";
-
-/// An emulated board and a program built for it.
+/// An emulated board and the program that measures, or another.
 #[derive(Debug)]
 pub struct Target {
     pub board: &'static Board,
@@ -43,7 +41,7 @@ pub struct Target {
 
 impl Target {
     pub fn build(toolchain: &Toolchain, board: &'static Board) -> Result<Self> {
-        Self::of(toolchain, board, toolchain.build(PROGRAM, board.target)?)
+        Self::of(toolchain, board, toolchain.build("measure", board.target)?)
     }
 
     /// Another program. One that takes the same requests makes its steps in a function called `counted_steps`.

@@ -91,7 +91,7 @@ impl Comparison {
     /// The panel, redrawn here as the compared `frame` shows it.
     pub fn panel(&mut self, frame: &Frame) -> Screenshot {
         if let Some((_, show)) = &self.playing {
-            show.draw(&mut self.canvas);
+            show.player.draw(&mut self.canvas);
         }
         if frame.paused {
             text::pause_mark(&mut self.canvas);

@@ -1,12 +1,12 @@
 //! An emulated board: how it starts, what comes from it, and how it ends.
 
 use std::collections::VecDeque;
-use std::io::{self, Write};
+use std::io::Write;
 use std::path::Path;
 use std::process::{Command, ExitStatus, Stdio};
 use std::time::Duration;
 
-use anyhow::{Context, bail};
+use anyhow::{Context, anyhow};
 use firmware::protocol::{self, Answer, Frame, MAX_WIRE, ToHost, encode_command};
 use serde_json::json;
 use tempfile::TempDir;
@@ -118,8 +118,8 @@ impl Machine {
         Ok(machine)
     }
 
-    /// Takes all that has come; how QEMU has ended, if it has.
-    fn take_in(&mut self) -> io::Result<Option<ExitStatus>> {
+    /// Takes all that has come; the error tells how QEMU has ended, and the last it said.
+    fn take_in(&mut self) -> anyhow::Result<()> {
         // What was said before the end is all there then.
         let ended = self.process.ended(&self.log)?;
         let Self { monitor, debugger, serial, log, .. } = self;
@@ -136,29 +136,22 @@ impl Machine {
                 self.lines.push(LogLine::plain(&line));
             }
         }
-        Ok(ended)
+        let Some(status) = ended else { return Ok(()) };
+        let last = &self.lines[self.lines.len().saturating_sub(4)..];
+        Err(last.iter().fold(anyhow!("QEMU ended ({status})"), |said, line| anyhow!("{said}\n{line}")))
     }
 
     /// Waits until `found` finds something in what has come; the error tells how QEMU has ended.
     pub(super) fn wait_until<T>(&mut self, mut found: impl FnMut(&mut Self) -> Option<T>) -> anyhow::Result<T> {
         loop {
-            let ended = self.take_in()?;
+            let goes_on = self.take_in();
             if let Some(found) = found(self) {
                 return Ok(found);
             }
-            self.go_on(ended)?;
+            goes_on?;
+            let channels = [&self.monitor, &self.debugger, &self.serial].map(|channel| &channel.stream);
+            stream::wait(channels.into_iter().chain(&self.log));
         }
-    }
-
-    /// Waits until something may have come; the error of a QEMU that has ended has the last it said.
-    fn go_on(&self, ended: Option<ExitStatus>) -> anyhow::Result<()> {
-        if let Some(status) = ended {
-            let last = &self.lines[self.lines.len().saturating_sub(4)..];
-            bail!(last.iter().fold(format!("QEMU ended ({status})"), |said, line| format!("{said}\n{line}")));
-        }
-        let channels = [&self.monitor, &self.debugger, &self.serial].map(|channel| &channel.stream);
-        stream::wait(channels.into_iter().chain(&self.log));
-        Ok(())
     }
 
     pub fn receive(&mut self) -> anyhow::Result<ToHost> {
@@ -180,10 +173,8 @@ impl Machine {
 
     /// The messages that have come; the error tells how QEMU has ended.
     pub fn messages(&mut self) -> anyhow::Result<Vec<ToHost>> {
-        match self.take_in()? {
-            None => Ok(self.messages.drain(..).collect()),
-            ended => self.go_on(ended).map(|()| Vec::new()),
-        }
+        self.take_in()?;
+        Ok(self.messages.drain(..).collect())
     }
 
     pub fn send(&mut self, request: u16, command: protocol::Command) -> anyhow::Result<()> {
@@ -216,14 +207,12 @@ impl Machine {
 
     /// Waits until QEMU ends by itself: how. Gives `each` line that is said until then.
     pub fn wait(&mut self, mut each: impl FnMut(LogLine)) -> anyhow::Result<ExitStatus> {
-        loop {
-            let ended = self.take_in()?;
-            self.lines.drain(..).for_each(&mut each);
-            self.messages.clear();
-            if let Some(status) = ended {
-                return Ok(status);
-            }
-            self.go_on(None)?;
-        }
+        // Nothing is found, so it ends by an error.
+        let _: anyhow::Result<()> = self.wait_until(|machine| {
+            machine.lines.drain(..).for_each(&mut each);
+            machine.messages.clear();
+            None
+        });
+        Ok(self.process.wait()?)
     }
 }

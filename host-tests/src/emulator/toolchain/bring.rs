@@ -40,6 +40,7 @@ pub(super) fn bring<T>(installs: bool, find: impl Fn() -> Result<T, String>, way
                 complain(format_args!("done: {done}, because {}", failures.join("; ")));
                 return Ok(found);
             }
+            Err(failure) if failures.contains(&failure) => {}
             Err(failure) => failures.push(failure),
         }
     }
@@ -96,7 +97,7 @@ fn said(command: &mut Command, run: impl FnOnce(&mut Command) -> io::Result<Outp
         return Ok(output.stdout);
     }
     let lines = || output.stderr.lines();
-    let marked = |mark: &&str| lines().find(|line| line.starts_with(mark) || line.ends_with(mark));
+    let marked = |mark: &&str| lines().find(|line| line.contains(*mark));
     let marks = ["No space left on device", "E: ", "error: ", "npm "];
     let line = marks.iter().find_map(marked).or_else(|| lines().last());
     let line: String = line.unwrap_or("it fails without a word").chars().take(200).collect();
