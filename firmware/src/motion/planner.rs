@@ -152,9 +152,7 @@ impl Planner {
             let problem = settings.problem(height);
             let (costs, budget) = (&self.processor.costs, self.processor.budget(&problem));
             self.search = Some(match self.begun {
-                Some((Way { method, steps }, _)) if self.is_tied => {
-                    Search::of(method, steps, &problem, costs, &budget)?
-                }
+                Some((way, _)) if self.is_tied => Search::of(way, &problem, costs, &budget)?,
                 _ => Search::new(&problem, costs, &budget)?,
             });
             return Ok(None);

@@ -169,13 +169,11 @@ pub fn divide(a: TwoFloat, b: TwoFloat) -> TwoFloat {
 /// The states at `times` (s, ascending) of the motion that starts as `start`.
 pub fn states(parameters: &Parameters<f64>, start: &Motion<f64>, times: &[f64]) -> Vec<State<f64>> {
     let mut reference = Reference::new(parameters, start);
-    times
-        .iter()
-        .map(|&t| {
-            reference.advance_to(t);
-            reference.state()
-        })
-        .collect()
+    let state = |&t: &f64| {
+        reference.advance_to(t);
+        reference.state()
+    };
+    times.iter().map(state).collect()
 }
 
 /// The least term of a series kept, relative to the rates of the motion.

@@ -21,10 +21,6 @@ fn scene(mass_ratio: f64, degrees: f64, duration: f64) -> Problem {
     Problem { pendulum, start: Motion::at_rest(angle, angle), tolerance, duration, rate: RATE }
 }
 
-fn planned(scene: &Problem) -> Plan {
-    Plan::search(scene, &M4F, &STM32F405.budget(scene)).expect("a good scene")
-}
-
 /// The plan for a Cortex-M4F that may spend so much on a frame.
 fn within(scene: &Problem, frame: f32) -> Result<Plan, PlanError> {
     Plan::search(scene, &M4F, &Budget { frame, planning: 1e10 })
@@ -95,7 +91,7 @@ fn the_end_is_worth_its_cost() {
 /// By the same method, it is right for less than a tenth longer: too little to be worth a costlier one.
 #[test]
 fn a_plan_that_is_looked_at_farther_is_told_anew_where_it_ends() {
-    let whole = planned(&scene(2.75, 171.0, 30.0));
+    let whole = within(&scene(2.75, 171.0, 30.0), STM32F405.frame).expect("a good scene");
     let short = scene(2.75, 171.0, 0.95 * whole.horizon);
     let mut search = Search::new(&short, &M4F, &STM32F405.budget(&short)).expect("a good scene");
     let first = finished(&mut search);
@@ -177,8 +173,7 @@ fn a_way_that_can_be_gone_is_looked_at() {
         for method in [Method::Rk4Fixed32, Method::Rk4F32Direction, Method::Extrapolation10Fixed64] {
             let way = Way::of(&scene, method).expect("a pendulum");
             assert!(PlannedRun::new(&scene, way).is_ok(), "{way:?} at {degrees}");
-            let mut search =
-                Search::of(method, way.steps, &scene, &M3, &CORTEX_M3.budget(&scene)).expect("a good scene");
+            let mut search = Search::of(way, &scene, &M3, &CORTEX_M3.budget(&scene)).expect("a good scene");
             let plan = finished(&mut search);
             assert_eq!(plan.horizon, scene.duration, "{plan:?} at {degrees}");
         }
@@ -235,8 +230,8 @@ fn the_limit_is_what_would_help() {
     assert_eq!(limit(20.0, 20.0 * M3.preparation), Limit::Budget);
     assert_eq!([limit(20.0, 1.0), limit(20.0, 0.5 * M3.preparation)], [Limit::Planning; 2]);
 
-    let mut search =
-        Search::of(Method::ClosedFormF32, 1, &light, &M3, &CORTEX_M3.budget(&light)).expect("a good scene");
+    let way = Way { method: Method::ClosedFormF32, steps: 1 };
+    let mut search = Search::of(way, &light, &M3, &CORTEX_M3.budget(&light)).expect("a good scene");
     let asked = finished(&mut search);
     assert_eq!((asked.method, asked.horizon), (Method::ClosedFormF32, 0.0));
 }

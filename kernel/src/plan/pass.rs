@@ -6,7 +6,7 @@ use super::problem::{NONE, PERTURBATIONS, Problem};
 use super::run::{AnyRun, Directions};
 use crate::error::Error;
 use crate::methods::SmallOscillations;
-use crate::pendulum::Pendulum;
+use crate::pendulum::{Parameters, Pendulum};
 use crate::small::Modes;
 use crate::table::Method;
 
@@ -81,6 +81,7 @@ pub(super) struct Pass {
     /// If not, the bounds are rough.
     pub is_beside_64_bits: bool,
     closed: Option<SmallOscillations<f32>>,
+    /// Their lengths over the tolerance: so measured, a bob may be off by 1.
     rods: [f32; 2],
     /// The first runs, plain `f32`, the closed form.
     pub candidates: [Candidate; 5],
@@ -100,13 +101,12 @@ impl Pass {
         let mut candidates = [tried[0], tried[1], tried[2], plain, closed].map(Candidate::new);
         (candidates[1].failed, candidates[2].failed) = (beside.is_none(), beside.is_none());
         candidates[3].failed = way.method != Method::Rk4F32Direction;
+        let (Parameters { l1, l2, .. }, modes) = (problem.pendulum, Modes::new(&problem.pendulum).ok());
         Self {
             runs: [way, beside2, beside3, judge, plain].map(|way| Run { way, made: 0, motion: None }),
             is_beside_64_bits: beside.is_some(),
-            closed: Modes::new(&problem.pendulum)
-                .ok()
-                .map(|modes| SmallOscillations::new(modes, &problem.start.cast())),
-            rods: problem.rods(),
+            closed: modes.map(|modes| SmallOscillations::new(modes, &problem.start.cast())),
+            rods: [l1, l2].map(|l| (l / problem.tolerance) as f32),
             candidates,
             by_rounding: false,
         }

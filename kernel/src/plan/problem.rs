@@ -60,12 +60,6 @@ impl Problem {
         f64::from(frame) / f64::from(self.rate)
     }
 
-    /// The lengths of the rods over the tolerance: so measured, a bob may be off by 1.
-    pub(super) fn rods(&self) -> [f32; 2] {
-        let Parameters { l1, l2, .. } = self.pendulum;
-        [l1, l2].map(|l| (l / self.tolerance) as f32)
-    }
-
     /// The pendulum and its start, which is at `start`, some numbers off by what `method` may round them by.
     #[inline(never)]
     pub(super) fn perturbed(

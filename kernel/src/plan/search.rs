@@ -70,26 +70,20 @@ impl Search {
         })
     }
 
-    /// For no method but this one, with `steps` steps to a frame: how long it is right, whatever it costs; a horizon of 0
-    /// says that no frame is. The closed form has no steps; those given are the ones of the run that it is compared with.
+    /// For no other way than this: how long it is right, whatever it costs; a horizon of 0 says that no frame is. The closed form has no
+    /// steps; those given are the ones of the run that it is compared with.
     ///
     /// Refuses what [`new`](Self::new) refuses, and a method that is none of [`Method::DRAWN`]. No steps count as one.
     #[inline(never)]
     #[doc(hidden)]
-    pub fn of(
-        method: Method,
-        steps: u32,
-        problem: &Problem,
-        costs: &Costs,
-        budget: &Budget,
-    ) -> Result<Self, PlanError> {
-        if !Method::DRAWN.contains(&method) {
-            return Err(Error::NotDrawn { method }.into());
+    pub fn of(way: Way, problem: &Problem, costs: &Costs, budget: &Budget) -> Result<Self, PlanError> {
+        if !Method::DRAWN.contains(&way.method) {
+            return Err(Error::NotDrawn { method: way.method }.into());
         }
         let mut search = Self::new(problem, costs, budget)?;
-        let given = Way { method, steps: if steps > 0 { steps } else { 1 } };
+        let given = Way { steps: if way.steps > 0 { way.steps } else { 1 }, ..way };
         search.way.steps = given.steps;
-        search.way.method = match method {
+        search.way.method = match given.method {
             Method::ClosedFormF32 => search.way.method,
             Method::Rk4F32DirectionPlain => Method::Rk4F32Direction,
             method => method,
