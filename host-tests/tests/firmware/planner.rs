@@ -70,19 +70,6 @@ fn there_is_nothing_to_do_without_a_motion_or_when_all_is_found() {
     );
 }
 
-/// To follow what is found takes time: until it is told nothing else is done, and then planning goes on.
-#[test]
-fn nothing_is_done_between_a_finding_and_its_telling() {
-    let mut planner = planner(STM32F405, &Settings::equal_rods(1.0, 20.0));
-    while planner.answer().is_some_and(|answer| answer.found.is_none()) {
-        assert!(planner.tick().is_none());
-    }
-    assert!(!planner.work_ahead());
-    assert_eq!(planner.horizon(LASTING), PLANNED);
-    assert!(matches!(planner.tick(), Some(Ok(plan)) if plan.limit == Limit::End));
-    assert!(planner.work_ahead());
-}
-
 /// In 64 bits steps that resolve all that the energy allows, four to a frame here, are right wherever any others are; longer
 /// ones only as far as they have been looked at themselves.
 #[test]
@@ -102,11 +89,19 @@ fn only_steps_that_resolve_a_motion_are_right_wherever_others_are() {
     }
 }
 
-/// What is right for as long as is planned is looked at farther, always so far ahead and no farther.
+/// To follow what is found takes time: until it is told nothing else is done. Then what is right for as long as is planned is looked
+/// at farther, always so far ahead and no farther.
 #[test]
 fn a_calm_motion_is_looked_at_for_as_long_as_it_is_played() {
-    let mut planner = planner(STM32F405, &Settings::equal_rods(1.0, 20.0));
-    for tick in 1..3600_u64 {
+    let (mut planner, mut told) = (planner(STM32F405, &Settings::equal_rods(1.0, 20.0)), 1);
+    while planner.answer().is_some_and(|answer| answer.found.is_none()) {
+        assert!(planner.tick().is_none());
+        told += 1;
+    }
+    assert!(!planner.work_ahead() && planner.horizon(LASTING) == PLANNED);
+    assert!(matches!(planner.tick(), Some(Ok(plan)) if plan.limit == Limit::End));
+    assert!(planner.work_ahead());
+    for tick in told + 1..3600_u64 {
         planner.tick();
         if tick > 600 {
             let ahead = planner.horizon(LASTING) - tick as f64 / 60.0;
