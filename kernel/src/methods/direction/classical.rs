@@ -116,9 +116,11 @@ fn with<R: Copy>(one: &[R; 6], other: &[R; 6], operation: impl Fn(R, R) -> R) ->
 pub(crate) struct DirectionLanes<R, const N: usize, const ROWS: usize> {
     coefficients: Coefficients<Lanes<R, N>>,
     half_inverse_square: Lanes<R, N>,
-    /// Motions at the start of a step, and within it.
-    rows: [(Point<Lanes<R, N>>, Stage<Lanes<R, N>>); ROWS],
+    rows: [Row<Lanes<R, N>>; ROWS],
 }
+
+/// Motions at the start of a step, and within it.
+type Row<R> = (Point<R>, Stage<R>);
 
 impl<R: Real, const N: usize, const ROWS: usize> DirectionLanes<R, N, ROWS> {
     /// All of them as `motion`.
