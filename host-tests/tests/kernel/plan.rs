@@ -68,21 +68,15 @@ fn the_cheapest_that_is_right_for_longest_is_chosen() {
     }
 }
 
-/// What a frame cannot pay for is not looked at.
+/// What a frame cannot pay for is not looked at. A costlier way that is right for less than a tenth longer is worth it if it is right
+/// to the end.
 #[test]
-fn looking_ahead_ends_where_the_frame_does() {
+fn looking_ahead_ends_where_the_frame_does_and_the_end_is_worth_its_cost() {
     let figure7 = scene(2.75, 171.0, 30.0);
     let frugal = within(&figure7, 5e3).expect("a good scene");
     assert!(frugal.limit == Limit::Budget && frugal.spent < 1e8, "{frugal:?}");
     let poor = within(&figure7, 300.0).expect_err("one step is too coarse");
     assert!(matches!(poor, PlanError::NoMethod { limit: Limit::Budget, spent } if spent < 4e6), "{poor:?}");
-}
-
-/// A costlier way that is right for less than a tenth longer is worth it if it is right to the end.
-#[test]
-fn the_end_is_worth_its_cost() {
-    let figure7 = scene(2.75, 171.0, 30.0);
-    let frugal = within(&figure7, 5e3).expect("a good scene");
     let short = scene(2.75, 171.0, 1.05 * frugal.horizon);
     let lavish = within(&short, 1e6).expect("a good scene");
     assert_eq!((lavish.limit, lavish.horizon), (Limit::End, short.duration), "{lavish:?} {frugal:?}");

@@ -68,8 +68,10 @@ fn steps_beside(Way { method, steps }: Way) -> [u32; 3] {
     })
 }
 
-/// Beside a run in 64 bits, a method is tried with so many times the steps to a frame.
-const SIZES: [u32; 3] = [1, 2, 4];
+/// Beside a run in 64 bits, a method is tried with once, twice and four times the steps to a frame.
+fn tried(way: Way) -> [Way; 3] {
+    [1, 2, 4].map(|times| Way { steps: way.steps.saturating_mul(times), ..way })
+}
 
 /// Step sizes tried side by side.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,7 +83,7 @@ pub(super) struct Pass {
     /// If not, the bounds are rough.
     pub is_beside_64_bits: bool,
     closed: Option<SmallOscillations<f32>>,
-    /// Their lengths over the tolerance: so measured, a bob may be off by 1.
+    /// The rods' lengths over the tolerance: so measured, a bob may be off by 1.
     rods: [f32; 2],
     /// The first runs, plain `f32`, the closed form.
     pub candidates: [Candidate; 5],
@@ -92,7 +94,7 @@ pub(super) struct Pass {
 impl Pass {
     /// In this `way`, beside a run in 64 bits, if one is given.
     pub fn new(way: Way, problem: &Problem, beside: Option<Way>) -> Self {
-        let tried = SIZES.map(|times| Way { steps: way.steps.saturating_mul(times), ..way });
+        let tried = tried(way);
         let [beside2, beside3, judge] = match beside {
             Some(beside) => [tried[1], tried[2], beside],
             None => steps_beside(way).map(|steps| Way { steps, ..way }),
@@ -114,15 +116,14 @@ impl Pass {
 
     /// What one costs that goes to the end, beside a run in 64 bits.
     pub fn cost_beside(costs: &Costs, way: Way, beside: Way) -> f32 {
-        let tried = SIZES.map(|times| Way { steps: way.steps.saturating_mul(times), ..way });
-        tried.into_iter().fold(costs.of_frame(beside), |sum, way| sum + costs.of_frame(way))
+        tried(way).into_iter().fold(costs.of_frame(beside), |sum, way| sum + costs.of_frame(way))
     }
 
     /// The runs that are still needed, by their places.
     fn runs(&mut self) -> impl Iterator<Item = (usize, &mut Run)> {
         let (all, [own, second, third, plain, _]) = (!self.is_beside_64_bits, self.candidates.map(|one| !one.failed));
         let needed = [all || own, all || second, all || third, true, plain];
-        self.runs.iter_mut().enumerate().filter(move |(place, _)| needed[*place])
+        self.runs.iter_mut().enumerate().zip(needed).filter(|(_, is_needed)| *is_needed).map(|(run, _)| run)
     }
 
     /// Prepares one motion; whether there was one to prepare.
@@ -132,7 +133,7 @@ impl Pass {
     pub fn prepare(&mut self, problem: &Problem) -> Result<bool, Error> {
         let is_beside_64_bits = self.is_beside_64_bits;
         let Some((place, run)) = self.runs().find(|(_, run)| run.motion.is_none()) else { return Ok(false) };
-        let by = if !is_beside_64_bits && (1..4).contains(&place) { PERTURBATIONS[place - 1] } else { NONE };
+        let by = PERTURBATIONS.get(place.wrapping_sub(1)).filter(|_| !is_beside_64_bits).copied().unwrap_or(NONE);
         let Way { method, steps } = run.way;
         let start = Pendulum::new(&problem.pendulum)?.to_state(&problem.start);
         let prepared = |by| {
