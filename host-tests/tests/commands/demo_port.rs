@@ -58,19 +58,6 @@ fn one_flipped_bit_is_named_and_fails() {
     assert!(told.lines().any(is_it), "{told}");
 }
 
-#[test]
-fn a_board_that_restarts_is_followed_again() {
-    let mut restarted = false;
-    let [said, told] = demo(0, "--seconds 8", |bench| {
-        bench.carry(wire);
-        if !restarted && bench.heard && bench.frame > 200 {
-            (bench.machine, restarted) = (board(), true);
-        }
-    });
-    assert!(told.contains("the board has been switched on or reset"), "{told}");
-    assert!(said.contains("frames, every bit the host's"), "{said}");
-}
-
 /// Its frames come, and are of another scene for ever.
 #[test]
 fn a_board_that_does_not_play_what_it_is_told_is_given_up() {
@@ -86,8 +73,8 @@ fn a_board_that_does_not_play_what_it_is_told_is_given_up() {
 }
 
 #[test]
-fn a_pulled_cable_is_said_and_waited_for() {
-    let mut pulled = None;
+fn a_pulled_cable_is_said_and_waited_for_and_a_board_that_restarts_is_followed_again() {
+    let (mut pulled, mut restarted) = (None, false);
     let [said, told] = demo(0, "--seconds 8", |bench| {
         bench.carry(wire);
         match pulled {
@@ -96,11 +83,13 @@ fn a_pulled_cable_is_said_and_waited_for() {
                 pulled = Some(Instant::now());
             }
             Some(since) if bench.cable.is_none() && since.elapsed() > OUT => bench.plug(),
+            Some(_) if !restarted && bench.frame > 300 => (bench.machine, restarted) = (board(), true),
             _ => {}
         }
     });
     let lines: Vec<_> = told.lines().filter(|line| line.contains("ttyACM0 is ")).collect();
     assert!(lines.len() == 2 && lines[0].contains("is gone") && lines[1].ends_with("is back"), "{told}");
+    assert!(told.contains("the board has been switched on or reset"), "{told}");
     assert!(said.contains("frames, every bit the host's"), "{said}");
 }
 

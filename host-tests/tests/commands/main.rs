@@ -6,7 +6,6 @@ mod demo_port;
 mod figures;
 mod firmware_cli;
 mod hygiene;
-mod package;
 mod process;
 mod random_input;
 mod readmes;

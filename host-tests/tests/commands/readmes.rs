@@ -1,7 +1,9 @@
-//! The READMEs: the commands in them are there, none is taken by one of cargo's own, which nothing can replace, and what
-//! they link to exists.
+//! The READMEs: the commands in them are there, none is taken by one of cargo's own, which nothing can replace, what they link to
+//! exists, and the kernel's first example runs for its users: with the package in an empty crate.
 
 use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
 use std::process::Command;
 
 use host_tests::emulator::toolchain::workspace;
@@ -100,4 +102,39 @@ fn the_readme_lists_the_messages_as_they_are() {
     }
     let version = format!("version is {};", firmware::protocol::VERSION);
     assert!(page.contains(&version), "{version}");
+}
+
+/// Runs cargo with what is on this machine, and only if that is not enough with the registry.
+fn cargo(arguments: &[&str], folder: &Path) {
+    let run = |more: &[&str]| output(Command::new(env!("CARGO")).args(arguments).args(more).current_dir(folder));
+    if !run(&["--offline"]).status.success() {
+        let output = run(&[]);
+        assert!(output.status.success(), "cargo {arguments:?}: {}", output.stderr);
+    }
+}
+
+/// The first block of `kind` in a page.
+fn block<'a>(page: &'a str, kind: &str) -> &'a str {
+    let blocks = page.split_once(&format!("```{kind}\n")).and_then(|(_, rest)| rest.split_once("```"));
+    blocks.unwrap_or_else(|| panic!("no block of {kind}")).0
+}
+
+#[test]
+fn the_readmes_example_runs_in_an_empty_crate() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let target = folder.path().join("target").display().to_string();
+    // Cargo unpacks what it has packaged, and compiles it.
+    cargo(&["package", "--package", "double-pendulum-kernel", "--allow-dirty", "--target-dir", &target], workspace());
+    let package = format!("{target}/package/double-pendulum-kernel-{}", env!("CARGO_PKG_VERSION"));
+
+    let readme = fs::read_to_string(format!("{package}/README.md")).expect("the package has its README");
+    let (before, path) = block(&readme, "toml").split_once("path = \"").expect("a path while on no registry");
+    let (_, after) = path.split_once('"').expect("it ends");
+    let empty = folder.path().join("empty");
+    fs::create_dir_all(empty.join("src")).expect("a temporary folder can be written to");
+    let manifest =
+        format!("[workspace]\n[package]\nname = \"empty\"\nedition = \"2024\"\n{before}path = \"{package}\"{after}");
+    fs::write(empty.join("Cargo.toml"), manifest).expect("likewise");
+    fs::write(empty.join("src/main.rs"), block(&readme, "rust")).expect("likewise");
+    cargo(&["run", "--target-dir", &target], &empty);
 }

@@ -14,8 +14,8 @@ use indicatif::HumanCount;
 use crate::emulator::host::Show;
 use crate::emulator::qemu::Screenshot;
 
-/// After this many frames without an answer the host asks again.
-const PATIENCE: u32 = TICK_RATE;
+/// After this many frames that wait the host asks again.
+const PATIENCE: usize = TICK_RATE as usize;
 /// The host catches up with a board that has long been playing by this many ticks at a time, so that the terminal goes on.
 const MOST_TICKS: u32 = 2000;
 
@@ -23,18 +23,16 @@ const MOST_TICKS: u32 = 2000;
 pub struct Comparison {
     /// What the board plays, from its start, and played here; `None` until the board has said it.
     playing: Option<(Status, Show)>,
-    canvas: Canvas,
     /// Frames since the start that are not yet compared, oldest first.
     waiting: VecDeque<Frame>,
     /// How many of them came before the board said what it plays. It may have started something else in between.
     unsure: usize,
-    /// A frame that differs, unless the board says that it has started something else.
-    doubt: Option<Difference>,
+    /// A number of the first of them that differs, unless the board says that it has started something else.
+    doubt: Option<String>,
     last: Option<Frame>,
-    unanswered: Option<u32>,
     compared: u64,
     skipped: u64,
-    first: Option<Difference>,
+    first: Option<String>,
 }
 
 impl Comparison {
@@ -48,17 +46,11 @@ impl Comparison {
         }
         self.last = Some(*frame);
         self.waiting.push_back(*frame);
-        // Whether an answer is wanted, and none on its way.
-        if self.playing.is_some() && self.doubt.is_none() {
-            return false;
-        }
-        let asks = self.unanswered.is_none_or(|frames| frames >= PATIENCE);
-        self.unanswered = Some(if asks { 0 } else { self.unanswered.unwrap_or(0) + 1 });
-        asks
+        let is_unknown = self.playing.is_none() || self.doubt.is_some();
+        is_unknown && self.waiting.len() % PATIENCE == 1
     }
 
     pub fn status(&mut self, status: &Status) {
-        self.unanswered = None;
         // What is played by its start alone: how its time goes is another matter.
         let start = Status { paused: false, steps: 0, speed: 1.0, ..*status };
         match (self.doubt.take(), &self.playing) {
@@ -89,29 +81,28 @@ impl Comparison {
     }
 
     /// The panel, redrawn here as the compared `frame` shows it.
-    pub fn panel(&mut self, frame: &Frame) -> Screenshot {
-        if let Some((_, show)) = &self.playing {
-            show.player.draw(&mut self.canvas);
-        }
+    pub fn panel(&self, frame: &Frame) -> Screenshot {
+        let mut canvas = self.playing.as_ref().map_or(Canvas::default(), |(_, show)| show.frame());
         if frame.paused {
-            text::pause_mark(&mut self.canvas);
+            text::pause_mark(&mut canvas);
         }
-        Screenshot::from(&self.canvas)
+        Screenshot::from(&canvas)
     }
 
     pub fn is_settled(&self) -> bool {
         self.waiting.is_empty()
     }
 
-    pub fn difference(&self) -> Option<Difference> {
-        self.first
+    /// The first number that board and host do not have alike, by its bits.
+    pub fn difference(&self) -> Option<&str> {
+        self.first.as_deref()
     }
 }
 
 impl fmt::Display for Comparison {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if let Some(difference) = self.first {
-            return difference.fmt(f);
+        if let Some(difference) = &self.first {
+            return f.write_str(difference);
         }
         write!(f, "{} frames, every bit the host's", HumanCount(self.compared))?;
         match self.skipped + self.waiting.len() as u64 {
@@ -131,34 +122,17 @@ fn played(start: &Status) -> Result<Show, Field> {
 
 /// Goes on towards the step of `frame`; whether it is there.
 fn is_reached(show: &mut Show, frame: &Frame) -> bool {
-    let is_there = |show: &Show| show.report().step >= frame.report.step;
     for _ in 0..MOST_TICKS {
-        if is_there(show) || show.player.is_paused() {
+        if show.report().step >= frame.report.step || show.player.is_paused() {
             return true;
         }
         show.tick();
     }
-    is_there(show)
-}
-
-/// A number that board and host do not have alike, by its bits.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Difference {
-    sequence: u32,
-    step: u64,
-    number: &'static str,
-    bits: [u64; 2],
-}
-
-impl fmt::Display for Difference {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { sequence, step, number, bits: [board, here] } = self;
-        write!(f, "frame {sequence}, step {step}: {number} is {board:#x}, the host's {here:#x}")
-    }
+    false
 }
 
 /// The first number of the board's frame that is not the host's.
-fn difference(board: &Frame, here: &Frame) -> Option<Difference> {
+fn difference(board: &Frame, here: &Frame) -> Option<String> {
     let numbers = |frame: &Frame| {
         let report = &frame.report;
         let [a1, a2, p1, p2] = <[f32; 4]>::from(report.state).map(|number| u64::from(number.to_bits()));
@@ -176,7 +150,8 @@ fn difference(board: &Frame, here: &Frame) -> Option<Difference> {
             ("horizon", report.horizon.to_bits().into()),
         ]
     };
-    let ((number, board_bits), (_, here_bits)) =
-        numbers(board).into_iter().zip(numbers(here)).find(|(board, here)| board != here)?;
-    Some(Difference { sequence: board.sequence, step: board.report.step, number, bits: [board_bits, here_bits] })
+    let mut pairs = numbers(board).into_iter().zip(numbers(here));
+    let ((number, board_bits), (_, here_bits)) = pairs.find(|(board, here)| board != here)?;
+    let (sequence, step) = (board.sequence, board.report.step);
+    Some(format!("frame {sequence}, step {step}: {number} is {board_bits:#x}, the host's {here_bits:#x}"))
 }

@@ -6,28 +6,26 @@ mod live;
 mod numbers;
 mod options;
 mod panel;
-mod plot;
 mod readings;
-pub(crate) mod record;
 mod session;
-mod source;
 mod view;
 
 pub use options::DemoOptions;
-pub use record::played;
+pub use panel::played;
 
+use std::fs;
 use std::io::{IsTerminal, stdin, stdout};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use anyhow::ensure;
-use record::Recording;
-use session::Session;
-use source::Source;
+use anyhow::{Context, ensure};
+use options::MOST_SECONDS;
+use panel::{Recording, png};
+use session::{Session, Source};
 
 use crate::console::cli::{Refused, complain, say};
 use crate::console::progress::Progress;
-use crate::emulator::boards::PICO;
+use crate::emulator::boards::{Board, PICO};
 use crate::emulator::pico::PicoMachine;
 use crate::emulator::qemu::{Clock, Machine, Settings};
 use crate::emulator::toolchain;
@@ -35,40 +33,41 @@ use crate::link::Port;
 
 /// How long a run without a terminal takes if nothing else is asked for.
 const DEFAULT_SECONDS: f64 = 10.0;
-/// The most time that an emulated board may take without a terminal: so much, and so much for each second of its time.
-const LIMIT: (Duration, f64) = (Duration::from_secs(60), 20.0);
-/// With one: no one watches longer.
-const LIVE_LIMIT: Duration = Duration::from_secs(24 * 3600);
+/// The most time that an emulated board may take: so much, and so much for each second of its time.
+const LIMIT: [f64; 2] = [60.0, 20.0];
 
 pub fn run(options: &DemoOptions) -> anyhow::Result<bool> {
     let is_live = !options.headless && stdout().is_terminal() && stdin().is_terminal();
     options.check()?;
-    // Before the build, which takes its time.
-    let port = options.port.as_deref().map(port).transpose()?;
-    let source = port.map_or_else(|| emulated(options, is_live), |port| Ok(Source::Port(port)))?;
-    let recording = options.record.as_deref().map(Recording::create).transpose();
-    let session = Session::new(options, source, recording?, is_live);
-    if is_live { live::run(options, session) } else { headless(options, session) }
+    let seconds = options.seconds.unwrap_or(if is_live { MOST_SECONDS } else { DEFAULT_SECONDS });
+    let source = match &options.port {
+        Some(name) => Source::Port(port(name)?),
+        None => emulated(options.board, seconds, is_live)?,
+    };
+    let recording = options.record.as_deref().map(Recording::create).transpose()?;
+    let mut session = Session::new(options, source, recording);
+    if is_live {
+        live::watch(&mut session, seconds)?
+    } else {
+        headless(&mut session, seconds)?
+    }
+    finish(options, session)
 }
 
 pub(crate) fn port(name: &str) -> Result<Port, Refused> {
     Port::open(name).map_err(|reason| Refused::because(format_args!("--port {reason}")))
 }
 
-fn emulated(options: &DemoOptions, is_live: bool) -> anyhow::Result<Source<'_>> {
+fn emulated(board: &'static Board, seconds: f64, is_live: bool) -> anyhow::Result<Source> {
     let toolchain = toolchain::set_up()?;
-    let (board, seconds) = (options.board, options.seconds.unwrap_or(DEFAULT_SECONDS));
-    let limit = if is_live { LIVE_LIMIT } else { LIMIT.0 + Duration::from_secs_f64(LIMIT.1 * seconds) };
+    let limit = Duration::from_secs_f64(LIMIT[0] + LIMIT[1] * seconds);
     if *board == PICO {
         let emulator = toolchain::set_up_pico()?;
         return Ok(Source::Pico(Box::new(PicoMachine::start(&emulator, &toolchain.build_for(board)?, limit)?)));
     }
     let elf = toolchain.build_for(board)?;
     let settings = Settings { qemu: &toolchain.qemu, board, elf: &elf, debugger: true, clock: Clock::Real, limit };
-    if is_live {
-        return Ok(Source::Live(Machine::start(&settings)?, board));
-    }
-    Ok(Source::Lockstep(Machine::halted(&settings)?, board))
+    if is_live { Machine::start(&settings).map(Source::Live) } else { Machine::halted(&settings).map(Source::Lockstep) }
 }
 
 const LOOK: Duration = Duration::from_millis(4);
@@ -78,17 +77,16 @@ const PATIENCE: Duration = Duration::from_secs(10);
 /// How long an answer to the last question of the comparison is waited for, s of the board's time.
 const ANSWER: f64 = 3.0;
 
-/// Without a terminal: an emulated board frame by frame, repeatable bit for bit, or the board at a port; with a summary at the end.
-fn headless(options: &DemoOptions, mut session: Session) -> anyhow::Result<bool> {
-    let seconds = options.seconds.unwrap_or(DEFAULT_SECONDS);
-    let name = session.source.name().to_owned();
+/// Without a terminal: an emulated board frame by frame, repeatable bit for bit, or the board at a port.
+fn headless(session: &mut Session, seconds: f64) -> anyhow::Result<()> {
+    let name = session.name().to_owned();
     let progress = Progress::start(&format!("running {name} for {seconds} s of its time"));
     let (mut reached, mut since) = (0.0, Instant::now());
     let is_over = |session: &Session| {
         let is_settled = session.readings.comparison.is_settled() || session.seconds() > seconds + ANSWER;
         session.seconds() >= seconds && is_settled
     };
-    while !is_over(&session) {
+    while !is_over(session) {
         session.hear()?;
         if session.is_recording_due() {
             session.look()?;
@@ -103,13 +101,23 @@ fn headless(options: &DemoOptions, mut session: Session) -> anyhow::Result<bool>
         }
         progress.alive(None);
     }
-    drop(progress);
-    session.look()?;
-    session.finish()?;
-    session.readings.lines.extend(session.source.lines());
-    let faults = session.faults();
+    session.look()
+}
+
+/// Completes the files and says how it went; whether all was well. A board that goes by a real clock may drop frames, and a
+/// cable may flip bits: both are told, and neither is a fault.
+fn finish(options: &DemoOptions, mut session: Session) -> anyhow::Result<bool> {
+    if let Some(path) = &options.screenshot {
+        fs::write(path, png(&session.screenshot)?).with_context(|| format!("cannot write {}", path.display()))?;
+    }
+    session.readings.lines.extend(session.source.told().0);
+    let (name, Session { readings, source, .. }) = (session.name(), &session);
+    ensure!(readings.frame.is_some(), "{name}: no frame came");
+    let is_repeatable = matches!(source, Source::Lockstep(_) | Source::Pico(_));
+    let mut faults = if is_repeatable { readings.faults() } else { Vec::new() };
+    faults.extend(readings.comparison.difference().map(str::to_owned));
     faults.iter().for_each(|fault| complain(format_args!("not well: {fault}")));
-    let said = say(format_args!("board                 {name}\n{}", session.readings.report()));
+    let said = say(format_args!("board                 {name}\n{}", readings.report()));
     // A fault is one even if no one reads the summary.
     if faults.is_empty() {
         said?;

@@ -1,15 +1,17 @@
-//! The latest numbers in a column beside the panel, the energy error's past as bars below them; and what they mean.
+//! The latest numbers in a column beside the panel, the energy error's past as bars below them, and what they mean; both angles
+//! over the last seconds as a chart.
 
 use double_pendulum::State;
+use firmware::config::TICK_RATE;
+use firmware::scenes::Report;
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
-use ratatui::style::{Color, Stylize};
+use ratatui::style::{Color, Style, Stylize};
+use ratatui::symbols::Marker;
 use ratatui::text::{Line, Text};
-use ratatui::widgets::{Block, Clear, Paragraph, Sparkline, Wrap};
+use ratatui::widgets::{Axis, Block, Chart, Dataset, GraphType, Paragraph, Sparkline, Wrap};
 
-use super::plot;
 use super::readings::Readings;
-use super::view::has_angles;
 
 /// Columns that they need, and beyond which a value would be far from its name.
 pub const NARROWEST: u16 = 15;
@@ -22,27 +24,25 @@ const LEAST_SCALE: f32 = 1e-6;
 pub fn draw(frame: &mut Frame, area: Rect, readings: &Readings) {
     let area = Rect { width: area.width.min(WIDEST), ..area };
     let lines: Vec<_> = rows(readings).into_iter().flat_map(|row| lines(row, area.width.into())).collect();
-    let rows = lines.len() as u16;
-    let scale = area.height.saturating_sub(rows).min(1);
-    let heights = [Constraint::Length(rows), Constraint::Length(scale), Constraint::Min(0)];
-    let [table, scale, bars] = Layout::vertical(heights).areas(area);
-    frame.render_widget(Paragraph::new(Text::from(lines)), table);
-    if readings.frame.as_ref().is_some_and(has_angles) && bars.height > 0 {
-        energy_errors(frame, scale, bars, readings);
+    let heights = [Constraint::Length(lines.len() as u16), Constraint::Min(0)];
+    let [table, bars] = Layout::vertical(heights).areas(area);
+    frame.render_widget(Paragraph::new(lines), table);
+    if !readings.past.is_empty() {
+        energy_errors(frame, bars, &readings.past);
     }
 }
 
 fn rows(readings: &Readings) -> [(&'static str, String); 9] {
-    let (is_shown, moves) = (readings.frame.is_some(), readings.frame.as_ref().is_some_and(has_angles));
+    let (is_shown, moves) = (readings.frame.is_some(), readings.frame.is_some_and(|now| now.scene.has_angles()));
     let now = readings.frame.unwrap_or_default();
     // Those at the start, one if both rods have the same.
-    let degrees = readings.start.unwrap_or([now.start_angle.to_degrees(); 2]).map(|degrees| rounded(degrees, 1) + "°");
+    let degrees = readings.start.unwrap_or([now.start_angle.to_degrees(); 2]).map(|degrees| format!("{degrees:.1}°"));
     let start = if degrees[0] == degrees[1] { degrees[0].clone() } else { degrees.join(", ") };
     let State { a1, a2, .. } = now.report.state;
-    let [angle_1, angle_2] = [a1, a2].map(|angle| plot::within_half_a_turn(f64::from(angle).to_degrees()));
+    let [angle_1, angle_2] = [a1, a2].map(|angle| within_half_a_turn(f64::from(angle).to_degrees()));
     let rows = [
         ("time", is_shown, format!("{:.2} s", now.report.time)),
-        ("mass ratio", is_shown, rounded(now.mass_ratio, 4)),
+        ("mass ratio", is_shown, format!("{:.4}", now.mass_ratio)),
         ("start", moves, start),
         ("angle 1", moves, format!("{angle_1:.1}°")),
         ("angle 2", moves, format!("{angle_2:.1}°")),
@@ -63,21 +63,17 @@ fn lines((name, value): (&'static str, String), width: usize) -> Vec<Line<'stati
     vec![Line::from(name).dim(), Line::from(format!("{value:>width$}")).bold()]
 }
 
-fn rounded(number: f32, decimals: i32) -> String {
-    let unit = 10_f64.powi(decimals);
-    ((f64::from(number) * unit).round() / unit).to_string()
-}
-
 /// The size of the energy error, the largest of each half second, as bars up to a power of ten, which is told.
-fn energy_errors(frame: &mut Frame, scale: Rect, area: Rect, readings: &Readings) {
+fn energy_errors(frame: &mut Frame, area: Rect, past: &[Report]) {
     const HEIGHT: f32 = 1000.0;
-    let errors = &readings.energy_errors;
-    let greatest = errors.iter().copied().fold(LEAST_SCALE, f32::max);
-    let exponent = greatest.log10().ceil() as i32;
-    frame.render_widget(Line::from(format!("error 0 to 1e{exponent}")).dim(), scale);
-    let shown = &errors[errors.len().saturating_sub(usize::from(area.width))..];
+    const STEPS: u64 = TICK_RATE as u64 / 2;
+    let largest = |bar: &[Report]| bar.iter().map(|report| report.energy_error.abs()).fold(0.0, f32::max);
+    let errors: Vec<_> = past.chunk_by(|one, next| one.step / STEPS == next.step / STEPS).map(largest).collect();
+    let shown = &errors[errors.len().saturating_sub(area.width.into())..];
+    let exponent = shown.iter().copied().fold(LEAST_SCALE, f32::max).log10().ceil() as i32;
+    let scale = Block::new().title(format!("error 0 to 1e{exponent}").dim());
     let bars = shown.iter().map(|error| (error / 10.0_f32.powi(exponent) * HEIGHT) as u64).collect::<Vec<_>>();
-    frame.render_widget(Sparkline::default().data(bars).max(HEIGHT as u64).fg(Color::Yellow), area);
+    frame.render_widget(Sparkline::default().data(bars).max(HEIGHT as u64).fg(Color::Yellow).block(scale), area);
 }
 
 const MEANINGS: [(&str, &str); 10] = [
@@ -97,6 +93,80 @@ pub fn draw_help(frame: &mut Frame) {
     let line = |(name, meaning): (&str, &'static str)| Line::from(vec![format!("{name}: ").bold(), meaning.into()]);
     let text: Text = MEANINGS.into_iter().map(line).collect();
     let block = Block::bordered().title("what the numbers mean; ? goes back");
-    frame.render_widget(Clear, frame.area());
     frame.render_widget(Paragraph::new(text).wrap(Wrap { trim: true }).block(block), frame.area());
+}
+
+/// How much simulated time the chart shows, s.
+const SPAN: f64 = 5.0;
+/// The angles that the chart may reach, degrees: the least that holds every angle shown is taken.
+const REACHES: [f64; 5] = [10.0, 30.0, 60.0, 90.0, HALF_TURN];
+const HALF_TURN: f64 = 180.0;
+/// The colours and the marks of angle 1 and angle 2: a thin line and a thick one, which colour-blind eyes and terminals
+/// tell apart, too.
+const COLOURS: [Color; 2] = [Color::Cyan, Color::Yellow];
+const MARKERS: [Marker; 2] = [Marker::Braille, Marker::Dot];
+
+/// An angle, degrees, in (-180, 180] as it is shown: what rounds to straight up at a tenth of a degree is 180, never -180.
+fn within_half_a_turn(degrees: f64) -> f64 {
+    const ROUNDING: f64 = 0.05;
+    degrees - 2.0 * HALF_TURN * ((degrees - HALF_TURN - ROUNDING) / (2.0 * HALF_TURN)).ceil()
+}
+
+pub fn draw_angles(frame: &mut Frame, area: Rect, past: &[Report]) {
+    let end = past.last().map_or(0.0, |last| last.time).max(SPAN);
+    let past = &past[past.partition_point(|report| report.time < end - SPAN)..];
+    let strands: Vec<_> =
+        (0..2).flat_map(|rod| strands(past, rod).into_iter().map(move |strand| (rod, strand))).collect();
+    let largest = strands.iter().flat_map(|(_, strand)| strand).fold(0.0_f64, |most, (_, angle)| most.max(angle.abs()));
+    let reach = REACHES.into_iter().find(|reach| *reach >= largest).unwrap_or(HALF_TURN);
+    let lines = strands.iter().map(|(rod, strand)| {
+        let line = Dataset::default().data(strand).graph_type(GraphType::Line);
+        line.marker(MARKERS[*rod]).style(COLOURS[*rod])
+    });
+    let faint = Style::new().dim();
+    let title = Line::from(vec!["angles, degrees: ".into(), "1 ⠤⠤  ".fg(COLOURS[0]), "2 ••".fg(COLOURS[1])]);
+    let across = Axis::default().bounds([end - SPAN, end]).style(faint);
+    let upwards = Axis::default().bounds([-reach, reach]).style(faint);
+    let chart = Chart::new(lines.collect())
+        .block(Block::bordered().title(title))
+        .legend_position(None)
+        .x_axis(across.labels([format!("{:.1} s", end - SPAN), format!("{end:.1} s")]))
+        .y_axis(upwards.labels([format!("{:.0}", -reach), "0".to_owned(), format!("{reach:.0}")]));
+    frame.render_widget(chart, area);
+}
+
+/// An angle over time within half a turn either way, cut where it passes straight up.
+fn strands(past: &[Report], rod: usize) -> Vec<Vec<(f64, f64)>> {
+    let point = |Report { time, state, .. }: &Report| {
+        let angle = within_half_a_turn(f64::from([state.a1, state.a2][rod]).to_degrees());
+        // A hair above straight up is drawn on the chart's edge, not left out.
+        (*time, angle.clamp(-HALF_TURN, HALF_TURN))
+    };
+    let points: Vec<_> = past.iter().map(point).collect();
+    points.chunk_by(|(_, one), (_, next)| (one - next).abs() < HALF_TURN).map(<[_]>::to_vec).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_turning_rod_is_cut_where_it_passes_straight_up() {
+        let turned = |tenth: u8| State { a1: (f32::from(tenth) * 36.0).to_radians(), ..State::default() };
+        let report = |tenth| Report { time: f64::from(tenth) / 10.0, state: turned(tenth), ..Report::default() };
+        let past: Vec<_> = (0..=20).map(report).collect();
+        let cut = strands(&past, 0);
+        // From 0 to 180 degrees, then on from just beyond, straight up and all around.
+        assert_eq!(cut.iter().map(Vec::len).collect::<Vec<_>>(), [6, 10, 5]);
+        assert!(cut.iter().flatten().all(|(_, angle)| *angle > -HALF_TURN && *angle <= HALF_TURN));
+        assert_eq!(strands(&past, 1).len(), 1, "the other rod hangs");
+    }
+
+    #[test]
+    fn straight_up_is_180_and_never_its_negative() {
+        for up in [f64::from(std::f32::consts::PI).to_degrees(), 180.0, -180.0, 540.0, 180.04, -179.96] {
+            assert_eq!(format!("{:.1}", within_half_a_turn(up)), "180.0", "{up}");
+        }
+        assert_eq!([180.1, -30.0].map(|degrees| within_half_a_turn(degrees).round()), [-180.0, -30.0]);
+    }
 }

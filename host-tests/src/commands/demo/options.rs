@@ -28,7 +28,9 @@ pub struct DemoOptions {
     #[arg(long, value_name = "NAME", value_parser = choice(SceneName::ALL.iter().copied(), SceneName::name))]
     pub scene: Option<SceneName>,
     /// How the motion is computed; `plan` leaves it to the board [default: what the board does, plan when it is switched on]
-    #[arg(long, value_name = "NAME", value_parser = choice(asked(), |method| method.map_or("plan", Method::name)))]
+    #[arg(long, value_name = "NAME",
+          value_parser = choice([None].into_iter().chain(Method::DRAWN.iter().copied().map(Some)),
+                                |method| method.map_or("plan", Method::name)))]
     pub method: Option<Asked>,
     /// Run without a terminal: as fast as it goes, repeatable bit for bit, with a summary at the end
     #[arg(long)]
@@ -77,10 +79,6 @@ fn shows(scene: SceneName) -> &'static str {
 /// A method, or none to leave it to the board's plan.
 pub type Asked = Option<Method>;
 
-fn asked() -> impl Iterator<Item = Asked> {
-    std::iter::once(None).chain(Method::DRAWN.iter().copied().map(Some))
-}
-
 impl DemoOptions {
     /// Refuses what is known to fail before anything is built: files that cannot be written, a method that the scene does not use.
     pub fn check(&self) -> Result<(), Refused> {
@@ -112,9 +110,10 @@ fn ends_in(kind: &str, file: &str) -> Result<PathBuf, String> {
     if is_it { Ok(path) } else { Err(format!("write a file name that ends in .{kind}, the only format there is")) }
 }
 
-/// A length of time that a recording may have.
-fn seconds(text: &str) -> Result<f64, &'static str> {
-    const GREATEST: f64 = 86_400.0;
-    let wrong = "write a number of seconds greater than 0, at most 86400";
-    text.parse().ok().filter(|seconds| *seconds > 0.0 && *seconds <= GREATEST).ok_or(wrong)
+/// The longest that a run may be, s of the board's time.
+pub const MOST_SECONDS: f64 = 86_400.0;
+
+fn seconds(text: &str) -> Result<f64, String> {
+    let wrong = || format!("write a number of seconds greater than 0, at most {MOST_SECONDS}");
+    text.parse().ok().filter(|seconds| *seconds > 0.0 && *seconds <= MOST_SECONDS).ok_or_else(wrong)
 }

@@ -1,6 +1,15 @@
-//! The panel in the terminal: where it fits, a pixel is half a character, in its grey; else eight pixels or more are a character,
-//! whose dots are those that are lit, in the colour of the brightest.
+//! What the panel shows, in the terminal and as files: an animation (GIF) or one screenshot (PNG).
+//!
+//! In the terminal, where it fits, a pixel is half a character, in its grey; else eight pixels or more are a character, whose dots
+//! are those that are lit, in the colour of the brightest.
 
+use std::fs::File;
+use std::io::BufWriter;
+use std::path::Path;
+
+use anyhow::Context;
+use firmware::config::TICK_RATE;
+use gif::{ColorOutput, DecodeOptions, Encoder, Frame as Picture, Repeat};
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::style::Color;
@@ -27,7 +36,7 @@ pub fn draw(frame: &mut Frame, area: Rect, screenshot: &Screenshot) {
     frame.render_widget(canvas, area);
 }
 
-pub const BRIGHTEST_GREY: u8 = 15;
+const BRIGHTEST_GREY: u8 = 15;
 /// Its red, green and blue, and black's: the panel's glass is not quite dark.
 const BRIGHTEST: [u32; 3] = [255, 200, 64];
 const DARKEST: [u32; 3] = [10, 8, 4];
@@ -40,11 +49,94 @@ fn in_terminal(grey: u8) -> Color {
 }
 
 /// The colours of all greys in a row, red, green, blue, as image files want them.
-pub fn palette() -> Vec<u8> {
+fn palette() -> Vec<u8> {
     let most = u32::from(BRIGHTEST_GREY);
     let mix =
         |grey: u32| DARKEST.into_iter().zip(BRIGHTEST).map(move |(dark, bright)| dark + (bright - dark) * grey / most);
     (0..=most).flat_map(mix).map(|channel| channel as u8).collect()
+}
+
+/// Every pixel of the panel becomes a square of this many by as many.
+const SCALE: usize = 3;
+const SIZE: [u16; 2] = [(WIDTH * SCALE) as u16, (HEIGHT * SCALE) as u16];
+/// The board's ticks from one screenshot to the next: 60/2 = 30 frames per second.
+const TICKS_PER_FRAME: i64 = TICK_RATE as i64 / 30;
+/// In a picture after the first: as it was. Few pixels change, which leaves long runs of this. The palette's first colour after
+/// the greys.
+const UNCHANGED: u8 = 16;
+/// GIF counts time in hundredths of a second.
+const GIF_RATE: i64 = 100;
+
+/// An animation as it is made.
+pub struct Recording {
+    encoder: Encoder<BufWriter<File>>,
+    shown: Vec<u8>,
+    /// The tick from which the next screenshot is wanted: until then the last is shown.
+    due: Option<i64>,
+}
+
+impl Recording {
+    pub fn create(path: &Path) -> anyhow::Result<Self> {
+        let file = File::create(path).with_context(|| format!("cannot write {}", path.display()))?;
+        let [width, height] = SIZE;
+        let palette = [palette(), vec![0; 3]].concat();
+        let mut encoder = Encoder::new(BufWriter::new(file), width, height, &palette)?;
+        encoder.set_repeat(Repeat::Infinite)?;
+        Ok(Self { encoder, shown: Vec::new(), due: None })
+    }
+
+    pub fn is_due(&self, tick: i64) -> bool {
+        self.due.is_none_or(|due| tick >= due)
+    }
+
+    /// Takes what the panel shows from `tick` on, if that does not come too soon; what came too late is shown so much longer.
+    pub fn add(&mut self, screenshot: &Screenshot, tick: i64) -> anyhow::Result<()> {
+        if !self.is_due(tick) {
+            return Ok(());
+        }
+        let hundredths = |tick: i64| tick * GIF_RATE / i64::from(TICK_RATE);
+        let next = tick + TICKS_PER_FRAME;
+        let length = hundredths(next) - hundredths(self.due.replace(next).unwrap_or(tick));
+        let (delay, [width, height]) = (u16::try_from(length).unwrap_or(u16::MAX), SIZE);
+        let now = magnified(screenshot);
+        let change = |(index, grey): (usize, &u8)| if self.shown.get(index) == Some(grey) { UNCHANGED } else { *grey };
+        let buffer = now.iter().enumerate().map(change).collect::<Vec<_>>().into();
+        self.shown = now;
+        let transparent = Some(UNCHANGED);
+        Ok(self.encoder.write_frame(&Picture { delay, width, height, transparent, buffer, ..Picture::default() })?)
+    }
+}
+
+fn magnified(screenshot: &Screenshot) -> Vec<u8> {
+    let at = |index: usize| screenshot.greys[index / (WIDTH * SCALE) / SCALE * WIDTH + index % (WIDTH * SCALE) / SCALE];
+    (0..WIDTH * SCALE * HEIGHT * SCALE).map(at).collect()
+}
+
+/// Reads an animation back, for tests: the greys of each of its pictures, and the hundredths of a second it stays.
+pub fn played(path: &Path) -> anyhow::Result<Vec<(Vec<u8>, u16)>> {
+    let mut options = DecodeOptions::new();
+    options.set_color_output(ColorOutput::Indexed);
+    let mut decoder = options.read_info(File::open(path)?)?;
+    let (mut played, mut shown) = (Vec::new(), Vec::new());
+    while let Some(frame) = decoder.read_next_frame()? {
+        shown.resize(frame.buffer.len(), 0);
+        let dots = shown.iter_mut().zip(frame.buffer.iter());
+        dots.filter(|(_, dot)| frame.transparent != Some(**dot)).for_each(|(shown, dot)| *shown = *dot);
+        let greys = shown.chunks(WIDTH * SCALE).step_by(SCALE).flat_map(|row| row.iter().step_by(SCALE).copied());
+        played.push((greys.collect(), frame.delay));
+    }
+    Ok(played)
+}
+
+pub fn png(screenshot: &Screenshot) -> anyhow::Result<Vec<u8>> {
+    let ([width, height], mut file) = (SIZE.map(u32::from), Vec::new());
+    let mut encoder = png::Encoder::new(&mut file, width, height);
+    encoder.set_color(png::ColorType::Indexed);
+    encoder.set_palette(palette());
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(&magnified(screenshot))?;
+    writer.finish()?;
+    Ok(file)
 }
 
 #[cfg(test)]

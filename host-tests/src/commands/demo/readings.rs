@@ -8,11 +8,11 @@ use firmware::protocol::{Frame, Status};
 use firmware::scenes::Report;
 
 use super::comparison::Comparison;
-use super::plot::{self, Moment};
 use crate::emulator::qemu::LogLine;
 use crate::link::Counts;
 
-const FRAMES_PER_BAR: u64 = TICK_RATE as u64 / 2;
+/// Frames whose past is kept, 12 s of them: no more is shown.
+const KEPT: usize = 12 * TICK_RATE as usize;
 /// The time over which frames per second are counted.
 const RATE_SPAN: Duration = Duration::from_secs(1);
 
@@ -22,10 +22,8 @@ pub struct Readings {
     /// The angles that the motion started from, degrees; `None` until the board has told.
     pub start: Option<[f32; 2]>,
     pub counts: Counts,
-    /// The largest size of the energy error in each half second, oldest first.
-    pub energy_errors: Vec<f32>,
-    /// Both angles over the last [`plot::SPAN`], oldest first.
-    pub angles: Vec<Moment>,
+    /// What was told since the motion began, oldest first; empty where none is shown.
+    pub past: Vec<Report>,
     pub lines: Vec<LogLine>,
     pub comparison: Comparison,
     /// Whether what they mean is shown in their place.
@@ -41,26 +39,19 @@ impl Readings {
     /// Takes a frame that has just arrived; whether to ask the board what it plays.
     pub fn frame(&mut self, frame: Frame) -> bool {
         let last = self.frame.replace(frame);
-        let Report { time, energy_error, state, .. } = frame.report;
-        let before = last.filter(|last| last.scene == frame.scene && last.report.time <= time);
+        let report = frame.report;
+        let before = last.filter(|last| last.scene == frame.scene && last.report.time <= report.time);
         if before.is_none() {
             self.start = None;
-            self.energy_errors.clear();
-            self.angles.clear();
+            self.past.clear();
         }
-        self.simulated += time - before.map_or(0.0, |last| last.report.time);
-
-        let error = energy_error.abs();
-        self.greatest_energy_error = self.greatest_energy_error.max(error);
-        match self.energy_errors.last_mut() {
-            Some(largest) if !self.frames.is_multiple_of(FRAMES_PER_BAR) => *largest = largest.max(error),
-            _ => self.energy_errors.push(error),
-        }
+        self.simulated += report.time - before.map_or(0.0, |last| last.report.time);
+        self.greatest_energy_error = self.greatest_energy_error.max(report.energy_error.abs());
         self.frames += 1;
-        if self.angles.last().is_none_or(|(last, _)| time > *last) {
-            self.angles.push((time, [state.a1, state.a2].map(|angle| f64::from(angle).to_degrees())));
+        if frame.scene.has_angles() && self.past.last().is_none_or(|last| report.time > last.time) {
+            self.past.push(report);
         }
-        self.angles.retain(|(past, _)| time - past <= plot::SPAN);
+        self.past.drain(..self.past.len().saturating_sub(KEPT));
         self.arrivals.push(Instant::now());
         self.arrivals.retain(|arrival| arrival.elapsed() <= RATE_SPAN);
         self.comparison.frame(&frame)
@@ -81,7 +72,6 @@ impl Readings {
         let Counts { damaged, lost, .. } = self.counts;
         let dropped = self.frame.map_or(0, |last| last.dropped);
         let findings = [
-            (self.frames == 0, "no frame arrived".to_owned()),
             (damaged > 0, format!("{damaged} messages arrived damaged")),
             (lost > 0, format!("{lost} frames were lost on the way")),
             (dropped > 0, format!("{dropped} frames were dropped")),

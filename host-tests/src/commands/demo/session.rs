@@ -1,25 +1,63 @@
 //! A board being watched, with a terminal or without: its messages are taken, its scene chosen, its panel recorded.
 
-use std::fs;
-use std::thread::sleep;
-use std::time::{Duration, Instant};
-
-use anyhow::Context;
 use firmware::config::TICK_RATE;
 use firmware::protocol::{Answer, Command, Frame, ToHost};
 
 use super::DemoOptions;
+use super::panel::Recording;
 use super::readings::Readings;
-use super::record::{Recording, png};
-use super::source::Source;
-use crate::emulator::qemu::Screenshot;
+use crate::emulator::pico::PicoMachine;
+use crate::emulator::qemu::{LogLine, Machine, Screenshot};
+use crate::link::{Counts, Port};
 
-/// How far the emulated Pico may be behind a real one before it lets that go.
-const LATE: Duration = Duration::from_millis(100);
+/// Where the stream comes from.
+pub enum Source {
+    /// Emulated by QEMU, its clock the host's.
+    Live(Machine),
+    /// Emulated by QEMU, run from frame to frame.
+    Lockstep(Machine),
+    Pico(Box<PicoMachine>),
+    Port(Port),
+}
+
+impl Source {
+    /// The messages since the last call; of one that goes frame by frame those up to the next.
+    fn messages(&mut self) -> anyhow::Result<Vec<ToHost>> {
+        match self {
+            Self::Live(machine) => machine.messages(),
+            Self::Lockstep(machine) => machine.run_to_frame(),
+            Self::Pico(machine) => machine.run_to_frame(),
+            Self::Port(port) => Ok(port.messages()),
+        }
+    }
+
+    pub fn send(&mut self, command: Command) -> anyhow::Result<()> {
+        match self {
+            Self::Live(machine) | Self::Lockstep(machine) => machine.send(0, command)?,
+            Self::Pico(machine) => machine.send(0, command)?,
+            Self::Port(port) => port.send(0, command),
+        }
+        Ok(())
+    }
+
+    /// The lines of the log since the last call, of a port what has become of it; and what the link has been through.
+    pub fn told(&mut self) -> (Vec<LogLine>, Counts) {
+        let notice = |text: String| LogLine { level: Some("warn".to_owned()), text, place: None };
+        match self {
+            Self::Live(machine) | Self::Lockstep(machine) => (machine.lines(), machine.counts()),
+            Self::Pico(machine) => (machine.lines(), machine.counts()[0]),
+            Self::Port(port) => (port.notices.drain(..).map(notice).collect(), port.inbox.counts),
+        }
+    }
+
+    pub fn is_port(&self) -> bool {
+        matches!(self, Self::Port(_))
+    }
+}
 
 pub struct Session<'a> {
     options: &'a DemoOptions,
-    pub source: Source<'a>,
+    pub source: Source,
     pub readings: Readings,
     pub screenshot: Screenshot,
     recording: Option<Recording>,
@@ -28,24 +66,20 @@ pub struct Session<'a> {
     begun: Option<i64>,
     /// What the ticks of the board's clock lack since it was last restarted.
     before: i64,
-    /// When the emulated Pico's next frame is due, which in a terminal goes no faster than a real one.
-    due: Option<Instant>,
 }
 
 impl<'a> Session<'a> {
-    pub fn new(options: &'a DemoOptions, source: Source<'a>, recording: Option<Recording>, is_live: bool) -> Self {
+    pub fn new(options: &'a DemoOptions, source: Source, recording: Option<Recording>) -> Self {
         let (readings, screenshot) = (Readings::default(), Screenshot::from_pages(&[]));
-        let due = (is_live && matches!(source, Source::Pico(_))).then(Instant::now);
-        Self { options, source, readings, screenshot, recording, now: None, begun: None, before: 0, due }
+        Self { options, source, readings, screenshot, recording, now: None, begun: None, before: 0 }
+    }
+
+    pub fn name(&self) -> &str {
+        if let Source::Port(port) = &self.source { &port.name } else { self.options.board.name }
     }
 
     /// Takes what the board has sent. The host asks what it plays as often as the comparison wants to know.
     pub fn hear(&mut self) -> anyhow::Result<()> {
-        if let Some(due) = &mut self.due {
-            sleep(due.saturating_duration_since(Instant::now()));
-            // More than this late, and it is not made up for.
-            *due = if due.elapsed() > LATE { Instant::now() } else { *due } + Duration::from_secs(1) / TICK_RATE;
-        }
         for message in self.source.messages()? {
             match message {
                 ToHost::Answer(_, Answer::Status(status)) => self.readings.status(&status),
@@ -54,13 +88,14 @@ impl<'a> Session<'a> {
             }
         }
         while let Some(frame) = self.readings.comparison.follow() {
-            if !self.source.has_panel() {
+            if !self.has_panel() {
                 self.screenshot = self.readings.comparison.panel(&frame);
                 self.record(self.tick(&frame))?;
             }
         }
-        self.readings.lines.extend(self.source.lines());
-        self.readings.counts = self.source.counts();
+        let (lines, counts) = self.source.told();
+        self.readings.lines.extend(lines);
+        self.readings.counts = counts;
         Ok(())
     }
 
@@ -87,9 +122,18 @@ impl<'a> Session<'a> {
         self.options.method.map_or(Ok(()), |method| self.source.send(Command::Method(method)))
     }
 
+    /// Whether the host can see a panel; else it draws one.
+    fn has_panel(&self) -> bool {
+        self.options.board.has_panel && !self.source.is_port()
+    }
+
     pub fn look(&mut self) -> anyhow::Result<()> {
-        if let Some(panel) = self.source.panel()? {
-            self.screenshot = panel;
+        if self.has_panel() {
+            self.screenshot = match &mut self.source {
+                Source::Live(machine) | Source::Lockstep(machine) => machine.screenshot()?,
+                Source::Pico(machine) => machine.screenshot()?,
+                Source::Port(_) => return Ok(()),
+            };
             self.now.map_or(Ok(()), |now| self.record(now))?;
         }
         Ok(())
@@ -102,7 +146,7 @@ impl<'a> Session<'a> {
 
     fn record(&mut self, tick: i64) -> anyhow::Result<()> {
         let recording = self.recording.as_mut().filter(|_| self.begun.is_some_and(|begun| tick >= begun));
-        recording.map_or(Ok(()), |recording| recording.add(self.screenshot.clone(), tick))
+        recording.map_or(Ok(()), |recording| recording.add(&self.screenshot, tick))
     }
 
     /// The tick of the board's clock that a frame belongs to, those before its restarts included.
@@ -113,19 +157,5 @@ impl<'a> Session<'a> {
     /// Seconds since the first frame of the scene that was asked for, that one included.
     pub fn seconds(&self) -> f64 {
         self.begun.zip(self.now).map_or(0.0, |(begun, now)| (now - begun + 1) as f64 / f64::from(TICK_RATE))
-    }
-
-    /// What is not well; empty if all is. A board in the hand may drop frames, and its cable may flip bits: both are told, and
-    /// neither is a fault.
-    pub fn faults(&self) -> Vec<String> {
-        let found = if self.source.is_port() { vec![] } else { self.readings.faults() };
-        let difference = self.readings.comparison.difference();
-        found.into_iter().chain(difference.map(|difference| difference.to_string())).collect()
-    }
-
-    pub fn finish(&mut self) -> anyhow::Result<()> {
-        self.recording.take().map_or(Ok(()), Recording::finish)?;
-        let Some(path) = &self.options.screenshot else { return Ok(()) };
-        fs::write(path, png(&self.screenshot)?).with_context(|| format!("cannot write {}", path.display()))
     }
 }

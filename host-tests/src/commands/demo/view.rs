@@ -1,16 +1,18 @@
 //! The terminal's layout: the panel and numbers beside it; how it is computed and compared, both angles and the log below; and
 //! the keys.
 
-use firmware::protocol::Frame as Reading;
+use std::borrow::Cow;
+
 use ratatui::Frame;
 use ratatui::layout::Constraint::{Fill, Length, Min, Percentage};
 use ratatui::layout::{Layout, Rect};
 use ratatui::style::{Color, Stylize};
 use ratatui::text::Line;
 use ratatui::widgets::{Block, Paragraph};
+use textwrap::{Options, WordSplitter, wrap};
 
 use super::readings::{Readings, way};
-use super::{numbers, panel, plot};
+use super::{numbers, panel};
 use crate::emulator::qemu::{LogLine, Screenshot, WIDTH};
 
 /// The panel's widths, columns: a pixel each; in Braille two of them; no narrower than makes sense.
@@ -24,10 +26,10 @@ const WORDS: u16 = 7;
 /// Rows from which there is room for both angles, their frame included, and their share of the width, percent.
 const ANGLES: u16 = 7;
 const ANGLES_WIDTH: u16 = 60;
-/// A frame takes a column or row on either side.
-const FRAME: u16 = 2;
 const KEYS: [&str; 8] =
     ["↑ ↓ masses", "← → angle", "space restart", "tab scene", "p pause", ". step", "? help", "q quit"];
+/// A space that no row ends at.
+const JOINT: &str = "\u{a0}";
 
 pub fn draw(frame: &mut Frame, board: &str, screenshot: &Screenshot, readings: &Readings, colours: bool) {
     let area = frame.area();
@@ -40,56 +42,38 @@ pub fn draw(frame: &mut Frame, board: &str, screenshot: &Screenshot, readings: &
     if readings.help {
         return numbers::draw_help(frame);
     }
-    let words = flow(words(readings).split(' '), " ", area.width);
-    let keys = flow(KEYS, "  ", area.width);
+    let now = readings.frame.as_ref();
+    let words =
+        now.map_or("no frame came yet".to_owned(), |now| format!("{} · {}", way(&now.report), readings.comparison));
+    let words = rows(&words, area.width, "");
+    let keys = rows(&KEYS.map(|key| key.replace(' ', JOINT)).join("  "), area.width, "");
     let top = (width / 4).max(numbers::ROWS);
-    let rows = [Length(1), Length(top), Length(words.len() as u16), Min(0), Length(keys.len() as u16)];
-    let [title_at, top, words_at, lower, keys_at] = Layout::vertical(rows).areas(area);
+    let parts = [Length(1), Length(top), Length(words.len() as u16), Min(0), Length(keys.len() as u16)];
+    let [title_at, top, words_at, lower, keys_at] = Layout::vertical(parts).areas(area);
     let [panel_at, side] = Layout::horizontal([Length(width), Min(0)]).spacing(GAP).areas(top);
 
-    frame.render_widget(Line::from(title(board, readings.frame.as_ref())).bold(), title_at);
+    let scene = now.map(|now| now.scene.name());
+    let paused = now.is_some_and(|now| now.paused).then_some("paused");
+    let title = [Some(board), scene, paused].into_iter().flatten().collect::<Vec<_>>().join(" · ");
+    frame.render_widget(Line::from(title).bold(), title_at);
     panel::draw(frame, Rect { height: width / 4, ..panel_at }, screenshot);
     numbers::draw(frame, side, readings);
     frame.render_widget(Paragraph::new(words.join("\n")), words_at);
-    let log = if lower.height < ANGLES { lower } else { angles(frame, lower, readings) };
+    let (mut log, block) = (lower, Block::bordered().title("log"));
+    if lower.height >= ANGLES {
+        let [angles, framed] = Layout::horizontal([Percentage(ANGLES_WIDTH), Fill(1)]).areas(lower);
+        numbers::draw_angles(frame, angles, &readings.past);
+        log = block.inner(framed);
+        frame.render_widget(block, framed);
+    }
     let latest = &readings.lines[readings.lines.len().saturating_sub(log.height.into())..];
-    let lines: Vec<_> = latest.iter().flat_map(|line| wrapped(line, log.width)).collect();
+    let lines: Vec<_> = latest.iter().flat_map(|line| logged(line, log.width)).collect();
     let above = lines.len().saturating_sub(log.height.into());
     frame.render_widget(Paragraph::new(lines).scroll((above as u16, 0)), log);
-    frame.render_widget(Paragraph::new(keys.join("\n")).dim(), keys_at);
+    frame.render_widget(Paragraph::new(keys.join("\n").replace(JOINT, " ")).dim(), keys_at);
     if !colours {
         frame.buffer_mut().content.iter_mut().for_each(|cell| (cell.fg, cell.bg) = (Color::Reset, Color::Reset));
     }
-}
-
-/// Draws the angles and a frame for the log beside them; where the log may stand.
-fn angles(frame: &mut Frame, area: Rect, readings: &Readings) -> Rect {
-    let [angles, log] = Layout::horizontal([Percentage(ANGLES_WIDTH), Fill(1)]).areas(area);
-    if readings.frame.as_ref().is_none_or(has_angles) {
-        plot::draw(frame, angles, &readings.angles);
-    } else {
-        let text = Paragraph::new("no motion here");
-        frame.render_widget(text.block(Block::bordered().title("angles")), angles);
-    }
-    let block = Block::bordered().title("log");
-    let inside = block.inner(log);
-    frame.render_widget(block, log);
-    inside
-}
-
-fn title(board: &str, now: Option<&Reading>) -> String {
-    let scene = now.map(|now| now.scene.name());
-    let paused = now.is_some_and(|now| now.paused).then_some("paused");
-    [Some(board), scene, paused].into_iter().flatten().collect::<Vec<_>>().join(" · ")
-}
-
-fn words(readings: &Readings) -> String {
-    let shown = readings.frame.as_ref();
-    shown.map_or("no frame came yet".to_owned(), |now| format!("{} · {}", way(&now.report), readings.comparison))
-}
-
-pub fn has_angles(now: &Reading) -> bool {
-    now.scene.has_angles()
 }
 
 /// The width of a panel of which each pixel is half a character, which takes colours, or a Braille pattern's dot; where there is no
@@ -98,36 +82,27 @@ fn panel_width(area: Rect, colours: bool) -> Option<u16> {
     let columns = area.width.checked_sub(GAP + numbers::NARROWEST)?;
     let rows = area.height.checked_sub(WORDS)?;
     let most = columns.min(4 * rows);
-    let widths = if colours { &[PIXELS, BRAILLE][..] } else { &[BRAILLE] };
-    let width = widths.iter().copied().find(|width| *width <= most).unwrap_or(most / 4 * 4);
+    let best = if colours && most >= PIXELS { PIXELS } else { BRAILLE };
+    let width = best.min(most / 4 * 4);
     (width >= NARROWEST && rows >= numbers::ROWS).then_some(width)
 }
 
-/// Parts one after another, in as many rows of `width` as they take: none of them is cut that is not longer than a row.
-fn flow<'a>(parts: impl IntoIterator<Item = &'a str>, gap: &str, width: u16) -> Vec<String> {
-    let mut rows: Vec<String> = Vec::new();
-    for part in parts {
-        match rows.last_mut() {
-            Some(row) if row.chars().count() + gap.len() + part.chars().count() <= width.into() => {
-                *row = [row, part].join(gap);
-            }
-            _ => rows.push(part.to_owned()),
-        }
-    }
-    rows
+/// A text in as many rows of `width` as it takes.
+fn rows(text: &str, width: u16, indent: &str) -> Vec<String> {
+    let options = Options::new(width.into()).subsequent_indent(indent).word_splitter(WordSplitter::NoHyphenation);
+    wrap(text, options).into_iter().map(Cow::into_owned).collect()
 }
 
 /// A line of the log in as many rows as it takes, all but the first indented; where it was written is left out.
-fn wrapped(line: &LogLine, width: u16) -> Vec<Line<'static>> {
+fn logged(line: &LogLine, width: u16) -> Vec<Line<'static>> {
     let (level, colour) = match line.level.as_deref() {
         None => ("", Color::Red),
         Some("error") => ("error: ", Color::Red),
         Some("warn") => ("warning: ", Color::Yellow),
         Some(_) => ("", Color::Reset),
     };
-    let rows = flow(format!("{level}{}", line.text).split_whitespace(), " ", width.saturating_sub(FRAME));
-    let margins = std::iter::once("").chain(std::iter::repeat("  "));
-    margins.zip(rows).map(|(margin, row)| Line::from(format!("{margin}{row}")).fg(colour)).collect()
+    let rows = rows(&format!("{level}{}", line.text), width, "  ");
+    rows.into_iter().map(|row| Line::from(row).fg(colour)).collect()
 }
 
 #[cfg(test)]
@@ -136,6 +111,7 @@ mod tests {
     use double_pendulum::{Method, State};
     use firmware::graphics::Canvas;
     use firmware::graphics::text::{self, Anchor};
+    use firmware::protocol::Frame as Reading;
     use firmware::scenes::{Report, SceneName};
     use ratatui::Terminal;
     use ratatui::backend::TestBackend;

@@ -12,24 +12,20 @@ use reference::taylor;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scene {
     pub name: &'static str,
-    pub title: &'static str,
     /// Both angles at the start, rad.
-    angle: f64,
+    pub angle: f64,
     /// How long it is followed, whole seconds: short where neighbouring motions part quickly.
     pub duration: u32,
 }
 
 /// The most states that are compared with the reference in each second.
-const SAMPLES: u32 = 4;
+pub const SAMPLES: u32 = 4;
 
 /// A regular and a chaotic one.
-pub const SCENES: [Scene; 2] = [
-    Scene { name: "regular", title: "regular: 0.5/0.5 rad", angle: 0.5, duration: 10 },
-    Scene { name: "chaotic", title: "chaotic: 2/2 rad", angle: 2.0, duration: 5 },
-];
+pub const SCENES: [Scene; 2] =
+    [Scene { name: "regular", angle: 0.5, duration: 10 }, Scene { name: "chaotic", angle: 2.0, duration: 5 }];
 /// The regular motion for ten times as long.
-pub const LONG: Scene =
-    Scene { name: "regular-long", title: "regular: 0.5/0.5 rad, 100 s", duration: 100, ..SCENES[0] };
+pub const LONG: Scene = Scene { name: "regular-long", angle: 0.5, duration: 100 };
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Error {
@@ -42,13 +38,8 @@ pub struct Error {
 /// Of a motion that has left the finite numbers.
 const LOST: Error = Error { angle: f64::INFINITY, pixels: f64::INFINITY };
 
-/// The exact motion through a scene, [`SAMPLES`] times a second: a1, a2.
-pub fn exact(scene: &Scene) -> Vec<[f64; 2]> {
-    exact_after(scene, SAMPLES * scene.duration)
-}
-
-/// The exact motion after each of `steps` equal steps through a scene.
-fn exact_after(scene: &Scene, steps: u32) -> Vec<[f64; 2]> {
+/// The exact motion, a1 and a2, after each of `steps` equal steps through a scene.
+pub fn exact(scene: &Scene, steps: u32) -> Vec<[f64; 2]> {
     let Request { parameters, angles: [a1, a2], .. } = request(Method::Rk4F64, scene, 1);
     let times: Vec<_> = (1..=steps).map(|step| f64::from(step * scene.duration) / f64::from(steps)).collect();
     taylor::states(&parameters, &Motion::at_rest(a1, a2), &times).iter().map(State::angles).collect()
@@ -81,17 +72,19 @@ pub fn usual_rate(method: Method) -> u32 {
 const HIGH: [u32; 21] = [4, 5, 6, 7, 8, 9, 10, 11, 12, 14, 16, 18, 20, 24, 28, 32, 40, 48, 64, 80, 96];
 const LOW: [u32; 3] = [16, 32, 64];
 
-/// Steps a second that `method` is tried with: a few, and all powers of two beyond.
-pub fn rates(method: Method, finest: u32) -> impl Iterator<Item = u32> + Clone {
+/// Steps a second that `method` is tried with through a scene: a few, and all powers of two beyond; through the long one as many as
+/// are usual.
+pub fn rates(method: Method, scene: &Scene, finest: u32) -> impl Iterator<Item = u32> {
     let few: &[u32] = if method.order() > 4 { &HIGH } else { &LOW };
-    few.iter().copied().chain((7..=finest).map(|halvings| 1 << halvings))
+    let all = few.iter().copied().chain((7..=finest).map(|halvings| 1 << halvings));
+    all.filter(move |&rate| scene != &LONG || rate == usual_rate(method))
 }
 
 /// The error of `method` in `steps` equal steps through the scene, compared after each; a second need not be a whole number of them.
 pub fn error_after(method: Method, scene: &Scene, steps: u32) -> Option<Error> {
     let dt = f64::from(scene.duration) / f64::from(steps);
     let request = Request { dt, stride: 1, samples: steps, ..request(method, scene, 1) };
-    error(&request, &exact_after(scene, steps))
+    error(&request, &exact(scene, steps))
 }
 
 /// The error of a request; `None` if its method does not apply to the scene or the step. A motion that was lost has an infinite one.

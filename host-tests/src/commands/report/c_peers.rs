@@ -7,10 +7,10 @@ use std::path::PathBuf;
 use std::process::Command;
 use std::time::Duration;
 
-use anyhow::{Result, ensure};
+use anyhow::{Context, Result, ensure};
 use double_pendulum::Method;
 
-use super::accuracy::{Error, LONG, SCENES, Scene, request, worst};
+use super::accuracy::{Error, SCENES, Scene, rates, request, usual_rate, worst};
 use super::join::Point;
 use crate::commands::count::{Target, affordable_cost};
 use crate::emulator::boards::Board;
@@ -23,29 +23,35 @@ pub const PROGRAMS: [(&str, [&str; 2]); 2] =
 /// For compiling, and for fetching 2 MB and what pip wants for it.
 const LIMIT: Duration = Duration::from_secs(180);
 
-/// Steps a second of what a step is counted with, the last of all that errors are computed with.
-const RATE: u32 = 256;
-const RATES: [u32; 5] = [16, 32, 64, 128, RATE];
 /// What the programs compute, in Rust.
 const TEXTBOOK: Method = Method::TextbookF32;
 
-pub struct Program {
-    name: &'static str,
-    target: Target,
-}
-
-/// Every program for every board. Also says what had to be left out, and why.
-pub fn compile(toolchain: &Toolchain, targets: &[Target]) -> Result<(Vec<Program>, Vec<String>)> {
-    let (mut programs, mut absent) = (Vec::new(), Vec::new());
-    for (name, sine) in PROGRAMS {
-        for board in targets.iter().map(|target| target.board) {
-            match elf(sine, board) {
-                Ok(elf) => programs.push(Program { name, target: Target::of(toolchain, board, elf)? }),
-                Err(reason) => absent.push(format!("left out: {name} on {} ({reason})", board.cpu)),
+/// Cost and errors of every program on every board, through scenes with their exact motions. Also says what had to be left out,
+/// and why.
+pub fn points(
+    toolchain: &Toolchain,
+    targets: &[Target],
+    scenes: &[(&'static Scene, Vec<[f64; 2]>)],
+) -> Result<(Vec<Point>, Vec<String>)> {
+    let (mut points, mut absent) = (Vec::new(), Vec::new());
+    let each = PROGRAMS.into_iter().flat_map(|program| targets.iter().map(move |target| (program, target.board)));
+    for ((name, sine), board) in each {
+        let target = match elf(sine, board) {
+            Ok(elf) => Target::of(toolchain, board, elf)?,
+            Err(reason) => {
+                absent.push(format!("left out: {name} on {} ({reason})", board.cpu));
+                continue;
+            }
+        };
+        let step = affordable_cost(&target, &request(TEXTBOOK, &SCENES[0], usual_rate(TEXTBOOK)))?;
+        for &(scene, ref exact) in scenes {
+            for rate in rates(TEXTBOOK, scene, 8) {
+                let error = error(&target, scene, rate, exact).context(name)?;
+                points.push(Point { name, scene, board, rate, step, error });
             }
         }
     }
-    Ok((programs, absent))
+    Ok((points, absent))
 }
 
 /// Compiles a program for `board`; the ELF file, or the first line of the complaint.
@@ -61,31 +67,15 @@ fn elf(sine: [&str; 2], board: &Board) -> Result<PathBuf> {
     Ok(workspace().join("target/peers-c").join(elf))
 }
 
-impl Program {
-    /// Its cost and its errors through scenes with their exact motions.
-    pub fn points(&self, scenes: &[(&'static Scene, Vec<[f64; 2]>)]) -> Result<Vec<Point>> {
-        let step = affordable_cost(&self.target, &request(TEXTBOOK, &SCENES[0], RATE))?;
-        let (name, board) = (self.name, self.target.board);
-        let mut points = Vec::new();
-        for &(scene, ref exact) in scenes {
-            for rate in RATES.into_iter().filter(|&rate| scene != &LONG || rate == RATE) {
-                let error = self.error(scene, rate, exact)?;
-                points.push(Point { name, scene, board, rate, step, error, dominated: false });
-            }
-        }
-        Ok(points)
-    }
-
-    /// The error of the states that it prints.
-    fn error(&self, scene: &Scene, rate: u32, exact: &[[f64; 2]]) -> Result<Error> {
-        let request = request(TEXTBOOK, scene, rate);
-        let printed = self.target.output(&request)?;
-        let state = |line: &str| {
-            let mut bits = line.split_ascii_whitespace().map_while(|word| u64::from_str_radix(word, 16).ok());
-            Some([bits.next()?, bits.next()?].map(f64::from_bits))
-        };
-        let states: Vec<_> = printed.lines().filter_map(state).collect();
-        ensure!(states.len() == exact.len(), "{}: {}", self.name, printed.trim());
-        Ok(worst(&request.parameters, &states, exact))
-    }
+/// The error of the states that a program prints.
+fn error(target: &Target, scene: &Scene, rate: u32, exact: &[[f64; 2]]) -> Result<Error> {
+    let request = request(TEXTBOOK, scene, rate);
+    let printed = target.output(&request)?;
+    let state = |line: &str| {
+        let mut bits = line.split_ascii_whitespace().map_while(|word| u64::from_str_radix(word, 16).ok());
+        Some([bits.next()?, bits.next()?].map(f64::from_bits))
+    };
+    let states: Vec<_> = printed.lines().filter_map(state).collect();
+    ensure!(states.len() == exact.len(), "{}", printed.trim());
+    Ok(worst(&request.parameters, &states, exact))
 }

@@ -1,5 +1,6 @@
 //! Cost against error as a picture: a few named lines, all others grey.
 
+use std::cmp::Reverse;
 use std::ops::Range;
 
 use anyhow::Result;
@@ -38,48 +39,43 @@ const FONT: &str = "sans-serif";
 /// Pixels of a name: each character, and from one line to the next.
 const LETTER: (i32, i32) = (7, 15);
 
-/// Each contestant's name with its points from the coarsest step on, those that a finer step makes better.
-fn lines<'a>(points: &'a [Point], scene: &Scene, board: &Board) -> Vec<(&'static str, Vec<&'a Point>)> {
+/// Each contestant with its points from the coarsest step on, those that a finer step makes better. The programs in C come first, then
+/// those with the most points that nothing else is as good as in both; before its name, their number.
+fn lines<'a>(points: &'a [Point], scene: &Scene, board: &Board) -> Vec<(usize, &'static str, Vec<&'a Point>)> {
     let shown = points.iter().filter(|point| point.scene == scene && point.board == board);
     let shown: Vec<_> = shown.filter(|point| ERRORS.contains(&point.error.angle)).collect();
-    let line = |points: &[&'a Point]| {
+    let line = |all: &[&'a Point]| {
         let mut least = f64::INFINITY;
         let is_better = |point: &&Point| {
             let is_it = point.error.angle < WORTH * least;
             least = least.min(point.error.angle);
             is_it
         };
-        (points[0].name, points.iter().copied().filter(is_better).collect())
+        let (name, line) = (all[0].name, all.iter().copied().filter(is_better).collect::<Vec<_>>());
+        let is_peer = PROGRAMS.iter().any(|(program, _)| *program == name);
+        let best = line.iter().filter(|point| !point.is_dominated(points)).count();
+        (if is_peer { usize::MAX } else { best }, name, line)
     };
-    shown.chunk_by(|a, b| a.name == b.name).map(line).collect()
-}
-
-/// Which lines get a name: the programs in C, and those with the most points that nothing else is as good as in both.
-fn named(lines: &[(&'static str, Vec<&Point>)]) -> Vec<&'static str> {
-    let is_peer = |name: &&str| PROGRAMS.iter().any(|(program, _)| program == name);
-    let best = |points: &[&Point]| points.iter().filter(|point| !point.dominated).count();
-    let mut methods: Vec<_> = lines.iter().map(|(name, points)| (best(points), *name)).collect();
-    methods.retain(|(best, name)| *best > 0 && !is_peer(name));
-    methods.sort_by_key(|(best, _)| std::cmp::Reverse(*best));
-    let peers = lines.iter().map(|(name, _)| *name).filter(is_peer);
-    peers.clone().chain(methods.into_iter().map(|(_, name)| name).take(NAMED - peers.count())).collect()
+    let mut lines: Vec<_> = shown.chunk_by(|a, b| a.name == b.name).map(line).collect();
+    lines.sort_by_key(|(best, ..)| Reverse(*best));
+    lines
 }
 
 /// Estimated cycles per simulated second against the error, as SVG.
 pub fn speed_against_error(points: &[Point], scene: &Scene, board: &Board) -> Result<String> {
     let lines = lines(points, scene, board);
-    let named = named(&lines);
-    let cycles = lines.iter().flat_map(|(_, points)| points).map(|point| point.cycles());
+    let best = lines.iter().take_while(|(best, ..)| *best > 0).count();
+    let (named, others) = lines.split_at(best.min(NAMED));
+    let cycles = lines.iter().flat_map(|(.., points)| points).map(|point| point.cycles());
     let (least, most) = cycles.fold((f64::INFINITY, 1.0_f64), |(least, most), next| (least.min(next), most.max(next)));
     let mut svg = String::new();
     {
         let area = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
         area.fill(&WHITE)?;
+        let Scene { name, angle, duration } = scene;
+        let title = format!("{}: {name}: {angle}/{angle} rad, {duration} s", board.core().name());
         let mut chart = ChartBuilder::on(&area)
-            .caption(
-                format!("{}: {}, {} s", board.core().name(), scene.title, scene.duration),
-                (FONT, 17).into_font().color(&TEXT),
-            )
+            .caption(title, (FONT, 17).into_font().color(&TEXT))
             .margin(10)
             .x_label_area_size(42)
             .y_label_area_size(66)
@@ -102,12 +98,11 @@ pub fn speed_against_error(points: &[Point], scene: &Scene, board: &Board) -> Re
             chart.draw_series([top])?;
         }
         let place = |point: &&Point| (point.error.angle, point.cycles());
-        for (_, points) in lines.iter().filter(|(name, _)| !named.contains(name)) {
+        for (.., points) in others {
             chart.draw_series(LineSeries::new(points.iter().map(place), GREY.stroke_width(1)))?;
         }
         let mut taken: Vec<[i32; 3]> = Vec::new();
-        for (name, colour) in named.iter().zip(COLOURS) {
-            let Some((_, points)) = lines.iter().find(|(line, _)| line == name) else { continue };
+        for ((_, name, points), colour) in named.iter().zip(COLOURS) {
             chart.draw_series(LineSeries::new(points.iter().map(place), colour.stroke_width(2)))?;
             chart.draw_series(points.iter().map(|point| Circle::new(place(point), 3, colour.filled())))?;
             let Some(end) = points.last() else { continue };
@@ -132,7 +127,7 @@ pub fn speed_against_error(points: &[Point], scene: &Scene, board: &Board) -> Re
 #[cfg(test)]
 mod tests {
     use super::super::accuracy::SCENES;
-    use super::super::join::{mark_dominated, tests::point};
+    use super::super::join::tests::point;
     use super::*;
     use crate::emulator::boards::BOARDS;
 
@@ -142,7 +137,6 @@ mod tests {
         let each = |(i, name): (usize, &&'static str)| point(name, 10_f64.powi(i as i32), 0.1_f64.powi(i as i32 + 1));
         let mut points: Vec<_> = names.iter().enumerate().map(each).collect();
         points.insert(0, point("worse than all others", 1e12, 0.5));
-        mark_dominated(&mut points);
         let svg = speed_against_error(&points, &SCENES[0], &BOARDS[0])?;
         let named = |name: &str| svg.lines().any(|line| line.trim() == name);
         assert_eq!(names.iter().filter(|name| named(name)).count(), NAMED, "{svg}");

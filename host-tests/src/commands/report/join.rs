@@ -4,10 +4,11 @@ use anyhow::Result;
 use double_pendulum::{Integrator, Method};
 use rayon::prelude::*;
 
-use super::accuracy::{self, Error, LONG, SCENES, Scene, rates, request, usual_rate};
-use super::c_peers::{self, Program};
+use super::accuracy::{self, Error, LONG, SAMPLES, SCENES, Scene, rates, request, usual_rate};
+use super::c_peers;
 use crate::commands::count::{StepCost, Target, affordable_cost};
 use crate::commands::table::{Table, small};
+use crate::console::progress::Progress;
 use crate::emulator::boards::Board;
 use crate::emulator::toolchain::Toolchain;
 
@@ -24,8 +25,6 @@ pub struct Point {
     pub rate: u32,
     pub step: StepCost,
     pub error: Error,
-    /// Another point of the scene and board has neither more cycles nor a larger error, and less of one.
-    pub dominated: bool,
 }
 
 impl Point {
@@ -34,58 +33,49 @@ impl Point {
         f64::from(self.rate) * self.step.cycles
     }
 
-    fn is_dominated_by(&self, other: &Self) -> bool {
-        let same = other.board == self.board && other.scene == self.scene;
-        let (error, own) = (other.error.angle, self.error.angle);
-        let (cycles, own_cycles) = (other.cycles(), self.cycles());
-        same && cycles <= own_cycles && error <= own && (cycles < own_cycles || error < own)
+    /// Whether another point of the scene and board has neither more cycles nor a larger error, and less of one.
+    pub fn is_dominated(&self, points: &[Self]) -> bool {
+        let (error, cycles) = (self.error.angle, self.cycles());
+        let mut others = points.iter().filter(|other| other.board == self.board && other.scene == self.scene);
+        others.any(|other| {
+            let (other_error, other_cycles) = (other.error.angle, other.cycles());
+            other_cycles <= cycles && other_error <= error && (other_cycles < cycles || other_error < error)
+        })
     }
 }
 
-/// The methods that are compared: all but the closed forms, whose errors are those of their equations.
-pub fn methods() -> impl Iterator<Item = Method> + Clone {
-    Method::ALL.iter().copied().filter(|method| method.integrator() != Integrator::ClosedForm)
-}
-
-/// Every method and every program in C through the scenes on all targets; the long scene with as many steps as are usual.
-/// `tick` is called after each method. Also says what had to be left out, a line each.
-pub fn join(toolchain: &Toolchain, targets: &[Target], tick: &(dyn Fn() + Sync)) -> Result<(Vec<Point>, Vec<String>)> {
-    let scenes = [&SCENES[0], &SCENES[1], &LONG].map(|scene| (scene, accuracy::exact(scene)));
-    let methods: Vec<Method> = methods().collect();
+/// Every method but the closed forms, whose errors are those of their equations, and every program in C through the scenes on all
+/// targets; the long scene with as many steps as are usual. Also says what had to be left out, a line each.
+pub fn join(toolchain: &Toolchain, targets: &[Target]) -> Result<(Vec<Point>, Vec<String>)> {
+    let scenes = [&SCENES[0], &SCENES[1], &LONG].map(|scene| (scene, accuracy::exact(scene, SAMPLES * scene.duration)));
+    let methods = Method::ALL.iter().copied().filter(|method| method.integrator() != Integrator::ClosedForm);
+    let methods: Vec<_> = methods.collect();
+    let bar = Progress::of("comparing and counting", methods.len() as u64);
     let points = methods.par_iter().map(|&method| {
         // The pendulum is the same in all scenes, and so is the code that steps it.
         let cost = |target| affordable_cost(target, &request(method, &SCENES[0], usual_rate(method)));
         let costs = targets.iter().map(|target| Ok((target.board, cost(target)?))).collect::<Result<Vec<_>>>()?;
         let mut points = Vec::new();
         for &(scene, ref exact) in &scenes {
-            for rate in rates(method, FINEST).filter(|&rate| scene != &LONG || rate == usual_rate(method)) {
+            for rate in rates(method, scene, FINEST) {
                 let Some(error) = accuracy::error(&request(method, scene, rate), exact) else { continue };
                 let name = method.name();
-                let point = |&(board, step)| Point { name, scene, board, rate, step, error, dominated: false };
+                let point = |&(board, step)| Point { name, scene, board, rate, step, error };
                 points.extend(costs.iter().map(point));
             }
         }
-        tick();
+        bar.advance(1);
         Ok(points)
     });
     let mut points = points.collect::<Result<Vec<_>>>()?.concat();
-    let (programs, absent) = c_peers::compile(toolchain, targets)?;
-    let peers = programs.par_iter().map(|program: &Program| program.points(&scenes)).collect::<Result<Vec<_>>>()?;
-    points.extend(peers.concat());
+    let (peers, absent) = c_peers::points(toolchain, targets, &scenes)?;
+    points.extend(peers);
     Ok((points, absent))
-}
-
-/// Marks what something else is at least as good as, in both cost and error.
-pub fn mark_dominated(points: &mut [Point]) {
-    let all = points.to_vec();
-    for point in points {
-        point.dominated = all.iter().any(|other| point.is_dominated_by(other));
-    }
 }
 
 pub fn table(points: &[Point]) -> Table {
     let row = |point: &Point| {
-        let Point { name, scene, board, rate, step, error, dominated } = *point;
+        let Point { name, scene, board, rate, step, error } = *point;
         let mut row = [scene.name, board.cpu, name].map(str::to_owned).to_vec();
         row.push(format!("1/{rate}"));
         row.extend([step.instructions, step.cycles, step.stalls].map(|count| format!("{count:.0}")));
@@ -95,7 +85,7 @@ pub fn table(points: &[Point]) -> Table {
         let request = request(Method::Rk4F64, scene, rate);
         let is_resolved = request.admissible_step().is_some_and(|longest| request.dt <= longest);
         row.push(String::from(if is_resolved { "yes" } else { "no" }));
-        row.push(String::from(if dominated { "dominated" } else { "best" }));
+        row.push(String::from(if point.is_dominated(points) { "dominated" } else { "best" }));
         row
     };
     const COLUMNS: &str = "scene,processor,method,step (s),instructions of a step,cycles of a step (estimate),stalls,hot bytes,\
@@ -112,17 +102,17 @@ pub(super) mod tests {
     pub fn point(name: &'static str, cycles: f64, angle: f64) -> Point {
         let step = StepCost { cycles: cycles / 64.0, ..StepCost::default() };
         let error = Error { angle, pixels: 10.0 * angle };
-        Point { name, scene: &SCENES[0], board: &BOARDS[0], rate: 64, step, error, dominated: false }
+        Point { name, scene: &SCENES[0], board: &BOARDS[0], rate: 64, step, error }
     }
 
     #[test]
     fn a_point_is_dominated_by_one_at_least_as_good_in_both() {
         let one = |cycles, angle| point("rk4-f32", cycles, angle);
-        assert!(one(2.0, 1.0).is_dominated_by(&one(1.0, 1.0)));
-        assert!(one(1.0, 2.0).is_dominated_by(&one(1.0, 1.0)));
-        assert!(!one(1.0, 1.0).is_dominated_by(&one(1.0, 1.0)));
-        assert!(!one(2.0, 1.0).is_dominated_by(&one(1.0, 2.0)));
+        assert!(one(2.0, 1.0).is_dominated(&[one(1.0, 1.0)]));
+        assert!(one(1.0, 2.0).is_dominated(&[one(1.0, 1.0)]));
+        assert!(!one(1.0, 1.0).is_dominated(&[one(1.0, 1.0)]));
+        assert!(!one(2.0, 1.0).is_dominated(&[one(1.0, 2.0)]));
         let elsewhere = Point { board: &BOARDS[1], ..one(0.0, 0.0) };
-        assert!(!one(1.0, 1.0).is_dominated_by(&elsewhere));
+        assert!(!one(1.0, 1.0).is_dominated(&[elsewhere]));
     }
 }

@@ -1,4 +1,5 @@
-//! `cargo write-report`: every method's cost on the target against its error, as CSV and charts.
+//! `cargo write-report`: every method's cost on the target against its error, as CSV and charts; and what the READMEs show of it:
+//! what to take on each core, what a step costs and how far it is off, and a chart a core.
 //!
 //! Costs are counted on the emulated targets, errors are computed on the host, which is allowed because the bits are the
 //! same (test `identity`). Nothing is timed, so two runs write the same files.
@@ -7,19 +8,23 @@ pub mod accuracy;
 mod c_peers;
 mod chart;
 pub mod join;
-mod readme;
 
 use std::fs;
 use std::path::PathBuf;
 
-use anyhow::{Result, ensure};
+use anyhow::{Context, Result, ensure};
 use clap::Parser;
+use double_pendulum::Method;
+use firmware::config::HALF_PIXEL;
 
 use crate::commands::count::Target;
+use crate::commands::table::{Table, between, small};
 use crate::console::cli::{say, unwritable, write};
-use crate::console::progress::Progress;
-use crate::emulator::toolchain;
-use accuracy::SCENES;
+use crate::emulator::boards::{BOARDS, Board};
+use crate::emulator::toolchain::{self, workspace};
+use accuracy::{LONG, SCENES, Scene};
+use c_peers::PROGRAMS;
+use join::Point;
 
 /// Measures every method's cost on the target and its error, and writes them as CSV and as charts.
 #[derive(Debug, Parser)]
@@ -35,31 +40,128 @@ pub struct ReportOptions {
 
 pub fn run(options: &ReportOptions) -> Result<()> {
     let toolchain = toolchain::set_up()?;
-    let folder = options.out.clone().unwrap_or_else(|| toolchain::workspace().join("host-tests/report"));
+    let folder = options.out.clone().unwrap_or_else(|| workspace().join("host-tests/report"));
     fs::create_dir_all(&folder).map_err(|error| unwritable("--out", &folder, &error))?;
     let targets = Target::build_all(&toolchain)?;
-    let bar = Progress::of("comparing and counting", join::methods().count() as u64);
-    let (mut points, absent) = join::join(&toolchain, &targets, &|| bar.advance(1))?;
-    drop(bar);
-    join::mark_dominated(&mut points);
+    let (points, absent) = join::join(&toolchain, &targets)?;
     write(&folder.join("speed-against-error.csv"), join::table(&points).csv())?;
-    let mut charts = Vec::new();
+    let is_shown = options.readme && absent.is_empty();
     for (scene, target) in SCENES.iter().flat_map(|scene| targets.iter().map(move |target| (scene, target))) {
         let svg = chart::speed_against_error(&points, scene, target.board)?;
-        charts.push((format!("{}-{}.svg", scene.name, target.board.cpu), svg));
+        let name = format!("{}-{}.svg", scene.name, target.board.cpu);
+        write(&folder.join(&name), &svg)?;
+        if is_shown && scene == &SCENES[0] {
+            write(&workspace().join(CHARTS).join(&name), &svg)?;
+        }
     }
-    charts.iter().try_for_each(|(name, svg)| write(&folder.join(name), svg))?;
-    let advice = readme::advice(&points);
+    let advice = advice(&points);
     absent.iter().chain(&advice).try_for_each(say)?;
-    let pages = readme::pages(&advice, &points)?;
+    let pages = pages(&advice, &points)?;
     if options.readme {
         ensure!(absent.is_empty(), "the READMEs keep their figures: some are missing in these");
         pages.iter().try_for_each(|(path, [_, made])| fs::write(path, made))?;
-        let shown = toolchain::workspace().join(readme::CHARTS);
-        let mut regular = charts.iter().filter(|(name, _)| name.starts_with(SCENES[0].name));
-        regular.try_for_each(|(name, svg)| write(&shown.join(name), svg))?;
     } else if pages.iter().any(|(_, [page, made])| page != made) {
         say("the READMEs show other figures; cargo write-report --readme puts these there")?;
     }
     Ok(say(folder.display())?)
+}
+
+/// Where they show the charts from, in the workspace.
+const CHARTS: &str = "host-tests/pictures/report";
+/// What stands before and after a README's block.
+const MARKS: [&str; 2] = ["<!-- made by cargo write-report --readme -->\n", "<!-- so far -->\n"];
+/// The READMEs, and how many of the rows they show.
+const READMES: [(&str, usize); 2] = [("README.md", 5), ("host-tests/README.md", 8)];
+/// The rows: what exists, what the page prints, and what to take; those of the first page first.
+const ROWS: [&str; 8] = [
+    PROGRAMS[1].0,
+    Method::TextbookF32.name(),
+    Method::Rk4F32Direction.name(),
+    Method::Rk4Fixed32.name(),
+    Method::Extrapolation12Fixed64.name(),
+    PROGRAMS[0].0,
+    Method::Rk4F32DirectionPlain.name(),
+    Method::Extrapolation16Fixed64.name(),
+];
+
+/// What one may want to compute a motion for, in words before the cycles.
+type Purpose = (&'static str, fn(&Point) -> bool);
+const PURPOSES: [Purpose; 3] = [
+    ("draws at 60 fps", |point| point.rate >= 60 && point.error.pixels <= f64::from(HALF_PIXEL)),
+    ("keeps 1e-9 rad", |point| point.error.angle <= 1e-9),
+    ("keeps 1e-12 rad", |point| point.error.angle <= 1e-12),
+];
+
+/// The READMEs, each as it is and with its block: the advice as a list, and as many rows of the table as it shows.
+fn pages(advice: &[String], points: &[Point]) -> Result<Vec<(PathBuf, [String; 2])>> {
+    let items: String = advice.iter().map(|sentence| format!("- {sentence}\n")).collect();
+    let page = |(file, rows): (&str, usize)| {
+        let path = workspace().join(file);
+        let page = fs::read_to_string(&path).with_context(|| format!("no {file}"))?;
+        let made = between(&page, MARKS, &format!("\n{items}\n{}\n", table(points, &ROWS[..rows]).markdown()));
+        Ok((path, [page, made.with_context(|| format!("{file} has no place for it"))?]))
+    };
+    READMES.into_iter().map(page).collect()
+}
+
+/// What to take on each core through a regular and a chaotic motion, a sentence each, in Markdown.
+fn advice(points: &[Point]) -> Vec<String> {
+    let boards = BOARDS.iter().filter(|board| points.iter().any(|point| point.board == *board));
+    let sentence = |board: &Board, scene: &Scene| {
+        let of = points.iter().filter(|point| point.scene == scene && point.board == board);
+        let parts = PURPOSES.map(|(words, serves)| {
+            let cheapest = of.clone().filter(|point| serves(point)).min_by(|a, b| a.cycles().total_cmp(&b.cycles()));
+            match cheapest {
+                Some(point) => format!("`{}` {words} for {}", point.name, thousands(point.cycles())),
+                None => format!("nothing {words}"),
+            }
+        });
+        format!("{}, {} motion, cycles a second: {}.", board.core().name(), scene.name, parts.join("; "))
+    };
+    boards.flat_map(|board| [&SCENES[0], &SCENES[1]].map(|scene| sentence(board, scene))).collect()
+}
+
+/// To three digits, in thousands.
+fn thousands(cycles: f64) -> String {
+    match cycles / 1e3 {
+        kilo @ ..10.0 => format!("{kilo:.1}k"),
+        kilo @ ..1000.0 => format!("{kilo:.0}k"),
+        kilo => format!("{:.1}M", kilo / 1e3),
+    }
+}
+
+/// Cycles of a step and errors through the regular scene and the long one.
+fn table(points: &[Point], names: &[&str]) -> Table {
+    let row = |&name: &&str| {
+        let long = points.iter().find(|point| point.name == name && point.scene == &LONG)?;
+        let same = points.iter().filter(|point| point.name == name && point.rate == long.rate);
+        let short = same.clone().find(|point| point.scene == &SCENES[0])?;
+        let on = |cpu: &str| same.clone().find(|point| point.board.cpu == cpu && point.scene == &SCENES[0]);
+        let cycles = ["cortex-m4", "cortex-m3", "cortex-m0"]
+            .map(|cpu| on(cpu).map_or_else(String::new, |point| format!("{:.0}", point.step.cycles)));
+        let errors = [short, long].map(|point| small(point.error.angle));
+        Some([vec![name.to_owned(), long.rate.to_string()], cycles.to_vec(), errors.to_vec()].concat())
+    };
+    const COLUMNS: &str =
+        "method,steps a second,M4F cycles a step,M3 cycles,M0+ cycles,error in 10 s (rad),error in 100 s (rad)";
+    Table { columns: COLUMNS.split(',').collect(), rows: names.iter().filter_map(row).collect() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::join::tests::point;
+    use super::*;
+
+    #[test]
+    fn a_sentence_has_25_words_at_most_and_names_the_cheapest() {
+        let points = [
+            point("rk4-fixed32", 4.4e4, 1e-4),
+            point("rk4-f64", 1e6, 1e-4),
+            point("extrapolation12-fixed64", 2e6, 1e-13),
+        ];
+        let advice = advice(&points);
+        assert!(advice.iter().all(|sentence| sentence.split_whitespace().count() <= 25), "{advice:?}");
+        let expected = "`rk4-fixed32` draws at 60 fps for 44k; `extrapolation12-fixed64` keeps 1e-9 rad for 2.0M;";
+        assert!(advice[0].contains(expected), "{advice:?}");
+    }
 }

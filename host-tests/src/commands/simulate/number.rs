@@ -13,7 +13,7 @@ pub struct Number {
 }
 
 /// A numerator over a denominator greater than zero, in lowest terms.
-type Fraction = (i64, i64);
+pub type Fraction = (i64, u64);
 
 /// Why a text is no [`Number`].
 const NOT_A_NUMBER: &str = "not a number (write a decimal or a fraction such as 1/256)";
@@ -26,9 +26,9 @@ impl Number {
         self.value
     }
 
-    /// Itself, if a numerator and a denominator of 63 bits are enough.
-    pub fn exact(&self) -> Option<(i64, u64)> {
-        self.fraction.map(|(numerator, denominator)| (numerator, denominator.unsigned_abs()))
+    /// Itself, if a numerator of 63 bits and a denominator of 64 are enough.
+    pub fn exact(&self) -> Option<Fraction> {
+        self.fraction
     }
 
     pub fn is_positive(&self) -> bool {
@@ -37,15 +37,12 @@ impl Number {
 
     /// How many times `step` goes into it, if that is a whole number.
     pub fn whole_multiple_of(&self, step: &Number) -> Option<u64> {
-        match quotient(self.fraction?, step.fraction?)? {
-            (count, 1) => u64::try_from(count).ok(),
-            _ => None,
-        }
+        let (count, parts) = quotient(self.fraction?, step.fraction?)?;
+        count.try_into().ok().filter(|_| parts == 1)
     }
 
-    /// This number divided by `parts`; by 0, unchanged.
+    /// One of so many equal parts of it.
     pub fn divided_by(&self, parts: u32) -> Number {
-        let parts = parts.max(1);
         let fraction = self.fraction.and_then(|fraction| quotient(fraction, (parts.into(), 1)));
         let value = fraction.map_or(self.value / f64::from(parts), nearest);
         let text = match fraction {
@@ -58,9 +55,8 @@ impl Number {
 
     /// The `f64` nearest to `count` times it.
     pub fn times(&self, count: u64) -> f64 {
-        let product =
-            self.fraction.and_then(|(above, below)| Some((above.checked_mul(count.try_into().ok()?)?, below)));
-        product.map_or(self.value * count as f64, nearest)
+        let count = count as f64;
+        self.fraction.map_or(self.value * count, |(above, below)| above as f64 * count / below as f64)
     }
 }
 
@@ -119,6 +115,33 @@ fn nearest((above, below): Fraction) -> f64 {
     above as f64 / below as f64
 }
 
+/// Two numbers separated by a comma: one for each bob or rod.
+#[derive(Clone, Debug)]
+pub struct Pair(pub Number, pub Number);
+
+impl Pair {
+    /// Their nearest `f64`.
+    pub fn values(&self) -> [f64; 2] {
+        [self.0.value(), self.1.value()]
+    }
+}
+
+impl fmt::Display for Pair {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{},{}", self.0, self.1)
+    }
+}
+
+impl FromStr for Pair {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (first, second) = text.split_once(',').ok_or("write two numbers with a comma between them")?;
+        let number = |text: &str| text.trim().parse().map_err(|error| format!("'{text}': {error}"));
+        Ok(Pair(number(first)?, number(second)?))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -157,13 +180,11 @@ mod tests {
         ] {
             assert_eq!(time.parse::<Number>()?.whole_multiple_of(&step.parse()?), count, "{time} of {step}");
         }
-        for (part, count, product) in [("0.1", 3, 0.3), ("-1.5", 2, -3.0)] {
-            assert_eq!(part.parse::<Number>()?.times(count), product, "{count} times {part}");
-        }
-        for (whole, parts, part) in
-            [("0.1", 3, "1/30"), ("3", 3, "1"), ("1e-30", 2, "0.0000000000000000000000000000005")]
+        for (one, parts, part, times) in
+            [("0.1", 3, "1/30", 0.3), ("3", 3, "1", 9.0), ("1e-30", 2, "0.0000000000000000000000000000005", 2e-30)]
         {
-            assert_eq!(whole.parse::<Number>()?.divided_by(parts).to_string(), part, "{whole} in {parts}");
+            let one = one.parse::<Number>()?;
+            assert_eq!((one.divided_by(parts).to_string(), one.times(parts.into())), (part.to_owned(), times), "{one}");
         }
         Ok(())
     }

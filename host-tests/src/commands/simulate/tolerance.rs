@@ -5,10 +5,10 @@
 
 use anyhow::{Context, bail, ensure};
 use double_pendulum::plan::Way;
-use double_pendulum::{Equations, Integrator, Method, Numbers};
+use double_pendulum::{Equations, Integrator, Method, Numbers, State};
 use firmware::config::Processor;
 use firmware::job::{ON_BOARDS, Request};
-use reference::taylor::Reference;
+use reference::taylor;
 
 use super::request::{accepted, count, method, request};
 use super::{Number, Place, Plan, SimulateOptions};
@@ -41,7 +41,8 @@ pub fn choose(options: &SimulateOptions, tolerance: &Number) -> anyhow::Result<(
     let asked = method(options)?;
     accepted(options, &in_parts(asked, divisions(asked, samples).last().unwrap_or(1)).0)?;
 
-    let exact = exact(options, &every, samples);
+    let times: Vec<_> = (0..=samples.into()).map(|row| every.times(row)).collect();
+    let exact = taylor::states(&options.start.parameters(), &options.start.motion(), &times);
     let (unit, methods) = candidates(options);
     let trials = methods.into_iter().flat_map(|(method, price)| {
         divisions(method, samples).map(move |parts| (f64::from(parts) * price, method, parts))
@@ -76,26 +77,14 @@ fn divisions(method: Method, samples: u32) -> impl Iterator<Item = u32> {
     all.take_while(move |parts| *parts <= most)
 }
 
-/// The angles of every row, rad, by the reference.
-fn exact(options: &SimulateOptions, every: &Number, samples: u32) -> Vec<[f64; 2]> {
-    let mut reference = Reference::new(&options.start.parameters(), &options.start.motion());
-    let bar = Progress::of("reference, rows", samples.into());
-    let row = |row| {
-        bar.advance(1);
-        reference.advance_to(every.times(row));
-        reference.motion().angles()
-    };
-    (0..=samples.into()).map(row).collect()
-}
-
 /// How long a motion stays within `limit`, rad, of the exact one: the rows before the first that is too far off, and the largest
 /// error of an angle in them.
-fn agreement(request: &Request, exact: &[[f64; 2]], limit: f64) -> (usize, f64) {
+fn agreement(request: &Request, exact: &[State<f64>], limit: f64) -> (usize, f64) {
     let (mut rows, mut largest) = (0, 0.0_f64);
     // Anything that ends the motion ends the agreement.
     let _ = request.readings::<anyhow::Error>(|reading| {
-        let ([a1, a2, ..], [b1, b2]) = (reading.state, exact.get(rows).context("no more rows")?);
-        let apart = (a1 - b1).abs().max((a2 - b2).abs());
+        let ([a1, a2, ..], exact) = (reading.state, exact.get(rows).context("no more rows")?);
+        let apart = (a1 - exact.a1).abs().max((a2 - exact.a2).abs());
         ensure!(apart <= limit, "too far off");
         (rows, largest) = (rows + 1, largest.max(apart));
         Ok(())
@@ -124,11 +113,9 @@ pub(super) fn methods(place: Place) -> &'static [Method] {
 /// A processor of the host computes in `f64` as fast as in anything else: the evaluations count. `None` of what is no frontier:
 /// something else is as good and costs less.
 fn on_host(method: Method) -> Option<f64> {
-    let is_fast = match method.equations() {
-        Equations::Directions => matches!(method.numbers(), Numbers::F64 | Numbers::CompensatedF64),
-        Equations::Linear => method.numbers() == Numbers::F64,
-        _ => false,
-    };
+    use Equations::{Directions, Linear};
+    use Numbers::{CompensatedF64, F64};
+    let is_fast = matches!((method.equations(), method.numbers()), (Directions, F64 | CompensatedF64) | (Linear, F64));
     is_fast.then(|| evaluations(method))
 }
 
