@@ -50,6 +50,17 @@ fn what_memory_holds_when_it_is_switched_on_is_not_trusted() {
 }
 
 #[test]
+fn any_flipped_bit_is_noticed() {
+    let kept = record().write();
+    let end = kept.iter().rposition(|byte| *byte > 0).expect("a message");
+    for bit in 0..8 * (end + 2) {
+        let mut flipped = kept;
+        flipped[bit / 8] ^= 1 << (bit % 8);
+        assert_eq!(Record::read(&flipped), None, "bit {bit}");
+    }
+}
+
+#[test]
 fn a_reset_from_outside_starts_anew_and_one_by_the_watchdog_does_not() {
     let running = ended(Restarted { cause: None, ..record().end });
     assert_eq!(running.restart(false), None);
