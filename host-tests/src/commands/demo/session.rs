@@ -42,7 +42,7 @@ impl Source {
 
     /// The lines of the log since the last call, of a port what has become of it; and what the link has been through.
     pub fn told(&mut self) -> (Vec<LogLine>, Counts) {
-        let notice = |text: String| LogLine { level: Some("warn".to_owned()), text, place: None };
+        let notice = |text: String| LogLine { level: Some("warn".to_owned()), text, place: String::new() };
         match self {
             Self::Live(machine) | Self::Lockstep(machine) => (machine.lines(), machine.counts()),
             Self::Pico(machine) => (machine.lines(), machine.counts()[0]),

@@ -123,7 +123,7 @@ mod tests {
     fn readings(scene: SceneName) -> Readings {
         let mut readings = Readings::default();
         let text = "plan: direction form, 4 steps to a frame, and as many words as make it longer than a pane is wide";
-        readings.lines.push(LogLine { level: Some("info".to_owned()), text: text.to_owned(), place: None });
+        readings.lines.push(LogLine { level: Some("info".to_owned()), text: text.to_owned(), place: String::new() });
         for tick in 0..30_u32 {
             let time = 86_399.0 + f64::from(tick) / 60.0;
             readings.frame(Reading {

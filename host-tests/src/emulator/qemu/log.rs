@@ -11,13 +11,13 @@ pub struct LogLine {
     /// defmt's level in lower case; `None` for plain text, in which QEMU speaks and the firmware reports a crash.
     pub level: Option<String>,
     pub text: String,
-    /// The file name and line number of the statement, where they are known.
-    pub place: Option<(String, u64)>,
+    /// The file name and line number of the statement, ` [file:line]`, where they are known.
+    pub place: String,
 }
 
 impl LogLine {
     pub(super) fn plain(text: &str) -> Self {
-        Self { level: None, text: text.to_owned(), place: None }
+        Self { level: None, text: text.to_owned(), place: String::new() }
     }
 
     /// Whether something went wrong: a defmt error, or a crash report or complaint in plain text.
@@ -28,14 +28,8 @@ impl LogLine {
 
 impl fmt::Display for LogLine {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if let Some(level) = &self.level {
-            write!(f, "{level:5} ")?;
-        }
-        write!(f, "{}", self.text)?;
-        match &self.place {
-            Some((file, line)) => write!(f, " [{file}:{line}]"),
-            None => Ok(()),
-        }
+        let level = self.level.as_ref().map_or(String::new(), |level| format!("{level:5} "));
+        write!(f, "{level}{}{}", self.text, self.place)
     }
 }
 
@@ -82,10 +76,9 @@ impl LogDecoder {
 }
 
 fn line(frame: &Frame, locations: &Locations) -> LogLine {
-    let place = locations.get(&frame.index()).and_then(|location| {
-        let file = location.file.file_name()?.to_string_lossy().into_owned();
-        Some((file, location.line))
-    });
+    let place = locations
+        .get(&frame.index())
+        .and_then(|location| Some(format!(" [{}:{}]", location.file.file_name()?.display(), location.line)));
     let level = frame.level().map_or_else(|| "print".to_owned(), |level| level.as_str().to_owned());
-    LogLine { level: Some(level), text: frame.display_message().to_string(), place }
+    LogLine { level: Some(level), text: frame.display_message().to_string(), place: place.unwrap_or_default() }
 }
