@@ -119,6 +119,7 @@ impl CountOptions {
             parameters: Parameters { m1: 1.0, m2, l1: 1.0, l2, g: GRAVITY.into() },
             angles: [angle; 2],
             dt: f64::powi(0.5, self.halvings.into()),
+            samples: 1,
             ..Request::on_any_core(method)
         };
         let check = |request| Request { stride: 1, samples: 1, ..request }.crc().map(|_| request);

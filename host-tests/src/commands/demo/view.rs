@@ -62,7 +62,12 @@ pub fn draw(frame: &mut Frame, board: &str, screenshot: &Screenshot, readings: &
     let (mut log, block) = (lower, Block::bordered().title("log"));
     if lower.height >= ANGLES {
         let [angles, framed] = Layout::horizontal([Percentage(ANGLES_WIDTH), Fill(1)]).areas(lower);
-        numbers::draw_angles(frame, angles, &readings.past);
+        if now.is_none_or(|now| now.scene.has_angles()) {
+            numbers::draw_angles(frame, angles, &readings.past);
+        } else {
+            let nothing = Paragraph::new("no motion here").block(Block::bordered().title("angles"));
+            frame.render_widget(nothing, angles);
+        }
         log = block.inner(framed);
         frame.render_widget(block, framed);
     }
