@@ -57,7 +57,11 @@ fn UART0_IRQ() {
         }
         uart().uartimsc().modify(|_, w| w.txim().bit(!queue.is_empty()));
     });
-    serial::receive();
+    // USB, which takes long to look at, interrupts by itself unless it waits for room.
+    let waits = !NVIC::is_enabled(Interrupt::USBCTRL_IRQ);
+    if waits || uart().uartfr().read().rxfe().bit_is_clear() {
+        serial::receive();
+    }
 }
 
 /// To look at USB and to read what has come ends the interrupts of both.
