@@ -18,12 +18,17 @@ const MAGIC_END: u32 = 0x0ab1_6f30;
 const BROUGHT: usize = 256;
 const ROOM: usize = 476;
 /// What stands in flash where the program has nothing.
-const ERASED: u8 = 0xff;
+pub const ERASED: u8 = 0xff;
 /// More than any chip's: a gap longer than this is none.
 const MOST: usize = 1 << 21;
 
 /// The program as it lies in flash: its first address, and its bytes from there on.
 pub fn flash_image(elf: &[u8]) -> Result<(u32, Vec<u8>)> {
+    flash_image_over(elf, ERASED)
+}
+
+/// The same where the loader leaves `unused` between the parts of the program: erased flash, or zeros as QEMU does.
+pub fn flash_image_over(elf: &[u8], unused: u8) -> Result<(u32, Vec<u8>)> {
     let header = FileHeader32::<Endianness>::parse(elf)?;
     let endian = header.endian()?;
     let mut parts = Vec::new();
@@ -39,7 +44,7 @@ pub fn flash_image(elf: &[u8]) -> Result<(u32, Vec<u8>)> {
         let from = (address - start) as usize;
         ensure!(from + data.len() <= MOST, "a segment at {address:#x}, far from the others");
         if image.len() < from + data.len() {
-            image.resize(from + data.len(), ERASED);
+            image.resize(from + data.len(), unused);
         }
         image[from..from + data.len()].copy_from_slice(data);
     }

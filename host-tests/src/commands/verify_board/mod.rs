@@ -19,7 +19,7 @@ use crate::commands::table::Table;
 use crate::console::cli::{complain, say};
 use crate::console::progress::Progress;
 use crate::emulator::boards::{Board, every_board};
-use crate::emulator::flash::flash_image;
+use crate::emulator::flash::{ERASED, flash_image_over};
 use crate::emulator::process;
 use crate::emulator::toolchain::{self, workspace};
 use talk::Talk;
@@ -119,13 +119,19 @@ fn program(board: Option<&Board>, identity: &Identity) -> anyhow::Result<String>
     Ok(format!("program of {image_bytes} bytes, CRC {image:08x}: {whose}"))
 }
 
-/// Whether what is built here for `board` has, from its vectors on, what the board says of itself.
+/// Whether what is built here for `board` is, from its vectors to its constants, what the board says of itself.
 fn is_built(board: &Board, identity: &Identity) -> anyhow::Result<bool> {
     let elf = fs::read(toolchain::ready()?.build_for(board)?)?;
-    let (first, flash) = flash_image(&elf)?;
     let file = object::File::parse(&*elf)?;
-    let vectors = file.symbols().find(|symbol| symbol.name() == Ok("__vector_table")).context("no vectors")?;
-    let start = vectors.address() as usize - first as usize;
-    let image = flash.get(start..start + identity.image_bytes as usize);
-    Ok(image.is_some_and(|image| CRC.checksum(image) == identity.image))
+    let address = |name: &str| {
+        let symbol = file.symbols().find(|symbol| symbol.name() == Ok(name)).context("a program without its names")?;
+        anyhow::Ok(symbol.address() as usize)
+    };
+    let (start, end) = (address("__vector_table")?, address("__erodata")?);
+    let is_at = |unused: u8| {
+        let (first, flash) = flash_image_over(&elf, unused)?;
+        let image = flash.get(start - first as usize..end - first as usize).context("a program beside its flash")?;
+        anyhow::Ok((CRC.checksum(image), image.len() as u32) == (identity.image, identity.image_bytes))
+    };
+    Ok(is_at(ERASED)? || is_at(0)?)
 }
