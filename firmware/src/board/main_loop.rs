@@ -13,12 +13,12 @@ use super::cortex_m::clock::{ticks, wait_after};
 use super::cortex_m::retained;
 use super::cortex_m::watchdog::Watchdog;
 use super::serial;
-use crate::app::{App, Buttons, Event, Instruments, Journal, News};
+use crate::app::{App, Buttons, Event, Instruments, Journal, PlannerEvent, Record};
 use crate::config::{HALF_PIXEL, Processor};
 use crate::display::Display;
 use crate::graphics::FrameBuffers;
 use crate::motion::Settings;
-use crate::protocol::Cause;
+use crate::protocol::{Cause, Restarted};
 use crate::scenes::SceneName;
 
 pub struct Board<Panel, Link, Keys, Dog> {
@@ -117,7 +117,7 @@ fn run<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons>(
     }
 }
 
-/// What was played before an unplanned reset goes on.
+/// What was played before an unplanned reset goes on. The restart is counted first: it may be the start that ends the board.
 #[inline(never)]
 fn resume<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons>(
     app: &mut App<Panel, Link, Keys>,
@@ -125,6 +125,7 @@ fn resume<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons>(
 ) -> Journal {
     let restart = retained::recall(reset_by_watchdog);
     if let Some(restart) = &restart {
+        retained::keep(&Record { end: Restarted { cause: None, ..restart.end }, ..*restart });
         app.resume(restart, log);
     }
     let mut journal = Journal::new(restart.as_ref());
@@ -162,7 +163,7 @@ fn log<Panel: Debug, Link: Debug>(event: Event<Panel, Link>) {
         Event::Lost { bytes, total } => defmt::warn!("{} received bytes lost, {} since reset", bytes, total),
         Event::Stopped(error) => defmt::error!("stopped: {}", error),
         Event::StepTooLong(step) => defmt::warn!("the step is too long for this energy, {} s would do", step),
-        Event::Motion(News::Found(Ok(Plan { method, steps, error, cost, horizon, limit, .. }))) => {
+        Event::Motion(PlannerEvent::Found(Ok(Plan { method, steps, error, cost, horizon, limit, .. }))) => {
             defmt::info!(
                 "plan: {=str}, steps to a frame: {}, expected to be at most {}/1000 of a pixel off until {}.{:02} s ({=str}), {} cycles a frame",
                 method.name(),
@@ -174,13 +175,13 @@ fn log<Panel: Debug, Link: Debug>(event: Event<Panel, Link>) {
                 cost as u32,
             )
         }
-        Event::Motion(News::Found(Err(PlanError::NoMethod { limit, .. }))) => {
+        Event::Motion(PlannerEvent::Found(Err(PlanError::NoMethod { limit, .. }))) => {
             defmt::info!("plan: nothing affordable is right to half a pixel in any frame ({=str})", limit.name());
         }
-        Event::Motion(News::Shown(Way { method, steps }, cost)) => {
+        Event::Motion(PlannerEvent::Shown(Way { method, steps }, cost)) => {
             defmt::info!("shown: {=str}, steps to a frame: {}, {} cycles a frame", method.name(), steps, cost as u32);
         }
-        Event::Motion(News::Found(Err(error))) => defmt::warn!("no plan: {}", error),
+        Event::Motion(PlannerEvent::Found(Err(error))) => defmt::warn!("no plan: {}", error),
         Event::Asked => defmt::info!("computing a motion on request"),
         Event::Link(error) => defmt::error!("serial link: {}", Debug2Format(&error)),
     }

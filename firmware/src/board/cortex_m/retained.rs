@@ -6,29 +6,32 @@ use core::sync::atomic::{AtomicU8, Ordering};
 use crate::app::Record;
 use crate::protocol::{Cause, MAX_WIRE, Restarted};
 
-/// A watchdog's interrupt may write in the middle of the main loop's writing: what comes of two at once is found out by
-/// the message's check.
+/// Two copies, of which one is whole whenever the program ends, in the middle of writing the other, too: by the message's
+/// check it is known.
 // SAFETY: start-up leaves this section alone, and what stands there is bytes.
 #[unsafe(link_section = ".uninit.kept")]
-static KEPT: [AtomicU8; MAX_WIRE] = [const { AtomicU8::new(0) }; MAX_WIRE];
+static KEPT: [[AtomicU8; MAX_WIRE]; 2] = [const { [const { AtomicU8::new(0) }; MAX_WIRE] }; 2];
 
 /// The bytes, of which the compiler must assume nothing: what is read here was written by a program that has ended, and
 /// what is written is for one yet to come.
-fn bytes() -> &'static [AtomicU8; MAX_WIRE] {
+fn copies() -> &'static [[AtomicU8; MAX_WIRE]; 2] {
     black_box(&KEPT)
 }
 
 /// Keeps what is played and where it stands, in case this frame is the last.
 #[inline(never)]
 pub fn keep(record: &Record) {
-    for (place, byte) in bytes().iter().zip(record.write()) {
-        place.store(byte, Ordering::Relaxed);
+    let bytes = record.write();
+    for copy in copies() {
+        for (place, byte) in copy.iter().zip(bytes) {
+            place.store(byte, Ordering::Relaxed);
+        }
     }
 }
 
 #[inline(never)]
 fn kept() -> Option<Record> {
-    Record::read(&bytes().each_ref().map(|byte| byte.load(Ordering::Relaxed)))
+    copies().iter().find_map(|copy| Record::read(&copy.each_ref().map(|byte| byte.load(Ordering::Relaxed))))
 }
 
 /// What was kept across the last reset, if that was no planned one.
