@@ -1,6 +1,7 @@
 //! What the check of a message detects.
 
 use std::collections::HashSet;
+use std::fmt::Debug;
 
 use double_pendulum::Method;
 use double_pendulum::plan::{Limit, Plan, Way};
@@ -8,10 +9,11 @@ use firmware::app::Record;
 use firmware::job::{Reading, Request};
 use firmware::motion::{Planned, Settings};
 use firmware::protocol::{
-    Answer, Cause, Command, Decoder, Frame, LinkError, MAX_MESSAGE, MAX_WIRE, Restarted, Status, ToHost,
-    decode_command, encode, encode_command, frame,
+    Answer, BoardName, Cause, Command, Decoder, Field, Frame, LinkError, MAX_MESSAGE, MAX_WIRE, Restarted, Status,
+    ToHost, VERSION, decode_command, encode, encode_command, frame, read,
 };
 use firmware::scenes::{Report, SceneName};
+use host_tests::oracle::snapshot;
 
 use crate::bench::messages;
 
@@ -102,6 +104,26 @@ fn every_message_fits() {
         Command::Simulate(Request { stride: number, samples: number, ..Request::on_any_core(Method::Rk4F64) });
     let message = decoded(encode_command(u16::MAX, command, &mut [0; MAX_WIRE])).expect("a message").expect("intact");
     assert_eq!((message.len(), decode_command(&message)), (96, Some((u16::MAX, Some(command)))));
+}
+
+/// The values that a message of each number reads as, all their fields zero.
+fn variants<T: Debug>(read: fn(&[u8]) -> Option<T>) -> String {
+    let zeros = |number: u8| (0..MAX_MESSAGE).map(move |count| [vec![number], vec![0; count]].concat());
+    let values = (0..=u8::MAX).map_while(|number| zeros(number).find_map(|bytes| read(&bytes)));
+    let line = |(number, value)| format!("{number:>2} {value:?}\n");
+    (0..).zip(values).map(line).chain(["\n".to_owned()]).collect()
+}
+
+/// Whoever changes what a number means raises the version, by which the two sides know each other.
+#[test]
+fn numbers_mean_the_same_as_long_as_the_version_does() -> Result<(), String> {
+    let messages =
+        variants(read::<ToHost>) + &variants(read::<Answer>) + &variants(read::<Command>) + &variants(read::<Field>);
+    let values = variants(read::<Method>)
+        + &variants(read::<SceneName>)
+        + &variants(read::<BoardName>)
+        + &variants(read::<Cause>);
+    snapshot::check(&format!("wire-{VERSION}"), &(messages + &values + &variants(read::<Limit>)))
 }
 
 /// Its bytes on the wire.
