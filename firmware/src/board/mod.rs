@@ -1,7 +1,5 @@
 //! The boards: the only place for registers, clocks, interrupts and `unsafe`.
 //!
-//! A room imports only from those below it in this table.
-//!
 //! | room | what is in it |
 //! |---|---|
 //! | `main_loop` | the application of every board: its main loop, its log |

@@ -29,7 +29,7 @@ pub struct Outbox {
 
 pub type Sent = Result<(), ErrorKind>;
 
-/// What a panel says that does not acknowledge: there is none.
+/// No panel acknowledges.
 pub const SILENCE: ErrorKind = ErrorKind::NoAcknowledge(NoAcknowledgeSource::Unknown);
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

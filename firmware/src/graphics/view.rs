@@ -69,7 +69,7 @@ impl View {
         self.spots = self.bobs(directions).map(|(x, y)| Spot::at(x, y));
     }
 
-    /// Bob 2 leaves a stroke `2 * half_width` subpixels wide, with a brightness of 0 to 255.
+    /// Turns the rods; bob 2 leaves a stroke `2 * half_width` subpixels wide, with a brightness of 0 to 255.
     pub fn trace(&mut self, directions: RodDirections, ink: &mut FadeLayer, half_width: u8, brightness: u8) {
         let [_, from] = self.spots;
         self.turn(directions);

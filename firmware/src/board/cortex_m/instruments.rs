@@ -1,4 +1,4 @@
-//! What every Cortex-M can tell of itself: its kind, its program, the cycles that something takes.
+//! What every Cortex-M can tell of itself: its kind, its program, the cycles that something takes; and what starts it.
 
 use cortex_m::Peripherals;
 use cortex_m::peripheral::{DCB, DWT};

@@ -30,6 +30,8 @@ const STOPPED: u32 = 1 << 9;
 
 /// Why it aborted: an address or a byte was not acknowledged.
 const REFUSED: u32 = 1 << 3 | 1 << 0;
+/// Another master had the bus.
+const LOST: u32 = 1 << 12;
 
 /// The GPIO of the bus's lines.
 const DATA: usize = 4;
@@ -94,7 +96,11 @@ fn advance(port: &RegisterBlock, outbox: &mut Outbox) -> Option<Sent> {
         let reason = port.ic_tx_abrt_source().read().bits();
         let _ = port.ic_clr_tx_abrt().read();
         listen(port, NOTHING);
-        return Some(Err(if reason & REFUSED != 0 { SILENCE } else { ErrorKind::Other }));
+        return Some(Err(match reason {
+            _ if reason & REFUSED != 0 => SILENCE,
+            _ if reason & LOST != 0 => ErrorKind::ArbitrationLoss,
+            _ => ErrorKind::Other,
+        }));
     }
     if outbox.is_empty() {
         if !status.stop_det().is_active() {

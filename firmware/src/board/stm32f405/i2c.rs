@@ -142,7 +142,7 @@ fn fail(port: &RegisterBlock) -> Option<Sent> {
         .write(|w| w.af().bit(!status.af().bit()).arlo().bit(!status.arlo().bit()).berr().bit(!status.berr().bit()));
     let error = match (status.af().bit(), status.arlo().bit()) {
         (true, _) => SILENCE,
-        (_, true) => ErrorKind::Other,
+        (_, true) => ErrorKind::ArbitrationLoss,
         _ => return None,
     };
     stop(port);
