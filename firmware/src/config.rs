@@ -77,13 +77,13 @@ impl Processor {
 pub const CORTEX_M3: Processor =
     Processor { code: 0, costs: prices::CORTEX_M3, frame: 200_000.0, look_ahead: 360_000.0, flips: FIXED };
 /// A Cortex-M0+, which has no long product either, as on the Raspberry Pi Pico: at 125 MHz a tick has 2,083,000 cycles. A start of
-/// the map counts a step more, so that a tick of it leaves the Pico's port its share.
+/// the map counts four steps more, so that a tick of it leaves the Pico's port its share.
 pub const CORTEX_M0PLUS: Processor = Processor {
     code: 3,
     costs: prices::CORTEX_M0PLUS,
     frame: 300_000.0,
     look_ahead: 640_000.0,
-    flips: FlipsPace { steps: 400, start: 43, ..FIXED },
+    flips: FlipsPace { steps: 400, start: 46, ..FIXED },
 };
 /// A Cortex-M4F, whose floating-point unit knows `f32` only: the slowest board, at 25 MHz, has 417,000 cycles in a tick. A
 /// plain step costs less than the closed form's two sincos.
@@ -187,7 +187,7 @@ pub const BAUD: u32 = 460_800;
 /// 16 x 136,500/50e6 = 44 ms.
 pub const MOST_MEASURED_STEPS: u32 = 16;
 /// How often a bus is asked whether it is done before it counts as stuck. A try takes at least 4 processor cycles, so this is
-/// 0.24 ms of the fastest board; the slowest thing waited for is a byte of the panel's I2C, 9/400,000 s = 23 us.
+/// 0.24 ms of the fastest board; the slowest thing waited for is a byte of the serial port, 10/460,800 s = 22 us.
 pub const BUS_TRIES: u32 = 10_000;
 /// Received bytes waiting for the application; one tick brings at most 460,800/10/60 = 768.
 pub const RECEIVE_QUEUE: usize = 1024;

@@ -7,8 +7,8 @@ use std::hint::black_box;
 use std::iter::successors;
 use std::time::Instant;
 
-use double_pendulum::parts::{DirectionForm, Plain};
-use double_pendulum::{DirectionF64, ExtrapolationF64, Form};
+use double_pendulum::parts::{DirectionF64, DirectionForm, Plain};
+use double_pendulum::{ExtrapolationF64, Form};
 use double_pendulum::{Motion, Parameters};
 use host_tests::oracle::trials::largest_difference;
 use ode_solvers::dop_shared::OutputType;

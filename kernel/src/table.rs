@@ -102,6 +102,15 @@ impl Method {
     /// Every method.
     pub const ALL: &[Method] = ALL;
 
+    /// What a [plan](crate::plan) chooses from.
+    pub const DRAWN: &[Method] = &[
+        Method::ClosedFormF32,
+        Method::Rk4F32DirectionPlain,
+        Method::Rk4F32Direction,
+        Method::Rk4Fixed32,
+        Method::Extrapolation10Fixed64,
+    ];
+
     /// Its name: integrator, numbers, equations.
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -117,15 +126,6 @@ impl Method {
 
 #[doc(hidden)]
 impl Method {
-    /// What a [plan](crate::plan) chooses from.
-    pub const DRAWN: &[Method] = &[
-        Method::ClosedFormF32,
-        Method::Rk4F32DirectionPlain,
-        Method::Rk4F32Direction,
-        Method::Rk4Fixed32,
-        Method::Extrapolation10Fixed64,
-    ];
-
     #[must_use]
     pub const fn equations(self) -> Equations {
         self.row().1

@@ -3,7 +3,7 @@
 use double_pendulum::Error;
 use embedded_io::ErrorType;
 
-use crate::app::News;
+use crate::app::PlannerEvent;
 use crate::config::TICK_RATE;
 use crate::display::{Display, Found};
 use crate::motion::Settings;
@@ -47,7 +47,7 @@ pub enum Event<Panel, Link> {
     Stopped(Error),
     /// The step is longer than this, s, the longest that resolves every motion of the energy of what was asked for.
     StepTooLong(f64),
-    Motion(News),
+    Motion(PlannerEvent),
 }
 
 /// What takes the events of an application with such a panel and link.

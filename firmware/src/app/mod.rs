@@ -19,7 +19,7 @@ use event::{FaultEdge, ThrottledCounter};
 pub use controls::{Buttons, Controls, Key, NoButtons, Pressed};
 pub use event::{Event, Log};
 pub use instruments::Instruments;
-pub use player::{News, Player};
+pub use player::{PlannerEvent, Player};
 pub use warm_restart::{Journal, Kept, MOST_RESTARTS, Record, SOUND_FRAMES};
 
 /// The same on a board and in a test: a panel, a byte sink and buttons are all it needs.
@@ -190,7 +190,7 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         if self.player.execute(command)? {
             log(Event::Started(self.player.name, self.player.settings));
             if let Some(way) = self.player.report.way {
-                log(Event::Motion(News::Shown(way, self.player.cost(way))));
+                log(Event::Motion(PlannerEvent::Shown(way, self.player.cost(way))));
             }
         }
         Ok(())

@@ -6,13 +6,13 @@ use double_pendulum::{Error, Method};
 use crate::app::pace::Pace;
 use crate::config::{GREATEST_ANGLE, Processor};
 use crate::graphics::{Canvas, FadeLayer, text};
-use crate::motion::{CatchingUp, Finding, Means, Planned, Planner, Settings};
+use crate::motion::{CatchingUp, PlanResult, Planned, Planner, Resources, Settings};
 use crate::protocol::{Command, Field, Frame, Status};
 use crate::scenes::{AnyScene, Report, SceneName};
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum News {
-    Found(Finding),
+pub enum PlannerEvent {
+    Found(PlanResult),
     /// The motion goes this way from now on; cycles of a frame.
     Shown(Way, f32),
 }
@@ -47,8 +47,8 @@ impl<'a> Player<'a> {
     /// Plays a scene with `settings`; the kernel's error if they describe no pendulum, and nothing is changed.
     #[inline(never)] // what a scene needs to start would be on the stack of every frame
     pub fn play(&mut self, name: SceneName, settings: Settings) -> Result<(), Error> {
-        let means = Means { processor: self.planner.processor, method: self.method };
-        let height = self.scene.start(name, &settings, &means)?;
+        let resources = Resources { processor: self.planner.processor, method: self.method };
+        let height = self.scene.start(name, &settings, &resources)?;
         (self.name, self.settings, self.stopped, self.next) = (name, settings, false, None);
         let begun = self.scene.report(0).way;
         let is_tied = self.method.is_some() || self.scene.planned().is_none();
@@ -88,7 +88,7 @@ impl<'a> Player<'a> {
     /// Advances by one tick of the clock, which may be any number of the scene's; `tell` is given what planning finds, and
     /// the way that a scene begins or changes to.
     #[inline(never)]
-    pub fn tick(&mut self, mut tell: impl FnMut(News)) {
+    pub fn tick(&mut self, mut tell: impl FnMut(PlannerEvent)) {
         if self.stopped {
             return;
         }
@@ -99,18 +99,18 @@ impl<'a> Player<'a> {
                 if self.scene.planned().is_none_or(|motion| next.tick(motion)) {
                     self.next = None;
                     if let Some(way) = self.scene.planned().map(|simulation| simulation.motion.way()) {
-                        tell(News::Shown(way, self.cost(way)));
+                        tell(PlannerEvent::Shown(way, self.cost(way)));
                     }
                 }
             } else if let Some(found) = self.planner.tick() {
-                tell(News::Found(found));
+                tell(PlannerEvent::Found(found));
                 self.follow(&found);
             }
         }
     }
 
     #[inline(never)] // what a motion needs to start would be on the stack of every frame
-    fn follow(&mut self, found: &Finding) {
+    fn follow(&mut self, found: &PlanResult) {
         if let (Ok(plan), None) = (found, self.method) {
             let way = plan.way();
             if self.scene.planned().is_some_and(|simulation| simulation.motion.way() != way) {

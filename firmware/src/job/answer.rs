@@ -30,7 +30,7 @@ impl<R: Run> Job<R> {
         let parameters = request.parameters;
         let parameters = if method.is_single() { parameters.cast::<f32>().cast() } else { parameters };
         let pendulum = Pendulum::new(&parameters)?;
-        let turns = run.sides().map(|sides| Turns::of(angles, sides));
+        let turns = run.sides().map(|sides| Turns::of(angles, sides)).transpose()?;
         Ok(Self { run, pendulum, turns, stride, given: 0, left: samples.saturating_add(1), steps: 0 })
     }
 

@@ -1,8 +1,6 @@
 //! What a row of the table is: a motion that can be started, stepped and read.
 
-use double_pendulum::{
-    Direction, Error, Form, Integrator, Modes, Motion, Parameters, Pendulum, Real, SmallOscillations, State,
-};
+use double_pendulum::{Error, Form, Integrator, Motion, Parameters, Pendulum, Real, State};
 
 use super::Request;
 
@@ -70,48 +68,4 @@ fn checked<R: Real>(request: &Request) -> Result<(Parameters<f64>, State<f64>), 
     let state = pendulum.to_state(&start);
     state.check()?;
     Ok((parameters.cast(), state.cast()))
-}
-
-/// Small oscillations as a scene draws them: the directions of the rods at every step.
-#[derive(Clone, Copy, Debug)]
-pub struct Drawn {
-    oscillations: SmallOscillations<f32>,
-    directions: [Direction<f32>; 2],
-    /// In f64, so that no digit of the velocities is lost in the momenta.
-    pendulum: Pendulum<f64>,
-    dt: f64,
-    steps: u32,
-}
-
-impl Drawn {
-    /// As [`start`].
-    pub(super) fn start(request: &Request) -> Result<Self, Error> {
-        let (parameters, start) = rounded::<f32>(request);
-        start.check()?;
-        let pendulum = Pendulum::new(&parameters.cast())?;
-        let oscillations = SmallOscillations::new(Modes::new(&parameters.cast())?, &start);
-        Ok(Self { oscillations, directions: oscillations.directions(0.0), pendulum, dt: request.dt, steps: 0 })
-    }
-
-    fn time(&self) -> f64 {
-        f64::from(self.steps) * self.dt
-    }
-}
-
-impl Run for Drawn {
-    #[inline(always)]
-    fn advance(&mut self, steps: u32) {
-        for _ in 0..steps {
-            self.steps = self.steps.wrapping_add(1);
-            self.directions = self.oscillations.directions(self.time());
-        }
-    }
-
-    fn state(&self) -> State<f64> {
-        self.pendulum.to_state(&self.oscillations.at(self.time()).cast())
-    }
-
-    fn bits(&self, mut feed: impl FnMut(u64)) {
-        self.directions.iter().flatten().for_each(|x| feed(x.bits()));
-    }
 }

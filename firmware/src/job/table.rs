@@ -10,23 +10,13 @@ use double_pendulum::{
 };
 
 use super::comparison::{Micromath, Textbook};
-use super::run::{Drawn, start};
+use super::run::start;
 use super::{Reading, Request, Run, answer, crc};
-
-/// What computes a request by a method: its form's steps, unless another type is given.
-macro_rules! start {
-    ($request:expr, $form:ty) => {
-        start::<$form>($request)
-    };
-    ($request:expr, $form:ty, $run:ty) => {
-        <$run>::start($request)
-    };
-}
 
 macro_rules! table {
     (
         on_boards { $($method:ident: $form:ty;)* }
-        elsewhere { $($other:ident: $other_form:ty $(, $other_run:ty)?;)* }
+        elsewhere { $($other:ident: $other_form:ty;)* }
     ) => {
         /// The methods that every board's application links, the default first.
         pub const ON_BOARDS: &[Method] = &[$(Method::$method),*];
@@ -110,7 +100,7 @@ macro_rules! table {
             pub fn readings<E: From<Error>>(&self, each: impl FnMut(&Reading) -> Result<(), E>) -> Result<(), E> {
                 match self.method {
                     $(Method::$method => answer::readings(start::<$form>(self)?, self, each),)*
-                    $(Method::$other => answer::readings(start!(self, $other_form $(, $other_run)?)?, self, each),)*
+                    $(Method::$other => answer::readings(start::<$other_form>(self)?, self, each),)*
                 }
             }
 
@@ -119,7 +109,7 @@ macro_rules! table {
             pub fn crc(&self) -> Result<u32, Error> {
                 Ok(match self.method {
                     $(Method::$method => crc(start::<$form>(self)?, self),)*
-                    $(Method::$other => crc(start!(self, $other_form $(, $other_run)?)?, self),)*
+                    $(Method::$other => crc(start::<$other_form>(self)?, self),)*
                 })
             }
         }
@@ -138,9 +128,9 @@ table! {
         Extrapolation12Fixed64: Fixed64<12>;
         Extrapolation16Fixed64: Fixed64<16>;
         ClosedFormF64: ClosedFormF64;
+        ClosedFormF32: ClosedFormF32;
     }
     elsewhere {
-        ClosedFormF32: ClosedFormF32, Drawn;
         Extrapolation12F64: ExtrapolationF64<12>;
         Extrapolation16F64: ExtrapolationF64<16>;
         Rk4F32Micromath: Canonical<f32, Micromath>;

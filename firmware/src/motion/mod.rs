@@ -6,6 +6,6 @@ mod settings;
 mod simulation;
 
 pub use misprinted::Misprinted;
-pub use planner::{Finding, Planned, Planner};
+pub use planner::{PlanResult, Planned, Planner};
 pub use settings::{Settings, half_pixel};
-pub use simulation::{CatchingUp, Energy, Means, Simulation};
+pub use simulation::{CatchingUp, Energy, Resources, Simulation};

@@ -10,13 +10,13 @@ use crate::config::{PLANNED, PLANNING_PIECE, Processor, SETTLED_TICKS, TICK_RATE
 use crate::motion::Settings;
 
 /// The plan, or why there is none. One that was right to its end is looked at farther, and told again when that comes to an end.
-pub type Finding = Result<Plan, PlanError>;
+pub type PlanResult = Result<Plan, PlanError>;
 
 /// A plan, and what it is made for.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Planned {
     /// `None` while the search is under way.
-    pub found: Option<Finding>,
+    pub found: Option<PlanResult>,
     /// The display's height, pixels: both rods together are half of it long.
     pub height: f32,
     /// For how long, s.
@@ -37,7 +37,7 @@ pub struct Planner {
     search: Option<Search>,
     /// Cycles of the ticks to come that have been spent.
     debt: f32,
-    plan: Option<Finding>,
+    plan: Option<PlanResult>,
     /// The way that the scene has begun in, and until when that is expected to be right, s.
     begun: Option<(Way, f64)>,
     /// It goes no other way, whatever the plan.
@@ -65,7 +65,7 @@ impl Planner {
 
     /// Does all that this tick of the scene may spend, but what has been done before. What is found the next one tells, and does
     /// nothing else: to follow it takes time, too.
-    pub fn tick(&mut self) -> Option<Finding> {
+    pub fn tick(&mut self) -> Option<PlanResult> {
         self.ticks += 1;
         if core::mem::take(&mut self.is_due) {
             self.is_news = false;
@@ -161,7 +161,7 @@ impl Planner {
     }
 
     /// What is right to the end is looked at farther; all else ends the search.
-    fn take(&mut self, found: Finding) {
+    fn take(&mut self, found: PlanResult) {
         (self.plan, self.is_news) = (Some(found), true);
         match (&mut self.search, found) {
             (Some(search), Ok(Plan { limit: Limit::End, .. })) => search.extend(FOR_EVER),

@@ -9,7 +9,7 @@ use crate::motion::Settings;
 
 /// What a motion may be computed by.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Means {
+pub struct Resources {
     /// What steps cost, and what may be spent.
     pub processor: Processor,
     /// The method that is asked for; `None` leaves it to the plan.
@@ -27,7 +27,7 @@ pub struct Simulation {
 impl Simulation {
     /// At the start, in the way that is asked for, or that lasts longest by all that is known before planning; the kernel's error
     /// if the pendulum is too quick for what may be spent.
-    pub fn new(settings: &Settings, &Means { ref processor, method }: &Means) -> Result<Self, Error> {
+    pub fn new(settings: &Settings, &Resources { ref processor, method }: &Resources) -> Result<Self, Error> {
         let (pendulum, start) = settings.start()?;
         let problem = settings.problem(HEIGHT as f32);
         let way = match method {

@@ -5,7 +5,7 @@ use double_pendulum::{Error, Modes, Oscillation, Parameters, SmallOscillations};
 
 use crate::config::{GRAVITY, ROD};
 use crate::graphics::{Anchor, Canvas, Disc, FadeLayer, LINE, LOWEST, Spot, Stroke, label, plot, text};
-use crate::motion::{Means, Settings, Simulation};
+use crate::motion::{Resources, Settings, Simulation};
 use crate::scenes::{Report, Scene, draw_clock};
 
 /// The middles of the two figures, and how far a mode reaches in them, pixels.
@@ -58,8 +58,8 @@ impl Beats {
 }
 
 impl Scene for Beats {
-    fn new(settings: &Settings, means: &Means) -> Result<(Self, Option<f32>), Error> {
-        let simulation = Simulation::new(settings, means)?;
+    fn new(settings: &Settings, resources: &Resources) -> Result<(Self, Option<f32>), Error> {
+        let simulation = Simulation::new(settings, resources)?;
         let modes = Modes::new(&settings.parameters.cast())?;
         let linear = SmallOscillations::new(modes, &settings.motion());
         let amplitude = |part: Oscillation<f32>, shape: f32| part.amplitude() * shape.abs();

@@ -8,7 +8,7 @@ use crate::config::TICK_RATE;
 use crate::graphics::{
     Anchor, Canvas, FadeLayer, Height, LINE, LOWEST, Place, SUBPIXELS, TRACE_HALF_WIDTH, View, WIDTH, label, plot, text,
 };
-use crate::motion::{Means, Settings, Simulation};
+use crate::motion::{Resources, Settings, Simulation};
 use crate::scenes::{Report, Scene, draw_clock};
 
 /// Angle 1 of the second twin ahead of the first's at the start, rad.
@@ -65,8 +65,8 @@ impl Butterfly {
 
 impl Scene for Butterfly {
     #[inline(never)] // all scenes' preparations would stand side by side on the stack
-    fn new(settings: &Settings, means: &Means) -> Result<(Self, Option<f32>), Error> {
-        let first = Simulation::new(settings, means)?;
+    fn new(settings: &Settings, resources: &Resources) -> Result<(Self, Option<f32>), Error> {
+        let first = Simulation::new(settings, resources)?;
         let second = settings.run(APART, first.motion.way())?;
         let views = [first.motion.directions(), second.directions()]
             .map(|directions| View::new(&settings.parameters, Place::HALVES[0], directions));

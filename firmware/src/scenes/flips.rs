@@ -12,7 +12,7 @@ use double_pendulum::{Fixed32 as Float, Fixed32 as Fixed};
 
 use crate::config::FlipsPace;
 use crate::graphics::{Anchor, Canvas, FadeLayer, Fading, HEIGHT, WIDTH, label, text};
-use crate::motion::{Means, Settings};
+use crate::motion::{Resources, Settings};
 use crate::scenes::{Report, Scene, time};
 
 /// A rod has so long to turn over, sqrt(l1/g).
@@ -160,8 +160,8 @@ fn grey(flip: Flip<f32>, unit: f32) -> u8 {
 impl Scene for Flips {
     const FADING: Fading = Fading::NEVER;
 
-    fn new(settings: &Settings, means: &Means) -> Result<(Self, Option<f32>), Error> {
-        Ok((Self::at_pace(settings, means.processor.flips, means.processor.has_float())?, None))
+    fn new(settings: &Settings, resources: &Resources) -> Result<(Self, Option<f32>), Error> {
+        Ok((Self::at_pace(settings, resources.processor.flips, resources.processor.has_float())?, None))
     }
 
     fn tick(&mut self, ticks: u64, ink: &mut FadeLayer) {

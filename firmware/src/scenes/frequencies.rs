@@ -3,7 +3,7 @@
 use double_pendulum::{Error, Modes, Parameters};
 
 use crate::graphics::{Anchor, Canvas, Disc, FadeLayer, Fading, Height, LINE, LOWEST, Spot, WIDTH, label, plot, text};
-use crate::motion::{Means, Settings};
+use crate::motion::{Resources, Settings};
 use crate::scenes::{Report, Scene};
 
 /// The least range of mass ratios across the frame, that of the figure; a heavier bob 2 widens it.
@@ -45,7 +45,7 @@ fn frequencies(mass_ratio: f32) -> Result<[f32; 2], Error> {
 impl Scene for Frequencies {
     const FADING: Fading = Fading::NEVER;
 
-    fn new(settings: &Settings, _: &Means) -> Result<(Self, Option<f32>), Error> {
+    fn new(settings: &Settings, _: &Resources) -> Result<(Self, Option<f32>), Error> {
         let mass_ratio = settings.mass_ratio();
         let marked = frequencies(mass_ratio)?;
         let range = (mass_ratio / FARTHEST_MARK).max(LEAST_RANGE);

@@ -14,7 +14,7 @@ use double_pendulum::{Error, State};
 
 use crate::config::{GREATEST_ANGLE, TICK_RATE};
 use crate::graphics::{Anchor, Canvas, FadeLayer, Fading, label, text};
-use crate::motion::{Means, Settings, Simulation};
+use crate::motion::{Resources, Settings, Simulation};
 
 /// Something to watch: it starts from settings, moves tick by tick and is drawn when there is time for it.
 pub trait Scene: Sized {
@@ -23,7 +23,7 @@ pub trait Scene: Sized {
     /// At the start, and the height of a display, pixels, on which two rods as long as those shown reach from the middle to the edge;
     /// where angles are shown as curves, a rod is a radian long; `None` if nothing is shown that can be planned. The kernel's error if
     /// the settings describe no pendulum, or none that this scene can show.
-    fn new(settings: &Settings, means: &Means) -> Result<(Self, Option<f32>), Error>;
+    fn new(settings: &Settings, resources: &Resources) -> Result<(Self, Option<f32>), Error>;
 
     /// Advances by one tick, to so many `ticks` after the start, and adds to the ink what stays. The frame does not depend on
     /// which of those before were drawn.
@@ -55,7 +55,7 @@ pub struct Report {
     /// Until when the frame is known to be right to [half a pixel](crate::config::HALF_PIXEL) about the exact motion, s after
     /// the start; infinity where nothing can be wrong.
     pub horizon: f32,
-    /// Whether that may yet turn out to be later.
+    /// Whether that is only a lower bound so far.
     pub is_looking: bool,
     /// The way that it is computed; `None` where no motion is.
     pub way: Option<Way>,
@@ -112,8 +112,8 @@ macro_rules! catalogue {
 
         impl AnyScene {
             /// Starts the scene `name` in the place of this one, and its height; if it cannot show `settings`, this one goes on.
-            pub fn start(&mut self, name: SceneName, settings: &Settings, means: &Means) -> Result<Option<f32>, Error> {
-                match name { $(SceneName::$row => self.become_one(settings, means, Self::$row),)* }
+            pub fn start(&mut self, name: SceneName, settings: &Settings, resources: &Resources) -> Result<Option<f32>, Error> {
+                match name { $(SceneName::$row => self.become_one(settings, resources, Self::$row),)* }
             }
 
             /// As [`Scene::tick`]; the ink, which was clear at the start, fades.
@@ -165,10 +165,10 @@ impl AnyScene {
     fn become_one<S: Scene>(
         &mut self,
         settings: &Settings,
-        means: &Means,
+        resources: &Resources,
         one: fn(S) -> Self,
     ) -> Result<Option<f32>, Error> {
-        let (scene, height) = S::new(settings, means)?;
+        let (scene, height) = S::new(settings, resources)?;
         *self = one(scene);
         Ok(height)
     }

@@ -9,7 +9,7 @@ use crate::graphics::{
     Anchor, Canvas, FadeLayer, Fading, LINE, LOWEST, Place, RodDirections, SUBPIXELS, TRACE_HALF_WIDTH, View, label,
     text,
 };
-use crate::motion::{Energy, Means, Misprinted, Settings, Simulation};
+use crate::motion::{Energy, Misprinted, Resources, Settings, Simulation};
 use crate::scenes::{Report, Scene, draw_clock, time};
 
 /// One pendulum, bob 2's trail, and settings and time in the corners, the one place the motion never reaches.
@@ -23,8 +23,8 @@ pub struct Page {
 impl Scene for Page {
     const FADING: Fading = Fading { rows: TRAIL_FADING, last: 0 };
 
-    fn new(settings: &Settings, means: &Means) -> Result<(Self, Option<f32>), Error> {
-        let simulation = Simulation::new(settings, means)?;
+    fn new(settings: &Settings, resources: &Resources) -> Result<(Self, Option<f32>), Error> {
+        let simulation = Simulation::new(settings, resources)?;
         let view = View::new(&settings.parameters, Place::WHOLE, simulation.motion.directions());
         Ok((Self { settings: *settings, simulation, view }, Some(2.0 * Place::WHOLE.reach)))
     }
@@ -99,12 +99,12 @@ pub struct Figure7 {
 
 impl Scene for Figure7 {
     #[inline(never)] // all scenes' preparations would stand side by side on the stack
-    fn new(settings: &Settings, means: &Means) -> Result<(Self, Option<f32>), Error> {
+    fn new(settings: &Settings, resources: &Resources) -> Result<(Self, Option<f32>), Error> {
         let &Parameters { l1, l2, .. } = &settings.parameters;
         if l1 != l2 {
             return Err(Error::UnequalRods { l1: l1.into(), l2: l2.into() });
         }
-        let right = Simulation::new(settings, means)?;
+        let right = Simulation::new(settings, resources)?;
         let misprinted = Misprinted::new(&settings.parameters, &right.motion.rounded_state());
         let halves = Halves::new(settings, [right.motion.directions(), misprinted.directions()]);
         Ok((Self { right, misprinted, halves }, Some(2.0 * Place::HALVES[0].reach)))
@@ -167,7 +167,7 @@ fn directions(state: &State<f32>) -> RodDirections {
 }
 
 impl Scene for Upright {
-    fn new(settings: &Settings, _: &Means) -> Result<(Self, Option<f32>), Error> {
+    fn new(settings: &Settings, _: &Resources) -> Result<(Self, Option<f32>), Error> {
         let (pendulum, plain) = settings.start()?;
         pendulum.check_step(DT)?;
         let compensated = pendulum.run(&plain, DT)?;

@@ -5,7 +5,7 @@ use double_pendulum::{Error, Method, Modes, Parameters, Pendulum, Real, SmallOsc
 
 use crate::config::{PAGE_GRAVITY, TICK_RATE};
 use crate::graphics::{Anchor, Canvas, FadeLayer, Fading, Height, LINE, LOWEST, SUBPIXELS, WIDTH, label, plot, text};
-use crate::motion::{Means, Settings};
+use crate::motion::{Resources, Settings};
 use crate::scenes::{Report, Scene, draw_clock, time};
 
 /// The rows of rest of angle 1 and angle 2, pixels from the top, and the greatest swing about them.
@@ -80,7 +80,7 @@ impl Small {
 impl Scene for Small {
     const FADING: Fading = Fading::NEVER;
 
-    fn new(settings: &Settings, _: &Means) -> Result<(Self, Option<f32>), Error> {
+    fn new(settings: &Settings, _: &Resources) -> Result<(Self, Option<f32>), Error> {
         let (pendulum, _) = settings.start()?;
         let modes = Modes::new(&settings.parameters.cast())?;
         let motion = SmallOscillations::new(modes, &settings.motion());

@@ -9,7 +9,8 @@ pub mod taylor;
 pub use twofloat;
 
 use double_pendulum::flips::{Flip, Flips};
-use double_pendulum::{DirectionF64, Error, Run};
+use double_pendulum::parts::DirectionF64;
+use double_pendulum::{Error, Run};
 
 /// Advances RK4 in compensated `f64`, beside which RK4 in fewer bits is tested for as long as a day: from here it is optimised.
 pub fn advance(run: &mut Run<DirectionF64>, steps: u32) -> Result<(), Error> {

@@ -1,7 +1,7 @@
 //! Scenes and applications on the host, with the memory that a board would give them.
 
 use double_pendulum::Error;
-use firmware::app::{News, Player};
+use firmware::app::{PlannerEvent, Player};
 use firmware::config::{PROCESSOR, Processor};
 use firmware::graphics::{Canvas, FadeLayer, FrameBuffers};
 use firmware::motion::Settings;
@@ -12,7 +12,7 @@ use firmware::scenes::{Report, SceneName};
 pub struct Show {
     pub player: Player<'static>,
     /// What planning has found, and the tick.
-    pub news: Vec<(u64, News)>,
+    pub news: Vec<(u64, PlannerEvent)>,
 }
 
 impl Show {

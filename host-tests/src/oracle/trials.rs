@@ -2,7 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use double_pendulum::{DirectionF64, Equations, Error, Method, Parameters, Pendulum, State};
+use double_pendulum::parts::DirectionF64;
+use double_pendulum::{Equations, Error, Method, Parameters, Pendulum, State};
 use firmware::job::AnyRun;
 use reference::{advance, taylor};
 

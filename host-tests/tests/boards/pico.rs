@@ -90,7 +90,7 @@ fn usb_and_uart_carry_the_hosts_bits_and_every_command() -> anyhow::Result<()> {
     });
     assert!(indices.eq(0..=SAMPLES));
 
-    // Commands are obeyed from either side, and both hear both answers.
+    // Commands are taken from either side, and both hear both answers.
     board.send(1, Command::Choose(SceneName::Butterfly))?;
     let mut messages = board.run(4 * TICK)?;
     board.send_through_uart(2, Command::Set { field: Field::M2, value: 2.5 })?;

@@ -4,7 +4,7 @@
 use crate::support::{on, show};
 use double_pendulum::Method;
 use double_pendulum::plan::Plan;
-use firmware::app::News;
+use firmware::app::PlannerEvent;
 use firmware::config::TICK_RATE;
 use firmware::protocol::{Answer, Command};
 use firmware::scenes::SceneName;
@@ -55,13 +55,13 @@ fn followed(machine: &mut Machine, board: &Board, name: SceneName) -> anyhow::Re
             break;
         }
     }
-    let changes = show.news.iter().filter(|(_, news)| matches!(news, News::Shown(..))).count();
+    let changes = show.news.iter().filter(|(_, news)| matches!(news, PlannerEvent::Shown(..))).count();
     machine.send(2, Command::AskPlan)?;
     let (2, Answer::Planned(answer)) = machine.next_answer()? else { panic!("no plan") };
     let lines: Vec<_> = machine.lines().into_iter().map(|line| line.text).collect();
     let logged = |head: &str| lines.iter().filter(|line| line.starts_with(head)).count();
     let plan = show.news.iter().find_map(|(_, news)| match news {
-        News::Found(Ok(plan)) => Some(plan),
+        PlannerEvent::Found(Ok(plan)) => Some(plan),
         _ => None,
     });
     println!("{} {}: {} changes, {plan:?}", board.name, name.name(), changes);

@@ -75,7 +75,7 @@ fn told(machine: &mut Machine, words: &[u8]) -> anyhow::Result<Vec<ToHost>> {
 }
 
 /// A scene on a board beside the same on the host.
-struct Followed<'a> {
+struct SceneRun<'a> {
     board: &'a Board,
     name: SceneName,
     show: Show,
@@ -85,7 +85,7 @@ struct Followed<'a> {
     highest: [u32; 2],
 }
 
-impl<'a> Followed<'a> {
+impl<'a> SceneRun<'a> {
     fn new(board: &'a Board, name: SceneName) -> Self {
         let words = wire(Command::Choose(name));
         Self { board, name, show: show(board, name), words, highest: [0; 2] }
@@ -130,15 +130,15 @@ fn plays(board: &'static Board, limit: Duration, ticks: fn(&Board, SceneName) ->
         for _ in SceneName::ALL {
             // Never the one that is on.
             name = name.next();
-            let mut followed = Followed::new(board, name);
+            let mut run = SceneRun::new(board, name);
             for until in (EVERY..=ticks(board, name)).step_by(EVERY as usize) {
                 machine.run()?;
-                followed.to(until, &mut |words| told(&mut machine, words))?;
+                run.to(until, &mut |words| told(&mut machine, words))?;
                 machine.stop()?;
                 // The panel shows exactly the frame that has come when the processor is about to sleep.
-                followed.to(followed.step() + 1, &mut |_| machine.run_to_frame())?;
+                run.to(run.step() + 1, &mut |_| machine.run_to_frame())?;
                 let shown = board.has_panel.then(|| machine.screenshot()).transpose()?;
-                let is_it = shown.as_ref().is_none_or(|shown| *shown == Screenshot::from(&followed.show.frame()));
+                let is_it = shown.as_ref().is_none_or(|shown| *shown == Screenshot::from(&run.show.frame()));
                 assert!(is_it, "{}: {}\n{shown:?}", board.name, name.name());
             }
             // The cost is taken in the first round.
@@ -146,7 +146,7 @@ fn plays(board: &'static Board, limit: Duration, ticks: fn(&Board, SceneName) ->
                 continue;
             }
             let frame = board.instruction() * f64::from(board.processor_hertz()) / f64::from(TICK_RATE);
-            let [scene, whole] = followed.highest.map(|cycles| f64::from(cycles) / f64::from(board.hertz) / frame);
+            let [scene, whole] = run.highest.map(|cycles| f64::from(cycles) / f64::from(board.hertz) / frame);
             let is_profiled = match board.core() {
                 Core::M3 => true,
                 Core::M0Plus => MOST_CYCLES * scene > budgets::SCENE || 1.0 - MOST_CYCLES * whole < budgets::IDLE,
@@ -205,9 +205,9 @@ fn the_pico_plays_every_scene_as_the_host_does_within_its_budgets() -> anyhow::R
     let (mut name, mut highest) = (SceneName::Page, 0);
     for _ in SceneName::ALL {
         name = name.next();
-        let mut followed = Followed::new(&PICO, name);
-        followed.to(EVERY, &mut next)?;
-        highest = highest.max(followed.highest[1]);
+        let mut run = SceneRun::new(&PICO, name);
+        run.to(EVERY, &mut next)?;
+        highest = highest.max(run.highest[1]);
     }
     exercise(&mut next)?;
     let idle = 1.0 - f64::from(highest * TICK_RATE) / f64::from(PICO.hertz);

@@ -7,7 +7,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::{fs, io};
 
-use firmware::app::News;
+use firmware::app::PlannerEvent;
 use firmware::config::{CORTEX_M3, STM32F405};
 use firmware::scenes::SceneName;
 use host_tests::emulator::host::Show;
@@ -119,7 +119,7 @@ fn a_scene_is_planned_as_the_boards_start_it() {
         let mut show = Show::on(processor, name, &name.first_settings()).expect("a scene of the catalogue");
         let horizon = loop {
             show.tick();
-            if let [.., (_, News::Found(Ok(plan)))] = show.news[..] {
+            if let [.., (_, PlannerEvent::Found(Ok(plan)))] = show.news[..] {
                 break plan.horizon;
             }
         };

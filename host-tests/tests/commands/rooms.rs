@@ -47,6 +47,7 @@ fn a_room_imports_only_from_those_below_it() {
         assert!(rooms.len() <= MOST, "{krate} has {} rooms", rooms.len());
         // In an import or otherwise.
         let code = lines.iter().map(|(room, line)| (room, line.split("//").next().unwrap_or_default()));
+        assert!(code.clone().all(|(_, code)| !code.contains("crate::{")), "{krate}: rooms in one import are not seen");
         let imports = code.flat_map(|(room, code)| code.split("crate::").skip(1).map(move |rest| (room, name(rest))));
         let upwards: Vec<_> =
             imports.filter(|(room, other)| place(other).is_some() && place(other) < place(room)).collect();

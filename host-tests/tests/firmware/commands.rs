@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use double_pendulum::Method;
 use double_pendulum::plan::Way;
 use fastrand::Rng;
-use firmware::app::{Event, Instruments, News};
+use firmware::app::{Event, Instruments, PlannerEvent};
 use firmware::config::{MOST_MEASURED_STEPS, MOST_MESSAGES_PER_TICK, PLANNED, RECEIVE_QUEUE, TICK_RATE};
 use firmware::job::{OnBoards, Request, Run};
 use firmware::motion::Planned;
@@ -216,7 +216,7 @@ fn the_plan_is_found_in_some_tick_told_when_asked_and_followed() {
     let plan = search(&mut app, &mut news);
     assert!(plan.horizon > 19.0, "{plan:?}");
     run(&mut app, &mut news);
-    assert_eq!(news, [Event::Motion(News::Found(Ok(plan)))]);
+    assert_eq!(news, [Event::Motion(PlannerEvent::Found(Ok(plan)))]);
     assert_eq!(app.player.report.way, Some(plan.way()));
 
     let before = asked(&mut app).expect("a motion");
@@ -226,7 +226,7 @@ fn the_plan_is_found_in_some_tick_told_when_asked_and_followed() {
     assert!(calm.horizon >= PLANNED && calm.cost < plan.cost, "{calm:?}");
     (0..TICK_RATE).for_each(|_| run(&mut app, &mut news));
     let way = Way { method: Method::Rk4Fixed32, steps: calm.steps };
-    assert_eq!(news.last(), Some(&Event::Motion(News::Shown(way, calm.cost))), "the cheaper way is taken");
+    assert_eq!(news.last(), Some(&Event::Motion(PlannerEvent::Shown(way, calm.cost))), "the cheaper way is taken");
     let report = app.player.report;
     assert_eq!(report.way, Some(calm.way()));
     assert!(f64::from(report.horizon) > PLANNED && report.is_looking, "{report:?}");

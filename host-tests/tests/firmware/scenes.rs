@@ -1,13 +1,13 @@
 //! Every scene of the catalogue, on the host: its frame to the pixel, and what all scenes have in common.
 
 use double_pendulum::State;
-use firmware::app::News;
+use firmware::app::PlannerEvent;
 use firmware::config::{
     CORTEX_M0PLUS, CORTEX_M3, CORTEX_M4F, PIVOT, PROCESSOR, Processor, REACH, STM32F405, TICK_RATE, TRAIL_FADING,
     TRAIL_HALF_WIDTH,
 };
 use firmware::graphics::{Anchor, Canvas, FadeLayer, HEIGHT, LOWEST, WIDTH, plot, text};
-use firmware::motion::{Means, Settings};
+use firmware::motion::{Resources, Settings};
 use firmware::protocol::Command;
 use firmware::scenes::{AnyScene, Flips, Scene, SceneName};
 use host_tests::emulator::host::Show;
@@ -18,7 +18,7 @@ use host_tests::oracle::tolerances::SHOWN_HEIGHT;
 use crate::bench::{app, places, wire};
 
 /// What a board without a floating-point unit may spend.
-const MEANS: Means = Means { processor: PROCESSOR, method: None };
+const RESOURCES: Resources = Resources { processor: PROCESSOR, method: None };
 
 /// The ticks after which each scene is pictured: one second, when all is in view, and four.
 const PICTURED: [u32; 2] = [60, 240];
@@ -62,7 +62,7 @@ fn the_trail_is_the_path_and_fades_with_age() {
     const FADED: f64 = 64.0 / TRAIL_FADING as f64; // ticks to a grey
     let (mut ink, mut path) = (FadeLayer::NONE, Vec::new());
     let mut scene = AnyScene::empty();
-    scene.start(SceneName::Page, &Settings::default(), &MEANS).expect("the page");
+    scene.start(SceneName::Page, &Settings::default(), &RESOURCES).expect("the page");
     for ticks in 1..=400 {
         scene.tick(ticks, &mut ink);
         let State { a1, a2, .. } = scene.report(ticks).state;
@@ -119,7 +119,7 @@ fn a_pause_is_marked_and_only_a_pause() -> Result<(), String> {
 #[test]
 fn what_is_planned_is_what_is_shown() {
     let start =
-        |scene: &mut AnyScene, name: SceneName| scene.start(name, &name.first_settings(), &MEANS).expect("a scene");
+        |scene: &mut AnyScene, name: SceneName| scene.start(name, &name.first_settings(), &RESOURCES).expect("a scene");
     let mut scene = AnyScene::empty();
     for name in [SceneName::Beats3To2, SceneName::Beats2To1, SceneName::Beats5To2, SceneName::Beats3To1] {
         let height = start(&mut scene, name).expect("it moves");
@@ -192,7 +192,9 @@ fn the_butterfly_is_looked_at_in_its_own_way() {
     let mut show = Show::new(SceneName::Butterfly, &Settings::equal_rods(1.0, 20.0)).expect("a scene of the catalogue");
     let found = (0..60 * TICK_RATE).find_map(|_| {
         show.tick();
-        show.news.iter().find_map(|(_, news)| if let News::Found(Ok(plan)) = news { Some(plan.way()) } else { None })
+        show.news
+            .iter()
+            .find_map(|(_, news)| if let PlannerEvent::Found(Ok(plan)) = news { Some(plan.way()) } else { None })
     });
     assert!(found.is_some() && found == show.report().way, "{found:?}");
 }

@@ -105,13 +105,13 @@ fn a_request_comes_through_its_text_unchanged() {
 }
 
 #[test]
-fn a_step_too_long_for_the_energy_is_obeyed_and_told() {
-    let lively = Request { parameters: Parameters { m2: 1000.0, ..REQUEST.parameters }, ..REQUEST };
-    let admissible_step = lively.admissible_step().expect("a pendulum");
-    assert!(admissible_step < lively.dt / 10.0);
-    let fine = Request { dt: admissible_step, ..lively };
-    let closed_form = Request { method: Method::ClosedFormF64, ..lively };
-    for (request, is_told) in [(lively, true), (fine, false), (closed_form, false)] {
+fn a_step_too_long_for_the_energy_is_taken_and_told() {
+    let coarse = Request { parameters: Parameters { m2: 1000.0, ..REQUEST.parameters }, ..REQUEST };
+    let admissible_step = coarse.admissible_step().expect("a pendulum");
+    assert!(admissible_step < coarse.dt / 10.0);
+    let fine = Request { dt: admissible_step, ..coarse };
+    let closed_form = Request { method: Method::ClosedFormF64, ..coarse };
+    for (request, is_told) in [(coarse, true), (fine, false), (closed_form, false)] {
         let answers = asked(&[request]);
         let told = answers.strip_prefix(&[(1, Answer::StepTooLong(admissible_step))]);
         assert_eq!((told.is_some(), samples(told.unwrap_or(&answers), 1)), (is_told, 6));

@@ -2,7 +2,8 @@
 
 use std::f64::consts::PI;
 
-use double_pendulum::{Bounds, DirectionF64, Error, Form, Motion, Parameters, Pendulum, Real, State};
+use double_pendulum::parts::DirectionF64;
+use double_pendulum::{Bounds, Error, Form, Motion, Parameters, Pendulum, Real, State};
 use fastrand::Rng;
 use host_tests::oracle::trials::apart;
 use host_tests::oracle::{random, tolerances};
@@ -122,7 +123,7 @@ fn extreme_parameters(rng: &mut Rng) -> Parameters<f64> {
 }
 
 /// Any angles and velocities, half of them near the straight position, where a light bob 1 is fastest.
-fn lively_motion(rng: &mut Rng, &Parameters { m1, m2, l1, l2, .. }: &Parameters<f64>) -> Motion<f64> {
+fn fast_motion(rng: &mut Rng, &Parameters { m1, m2, l1, l2, .. }: &Parameters<f64>) -> Motion<f64> {
     let a1 = PI * random::symmetric(rng);
     let snap = if rng.bool() { (m1 / (m1 + m2)).sqrt() } else { PI };
     let speed = random::log_uniform(rng, 0.01, 100.0) * (9.81 * (l1 + l2)).sqrt();
@@ -148,7 +149,7 @@ fn an_admissible_step_resolves_every_motion() -> Result<(), Error> {
     for _ in 0..3000 {
         let parameters = extreme_parameters(&mut rng);
         let pendulum = Pendulum::new(&parameters)?;
-        let start = lively_motion(&mut rng, &parameters);
+        let start = fast_motion(&mut rng, &parameters);
         let state = pendulum.to_state(&start);
         let (rate, dt) = (pendulum.fastest_rate(&state)?, pendulum.admissible_step(&state)?);
         let mut direction = DirectionF64::new(&parameters, &state, dt)?;

@@ -1,9 +1,10 @@
 //! A simulated day: no method that steps in 32 bits loses its energy or its time to its number type.
 
+use double_pendulum::parts::DirectionF64;
 use double_pendulum::plan::Way;
-use double_pendulum::{DirectionF64, Equations, Error, Method, Numbers, Pendulum, State};
+use double_pendulum::{Equations, Error, Method, Numbers, Pendulum, State};
 use firmware::config::{STM32F405, TICK_RATE};
-use firmware::motion::{Means, Simulation};
+use firmware::motion::{Resources, Simulation};
 use firmware::scenes::{Report, SceneName};
 use host_tests::oracle::tolerances::{DAY_ENERGY, DAY_READING};
 use host_tests::oracle::trials::{self, Trial};
@@ -108,7 +109,7 @@ fn a_frame_tells_the_energy_of_one_instant_all_day() -> Result<(), Error> {
     let start = pendulum.to_state(&settings.motion().cast());
     let energy = pendulum.energy_above_rest(&start);
     for method in [None, Some(Method::Rk4F32DirectionPlain), Some(Method::Rk4F32Direction), Some(Method::Rk4Fixed32)] {
-        let mut simulation = Simulation::new(&settings, &Means { processor: STM32F405, method })?;
+        let mut simulation = Simulation::new(&settings, &Resources { processor: STM32F405, method })?;
         let Way { method, steps } = simulation.motion.way();
         let dt = 1.0 / f64::from(TICK_RATE * steps);
         let mut exact = pendulum.run::<DirectionF64>(&start, dt)?;

@@ -1,4 +1,4 @@
-//! Fixed point: as accurate as promised, refused where it has no room, the same however it is stepped.
+//! Fixed point: as accurate as documented, refused where it has no room, the same however it is stepped.
 
 use std::f64::consts::PI;
 
@@ -14,7 +14,7 @@ const TRIALS: u32 = 3000;
 
 /// What the documentation says of each, and what there is no other test of.
 #[test]
-fn fixed_point_keeps_its_promises() -> Result<(), Error> {
+fn fixed_point_is_as_accurate_as_documented() -> Result<(), Error> {
     // a short, light rod 2 that whirls: of a quarter of a million stages a second each rounds a little
     let parameters = Parameters { m1: 1.0, m2: 0.0087, l1: 1.0, l2: 0.0825, g: 9.81 };
     let whirling = Trial { parameters, ..Trial::at_rest(1.0, 1.94, 1.94, 8.0) };

@@ -3,9 +3,10 @@
 use std::f64::consts::PI;
 
 use double_pendulum::flips::{Flip, Flips};
-use double_pendulum::{DirectionF64, Error, Motion, Parameters};
+use double_pendulum::parts::DirectionF64;
+use double_pendulum::{Error, Motion, Parameters};
 use fastrand::Rng;
-use host_tests::commands::flips::map::{Followed, Map};
+use host_tests::commands::flips::map::{FlipPair, Map};
 use host_tests::oracle::tolerances;
 use reference::taylor::Reference;
 
@@ -23,9 +24,9 @@ fn map(limit: f32, size: usize) -> Map {
 
 /// The points of the upper half of a map that may turn over, with their starts: the energy says that no rod turns over where
 /// 2 cos a1 + cos a2 > 1.
-fn turning(map: &Map) -> Result<Vec<([f32; 2], Followed)>, Error> {
+fn turning(map: &Map) -> Result<Vec<([f32; 2], FlipPair)>, Error> {
     let points = map.starts().into_iter().zip(map.points(|_| ())?);
-    let may_turn = |([a1, a2], [flip, _]): &([f32; 2], Followed)| {
+    let may_turn = |([a1, a2], [flip, _]): &([f32; 2], FlipPair)| {
         let cannot = 2.0 * a1.cos() + a2.cos() > 1.0;
         assert_eq!(*flip == Flip::Never, cannot, "{a1} {a2}");
         !cannot

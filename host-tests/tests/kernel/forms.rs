@@ -138,7 +138,8 @@ fn turns_follow_an_angle_either_way() {
     let mut rng = Rng::with_seed(7);
     let mut angle = 1.0_f64;
     let signs = |angle: f64| [[angle.sin(), angle.cos()].map(|part| -i32::from(part < 0.0)); 2];
-    let mut turns = Turns::of([angle; 2], signs(angle));
+    assert!(matches!(Turns::of([0.0, 1.4e10], signs(angle)), Err(Error::OutOfRange { parameter: Parameter::A2, .. })));
+    let mut turns = Turns::of([angle; 2], signs(angle)).expect("few turns");
     let mut farthest = 0.0_f64;
     for _ in 0..100_000 {
         angle += 1.5 * random::symmetric(&mut rng);

@@ -96,7 +96,7 @@ fn straight_rods_turn_evenly_without_gravity() -> Result<(), Error> {
     Ok(())
 }
 
-/// Hanging, and without gravity anywhere: what is at rest stays there, to the bit but for 64-bit fixed point.
+/// Hanging, and without gravity anywhere: what is at rest stays there, bit-identical but for 64-bit fixed point.
 #[test]
 fn what_is_at_rest_stays() -> Result<(), Error> {
     for &method in Method::ALL {

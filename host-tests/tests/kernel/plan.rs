@@ -41,10 +41,10 @@ type Row = (Costs, f32, Problem, (Method, u32), Limit, RangeInclusive<f64>);
 fn the_cheapest_that_is_right_for_longest_is_chosen() {
     use Method::{ClosedFormF32, Extrapolation10Fixed64, Rk4F32Direction, Rk4F32DirectionPlain, Rk4Fixed32};
     let (small, large, figure7) = (scene(1.0, 3.0, 10.0), scene(1.0, 60.0, 10.0), scene(2.75, 171.0, 30.0));
-    let dear = Costs { fixed32: 20e3, ..M3 };
+    let costly = Costs { fixed32: 20e3, ..M3 };
     let rows: [Row; 10] = [
         // One step costs less than the closed form where it is made of integers, or by the floating-point unit.
-        (dear, CORTEX_M3.frame, small, (ClosedFormF32, 0), Limit::End, 10.0..=10.0),
+        (costly, CORTEX_M3.frame, small, (ClosedFormF32, 0), Limit::End, 10.0..=10.0),
         (M3, CORTEX_M3.frame, small, (Rk4Fixed32, 1), Limit::End, 10.0..=10.0),
         (M4F, STM32F405.frame, small, (Rk4F32DirectionPlain, 1), Limit::End, 10.0..=10.0),
         (M4F, STM32F405.frame, large, (Rk4F32DirectionPlain, 1), Limit::End, 10.0..=10.0),
@@ -98,6 +98,26 @@ fn a_plan_that_is_looked_at_farther_is_told_anew_where_it_ends() {
     let ways = [(method, steps), (method, steps + 1), (method, steps - 1), (Method::Rk4Fixed32, steps)];
     let horizons = ways.map(|(method, steps)| search.horizon(Way { method, steps }));
     assert_eq!(horizons, [second.horizon, second.horizon, 0.0, 0.0]);
+}
+
+#[test]
+fn budgets_are_kept() {
+    let mut found = 0;
+    for frame in [200.0, 1e3, 1e4, 1e6] {
+        for planning in [1e5, 1e6, 1e7, 1e9] {
+            for degrees in [3.0, 60.0, 120.0, 171.0] {
+                match Plan::search(&scene(2.75, degrees, 20.0), &M4F, &Budget { frame, planning }) {
+                    Ok(plan) => {
+                        assert!(plan.spent <= planning && plan.cost <= frame && plan.horizon > 0.0, "{plan:?}");
+                        found += 1;
+                    }
+                    Err(PlanError::NoMethod { spent, .. }) => assert!(spent <= planning, "{spent}"),
+                    Err(error) => panic!("{error}"),
+                }
+            }
+        }
+    }
+    assert!((20..64).contains(&found), "{found} of 64: some hold, some cannot be had");
 }
 
 /// What a plan costs is just enough for it; by less, another is found that costs less.
@@ -228,4 +248,12 @@ fn the_limit_is_what_would_help() {
     let mut search = Search::of(way, &light, &M3, &CORTEX_M3.budget(&light)).expect("a good scene");
     let asked = finished(&mut search);
     assert_eq!((asked.method, asked.horizon), (Method::ClosedFormF32, 0.0));
+
+    // Beside `f32`, as fixed point takes no such pendulum.
+    let heavy = scene(1e5, 10.0, 0.3);
+    let way = Way { steps: 512, ..way };
+    let mut search = Search::of(way, &heavy, &M3, &Budget { frame: 1e6, planning: 1e10 }).expect("a good scene");
+    let asked = finished(&mut search);
+    assert_eq!((asked.method, asked.limit, asked.horizon), (way.method, Limit::End, heavy.duration));
+    assert_eq!(search.horizon(Way { steps: 7, ..way }), heavy.duration, "it has no steps");
 }

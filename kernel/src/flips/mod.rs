@@ -54,7 +54,7 @@ pub struct Flips<F: Form> {
 #[doc(hidden)]
 pub struct Falling<F: Form> {
     motion: F,
-    heads: [Direction<F::Side>; 2],
+    rod_directions: [Direction<F::Side>; 2],
     #[doc(hidden)]
     pub steps: u32,
 }
@@ -95,7 +95,7 @@ impl<F: Form> Flips<F> {
             return Ok(None);
         }
         let motion = self.highest.started(&state.cast())?;
-        Ok(Some(Falling { motion, heads: motion.heads(), steps: 0 }))
+        Ok(Some(Falling { motion, rod_directions: motion.rod_directions(), steps: 0 }))
     }
 
     /// Makes at most `steps` steps; what is known after them.
@@ -107,9 +107,9 @@ impl<F: Form> Flips<F> {
                 return Some(Flip::Later);
             }
             falling.motion.advance_one();
-            let before = core::mem::replace(&mut falling.heads, falling.motion.heads());
-            if passes(&before, &falling.heads) < 0 {
-                return Some(self.passage(falling.steps, before, falling.heads));
+            let before = core::mem::replace(&mut falling.rod_directions, falling.motion.rod_directions());
+            if passes(&before, &falling.rod_directions) < 0 {
+                return Some(self.passage(falling.steps, before, falling.rod_directions));
             }
             falling.steps += 1;
         }

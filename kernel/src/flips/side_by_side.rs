@@ -24,7 +24,7 @@ struct Lane {
 }
 
 impl Flips<DirectionF32Plain> {
-    /// What becomes of each of `starts`, the angles a1 and a2, rad: as [`of`](Self::of), to the bit, three times `N` at a time.
+    /// What becomes of each of `starts`, the angles a1 and a2, rad: as [`of`](Self::of), bit-identical, three times `N` at a time.
     ///
     /// A lane whose motion has turned over takes the next start. 8 lanes suit processors with vectors of 4 and of 8. Inlined
     /// wherever it is called, so that it is compiled for the processor its caller is compiled for.
@@ -82,7 +82,7 @@ impl Flips<DirectionF32Plain> {
         lanes: &mut [[Option<Lane>; N]; ROWS],
         give: &mut impl FnMut(usize, Flip<f32>),
     ) {
-        let mut before: [Heads<N>; ROWS] = from_fn(|row| motions.heads(row));
+        let mut before: [Heads<N>; ROWS] = from_fn(|row| motions.rod_directions(row));
         for step in 0..BLOCK {
             let kept = (step + 1 == BLOCK).then_some(*motions);
             motions.step();
@@ -96,18 +96,18 @@ impl Flips<DirectionF32Plain> {
                 motions.restore_lengths();
             }
             for (row, before) in before.iter_mut().enumerate() {
-                let heads = motions.heads(row);
-                if any_turns_over(before, &heads) {
+                let rod_directions = motions.rod_directions(row);
+                if any_turns_over(before, &rod_directions) {
                     for (place, lane) in lanes[row].iter_mut().enumerate() {
-                        let at = |heads: &Heads<N>| heads.map(|head| head.map(|part| part.0[place]));
-                        let (before, after) = (at(before), at(&heads));
+                        let at = |rod_directions: &Heads<N>| rod_directions.map(|head| head.map(|part| part.0[place]));
+                        let (before, after) = (at(before), at(&rod_directions));
                         let passes = |lane: &mut Lane| step < lane.left && passes(&before, &after) < 0;
                         if let Some(Lane { start, left }) = lane.take_if(passes) {
                             give(start, self.passage(self.steps - left + step, before, after));
                         }
                     }
                 }
-                *before = heads;
+                *before = rod_directions;
             }
         }
         lanes.as_flattened_mut().iter_mut().flatten().for_each(|lane| lane.left = lane.left.saturating_sub(BLOCK));

@@ -110,10 +110,11 @@ impl<R: Real> SmallOscillations<R> {
     /// (sin wt, cos wt) of the fast and the slow mode.
     #[inline]
     fn phases(&self, t: f64) -> [(R, R); 2] {
-        self.turns.map(|turns| {
+        let phase = |turns: f64| {
             let turns = turns * t;
             (R::from_f64(turns - libm::rint(turns)) * R::from_f64(core::f64::consts::TAU)).own_sin_cos()
-        })
+        };
+        [phase(self.turns[0]), phase(self.turns[1])]
     }
 
     /// a1 and a2 at these phases.
@@ -126,14 +127,15 @@ impl<R: Real> SmallOscillations<R> {
     }
 }
 
-/// The [`SmallOscillations`] of a pendulum: a step costs nothing, only to read it does.
+/// The [`SmallOscillations`] of a pendulum, read step by step: a step is one reading.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClosedForm<R> {
     parameters: Parameters<f64>,
     /// Steps per second, of which times are exact where they are whole.
     rate: f64,
     pendulum: Pendulum<R>,
-    oscillations: SmallOscillations<R>,
+    pub(crate) oscillations: SmallOscillations<R>,
+    directions: [Direction<R>; 2],
     steps: u64,
 }
 
@@ -157,7 +159,8 @@ impl<R: Real + Side> Form for ClosedForm<R> {
         let whole = libm::rint(1.0 / dt);
         let rate = if 1.0 / whole == dt { whole } else { 1.0 / dt };
         let pendulum = Pendulum::new(&parameters.cast())?;
-        Self { parameters: *parameters, rate, pendulum, oscillations, steps: 0 }.started(start)
+        let directions = oscillations.directions(0.0);
+        Self { parameters: *parameters, rate, pendulum, oscillations, directions, steps: 0 }.started(start)
     }
 
     fn started(&self, start: &State<f64>) -> Result<Self, Error> {
@@ -170,23 +173,26 @@ impl<R: Real + Side> Form for ClosedForm<R> {
         if !(angle * angle * angle * angle).is_finite() || self.pendulum.to_state(&fastest).check().is_err() {
             return Err(Error::OutOfRange { parameter: Parameter::A1, value: angle.to_f64() });
         }
-        Ok(Self { oscillations, steps: 0, ..*self })
+        Ok(Self { oscillations, directions: oscillations.directions(0.0), steps: 0, ..*self })
     }
 
     fn advance(&mut self, steps: u32) {
-        self.steps += u64::from(steps);
+        for _ in 0..steps {
+            self.steps += 1;
+            self.directions = self.oscillations.directions(self.time());
+        }
     }
 
     fn check(&self) -> Result<(), Error> {
         self.oscillations.at(self.time()).check().map_err(Error::diverged)
     }
 
-    fn heads(&self) -> [Direction<R>; 2] {
-        self.oscillations.directions(self.time())
+    fn rod_directions(&self) -> [Direction<R>; 2] {
+        self.directions
     }
 
     fn directions<Q: Real>(&self) -> [Direction<Q>; 2] {
-        self.heads().map(|direction| direction.map(R::cast))
+        self.rod_directions().map(|direction| direction.map(R::cast))
     }
 
     fn momenta<Q: Real>(&self) -> [Q; 2] {
@@ -199,7 +205,7 @@ impl<R: Real + Side> Form for ClosedForm<R> {
     }
 
     fn bits(&self, mut feed: impl FnMut(u64)) {
-        self.heads().iter().flatten().for_each(|x| feed(x.bits()));
+        self.rod_directions().iter().flatten().for_each(|x| feed(x.bits()));
         feed(self.steps);
     }
 }

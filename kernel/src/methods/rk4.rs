@@ -105,12 +105,12 @@ impl<R: Real + super::Side, E: Derivatives<R>> Form for Canonical<R, E> {
         self.state.finite().map(drop)
     }
 
-    fn heads(&self) -> [Direction<R>; 2] {
+    fn rod_directions(&self) -> [Direction<R>; 2] {
         self.state.angles().map(|angle| angle.own_sin_cos().into())
     }
 
     fn directions<Q: Real>(&self) -> [Direction<Q>; 2] {
-        self.heads().map(|head| head.map(R::cast))
+        self.rod_directions().map(|head| head.map(R::cast))
     }
 
     fn momenta<Q: Real>(&self) -> [Q; 2] {

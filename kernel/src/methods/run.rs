@@ -1,7 +1,7 @@
 //! A motion under way: checked, and its turns counted.
 
 use super::{Fixed32, Form};
-use crate::error::Error;
+use crate::error::{Error, Parameter};
 use crate::numbers::{Real, Sealed};
 use crate::pendulum::{Direction, Pendulum, State};
 
@@ -20,14 +20,15 @@ pub struct Run<F: Form> {
 impl<R: Real> Pendulum<R> {
     /// The motion from `start` in steps of `dt` seconds by the method that `F` is; a negative step runs backwards.
     ///
-    /// Only that method is linked. Refuses a step that is NaN, infinite, zero or subnormal, a start that is not finite, and
-    /// what is out of the range of the method's numbers. Not a step that is too long for RK4, because that depends on the
-    /// motion: ask [`check_step`](Self::check_step) for what no motion survives and
+    /// Only that method is linked. Refuses a step that is NaN, infinite, zero or subnormal, a start that is not finite, one of more
+    /// than 2^31 turns where directions are carried, and what is out of the range of the method's numbers. Not a step that is too long for RK4, because that depends on the
+    /// motion: ask [`check_step`](Self::check_step) for RK4's limit of stability and
     /// [`admissible_step`](Self::admissible_step) for what resolves every motion of an energy.
     pub fn run<F: Form>(&self, start: &State<R>, dt: f64) -> Result<Run<F>, Error> {
         let parameters = self.parameters().cast();
         let motion = F::new(&parameters, &start.cast(), dt)?;
-        let turns = Turns::of(start.angles().map(R::to_f64), motion.sides());
+        let angles = if F::HAS_TURNS { [0.0; 2] } else { start.angles().map(R::to_f64) };
+        let turns = Turns::of(angles, motion.sides())?;
         Ok(Run { pendulum: Pendulum::new(&parameters.cast())?, motion, turns, dt, steps: 0 })
     }
 }
@@ -37,9 +38,11 @@ impl<F: Form> Run<F> {
     /// How steps are dealt out to calls makes no difference to any bit.
     pub fn advance(&mut self, steps: u32) -> Result<(), Error> {
         let Self { mut motion, mut turns, .. } = *self;
-        for _ in 0..steps {
-            motion.advance(1);
-            if !F::HAS_TURNS {
+        if F::HAS_TURNS {
+            motion.advance(steps);
+        } else {
+            for _ in 0..steps {
+                motion.advance(1);
                 Turns::observe(&mut turns, motion.sides());
             }
         }
@@ -138,17 +141,21 @@ pub struct Turns {
 }
 
 impl Turns {
-    /// For angles of `start` rad, whose directions have these signs.
+    /// For angles of `start` rad, whose directions have these signs. Refuses more turns than can be counted.
     #[inline(never)] // never inlined, to avoid a second copy
-    #[must_use]
-    pub fn of(start: [f64; 2], now: [[i32; 2]; 2]) -> [Self; 2] {
+    pub fn of(start: [f64; 2], now: [[i32; 2]; 2]) -> Result<[Self; 2], Error> {
         let mut turns = start.map(|angle| {
             let whole = libm::rint(angle / core::f64::consts::TAU);
             let rest = angle - whole * core::f64::consts::TAU;
             Self { whole: whole as i32, last: [-i32::from(rest < 0.0), -1] }
         });
+        for ((parameter, value), turns) in [Parameter::A1, Parameter::A2].into_iter().zip(start).zip(&turns) {
+            if turns.whole.unsigned_abs() >= i32::MAX as u32 {
+                return Err(Error::OutOfRange { parameter, value });
+            }
+        }
         Self::observe(&mut turns, now);
-        turns
+        Ok(turns)
     }
 
     /// Takes note of the signs that the directions have now.

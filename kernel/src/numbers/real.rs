@@ -7,8 +7,8 @@ use crate::numbers::{Scalar, Sealed, sine};
 
 /// `f32` or `f64`, and no other type: the few operations the formulas need, one row each.
 ///
-/// Every operation is either IEEE 754 arithmetic or a pure-Rust routine built on it, so that a result is the same
-/// to the bit on every machine.
+/// Every operation is either IEEE 754 arithmetic or a pure-Rust routine built on it, so that a result is
+/// bit-identical on every machine.
 pub trait Real:
     Scalar<Gravity = Self, Slope = Self, Torque = Self> + Default + PartialOrd + Display + Div<Output = Self>
 {

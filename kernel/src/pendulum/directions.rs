@@ -164,13 +164,13 @@ pub(crate) fn lower_ray<R: Scalar>([sin1, cos1]: [R; 2], [s, c]: [R; 2]) -> [R; 
 
 /// The directions of both rods from sin a1, cos a1, S, C; that of rod 2 as long as (S, C).
 #[inline(always)]
-pub(crate) fn heads<R: Scalar>(&[sin1, cos1, s, c, ..]: &[R; 6]) -> [Direction<R>; 2] {
+pub(crate) fn rod_directions<R: Scalar>(&[sin1, cos1, s, c, ..]: &[R; 6]) -> [Direction<R>; 2] {
     [[sin1, cos1], lower_ray([sin1, cos1], [s, c])]
 }
 
 /// The same in full: each of length 1, nu being `norm`.
 #[inline]
 pub(crate) fn directions<R: Real>(z: &[R; 6], norm: R) -> [Direction<R>; 2] {
-    let ([upper, lower], inverse) = (heads(z), R::ONE / norm);
+    let ([upper, lower], inverse) = (rod_directions(z), R::ONE / norm);
     [upper, lower.map(|x| x * inverse)]
 }

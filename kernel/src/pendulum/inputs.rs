@@ -48,7 +48,7 @@ impl<R: Real> Parameters<R> {
     }
 
     /// Refuses what no formula could use: NaN, infinite, zero or negative masses and lengths, negative gravity.
-    #[inline(never)] // cold: once in flash, not once for each caller
+    #[inline(never)] // cold, and never inlined, to avoid a second copy
     pub(crate) fn check(&self) -> Result<(), Error> {
         for (parameter, value) in self.named() {
             if !value.is_finite() {
@@ -65,7 +65,7 @@ impl<R: Real> Parameters<R> {
     }
 
     /// The error for parameters whose products overflow or underflow: it names the value farthest from 1.
-    #[inline(never)] // cold: once in flash, not once for each caller
+    #[inline(never)] // cold, and never inlined, to avoid a second copy
     pub(crate) fn out_of_range(&self) -> Error {
         let distance = |value: f64| if value < 1.0 { 1.0 / value } else { value };
         let [first, rest @ ..] = self.named();
@@ -122,7 +122,7 @@ macro_rules! both_rods {
             }
 
             /// Refuses NaN and infinite values.
-            #[inline(never)] // cold: once in flash, not once for each caller
+            #[inline(never)] // cold, and never inlined, to avoid a second copy
             #[doc(hidden)]
             pub fn check(&self) -> Result<(), Error> {
                 let &Self { $a1, $a2, $x1, $x2 } = self;

@@ -27,7 +27,7 @@ impl Candidate {
     }
 
     /// Whether it is right for so much longer than `other` that it is worth more.
-    pub fn outlasts(&self, other: &Self) -> bool {
+    pub fn has_longer_horizon(&self, other: &Self) -> bool {
         f64::from(self.right) > WORTH * f64::from(other.right)
     }
 

@@ -130,8 +130,7 @@ impl Way {
             match way.check(problem) {
                 Ok(()) => return Some(way),
                 Err(Error::TooLarge { parameter: Parameter::Dt, limit, .. }) => {
-                    let enough = steps_to_frame(method, problem.rate, limit);
-                    way.steps = if enough > way.steps { enough } else { way.steps + 1 };
+                    way.steps = steps_to_frame(method, problem.rate, limit).max(way.steps + 1);
                 }
                 Err(_) => return None,
             }

@@ -26,7 +26,7 @@
 //!
 //! // Cycles of a processor without a floating-point unit, and a display with 32 pixels to a metre: half of one may be missed.
 //! let costs =
-//!     Costs { closed_form: 6.3e3, direction_plain: 9.1e3, direction: 10.4e3, fixed32: 689.0, fixed64: 21.4e3, preparation: 147e3 };
+//!     Costs { closed_form: 8.2e3, direction_plain: 13e3, direction: 14.8e3, fixed32: 668.0, fixed64: 21.5e3, preparation: 155e3 };
 //! let budget = Budget { frame: 400e3, planning: 3e9 };
 //! let pendulum = Parameters { m1: 1.0, m2: 1.0, l1: 1.0, l2: 1.0, g: 9.81 };
 //! let small =

@@ -5,9 +5,8 @@ use super::cost::{Costs, Way};
 use super::problem::{NONE, PERTURBATIONS, Problem};
 use super::run::{AnyRun, Directions};
 use crate::error::Error;
-use crate::methods::SmallOscillations;
-use crate::pendulum::{Parameters, Pendulum};
-use crate::small::Modes;
+use crate::methods::{ClosedFormF32, Form, SmallOscillations};
+use crate::pendulum::Pendulum;
 use crate::table::Method;
 
 /// A motion that is prepared before its first step, and stepped from frame to frame.
@@ -59,7 +58,7 @@ fn beside_finer_steps(method: Method) -> f32 {
 
 /// Steps of the finer runs for each frame: a quarter more, a half, three quarters. Fixed point has another unit of time in each, and
 /// with it other constants and roundings: what a word drops of a torque is the same for many steps while a pendulum hardly moves.
-/// Where a step is dear, one run is finer at least.
+/// Where a step is costly, one run is finer at least.
 fn steps_beside(Way { method, steps }: Way) -> [u32; 3] {
     [1, 2, 3].map(|quarters: u32| {
         let least = if method == Method::Extrapolation10Fixed64 { quarters / 3 } else { quarters };
@@ -103,12 +102,14 @@ impl Pass {
         let mut candidates = [tried[0], tried[1], tried[2], plain, closed].map(Candidate::new);
         (candidates[1].failed, candidates[2].failed) = (beside.is_none(), beside.is_none());
         candidates[3].failed = way.method != Method::Rk4F32Direction;
-        let (Parameters { l1, l2, .. }, modes) = (problem.pendulum, Modes::new(&problem.pendulum).ok());
+        let Problem { pendulum, start, rate, .. } = problem;
+        let start = Pendulum::new(pendulum).map(|pendulum| pendulum.to_state(start));
+        let closed = start.and_then(|start| ClosedFormF32::new(pendulum, &start, 1.0 / f64::from(*rate)));
         Self {
             runs: [way, beside2, beside3, judge, plain].map(|way| Run { way, made: 0, motion: None }),
             is_beside_64_bits: beside.is_some(),
-            closed: modes.map(|modes| SmallOscillations::new(modes, &problem.start.cast())),
-            rods: [l1, l2].map(|l| (l / problem.tolerance) as f32),
+            closed: closed.ok().map(|closed| closed.oscillations),
+            rods: [pendulum.l1, pendulum.l2].map(|l| (l / problem.tolerance) as f32),
             candidates,
             by_rounding: false,
         }
@@ -178,7 +179,8 @@ impl Pass {
     /// Whether it was roundings that made all of them wrong, and finer steps do not help; else how many times as many to try.
     pub fn finer(&self) -> Option<u32> {
         let [_, second, third, ..] = &self.candidates;
-        let (helps, times) = if self.is_beside_64_bits { (third.outlasts(second), 8) } else { (!self.by_rounding, 2) };
+        let (helps, times) =
+            if self.is_beside_64_bits { (third.has_longer_horizon(second), 8) } else { (!self.by_rounding, 2) };
         helps.then_some(times)
     }
 

@@ -104,7 +104,7 @@ impl PlannedRun {
         let steps = if way.steps == 0 || is_closed { 1 } else { way.steps };
         let state = Pendulum::new(&pendulum)?.to_state(&start);
         let run = AnyRun::new(way.method, &(pendulum, state), f64::from(rate) * f64::from(steps))?;
-        let turns = Turns::of(state.angles(), run.sides());
+        let turns = Turns::of(state.angles(), run.sides())?;
         Ok(Self { way: Way { steps, ..way }, rate, frame: 0, run, turns })
     }
 
@@ -117,9 +117,11 @@ impl PlannedRun {
     /// Moves on by so many frames; [`Error::Diverged`] if that has led out of the finite numbers, and ever after.
     #[inline(never)] // never inlined, to avoid a second copy
     pub fn advance(&mut self, frames: u32) -> Result<(), Error> {
-        for _ in 0..frames.saturating_mul(self.way.steps) {
-            self.run.advance(1);
-            Turns::observe(&mut self.turns, self.run.sides());
+        for _ in 0..frames {
+            for _ in 0..self.way.steps {
+                self.run.advance(1);
+                Turns::observe(&mut self.turns, self.run.sides());
+            }
         }
         self.frame += u64::from(frames);
         self.run.check()

@@ -146,9 +146,10 @@ impl Search {
     /// A form takes no steps so long, or no motion of so high an energy, or no such pendulum: finer ones, or `f32`, may.
     fn refused(&mut self, error: Error) -> Result<Option<Limit>, Error> {
         let is_step = matches!(error, Error::TooLarge { parameter: Parameter::Dt, .. });
+        let is_beside = |given: Way| given.method == Method::ClosedFormF32;
         match self.way.method {
             Method::Rk4F32Direction => Err(error),
-            Method::Rk4Fixed32 if !is_step && self.given.is_none() => {
+            Method::Rk4Fixed32 if self.given.map_or(!is_step, is_beside) => {
                 self.begin(Way { method: Method::Rk4F32Direction, ..self.way });
                 Ok(None)
             }
@@ -260,7 +261,7 @@ impl Search {
             let reaches_end = candidate.right >= self.problem.frames() && best.right < candidate.right;
             let is_cheaper = self.costs.of_frame(candidate.way) < self.costs.of_frame(best.way);
             let cheaper = candidate.right >= best.right && is_cheaper;
-            reaches_end || candidate.outlasts(&best) || cheaper || is_it && candidate.right > best.right
+            reaches_end || candidate.has_longer_horizon(&best) || cheaper || is_it && candidate.right > best.right
         };
         candidate.right > 0 && self.best.is_none_or(is_better)
     }

@@ -1,8 +1,9 @@
 //! Each form's short run against Hamilton's equations, stepped by the classical RK4 in `f64` ten times as finely: its rates of
 //! change on average.
 
+use double_pendulum::parts::DirectionF64;
 use double_pendulum::{
-    DirectionF32, DirectionF64, ExtrapolationF64, Fixed32, Fixed64, Form, HamiltonF64, Motion, Parameters, Pendulum,
+    DirectionF32, ExtrapolationF64, Fixed32, Fixed64, Form, HamiltonF64, Motion, Parameters, Pendulum,
 };
 
 use super::{EQUATIONS, assert_near};

@@ -6,7 +6,7 @@ use clap::Parser;
 use double_pendulum::Method;
 use double_pendulum::plan::Way;
 use firmware::config::PROCESSOR;
-use firmware::motion::Means;
+use firmware::motion::Resources;
 use firmware::scenes::{AnyScene, SceneName};
 
 use crate::console::cli::{Refused, check_writable, choice};
@@ -91,11 +91,11 @@ impl DemoOptions {
 
     pub fn check_method(&self, scene: SceneName) -> Result<(), Refused> {
         let Some(Some(method)) = self.method else { return Ok(()) };
-        let means = Means { processor: PROCESSOR, method: Some(method) };
+        let resources = Resources { processor: PROCESSOR, method: Some(method) };
         let refused =
             |why: &str| Err(Refused::because(format_args!("--method {method}: --scene {} {why}", scene.name())));
         let mut started = AnyScene::empty();
-        match started.start(scene, &scene.first_settings(), &means).map(|_| started.report(0).way) {
+        match started.start(scene, &scene.first_settings(), &resources).map(|_| started.report(0).way) {
             Ok(Some(Way { method: gone, .. })) if gone == method => Ok(()),
             Ok(_) => refused("has no use for it"),
             Err(_) => refused("cannot be computed so"),

@@ -26,7 +26,7 @@ pub struct Map {
 }
 
 /// A start's flip with the step, which is shown, and with half of it, which it is held against.
-pub type Followed = [Flip<f32>; 2];
+pub type FlipPair = [Flip<f32>; 2];
 
 /// Starts that a thread follows by itself; the more, the fewer lanes are idle at its end.
 const PORTION: usize = 8192;
@@ -66,18 +66,18 @@ impl Map {
     }
 
     /// What becomes of each; `tick` is told how many more are done.
-    pub fn points(&self, tick: impl Fn(usize) + Sync) -> Result<Vec<Followed>, Error> {
+    pub fn points(&self, tick: impl Fn(usize) + Sync) -> Result<Vec<FlipPair>, Error> {
         let (starts, [search, finer]) = (self.starts(), &self.searches);
         let portions = starts.par_chunks(PORTION).map(|portion| {
             let [flips, checks] = [flips(search, portion)?, flips(finer, portion)?];
             tick(portion.len());
-            Ok(flips.into_iter().zip(checks).map(Followed::from).collect::<Vec<_>>())
+            Ok(flips.into_iter().zip(checks).map(FlipPair::from).collect::<Vec<_>>())
         });
         Ok(portions.collect::<Result<Vec<_>, Error>>()?.concat())
     }
 
     /// All pixels with what has become of their starts.
-    pub fn shown(&self, points: &[Followed]) -> impl Iterator<Item = ([usize; 2], Followed)> {
+    pub fn shown(&self, points: &[FlipPair]) -> impl Iterator<Item = ([usize; 2], FlipPair)> {
         let (rows, [width, height]) = (self.rows(), self.size);
         self.pixels(height).map(move |[column, row]| {
             let [x, y] = if row < rows { [column, row] } else { [width - 1 - column, height - 1 - row] };
@@ -87,7 +87,7 @@ impl Map {
 
     /// Whether two flips are farther apart than a grey level of the panel; none at all counts as at the limit. With half the step,
     /// it is in doubt.
-    pub fn differ(&self, [one, other]: Followed) -> bool {
+    pub fn differ(&self, [one, other]: FlipPair) -> bool {
         if [one, other].contains(&Flip::Never) {
             return one != other;
         }

@@ -7,10 +7,10 @@ use anyhow::Result;
 use double_pendulum::flips::Flip;
 use firmware::graphics::glyph;
 
-use super::map::{Followed, Map};
+use super::map::{FlipPair, Map};
 
 /// The bytes of a file of this name; with `doubt`, points of a picture whose time is uncertain get a colour of their own.
-pub fn file(name: &Path, map: &Map, points: &[Followed], doubt: bool) -> Result<Vec<u8>> {
+pub fn file(name: &Path, map: &Map, points: &[FlipPair], doubt: bool) -> Result<Vec<u8>> {
     let pixels = map.shown(points);
     if name.extension().is_some_and(|end| end == "csv") {
         return table(map, pixels);
@@ -39,7 +39,7 @@ fn scale(share: f32) -> Colour {
     colorous::VIRIDIS.eval_continuous(f64::from(1.0 - share)).as_array()
 }
 
-fn colour(map: &Map, point: Followed, doubt: bool) -> Colour {
+fn colour(map: &Map, point: FlipPair, doubt: bool) -> Colour {
     match point[0] {
         _ if doubt && map.differ(point) => DOUBT,
         Flip::Never => NEVER,
@@ -48,7 +48,7 @@ fn colour(map: &Map, point: Followed, doubt: bool) -> Colour {
 }
 
 /// A row for each pixel, from the top left corner.
-fn table(map: &Map, pixels: impl Iterator<Item = ([usize; 2], Followed)>) -> Result<Vec<u8>> {
+fn table(map: &Map, pixels: impl Iterator<Item = ([usize; 2], FlipPair)>) -> Result<Vec<u8>> {
     let mut text = String::from("a1,a2,time,half_step\n");
     let word = |flip: Flip<f32>| match flip {
         Flip::Never => "never".to_owned(),

@@ -86,7 +86,7 @@ impl PanelBus for Line {
     }
 
     fn give_up(&mut self) {
-        assert!(!self.is_idle(), "nothing to give up");
+        assert!(!self.is_idle(), "nothing to abort");
         self.freed += 1;
         self.message.clear();
         self.outbox.sent = Some(Err(ErrorKind::Other));

@@ -6,7 +6,7 @@
 use super::{DirectionForm, Plain, Sum};
 use crate::numbers::{Lanes, Real, Scalar};
 use crate::pendulum::Direction;
-use crate::pendulum::directions::{Coefficients, Rates, Same, heads, increments};
+use crate::pendulum::directions::{Coefficients, Rates, Same, increments, rod_directions};
 
 /// A motion's z = (sin a1, cos a1, S, C, P1, P2), and r there.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -108,7 +108,7 @@ fn with<R: Copy>(one: &[R; 6], other: &[R; 6], operation: impl Fn(R, R) -> R) ->
     all
 }
 
-/// As [`DirectionForm`] in plain numbers, to the bit, for `ROWS` times `N` motions of one pendulum side by side.
+/// As [`DirectionForm`] in plain numbers, bit-identical, for `ROWS` times `N` motions of one pendulum side by side.
 ///
 /// Every row makes a stage before any makes the next: a stage waits for the one before it, and meanwhile the processor
 /// computes the other rows. Who steps restores the lengths and leaves out steps, when each motion would alone.
@@ -176,9 +176,9 @@ impl<R: Real, const N: usize, const ROWS: usize> DirectionLanes<R, N, ROWS> {
         }
     }
 
-    /// As of [`Form::heads`](crate::methods::Form::heads), of a row.
+    /// As of [`Form::rod_directions`](crate::methods::Form::rod_directions), of a row.
     #[inline(always)]
-    pub fn heads(&self, row: usize) -> [Direction<Lanes<R, N>>; 2] {
-        heads(&self.rows[row].0.z)
+    pub fn rod_directions(&self, row: usize) -> [Direction<Lanes<R, N>>; 2] {
+        rod_directions(&self.rows[row].0.z)
     }
 }

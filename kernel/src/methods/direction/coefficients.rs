@@ -87,7 +87,7 @@ impl Scale {
     /// The motion is ahead of that time by a part of a step. It is taken back over it by four stages, of which each starts
     /// from the slope of the one before: of order 4 in small oscillations and of order 2 in others.
     #[must_use]
-    #[inline(never)] // cold: once in flash, not once for each caller
+    #[inline(never)] // cold, and never inlined, to avoid a second copy
     pub fn state<R: Real>(&self, coefficients: &Coefficients<R>, z: &[R; 6], lost: [R; 6], count: u64) -> State<f64> {
         let span = R::from_f64(-self.lead.ahead(count) * self.step);
         let mut change = [R::ZERO; 6];
@@ -141,7 +141,7 @@ impl Lead {
     }
 
     /// By how many steps the motion is ahead at `count`: half a step at most, and what a block adds to it.
-    #[inline(never)] // cold: once in flash
+    #[inline(never)] // cold, and never inlined, to avoid a second copy
     pub fn ahead(self, count: u64) -> f64 {
         let within = count % u64::from(BLOCK);
         let before = (count - within).wrapping_mul(self.each) as i64;

@@ -13,7 +13,7 @@ use core::fmt::Debug;
 use crate::error::{Error, Parameter, check_finite};
 use crate::methods::{Form, Side};
 use crate::numbers::{Real, Scalar, Sealed};
-use crate::pendulum::directions::{Coefficients, directions, heads, quantities};
+use crate::pendulum::directions::{Coefficients, directions, quantities, rod_directions};
 use crate::pendulum::{Direction, Parameters, State};
 use classical::Point;
 use coefficients::{Scale, classical_step, prepare};
@@ -81,8 +81,8 @@ impl<R: Real + Side, S: Sum<R>> Form for DirectionForm<R, S> {
     }
 
     #[inline(always)]
-    fn heads(&self) -> [Direction<R>; 2] {
-        heads(&self.at.z)
+    fn rod_directions(&self) -> [Direction<R>; 2] {
+        rod_directions(&self.at.z)
     }
 
     fn directions<Q: Real>(&self) -> [Direction<Q>; 2] {

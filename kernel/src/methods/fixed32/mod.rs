@@ -11,7 +11,7 @@ use crate::methods::Form;
 use crate::methods::scaling::{Scaling, lost};
 use crate::numbers::fixed::{Q30, nearest, product, scaled};
 use crate::numbers::{Real, Scalar, Sealed};
-use crate::pendulum::directions::{directions, heads, quantities, state_of};
+use crate::pendulum::directions::{directions, quantities, rod_directions, state_of};
 use crate::pendulum::{Direction, Parameters, Pendulum, State};
 use setting::Setting;
 
@@ -51,15 +51,13 @@ pub struct Fixed32 {
     /// sin a1, cos a1, S, C, P1, P2, with 62 bits after the point.
     z: [i64; 6],
     inverse: Q30,
-    /// The torques of gravity at the last look, with 63 bits after the point.
-    weights: [i64; 2],
     /// Whether the energy was once out of range, or a length far off.
     lost: bool,
     steps: u64,
 }
 
-/// Steps from one [`keep_up`](Fixed32::keep_up) to the next.
-const UPKEEP: u32 = 32;
+/// Steps from one [`renormalise`](Fixed32::renormalise) to the next.
+const RENORMALISE_EVERY: u32 = 32;
 
 /// 1 as the state has it.
 const ONE: f64 = (1_u64 << 62) as f64;
@@ -97,13 +95,13 @@ impl Form for Fixed32 {
     fn advance(&mut self, steps: u32) {
         let mut left = steps;
         while left > 0 {
-            let until_upkeep = UPKEEP - self.steps as u32 % UPKEEP;
-            let run = left.min(until_upkeep);
+            let until_then = RENORMALISE_EVERY - self.steps as u32 % RENORMALISE_EVERY;
+            let run = left.min(until_then);
             self.make(run);
             self.steps += u64::from(run);
             left -= run;
-            if run == until_upkeep {
-                self.keep_up();
+            if run == until_then {
+                self.renormalise();
             }
         }
     }
@@ -113,8 +111,8 @@ impl Form for Fixed32 {
     }
 
     #[inline(always)]
-    fn heads(&self) -> [Direction<i32>; 2] {
-        heads(&self.quantities()).map(|direction| direction.map(|part| part.0))
+    fn rod_directions(&self) -> [Direction<i32>; 2] {
+        rod_directions(&self.quantities()).map(|direction| direction.map(|part| part.0))
     }
 
     fn directions<R: Real>(&self) -> [Direction<R>; 2] {
@@ -135,7 +133,6 @@ impl Form for Fixed32 {
     fn bits(&self, mut feed: impl FnMut(u64)) {
         self.z.iter().for_each(|&z| feed(z as u64));
         feed(self.inverse.0 as u64);
-        self.weights.iter().for_each(|&weight| feed(weight as u64));
         feed(u64::from(self.lost));
         feed(self.steps);
     }
@@ -149,9 +146,7 @@ impl Fixed32 {
         let square = scaled(z[2] * z[2], shifts.inverse as i32 - shifts.momentum as i32);
         let inverse = Q30::from_f64(1.0 / (inertia + square));
         let z = z.map(|z| nearest(z * ONE) as i64 + OFFSET);
-        let mut motion = Self { units, z, inverse, weights: [0; 2], lost: false, steps: 0 };
-        motion.weights = motion.weights_now();
-        motion
+        Self { units, z, inverse, lost: false, steps: 0 }
     }
 
     /// sin a1, cos a1, S, C, P1, P2, rounded.
@@ -162,7 +157,7 @@ impl Fixed32 {
 
     /// (sin, cos) of both rods times 2^30.
     pub(super) fn q30(&self) -> [Direction<i32>; 2] {
-        let [upper, lower] = heads(&self.quantities());
+        let [upper, lower] = rod_directions(&self.quantities());
         let ([_, inverse_square], norm) = (self.units.square, self.units.coefficients.norm);
         let over_norm = |x: Q30| ((product(x.0, norm.0) >> 30) * inverse_square) >> 29;
         [upper.map(|x| x.0), lower.map(|x| over_norm(x) as i32)]

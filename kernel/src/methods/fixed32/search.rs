@@ -1,7 +1,7 @@
 //! A search for the motion that leads furthest: unit tests are stopped where a sum or product does not fit its word.
 
 use super::setting::Setting;
-use super::{Fixed32, OFFSET, UPKEEP};
+use super::{Fixed32, OFFSET, RENORMALISE_EVERY};
 use crate::error::Error;
 use crate::methods::Form;
 use crate::methods::scaling::Scaling;
@@ -76,8 +76,8 @@ impl Candidate {
         let more = libm::sqrt((most - potential) as f64 / (motion.energy() - potential).max(1) as f64);
         speed_up(&mut motion, more);
         Ok(watch::largest(|| {
-            motion.make(UPKEEP);
-            motion.keep_up();
+            motion.make(RENORMALISE_EVERY);
+            motion.renormalise();
         }))
     }
 }
@@ -114,9 +114,9 @@ fn too_much_energy_is_noticed() -> Result<(), Error> {
     let motion = Fixed32::new(&parameters, &State { a1: 0.0, a2: 0.0, p1: 4.0, p2: 2.0 }, 1.0 / 240.0)?;
     for (more, lost) in [(1.0, false), (1.2, true)] {
         let mut motion = motion;
-        motion.advance(UPKEEP);
+        motion.advance(RENORMALISE_EVERY);
         speed_up(&mut motion, more);
-        motion.advance(UPKEEP);
+        motion.advance(RENORMALISE_EVERY);
         assert_eq!((motion.lost, motion.state().a1.is_nan()), (lost, lost), "momenta times {more}");
     }
     Ok(())

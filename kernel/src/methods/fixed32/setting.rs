@@ -1,6 +1,6 @@
 //! What the steps of one motion have in common: its units and constants.
 
-use super::UPKEEP;
+use super::RENORMALISE_EVERY;
 use crate::bounds::Bounds;
 use crate::error::{Error, Parameter};
 use crate::methods::scaling::Scaling;
@@ -68,7 +68,7 @@ impl Setting {
         let halvings = libm::fmin(fit, f64::from(FINEST)) as u32;
         let scaling = seconds.in_unit(scaled(sixth, halvings as i32));
         let gravity = scaling.gravity.map(Gravity::from_f64);
-        let run = scaled(f64::from(6 * UPKEEP), 60 - halvings as i32);
+        let run = scaled(f64::from(6 * RENORMALISE_EVERY), 60 - halvings as i32);
         let missed = |i: usize| nearest(gravity[i].missed(scaling.gravity[i]) * run) as i32;
         let norm = scaling.norm;
         let coefficients = Coefficients { norm: Q30::from_f64(norm), inertia: Q30::from_f64(scaling.inertia), gravity };

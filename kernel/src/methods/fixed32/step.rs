@@ -2,7 +2,7 @@
 //! for, the energy is looked at.
 
 use super::setting::Setting;
-use super::{Fixed32, OFFSET, UPKEEP};
+use super::{Fixed32, OFFSET};
 use crate::methods::scaling::{Paced, Shifts};
 use crate::numbers::Scalar;
 use crate::numbers::fixed::{IN_HALVES, Q30, Slope, Torque, product, word};
@@ -22,7 +22,7 @@ fn shifted(word: i32, by: u32) -> i64 {
 }
 
 impl Fixed32 {
-    /// Makes `steps` steps without upkeep.
+    /// Makes `steps` steps without renormalising.
     pub(super) fn make(&mut self, steps: u32) {
         let shifts = self.units.scaling.shifts;
         if !SPECIALISED {
@@ -108,7 +108,7 @@ impl Fixed32 {
     }
 
     #[inline(never)]
-    pub(super) fn keep_up(&mut self) {
+    pub(super) fn renormalise(&mut self) {
         self.restore_lengths();
         self.make_up_for_gravity();
         self.lost |= self.energy() > self.units.most_energy;
@@ -133,34 +133,12 @@ impl Fixed32 {
         }
     }
 
-    /// Gives the momenta what the words of G1 and G2 have missed since the last time, and what the words of the torques have
-    /// where these have stayed the same: of a pendulum let go from rest, half a step of them for a hundred steps is seen later.
+    /// Gives the momenta what the words of G1 and G2 have missed since the last time, times sin a1 and nu sin a2.
     fn make_up_for_gravity(&mut self) {
-        let Setting { missed, halvings, .. } = self.units;
-        let (directions, weights) = (self.sines(), self.weights_now());
-        for i in 0..2 {
-            let (before, now) = (self.weights[i], weights[i]);
-            let mut made_up = product(missed[i], directions[i].0) >> 28;
-            if before >> 32 == now >> 32 {
-                // of every second slope it is rounded up, so half a step is in it, but where it is a whole number
-                let dropped = |weight: i64| if weight as u32 == 0 { 0 } else { i64::from(weight as u32) - (1 << 31) };
-                made_up += ((dropped(before) + dropped(now)) * (3 * i64::from(UPKEEP) / 2)) >> halvings;
-            }
-            self.z[4 + i] -= made_up;
-        }
-        self.weights = weights;
-    }
-
-    /// sin a1 and nu sin a2.
-    fn sines(&self) -> [Q30; 2] {
         let [sin1, cos1, s, c, ..] = self.quantities();
-        [sin1, sin1 * c - cos1 * s]
-    }
-
-    /// The torques of gravity, with 63 bits after the point.
-    pub(super) fn weights_now(&self) -> [i64; 2] {
-        let (gravity, sines) = (self.units.coefficients.gravity, self.sines());
-        [0, 1].map(|i| product(gravity[i].0, sines[i].0))
+        for (i, sine) in [sin1, sin1 * c - cos1 * s].into_iter().enumerate() {
+            self.z[4 + i] -= product(self.units.missed[i], sine.0) >> 28;
+        }
     }
 
     /// The energy above rest, ((P1 - C P2)^2 r + P2^2)/2 + G1 (1 - cos a1) + G2 nu (1 - cos a2), with 60 bits after the

@@ -10,7 +10,7 @@ use crate::methods::Form;
 use crate::methods::scaling::{Scaling, lost};
 use crate::numbers::fixed::Q64;
 use crate::numbers::{Real, Scalar, Sealed};
-use crate::pendulum::directions::{heads, lower_ray, quantities, state_of};
+use crate::pendulum::directions::{lower_ray, quantities, rod_directions, state_of};
 use crate::pendulum::{Direction, Parameters, Pendulum, State};
 use rows::{EIGHTH, Rows, unit_of_time};
 
@@ -92,8 +92,8 @@ impl<const ORDER: u32> Form for Fixed64<ORDER> {
         lost(self.0.lost)
     }
 
-    fn heads(&self) -> [Direction<i32>; 2] {
-        heads(&self.0.z).map(|direction| direction.map(|x| (x.0 >> 32) as i32))
+    fn rod_directions(&self) -> [Direction<i32>; 2] {
+        rod_directions(&self.0.z).map(|direction| direction.map(|x| (x.0 >> 32) as i32))
     }
 
     fn directions<R: Real>(&self) -> [Direction<R>; 2] {
