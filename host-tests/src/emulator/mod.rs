@@ -13,7 +13,7 @@ pub mod toolchain;
 use anyhow::bail;
 use firmware::protocol::ToHost;
 
-/// What `next` gives up to a frame: all messages. A board that sends none however often it is asked sends none.
+/// All messages that `next` gives until there is a frame among them; an error if there is none so `often`.
 fn up_to_frame(often: u32, mut next: impl FnMut() -> anyhow::Result<Vec<ToHost>>) -> anyhow::Result<Vec<ToHost>> {
     let mut messages = Vec::new();
     for _ in 0..often {

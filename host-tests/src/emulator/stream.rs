@@ -3,6 +3,7 @@
 use std::fs::File;
 use std::io::{self, ErrorKind, Read};
 use std::os::fd::{AsFd, OwnedFd};
+use std::os::unix::fs::OpenOptionsExt;
 use std::path::Path;
 
 use nix::fcntl::{FcntlArg, OFlag, fcntl};
@@ -70,7 +71,7 @@ impl Channel {
             let path = path.with_extension(end);
             mkfifo(&path, Mode::S_IRUSR | Mode::S_IWUSR)?;
             // Open for both, it waits for nobody at the other end.
-            File::options().read(true).write(true).open(path)
+            File::options().read(true).write(true).custom_flags(OFlag::O_NONBLOCK.bits()).open(path)
         };
         Ok(Self { sender: pipe("in")?, stream: Stream::of(pipe("out")?)? })
     }

@@ -10,6 +10,7 @@
 
 use std::fs::File;
 use std::io::Write;
+use std::path::Path;
 use std::{panic, thread};
 
 use anyhow::anyhow;
@@ -75,19 +76,24 @@ impl Machine {
         let folder = tempfile::tempdir_in(self.folder.path())?;
         let path = folder.path().join("log");
         mkfifo(&path, Mode::S_IRUSR | Mode::S_IWUSR)?;
+        // Open for both, it waits for nobody; then what is read ends when neither QEMU nor `writer` is there, however QEMU ends.
+        let both = File::options().read(true).write(true).open(&path)?;
+        let (pipe, writer) = (File::open(&path)?, File::options().write(true).open(&path)?);
+        drop(both);
         thread::scope(|scope| {
-            // The pipe opens for QEMU once it is open here, and the other way about.
-            let reader = scope.spawn(|| read(File::open(&path)?));
-            self.console(&format!("logfile {}", path.display()))?;
-            self.console("log cpu,nochain")?;
-            self.single_step("on")?;
-            let frame = self.run_to_frame();
-            self.single_step("off")?;
-            self.console("log none")?;
-            self.console("logfile /dev/null")?;
+            let reader = scope.spawn(|| read(pipe));
+            let frame = self.log(&path, "cpu,nochain", "on").and_then(|()| self.run_to_frame());
+            let ended = self.log(Path::new("/dev/null"), "none", "off");
+            drop(writer);
             let read = reader.join().unwrap_or_else(|panic| panic::resume_unwind(panic));
-            frame.and(read)
+            frame.and(ended).and(read)
         })
+    }
+
+    fn log(&mut self, file: &Path, what: &str, single_step: &str) -> anyhow::Result<()> {
+        self.console(&format!("logfile {}", file.display()))?;
+        self.console(&format!("log {what}"))?;
+        self.single_step(single_step)
     }
 
     /// Runs until the instruction at this address is about to be executed, the next time if it stands there.

@@ -57,8 +57,9 @@ pub struct Machine {
     messages: VecDeque<ToHost>,
     lines: Vec<LogLine>,
     pub(super) places: Places,
-    pub(super) folder: TempDir,
     process: Running,
+    /// Taken away once QEMU is gone.
+    pub(super) folder: TempDir,
 }
 
 impl Machine {
@@ -110,8 +111,8 @@ impl Machine {
             messages: VecDeque::new(),
             lines: Vec::new(),
             places: Places::default(),
-            folder,
             process,
+            folder,
         };
         machine.execute("qmp_capabilities", json!({}))?;
         machine.ask(DESCRIBE)?;
@@ -181,8 +182,12 @@ impl Machine {
         self.send_bytes(encode_command(request, command, &mut [0; MAX_WIRE]))
     }
 
-    pub fn send_bytes(&mut self, bytes: &[u8]) -> anyhow::Result<()> {
-        Ok(self.serial.sender.write_all(bytes)?)
+    /// Waits while the board takes none and the pipe is full, until QEMU ends at the latest.
+    pub fn send_bytes(&mut self, mut bytes: &[u8]) -> anyhow::Result<()> {
+        self.wait_until(|machine| {
+            bytes = &bytes[machine.serial.sender.write(bytes).unwrap_or(0)..];
+            bytes.is_empty().then_some(())
+        })
     }
 
     /// What the link has been through.
