@@ -14,8 +14,8 @@ use indicatif::HumanCount;
 use crate::emulator::host::Show;
 use crate::emulator::qemu::Screenshot;
 
-/// After this many frames that wait the host asks again.
-const PATIENCE: usize = TICK_RATE as usize;
+/// After this many frames without an answer the host asks again.
+const PATIENCE: u32 = TICK_RATE;
 /// The host catches up with a board that has long been playing by this many ticks at a time, so that the terminal goes on.
 const MOST_TICKS: u32 = 2000;
 
@@ -29,6 +29,8 @@ pub struct Comparison {
     unsure: usize,
     /// A number of the first of them that differs, unless the board says that it has started something else.
     doubt: Option<String>,
+    /// Frames for which it has not been known what the board plays, or been in doubt.
+    unknown: u32,
     last: Option<Frame>,
     compared: u64,
     skipped: u64,
@@ -42,12 +44,13 @@ impl Comparison {
         if self.last.as_ref().is_none_or(starts) {
             self.skipped += self.waiting.len() as u64;
             self.waiting.clear();
-            (self.playing, self.doubt, self.unsure) = (None, None, 0);
+            (self.playing, self.doubt, self.unsure, self.unknown) = (None, None, 0, 0);
         }
         self.last = Some(*frame);
         self.waiting.push_back(*frame);
         let is_unknown = self.playing.is_none() || self.doubt.is_some();
-        is_unknown && self.waiting.len() % PATIENCE == 1
+        self.unknown = if is_unknown { self.unknown + 1 } else { 0 };
+        self.unknown % PATIENCE == 1
     }
 
     pub fn status(&mut self, status: &Status) {

@@ -42,15 +42,16 @@ fn show(session: &mut Session, seconds: f64, mut terminal: DefaultTerminal) -> a
             session.look()?;
             terminal.draw(|frame| draw(frame, session.name(), &session.screenshot, &session.readings, colours))?;
         }
-        if !event::poll(LOOK.saturating_sub(heard.elapsed()))? {
-            continue;
-        }
-        match event::read()? {
-            Event::Key(KeyEvent { kind: KeyEventKind::Release, .. }) => {}
-            Event::Key(KeyEvent { code: KeyCode::Char('q') | KeyCode::Esc, .. }) => break,
-            Event::Key(KeyEvent { code: KeyCode::Char('c'), modifiers: KeyModifiers::CONTROL, .. }) => break,
-            Event::Key(KeyEvent { code, .. }) => obey(session, code)?,
-            _ => {}
+        while event::poll(LOOK.saturating_sub(heard.elapsed()))? {
+            match event::read()? {
+                Event::Key(KeyEvent { kind: KeyEventKind::Release, .. }) => {}
+                Event::Key(KeyEvent { code: KeyCode::Char('q') | KeyCode::Esc, .. }) => return Ok(()),
+                Event::Key(KeyEvent { code: KeyCode::Char('c'), modifiers: KeyModifiers::CONTROL, .. }) => {
+                    return Ok(());
+                }
+                Event::Key(KeyEvent { code, .. }) => obey(session, code)?,
+                _ => {}
+            }
         }
     }
     Ok(())

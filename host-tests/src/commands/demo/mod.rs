@@ -39,7 +39,7 @@ const LIMIT: [f64; 2] = [60.0, 20.0];
 pub fn run(options: &DemoOptions) -> anyhow::Result<bool> {
     let is_live = !options.headless && stdout().is_terminal() && stdin().is_terminal();
     options.check()?;
-    let seconds = options.seconds.unwrap_or(if is_live { MOST_SECONDS } else { DEFAULT_SECONDS });
+    let seconds = options.seconds.unwrap_or(if is_live { f64::INFINITY } else { DEFAULT_SECONDS });
     let source = match &options.port {
         Some(name) => Source::Port(port(name)?),
         None => emulated(options.board, seconds, is_live)?,
@@ -60,7 +60,7 @@ pub(crate) fn port(name: &str) -> Result<Port, Refused> {
 
 fn emulated(board: &'static Board, seconds: f64, is_live: bool) -> anyhow::Result<Source> {
     let toolchain = toolchain::set_up()?;
-    let limit = Duration::from_secs_f64(LIMIT[0] + LIMIT[1] * seconds);
+    let limit = Duration::from_secs_f64(LIMIT[0] + LIMIT[1] * seconds.min(MOST_SECONDS));
     if *board == PICO {
         let emulator = toolchain::set_up_pico()?;
         return Ok(Source::Pico(Box::new(PicoMachine::start(&emulator, &toolchain.build_for(board)?, limit)?)));

@@ -42,7 +42,7 @@ fn rows(readings: &Readings) -> [(&'static str, String); 9] {
     let [angle_1, angle_2] = [a1, a2].map(|angle| within_half_a_turn(f64::from(angle).to_degrees()));
     let rows = [
         ("time", is_shown, format!("{:.2} s", now.report.time)),
-        ("mass ratio", is_shown, format!("{:.4}", now.mass_ratio)),
+        ("mass ratio", is_shown, ((f64::from(now.mass_ratio) * 1e4).round() / 1e4).to_string()),
         ("start", moves, start),
         ("angle 1", moves, format!("{angle_1:.1}°")),
         ("angle 2", moves, format!("{angle_2:.1}°")),
