@@ -14,6 +14,7 @@ use std::process::exit;
 use std::sync::OnceLock;
 use std::{env, fmt};
 
+pub use bring::QUICK;
 use bring::turn;
 pub use tools::find;
 use tools::{CORE_PACKAGES, Emulator, QEMU, QEMU_RISCV};
@@ -32,8 +33,9 @@ pub struct Toolchain {
 }
 
 /// That something is missing: why, and what brings it, in a line.
-fn missing(what: &str, why: &str, by_hand: &str) -> Refused {
-    Refused::because(format_args!("{what} is missing: {why}; what brings it: cargo setup, or {by_hand}"))
+fn missing(installs: bool, what: &str, why: &str, by_hand: &str) -> Refused {
+    let setup = if installs { "" } else { "cargo setup, or " };
+    Refused::because(format_args!("{what} is missing: {why}; what brings it: {setup}{by_hand}"))
 }
 
 /// The tools, if all are there; installs nothing. Looks once per process.
@@ -61,9 +63,9 @@ pub fn set_up_for(target: &str) -> Result<Toolchain, Refused> {
 /// Both of them, or a line for each that is missing.
 fn both(installs: bool, targets: &[&str], emulator: &Emulator) -> Result<Toolchain, Refused> {
     let packages = format!("rustup target add {}, or Debian's {}", targets.join(" "), CORE_PACKAGES.join(" "));
-    let core = tools::core(installs, targets).map_err(|why| missing("the ARM core library", &why, &packages));
-    let by_hand = "this system's package of that name (Homebrew: qemu)";
-    let qemu = tools::qemu(installs, emulator).map_err(|why| missing(emulator.program, &why, by_hand));
+    let core = tools::core(installs, targets).map_err(|why| missing(installs, "the core library", &why, &packages));
+    let by_hand = format!("this system's package {} (Homebrew: qemu)", emulator.package);
+    let qemu = tools::qemu(installs, emulator).map_err(|why| missing(installs, emulator.program, &why, &by_hand));
     match (core, qemu) {
         (Ok(linker), Ok(qemu)) => Ok(Toolchain { linker, qemu }),
         (Err(core), Err(qemu)) => Err(Refused::because(format_args!("{core}\n{qemu}"))),

@@ -19,7 +19,7 @@ use super::COUNTED;
 use crate::console::progress::Progress;
 use crate::emulator::boards::{BOARDS, Board};
 use crate::emulator::process;
-use crate::emulator::toolchain::Toolchain;
+use crate::emulator::toolchain::{QUICK, Toolchain};
 
 pub(super) const LIMIT: Duration = Duration::from_secs(1800);
 
@@ -98,7 +98,7 @@ impl Target {
 
     /// The options for one instruction per translation block, which QEMU 8.1 renamed.
     fn single_step(&self) -> Result<&'static [&'static str]> {
-        let help = process::run(Command::new(&self.qemu).arg("--help"), LIMIT)?.stdout;
+        let help = process::run(Command::new(&self.qemu).arg("--help"), QUICK)?.stdout;
         let is_renamed = help.contains("one-insn-per-tb");
         Ok(if is_renamed { &["-accel", "tcg,one-insn-per-tb=on"] } else { &["-singlestep"] })
     }

@@ -12,6 +12,7 @@ use super::talk::Talk;
 use super::{Section, verdict};
 use crate::commands::count::{FULL_CYCLE, Target, affordable_cost};
 use crate::commands::demo::comparison::Comparison;
+use crate::console::progress::Progress;
 use crate::emulator::boards::{BOARDS, Board};
 use crate::emulator::toolchain;
 
@@ -76,20 +77,22 @@ fn sample(talk: &mut Talk, number: u16) -> anyhow::Result<(u32, Reading)> {
 
 const REQUEST: u16 = u16::MAX;
 
-/// The cycles of a step of every method, as `cargo count` counts them, on average over the first second from rest: measured from
-/// flash and from RAM, and estimated. Instructions are counted in QEMU, on a board with the same processor.
-pub fn cycles(talk: &mut Talk, board: Option<&Board>) -> anyhow::Result<Section> {
+/// The cycles of a step of every method, on average over the first second from rest: from flash and from RAM.
+pub fn measured(talk: &mut Talk) -> anyhow::Result<Vec<[Option<f64>; 2]>> {
+    ON_BOARDS.iter().map(|&method| Ok([step(talk, method, false)?, step(talk, method, true)?])).collect()
+}
+
+/// The same beside the estimate, as `cargo count` counts them. Instructions are counted in QEMU, on a board with the same processor.
+pub fn cycles(measured: &[[Option<f64>; 2]], board: Option<&Board>) -> anyhow::Result<Section> {
     let note = "Measured by the processor's cycle counter, interrupts off, over 256 steps of the regular motion, by the code in \
                 flash and, where there is one, by its copy in RAM (constants are read from flash by both); estimated for memory \
                 without wait states, over as many steps or, of the expensive ones, fewer.";
     let mut section = Section::new("Cycles of a step", note, &["method", "from flash", "from RAM", "estimated"]);
     let board = board.and_then(|board| BOARDS.iter().find(|counted| counted.target == board.target));
-    let mut target = None;
-    for &method in ON_BOARDS {
-        let [flash, ram] = [step(talk, method, false)?, step(talk, method, true)?];
-        if let (None, Some(_), Some(board)) = (&target, flash, board) {
-            target = Some(Target::build(&toolchain::ready()?, board)?);
-        }
+    let board = board.filter(|_| measured.iter().any(|[flash, _]| flash.is_some()));
+    let target = board.map(|board| Target::build(&toolchain::ready()?, board)).transpose()?;
+    let bar = Progress::of("estimating cycles, methods", measured.len() as u64);
+    for (&method, &[flash, ram]) in ON_BOARDS.iter().zip(measured).inspect(|_| bar.advance(1)) {
         let target = target.as_ref().filter(|_| flash.is_some());
         let estimated = target.map(|target| affordable_cost(target, &request(method, MOTIONS[0]))).transpose()?;
         let cell = |cycles: Option<f64>, none: &str| cycles.map_or(none.to_owned(), |cycles| format!("{cycles:.1}"));

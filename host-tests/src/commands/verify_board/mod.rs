@@ -6,7 +6,6 @@ mod talk;
 use std::fs;
 use std::path::PathBuf;
 use std::process::Command;
-use std::time::Duration;
 
 use anyhow::Context;
 use clap::Parser;
@@ -21,7 +20,7 @@ use crate::console::progress::Progress;
 use crate::emulator::boards::{Board, every_board};
 use crate::emulator::flash::{ERASED, flash_image_over};
 use crate::emulator::process;
-use crate::emulator::toolchain::{self, workspace};
+use crate::emulator::toolchain::{self, QUICK, workspace};
 use talk::Talk;
 
 /// Verifies a board at a serial port: the bits of every method and scene beside the host's, the cycles of every method, the
@@ -73,10 +72,11 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
     let board = every_board().find(|board| board.name == name);
     let progress = Progress::start(&format!("verifying {name} at {}", talk.port.name));
     let (methods, scenes) = (compare::methods(&mut talk)?, compare::scenes(&mut talk, identity.hertz)?);
-    let cycles = compare::cycles(&mut talk, board)?;
+    let measured = compare::measured(&mut talk)?;
     drop(progress);
     let asked = if options.no_questions { Section::default() } else { talk::ask_person(&mut talk, name)? };
-    let program = program(board, &identity)?;
+    // The board, which goes on sending, has told all before anything is built.
+    let (cycles, program) = (compare::cycles(&measured, board)?, program(board, &identity)?);
     let sections = [methods, cycles, scenes, asked];
 
     let faults: Vec<&String> = sections.iter().flat_map(|section| &section.faults).collect();
@@ -97,14 +97,11 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
     Ok(faults.is_empty())
 }
 
-/// For git and the compiler to say which they are.
-const LIMIT: Duration = Duration::from_secs(30);
-
 /// The program in the board's flash, and whether it is the one that is built here for `board`, from which commit, by which compiler,
 /// in a line.
 fn program(board: Option<&Board>, identity: &Identity) -> anyhow::Result<String> {
     let said = |program: &str, arguments: &[&str]| {
-        let output = process::run(Command::new(program).args(arguments).current_dir(workspace()), LIMIT);
+        let output = process::run(Command::new(program).args(arguments).current_dir(workspace()), QUICK);
         output.map_or_else(|_| "unknown".to_owned(), |output| output.stdout.trim().to_owned())
     };
     // With a plus where files have been changed since.

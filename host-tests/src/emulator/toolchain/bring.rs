@@ -13,8 +13,8 @@ use crate::console::cli::{Refused, complain};
 use crate::console::progress::Progress;
 use crate::emulator::process::{Output, run, run_watched};
 
-/// For a program that only says its version.
-const QUICK: Duration = Duration::from_secs(20);
+/// For a program that only says what it is, or what there is.
+pub const QUICK: Duration = Duration::from_secs(20);
 /// For fetching and unpacking at most 400 MB, and for a turn at dpkg.
 pub(super) const INSTALL: Duration = Duration::from_secs(1200);
 

@@ -22,7 +22,7 @@ const UNPACK_QEMU: &str = "host-tests/src/emulator/toolchain/unpack-qemu.sh";
 /// An emulator of QEMU's.
 pub(super) struct Emulator {
     pub program: &'static str,
-    package: &'static str,
+    pub package: &'static str,
     /// Where the set-up unpacks it for this project alone, in the target folder.
     folder: &'static str,
 }
@@ -145,24 +145,22 @@ pub(super) fn rp2040js(installs: bool) -> Result<PathBuf, Refused> {
     };
     let packages = || install_packages(&["nodejs", "npm"]);
     let node = bring(installs, find_node, &[("apt-get installed nodejs, npm".to_owned(), &packages)])
-        .map_err(|why| missing("Node.js, of 18 or newer", &why, "this system's packages nodejs and npm"))?;
+        .map_err(|why| missing(installs, "Node.js, of 18 or newer", &why, "this system's packages nodejs and npm"))?;
     let folder = workspace().join("host-tests/rp2040");
     let fetched = || {
         let asked = says(Command::new(&node).args(["--eval", ASK]).current_dir(&folder));
         asked.map(drop).map_err(|_| "npm has not fetched the version that is wanted".to_owned())
     };
     let npm = || {
+        if find("npm").is_none() {
+            install_packages(&["npm"])?;
+        }
         let mut npm = Command::new("npm");
         npm.args(["ci", "--ignore-scripts", "--no-audit", "--no-fund"]).current_dir(&folder);
         attempt(&mut npm, NPM, "npm fetches the emulator of the Raspberry Pi Pico")
     };
-    let ways: [Way; 2] = [
-        ("npm fetched rp2040js".to_owned(), &npm),
-        ("apt-get installed npm, which fetched rp2040js".to_owned(), &|| {
-            install_packages(&["npm"]).and_then(|()| npm())
-        }),
-    ];
-    let by_hand = "npm ci --prefix host-tests/rp2040";
-    bring(installs, fetched, &ways).map_err(|why| missing("the emulator of the Raspberry Pi Pico", &why, by_hand))?;
+    let (what, by_hand) = ("the emulator of the Raspberry Pi Pico", "npm ci --prefix host-tests/rp2040");
+    bring(installs, fetched, &[("npm fetched rp2040js".to_owned(), &npm)])
+        .map_err(|why| missing(installs, what, &why, by_hand))?;
     Ok(node)
 }
