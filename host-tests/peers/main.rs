@@ -134,8 +134,8 @@ struct Entry {
 /// its runs in turns.
 fn race(contestants: &[Contestant], scene: Scene, asked: f64) -> Vec<Entry> {
     let parts = PARTS / 2 + 1..=PARTS;
-    let times: Vec<f64> = parts.clone().map(|parts| scene.part * f64::from(parts)).collect();
-    let exact = taylor::states(&PARAMETERS, &Motion::at_rest(scene.start[0], scene.start[1]), &times);
+    let times = parts.clone().map(|parts| scene.part * f64::from(parts));
+    let exact = taylor::states(&PARAMETERS, &Motion::at_rest(scene.start[0], scene.start[1]), times);
     let entry = |&contestant: &Contestant| {
         let (_, most, follow) = contestant;
         let efforts = successors(Some(4), |last| Some(last + 1 + last / 128)).take_while(|&next| next <= most);

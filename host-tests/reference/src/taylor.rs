@@ -167,13 +167,13 @@ pub fn divide(a: TwoFloat, b: TwoFloat) -> TwoFloat {
 }
 
 /// The states at `times` (s, ascending) of the motion that starts as `start`.
-pub fn states(parameters: &Parameters<f64>, start: &Motion<f64>, times: &[f64]) -> Vec<State<f64>> {
+pub fn states(parameters: &Parameters<f64>, start: &Motion<f64>, times: impl Iterator<Item = f64>) -> Vec<State<f64>> {
     let mut reference = Reference::new(parameters, start);
-    let state = |&t: &f64| {
+    let state = |t| {
         reference.advance_to(t);
         reference.state()
     };
-    times.iter().map(state).collect()
+    times.map(state).collect()
 }
 
 /// The least term of a series kept, relative to the rates of the motion.

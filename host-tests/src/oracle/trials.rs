@@ -87,8 +87,7 @@ impl Trial {
     pub fn exact(&self) -> Result<Vec<State<f64>>, Error> {
         let pendulum = Pendulum::new(&self.parameters)?;
         let at = |moment: u32| self.seconds * f64::from(moment) / f64::from(MOMENTS);
-        let times: Vec<f64> = (1..=MOMENTS).map(at).collect();
-        Ok(taylor::states(&self.parameters, &pendulum.to_motion(&self.start), &times))
+        Ok(taylor::states(&self.parameters, &pendulum.to_motion(&self.start), (1..=MOMENTS).map(at)))
     }
 
     /// The largest error of an angle, rad, by `method` with steps of `dt`, s, beside the exact motion of the numbers as it holds

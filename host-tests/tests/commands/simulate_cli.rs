@@ -43,9 +43,9 @@ fn error(request: &Request) -> Result<f64, double_pendulum::Error> {
         Ok(())
     })?;
     let every = f64::from(request.stride) * request.dt;
-    let times: Vec<_> = (0..rows.len()).map(|row| row as f64 * every).collect();
+    let times = (0..rows.len()).map(|row| row as f64 * every);
     let ([a1, a2], [w1, w2]) = (request.angles, request.velocities);
-    let exact = taylor::states(&request.parameters, &Motion { a1, a2, w1, w2 }, &times);
+    let exact = taylor::states(&request.parameters, &Motion { a1, a2, w1, w2 }, times);
     let errors = rows.iter().zip(exact).map(|([a1, a2, ..], exact)| (a1 - exact.a1).abs().max((a2 - exact.a2).abs()));
     Ok(errors.fold(0.0, f64::max))
 }

@@ -41,7 +41,7 @@ impl Map {
     }
 
     /// Rows to compute: the lower half of a rectangle about hanging is the upper one's mirror image, both ways.
-    fn rows(&self) -> usize {
+    pub fn rows(&self) -> usize {
         let [_, height] = self.size;
         if self.centre == [0.0; 2] { height.div_ceil(2) } else { height }
     }

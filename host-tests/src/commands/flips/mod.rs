@@ -61,7 +61,7 @@ pub struct FlipsOptions {
 pub fn run(options: &FlipsOptions) -> Result<()> {
     let map = options.map().map_err(|error| Refused::because(format_args!("{error:#}")))?;
     check_writable("--out", &options.out)?;
-    let bar = Progress::of("starts", map.starts().len() as u64);
+    let bar = Progress::of("starts", (map.size[0] * map.rows()) as u64);
     let points = map.points(|done| bar.advance(done as u64))?;
     drop(bar);
     let file = output::file(&options.out, &map, &points, options.doubt)?;

@@ -41,8 +41,8 @@ const LOST: Error = Error { angle: f64::INFINITY, pixels: f64::INFINITY };
 /// The exact motion, a1 and a2, after each of `steps` equal steps through a scene.
 pub fn exact(scene: &Scene, steps: u32) -> Vec<[f64; 2]> {
     let Request { parameters, angles: [a1, a2], .. } = request(Method::Rk4F64, scene, 1);
-    let times: Vec<_> = (1..=steps).map(|step| f64::from(step * scene.duration) / f64::from(steps)).collect();
-    taylor::states(&parameters, &Motion::at_rest(a1, a2), &times).iter().map(State::angles).collect()
+    let times = (1..=steps).map(|step| f64::from(step * scene.duration) / f64::from(steps));
+    taylor::states(&parameters, &Motion::at_rest(a1, a2), times).iter().map(State::angles).collect()
 }
 
 /// How many states of a motion with `rate` steps a second are compared in each: as many as fall on whole steps.

@@ -41,8 +41,10 @@ pub fn choose(options: &SimulateOptions, tolerance: &Number) -> anyhow::Result<(
     let asked = method(options)?;
     accepted(options, &in_parts(asked, divisions(asked, samples).last().unwrap_or(1)).0)?;
 
-    let times: Vec<_> = (0..=samples.into()).map(|row| every.times(row)).collect();
-    let exact = taylor::states(&options.start.parameters(), &options.start.motion(), &times);
+    let bar = Progress::of("reference, rows", samples.into());
+    let times = (0..=samples.into()).map(|row| every.times(row)).inspect(|_| bar.advance(1));
+    let exact = taylor::states(&options.start.parameters(), &options.start.motion(), times);
+    drop(bar);
     let (unit, methods) = candidates(options);
     let trials = methods.into_iter().flat_map(|(method, price)| {
         divisions(method, samples).map(move |parts| (f64::from(parts) * price, method, parts))
