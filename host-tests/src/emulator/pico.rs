@@ -126,7 +126,7 @@ impl PicoMachine {
                 "uart" => self.heard_by_uart.extend(bytes.iter().filter_map(|&byte| self.uart.take(byte))),
                 "log" => self.lines.extend(self.log.take(&bytes)),
                 // Bytes cut off by it are no damage of the link's.
-                "restarted" => [&mut self.usb, &mut self.uart].into_iter().for_each(Inbox::join),
+                "restarted" => (self.usb.decoder, self.uart.decoder) = Default::default(),
                 "done" => return Ok(asked),
                 _ => asked = bytes,
             }

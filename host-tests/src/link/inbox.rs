@@ -24,7 +24,7 @@ pub fn refusal(field: Field) -> &'static str {
 /// Cuts what arrives into messages.
 #[derive(Debug, Default)]
 pub struct Inbox {
-    decoder: Decoder,
+    pub decoder: Decoder,
     pub counts: Counts,
     /// The sequence number the next frame should have.
     expected: Option<u32>,
@@ -64,7 +64,7 @@ impl Inbox {
         Some(message)
     }
 
-    /// A connection begins, to a board that may be in the middle of a message and of its count, or the board does.
+    /// A connection begins, to a board that may be in the middle of a message and of its count.
     pub fn join(&mut self) {
         (self.decoder, self.expected, self.damage, self.joins) = (Decoder::default(), None, None, true);
     }
