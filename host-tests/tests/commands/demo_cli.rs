@@ -66,9 +66,11 @@ fn a_recording_shows_a_swinging_pendulum_and_is_the_same_every_time() {
 #[test]
 fn the_method_can_be_chosen_and_is_named() {
     toolchain();
-    let output = output(program("demo").args(["--method", "rk4-f32-direction", "--headless", "--seconds", "2"]));
-    let shown = "\nshown                 rk4-f32-direction, a step to a frame, right to half a pixel until";
-    assert!(output.status.success() && output.stdout.contains(shown), "{output:?}");
+    for (method, named) in [("plan", "extrapolation10-fixed64"), ("rk4-f32-direction", "rk4-f32-direction")] {
+        let output = output(program("demo").args(["--method", method, "--headless", "--seconds", "2"]));
+        let shown = format!("\nshown                 {named}, a step to a frame, right to half a pixel until");
+        assert!(output.status.success() && output.stdout.contains(&shown), "{output:?}");
+    }
 }
 
 /// What the host cannot see it draws itself, from the numbers that come.

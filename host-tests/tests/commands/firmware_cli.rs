@@ -1,5 +1,5 @@
 //! `cargo fw`: how it ends, and which project it works on. `cargo flash-f4` with a stand-in for `probe-rs`, and without any;
-//! `cargo pico`, the file that it makes, and the drive that it copies it onto.
+//! `cargo pico`, the file that it makes, and the drive that it copies it onto. `cargo count`, what it lists.
 
 use std::env;
 use std::fs::{self, Permissions};
@@ -31,6 +31,18 @@ fn what_runs_for_ever_ends_well_when_it_is_told_to() {
     assert!(told.stdout.contains("boot: mps2-an386"), "{}", told.stdout);
     assert_eq!(told.stderr.lines().last(), Some("ended after 2 s, as told"));
     assert_eq!(fw(&["inject-panic", "--seconds", "600"]).status.code(), Some(1), "a failure is one");
+}
+
+/// A row is the difference of two runs, so that calling cancels.
+#[test]
+fn a_listing_adds_up_to_the_row() {
+    let numbers = |options: &str, place| -> Vec<f64> {
+        let said = output(program("count").arg("rk4-fixed32").args(options.split_whitespace())).stdout;
+        said.lines().filter_map(|line| line.split_whitespace().nth(place)?.parse().ok()).collect()
+    };
+    let listed = |steps: f64| steps * numbers(&format!("--listing --steps {steps}"), 1).iter().sum::<f64>();
+    let (listed, row) = ((listed(5.0) - listed(1.0)) / 4.0, *numbers("--steps 4", 3).last().expect("a row"));
+    assert!(listed > 0.0 && (listed - row).abs() < 0.06, "{listed} listed, {row} in the row");
 }
 
 #[test]

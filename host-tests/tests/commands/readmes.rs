@@ -88,18 +88,17 @@ fn the_first_readme_is_short() {
 /// The messages, and the version, as the firmware's README lists them.
 #[test]
 fn the_readme_lists_the_messages_as_they_are() {
-    let page = read("firmware/README.md");
+    let readme = read("firmware/README.md");
+    let (_, page) = readme.split_once("\n## The serial stream\n").expect("its section");
     let rows = page.lines().filter_map(|line| line.strip_prefix("| `")?.split_once("` |"));
     let listed: BTreeSet<_> = rows.flat_map(|(names, _)| names.split("`, `")).collect();
     let sources = ["to_host", "command"].map(|file| read(format!("firmware/src/protocol/{file}.rs"))).concat();
-    for message in ["ToHost", "Answer", "Command"] {
+    let variants = ["ToHost", "Answer", "Command"].into_iter().flat_map(|message| {
         let (_, variants) = sources.split_once(&format!("pub enum {message} {{\n")).expect("it is there");
-        let variants = variants.lines().take_while(|line| *line != "}");
-        let names = variants.filter_map(|line| line.strip_prefix("    ")?.split(|c: char| !c.is_alphanumeric()).next());
-        for name in names.filter(|name| !name.is_empty() && *name != "Answer") {
-            assert!(listed.contains(name), "{message}::{name}");
-        }
-    }
+        variants.lines().take_while(|line| *line != "}")
+    });
+    let names = variants.filter_map(|line| line.strip_prefix("    ")?.split(|c: char| !c.is_alphanumeric()).next());
+    assert_eq!(listed, names.filter(|name| !["", "Answer"].contains(name)).collect());
     let version = format!("version is {};", firmware::protocol::VERSION);
     assert!(page.contains(&version), "{version}");
 }

@@ -11,6 +11,7 @@ use firmware::job::{OnBoards, Request, Run};
 use firmware::motion::Planned;
 use firmware::protocol::{Answer, BoardName, Command, Field, Frame, Identity, MAX_WIRE, Status, ToHost, encode, frame};
 use firmware::scenes::SceneName;
+use host_tests::link::refusal;
 
 use crate::bench::{Plain, answers, app, frames, wire};
 
@@ -145,6 +146,7 @@ fn an_intact_command_that_cannot_be_read_is_answered_too() {
         app.receive(frame(message, &mut [0; MAX_WIRE]).iter().copied(), |_| ());
         assert_eq!(last(&app, request), Answer::Refused(Field::Message), "{message:?}");
     }
+    assert!(refusal(Field::Message).ends_with("flash it anew"));
 }
 
 /// Of a link that is looped back the board hears what it has sent.

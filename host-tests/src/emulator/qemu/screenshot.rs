@@ -54,3 +54,11 @@ impl From<&Canvas> for Screenshot {
         Self::drawn(|x, y| canvas.get(x as i32, y as i32).unwrap_or_default())
     }
 }
+
+#[test]
+fn what_is_no_whole_dump_of_the_panel_is_refused() {
+    let whole = [HEADER, &[0xFF; 3 * 512 * 256]].concat();
+    assert!(Screenshot::from_ppm(&whole).is_ok_and(|panel| panel.greys.iter().all(|grey| *grey == 15)));
+    let cut_short = Screenshot::from_ppm(&whole[..whole.len() - 4 * 512 * 3]);
+    assert!(cut_short.is_err() && Screenshot::from_ppm(b"P6\n720 400\n255\n").is_err());
+}
