@@ -87,19 +87,22 @@ const LM3S6965EVB: Board = Board {
     has_panel: true,
 };
 
+/// ARM's, with neither panel nor buttons: quick to emulate.
+pub const MPS2_AN386: Board = Board {
+    name: "mps2-an386",
+    machine: "mps2-an386",
+    cpu: "cortex-m4",
+    target: "thumbv7em-none-eabihf",
+    binary: "mps2-an386",
+    hertz: 25_000_000,
+    has_panel: false,
+    ..LM3S6965EVB
+};
+
 pub const BOARDS: [Board; 5] = [
     LM3S6965EVB,
     Board { name: "lm3s6965evb-m4", cpu: "cortex-m4", target: "thumbv7em-none-eabihf", ..LM3S6965EVB },
-    Board {
-        name: "mps2-an386",
-        machine: "mps2-an386",
-        cpu: "cortex-m4",
-        target: "thumbv7em-none-eabihf",
-        binary: "mps2-an386",
-        hertz: 25_000_000,
-        has_panel: false,
-        ..LM3S6965EVB
-    },
+    MPS2_AN386,
     STM32F405,
     Board { name: "lm3s6965evb-m0", cpu: "cortex-m0", target: "thumbv6m-none-eabi", ..LM3S6965EVB },
 ];

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use double_pendulum::Method;
 use firmware::config::TICK_RATE;
 use firmware::job::{ON_BOARDS, Request};
 use firmware::protocol::{Command, Field, MAX_WIRE, ToHost, encode_command, frame};
@@ -39,9 +40,16 @@ pub fn exercise(next: Next) -> anyhow::Result<()> {
     for &method in ON_BOARDS {
         for dt in [1.0 / 256.0, 0.5, 0.0] {
             let request = Request { dt, stride: 4, samples: 20, ..Request::on_any_core(method) };
-            play(&wire(Command::Simulate(request)), COMPUTING)?;
+            let measure = Command::Measure { steps: 1, in_ram: true };
+            play(&[Command::Simulate(request), measure].map(wire).concat(), COMPUTING)?;
         }
     }
+    for &method in Method::DRAWN {
+        play(&[Command::Method(Some(method)), Command::AskPlan, Command::Identify].map(wire).concat(), COMPUTING)?;
+    }
+    let taps = [Command::Heavier, Command::Lighter, Command::TurnLeft, Command::TurnRight, Command::TogglePause];
+    let leaving = [Command::TogglePause, Command::Method(None), Command::NextScene, Command::PreviousScene];
+    taps.into_iter().chain(leaving).try_for_each(|command| play(&wire(command), COMPUTING))?;
     play(&[0x55; 300], FRAMES)?;
     // A line of the log says that frames were dropped, if any were.
     play(&[0; 2], TICK_RATE as usize)

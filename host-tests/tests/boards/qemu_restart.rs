@@ -4,6 +4,7 @@
 //! that is drawn but not yet sent, and sends its processor elsewhere.
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 use crate::support::{address, application, on, settings, toolchain};
 use cycles::Image;
@@ -25,11 +26,14 @@ const STOPWATCH: &str = "clock::cycles";
 /// The mass ratio that the tests set, unlike any scene's own.
 const MASS_RATIO: f32 = 0.7;
 
+/// A board that nothing restarts is given up after this long, by the host's clock: many times what a restart takes.
+const PATIENCE: Duration = Duration::from_secs(120);
+
 /// A board, with a debugger that takes its log or without, that stands still in the middle of a frame of `scene`, with a mass ratio of
 /// its own: its program, and the last frame it has sent.
 fn within(board: &Board, scene: SceneName, debugger: bool) -> anyhow::Result<(PathBuf, Machine, Frame)> {
     let elf = application(board);
-    let mut probe = on(board, |settings| Machine::halted(&Settings { debugger, ..*settings }))?;
+    let mut probe = on(board, |settings| Machine::halted(&Settings { debugger, limit: PATIENCE, ..*settings }))?;
     // A serial port that is not yet on takes no bytes.
     let stopwatch = address(&elf, STOPWATCH);
     probe.run_to(stopwatch)?;

@@ -2,10 +2,10 @@
 //! more than the board reads, or stops the emulator.
 
 use std::thread::sleep;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use crate::support::bench::BOARD;
-use crate::support::{on, show};
+use crate::support::{LIMIT, on, show};
 use firmware::scenes::SceneName;
 use host_tests::emulator::boards::{BOARDS, STM32F405};
 use host_tests::emulator::qemu::{Clock, Machine, Settings};
@@ -25,8 +25,9 @@ fn a_host_that_stops_reading_loses_frames_and_nothing_else() -> anyhow::Result<(
     let first = machine.next_frame()?;
 
     machine.listens = false;
-    let mut said = String::new();
+    let (mut said, since) = (String::new(), Instant::now());
     while !said.contains("serial link") {
+        assert!(since.elapsed() < LIMIT, "{said}");
         said += &machine.said();
         sleep(POLL);
     }

@@ -10,7 +10,7 @@ use std::thread::{scope, sleep};
 use std::time::Duration;
 
 use firmware::protocol::{MAX_WIRE, ToHost, encode};
-use host_tests::emulator::boards::{BOARDS, Board};
+use host_tests::emulator::boards::{Board, MPS2_AN386};
 use host_tests::emulator::process::{Output, run};
 use host_tests::emulator::qemu::{Clock, Machine, Settings};
 use nix::fcntl::OFlag;
@@ -19,7 +19,7 @@ use nix::pty::{PtyMaster, grantpt, posix_openpt, ptsname_r, unlockpt};
 use crate::support::{LIMIT, on};
 
 /// A board that is quick to emulate, and has neither panel nor buttons.
-pub const BOARD: &Board = &BOARDS[2];
+pub const BOARD: &Board = &MPS2_AN386;
 /// From one look at the cable to the next.
 pub const WAIT: Duration = Duration::from_millis(1);
 /// A board at a port, by a name that stays when the cable is pulled.
