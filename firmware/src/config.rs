@@ -41,7 +41,7 @@ const _: () = assert!(SETTLED_TICKS > REPEAT_PERIOD_TICKS as u64);
 /// A piece of the search, cycles, unless a single step is more.
 pub const PLANNING_PIECE: f32 = 20_000.0;
 
-/// A class of processors, by what a plan must know of it: so that a scene goes the same way on all of them.
+/// A class of processors, by what a plan must know of it: so that a scene goes by the same methods on all of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Processor {
     /// Its place in [`PROCESSORS`].

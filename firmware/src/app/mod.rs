@@ -189,8 +189,8 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     fn execute(&mut self, command: Command, log: &mut impl Log<Panel, Link>) -> Result<(), Field> {
         if self.player.execute(command)? {
             log(Event::Started(self.player.name, self.player.settings));
-            if let Some(way) = self.player.report.way {
-                log(Event::Motion(PlannerEvent::Shown(way, self.player.cost(way))));
+            if let Some(stepping) = self.player.report.stepping {
+                log(Event::Motion(PlannerEvent::Shown(stepping, self.player.cost(stepping))));
             }
         }
         Ok(())

@@ -1,6 +1,6 @@
 //! What is played: a scene with its settings, and how its time goes.
 
-use double_pendulum::plan::Way;
+use double_pendulum::plan::Stepping;
 use double_pendulum::{Error, Method};
 
 use crate::app::pace::Pace;
@@ -13,8 +13,8 @@ use crate::scenes::{AnyScene, Report, SceneName};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PlannerEvent {
     Found(PlanResult),
-    /// The motion goes this way from now on; cycles of a frame.
-    Shown(Way, f32),
+    /// The motion goes on by this method and these steps; cycles of a frame.
+    Shown(Stepping, f32),
 }
 
 #[derive(Debug)]
@@ -26,7 +26,7 @@ pub struct Player<'a> {
     /// The method that is asked for; `None` leaves it to the plan.
     method: Option<Method>,
     planner: Planner,
-    /// The motion in the way of the plan, until it takes over; meanwhile nothing is planned.
+    /// The motion as the plan has it, until it takes over; meanwhile nothing is planned.
     next: Option<CatchingUp>,
     ink: &'a mut FadeLayer,
     pace: Pace,
@@ -50,7 +50,7 @@ impl<'a> Player<'a> {
         let resources = Resources { processor: self.planner.processor, method: self.method };
         let height = self.scene.start(name, &settings, &resources)?;
         (self.name, self.settings, self.stopped, self.next) = (name, settings, false, None);
-        let begun = self.scene.report(0).way;
+        let begun = self.scene.report(0).stepping;
         let is_tied = self.method.is_some() || self.scene.planned().is_none();
         self.planner.start(&settings, height, begun, is_tied);
         *self.ink = FadeLayer::NONE;
@@ -86,7 +86,7 @@ impl<'a> Player<'a> {
     }
 
     /// Advances by one tick of the clock, which may be any number of the scene's; `tell` is given what planning finds, and
-    /// the way that a scene begins or changes to.
+    /// what a scene begins or goes on by.
     #[inline(never)]
     pub fn tick(&mut self, mut tell: impl FnMut(PlannerEvent)) {
         if self.stopped {
@@ -98,8 +98,8 @@ impl<'a> Player<'a> {
                 self.planner.rest();
                 if self.scene.planned().is_none_or(|motion| next.tick(motion)) {
                     self.next = None;
-                    if let Some(way) = self.scene.planned().map(|simulation| simulation.motion.way()) {
-                        tell(PlannerEvent::Shown(way, self.cost(way)));
+                    if let Some(stepping) = self.scene.planned().map(|simulation| simulation.motion.stepping()) {
+                        tell(PlannerEvent::Shown(stepping, self.cost(stepping)));
                     }
                 }
             } else if let Some(found) = self.planner.tick() {
@@ -112,9 +112,9 @@ impl<'a> Player<'a> {
     #[inline(never)] // what a motion needs to start would be on the stack of every frame
     fn follow(&mut self, found: &PlanResult) {
         if let (Ok(plan), None) = (found, self.method) {
-            let way = plan.way();
-            if self.scene.planned().is_some_and(|simulation| simulation.motion.way() != way) {
-                self.next = CatchingUp::new(&self.settings, way, &self.planner.processor).ok();
+            let stepping = plan.stepping();
+            if self.scene.planned().is_some_and(|simulation| simulation.motion.stepping() != stepping) {
+                self.next = CatchingUp::new(&self.settings, stepping, &self.planner.processor).ok();
             }
         }
     }
@@ -128,16 +128,16 @@ impl<'a> Player<'a> {
         self.planner.answer()
     }
 
-    /// Cycles of a frame that is computed this way.
-    pub fn cost(&self, way: Way) -> f32 {
-        self.planner.processor.costs.of_frame(way)
+    /// Cycles of a frame that is computed so.
+    pub fn cost(&self, stepping: Stepping) -> f32 {
+        self.planner.processor.costs.of_frame(stepping)
     }
 
     /// The scene in numbers, with what the planner knows of it.
     fn now(&self) -> Report {
         let report = self.scene.report(self.planner.ticks);
-        let Some(way) = report.way.filter(|_| self.planner.task.is_some()) else { return report };
-        Report { horizon: self.planner.horizon(way) as f32, is_looking: self.planner.is_looking(), ..report }
+        let Some(stepping) = report.stepping.filter(|_| self.planner.task.is_some()) else { return report };
+        Report { horizon: self.planner.horizon(stepping) as f32, is_looking: self.planner.is_looking(), ..report }
     }
 
     /// Takes the scene's numbers if they are finite; else stops its time for good and says why, once. To be asked

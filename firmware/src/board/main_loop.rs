@@ -6,7 +6,7 @@ use core::mem::MaybeUninit;
 
 use defmt::Debug2Format;
 use double_pendulum::Parameters;
-use double_pendulum::plan::{Plan, PlanError, Way};
+use double_pendulum::plan::{Plan, PlanError, Stepping};
 use embedded_io::Write;
 
 use super::cortex_m::clock::{ticks, wait_after};
@@ -178,7 +178,7 @@ fn log<Panel: Debug, Link: Debug>(event: Event<Panel, Link>) {
         Event::Motion(PlannerEvent::Found(Err(PlanError::NoMethod { limit, .. }))) => {
             defmt::info!("plan: nothing affordable is right to half a pixel in any frame ({=str})", limit.name());
         }
-        Event::Motion(PlannerEvent::Shown(Way { method, steps }, cost)) => {
+        Event::Motion(PlannerEvent::Shown(Stepping { method, steps }, cost)) => {
             defmt::info!("shown: {=str}, steps to a frame: {}, {} cycles a frame", method.name(), steps, cost as u32);
         }
         Event::Motion(PlannerEvent::Found(Err(error))) => defmt::warn!("no plan: {}", error),

@@ -1,10 +1,10 @@
-//! Plans the scene that is played: in which way it is right to half a pixel for longest, and cheapest, and until when.
+//! Plans the scene that is played: by which method and steps it is right to half a pixel for longest, and cheapest, and until when.
 //!
 //! All by the kernel's [`plan`](double_pendulum::plan), for a number of cycles in each tick of the scene that is the same on
 //! all boards of a class: so what has been found after n ticks is, too. The work itself may be done before the tick, in the
 //! time that a frame leaves free.
 
-use double_pendulum::plan::{Budget, Limit, Plan, PlanError, Search, Way};
+use double_pendulum::plan::{Budget, Limit, Plan, PlanError, Search, Stepping};
 
 use crate::config::{PLANNED, PLANNING_PIECE, Processor, SETTLED_TICKS, TICK_RATE};
 use crate::motion::Settings;
@@ -38,9 +38,9 @@ pub struct Planner {
     /// Cycles of the ticks to come that have been spent.
     debt: f32,
     plan: Option<PlanResult>,
-    /// The way that the scene has begun in, and until when that is expected to be right, s.
-    begun: Option<(Way, f64)>,
-    /// It goes no other way, whatever the plan.
+    /// What the scene has begun by, and until when that is expected to be right, s.
+    begun: Option<(Stepping, f64)>,
+    /// It goes on by that, whatever the plan.
     is_tied: bool,
     /// Something has been found that no tick has told yet.
     is_news: bool,
@@ -55,11 +55,12 @@ impl Planner {
         Self { processor, ticks: 0, task, search, debt: 0.0, plan, begun, is_tied, is_news, is_due }
     }
 
-    /// Begins anew for a scene that starts with `settings`, in the way `begun`, to which it may be tied; one without a height shows no
+    /// Begins anew for a scene that starts with `settings`, by `begun`, to which it may be tied; one without a height shows no
     /// motion, and has no plan.
-    pub fn start(&mut self, settings: &Settings, height: Option<f32>, begun: Option<Way>, is_tied: bool) {
+    pub fn start(&mut self, settings: &Settings, height: Option<f32>, begun: Option<Stepping>, is_tied: bool) {
         self.task = height.map(|height| (*settings, height));
-        (self.search, self.plan, self.begun, self.is_tied) = (None, None, begun.map(|way| (way, 0.0)), is_tied);
+        (self.search, self.plan, self.begun, self.is_tied) =
+            (None, None, begun.map(|stepping| (stepping, 0.0)), is_tied);
         (self.ticks, self.debt, self.is_news, self.is_due) = (0, 0.0, false, false);
     }
 
@@ -80,10 +81,10 @@ impl Planner {
         None
     }
 
-    /// Takes note of how far the way that the scene has begun in has been looked at.
+    /// Takes note of how far what the scene has begun by has been looked at.
     #[inline(never)] // one copy
     fn note(&mut self) {
-        self.begun = self.begun.map(|(way, horizon)| (way, horizon.max(self.looked_at(way))));
+        self.begun = self.begun.map(|(stepping, horizon)| (stepping, horizon.max(self.looked_at(stepping))));
     }
 
     /// Lets a tick of the scene pass that has no time for this.
@@ -96,17 +97,17 @@ impl Planner {
         self.ticks >= SETTLED_TICKS && self.work()
     }
 
-    /// Until when the frames are expected to be right of a scene that goes this `way`, s.
-    pub fn horizon(&self, way: Way) -> f64 {
-        let begun = self.begun.filter(|(begun, _)| *begun == way).map(|(_, horizon)| horizon);
-        let plan = self.plan.and_then(Result::ok).filter(|plan| plan.way() == way);
-        begun.unwrap_or_else(|| self.looked_at(way)).max(plan.map_or(0.0, |plan| plan.horizon))
+    /// Until when the frames are expected to be right of a scene that goes by this `stepping`, s.
+    pub fn horizon(&self, stepping: Stepping) -> f64 {
+        let begun = self.begun.filter(|(begun, _)| *begun == stepping).map(|(_, horizon)| horizon);
+        let plan = self.plan.and_then(Result::ok).filter(|plan| plan.stepping() == stepping);
+        begun.unwrap_or_else(|| self.looked_at(stepping)).max(plan.map_or(0.0, |plan| plan.horizon))
     }
 
-    /// Until when the search has found this way right so far.
+    /// Until when the search has found it right so far.
     #[inline(never)] // one copy
-    fn looked_at(&self, way: Way) -> f64 {
-        self.search.as_ref().map_or(0.0, |search| search.horizon(way))
+    fn looked_at(&self, stepping: Stepping) -> f64 {
+        self.search.as_ref().map_or(0.0, |search| search.horizon(stepping))
     }
 
     /// Whether it may turn out that they are for longer.
@@ -141,7 +142,7 @@ impl Planner {
     fn is_far(&self) -> bool {
         self.plan.and_then(Result::ok).is_some_and(|plan| {
             let far = self.ticks as f64 / f64::from(TICK_RATE) + PLANNED;
-            self.looked_at(plan.way()) >= far
+            self.looked_at(plan.stepping()) >= far
         })
     }
 
@@ -152,7 +153,7 @@ impl Planner {
             let problem = settings.problem(height);
             let (costs, budget) = (&self.processor.costs, self.processor.budget(&problem));
             self.search = Some(match self.begun {
-                Some((way, _)) if self.is_tied => Search::of(way, &problem, costs, &budget)?,
+                Some((stepping, _)) if self.is_tied => Search::of(stepping, &problem, costs, &budget)?,
                 _ => Search::new(&problem, costs, &budget)?,
             });
             return Ok(None);

@@ -1,6 +1,6 @@
 //! What a motion starts from: the pendulum, and where it is let go.
 
-use double_pendulum::plan::{PlannedRun, Problem, Way};
+use double_pendulum::plan::{PlannedRun, Problem, Stepping};
 use double_pendulum::{Error, Motion, Parameters, Pendulum, State};
 
 use crate::config::{
@@ -92,11 +92,11 @@ impl Settings {
         }
     }
 
-    /// The motion this `way`, with rod 1 ahead by `apart` rad.
-    pub fn run(&self, apart: f64, way: Way) -> Result<PlannedRun, Error> {
+    /// The motion by this `stepping`, with rod 1 ahead by `apart` rad.
+    pub fn run(&self, apart: f64, stepping: Stepping) -> Result<PlannedRun, Error> {
         let mut problem = self.problem(HEIGHT as f32);
         problem.start.a1 += apart;
-        PlannedRun::new(&problem, way)
+        PlannedRun::new(&problem, stepping)
     }
 }
 

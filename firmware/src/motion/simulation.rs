@@ -1,6 +1,6 @@
 //! The motion itself, apart from any frame of it, and what its energy has become.
 
-use double_pendulum::plan::{PlannedRun, Way};
+use double_pendulum::plan::{PlannedRun, Stepping};
 use double_pendulum::{Error, Method, Pendulum, State};
 
 use crate::config::Processor;
@@ -25,17 +25,17 @@ pub struct Simulation {
 }
 
 impl Simulation {
-    /// At the start, in the way that is asked for, or that lasts longest by all that is known before planning; the kernel's error
+    /// At the start, by what is asked for, or what is right for longest by all that is known before planning; the kernel's error
     /// if the pendulum is too quick for what may be spent.
     pub fn new(settings: &Settings, &Resources { ref processor, method }: &Resources) -> Result<Self, Error> {
         let (pendulum, start) = settings.start()?;
         let problem = settings.problem(HEIGHT as f32);
-        let way = match method {
-            Some(method) => Way::of(&problem, method)?,
-            None => Way::lasting(&problem, &processor.costs, processor.frame)?,
+        let stepping = match method {
+            Some(method) => Stepping::of(&problem, method)?,
+            None => Stepping::lasting(&problem, &processor.costs, processor.frame)?,
         };
-        pendulum.check_step(1.0 / (f64::from(problem.rate) * f64::from(way.steps)))?;
-        let motion = settings.run(0.0, way)?;
+        pendulum.check_step(1.0 / (f64::from(problem.rate) * f64::from(stepping.steps)))?;
+        let motion = settings.run(0.0, stepping)?;
         Ok(Self { energy: Energy::new(pendulum, motion.directions(), &start), motion })
     }
 
@@ -46,8 +46,8 @@ impl Simulation {
     }
 }
 
-/// A motion in another way, from the start until it has caught up: after a number of ticks that depends on nothing but what
-/// the way costs.
+/// A motion by another stepping, from the start until it has caught up: after a number of ticks that depends on nothing but what
+/// the stepping costs.
 #[derive(Clone, Debug)]
 pub struct CatchingUp {
     motion: PlannedRun,
@@ -56,11 +56,11 @@ pub struct CatchingUp {
 }
 
 impl CatchingUp {
-    pub fn new(settings: &Settings, way: Way, processor: &Processor) -> Result<Self, Error> {
-        let frame = processor.costs.of_frame(way).max(processor.piece());
+    pub fn new(settings: &Settings, stepping: Stepping, processor: &Processor) -> Result<Self, Error> {
+        let frame = processor.costs.of_frame(stepping).max(processor.piece());
         let affordable = (processor.look_ahead / frame) as u32;
         // With fewer frames in a tick nothing catches up.
-        Ok(Self { motion: settings.run(0.0, way)?, most: affordable.max(2) })
+        Ok(Self { motion: settings.run(0.0, stepping)?, most: affordable.max(2) })
     }
 
     /// Makes a tick's frames; whether it has caught up with `simulation`, which then goes on as this.

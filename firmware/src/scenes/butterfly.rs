@@ -33,7 +33,7 @@ const fn row(e_foldings: f32) -> i32 {
 
 /// Both pendulums at one pivot, and the e-foldings of their separation over time.
 ///
-/// Both go in the way that lasts longest, and the plan does not change it: one that is right to half a pixel may be off by far
+/// Both go by what is right for longest, and the plan does not change it: one that is right to half a pixel may be off by far
 /// more than a millionth of a radian, and would soon hide what the twins do.
 #[derive(Clone, Debug)]
 pub struct Butterfly {
@@ -67,7 +67,7 @@ impl Scene for Butterfly {
     #[inline(never)] // all scenes' preparations would stand side by side on the stack
     fn new(settings: &Settings, resources: &Resources) -> Result<(Self, Option<f32>), Error> {
         let first = Simulation::new(settings, resources)?;
-        let second = settings.run(APART, first.motion.way())?;
+        let second = settings.run(APART, first.motion.stepping())?;
         let views = [first.motion.directions(), second.directions()]
             .map(|directions| View::new(&settings.parameters, Place::HALVES[0], directions));
         let mut scene = Self { first, second, views, strip: Deque::new() };

@@ -9,7 +9,7 @@ mod small;
 
 pub use flips::Flips;
 
-use double_pendulum::plan::Way;
+use double_pendulum::plan::Stepping;
 use double_pendulum::{Error, State};
 
 use crate::config::{GREATEST_ANGLE, TICK_RATE};
@@ -36,7 +36,7 @@ pub trait Scene: Sized {
         Report::at(ticks)
     }
 
-    /// The motion whose way the plan may change.
+    /// The motion whose method and steps the plan may change.
     fn planned(&mut self) -> Option<&mut Simulation> {
         None
     }
@@ -57,8 +57,8 @@ pub struct Report {
     pub horizon: f32,
     /// Whether that is only a lower bound so far.
     pub is_looking: bool,
-    /// The way that it is computed; `None` where no motion is.
-    pub way: Option<Way>,
+    /// What it is computed by; `None` where no motion is.
+    pub stepping: Option<Stepping>,
 }
 
 impl Report {
@@ -72,7 +72,7 @@ impl Report {
     pub fn of(simulation: &Simulation) -> Self {
         let (motion, state) = (&simulation.motion, simulation.motion.rounded_state());
         let energy_error = simulation.energy.error(motion.directions(), &state);
-        Self { state, energy_error, way: Some(motion.way()), ..Self::at(motion.frame()) }
+        Self { state, energy_error, stepping: Some(motion.stepping()), ..Self::at(motion.frame()) }
     }
 }
 

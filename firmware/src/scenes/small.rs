@@ -1,6 +1,6 @@
 //! Figures 3 to 5: small oscillations, both angles as scrolling curves within their envelopes, in closed form.
 
-use double_pendulum::plan::Way;
+use double_pendulum::plan::Stepping;
 use double_pendulum::{Error, Method, Modes, Parameters, Pendulum, Real, SmallOscillations};
 
 use crate::config::{PAGE_GRAVITY, TICK_RATE};
@@ -21,7 +21,7 @@ const LEAST_BAR: f32 = 16.0;
 const ENVELOPE_GREY: u8 = 5;
 
 /// The scene shows the linear model and does not follow the plan.
-const CLOSED_FORM: Way = Way { method: Method::ClosedFormF32, steps: 1 };
+const CLOSED_FORM: Stepping = Stepping { method: Method::ClosedFormF32, steps: 1 };
 
 /// The page's worked example: equal rods of 0.25 m, g = 9.8 m/s^2, a1 = 0, a2 = 30 degrees, let go from rest.
 pub fn example(mass_ratio: f32) -> Settings {
@@ -135,6 +135,6 @@ impl Scene for Small {
 
     fn report(&self, ticks: u64) -> Report {
         let state = self.pendulum.to_state(&self.motion.at(time(ticks)));
-        Report { state, way: Some(CLOSED_FORM), ..Report::at(ticks) }
+        Report { state, stepping: Some(CLOSED_FORM), ..Report::at(ticks) }
     }
 }

@@ -26,7 +26,7 @@ pub struct Memory {
 ///
 /// Text: the smallest chip has 256 KiB of flash, and it keeps a sixteenth free, with a Cortex-M0+, whose code is longer, 12 KiB; the
 /// F405 has 1 MiB, of which three quarters are left to those who build on it. Data:
-/// nothing needs a start value but a few words. Bss: the two frames are 8 KiB, the application with its planner and a motion in two ways 9, the
+/// nothing needs a start value but a few words. Bss: the two frames are 8 KiB, the application with its planner and a motion by two methods 9, the
 /// queue of received bytes 1, what a panel shows 4 more, or on the F405 with its log 2; a twentieth is left to grow, within what
 /// the memory map lets the statics have. Stack: making a scene takes most of it; an eighth of the 32 KiB that the guard leaves to
 /// the stack is for what no run has met: an interrupt at the deepest place, the report of a crash. The Pico has 2 MiB of flash and

@@ -12,7 +12,7 @@ use host_tests::emulator::boards::{BOARDS, Board};
 use host_tests::emulator::qemu::Machine;
 use rayon::prelude::*;
 
-/// One that goes another way soon, nothing that moves; a motion that ends early, a model.
+/// One that changes its method soon, nothing that moves; a motion that ends early, a model.
 const SCENES: [SceneName; 4] = [SceneName::Beats2To1, SceneName::Frequencies, SceneName::Page, SceneName::SmallLight];
 /// By then all is found, ticks.
 const FOLLOWED: u64 = 18 * TICK_RATE as u64;

@@ -2,7 +2,7 @@
 //! is refused changes nothing. `PROPTEST_CASES=1000000 cargo test -p host-tests --test commands random_input::` tries more.
 
 use clap::Parser;
-use double_pendulum::plan::{Budget, Limit, Problem, Search, Way};
+use double_pendulum::plan::{Budget, Limit, Problem, Search, Stepping};
 use double_pendulum::{Error, Method, Modes, Motion, Parameters, Pendulum, Real, State};
 use firmware::app::{App, NoButtons};
 use firmware::config::CORTEX_M4F;
@@ -185,7 +185,7 @@ proptest! {
         let [frame, planning, piece] = [frame * 1e4, planning * 1e5, piece * 1e5].map(|number| number.abs() as f32);
         let (costs, budget) = (CORTEX_M4F.costs, Budget { frame, planning });
         let search = match asked {
-            Some(method) => Search::of(Way { method, steps }, &scene, &costs, &budget),
+            Some(method) => Search::of(Stepping { method, steps }, &scene, &costs, &budget),
             None => Search::new(&scene, &costs, &budget),
         };
         let Ok(mut search) = search else { return Ok(()) };

@@ -1,6 +1,6 @@
 //! The application as it runs on the boards, with a panel in memory, a growing byte vector and scripted buttons.
 
-use double_pendulum::plan::Way;
+use double_pendulum::plan::Stepping;
 use double_pendulum::{Method, Parameters, Pendulum, State};
 use embedded_io::{ErrorKind, ErrorType, Write};
 use firmware::app::{Buttons, Event, MOST_RESTARTS, NoButtons, Pressed, Record};
@@ -48,8 +48,8 @@ fn every_frame_carries_the_kernels_state_to_the_bit() {
     let start_angle = 120.0_f32.to_radians();
     let start_energy = pendulum.energy(&State::at_rest(start_angle, start_angle));
     let scale = start_energy - pendulum.least_energy();
-    let way = Way { method: Method::Extrapolation10Fixed64, steps: 1 };
-    let mut expected = Settings::default().run(0.0, way).expect("good");
+    let stepping = Stepping { method: Method::Extrapolation10Fixed64, steps: 1 };
+    let mut expected = Settings::default().run(0.0, stepping).expect("good");
     for (sequence, frame) in (0..).zip(frames) {
         expected.advance(1).expect("a finite motion");
         let Report { step, time, state, energy_error, .. } = frame.report;

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use double_pendulum::Method;
-use double_pendulum::plan::Way;
+use double_pendulum::plan::Stepping;
 use fastrand::Rng;
 use firmware::app::{Event, Instruments, PlannerEvent};
 use firmware::config::{MOST_MEASURED_STEPS, MOST_MESSAGES_PER_TICK, PLANNED, RECEIVE_QUEUE, TICK_RATE};
@@ -219,7 +219,7 @@ fn the_plan_is_found_in_some_tick_told_when_asked_and_followed() {
     assert!(plan.horizon > 19.0, "{plan:?}");
     run(&mut app, &mut news);
     assert_eq!(news, [Event::Motion(PlannerEvent::Found(Ok(plan)))]);
-    assert_eq!(app.player.report.way, Some(plan.way()));
+    assert_eq!(app.player.report.stepping, Some(plan.stepping()));
 
     let before = asked(&mut app).expect("a motion");
     app.receive(wire(1, set(Field::Angle, 20_f64.to_radians())), |_| ());
@@ -227,10 +227,10 @@ fn the_plan_is_found_in_some_tick_told_when_asked_and_followed() {
     let calm = search(&mut app, &mut news);
     assert!(calm.horizon >= PLANNED && calm.cost < plan.cost, "{calm:?}");
     (0..TICK_RATE).for_each(|_| run(&mut app, &mut news));
-    let way = Way { method: Method::Rk4Fixed32, steps: calm.steps };
-    assert_eq!(news.last(), Some(&Event::Motion(PlannerEvent::Shown(way, calm.cost))), "the cheaper way is taken");
+    let stepping = Stepping { method: Method::Rk4Fixed32, steps: calm.steps };
+    assert_eq!(news.last(), Some(&Event::Motion(PlannerEvent::Shown(stepping, calm.cost))), "the cheaper way is taken");
     let report = app.player.report;
-    assert_eq!(report.way, Some(calm.way()));
+    assert_eq!(report.stepping, Some(calm.stepping()));
     assert!(f64::from(report.horizon) > PLANNED && report.is_looking, "{report:?}");
 
     app.receive(wire(1, Command::Choose(SceneName::Frequencies)), |_| ());
@@ -245,7 +245,7 @@ fn a_way_can_be_forced() {
     let mut go = |method| {
         assert_eq!(answer(&mut app, Command::Method(method)), Answer::Done);
         assert_eq!(status(&mut app).method, method);
-        app.player.report.way.map(|way| way.method)
+        app.player.report.stepping.map(|stepping| stepping.method)
     };
     for &method in Method::DRAWN {
         assert_eq!(go(Some(method)), Some(method));

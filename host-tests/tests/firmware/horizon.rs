@@ -1,5 +1,5 @@
 //! What the frames show against the exact motion: right to half a pixel until the time that the panel predicts, and hardly
-//! longer, before and after the way they are computed changes.
+//! longer, before and after their method changes.
 
 use double_pendulum::{Parameters, Pendulum};
 use firmware::config::{CORTEX_M3, CORTEX_M4F, HALF_PIXEL, MASS_RATIOS, Processor, REACH, TICK_RATE};
@@ -44,7 +44,7 @@ struct Horizon {
     exact: f64,
     /// Whether the first wrong frame was shown as a right one.
     is_violated: bool,
-    /// Whether the way changed.
+    /// Whether the method or its steps changed.
     is_changed: bool,
 }
 
@@ -53,7 +53,7 @@ fn horizon((processor, name, settings, reach): &Case) -> Horizon {
     let pendulum = Pendulum::new(&parameters).expect("the scene took it");
     let mut reference = Reference::new(&parameters, &motion);
     let mut scene = Show::on(*processor, *name, settings).expect("good settings");
-    let first = scene.report().way;
+    let first = scene.report().stepping;
     let scale = f64::from(*reach) / (parameters.l1 + parameters.l2);
 
     let (mut exact, mut is_violated) = (f64::INFINITY, false);
@@ -72,7 +72,7 @@ fn horizon((processor, name, settings, reach): &Case) -> Horizon {
         }
     }
     let report = scene.report();
-    Horizon { predicted: report.horizon.into(), exact, is_violated, is_changed: report.way != first }
+    Horizon { predicted: report.horizon.into(), exact, is_violated, is_changed: report.stepping != first }
 }
 
 #[test]
@@ -84,7 +84,7 @@ fn half_a_pixel_is_kept_until_the_time_on_the_panel_and_hardly_longer() {
     let ending = horizons.iter().filter(|(horizon, _)| horizon.exact.is_finite());
     let mut shares: Vec<_> = ending.map(|(horizon, _)| horizon.predicted / horizon.exact).collect();
     let changes = horizons.iter().filter(|(horizon, _)| horizon.is_changed).count();
-    println!("{} motions, {} end early, {changes} changed their way", horizons.len(), shares.len());
+    println!("{} motions, {} end early, {changes} changed their method or steps", horizons.len(), shares.len());
     assert!(shares.len() >= LEAST_ENDING && changes >= LEAST_CHANGES, "{} {changes}", shares.len());
     shares.sort_by(f64::total_cmp);
     let share = shares[shares.len() / 2];
@@ -92,7 +92,7 @@ fn half_a_pixel_is_kept_until_the_time_on_the_panel_and_hardly_longer() {
     assert!(share >= PLAN_SHARE, "{share}");
 }
 
-/// How many of the motions must cease to be right, and change their way, so that there is something to test.
+/// How many of the motions must cease to be right, and change their method, so that there is something to test.
 const LEAST_ENDING: usize = 10;
 const LEAST_CHANGES: usize = 10;
 
@@ -105,9 +105,9 @@ fn the_page_and_figure_7_are_right_for_as_long_as_they_should() {
             let ticks = 40 * TICK_RATE;
             (0..ticks).for_each(|_| show.tick());
             let report = show.report();
-            let way = report.way.expect("it moves");
-            let cost = show.player.cost(way);
-            println!("{} {way:?} {cost} cycles, {} s", name.name(), report.horizon);
+            let stepping = report.stepping.expect("it moves");
+            let cost = show.player.cost(stepping);
+            println!("{} {stepping:?} {cost} cycles, {} s", name.name(), report.horizon);
             assert!(f64::from(report.horizon) >= least && cost <= most, "{}: {report:?} {cost}", name.name());
         }
     }

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 use std::fmt::Debug;
 
 use double_pendulum::Method;
-use double_pendulum::plan::{Limit, Plan, Way};
+use double_pendulum::plan::{Limit, Plan, Stepping};
 use firmware::app::Record;
 use firmware::job::{Reading, Request};
 use firmware::motion::{Planned, Settings};
@@ -84,7 +84,7 @@ fn every_flipped_bit_on_the_wire_is_detected() {
 #[test]
 fn every_message_fits() {
     let (method, steps, number, step) = (Method::TextbookF32, u32::MAX, u32::MAX, u64::MAX);
-    let report = Report { step, way: Some(Way { method, steps }), ..Report::default() };
+    let report = Report { step, stepping: Some(Stepping { method, steps }), ..Report::default() };
     let counts = Frame { sequence: number, dropped: number, lost: number, report, ..Frame::default() };
     let frame = Frame { scene_cycles: number, busy_cycles: number, ..counts };
     let (dt, horizon, error, cost, spent, limit) = (1.0, 1.0, 1.0, 1.0, 1.0, Limit::End);

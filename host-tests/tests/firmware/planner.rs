@@ -1,12 +1,12 @@
 //! The planner beside the scene: what it does in a tick, what it finds, and how that is written on the wire.
 
 use double_pendulum::Method;
-use double_pendulum::plan::{Limit, PlanError, Way};
+use double_pendulum::plan::{Limit, PlanError, Stepping};
 use firmware::config::{CORTEX_M3, CORTEX_M4F, PLANNED, PROCESSORS, Processor, SETTLED_TICKS, STM32F405};
 use firmware::motion::{Planner, Settings};
 
-/// The way that these begin in, which is right wherever any other is.
-const LASTING: Way = Way { method: Method::Extrapolation10Fixed64, steps: 1 };
+/// What these begin by, which is right wherever any other is.
+const LASTING: Stepping = Stepping { method: Method::Extrapolation10Fixed64, steps: 1 };
 const HEIGHT: f32 = 57.0;
 /// Ticks by which everything here is found.
 const PATIENCE: u64 = 1200;
@@ -75,11 +75,11 @@ fn there_is_nothing_to_do_without_a_motion_or_when_all_is_found() {
 #[test]
 fn only_steps_that_resolve_a_motion_are_right_wherever_others_are() {
     let in_32_bits = |planner: &Planner| {
-        let ways = [1, 2, 4, 8, 16].map(|steps| Way { method: Method::Rk4Fixed32, steps });
-        ways.map(|way| planner.horizon(way)).into_iter().fold(0.0, f64::max)
+        let steppings = [1, 2, 4, 8, 16].map(|steps| Stepping { method: Method::Rk4Fixed32, steps });
+        steppings.map(|stepping| planner.horizon(stepping)).into_iter().fold(0.0, f64::max)
     };
     for (steps, is_right) in [(2, false), (4, true)] {
-        let begun = Way { method: Method::Extrapolation10Fixed64, steps };
+        let begun = Stepping { method: Method::Extrapolation10Fixed64, steps };
         let mut planner = Planner::new(CORTEX_M3);
         planner.start(&Settings::equal_rods(2.75, 171.0), Some(HEIGHT), Some(begun), false);
         while in_32_bits(&planner) < 1.0 {
@@ -128,13 +128,13 @@ fn where_nothing_holds_that_is_what_is_told() {
     assert_eq!((answer.duration, answer.height, answer.frame), (PLANNED, HEIGHT, 100.0));
 }
 
-/// Only the way that was asked for is looked at, even if it costs more than a frame allows.
+/// Only what was asked for is looked at, even if it costs more than a frame allows.
 /// `cargo prove --scene page --method rk4-f32-direction --steps 4` proves it right until 10.5 s.
 #[test]
 fn a_way_that_is_given_stays() {
     let mut planner = Planner::new(STM32F405);
-    let way = Way { method: Method::Rk4F32Direction, steps: 4 };
-    planner.start(&Settings::default(), Some(HEIGHT), Some(way), true);
+    let stepping = Stepping { method: Method::Rk4F32Direction, steps: 4 };
+    planner.start(&Settings::default(), Some(HEIGHT), Some(stepping), true);
     let found = (0..PATIENCE).find_map(|_| planner.tick());
     let Some(Ok(plan)) = found else { panic!("{found:?}") };
     assert_eq!((plan.method, plan.steps, plan.limit), (Method::Rk4F32Direction, 4, Limit::Method));

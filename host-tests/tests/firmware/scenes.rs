@@ -186,15 +186,15 @@ fn scales_have_round_steps() {
     assert_eq!(steps, [0.01, 0.5, 1.0, 2.0, 5.0, 50.0, 100.0]);
 }
 
-/// What no plan can alter is looked at in the way that it goes.
+/// What no plan can alter is looked at as it goes.
 #[test]
-fn the_butterfly_is_looked_at_in_its_own_way() {
+fn the_butterfly_is_looked_at_as_it_goes() {
     let mut show = Show::new(SceneName::Butterfly, &Settings::equal_rods(1.0, 20.0)).expect("a scene of the catalogue");
     let found = (0..60 * TICK_RATE).find_map(|_| {
         show.tick();
         show.news
             .iter()
-            .find_map(|(_, news)| if let PlannerEvent::Found(Ok(plan)) = news { Some(plan.way()) } else { None })
+            .find_map(|(_, news)| if let PlannerEvent::Found(Ok(plan)) = news { Some(plan.stepping()) } else { None })
     });
-    assert!(found.is_some() && found == show.report().way, "{found:?}");
+    assert!(found.is_some() && found == show.report().stepping, "{found:?}");
 }

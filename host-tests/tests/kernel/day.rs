@@ -1,7 +1,7 @@
 //! A simulated day: no method that steps in 32 bits loses its energy or its time to its number type.
 
 use double_pendulum::parts::DirectionF64;
-use double_pendulum::plan::Way;
+use double_pendulum::plan::Stepping;
 use double_pendulum::{Equations, Error, Method, Numbers, Pendulum, State};
 use firmware::config::{STM32F405, TICK_RATE};
 use firmware::motion::{Resources, Simulation};
@@ -100,7 +100,7 @@ fn after_a_day_the_time_told_is_right_to_one_step() -> Result<(), Error> {
     Ok(())
 }
 
-/// What a frame tells as energy error is that of one instant: a day of a scene by the STM32F405's prices, by the way it begins
+/// What a frame tells as energy error is that of one instant: a day of a scene by the STM32F405's prices, by what it begins
 /// in and by each that steps in 32 bits.
 #[test]
 fn a_frame_tells_the_energy_of_one_instant_all_day() -> Result<(), Error> {
@@ -110,7 +110,7 @@ fn a_frame_tells_the_energy_of_one_instant_all_day() -> Result<(), Error> {
     let energy = pendulum.energy_above_rest(&start);
     for method in [None, Some(Method::Rk4F32DirectionPlain), Some(Method::Rk4F32Direction), Some(Method::Rk4Fixed32)] {
         let mut simulation = Simulation::new(&settings, &Resources { processor: STM32F405, method })?;
-        let Way { method, steps } = simulation.motion.way();
+        let Stepping { method, steps } = simulation.motion.stepping();
         let dt = 1.0 / f64::from(TICK_RATE * steps);
         let mut exact = pendulum.run::<DirectionF64>(&start, dt)?;
         let mut worst: f64 = 0.0;

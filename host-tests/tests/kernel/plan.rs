@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 use std::ops::RangeInclusive;
 
 use double_pendulum::Method;
-use double_pendulum::plan::{Budget, Costs, Limit, Plan, PlanError, PlannedRun, Problem, Search, Way};
+use double_pendulum::plan::{Budget, Costs, Limit, Plan, PlanError, PlannedRun, Problem, Search, Stepping};
 use double_pendulum::{Error, Motion, Parameter, Parameters};
 use firmware::config::{CORTEX_M3, STM32F405};
 use firmware::motion::half_pixel;
@@ -64,11 +64,11 @@ fn the_cheapest_that_is_right_for_longest_is_chosen() {
         assert_eq!((plan.method, plan.steps, plan.limit), (method, steps, limit), "{plan:?}");
         assert!(horizon.contains(&plan.horizon) && (1e-6..=1.0).contains(&plan.error), "{plan:?}");
         let dt = if steps == 0 { 0.0 } else { 1.0 / f64::from(u32::from(RATE) * steps) };
-        assert_eq!((plan.dt, plan.cost), (dt, costs.of_frame(Way { method, steps })), "{plan:?}");
+        assert_eq!((plan.dt, plan.cost), (dt, costs.of_frame(Stepping { method, steps })), "{plan:?}");
     }
 }
 
-/// What a frame cannot pay for is not looked at. A costlier way that is right for less than a tenth longer is worth it if it is right
+/// What a frame cannot pay for is not looked at. A costlier one that is right for less than a tenth longer is worth it if it is right
 /// to the end.
 #[test]
 fn looking_ahead_ends_where_the_frame_does_and_the_end_is_worth_its_cost() {
@@ -94,9 +94,9 @@ fn a_plan_that_is_looked_at_farther_is_told_anew_where_it_ends() {
     assert_eq!((first.limit, first.horizon), (Limit::End, short.duration));
     assert_eq!((second.method, second.steps, second.horizon), (whole.method, whole.steps, whole.horizon));
     // It is in 64 bits, and finer steps are right wherever it is.
-    let Way { method, steps } = second.way();
-    let ways = [(method, steps), (method, steps + 1), (method, steps - 1), (Method::Rk4Fixed32, steps)];
-    let horizons = ways.map(|(method, steps)| search.horizon(Way { method, steps }));
+    let Stepping { method, steps } = second.stepping();
+    let steppings = [(method, steps), (method, steps + 1), (method, steps - 1), (Method::Rk4Fixed32, steps)];
+    let horizons = steppings.map(|(method, steps)| search.horizon(Stepping { method, steps }));
     assert_eq!(horizons, [second.horizon, second.horizon, 0.0, 0.0]);
 }
 
@@ -137,22 +137,22 @@ fn a_budget_that_is_just_enough_is_enough() {
     }
 }
 
-/// The way that lasts longest is in 64 bits where a frame can pay for it, and else what it can pay for.
+/// What is right for longest is in 64 bits where a frame can pay for it, and else what it can pay for.
 #[test]
-fn the_lasting_way_is_what_a_frame_can_pay_for() {
+fn what_lasts_is_what_a_frame_can_pay_for() {
     for degrees in [60.0, 120.0, 171.0] {
         let scene = scene(2.75, degrees, 20.0);
         for costs in [&M3, &M4F] {
-            let within = |frame| Way::lasting(&scene, costs, frame).expect("a pendulum");
-            let cost = |way: Way| costs.of_frame(way);
+            let within = |frame| Stepping::lasting(&scene, costs, frame).expect("a pendulum");
+            let cost = |stepping: Stepping| costs.of_frame(stepping);
             let lavish = within(1e7);
             assert_eq!((lavish.method, within(cost(lavish))), (Method::Extrapolation10Fixed64, lavish));
             let frugal = within(cost(lavish).next_down());
             assert!(cost(frugal) < cost(lavish), "{frugal:?} {lavish:?}");
             let poor = within(costs.fixed64.next_down());
             assert!(poor.method != Method::Extrapolation10Fixed64 && cost(poor) < costs.fixed64, "{poor:?}");
-            let resolving = Way::of(&scene, poor.method).expect("a pendulum");
-            let is_finest = costs.of_frame(Way { steps: 2 * poor.steps, ..poor }) >= costs.fixed64;
+            let resolving = Stepping::of(&scene, poor.method).expect("a pendulum");
+            let is_finest = costs.of_frame(Stepping { steps: 2 * poor.steps, ..poor }) >= costs.fixed64;
             assert!(resolving == poor || resolving.steps > poor.steps && is_finest, "{poor:?} {resolving:?}");
             let poorer = within(cost(poor).next_down());
             assert!(poorer.steps == (poor.steps / 2).max(1), "{poorer:?} {poor:?}");
@@ -162,12 +162,12 @@ fn the_lasting_way_is_what_a_frame_can_pay_for() {
 
 /// Fixed point refuses a mass ratio of 100,000.
 #[test]
-fn the_lasting_way_can_be_gone() {
+fn what_lasts_can_be_run() {
     for (mass_ratio, method) in [(1.0, Method::Rk4Fixed32), (1e5, Method::Rk4F32Direction)] {
         let scene = scene(mass_ratio, 10.0, 20.0);
-        let way = Way::lasting(&scene, &M3, M3.fixed64.next_down()).expect("a pendulum");
-        assert_eq!(way.method, method);
-        assert!(PlannedRun::new(&scene, way).is_ok(), "{way:?}");
+        let stepping = Stepping::lasting(&scene, &M3, M3.fixed64.next_down()).expect("a pendulum");
+        assert_eq!(stepping.method, method);
+        assert!(PlannedRun::new(&scene, stepping).is_ok(), "{stepping:?}");
     }
 }
 
@@ -175,24 +175,24 @@ fn the_lasting_way_can_be_gone() {
 #[test]
 fn a_method_that_is_asked_for_resolves_the_motion() {
     let scene = scene(2.75, 171.0, 20.0);
-    let steps = |method| Way::of(&scene, method).expect("a pendulum").steps;
+    let steps = |method| Stepping::of(&scene, method).expect("a pendulum").steps;
     assert_eq!([Method::Extrapolation10Fixed64, Method::Rk4Fixed32, Method::Rk4F32Direction].map(steps), [3, 2, 2]);
 }
 
 /// What fixed point takes ends just beyond equal rods: the runs beside the motion must not be refused where it is not.
 #[test]
-fn a_way_that_can_be_gone_is_looked_at() {
+fn what_can_be_run_is_looked_at() {
     let methods = [Method::Rk4Fixed32, Method::Rk4F32Direction, Method::Extrapolation10Fixed64];
     let large = [60.0, 90.0, 120.0].into_iter().flat_map(|degrees| methods.map(|method| (degrees, method)));
     for (degrees, method) in large.chain([(3.0, Method::ClosedFormF32)]) {
         let scene = scene(1.0, degrees, 1.0);
-        let way = Way::of(&scene, method).expect("a pendulum");
-        assert!(PlannedRun::new(&scene, way).is_ok(), "{way:?} at {degrees}");
-        let mut search = Search::of(way, &scene, &M3, &CORTEX_M3.budget(&scene)).expect("a good scene");
+        let stepping = Stepping::of(&scene, method).expect("a pendulum");
+        assert!(PlannedRun::new(&scene, stepping).is_ok(), "{stepping:?} at {degrees}");
+        let mut search = Search::of(stepping, &scene, &M3, &CORTEX_M3.budget(&scene)).expect("a good scene");
         let plan = finished(&mut search);
         // The closed form has no steps.
-        let steps = if method == Method::ClosedFormF32 { way.steps + 7 } else { way.steps };
-        let horizons = [plan.horizon, search.horizon(Way { method, steps })];
+        let steps = if method == Method::ClosedFormF32 { stepping.steps + 7 } else { stepping.steps };
+        let horizons = [plan.horizon, search.horizon(Stepping { method, steps })];
         assert_eq!(horizons, [scene.duration; 2], "{plan:?} at {degrees}");
     }
 }
@@ -247,16 +247,16 @@ fn the_limit_is_what_would_help() {
     assert_eq!(limit(20.0, 20.0 * M3.preparation), Limit::Budget);
     assert_eq!([limit(20.0, 1.0), limit(20.0, 0.5 * M3.preparation)], [Limit::Planning; 2]);
 
-    let way = Way { method: Method::ClosedFormF32, steps: 1 };
-    let mut search = Search::of(way, &light, &M3, &CORTEX_M3.budget(&light)).expect("a good scene");
+    let stepping = Stepping { method: Method::ClosedFormF32, steps: 1 };
+    let mut search = Search::of(stepping, &light, &M3, &CORTEX_M3.budget(&light)).expect("a good scene");
     let asked = finished(&mut search);
     assert_eq!((asked.method, asked.horizon), (Method::ClosedFormF32, 0.0));
 
     // Beside `f32`, as fixed point takes no such pendulum.
     let heavy = scene(1e5, 10.0, 0.3);
-    let way = Way { steps: 512, ..way };
-    let mut search = Search::of(way, &heavy, &M3, &Budget { frame: 1e6, planning: 1e10 }).expect("a good scene");
+    let stepping = Stepping { steps: 512, ..stepping };
+    let mut search = Search::of(stepping, &heavy, &M3, &Budget { frame: 1e6, planning: 1e10 }).expect("a good scene");
     let asked = finished(&mut search);
-    assert_eq!((asked.method, asked.limit, asked.horizon), (way.method, Limit::End, heavy.duration));
-    assert_eq!(search.horizon(Way { steps: 7, ..way }), heavy.duration, "it has no steps");
+    assert_eq!((asked.method, asked.limit, asked.horizon), (stepping.method, Limit::End, heavy.duration));
+    assert_eq!(search.horizon(Stepping { steps: 7, ..stepping }), heavy.duration, "it has no steps");
 }

@@ -1,6 +1,6 @@
 //! How wrong a method is that is tried: how far two frames are apart, and in how many it was right.
 
-use super::cost::Way;
+use super::cost::Stepping;
 use super::run::Directions;
 
 /// A bob may be off by this much where the tolerance is the unit.
@@ -12,7 +12,7 @@ const WORTH: f64 = 1.1;
 /// How a method has fared so far.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Candidate {
-    pub way: Way,
+    pub stepping: Stepping,
     /// Frames it was right in, from the start on.
     pub right: u32,
     /// The largest error measured in them, over the tolerance.
@@ -22,8 +22,8 @@ pub(super) struct Candidate {
 }
 
 impl Candidate {
-    pub fn new(way: Way) -> Self {
-        Self { way, right: 0, error: 0.0, failed: false }
+    pub fn new(stepping: Stepping) -> Self {
+        Self { stepping, right: 0, error: 0.0, failed: false }
     }
 
     /// Whether it is right for so much longer than `other` that it is worth more.

@@ -1,4 +1,4 @@
-//! What each method costs, what may be spent, and the ways that it pays for.
+//! What each method costs, what may be spent, and the methods and steps that it pays for.
 
 use super::{PlannedRun, Problem};
 use crate::error::{Error, Parameter};
@@ -24,11 +24,11 @@ pub struct Costs {
 }
 
 impl Costs {
-    /// What a frame costs that is computed this way; infinite for what no plan chooses from.
+    /// What a frame costs that is computed so; infinite for what no plan chooses from.
     #[inline(never)] // one copy
     #[doc(hidden)]
     #[must_use]
-    pub fn of_frame(&self, Way { method, steps }: Way) -> f32 {
+    pub fn of_frame(&self, Stepping { method, steps }: Stepping) -> f32 {
         let step = match method {
             Method::ClosedFormF32 => return self.closed_form,
             Method::Rk4F32DirectionPlain => self.direction_plain,
@@ -54,7 +54,7 @@ pub struct Budget {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[doc(hidden)]
-pub struct Way {
+pub struct Stepping {
     pub method: Method,
     /// Steps to a frame; of no meaning to the closed form, which has none.
     pub steps: u32,
@@ -88,8 +88,8 @@ pub(super) fn admissible_step(problem: &Problem) -> Result<f64, Error> {
     pendulum.admissible_step(&pendulum.to_state(&problem.start))
 }
 
-impl Way {
-    /// The way that a motion may be shown in while nothing is known of it but its energy: by [`Method::Extrapolation10Fixed64`] where
+impl Stepping {
+    /// What a motion may be shown by while nothing is known of it but its energy: [`Method::Extrapolation10Fixed64`] where
     /// `frame`, which a frame may cost, allows for it, in steps that resolve all there may be or, if those cost too much, the
     /// longest that are looked at; else by such steps in 32 bits, or as many as can be had.
     ///
@@ -98,8 +98,8 @@ impl Way {
     pub fn lasting(problem: &Problem, costs: &Costs, frame: f32) -> Result<Self, Error> {
         let admissible = admissible_step(problem)?;
         for longest in [RESOLVING, FIRST_STEP] {
-            if let Some(way) = Self::fixed64(problem, longest * admissible, costs, frame) {
-                return Ok(way);
+            if let Some(stepping) = Self::fixed64(problem, longest * admissible, costs, frame) {
+                return Ok(stepping);
             }
         }
         let affordable = |method| {
@@ -125,12 +125,12 @@ impl Way {
     /// By [`Method::Extrapolation10Fixed64`] in steps of `longest` s or less, as coarse as its numbers take, if they cost no more than `frame`.
     pub(super) fn fixed64(problem: &Problem, longest: f64, costs: &Costs, frame: f32) -> Option<Self> {
         let method = Method::Extrapolation10Fixed64;
-        let mut way = Self { method, steps: steps_to_frame(method, problem.rate, longest) };
-        while costs.of_frame(way) <= frame && way.steps < MOST_STEPS {
-            match way.check(problem) {
-                Ok(()) => return Some(way),
+        let mut stepping = Self { method, steps: steps_to_frame(method, problem.rate, longest) };
+        while costs.of_frame(stepping) <= frame && stepping.steps < MOST_STEPS {
+            match stepping.check(problem) {
+                Ok(()) => return Some(stepping),
                 Err(Error::TooLarge { parameter: Parameter::Dt, limit, .. }) => {
-                    way.steps = steps_to_frame(method, problem.rate, limit).max(way.steps + 1);
+                    stepping.steps = steps_to_frame(method, problem.rate, limit).max(stepping.steps + 1);
                 }
                 Err(_) => return None,
             }
@@ -138,7 +138,7 @@ impl Way {
         None
     }
 
-    /// Refuses a motion that cannot be started in this way.
+    /// Refuses a motion that cannot be started so.
     #[inline(never)] // the motion stands on the stack
     fn check(self, problem: &Problem) -> Result<(), Error> {
         PlannedRun::new(problem, self).map(|_| ())

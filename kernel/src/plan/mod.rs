@@ -53,7 +53,7 @@ mod search;
 
 use crate::error::Error;
 use crate::table::Method;
-pub use cost::{Budget, Costs, Way};
+pub use cost::{Budget, Costs, Stepping};
 pub use error::{Limit, PlanError};
 pub use problem::Problem;
 pub use run::{Directions, PlannedRun};
@@ -98,14 +98,14 @@ impl Plan {
 
     #[doc(hidden)]
     #[must_use]
-    pub fn way(&self) -> Way {
-        Way { method: self.method, steps: self.steps.max(1) }
+    pub fn stepping(&self) -> Stepping {
+        Stepping { method: self.method, steps: self.steps.max(1) }
     }
 
     /// The motion of `problem`, for which the plan is, at its start.
     ///
     /// Refuses what [`PlannedRun::new`] refuses.
     pub fn run(&self, problem: &Problem) -> Result<PlannedRun, Error> {
-        PlannedRun::new(problem, self.way())
+        PlannedRun::new(problem, self.stepping())
     }
 }

@@ -1,7 +1,7 @@
 //! Step sizes tried side by side, frame by frame.
 
 use super::candidate::{Candidate, distance, greater};
-use super::cost::{Costs, Way};
+use super::cost::{Costs, Stepping};
 use super::problem::{NONE, PERTURBATIONS, Problem};
 use super::run::{AnyRun, Directions};
 use crate::error::Error;
@@ -12,7 +12,7 @@ use crate::table::Method;
 /// A motion that is prepared before its first step, and stepped from frame to frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Run {
-    way: Way,
+    stepping: Stepping,
     /// Steps since the last frame.
     made: u32,
     /// `None` until it is prepared.
@@ -24,14 +24,14 @@ impl Run {
     /// was left to do.
     #[inline(never)]
     fn advance(&mut self, costs: &Costs, cost: f32) -> f32 {
-        let paid = (cost / costs.of_frame(Way { steps: 1, ..self.way })) as u32;
-        let left = self.way.steps.saturating_sub(self.made);
+        let paid = (cost / costs.of_frame(Stepping { steps: 1, ..self.stepping })) as u32;
+        let left = self.stepping.steps.saturating_sub(self.made);
         let steps = left.min(if paid > 0 { paid } else { 1 });
         if let Some(motion) = &mut self.motion {
             motion.advance(steps);
         }
         self.made += steps;
-        costs.of_frame(Way { steps, ..self.way })
+        costs.of_frame(Stepping { steps, ..self.stepping })
     }
 
     /// The frame, when nothing is left to do; the next steps lead to the next. NaN if the motion is lost: it may have left its
@@ -59,7 +59,7 @@ fn beside_finer_steps(method: Method) -> f32 {
 /// Steps of the finer runs for each frame: a quarter more, a half, three quarters. Fixed point has another unit of time in each, and
 /// with it other constants and roundings: what a word drops of a torque is the same for many steps while a pendulum hardly moves.
 /// Where a step is costly, one run is finer at least.
-fn steps_beside(Way { method, steps }: Way) -> [u32; 3] {
+fn steps_beside(Stepping { method, steps }: Stepping) -> [u32; 3] {
     [1, 2, 3].map(|quarters: u32| {
         let least = if method == Method::Extrapolation10Fixed64 { quarters / 3 } else { quarters };
         let more = (u64::from(steps) * u64::from(quarters) / 4) as u32;
@@ -68,8 +68,8 @@ fn steps_beside(Way { method, steps }: Way) -> [u32; 3] {
 }
 
 /// Beside a run in 64 bits, a method is tried with once, twice and four times the steps to a frame.
-fn tried(way: Way) -> [Way; 3] {
-    [1, 2, 4].map(|times| Way { steps: way.steps.saturating_mul(times), ..way })
+fn tried(stepping: Stepping) -> [Stepping; 3] {
+    [1, 2, 4].map(|times| Stepping { steps: stepping.steps.saturating_mul(times), ..stepping })
 }
 
 /// Step sizes tried side by side.
@@ -91,22 +91,23 @@ pub(super) struct Pass {
 }
 
 impl Pass {
-    /// In this `way`, beside a run in 64 bits, if one is given.
-    pub fn new(way: Way, problem: &Problem, beside: Option<Way>) -> Self {
-        let tried = tried(way);
+    /// By this `stepping`, beside a run in 64 bits, if one is given.
+    pub fn new(stepping: Stepping, problem: &Problem, beside: Option<Stepping>) -> Self {
+        let tried = tried(stepping);
         let [beside2, beside3, judge] = match beside {
             Some(beside) => [tried[1], tried[2], beside],
-            None => steps_beside(way).map(|steps| Way { steps, ..way }),
+            None => steps_beside(stepping).map(|steps| Stepping { steps, ..stepping }),
         };
-        let [plain, closed] = [Method::Rk4F32DirectionPlain, Method::ClosedFormF32].map(|method| Way { method, ..way });
+        let [plain, closed] =
+            [Method::Rk4F32DirectionPlain, Method::ClosedFormF32].map(|method| Stepping { method, ..stepping });
         let mut candidates = [tried[0], tried[1], tried[2], plain, closed].map(Candidate::new);
         (candidates[1].failed, candidates[2].failed) = (beside.is_none(), beside.is_none());
-        candidates[3].failed = way.method != Method::Rk4F32Direction;
+        candidates[3].failed = stepping.method != Method::Rk4F32Direction;
         let Problem { pendulum, start, rate, .. } = problem;
         let start = Pendulum::new(pendulum).map(|pendulum| pendulum.to_state(start));
         let closed = start.and_then(|start| ClosedFormF32::new(pendulum, &start, 1.0 / f64::from(*rate)));
         Self {
-            runs: [way, beside2, beside3, judge, plain].map(|way| Run { way, made: 0, motion: None }),
+            runs: [stepping, beside2, beside3, judge, plain].map(|stepping| Run { stepping, made: 0, motion: None }),
             is_beside_64_bits: beside.is_some(),
             closed: closed.ok().map(|closed| closed.oscillations),
             rods: [pendulum.l1, pendulum.l2].map(|l| (l / problem.tolerance) as f32),
@@ -116,8 +117,8 @@ impl Pass {
     }
 
     /// What one costs that goes to the end, beside a run in 64 bits.
-    pub fn cost_beside(costs: &Costs, way: Way, beside: Way) -> f32 {
-        tried(way).into_iter().fold(costs.of_frame(beside), |sum, way| sum + costs.of_frame(way))
+    pub fn cost_beside(costs: &Costs, stepping: Stepping, beside: Stepping) -> f32 {
+        tried(stepping).into_iter().fold(costs.of_frame(beside), |sum, stepping| sum + costs.of_frame(stepping))
     }
 
     /// The runs that are still needed, by their places.
@@ -135,7 +136,7 @@ impl Pass {
         let is_beside_64_bits = self.is_beside_64_bits;
         let Some((place, run)) = self.runs().find(|(_, run)| run.motion.is_none()) else { return Ok(false) };
         let by = PERTURBATIONS.get(place.wrapping_sub(1)).filter(|_| !is_beside_64_bits).copied().unwrap_or(NONE);
-        let Way { method, steps } = run.way;
+        let Stepping { method, steps } = run.stepping;
         let start = Pendulum::new(&problem.pendulum)?.to_state(&problem.start);
         let prepared = |by| {
             let given = problem.perturbed(&start, by, method);
@@ -161,7 +162,7 @@ impl Pass {
             let others = [second, third, last].map(|other| distance(self.rods, &own, &other));
             let greatest = others.into_iter().fold(0.0, greater);
             self.by_rounding = others.into_iter().any(|other| 2.0 * other < greatest);
-            (own, 1.0, greatest, beside_finer_steps(self.candidates[0].way.method) * greatest)
+            (own, 1.0, greatest, beside_finer_steps(self.candidates[0].stepping.method) * greatest)
         };
         let closed = self.closed.map_or([[f32::NAN; 2]; 2], |motion| motion.directions(t));
         let shown = [own, second, third, plain, closed];
@@ -187,7 +188,7 @@ impl Pass {
     /// What a frame costs.
     pub fn cost(&mut self, costs: &Costs) -> f32 {
         let [.., closed] = &self.candidates;
-        let closed = if closed.failed { 0.0 } else { costs.of_frame(closed.way) };
-        self.runs().fold(closed, |sum, (_, run)| sum + costs.of_frame(run.way))
+        let closed = if closed.failed { 0.0 } else { costs.of_frame(closed.stepping) };
+        self.runs().fold(closed, |sum, (_, run)| sum + costs.of_frame(run.stepping))
     }
 }

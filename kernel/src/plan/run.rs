@@ -1,6 +1,6 @@
 //! A motion by any method that a plan chooses from.
 
-use super::{Problem, Way};
+use super::{Problem, Stepping};
 use crate::error::Error;
 use crate::methods::{ClosedFormF32, DirectionF32, DirectionF32Plain, Fixed32, Fixed64, Form, Turns};
 use crate::pendulum::{Direction, Parameters, Pendulum, State};
@@ -83,7 +83,7 @@ impl AnyRun {
 /// A motion, frame by frame, by the method that was chosen for it: bit-identical to what the search looked at.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlannedRun {
-    way: Way,
+    stepping: Stepping,
     rate: u16,
     /// Frames since the start.
     frame: u64,
@@ -98,27 +98,27 @@ impl PlannedRun {
     /// that is none of [`Method::DRAWN`].
     #[inline(never)] // one copy
     #[doc(hidden)]
-    pub fn new(&Problem { pendulum, start, rate, .. }: &Problem, way: Way) -> Result<Self, Error> {
+    pub fn new(&Problem { pendulum, start, rate, .. }: &Problem, stepping: Stepping) -> Result<Self, Error> {
         start.check()?;
-        let is_closed = way.method == Method::ClosedFormF32;
-        let steps = if way.steps == 0 || is_closed { 1 } else { way.steps };
+        let is_closed = stepping.method == Method::ClosedFormF32;
+        let steps = if stepping.steps == 0 || is_closed { 1 } else { stepping.steps };
         let state = Pendulum::new(&pendulum)?.to_state(&start);
-        let run = AnyRun::new(way.method, &(pendulum, state), f64::from(rate) * f64::from(steps))?;
+        let run = AnyRun::new(stepping.method, &(pendulum, state), f64::from(rate) * f64::from(steps))?;
         let turns = Turns::of(state.angles(), run.sides())?;
-        Ok(Self { way: Way { steps, ..way }, rate, frame: 0, run, turns })
+        Ok(Self { stepping: Stepping { steps, ..stepping }, rate, frame: 0, run, turns })
     }
 
     #[doc(hidden)]
     #[must_use]
-    pub fn way(&self) -> Way {
-        self.way
+    pub fn stepping(&self) -> Stepping {
+        self.stepping
     }
 
     /// Moves on by so many frames; [`Error::Diverged`] if that has led out of the finite numbers, and ever after.
     #[inline(never)] // never inlined, to avoid a second copy
     pub fn advance(&mut self, frames: u32) -> Result<(), Error> {
         for _ in 0..frames {
-            for _ in 0..self.way.steps {
+            for _ in 0..self.stepping.steps {
                 self.run.advance(1);
                 Turns::observe(&mut self.turns, self.run.sides());
             }

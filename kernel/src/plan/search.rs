@@ -5,7 +5,7 @@
 use super::candidate::Candidate;
 use super::cost::{FIRST_STEP, MOST_STEPS, RESOLVING, admissible_step, steps_to_frame};
 use super::pass::Pass;
-use super::{Budget, Costs, Limit, Plan, PlanError, Problem, Way};
+use super::{Budget, Costs, Limit, Plan, PlanError, Problem, Stepping};
 use crate::error::{Error, Parameter};
 use crate::table::Method;
 
@@ -19,11 +19,11 @@ pub struct Search {
     costs: Costs,
     budget: Budget,
     /// By [`Method::Extrapolation10Fixed64`] in steps that resolve the motion, if its numbers take it.
-    exact: Option<Way>,
+    exact: Option<Stepping>,
     /// In those that a frame pays for, and what ends their horizon.
-    fine: Option<(Way, Limit)>,
+    fine: Option<(Stepping, Limit)>,
     /// What is looked at.
-    way: Way,
+    stepping: Stepping,
     /// Made by a piece of its own.
     pass: Option<Pass>,
     /// Frames compared with these steps.
@@ -33,7 +33,7 @@ pub struct Search {
     /// Whether the next frame is within the budget, and is being computed.
     begun: bool,
     /// The only one that counts, if it is given.
-    given: Option<Way>,
+    given: Option<Stepping>,
     spent: f32,
     best: Option<Candidate>,
 }
@@ -47,10 +47,10 @@ impl Search {
     pub fn new(problem: &Problem, costs: &Costs, budget: &Budget) -> Result<Self, PlanError> {
         let admissible = admissible_step(problem)?;
         problem.check(costs, budget)?;
-        let fine = |longest: f64, frame: f32| Way::fixed64(problem, longest * admissible, costs, frame);
+        let fine = |longest: f64, frame: f32| Stepping::fixed64(problem, longest * admissible, costs, frame);
         let exact = fine(RESOLVING, f32::INFINITY);
-        let affordable = |way: &Way| costs.of_frame(*way) <= budget.frame;
-        let coarser = || fine(FIRST_STEP, budget.frame).map(|way| (way, Limit::Budget));
+        let affordable = |stepping: &Stepping| costs.of_frame(*stepping) <= budget.frame;
+        let coarser = || fine(FIRST_STEP, budget.frame).map(|stepping| (stepping, Limit::Budget));
         let method = if costs.fixed32 < costs.direction { Method::Rk4Fixed32 } else { Method::Rk4F32Direction };
         let steps = steps_to_frame(method, problem.rate, FIRST_STEP * admissible);
         Ok(Self {
@@ -58,8 +58,8 @@ impl Search {
             costs: *costs,
             budget: *budget,
             exact,
-            fine: exact.filter(affordable).map(|way| (way, Limit::Growth)).or_else(coarser),
-            way: Way { method, steps },
+            fine: exact.filter(affordable).map(|stepping| (stepping, Limit::Growth)).or_else(coarser),
+            stepping: Stepping { method, steps },
             pass: None,
             frame: 0,
             prepared: false,
@@ -70,21 +70,21 @@ impl Search {
         })
     }
 
-    /// For no other way than this: how long it is right, whatever it costs; a horizon of 0 says that no frame is. The closed form has no
+    /// For this method and these steps alone: how long it is right, whatever it costs; a horizon of 0 says that no frame is. The closed form has no
     /// steps; those given are the ones of the run that it is compared with.
     ///
     /// Refuses what [`new`](Self::new) refuses, and a method that is none of [`Method::DRAWN`]. No steps count as one.
     #[inline(never)]
     #[doc(hidden)]
-    pub fn of(way: Way, problem: &Problem, costs: &Costs, budget: &Budget) -> Result<Self, PlanError> {
-        if !Method::DRAWN.contains(&way.method) {
-            return Err(Error::NotDrawn { method: way.method }.into());
+    pub fn of(stepping: Stepping, problem: &Problem, costs: &Costs, budget: &Budget) -> Result<Self, PlanError> {
+        if !Method::DRAWN.contains(&stepping.method) {
+            return Err(Error::NotDrawn { method: stepping.method }.into());
         }
         let mut search = Self::new(problem, costs, budget)?;
-        let given = Way { steps: if way.steps > 0 { way.steps } else { 1 }, ..way };
-        search.way.steps = given.steps;
-        search.way.method = match given.method {
-            Method::ClosedFormF32 => search.way.method,
+        let given = Stepping { steps: if stepping.steps > 0 { stepping.steps } else { 1 }, ..stepping };
+        search.stepping.steps = given.steps;
+        search.stepping.method = match given.method {
+            Method::ClosedFormF32 => search.stepping.method,
             Method::Rk4F32DirectionPlain => Method::Rk4F32Direction,
             method => method,
         };
@@ -146,38 +146,38 @@ impl Search {
     /// A form takes no steps so long, or no motion of so high an energy, or no such pendulum: finer ones, or `f32`, may.
     fn refused(&mut self, error: Error) -> Result<Option<Limit>, Error> {
         let is_step = matches!(error, Error::TooLarge { parameter: Parameter::Dt, .. });
-        let is_beside = |given: Way| given.method == Method::ClosedFormF32;
-        match self.way.method {
+        let is_beside = |given: Stepping| given.method == Method::ClosedFormF32;
+        match self.stepping.method {
             Method::Rk4F32Direction => Err(error),
             Method::Rk4Fixed32 if self.given.map_or(!is_step, is_beside) => {
-                self.begin(Way { method: Method::Rk4F32Direction, ..self.way });
+                self.begin(Stepping { method: Method::Rk4F32Direction, ..self.stepping });
                 Ok(None)
             }
             _ => Ok(self.refine(Some(2))),
         }
     }
 
-    fn begin(&mut self, way: Way) {
-        (self.way, self.pass, self.frame, self.prepared) = (way, None, 0, false);
+    fn begin(&mut self, stepping: Stepping) {
+        (self.stepping, self.pass, self.frame, self.prepared) = (stepping, None, 0, false);
     }
 
     /// Makes the pass, which costs as much as to prepare a motion.
     #[inline(never)] // it stands on the stack
     fn make(&mut self) {
-        let Self { way, costs, budget, given, .. } = *self;
+        let Self { stepping, costs, budget, given, .. } = *self;
         let beside = self.beside();
-        let pass = self.pass.insert(Pass::new(way, &self.problem, beside));
-        pass.retain(|one| given.map_or(costs.of_frame(one.way) <= budget.frame, |given| one.way == given));
+        let pass = self.pass.insert(Pass::new(stepping, &self.problem, beside));
+        pass.retain(|one| given.map_or(costs.of_frame(one.stepping) <= budget.frame, |given| one.stepping == given));
     }
 
     /// In 32 bits: a run in 64 bits to compare with, if planning can pay for it as long as the next pass may last.
-    fn beside(&self) -> Option<Way> {
+    fn beside(&self) -> Option<Stepping> {
         let (frames, right) = (self.problem.frames() as f32, self.best.map_or(0, |best| best.right));
         let longer = LONGER * right as f32;
         let frames = if 0.0 < longer && longer < frames { longer } else { frames };
         let left = (self.budget.planning - self.spent) / frames;
-        let affordable = |&exact: &Way| Pass::cost_beside(&self.costs, self.way, exact) <= left;
-        self.exact.filter(|exact| self.way.method != exact.method).filter(affordable)
+        let affordable = |&exact: &Stepping| Pass::cost_beside(&self.costs, self.stepping, exact) <= left;
+        self.exact.filter(|exact| self.stepping.method != exact.method).filter(affordable)
     }
 
     /// Whether the next piece prepares a motion, which takes longer than any other.
@@ -194,15 +194,15 @@ impl Search {
         self.spent
     }
 
-    /// Until when `way` has been found right so far, s. In 64 bits, with steps that resolve the motion, it is so wherever any
+    /// Until when `stepping` has been found right so far, s. In 64 bits, with steps that resolve the motion, it is so wherever any
     /// other is.
     #[doc(hidden)]
     #[must_use]
-    pub fn horizon(&self, way: Way) -> f64 {
-        let is_finer = |(fine, limit): (Way, _)| limit == Limit::Growth && way.steps >= fine.steps;
-        let resolves = way.method == Method::Extrapolation10Fixed64 && self.fine.is_some_and(is_finer);
-        let is_same = |one: &Way| one.steps == way.steps || way.method == Method::ClosedFormF32;
-        let is_shown = |one: &&Candidate| resolves || one.way.method == way.method && is_same(&one.way);
+    pub fn horizon(&self, stepping: Stepping) -> f64 {
+        let is_finer = |(fine, limit): (Stepping, _)| limit == Limit::Growth && stepping.steps >= fine.steps;
+        let resolves = stepping.method == Method::Extrapolation10Fixed64 && self.fine.is_some_and(is_finer);
+        let is_same = |one: &Stepping| one.steps == stepping.steps || stepping.method == Method::ClosedFormF32;
+        let is_shown = |one: &&Candidate| resolves || one.stepping.method == stepping.method && is_same(&one.stepping);
         let looked_at = self.pass.iter().flat_map(|pass| &pass.candidates).chain(&self.best);
         self.problem.time(looked_at.filter(is_shown).map(|one| one.right).max().unwrap_or(0))
     }
@@ -212,8 +212,8 @@ impl Search {
     #[doc(hidden)]
     pub fn extend(&mut self, seconds: f64) {
         if let (Some(best), Some(pass)) = (self.best, &mut self.pass) {
-            pass.retain(|one| one.way == best.way);
-            self.given = Some(best.way);
+            pass.retain(|one| one.stepping == best.stepping);
+            self.given = Some(best.stepping);
             self.problem.duration += seconds;
             self.budget.planning = f32::INFINITY;
         }
@@ -225,22 +225,22 @@ impl Search {
         if self.given.is_some() {
             return Some(Limit::Method);
         }
-        if self.way.method == Method::Extrapolation10Fixed64 {
+        if self.stepping.method == Method::Extrapolation10Fixed64 {
             return Some(self.fine.map_or(Limit::Budget, |(_, limit)| limit));
         }
         if times.is_none() && self.pass.as_ref().is_some_and(|pass| !pass.is_beside_64_bits) && self.beside().is_some()
         {
-            self.begin(self.way);
+            self.begin(self.stepping);
             return None;
         }
-        let cost = |way| self.costs.of_frame(way);
-        let finer = times.map(|times| Way { steps: self.way.steps.saturating_mul(times), ..self.way });
+        let cost = |stepping| self.costs.of_frame(stepping);
+        let finer = times.map(|times| Stepping { steps: self.stepping.steps.saturating_mul(times), ..self.stepping });
         let finer = finer.filter(|finer| finer.steps <= MOST_STEPS);
         let fine = self.fine.map(|(fine, _)| fine);
         let fine = fine.filter(|&fine| finer.is_none_or(|finer| cost(fine) <= cost(finer)));
         let affordable = finer.filter(|&finer| cost(finer) <= self.budget.frame);
-        let Some(way) = fine.or(affordable) else { return Some(Limit::Budget) };
-        self.begin(way);
+        let Some(stepping) = fine.or(affordable) else { return Some(Limit::Budget) };
+        self.begin(stepping);
         None
     }
 
@@ -257,9 +257,9 @@ impl Search {
     #[inline(never)] // one copy
     fn is_better(&self, candidate: &Candidate) -> bool {
         let is_better = |best: Candidate| {
-            let is_it = candidate.way == best.way;
+            let is_it = candidate.stepping == best.stepping;
             let reaches_end = candidate.right >= self.problem.frames() && best.right < candidate.right;
-            let is_cheaper = self.costs.of_frame(candidate.way) < self.costs.of_frame(best.way);
+            let is_cheaper = self.costs.of_frame(candidate.stepping) < self.costs.of_frame(best.stepping);
             let cheaper = candidate.right >= best.right && is_cheaper;
             reaches_end || candidate.has_longer_horizon(&best) || cheaper || is_it && candidate.right > best.right
         };
@@ -275,7 +275,7 @@ impl Search {
             let limit = if limit == Limit::Planning && !open { Limit::Budget } else { limit };
             return Err(PlanError::NoMethod { limit, spent: self.spent });
         };
-        let Way { method, steps } = best.way;
+        let Stepping { method, steps } = best.stepping;
         let steps = if method == Method::ClosedFormF32 { 0 } else { steps };
         let rate = f64::from(self.problem.rate);
         Ok(Plan {
@@ -283,7 +283,7 @@ impl Search {
             steps,
             dt: if steps == 0 { 0.0 } else { 1.0 / (rate * f64::from(steps)) },
             error: best.error,
-            cost: self.costs.of_frame(best.way),
+            cost: self.costs.of_frame(best.stepping),
             horizon: if limit == Limit::End { self.problem.duration } else { self.problem.time(best.right) },
             limit,
             spent: self.spent,

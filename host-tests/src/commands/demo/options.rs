@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Parser;
 use double_pendulum::Method;
-use double_pendulum::plan::Way;
+use double_pendulum::plan::Stepping;
 use firmware::config::PROCESSOR;
 use firmware::motion::Resources;
 use firmware::scenes::{AnyScene, SceneName};
@@ -95,8 +95,8 @@ impl DemoOptions {
         let refused =
             |why: &str| Err(Refused::because(format_args!("--method {method}: --scene {} {why}", scene.name())));
         let mut started = AnyScene::empty();
-        match started.start(scene, &scene.first_settings(), &resources).map(|_| started.report(0).way) {
-            Ok(Some(Way { method: gone, .. })) if gone == method => Ok(()),
+        match started.start(scene, &scene.first_settings(), &resources).map(|_| started.report(0).stepping) {
+            Ok(Some(Stepping { method: gone, .. })) if gone == method => Ok(()),
             Ok(_) => refused("has no use for it"),
             Err(_) => refused("cannot be computed so"),
         }

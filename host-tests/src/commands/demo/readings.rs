@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use double_pendulum::plan::Way;
+use double_pendulum::plan::Stepping;
 use firmware::config::TICK_RATE;
 use firmware::protocol::{Frame, Status};
 use firmware::scenes::Report;
@@ -92,7 +92,7 @@ impl Readings {
              lost frames           {}\n\
              dropped frames        {}\n\
              bits                  {comparison}",
-            way(&last.report),
+            stepping(&last.report),
             counts.damaged,
             counts.lost,
             last.dropped
@@ -101,18 +101,18 @@ impl Readings {
 }
 
 /// How a frame is computed and until when such frames are right, in one line.
-pub fn way(&Report { way, horizon, is_looking, .. }: &Report) -> String {
-    let way = match way {
+pub fn stepping(&Report { stepping, horizon, is_looking, .. }: &Report) -> String {
+    let stepping = match stepping {
         None => "nothing to plan".to_owned(),
-        Some(Way { method, steps: 0 }) => method.to_string(),
-        Some(Way { method, steps: 1 }) => format!("{method}, a step to a frame"),
-        Some(Way { method, steps }) => format!("{method}, {steps} steps to a frame"),
+        Some(Stepping { method, steps: 0 }) => method.to_string(),
+        Some(Stepping { method, steps: 1 }) => format!("{method}, a step to a frame"),
+        Some(Stepping { method, steps }) => format!("{method}, {steps} steps to a frame"),
     };
     if horizon.is_infinite() {
-        return way;
+        return stepping;
     }
     let at_least = if is_looking { "at least " } else { "" };
-    format!("{way}, right to half a pixel until {at_least}{horizon:.1} s")
+    format!("{stepping}, right to half a pixel until {at_least}{horizon:.1} s")
 }
 
 #[cfg(test)]

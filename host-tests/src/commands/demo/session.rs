@@ -113,7 +113,7 @@ impl<'a> Session<'a> {
         if self.readings.frame(*frame) { self.source.send(Command::Ask) } else { Ok(()) }
     }
 
-    /// Has the board play, and in the way, what was asked for.
+    /// Has the board play what was asked for, by the method asked for.
     fn begin(&mut self, first: &Frame) -> anyhow::Result<()> {
         if let Some(scene) = self.options.scene.filter(|scene| *scene != first.scene) {
             self.source.send(Command::Choose(scene))?;

@@ -11,7 +11,7 @@ use ratatui::text::Line;
 use ratatui::widgets::{Block, Paragraph};
 use textwrap::{Options, WordSplitter, wrap};
 
-use super::readings::{Readings, way};
+use super::readings::{Readings, stepping};
 use super::{numbers, panel};
 use crate::emulator::qemu::{LogLine, Screenshot, WIDTH};
 
@@ -43,8 +43,8 @@ pub fn draw(frame: &mut Frame, board: &str, screenshot: &Screenshot, readings: &
         return numbers::draw_help(frame);
     }
     let now = readings.frame.as_ref();
-    let words =
-        now.map_or("no frame came yet".to_owned(), |now| format!("{} · {}", way(&now.report), readings.comparison));
+    let words = now
+        .map_or("no frame came yet".to_owned(), |now| format!("{} · {}", stepping(&now.report), readings.comparison));
     let words = rows(&words, area.width, "");
     let keys = rows(&KEYS.map(|key| key.replace(' ', JOINT)).join("  "), area.width, "");
     let top = (width / 4).max(numbers::ROWS);
@@ -112,7 +112,7 @@ fn logged(line: &LogLine, width: u16) -> Vec<Line<'static>> {
 
 #[cfg(test)]
 mod tests {
-    use double_pendulum::plan::Way;
+    use double_pendulum::plan::Stepping;
     use double_pendulum::{Method, State};
     use firmware::graphics::Canvas;
     use firmware::graphics::text::{self, Anchor};
@@ -141,7 +141,7 @@ mod tests {
                     time,
                     state: State { a1: 0.5 * (6.0 * time).sin() as f32, a2: -2.0, ..State::default() },
                     energy_error: -2.5e-7,
-                    way: Some(Way { method: Method::Extrapolation10Fixed64, steps: 12 }),
+                    stepping: Some(Stepping { method: Method::Extrapolation10Fixed64, steps: 12 }),
                     horizon: 86_400.0,
                     is_looking: true,
                     ..Report::default()

@@ -1,6 +1,6 @@
 //! The frames a method draws, held against the exact motion.
 
-use double_pendulum::plan::{Limit, Plan, PlannedRun, Problem, Way};
+use double_pendulum::plan::{Limit, Plan, PlannedRun, Problem, Stepping};
 use double_pendulum::{Error, Motion, Parameters};
 use firmware::config::HALF_PIXEL;
 use reference::enclosure::{Fixed, Start};
@@ -16,8 +16,8 @@ pub struct Verdict {
 }
 
 /// Every frame until one that is proved wrong, as long as the motion can be followed.
-pub fn frames(scene: &Problem, start: &Start, way: Way) -> Result<impl Iterator<Item = Verdict>, Error> {
-    let mut motion = PlannedRun::new(scene, way)?;
+pub fn frames(scene: &Problem, start: &Start, stepping: Stepping) -> Result<impl Iterator<Item = Verdict>, Error> {
+    let mut motion = PlannedRun::new(scene, stepping)?;
     let (scene, mut set, mut last) = (*scene, start.enclose(scene.rate), None);
     Ok((0..scene.frames()).map_while(move |_| {
         (last != Some(false)).then(|| set.advance())??;
@@ -74,7 +74,12 @@ fn told_apart(scene: &Problem) -> Option<f64> {
 }
 
 /// What is proved, a line each.
-pub fn words(scene: &Problem, plan: &Result<Plan, Limit>, Way { method, steps }: Way, frames: &[Verdict]) -> String {
+pub fn words(
+    scene: &Problem,
+    plan: &Result<Plan, Limit>,
+    Stepping { method, steps }: Stepping,
+    frames: &[Verdict],
+) -> String {
     let ((right, open), end) = (counts(frames), scene.time(frames.len() as u32));
     let first = match frames.last().map(|frame| frame.is_right) {
         Some(Some(false)) => format!("wrong at {end:.3} s: more than {HALF_PIXEL} pixels off"),

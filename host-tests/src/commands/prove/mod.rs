@@ -10,7 +10,7 @@ use std::sync::atomic::Ordering;
 
 use clap::{Parser, value_parser};
 use double_pendulum::Method;
-use double_pendulum::plan::{Plan, Way};
+use double_pendulum::plan::{Plan, Stepping};
 
 use crate::commands::plan::SceneOptions;
 use crate::console::cli::{Refused, choice, say};
@@ -72,8 +72,8 @@ pub fn run(options: &ProveOptions) -> anyhow::Result<ExitCode> {
     let given = || options.scene.start.exact().ok_or("of a number, 18 digits at most can be enclosed");
     let of_board = options.scene.scene.map(|_| Start::of(&scene.pendulum, &scene.start));
     let start = of_board.map_or_else(given, Ok).map_err(Refused::because)?;
-    let asked = options.method.map(|method| Way { method, steps: options.steps });
-    let Some(way) = asked.or(plan.as_ref().ok().map(Plan::way)) else {
+    let asked = options.method.map(|method| Stepping { method, steps: options.steps });
+    let Some(stepping) = asked.or(plan.as_ref().ok().map(Plan::stepping)) else {
         say("nothing that the chip can afford is right in any frame")?;
         return Ok(ExitCode::SUCCESS);
     };
@@ -82,7 +82,7 @@ pub fn run(options: &ProveOptions) -> anyhow::Result<ExitCode> {
         say("t,sin_a1,cos_a1,sin_a2,cos_a2,radius,verdict")?;
     }
     let (bar, mut proved) = (Progress::of("proving", scene.frames().into()), Vec::new());
-    let frames = frames(&scene, &start, way).map_err(Refused::because)?;
+    let frames = frames(&scene, &start, stepping).map_err(Refused::because)?;
     for frame in frames.take_while(|_| stopped.load(Ordering::Relaxed) == 0) {
         bar.advance(1);
         proved.push(frame);
@@ -92,7 +92,7 @@ pub fn run(options: &ProveOptions) -> anyhow::Result<ExitCode> {
     }
     drop(bar);
     if !options.csv {
-        say(words(&scene, &plan, way, &proved))?;
+        say(words(&scene, &plan, stepping, &proved))?;
     }
     Ok(interrupted_by(stopped.load(Ordering::Relaxed)))
 }

@@ -30,7 +30,7 @@ pub fn horizons(name: SceneName) -> Result<String> {
             Err(_) => ["none", "none"].map(String::from),
             Ok(plan) => {
                 let start = Start::of(&scene.pendulum, &scene.start);
-                let (right, open) = counts(&frames(&scene, &start, plan.way())?.collect::<Vec<_>>());
+                let (right, open) = counts(&frames(&scene, &start, plan.stepping())?.collect::<Vec<_>>());
                 unproved += open;
                 [plan.horizon, scene.time(right)].map(|time| format!("{time:.2}"))
             }

@@ -4,7 +4,7 @@
 //! row is the cheapest.
 
 use anyhow::{Context, bail, ensure};
-use double_pendulum::plan::Way;
+use double_pendulum::plan::Stepping;
 use double_pendulum::{Equations, Integrator, Method, Numbers, State};
 use firmware::config::Processor;
 use firmware::job::{ON_BOARDS, Request};
@@ -127,7 +127,7 @@ fn on_board(method: Method, Processor { costs, .. }: &Processor) -> Option<f64> 
     if method.numbers() == Numbers::Fixed64 {
         return Some(f64::from(costs.fixed64) * evaluations(method) / evaluations(PRICED));
     }
-    Some(f64::from(costs.of_frame(Way { method, steps: 1 }))).filter(|cost| cost.is_finite())
+    Some(f64::from(costs.of_frame(Stepping { method, steps: 1 }))).filter(|cost| cost.is_finite())
 }
 
 /// Of the equations, in a step; extrapolation of order 2 K takes K^2 + 1
