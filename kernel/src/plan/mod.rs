@@ -72,7 +72,7 @@ pub struct Plan {
     pub dt: f64,
     /// The largest error expected until the horizon, over the tolerance.
     pub error: f32,
-    /// What computing a frame costs, without drawing it; never more than the budget.
+    /// What computing a frame costs, without drawing it; never more than the budget, but where the method was asked for.
     pub cost: f32,
     /// Until when every frame is predicted to be right to the tolerance, s: the time of the last of them. No proof: of 2,000
     /// scenes one may be wrong a little earlier (the repository's test `plan_study`).
