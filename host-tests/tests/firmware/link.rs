@@ -96,6 +96,7 @@ fn every_message_fits() {
 
     let (cause, scene) = (Some(Cause::Fault), SceneName::Flips);
     let end = Restarted { cause, restarts: u8::MAX, pc: number, lr: number, cfsr: number, scene, step };
+    assert_eq!((ToHost::Restarted(end).restarted(), ToHost::Frame(frame).restarted()), (Some(end), None));
     let (settings, method) = (Settings::default(), Some(method));
     let played = Status { scene, settings, method, processor: 0, paused: true, steps, speed: 1.0 };
     assert_eq!(Record::read(&Record { played, end }.write()), Some(Record { played, end }));

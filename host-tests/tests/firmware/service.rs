@@ -91,6 +91,17 @@ fn every_method_moves_alike() {
     }
 }
 
+/// Whose ends are the same, but not the samples before.
+#[test]
+fn a_check_is_over_every_sample() -> Result<(), Error> {
+    for &method in Method::ALL {
+        let [often, once] =
+            [(1, 2), (2, 1)].map(|(stride, samples)| Request { stride, samples, ..Request::on_any_core(method) }.crc());
+        assert_ne!(often?, once?, "{method}");
+    }
+    Ok(())
+}
+
 #[test]
 fn a_request_comes_through_its_text_unchanged() {
     for &method in Method::ALL {

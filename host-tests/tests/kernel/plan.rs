@@ -118,6 +118,9 @@ fn budgets_are_kept() {
         }
     }
     assert!((20..64).contains(&found), "{found} of 64: some hold, some cannot be had");
+    // As far as what is right goes, planning could not pay for a comparison with 64 bits, so none is begun.
+    let plan = Plan::search(&scene(1.0, 120.0, 20.0), &M3, &Budget { frame: 5e3, planning: 1e7 }).expect("a plan");
+    assert_eq!((plan.method, plan.steps, plan.limit), (Method::Rk4Fixed32, 2, Limit::Budget));
 }
 
 /// What a plan costs is just enough for it; by less, another is found that costs less.

@@ -30,7 +30,10 @@ pub trait Scalar:
     /// The number nearest to `value`.
     fn from_f64(value: f64) -> Self;
     /// Twice the number: an addition, or a step of the exponent where an addition would be a call of 100 cycles and more.
-    fn twice(self) -> Self;
+    #[inline(always)]
+    fn twice(self) -> Self {
+        self + self
+    }
     /// Half the number.
     fn half(self) -> Self;
     /// The product as the rate of change of a direction.

@@ -93,10 +93,6 @@ impl Scalar for Q30 {
         Self(word(nearest(scaled(value, 30)) as i64))
     }
     #[inline(always)]
-    fn twice(self) -> Self {
-        self + self
-    }
-    #[inline(always)]
     fn half(self) -> Self {
         Self(self.0 >> 1)
     }

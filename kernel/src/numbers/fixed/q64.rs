@@ -94,10 +94,6 @@ impl Scalar for Q64 {
         Self(nearest(value * UNIT) as i64)
     }
     #[inline(always)]
-    fn twice(self) -> Self {
-        self + self
-    }
-    #[inline(always)]
     fn half(self) -> Self {
         Self(self.0 >> 1)
     }
