@@ -4,7 +4,7 @@
 /// 125 MHz for the map of flips: the rest is for the panel's bus, the serial link, commands, and motions asked for.
 pub const SCENE: f64 = 0.55;
 /// Cycles in which a Cortex-M3 draws and sends a frame of any scene, moving it apart: a seventh of a frame at 50 MHz. The most
-/// expensive one, the butterfly when its curve is long, takes 102,000.
+/// expensive one, figure 7, takes 98,700.
 pub const SHOWING: u64 = 110_000;
 /// What is left of a frame when the frame is on the panel and sent: enough for a command a frame, for a log line, and
 /// to compute motions on request in reasonable time. QEMU's buses take no time; see the README for those of a real board.
