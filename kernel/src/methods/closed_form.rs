@@ -1,5 +1,6 @@
 //! The motion of small oscillations in closed form: both angles at any time without a step; and read step by step.
 
+use super::scaling::lost;
 use super::{Form, Side};
 use crate::bounds::check_step;
 use crate::error::{Error, Parameter};
@@ -98,15 +99,6 @@ impl<R: Real> SmallOscillations<R> {
         })
     }
 
-    /// An angle, rad, and an angular velocity, rad/s, that neither rod ever exceeds.
-    fn greatest(&self) -> [R; 2] {
-        let [fast, slow] = [(self.modes[0], self.fast), (self.modes[1], self.slow)].map(|(mode, part)| {
-            let angle = (part.cosine.abs() + part.sine.abs()) * (R::ONE + mode.shape.abs());
-            [angle, angle * mode.frequency]
-        });
-        [fast[0] + slow[0], fast[1] + slow[1]]
-    }
-
     /// (sin wt, cos wt) of the fast and the slow mode.
     #[inline]
     fn phases(&self, t: f64) -> [(R, R); 2] {
@@ -167,13 +159,9 @@ impl<R: Real + Side> Form for ClosedForm<R> {
         start.check()?;
         let motion = Pendulum::new(&self.parameters)?.to_motion(start);
         let oscillations = SmallOscillations::new(Modes::new(&self.parameters)?, &motion.cast());
-        // wherever it is, momenta and the fourth powers that directions are made of are finite
-        let [angle, velocity]: [R; 2] = oscillations.greatest();
-        let fastest = Motion { w1: velocity, w2: velocity, ..Motion::default() };
-        if !(angle * angle * angle * angle).is_finite() || self.pendulum.to_state(&fastest).check().is_err() {
-            return Err(Error::OutOfRange { parameter: Parameter::A1, value: angle.to_f64() });
-        }
-        Ok(Self { oscillations, directions: oscillations.directions(0.0), steps: 0, ..*self })
+        let started = Self { oscillations, directions: oscillations.directions(0.0), steps: 0, ..*self };
+        let out_of_range = |_| Error::OutOfRange { parameter: Parameter::A1, value: motion.a1 };
+        started.check().map(|()| started).map_err(out_of_range)
     }
 
     fn advance(&mut self, steps: u32) {
@@ -184,7 +172,8 @@ impl<R: Real + Side> Form for ClosedForm<R> {
     }
 
     fn check(&self) -> Result<(), Error> {
-        self.oscillations.at(self.time()).check().map_err(Error::diverged)
+        lost(!self.directions.iter().flatten().all(|part| part.is_finite()))?;
+        self.state().check().map_err(Error::diverged)
     }
 
     fn rod_directions(&self) -> [Direction<R>; 2] {

@@ -2,13 +2,18 @@
 
 use std::string::ToString;
 
-use double_pendulum::Parameter::{A2, Dt, FrequencyRatio, G, L1, M1, M2};
-use double_pendulum::{Error, Modes, Motion, Parameters, Pendulum, State, periodic_mass_ratio};
+use double_pendulum::Parameter::{A1, A2, Dt, FrequencyRatio, G, L1, M1, M2};
+use double_pendulum::{ClosedFormF32, Error, Modes, Motion, Parameters, Pendulum, State, periodic_mass_ratio};
 
 const GOOD: Parameters<f64> = Parameters { m1: 1.0, m2: 2.0, l1: 3.0, l2: 4.0, g: 9.8 };
 
 fn pendulum(parameters: Parameters<f64>) -> Result<(), Error> {
     Pendulum::new(&parameters).map(drop)
+}
+
+/// By the linear motion in `f32`, of which fourth powers are drawn.
+fn linear(angle: f64) -> Result<(), Error> {
+    Pendulum::new(&GOOD)?.run::<ClosedFormF32>(&State::at_rest(angle, 0.0), 0.01).map(drop)
 }
 
 fn periods(fast: u16, slow: u16, lengths: [f64; 2]) -> Result<(), Error> {
@@ -28,6 +33,7 @@ fn what_is_refused_is_named_with_its_value() {
         (pendulum(Parameters { g: -9.8, ..GOOD }), too_small(G, -9.8, 0.0)),
         (pendulum(Parameters { m1: 1e300, l1: 1e200, ..GOOD }), Error::OutOfRange { parameter: M1, value: 1e300 }),
         (Modes::new(&Parameters { g: 0.0, ..GOOD }).map(drop), not_positive(G, 0.0)),
+        (linear(1e12), Error::OutOfRange { parameter: A1, value: 1e12 }),
         (State::at_rest(0.0, infinite).check(), not_finite(A2, infinite)),
         (Motion::at_rest(0.0, infinite).check(), not_finite(A2, infinite)),
         (periods(3, 0, [1.0, 1.0]), not_finite(FrequencyRatio, infinite)),
