@@ -60,7 +60,6 @@ static void run(void) {
     const struct { char *text; int length; } block = { buffer, sizeof buffer };
     semihosting(SYS_GET_CMDLINE, &block);
     text = buffer;
-    integer(); /* the request's number */
     integer(); /* the method */
     struct textbook pendulum;
     pendulum.m1 = number();

@@ -29,7 +29,8 @@ pub const CRC: Crc<u32, Table<1>> = Crc::<u32, Table<1>>::new(&CRC_32_ISO_HDLC);
 /// The most bytes that a request takes in postcard's format.
 const MAX_BYTES: usize = 1 + 10 * 8 + 2 * 5;
 
-/// A motion to compute, by a method that the chip's application has or not.
+/// A motion to compute, by a method that the chip's application has or not. As text, the C programs read it, too
+/// (`host-tests/peers-c/measure.c`).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(target_os = "none", derive(defmt::Format))]
 pub struct Request {
