@@ -139,6 +139,10 @@ fn turns_follow_an_angle_either_way() {
     let mut angle = 1.0_f64;
     let signs = |angle: f64| [[angle.sin(), angle.cos()].map(|part| -i32::from(part < 0.0)); 2];
     assert!(matches!(Turns::of([0.0, 1.4e10], signs(angle)), Err(Error::OutOfRange { parameter: Parameter::A2, .. })));
+    for start in (-100..=100).map(|i| 0.37 * f64::from(i)) {
+        let [turns, _] = Turns::of([start; 2], signs(start)).expect("few turns");
+        assert!((turns.angle([start.sin(), start.cos()]) - start).abs() < 1e-9, "{start}");
+    }
     let mut turns = Turns::of([angle; 2], signs(angle)).expect("few turns");
     let mut farthest = 0.0_f64;
     for _ in 0..100_000 {
