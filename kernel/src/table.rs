@@ -48,14 +48,20 @@ named! {
     }
 }
 
+macro_rules! drawn {
+    ($method:ident drawn) => {
+        Method::$method
+    };
+}
+
 macro_rules! methods {
-    ($($(#[cfg($when:meta)])? $method:ident $name:literal $equations:ident $numbers:ident $integrator:ident $order:literal;)*) => {
-        /// Every way to compute a motion: equations, numbers, integrator and its order.
+    ($($(#[cfg($when:meta)])? $method:ident $name:literal $equations:ident $numbers:ident $integrator:ident $order:literal $($drawn:ident)?;)*) => {
+        /// Every way to compute a motion: equations, numbers, integrator and its order, and whether scenes are drawn by it.
         ///
-        /// | name | equations | numbers | integrator | order |
-        /// |---|---|---|---|---|
+        /// | name | equations | numbers | integrator | order | |
+        /// |---|---|---|---|---|---|
         $(#[cfg_attr(all($($when)?), doc = concat!(
-            "| `", $name, "` | ", stringify!($equations), " | ", stringify!($numbers), " | ", stringify!($integrator), " | ", $order, " |"
+            "| `", $name, "` | ", stringify!($equations), " | ", stringify!($numbers), " | ", stringify!($integrator), " | ", $order, " | ", $(stringify!($drawn),)? " |"
         ))])*
         ///
         /// To add one: a row here, and its type in the firmware's `job::table`.
@@ -65,6 +71,7 @@ macro_rules! methods {
         pub enum Method { $($(#[cfg($when)])? #[doc = concat!("`", $name, "`")] $method,)* }
 
         const ALL: &[Method] = &[$($(#[cfg($when)])? Method::$method,)*];
+        const DRAWN: &[Method] = &[$($(drawn!($method $drawn),)?)*];
 
         impl Method {
             const fn row(self) -> (&'static str, Equations, Numbers, Integrator, u32) {
@@ -82,17 +89,17 @@ macro_rules! methods {
 methods! {
     Rk4F64                "rk4-f64"                 Hamilton   F64            Rk4           4;
     Rk4F32                "rk4-f32"                 Hamilton   F32            Rk4           4;
-    Rk4F32Direction       "rk4-f32-direction"       Directions CompensatedF32 Rk4           4;
-    Rk4F32DirectionPlain  "rk4-f32-direction-plain" Directions F32            Rk4           4;
-    Rk4Fixed32            "rk4-fixed32"             Directions Fixed32        Rk4           4;
+    Rk4F32Direction       "rk4-f32-direction"       Directions CompensatedF32 Rk4           4 drawn;
+    Rk4F32DirectionPlain  "rk4-f32-direction-plain" Directions F32            Rk4           4 drawn;
+    Rk4Fixed32            "rk4-fixed32"             Directions Fixed32        Rk4           4 drawn;
     Extrapolation8Fixed64  "extrapolation8-fixed64"  Directions Fixed64        Extrapolation 8;
-    Extrapolation10Fixed64 "extrapolation10-fixed64" Directions Fixed64        Extrapolation 10;
+    Extrapolation10Fixed64 "extrapolation10-fixed64" Directions Fixed64        Extrapolation 10 drawn;
     Extrapolation12Fixed64 "extrapolation12-fixed64" Directions Fixed64        Extrapolation 12;
     Extrapolation16Fixed64 "extrapolation16-fixed64" Directions Fixed64        Extrapolation 16;
     Extrapolation12F64    "extrapolation12-f64"     Directions CompensatedF64 Extrapolation 12;
     Extrapolation16F64    "extrapolation16-f64"     Directions CompensatedF64 Extrapolation 16;
     ClosedFormF64         "closed-form-f64"         Linear     F64            ClosedForm    0;
-    ClosedFormF32         "closed-form-f32"         Linear     F32            ClosedForm    0;
+    ClosedFormF32         "closed-form-f32"         Linear     F32            ClosedForm    0 drawn;
     Rk4F32Micromath       "rk4-f32-micromath"       Hamilton   F32            Rk4           4;
     TextbookF32           "textbook-f32"            Textbook   F32            Rk4           4;
     #[cfg(test)] Rk4F64Lagrange "rk4-f64-lagrange"  Hamilton   F64            Rk4           4;
@@ -103,13 +110,7 @@ impl Method {
     pub const ALL: &[Method] = ALL;
 
     /// What a [plan](crate::plan) chooses from.
-    pub const DRAWN: &[Method] = &[
-        Method::ClosedFormF32,
-        Method::Rk4F32DirectionPlain,
-        Method::Rk4F32Direction,
-        Method::Rk4Fixed32,
-        Method::Extrapolation10Fixed64,
-    ];
+    pub const DRAWN: &[Method] = DRAWN;
 
     /// Its name: integrator, numbers, equations.
     #[must_use]
