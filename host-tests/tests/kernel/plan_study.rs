@@ -196,7 +196,7 @@ fn half_a_pixel_is_kept_until_the_predicted_horizon() {
 /// The whole study: the README's table is what `cargo test -p host-tests --test kernel plan_study:: -- --ignored --nocapture`
 /// prints of the first seed.
 #[test]
-#[ignore = "a quarter of an hour"]
+#[ignore = "half an hour"]
 fn thousands_of_scenes() {
     for seed in 1..=3 {
         for (_, share) in study(scenes(seed, 2.0..30.0).take(2_000), VIOLATIONS, LARGEST) {
