@@ -49,7 +49,7 @@ fn show(session: &mut Session, seconds: f64, mut terminal: DefaultTerminal) -> a
                 Event::Key(KeyEvent { code: KeyCode::Char('c'), modifiers: KeyModifiers::CONTROL, .. }) => {
                     return Ok(());
                 }
-                Event::Key(KeyEvent { code, .. }) => obey(session, code)?,
+                Event::Key(KeyEvent { code, .. }) => execute(session, code)?,
                 _ => {}
             }
         }
@@ -57,7 +57,7 @@ fn show(session: &mut Session, seconds: f64, mut terminal: DefaultTerminal) -> a
     Ok(())
 }
 
-fn obey(Session { source, readings, .. }: &mut Session, code: KeyCode) -> anyhow::Result<()> {
+fn execute(Session { source, readings, .. }: &mut Session, code: KeyCode) -> anyhow::Result<()> {
     source.send(match code {
         KeyCode::Up => Command::Heavier,
         KeyCode::Down => Command::Lighter,
