@@ -67,7 +67,7 @@ impl<P: PanelPort> PanelBus for Bus<P> {
         }
     }
 
-    fn give_up(&mut self) {
+    fn abort(&mut self) {
         self.port.reset();
         if let Some(outbox) = OUTGOING.with(Option::take).flatten() {
             outbox.sent = Some(Err(ErrorKind::Other));

@@ -103,7 +103,7 @@ pub trait PanelBus {
     fn send(&mut self);
 
     /// Aborts the transfer, which then has failed, and frees a bus that hangs.
-    fn give_up(&mut self);
+    fn abort(&mut self);
 }
 
 /// The most clocks that a panel can be waiting for: the eight bits of a byte and its acknowledgement.

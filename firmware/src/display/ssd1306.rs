@@ -124,7 +124,7 @@ impl<Bus: PanelBus> Ssd1306<Bus> {
         let Some((outbox, sent)) = self.bus.outbox() else {
             self.waiting += 1;
             if self.waiting >= PATIENCE {
-                self.bus.give_up();
+                self.bus.abort();
             }
             return false;
         };

@@ -50,16 +50,11 @@ impl<F: Form> Run for F {
     }
 }
 
-/// The request's numbers in the arithmetic `R`, each rounded once.
-fn rounded<R: Real>(request: &Request) -> (Parameters<R>, Motion<R>) {
-    let ([a1, a2], [w1, w2]) = (request.angles, request.velocities);
-    (request.parameters.cast(), Motion { a1, a2, w1, w2 }.cast())
-}
-
-/// The pendulum and its state at the start, checked and computed in the arithmetic `R`.
+/// The pendulum and its state at the start, each number rounded once to the arithmetic `R`, checked and computed in it.
 #[inline(never)] // flash has room for one of it, not for one of each row
 fn checked<R: Real>(request: &Request) -> Result<(Parameters<f64>, State<f64>), Error> {
-    let (parameters, start) = rounded::<R>(request);
+    let ([a1, a2], [w1, w2]) = (request.angles, request.velocities);
+    let (parameters, start) = (request.parameters.cast::<R>(), Motion { a1, a2, w1, w2 }.cast::<R>());
     start.check()?;
     let pendulum = Pendulum::new(&parameters)?;
     if request.method.integrator() != Integrator::ClosedForm {

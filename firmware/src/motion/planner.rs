@@ -1,4 +1,4 @@
-//! Plans the scene that is played: by which method and steps it is right to half a pixel for longest, and cheapest, and until when.
+//! Plans the scene that is played: which method and steps are right to half a pixel for longest, and cheapest, and until when.
 //!
 //! All by the kernel's [`plan`](double_pendulum::plan), for a number of cycles in each tick of the scene that is the same on
 //! all boards of a class: so what has been found after n ticks is, too. The work itself may be done before the tick, in the
@@ -40,7 +40,7 @@ pub struct Planner {
     plan: Option<PlanResult>,
     /// What the scene has begun by, and until when that is expected to be right, s.
     begun: Option<(Stepping, f64)>,
-    /// It goes on by that, whatever the plan.
+    /// The scene keeps this stepping, whatever is planned.
     is_tied: bool,
     /// Something has been found that no tick has told yet.
     is_news: bool,

@@ -25,8 +25,8 @@ pub struct Simulation {
 }
 
 impl Simulation {
-    /// At the start, by what is asked for, or what is right for longest by all that is known before planning; the kernel's error
-    /// if the pendulum is too quick for what may be spent.
+    /// At the start: by the method that is asked for, else by the stepping expected to stay right longest before anything is
+    /// planned. The kernel's error if the pendulum is too quick for what may be spent.
     pub fn new(settings: &Settings, &Resources { ref processor, method }: &Resources) -> Result<Self, Error> {
         let (pendulum, start) = settings.start()?;
         let problem = settings.problem(HEIGHT as f32);
@@ -46,8 +46,8 @@ impl Simulation {
     }
 }
 
-/// A motion by another stepping, from the start until it has caught up: after a number of ticks that depends on nothing but what
-/// the stepping costs.
+/// A motion by another stepping, from the start until it has caught up: after a number of ticks that depends only on what the
+/// stepping costs.
 #[derive(Clone, Debug)]
 pub struct CatchingUp {
     motion: PlannedRun,

@@ -39,7 +39,7 @@ fn the_state_and_the_picture_after_n_ticks_are_the_same_at_any_frame_rate() {
 }
 
 #[test]
-fn every_frame_carries_the_kernels_state_to_the_bit() {
+fn every_frame_carries_the_kernels_state_bit_identically() {
     let app = run(1..=600);
     let frames = frames(&app.link);
     assert_eq!(frames.len(), 600);

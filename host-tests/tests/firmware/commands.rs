@@ -228,7 +228,11 @@ fn the_plan_is_found_in_some_tick_told_when_asked_and_followed() {
     assert!(calm.horizon >= PLANNED && calm.cost < plan.cost, "{calm:?}");
     (0..TICK_RATE).for_each(|_| run(&mut app, &mut news));
     let stepping = Stepping { method: Method::Rk4Fixed32, steps: calm.steps };
-    assert_eq!(news.last(), Some(&Event::Motion(PlannerEvent::Shown(stepping, calm.cost))), "the cheaper way is taken");
+    assert_eq!(
+        news.last(),
+        Some(&Event::Motion(PlannerEvent::Shown(stepping, calm.cost))),
+        "the cheaper method is taken"
+    );
     let report = app.player.report;
     assert_eq!(report.stepping, Some(calm.stepping()));
     assert!(f64::from(report.horizon) > PLANNED && report.is_looking, "{report:?}");
@@ -240,7 +244,7 @@ fn the_plan_is_found_in_some_tick_told_when_asked_and_followed() {
 
 /// A method that is asked for is taken, and stays until the plan may choose again.
 #[test]
-fn a_way_can_be_forced() {
+fn a_method_can_be_forced() {
     let mut app = app();
     let mut go = |method| {
         assert_eq!(answer(&mut app, Command::Method(method)), Answer::Done);

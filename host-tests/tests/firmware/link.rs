@@ -3,11 +3,11 @@
 use std::collections::HashSet;
 use std::fmt::Debug;
 
-use double_pendulum::Method;
-use double_pendulum::plan::{Limit, Plan, Stepping};
+use double_pendulum::plan::{Limit, Plan, PlanError, Stepping};
+use double_pendulum::{Error, Method};
 use firmware::app::Record;
 use firmware::job::{Reading, Request};
-use firmware::motion::{Planned, Settings};
+use firmware::motion::{PlanResult, Planned, Settings};
 use firmware::protocol::{
     Answer, BoardName, Cause, Command, Decoder, Field, Frame, LinkError, MAX_MESSAGE, MAX_WIRE, Restarted, Status,
     ToHost, VERSION, decode_command, encode, encode_command, frame, read,
@@ -120,11 +120,12 @@ fn variants<T: Debug>(read: fn(&[u8]) -> Option<T>) -> String {
 fn numbers_mean_the_same_as_long_as_the_version_does() -> Result<(), String> {
     let messages =
         variants(read::<ToHost>) + &variants(read::<Answer>) + &variants(read::<Command>) + &variants(read::<Field>);
+    let plans = variants(read::<PlanResult>) + &variants(read::<PlanError>) + &variants(read::<Error>);
     let values = variants(read::<Method>)
         + &variants(read::<SceneName>)
         + &variants(read::<BoardName>)
         + &variants(read::<Cause>);
-    snapshot::check(&format!("wire-{VERSION}"), &(messages + &values + &variants(read::<Limit>)))
+    snapshot::check(&format!("wire-{VERSION}"), &(messages + &plans + &values + &variants(read::<Limit>)))
 }
 
 /// Its bytes on the wire.

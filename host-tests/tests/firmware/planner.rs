@@ -131,7 +131,7 @@ fn where_nothing_holds_that_is_what_is_told() {
 /// Only what was asked for is looked at, even if it costs more than a frame allows.
 /// `cargo prove --scene page --method rk4-f32-direction --steps 4` proves it right until 10.5 s.
 #[test]
-fn a_way_that_is_given_stays() {
+fn a_stepping_that_is_given_stays() {
     let mut planner = Planner::new(STM32F405);
     let stepping = Stepping { method: Method::Rk4F32Direction, steps: 4 };
     planner.start(&Settings::default(), Some(HEIGHT), Some(stepping), true);

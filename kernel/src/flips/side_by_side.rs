@@ -11,7 +11,7 @@ use crate::numbers::Lanes;
 use crate::pendulum::{Direction, State};
 
 type Motions<const N: usize> = DirectionLanes<f32, N, ROWS>;
-type Heads<const N: usize> = [Direction<Lanes<f32, N>>; 2];
+type LaneDirections<const N: usize> = [Direction<Lanes<f32, N>>; 2];
 
 /// Rows of lanes: enough to keep a processor busy; with more the compiler no longer finds the vectors of 4.
 const ROWS: usize = 3;
@@ -82,7 +82,7 @@ impl Flips<DirectionF32Plain> {
         lanes: &mut [[Option<Lane>; N]; ROWS],
         give: &mut impl FnMut(usize, Flip<f32>),
     ) {
-        let mut before: [Heads<N>; ROWS] = from_fn(|row| motions.rod_directions(row));
+        let mut before: [LaneDirections<N>; ROWS] = from_fn(|row| motions.rod_directions(row));
         for step in 0..BLOCK {
             let kept = (step + 1 == BLOCK).then_some(*motions);
             motions.step();
@@ -99,7 +99,9 @@ impl Flips<DirectionF32Plain> {
                 let rod_directions = motions.rod_directions(row);
                 if any_turns_over(before, &rod_directions) {
                     for (place, lane) in lanes[row].iter_mut().enumerate() {
-                        let at = |rod_directions: &Heads<N>| rod_directions.map(|head| head.map(|part| part.0[place]));
+                        let at = |rod_directions: &LaneDirections<N>| {
+                            rod_directions.map(|direction| direction.map(|part| part.0[place]))
+                        };
                         let (before, after) = (at(before), at(&rod_directions));
                         let passes = |lane: &mut Lane| step < lane.left && passes(&before, &after) < 0;
                         if let Some(Lane { start, left }) = lane.take_if(passes) {
@@ -116,7 +118,7 @@ impl Flips<DirectionF32Plain> {
 
 /// Whether a rod in any lane has come through straight up between the two. Rod by rod, for the compiler to find the vectors.
 #[inline(always)]
-fn any_turns_over<const N: usize>(before: &Heads<N>, after: &Heads<N>) -> bool {
+fn any_turns_over<const N: usize>(before: &LaneDirections<N>, after: &LaneDirections<N>) -> bool {
     let mut any = [0; 2];
     for (rod, any) in any.iter_mut().enumerate() {
         let ([from, _], [to, cos]) = (before[rod], after[rod]);

@@ -110,7 +110,7 @@ impl<R: Real + super::Side, E: Derivatives<R>> Form for Canonical<R, E> {
     }
 
     fn directions<Q: Real>(&self) -> [Direction<Q>; 2] {
-        self.rod_directions().map(|head| head.map(R::cast))
+        self.rod_directions().map(|direction| direction.map(R::cast))
     }
 
     fn momenta<Q: Real>(&self) -> [Q; 2] {

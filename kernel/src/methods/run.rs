@@ -20,10 +20,10 @@ pub struct Run<F: Form> {
 impl<R: Real> Pendulum<R> {
     /// The motion from `start` in steps of `dt` seconds by the method that `F` is; a negative step runs backwards.
     ///
-    /// Only that method is linked. Refuses a step that is NaN, infinite, zero or subnormal, a start that is not finite, one of more
-    /// than 2^31 turns where directions are carried, and what is out of the range of the method's numbers. Not a step that is too long for RK4, because that depends on the
-    /// motion: ask [`check_step`](Self::check_step) for RK4's limit of stability and
-    /// [`admissible_step`](Self::admissible_step) for what resolves every motion of an energy.
+    /// Only that method is linked. Refuses a step that is NaN, infinite, zero or subnormal, a start that is not finite, one of
+    /// more than 2^31 turns where directions are carried, and what is out of the range of the method's numbers. Not a step that
+    /// is too long for RK4, because that depends on the motion: ask [`check_step`](Self::check_step) for RK4's limit of stability
+    /// and [`admissible_step`](Self::admissible_step) for what resolves every motion of an energy.
     pub fn run<F: Form>(&self, start: &State<R>, dt: f64) -> Result<Run<F>, Error> {
         let parameters = self.parameters().cast();
         let motion = F::new(&parameters, &start.cast(), dt)?;

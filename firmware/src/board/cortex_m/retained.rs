@@ -6,8 +6,8 @@ use core::sync::atomic::{AtomicU8, Ordering};
 use crate::app::Record;
 use crate::protocol::{Cause, MAX_WIRE, Restarted};
 
-/// Two copies, of which one is whole whenever the program ends, in the middle of writing the other, too: by the message's
-/// check it is known.
+/// Two copies: whenever the program ends, even in the middle of writing one, the other is whole. The message's check tells
+/// which.
 // SAFETY: start-up leaves this section alone, and what stands there is bytes.
 #[unsafe(link_section = ".uninit.kept")]
 static KEPT: [[AtomicU8; MAX_WIRE]; 2] = [const { [const { AtomicU8::new(0) }; MAX_WIRE] }; 2];

@@ -76,7 +76,7 @@ impl Machine {
         let folder = tempfile::tempdir_in(self.folder.path())?;
         let path = folder.path().join("log");
         mkfifo(&path, Mode::S_IRUSR | Mode::S_IWUSR)?;
-        // Open for both, it waits for nobody; then what is read ends when neither QEMU nor `writer` is there, however QEMU ends.
+        // Opened both ways first, so that neither open waits for QEMU. The log ends once QEMU and `writer` have closed it.
         let both = File::options().read(true).write(true).open(&path)?;
         let (pipe, writer) = (File::open(&path)?, File::options().write(true).open(&path)?);
         drop(both);

@@ -85,7 +85,7 @@ impl PanelBus for Line {
         (self.outbox.sent, self.taken, self.sent) = (None, 0, self.sent + 1);
     }
 
-    fn give_up(&mut self) {
+    fn abort(&mut self) {
         assert!(!self.is_idle(), "nothing to abort");
         self.freed += 1;
         self.message.clear();

@@ -8,8 +8,8 @@ use crate::numbers::{Lanes, Real, Sealed};
 use crate::pendulum::directions::{Coefficients, Units, increments};
 use crate::pendulum::{Direction, Parameters, State};
 
-/// As [`DirectionF32`](crate::DirectionF32) in compensated `f64`, but each step by [`Extrapolation`] of order `ORDER`, 2, 4 .. 16, after which the lengths of the
-/// directions are restored. Four rows go through the step side by side, in the vectors of processors that have them.
+/// As [`DirectionF32`](crate::DirectionF32) in compensated `f64`, but each step by [`Extrapolation`] of order `ORDER`, 2, 4
+/// .. 16, after which the lengths of the directions are restored. Four rows go through the step side by side, in the vectors of processors that have them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExtrapolationF64<const ORDER: u32> {
     direction: DirectionF64,
