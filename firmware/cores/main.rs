@@ -10,10 +10,12 @@ use firmware::job::Request;
 
 /// Prints all lines.
 fn say(output: &mut impl Write) -> fmt::Result {
-    Method::ALL.iter().try_for_each(|&method| match Request::on_any_core(method).crc() {
-        Ok(crc) => writeln!(output, "{} {crc:08x}", method.name()),
-        Err(error) => writeln!(output, "{} {error}", method.name()),
-    })
+    Method::ALL
+        .iter()
+        .try_for_each(|&method| match Request::on_any_core(method).crc() {
+            Ok(crc) => writeln!(output, "{} {crc:08x}", method.name()),
+            Err(error) => writeln!(output, "{} {error}", method.name()),
+        })
 }
 
 #[panic_handler]
@@ -33,7 +35,11 @@ mod machine {
 
     pub fn end(is_success: bool) -> ! {
         loop {
-            debug::exit(if is_success { debug::EXIT_SUCCESS } else { debug::EXIT_FAILURE });
+            debug::exit(if is_success {
+                debug::EXIT_SUCCESS
+            } else {
+                debug::EXIT_FAILURE
+            });
         }
     }
 }
@@ -53,14 +59,20 @@ mod machine {
     fn call(number: usize, [a, b, c]: [usize; 3]) -> isize {
         let result;
         // SAFETY: `write` reads the bytes of a living `str`, `exit` takes a number, and both keep all registers but the first.
-        unsafe { asm!("ecall", in("a7") number, inlateout("a0") a => result, in("a1") b, in("a2") c) };
+        unsafe {
+            asm!("ecall", in("a7") number, inlateout("a0") a => result, in("a1") b, in("a2") c)
+        };
         result
     }
 
     impl fmt::Write for Output {
         fn write_str(&mut self, text: &str) -> fmt::Result {
             let written = call(WRITE, [OUTPUT, text.as_ptr() as usize, text.len()]);
-            if usize::try_from(written) == Ok(text.len()) { Ok(()) } else { Err(fmt::Error) }
+            if usize::try_from(written) == Ok(text.len()) {
+                Ok(())
+            } else {
+                Err(fmt::Error)
+            }
         }
     }
 

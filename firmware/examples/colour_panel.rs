@@ -34,7 +34,8 @@ const CORNER: Point = Point::new((240 - 128) / 2, (240 - 64) / 2);
 fn main() -> ! {
     static mut BUFFERS: FrameBuffers = FrameBuffers::BLANK;
     static mut BATCH: [u8; 512] = [0; 512];
-    match play(BUFFERS, BATCH).expect("the chip, its clock and the panel start, and the panel does not fail") {}
+    match play(BUFFERS, BATCH)
+        .expect("the chip, its clock and the panel start, and the panel does not fail") {}
 }
 
 /// For ever; `None` if it cannot.
@@ -42,11 +43,33 @@ fn play(buffers: &mut FrameBuffers, batch: &mut [u8]) -> Option<Infallible> {
     let (core, mut chip) = (cortex_m::Peripherals::take()?, pac::Peripherals::take()?);
     let (pll, usb, resets) = (chip.PLL_SYS, chip.PLL_USB, &mut chip.RESETS);
     let mut watchdog = Watchdog::new(chip.WATCHDOG);
-    let clocks = init_clocks_and_plls(CRYSTAL, chip.XOSC, chip.CLOCKS, pll, usb, resets, &mut watchdog).ok()?;
-    let pins = Pins::new(chip.IO_BANK0, chip.PADS_BANK0, Sio::new(chip.SIO).gpio_bank0, resets);
-    let wires = (pins.gpio19.into_function::<FunctionSpi>(), pins.gpio18.into_function::<FunctionSpi>());
+    let clocks = init_clocks_and_plls(
+        CRYSTAL,
+        chip.XOSC,
+        chip.CLOCKS,
+        pll,
+        usb,
+        resets,
+        &mut watchdog,
+    )
+    .ok()?;
+    let pins = Pins::new(
+        chip.IO_BANK0,
+        chip.PADS_BANK0,
+        Sio::new(chip.SIO).gpio_bank0,
+        resets,
+    );
+    let wires = (
+        pins.gpio19.into_function::<FunctionSpi>(),
+        pins.gpio18.into_function::<FunctionSpi>(),
+    );
     let bus = Spi::<_, _, _, 8>::new(chip.SPI0, wires);
-    let bus = bus.init(resets, clocks.peripheral_clock.freq(), SPEED.Hz(), embedded_hal::spi::MODE_3);
+    let bus = bus.init(
+        resets,
+        clocks.peripheral_clock.freq(),
+        SPEED.Hz(),
+        embedded_hal::spi::MODE_3,
+    );
     let device = ExclusiveDevice::new_no_delay(bus, pins.gpio17.into_push_pull_output()).ok()?;
     let interface = SpiInterface::new(device, pins.gpio20.into_push_pull_output(), batch);
     let mut timer = Timer::new(chip.TIMER, resets, &clocks);
@@ -57,7 +80,11 @@ fn play(buffers: &mut FrameBuffers, batch: &mut [u8]) -> Option<Infallible> {
         .init(&mut timer)
         .ok()?;
 
-    let mut panel = AnyPanel { target, corner: CORNER, colour: Rgb565::from };
+    let mut panel = AnyPanel {
+        target,
+        corner: CORNER,
+        colour: Rgb565::from,
+    };
     let mut player = Player::new(PROCESSOR, &mut buffers.ink);
     player.play(SceneName::Page, Settings::default()).ok()?;
     clock::start(core.SYST, clocks.system_clock.freq().to_Hz());

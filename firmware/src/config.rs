@@ -69,13 +69,21 @@ impl Processor {
 
     /// What may be spent: on planning as much as the scene has ticks for, so that the search keeps ahead of it.
     pub fn budget(&self, problem: &Problem) -> Budget {
-        Budget { frame: self.frame, planning: self.look_ahead * problem.frames() as f32 }
+        Budget {
+            frame: self.frame,
+            planning: self.look_ahead * problem.frames() as f32,
+        }
     }
 }
 
 /// A Cortex-M3, which has no floating-point unit: at 50 MHz a tick has 833,000 cycles.
-pub const CORTEX_M3: Processor =
-    Processor { code: 0, costs: prices::CORTEX_M3, frame: 200_000.0, look_ahead: 360_000.0, flips: FIXED };
+pub const CORTEX_M3: Processor = Processor {
+    code: 0,
+    costs: prices::CORTEX_M3,
+    frame: 200_000.0,
+    look_ahead: 360_000.0,
+    flips: FIXED,
+};
 /// A Cortex-M0+, which has no long product either, as on the Raspberry Pi Pico: at 125 MHz a tick has 2,083,000 cycles. A start of
 /// the map counts four steps more, so that a tick of it leaves the Pico's port its share.
 pub const CORTEX_M0PLUS: Processor = Processor {
@@ -83,18 +91,30 @@ pub const CORTEX_M0PLUS: Processor = Processor {
     costs: prices::CORTEX_M0PLUS,
     frame: 300_000.0,
     look_ahead: 640_000.0,
-    flips: FlipsPace { steps: 400, start: 46, ..FIXED },
+    flips: FlipsPace {
+        steps: 400,
+        start: 46,
+        ..FIXED
+    },
 };
 /// A Cortex-M4F, whose floating-point unit knows `f32` only: the slowest board, at 25 MHz, has 417,000 cycles in a tick. A
 /// plain step costs less than the closed form's two sincos.
-pub const CORTEX_M4F: Processor =
-    Processor { code: 1, costs: prices::CORTEX_M4F, frame: 150_000.0, look_ahead: 190_000.0, flips: FLOAT };
+pub const CORTEX_M4F: Processor = Processor {
+    code: 1,
+    costs: prices::CORTEX_M4F,
+    frame: 150_000.0,
+    look_ahead: 190_000.0,
+    flips: FLOAT,
+};
 /// The STM32F405's at 168 MHz: 2,800,000 cycles in a tick. Less planning ends before the errors of a light elbow show.
 pub const STM32F405: Processor = Processor {
     code: 2,
     frame: 700_000.0,
     look_ahead: 1_300_000.0,
-    flips: FlipsPace { steps: 5500, ..FLOAT },
+    flips: FlipsPace {
+        steps: 5500,
+        ..FLOAT
+    },
     ..CORTEX_M4F
 };
 /// Every class, by its code on the wire.
@@ -120,9 +140,17 @@ pub struct FlipsPace {
     pub never: u32,
 }
 /// Fixed point: 920 cycles a step on a Cortex-M3 at 50 MHz, nearly half of a frame, and 2,200 on a Cortex-M0+ at 125 MHz.
-const FIXED: FlipsPace = FlipsPace { steps: 400, start: 42, never: 13 };
+const FIXED: FlipsPace = FlipsPace {
+    steps: 400,
+    start: 42,
+    never: 13,
+};
 /// `f32` on a Cortex-M4F: 230 cycles a step, of 417,000 in a frame at 25 MHz, and of 2,800,000 at 168 MHz.
-const FLOAT: FlipsPace = FlipsPace { steps: 650, start: 60, never: 10 };
+const FLOAT: FlipsPace = FlipsPace {
+    steps: 650,
+    start: 60,
+    never: 10,
+};
 
 // ---- The pendulum ---------------------------------------------------------------------------------------------------
 

@@ -64,7 +64,11 @@ impl Stacked {
     /// The bytes that the processor has stacked, by what the link register held on the way into the handler: with the
     /// registers of the floating-point unit or without.
     pub fn size(exception: u32) -> u32 {
-        if exception & (1 << 4) == 0 { 26 * 4 } else { 8 * 4 }
+        if exception & (1 << 4) == 0 {
+            26 * 4
+        } else {
+            8 * 4
+        }
     }
 }
 
@@ -83,7 +87,10 @@ impl Fault {
             Some((_, cause)) => cause,
             None if has(self.hfsr, 1) => "vector table could not be read",
             None if has(self.hfsr, 31) => "breakpoint without a debugger",
-            None if self.stacked.is_some_and(|stacked| stacked.xpsr & THUMB == 0) => {
+            None if self
+                .stacked
+                .is_some_and(|stacked| stacked.xpsr & THUMB == 0) =>
+            {
                 "invalid state (jump to an even address?)"
             }
             None => "unknown cause (a Cortex-M0+ tells none)",
@@ -93,24 +100,40 @@ impl Fault {
     /// The stack took no more: not the registers of an exception, or not what was being pushed.
     fn is_stack_overflow(&self) -> bool {
         let below = self.sp.wrapping_sub(self.mmfar);
-        !Self::has_stacked(self.cfsr) || self.cfsr & REFUSED == REFUSED && (1..=LONGEST_PUSH).contains(&below)
+        !Self::has_stacked(self.cfsr)
+            || self.cfsr & REFUSED == REFUSED && (1..=LONGEST_PUSH).contains(&below)
     }
 }
 
 impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Fault { sp, cfsr, hfsr, mmfar, bfar, .. } = self;
+        let Fault {
+            sp,
+            cfsr,
+            hfsr,
+            mmfar,
+            bfar,
+            ..
+        } = self;
         writeln!(f, "HARDFAULT: {}", self.cause())?;
         match (self.stacked, self.last_call) {
-            (Some(Stacked { pc, lr, xpsr }), _) => writeln!(f, "  pc {pc:#010x}  lr {lr:#010x}  xpsr {xpsr:#010x}")?,
-            (None, Some(call)) => writeln!(f, "  pc and lr are lost; the last call on the stack is at {call:#010x}")?,
+            (Some(Stacked { pc, lr, xpsr }), _) => {
+                writeln!(f, "  pc {pc:#010x}  lr {lr:#010x}  xpsr {xpsr:#010x}")?
+            }
+            (None, Some(call)) => writeln!(
+                f,
+                "  pc and lr are lost; the last call on the stack is at {call:#010x}"
+            )?,
             (None, None) => writeln!(f, "  pc and lr are lost")?,
         }
         write!(f, "  sp {sp:#010x}")?;
         if cfsr | hfsr == 0 {
             return Ok(());
         }
-        write!(f, "  cfsr {cfsr:#010x}  hfsr {hfsr:#010x}  mmfar {mmfar:#010x}  bfar {bfar:#010x}")
+        write!(
+            f,
+            "  cfsr {cfsr:#010x}  hfsr {hfsr:#010x}  mmfar {mmfar:#010x}  bfar {bfar:#010x}"
+        )
     }
 }
 

@@ -29,8 +29,16 @@ type Way = (&'static str, fn(&Search, &[[f32; 2]]) -> Found, Option<f64>);
 
 const WAYS: [Way; 4] = [
     ("this kernel: one start after the other", one_by_one, None),
-    ("24 side by side, any x86-64", vectors::baseline, Some(130.0 / 11.0)),
-    ("24 side by side, vectors as this processor has them", vectors::flips, Some(280.0 / 11.0)),
+    (
+        "24 side by side, any x86-64",
+        vectors::baseline,
+        Some(130.0 / 11.0),
+    ),
+    (
+        "24 side by side, vectors as this processor has them",
+        vectors::flips,
+        Some(280.0 / 11.0),
+    ),
     ("the same on all threads", threads, None),
 ];
 
@@ -39,7 +47,9 @@ fn one_by_one(search: &Search, starts: &[[f32; 2]]) -> Found {
 }
 
 fn threads(search: &Search, starts: &[[f32; 2]]) -> Found {
-    let portions = starts.par_chunks(PORTION).map(|portion| vectors::flips(search, portion));
+    let portions = starts
+        .par_chunks(PORTION)
+        .map(|portion| vectors::flips(search, portion));
     Ok(portions.collect::<Result<Vec<_>, _>>()?.concat())
 }
 
@@ -55,16 +65,35 @@ fn main() -> Result<()> {
     let program = workspace().join("target/peers-c-flips");
     let mut cc = Command::new("cc");
     cc.current_dir(workspace().join("host-tests/peers-c"));
-    cc.args(["-O3", "-DSIN=sinf", "-DCOS=cosf", "flips.c", "textbook.c", "-lm", "-o"]).arg(&program);
-    ensure!(cc.status().context("no C compiler")?.success(), "cc refuses flips.c");
+    cc.args([
+        "-O3",
+        "-DSIN=sinf",
+        "-DCOS=cosf",
+        "flips.c",
+        "textbook.c",
+        "-lm",
+        "-o",
+    ])
+    .arg(&program);
+    ensure!(
+        cc.status().context("no C compiler")?.success(),
+        "cc refuses flips.c"
+    );
 
     // Million steps a second.
     let (mut c, mut rates) = (0.0_f64, [0.0_f64; WAYS.len()]);
     for _ in 0..ROUNDS {
-        let output = Command::new(&program).args([SIDE.to_string(), map.dt.to_string(), most.to_string()]).output()?;
+        let output = Command::new(&program)
+            .args([SIDE.to_string(), map.dt.to_string(), most.to_string()])
+            .output()?;
         let text = String::from_utf8(output.stdout)?;
-        let numbers: Vec<f64> = text.split_whitespace().map(str::parse).collect::<Result<_, _>>()?;
-        let [steps_of_c, nanoseconds] = numbers[..] else { anyhow::bail!("flips.c says {text:?}") };
+        let numbers: Vec<f64> = text
+            .split_whitespace()
+            .map(str::parse)
+            .collect::<Result<_, _>>()?;
+        let [steps_of_c, nanoseconds] = numbers[..] else {
+            anyhow::bail!("flips.c says {text:?}")
+        };
         c = c.max(1e3 * steps_of_c / nanoseconds);
         let mut all = Vec::new();
         for ((_, find, _), best) in WAYS.iter().zip(&mut rates) {
@@ -74,16 +103,37 @@ fn main() -> Result<()> {
             *best = best.max(found.iter().map(steps).sum::<f64>() / seconds / 1e6);
             all.push(found);
         }
-        ensure!(all.iter().all(|found| *found == all[0]), "not the same flips");
+        ensure!(
+            all.iter().all(|found| *found == all[0]),
+            "not the same flips"
+        );
     }
     let threads = rayon::current_num_threads();
     println!("map of {SIDE} x {SIDE} starts, limit {LIMIT} sqrt(l/g), {threads} threads");
-    println!("{:51} {:>9} {:>8} {:>10}", "", "M steps/s", "times C", "times one");
-    let row = |name: &str, rate: f64| format!("{name:51} {rate:9.1} {:8.1} {:10.2}", rate / c, rate / rates[0]);
+    println!(
+        "{:51} {:>9} {:>8} {:>10}",
+        "", "M steps/s", "times C", "times one"
+    );
+    let row = |name: &str, rate: f64| {
+        format!(
+            "{name:51} {rate:9.1} {:8.1} {:10.2}",
+            rate / c,
+            rate / rates[0]
+        )
+    };
     println!("{}", row("plain C at -O3, the page's equations, sinf", c));
     for ((name, _, goal), rate) in WAYS.iter().zip(rates) {
-        let verdict = |goal| format!("  {goal:.0} asked: {}", if rate >= goal * c { "met" } else { "MISSED" });
-        println!("{}{}", row(name, rate), goal.map_or_else(String::new, verdict));
+        let verdict = |goal| {
+            format!(
+                "  {goal:.0} asked: {}",
+                if rate >= goal * c { "met" } else { "MISSED" }
+            )
+        };
+        println!(
+            "{}{}",
+            row(name, rate),
+            goal.map_or_else(String::new, verdict)
+        );
     }
     Ok(())
 }

@@ -15,7 +15,13 @@ use ode_solvers::dop_shared::OutputType;
 use ode_solvers::{Dop853, Rk4, System, Vector4};
 use reference::taylor;
 
-const PARAMETERS: Parameters<f64> = Parameters { m1: 1.0, m2: 1.0, l1: 1.0, l2: 1.0, g: 9.81 };
+const PARAMETERS: Parameters<f64> = Parameters {
+    m1: 1.0,
+    m2: 1.0,
+    l1: 1.0,
+    l2: 1.0,
+    g: 9.81,
+};
 /// Motions from rest: both angles, rad, and how long they are followed, s.
 const SCENES: [(&str, f64, u32); 2] = [("regular", 0.5, 10), ("chaotic", 2.0, 5)];
 /// A scene is followed in parts, so that errors can be taken within it.
@@ -44,20 +50,46 @@ const EXTRAPOLATED: &str = "double-pendulum, extrapolated to order 16";
 const CLASSICAL: &[Contestant] = &[
     (OURS, 8192, |scene, parts, steps| {
         let (pendulum, dt) = (pendulum(), scene.part / f64::from(steps));
-        (0..parts * steps).fold(scene.start.into(), |state, _| pendulum.step(&state, dt)).into()
+        (0..parts * steps)
+            .fold(scene.start.into(), |state, _| pendulum.step(&state, dt))
+            .into()
     }),
     (DIRECTION, 8192, form::<DirectionForm<f64, Plain>>),
-    ("double-pendulum, direction form compensated", 8192, form::<DirectionF64>),
-    ("ode_solvers, the book's equations", 8192, |scene, parts, steps| library_rk4(book, scene, parts, steps)),
-    ("ode_solvers, this kernel's equations", 8192, |scene, parts, steps| library_rk4(ours(), scene, parts, steps)),
+    (
+        "double-pendulum, direction form compensated",
+        8192,
+        form::<DirectionF64>,
+    ),
+    (
+        "ode_solvers, the book's equations",
+        8192,
+        |scene, parts, steps| library_rk4(book, scene, parts, steps),
+    ),
+    (
+        "ode_solvers, this kernel's equations",
+        8192,
+        |scene, parts, steps| library_rk4(ours(), scene, parts, steps),
+    ),
 ];
 
 /// For tight errors.
 const TIGHT: &[Contestant] = &[
     (EXTRAPOLATED, 8192, form::<ExtrapolationF64<16>>),
-    ("double-pendulum, direction form of RK4", 8192, form::<DirectionF64>),
-    ("ode_solvers DOP853, the book's equations", 128, |scene, parts, effort| dop853(book, scene, parts, effort)),
-    ("ode_solvers DOP853, this kernel's equations", 128, |scene, parts, effort| dop853(ours(), scene, parts, effort)),
+    (
+        "double-pendulum, direction form of RK4",
+        8192,
+        form::<DirectionF64>,
+    ),
+    (
+        "ode_solvers DOP853, the book's equations",
+        128,
+        |scene, parts, effort| dop853(book, scene, parts, effort),
+    ),
+    (
+        "ode_solvers DOP853, this kernel's equations",
+        128,
+        |scene, parts, effort| dop853(ours(), scene, parts, effort),
+    ),
 ];
 
 fn pendulum() -> double_pendulum::Pendulum<f64> {
@@ -83,7 +115,8 @@ fn book(&[a1, a2, p1, p2]: &[f64; 4]) -> [f64; 4] {
     let Parameters { m1, m2, l1, l2, g } = PARAMETERS;
     let (sin, cos) = ((a1 - a2).sin(), (a1 - a2).cos());
     let den = m1 + m2 * sin * sin;
-    let squares = p1 * p1 * m2 * l2 * l2 - 2.0 * p1 * p2 * m2 * l1 * l2 * cos + p2 * p2 * (m1 + m2) * l1 * l1;
+    let squares =
+        p1 * p1 * m2 * l2 * l2 - 2.0 * p1 * p2 * m2 * l1 * l2 * cos + p2 * p2 * (m1 + m2) * l1 * l1;
     let a_1 = p1 * p2 * sin / (l1 * l2 * den);
     let a_2 = squares * (2.0 * (a1 - a2)).sin() / (2.0 * l1 * l1 * l2 * l2 * den * den);
     [
@@ -106,20 +139,46 @@ impl<E: Fn(&[f64; 4]) -> [f64; 4]> System<f64, Vector4<f64>> for Problem<E> {
 /// What an integrator has found that ends before its time, as some do at tolerances near the resolution of f64.
 const LOST: [f64; 4] = [f64::NAN; 4];
 
-fn library_rk4(equations: impl Fn(&[f64; 4]) -> [f64; 4], scene: Scene, parts: u32, steps: u32) -> [f64; 4] {
-    let (start, end, dt) = (Vector4::from(scene.start), scene.part * f64::from(parts), scene.part / f64::from(steps));
+fn library_rk4(
+    equations: impl Fn(&[f64; 4]) -> [f64; 4],
+    scene: Scene,
+    parts: u32,
+    steps: u32,
+) -> [f64; 4] {
+    let (start, end, dt) = (
+        Vector4::from(scene.start),
+        scene.part * f64::from(parts),
+        scene.part / f64::from(steps),
+    );
     let mut stepper = Rk4::new(Problem(equations), 0.0, start, end, dt);
-    stepper.integrate().unwrap_or_else(|error| panic!("{error}"));
+    stepper
+        .integrate()
+        .unwrap_or_else(|error| panic!("{error}"));
     stepper.y_out().last().map_or(LOST, |&z| z.into())
 }
 
-fn dop853(equations: impl Fn(&[f64; 4]) -> [f64; 4], scene: Scene, parts: u32, effort: u32) -> [f64; 4] {
+fn dop853(
+    equations: impl Fn(&[f64; 4]) -> [f64; 4],
+    scene: Scene,
+    parts: u32,
+    effort: u32,
+) -> [f64; 4] {
     let (start, end) = (Vector4::from(scene.start), scene.part * f64::from(parts));
     let tolerance = 10_f64.powf(-f64::from(effort) / 8.0);
-    let mut stepper = Dop853::new(Problem(equations), 0.0, end, end, start, tolerance, tolerance);
+    let mut stepper = Dop853::new(
+        Problem(equations),
+        0.0,
+        end,
+        end,
+        start,
+        tolerance,
+        tolerance,
+    );
     stepper.set_output(OutputType::Sparse);
     let ended = stepper.integrate().ok();
-    ended.and_then(|_| stepper.y_out().last().copied()).map_or(LOST, Into::into)
+    ended
+        .and_then(|_| stepper.y_out().last().copied())
+        .map_or(LOST, Into::into)
 }
 
 /// A contestant, its effort, what it errs by, rad, and the fastest time.
@@ -135,13 +194,26 @@ struct Entry {
 fn race(contestants: &[Contestant], scene: Scene, asked: f64) -> Vec<Entry> {
     let parts = PARTS / 2 + 1..=PARTS;
     let times = parts.clone().map(|parts| scene.part * f64::from(parts));
-    let exact = taylor::states(&PARAMETERS, &Motion::at_rest(scene.start[0], scene.start[1]), times);
+    let exact = taylor::states(
+        &PARAMETERS,
+        &Motion::at_rest(scene.start[0], scene.start[1]),
+        times,
+    );
     let entry = |&contestant: &Contestant| {
         let (_, most, follow) = contestant;
-        let efforts = successors(Some(4), |last| Some(last + 1 + last / 128)).take_while(|&next| next <= most);
+        let efforts = successors(Some(4), |last| Some(last + 1 + last / 128))
+            .take_while(|&next| next <= most);
         let mut tries = efforts.map(|effort| {
-            let ends: Vec<_> = parts.clone().map(|parts| follow(scene, parts, effort).into()).collect();
-            Entry { contestant, effort, error: largest_difference(&ends, &exact), time: f64::INFINITY }
+            let ends: Vec<_> = parts
+                .clone()
+                .map(|parts| follow(scene, parts, effort).into())
+                .collect();
+            Entry {
+                contestant,
+                effort,
+                error: largest_difference(&ends, &exact),
+                time: f64::INFINITY,
+            }
         });
         tries.find(|entry| entry.error <= asked)
     };
@@ -166,21 +238,40 @@ const RACES: [(&[Contestant], f64, &str, [f64; 2]); 3] = [
 fn main() {
     let mut goals = Vec::new();
     for (index, (name, angle, seconds)) in SCENES.into_iter().enumerate() {
-        let scene = Scene { start: [angle, angle, 0.0, 0.0], part: f64::from(seconds) / f64::from(PARTS) };
+        let scene = Scene {
+            start: [angle, angle, 0.0, 0.0],
+            part: f64::from(seconds) / f64::from(PARTS),
+        };
         for (contestants, error, counted, most) in RACES {
             let entries = race(contestants, scene, error);
-            let peers = entries.iter().filter(|entry| !entry.contestant.0.starts_with(OURS));
+            let peers = entries
+                .iter()
+                .filter(|entry| !entry.contestant.0.starts_with(OURS));
             let peer = peers.map(|entry| entry.time).fold(f64::INFINITY, f64::min);
             println!(
                 "\n{name}: time to an error of {error:e} rad\n{:51} {:>7} {:>9} {:>6}",
                 "", "effort", "error", "time"
             );
             let mut measured = f64::INFINITY;
-            for Entry { contestant: (entrant, ..), effort, error, time } in entries {
+            for Entry {
+                contestant: (entrant, ..),
+                effort,
+                error,
+                time,
+            } in entries
+            {
                 println!("{entrant:51} {effort:7} {error:9.1e} {:6.2}", time / peer);
-                measured = if entrant == counted { time / peer } else { measured };
+                measured = if entrant == counted {
+                    time / peer
+                } else {
+                    measured
+                };
             }
-            goals.push((format!("{name}: {counted}, to {error:e} rad"), measured, most[index]));
+            goals.push((
+                format!("{name}: {counted}, to {error:e} rad"),
+                measured,
+                most[index],
+            ));
         }
     }
     println!("\ngoals, of the fastest peer's time at equal error");

@@ -13,7 +13,10 @@
 
 #![forbid(unsafe_code)]
 #![deny(clippy::print_stdout, clippy::print_stderr)]
-#![allow(missing_docs, reason = "nobody builds on this package: what name and type say is not said again")]
+#![allow(
+    missing_docs,
+    reason = "nobody builds on this package: what name and type say is not said again"
+)]
 
 pub mod commands;
 pub mod console;

@@ -2,7 +2,9 @@
 
 use std::process::ExitCode;
 
-use host_tests::commands::{count, demo, emulated, figures, flash, flips, plan, prove, report, simulate, verify_board};
+use host_tests::commands::{
+    count, demo, emulated, figures, flash, flips, plan, prove, report, simulate, verify_board,
+};
 use host_tests::console::cli::{main as run, verdict};
 
 fn main() -> ExitCode {

@@ -10,7 +10,9 @@ fn main() -> Result<(), Error> {
     let mut run = pendulum.run::<Fixed32>(&State::at_rest(2.0, 2.0), 1.0 / 240.0)?;
     for _frame in 0..600 {
         run.advance(4)?;
-        let [elbow, rod2] = run.directions_q30().map(|[sin, cos]| [sin, cos].map(pixels));
+        let [elbow, rod2] = run
+            .directions_q30()
+            .map(|[sin, cos]| [sin, cos].map(pixels));
         let tip = [elbow[0] + rod2[0], elbow[1] + rod2[1]]; // to the right and down: draw it here
         assert!(tip.iter().all(|part| part.abs() <= 2 * ROD));
     }

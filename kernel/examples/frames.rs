@@ -8,7 +8,8 @@ const STEPS: u32 = 4;
 
 fn main() -> Result<(), Error> {
     let pendulum = Pendulum::new(&Parameters::equal_rods(1.0, 1.0, 9.81))?;
-    let mut run = pendulum.run::<DirectionF32>(&State::at_rest(2.0, 2.0), 1.0 / f64::from(RATE * STEPS))?;
+    let mut run =
+        pendulum.run::<DirectionF32>(&State::at_rest(2.0, 2.0), 1.0 / f64::from(RATE * STEPS))?;
     for _frame in 0..10 * RATE {
         run.advance(STEPS)?; // refuses to leave the finite numbers, and stays as it was
         let [[sin1, cos1], [sin2, cos2]] = run.directions();

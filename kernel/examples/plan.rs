@@ -8,12 +8,35 @@ use double_pendulum::{Motion, Parameters};
 fn main() -> Result<(), Box<dyn Error>> {
     let pendulum = Parameters::equal_rods(1.0, 1.0, 9.81);
     let start = Motion::at_rest(2.0, 2.0);
-    let scene = Problem { pendulum, start, tolerance: 0.5 / 16.0, duration: 30.0, rate: 60 };
+    let scene = Problem {
+        pendulum,
+        start,
+        tolerance: 0.5 / 16.0,
+        duration: 30.0,
+        rate: 60,
+    };
     // A Cortex-M4F at 168 MHz.
     let (direction_plain, direction, fixed32, fixed64) = (160.0, 205.0, 622.0, 13.9e3);
-    let costs = Costs { closed_form: 1680.0, direction_plain, direction, fixed32, fixed64, preparation: 154e3 };
-    let plan = Plan::search(&scene, &costs, &Budget { frame: 400e3, planning: 1e9 })?;
-    println!("{}, {} steps a frame: right for {:.1} s", plan.method, plan.steps, plan.horizon);
+    let costs = Costs {
+        closed_form: 1680.0,
+        direction_plain,
+        direction,
+        fixed32,
+        fixed64,
+        preparation: 154e3,
+    };
+    let plan = Plan::search(
+        &scene,
+        &costs,
+        &Budget {
+            frame: 400e3,
+            planning: 1e9,
+        },
+    )?;
+    println!(
+        "{}, {} steps a frame: right for {:.1} s",
+        plan.method, plan.steps, plan.horizon
+    );
     let mut run = plan.run(&scene)?;
     while run.time() < plan.horizon {
         run.advance(1)?;

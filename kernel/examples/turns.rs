@@ -3,7 +3,13 @@
 use double_pendulum::{Error, ExtrapolationF64, Parameters, Pendulum, State};
 
 fn main() -> Result<(), Error> {
-    let pendulum = Pendulum::new(&Parameters { m1: 1.0, m2: 2.75, l1: 1.0, l2: 1.0, g: 9.81 })?;
+    let pendulum = Pendulum::new(&Parameters {
+        m1: 1.0,
+        m2: 2.75,
+        l1: 1.0,
+        l2: 1.0,
+        g: 9.81,
+    })?;
     let start = State::at_rest(3.0, 3.0);
     pendulum.check_step(1.0 / 256.0)?; // refuses a step above RK4's stability limit
     let mut run = pendulum.run::<ExtrapolationF64<12>>(&start, 1.0 / 256.0)?;
@@ -11,7 +17,11 @@ fn main() -> Result<(), Error> {
     for _ in 0..10 {
         run.advance(256)?;
         let [a1, a2] = run.angles();
-        println!("{} s: {a1:.3} and {a2:.3} rad, {:.9} J", run.time(), run.energy());
+        println!(
+            "{} s: {a1:.3} and {a2:.3} rad, {:.9} J",
+            run.time(),
+            run.energy()
+        );
         most = most.max(a1.abs()).max(a2.abs());
     }
     assert!(most > core::f64::consts::TAU, "a rod has turned over");

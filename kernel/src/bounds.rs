@@ -62,7 +62,11 @@ impl<R: Real> Modes<R> {
         check_forward::<R>(dt)?;
         let limit = self.step_limit().to_f64();
         if dt > limit {
-            return Err(Error::TooLarge { parameter: Parameter::Dt, value: dt, limit });
+            return Err(Error::TooLarge {
+                parameter: Parameter::Dt,
+                value: dt,
+                limit,
+            });
         }
         Ok(())
     }
@@ -95,7 +99,11 @@ impl<R: Real> Pendulum<R> {
 
     /// As [`Modes::check_step`]; without gravity there are no modes and every step forward is accepted.
     pub fn check_step(&self, dt: f64) -> Result<(), Error> {
-        if self.parameters().g == R::ZERO { check_forward::<R>(dt) } else { self.modes()?.check_step(dt) }
+        if self.parameters().g == R::ZERO {
+            check_forward::<R>(dt)
+        } else {
+            self.modes()?.check_step(dt)
+        }
     }
 
     /// The fastest rate, 1/s, at which anything changes in a motion of the energy of `state`:
@@ -108,7 +116,11 @@ impl<R: Real> Pendulum<R> {
     #[doc(hidden)]
     pub fn fastest_rate(&self, state: &State<R>) -> Result<R, Error> {
         let &Parameters { m1, m2, g, .. } = self.parameters();
-        let normal = if g == R::ZERO { R::ZERO } else { self.modes()?.fast.frequency };
+        let normal = if g == R::ZERO {
+            R::ZERO
+        } else {
+            self.modes()?.fast.frequency
+        };
         let elbow = self.bounds(state).elbow * (R::ONE + m2 / m1).sqrt();
         Ok((normal * normal + elbow * elbow).sqrt())
     }
@@ -143,7 +155,10 @@ const RESOLVED: f64 = 0.25;
 /// As [`check_step`], and refuses a step backwards.
 fn check_forward<R: Real>(dt: f64) -> Result<(), Error> {
     if dt.is_finite() && dt <= 0.0 {
-        return Err(Error::NotPositive { parameter: Parameter::Dt, value: dt });
+        return Err(Error::NotPositive {
+            parameter: Parameter::Dt,
+            value: dt,
+        });
     }
     check_step::<R>(dt)
 }

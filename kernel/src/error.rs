@@ -131,9 +131,14 @@ impl Error {
 impl core::error::Error for Error {}
 
 /// Refuses the first of `values` that is NaN or infinite.
-pub(crate) fn check_finite<R: Real>(values: impl IntoIterator<Item = (Parameter, R)>) -> Result<(), Error> {
+pub(crate) fn check_finite<R: Real>(
+    values: impl IntoIterator<Item = (Parameter, R)>,
+) -> Result<(), Error> {
     match values.into_iter().find(|(_, value)| !value.is_finite()) {
-        Some((parameter, value)) => Err(Error::NotFinite { parameter, value: value.to_f64() }),
+        Some((parameter, value)) => Err(Error::NotFinite {
+            parameter,
+            value: value.to_f64(),
+        }),
         None => Ok(()),
     }
 }

@@ -85,8 +85,8 @@ pub use bounds::Bounds;
 pub use error::{Error, Parameter};
 pub use methods::extrapolation::Extrapolation;
 pub use methods::{
-    ClosedFormF32, ClosedFormF64, DirectionF32, DirectionF32Plain, ExtrapolationF64, Fixed32, Fixed64, Form,
-    HamiltonF32, HamiltonF64, Oscillation, Run, SmallOscillations, rk4,
+    ClosedFormF32, ClosedFormF64, DirectionF32, DirectionF32Plain, ExtrapolationF64, Fixed32,
+    Fixed64, Form, HamiltonF32, HamiltonF64, Oscillation, Run, SmallOscillations, rk4,
 };
 pub use numbers::Real;
 pub use pendulum::{Direction, Motion, Parameters, Pendulum, State, Vector};

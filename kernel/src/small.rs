@@ -42,7 +42,10 @@ impl<R: Real> Modes<R> {
         parameters.check()?;
         let &Parameters { m1, m2, l1, l2, g } = parameters;
         if g == R::ZERO {
-            return Err(Error::NotPositive { parameter: Parameter::G, value: 0.0 });
+            return Err(Error::NotPositive {
+                parameter: Parameter::G,
+                value: 0.0,
+            });
         }
         let total = m1 + m2;
         let sum = l1 + l2;
@@ -53,14 +56,27 @@ impl<R: Real> Modes<R> {
         let slow = (R::TWO * g / (sum + root)).sqrt();
         let reach = root + difference.abs();
         let (short, long) = (R::TWO * l1 / reach, total * reach / (R::TWO * m2 * l2));
-        let (slow_shape, fast_shape) = if difference < R::ZERO { (long, -short) } else { (short, -long) };
+        let (slow_shape, fast_shape) = if difference < R::ZERO {
+            (long, -short)
+        } else {
+            (short, -long)
+        };
 
         let modes = Self {
-            fast: Mode { frequency: fast, shape: fast_shape },
-            slow: Mode { frequency: slow, shape: slow_shape },
+            fast: Mode {
+                frequency: fast,
+                shape: fast_shape,
+            },
+            slow: Mode {
+                frequency: slow,
+                shape: slow_shape,
+            },
             exchange: g * total * root / (m1 * l1 * l2 * (fast + slow)),
         };
-        if [fast, slow, fast_shape, slow_shape, modes.exchange].into_iter().all(R::is_normal) {
+        if [fast, slow, fast_shape, slow_shape, modes.exchange]
+            .into_iter()
+            .all(R::is_normal)
+        {
             Ok(modes)
         } else {
             Err(parameters.out_of_range())
@@ -111,9 +127,19 @@ impl<R: Real> Pendulum<R> {
 /// rod, which no masses can give.
 pub fn periodic_mass_ratio<R: Real>(fast: u16, slow: u16, lengths: [R; 2]) -> Result<R, Error> {
     let [l1, l2] = lengths;
-    Parameters { m1: R::ONE, m2: R::ONE, l1, l2, g: R::ONE }.check()?;
+    Parameters {
+        m1: R::ONE,
+        m2: R::ONE,
+        l1,
+        l2,
+        g: R::ONE,
+    }
+    .check()?;
     if slow == 0 {
-        return Err(Error::NotFinite { parameter: Parameter::FrequencyRatio, value: f64::INFINITY });
+        return Err(Error::NotFinite {
+            parameter: Parameter::FrequencyRatio,
+            value: f64::INFINITY,
+        });
     }
     let p = R::from_f64(f64::from(fast));
     let q = R::from_f64(f64::from(slow));

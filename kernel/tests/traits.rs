@@ -5,7 +5,10 @@ use double_pendulum::plan::{Plan, PlanError};
 use double_pendulum::{Error, Parameters, State};
 
 /// The compiler refuses a type that lacks a trait.
-fn is_kept_and_logged<T: Copy + PartialEq + serde::Serialize + serde::de::DeserializeOwned + defmt::Format>() {}
+fn is_kept_and_logged<
+    T: Copy + PartialEq + serde::Serialize + serde::de::DeserializeOwned + defmt::Format,
+>() {
+}
 
 #[test]
 fn inputs_and_results_are_kept_and_logged() {

@@ -1,6 +1,8 @@
 //! Five buttons, debounced, become commands, or one: by how often it is tapped before it is held.
 
-use crate::config::{DEBOUNCE_TICKS, HOLD_TICKS, MOST_TICKS_BETWEEN_TAPS, REPEAT_DELAY_TICKS, REPEAT_PERIOD_TICKS};
+use crate::config::{
+    DEBOUNCE_TICKS, HOLD_TICKS, MOST_TICKS_BETWEEN_TAPS, REPEAT_DELAY_TICKS, REPEAT_PERIOD_TICKS,
+};
 use crate::protocol::Command;
 
 choice! {
@@ -67,12 +69,21 @@ impl Controls {
     /// Takes the reading of one tick and returns what it asks for.
     pub fn tick(
         &mut self,
-        Pressed { up, down, left, right, select }: Pressed,
+        Pressed {
+            up,
+            down,
+            left,
+            right,
+            select,
+        }: Pressed,
     ) -> impl Iterator<Item = Command> + use<> {
         let select = self.select.tick(select);
         let with_select = self.select.is_held();
         let mut asked = [None; 4];
-        let arrows = ARROWS.into_iter().zip(&mut self.arrows).zip([up, down, left, right]);
+        let arrows = ARROWS
+            .into_iter()
+            .zip(&mut self.arrows)
+            .zip([up, down, left, right]);
         for (asked, (([alone, held], button), pressed)) in asked.iter_mut().zip(arrows) {
             *asked = match button.tick(pressed) {
                 Some(Change::Pressed) if with_select => Some(held),
@@ -86,8 +97,13 @@ impl Controls {
 }
 
 /// What select asks for when it is held after no tap, one, two, three, four; all but the first repeat.
-const HELD: [Command; 5] =
-    [Command::NextScene, Command::Heavier, Command::Lighter, Command::TurnRight, Command::TurnLeft];
+const HELD: [Command; 5] = [
+    Command::NextScene,
+    Command::Heavier,
+    Command::Lighter,
+    Command::TurnRight,
+    Command::TurnLeft,
+];
 
 /// The select button's history, as far as it is pressed alone.
 #[derive(Clone, Debug, Default)]
@@ -113,7 +129,14 @@ impl OneButton {
             }
             Some(Change::Released) => {
                 let tapped = self.held.take().is_some() && !self.served;
-                (self.taps, self.since) = (if tapped { self.taps.saturating_add(1) } else { 0 }, 0);
+                (self.taps, self.since) = (
+                    if tapped {
+                        self.taps.saturating_add(1)
+                    } else {
+                        0
+                    },
+                    0,
+                );
                 return tapped.then_some(Command::Restart);
             }
             Some(Change::Repeated) | None => {}
@@ -128,7 +151,9 @@ impl OneButton {
         }
         self.served = true;
         let command = HELD.get(self.taps).copied();
-        self.held = command.filter(|command| *command != Command::NextScene).map(|_| HOLD_TICKS - REPEAT_PERIOD_TICKS);
+        self.held = command
+            .filter(|command| *command != Command::NextScene)
+            .map(|_| HOLD_TICKS - REPEAT_PERIOD_TICKS);
         command
     }
 }
@@ -167,15 +192,35 @@ impl Button {
     }
 
     fn tick(&mut self, pressed: bool) -> Option<Change> {
-        let contradicts = if self.phase == Phase::Unproven { !pressed } else { pressed != self.is_held() };
-        self.contradictions = if contradicts { self.contradictions.saturating_add(1) } else { 0 };
+        let contradicts = if self.phase == Phase::Unproven {
+            !pressed
+        } else {
+            pressed != self.is_held()
+        };
+        self.contradictions = if contradicts {
+            self.contradictions.saturating_add(1)
+        } else {
+            0
+        };
         if self.contradictions >= DEBOUNCE_TICKS {
             self.contradictions = 0;
             let proven = self.phase != Phase::Unproven;
-            self.phase = if pressed { Phase::Held { repeats_in: REPEAT_DELAY_TICKS } } else { Phase::Released };
-            return proven.then_some(if pressed { Change::Pressed } else { Change::Released });
+            self.phase = if pressed {
+                Phase::Held {
+                    repeats_in: REPEAT_DELAY_TICKS,
+                }
+            } else {
+                Phase::Released
+            };
+            return proven.then_some(if pressed {
+                Change::Pressed
+            } else {
+                Change::Released
+            });
         }
-        let Phase::Held { repeats_in } = &mut self.phase else { return None };
+        let Phase::Held { repeats_in } = &mut self.phase else {
+            return None;
+        };
         *repeats_in = repeats_in.saturating_sub(1);
         (*repeats_in == 0).then(|| {
             *repeats_in = REPEAT_PERIOD_TICKS;

@@ -53,7 +53,10 @@ pub enum Event<Panel, Link> {
 /// What takes the events of an application with such a panel and link.
 pub trait Log<Panel: Display, Link: ErrorType>: FnMut(Event<Panel::Error, Link::Error>) {}
 
-impl<Panel: Display, Link: ErrorType, F: FnMut(Event<Panel::Error, Link::Error>)> Log<Panel, Link> for F {}
+impl<Panel: Display, Link: ErrorType, F: FnMut(Event<Panel::Error, Link::Error>)> Log<Panel, Link>
+    for F
+{
+}
 
 /// A count that wraps. How it has grown is said at most once a second, so that saying it does not make it worse.
 #[derive(Clone, Copy, Debug, Default)]
@@ -66,7 +69,11 @@ pub(super) struct ThrottledCounter {
 impl ThrottledCounter {
     /// Counts from `total` on, at this tick.
     pub(super) fn starting(total: u32, tick: u32) -> Self {
-        Self { total, said: total, tick }
+        Self {
+            total,
+            said: total,
+            tick,
+        }
     }
 
     pub(super) fn add(&mut self, count: u32) {

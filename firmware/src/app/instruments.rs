@@ -21,7 +21,12 @@ impl Default for Instruments {
             motion.advance(steps);
             0
         };
-        Self { stopwatch: || 0, timed, image: || &[], identity: Identity::default() }
+        Self {
+            stopwatch: || 0,
+            timed,
+            image: || &[],
+            identity: Identity::default(),
+        }
     }
 }
 
@@ -29,6 +34,10 @@ impl Instruments {
     /// The answer to [`Command::Identify`](crate::protocol::Command::Identify).
     pub fn identity(&self) -> Identity {
         let image = (self.image)();
-        Identity { image: CRC.checksum(image), image_bytes: image.len() as u32, ..self.identity }
+        Identity {
+            image: CRC.checksum(image),
+            image_bytes: image.len() as u32,
+            ..self.identity
+        }
     }
 }

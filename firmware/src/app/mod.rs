@@ -9,11 +9,15 @@ mod warm_restart;
 
 use embedded_io::Write;
 
-use crate::config::{MOST_MEASURED_STEPS, MOST_MESSAGES_PER_TICK, MOST_TICKS_PER_FRAME, Processor, RECEIVE_QUEUE};
+use crate::config::{
+    MOST_MEASURED_STEPS, MOST_MESSAGES_PER_TICK, MOST_TICKS_PER_FRAME, Processor, RECEIVE_QUEUE,
+};
 use crate::display::Display;
 use crate::graphics::{Canvas, FrameBuffers};
 use crate::job::{Job, OnBoards, Request};
-use crate::protocol::{Answer, Command, Decoder, Field, Frame, LinkError, MAX_WIRE, ToHost, decode_command, encode};
+use crate::protocol::{
+    Answer, Command, Decoder, Field, Frame, LinkError, MAX_WIRE, ToHost, decode_command, encode,
+};
 use event::{FaultEdge, ThrottledCounter};
 
 pub use controls::{Buttons, Controls, Key, NoButtons, Pressed};
@@ -84,7 +88,8 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
 
     /// Goes by a clock that stands at `clock` now, and counts frames and ticks without one from `frames` on.
     pub fn count_from(&mut self, clock: u32, frames: u32) {
-        (self.ticks, self.frames, self.dropped) = (clock, frames, ThrottledCounter::starting(frames, clock));
+        (self.ticks, self.frames, self.dropped) =
+            (clock, frames, ThrottledCounter::starting(frames, clock));
     }
 
     /// Goes on after a restart with what was played before it, and tells the host.
@@ -111,7 +116,10 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         }
         self.dropped.add(ticks - 1);
         if let Some(ticks) = self.dropped.news(self.ticks) {
-            log(Event::Dropped { ticks, total: self.dropped.total });
+            log(Event::Dropped {
+                ticks,
+                total: self.dropped.total,
+            });
         }
         if let Err(error) = self.player.check() {
             log(Event::Stopped(error));
@@ -128,12 +136,17 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     pub fn receive(&mut self, bytes: impl IntoIterator<Item = u8>, mut log: impl Log<Panel, Link>) {
         let mut left = MOST_MESSAGES_PER_TICK;
         for byte in bytes.into_iter().take(RECEIVE_QUEUE) {
-            match self.decoder.push(byte).map(|message| message.map(decode_command)) {
+            match self
+                .decoder
+                .push(byte)
+                .map(|message| message.map(decode_command))
+            {
                 // Of what is no command: an answer, perhaps its own, looped back. To answer that would have no end.
                 None | Some(Ok(None)) => continue,
                 Some(Ok(Some((request, command)))) => {
-                    let reply =
-                        command.ok_or(Field::Message).and_then(|command| self.reply(request, command, &mut log));
+                    let reply = command
+                        .ok_or(Field::Message)
+                        .and_then(|command| self.reply(request, command, &mut log));
                     if let Err(field) = reply {
                         self.answer(request, Answer::Refused(field), &mut log);
                     }
@@ -151,7 +164,11 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         if let Some(last) = self.last_damage
             && let Some(messages) = self.damaged.news(self.ticks)
         {
-            log(Event::Damaged { messages, total: self.damaged.total, last });
+            log(Event::Damaged {
+                messages,
+                total: self.damaged.total,
+                last,
+            });
         }
     }
 
@@ -166,8 +183,11 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     /// Does a bounded piece of the work asked for over the link, a step at most; whether there is more. A refusal ends it: the step
     /// is too long for the motion, which has left the finite numbers.
     pub fn work(&mut self, mut log: impl Log<Panel, Link>) -> bool {
-        let Some((request, job)) = &mut self.work else { return false };
-        let (request, index, reading, is_finished) = (*request, job.given, job.advance(), job.is_finished());
+        let Some((request, job)) = &mut self.work else {
+            return false;
+        };
+        let (request, index, reading, is_finished) =
+            (*request, job.given, job.advance(), job.is_finished());
         match reading {
             Ok(Some(reading)) => self.answer(request, Answer::Sample { index, reading }, &mut log),
             Ok(None) => {}
@@ -190,14 +210,22 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         if self.player.execute(command)? {
             log(Event::Started(self.player.name, self.player.settings));
             if let Some(stepping) = self.player.report.stepping {
-                log(Event::Motion(PlannerEvent::Shown(stepping, self.player.cost(stepping))));
+                log(Event::Motion(PlannerEvent::Shown(
+                    stepping,
+                    self.player.cost(stepping),
+                )));
             }
         }
         Ok(())
     }
 
     /// Executes a command that came over the link, and answers it; what is wrong with it, if it cannot be.
-    fn reply(&mut self, request: u16, command: Command, log: &mut impl Log<Panel, Link>) -> Result<(), Field> {
+    fn reply(
+        &mut self,
+        request: u16,
+        command: Command,
+        log: &mut impl Log<Panel, Link>,
+    ) -> Result<(), Field> {
         self.execute(command, log)?;
         let answer = match command {
             Command::Ask => Answer::Status(self.player.status()),
@@ -206,7 +234,10 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
             Command::Measure { steps, in_ram } => {
                 let (steps, timed) = (steps.min(MOST_MEASURED_STEPS), self.instruments.timed);
                 let (_, job) = self.work.as_mut().ok_or(Field::Message)?;
-                Answer::Measured { steps, cycles: job.measure(|motion| timed(motion, steps, in_ram)) }
+                Answer::Measured {
+                    steps,
+                    cycles: job.measure(|motion| timed(motion, steps, in_ram)),
+                }
             }
             Command::Simulate(motion) => return self.begin_work(request, &motion, log),
             _ => Answer::Done,
@@ -217,7 +248,12 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
 
     /// The samples of the motion follow; first what a step too long for its energy should be.
     #[inline(never)] // what it takes to prepare a motion would be on the stack of every command
-    fn begin_work(&mut self, request: u16, motion: &Request, log: &mut impl Log<Panel, Link>) -> Result<(), Field> {
+    fn begin_work(
+        &mut self,
+        request: u16,
+        motion: &Request,
+        log: &mut impl Log<Panel, Link>,
+    ) -> Result<(), Field> {
         let run = OnBoards::start(motion).ok_or(Field::Method)??;
         self.work = Some((request, Job::new(run, motion)?));
         log(Event::Asked);
@@ -231,7 +267,8 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
     #[inline(never)]
     fn show(&mut self, scene_cycles: u32, log: &mut impl Log<Panel, Link>) {
         let shown = self.panel.flush(self.canvas);
-        self.panel_failing.note(shown, |error| log(Event::Panel(error)));
+        self.panel_failing
+            .note(shown, |error| log(Event::Panel(error)));
         if let Some(found) = self.panel.found() {
             log(Event::PanelFound(found));
         }
@@ -257,8 +294,12 @@ impl<'a, Panel: Display, Link: Write, Keys: Buttons> App<'a, Panel, Link, Keys> 
         let mut left = encode(message, &mut wire);
         while !left.is_empty() && sent.is_ok() {
             // A link that takes nothing and says so is no reason to panic: the byte counts as sent.
-            sent = self.link.write(left).map(|count| left = left.get(count.max(1)..).unwrap_or_default());
+            sent = self
+                .link
+                .write(left)
+                .map(|count| left = left.get(count.max(1)..).unwrap_or_default());
         }
-        self.link_failing.note(sent, |error| log(Event::Link(error)));
+        self.link_failing
+            .note(sent, |error| log(Event::Link(error)));
     }
 }

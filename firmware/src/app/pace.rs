@@ -19,7 +19,12 @@ pub struct Pace {
 
 impl Default for Pace {
     fn default() -> Self {
-        Self { paused: false, steps: 0, speed: WHOLE_TICK, part: 0 }
+        Self {
+            paused: false,
+            steps: 0,
+            speed: WHOLE_TICK,
+            part: 0,
+        }
     }
 }
 
@@ -45,7 +50,10 @@ impl Pace {
     /// Sets the speed, to the nearest part; refuses one that is out of range.
     pub fn set_speed(&mut self, speed: f64) -> Result<(), Field> {
         let parts = (speed * f64::from(WHOLE_TICK) + 0.5) as u32;
-        self.speed = (1..=GREATEST_SPEED * WHOLE_TICK).contains(&parts).then_some(parts).ok_or(Field::Speed)?;
+        self.speed = (1..=GREATEST_SPEED * WHOLE_TICK)
+            .contains(&parts)
+            .then_some(parts)
+            .ok_or(Field::Speed)?;
         Ok(())
     }
 }

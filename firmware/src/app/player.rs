@@ -41,13 +41,27 @@ impl<'a> Player<'a> {
         let (scene, settings) = (AnyScene::empty(), Settings::default());
         let (name, report) = (SceneName::Frequencies, scene.report(0));
         let (planner, pace, stopped) = (Planner::new(processor), Pace::default(), false);
-        Self { name, settings, scene, method: None, planner, next: None, ink, pace, report, stopped }
+        Self {
+            name,
+            settings,
+            scene,
+            method: None,
+            planner,
+            next: None,
+            ink,
+            pace,
+            report,
+            stopped,
+        }
     }
 
     /// Plays a scene with `settings`; the kernel's error if they describe no pendulum, and nothing is changed.
     #[inline(never)] // what a scene needs to start would be on the stack of every frame
     pub fn play(&mut self, name: SceneName, settings: Settings) -> Result<(), Error> {
-        let resources = Resources { processor: self.planner.processor, method: self.method };
+        let resources = Resources {
+            processor: self.planner.processor,
+            method: self.method,
+        };
         let height = self.scene.start(name, &settings, &resources)?;
         (self.name, self.settings, self.stopped, self.next) = (name, settings, false, None);
         let begun = self.scene.report(0).stepping;
@@ -73,14 +87,25 @@ impl<'a> Player<'a> {
             Command::NextScene => return self.choose(self.name.next()),
             Command::PreviousScene => return self.choose(self.name.previous()),
             Command::Choose(name) => return self.choose(name),
-            Command::Set { field: Field::Speed, value } => self.pace.set_speed(value)?,
+            Command::Set {
+                field: Field::Speed,
+                value,
+            } => self.pace.set_speed(value)?,
             Command::Method(method) => return self.go(method),
             // What the new value makes impossible, it is the new value that is wrong.
-            Command::Set { field, value } => return self.start(self.name, self.with(field, value)?).map_err(|_| field),
+            Command::Set { field, value } => {
+                return self
+                    .start(self.name, self.with(field, value)?)
+                    .map_err(|_| field);
+            }
             Command::Pause(paused) => (self.pace.paused, self.pace.steps) = (paused, 0),
             Command::TogglePause => (self.pace.paused, self.pace.steps) = (!self.pace.paused, 0),
             Command::Step(ticks) => (self.pace.paused, self.pace.steps) = (true, ticks),
-            Command::Ask | Command::AskPlan | Command::Identify | Command::Measure { .. } | Command::Simulate(_) => {}
+            Command::Ask
+            | Command::AskPlan
+            | Command::Identify
+            | Command::Measure { .. }
+            | Command::Simulate(_) => {}
         }
         Ok(false)
     }
@@ -98,7 +123,11 @@ impl<'a> Player<'a> {
                 self.planner.rest();
                 if self.scene.planned().is_none_or(|motion| next.tick(motion)) {
                     self.next = None;
-                    if let Some(stepping) = self.scene.planned().map(|simulation| simulation.motion.stepping()) {
+                    if let Some(stepping) = self
+                        .scene
+                        .planned()
+                        .map(|simulation| simulation.motion.stepping())
+                    {
                         tell(PlannerEvent::Shown(stepping, self.cost(stepping)));
                     }
                 }
@@ -113,7 +142,11 @@ impl<'a> Player<'a> {
     fn follow(&mut self, found: &PlanResult) {
         if let (Ok(plan), None) = (found, self.method) {
             let stepping = plan.stepping();
-            if self.scene.planned().is_some_and(|simulation| simulation.motion.stepping() != stepping) {
+            if self
+                .scene
+                .planned()
+                .is_some_and(|simulation| simulation.motion.stepping() != stepping)
+            {
                 self.next = CatchingUp::new(&self.settings, stepping, &self.planner.processor).ok();
             }
         }
@@ -136,8 +169,14 @@ impl<'a> Player<'a> {
     /// The scene in numbers, with what the planner knows of it.
     fn now(&self) -> Report {
         let report = self.scene.report(self.planner.ticks);
-        let Some(stepping) = report.stepping.filter(|_| self.planner.task.is_some()) else { return report };
-        Report { horizon: self.planner.horizon(stepping) as f32, is_looking: self.planner.is_looking(), ..report }
+        let Some(stepping) = report.stepping.filter(|_| self.planner.task.is_some()) else {
+            return report;
+        };
+        Report {
+            horizon: self.planner.horizon(stepping) as f32,
+            is_looking: self.planner.is_looking(),
+            ..report
+        }
     }
 
     /// Takes the scene's numbers if they are finite; else stops its time for good and says why, once. To be asked
@@ -172,18 +211,46 @@ impl<'a> Player<'a> {
     pub fn frame(&self) -> Frame {
         let [start_angle, _] = self.settings.angles();
         let (scene, paused, mass_ratio) = (self.name, self.is_paused(), self.settings.mass_ratio());
-        Frame { scene, paused, mass_ratio, start_angle, report: self.report, ..Frame::default() }
+        Frame {
+            scene,
+            paused,
+            mass_ratio,
+            start_angle,
+            report: self.report,
+            ..Frame::default()
+        }
     }
 
     pub fn status(&self) -> Status {
-        let Self { name: scene, settings, method, .. } = *self;
+        let Self {
+            name: scene,
+            settings,
+            method,
+            ..
+        } = *self;
         let (paused, steps, speed) = (self.is_paused(), self.pace.steps, self.pace.speed());
-        Status { scene, settings, method, processor: self.planner.processor.code, paused, steps, speed }
+        Status {
+            scene,
+            settings,
+            method,
+            processor: self.planner.processor.code,
+            paused,
+            steps,
+            speed,
+        }
     }
 
     /// Plays what a status tells, from its start; if that cannot be, nothing is changed and the error names what is wrong.
     pub fn resume(&mut self, status: &Status) -> Result<(), Field> {
-        let Status { scene, settings, method, paused, steps, speed, .. } = *status;
+        let Status {
+            scene,
+            settings,
+            method,
+            paused,
+            steps,
+            speed,
+            ..
+        } = *status;
         let mut pace = Pace::default();
         (pace.paused, pace.steps) = (paused, steps);
         pace.set_speed(speed.into())?;
@@ -206,18 +273,29 @@ impl<'a> Player<'a> {
         if method.is_some_and(|method| !Method::DRAWN.contains(&method)) {
             return Err(Field::Method);
         }
-        self.start_by(method, self.name, self.settings).map_err(|_| Field::Method)
+        self.start_by(method, self.name, self.settings)
+            .map_err(|_| Field::Method)
     }
 
-    fn start_by(&mut self, method: Option<Method>, name: SceneName, settings: Settings) -> Result<bool, Field> {
+    fn start_by(
+        &mut self,
+        method: Option<Method>,
+        name: SceneName,
+        settings: Settings,
+    ) -> Result<bool, Field> {
         let before = core::mem::replace(&mut self.method, method);
-        self.start(name, settings).inspect_err(|_| self.method = before)
+        self.start(name, settings)
+            .inspect_err(|_| self.method = before)
     }
 
     /// The settings with one of them changed; refuses an angle beyond straight up.
     fn with(&self, field: Field, value: f64) -> Result<Settings, Field> {
         let mut settings = self.settings;
-        let Settings { parameters, degrees: [a1, a2], velocities: [w1, w2] } = &mut settings;
+        let Settings {
+            parameters,
+            degrees: [a1, a2],
+            velocities: [w1, w2],
+        } = &mut settings;
         let (value, angle) = (value as f32, value.to_degrees() as f32);
         match field {
             Field::M1 => parameters.m1 = value,
@@ -234,6 +312,10 @@ impl<'a> Player<'a> {
             _ => return Err(Field::Field),
         }
         let within = |degrees: f32| degrees.abs() <= GREATEST_ANGLE;
-        if settings.degrees.into_iter().all(within) { Ok(settings) } else { Err(field) }
+        if settings.degrees.into_iter().all(within) {
+            Ok(settings)
+        } else {
+            Err(field)
+        }
     }
 }

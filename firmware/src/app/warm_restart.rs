@@ -47,7 +47,14 @@ impl Record {
     /// watchdog, by the board's own register.
     pub fn restart(self, by_watchdog: bool) -> Option<Self> {
         let cause = Some(self.end.cause.or(by_watchdog.then_some(Cause::Hang))?);
-        Some(Self { end: Restarted { cause, restarts: self.end.restarts.saturating_add(1), ..self.end }, ..self })
+        Some(Self {
+            end: Restarted {
+                cause,
+                restarts: self.end.restarts.saturating_add(1),
+                ..self.end
+            },
+            ..self
+        })
     }
 
     /// Whether what was played has been tried often enough.
@@ -67,7 +74,10 @@ pub struct Journal {
 
 impl Journal {
     pub fn new(restart: Option<&Record>) -> Self {
-        Self { restarts: restart.map_or(0, |restart| restart.end.restarts), frames: 0 }
+        Self {
+            restarts: restart.map_or(0, |restart| restart.end.restarts),
+            frames: 0,
+        }
     }
 
     /// What to keep of `player`, which has just been shown.
@@ -77,6 +87,14 @@ impl Journal {
             self.restarts = 0;
         }
         let (restarts, scene, step) = (self.restarts, player.name, player.report.step);
-        Record { played: player.status(), end: Restarted { restarts, scene, step, ..Restarted::default() } }
+        Record {
+            played: player.status(),
+            end: Restarted {
+                restarts,
+                scene,
+                step,
+                ..Restarted::default()
+            },
+        }
     }
 }

@@ -28,7 +28,9 @@ fn run(buffer: &mut [u8]) -> Result<(), ()> {
     clock.set_reload(FULL);
     clock.clear_current();
     clock.enable_counter();
-    let outcome = Request::parse(command_line(buffer).ok_or(())?).ok_or(())?.crc();
+    let outcome = Request::parse(command_line(buffer).ok_or(())?)
+        .ok_or(())?
+        .crc();
     let ticks = FULL - SYST::get_current();
     match outcome {
         Ok(crc) => writeln!(output, "{crc:08x} {ticks}").map_err(|_| ()),

@@ -28,7 +28,11 @@ enum Sink {
     Emulator(HostStream),
 }
 
-static PATH: Shared<Path> = Shared::new(Path { encoder: Encoder::new(), sink: Sink::Nowhere, interrupts: false });
+static PATH: Shared<Path> = Shared::new(Path {
+    encoder: Encoder::new(),
+    sink: Sink::Nowhere,
+    interrupts: false,
+});
 
 /// Opens the log of a chip; before that, lines are lost.
 pub fn into_memory() {

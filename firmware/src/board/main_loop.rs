@@ -45,17 +45,22 @@ macro_rules! program {
     ($module:ident::$board:ident on $processor:ident) => {
         #[cortex_m_rt::entry]
         fn main() -> ! {
-            static mut BUFFERS: $crate::graphics::FrameBuffers = $crate::graphics::FrameBuffers::BLANK;
+            static mut BUFFERS: $crate::graphics::FrameBuffers =
+                $crate::graphics::FrameBuffers::BLANK;
             static mut APP: core::mem::MaybeUninit<
                 <$crate::board::$module::$board as $crate::board::Plays>::Application,
             > = core::mem::MaybeUninit::uninit();
-            let Some(board) = $crate::board::$module::take() else { panic!("the board was taken before") };
+            let Some(board) = $crate::board::$module::take() else {
+                panic!("the board was taken before")
+            };
             board.play(APP, BUFFERS, $crate::config::$processor)
         }
     };
 }
 
-impl<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons, Dog: Watchdog> Board<Panel, Link, Keys, Dog> {
+impl<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons, Dog: Watchdog>
+    Board<Panel, Link, Keys, Dog>
+{
     /// Plays for ever, the application and its frames at the places given.
     pub fn play(
         self,
@@ -63,8 +68,19 @@ impl<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons, Dog: Watchdog> Bo
         buffers: &'static mut FrameBuffers,
         processor: Processor,
     ) -> ! {
-        let Self { panel, link, keys, instruments, watchdog, reset_by_watchdog } = self;
-        defmt::info!("boot: {=str}, {} Hz", instruments.identity.board.name(), instruments.identity.hertz);
+        let Self {
+            panel,
+            link,
+            keys,
+            instruments,
+            watchdog,
+            reset_by_watchdog,
+        } = self;
+        defmt::info!(
+            "boot: {=str}, {} Hz",
+            instruments.identity.board.name(),
+            instruments.identity.hertz
+        );
         let app = application(place, buffers, panel, link, keys, processor);
         app.instruments = instruments;
         run(app, watchdog, reset_by_watchdog)
@@ -125,7 +141,13 @@ fn resume<Panel: Display<Error: Debug>, Link: Write, Keys: Buttons>(
 ) -> Journal {
     let restart = retained::recall(reset_by_watchdog);
     if let Some(restart) = &restart {
-        retained::keep(&Record { end: Restarted { cause: None, ..restart.end }, ..*restart });
+        retained::keep(&Record {
+            end: Restarted {
+                cause: None,
+                ..restart.end
+            },
+            ..*restart
+        });
         app.resume(restart, log);
     }
     let mut journal = Journal::new(restart.as_ref());
@@ -148,22 +170,66 @@ fn log<Panel: Debug, Link: Debug>(event: Event<Panel, Link>) {
                 defmt::warn!("too often: now with the first scene");
             }
         }
-        Event::Started(scene, Settings { parameters, degrees: [a1, a2], velocities: [w1, w2] }) => {
+        Event::Started(
+            scene,
+            Settings {
+                parameters,
+                degrees: [a1, a2],
+                velocities: [w1, w2],
+            },
+        ) => {
             let Parameters { m1, m2, l1, l2, g } = parameters;
-            defmt::info!("{=str} starts at {} and {} degrees, {} and {} rad/s", scene.name(), a1, a2, w1, w2);
-            defmt::info!("masses {} and {} kg, rods {} and {} m, g {} m/s2", m1, m2, l1, l2, g);
+            defmt::info!(
+                "{=str} starts at {} and {} degrees, {} and {} rad/s",
+                scene.name(),
+                a1,
+                a2,
+                w1,
+                w2
+            );
+            defmt::info!(
+                "masses {} and {} kg, rods {} and {} m, g {} m/s2",
+                m1,
+                m2,
+                l1,
+                l2,
+                g
+            );
         }
         Event::Refused(command, field) => defmt::warn!("refused {}: {}", command, field),
-        Event::Dropped { ticks, total } => defmt::warn!("dropped {} frames, {} since reset", ticks, total),
+        Event::Dropped { ticks, total } => {
+            defmt::warn!("dropped {} frames, {} since reset", ticks, total)
+        }
         Event::Panel(error) => defmt::warn!("panel: {}", Debug2Format(&error)),
         Event::PanelFound(found) => defmt::info!("panel: {}", Debug2Format(&found)),
-        Event::Damaged { messages, total, last } => {
-            defmt::warn!("{} damaged messages, {} since reset, the last: {}", messages, total, last);
+        Event::Damaged {
+            messages,
+            total,
+            last,
+        } => {
+            defmt::warn!(
+                "{} damaged messages, {} since reset, the last: {}",
+                messages,
+                total,
+                last
+            );
         }
-        Event::Lost { bytes, total } => defmt::warn!("{} received bytes lost, {} since reset", bytes, total),
+        Event::Lost { bytes, total } => {
+            defmt::warn!("{} received bytes lost, {} since reset", bytes, total)
+        }
         Event::Stopped(error) => defmt::error!("stopped: {}", error),
-        Event::StepTooLong(step) => defmt::warn!("the step is too long for this energy, {} s would do", step),
-        Event::Motion(PlannerEvent::Found(Ok(Plan { method, steps, error, cost, horizon, limit, .. }))) => {
+        Event::StepTooLong(step) => {
+            defmt::warn!("the step is too long for this energy, {} s would do", step)
+        }
+        Event::Motion(PlannerEvent::Found(Ok(Plan {
+            method,
+            steps,
+            error,
+            cost,
+            horizon,
+            limit,
+            ..
+        }))) => {
             defmt::info!(
                 "plan: {=str}, steps to a frame: {}, expected to be at most {}/1000 of a pixel off until {}.{:02} s ({=str}), {} cycles a frame",
                 method.name(),
@@ -176,10 +242,18 @@ fn log<Panel: Debug, Link: Debug>(event: Event<Panel, Link>) {
             )
         }
         Event::Motion(PlannerEvent::Found(Err(PlanError::NoMethod { limit, .. }))) => {
-            defmt::info!("plan: nothing affordable is right to half a pixel in any frame ({=str})", limit.name());
+            defmt::info!(
+                "plan: nothing affordable is right to half a pixel in any frame ({=str})",
+                limit.name()
+            );
         }
         Event::Motion(PlannerEvent::Shown(Stepping { method, steps }, cost)) => {
-            defmt::info!("shown: {=str}, steps to a frame: {}, {} cycles a frame", method.name(), steps, cost as u32);
+            defmt::info!(
+                "shown: {=str}, steps to a frame: {}, {} cycles a frame",
+                method.name(),
+                steps,
+                cost as u32
+            );
         }
         Event::Motion(PlannerEvent::Found(Err(error))) => defmt::warn!("no plan: {}", error),
         Event::Asked => defmt::info!("computing a motion on request"),

@@ -51,7 +51,13 @@ pub fn take() -> Option<Mps2An386> {
     unmask(INTERRUPT);
     Some(Board {
         panel: NoDisplay,
-        link: Outward(|bytes| send(bytes, || STATE.read() & TRANSMITTER_FULL == 0, |byte| DATA.write(byte.into()))),
+        link: Outward(|bytes| {
+            send(
+                bytes,
+                || STATE.read() & TRANSMITTER_FULL == 0,
+                |byte| DATA.write(byte.into()),
+            )
+        }),
         keys: NoButtons,
         instruments,
         watchdog: TwoStage::start(WATCHDOG, HERTZ, NMI),

@@ -41,13 +41,19 @@ impl<P: PanelPort> Bus<P> {
     /// There is one at most: the interrupt knows no other.
     pub(in crate::board) fn new(mut port: P) -> Option<Self> {
         port.reset();
-        Some(Self { port, outbox: Some(cortex_m::singleton!(: Outbox = Outbox::default())?) })
+        Some(Self {
+            port,
+            outbox: Some(cortex_m::singleton!(: Outbox = Outbox::default())?),
+        })
     }
 }
 
 impl<P: PanelPort> PanelBus for Bus<P> {
     fn outbox(&mut self) -> Option<(&mut Outbox, Sent)> {
-        if let Some(outbox) = OUTGOING.with(|outgoing| outgoing.take_if(|outbox| outbox.sent.is_some())).flatten() {
+        if let Some(outbox) = OUTGOING
+            .with(|outgoing| outgoing.take_if(|outbox| outbox.sent.is_some()))
+            .flatten()
+        {
             if !matches!(outbox.sent, Some(Ok(()) | Err(ErrorKind::NoAcknowledge(_)))) {
                 self.port.reset();
             }

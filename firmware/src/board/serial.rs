@@ -14,7 +14,11 @@ pub(in crate::board) struct Inbox {
     lost: u32,
 }
 
-static INBOX: Shared<Inbox> = Shared::new(Inbox { receive: None, received: Deque::new(), lost: 0 });
+static INBOX: Shared<Inbox> = Shared::new(Inbox {
+    receive: None,
+    received: Deque::new(),
+    lost: 0,
+});
 
 impl Inbox {
     pub fn push(&mut self, byte: u8) {
@@ -69,7 +73,11 @@ impl ErrorType for Outward {
 
 impl Write for Outward {
     fn write(&mut self, bytes: &[u8]) -> Result<usize, ErrorKind> {
-        if (self.0)(bytes) { Ok(bytes.len()) } else { Err(ErrorKind::TimedOut) }
+        if (self.0)(bytes) {
+            Ok(bytes.len())
+        } else {
+            Err(ErrorKind::TimedOut)
+        }
     }
 
     /// Bytes leave by themselves; there is nothing to wait for.

@@ -36,9 +36,14 @@ core::arch::global_asm!(
 /// As [`Instruments::timed`](crate::app::Instruments::timed).
 pub fn timed(motion: &mut OnBoards, steps: u32, in_ram: bool) -> u32 {
     let advance = <OnBoards as Run>::advance as *const ();
-    let place = if in_ram { &raw const __steps_ram } else { &raw const __steps_flash };
+    let place = if in_ram {
+        &raw const __steps_ram
+    } else {
+        &raw const __steps_flash
+    };
     let distance = (place as usize).wrapping_sub(&raw const __steps_start as usize);
     // SAFETY: at this distance from the function stands a copy of it and of all that it calls.
-    let advance: fn(&mut OnBoards, u32) = unsafe { core::mem::transmute(advance.wrapping_byte_add(distance)) };
+    let advance: fn(&mut OnBoards, u32) =
+        unsafe { core::mem::transmute(advance.wrapping_byte_add(distance)) };
     cycles_of(|| advance(motion, steps))
 }

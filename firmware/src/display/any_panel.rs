@@ -23,7 +23,9 @@ impl<Color: PixelColor, Target: DrawTarget<Color = Color>> Display for AnyPanel<
 
     fn flush(&mut self, canvas: &Canvas) -> Result<(), Target::Error> {
         let area = Rectangle::new(self.corner, Size::new(WIDTH as u32, HEIGHT as u32));
-        let greys = canvas.bytes().flat_map(|pair| [pair >> 4, pair & 0x0F].map(Gray4::new));
+        let greys = canvas
+            .bytes()
+            .flat_map(|pair| [pair >> 4, pair & 0x0F].map(Gray4::new));
         self.target.fill_contiguous(&area, greys.map(self.colour))
     }
 }

@@ -41,14 +41,25 @@ pub struct OutByte {
 
 impl Default for Outbox {
     fn default() -> Self {
-        Self { address: 0, messages: Vec::new(), at: 0, left: 0, asks: false, status: 0, sent: Some(Ok(())) }
+        Self {
+            address: 0,
+            messages: Vec::new(),
+            at: 0,
+            left: 0,
+            asks: false,
+            status: 0,
+            sent: Some(Ok(())),
+        }
     }
 }
 
 impl Outbox {
     /// Empties it: what is put in from now on is for this address.
     pub fn address_to(&mut self, address: u8) {
-        *self = Self { address, ..Self::default() };
+        *self = Self {
+            address,
+            ..Self::default()
+        };
     }
 
     /// Puts a message in: a byte that tells what follows, and what follows, up to 254 bytes. One that does not fit is dropped; the
@@ -59,7 +70,9 @@ impl Outbox {
             && self.messages.len() + needed <= CAPACITY
         {
             let parts: [&[u8]; 2] = [&[length, head], body];
-            parts.iter().for_each(|part| drop(self.messages.extend_from_slice(part)));
+            parts
+                .iter()
+                .for_each(|part| drop(self.messages.extend_from_slice(part)));
         }
     }
 
@@ -90,7 +103,10 @@ impl Iterator for Outbox {
         let value = *self.messages.get(self.at)?;
         self.at += 1;
         self.left -= 1;
-        Some(OutByte { value, ends_message: self.left == 0 })
+        Some(OutByte {
+            value,
+            ends_message: self.left == 0,
+        })
     }
 }
 

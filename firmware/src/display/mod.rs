@@ -65,7 +65,10 @@ pub struct Found {
 }
 
 impl Found {
-    pub const SILENT: Self = Self { controller: Controller::Ssd1306, by: By::Silence };
+    pub const SILENT: Self = Self {
+        controller: Controller::Ssd1306,
+        by: By::Silence,
+    };
 
     /// A panel of this status: what the lower half says, for the upper one says whether it is on.
     ///
@@ -76,7 +79,10 @@ impl Found {
             0x07 | 0x0F => Controller::Sh1107,
             _ => Controller::Ssd1306, // 3 or 6, and who knows what of an imitation
         };
-        Self { controller, by: By::Status(status) }
+        Self {
+            controller,
+            by: By::Status(status),
+        }
     }
 }
 

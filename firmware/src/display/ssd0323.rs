@@ -64,7 +64,12 @@ pub struct Ssd0323<'a, Spi, Pin> {
 impl<'a, Spi: SpiDevice, Pin: OutputPin<Error = Infallible>> Ssd0323<'a, Spi, Pin> {
     /// Takes the panel's wires, and a canvas to remember what it shows; nothing is sent yet.
     pub fn new(spi: Spi, data_not_command: Pin, memory: &'a mut Canvas) -> Self {
-        Self { spi, data_not_command, memory, is_known: false }
+        Self {
+            spi,
+            data_not_command,
+            memory,
+            is_known: false,
+        }
     }
 
     /// Configures the controller, blanks its memory and switches the panel on.
@@ -81,9 +86,15 @@ impl<'a, Spi: SpiDevice, Pin: OutputPin<Error = Infallible>> Ssd0323<'a, Spi, Pi
     fn update(&mut self, canvas: &Canvas) -> Result<(), Spi::Error> {
         let mut next = None;
         for (y, new) in (0..).zip(&canvas.rows) {
-            let Some(old) = self.memory.row_mut(y.into()) else { break };
+            let Some(old) = self.memory.row_mut(y.into()) else {
+                break;
+            };
             let all = (0, WIDTH / 2 - 1);
-            if let Some((first, last)) = if self.is_known { differing(old, new) } else { Some(all) } {
+            if let Some((first, last)) = if self.is_known {
+                differing(old, new)
+            } else {
+                Some(all)
+            } {
                 *old = *new;
                 if next != Some(y) {
                     self.command(&rows(y))?;
@@ -111,7 +122,12 @@ impl<'a, Spi: SpiDevice, Pin: OutputPin<Error = Infallible>> Ssd0323<'a, Spi, Pi
 /// The first and the last byte of the words in which two rows differ; `None` if they are alike.
 fn differing(Row(old): &Row, Row(new): &Row) -> Option<(usize, usize)> {
     const WORD: usize = size_of::<u32>();
-    let words = || old.as_chunks::<WORD>().0.iter().zip(new.as_chunks::<WORD>().0);
+    let words = || {
+        old.as_chunks::<WORD>()
+            .0
+            .iter()
+            .zip(new.as_chunks::<WORD>().0)
+    };
     let first = words().position(|(old, new)| old != new)?;
     let last = words().rposition(|(old, new)| old != new)?;
     Some((WORD * first, WORD * last + WORD - 1))

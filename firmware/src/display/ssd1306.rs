@@ -115,8 +115,25 @@ enum State {
 impl<Bus: PanelBus> Ssd1306<Bus> {
     /// Takes the bus, and the controller if that is not to be asked for; the panel is looked for with the first frame.
     pub fn new(bus: Bus, built_for: Option<Controller>) -> Self {
-        let (state, address, memory, told) = (State::Absent { retry_in: 0 }, ADDRESSES[0], Bitmap::BLACK, Ok(()));
-        Self { bus, state, address, built_for, found: None, memory, told, waiting: 0, part: 0, counted: 0, shown: 0 }
+        let (state, address, memory, told) = (
+            State::Absent { retry_in: 0 },
+            ADDRESSES[0],
+            Bitmap::BLACK,
+            Ok(()),
+        );
+        Self {
+            bus,
+            state,
+            address,
+            built_for,
+            found: None,
+            memory,
+            told,
+            waiting: 0,
+            part: 0,
+            counted: 0,
+            shown: 0,
+        }
     }
 
     /// Sends the frame if the bus is free; whether it is.
@@ -130,7 +147,10 @@ impl<Bus: PanelBus> Ssd1306<Bus> {
         };
         self.waiting = 0;
         let found = match (self.state, self.built_for, sent) {
-            (State::Looking, Some(controller), Ok(())) => Some(Found { controller, by: By::Build }),
+            (State::Looking, Some(controller), Ok(())) => Some(Found {
+                controller,
+                by: By::Build,
+            }),
             (State::Asking, _, Ok(())) => Some(Found::told(outbox.status)),
             (State::Asking, _, Err(ErrorKind::NoAcknowledge(_))) => Some(Found::SILENT),
             _ => None,
@@ -164,8 +184,15 @@ impl<Bus: PanelBus> Ssd1306<Bus> {
                 if outbox.len() <= SHORT {
                     match self.part.checked_sub(PARTS) {
                         None => {
-                            let (page, column) = (self.part * PART / WIDTH, self.part * PART % WIDTH);
-                            write(outbox, controller, &self.memory, page, column..column + PART);
+                            let (page, column) =
+                                (self.part * PART / WIDTH, self.part * PART % WIDTH);
+                            write(
+                                outbox,
+                                controller,
+                                &self.memory,
+                                page,
+                                column..column + PART,
+                            );
                         }
                         Some(half) => wake(outbox, controller, half),
                     }
@@ -185,7 +212,11 @@ impl<Bus: PanelBus> Ssd1306<Bus> {
         self.shown += u32::from(is_shown);
         if self.counted >= TICK_RATE {
             let shown = self.shown;
-            self.told = if shown < self.counted { Err(Ssd1306Error::Slow { shown }) } else { Ok(()) };
+            self.told = if shown < self.counted {
+                Err(Ssd1306Error::Slow { shown })
+            } else {
+                Ok(())
+            };
             (self.counted, self.shown) = (0, 0);
         }
     }
@@ -193,17 +224,33 @@ impl<Bus: PanelBus> Ssd1306<Bus> {
 
 impl State {
     /// The next state, given how the last messages fared and which panel was found by them, and what there is to report.
-    fn after(self, address: &mut u8, sent: Sent, found: Option<Found>) -> (Self, Option<Result<(), Ssd1306Error>>) {
+    fn after(
+        self,
+        address: &mut u8,
+        sent: Sent,
+        found: Option<Found>,
+    ) -> (Self, Option<Result<(), Ssd1306Error>>) {
         let [first, second] = ADDRESSES;
         let absent = |error| (Self::Absent { retry_in: RETRY }, Some(Err(error)));
         match (self, sent, found) {
-            (.., Some(Found { controller: Controller::Sh1107, .. })) => absent(Ssd1306Error::Sh1107),
+            (
+                ..,
+                Some(Found {
+                    controller: Controller::Sh1107,
+                    ..
+                }),
+            ) => absent(Ssd1306Error::Sh1107),
             (.., Some(Found { controller, .. })) => (Self::Waking(controller), None),
             (Self::Absent { retry_in: 0 }, ..) => {
                 *address = first;
                 (Self::Looking, None)
             }
-            (Self::Absent { retry_in }, ..) => (Self::Absent { retry_in: retry_in - 1 }, None),
+            (Self::Absent { retry_in }, ..) => (
+                Self::Absent {
+                    retry_in: retry_in - 1,
+                },
+                None,
+            ),
             (Self::Looking, Ok(()), _) => (Self::Asking, None),
             (Self::Looking, Err(ErrorKind::NoAcknowledge(_)), _) if *address == first => {
                 *address = second;
@@ -238,7 +285,14 @@ fn wake(outbox: &mut Outbox, controller: Controller, half: usize) {
     if half == 0 {
         outbox.put(COMMAND, SETTINGS);
     } else {
-        outbox.put(COMMAND, if controller == Controller::Sh1106 { SH1106 } else { SSD1306 });
+        outbox.put(
+            COMMAND,
+            if controller == Controller::Sh1106 {
+                SH1106
+            } else {
+                SSD1306
+            },
+        );
         outbox.put(COMMAND, ON);
     }
 }
@@ -253,10 +307,31 @@ fn draw(outbox: &mut Outbox, controller: Controller, memory: Option<&Bitmap>, fr
     }
 }
 
-fn write(outbox: &mut Outbox, controller: Controller, frame: &Bitmap, page: usize, columns: Range<usize>) {
-    let first = columns.start as u8 + if controller == Controller::Sh1106 { SH1106_LEFT } else { 0 };
-    outbox.put(COMMAND, &[0xB0 | page as u8, first & 0x0F, 0x10 | first >> 4]);
-    outbox.put(DATA, frame.pages.get(page).and_then(|page| page.get(columns)).unwrap_or_default());
+fn write(
+    outbox: &mut Outbox,
+    controller: Controller,
+    frame: &Bitmap,
+    page: usize,
+    columns: Range<usize>,
+) {
+    let first = columns.start as u8
+        + if controller == Controller::Sh1106 {
+            SH1106_LEFT
+        } else {
+            0
+        };
+    outbox.put(
+        COMMAND,
+        &[0xB0 | page as u8, first & 0x0F, 0x10 | first >> 4],
+    );
+    outbox.put(
+        DATA,
+        frame
+            .pages
+            .get(page)
+            .and_then(|page| page.get(columns))
+            .unwrap_or_default(),
+    );
 }
 
 /// The columns that differ, from the first to the last of each run; short gaps belong to it.

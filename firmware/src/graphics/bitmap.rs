@@ -20,7 +20,11 @@ const fn room(all_greys: bool) -> [[u32; 2]; 4] {
     while place < 16 {
         let (y, x) = (place / 4, place % 4);
         let order = ORDER[y][x];
-        let threshold = if all_greys { order * 15 / 16 } else { 2 + order * 6 / 16 };
+        let threshold = if all_greys {
+            order * 15 / 16
+        } else {
+            2 + order * 6 / 16
+        };
         room[y][x % 2] |= (15 - threshold) * (0x0001_0001 << (8 * (x / 2)));
         place += 1;
     }
@@ -38,7 +42,9 @@ pub struct Bitmap {
 }
 
 impl Bitmap {
-    pub const BLACK: Self = Self { pages: [[0; WIDTH]; PAGES] };
+    pub const BLACK: Self = Self {
+        pages: [[0; WIDTH]; PAGES],
+    };
 }
 
 impl From<&Canvas> for Bitmap {
@@ -46,17 +52,27 @@ impl From<&Canvas> for Bitmap {
         let mut bitmap = Self::BLACK;
         let [drawing, picture] = &ROOM;
         let room = if canvas.all_greys { picture } else { drawing };
-        for (page, rows) in bitmap.pages.iter_mut().zip(canvas.rows.as_chunks::<ROWS>().0) {
+        for (page, rows) in bitmap
+            .pages
+            .iter_mut()
+            .zip(canvas.rows.as_chunks::<ROWS>().0)
+        {
             for (word, columns) in page.as_chunks_mut::<8>().0.iter_mut().enumerate() {
                 let mut lit = [0; 2];
                 for ((y, Row(row)), room) in rows.iter().enumerate().zip(room.iter().cycle()) {
-                    let greys = row.as_chunks().0.get(word).map_or(0, |bytes| u32::from_le_bytes(*bytes));
+                    let greys = row
+                        .as_chunks()
+                        .0
+                        .get(word)
+                        .map_or(0, |bytes| u32::from_le_bytes(*bytes));
                     for ((lit, greys), room) in lit.iter_mut().zip([greys >> 4, greys]).zip(room) {
                         *lit |= carried(greys, *room) << y;
                     }
                 }
                 let [even, odd] = lit.map(u32::to_le_bytes);
-                *columns = [even[0], odd[0], even[1], odd[1], even[2], odd[2], even[3], odd[3]];
+                *columns = [
+                    even[0], odd[0], even[1], odd[1], even[2], odd[2], even[3], odd[3],
+                ];
             }
         }
         bitmap

@@ -22,7 +22,10 @@ impl Spot {
             let size = size as i32 * SUBPIXELS;
             ((pixels * SUBPIXELS as f32) as i32).clamp(-size, 2 * size) as i16
         };
-        Self { x: subpixels(x, WIDTH), y: subpixels(y, HEIGHT) }
+        Self {
+            x: subpixels(x, WIDTH),
+            y: subpixels(y, HEIGHT),
+        }
     }
 }
 
@@ -74,11 +77,16 @@ pub struct Disc {
 impl Disc {
     /// Draws it with a brightness of 0 to 255.
     pub fn draw(&self, canvas: &mut Canvas, brightness: u8) {
-        let Spot { x: centre_x, y: centre_y } = self.centre;
+        let Spot {
+            x: centre_x,
+            y: centre_y,
+        } = self.centre;
         let edge = i32::from(self.radius) + HALF;
         let (inner, outer) = ((edge - SUBPIXELS).max(0), edge + i32::from(self.gap));
         let wiped = (outer - SUBPIXELS).max(0);
-        let wipe = |old: u8, distance: i32| (((distance - wiped).max(0) as u32 * u32::from(old)) >> SHIFT) as u8;
+        let wipe = |old: u8, distance: i32| {
+            (((distance - wiped).max(0) as u32 * u32::from(old)) >> SHIFT) as u8
+        };
         let grey = shade(brightness);
         let columns = pixels([centre_x; 2], outer, WIDTH);
         for y in pixels([centre_y; 2], outer, HEIGHT) {
@@ -93,7 +101,13 @@ impl Disc {
                     let distance = root(squared, inner, edge);
                     row.update(x, |old| wipe(old, distance).max(grey(edge - distance)));
                 } else if squared < outer * outer {
-                    row.update(x, |old| if old == 0 { 0 } else { wipe(old, root(squared, edge, outer)) });
+                    row.update(x, |old| {
+                        if old == 0 {
+                            0
+                        } else {
+                            wipe(old, root(squared, edge, outer))
+                        }
+                    });
                 } else if dx > 0 {
                     break;
                 }
@@ -157,10 +171,20 @@ impl Band {
 
 impl Line {
     fn new(from: Spot, to: Spot, limit: i32) -> Self {
-        let along = (i32::from(to.x) - i32::from(from.x), i32::from(to.y) - i32::from(from.y));
+        let along = (
+            i32::from(to.x) - i32::from(from.x),
+            i32::from(to.y) - i32::from(from.y),
+        );
         let length_squared = dot(along, along);
         let length = length_squared.unsigned_abs().isqrt() as i32;
-        Self { from, along, length_squared, length, limit, whole: (limit - SUBPIXELS).max(0) }
+        Self {
+            from,
+            along,
+            length_squared,
+            length,
+            limit,
+            whole: (limit - SUBPIXELS).max(0),
+        }
     }
 
     /// From the row `y` on. A line that is nearly level, or is but a spot, is near all pixels of its rows.
@@ -170,17 +194,25 @@ impl Line {
         let (dx, dy) = self.along;
         let over = |product: i32| product.checked_div(dy).unwrap_or_default();
         if dx.abs() >= 8 * dy.abs() {
-            return Band { middle: 0, slope: 0, half: 2 * WIDTH as i32 * SUBPIXELS };
+            return Band {
+                middle: 0,
+                slope: 0,
+                half: 2 * WIDTH as i32 * SUBPIXELS,
+            };
         }
         Band {
-            middle: (i32::from(self.from.x) + over(dx * (middle(y) - i32::from(self.from.y)))) << Band::PARTS,
+            middle: (i32::from(self.from.x) + over(dx * (middle(y) - i32::from(self.from.y))))
+                << Band::PARTS,
             slope: over(dx << (Band::PARTS + SHIFT)),
             half: over(self.limit * (self.length + 1)).abs() + ROUNDED,
         }
     }
 
     fn to(&self, x: i32, y: i32) -> (i32, i32) {
-        (middle(x) - i32::from(self.from.x), middle(y) - i32::from(self.from.y))
+        (
+            middle(x) - i32::from(self.from.x),
+            middle(y) - i32::from(self.from.y),
+        )
     }
 
     /// How many subpixels of the pixel at (x, y) are covered, whose middle is `progress` along the line from its start and `across`
@@ -191,7 +223,13 @@ impl Line {
     /// down, and sums of two products below 24,576^2 x 1.25 = 7.6e8: 31 bits hold them.
     #[inline(always)]
     fn covered(&self, (x, y): (i32, i32), progress: i32, across: i32) -> i32 {
-        let &Self { along, length, limit, whole, .. } = self;
+        let &Self {
+            along,
+            length,
+            limit,
+            whole,
+            ..
+        } = self;
         if progress > 0 && progress < self.length_squared {
             return match across.abs() {
                 across if across >= limit * length => 0,
@@ -200,7 +238,11 @@ impl Line {
             };
         }
         let (dx, dy) = self.to(x, y);
-        let end = if progress <= 0 { (dx, dy) } else { (dx - along.0, dy - along.1) };
+        let end = if progress <= 0 {
+            (dx, dy)
+        } else {
+            (dx - along.0, dy - along.1)
+        };
         match dot(end, end) {
             squared if squared >= limit * limit => 0,
             squared if squared < whole * whole => limit,
@@ -213,7 +255,10 @@ impl Line {
 /// between them says is never more, and less by a few.
 #[inline(always)]
 fn root(square: i32, low: i32, high: i32) -> i32 {
-    let mut root = low + (square - low * low).checked_div(low + high).unwrap_or_default();
+    let mut root = low
+        + (square - low * low)
+            .checked_div(low + high)
+            .unwrap_or_default();
     while (root + 1) * (root + 1) <= square {
         root += 1;
     }

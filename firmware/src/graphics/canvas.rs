@@ -26,14 +26,18 @@ impl Default for Canvas {
 
 impl Clone for Canvas {
     fn clone(&self) -> Self {
-        Self { rows: self.rows, all_greys: self.all_greys }
+        Self {
+            rows: self.rows,
+            all_greys: self.all_greys,
+        }
     }
 
     /// Row by row, in half the time of the library's `memcpy`.
     fn clone_from(&mut self, source: &Self) {
         self.all_greys = source.all_greys;
         for (Row(row), Row(from)) in self.rows.iter_mut().zip(&source.rows) {
-            let ((left, right), (from_left, from_right)) = (row.split_at_mut(ROW / 2), from.split_at(ROW / 2));
+            let ((left, right), (from_left, from_right)) =
+                (row.split_at_mut(ROW / 2), from.split_at(ROW / 2));
             right.copy_from_slice(from_right);
             left.copy_from_slice(from_left);
         }
@@ -41,7 +45,10 @@ impl Clone for Canvas {
 }
 
 impl Canvas {
-    pub const BLACK: Self = Self { rows: [Row([0; ROW]); HEIGHT], all_greys: false };
+    pub const BLACK: Self = Self {
+        rows: [Row([0; ROW]); HEIGHT],
+        all_greys: false,
+    };
 
     /// The bytes as the panel takes them.
     pub fn bytes(&self) -> impl Iterator<Item = u8> + Clone {
@@ -100,7 +107,10 @@ impl Canvas {
         while bits != 0 {
             if let Some(Row(row)) = self.row_mut(y) {
                 let pixels = nibbles((bits >> 56) as u32);
-                for (word, part) in [(word, pixels >> shift), (word.wrapping_add(1), (pixels << 1) << (31 - shift))] {
+                for (word, part) in [
+                    (word, pixels >> shift),
+                    (word.wrapping_add(1), (pixels << 1) << (31 - shift)),
+                ] {
                     if part != 0
                         && let Some(eight) = row.as_chunks_mut().0.get_mut(word)
                     {
@@ -154,7 +164,10 @@ pub struct FadeLayer {
 }
 
 impl FadeLayer {
-    pub const NONE: Self = Self { frame: Canvas::BLACK, row: 0 };
+    pub const NONE: Self = Self {
+        frame: Canvas::BLACK,
+        row: 0,
+    };
 
     #[inline(never)]
     pub fn fade(&mut self, Fading { rows, last }: Fading) {

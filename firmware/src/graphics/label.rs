@@ -7,13 +7,20 @@ pub type Label = String<16>;
 
 /// The mass ratio to three significant digits: `μ 100`, `μ 31.5`, `μ 2.75`, `μ 0.315`, `μ 0.0125`.
 pub fn mass_ratio(ratio: f32) -> Label {
-    let decimals = [100.0, 10.0, 1.0, 0.1].into_iter().take_while(|least| ratio < *least).count();
+    let decimals = [100.0, 10.0, 1.0, 0.1]
+        .into_iter()
+        .take_while(|least| ratio < *least)
+        .count();
     label("μ ", ratio, decimals as u32, "")
 }
 
 /// A start angle after its name: `α 120°`, with one decimal if it is no whole number of degrees.
 pub fn degrees(name: &str, degrees: f32) -> Label {
-    let decimals = if degrees == (degrees as i32) as f32 { 0 } else { 1 };
+    let decimals = if degrees == (degrees as i32) as f32 {
+        0
+    } else {
+        1
+    };
     label(name, degrees, decimals, "°")
 }
 
@@ -47,7 +54,12 @@ pub fn time(seconds: f64) -> Label {
 pub fn label(name: &str, value: f32, decimals: u32, unit: &str) -> Label {
     let one = 10_u32.saturating_pow(decimals);
     let sign = if value < 0.0 { "-" } else { "" };
-    written([name, sign], (value.abs() * one as f32 + 0.5) as u32, one, unit)
+    written(
+        [name, sign],
+        (value.abs() * one as f32 + 0.5) as u32,
+        one,
+        unit,
+    )
 }
 
 /// A number of which `one`, a power of ten, is 1.

@@ -24,5 +24,8 @@ pub struct FrameBuffers {
 }
 
 impl FrameBuffers {
-    pub const BLANK: Self = Self { canvas: Canvas::BLACK, ink: FadeLayer::NONE };
+    pub const BLANK: Self = Self {
+        canvas: Canvas::BLACK,
+        ink: FadeLayer::NONE,
+    };
 }

@@ -38,7 +38,9 @@ pub const AXIS_GREY: u8 = 8;
 #[inline(never)] // no second copy
 pub fn axis(canvas: &mut Canvas, from: i32, to: i32, y: i32) {
     if let Some(row) = canvas.row_mut(y) {
-        (from..to).step_by(3).for_each(|x| row.lighten(x, AXIS_GREY));
+        (from..to)
+            .step_by(3)
+            .for_each(|x| row.lighten(x, AXIS_GREY));
     }
 }
 
@@ -66,6 +68,11 @@ fn axis_dot(canvas: &mut Canvas, x: i32, y: i32) {
 
 /// The least step of a scale that is no less than `least`: 1, 2 or 5 times a power of ten.
 pub fn scale_step(least: f32) -> f32 {
-    const STEPS: [f32; 12] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0];
-    STEPS.into_iter().find(|step| *step >= least).unwrap_or(100.0)
+    const STEPS: [f32; 12] = [
+        0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0,
+    ];
+    STEPS
+        .into_iter()
+        .find(|step| *step >= least)
+        .unwrap_or(100.0)
 }

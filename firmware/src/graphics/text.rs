@@ -38,7 +38,12 @@ pub fn write_on(canvas: &mut Canvas, text: &str, anchor: Anchor, [ink, ground]: 
     let (left, top) = corner(anchor, text);
     for x in (-1..width).step_by(8) {
         let row = !(0xFF_u32 >> (width - x).min(8)) as u8;
-        canvas.stamp(left + x, top, u64::from_be_bytes([row; LINE as usize]), ground);
+        canvas.stamp(
+            left + x,
+            top,
+            u64::from_be_bytes([row; LINE as usize]),
+            ground,
+        );
     }
     put(canvas, text, (left, top), ink);
 }
@@ -115,5 +120,8 @@ pub fn glyph(character: char) -> Glyph {
         '!'..='~' => (character as usize - ' ' as usize, 5),
         _ => ('?' as usize - ' ' as usize, 5),
     };
-    Glyph { width, rows: GLYPHS.get(place).copied().unwrap_or_default() }
+    Glyph {
+        width,
+        rows: GLYPHS.get(place).copied().unwrap_or_default(),
+    }
 }

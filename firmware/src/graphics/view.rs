@@ -23,11 +23,22 @@ pub struct Place {
 }
 
 impl Place {
-    pub const WHOLE: Self = Self { pivot: PIVOT, reach: REACH };
+    pub const WHOLE: Self = Self {
+        pivot: PIVOT,
+        reach: REACH,
+    };
     /// The left half below a line of text, and the right half: a circle of 25 pixels with room for a bob around it, and
     /// between the two for a line of text below.
-    pub const HALVES: [Self; 2] =
-        [Self { pivot: (29.5, 36.0), reach: 25.0 }, Self { pivot: (98.5, 36.0), reach: 25.0 }];
+    pub const HALVES: [Self; 2] = [
+        Self {
+            pivot: (29.5, 36.0),
+            reach: 25.0,
+        },
+        Self {
+            pivot: (98.5, 36.0),
+            reach: 25.0,
+        },
+    ];
 }
 
 /// A pendulum on the frame.
@@ -52,7 +63,12 @@ impl View {
             (pixels.max(LEAST_RADIUS) * SUBPIXELS as f32) as u8
         };
         let (scale, radii) = (place.reach / (l1 + l2), [radius(m1), radius(m2)]);
-        let mut view = Self { pivot: place.pivot, rods: [scale * l1, scale * l2], radii, spots: Default::default() };
+        let mut view = Self {
+            pivot: place.pivot,
+            rods: [scale * l1, scale * l2],
+            radii,
+            spots: Default::default(),
+        };
         view.turn(directions);
         view
     }
@@ -70,11 +86,22 @@ impl View {
     }
 
     /// Turns the rods; bob 2 leaves a stroke `2 * half_width` subpixels wide, with a brightness of 0 to 255.
-    pub fn trace(&mut self, directions: RodDirections, ink: &mut FadeLayer, half_width: u8, brightness: u8) {
+    pub fn trace(
+        &mut self,
+        directions: RodDirections,
+        ink: &mut FadeLayer,
+        half_width: u8,
+        brightness: u8,
+    ) {
         let [_, from] = self.spots;
         self.turn(directions);
         let [_, to] = self.spots;
-        Stroke { from, to, radius: half_width }.lighten(&mut ink.frame, brightness);
+        Stroke {
+            from,
+            to,
+            radius: half_width,
+        }
+        .lighten(&mut ink.frame, brightness);
     }
 
     /// Draws pivot, rods and bobs, these with a brightness of 0 to 255.
@@ -83,11 +110,26 @@ impl View {
         let half_width = (ROD_HALF_WIDTH * SUBPIXELS as f32) as u8;
         let rod_brightness = ROD_BRIGHTNESS.min(brightness);
         for (from, to) in [(pivot, bob1), (bob1, bob2)] {
-            Stroke { from, to, radius: half_width }.lighten(canvas, rod_brightness);
+            Stroke {
+                from,
+                to,
+                radius: half_width,
+            }
+            .lighten(canvas, rod_brightness);
         }
-        Stroke { from: pivot, to: pivot, radius: 2 * half_width }.lighten(canvas, rod_brightness);
+        Stroke {
+            from: pivot,
+            to: pivot,
+            radius: 2 * half_width,
+        }
+        .lighten(canvas, rod_brightness);
         for (centre, radius) in [bob1, bob2].into_iter().zip(self.radii) {
-            Disc { centre, radius, gap: GAP }.draw(canvas, brightness);
+            Disc {
+                centre,
+                radius,
+                gap: GAP,
+            }
+            .draw(canvas, brightness);
         }
     }
 }

@@ -26,12 +26,33 @@ pub struct Job<R = OnBoards> {
 impl<R: Run> Job<R> {
     /// By the request's motion at its start.
     pub fn new(run: R, request: &Request) -> Result<Self, Error> {
-        let Request { method, angles, stride, samples, .. } = *request;
+        let Request {
+            method,
+            angles,
+            stride,
+            samples,
+            ..
+        } = *request;
         let parameters = request.parameters;
-        let parameters = if method.is_single() { parameters.cast::<f32>().cast() } else { parameters };
+        let parameters = if method.is_single() {
+            parameters.cast::<f32>().cast()
+        } else {
+            parameters
+        };
         let pendulum = Pendulum::new(&parameters)?;
-        let turns = run.sides().map(|sides| Turns::of(angles, sides)).transpose()?;
-        Ok(Self { run, pendulum, turns, stride, given: 0, left: samples.saturating_add(1), steps: 0 })
+        let turns = run
+            .sides()
+            .map(|sides| Turns::of(angles, sides))
+            .transpose()?;
+        Ok(Self {
+            run,
+            pendulum,
+            turns,
+            stride,
+            given: 0,
+            left: samples.saturating_add(1),
+            steps: 0,
+        })
     }
 
     /// Whether every sample has been given.
@@ -52,7 +73,8 @@ impl<R: Run> Job<R> {
         if self.steps > 0 {
             return Ok(None);
         }
-        (self.given, self.left, self.steps) = (self.given.wrapping_add(1), self.left - 1, self.stride);
+        (self.given, self.left, self.steps) =
+            (self.given.wrapping_add(1), self.left - 1, self.stride);
         self.reading().map(Some).inspect_err(|_| self.left = 0)
     }
 
@@ -72,14 +94,28 @@ impl<R: Run> Job<R> {
 
     fn reading(&self) -> Result<Reading, Error> {
         let state = self.run.state();
-        let state = self.turns.map_or(state, |turns| Turns::unwrap(&turns, state)).finite()?;
-        let (Motion { w1, w2, .. }, energy) = (self.pendulum.to_motion(&state), self.pendulum.energy(&state));
-        for (parameter, value) in [(Parameter::W1, w1), (Parameter::W2, w2), (Parameter::Energy, energy)] {
+        let state = self
+            .turns
+            .map_or(state, |turns| Turns::unwrap(&turns, state))
+            .finite()?;
+        let (Motion { w1, w2, .. }, energy) = (
+            self.pendulum.to_motion(&state),
+            self.pendulum.energy(&state),
+        );
+        for (parameter, value) in [
+            (Parameter::W1, w1),
+            (Parameter::W2, w2),
+            (Parameter::Energy, energy),
+        ] {
             if !value.is_finite() {
                 return Err(Error::Diverged { parameter, value });
             }
         }
-        Ok(Reading { state: state.into(), velocities: [w1, w2], energy })
+        Ok(Reading {
+            state: state.into(),
+            velocities: [w1, w2],
+            energy,
+        })
     }
 }
 

@@ -33,7 +33,8 @@ impl Derivatives<f32> for Textbook {
         let (sin_d, cos_d) = (sinf(d), cosf(d));
         let m = m1 + m2;
         let den = m1 + m2 * sin_d * sin_d;
-        let brackets = p1 * p1 * m2 * l2 * l2 - 2.0 * p1 * p2 * m2 * l1 * l2 * cos_d + p2 * p2 * m * l1 * l1;
+        let brackets =
+            p1 * p1 * m2 * l2 * l2 - 2.0 * p1 * p2 * m2 * l1 * l2 * cos_d + p2 * p2 * m * l1 * l1;
         let a_1 = p1 * p2 * sin_d / (l1 * l2 * den);
         let a_2 = brackets * sinf(2.0 * d) / (2.0 * l1 * l1 * l2 * l2 * den * den);
         [
@@ -56,6 +57,7 @@ impl Derivatives<f32> for Micromath {
 
     #[inline(always)]
     fn derivatives(&self, &[a1, a2, p1, p2]: &[f32; 4]) -> [f32; 4] {
-        self.0.derivatives_at([F32Ext::sin_cos(a1), F32Ext::sin_cos(a2)], [p1, p2])
+        self.0
+            .derivatives_at([F32Ext::sin_cos(a1), F32Ext::sin_cos(a2)], [p1, p2])
     }
 }

@@ -64,9 +64,23 @@ pub struct Reading {
 impl Request {
     /// 10 s of a chaotic motion, 2,560 steps: what is compared on every core there is, boards or not.
     pub fn on_any_core(method: Method) -> Self {
-        let parameters = Parameters { m1: 1.0, m2: 1.0, l1: 1.0, l2: 1.0, g: GRAVITY };
+        let parameters = Parameters {
+            m1: 1.0,
+            m2: 1.0,
+            l1: 1.0,
+            l2: 1.0,
+            g: GRAVITY,
+        };
         let (angles, velocities) = ([2.0; 2], [0.0; 2]);
-        Self { method, parameters, angles, velocities, dt: 1.0 / 256.0, stride: 80, samples: 32 }
+        Self {
+            method,
+            parameters,
+            angles,
+            velocities,
+            dt: 1.0 / 256.0,
+            stride: 80,
+            samples: 32,
+        }
     }
 
     /// The longest step, s, that resolves every motion of this energy: [`Pendulum::admissible_step`]. None for the closed
@@ -76,7 +90,9 @@ impl Request {
         let pendulum = Pendulum::<f64>::new(&self.parameters)
             .ok()
             .filter(|_| self.method.integrator() != Integrator::ClosedForm)?;
-        pendulum.admissible_step(&pendulum.to_state(&Motion { a1, a2, w1, w2 })).ok()
+        pendulum
+            .admissible_step(&pendulum.to_state(&Motion { a1, a2, w1, w2 }))
+            .ok()
     }
 
     /// From its bytes in postcard's format, each as two hexadecimal digits.
@@ -86,7 +102,10 @@ impl Request {
         for digits in text.as_bytes().chunks(2) {
             bytes.push(byte(digits)?).ok()?;
         }
-        postcard::take_from_bytes(&bytes).ok().filter(|(_, rest)| rest.is_empty()).map(|(request, _)| request)
+        postcard::take_from_bytes(&bytes)
+            .ok()
+            .filter(|(_, rest)| rest.is_empty())
+            .map(|(request, _)| request)
     }
 }
 
@@ -106,7 +125,9 @@ fn crc(mut run: impl Run, request: &Request) -> u32 {
         counted_steps(&mut run, request.stride);
         run.bits(|word| digest.update(&word.to_le_bytes()));
     }
-    <[f64; 4]>::from(run.state()).iter().for_each(|number| digest.update(&number.to_le_bytes()));
+    <[f64; 4]>::from(run.state())
+        .iter()
+        .for_each(|number| digest.update(&number.to_le_bytes()));
     digest.finalize()
 }
 

@@ -25,7 +25,11 @@ pub trait Run: Copy {
 /// At step 0, with the request's angles and velocities; refuses what the kernel refuses.
 #[inline(never)]
 pub(super) fn start<F: Form>(request: &Request) -> Result<F, Error> {
-    let checked = if request.method.is_single() { checked::<f32> } else { checked::<f64> };
+    let checked = if request.method.is_single() {
+        checked::<f32>
+    } else {
+        checked::<f64>
+    };
     let (parameters, state) = checked(request)?;
     Form::new(&parameters, &state, request.dt)
 }
@@ -54,7 +58,10 @@ impl<F: Form> Run for F {
 #[inline(never)] // flash has room for one of it, not for one of each row
 fn checked<R: Real>(request: &Request) -> Result<(Parameters<f64>, State<f64>), Error> {
     let ([a1, a2], [w1, w2]) = (request.angles, request.velocities);
-    let (parameters, start) = (request.parameters.cast::<R>(), Motion { a1, a2, w1, w2 }.cast::<R>());
+    let (parameters, start) = (
+        request.parameters.cast::<R>(),
+        Motion { a1, a2, w1, w2 }.cast::<R>(),
+    );
     start.check()?;
     let pendulum = Pendulum::new(&parameters)?;
     if request.method.integrator() != Integrator::ClosedForm {

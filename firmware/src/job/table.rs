@@ -5,8 +5,8 @@
 
 use double_pendulum::parts::Canonical;
 use double_pendulum::{
-    ClosedFormF32, ClosedFormF64, Direction, DirectionF32, DirectionF32Plain, Error, ExtrapolationF64, Fixed32,
-    Fixed64, HamiltonF32, HamiltonF64, Method, Pendulum, Real, State,
+    ClosedFormF32, ClosedFormF64, Direction, DirectionF32, DirectionF32Plain, Error,
+    ExtrapolationF64, Fixed32, Fixed64, HamiltonF32, HamiltonF64, Method, Pendulum, Real, State,
 };
 
 use super::comparison::{Micromath, Textbook};

@@ -28,12 +28,29 @@ pub struct Misprinted {
 
 impl Misprinted {
     /// Equal rods, let go at `start`.
-    pub fn new(&Parameters { m1, m2, l1: l, g, .. }: &Parameters<f32>, start: &State<f32>) -> Self {
+    pub fn new(
+        &Parameters {
+            m1, m2, l1: l, g, ..
+        }: &Parameters<f32>,
+        start: &State<f32>,
+    ) -> Self {
         let inertia = m1 * l * l;
         let (sin1, cos1) = start.a1.own_sin_cos();
         let (sin_d, cos_d) = (start.a1 - start.a2).own_sin_cos();
-        let z = [sin1, cos1, sin_d, cos_d, start.p1 / inertia, start.p2 / inertia];
-        Self { mass_ratio: m2 / m1, gravity: g / l, inertia, z }
+        let z = [
+            sin1,
+            cos1,
+            sin_d,
+            cos_d,
+            start.p1 / inertia,
+            start.p2 / inertia,
+        ];
+        Self {
+            mass_ratio: m2 / m1,
+            gravity: g / l,
+            inertia,
+            z,
+        }
     }
 
     pub fn tick(&mut self) {
@@ -47,13 +64,21 @@ impl Misprinted {
 
     pub fn directions(&self) -> RodDirections {
         let [sin1, cos1, sin_d, cos_d, ..] = self.z;
-        [[sin1, cos1], [sin1 * cos_d - cos1 * sin_d, cos1 * cos_d + sin1 * sin_d]]
+        [
+            [sin1, cos1],
+            [sin1 * cos_d - cos1 * sin_d, cos1 * cos_d + sin1 * sin_d],
+        ]
     }
 
     /// The energy H, J, as [`Pendulum::energy`](double_pendulum::Pendulum::energy) has it:
     /// ((q1 - q2 cos D)^2 r + q2^2/mu)/2 - (1 + mu) G cos a1 - mu G cos a2, times m1 l^2.
     pub fn energy(&self) -> f32 {
-        let &Self { mass_ratio: mu, gravity, inertia, z: [_, _, sin_d, cos_d, q1, q2] } = self;
+        let &Self {
+            mass_ratio: mu,
+            gravity,
+            inertia,
+            z: [_, _, sin_d, cos_d, q1, q2],
+        } = self;
         let [[_, cos1], [_, cos2]] = self.directions();
         let q = q1 - q2 * cos_d;
         let kinetic = 0.5 * (q * q / (1.0 + mu * sin_d * sin_d) + q2 * q2 / mu);
@@ -61,13 +86,27 @@ impl Misprinted {
     }
 
     fn rates(&self, &[sin1, cos1, sin_d, cos_d, q1, q2]: &[f32; 6]) -> [f32; 6] {
-        let &Self { mass_ratio: mu, gravity, .. } = self;
+        let &Self {
+            mass_ratio: mu,
+            gravity,
+            ..
+        } = self;
         let r = 1.0 / (1.0 + mu * sin_d * sin_d);
-        let (u, v) = ((q1 - q2 * cos_d) * r, (q2 * (1.0 + mu) - q1 * mu * cos_d) * r);
+        let (u, v) = (
+            (q1 - q2 * cos_d) * r,
+            (q2 * (1.0 + mu) - q1 * mu * cos_d) * r,
+        );
         let (w, force) = (u - v, u * v * sin_d);
         let sin2 = sin1 * cos_d - cos1 * sin_d;
         let [torque1, torque2] = [(1.0 + mu) * gravity * sin1, mu * gravity * sin2];
-        [cos1 * u, -sin1 * u, cos_d * w, -sin_d * w, -torque1 - force, force - torque2]
+        [
+            cos1 * u,
+            -sin1 * u,
+            cos_d * w,
+            -sin_d * w,
+            -torque1 - force,
+            force - torque2,
+        ]
     }
 }
 

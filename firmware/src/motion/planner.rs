@@ -52,12 +52,29 @@ impl Planner {
     pub fn new(processor: Processor) -> Self {
         let (task, search, plan, begun) = (None, None, None, None);
         let (is_tied, is_news, is_due) = (false, false, false);
-        Self { processor, ticks: 0, task, search, debt: 0.0, plan, begun, is_tied, is_news, is_due }
+        Self {
+            processor,
+            ticks: 0,
+            task,
+            search,
+            debt: 0.0,
+            plan,
+            begun,
+            is_tied,
+            is_news,
+            is_due,
+        }
     }
 
     /// Begins anew for a scene that starts with `settings`, by `begun`, to which it may be tied; one without a height shows no
     /// motion, and has no plan.
-    pub fn start(&mut self, settings: &Settings, height: Option<f32>, begun: Option<Stepping>, is_tied: bool) {
+    pub fn start(
+        &mut self,
+        settings: &Settings,
+        height: Option<f32>,
+        begun: Option<Stepping>,
+        is_tied: bool,
+    ) {
         self.task = height.map(|height| (*settings, height));
         (self.search, self.plan, self.begun, self.is_tied) =
             (None, None, begun.map(|stepping| (stepping, 0.0)), is_tied);
@@ -84,7 +101,9 @@ impl Planner {
     /// Takes note of how far what the scene has begun by has been looked at.
     #[inline(never)] // one copy
     fn note(&mut self) {
-        self.begun = self.begun.map(|(stepping, horizon)| (stepping, horizon.max(self.looked_at(stepping))));
+        self.begun = self
+            .begun
+            .map(|(stepping, horizon)| (stepping, horizon.max(self.looked_at(stepping))));
     }
 
     /// Lets a tick of the scene pass that has no time for this.
@@ -99,15 +118,25 @@ impl Planner {
 
     /// Until when the frames are expected to be right of a scene that goes by this `stepping`, s.
     pub fn horizon(&self, stepping: Stepping) -> f64 {
-        let begun = self.begun.filter(|(begun, _)| *begun == stepping).map(|(_, horizon)| horizon);
-        let plan = self.plan.and_then(Result::ok).filter(|plan| plan.stepping() == stepping);
-        begun.unwrap_or_else(|| self.looked_at(stepping)).max(plan.map_or(0.0, |plan| plan.horizon))
+        let begun = self
+            .begun
+            .filter(|(begun, _)| *begun == stepping)
+            .map(|(_, horizon)| horizon);
+        let plan = self
+            .plan
+            .and_then(Result::ok)
+            .filter(|plan| plan.stepping() == stepping);
+        begun
+            .unwrap_or_else(|| self.looked_at(stepping))
+            .max(plan.map_or(0.0, |plan| plan.horizon))
     }
 
     /// Until when the search has found it right so far.
     #[inline(never)] // one copy
     fn looked_at(&self, stepping: Stepping) -> f64 {
-        self.search.as_ref().map_or(0.0, |search| search.horizon(stepping))
+        self.search
+            .as_ref()
+            .map_or(0.0, |search| search.horizon(stepping))
     }
 
     /// Whether it may turn out that they are for longer.
@@ -123,14 +152,22 @@ impl Planner {
             return false;
         }
         let is_preparing = self.search.as_ref().is_none_or(Search::is_preparing);
-        let long = if is_preparing { self.processor.costs.preparation } else { 0.0 };
+        let long = if is_preparing {
+            self.processor.costs.preparation
+        } else {
+            0.0
+        };
         if self.debt > 0.0 && self.debt + long >= self.processor.look_ahead {
             return false;
         }
         let before = self.search.as_ref().map_or(0.0, Search::spent);
         let found = self.advance().transpose();
         let spent = self.search.as_ref().map_or(0.0, Search::spent) - before;
-        let least = if before == 0.0 { long } else { self.processor.piece() };
+        let least = if before == 0.0 {
+            long
+        } else {
+            self.processor.piece()
+        };
         self.debt += spent.max(least);
         if let Some(found) = found {
             self.take(found);
@@ -148,12 +185,16 @@ impl Planner {
 
     #[inline(never)] // a search stands on the stack while it is made
     fn advance(&mut self) -> Result<Option<Plan>, PlanError> {
-        let Some((settings, height)) = self.task else { return Ok(None) };
+        let Some((settings, height)) = self.task else {
+            return Ok(None);
+        };
         let Some(search) = &mut self.search else {
             let problem = settings.problem(height);
             let (costs, budget) = (&self.processor.costs, self.processor.budget(&problem));
             self.search = Some(match self.begun {
-                Some((stepping, _)) if self.is_tied => Search::of(stepping, &problem, costs, &budget)?,
+                Some((stepping, _)) if self.is_tied => {
+                    Search::of(stepping, &problem, costs, &budget)?
+                }
                 _ => Search::new(&problem, costs, &budget)?,
             });
             return Ok(None);
@@ -165,7 +206,12 @@ impl Planner {
     fn take(&mut self, found: PlanResult) {
         (self.plan, self.is_news) = (Some(found), true);
         match (&mut self.search, found) {
-            (Some(search), Ok(Plan { limit: Limit::End, .. })) => search.extend(FOR_EVER),
+            (
+                Some(search),
+                Ok(Plan {
+                    limit: Limit::End, ..
+                }),
+            ) => search.extend(FOR_EVER),
             _ => {
                 self.note();
                 self.search = None;
@@ -177,7 +223,13 @@ impl Planner {
         let (settings, height) = self.task?;
         let problem = settings.problem(height);
         let Budget { frame, planning } = self.processor.budget(&problem);
-        Some(Planned { found: self.plan, height, duration: problem.duration, frame, planning })
+        Some(Planned {
+            found: self.plan,
+            height,
+            duration: problem.duration,
+            frame,
+            planning,
+        })
     }
 }
 

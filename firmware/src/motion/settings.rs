@@ -4,8 +4,8 @@ use double_pendulum::plan::{PlannedRun, Problem, Stepping};
 use double_pendulum::{Error, Motion, Parameters, Pendulum, State};
 
 use crate::config::{
-    ANGLE_STEP, FIRST_ANGLE, FIRST_MASS_RATIO, GRAVITY, GREATEST_ANGLE, HALF_PIXEL, MASS_RATIOS, PLANNED, ROD,
-    TICK_RATE,
+    ANGLE_STEP, FIRST_ANGLE, FIRST_MASS_RATIO, GRAVITY, GREATEST_ANGLE, HALF_PIXEL, MASS_RATIOS,
+    PLANNED, ROD, TICK_RATE,
 };
 use crate::graphics::HEIGHT;
 
@@ -30,7 +30,11 @@ impl Settings {
     /// The page's pendulum: equal rods, let go from rest with both rods at one angle.
     pub fn equal_rods(mass_ratio: f32, degrees: f32) -> Self {
         let parameters = Parameters::equal_rods(mass_ratio, ROD, GRAVITY as f32);
-        Self { parameters, degrees: [degrees; 2], velocities: [0.0; 2] }
+        Self {
+            parameters,
+            degrees: [degrees; 2],
+            velocities: [0.0; 2],
+        }
     }
 
     pub fn mass_ratio(&self) -> f32 {
@@ -39,26 +43,44 @@ impl Settings {
 
     /// With bob 2 of another mass, so that the mass ratio is `mass_ratio`.
     pub fn with_mass_ratio(self, mass_ratio: f32) -> Self {
-        Self { parameters: Parameters { m2: self.parameters.m1 * mass_ratio, ..self.parameters }, ..self }
+        Self {
+            parameters: Parameters {
+                m2: self.parameters.m1 * mass_ratio,
+                ..self.parameters
+            },
+            ..self
+        }
     }
 
     /// With the next larger mass ratio of [`MASS_RATIOS`]; the largest stays.
     pub fn heavier(self) -> Self {
-        let next = MASS_RATIOS.iter().copied().find(|&ratio| ratio > self.mass_ratio());
+        let next = MASS_RATIOS
+            .iter()
+            .copied()
+            .find(|&ratio| ratio > self.mass_ratio());
         next.map_or(self, |ratio| self.with_mass_ratio(ratio))
     }
 
     /// With the next smaller mass ratio of [`MASS_RATIOS`]; the smallest stays.
     pub fn lighter(self) -> Self {
-        let next = MASS_RATIOS.iter().copied().rev().find(|&ratio| ratio < self.mass_ratio());
+        let next = MASS_RATIOS
+            .iter()
+            .copied()
+            .rev()
+            .find(|&ratio| ratio < self.mass_ratio());
         next.map_or(self, |ratio| self.with_mass_ratio(ratio))
     }
 
     /// Both rods turned by one [`ANGLE_STEP`], counter-clockwise if `steps` is 1, clockwise if it is -1; each stops at
     /// straight up.
     pub fn turned(self, steps: i8) -> Self {
-        let turn = |degrees: f32| (degrees + f32::from(steps) * ANGLE_STEP).clamp(-GREATEST_ANGLE, GREATEST_ANGLE);
-        Self { degrees: self.degrees.map(turn), ..self }
+        let turn = |degrees: f32| {
+            (degrees + f32::from(steps) * ANGLE_STEP).clamp(-GREATEST_ANGLE, GREATEST_ANGLE)
+        };
+        Self {
+            degrees: self.degrees.map(turn),
+            ..self
+        }
     }
 
     /// Start angles of rod 1 and rod 2, rad: pi/180 times the degrees.

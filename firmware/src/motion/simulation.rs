@@ -27,7 +27,13 @@ pub struct Simulation {
 impl Simulation {
     /// At the start: by the method that is asked for, else by the stepping expected to stay right longest before anything is
     /// planned. The kernel's error if the pendulum is too quick for what may be spent.
-    pub fn new(settings: &Settings, &Resources { ref processor, method }: &Resources) -> Result<Self, Error> {
+    pub fn new(
+        settings: &Settings,
+        &Resources {
+            ref processor,
+            method,
+        }: &Resources,
+    ) -> Result<Self, Error> {
         let (pendulum, start) = settings.start()?;
         let problem = settings.problem(HEIGHT as f32);
         let stepping = match method {
@@ -36,7 +42,10 @@ impl Simulation {
         };
         pendulum.check_step(1.0 / (f64::from(problem.rate) * f64::from(stepping.steps)))?;
         let motion = settings.run(0.0, stepping)?;
-        Ok(Self { energy: Energy::new(pendulum, motion.directions(), &start), motion })
+        Ok(Self {
+            energy: Energy::new(pendulum, motion.directions(), &start),
+            motion,
+        })
     }
 
     #[inline(never)] // one copy
@@ -56,11 +65,18 @@ pub struct CatchingUp {
 }
 
 impl CatchingUp {
-    pub fn new(settings: &Settings, stepping: Stepping, processor: &Processor) -> Result<Self, Error> {
+    pub fn new(
+        settings: &Settings,
+        stepping: Stepping,
+        processor: &Processor,
+    ) -> Result<Self, Error> {
         let frame = processor.costs.of_frame(stepping).max(processor.piece());
         let affordable = (processor.look_ahead / frame) as u32;
         // With fewer frames in a tick nothing catches up.
-        Ok(Self { motion: settings.run(0.0, stepping)?, most: affordable.max(2) })
+        Ok(Self {
+            motion: settings.run(0.0, stepping)?,
+            most: affordable.max(2),
+        })
     }
 
     /// Makes a tick's frames; whether it has caught up with `simulation`, which then goes on as this.
@@ -97,7 +113,11 @@ impl Energy {
     pub fn error(&self, directions: RodDirections, state: &State<f32>) -> f32 {
         let energy = self.pendulum.energy_at(directions, [state.p1, state.p2]);
         let scale = self.start - self.pendulum.least_energy();
-        if scale > 0.0 { (energy - self.start) / scale } else { 0.0 }
+        if scale > 0.0 {
+            (energy - self.start) / scale
+        } else {
+            0.0
+        }
     }
 
     /// The energy, J, that has this [`error`](Self::error).

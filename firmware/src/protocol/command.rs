@@ -64,7 +64,10 @@ pub fn encode_command(request: u16, command: Command, wire: &mut [u8; MAX_WIRE])
 /// The number of an intact command, and the command if it can be read; `None` of a message that is none.
 pub fn decode_command(message: &[u8]) -> Option<(u16, Option<Command>)> {
     let numbered = message.strip_prefix(&[TO_CHIP])?;
-    Some(postcard::take_from_bytes(numbered).map_or((0, None), |(request, command)| (request, read(command))))
+    Some(
+        postcard::take_from_bytes(numbered)
+            .map_or((0, None), |(request, command)| (request, read(command))),
+    )
 }
 
 choice! {

@@ -43,12 +43,18 @@ pub const MAX_WIRE: usize = MAX_BODY + 3;
 
 /// The message as it goes over the wire, between delimiters: the front of `wire`. All messages fit (test `link`).
 pub fn encode<'wire>(message: &impl Serialize, wire: &'wire mut [u8; MAX_WIRE]) -> &'wire [u8] {
-    frame(postcard::to_slice(message, &mut [0; MAX_MESSAGE]).unwrap_or_default(), wire)
+    frame(
+        postcard::to_slice(message, &mut [0; MAX_MESSAGE]).unwrap_or_default(),
+        wire,
+    )
 }
 
 /// The message in `bytes`; `None` unless they hold just that.
 pub fn read<M: DeserializeOwned>(bytes: &[u8]) -> Option<M> {
-    postcard::take_from_bytes(bytes).ok().filter(|(_, rest)| rest.is_empty()).map(|(message, _)| message)
+    postcard::take_from_bytes(bytes)
+        .ok()
+        .filter(|(_, rest)| rest.is_empty())
+        .map(|(message, _)| message)
 }
 
 /// Any message, given as bytes; nothing if they are more than [`MAX_MESSAGE`].
@@ -64,7 +70,9 @@ pub fn frame<'wire>(message: &[u8], wire: &'wire mut [u8; MAX_WIRE]) -> &'wire [
     wire.fill(0);
     let [_, inside @ ..] = wire;
     let mut encoder = CobsEncoder::new(inside);
-    let framed = [&[VERSION], message, &crc].into_iter().try_for_each(|part| encoder.push(part));
+    let framed = [&[VERSION], message, &crc]
+        .into_iter()
+        .try_for_each(|part| encoder.push(part));
     debug_assert!(framed.is_ok());
     let end = 1 + encoder.finalize();
     wire.get(..=end).unwrap_or_default()
@@ -91,7 +99,11 @@ pub struct Decoder {
 
 impl Default for Decoder {
     fn default() -> Self {
-        Self { cobs: DecoderState::default(), body: [0; MAX_BODY], received: 0 }
+        Self {
+            cobs: DecoderState::default(),
+            body: [0; MAX_BODY],
+            received: 0,
+        }
     }
 }
 

@@ -44,16 +44,28 @@ pub enum Answer {
 
 impl ToHost {
     pub fn frame(self) -> Option<Frame> {
-        if let Self::Frame(frame) = self { Some(frame) } else { None }
+        if let Self::Frame(frame) = self {
+            Some(frame)
+        } else {
+            None
+        }
     }
 
     pub fn restarted(self) -> Option<Restarted> {
-        if let Self::Restarted(restarted) = self { Some(restarted) } else { None }
+        if let Self::Restarted(restarted) = self {
+            Some(restarted)
+        } else {
+            None
+        }
     }
 
     /// With its number.
     pub fn answer(self) -> Option<(u16, Answer)> {
-        if let Self::Answer(request, answer) = self { Some((request, answer)) } else { None }
+        if let Self::Answer(request, answer) = self {
+            Some((request, answer))
+        } else {
+            None
+        }
     }
 }
 

@@ -4,7 +4,9 @@
 use double_pendulum::{Error, Modes, Oscillation, Parameters, SmallOscillations};
 
 use crate::config::{GRAVITY, ROD};
-use crate::graphics::{Anchor, Canvas, Disc, FadeLayer, LINE, LOWEST, Spot, Stroke, label, plot, text};
+use crate::graphics::{
+    Anchor, Canvas, Disc, FadeLayer, LINE, LOWEST, Spot, Stroke, label, plot, text,
+};
 use crate::motion::{Resources, Settings, Simulation};
 use crate::scenes::{Report, Scene, draw_clock};
 
@@ -28,7 +30,11 @@ pub fn closing(mass_ratio: f32) -> Settings {
     let root = libm::sqrtf((1.0 + mass_ratio) * mass_ratio);
     let fast = libm::sqrtf(gravity / ROD * (1.0 + mass_ratio + root));
     let velocity = fast * AMPLITUDE.to_radians();
-    Settings { parameters, degrees: [AMPLITUDE / shape, AMPLITUDE], velocities: [-velocity / shape, velocity] }
+    Settings {
+        parameters,
+        degrees: [AMPLITUDE / shape, AMPLITUDE],
+        velocities: [-velocity / shape, velocity],
+    }
 }
 
 /// The fast mode's share of angle 2 over the slow mode's: the linear motion on the left, the exact one on the right. The
@@ -53,7 +59,10 @@ impl Beats {
         };
         let (motion, [left, right]) = (&self.simulation.motion, MIDDLES);
         let exact = motion.directions().map(|[sin, cos]| libm::atan2f(sin, cos));
-        [spot(left, self.linear.at(motion.time()).angles()), spot(right, exact)]
+        [
+            spot(left, self.linear.at(motion.time()).angles()),
+            spot(right, exact),
+        ]
     }
 }
 
@@ -65,9 +74,19 @@ impl Scene for Beats {
         let amplitude = |part: Oscillation<f32>, shape: f32| part.amplitude() * shape.abs();
         let shape = [modes.fast.shape, modes.slow.shape].map(|shape| shape as f32);
         let greatest = amplitude(linear.fast, shape[0]).max(amplitude(linear.slow, shape[1]));
-        let scale = if greatest > 0.0 { REACH / greatest } else { 0.0 };
+        let scale = if greatest > 0.0 {
+            REACH / greatest
+        } else {
+            0.0
+        };
         let spots = [Spot::default(); 2];
-        let mut scene = Self { simulation, linear, shape, scale, spots };
+        let mut scene = Self {
+            simulation,
+            linear,
+            shape,
+            scale,
+            spots,
+        };
         scene.spots = scene.spots();
         Ok((scene, (scale > 0.0).then_some(4.0 * scale)))
     }
@@ -76,7 +95,12 @@ impl Scene for Beats {
         self.simulation.tick();
         let spots = self.spots();
         for (from, to) in self.spots.into_iter().zip(spots) {
-            Stroke { from, to, radius: HALF_WIDTH }.lighten(&mut ink.frame, u8::MAX);
+            Stroke {
+                from,
+                to,
+                radius: HALF_WIDTH,
+            }
+            .lighten(&mut ink.frame, u8::MAX);
         }
         self.spots = spots;
     }
@@ -87,17 +111,35 @@ impl Scene for Beats {
             plot::upright_axis(canvas, x, y - REACH as i32, y + REACH as i32 + 1);
         }
         for centre in self.spots {
-            Disc { centre, radius: SPOT_RADIUS, gap: GAP }.draw(canvas, u8::MAX);
+            Disc {
+                centre,
+                radius: SPOT_RADIUS,
+                gap: GAP,
+            }
+            .draw(canvas, u8::MAX);
         }
         text::write(canvas, "linear", Anchor::Left(0));
         text::write(canvas, "exact", Anchor::Right(0));
         let mass_ratio = self.simulation.energy.pendulum.parameters().mass_ratio();
         text::write(canvas, &label::mass_ratio(mass_ratio), Anchor::Middle(0));
-        let reach = if self.scale > 0.0 { (REACH / self.scale).to_degrees() } else { 0.0 };
+        let reach = if self.scale > 0.0 {
+            (REACH / self.scale).to_degrees()
+        } else {
+            0.0
+        };
         text::write(canvas, "↑ fast", Anchor::Middle(3 * LINE));
         text::write(canvas, "→ slow", Anchor::Middle(4 * LINE));
-        text::write(canvas, &label::label("±", reach, 0, "°"), Anchor::Middle(5 * LINE));
-        draw_clock(canvas, report, Anchor::Middle(LINE + 2), Anchor::Middle(LOWEST));
+        text::write(
+            canvas,
+            &label::label("±", reach, 0, "°"),
+            Anchor::Middle(5 * LINE),
+        );
+        draw_clock(
+            canvas,
+            report,
+            Anchor::Middle(LINE + 2),
+            Anchor::Middle(LOWEST),
+        );
     }
 
     fn report(&self, _: u64) -> Report {

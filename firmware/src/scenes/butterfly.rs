@@ -6,7 +6,8 @@ use heapless::Deque;
 
 use crate::config::TICK_RATE;
 use crate::graphics::{
-    Anchor, Canvas, FadeLayer, Height, LINE, LOWEST, Place, SUBPIXELS, TRACE_HALF_WIDTH, View, WIDTH, label, plot, text,
+    Anchor, Canvas, FadeLayer, Height, LINE, LOWEST, Place, SUBPIXELS, TRACE_HALF_WIDTH, View,
+    WIDTH, label, plot, text,
 };
 use crate::motion::{Resources, Settings, Simulation};
 use crate::scenes::{Report, Scene, draw_clock};
@@ -20,7 +21,12 @@ const PLOT_LEFT: i32 = (WIDTH - PLOT_COLUMNS) as i32;
 const ZERO_ROW: f32 = 53.0;
 const SCALE: f32 = 2.6;
 /// The rows that carry the scale, and what they are.
-const AXES: [(i32, &str); 4] = [(row(0.0), "0"), (row(5.0), "5"), (row(10.0), "10"), (row(15.0), "15")];
+const AXES: [(i32, &str); 4] = [
+    (row(0.0), "0"),
+    (row(5.0), "5"),
+    (row(10.0), "10"),
+    (row(15.0), "15"),
+];
 /// The plot holds 60 columns of a quarter of a second: 15 s.
 const COLUMNS_PER_SECOND: u64 = 4;
 const TICKS_PER_COLUMN: u64 = TICK_RATE as u64 / COLUMNS_PER_SECOND;
@@ -47,9 +53,12 @@ pub struct Butterfly {
 impl Butterfly {
     /// The distance of the twins in the plane of the angles, rad; whole turns do not count.
     fn separation(&self) -> f64 {
-        let ([first, second], turn) = ([self.first.motion.state(), self.second.state()], core::f64::consts::TAU);
-        let [d1, d2] =
-            [second.a1 - first.a1, second.a2 - first.a2].map(|apart| apart - turn * libm::rint(apart / turn));
+        let ([first, second], turn) = (
+            [self.first.motion.state(), self.second.state()],
+            core::f64::consts::TAU,
+        );
+        let [d1, d2] = [second.a1 - first.a1, second.a2 - first.a2]
+            .map(|apart| apart - turn * libm::rint(apart / turn));
         libm::sqrt(d1 * d1 + d2 * d2)
     }
 
@@ -59,7 +68,9 @@ impl Butterfly {
         if self.strip.is_full() {
             self.strip.pop_front();
         }
-        let _there_is_room = self.strip.push_back(plot::height(e_foldings, ZERO_ROW, SCALE));
+        let _there_is_room = self
+            .strip
+            .push_back(plot::height(e_foldings, ZERO_ROW, SCALE));
     }
 }
 
@@ -70,7 +81,12 @@ impl Scene for Butterfly {
         let second = settings.run(APART, first.motion.stepping())?;
         let views = [first.motion.directions(), second.directions()]
             .map(|directions| View::new(&settings.parameters, Place::HALVES[0], directions));
-        let mut scene = Self { first, second, views, strip: Deque::new() };
+        let mut scene = Self {
+            first,
+            second,
+            views,
+            strip: Deque::new(),
+        };
         scene.put_down();
         Ok((scene, Some(2.0 * Place::HALVES[0].reach)))
     }
@@ -79,7 +95,12 @@ impl Scene for Butterfly {
         self.first.tick();
         let _is_lost = self.second.advance(1);
         let [first, second] = &mut self.views;
-        first.trace(self.first.motion.directions(), ink, TRACE_HALF_WIDTH, u8::MAX);
+        first.trace(
+            self.first.motion.directions(),
+            ink,
+            TRACE_HALF_WIDTH,
+            u8::MAX,
+        );
         second.turn(self.second.directions());
         if ticks.is_multiple_of(TICKS_PER_COLUMN) {
             self.put_down();
@@ -92,7 +113,11 @@ impl Scene for Butterfly {
         first.draw(canvas, u8::MAX);
         for (row, e_foldings) in AXES {
             plot::axis(canvas, PLOT_LEFT, WIDTH as i32, row);
-            text::write(canvas, e_foldings, Anchor::EndingAt(PLOT_LEFT, row - LINE / 2));
+            text::write(
+                canvas,
+                e_foldings,
+                Anchor::EndingAt(PLOT_LEFT, row - LINE / 2),
+            );
         }
         let mut before = self.strip.front();
         for (x, now) in (PLOT_LEFT..).zip(&self.strip) {
@@ -101,7 +126,11 @@ impl Scene for Butterfly {
         }
         let span = (PLOT_COLUMNS as u64 / COLUMNS_PER_SECOND) as f32;
         let end = (report.time as f32).max(span);
-        text::write(canvas, &label::tick(end - span, ""), Anchor::At(PLOT_LEFT, LOWEST));
+        text::write(
+            canvas,
+            &label::tick(end - span, ""),
+            Anchor::At(PLOT_LEFT, LOWEST),
+        );
         text::write(canvas, &label::tick(end, " s"), Anchor::Right(LOWEST));
         text::write(canvas, "e-folds", Anchor::Right(0));
         draw_clock(canvas, report, Anchor::Left(0), Anchor::Middle(0));

@@ -28,7 +28,10 @@ const COARSEST: usize = 8;
 const ROWS: usize = HEIGHT / 2;
 
 /// The search, in the processor's own numbers, and the motion that it follows.
-#[cfg_attr(not(target_os = "none"), expect(clippy::large_enum_variant, reason = "the host has the room"))]
+#[cfg_attr(
+    not(target_os = "none"),
+    expect(clippy::large_enum_variant, reason = "the host has the room")
+)]
 #[derive(Clone, Debug)]
 enum Searching {
     Float(Search<Float>, Option<Falling<Float>>),
@@ -63,7 +66,11 @@ struct Block {
 impl Block {
     /// The next one that is not part of a larger one with the same start.
     fn next(self) -> Self {
-        let Self { mut size, mut x, mut y } = self;
+        let Self {
+            mut size,
+            mut x,
+            mut y,
+        } = self;
         loop {
             x += size;
             if x >= WIDTH {
@@ -83,7 +90,10 @@ impl Block {
         // Whole numbers, so that what lies opposite is the mirror image.
         let angle = |pixels: i32, all: usize| pixels as f32 * (core::f32::consts::PI / all as f32);
         let (x, y) = (self.x as i32, self.y as i32);
-        [angle(2 * x + 1 - WIDTH as i32, WIDTH), angle(HEIGHT as i32 - 1 - 2 * y, HEIGHT)]
+        [
+            angle(2 * x + 1 - WIDTH as i32, WIDTH),
+            angle(HEIGHT as i32 - 1 - 2 * y, HEIGHT),
+        ]
     }
 
     #[inline(never)] // one copy
@@ -112,8 +122,23 @@ impl Flips {
         } else {
             Searching::Fixed(Search::new(parameters, dt, steps)?, None)
         };
-        let (mass_ratio, block) = (settings.mass_ratio(), Block { size: COARSEST, x: 0, y: 0 });
-        Ok(Self { searching, pace, mass_ratio, unit, block, done: 0, elapsed: 0 })
+        let (mass_ratio, block) = (
+            settings.mass_ratio(),
+            Block {
+                size: COARSEST,
+                x: 0,
+                y: 0,
+            },
+        );
+        Ok(Self {
+            searching,
+            pace,
+            mass_ratio,
+            unit,
+            block,
+            done: 0,
+            elapsed: 0,
+        })
     }
 
     pub fn is_done(&self) -> bool {
@@ -134,7 +159,11 @@ fn work<F: Form<Real = f32>>(
     let Some(motion) = falling else {
         // No angle of the map is refused.
         *falling = search.start(a1, a2).ok().flatten();
-        return if falling.is_some() { (pace.start, None) } else { (pace.never, Some(Flip::Never)) };
+        return if falling.is_some() {
+            (pace.start, None)
+        } else {
+            (pace.never, Some(Flip::Never))
+        };
     };
     let before = motion.steps;
     let flip = search.advance(motion, steps);
@@ -161,7 +190,14 @@ impl Scene for Flips {
     const FADING: Fading = Fading::NEVER;
 
     fn new(settings: &Settings, resources: &Resources) -> Result<(Self, Option<f32>), Error> {
-        Ok((Self::at_pace(settings, resources.processor.flips, resources.processor.has_float())?, None))
+        Ok((
+            Self::at_pace(
+                settings,
+                resources.processor.flips,
+                resources.processor.has_float(),
+            )?,
+            None,
+        ))
     }
 
     fn tick(&mut self, ticks: u64, ink: &mut FadeLayer) {
@@ -185,11 +221,21 @@ impl Scene for Flips {
     }
 
     fn draw(&self, _: &Report, canvas: &mut Canvas) {
-        text::write_on(canvas, &label::time(time(self.elapsed)), Anchor::Right(0), text::WHITE_ON_BLACK);
+        text::write_on(
+            canvas,
+            &label::time(time(self.elapsed)),
+            Anchor::Right(0),
+            text::WHITE_ON_BLACK,
+        );
         let corner = if self.is_done() {
             label::mass_ratio(self.mass_ratio)
         } else {
-            label::label("", ((100 * self.done) / (WIDTH * ROWS) as u32) as f32, 0, " %")
+            label::label(
+                "",
+                ((100 * self.done) / (WIDTH * ROWS) as u32) as f32,
+                0,
+                " %",
+            )
         };
         text::write_on(canvas, &corner, Anchor::Left(0), text::WHITE_ON_BLACK);
     }

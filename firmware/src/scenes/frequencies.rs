@@ -2,7 +2,9 @@
 
 use double_pendulum::{Error, Modes, Parameters};
 
-use crate::graphics::{Anchor, Canvas, Disc, FadeLayer, Fading, Height, LINE, LOWEST, Spot, WIDTH, label, plot, text};
+use crate::graphics::{
+    Anchor, Canvas, Disc, FadeLayer, Fading, Height, LINE, LOWEST, Spot, WIDTH, label, plot, text,
+};
 use crate::motion::{Resources, Settings};
 use crate::scenes::{Report, Scene};
 
@@ -50,15 +52,28 @@ impl Scene for Frequencies {
         let marked = frequencies(mass_ratio)?;
         let range = (mass_ratio / FARTHEST_MARK).max(LEAST_RANGE);
         let [greatest, _] = frequencies(range)?;
-        Ok((Self { range, scale: RISE / greatest, mass_ratio, marked, drawn: 0, ends: None }, None))
+        Ok((
+            Self {
+                range,
+                scale: RISE / greatest,
+                mass_ratio,
+                marked,
+                drawn: 0,
+                ends: None,
+            },
+            None,
+        ))
     }
 
     fn tick(&mut self, _: u64, ink: &mut FadeLayer) {
         for _ in 0..COLUMNS_PER_TICK.min(COLUMNS as u32 - self.drawn) {
             // The middle of the column; mass ratio 0 itself has no modes.
             let mass_ratio = (self.drawn as f32 + 0.5) * self.range / COLUMNS as f32;
-            let Ok(frequencies) = frequencies(mass_ratio) else { return };
-            let heights = frequencies.map(|frequency| plot::height(frequency, ZERO_ROW, self.scale));
+            let Ok(frequencies) = frequencies(mass_ratio) else {
+                return;
+            };
+            let heights =
+                frequencies.map(|frequency| plot::height(frequency, ZERO_ROW, self.scale));
             for (before, now) in self.ends.unwrap_or(heights).into_iter().zip(heights) {
                 plot::column(&mut ink.frame, LEFT + self.drawn as i32, before, now, CURVE);
             }
@@ -75,19 +90,36 @@ impl Scene for Frequencies {
                 break;
             }
             plot::axis(canvas, LEFT, width, row);
-            text::write(canvas, &label::tick(frequency, ""), Anchor::EndingAt(LEFT, row - LINE / 2));
+            text::write(
+                canvas,
+                &label::tick(frequency, ""),
+                Anchor::EndingAt(LEFT, row - LINE / 2),
+            );
         }
         let x = LEFT as f32 + self.mass_ratio / self.range * COLUMNS as f32;
         plot::upright_axis(canvas, x as i32, zero - RISE as i32, zero);
         for frequency in self.marked {
             let centre = Spot::at(x, ZERO_ROW - self.scale * frequency);
-            Disc { centre, radius: MARK_RADIUS, gap: MARK_RADIUS }.draw(canvas, u8::MAX);
+            Disc {
+                centre,
+                radius: MARK_RADIUS,
+                gap: MARK_RADIUS,
+            }
+            .draw(canvas, u8::MAX);
         }
         let [fast, slow] = self.marked;
         text::write(canvas, &label::label("ω₁ ", fast, 3, ""), Anchor::Left(0));
         text::write(canvas, &label::label("ω₂ ", slow, 3, ""), Anchor::Middle(0));
-        text::write(canvas, &label::mass_ratio(self.mass_ratio), Anchor::Right(0));
+        text::write(
+            canvas,
+            &label::mass_ratio(self.mass_ratio),
+            Anchor::Right(0),
+        );
         text::write(canvas, "ω in √(g/l)", Anchor::At(LEFT + 1, LOWEST));
-        text::write(canvas, &label::mass_ratio(self.range), Anchor::Right(LOWEST));
+        text::write(
+            canvas,
+            &label::mass_ratio(self.range),
+            Anchor::Right(LOWEST),
+        );
     }
 }

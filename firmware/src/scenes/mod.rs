@@ -64,7 +64,12 @@ pub struct Report {
 impl Report {
     /// Of a figure in which no pendulum moves.
     fn at(ticks: u64) -> Self {
-        Self { step: ticks, time: time(ticks), horizon: f32::INFINITY, ..Self::default() }
+        Self {
+            step: ticks,
+            time: time(ticks),
+            horizon: f32::INFINITY,
+            ..Self::default()
+        }
     }
 
     /// Of a scene whose first pendulum is `simulation`.
@@ -72,7 +77,12 @@ impl Report {
     pub fn of(simulation: &Simulation) -> Self {
         let (motion, state) = (&simulation.motion, simulation.motion.rounded_state());
         let energy_error = simulation.energy.error(motion.directions(), &state);
-        Self { state, energy_error, stepping: Some(motion.stepping()), ..Self::at(motion.frame()) }
+        Self {
+            state,
+            energy_error,
+            stepping: Some(motion.stepping()),
+            ..Self::at(motion.frame())
+        }
     }
 }
 
@@ -83,7 +93,12 @@ fn time(ticks: u64) -> f64 {
 
 /// Writes the time and until when the frame can be trusted; the time stands out once it is known that it no longer can.
 fn draw_clock(canvas: &mut Canvas, report: &Report, time_at: Anchor, trust_at: Anchor) {
-    let &Report { time, horizon: until, is_looking, .. } = report;
+    let &Report {
+        time,
+        horizon: until,
+        is_looking,
+        ..
+    } = report;
     let shown = label::time(time);
     if !is_looking && time > f64::from(until) {
         text::write_on(canvas, &shown, time_at, text::MARKED);
@@ -191,7 +206,15 @@ impl SceneName {
     }
 
     fn turned(self, by: usize) -> Self {
-        let place = Self::ALL.iter().position(|&name| name == self).unwrap_or_default();
-        Self::ALL.iter().copied().cycle().nth(place + by).unwrap_or(self)
+        let place = Self::ALL
+            .iter()
+            .position(|&name| name == self)
+            .unwrap_or_default();
+        Self::ALL
+            .iter()
+            .copied()
+            .cycle()
+            .nth(place + by)
+            .unwrap_or(self)
     }
 }

@@ -4,10 +4,12 @@
 
 use double_pendulum::{DirectionF32, Error, Parameters, Real, Run, State};
 
-use crate::config::{DT, HALF_PIXEL, PAGE_GRAVITY, STEPS_PER_TICK, TRAIL_BRIGHTNESS, TRAIL_FADING, TRAIL_HALF_WIDTH};
+use crate::config::{
+    DT, HALF_PIXEL, PAGE_GRAVITY, STEPS_PER_TICK, TRAIL_BRIGHTNESS, TRAIL_FADING, TRAIL_HALF_WIDTH,
+};
 use crate::graphics::{
-    Anchor, Canvas, FadeLayer, Fading, LINE, LOWEST, Place, RodDirections, SUBPIXELS, TRACE_HALF_WIDTH, View, label,
-    text,
+    Anchor, Canvas, FadeLayer, Fading, LINE, LOWEST, Place, RodDirections, SUBPIXELS,
+    TRACE_HALF_WIDTH, View, label, text,
 };
 use crate::motion::{Energy, Misprinted, Resources, Settings, Simulation};
 use crate::scenes::{Report, Scene, draw_clock, time};
@@ -21,29 +23,64 @@ pub struct Page {
 }
 
 impl Scene for Page {
-    const FADING: Fading = Fading { rows: TRAIL_FADING, last: 0 };
+    const FADING: Fading = Fading {
+        rows: TRAIL_FADING,
+        last: 0,
+    };
 
     fn new(settings: &Settings, resources: &Resources) -> Result<(Self, Option<f32>), Error> {
         let simulation = Simulation::new(settings, resources)?;
-        let view = View::new(&settings.parameters, Place::WHOLE, simulation.motion.directions());
-        Ok((Self { settings: *settings, simulation, view }, Some(2.0 * Place::WHOLE.reach)))
+        let view = View::new(
+            &settings.parameters,
+            Place::WHOLE,
+            simulation.motion.directions(),
+        );
+        Ok((
+            Self {
+                settings: *settings,
+                simulation,
+                view,
+            },
+            Some(2.0 * Place::WHOLE.reach),
+        ))
     }
 
     fn tick(&mut self, _: u64, ink: &mut FadeLayer) {
         self.simulation.tick();
         let half_width = (TRAIL_HALF_WIDTH * SUBPIXELS as f32) as u8;
-        self.view.trace(self.simulation.motion.directions(), ink, half_width, TRAIL_BRIGHTNESS);
+        self.view.trace(
+            self.simulation.motion.directions(),
+            ink,
+            half_width,
+            TRAIL_BRIGHTNESS,
+        );
     }
 
     fn draw(&self, report: &Report, canvas: &mut Canvas) {
         self.view.draw(canvas, u8::MAX);
         let [degrees1, degrees2] = self.settings.degrees;
-        text::write(canvas, &label::mass_ratio(self.settings.mass_ratio()), Anchor::Left(0));
+        text::write(
+            canvas,
+            &label::mass_ratio(self.settings.mass_ratio()),
+            Anchor::Left(0),
+        );
         if degrees1 == degrees2 {
-            text::write(canvas, &label::degrees("α ", degrees1), Anchor::Left(LOWEST));
+            text::write(
+                canvas,
+                &label::degrees("α ", degrees1),
+                Anchor::Left(LOWEST),
+            );
         } else {
-            text::write(canvas, &label::degrees("α₁ ", degrees1), Anchor::Left(LOWEST - LINE));
-            text::write(canvas, &label::degrees("α₂ ", degrees2), Anchor::Left(LOWEST));
+            text::write(
+                canvas,
+                &label::degrees("α₁ ", degrees1),
+                Anchor::Left(LOWEST - LINE),
+            );
+            text::write(
+                canvas,
+                &label::degrees("α₂ ", degrees2),
+                Anchor::Left(LOWEST),
+            );
         }
         draw_clock(canvas, report, Anchor::Right(0), Anchor::Right(LOWEST));
     }
@@ -78,7 +115,12 @@ impl Halves {
         self.0.iter().for_each(|view| view.draw(canvas, u8::MAX));
         text::write(canvas, left, Anchor::Left(0));
         text::write(canvas, right, Anchor::Right(0));
-        draw_clock(canvas, report, Anchor::Middle(LINE + 1), Anchor::Middle(LOWEST));
+        draw_clock(
+            canvas,
+            report,
+            Anchor::Middle(LINE + 1),
+            Anchor::Middle(LOWEST),
+        );
     }
 }
 
@@ -86,7 +128,11 @@ impl Halves {
 /// of its worked example, and the rods are 1 m.
 pub fn figure_7() -> Settings {
     let parameters = Parameters::equal_rods(2.75, 1.0, PAGE_GRAVITY as f32);
-    Settings { parameters, degrees: [171.0; 2], velocities: [0.0; 2] }
+    Settings {
+        parameters,
+        degrees: [171.0; 2],
+        velocities: [0.0; 2],
+    }
 }
 
 /// Both motions and their energies. The clock is that of the right equations.
@@ -102,25 +148,48 @@ impl Scene for Figure7 {
     fn new(settings: &Settings, resources: &Resources) -> Result<(Self, Option<f32>), Error> {
         let &Parameters { l1, l2, .. } = &settings.parameters;
         if l1 != l2 {
-            return Err(Error::UnequalRods { l1: l1.into(), l2: l2.into() });
+            return Err(Error::UnequalRods {
+                l1: l1.into(),
+                l2: l2.into(),
+            });
         }
         let right = Simulation::new(settings, resources)?;
         let misprinted = Misprinted::new(&settings.parameters, &right.motion.rounded_state());
-        let halves = Halves::new(settings, [right.motion.directions(), misprinted.directions()]);
-        Ok((Self { right, misprinted, halves }, Some(2.0 * Place::HALVES[0].reach)))
+        let halves = Halves::new(
+            settings,
+            [right.motion.directions(), misprinted.directions()],
+        );
+        Ok((
+            Self {
+                right,
+                misprinted,
+                halves,
+            },
+            Some(2.0 * Place::HALVES[0].reach),
+        ))
     }
 
     fn tick(&mut self, _: u64, ink: &mut FadeLayer) {
         self.right.tick();
         self.misprinted.tick();
-        self.halves.trace([self.right.motion.directions(), self.misprinted.directions()], ink);
+        self.halves.trace(
+            [self.right.motion.directions(), self.misprinted.directions()],
+            ink,
+        );
     }
 
     fn draw(&self, report: &Report, canvas: &mut Canvas) {
-        let (right, misprinted) = (self.right.energy.of_error(report.energy_error), self.misprinted.energy());
-        let energies =
-            [("true ", right), ("book ", misprinted)].map(|(name, energy)| label::label(name, energy, 1, " J"));
-        self.halves.draw(energies.each_ref().map(|energy| energy.as_str()), report, canvas);
+        let (right, misprinted) = (
+            self.right.energy.of_error(report.energy_error),
+            self.misprinted.energy(),
+        );
+        let energies = [("true ", right), ("book ", misprinted)]
+            .map(|(name, energy)| label::label(name, energy, 1, " J"));
+        self.halves.draw(
+            energies.each_ref().map(|energy| energy.as_str()),
+            report,
+            canvas,
+        );
     }
 
     fn report(&self, _: u64) -> Report {
@@ -153,7 +222,8 @@ impl Upright {
     /// Whether the plain motion is no longer shown where the compensated one is.
     fn have_parted(&self) -> bool {
         let Halves([left, _]) = &self.halves;
-        let [plain, compensated] = [self.plain_directions, self.compensated.directions()].map(|to| left.bobs(to));
+        let [plain, compensated] =
+            [self.plain_directions, self.compensated.directions()].map(|to| left.bobs(to));
         let is_near = |((x, y), (exact_x, exact_y)): ((f32, f32), (f32, f32))| {
             let (dx, dy) = (x - exact_x, y - exact_y);
             dx * dx + dy * dy <= HALF_PIXEL * HALF_PIXEL
@@ -174,7 +244,17 @@ impl Scene for Upright {
         let plain_directions = directions(&plain);
         let halves = Halves::new(settings, [plain_directions, compensated.directions()]);
         let energy = Energy::new(pendulum, plain_directions, &plain);
-        Ok((Self { plain, plain_directions, compensated, energy, halves, horizon: f32::INFINITY }, None))
+        Ok((
+            Self {
+                plain,
+                plain_directions,
+                compensated,
+                energy,
+                halves,
+                horizon: f32::INFINITY,
+            },
+            None,
+        ))
     }
 
     fn tick(&mut self, ticks: u64, ink: &mut FadeLayer) {
@@ -187,7 +267,8 @@ impl Scene for Upright {
         if self.horizon.is_infinite() && self.have_parted() {
             self.horizon = time(ticks.wrapping_sub(1)) as f32;
         }
-        self.halves.trace([self.plain_directions, self.compensated.directions()], ink);
+        self.halves
+            .trace([self.plain_directions, self.compensated.directions()], ink);
     }
 
     fn draw(&self, report: &Report, canvas: &mut Canvas) {
@@ -196,6 +277,11 @@ impl Scene for Upright {
 
     fn report(&self, ticks: u64) -> Report {
         let energy_error = self.energy.error(self.plain_directions, &self.plain);
-        Report { state: self.plain, energy_error, horizon: self.horizon, ..Report::at(ticks) }
+        Report {
+            state: self.plain,
+            energy_error,
+            horizon: self.horizon,
+            ..Report::at(ticks)
+        }
     }
 }

@@ -4,7 +4,9 @@ use double_pendulum::plan::Stepping;
 use double_pendulum::{Error, Method, Modes, Parameters, Pendulum, Real, SmallOscillations};
 
 use crate::config::{PAGE_GRAVITY, TICK_RATE};
-use crate::graphics::{Anchor, Canvas, FadeLayer, Fading, Height, LINE, LOWEST, SUBPIXELS, WIDTH, label, plot, text};
+use crate::graphics::{
+    Anchor, Canvas, FadeLayer, Fading, Height, LINE, LOWEST, SUBPIXELS, WIDTH, label, plot, text,
+};
 use crate::motion::{Resources, Settings};
 use crate::scenes::{Report, Scene, draw_clock, time};
 
@@ -21,12 +23,19 @@ const LEAST_BAR: f32 = 16.0;
 const ENVELOPE_GREY: u8 = 5;
 
 /// The scene shows the linear model and does not follow the plan.
-const CLOSED_FORM: Stepping = Stepping { method: Method::ClosedFormF32, steps: 1 };
+const CLOSED_FORM: Stepping = Stepping {
+    method: Method::ClosedFormF32,
+    steps: 1,
+};
 
 /// The page's worked example: equal rods of 0.25 m, g = 9.8 m/s^2, a1 = 0, a2 = 30 degrees, let go from rest.
 pub fn example(mass_ratio: f32) -> Settings {
     let parameters = Parameters::equal_rods(mass_ratio, 0.25, PAGE_GRAVITY as f32);
-    Settings { parameters, degrees: [0.0, 30.0], velocities: [0.0; 2] }
+    Settings {
+        parameters,
+        degrees: [0.0, 30.0],
+        velocities: [0.0; 2],
+    }
 }
 
 /// Both angles over time, by the linear model. The clock says until when the exact motion has them there, too.
@@ -53,7 +62,8 @@ impl Small {
         let turns = self.exchange * t;
         let exchanged = (turns - libm::rint(turns)) as f32 * core::f32::consts::TAU;
         let (_, cos) = (exchanged + self.phase).own_sin_cos();
-        self.amplitudes.map(|[c1, c2]| libm::sqrtf((c1 * c1 + c2 * c2 + 2.0 * c1 * c2 * cos).max(0.0)))
+        self.amplitudes
+            .map(|[c1, c2]| libm::sqrtf((c1 * c1 + c2 * c2 + 2.0 * c1 * c2 * cos).max(0.0)))
     }
 
     /// Scrolls the curves and their envelopes, and adds a column.
@@ -63,9 +73,14 @@ impl Small {
         let height = |(angle, row): (f32, f32)| plot::height(angle, row, self.scale);
         let [envelope1, envelope2] = self.envelopes(time);
         for envelope in [(envelope1, row1), (envelope2, row2)] {
-            let mirrored = plot::height(0.0, 2.0 * envelope.1, 0.0).saturating_sub(height(envelope));
+            let mirrored =
+                plot::height(0.0, 2.0 * envelope.1, 0.0).saturating_sub(height(envelope));
             for height in [height(envelope), mirrored] {
-                ink.lighten(RIGHT, i32::from(height).div_euclid(SUBPIXELS), ENVELOPE_GREY);
+                ink.lighten(
+                    RIGHT,
+                    i32::from(height).div_euclid(SUBPIXELS),
+                    ENVELOPE_GREY,
+                );
             }
         }
         let [a1, a2] = self.motion.at(time).angles();
@@ -85,12 +100,22 @@ impl Scene for Small {
         let modes = Modes::new(&settings.parameters.cast())?;
         let motion = SmallOscillations::new(modes, &settings.motion());
         let [c1, c2] = [motion.fast, motion.slow].map(|part| part.amplitude());
-        let amplitudes = [[c1, c2], [modes.fast.shape as f32 * c1, modes.slow.shape as f32 * c2]];
+        let amplitudes = [
+            [c1, c2],
+            [modes.fast.shape as f32 * c1, modes.slow.shape as f32 * c2],
+        ];
         // The greatest that an angle becomes, rad.
-        let greatest = amplitudes.map(|[c1, c2]| c1.abs() + c2.abs()).into_iter().fold(0.0, f32::max);
+        let greatest = amplitudes
+            .map(|[c1, c2]| c1.abs() + c2.abs())
+            .into_iter()
+            .fold(0.0, f32::max);
         let exchange = core::f32::consts::TAU / modes.exchange() as f32;
         let ticks_per_column = (exchange * TICK_RATE as f32 / COLUMNS_PER_EXCHANGE) as u32;
-        let scale = if greatest > 0.0 { SWING / greatest } else { 0.0 };
+        let scale = if greatest > 0.0 {
+            SWING / greatest
+        } else {
+            0.0
+        };
         let scene = Self {
             pendulum,
             amplitudes,
@@ -114,27 +139,50 @@ impl Scene for Small {
     }
 
     fn draw(&self, report: &Report, canvas: &mut Canvas) {
-        let greatest = if self.scale > 0.0 { (SWING / self.scale).to_degrees() } else { 0.0 };
+        let greatest = if self.scale > 0.0 {
+            (SWING / self.scale).to_degrees()
+        } else {
+            0.0
+        };
         for (row, name) in ROWS.map(|row| row as i32).into_iter().zip(["α₁", "α₂"]) {
             let swing = SWING as i32;
             plot::axis(canvas, LEFT, WIDTH as i32, row);
             plot::bar(canvas, (LEFT - 1, row - swing), (LEFT - 1, row + swing));
             text::write(canvas, name, Anchor::EndingAt(LEFT - 2, row - LINE / 2));
-            text::write(canvas, &label::label("", greatest, 0, "°"), Anchor::EndingAt(LEFT - 2, row - swing));
+            text::write(
+                canvas,
+                &label::label("", greatest, 0, "°"),
+                Anchor::EndingAt(LEFT - 2, row - swing),
+            );
         }
         // A bar as long as a round time.
         let columns_per_second = TICK_RATE as f32 / self.ticks_per_column as f32;
         let seconds = plot::scale_step(LEAST_BAR / columns_per_second);
-        let (end, row) = (LEFT + (seconds * columns_per_second) as i32, LOWEST + LINE / 2);
+        let (end, row) = (
+            LEFT + (seconds * columns_per_second) as i32,
+            LOWEST + LINE / 2,
+        );
         plot::bar(canvas, (LEFT, row), (end, row));
-        text::write(canvas, &label::tick(seconds, " s"), Anchor::At(end + 4, LOWEST));
-        text::write(canvas, &label::mass_ratio(self.pendulum.parameters().mass_ratio()), Anchor::Left(0));
+        text::write(
+            canvas,
+            &label::tick(seconds, " s"),
+            Anchor::At(end + 4, LOWEST),
+        );
+        text::write(
+            canvas,
+            &label::mass_ratio(self.pendulum.parameters().mass_ratio()),
+            Anchor::Left(0),
+        );
         text::write(canvas, "linear", Anchor::Middle(0));
         draw_clock(canvas, report, Anchor::Right(LOWEST), Anchor::Right(0));
     }
 
     fn report(&self, ticks: u64) -> Report {
         let state = self.pendulum.to_state(&self.motion.at(time(ticks)));
-        Report { state, stepping: Some(CLOSED_FORM), ..Report::at(ticks) }
+        Report {
+            state,
+            stepping: Some(CLOSED_FORM),
+            ..Report::at(ticks)
+        }
     }
 }

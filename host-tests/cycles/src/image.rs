@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, anyhow, bail, ensure};
-use object::{Architecture, Object, ObjectSection, ObjectSegment, ObjectSymbol, SectionKind, SymbolKind};
+use object::{
+    Architecture, Object, ObjectSection, ObjectSegment, ObjectSymbol, SectionKind, SymbolKind,
+};
 
 use crate::instruction::{Instruction, is_long};
 
@@ -39,12 +41,21 @@ impl Image {
         let bytes = std::fs::read(path)?;
         let file = object::File::parse(&*bytes)?;
         let architecture = file.architecture();
-        ensure!(architecture == Architecture::Arm, "no program for ARM but for {architecture:?}");
-        let loaded = file.segments().map(|segment| Ok((segment.address() as u32, segment.data()?.to_vec())));
-        let sections = file.sections().filter(|section| section.kind() == SectionKind::Text);
+        ensure!(
+            architecture == Architecture::Arm,
+            "no program for ARM but for {architecture:?}"
+        );
+        let loaded = file
+            .segments()
+            .map(|segment| Ok((segment.address() as u32, segment.data()?.to_vec())));
+        let sections = file
+            .sections()
+            .filter(|section| section.kind() == SectionKind::Text);
         let code = sections.map(|section| Ok((section.address() as u32, section.data()?.to_vec())));
         let is_in_code = |symbol: &object::Symbol| {
-            let section = symbol.section_index().and_then(|index| file.section_by_index(index).ok());
+            let section = symbol
+                .section_index()
+                .and_then(|index| file.section_by_index(index).ok());
             section.is_some_and(|section| section.kind() == SectionKind::Text)
         };
         let (mut functions, mut marks) = (Vec::new(), BTreeMap::new());
@@ -65,11 +76,19 @@ impl Image {
         }
         functions.sort();
         let (loaded, code) = (loaded.collect::<Result<_>>()?, code.collect::<Result<_>>()?);
-        Ok(Self { path: path.to_owned(), loaded, code, functions, marks })
+        Ok(Self {
+            path: path.to_owned(),
+            loaded,
+            code,
+            functions,
+            marks,
+        })
     }
 
     pub fn functions_named(&self, part: &str) -> impl Iterator<Item = &Function> {
-        self.functions.iter().filter(move |function| function.name.contains(part))
+        self.functions
+            .iter()
+            .filter(move |function| function.name.contains(part))
     }
 
     /// The one function or label of this name, mangled or demangled, or the one function whose demangled name contains it.
@@ -92,7 +111,9 @@ impl Image {
     }
 
     pub fn holds(&self, address: u32) -> bool {
-        self.loaded.iter().any(|(start, bytes)| address.wrapping_sub(*start) < bytes.len() as u32)
+        self.loaded
+            .iter()
+            .any(|(start, bytes)| address.wrapping_sub(*start) < bytes.len() as u32)
     }
 
     pub fn lacks(&self, function: &str) -> anyhow::Error {
@@ -100,19 +121,36 @@ impl Image {
     }
 
     pub fn function_at(&self, address: u32) -> Option<&Function> {
-        let before = self.functions.partition_point(|function| function.address <= address);
-        self.functions[..before].iter().rfind(|function| address - function.address < function.size)
+        let before = self
+            .functions
+            .partition_point(|function| function.address <= address);
+        self.functions[..before]
+            .iter()
+            .rfind(|function| address - function.address < function.size)
     }
 
     /// Every instruction there is, as its address and its halfwords, the second only if it has one.
     pub fn words(&self) -> Vec<(u32, u16, Option<u16>)> {
         let mut words = Vec::new();
         for (start, bytes) in &self.code {
-            let halfwords = bytes.as_chunks().0.iter().map(|half| u16::from_le_bytes(*half));
+            let halfwords = bytes
+                .as_chunks()
+                .0
+                .iter()
+                .map(|half| u16::from_le_bytes(*half));
             let mut halfwords = (*start..).step_by(2).zip(halfwords);
             while let Some((address, first)) = halfwords.next() {
-                if self.marks.range(..=address).next_back().is_some_and(|(_, is_code)| *is_code) {
-                    let second = if is_long(first) { halfwords.next().map(|(_, second)| second) } else { None };
+                if self
+                    .marks
+                    .range(..=address)
+                    .next_back()
+                    .is_some_and(|(_, is_code)| *is_code)
+                {
+                    let second = if is_long(first) {
+                        halfwords.next().map(|(_, second)| second)
+                    } else {
+                        None
+                    };
                     words.push((address, first, second));
                 }
             }

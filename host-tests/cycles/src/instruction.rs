@@ -13,7 +13,11 @@ pub fn is_long(first: u16) -> bool {
 
 /// The rows that an instruction may be of, by its first byte: millions are looked up.
 static ROWS: LazyLock<Vec<Vec<&Row>>> = LazyLock::new(|| {
-    let begin = |byte: u32| TIMINGS.iter().filter(move |row| (byte << 24 ^ row.value) & row.mask >> 24 << 24 == 0);
+    let begin = |byte: u32| {
+        TIMINGS
+            .iter()
+            .filter(move |row| (byte << 24 ^ row.value) & row.mask >> 24 << 24 == 0)
+    };
     (0..=0xff).map(|byte| begin(byte).collect()).collect()
 });
 
@@ -28,18 +32,26 @@ impl Instruction {
     /// `None` if the table has no row for it.
     pub fn decode(first: u16, second: u16) -> Option<Self> {
         let word = u32::from(first) << 16 | if is_long(first) { u32::from(second) } else { 0 };
-        let row = ROWS[(word >> 24) as usize].iter().find(|row| word & row.mask == row.value)?;
+        let row = ROWS[(word >> 24) as usize]
+            .iter()
+            .find(|row| word & row.mask == row.value)?;
         Some(Self { word, row })
     }
 
     pub fn size(&self) -> u32 {
-        if is_long((self.word >> 16) as u16) { 4 } else { 2 }
+        if is_long((self.word >> 16) as u16) {
+            4
+        } else {
+            2
+        }
     }
 
     /// The cycles it takes by itself, if it does not branch, with these contents of the registers.
     pub fn cycles(&self, core: Core, registers: &Registers) -> u64 {
         let more = match self.row.class {
-            Class::LoadList | Class::StoreList => (self.word & self.register_list()).count_ones().into(),
+            Class::LoadList | Class::StoreList => {
+                (self.word & self.register_list()).count_ones().into()
+            }
             Class::FloatList => (self.word & 0xff).into(),
             Class::Divide => self.division(registers),
             _ => 0,
@@ -65,15 +77,19 @@ impl Instruction {
     }
 
     pub fn is_addressed_by(&self, before: &Self) -> bool {
-        let registers = |fields: &'static [Field], word| fields.iter().map(move |field| field.register(word));
+        let registers =
+            |fields: &'static [Field], word| fields.iter().map(move |field| field.register(word));
         // A comparison has the program counter where others have what they write.
-        let written = |register| register != 15 && registers(before.row.writes, before.word).any(|it| it == register);
+        let written = |register| {
+            register != 15 && registers(before.row.writes, before.word).any(|it| it == register)
+        };
         registers(self.row.address, self.word).any(written)
     }
 
     /// The floating-point register whose value comes late, if it has one.
     pub fn late_result(&self) -> Option<u32> {
-        matches!(self.row.class, Class::Arithmetic(_) | Class::Aside(_)).then(|| Float::D.register(self.word))
+        matches!(self.row.class, Class::Arithmetic(_) | Class::Aside(_))
+            .then(|| Float::D.register(self.word))
     }
 
     /// Whether it needs the floating-point register `s` at its start.
@@ -92,7 +108,11 @@ impl Instruction {
         let is_signed = self.word & 1 << 21 == 0;
         let bits = |register: u32| {
             let value = registers.general[register as usize & 0xf];
-            let size = if is_signed { value.cast_signed().unsigned_abs() } else { value };
+            let size = if is_signed {
+                value.cast_signed().unsigned_abs()
+            } else {
+                value
+            };
             u32::BITS - size.leading_zeros()
         };
         match (bits(self.word >> 16), bits(self.word)) {
@@ -116,7 +136,11 @@ impl Instruction {
         let is_float_store = self.word & 0xfe10_0e00 == 0xec00_0a00;
         let double = self.word & 0x100 != 0;
         let d = Float::D.register(self.word);
-        let first = if double { 2 * (d >> 1 | (d & 1) << 4) } else { d };
+        let first = if double {
+            2 * (d >> 1 | (d & 1) << 4)
+        } else {
+            d
+        };
         let words = match self.row.class {
             Class::FloatList => self.word & 0xff,
             _ if double => 2,

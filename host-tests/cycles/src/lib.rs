@@ -4,7 +4,10 @@
 //! Apart from the commands, because it is optimised in every profile: millions of instructions are read.
 
 #![forbid(unsafe_code)]
-#![allow(missing_docs, reason = "nobody builds on this package: what name and type say is not said again")]
+#![allow(
+    missing_docs,
+    reason = "nobody builds on this package: what name and type say is not said again"
+)]
 
 mod image;
 mod instruction;

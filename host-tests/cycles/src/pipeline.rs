@@ -71,12 +71,24 @@ pub struct Pipeline {
 
 impl Pipeline {
     pub fn new(core: Core) -> Self {
-        Self { core, previous: None, branched: false, now: 0, unit_free: 0, result: None }
+        Self {
+            core,
+            previous: None,
+            branched: false,
+            now: 0,
+            unit_free: 0,
+            result: None,
+        }
     }
 
     /// The cost of the next instruction executed, with the contents of the registers before it; `branches`: not followed by
     /// the next one in memory.
-    pub fn execute(&mut self, instruction: Instruction, registers: &Registers, branches: bool) -> Cost {
+    pub fn execute(
+        &mut self,
+        instruction: Instruction,
+        registers: &Registers,
+        branches: bool,
+    ) -> Cost {
         let start = self.now;
         let stalls = self.start_of_float(&instruction) - start;
         let own = instruction.cycles(self.core, registers);
@@ -93,8 +105,14 @@ impl Pipeline {
             _ => INDIRECT_REFILL,
         };
         let is_split = instruction.size() == 4 && registers.pc() % 4 == 2;
-        let fetch = if self.branched && is_split && self.core != Core::M0Plus { UNALIGNED_TARGET } else { 0 };
-        let (waits, saved) = self.previous.map_or((0, 0), |previous| self.neighbours(&previous, &instruction));
+        let fetch = if self.branched && is_split && self.core != Core::M0Plus {
+            UNALIGNED_TARGET
+        } else {
+            0
+        };
+        let (waits, saved) = self
+            .previous
+            .map_or((0, 0), |previous| self.neighbours(&previous, &instruction));
         if let Some(register) = instruction.late_result() {
             self.unit_free = start + stalls + own;
             self.result = Some((register, self.unit_free + RESULT_USE_STALL));
@@ -102,13 +120,24 @@ impl Pipeline {
         (self.previous, self.branched) = (Some(instruction), branches);
         let cycles = fetch + stalls + waits + taken - saved + refill;
         self.now += cycles;
-        Cost { instructions: 1, cycles, stalls }
+        Cost {
+            instructions: 1,
+            cycles,
+            stalls,
+        }
     }
 
     /// When the floating-point unit and what `instruction` consumes of it are there.
     fn start_of_float(&self, instruction: &Instruction) -> u64 {
-        let unit = if instruction.is_float() { self.unit_free } else { 0 };
-        let result = self.result.filter(|(register, _)| instruction.consumes(*register)).map_or(0, |(_, ready)| ready);
+        let unit = if instruction.is_float() {
+            self.unit_free
+        } else {
+            0
+        };
+        let result = self
+            .result
+            .filter(|(register, _)| instruction.consumes(*register))
+            .map_or(0, |(_, ready)| ready);
         self.now.max(unit).max(result)
     }
 
@@ -126,7 +155,10 @@ impl Pipeline {
             (Class::Load, _) => (0, 0),
             (Class::Store, _) => {
                 let is_fast = previous.row.cycles(self.core) == 1;
-                (u64::from(depends) + u64::from(is_fast && instruction.loads()), 0)
+                (
+                    u64::from(depends) + u64::from(is_fast && instruction.loads()),
+                    0,
+                )
             }
             _ => (u64::from(depends), 0),
         }

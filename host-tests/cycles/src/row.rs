@@ -130,5 +130,13 @@ pub(super) const fn row(
     writes: &'static [Field],
     address: &'static [Field],
 ) -> Row {
-    Row { name, mask, value, cycles, class, writes, address }
+    Row {
+        name,
+        mask,
+        value,
+        cycles,
+        class,
+        writes,
+        address,
+    }
 }

@@ -84,14 +84,23 @@ fn run(core: Core, times: usize, code: &[Word], [r0, r1, r2]: [u32; 3]) -> Cost 
 }
 
 fn taken(core: Core, word: Word) -> u64 {
-    Pipeline::new(core).execute(decoded(word), &Registers::default(), true).cycles
+    Pipeline::new(core)
+        .execute(decoded(word), &Registers::default(), true)
+        .cycles
 }
 
 const BOTH: &[Core] = &[M3, M4F];
 
 /// What shows a rule: cores, how often the code is run, the code, the cycles of it all, and those that wait for a
 /// floating-point result.
-type Row = (&'static str, &'static [Core], usize, &'static [Word], u64, u64);
+type Row = (
+    &'static str,
+    &'static [Core],
+    usize,
+    &'static [Word],
+    u64,
+    u64,
+);
 
 #[rustfmt::skip]
 const RULES: &[Row] = &[
@@ -151,25 +160,43 @@ fn straight_code_takes_what_the_rules_say() {
     for (rule, cores, times, code, cycles, stalls) in RULES {
         for &core in *cores {
             let cost = run(core, *times, code, [0; 3]);
-            assert_eq!((cost.cycles, cost.stalls), (*cycles, *stalls), "{rule}: {code:#010x?} on {core:?}");
+            assert_eq!(
+                (cost.cycles, cost.stalls),
+                (*cycles, *stalls),
+                "{rule}: {code:#010x?} on {core:?}"
+            );
         }
     }
-    let beside = [[VDIV_S0_S1_S2].as_slice(), &[ADDS_R4_R5_R6; 14], &[VMOV_R0_S0]].concat();
+    let beside = [
+        [VDIV_S0_S1_S2].as_slice(),
+        &[ADDS_R4_R5_R6; 14],
+        &[VMOV_R0_S0],
+    ]
+    .concat();
     assert_eq!(run(M4F, 1, &beside, [0; 3]).cycles, 16);
 }
 
 #[test]
 fn a_taken_branch_refills_in_a_cycle_and_a_return_in_two() {
     let branches = |core| [BNE, BL, BX_LR, POP_PC].map(|word| taken(core, word));
-    assert_eq!([M3, M4F, M0Plus].map(branches), [[2, 2, 3, 4], [2, 2, 3, 4], [2, 3, 2, 4]]);
+    assert_eq!(
+        [M3, M4F, M0Plus].map(branches),
+        [[2, 2, 3, 4], [2, 2, 3, 4], [2, 3, 2, 4]]
+    );
     // the delay loops of the crate cortex-m, "4 cycles", and of the Pico's kit for C, "3 cycles per loop"
     for core in [M3, M4F] {
         let (mut pipeline, registers) = (Pipeline::new(core), Registers::default());
-        let mut step = |word, branches| pipeline.execute(decoded(word), &registers, branches).cycles;
-        let turns: u64 = (0..10).map(|_| step(NOP, false) + step(SUBS_R0_1, false) + step(BNE, true)).sum();
+        let mut step =
+            |word, branches| pipeline.execute(decoded(word), &registers, branches).cycles;
+        let turns: u64 = (0..10)
+            .map(|_| step(NOP, false) + step(SUBS_R0_1, false) + step(BNE, true))
+            .sum();
         assert_eq!(turns, 40);
     }
-    assert_eq!(run(M0Plus, 1, &[SUBS_R0_1], [0; 3]).cycles + taken(M0Plus, BNE), 3);
+    assert_eq!(
+        run(M0Plus, 1, &[SUBS_R0_1], [0; 3]).cycles + taken(M0Plus, BNE),
+        3
+    );
 }
 
 #[test]
@@ -183,8 +210,14 @@ fn a_branch_to_a_32_bit_instruction_off_a_word_s_boundary_takes_a_cycle_more() {
         branch + first + pipeline.execute(decoded(target), &registers, false).cycles
     };
     for core in [M3, M4F] {
-        assert_eq!([0x100, 0x102].map(|address| turn(core, CMP_W_R0, address)), [4, 5]);
-        assert_eq!([0x100, 0x102].map(|address| turn(core, CMP_R0, address)), [4, 4]);
+        assert_eq!(
+            [0x100, 0x102].map(|address| turn(core, CMP_W_R0, address)),
+            [4, 5]
+        );
+        assert_eq!(
+            [0x100, 0x102].map(|address| turn(core, CMP_R0, address)),
+            [4, 4]
+        );
     }
 }
 
@@ -218,7 +251,11 @@ fn multiply_accumulate_is_recognised() {
         ("vmul, vnmul", [0xee22_0a01, 0xee22_0a41]),
         ("vadd, vsub", [0xee32_0a01, 0xee32_0a41]),
     ] {
-        assert_eq!(encodings.map(|word| decoded(word).row.name), [name; 2], "{encodings:08x?}");
+        assert_eq!(
+            encodings.map(|word| decoded(word).row.name),
+            [name; 2],
+            "{encodings:08x?}"
+        );
     }
 }
 

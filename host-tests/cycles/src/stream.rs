@@ -33,7 +33,9 @@ impl Registers {
     /// Of an instruction's lines in the log.
     fn read(first: &[u8], rest: &[u8]) -> Self {
         let mut words = first.chunks_exact(WORD).chain(rest.chunks_exact(WORD));
-        Self { general: [(); 16].map(|()| words.next().map_or(0, hexadecimal)) }
+        Self {
+            general: [(); 16].map(|()| words.next().map_or(0, hexadecimal)),
+        }
     }
 }
 
@@ -42,7 +44,9 @@ const WORD: usize = 13;
 
 /// The eight digits of a word, all at once, for millions are read.
 fn hexadecimal(word: &[u8]) -> u32 {
-    let digits = word[4..].first_chunk().map_or(0, |digits| u64::from_be_bytes(*digits));
+    let digits = word[4..]
+        .first_chunk()
+        .map_or(0, |digits| u64::from_be_bytes(*digits));
     // Letters are 9 more than their last four bits; then neighbours are put together.
     let is_letter = digits >> 6 & 0x0101_0101_0101_0101;
     let nibbles = (digits & 0x0f0f_0f0f_0f0f_0f0f) + 9 * is_letter;
@@ -53,7 +57,10 @@ fn hexadecimal(word: &[u8]) -> u32 {
 
 /// Calls `each` with the registers before every instruction of a log, until it refuses. One whose lines are cut short is the
 /// last.
-pub fn for_each_instruction(log: &mut dyn Read, each: &mut dyn FnMut(Registers) -> Result<()>) -> Result<()> {
+pub fn for_each_instruction(
+    log: &mut dyn Read,
+    each: &mut dyn FnMut(Registers) -> Result<()>,
+) -> Result<()> {
     let mut log = BufReader::with_capacity(1 << 20, log);
     let (mut first, mut rest) = (Vec::new(), [0; 12 * WORD]);
     while log.read_until(b'\n', &mut first).context("QEMU's log")? > 0 {
@@ -92,32 +99,63 @@ pub struct Stream<'a> {
 
 impl<'a> Stream<'a> {
     pub fn of(image: &'a Image, core: Core) -> Self {
-        Self { image, pipeline: Pipeline::new(core), before: None }
+        Self {
+            image,
+            pipeline: Pipeline::new(core),
+            before: None,
+        }
     }
 
     /// Takes the registers before the next instruction; of the one before that, if there is one: its address, itself and its cost.
     pub fn see(&mut self, next: Registers) -> Result<Option<(u32, Instruction, Cost)>> {
-        let Some(before) = self.before.replace(next) else { return Ok(None) };
+        let Some(before) = self.before.replace(next) else {
+            return Ok(None);
+        };
         let instruction = self.image.instruction_at(before.pc())?;
         let branches = next.pc() != before.pc() + instruction.size();
-        Ok(Some((before.pc(), instruction, self.pipeline.execute(instruction, &before, branches))))
+        Ok(Some((
+            before.pc(),
+            instruction,
+            self.pipeline.execute(instruction, &before, branches),
+        )))
     }
 }
 
 impl<'a> Calls<'a> {
     pub fn of(image: &'a Image, core: Core, entries: BTreeSet<u32>) -> Self {
         let (ended, spots) = (Vec::new(), BTreeMap::new());
-        Self { image, core, entries, running: None, ended, spots, stack_bytes: 0 }
+        Self {
+            image,
+            core,
+            entries,
+            running: None,
+            ended,
+            spots,
+            stack_bytes: 0,
+        }
     }
 
     pub fn see(&mut self, registers: Registers) -> Result<()> {
         if self.running.is_none() && self.entries.contains(&registers.pc()) {
-            self.running = Some((registers, Stream::of(self.image, self.core), Cost::default()));
+            self.running = Some((
+                registers,
+                Stream::of(self.image, self.core),
+                Cost::default(),
+            ));
         }
-        let Some((caller, stream, cost)) = &mut self.running else { return Ok(()) };
-        let Some((address, instruction, executed)) = stream.see(registers)? else { return Ok(()) };
-        self.spots.entry(address).or_insert((instruction, Cost::default())).1 += executed;
-        self.stack_bytes = self.stack_bytes.max(caller.sp().saturating_sub(registers.sp()));
+        let Some((caller, stream, cost)) = &mut self.running else {
+            return Ok(());
+        };
+        let Some((address, instruction, executed)) = stream.see(registers)? else {
+            return Ok(());
+        };
+        self.spots
+            .entry(address)
+            .or_insert((instruction, Cost::default()))
+            .1 += executed;
+        self.stack_bytes = self
+            .stack_bytes
+            .max(caller.sp().saturating_sub(registers.sp()));
         *cost += executed;
         if registers.pc() == caller.lr() & !1 && registers.sp() == caller.sp() {
             self.ended.push(*cost);
@@ -135,12 +173,19 @@ impl<'a> Calls<'a> {
 
     /// Bytes of the distinct instructions executed.
     pub fn hot_bytes(&self) -> u32 {
-        self.spots.values().map(|(instruction, _)| instruction.size()).sum()
+        self.spots
+            .values()
+            .map(|(instruction, _)| instruction.size())
+            .sum()
     }
 
     /// Bytes of the functions entered.
     pub fn code_bytes(&self) -> u32 {
-        let functions: BTreeSet<_> = self.spots.keys().filter_map(|&address| self.image.function_at(address)).collect();
+        let functions: BTreeSet<_> = self
+            .spots
+            .keys()
+            .filter_map(|&address| self.image.function_at(address))
+            .collect();
         functions.into_iter().map(|function| function.size).sum()
     }
 }

@@ -10,7 +10,8 @@
 //! taken to, for which no measurement was found. What neighbours do to each other is in `pipeline`.
 
 use crate::row::Class::{
-    Arithmetic, Aside, Branch, Divide, Fixed, FloatList, IfThen, Load, LoadList, LoadPair, Move, Store, StoreList,
+    Arithmetic, Aside, Branch, Divide, Fixed, FloatList, IfThen, Load, LoadList, LoadPair, Move,
+    Store, StoreList,
 };
 use crate::row::Field::{Any, Low0, Low3, Low6, Low8, Sp, Wide0, Wide8, Wide12, Wide16};
 use crate::row::Float::{D, Half, M, N};

@@ -35,13 +35,23 @@ impl Reference {
     pub fn new(parameters: &Parameters<f64>, motion: &Motion<f64>) -> Self {
         let (&Parameters { m1, m2, l1, l2, g }, &Motion { a1, a2, w1, w2 }) = (parameters, motion);
         let [m1, m2, l1, l2, g] = [m1, m2, l1, l2, g].map(TwoFloat::from);
-        Self::exact(Parameters { m1, m2, l1, l2, g }, [a1, a2, w1, w2].map(TwoFloat::from))
+        Self::exact(
+            Parameters { m1, m2, l1, l2, g },
+            [a1, a2, w1, w2].map(TwoFloat::from),
+        )
     }
 
     /// As [`Reference::new`] from numbers of full precision: angles in rad, velocities in rad/s.
     pub fn exact(parameters: Parameters<TwoFloat>, motion: [TwoFloat; 4]) -> Self {
         let zero = TwoFloat::from(0.0);
-        Self { parameters, time: zero, motion, series: [const { Vec::new() }; 4], about: zero, end: zero }
+        Self {
+            parameters,
+            time: zero,
+            motion,
+            series: [const { Vec::new() }; 4],
+            about: zero,
+            end: zero,
+        }
     }
 
     /// Moves to time `t`, s; goes forward only, an earlier time changes nothing.
@@ -54,7 +64,12 @@ impl Reference {
             }
             self.time = if self.end < t { self.end } else { t };
             let h = self.time - self.about;
-            let sum = |series: &Vec<_>| series.iter().rev().fold(TwoFloat::from(0.0), |sum, &c| sum * h + c);
+            let sum = |series: &Vec<_>| {
+                series
+                    .iter()
+                    .rev()
+                    .fold(TwoFloat::from(0.0), |sum, &c| sum * h + c)
+            };
             self.motion = self.series.each_ref().map(sum);
         }
     }
@@ -95,7 +110,8 @@ impl Reference {
         let (total, [a1, a2, w1, w2]) = (m1 + m2, self.motion);
         let [[sin1, cos1], [sin2, cos2], [sin_d, cos_d]] = [a1, a2, a1 - a2].map(sin_cos);
         let mut z = [a1, a2, w1, w2, sin1, cos1, sin2, cos2, sin_d, cos_d].map(|value| vec![value]);
-        let [mut square1, mut square2, mut f1, mut f2, mut den, mut turn] = [(); 6].map(|()| Vec::new());
+        let [mut square1, mut square2, mut f1, mut f2, mut den, mut turn] =
+            [(); 6].map(|()| Vec::new());
         let [mut acceleration1, mut acceleration2] = [(); 2].map(|()| Vec::new());
 
         for k in 0..ORDER {
@@ -107,9 +123,16 @@ impl Reference {
             f2.push(l1 * product(&square1, sin_d) - g * sin2[k]);
             let square = m2 * product(sin_d, sin_d);
             den.push(if k == 0 { square + m1 } else { square });
-            let quotient = |n: TwoFloat, before: &[TwoFloat]| divide(n - product(&den[1..], before), den[0]);
-            acceleration1.push(quotient(divide(f1[k] - m2 * product(&f2, cos_d), l1), &acceleration1));
-            acceleration2.push(quotient(divide(total * f2[k] - product(&f1, cos_d), l2), &acceleration2));
+            let quotient =
+                |n: TwoFloat, before: &[TwoFloat]| divide(n - product(&den[1..], before), den[0]);
+            acceleration1.push(quotient(
+                divide(f1[k] - m2 * product(&f2, cos_d), l1),
+                &acceleration1,
+            ));
+            acceleration2.push(quotient(
+                divide(total * f2[k] - product(&f1, cos_d), l2),
+                &acceleration2,
+            ));
             turn.push(w1[k] - w2[k]);
 
             let slopes = [
@@ -135,7 +158,9 @@ impl Reference {
 
 /// Coefficient k of the product of two power series, of which `a` and `b` are the coefficients 0 to k.
 fn product(a: &[TwoFloat], b: &[TwoFloat]) -> TwoFloat {
-    a.iter().zip(b.iter().rev()).fold(TwoFloat::from(0.0), |sum, (&a, &b)| sum + a * b)
+    a.iter()
+        .zip(b.iter().rev())
+        .fold(TwoFloat::from(0.0), |sum, (&a, &b)| sum + a * b)
 }
 
 /// The sine and cosine by their own power series about the nearest multiple of pi/2.
@@ -167,7 +192,11 @@ pub fn divide(a: TwoFloat, b: TwoFloat) -> TwoFloat {
 }
 
 /// The states at `times` (s, ascending) of the motion that starts as `start`.
-pub fn states(parameters: &Parameters<f64>, start: &Motion<f64>, times: impl Iterator<Item = f64>) -> Vec<State<f64>> {
+pub fn states(
+    parameters: &Parameters<f64>,
+    start: &Motion<f64>,
+    times: impl Iterator<Item = f64>,
+) -> Vec<State<f64>> {
     let mut reference = Reference::new(parameters, start);
     let state = |t| {
         reference.advance_to(t);
@@ -184,12 +213,17 @@ const RESOLUTION: f64 = 1e-33;
 /// are looked at, because a motion with a symmetry in time has only every second or fourth.
 fn longest_step(motion: &[Vec<TwoFloat>; 4]) -> f64 {
     let magnitude = |x: TwoFloat| f64::from(x).abs();
-    let rate = magnitude(motion[2][0]).max(magnitude(motion[3][0])).max(1.0);
-    let limits = motion.iter().zip([1.0, 1.0, rate, rate]).flat_map(|(series, scale)| {
-        (ORDER - 3..=ORDER).map(move |k| {
-            let last = magnitude(series[k]).max(f64::MIN_POSITIVE);
-            (RESOLUTION * scale / last).powf(1.0 / k as f64)
-        })
-    });
+    let rate = magnitude(motion[2][0])
+        .max(magnitude(motion[3][0]))
+        .max(1.0);
+    let limits = motion
+        .iter()
+        .zip([1.0, 1.0, rate, rate])
+        .flat_map(|(series, scale)| {
+            (ORDER - 3..=ORDER).map(move |k| {
+                let last = magnitude(series[k]).max(f64::MIN_POSITIVE);
+                (RESOLUTION * scale / last).powf(1.0 / k as f64)
+            })
+        });
     limits.fold(f64::INFINITY, f64::min)
 }

@@ -24,7 +24,10 @@ pub struct SetupOptions {}
 pub fn setup(_: &SetupOptions) -> anyhow::Result<()> {
     let is_ready = toolchain::ready().is_ok() && toolchain::ready_for_pico().is_ok();
     say(toolchain::set_up()?)?;
-    say(format_args!("Raspberry Pi Pico: rp2040js under {}", toolchain::set_up_pico()?.display()))?;
+    say(format_args!(
+        "Raspberry Pi Pico: rp2040js under {}",
+        toolchain::set_up_pico()?.display()
+    ))?;
     if is_ready {
         say("nothing had to be done")?;
     }
@@ -61,18 +64,36 @@ pub fn fw(options: &FwOptions) -> anyhow::Result<ExitCode> {
     let name = binary.to_string_lossy();
     let is_path = name.contains('/');
     if !is_path && !binaries().iter().any(|binary| *binary == name) {
-        bail!(Refused::because(format_args!("no binary {name}; there are {}", binaries().join(", "))));
+        bail!(Refused::because(format_args!(
+            "no binary {name}; there are {}",
+            binaries().join(", ")
+        )));
     }
     let board = options.board.unwrap_or_else(|| board_for(binary));
     let toolchain = toolchain::set_up()?;
-    let elf = if is_path { binary.clone() } else { toolchain.build(&name, board.target)? };
-    let limit = options.seconds.map_or(LIMIT, |seconds| Duration::from_secs(seconds.into()));
-    let settings = Settings { qemu: &toolchain.qemu, board, elf: &elf, clock: Clock::Real, debugger: true, limit };
+    let elf = if is_path {
+        binary.clone()
+    } else {
+        toolchain.build(&name, board.target)?
+    };
+    let limit = options
+        .seconds
+        .map_or(LIMIT, |seconds| Duration::from_secs(seconds.into()));
+    let settings = Settings {
+        qemu: &toolchain.qemu,
+        board,
+        elf: &elf,
+        clock: Clock::Real,
+        debugger: true,
+        limit,
+    };
     let mut machine = Machine::start(&settings)?;
     let mut output = stdout().lock();
     // Whoever stops reading does not stop the board.
     let ended = machine.wait(|line| drop(writeln!(output, "{line}").and_then(|()| output.flush())));
-    let is_late = |error: &anyhow::Error| error.downcast_ref().map(io::Error::kind) == Some(io::ErrorKind::TimedOut);
+    let is_late = |error: &anyhow::Error| {
+        error.downcast_ref().map(io::Error::kind) == Some(io::ErrorKind::TimedOut)
+    };
     match (ended, options.seconds) {
         (Err(error), Some(seconds)) if is_late(&error) => {
             complain(format_args!("ended after {seconds} s, as told"));
@@ -85,21 +106,40 @@ pub fn fw(options: &FwOptions) -> anyhow::Result<ExitCode> {
 /// The first board that has a binary as its application; else the first. Where the file says its target, as in
 /// `target/thumbv7m-none-eabi/release/x`, only boards of that target count.
 fn board_for(binary: &Path) -> &'static Board {
-    let is_target = |board: &&Board| binary.components().any(|folder| folder.as_os_str() == board.target);
+    let is_target = |board: &&Board| {
+        binary
+            .components()
+            .any(|folder| folder.as_os_str() == board.target)
+    };
     let of_target: Vec<_> = BOARDS.iter().filter(is_target).collect();
-    let boards = if of_target.is_empty() { BOARDS.iter().collect() } else { of_target };
+    let boards = if of_target.is_empty() {
+        BOARDS.iter().collect()
+    } else {
+        of_target
+    };
     let runs_it = |board: &&&Board| binary.file_name().is_some_and(|file| file == board.binary);
     boards.iter().find(runs_it).unwrap_or(&boards[0])
 }
 
 fn runnable() -> String {
-    let boards = BOARDS.map(|board| format!("  {:16}{}, {} MHz", board.name, board.cpu, board.hertz / 1_000_000));
+    let boards = BOARDS.map(|board| {
+        format!(
+            "  {:16}{}, {} MHz",
+            board.name,
+            board.cpu,
+            board.hertz / 1_000_000
+        )
+    });
     let (binaries, boards) = (binaries().join("\n  "), boards.join("\n"));
-    format!("Example: cargo fw mps2-an386 --seconds 10\n\nBinaries:\n  {binaries}\n\nBoards:\n{boards}")
+    format!(
+        "Example: cargo fw mps2-an386 --seconds 10\n\nBinaries:\n  {binaries}\n\nBoards:\n{boards}"
+    )
 }
 
 fn binaries() -> Vec<String> {
-    let Ok(files) = fs::read_dir(toolchain::workspace().join("firmware/src/bin")) else { return Vec::new() };
+    let Ok(files) = fs::read_dir(toolchain::workspace().join("firmware/src/bin")) else {
+        return Vec::new();
+    };
     let stem = |file: fs::DirEntry| Some(file.path().file_stem()?.to_string_lossy().into_owned());
     let mut names: Vec<_> = files.flatten().filter_map(stem).collect();
     names.sort();
@@ -128,7 +168,11 @@ pub fn verify(options: &TestOptions) -> anyhow::Result<ExitCode> {
     let limit = LIMITS[usize::from(options.long)];
     let test = |arguments: &[&str]| {
         let mut command = Command::new("cargo");
-        command.arg("test").args(arguments).current_dir(toolchain::workspace()).stdin(Stdio::null());
+        command
+            .arg("test")
+            .args(arguments)
+            .current_dir(toolchain::workspace())
+            .stdin(Stdio::null());
         if env::var_os(THREADS).is_none() {
             command.env(THREADS, (2 * available_parallelism()?.get()).to_string());
         }
@@ -138,7 +182,11 @@ pub fn verify(options: &TestOptions) -> anyhow::Result<ExitCode> {
     let mut compiling = test(&["--no-run", "--quiet"])?;
     toolchain.build_ahead()?;
     compiling.wait()?;
-    let arguments: &[&str] = if options.long { &["--", "--include-ignored"] } else { &[] };
+    let arguments: &[&str] = if options.long {
+        &["--", "--include-ignored"]
+    } else {
+        &[]
+    };
     Ok(process::exit_code(test(arguments)?.wait()?))
 }
 
@@ -148,8 +196,14 @@ fn the_board_follows_from_the_binary() {
         ("lm3s6965evb", "lm3s6965evb"),
         ("mps2-an386", "mps2-an386"),
         ("inject-panic", "lm3s6965evb"),
-        ("target/thumbv7em-none-eabihf/release/lm3s6965evb", "lm3s6965evb-m4"),
-        ("target/thumbv7em-none-eabihf/release/inject-panic", "lm3s6965evb-m4"),
+        (
+            "target/thumbv7em-none-eabihf/release/lm3s6965evb",
+            "lm3s6965evb-m4",
+        ),
+        (
+            "target/thumbv7em-none-eabihf/release/inject-panic",
+            "lm3s6965evb-m4",
+        ),
     ] {
         assert_eq!(board_for(Path::new(binary)).name, name, "{binary}");
     }

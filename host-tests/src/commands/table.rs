@@ -10,13 +10,19 @@ pub struct Table {
 impl Table {
     /// Comma-separated; no cell contains a comma or a quote.
     pub fn csv(&self) -> String {
-        let lines = std::iter::once(self.columns.join(",")).chain(self.rows.iter().map(|row| row.join(",")));
+        let lines = std::iter::once(self.columns.join(","))
+            .chain(self.rows.iter().map(|row| row.join(",")));
         lines.map(|line| line + "\n").collect()
     }
 
     pub fn markdown(&self) -> String {
-        let heads = [self.columns.join(" | "), vec!["---"; self.columns.len()].join(" | ")];
-        let lines = heads.into_iter().chain(self.rows.iter().map(|row| row.join(" | ")));
+        let heads = [
+            self.columns.join(" | "),
+            vec!["---"; self.columns.len()].join(" | "),
+        ];
+        let lines = heads
+            .into_iter()
+            .chain(self.rows.iter().map(|row| row.join(" | ")));
         lines.map(|cells| format!("| {cells} |\n")).collect()
     }
 }
@@ -30,7 +36,11 @@ pub fn between(page: &str, [start, end]: [&str; 2], text: &str) -> Option<String
 
 /// An error or a drift: two digits, or what it is not.
 pub fn small(value: f64) -> String {
-    if value.is_finite() { format!("{value:.1e}") } else { String::from("none") }
+    if value.is_finite() {
+        format!("{value:.1e}")
+    } else {
+        String::from("none")
+    }
 }
 
 #[test]

@@ -35,7 +35,9 @@ impl Display for Refused {
 /// Runs a command with the options of this run, and gives its exit code after saying what went wrong.
 ///
 /// Who reads its output may stop at any time (`| head`): the command then ends quietly and with success.
-pub fn main<Options: Parser, Done: Termination>(run: impl FnOnce(&Options) -> anyhow::Result<Done>) -> ExitCode {
+pub fn main<Options: Parser, Done: Termination>(
+    run: impl FnOnce(&Options) -> anyhow::Result<Done>,
+) -> ExitCode {
     let options = match parse() {
         Ok(options) => options,
         Err(code) => return code,
@@ -47,7 +49,11 @@ pub fn main<Options: Parser, Done: Termination>(run: impl FnOnce(&Options) -> an
         Err(error) if error.downcast_ref().is_some_and(is_closed) => ExitCode::SUCCESS,
         Err(error) => {
             complain(format_args!("error: {error:#}"));
-            if error.is::<Refused>() { ExitCode::from(REFUSED) } else { ExitCode::FAILURE }
+            if error.is::<Refused>() {
+                ExitCode::from(REFUSED)
+            } else {
+                ExitCode::FAILURE
+            }
         }
     }
 }
@@ -71,18 +77,28 @@ pub fn complain(line: impl Display) {
 pub fn check_writable(option: &str, file: &Path) -> Result<(), Refused> {
     let was_there = file.exists();
     let opened = File::options().create(true).append(true).open(file);
-    let removed = opened.and_then(|_| if was_there { Ok(()) } else { fs::remove_file(file) });
+    let removed = opened.and_then(|_| {
+        if was_there {
+            Ok(())
+        } else {
+            fs::remove_file(file)
+        }
+    });
     removed.map_err(|error| unwritable(option, file, &error))
 }
 
 /// Writes a file of the folder that `--out` names, which is made.
 pub fn write(file: &Path, bytes: impl AsRef<[u8]>) -> Result<(), Refused> {
     let made = file.parent().map_or(Ok(()), fs::create_dir_all);
-    made.and_then(|()| fs::write(file, bytes)).map_err(|error| unwritable("--out", file, &error))
+    made.and_then(|()| fs::write(file, bytes))
+        .map_err(|error| unwritable("--out", file, &error))
 }
 
 pub fn unwritable(option: &str, path: &Path, error: &io::Error) -> Refused {
-    Refused::because(format_args!("{option}: cannot write {}: {error}", path.display()))
+    Refused::because(format_args!(
+        "{option}: cannot write {}: {error}",
+        path.display()
+    ))
 }
 
 pub fn choice<Choice>(
@@ -92,9 +108,19 @@ pub fn choice<Choice>(
 where
     Choice: Copy + Send + Sync + 'static,
 {
-    let named: Vec<_> = choices.into_iter().map(|choice| (name(choice), choice)).collect();
-    PossibleValuesParser::new(named.iter().map(|(name, _)| *name).collect::<Vec<_>>())
-        .try_map(move |text| named.iter().find(|(name, _)| *name == text).map(|(_, choice)| *choice).ok_or("unknown"))
+    let named: Vec<_> = choices
+        .into_iter()
+        .map(|choice| (name(choice), choice))
+        .collect();
+    PossibleValuesParser::new(named.iter().map(|(name, _)| *name).collect::<Vec<_>>()).try_map(
+        move |text| {
+            named
+                .iter()
+                .find(|(name, _)| *name == text)
+                .map(|(_, choice)| *choice)
+                .ok_or("unknown")
+        },
+    )
 }
 
 /// The options of this run; if they are wrong, or help is asked for, the exit code after saying so.
@@ -104,23 +130,36 @@ fn parse<Options: Parser>() -> Result<Options, ExitCode> {
     let name = command.get_name().to_owned();
     let own = name.trim_start_matches("cargo ");
     let command = command.bin_name(&name).mut_args(|option| {
-        if option.get_action().takes_values() { option.allow_negative_numbers(true) } else { option }
+        if option.get_action().takes_values() {
+            option.allow_negative_numbers(true)
+        } else {
+            option
+        }
     });
     // Its name comes first.
-    let words = env::args_os().enumerate().filter(|(place, word)| *place != 1 || word.to_str() != Some(own));
+    let words = env::args_os()
+        .enumerate()
+        .filter(|(place, word)| *place != 1 || word.to_str() != Some(own));
     let matches = command.try_get_matches_from(words.map(|(_, word)| word));
-    matches.and_then(|matches| Options::from_arg_matches(&matches)).map_err(|error| {
-        if error.use_stderr() {
-            complain(one_line(&error.to_string()));
-            return ExitCode::from(REFUSED);
-        }
-        // Help was asked for. A closed output is no failure of ours.
-        let _ = error.print();
-        ExitCode::SUCCESS
-    })
+    matches
+        .and_then(|matches| Options::from_arg_matches(&matches))
+        .map_err(|error| {
+            if error.use_stderr() {
+                complain(one_line(&error.to_string()));
+                return ExitCode::from(REFUSED);
+            }
+            // Help was asked for. A closed output is no failure of ours.
+            let _ = error.print();
+            ExitCode::SUCCESS
+        })
 }
 
 /// The first paragraph of clap's report as one line; the usage that follows is left to `--help`.
 fn one_line(report: &str) -> String {
-    report.lines().take_while(|line| !line.is_empty()).map(str::trim).collect::<Vec<_>>().join(" ")
+    report
+        .lines()
+        .take_while(|line| !line.is_empty())
+        .map(str::trim)
+        .collect::<Vec<_>>()
+        .join(" ")
 }

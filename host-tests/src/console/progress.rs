@@ -23,7 +23,11 @@ pub struct Progress {
 impl Progress {
     /// Says what begins now; how long it takes, nobody knows.
     pub fn start(doing: &str) -> Self {
-        let progress = Self::new(doing, ProgressBar::new_spinner(), "{spinner} {prefix} {elapsed} {msg:.dim}");
+        let progress = Self::new(
+            doing,
+            ProgressBar::new_spinner(),
+            "{spinner} {prefix} {elapsed} {msg:.dim}",
+        );
         if progress.bar.is_hidden() {
             complain(format_args!("{doing} ..."));
         } else {
@@ -39,8 +43,12 @@ impl Progress {
     }
 
     fn new(doing: &str, bar: ProgressBar, style: &str) -> Self {
-        let style = ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar());
-        Self { bar: bar.with_style(style).with_prefix(doing.to_owned()), reminders: AtomicU64::new(0) }
+        let style =
+            ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar());
+        Self {
+            bar: bar.with_style(style).with_prefix(doing.to_owned()),
+            reminders: AtomicU64::new(0),
+        }
     }
 
     pub fn advance(&self, pieces: u64) {
@@ -51,7 +59,8 @@ impl Progress {
     /// To be called often: with the latest line of the one who works, or with `None` while there is none.
     pub fn alive(&self, line: Option<&str>) {
         if let Some(line) = line {
-            self.bar.set_message(line.chars().take(SHOWN).collect::<String>());
+            self.bar
+                .set_message(line.chars().take(SHOWN).collect::<String>());
         }
         self.remind();
     }
@@ -60,7 +69,9 @@ impl Progress {
         let (bar, seconds) = (&self.bar, self.bar.elapsed().as_secs());
         let due = seconds / REMINDER;
         if bar.is_hidden() && self.reminders.fetch_max(due, Ordering::Relaxed) < due {
-            let pieces = bar.length().map_or(String::new(), |length| format!("{} of {length}, ", bar.position()));
+            let pieces = bar.length().map_or(String::new(), |length| {
+                format!("{} of {length}, ", bar.position())
+            });
             complain(format_args!("{} ... {pieces}{seconds} s", bar.prefix()));
         }
     }

@@ -25,7 +25,11 @@ pub struct Board {
 impl Board {
     /// The clock of the processor that it stands for, Hz: QEMU's machine with a Cortex-M0+ stands for a Raspberry Pi Pico.
     pub fn processor_hertz(&self) -> u32 {
-        if self.core() == Core::M0Plus { 125_000_000 } else { self.hertz }
+        if self.core() == Core::M0Plus {
+            125_000_000
+        } else {
+            self.hertz
+        }
     }
 
     /// How long an instruction takes where the clock counts them, as a power of two of a nanosecond, for QEMU knows no others:
@@ -101,10 +105,20 @@ pub const MPS2_AN386: Board = Board {
 
 pub const BOARDS: [Board; 5] = [
     LM3S6965EVB,
-    Board { name: "lm3s6965evb-m4", cpu: "cortex-m4", target: "thumbv7em-none-eabihf", ..LM3S6965EVB },
+    Board {
+        name: "lm3s6965evb-m4",
+        cpu: "cortex-m4",
+        target: "thumbv7em-none-eabihf",
+        ..LM3S6965EVB
+    },
     MPS2_AN386,
     STM32F405,
-    Board { name: "lm3s6965evb-m0", cpu: "cortex-m0", target: "thumbv6m-none-eabi", ..LM3S6965EVB },
+    Board {
+        name: "lm3s6965evb-m0",
+        cpu: "cortex-m0",
+        target: "thumbv6m-none-eabi",
+        ..LM3S6965EVB
+    },
 ];
 
 /// The board that exists: the one ELF file is flashed and emulated. Its panel, button and I2C are not emulated.

@@ -32,12 +32,60 @@ pub struct Memory {
 /// the stack is for what no run has met: an interrupt at the deepest place, the report of a crash. The Pico has 2 MiB of flash and
 /// more memory than the others: an M0+ takes more instructions, and there is USB.
 pub const MEMORY: [(&str, Memory); 6] = [
-    ("lm3s6965evb", Memory { text: 240 * KIB, data: 256, bss: 24 * KIB, stack: 28 * KIB }),
-    ("lm3s6965evb-m4", Memory { text: 240 * KIB, data: 256, bss: 24 * KIB, stack: 28 * KIB }),
-    ("mps2-an386", Memory { text: 240 * KIB, data: 256, bss: 20 * KIB, stack: 28 * KIB }),
-    ("stm32f405", Memory { text: 248 * KIB, data: 256, bss: 22 * KIB, stack: 28 * KIB }),
-    ("lm3s6965evb-m0", Memory { text: 244 * KIB, data: 256, bss: 24 * KIB, stack: 28 * KIB }),
-    ("pico", Memory { text: 272 * KIB, data: 256, bss: 25 * KIB, stack: 28 * KIB }),
+    (
+        "lm3s6965evb",
+        Memory {
+            text: 240 * KIB,
+            data: 256,
+            bss: 24 * KIB,
+            stack: 28 * KIB,
+        },
+    ),
+    (
+        "lm3s6965evb-m4",
+        Memory {
+            text: 240 * KIB,
+            data: 256,
+            bss: 24 * KIB,
+            stack: 28 * KIB,
+        },
+    ),
+    (
+        "mps2-an386",
+        Memory {
+            text: 240 * KIB,
+            data: 256,
+            bss: 20 * KIB,
+            stack: 28 * KIB,
+        },
+    ),
+    (
+        "stm32f405",
+        Memory {
+            text: 248 * KIB,
+            data: 256,
+            bss: 22 * KIB,
+            stack: 28 * KIB,
+        },
+    ),
+    (
+        "lm3s6965evb-m0",
+        Memory {
+            text: 244 * KIB,
+            data: 256,
+            bss: 24 * KIB,
+            stack: 28 * KIB,
+        },
+    ),
+    (
+        "pico",
+        Memory {
+            text: 272 * KIB,
+            data: 256,
+            bss: 25 * KIB,
+            stack: 28 * KIB,
+        },
+    ),
 ];
 
 const KIB: u32 = 1024;

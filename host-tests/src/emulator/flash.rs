@@ -33,16 +33,26 @@ pub fn flash_image_over(elf: &[u8], unused: u8) -> Result<(u32, Vec<u8>)> {
     let endian = header.endian()?;
     let mut parts = Vec::new();
     for segment in header.program_headers(endian, elf)? {
-        let data = segment.data(endian, elf).ok().context("a segment is cut short")?;
+        let data = segment
+            .data(endian, elf)
+            .ok()
+            .context("a segment is cut short")?;
         if segment.p_type(endian) == PT_LOAD && !data.is_empty() {
             parts.push((segment.p_paddr(endian), data));
         }
     }
-    let start = parts.iter().map(|(address, _)| *address).min().context("nothing to load")?;
+    let start = parts
+        .iter()
+        .map(|(address, _)| *address)
+        .min()
+        .context("nothing to load")?;
     let mut image = Vec::new();
     for (address, data) in parts {
         let from = (address - start) as usize;
-        ensure!(from + data.len() <= MOST, "a segment at {address:#x}, far from the others");
+        ensure!(
+            from + data.len() <= MOST,
+            "a segment at {address:#x}, far from the others"
+        );
         if image.len() < from + data.len() {
             image.resize(from + data.len(), unused);
         }
@@ -57,7 +67,16 @@ pub fn uf2(start: u32, image: &[u8]) -> Vec<u8> {
     let count = parts.len() as u32;
     let blocks = (0..).zip(parts).flat_map(|(number, part)| {
         let place = start + number * BROUGHT as u32;
-        let head = [MAGIC[0], MAGIC[1], HAS_FAMILY, place, BROUGHT as u32, number, count, RP2040];
+        let head = [
+            MAGIC[0],
+            MAGIC[1],
+            HAS_FAMILY,
+            place,
+            BROUGHT as u32,
+            number,
+            count,
+            RP2040,
+        ];
         let mut block: Vec<u8> = head.into_iter().flat_map(u32::to_le_bytes).collect();
         let end = block.len() + ROOM;
         block.extend(part);

@@ -26,7 +26,10 @@ impl Show {
         let ink = Box::leak(Box::new(FadeLayer::NONE));
         let mut player = Player::new(processor, ink);
         player.play(name, *settings)?;
-        Ok(Self { player, news: Vec::new() })
+        Ok(Self {
+            player,
+            news: Vec::new(),
+        })
     }
 
     pub fn tick(&mut self) {
@@ -48,8 +51,22 @@ impl Show {
         while self.report().step < frame.report.step {
             self.tick();
         }
-        let Frame { sequence, dropped, lost, scene_cycles, busy_cycles, .. } = *frame;
-        Frame { sequence, dropped, lost, scene_cycles, busy_cycles, ..self.player.frame() }
+        let Frame {
+            sequence,
+            dropped,
+            lost,
+            scene_cycles,
+            busy_cycles,
+            ..
+        } = *frame;
+        Frame {
+            sequence,
+            dropped,
+            lost,
+            scene_cycles,
+            busy_cycles,
+            ..self.player.frame()
+        }
     }
 
     pub fn report(&self) -> Report {

@@ -14,7 +14,10 @@ use anyhow::bail;
 use firmware::protocol::ToHost;
 
 /// All messages that `next` gives until there is a frame among them; an error if there is none so `often`.
-fn up_to_frame(often: u32, mut next: impl FnMut() -> anyhow::Result<Vec<ToHost>>) -> anyhow::Result<Vec<ToHost>> {
+fn up_to_frame(
+    often: u32,
+    mut next: impl FnMut() -> anyhow::Result<Vec<ToHost>>,
+) -> anyhow::Result<Vec<ToHost>> {
     let mut messages = Vec::new();
     for _ in 0..often {
         let new = next()?;

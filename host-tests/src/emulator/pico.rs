@@ -43,7 +43,9 @@ impl PicoMachine {
         let file = tempfile::NamedTempFile::new()?;
         std::fs::write(file.path(), uf2(start, &image))?;
         let mut command = Command::new(node);
-        command.arg(workspace().join("host-tests/rp2040/main.js")).arg(file.path());
+        command
+            .arg(workspace().join("host-tests/rp2040/main.js"))
+            .arg(file.path());
         command.stdin(Stdio::piped()).stdout(Stdio::piped());
         let mut process = process::spawn(&mut command, limit)?;
         let pipes = process.child.stdin.take().zip(process.child.stdout.take());
@@ -52,7 +54,18 @@ impl PicoMachine {
         let log = LogDecoder::new(elf)?;
         let (usb, uart) = (Inbox::default(), Inbox::default());
         let (lines, heard_by_usb, heard_by_uart) = (Vec::new(), Vec::new(), Vec::new());
-        Ok(Self { input, output, _process: process, _file: file, usb, uart, log, lines, heard_by_usb, heard_by_uart })
+        Ok(Self {
+            input,
+            output,
+            _process: process,
+            _file: file,
+            usb,
+            uart,
+            log,
+            lines,
+            heard_by_usb,
+            heard_by_uart,
+        })
     }
 
     /// Lets time pass by the board's clock; what it has sent over USB.
@@ -67,7 +80,11 @@ impl PicoMachine {
     }
 
     pub fn next_frame(&mut self) -> anyhow::Result<Frame> {
-        self.run_to_frame()?.into_iter().rev().find_map(ToHost::frame).context("it ends with one")
+        self.run_to_frame()?
+            .into_iter()
+            .rev()
+            .find_map(ToHost::frame)
+            .context("it ends with one")
     }
 
     pub fn send_bytes(&mut self, bytes: &[u8]) -> anyhow::Result<()> {
@@ -78,8 +95,16 @@ impl PicoMachine {
         self.send_bytes(encode_command(request, command, &mut [0; MAX_WIRE]))
     }
 
-    pub fn send_through_uart(&mut self, request: u16, command: protocol::Command) -> anyhow::Result<()> {
-        self.tell(&format!("uart {}", digits(encode_command(request, command, &mut [0; MAX_WIRE])))).map(drop)
+    pub fn send_through_uart(
+        &mut self,
+        request: u16,
+        command: protocol::Command,
+    ) -> anyhow::Result<()> {
+        self.tell(&format!(
+            "uart {}",
+            digits(encode_command(request, command, &mut [0; MAX_WIRE]))
+        ))
+        .map(drop)
     }
 
     pub fn heard_by_uart(&mut self) -> Vec<ToHost> {
@@ -107,23 +132,38 @@ impl PicoMachine {
             Key::Right => 13,
             Key::Select => 14,
         };
-        self.tell(&format!("button {pin} {}", u8::from(down))).map(drop)
+        self.tell(&format!("button {pin} {}", u8::from(down)))
+            .map(drop)
     }
 
     /// Gives the emulator a command; the bytes that it asks for, if it asks for any: the panel's memory, the board's.
     pub fn tell(&mut self, command: &str) -> anyhow::Result<Vec<u8>> {
         const GONE: &str = "the emulator of the Pico no longer answers";
-        writeln!(self.input, "{command}").and_then(|()| self.input.flush()).context(GONE)?;
+        writeln!(self.input, "{command}")
+            .and_then(|()| self.input.flush())
+            .context(GONE)?;
         let mut asked = Vec::new();
         loop {
             let mut answer = String::new();
             ensure!(self.output.read_line(&mut answer).context(GONE)? > 0, GONE);
-            let (word, digits) = answer.trim_end().split_once(' ').unwrap_or((answer.trim_end(), ""));
+            let (word, digits) = answer
+                .trim_end()
+                .split_once(' ')
+                .unwrap_or((answer.trim_end(), ""));
             let byte = |pair: &[u8]| u8::from_str_radix(str::from_utf8(pair).ok()?, 16).ok();
-            let bytes = digits.as_bytes().chunks(2).map(byte).collect::<Option<Vec<_>>>().context(GONE)?;
+            let bytes = digits
+                .as_bytes()
+                .chunks(2)
+                .map(byte)
+                .collect::<Option<Vec<_>>>()
+                .context(GONE)?;
             match word {
-                "usb" => self.heard_by_usb.extend(bytes.iter().filter_map(|&byte| self.usb.take(byte))),
-                "uart" => self.heard_by_uart.extend(bytes.iter().filter_map(|&byte| self.uart.take(byte))),
+                "usb" => self
+                    .heard_by_usb
+                    .extend(bytes.iter().filter_map(|&byte| self.usb.take(byte))),
+                "uart" => self
+                    .heard_by_uart
+                    .extend(bytes.iter().filter_map(|&byte| self.uart.take(byte))),
                 "log" => self.lines.extend(self.log.take(&bytes)),
                 // Bytes cut off by it are no damage of the link's.
                 "restarted" => (self.usb.decoder, self.uart.decoder) = Default::default(),

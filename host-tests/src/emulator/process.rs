@@ -42,12 +42,21 @@ pub fn spawn(command: &mut Command, limit: Duration) -> io::Result<Running> {
     let started = Instant::now();
     let mut warden = Command::new("sh");
     warden.args(["-c", WARDEN, &limit.as_secs_f64().to_string()]);
-    warden.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::null());
+    warden
+        .stdin(Stdio::piped())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null());
     // Is in the group from before the child, and gives it its number.
     let mut warden = warden.process_group(0).spawn().map_err(failed)?;
     let child = command.process_group(warden.id().cast_signed()).spawn();
     let child = child.map_err(failed).inspect_err(|_| drop(warden.wait()))?;
-    Ok(Running { child, warden, program, started, limit })
+    Ok(Running {
+        child,
+        warden,
+        program,
+        started,
+        limit,
+    })
 }
 
 impl Running {
@@ -58,7 +67,11 @@ impl Running {
         let is_stopped = status.signal() == Some(SIGKILL) && self.started.elapsed() >= self.limit;
         let (program, seconds) = (&self.program, self.limit.as_secs_f32());
         let late = || format!("{program} was still running after {seconds} s and was stopped");
-        if is_stopped { Err(io::Error::new(ErrorKind::TimedOut, late())) } else { Ok(status) }
+        if is_stopped {
+            Err(io::Error::new(ErrorKind::TimedOut, late()))
+        } else {
+            Ok(status)
+        }
     }
 
     /// The child's exit status if it has ended, without waiting.
@@ -68,7 +81,11 @@ impl Running {
 
     /// As [`Self::try_wait`]; but if these [`streams`](Self::streams) have ended, the child's end is near, and waited for.
     pub fn ended(&mut self, streams: &[Stream]) -> io::Result<Option<ExitStatus>> {
-        if streams.iter().any(|stream| stream.is_open) { self.try_wait() } else { self.wait().map(Some) }
+        if streams.iter().any(|stream| stream.is_open) {
+            self.try_wait()
+        } else {
+            self.wait().map(Some)
+        }
     }
 
     /// Both outputs, which are pipes.
@@ -90,7 +107,10 @@ impl Drop for Running {
 
 /// A child's exit status as our own; failure if it was ended by a signal.
 pub fn exit_code(status: ExitStatus) -> ExitCode {
-    status.code().and_then(|code| u8::try_from(code).ok()).map_or(ExitCode::FAILURE, ExitCode::from)
+    status
+        .code()
+        .and_then(|code| u8::try_from(code).ok())
+        .map_or(ExitCode::FAILURE, ExitCode::from)
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -107,18 +127,38 @@ pub fn run(command: &mut Command, limit: Duration) -> io::Result<Output> {
 
 /// As [`run`]; meanwhile `watch` is called with the last line that has come, and with `None` at least ten times a second while
 /// there is none: the child is alive.
-pub fn run_watched(command: &mut Command, limit: Duration, mut watch: impl FnMut(Option<&str>)) -> io::Result<Output> {
-    command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+pub fn run_watched(
+    command: &mut Command,
+    limit: Duration,
+    mut watch: impl FnMut(Option<&str>),
+) -> io::Result<Output> {
+    command
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped());
     let mut child = spawn(command, limit)?;
     let mut streams = child.streams()?;
     loop {
         // Whoever has left the group may hold the pipes open for longer.
         let ended = child.ended(&streams)?;
-        let new = streams.iter_mut().map(Stream::take_in).filter(|new| !new.is_empty()).last();
-        watch(new.map(String::from_utf8_lossy).as_deref().and_then(|text| text.lines().last()));
+        let new = streams
+            .iter_mut()
+            .map(Stream::take_in)
+            .filter(|new| !new.is_empty())
+            .last();
+        watch(
+            new.map(String::from_utf8_lossy)
+                .as_deref()
+                .and_then(|text| text.lines().last()),
+        );
         if let Some(status) = ended {
-            let [stdout, stderr] = streams.map(|stream| String::from_utf8_lossy(&stream.bytes).into_owned());
-            return Ok(Output { status, stdout, stderr });
+            let [stdout, stderr] =
+                streams.map(|stream| String::from_utf8_lossy(&stream.bytes).into_owned());
+            return Ok(Output {
+                status,
+                stdout,
+                stderr,
+            });
         }
         wait(streams.iter());
     }
@@ -150,9 +190,13 @@ pub fn on_interrupt(hook: impl FnOnce() + Send + 'static) {
     let hooks = || HOOKS.lock().unwrap_or_else(PoisonError::into_inner);
     HANDLER.call_once(|| {
         // Fails only for signals that no program may handle.
-        let Ok(mut signals) = Signals::new(INTERRUPTS) else { return };
+        let Ok(mut signals) = Signals::new(INTERRUPTS) else {
+            return;
+        };
         thread::spawn(move || {
-            let Some(signal) = signals.forever().next() else { return };
+            let Some(signal) = signals.forever().next() else {
+                return;
+            };
             hooks().drain(..).for_each(|hook| hook());
             exit(128 + signal);
         });

@@ -28,7 +28,11 @@ impl Stream {
     pub fn of(pipe: impl Into<OwnedFd>) -> io::Result<Self> {
         let pipe = File::from(pipe.into());
         fcntl(&pipe, FcntlArg::F_SETFL(OFlag::O_NONBLOCK))?;
-        Ok(Self { pipe, bytes: Vec::new(), is_open: true })
+        Ok(Self {
+            pipe,
+            bytes: Vec::new(),
+            is_open: true,
+        })
     }
 
     /// Takes all that is there; what is new.
@@ -42,7 +46,12 @@ impl Stream {
     /// The next line that is complete, or the last.
     pub fn line(&mut self) -> Option<String> {
         let last = (!self.is_open && !self.bytes.is_empty()).then_some(self.bytes.len());
-        let end = self.bytes.iter().position(|byte| *byte == b'\n').map(|place| place + 1).or(last)?;
+        let end = self
+            .bytes
+            .iter()
+            .position(|byte| *byte == b'\n')
+            .map(|place| place + 1)
+            .or(last)?;
         let line: Vec<u8> = self.bytes.drain(..end).collect();
         Some(String::from_utf8_lossy(line.trim_ascii_end()).into_owned())
     }
@@ -51,7 +60,9 @@ impl Stream {
 /// Waits until something has come in one of the streams, or its end, or for a moment.
 pub fn wait<'a>(streams: impl Iterator<Item = &'a Stream>) {
     let open = streams.filter(|stream| stream.is_open);
-    let mut polled: Vec<_> = open.map(|stream| PollFd::new(stream.pipe.as_fd(), PollFlags::POLLIN)).collect();
+    let mut polled: Vec<_> = open
+        .map(|stream| PollFd::new(stream.pipe.as_fd(), PollFlags::POLLIN))
+        .collect();
     // A signal ends it early.
     let _ = poll(&mut polled, TICK);
 }
@@ -71,8 +82,15 @@ impl Channel {
             let path = path.with_extension(end);
             mkfifo(&path, Mode::S_IRUSR | Mode::S_IWUSR)?;
             // Open for both, it waits for nobody at the other end.
-            File::options().read(true).write(true).custom_flags(OFlag::O_NONBLOCK.bits()).open(path)
+            File::options()
+                .read(true)
+                .write(true)
+                .custom_flags(OFlag::O_NONBLOCK.bits())
+                .open(path)
         };
-        Ok(Self { sender: pipe("in")?, stream: Stream::of(pipe("out")?)? })
+        Ok(Self {
+            sender: pipe("in")?,
+            stream: Stream::of(pipe("out")?)?,
+        })
     }
 }

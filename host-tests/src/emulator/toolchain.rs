@@ -22,7 +22,11 @@ use tools::{CORE_PACKAGES, Emulator, QEMU, QEMU_RISCV};
 use crate::console::cli::{REFUSED, Refused, complain};
 
 /// The compiler's targets, one for each kind of core.
-pub const TARGETS: [&str; 3] = ["thumbv6m-none-eabi", "thumbv7m-none-eabi", "thumbv7em-none-eabihf"];
+pub const TARGETS: [&str; 3] = [
+    "thumbv6m-none-eabi",
+    "thumbv7m-none-eabi",
+    "thumbv7em-none-eabihf",
+];
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Toolchain {
@@ -35,7 +39,9 @@ pub struct Toolchain {
 /// That something is missing: why, and what brings it, in a line.
 fn missing(installs: bool, what: &str, why: &str, by_hand: &str) -> Refused {
     let setup = if installs { "" } else { "cargo setup, or " };
-    Refused::because(format_args!("{what} is missing: {why}; what brings it: {setup}{by_hand}"))
+    Refused::because(format_args!(
+        "{what} is missing: {why}; what brings it: {setup}{by_hand}"
+    ))
 }
 
 /// The tools, if all are there; installs nothing. Looks once per process.
@@ -46,7 +52,12 @@ pub fn ready() -> Result<Toolchain, Refused> {
 
 /// The tools, brought if need be; what was done for it is said. Two set-ups at once take turns.
 pub fn set_up() -> Result<Toolchain, Refused> {
-    let refused = |error| Refused::because(format_args!("QEMU's pipes: TMPDIR={}: {error}", env::temp_dir().display()));
+    let refused = |error| {
+        Refused::because(format_args!(
+            "QEMU's pipes: TMPDIR={}: {error}",
+            env::temp_dir().display()
+        ))
+    };
     tempfile::tempdir().map_err(refused)?;
     ready().or_else(|_| {
         let _turn = turn()?;
@@ -57,15 +68,32 @@ pub fn set_up() -> Result<Toolchain, Refused> {
 /// The same for another target: its core library and its emulator, which for a RISC-V is that of its programs under Linux.
 pub fn set_up_for(target: &str) -> Result<Toolchain, Refused> {
     let _turn = turn()?;
-    both(true, &[target], if target.starts_with("riscv") { &QEMU_RISCV } else { &QEMU })
+    both(
+        true,
+        &[target],
+        if target.starts_with("riscv") {
+            &QEMU_RISCV
+        } else {
+            &QEMU
+        },
+    )
 }
 
 /// Both of them, or a line for each that is missing.
 fn both(installs: bool, targets: &[&str], emulator: &Emulator) -> Result<Toolchain, Refused> {
-    let packages = format!("rustup target add {}, or Debian's {}", targets.join(" "), CORE_PACKAGES.join(" "));
-    let core = tools::core(installs, targets).map_err(|why| missing(installs, "the core library", &why, &packages));
-    let by_hand = format!("this system's package {} (Homebrew: qemu)", emulator.package);
-    let qemu = tools::qemu(installs, emulator).map_err(|why| missing(installs, emulator.program, &why, &by_hand));
+    let packages = format!(
+        "rustup target add {}, or Debian's {}",
+        targets.join(" "),
+        CORE_PACKAGES.join(" ")
+    );
+    let core = tools::core(installs, targets)
+        .map_err(|why| missing(installs, "the core library", &why, &packages));
+    let by_hand = format!(
+        "this system's package {} (Homebrew: qemu)",
+        emulator.package
+    );
+    let qemu = tools::qemu(installs, emulator)
+        .map_err(|why| missing(installs, emulator.program, &why, &by_hand));
     match (core, qemu) {
         (Ok(linker), Ok(qemu)) => Ok(Toolchain { linker, qemu }),
         (Err(core), Err(qemu)) => Err(Refused::because(format_args!("{core}\n{qemu}"))),
@@ -89,9 +117,17 @@ pub fn set_up_pico() -> Result<PathBuf, Refused> {
 impl fmt::Display for Toolchain {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.linker {
-            None => writeln!(f, "ARM core library: ready-made, for {}", TARGETS.join(", "))?,
+            None => writeln!(
+                f,
+                "ARM core library: ready-made, for {}",
+                TARGETS.join(", ")
+            )?,
             Some(folder) => {
-                writeln!(f, "ARM core library: from Debian's sources, linked by rust-lld of {}", folder.display())?;
+                writeln!(
+                    f,
+                    "ARM core library: from Debian's sources, linked by rust-lld of {}",
+                    folder.display()
+                )?;
             }
         }
         write!(f, "QEMU: {}", self.qemu.display())
@@ -99,7 +135,11 @@ impl fmt::Display for Toolchain {
 }
 
 /// What the workspace alone has, and no folder above or beside it.
-const MARKS: [&str; 3] = ["kernel/Cargo.toml", "firmware/Cargo.toml", "host-tests/Cargo.toml"];
+const MARKS: [&str; 3] = [
+    "kernel/Cargo.toml",
+    "firmware/Cargo.toml",
+    "host-tests/Cargo.toml",
+];
 
 /// The project's folder, found as a command runs, for a checkout may be moved or copied with its programs already built: above the package that cargo runs, else above the current folder, else above this program.
 /// Where there is none the process ends as any command does that cannot be served: one line, exit code 2.
@@ -124,5 +164,7 @@ fn above(start: &Path) -> Option<PathBuf> {
 /// Where everything built goes: `CARGO_TARGET_DIR`, as cargo has it, or else the workspace's own folder.
 pub fn target() -> PathBuf {
     let chosen = env::var_os("CARGO_TARGET_DIR").filter(|folder| !folder.is_empty());
-    chosen.and_then(|folder| absolute(folder).ok()).unwrap_or_else(|| workspace().join("target"))
+    chosen
+        .and_then(|folder| absolute(folder).ok())
+        .unwrap_or_else(|| workspace().join("target"))
 }

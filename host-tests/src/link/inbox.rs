@@ -36,7 +36,11 @@ pub struct Inbox {
 impl Inbox {
     /// Takes a byte; the message that it ends.
     pub fn take(&mut self, byte: u8) -> Option<ToHost> {
-        let message = match self.decoder.push(byte)?.and_then(|bytes| read(bytes).ok_or(LinkError::Malformed)) {
+        let message = match self
+            .decoder
+            .push(byte)?
+            .and_then(|bytes| read(bytes).ok_or(LinkError::Malformed))
+        {
             Ok(message) => message,
             Err(error) => {
                 self.counts.damaged += u64::from(!std::mem::take(&mut self.joins));
@@ -48,7 +52,9 @@ impl Inbox {
         self.counts.messages += 1;
         match message {
             ToHost::Frame(Frame { sequence, .. }) => {
-                let missing = self.expected.map_or(0, |expected| sequence.wrapping_sub(expected));
+                let missing = self
+                    .expected
+                    .map_or(0, |expected| sequence.wrapping_sub(expected));
                 // One that lies behind is of a board that has started to count anew.
                 let restarted = missing > u32::MAX / 2;
                 self.counts.restarts += u64::from(restarted);
@@ -66,7 +72,8 @@ impl Inbox {
 
     /// A connection begins, to a board that may be in the middle of a message and of its count.
     pub fn join(&mut self) {
-        (self.decoder, self.expected, self.damage, self.joins) = (Decoder::default(), None, None, true);
+        (self.decoder, self.expected, self.damage, self.joins) =
+            (Decoder::default(), None, None, true);
     }
 }
 
@@ -79,8 +86,13 @@ mod tests {
     fn counts(messages: impl IntoIterator<Item = u32>) -> Counts {
         let mut inbox = Inbox::default();
         for sequence in messages {
-            let frame = ToHost::Frame(Frame { sequence, ..Frame::default() });
-            encode(&frame, &mut [0; MAX_WIRE]).iter().for_each(|&byte| _ = inbox.take(byte));
+            let frame = ToHost::Frame(Frame {
+                sequence,
+                ..Frame::default()
+            });
+            encode(&frame, &mut [0; MAX_WIRE])
+                .iter()
+                .for_each(|&byte| _ = inbox.take(byte));
         }
         inbox.counts
     }
@@ -88,8 +100,22 @@ mod tests {
     #[test]
     fn missing_frames_are_counted_over_the_wrap_but_none_of_a_board_that_was_switched_off() {
         let sequences = [u32::MAX - 2, u32::MAX - 1, 1, 2, 5];
-        assert_eq!(counts(sequences), Counts { messages: 5, lost: 4, ..Counts::default() });
-        assert_eq!(counts([700, 701, 0, 1]), Counts { messages: 4, restarts: 1, ..Counts::default() });
+        assert_eq!(
+            counts(sequences),
+            Counts {
+                messages: 5,
+                lost: 4,
+                ..Counts::default()
+            }
+        );
+        assert_eq!(
+            counts([700, 701, 0, 1]),
+            Counts {
+                messages: 4,
+                restarts: 1,
+                ..Counts::default()
+            }
+        );
     }
 
     #[test]
@@ -98,8 +124,28 @@ mod tests {
         inbox.join();
         let mut wire = [0; MAX_WIRE];
         let wire = encode(&ToHost::Frame(Frame::default()), &mut wire);
-        let stream = [&wire[20..], wire, &wire[..9], &[wire[9] ^ 0x10], &wire[10..]].concat();
-        assert_eq!(stream.into_iter().filter_map(|byte| inbox.take(byte)).count(), 1);
-        assert_eq!(inbox.counts, Counts { messages: 1, damaged: 1, ..Counts::default() });
+        let stream = [
+            &wire[20..],
+            wire,
+            &wire[..9],
+            &[wire[9] ^ 0x10],
+            &wire[10..],
+        ]
+        .concat();
+        assert_eq!(
+            stream
+                .into_iter()
+                .filter_map(|byte| inbox.take(byte))
+                .count(),
+            1
+        );
+        assert_eq!(
+            inbox.counts,
+            Counts {
+                messages: 1,
+                damaged: 1,
+                ..Counts::default()
+            }
+        );
     }
 }

@@ -15,15 +15,28 @@ const AUTO: &str = "auto";
 
 fn choose(ports: &[SerialPortInfo]) -> Result<String, String> {
     let over_usb = |port: &SerialPortInfo| {
-        let SerialPortType::UsbPort(usb) = &port.port_type else { return None };
-        Some((port.port_name.clone(), usb.product.clone().unwrap_or_else(|| "no name".to_owned())))
+        let SerialPortType::UsbPort(usb) = &port.port_type else {
+            return None;
+        };
+        Some((
+            port.port_name.clone(),
+            usb.product.clone().unwrap_or_else(|| "no name".to_owned()),
+        ))
     };
     match &ports.iter().filter_map(over_usb).collect::<Vec<_>>()[..] {
-        [] => Err(format!("{AUTO}: no USB serial adapter is plugged in; name the port, as in --port /dev/ttyUSB0")),
+        [] => Err(format!(
+            "{AUTO}: no USB serial adapter is plugged in; name the port, as in --port /dev/ttyUSB0"
+        )),
         [(name, _)] => Ok(name.clone()),
         several => {
-            let named: Vec<_> = several.iter().map(|(name, product)| format!("{name} ({product})")).collect();
-            Err(format!("{AUTO}: there are several, name one: {}", named.join(", ")))
+            let named: Vec<_> = several
+                .iter()
+                .map(|(name, product)| format!("{name} ({product})"))
+                .collect();
+            Err(format!(
+                "{AUTO}: there are several, name one: {}",
+                named.join(", ")
+            ))
         }
     }
 }
@@ -36,16 +49,34 @@ mod tests {
 
     fn usb(name: &str, product: Option<&str>) -> SerialPortInfo {
         let product = product.map(str::to_owned);
-        let usb = UsbPortInfo { vid: 0x16c0, pid: 0x27dd, serial_number: None, manufacturer: None, product };
-        SerialPortInfo { port_name: name.to_owned(), port_type: SerialPortType::UsbPort(usb) }
+        let usb = UsbPortInfo {
+            vid: 0x16c0,
+            pid: 0x27dd,
+            serial_number: None,
+            manufacturer: None,
+            product,
+        };
+        SerialPortInfo {
+            port_name: name.to_owned(),
+            port_type: SerialPortType::UsbPort(usb),
+        }
     }
 
     #[test]
     fn the_one_adapter_that_is_plugged_in_is_taken() {
-        let built_in = SerialPortInfo { port_name: "/dev/ttyS0".to_owned(), port_type: SerialPortType::Unknown };
-        let [pico, other] = [usb("/dev/ttyACM0", Some("Double pendulum")), usb("/dev/ttyUSB0", None)];
+        let built_in = SerialPortInfo {
+            port_name: "/dev/ttyS0".to_owned(),
+            port_type: SerialPortType::Unknown,
+        };
+        let [pico, other] = [
+            usb("/dev/ttyACM0", Some("Double pendulum")),
+            usb("/dev/ttyUSB0", None),
+        ];
         assert!(choose(std::slice::from_ref(&built_in)).is_err());
-        assert_eq!(choose(&[built_in, pico.clone()]), Ok("/dev/ttyACM0".to_owned()));
+        assert_eq!(
+            choose(&[built_in, pico.clone()]),
+            Ok("/dev/ttyACM0".to_owned())
+        );
         let several =
             "auto: there are several, name one: /dev/ttyACM0 (Double pendulum), /dev/ttyUSB0 (no name)".to_owned();
         assert_eq!(choose(&[pico, other]), Err(several));

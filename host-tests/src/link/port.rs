@@ -40,7 +40,15 @@ impl Port {
         };
         let open = Some(open(&name).map_err(|error| reason(&name, &error))?);
         let (inbox, notices, since) = (Inbox::default(), Vec::new(), Instant::now());
-        let mut port = Self { name, open, inbox, notices, since, bytes: 0, complained: false };
+        let mut port = Self {
+            name,
+            open,
+            inbox,
+            notices,
+            since,
+            bytes: 0,
+            complained: false,
+        };
         port.inbox.join();
         Ok(port)
     }
@@ -52,7 +60,10 @@ impl Port {
         }
         let restarts = self.inbox.counts.restarts;
         let bytes = self.read();
-        let messages: Vec<_> = bytes.into_iter().filter_map(|byte| self.inbox.take(byte)).collect();
+        let messages: Vec<_> = bytes
+            .into_iter()
+            .filter_map(|byte| self.inbox.take(byte))
+            .collect();
         if self.inbox.counts.restarts > restarts {
             self.notices.push(restart(&messages));
         }
@@ -67,7 +78,10 @@ impl Port {
 
     pub fn send_bytes(&mut self, bytes: &[u8]) {
         let Some(port) = &mut self.open else { return };
-        let sent = port.set_timeout(ACCEPTANCE).map_err(std::io::Error::from).and_then(|()| port.write_all(bytes));
+        let sent = port
+            .set_timeout(ACCEPTANCE)
+            .map_err(std::io::Error::from)
+            .and_then(|()| port.write_all(bytes));
         if let Err(error) = sent {
             self.gone(&error.to_string());
         }
@@ -78,7 +92,11 @@ impl Port {
         while bytes.len() < MOST_BYTES
             && let Some(port) = &mut self.open
         {
-            match port.set_timeout(WAIT).map_err(std::io::Error::from).and_then(|()| port.read(&mut buffer)) {
+            match port
+                .set_timeout(WAIT)
+                .map_err(std::io::Error::from)
+                .and_then(|()| port.read(&mut buffer))
+            {
                 Ok(count @ 1..) => bytes.extend(&buffer[..count]),
                 Err(error) if error.kind() == ErrorKind::Interrupted => {}
                 Err(error) if error.kind() == ErrorKind::TimedOut => break,
@@ -93,7 +111,10 @@ impl Port {
     fn gone(&mut self, why: &str) {
         self.open = None;
         self.since = Instant::now();
-        self.notices.push(format!("{} is gone ({why}): is the cable out? Waiting for it", self.name));
+        self.notices.push(format!(
+            "{} is gone ({why}): is the cable out? Waiting for it",
+            self.name
+        ));
     }
 
     fn reopen(&mut self) {
@@ -112,7 +133,8 @@ impl Port {
     fn note(&mut self, messages: &[ToHost]) {
         if !messages.is_empty() {
             if self.complained {
-                self.notices.push(format!("{}: the board sends again", self.name));
+                self.notices
+                    .push(format!("{}: the board sends again", self.name));
             }
             (self.since, self.bytes, self.complained) = (Instant::now(), 0, false);
         } else if self.open.is_some() && !self.complained && self.since.elapsed() >= PATIENCE {
@@ -124,13 +146,17 @@ impl Port {
     fn silence(&self) -> String {
         let Self { name, bytes, .. } = self;
         match self.inbox.damage {
-            _ if *bytes == 0 => format!("{name}: nothing comes; is the board on, and its TX at the adapter's RX?"),
+            _ if *bytes == 0 => {
+                format!("{name}: nothing comes; is the board on, and its TX at the adapter's RX?")
+            }
             Some(LinkError::Version(version)) => {
                 format!(
                     "{name}: the board speaks version {version} of the protocol, this program {VERSION}; flash it anew"
                 )
             }
-            _ => format!("{name}: {bytes} bytes and no message: another device, or its link at another speed"),
+            _ => format!(
+                "{name}: {bytes} bytes and no message: another device, or its link at another speed"
+            ),
         }
     }
 }
@@ -154,7 +180,9 @@ fn reason(name: &str, error: &serialport::Error) -> String {
     match error.kind() {
         NoDevice => format!("{name}: another program has it open"),
         Io(ErrorKind::PermissionDenied) => {
-            format!("{name}: no right to open it; as root: usermod -aG dialout USER, then log in again")
+            format!(
+                "{name}: no right to open it; as root: usermod -aG dialout USER, then log in again"
+            )
         }
         Io(ErrorKind::NotFound) => format!("{name}: there is no such port{}", present()),
         _ => format!("{name}: it cannot be used as a serial port: {error}"),
@@ -164,7 +192,11 @@ fn reason(name: &str, error: &serialport::Error) -> String {
 fn present() -> String {
     let ports = serialport::available_ports().unwrap_or_default();
     let names: Vec<_> = ports.into_iter().map(|port| port.port_name).collect();
-    if names.is_empty() { String::new() } else { format!("; there are: {}", names.join(", ")) }
+    if names.is_empty() {
+        String::new()
+    } else {
+        format!("; there are: {}", names.join(", "))
+    }
 }
 
 #[cfg(test)]
@@ -173,13 +205,25 @@ mod tests {
 
     #[test]
     fn a_port_that_does_not_open_is_told_with_the_remedy() {
-        let refused = |kind| reason("/dev/ttyX", &serialport::Error::new(kind, "Not a typewriter"));
+        let refused = |kind| {
+            reason(
+                "/dev/ttyX",
+                &serialport::Error::new(kind, "Not a typewriter"),
+            )
+        };
         let told = refused(serialport::ErrorKind::Io(ErrorKind::PermissionDenied));
-        assert!(told.contains("no right to open it") && told.contains("dialout"), "{told}");
+        assert!(
+            told.contains("no right to open it") && told.contains("dialout"),
+            "{told}"
+        );
         assert!(refused(serialport::ErrorKind::NoDevice).contains("another program"));
         assert!(refused(serialport::ErrorKind::Unknown).contains("Not a typewriter"));
         let error = Port::open("/nowhere/tty").err();
         assert!(error.is_some_and(|told| told.starts_with("/nowhere/tty: there is no such port")));
-        assert!(Port::open("/dev/null").err().is_some_and(|told| told.contains("cannot be used as a serial port")));
+        assert!(
+            Port::open("/dev/null")
+                .err()
+                .is_some_and(|told| told.contains("cannot be used as a serial port"))
+        );
     }
 }

@@ -35,17 +35,43 @@ pub struct HardCase {
 /// Every line, in the file's order.
 pub fn hard_cases() -> Vec<HardCase> {
     let lines = include_str!("../../data/hard_cases.csv").lines().skip(1);
-    lines.map(|line| HardCase::read(line).unwrap_or_else(|| panic!("hard_cases.csv: cannot read `{line}`"))).collect()
+    lines
+        .map(|line| {
+            HardCase::read(line).unwrap_or_else(|| panic!("hard_cases.csv: cannot read `{line}`"))
+        })
+        .collect()
 }
 
 impl HardCase {
     fn read(line: &'static str) -> Option<Self> {
         let (line, reason) = line.strip_suffix('"')?.split_once(",\"")?;
         let (name, numbers) = line.split_once(',')?;
-        let numbers: Vec<f64> = numbers.split(',').map(|text| text.parse().ok()).collect::<Option<_>>()?;
-        let &[m1, m2, l1, l2, g, a1, a2, p1, p2, seconds, ref budgets @ ..] = numbers.as_slice() else { return None };
-        let &[spread, floor, fixed32, fixed64, method, in_angles, growth] = budgets else { return None };
-        let trial = Trial { parameters: Parameters { m1, m2, l1, l2, g }, start: State { a1, a2, p1, p2 }, seconds };
-        Some(Self { name, trial, spread, floor, fixed: [fixed32, fixed64], method, in_angles, growth, reason })
+        let numbers: Vec<f64> = numbers
+            .split(',')
+            .map(|text| text.parse().ok())
+            .collect::<Option<_>>()?;
+        let &[m1, m2, l1, l2, g, a1, a2, p1, p2, seconds, ref budgets @ ..] = numbers.as_slice()
+        else {
+            return None;
+        };
+        let &[spread, floor, fixed32, fixed64, method, in_angles, growth] = budgets else {
+            return None;
+        };
+        let trial = Trial {
+            parameters: Parameters { m1, m2, l1, l2, g },
+            start: State { a1, a2, p1, p2 },
+            seconds,
+        };
+        Some(Self {
+            name,
+            trial,
+            spread,
+            floor,
+            fixed: [fixed32, fixed64],
+            method,
+            in_angles,
+            growth,
+            reason,
+        })
     }
 }

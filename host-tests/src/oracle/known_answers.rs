@@ -32,7 +32,8 @@ pub struct KnownAnswer {
 }
 
 /// The columns.
-pub const HEADING: &str = "scene,a1_deg,a2_deg,w1_start,w2_start,m1,m2,l1,l2,g,t,sin_a1,cos_a1,sin_a2,cos_a2,growth";
+pub const HEADING: &str =
+    "scene,a1_deg,a2_deg,w1_start,w2_start,m1,m2,l1,l2,g,t,sin_a1,cos_a1,sin_a2,cos_a2,growth";
 /// How many of these are what is given, and the time.
 const GIVEN: usize = 11;
 
@@ -43,7 +44,10 @@ const GIVEN: usize = 11;
 pub fn table() -> anyhow::Result<Vec<KnownAnswer>> {
     let lines = include_str!("../../data/known_answers.csv").lines().skip(1);
     lines
-        .map(|line| KnownAnswer::read(line).with_context(|| format!("known_answers.csv: cannot read `{line}`")))
+        .map(|line| {
+            KnownAnswer::read(line)
+                .with_context(|| format!("known_answers.csv: cannot read `{line}`"))
+        })
         .collect()
 }
 
@@ -51,17 +55,49 @@ impl KnownAnswer {
     fn read(line: &'static str) -> Option<Self> {
         let (end, _) = line.match_indices(',').nth(GIVEN - 1)?;
         let (scene, numbers) = line.split_once(',')?;
-        let places = |text: &str| text.split_once('.').map_or(0, |(_, places)| places.len() as i32);
-        let radii: Vec<f64> = numbers.split(',').map(|text| 2.0 * 10_f64.powi(-places(text))).collect();
+        let places = |text: &str| {
+            text.split_once('.')
+                .map_or(0, |(_, places)| places.len() as i32)
+        };
+        let radii: Vec<f64> = numbers
+            .split(',')
+            .map(|text| 2.0 * 10_f64.powi(-places(text)))
+            .collect();
         let numbers: Vec<TwoFloat> = numbers.split(',').map(decimal).collect::<Option<_>>()?;
-        let &[a1, a2, w1, w2, m1, m2, l1, l2, g, time, z1, z2, z3, z4, growth] = numbers.as_slice() else {
+        let &[
+            a1,
+            a2,
+            w1,
+            w2,
+            m1,
+            m2,
+            l1,
+            l2,
+            g,
+            time,
+            z1,
+            z2,
+            z3,
+            z4,
+            growth,
+        ] = numbers.as_slice()
+        else {
             return None;
         };
         Some(Self {
             scene,
             given: &line[..end],
-            start: Reference::exact(Parameters { m1, m2, l1, l2, g }, [a1 * PI / 180.0, a2 * PI / 180.0, w1, w2]),
-            parameters: Parameters { m1: m1.into(), m2: m2.into(), l1: l1.into(), l2: l2.into(), g: g.into() },
+            start: Reference::exact(
+                Parameters { m1, m2, l1, l2, g },
+                [a1 * PI / 180.0, a2 * PI / 180.0, w1, w2],
+            ),
+            parameters: Parameters {
+                m1: m1.into(),
+                m2: m2.into(),
+                l1: l1.into(),
+                l2: l2.into(),
+                g: g.into(),
+            },
             time: time.into(),
             directions: [z1, z2, z3, z4],
             radius: radii[10..14].try_into().ok()?,
@@ -78,5 +114,9 @@ fn decimal(text: &str) -> Option<TwoFloat> {
     let exponent = i32::from_str(exponent).ok()? - i32::try_from(fraction.len()).ok()?;
     let power = TwoFloat::from(10.0).powi(exponent.abs());
     let digits = TwoFloat::from(digits);
-    Some(if exponent < 0 { divide(digits, power) } else { digits * power })
+    Some(if exponent < 0 {
+        divide(digits, power)
+    } else {
+        digits * power
+    })
 }

@@ -12,7 +12,11 @@ pub use shared::*;
 impl PerPrecision {
     /// The budget for a method in 32 bits or in 64.
     pub fn by(&self, method: Method) -> f64 {
-        if method.is_single() || method.numbers() == Numbers::Fixed32 { self.single } else { self.double }
+        if method.is_single() || method.numbers() == Numbers::Fixed32 {
+            self.single
+        } else {
+            self.double
+        }
     }
 }
 
@@ -76,7 +80,11 @@ pub const FIGURE_7_ABOVE: f64 = 0.03;
 pub fn known_answer(row: &KnownAnswer, method: Method, &State { a1, a2, .. }: &State<f64>) -> f64 {
     const STEPS_PER_SECOND: f64 = 4096.0;
     let rate = fastest_rate(&row.parameters, &row.start.motion());
-    let epsilon = PerPrecision { single: f32::EPSILON.into(), double: f64::EPSILON }.by(method);
+    let epsilon = PerPrecision {
+        single: f32::EPSILON.into(),
+        double: f64::EPSILON,
+    }
+    .by(method);
     let truncation = rate.powi(5) / STEPS_PER_SECOND.powi(4) * row.time / 120.0;
     let angle = a1.abs().max(a2.abs()).max(4.0);
     let rounding = angle * epsilon * (row.time * STEPS_PER_SECOND).sqrt();
@@ -86,7 +94,10 @@ pub fn known_answer(row: &KnownAnswer, method: Method, &State { a1, a2, .. }: &S
 }
 
 /// How many rows of the table must have a budget below 1, so that the test says something: the rest is chaos.
-pub const KNOWN_ANSWERS_CLAIMED: PerPrecision = PerPrecision { single: 36.0, double: 45.0 };
+pub const KNOWN_ANSWERS_CLAIMED: PerPrecision = PerPrecision {
+    single: 36.0,
+    double: 45.0,
+};
 
 /// The growth about the inverted rest in 1 s from a push of 1e-10 rad, relative: what the cubic term and the other mode,
 /// excited by the rounding of the shape, add.
@@ -115,14 +126,23 @@ pub const REST_OF_FIXED_64: f64 = 1e-12;
 
 /// Straight rods turning evenly without gravity, 20 s, rad and relative: in f32 some 5000 steps of plain sums, each
 /// rounded; in f64 the direction form's own error, 6e-11 rad a second at 2 rad/s.
-pub const STRAIGHT: PerPrecision = PerPrecision { single: 1e-3, double: 2e-9 };
+pub const STRAIGHT: PerPrecision = PerPrecision {
+    single: 1e-3,
+    double: 2e-9,
+};
 
 /// A tiny swing against the cosine, relative, 10 s: the roundings of 2560 plain sums; RK4's own error is 1e-9.
-pub const TINY: PerPrecision = PerPrecision { single: 1e-3, double: 1e-8 };
+pub const TINY: PerPrecision = PerPrecision {
+    single: 1e-3,
+    double: 1e-8,
+};
 
 /// A million compensated steps of 2^-13 s of regular motion, rad (measured 2e-7 and
 /// 9e-14; plain sums miss 2e-5 in f32).
-pub const MILLION_STEPS: PerPrecision = PerPrecision { single: 5e-7, double: 3e-13 };
+pub const MILLION_STEPS: PerPrecision = PerPrecision {
+    single: 5e-7,
+    double: 3e-13,
+};
 
 /// How much better a compensated form is than a plain one on the regular scene in 10 s, at least (measured: 30 to 70).
 pub const COMPENSATION_GAIN: f64 = 10.0;

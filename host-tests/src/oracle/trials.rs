@@ -9,12 +9,19 @@ use reference::{advance, taylor};
 
 /// All methods but those whose errors are not the steps': in closed form of their equations, in `micromath` of the sines.
 pub fn exact_methods() -> impl Iterator<Item = Method> {
-    let is_exact = |method: &Method| method.equations() != Equations::Linear && *method != Method::Rk4F32Micromath;
+    let is_exact = |method: &Method| {
+        method.equations() != Equations::Linear && *method != Method::Rk4F32Micromath
+    };
     Method::ALL.iter().copied().filter(is_exact)
 }
 
 /// The motion of a pendulum from its start by `method`, in steps of `dt` s.
-pub fn run(method: Method, parameters: &Parameters<f64>, start: &State<f64>, dt: f64) -> Result<AnyRun, Error> {
+pub fn run(
+    method: Method,
+    parameters: &Parameters<f64>,
+    start: &State<f64>,
+    dt: f64,
+) -> Result<AnyRun, Error> {
     AnyRun::new(method, &Pendulum::new(parameters)?, start, dt)
 }
 
@@ -35,7 +42,11 @@ pub const MOMENTS: u32 = 16;
 impl Trial {
     /// Held still at (`a1`, `a2`), rad: rods of 1 m, a bob 1 of 1 kg, g = 9.81 m/s^2.
     pub fn at_rest(mass_ratio: f64, a1: f64, a2: f64, seconds: f64) -> Self {
-        Self { parameters: Parameters::equal_rods(mass_ratio, 1.0, 9.81), start: State::at_rest(a1, a2), seconds }
+        Self {
+            parameters: Parameters::equal_rods(mass_ratio, 1.0, 9.81),
+            start: State::at_rest(a1, a2),
+            seconds,
+        }
     }
 
     /// 0.5 rad, at rest: no chaos.
@@ -50,8 +61,23 @@ impl Trial {
 
     /// Masses and lengths all different, in motion.
     pub fn unlike(seconds: f64) -> Self {
-        let parameters = Parameters { m1: 0.7, m2: 1.3, l1: 0.6, l2: 1.1, g: 9.81 };
-        Self { parameters, start: State { a1: 0.3, a2: -0.2, p1: 0.1, p2: -0.1 }, seconds }
+        let parameters = Parameters {
+            m1: 0.7,
+            m2: 1.3,
+            l1: 0.6,
+            l2: 1.1,
+            g: 9.81,
+        };
+        Self {
+            parameters,
+            start: State {
+                a1: 0.3,
+                a2: -0.2,
+                p1: 0.1,
+                p2: -0.1,
+            },
+            seconds,
+        }
     }
 
     /// The trial as the numbers of `method` hold it, each rounded once.
@@ -60,7 +86,11 @@ impl Trial {
             return *self;
         }
         let (parameters, start) = (self.parameters.cast::<f32>(), self.start.cast::<f32>());
-        Self { parameters: parameters.cast(), start: start.cast(), ..*self }
+        Self {
+            parameters: parameters.cast(),
+            start: start.cast(),
+            ..*self
+        }
     }
 
     /// The steps of `dt`, s, from one of so many moments to the next.
@@ -72,7 +102,10 @@ impl Trial {
     pub fn states(&self, method: Method, dt: f64) -> Result<Vec<State<f64>>, Error> {
         let mut run = run(method, &self.parameters, &self.start, dt)?;
         let steps = self.steps(dt, MOMENTS);
-        let next = |_| run.advance(steps).map_or([f64::NAN; 4].into(), |()| run.state());
+        let next = |_| {
+            run.advance(steps)
+                .map_or([f64::NAN; 4].into(), |()| run.state())
+        };
         Ok((0..MOMENTS).map(next).collect())
     }
 
@@ -80,20 +113,29 @@ impl Trial {
     pub fn states_in_f64(&self, dt: f64, moments: u32) -> Result<Vec<State<f64>>, Error> {
         let mut run = Pendulum::new(&self.parameters)?.run::<DirectionF64>(&self.start, dt)?;
         let steps = self.steps(dt, moments);
-        (0..moments).map(|_| advance(&mut run, steps).map(|()| run.state())).collect()
+        (0..moments)
+            .map(|_| advance(&mut run, steps).map(|()| run.state()))
+            .collect()
     }
 
     /// The exact states at the moments.
     pub fn exact(&self) -> Result<Vec<State<f64>>, Error> {
         let pendulum = Pendulum::new(&self.parameters)?;
         let at = |moment: u32| self.seconds * f64::from(moment) / f64::from(MOMENTS);
-        Ok(taylor::states(&self.parameters, &pendulum.to_motion(&self.start), (1..=MOMENTS).map(at)))
+        Ok(taylor::states(
+            &self.parameters,
+            &pendulum.to_motion(&self.start),
+            (1..=MOMENTS).map(at),
+        ))
     }
 
     /// The largest error of an angle, rad, by `method` with steps of `dt`, s, beside the exact motion of the numbers as it holds
     /// them.
     pub fn error(&self, method: Method, dt: f64) -> Result<f64, Error> {
-        Ok(largest_difference(&self.states(method, dt)?, &self.held_by(method).exact()?))
+        Ok(largest_difference(
+            &self.states(method, dt)?,
+            &self.held_by(method).exact()?,
+        ))
     }
 }
 
@@ -101,11 +143,17 @@ impl Trial {
 pub fn apart(a: f64, b: f64) -> f64 {
     let turns = (a - b) / TAU;
     let apart = (turns - turns.round()).abs() * TAU;
-    if apart.is_finite() { apart } else { f64::INFINITY }
+    if apart.is_finite() {
+        apart
+    } else {
+        f64::INFINITY
+    }
 }
 
 /// The largest difference of the angles, rad, whole turns apart.
 pub fn largest_difference(states: &[State<f64>], others: &[State<f64>]) -> f64 {
     let pairs = states.iter().zip(others);
-    pairs.flat_map(|(x, y)| [apart(x.a1, y.a1), apart(x.a2, y.a2)]).fold(0.0, f64::max)
+    pairs
+        .flat_map(|(x, y)| [apart(x.a1, y.a1), apart(x.a2, y.a2)])
+        .fold(0.0, f64::max)
 }

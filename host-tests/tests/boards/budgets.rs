@@ -30,26 +30,83 @@ pub fn exercise(next: Next) -> anyhow::Result<()> {
     };
     for field in Field::ALL {
         for value in [0.75, f64::NAN, -1e30] {
-            play(&wire(Command::Set { field: *field, value }), 1)?;
+            play(
+                &wire(Command::Set {
+                    field: *field,
+                    value,
+                }),
+                1,
+            )?;
         }
     }
     let unreadable = frame(&[0x80, 1, 0xEE], &mut [0; MAX_WIRE]).to_vec();
-    play(&[wire(Command::Set { field: Field::Speed, value: 1.0 }), unreadable].concat(), 1)?;
-    play(&[Command::Pause(true), Command::Step(2), Command::Ask].map(wire).concat(), FRAMES)?;
-    play(&[Command::Restart, Command::Pause(false)].map(wire).concat(), 1)?;
+    play(
+        &[
+            wire(Command::Set {
+                field: Field::Speed,
+                value: 1.0,
+            }),
+            unreadable,
+        ]
+        .concat(),
+        1,
+    )?;
+    play(
+        &[Command::Pause(true), Command::Step(2), Command::Ask]
+            .map(wire)
+            .concat(),
+        FRAMES,
+    )?;
+    play(
+        &[Command::Restart, Command::Pause(false)].map(wire).concat(),
+        1,
+    )?;
     for &method in ON_BOARDS {
         for dt in [1.0 / 256.0, 0.5, 0.0] {
-            let request = Request { dt, stride: 4, samples: 20, ..Request::on_any_core(method) };
-            let measure = Command::Measure { steps: 1, in_ram: true };
-            play(&[Command::Simulate(request), measure].map(wire).concat(), COMPUTING)?;
+            let request = Request {
+                dt,
+                stride: 4,
+                samples: 20,
+                ..Request::on_any_core(method)
+            };
+            let measure = Command::Measure {
+                steps: 1,
+                in_ram: true,
+            };
+            play(
+                &[Command::Simulate(request), measure].map(wire).concat(),
+                COMPUTING,
+            )?;
         }
     }
     for &method in Method::DRAWN {
-        play(&[Command::Method(Some(method)), Command::AskPlan, Command::Identify].map(wire).concat(), COMPUTING)?;
+        play(
+            &[
+                Command::Method(Some(method)),
+                Command::AskPlan,
+                Command::Identify,
+            ]
+            .map(wire)
+            .concat(),
+            COMPUTING,
+        )?;
     }
-    let taps = [Command::Heavier, Command::Lighter, Command::TurnLeft, Command::TurnRight, Command::TogglePause];
-    let leaving = [Command::TogglePause, Command::Method(None), Command::NextScene, Command::PreviousScene];
-    taps.into_iter().chain(leaving).try_for_each(|command| play(&wire(command), COMPUTING))?;
+    let taps = [
+        Command::Heavier,
+        Command::Lighter,
+        Command::TurnLeft,
+        Command::TurnRight,
+        Command::TogglePause,
+    ];
+    let leaving = [
+        Command::TogglePause,
+        Command::Method(None),
+        Command::NextScene,
+        Command::PreviousScene,
+    ];
+    taps.into_iter()
+        .chain(leaving)
+        .try_for_each(|command| play(&wire(command), COMPUTING))?;
     play(&[0x55; 300], FRAMES)?;
     // A line of the log says that frames were dropped, if any were.
     play(&[0; 2], TICK_RATE as usize)
@@ -59,10 +116,20 @@ pub fn exercise(next: Next) -> anyhow::Result<()> {
 fn sections(elf: &Path) -> Memory {
     let bytes = std::fs::read(elf).unwrap_or_else(|error| panic!("{error}"));
     let file = object::File::parse(&*bytes).unwrap_or_else(|error| panic!("{error}"));
-    let mut memory = Memory { text: 0, data: 0, bss: 0, stack: 0 };
+    let mut memory = Memory {
+        text: 0,
+        data: 0,
+        bss: 0,
+        stack: 0,
+    };
     for section in file.sections() {
-        let SectionFlags::Elf { sh_flags } = section.flags() else { continue };
-        let (is_loaded, is_written) = (sh_flags & u64::from(SHF_ALLOC) != 0, sh_flags & u64::from(SHF_WRITE) != 0);
+        let SectionFlags::Elf { sh_flags } = section.flags() else {
+            continue;
+        };
+        let (is_loaded, is_written) = (
+            sh_flags & u64::from(SHF_ALLOC) != 0,
+            sh_flags & u64::from(SHF_WRITE) != 0,
+        );
         let part = match (is_loaded, is_written, section.kind()) {
             (false, ..) => continue,
             (_, _, SectionKind::UninitializedData) => &mut memory.bss,
@@ -76,17 +143,33 @@ fn sections(elf: &Path) -> Memory {
 
 /// Prints the README's row of a board whose stack has reached so deep; what is beyond its budget.
 pub fn beyond(board: &Board, elf: &Path, stack: u32, idle: f64) -> Vec<String> {
-    let Memory { text, data, bss, .. } = sections(elf);
+    let Memory {
+        text, data, bss, ..
+    } = sections(elf);
     let name = board.name;
-    println!("| `{name}` | {text} | {data} | {bss} | {stack} | {:.0} % |", 100.0 * idle);
-    assert!(stack > 0, "{name}: nothing is painted any more, or nothing was");
-    let (_, budget) = MEMORY.iter().find(|(of, _)| *of == name).expect("a row for each board");
+    println!(
+        "| `{name}` | {text} | {data} | {bss} | {stack} | {:.0} % |",
+        100.0 * idle
+    );
+    assert!(
+        stack > 0,
+        "{name}: nothing is painted any more, or nothing was"
+    );
+    let (_, budget) = MEMORY
+        .iter()
+        .find(|(of, _)| *of == name)
+        .expect("a row for each board");
     let parts = [
         ("text", text, budget.text),
         ("data", data, budget.data),
         ("bss", bss, budget.bss),
         ("stack", stack, budget.stack),
     ];
-    let parts = parts.into_iter().filter(|(_, bytes, most)| bytes > most).map(|part| format!("{name}: {part:?}"));
-    parts.chain((idle < budgets::IDLE).then(|| format!("{name}: idle {idle:.3}"))).collect()
+    let parts = parts
+        .into_iter()
+        .filter(|(_, bytes, most)| bytes > most)
+        .map(|part| format!("{name}: {part:?}"));
+    parts
+        .chain((idle < budgets::IDLE).then(|| format!("{name}: idle {idle:.3}")))
+        .collect()
 }

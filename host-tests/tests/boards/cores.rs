@@ -13,18 +13,27 @@ use rayon::prelude::*;
 
 /// A core: its name, the compiler's target, QEMU's machine and processor, none for a RISC-V, which runs under Linux; and what the
 /// compiler calls it if it is to compute `f64` itself, the kernel's feature `double-fpu`.
-struct Core(&'static str, &'static str, Option<[&'static str; 2]>, Option<&'static str>);
+struct Core(
+    &'static str,
+    &'static str,
+    Option<[&'static str; 2]>,
+    Option<&'static str>,
+);
 
 /// Its emulator with the image.
 fn emulated(Core(_, target, machine, double): &Core) -> anyhow::Result<Command> {
     let toolchain = toolchain::set_up_for(target)?;
     let mut command = Command::new(&toolchain.qemu);
     if let Some([machine, processor]) = machine {
-        command
-            .args(["-machine", machine, "-cpu", processor, "-display", "none", "-monitor", "none", "-serial", "null"]);
+        command.args([
+            "-machine", machine, "-cpu", processor, "-display", "none", "-monitor", "none",
+            "-serial", "null",
+        ]);
         command.args(["-semihosting-config", "enable=on,target=native", "-kernel"]);
     }
-    let image = toolchain.build_cores(target, *double).unwrap_or_else(|error| panic!("{error}"));
+    let image = toolchain
+        .build_cores(target, *double)
+        .unwrap_or_else(|error| panic!("{error}"));
     command.arg(image);
     Ok(command)
 }
@@ -36,14 +45,24 @@ fn computes_the_hosts_bits(core: &Core) {
         Err(missing) if is_ours => panic!("{}: {missing}", name),
         Ok(command) => command,
         // The test's output is captured; this is not.
-        Err(missing) => return writeln!(stderr(), "SKIPPED, {}: {missing}", name).expect("someone listens"),
+        Err(missing) => {
+            return writeln!(stderr(), "SKIPPED, {}: {missing}", name).expect("someone listens");
+        }
     };
     let output = process::run(&mut command, LIMIT).unwrap_or_else(|error| panic!("{error}"));
     let host = Method::ALL.iter().map(|&method| {
-        let crc = Request::on_any_core(method).crc().unwrap_or_else(|error| panic!("{error}"));
+        let crc = Request::on_any_core(method)
+            .crc()
+            .unwrap_or_else(|error| panic!("{error}"));
         format!("{method} {crc:08x}")
     });
-    assert_eq!(output.stdout.lines().collect::<Vec<_>>(), host.collect::<Vec<_>>(), "{}: {}", name, output.stderr);
+    assert_eq!(
+        output.stdout.lines().collect::<Vec<_>>(),
+        host.collect::<Vec<_>>(),
+        "{}: {}",
+        name,
+        output.stderr
+    );
     assert!(output.status.success(), "{}", name);
     println!("{}: {} methods", name, Method::ALL.len());
 }

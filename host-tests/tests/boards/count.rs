@@ -16,7 +16,12 @@ const INSTRUCTIONS_PER_TICK: f64 = 80.0;
 
 /// Steps of 1/256 s from rest.
 fn request(method: Method, angle: f64, stride: u32) -> Request {
-    Request { angles: [angle; 2], stride, samples: 1, ..Request::on_any_core(method) }
+    Request {
+        angles: [angle; 2],
+        stride,
+        samples: 1,
+        ..Request::on_any_core(method)
+    }
 }
 
 #[test]
@@ -25,11 +30,17 @@ fn the_log_counts_as_many_instructions_as_the_clock() -> Result<()> {
     for target in targets().iter().filter(|target| target.board.cpu == M4F) {
         let request = |steps| request(Method::Rk4F32, 2.0, steps);
         let logged = step_cost(target, &request(steps))?.instructions;
-        let [one, all] = [target.run(&request(1))?.1, target.run(&request(1 + steps))?.1];
+        let [one, all] = [
+            target.run(&request(1))?.1,
+            target.run(&request(1 + steps))?.1,
+        ];
         let clocked = (all - one) as f64 * INSTRUCTIONS_PER_TICK / f64::from(steps);
         // Either reading of the clock may be off by a tick.
         let tolerance = 2.0 * INSTRUCTIONS_PER_TICK / f64::from(steps);
-        assert!((logged - clocked).abs() <= tolerance, "{logged} logged, {clocked} by the clock");
+        assert!(
+            (logged - clocked).abs() <= tolerance,
+            "{logged} logged, {clocked} by the clock"
+        );
     }
     Ok(())
 }
@@ -39,9 +50,15 @@ fn the_log_counts_as_many_instructions_as_the_clock() -> Result<()> {
 fn the_book_by_the_libm_crate_takes_twenty_thousand_instructions() -> Result<()> {
     for target in targets().iter().filter(|target| target.board.cpu == M4F) {
         let cost = affordable_cost(target, &request(Method::TextbookF32, 2.0, 1))?;
-        assert!((20_000.0..27_000.0).contains(&cost.instructions), "{cost:?}");
+        assert!(
+            (20_000.0..27_000.0).contains(&cost.instructions),
+            "{cost:?}"
+        );
         assert!(cost.instructions < cost.cycles, "{cost:?}");
-        assert!(cost.hot_bytes <= cost.code_bytes && cost.stack_bytes > 0, "{cost:?}");
+        assert!(
+            cost.hot_bytes <= cost.code_bytes && cost.stack_bytes > 0,
+            "{cost:?}"
+        );
     }
     Ok(())
 }
@@ -52,19 +69,36 @@ const M4F: &str = "cortex-m4";
 /// The most cycles (estimated) that a step from rest at 0.5 rad may take on a core, with the mass of bob 2, kg, and the length
 /// of rod 2, m; those of bob 1 and rod 1 are 1.
 const GOALS: [(Method, &str, [f64; 2], f64); 4] = [
-    (Method::Rk4F32Direction, M4F, [1.0, 1.0], 220.0),      // 205 counted
+    (Method::Rk4F32Direction, M4F, [1.0, 1.0], 220.0), // 205 counted
     (Method::Rk4F32DirectionPlain, M4F, [1.0, 1.0], 170.0), // 160 counted; no division
-    (Method::Rk4Fixed32, M3, [1.0, 1.0], 675.0),            // 668 counted
-    (Method::Rk4Fixed32, M3, [2.0, 0.5], 870.0),            // a quarter more for shifts of each quantity
+    (Method::Rk4Fixed32, M3, [1.0, 1.0], 675.0),       // 668 counted
+    (Method::Rk4Fixed32, M3, [2.0, 0.5], 870.0),       // a quarter more for shifts of each quantity
 ];
 
 #[test]
 fn a_step_costs_no_more_than_its_goal() -> Result<()> {
     for target in &targets() {
-        for (method, _, [m2, l2], most) in GOALS.into_iter().filter(|goal| goal.1 == target.board.cpu) {
-            let parameters = Parameters { m1: 1.0, m2, l1: 1.0, l2, g: 9.81 };
-            let cost = affordable_cost(target, &Request { parameters, ..request(method, 0.5, FULL_CYCLE) })?;
-            println!("{method}, {}, m2 = {m2}, l2 = {l2}: {cost:?}", target.board.cpu);
+        for (method, _, [m2, l2], most) in
+            GOALS.into_iter().filter(|goal| goal.1 == target.board.cpu)
+        {
+            let parameters = Parameters {
+                m1: 1.0,
+                m2,
+                l1: 1.0,
+                l2,
+                g: 9.81,
+            };
+            let cost = affordable_cost(
+                target,
+                &Request {
+                    parameters,
+                    ..request(method, 0.5, FULL_CYCLE)
+                },
+            )?;
+            println!(
+                "{method}, {}, m2 = {m2}, l2 = {l2}: {cost:?}",
+                target.board.cpu
+            );
             assert!(cost.cycles <= most, "{method}: {cost:?}, {most} asked");
         }
     }
@@ -77,7 +111,14 @@ const SECONDS: [(usize, f64, &str, Method, u32, f64); 4] = [
     (0, 1e-9, M4F, Method::Extrapolation12Fixed64, 62, 120_000.0), // seven a second, the fewest whole ones: 131,000
     (0, 1e-12, M4F, Method::Extrapolation16Fixed64, 58, 210_000.0), // cheaper than order 12
     (0, 1e-12, M3, Method::Extrapolation16Fixed64, 58, 300_000.0), // likewise
-    (1, 3.5e-10, M4F, Method::Extrapolation10Fixed64, 183, 750_000.0), // chaotic
+    (
+        1,
+        3.5e-10,
+        M4F,
+        Method::Extrapolation10Fixed64,
+        183,
+        750_000.0,
+    ), // chaotic
 ];
 
 #[test]
@@ -85,13 +126,23 @@ fn a_simulated_second_costs_no_more_than_its_goal() -> Result<()> {
     let targets = targets();
     for (index, error, cpu, method, steps, most) in SECONDS {
         let scene = &SCENES[index];
-        let target = targets.iter().find(|target| target.board.cpu == cpu).expect("a board");
+        let target = targets
+            .iter()
+            .find(|target| target.board.cpu == cpu)
+            .expect("a board");
         let found = accuracy::error_after(method, scene, steps).expect("a motion");
-        assert!(found.angle <= error, "{method}, {steps} steps: {found:?}, {error:e} asked");
+        assert!(
+            found.angle <= error,
+            "{method}, {steps} steps: {found:?}, {error:e} asked"
+        );
         let request = accuracy::request(method, &SCENES[0], accuracy::usual_rate(method));
-        let cycles = f64::from(steps) * affordable_cost(target, &request)?.cycles / f64::from(scene.duration);
+        let cycles = f64::from(steps) * affordable_cost(target, &request)?.cycles
+            / f64::from(scene.duration);
         println!("{error:e} rad on {cpu}: {cycles:.0} cycles a second by {method}");
-        assert!(cycles <= most, "{error:e} rad on {cpu}: {cycles} by {method}, {most} asked");
+        assert!(
+            cycles <= most,
+            "{error:e} rad on {cpu}: {cycles} by {method}, {most} asked"
+        );
     }
     Ok(())
 }
@@ -106,14 +157,34 @@ fn the_price_lists_are_what_is_counted() -> Result<()> {
         println!("{}: {counted:?}", board.name);
         let listed = board.processor().costs;
         let all = |costs: Costs| {
-            let Costs { closed_form, direction_plain, direction, fixed32, fixed64, preparation } = costs;
-            [closed_form, direction_plain, direction, fixed32, fixed64, preparation]
+            let Costs {
+                closed_form,
+                direction_plain,
+                direction,
+                fixed32,
+                fixed64,
+                preparation,
+            } = costs;
+            [
+                closed_form,
+                direction_plain,
+                direction,
+                fixed32,
+                fixed64,
+                preparation,
+            ]
         };
         let is_near = |(listed, counted): (f32, f32)| PRICED.contains(&(listed / counted));
         if !all(listed).into_iter().zip(all(counted)).all(is_near) {
-            wrong.push(format!("{}: {listed:?} listed, {counted:?} counted", board.name));
+            wrong.push(format!(
+                "{}: {listed:?} listed, {counted:?} counted",
+                board.name
+            ));
         }
     }
-    assert!(wrong.is_empty(), "accept by cargo count --write-prices: {wrong:#?}");
+    assert!(
+        wrong.is_empty(),
+        "accept by cargo count --write-prices: {wrong:#?}"
+    );
     Ok(())
 }

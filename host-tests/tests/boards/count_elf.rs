@@ -44,11 +44,27 @@ mod inner {
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo) -> ! { loop {} }
 "#;
-    let (source, elf) = (folder.join("program.rs"), folder.join(format!("{address}-{}.elf", last.len())));
+    let (source, elf) = (
+        folder.join("program.rs"),
+        folder.join(format!("{address}-{}.elf", last.len())),
+    );
     std::fs::write(&source, SOURCE.replace("LAST", last)).unwrap_or_else(|error| panic!("{error}"));
     let mut rustc = Command::new("rustc");
-    rustc.args(["--edition", "2024", "-O", "-C", "panic=abort", "--target", BOARDS[0].target]);
-    for option in ["--entry=start", "--image-base=0", "--nmagic", &format!("-Ttext={address}")] {
+    rustc.args([
+        "--edition",
+        "2024",
+        "-O",
+        "-C",
+        "panic=abort",
+        "--target",
+        BOARDS[0].target,
+    ]);
+    for option in [
+        "--entry=start",
+        "--image-base=0",
+        "--nmagic",
+        &format!("-Ttext={address}"),
+    ] {
         rustc.arg(format!("-Clink-arg={option}"));
     }
     rustc.arg("-o").arg(&elf).arg(&source);
@@ -67,7 +83,17 @@ const NEEDS_FLOATS: &str = ".inst.w 0xee300a00 @ vadd.f32 s0, s0, s0";
 
 fn count(elf: &Path, function: &str, more: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_host-tests"));
-    command.args(["count", "--on", BOARDS[0].name, "--function", function, "--elf"]).arg(elf).args(more);
+    command
+        .args([
+            "count",
+            "--on",
+            BOARDS[0].name,
+            "--function",
+            function,
+            "--elf",
+        ])
+        .arg(elf)
+        .args(more);
     process::run(&mut command, LIMIT).unwrap_or_else(|error| panic!("{error}"))
 }
 
@@ -76,25 +102,53 @@ fn functions_and_labels_are_counted_and_the_end_is_told() -> anyhow::Result<()> 
     let folder = tempfile::tempdir()?;
     let elf = program(folder.path(), "0x0", ENDS);
     let output = count(&elf, "label", &[]);
-    assert!(output.stderr.contains("the program ended by itself, exit status: 0"), "{output:?}");
+    assert!(
+        output
+            .stderr
+            .contains("the program ended by itself, exit status: 0"),
+        "{output:?}"
+    );
     let lines: Vec<_> = output.stdout.lines().collect();
-    let [head, limits, _, instructions, cycles] = lines[..] else { panic!("{output:?}") };
-    assert_eq!(head, "label on lm3s6965evb, from its first instruction to its return: calls 3");
+    let [head, limits, _, instructions, cycles] = lines[..] else {
+        panic!("{output:?}")
+    };
+    assert_eq!(
+        head,
+        "label on lm3s6965evb, from its first instruction to its return: calls 3"
+    );
     assert_eq!(limits, ERROR_BAR);
-    let mean = |line: &str| line.split_ascii_whitespace().nth(1).and_then(|mean| mean.parse::<f64>().ok());
-    assert_eq!((mean(instructions), mean(cycles)), (Some(2.0), Some(4.0)), "a move, and a return with its refill");
+    let mean = |line: &str| {
+        line.split_ascii_whitespace()
+            .nth(1)
+            .and_then(|mean| mean.parse::<f64>().ok())
+    };
+    assert_eq!(
+        (mean(instructions), mean(cycles)),
+        (Some(2.0), Some(4.0)),
+        "a move, and a return with its refill"
+    );
 
     let image = Image::read(&elf)?;
     let mangled = &image.function("program::inner::step")?.symbol;
     let by_name = count(&elf, "program::inner::step", &[]);
-    let is_it = |line: &str| line.starts_with("program::inner::step on") && line.ends_with(": calls 3");
-    assert!(by_name.stdout.lines().next().is_some_and(is_it), "{by_name:?}");
+    let is_it =
+        |line: &str| line.starts_with("program::inner::step on") && line.ends_with(": calls 3");
+    assert!(
+        by_name.stdout.lines().next().is_some_and(is_it),
+        "{by_name:?}"
+    );
     assert_eq!(count(&elf, mangled, &[]).stdout, by_name.stdout);
 
     // One that is stopped is counted until then.
     let output = count(&program(folder.path(), "0x0", WAITS), "label", &SECONDS);
-    assert!(output.status.success() && output.stdout.contains(": calls 3\n"), "{output:?}");
-    assert!(output.stderr.contains("stopped after 3 s and 3 calls"), "{output:?}");
+    assert!(
+        output.status.success() && output.stdout.contains(": calls 3\n"),
+        "{output:?}"
+    );
+    assert!(
+        output.stderr.contains("stopped after 3 s and 3 calls"),
+        "{output:?}"
+    );
     Ok(())
 }
 
@@ -104,24 +158,71 @@ fn what_cannot_be_counted_is_said_in_a_line() -> anyhow::Result<()> {
     let measure = toolchain().build("measure", BOARDS[0].target)?;
     let host = Path::new(env!("CARGO_BIN_EXE_host-tests"));
     let folder = tempfile::tempdir()?;
-    let [ends, fails, floats] = [ENDS, FAILS, NEEDS_FLOATS].map(|last| program(folder.path(), "0x0", last));
+    let [ends, fails, floats] =
+        [ENDS, FAILS, NEEDS_FLOATS].map(|last| program(folder.path(), "0x0", last));
     let elsewhere = program(folder.path(), "0x8000000", ENDS);
     for (elf, function, reason, code) in [
-        (Path::new("/nowhere/to/be/found.elf"), "main", "No such file", 2),
-        (Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml")), "main", "Unknown file magic", 2),
+        (
+            Path::new("/nowhere/to/be/found.elf"),
+            "main",
+            "No such file",
+            2,
+        ),
+        (
+            Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml")),
+            "main",
+            "Unknown file magic",
+            2,
+        ),
         (host, "main", "no program for ARM but for", 2),
-        (&measure, "nothing_of_this_name", "no function nothing_of_this_name", 2),
+        (
+            &measure,
+            "nothing_of_this_name",
+            "no function nothing_of_this_name",
+            2,
+        ),
         (&measure, "counted_steps", "counted_steps may be any of ", 2),
-        (&measure, "__aeabi_ddiv", "the program failed after 0 calls, exit status: 1: ", 1),
-        (&fails, "label", "the program failed after 3 calls, exit status: 1", 1),
+        (
+            &measure,
+            "__aeabi_ddiv",
+            "the program failed after 0 calls, exit status: 1: ",
+            1,
+        ),
+        (
+            &fails,
+            "label",
+            "the program failed after 3 calls, exit status: 1",
+            1,
+        ),
         (&ends, "never", "never was never called", 2),
         (&ends, "start", "start was called and never returned", 2),
-        (&elsewhere, "label", "never called: the program has nothing at 0x0, where lm3s6965evb reads its vectors", 2),
-        (&floats, "never", "never was never called: vadd, vsub at ", 2),
+        (
+            &elsewhere,
+            "label",
+            "never called: the program has nothing at 0x0, where lm3s6965evb reads its vectors",
+            2,
+        ),
+        (
+            &floats,
+            "never",
+            "never was never called: vadd, vsub at ",
+            2,
+        ),
     ] {
         let output = count(elf, function, &SECONDS);
-        assert_eq!((output.status.code(), output.stdout.as_str()), (Some(code), ""), "{output:?}");
-        assert!(output.stderr.lines().last().is_some_and(|line| line.contains(reason)), "{reason}: {output:?}");
+        assert_eq!(
+            (output.status.code(), output.stdout.as_str()),
+            (Some(code), ""),
+            "{output:?}"
+        );
+        assert!(
+            output
+                .stderr
+                .lines()
+                .last()
+                .is_some_and(|line| line.contains(reason)),
+            "{reason}: {output:?}"
+        );
     }
     Ok(())
 }

@@ -24,37 +24,72 @@ const MOTIONS: [&Scene; 2] = [&SCENES[0], &SCENES[1]];
 
 /// Whose CRC is over all that is carried from step to step, after each of the first steps.
 fn every_state(method: Method, scene: &Scene, steps: u32) -> Request {
-    Request { samples: steps, stride: 1, ..request(method, scene, RATE) }
+    Request {
+        samples: steps,
+        stride: 1,
+        ..request(method, scene, RATE)
+    }
 }
 
 #[test]
 #[ignore = "takes hours"]
 fn host_and_targets_agree_after_every_one_of_a_million_steps() -> Result<()> {
     let targets = targets();
-    let motions = || MOTIONS.iter().flat_map(|scene| Method::ALL.iter().map(move |&method| (scene, method)));
-    let runs: Vec<_> = targets.iter().flat_map(|target| motions().map(move |motion| (target, motion))).collect();
-    runs.into_par_iter().try_for_each(|(target, (scene, method))| {
-        let steps = STEPS[usize::from(target.board.core() == Core::M0Plus)];
-        let request = every_state(method, scene, steps);
-        let (host, (crc, _)) = (request.crc()?, target.run(&request)?);
-        assert_eq!(crc, host, "{method}, {} on {}", scene.name, target.board.name);
-        Ok(())
-    })
+    let motions = || {
+        MOTIONS
+            .iter()
+            .flat_map(|scene| Method::ALL.iter().map(move |&method| (scene, method)))
+    };
+    let runs: Vec<_> = targets
+        .iter()
+        .flat_map(|target| motions().map(move |motion| (target, motion)))
+        .collect();
+    runs.into_par_iter()
+        .try_for_each(|(target, (scene, method))| {
+            let steps = STEPS[usize::from(target.board.core() == Core::M0Plus)];
+            let request = every_state(method, scene, steps);
+            let (host, (crc, _)) = (request.crc()?, target.run(&request)?);
+            assert_eq!(
+                crc, host,
+                "{method}, {} on {}",
+                scene.name, target.board.name
+            );
+            Ok(())
+        })
 }
 
 /// The kernel's own code, and what it is compiled with, unoptimised: overflow checks and all.
 #[test]
 fn unoptimised_code_computes_the_same_bits() {
-    let requests: Vec<Request> =
-        Method::ALL.iter().map(|&method| every_state(method, MOTIONS[1], STEPS_UNOPTIMISED)).collect();
+    let requests: Vec<Request> = Method::ALL
+        .iter()
+        .map(|&method| every_state(method, MOTIONS[1], STEPS_UNOPTIMISED))
+        .collect();
     let mut cargo = Command::new(env!("CARGO"));
-    cargo.current_dir(toolchain::workspace()).args(["run", "--quiet", "--package", "firmware", "--example", "crc"]);
+    cargo.current_dir(toolchain::workspace()).args([
+        "run",
+        "--quiet",
+        "--package",
+        "firmware",
+        "--example",
+        "crc",
+    ]);
     for package in ["double-pendulum-kernel", "firmware", "libm"] {
-        cargo.args(["--config", &format!("profile.dev.package.{package}.opt-level=0")]);
+        cargo.args([
+            "--config",
+            &format!("profile.dev.package.{package}.opt-level=0"),
+        ]);
     }
-    let mut child = cargo.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().expect("cargo runs");
+    let mut child = cargo
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("cargo runs");
     let mut input = child.stdin.take().expect("a pipe");
-    requests.iter().try_for_each(|request| writeln!(input, "{request}")).expect("it reads");
+    requests
+        .iter()
+        .try_for_each(|request| writeln!(input, "{request}"))
+        .expect("it reads");
     drop(input);
     let output = child.wait_with_output().expect("cargo ends");
     assert!(output.status.success());
@@ -73,14 +108,25 @@ const SEPARATE: [&str; 2] = ["vmul, vnmul", "vadd, vsub"];
 
 #[test]
 fn nothing_is_contracted() {
-    for target in targets().iter().filter(|target| target.board.cpu == "cortex-m4") {
+    for target in targets()
+        .iter()
+        .filter(|target| target.board.cpu == "cortex-m4")
+    {
         let words = target.image.words().into_iter();
         let row = |(at, first, second): (u32, u16, Option<u16>)| {
-            Some((at, Instruction::decode(first, second.unwrap_or_default())?.row.name))
+            Some((
+                at,
+                Instruction::decode(first, second.unwrap_or_default())?
+                    .row
+                    .name,
+            ))
         };
         let rows: Vec<_> = words.filter_map(row).collect();
         for name in SEPARATE {
-            assert!(rows.iter().filter(|(_, row)| *row == name).count() > 500, "{name}");
+            assert!(
+                rows.iter().filter(|(_, row)| *row == name).count() > 500,
+                "{name}"
+            );
         }
         let found = rows.iter().find(|(_, row)| CONTRACTED.contains(row));
         let place = found.map(|(at, row)| (target.image.function_at(*at), row));

@@ -7,7 +7,9 @@ use crate::support::{LIMIT, application, show};
 use cycles::Core;
 use double_pendulum::Method;
 use firmware::app::Key;
-use firmware::config::{HOLD_TICKS, MOST_MEASURED_STEPS, RECEIVE_QUEUE, TICK_RATE, WATCHDOG_SECONDS};
+use firmware::config::{
+    HOLD_TICKS, MOST_MEASURED_STEPS, RECEIVE_QUEUE, TICK_RATE, WATCHDOG_SECONDS,
+};
 use firmware::graphics::Bitmap;
 use firmware::job::{CRC, Request};
 use firmware::protocol::{
@@ -34,7 +36,12 @@ fn board() -> anyhow::Result<PicoMachine> {
 
 /// A motion with a sample after each of its steps.
 fn request(method: Method, samples: u32) -> Request {
-    Request { angles: [0.5; 2], stride: 1, samples, ..Request::on_any_core(method) }
+    Request {
+        angles: [0.5; 2],
+        stride: 1,
+        samples,
+        ..Request::on_any_core(method)
+    }
 }
 
 #[test]
@@ -44,7 +51,9 @@ fn the_file_is_for_the_chips_flash_and_its_boot_rom() -> anyhow::Result<()> {
     // The ROM starts nothing that lacks this sum.
     let (boot, sum) = image[..256].split_at(252);
     let bit = |crc: u32, _| crc << 1 ^ if crc >> 31 == 0 { 0 } else { 0x04c1_1db7 };
-    let crc = boot.iter().fold(u32::MAX, |crc, byte| (0..8).fold(crc ^ u32::from(*byte) << 24, bit));
+    let crc = boot.iter().fold(u32::MAX, |crc, byte| {
+        (0..8).fold(crc ^ u32::from(*byte) << 24, bit)
+    });
     assert_eq!(crc, u32::from_le_bytes(sum.try_into()?));
     Ok(())
 }
@@ -58,24 +67,44 @@ fn usb_and_uart_carry_the_hosts_bits_and_every_command() -> anyhow::Result<()> {
     let mut sent = Vec::new();
     for sequence in 0..FRAMES {
         let frame = board.next_frame()?;
-        assert_eq!((frame.sequence, frame.dropped, frame.report.step), (sequence, 0, u64::from(sequence) + 1));
+        assert_eq!(
+            (frame.sequence, frame.dropped, frame.report.step),
+            (sequence, 0, u64::from(sequence) + 1)
+        );
         assert_eq!(frame, show.expected(&frame));
         sent.push(frame);
     }
     board.run(TICK / 4)?;
-    let through_uart: Vec<Frame> = board.heard_by_uart().into_iter().filter_map(ToHost::frame).collect();
+    let through_uart: Vec<Frame> = board
+        .heard_by_uart()
+        .into_iter()
+        .filter_map(ToHost::frame)
+        .collect();
     assert_eq!(through_uart, sent);
     // No frame waits for the UART.
-    let showing = sent.windows(2).map(|frames| frames[1].busy_cycles - frames[0].scene_cycles).max();
+    let showing = sent
+        .windows(2)
+        .map(|frames| frames[1].busy_cycles - frames[0].scene_cycles)
+        .max();
     assert!(showing < Some(SHOWING), "{showing:?}");
     // By its crystal and PLL.
-    assert!(board.lines().iter().any(|line| line.text == "boot: pico, 125000000 Hz"));
+    assert!(
+        board
+            .lines()
+            .iter()
+            .any(|line| line.text == "boot: pico, 125000000 Hz")
+    );
 
     // Which board and which program it is.
     let (_, image) = flash_image(&std::fs::read(application(&PICO))?)?;
     board.send(1, Command::Identify)?;
-    let [(1, Answer::Identity(identity))] = answers(board.run(4 * TICK)?)[..] else { panic!("no answer") };
-    assert_eq!((identity.board, identity.hertz), (BoardName::Pico, PICO.hertz));
+    let [(1, Answer::Identity(identity))] = answers(board.run(4 * TICK)?)[..] else {
+        panic!("no answer")
+    };
+    assert_eq!(
+        (identity.board, identity.hertz),
+        (BoardName::Pico, PICO.hertz)
+    );
     let program = &image[256..][..identity.image_bytes as usize];
     assert_eq!(identity.image, CRC.checksum(program));
     assert!(image.len() - 256 - program.len() < 256, "nearly all of it");
@@ -84,16 +113,24 @@ fn usb_and_uart_carry_the_hosts_bits_and_every_command() -> anyhow::Result<()> {
     board.heard_by_uart();
     board.send(1, Command::Simulate(request(Method::Rk4Fixed32, SAMPLES)))?;
     board.run(60 * TICK)?;
-    let indices = answers(board.heard_by_uart()).into_iter().map(|answer| match answer {
-        (1, Answer::Sample { index, .. }) => index,
-        other => panic!("{other:?}"),
-    });
+    let indices = answers(board.heard_by_uart())
+        .into_iter()
+        .map(|answer| match answer {
+            (1, Answer::Sample { index, .. }) => index,
+            other => panic!("{other:?}"),
+        });
     assert!(indices.eq(0..=SAMPLES));
 
     // Commands are taken from either side, and both hear both answers.
     board.send(1, Command::Choose(SceneName::Butterfly))?;
     let mut messages = board.run(4 * TICK)?;
-    board.send_through_uart(2, Command::Set { field: Field::M2, value: 2.5 })?;
+    board.send_through_uart(
+        2,
+        Command::Set {
+            field: Field::M2,
+            value: 2.5,
+        },
+    )?;
     messages.extend(board.run(4 * TICK)?);
     for heard in [messages, board.heard_by_uart()] {
         assert_eq!(answers(heard), [(1, Answer::Done), (2, Answer::Done)]);
@@ -107,10 +144,18 @@ fn usb_and_uart_carry_the_hosts_bits_and_every_command() -> anyhow::Result<()> {
         flood.extend_from_slice(encode_command(request, Command::Ask, &mut [0; MAX_WIRE]));
     }
     board.send_bytes(&flood)?;
-    assert!(answers(board.run(60 * TICK)?).into_iter().map(|(request, _)| request).eq(0..100));
+    assert!(
+        answers(board.run(60 * TICK)?)
+            .into_iter()
+            .map(|(request, _)| request)
+            .eq(0..100)
+    );
     let frame = board.next_frame()?;
     assert_eq!((frame.lost, frame.dropped), (0, 0));
-    assert_eq!(board.counts().map(|counts| counts.damaged + counts.lost), [0; 2]);
+    assert_eq!(
+        board.counts().map(|counts| counts.damaged + counts.lost),
+        [0; 2]
+    );
     Ok(())
 }
 
@@ -120,7 +165,13 @@ fn answers(messages: Vec<ToHost>) -> Vec<(u16, Answer)> {
 
 /// The cycles of the motion's next steps, in flash or in memory.
 fn measured(board: &mut PicoMachine, in_ram: bool) -> anyhow::Result<u32> {
-    board.send(2, Command::Measure { steps: MOST_MEASURED_STEPS, in_ram })?;
+    board.send(
+        2,
+        Command::Measure {
+            steps: MOST_MEASURED_STEPS,
+            in_ram,
+        },
+    )?;
     match answers(board.run(4 * TICK)?)[..] {
         [(2, Answer::Measured { cycles, .. })] => Ok(cycles),
         ref others => panic!("{others:?}"),
@@ -130,31 +181,48 @@ fn measured(board: &mut PicoMachine, in_ram: bool) -> anyhow::Result<u32> {
 /// The emulator counts cycles by itself: a second opinion on the prices of `cargo count`, which QEMU's instructions are given. In it
 /// neither flash nor memory waits, so both take the same; where the copy in memory is spoilt, only what runs there is.
 #[test]
-fn the_emulator_counts_the_cycles_that_are_estimated_in_flash_and_in_memory() -> anyhow::Result<()> {
+fn the_emulator_counts_the_cycles_that_are_estimated_in_flash_and_in_memory() -> anyhow::Result<()>
+{
     // Found: 0.5 % more, 2.6 % less, 0.1 % less.
     const APART: f64 = 0.04;
     const RETURN: [u8; 2] = 0x4770_u16.to_le_bytes();
     let mut board = board()?;
     board.run(PICTURE)?;
     let [single, fixed64] = [Method::Rk4F32DirectionPlain, Method::Extrapolation8Fixed64];
-    let emulated = BOARDS.iter().find(|board| board.core() == Core::M0Plus).expect("QEMU's");
+    let emulated = BOARDS
+        .iter()
+        .find(|board| board.core() == Core::M0Plus)
+        .expect("QEMU's");
     let target = Target::build(&toolchain::ready()?, emulated)?;
     for method in [single, fixed64, Method::Rk4Fixed32] {
         board.send(1, Command::Simulate(request(method, 0)))?;
         board.run(4 * TICK)?;
         let steps = FULL_CYCLE / MOST_MEASURED_STEPS;
-        let cycles = (0..steps).map(|_| measured(&mut board, false)).sum::<Result<u32, _>>()?;
+        let cycles = (0..steps)
+            .map(|_| measured(&mut board, false))
+            .sum::<Result<u32, _>>()?;
         let counted = f64::from(cycles) / f64::from(FULL_CYCLE);
         let request = request(method, 1);
-        let request = Request { stride: affordable_steps(&target, &request)?, ..request };
+        let request = Request {
+            stride: affordable_steps(&target, &request)?,
+            ..request
+        };
         let estimated = step_cost(&target, &request)?.cycles;
-        assert!((counted / estimated - 1.0).abs() < APART, "{method}: {counted} counted, {estimated} estimated");
+        assert!(
+            (counted / estimated - 1.0).abs() < APART,
+            "{method}: {counted} counted, {estimated} estimated"
+        );
     }
     let steps = Code::read(&application(&PICO)).expect("the program");
-    let entry = steps.functions_named(|name| name.contains("OnBoards as firmware::job::run::Run>::advance")).next();
+    let entry = steps
+        .functions_named(|name| name.contains("OnBoards as firmware::job::run::Run>::advance"))
+        .next();
     let entry = entry.expect("the entry");
     let (flash, ram) = (measured(&mut board, false)?, measured(&mut board, true)?);
-    assert!(flash > 1000 * MOST_MEASURED_STEPS && flash.abs_diff(ram) < flash / 10, "{flash} and {ram} cycles");
+    assert!(
+        flash > 1000 * MOST_MEASURED_STEPS && flash.abs_diff(ram) < flash / 10,
+        "{flash} and {ram} cycles"
+    );
     for (address, byte) in (entry..).zip(RETURN) {
         board.tell(&format!("fill {address} 1 {byte}"))?;
     }
@@ -172,32 +240,64 @@ fn stand_still(board: &mut PicoMachine) -> anyhow::Result<Frame> {
 }
 
 #[test]
-fn the_panel_shows_the_hosts_picture_whichever_it_is_and_however_often_it_is_pulled() -> anyhow::Result<()> {
+fn the_panel_shows_the_hosts_picture_whichever_it_is_and_however_often_it_is_pulled()
+-> anyhow::Result<()> {
     let mut board = board()?;
     board.tell("plug 0")?;
     board.run(Duration::from_millis(300))?;
     assert!(board.tell("panel")?.is_empty(), "it is off");
-    assert!(board.lines().iter().any(|line| line.text.starts_with("panel: Absent")));
+    assert!(
+        board
+            .lines()
+            .iter()
+            .any(|line| line.text.starts_with("panel: Absent"))
+    );
     for (name, status, found) in [
-        (SceneName::Page, 6, "panel: Found { controller: Ssd1306, by: Status(70) }"),
+        (
+            SceneName::Page,
+            6,
+            "panel: Found { controller: Ssd1306, by: Status(70) }",
+        ),
         (SceneName::Figure7, 0, ""),
-        (SceneName::Butterfly, 8, "panel: Found { controller: Sh1106, by: Status(72) }"),
+        (
+            SceneName::Butterfly,
+            8,
+            "panel: Found { controller: Sh1106, by: Status(72) }",
+        ),
         (SceneName::Flips, 8, ""),
     ] {
         board.send(1, Command::Choose(name))?;
         board.send(2, Command::Pause(false))?;
         board.tell(&format!("plug {status}"))?;
         // A new one is looked for within a second, and has what was lost in one more.
-        board.run(if status == 0 { 4 * PICTURE } else { Duration::from_millis(2000) })?;
+        board.run(if status == 0 {
+            4 * PICTURE
+        } else {
+            Duration::from_millis(2000)
+        })?;
         let frame = stand_still(&mut board)?;
-        assert_eq!(board.lines().iter().any(|line| line.text == found), !found.is_empty(), "{}", name.name());
+        assert_eq!(
+            board.lines().iter().any(|line| line.text == found),
+            !found.is_empty(),
+            "{}",
+            name.name()
+        );
         let mut show = show(&PICO, name);
         (0..frame.report.step).for_each(|_| show.tick());
         let mut canvas = show.frame();
         firmware::graphics::text::pause_mark(&mut canvas);
         let (shown, picture) = (board.tell("panel")?, Bitmap::from(&canvas));
-        let expected = if status == 0 { &[] } else { picture.pages.as_flattened() };
-        assert!(shown == expected, "{}: {:?}", name.name(), board.screenshot()?);
+        let expected = if status == 0 {
+            &[]
+        } else {
+            picture.pages.as_flattened()
+        };
+        assert!(
+            shown == expected,
+            "{}: {:?}",
+            name.name(),
+            board.screenshot()?
+        );
     }
     Ok(())
 }
@@ -207,8 +307,14 @@ fn every_button_does_its_own() -> anyhow::Result<()> {
     let mut board = board()?;
     board.run(10 * TICK)?;
     let mut show = show(&PICO, SceneName::Page);
-    let [up, right] = [(Key::Up, Command::Heavier), (Key::Right, Command::TurnRight)];
-    let [down, left] = [(Key::Down, Command::Lighter), (Key::Left, Command::TurnLeft)];
+    let [up, right] = [
+        (Key::Up, Command::Heavier),
+        (Key::Right, Command::TurnRight),
+    ];
+    let [down, left] = [
+        (Key::Down, Command::Lighter),
+        (Key::Left, Command::TurnLeft),
+    ];
     for (key, command) in [up, up, left, right, right, down] {
         board.set_key(key, true)?;
         board.run(6 * TICK)?;
@@ -216,7 +322,12 @@ fn every_button_does_its_own() -> anyhow::Result<()> {
         board.run(6 * TICK)?;
         show.player.execute(command).expect("within its range");
         let (frame, here) = (board.next_frame()?, show.player.frame());
-        assert_eq!((frame.mass_ratio, frame.start_angle), (here.mass_ratio, here.start_angle), "{}", key.name());
+        assert_eq!(
+            (frame.mass_ratio, frame.start_angle),
+            (here.mass_ratio, here.start_angle),
+            "{}",
+            key.name()
+        );
     }
     board.set_key(Key::Select, true)?;
     board.run(TICK * (u32::from(HOLD_TICKS) + 6))?;
@@ -235,12 +346,24 @@ fn the_watchdog_restarts_the_board_in_its_scene() -> anyhow::Result<()> {
     board.run(TICK / 4)?;
     board.tell("hang")?;
     let messages = board.run(Duration::from_secs(u64::from(WATCHDOG_SECONDS) * 2) + 8 * PICTURE)?;
-    let restarted = messages.into_iter().chain(board.heard_by_uart()).find_map(ToHost::restarted);
-    let Restarted { cause, restarts, scene, step, .. } = restarted.expect("it says so");
+    let restarted = messages
+        .into_iter()
+        .chain(board.heard_by_uart())
+        .find_map(ToHost::restarted);
+    let Restarted {
+        cause,
+        restarts,
+        scene,
+        step,
+        ..
+    } = restarted.expect("it says so");
     assert_eq!((cause, restarts), (Some(Cause::Hang), 1));
     assert_eq!((scene, step), (before.scene, before.report.step));
     let frame = board.next_frame()?;
-    assert_eq!((frame.scene, frame.mass_ratio), (before.scene, before.mass_ratio));
+    assert_eq!(
+        (frame.scene, frame.mass_ratio),
+        (before.scene, before.mass_ratio)
+    );
     assert_eq!(
         (frame.report.step, frame.dropped),
         (u64::from(frame.sequence) + 1, 0),
@@ -250,7 +373,10 @@ fn the_watchdog_restarts_the_board_in_its_scene() -> anyhow::Result<()> {
     for after_download in [false, true, false] {
         board.tell(&format!("reset {}", u8::from(after_download)))?;
         let messages = board.run(8 * PICTURE)?;
-        assert!(messages.iter().all(|message| message.restarted().is_none()), "{after_download}");
+        assert!(
+            messages.iter().all(|message| message.restarted().is_none()),
+            "{after_download}"
+        );
         assert_eq!(board.next_frame()?.scene, SceneName::Page);
         board.send(3, Command::Choose(SceneName::Butterfly))?;
         board.run(4 * TICK)?;

@@ -15,7 +15,10 @@ const PATIENCE: usize = 2000;
 
 #[test]
 fn buttons_choose_and_restart() -> anyhow::Result<()> {
-    BOARDS.iter().filter(|board| board.has_panel).try_for_each(choose_and_restart)
+    BOARDS
+        .iter()
+        .filter(|board| board.has_panel)
+        .try_for_each(choose_and_restart)
 }
 
 fn choose_and_restart(board: &Board) -> anyhow::Result<()> {
@@ -23,17 +26,39 @@ fn choose_and_restart(board: &Board) -> anyhow::Result<()> {
     settle(&mut machine)?;
     machine.wake_keys()?;
     let start = settle(&mut machine)?;
-    assert!(start.report.step > SETTLING as u64, "waking the buttons must not restart");
-    let place = |frame: &Frame| MASS_RATIOS.iter().position(|ratio| *ratio == frame.mass_ratio).expect("one of them");
+    assert!(
+        start.report.step > SETTLING as u64,
+        "waking the buttons must not restart"
+    );
+    let place = |frame: &Frame| {
+        MASS_RATIOS
+            .iter()
+            .position(|ratio| *ratio == frame.mass_ratio)
+            .expect("one of them")
+    };
     let degrees = |frame: &Frame| frame.start_angle.to_degrees().round();
-    for (key, ratios, turn) in
-        [(Key::Up, 1, 0.0), (Key::Down, -1, 0.0), (Key::Right, 0, ANGLE_STEP), (Key::Left, 0, -ANGLE_STEP)]
-    {
+    for (key, ratios, turn) in [
+        (Key::Up, 1, 0.0),
+        (Key::Down, -1, 0.0),
+        (Key::Right, 0, ANGLE_STEP),
+        (Key::Left, 0, -ANGLE_STEP),
+    ] {
         let (before, after) = press(&mut machine, key)?;
-        let expected = (place(&before).checked_add_signed(ratios), degrees(&before) + turn);
-        assert_eq!((Some(place(&after)), degrees(&after)), expected, "{}: {key:?}", board.name);
+        let expected = (
+            place(&before).checked_add_signed(ratios),
+            degrees(&before) + turn,
+        );
+        assert_eq!(
+            (Some(place(&after)), degrees(&after)),
+            expected,
+            "{}: {key:?}",
+            board.name
+        );
         let near = |angle: f32| (angle - after.start_angle).abs() < 0.01;
-        assert!(near(after.report.state.a1) && near(after.report.state.a2), "{key:?}: both rods near the start angle");
+        assert!(
+            near(after.report.state.a1) && near(after.report.state.a2),
+            "{key:?}: both rods near the start angle"
+        );
     }
     // Held, it is for the next scene.
     let (_, after) = press(&mut machine, Key::Select)?;
@@ -49,7 +74,10 @@ fn press(machine: &mut Machine, key: Key) -> anyhow::Result<(Frame, Frame)> {
         let after = machine.next_frame()?;
         if after.report.step < before.report.step {
             machine.set_key(key, false)?;
-            assert_eq!(after.report.step, 1, "{key:?}: restarted and moved by one tick");
+            assert_eq!(
+                after.report.step, 1,
+                "{key:?}: restarted and moved by one tick"
+            );
             return Ok((before, after));
         }
         before = after;
@@ -63,7 +91,11 @@ fn settle(machine: &mut Machine) -> anyhow::Result<Frame> {
     let mut quiet = 0;
     while quiet < SETTLING {
         let frame = machine.next_frame()?;
-        quiet = if frame.report.step < last.report.step { 0 } else { quiet + 1 };
+        quiet = if frame.report.step < last.report.step {
+            0
+        } else {
+            quiet + 1
+        };
         last = frame;
     }
     Ok(last)

@@ -13,7 +13,12 @@ use host_tests::emulator::qemu::Machine;
 use rayon::prelude::*;
 
 /// One that changes its method soon, nothing that moves; a motion that ends early, a model.
-const SCENES: [SceneName; 4] = [SceneName::Beats2To1, SceneName::Frequencies, SceneName::Page, SceneName::SmallLight];
+const SCENES: [SceneName; 4] = [
+    SceneName::Beats2To1,
+    SceneName::Frequencies,
+    SceneName::Page,
+    SceneName::SmallLight,
+];
 /// By then all is found, ticks.
 const FOLLOWED: u64 = 18 * TICK_RATE as u64;
 
@@ -50,28 +55,62 @@ fn followed(machine: &mut Machine, board: &Board, name: SceneName) -> anyhow::Re
     loop {
         let frame = machine.next_frame()?;
         assert_eq!(frame.dropped, 0, "{}: {frame:?}", board.name);
-        assert_eq!(frame, show.expected(&frame), "{}: {}", board.name, name.name());
+        assert_eq!(
+            frame,
+            show.expected(&frame),
+            "{}: {}",
+            board.name,
+            name.name()
+        );
         if frame.report.step >= FOLLOWED {
             break;
         }
     }
-    let changes = show.news.iter().filter(|(_, news)| matches!(news, PlannerEvent::Shown(..))).count();
+    let changes = show
+        .news
+        .iter()
+        .filter(|(_, news)| matches!(news, PlannerEvent::Shown(..)))
+        .count();
     machine.send(2, Command::AskPlan)?;
-    let (2, Answer::Planned(answer)) = machine.next_answer()? else { panic!("no plan") };
+    let (2, Answer::Planned(answer)) = machine.next_answer()? else {
+        panic!("no plan")
+    };
     let lines: Vec<_> = machine.lines().into_iter().map(|line| line.text).collect();
     let logged = |head: &str| lines.iter().filter(|line| line.starts_with(head)).count();
     let plan = show.news.iter().find_map(|(_, news)| match news {
         PlannerEvent::Found(Ok(plan)) => Some(plan),
         _ => None,
     });
-    println!("{} {}: {} changes, {plan:?}", board.name, name.name(), changes);
-    assert_eq!(name == SceneName::Frequencies, plan.is_none(), "{}: {} {lines:#?}", board.name, name.name());
+    println!(
+        "{} {}: {} changes, {plan:?}",
+        board.name,
+        name.name(),
+        changes
+    );
+    assert_eq!(
+        name == SceneName::Frequencies,
+        plan.is_none(),
+        "{}: {} {lines:#?}",
+        board.name,
+        name.name()
+    );
     let Some(plan) = plan else { return Ok(()) };
-    let Some(Ok(answered)) = answer.and_then(|answer| answer.found) else { panic!("{answer:?}") };
+    let Some(Ok(answered)) = answer.and_then(|answer| answer.found) else {
+        panic!("{answer:?}")
+    };
     let known = |plan: &Plan| (plan.method, plan.steps, plan.error, plan.cost, plan.limit);
-    assert_eq!(known(&answered), known(plan), "{}: {}", board.name, name.name());
+    assert_eq!(
+        known(&answered),
+        known(plan),
+        "{}: {}",
+        board.name,
+        name.name()
+    );
     // What is said at the start may have come before the first frame of it.
-    assert!(logged("plan: ") == 1 && (changes..=1 + changes).contains(&logged("shown: ")), "{lines:#?}");
+    assert!(
+        logged("plan: ") == 1 && (changes..=1 + changes).contains(&logged("shown: ")),
+        "{lines:#?}"
+    );
     assert_eq!(
         changes > 0,
         name == SceneName::Beats2To1 && plan.method != Method::Extrapolation10Fixed64,

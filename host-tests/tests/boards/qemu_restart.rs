@@ -31,14 +31,30 @@ const PATIENCE: Duration = Duration::from_secs(120);
 
 /// A board, with a debugger that takes its log or without, that stands still in the middle of a frame of `scene`, with a mass ratio of
 /// its own: its program, and the last frame it has sent.
-fn within(board: &Board, scene: SceneName, debugger: bool) -> anyhow::Result<(PathBuf, Machine, Frame)> {
+fn within(
+    board: &Board,
+    scene: SceneName,
+    debugger: bool,
+) -> anyhow::Result<(PathBuf, Machine, Frame)> {
     let elf = application(board);
-    let mut probe = on(board, |settings| Machine::halted(&Settings { debugger, limit: PATIENCE, ..*settings }))?;
+    let mut probe = on(board, |settings| {
+        Machine::halted(&Settings {
+            debugger,
+            limit: PATIENCE,
+            ..*settings
+        })
+    })?;
     // A serial port that is not yet on takes no bytes.
     let stopwatch = address(&elf, STOPWATCH);
     probe.run_to(stopwatch)?;
     probe.send(1, Command::Choose(scene))?;
-    probe.send(2, Command::Set { field: Field::MassRatio, value: MASS_RATIO.into() })?;
+    probe.send(
+        2,
+        Command::Set {
+            field: Field::MassRatio,
+            value: MASS_RATIO.into(),
+        },
+    )?;
     // To stop rarely is quicker: QEMU then forgets what it has translated.
     let is_it = |frame: &Frame| frame.scene == scene && frame.mass_ratio == MASS_RATIO;
     let machine = probe.run()?;
@@ -79,7 +95,11 @@ fn place(frame: &Frame) -> String {
 /// Holds that a board has said all `parts`.
 fn assert_said(board: &Board, said: &str, parts: &[&str]) {
     for part in parts {
-        assert!(said.contains(part), "{}: no {part:?} in\n{said}", board.name);
+        assert!(
+            said.contains(part),
+            "{}: no {part:?} in\n{said}",
+            board.name
+        );
     }
 }
 
@@ -103,33 +123,54 @@ fn a_fault_in_a_picture_tells_the_scene_and_the_step() -> anyhow::Result<()> {
         let (_, mut probe, frame) = within(board, SceneName::Figure7, true)?;
         execute(&mut probe, UNDEFINED)?;
         probe.divert(&[(Register::Lr, 0x1234_5679)])?;
-        last_words(board, probe.run()?, &[why, &registers, cfsr, &place(&frame)])?;
+        last_words(
+            board,
+            probe.run()?,
+            &[why, &registers, cfsr, &place(&frame)],
+        )?;
     }
     Ok(())
 }
 
 #[test]
-fn a_stack_that_overflows_in_a_picture_meets_the_guard_and_changes_nothing_below() -> anyhow::Result<()> {
+fn a_stack_that_overflows_in_a_picture_meets_the_guard_and_changes_nothing_below()
+-> anyhow::Result<()> {
     for board in BOARDS.iter().filter(|board| board.is_guarded()) {
         let (elf, mut probe, frame) = within(board, SceneName::Butterfly, true)?;
         let statics = address(&elf, "_ram_start")..address(&elf, "__euninit");
         let before = probe.read(statics.clone())?;
         assert!(before.len() > 1024, "there is something to damage");
-        probe.divert(&[(Register::Sp, UNUSED), (Register::Pc, address(&elf, "Player::execute"))])?;
+        probe.divert(&[
+            (Register::Sp, UNUSED),
+            (Register::Pc, address(&elf, "Player::execute")),
+        ])?;
         probe.run_to(address(&elf, "HardFault"))?;
         assert!(probe.read(statics)? == before, "the statics are damaged");
         let lost = "pc and lr are lost; the last call on the stack is at 0x";
-        last_words(board, probe.run()?, &["HARDFAULT: stack overflow", lost, "cfsr 0x000000", &place(&frame)])?;
+        last_words(
+            board,
+            probe.run()?,
+            &[
+                "HARDFAULT: stack overflow",
+                lost,
+                "cfsr 0x000000",
+                &place(&frame),
+            ],
+        )?;
     }
     Ok(())
 }
 
 /// The name of the function at the address that the report gives after `what`.
 fn function_after(what: &str, report: &str, image: &Image) -> String {
-    let digits = report.split_once(what).and_then(|(_, rest)| rest.trim_start().strip_prefix("0x"));
+    let digits = report
+        .split_once(what)
+        .and_then(|(_, rest)| rest.trim_start().strip_prefix("0x"));
     let address = digits.and_then(|digits| u32::from_str_radix(digits.get(..8)?, 16).ok());
     let address = address.unwrap_or_else(|| panic!("no address after {what:?} in\n{report}"));
-    image.function_at(address).map_or(String::new(), |function| function.name.clone())
+    image
+        .function_at(address)
+        .map_or(String::new(), |function| function.name.clone())
 }
 
 #[test]
@@ -137,13 +178,26 @@ fn a_panic_tells_where_and_why_and_ends_the_run_as_a_failure() -> anyhow::Result
     let toolchain = toolchain();
     for board in &BOARDS {
         let elf = toolchain.build("inject-panic", board.target)?;
-        let parts =
-            ["boot: about to panic", "PANIC", "inject-panic.rs:", "injected with the number 42", "cfsr 0x00000000"];
-        let report = last_words(board, &mut Machine::start(&settings(&toolchain, board, &elf))?, &parts)?;
+        let parts = [
+            "boot: about to panic",
+            "PANIC",
+            "inject-panic.rs:",
+            "injected with the number 42",
+            "cfsr 0x00000000",
+        ];
+        let report = last_words(
+            board,
+            &mut Machine::start(&settings(&toolchain, board, &elf))?,
+            &parts,
+        )?;
         let image = Image::read(&elf)?;
         for (what, name) in [("pc", "panic_fmt"), ("lr", "main")] {
             let caller = function_after(what, &report, &image);
-            assert!(caller.contains(name), "{}: {what} in {caller}\n{report}", board.name);
+            assert!(
+                caller.contains(name),
+                "{}: {what} in {caller}\n{report}",
+                board.name
+            );
         }
     }
     Ok(())
@@ -155,19 +209,60 @@ fn a_board_that_hangs_comes_back_where_it_was_and_says_why() -> anyhow::Result<(
         let (_, mut probe, before) = within(board, SceneName::Butterfly, true)?;
         execute(&mut probe, HANG)?;
         let machine = probe.run()?;
-        let Restarted { cause, restarts, pc, scene, step, .. } = machine.wait_for(ToHost::restarted)?;
-        assert_eq!((cause, restarts, pc), (Some(Cause::Hang), 1, UNUSED), "{}", board.name);
-        assert_eq!((scene, step), (before.scene, before.report.step), "{}", board.name);
+        let Restarted {
+            cause,
+            restarts,
+            pc,
+            scene,
+            step,
+            ..
+        } = machine.wait_for(ToHost::restarted)?;
+        assert_eq!(
+            (cause, restarts, pc),
+            (Some(Cause::Hang), 1, UNUSED),
+            "{}",
+            board.name
+        );
+        assert_eq!(
+            (scene, step),
+            (before.scene, before.report.step),
+            "{}",
+            board.name
+        );
         for sequence in 0..FRAMES as u32 {
             let frame = machine.next_frame()?;
             let step = u64::from(sequence) + 1;
-            assert_eq!((frame.sequence, frame.report.step), (sequence, step), "{}", board.name);
-            assert_eq!((frame.scene, frame.mass_ratio), (before.scene, MASS_RATIO), "{}", board.name);
+            assert_eq!(
+                (frame.sequence, frame.report.step),
+                (sequence, step),
+                "{}",
+                board.name
+            );
+            assert_eq!(
+                (frame.scene, frame.mass_ratio),
+                (before.scene, MASS_RATIO),
+                "{}",
+                board.name
+            );
         }
-        assert_eq!((machine.counts().damaged, machine.counts().lost), (0, 0), "{}", board.name);
+        assert_eq!(
+            (machine.counts().damaged, machine.counts().lost),
+            (0, 0),
+            "{}",
+            board.name
+        );
         let pc = format!("pc {UNUSED:#010x}");
         let last = format!("restarted after a hang, 1 in a row: {pc}");
-        assert_said(board, &machine.said(), &["HANG: no frame finished for 1 s\n", &pc, &place(&before), &last]);
+        assert_said(
+            board,
+            &machine.said(),
+            &[
+                "HANG: no frame finished for 1 s\n",
+                &pc,
+                &place(&before),
+                &last,
+            ],
+        );
     }
     Ok(())
 }
@@ -199,11 +294,25 @@ fn without_a_debugger_a_fault_restarts_the_board() -> anyhow::Result<()> {
             let restarted = restarted.expect("said before the first frame");
             let cfsr = if board.is_guarded() { 1 << 16 } else { 0 };
             assert_eq!(restarted.cause, Some(Cause::Fault), "{}", board.name);
-            assert_eq!((restarted.restarts, restarted.pc, restarted.cfsr), (restarts, UNUSED, cfsr), "{}", board.name);
+            assert_eq!(
+                (restarted.restarts, restarted.pc, restarted.cfsr),
+                (restarts, UNUSED, cfsr),
+                "{}",
+                board.name
+            );
             assert_eq!(restarted.scene, before.scene, "{}", board.name);
             // What ends the board each time is given up.
-            let scene = if restarts <= MOST_RESTARTS { SceneName::Figure7 } else { SceneName::Page };
-            assert_eq!(frame.map(|frame| frame.scene), Some(scene), "{}: restart {restarts}", board.name);
+            let scene = if restarts <= MOST_RESTARTS {
+                SceneName::Figure7
+            } else {
+                SceneName::Page
+            };
+            assert_eq!(
+                frame.map(|frame| frame.scene),
+                Some(scene),
+                "{}: restart {restarts}",
+                board.name
+            );
         }
     }
     Ok(())

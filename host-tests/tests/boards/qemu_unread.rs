@@ -39,15 +39,25 @@ fn a_host_that_stops_reading_loses_frames_and_nothing_else() -> anyhow::Result<(
         let frame = machine.next_frame()?;
         assert_eq!(frame, show.expected(&frame));
         // No tick is left out, even if its frame is.
-        assert_eq!(frame.report.step, u64::from(frame.sequence + 1 + frame.dropped));
+        assert_eq!(
+            frame.report.step,
+            u64::from(frame.sequence + 1 + frame.dropped)
+        );
         after += usize::from(after > 0 || frame.sequence > last.sequence + 1);
         last = frame;
     }
     let counts = machine.counts();
     assert!(counts.lost > 0, "{counts:?}");
-    assert!(counts.damaged <= 1, "the frame that was cut short, no other: {counts:?}");
+    assert!(
+        counts.damaged <= 1,
+        "the frame that was cut short, no other: {counts:?}"
+    );
     said += &machine.said();
-    assert_eq!(said.matches("serial link").count(), 1, "said once, not for every frame: {said}");
+    assert_eq!(
+        said.matches("serial link").count(),
+        1,
+        "said once, not for every frame: {said}"
+    );
     Ok(())
 }
 
@@ -57,23 +67,35 @@ fn a_board_whose_emulator_pauses_does_not_take_it_for_a_hang() -> anyhow::Result
     /// Longer than the watchdog's two stages.
     const PAUSE: Duration = Duration::from_millis(2500);
     const FRAMES: usize = 20;
-    BOARDS.par_iter().filter(|board| **board != STM32F405).try_for_each(|board| {
-        let mut machine = on(board, |settings| Machine::start(&Settings { clock: Clock::Real, ..*settings }))?;
-        let emulator = Pid::from_raw(machine.id().cast_signed());
-        for pause in [true, false] {
-            for _ in 0..FRAMES {
-                machine.next_frame()?;
+    BOARDS
+        .par_iter()
+        .filter(|board| **board != STM32F405)
+        .try_for_each(|board| {
+            let mut machine = on(board, |settings| {
+                Machine::start(&Settings {
+                    clock: Clock::Real,
+                    ..*settings
+                })
+            })?;
+            let emulator = Pid::from_raw(machine.id().cast_signed());
+            for pause in [true, false] {
+                for _ in 0..FRAMES {
+                    machine.next_frame()?;
+                }
+                if pause {
+                    kill(emulator, Signal::SIGSTOP)?;
+                    sleep(PAUSE);
+                    kill(emulator, Signal::SIGCONT)?;
+                }
             }
-            if pause {
-                kill(emulator, Signal::SIGSTOP)?;
-                sleep(PAUSE);
-                kill(emulator, Signal::SIGCONT)?;
-            }
-        }
-        let log = machine.said();
-        assert!(!log.contains("HANG") && !log.contains("restarted"), "{}: {log}", board.name);
-        Ok(())
-    })
+            let log = machine.said();
+            assert!(
+                !log.contains("HANG") && !log.contains("restarted"),
+                "{}: {log}",
+                board.name
+            );
+            Ok(())
+        })
 }
 
 /// A host that sends faster than the board reads is told how much it has lost.

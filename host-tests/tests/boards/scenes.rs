@@ -43,7 +43,11 @@ const MOST_CYCLES: f64 = 3.0;
 /// Frames of a scene in a short run. Within 1.1 s the stack has been as deep as it gets in an hour, an interrupt apart, whichever
 /// tick a scene is left at. On the M3 the butterfly's curve grows, and the most expensive frame comes after 10 s.
 fn short(board: &Board, name: SceneName) -> u32 {
-    if (board.core(), name) == (Core::M3, SceneName::Butterfly) { 10 * TICK_RATE } else { 3 * EVERY }
+    if (board.core(), name) == (Core::M3, SceneName::Butterfly) {
+        10 * TICK_RATE
+    } else {
+        3 * EVERY
+    }
 }
 
 #[test]
@@ -58,8 +62,14 @@ fn every_board_plays_every_scene_for_an_hour() -> anyhow::Result<()> {
 }
 
 fn every_board_plays(limit: Duration, ticks: fn(&Board, SceneName) -> u32) -> anyhow::Result<()> {
-    println!("| board | text | data | bss | stack | idle (estimated) |\n| --- | ---: | ---: | ---: | ---: | ---: |");
-    let too_much = BOARDS.par_iter().map(|board| plays(board, limit, ticks)).collect::<Result<Vec<_>, _>>()?.concat();
+    println!(
+        "| board | text | data | bss | stack | idle (estimated) |\n| --- | ---: | ---: | ---: | ---: | ---: |"
+    );
+    let too_much = BOARDS
+        .par_iter()
+        .map(|board| plays(board, limit, ticks))
+        .collect::<Result<Vec<_>, _>>()?
+        .concat();
     assert!(too_much.is_empty(), "{too_much:#?}");
     Ok(())
 }
@@ -68,7 +78,10 @@ fn every_board_plays(limit: Duration, ticks: fn(&Board, SceneName) -> u32) -> an
 fn told(machine: &mut Machine, words: &[u8]) -> anyhow::Result<Vec<ToHost>> {
     machine.send_bytes(words)?;
     let mut messages = Vec::new();
-    while messages.last().is_none_or(|last: &ToHost| last.frame().is_none()) {
+    while messages
+        .last()
+        .is_none_or(|last: &ToHost| last.frame().is_none())
+    {
         messages.push(machine.receive()?);
     }
     Ok(messages)
@@ -88,7 +101,13 @@ struct SceneRun<'a> {
 impl<'a> SceneRun<'a> {
     fn new(board: &'a Board, name: SceneName) -> Self {
         let words = wire(Command::Choose(name));
-        Self { board, name, show: show(board, name), words, highest: [0; 2] }
+        Self {
+            board,
+            name,
+            show: show(board, name),
+            words,
+            highest: [0; 2],
+        }
     }
 
     fn step(&self) -> u32 {
@@ -101,9 +120,20 @@ impl<'a> SceneRun<'a> {
             let messages = next(&std::mem::take(&mut self.words))?;
             // The command may not have been executed yet.
             let is_here = |frame: &Frame| frame.scene == self.name;
-            for frame in messages.into_iter().filter_map(ToHost::frame).filter(is_here) {
-                let (place, step) = (format!("{}: {}", self.board.name, self.name.name()), self.step() + 1);
-                assert_eq!((frame.report.step, frame.dropped), (step.into(), 0), "{place}");
+            for frame in messages
+                .into_iter()
+                .filter_map(ToHost::frame)
+                .filter(is_here)
+            {
+                let (place, step) = (
+                    format!("{}: {}", self.board.name, self.name.name()),
+                    self.step() + 1,
+                );
+                assert_eq!(
+                    (frame.report.step, frame.dropped),
+                    (step.into(), 0),
+                    "{place}"
+                );
                 assert_eq!(frame, self.show.expected(&frame), "{place}");
                 if step > SETTLING {
                     let [scene, whole] = self.highest;
@@ -116,10 +146,16 @@ impl<'a> SceneRun<'a> {
 }
 
 /// Plays all scenes twice, the panel compared now and then; what is beyond the board's budgets.
-fn plays(board: &'static Board, limit: Duration, ticks: fn(&Board, SceneName) -> u32) -> anyhow::Result<Vec<String>> {
+fn plays(
+    board: &'static Board,
+    limit: Duration,
+    ticks: fn(&Board, SceneName) -> u32,
+) -> anyhow::Result<Vec<String>> {
     let elf = application(board);
     let (image, stack) = (Image::read(&elf)?, stack(&elf));
-    let mut machine = on(board, |settings| Machine::halted(&Settings { limit, ..*settings }))?;
+    let mut machine = on(board, |settings| {
+        Machine::halted(&Settings { limit, ..*settings })
+    })?;
     machine.write(stack.start, &vec![PAINT; stack.len()])?;
     // The link is up once a frame has come.
     (0..EVERY).try_for_each(|_| machine.run_to_frame().map(drop))?;
@@ -138,27 +174,40 @@ fn plays(board: &'static Board, limit: Duration, ticks: fn(&Board, SceneName) ->
                 // The panel shows exactly the frame that has come when the processor is about to sleep.
                 run.to(run.step() + 1, &mut |_| machine.run_to_frame())?;
                 let shown = board.has_panel.then(|| machine.screenshot()).transpose()?;
-                let is_it = shown.as_ref().is_none_or(|shown| *shown == Screenshot::from(&run.show.frame()));
+                let is_it = shown
+                    .as_ref()
+                    .is_none_or(|shown| *shown == Screenshot::from(&run.show.frame()));
                 assert!(is_it, "{}: {}\n{shown:?}", board.name, name.name());
             }
             // The cost is taken in the first round.
             if round > 0 {
                 continue;
             }
-            let frame = board.instruction() * f64::from(board.processor_hertz()) / f64::from(TICK_RATE);
-            let [scene, whole] = run.highest.map(|cycles| f64::from(cycles) / f64::from(board.hertz) / frame);
+            let frame =
+                board.instruction() * f64::from(board.processor_hertz()) / f64::from(TICK_RATE);
+            let [scene, whole] = run
+                .highest
+                .map(|cycles| f64::from(cycles) / f64::from(board.hertz) / frame);
             let is_profiled = match board.core() {
                 Core::M3 => true,
-                Core::M0Plus => MOST_CYCLES * scene > budgets::SCENE || 1.0 - MOST_CYCLES * whole < budgets::IDLE,
+                Core::M0Plus => {
+                    MOST_CYCLES * scene > budgets::SCENE
+                        || 1.0 - MOST_CYCLES * whole < budgets::IDLE
+                }
                 Core::M4F => false,
             };
             if is_profiled {
                 profile = FrameProfile::of_next(&mut machine, &image, board.core())?;
             }
             // The board's clock counts instructions; how many cycles one takes is estimated on a frame that QEMU logs whole.
-            let Cost { instructions, cycles, .. } = profile.whole;
+            let Cost {
+                instructions,
+                cycles,
+                ..
+            } = profile.whole;
             let cycles = cycles as f64 / instructions as f64;
-            let (scene, idle, showing) = (scene * cycles, 1.0 - whole * cycles, profile.showing.cycles);
+            let (scene, idle, showing) =
+                (scene * cycles, 1.0 - whole * cycles, profile.showing.cycles);
             let found = format!(
                 "{:15} {:12} {:4.1} % of a frame, idle {:4.1} %, at {cycles:.2} cycles for an instruction; shown in {showing}",
                 board.name,
@@ -169,23 +218,37 @@ fn plays(board: &'static Board, limit: Duration, ticks: fn(&Board, SceneName) ->
             println!("{found}");
             // The budgets of a scene and of showing it are for the slower cores.
             let is_long = board.core() != Core::M4F && scene > budgets::SCENE;
-            if is_long || idle < budgets::IDLE || board.core() == Core::M3 && showing > budgets::SHOWING {
+            if is_long
+                || idle < budgets::IDLE
+                || board.core() == Core::M3 && showing > budgets::SHOWING
+            {
                 too_much.push(found);
             }
             least_idle = least_idle.min(idle);
         }
         reached.push(depth(&machine.read(stack.clone())?));
     }
-    assert!(reached[1] <= reached[0] + INTERRUPT, "{}: the stack reaches ever deeper: {reached:?}", board.name);
+    assert!(
+        reached[1] <= reached[0] + INTERRUPT,
+        "{}: the stack reaches ever deeper: {reached:?}",
+        board.name
+    );
     let Counts { damaged, lost, .. } = machine.counts();
     assert_eq!((damaged, lost), (0, 0), "{}", board.name);
     let lines = machine.lines().into_iter().filter(|line| line.is_bad());
-    let bad: Vec<_> = lines.filter(|line| board.has_panel || !line.text.contains(NO_PANEL)).collect();
+    let bad: Vec<_> = lines
+        .filter(|line| board.has_panel || !line.text.contains(NO_PANEL))
+        .collect();
     assert!(bad.is_empty(), "{}: {bad:#?}", board.name);
     machine.run()?;
     exercise(&mut |words| told(&mut machine, words))?;
     machine.stop()?;
-    too_much.extend(beyond(board, &elf, depth(&machine.read(stack)?), least_idle));
+    too_much.extend(beyond(
+        board,
+        &elf,
+        depth(&machine.read(stack)?),
+        least_idle,
+    ));
     Ok(too_much)
 }
 
@@ -211,7 +274,12 @@ fn the_pico_plays_every_scene_as_the_host_does_within_its_budgets() -> anyhow::R
     }
     exercise(&mut next)?;
     let idle = 1.0 - f64::from(highest * TICK_RATE) / f64::from(PICO.hertz);
-    let too_much = beyond(&PICO, &elf, depth(&machine.tell(&format!("read {} {}", stack.start, stack.len()))?), idle);
+    let too_much = beyond(
+        &PICO,
+        &elf,
+        depth(&machine.tell(&format!("read {} {}", stack.start, stack.len()))?),
+        idle,
+    );
     assert!(too_much.is_empty(), "{too_much:#?}");
     Ok(())
 }

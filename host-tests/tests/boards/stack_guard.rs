@@ -67,11 +67,22 @@ fn no_function_steps_over_the_guard() {
                 *frame = frame.saturating_add(bytes);
             }
         }
-        let (function, frame) = frames.into_iter().max_by_key(|(_, bytes)| *bytes).expect("functions have frames");
+        let (function, frame) = frames
+            .into_iter()
+            .max_by_key(|(_, bytes)| *bytes)
+            .expect("functions have frames");
         // What the statics leave of the region, in whole eighths.
-        let guard = REGION - (address(&elf, "__euninit") - address(&elf, "_ram_start")).next_multiple_of(EIGHTH);
+        let guard = REGION
+            - (address(&elf, "__euninit") - address(&elf, "_ram_start")).next_multiple_of(EIGHTH);
         let largest = function.map_or("", |function| &function.name);
-        println!("{}: a guard of {guard} bytes; the largest frame is {frame}, of {largest}", board.name);
-        assert!(frame.saturating_add(PUSHED) <= guard, "{}: {largest} takes {frame} of {guard}", board.name);
+        println!(
+            "{}: a guard of {guard} bytes; the largest frame is {frame}, of {largest}",
+            board.name
+        );
+        assert!(
+            frame.saturating_add(PUSHED) <= guard,
+            "{}: {largest} takes {frame} of {guard}",
+            board.name
+        );
     }
 }

@@ -24,19 +24,36 @@ fn no_branch_leads_out_of_the_steps() -> anyhow::Result<()> {
         let section = object::File::parse(&*bytes)?;
         let section = section.section_by_name(".steps").expect("the steps");
         let steps = section.address() as u32..(section.address() + section.size()) as u32;
-        assert_eq!(steps.start >= RAM, runs_in_ram, "{}: {steps:x?}", board.name);
+        assert_eq!(
+            steps.start >= RAM,
+            runs_in_ram,
+            "{}: {steps:x?}",
+            board.name
+        );
         let code = Code::read(&elf)?;
         for (name, end) in STEPS {
-            let mut found = code.functions_named(|step| step.contains(name) && step.ends_with(end)).peekable();
+            let mut found = code
+                .functions_named(|step| step.contains(name) && step.ends_with(end))
+                .peekable();
             assert!(found.peek().is_some(), "{}: no {name}", board.name);
-            assert!(found.all(|function| steps.contains(&function)), "{}: {name} stands elsewhere", board.name);
+            assert!(
+                found.all(|function| steps.contains(&function)),
+                "{}: {name} stands elsewhere",
+                board.name
+            );
         }
         let name = |address| code.function_at(address).map_or("?", |(_, name)| name);
-        let out: Vec<_> = code.leads_out_of(&steps).map(|(at, to)| (name(at), name(to))).collect();
+        let out: Vec<_> = code
+            .leads_out_of(&steps)
+            .map(|(at, to)| (name(at), name(to)))
+            .collect();
         assert!(out.is_empty(), "{}: {out:#?}", board.name);
         // By which the linker reaches what is too far for a branch.
-        let far: Vec<_> =
-            code.functions_named(|name| name.contains("Thunk")).filter(|at| steps.contains(at)).map(name).collect();
+        let far: Vec<_> = code
+            .functions_named(|name| name.contains("Thunk"))
+            .filter(|at| steps.contains(at))
+            .map(name)
+            .collect();
         assert!(far.is_empty(), "{}: {far:#?}", board.name);
     }
     Ok(())
@@ -44,15 +61,22 @@ fn no_branch_leads_out_of_the_steps() -> anyhow::Result<()> {
 
 /// The functions that steps of the form `form` reach in the Pico's application.
 fn reached(code: &Code, form: &str) -> BTreeSet<String> {
-    let is_step = |name: &str| name.contains(form) && name.contains("Form>") && name.ends_with("advance");
+    let is_step =
+        |name: &str| name.contains(form) && name.contains("Form>") && name.ends_with("advance");
     let mut found: Vec<u32> = code.functions_named(is_step).collect();
     let mut seen = 0;
     while let Some(&function) = found.get(seen) {
         seen += 1;
-        let new: Vec<u32> = code.named_by(function).filter(|to| !found.contains(to)).collect();
+        let new: Vec<u32> = code
+            .named_by(function)
+            .filter(|to| !found.contains(to))
+            .collect();
         found.extend(new);
     }
-    found.into_iter().filter_map(|function| Some(code.function_at(function)?.1.to_owned())).collect()
+    found
+        .into_iter()
+        .filter_map(|function| Some(code.function_at(function)?.1.to_owned()))
+        .collect()
 }
 
 /// As the kernel's example `fixed_point` says: on a Cortex-M0+ a step in 32 bits is made of integers, one of `f32` is not.
@@ -62,6 +86,9 @@ fn steps_in_fixed_point_reach_no_soft_float() -> anyhow::Result<()> {
     let is_soft = |name: &String| name.starts_with("__aeabi_f") || name.starts_with("__aeabi_d");
     let [fixed, float] = ["Fixed32 as", "DirectionForm<"].map(|form| reached(&code, form));
     assert!(float.iter().any(is_soft), "{float:#?}");
-    assert!(!fixed.is_empty() && !fixed.iter().any(is_soft), "{fixed:#?}");
+    assert!(
+        !fixed.is_empty() && !fixed.iter().any(is_soft),
+        "{fixed:#?}"
+    );
     Ok(())
 }

@@ -33,11 +33,19 @@ pub fn output(command: &mut Command) -> Output {
 /// What a command line of this project's does in `folder`, as a snapshot has it.
 fn played(line: &str, folder: &Path) -> String {
     let mut words = line.split_whitespace();
-    let output = output(program(words.next().unwrap_or_default()).args(words).current_dir(folder));
+    let output = output(
+        program(words.next().unwrap_or_default())
+            .args(words)
+            .current_dir(folder),
+    );
     let mut text = format!("$ {line}\n");
     for (mark, said) in [('>', output.stdout), ('!', output.stderr)] {
         // a slow machine says that work goes on
-        text.extend(said.lines().filter(|line| !line.contains(" ...")).map(|line| format!("{mark} {line}\n")));
+        text.extend(
+            said.lines()
+                .filter(|line| !line.contains(" ..."))
+                .map(|line| format!("{mark} {line}\n")),
+        );
     }
     let code = output.status.code();
     text + &code.map_or(String::from("killed\n"), |code| format!("exit {code}\n"))
@@ -47,26 +55,52 @@ fn played(line: &str, folder: &Path) -> String {
 fn commands_say_what_they_said() {
     let empty = tempfile::tempdir().expect("a folder");
     let folder = workspace().join("host-tests/tests/commands/snapshots");
-    let files = fs::read_dir(folder).expect("the snapshots").map(|file| file.expect("a file").path());
+    let files = fs::read_dir(folder)
+        .expect("the snapshots")
+        .map(|file| file.expect("a file").path());
     let mut differences = Vec::new();
     for file in files {
-        let old = fs::read_to_string(&file).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
-        let lines: Vec<_> = old.lines().filter_map(|line| line.strip_prefix("$ ")).collect();
-        let blocks: Vec<_> = lines.par_iter().map(|line| played(line, empty.path())).collect();
+        let old =
+            fs::read_to_string(&file).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
+        let lines: Vec<_> = old
+            .lines()
+            .filter_map(|line| line.strip_prefix("$ "))
+            .collect();
+        let blocks: Vec<_> = lines
+            .par_iter()
+            .map(|line| played(line, empty.path()))
+            .collect();
         // Every refusal: one line, nothing on stdout, exit code 2, nothing written.
         for block in blocks.iter().filter(|_| file.ends_with("refused.txt")) {
             let lines: Vec<_> = block.lines().collect();
-            assert!(matches!(lines[..], [_, why, "exit 2"] if why.starts_with("! error: ")), "{block}");
+            assert!(
+                matches!(lines[..], [_, why, "exit 2"] if why.starts_with("! error: ")),
+                "{block}"
+            );
         }
         if std::env::var_os(BLESS).is_some() {
-            fs::write(&file, blocks.join("\n")).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
+            fs::write(&file, blocks.join("\n"))
+                .unwrap_or_else(|error| panic!("{}: {error}", file.display()));
         } else {
             let is_new = |block: &&String| !old.contains(block.as_str());
-            differences.extend(blocks.iter().filter(is_new).map(|block| format!("{}\n{block}", file.display())));
+            differences.extend(
+                blocks
+                    .iter()
+                    .filter(is_new)
+                    .map(|block| format!("{}\n{block}", file.display())),
+            );
         }
     }
-    assert_eq!(fs::read_dir(&empty).expect("a folder").count(), 0, "something is written");
-    assert!(differences.is_empty(), "accept by {BLESS}=1:\n{}", differences.join("\n"));
+    assert_eq!(
+        fs::read_dir(&empty).expect("a folder").count(),
+        0,
+        "something is written"
+    );
+    assert!(
+        differences.is_empty(),
+        "accept by {BLESS}=1:\n{}",
+        differences.join("\n")
+    );
 }
 
 /// What ends after little work; of others, what is their own to print.
@@ -99,14 +133,24 @@ fn a_closed_output_ends_every_command_quietly() -> io::Result<()> {
     for line in COMMANDS {
         let line = line.replace("FOLDER", &folder.path().to_string_lossy());
         let (name, arguments) = line.split_once(' ').unwrap_or((&line, ""));
-        let output = program(name).args(arguments.split_whitespace()).stdout(closed()?).output()?;
+        let output = program(name)
+            .args(arguments.split_whitespace())
+            .stdout(closed()?)
+            .output()?;
         let report = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(0), "{line}: {report}");
         // What is going on may be said there, but nothing went wrong.
-        assert!(!report.contains("error") && !report.contains("panicked"), "{line}: {report}");
+        assert!(
+            !report.contains("error") && !report.contains("panicked"),
+            "{line}: {report}"
+        );
     }
     // An error that is read by no one is still told by the exit code.
-    let status = program("simulate").args(["--until", "-1"]).stdout(closed()?).stderr(closed()?).status()?;
+    let status = program("simulate")
+        .args(["--until", "-1"])
+        .stdout(closed()?)
+        .stderr(closed()?)
+        .status()?;
     assert_eq!(status.code(), Some(2));
     Ok(())
 }
@@ -116,7 +160,8 @@ fn a_closed_output_ends_every_command_quietly() -> io::Result<()> {
 fn a_scene_is_planned_as_the_boards_start_it() {
     let name = SceneName::Page;
     for (target, processor) in [("m3", CORTEX_M3), ("m4f", STM32F405)] {
-        let mut show = Show::on(processor, name, &name.first_settings()).expect("a scene of the catalogue");
+        let mut show =
+            Show::on(processor, name, &name.first_settings()).expect("a scene of the catalogue");
         let horizon = loop {
             show.tick();
             if let [.., (_, PlannerEvent::Found(Ok(plan)))] = show.news[..] {
@@ -124,6 +169,9 @@ fn a_scene_is_planned_as_the_boards_start_it() {
             }
         };
         let said = output(program("plan").args(["--scene", "page", "--target", target])).stdout;
-        assert!(said.contains(&format!("until {horizon:.2} s of 30 s")), "{horizon} {said}");
+        assert!(
+            said.contains(&format!("until {horizon:.2} s of 30 s")),
+            "{horizon} {said}"
+        );
     }
 }

@@ -23,8 +23,18 @@ fn recorded(board: &str, folder: &TempDir, name: &str) -> ([PathBuf; 2], String)
     toolchain();
     let files = ["gif", "png"].map(|kind| folder.path().join(format!("{name}.{kind}")));
     let mut command = program("demo");
-    command.args(["--board", board, "--headless", "--seconds", &SECONDS.to_string()]);
-    command.arg("--record").arg(&files[0]).arg("--screenshot").arg(&files[1]);
+    command.args([
+        "--board",
+        board,
+        "--headless",
+        "--seconds",
+        &SECONDS.to_string(),
+    ]);
+    command
+        .arg("--record")
+        .arg(&files[0])
+        .arg("--screenshot")
+        .arg(&files[1]);
     let output = output(&mut command);
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     (files, output.stdout)
@@ -49,11 +59,21 @@ fn a_recording_shows_a_swinging_pendulum_and_is_the_same_every_time() {
         let frames = played(&animation).expect("a GIF file");
         let time: u32 = frames.iter().map(|(_, delay)| u32::from(*delay)).sum();
         assert_eq!((frames.len(), time), (FRAMES, 100 * SECONDS));
-        let moved = frames.windows(2).filter(|pair| pair[0].0 != pair[1].0).count();
+        let moved = frames
+            .windows(2)
+            .filter(|pair| pair[0].0 != pair[1].0)
+            .count();
         // The Pico first asks its panel which it is, which stays dark meanwhile: for two frames at most.
-        let dark = frames.iter().take_while(|(dots, _)| dots.iter().all(|dot| *dot == dots[0])).count();
+        let dark = frames
+            .iter()
+            .take_while(|(dots, _)| dots.iter().all(|dot| *dot == dots[0]))
+            .count();
         assert!(dark <= 2, "{dark}");
-        assert_eq!(moved, FRAMES - dark.max(1), "every frame differs from the one before");
+        assert_eq!(
+            moved,
+            FRAMES - dark.max(1),
+            "every frame differs from the one before"
+        );
         let screenshot = png::Decoder::new(BufReader::new(File::open(last).expect("a file")));
         let screenshot = screenshot.read_info().expect("a PNG file");
         assert_eq!((screenshot.info().width, screenshot.info().height), SIZE);
@@ -66,10 +86,19 @@ fn a_recording_shows_a_swinging_pendulum_and_is_the_same_every_time() {
 #[test]
 fn the_method_can_be_chosen_and_is_named() {
     toolchain();
-    for (method, named) in [("plan", "extrapolation10-fixed64"), ("rk4-f32-direction", "rk4-f32-direction")] {
-        let output = output(program("demo").args(["--method", method, "--headless", "--seconds", "2"]));
-        let shown = format!("\nshown                 {named}, a step to a frame, right to half a pixel until");
-        assert!(output.status.success() && output.stdout.contains(&shown), "{output:?}");
+    for (method, named) in [
+        ("plan", "extrapolation10-fixed64"),
+        ("rk4-f32-direction", "rk4-f32-direction"),
+    ] {
+        let output =
+            output(program("demo").args(["--method", method, "--headless", "--seconds", "2"]));
+        let shown = format!(
+            "\nshown                 {named}, a step to a frame, right to half a pixel until"
+        );
+        assert!(
+            output.status.success() && output.stdout.contains(&shown),
+            "{output:?}"
+        );
     }
 }
 
@@ -80,18 +109,35 @@ fn of_a_board_without_a_panel_the_redrawn_one_is_shown() {
     let folder = tempfile::tempdir().expect("a folder");
     let animation = folder.path().join("figure-7.gif");
     let mut command = program("demo");
-    command.args(["--board", "stm32f405", "--scene", "figure-7", "--headless", "--seconds", "1", "--record"]);
+    command.args([
+        "--board",
+        "stm32f405",
+        "--scene",
+        "figure-7",
+        "--headless",
+        "--seconds",
+        "1",
+        "--record",
+    ]);
     let output = output(command.arg(&animation));
     assert_eq!(output.status.code(), Some(0), "{output:?}");
-    assert!(output.stdout.contains("frames, every bit the host's"), "{}", output.stdout);
+    assert!(
+        output.stdout.contains("frames, every bit the host's"),
+        "{}",
+        output.stdout
+    );
 
     let name = SceneName::Figure7;
-    let mut scene = Show::on(STM32F405, name, &name.first_settings()).expect("a scene of the catalogue");
+    let mut scene =
+        Show::on(STM32F405, name, &name.first_settings()).expect("a scene of the catalogue");
     let played = played(&animation).expect("a GIF file");
     assert_eq!(played.len(), 30);
     for (number, (greys, _)) in played.iter().enumerate() {
         scene.tick();
-        assert!(Screenshot::from(&scene.frame()).greys == *greys, "screenshot {number}");
+        assert!(
+            Screenshot::from(&scene.frame()).greys == *greys,
+            "screenshot {number}"
+        );
         scene.tick();
     }
 }
@@ -99,7 +145,19 @@ fn of_a_board_without_a_panel_the_redrawn_one_is_shown() {
 /// What QEMU is reached by lies there.
 #[test]
 fn a_folder_for_pipes_that_cannot_be_had_is_named() {
-    let output = output(program("demo").args(["--headless", "--seconds", "0.1"]).env("TMPDIR", "/dev/null"));
-    assert_eq!((output.status.code(), output.stdout.as_str()), (Some(2), ""), "{output:?}");
-    assert!(output.stderr.lines().count() == 1 && output.stderr.contains("TMPDIR=/dev/null"), "{}", output.stderr);
+    let output = output(
+        program("demo")
+            .args(["--headless", "--seconds", "0.1"])
+            .env("TMPDIR", "/dev/null"),
+    );
+    assert_eq!(
+        (output.status.code(), output.stdout.as_str()),
+        (Some(2), ""),
+        "{output:?}"
+    );
+    assert!(
+        output.stderr.lines().count() == 1 && output.stderr.contains("TMPDIR=/dev/null"),
+        "{}",
+        output.stderr
+    );
 }

@@ -38,9 +38,14 @@ fn every_frame_of_a_board_at_a_port_is_compared_and_a_damaged_one_counted() {
         }
         wire
     };
-    let [said, _] = demo(0, "--scene butterfly --seconds 8", |bench| bench.carry(damaged));
+    let [said, _] = demo(0, "--scene butterfly --seconds 8", |bench| {
+        bench.carry(damaged)
+    });
     assert!(said.contains("frames, every bit the host's"), "{said}");
-    assert!(said.contains("CRC errors            1\nlost frames           1\n"), "{said}");
+    assert!(
+        said.contains("CRC errors            1\nlost frames           1\n"),
+        "{said}"
+    );
 }
 
 #[test]
@@ -54,7 +59,8 @@ fn one_flipped_bit_is_named_and_fails() {
         wire(message)
     };
     let [_, told] = demo(1, "--seconds 8", |bench| bench.carry(flipped));
-    let is_it = |line: &str| line.starts_with("not well: frame 300, step ") && line.contains(": p1 is 0x");
+    let is_it =
+        |line: &str| line.starts_with("not well: frame 300, step ") && line.contains(": p1 is 0x");
     assert!(told.lines().any(is_it), "{told}");
 }
 
@@ -64,8 +70,15 @@ fn a_board_that_does_not_play_what_it_is_told_is_given_up() {
     let mut sequence = 0;
     let [_, told] = demo(1, "--scene butterfly", |bench| {
         sequence += 1;
-        let report = Report { step: sequence.into(), ..Report::default() };
-        bench.say(&wire(ToHost::Frame(Frame { sequence, report, ..Frame::default() })));
+        let report = Report {
+            step: sequence.into(),
+            ..Report::default()
+        };
+        bench.say(&wire(ToHost::Frame(Frame {
+            sequence,
+            report,
+            ..Frame::default()
+        })));
         bench.is_heard();
         sleep(Duration::from_millis(16));
     });
@@ -83,13 +96,24 @@ fn a_pulled_cable_is_said_and_waited_for_and_a_board_that_restarts_is_followed_a
                 pulled = Some(Instant::now());
             }
             Some(since) if bench.cable.is_none() && since.elapsed() > OUT => bench.plug(),
-            Some(_) if !restarted && bench.frame > 300 => (bench.machine, restarted) = (board(), true),
+            Some(_) if !restarted && bench.frame > 300 => {
+                (bench.machine, restarted) = (board(), true)
+            }
             _ => {}
         }
     });
-    let lines: Vec<_> = told.lines().filter(|line| line.contains("ttyACM0 is ")).collect();
-    assert!(lines.len() == 2 && lines[0].contains("is gone") && lines[1].ends_with("is back"), "{told}");
-    assert!(told.contains("the board has been switched on or reset"), "{told}");
+    let lines: Vec<_> = told
+        .lines()
+        .filter(|line| line.contains("ttyACM0 is "))
+        .collect();
+    assert!(
+        lines.len() == 2 && lines[0].contains("is gone") && lines[1].ends_with("is back"),
+        "{told}"
+    );
+    assert!(
+        told.contains("the board has been switched on or reset"),
+        "{told}"
+    );
     assert!(said.contains("frames, every bit the host's"), "{said}");
 }
 
@@ -105,7 +129,11 @@ fn a_foreign_device_is_said_and_a_board_in_its_place_is_taken() {
         }
     });
     let count = |words| told.matches(words).count();
-    assert_eq!(["no message: another device", "the board sends again"].map(count), [1, 1], "{told}");
+    assert_eq!(
+        ["no message: another device", "the board sends again"].map(count),
+        [1, 1],
+        "{told}"
+    );
 }
 
 /// In a terminal nothing is given up: the one who looks at it ends it, and is told no number that did not come.
@@ -113,13 +141,28 @@ fn a_foreign_device_is_said_and_a_board_in_its_place_is_taken() {
 fn of_a_silent_or_foreign_device_the_terminal_shows_no_number() {
     for says in [b"", FOREIGNER] {
         let mut bench = Bench::new();
-        let size = Winsize { ws_row: 24, ws_col: 80, ws_xpixel: 0, ws_ypixel: 0 };
+        let size = Winsize {
+            ws_row: 24,
+            ws_col: 80,
+            ws_xpixel: 0,
+            ws_ypixel: 0,
+        };
         let OpenptyResult { master, slave } = openpty(&size, None).expect("a terminal");
         let mut command = program("demo");
-        command.stdin(slave.try_clone().expect("a terminal")).stdout(slave).stderr(Stdio::piped());
-        let child = command.arg("--port").arg(&bench.name).spawn().expect("it starts");
+        command
+            .stdin(slave.try_clone().expect("a terminal"))
+            .stdout(slave)
+            .stderr(Stdio::piped());
+        let child = command
+            .arg("--port")
+            .arg(&bench.name)
+            .spawn()
+            .expect("it starts");
         drop(command);
-        let (mut keyboard, mut screen) = (File::from(master.try_clone().expect("a terminal")), File::from(master));
+        let (mut keyboard, mut screen) = (
+            File::from(master.try_clone().expect("a terminal")),
+            File::from(master),
+        );
         let shown = spawn(move || {
             let mut bytes = Vec::new();
             // That its other end is closed is an error on Linux.
@@ -138,12 +181,18 @@ fn of_a_silent_or_foreign_device_the_terminal_shows_no_number() {
         assert!(shown.contains("yet") && !shown.contains("every"), "{shown}");
         let told = String::from_utf8(output.stderr).expect("text");
         assert_eq!(output.status.code(), Some(1), "{told}");
-        assert!(told.lines().count() == 1 && told.contains("ttyACM0: no frame came"), "{told}");
+        assert!(
+            told.lines().count() == 1 && told.contains("ttyACM0: no frame came"),
+            "{told}"
+        );
     }
 }
 
 #[test]
 fn a_port_where_nothing_comes_is_given_up() {
     let [said, told] = demo(1, "", |_| sleep(WAIT));
-    assert!(said.is_empty() && told.contains("nothing comes") && told.contains("no frame for 10 s"), "{said}{told}");
+    assert!(
+        said.is_empty() && told.contains("nothing comes") && told.contains("no frame for 10 s"),
+        "{said}{told}"
+    );
 }

@@ -27,7 +27,10 @@ const START: f64 = 30.0;
 #[test]
 fn the_committed_files_are_what_the_kernel_gives() {
     for (name, svg) in figures().expect("the figures can be drawn") {
-        assert!(fs::read_to_string(folder().join(&name)).ok() == Some(svg), "accept by `cargo figures`: {name}");
+        assert!(
+            fs::read_to_string(folder().join(&name)).ok() == Some(svg),
+            "accept by `cargo figures`: {name}"
+        );
     }
 }
 
@@ -38,21 +41,38 @@ const TICKS_PER_FRAME: usize = 2;
 /// The host's frames are the emulated panel's (test `boards scenes`), so neither may be older than the firmware.
 #[test]
 fn the_committed_animations_show_what_the_host_draws() {
-    let outdated: Vec<_> = SceneName::ALL.iter().filter(|name| !is_shown(**name)).map(|name| name.name()).collect();
-    assert!(outdated.is_empty(), "accept by `cargo figures --animations`: {outdated:?}");
+    let outdated: Vec<_> = SceneName::ALL
+        .iter()
+        .filter(|name| !is_shown(**name))
+        .map(|name| name.name())
+        .collect();
+    assert!(
+        outdated.is_empty(),
+        "accept by `cargo figures --animations`: {outdated:?}"
+    );
 }
 
 /// A recording starts with the first screenshot that was drawn, at most two ticks after the start.
 fn is_shown(name: SceneName) -> bool {
-    let Ok(frames) = played(&animation(name, &folder())) else { return false };
+    let Ok(frames) = played(&animation(name, &folder())) else {
+        return false;
+    };
     let is_shown_from = |late| {
         let mut scene = Show::new(name, &name.first_settings()).expect("a scene of the catalogue");
         (0..late).for_each(|_| scene.tick());
-        frames.iter().step_by(EVERY).enumerate().all(|(number, (greys, _))| {
-            let ticks = if number > 0 { EVERY * TICKS_PER_FRAME } else { 0 };
-            (0..ticks).for_each(|_| scene.tick());
-            Screenshot::from(&scene.frame()).greys == *greys
-        })
+        frames
+            .iter()
+            .step_by(EVERY)
+            .enumerate()
+            .all(|(number, (greys, _))| {
+                let ticks = if number > 0 {
+                    EVERY * TICKS_PER_FRAME
+                } else {
+                    0
+                };
+                (0..ticks).for_each(|_| scene.tick());
+                Screenshot::from(&scene.frame()).greys == *greys
+            })
     };
     !frames.is_empty() && (0..=2).any(is_shown_from)
 }
@@ -60,16 +80,22 @@ fn is_shown(name: SceneName) -> bool {
 /// The mean time from one crossing of zero to the next, s.
 fn between_crossings(points: &[CurvePoint], value: impl Fn(&CurvePoint) -> f64) -> f64 {
     let crossing = |pair: &[CurvePoint]| {
-        let [(t, before), (later, after)] = [&pair[0], &pair[1]].map(|point| (point.time, value(point)));
+        let [(t, before), (later, after)] =
+            [&pair[0], &pair[1]].map(|point| (point.time, value(point)));
         ((before < 0.0) != (after < 0.0)).then(|| t + (later - t) * before / (before - after))
     };
     let crossings: Vec<_> = points.windows(2).filter_map(crossing).collect();
-    let [first, .., last] = crossings[..] else { panic!("{crossings:?}") };
+    let [first, .., last] = crossings[..] else {
+        panic!("{crossings:?}")
+    };
     (last - first) / (crossings.len() - 1) as f64
 }
 
 fn assert_close(value: f64, expected: f64, relative: f64, what: &str) {
-    assert!((value / expected - 1.0).abs() < relative, "{what}: {value} instead of {expected}");
+    assert!(
+        (value / expected - 1.0).abs() < relative,
+        "{what}: {value} instead of {expected}"
+    );
 }
 
 #[test]
@@ -79,21 +105,41 @@ fn figures_3_to_5_show_the_frequencies_envelopes_and_amplitudes_of_the_table() {
         // a2 - r a1 is the fast mode alone, a2 + r a1 the slow one.
         let r = ((1.0 + mu) / mu).sqrt();
         for (w, r) in [(w1, -r), (w2, r)] {
-            let half_period = between_crossings(&points, |point| point.angles[1] + r * point.angles[0]);
-            assert_close(PI / half_period, w, tolerances::PLOTTED_FREQUENCY, "frequency");
+            let half_period =
+                between_crossings(&points, |point| point.angles[1] + r * point.angles[0]);
+            assert_close(
+                PI / half_period,
+                w,
+                tolerances::PLOTTED_FREQUENCY,
+                "frequency",
+            );
         }
         for (rod, largest) in [largest_a1, START].into_iter().enumerate() {
             // Its square is a cosine about half its maximum.
-            let half_period = between_crossings(&points, |point| point.envelopes[rod].powi(2) - largest.powi(2) / 2.0);
-            assert_close(2.0 * half_period, envelope, tolerances::PLOTTED_FREQUENCY, "envelope");
-            let highest = points.iter().map(|point| point.envelopes[rod]).fold(0.0, f64::max);
+            let half_period = between_crossings(&points, |point| {
+                point.envelopes[rod].powi(2) - largest.powi(2) / 2.0
+            });
+            assert_close(
+                2.0 * half_period,
+                envelope,
+                tolerances::PLOTTED_FREQUENCY,
+                "envelope",
+            );
+            let highest = points
+                .iter()
+                .map(|point| point.envelopes[rod])
+                .fold(0.0, f64::max);
             assert_close(highest, largest, tolerances::PLOTTED_AMPLITUDE, "amplitude");
             // The curve touches it and never leaves it.
             let beyond = |point: &CurvePoint| point.angles[rod].abs() - point.envelopes[rod];
             let farthest = points.iter().map(beyond).fold(f64::NEG_INFINITY, f64::max);
-            assert!(farthest < tolerances::FORMULAS.double * START, "mass ratio {mu}, rod {rod}: {farthest} beyond");
+            assert!(
+                farthest < tolerances::FORMULAS.double * START,
+                "mass ratio {mu}, rod {rod}: {farthest} beyond"
+            );
             let touches = points.iter().filter(|point| {
-                point.envelopes[rod] > highest / 2.0 && beyond(point) > -tolerances::PLOTTED_AMPLITUDE * highest
+                point.envelopes[rod] > highest / 2.0
+                    && beyond(point) > -tolerances::PLOTTED_AMPLITUDE * highest
             });
             assert!(touches.count() > 2, "mass ratio {mu}, rod {rod}");
         }
@@ -105,7 +151,8 @@ fn figures_3_to_5_show_the_frequencies_envelopes_and_amplitudes_of_the_table() {
 fn the_right_path_of_figure_7_is_the_exact_one_and_the_printed_one_does_not_depend_on_the_step() {
     let (pendulum, State { a1, a2, .. }) = (chaos::pendulum().expect("a pendulum"), chaos::start());
     let mut exact = Reference::new(pendulum.parameters(), &Motion::at_rest(a1, a2));
-    let [[right, printed], [_, finer]] = [1, 2].map(|refinement| chaos::paths(refinement).expect("a pendulum"));
+    let [[right, printed], [_, finer]] =
+        [1, 2].map(|refinement| chaos::paths(refinement).expect("a pendulum"));
     let last = right.points.len() - 1;
     let exact = (0..=last).map(|i| {
         exact.advance_to(f64::from(chaos::DURATION) * i as f64 / last as f64);
@@ -120,11 +167,19 @@ fn the_right_path_of_figure_7_is_the_exact_one_and_the_printed_one_does_not_depe
         }
     }
     let [least, greatest] = right.energies;
-    assert!(greatest - least < tolerances::FIGURE_7_ENERGY, "{least} J to {greatest} J");
+    assert!(
+        greatest - least < tolerances::FIGURE_7_ENERGY,
+        "{least} J to {greatest} J"
+    );
     // The energy of the printed one is not kept.
     let [least, greatest] = printed.energies;
     let swing = least..greatest;
-    assert!(tolerances::MISPRINT_SWING.iter().all(|energy| swing.contains(energy)), "{swing:?} J");
+    assert!(
+        tolerances::MISPRINT_SWING
+            .iter()
+            .all(|energy| swing.contains(energy)),
+        "{swing:?} J"
+    );
 }
 
 /// The file that `cargo flips` writes.
@@ -139,17 +194,32 @@ fn flips(arguments: &[&str], name: &str) -> Vec<u8> {
 #[test]
 fn the_committed_picture_is_what_it_draws() {
     let committed = fs::read(folder().join("figures/flips.png")).expect("a picture");
-    assert!(flips(&["--limit", "100"], "flips.png") == committed, "accept by the README's `cargo flips`");
+    assert!(
+        flips(&["--limit", "100"], "flips.png") == committed,
+        "accept by the README's `cargo flips`"
+    );
 }
 
 #[test]
 fn a_table_has_every_start_and_is_its_own_mirror_image() {
-    let table = String::from_utf8(flips(&["--size", "12x6", "--limit", "20"], "map.csv")).expect("text");
-    let times: Vec<_> = table.lines().skip(1).filter_map(|line| line.split(',').nth(2)).collect();
+    let table =
+        String::from_utf8(flips(&["--size", "12x6", "--limit", "20"], "map.csv")).expect("text");
+    let times: Vec<_> = table
+        .lines()
+        .skip(1)
+        .filter_map(|line| line.split(',').nth(2))
+        .collect();
     assert_eq!(times.len(), 72);
     // Both angles mirrored: the same motion.
     assert!(times.iter().eq(times.iter().rev()));
-    let [never, later] = ["never", "later"].map(|word| times.iter().filter(|time| **time == word).count());
+    let [never, later] =
+        ["never", "later"].map(|word| times.iter().filter(|time| **time == word).count());
     assert!(never > 10 && never < 40 && later > 0, "{table}");
-    assert!(times.iter().filter_map(|time| time.parse::<f32>().ok()).all(|time| time > 0.0 && time <= 20.0), "{table}");
+    assert!(
+        times
+            .iter()
+            .filter_map(|time| time.parse::<f32>().ok())
+            .all(|time| time > 0.0 && time <= 20.0),
+        "{table}"
+    );
 }

@@ -30,19 +30,41 @@ fn what_runs_for_ever_ends_well_when_it_is_told_to() {
     assert_eq!(told.status.code(), Some(0), "{}", told.stderr);
     assert!(told.stdout.contains("boot: mps2-an386"), "{}", told.stdout);
     assert_eq!(told.stderr.lines().last(), Some("ended after 2 s, as told"));
-    assert_eq!(fw(&["inject-panic", "--seconds", "600"]).status.code(), Some(1), "a failure is one");
+    assert_eq!(
+        fw(&["inject-panic", "--seconds", "600"]).status.code(),
+        Some(1),
+        "a failure is one"
+    );
 }
 
 /// A row is the difference of two runs, so that calling cancels.
 #[test]
 fn a_listing_adds_up_to_the_row() {
     let numbers = |options: &str, place| -> Vec<f64> {
-        let said = output(program("count").arg("rk4-fixed32").args(options.split_whitespace())).stdout;
-        said.lines().filter_map(|line| line.split_whitespace().nth(place)?.parse().ok()).collect()
+        let said = output(
+            program("count")
+                .arg("rk4-fixed32")
+                .args(options.split_whitespace()),
+        )
+        .stdout;
+        said.lines()
+            .filter_map(|line| line.split_whitespace().nth(place)?.parse().ok())
+            .collect()
     };
-    let listed = |steps: f64| steps * numbers(&format!("--listing --steps {steps}"), 1).iter().sum::<f64>();
-    let (listed, row) = ((listed(5.0) - listed(1.0)) / 4.0, *numbers("--steps 4", 3).last().expect("a row"));
-    assert!(listed > 0.0 && (listed - row).abs() < 0.06, "{listed} listed, {row} in the row");
+    let listed = |steps: f64| {
+        steps
+            * numbers(&format!("--listing --steps {steps}"), 1)
+                .iter()
+                .sum::<f64>()
+    };
+    let (listed, row) = (
+        (listed(5.0) - listed(1.0)) / 4.0,
+        *numbers("--steps 4", 3).last().expect("a row"),
+    );
+    assert!(
+        listed > 0.0 && (listed - row).abs() < 0.06,
+        "{listed} listed, {row} in the row"
+    );
 }
 
 #[test]
@@ -50,10 +72,14 @@ fn an_interrupt_leaves_nothing_in_the_temporary_folder() {
     let temporary = tempfile::tempdir().expect("there is room for it");
     let mut command = program("fw");
     command.arg("lm3s6965evb").env("TMPDIR", temporary.path());
-    command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::null());
+    command
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null());
     let mut fw = process::spawn(&mut command, LIMIT).unwrap_or_else(|error| panic!("{error}"));
     let mut log = BufReader::new(fw.child.stdout.take().expect("piped"));
-    log.read_line(&mut String::new()).expect("the board says something");
+    log.read_line(&mut String::new())
+        .expect("the board says something");
     let left = || fs::read_dir(temporary.path()).expect("it is there").count();
     assert!(left() > 0, "the board has its folder there");
     kill(Pid::from_raw(fw.child.id().cast_signed()), Signal::SIGTERM).expect("it runs");
@@ -67,22 +93,46 @@ fn the_project_is_the_one_that_a_command_is_run_in() {
     let folder = tempfile::tempdir().expect("a folder");
     let (copy, checkout) = (folder.path().join("fw"), folder.path().join("checkout"));
     fs::copy(env!("CARGO_BIN_EXE_host-tests"), &copy).expect("a copy");
-    for file in ["kernel/Cargo.toml", "firmware/Cargo.toml", "host-tests/Cargo.toml", "firmware/src/bin/elsewhere.rs"] {
+    for file in [
+        "kernel/Cargo.toml",
+        "firmware/Cargo.toml",
+        "host-tests/Cargo.toml",
+        "firmware/src/bin/elsewhere.rs",
+    ] {
         let file = checkout.join(file);
         fs::create_dir_all(file.parent().expect("a folder")).expect("a folder");
         fs::write(file, "").expect("a file");
     }
     let help = |within: &Path| {
-        output(Command::new(&copy).args(["fw", "--help"]).current_dir(within).env_remove("CARGO_MANIFEST_DIR"))
+        output(
+            Command::new(&copy)
+                .args(["fw", "--help"])
+                .current_dir(within)
+                .env_remove("CARGO_MANIFEST_DIR"),
+        )
     };
     let inside = help(&checkout.join("firmware/src"));
-    assert!(inside.status.success() && inside.stdout.contains("Binaries:\n  elsewhere\n"), "{inside:?}");
-    let Output { status, stdout, stderr } = help(folder.path());
-    assert_eq!((status.code(), &*stdout, stderr.lines().count()), (Some(2), "", 1), "{stderr}");
+    assert!(
+        inside.status.success() && inside.stdout.contains("Binaries:\n  elsewhere\n"),
+        "{inside:?}"
+    );
+    let Output {
+        status,
+        stdout,
+        stderr,
+    } = help(folder.path());
+    assert_eq!(
+        (status.code(), &*stdout, stderr.lines().count()),
+        (Some(2), "", 1),
+        "{stderr}"
+    );
 }
 
 fn flash(arguments: &[&str], path: impl IntoIterator<Item = PathBuf>) -> Output {
-    output(program("flash-f4").args(arguments).env("PATH", env::join_paths(path).expect("no colon in a folder's name")))
+    output(program("flash-f4").args(arguments).env(
+        "PATH",
+        env::join_paths(path).expect("no colon in a folder's name"),
+    ))
 }
 
 #[test]
@@ -90,7 +140,11 @@ fn without_probe_rs_it_says_what_is_missing() -> io::Result<()> {
     let nothing = tempfile::tempdir()?;
     let output = flash(&[], [nothing.path().to_owned()]);
     assert_eq!(output.status.code(), Some(2));
-    assert!(output.stderr.starts_with("error: flashing needs probe-rs, which is not installed; see https://"));
+    assert!(
+        output
+            .stderr
+            .starts_with("error: flashing needs probe-rs, which is not installed; see https://")
+    );
     assert_eq!(output.stderr.lines().count(), 1);
     Ok(())
 }
@@ -103,15 +157,36 @@ fn handed(name: &str, arguments: &[&str], said: &str) -> io::Result<PathBuf> {
     fs::write(&stand_in, "#!/bin/sh\necho \"$@\"\nexit 7\n")?;
     fs::set_permissions(&stand_in, Permissions::from_mode(0o755))?;
     let rest = env::var_os("PATH").unwrap_or_default();
-    let output = flash(arguments, [folder.path().to_owned()].into_iter().chain(env::split_paths(&rest)));
-    assert!(output.stdout.starts_with(said) && output.status.code() == Some(7), "{output:?}");
-    Ok(output.stdout.split_whitespace().last().unwrap_or_default().into())
+    let output = flash(
+        arguments,
+        [folder.path().to_owned()]
+            .into_iter()
+            .chain(env::split_paths(&rest)),
+    );
+    assert!(
+        output.stdout.starts_with(said) && output.status.code() == Some(7),
+        "{output:?}"
+    );
+    Ok(output
+        .stdout
+        .split_whitespace()
+        .last()
+        .unwrap_or_default()
+        .into())
 }
 
 #[test]
 fn it_hands_the_image_to_probe_rs() -> io::Result<()> {
-    let image = handed("probe-rs", &["--chip", "STM32F407VGTx"], "run --chip STM32F407VGTx /")?;
-    assert!(image.ends_with("thumbv7em-none-eabihf/release/stm32f405"), "{}", image.display());
+    let image = handed(
+        "probe-rs",
+        &["--chip", "STM32F407VGTx"],
+        "run --chip STM32F407VGTx /",
+    )?;
+    assert!(
+        image.ends_with("thumbv7em-none-eabihf/release/stm32f405"),
+        "{}",
+        image.display()
+    );
     assert_eq!(fs::read(image)?.get(..4), Some(&b"\x7fELF"[..]));
     Ok(())
 }
@@ -119,14 +194,32 @@ fn it_hands_the_image_to_probe_rs() -> io::Result<()> {
 /// What goes over USB is the program: QEMU, which gets nothing else, runs it.
 #[test]
 fn it_hands_the_bytes_of_the_flash_to_dfu_util() -> io::Result<()> {
-    let bin = handed("dfu-util", &["--dfu"], "-d 0483:df11 -a 0 -s 0x08000000:leave -D /")?;
+    let bin = handed(
+        "dfu-util",
+        &["--dfu"],
+        "-d 0483:df11 -a 0 -s 0x08000000:leave -D /",
+    )?;
     let mut qemu = Command::new(toolchain::ready().expect("the tools").qemu);
-    qemu.args(["-machine", STM32F405.machine, "-cpu", STM32F405.cpu, "-display", "none", "-kernel"]).arg(bin);
-    qemu.args(["-serial", "null", "-serial", "null", "-serial", "stdio"]).stdin(Stdio::null());
-    let mut qemu = process::spawn(qemu.stdout(Stdio::piped()).stderr(Stdio::null()), LIMIT).expect("QEMU");
+    qemu.args([
+        "-machine",
+        STM32F405.machine,
+        "-cpu",
+        STM32F405.cpu,
+        "-display",
+        "none",
+        "-kernel",
+    ])
+    .arg(bin);
+    qemu.args(["-serial", "null", "-serial", "null", "-serial", "stdio"])
+        .stdin(Stdio::null());
+    let mut qemu =
+        process::spawn(qemu.stdout(Stdio::piped()).stderr(Stdio::null()), LIMIT).expect("QEMU");
     let mut inbox = Inbox::default();
     let bytes = BufReader::new(qemu.child.stdout.take().expect("its serial port")).bytes();
-    let mut frames = bytes.map_while(Result::ok).filter_map(|byte| inbox.take(byte)).filter_map(ToHost::frame);
+    let mut frames = bytes
+        .map_while(Result::ok)
+        .filter_map(|byte| inbox.take(byte))
+        .filter_map(ToHost::frame);
     assert_eq!(frames.next().map(|frame| frame.report.step), Some(1));
     Ok(())
 }
@@ -148,14 +241,31 @@ fn the_copied_file_brings_the_program_into_flash() {
     let file = fs::read(drive.path().join("pico.uf2")).expect("it is copied");
     let (blocks, rest) = file.as_chunks::<512>();
     assert!(rest.is_empty());
-    let elf = toolchain::ready().expect("the tools").build_for(&PICO).expect("the firmware");
+    let elf = toolchain::ready()
+        .expect("the tools")
+        .build_for(&PICO)
+        .expect("the firmware");
     let (start, image) = flash_image(&fs::read(elf).expect("a file")).expect("a program");
     let mut flashed = Vec::new();
     for (number, block) in blocks.iter().enumerate() {
-        let words: Vec<_> = block.as_chunks().0.iter().map(|bytes| u32::from_le_bytes(*bytes)).collect();
+        let words: Vec<_> = block
+            .as_chunks()
+            .0
+            .iter()
+            .map(|bytes| u32::from_le_bytes(*bytes))
+            .collect();
         let place = start + 256 * number as u32;
         // Magic, a family is named, where, how many, which of how many, the family of the RP2040.
-        let head = [0x0a32_4655, 0x9e5d_5157, 0x2000, place, 256, number as u32, blocks.len() as u32, 0xe48b_ff56];
+        let head = [
+            0x0a32_4655,
+            0x9e5d_5157,
+            0x2000,
+            place,
+            256,
+            number as u32,
+            blocks.len() as u32,
+            0xe48b_ff56,
+        ];
         assert_eq!((&words[..8], words[127]), (&head[..], 0x0ab1_6f30));
         flashed.extend(&block[32..][..256]);
     }
@@ -166,8 +276,19 @@ fn the_copied_file_brings_the_program_into_flash() {
 #[test]
 fn the_drive_of_another_board_is_refused() {
     let drive = tempfile::tempdir().expect("a folder");
-    fs::write(drive.path().join("INFO_UF2.TXT"), LABEL.replace("RPI-RP2", "RP2350")).expect("a label");
+    fs::write(
+        drive.path().join("INFO_UF2.TXT"),
+        LABEL.replace("RPI-RP2", "RP2350"),
+    )
+    .expect("a label");
     let output = pico(drive.path());
-    assert_eq!((output.status.code(), output.stdout.as_str()), (Some(2), ""));
-    assert!(output.stderr.lines().count() == 1 && output.stderr.contains("another board"), "{}", output.stderr);
+    assert_eq!(
+        (output.status.code(), output.stdout.as_str()),
+        (Some(2), "")
+    );
+    assert!(
+        output.stderr.lines().count() == 1 && output.stderr.contains("another board"),
+        "{}",
+        output.stderr
+    );
 }

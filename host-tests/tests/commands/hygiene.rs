@@ -14,10 +14,20 @@ use super::cli::output;
 /// The paths of the sources in a folder of the project.
 pub fn sources(folder: &str) -> Vec<PathBuf> {
     let folder = workspace().join(folder);
-    let entries = fs::read_dir(&folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
+    let entries =
+        fs::read_dir(&folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
     let paths = entries.map(|entry| entry.unwrap_or_else(|error| panic!("{error}")).path());
-    let within = |path: PathBuf| if path.is_dir() { sources(&path.to_string_lossy()) } else { vec![path] };
-    paths.flat_map(within).filter(|path| path.extension().is_some_and(|extension| extension == "rs")).collect()
+    let within = |path: PathBuf| {
+        if path.is_dir() {
+            sources(&path.to_string_lossy())
+        } else {
+            vec![path]
+        }
+    };
+    paths
+        .flat_map(within)
+        .filter(|path| path.extension().is_some_and(|extension| extension == "rs"))
+        .collect()
 }
 
 /// The text of a file of the project.
@@ -29,14 +39,28 @@ pub fn read(file: impl AsRef<Path>) -> String {
 #[test]
 fn every_dependency_has_its_reason() {
     let mut cargo = Command::new(env!("CARGO"));
-    cargo.args(["metadata", "--no-deps", "--offline", "--format-version", "1"]).current_dir(workspace());
+    cargo
+        .args([
+            "metadata",
+            "--no-deps",
+            "--offline",
+            "--format-version",
+            "1",
+        ])
+        .current_dir(workspace());
     let metadata: Value = serde_json::from_str(&output(&mut cargo).stdout).expect("JSON");
     let all = |list: &Value| list.as_array().cloned().unwrap_or_default();
-    let direct = all(&metadata["packages"]).into_iter().flat_map(|package| all(&package["dependencies"]));
+    let direct = all(&metadata["packages"])
+        .into_iter()
+        .flat_map(|package| all(&package["dependencies"]));
     // The project's own crates come from no registry.
-    let named = direct.filter(|one| !one["source"].is_null()).filter_map(|one| Some(one["name"].as_str()?.to_owned()));
+    let named = direct
+        .filter(|one| !one["source"].is_null())
+        .filter_map(|one| Some(one["name"].as_str()?.to_owned()));
     let table = read(".ci/dependencies.md");
-    let rows = table.lines().filter_map(|line| Some(line.strip_prefix("| `")?.split_once('`')?.0.to_owned()));
+    let rows = table
+        .lines()
+        .filter_map(|line| Some(line.strip_prefix("| `")?.split_once('`')?.0.to_owned()));
     assert_eq!(named.collect::<BTreeSet<_>>(), rows.collect());
 }
 
@@ -50,9 +74,24 @@ fn the_kernels_examples_are_short() {
     assert!(examples.len() >= 5);
     for path in examples {
         let example = read(&path);
-        let imports = example.lines().filter_map(|line| line.strip_prefix("use double_pendulum::"));
-        let names: usize = imports.map(|names| names.rsplit("::").next().unwrap_or_default().split(',').count()).sum();
+        let imports = example
+            .lines()
+            .filter_map(|line| line.strip_prefix("use double_pendulum::"));
+        let names: usize = imports
+            .map(|names| {
+                names
+                    .rsplit("::")
+                    .next()
+                    .unwrap_or_default()
+                    .split(',')
+                    .count()
+            })
+            .sum();
         let lines = example.lines().count();
-        assert!(lines <= LINES && (1..=NAMES).contains(&names), "{}: {lines} lines, {names} names", path.display());
+        assert!(
+            lines <= LINES && (1..=NAMES).contains(&names),
+            "{}: {lines} lines, {names} names",
+            path.display()
+        );
     }
 }

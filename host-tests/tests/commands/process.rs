@@ -5,7 +5,9 @@ use std::io::{BufRead, BufReader, ErrorKind, Read};
 use std::process::{ChildStdout, Command, Stdio};
 use std::time::Duration;
 
-use host_tests::emulator::process::{Running, on_interrupt, remove_on_interrupt, run, run_watched, spawn};
+use host_tests::emulator::process::{
+    Running, on_interrupt, remove_on_interrupt, run, run_watched, spawn,
+};
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 
@@ -20,7 +22,10 @@ const HELPER: &str = "PROCESS_TEST_HELPER";
 
 fn shell(script: &str) -> Command {
     let mut command = Command::new("sh");
-    command.args(["-c", script]).stdin(Stdio::null()).stdout(Stdio::piped());
+    command
+        .args(["-c", script])
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped());
     command
 }
 
@@ -30,31 +35,46 @@ fn output(child: &mut Running) -> BufReader<ChildStdout> {
 
 fn rest(mut pipe: BufReader<ChildStdout>) -> String {
     let mut text = String::new();
-    pipe.read_to_string(&mut text).expect("the pipe can be read");
+    pipe.read_to_string(&mut text)
+        .expect("the pipe can be read");
     text
 }
 
 #[test]
 fn output_and_exit_code_are_captured_while_a_watcher_sees_lines_and_silence() {
-    let script =
-        "i=0; while [ $i -lt 20000 ]; do echo 0123456789; echo 0123456789 >&2; i=$((i+1)); done; sleep 1; exit 7";
+    let script = "i=0; while [ $i -lt 20000 ]; do echo 0123456789; echo 0123456789 >&2; i=$((i+1)); done; sleep 1; exit 7";
     let (mut lines, mut ticks) = (0, 0);
     let watch = |line: Option<&str>| match line {
         Some(line) => lines += usize::from(line == "0123456789"),
         None => ticks += 1,
     };
     let output = run_watched(&mut shell(script), AMPLE, watch).expect("it runs");
-    assert_eq!((output.stdout.len(), output.stderr.len(), output.status.code()), (220_000, 220_000, Some(7)));
+    assert_eq!(
+        (
+            output.stdout.len(),
+            output.stderr.len(),
+            output.status.code()
+        ),
+        (220_000, 220_000, Some(7))
+    );
     assert!(lines > 0 && ticks > 5, "{lines} lines, {ticks} ticks");
     let error = run(&mut Command::new("no-such-program"), AMPLE).expect_err("it does not exist");
-    assert!(error.to_string().starts_with("cannot run no-such-program: "), "{error}");
+    assert!(
+        error
+            .to_string()
+            .starts_with("cannot run no-such-program: "),
+        "{error}"
+    );
 }
 
 #[test]
 fn the_whole_group_ends_with_its_time_its_owner_or_its_leader() {
     let mut late = spawn(&mut shell(FAMILY), SHORT).expect("it starts");
     assert_eq!(rest(output(&mut late)), "ready\n");
-    assert_eq!(late.wait().expect_err("its time is up").kind(), ErrorKind::TimedOut);
+    assert_eq!(
+        late.wait().expect_err("its time is up").kind(),
+        ErrorKind::TimedOut
+    );
 
     let mut dropped = spawn(&mut shell(FAMILY), AMPLE).expect("it starts");
     let mut pipe = output(&mut dropped);
@@ -63,7 +83,10 @@ fn the_whole_group_ends_with_its_time_its_owner_or_its_leader() {
     assert_eq!(rest(pipe), "");
 
     let ended = run(&mut shell("(sleep 20; echo late) & echo done"), AMPLE).expect("it runs");
-    assert_eq!((ended.stdout.as_str(), ended.status.code()), ("done\n", Some(0)));
+    assert_eq!(
+        (ended.stdout.as_str(), ended.status.code()),
+        ("done\n", Some(0))
+    );
 }
 
 #[test]
@@ -76,13 +99,20 @@ fn children_end_with_an_interrupted_or_killed_process() {
     ] {
         let folder = tempfile::tempdir().expect("there is room for it");
         let mut helper = Command::new(std::env::current_exe().expect("a test has a path"));
-        helper.args(["--exact", "process::interrupted_helper", "--nocapture"]).env(HELPER, folder.path());
-        let mut helper = spawn(helper.stdin(Stdio::null()).stdout(Stdio::piped()), AMPLE).expect("it starts");
+        helper
+            .args(["--exact", "process::interrupted_helper", "--nocapture"])
+            .env(HELPER, folder.path());
+        let mut helper =
+            spawn(helper.stdin(Stdio::null()).stdout(Stdio::piped()), AMPLE).expect("it starts");
         let mut pipe = output(&mut helper);
         let mut line = String::new();
         while !line.ends_with("ready\n") {
             line.clear();
-            assert_ne!(pipe.read_line(&mut line).expect("the pipe can be read"), 0, "it ended too early");
+            assert_ne!(
+                pipe.read_line(&mut line).expect("the pipe can be read"),
+                0,
+                "it ended too early"
+            );
         }
         kill(Pid::from_raw(helper.child.id().cast_signed()), signal).expect("it runs");
         assert_eq!(rest(pipe), said, "{signal}");

@@ -11,7 +11,8 @@ use firmware::graphics::FrameBuffers;
 use firmware::job::{Job, ON_BOARDS, OnBoards, Request};
 use firmware::motion::Settings;
 use firmware::protocol::{
-    Answer, Command, Decoder, Field, MAX_MESSAGE, MAX_WIRE, ToHost, decode_command, encode_command, frame,
+    Answer, Command, Decoder, Field, MAX_MESSAGE, MAX_WIRE, ToHost, decode_command, encode_command,
+    frame,
 };
 use firmware::scenes::SceneName;
 use host_tests::commands::simulate::{Number, SimulateOptions, plan};
@@ -26,13 +27,33 @@ use proptest::test_runner::RngSeed;
 /// The same cases in every run, more of them where the environment asks for more.
 fn cases(least: u32) -> ProptestConfig {
     let usual = ProptestConfig::default();
-    let cases = if usual.cases == 256 { least } else { usual.cases };
-    ProptestConfig { cases, rng_seed: RngSeed::Fixed(1), failure_persistence: None, ..usual }
+    let cases = if usual.cases == 256 {
+        least
+    } else {
+        usual.cases
+    };
+    ProptestConfig {
+        cases,
+        rng_seed: RngSeed::Fixed(1),
+        failure_persistence: None,
+        ..usual
+    }
 }
 
 /// Any bit pattern, and numbers as they are typed.
 fn number() -> impl Strategy<Value = f64> {
-    const USUAL: &[f64] = &[0.0, 1.0, 0.5, 2.0, 9.81, 1.0 / 256.0, 1.0 / 60.0, 1e3, 1e-3, 1e30];
+    const USUAL: &[f64] = &[
+        0.0,
+        1.0,
+        0.5,
+        2.0,
+        9.81,
+        1.0 / 256.0,
+        1.0 / 60.0,
+        1e3,
+        1e-3,
+        1e30,
+    ];
     prop_oneof![1 => any::<u64>().prop_map(f64::from_bits), 4 => select(USUAL), 4 => -10.0..10.0, 4 => 0.01..10.0]
 }
 
@@ -43,7 +64,10 @@ fn parameters() -> impl Strategy<Value = Parameters<f64>> {
 /// The intact messages in a stream.
 fn intact(bytes: &[u8]) -> Vec<Vec<u8>> {
     let mut decoder = Decoder::default();
-    bytes.iter().filter_map(|&byte| Some(decoder.push(byte)?.ok()?.to_vec())).collect()
+    bytes
+        .iter()
+        .filter_map(|&byte| Some(decoder.push(byte)?.ok()?.to_vec()))
+        .collect()
 }
 
 fn wire(message: &[u8]) -> Vec<u8> {
@@ -68,38 +92,70 @@ fn part() -> impl Strategy<Value = (Vec<u8>, Option<Vec<u8>>)> {
 
 /// A command of any kind, its fields as long as they should be or not, as an intact message.
 fn command() -> impl Strategy<Value = Vec<u8>> {
-    let set = (select(Field::ALL), number())
-        .prop_map(|(field, value)| encode_command(1, Command::Set { field, value }, &mut [0; MAX_WIRE]).to_vec());
-    let short =
-        (0..20_u8, vec(any::<u8>(), 0..9)).prop_map(|(kind, fields)| wire(&[&[0x80, 1, kind], &fields[..]].concat()));
+    let set = (select(Field::ALL), number()).prop_map(|(field, value)| {
+        encode_command(1, Command::Set { field, value }, &mut [0; MAX_WIRE]).to_vec()
+    });
+    let short = (0..20_u8, vec(any::<u8>(), 0..9))
+        .prop_map(|(kind, fields)| wire(&[&[0x80, 1, kind], &fields[..]].concat()));
     let any = vec(any::<u8>(), 0..=MAX_MESSAGE).prop_map(|message| wire(&message));
     prop_oneof![4 => set, 4 => short, 1 => any]
 }
 
 /// What a method's steps lead to: twelve of them at most, each finite or refused.
-fn stepped(method: Method, parameters: &Parameters<f64>, dt: f64, start: &State<f64>) -> Result<(), Error> {
+fn stepped(
+    method: Method,
+    parameters: &Parameters<f64>,
+    dt: f64,
+    start: &State<f64>,
+) -> Result<(), Error> {
     let mut run = trials::run(method, parameters, start, dt)?;
     for _ in 0..12 {
         run.advance(1)?;
         assert_eq!(run.state().check(), Ok(()));
         let numbers = run.directions();
-        assert!(numbers.as_flattened().iter().all(|number| number.is_finite()), "{numbers:?}");
+        assert!(
+            numbers
+                .as_flattened()
+                .iter()
+                .all(|number| number.is_finite()),
+            "{numbers:?}"
+        );
     }
     Ok(())
 }
 
-fn constructed<R: Real>(parameters: Parameters<f64>, dt: f64, state: State<f64>) -> Result<(), Error> {
+fn constructed<R: Real>(
+    parameters: Parameters<f64>,
+    dt: f64,
+    state: State<f64>,
+) -> Result<(), Error> {
     let (parameters, state) = (parameters.cast::<R>(), state.cast::<R>());
     if let Ok(modes) = Modes::new(&parameters) {
         let frequencies = [modes.fast.frequency, modes.slow.frequency];
-        assert!(frequencies.iter().all(|w| w.is_finite() && *w > R::ZERO), "{frequencies:?} of {parameters:?}");
+        assert!(
+            frequencies.iter().all(|w| w.is_finite() && *w > R::ZERO),
+            "{frequencies:?} of {parameters:?}"
+        );
     }
     let pendulum = Pendulum::new(&parameters)?;
     // Hanging still is a motion of every pendulum, and it stays one.
     let still = State::at_rest(R::ZERO, R::ZERO);
-    assert_eq!(pendulum.derivatives(&still.into()), [R::ZERO; 4], "{parameters:?}");
-    let _ = (pendulum.bounds(&state), pendulum.energy(&state), pendulum.to_motion(&state), pendulum.modes());
-    let _ = (pendulum.positions(state.angles()), pendulum.cannot_turn_over(&state), pendulum.turnover_energy());
+    assert_eq!(
+        pendulum.derivatives(&still.into()),
+        [R::ZERO; 4],
+        "{parameters:?}"
+    );
+    let _ = (
+        pendulum.bounds(&state),
+        pendulum.energy(&state),
+        pendulum.to_motion(&state),
+        pendulum.modes(),
+    );
+    let _ = (
+        pendulum.positions(state.angles()),
+        pendulum.cannot_turn_over(&state),
+        pendulum.turnover_energy(),
+    );
     pendulum.check_step(dt)?;
     state.check()?;
     pendulum.step(&state, R::from_f64(dt)).finite().map(drop)

@@ -12,15 +12,26 @@ use super::cli::{output, program};
 use super::hygiene::read;
 
 /// The first page, and those of the crates.
-const README: [&str; 4] = ["README.md", "kernel/README.md", "firmware/README.md", "host-tests/README.md"];
+const README: [&str; 4] = [
+    "README.md",
+    "kernel/README.md",
+    "firmware/README.md",
+    "host-tests/README.md",
+];
 /// Commands that a README names and a user installs.
 const INSTALLED: [&str; 3] = ["deny", "mutants", "public-api"];
 
 /// The names of the project's commands.
 fn ours() -> BTreeSet<String> {
     let config = read(".cargo/config.toml");
-    let aliases = config.lines().skip_while(|line| *line != "[alias]").skip(1).take_while(|line| !line.is_empty());
-    aliases.filter_map(|line| Some(line.split_once(" = ")?.0.to_owned())).collect()
+    let aliases = config
+        .lines()
+        .skip_while(|line| *line != "[alias]")
+        .skip(1)
+        .take_while(|line| !line.is_empty());
+    aliases
+        .filter_map(|line| Some(line.split_once(" = ")?.0.to_owned()))
+        .collect()
 }
 
 /// The command's own name, and if it has options, examples with no others.
@@ -28,12 +39,24 @@ fn ours() -> BTreeSet<String> {
 fn every_help_has_examples_of_what_it_lists() {
     for name in ours() {
         let help = output(program(&name).arg("--help")).stdout;
-        let usage = help.lines().find_map(|line| line.strip_prefix("Usage: cargo ")).unwrap_or_default();
+        let usage = help
+            .lines()
+            .find_map(|line| line.strip_prefix("Usage: cargo "))
+            .unwrap_or_default();
         assert_eq!(usage.split_whitespace().next(), Some(&*name), "{help}");
         let (listed, examples) = help.split_once("\nExample").unwrap_or((&help, ""));
-        assert!(examples.contains(&format!("cargo {name}")) || !usage.contains("[OPTIONS]"), "no example of {name}");
-        for option in examples.split_whitespace().filter(|word| word.starts_with("--")) {
-            assert!(listed.split_whitespace().any(|word| word == option), "cargo {name} {option}");
+        assert!(
+            examples.contains(&format!("cargo {name}")) || !usage.contains("[OPTIONS]"),
+            "no example of {name}"
+        );
+        for option in examples
+            .split_whitespace()
+            .filter(|word| word.starts_with("--"))
+        {
+            assert!(
+                listed.split_whitespace().any(|word| word == option),
+                "cargo {name} {option}"
+            );
         }
     }
 }
@@ -42,21 +65,40 @@ fn every_help_has_examples_of_what_it_lists() {
 fn built_in() -> BTreeSet<String> {
     let nowhere = tempfile::tempdir().expect("a temporary folder");
     let mut cargo = Command::new(env!("CARGO"));
-    let list =
-        output(cargo.arg("--list").current_dir(&nowhere).env("CARGO_HOME", nowhere.path()).env("PATH", "")).stdout;
-    list.lines().skip(1).filter_map(|line| Some(line.split_whitespace().next()?.to_owned())).collect()
+    let list = output(
+        cargo
+            .arg("--list")
+            .current_dir(&nowhere)
+            .env("CARGO_HOME", nowhere.path())
+            .env("PATH", ""),
+    )
+    .stdout;
+    list.lines()
+        .skip(1)
+        .filter_map(|line| Some(line.split_whitespace().next()?.to_owned()))
+        .collect()
 }
 
 #[test]
 fn no_command_is_shadowed() {
     let built_in = built_in();
-    assert!(built_in.contains("run") && ours().is_disjoint(&built_in), "{built_in:?}");
+    assert!(
+        built_in.contains("run") && ours().is_disjoint(&built_in),
+        "{built_in:?}"
+    );
 }
 
 /// The commands in a page's text: in `backquotes` and in indented blocks.
 fn named(page: &str) -> BTreeSet<String> {
-    let words = page.split("`cargo ").skip(1).chain(page.split("    cargo ").skip(1));
-    let name = |text: &str| text.split(|c: char| !c.is_alphanumeric() && c != '-').next().map(str::to_owned);
+    let words = page
+        .split("`cargo ")
+        .skip(1)
+        .chain(page.split("    cargo ").skip(1));
+    let name = |text: &str| {
+        text.split(|c: char| !c.is_alphanumeric() && c != '-')
+            .next()
+            .map(str::to_owned)
+    };
     words.filter_map(name).collect()
 }
 
@@ -65,15 +107,28 @@ fn the_readmes_name_every_command_and_no_other() {
     let named: BTreeSet<_> = README.iter().flat_map(|file| named(&read(file))).collect();
     let known = &(&ours() | &built_in()) | &INSTALLED.map(String::from).into();
     let [missing, unknown] = [&ours() - &named, &named - &known];
-    assert!(missing.is_empty() && unknown.is_empty(), "in no README: {missing:?}, in READMEs alone: {unknown:?}");
+    assert!(
+        missing.is_empty() && unknown.is_empty(),
+        "in no README: {missing:?}, in READMEs alone: {unknown:?}"
+    );
 }
 
 /// Every file and folder that a README links to is there.
 #[test]
 fn the_readmes_link_to_what_is_there() {
     for file in README {
-        let (page, folder) = (read(file), workspace().join(file).parent().expect("a folder").to_owned());
-        let targets = page.split("](").skip(1).filter_map(|rest| rest.split([')', '#']).next());
+        let (page, folder) = (
+            read(file),
+            workspace()
+                .join(file)
+                .parent()
+                .expect("a folder")
+                .to_owned(),
+        );
+        let targets = page
+            .split("](")
+            .skip(1)
+            .filter_map(|rest| rest.split([')', '#']).next());
         for target in targets.filter(|target| !target.is_empty() && !target.starts_with("http")) {
             assert!(folder.join(target).exists(), "{file} links to {target}");
         }
@@ -89,32 +144,64 @@ fn the_first_readme_is_short() {
 #[test]
 fn the_readme_lists_the_messages_as_they_are() {
     let readme = read("firmware/README.md");
-    let (_, page) = readme.split_once("\n## The serial stream\n").expect("its section");
-    let rows = page.lines().filter_map(|line| line.strip_prefix("| `")?.split_once("` |"));
+    let (_, page) = readme
+        .split_once("\n## The serial stream\n")
+        .expect("its section");
+    let rows = page
+        .lines()
+        .filter_map(|line| line.strip_prefix("| `")?.split_once("` |"));
     let listed: BTreeSet<_> = rows.flat_map(|(names, _)| names.split("`, `")).collect();
-    let sources = ["to_host", "command"].map(|file| read(format!("firmware/src/protocol/{file}.rs"))).concat();
-    let variants = ["ToHost", "Answer", "Command"].into_iter().flat_map(|message| {
-        let (_, variants) = sources.split_once(&format!("pub enum {message} {{\n")).expect("it is there");
-        variants.lines().take_while(|line| *line != "}")
+    let sources = ["to_host", "command"]
+        .map(|file| read(format!("firmware/src/protocol/{file}.rs")))
+        .concat();
+    let variants = ["ToHost", "Answer", "Command"]
+        .into_iter()
+        .flat_map(|message| {
+            let (_, variants) = sources
+                .split_once(&format!("pub enum {message} {{\n"))
+                .expect("it is there");
+            variants.lines().take_while(|line| *line != "}")
+        });
+    let names = variants.filter_map(|line| {
+        line.strip_prefix("    ")?
+            .split(|c: char| !c.is_alphanumeric())
+            .next()
     });
-    let names = variants.filter_map(|line| line.strip_prefix("    ")?.split(|c: char| !c.is_alphanumeric()).next());
-    assert_eq!(listed, names.filter(|name| !["", "Answer"].contains(name)).collect());
+    assert_eq!(
+        listed,
+        names
+            .filter(|name| !["", "Answer"].contains(name))
+            .collect()
+    );
     let version = format!("version is {};", firmware::protocol::VERSION);
     assert!(page.contains(&version), "{version}");
 }
 
 /// Runs cargo with what is on this machine, and only if that is not enough with the registry.
 fn cargo(arguments: &[&str], folder: &Path) {
-    let run = |more: &[&str]| output(Command::new(env!("CARGO")).args(arguments).args(more).current_dir(folder));
+    let run = |more: &[&str]| {
+        output(
+            Command::new(env!("CARGO"))
+                .args(arguments)
+                .args(more)
+                .current_dir(folder),
+        )
+    };
     if !run(&["--offline"]).status.success() {
         let output = run(&[]);
-        assert!(output.status.success(), "cargo {arguments:?}: {}", output.stderr);
+        assert!(
+            output.status.success(),
+            "cargo {arguments:?}: {}",
+            output.stderr
+        );
     }
 }
 
 /// The first block of `kind` in a page.
 fn block<'a>(page: &'a str, kind: &str) -> &'a str {
-    let blocks = page.split_once(&format!("```{kind}\n")).and_then(|(_, rest)| rest.split_once("```"));
+    let blocks = page
+        .split_once(&format!("```{kind}\n"))
+        .and_then(|(_, rest)| rest.split_once("```"));
     blocks.unwrap_or_else(|| panic!("no block of {kind}")).0
 }
 
@@ -123,16 +210,33 @@ fn the_readmes_example_runs_in_an_empty_crate() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let target = folder.path().join("target").display().to_string();
     // Cargo unpacks what it has packaged, and compiles it.
-    cargo(&["package", "--package", "double-pendulum-kernel", "--allow-dirty", "--target-dir", &target], workspace());
-    let package = format!("{target}/package/double-pendulum-kernel-{}", env!("CARGO_PKG_VERSION"));
+    cargo(
+        &[
+            "package",
+            "--package",
+            "double-pendulum-kernel",
+            "--allow-dirty",
+            "--target-dir",
+            &target,
+        ],
+        workspace(),
+    );
+    let package = format!(
+        "{target}/package/double-pendulum-kernel-{}",
+        env!("CARGO_PKG_VERSION")
+    );
 
-    let readme = fs::read_to_string(format!("{package}/README.md")).expect("the package has its README");
-    let (before, path) = block(&readme, "toml").split_once("path = \"").expect("a path while on no registry");
+    let readme =
+        fs::read_to_string(format!("{package}/README.md")).expect("the package has its README");
+    let (before, path) = block(&readme, "toml")
+        .split_once("path = \"")
+        .expect("a path while on no registry");
     let (_, after) = path.split_once('"').expect("it ends");
     let empty = folder.path().join("empty");
     fs::create_dir_all(empty.join("src")).expect("a temporary folder can be written to");
-    let manifest =
-        format!("[workspace]\n[package]\nname = \"empty\"\nedition = \"2024\"\n{before}path = \"{package}\"{after}");
+    let manifest = format!(
+        "[workspace]\n[package]\nname = \"empty\"\nedition = \"2024\"\n{before}path = \"{package}\"{after}"
+    );
     fs::write(empty.join("Cargo.toml"), manifest).expect("likewise");
     fs::write(empty.join("src/main.rs"), block(&readme, "rust")).expect("likewise");
     cargo(&["run", "--target-dir", &target], &empty);

@@ -11,22 +11,44 @@ const MOST: usize = 12;
 
 /// The rooms of each crate, from the uppermost down.
 const ROOMS: [(&str, &[&str]); 3] = [
-    ("kernel", &["tests", "flips", "plan", "methods", "bounds", "small", "pendulum", "error", "table", "numbers"]),
+    (
+        "kernel",
+        &[
+            "tests", "flips", "plan", "methods", "bounds", "small", "pendulum", "error", "table",
+            "numbers",
+        ],
+    ),
     (
         "firmware",
-        &["board", "app", "protocol", "scenes", "job", "motion", "display", "graphics", "fault", "config", "prices"],
+        &[
+            "board", "app", "protocol", "scenes", "job", "motion", "display", "graphics", "fault",
+            "config", "prices",
+        ],
     ),
-    ("host-tests", &["commands", "oracle", "emulator", "console", "link"]),
+    (
+        "host-tests",
+        &["commands", "oracle", "emulator", "console", "link"],
+    ),
 ];
 /// The lines of each room's files; programs and the list of rooms itself stand above all.
 fn lines(krate: &str) -> Vec<(String, String)> {
     let source = workspace().join(krate).join("src");
     let mut lines = Vec::new();
     for path in sources(&format!("{krate}/src")) {
-        let room = path.strip_prefix(&source).expect("within").iter().next().expect("a file").to_string_lossy();
+        let room = path
+            .strip_prefix(&source)
+            .expect("within")
+            .iter()
+            .next()
+            .expect("a file")
+            .to_string_lossy();
         let room = room.trim_end_matches(".rs").to_owned();
         if !["lib", "main", "bin"].contains(&&*room) {
-            lines.extend(read(path).lines().map(|line| (room.clone(), line.trim().to_owned())));
+            lines.extend(
+                read(path)
+                    .lines()
+                    .map(|line| (room.clone(), line.trim().to_owned())),
+            );
         }
     }
     lines
@@ -34,7 +56,9 @@ fn lines(krate: &str) -> Vec<(String, String)> {
 
 /// The name at the head of a text.
 fn name(text: &str) -> &str {
-    text.split(|c: char| !c.is_alphanumeric() && c != '_').next().unwrap_or_default()
+    text.split(|c: char| !c.is_alphanumeric() && c != '_')
+        .next()
+        .unwrap_or_default()
 }
 
 #[test]
@@ -46,11 +70,21 @@ fn a_room_imports_only_from_those_below_it() {
         assert_eq!(found, rooms.iter().copied().collect(), "{krate}");
         assert!(rooms.len() <= MOST, "{krate} has {} rooms", rooms.len());
         // In an import or otherwise.
-        let code = lines.iter().map(|(room, line)| (room, line.split("//").next().unwrap_or_default()));
-        assert!(code.clone().all(|(_, code)| !code.contains("crate::{")), "{krate}: rooms in one import are not seen");
-        let imports = code.flat_map(|(room, code)| code.split("crate::").skip(1).map(move |rest| (room, name(rest))));
-        let upwards: Vec<_> =
-            imports.filter(|(room, other)| place(other).is_some() && place(other) < place(room)).collect();
+        let code = lines
+            .iter()
+            .map(|(room, line)| (room, line.split("//").next().unwrap_or_default()));
+        assert!(
+            code.clone().all(|(_, code)| !code.contains("crate::{")),
+            "{krate}: rooms in one import are not seen"
+        );
+        let imports = code.flat_map(|(room, code)| {
+            code.split("crate::")
+                .skip(1)
+                .map(move |rest| (room, name(rest)))
+        });
+        let upwards: Vec<_> = imports
+            .filter(|(room, other)| place(other).is_some() && place(other) < place(room))
+            .collect();
         assert!(upwards.is_empty(), "{krate}: {upwards:#?}");
     }
 }
@@ -61,9 +95,14 @@ fn a_public_type_has_a_name_of_its_own() {
         let mut seen = BTreeSet::new();
         let lines = lines(krate);
         let types = ["pub struct ", "pub enum ", "pub trait ", "pub type "];
-        let declared = lines.iter().filter_map(|(_, line)| types.iter().find_map(|keyword| line.strip_prefix(keyword)));
+        let declared = lines
+            .iter()
+            .filter_map(|(_, line)| types.iter().find_map(|keyword| line.strip_prefix(keyword)));
         // A macro's placeholder is no name.
-        let twice: Vec<_> = declared.map(name).filter(|name| !name.is_empty() && !seen.insert(*name)).collect();
+        let twice: Vec<_> = declared
+            .map(name)
+            .filter(|name| !name.is_empty() && !seen.insert(*name))
+            .collect();
         assert!(twice.is_empty(), "{krate}: {twice:?}");
     }
 }

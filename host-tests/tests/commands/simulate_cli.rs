@@ -24,7 +24,9 @@ fn unequal_rods_with_velocities_have_the_same_bits_on_every_board() {
         let on = |place: &str| simulate(&format!("{rods} --method {method} --on {place}"));
         let host = on("host");
         assert!(host.lines().count() > 2);
-        BOARDS.iter().for_each(|board| assert_eq!(on(board.name), host, "{method} on {}", board.name));
+        BOARDS
+            .iter()
+            .for_each(|board| assert_eq!(on(board.name), host, "{method} on {}", board.name));
     }
 }
 
@@ -46,7 +48,10 @@ fn error(request: &Request) -> Result<f64, double_pendulum::Error> {
     let times = (0..rows.len()).map(|row| row as f64 * every);
     let ([a1, a2], [w1, w2]) = (request.angles, request.velocities);
     let exact = taylor::states(&request.parameters, &Motion { a1, a2, w1, w2 }, times);
-    let errors = rows.iter().zip(exact).map(|([a1, a2, ..], exact)| (a1 - exact.a1).abs().max((a2 - exact.a2).abs()));
+    let errors = rows
+        .iter()
+        .zip(exact)
+        .map(|([a1, a2, ..], exact)| (a1 - exact.a1).abs().max((a2 - exact.a2).abs()));
     Ok(errors.fold(0.0, f64::max))
 }
 
@@ -61,11 +66,15 @@ const MOTIONS: [&str; 6] = [
     "--masses 1,100 --lengths 0.3,1.1 --angles 2,1 --velocities 3,-4 --until 2 --every 1/2",
     "--angles 1e-3,-1e-3 --until 5 --every 1",
 ];
-const PLACES: [(&str, &[f64]); 3] =
-    [("host", &[1e-3, 1e-6, 1e-9, 1e-11]), ("lm3s6965evb", &[1e-2, 1e-4, 1e-9]), ("stm32f405", &[1e-2, 1e-4, 1e-9])];
+const PLACES: [(&str, &[f64]); 3] = [
+    ("host", &[1e-3, 1e-6, 1e-9, 1e-11]),
+    ("lm3s6965evb", &[1e-2, 1e-4, 1e-9]),
+    ("stm32f405", &[1e-2, 1e-4, 1e-9]),
+];
 
 #[test]
-fn every_row_is_within_the_tolerance_and_no_longer_step_would_do() -> Result<(), Box<dyn std::error::Error>> {
+fn every_row_is_within_the_tolerance_and_no_longer_step_would_do()
+-> Result<(), Box<dyn std::error::Error>> {
     for motion in MOTIONS {
         for (place, tolerances) in PLACES {
             for tolerance in tolerances {
@@ -73,12 +82,25 @@ fn every_row_is_within_the_tolerance_and_no_longer_step_would_do() -> Result<(),
                 let (Plan { request, note, .. }, told) = chosen(&case)?;
                 let found = error(&request)?;
                 println!("{case}: {note:?}, {found:.1e} rad");
-                assert!(found <= told * ROUNDING && told <= *tolerance, "{case}: {found:e} rad");
+                assert!(
+                    found <= told * ROUNDING && told <= *tolerance,
+                    "{case}: {found:e} rad"
+                );
                 // One of three steps, or two of three, from row to row fewer.
-                let fewer =
-                    if request.stride.is_power_of_two() { 3 * request.stride / 4 } else { 2 * request.stride / 3 };
+                let fewer = if request.stride.is_power_of_two() {
+                    3 * request.stride / 4
+                } else {
+                    2 * request.stride / 3
+                };
                 let longer = request.dt * f64::from(request.stride) / f64::from(fewer);
-                if let (1.., Ok(error)) = (fewer, error(&Request { dt: longer, stride: fewer, ..request })) {
+                if let (1.., Ok(error)) = (
+                    fewer,
+                    error(&Request {
+                        dt: longer,
+                        stride: fewer,
+                        ..request
+                    }),
+                ) {
                     assert!(error > *tolerance, "{case}: {error:e} rad with {longer} s");
                 }
             }

@@ -24,19 +24,42 @@ const UNCOUNTED: &str = "| no cycle counter | no cycle counter | - |";
 fn a_board_with_the_hosts_bits_is_told_so_and_reported() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut command = program("verify-board");
-    command.args(["--no-questions", "--report"]).arg(folder.path().join("mps2"));
+    command
+        .args(["--no-questions", "--report"])
+        .arg(folder.path().join("mps2"));
     let output = at_port(&mut Bench::new(), &mut command, |bench| bench.carry(wire));
     assert_eq!(output.status.code(), Some(0), "{output:?}");
-    assert!(output.stdout.contains("every bit the host's"), "{}", output.stdout);
+    assert!(
+        output.stdout.contains("every bit the host's"),
+        "{}",
+        output.stdout
+    );
     let markdown = fs::read_to_string(folder.path().join("mps2.md")).expect("the report");
-    assert_eq!(markdown.matches(UNCOUNTED).count(), ON_BOARDS.len(), "{markdown}");
-    let head = [format!("# {}\n", BOARD.name), format!(", {} Hz\n", BOARD.hertz), "built from commit ".to_owned()];
-    assert!(head.iter().all(|part| markdown.contains(part)), "{markdown}");
+    assert_eq!(
+        markdown.matches(UNCOUNTED).count(),
+        ON_BOARDS.len(),
+        "{markdown}"
+    );
+    let head = [
+        format!("# {}\n", BOARD.name),
+        format!(", {} Hz\n", BOARD.hertz),
+        "built from commit ".to_owned(),
+    ];
+    assert!(
+        head.iter().all(|part| markdown.contains(part)),
+        "{markdown}"
+    );
     let agree = |columns: usize| {
-        let is_row = |line: &&str| line.matches('|').count() == columns + 1 && line.contains("| the host's |");
+        let is_row = |line: &&str| {
+            line.matches('|').count() == columns + 1 && line.contains("| the host's |")
+        };
         markdown.lines().filter(is_row).count()
     };
-    assert_eq!((agree(4), agree(6)), (2 * ON_BOARDS.len(), SceneName::ALL.len()), "{markdown}");
+    assert_eq!(
+        (agree(4), agree(6)),
+        (2 * ON_BOARDS.len(), SceneName::ALL.len()),
+        "{markdown}"
+    );
 }
 
 /// A button that has done nothing for so long is let go.
@@ -47,7 +70,10 @@ fn person(question: &str) -> Option<(Option<Key>, Option<&'static str>)> {
     if question.contains("the panel shows a swinging pendulum") {
         return Some((None, Some("n\n")));
     }
-    let key = Key::ALL.iter().copied().find(|key| question.contains(&format!("tap the button '{}'", key.name())))?;
+    let key = Key::ALL
+        .iter()
+        .copied()
+        .find(|key| question.contains(&format!("tap the button '{}'", key.name())))?;
     Some(match key {
         Key::Up | Key::Right => (Some(key), Some("\n")),
         Key::Down => (None, Some("\n")),
@@ -89,11 +115,20 @@ fn what_differs_what_the_person_says_and_the_chip_counts_is_in_the_report() {
     let mut bench = Bench::of(&BOARDS[0]);
     bench.machine.wake_keys().expect("buttons");
     let mut command = program("verify-board");
-    command.arg("--port").arg(&bench.name).arg("--report").arg(folder.path().join("asked"));
-    command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::piped());
+    command
+        .arg("--port")
+        .arg(&bench.name)
+        .arg("--report")
+        .arg(folder.path().join("asked"));
+    command
+        .stdin(Stdio::piped())
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped());
     let mut verification = process::spawn(&mut command, LIMIT).expect("it starts");
     let mut input = verification.child.stdin.take();
-    let lines = lines(BufReader::new(verification.child.stderr.take().expect("a pipe")));
+    let lines = lines(BufReader::new(
+        verification.child.stderr.take().expect("a pipe"),
+    ));
     let (mut said, mut asked, mut step) = (Vec::new(), 0, 0);
     // The step that the motion has come to.
     let mut carry = |bench: &mut Bench| {
@@ -128,29 +163,69 @@ fn what_differs_what_the_person_says_and_the_chip_counts_is_in_the_report() {
     assert_eq!(status.code(), Some(1), "{said:#?}");
     let markdown = fs::read_to_string(folder.path().join("asked.md")).expect("the report");
     let sample = format!("not well: {}, chaotic: step 160: w2 is 0x", ON_BOARDS[1]);
-    assert!(said.iter().any(|line| line.starts_with(&sample)), "no {sample:?} in {said:#?}");
-    let scene = said.iter().find(|line| line.starts_with("not well: butterfly: frame"));
-    assert!(scene.is_some_and(|line| line.contains("step 20: a1 is 0x")), "{said:#?}");
+    assert!(
+        said.iter().any(|line| line.starts_with(&sample)),
+        "no {sample:?} in {said:#?}"
+    );
+    let scene = said
+        .iter()
+        .find(|line| line.starts_with("not well: butterfly: frame"));
+    assert!(
+        scene.is_some_and(|line| line.contains("step 20: a1 is 0x")),
+        "{said:#?}"
+    );
     // Beside the panel and a button.
-    assert!(markdown.contains("4 not well") && markdown.contains("step 160: w2 is 0x"), "{markdown}");
+    assert!(
+        markdown.contains("4 not well") && markdown.contains("step 160: w2 is 0x"),
+        "{markdown}"
+    );
     let panel = "the panel shows a swinging pendulum, upright and sharp".to_owned();
-    let button = |key: &Key| format!("a tap on the button '{}' starts the motion again", key.name());
+    let button = |key: &Key| {
+        format!(
+            "a tap on the button '{}' starts the motion again",
+            key.name()
+        )
+    };
     let answers = ["no", "yes", "no", "not answered", "yes", "not answered"];
-    for (what, answer) in [panel].into_iter().chain(Key::ALL.iter().map(button)).zip(answers) {
-        assert!(markdown.contains(&format!("| {what} | {answer} |")), "{what}: not {answer} in {markdown}");
-        assert_eq!(said.contains(&format!("not well: not so: {what}")), answer == "no", "{said:#?}");
+    for (what, answer) in [panel]
+        .into_iter()
+        .chain(Key::ALL.iter().map(button))
+        .zip(answers)
+    {
+        assert!(
+            markdown.contains(&format!("| {what} | {answer} |")),
+            "{what}: not {answer} in {markdown}"
+        );
+        assert_eq!(
+            said.contains(&format!("not well: not so: {what}")),
+            answer == "no",
+            "{said:#?}"
+        );
     }
     let counted = format!("| {} | 100.0 | 50.0 | ", ON_BOARDS[1]);
-    let estimate: Option<f64> =
-        markdown.split_once(&counted).and_then(|(_, rest)| rest.split(' ').next()?.parse().ok());
+    let estimate: Option<f64> = markdown
+        .split_once(&counted)
+        .and_then(|(_, rest)| rest.split(' ').next()?.parse().ok());
     // A step of it takes some 23,000 cycles (`cargo count`).
-    assert!(estimate.is_some_and(|estimate| (1e4..4e4).contains(&estimate)), "{markdown}");
-    assert_eq!(markdown.matches(UNCOUNTED).count(), ON_BOARDS.len() - 1, "{markdown}");
+    assert!(
+        estimate.is_some_and(|estimate| (1e4..4e4).contains(&estimate)),
+        "{markdown}"
+    );
+    assert_eq!(
+        markdown.matches(UNCOUNTED).count(),
+        ON_BOARDS.len() - 1,
+        "{markdown}"
+    );
 }
 
 /// The lines as they come.
 fn lines(source: impl BufRead + Send + 'static) -> Receiver<String> {
     let (line, lines) = channel();
-    spawn(move || source.lines().map_while(Result::ok).try_for_each(|text| line.send(text)));
+    spawn(move || {
+        source
+            .lines()
+            .map_while(Result::ok)
+            .try_for_each(|text| line.send(text))
+    });
     lines
 }

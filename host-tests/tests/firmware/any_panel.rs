@@ -18,8 +18,13 @@ const FRAMES: usize = 30;
 /// On a black panel, which stays black around the frame.
 #[test]
 fn every_scene_is_the_canvas_through_the_map_of_colours() {
-    type Target = Framebuffer<Rgb565, RawU16, LittleEndian, 160, 80, { buffer_size::<Rgb565>(160, 80) }>;
-    let mut panel = AnyPanel { target: Target::new(), corner: CORNER, colour: Rgb565::from };
+    type Target =
+        Framebuffer<Rgb565, RawU16, LittleEndian, 160, 80, { buffer_size::<Rgb565>(160, 80) }>;
+    let mut panel = AnyPanel {
+        target: Target::new(),
+        corner: CORNER,
+        colour: Rgb565::from,
+    };
     for &name in SceneName::ALL {
         let mut scene = Show::new(name, &name.first_settings()).expect("a scene of the catalogue");
         for _ in 0..FRAMES {
@@ -29,7 +34,12 @@ fn every_scene_is_the_canvas_through_the_map_of_colours() {
             for at in panel.target.bounding_box().points() {
                 let place = at - CORNER;
                 let grey = Gray4::new(canvas.get(place.x, place.y).unwrap_or(0));
-                assert_eq!(panel.target.pixel(at), Some(grey.into()), "{} at {at}", name.name());
+                assert_eq!(
+                    panel.target.pixel(at),
+                    Some(grey.into()),
+                    "{} at {at}",
+                    name.name()
+                );
             }
         }
     }

@@ -30,7 +30,10 @@ fn the_state_and_the_picture_after_n_ticks_are_the_same_at_any_frame_rate() {
     let steady = run(1..=600);
     for (name, other) in [
         ("every third", run((1..=200).map(|n| 3 * n))),
-        ("uneven", run((0..600).filter(|n| n * n % 7 < 2).chain([600]))),
+        (
+            "uneven",
+            run((0..600).filter(|n| n * n % 7 < 2).chain([600])),
+        ),
         ("all at once", run([600])),
     ] {
         assert_eq!(other.player.report, steady.player.report, "{name}");
@@ -48,18 +51,37 @@ fn every_frame_carries_the_kernels_state_bit_identically() {
     let start_angle = 120.0_f32.to_radians();
     let start_energy = pendulum.energy(&State::at_rest(start_angle, start_angle));
     let scale = start_energy - pendulum.least_energy();
-    let stepping = Stepping { method: Method::Extrapolation10Fixed64, steps: 1 };
+    let stepping = Stepping {
+        method: Method::Extrapolation10Fixed64,
+        steps: 1,
+    };
     let mut expected = Settings::default().run(0.0, stepping).expect("good");
     for (sequence, frame) in (0..).zip(frames) {
         expected.advance(1).expect("a finite motion");
-        let Report { step, time, state, energy_error, .. } = frame.report;
+        let Report {
+            step,
+            time,
+            state,
+            energy_error,
+            ..
+        } = frame.report;
         let bits = |state: State<f32>| <[f32; 4]>::from(state).map(f32::to_bits);
-        assert_eq!(bits(state), bits(expected.rounded_state()), "frame {sequence}");
-        assert_eq!((frame.sequence, frame.dropped, step), (sequence, 0, u64::from(sequence) + 1));
+        assert_eq!(
+            bits(state),
+            bits(expected.rounded_state()),
+            "frame {sequence}"
+        );
+        assert_eq!(
+            (frame.sequence, frame.dropped, step),
+            (sequence, 0, u64::from(sequence) + 1)
+        );
         assert_eq!(time, f64::from(sequence + 1) / 60.0);
         assert_eq!((frame.mass_ratio, frame.start_angle), (1.0, start_angle));
         let error = (pendulum.energy(&state) - start_energy) / scale;
-        assert!((energy_error - error).abs() <= ENERGY_SHOWN, "frame {sequence}: {energy_error} {error}");
+        assert!(
+            (energy_error - error).abs() <= ENERGY_SHOWN,
+            "frame {sequence}: {energy_error} {error}"
+        );
     }
 }
 
@@ -71,16 +93,40 @@ fn dropped_pictures_are_counted_and_no_tick_is_lost() {
     assert!(!app.run_to(late, |event| events.push(event)));
     assert!(!app.run_to(late, |event| events.push(event)));
     assert!(app.run_to(late, |event| events.push(event)), "caught up");
-    assert!(app.run_to(late, |event| events.push(event)), "nothing to do");
+    assert!(
+        app.run_to(late, |event| events.push(event)),
+        "nothing to do"
+    );
     assert_eq!(events, [], "at most one line a second");
     assert!(app.run_to(late + 2, |event| events.push(event)));
     while !app.run_to(90, |event| events.push(event)) {}
 
     let frames = frames(&app.link);
-    let shown: Vec<_> = frames.iter().map(|frame| (frame.report.step, frame.dropped)).collect();
+    let shown: Vec<_> = frames
+        .iter()
+        .map(|frame| (frame.report.step, frame.dropped))
+        .collect();
     let most = MOST_TICKS_PER_FRAME - 1;
-    assert_eq!(shown, [(15, most), (30, 2 * most), (31, 2 * most), (33, 29), (48, 43), (63, 57), (78, 71), (90, 82)]);
-    assert_eq!(events, [Event::Dropped { ticks: 57, total: 57 }]);
+    assert_eq!(
+        shown,
+        [
+            (15, most),
+            (30, 2 * most),
+            (31, 2 * most),
+            (33, 29),
+            (48, 43),
+            (63, 57),
+            (78, 71),
+            (90, 82)
+        ]
+    );
+    assert_eq!(
+        events,
+        [Event::Dropped {
+            ticks: 57,
+            total: 57
+        }]
+    );
 }
 
 #[test]
@@ -95,11 +141,24 @@ fn losses_are_said_once_a_second_and_lost_bytes_sent_with_each_frame() {
     }
     let said = |tick| {
         let (grown, last) = (TICK_RATE, LinkError::Malformed);
-        [Event::Lost { bytes: grown, total: tick }, Event::Damaged { messages: grown, total: tick, last }]
-            .map(|event| (tick, event))
+        [
+            Event::Lost {
+                bytes: grown,
+                total: tick,
+            },
+            Event::Damaged {
+                messages: grown,
+                total: tick,
+                last,
+            },
+        ]
+        .map(|event| (tick, event))
     };
     assert_eq!(events, [TICK_RATE, 2 * TICK_RATE].map(said).concat());
-    let counts = frames(&app.link).iter().map(|frame| frame.lost).collect::<Vec<_>>();
+    let counts = frames(&app.link)
+        .iter()
+        .map(|frame| frame.lost)
+        .collect::<Vec<_>>();
     assert_eq!(counts, (0..2 * TICK_RATE).collect::<Vec<_>>());
 }
 
@@ -124,15 +183,33 @@ fn counts_wrap_unnoticed() {
         plain.dropped = plain.dropped.wrapping_add(begin);
         assert_eq!(plain, wrapped);
     }
-    assert_eq!(plain.2, [Event::Dropped { ticks: 20, total: 20 }]);
-    assert_eq!(wrapped.2, [Event::Dropped { ticks: 20, total: begin.wrapping_add(20) }]);
+    assert_eq!(
+        plain.2,
+        [Event::Dropped {
+            ticks: 20,
+            total: 20
+        }]
+    );
+    assert_eq!(
+        wrapped.2,
+        [Event::Dropped {
+            ticks: 20,
+            total: begin.wrapping_add(20)
+        }]
+    );
 }
 
 #[test]
 fn hanging_at_rest_has_no_energy_error() {
     let mut app = starting_with(Settings::equal_rods(1.0, 0.0));
     app.run_to(10, |_| ());
-    assert_eq!(frames(&app.link).iter().map(|frame| frame.report.energy_error).collect::<Vec<_>>(), [0.0]);
+    assert_eq!(
+        frames(&app.link)
+            .iter()
+            .map(|frame| frame.report.energy_error)
+            .collect::<Vec<_>>(),
+        [0.0]
+    );
 }
 
 /// Presses up at tick 10 and select at tick 50 for three ticks each.
@@ -142,7 +219,11 @@ struct Script(u32);
 impl Buttons for Script {
     fn read(&mut self) -> Pressed {
         self.0 += 1;
-        Pressed { up: (10..13).contains(&self.0), select: (50..53).contains(&self.0), ..Pressed::default() }
+        Pressed {
+            up: (10..13).contains(&self.0),
+            select: (50..53).contains(&self.0),
+            ..Pressed::default()
+        }
     }
 }
 
@@ -158,7 +239,10 @@ fn buttons_restart_with_the_new_settings() {
         });
     }
     let heavier = Settings::equal_rods(1.25, 120.0);
-    assert_eq!(started, [11, 54].map(|now| (now, Event::Started(SceneName::Page, heavier))));
+    assert_eq!(
+        started,
+        [11, 54].map(|now| (now, Event::Started(SceneName::Page, heavier)))
+    );
     let frames = frames(&app.link);
     assert_eq!(frames[9].mass_ratio, 1.0);
     assert_eq!((frames[10].mass_ratio, frames[10].report.step), (1.25, 1));
@@ -174,7 +258,11 @@ impl Display for BrokenPanel {
 
     fn flush(&mut self, _: &Canvas) -> Result<(), &'static str> {
         self.0 += 1;
-        if self.0 == 1 || (10..20).contains(&self.0) { Err("bus") } else { Ok(()) }
+        if self.0 == 1 || (10..20).contains(&self.0) {
+            Err("bus")
+        } else {
+            Ok(())
+        }
     }
 }
 
@@ -193,9 +281,17 @@ impl Write for Faulty {
     fn write(&mut self, bytes: &[u8]) -> Result<usize, ErrorKind> {
         self.writes += 1;
         let fails = (5..10).contains(&self.writes);
-        let sent = if fails { &bytes[..bytes.len() / 2] } else { bytes };
+        let sent = if fails {
+            &bytes[..bytes.len() / 2]
+        } else {
+            bytes
+        };
         self.bytes.extend_from_slice(sent);
-        if fails { Err(ErrorKind::TimedOut) } else { Ok(bytes.len()) }
+        if fails {
+            Err(ErrorKind::TimedOut)
+        } else {
+            Ok(bytes.len())
+        }
     }
 
     fn flush(&mut self) -> Result<(), ErrorKind> {
@@ -211,10 +307,17 @@ fn a_failing_panel_or_link_is_reported_once_and_only_what_the_link_cut_is_lost()
         app.run_to(now, |event| events.push((now, event)));
     }
     let link = (5, Event::Link(ErrorKind::TimedOut));
-    assert_eq!(events, [(1, Event::Panel("bus")), link, (10, Event::Panel("bus"))]);
+    assert_eq!(
+        events,
+        [(1, Event::Panel("bus")), link, (10, Event::Panel("bus"))]
+    );
     // Writes: frames 0 to 3 (1 to 4), frames 4 to 8 broken off in the middle (5 to 9), then all is well.
     let mut inbox = Inbox::default();
-    let frames = app.link.bytes.iter().filter_map(|&byte| inbox.take(byte)?.frame());
+    let frames = app
+        .link
+        .bytes
+        .iter()
+        .filter_map(|&byte| inbox.take(byte)?.frame());
     assert!(frames.map(|frame| frame.sequence).eq((0..4).chain(9..30)));
     assert_eq!(inbox.counts.damaged, 5);
 }
@@ -226,7 +329,11 @@ fn directions(app: &Plain) -> RodDirections {
 }
 
 fn view(app: &Plain) -> View {
-    View::new(&app.player.settings.parameters, Place::WHOLE, directions(app))
+    View::new(
+        &app.player.settings.parameters,
+        Place::WHOLE,
+        directions(app),
+    )
 }
 
 #[test]
@@ -254,7 +361,10 @@ fn the_motion_never_touches_the_labels() {
             for (columns, rows) in &boxes {
                 let dx = x - x.clamp(columns.start as f32, columns.end as f32);
                 let dy = y - y.clamp(rows.start as f32, rows.end as f32);
-                assert!(dx.hypot(dy) > radius, "tick {now}: ({x}, {y}) on {columns:?} {rows:?}");
+                assert!(
+                    dx.hypot(dy) > radius,
+                    "tick {now}: ({x}, {y}) on {columns:?} {rows:?}"
+                );
             }
         }
     }
@@ -266,13 +376,33 @@ fn a_restart_goes_on_with_what_was_played() {
     let before = Show::new(SceneName::Butterfly, &Settings::equal_rods(2.5, 90.0)).expect("good");
     let played = before.player.status();
     let (cause, scene) = (Some(Cause::Hang), SceneName::Butterfly);
-    let end = Restarted { cause, restarts: 1, pc: 2, lr: 3, cfsr: 0, scene, step: 5 };
-    let given_up = Restarted { restarts: MOST_RESTARTS + 1, ..end };
-    let massless = Status { settings: Settings::equal_rods(0.0, 90.0), ..played };
-    let timeless = Status { speed: f32::NAN, ..played };
-    for (played, end, resumed) in
-        [(played, end, true), (massless, end, false), (timeless, end, false), (played, given_up, false)]
-    {
+    let end = Restarted {
+        cause,
+        restarts: 1,
+        pc: 2,
+        lr: 3,
+        cfsr: 0,
+        scene,
+        step: 5,
+    };
+    let given_up = Restarted {
+        restarts: MOST_RESTARTS + 1,
+        ..end
+    };
+    let massless = Status {
+        settings: Settings::equal_rods(0.0, 90.0),
+        ..played
+    };
+    let timeless = Status {
+        speed: f32::NAN,
+        ..played
+    };
+    for (played, end, resumed) in [
+        (played, end, true),
+        (massless, end, false),
+        (timeless, end, false),
+        (played, given_up, false),
+    ] {
         let mut app = app();
         let first = app.player.status();
         let mut events = Vec::new();

@@ -16,7 +16,9 @@ pub type Plain = App<'static, NoDisplay, Vec<u8>, NoButtons>;
 /// The application as it begins, with such devices.
 pub fn of<P: Display, L: Write, K: Buttons>(panel: P, link: L, keys: K) -> App<'static, P, L, K> {
     let mut app = App::new(PROCESSOR, sheets(), panel, link, keys);
-    app.player.play(SceneName::Page, Settings::default()).expect("good settings");
+    app.player
+        .play(SceneName::Page, Settings::default())
+        .expect("good settings");
     app
 }
 
@@ -26,7 +28,9 @@ pub fn app() -> Plain {
 
 pub fn starting_with(settings: Settings) -> Plain {
     let mut app = app();
-    app.player.play(SceneName::Page, settings).expect("good settings");
+    app.player
+        .play(SceneName::Page, settings)
+        .expect("good settings");
     app
 }
 
@@ -43,11 +47,17 @@ pub fn messages(bytes: &[u8]) -> Vec<ToHost> {
 }
 
 pub fn frames(bytes: &[u8]) -> Vec<Frame> {
-    messages(bytes).into_iter().filter_map(ToHost::frame).collect()
+    messages(bytes)
+        .into_iter()
+        .filter_map(ToHost::frame)
+        .collect()
 }
 
 pub fn answers(bytes: &[u8]) -> Vec<(u16, Answer)> {
-    messages(bytes).into_iter().filter_map(ToHost::answer).collect()
+    messages(bytes)
+        .into_iter()
+        .filter_map(ToHost::answer)
+        .collect()
 }
 
 /// All pixels of the frame, row by row.

@@ -22,7 +22,10 @@ fn grey(canvas: &Canvas, x: i32, y: i32) -> u8 {
 }
 
 fn light(canvas: &Canvas) -> u32 {
-    canvas.bytes().map(|byte| u32::from(byte >> 4) + u32::from(byte & 15)).sum()
+    canvas
+        .bytes()
+        .map(|byte| u32::from(byte >> 4) + u32::from(byte & 15))
+        .sum()
 }
 
 #[test]
@@ -31,7 +34,11 @@ fn the_left_pixel_is_the_high_nibble() {
     canvas.update(2, 1, |_| 0xA);
     canvas.update(3, 1, |_| 0x5);
     canvas.update(127, 63, |_| 0x7);
-    let set: Vec<_> = canvas.bytes().enumerate().filter(|(_, byte)| *byte != 0).collect();
+    let set: Vec<_> = canvas
+        .bytes()
+        .enumerate()
+        .filter(|(_, byte)| *byte != 0)
+        .collect();
     assert_eq!(set, [(65, 0xA5), (4095, 0x07)]);
 }
 
@@ -49,55 +56,115 @@ fn what_lies_outside_is_not_drawn() {
     assert_eq!(canvas, Canvas::default());
     canvas.stamp(-2, -6, u64::MAX, 9);
     canvas.stamp(width - 3, height - 1, u64::MAX, 9);
-    assert_eq!((light(&canvas), grey(&canvas, 5, 1), grey(&canvas, 6, 1)), ((2 * 6 + 3) * 9, 9, 0));
+    assert_eq!(
+        (light(&canvas), grey(&canvas, 5, 1), grey(&canvas, 6, 1)),
+        ((2 * 6 + 3) * 9, 9, 0)
+    );
 }
 
 #[test]
 fn the_characters_are_those_of_the_library() {
-    for character in (' '..='~').chain(['±', '°', 'μ']).filter(|character| !" .".contains(*character)) {
-        let MonoFont { image, glyph_mapping, .. } = FONT_5X8;
+    for character in (' '..='~')
+        .chain(['±', '°', 'μ'])
+        .filter(|character| !" .".contains(*character))
+    {
+        let MonoFont {
+            image,
+            glyph_mapping,
+            ..
+        } = FONT_5X8;
         let index = glyph_mapping.index(character) as i32;
         let corner = Point::new(index % 16 * 5, index / 16 * 8);
         let Glyph { width, rows } = glyph(character);
         for (x, y) in (0..8).flat_map(|x| (0..8).map(move |y| (x, y))) {
             let is_ink = x < 5 && image.pixel(corner + Point::new(x, y)) == Some(BinaryColor::On);
-            assert_eq!(rows >> (63 - (8 * y + x)) & 1 != 0, is_ink, "{character:?}, column {x}, row {y}");
+            assert_eq!(
+                rows >> (63 - (8 * y + x)) & 1 != 0,
+                is_ink,
+                "{character:?}, column {x}, row {y}"
+            );
         }
         assert_eq!(width, 5);
     }
 }
 
 fn disc(x: f32, y: f32, pixels: f32) -> Disc {
-    Disc { centre: Spot::at(x, y), radius: (pixels * SUBPIXELS as f32) as u8, gap: 0 }
+    Disc {
+        centre: Spot::at(x, y),
+        radius: (pixels * SUBPIXELS as f32) as u8,
+        gap: 0,
+    }
 }
 
 #[test]
 fn a_disc_is_where_it_was_put() {
     for number in 0..1000 {
-        let (x, y) = (10.0 + (number as f32 * 0.377) % 100.0, 10.0 + (number as f32 * 0.713) % 40.0);
+        let (x, y) = (
+            10.0 + (number as f32 * 0.377) % 100.0,
+            10.0 + (number as f32 * 0.713) % 40.0,
+        );
         let mut canvas = Canvas::default();
         disc(x, y, 1.5).draw(&mut canvas, u8::MAX);
         let mut sum = [0.0; 3];
         for (column, row) in places() {
             let grey = f64::from(grey(&canvas, column, row));
-            sum = [sum[0] + grey, sum[1] + grey * (f64::from(column) + 0.5), sum[2] + grey * (f64::from(row) + 0.5)];
+            sum = [
+                sum[0] + grey,
+                sum[1] + grey * (f64::from(column) + 0.5),
+                sum[2] + grey * (f64::from(row) + 0.5),
+            ];
         }
         let (found_x, found_y) = (sum[1] / sum[0], sum[2] / sum[0]);
-        assert!((found_x - f64::from(x)).abs() < CENTRE_TOLERANCE, "x {x}: {found_x}");
-        assert!((found_y - f64::from(y)).abs() < CENTRE_TOLERANCE, "y {y}: {found_y}");
+        assert!(
+            (found_x - f64::from(x)).abs() < CENTRE_TOLERANCE,
+            "x {x}: {found_x}"
+        );
+        assert!(
+            (found_y - f64::from(y)).abs() < CENTRE_TOLERANCE,
+            "y {y}: {found_y}"
+        );
     }
 }
 
 #[test]
 fn a_stroke_of_any_numbers_is_safe() {
-    let numbers = [0.0, -1.0, 127.9, 1e3, -1e3, f32::MAX, f32::MIN, f32::INFINITY, f32::NEG_INFINITY, f32::NAN];
-    let spots: Vec<_> = numbers.iter().flat_map(|&x| numbers.map(|y| Spot::at(x, y))).collect();
+    let numbers = [
+        0.0,
+        -1.0,
+        127.9,
+        1e3,
+        -1e3,
+        f32::MAX,
+        f32::MIN,
+        f32::INFINITY,
+        f32::NEG_INFINITY,
+        f32::NAN,
+    ];
+    let spots: Vec<_> = numbers
+        .iter()
+        .flat_map(|&x| numbers.map(|y| Spot::at(x, y)))
+        .collect();
     for &from in &spots {
         for &to in &spots {
             let mut canvas = Canvas::default();
-            Stroke { from, to, radius: 255 }.lighten(&mut canvas, 255);
-            Disc { centre: from, radius: 255, gap: 255 }.draw(&mut canvas, 255);
-            Disc { centre: to, radius: 0, gap: 0 }.draw(&mut canvas, 0);
+            Stroke {
+                from,
+                to,
+                radius: 255,
+            }
+            .lighten(&mut canvas, 255);
+            Disc {
+                centre: from,
+                radius: 255,
+                gap: 255,
+            }
+            .draw(&mut canvas, 255);
+            Disc {
+                centre: to,
+                radius: 0,
+                gap: 0,
+            }
+            .draw(&mut canvas, 0);
         }
     }
 }
@@ -107,17 +174,27 @@ fn a_stroke_of_any_numbers_is_safe() {
 fn covered((x, y): (i32, i32), [from, to]: [(f64, f64); 2], radius: f64) -> f64 {
     let along = (to.0 - from.0, to.1 - from.1);
     let squared = along.0 * along.0 + along.1 * along.1;
-    let is_far = |at: i32, a: f64, b: f64| (f64::from(at) - (a + b) / 2.0).abs() > (a - b).abs() / 2.0 + radius + 2.0;
+    let is_far = |at: i32, a: f64, b: f64| {
+        (f64::from(at) - (a + b) / 2.0).abs() > (a - b).abs() / 2.0 + radius + 2.0
+    };
     if is_far(x, from.0, to.0) || is_far(y, from.1, to.1) {
         return 0.0;
     }
     let is_inside = |(x, y): (f64, f64)| {
         let part = ((x - from.0) * along.0 + (y - from.1) * along.1) / squared;
-        let part = if squared > 0.0 { part.clamp(0.0, 1.0) } else { 0.0 };
+        let part = if squared > 0.0 {
+            part.clamp(0.0, 1.0)
+        } else {
+            0.0
+        };
         (x - from.0 - part * along.0).hypot(y - from.1 - part * along.1) <= radius
     };
-    let points = (0..256)
-        .map(|i| (f64::from(x) + (f64::from(i % 16) + 0.5) / 16.0, f64::from(y) + (f64::from(i / 16) + 0.5) / 16.0));
+    let points = (0..256).map(|i| {
+        (
+            f64::from(x) + (f64::from(i % 16) + 0.5) / 16.0,
+            f64::from(y) + (f64::from(i / 16) + 0.5) / 16.0,
+        )
+    });
     points.filter(|point| is_inside(*point)).count() as f64 / 256.0
 }
 
@@ -130,16 +207,28 @@ fn a_pixel_is_as_bright_as_it_is_covered() {
         let mut place = || (rng.f64() * 160.0 - 16.0, rng.f64() * 80.0 - 8.0);
         let (from, mut to) = (place(), place());
         if rng.bool() {
-            to = (from.0 + 4.0 * rng.f64() - 2.0, from.1 + 4.0 * rng.f64() - 2.0);
+            to = (
+                from.0 + 4.0 * rng.f64() - 2.0,
+                from.1 + 4.0 * rng.f64() - 2.0,
+            );
         }
         let radius = rng.u8(30..192);
         let spot = |(x, y): (f64, f64)| Spot::at(x as f32, y as f32);
         let mut canvas = Canvas::default();
-        Stroke { from: spot(from), to: spot(to), radius }.lighten(&mut canvas, u8::MAX);
+        Stroke {
+            from: spot(from),
+            to: spot(to),
+            radius,
+        }
+        .lighten(&mut canvas, u8::MAX);
         for (x, y) in places() {
-            let exact = 15.0 * covered((x, y), [from, to], f64::from(radius) / f64::from(SUBPIXELS));
+            let exact =
+                15.0 * covered((x, y), [from, to], f64::from(radius) / f64::from(SUBPIXELS));
             let error = (f64::from(grey(&canvas, x, y)) - exact).abs();
-            assert!(error < GREY_TOLERANCE, "{from:?} to {to:?}, radius {radius}: {exact} at {x}, {y}");
+            assert!(
+                error < GREY_TOLERANCE,
+                "{from:?} to {to:?}, radius {radius}: {exact} at {x}, {y}"
+            );
             greatest = greatest.max(error);
         }
     }
@@ -151,12 +240,20 @@ fn a_gap_sets_a_disc_off() {
     let mut canvas = Canvas::default();
     places().for_each(|(x, y)| canvas.update(x, y, |_| 15));
     let (x, y) = (30.3_f32, 20.7_f32);
-    Disc { gap: 2 * SUBPIXELS as u8, ..disc(x, y, 3.0) }.draw(&mut canvas, u8::MAX);
+    Disc {
+        gap: 2 * SUBPIXELS as u8,
+        ..disc(x, y, 3.0)
+    }
+    .draw(&mut canvas, u8::MAX);
     for (column, row) in places() {
         let share = |radius: f64| covered((column, row), [(x.into(), y.into()); 2], radius);
         let exact = 15.0 * (1.0 - share(5.0) + share(3.0));
         let error = (f64::from(grey(&canvas, column, row)) - exact).abs();
-        assert!(error < GREY_TOLERANCE, "{exact} at {column}, {row}, not {}", grey(&canvas, column, row));
+        assert!(
+            error < GREY_TOLERANCE,
+            "{exact} at {column}, {row}, not {}",
+            grey(&canvas, column, row)
+        );
     }
 }
 
@@ -166,8 +263,16 @@ fn a_line_is_as_bright_in_every_direction() {
     let total = |degrees: f32| {
         let (sin, cos) = degrees.to_radians().sin_cos();
         let mut canvas = Canvas::default();
-        let (from, to) = (Spot::at(60.0, 30.0), Spot::at(60.0 + length * cos, 30.0 + length * sin));
-        Stroke { from, to, radius: SUBPIXELS as u8 }.lighten(&mut canvas, u8::MAX);
+        let (from, to) = (
+            Spot::at(60.0, 30.0),
+            Spot::at(60.0 + length * cos, 30.0 + length * sin),
+        );
+        Stroke {
+            from,
+            to,
+            radius: SUBPIXELS as u8,
+        }
+        .lighten(&mut canvas, u8::MAX);
         f64::from(light(&canvas))
     };
     // A stroke 2 wide and 20 long with round ends, all white: (2 x 20 + pi) x 15.

@@ -6,10 +6,14 @@ use double_pendulum::Method;
 use double_pendulum::plan::Stepping;
 use fastrand::Rng;
 use firmware::app::{Event, Instruments, PlannerEvent};
-use firmware::config::{MOST_MEASURED_STEPS, MOST_MESSAGES_PER_TICK, PLANNED, RECEIVE_QUEUE, TICK_RATE};
+use firmware::config::{
+    MOST_MEASURED_STEPS, MOST_MESSAGES_PER_TICK, PLANNED, RECEIVE_QUEUE, TICK_RATE,
+};
 use firmware::job::{OnBoards, Request, Run};
 use firmware::motion::Planned;
-use firmware::protocol::{Answer, BoardName, Command, Field, Frame, Identity, MAX_WIRE, Status, ToHost, encode, frame};
+use firmware::protocol::{
+    Answer, BoardName, Command, Field, Frame, Identity, MAX_WIRE, Status, ToHost, encode, frame,
+};
 use firmware::scenes::SceneName;
 use host_tests::link::refusal;
 
@@ -28,7 +32,9 @@ fn last(app: &Plain, request: u16) -> Answer {
 }
 
 fn status(app: &mut Plain) -> Status {
-    let Answer::Status(status) = answer(app, Command::Ask) else { panic!("no status") };
+    let Answer::Status(status) = answer(app, Command::Ask) else {
+        panic!("no status")
+    };
     status
 }
 
@@ -39,21 +45,35 @@ fn set(field: Field, value: f64) -> Command {
 #[test]
 fn every_parameter_is_set_in_si_units() {
     for (field, value, read, expected) in [
-        (Field::M1, 2.0, (|s| s.settings.parameters.m1) as fn(&Status) -> f32, 2.0),
+        (
+            Field::M1,
+            2.0,
+            (|s| s.settings.parameters.m1) as fn(&Status) -> f32,
+            2.0,
+        ),
         (Field::M2, 0.5, |s| s.settings.parameters.m2, 0.5),
         (Field::L1, 0.8, |s| s.settings.parameters.l1, 0.8),
         (Field::L2, 0.7, |s| s.settings.parameters.l2, 0.7),
         (Field::G, 1.62, |s| s.settings.parameters.g, 1.62),
         (Field::A1, PI / 2.0, |s| s.settings.degrees[0], 90.0),
         (Field::A2, -PI, |s| s.settings.degrees[1], -180.0),
-        (Field::Angle, 171_f64.to_radians(), |s| s.settings.degrees[0], 171.0),
+        (
+            Field::Angle,
+            171_f64.to_radians(),
+            |s| s.settings.degrees[0],
+            171.0,
+        ),
         (Field::W1, PI, |s| s.settings.velocities[0], PI as f32),
         (Field::W2, -1.5, |s| s.settings.velocities[1], -1.5),
         (Field::MassRatio, 2.75, |s| s.settings.parameters.m2, 2.75),
         (Field::Speed, 0.5, |s| s.speed, 0.5),
     ] {
         let mut app = app();
-        assert_eq!(answer(&mut app, set(field, value)), Answer::Done, "{field:?}");
+        assert_eq!(
+            answer(&mut app, set(field, value)),
+            Answer::Done,
+            "{field:?}"
+        );
         assert_eq!(read(&status(&mut app)), expected, "{field:?}");
     }
 }
@@ -64,12 +84,29 @@ fn no_tap_is_lost_however_quick() {
     let mut app = app();
     let before = app.player.settings;
     let (right, left) = (Command::TurnRight, Command::TurnLeft);
-    let taps = [right, right, Command::Heavier, left, right, Command::Restart, Command::Lighter, right, right];
-    let mut bytes = taps.iter().flat_map(|&tap| wire(1, tap)).collect::<Vec<_>>().into_iter();
+    let taps = [
+        right,
+        right,
+        Command::Heavier,
+        left,
+        right,
+        Command::Restart,
+        Command::Lighter,
+        right,
+        right,
+    ];
+    let mut bytes = taps
+        .iter()
+        .flat_map(|&tap| wire(1, tap))
+        .collect::<Vec<_>>()
+        .into_iter();
     while !bytes.as_slice().is_empty() {
         app.receive(bytes.by_ref(), |_| ());
     }
-    assert_eq!(app.player.settings, before.turned(1).turned(1).turned(1).turned(1));
+    assert_eq!(
+        app.player.settings,
+        before.turned(1).turned(1).turned(1).turned(1)
+    );
     assert_eq!(answers(&app.link), [(1, Answer::Done); 9]);
 }
 
@@ -77,24 +114,57 @@ fn no_tap_is_lost_however_quick() {
 #[test]
 fn a_board_tells_what_it_is_and_how_long_steps_take() {
     let mut app = app();
-    let identity = Identity { board: BoardName::Pico, hertz: 1_000_000, chip: [1, 2, 3, 4], ..Identity::default() };
+    let identity = Identity {
+        board: BoardName::Pico,
+        hertz: 1_000_000,
+        chip: [1, 2, 3, 4],
+        ..Identity::default()
+    };
     let timed = |motion: &mut OnBoards, steps, in_ram| {
         motion.advance(steps);
         if in_ram { 800 } else { 1600 }
     };
-    app.instruments = Instruments { identity, timed, image: || b"123456789", ..Instruments::default() };
+    app.instruments = Instruments {
+        identity,
+        timed,
+        image: || b"123456789",
+        ..Instruments::default()
+    };
     // The check value of CRC-32/ISO-HDLC.
-    let expected = Identity { image: 0xCBF4_3926, image_bytes: 9, ..identity };
-    assert_eq!(answer(&mut app, Command::Identify), Answer::Identity(expected));
+    let expected = Identity {
+        image: 0xCBF4_3926,
+        image_bytes: 9,
+        ..identity
+    };
+    assert_eq!(
+        answer(&mut app, Command::Identify),
+        Answer::Identity(expected)
+    );
 
-    let measure = |in_ram| Command::Measure { steps: u32::MAX, in_ram };
-    assert_eq!(answer(&mut app, measure(false)), Answer::Refused(Field::Message), "no motion was asked for");
-    let request = Request { samples: 1, ..Request::on_any_core(Method::Rk4F32) };
+    let measure = |in_ram| Command::Measure {
+        steps: u32::MAX,
+        in_ram,
+    };
+    assert_eq!(
+        answer(&mut app, measure(false)),
+        Answer::Refused(Field::Message),
+        "no motion was asked for"
+    );
+    let request = Request {
+        samples: 1,
+        ..Request::on_any_core(Method::Rk4F32)
+    };
     app.receive(wire(3, Command::Simulate(request)), |_| ());
     while app.work(|_| ()) {}
     assert!(matches!(last(&app, 3), Answer::Sample { index: 1, .. }));
     for (in_ram, cycles) in [(false, 1600), (true, 800), (false, 1600)] {
-        assert_eq!(answer(&mut app, measure(in_ram)), Answer::Measured { steps: MOST_MEASURED_STEPS, cycles });
+        assert_eq!(
+            answer(&mut app, measure(in_ram)),
+            Answer::Measured {
+                steps: MOST_MEASURED_STEPS,
+                cycles
+            }
+        );
     }
     assert!(!app.work(|_| ()), "and no sample follows");
 }
@@ -125,7 +195,11 @@ fn a_bad_command_is_answered_with_the_field_and_changes_nothing() {
         (set(Field::Method, 1.0), Field::Field),
         (Command::Method(Some(Method::Rk4F64)), Field::Method),
     ] {
-        assert_eq!(answer(&mut app, message), Answer::Refused(field), "{message:?}");
+        assert_eq!(
+            answer(&mut app, message),
+            Answer::Refused(field),
+            "{message:?}"
+        );
     }
     assert_eq!((status(&mut app), app.player.report), before);
 }
@@ -144,7 +218,11 @@ fn an_intact_command_that_cannot_be_read_is_answered_too() {
         (&[0x80], 0),
     ] {
         app.receive(frame(message, &mut [0; MAX_WIRE]).iter().copied(), |_| ());
-        assert_eq!(last(&app, request), Answer::Refused(Field::Message), "{message:?}");
+        assert_eq!(
+            last(&app, request),
+            Answer::Refused(Field::Message),
+            "{message:?}"
+        );
     }
     assert!(refusal(Field::Message).ends_with("flash it anew"));
 }
@@ -153,11 +231,20 @@ fn an_intact_command_that_cannot_be_read_is_answered_too() {
 #[test]
 fn what_is_no_command_is_not_answered() {
     let mut app = app();
-    for message in [ToHost::Frame(Frame::default()), ToHost::Answer(7, Answer::Refused(Field::Message))] {
-        app.receive(encode(&message, &mut [0; MAX_WIRE]).iter().copied(), |event| panic!("{event:?}"));
+    for message in [
+        ToHost::Frame(Frame::default()),
+        ToHost::Answer(7, Answer::Refused(Field::Message)),
+    ] {
+        app.receive(
+            encode(&message, &mut [0; MAX_WIRE]).iter().copied(),
+            |event| panic!("{event:?}"),
+        );
     }
     for kind in (0..=u8::MAX).filter(|kind| *kind != 0x80) {
-        app.receive(frame(&[kind, 7, 0, 1], &mut [0; MAX_WIRE]).iter().copied(), |event| panic!("{event:?}"));
+        app.receive(
+            frame(&[kind, 7, 0, 1], &mut [0; MAX_WIRE]).iter().copied(),
+            |event| panic!("{event:?}"),
+        );
     }
     assert!(app.link.is_empty());
 }
@@ -166,7 +253,10 @@ fn what_is_no_command_is_not_answered() {
 #[test]
 fn an_endless_message_holds_up_nothing() {
     let mut taken = 0;
-    app().receive(std::iter::repeat_n(1, 1_000_000).inspect(|_| taken += 1), |_| ());
+    app().receive(
+        std::iter::repeat_n(1, 1_000_000).inspect(|_| taken += 1),
+        |_| (),
+    );
     assert_eq!(taken, RECEIVE_QUEUE);
 }
 
@@ -192,10 +282,18 @@ fn every_scene_can_be_chosen_restarts_pauses_and_steps() {
         let twelve = run(&mut app, 5);
         assert_eq!(twelve.step, 12 * one.step, "{}: two steps", name.name());
         app.receive(wire(4, Command::Restart), |_| ());
-        assert_eq!(run(&mut app, 3).step, 0, "{}: restarted, still paused", name.name());
+        assert_eq!(
+            run(&mut app, 3).step,
+            0,
+            "{}: restarted, still paused",
+            name.name()
+        );
         app.receive(wire(5, Command::Pause(false)), |_| ());
         assert_eq!(run(&mut app, 12), twelve, "{}: the same again", name.name());
-        assert_eq!(answers(&app.link), [1, 2, 3, 4, 5].map(|request| (request, Answer::Done)));
+        assert_eq!(
+            answers(&app.link),
+            [1, 2, 3, 4, 5].map(|request| (request, Answer::Done))
+        );
         assert!(frames(&app.link).iter().all(|frame| frame.scene == name));
     }
 }
@@ -204,11 +302,15 @@ fn every_scene_can_be_chosen_restarts_pauses_and_steps() {
 fn the_plan_is_found_in_some_tick_told_when_asked_and_followed() {
     let mut app = app();
     let asked = |app: &mut Plain| {
-        let Answer::Planned(planned) = answer(app, Command::AskPlan) else { panic!("no plan") };
+        let Answer::Planned(planned) = answer(app, Command::AskPlan) else {
+            panic!("no plan")
+        };
         planned
     };
     let mut news = Vec::new();
-    let run = |app: &mut Plain, news: &mut Vec<_>| assert!(app.run_to(app.frames + 1, |event| news.push(event)));
+    let run = |app: &mut Plain, news: &mut Vec<_>| {
+        assert!(app.run_to(app.frames + 1, |event| news.push(event)))
+    };
     let search = |app: &mut Plain, news: &mut Vec<_>| loop {
         match asked(app).expect("a motion").found {
             None => run(app, news),
@@ -223,11 +325,20 @@ fn the_plan_is_found_in_some_tick_told_when_asked_and_followed() {
 
     let before = asked(&mut app).expect("a motion");
     app.receive(wire(1, set(Field::Angle, 20_f64.to_radians())), |_| ());
-    assert_eq!(asked(&mut app), Some(Planned { found: None, ..before }));
+    assert_eq!(
+        asked(&mut app),
+        Some(Planned {
+            found: None,
+            ..before
+        })
+    );
     let calm = search(&mut app, &mut news);
     assert!(calm.horizon >= PLANNED && calm.cost < plan.cost, "{calm:?}");
     (0..TICK_RATE).for_each(|_| run(&mut app, &mut news));
-    let stepping = Stepping { method: Method::Rk4Fixed32, steps: calm.steps };
+    let stepping = Stepping {
+        method: Method::Rk4Fixed32,
+        steps: calm.steps,
+    };
     assert_eq!(
         news.last(),
         Some(&Event::Motion(PlannerEvent::Shown(stepping, calm.cost))),
@@ -235,7 +346,10 @@ fn the_plan_is_found_in_some_tick_told_when_asked_and_followed() {
     );
     let report = app.player.report;
     assert_eq!(report.stepping, Some(calm.stepping()));
-    assert!(f64::from(report.horizon) > PLANNED && report.is_looking, "{report:?}");
+    assert!(
+        f64::from(report.horizon) > PLANNED && report.is_looking,
+        "{report:?}"
+    );
 
     app.receive(wire(1, Command::Choose(SceneName::Frequencies)), |_| ());
     assert!(!app.player.look_ahead());
@@ -259,11 +373,22 @@ fn a_method_can_be_forced() {
 
 #[test]
 fn speed_is_exact_in_the_long_run() {
-    for (speed, ticks) in [(0.01, 6), (0.25, 150), (0.99, 594), (1.0, 600), (2.5, 1500), (4.0, 2400)] {
+    for (speed, ticks) in [
+        (0.01, 6),
+        (0.25, 150),
+        (0.99, 594),
+        (1.0, 600),
+        (2.5, 1500),
+        (4.0, 2400),
+    ] {
         let mut app = app();
         app.receive(wire(1, set(Field::Speed, speed)), |_| ());
         (1..=600).for_each(|clock| assert!(app.run_to(clock, |_| ())));
-        assert_eq!(app.player.report.time, f64::from(ticks) / f64::from(TICK_RATE), "{speed}");
+        assert_eq!(
+            app.player.report.time,
+            f64::from(ticks) / f64::from(TICK_RATE),
+            "{speed}"
+        );
     }
 }
 
@@ -277,16 +402,23 @@ fn flood(mut bytes: impl Iterator<Item = u8>, seconds: u32) -> Plain {
     let mut lines = 0;
     let mut waiting = std::collections::VecDeque::new();
     for clock in 1..=seconds * TICK_RATE {
-        assert!(app.run_to(clock, |event| lines += u32::from(!matches!(event, Event::Motion(_)))));
+        assert!(app.run_to(clock, |event| lines +=
+            u32::from(!matches!(event, Event::Motion(_)))));
         waiting.extend(bytes.by_ref().take(BYTES_PER_TICK));
         waiting.truncate(RECEIVE_QUEUE); // the queue of the boards
-        let is_asked_for = |event: &Event<_, _>| matches!(event, Event::Started(..) | Event::Motion(_) | Event::Asked);
+        let is_asked_for = |event: &Event<_, _>| {
+            matches!(event, Event::Started(..) | Event::Motion(_) | Event::Asked)
+        };
         let mut counted = |event: Event<_, _>| lines += u32::from(!is_asked_for(&event));
         app.receive(std::iter::from_fn(|| waiting.pop_front()), &mut counted);
     }
     let frames = frames(&app.link);
     assert_eq!(frames.len(), (seconds * TICK_RATE) as usize);
-    assert!((0..).zip(&frames).all(|(sequence, frame)| frame.sequence == sequence && frame.dropped == 0));
+    assert!(
+        (0..)
+            .zip(&frames)
+            .all(|(sequence, frame)| frame.sequence == sequence && frame.dropped == 0)
+    );
     assert!(lines <= seconds, "{lines} lines of log in {seconds} s");
     app
 }
@@ -296,16 +428,33 @@ fn noise_half_commands_and_floods_do_not_disturb_the_stream() {
     let mut rng = Rng::with_seed(5);
     let noise = flood(std::iter::repeat_with(move || rng.u8(..)), 60);
     assert_eq!(answers(&noise.link), [], "noise is executed");
-    assert_eq!(noise.player.report, flood(std::iter::empty(), 60).player.report, "and changes nothing");
+    assert_eq!(
+        noise.player.report,
+        flood(std::iter::empty(), 60).player.report,
+        "and changes nothing"
+    );
 
     flood(std::iter::repeat(0), 10);
     flood(std::iter::repeat(1), 10); // one line without an end
     let half = wire(1, set(Field::Angle, 0.1));
     let half = half[..half.len() / 2].to_vec();
-    let halves = flood(half.into_iter().chain([0]).collect::<Vec<_>>().into_iter().cycle(), 10);
+    let halves = flood(
+        half.into_iter()
+            .chain([0])
+            .collect::<Vec<_>>()
+            .into_iter()
+            .cycle(),
+        10,
+    );
     assert_eq!(answers(&halves.link), []);
 
     let restarts = flood(wire(6, Command::Restart).into_iter().cycle(), 10);
-    let (answered, most) = (answers(&restarts.link).len(), MOST_MESSAGES_PER_TICK * (10 * TICK_RATE) as usize);
-    assert!((most / 2..=most).contains(&answered), "{answered}: of more than can wait, the rest is lost");
+    let (answered, most) = (
+        answers(&restarts.link).len(),
+        MOST_MESSAGES_PER_TICK * (10 * TICK_RATE) as usize,
+    );
+    assert!(
+        (most / 2..=most).contains(&answered),
+        "{answered}: of more than can wait, the rest is lost"
+    );
 }

@@ -1,18 +1,37 @@
 //! Buttons to commands, commands to settings, settings to labels.
 
 use firmware::app::{Controls, Pressed};
-use firmware::config::{DEBOUNCE_TICKS, HOLD_TICKS, MASS_RATIOS, REPEAT_DELAY_TICKS, REPEAT_PERIOD_TICKS};
+use firmware::config::{
+    DEBOUNCE_TICKS, HOLD_TICKS, MASS_RATIOS, REPEAT_DELAY_TICKS, REPEAT_PERIOD_TICKS,
+};
 use firmware::graphics::label;
 use firmware::motion::Settings;
 use firmware::protocol::Command;
 
-const NONE: Pressed = Pressed { up: false, down: false, left: false, right: false, select: false };
+const NONE: Pressed = Pressed {
+    up: false,
+    down: false,
+    left: false,
+    right: false,
+    select: false,
+};
 const UP: Pressed = Pressed { up: true, ..NONE };
-const SELECT: Pressed = Pressed { select: true, ..NONE };
+const SELECT: Pressed = Pressed {
+    select: true,
+    ..NONE
+};
 
 /// The ticks, counted from 0, at which commands come.
-fn commands(controls: &mut Controls, readings: impl IntoIterator<Item = Pressed>) -> Vec<(usize, Command)> {
-    let each = |(tick, pressed)| controls.tick(pressed).map(move |command| (tick, command)).collect::<Vec<_>>();
+fn commands(
+    controls: &mut Controls,
+    readings: impl IntoIterator<Item = Pressed>,
+) -> Vec<(usize, Command)> {
+    let each = |(tick, pressed)| {
+        controls
+            .tick(pressed)
+            .map(move |command| (tick, command))
+            .collect::<Vec<_>>()
+    };
     readings.into_iter().enumerate().flat_map(each).collect()
 }
 
@@ -26,21 +45,53 @@ fn proven() -> Controls {
 #[test]
 fn a_button_held_since_reset_counts_only_once_released() {
     let mut controls = Controls::default();
-    let arrows = Pressed { up: true, down: true, left: true, right: true, select: false };
-    let all = Pressed { select: true, ..arrows };
+    let arrows = Pressed {
+        up: true,
+        down: true,
+        left: true,
+        right: true,
+        select: false,
+    };
+    let all = Pressed {
+        select: true,
+        ..arrows
+    };
     assert_eq!(commands(&mut controls, [all; 200]), []);
     assert_eq!(commands(&mut controls, [NONE; 10]), []);
-    let fired: Vec<_> = commands(&mut controls, [arrows; 10]).into_iter().map(|(_, command)| command).collect();
-    assert_eq!(fired, [Command::Heavier, Command::Lighter, Command::TurnLeft, Command::TurnRight]);
+    let fired: Vec<_> = commands(&mut controls, [arrows; 10])
+        .into_iter()
+        .map(|(_, command)| command)
+        .collect();
+    assert_eq!(
+        fired,
+        [
+            Command::Heavier,
+            Command::Lighter,
+            Command::TurnLeft,
+            Command::TurnRight
+        ]
+    );
 }
 
 #[test]
 fn readings_become_commands() {
-    let held =
-        |readings: &[(Pressed, usize)]| readings.iter().flat_map(|&(one, ticks)| vec![one; ticks]).collect::<Vec<_>>();
+    let held = |readings: &[(Pressed, usize)]| {
+        readings
+            .iter()
+            .flat_map(|&(one, ticks)| vec![one; ticks])
+            .collect::<Vec<_>>()
+    };
     let first = usize::from(DEBOUNCE_TICKS) - 1;
-    let (delay, period) = (usize::from(REPEAT_DELAY_TICKS), usize::from(REPEAT_PERIOD_TICKS));
-    let repeated = [first, first + delay, first + delay + period, first + delay + 2 * period];
+    let (delay, period) = (
+        usize::from(REPEAT_DELAY_TICKS),
+        usize::from(REPEAT_PERIOD_TICKS),
+    );
+    let repeated = [
+        first,
+        first + delay,
+        first + delay + period,
+        first + delay + 2 * period,
+    ];
     let next_scene = first + usize::from(HOLD_TICKS) - 1;
     let mut cases = vec![
         ("bounces do not count", [UP, NONE].repeat(3), vec![]),
@@ -49,18 +100,52 @@ fn readings_become_commands() {
             [vec![UP; 10], [NONE, UP].repeat(2), vec![UP; 2]].concat(),
             vec![(first, Command::Heavier)],
         ),
-        ("held, it repeats", vec![UP; 36], repeated.map(|tick| (tick, Command::Heavier)).to_vec()),
-        ("let go, it restarts", held(&[(SELECT, 10), (NONE, 10)]), vec![(10 + first, Command::Restart)]),
-        ("once, and no restart after it", held(&[(SELECT, 200), (NONE, 10)]), vec![(next_scene, Command::NextScene)]),
+        (
+            "held, it repeats",
+            vec![UP; 36],
+            repeated.map(|tick| (tick, Command::Heavier)).to_vec(),
+        ),
+        (
+            "let go, it restarts",
+            held(&[(SELECT, 10), (NONE, 10)]),
+            vec![(10 + first, Command::Restart)],
+        ),
+        (
+            "once, and no restart after it",
+            held(&[(SELECT, 200), (NONE, 10)]),
+            vec![(next_scene, Command::NextScene)],
+        ),
     ];
     for (arrow, command) in [
         (Pressed { up: true, ..SELECT }, Command::TogglePause),
-        (Pressed { down: true, ..SELECT }, Command::Step(1)),
-        (Pressed { left: true, ..SELECT }, Command::PreviousScene),
-        (Pressed { right: true, ..SELECT }, Command::NextScene),
+        (
+            Pressed {
+                down: true,
+                ..SELECT
+            },
+            Command::Step(1),
+        ),
+        (
+            Pressed {
+                left: true,
+                ..SELECT
+            },
+            Command::PreviousScene,
+        ),
+        (
+            Pressed {
+                right: true,
+                ..SELECT
+            },
+            Command::NextScene,
+        ),
     ] {
         let readings = held(&[(SELECT, 10), (arrow, 100), (SELECT, 100), (NONE, 10)]);
-        cases.push(("with select it neither repeats nor restarts", readings, vec![(10 + first, command)]));
+        cases.push((
+            "with select it neither repeats nor restarts",
+            readings,
+            vec![(10 + first, command)],
+        ));
     }
     for (what, readings, fired) in cases {
         assert_eq!(commands(&mut proven(), readings), fired, "{what}");
@@ -72,17 +157,41 @@ fn readings_become_commands() {
 fn taps_before_a_hold_choose_what_the_hold_does() {
     let tap = || [SELECT; 5].into_iter().chain([NONE; 5]);
     let after = |taps: usize, pause: usize, held: usize| {
-        let taps = (0..taps).flat_map(|_| tap()).chain([NONE; 60].into_iter().take(pause));
-        let readings = taps.chain([SELECT; 200].into_iter().take(held)).chain([NONE; 10]);
-        let fired = commands(&mut proven(), readings).into_iter().map(|(_, command)| command);
-        fired.filter(|command| *command != Command::Restart).collect::<Vec<_>>()
+        let taps = (0..taps)
+            .flat_map(|_| tap())
+            .chain([NONE; 60].into_iter().take(pause));
+        let readings = taps
+            .chain([SELECT; 200].into_iter().take(held))
+            .chain([NONE; 10]);
+        let fired = commands(&mut proven(), readings)
+            .into_iter()
+            .map(|(_, command)| command);
+        fired
+            .filter(|command| *command != Command::Restart)
+            .collect::<Vec<_>>()
     };
     let held = usize::from(HOLD_TICKS) + 2 * usize::from(REPEAT_PERIOD_TICKS) + 2;
-    for (taps, command) in
-        [Command::Heavier, Command::Lighter, Command::TurnRight, Command::TurnLeft].into_iter().enumerate()
+    for (taps, command) in [
+        Command::Heavier,
+        Command::Lighter,
+        Command::TurnRight,
+        Command::TurnLeft,
+    ]
+    .into_iter()
+    .enumerate()
     {
-        assert_eq!(after(taps + 1, 0, held), [command; 3], "after {} taps", taps + 1);
-        assert_eq!(after(taps + 1, 30, held), [Command::NextScene], "too long after {} taps", taps + 1);
+        assert_eq!(
+            after(taps + 1, 0, held),
+            [command; 3],
+            "after {} taps",
+            taps + 1
+        );
+        assert_eq!(
+            after(taps + 1, 30, held),
+            [Command::NextScene],
+            "too long after {} taps",
+            taps + 1
+        );
     }
     assert_eq!(after(5, 0, held), [], "there is nothing for five taps");
     assert_eq!(after(3, 0, 20), [], "not held long enough");
@@ -102,7 +211,13 @@ fn buttons_visit_every_mass_ratio_and_stop_at_the_ends() {
     }
     assert_eq!(settings.mass_ratio(), MASS_RATIOS[0]);
     let between = Settings::equal_rods(2.75, 120.0);
-    assert_eq!((between.lighter().mass_ratio(), between.heavier().mass_ratio()), (2.5, 3.15));
+    assert_eq!(
+        (
+            between.lighter().mass_ratio(),
+            between.heavier().mass_ratio()
+        ),
+        (2.5, 3.15)
+    );
 }
 
 #[test]
@@ -111,7 +226,10 @@ fn angles_stop_at_straight_up() {
     for _ in 0..20 {
         settings = settings.turned(1);
     }
-    assert_eq!((settings.degrees, settings.angles()), ([180.0; 2], [std::f32::consts::PI; 2]));
+    assert_eq!(
+        (settings.degrees, settings.angles()),
+        ([180.0; 2], [std::f32::consts::PI; 2])
+    );
     for _ in 0..400 {
         settings = settings.turned(-1);
     }
@@ -120,25 +238,59 @@ fn angles_stop_at_straight_up() {
 
 #[test]
 fn labels_show_what_is_set() {
-    let ratios = [0.01, 0.0125, 0.1, 0.315, 1.0, 2.75, 9.0 / 16.0, 12.5, 31.5, 100.0].map(label::mass_ratio);
-    let expected = ["0.0100", "0.0125", "0.100", "0.315", "1.00", "2.75", "0.563", "12.5", "31.5", "100"];
-    assert_eq!(ratios.map(|label| label.to_string()), expected.map(|text| format!("μ {text}")));
+    let ratios = [
+        0.01,
+        0.0125,
+        0.1,
+        0.315,
+        1.0,
+        2.75,
+        9.0 / 16.0,
+        12.5,
+        31.5,
+        100.0,
+    ]
+    .map(label::mass_ratio);
+    let expected = [
+        "0.0100", "0.0125", "0.100", "0.315", "1.00", "2.75", "0.563", "12.5", "31.5", "100",
+    ];
+    assert_eq!(
+        ratios.map(|label| label.to_string()),
+        expected.map(|text| format!("μ {text}"))
+    );
     let angles = [0.0, 120.0, -7.0, 171.5, -0.5].map(|degrees| label::degrees("α ", degrees));
     let expected = ["α 0°", "α 120°", "α -7°", "α 171.5°", "α -0.5°"];
     assert_eq!(angles.map(|label| label.to_string()), expected);
     let times = [0.0, 0.099, 59.96, 3600.0].map(label::time);
-    assert_eq!(times.map(|label| label.to_string()), ["0.0 s", "0.0 s", "59.9 s", "3600.0 s"]);
+    assert_eq!(
+        times.map(|label| label.to_string()),
+        ["0.0 s", "0.0 s", "59.9 s", "3600.0 s"]
+    );
     let trusts = [8.44, 9370.2, f32::INFINITY, f32::NAN].map(|until| label::trust(until, false));
-    assert_eq!(trusts.map(|label| label.to_string()), ["½px 8.4 s", "½px 9370 s", "½px ok", "½px ok"]);
+    assert_eq!(
+        trusts.map(|label| label.to_string()),
+        ["½px 8.4 s", "½px 9370 s", "½px ok", "½px ok"]
+    );
     assert_eq!(label::trust(8.44, true).to_string(), "½px>8.4 s");
     let ticks = [0.0, 0.05, 0.2, 1.0, 50.0].map(|time| label::tick(time, " s"));
-    assert_eq!(ticks.map(|label| label.to_string()), ["0 s", "0.05 s", "0.2 s", "1 s", "50 s"]);
+    assert_eq!(
+        ticks.map(|label| label.to_string()),
+        ["0 s", "0.05 s", "0.2 s", "1 s", "50 s"]
+    );
 }
 
 #[test]
 fn labels_of_any_numbers_are_safe() {
     for number in [f32::NAN, f32::INFINITY, f32::MAX, -f32::MAX, 1e-30] {
-        let _ = (label::mass_ratio(number), label::degrees("α ", number), label::time(number.into()));
-        let _ = (label::trust(number, true), label::tick(number, " s"), label::label("true ", number, 1, " J"));
+        let _ = (
+            label::mass_ratio(number),
+            label::degrees("α ", number),
+            label::time(number.into()),
+        );
+        let _ = (
+            label::trust(number, true),
+            label::tick(number, " s"),
+            label::label("true ", number, 1, " J"),
+        );
     }
 }

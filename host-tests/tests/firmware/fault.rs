@@ -3,19 +3,43 @@
 use firmware::fault::{Fault, Stacked, call_size};
 
 fn fault(cfsr: u32, hfsr: u32) -> Fault {
-    let stacked = Some(Stacked { pc: 0x456, lr: 0x1234, xpsr: 0x0100_0000 });
-    Fault { stacked, sp: 0x2000_8010, last_call: Some(0x788), cfsr, hfsr, mmfar: 0x2000_1234, bfar: 0 }
+    let stacked = Some(Stacked {
+        pc: 0x456,
+        lr: 0x1234,
+        xpsr: 0x0100_0000,
+    });
+    Fault {
+        stacked,
+        sp: 0x2000_8010,
+        last_call: Some(0x788),
+        cfsr,
+        hfsr,
+        mmfar: 0x2000_1234,
+        bfar: 0,
+    }
 }
 
 #[test]
 fn names_the_cause() {
-    let (overflow, stray) = ("stack overflow", "data access refused by the memory protection unit");
-    let fault_at = |cfsr, mmfar| Fault { mmfar, ..fault(cfsr, 0x4000_0000) };
+    let (overflow, stray) = (
+        "stack overflow",
+        "data access refused by the memory protection unit",
+    );
+    let fault_at = |cfsr, mmfar| Fault {
+        mmfar,
+        ..fault(cfsr, 0x4000_0000)
+    };
     for (fault, cause) in [
         (fault(0x0001_0000, 0x4000_0000), "undefined instruction"),
         (fault(0x0200_0000, 0x4000_0000), "division by zero"),
-        (fault(0x0008_0000, 0x4000_0000), "no such coprocessor (floating-point unit off?)"),
-        (fault(0x0000_8200, 0x4000_0000), "bus fault on a data access"),
+        (
+            fault(0x0008_0000, 0x4000_0000),
+            "no such coprocessor (floating-point unit off?)",
+        ),
+        (
+            fault(0x0000_8200, 0x4000_0000),
+            "bus fault on a data access",
+        ),
         (fault(0x0000_0082, 0x4000_0000), stray),
         (fault(0x0000_0092, 0x4000_0000), overflow),
         (fault(0x0000_0010, 0x4000_0000), overflow),
@@ -38,24 +62,60 @@ fn names_the_cause() {
 
 #[test]
 fn a_fault_reads_well_and_says_what_is_lost_or_not_told() {
-    let lost = Fault { stacked: None, ..fault(0x0000_0092, 0x4000_0000) };
+    let lost = Fault {
+        stacked: None,
+        ..fault(0x0000_0092, 0x4000_0000)
+    };
     let stacked = "pc 0x00000456  lr 0x00001234  xpsr 0x01000000";
-    let registers = |cfsr| format!("  cfsr {cfsr}  hfsr 0x40000000  mmfar 0x20001234  bfar 0x00000000");
+    let registers =
+        |cfsr| format!("  cfsr {cfsr}  hfsr 0x40000000  mmfar 0x20001234  bfar 0x00000000");
     for (fault, cause, place, registers) in [
-        (fault(0x0001_0000, 0x4000_0000), "undefined instruction", stacked, registers("0x00010000")),
+        (
+            fault(0x0001_0000, 0x4000_0000),
+            "undefined instruction",
+            stacked,
+            registers("0x00010000"),
+        ),
         (
             lost,
             "stack overflow",
             "pc and lr are lost; the last call on the stack is at 0x00000788",
             registers("0x00000092"),
         ),
-        (Fault { last_call: None, ..lost }, "stack overflow", "pc and lr are lost", registers("0x00000092")),
-        (fault(0, 0), "unknown cause (a Cortex-M0+ tells none)", stacked, String::new()),
+        (
+            Fault {
+                last_call: None,
+                ..lost
+            },
+            "stack overflow",
+            "pc and lr are lost",
+            registers("0x00000092"),
+        ),
+        (
+            fault(0, 0),
+            "unknown cause (a Cortex-M0+ tells none)",
+            stacked,
+            String::new(),
+        ),
     ] {
-        assert_eq!(fault.to_string(), format!("HARDFAULT: {cause}\n  {place}\n  sp 0x20008010{registers}"));
+        assert_eq!(
+            fault.to_string(),
+            format!("HARDFAULT: {cause}\n  {place}\n  sp 0x20008010{registers}")
+        );
     }
-    let stacked = Some(Stacked { pc: 0x456, lr: 0x1234, xpsr: 0 });
-    assert_eq!(Fault { stacked, ..fault(0, 0) }.cause(), "invalid state (jump to an even address?)");
+    let stacked = Some(Stacked {
+        pc: 0x456,
+        lr: 0x1234,
+        xpsr: 0,
+    });
+    assert_eq!(
+        Fault {
+            stacked,
+            ..fault(0, 0)
+        }
+        .cause(),
+        "invalid state (jump to an even address?)"
+    );
 }
 
 #[test]
@@ -75,5 +135,8 @@ fn calls_are_told_from_other_instructions() {
 
 #[test]
 fn the_registers_of_the_floating_point_unit_are_stacked_too() {
-    assert_eq!((Stacked::size(0xffff_fff9), Stacked::size(0xffff_ffe9)), (32, 104));
+    assert_eq!(
+        (Stacked::size(0xffff_fff9), Stacked::size(0xffff_ffe9)),
+        (32, 104)
+    );
 }

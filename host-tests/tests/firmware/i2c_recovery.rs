@@ -27,7 +27,10 @@ impl Wires {
         self.clock = clock;
         let before = self.is_data_high();
         self.data = data;
-        assert!(!clock || !before || self.is_data_high(), "a start where a stop is due");
+        assert!(
+            !clock || !before || self.is_data_high(),
+            "a start where a stop is due"
+        );
         self.stops += u32::from(clock && !before && self.is_data_high());
         self.is_data_high()
     }
@@ -36,10 +39,22 @@ impl Wires {
 #[test]
 fn a_panel_is_clocked_to_the_end_of_its_byte_and_stopped_or_given_up() {
     // The stop takes a clock of its own. A free bus is left alone.
-    let cases = (1..=9).map(|bits| (bits, true, bits + 1, 1)).chain([(0, true, 0, 0), (u32::MAX, false, 9 + 1, 0)]);
+    let cases = (1..=9)
+        .map(|bits| (bits, true, bits + 1, 1))
+        .chain([(0, true, 0, 0), (u32::MAX, false, 9 + 1, 0)]);
     for (held_for, is_free, clocks, stops) in cases {
-        let mut wires = Wires { clock: true, data: true, held_for, clocks: 0, stops: 0 };
-        assert_eq!(free_bus(|clock, data| wires.drive(clock, data)), is_free, "{held_for}");
+        let mut wires = Wires {
+            clock: true,
+            data: true,
+            held_for,
+            clocks: 0,
+            stops: 0,
+        };
+        assert_eq!(
+            free_bus(|clock, data| wires.drive(clock, data)),
+            is_free,
+            "{held_for}"
+        );
         assert_eq!((wires.clocks, wires.stops), (clocks, stops), "{held_for}");
         assert!(wires.clock && wires.data, "both lines are let go");
     }

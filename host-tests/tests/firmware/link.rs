@@ -9,8 +9,8 @@ use firmware::app::Record;
 use firmware::job::{Reading, Request};
 use firmware::motion::{PlanResult, Planned, Settings};
 use firmware::protocol::{
-    Answer, BoardName, Cause, Command, Decoder, Field, Frame, LinkError, MAX_MESSAGE, MAX_WIRE, Restarted, Status,
-    ToHost, VERSION, decode_command, encode, encode_command, frame, read,
+    Answer, BoardName, Cause, Command, Decoder, Field, Frame, LinkError, MAX_MESSAGE, MAX_WIRE,
+    Restarted, Status, ToHost, VERSION, decode_command, encode, encode_command, frame, read,
 };
 use firmware::scenes::{Report, SceneName};
 use host_tests::oracle::snapshot;
@@ -20,7 +20,12 @@ use crate::bench::messages;
 /// What the decoder says of a wire.
 fn decoded(wire: &[u8]) -> Option<Result<Vec<u8>, LinkError>> {
     let mut decoder = Decoder::default();
-    wire.iter().fold(None, |last, &byte| decoder.push(byte).map(|message| message.map(<[u8]>::to_vec)).or(last))
+    wire.iter().fold(None, |last, &byte| {
+        decoder
+            .push(byte)
+            .map(|message| message.map(<[u8]>::to_vec))
+            .or(last)
+    })
 }
 
 fn wire(message: &[u8]) -> Vec<u8> {
@@ -55,9 +60,17 @@ fn every_change_of_four_bits_is_detected() {
     let mut pairs = HashSet::new();
     for (index, one) in changes.iter().enumerate() {
         assert_ne!(*one, 0);
-        assert!(changes[..index].iter().all(|other| pairs.insert(one ^ other)), "two pairs of flips cancel");
+        assert!(
+            changes[..index]
+                .iter()
+                .all(|other| pairs.insert(one ^ other)),
+            "two pairs of flips cancel"
+        );
     }
-    assert!(changes.iter().all(|one| !pairs.contains(one)), "three flips cancel");
+    assert!(
+        changes.iter().all(|one| !pairs.contains(one)),
+        "three flips cancel"
+    );
     assert!(!pairs.contains(&0), "two flips cancel");
 }
 
@@ -75,7 +88,11 @@ fn every_flipped_bit_on_the_wire_is_detected() {
         let found = decoded(&bad);
         assert!(!matches!(found, Some(Ok(_))), "bit {bit}");
         by_check += usize::from(found == Some(Err(LinkError::Checksum)));
-        assert_eq!(decoded(&[bad, next.clone()].concat()), Some(Ok(vec![9; MAX_MESSAGE])), "after bit {bit}");
+        assert_eq!(
+            decoded(&[bad, next.clone()].concat()),
+            Some(Ok(vec![9; MAX_MESSAGE])),
+            "after bit {bit}"
+        );
     }
     assert!(by_check > 4 * good.len(), "{by_check} by the check");
 }
@@ -84,48 +101,128 @@ fn every_flipped_bit_on_the_wire_is_detected() {
 #[test]
 fn every_message_fits() {
     let (method, steps, number, step) = (Method::TextbookF32, u32::MAX, u32::MAX, u64::MAX);
-    let report = Report { step, stepping: Some(Stepping { method, steps }), ..Report::default() };
-    let counts = Frame { sequence: number, dropped: number, lost: number, report, ..Frame::default() };
-    let frame = Frame { scene_cycles: number, busy_cycles: number, ..counts };
+    let report = Report {
+        step,
+        stepping: Some(Stepping { method, steps }),
+        ..Report::default()
+    };
+    let counts = Frame {
+        sequence: number,
+        dropped: number,
+        lost: number,
+        report,
+        ..Frame::default()
+    };
+    let frame = Frame {
+        scene_cycles: number,
+        busy_cycles: number,
+        ..counts
+    };
     let (dt, horizon, error, cost, spent, limit) = (1.0, 1.0, 1.0, 1.0, 1.0, Limit::End);
-    let found = Some(Ok(Plan { method, steps, dt, error, cost, horizon, limit, spent }));
-    let planned = Planned { found, height: 1.0, duration: 1.0, frame: 1.0, planning: 1.0 };
-    let sample = Answer::Sample { index: number, reading: Reading::default() };
-    let answers = [Answer::Planned(Some(planned)), sample].map(|answer| ToHost::Answer(u16::MAX, answer));
-    assert_eq!([ToHost::Frame(frame), answers[0], answers[1]].map(length), [94, 71, 74]);
+    let found = Some(Ok(Plan {
+        method,
+        steps,
+        dt,
+        error,
+        cost,
+        horizon,
+        limit,
+        spent,
+    }));
+    let planned = Planned {
+        found,
+        height: 1.0,
+        duration: 1.0,
+        frame: 1.0,
+        planning: 1.0,
+    };
+    let sample = Answer::Sample {
+        index: number,
+        reading: Reading::default(),
+    };
+    let answers =
+        [Answer::Planned(Some(planned)), sample].map(|answer| ToHost::Answer(u16::MAX, answer));
+    assert_eq!(
+        [ToHost::Frame(frame), answers[0], answers[1]].map(length),
+        [94, 71, 74]
+    );
 
     let (cause, scene) = (Some(Cause::Fault), SceneName::Flips);
-    let end = Restarted { cause, restarts: u8::MAX, pc: number, lr: number, cfsr: number, scene, step };
-    assert_eq!((ToHost::Restarted(end).restarted(), ToHost::Frame(frame).restarted()), (Some(end), None));
+    let end = Restarted {
+        cause,
+        restarts: u8::MAX,
+        pc: number,
+        lr: number,
+        cfsr: number,
+        scene,
+        step,
+    };
+    assert_eq!(
+        (
+            ToHost::Restarted(end).restarted(),
+            ToHost::Frame(frame).restarted()
+        ),
+        (Some(end), None)
+    );
     let (settings, method) = (Settings::default(), Some(method));
-    let played = Status { scene, settings, method, processor: 0, paused: true, steps, speed: 1.0 };
-    assert_eq!(Record::read(&Record { played, end }.write()), Some(Record { played, end }));
+    let played = Status {
+        scene,
+        settings,
+        method,
+        processor: 0,
+        paused: true,
+        steps,
+        speed: 1.0,
+    };
+    assert_eq!(
+        Record::read(&Record { played, end }.write()),
+        Some(Record { played, end })
+    );
 
-    let command =
-        Command::Simulate(Request { stride: number, samples: number, ..Request::on_any_core(Method::Rk4F64) });
-    let message = decoded(encode_command(u16::MAX, command, &mut [0; MAX_WIRE])).expect("a message").expect("intact");
-    assert_eq!((message.len(), decode_command(&message)), (96, Some((u16::MAX, Some(command)))));
+    let command = Command::Simulate(Request {
+        stride: number,
+        samples: number,
+        ..Request::on_any_core(Method::Rk4F64)
+    });
+    let message = decoded(encode_command(u16::MAX, command, &mut [0; MAX_WIRE]))
+        .expect("a message")
+        .expect("intact");
+    assert_eq!(
+        (message.len(), decode_command(&message)),
+        (96, Some((u16::MAX, Some(command))))
+    );
 }
 
 /// The values that a message of each number reads as, all their fields zero.
 fn variants<T: Debug>(read: fn(&[u8]) -> Option<T>) -> String {
-    let zeros = |number: u8| (0..MAX_MESSAGE).map(move |count| [vec![number], vec![0; count]].concat());
+    let zeros =
+        |number: u8| (0..MAX_MESSAGE).map(move |count| [vec![number], vec![0; count]].concat());
     let values = (0..=u8::MAX).map_while(|number| zeros(number).find_map(|bytes| read(&bytes)));
     let line = |(number, value)| format!("{number:>2} {value:?}\n");
-    (0..).zip(values).map(line).chain(["\n".to_owned()]).collect()
+    (0..)
+        .zip(values)
+        .map(line)
+        .chain(["\n".to_owned()])
+        .collect()
 }
 
 /// Whoever changes what a number means raises the version, by which the two sides know each other.
 #[test]
 fn numbers_mean_the_same_as_long_as_the_version_does() -> Result<(), String> {
-    let messages =
-        variants(read::<ToHost>) + &variants(read::<Answer>) + &variants(read::<Command>) + &variants(read::<Field>);
-    let plans = variants(read::<PlanResult>) + &variants(read::<PlanError>) + &variants(read::<Error>);
+    let messages = variants(read::<ToHost>)
+        + &variants(read::<Answer>)
+        + &variants(read::<Command>)
+        + &variants(read::<Field>);
+    let plans =
+        variants(read::<PlanResult>) + &variants(read::<PlanError>) + &variants(read::<Error>);
     let values = variants(read::<Method>)
         + &variants(read::<SceneName>)
         + &variants(read::<BoardName>)
         + &variants(read::<Cause>);
-    snapshot::check(&format!("wire-{VERSION}"), &(messages + &plans + &values + &variants(read::<Limit>)))
+    snapshot::check(
+        &format!("wire-{VERSION}"),
+        &(messages + &plans + &values + &variants(read::<Limit>)),
+    )
 }
 
 /// Its bytes on the wire.

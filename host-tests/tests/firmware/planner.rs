@@ -2,11 +2,16 @@
 
 use double_pendulum::Method;
 use double_pendulum::plan::{Limit, PlanError, Stepping};
-use firmware::config::{CORTEX_M3, CORTEX_M4F, PLANNED, PROCESSORS, Processor, SETTLED_TICKS, STM32F405};
+use firmware::config::{
+    CORTEX_M3, CORTEX_M4F, PLANNED, PROCESSORS, Processor, SETTLED_TICKS, STM32F405,
+};
 use firmware::motion::{Planner, Settings};
 
 /// What these begin by, which is right wherever any other is.
-const LASTING: Stepping = Stepping { method: Method::Extrapolation10Fixed64, steps: 1 };
+const LASTING: Stepping = Stepping {
+    method: Method::Extrapolation10Fixed64,
+    steps: 1,
+};
 const HEIGHT: f32 = 57.0;
 /// Ticks by which everything here is found.
 const PATIENCE: u64 = 1200;
@@ -26,7 +31,12 @@ fn nothing_is_looked_at_before_the_start_has_settled() {
         assert_eq!((planner.tick(), planner.horizon(LASTING)), (None, 0.0));
     }
     planner.tick();
-    assert!(planner.is_looking() && planner.answer().is_some_and(|answer| answer.found.is_none()));
+    assert!(
+        planner.is_looking()
+            && planner
+                .answer()
+                .is_some_and(|answer| answer.found.is_none())
+    );
     assert!((0..PATIENCE).any(|_| planner.tick().is_some() || planner.horizon(LASTING) > 0.0));
 }
 
@@ -59,12 +69,27 @@ fn there_is_nothing_to_do_without_a_motion_or_when_all_is_found() {
     while planner.is_looking() {
         planner.tick();
     }
-    assert!(planner.answer().is_some_and(|answer| answer.found.is_some()));
-    assert!(!planner.work_ahead() && planner.tick().is_some(), "it is told in a tick of its own");
+    assert!(
+        planner
+            .answer()
+            .is_some_and(|answer| answer.found.is_some())
+    );
+    assert!(
+        !planner.work_ahead() && planner.tick().is_some(),
+        "it is told in a tick of its own"
+    );
     assert!(!planner.work_ahead() && planner.tick().is_none());
-    planner.start(&Settings::equal_rods(1.0, 30.0), Some(HEIGHT), Some(LASTING), false);
+    planner.start(
+        &Settings::equal_rods(1.0, 30.0),
+        Some(HEIGHT),
+        Some(LASTING),
+        false,
+    );
     assert_eq!(
-        (planner.answer().map(|answer| answer.found), planner.horizon(LASTING)),
+        (
+            planner.answer().map(|answer| answer.found),
+            planner.horizon(LASTING)
+        ),
         (Some(None), 0.0),
         "it begins anew"
     );
@@ -75,13 +100,27 @@ fn there_is_nothing_to_do_without_a_motion_or_when_all_is_found() {
 #[test]
 fn only_steps_that_resolve_a_motion_are_right_wherever_others_are() {
     let in_32_bits = |planner: &Planner| {
-        let steppings = [1, 2, 4, 8, 16].map(|steps| Stepping { method: Method::Rk4Fixed32, steps });
-        steppings.map(|stepping| planner.horizon(stepping)).into_iter().fold(0.0, f64::max)
+        let steppings = [1, 2, 4, 8, 16].map(|steps| Stepping {
+            method: Method::Rk4Fixed32,
+            steps,
+        });
+        steppings
+            .map(|stepping| planner.horizon(stepping))
+            .into_iter()
+            .fold(0.0, f64::max)
     };
     for (steps, is_right) in [(2, false), (4, true)] {
-        let begun = Stepping { method: Method::Extrapolation10Fixed64, steps };
+        let begun = Stepping {
+            method: Method::Extrapolation10Fixed64,
+            steps,
+        };
         let mut planner = Planner::new(CORTEX_M3);
-        planner.start(&Settings::equal_rods(2.75, 171.0), Some(HEIGHT), Some(begun), false);
+        planner.start(
+            &Settings::equal_rods(2.75, 171.0),
+            Some(HEIGHT),
+            Some(begun),
+            false,
+        );
         while in_32_bits(&planner) < 1.0 {
             assert!(planner.tick().is_none());
         }
@@ -94,7 +133,10 @@ fn only_steps_that_resolve_a_motion_are_right_wherever_others_are() {
 #[test]
 fn a_calm_motion_is_looked_at_for_as_long_as_it_is_played() {
     let (mut planner, mut told) = (planner(STM32F405, &Settings::equal_rods(1.0, 20.0)), 1);
-    while planner.answer().is_some_and(|answer| answer.found.is_none()) {
+    while planner
+        .answer()
+        .is_some_and(|answer| answer.found.is_none())
+    {
         assert!(planner.tick().is_none());
         told += 1;
     }
@@ -105,7 +147,10 @@ fn a_calm_motion_is_looked_at_for_as_long_as_it_is_played() {
         planner.tick();
         if tick > 600 {
             let ahead = planner.horizon(LASTING) - tick as f64 / 60.0;
-            assert!(planner.is_looking() && (ahead - PLANNED).abs() < 0.1, "tick {tick}: {ahead}");
+            assert!(
+                planner.is_looking() && (ahead - PLANNED).abs() < 0.1,
+                "tick {tick}: {ahead}"
+            );
         }
     }
 }
@@ -114,18 +159,33 @@ fn a_calm_motion_is_looked_at_for_as_long_as_it_is_played() {
 fn a_refused_motion_is_told_once() {
     let mut planner = planner(CORTEX_M3, &Settings::equal_rods(f32::NAN, 20.0));
     let found: Vec<_> = (0..PATIENCE).filter_map(|_| planner.tick()).collect();
-    assert!(matches!(found[..], [Err(PlanError::Refused(_))]), "{found:?}");
+    assert!(
+        matches!(found[..], [Err(PlanError::Refused(_))]),
+        "{found:?}"
+    );
 }
 
 /// A processor with 100 cycles for a frame can afford neither a step nor a closed form.
 #[test]
 fn where_nothing_holds_that_is_what_is_told() {
-    let mut planner = planner(Processor { frame: 100.0, ..CORTEX_M4F }, &Settings::equal_rods(1.0, 120.0));
+    let mut planner = planner(
+        Processor {
+            frame: 100.0,
+            ..CORTEX_M4F
+        },
+        &Settings::equal_rods(1.0, 120.0),
+    );
     let found = (0..PATIENCE).find_map(|_| planner.tick());
-    assert!(matches!(found, Some(Err(PlanError::NoMethod { .. }))), "{found:?}");
+    assert!(
+        matches!(found, Some(Err(PlanError::NoMethod { .. }))),
+        "{found:?}"
+    );
     let answer = planner.answer().expect("a motion");
     assert_eq!(answer.found, found);
-    assert_eq!((answer.duration, answer.height, answer.frame), (PLANNED, HEIGHT, 100.0));
+    assert_eq!(
+        (answer.duration, answer.height, answer.frame),
+        (PLANNED, HEIGHT, 100.0)
+    );
 }
 
 /// Only what was asked for is looked at, even if it costs more than a frame allows.
@@ -133,16 +193,28 @@ fn where_nothing_holds_that_is_what_is_told() {
 #[test]
 fn a_stepping_that_is_given_stays() {
     let mut planner = Planner::new(STM32F405);
-    let stepping = Stepping { method: Method::Rk4F32Direction, steps: 4 };
+    let stepping = Stepping {
+        method: Method::Rk4F32Direction,
+        steps: 4,
+    };
     planner.start(&Settings::default(), Some(HEIGHT), Some(stepping), true);
     let found = (0..PATIENCE).find_map(|_| planner.tick());
-    let Some(Ok(plan)) = found else { panic!("{found:?}") };
-    assert_eq!((plan.method, plan.steps, plan.limit), (Method::Rk4F32Direction, 4, Limit::Method));
+    let Some(Ok(plan)) = found else {
+        panic!("{found:?}")
+    };
+    assert_eq!(
+        (plan.method, plan.steps, plan.limit),
+        (Method::Rk4F32Direction, 4, Limit::Method)
+    );
     assert!((9.5..=10.5).contains(&plan.horizon), "{plan:?}");
 }
 
 /// What hosts know a class of processors by.
 #[test]
 fn every_processor_has_its_place_for_a_code() {
-    assert!((0..).zip(PROCESSORS).all(|(place, processor)| processor.code == place));
+    assert!(
+        (0..)
+            .zip(PROCESSORS)
+            .all(|(place, processor)| processor.code == place)
+    );
 }

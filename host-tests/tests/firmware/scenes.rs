@@ -3,8 +3,8 @@
 use double_pendulum::State;
 use firmware::app::PlannerEvent;
 use firmware::config::{
-    CORTEX_M0PLUS, CORTEX_M3, CORTEX_M4F, PIVOT, PROCESSOR, Processor, REACH, STM32F405, TICK_RATE, TRAIL_FADING,
-    TRAIL_HALF_WIDTH,
+    CORTEX_M0PLUS, CORTEX_M3, CORTEX_M4F, PIVOT, PROCESSOR, Processor, REACH, STM32F405, TICK_RATE,
+    TRAIL_FADING, TRAIL_HALF_WIDTH,
 };
 use firmware::graphics::{Anchor, Canvas, FadeLayer, HEIGHT, LOWEST, WIDTH, plot, text};
 use firmware::motion::{Resources, Settings};
@@ -18,13 +18,17 @@ use host_tests::oracle::tolerances::SHOWN_HEIGHT;
 use crate::bench::{app, places, wire};
 
 /// What a board without a floating-point unit may spend.
-const RESOURCES: Resources = Resources { processor: PROCESSOR, method: None };
+const RESOURCES: Resources = Resources {
+    processor: PROCESSOR,
+    method: None,
+};
 
 /// The ticks after which each scene is pictured: one second, when all is in view, and four.
 const PICTURED: [u32; 2] = [60, 240];
 
 fn scene(name: SceneName) -> Show {
-    Show::new(name, &name.first_settings()).unwrap_or_else(|error| panic!("{}: {error}", name.name()))
+    Show::new(name, &name.first_settings())
+        .unwrap_or_else(|error| panic!("{}: {error}", name.name()))
 }
 
 fn after(name: SceneName, ticks: u32) -> Show {
@@ -62,17 +66,23 @@ fn the_trail_is_the_path_and_fades_with_age() {
     const FADED: f64 = 64.0 / TRAIL_FADING as f64; // ticks to a grey
     let (mut ink, mut path) = (FadeLayer::NONE, Vec::new());
     let mut scene = AnyScene::empty();
-    scene.start(SceneName::Page, &Settings::default(), &RESOURCES).expect("the page");
+    scene
+        .start(SceneName::Page, &Settings::default(), &RESOURCES)
+        .expect("the page");
     for ticks in 1..=400 {
         scene.tick(ticks, &mut ink);
         let State { a1, a2, .. } = scene.report(ticks).state;
         let rod = REACH / 2.0;
-        path.push((PIVOT.0 + rod * (a1.sin() + a2.sin()), PIVOT.1 + rod * (a1.cos() + a2.cos())));
+        path.push((
+            PIVOT.0 + rod * (a1.sin() + a2.sin()),
+            PIVOT.1 + rod * (a1.cos() + a2.cos()),
+        ));
     }
     path.reverse();
     let distance = |at: (f32, f32), [from, to]: [(f32, f32); 2]| {
         let along = (to.0 - from.0, to.1 - from.1);
-        let part = ((at.0 - from.0) * along.0 + (at.1 - from.1) * along.1) / (along.0 * along.0 + along.1 * along.1);
+        let part = ((at.0 - from.0) * along.0 + (at.1 - from.1) * along.1)
+            / (along.0 * along.0 + along.1 * along.1);
         let part = part.clamp(0.0, 1.0);
         (at.0 - from.0 - part * along.0).hypot(at.1 - from.1 - part * along.1)
     };
@@ -80,7 +90,10 @@ fn the_trail_is_the_path_and_fades_with_age() {
     for (x, y) in places() {
         let middle = (x as f32 + 0.5, y as f32 + 0.5);
         let grey = f64::from(ink.frame.get(x, y).expect("inside"));
-        let far: Vec<_> = path.windows(2).map(|piece| distance(middle, [piece[0], piece[1]])).collect();
+        let far: Vec<_> = path
+            .windows(2)
+            .map(|piece| distance(middle, [piece[0], piece[1]]))
+            .collect();
         let covers = |far: &f32| *far < TRAIL_HALF_WIDTH - 0.5;
         let touches = |far: &f32| *far < TRAIL_HALF_WIDTH + 0.6;
         let youngest = far.iter().position(touches);
@@ -91,7 +104,10 @@ fn the_trail_is_the_path_and_fades_with_age() {
             && age < touched + 5
         {
             let expected = (FRESH - age as f64 / FADED).max(0.0);
-            assert!((grey - expected).abs() <= 1.0, "{x}, {y}: {grey} after {age} ticks, not {expected}");
+            assert!(
+                (grey - expected).abs() <= 1.0,
+                "{x}, {y}: {grey} after {age} ticks, not {expected}"
+            );
             compared += usize::from(expected > 0.0);
         }
     }
@@ -110,7 +126,10 @@ fn a_pause_is_marked_and_only_a_pause() -> Result<(), String> {
     let plain = |ticks| after(SceneName::Page, ticks).frame();
     assert!(pause(false, 1) == plain(1), "what moves has no mark");
     snapshot::check("page-paused", &picture(&pause(true, 2)))?;
-    assert!(pause(false, 3) == plain(2), "the mark goes when time goes on");
+    assert!(
+        pause(false, 3) == plain(2),
+        "the mark goes when time goes on"
+    );
     Ok(())
 }
 
@@ -118,15 +137,31 @@ fn a_pause_is_marked_and_only_a_pause() -> Result<(), String> {
 /// is on the frame.
 #[test]
 fn what_is_planned_is_what_is_shown() {
-    let start =
-        |scene: &mut AnyScene, name: SceneName| scene.start(name, &name.first_settings(), &RESOURCES).expect("a scene");
+    let start = |scene: &mut AnyScene, name: SceneName| {
+        scene
+            .start(name, &name.first_settings(), &RESOURCES)
+            .expect("a scene")
+    };
     let mut scene = AnyScene::empty();
-    for name in [SceneName::Beats3To2, SceneName::Beats2To1, SceneName::Beats5To2, SceneName::Beats3To1] {
+    for name in [
+        SceneName::Beats3To2,
+        SceneName::Beats2To1,
+        SceneName::Beats5To2,
+        SceneName::Beats3To1,
+    ] {
         let height = start(&mut scene, name).expect("it moves");
-        assert!(scene.planned().is_some(), "{} follows its plan", name.name());
+        assert!(
+            scene.planned().is_some(),
+            "{} follows its plan",
+            name.name()
+        );
         // Its greatest swing, 12 degrees, is 21.5 pixels long.
         let expected = 4.0 * 21.5 / 12.0_f32.to_radians();
-        assert!((height / expected - 1.0).abs() < SHOWN_HEIGHT, "{}: {height} for {expected}", name.name());
+        assert!(
+            (height / expected - 1.0).abs() < SHOWN_HEIGHT,
+            "{}: {height} for {expected}",
+            name.name()
+        );
     }
     assert_eq!(start(&mut scene, SceneName::Frequencies), None);
 }
@@ -144,13 +179,27 @@ fn the_map_of_flips_is_that_of_the_boards_processor_and_finished_in_time() {
         map.draw(&map.report(ticks.into()), &mut canvas);
         (canvas, map.is_done())
     };
-    assert!(map(STM32F405, false, 60) != map(STM32F405, true, 60), "they differ");
-    let processors = [(STM32F405, true, 5), (CORTEX_M4F, true, 60), (CORTEX_M3, false, 60), (CORTEX_M0PLUS, false, 60)];
+    assert!(
+        map(STM32F405, false, 60) != map(STM32F405, true, 60),
+        "they differ"
+    );
+    let processors = [
+        (STM32F405, true, 5),
+        (CORTEX_M4F, true, 60),
+        (CORTEX_M3, false, 60),
+        (CORTEX_M0PLUS, false, 60),
+    ];
     for (processor, in_float, seconds) in processors {
         let mut show = Show::on(processor, SceneName::Flips, &settings).expect("a map");
         (0..60).for_each(|_| show.tick());
-        assert!(show.frame() == map(processor, in_float, 60).0, "{processor:?}");
-        assert!(map(processor, in_float, seconds * TICK_RATE).1, "{processor:?}");
+        assert!(
+            show.frame() == map(processor, in_float, 60).0,
+            "{processor:?}"
+        );
+        assert!(
+            map(processor, in_float, seconds * TICK_RATE).1,
+            "{processor:?}"
+        );
     }
 }
 
@@ -169,13 +218,31 @@ fn only_what_starts_from_angles_starts_again_when_they_are_turned() {
 
 #[test]
 fn text_keeps_off_the_edges() {
-    for anchor in [Anchor::Left(0), Anchor::Right(0), Anchor::Left(LOWEST), Anchor::Right(LOWEST)] {
-        for text in ["μ 0.174", "½px 12.3 s", "α₁ -7.5°", "compensated", "ω₂ 0.765"] {
-            let near = |&(x, y): &(i32, i32)| x < 1 || y < 1 || x > WIDTH as i32 - 2 || y > HEIGHT as i32 - 2;
+    for anchor in [
+        Anchor::Left(0),
+        Anchor::Right(0),
+        Anchor::Left(LOWEST),
+        Anchor::Right(LOWEST),
+    ] {
+        for text in [
+            "μ 0.174",
+            "½px 12.3 s",
+            "α₁ -7.5°",
+            "compensated",
+            "ω₂ 0.765",
+        ] {
+            let near = |&(x, y): &(i32, i32)| {
+                x < 1 || y < 1 || x > WIDTH as i32 - 2 || y > HEIGHT as i32 - 2
+            };
             let mut canvas = Canvas::default();
             text::write(&mut canvas, text, anchor);
-            let ink: Vec<_> = places().filter(|&(x, y)| canvas.get(x, y) != Some(0)).collect();
-            assert!(!ink.is_empty() && !ink.iter().any(near), "{text:?} at {anchor:?}");
+            let ink: Vec<_> = places()
+                .filter(|&(x, y)| canvas.get(x, y) != Some(0))
+                .collect();
+            assert!(
+                !ink.is_empty() && !ink.iter().any(near),
+                "{text:?} at {anchor:?}"
+            );
         }
     }
 }
@@ -189,12 +256,20 @@ fn scales_have_round_steps() {
 /// What no plan can alter is looked at as it goes.
 #[test]
 fn the_butterfly_is_looked_at_as_it_goes() {
-    let mut show = Show::new(SceneName::Butterfly, &Settings::equal_rods(1.0, 20.0)).expect("a scene of the catalogue");
+    let mut show = Show::new(SceneName::Butterfly, &Settings::equal_rods(1.0, 20.0))
+        .expect("a scene of the catalogue");
     let found = (0..60 * TICK_RATE).find_map(|_| {
         show.tick();
-        show.news
-            .iter()
-            .find_map(|(_, news)| if let PlannerEvent::Found(Ok(plan)) = news { Some(plan.stepping()) } else { None })
+        show.news.iter().find_map(|(_, news)| {
+            if let PlannerEvent::Found(Ok(plan)) = news {
+                Some(plan.stepping())
+            } else {
+                None
+            }
+        })
     });
-    assert!(found.is_some() && found == show.report().stepping, "{found:?}");
+    assert!(
+        found.is_some() && found == show.report().stepping,
+        "{found:?}"
+    );
 }

@@ -12,7 +12,13 @@ use crate::bench::{answers, app, wire};
 
 const REQUEST: Request = Request {
     method: Method::Rk4F32,
-    parameters: Parameters { m1: 1.0, m2: 2.75, l1: 1.0, l2: 0.5, g: 9.8 },
+    parameters: Parameters {
+        m1: 1.0,
+        m2: 2.75,
+        l1: 1.0,
+        l2: 0.5,
+        g: 9.8,
+    },
     angles: [2.0, -1.0],
     velocities: [0.5, 0.25],
     dt: 1.0 / 1024.0,
@@ -25,7 +31,10 @@ fn asked(requests: &[Request]) -> Vec<(u16, Answer)> {
     let mut app = app();
     for (number, request) in (1..).zip(requests) {
         app.receive(wire(number, Command::Simulate(*request)), |event| {
-            assert!(matches!(event, Event::Asked | Event::StepTooLong(_)), "{event:?}");
+            assert!(
+                matches!(event, Event::Asked | Event::StepTooLong(_)),
+                "{event:?}"
+            );
         });
     }
     while app.work(|_| ()) {}
@@ -34,7 +43,8 @@ fn asked(requests: &[Request]) -> Vec<(u16, Answer)> {
 
 /// How many of the answers are samples of the request with this number.
 fn samples(answers: &[(u16, Answer)], request: u16) -> usize {
-    let is_sample = |&&(to, answer): &&(u16, Answer)| to == request && matches!(answer, Answer::Sample { .. });
+    let is_sample =
+        |&&(to, answer): &&(u16, Answer)| to == request && matches!(answer, Answer::Sample { .. });
     answers.iter().filter(is_sample).count()
 }
 
@@ -52,11 +62,20 @@ fn readings(request: &Request) -> Result<Vec<Reading>, Error> {
 #[test]
 fn every_method_of_the_boards_is_answered_in_full_with_what_the_host_computes() {
     for &method in ON_BOARDS {
-        let parameters = Parameters { l2: 1.0, ..REQUEST.parameters };
-        let request = Request { method, parameters, ..REQUEST };
+        let parameters = Parameters {
+            l2: 1.0,
+            ..REQUEST.parameters
+        };
+        let request = Request {
+            method,
+            parameters,
+            ..REQUEST
+        };
         let readings = readings(&request).expect("a pendulum");
         assert_eq!(readings.len(), 6);
-        let expected = (0..).zip(readings).map(|(index, reading)| (1, Answer::Sample { index, reading }));
+        let expected = (0..)
+            .zip(readings)
+            .map(|(index, reading)| (1, Answer::Sample { index, reading }));
         assert_eq!(asked(&[request]), expected.collect::<Vec<_>>(), "{method}");
     }
 }
@@ -64,27 +83,52 @@ fn every_method_of_the_boards_is_answered_in_full_with_what_the_host_computes() 
 /// Every method goes where the canonical one does, whole turns of either rod included; the linear ones where it hardly moves.
 #[test]
 fn every_method_moves_alike() {
-    let turning = Request { velocities: [14.0, -9.0], dt: 1.0 / 8192.0, stride: 1024, samples: 8, ..REQUEST };
-    let small = Request { angles: [1e-5, -2e-5], velocities: [0.0, 3e-5], ..turning };
+    let turning = Request {
+        velocities: [14.0, -9.0],
+        dt: 1.0 / 8192.0,
+        stride: 1024,
+        samples: 8,
+        ..REQUEST
+    };
+    let small = Request {
+        angles: [1e-5, -2e-5],
+        velocities: [0.0, 3e-5],
+        ..turning
+    };
     let readings = |method, motion: Request| {
         readings(&Request { method, ..motion }).unwrap_or_else(|error| panic!("{method}: {error}"))
     };
-    let last = readings(Method::Rk4F64, turning).last().expect("a sample").state;
-    assert!(last[0].abs() > PI && last[1].abs() > PI, "both rods turn over: {last:?}");
+    let last = readings(Method::Rk4F64, turning)
+        .last()
+        .expect("a sample")
+        .state;
+    assert!(
+        last[0].abs() > PI && last[1].abs() > PI,
+        "both rods turn over: {last:?}"
+    );
     for &method in Method::ALL {
         let [double, single, micromath] = tolerances::TURNING;
         let (motion, near) = match method {
-            _ if method.equations() == Equations::Linear => {
-                (small, tolerances::SMALL_MOTION[usize::from(method.is_single())])
-            }
+            _ if method.equations() == Equations::Linear => (
+                small,
+                tolerances::SMALL_MOTION[usize::from(method.is_single())],
+            ),
             Method::Rk4F32Micromath => (turning, micromath),
             Method::Rk4Fixed32 => (turning, single),
             _ if method.is_single() => (turning, single),
             _ => (turning, double),
         };
         let mut farthest = 0.0_f64;
-        for (reading, exact) in readings(method, motion).iter().zip(&readings(Method::Rk4F64, motion)) {
-            farthest = reading.state.iter().zip(exact.state).map(|(x, y)| (x - y).abs()).fold(farthest, f64::max);
+        for (reading, exact) in readings(method, motion)
+            .iter()
+            .zip(&readings(Method::Rk4F64, motion))
+        {
+            farthest = reading
+                .state
+                .iter()
+                .zip(exact.state)
+                .map(|(x, y)| (x - y).abs())
+                .fold(farthest, f64::max);
         }
         println!("{method}: {farthest:e}");
         assert!(farthest < near, "{method}: {farthest:e}");
@@ -95,8 +139,14 @@ fn every_method_moves_alike() {
 #[test]
 fn a_check_is_over_every_sample() -> Result<(), Error> {
     for &method in Method::ALL {
-        let [often, once] =
-            [(1, 2), (2, 1)].map(|(stride, samples)| Request { stride, samples, ..Request::on_any_core(method) }.crc());
+        let [often, once] = [(1, 2), (2, 1)].map(|(stride, samples)| {
+            Request {
+                stride,
+                samples,
+                ..Request::on_any_core(method)
+            }
+            .crc()
+        });
         assert_ne!(often?, once?, "{method}");
     }
     Ok(())
@@ -107,40 +157,86 @@ fn a_request_comes_through_its_text_unchanged() {
     for &method in Method::ALL {
         let request = Request { method, ..REQUEST };
         assert_eq!(Request::parse(&request.to_string()), Some(request));
-        assert_eq!(method.order() == 0, method.integrator() == Integrator::ClosedForm, "{method}");
+        assert_eq!(
+            method.order() == 0,
+            method.integrator() == Integrator::ClosedForm,
+            "{method}"
+        );
     }
     let text = REQUEST.to_string();
-    for broken in ["", &text[2..], &text.replace('0', "g"), &text.replacen("01", "ff", 1), "\u{e4}\u{e4}"] {
+    for broken in [
+        "",
+        &text[2..],
+        &text.replace('0', "g"),
+        &text.replacen("01", "ff", 1),
+        "\u{e4}\u{e4}",
+    ] {
         assert_eq!(Request::parse(broken), None, "{broken}");
     }
 }
 
 #[test]
 fn a_step_too_long_for_the_energy_is_taken_and_told() {
-    let coarse = Request { parameters: Parameters { m2: 1000.0, ..REQUEST.parameters }, ..REQUEST };
+    let coarse = Request {
+        parameters: Parameters {
+            m2: 1000.0,
+            ..REQUEST.parameters
+        },
+        ..REQUEST
+    };
     let admissible_step = coarse.admissible_step().expect("a pendulum");
     assert!(admissible_step < coarse.dt / 10.0);
-    let fine = Request { dt: admissible_step, ..coarse };
-    let closed_form = Request { method: Method::ClosedFormF64, ..coarse };
+    let fine = Request {
+        dt: admissible_step,
+        ..coarse
+    };
+    let closed_form = Request {
+        method: Method::ClosedFormF64,
+        ..coarse
+    };
     for (request, is_told) in [(coarse, true), (fine, false), (closed_form, false)] {
         let answers = asked(&[request]);
         let told = answers.strip_prefix(&[(1, Answer::StepTooLong(admissible_step))]);
-        assert_eq!((told.is_some(), samples(told.unwrap_or(&answers), 1)), (is_told, 6));
+        assert_eq!(
+            (told.is_some(), samples(told.unwrap_or(&answers), 1)),
+            (is_told, 6)
+        );
     }
 }
 
 #[test]
 fn a_refusal_names_the_field_and_leaves_the_work_alone() {
-    let pendulum = |m1, m2, l1, l2, g| Request { parameters: Parameters { m1, m2, l1, l2, g }, ..REQUEST };
+    let pendulum = |m1, m2, l1, l2, g| Request {
+        parameters: Parameters { m1, m2, l1, l2, g },
+        ..REQUEST
+    };
     for (wrong, field) in [
-        (Request { method: Method::TextbookF32, ..REQUEST }, Field::Method),
+        (
+            Request {
+                method: Method::TextbookF32,
+                ..REQUEST
+            },
+            Field::Method,
+        ),
         (pendulum(0.0, 1.0, 1.0, 1.0, 9.8), Field::M1),
         (pendulum(1.0, -1.0, 1.0, 1.0, 9.8), Field::M2),
         (pendulum(1.0, 1.0, f64::NAN, 1.0, 9.8), Field::L1),
         (pendulum(1.0, 1.0, 1.0, f64::INFINITY, 9.8), Field::L2),
         (pendulum(1.0, 1.0, 1.0, 1.0, -9.8), Field::G),
-        (Request { angles: [f64::NAN, 0.0], ..REQUEST }, Field::A1),
-        (Request { velocities: [0.0, f64::INFINITY], ..REQUEST }, Field::W2),
+        (
+            Request {
+                angles: [f64::NAN, 0.0],
+                ..REQUEST
+            },
+            Field::A1,
+        ),
+        (
+            Request {
+                velocities: [0.0, f64::INFINITY],
+                ..REQUEST
+            },
+            Field::W2,
+        ),
         (Request { dt: 0.0, ..REQUEST }, Field::Dt),
         (Request { dt: 9.0, ..REQUEST }, Field::Dt),
     ] {

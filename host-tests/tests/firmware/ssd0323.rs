@@ -39,7 +39,16 @@ impl Controller {
     /// Of this memory, on a bus that fails after so many writes.
     fn holding(byte: Option<u8>, fails_after: usize) -> Self {
         let memory = vec![byte; 64 * 64];
-        Self { data: None, columns: None, rows: None, at: (0, 0), memory, on: false, received: 0, fails_after }
+        Self {
+            data: None,
+            columns: None,
+            rows: None,
+            at: (0, 0),
+            memory,
+            on: false,
+            received: 0,
+            fails_after,
+        }
     }
 
     fn commands(&mut self, mut bytes: &[u8]) {
@@ -49,12 +58,23 @@ impl Controller {
                 (0x15 | 0x75, &[first, last]) => {
                     assert!(first <= last && last <= 63);
                     let is_column = *command == 0x15;
-                    *(if is_column { &mut self.columns } else { &mut self.rows }) = Some((first, last));
-                    *(if is_column { &mut self.at.0 } else { &mut self.at.1 }) = first;
+                    *(if is_column {
+                        &mut self.columns
+                    } else {
+                        &mut self.rows
+                    }) = Some((first, last));
+                    *(if is_column {
+                        &mut self.at.0
+                    } else {
+                        &mut self.at.1
+                    }) = first;
                 }
                 (0xAE, _) => self.on = false,
                 (0xAF, _) => {
-                    assert!(self.memory.iter().all(Option::is_some), "switched on with noise in memory");
+                    assert!(
+                        self.memory.iter().all(Option::is_some),
+                        "switched on with noise in memory"
+                    );
                     self.on = true;
                 }
                 _ => {}
@@ -65,11 +85,18 @@ impl Controller {
 
     /// Along the row, then to the next; beyond the last row is an error here.
     fn store(&mut self, byte: u8) {
-        let ((first, last), (_, last_row)) = (self.columns.expect("columns first"), self.rows.expect("rows first"));
+        let ((first, last), (_, last_row)) = (
+            self.columns.expect("columns first"),
+            self.rows.expect("rows first"),
+        );
         let (column, row) = self.at;
         assert!(row <= last_row, "more data than the window holds");
         self.memory[usize::from(row) * 64 + usize::from(column)] = Some(byte);
-        self.at = if column == last { (first, row + 1) } else { (column + 1, row) };
+        self.at = if column == last {
+            (first, row + 1)
+        } else {
+            (column + 1, row)
+        };
     }
 
     /// Whether it shows this frame.
@@ -91,10 +118,15 @@ impl SpiDevice for Wires<'_> {
     fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), ErrorKind> {
         let mut controller = self.0.borrow_mut();
         for operation in operations {
-            let Operation::Write(bytes) = operation else { panic!("the panel has no data to give: {operation:?}") };
+            let Operation::Write(bytes) = operation else {
+                panic!("the panel has no data to give: {operation:?}")
+            };
             controller.fails_after = controller.fails_after.checked_sub(1).ok_or(BUS_ERROR)?;
             controller.received += bytes.len();
-            match controller.data.expect("data or command must be chosen first") {
+            match controller
+                .data
+                .expect("data or command must be chosen first")
+            {
                 false => controller.commands(bytes),
                 true => bytes.iter().for_each(|&byte| controller.store(byte)),
             }
@@ -128,10 +160,15 @@ fn switches_on_with_a_black_frame_and_sends_what_has_changed() {
     let mut panel = Ssd0323::new(Wires(&controller), Wires(&controller), &mut memory);
     panel.init().expect("the bus works");
     assert!(controller.borrow().shows(&canvas));
-    for (changed, bytes) in
-        [(&[][..], 0), (&[(127, 63)], 6 + 4), (&[(8, 3), (31, 3), (0, 4), (5, 6)], 6 + 12 + 3 + 4 + 6 + 4), (&[], 0)]
-    {
-        changed.iter().for_each(|&(x, y)| canvas.update(x, y, |grey| grey + 9));
+    for (changed, bytes) in [
+        (&[][..], 0),
+        (&[(127, 63)], 6 + 4),
+        (&[(8, 3), (31, 3), (0, 4), (5, 6)], 6 + 12 + 3 + 4 + 6 + 4),
+        (&[], 0),
+    ] {
+        changed
+            .iter()
+            .for_each(|&(x, y)| canvas.update(x, y, |grey| grey + 9));
         controller.borrow_mut().received = 0;
         panel.flush(&canvas).expect("the bus works");
         assert!(controller.borrow().shows(&canvas));
@@ -145,13 +182,19 @@ fn hands_on_the_error_of_the_bus_and_shows_the_frame_after_one_that_failed() {
     let controller = RefCell::new(Controller::holding(None, 0));
     let (mut memory, mut canvas) = (Canvas::default(), Canvas::default());
     let mut panel = Ssd0323::new(Wires(&controller), Wires(&controller), &mut memory);
-    assert_eq!((panel.init(), panel.flush(&canvas)), (Err(BUS_ERROR), Err(BUS_ERROR)));
+    assert_eq!(
+        (panel.init(), panel.flush(&canvas)),
+        (Err(BUS_ERROR), Err(BUS_ERROR))
+    );
     controller.borrow_mut().fails_after = usize::MAX;
     panel.init().expect("the bus works");
     (0..64).for_each(|y| canvas.update(y, y, |_| 15));
     controller.borrow_mut().fails_after = 21;
     assert_eq!(panel.flush(&canvas), Err(BUS_ERROR));
-    *controller.borrow_mut() = Controller { on: true, ..Controller::holding(Some(7), usize::MAX) };
+    *controller.borrow_mut() = Controller {
+        on: true,
+        ..Controller::holding(Some(7), usize::MAX)
+    };
     assert_eq!(panel.flush(&canvas), Ok(()));
     assert!(controller.borrow().shows(&canvas));
 }

@@ -8,12 +8,20 @@ use firmware::scenes::SceneName;
 use host_tests::emulator::host::Show;
 
 fn player() -> Player<'static> {
-    Show::new(SceneName::Page, &Settings::default()).expect("good").player
+    Show::new(SceneName::Page, &Settings::default())
+        .expect("good")
+        .player
 }
 
 fn status() -> Status {
     let mut player = player();
-    for command in [Command::Choose(SceneName::Butterfly), Command::Set { field: Field::MassRatio, value: 0.7 }] {
+    for command in [
+        Command::Choose(SceneName::Butterfly),
+        Command::Set {
+            field: Field::MassRatio,
+            value: 0.7,
+        },
+    ] {
         player.execute(command).expect("possible");
     }
     player.status()
@@ -22,7 +30,15 @@ fn status() -> Status {
 fn record() -> Record {
     let played = status();
     let cause = Some(Cause::Fault);
-    let end = Restarted { cause, restarts: 1, pc: 0x456, lr: 0x1234, cfsr: 1 << 16, scene: played.scene, step: 480 };
+    let end = Restarted {
+        cause,
+        restarts: 1,
+        pc: 0x456,
+        lr: 0x1234,
+        cfsr: 1 << 16,
+        scene: played.scene,
+        step: 480,
+    };
     Record { played, end }
 }
 
@@ -34,7 +50,13 @@ fn ended(end: Restarted) -> Record {
 fn it_is_recalled_as_it_was_kept() {
     let kept = Record::read(&record().write()).expect("intact");
     assert_eq!(kept, record());
-    assert_eq!(kept.restart(false), Some(ended(Restarted { restarts: 2, ..kept.end })));
+    assert_eq!(
+        kept.restart(false),
+        Some(ended(Restarted {
+            restarts: 2,
+            ..kept.end
+        }))
+    );
     assert_eq!(kept.end.to_string(), "scene butterfly, step 480");
 }
 
@@ -62,17 +84,32 @@ fn any_flipped_bit_is_noticed() {
 
 #[test]
 fn a_reset_from_outside_starts_anew_and_one_by_the_watchdog_does_not() {
-    let running = ended(Restarted { cause: None, ..record().end });
+    let running = ended(Restarted {
+        cause: None,
+        ..record().end
+    });
     assert_eq!(running.restart(false), None);
-    assert_eq!(running.restart(true).map(|hung| hung.end.cause), Some(Some(Cause::Hang)));
+    assert_eq!(
+        running.restart(true).map(|hung| hung.end.cause),
+        Some(Some(Cause::Hang))
+    );
 }
 
 #[test]
 fn what_ends_the_board_each_time_is_given_up() {
     for restarts in [0, 1, MOST_RESTARTS - 1, MOST_RESTARTS, u8::MAX] {
-        let restart = ended(Restarted { restarts, ..record().end }).restart(false).expect("a fault");
+        let restart = ended(Restarted {
+            restarts,
+            ..record().end
+        })
+        .restart(false)
+        .expect("a fault");
         assert_eq!(restart.end.restarts, restarts.saturating_add(1));
-        assert_eq!(restart.is_given_up(), restarts >= MOST_RESTARTS, "after {restarts}");
+        assert_eq!(
+            restart.is_given_up(),
+            restarts >= MOST_RESTARTS,
+            "after {restarts}"
+        );
     }
 }
 
@@ -82,8 +119,19 @@ fn a_minute_without_a_restart_forgets_those_before() {
     let mut journal = Journal::new(restart.as_ref());
     for frame in 1..=SOUND_FRAMES + 10 {
         let restarts = if frame < SOUND_FRAMES { 2 } else { 0 };
-        let end = Restarted { restarts, scene: SceneName::Page, ..Restarted::default() };
-        assert_eq!(journal.note(&player), Record { played: player.status(), end }, "frame {frame}");
+        let end = Restarted {
+            restarts,
+            scene: SceneName::Page,
+            ..Restarted::default()
+        };
+        assert_eq!(
+            journal.note(&player),
+            Record {
+                played: player.status(),
+                end
+            },
+            "frame {frame}"
+        );
     }
 }
 
@@ -91,9 +139,17 @@ fn a_minute_without_a_restart_forgets_those_before() {
 fn every_scene_is_resumed_with_its_settings() {
     for &name in SceneName::ALL {
         let (mut player, mut resumed) = (player(), player());
-        let speed = |value| Command::Set { field: Field::Speed, value };
+        let speed = |value| Command::Set {
+            field: Field::Speed,
+            value,
+        };
         for value in [0.01, 0.7, 4.0] {
-            for command in [Command::Choose(name), Command::TurnLeft, speed(value), Command::Step(7)] {
+            for command in [
+                Command::Choose(name),
+                Command::TurnLeft,
+                speed(value),
+                Command::Step(7),
+            ] {
                 player.execute(command).expect("possible");
             }
             let status = player.status();

@@ -12,10 +12,28 @@ use reference::taylor::Reference;
 /// |w1|, |w2|, |w1 - w2|, |p1|, |p2|, v1, v2 of a state, each divided by its bound.
 fn shares<R: Real>(pendulum: &Pendulum<R>, bounds: &Bounds<R>, state: &State<R>) -> [f64; 7] {
     let motion = pendulum.to_motion(state);
-    let [v1, v2] = pendulum.velocities(&motion).map(|v| (v.x * v.x + v.y * v.y).sqrt());
+    let [v1, v2] = pendulum
+        .velocities(&motion)
+        .map(|v| (v.x * v.x + v.y * v.y).sqrt());
     let bending = (motion.w1 - motion.w2).abs();
-    let reached = [motion.w1.abs(), motion.w2.abs(), bending, state.p1.abs(), state.p2.abs(), v1, v2];
-    let Bounds { w1, w2, elbow, p1, p2, v1, v2 } = *bounds;
+    let reached = [
+        motion.w1.abs(),
+        motion.w2.abs(),
+        bending,
+        state.p1.abs(),
+        state.p2.abs(),
+        v1,
+        v2,
+    ];
+    let Bounds {
+        w1,
+        w2,
+        elbow,
+        p1,
+        p2,
+        v1,
+        v2,
+    } = *bounds;
     let bounds = [w1, w2, elbow, p1, p2, v1, v2];
     std::array::from_fn(|i| (reached[i] / bounds[i]).to_f64())
 }
@@ -24,19 +42,30 @@ fn shares<R: Real>(pendulum: &Pendulum<R>, bounds: &Bounds<R>, state: &State<R>)
 /// without gravity only the speed counts.
 fn hold<R: Real>() -> Result<(), Error> {
     let in_f64 = random::pendulums::<f64>(1, 10_000);
-    for ((pendulum, start), (exact, start_in_f64)) in random::pendulums::<R>(1, 10_000).zip(in_f64) {
+    for ((pendulum, start), (exact, start_in_f64)) in random::pendulums::<R>(1, 10_000).zip(in_f64)
+    {
         let bounds = pendulum.bounds(&start);
         let dt = R::from_f64(0.05) / (bounds.w1 + bounds.w2);
         let mut state = start;
         for _ in 0..100 {
             state = pendulum.step(&state, dt);
             let shares = shares(&pendulum, &bounds, &state);
-            let are_kept = shares.iter().all(|share| *share <= 1.0 + tolerances::BOUNDS_DRIFT);
-            assert!(are_kept, "{shares:?} for {:?} from {start:?}", pendulum.parameters());
+            let are_kept = shares
+                .iter()
+                .all(|share| *share <= 1.0 + tolerances::BOUNDS_DRIFT);
+            assert!(
+                are_kept,
+                "{shares:?} for {:?} from {start:?}",
+                pendulum.parameters()
+            );
         }
         let step = pendulum.admissible_step(&start)?.to_f64();
         let error = (step / exact.admissible_step(&start_in_f64)? - 1.0).abs();
-        assert!(error <= tolerances::FORMULAS.of::<R>(), "{error:e} for {:?} from {start:?}", pendulum.parameters());
+        assert!(
+            error <= tolerances::FORMULAS.of::<R>(),
+            "{error:e} for {:?} from {start:?}",
+            pendulum.parameters()
+        );
     }
     let free = Pendulum::new(&Parameters::equal_rods(R::ONE, R::ONE, R::ZERO))?;
     let hanging = State::at_rest(R::ZERO, R::ZERO);
@@ -59,12 +88,38 @@ fn bounds_and_admissible_steps_hold_in_either_precision() -> Result<(), Error> {
 fn each_bound_is_reached_by_some_state() {
     for (pendulum, _) in random::pendulums::<f64>(2, 1000) {
         let &Parameters { m1, m2, l1, l2, .. } = pendulum.parameters();
-        let still2 = Motion { w1: 1.0, w2: -l1 / l2, ..Motion::default() }; // bob 2 at rest: all in w1, v1
-        let opposed = Motion { w1: -m2 * l2 / ((m1 + m2) * l1), w2: 1.0, ..Motion::default() }; // p1 = 0: all in w2
-        let straight = Motion { w1: 1.0, w2: 0.0, ..Motion::default() }; // both bobs alike: all in p1
-        let lower = Motion { w1: 0.0, w2: 1.0, ..Motion::default() }; // bob 1 at rest: all in p2, v2
-        let bending = Motion { w1: m2 * l2 * (l1 + l2), w2: -l1 * (m2 * l2 + (m1 + m2) * l1), ..Motion::default() };
-        let motions = [(still2, [0, 5]), (opposed, [1, 1]), (bending, [2, 2]), (straight, [3, 3]), (lower, [4, 6])];
+        let still2 = Motion {
+            w1: 1.0,
+            w2: -l1 / l2,
+            ..Motion::default()
+        }; // bob 2 at rest: all in w1, v1
+        let opposed = Motion {
+            w1: -m2 * l2 / ((m1 + m2) * l1),
+            w2: 1.0,
+            ..Motion::default()
+        }; // p1 = 0: all in w2
+        let straight = Motion {
+            w1: 1.0,
+            w2: 0.0,
+            ..Motion::default()
+        }; // both bobs alike: all in p1
+        let lower = Motion {
+            w1: 0.0,
+            w2: 1.0,
+            ..Motion::default()
+        }; // bob 1 at rest: all in p2, v2
+        let bending = Motion {
+            w1: m2 * l2 * (l1 + l2),
+            w2: -l1 * (m2 * l2 + (m1 + m2) * l1),
+            ..Motion::default()
+        };
+        let motions = [
+            (still2, [0, 5]),
+            (opposed, [1, 1]),
+            (bending, [2, 2]),
+            (straight, [3, 3]),
+            (lower, [4, 6]),
+        ];
         for (motion, reached) in motions {
             let state = pendulum.to_state(&motion);
             let shares = shares(&pendulum, &pendulum.bounds(&state), &state);
@@ -88,7 +143,11 @@ fn certified_motions_do_not_turn_over() {
             let mut state = start;
             for _ in 0..2000 {
                 state = pendulum.step(&state, dt);
-                assert!(state.a1.abs() < PI && state.a2.abs() < PI, "{:?} from {start:?}", pendulum.parameters());
+                assert!(
+                    state.a1.abs() < PI && state.a2.abs() < PI,
+                    "{:?} from {start:?}",
+                    pendulum.parameters()
+                );
             }
         }
     }
@@ -106,39 +165,77 @@ fn certificate_is_sharp() {
         let at = |angle: f64, share: f64| {
             let mut motion = [0.0; 4];
             motion[first] = angle;
-            motion[2 + first] = (2.0 * limit * share / pendulum.mass_matrix(-1.0)[first][first]).sqrt();
+            motion[2 + first] =
+                (2.0 * limit * share / pendulum.mass_matrix(-1.0)[first][first]).sqrt();
             pendulum.to_state(&motion.into())
         };
-        assert!((pendulum.energy_above_rest(&at(PI, 0.0)) / limit - 1.0).abs() < tolerances::FORMULAS.double);
-        assert!(!pendulum.cannot_turn_over(&at(PI, 1e-6)), "past the saddle, yet certified");
-        assert!(pendulum.cannot_turn_over(&at(PI - 1e-3, 0.0)), "short of the saddle, yet not certified");
+        assert!(
+            (pendulum.energy_above_rest(&at(PI, 0.0)) / limit - 1.0).abs()
+                < tolerances::FORMULAS.double
+        );
+        assert!(
+            !pendulum.cannot_turn_over(&at(PI, 1e-6)),
+            "past the saddle, yet certified"
+        );
+        assert!(
+            pendulum.cannot_turn_over(&at(PI - 1e-3, 0.0)),
+            "short of the saddle, yet not certified"
+        );
     }
 }
 
 /// Any mass 1, mass ratios within a factor of a million, lengths within a hundred, now and then without gravity.
 fn extreme_parameters(rng: &mut Rng) -> Parameters<f64> {
-    let [m1, ratio, l1, l2] =
-        [(0.1, 10.0), (1e-6, 1e6), (0.1, 10.0), (0.1, 10.0)].map(|(low, high)| random::log_uniform(rng, low, high));
-    Parameters { m1, m2: m1 * ratio, l1, l2, g: if rng.u8(..4) == 0 { 0.0 } else { 9.81 } }
+    let [m1, ratio, l1, l2] = [(0.1, 10.0), (1e-6, 1e6), (0.1, 10.0), (0.1, 10.0)]
+        .map(|(low, high)| random::log_uniform(rng, low, high));
+    Parameters {
+        m1,
+        m2: m1 * ratio,
+        l1,
+        l2,
+        g: if rng.u8(..4) == 0 { 0.0 } else { 9.81 },
+    }
 }
 
 /// Any angles and velocities, half of them near the straight position, where a light bob 1 is fastest.
 fn fast_motion(rng: &mut Rng, &Parameters { m1, m2, l1, l2, .. }: &Parameters<f64>) -> Motion<f64> {
     let a1 = PI * random::symmetric(rng);
-    let snap = if rng.bool() { (m1 / (m1 + m2)).sqrt() } else { PI };
+    let snap = if rng.bool() {
+        (m1 / (m1 + m2)).sqrt()
+    } else {
+        PI
+    };
     let speed = random::log_uniform(rng, 0.01, 100.0) * (9.81 * (l1 + l2)).sqrt();
     let w1 = speed / l1 * random::symmetric(rng);
-    let w2 = if rng.bool() { -w1 * l1 / l2 } else { speed / l2 * random::symmetric(rng) };
-    Motion { a1, a2: a1 - snap * random::symmetric(rng), w1, w2 }
+    let w2 = if rng.bool() {
+        -w1 * l1 / l2
+    } else {
+        speed / l2 * random::symmetric(rng)
+    };
+    Motion {
+        a1,
+        a2: a1 - snap * random::symmetric(rng),
+        w1,
+        w2,
+    }
 }
 
 /// What `next` misses of the exact motion from `start` after `dt`: of the angles, and of the velocities per `rate`.
-fn miss(pendulum: &Pendulum<f64>, start: &Motion<f64>, next: &State<f64>, dt: f64, rate: f64) -> f64 {
+fn miss(
+    pendulum: &Pendulum<f64>,
+    start: &Motion<f64>,
+    next: &State<f64>,
+    dt: f64,
+    rate: f64,
+) -> f64 {
     let mut reference = Reference::new(pendulum.parameters(), start);
     reference.advance_to(dt);
     let (exact, next) = (reference.motion(), pendulum.to_motion(next));
     let [w1, w2] = [next.w1 - exact.w1, next.w2 - exact.w2].map(f64::abs);
-    apart(next.a1, exact.a1).max(apart(next.a2, exact.a2)).max(w1 / rate).max(w2 / rate)
+    apart(next.a1, exact.a1)
+        .max(apart(next.a2, exact.a2))
+        .max(w1 / rate)
+        .max(w2 / rate)
 }
 
 /// From anywhere a step misses no more than the fastest rate allows; and not much less, or the limit would be timid.
@@ -151,19 +248,28 @@ fn an_admissible_step_resolves_every_motion() -> Result<(), Error> {
         let pendulum = Pendulum::new(&parameters)?;
         let start = fast_motion(&mut rng, &parameters);
         let state = pendulum.to_state(&start);
-        let (rate, dt) = (pendulum.fastest_rate(&state)?, pendulum.admissible_step(&state)?);
+        let (rate, dt) = (
+            pendulum.fastest_rate(&state)?,
+            pendulum.admissible_step(&state)?,
+        );
         let mut direction = DirectionF64::new(&parameters, &state, dt)?;
         direction.advance(1);
         let after = [pendulum.step(&state, dt), direction.state()];
         for (i, next) in after.iter().enumerate() {
             let miss = miss(&pendulum, &start, next, dt, rate) / (rate * dt);
-            assert!(miss <= tolerances::ADMISSIBLE[i], "form {i}: {miss:e} for {parameters:?} from {start:?}");
+            assert!(
+                miss <= tolerances::ADMISSIBLE[i],
+                "form {i}: {miss:e} for {parameters:?} from {start:?}"
+            );
             largest[i] = largest[i].max(miss);
         }
     }
     println!("classical step and direction form miss at most {largest:?}");
     for (largest, allowed) in largest.into_iter().zip(tolerances::ADMISSIBLE) {
-        assert!(largest >= allowed / 3.0, "never above {largest:e}: the limit is timid");
+        assert!(
+            largest >= allowed / 3.0,
+            "never above {largest:e}: the limit is timid"
+        );
     }
     Ok(())
 }

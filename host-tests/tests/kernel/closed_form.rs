@@ -10,8 +10,11 @@ use host_tests::oracle::tolerances::{CLOSED, CLOSED_FORM, NOT_CLOSED};
 use reference::taylor::Reference;
 
 /// Figures 3 to 5 and their mass ratios.
-const SMALL: [(SceneName, f64); 3] =
-    [(SceneName::SmallLight, 0.2), (SceneName::SmallEqual, 1.0), (SceneName::SmallHeavy, 5.0)];
+const SMALL: [(SceneName, f64); 3] = [
+    (SceneName::SmallLight, 0.2),
+    (SceneName::SmallEqual, 1.0),
+    (SceneName::SmallHeavy, 5.0),
+];
 /// Beats that close: the mass ratio, and the periods of the fast mode after which they do, and the slow one as well.
 const BEATS: [(SceneName, f64, f64); 4] = [
     (SceneName::Beats3To2, 25.0 / 144.0, 3.0),
@@ -53,7 +56,9 @@ fn small_oscillations_are_played_as_the_theory_has_them() {
             let (slow, fast) = ((w2 * t).cos(), (w1 * t).cos());
             let a1 = FRAC_PI_6 / 2.0 * (mass_ratio / (1.0 + mass_ratio)).sqrt() * (slow - fast);
             let a2 = FRAC_PI_6 / 2.0 * (fast + slow);
-            let error = (f64::from(report.state.a1) - a1).abs().max((f64::from(report.state.a2) - a2).abs());
+            let error = (f64::from(report.state.a1) - a1)
+                .abs()
+                .max((f64::from(report.state.a2) - a2).abs());
             let share = error / (FRAC_PI_6 * CLOSED_FORM);
             assert!(share <= 1.0, "{name:?} at {t} s: off by {error:e} rad");
             worst = worst.max(share);
@@ -87,12 +92,19 @@ fn the_beats_are_where_the_theory_has_them_and_only_the_linear_ones_close() {
             exact.advance_to(t);
             let [left, right] = MIDDLES;
             let places = [
-                [left[0] + REACH * (w2 * t).cos(), left[1] - REACH * (w1 * t).sin()],
+                [
+                    left[0] + REACH * (w2 * t).cos(),
+                    left[1] - REACH * (w1 * t).sin(),
+                ],
                 place(right, mass_ratio, exact.motion().angles()),
             ];
             let canvas = scene.frame();
             for [x, y] in places {
-                assert_eq!(canvas.get(x as i32, y as i32), Some(15), "{name:?} at {t} s: ({x:.2}, {y:.2})");
+                assert_eq!(
+                    canvas.get(x as i32, y as i32),
+                    Some(15),
+                    "{name:?} at {t} s: ({x:.2}, {y:.2})"
+                );
             }
         }
 
@@ -101,11 +113,21 @@ fn the_beats_are_where_the_theory_has_them_and_only_the_linear_ones_close() {
         let [first, last] = [0.0, period].map(|t| linear.at(t));
         let parted = |a: f32, b: f32| f64::from((a - b).abs()) / AMPLITUDE;
         let missed = parted(last.a1, first.a1).max(parted(last.a2, first.a2));
-        assert!(missed < CLOSED, "{name:?}: the linear motion misses its start by {missed:e}");
+        assert!(
+            missed < CLOSED,
+            "{name:?}: the linear motion misses its start by {missed:e}"
+        );
         exact.advance_to(period);
-        let [[x0, y0], [x, y]] = [start, exact.motion()].map(|motion| place([0.0; 2], mass_ratio, motion.angles()));
+        let [[x0, y0], [x, y]] =
+            [start, exact.motion()].map(|motion| place([0.0; 2], mass_ratio, motion.angles()));
         let missed = (x - x0).hypot(y - y0);
-        println!("{}: closes after {period:.3} s; the exact motion misses by {missed:.2} pixels", name.name());
-        assert!(missed > NOT_CLOSED, "{name:?}: the exact motion closes to {missed} pixels");
+        println!(
+            "{}: closes after {period:.3} s; the exact motion misses by {missed:.2} pixels",
+            name.name()
+        );
+        assert!(
+            missed > NOT_CLOSED,
+            "{name:?}: the exact motion closes to {missed} pixels"
+        );
     }
 }

@@ -18,13 +18,19 @@ const LOOKS_OF_A_SCENE: u32 = 240;
 /// The methods that step in 32 bits and could lose it.
 fn narrow() -> impl Iterator<Item = Method> {
     let is_narrow = |method: &Method| method.is_single() || method.numbers() == Numbers::Fixed32;
-    Method::ALL.iter().copied().filter(|method| method.equations() == Equations::Directions).filter(is_narrow)
+    Method::ALL
+        .iter()
+        .copied()
+        .filter(|method| method.equations() == Equations::Directions)
+        .filter(is_narrow)
 }
 
 /// The states at the looks by `method`, and the greatest difference of the energy that directions and momenta have from that of the
 /// state, over the energy above rest.
 fn followed(trial: &Trial, method: Method, dt: f64) -> Result<(Vec<State<f64>>, f64), Error> {
-    let Trial { parameters, start, .. } = trial.held_by(method);
+    let Trial {
+        parameters, start, ..
+    } = trial.held_by(method);
     let pendulum = Pendulum::new(&parameters)?;
     let mut run = trials::run(method, &parameters, &start, dt)?;
     let steps = (trial.seconds / dt / f64::from(SAMPLES)).round() as u32;
@@ -34,24 +40,39 @@ fn followed(trial: &Trial, method: Method, dt: f64) -> Result<(Vec<State<f64>>, 
         apart = apart.max((pendulum.energy(&run.state()) - run.energy()).abs());
         Ok(run.state())
     });
-    Ok((states.collect::<Result<_, Error>>()?, apart / pendulum.energy_above_rest(&start)))
+    Ok((
+        states.collect::<Result<_, Error>>()?,
+        apart / pendulum.energy_above_rest(&start),
+    ))
 }
 
 /// At every look the energy is that of `f64` in the same steps, and so is the energy told of directions and momenta.
 fn a_day(mass_ratio: f64, dt: f64) -> Result<(), Error> {
     let trial = Trial::at_rest(mass_ratio, 0.5, 0.5, DAY);
     let pendulum = Pendulum::new(&trial.parameters)?;
-    let energy = |state: &State<f64>| pendulum.energy_above_rest(state) / pendulum.energy_above_rest(&trial.start);
+    let energy = |state: &State<f64>| {
+        pendulum.energy_above_rest(state) / pendulum.energy_above_rest(&trial.start)
+    };
     let exact = trial.states_in_f64(dt, SAMPLES)?;
     for method in narrow() {
         let (states, apart) = match followed(&trial, method, dt) {
             // with a light bob 1 steps of 1/100 s are too long for it, and it says so
-            Err(Error::TooLarge { .. }) if method.is_fixed_point() && mass_ratio == 20.0 && dt == 0.01 => continue,
+            Err(Error::TooLarge { .. })
+                if method.is_fixed_point() && mass_ratio == 20.0 && dt == 0.01 =>
+            {
+                continue;
+            }
             followed => followed?,
         };
-        let errors = states.iter().zip(&exact).map(|(state, exact)| (energy(state) - energy(exact)).abs());
+        let errors = states
+            .iter()
+            .zip(&exact)
+            .map(|(state, exact)| (energy(state) - energy(exact)).abs());
         let error = errors.fold(0.0, f64::max);
-        let about = format!("m2/m1 {mass_ratio}, 1/{:.0} s, {method}: {error:.1e}, {apart:.1e}", 1.0 / dt);
+        let about = format!(
+            "m2/m1 {mass_ratio}, 1/{:.0} s, {method}: {error:.1e}, {apart:.1e}",
+            1.0 / dt
+        );
         println!("{about}");
         assert!(error <= DAY_ENERGY && apart <= DAY_READING, "{about}");
     }
@@ -88,7 +109,8 @@ fn after_a_day_the_time_told_is_right_to_one_step() -> Result<(), Error> {
         let exact = trial.states_in_f64(dt, SAMPLES)?;
         // momentum and angle turn at the mode's frequency
         let scale = trial.parameters.m2 * slow.frequency;
-        let phase = |state: &State<f64>| (state.p2 / scale / (1.0 + 1.0 / slow.shape)).atan2(state.a2);
+        let phase =
+            |state: &State<f64>| (state.p2 / scale / (1.0 + 1.0 / slow.shape)).atan2(state.a2);
         for method in narrow() {
             let (states, _) = followed(&trial, method, dt)?;
             for (state, exact) in states.iter().zip(&exact) {
@@ -108,8 +130,19 @@ fn a_frame_tells_the_energy_of_one_instant_all_day() -> Result<(), Error> {
     let pendulum = Pendulum::new(&settings.parameters.cast::<f64>())?;
     let start = pendulum.to_state(&settings.motion().cast());
     let energy = pendulum.energy_above_rest(&start);
-    for method in [None, Some(Method::Rk4F32DirectionPlain), Some(Method::Rk4F32Direction), Some(Method::Rk4Fixed32)] {
-        let mut simulation = Simulation::new(&settings, &Resources { processor: STM32F405, method })?;
+    for method in [
+        None,
+        Some(Method::Rk4F32DirectionPlain),
+        Some(Method::Rk4F32Direction),
+        Some(Method::Rk4Fixed32),
+    ] {
+        let mut simulation = Simulation::new(
+            &settings,
+            &Resources {
+                processor: STM32F405,
+                method,
+            },
+        )?;
         let Stepping { method, steps } = simulation.motion.stepping();
         let dt = 1.0 / f64::from(TICK_RATE * steps);
         let mut exact = pendulum.run::<DirectionF64>(&start, dt)?;
@@ -127,7 +160,11 @@ fn a_frame_tells_the_energy_of_one_instant_all_day() -> Result<(), Error> {
             worst = worst.max((f64::from(Report::of(&simulation).energy_error) - lost).abs());
         }
         println!("{}, {steps} steps a frame: {worst:.1e}", method.name());
-        assert!(worst <= DAY_ENERGY, "{}, {steps} steps a frame: {worst:e}", method.name());
+        assert!(
+            worst <= DAY_ENERGY,
+            "{}, {steps} steps a frame: {worst:e}",
+            method.name()
+        );
     }
     Ok(())
 }

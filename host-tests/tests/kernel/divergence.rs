@@ -18,22 +18,37 @@ const AGES: f64 = 1e307;
 /// More than enough of them.
 const MANY: u32 = 100_000;
 
-const EVEN: Parameters<f64> = Parameters { m1: 1.0, m2: 1.0, l1: 1.0, l2: 1.0, g: 9.8 };
+const EVEN: Parameters<f64> = Parameters {
+    m1: 1.0,
+    m2: 1.0,
+    l1: 1.0,
+    l2: 1.0,
+    g: 9.8,
+};
 
 /// By every method; fixed point refuses such steps.
 #[test]
 fn every_method_stops_at_its_last_good_state() -> Result<(), Error> {
     for &method in Method::ALL {
-        let dt = if method.integrator() == Integrator::ClosedForm { AGES } else { TOO_LONG };
+        let dt = if method.integrator() == Integrator::ClosedForm {
+            AGES
+        } else {
+            TOO_LONG
+        };
         let mut run = match trials::run(method, &EVEN, &State::at_rest(3.0, 1.0), dt) {
-            Err(Error::TooLarge { parameter: Parameter::Dt, .. }) if method.is_fixed_point() => continue,
+            Err(Error::TooLarge {
+                parameter: Parameter::Dt,
+                ..
+            }) if method.is_fixed_point() => continue,
             run => run?,
         };
         let stopped = (0..MANY).find_map(|_| {
             let before = run.state();
             run.advance(1).err().map(|error| (error, before))
         });
-        let Some((Error::Diverged { .. }, before)) = stopped else { panic!("{stopped:?} of {method}") };
+        let Some((Error::Diverged { .. }, before)) = stopped else {
+            panic!("{stopped:?} of {method}")
+        };
         assert_eq!(run.state(), before, "{method}: the run stays as it was");
         assert_eq!(before.check(), Ok(()), "{method}");
     }
@@ -45,16 +60,36 @@ fn every_method_stops_at_its_last_good_state() -> Result<(), Error> {
 fn a_job_is_refused_when_its_motion_is_lost() {
     let parameters = Parameters { m2: 100.0, ..EVEN };
     let (angles, velocities) = ([3.0, 1.0], [3000.0, -3000.0]);
-    let request =
-        Request { method: Method::Rk4F32, parameters, angles, velocities, dt: 0.06, stride: 1, samples: MANY };
-    let run = OnBoards::start(&request).expect("of the boards").expect("within the limit");
+    let request = Request {
+        method: Method::Rk4F32,
+        parameters,
+        angles,
+        velocities,
+        dt: 0.06,
+        stride: 1,
+        samples: MANY,
+    };
+    let run = OnBoards::start(&request)
+        .expect("of the boards")
+        .expect("within the limit");
     let mut job = Job::new(run, &request).expect("a pendulum");
-    let answers: Vec<_> = std::iter::from_fn(|| (!job.is_finished()).then(|| job.advance())).collect();
+    let answers: Vec<_> =
+        std::iter::from_fn(|| (!job.is_finished()).then(|| job.advance())).collect();
     let (last, readings) = answers.split_last().expect("answers");
-    assert_eq!(last.map_err(Field::from), Err(Field::Dt), "after {} readings", readings.len());
+    assert_eq!(
+        last.map_err(Field::from),
+        Err(Field::Dt),
+        "after {} readings",
+        readings.len()
+    );
     let is_finite = |answer: &Result<Option<Reading>, Error>| {
         let reading = answer.unwrap_or_default().unwrap_or_default();
-        answer.is_ok() && reading.state.iter().chain(&reading.velocities).all(|number| number.is_finite())
+        answer.is_ok()
+            && reading
+                .state
+                .iter()
+                .chain(&reading.velocities)
+                .all(|number| number.is_finite())
     };
     assert!(!readings.is_empty() && readings.iter().all(is_finite));
 }
@@ -62,10 +97,22 @@ fn a_job_is_refused_when_its_motion_is_lost() {
 /// A pendulum so short that the scenes' step only just suits its small motions.
 #[test]
 fn a_scene_stands_at_its_last_good_frame() {
-    let parameters = Parameters { m1: 1.0, m2: 1.0, l1: 1e-4, l2: 1e-4, g: 9.8 };
-    let settings = Settings { parameters, degrees: [179.0, 60.0], velocities: [3e4, -3e4] };
+    let parameters = Parameters {
+        m1: 1.0,
+        m2: 1.0,
+        l1: 1e-4,
+        l2: 1e-4,
+        g: 9.8,
+    };
+    let settings = Settings {
+        parameters,
+        degrees: [179.0, 60.0],
+        velocities: [3e4, -3e4],
+    };
     let mut app = App::new(PROCESSOR, sheets(), NoDisplay, Vec::new(), NoButtons);
-    app.player.play(SceneName::Page, settings).unwrap_or_else(|error| panic!("{error}"));
+    app.player
+        .play(SceneName::Page, settings)
+        .unwrap_or_else(|error| panic!("{error}"));
     let mut stops = Vec::new();
     let mut last_good = None;
     for tick in 1..=600 {
@@ -78,7 +125,10 @@ fn a_scene_stands_at_its_last_good_frame() {
         });
         assert_eq!(app.player.report.state.check(), Ok(()), "at tick {tick}");
     }
-    assert!(matches!(*stops, [Error::Diverged { .. }]), "said once: {stops:?}");
+    assert!(
+        matches!(*stops, [Error::Diverged { .. }]),
+        "said once: {stops:?}"
+    );
     assert_eq!(Some(app.player.report), last_good);
     assert!(app.player.is_paused());
     let frame = app.canvas.clone();

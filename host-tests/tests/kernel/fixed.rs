@@ -16,22 +16,61 @@ const TRIALS: u32 = 3000;
 #[test]
 fn fixed_point_is_as_accurate_as_documented() -> Result<(), Error> {
     // a short, light rod 2 that whirls: of a quarter of a million stages a second each rounds a little
-    let parameters = Parameters { m1: 1.0, m2: 0.0087, l1: 1.0, l2: 0.0825, g: 9.81 };
-    let whirling = Trial { parameters, ..Trial::at_rest(1.0, 1.94, 1.94, 8.0) };
+    let parameters = Parameters {
+        m1: 1.0,
+        m2: 0.0087,
+        l1: 1.0,
+        l2: 0.0825,
+        g: 9.81,
+    };
+    let whirling = Trial {
+        parameters,
+        ..Trial::at_rest(1.0, 1.94, 1.94, 8.0)
+    };
     // another, so quick that gravity is weak beside its motion, and has few digits
-    let parameters = Parameters { m1: 1.0, m2: 0.0510598, l1: 1.0, l2: 0.116394, g: GRAVITY };
-    let motion = Motion { a1: -2.7479, a2: 2.3154, w1: -11.11, w2: 55.97 };
-    let quick = Trial { parameters, start: Pendulum::new(&parameters)?.to_state(&motion), seconds: 13.9 };
+    let parameters = Parameters {
+        m1: 1.0,
+        m2: 0.0510598,
+        l1: 1.0,
+        l2: 0.116394,
+        g: GRAVITY,
+    };
+    let motion = Motion {
+        a1: -2.7479,
+        a2: 2.3154,
+        w1: -11.11,
+        w2: 55.97,
+    };
+    let quick = Trial {
+        parameters,
+        start: Pendulum::new(&parameters)?.to_state(&motion),
+        seconds: 13.9,
+    };
     // a light elbow that snaps through
     let light = Trial::at_rest(128.0, 0.5, 0.5, 2.0);
-    let page = Trial::at_rest(1.0, 120_f64.to_radians(), 120_f64.to_radians(), 1024.0 / 60.0);
+    let page = Trial::at_rest(
+        1.0,
+        120_f64.to_radians(),
+        120_f64.to_radians(),
+        1024.0 / 60.0,
+    );
     for (trial, method, steps, most) in [
         // the method's own 1.2e-8 (measured as much)
         (Trial::regular(10.0), Method::Rk4Fixed32, 256.0, 2e-8),
         // the method's own 2.9e-6 (measured 2.5e-6)
         (Trial::chaotic(5.0), Method::Rk4Fixed32, 240.0, 3e-6),
-        (Trial::regular(10.0), Method::Rk4Fixed32, 1024.0, tolerances::FIXED_32_FLOOR),
-        (Trial::regular(10.0), Method::Rk4Fixed32, 4096.0, tolerances::FIXED_32_FLOOR),
+        (
+            Trial::regular(10.0),
+            Method::Rk4Fixed32,
+            1024.0,
+            tolerances::FIXED_32_FLOOR,
+        ),
+        (
+            Trial::regular(10.0),
+            Method::Rk4Fixed32,
+            4096.0,
+            tolerances::FIXED_32_FLOOR,
+        ),
         // rods and masses all different: their units leave some bits empty (measured 2.3e-8)
         (Trial::unlike(10.0), Method::Rk4Fixed32, 1024.0, 5e-8),
         // twice what compensated `f32` has
@@ -39,7 +78,12 @@ fn fixed_point_is_as_accurate_as_documented() -> Result<(), Error> {
         // 32 steps a frame: the goal is a hundredth of half a pixel on a display of 64 (measured 8.6e-5, rod 2, as in `f64`)
         (quick, Method::Rk4Fixed32, 32.0 * 60.0, 1.5e-4),
         // as in `f64` (measured 3e-13)
-        (Trial::regular(12.0), Method::Extrapolation12Fixed64, 12.0, 1e-12),
+        (
+            Trial::regular(12.0),
+            Method::Extrapolation12Fixed64,
+            12.0,
+            1e-12,
+        ),
         // the goal after 17 s (measured 2.2e-5): roundings, which have grown by 3e10
         (page, Method::Extrapolation12Fixed64, 60.0, 4e-5),
         // three times what is measured, 1.9e-8, a sixth of what it is with roundings that lean to one side, 3e-7
@@ -47,15 +91,32 @@ fn fixed_point_is_as_accurate_as_documented() -> Result<(), Error> {
     ] {
         let error = trial.error(method, 1.0 / steps)?;
         println!("{method}, {steps} steps a second: {error:e} rad");
-        assert!(error <= most, "{method}, {steps} steps a second: {error:e} rad for {trial:?}");
+        assert!(
+            error <= most,
+            "{method}, {steps} steps a second: {error:e} rad for {trial:?}"
+        );
     }
     let refused = light.states(Method::Rk4Fixed32, 1.0 / 512.0);
-    assert!(matches!(refused, Err(Error::TooLarge { parameter: Parameter::Dt, .. })), "{refused:?}");
+    assert!(
+        matches!(
+            refused,
+            Err(Error::TooLarge {
+                parameter: Parameter::Dt,
+                ..
+            })
+        ),
+        "{refused:?}"
+    );
     // momenta are told and taken in units of their own
     let trial = Trial::unlike(10.0);
-    let start = Pendulum::new(&trial.parameters)?.run::<Fixed32>(&trial.start, 1.0 / 1024.0)?.state();
+    let start = Pendulum::new(&trial.parameters)?
+        .run::<Fixed32>(&trial.start, 1.0 / 1024.0)?
+        .state();
     for (told, taken) in [(start.p1, trial.start.p1), (start.p2, trial.start.p2)] {
-        assert!((told - taken).abs() <= tolerances::FIXED_32_FLOOR, "{told} for {taken} kg m^2/s");
+        assert!(
+            (told - taken).abs() <= tolerances::FIXED_32_FLOOR,
+            "{told} for {taken} kg m^2/s"
+        );
     }
     Ok(())
 }
@@ -65,10 +126,22 @@ fn chaos_is_as_good_as_in_double_precision() -> Result<(), Error> {
     let trial = Trial::chaotic(5.0);
     let exact = trial.exact()?;
     for steps in [32.0, 48.0, 64.0, 80.0, 128.0, 256.0, 512.0] {
-        let error = |method| Ok(largest_difference(&trial.states(method, 1.0 / steps)?, &exact));
-        let [double, fixed] = [error(Method::Extrapolation12F64)?, error(Method::Extrapolation12Fixed64)?];
-        let budget = tolerances::FIXED_64_AGAINST_DOUBLE * double.max(0.5 * tolerances::FIXED_64_FLOOR);
-        assert!(fixed <= budget, "{fixed:e} against {double:e} rad with {steps} steps a second");
+        let error = |method| {
+            Ok(largest_difference(
+                &trial.states(method, 1.0 / steps)?,
+                &exact,
+            ))
+        };
+        let [double, fixed] = [
+            error(Method::Extrapolation12F64)?,
+            error(Method::Extrapolation12Fixed64)?,
+        ];
+        let budget =
+            tolerances::FIXED_64_AGAINST_DOUBLE * double.max(0.5 * tolerances::FIXED_64_FLOOR);
+        assert!(
+            fixed <= budget,
+            "{fixed:e} against {double:e} rad with {steps} steps a second"
+        );
     }
     Ok(())
 }
@@ -77,19 +150,47 @@ fn chaos_is_as_good_as_in_double_precision() -> Result<(), Error> {
 /// `f32`, typically (the geometric mean over neighbouring starts).
 #[test]
 fn no_pendulum_is_worse_off_than_in_single_precision() -> Result<(), Error> {
-    let parameters = |l1, l2| Parameters { m1: 0.75, m2: 1.25, l1, l2, g: 9.8125 };
-    let rods = |l1, l2| Trial { parameters: parameters(l1, l2), ..Trial::at_rest(1.0, 0.3, -0.2, 5.0) };
-    let moving = Trial { start: State { a1: 0.5, a2: -0.5, p1: 2.0, p2: 1.0 }, ..Trial::regular(5.0) };
-    let ratios = [1.0, 0.0078125, 0.1, 0.125, 8.0, 10.0, 32.0].map(|ratio| Trial::at_rest(ratio, 0.5, 0.5, 5.0));
+    let parameters = |l1, l2| Parameters {
+        m1: 0.75,
+        m2: 1.25,
+        l1,
+        l2,
+        g: 9.8125,
+    };
+    let rods = |l1, l2| Trial {
+        parameters: parameters(l1, l2),
+        ..Trial::at_rest(1.0, 0.3, -0.2, 5.0)
+    };
+    let moving = Trial {
+        start: State {
+            a1: 0.5,
+            a2: -0.5,
+            p1: 2.0,
+            p2: 1.0,
+        },
+        ..Trial::regular(5.0)
+    };
+    let ratios = [1.0, 0.0078125, 0.1, 0.125, 8.0, 10.0, 32.0]
+        .map(|ratio| Trial::at_rest(ratio, 0.5, 0.5, 5.0));
     let unlike = [rods(0.625, 1.125), rods(0.125, 1.125), rods(1.125, 0.125)];
     for trial in ratios.into_iter().chain([moving]).chain(unlike) {
         let typical = |method| {
             let near = (0..4).map(|i| trial.start.a1 + 1e-3 * f64::from(i));
-            let near = near.map(|a1| Trial { start: State { a1, ..trial.start }, ..trial });
-            near.map(|trial| Ok(trial.error(method, 1.0 / 4096.0)?.ln() / 4.0)).sum::<Result<f64, Error>>()
+            let near = near.map(|a1| Trial {
+                start: State { a1, ..trial.start },
+                ..trial
+            });
+            near.map(|trial| Ok(trial.error(method, 1.0 / 4096.0)?.ln() / 4.0))
+                .sum::<Result<f64, Error>>()
         };
-        let [fixed, single] = [typical(Method::Rk4Fixed32)?.exp(), typical(Method::Rk4F32Direction)?.exp()];
-        assert!(fixed <= single, "{fixed:e} against {single:e} rad for {trial:?}");
+        let [fixed, single] = [
+            typical(Method::Rk4Fixed32)?.exp(),
+            typical(Method::Rk4F32Direction)?.exp(),
+        ];
+        assert!(
+            fixed <= single,
+            "{fixed:e} against {single:e} rad for {trial:?}"
+        );
     }
     Ok(())
 }
@@ -102,19 +203,35 @@ fn thirty_two_bits_are_of_order_four_at_any_speed() -> Result<(), Error> {
     let mut rng = fastrand::Rng::with_seed(3);
     let mut measured = 0;
     for _ in 0..MOTIONS {
-        let [m2, l2] = [(0.01, 300.0), (0.1, 10.0)].map(|(low, high)| log_uniform(&mut rng, low, high));
-        let parameters = Parameters { m1: 1.0, m2, l1: 1.0, l2, g: GRAVITY };
+        let [m2, l2] =
+            [(0.01, 300.0), (0.1, 10.0)].map(|(low, high)| log_uniform(&mut rng, low, high));
+        let parameters = Parameters {
+            m1: 1.0,
+            m2,
+            l1: 1.0,
+            l2,
+            g: GRAVITY,
+        };
         let speed = log_uniform(&mut rng, 1.0, 60.0);
         let [a1, a2, w1, w2] = [PI, PI, speed, speed].map(|most| most * symmetric(&mut rng));
         let pendulum = Pendulum::new(&parameters)?;
         let start = pendulum.to_state(&Motion { a1, a2, w1, w2 });
         let dt = 0.98 * longest_step::<Fixed32>(&pendulum, &start);
-        let trial = Trial { parameters, start, seconds: 512.0 * dt };
+        let trial = Trial {
+            parameters,
+            start,
+            seconds: 512.0 * dt,
+        };
         // far finer than what is measured, at a tenth of the reference's price
         let exact = trial.states(Method::Extrapolation16F64, 0.5 * dt)?;
         // each with half the step of the one before
         let errors = |states: &dyn Fn(f64) -> Result<Vec<State<f64>>, Error>| {
-            let error = |halvings| Ok(largest_difference(&states(dt * 0.5_f64.powi(halvings))?, &exact));
+            let error = |halvings| {
+                Ok(largest_difference(
+                    &states(dt * 0.5_f64.powi(halvings))?,
+                    &exact,
+                ))
+            };
             (0..6).map(error).collect::<Result<Vec<f64>, Error>>()
         };
         let fixed = errors(&|dt| trial.states(Method::Rk4Fixed32, dt))?;
@@ -125,7 +242,10 @@ fn thirty_two_bits_are_of_order_four_at_any_speed() -> Result<(), Error> {
             let [fixed, double] = [&fixed, &double].map(|errors| [errors[i], errors[i + 1]]);
             if fixed[0] < 0.1 && fixed[1] > floor && order(double) > 3.7 {
                 measured += 1;
-                assert!(order(fixed) >= 3.5, "{fixed:?} rad, {double:?} in f64: {trial:?}");
+                assert!(
+                    order(fixed) >= 3.5,
+                    "{fixed:?} rad, {double:?} in f64: {trial:?}"
+                );
             }
         }
     }
@@ -146,34 +266,74 @@ fn longest_step<F: Form>(pendulum: &Pendulum<f64>, start: &State<f64>) -> f64 {
 fn what_has_no_room_is_refused_by_name() -> Result<(), Error> {
     let good = Parameters::equal_rods(1.0, 1.0, 9.81);
     let start = State::at_rest(2.0, 2.0);
-    fn refusal<F: Form>(parameters: &Parameters<f64>, start: &State<f64>, dt: f64) -> Option<Error> {
+    fn refusal<F: Form>(
+        parameters: &Parameters<f64>,
+        start: &State<f64>,
+        dt: f64,
+    ) -> Option<Error> {
         Pendulum::new(parameters).ok()?.run::<F>(start, dt).err()
     }
     for refuse in [refusal::<Fixed32>, refusal::<Fixed64<12>>] {
         assert_eq!(refuse(&good, &start, 1.0 / 64.0), None);
         for dt in [0.5, -0.5, 1e300] {
             let refused = refuse(&good, &start, dt);
-            assert!(matches!(refused, Some(Error::TooLarge { parameter: Parameter::Dt, .. })), "{refused:?}");
+            assert!(
+                matches!(
+                    refused,
+                    Some(Error::TooLarge {
+                        parameter: Parameter::Dt,
+                        ..
+                    })
+                ),
+                "{refused:?}"
+            );
         }
         for (parameters, parameter, value) in [
             (Parameters { m2: 1e5, ..good }, Parameter::M2, 1e5),
             (Parameters { m2: 1e-5, ..good }, Parameter::M2, 1e-5),
             (Parameters { l2: 1e5, ..good }, Parameter::L2, 1e5),
         ] {
-            assert_eq!(refuse(&parameters, &start, 1e-9), Some(Error::OutOfRange { parameter, value }));
+            assert_eq!(
+                refuse(&parameters, &start, 1e-9),
+                Some(Error::OutOfRange { parameter, value })
+            );
         }
         let refused = refuse(&good, &State { p1: 1e300, ..start }, 1e-3);
         assert!(refused.is_some(), "an energy beyond all bounds");
-        let Some(Error::TooLarge { limit, .. }) = refuse(&good, &start, 1.0) else { panic!("a step of 1 s") };
-        assert_eq!(refuse(&good, &start, 0.999 * limit), None, "the limit it names is accepted");
-        let heavy = Parameters { m1: 1024.0, m2: 1024.0, ..good };
+        let Some(Error::TooLarge { limit, .. }) = refuse(&good, &start, 1.0) else {
+            panic!("a step of 1 s")
+        };
+        assert_eq!(
+            refuse(&good, &start, 0.999 * limit),
+            None,
+            "the limit it names is accepted"
+        );
+        let heavy = Parameters {
+            m1: 1024.0,
+            m2: 1024.0,
+            ..good
+        };
         let heavy = refuse(&heavy, &start, 1.0);
-        assert_eq!(heavy, refuse(&good, &start, 1.0), "only the ratio of the masses counts");
+        assert_eq!(
+            heavy,
+            refuse(&good, &start, 1.0),
+            "only the ratio of the masses counts"
+        );
     }
-    let light = |places| Parameters { m2: 0.5_f64.powi(places), ..good };
+    let light = |places| Parameters {
+        m2: 0.5_f64.powi(places),
+        ..good
+    };
     let refused = refusal::<Fixed64<12>>(&light(13), &start, 1e-4);
-    assert!(matches!(refused, Some(Error::OutOfRange { .. })), "{refused:?}");
-    assert_eq!(refusal::<Fixed64<12>>(&light(12), &start, 1e-4), None, "the lightest bob 2");
+    assert!(
+        matches!(refused, Some(Error::OutOfRange { .. })),
+        "{refused:?}"
+    );
+    assert_eq!(
+        refusal::<Fixed64<12>>(&light(12), &start, 1e-4),
+        None,
+        "the lightest bob 2"
+    );
     Ok(())
 }
 
@@ -195,15 +355,25 @@ fn a_motion_of_64_bits_is_right_or_said_to_be_lost() -> Result<(), Error> {
     let mut rng = fastrand::Rng::with_seed(14);
     let mut lost = 0;
     for _ in 0..TRIALS {
-        for difference in [compared::<4>(&mut rng)?, compared::<10>(&mut rng)?, compared::<16>(&mut rng)?] {
+        for difference in [
+            compared::<4>(&mut rng)?,
+            compared::<10>(&mut rng)?,
+            compared::<16>(&mut rng)?,
+        ] {
             match difference {
-                Some(difference) => assert!(difference <= tolerances::FIXED_64_AND_DOUBLE, "{difference:e}"),
+                Some(difference) => assert!(
+                    difference <= tolerances::FIXED_64_AND_DOUBLE,
+                    "{difference:e}"
+                ),
                 None => lost += 1,
             }
         }
     }
     println!("{lost} of {} lost", 3 * TRIALS);
-    assert!((TRIALS / 30..3 * TRIALS / 2).contains(&lost), "{lost} lost: the search is about the limit");
+    assert!(
+        (TRIALS / 30..3 * TRIALS / 2).contains(&lost),
+        "{lost} lost: the search is about the limit"
+    );
     Ok(())
 }
 
@@ -211,12 +381,18 @@ fn a_motion_of_64_bits_is_right_or_said_to_be_lost() -> Result<(), Error> {
 #[test]
 fn less_energy_goes_in_the_same_units() -> Result<(), Error> {
     let (parameters, dt) = (Parameters::equal_rods(1.0, 1.0, 9.81), 1.0 / 256.0);
-    let low = State { a1: 1.0, a2: 0.5, p1: 0.3, p2: -0.2 };
+    let low = State {
+        a1: 1.0,
+        a2: 0.5,
+        p1: 0.3,
+        p2: -0.2,
+    };
     let highest = Fixed64::<10>::new(&parameters, &State::at_rest(PI, PI), dt)?;
-    let [lower, own] = [highest.started(&low)?, Form::new(&parameters, &low, dt)?].map(|mut motion| {
-        motion.advance(256);
-        motion.state()
-    });
+    let [lower, own] =
+        [highest.started(&low)?, Form::new(&parameters, &low, dt)?].map(|mut motion| {
+            motion.advance(256);
+            motion.state()
+        });
     let error = largest_difference(&[lower], &[own]);
     assert!(error <= tolerances::FIXED_64_FLOOR, "{error:e} rad");
     Ok(())

@@ -38,30 +38,41 @@ fn turning(map: &Map) -> Result<Vec<([f32; 2], FlipPair)>, Error> {
 /// doubt, how many are in doubt, and how many there are.
 fn judge(map: &Map) -> Result<[usize; 4], Error> {
     let dt = map.dt / f64::from(FINER);
-    let fine = Flips::<DirectionF64>::new(&map.parameters.cast(), dt, (f64::from(map.limit) / dt) as u32)?;
-    turning(map)?.into_iter().try_fold([0; 4], |counts, (start, point)| {
-        let [a1, a2] = start.map(f64::from);
-        let exact = match reference::flip(&fine, a1, a2)? {
-            Flip::Never => Flip::Never,
-            Flip::After(time) => Flip::After(time as f32),
-            Flip::Later => Flip::Later,
-        };
-        let (wrong, doubtful) = (map.differ([point[0], exact]), map.differ(point));
-        let these = [wrong, wrong && !doubtful, doubtful, true];
-        Ok(std::array::from_fn(|i| counts[i] + usize::from(these[i])))
-    })
+    let fine = Flips::<DirectionF64>::new(
+        &map.parameters.cast(),
+        dt,
+        (f64::from(map.limit) / dt) as u32,
+    )?;
+    turning(map)?
+        .into_iter()
+        .try_fold([0; 4], |counts, (start, point)| {
+            let [a1, a2] = start.map(f64::from);
+            let exact = match reference::flip(&fine, a1, a2)? {
+                Flip::Never => Flip::Never,
+                Flip::After(time) => Flip::After(time as f32),
+                Flip::Later => Flip::Later,
+            };
+            let (wrong, doubtful) = (map.differ([point[0], exact]), map.differ(point));
+            let these = [wrong, wrong && !doubtful, doubtful, true];
+            Ok(std::array::from_fn(|i| counts[i] + usize::from(these[i])))
+        })
 }
 
 /// The flip of the exact motion, to 30 digits.
 fn exact(map: &Map, [a1, a2]: [f32; 2]) -> Flip<f32> {
-    let mut motion = Reference::new(&map.parameters.cast(), &Motion::at_rest(a1.into(), a2.into()));
+    let mut motion = Reference::new(
+        &map.parameters.cast(),
+        &Motion::at_rest(a1.into(), a2.into()),
+    );
     let mut before = [a1, a2].map(f64::from);
     for look in 1..=(f64::from(map.limit) / LOOKS) as u32 {
         let time = f64::from(look) * LOOKS;
         motion.advance_to(time);
         let after = motion.motion().angles();
-        let passed =
-            |rod: usize| (after[rod].abs() > PI).then(|| (after[rod].abs() - PI) / (after[rod] - before[rod]).abs());
+        let passed = |rod: usize| {
+            (after[rod].abs() > PI)
+                .then(|| (after[rod].abs() - PI) / (after[rod] - before[rod]).abs())
+        };
         if let Some(since) = [0, 1].into_iter().filter_map(passed).reduce(f64::max) {
             return Flip::After((time - since * LOOKS) as f32);
         }
@@ -77,14 +88,18 @@ fn points_are_right_to_a_grey_level() -> Result<(), Error> {
     let [wrong, .., points] = judge(&short)?;
     println!("limit 10: {wrong} of {points} wrong");
     assert!(
-        (1000..1700).contains(&points) && wrong as f64 <= (1.0 - tolerances::FLIPS_RIGHT) * points as f64,
+        (1000..1700).contains(&points)
+            && wrong as f64 <= (1.0 - tolerances::FLIPS_RIGHT) * points as f64,
         "{wrong} of {points}"
     );
 
     let mut sample = turning(&short)?;
     Rng::with_seed(1).shuffle(&mut sample);
     for (start, point) in &sample[..JUDGED] {
-        assert!(!short.differ([point[0], exact(&short, *start)]), "{start:?}: {point:?}");
+        assert!(
+            !short.differ([point[0], exact(&short, *start)]),
+            "{start:?}: {point:?}"
+        );
     }
     Ok(())
 }
@@ -93,9 +108,17 @@ fn points_are_right_to_a_grey_level() -> Result<(), Error> {
 #[test]
 fn doubt_tells_what_is_wrong() -> Result<(), Error> {
     let [wrong, unsuspected, doubtful, points] = judge(&map(100.0, 32))?;
-    println!("limit 100: {wrong} wrong, {unsuspected} not in doubt, {doubtful} in doubt of {points}");
+    println!(
+        "limit 100: {wrong} wrong, {unsuspected} not in doubt, {doubtful} in doubt of {points}"
+    );
     assert!(wrong > 0 && doubtful > 0, "nothing is in doubt");
-    assert!((wrong as f64) < tolerances::FLIPS_WRONG * points as f64, "{wrong} of {points}");
-    assert!(unsuspected as f64 <= tolerances::FLIPS_UNSUSPECTED * points as f64, "{unsuspected} of {points}");
+    assert!(
+        (wrong as f64) < tolerances::FLIPS_WRONG * points as f64,
+        "{wrong} of {points}"
+    );
+    assert!(
+        unsuspected as f64 <= tolerances::FLIPS_UNSUSPECTED * points as f64,
+        "{unsuspected} of {points}"
+    );
     Ok(())
 }

@@ -3,7 +3,9 @@
 use std::f64::consts::TAU;
 
 use double_pendulum::parts::Turns;
-use double_pendulum::{DirectionF32, Error, Method, Motion, Numbers, Parameter, Parameters, Pendulum, Run, State};
+use double_pendulum::{
+    DirectionF32, Error, Method, Motion, Numbers, Parameter, Parameters, Pendulum, Run, State,
+};
 use fastrand::Rng;
 use host_tests::oracle::trials::{self, Trial, exact_methods, largest_difference};
 use host_tests::oracle::{random, tolerances};
@@ -16,7 +18,9 @@ fn typical_error(seconds: f64, dt: f64) -> Result<f64, Error> {
     for i in 0..STARTS {
         let on = f64::from(i) * 6e-5;
         let trial = Trial::at_rest(1.0, 0.5 + on, 0.5 - 0.5 * on, seconds);
-        let exact = trial.held_by(Method::Rk4F32Direction).states(Method::Extrapolation16F64, 1.0 / 16.0)?;
+        let exact = trial
+            .held_by(Method::Rk4F32Direction)
+            .states(Method::Extrapolation16F64, 1.0 / 16.0)?;
         squares += largest_difference(&trial.states(Method::Rk4F32Direction, dt)?, &exact).powi(2);
     }
     Ok((squares / f64::from(STARTS)).sqrt())
@@ -38,7 +42,10 @@ fn compensated_single_precision_keeps_its_budgets() -> Result<(), Error> {
         let error = Trial::regular(seconds).error(Method::Rk4F32Direction, 1.0 / steps)?;
         let typically = typical_error(seconds, 1.0 / steps)?;
         println!("{seconds} s, {steps} steps a second: {error:.2e}, typically {typically:.2e}");
-        assert!(error <= goal && typically <= typical, "{seconds} s, {steps} steps a second: {error:e} {typically:e}");
+        assert!(
+            error <= goal && typically <= typical,
+            "{seconds} s, {steps} steps a second: {error:e} {typically:e}"
+        );
     }
     Ok(())
 }
@@ -56,15 +63,27 @@ fn compensation_pays() -> Result<(), Error> {
 /// Rods and masses unlike, in motion; and back, and in steps dealt out otherwise.
 #[test]
 fn backwards_is_forwards_undone_and_how_steps_are_dealt_out_changes_nothing() -> Result<(), Error> {
-    let parameters = Parameters { l2: 0.4, ..Parameters::equal_rods(3.0, 1.0, 9.81) };
-    let start = State { a1: 0.5, a2: 1.0, p1: 0.1, p2: 0.2 };
+    let parameters = Parameters {
+        l2: 0.4,
+        ..Parameters::equal_rods(3.0, 1.0, 9.81)
+    };
+    let start = State {
+        a1: 0.5,
+        a2: 1.0,
+        p1: 0.1,
+        p2: 0.2,
+    };
     let [carried, plain] = tolerances::RETURN_OF_32_BITS;
     for &method in Method::ALL {
         let mut forth = trials::run(method, &parameters, &start, 1.0 / 1024.0)?;
         forth.advance(1024)?;
         let mut each = trials::run(method, &parameters, &start, 1.0 / 1024.0)?;
         (0..1024).try_for_each(|_| each.advance(1))?;
-        assert_eq!((forth.state(), forth.directions()), (each.state(), each.directions()), "{method}");
+        assert_eq!(
+            (forth.state(), forth.directions()),
+            (each.state(), each.directions()),
+            "{method}"
+        );
         let mut back = trials::run(method, &parameters, &forth.state(), -1.0 / 1024.0)?;
         back.advance(1024)?;
         let budget = match method.numbers() {
@@ -88,17 +107,26 @@ fn directions_are_those_of_the_angles() -> Result<(), Error> {
         let mut motion = trials::run(method, &trial.parameters, &trial.start, 1.0 / 64.0)?;
         // fixed point tells them in single precision
         let is_double = matches!(method.numbers(), Numbers::F64 | Numbers::CompensatedF64);
-        let epsilon = if is_double { f64::EPSILON } else { f32::EPSILON.into() };
+        let epsilon = if is_double {
+            f64::EPSILON
+        } else {
+            f32::EPSILON.into()
+        };
         for look in 1..=10 {
             motion.advance(7)?;
             // the directions are ahead of the state by as much as the steps are longer than dt
             let ahead = tolerances::LONGER * epsilon * f64::from(look * 7) / 64.0;
             let budget = tolerances::DIRECTIONS * epsilon + FASTEST * ahead;
-            for ([sine, cosine], angle) in motion.directions().into_iter().zip(motion.state().angles()) {
+            for ([sine, cosine], angle) in
+                motion.directions().into_iter().zip(motion.state().angles())
+            {
                 let (s, c) = angle.sin_cos();
                 let [along, across] = [sine * s + cosine * c, sine * c - cosine * s];
                 assert!(across.abs() <= budget, "{method}: {across:e} at {angle}");
-                assert!((along - 1.0).abs() <= tolerances::LENGTHS, "{method}: {along} long at {angle}");
+                assert!(
+                    (along - 1.0).abs() <= tolerances::LENGTHS,
+                    "{method}: {along} long at {angle}"
+                );
             }
         }
     }
@@ -108,7 +136,9 @@ fn directions_are_those_of_the_angles() -> Result<(), Error> {
 /// The turns that a rod has made since its start follow from its angular velocity, step by step.
 #[test]
 fn turns_are_those_that_the_velocity_makes() -> Result<(), Error> {
-    let Trial { parameters, start, .. } = Trial::at_rest(2.75, 3.0, 3.0, 1.0);
+    let Trial {
+        parameters, start, ..
+    } = Trial::at_rest(2.75, 3.0, 3.0, 1.0);
     let (pendulum, dt) = (Pendulum::new(&parameters)?, 1.0 / 2048.0);
     let velocities = |state: &State<f64>| {
         let Motion { w1, w2, .. } = pendulum.to_motion(state);
@@ -122,12 +152,18 @@ fn turns_are_those_that_the_velocity_makes() -> Result<(), Error> {
             let now = velocities(&motion.state());
             for (i, told) in motion.angles().into_iter().enumerate() {
                 angles[i] += 0.5 * dt * (before[i] + now[i]);
-                assert!((told - angles[i]).abs() < 0.1, "{method}: {told}, {angles:?}");
+                assert!(
+                    (told - angles[i]).abs() < 0.1,
+                    "{method}: {told}, {angles:?}"
+                );
                 most = most.max(told.abs());
             }
             before = now;
         }
-        assert!(most > 2.0 * TAU, "{method}: it never turned over twice: {most}");
+        assert!(
+            most > 2.0 * TAU,
+            "{method}: it never turned over twice: {most}"
+        );
     }
     Ok(())
 }
@@ -138,19 +174,38 @@ fn turns_follow_an_angle_either_way() {
     let mut rng = Rng::with_seed(7);
     let mut angle = 1.0_f64;
     let signs = |angle: f64| [[angle.sin(), angle.cos()].map(|part| -i32::from(part < 0.0)); 2];
-    assert!(matches!(Turns::of([0.0, 1.4e10], signs(angle)), Err(Error::OutOfRange { parameter: Parameter::A2, .. })));
+    assert!(matches!(
+        Turns::of([0.0, 1.4e10], signs(angle)),
+        Err(Error::OutOfRange {
+            parameter: Parameter::A2,
+            ..
+        })
+    ));
     for start in (-100..=100).map(|i| 0.37 * f64::from(i)) {
         let [turns, _] = Turns::of([start; 2], signs(start)).expect("few turns");
-        assert!((turns.angle([start.sin(), start.cos()]) - start).abs() < 1e-9, "{start}");
+        assert!(
+            (turns.angle([start.sin(), start.cos()]) - start).abs() < 1e-9,
+            "{start}"
+        );
     }
     let mut turns = Turns::of([angle; 2], signs(angle)).expect("few turns");
     let mut farthest = 0.0_f64;
     for _ in 0..100_000 {
         angle += 1.5 * random::symmetric(&mut rng);
         Turns::observe(&mut turns, signs(angle));
-        let unwrapped = Turns::unwrap(&turns, State::at_rest(angle.rem_euclid(TAU), angle - 7.0 * TAU));
-        let known = [turns[0].angle([angle.sin(), angle.cos()]), unwrapped.a1, unwrapped.a2];
-        assert!(known.iter().all(|known| (known - angle).abs() < 1e-9), "{known:?} for {angle}");
+        let unwrapped = Turns::unwrap(
+            &turns,
+            State::at_rest(angle.rem_euclid(TAU), angle - 7.0 * TAU),
+        );
+        let known = [
+            turns[0].angle([angle.sin(), angle.cos()]),
+            unwrapped.a1,
+            unwrapped.a2,
+        ];
+        assert!(
+            known.iter().all(|known| (known - angle).abs() < 1e-9),
+            "{known:?} for {angle}"
+        );
         farthest = farthest.max(angle.abs());
     }
     assert!(farthest > 10.0 * TAU, "{farthest}");
@@ -160,29 +215,90 @@ const _: () = assert!(size_of::<Run<DirectionF32>>() <= 256, "a run is small");
 
 #[test]
 fn bad_input_is_refused_by_name() -> Result<(), Error> {
-    let good = Parameters { m1: 1.0, m2: 1.0, l1: 1.0, l2: 1.0, g: 9.81 };
+    let good = Parameters {
+        m1: 1.0,
+        m2: 1.0,
+        l1: 1.0,
+        l2: 1.0,
+        g: 9.81,
+    };
     let still = State::at_rest(1.0, 1.0);
     for &method in Method::ALL {
         let refused = |parameters: &Parameters<f64>, start: &State<f64>, dt: f64| {
-            trials::run(method, parameters, start, dt).err().unwrap_or_else(|| panic!("{method} takes it"))
+            trials::run(method, parameters, start, dt)
+                .err()
+                .unwrap_or_else(|| panic!("{method} takes it"))
         };
         for dt in [f64::NAN, f64::INFINITY] {
-            assert!(matches!(refused(&good, &still, dt), Error::NotFinite { parameter: Parameter::Dt, .. }));
+            assert!(matches!(
+                refused(&good, &still, dt),
+                Error::NotFinite {
+                    parameter: Parameter::Dt,
+                    ..
+                }
+            ));
         }
         for dt in [0.0, 1e-310] {
-            assert!(matches!(refused(&good, &still, dt), Error::OutOfRange { parameter: Parameter::Dt, .. }));
+            assert!(matches!(
+                refused(&good, &still, dt),
+                Error::OutOfRange {
+                    parameter: Parameter::Dt,
+                    ..
+                }
+            ));
         }
         let nowhere = refused(&good, &State::at_rest(f64::NAN, 0.0), 0.01);
-        assert!(matches!(nowhere, Error::NotFinite { parameter: Parameter::A1, .. }), "{method}: {nowhere:?}");
+        assert!(
+            matches!(
+                nowhere,
+                Error::NotFinite {
+                    parameter: Parameter::A1,
+                    ..
+                }
+            ),
+            "{method}: {nowhere:?}"
+        );
         let negative = refused(&Parameters { m2: -1.0, ..good }, &still, 0.01);
-        assert!(matches!(negative, Error::NotPositive { parameter: Parameter::M2, .. }));
+        assert!(matches!(
+            negative,
+            Error::NotPositive {
+                parameter: Parameter::M2,
+                ..
+            }
+        ));
         if method.is_single() {
-            let extreme = refused(&Parameters { m1: 1e30, m2: 1e-30, ..good }, &still, 0.01);
-            assert!(matches!(extreme, Error::OutOfRange { .. }), "{method}: {extreme:?}");
+            let extreme = refused(
+                &Parameters {
+                    m1: 1e30,
+                    m2: 1e-30,
+                    ..good
+                },
+                &still,
+                0.01,
+            );
+            assert!(
+                matches!(extreme, Error::OutOfRange { .. }),
+                "{method}: {extreme:?}"
+            );
         }
     }
-    let light = Pendulum::new(&Parameters { m2: 0.1, l2: 0.1, ..good })?;
-    let light = light.run::<DirectionF32>(&State { p1: 3e38, ..still }, 0.01).expect_err("refused");
-    assert!(matches!(light, Error::OutOfRange { parameter: Parameter::P1, value: 2.9e38..3.1e38 }), "{light:?}");
+    let light = Pendulum::new(&Parameters {
+        m2: 0.1,
+        l2: 0.1,
+        ..good
+    })?;
+    let light = light
+        .run::<DirectionF32>(&State { p1: 3e38, ..still }, 0.01)
+        .expect_err("refused");
+    assert!(
+        matches!(
+            light,
+            Error::OutOfRange {
+                parameter: Parameter::P1,
+                value: 2.9e38..3.1e38
+            }
+        ),
+        "{light:?}"
+    );
     Ok(())
 }

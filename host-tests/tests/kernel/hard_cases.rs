@@ -16,8 +16,24 @@ const STARTS: u32 = 24;
 const PLAIN: f64 = 2000.0;
 
 /// What halving the step may make of a typical error, above what error, and the most that the finest steps leave.
-fn budget(&HardCase { floor, method: own, fixed, growth, in_angles, .. }: &HardCase, method: Method) -> [f64; 3] {
-    let plain = PLAIN * floor * if method.equations() == Equations::Directions { 1.0 } else { in_angles };
+fn budget(
+    &HardCase {
+        floor,
+        method: own,
+        fixed,
+        growth,
+        in_angles,
+        ..
+    }: &HardCase,
+    method: Method,
+) -> [f64; 3] {
+    let plain = PLAIN
+        * floor
+        * if method.equations() == Equations::Directions {
+            1.0
+        } else {
+            in_angles
+        };
     let double = own.max(plain * f64::EPSILON / f64::from(f32::EPSILON));
     match method.numbers() {
         Numbers::CompensatedF32 => [growth, growth * own * f64::from(f32::EPSILON), floor],
@@ -43,22 +59,53 @@ fn refining_pays(case: &HardCase, method: Method) -> Result<(), Error> {
     let with_exact = |i| {
         let on = f64::from(i) * case.spread;
         let State { a1, a2, p1, p2 } = case.trial.start;
-        let trial = Trial { start: State { a1: a1 + on, a2: a2 + 0.5 * on, p1, p2 }, ..case.trial };
+        let trial = Trial {
+            start: State {
+                a1: a1 + on,
+                a2: a2 + 0.5 * on,
+                p1,
+                p2,
+            },
+            ..case.trial
+        };
         let held = trial.held_by(method);
-        Ok((trial, if is_narrow { held.states(Method::Extrapolation16F64, 1.0 / 512.0)? } else { held.exact()? }))
+        Ok((
+            trial,
+            if is_narrow {
+                held.states(Method::Extrapolation16F64, 1.0 / 512.0)?
+            } else {
+                held.exact()?
+            },
+        ))
     };
-    let starts = (0..starts).map(with_exact).collect::<Result<Vec<_>, Error>>()?;
+    let starts = (0..starts)
+        .map(with_exact)
+        .collect::<Result<Vec<_>, Error>>()?;
     // the geometric mean, rad; infinite where a motion is lost
     let typical_error = |halvings| {
         let error = |(trial, exact): &(Trial, Vec<State<f64>>)| {
             let states = trial.states(method, 0.5_f64.powi(halvings))?;
-            Ok(largest_difference(&states, exact).max(f64::MIN_POSITIVE).ln())
+            Ok(largest_difference(&states, exact)
+                .max(f64::MIN_POSITIVE)
+                .ln())
         };
         let logarithms = starts.iter().map(error).sum::<Result<f64, Error>>()?;
         Ok((logarithms / starts.len() as f64).exp())
     };
-    let is_too_long = |error: &_| matches!(error, Err(Error::TooLarge { parameter: Parameter::Dt, .. }));
-    let errors = match HALVINGS.map(typical_error).filter(|error| !is_too_long(error)).collect() {
+    let is_too_long = |error: &_| {
+        matches!(
+            error,
+            Err(Error::TooLarge {
+                parameter: Parameter::Dt,
+                ..
+            })
+        )
+    };
+    let errors = match HALVINGS
+        .map(typical_error)
+        .filter(|error| !is_too_long(error))
+        .collect()
+    {
         Err(Error::OutOfRange { .. }) => Vec::new(),
         errors => errors?,
     };
@@ -66,7 +113,10 @@ fn refining_pays(case: &HardCase, method: Method) -> Result<(), Error> {
     assert_eq!(errors.is_empty(), last.is_nan(), "{about}");
     for pair in errors.windows(2) {
         // beyond a tenth of a radian an error says nothing but that the motion is lost
-        assert!(pair[0] > 0.1 || pair[1] <= (growth * pair[0]).max(least), "{about}");
+        assert!(
+            pair[0] > 0.1 || pair[1] <= (growth * pair[0]).max(least),
+            "{about}"
+        );
     }
     assert!(errors.last().is_none_or(|&error| error <= last), "{about}");
     Ok(())
@@ -76,7 +126,8 @@ fn refining_pays(case: &HardCase, method: Method) -> Result<(), Error> {
 fn every_hard_case_is_taken() -> Result<(), Error> {
     let all = |case| exact_methods().map(move |method| (case, method));
     let all: Vec<_> = hard_cases().into_iter().flat_map(all).collect();
-    all.into_par_iter().try_for_each(|(case, method)| refining_pays(&case, method))
+    all.into_par_iter()
+        .try_for_each(|(case, method)| refining_pays(&case, method))
 }
 
 /// A million steps of 2^-13 s: compensated sums do not care how many there are.
@@ -87,7 +138,13 @@ fn a_million_steps() -> Result<(), Error> {
     let single = trial.error(Method::Rk4F32Direction, dt)?;
     let double = largest_difference(&trial.states_in_f64(dt, MOMENTS)?, &trial.exact()?);
     println!("{single:.1e} rad, {double:.1e} rad");
-    let tolerances::PerPrecision { single: most, double: least } = tolerances::MILLION_STEPS;
-    assert!(single <= most && double <= least, "{single:e} rad, {double:e} rad");
+    let tolerances::PerPrecision {
+        single: most,
+        double: least,
+    } = tolerances::MILLION_STEPS;
+    assert!(
+        single <= most && double <= least,
+        "{single:e} rad, {double:e} rad"
+    );
     Ok(())
 }

@@ -13,7 +13,10 @@ use reference::twofloat::TwoFloat;
 /// How far the directions are from all that they may be.
 fn distance(row: &KnownAnswer, directions: [TwoFloat; 4]) -> f64 {
     let off = |i: usize| f64::from(directions[i] - row.directions[i]).abs() - row.radius[i];
-    (0..4).map(off).map(|off| if off.is_nan() { f64::INFINITY } else { off }).fold(0.0, f64::max)
+    (0..4)
+        .map(off)
+        .map(|off| if off.is_nan() { f64::INFINITY } else { off })
+        .fold(0.0, f64::max)
 }
 
 /// Every row with the reference there.
@@ -23,14 +26,26 @@ static ROWS: LazyLock<Vec<(KnownAnswer, Reference)>> = LazyLock::new(|| {
         reference.advance_to(row.time);
         (row, reference)
     };
-    table().expect("the table can be read").into_par_iter().map(at_its_time).collect()
+    table()
+        .expect("the table can be read")
+        .into_par_iter()
+        .map(at_its_time)
+        .collect()
 });
 
 #[test]
 fn reference_reaches_the_tables_digits() {
     for (row, reference) in &*ROWS {
-        let (distance, budget) = (distance(row, reference.directions()), tolerances::REFERENCE * row.growth);
-        assert!(distance <= budget, "{} at {} s: {distance:e}, budget {budget:e}", row.scene, row.time);
+        let (distance, budget) = (
+            distance(row, reference.directions()),
+            tolerances::REFERENCE * row.growth,
+        );
+        assert!(
+            distance <= budget,
+            "{} at {} s: {distance:e}, budget {budget:e}",
+            row.scene,
+            row.time
+        );
     }
 }
 
@@ -41,28 +56,47 @@ fn keeps_its_budgets(rows: &[(KnownAnswer, Reference)], method: Method) {
         let (first, _) = &scene[0];
         let dt = 1.0 / f64::from(steps_per_second);
         let mut run = match trials::run(method, &first.parameters, &first.start.state(), dt) {
-            Err(Error::TooLarge { parameter: Parameter::Dt, .. }) if method.is_fixed_point() => continue,
+            Err(Error::TooLarge {
+                parameter: Parameter::Dt,
+                ..
+            }) if method.is_fixed_point() => continue,
             run => run.unwrap_or_else(|error| panic!("{method}, {}: {error}", first.scene)),
         };
         let mut made = 0;
         for (row, exact) in scene {
             let left = (row.time * f64::from(steps_per_second)) as u32 - made;
             made += left;
-            let State { a1, a2, .. } = run.advance(left).map_or([f64::NAN; 4].into(), |()| run.state());
-            let distance = distance(row, [a1.sin(), a1.cos(), a2.sin(), a2.cos()].map(TwoFloat::from));
+            let State { a1, a2, .. } = run
+                .advance(left)
+                .map_or([f64::NAN; 4].into(), |()| run.state());
+            let distance = distance(
+                row,
+                [a1.sin(), a1.cos(), a2.sin(), a2.cos()].map(TwoFloat::from),
+            );
             let budget = tolerances::known_answer(row, method, &exact.state());
-            assert!(distance <= budget, "{method}, {} at {} s: {distance:e}, budget {budget:e}", row.scene, row.time);
+            assert!(
+                distance <= budget,
+                "{method}, {} at {} s: {distance:e}, budget {budget:e}",
+                row.scene,
+                row.time
+            );
             tested += u32::from(budget < 1.0);
         }
     }
     println!("{method}: {tested}");
     let claimed = tolerances::KNOWN_ANSWERS_CLAIMED.by(method);
-    assert!(f64::from(tested) >= claimed, "{method}: only {tested} rows of the table have a budget below 1");
+    assert!(
+        f64::from(tested) >= claimed,
+        "{method}: only {tested} rows of the table have a budget below 1"
+    );
 }
 
 #[test]
 fn every_method_keeps_its_budgets() {
     // here, as a job that waited for the rows would keep a thread from the jobs that compute them
     let rows = &*ROWS;
-    exact_methods().collect::<Vec<_>>().into_par_iter().for_each(|method| keeps_its_budgets(rows, method));
+    exact_methods()
+        .collect::<Vec<_>>()
+        .into_par_iter()
+        .for_each(|method| keeps_its_budgets(rows, method));
 }

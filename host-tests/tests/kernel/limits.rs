@@ -2,7 +2,9 @@
 
 use std::f64::consts::{PI, TAU};
 
-use double_pendulum::{Equations, Error, Integrator, Method, Modes, Motion, Numbers, Parameters, Pendulum, State};
+use double_pendulum::{
+    Equations, Error, Integrator, Method, Modes, Motion, Numbers, Parameters, Pendulum, State,
+};
 use host_tests::oracle::tolerances;
 use host_tests::oracle::trials::{exact_methods, run};
 use reference::taylor::Reference;
@@ -25,10 +27,14 @@ fn fall(mut angle: impl FnMut() -> f64) -> f64 {
 /// whatever the step. (In angles increments are lost, see below; in fixed point a sine has too few digits.)
 #[test]
 fn upright_falls_when_theory_says() -> Result<(), Error> {
-    let is_meant = |method: &&Method| method.equations() == Equations::Directions && !method.is_fixed_point();
+    let is_meant =
+        |method: &&Method| method.equations() == Equations::Directions && !method.is_fixed_point();
     for &method in Method::ALL.iter().filter(is_meant) {
         let single = f64::from(std::f32::consts::PI);
-        let (up, parameters) = (if method.is_single() { single } else { PI }, even(9.81_f64 as f32 as f64));
+        let (up, parameters) = (
+            if method.is_single() { single } else { PI },
+            even(9.81_f64 as f32 as f64),
+        );
         let mut reference = Reference::new(&parameters, &Motion::at_rest(up, up));
         let mut time = 0.0;
         let exact = fall(|| {
@@ -38,7 +44,12 @@ fn upright_falls_when_theory_says() -> Result<(), Error> {
         });
         assert!(exact.is_finite());
         for halvings in HALVINGS.skip(2) {
-            let mut motion = run(method, &parameters, &State::at_rest(up, up), 0.5_f64.powi(halvings))?;
+            let mut motion = run(
+                method,
+                &parameters,
+                &State::at_rest(up, up),
+                0.5_f64.powi(halvings),
+            )?;
             let mut steps = 0;
             let falls = fall(|| {
                 motion.advance(steps).expect("a finite motion");
@@ -46,7 +57,10 @@ fn upright_falls_when_theory_says() -> Result<(), Error> {
                 motion.angles()[0].rem_euclid(TAU)
             });
             let error = (falls - exact).abs();
-            assert!(error <= tolerances::FALL, "{method}, 2^-{halvings} s: after {falls} s instead of {exact} s");
+            assert!(
+                error <= tolerances::FALL,
+                "{method}, 2^-{halvings} s: after {falls} s instead of {exact} s"
+            );
         }
     }
     Ok(())
@@ -58,8 +72,18 @@ fn upright_falls_when_theory_says() -> Result<(), Error> {
 fn upright_stays_as_long_as_theory_says_in_plain_sums() -> Result<(), Error> {
     let single = f64::from(std::f32::consts::PI);
     for (method, up, ulp, error) in [
-        (Method::Rk4F32, single, 2.0 * f64::from(f32::EPSILON), single - PI),
-        (Method::Rk4F64, PI, 2.0 * f64::EPSILON, 1.224_646_799_147_353_2e-16),
+        (
+            Method::Rk4F32,
+            single,
+            2.0 * f64::from(f32::EPSILON),
+            single - PI,
+        ),
+        (
+            Method::Rk4F64,
+            PI,
+            2.0 * f64::EPSILON,
+            1.224_646_799_147_353_2e-16,
+        ),
     ] {
         for steps_per_second in [64_u32, 256] {
             let dt = 1.0 / f64::from(steps_per_second);
@@ -71,7 +95,10 @@ fn upright_stays_as_long_as_theory_says_in_plain_sums() -> Result<(), Error> {
                 steps += 1;
             }
             let stayed = f64::from(steps) * dt;
-            assert!((stayed / stays - 1.0).abs() <= tolerances::STAYS, "{method}: {stayed} s instead of {stays} s");
+            assert!(
+                (stayed / stays - 1.0).abs() <= tolerances::STAYS,
+                "{method}: {stayed} s instead of {stays} s"
+            );
         }
     }
     Ok(())
@@ -80,17 +107,29 @@ fn upright_stays_as_long_as_theory_says_in_plain_sums() -> Result<(), Error> {
 /// Straight and turning as one, without gravity: a = a(0) + w t, to the roundings of the turning.
 #[test]
 fn straight_rods_turn_evenly_without_gravity() -> Result<(), Error> {
-    let parameters = Parameters { l2: 0.5, ..even(0.0) };
-    let start = Pendulum::new(&parameters)?.to_state(&Motion { a1: 1.0, a2: 1.0, w1: 2.0, w2: 2.0 });
+    let parameters = Parameters {
+        l2: 0.5,
+        ..even(0.0)
+    };
+    let start = Pendulum::new(&parameters)?.to_state(&Motion {
+        a1: 1.0,
+        a2: 1.0,
+        w1: 2.0,
+        w2: 2.0,
+    });
     for method in exact_methods() {
         let mut motion = run(method, &parameters, &start, 1.0 / 256.0)?;
         for seconds in 1..=20 {
             motion.advance(256)?;
             let State { a1, a2, p1, p2 } = motion.state();
-            let [miss1, miss2] = [a1, a2].map(|angle| (angle - 1.0 - 2.0 * f64::from(seconds)).abs());
+            let [miss1, miss2] =
+                [a1, a2].map(|angle| (angle - 1.0 - 2.0 * f64::from(seconds)).abs());
             let lost = ((p1 + p2) / (start.p1 + start.p2) - 1.0).abs();
             let worst = miss1.max(miss2).max(lost);
-            assert!(worst <= tolerances::STRAIGHT.by(method), "{method}: {worst:e} rad or relative after {seconds} s");
+            assert!(
+                worst <= tolerances::STRAIGHT.by(method),
+                "{method}: {worst:e} rad or relative after {seconds} s"
+            );
         }
     }
     Ok(())
@@ -115,7 +154,10 @@ fn what_is_at_rest_stays() -> Result<(), Error> {
                 _ => [f64::EPSILON, 0.0],
             };
             let pushed = now.p1.abs().max(now.p2.abs());
-            assert!(moved <= angle && pushed <= momentum, "{method}: {now:?} from {start:?}");
+            assert!(
+                moved <= angle && pushed <= momentum,
+                "{method}: {now:?} from {start:?}"
+            );
         }
     }
     Ok(())
@@ -129,19 +171,40 @@ fn denormals_do_no_harm() -> Result<(), Error> {
     let slow = Modes::new(&parameters)?.slow;
     for method in exact_methods().filter(|method| !method.is_fixed_point()) {
         // far above the least normal number, and at a few units of the least of all
-        let [tiny, subnormal] = if method.is_single() { [-80, -146] } else { [-900, -1071] }.map(|n| 2_f64.powi(n));
-        let mut motion = run(method, &parameters, &State::at_rest(tiny, tiny * slow.shape), 1.0 / 256.0)?;
+        let [tiny, subnormal] = if method.is_single() {
+            [-80, -146]
+        } else {
+            [-900, -1071]
+        }
+        .map(|n| 2_f64.powi(n));
+        let mut motion = run(
+            method,
+            &parameters,
+            &State::at_rest(tiny, tiny * slow.shape),
+            1.0 / 256.0,
+        )?;
         for step in 1..=10 * 64 {
             motion.advance(4)?;
             let expected = (slow.frequency * f64::from(step) / 64.0).cos();
             let miss = (motion.state().a1 / tiny - expected).abs();
-            assert!(miss <= tolerances::TINY.by(method), "{method}: {miss:e} at step {step}");
+            assert!(
+                miss <= tolerances::TINY.by(method),
+                "{method}: {miss:e} at step {step}"
+            );
         }
-        let mut motion = run(method, &parameters, &State::at_rest(subnormal, subnormal), 1.0 / 256.0)?;
+        let mut motion = run(
+            method,
+            &parameters,
+            &State::at_rest(subnormal, subnormal),
+            1.0 / 256.0,
+        )?;
         motion.advance(10_000)?;
         let State { a1, a2, .. } = motion.state();
         let most = 1000.0 * subnormal;
-        assert!(a1.abs() <= most && a2.abs() <= most, "{method}: {a1:e}, {a2:e} from {subnormal:e}");
+        assert!(
+            a1.abs() <= most && a2.abs() <= most,
+            "{method}: {a1:e}, {a2:e} from {subnormal:e}"
+        );
     }
     Ok(())
 }
@@ -151,14 +214,32 @@ fn denormals_do_no_harm() -> Result<(), Error> {
 #[test]
 fn the_edge_of_stability_is_where_it_should_be() -> Result<(), Error> {
     const SMALL: f64 = 1e-5;
-    let is_meant = |method: &Method| method.integrator() == Integrator::Rk4 && !method.is_fixed_point();
-    for parameters in [even(9.81), Parameters { m2: 1000.0, ..even(9.81) }, Parameters { l2: 0.01, ..even(9.81) }] {
+    let is_meant =
+        |method: &Method| method.integrator() == Integrator::Rk4 && !method.is_fixed_point();
+    for parameters in [
+        even(9.81),
+        Parameters {
+            m2: 1000.0,
+            ..even(9.81)
+        },
+        Parameters {
+            l2: 0.01,
+            ..even(9.81)
+        },
+    ] {
         let modes = Modes::new(&parameters)?;
         assert_eq!(modes.check_step(modes.step_limit()), Ok(()));
-        assert!([1.01 * modes.step_limit(), 0.0, f64::NAN].iter().all(|dt| modes.check_step(*dt).is_err()));
+        assert!(
+            [1.01 * modes.step_limit(), 0.0, f64::NAN]
+                .iter()
+                .all(|dt| modes.check_step(*dt).is_err())
+        );
         let shape = modes.fast.shape;
-        let start =
-            if shape.abs() > 1.0 { State::at_rest(SMALL / shape, SMALL) } else { State::at_rest(SMALL, SMALL * shape) };
+        let start = if shape.abs() > 1.0 {
+            State::at_rest(SMALL / shape, SMALL)
+        } else {
+            State::at_rest(SMALL, SMALL * shape)
+        };
         for method in exact_methods().filter(is_meant) {
             let swing = |share: f64| {
                 let mut motion = run(method, &parameters, &start, modes.step_limit() * share)?;

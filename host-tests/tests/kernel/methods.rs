@@ -5,8 +5,18 @@ use host_tests::oracle::tolerances;
 use host_tests::oracle::trials::{Trial, exact_methods, largest_difference};
 
 /// The order that shows between two numbers of steps a second, beside the `exact` states.
-fn order(method: Method, trial: &Trial, exact: &[State<f64>], [coarse, fine]: [u32; 2]) -> Result<f64, Error> {
-    let error = |steps: u32| Ok(largest_difference(&trial.states(method, 1.0 / f64::from(steps))?, exact));
+fn order(
+    method: Method,
+    trial: &Trial,
+    exact: &[State<f64>],
+    [coarse, fine]: [u32; 2],
+) -> Result<f64, Error> {
+    let error = |steps: u32| {
+        Ok(largest_difference(
+            &trial.states(method, 1.0 / f64::from(steps))?,
+            exact,
+        ))
+    };
     Ok((error(coarse)? / error(fine)?).ln() / (f64::from(fine) / f64::from(coarse)).ln())
 }
 
@@ -29,18 +39,43 @@ fn every_method_is_of_its_order() -> Result<(), Error> {
     for method in exact_methods() {
         let order = order(method, &trial, &exact, steps(method))?;
         println!("{method}: {order:.2}");
-        assert!((order / f64::from(method.order()) - 1.0).abs() <= coarse, "{method}: order {order}");
+        assert!(
+            (order / f64::from(method.order()) - 1.0).abs() <= coarse,
+            "{method}: order {order}"
+        );
     }
     // the classical one of masses and lengths alike and unlike; steps so fine that the next order is small, and so coarse that
     // rounding is
-    let parameters = Parameters { m1: 3.0, m2: 0.5, l1: 1.0, l2: 0.4, g: 1.62 };
-    let weak = Trial { parameters, start: State { a1: -0.4, a2: 0.6, p1: 0.2, p2: 0.1 }, seconds: 20.0 };
-    for (trial, steps) in [(Trial::regular(20.0), 128), (Trial::unlike(20.0), 1024), (weak, 256)] {
+    let parameters = Parameters {
+        m1: 3.0,
+        m2: 0.5,
+        l1: 1.0,
+        l2: 0.4,
+        g: 1.62,
+    };
+    let weak = Trial {
+        parameters,
+        start: State {
+            a1: -0.4,
+            a2: 0.6,
+            p1: 0.2,
+            p2: 0.1,
+        },
+        seconds: 20.0,
+    };
+    for (trial, steps) in [
+        (Trial::regular(20.0), 128),
+        (Trial::unlike(20.0), 1024),
+        (weak, 256),
+    ] {
         let exact = trial.exact()?;
         for steps in [steps, 2 * steps] {
             let order = order(Method::Rk4F64, &trial, &exact, [steps, 2 * steps])?;
             println!("{trial:?}: {order:.3}");
-            assert!((order / 4.0 - 1.0).abs() <= fine, "order {order} for {trial:?}");
+            assert!(
+                (order / 4.0 - 1.0).abs() <= fine,
+                "order {order} for {trial:?}"
+            );
         }
     }
     Ok(())
@@ -53,16 +88,27 @@ fn extrapolation_of_any_equation_is_of_the_order_asked_for() -> Result<(), Error
         let method = Extrapolation::new(order)?;
         let error = |steps: u32| {
             let dt = 20.0 / f64::from(steps);
-            let [x, v] = (0..steps).fold([0.0, 1.0], |z, _| method.step(|&[x, v]: &[f64; 2]| [v, -x], &z, dt));
+            let [x, v] = (0..steps).fold([0.0, 1.0], |z, _| {
+                method.step(|&[x, v]: &[f64; 2]| [v, -x], &z, dt)
+            });
             (x - 20.0_f64.sin()).abs().max((v - 20.0_f64.cos()).abs())
         };
         let measured = (error(2 * steps) / error(3 * steps)).ln() / 1.5_f64.ln();
         println!("order {order}: {measured:.2}");
         let apart = (measured - f64::from(order)).abs();
-        assert!(apart <= tolerances::ORDER_EXTRAPOLATED, "order {measured} instead of {order}");
+        assert!(
+            apart <= tolerances::ORDER_EXTRAPOLATED,
+            "order {measured} instead of {order}"
+        );
     }
     for order in [0, 1, 7, 18, u32::MAX] {
-        assert!(matches!(Extrapolation::<f64>::new(order), Err(Error::OutOfRange { parameter: Parameter::Order, .. })));
+        assert!(matches!(
+            Extrapolation::<f64>::new(order),
+            Err(Error::OutOfRange {
+                parameter: Parameter::Order,
+                ..
+            })
+        ));
     }
     Ok(())
 }

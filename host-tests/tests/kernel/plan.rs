@@ -4,7 +4,9 @@ use std::f64::consts::PI;
 use std::ops::RangeInclusive;
 
 use double_pendulum::Method;
-use double_pendulum::plan::{Budget, Costs, Limit, Plan, PlanError, PlannedRun, Problem, Search, Stepping};
+use double_pendulum::plan::{
+    Budget, Costs, Limit, Plan, PlanError, PlannedRun, Problem, Search, Stepping,
+};
 use double_pendulum::{Error, Motion, Parameter, Parameters};
 use firmware::config::{CORTEX_M3, STM32F405};
 use firmware::motion::half_pixel;
@@ -18,12 +20,25 @@ fn scene(mass_ratio: f64, degrees: f64, duration: f64) -> Problem {
     let angle = degrees * (PI / 180.0);
     let pendulum = Parameters::equal_rods(mass_ratio, 1.0, 9.81);
     let tolerance = half_pixel(&pendulum, 64.0);
-    Problem { pendulum, start: Motion::at_rest(angle, angle), tolerance, duration, rate: RATE }
+    Problem {
+        pendulum,
+        start: Motion::at_rest(angle, angle),
+        tolerance,
+        duration,
+        rate: RATE,
+    }
 }
 
 /// The plan for a Cortex-M4F that may spend so much on a frame.
 fn within(scene: &Problem, frame: f32) -> Result<Plan, PlanError> {
-    Plan::search(scene, &M4F, &Budget { frame, planning: 1e10 })
+    Plan::search(
+        scene,
+        &M4F,
+        &Budget {
+            frame,
+            planning: 1e10,
+        },
+    )
 }
 
 fn finished(search: &mut Search) -> Plan {
@@ -35,36 +50,145 @@ fn finished(search: &mut Search) -> Plan {
 }
 
 /// Costs and what a frame may cost; the scene; what is chosen, what ends it, and until when it is right.
-type Row = (Costs, f32, Problem, (Method, u32), Limit, RangeInclusive<f64>);
+type Row = (
+    Costs,
+    f32,
+    Problem,
+    (Method, u32),
+    Limit,
+    RangeInclusive<f64>,
+);
 
 #[test]
 fn the_cheapest_that_is_right_for_longest_is_chosen() {
-    use Method::{ClosedFormF32, Extrapolation10Fixed64, Rk4F32Direction, Rk4F32DirectionPlain, Rk4Fixed32};
-    let (small, large, figure7) = (scene(1.0, 3.0, 10.0), scene(1.0, 60.0, 10.0), scene(2.75, 171.0, 30.0));
-    let costly = Costs { fixed32: 20e3, ..M3 };
+    use Method::{
+        ClosedFormF32, Extrapolation10Fixed64, Rk4F32Direction, Rk4F32DirectionPlain, Rk4Fixed32,
+    };
+    let (small, large, figure7) = (
+        scene(1.0, 3.0, 10.0),
+        scene(1.0, 60.0, 10.0),
+        scene(2.75, 171.0, 30.0),
+    );
+    let costly = Costs {
+        fixed32: 20e3,
+        ..M3
+    };
     let rows: [Row; 10] = [
         // One step costs less than the closed form where it is made of integers, or by the floating-point unit.
-        (costly, CORTEX_M3.frame, small, (ClosedFormF32, 0), Limit::End, 10.0..=10.0),
-        (M3, CORTEX_M3.frame, small, (Rk4Fixed32, 1), Limit::End, 10.0..=10.0),
-        (M4F, STM32F405.frame, small, (Rk4F32DirectionPlain, 1), Limit::End, 10.0..=10.0),
-        (M4F, STM32F405.frame, large, (Rk4F32DirectionPlain, 1), Limit::End, 10.0..=10.0),
+        (
+            costly,
+            CORTEX_M3.frame,
+            small,
+            (ClosedFormF32, 0),
+            Limit::End,
+            10.0..=10.0,
+        ),
+        (
+            M3,
+            CORTEX_M3.frame,
+            small,
+            (Rk4Fixed32, 1),
+            Limit::End,
+            10.0..=10.0,
+        ),
+        (
+            M4F,
+            STM32F405.frame,
+            small,
+            (Rk4F32DirectionPlain, 1),
+            Limit::End,
+            10.0..=10.0,
+        ),
+        (
+            M4F,
+            STM32F405.frame,
+            large,
+            (Rk4F32DirectionPlain, 1),
+            Limit::End,
+            10.0..=10.0,
+        ),
         // Chaos is predicted for as long as it can be. What a frame cannot pay for is not looked at.
-        (M4F, STM32F405.frame, figure7, (Extrapolation10Fixed64, 3), Limit::Growth, 12.0..=20.0),
-        (M4F, 5e3, figure7, (Rk4F32Direction, 16), Limit::Budget, 8.0..=10.0),
+        (
+            M4F,
+            STM32F405.frame,
+            figure7,
+            (Extrapolation10Fixed64, 3),
+            Limit::Growth,
+            12.0..=20.0,
+        ),
+        (
+            M4F,
+            5e3,
+            figure7,
+            (Rk4F32Direction, 16),
+            Limit::Budget,
+            8.0..=10.0,
+        ),
         // A light elbow takes fine steps.
-        (M4F, STM32F405.frame, scene(1e3, 30.0, 2.0), (Rk4F32DirectionPlain, 128), Limit::End, 2.0..=2.0),
-        (M4F, STM32F405.frame, scene(1.0, 30.0, 2.0), (Rk4F32DirectionPlain, 1), Limit::End, 2.0..=2.0),
+        (
+            M4F,
+            STM32F405.frame,
+            scene(1e3, 30.0, 2.0),
+            (Rk4F32DirectionPlain, 128),
+            Limit::End,
+            2.0..=2.0,
+        ),
+        (
+            M4F,
+            STM32F405.frame,
+            scene(1.0, 30.0, 2.0),
+            (Rk4F32DirectionPlain, 1),
+            Limit::End,
+            2.0..=2.0,
+        ),
         // Twice the steps are right for longer, but not by a tenth.
-        (M4F, 13e3, scene(1.0, 120.0, 30.0), (Rk4F32Direction, 2), Limit::Budget, 5.0..=10.0),
+        (
+            M4F,
+            13e3,
+            scene(1.0, 120.0, 30.0),
+            (Rk4F32Direction, 2),
+            Limit::Budget,
+            5.0..=10.0,
+        ),
         // A pendulum out of the range of fixed point is looked at in floating point.
-        (M3, 1e6, scene(1e5, 10.0, 2.0), (ClosedFormF32, 0), Limit::Planning, 0.4..=0.6),
+        (
+            M3,
+            1e6,
+            scene(1e5, 10.0, 2.0),
+            (ClosedFormF32, 0),
+            Limit::Planning,
+            0.4..=0.6,
+        ),
     ];
     for (costs, frame, scene, (method, steps), limit, horizon) in rows {
-        let plan = Plan::search(&scene, &costs, &Budget { frame, planning: 1e10 }).expect("a good scene");
-        assert_eq!((plan.method, plan.steps, plan.limit), (method, steps, limit), "{plan:?}");
-        assert!(horizon.contains(&plan.horizon) && (1e-6..=1.0).contains(&plan.error), "{plan:?}");
-        let dt = if steps == 0 { 0.0 } else { 1.0 / f64::from(u32::from(RATE) * steps) };
-        assert_eq!((plan.dt, plan.cost), (dt, costs.of_frame(Stepping { method, steps })), "{plan:?}");
+        let plan = Plan::search(
+            &scene,
+            &costs,
+            &Budget {
+                frame,
+                planning: 1e10,
+            },
+        )
+        .expect("a good scene");
+        assert_eq!(
+            (plan.method, plan.steps, plan.limit),
+            (method, steps, limit),
+            "{plan:?}"
+        );
+        assert!(
+            horizon.contains(&plan.horizon) && (1e-6..=1.0).contains(&plan.error),
+            "{plan:?}"
+        );
+        let dt = if steps == 0 {
+            0.0
+        } else {
+            1.0 / f64::from(u32::from(RATE) * steps)
+        };
+        assert_eq!(
+            (plan.dt, plan.cost),
+            (dt, costs.of_frame(Stepping { method, steps })),
+            "{plan:?}"
+        );
     }
 }
 
@@ -74,12 +198,22 @@ fn the_cheapest_that_is_right_for_longest_is_chosen() {
 fn looking_ahead_ends_where_the_frame_does_and_the_end_is_worth_its_cost() {
     let figure7 = scene(2.75, 171.0, 30.0);
     let frugal = within(&figure7, 5e3).expect("a good scene");
-    assert!(frugal.limit == Limit::Budget && frugal.spent < 1e8, "{frugal:?}");
+    assert!(
+        frugal.limit == Limit::Budget && frugal.spent < 1e8,
+        "{frugal:?}"
+    );
     let poor = within(&figure7, 300.0).expect_err("one step is too coarse");
-    assert!(matches!(poor, PlanError::NoMethod { limit: Limit::Budget, spent } if spent < 4e6), "{poor:?}");
+    assert!(
+        matches!(poor, PlanError::NoMethod { limit: Limit::Budget, spent } if spent < 4e6),
+        "{poor:?}"
+    );
     let short = scene(2.75, 171.0, 1.05 * frugal.horizon);
     let lavish = within(&short, 1e6).expect("a good scene");
-    assert_eq!((lavish.limit, lavish.horizon), (Limit::End, short.duration), "{lavish:?} {frugal:?}");
+    assert_eq!(
+        (lavish.limit, lavish.horizon),
+        (Limit::End, short.duration),
+        "{lavish:?} {frugal:?}"
+    );
 }
 
 /// By the same method, it is right for less than a tenth longer: too little to be worth a costlier one.
@@ -92,10 +226,18 @@ fn a_plan_that_is_looked_at_farther_is_told_anew_where_it_ends() {
     search.extend(100.0);
     let second = finished(&mut search);
     assert_eq!((first.limit, first.horizon), (Limit::End, short.duration));
-    assert_eq!((second.method, second.steps, second.horizon), (whole.method, whole.steps, whole.horizon));
+    assert_eq!(
+        (second.method, second.steps, second.horizon),
+        (whole.method, whole.steps, whole.horizon)
+    );
     // It is in 64 bits, and finer steps are right wherever it is.
     let Stepping { method, steps } = second.stepping();
-    let steppings = [(method, steps), (method, steps + 1), (method, steps - 1), (Method::Rk4Fixed32, steps)];
+    let steppings = [
+        (method, steps),
+        (method, steps + 1),
+        (method, steps - 1),
+        (Method::Rk4Fixed32, steps),
+    ];
     let horizons = steppings.map(|(method, steps)| search.horizon(Stepping { method, steps }));
     assert_eq!(horizons, [second.horizon, second.horizon, 0.0, 0.0]);
 }
@@ -106,9 +248,16 @@ fn budgets_are_kept() {
     for frame in [200.0, 1e3, 1e4, 1e6] {
         for planning in [1e5, 1e6, 1e7, 1e9] {
             for degrees in [3.0, 60.0, 120.0, 171.0] {
-                match Plan::search(&scene(2.75, degrees, 20.0), &M4F, &Budget { frame, planning }) {
+                match Plan::search(
+                    &scene(2.75, degrees, 20.0),
+                    &M4F,
+                    &Budget { frame, planning },
+                ) {
                     Ok(plan) => {
-                        assert!(plan.spent <= planning && plan.cost <= frame && plan.horizon > 0.0, "{plan:?}");
+                        assert!(
+                            plan.spent <= planning && plan.cost <= frame && plan.horizon > 0.0,
+                            "{plan:?}"
+                        );
                         found += 1;
                     }
                     Err(PlanError::NoMethod { spent, .. }) => assert!(spent <= planning, "{spent}"),
@@ -117,10 +266,24 @@ fn budgets_are_kept() {
             }
         }
     }
-    assert!((20..64).contains(&found), "{found} of 64: some hold, some cannot be had");
+    assert!(
+        (20..64).contains(&found),
+        "{found} of 64: some hold, some cannot be had"
+    );
     // As far as what is right goes, planning could not pay for a comparison with 64 bits, so none is begun.
-    let plan = Plan::search(&scene(1.0, 120.0, 20.0), &M3, &Budget { frame: 5e3, planning: 1e7 }).expect("a plan");
-    assert_eq!((plan.method, plan.steps, plan.limit), (Method::Rk4Fixed32, 2, Limit::Budget));
+    let plan = Plan::search(
+        &scene(1.0, 120.0, 20.0),
+        &M3,
+        &Budget {
+            frame: 5e3,
+            planning: 1e7,
+        },
+    )
+    .expect("a plan");
+    assert_eq!(
+        (plan.method, plan.steps, plan.limit),
+        (Method::Rk4Fixed32, 2, Limit::Budget)
+    );
 }
 
 /// What a plan costs is just enough for it; by less, another is found that costs less.
@@ -129,10 +292,22 @@ fn a_budget_that_is_just_enough_is_enough() {
     for (mass_ratio, degrees) in [(1.0, 60.0), (1.0, 120.0), (2.75, 171.0), (1e3, 30.0)] {
         let scene = scene(mass_ratio, degrees, 20.0);
         for costs in [&M3, &M4F] {
-            let within = |frame| Plan::search(&scene, costs, &Budget { frame, planning: 1e10 });
+            let within = |frame| {
+                Plan::search(
+                    &scene,
+                    costs,
+                    &Budget {
+                        frame,
+                        planning: 1e10,
+                    },
+                )
+            };
             let lavish = within(1e6).expect("a good scene");
             let enough = within(lavish.cost).expect("a good scene");
-            assert_eq!((enough.method, enough.steps, enough.horizon), (lavish.method, lavish.steps, lavish.horizon));
+            assert_eq!(
+                (enough.method, enough.steps, enough.horizon),
+                (lavish.method, lavish.steps, lavish.horizon)
+            );
             if let Ok(frugal) = within(lavish.cost.next_down()) {
                 assert!(frugal.cost < lavish.cost, "{frugal:?} {lavish:?}");
             }
@@ -149,16 +324,31 @@ fn what_lasts_is_what_a_frame_can_pay_for() {
             let within = |frame| Stepping::lasting(&scene, costs, frame).expect("a pendulum");
             let cost = |stepping: Stepping| costs.of_frame(stepping);
             let lavish = within(1e7);
-            assert_eq!((lavish.method, within(cost(lavish))), (Method::Extrapolation10Fixed64, lavish));
+            assert_eq!(
+                (lavish.method, within(cost(lavish))),
+                (Method::Extrapolation10Fixed64, lavish)
+            );
             let frugal = within(cost(lavish).next_down());
             assert!(cost(frugal) < cost(lavish), "{frugal:?} {lavish:?}");
             let poor = within(costs.fixed64.next_down());
-            assert!(poor.method != Method::Extrapolation10Fixed64 && cost(poor) < costs.fixed64, "{poor:?}");
+            assert!(
+                poor.method != Method::Extrapolation10Fixed64 && cost(poor) < costs.fixed64,
+                "{poor:?}"
+            );
             let resolving = Stepping::of(&scene, poor.method).expect("a pendulum");
-            let is_finest = costs.of_frame(Stepping { steps: 2 * poor.steps, ..poor }) >= costs.fixed64;
-            assert!(resolving == poor || resolving.steps > poor.steps && is_finest, "{poor:?} {resolving:?}");
+            let is_finest = costs.of_frame(Stepping {
+                steps: 2 * poor.steps,
+                ..poor
+            }) >= costs.fixed64;
+            assert!(
+                resolving == poor || resolving.steps > poor.steps && is_finest,
+                "{poor:?} {resolving:?}"
+            );
             let poorer = within(cost(poor).next_down());
-            assert!(poorer.steps == (poor.steps / 2).max(1), "{poorer:?} {poor:?}");
+            assert!(
+                poorer.steps == (poor.steps / 2).max(1),
+                "{poorer:?} {poor:?}"
+            );
         }
     }
 }
@@ -179,22 +369,44 @@ fn what_lasts_can_be_run() {
 fn a_method_that_is_asked_for_resolves_the_motion() {
     let scene = scene(2.75, 171.0, 20.0);
     let steps = |method| Stepping::of(&scene, method).expect("a pendulum").steps;
-    assert_eq!([Method::Extrapolation10Fixed64, Method::Rk4Fixed32, Method::Rk4F32Direction].map(steps), [3, 2, 2]);
+    assert_eq!(
+        [
+            Method::Extrapolation10Fixed64,
+            Method::Rk4Fixed32,
+            Method::Rk4F32Direction
+        ]
+        .map(steps),
+        [3, 2, 2]
+    );
 }
 
 /// What fixed point takes ends just beyond equal rods: the runs beside the motion must not be refused where it is not.
 #[test]
 fn what_can_be_run_is_looked_at() {
-    let methods = [Method::Rk4Fixed32, Method::Rk4F32Direction, Method::Extrapolation10Fixed64];
-    let large = [60.0, 90.0, 120.0].into_iter().flat_map(|degrees| methods.map(|method| (degrees, method)));
+    let methods = [
+        Method::Rk4Fixed32,
+        Method::Rk4F32Direction,
+        Method::Extrapolation10Fixed64,
+    ];
+    let large = [60.0, 90.0, 120.0]
+        .into_iter()
+        .flat_map(|degrees| methods.map(|method| (degrees, method)));
     for (degrees, method) in large.chain([(3.0, Method::ClosedFormF32)]) {
         let scene = scene(1.0, degrees, 1.0);
         let stepping = Stepping::of(&scene, method).expect("a pendulum");
-        assert!(PlannedRun::new(&scene, stepping).is_ok(), "{stepping:?} at {degrees}");
-        let mut search = Search::of(stepping, &scene, &M3, &CORTEX_M3.budget(&scene)).expect("a good scene");
+        assert!(
+            PlannedRun::new(&scene, stepping).is_ok(),
+            "{stepping:?} at {degrees}"
+        );
+        let mut search =
+            Search::of(stepping, &scene, &M3, &CORTEX_M3.budget(&scene)).expect("a good scene");
         let plan = finished(&mut search);
         // The closed form has no steps.
-        let steps = if method == Method::ClosedFormF32 { stepping.steps + 7 } else { stepping.steps };
+        let steps = if method == Method::ClosedFormF32 {
+            stepping.steps + 7
+        } else {
+            stepping.steps
+        };
         let horizons = [plan.horizon, search.horizon(Stepping { method, steps })];
         assert_eq!(horizons, [scene.duration; 2], "{plan:?} at {degrees}");
     }
@@ -206,32 +418,121 @@ fn what_is_refused_is_named_with_its_value() {
     let budget = STM32F405.budget(&good);
     let refused = |scene: Problem, costs: Costs, budget: Budget, expected: Error| {
         let found = Plan::search(&scene, &costs, &budget).expect_err("refused");
-        assert_eq!(format!("{found:?}"), format!("{:?}", PlanError::Refused(expected)));
+        assert_eq!(
+            format!("{found:?}"),
+            format!("{:?}", PlanError::Refused(expected))
+        );
     };
     for value in [f64::NAN, f64::INFINITY, 0.0, -1.0] {
         let error = |parameter| match value.is_finite() {
             true => Error::NotPositive { parameter, value },
             false => Error::NotFinite { parameter, value },
         };
-        let (single, pendulum) = (value as f32, Parameters { m2: value, ..good.pendulum });
-        refused(Problem { tolerance: value, ..good }, M4F, budget, error(Parameter::Tolerance));
-        refused(Problem { duration: value, ..good }, M4F, budget, error(Parameter::Duration));
-        refused(Problem { pendulum, ..good }, M4F, budget, error(Parameter::M2));
-        refused(good, Costs { direction: single, ..M4F }, budget, error(Parameter::Cost));
-        refused(good, M4F, Budget { frame: single, ..budget }, error(Parameter::Budget));
-        refused(good, M4F, Budget { planning: single, ..budget }, error(Parameter::Budget));
+        let (single, pendulum) = (
+            value as f32,
+            Parameters {
+                m2: value,
+                ..good.pendulum
+            },
+        );
+        refused(
+            Problem {
+                tolerance: value,
+                ..good
+            },
+            M4F,
+            budget,
+            error(Parameter::Tolerance),
+        );
+        refused(
+            Problem {
+                duration: value,
+                ..good
+            },
+            M4F,
+            budget,
+            error(Parameter::Duration),
+        );
+        refused(
+            Problem { pendulum, ..good },
+            M4F,
+            budget,
+            error(Parameter::M2),
+        );
+        refused(
+            good,
+            Costs {
+                direction: single,
+                ..M4F
+            },
+            budget,
+            error(Parameter::Cost),
+        );
+        refused(
+            good,
+            M4F,
+            Budget {
+                frame: single,
+                ..budget
+            },
+            error(Parameter::Budget),
+        );
+        refused(
+            good,
+            M4F,
+            Budget {
+                planning: single,
+                ..budget
+            },
+            error(Parameter::Budget),
+        );
     }
     let parameter = Parameter::Rate;
-    refused(Problem { rate: 0, ..good }, M4F, budget, Error::NotPositive { parameter, value: 0.0 });
+    refused(
+        Problem { rate: 0, ..good },
+        M4F,
+        budget,
+        Error::NotPositive {
+            parameter,
+            value: 0.0,
+        },
+    );
     let (parameter, value) = (Parameter::W1, f64::NEG_INFINITY);
-    let start = Motion { w1: value, ..good.start };
-    refused(Problem { start, ..good }, M4F, budget, Error::NotFinite { parameter, value });
+    let start = Motion {
+        w1: value,
+        ..good.start
+    };
+    refused(
+        Problem { start, ..good },
+        M4F,
+        budget,
+        Error::NotFinite { parameter, value },
+    );
     let (parameter, limit) = (Parameter::Duration, f64::from(u32::MAX) / f64::from(RATE));
-    let too_long = Error::TooLarge { parameter, value: 1e9, limit };
-    refused(Problem { duration: 1e9, ..good }, M4F, budget, too_long);
+    let too_long = Error::TooLarge {
+        parameter,
+        value: 1e9,
+        limit,
+    };
+    refused(
+        Problem {
+            duration: 1e9,
+            ..good
+        },
+        M4F,
+        budget,
+        too_long,
+    );
     // Out of the range of f32.
-    let pendulum = Parameters { m1: 1e60, m2: 1e60, ..good.pendulum };
-    assert!(matches!(Plan::search(&Problem { pendulum, ..good }, &M4F, &budget), Err(PlanError::Refused(_))));
+    let pendulum = Parameters {
+        m1: 1e60,
+        m2: 1e60,
+        ..good.pendulum
+    };
+    assert!(matches!(
+        Plan::search(&Problem { pendulum, ..good }, &M4F, &budget),
+        Err(PlanError::Refused(_))
+    ));
 }
 
 /// Where no method meets the tolerance, the limit is what to raise: the planning budget while an affordable candidate has not
@@ -239,27 +540,65 @@ fn what_is_refused_is_named_with_its_value() {
 /// the closed form is wrong from the first frame on.
 #[test]
 fn the_limit_is_what_would_help() {
-    let light = Problem { tolerance: 2.0 / 240.0, ..scene(1e3, 90.0, 20.0) };
-    let costs = Costs { closed_form: 10.0, ..M3 };
+    let light = Problem {
+        tolerance: 2.0 / 240.0,
+        ..scene(1e3, 90.0, 20.0)
+    };
+    let costs = Costs {
+        closed_form: 10.0,
+        ..M3
+    };
     let limit = |frame, planning| match Plan::search(&light, &costs, &Budget { frame, planning }) {
         Err(PlanError::NoMethod { limit, .. }) => limit,
         other => panic!("{other:?}"),
     };
     let begun = 1.2 * M3.preparation;
-    assert_eq!([limit(20.0, begun), limit(5.0, begun)], [Limit::Planning, Limit::Budget]);
+    assert_eq!(
+        [limit(20.0, begun), limit(5.0, begun)],
+        [Limit::Planning, Limit::Budget]
+    );
     assert_eq!(limit(20.0, 20.0 * M3.preparation), Limit::Budget);
-    assert_eq!([limit(20.0, 1.0), limit(20.0, 0.5 * M3.preparation)], [Limit::Planning; 2]);
+    assert_eq!(
+        [limit(20.0, 1.0), limit(20.0, 0.5 * M3.preparation)],
+        [Limit::Planning; 2]
+    );
 
-    let stepping = Stepping { method: Method::ClosedFormF32, steps: 1 };
-    let mut search = Search::of(stepping, &light, &M3, &CORTEX_M3.budget(&light)).expect("a good scene");
+    let stepping = Stepping {
+        method: Method::ClosedFormF32,
+        steps: 1,
+    };
+    let mut search =
+        Search::of(stepping, &light, &M3, &CORTEX_M3.budget(&light)).expect("a good scene");
     let asked = finished(&mut search);
     assert_eq!((asked.method, asked.horizon), (Method::ClosedFormF32, 0.0));
 
     // Beside `f32`, as fixed point takes no such pendulum.
     let heavy = scene(1e5, 10.0, 0.3);
-    let stepping = Stepping { steps: 512, ..stepping };
-    let mut search = Search::of(stepping, &heavy, &M3, &Budget { frame: 1e6, planning: 1e10 }).expect("a good scene");
+    let stepping = Stepping {
+        steps: 512,
+        ..stepping
+    };
+    let mut search = Search::of(
+        stepping,
+        &heavy,
+        &M3,
+        &Budget {
+            frame: 1e6,
+            planning: 1e10,
+        },
+    )
+    .expect("a good scene");
     let asked = finished(&mut search);
-    assert_eq!((asked.method, asked.limit, asked.horizon), (stepping.method, Limit::End, heavy.duration));
-    assert_eq!(search.horizon(Stepping { steps: 7, ..stepping }), heavy.duration, "it has no steps");
+    assert_eq!(
+        (asked.method, asked.limit, asked.horizon),
+        (stepping.method, Limit::End, heavy.duration)
+    );
+    assert_eq!(
+        search.horizon(Stepping {
+            steps: 7,
+            ..stepping
+        }),
+        heavy.duration,
+        "it has no steps"
+    );
 }

@@ -50,9 +50,19 @@ fn scenes(seed: u64, seconds: Range<f64>) -> impl Iterator<Item = Problem> {
 fn scene(rng: &mut Rng, seconds: &Range<f64>) -> Problem {
     // With gravity given, the mass and length ratios are all there is.
     let mass_ratio = log_uniform(rng, 1e-3, 1e3);
-    let pendulum = Parameters { m1: 1.0, m2: mass_ratio, l1: 1.0, l2: log_uniform(rng, 1e-2, 1e2), g: GRAVITY };
+    let pendulum = Parameters {
+        m1: 1.0,
+        m2: mass_ratio,
+        l1: 1.0,
+        l2: log_uniform(rng, 1e-2, 1e2),
+        g: GRAVITY,
+    };
     let size = |rng: &mut Rng, most| {
-        if rng.bool() { log_uniform(rng, LEAST, most) } else { LEAST + (most - LEAST) * rng.f64() }
+        if rng.bool() {
+            log_uniform(rng, LEAST, most)
+        } else {
+            LEAST + (most - LEAST) * rng.f64()
+        }
     };
     let amplitude = size(rng, PI);
     let other = amplitude * symmetric(rng);
@@ -65,15 +75,26 @@ fn scene(rng: &mut Rng, seconds: &Range<f64>) -> Problem {
     if rng.bool() {
         let share = size(rng, 1.0);
         let [of_own, in_all] = GREATEST;
-        let mut velocity = |l: f64| share * symmetric(rng) * (of_own * (GRAVITY / l).sqrt()).min(in_all);
+        let mut velocity =
+            |l: f64| share * symmetric(rng) * (of_own * (GRAVITY / l).sqrt()).min(in_all);
         (start.w1, start.w2) = (velocity(pendulum.l1), velocity(pendulum.l2));
     }
-    shown(pendulum, start, log_uniform(rng, seconds.start, seconds.end))
+    shown(
+        pendulum,
+        start,
+        log_uniform(rng, seconds.start, seconds.end),
+    )
 }
 
 /// On a display of 64 pixels, right to half of one.
 fn shown(pendulum: Parameters<f64>, start: Motion<f64>, duration: f64) -> Problem {
-    Problem { pendulum, start, tolerance: half_pixel(&pendulum, 64.0), duration, rate: 60 }
+    Problem {
+        pendulum,
+        start,
+        tolerance: half_pixel(&pendulum, 64.0),
+        duration,
+        rate: 60,
+    }
 }
 
 /// A rod may turn over, and bob 1 is not so light that steps must be very fine.
@@ -81,16 +102,27 @@ fn fast(count: usize) -> impl Iterator<Item = Problem> {
     let is_fast = |scene: &Problem| {
         let pendulum = Pendulum::new(&scene.pendulum).expect("a good scene");
         let light = scene.pendulum.mass_ratio() > 30.0;
-        !light && scene.start.a2.abs() > 1.5 && !pendulum.cannot_turn_over(&pendulum.to_state(&scene.start))
+        !light
+            && scene.start.a2.abs() > 1.5
+            && !pendulum.cannot_turn_over(&pendulum.to_state(&scene.start))
     };
     scenes(SEED + 1, 22.0..28.0).filter(is_fast).take(count)
 }
 
 /// Scenes that are right for some 20 s in 64 bits, each with neighbours: how the roundings fall is chance.
 fn long() -> impl Iterator<Item = Problem> {
-    let scenes = [(1.18219, 0.714144, 2.17128, 1.27892), (2.15233, 1.72009, -2.41900, -2.39437)];
+    let scenes = [
+        (1.18219, 0.714144, 2.17128, 1.27892),
+        (2.15233, 1.72009, -2.41900, -2.39437),
+    ];
     scenes.into_iter().flat_map(|(m2, l2, a1, a2)| {
-        let pendulum = Parameters { m1: 1.0, m2, l1: 1.0, l2, g: GRAVITY };
+        let pendulum = Parameters {
+            m1: 1.0,
+            m2,
+            l1: 1.0,
+            l2,
+            g: GRAVITY,
+        };
         [-1e-6, 0.0, 1e-6].map(|beside| shown(pendulum, Motion::at_rest(a1 + beside, a2), 30.0))
     })
 }
@@ -112,15 +144,29 @@ impl Case {
     fn new(scene: &Problem, chip: &Chip, exact: &[[f64; 2]]) -> Self {
         let budget = chip.processor.budget(scene);
         let plan = match Plan::search(scene, &chip.processor.costs, &budget) {
-            Err(PlanError::NoMethod { .. }) => return Self { scene: *scene, plan: None, horizon: 0.0, error: 0.0 },
+            Err(PlanError::NoMethod { .. }) => {
+                return Self {
+                    scene: *scene,
+                    plan: None,
+                    horizon: 0.0,
+                    error: 0.0,
+                };
+            }
             found => found.expect("a good scene"),
         };
         let mut run = plan.run(scene).expect("a good scene");
         // One that has diverged shows nothing.
-        let error = |exact| run.advance(1).map_or(f64::INFINITY, |()| distance(scene, run.directions(), exact));
+        let error = |exact| {
+            run.advance(1)
+                .map_or(f64::INFINITY, |()| distance(scene, run.directions(), exact))
+        };
         let errors: Vec<_> = exact.iter().map(error).collect();
-        let wrong = errors.iter().position(|&error| error > f64::from(HALF_PIXEL));
-        let predicted = (1..).zip(&errors).take_while(|(frame, _)| scene.time(*frame) <= plan.horizon);
+        let wrong = errors
+            .iter()
+            .position(|&error| error > f64::from(HALF_PIXEL));
+        let predicted = (1..)
+            .zip(&errors)
+            .take_while(|(frame, _)| scene.time(*frame) <= plan.horizon);
         Self {
             scene: *scene,
             plan: Some(plan),
@@ -151,7 +197,11 @@ fn distance(scene: &Problem, shown: [[f32; 2]; 2], exact: &[f64; 2]) -> f64 {
     };
     let ([x1, y1], [x2, y2]) = (off(scene.pendulum.l1, 0), off(scene.pendulum.l2, 1));
     let (elbow, tip) = (x1.hypot(y1), (x1 + x2).hypot(y1 + y2));
-    if elbow.is_finite() && tip.is_finite() { elbow.max(tip) } else { f64::INFINITY }
+    if elbow.is_finite() && tip.is_finite() {
+        elbow.max(tip)
+    } else {
+        f64::INFINITY
+    }
 }
 
 /// Each scene for every chip, chip by chip: a line of the table. At most `most` violations, none by more than `error` pixels; how many
@@ -168,19 +218,33 @@ fn study(scenes: impl Iterator<Item = Problem>, most: usize, error: f64) -> Vec<
         CHIPS.map(|chip| Case::new(scene, &chip, &exact))
     };
     let cases: Vec<_> = scenes.par_iter().map(carried_out).collect();
-    println!("| processor | no method | end early | violations | largest error (pixels) | predicted |");
+    println!(
+        "| processor | no method | end early | violations | largest error (pixels) | predicted |"
+    );
     let of_chip = |(i, chip): (usize, &Chip)| {
         let cases = cases.iter().map(|cases| &cases[i]);
         let violations: Vec<_> = cases.clone().filter(|case| case.is_violation()).collect();
-        assert!(violations.len() <= most, "{}: {} violations: {violations:#?}", chip.name, violations.len());
-        assert!(violations.iter().all(|case| case.error <= error), "{}: {violations:#?}", chip.name);
+        assert!(
+            violations.len() <= most,
+            "{}: {} violations: {violations:#?}",
+            chip.name,
+            violations.len()
+        );
+        assert!(
+            violations.iter().all(|case| case.error <= error),
+            "{}: {violations:#?}",
+            chip.name
+        );
         let nothing = cases.clone().filter(|case| case.plan.is_none()).count();
         let largest = cases.clone().map(|case| case.error).fold(0.0, f64::max);
         let mut shares: Vec<_> = cases.filter_map(Case::share).collect();
         shares.sort_by(f64::total_cmp);
         let (ending, violations) = (shares.len(), violations.len());
         let share = shares.get(ending / 2).copied().unwrap_or(1.0);
-        println!("| {} | {nothing} | {ending} | {violations} | {largest:.1e} | {share:.2} |", chip.title);
+        println!(
+            "| {} | {nothing} | {ending} | {violations} | {largest:.1e} | {share:.2} |",
+            chip.title
+        );
         (ending, share)
     };
     CHIPS.iter().enumerate().map(of_chip).collect()
@@ -188,8 +252,18 @@ fn study(scenes: impl Iterator<Item = Problem>, most: usize, error: f64) -> Vec<
 
 #[test]
 fn half_a_pixel_is_kept_until_the_predicted_horizon() {
-    for (ending, share) in study(scenes(SEED, 2.0..3.0).take(ALL).chain(fast(FAST)).chain(long()), 1, PLAN_ERROR) {
-        assert!(ending >= LEAST_ENDING && share >= PLAN_SHARE, "{ending} end early, {share}");
+    for (ending, share) in study(
+        scenes(SEED, 2.0..3.0)
+            .take(ALL)
+            .chain(fast(FAST))
+            .chain(long()),
+        1,
+        PLAN_ERROR,
+    ) {
+        assert!(
+            ending >= LEAST_ENDING && share >= PLAN_SHARE,
+            "{ending} end early, {share}"
+        );
     }
 }
 

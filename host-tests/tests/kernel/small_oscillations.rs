@@ -16,7 +16,13 @@ fn exact_modes(&Parameters { m1, m2, l1, l2, g }: &Parameters<f64>) -> [TwoFloat
     let square = |sign: f64| divide(g * (total * sum + root * sign), m1 * l1 * l2 * 2.0);
     let shape = |square: TwoFloat| divide(square * l1, g - square * l2);
     let (fast, slow) = (square(1.0), square(-1.0));
-    [fast.sqrt(), slow.sqrt(), shape(fast), shape(slow), fast.sqrt() - slow.sqrt()]
+    [
+        fast.sqrt(),
+        slow.sqrt(),
+        shape(fast),
+        shape(slow),
+        fast.sqrt() - slow.sqrt(),
+    ]
 }
 
 /// How far `value` is from `exact`, in units of the last place of `R` there.
@@ -28,16 +34,43 @@ fn ulps<R: Real>(value: R, exact: TwoFloat) -> f64 {
 fn modes_to_the_last_places<R: Real>() {
     let mut rng = Rng::with_seed(1);
     for n in 0..50_000 {
-        let [m1, masses, l1, rods, g] = [(0.1, 10.0), (1e-7, 1e7), (0.1, 10.0), (1e-3, 1e3), (1.0, 20.0)]
-            .map(|(low, high)| log_uniform(&mut rng, low, high));
+        let [m1, masses, l1, rods, g] = [
+            (0.1, 10.0),
+            (1e-7, 1e7),
+            (0.1, 10.0),
+            (1e-3, 1e3),
+            (1.0, 20.0),
+        ]
+        .map(|(low, high)| log_uniform(&mut rng, low, high));
         // every other pendulum has equal rods, where the plain formula cancels
         let l2 = if n % 2 == 0 { l1 } else { l1 * rods };
-        let parameters = Parameters { m1, m2: m1 * masses, l1, l2, g }.cast::<R>().cast::<f64>();
+        let parameters = Parameters {
+            m1,
+            m2: m1 * masses,
+            l1,
+            l2,
+            g,
+        }
+        .cast::<R>()
+        .cast::<f64>();
         let modes = Modes::new(&parameters.cast::<R>()).expect("valid parameters");
-        let values = [modes.fast.frequency, modes.slow.frequency, modes.fast.shape, modes.slow.shape, modes.exchange()];
-        for ((value, exact), most) in values.into_iter().zip(exact_modes(&parameters)).zip(tolerances::MODES) {
+        let values = [
+            modes.fast.frequency,
+            modes.slow.frequency,
+            modes.fast.shape,
+            modes.slow.shape,
+            modes.exchange(),
+        ];
+        for ((value, exact), most) in values
+            .into_iter()
+            .zip(exact_modes(&parameters))
+            .zip(tolerances::MODES)
+        {
             let error = ulps(value, exact);
-            assert!(error <= most, "{value} is off by {error} ulp for {parameters:?}");
+            assert!(
+                error <= most,
+                "{value} is off by {error} ulp for {parameters:?}"
+            );
         }
     }
 }
@@ -64,9 +97,15 @@ fn linear_motion_is_the_limit_of_the_exact_motion() {
             exact.advance_to(t);
             let [linear, exact]: [[f64; 4]; 2] = [linear.at(t).into(), exact.motion().into()];
             let fast = modes.fast.frequency;
-            for (i, scale) in [1e-6, 1e-6, 1e-6 * fast, 1e-6 * fast].into_iter().enumerate() {
+            for (i, scale) in [1e-6, 1e-6, 1e-6 * fast, 1e-6 * fast]
+                .into_iter()
+                .enumerate()
+            {
                 let error = (linear[i] - exact[i]).abs() / scale;
-                assert!(error < tolerances::LINEAR, "component {i} at {t} s: {error:e} for {parameters:?}");
+                assert!(
+                    error < tolerances::LINEAR,
+                    "component {i} at {t} s: {error:e} for {parameters:?}"
+                );
             }
         }
     }
@@ -75,21 +114,40 @@ fn linear_motion_is_the_limit_of_the_exact_motion() {
 /// About the inverted rest the two frequencies are growth rates: a push along a mode's shape grows as e^(wt).
 #[test]
 fn inverted_rest_falls_at_the_same_two_rates() {
-    let parameters @ Parameters { m1, m2, l1, l2, g } = Parameters { m1: 1.3, m2: 0.4, l1: 0.7, l2: 1.1, g: 9.81 };
+    let parameters @ Parameters { m1, m2, l1, l2, g } = Parameters {
+        m1: 1.3,
+        m2: 0.4,
+        l1: 0.7,
+        l2: 1.1,
+        g: 9.81,
+    };
     let modes = Modes::new(&parameters).expect("valid parameters");
     let upright = reference::twofloat::consts::PI;
     for Mode { frequency, shape } in [modes.fast, modes.slow] {
         let push = 1e-10;
         let [w1, w2] = [push * frequency, push * shape * frequency].map(TwoFloat::from);
-        let constants = Parameters { m1: m1.into(), m2: m2.into(), l1: l1.into(), l2: l2.into(), g: g.into() };
-        let mut exact = Reference::exact(constants, [upright + push, upright + push * shape, w1, w2]);
+        let constants = Parameters {
+            m1: m1.into(),
+            m2: m2.into(),
+            l1: l1.into(),
+            l2: l2.into(),
+            g: g.into(),
+        };
+        let mut exact =
+            Reference::exact(constants, [upright + push, upright + push * shape, w1, w2]);
         exact.advance_to(1.0);
         let [a1, a2, ..] = exact.exact_state();
-        let growth = [f64::from(a1 - upright) / push, f64::from(a2 - upright) / (push * shape)];
+        let growth = [
+            f64::from(a1 - upright) / push,
+            f64::from(a2 - upright) / (push * shape),
+        ];
         let expected = frequency.exp();
         for growth in growth {
             let error = (growth / expected - 1.0).abs();
-            assert!(error < tolerances::INVERTED_GROWTH, "{growth} instead of {expected}");
+            assert!(
+                error < tolerances::INVERTED_GROWTH,
+                "{growth} instead of {expected}"
+            );
         }
     }
 }

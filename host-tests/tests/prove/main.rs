@@ -15,7 +15,13 @@ const RATE: u16 = 64;
 
 /// Equal rods of 1 m that are let go at 2 rad, P1 being `p1`.
 fn equal_rods(g: f64, rate: u16, p1: Fixed, fineness: Fineness) -> Enclosure {
-    let parameters = Parameters { m1: 1.0, m2: 1.0, l1: 1.0, l2: 1.0, g };
+    let parameters = Parameters {
+        m1: 1.0,
+        m2: 1.0,
+        l1: 1.0,
+        l2: 1.0,
+        g,
+    };
     let set = Start::of(&parameters, &Motion::at_rest(2.0, 2.0)).enclose(rate);
     let mut start = set.hull().map(Fixed::middle);
     start[4] = p1;
@@ -30,21 +36,38 @@ fn after(frames: u32, mut set: Enclosure) -> Enclosure {
 
 /// Whether two sets of numbers may have one in common, `more` apart at most.
 fn meet(one: &[Fixed], other: &[Fixed], more: f64) -> bool {
-    one.iter().zip(other).all(|(one, other)| (*one - *other).wider(more).is_positive().is_none())
+    one.iter()
+        .zip(other)
+        .all(|(one, other)| (*one - *other).wider(more).is_positive().is_none())
 }
 
 #[test]
 fn the_readme_has_the_table_that_the_command_makes() {
     let line = horizons(SceneName::Figure7).expect("it can be proved");
     let readme = include_str!("../../README.md");
-    assert!(HEADING.lines().chain([&*line]).all(|line| readme.lines().any(|other| other == line)), "{line}");
+    assert!(
+        HEADING
+            .lines()
+            .chain([&*line])
+            .all(|line| readme.lines().any(|other| other == line)),
+        "{line}"
+    );
 }
 
 #[test]
 fn the_known_answers_are_those_that_the_command_makes() {
-    let scene: Vec<_> = table().expect("the file").into_iter().filter(|row| row.scene == "S11").collect();
-    let kept = include_str!("../../data/known_answers.csv").lines().filter(|line| line.starts_with("S11,"));
-    assert_eq!(known_answers(&scene).expect("it can be proved"), kept.collect::<Vec<_>>());
+    let scene: Vec<_> = table()
+        .expect("the file")
+        .into_iter()
+        .filter(|row| row.scene == "S11")
+        .collect();
+    let kept = include_str!("../../data/known_answers.csv")
+        .lines()
+        .filter(|line| line.starts_with("S11,"));
+    assert_eq!(
+        known_answers(&scene).expect("it can be proved"),
+        kept.collect::<Vec<_>>()
+    );
 }
 
 /// Sums, products and quotients whose exact results are known: inside, and not without the allowance for rounding.
@@ -59,23 +82,48 @@ fn what_is_rounded_is_counted() {
         let quotient = y * y.inverse() - Fixed::ONE;
         let one = sin * sin + cos * cos - Fixed::ONE;
         for zero in [products, quotient, one] {
-            assert!(zero.is_positive().is_none() && zero.size() < 1e-30, "{a} {b}: {zero:?}");
+            assert!(
+                zero.is_positive().is_none() && zero.size() < 1e-30,
+                "{a} {b}: {zero:?}"
+            );
         }
-        assert!((sin - Fixed::of(a.sin())).wider(1e-15).is_positive().is_none(), "{a}");
+        assert!(
+            (sin - Fixed::of(a.sin()))
+                .wider(1e-15)
+                .is_positive()
+                .is_none(),
+            "{a}"
+        );
     }
     let (third, three) = (Fixed::ONE.over(3), Fixed::of(3.0));
-    assert!((third * three - Fixed::ONE).is_positive().is_none() && (third.middle() * three).middle() != Fixed::ONE);
+    assert!(
+        (third * three - Fixed::ONE).is_positive().is_none()
+            && (third.middle() * three).middle() != Fixed::ONE
+    );
     assert_eq!((third - Fixed::fraction(1, 3, 0)).middle(), Fixed::ZERO);
-    assert!((Fixed::fraction(-1000, 3, -9) * Fixed::of(128.0) + Fixed::of(250.0).over(3)).is_positive().is_none());
-    assert_eq!(Fixed::of(-1.5).over(8).decimal(33.0), format!("-0.1875{:0<29}", ""));
+    assert!(
+        (Fixed::fraction(-1000, 3, -9) * Fixed::of(128.0) + Fixed::of(250.0).over(3))
+            .is_positive()
+            .is_none()
+    );
+    assert_eq!(
+        Fixed::of(-1.5).over(8).decimal(33.0),
+        format!("-0.1875{:0<29}", "")
+    );
     assert_eq!(third.wider(9e-5).decimal(33.0), "0.3333");
 }
 
 #[test]
 fn nothing_is_known_of_what_leaves_the_range_or_is_divided_by_what_may_be_zero() {
     let (large, wide) = (Fixed::of(200.0), Fixed::ZERO.wider(1e-30));
-    let quotients = [wide, Fixed::fraction(1, 1000, 0), Fixed::of(0.5).wider(0.5)].map(Fixed::inverse);
-    let outside = [large + large, large * large, Fixed::of(1e9), Fixed::fraction(1 << 60, 1, 0)];
+    let quotients =
+        [wide, Fixed::fraction(1, 1000, 0), Fixed::of(0.5).wider(0.5)].map(Fixed::inverse);
+    let outside = [
+        large + large,
+        large * large,
+        Fixed::of(1e9),
+        Fixed::fraction(1 << 60, 1, 0),
+    ];
     for unknown in quotients.iter().chain(&outside) {
         assert_eq!(unknown.size(), f64::INFINITY, "{unknown:?}");
     }
@@ -86,7 +134,11 @@ fn is_left(reach: f64, fineness: Fineness) -> bool {
     let mut set = equal_rods(9.81, RATE, Fixed::ZERO.wider(reach), fineness);
     let mut end = equal_rods(9.81, RATE, Fixed::of(reach), Fineness::default());
     (0..RATE)
-        .map_while(|_| set.advance().and(end.advance()).map(|()| meet(&set.hull(), &end.hull(), 0.0)))
+        .map_while(|_| {
+            set.advance()
+                .and(end.advance())
+                .map(|()| meet(&set.hull(), &end.hull(), 0.0))
+        })
         .any(|meets| !meets)
 }
 
@@ -94,25 +146,59 @@ fn is_left(reach: f64, fineness: Fineness) -> bool {
 #[test]
 fn what_the_derivatives_lack_is_counted() {
     let fine = Fineness::default();
-    let cases = [(1e-7, Fineness { tangents: 4, ..fine }), (1e-3, fine), (1e-9, Fineness { beside: 1e-4, ..fine })];
+    let cases = [
+        (
+            1e-7,
+            Fineness {
+                tangents: 4,
+                ..fine
+            },
+        ),
+        (1e-3, fine),
+        (
+            1e-9,
+            Fineness {
+                beside: 1e-4,
+                ..fine
+            },
+        ),
+    ];
     for (reach, fineness) in cases {
-        let without = Fineness { allowances: [1.0, 1.0, 0.0, 1.0], ..fineness };
-        assert!(!is_left(reach, fineness) && is_left(reach, without), "{fineness:?}");
+        let without = Fineness {
+            allowances: [1.0, 1.0, 0.0, 1.0],
+            ..fineness
+        };
+        assert!(
+            !is_left(reach, fineness) && is_left(reach, without),
+            "{fineness:?}"
+        );
     }
 }
 
 /// Those of differences so small that they show.
 #[test]
 fn roundings_of_the_segments_are_counted() {
-    let fineness = Fineness { beside: 1e-29, ..Fineness::default() };
-    let without = Fineness { allowances: [1.0, 1.0, 1.0, 0.0], ..fineness };
+    let fineness = Fineness {
+        beside: 1e-29,
+        ..Fineness::default()
+    };
+    let without = Fineness {
+        allowances: [1.0, 1.0, 1.0, 0.0],
+        ..fineness
+    };
     assert!(!is_left(1e-10, fineness) && is_left(1e-10, without));
 }
 
 #[test]
 fn the_series_of_the_midpoint_is_bounded_to_its_last_term() {
-    let coarse = Fineness { terms: 8, ..Fineness::default() };
-    let without = Fineness { allowances: [1.0, 0.0, 1.0, 1.0], ..coarse };
+    let coarse = Fineness {
+        terms: 8,
+        ..Fineness::default()
+    };
+    let without = Fineness {
+        allowances: [1.0, 0.0, 1.0, 1.0],
+        ..coarse
+    };
     let hull = |fineness| after(10, equal_rods(9.81, RATE, Fixed::ZERO, fineness)).hull();
     let exact = hull(Fineness::default());
     assert!(meet(&exact, &hull(coarse), 0.0) && !meet(&exact, &hull(without), 0.0));
@@ -123,7 +209,10 @@ fn the_series_of_the_midpoint_is_bounded_to_its_last_term() {
 #[test]
 fn roundings_of_the_midpoint_are_counted() {
     let hull = |rate: u16, rounding: f64| {
-        let fineness = Fineness { allowances: [rounding, 0.0, 1.0, 1.0], ..Fineness::default() };
+        let fineness = Fineness {
+            allowances: [rounding, 0.0, 1.0, 1.0],
+            ..Fineness::default()
+        };
         after(rate.into(), equal_rods(9.81, rate, Fixed::ZERO, fineness)).hull()
     };
     let meet = |rounding: f64| meet(&hull(64, rounding)[..4], &hull(48, rounding)[..4], 0.0);

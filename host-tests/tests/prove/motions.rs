@@ -13,10 +13,20 @@ use crate::{RATE, after, equal_rods, meet};
 
 /// Ratios of masses and of rods over three decades each, angles up to 3 rad, half of them with velocities.
 fn random(rng: &mut Rng) -> (Parameters<f64>, Motion<f64>) {
-    let [m1, m2, l1, l2] = [(); 4].map(|()| log_uniform(rng, 10_f64.powf(-0.75), 10_f64.powf(0.75)));
+    let [m1, m2, l1, l2] =
+        [(); 4].map(|()| log_uniform(rng, 10_f64.powf(-0.75), 10_f64.powf(0.75)));
     let speed = if rng.bool() { 6.0 } else { 0.0 };
     let [a1, a2, w1, w2] = [3.0, 3.0, speed, speed].map(|most| most * symmetric(rng));
-    (Parameters { m1, m2, l1, l2, g: 9.81 }, Motion { a1, a2, w1, w2 })
+    (
+        Parameters {
+            m1,
+            m2,
+            l1,
+            l2,
+            g: 9.81,
+        },
+        Motion { a1, a2, w1, w2 },
+    )
 }
 
 /// The reference is in the box every five frames, to what it may itself be off by; and the energy is that of the start.
@@ -28,11 +38,29 @@ fn is_inside(parameters: &Parameters<f64>, motion: &Motion<f64>, frames: u32) {
     for frame in (5..=frames).step_by(5) {
         set = after(5, set);
         reference.advance_to(f64::from(frame) / f64::from(RATE));
-        let directions = reference.directions().map(|x| Fixed::of(x.hi()) + Fixed::of(x.lo()));
-        let is_inside = meet(set.directions().as_flattened(), &directions, tolerances::REFERENCE * set.growth());
-        let width = set.directions().as_flattened().iter().map(|x| x.radius()).fold(0.0, f64::max) / set.growth();
-        assert!(width < tolerances::ENCLOSURE, "{parameters:?} {motion:?} frame {frame}: {width:e}");
-        assert!(is_inside && (energy(&set) - first).is_positive().is_none(), "{parameters:?} {motion:?} frame {frame}");
+        let directions = reference
+            .directions()
+            .map(|x| Fixed::of(x.hi()) + Fixed::of(x.lo()));
+        let is_inside = meet(
+            set.directions().as_flattened(),
+            &directions,
+            tolerances::REFERENCE * set.growth(),
+        );
+        let width = set
+            .directions()
+            .as_flattened()
+            .iter()
+            .map(|x| x.radius())
+            .fold(0.0, f64::max)
+            / set.growth();
+        assert!(
+            width < tolerances::ENCLOSURE,
+            "{parameters:?} {motion:?} frame {frame}: {width:e}"
+        );
+        assert!(
+            is_inside && (energy(&set) - first).is_positive().is_none(),
+            "{parameters:?} {motion:?} frame {frame}"
+        );
     }
 }
 
@@ -61,13 +89,36 @@ fn the_reference_is_inside_where_it_is_used() {
     for case in hard_cases().iter().filter(|case| case.name != "far angles") {
         let pendulum = Pendulum::new(&case.trial.parameters).expect("valid");
         let frames = (case.trial.seconds * f64::from(RATE)) as u32;
-        is_inside(&case.trial.parameters, &pendulum.to_motion(&case.trial.start), frames);
+        is_inside(
+            &case.trial.parameters,
+            &pendulum.to_motion(&case.trial.start),
+            frames,
+        );
     }
-    let weightless = Parameters { m1: 1.0, m2: 1.0, l1: 1.0, l2: 1.0, g: 0.0 };
-    is_inside(&weightless, &Motion { a1: 1.0, a2: 2.0, w1: 0.0, w2: 0.0 }, 60);
+    let weightless = Parameters {
+        m1: 1.0,
+        m2: 1.0,
+        l1: 1.0,
+        l2: 1.0,
+        g: 0.0,
+    };
+    is_inside(
+        &weightless,
+        &Motion {
+            a1: 1.0,
+            a2: 2.0,
+            w1: 0.0,
+            w2: 0.0,
+        },
+        60,
+    );
     for name in moving() {
         let settings = name.first_settings();
-        is_inside(&settings.parameters.cast(), &settings.motion().cast(), 5 * u32::from(RATE));
+        is_inside(
+            &settings.parameters.cast(),
+            &settings.motion().cast(),
+            5 * u32::from(RATE),
+        );
     }
 }
 

@@ -42,7 +42,14 @@ impl Bench {
     pub fn of(board: &Board) -> Self {
         let folder = tempfile::tempdir().expect("a folder");
         let name = folder.path().join("ttyACM0");
-        let mut bench = Self { machine: machine(board), cable: None, heard: false, frame: 0, _folder: folder, name };
+        let mut bench = Self {
+            machine: machine(board),
+            cable: None,
+            heard: false,
+            frame: 0,
+            _folder: folder,
+            name,
+        };
         bench.plug();
         bench
     }
@@ -50,7 +57,9 @@ impl Bench {
     pub fn plug(&mut self) {
         let flags = OFlag::O_RDWR | OFlag::O_NOCTTY | OFlag::O_NONBLOCK | OFlag::O_CLOEXEC;
         let cable = posix_openpt(flags).expect("a pseudo-terminal");
-        grantpt(&cable).and_then(|()| unlockpt(&cable)).expect("a pseudo-terminal");
+        grantpt(&cable)
+            .and_then(|()| unlockpt(&cable))
+            .expect("a pseudo-terminal");
         symlink(ptsname_r(&cable).expect("its name"), &self.name).expect("a link");
         self.cable = Some(cable);
     }
@@ -62,11 +71,15 @@ impl Bench {
 
     /// Takes what the host has said; whether anybody listens at its end.
     pub fn is_heard(&mut self) -> bool {
-        let Some(cable) = &mut self.cable else { return false };
+        let Some(cable) = &mut self.cable else {
+            return false;
+        };
         let mut bytes = [0; 256];
         match cable.read(&mut bytes) {
             Ok(count) => {
-                self.machine.send_bytes(&bytes[..count]).expect("the board takes it");
+                self.machine
+                    .send_bytes(&bytes[..count])
+                    .expect("the board takes it");
                 self.heard = true;
                 true
             }
@@ -79,7 +92,9 @@ impl Bench {
         while let Some(cable) = self.cable.as_mut().filter(|_| !bytes.is_empty()) {
             match cable.write(bytes) {
                 Ok(count) => bytes = &bytes[count..],
-                Err(error) if error.kind() == ErrorKind::WouldBlock && self.is_heard() => sleep(WAIT),
+                Err(error) if error.kind() == ErrorKind::WouldBlock && self.is_heard() => {
+                    sleep(WAIT)
+                }
                 // It has stopped listening.
                 Err(_) => return,
             }
@@ -89,7 +104,10 @@ impl Bench {
     /// Carries what is there both ways; `wire` makes bytes of the board's messages.
     pub fn carry(&mut self, mut wire: impl FnMut(ToHost) -> Vec<u8>) {
         let is_heard = self.is_heard();
-        let messages = self.machine.messages().unwrap_or_else(|error| panic!("{error}"));
+        let messages = self
+            .machine
+            .messages()
+            .unwrap_or_else(|error| panic!("{error}"));
         for message in messages.into_iter().filter(|_| is_heard) {
             self.frame = message.frame().map_or(self.frame, |frame| frame.sequence);
             self.say(&wire(message));
@@ -104,7 +122,12 @@ pub fn board() -> Machine {
 
 fn machine(board: &Board) -> Machine {
     // As fast as a real one: what the host says must reach it in time.
-    let start = |settings: &Settings| Machine::start(&Settings { clock: Clock::Real, ..*settings });
+    let start = |settings: &Settings| {
+        Machine::start(&Settings {
+            clock: Clock::Real,
+            ..*settings
+        })
+    };
     on(board, start).unwrap_or_else(|error| panic!("{error}"))
 }
 
@@ -114,10 +137,15 @@ pub fn wire(message: ToHost) -> Vec<u8> {
 }
 
 /// Runs a command at the bench's port beside `play`, which is called until it has ended.
-pub fn at_port(bench: &mut Bench, command: &mut Command, mut play: impl FnMut(&mut Bench)) -> Output {
+pub fn at_port(
+    bench: &mut Bench,
+    command: &mut Command,
+    mut play: impl FnMut(&mut Bench),
+) -> Output {
     command.arg("--port").arg(&bench.name);
     scope(|scope| {
-        let run = scope.spawn(move || run(command, LIMIT).unwrap_or_else(|error| panic!("{error}")));
+        let run =
+            scope.spawn(move || run(command, LIMIT).unwrap_or_else(|error| panic!("{error}")));
         while !run.is_finished() {
             play(bench);
         }

@@ -31,16 +31,28 @@ pub fn targets() -> Vec<Target> {
 
 /// A board's application.
 pub fn application(board: &Board) -> PathBuf {
-    toolchain().build_for(board).unwrap_or_else(|error| panic!("{error}"))
+    toolchain()
+        .build_for(board)
+        .unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Repeatable bit for bit.
 pub fn settings<'a>(toolchain: &'a Toolchain, board: &'a Board, elf: &'a Path) -> Settings<'a> {
-    Settings { qemu: &toolchain.qemu, board, elf, clock: Clock::Counted, debugger: true, limit: LIMIT }
+    Settings {
+        qemu: &toolchain.qemu,
+        board,
+        elf,
+        clock: Clock::Counted,
+        debugger: true,
+        limit: LIMIT,
+    }
 }
 
 /// What `start` makes of a board with its application: a machine that runs, or one in lockstep.
-pub fn on<M>(board: &Board, start: impl FnOnce(&Settings) -> anyhow::Result<M>) -> anyhow::Result<M> {
+pub fn on<M>(
+    board: &Board,
+    start: impl FnOnce(&Settings) -> anyhow::Result<M>,
+) -> anyhow::Result<M> {
     let (toolchain, elf) = (toolchain(), application(board));
     start(&settings(&toolchain, board, &elf))
 }
@@ -70,11 +82,15 @@ pub fn show(board: &Board, name: SceneName) -> Show {
 /// `firmware::app::player::Player::execute` and the next `<firmware::app::player::Player>::execute`.
 pub fn address(elf: &Path, name: &str) -> u32 {
     let bytes = std::fs::read(elf).unwrap_or_else(|error| panic!("{}: {error}", elf.display()));
-    let file = object::File::parse(&*bytes).unwrap_or_else(|error| panic!("{}: {error}", elf.display()));
+    let file =
+        object::File::parse(&*bytes).unwrap_or_else(|error| panic!("{}: {error}", elf.display()));
     let is_it = |mangled: &str| {
         let whole = format!("{:#}", rustc_demangle::demangle(mangled)).replace(['<', '>'], "");
         whole == name || whole.ends_with(&format!("::{name}"))
     };
     let symbol = file.symbols().find(|symbol| symbol.name().is_ok_and(is_it));
-    symbol.map_or_else(|| panic!("no {name} in {}", elf.display()), |symbol| symbol.address() as u32 & !1)
+    symbol.map_or_else(
+        || panic!("no {name} in {}", elf.display()),
+        |symbol| symbol.address() as u32 & !1,
+    )
 }

@@ -80,8 +80,17 @@ impl<F: Form> Flips<F> {
     ///
     /// Refuses what the form refuses, of parameters, steps and the energy of the highest start.
     pub fn new(parameters: &Parameters<F::Real>, dt: f64, steps: u32) -> Result<Self, Error> {
-        let highest = F::new(&parameters.cast(), &State::at_rest(F::Real::PI, F::Real::PI).cast(), dt)?;
-        Ok(Self { pendulum: Pendulum::new(parameters)?, highest, dt: F::Real::from_f64(dt), steps })
+        let highest = F::new(
+            &parameters.cast(),
+            &State::at_rest(F::Real::PI, F::Real::PI).cast(),
+            dt,
+        )?;
+        Ok(Self {
+            pendulum: Pendulum::new(parameters)?,
+            highest,
+            dt: F::Real::from_f64(dt),
+            steps,
+        })
     }
 
     /// The motion let go at the angles `a1`, `a2`, rad; none if it never turns over.
@@ -95,7 +104,11 @@ impl<F: Form> Flips<F> {
             return Ok(None);
         }
         let motion = self.highest.started(&state.cast())?;
-        Ok(Some(Falling { motion, rod_directions: motion.rod_directions(), steps: 0 }))
+        Ok(Some(Falling {
+            motion,
+            rod_directions: motion.rod_directions(),
+            steps: 0,
+        }))
     }
 
     /// Makes at most `steps` steps; what is known after them.
@@ -107,7 +120,8 @@ impl<F: Form> Flips<F> {
                 return Some(Flip::Later);
             }
             falling.motion.advance_one();
-            let before = core::mem::replace(&mut falling.rod_directions, falling.motion.rod_directions());
+            let before =
+                core::mem::replace(&mut falling.rod_directions, falling.motion.rod_directions());
             if passes(&before, &falling.rod_directions) < 0 {
                 return Some(self.passage(falling.steps, before, falling.rod_directions));
             }
@@ -120,12 +134,19 @@ impl<F: Form> Flips<F> {
     ///
     /// Refuses angles that are not finite.
     pub fn of(&self, a1: F::Real, a2: F::Real) -> Result<Flip<F::Real>, Error> {
-        let Some(mut falling) = self.start(a1, a2)? else { return Ok(Flip::Never) };
+        let Some(mut falling) = self.start(a1, a2)? else {
+            return Ok(Flip::Never);
+        };
         Ok(self.advance(&mut falling, u32::MAX).unwrap_or(Flip::Later))
     }
 
     /// When it was, after `steps` steps and within the next.
-    fn passage(&self, steps: u32, before: [Direction<F::Side>; 2], after: [Direction<F::Side>; 2]) -> Flip<F::Real> {
+    fn passage(
+        &self,
+        steps: u32,
+        before: [Direction<F::Side>; 2],
+        after: [Direction<F::Side>; 2],
+    ) -> Flip<F::Real> {
         let share = |[from, _]: Direction<F::Side>, [to, cos]: Direction<F::Side>| {
             if turns_over([from, to, cos].map(Side::sign)) < 0 {
                 let [before, after] = [from, to].map(|sine| F::Real::from_f64(sine.into()));
@@ -135,7 +156,10 @@ impl<F: Form> Flips<F> {
             }
         };
         let ([upper_before, lower_before], [upper_after, lower_after]) = (before, after);
-        let (upper, lower) = (share(upper_before, upper_after), share(lower_before, lower_after));
+        let (upper, lower) = (
+            share(upper_before, upper_after),
+            share(lower_before, lower_after),
+        );
         let share = if lower < upper { lower } else { upper };
         Flip::After((F::Real::from_f64(steps.into()) + share) * self.dt)
     }
@@ -144,7 +168,8 @@ impl<F: Form> Flips<F> {
 /// Negative if a rod has come through straight up between the two.
 #[inline(always)]
 fn passes<S: Side>(before: &[Direction<S>; 2], after: &[Direction<S>; 2]) -> i32 {
-    let signs = |[from, _]: Direction<S>, [to, cos]: Direction<S>| turns_over([from, to, cos].map(S::sign));
+    let signs =
+        |[from, _]: Direction<S>, [to, cos]: Direction<S>| turns_over([from, to, cos].map(S::sign));
     let ([upper_before, lower_before], [upper_after, lower_after]) = (*before, *after);
     signs(upper_before, upper_after) | signs(lower_before, lower_after)
 }

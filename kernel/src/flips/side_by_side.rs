@@ -49,7 +49,10 @@ impl Flips<DirectionF32Plain> {
                 if lane.is_none() {
                     let next = self.next(&mut starts, &mut give)?;
                     motions.put(place, next.as_ref().map_or(&hanging, |(_, motion)| motion));
-                    *lane = next.map(|(start, _)| Lane { start, left: self.steps });
+                    *lane = next.map(|(start, _)| Lane {
+                        start,
+                        left: self.steps,
+                    });
                 }
             }
             if lanes.as_flattened().iter().all(Option::is_none) {
@@ -88,8 +91,13 @@ impl Flips<DirectionF32Plain> {
             motions.step();
             if let Some(mut kept) = kept {
                 for (place, lane) in lanes.as_flattened().iter().enumerate() {
-                    let count = |lane: &Lane| u64::from(self.steps) - u64::from(lane.left) + u64::from(BLOCK);
-                    if lane.as_ref().is_some_and(|lane| self.highest.leaves_out(count(lane))) {
+                    let count = |lane: &Lane| {
+                        u64::from(self.steps) - u64::from(lane.left) + u64::from(BLOCK)
+                    };
+                    if lane
+                        .as_ref()
+                        .is_some_and(|lane| self.highest.leaves_out(count(lane)))
+                    {
                         motions.keep(place, &mut kept);
                     }
                 }
@@ -103,7 +111,8 @@ impl Flips<DirectionF32Plain> {
                             rod_directions.map(|direction| direction.map(|part| part.0[place]))
                         };
                         let (before, after) = (at(before), at(&rod_directions));
-                        let passes = |lane: &mut Lane| step < lane.left && passes(&before, &after) < 0;
+                        let passes =
+                            |lane: &mut Lane| step < lane.left && passes(&before, &after) < 0;
                         if let Some(Lane { start, left }) = lane.take_if(passes) {
                             give(start, self.passage(self.steps - left + step, before, after));
                         }
@@ -112,7 +121,11 @@ impl Flips<DirectionF32Plain> {
                 *before = rod_directions;
             }
         }
-        lanes.as_flattened_mut().iter_mut().flatten().for_each(|lane| lane.left = lane.left.saturating_sub(BLOCK));
+        lanes
+            .as_flattened_mut()
+            .iter_mut()
+            .flatten()
+            .for_each(|lane| lane.left = lane.left.saturating_sub(BLOCK));
     }
 }
 
@@ -162,23 +175,37 @@ mod tests {
     #[inline(always)]
     fn any(flips: &Flips<DirectionF32Plain>) -> Result<Vec<Option<Flip<f32>>>, Error> {
         let mut found = std::vec![None; SIDE * SIDE];
-        flips.of_each::<8>(starts(SIDE), |start, flip| assert_eq!(found[start].replace(flip), None))?;
+        flips.of_each::<8>(starts(SIDE), |start, flip| {
+            assert_eq!(found[start].replace(flip), None)
+        })?;
         Ok(found)
     }
 
     #[test]
     fn every_lane_is_what_one_motion_gives() -> Result<(), Error> {
-        for parameters in
-            [Parameters::equal_rods(1.0, 1.0, 1.0), Parameters { m1: 2.0, m2: 1.0, l1: 1.0, l2: 0.6, g: 1.0 }]
-        {
+        for parameters in [
+            Parameters::equal_rods(1.0, 1.0, 1.0),
+            Parameters {
+                m1: 2.0,
+                m2: 1.0,
+                l1: 1.0,
+                l2: 0.6,
+                g: 1.0,
+            },
+        ] {
             let flips = flips(&parameters)?;
-            let flips = Flips { highest: flips.highest.leaving_out_more(), ..flips };
+            let flips = Flips {
+                highest: flips.highest.leaving_out_more(),
+                ..flips
+            };
             let found = any(&flips)?;
             assert_eq!(found, all(&flips)?, "vectors as this processor has them");
             for (flip, [a1, a2]) in found.iter().zip(starts(SIDE)) {
                 assert_eq!(*flip, Some(flips.of(a1, a2)?), "{a1} {a2}");
             }
-            let count = |kind: fn(&Flip<f32>) -> bool| found.iter().flatten().filter(|flip| kind(flip)).count();
+            let count = |kind: fn(&Flip<f32>) -> bool| {
+                found.iter().flatten().filter(|flip| kind(flip)).count()
+            };
             assert!(count(|flip| matches!(flip, Flip::Never)) > 1000);
             assert!(count(|flip| matches!(flip, Flip::After(_))) > 1000);
             assert!(count(|flip| matches!(flip, Flip::Later)) > 300);

@@ -59,17 +59,34 @@ impl<R: Real> SmallOscillations<R> {
     #[must_use]
     pub fn new(modes: Modes<f64>, start: &Motion<R>) -> Self {
         let turns = [modes.fast, modes.slow].map(|mode| mode.frequency / core::f64::consts::TAU);
-        let modes = [modes.fast, modes.slow]
-            .map(|Mode { frequency, shape }| Mode { frequency: R::from_f64(frequency), shape: R::from_f64(shape) });
-        let [Mode { frequency: fast, shape: r1 }, Mode { frequency: slow, shape: r2 }] = modes;
+        let modes = [modes.fast, modes.slow].map(|Mode { frequency, shape }| Mode {
+            frequency: R::from_f64(frequency),
+            shape: R::from_f64(shape),
+        });
+        let [
+            Mode {
+                frequency: fast,
+                shape: r1,
+            },
+            Mode {
+                frequency: slow,
+                shape: r2,
+            },
+        ] = modes;
         let split = |x1: R, x2: R| [(r2 * x1 - x2) / (r2 - r1), (x2 - r1 * x1) / (r2 - r1)];
         let [c1, c2] = split(start.a1, start.a2);
         let [v1, v2] = split(start.w1, start.w2);
         Self {
             turns,
             modes,
-            fast: Oscillation { cosine: c1, sine: v1 / fast },
-            slow: Oscillation { cosine: c2, sine: v2 / slow },
+            fast: Oscillation {
+                cosine: c1,
+                sine: v1 / fast,
+            },
+            slow: Oscillation {
+                cosine: c2,
+                sine: v2 / slow,
+            },
         }
     }
 
@@ -83,7 +100,12 @@ impl<R: Real> SmallOscillations<R> {
         let ([fast, slow], [(sin_fast, cos_fast), (sin_slow, cos_slow)]) = (&self.modes, phases);
         let w_fast = fast.frequency * (self.fast.sine * cos_fast - self.fast.cosine * sin_fast);
         let w_slow = slow.frequency * (self.slow.sine * cos_slow - self.slow.cosine * sin_slow);
-        Motion { a1, a2, w1: w_fast + w_slow, w2: fast.shape * w_fast + slow.shape * w_slow }
+        Motion {
+            a1,
+            a2,
+            w1: w_fast + w_slow,
+            w2: fast.shape * w_fast + slow.shape * w_slow,
+        }
     }
 
     /// (sin, cos) of both angles a time `t` (s) after the start: all that a drawing needs.
@@ -95,7 +117,10 @@ impl<R: Real> SmallOscillations<R> {
         self.angles(self.phases(t)).map(|a| {
             let square = a * a;
             let [sixth, twelfth] = [R::from_f64(1.0 / 6.0), R::from_f64(1.0 / 12.0)];
-            [a - a * square * sixth, R::ONE - R::HALF * square * (R::ONE - square * twelfth)]
+            [
+                a - a * square * sixth,
+                R::ONE - R::HALF * square * (R::ONE - square * twelfth),
+            ]
         })
     }
 
@@ -104,7 +129,8 @@ impl<R: Real> SmallOscillations<R> {
     fn phases(&self, t: f64) -> [(R, R); 2] {
         let phase = |turns: f64| {
             let turns = turns * t;
-            (R::from_f64(turns - libm::rint(turns)) * R::from_f64(core::f64::consts::TAU)).own_sin_cos()
+            (R::from_f64(turns - libm::rint(turns)) * R::from_f64(core::f64::consts::TAU))
+                .own_sin_cos()
         };
         [phase(self.turns[0]), phase(self.turns[1])]
     }
@@ -152,15 +178,31 @@ impl<R: Real + Side> Form for ClosedForm<R> {
         let rate = if 1.0 / whole == dt { whole } else { 1.0 / dt };
         let pendulum = Pendulum::new(&parameters.cast())?;
         let directions = oscillations.directions(0.0);
-        Self { parameters: *parameters, rate, pendulum, oscillations, directions, steps: 0 }.started(start)
+        Self {
+            parameters: *parameters,
+            rate,
+            pendulum,
+            oscillations,
+            directions,
+            steps: 0,
+        }
+        .started(start)
     }
 
     fn started(&self, start: &State<f64>) -> Result<Self, Error> {
         start.check()?;
         let motion = Pendulum::new(&self.parameters)?.to_motion(start);
         let oscillations = SmallOscillations::new(Modes::new(&self.parameters)?, &motion.cast());
-        let started = Self { oscillations, directions: oscillations.directions(0.0), steps: 0, ..*self };
-        let out_of_range = |_| Error::OutOfRange { parameter: Parameter::A1, value: motion.a1 };
+        let started = Self {
+            oscillations,
+            directions: oscillations.directions(0.0),
+            steps: 0,
+            ..*self
+        };
+        let out_of_range = |_| Error::OutOfRange {
+            parameter: Parameter::A1,
+            value: motion.a1,
+        };
         started.check().map(|()| started).map_err(out_of_range)
     }
 
@@ -172,7 +214,13 @@ impl<R: Real + Side> Form for ClosedForm<R> {
     }
 
     fn check(&self) -> Result<(), Error> {
-        lost(!self.directions.iter().flatten().all(|part| part.is_finite()))?;
+        lost(
+            !self
+                .directions
+                .iter()
+                .flatten()
+                .all(|part| part.is_finite()),
+        )?;
         self.state().check().map_err(Error::diverged)
     }
 
@@ -181,7 +229,8 @@ impl<R: Real + Side> Form for ClosedForm<R> {
     }
 
     fn directions<Q: Real>(&self) -> [Direction<Q>; 2] {
-        self.rod_directions().map(|direction| direction.map(R::cast))
+        self.rod_directions()
+            .map(|direction| direction.map(R::cast))
     }
 
     fn momenta<Q: Real>(&self) -> [Q; 2] {
@@ -190,11 +239,16 @@ impl<R: Real + Side> Form for ClosedForm<R> {
     }
 
     fn state(&self) -> State<f64> {
-        self.pendulum.to_state(&self.oscillations.at(self.time())).cast()
+        self.pendulum
+            .to_state(&self.oscillations.at(self.time()))
+            .cast()
     }
 
     fn bits(&self, mut feed: impl FnMut(u64)) {
-        self.rod_directions().iter().flatten().for_each(|x| feed(x.bits()));
+        self.rod_directions()
+            .iter()
+            .flatten()
+            .for_each(|x| feed(x.bits()));
         feed(self.steps);
     }
 }

@@ -39,7 +39,11 @@ impl<R: Scalar> Factor<R> {
     #[inline(always)]
     fn times(&self, number: R) -> R {
         let product = number * self.rest;
-        if self.whole == 0 { product } else { product + number.times(self.whole) }
+        if self.whole == 0 {
+            product
+        } else {
+            product + number.times(self.whole)
+        }
     }
 }
 
@@ -89,10 +93,22 @@ impl<R: Scalar> Extrapolation<R> {
     pub fn new(order: u32) -> Result<Self, Error> {
         let rows = order as usize / 2;
         if order % 2 == 1 || !(1..=ROWS).contains(&rows) {
-            return Err(Error::OutOfRange { parameter: Parameter::Order, value: f64::from(order) });
+            return Err(Error::OutOfRange {
+                parameter: Parameter::Order,
+                value: f64::from(order),
+            });
         }
-        let mut method = Self { rows, shares: [Factor::new(0.0); ROWS], weights: [Factor::new(0.0); ROWS] };
-        for (row, (share, of_end)) in method.shares.iter_mut().zip(&mut method.weights).enumerate() {
+        let mut method = Self {
+            rows,
+            shares: [Factor::new(0.0); ROWS],
+            weights: [Factor::new(0.0); ROWS],
+        };
+        for (row, (share, of_end)) in method
+            .shares
+            .iter_mut()
+            .zip(&mut method.weights)
+            .enumerate()
+        {
             *share = Factor::new(1.0 / half(row));
             if row < rows {
                 *of_end = Factor::new(weight(row, rows));
@@ -161,11 +177,18 @@ impl<R: Scalar> Extrapolation<R> {
                 if let Turn::Row(row) = turns[lane] {
                     for i in 0..N {
                         behind[i].0[lane] = origin[i];
-                        ahead[i].0[lane] = origin[i] + self.shares[row % ROWS].times(first[i]).half();
+                        ahead[i].0[lane] =
+                            origin[i] + self.shares[row % ROWS].times(first[i]).half();
                     }
                 }
             }
-            system.turn_to(turns.map(|turn| if let Turn::Row(row) = turn { row % ROWS } else { 0 }));
+            system.turn_to(turns.map(|turn| {
+                if let Turn::Row(row) = turn {
+                    row % ROWS
+                } else {
+                    0
+                }
+            }));
         }
         sum
     }
@@ -206,7 +229,16 @@ impl<R: Real> Extrapolation<R> {
     /// ```
     #[inline]
     pub fn step<const N: usize>(&self, f: impl Fn(&[R; N]) -> [R; N], z: &[R; N], dt: R) -> [R; N] {
-        let change = self.end(&mut Any { f, z, dt, method: self, share: dt }, &[R::ZERO; N]);
+        let change = self.end(
+            &mut Any {
+                f,
+                z,
+                dt,
+                method: self,
+                share: dt,
+            },
+            &[R::ZERO; N],
+        );
         core::array::from_fn(|i| z[i] + change[i])
     }
 }

@@ -85,7 +85,8 @@ pub trait Form: Sealed + Copy + Debug + PartialEq + 'static {
     #[doc(hidden)]
     #[inline]
     fn sides(&self) -> [[i32; 2]; 2] {
-        self.rod_directions().map(|direction| direction.map(Side::sign))
+        self.rod_directions()
+            .map(|direction| direction.map(Side::sign))
     }
 
     /// The directions of both rods, in `Q`; no trigonometry where they are what is carried.

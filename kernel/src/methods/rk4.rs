@@ -85,7 +85,12 @@ impl<R: Real + super::Side, E: Derivatives<R>> Form for Canonical<R, E> {
     fn new(parameters: &Parameters<f64>, start: &State<f64>, dt: f64) -> Result<Self, Error> {
         check_step::<f64>(dt)?;
         let equations = E::prepare(&parameters.cast())?;
-        Self { equations, dt: R::from_f64(dt), state: State::default() }.started(start)
+        Self {
+            equations,
+            dt: R::from_f64(dt),
+            state: State::default(),
+        }
+        .started(start)
     }
 
     fn started(&self, start: &State<f64>) -> Result<Self, Error> {
@@ -97,7 +102,12 @@ impl<R: Real + super::Side, E: Derivatives<R>> Form for Canonical<R, E> {
     #[inline(always)]
     fn advance(&mut self, steps: u32) {
         for _ in 0..steps {
-            self.state = step(|z| self.equations.derivatives(z), &self.state.into(), self.dt).into();
+            self.state = step(
+                |z| self.equations.derivatives(z),
+                &self.state.into(),
+                self.dt,
+            )
+            .into();
         }
     }
 
@@ -110,7 +120,8 @@ impl<R: Real + super::Side, E: Derivatives<R>> Form for Canonical<R, E> {
     }
 
     fn directions<Q: Real>(&self) -> [Direction<Q>; 2] {
-        self.rod_directions().map(|direction| direction.map(R::cast))
+        self.rod_directions()
+            .map(|direction| direction.map(R::cast))
     }
 
     fn momenta<Q: Real>(&self) -> [Q; 2] {
@@ -122,6 +133,9 @@ impl<R: Real + super::Side, E: Derivatives<R>> Form for Canonical<R, E> {
     }
 
     fn bits(&self, feed: impl FnMut(u64)) {
-        <[R; 4]>::from(self.state).map(R::bits).into_iter().for_each(feed);
+        <[R; 4]>::from(self.state)
+            .map(R::bits)
+            .into_iter()
+            .for_each(feed);
     }
 }

@@ -27,9 +27,19 @@ impl<R: Real> Pendulum<R> {
     pub fn run<F: Form>(&self, start: &State<R>, dt: f64) -> Result<Run<F>, Error> {
         let parameters = self.parameters().cast();
         let motion = F::new(&parameters, &start.cast(), dt)?;
-        let angles = if F::HAS_TURNS { [0.0; 2] } else { start.angles().map(R::to_f64) };
+        let angles = if F::HAS_TURNS {
+            [0.0; 2]
+        } else {
+            start.angles().map(R::to_f64)
+        };
         let turns = Turns::of(angles, motion.sides())?;
-        Ok(Run { pendulum: Pendulum::new(&parameters.cast())?, motion, turns, dt, steps: 0 })
+        Ok(Run {
+            pendulum: Pendulum::new(&parameters.cast())?,
+            motion,
+            turns,
+            dt,
+            steps: 0,
+        })
     }
 }
 
@@ -37,7 +47,11 @@ impl<F: Form> Run<F> {
     /// Makes `steps` steps, or none: [`Error::Diverged`] if they led out of the finite numbers, and the run stays as it was.
     /// How steps are dealt out to calls makes no difference to any bit.
     pub fn advance(&mut self, steps: u32) -> Result<(), Error> {
-        let Self { mut motion, mut turns, .. } = *self;
+        let Self {
+            mut motion,
+            mut turns,
+            ..
+        } = *self;
         if F::HAS_TURNS {
             motion.advance(steps);
         } else {
@@ -76,13 +90,18 @@ impl<F: Form> Run<F> {
     #[must_use]
     pub fn state(&self) -> State<f64> {
         let state = self.motion.state();
-        if F::HAS_TURNS { state } else { Turns::unwrap(&self.turns, state) }
+        if F::HAS_TURNS {
+            state
+        } else {
+            Turns::unwrap(&self.turns, state)
+        }
     }
 
     /// The energy H, J, when the rods point to the [`directions`](Self::directions) ([`Pendulum::energy`]).
     #[must_use]
     pub fn energy(&self) -> F::Real {
-        self.pendulum.energy_at(self.directions(), self.motion.momenta())
+        self.pendulum
+            .energy_at(self.directions(), self.motion.momenta())
     }
 
     /// Seconds since the start.
@@ -147,9 +166,16 @@ impl Turns {
         let mut turns = start.map(|angle| {
             let whole = libm::rint(angle / core::f64::consts::TAU);
             let rest = angle - whole * core::f64::consts::TAU;
-            Self { whole: whole as i32, last: [-i32::from(rest < 0.0), -1] }
+            Self {
+                whole: whole as i32,
+                last: [-i32::from(rest < 0.0), -1],
+            }
         });
-        for ((parameter, value), turns) in [Parameter::A1, Parameter::A2].into_iter().zip(start).zip(&turns) {
+        for ((parameter, value), turns) in [Parameter::A1, Parameter::A2]
+            .into_iter()
+            .zip(start)
+            .zip(&turns)
+        {
             if turns.whole.unsigned_abs() >= i32::MAX as u32 {
                 return Err(Error::OutOfRange { parameter, value });
             }
@@ -183,10 +209,18 @@ impl Turns {
     pub fn unwrap([turns1, turns2]: &[Self; 2], state: State<f64>) -> State<f64> {
         use core::f64::consts::{FRAC_PI_2, TAU};
         let unwrapped = |turns: &Self, angle: f64| {
-            let side = if turns.last[0] < 0 { -FRAC_PI_2 } else { FRAC_PI_2 };
+            let side = if turns.last[0] < 0 {
+                -FRAC_PI_2
+            } else {
+                FRAC_PI_2
+            };
             let near = f64::from(turns.whole) * TAU + side;
             angle + TAU * libm::rint((near - angle) / TAU)
         };
-        State { a1: unwrapped(turns1, state.a1), a2: unwrapped(turns2, state.a2), ..state }
+        State {
+            a1: unwrapped(turns1, state.a1),
+            a2: unwrapped(turns2, state.a2),
+            ..state
+        }
     }
 }

@@ -49,7 +49,14 @@ pub(crate) struct Shifts {
 
 /// What [`Form::check`](super::Form::check) says of a motion in fixed point.
 pub(super) fn lost(is_lost: bool) -> Result<(), Error> {
-    if is_lost { Err(Error::Diverged { parameter: Parameter::A1, value: f64::NAN }) } else { Ok(()) }
+    if is_lost {
+        Err(Error::Diverged {
+            parameter: Parameter::A1,
+            value: f64::NAN,
+        })
+    } else {
+        Ok(())
+    }
 }
 
 impl Scaling {
@@ -113,13 +120,21 @@ impl Scaling {
         ];
         let fastest = rates.into_iter().fold(0.0, f64::max);
         let [gravity1, gravity2] = self.gravity;
-        [rate / fastest, libm::sqrt(torque / libm::fmax(gravity1, gravity2 * self.norm))]
+        [
+            rate / fastest,
+            libm::sqrt(torque / libm::fmax(gravity1, gravity2 * self.norm)),
+        ]
     }
 }
 
 impl Shifts {
     /// Rods and masses that are about equal.
-    pub const NONE: Self = Self { momentum: 0, inverse: 0, upper: 0, lower: 0 };
+    pub const NONE: Self = Self {
+        momentum: 0,
+        inverse: 0,
+        upper: 0,
+        lower: 0,
+    };
 }
 
 /// The units of 32 bits, where time and momenta are reversed if `BACK`; gravity is to be reversed with them.

@@ -19,14 +19,29 @@ pub trait Sealed {}
 /// Rates of change, which a method sums up, may be numbers of another kind: in fixed point those of directions have more
 /// room and fewer digits, and those of momenta, which are small, have more digits and less room.
 pub trait Scalar:
-    Sealed + Copy + Debug + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self> + 'static
+    Sealed
+    + Copy
+    + Debug
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Neg<Output = Self>
+    + 'static
 {
     /// The rate of change of a direction.
-    type Slope: Copy + Debug + Add<Output = Self::Slope> + Sub<Output = Self::Slope> + Neg<Output = Self::Slope>;
+    type Slope: Copy
+        + Debug
+        + Add<Output = Self::Slope>
+        + Sub<Output = Self::Slope>
+        + Neg<Output = Self::Slope>;
     /// The greatest torque of gravity.
     type Gravity: Copy + Debug;
     /// The rate of change of a momentum.
-    type Torque: Copy + Debug + Add<Output = Self::Torque> + Sub<Output = Self::Torque> + Neg<Output = Self::Torque>;
+    type Torque: Copy
+        + Debug
+        + Add<Output = Self::Torque>
+        + Sub<Output = Self::Torque>
+        + Neg<Output = Self::Torque>;
     /// The number nearest to `value`.
     fn from_f64(value: f64) -> Self;
     /// Twice the number: an addition, or a step of the exponent where an addition would be a call of 100 cycles and more.
@@ -124,7 +139,9 @@ impl<R: Scalar, const N: usize> Scalar for Lanes<R, N> {
     }
     #[inline(always)]
     fn torque(self, rate: Self, direction: Self) -> Self::Torque {
-        Lanes(from_fn(|lane| self.0[lane].torque(rate.0[lane], direction.0[lane])))
+        Lanes(from_fn(|lane| {
+            self.0[lane].torque(rate.0[lane], direction.0[lane])
+        }))
     }
     #[inline(always)]
     fn weight(gravity: Self::Gravity, direction: Self) -> Self::Torque {

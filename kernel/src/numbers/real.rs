@@ -10,7 +10,11 @@ use crate::numbers::{Scalar, Sealed, sine};
 /// Every operation is either IEEE 754 arithmetic or a pure-Rust routine built on it, so that a result is
 /// bit-identical on every machine.
 pub trait Real:
-    Scalar<Gravity = Self, Slope = Self, Torque = Self> + Default + PartialOrd + Display + Div<Output = Self>
+    Scalar<Gravity = Self, Slope = Self, Torque = Self>
+    + Default
+    + PartialOrd
+    + Display
+    + Div<Output = Self>
 {
     #[doc(hidden)]
     const ZERO: Self;
@@ -81,7 +85,11 @@ macro_rules! twice_by_bits {
             fn sum(x: $float) -> $float {
                 x + x
             }
-            if exponent.wrapping_sub(1) < LARGEST { $float::from_bits(bits + (1 << PLACE)) } else { sum(x) }
+            if exponent.wrapping_sub(1) < LARGEST {
+                $float::from_bits(bits + (1 << PLACE))
+            } else {
+                sum(x)
+            }
         }
     };
 }
@@ -103,7 +111,11 @@ macro_rules! real {
             }
             #[inline(always)]
             fn twice(self) -> Self {
-                if cfg!($software) { $twice(self) } else { self + self }
+                if cfg!($software) {
+                    $twice(self)
+                } else {
+                    self + self
+                }
             }
             #[inline(always)]
             fn half(self) -> Self {
@@ -187,10 +199,17 @@ mod tests {
             for low in [0, 1, 0x1234, 0x7fff, 0x8000, 0xffff_u32] {
                 let x = f32::from_bits(u32::from(high) << 16 | low);
                 let twice = twice_single(x);
-                assert!(twice.to_bits() == (x + x).to_bits() || x.is_nan() && twice.is_nan(), "{x:e}");
-                let x = f64::from_bits(u64::from(high) << 48 | u64::from(low) << 32 | u64::from(low));
+                assert!(
+                    twice.to_bits() == (x + x).to_bits() || x.is_nan() && twice.is_nan(),
+                    "{x:e}"
+                );
+                let x =
+                    f64::from_bits(u64::from(high) << 48 | u64::from(low) << 32 | u64::from(low));
                 let twice = twice_double(x);
-                assert!(twice.to_bits() == (x + x).to_bits() || x.is_nan() && twice.is_nan(), "{x:e}");
+                assert!(
+                    twice.to_bits() == (x + x).to_bits() || x.is_nan() && twice.is_nan(),
+                    "{x:e}"
+                );
             }
         }
     }

@@ -42,7 +42,11 @@ pub(super) fn single(x: f32) -> (f32, f32) {
 #[inline]
 pub(super) fn double(x: f64) -> (f64, f64) {
     /// In three parts. The first two hold 33 bits each, so that k times them is exact for every k up to 2^20.
-    const PI_OVER_TWO: [f64; 3] = [1.5707963267341256, 6.077100506303966e-11, 2.0222662487959506e-21];
+    const PI_OVER_TWO: [f64; 3] = [
+        1.5707963267341256,
+        6.077100506303966e-11,
+        2.0222662487959506e-21,
+    ];
     /// Up to here, rad, k stays below 2^20.
     const LARGEST: f64 = 1_647_098.0;
     /// 3 * 2^51.
@@ -80,7 +84,10 @@ pub(super) fn double(x: f64) -> (f64, f64) {
         let middle = k * PI_OVER_TWO[1];
         let rough = coarse - middle;
         let lost = ((coarse - rough) - middle) - k * PI_OVER_TWO[2];
-        by_quarters(first_octant(rough + lost, SINE, COSINE), rounded.to_bits() as u32)
+        by_quarters(
+            first_octant(rough + lost, SINE, COSINE),
+            rounded.to_bits() as u32,
+        )
     } else {
         huge(x)
     }
@@ -90,13 +97,28 @@ pub(super) fn double(x: f64) -> (f64, f64) {
 #[inline(always)]
 fn first_octant<R: Real, const N: usize>(r: R, sine: [R; N], cosine: [R; N]) -> (R, R) {
     let z = r * r;
-    let series = |terms: [R; N]| (0..N - 1).rev().fold(terms[N - 1], |sum, i| terms[i] + z * sum);
-    (r + r * z * series(sine), R::ONE - z * (R::HALF - z * series(cosine)))
+    let series = |terms: [R; N]| {
+        (0..N - 1)
+            .rev()
+            .fold(terms[N - 1], |sum, i| terms[i] + z * sum)
+    };
+    (
+        r + r * z * series(sine),
+        R::ONE - z * (R::HALF - z * series(cosine)),
+    )
 }
 
 /// The direction (sin, cos) turned by `quarters` quarter turns; only the two lowest bits of `quarters` count.
 #[inline]
 fn by_quarters<R: Neg<Output = R>>((sine, cosine): (R, R), quarters: u32) -> (R, R) {
-    let (sine, cosine) = if quarters & 1 == 0 { (sine, cosine) } else { (cosine, -sine) };
-    if quarters & 2 == 0 { (sine, cosine) } else { (-sine, -cosine) }
+    let (sine, cosine) = if quarters & 1 == 0 {
+        (sine, cosine)
+    } else {
+        (cosine, -sine)
+    };
+    if quarters & 2 == 0 {
+        (sine, cosine)
+    } else {
+        (-sine, -cosine)
+    }
 }

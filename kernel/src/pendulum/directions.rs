@@ -102,15 +102,28 @@ impl<R: Scalar> Coefficients<R> {
     /// The same in every lane.
     #[inline(always)]
     pub fn splat<const N: usize>(&self) -> Coefficients<Lanes<R, N>> {
-        let Self { norm, inertia, gravity } = *self;
-        Coefficients { norm: Lanes::splat(norm), inertia: Lanes::splat(inertia), gravity: gravity.map(Lanes::splat) }
+        let Self {
+            norm,
+            inertia,
+            gravity,
+        } = *self;
+        Coefficients {
+            norm: Lanes::splat(norm),
+            inertia: Lanes::splat(inertia),
+            gravity: gravity.map(Lanes::splat),
+        }
     }
 }
 
 impl<R: Scalar> Coefficients<R, R::Gravity> {
     /// The rates at sin a1, cos a1, S, C, P1, P2, where `inverse` is r.
     #[inline(always)]
-    pub fn rates(&self, units: &impl Units<R>, &[sin1, cos1, s, c, p1, p2]: &[R; 6], inverse: R) -> Rates<R> {
+    pub fn rates(
+        &self,
+        units: &impl Units<R>,
+        &[sin1, cos1, s, c, p1, p2]: &[R; 6],
+        inverse: R,
+    ) -> Rates<R> {
         let [gravity1, gravity2] = self.gravity;
         let u = units.rate(p1 - units.momentum(c * p2), inverse);
         let v = p2 - units.swing(c * u);
@@ -128,14 +141,20 @@ impl<R: Scalar> Coefficients<R, R::Gravity> {
 
 /// The rates of sin a1, cos a1, S, C where rods 1 and 2 turn at u and v.
 #[inline(always)]
-pub(crate) fn turning<R: Scalar>(&[sin1, cos1, s, c, ..]: &[R; 6], [u, v]: [R; 2]) -> [R::Slope; 4] {
+pub(crate) fn turning<R: Scalar>(
+    &[sin1, cos1, s, c, ..]: &[R; 6],
+    [u, v]: [R; 2],
+) -> [R::Slope; 4] {
     let w = u - v;
     [cos1.slope(u), -sin1.slope(u), c.slope(w), -s.slope(w)]
 }
 
 /// The rates of sin a1, cos a1, S, C, P1, P2, where all are numbers of one kind.
 #[inline(always)]
-pub(crate) fn increments<R: Scalar<Gravity = R, Slope = R, Torque = R>>(z: &[R; 6], rates: Rates<R>) -> [R; 6] {
+pub(crate) fn increments<R: Scalar<Gravity = R, Slope = R, Torque = R>>(
+    z: &[R; 6],
+    rates: Rates<R>,
+) -> [R; 6] {
     let [sin1, cos1, s, c] = turning(z, rates.angles);
     let [p1, p2] = rates.momenta;
     [sin1, cos1, s, c, p1, p2]
@@ -143,17 +162,36 @@ pub(crate) fn increments<R: Scalar<Gravity = R, Slope = R, Torque = R>>(z: &[R; 
 
 /// sin a1, cos a1, S, C, P1, P2 of a state, nu being `norm` and momenta being counted `units` to a kg m^2/s.
 #[inline(never)] // one copy
-pub(crate) fn quantities(&State { a1, a2, p1, p2 }: &State<f64>, norm: f64, [unit1, unit2]: [f64; 2]) -> [f64; 6] {
+pub(crate) fn quantities(
+    &State { a1, a2, p1, p2 }: &State<f64>,
+    norm: f64,
+    [unit1, unit2]: [f64; 2],
+) -> [f64; 6] {
     let (sin1, cos1) = a1.own_sin_cos();
     let (sin_d, cos_d) = (a1 - a2).own_sin_cos();
-    [sin1, cos1, norm * sin_d, norm * cos_d, p1 * unit1, p2 * unit2]
+    [
+        sin1,
+        cos1,
+        norm * sin_d,
+        norm * cos_d,
+        p1 * unit1,
+        p2 * unit2,
+    ]
 }
 
 /// The way back, angles within a turn.
 #[inline(never)] // one copy
-pub(crate) fn state_of([sin1, cos1, s, c, p1, p2]: [f64; 6], [unit1, unit2]: [f64; 2]) -> State<f64> {
+pub(crate) fn state_of(
+    [sin1, cos1, s, c, p1, p2]: [f64; 6],
+    [unit1, unit2]: [f64; 2],
+) -> State<f64> {
     let [sin2, cos2] = lower_ray([sin1, cos1], [s, c]);
-    State { a1: libm::atan2(sin1, cos1), a2: libm::atan2(sin2, cos2), p1: p1 / unit1, p2: p2 / unit2 }
+    State {
+        a1: libm::atan2(sin1, cos1),
+        a2: libm::atan2(sin2, cos2),
+        p1: p1 / unit1,
+        p2: p2 / unit2,
+    }
 }
 
 /// The direction of rod 2 from that of rod 1 and (S, C), a2 = a1 - D, and as long as (S, C): enough to tell the angle by.

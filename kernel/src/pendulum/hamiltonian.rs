@@ -37,9 +37,18 @@ impl<R: Real> Pendulum<R> {
         };
         let [inverse_l1, inverse_l2] = pendulum.inverse_length;
         // 1/m1 is the greatest that 1/den becomes.
-        let products = [R::ONE / m1, m1 + m2, inverse_l1, inverse_l2, pendulum.total_over_m2, pendulum.coupling];
+        let products = [
+            R::ONE / m1,
+            m1 + m2,
+            inverse_l1,
+            inverse_l2,
+            pendulum.total_over_m2,
+            pendulum.coupling,
+        ];
         let torque_in_range = |torque: R| g == R::ZERO || torque.is_normal();
-        if products.into_iter().all(R::is_normal) && pendulum.torque.into_iter().all(torque_in_range) {
+        if products.into_iter().all(R::is_normal)
+            && pendulum.torque.into_iter().all(torque_in_range)
+        {
             Ok(pendulum)
         } else {
             Err(parameters.out_of_range())
@@ -74,7 +83,11 @@ impl<R: Real> Pendulum<R> {
     /// As [`derivatives`](Self::derivatives), where rods 1 and 2 point to (sin, cos): the trigonometry is the caller's.
     #[doc(hidden)]
     #[inline]
-    pub fn derivatives_at(&self, [(sin1, cos1), (sin2, cos2)]: [(R, R); 2], [p1, p2]: [R; 2]) -> [R; 4] {
+    pub fn derivatives_at(
+        &self,
+        [(sin1, cos1), (sin2, cos2)]: [(R, R); 2],
+        [p1, p2]: [R; 2],
+    ) -> [R; 4] {
         let Parameters { m1, m2, .. } = self.parameters;
         let [inverse_l1, inverse_l2] = self.inverse_length;
         let [torque1, torque2] = self.torque;
@@ -150,5 +163,9 @@ impl<R: Real> Pendulum<R> {
 
 /// 1 - cos a from (sin a, cos a), without cancellation for small a: sin^2 a / (1 + cos a) while cos a > 0.
 fn one_minus_cos<R: Real>((sin, cos): (R, R)) -> R {
-    if cos > R::ZERO { sin * sin / (R::ONE + cos) } else { R::ONE - cos }
+    if cos > R::ZERO {
+        sin * sin / (R::ONE + cos)
+    } else {
+        R::ONE - cos
+    }
 }

@@ -28,7 +28,13 @@ impl<R: Real> Parameters<R> {
     /// momenta in m1 l^2 sqrt(g/l), energy in m1 g l.
     #[must_use]
     pub fn equal_rods(mu: R, l: R, g: R) -> Self {
-        Self { m1: R::ONE, m2: mu, l1: l, l2: l, g }
+        Self {
+            m1: R::ONE,
+            m2: mu,
+            l1: l,
+            l2: l,
+            g,
+        }
     }
 
     /// The mass ratio mu = m2/m1.
@@ -55,7 +61,11 @@ impl<R: Real> Parameters<R> {
                 return Err(Error::NotFinite { parameter, value });
             }
             if value < 0.0 && parameter == Parameter::G {
-                return Err(Error::TooSmall { parameter, value, limit: 0.0 });
+                return Err(Error::TooSmall {
+                    parameter,
+                    value,
+                    limit: 0.0,
+                });
             }
             if value <= 0.0 && parameter != Parameter::G {
                 return Err(Error::NotPositive { parameter, value });
@@ -69,10 +79,16 @@ impl<R: Real> Parameters<R> {
     pub(crate) fn out_of_range(&self) -> Error {
         let distance = |value: f64| if value < 1.0 { 1.0 / value } else { value };
         let [first, rest @ ..] = self.named();
-        let (parameter, value) = rest
-            .into_iter()
-            .filter(|(_, value)| *value != 0.0)
-            .fold(first, |worst, next| if distance(next.1) > distance(worst.1) { next } else { worst });
+        let (parameter, value) =
+            rest.into_iter()
+                .filter(|(_, value)| *value != 0.0)
+                .fold(first, |worst, next| {
+                    if distance(next.1) > distance(worst.1) {
+                        next
+                    } else {
+                        worst
+                    }
+                });
         Error::OutOfRange { parameter, value }
     }
 

@@ -17,7 +17,10 @@ pub struct Vector<R> {
 
 impl<R: Real> Vector<R> {
     fn plus(self, other: Self) -> Self {
-        Self { x: self.x + other.x, y: self.y + other.y }
+        Self {
+            x: self.x + other.x,
+            y: self.y + other.y,
+        }
     }
 }
 
@@ -29,7 +32,10 @@ impl<R: Real> Pendulum<R> {
     pub fn positions(&self, [a1, a2]: [R; 2]) -> [Vector<R>; 2] {
         let rod = |l: R, a: R| {
             let (sin, cos) = a.own_sin_cos();
-            Vector { x: l * sin, y: -l * cos }
+            Vector {
+                x: l * sin,
+                y: -l * cos,
+            }
         };
         let bob1 = rod(self.parameters().l1, a1);
         [bob1, bob1.plus(rod(self.parameters().l2, a2))]
@@ -42,10 +48,16 @@ impl<R: Real> Pendulum<R> {
     pub fn velocities(&self, motion: &Motion<R>) -> [Vector<R>; 2] {
         let rod = |l: R, a: R, w: R| {
             let (sin, cos) = a.own_sin_cos();
-            Vector { x: l * w * cos, y: l * w * sin }
+            Vector {
+                x: l * w * cos,
+                y: l * w * sin,
+            }
         };
         let bob1 = rod(self.parameters().l1, motion.a1, motion.w1);
-        [bob1, bob1.plus(rod(self.parameters().l2, motion.a2, motion.w2))]
+        [
+            bob1,
+            bob1.plus(rod(self.parameters().l2, motion.a2, motion.w2)),
+        ]
     }
 
     /// The kinetic energy, J (`[math24]`, "Lagrange equations").
@@ -98,7 +110,10 @@ impl<R: Real> Pendulum<R> {
         let f1 = -m2 * l2 * w2 * w2 * sin_d - total * g * sin1;
         let f2 = l1 * w1 * w1 * sin_d - g * sin2;
         let den = m1 + m2 * sin_d * sin_d;
-        [(f1 - m2 * cos_d * f2) / (l1 * den), (total * f2 - cos_d * f1) / (l2 * den)]
+        [
+            (f1 - m2 * cos_d * f2) / (l1 * den),
+            (total * f2 - cos_d * f1) / (l2 * den),
+        ]
     }
 
     /// The mass matrix M at the angle D = a1 - a2 between the rods, kg m^2, row by row; `cos_d` is cos D.
@@ -122,7 +137,12 @@ impl<R: Real> Pendulum<R> {
         let &Motion { a1, a2, w1, w2 } = motion;
         let (_, cos_d) = (a1 - a2).own_sin_cos();
         let [[m11, m12], [m21, m22]] = self.mass_matrix(cos_d);
-        State { a1, a2, p1: m11 * w1 + m12 * w2, p2: m21 * w1 + m22 * w2 }
+        State {
+            a1,
+            a2,
+            p1: m11 * w1 + m12 * w2,
+            p2: m21 * w1 + m22 * w2,
+        }
     }
 
     /// Momenta to velocities, w = M^-1 p: the first pair of Hamilton's equations.

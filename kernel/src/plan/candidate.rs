@@ -23,7 +23,12 @@ pub(super) struct Candidate {
 
 impl Candidate {
     pub fn new(stepping: Stepping) -> Self {
-        Self { stepping, right: 0, error: 0.0, failed: false }
+        Self {
+            stepping,
+            right: 0,
+            error: 0.0,
+            failed: false,
+        }
     }
 
     /// Whether it is right for so much longer than `other` that it is worth more.
@@ -35,7 +40,11 @@ impl Candidate {
     #[inline(never)] // one copy
     pub fn note(&mut self, error: f32, bound: f32) {
         if bound <= TOLERATED {
-            self.error = if error > self.error { error } else { self.error };
+            self.error = if error > self.error {
+                error
+            } else {
+                self.error
+            };
             self.right += 1;
         } else {
             self.failed = true;

@@ -76,7 +76,11 @@ pub(super) const MOST_STEPS: u32 = 1 << 16;
 pub(super) fn steps_to_frame(method: Method, rate: u16, longest: f64) -> u32 {
     let fewest = libm::ceil(1.0 / (longest * f64::from(rate)));
     let fewest = (fewest as u32).clamp(1, MOST_STEPS);
-    if method == Method::Extrapolation10Fixed64 { fewest } else { fewest.next_power_of_two() }
+    if method == Method::Extrapolation10Fixed64 {
+        fewest
+    } else {
+        fewest.next_power_of_two()
+    }
 }
 
 /// The longest step that resolves every motion of the problem's energy, s.
@@ -111,26 +115,50 @@ impl Stepping {
         };
         let fixed = affordable(Method::Rk4Fixed32);
         let is_fixed = costs.fixed32 < costs.direction && fixed.check(problem).is_ok();
-        Ok(if is_fixed { fixed } else { affordable(Method::Rk4F32Direction) })
+        Ok(if is_fixed {
+            fixed
+        } else {
+            affordable(Method::Rk4F32Direction)
+        })
     }
 
     /// By `method`, in the longest steps that resolve every motion of this energy. Refuses what [`lasting`](Self::lasting) refuses.
     #[doc(hidden)]
     pub fn of(problem: &Problem, method: Method) -> Result<Self, Error> {
         let admissible = admissible_step(problem)?;
-        let longest = if method == Method::Extrapolation10Fixed64 { RESOLVING } else { FIRST_STEP };
-        Ok(Self { method, steps: steps_to_frame(method, problem.rate, longest * admissible) })
+        let longest = if method == Method::Extrapolation10Fixed64 {
+            RESOLVING
+        } else {
+            FIRST_STEP
+        };
+        Ok(Self {
+            method,
+            steps: steps_to_frame(method, problem.rate, longest * admissible),
+        })
     }
 
     /// By [`Method::Extrapolation10Fixed64`] in steps of `longest` s or less, as coarse as its numbers take, if they cost no more than `frame`.
-    pub(super) fn fixed64(problem: &Problem, longest: f64, costs: &Costs, frame: f32) -> Option<Self> {
+    pub(super) fn fixed64(
+        problem: &Problem,
+        longest: f64,
+        costs: &Costs,
+        frame: f32,
+    ) -> Option<Self> {
         let method = Method::Extrapolation10Fixed64;
-        let mut stepping = Self { method, steps: steps_to_frame(method, problem.rate, longest) };
+        let mut stepping = Self {
+            method,
+            steps: steps_to_frame(method, problem.rate, longest),
+        };
         while costs.of_frame(stepping) <= frame && stepping.steps < MOST_STEPS {
             match stepping.check(problem) {
                 Ok(()) => return Some(stepping),
-                Err(Error::TooLarge { parameter: Parameter::Dt, limit, .. }) => {
-                    stepping.steps = steps_to_frame(method, problem.rate, limit).max(stepping.steps + 1);
+                Err(Error::TooLarge {
+                    parameter: Parameter::Dt,
+                    limit,
+                    ..
+                }) => {
+                    stepping.steps =
+                        steps_to_frame(method, problem.rate, limit).max(stepping.steps + 1);
                 }
                 Err(_) => return None,
             }

@@ -67,7 +67,10 @@ impl fmt::Display for PlanError {
             PlanError::Refused(error) => error.fmt(f),
             PlanError::NoMethod { limit, .. } => {
                 let limit = limit.name();
-                write!(f, "no method within the budgets meets the tolerance; finer steps are forbidden by {limit}")
+                write!(
+                    f,
+                    "no method within the budgets meets the tolerance; finer steps are forbidden by {limit}"
+                )
             }
         }
     }

@@ -99,7 +99,10 @@ impl Plan {
     #[doc(hidden)]
     #[must_use]
     pub fn stepping(&self) -> Stepping {
-        Stepping { method: self.method, steps: self.steps.max(1) }
+        Stepping {
+            method: self.method,
+            steps: self.steps.max(1),
+        }
     }
 
     /// The motion of `problem`, for which the plan is, at its start.

@@ -24,14 +24,21 @@ impl Run {
     /// was left to do.
     #[inline(never)]
     fn advance(&mut self, costs: &Costs, cost: f32) -> f32 {
-        let paid = (cost / costs.of_frame(Stepping { steps: 1, ..self.stepping })) as u32;
+        let paid = (cost
+            / costs.of_frame(Stepping {
+                steps: 1,
+                ..self.stepping
+            })) as u32;
         let left = self.stepping.steps.saturating_sub(self.made);
         let steps = left.min(if paid > 0 { paid } else { 1 });
         if let Some(motion) = &mut self.motion {
             motion.advance(steps);
         }
         self.made += steps;
-        costs.of_frame(Stepping { steps, ..self.stepping })
+        costs.of_frame(Stepping {
+            steps,
+            ..self.stepping
+        })
     }
 
     /// The frame, when nothing is left to do; the next steps lead to the next. NaN if the motion is lost: it may have left its
@@ -53,7 +60,11 @@ const BESIDE_64_BITS: f32 = 1.1;
 /// samples of one spread, the run's own and those of the three. In 32 bits of fixed point they have a larger one: all is rounded
 /// down. Test `plan_study` holds the bound against the exact motion.
 fn beside_finer_steps(method: Method) -> f32 {
-    if method == Method::Rk4Fixed32 { 2.9 } else { 2.0 }
+    if method == Method::Rk4Fixed32 {
+        2.9
+    } else {
+        2.0
+    }
 }
 
 /// Steps of the finer runs for each frame: a quarter more, a half, three quarters. Fixed point has another unit of time in each, and
@@ -61,7 +72,11 @@ fn beside_finer_steps(method: Method) -> f32 {
 /// Where a step is costly, one run is finer at least.
 fn steps_beside(Stepping { method, steps }: Stepping) -> [u32; 3] {
     [1, 2, 3].map(|quarters: u32| {
-        let least = if method == Method::Extrapolation10Fixed64 { quarters / 3 } else { quarters };
+        let least = if method == Method::Extrapolation10Fixed64 {
+            quarters / 3
+        } else {
+            quarters
+        };
         let more = (u64::from(steps) * u64::from(quarters) / 4) as u32;
         steps.saturating_add(if more > least { more } else { least })
     })
@@ -69,7 +84,10 @@ fn steps_beside(Stepping { method, steps }: Stepping) -> [u32; 3] {
 
 /// Beside a run in 64 bits, a method is tried with once, twice and four times the steps to a frame.
 fn tried(stepping: Stepping) -> [Stepping; 3] {
-    [1, 2, 4].map(|times| Stepping { steps: stepping.steps.saturating_mul(times), ..stepping })
+    [1, 2, 4].map(|times| Stepping {
+        steps: stepping.steps.saturating_mul(times),
+        ..stepping
+    })
 }
 
 /// Step sizes tried side by side.
@@ -98,16 +116,26 @@ impl Pass {
             Some(beside) => [tried[1], tried[2], beside],
             None => steps_beside(stepping).map(|steps| Stepping { steps, ..stepping }),
         };
-        let [plain, closed] =
-            [Method::Rk4F32DirectionPlain, Method::ClosedFormF32].map(|method| Stepping { method, ..stepping });
+        let [plain, closed] = [Method::Rk4F32DirectionPlain, Method::ClosedFormF32]
+            .map(|method| Stepping { method, ..stepping });
         let mut candidates = [tried[0], tried[1], tried[2], plain, closed].map(Candidate::new);
         (candidates[1].failed, candidates[2].failed) = (beside.is_none(), beside.is_none());
         candidates[3].failed = stepping.method != Method::Rk4F32Direction;
-        let Problem { pendulum, start, rate, .. } = problem;
+        let Problem {
+            pendulum,
+            start,
+            rate,
+            ..
+        } = problem;
         let start = Pendulum::new(pendulum).map(|pendulum| pendulum.to_state(start));
-        let closed = start.and_then(|start| ClosedFormF32::new(pendulum, &start, 1.0 / f64::from(*rate)));
+        let closed =
+            start.and_then(|start| ClosedFormF32::new(pendulum, &start, 1.0 / f64::from(*rate)));
         Self {
-            runs: [stepping, beside2, beside3, judge, plain].map(|stepping| Run { stepping, made: 0, motion: None }),
+            runs: [stepping, beside2, beside3, judge, plain].map(|stepping| Run {
+                stepping,
+                made: 0,
+                motion: None,
+            }),
             is_beside_64_bits: beside.is_some(),
             closed: closed.ok().map(|closed| closed.oscillations),
             rods: [pendulum.l1, pendulum.l2].map(|l| (l / problem.tolerance) as f32),
@@ -118,14 +146,26 @@ impl Pass {
 
     /// What one costs that goes to the end, beside a run in 64 bits.
     pub fn cost_beside(costs: &Costs, stepping: Stepping, beside: Stepping) -> f32 {
-        tried(stepping).into_iter().fold(costs.of_frame(beside), |sum, stepping| sum + costs.of_frame(stepping))
+        tried(stepping)
+            .into_iter()
+            .fold(costs.of_frame(beside), |sum, stepping| {
+                sum + costs.of_frame(stepping)
+            })
     }
 
     /// The runs that are still needed, by their places.
     fn runs(&mut self) -> impl Iterator<Item = (usize, &mut Run)> {
-        let (all, [own, second, third, plain, _]) = (!self.is_beside_64_bits, self.candidates.map(|one| !one.failed));
+        let (all, [own, second, third, plain, _]) = (
+            !self.is_beside_64_bits,
+            self.candidates.map(|one| !one.failed),
+        );
         let needed = [all || own, all || second, all || third, true, plain];
-        self.runs.iter_mut().enumerate().zip(needed).filter(|(_, is_needed)| *is_needed).map(|(run, _)| run)
+        self.runs
+            .iter_mut()
+            .enumerate()
+            .zip(needed)
+            .filter(|(_, is_needed)| *is_needed)
+            .map(|(run, _)| run)
     }
 
     /// Prepares one motion; whether there was one to prepare.
@@ -134,8 +174,14 @@ impl Pass {
     #[inline(never)]
     pub fn prepare(&mut self, problem: &Problem) -> Result<bool, Error> {
         let is_beside_64_bits = self.is_beside_64_bits;
-        let Some((place, run)) = self.runs().find(|(_, run)| run.motion.is_none()) else { return Ok(false) };
-        let by = PERTURBATIONS.get(place.wrapping_sub(1)).filter(|_| !is_beside_64_bits).copied().unwrap_or(NONE);
+        let Some((place, run)) = self.runs().find(|(_, run)| run.motion.is_none()) else {
+            return Ok(false);
+        };
+        let by = PERTURBATIONS
+            .get(place.wrapping_sub(1))
+            .filter(|_| !is_beside_64_bits)
+            .copied()
+            .unwrap_or(NONE);
         let Stepping { method, steps } = run.stepping;
         let start = Pendulum::new(&problem.pendulum)?.to_state(&problem.start);
         let prepared = |by| {
@@ -149,7 +195,10 @@ impl Pass {
     /// Makes steps of one motion towards the next frame, as many as `cost` pays for and one at least. What they cost; 0 if
     /// there is nothing left to do.
     pub fn advance(&mut self, costs: &Costs, cost: f32) -> f32 {
-        self.runs().map(|(_, run)| run.advance(costs, cost)).find(|&spent| spent > 0.0).unwrap_or(0.0)
+        self.runs()
+            .map(|(_, run)| run.advance(costs, cost))
+            .find(|&spent| spent > 0.0)
+            .unwrap_or(0.0)
     }
 
     /// Compares the frames at time `t`, s, when all steps towards them are made. A method fails where it may be off by more
@@ -162,11 +211,23 @@ impl Pass {
             let others = [second, third, last].map(|other| distance(self.rods, &own, &other));
             let greatest = others.into_iter().fold(0.0, greater);
             self.by_rounding = others.into_iter().any(|other| 2.0 * other < greatest);
-            (own, 1.0, greatest, beside_finer_steps(self.candidates[0].stepping.method) * greatest)
+            (
+                own,
+                1.0,
+                greatest,
+                beside_finer_steps(self.candidates[0].stepping.method) * greatest,
+            )
         };
-        let closed = self.closed.map_or([[f32::NAN; 2]; 2], |motion| motion.directions(t));
+        let closed = self
+            .closed
+            .map_or([[f32::NAN; 2]; 2], |motion| motion.directions(t));
         let shown = [own, second, third, plain, closed];
-        for (candidate, shown) in self.candidates.iter_mut().zip(shown).filter(|(candidate, _)| !candidate.failed) {
+        for (candidate, shown) in self
+            .candidates
+            .iter_mut()
+            .zip(shown)
+            .filter(|(candidate, _)| !candidate.failed)
+        {
             let beside = distance(self.rods, &shown, &judge);
             candidate.note(beside + error, margin * beside + bound);
         }
@@ -174,21 +235,32 @@ impl Pass {
 
     /// Looks no more at what is not `wanted`.
     pub fn retain(&mut self, wanted: impl Fn(&Candidate) -> bool) {
-        self.candidates.iter_mut().filter(|candidate| !wanted(candidate)).for_each(|candidate| candidate.failed = true);
+        self.candidates
+            .iter_mut()
+            .filter(|candidate| !wanted(candidate))
+            .for_each(|candidate| candidate.failed = true);
     }
 
     /// Whether it was roundings that made all of them wrong, and finer steps do not help; else how many times as many to try.
     pub fn finer(&self) -> Option<u32> {
         let [_, second, third, ..] = &self.candidates;
-        let (helps, times) =
-            if self.is_beside_64_bits { (third.has_longer_horizon(second), 8) } else { (!self.by_rounding, 2) };
+        let (helps, times) = if self.is_beside_64_bits {
+            (third.has_longer_horizon(second), 8)
+        } else {
+            (!self.by_rounding, 2)
+        };
         helps.then_some(times)
     }
 
     /// What a frame costs.
     pub fn cost(&mut self, costs: &Costs) -> f32 {
         let [.., closed] = &self.candidates;
-        let closed = if closed.failed { 0.0 } else { costs.of_frame(closed.stepping) };
-        self.runs().fold(closed, |sum, (_, run)| sum + costs.of_frame(run.stepping))
+        let closed = if closed.failed {
+            0.0
+        } else {
+            costs.of_frame(closed.stepping)
+        };
+        self.runs()
+            .fold(closed, |sum, (_, run)| sum + costs.of_frame(run.stepping))
     }
 }

@@ -25,11 +25,29 @@ impl Problem {
     /// counted. The pendulum is checked where it is used.
     pub(super) fn check(&self, costs: &Costs, budget: &Budget) -> Result<(), Error> {
         self.start.check()?;
-        let Costs { closed_form, direction_plain, direction, fixed32, fixed64, preparation } = *costs;
+        let Costs {
+            closed_form,
+            direction_plain,
+            direction,
+            fixed32,
+            fixed64,
+            preparation,
+        } = *costs;
         let of = |parameter| move |value: f32| (parameter, f64::from(value));
-        let costs = [closed_form, direction_plain, direction, fixed32, fixed64, preparation].map(of(Parameter::Cost));
+        let costs = [
+            closed_form,
+            direction_plain,
+            direction,
+            fixed32,
+            fixed64,
+            preparation,
+        ]
+        .map(of(Parameter::Cost));
         let budgets = [budget.frame, budget.planning].map(of(Parameter::Budget));
-        let shown = [(Parameter::Tolerance, self.tolerance), (Parameter::Duration, self.duration)];
+        let shown = [
+            (Parameter::Tolerance, self.tolerance),
+            (Parameter::Duration, self.duration),
+        ];
         let rate = [(Parameter::Rate, f64::from(self.rate))];
         for &(parameter, value) in [&shown[..], &rate, &costs, &budgets].into_iter().flatten() {
             if !value.is_finite() {
@@ -39,9 +57,20 @@ impl Problem {
                 return Err(Error::NotPositive { parameter, value });
             }
         }
-        let (parameter, value, limit) =
-            (Parameter::Duration, self.duration, f64::from(u32::MAX) / f64::from(self.rate));
-        if value > limit { Err(Error::TooLarge { parameter, value, limit }) } else { Ok(()) }
+        let (parameter, value, limit) = (
+            Parameter::Duration,
+            self.duration,
+            f64::from(u32::MAX) / f64::from(self.rate),
+        );
+        if value > limit {
+            Err(Error::TooLarge {
+                parameter,
+                value,
+                limit,
+            })
+        } else {
+            Ok(())
+        }
     }
 
     /// Frames shown after the one at the start, at least one.
@@ -71,8 +100,21 @@ impl Problem {
         let epsilon = epsilon(method);
         let off = |value: f64, by: f64| value + value * (by * epsilon);
         let (Parameters { m2, l2, g, .. }, &State { a1, a2, p1, p2 }) = (self.pendulum, start);
-        let parameters = Parameters { m2: off(m2, by_m2), l2: off(l2, by_l2), g: off(g, by_g), ..self.pendulum };
-        (parameters, State { a1: off(a1, by_a1), a2: off(a2, by_m2), p1: off(p1, by_g), p2: off(p2, by_l2) })
+        let parameters = Parameters {
+            m2: off(m2, by_m2),
+            l2: off(l2, by_l2),
+            g: off(g, by_g),
+            ..self.pendulum
+        };
+        (
+            parameters,
+            State {
+                a1: off(a1, by_a1),
+                a2: off(a2, by_m2),
+                p1: off(p1, by_g),
+                p2: off(p2, by_l2),
+            },
+        )
     }
 }
 
@@ -99,8 +141,11 @@ pub(super) type Perturbation = [f64; 4];
 pub(super) const NONE: Perturbation = [0.0; 4];
 
 /// One half of the numbers off one way, the other half the other way: three such halves.
-pub(super) const PERTURBATIONS: [Perturbation; 3] =
-    [[OFF, OFF, -OFF, -OFF], [OFF, -OFF, OFF, -OFF], [OFF, -OFF, -OFF, OFF]];
+pub(super) const PERTURBATIONS: [Perturbation; 3] = [
+    [OFF, OFF, -OFF, -OFF],
+    [OFF, -OFF, OFF, -OFF],
+    [OFF, -OFF, -OFF, OFF],
+];
 
 #[cfg(test)]
 mod tests {
@@ -109,20 +154,47 @@ mod tests {
     /// Numbers that need rounding in `f32` and none in `f64`, and the powers of two that equal rods and masses are.
     #[test]
     fn every_perturbation_is_another_problem_to_every_method() {
-        for (&method, one) in Method::DRAWN.iter().flat_map(|method| [(method, 1.0), (method, 0.7)]) {
-            let (pendulum, motion) = (Parameters::equal_rods(one, one, 9.81), Motion::at_rest(0.0, 0.0));
-            let problem = Problem { pendulum, start: motion, tolerance: 0.1, duration: 1.0, rate: 60 };
+        for (&method, one) in Method::DRAWN
+            .iter()
+            .flat_map(|method| [(method, 1.0), (method, 0.7)])
+        {
+            let (pendulum, motion) = (
+                Parameters::equal_rods(one, one, 9.81),
+                Motion::at_rest(0.0, 0.0),
+            );
+            let problem = Problem {
+                pendulum,
+                start: motion,
+                tolerance: 0.1,
+                duration: 1.0,
+                rate: 60,
+            };
             let numbers = |perturbation| {
-                let start = State { a1: 2.0 * one, a2: one, p1: -one, p2: 0.3 };
-                let (Parameters { m2, g, .. }, state) = problem.perturbed(&start, perturbation, method);
+                let start = State {
+                    a1: 2.0 * one,
+                    a2: one,
+                    p1: -one,
+                    p2: 0.3,
+                };
+                let (Parameters { m2, g, .. }, state) =
+                    problem.perturbed(&start, perturbation, method);
                 let [a1, a2, p1, p2] = <[f64; 4]>::from(state);
-                [m2, g, a1, a2, p1, p2].map(|x| if method.is_single() { f64::from(x as f32) } else { x })
+                [m2, g, a1, a2, p1, p2].map(|x| {
+                    if method.is_single() {
+                        f64::from(x as f32)
+                    } else {
+                        x
+                    }
+                })
             };
             let all = [NONE, PERTURBATIONS[0], PERTURBATIONS[1], PERTURBATIONS[2]].map(numbers);
             for (i, other) in all.iter().enumerate() {
                 assert!(!all[..i].contains(other), "{method}: {all:?}");
                 for (own, beside) in all[0].into_iter().zip(other) {
-                    assert!((beside - own).abs() <= 2.0 * own.abs() * epsilon(method), "{method}: {own} {beside}");
+                    assert!(
+                        (beside - own).abs() <= 2.0 * own.abs() * epsilon(method),
+                        "{method}: {own} {beside}"
+                    );
                 }
             }
         }

@@ -2,7 +2,9 @@
 
 use super::{Problem, Stepping};
 use crate::error::Error;
-use crate::methods::{ClosedFormF32, DirectionF32, DirectionF32Plain, Fixed32, Fixed64, Form, Turns};
+use crate::methods::{
+    ClosedFormF32, DirectionF32, DirectionF32Plain, Fixed32, Fixed64, Form, Turns,
+};
 use crate::pendulum::{Direction, Parameters, Pendulum, State};
 use crate::table::Method;
 
@@ -15,7 +17,10 @@ const ORDER: u32 = Method::Extrapolation10Fixed64.order();
 pub type Directions = [Direction<f32>; 2];
 
 /// A motion by any of [`Method::DRAWN`], read in `f32`: the one place that knows which type computes each.
-#[expect(clippy::large_enum_variant, reason = "without a heap there is nowhere else to keep it")]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "without a heap there is nowhere else to keep it"
+)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum AnyRun {
     ClosedForm(ClosedFormF32),
@@ -98,14 +103,36 @@ impl PlannedRun {
     /// that is none of [`Method::DRAWN`].
     #[inline(never)] // one copy
     #[doc(hidden)]
-    pub fn new(&Problem { pendulum, start, rate, .. }: &Problem, stepping: Stepping) -> Result<Self, Error> {
+    pub fn new(
+        &Problem {
+            pendulum,
+            start,
+            rate,
+            ..
+        }: &Problem,
+        stepping: Stepping,
+    ) -> Result<Self, Error> {
         start.check()?;
         let is_closed = stepping.method == Method::ClosedFormF32;
-        let steps = if stepping.steps == 0 || is_closed { 1 } else { stepping.steps };
+        let steps = if stepping.steps == 0 || is_closed {
+            1
+        } else {
+            stepping.steps
+        };
         let state = Pendulum::new(&pendulum)?.to_state(&start);
-        let run = AnyRun::new(stepping.method, &(pendulum, state), f64::from(rate) * f64::from(steps))?;
+        let run = AnyRun::new(
+            stepping.method,
+            &(pendulum, state),
+            f64::from(rate) * f64::from(steps),
+        )?;
         let turns = Turns::of(state.angles(), run.sides())?;
-        Ok(Self { stepping: Stepping { steps, ..stepping }, rate, frame: 0, run, turns })
+        Ok(Self {
+            stepping: Stepping { steps, ..stepping },
+            rate,
+            frame: 0,
+            run,
+            turns,
+        })
     }
 
     #[doc(hidden)]

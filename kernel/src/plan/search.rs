@@ -47,18 +47,27 @@ impl Search {
     pub fn new(problem: &Problem, costs: &Costs, budget: &Budget) -> Result<Self, PlanError> {
         let admissible = admissible_step(problem)?;
         problem.check(costs, budget)?;
-        let fine = |longest: f64, frame: f32| Stepping::fixed64(problem, longest * admissible, costs, frame);
+        let fine = |longest: f64, frame: f32| {
+            Stepping::fixed64(problem, longest * admissible, costs, frame)
+        };
         let exact = fine(RESOLVING, f32::INFINITY);
         let affordable = |stepping: &Stepping| costs.of_frame(*stepping) <= budget.frame;
         let coarser = || fine(FIRST_STEP, budget.frame).map(|stepping| (stepping, Limit::Budget));
-        let method = if costs.fixed32 < costs.direction { Method::Rk4Fixed32 } else { Method::Rk4F32Direction };
+        let method = if costs.fixed32 < costs.direction {
+            Method::Rk4Fixed32
+        } else {
+            Method::Rk4F32Direction
+        };
         let steps = steps_to_frame(method, problem.rate, FIRST_STEP * admissible);
         Ok(Self {
             problem: *problem,
             costs: *costs,
             budget: *budget,
             exact,
-            fine: exact.filter(affordable).map(|stepping| (stepping, Limit::Growth)).or_else(coarser),
+            fine: exact
+                .filter(affordable)
+                .map(|stepping| (stepping, Limit::Growth))
+                .or_else(coarser),
             stepping: Stepping { method, steps },
             pass: None,
             frame: 0,
@@ -76,19 +85,35 @@ impl Search {
     /// Refuses what [`new`](Self::new) refuses, and a method that is none of [`Method::DRAWN`]. No steps count as one.
     #[inline(never)]
     #[doc(hidden)]
-    pub fn of(stepping: Stepping, problem: &Problem, costs: &Costs, budget: &Budget) -> Result<Self, PlanError> {
+    pub fn of(
+        stepping: Stepping,
+        problem: &Problem,
+        costs: &Costs,
+        budget: &Budget,
+    ) -> Result<Self, PlanError> {
         if !Method::DRAWN.contains(&stepping.method) {
-            return Err(Error::NotDrawn { method: stepping.method }.into());
+            return Err(Error::NotDrawn {
+                method: stepping.method,
+            }
+            .into());
         }
         let mut search = Self::new(problem, costs, budget)?;
-        let given = Stepping { steps: if stepping.steps > 0 { stepping.steps } else { 1 }, ..stepping };
+        let given = Stepping {
+            steps: if stepping.steps > 0 {
+                stepping.steps
+            } else {
+                1
+            },
+            ..stepping
+        };
         search.stepping.steps = given.steps;
         search.stepping.method = match given.method {
             Method::ClosedFormF32 => search.stepping.method,
             Method::Rk4F32DirectionPlain => Method::Rk4F32Direction,
             method => method,
         };
-        (search.given, search.best, search.budget.frame) = (Some(given), Some(Candidate::new(given)), f32::INFINITY);
+        (search.given, search.best, search.budget.frame) =
+            (Some(given), Some(Candidate::new(given)), f32::INFINITY);
         Ok(search)
     }
 
@@ -139,18 +164,33 @@ impl Search {
         }
         let times = pass.finer();
         self.keep_best();
-        let is_right = self.best.is_some_and(|best| best.right >= self.problem.frames());
-        Ok(if is_right { Some(Limit::End) } else { self.refine(times) })
+        let is_right = self
+            .best
+            .is_some_and(|best| best.right >= self.problem.frames());
+        Ok(if is_right {
+            Some(Limit::End)
+        } else {
+            self.refine(times)
+        })
     }
 
     /// A form takes no steps so long, or no motion of so high an energy, or no such pendulum: finer ones, or `f32`, may.
     fn refused(&mut self, error: Error) -> Result<Option<Limit>, Error> {
-        let is_step = matches!(error, Error::TooLarge { parameter: Parameter::Dt, .. });
+        let is_step = matches!(
+            error,
+            Error::TooLarge {
+                parameter: Parameter::Dt,
+                ..
+            }
+        );
         let is_beside = |given: Stepping| given.method == Method::ClosedFormF32;
         match self.stepping.method {
             Method::Rk4F32Direction => Err(error),
             Method::Rk4Fixed32 if self.given.map_or(!is_step, is_beside) => {
-                self.begin(Stepping { method: Method::Rk4F32Direction, ..self.stepping });
+                self.begin(Stepping {
+                    method: Method::Rk4F32Direction,
+                    ..self.stepping
+                });
                 Ok(None)
             }
             _ => Ok(self.refine(Some(2))),
@@ -164,20 +204,40 @@ impl Search {
     /// Makes the pass, which costs as much as to prepare a motion.
     #[inline(never)] // it stands on the stack
     fn make(&mut self) {
-        let Self { stepping, costs, budget, given, .. } = *self;
+        let Self {
+            stepping,
+            costs,
+            budget,
+            given,
+            ..
+        } = *self;
         let beside = self.beside();
         let pass = self.pass.insert(Pass::new(stepping, &self.problem, beside));
-        pass.retain(|one| given.map_or(costs.of_frame(one.stepping) <= budget.frame, |given| one.stepping == given));
+        pass.retain(|one| {
+            given.map_or(costs.of_frame(one.stepping) <= budget.frame, |given| {
+                one.stepping == given
+            })
+        });
     }
 
     /// In 32 bits: a run in 64 bits to compare with, if planning can pay for it as long as the next pass may last.
     fn beside(&self) -> Option<Stepping> {
-        let (frames, right) = (self.problem.frames() as f32, self.best.map_or(0, |best| best.right));
+        let (frames, right) = (
+            self.problem.frames() as f32,
+            self.best.map_or(0, |best| best.right),
+        );
         let longer = LONGER * right as f32;
-        let frames = if 0.0 < longer && longer < frames { longer } else { frames };
+        let frames = if 0.0 < longer && longer < frames {
+            longer
+        } else {
+            frames
+        };
         let left = (self.budget.planning - self.spent) / frames;
-        let affordable = |&exact: &Stepping| Pass::cost_beside(&self.costs, self.stepping, exact) <= left;
-        self.exact.filter(|exact| self.stepping.method != exact.method).filter(affordable)
+        let affordable =
+            |&exact: &Stepping| Pass::cost_beside(&self.costs, self.stepping, exact) <= left;
+        self.exact
+            .filter(|exact| self.stepping.method != exact.method)
+            .filter(affordable)
     }
 
     /// Whether the next piece prepares a motion, which takes longer than any other.
@@ -199,12 +259,28 @@ impl Search {
     #[doc(hidden)]
     #[must_use]
     pub fn horizon(&self, stepping: Stepping) -> f64 {
-        let is_finer = |(fine, limit): (Stepping, _)| limit == Limit::Growth && stepping.steps >= fine.steps;
-        let resolves = stepping.method == Method::Extrapolation10Fixed64 && self.fine.is_some_and(is_finer);
-        let is_same = |one: &Stepping| one.steps == stepping.steps || stepping.method == Method::ClosedFormF32;
-        let is_shown = |one: &&Candidate| resolves || one.stepping.method == stepping.method && is_same(&one.stepping);
-        let looked_at = self.pass.iter().flat_map(|pass| &pass.candidates).chain(&self.best);
-        self.problem.time(looked_at.filter(is_shown).map(|one| one.right).max().unwrap_or(0))
+        let is_finer =
+            |(fine, limit): (Stepping, _)| limit == Limit::Growth && stepping.steps >= fine.steps;
+        let resolves =
+            stepping.method == Method::Extrapolation10Fixed64 && self.fine.is_some_and(is_finer);
+        let is_same = |one: &Stepping| {
+            one.steps == stepping.steps || stepping.method == Method::ClosedFormF32
+        };
+        let is_shown = |one: &&Candidate| {
+            resolves || one.stepping.method == stepping.method && is_same(&one.stepping)
+        };
+        let looked_at = self
+            .pass
+            .iter()
+            .flat_map(|pass| &pass.candidates)
+            .chain(&self.best);
+        self.problem.time(
+            looked_at
+                .filter(is_shown)
+                .map(|one| one.right)
+                .max()
+                .unwrap_or(0),
+        )
     }
 
     /// Goes on with the method of a plan that was right to its end, for `seconds` longer; [`Self::advance`] gives the plan
@@ -228,18 +304,28 @@ impl Search {
         if self.stepping.method == Method::Extrapolation10Fixed64 {
             return Some(self.fine.map_or(Limit::Budget, |(_, limit)| limit));
         }
-        if times.is_none() && self.pass.as_ref().is_some_and(|pass| !pass.is_beside_64_bits) && self.beside().is_some()
+        if times.is_none()
+            && self
+                .pass
+                .as_ref()
+                .is_some_and(|pass| !pass.is_beside_64_bits)
+            && self.beside().is_some()
         {
             self.begin(self.stepping);
             return None;
         }
         let cost = |stepping| self.costs.of_frame(stepping);
-        let finer = times.map(|times| Stepping { steps: self.stepping.steps.saturating_mul(times), ..self.stepping });
+        let finer = times.map(|times| Stepping {
+            steps: self.stepping.steps.saturating_mul(times),
+            ..self.stepping
+        });
         let finer = finer.filter(|finer| finer.steps <= MOST_STEPS);
         let fine = self.fine.map(|(fine, _)| fine);
         let fine = fine.filter(|&fine| finer.is_none_or(|finer| cost(fine) <= cost(finer)));
         let affordable = finer.filter(|&finer| cost(finer) <= self.budget.frame);
-        let Some(stepping) = fine.or(affordable) else { return Some(Limit::Budget) };
+        let Some(stepping) = fine.or(affordable) else {
+            return Some(Limit::Budget);
+        };
         self.begin(stepping);
         None
     }
@@ -258,10 +344,15 @@ impl Search {
     fn is_better(&self, candidate: &Candidate) -> bool {
         let is_better = |best: Candidate| {
             let is_it = candidate.stepping == best.stepping;
-            let reaches_end = candidate.right >= self.problem.frames() && best.right < candidate.right;
-            let is_cheaper = self.costs.of_frame(candidate.stepping) < self.costs.of_frame(best.stepping);
+            let reaches_end =
+                candidate.right >= self.problem.frames() && best.right < candidate.right;
+            let is_cheaper =
+                self.costs.of_frame(candidate.stepping) < self.costs.of_frame(best.stepping);
             let cheaper = candidate.right >= best.right && is_cheaper;
-            reaches_end || candidate.has_longer_horizon(&best) || cheaper || is_it && candidate.right > best.right
+            reaches_end
+                || candidate.has_longer_horizon(&best)
+                || cheaper
+                || is_it && candidate.right > best.right
         };
         candidate.right > 0 && self.best.is_none_or(is_better)
     }
@@ -271,20 +362,42 @@ impl Search {
     fn plan(&self, limit: Limit) -> Result<Plan, PlanError> {
         let Some(best) = self.best else {
             // To plan for longer would help nothing of which a frame costs too much.
-            let open = self.pass.as_ref().is_none_or(|pass| pass.candidates.iter().any(|one| !one.failed));
-            let limit = if limit == Limit::Planning && !open { Limit::Budget } else { limit };
-            return Err(PlanError::NoMethod { limit, spent: self.spent });
+            let open = self
+                .pass
+                .as_ref()
+                .is_none_or(|pass| pass.candidates.iter().any(|one| !one.failed));
+            let limit = if limit == Limit::Planning && !open {
+                Limit::Budget
+            } else {
+                limit
+            };
+            return Err(PlanError::NoMethod {
+                limit,
+                spent: self.spent,
+            });
         };
         let Stepping { method, steps } = best.stepping;
-        let steps = if method == Method::ClosedFormF32 { 0 } else { steps };
+        let steps = if method == Method::ClosedFormF32 {
+            0
+        } else {
+            steps
+        };
         let rate = f64::from(self.problem.rate);
         Ok(Plan {
             method,
             steps,
-            dt: if steps == 0 { 0.0 } else { 1.0 / (rate * f64::from(steps)) },
+            dt: if steps == 0 {
+                0.0
+            } else {
+                1.0 / (rate * f64::from(steps))
+            },
             error: best.error,
             cost: self.costs.of_frame(best.stepping),
-            horizon: if limit == Limit::End { self.problem.duration } else { self.problem.time(best.right) },
+            horizon: if limit == Limit::End {
+                self.problem.duration
+            } else {
+                self.problem.time(best.right)
+            },
             limit,
             spent: self.spent,
         })

@@ -17,7 +17,8 @@ impl<R: Real> Derivatives<R> for Lagrange<R> {
     fn derivatives(&self, z: &[R; 4]) -> [R; 4] {
         let Motion { a1, a2, w1, w2 } = self.0.to_motion(&State::from(*z));
         let ([sin1, _], [sin2, _], [sin_d, _]) = (sin_cos(a1), sin_cos(a2), sin_cos(a1 - a2));
-        let ([[torque1, _], [_, torque2]], [[_, coupling], _]) = (self.0.stiffness(), self.0.mass_matrix(R::ONE));
+        let ([[torque1, _], [_, torque2]], [[_, coupling], _]) =
+            (self.0.stiffness(), self.0.mass_matrix(R::ONE));
         let force = coupling * w1 * w2 * sin_d;
         [w1, w2, -torque1 * sin1 - force, -torque2 * sin2 + force]
     }
@@ -36,5 +37,7 @@ fn a_method_is_a_row_and_a_type() {
 
 #[test]
 fn every_method_has_a_name_of_its_own() {
-    Method::ALL.iter().for_each(|method| assert_eq!(Method::from_name(method.name()), Some(*method)));
+    Method::ALL
+        .iter()
+        .for_each(|method| assert_eq!(Method::from_name(method.name()), Some(*method)));
 }

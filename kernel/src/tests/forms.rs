@@ -3,7 +3,8 @@
 
 use double_pendulum::parts::DirectionF64;
 use double_pendulum::{
-    DirectionF32, ExtrapolationF64, Fixed32, Fixed64, Form, HamiltonF64, Motion, Parameters, Pendulum,
+    DirectionF32, ExtrapolationF64, Fixed32, Fixed64, Form, HamiltonF64, Motion, Parameters,
+    Pendulum,
 };
 
 use super::{EQUATIONS, assert_near};
@@ -17,10 +18,35 @@ const FINER: u32 = 10;
 /// Unlike masses, rods and rates, and a heavy bob 2 on equal rods: no term is small, and hardly a ratio 1.
 const MOTIONS: [(Parameters<f64>, Motion<f64>); 2] = [
     (
-        Parameters { m1: 0.75, m2: 1.25, l1: 0.625, l2: 1.125, g: 9.8125 },
-        Motion { a1: 0.875, a2: -0.5, w1: 1.0, w2: -2.0 },
+        Parameters {
+            m1: 0.75,
+            m2: 1.25,
+            l1: 0.625,
+            l2: 1.125,
+            g: 9.8125,
+        },
+        Motion {
+            a1: 0.875,
+            a2: -0.5,
+            w1: 1.0,
+            w2: -2.0,
+        },
     ),
-    (Parameters { m1: 1.0, m2: 3.0, l1: 1.0, l2: 1.0, g: 9.8125 }, Motion { a1: -0.5, a2: 1.0, w1: 2.0, w2: 1.0 }),
+    (
+        Parameters {
+            m1: 1.0,
+            m2: 3.0,
+            l1: 1.0,
+            l2: 1.0,
+            g: 9.8125,
+        },
+        Motion {
+            a1: -0.5,
+            a2: 1.0,
+            w1: 2.0,
+            w2: 1.0,
+        },
+    ),
 ];
 
 /// Rates relative to the greatest that the energy allows: what RK4 misses in steps of 1/256 s and roundings of 24 bits
@@ -34,13 +60,16 @@ pub fn is_that_of_hamiltons_equations<F: Form>(tolerance: f64) {
     let form = core::any::type_name::<F>();
     for (parameters, motion) in MOTIONS {
         // the motion of the very numbers that it holds
-        let pendulum = Pendulum::new(&parameters.cast::<F::Real>().cast::<f64>()).expect("valid parameters");
+        let pendulum =
+            Pendulum::new(&parameters.cast::<F::Real>().cast::<f64>()).expect("valid parameters");
         let start = pendulum.to_state(&motion).cast::<F::Real>().cast();
         let mut exact = start;
         for _ in 0..STEPS * FINER {
             exact = pendulum.step(&exact, DT / f64::from(FINER));
         }
-        let mut run = pendulum.run::<F>(&start, DT).expect("a motion that it accepts");
+        let mut run = pendulum
+            .run::<F>(&start, DT)
+            .expect("a motion that it accepts");
         run.advance(STEPS).expect("finite");
 
         let bounds = pendulum.bounds(&start);
@@ -51,9 +80,14 @@ pub fn is_that_of_hamiltons_equations<F: Form>(tolerance: f64) {
             core::array::from_fn::<f64, 4, _>(|i| (end[i] - start[i]) / (f64::from(STEPS) * DT))
         });
         let error = |&i: &usize| ((rates[i] - exact[i]) / scales[i]).abs();
-        let worst = (0..4).max_by(|i, j| error(i).total_cmp(&error(j))).expect("four");
+        let worst = (0..4)
+            .max_by(|i, j| error(i).total_cmp(&error(j)))
+            .expect("four");
         assert_near(
-            format_args!("{form}: {} on average, beside Pendulum::step,", EQUATIONS[worst]),
+            format_args!(
+                "{form}: {} on average, beside Pendulum::step,",
+                EQUATIONS[worst]
+            ),
             rates[worst],
             exact[worst],
             scales[worst],

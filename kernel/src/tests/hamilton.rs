@@ -15,9 +15,11 @@ fn page_terms(
     [sin_d, cos_d]: [f64; 2],
 ) -> [[f64; 3]; 4] {
     let w1 = [p1 * l2, -p2 * l1 * cos_d, 0.0].map(|term| term / (l1 * l1 * l2 * den));
-    let w2 = [p2 * (m1 + m2) * l1, -p1 * m2 * l2 * cos_d, 0.0].map(|term| term / (m2 * l1 * l2 * l2 * den));
+    let w2 = [p2 * (m1 + m2) * l1, -p1 * m2 * l2 * cos_d, 0.0]
+        .map(|term| term / (m2 * l1 * l2 * l2 * den));
     let term_a1 = p1 * p2 * sin_d / (l1 * l2 * den);
-    let bracket = p1 * p1 * m2 * l2 * l2 - 2.0 * p1 * p2 * m2 * l1 * l2 * cos_d + p2 * p2 * (m1 + m2) * l1 * l1;
+    let bracket = p1 * p1 * m2 * l2 * l2 - 2.0 * p1 * p2 * m2 * l1 * l2 * cos_d
+        + p2 * p2 * (m1 + m2) * l1 * l1;
     let sin_2d = 2.0 * sin_d * cos_d;
     let term_a2 = bracket * sin_2d / (2.0 * l1 * l1 * l2 * l2 * den * den);
     let p1_rate = [-(m1 + m2) * g * l1 * a1.sin(), -term_a1, term_a2];
@@ -26,7 +28,9 @@ fn page_terms(
 }
 
 fn largest(terms: &[f64]) -> f64 {
-    terms.iter().fold(0.0, |largest: f64, term| largest.max(term.abs()))
+    terms
+        .iter()
+        .fold(0.0, |largest: f64, term| largest.max(term.abs()))
 }
 
 /// Relative to the largest of the page's own terms, where nothing within a term is allowed to cancel, neither A2's bracket nor
@@ -35,7 +39,8 @@ fn derivatives_are_the_pages<R: Real>() {
     for (pendulum, state) in random::pendulums::<R>(1, STATES) {
         let parameters = pendulum.parameters().cast::<f64>();
         let z @ [a1, a2, p1, p2]: [f64; 4] = state.cast().into();
-        let ((s1, c1), (s2, c2), (sin_d, cos_d)) = (a1.sin_cos(), a2.sin_cos(), (a1 - a2).sin_cos());
+        let ((s1, c1), (s2, c2), (sin_d, cos_d)) =
+            (a1.sin_cos(), a2.sin_cos(), (a1 - a2).sin_cos());
         let den = parameters.m1 + parameters.m2 * sin_d * sin_d;
         // with this sign of cos D every term of the bracket is positive
         let uncancelled = [largest(&[s1 * c2, c1 * s2]), -largest(&[c1 * c2, s1 * s2])];
@@ -44,7 +49,14 @@ fn derivatives_are_the_pages<R: Real>() {
         let values = pendulum.derivatives(&state.into()).map(R::to_f64);
         for i in 0..4 {
             let (exact, scale) = (page[i].iter().sum(), largest(&magnitudes[i]));
-            assert_near(EQUATIONS[i], values[i], exact, scale, tolerances::DERIVATIVES.of::<R>(), &parameters);
+            assert_near(
+                EQUATIONS[i],
+                values[i],
+                exact,
+                scale,
+                tolerances::DERIVATIVES.of::<R>(),
+                &parameters,
+            );
         }
     }
 }
@@ -74,21 +86,43 @@ fn derivatives_are_the_gradient_of_h() {
             });
             (ahead - behind) / (2.0 * step)
         };
-        let gradient = [slope(2, bounds.p1), slope(3, bounds.p2), -slope(0, STEP), -slope(1, STEP)];
+        let gradient = [
+            slope(2, bounds.p1),
+            slope(3, bounds.p2),
+            -slope(0, STEP),
+            -slope(1, STEP),
+        ];
         let range = pendulum.energy_above_rest(&state) - pendulum.least_energy();
         let scales = [bounds.w1, bounds.w2, range, range];
         let values = pendulum.derivatives(&z);
         for i in 0..4 {
             let name = format_args!("{} beside the gradient of H", EQUATIONS[i]);
-            assert_near(name, values[i], gradient[i], scales[i], GRADIENT, pendulum.parameters());
+            assert_near(
+                name,
+                values[i],
+                gradient[i],
+                scales[i],
+                GRADIENT,
+                pendulum.parameters(),
+            );
         }
     }
 }
 
 #[test]
 fn energy_above_rest_keeps_its_precision_in_the_smallest_motion() {
-    let pendulum = Pendulum::new(&Parameters { m1: 1.0_f32, m2: 1.0, l1: 1.0, l2: 1.0, g: 9.8 }).expect("valid");
+    let pendulum = Pendulum::new(&Parameters {
+        m1: 1.0_f32,
+        m2: 1.0,
+        l1: 1.0,
+        l2: 1.0,
+        g: 9.8,
+    })
+    .expect("valid");
     let above = pendulum.energy_above_rest(&State::at_rest(1e-10, 2e-10));
     let exact = 9.8 * (2.0 * 1e-20 + 4e-20) / 2.0; // K = ((m1 + m2) g l1 a1^2 + m2 g l2 a2^2)/2
-    assert!((f64::from(above) / exact - 1.0).abs() < tolerances::FORMULAS.single, "{above} instead of {exact}");
+    assert!(
+        (f64::from(above) / exact - 1.0).abs() < tolerances::FORMULAS.single,
+        "{above} instead of {exact}"
+    );
 }

@@ -10,19 +10,37 @@ fn all<R: Real>() {
     let (one, half) = (R::ONE, R::HALF);
     let mut rng = Rng::with_seed(4);
     for _ in 0..20_000 {
-        let parameters @ Parameters { m1, m2, l1, l2, g } = random::parameters(&mut rng).cast::<R>();
-        let motion: Motion<R> = [0; 4].map(|_| R::from_f64(6.0 * random::symmetric(&mut rng))).into();
+        let parameters @ Parameters { m1, m2, l1, l2, g } =
+            random::parameters(&mut rng).cast::<R>();
+        let motion: Motion<R> = [0; 4]
+            .map(|_| R::from_f64(6.0 * random::symmetric(&mut rng)))
+            .into();
         let Motion { a1, a2, w1, w2 } = motion;
         let pendulum = Pendulum::new(&parameters).expect("valid parameters");
         let same = |name: &str, value: R, exact: R, scale: R| {
-            assert_near(name, value, exact, scale, tolerances::FORMULAS.of::<R>(), &(parameters, motion));
+            assert_near(
+                name,
+                value,
+                exact,
+                scale,
+                tolerances::FORMULAS.of::<R>(),
+                &(parameters, motion),
+            );
         };
 
         // T and V of two bobs, from where they are and how fast
-        let (kinetic, potential) = (pendulum.kinetic_energy(&motion), pendulum.potential_energy([a1, a2]));
+        let (kinetic, potential) = (
+            pendulum.kinetic_energy(&motion),
+            pendulum.potential_energy([a1, a2]),
+        );
         let [bob1, bob2] = pendulum.positions([a1, a2]);
         let [v1, v2] = pendulum.velocities(&motion);
-        same("V", potential, m1 * g * bob1.y + m2 * g * bob2.y, (m1 + m2) * g * l1 + m2 * g * l2);
+        same(
+            "V",
+            potential,
+            m1 * g * bob1.y + m2 * g * bob2.y,
+            (m1 + m2) * g * l1 + m2 * g * l2,
+        );
         let squares = half * (m1 * (v1.x * v1.x + v1.y * v1.y) + m2 * (v2.x * v2.x + v2.y * v2.y));
         let speeds = l1 * w1.abs() + l2 * w2.abs();
         same("T", kinetic, squares, (m1 + m2) * speeds * speeds);
@@ -40,8 +58,14 @@ fn all<R: Real>() {
         let speed = (w1.abs() + w2.abs()) * (m1 + m2) / m1 * (l1 / l2 + l2 / l1);
         same("w1 of (p1, p2)", back.w1, w1, speed);
         same("w2 of (p1, p2)", back.w2, w2, speed * (m1 + m2) / m2);
-        assert_eq!(pendulum.to_state(&Motion::at_rest(a1, a2)), State::at_rest(a1, a2));
-        assert_eq!(pendulum.to_motion(&State::at_rest(a1, a2)), Motion::at_rest(a1, a2));
+        assert_eq!(
+            pendulum.to_state(&Motion::at_rest(a1, a2)),
+            State::at_rest(a1, a2)
+        );
+        assert_eq!(
+            pendulum.to_motion(&State::at_rest(a1, a2)),
+            Motion::at_rest(a1, a2)
+        );
 
         // H = T + V = K + min V, and w.p = 2 T
         let (above, least) = (pendulum.energy_above_rest(&state), pendulum.least_energy());
@@ -49,9 +73,19 @@ fn all<R: Real>() {
         let scale = (above - least) * unlike;
         same("H", pendulum.energy(&state), kinetic + potential, scale);
         let directions = [a1, a2].map(|a| [a.to_f64().sin(), a.to_f64().cos()].map(R::from_f64));
-        same("H of directions", pendulum.energy_at(directions, [p1, p2]), kinetic + potential, scale);
+        same(
+            "H of directions",
+            pendulum.energy_at(directions, [p1, p2]),
+            kinetic + potential,
+            scale,
+        );
         same("K", above, kinetic + potential - least, scale);
-        same("L", pendulum.lagrangian(&motion), kinetic - potential, scale);
+        same(
+            "L",
+            pendulum.lagrangian(&motion),
+            kinetic - potential,
+            scale,
+        );
         same("w.p", w1 * p1 + w2 * p2, R::TWO * kinetic, scale);
 
         // Lagrange's accelerations against Hamilton's forces: M w' + M' w = p', the time derivative of p = M w
@@ -62,11 +96,22 @@ fn all<R: Real>() {
         let m12_rate = -m2 * l1 * l2 * R::from_f64(sin_d) * (w1 - w2);
         let p1_rate = m11 * acceleration1 + m12 * acceleration2 + m12_rate * w2;
         let p2_rate = m21 * acceleration1 + m22 * acceleration2 + m12_rate * w1;
-        let magnitude = (m11 + m12.abs()) * acceleration1.abs() + (m22 + m12.abs()) * acceleration2.abs();
+        let magnitude =
+            (m11 + m12.abs()) * acceleration1.abs() + (m22 + m12.abs()) * acceleration2.abs();
         let square = (w1.abs() + w2.abs()) * (w1.abs() + w2.abs());
         let scale = (magnitude + (m11 + m22) * square + force1.abs() + force2.abs()) * unlike;
-        same("p1' by Pendulum::accelerations, beside derivatives,", p1_rate, force1, scale);
-        same("p2' by Pendulum::accelerations, beside derivatives,", p2_rate, force2, scale);
+        same(
+            "p1' by Pendulum::accelerations, beside derivatives,",
+            p1_rate,
+            force1,
+            scale,
+        );
+        same(
+            "p2' by Pendulum::accelerations, beside derivatives,",
+            p2_rate,
+            force2,
+            scale,
+        );
     }
 }
 
@@ -78,12 +123,35 @@ fn lagrange_in_either_precision() {
 
 #[test]
 fn bobs_are_where_the_rods_point() {
-    let pendulum = Pendulum::new(&Parameters { m1: 1.0, m2: 2.0, l1: 3.0, l2: 4.0, g: 9.8 }).expect("valid parameters");
-    let motion = Motion { a1: 0.0, a2: core::f64::consts::FRAC_PI_2, w1: 1.0, w2: 2.0 }; // down, then right
-    let ([bob1, bob2], [v1, v2]) = (pendulum.positions(motion.angles()), pendulum.velocities(&motion));
-    let exact = [(bob1, [0.0, -3.0]), (bob2, [4.0, -3.0]), (v1, [3.0, 0.0]), (v2, [3.0, 8.0])];
+    let pendulum = Pendulum::new(&Parameters {
+        m1: 1.0,
+        m2: 2.0,
+        l1: 3.0,
+        l2: 4.0,
+        g: 9.8,
+    })
+    .expect("valid parameters");
+    let motion = Motion {
+        a1: 0.0,
+        a2: core::f64::consts::FRAC_PI_2,
+        w1: 1.0,
+        w2: 2.0,
+    }; // down, then right
+    let ([bob1, bob2], [v1, v2]) = (
+        pendulum.positions(motion.angles()),
+        pendulum.velocities(&motion),
+    );
+    let exact = [
+        (bob1, [0.0, -3.0]),
+        (bob2, [4.0, -3.0]),
+        (v1, [3.0, 0.0]),
+        (v2, [3.0, 8.0]),
+    ];
     for (vector, [x, y]) in exact {
         let off = (vector.x - x).abs().max((vector.y - y).abs());
-        assert!(off < tolerances::FORMULAS.double, "{vector:?} instead of ({x}, {y})");
+        assert!(
+            off < tolerances::FORMULAS.double,
+            "{vector:?} instead of ({x}, {y})"
+        );
     }
 }

@@ -22,8 +22,18 @@ const EQUATIONS: [&str; 4] = ["w1", "w2", "p1'", "p2'"];
 
 /// `value`, named `name`, is `exact` within `tolerance` of `scale`; `of` is the case.
 #[track_caller]
-fn assert_near<R: Real>(name: impl Display, value: R, exact: R, scale: R, tolerance: f64, of: &impl Debug) {
+fn assert_near<R: Real>(
+    name: impl Display,
+    value: R,
+    exact: R,
+    scale: R,
+    tolerance: f64,
+    of: &impl Debug,
+) {
     let [value, exact, scale] = [value, exact, scale].map(R::to_f64);
     let error = (value - exact).abs();
-    assert!(error <= tolerance * scale.abs(), "{name} is off by {error:.2e}: {value} instead of {exact}; {of:?}");
+    assert!(
+        error <= tolerance * scale.abs(),
+        "{name} is off by {error:.2e}: {value} instead of {exact}; {of:?}"
+    );
 }

@@ -15,17 +15,28 @@ pub fn symmetric(rng: &mut Rng) -> f64 {
 
 /// Masses within a factor of 100 of each other, lengths within a factor of 10, 1 to 20 m/s^2, rounded to `f32`.
 pub fn parameters(rng: &mut Rng) -> Parameters<f64> {
-    let [m1, m2, l1, l2, g] = [(0.1, 10.0), (0.1, 10.0), (0.3, 3.0), (0.3, 3.0), (1.0, 20.0)]
-        .map(|(low, high)| f64::from(log_uniform(rng, low, high) as f32));
+    let [m1, m2, l1, l2, g] = [
+        (0.1, 10.0),
+        (0.1, 10.0),
+        (0.3, 3.0),
+        (0.3, 3.0),
+        (1.0, 20.0),
+    ]
+    .map(|(low, high)| f64::from(log_uniform(rng, low, high) as f32));
     Parameters { m1, m2, l1, l2, g }
 }
 
 /// Any angles within one turn either way, and momenta of the order of those gravity can give; rounded to `f32`.
 pub fn state(rng: &mut Rng, &Parameters { m1, m2, l1, l2, g }: &Parameters<f64>) -> State<f64> {
     let energy = g * ((m1 + m2) * l1 + m2 * l2);
-    let [p1, p2] = [l1 * (2.0 * (m1 + m2) * energy).sqrt(), l2 * (2.0 * m2 * energy).sqrt()];
+    let [p1, p2] = [
+        l1 * (2.0 * (m1 + m2) * energy).sqrt(),
+        l2 * (2.0 * m2 * energy).sqrt(),
+    ];
     let turn = core::f64::consts::TAU;
-    [turn, turn, p1, p2].map(|most| f64::from((most * symmetric(rng)) as f32)).into()
+    [turn, turn, p1, p2]
+        .map(|most| f64::from((most * symmetric(rng)) as f32))
+        .into()
 }
 
 /// So many pendulums of [`parameters`] with a [`state`] each; the same numbers in either precision.
@@ -34,6 +45,9 @@ pub fn pendulums<R: Real>(seed: u64, count: u32) -> impl Iterator<Item = (Pendul
     (0..count).map(move |_| {
         let parameters = parameters(&mut rng);
         let state = state(&mut rng, &parameters).cast();
-        (Pendulum::new(&parameters.cast()).expect("random parameters are valid"), state)
+        (
+            Pendulum::new(&parameters.cast()).expect("random parameters are valid"),
+            state,
+        )
     })
 }

@@ -3,9 +3,17 @@
 use std::string::ToString;
 
 use double_pendulum::Parameter::{A1, A2, Dt, FrequencyRatio, G, L1, M1, M2};
-use double_pendulum::{ClosedFormF32, Error, Modes, Motion, Parameters, Pendulum, State, periodic_mass_ratio};
+use double_pendulum::{
+    ClosedFormF32, Error, Modes, Motion, Parameters, Pendulum, State, periodic_mass_ratio,
+};
 
-const GOOD: Parameters<f64> = Parameters { m1: 1.0, m2: 2.0, l1: 3.0, l2: 4.0, g: 9.8 };
+const GOOD: Parameters<f64> = Parameters {
+    m1: 1.0,
+    m2: 2.0,
+    l1: 3.0,
+    l2: 4.0,
+    g: 9.8,
+};
 
 fn pendulum(parameters: Parameters<f64>) -> Result<(), Error> {
     Pendulum::new(&parameters).map(drop)
@@ -13,7 +21,9 @@ fn pendulum(parameters: Parameters<f64>) -> Result<(), Error> {
 
 /// By the linear motion in `f32`, of which fourth powers are drawn.
 fn linear(angle: f64) -> Result<(), Error> {
-    Pendulum::new(&GOOD)?.run::<ClosedFormF32>(&State::at_rest(angle, 0.0), 0.01).map(drop)
+    Pendulum::new(&GOOD)?
+        .run::<ClosedFormF32>(&State::at_rest(angle, 0.0), 0.01)
+        .map(drop)
 }
 
 fn periods(fast: u16, slow: u16, lengths: [f64; 2]) -> Result<(), Error> {
@@ -25,40 +35,124 @@ fn what_is_refused_is_named_with_its_value() {
     let infinite = f64::INFINITY;
     let not_finite = |parameter, value| Error::NotFinite { parameter, value };
     let not_positive = |parameter, value| Error::NotPositive { parameter, value };
-    let too_small = |parameter, value, limit| Error::TooSmall { parameter, value, limit };
+    let too_small = |parameter, value, limit| Error::TooSmall {
+        parameter,
+        value,
+        limit,
+    };
     for (refused, error) in [
-        (pendulum(Parameters { l1: 0.0, ..GOOD }), not_positive(L1, 0.0)),
-        (pendulum(Parameters { l1: -1.0, ..GOOD }), not_positive(L1, -1.0)),
-        (pendulum(Parameters { l1: infinite, ..GOOD }), not_finite(L1, infinite)),
-        (pendulum(Parameters { g: -9.8, ..GOOD }), too_small(G, -9.8, 0.0)),
-        (pendulum(Parameters { m1: 1e300, l1: 1e200, ..GOOD }), Error::OutOfRange { parameter: M1, value: 1e300 }),
-        (Modes::new(&Parameters { g: 0.0, ..GOOD }).map(drop), not_positive(G, 0.0)),
-        (linear(1e12), Error::OutOfRange { parameter: A1, value: 1e12 }),
-        (State::at_rest(0.0, infinite).check(), not_finite(A2, infinite)),
-        (Motion::at_rest(0.0, infinite).check(), not_finite(A2, infinite)),
-        (periods(3, 0, [1.0, 1.0]), not_finite(FrequencyRatio, infinite)),
-        (periods(1, 1, [1.0, 1.0]), too_small(FrequencyRatio, 1.0, 1.0)),
-        (periods(3, 2, [4.0, 1.0]), too_small(FrequencyRatio, 1.5, 2.0)),
+        (
+            pendulum(Parameters { l1: 0.0, ..GOOD }),
+            not_positive(L1, 0.0),
+        ),
+        (
+            pendulum(Parameters { l1: -1.0, ..GOOD }),
+            not_positive(L1, -1.0),
+        ),
+        (
+            pendulum(Parameters {
+                l1: infinite,
+                ..GOOD
+            }),
+            not_finite(L1, infinite),
+        ),
+        (
+            pendulum(Parameters { g: -9.8, ..GOOD }),
+            too_small(G, -9.8, 0.0),
+        ),
+        (
+            pendulum(Parameters {
+                m1: 1e300,
+                l1: 1e200,
+                ..GOOD
+            }),
+            Error::OutOfRange {
+                parameter: M1,
+                value: 1e300,
+            },
+        ),
+        (
+            Modes::new(&Parameters { g: 0.0, ..GOOD }).map(drop),
+            not_positive(G, 0.0),
+        ),
+        (
+            linear(1e12),
+            Error::OutOfRange {
+                parameter: A1,
+                value: 1e12,
+            },
+        ),
+        (
+            State::at_rest(0.0, infinite).check(),
+            not_finite(A2, infinite),
+        ),
+        (
+            Motion::at_rest(0.0, infinite).check(),
+            not_finite(A2, infinite),
+        ),
+        (
+            periods(3, 0, [1.0, 1.0]),
+            not_finite(FrequencyRatio, infinite),
+        ),
+        (
+            periods(1, 1, [1.0, 1.0]),
+            too_small(FrequencyRatio, 1.0, 1.0),
+        ),
+        (
+            periods(3, 2, [4.0, 1.0]),
+            too_small(FrequencyRatio, 1.5, 2.0),
+        ),
         // at the limit bob 2 would have no mass
-        (periods(2, 1, [4.0, 1.0]), too_small(FrequencyRatio, 2.0, 2.0)),
-        (periods(2, 1, [1.0, 4.0]), too_small(FrequencyRatio, 2.0, 2.0)),
+        (
+            periods(2, 1, [4.0, 1.0]),
+            too_small(FrequencyRatio, 2.0, 2.0),
+        ),
+        (
+            periods(2, 1, [1.0, 4.0]),
+            too_small(FrequencyRatio, 2.0, 2.0),
+        ),
         (periods(3, 2, [0.0, 1.0]), not_positive(L1, 0.0)),
     ] {
         assert_eq!(refused, Err(error));
     }
-    let nan = pendulum(Parameters { m2: f64::NAN, ..GOOD });
-    assert!(matches!(nan, Err(Error::NotFinite { parameter: M2, value }) if value.is_nan()), "{nan:?}");
-    let good =
-        [pendulum(Parameters { g: 0.0, ..GOOD }), State::at_rest(1.0, 2.0).check(), Motion::at_rest(1.0, 2.0).check()];
+    let nan = pendulum(Parameters {
+        m2: f64::NAN,
+        ..GOOD
+    });
+    assert!(
+        matches!(nan, Err(Error::NotFinite { parameter: M2, value }) if value.is_nan()),
+        "{nan:?}"
+    );
+    let good = [
+        pendulum(Parameters { g: 0.0, ..GOOD }),
+        State::at_rest(1.0, 2.0).check(),
+        Motion::at_rest(1.0, 2.0).check(),
+    ];
     assert_eq!(good, [Ok(()); 3]);
 }
 
 #[test]
 fn one_line_each() {
     for (error, line) in [
-        (Error::NotPositive { parameter: L1, value: 0.0 }, "l1 = 0.0: must be greater than zero"),
-        (Error::TooLarge { parameter: Dt, value: 2.0, limit: 0.5 }, "dt = 2.0: must not exceed 0.5"),
-        (Error::UnequalRods { l1: 3.0, l2: 4.0 }, "l2 = 4.0: the equal-rod form needs l2 = l1 = 3.0"),
+        (
+            Error::NotPositive {
+                parameter: L1,
+                value: 0.0,
+            },
+            "l1 = 0.0: must be greater than zero",
+        ),
+        (
+            Error::TooLarge {
+                parameter: Dt,
+                value: 2.0,
+                limit: 0.5,
+            },
+            "dt = 2.0: must not exceed 0.5",
+        ),
+        (
+            Error::UnequalRods { l1: 3.0, l2: 4.0 },
+            "l2 = 4.0: the equal-rod form needs l2 = l1 = 3.0",
+        ),
     ] {
         assert_eq!(error.to_string(), line);
     }

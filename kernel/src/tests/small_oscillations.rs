@@ -2,7 +2,9 @@
 
 use core::f64::consts::{FRAC_PI_6, TAU};
 
-use double_pendulum::{Mode, Modes, Motion, Parameters, Pendulum, Real, SmallOscillations, periodic_mass_ratio};
+use double_pendulum::{
+    Mode, Modes, Motion, Parameters, Pendulum, Real, SmallOscillations, periodic_mass_ratio,
+};
 use fastrand::Rng;
 
 use super::random::symmetric;
@@ -25,7 +27,10 @@ fn figures_3_to_5_are_the_books() {
     for [mu, w1, w2, envelope, largest_a1] in FIGURES {
         let modes = Modes::new(&Parameters::equal_rods(mu, 0.25, 9.8)).expect("valid parameters");
         let start = Motion::at_rest(0.0, FRAC_PI_6);
-        let (double, single) = (SmallOscillations::new(modes, &start), SmallOscillations::new(modes, &start.cast()));
+        let (double, single) = (
+            SmallOscillations::new(modes, &start),
+            SmallOscillations::new(modes, &start.cast()),
+        );
         let (fast, slow) = (modes.fast.frequency, modes.slow.frequency);
         let amplitude = (double.fast.amplitude() + double.slow.amplitude()).to_degrees();
         for (value, exact, digits) in [
@@ -36,7 +41,10 @@ fn figures_3_to_5_are_the_books() {
             (TAU / modes.exchange(), envelope, 1e-6),
             (amplitude, largest_a1, 1e-4),
         ] {
-            assert!((value - exact).abs() < 0.5 * digits, "{mu}: {value} instead of {exact}");
+            assert!(
+                (value - exact).abs() < 0.5 * digits,
+                "{mu}: {value} instead of {exact}"
+            );
         }
 
         let off = |t: f64, [a1, a2]: [f64; 2]| {
@@ -47,10 +55,16 @@ fn figures_3_to_5_are_the_books() {
         };
         for t in (0..600).map(|tick| f64::from(tick) / 60.0) {
             let error = off(t, double.at(t).angles());
-            assert!(error < tolerances::FORMULAS.double, "{mu} at {t} s: {error:e} rad");
+            assert!(
+                error < tolerances::FORMULAS.double,
+                "{mu} at {t} s: {error:e} rad"
+            );
             for later in [0.0, 12.0, 24.0].map(|hours| 3600.0 * hours + t) {
                 let error = off(later, single.at(later).angles().map(f64::from));
-                assert!(error <= FRAC_PI_6 * tolerances::CLOSED_FORM, "{mu} in f32 at {later} s: {error:e} rad");
+                assert!(
+                    error <= FRAC_PI_6 * tolerances::CLOSED_FORM,
+                    "{mu} in f32 at {later} s: {error:e} rad"
+                );
             }
             directions_are_those_of_the_angles::<f64>(&double, t);
             directions_are_those_of_the_angles::<f32>(&single, t);
@@ -61,10 +75,20 @@ fn figures_3_to_5_are_the_books() {
 /// What is drawn are the sines and cosines of the angles but for the terms of the series that are left out.
 fn directions_are_those_of_the_angles<R: Real>(motion: &SmallOscillations<R>, t: f64) {
     let rounding = tolerances::FORMULAS.of::<R>();
-    for (direction, a) in motion.directions(t).into_iter().zip(motion.at(t).angles().map(R::to_f64)) {
+    for (direction, a) in motion
+        .directions(t)
+        .into_iter()
+        .zip(motion.at(t).angles().map(R::to_f64))
+    {
         let [sine, cosine] = direction.map(R::to_f64);
-        assert!((sine - a.sin()).abs() <= a.abs().powi(5) / 120.0 + rounding, "{t:?}: sin {a} = {sine}");
-        assert!((cosine - a.cos()).abs() <= a.powi(6) / 720.0 + rounding, "{t:?}: cos {a} = {cosine}");
+        assert!(
+            (sine - a.sin()).abs() <= a.abs().powi(5) / 120.0 + rounding,
+            "{t:?}: sin {a} = {sine}"
+        );
+        assert!(
+            (cosine - a.cos()).abs() <= a.powi(6) / 720.0 + rounding,
+            "{t:?}: cos {a} = {cosine}"
+        );
     }
 }
 
@@ -82,17 +106,25 @@ fn modes_solve_the_matrix_equation_and_motions_have_amplitudes_and_phases() {
                 let inertia = frequency * frequency * (mass[row][0] + mass[row][1] * shape);
                 let scale = frequency * frequency * (mass[row][0] + mass[row][1] * shape.abs());
                 let error = (force - inertia).abs() / scale;
-                assert!(error < tolerances::FORMULAS.double, "{error:e} for {:?}", pendulum.parameters());
+                assert!(
+                    error < tolerances::FORMULAS.double,
+                    "{error:e} for {:?}",
+                    pendulum.parameters()
+                );
             }
         }
 
-        let motion = SmallOscillations::<f64>::new(modes, &[0; 4].map(|_| symmetric(&mut rng)).into());
+        let motion =
+            SmallOscillations::<f64>::new(modes, &[0; 4].map(|_| symmetric(&mut rng)).into());
         let t = 3.0 * rng.f64();
         let (fast, slow) = (motion.fast, motion.slow);
         let a1 = fast.amplitude() * (modes.fast.frequency * t + fast.phase()).cos()
             + slow.amplitude() * (modes.slow.frequency * t + slow.phase()).cos();
         let scale = (fast.amplitude() + slow.amplitude()) * (1.0 + modes.fast.frequency * t);
-        assert!((motion.at(t).a1 - a1).abs() < tolerances::FORMULAS.double * scale, "{a1}");
+        assert!(
+            (motion.at(t).a1 - a1).abs() < tolerances::FORMULAS.double * scale,
+            "{a1}"
+        );
     }
 }
 
@@ -108,13 +140,37 @@ fn periodic_mass_ratios_repeat() {
         (7, 3, [2.0, 0.5], None),
     ] {
         let mu = periodic_mass_ratio(fast, slow, lengths).expect("the ratio is possible");
-        assert!(exact.is_none_or(|exact| mu == exact), "{mu} instead of {exact:?}");
-        let modes = Modes::new(&Parameters { m1: 1.0, m2: mu, l1, l2, g: 9.8 }).expect("valid parameters");
+        assert!(
+            exact.is_none_or(|exact| mu == exact),
+            "{mu} instead of {exact:?}"
+        );
+        let modes = Modes::new(&Parameters {
+            m1: 1.0,
+            m2: mu,
+            l1,
+            l2,
+            g: 9.8,
+        })
+        .expect("valid parameters");
         let ratio = modes.fast.frequency / modes.slow.frequency;
-        assert!((ratio * f64::from(slow) / f64::from(fast) - 1.0).abs() < tolerances::FORMULAS.double, "{ratio}");
-        let motion = SmallOscillations::new(modes, &Motion { a1: 0.1, a2: -0.2, w1: 0.3, w2: 0.4 });
+        assert!(
+            (ratio * f64::from(slow) / f64::from(fast) - 1.0).abs() < tolerances::FORMULAS.double,
+            "{ratio}"
+        );
+        let motion = SmallOscillations::new(
+            modes,
+            &Motion {
+                a1: 0.1,
+                a2: -0.2,
+                w1: 0.3,
+                w2: 0.4,
+            },
+        );
         let period = TAU * f64::from(fast) / modes.fast.frequency;
         let (start, later) = (motion.at(0.0), motion.at(period));
-        assert!((later.a1 - start.a1).abs() + (later.a2 - start.a2).abs() < PERIOD, "{later:?}");
+        assert!(
+            (later.a1 - start.a1).abs() + (later.a2 - start.a2).abs() < PERIOD,
+            "{later:?}"
+        );
     }
 }

@@ -10,7 +10,12 @@ fn run<R: Real>(parameters: &Parameters<R>, start: State<R>, dt: R) -> State<R> 
 }
 
 fn stronger<R: Real>(State { a1, a2, p1, p2 }: State<R>, by: R) -> State<R> {
-    State { a1, a2, p1: p1 * by, p2: p2 * by }
+    State {
+        a1,
+        a2,
+        p1: p1 * by,
+        p2: p2 * by,
+    }
 }
 
 /// Lengths x 4: time x 2, momenta x 8. Gravity x 4: time / 2, momenta x 2. Masses x 2: momenta x 2.
@@ -18,7 +23,10 @@ fn hold<R: Real>() {
     let [two, four, eight] = [2.0, 4.0, 8.0].map(R::from_f64);
     for (pendulum, start) in random::pendulums::<R>(3, 200) {
         let [w1, w2, f1, f2] = pendulum.derivatives(&start.into());
-        assert_eq!(pendulum.derivatives(&stronger(start, -R::ONE).into()), [-w1, -w2, f1, f2]);
+        assert_eq!(
+            pendulum.derivatives(&stronger(start, -R::ONE).into()),
+            [-w1, -w2, f1, f2]
+        );
 
         // neither rod can turn by more than a twentieth of a radian
         let bounds = pendulum.bounds(&start);
@@ -28,11 +36,28 @@ fn hold<R: Real>() {
         let mirrored = |state: State<R>| State::from(<[R; 4]>::from(state).map(|x| -x));
         assert_eq!(run(parameters, mirrored(start), dt), mirrored(end));
 
-        let longer = Parameters { l1: l1 * four, l2: l2 * four, ..*parameters };
-        assert_eq!(run(&longer, stronger(start, eight), dt * two), stronger(end, eight));
-        let heavier = Parameters { g: g * four, ..*parameters };
-        assert_eq!(run(&heavier, stronger(start, two), dt * R::HALF), stronger(end, two));
-        let bigger = Parameters { m1: m1 * two, m2: m2 * two, ..*parameters };
+        let longer = Parameters {
+            l1: l1 * four,
+            l2: l2 * four,
+            ..*parameters
+        };
+        assert_eq!(
+            run(&longer, stronger(start, eight), dt * two),
+            stronger(end, eight)
+        );
+        let heavier = Parameters {
+            g: g * four,
+            ..*parameters
+        };
+        assert_eq!(
+            run(&heavier, stronger(start, two), dt * R::HALF),
+            stronger(end, two)
+        );
+        let bigger = Parameters {
+            m1: m1 * two,
+            m2: m2 * two,
+            ..*parameters
+        };
         assert_eq!(run(&bigger, stronger(start, two), dt), stronger(end, two));
     }
 }
@@ -48,7 +73,10 @@ fn reversed_momenta_bring_the_start_back() {
     for (pendulum, start) in random::pendulums::<f64>(1, 200) {
         let (parameters, bounds) = (pendulum.parameters(), pendulum.bounds(&start));
         let dt = 0.002 / bounds.w1.max(bounds.w2);
-        let back = stronger(run(parameters, stronger(run(parameters, start, dt), -1.0), dt), -1.0);
+        let back = stronger(
+            run(parameters, stronger(run(parameters, start, dt), -1.0), dt),
+            -1.0,
+        );
         for (name, back, start, scale) in [
             ("a1", back.a1, start.a1, 1.0),
             ("a2", back.a2, start.a2, 1.0),

@@ -16,7 +16,9 @@ const ULPS: f64 = 2.0 - 0.6;
 /// The absolute error of sine or cosine, whichever is larger.
 fn error(x: f32) -> f64 {
     let ((sine, cosine), (true_sine, true_cosine)) = (x.own_sin_cos(), f64::from(x).sin_cos());
-    (f64::from(sine) - true_sine).abs().max((f64::from(cosine) - true_cosine).abs())
+    (f64::from(sine) - true_sine)
+        .abs()
+        .max((f64::from(cosine) - true_cosine).abs())
 }
 
 /// The largest over every `stride`-th float of [-`limit`, `limit`], smallest first.
@@ -51,7 +53,13 @@ fn own_f32_is_within_its_bound_on_every_float_to_pi() {
 fn own_f32_holds_where_the_reduction_cancels() {
     for k in 1..=6366 {
         let nearest = (f64::from(k) * core::f64::consts::FRAC_PI_2) as f32;
-        for x in [nearest.to_bits() - 1, nearest.to_bits(), nearest.to_bits() + 1].map(f32::from_bits) {
+        for x in [
+            nearest.to_bits() - 1,
+            nearest.to_bits(),
+            nearest.to_bits() + 1,
+        ]
+        .map(f32::from_bits)
+        {
             assert!(error(x) <= FAR, "{x:e}: {:e}", error(x));
         }
     }
@@ -62,11 +70,14 @@ fn own_f64_is_within_two_units_of_the_last_place() {
     let mut worst = 0.0_f64;
     let uniform = (-2_000_000..=2_000_000).map(|i| f64::from(i) * 8.1e-7);
     let huge = (0..200_000).map(|i| f64::from(i) * 8.235_490_1);
-    let every_size = (0..4_000_000).map(|i| f64::from_bits(0x3c00_0000_0000_0000 + i * 0x2_4000_0000));
+    let every_size =
+        (0..4_000_000).map(|i| f64::from_bits(0x3c00_0000_0000_0000 + i * 0x2_4000_0000));
     let cancelling = (1..1_000_000).map(|k| f64::from(k) * core::f64::consts::FRAC_PI_2);
     for x in uniform.chain(huge).chain(every_size).chain(cancelling) {
         let ((sine, cosine), (true_sine, true_cosine)) = (x.own_sin_cos(), x.sin_cos());
-        worst = worst.max(ulps(sine, true_sine)).max(ulps(cosine, true_cosine));
+        worst = worst
+            .max(ulps(sine, true_sine))
+            .max(ulps(cosine, true_cosine));
     }
     std::println!("largest error: {worst:.3} ulp");
     assert!(worst <= ULPS, "{worst:.3}");
@@ -78,7 +89,14 @@ fn every_bit_pattern_has_a_defined_result() {
     for x in (0..=u32::MAX).step_by(65_521).map(f32::from_bits) {
         let (sine, cosine) = x.own_sin_cos();
         let is_small = sine.abs() <= 1.0 + f32::EPSILON && cosine.abs() <= 1.0 + f32::EPSILON;
-        assert!(if x.is_finite() { is_small } else { sine.is_nan() && cosine.is_nan() }, "{x:e}");
+        assert!(
+            if x.is_finite() {
+                is_small
+            } else {
+                sine.is_nan() && cosine.is_nan()
+            },
+            "{x:e}"
+        );
     }
     for x in [f32::MAX, 1e20, 12_868.0] {
         assert_eq!(x.own_sin_cos(), libm::sincosf(x));

@@ -62,7 +62,9 @@ pub fn cycles() -> u32 {
         let left = SYST::get_current();
         // No tick came between the two readings.
         if TICKS.load(Ordering::Relaxed) == ticks {
-            return ticks.wrapping_mul(period).wrapping_add(period.wrapping_sub(1).wrapping_sub(left));
+            return ticks
+                .wrapping_mul(period)
+                .wrapping_add(period.wrapping_sub(1).wrapping_sub(left));
         }
     }
 }

@@ -104,10 +104,27 @@ extern "C" fn hard_fault(frame: *mut ExceptionFrame, exception: u32) {
         fault_status(true);
         return;
     }
-    let stacked = frame.map(|frame| Stacked { pc: frame.pc(), lr: frame.lr(), xpsr: frame.xpsr() });
+    let stacked = frame.map(|frame| Stacked {
+        pc: frame.pc(),
+        lr: frame.lr(),
+        xpsr: frame.xpsr(),
+    });
     let last_call = calls(sp).next();
-    let (pc, lr) = stacked.map_or((0, last_call.unwrap_or_default()), |stacked| (stacked.pc, stacked.lr));
-    crash((Cause::Fault, pc, lr, cfsr), &Fault { stacked, sp, last_call, cfsr, hfsr, mmfar, bfar })
+    let (pc, lr) = stacked.map_or((0, last_call.unwrap_or_default()), |stacked| {
+        (stacked.pc, stacked.lr)
+    });
+    crash(
+        (Cause::Fault, pc, lr, cfsr),
+        &Fault {
+            stacked,
+            sp,
+            last_call,
+            cfsr,
+            hfsr,
+            mmfar,
+            bfar,
+        },
+    )
 }
 
 /// A call to the debugger with no debugger there fails as if it had answered -1, so that an image with logs runs
@@ -136,7 +153,9 @@ pub(super) fn hang(interrupted: &ExceptionFrame) {
     retained::end(Cause::Hang, pc, lr, 0);
     if watchdog::has_ticked() && !ALONE.load(Ordering::Relaxed) {
         watchdog::stall(false);
-        say(&format_args!("HANG: no frame finished for {WATCHDOG_SECONDS} s\n  pc {pc:#010x}  lr {lr:#010x}"));
+        say(&format_args!(
+            "HANG: no frame finished for {WATCHDOG_SECONDS} s\n  pc {pc:#010x}  lr {lr:#010x}"
+        ));
         watchdog::stall(true);
     }
 }
@@ -185,7 +204,12 @@ fn fault_status(clears: bool) -> [u32; 4] {
         // SAFETY: writing the bits back only clears them.
         unsafe { control.hfsr.modify(|bits| bits) };
     }
-    [control.cfsr.read(), control.hfsr.read(), control.mmfar.read(), control.bfar.read()]
+    [
+        control.cfsr.read(),
+        control.hfsr.read(),
+        control.mmfar.read(),
+        control.bfar.read(),
+    ]
 }
 
 #[cfg(armv6m)]

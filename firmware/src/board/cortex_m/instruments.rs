@@ -22,14 +22,29 @@ pub fn start(core: Peripherals, board: BoardName, hertz: u32, chip: [u32; 4]) ->
     clock::start(core.SYST, hertz);
     start_counter(core.DCB, core.DWT);
     let processor = core.CPUID.base.read();
-    let identity = Identity { board, hertz, processor, chip, ..Identity::default() };
-    Instruments { stopwatch: clock::cycles, timed, image, identity }
+    let identity = Identity {
+        board,
+        hertz,
+        processor,
+        chip,
+        ..Identity::default()
+    };
+    Instruments {
+        stopwatch: clock::cycles,
+        timed,
+        image,
+        identity,
+    }
 }
 
 /// From flash alone.
 #[cfg(not(any(feature = "pico", feature = "stm32f405")))]
 fn timed(motion: &mut crate::job::OnBoards, steps: u32, in_ram: bool) -> u32 {
-    if in_ram { 0 } else { cycles_of(|| crate::job::Run::advance(motion, steps)) }
+    if in_ram {
+        0
+    } else {
+        cycles_of(|| crate::job::Run::advance(motion, steps))
+    }
 }
 
 fn image() -> &'static [u8] {

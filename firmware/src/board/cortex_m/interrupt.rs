@@ -20,7 +20,13 @@ impl<T> Shared<T> {
 
     /// Does something with it, undisturbed; `None` within itself.
     pub fn with<R>(&self, act: impl FnOnce(&mut T) -> R) -> Option<R> {
-        free(|token| self.0.borrow(token).try_borrow_mut().ok().map(|mut shared| act(&mut shared)))
+        free(|token| {
+            self.0
+                .borrow(token)
+                .try_borrow_mut()
+                .ok()
+                .map(|mut shared| act(&mut shared))
+        })
     }
 }
 

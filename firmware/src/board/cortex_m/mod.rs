@@ -25,5 +25,9 @@ pub fn command_line(buffer: &mut [u8]) -> Option<&str> {
     // and the string's length into the second word; both outlive the call and nothing else refers to them.
     let status = unsafe { syscall1(nr::GET_CMDLINE, block.as_mut_ptr() as usize) };
     let length = block[1];
-    if status == 0 { str::from_utf8(buffer.get(..length)?).ok() } else { None }
+    if status == 0 {
+        str::from_utf8(buffer.get(..length)?).ok()
+    } else {
+        None
+    }
 }

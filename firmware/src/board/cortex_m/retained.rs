@@ -31,7 +31,9 @@ pub fn keep(record: &Record) {
 
 #[inline(never)]
 fn kept() -> Option<Record> {
-    copies().iter().find_map(|copy| Record::read(&copy.each_ref().map(|byte| byte.load(Ordering::Relaxed))))
+    copies()
+        .iter()
+        .find_map(|copy| Record::read(&copy.each_ref().map(|byte| byte.load(Ordering::Relaxed))))
 }
 
 /// What was kept across the last reset, if that was no planned one.
@@ -47,6 +49,15 @@ pub fn last() -> Option<Restarted> {
 #[inline(never)]
 pub fn end(cause: Cause, pc: u32, lr: u32, cfsr: u32) {
     if let Some(Record { played, end }) = kept() {
-        keep(&Record { played, end: Restarted { cause: Some(cause), pc, lr, cfsr, ..end } });
+        keep(&Record {
+            played,
+            end: Restarted {
+                cause: Some(cause),
+                pc,
+                lr,
+                cfsr,
+                ..end
+            },
+        });
     }
 }

@@ -85,7 +85,8 @@ pub fn calls(sp: u32) -> impl Iterator<Item = u32> {
 pub fn instruction(address: u32) -> Option<u16> {
     let code = &raw const __stext as u32..&raw const __etext as u32;
     // SAFETY: any two bytes of the code are a `u16`.
-    (address & 1 == 0 && code.contains(&address)).then(|| unsafe { (address as *const u16).read_volatile() })
+    (address & 1 == 0 && code.contains(&address))
+        .then(|| unsafe { (address as *const u16).read_volatile() })
 }
 
 /// The call that returns to this address, if it is one that a call returns to: in the code, marked as Thumb code, and a

@@ -43,7 +43,9 @@ impl TwoStage {
     pub(in crate::board) fn start(device: Device, hertz: u32, call: u16) -> Self {
         CALL.store(call, Ordering::Relaxed);
         unlock(device);
-        device.register(LOAD).write(hertz.saturating_mul(WATCHDOG_SECONDS));
+        device
+            .register(LOAD)
+            .write(hertz.saturating_mul(WATCHDOG_SECONDS));
         device.register(CONTROL).write(ENABLE);
         let mut watchdog = Self(device);
         watchdog.feed();
@@ -78,7 +80,9 @@ pub(super) fn is_call(number: u32) -> bool {
 }
 
 fn own() -> Option<Interrupt> {
-    CALL.load(Ordering::Relaxed).checked_sub(FIRST).map(Interrupt)
+    CALL.load(Ordering::Relaxed)
+        .checked_sub(FIRST)
+        .map(Interrupt)
 }
 
 static FED: AtomicU32 = AtomicU32::new(0);

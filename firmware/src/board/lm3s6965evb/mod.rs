@@ -62,8 +62,15 @@ pub struct Keys;
 
 impl Buttons for Keys {
     fn read(&mut self) -> Pressed {
-        let [up, down, left, right] = [1 << 0, 1 << 1, 1 << 2, 1 << 3].map(|pin| pins::E.are_low(pin));
-        Pressed { up, down, left, right, select: pins::F.are_low(1 << 1) }
+        let [up, down, left, right] =
+            [1 << 0, 1 << 1, 1 << 2, 1 << 3].map(|pin| pins::E.are_low(pin));
+        Pressed {
+            up,
+            down,
+            left,
+            right,
+            select: pins::F.are_low(1 << 1),
+        }
     }
 }
 
@@ -101,7 +108,13 @@ fn start_link(hertz: u32) -> Outward {
     receive_by(receive);
     INTERRUPT_MASK.write(RECEIVED);
     unmask(INTERRUPT);
-    Outward(|bytes| send(bytes, || FLAGS.read() & TRANSMITTER_FULL == 0, |byte| DATA.write(byte.into())))
+    Outward(|bytes| {
+        send(
+            bytes,
+            || FLAGS.read() & TRANSMITTER_FULL == 0,
+            |byte| DATA.write(byte.into()),
+        )
+    })
 }
 
 fn receive(inbox: &mut Inbox) {

@@ -128,7 +128,9 @@ impl SpiDevice for Ssi {
     fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), ErrorKind> {
         operations.iter().try_for_each(|operation| {
             // No wire leads back from the panel.
-            let Operation::Write(bytes) = operation else { return Err(ErrorKind::Other) };
+            let Operation::Write(bytes) = operation else {
+                return Err(ErrorKind::Other);
+            };
             let (chunks, rest) = bytes.as_chunks::<QUEUE>();
             chunks.iter().try_for_each(|chunk| send(chunk))?;
             send(rest)

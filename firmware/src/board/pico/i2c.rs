@@ -40,13 +40,23 @@ const CLOCK: usize = 5;
 pub struct I2c0(());
 
 /// The pins 4 and 5 of the bus.
-pub(super) type Pins = (Pin<Gpio4, FunctionI2C, PullUp>, Pin<Gpio5, FunctionI2C, PullUp>);
+pub(super) type Pins = (
+    Pin<Gpio4, FunctionI2C, PullUp>,
+    Pin<Gpio5, FunctionI2C, PullUp>,
+);
 
 /// Starts it from this clock; `None` the second time. The support library sets it up and lets go of it.
-pub(super) fn start(port: I2C0, pins: Pins, clock: HertzU32, resets: &mut RESETS) -> Option<Bus<I2c0>> {
+pub(super) fn start(
+    port: I2C0,
+    pins: Pins,
+    clock: HertzU32,
+    resets: &mut RESETS,
+) -> Option<Bus<I2c0>> {
     I2C::i2c0(port, pins.0, pins.1, SPEED.Hz(), resets, clock);
     // SAFETY: the field takes this number.
-    registers().ic_tx_tl().write(|w| unsafe { w.tx_tl().bits(FEW) });
+    registers()
+        .ic_tx_tl()
+        .write(|w| unsafe { w.tx_tl().bits(FEW) });
     let bus = Bus::new(I2c0(()))?;
     unmask(Interrupt::I2C0_IRQ);
     Some(bus)
@@ -59,7 +69,8 @@ impl PanelPort for I2c0 {
         let _ = (0..TRIES).any(|_| port.ic_status().read().mst_activity().is_idle());
         port.ic_enable().write(|w| w.enable().disabled());
         // SAFETY: an address of seven bits.
-        port.ic_tar().write(|w| unsafe { w.ic_tar().bits(address.into()) });
+        port.ic_tar()
+            .write(|w| unsafe { w.ic_tar().bits(address.into()) });
         port.ic_enable().write(|w| w.enable().enabled());
         listen(port, FEW_LEFT | ABORTED);
     }
@@ -74,7 +85,9 @@ impl PanelPort for I2c0 {
             pin(DATA).gpio_status().read().infrompad().bit_is_set()
         });
         for line in [DATA, CLOCK] {
-            pin(line).gpio_ctrl().modify(|_, w| w.oeover().normal().outover().normal());
+            pin(line)
+                .gpio_ctrl()
+                .modify(|_, w| w.oeover().normal().outover().normal());
         }
     }
 }
@@ -121,7 +134,8 @@ fn advance(port: &RegisterBlock, outbox: &mut Outbox) -> Option<Sent> {
         && let Some(byte) = outbox.next()
     {
         // SAFETY: any byte may be sent.
-        port.ic_data_cmd().write(|w| unsafe { w.dat().bits(byte.value).stop().bit(byte.ends_message) });
+        port.ic_data_cmd()
+            .write(|w| unsafe { w.dat().bits(byte.value).stop().bit(byte.ends_message) });
     }
     if outbox.is_empty() {
         if outbox.asks {
@@ -147,7 +161,11 @@ fn pin(number: usize) -> &'static GPIO {
 
 /// Lets a line go, or pulls it low, whatever the bus does with it.
 fn drive(number: usize, high: bool) {
-    pin(number)
-        .gpio_ctrl()
-        .modify(|_, w| if high { w.oeover().disable() } else { w.outover().low().oeover().enable() });
+    pin(number).gpio_ctrl().modify(|_, w| {
+        if high {
+            w.oeover().disable()
+        } else {
+            w.outover().low().oeover().enable()
+        }
+    });
 }

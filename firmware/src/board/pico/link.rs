@@ -14,7 +14,10 @@ use crate::board::cortex_m::interrupt::{Shared, unmask};
 use crate::board::serial::{self, Inbox, Outward};
 use crate::config::{BAUD, BUS_TRIES, UART_QUEUE};
 
-pub(super) type SerialPins = (Pin<Gpio0, FunctionUart, PullNone>, Pin<Gpio1, FunctionUart, PullUp>);
+pub(super) type SerialPins = (
+    Pin<Gpio0, FunctionUart, PullNone>,
+    Pin<Gpio1, FunctionUart, PullUp>,
+);
 
 /// How often room for a message is waited for, which takes 2.6 ms at most: these tries take at least 8.
 const TRIES: u32 = 4 * BUS_TRIES;
@@ -23,9 +26,16 @@ const TRIES: u32 = 4 * BUS_TRIES;
 static QUEUE: Shared<Deque<u8, UART_QUEUE>> = Shared::new(Deque::new());
 
 /// Starts the UART; `None` if no divisor of the clock makes its speed.
-pub(super) fn start(device: UART0, pins: SerialPins, clock: HertzU32, resets: &mut RESETS) -> Option<Outward> {
+pub(super) fn start(
+    device: UART0,
+    pins: SerialPins,
+    clock: HertzU32,
+    resets: &mut RESETS,
+) -> Option<Outward> {
     let config = UartConfig::new(BAUD.Hz(), DataBits::Eight, None, StopBits::One);
-    let mut uart = UartPeripheral::new(device, pins, resets).enable(config, clock).ok()?;
+    let mut uart = UartPeripheral::new(device, pins, resets)
+        .enable(config, clock)
+        .ok()?;
     uart.enable_rx_interrupt();
     serial::receive_by(receive);
     Some(Outward(send))
@@ -55,7 +65,9 @@ fn UART0_IRQ() {
             // SAFETY: any byte may be sent.
             uart().uartdr().write(|w| unsafe { w.data().bits(byte) });
         }
-        uart().uartimsc().modify(|_, w| w.txim().bit(!queue.is_empty()));
+        uart()
+            .uartimsc()
+            .modify(|_, w| w.txim().bit(!queue.is_empty()));
     });
     // USB, which takes long to look at, interrupts by itself unless it waits for room.
     let waits = !NVIC::is_enabled(Interrupt::USBCTRL_IRQ);
@@ -83,5 +95,7 @@ fn receive(inbox: &mut Inbox) {
 
 /// Unmasks the interrupts of the UART and of the USB port.
 pub(super) fn enable_interrupts() {
-    [Interrupt::UART0_IRQ, Interrupt::USBCTRL_IRQ].into_iter().for_each(unmask);
+    [Interrupt::UART0_IRQ, Interrupt::USBCTRL_IRQ]
+        .into_iter()
+        .for_each(unmask);
 }

@@ -49,17 +49,56 @@ pub fn take() -> Option<Pico> {
     let mut chip = pac::Peripherals::take()?;
     log::into_memory();
     let reset_by_watchdog = reset_by_watchdog(&chip.WATCHDOG, &chip.RESETS);
-    let (pll, usb_pll, resets, mut unit) = (chip.PLL_SYS, chip.PLL_USB, &mut chip.RESETS, Watchdog::new(chip.WATCHDOG));
-    let clocks = init_clocks_and_plls(CRYSTAL, chip.XOSC, chip.CLOCKS, pll, usb_pll, resets, &mut unit).ok()?;
+    let (pll, usb_pll, resets, mut unit) = (
+        chip.PLL_SYS,
+        chip.PLL_USB,
+        &mut chip.RESETS,
+        Watchdog::new(chip.WATCHDOG),
+    );
+    let clocks = init_clocks_and_plls(
+        CRYSTAL,
+        chip.XOSC,
+        chip.CLOCKS,
+        pll,
+        usb_pll,
+        resets,
+        &mut unit,
+    )
+    .ok()?;
     let chip_number = [chip.SYSINFO.chip_id().read().bits(), 0, 0, 0];
-    let instruments = start(core, BoardName::Pico, clocks.system_clock.freq().to_Hz(), chip_number);
-    let pins = Pins::new(chip.IO_BANK0, chip.PADS_BANK0, Sio::new(chip.SIO).gpio_bank0, &mut chip.RESETS);
+    let instruments = start(
+        core,
+        BoardName::Pico,
+        clocks.system_clock.freq().to_Hz(),
+        chip_number,
+    );
+    let pins = Pins::new(
+        chip.IO_BANK0,
+        chip.PADS_BANK0,
+        Sio::new(chip.SIO).gpio_bank0,
+        &mut chip.RESETS,
+    );
     let serial = (pins.gpio0.reconfigure(), pins.gpio1.reconfigure());
-    let link = link::start(chip.UART0, serial, clocks.peripheral_clock.freq(), &mut chip.RESETS)?;
-    usb::start(chip.USBCTRL_REGS, chip.USBCTRL_DPRAM, clocks.usb_clock, &mut chip.RESETS)?;
+    let link = link::start(
+        chip.UART0,
+        serial,
+        clocks.peripheral_clock.freq(),
+        &mut chip.RESETS,
+    )?;
+    usb::start(
+        chip.USBCTRL_REGS,
+        chip.USBCTRL_DPRAM,
+        clocks.usb_clock,
+        &mut chip.RESETS,
+    )?;
     link::enable_interrupts();
     let wires = (pins.gpio4.reconfigure(), pins.gpio5.reconfigure());
-    let bus = i2c::start(chip.I2C0, wires, clocks.system_clock.freq(), &mut chip.RESETS)?;
+    let bus = i2c::start(
+        chip.I2C0,
+        wires,
+        clocks.system_clock.freq(),
+        &mut chip.RESETS,
+    )?;
     Some(Board {
         panel: Ssd1306::new(bus, BUILT_FOR),
         link,
@@ -82,7 +121,13 @@ pub struct PinKeys([Pin<DynPinId, FunctionSioInput, PullUp>; 5]);
 impl Buttons for PinKeys {
     fn read(&mut self) -> Pressed {
         let [up, down, left, right, select] = self.0.each_mut().map(|pin| pin.is_low() == Ok(true));
-        Pressed { up, down, left, right, select }
+        Pressed {
+            up,
+            down,
+            left,
+            right,
+            select,
+        }
     }
 }
 
@@ -108,7 +153,14 @@ fn start_watchdog(mut unit: Watchdog) -> Watchdog {
     watchdog::stall_by(|stalls| {
         // SAFETY: the support library uses other bits of this register, and not any more.
         let unit = unsafe { &*pac::WATCHDOG::ptr() };
-        unit.ctrl().modify(|_, w| w.pause_dbg0().bit(stalls).pause_dbg1().bit(stalls).pause_jtag().bit(stalls));
+        unit.ctrl().modify(|_, w| {
+            w.pause_dbg0()
+                .bit(stalls)
+                .pause_dbg1()
+                .bit(stalls)
+                .pause_jtag()
+                .bit(stalls)
+        });
     });
     unit
 }

@@ -7,7 +7,9 @@ use rp2040_hal::clocks::UsbClock;
 use rp2040_hal::pac::{RESETS, USBCTRL_DPRAM, USBCTRL_REGS};
 use rp2040_hal::usb::UsbBus;
 use usb_device::bus::UsbBusAllocator;
-use usb_device::device::{StringDescriptors, UsbDevice, UsbDeviceBuilder, UsbDeviceState, UsbVidPid};
+use usb_device::device::{
+    StringDescriptors, UsbDevice, UsbDeviceBuilder, UsbDeviceState, UsbVidPid,
+};
 use usbd_serial::{CdcAcmClass, USB_CLASS_CDC};
 
 use crate::board::cortex_m::interrupt::Shared;
@@ -37,8 +39,14 @@ pub(super) fn start(
     let bus = UsbBus::new(registers, memory, clock, true, resets);
     let bus = singleton!(: UsbBusAllocator<UsbBus> = UsbBusAllocator::new(bus))?;
     let port = CdcAcmClass::new(bus, PACKET as u16);
-    let names = StringDescriptors::default().manufacturer("double-pendulum").product("Double pendulum");
-    let device = UsbDeviceBuilder::new(bus, IDS).strings(&[names]).ok()?.device_class(USB_CLASS_CDC).build();
+    let names = StringDescriptors::default()
+        .manufacturer("double-pendulum")
+        .product("Double pendulum");
+    let device = UsbDeviceBuilder::new(bus, IDS)
+        .strings(&[names])
+        .ok()?
+        .device_class(USB_CLASS_CDC)
+        .build();
     let usb = singleton!(: Usb = Usb { device, port, leaving: Deque::new() })?;
     USB.with(|place| *place = Some(usb))
 }
@@ -68,7 +76,10 @@ pub(super) fn poll(inbox: &mut Inbox) -> bool {
         usb.device.poll(&mut [&mut usb.port]);
         let mut packet = [0; PACKET];
         if has_room && let Ok(length) = usb.port.read_packet(&mut packet) {
-            packet.into_iter().take(length).for_each(|byte| inbox.push(byte));
+            packet
+                .into_iter()
+                .take(length)
+                .for_each(|byte| inbox.push(byte));
         }
         usb.pass_on();
     });
@@ -79,8 +90,17 @@ impl Usb {
     /// Gives the device its next packet, if it has sent the last. No packet is a full one: after that the host would wait for more.
     fn pass_on(&mut self) {
         let mut packet = [0; PACKET - 1];
-        let length = packet.iter_mut().zip(&self.leaving).map(|(place, byte)| *place = *byte).count();
-        if length > 0 && self.port.write_packet(packet.get(..length).unwrap_or_default()).is_ok() {
+        let length = packet
+            .iter_mut()
+            .zip(&self.leaving)
+            .map(|(place, byte)| *place = *byte)
+            .count();
+        if length > 0
+            && self
+                .port
+                .write_packet(packet.get(..length).unwrap_or_default())
+                .is_ok()
+        {
             for _ in 0..length {
                 self.leaving.pop_front();
             }

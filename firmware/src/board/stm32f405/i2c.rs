@@ -32,7 +32,9 @@ pub struct I2c1((Scl, Sda));
 pub(super) fn start(port: I2C1, clock: PB6, data: PB7, rcc: &mut Rcc) -> Option<Bus<I2c1>> {
     let (_, pins) = I2c::new(port, (clock, data), 400.kHz(), rcc).release();
     let bus = Bus::new(I2c1(pins))?;
-    [Interrupt::I2C1_EV, Interrupt::I2C1_ER].into_iter().for_each(unmask);
+    [Interrupt::I2C1_EV, Interrupt::I2C1_ER]
+        .into_iter()
+        .for_each(unmask);
     Some(bus)
 }
 
@@ -41,7 +43,8 @@ impl PanelPort for I2c1 {
         let port = registers();
         // The control register is not to be written before.
         let _ = (0..TRIES).any(|_| port.cr1().read().stop().bit_is_clear());
-        port.cr2().modify(|_, w| w.itevten().set_bit().iterren().set_bit());
+        port.cr2()
+            .modify(|_, w| w.itevten().set_bit().iterren().set_bit());
         port.cr1().modify(|_, w| w.start().set_bit());
     }
 
@@ -60,7 +63,11 @@ impl PanelPort for I2c1 {
                 })
             });
         }
-        let (frequency, clock, rise) = (port.cr2().read().bits(), port.ccr().read().bits(), port.trise().read().bits());
+        let (frequency, clock, rise) = (
+            port.cr2().read().bits(),
+            port.ccr().read().bits(),
+            port.trise().read().bits(),
+        );
         port.cr1().write(|w| w.swrst().set_bit());
         port.cr1().write(|w| w.swrst().clear_bit());
         // SAFETY: they are what these registers held before.
@@ -94,7 +101,8 @@ fn advance(port: &RegisterBlock, outbox: &mut Outbox) -> Option<Sent> {
     // What is left then is to read the status.
     let reads = outbox.is_empty() && outbox.asks;
     let is_ready = if status & START_SENT != 0 {
-        port.dr().write(|w| w.dr().set(outbox.address << 1 | u8::from(reads)));
+        port.dr()
+            .write(|w| w.dr().set(outbox.address << 1 | u8::from(reads)));
         false
     } else if status & ADDRESS_SENT != 0 {
         let _ = port.sr2().read(); // Only this ends the address phase.
@@ -114,7 +122,8 @@ fn advance(port: &RegisterBlock, outbox: &mut Outbox) -> Option<Sent> {
     if is_ready && let Some(byte) = outbox.next() {
         port.dr().write(|w| w.dr().set(byte.value));
         // After the last byte of a message only its end interrupts.
-        port.cr2().modify(|_, w| w.itbufen().bit(!byte.ends_message));
+        port.cr2()
+            .modify(|_, w| w.itbufen().bit(!byte.ends_message));
         return None;
     }
     if is_ready || status & ALL_SENT == 0 || outbox.is_within_message() {
@@ -138,8 +147,14 @@ fn advance(port: &RegisterBlock, outbox: &mut Outbox) -> Option<Sent> {
 fn fail(port: &RegisterBlock) -> Option<Sent> {
     let status = port.sr1().read();
     // To write 1 leaves a flag as it is: one that has come up meanwhile.
-    port.sr1()
-        .write(|w| w.af().bit(!status.af().bit()).arlo().bit(!status.arlo().bit()).berr().bit(!status.berr().bit()));
+    port.sr1().write(|w| {
+        w.af()
+            .bit(!status.af().bit())
+            .arlo()
+            .bit(!status.arlo().bit())
+            .berr()
+            .bit(!status.berr().bit())
+    });
     let error = match (status.af().bit(), status.arlo().bit()) {
         (true, _) => SILENCE,
         (_, true) => ErrorKind::ArbitrationLoss,
@@ -155,5 +170,12 @@ fn stop(port: &RegisterBlock) {
 }
 
 fn silence(port: &RegisterBlock) {
-    port.cr2().modify(|_, w| w.itevten().clear_bit().itbufen().clear_bit().iterren().clear_bit());
+    port.cr2().modify(|_, w| {
+        w.itevten()
+            .clear_bit()
+            .itbufen()
+            .clear_bit()
+            .iterren()
+            .clear_bit()
+    });
 }

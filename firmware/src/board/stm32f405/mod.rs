@@ -70,7 +70,10 @@ pub struct OneKey(PC7);
 
 impl Buttons for OneKey {
     fn read(&mut self) -> Pressed {
-        Pressed { select: self.0.is_low(), ..Pressed::default() }
+        Pressed {
+            select: self.0.is_low(),
+            ..Pressed::default()
+        }
     }
 }
 
@@ -99,11 +102,15 @@ fn start_clock(rcc: RCC) -> (Rcc, bool) {
 /// Starts the serial port. The support library sets it up and lets go of it.
 fn start_link(port: USART3, pins: (PB10, PB11), rcc: &mut Rcc) -> Option<Outward> {
     // There is a divisor for this baud rate at either clock, so this does not fail.
-    let mut port = port.serial::<u8>(pins, config::Config::default().baudrate(BAUD.bps()), rcc).ok()?;
+    let mut port = port
+        .serial::<u8>(pins, config::Config::default().baudrate(BAUD.bps()), rcc)
+        .ok()?;
     port.listen(Event::RxNotEmpty);
     receive_by(receive);
     unmask(Interrupt::USART3);
-    Some(Outward(|bytes| send(bytes, || uart().sr().read().txe().bit_is_set(), put)))
+    Some(Outward(|bytes| {
+        send(bytes, || uart().sr().read().txe().bit_is_set(), put)
+    }))
 }
 
 fn put(byte: u8) {

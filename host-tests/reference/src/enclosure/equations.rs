@@ -24,13 +24,23 @@ impl Equations {
     /// The coefficients 0 to `order` of the power series of the six numbers (sin a1, cos a1, S, C, P1, P2) from `start`, their time in
     /// T by `step`.
     pub fn series(&self, start: &[Fixed; 6], order: usize, step: Fixed) -> [Vec<Fixed>; 6] {
-        let &Self { upper, lower, rods, coupling, gravity: [gravity1, gravity2] } = self;
+        let &Self {
+            upper,
+            lower,
+            rods,
+            coupling,
+            gravity: [gravity1, gravity2],
+        } = self;
         let mut z: [_; 6] = from_fn(|i| Vec::from_iter([start[i]]));
         let [mut den, mut u, mut v, mut uv, mut turn] = [(); 5].map(|()| Vec::new());
         for k in 0..order {
             let [sin1, cos1, s, c, p1, p2] = &z;
             let square = lower * Fixed::product(s, s);
-            den.push(if k == 0 { (upper + square).inverse() } else { square });
+            den.push(if k == 0 {
+                (upper + square).inverse()
+            } else {
+                square
+            });
             let momentum = p1[k] - coupling * Fixed::product(c, p2);
             u.push((momentum - Fixed::product(&den[1..], &u)) * den[0]);
             v.push(p2[k] - rods * Fixed::product(c, &u));
@@ -55,7 +65,13 @@ impl Equations {
 
     /// The energy by M l1^2/T^2 of the six numbers `z`.
     pub fn energy(&self, &[sin1, cos1, s, c, p1, p2]: &[Fixed; 6]) -> Fixed {
-        let &Self { upper, lower, rods, coupling, gravity: [gravity1, gravity2] } = self;
+        let &Self {
+            upper,
+            lower,
+            rods,
+            coupling,
+            gravity: [gravity1, gravity2],
+        } = self;
         let u = (p1 - coupling * c * p2) * (upper + lower * s * s).inverse();
         let v = p2 - rods * c * u;
         let (square, cos2) = (coupling * rods.inverse(), cos1 * c + sin1 * s);
@@ -80,15 +96,24 @@ const SHORTEST: f64 = 6.0;
 /// Theorem (Picard and Lindeloef for analytic equations; Hille, Ordinary Differential Equations in the Complex Domain, 2.3): if
 /// z0 + t f(B) is in the product of discs B for |t| <= T, one solution from z0 exists there, is analytic in t and z0, and stays in B. f
 /// has no pole in B, for else the radius of its inverse is infinite.
-pub fn discs(equations: &Equations, middle: &[Fixed; 6], extent: &[f64; 6], step: Fixed) -> Option<(f64, [f64; 6])> {
+pub fn discs(
+    equations: &Equations,
+    middle: &[Fixed; 6],
+    extent: &[f64; 6],
+    step: Fixed,
+) -> Option<(f64, [f64; 6])> {
     let least = extent.map(|extent| LEAST[0].max(LEAST[1] * extent));
     let mut best = (0.0, least);
     for time in TIMES {
         let mut radii = least;
         for _ in 0..TRIES {
-            let slopes = equations.series(&from_fn(|i| middle[i].wider(radii[i])), 1, step).map(|z| z[1].size());
+            let slopes = equations
+                .series(&from_fn(|i| middle[i].wider(radii[i])), 1, step)
+                .map(|z| z[1].size());
             // twice the share: what is rounded is far less
-            let held = (0..6).map(|i| (1.0 - 2.0 * STARTS) * radii[i] / slopes[i]).fold(time, f64::min);
+            let held = (0..6)
+                .map(|i| (1.0 - 2.0 * STARTS) * radii[i] / slopes[i])
+                .fold(time, f64::min);
             if held > best.0 {
                 best = (held, radii);
             }

@@ -27,38 +27,76 @@ pub struct Fixed {
 
 impl Fixed {
     /// 0.
-    pub const ZERO: Self = Self { middle: 0, radius: 0.0 };
+    pub const ZERO: Self = Self {
+        middle: 0,
+        radius: 0.0,
+    };
     /// 1.
-    pub const ONE: Self = Self { middle: 1 << FRACTION, radius: 0.0 };
+    pub const ONE: Self = Self {
+        middle: 1 << FRACTION,
+        radius: 0.0,
+    };
     /// pi, cut after 116 bits.
-    pub const PI: Self = Self { middle: 0x32_43F6_A888_5A30_8D31_3198_A2E0_3707, radius: 1.0 };
+    pub const PI: Self = Self {
+        middle: 0x32_43F6_A888_5A30_8D31_3198_A2E0_3707,
+        radius: 1.0,
+    };
 
     /// Nothing is known of what leaves the range.
     fn new(middle: i128, radius: f64) -> Self {
         let is_known = middle.abs() < LIMIT && radius < f64::INFINITY;
-        if is_known { Self { middle, radius: up(radius) } } else { Self { middle: 0, radius: f64::INFINITY } }
+        if is_known {
+            Self {
+                middle,
+                radius: up(radius),
+            }
+        } else {
+            Self {
+                middle: 0,
+                radius: f64::INFINITY,
+            }
+        }
     }
 
     /// A number of `f64`; all its bits down to 2^-116.
     pub fn of(number: f64) -> Self {
         let scaled = number / ULP;
-        let middle = if scaled.abs() < LIMIT as f64 { scaled as i128 } else { LIMIT };
+        let middle = if scaled.abs() < LIMIT as f64 {
+            scaled as i128
+        } else {
+            LIMIT
+        };
         Self::new(middle, if scaled.fract() == 0.0 { 0.0 } else { 1.0 })
     }
 
     /// A fraction times 2^`exponent`, bit by bit.
     pub fn fraction(numerator: i64, denominator: u64, exponent: i32) -> Self {
-        let (above, below) = (u128::from(numerator.unsigned_abs()), u128::from(denominator));
-        let Some(places) = FRACTION.checked_add_signed(exponent) else { return Self::new(LIMIT, 0.0) };
-        let next =
-            |(whole, rest): (u128, u128), _| ((2 * whole + 2 * rest / below).min(LIMIT as u128), 2 * rest % below);
+        let (above, below) = (
+            u128::from(numerator.unsigned_abs()),
+            u128::from(denominator),
+        );
+        let Some(places) = FRACTION.checked_add_signed(exponent) else {
+            return Self::new(LIMIT, 0.0);
+        };
+        let next = |(whole, rest): (u128, u128), _| {
+            (
+                (2 * whole + 2 * rest / below).min(LIMIT as u128),
+                2 * rest % below,
+            )
+        };
         let (middle, rest) = (0..places).fold((above / below, above % below), next);
-        Self::new(numerator.signum() as i128 * middle as i128, if rest == 0 { 0.0 } else { 1.0 })
+        Self::new(
+            numerator.signum() as i128 * middle as i128,
+            if rest == 0 { 0.0 } else { 1.0 },
+        )
     }
 
     /// The midpoint alone.
     pub fn middle(self) -> Self {
-        Self { radius: 0.0, ..self }
+        Self {
+            radius: 0.0,
+            ..self
+        }
     }
 
     /// The `f64` next to the midpoint.
@@ -88,17 +126,27 @@ impl Fixed {
 
     /// All digits that are known, the last one to two units; no more than `most` of them.
     pub fn decimal(self, most: f64) -> String {
-        let places = (-self.radius().log10()).min(most - self.about().abs().log10().floor() - 1.0).max(0.0) as usize;
+        let places = (-self.radius().log10())
+            .min(most - self.about().abs().log10().floor() - 1.0)
+            .max(0.0) as usize;
         let (size, mask) = (self.middle.unsigned_abs(), (1 << FRACTION) - 1);
         let next = |rest: &u128| Some((rest & mask) * 10);
-        let digits = std::iter::successors(next(&size), next).map(|rest| char::from(b'0' + (rest >> FRACTION) as u8));
+        let digits = std::iter::successors(next(&size), next)
+            .map(|rest| char::from(b'0' + (rest >> FRACTION) as u8));
         let digits: String = digits.take(places).collect();
-        format!("{}{}.{digits}", if self.middle < 0 { "-" } else { "" }, size >> FRACTION)
+        format!(
+            "{}{}.{digits}",
+            if self.middle < 0 { "-" } else { "" },
+            size >> FRACTION
+        )
     }
 
     /// By a whole number.
     pub fn over(self, whole: u32) -> Self {
-        Self::new(self.middle / i128::from(whole), self.radius / f64::from(whole) + 1.0)
+        Self::new(
+            self.middle / i128::from(whole),
+            self.radius / f64::from(whole) + 1.0,
+        )
     }
 
     /// 1 by it; nothing is known of that if it may be 0.
@@ -111,7 +159,11 @@ impl Fixed {
             inverse = (inverse + inverse * (Self::ONE - middle * inverse)).middle();
         }
         let missing = (Self::ONE - self * inverse).size();
-        inverse.wider(if missing < 0.5 { inverse.size() * missing / (1.0 - missing) } else { f64::INFINITY })
+        inverse.wider(if missing < 0.5 {
+            inverse.size() * missing / (1.0 - missing)
+        } else {
+            f64::INFINITY
+        })
     }
 
     /// Coefficient k of the product of two power series, of which `a` and `b` are the coefficients 0 to k.
@@ -125,13 +177,20 @@ impl Fixed {
             let [(a1, a0), (b1, b0)] = [a, b].map(|x| ((x.middle >> 64) as i64, x.middle as u64));
             high += i128::from(a1) * i128::from(b1);
             let low = ((u128::from(a0) * u128::from(b0)) >> 72) as i128;
-            cross += ((i128::from(a1) * i128::from(b0)) >> 8) + ((i128::from(b1) * i128::from(a0)) >> 8) + low;
+            cross += ((i128::from(a1) * i128::from(b0)) >> 8)
+                + ((i128::from(b1) * i128::from(a0)) >> 8)
+                + low;
             // their upper halves, and one more
-            let [size_a, size_b] = [a1, b1].map(|x| (x.unsigned_abs() + 1) as f64 * ((1_u128 << 64) as f64 * ULP));
+            let [size_a, size_b] =
+                [a1, b1].map(|x| (x.unsigned_abs() + 1) as f64 * ((1_u128 << 64) as f64 * ULP));
             radius += size_a * b.radius + a.radius * (size_b + b.radius * ULP);
         }
         let fits = a.len() <= MOST_TERMS && high.abs() < LIMIT >> (128 - FRACTION);
-        let middle = if fits { (high << (128 - FRACTION)) + (cross >> (FRACTION - 72)) } else { LIMIT };
+        let middle = if fits {
+            (high << (128 - FRACTION)) + (cross >> (FRACTION - 72))
+        } else {
+            LIMIT
+        };
         Self::new(middle, radius + 2.0)
     }
 }

@@ -40,7 +40,12 @@ pub struct Fineness {
 
 impl Default for Fineness {
     fn default() -> Self {
-        Self { terms: MOST_TERMS, tangents: 10, beside: 1.0 / (1_u64 << 56) as f64, allowances: [1.0; 4] }
+        Self {
+            terms: MOST_TERMS,
+            tangents: 10,
+            beside: 1.0 / (1_u64 << 56) as f64,
+            allowances: [1.0; 4],
+        }
     }
 }
 
@@ -63,11 +68,25 @@ pub struct Enclosure {
 
 impl Enclosure {
     /// From anywhere in `start`, with 2^`frame.0` units of time and `frame.1` frames in a second.
-    pub fn new(equations: Equations, frame: (i32, u16), start: [Fixed; 6], fineness: Fineness) -> Self {
+    pub fn new(
+        equations: Equations,
+        frame: (i32, u16),
+        start: [Fixed; 6],
+        fineness: Fineness,
+    ) -> Self {
         // none is without length
         let about = start.map(|x| x.radius() + ULP);
         let (middle, segments) = (start.map(Fixed::middle), Vec::new());
-        let mut set = Self { equations, frame, middle, segments, start: about, about, steps: 0, fineness };
+        let mut set = Self {
+            equations,
+            frame,
+            middle,
+            segments,
+            start: about,
+            about,
+            steps: 0,
+            fineness,
+        };
         set.settle();
         set
     }
@@ -81,12 +100,21 @@ impl Enclosure {
     /// How far each number may be from its middle, the first segments left out.
     fn extent(&self, left_out: usize) -> [f64; 6] {
         let add = |sum: [f64; 6], segment: &[f64; 6]| from_fn(|i| sum[i] + segment[i].abs());
-        self.segments[left_out..].iter().fold(self.about, add).map(up)
+        self.segments[left_out..]
+            .iter()
+            .fold(self.about, add)
+            .map(up)
     }
 
     /// How many times larger a small error of the start has become, about.
     pub fn growth(&self) -> f64 {
-        let of = |i: usize| self.segments.iter().zip(self.start).map(|(x, start)| x[i].abs() / start).sum();
+        let of = |i: usize| {
+            self.segments
+                .iter()
+                .zip(self.start)
+                .map(|(x, start)| x[i].abs() / start)
+                .sum()
+        };
         (0..6).map(of).fold(0.0, f64::max)
     }
 
@@ -117,17 +145,30 @@ impl Enclosure {
     /// t^k is at most the disc's radius by `time`^-k, and what a series has beyond an order `tail` of the radius.
     fn step(&mut self, halvings: i32) -> Option<()> {
         let (unit, rate) = self.frame;
-        let (step, extent) = (Fixed::fraction(1, rate.into(), unit - halvings), self.extent(0));
+        let (step, extent) = (
+            Fixed::fraction(1, rate.into(), unit - halvings),
+            self.extent(0),
+        );
         extent.iter().all(|&extent| extent < 1.0).then_some(())?;
         let (time, radii) = discs(&self.equations, &self.middle, &extent, step)?;
-        let Fineness { terms, tangents, beside, allowances: [rounding, rest, bend, turn] } = self.fineness;
+        let Fineness {
+            terms,
+            tangents,
+            beside,
+            allowances: [rounding, rest, bend, turn],
+        } = self.fineness;
 
         let tail = |order: usize| up((0..order).fold(1.0 / (time - 1.0), |power, _| power / time));
         let ends = |order: usize| radii.iter().all(|radius| radius * tail(order) < ULP);
-        let order = (1..terms - 1).find(|&order| ends(order)).unwrap_or(terms - 1);
+        let order = (1..terms - 1)
+            .find(|&order| ends(order))
+            .unwrap_or(terms - 1);
         let low = order.min(tangents);
         let z = self.equations.series(&self.middle, order, step);
-        let (end, short) = (z.each_ref().map(|z| sum(z)), z.each_ref().map(|z| sum(&z[..=low])));
+        let (end, short) = (
+            z.each_ref().map(|z| sum(z)),
+            z.each_ref().map(|z| sum(&z[..=low])),
+        );
         let off = radii.map(|radius| (beside * radius).log2().floor().exp2());
         let columns: [[Fixed; 6]; 6] = from_fn(|j| {
             let mut start = self.middle;
@@ -137,16 +178,25 @@ impl Enclosure {
         });
         let v: [[f64; 6]; 6] = from_fn(|i| from_fn(|j| columns[j][i].about() / off[j]));
 
-        let share = (0..6).map(|i| up(extent[i] / (STARTS * radii[i]))).fold(0.0, f64::max);
+        let share = (0..6)
+            .map(|i| up(extent[i] / (STARTS * radii[i])))
+            .fold(0.0, f64::max);
         // the last term: six quotients, each off by no more than twice this
         let lacking = bend * share / (1.0 - share) * (share + tail(low) + 12.0 * beside / STARTS);
         // Higham, (3.5): a sum of six products is rounded by at most 7 u, u = 2^-53, times the sum of their sizes; one u is of v
-        let rounded = |i: usize, j: usize| columns[j][i].radius() / off[j] + 5.0 * f64::EPSILON * v[i][j].abs();
+        let rounded = |i: usize, j: usize| {
+            columns[j][i].radius() / off[j] + 5.0 * f64::EPSILON * v[i][j].abs()
+        };
         let about = from_fn(|i| {
-            let moved = (0..6).map(|j| v[i][j].abs() * self.about[j] + turn * rounded(i, j) * extent[j]).sum::<f64>();
+            let moved = (0..6)
+                .map(|j| v[i][j].abs() * self.about[j] + turn * rounded(i, j) * extent[j])
+                .sum::<f64>();
             up(rounding * end[i].radius() + radii[i] * (rest * tail(order) + lacking) + moved)
         });
-        about.iter().all(|radius| radius.is_finite()).then_some(())?;
+        about
+            .iter()
+            .all(|radius| radius.is_finite())
+            .then_some(())?;
         for segment in &mut self.segments {
             *segment = v.map(|row| row.iter().zip(*segment).map(|(x, y)| x * y).sum());
         }
@@ -164,11 +214,16 @@ impl Enclosure {
             self.segments.truncate(6);
         }
         let about = std::mem::take(&mut self.about);
-        self.segments.extend((0..6).map(|i| -> [f64; 6] { from_fn(|j| if i == j { about[i] } else { 0.0 }) }));
+        self.segments.extend(
+            (0..6).map(|i| -> [f64; 6] { from_fn(|j| if i == j { about[i] } else { 0.0 }) }),
+        );
     }
 }
 
 /// Of the series after one step.
 fn sum(terms: &[Fixed]) -> Fixed {
-    terms.iter().rev().fold(Fixed::ZERO, |sum, &term| sum + term)
+    terms
+        .iter()
+        .rev()
+        .fold(Fixed::ZERO, |sum, &term| sum + term)
 }

@@ -12,7 +12,11 @@ use super::{Enclosure, Fineness};
 pub fn fastest_rate(parameters: &Parameters<f64>, motion: &Motion<f64>) -> f64 {
     Pendulum::new(parameters).map_or(1.0, |pendulum| {
         let Bounds { w1, w2, .. } = pendulum.bounds(&pendulum.to_state(motion));
-        pendulum.modes().map_or(0.0, |modes| modes.fast.frequency).max(w1).max(w2)
+        pendulum
+            .modes()
+            .map_or(0.0, |modes| modes.fast.frequency)
+            .max(w1)
+            .max(w2)
     })
 }
 
@@ -30,7 +34,11 @@ pub struct Start {
 impl Start {
     /// Every number as it is in `f64`.
     pub fn of(parameters: &Parameters<f64>, motion: &Motion<f64>) -> Self {
-        Self { about: (*parameters, *motion), fractions: None, degrees: [false; 2] }
+        Self {
+            about: (*parameters, *motion),
+            fractions: None,
+            degrees: [false; 2],
+        }
     }
 
     /// The set that the motion starts in, with `rate` frames to a second.
@@ -38,9 +46,13 @@ impl Start {
     /// The unit of time is so short that nothing turns by more than 4 rad, and 2^e is near the root of (m1 + m2)/m1: so the equations'
     /// numbers are neither large nor small, for masses and lengths within a factor of 1000 and 30 of each other.
     pub fn enclose(&self, rate: u16) -> Enclosure {
-        let (parameters @ Parameters { m1, m2, l1, l2, g }, motion @ Motion { a1, a2, w1, w2 }) = self.about;
+        let (parameters @ Parameters { m1, m2, l1, l2, g }, motion @ Motion { a1, a2, w1, w2 }) =
+            self.about;
         // Where next to nothing moves any unit will do.
-        let unit = (fastest_rate(&parameters, &motion) / 4.0).log2().ceil().max(-64.0) as i32;
+        let unit = (fastest_rate(&parameters, &motion) / 4.0)
+            .log2()
+            .ceil()
+            .max(-64.0) as i32;
         let e = (0.5 * (1.0 + m2 / m1).log2()).clamp(0.0, 7.0).round() as i32;
         let [by, by1, by2] = [m1.max(m2), l1, l2].map(|x| x.log2() as i32);
 
@@ -56,13 +68,34 @@ impl Start {
         let (upper, lower) = (m1(e - by) * total, m2(e - by) * total);
         let (over_l1, over_l2) = (l1(-by1).inverse(), l2(-by2).inverse());
         let (rods, coupling) = (l1(-by2) * over_l2, lower * l2(-by1) * over_l1);
-        let gravity = [g(e - 2 * unit - by1) * over_l1, g(-2 * unit - by2) * over_l2];
+        let gravity = [
+            g(e - 2 * unit - by1) * over_l1,
+            g(-2 * unit - by2) * over_l2,
+        ];
         let radians = |x: Fixed, degrees: bool| if degrees { x.over(180) * Fixed::PI } else { x };
         let [a1, a2] = [a1(0), a2(0)].map(|a| radians(a, self.degrees[0]));
         let [w1, w2] = [w1(-unit), w2(-unit)].map(|w| radians(w, self.degrees[1]));
         let ([sin1, cos1], [s, c]) = (sin_cos(a1), sin_cos(a1 - a2));
-        let start = [sin1, cos1, s, c, (upper + lower) * w1 + coupling * c * w2, w2 + rods * c * w1];
-        Enclosure::new(Equations { upper, lower, rods, coupling, gravity }, (unit, rate), start, Fineness::default())
+        let start = [
+            sin1,
+            cos1,
+            s,
+            c,
+            (upper + lower) * w1 + coupling * c * w2,
+            w2 + rods * c * w1,
+        ];
+        Enclosure::new(
+            Equations {
+                upper,
+                lower,
+                rods,
+                coupling,
+                gravity,
+            },
+            (unit, rate),
+            start,
+            Fineness::default(),
+        )
     }
 }
 

@@ -42,18 +42,28 @@ pub struct FrameProfile {
 impl FrameProfile {
     /// Lets `board` run to its next frame and profiles all that it executes for it.
     pub fn of_next(board: &mut Machine, image: &Image, core: Core) -> Result<Self> {
-        let showing = SHOWING.into_iter().map(|(module, name)| address(image, module, name));
+        let showing = SHOWING
+            .into_iter()
+            .map(|(module, name)| address(image, module, name));
         let (whole, calls) = next_frame(board, image, core, showing.collect::<Result<_>>()?)?;
-        Ok(Self { whole, showing: calls.cost() })
+        Ok(Self {
+            whole,
+            showing: calls.cost(),
+        })
     }
 }
 
 /// Where a function of an application begins; the error names one that it lacks.
 fn address(image: &Image, module: &str, name: &str) -> Result<u32> {
     // One version of the compiler writes <path::Type>::name, the next path::Type::name.
-    let is_it = |path: &str| path.trim_start_matches('<').starts_with(module) && path.ends_with(name);
-    let function = image.functions_named(name).find(|function| is_it(&function.name));
-    function.map(|function| function.address).ok_or_else(|| image.lacks(&format!("{module}..{name}")))
+    let is_it =
+        |path: &str| path.trim_start_matches('<').starts_with(module) && path.ends_with(name);
+    let function = image
+        .functions_named(name)
+        .find(|function| is_it(&function.name));
+    function
+        .map(|function| function.address)
+        .ok_or_else(|| image.lacks(&format!("{module}..{name}")))
 }
 
 /// Lets `board` run to its next frame: what that takes, and on the way the calls of the functions that begin at `entries`.
@@ -67,7 +77,9 @@ fn next_frame<'a>(
         let (mut whole, mut stream) = (Cost::default(), Stream::of(image, core));
         let mut calls = Calls::of(image, core, entries);
         for_each_instruction(&mut log, &mut |registers| {
-            whole += stream.see(registers)?.map_or(Cost::default(), |(.., cost)| cost);
+            whole += stream
+                .see(registers)?
+                .map_or(Cost::default(), |(.., cost)| cost);
             calls.see(registers)
         })?;
         Ok((whole, calls))
@@ -80,12 +92,18 @@ const MARKS: [&str; 2] = ["// made by cargo count --write-prices\n", "// so far\
 /// What a step costs by each method that a plan chooses from, on one board for each kind of core.
 pub fn prices(toolchain: &Toolchain) -> Result<Vec<(&'static Board, Costs)>> {
     let targets = Target::build_all(toolchain)?;
-    targets.par_iter().map(|target| Ok((target.board, on(target, toolchain)?))).collect()
+    targets
+        .par_iter()
+        .map(|target| Ok((target.board, on(target, toolchain)?)))
+        .collect()
 }
 
 fn on(target: &Target, toolchain: &Toolchain) -> Result<Costs> {
     let step = |method| {
-        let request = Request { angles: [0.5; 2], ..Request::on_any_core(method) };
+        let request = Request {
+            angles: [0.5; 2],
+            ..Request::on_any_core(method)
+        };
         anyhow::Ok(affordable_cost(target, &request)?.cycles as f32)
     };
     let (fixed64, preparation) = in_application(target.board, toolchain)?;
@@ -104,14 +122,30 @@ fn in_application(board: &'static Board, toolchain: &Toolchain) -> Result<(f32, 
     let elf = toolchain.build_for(board)?;
     let image = Image::read(&elf)?;
     let qemu = &toolchain.qemu;
-    let settings = Settings { qemu, board, elf: &elf, clock: Clock::Counted, debugger: true, limit: LIMIT };
+    let settings = Settings {
+        qemu,
+        board,
+        elf: &elf,
+        clock: Clock::Counted,
+        debugger: true,
+        limit: LIMIT,
+    };
     let mut machine = Machine::halted(&settings)?;
     let most = |machine: &mut Machine, entry: u32| {
         let (_, calls) = next_frame(machine, &image, board.core(), BTreeSet::from([entry]))?;
-        anyhow::Ok(calls.ended.iter().map(|call| call.cycles as f32).fold(0.0, f32::max))
+        anyhow::Ok(
+            calls
+                .ended
+                .iter()
+                .map(|call| call.cycles as f32)
+                .fold(0.0, f32::max),
+        )
     };
     machine.run_to_frame()?;
-    let step = most(&mut machine, image.function("Fixed64State::advance")?.address)?;
+    let step = most(
+        &mut machine,
+        image.function("Fixed64State::advance")?.address,
+    )?;
     let preparation = image.function("PlannedRun::new")?.address;
     let mut prepared: f32 = 0.0;
     for &method in Method::DRAWN {
@@ -126,8 +160,12 @@ fn in_application(board: &'static Board, toolchain: &Toolchain) -> Result<(f32, 
 pub fn write_prices(prices: &[(&Board, Costs)]) -> Result<PathBuf> {
     let path = workspace().join("firmware/src/prices.rs");
     let old = std::fs::read_to_string(&path)?;
-    let lists: String = prices.iter().map(|(board, costs)| list(board, costs)).collect();
-    let new = between(&old, MARKS, &lists).with_context(|| format!("{} has no place for them", path.display()))?;
+    let lists: String = prices
+        .iter()
+        .map(|(board, costs)| list(board, costs))
+        .collect();
+    let new = between(&old, MARKS, &lists)
+        .with_context(|| format!("{} has no place for them", path.display()))?;
     std::fs::write(&path, new)?;
     Ok(path)
 }

@@ -84,7 +84,11 @@ pub fn run(options: &CountOptions) -> anyhow::Result<()> {
         return Ok(say(write_prices(&prices(&toolchain)?)?.display())?);
     }
     let requests = options.requests().map_err(Refused::because)?;
-    let boards = if options.on.is_empty() { vec![&BOARDS[0]] } else { options.on.clone() };
+    let boards = if options.on.is_empty() {
+        vec![&BOARDS[0]]
+    } else {
+        options.on.clone()
+    };
     let toolchain = toolchain::set_up()?;
     if !options.listing {
         say(options.setting())?;
@@ -94,17 +98,24 @@ pub fn run(options: &CountOptions) -> anyhow::Result<()> {
     for board in boards {
         let target = Target::build(&toolchain, board)?;
         if options.listing {
-            requests.iter().try_for_each(|request| list(&target, request, options.steps))?;
+            requests
+                .iter()
+                .try_for_each(|request| list(&target, request, options.steps))?;
             continue;
         }
         // Some at a time, so that the first rows come soon.
         for requests in requests.chunks(rayon::current_num_threads()) {
             let rows = requests.par_iter().map(|request| {
                 let given = options.steps.map(|stride| Request { stride, ..*request });
-                let cost = given.map_or_else(|| affordable_cost(&target, request), |given| step_cost(&target, &given));
+                let cost = given.map_or_else(
+                    || affordable_cost(&target, request),
+                    |given| step_cost(&target, &given),
+                );
                 Ok(row(request.method, board, &cost?))
             });
-            rows.collect::<anyhow::Result<Vec<_>>>()?.iter().try_for_each(say)?;
+            rows.collect::<anyhow::Result<Vec<_>>>()?
+                .iter()
+                .try_for_each(say)?;
         }
     }
     Ok(())
@@ -116,17 +127,37 @@ impl CountOptions {
     fn requests(&self) -> anyhow::Result<Vec<Request>> {
         let Self { m2, l2, angle, .. } = *self;
         let request = |method| Request {
-            parameters: Parameters { m1: 1.0, m2, l1: 1.0, l2, g: GRAVITY.into() },
+            parameters: Parameters {
+                m1: 1.0,
+                m2,
+                l1: 1.0,
+                l2,
+                g: GRAVITY.into(),
+            },
             angles: [angle; 2],
             dt: f64::powi(0.5, self.halvings.into()),
             samples: 1,
             ..Request::on_any_core(method)
         };
-        let check = |request| Request { stride: 1, samples: 1, ..request }.crc().map(|_| request);
-        let methods = Method::ALL.iter().filter(|method| method.name().contains(&self.method));
+        let check = |request| {
+            Request {
+                stride: 1,
+                samples: 1,
+                ..request
+            }
+            .crc()
+            .map(|_| request)
+        };
+        let methods = Method::ALL
+            .iter()
+            .filter(|method| method.name().contains(&self.method));
         let checked: Vec<_> = methods.map(|&method| check(request(method))).collect();
         if checked.is_empty() {
-            let names = Method::ALL.iter().map(|method| method.name()).collect::<Vec<_>>().join(", ");
+            let names = Method::ALL
+                .iter()
+                .map(|method| method.name())
+                .collect::<Vec<_>>()
+                .join(", ");
             bail!("no method '{}'; there are {names}", self.method)
         }
         if checked.iter().all(Result::is_err) {
@@ -137,7 +168,13 @@ impl CountOptions {
 
     /// What is stepped: arithmetic in software takes other ways for other numbers, so its counts depend on all of it.
     fn setting(&self) -> String {
-        let Self { m2, l2, angle, halvings, .. } = self;
+        let Self {
+            m2,
+            l2,
+            angle,
+            halvings,
+            ..
+        } = self;
         format!(
             "one step of 2^-{halvings} s, averaged over the first steps from rest at {angle} rad; masses 1,{m2} kg, lengths \
              1,{l2} m, gravity {GRAVITY} m/s^2 (as an f32); instructions are counted"
@@ -150,39 +187,96 @@ const TITLES: [&str; 9] = [
     "method", "board", "steps", "instructions", "cycles (estimate)", "stalls", "hot bytes", "code bytes", "stack bytes",
 ];
 
-fn line([method, board, steps, instructions, cycles, stalls, hot, code, stack]: [String; 9]) -> String {
+fn line(
+    [
+        method,
+        board,
+        steps,
+        instructions,
+        cycles,
+        stalls,
+        hot,
+        code,
+        stack,
+    ]: [String; 9],
+) -> String {
     let counts = format!("{steps:>5} {instructions:>12} {cycles:>17} {stalls:>8}");
     format!("{method:>29} {board:>16} {counts} {hot:>9} {code:>10} {stack:>11}")
 }
 
 fn row(method: Method, board: &Board, cost: &StepCost) -> String {
-    let StepCost { steps, instructions, cycles, stalls, hot_bytes, code_bytes, stack_bytes } = cost;
-    let [instructions, cycles, stalls] = [instructions, cycles, stalls].map(|count| format!("{count:.1}"));
+    let StepCost {
+        steps,
+        instructions,
+        cycles,
+        stalls,
+        hot_bytes,
+        code_bytes,
+        stack_bytes,
+    } = cost;
+    let [instructions, cycles, stalls] =
+        [instructions, cycles, stalls].map(|count| format!("{count:.1}"));
     let [steps, hot, code, stack] = [steps, hot_bytes, code_bytes, stack_bytes].map(u32::to_string);
-    line([method.to_string(), board.name.to_owned(), steps, instructions, cycles, stalls, hot, code, stack])
+    line([
+        method.to_string(),
+        board.name.to_owned(),
+        steps,
+        instructions,
+        cycles,
+        stalls,
+        hot,
+        code,
+        stack,
+    ])
 }
 
 /// Every instruction with its share of a step: address, executions, cycles, stalls, kind.
 fn list(target: &Target, request: &Request, steps: Option<u32>) -> anyhow::Result<()> {
     let stride = steps.map_or_else(|| affordable_steps(target, request), Ok)?;
     let calls = counted(target, &Request { stride, ..*request })?;
-    say(format_args!("{} on {}: per step, executions, cycles (estimate), stalls", request.method, target.board.name))?;
+    say(format_args!(
+        "{} on {}: per step, executions, cycles (estimate), stalls",
+        request.method, target.board.name
+    ))?;
     say(ERROR_BAR)?;
     let mut function = None;
-    for (address, (instruction, Cost { instructions, cycles, stalls })) in calls.spots {
+    for (
+        address,
+        (
+            instruction,
+            Cost {
+                instructions,
+                cycles,
+                stalls,
+            },
+        ),
+    ) in calls.spots
+    {
         let inside = target.image.function_at(address);
         if inside != function {
             function = inside;
-            say(format_args!("{}:", inside.map_or("?", |function| &function.name)))?;
+            say(format_args!(
+                "{}:",
+                inside.map_or("?", |function| &function.name)
+            ))?;
         }
-        let [executions, cycles, stalls] = [instructions, cycles, stalls].map(|all| all as f64 / f64::from(stride));
-        say(format_args!("{address:8x} {executions:9.2} {cycles:9.2} {stalls:7.2}  {}", instruction.row.name))?;
+        let [executions, cycles, stalls] =
+            [instructions, cycles, stalls].map(|all| all as f64 / f64::from(stride));
+        say(format_args!(
+            "{address:8x} {executions:9.2} {cycles:9.2} {stalls:7.2}  {}",
+            instruction.row.name
+        ))?;
     }
     Ok(())
 }
 
 /// What a function of any program costs, per call.
-fn count_calls(toolchain: &Toolchain, options: &CountOptions, elf: &Path, function: &str) -> anyhow::Result<()> {
+fn count_calls(
+    toolchain: &Toolchain,
+    options: &CountOptions,
+    elf: &Path,
+    function: &str,
+) -> anyhow::Result<()> {
     let refused = |error: anyhow::Error| Refused::because(format_args!("{error:#}"));
     let board = options.on.first().copied().unwrap_or(&BOARDS[1]);
     let target = Target::of(toolchain, board, elf.to_owned()).map_err(refused)?;
@@ -190,18 +284,37 @@ fn count_calls(toolchain: &Toolchain, options: &CountOptions, elf: &Path, functi
     let (function, calls, ended) = calls_of(&target, function, limit).map_err(refused)?;
     let number = calls.len();
     if let Ok(status) = &ended.status {
-        ensure!(status.success(), "the program failed after {number} calls, {status}: {}", ended.output.trim());
+        ensure!(
+            status.success(),
+            "the program failed after {number} calls, {status}: {}",
+            ended.output.trim()
+        );
     }
     ended.output.lines().for_each(complain);
     match ended.status {
         Ok(status) => complain(format_args!("the program ended by itself, {status}")),
-        Err(_) => complain(format_args!("stopped after {} s and {number} calls; see --seconds", limit.as_secs())),
+        Err(_) => complain(format_args!(
+            "stopped after {} s and {number} calls; see --seconds",
+            limit.as_secs()
+        )),
     }
-    say(format_args!("{} on {}, from its first instruction to its return: calls {number}", function.name, board.name))?;
+    say(format_args!(
+        "{} on {}, from its first instruction to its return: calls {number}",
+        function.name, board.name
+    ))?;
     say(ERROR_BAR)?;
-    say(format_args!("{:12} {:>12} {:>12} {:>12}", "per call", "mean", "least", "most"))?;
+    say(format_args!(
+        "{:12} {:>12} {:>12} {:>12}",
+        "per call", "mean", "least", "most"
+    ))?;
     for (title, is_instructions) in [("instructions", true), ("cycles", false)] {
-        let count = |cost: &Cost| if is_instructions { cost.instructions } else { cost.cycles };
+        let count = |cost: &Cost| {
+            if is_instructions {
+                cost.instructions
+            } else {
+                cost.cycles
+            }
+        };
         let counts = || calls.iter().map(count);
         let (least, most) = (counts().min().unwrap_or(0), counts().max().unwrap_or(0));
         let mean = counts().sum::<u64>() as f64 / number as f64;

@@ -42,14 +42,33 @@ pub struct StepCost {
 
 /// The steps to count so that the counting takes a few seconds: [`FULL_CYCLE`] of a cheap method, fewer of a costly one.
 pub fn affordable_steps(target: &Target, request: &Request) -> Result<u32> {
-    let one = counted(target, &Request { stride: 1, samples: 1, ..*request })?.cost().instructions;
+    let one = counted(
+        target,
+        &Request {
+            stride: 1,
+            samples: 1,
+            ..*request
+        },
+    )?
+    .cost()
+    .instructions;
     let steps = (AFFORDABLE_INSTRUCTIONS / one.max(1)).clamp(LEAST_STEPS, FULL_CYCLE.into());
-    Ok(if steps < REGULAR { steps } else { steps - steps % REGULAR } as u32)
+    Ok(if steps < REGULAR {
+        steps
+    } else {
+        steps - steps % REGULAR
+    } as u32)
 }
 
 /// The cost of one step of `request` on `target`, averaged over as many steps as can be afforded.
 pub fn affordable_cost(target: &Target, request: &Request) -> Result<StepCost> {
-    step_cost(target, &Request { stride: affordable_steps(target, request)?, ..*request })
+    step_cost(
+        target,
+        &Request {
+            stride: affordable_steps(target, request)?,
+            ..*request
+        },
+    )
 }
 
 /// The cost of one step of `request` on `target`, averaged over the steps after the first; as many as to its first sample.
@@ -57,7 +76,16 @@ pub fn affordable_cost(target: &Target, request: &Request) -> Result<StepCost> {
 /// A run of one step more minus a run of one step, so that calling and returning cancel.
 pub fn step_cost(target: &Target, request: &Request) -> Result<StepCost> {
     let steps = request.stride;
-    let run = |stride| counted(target, &Request { stride, samples: 1, ..*request });
+    let run = |stride| {
+        counted(
+            target,
+            &Request {
+                stride,
+                samples: 1,
+                ..*request
+            },
+        )
+    };
     let (calling, whole) = (run(1)?.cost(), run(1 + steps)?);
     let all = whole.cost();
     let per_step = |all: u64, calling: u64| all.saturating_sub(calling) as f64 / f64::from(steps);

@@ -47,12 +47,21 @@ impl Target {
     /// Another program. One that takes the same requests makes its steps in a function called `counted_steps`.
     pub fn of(toolchain: &Toolchain, board: &'static Board, elf: PathBuf) -> Result<Self> {
         let image = Image::read(&elf)?;
-        Ok(Self { board, qemu: toolchain.qemu.clone(), elf, image })
+        Ok(Self {
+            board,
+            qemu: toolchain.qemu.clone(),
+            elf,
+            image,
+        })
     }
 
     /// One board for each kind of core: the same machine with a Cortex-M3, a Cortex-M4F and a Cortex-M0+.
     pub fn build_all(toolchain: &Toolchain) -> Result<Vec<Self>> {
-        BOARDS.iter().filter(|board| board.has_panel).map(|board| Self::build(toolchain, board)).collect()
+        BOARDS
+            .iter()
+            .filter(|board| board.has_panel)
+            .map(|board| Self::build(toolchain, board))
+            .collect()
     }
 
     /// Runs `request` at full speed: its CRC, and the ticks of the board's clock under `-icount`, where an
@@ -60,28 +69,52 @@ impl Target {
     pub fn run(&self, request: &Request) -> Result<(u32, u64)> {
         let output = self.output(request)?;
         let numbers = output.trim().split_once(' ');
-        let numbers = numbers.and_then(|(crc, ticks)| Some((u32::from_str_radix(crc, 16).ok()?, ticks.parse().ok()?)));
+        let numbers = numbers.and_then(|(crc, ticks)| {
+            Some((u32::from_str_radix(crc, 16).ok()?, ticks.parse().ok()?))
+        });
         numbers.with_context(|| format!("{}: {}", request.method, output.trim()))
     }
 
     /// Runs `request` at full speed: what it prints.
     pub fn output(&self, request: &Request) -> Result<String> {
-        Ok(process::run(self.emulator(&request.to_string()).args(["-icount", "shift=0"]), LIMIT)?.stdout)
+        Ok(process::run(
+            self.emulator(&request.to_string())
+                .args(["-icount", "shift=0"]),
+            LIMIT,
+        )?
+        .stdout)
     }
 
     /// Runs the program with `argument` on its semihosting command line and calls `each` before every instruction, in
     /// order.
-    fn trace(&self, argument: &str, limit: Duration, each: &mut dyn FnMut(Registers) -> Result<()>) -> Result<Ended> {
+    fn trace(
+        &self,
+        argument: &str,
+        limit: Duration,
+        each: &mut dyn FnMut(Registers) -> Result<()>,
+    ) -> Result<Ended> {
         let mut command = self.emulator(argument);
-        command.args(self.single_step()?).args(["-d", "cpu,nochain", "-D", "/dev/stderr"]);
-        command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        command
+            .args(self.single_step()?)
+            .args(["-d", "cpu,nochain", "-D", "/dev/stderr"]);
+        command
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped());
         let mut child = process::spawn(&mut command, limit)?;
-        let stdout = child.child.stdout.take().map(|stdout| thread::spawn(move || io::read_to_string(stdout)));
+        let stdout = child
+            .child
+            .stdout
+            .take()
+            .map(|stdout| thread::spawn(move || io::read_to_string(stdout)));
         if let Some(mut log) = child.child.stderr.take() {
             for_each_instruction(&mut log, each)?;
         }
         let status = child.wait();
-        let output = stdout.and_then(|reader| reader.join().ok()).and_then(Result::ok).unwrap_or_default();
+        let output = stdout
+            .and_then(|reader| reader.join().ok())
+            .and_then(Result::ok)
+            .unwrap_or_default();
         Ok(Ended { status, output })
     }
 
@@ -90,8 +123,15 @@ impl Target {
         let mut command = Command::new(&self.qemu);
         command.args(["-machine", self.board.machine, "-cpu", self.board.cpu]);
         command.args(["-display", "none", "-monitor", "none", "-serial", "null"]);
-        let argument = if argument.is_empty() { String::new() } else { format!(",arg={argument}") };
-        command.args(["-semihosting-config", &format!("enable=on,target=native{argument}")]);
+        let argument = if argument.is_empty() {
+            String::new()
+        } else {
+            format!(",arg={argument}")
+        };
+        command.args([
+            "-semihosting-config",
+            &format!("enable=on,target=native{argument}"),
+        ]);
         command.arg("-kernel").arg(&self.elf);
         command
     }
@@ -100,23 +140,41 @@ impl Target {
     fn single_step(&self) -> Result<&'static [&'static str]> {
         let help = process::run(Command::new(&self.qemu).arg("--help"), QUICK)?.stdout;
         let is_renamed = help.contains("one-insn-per-tb");
-        Ok(if is_renamed { &["-accel", "tcg,one-insn-per-tb=on"] } else { &["-singlestep"] })
+        Ok(if is_renamed {
+            &["-accel", "tcg,one-insn-per-tb=on"]
+        } else {
+            &["-singlestep"]
+        })
     }
 }
 
 /// Runs `request` on `target`, all calls of the counted function together.
 pub fn counted<'a>(target: &'a Target, request: &Request) -> Result<Calls<'a>> {
-    let entries = target.image.functions_named(COUNTED).map(|function| function.address).collect();
+    let entries = target
+        .image
+        .functions_named(COUNTED)
+        .map(|function| function.address)
+        .collect();
     let mut calls = Calls::of(&target.image, target.board.core(), entries);
-    let ended = target.trace(&request.to_string(), LIMIT, &mut |registers| calls.see(registers))?;
-    ensure!(ended.status?.success(), "{request}: {}", ended.output.trim());
+    let ended = target.trace(&request.to_string(), LIMIT, &mut |registers| {
+        calls.see(registers)
+    })?;
+    ensure!(
+        ended.status?.success(),
+        "{request}: {}",
+        ended.output.trim()
+    );
     ensure!(!calls.ended.is_empty(), "{COUNTED} was never called");
     Ok(calls)
 }
 
 /// Counts the calls of `function` until the program on `target` ends or the time is up: the function, what each call that returned
 /// cost, one at least unless the program says that it failed, and how it ended.
-pub fn calls_of<'a>(target: &'a Target, function: &str, limit: Duration) -> Result<(&'a Function, Vec<Cost>, Ended)> {
+pub fn calls_of<'a>(
+    target: &'a Target,
+    function: &str,
+    limit: Duration,
+) -> Result<(&'a Function, Vec<Cost>, Ended)> {
     let (image, core) = (&target.image, target.board.core());
     let function = image.function(function)?;
     let (vectors, board) = (target.board.flash(), target.board.name);
@@ -131,19 +189,32 @@ pub fn calls_of<'a>(target: &'a Target, function: &str, limit: Duration) -> Resu
     let ended = target.trace("", limit, &mut |registers| {
         instructions += 1;
         if instructions % TELL == 0 {
-            progress.alive(Some(&format!("{} calls, {instructions} instructions", calls.ended.len())));
+            progress.alive(Some(&format!(
+                "{} calls, {instructions} instructions",
+                calls.ended.len()
+            )));
         }
-        let missing = image.instruction_at(registers.pc()).ok().filter(|instruction| instruction.is_missing_on(core));
+        let missing = image
+            .instruction_at(registers.pc())
+            .ok()
+            .filter(|instruction| instruction.is_missing_on(core));
         unknown = unknown.or(missing.map(|instruction| (registers.pc(), instruction)));
         calls.see(registers)
     })?;
     let name = &function.name;
     let failed = ended.status.as_ref().is_ok_and(|status| !status.success());
     if calls.ended.is_empty() && !failed {
-        ensure!(calls.running.is_none(), "{name} was called and never returned");
-        let Some((address, instruction)) = unknown else { bail!("{name} was never called") };
+        ensure!(
+            calls.running.is_none(),
+            "{name} was called and never returned"
+        );
+        let Some((address, instruction)) = unknown else {
+            bail!("{name} was never called")
+        };
         let (instruction, cpu) = (instruction.row.name, target.board.cpu);
-        bail!("{name} was never called: {instruction} at {address:#x} is no instruction of a {cpu}; see --on");
+        bail!(
+            "{name} was never called: {instruction} at {address:#x} is no instruction of a {cpu}; see --on"
+        );
     }
     Ok((function, calls.ended, ended))
 }

@@ -40,7 +40,8 @@ pub struct Comparison {
 impl Comparison {
     /// Takes a frame that has just arrived; whether to ask the board what it plays.
     pub fn frame(&mut self, frame: &Frame) -> bool {
-        let starts = |last: &Frame| frame.scene != last.scene || frame.report.step < last.report.step;
+        let starts =
+            |last: &Frame| frame.scene != last.scene || frame.report.step < last.report.step;
         if self.last.as_ref().is_none_or(starts) {
             self.skipped += self.waiting.len() as u64;
             self.waiting.clear();
@@ -55,7 +56,12 @@ impl Comparison {
 
     pub fn status(&mut self, status: &Status) {
         // What is played by its start alone: how its time goes is another matter.
-        let start = Status { paused: false, steps: 0, speed: 1.0, ..*status };
+        let start = Status {
+            paused: false,
+            steps: 0,
+            speed: 1.0,
+            ..*status
+        };
         match (self.doubt.take(), &self.playing) {
             (Some(doubt), Some((playing, _))) if *playing == start => {
                 self.first.get_or_insert(doubt);
@@ -71,7 +77,11 @@ impl Comparison {
     /// Compares the next frame that waits; `None` if there is none, or the host is not there yet.
     pub fn follow(&mut self) -> Option<Frame> {
         let (_, show) = self.playing.as_mut().filter(|_| self.doubt.is_none())?;
-        let frame = self.waiting.front().copied().filter(|frame| is_reached(show, frame))?;
+        let frame = self
+            .waiting
+            .front()
+            .copied()
+            .filter(|frame| is_reached(show, frame))?;
         let difference = difference(&frame, &show.player.frame());
         if difference.is_some() && self.first.is_none() && self.unsure == 0 {
             self.doubt = difference;
@@ -79,13 +89,20 @@ impl Comparison {
         }
         self.waiting.pop_front();
         self.unsure = self.unsure.saturating_sub(1);
-        *(if difference.is_none() { &mut self.compared } else { &mut self.skipped }) += 1;
+        *(if difference.is_none() {
+            &mut self.compared
+        } else {
+            &mut self.skipped
+        }) += 1;
         Some(frame)
     }
 
     /// The panel, redrawn here as the compared `frame` shows it.
     pub fn panel(&self, frame: &Frame) -> Screenshot {
-        let mut canvas = self.playing.as_ref().map_or(Canvas::default(), |(_, show)| show.frame());
+        let mut canvas = self
+            .playing
+            .as_ref()
+            .map_or(Canvas::default(), |(_, show)| show.frame());
         if frame.paused {
             text::pause_mark(&mut canvas);
         }
@@ -107,7 +124,11 @@ impl fmt::Display for Comparison {
         if let Some(difference) = &self.first {
             return f.write_str(difference);
         }
-        write!(f, "{} frames, every bit the host's", HumanCount(self.compared))?;
+        write!(
+            f,
+            "{} frames, every bit the host's",
+            HumanCount(self.compared)
+        )?;
         match self.skipped + self.waiting.len() as u64 {
             0 => Ok(()),
             skipped => write!(f, " ({} not compared)", HumanCount(skipped)),
@@ -117,7 +138,10 @@ impl fmt::Display for Comparison {
 
 /// What the board plays from such a start; the field of it that cannot be.
 fn played(start: &Status) -> Result<Show, Field> {
-    let processor = PROCESSORS.get(usize::from(start.processor)).copied().unwrap_or(PROCESSOR);
+    let processor = PROCESSORS
+        .get(usize::from(start.processor))
+        .copied()
+        .unwrap_or(PROCESSOR);
     let mut show = Show::on(processor, SceneName::Page, &Settings::default())?;
     show.player.resume(start)?;
     Ok(show)
@@ -138,7 +162,8 @@ fn is_reached(show: &mut Show, frame: &Frame) -> bool {
 fn difference(board: &Frame, here: &Frame) -> Option<String> {
     let numbers = |frame: &Frame| {
         let report = &frame.report;
-        let [a1, a2, p1, p2] = <[f32; 4]>::from(report.state).map(|number| u64::from(number.to_bits()));
+        let [a1, a2, p1, p2] =
+            <[f32; 4]>::from(report.state).map(|number| u64::from(number.to_bits()));
         [
             ("scene", frame.scene as u64),
             ("step", report.step),
@@ -156,5 +181,7 @@ fn difference(board: &Frame, here: &Frame) -> Option<String> {
     let mut pairs = numbers(board).into_iter().zip(numbers(here));
     let ((number, board_bits), (_, here_bits)) = pairs.find(|(board, here)| board != here)?;
     let (sequence, step) = (board.sequence, board.report.step);
-    Some(format!("frame {sequence}, step {step}: {number} is {board_bits:#x}, the host's {here_bits:#x}"))
+    Some(format!(
+        "frame {sequence}, step {step}: {number} is {board_bits:#x}, the host's {here_bits:#x}"
+    ))
 }

@@ -40,13 +40,31 @@ fn show(session: &mut Session, seconds: f64, mut terminal: DefaultTerminal) -> a
         is_due = !is_due;
         if is_due {
             session.look()?;
-            terminal.draw(|frame| draw(frame, session.name(), &session.screenshot, &session.readings, colours))?;
+            terminal.draw(|frame| {
+                draw(
+                    frame,
+                    session.name(),
+                    &session.screenshot,
+                    &session.readings,
+                    colours,
+                )
+            })?;
         }
         while event::poll(LOOK.saturating_sub(heard.elapsed()))? {
             match event::read()? {
-                Event::Key(KeyEvent { kind: KeyEventKind::Release, .. }) => {}
-                Event::Key(KeyEvent { code: KeyCode::Char('q') | KeyCode::Esc, .. }) => return Ok(()),
-                Event::Key(KeyEvent { code: KeyCode::Char('c'), modifiers: KeyModifiers::CONTROL, .. }) => {
+                Event::Key(KeyEvent {
+                    kind: KeyEventKind::Release,
+                    ..
+                }) => {}
+                Event::Key(KeyEvent {
+                    code: KeyCode::Char('q') | KeyCode::Esc,
+                    ..
+                }) => return Ok(()),
+                Event::Key(KeyEvent {
+                    code: KeyCode::Char('c'),
+                    modifiers: KeyModifiers::CONTROL,
+                    ..
+                }) => {
                     return Ok(());
                 }
                 Event::Key(KeyEvent { code, .. }) => execute(session, code)?,
@@ -57,7 +75,12 @@ fn show(session: &mut Session, seconds: f64, mut terminal: DefaultTerminal) -> a
     Ok(())
 }
 
-fn execute(Session { source, readings, .. }: &mut Session, code: KeyCode) -> anyhow::Result<()> {
+fn execute(
+    Session {
+        source, readings, ..
+    }: &mut Session,
+    code: KeyCode,
+) -> anyhow::Result<()> {
     source.send(match code {
         KeyCode::Up => Command::Heavier,
         KeyCode::Down => Command::Lighter,

@@ -39,12 +39,20 @@ const LIMIT: [f64; 2] = [60.0, 20.0];
 pub fn run(options: &DemoOptions) -> anyhow::Result<bool> {
     let is_live = !options.headless && stdout().is_terminal() && stdin().is_terminal();
     options.check()?;
-    let seconds = options.seconds.unwrap_or(if is_live { f64::INFINITY } else { DEFAULT_SECONDS });
+    let seconds = options.seconds.unwrap_or(if is_live {
+        f64::INFINITY
+    } else {
+        DEFAULT_SECONDS
+    });
     let source = match &options.port {
         Some(name) => Source::Port(port(name)?),
         None => emulated(options.board, seconds, is_live)?,
     };
-    let recording = options.record.as_deref().map(Recording::create).transpose()?;
+    let recording = options
+        .record
+        .as_deref()
+        .map(Recording::create)
+        .transpose()?;
     let mut session = Session::new(options, source, recording);
     if is_live {
         live::watch(&mut session, seconds)?
@@ -63,11 +71,26 @@ fn emulated(board: &'static Board, seconds: f64, is_live: bool) -> anyhow::Resul
     let limit = Duration::from_secs_f64(LIMIT[0] + LIMIT[1] * seconds.min(MOST_SECONDS));
     if *board == PICO {
         let emulator = toolchain::set_up_pico()?;
-        return Ok(Source::Pico(Box::new(PicoMachine::start(&emulator, &toolchain.build_for(board)?, limit)?)));
+        return Ok(Source::Pico(Box::new(PicoMachine::start(
+            &emulator,
+            &toolchain.build_for(board)?,
+            limit,
+        )?)));
     }
     let elf = toolchain.build_for(board)?;
-    let settings = Settings { qemu: &toolchain.qemu, board, elf: &elf, debugger: true, clock: Clock::Real, limit };
-    if is_live { Machine::start(&settings).map(Source::Live) } else { Machine::halted(&settings).map(Source::Lockstep) }
+    let settings = Settings {
+        qemu: &toolchain.qemu,
+        board,
+        elf: &elf,
+        debugger: true,
+        clock: Clock::Real,
+        limit,
+    };
+    if is_live {
+        Machine::start(&settings).map(Source::Live)
+    } else {
+        Machine::halted(&settings).map(Source::Lockstep)
+    }
 }
 
 const LOOK: Duration = Duration::from_millis(4);
@@ -83,7 +106,8 @@ fn headless(session: &mut Session, seconds: f64) -> anyhow::Result<()> {
     let progress = Progress::start(&format!("running {name} for {seconds} s of its time"));
     let (mut reached, mut since) = (0.0, Instant::now());
     let is_over = |session: &Session| {
-        let is_settled = session.readings.comparison.is_settled() || session.seconds() > seconds + ANSWER;
+        let is_settled =
+            session.readings.comparison.is_settled() || session.seconds() > seconds + ANSWER;
         session.seconds() >= seconds && is_settled
     };
     while !is_over(session) {
@@ -92,11 +116,19 @@ fn headless(session: &mut Session, seconds: f64) -> anyhow::Result<()> {
             session.look()?;
         }
         if session.source.is_port() {
-            session.readings.lines.drain(..).for_each(|line| complain(line.text));
+            session
+                .readings
+                .lines
+                .drain(..)
+                .for_each(|line| complain(line.text));
             if session.seconds() > reached {
                 (reached, since) = (session.seconds(), Instant::now());
             }
-            ensure!(since.elapsed() < PATIENCE, "{name}: no frame for {} s", PATIENCE.as_secs());
+            ensure!(
+                since.elapsed() < PATIENCE,
+                "{name}: no frame for {} s",
+                PATIENCE.as_secs()
+            );
             sleep(LOOK);
         }
         progress.alive(None);
@@ -108,16 +140,31 @@ fn headless(session: &mut Session, seconds: f64) -> anyhow::Result<()> {
 /// cable may flip bits: both are told, and neither is a fault.
 fn finish(options: &DemoOptions, mut session: Session) -> anyhow::Result<bool> {
     if let Some(path) = &options.screenshot {
-        fs::write(path, png(&session.screenshot)?).with_context(|| format!("cannot write {}", path.display()))?;
+        fs::write(path, png(&session.screenshot)?)
+            .with_context(|| format!("cannot write {}", path.display()))?;
     }
     session.readings.lines.extend(session.source.told().0);
-    let (name, Session { readings, source, .. }) = (session.name(), &session);
+    let (
+        name,
+        Session {
+            readings, source, ..
+        },
+    ) = (session.name(), &session);
     ensure!(readings.frame.is_some(), "{name}: no frame came");
     let is_repeatable = matches!(source, Source::Lockstep(_) | Source::Pico(_));
-    let mut faults = if is_repeatable { readings.faults() } else { Vec::new() };
+    let mut faults = if is_repeatable {
+        readings.faults()
+    } else {
+        Vec::new()
+    };
     faults.extend(readings.comparison.difference().map(str::to_owned));
-    faults.iter().for_each(|fault| complain(format_args!("not well: {fault}")));
-    let said = say(format_args!("board                 {name}\n{}", readings.report()));
+    faults
+        .iter()
+        .for_each(|fault| complain(format_args!("not well: {fault}")));
+    let said = say(format_args!(
+        "board                 {name}\n{}",
+        readings.report()
+    ));
     // A fault is one even if no one reads the summary.
     if faults.is_empty() {
         said?;

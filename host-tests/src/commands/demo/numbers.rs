@@ -22,8 +22,14 @@ pub const ROWS: u16 = 13;
 const LEAST_SCALE: f32 = 1e-6;
 
 pub fn draw(frame: &mut Frame, area: Rect, readings: &Readings) {
-    let area = Rect { width: area.width.min(WIDEST), ..area };
-    let lines: Vec<_> = rows(readings).into_iter().flat_map(|row| lines(row, area.width.into())).collect();
+    let area = Rect {
+        width: area.width.min(WIDEST),
+        ..area
+    };
+    let lines: Vec<_> = rows(readings)
+        .into_iter()
+        .flat_map(|row| lines(row, area.width.into()))
+        .collect();
     let heights = [Constraint::Length(lines.len() as u16), Constraint::Min(0)];
     let [table, bars] = Layout::vertical(heights).areas(area);
     frame.render_widget(Paragraph::new(lines), table);
@@ -33,23 +39,42 @@ pub fn draw(frame: &mut Frame, area: Rect, readings: &Readings) {
 }
 
 fn rows(readings: &Readings) -> [(&'static str, String); 9] {
-    let (is_shown, moves) = (readings.frame.is_some(), readings.frame.is_some_and(|now| now.scene.has_angles()));
+    let (is_shown, moves) = (
+        readings.frame.is_some(),
+        readings.frame.is_some_and(|now| now.scene.has_angles()),
+    );
     let now = readings.frame.unwrap_or_default();
     // Those at the start, one if both rods have the same.
-    let degrees = readings.start.unwrap_or([now.start_angle.to_degrees(); 2]).map(|degrees| format!("{degrees:.1}°"));
-    let start = if degrees[0] == degrees[1] { degrees[0].clone() } else { degrees.join(", ") };
+    let degrees = readings
+        .start
+        .unwrap_or([now.start_angle.to_degrees(); 2])
+        .map(|degrees| format!("{degrees:.1}°"));
+    let start = if degrees[0] == degrees[1] {
+        degrees[0].clone()
+    } else {
+        degrees.join(", ")
+    };
     let State { a1, a2, .. } = now.report.state;
-    let [angle_1, angle_2] = [a1, a2].map(|angle| within_half_a_turn(f64::from(angle).to_degrees()));
+    let [angle_1, angle_2] =
+        [a1, a2].map(|angle| within_half_a_turn(f64::from(angle).to_degrees()));
     let rows = [
         ("time", is_shown, format!("{:.2} s", now.report.time)),
-        ("mass ratio", is_shown, ((f64::from(now.mass_ratio) * 1e4).round() / 1e4).to_string()),
+        (
+            "mass ratio",
+            is_shown,
+            ((f64::from(now.mass_ratio) * 1e4).round() / 1e4).to_string(),
+        ),
         ("start", moves, start),
         ("angle 1", moves, format!("{angle_1:.1}°")),
         ("angle 2", moves, format!("{angle_2:.1}°")),
         ("frames/s", is_shown, readings.rate().to_string()),
         ("dropped", is_shown, now.dropped.to_string()),
         ("CRC errors", true, readings.counts.damaged.to_string()),
-        ("energy error", moves, format!("{:+.1e}", now.report.energy_error)),
+        (
+            "energy error",
+            moves,
+            format!("{:+.1e}", now.report.energy_error),
+        ),
     ];
     rows.map(|(name, is_known, value)| (name, if is_known { value } else { "-".to_owned() }))
 }
@@ -58,42 +83,90 @@ fn rows(readings: &Readings) -> [(&'static str, String); 9] {
 fn lines((name, value): (&'static str, String), width: usize) -> Vec<Line<'static>> {
     let left = width.saturating_sub(name.chars().count());
     if value.chars().count() < left {
-        return vec![Line::from(vec![name.dim(), format!("{value:>left$}").bold()])];
+        return vec![Line::from(vec![
+            name.dim(),
+            format!("{value:>left$}").bold(),
+        ])];
     }
-    vec![Line::from(name).dim(), Line::from(format!("{value:>width$}")).bold()]
+    vec![
+        Line::from(name).dim(),
+        Line::from(format!("{value:>width$}")).bold(),
+    ]
 }
 
 /// The size of the energy error, the largest of each half second, as bars up to a power of ten, which is told.
 fn energy_errors(frame: &mut Frame, area: Rect, past: &[Report]) {
     const HEIGHT: f32 = 1000.0;
     const STEPS: u64 = TICK_RATE as u64 / 2;
-    let largest = |bar: &[Report]| bar.iter().map(|report| report.energy_error.abs()).fold(0.0, f32::max);
-    let errors: Vec<_> = past.chunk_by(|one, next| one.step / STEPS == next.step / STEPS).map(largest).collect();
+    let largest = |bar: &[Report]| {
+        bar.iter()
+            .map(|report| report.energy_error.abs())
+            .fold(0.0, f32::max)
+    };
+    let errors: Vec<_> = past
+        .chunk_by(|one, next| one.step / STEPS == next.step / STEPS)
+        .map(largest)
+        .collect();
     let shown = &errors[errors.len().saturating_sub(area.width.into())..];
-    let exponent = shown.iter().copied().fold(LEAST_SCALE, f32::max).log10().ceil() as i32;
+    let exponent = shown
+        .iter()
+        .copied()
+        .fold(LEAST_SCALE, f32::max)
+        .log10()
+        .ceil() as i32;
     let scale = Block::new().title(format!("error 0 to 1e{exponent}").dim());
-    let bars = shown.iter().map(|error| (error / 10.0_f32.powi(exponent) * HEIGHT) as u64).collect::<Vec<_>>();
-    frame.render_widget(Sparkline::default().data(bars).max(HEIGHT as u64).fg(Color::Yellow).block(scale), area);
+    let bars = shown
+        .iter()
+        .map(|error| (error / 10.0_f32.powi(exponent) * HEIGHT) as u64)
+        .collect::<Vec<_>>();
+    frame.render_widget(
+        Sparkline::default()
+            .data(bars)
+            .max(HEIGHT as u64)
+            .fg(Color::Yellow)
+            .block(scale),
+        area,
+    );
 }
 
 const MEANINGS: [(&str, &str); 10] = [
-    ("½px>19.8 s on the panel", "right to half a pixel until 19.8 s at least; ½px ok: for ever"),
+    (
+        "½px>19.8 s on the panel",
+        "right to half a pixel until 19.8 s at least; ½px ok: for ever",
+    ),
     ("μ, mass ratio", "mass of bob 2 over that of bob 1"),
     ("time", "simulated, since the motion began"),
-    ("start, angle 1, angle 2", "of the rods, from hanging straight down"),
-    ("frames/s", "frames that came in the last second; 60 are due"),
+    (
+        "start, angle 1, angle 2",
+        "of the rods, from hanging straight down",
+    ),
+    (
+        "frames/s",
+        "frames that came in the last second; 60 are due",
+    ),
     ("dropped", "frames that the board had no time to send"),
     ("CRC errors", "messages that were damaged on the way"),
-    ("energy error", "what the arithmetic has added, relative to the energy above rest"),
+    (
+        "energy error",
+        "what the arithmetic has added, relative to the energy above rest",
+    ),
     ("bars below it", "its size, the largest of each half second"),
-    ("every bit the host's", "each frame is equal to one computed here, once the board has said what it plays"),
+    (
+        "every bit the host's",
+        "each frame is equal to one computed here, once the board has said what it plays",
+    ),
 ];
 
 pub fn draw_help(frame: &mut Frame) {
-    let line = |(name, meaning): (&str, &'static str)| Line::from(vec![format!("{name}: ").bold(), meaning.into()]);
+    let line = |(name, meaning): (&str, &'static str)| {
+        Line::from(vec![format!("{name}: ").bold(), meaning.into()])
+    };
     let text: Text = MEANINGS.into_iter().map(line).collect();
     let block = Block::bordered().title("what the numbers mean; ? goes back");
-    frame.render_widget(Paragraph::new(text).wrap(Wrap { trim: true }).block(block), frame.area());
+    frame.render_widget(
+        Paragraph::new(text).wrap(Wrap { trim: true }).block(block),
+        frame.area(),
+    );
 }
 
 /// How much simulated time the chart shows, s.
@@ -115,23 +188,42 @@ fn within_half_a_turn(degrees: f64) -> f64 {
 pub fn draw_angles(frame: &mut Frame, area: Rect, past: &[Report]) {
     let end = past.last().map_or(0.0, |last| last.time).max(SPAN);
     let past = &past[past.partition_point(|report| report.time < end - SPAN)..];
-    let strands: Vec<_> =
-        (0..2).flat_map(|rod| strands(past, rod).into_iter().map(move |strand| (rod, strand))).collect();
-    let largest = strands.iter().flat_map(|(_, strand)| strand).fold(0.0_f64, |most, (_, angle)| most.max(angle.abs()));
-    let reach = REACHES.into_iter().find(|reach| *reach >= largest).unwrap_or(HALF_TURN);
+    let strands: Vec<_> = (0..2)
+        .flat_map(|rod| {
+            strands(past, rod)
+                .into_iter()
+                .map(move |strand| (rod, strand))
+        })
+        .collect();
+    let largest = strands
+        .iter()
+        .flat_map(|(_, strand)| strand)
+        .fold(0.0_f64, |most, (_, angle)| most.max(angle.abs()));
+    let reach = REACHES
+        .into_iter()
+        .find(|reach| *reach >= largest)
+        .unwrap_or(HALF_TURN);
     let lines = strands.iter().map(|(rod, strand)| {
         let line = Dataset::default().data(strand).graph_type(GraphType::Line);
         line.marker(MARKERS[*rod]).style(COLOURS[*rod])
     });
     let faint = Style::new().dim();
-    let title = Line::from(vec!["angles, degrees: ".into(), "1 ⠤⠤  ".fg(COLOURS[0]), "2 ••".fg(COLOURS[1])]);
+    let title = Line::from(vec![
+        "angles, degrees: ".into(),
+        "1 ⠤⠤  ".fg(COLOURS[0]),
+        "2 ••".fg(COLOURS[1]),
+    ]);
     let across = Axis::default().bounds([end - SPAN, end]).style(faint);
     let upwards = Axis::default().bounds([-reach, reach]).style(faint);
     let chart = Chart::new(lines.collect())
         .block(Block::bordered().title(title))
         .legend_position(None)
         .x_axis(across.labels([format!("{:.1} s", end - SPAN), format!("{end:.1} s")]))
-        .y_axis(upwards.labels([format!("{:.0}", -reach), "0".to_owned(), format!("{reach:.0}")]));
+        .y_axis(upwards.labels([
+            format!("{:.0}", -reach),
+            "0".to_owned(),
+            format!("{reach:.0}"),
+        ]));
     frame.render_widget(chart, area);
 }
 
@@ -143,7 +235,10 @@ fn strands(past: &[Report], rod: usize) -> Vec<Vec<(f64, f64)>> {
         (*time, angle.clamp(-HALF_TURN, HALF_TURN))
     };
     let points: Vec<_> = past.iter().map(point).collect();
-    points.chunk_by(|(_, one), (_, next)| (one - next).abs() < HALF_TURN).map(<[_]>::to_vec).collect()
+    points
+        .chunk_by(|(_, one), (_, next)| (one - next).abs() < HALF_TURN)
+        .map(<[_]>::to_vec)
+        .collect()
 }
 
 #[cfg(test)]
@@ -152,21 +247,42 @@ mod tests {
 
     #[test]
     fn a_turning_rod_is_cut_where_it_passes_straight_up() {
-        let turned = |tenth: u8| State { a1: (f32::from(tenth) * 36.0).to_radians(), ..State::default() };
-        let report = |tenth| Report { time: f64::from(tenth) / 10.0, state: turned(tenth), ..Report::default() };
+        let turned = |tenth: u8| State {
+            a1: (f32::from(tenth) * 36.0).to_radians(),
+            ..State::default()
+        };
+        let report = |tenth| Report {
+            time: f64::from(tenth) / 10.0,
+            state: turned(tenth),
+            ..Report::default()
+        };
         let past: Vec<_> = (0..=20).map(report).collect();
         let cut = strands(&past, 0);
         // From 0 to 180 degrees, then on from just beyond, straight up and all around.
         assert_eq!(cut.iter().map(Vec::len).collect::<Vec<_>>(), [6, 10, 5]);
-        assert!(cut.iter().flatten().all(|(_, angle)| *angle > -HALF_TURN && *angle <= HALF_TURN));
+        assert!(
+            cut.iter()
+                .flatten()
+                .all(|(_, angle)| *angle > -HALF_TURN && *angle <= HALF_TURN)
+        );
         assert_eq!(strands(&past, 1).len(), 1, "the other rod hangs");
     }
 
     #[test]
     fn straight_up_is_180_and_never_its_negative() {
-        for up in [f64::from(std::f32::consts::PI).to_degrees(), 180.0, -180.0, 540.0, 180.04, -179.96] {
+        for up in [
+            f64::from(std::f32::consts::PI).to_degrees(),
+            180.0,
+            -180.0,
+            540.0,
+            180.04,
+            -179.96,
+        ] {
             assert_eq!(format!("{:.1}", within_half_a_turn(up)), "180.0", "{up}");
         }
-        assert_eq!([180.1, -30.0].map(|degrees| within_half_a_turn(degrees).round()), [-180.0, -30.0]);
+        assert_eq!(
+            [180.1, -30.0].map(|degrees| within_half_a_turn(degrees).round()),
+            [-180.0, -30.0]
+        );
     }
 }

@@ -48,7 +48,9 @@ pub struct DemoOptions {
 
 /// The keys, what each scene shows, and examples.
 fn after_help() -> String {
-    let scenes = SceneName::ALL.iter().map(|scene| format!("  {:12} {}\n", scene.name(), shows(*scene)));
+    let scenes = SceneName::ALL
+        .iter()
+        .map(|scene| format!("  {:12} {}\n", scene.name(), shows(*scene)));
     format!(
         "Keys: up/down mass ratio, left/right start angle, space restart, tab next scene, p pause, . step, ? help, q quit\n\n\
          Scenes:\n{}\n\
@@ -82,20 +84,38 @@ pub type Asked = Option<Method>;
 impl DemoOptions {
     /// Refuses what is known to fail before anything is built: files that cannot be written, a method that the scene does not use.
     pub fn check(&self) -> Result<(), Refused> {
-        for (option, file) in [("--record", &self.record), ("--screenshot", &self.screenshot)] {
-            file.as_deref().map_or(Ok(()), |file| check_writable(option, file))?;
+        for (option, file) in [
+            ("--record", &self.record),
+            ("--screenshot", &self.screenshot),
+        ] {
+            file.as_deref()
+                .map_or(Ok(()), |file| check_writable(option, file))?;
         }
         let first = self.port.is_none().then_some(SceneName::Page);
-        self.scene.or(first).map_or(Ok(()), |scene| self.check_method(scene))
+        self.scene
+            .or(first)
+            .map_or(Ok(()), |scene| self.check_method(scene))
     }
 
     pub fn check_method(&self, scene: SceneName) -> Result<(), Refused> {
-        let Some(Some(method)) = self.method else { return Ok(()) };
-        let resources = Resources { processor: PROCESSOR, method: Some(method) };
-        let refused =
-            |why: &str| Err(Refused::because(format_args!("--method {method}: --scene {} {why}", scene.name())));
+        let Some(Some(method)) = self.method else {
+            return Ok(());
+        };
+        let resources = Resources {
+            processor: PROCESSOR,
+            method: Some(method),
+        };
+        let refused = |why: &str| {
+            Err(Refused::because(format_args!(
+                "--method {method}: --scene {} {why}",
+                scene.name()
+            )))
+        };
         let mut started = AnyScene::empty();
-        match started.start(scene, &scene.first_settings(), &resources).map(|_| started.report(0).stepping) {
+        match started
+            .start(scene, &scene.first_settings(), &resources)
+            .map(|_| started.report(0).stepping)
+        {
             Ok(Some(Stepping { method: gone, .. })) if gone == method => Ok(()),
             Ok(_) => refused("has no use for it"),
             Err(_) => refused("cannot be computed so"),
@@ -106,8 +126,16 @@ impl DemoOptions {
 /// A file whose name says what is written into it.
 fn ends_in(kind: &str, file: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(file);
-    let is_it = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(kind));
-    if is_it { Ok(path) } else { Err(format!("write a file name that ends in .{kind}, the only format there is")) }
+    let is_it = path
+        .extension()
+        .is_some_and(|extension| extension.eq_ignore_ascii_case(kind));
+    if is_it {
+        Ok(path)
+    } else {
+        Err(format!(
+            "write a file name that ends in .{kind}, the only format there is"
+        ))
+    }
 }
 
 /// The longest that a run may be, s of the board's time.
@@ -115,5 +143,8 @@ pub const MOST_SECONDS: f64 = 86_400.0;
 
 fn seconds(text: &str) -> Result<f64, String> {
     let wrong = || format!("write a number of seconds greater than 0, at most {MOST_SECONDS}");
-    text.parse().ok().filter(|seconds| *seconds > 0.0 && *seconds <= MOST_SECONDS).ok_or_else(wrong)
+    text.parse()
+        .ok()
+        .filter(|seconds| *seconds > 0.0 && *seconds <= MOST_SECONDS)
+        .ok_or_else(wrong)
 }

@@ -23,14 +23,29 @@ const SET: u8 = 3;
 
 pub fn draw(frame: &mut Frame, area: Rect, screenshot: &Screenshot) {
     let in_greys = usize::from(area.width) >= WIDTH;
-    let canvas = Canvas::default().marker(if in_greys { Marker::HalfBlock } else { Marker::Braille });
-    let canvas = canvas.x_bounds([0.0, WIDTH as f64 - 1.0]).y_bounds([1.0 - HEIGHT as f64, 0.0]);
+    let canvas = Canvas::default().marker(if in_greys {
+        Marker::HalfBlock
+    } else {
+        Marker::Braille
+    });
+    let canvas = canvas
+        .x_bounds([0.0, WIDTH as f64 - 1.0])
+        .y_bounds([1.0 - HEIGHT as f64, 0.0]);
     let canvas = canvas.paint(|context| {
         // The brightest last: it gives a character its colour.
         for grey in if in_greys { 0 } else { SET }..=BRIGHTEST_GREY {
-            let lit = screenshot.greys.iter().enumerate().filter(|(_, pixel)| **pixel == grey);
-            let coords: Vec<_> = lit.map(|(i, _)| ((i % WIDTH) as f64, -((i / WIDTH) as f64))).collect();
-            context.draw(&Points { coords: &coords, color: in_terminal(grey) });
+            let lit = screenshot
+                .greys
+                .iter()
+                .enumerate()
+                .filter(|(_, pixel)| **pixel == grey);
+            let coords: Vec<_> = lit
+                .map(|(i, _)| ((i % WIDTH) as f64, -((i / WIDTH) as f64)))
+                .collect();
+            context.draw(&Points {
+                coords: &coords,
+                color: in_terminal(grey),
+            });
         }
     });
     frame.render_widget(canvas, area);
@@ -42,7 +57,9 @@ const BRIGHTEST: [u32; 3] = [255, 200, 64];
 const DARKEST: [u32; 3] = [10, 8, 4];
 /// The greys among the 256 colours that terminals have in common: black, a few too dark to have a hue, then amber. Chosen by
 /// hand, for by distance the dark ones would come out olive and red.
-const TERMINAL: [u8; 16] = [16, 233, 234, 235, 237, 239, 94, 94, 130, 136, 136, 172, 178, 214, 214, 221];
+const TERMINAL: [u8; 16] = [
+    16, 233, 234, 235, 237, 239, 94, 94, 130, 136, 136, 172, 178, 214, 214, 221,
+];
 
 fn in_terminal(grey: u8) -> Color {
     Color::Indexed(TERMINAL[usize::from(grey.min(BRIGHTEST_GREY))])
@@ -51,9 +68,16 @@ fn in_terminal(grey: u8) -> Color {
 /// The colours of all greys in a row, red, green, blue, as image files want them.
 fn palette() -> Vec<u8> {
     let most = u32::from(BRIGHTEST_GREY);
-    let mix =
-        |grey: u32| DARKEST.into_iter().zip(BRIGHTEST).map(move |(dark, bright)| dark + (bright - dark) * grey / most);
-    (0..=most).flat_map(mix).map(|channel| channel as u8).collect()
+    let mix = |grey: u32| {
+        DARKEST
+            .into_iter()
+            .zip(BRIGHTEST)
+            .map(move |(dark, bright)| dark + (bright - dark) * grey / most)
+    };
+    (0..=most)
+        .flat_map(mix)
+        .map(|channel| channel as u8)
+        .collect()
 }
 
 /// Every pixel of the panel becomes a square of this many by as many.
@@ -77,12 +101,17 @@ pub struct Recording {
 
 impl Recording {
     pub fn create(path: &Path) -> anyhow::Result<Self> {
-        let file = File::create(path).with_context(|| format!("cannot write {}", path.display()))?;
+        let file =
+            File::create(path).with_context(|| format!("cannot write {}", path.display()))?;
         let [width, height] = SIZE;
         let palette = [palette(), vec![0; 3]].concat();
         let mut encoder = Encoder::new(BufWriter::new(file), width, height, &palette)?;
         encoder.set_repeat(Repeat::Infinite)?;
-        Ok(Self { encoder, shown: Vec::new(), due: None })
+        Ok(Self {
+            encoder,
+            shown: Vec::new(),
+            due: None,
+        })
     }
 
     pub fn is_due(&self, tick: i64) -> bool {
@@ -99,16 +128,36 @@ impl Recording {
         let length = hundredths(next) - hundredths(self.due.replace(next).unwrap_or(tick));
         let (delay, [width, height]) = (u16::try_from(length).unwrap_or(u16::MAX), SIZE);
         let now = magnified(screenshot);
-        let change = |(index, grey): (usize, &u8)| if self.shown.get(index) == Some(grey) { UNCHANGED } else { *grey };
-        let buffer = now.iter().enumerate().map(change).collect::<Vec<_>>().into();
+        let change = |(index, grey): (usize, &u8)| {
+            if self.shown.get(index) == Some(grey) {
+                UNCHANGED
+            } else {
+                *grey
+            }
+        };
+        let buffer = now
+            .iter()
+            .enumerate()
+            .map(change)
+            .collect::<Vec<_>>()
+            .into();
         self.shown = now;
         let transparent = Some(UNCHANGED);
-        Ok(self.encoder.write_frame(&Picture { delay, width, height, transparent, buffer, ..Picture::default() })?)
+        Ok(self.encoder.write_frame(&Picture {
+            delay,
+            width,
+            height,
+            transparent,
+            buffer,
+            ..Picture::default()
+        })?)
     }
 }
 
 fn magnified(screenshot: &Screenshot) -> Vec<u8> {
-    let at = |index: usize| screenshot.greys[index / (WIDTH * SCALE) / SCALE * WIDTH + index % (WIDTH * SCALE) / SCALE];
+    let at = |index: usize| {
+        screenshot.greys[index / (WIDTH * SCALE) / SCALE * WIDTH + index % (WIDTH * SCALE) / SCALE]
+    };
     (0..WIDTH * SCALE * HEIGHT * SCALE).map(at).collect()
 }
 
@@ -121,8 +170,12 @@ pub fn played(path: &Path) -> anyhow::Result<Vec<(Vec<u8>, u16)>> {
     while let Some(frame) = decoder.read_next_frame()? {
         shown.resize(frame.buffer.len(), 0);
         let dots = shown.iter_mut().zip(frame.buffer.iter());
-        dots.filter(|(_, dot)| frame.transparent != Some(**dot)).for_each(|(shown, dot)| *shown = *dot);
-        let greys = shown.chunks(WIDTH * SCALE).step_by(SCALE).flat_map(|row| row.iter().step_by(SCALE).copied());
+        dots.filter(|(_, dot)| frame.transparent != Some(**dot))
+            .for_each(|(shown, dot)| *shown = *dot);
+        let greys = shown
+            .chunks(WIDTH * SCALE)
+            .step_by(SCALE)
+            .flat_map(|row| row.iter().step_by(SCALE).copied());
         played.push((greys.collect(), frame.delay));
     }
     Ok(played)
@@ -151,19 +204,33 @@ mod tests {
     /// The characters of a panel with three pixels, in which anything is, and their colours.
     fn drawn(width: u16) -> Vec<(String, Color, Color)> {
         let mut canvas = Canvas::default();
-        [(0, 0, 15), (3, 2, 15), (127, 63, 6)].into_iter().for_each(|(x, y, grey)| canvas.update(x, y, |_| grey));
-        let mut terminal = Terminal::new(TestBackend::new(width, width / 4)).expect("a terminal of characters");
-        terminal.draw(|frame| draw(frame, frame.area(), &Screenshot::from(&canvas))).expect("it is drawn");
+        [(0, 0, 15), (3, 2, 15), (127, 63, 6)]
+            .into_iter()
+            .for_each(|(x, y, grey)| canvas.update(x, y, |_| grey));
+        let mut terminal =
+            Terminal::new(TestBackend::new(width, width / 4)).expect("a terminal of characters");
+        terminal
+            .draw(|frame| draw(frame, frame.area(), &Screenshot::from(&canvas)))
+            .expect("it is drawn");
         let cells = terminal.backend().buffer().content();
-        let lit = cells.iter().filter(|cell| ![" ", "█"].contains(&cell.symbol()));
-        lit.map(|cell| (cell.symbol().to_owned(), cell.fg, cell.bg)).collect()
+        let lit = cells
+            .iter()
+            .filter(|cell| ![" ", "█"].contains(&cell.symbol()));
+        lit.map(|cell| (cell.symbol().to_owned(), cell.fg, cell.bg))
+            .collect()
     }
 
     #[test]
     fn what_is_lit_is_a_dot_or_a_pixel_in_its_colour() {
         let dots = [("⠁", 15), ("⠠", 15), ("⢀", 6)];
-        assert_eq!(drawn(64), dots.map(|(dot, grey)| (dot.to_owned(), in_terminal(grey), Color::Reset)));
+        assert_eq!(
+            drawn(64),
+            dots.map(|(dot, grey)| (dot.to_owned(), in_terminal(grey), Color::Reset))
+        );
         let pixels = [[15, 0], [15, 0], [0, 6]].map(|greys| greys.map(in_terminal));
-        assert_eq!(drawn(128), pixels.map(|[above, below]| ("▀".to_owned(), above, below)));
+        assert_eq!(
+            drawn(128),
+            pixels.map(|[above, below]| ("▀".to_owned(), above, below))
+        );
     }
 }

@@ -40,7 +40,8 @@ impl Readings {
     pub fn frame(&mut self, frame: Frame) -> bool {
         let last = self.frame.replace(frame);
         let report = frame.report;
-        let before = last.filter(|last| last.scene == frame.scene && last.report.time <= report.time);
+        let before =
+            last.filter(|last| last.scene == frame.scene && last.report.time <= report.time);
         if before.is_none() {
             self.start = None;
             self.past.clear();
@@ -53,7 +54,8 @@ impl Readings {
         }
         self.past.drain(..self.past.len().saturating_sub(KEPT));
         self.arrivals.push(Instant::now());
-        self.arrivals.retain(|arrival| arrival.elapsed() <= RATE_SPAN);
+        self.arrivals
+            .retain(|arrival| arrival.elapsed() <= RATE_SPAN);
         self.comparison.frame(&frame)
     }
 
@@ -64,7 +66,10 @@ impl Readings {
     }
 
     pub fn rate(&self) -> usize {
-        self.arrivals.iter().filter(|arrival| arrival.elapsed() <= RATE_SPAN).count()
+        self.arrivals
+            .iter()
+            .filter(|arrival| arrival.elapsed() <= RATE_SPAN)
+            .count()
     }
 
     /// What is not well of an emulated board; empty if all is.
@@ -76,12 +81,28 @@ impl Readings {
             (lost > 0, format!("{lost} frames were lost on the way")),
             (dropped > 0, format!("{dropped} frames were dropped")),
         ];
-        let findings = findings.into_iter().filter_map(|(found, text)| found.then_some(text));
-        findings.chain(self.lines.iter().filter(|line| line.is_bad()).map(LogLine::to_string)).collect()
+        let findings = findings
+            .into_iter()
+            .filter_map(|(found, text)| found.then_some(text));
+        findings
+            .chain(
+                self.lines
+                    .iter()
+                    .filter(|line| line.is_bad())
+                    .map(LogLine::to_string),
+            )
+            .collect()
     }
 
     pub fn report(&self) -> String {
-        let Self { frames, simulated, greatest_energy_error, counts, comparison, .. } = self;
+        let Self {
+            frames,
+            simulated,
+            greatest_energy_error,
+            counts,
+            comparison,
+            ..
+        } = self;
         let last = self.frame.unwrap_or_default();
         format!(
             "frames                {frames}\n\
@@ -101,7 +122,14 @@ impl Readings {
 }
 
 /// How a frame is computed and until when such frames are right, in one line.
-pub fn stepping(&Report { stepping, horizon, is_looking, .. }: &Report) -> String {
+pub fn stepping(
+    &Report {
+        stepping,
+        horizon,
+        is_looking,
+        ..
+    }: &Report,
+) -> String {
     let stepping = match stepping {
         None => "nothing to plan".to_owned(),
         Some(Stepping { method, steps: 0 }) => method.to_string(),
@@ -125,11 +153,25 @@ mod tests {
     fn the_simulated_time_is_that_of_all_restarts_and_scenes() {
         let mut readings = Readings::default();
         let [page, butterfly] = [SceneName::Page, SceneName::Butterfly];
-        for (scene, times) in [(page, &[0.25, 0.5, 0.5, 0.125, 0.75][..]), (butterfly, &[0.875, 1.0])] {
+        for (scene, times) in [
+            (page, &[0.25, 0.5, 0.5, 0.125, 0.75][..]),
+            (butterfly, &[0.875, 1.0]),
+        ] {
             for &time in times {
-                readings.frame(Frame { scene, report: Report { time, ..Report::default() }, ..Frame::default() });
+                readings.frame(Frame {
+                    scene,
+                    report: Report {
+                        time,
+                        ..Report::default()
+                    },
+                    ..Frame::default()
+                });
             }
         }
-        assert!(readings.report().contains("simulated time        2.250 s"), "{}", readings.report());
+        assert!(
+            readings.report().contains("simulated time        2.250 s"),
+            "{}",
+            readings.report()
+        );
     }
 }

@@ -42,11 +42,18 @@ impl Source {
 
     /// The lines of the log since the last call, of a port what has become of it; and what the link has been through.
     pub fn told(&mut self) -> (Vec<LogLine>, Counts) {
-        let notice = |text: String| LogLine { level: Some("warn".to_owned()), text, place: String::new() };
+        let notice = |text: String| LogLine {
+            level: Some("warn".to_owned()),
+            text,
+            place: String::new(),
+        };
         match self {
             Self::Live(machine) | Self::Lockstep(machine) => (machine.lines(), machine.counts()),
             Self::Pico(machine) => (machine.lines(), machine.counts()[0]),
-            Self::Port(port) => (port.notices.drain(..).map(notice).collect(), port.inbox.counts),
+            Self::Port(port) => (
+                port.notices.drain(..).map(notice).collect(),
+                port.inbox.counts,
+            ),
         }
     }
 
@@ -71,11 +78,24 @@ pub struct Session<'a> {
 impl<'a> Session<'a> {
     pub fn new(options: &'a DemoOptions, source: Source, recording: Option<Recording>) -> Self {
         let (readings, screenshot) = (Readings::default(), Screenshot::from_pages(&[]));
-        Self { options, source, readings, screenshot, recording, now: None, begun: None, before: 0 }
+        Self {
+            options,
+            source,
+            readings,
+            screenshot,
+            recording,
+            now: None,
+            begun: None,
+            before: 0,
+        }
     }
 
     pub fn name(&self) -> &str {
-        if let Source::Port(port) = &self.source { &port.name } else { self.options.board.name }
+        if let Source::Port(port) = &self.source {
+            &port.name
+        } else {
+            self.options.board.name
+        }
     }
 
     /// Takes what the board has sent. The host asks what it plays as often as the comparison wants to know.
@@ -110,7 +130,11 @@ impl<'a> Session<'a> {
         if self.options.scene.is_none_or(|scene| scene == frame.scene) {
             self.begun.get_or_insert(now);
         }
-        if self.readings.frame(*frame) { self.source.send(Command::Ask) } else { Ok(()) }
+        if self.readings.frame(*frame) {
+            self.source.send(Command::Ask)
+        } else {
+            Ok(())
+        }
     }
 
     /// Has the board play what was asked for, by the method asked for.
@@ -118,8 +142,11 @@ impl<'a> Session<'a> {
         if let Some(scene) = self.options.scene.filter(|scene| *scene != first.scene) {
             self.source.send(Command::Choose(scene))?;
         }
-        self.options.check_method(self.options.scene.unwrap_or(first.scene))?;
-        self.options.method.map_or(Ok(()), |method| self.source.send(Command::Method(method)))
+        self.options
+            .check_method(self.options.scene.unwrap_or(first.scene))?;
+        self.options
+            .method
+            .map_or(Ok(()), |method| self.source.send(Command::Method(method)))
     }
 
     /// Whether the host can see a panel; else it draws one.
@@ -141,11 +168,17 @@ impl<'a> Session<'a> {
 
     /// Whether the animation wants a screenshot of the latest tick.
     pub fn is_recording_due(&self) -> bool {
-        self.begun.and(self.now).zip(self.recording.as_ref()).is_some_and(|(now, recording)| recording.is_due(now))
+        self.begun
+            .and(self.now)
+            .zip(self.recording.as_ref())
+            .is_some_and(|(now, recording)| recording.is_due(now))
     }
 
     fn record(&mut self, tick: i64) -> anyhow::Result<()> {
-        let recording = self.recording.as_mut().filter(|_| self.begun.is_some_and(|begun| tick >= begun));
+        let recording = self
+            .recording
+            .as_mut()
+            .filter(|_| self.begun.is_some_and(|begun| tick >= begun));
         recording.map_or(Ok(()), |recording| recording.add(&self.screenshot, tick))
     }
 
@@ -156,6 +189,8 @@ impl<'a> Session<'a> {
 
     /// Seconds since the first frame of the scene that was asked for, that one included.
     pub fn seconds(&self) -> f64 {
-        self.begun.zip(self.now).map_or(0.0, |(begun, now)| (now - begun + 1) as f64 / f64::from(TICK_RATE))
+        self.begun.zip(self.now).map_or(0.0, |(begun, now)| {
+            (now - begun + 1) as f64 / f64::from(TICK_RATE)
+        })
     }
 }

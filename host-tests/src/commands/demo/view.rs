@@ -26,16 +26,33 @@ const WORDS: u16 = 7;
 /// Rows from which there is room for both angles, their frame included, and their share of the width, percent.
 const ANGLES: u16 = 7;
 const ANGLES_WIDTH: u16 = 60;
-const KEYS: [&str; 8] =
-    ["↑ ↓ masses", "← → angle", "space restart", "tab scene", "p pause", ". step", "? help", "q quit"];
+const KEYS: [&str; 8] = [
+    "↑ ↓ masses",
+    "← → angle",
+    "space restart",
+    "tab scene",
+    "p pause",
+    ". step",
+    "? help",
+    "q quit",
+];
 /// A space that no row ends at.
 const JOINT: &str = "\u{a0}";
 
-pub fn draw(frame: &mut Frame, board: &str, screenshot: &Screenshot, readings: &Readings, colours: bool) {
+pub fn draw(
+    frame: &mut Frame,
+    board: &str,
+    screenshot: &Screenshot,
+    readings: &Readings,
+    colours: bool,
+) {
     let area = frame.area();
     let Some(width) = panel_width(area, colours) else {
         let least = (NARROWEST + GAP + numbers::NARROWEST, numbers::ROWS + WORDS);
-        let text = format!("terminal too small: {} x {}\nneeded: {} x {}", area.width, area.height, least.0, least.1);
+        let text = format!(
+            "terminal too small: {} x {}\nneeded: {} x {}",
+            area.width, area.height, least.0, least.1
+        );
         frame.render_widget(Paragraph::new(text), area);
         return;
     };
@@ -43,20 +60,44 @@ pub fn draw(frame: &mut Frame, board: &str, screenshot: &Screenshot, readings: &
         return numbers::draw_help(frame);
     }
     let now = readings.frame.as_ref();
-    let words = now
-        .map_or("no frame came yet".to_owned(), |now| format!("{} · {}", stepping(&now.report), readings.comparison));
+    let words = now.map_or("no frame came yet".to_owned(), |now| {
+        format!("{} · {}", stepping(&now.report), readings.comparison)
+    });
     let words = rows(&words, area.width, "");
-    let keys = rows(&KEYS.map(|key| key.replace(' ', JOINT)).join("  "), area.width, "");
+    let keys = rows(
+        &KEYS.map(|key| key.replace(' ', JOINT)).join("  "),
+        area.width,
+        "",
+    );
     let top = (width / 4).max(numbers::ROWS);
-    let parts = [Length(1), Length(top), Length(words.len() as u16), Min(0), Length(keys.len() as u16)];
+    let parts = [
+        Length(1),
+        Length(top),
+        Length(words.len() as u16),
+        Min(0),
+        Length(keys.len() as u16),
+    ];
     let [title_at, top, words_at, lower, keys_at] = Layout::vertical(parts).areas(area);
-    let [panel_at, side] = Layout::horizontal([Length(width), Min(0)]).spacing(GAP).areas(top);
+    let [panel_at, side] = Layout::horizontal([Length(width), Min(0)])
+        .spacing(GAP)
+        .areas(top);
 
     let scene = now.map(|now| now.scene.name());
     let paused = now.is_some_and(|now| now.paused).then_some("paused");
-    let title = [Some(board), scene, paused].into_iter().flatten().collect::<Vec<_>>().join(" · ");
+    let title = [Some(board), scene, paused]
+        .into_iter()
+        .flatten()
+        .collect::<Vec<_>>()
+        .join(" · ");
     frame.render_widget(Line::from(title).bold(), title_at);
-    panel::draw(frame, Rect { height: width / 4, ..panel_at }, screenshot);
+    panel::draw(
+        frame,
+        Rect {
+            height: width / 4,
+            ..panel_at
+        },
+        screenshot,
+    );
     numbers::draw(frame, side, readings);
     frame.render_widget(Paragraph::new(words.join("\n")), words_at);
     let (mut log, block) = (lower, Block::bordered().title("log"));
@@ -72,12 +113,22 @@ pub fn draw(frame: &mut Frame, board: &str, screenshot: &Screenshot, readings: &
         frame.render_widget(block, framed);
     }
     let latest = &readings.lines[readings.lines.len().saturating_sub(log.height.into())..];
-    let lines: Vec<_> = latest.iter().flat_map(|line| logged(line, log.width)).collect();
+    let lines: Vec<_> = latest
+        .iter()
+        .flat_map(|line| logged(line, log.width))
+        .collect();
     let above = lines.len().saturating_sub(log.height.into());
     frame.render_widget(Paragraph::new(lines).scroll((above as u16, 0)), log);
-    frame.render_widget(Paragraph::new(keys.join("\n").replace(JOINT, " ")).dim(), keys_at);
+    frame.render_widget(
+        Paragraph::new(keys.join("\n").replace(JOINT, " ")).dim(),
+        keys_at,
+    );
     if !colours {
-        frame.buffer_mut().content.iter_mut().for_each(|cell| (cell.fg, cell.bg) = (Color::Reset, Color::Reset));
+        frame
+            .buffer_mut()
+            .content
+            .iter_mut()
+            .for_each(|cell| (cell.fg, cell.bg) = (Color::Reset, Color::Reset));
     }
 }
 
@@ -87,15 +138,24 @@ fn panel_width(area: Rect, colours: bool) -> Option<u16> {
     let columns = area.width.checked_sub(GAP + numbers::NARROWEST)?;
     let rows = area.height.checked_sub(WORDS)?;
     let most = columns.min(4 * rows);
-    let best = if colours && most >= PIXELS { PIXELS } else { BRAILLE };
+    let best = if colours && most >= PIXELS {
+        PIXELS
+    } else {
+        BRAILLE
+    };
     let width = best.min(most / 4 * 4);
     (width >= NARROWEST && rows >= numbers::ROWS).then_some(width)
 }
 
 /// A text in as many rows of `width` as it takes.
 fn rows(text: &str, width: u16, indent: &str) -> Vec<String> {
-    let options = Options::new(width.into()).subsequent_indent(indent).word_splitter(WordSplitter::NoHyphenation);
-    wrap(text, options).into_iter().map(Cow::into_owned).collect()
+    let options = Options::new(width.into())
+        .subsequent_indent(indent)
+        .word_splitter(WordSplitter::NoHyphenation);
+    wrap(text, options)
+        .into_iter()
+        .map(Cow::into_owned)
+        .collect()
 }
 
 /// A line of the log in as many rows as it takes, all but the first indented; where it was written is left out.
@@ -107,7 +167,9 @@ fn logged(line: &LogLine, width: u16) -> Vec<Line<'static>> {
         Some(_) => ("", Color::Reset),
     };
     let rows = rows(&format!("{level}{}", line.text), width, "  ");
-    rows.into_iter().map(|row| Line::from(row).fg(colour)).collect()
+    rows.into_iter()
+        .map(|row| Line::from(row).fg(colour))
+        .collect()
 }
 
 #[cfg(test)]
@@ -128,7 +190,11 @@ mod tests {
     fn readings(scene: SceneName) -> Readings {
         let mut readings = Readings::default();
         let text = "plan: direction form, 4 steps to a frame, and as many words as make it longer than a pane is wide";
-        readings.lines.push(LogLine { level: Some("info".to_owned()), text: text.to_owned(), place: String::new() });
+        readings.lines.push(LogLine {
+            level: Some("info".to_owned()),
+            text: text.to_owned(),
+            place: String::new(),
+        });
         for tick in 0..30_u32 {
             let time = 86_399.0 + f64::from(tick) / 60.0;
             readings.frame(Reading {
@@ -139,9 +205,16 @@ mod tests {
                 dropped: 123_456,
                 report: Report {
                     time,
-                    state: State { a1: 0.5 * (6.0 * time).sin() as f32, a2: -2.0, ..State::default() },
+                    state: State {
+                        a1: 0.5 * (6.0 * time).sin() as f32,
+                        a2: -2.0,
+                        ..State::default()
+                    },
                     energy_error: -2.5e-7,
-                    stepping: Some(Stepping { method: Method::Extrapolation10Fixed64, steps: 12 }),
+                    stepping: Some(Stepping {
+                        method: Method::Extrapolation10Fixed64,
+                        steps: 12,
+                    }),
                     horizon: 86_400.0,
                     is_looking: true,
                     ..Report::default()
@@ -159,15 +232,38 @@ mod tests {
     /// What the terminal shows, row by row: a panel with a frame, a line and words.
     fn rows(readings: &Readings, colours: bool, (width, height): (u16, u16)) -> String {
         let mut canvas = Canvas::default();
-        (0..128).for_each(|x| [0, x / 2, 63].into_iter().for_each(|y| canvas.update(x, y, |_| 15)));
+        (0..128).for_each(|x| {
+            [0, x / 2, 63]
+                .into_iter()
+                .for_each(|y| canvas.update(x, y, |_| 15))
+        });
         text::write(&mut canvas, "μ 2.75", Anchor::Left(0));
-        let mut terminal = Terminal::new(TestBackend::new(width, height)).expect("a terminal of characters");
-        let drawn = |frame: &mut Frame| draw(frame, "lm3s6965evb-m4", &Screenshot::from(&canvas), readings, colours);
+        let mut terminal =
+            Terminal::new(TestBackend::new(width, height)).expect("a terminal of characters");
+        let drawn = |frame: &mut Frame| {
+            draw(
+                frame,
+                "lm3s6965evb-m4",
+                &Screenshot::from(&canvas),
+                readings,
+                colours,
+            )
+        };
         terminal.draw(drawn).expect("it is drawn");
         let cells = terminal.backend().buffer().content();
-        assert!(colours || cells.iter().all(|cell| (cell.fg, cell.bg) == (Color::Reset, Color::Reset)));
-        let row = |row: &[ratatui::buffer::Cell]| row.iter().map(|cell| cell.symbol()).collect::<String>();
-        cells.chunks(usize::from(width)).map(|cells| row(cells).trim_end().to_owned() + "\n").collect()
+        assert!(
+            colours
+                || cells
+                    .iter()
+                    .all(|cell| (cell.fg, cell.bg) == (Color::Reset, Color::Reset))
+        );
+        let row = |row: &[ratatui::buffer::Cell]| {
+            row.iter().map(|cell| cell.symbol()).collect::<String>()
+        };
+        cells
+            .chunks(usize::from(width))
+            .map(|cells| row(cells).trim_end().to_owned() + "\n")
+            .collect()
     }
 
     #[test]
@@ -181,11 +277,15 @@ mod tests {
             ("80x24", rows(&butterfly, false, (80, 24))),
             ("60x20", rows(&butterfly, false, (60, 20))),
             ("47x24", rows(&butterfly, false, (47, 24))),
-            ("nothing-moves", rows(&readings(SceneName::Flips), false, (100, 30))),
+            (
+                "nothing-moves",
+                rows(&readings(SceneName::Flips), false, (100, 30)),
+            ),
             ("no-frame", rows(&Readings::default(), false, (80, 24))),
             ("help", rows(&asking, false, (60, 20))),
         ];
-        let check = |(name, rows): (_, String)| snapshot::check(&format!("terminal-{name}"), &rows).err();
+        let check =
+            |(name, rows): (_, String)| snapshot::check(&format!("terminal-{name}"), &rows).err();
         let differences: Vec<_> = shown.into_iter().filter_map(check).collect();
         assert!(differences.is_empty(), "{}", differences.join("\n"));
     }

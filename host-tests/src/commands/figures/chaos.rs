@@ -40,7 +40,9 @@ pub fn start() -> State<f64> {
 pub fn paths(refinement: u32) -> Result<[Path; 2], Error> {
     let pendulum = pendulum()?;
     let right = path(&pendulum, refinement, |z| pendulum.derivatives(z));
-    let printed = path(&pendulum, refinement, |z| misprinted_equal_rods(MASS_RATIO, ROD, PAGE_GRAVITY, z));
+    let printed = path(&pendulum, refinement, |z| {
+        misprinted_equal_rods(MASS_RATIO, ROD, PAGE_GRAVITY, z)
+    });
     Ok([right, printed])
 }
 
@@ -57,7 +59,10 @@ fn path(pendulum: &Pendulum<f64>, refinement: u32, rhs: impl Fn(&[f64; 4]) -> [f
         }
         state = rk4::step(&rhs, &state.into(), dt).into();
     }
-    Path { points, energies: [least, greatest] }
+    Path {
+        points,
+        energies: [least, greatest],
+    }
 }
 
 pub fn figure() -> Result<String> {
@@ -66,16 +71,28 @@ pub fn figure() -> Result<String> {
     let particulars = format!(
         "mass ratio {MASS_RATIO}, both rods let go at rest at {START}°; l = {ROD} m, g = {PAGE_GRAVITY} m/s², m₁ = 1 kg"
     );
-    let marks = "○ start, ● end; · every 1 s, with the seconds; paler earlier, darker later; × pivot";
+    let marks =
+        "○ start, ● end; · every 1 s, with the seconds; paler earlier, darker later; × pivot";
     svg([800, 468], [&title, &particulars, marks], |area| {
         let halves = area.split_evenly((1, 2));
         let names = ["the right equations", "as printed, a factor μ missing"];
-        for (((area, name), colour), path) in halves.iter().zip(names).zip([BLUE, ORANGE]).zip(&paths) {
+        for (((area, name), colour), path) in
+            halves.iter().zip(names).zip([BLUE, ORANGE]).zip(&paths)
+        {
             let [least, greatest] = path.energies.map(|energy| format!("{energy:.1} J"));
-            let energy = if least == greatest { least } else { format!("{least} to {greatest}") };
+            let energy = if least == greatest {
+                least
+            } else {
+                format!("{least} to {greatest}")
+            };
             let name = format!("{name}; energy {energy}").replace('-', "−");
             let area = headed(area, &name, text(13).color(&colour))?;
-            let mut chart = axes(&area, ("x, m", [-REACH, REACH]), ("y, m", [-REACH, REACH]), [9, 9])?;
+            let mut chart = axes(
+                &area,
+                ("x, m", [-REACH, REACH]),
+                ("y, m", [-REACH, REACH]),
+                [9, 9],
+            )?;
             draw(&path.points, &mut chart, colour)?;
         }
         Ok(())
@@ -96,13 +113,31 @@ fn draw(points: &[(f64, f64)], chart: &mut Axes, colour: RGBColor) -> Result<()>
         chart.draw_series(LineSeries::new(piece, line(pale(colour, strength), 9)))?;
     }
     let per_second = (STEPS / STEPS_PER_POINT) as usize;
-    for (second, &(x, y)) in points.iter().step_by(per_second).enumerate().take(DURATION as usize).skip(1) {
+    for (second, &(x, y)) in points
+        .iter()
+        .step_by(per_second)
+        .enumerate()
+        .take(DURATION as usize)
+        .skip(1)
+    {
         chart.draw_series([Circle::new((x, y), units(2), TEXT.filled())])?;
-        chart.draw_series([Text::new(second.to_string(), (x + 0.05, y + 0.02), text(10))])?;
+        chart.draw_series([Text::new(
+            second.to_string(),
+            (x + 0.05, y + 0.02),
+            text(10),
+        )])?;
     }
-    let [start, .., end] = *points else { return Ok(()) };
-    for (place, style) in [(start, WHITE.filled()), (start, line(TEXT, 12)), (end, TEXT.filled())] {
+    let [start, .., end] = *points else {
+        return Ok(());
+    };
+    for (place, style) in [
+        (start, WHITE.filled()),
+        (start, line(TEXT, 12)),
+        (end, TEXT.filled()),
+    ] {
         chart.draw_series([Circle::new(place, units(5), style)])?;
     }
-    Ok(chart.draw_series([Cross::new((0.0, 0.0), units(5), line(TEXT, 12))]).map(drop)?)
+    Ok(chart
+        .draw_series([Cross::new((0.0, 0.0), units(5), line(TEXT, 12))])
+        .map(drop)?)
 }

@@ -18,7 +18,10 @@ use crate::emulator::toolchain::workspace;
 
 /// Draws the book's figures 2 to 5 and 7 from the kernel, as SVG.
 #[derive(Debug, Parser)]
-#[command(name = "cargo figures", after_help = "Example: cargo figures --out /tmp/figures")]
+#[command(
+    name = "cargo figures",
+    after_help = "Example: cargo figures --out /tmp/figures"
+)]
 pub struct FiguresOptions {
     /// Also record an animation of every scene, each by the `cargo demo` that is printed as it begins
     #[arg(long)]
@@ -42,7 +45,10 @@ pub fn figures() -> Result<Vec<(String, String)>> {
         (5, small::figure(5, heavy)?),
         (7, chaos::figure()?),
     ];
-    Ok(figures.into_iter().map(|(number, svg)| (format!("figures/figure-{number}.svg"), svg)).collect())
+    Ok(figures
+        .into_iter()
+        .map(|(number, svg)| (format!("figures/figure-{number}.svg"), svg))
+        .collect())
 }
 
 pub fn run(options: &FiguresOptions) -> Result<()> {
@@ -51,8 +57,11 @@ pub fn run(options: &FiguresOptions) -> Result<()> {
         write(&folder.join(name), svg)?;
     }
     if options.animations {
-        std::fs::create_dir_all(folder.join("panel")).map_err(|error| unwritable("--out", &folder, &error))?;
-        SceneName::ALL.iter().try_for_each(|&scene| record(scene, &folder))?;
+        std::fs::create_dir_all(folder.join("panel"))
+            .map_err(|error| unwritable("--out", &folder, &error))?;
+        SceneName::ALL
+            .iter()
+            .try_for_each(|&scene| record(scene, &folder))?;
     }
     Ok(say(folder.display())?)
 }
@@ -71,10 +80,26 @@ fn record(scene: SceneName, folder: &Path) -> Result<()> {
         SceneName::Flips => "60",
         _ => "10",
     };
-    let (words, file) =
-        (["cargo demo", "--scene", scene.name(), "--headless", "--seconds", seconds], animation(scene, folder));
-    complain(format_args!("{} --record {}", words.join(" "), file.display()));
-    let options = DemoOptions { record: Some(file), ..DemoOptions::try_parse_from(words)? };
+    let (words, file) = (
+        [
+            "cargo demo",
+            "--scene",
+            scene.name(),
+            "--headless",
+            "--seconds",
+            seconds,
+        ],
+        animation(scene, folder),
+    );
+    complain(format_args!(
+        "{} --record {}",
+        words.join(" "),
+        file.display()
+    ));
+    let options = DemoOptions {
+        record: Some(file),
+        ..DemoOptions::try_parse_from(words)?
+    };
     ensure!(demo::run(&options)?, "not all was well in {}", scene.name());
     Ok(())
 }

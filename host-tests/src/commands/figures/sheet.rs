@@ -31,7 +31,8 @@ pub fn line(colour: RGBColor, width: u32) -> ShapeStyle {
 
 /// A colour of less strength, of 1, as it looks on white.
 pub fn pale(RGBColor(red, green, blue): RGBColor, strength: f64) -> RGBColor {
-    let [red, green, blue] = [red, green, blue].map(|channel| (255.0 - strength * (255.0 - f64::from(channel))) as u8);
+    let [red, green, blue] =
+        [red, green, blue].map(|channel| (255.0 - strength * (255.0 - f64::from(channel))) as u8);
     RGBColor(red, green, blue)
 }
 
@@ -93,13 +94,29 @@ pub fn svg<const N: usize>(
     draw: impl FnOnce(&Area) -> Result<()>,
 ) -> Result<String> {
     let mut file = String::new();
-    let area = SVGBackend::with_string(&mut file, (units(width), units(height))).into_drawing_area();
+    let area =
+        SVGBackend::with_string(&mut file, (units(width), units(height))).into_drawing_area();
     area.fill(&WHITE)?;
     let styles = [15].into_iter().chain(std::iter::repeat(12)).map(text);
-    draw(&lines.into_iter().zip(styles).try_fold(area.clone(), |area, (line, style)| headed(&area, line, style))?)?;
+    draw(
+        &lines
+            .into_iter()
+            .zip(styles)
+            .try_fold(area.clone(), |area, (line, style)| {
+                headed(&area, line, style)
+            })?,
+    )?;
     area.present()?;
     drop(area);
     // It is shown in its own size; its coordinates stay dots.
-    let in_dots = format!("<svg width=\"{}\" height=\"{}\"", units(width), units(height));
-    Ok(file.replacen(&in_dots, &format!("<svg width=\"{width}\" height=\"{height}\""), 1))
+    let in_dots = format!(
+        "<svg width=\"{}\" height=\"{}\"",
+        units(width),
+        units(height)
+    );
+    Ok(file.replacen(
+        &in_dots,
+        &format!("<svg width=\"{width}\" height=\"{height}\""),
+        1,
+    ))
 }

@@ -37,10 +37,18 @@ pub fn points(modes: Modes<f64>) -> Vec<CurvePoint> {
     let point = |i: u32| {
         let time = DURATION * f64::from(i) / f64::from(POINTS);
         let cos = libm::cos(modes.exchange() * time);
-        let amplitude = |c1: f64, c2: f64| (c1 * c1 + c2 * c2 + 2.0 * c1 * c2 * cos).max(0.0).sqrt();
-        let envelopes = [amplitude(fast, slow), amplitude(modes.fast.shape * fast, modes.slow.shape * slow)];
+        let amplitude =
+            |c1: f64, c2: f64| (c1 * c1 + c2 * c2 + 2.0 * c1 * c2 * cos).max(0.0).sqrt();
+        let envelopes = [
+            amplitude(fast, slow),
+            amplitude(modes.fast.shape * fast, modes.slow.shape * slow),
+        ];
         let angles = motion.at(time).angles();
-        CurvePoint { time, angles: angles.map(f64::to_degrees), envelopes: envelopes.map(f64::to_degrees) }
+        CurvePoint {
+            time,
+            angles: angles.map(f64::to_degrees),
+            envelopes: envelopes.map(f64::to_degrees),
+        }
     };
     (0..=POINTS).map(point).collect()
 }
@@ -49,8 +57,7 @@ pub fn figure(number: u32, mass_ratio: f64) -> Result<String> {
     let modes = modes(mass_ratio)?;
     let points = points(modes);
     let title = format!("Figure {number}: small oscillations, mass ratio {mass_ratio}");
-    let start =
-        "let go at rest at α₁ = 0°, α₂ = 30°; line: the angle; shade: how far it can swing while the modes beat";
+    let start = "let go at rest at α₁ = 0°, α₂ = 30°; line: the angle; shade: how far it can swing while the modes beat";
     let particulars = format!(
         "l = {ROD} m, g = {PAGE_GRAVITY} m/s²; ω₁ = {:.3} rad/s, ω₂ = {:.3} rad/s; the envelope repeats every {:.3} s",
         modes.fast.frequency,
@@ -59,10 +66,22 @@ pub fn figure(number: u32, mass_ratio: f64) -> Result<String> {
     );
     svg([720, 503], [&title, start, &particulars], |area| {
         let (upper, lower) = area.split_vertically((area.dim_in_pixel().1 - units(20)) / 2);
-        let rods = [(upper, "", "angle α₁, degrees", BLUE), (lower, "time, s", "angle α₂, degrees", ORANGE)];
+        let rods = [
+            (upper, "", "angle α₁, degrees", BLUE),
+            (lower, "time, s", "angle α₂, degrees", ORANGE),
+        ];
         for (rod, (area, across, upwards, colour)) in rods.into_iter().enumerate() {
-            let mut chart = axes(&area, (across, [0.0, DURATION]), (upwards, [-32.0, 32.0]), [11, 7])?;
-            let edge = |sign: f64| points.iter().map(move |point| (point.time, sign * point.envelopes[rod]));
+            let mut chart = axes(
+                &area,
+                (across, [0.0, DURATION]),
+                (upwards, [-32.0, 32.0]),
+                [11, 7],
+            )?;
+            let edge = |sign: f64| {
+                points
+                    .iter()
+                    .map(move |point| (point.time, sign * point.envelopes[rod]))
+            };
             let band: Vec<_> = edge(1.0).chain(edge(-1.0).rev()).collect();
             chart.draw_series([Polygon::new(band, colour.mix(0.15))])?;
             let curve = points.iter().map(|point| (point.time, point.angles[rod]));
@@ -88,22 +107,34 @@ pub fn frequencies() -> Result<String> {
     let [.., greatest] = MASS_RATIOS;
     let ratios = (1..=RATIOS).map(|i| greatest * (f64::from(i) / f64::from(RATIOS)).powi(2));
     let points = ratios.map(at_ratio).collect::<Result<Vec<_>, _>>()?;
-    let marks = MASS_RATIOS.into_iter().map(at_ratio).collect::<Result<Vec<_>, _>>()?;
-    svg([640, 400], ["Figure 2: both frequencies of small oscillations of equal rods"], |area| {
-        let across = ("mass ratio μ = m₂/m₁", [0.0, greatest]);
-        let mut chart = axes(area, across, ("frequency, √(g/l)", [0.0, 3.5]), [11, 8])?;
-        let curves = [
-            (1, BLUE, "ω₁ fast: the rods swing against each other", (0.45, 2.85)),
-            (2, ORANGE, "ω₂ slow: the rods swing together", (2.0, 1.0)),
-        ];
-        for (curve, colour, name, place) in curves {
-            let places = points.iter().map(|point| (point[0], point[curve]));
-            chart.draw_series(LineSeries::new(places, line(colour, 20)))?;
-            chart.draw_series([Text::new(name, place, text(13).color(&colour))])?;
-            let marks = marks.iter().map(|mark| (mark[0], mark[curve]));
-            chart.draw_series(marks.map(|mark| Circle::new(mark, units(4), TEXT.filled())))?;
-        }
-        chart.draw_series([Text::new("●  figures 3, 4 and 5", (2.0, 0.3), text(12))])?;
-        Ok(())
-    })
+    let marks = MASS_RATIOS
+        .into_iter()
+        .map(at_ratio)
+        .collect::<Result<Vec<_>, _>>()?;
+    svg(
+        [640, 400],
+        ["Figure 2: both frequencies of small oscillations of equal rods"],
+        |area| {
+            let across = ("mass ratio μ = m₂/m₁", [0.0, greatest]);
+            let mut chart = axes(area, across, ("frequency, √(g/l)", [0.0, 3.5]), [11, 8])?;
+            let curves = [
+                (
+                    1,
+                    BLUE,
+                    "ω₁ fast: the rods swing against each other",
+                    (0.45, 2.85),
+                ),
+                (2, ORANGE, "ω₂ slow: the rods swing together", (2.0, 1.0)),
+            ];
+            for (curve, colour, name, place) in curves {
+                let places = points.iter().map(|point| (point[0], point[curve]));
+                chart.draw_series(LineSeries::new(places, line(colour, 20)))?;
+                chart.draw_series([Text::new(name, place, text(13).color(&colour))])?;
+                let marks = marks.iter().map(|mark| (mark[0], mark[curve]));
+                chart.draw_series(marks.map(|mark| Circle::new(mark, units(4), TEXT.filled())))?;
+            }
+            chart.draw_series([Text::new("●  figures 3, 4 and 5", (2.0, 0.3), text(12))])?;
+            Ok(())
+        },
+    )
 }

@@ -37,13 +37,25 @@ impl Map {
         let dt = step_size(&parameters)?;
         let search = |dt: f64| Search::new(&parameters, dt, (f64::from(limit) / dt).ceil() as u32);
         let searches = [search(dt)?, search(dt / 2.0)?];
-        Ok(Self { parameters, dt, limit, size, centre: [0.0; 2], half: std::f64::consts::PI, searches })
+        Ok(Self {
+            parameters,
+            dt,
+            limit,
+            size,
+            centre: [0.0; 2],
+            half: std::f64::consts::PI,
+            searches,
+        })
     }
 
     /// Rows to compute: the lower half of a rectangle about hanging is the upper one's mirror image, both ways.
     pub fn rows(&self) -> usize {
         let [_, height] = self.size;
-        if self.centre == [0.0; 2] { height.div_ceil(2) } else { height }
+        if self.centre == [0.0; 2] {
+            height.div_ceil(2)
+        } else {
+            height
+        }
     }
 
     /// The pixels of so many rows, row by row from the top left corner.
@@ -54,15 +66,27 @@ impl Map {
 
     /// The start at the middle of a pixel.
     pub fn start(&self, [column, row]: [usize; 2]) -> [f32; 2] {
-        let Self { size: [width, height], centre: [a1, a2], half, .. } = *self;
+        let Self {
+            size: [width, height],
+            centre: [a1, a2],
+            half,
+            ..
+        } = *self;
         // Twice the pixels from the middle: whole, so that what lies opposite is its mirror image, bit for bit.
-        let angle = |pixel: usize, pixels: usize| (2 * pixel as i64 + 1 - pixels as i64) as f64 * half / pixels as f64;
-        [(a1 + angle(column, width)) as f32, (a2 - angle(row, height)) as f32]
+        let angle = |pixel: usize, pixels: usize| {
+            (2 * pixel as i64 + 1 - pixels as i64) as f64 * half / pixels as f64
+        };
+        [
+            (a1 + angle(column, width)) as f32,
+            (a2 - angle(row, height)) as f32,
+        ]
     }
 
     /// Those to compute.
     pub fn starts(&self) -> Vec<[f32; 2]> {
-        self.pixels(self.rows()).map(|pixel| self.start(pixel)).collect()
+        self.pixels(self.rows())
+            .map(|pixel| self.start(pixel))
+            .collect()
     }
 
     /// What becomes of each; `tick` is told how many more are done.
@@ -71,7 +95,11 @@ impl Map {
         let portions = starts.par_chunks(PORTION).map(|portion| {
             let [flips, checks] = [flips(search, portion)?, flips(finer, portion)?];
             tick(portion.len());
-            Ok(flips.into_iter().zip(checks).map(FlipPair::from).collect::<Vec<_>>())
+            Ok(flips
+                .into_iter()
+                .zip(checks)
+                .map(FlipPair::from)
+                .collect::<Vec<_>>())
         });
         Ok(portions.collect::<Result<Vec<_>, Error>>()?.concat())
     }
@@ -80,7 +108,11 @@ impl Map {
     pub fn shown(&self, points: &[FlipPair]) -> impl Iterator<Item = ([usize; 2], FlipPair)> {
         let (rows, [width, height]) = (self.rows(), self.size);
         self.pixels(height).map(move |[column, row]| {
-            let [x, y] = if row < rows { [column, row] } else { [width - 1 - column, height - 1 - row] };
+            let [x, y] = if row < rows {
+                [column, row]
+            } else {
+                [width - 1 - column, height - 1 - row]
+            };
             ([column, row], points[y * width + x])
         })
     }

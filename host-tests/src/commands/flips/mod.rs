@@ -35,19 +35,44 @@ pub struct FlipsOptions {
     #[arg(long, value_name = "N|WxH", default_value = "512", value_parser = size)]
     size: [usize; 2],
     /// How long to wait for a turn-over, sqrt(l1/g)
-    #[arg(long, value_name = "T", default_value = "1000", allow_hyphen_values = true)]
+    #[arg(
+        long,
+        value_name = "T",
+        default_value = "1000",
+        allow_hyphen_values = true
+    )]
     limit: Number,
     /// Masses of the bobs
-    #[arg(long, value_name = "M1,M2", default_value = "1,1", allow_hyphen_values = true)]
+    #[arg(
+        long,
+        value_name = "M1,M2",
+        default_value = "1,1",
+        allow_hyphen_values = true
+    )]
     masses: Pair,
     /// Lengths of the rods
-    #[arg(long, value_name = "L1,L2", default_value = "1,1", allow_hyphen_values = true)]
+    #[arg(
+        long,
+        value_name = "L1,L2",
+        default_value = "1,1",
+        allow_hyphen_values = true
+    )]
     lengths: Pair,
     /// The start in the middle, rad
-    #[arg(long, value_name = "A1,A2", default_value = "0,0", allow_hyphen_values = true)]
+    #[arg(
+        long,
+        value_name = "A1,A2",
+        default_value = "0,0",
+        allow_hyphen_values = true
+    )]
     centre: Pair,
     /// How many times less than a whole turn the picture is across
-    #[arg(long, value_name = "Z", default_value = "1", allow_hyphen_values = true)]
+    #[arg(
+        long,
+        value_name = "Z",
+        default_value = "1",
+        allow_hyphen_values = true
+    )]
     zoom: Number,
     /// Show the starts of which the two steps differ by more than a grey level of the panel
     #[arg(long)]
@@ -59,7 +84,9 @@ pub struct FlipsOptions {
 
 /// Computes the map and writes the file; says how much of it is in doubt.
 pub fn run(options: &FlipsOptions) -> Result<()> {
-    let map = options.map().map_err(|error| Refused::because(format_args!("{error:#}")))?;
+    let map = options
+        .map()
+        .map_err(|error| Refused::because(format_args!("{error:#}")))?;
     check_writable("--out", &options.out)?;
     let bar = Progress::of("starts", (map.size[0] * map.rows()) as u64);
     let points = map.points(|done| bar.advance(done as u64))?;
@@ -68,9 +95,14 @@ pub fn run(options: &FlipsOptions) -> Result<()> {
     let out = options.out.display();
     fs::write(&options.out, file).with_context(|| format!("cannot write {out}"))?;
     let all: usize = map.size.iter().product();
-    let doubtful = map.shown(&points).filter(|(_, point)| map.differ(*point)).count();
+    let doubtful = map
+        .shown(&points)
+        .filter(|(_, point)| map.differ(*point))
+        .count();
     let percent = 100.0 * doubtful as f64 / all as f64;
-    Ok(say(format_args!("{out}: {doubtful} of {all} starts in doubt ({percent:.3} %)"))?)
+    Ok(say(format_args!(
+        "{out}: {doubtful} of {all} starts in doubt ({percent:.3} %)"
+    ))?)
 }
 
 /// The least and the most pixels across or down.
@@ -79,9 +111,15 @@ const SIZES: std::ops::RangeInclusive<usize> = 2..=32_768;
 /// Pixels across and down.
 fn size(text: &str) -> Result<[usize; 2], String> {
     let number = |text: &str| {
-        let number = text.parse().map_err(|_| format!("'{text}' is no whole number"))?;
+        let number = text
+            .parse()
+            .map_err(|_| format!("'{text}' is no whole number"))?;
         let (least, most) = (SIZES.start(), SIZES.end());
-        if SIZES.contains(&number) { Ok(number) } else { Err(format!("must be from {least} to {most}")) }
+        if SIZES.contains(&number) {
+            Ok(number)
+        } else {
+            Err(format!("must be from {least} to {most}"))
+        }
     };
     let (width, height) = text.split_once('x').unwrap_or((text, text));
     Ok([number(width)?, number(height)?])
@@ -89,7 +127,11 @@ fn size(text: &str) -> Result<[usize; 2], String> {
 
 fn picture_or_table(file: &str) -> Result<PathBuf, &'static str> {
     let is_it = [".png", ".csv"].into_iter().any(|end| file.ends_with(end));
-    if is_it { Ok(file.into()) } else { Err("must end in .png or .csv") }
+    if is_it {
+        Ok(file.into())
+    } else {
+        Err("must end in .png or .csv")
+    }
 }
 
 /// The least time waited for, sqrt(l1/g): colours go by its logarithm. The most steps to a start.
@@ -102,19 +144,44 @@ const FINEST: f64 = 8.0 * 2.4e-7;
 impl FlipsOptions {
     /// An error names the option and its value.
     fn map(&self) -> Result<Map> {
-        let Self { limit, zoom, size, .. } = self;
-        ensure!(limit.value() >= LEAST_LIMIT, "--limit {limit}: must be at least {LEAST_LIMIT}");
+        let Self {
+            limit, zoom, size, ..
+        } = self;
+        ensure!(
+            limit.value() >= LEAST_LIMIT,
+            "--limit {limit}: must be at least {LEAST_LIMIT}"
+        );
         ensure!(zoom.value() >= 1.0, "--zoom {zoom}: must be at least 1");
         let pixel = 2.0 * PI / zoom.value() / size[0].max(size[1]) as f64;
         ensure!(pixel >= FINEST, "--zoom {zoom}: f32 has no angles so close");
-        let [centre, [m1, m2], [l1, l2]] = [&self.centre, &self.masses, &self.lengths].map(Pair::values);
+        let [centre, [m1, m2], [l1, l2]] =
+            [&self.centre, &self.masses, &self.lengths].map(Pair::values);
         let is_inside = centre.iter().all(|angle| angle.abs() <= PI);
-        ensure!(is_inside, "--centre {}: must be within -pi and pi", self.centre);
+        ensure!(
+            is_inside,
+            "--centre {}: must be within -pi and pi",
+            self.centre
+        );
         // Time in sqrt(l1/g), whatever g is.
-        let parameters = Parameters { m1, m2, l1, l2, g: l1 }.cast::<f32>();
-        let map = Map::new(parameters, limit.value() as f32, *size).context("--masses, --lengths")?;
-        let map = Map { centre, half: PI / zoom.value(), ..map };
-        ensure!(2.0 * limit.value() / map.dt <= MOST_STEPS, "--limit {limit}: more than a thousand million steps");
+        let parameters = Parameters {
+            m1,
+            m2,
+            l1,
+            l2,
+            g: l1,
+        }
+        .cast::<f32>();
+        let map =
+            Map::new(parameters, limit.value() as f32, *size).context("--masses, --lengths")?;
+        let map = Map {
+            centre,
+            half: PI / zoom.value(),
+            ..map
+        };
+        ensure!(
+            2.0 * limit.value() / map.dt <= MOST_STEPS,
+            "--limit {limit}: more than a thousand million steps"
+        );
         Ok(map)
     }
 }

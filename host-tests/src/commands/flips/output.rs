@@ -16,7 +16,10 @@ pub fn file(name: &Path, map: &Map, points: &[FlipPair], doubt: bool) -> Result<
         return table(map, pixels);
     }
     // The map above its legend.
-    let colours: Vec<_> = pixels.map(|(_, point)| colour(map, point, doubt)).chain(legend(map, doubt)).collect();
+    let colours: Vec<_> = pixels
+        .map(|(_, point)| colour(map, point, doubt))
+        .chain(legend(map, doubt))
+        .collect();
     let ([width, _], mut file) = (map.size, Vec::new());
     let mut encoder = png::Encoder::new(&mut file, width as u32, (colours.len() / width) as u32);
     encoder.set_color(png::ColorType::Rgb);
@@ -36,7 +39,9 @@ const DOUBT: Colour = [255, 0, 90];
 
 /// The colour of a share of the scale: viridis, in which equal steps look equal; bright is early.
 fn scale(share: f32) -> Colour {
-    colorous::VIRIDIS.eval_continuous(f64::from(1.0 - share)).as_array()
+    colorous::VIRIDIS
+        .eval_continuous(f64::from(1.0 - share))
+        .as_array()
 }
 
 fn colour(map: &Map, point: FlipPair, doubt: bool) -> Colour {
@@ -84,30 +89,60 @@ struct Legend {
 fn legend(map: &Map, doubt: bool) -> Vec<Colour> {
     let [width, _] = map.size;
     let unit = (width / WIDTH).max(1);
-    let mut legend = Legend { width, unit, pixels: vec![WHITE; width * HEIGHT * unit] };
+    let mut legend = Legend {
+        width,
+        unit,
+        pixels: vec![WHITE; width * HEIGHT * unit],
+    };
     for x in 0..LENGTH {
-        legend.fill([LEFT + x, 4, 1, 10], scale((x as f32 + 0.5) / LENGTH as f32));
+        legend.fill(
+            [LEFT + x, 4, 1, 10],
+            scale((x as f32 + 0.5) / LENGTH as f32),
+        );
     }
     let tens = std::iter::successors(Some(1.0), |time| Some(10.0 * time));
-    let tens = tens.take_while(|time| *time < 0.7 * map.limit).chain([map.limit]);
+    let tens = tens
+        .take_while(|time| *time < 0.7 * map.limit)
+        .chain([map.limit]);
     for time in tens {
-        let (x, words) = (LEFT + (LENGTH as f32 * time.ln() / map.limit.ln()) as usize, time.to_string());
-        let half = words.chars().map(|character| glyph(character).width as usize).sum::<usize>() / 2;
+        let (x, words) = (
+            LEFT + (LENGTH as f32 * time.ln() / map.limit.ln()) as usize,
+            time.to_string(),
+        );
+        let half = words
+            .chars()
+            .map(|character| glyph(character).width as usize)
+            .sum::<usize>()
+            / 2;
         legend.text([x.saturating_sub(half), 17], &words);
     }
     let mut x = BESIDE;
-    for (colour, name) in
-        [(NEVER, "cannot"), (LATER, "not by then"), (DOUBT, "in doubt")].into_iter().take(2 + usize::from(doubt))
+    for (colour, name) in [
+        (NEVER, "cannot"),
+        (LATER, "not by then"),
+        (DOUBT, "in doubt"),
+    ]
+    .into_iter()
+    .take(2 + usize::from(doubt))
     {
         legend.fill([x, 4, 10, 10], colour);
         x = legend.text([x + 14, 5], name) + 12;
     }
     legend.text([BESIDE, 17], "first turn-over of a rod, √(l₁/g)");
     let half = map.half.to_degrees();
-    let [a1, a2] = map.centre.map(f64::to_degrees).map(|at| format!("{}° to {}°", short(at - half), short(at + half)));
-    let [masses, lengths] =
-        [map.parameters.m2 / map.parameters.m1, map.parameters.l2 / map.parameters.l1].map(|ratio| short(ratio.into()));
-    legend.text([LEFT, 30], &format!("let go at α₁ → {a1}, α₂ ↑ {a2}; m₂/m₁ = {masses}, l₂/l₁ = {lengths}"));
+    let [a1, a2] = map
+        .centre
+        .map(f64::to_degrees)
+        .map(|at| format!("{}° to {}°", short(at - half), short(at + half)));
+    let [masses, lengths] = [
+        map.parameters.m2 / map.parameters.m1,
+        map.parameters.l2 / map.parameters.l1,
+    ]
+    .map(|ratio| short(ratio.into()));
+    legend.text(
+        [LEFT, 30],
+        &format!("let go at α₁ → {a1}, α₂ ↑ {a2}; m₂/m₁ = {masses}, l₂/l₁ = {lengths}"),
+    );
     legend.pixels
 }
 
@@ -120,7 +155,10 @@ impl Legend {
     fn fill(&mut self, place: [usize; 4], colour: Colour) {
         let [x, y, width, height] = place.map(|units| units * self.unit);
         for row in self.pixels.chunks_mut(self.width).skip(y).take(height) {
-            row.iter_mut().skip(x).take(width).for_each(|pixel| *pixel = colour);
+            row.iter_mut()
+                .skip(x)
+                .take(width)
+                .for_each(|pixel| *pixel = colour);
         }
     }
 

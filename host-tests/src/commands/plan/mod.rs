@@ -30,7 +30,9 @@ pub struct PlanOptions {
 
 pub fn run(PlanOptions { scene }: &PlanOptions) -> anyhow::Result<()> {
     let (problem, plan) = scene.plan().map_err(Refused::because)?;
-    Ok(words(&problem, &plan, &scene.target).iter().try_for_each(say)?)
+    Ok(words(&problem, &plan, &scene.target)
+        .iter()
+        .try_for_each(say)?)
 }
 
 /// The plan with its reasons, a line each; or that no method meets the tolerance.
@@ -47,15 +49,27 @@ fn words(scene: &Problem, plan: &Result<Plan, Limit>, chip: &Chip) -> Vec<String
                     "horizon  expected to be right to half a pixel about the exact motion until {horizon:.2} s of {} s",
                     scene.duration
                 ),
-                format!("error    at most {} expected until then", pixels(HALF_PIXEL * plan.error)),
-                format!("cost     {cost:.0} cycles a frame, {share:.2} % of a {} (estimate)", chip.title),
-                format!("search   {:.2} s of the chip's time for planning", plan.spent / chip.clock),
+                format!(
+                    "error    at most {} expected until then",
+                    pixels(HALF_PIXEL * plan.error)
+                ),
+                format!(
+                    "cost     {cost:.0} cycles a frame, {share:.2} % of a {} (estimate)",
+                    chip.title
+                ),
+                format!(
+                    "search   {:.2} s of the chip's time for planning",
+                    plan.spent / chip.clock
+                ),
                 format!("why      {}", method(plan.method)),
                 format!("         {}", limit(plan, frame)),
             ]
         }
         Err(limit) => vec![
-            format!("nothing  that a {} can afford is right to half a pixel in any frame", chip.title),
+            format!(
+                "nothing  that a {} can afford is right to half a pixel in any frame",
+                chip.title
+            ),
             format!("why      {}", forbidden(*limit, frame)),
         ],
     };
@@ -75,18 +89,25 @@ fn step(scene: &Problem, plan: &Plan) -> String {
     match plan.steps {
         0 => String::from("none: every frame is computed by itself"),
         1 => format!("1/{} s, one to a frame", scene.rate),
-        steps => format!("1/{} s, {steps} to a frame", u64::from(scene.rate) * u64::from(steps)),
+        steps => format!(
+            "1/{} s, {steps} to a frame",
+            u64::from(scene.rate) * u64::from(steps)
+        ),
     }
 }
 
 fn method(method: Method) -> String {
     let directions = |why| format!("to draw, directions are enough and no angles needed; {why}");
     match method {
-        Method::ClosedFormF32 => "until the horizon the linear motion is expected to be right to half a pixel".into(),
+        Method::ClosedFormF32 => {
+            "until the horizon the linear motion is expected to be right to half a pixel".into()
+        }
         Method::Rk4F32DirectionPlain => directions("the roundings of plain sums do not show"),
         Method::Rk4F32Direction => directions("the roundings of plain sums would show"),
         Method::Rk4Fixed32 => directions("integers are cheapest here"),
-        Method::Extrapolation10Fixed64 => "32 bits show before, or take as many steps as cost more".into(),
+        Method::Extrapolation10Fixed64 => {
+            "32 bits show before, or take as many steps as cost more".into()
+        }
         other => other.name().into(),
     }
 }
@@ -99,7 +120,9 @@ fn limit(plan: &Plan, frame: f32) -> String {
         }
         Limit::End => "nothing cheaper that was tried is right to the end".into(),
         Limit::Growth => grow(", in 64 bits as well; nothing here goes farther"),
-        Limit::Budget => grow(&format!("; what goes farther costs more than the {frame:.0} cycles allowed")),
+        Limit::Budget => grow(&format!(
+            "; what goes farther costs more than the {frame:.0} cycles allowed"
+        )),
         Limit::Planning => "looking farther ahead costs more than the scene has time for".into(),
         other => other.name().into(),
     }
@@ -107,7 +130,9 @@ fn limit(plan: &Plan, frame: f32) -> String {
 
 fn forbidden(limit: Limit, frame: f32) -> String {
     match limit {
-        Limit::Budget => format!("steps fine enough cost more than the {frame:.0} cycles allowed for a frame"),
+        Limit::Budget => {
+            format!("steps fine enough cost more than the {frame:.0} cycles allowed for a frame")
+        }
         Limit::Planning => String::from("the time for planning ended before anything was found"),
         other => format!("what forbids finer steps: {}", other.name()),
     }
@@ -121,6 +146,13 @@ fn energy(scene: &Problem) -> Option<String> {
     if !radian.is_finite() {
         return Some(String::from("without energy nothing moves"));
     }
-    let turns = if pendulum.cannot_turn_over(&state) { "no rod can turn over" } else { "a rod may turn over" };
-    Some(format!("by its energy {turns}, and no motion takes less than 1/{:.0} s for a radian", (1.0 / radian).ceil()))
+    let turns = if pendulum.cannot_turn_over(&state) {
+        "no rod can turn over"
+    } else {
+        "a rod may turn over"
+    };
+    Some(format!(
+        "by its energy {turns}, and no motion takes less than 1/{:.0} s for a radian",
+        (1.0 / radian).ceil()
+    ))
 }

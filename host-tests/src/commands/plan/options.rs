@@ -21,10 +21,20 @@ pub struct SceneOptions {
           conflicts_with_all = ["masses", "lengths", "gravity", "angles", "velocities", "degrees", "height", "duration", "rate"])]
     pub scene: Option<SceneName>,
     /// Height of the display, pixels, at most 1e6; both rods together are half of it long
-    #[arg(long, value_name = "PIXELS", default_value = "64", allow_hyphen_values = true)]
+    #[arg(
+        long,
+        value_name = "PIXELS",
+        default_value = "64",
+        allow_hyphen_values = true
+    )]
     pub height: Number,
     /// How long the scene lasts, s
-    #[arg(long, value_name = "T", default_value = "30", allow_hyphen_values = true)]
+    #[arg(
+        long,
+        value_name = "T",
+        default_value = "30",
+        allow_hyphen_values = true
+    )]
     pub duration: Number,
     /// Frames per second, 1 to 65535
     #[arg(long, value_name = "N", default_value_t = 60, value_parser = value_parser!(u16).range(1..))]
@@ -41,7 +51,9 @@ const HIGHEST: f64 = 1e6;
 impl SceneOptions {
     /// The scene with its plan, or with what forbids any; an error is one line that names the option and the value.
     pub fn plan(&self) -> anyhow::Result<(Problem, Result<Plan, Limit>)> {
-        let problem = self.scene.map_or_else(|| self.given(), |name| self.of_scene(name))?;
+        let problem = self
+            .scene
+            .map_or_else(|| self.given(), |name| self.of_scene(name))?;
         let Processor { costs, .. } = &self.target.processor;
         match Plan::search(&problem, costs, &self.target.processor.budget(&problem)) {
             Ok(plan) => Ok((problem, Ok(plan))),
@@ -55,13 +67,19 @@ impl SceneOptions {
     fn of_scene(&self, name: SceneName) -> anyhow::Result<Problem> {
         let settings = name.first_settings();
         let show = Show::on(self.target.processor, name, &settings)?;
-        let planned = show.player.plan().with_context(|| format!("--scene {}: has no motion to plan", name.name()))?;
+        let planned = show
+            .player
+            .plan()
+            .with_context(|| format!("--scene {}: has no motion to plan", name.name()))?;
         Ok(settings.problem(planned.height))
     }
 
     fn given(&self) -> anyhow::Result<Problem> {
         let height = &self.height;
-        ensure!(height.is_positive(), "--height {height}: must be greater than zero");
+        ensure!(
+            height.is_positive(),
+            "--height {height}: must be greater than zero"
+        );
         ensure!(
             height.value() <= HIGHEST,
             "--height {height}: more than {HIGHEST}, finer than the rods' directions in f32"
@@ -90,8 +108,28 @@ pub struct Chip {
 /// Every chip, the default first: the LM3S6965, without a floating-point unit; the STM32F405, with one for `f32`; the slowest board's,
 /// with one; the Raspberry Pi Pico's, whose products have 32 bits only.
 pub const CHIPS: [Chip; 4] = [
-    Chip { name: "m3", title: "Cortex-M3 at 50 MHz", clock: 50e6, processor: CORTEX_M3 },
-    Chip { name: "m4f", title: "Cortex-M4F at 168 MHz", clock: 168e6, processor: STM32F405 },
-    Chip { name: "slow-m4f", title: "Cortex-M4F at 25 MHz", clock: 25e6, processor: CORTEX_M4F },
-    Chip { name: "pico", title: "Cortex-M0+ at 125 MHz", clock: 125e6, processor: CORTEX_M0PLUS },
+    Chip {
+        name: "m3",
+        title: "Cortex-M3 at 50 MHz",
+        clock: 50e6,
+        processor: CORTEX_M3,
+    },
+    Chip {
+        name: "m4f",
+        title: "Cortex-M4F at 168 MHz",
+        clock: 168e6,
+        processor: STM32F405,
+    },
+    Chip {
+        name: "slow-m4f",
+        title: "Cortex-M4F at 25 MHz",
+        clock: 25e6,
+        processor: CORTEX_M4F,
+    },
+    Chip {
+        name: "pico",
+        title: "Cortex-M0+ at 125 MHz",
+        clock: 125e6,
+        processor: CORTEX_M0PLUS,
+    },
 ];

@@ -16,41 +16,87 @@ pub struct Verdict {
 }
 
 /// Every frame until one that is proved wrong, as long as the motion can be followed.
-pub fn frames(scene: &Problem, start: &Start, stepping: Stepping) -> Result<impl Iterator<Item = Verdict>, Error> {
+pub fn frames(
+    scene: &Problem,
+    start: &Start,
+    stepping: Stepping,
+) -> Result<impl Iterator<Item = Verdict>, Error> {
     let mut motion = PlannedRun::new(scene, stepping)?;
     let (scene, mut set, mut last) = (*scene, start.enclose(scene.rate), None);
     Ok((0..scene.frames()).map_while(move |_| {
         (last != Some(false)).then(|| set.advance())??;
         let (exact, drawn) = (set.directions(), motion.advance(1));
-        let shown = || motion.directions().map(|direction| direction.map(|x| Fixed::of(x.into())));
-        last = drawn.map_or(Some(false), |()| are_near(&scene, &exact, &shown(), scene.tolerance));
-        let width = exact.as_flattened().iter().map(|x| x.radius()).fold(0.0, f64::max);
-        Some(Verdict { exact, width, is_right: last })
+        let shown = || {
+            motion
+                .directions()
+                .map(|direction| direction.map(|x| Fixed::of(x.into())))
+        };
+        last = drawn.map_or(Some(false), |()| {
+            are_near(&scene, &exact, &shown(), scene.tolerance)
+        });
+        let width = exact
+            .as_flattened()
+            .iter()
+            .map(|x| x.radius())
+            .fold(0.0, f64::max);
+        Some(Verdict {
+            exact,
+            width,
+            is_right: last,
+        })
     }))
 }
 
 /// Whether both bobs are within `tolerance`, m, of each other in these directions; `None` if that depends on where in the boxes they are.
-fn are_near(scene: &Problem, one: &[[Fixed; 2]; 2], other: &[[Fixed; 2]; 2], tolerance: f64) -> Option<bool> {
+fn are_near(
+    scene: &Problem,
+    one: &[[Fixed; 2]; 2],
+    other: &[[Fixed; 2]; 2],
+    tolerance: f64,
+) -> Option<bool> {
     let Parameters { l1, l2, .. } = scene.pendulum;
     // all over the longer rod, rounded
-    let [l1, l2, tolerance] = [l1, l2, tolerance].map(|x| Fixed::of(x / l1.max(l2)).wider(f64::EPSILON));
+    let [l1, l2, tolerance] =
+        [l1, l2, tolerance].map(|x| Fixed::of(x / l1.max(l2)).wider(f64::EPSILON));
     let off = |rod: usize, l: Fixed| [0, 1].map(|axis| (one[rod][axis] - other[rod][axis]) * l);
     let ([x1, y1], [x2, y2]) = (off(0, l1), off(1, l2));
-    let beyond = [[x1, y1], [x1 + x2, y1 + y2]].map(|[x, y]| (x * x + y * y - tolerance * tolerance).is_positive());
-    if beyond.contains(&Some(true)) { Some(false) } else { (beyond == [Some(false); 2]).then_some(true) }
+    let beyond = [[x1, y1], [x1 + x2, y1 + y2]]
+        .map(|[x, y]| (x * x + y * y - tolerance * tolerance).is_positive());
+    if beyond.contains(&Some(true)) {
+        Some(false)
+    } else {
+        (beyond == [Some(false); 2]).then_some(true)
+    }
 }
 
 /// The number of frames proved right from the start on, and of those left open.
 pub fn counts(frames: &[Verdict]) -> (u32, usize) {
-    let right = frames.iter().take_while(|frame| frame.is_right == Some(true)).count();
-    (right as u32, frames.iter().filter(|frame| frame.is_right.is_none()).count())
+    let right = frames
+        .iter()
+        .take_while(|frame| frame.is_right == Some(true))
+        .count();
+    (
+        right as u32,
+        frames
+            .iter()
+            .filter(|frame| frame.is_right.is_none())
+            .count(),
+    )
 }
 
 impl Verdict {
     /// At `time`, s: the middles of the box that the exact motion is in, how far it may be from them, and what is proved of the frame drawn.
     pub fn row(&self, time: f64) -> String {
-        let middles = self.exact.as_flattened().iter().map(|x| x.about().to_string()).collect::<Vec<_>>().join(",");
-        let verdict = self.is_right.map_or("open", |is_right| if is_right { "right" } else { "wrong" });
+        let middles = self
+            .exact
+            .as_flattened()
+            .iter()
+            .map(|x| x.about().to_string())
+            .collect::<Vec<_>>()
+            .join(",");
+        let verdict = self
+            .is_right
+            .map_or("open", |is_right| if is_right { "right" } else { "wrong" });
         format!("{time},{middles},{:.1e},{verdict}", self.width)
     }
 }
@@ -63,14 +109,30 @@ fn told_apart(scene: &Problem) -> Option<f64> {
     let shown = [scene.start.a1, scene.start.a2].map(|a| a.to_degrees().round());
     let [mut one, mut other] = [-0.49, 0.49].map(|share| {
         let [a1, a2] = shown.map(|degrees| (degrees + share).to_radians());
-        let pendulum = Parameters { m2: ((m2 / digit).round() + share) * digit, ..scene.pendulum };
-        Start::of(&pendulum, &Motion { a1, a2, ..scene.start }).enclose(scene.rate)
+        let pendulum = Parameters {
+            m2: ((m2 / digit).round() + share) * digit,
+            ..scene.pendulum
+        };
+        Start::of(
+            &pendulum,
+            &Motion {
+                a1,
+                a2,
+                ..scene.start
+            },
+        )
+        .enclose(scene.rate)
     });
     let mut verdicts = (1..=scene.frames()).map_while(|frame| {
         one.advance().and(other.advance())?;
-        Some((frame, are_near(scene, &one.directions(), &other.directions(), l1.max(l2))))
+        Some((
+            frame,
+            are_near(scene, &one.directions(), &other.directions(), l1.max(l2)),
+        ))
     });
-    verdicts.find(|(_, are_near)| *are_near == Some(false)).map(|(frame, _)| scene.time(frame))
+    verdicts
+        .find(|(_, are_near)| *are_near == Some(false))
+        .map(|(frame, _)| scene.time(frame))
 }
 
 /// What is proved, a line each.
@@ -83,10 +145,16 @@ pub fn words(
     let ((right, open), end) = (counts(frames), scene.time(frames.len() as u32));
     let first = match frames.last().map(|frame| frame.is_right) {
         Some(Some(false)) => format!("wrong at {end:.3} s: more than {HALF_PIXEL} pixels off"),
-        _ => format!("none wrong of all {} frames, until {end:.3} s", frames.len()),
+        _ => format!(
+            "none wrong of all {} frames, until {end:.3} s",
+            frames.len()
+        ),
     };
     let predicted = match plan {
-        Ok(plan) => format!("right until {:.3} s by {}, {} to a frame", plan.horizon, plan.method, plan.steps),
+        Ok(plan) => format!(
+            "right until {:.3} s by {}, {} to a frame",
+            plan.horizon, plan.method, plan.steps
+        ),
         Err(_) => String::from("nothing that the chip can afford is right in any frame"),
     };
     let unknown = told_apart(scene).map_or(String::new(), |time| {

@@ -69,10 +69,22 @@ pub fn run(options: &ProveOptions) -> anyhow::Result<ExitCode> {
         return Ok(ExitCode::SUCCESS);
     }
     let (scene, plan) = options.scene.plan().map_err(Refused::because)?;
-    let given = || options.scene.start.exact().ok_or("of a number, 18 digits at most can be enclosed");
-    let of_board = options.scene.scene.map(|_| Start::of(&scene.pendulum, &scene.start));
+    let given = || {
+        options
+            .scene
+            .start
+            .exact()
+            .ok_or("of a number, 18 digits at most can be enclosed")
+    };
+    let of_board = options
+        .scene
+        .scene
+        .map(|_| Start::of(&scene.pendulum, &scene.start));
     let start = of_board.map_or_else(given, Ok).map_err(Refused::because)?;
-    let asked = options.method.map(|method| Stepping { method, steps: options.steps });
+    let asked = options.method.map(|method| Stepping {
+        method,
+        steps: options.steps,
+    });
     let Some(stepping) = asked.or(plan.as_ref().ok().map(Plan::stepping)) else {
         say("nothing that the chip can afford is right in any frame")?;
         return Ok(ExitCode::SUCCESS);

@@ -12,7 +12,9 @@ use crate::oracle::known_answers::KnownAnswer;
 
 /// The scenes that move, if only in the end.
 pub fn moving() -> impl Iterator<Item = &'static SceneName> {
-    SceneName::ALL.iter().filter(|name| name.has_angles() && **name != SceneName::Upright)
+    SceneName::ALL
+        .iter()
+        .filter(|name| name.has_angles() && **name != SceneName::Upright)
 }
 
 /// The heading of the table of horizons.
@@ -30,7 +32,8 @@ pub fn horizons(name: SceneName) -> Result<String> {
             Err(_) => ["none", "none"].map(String::from),
             Ok(plan) => {
                 let start = Start::of(&scene.pendulum, &scene.start);
-                let (right, open) = counts(&frames(&scene, &start, plan.stepping())?.collect::<Vec<_>>());
+                let (right, open) =
+                    counts(&frames(&scene, &start, plan.stepping())?.collect::<Vec<_>>());
                 unproved += open;
                 [plan.horizon, scene.time(right)].map(|time| format!("{time:.2}"))
             }
@@ -48,17 +51,37 @@ const DIGITS: f64 = 33.0;
 /// but for how many times larger a small error has become, which is about.
 pub fn known_answers(scene: &[KnownAnswer]) -> Result<Vec<String>> {
     let exact = |text: &str| text.parse::<Number>().ok()?.exact();
-    let fractions = scene[0].given.split(',').skip(1).take(9).map(exact).collect::<Option<Vec<_>>>();
-    let fractions = fractions.and_then(|all| all.try_into().ok()).context("more digits than can be enclosed")?;
+    let fractions = scene[0]
+        .given
+        .split(',')
+        .skip(1)
+        .take(9)
+        .map(exact)
+        .collect::<Option<Vec<_>>>();
+    let fractions = fractions
+        .and_then(|all| all.try_into().ok())
+        .context("more digits than can be enclosed")?;
     let about = (scene[0].parameters, scene[0].start.motion());
-    let mut set = Start { about, fractions: Some(fractions), degrees: [true, false] }.enclose(RATE);
+    let mut set = Start {
+        about,
+        fractions: Some(fractions),
+        degrees: [true, false],
+    }
+    .enclose(RATE);
     let mut frame = 0;
     let line = |row: &KnownAnswer| {
         while f64::from(frame) < row.time * f64::from(RATE) {
-            set.advance().context("the set has grown too large to be followed")?;
+            set.advance()
+                .context("the set has grown too large to be followed")?;
             frame += 1;
         }
-        let exact = set.directions().as_flattened().iter().map(|x| x.decimal(DIGITS)).collect::<Vec<_>>().join(",");
+        let exact = set
+            .directions()
+            .as_flattened()
+            .iter()
+            .map(|x| x.decimal(DIGITS))
+            .collect::<Vec<_>>()
+            .join(",");
         Ok(format!("{},{exact},{:.2e}", row.given, set.growth()))
     };
     scene.iter().map(line).collect()

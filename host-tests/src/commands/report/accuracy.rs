@@ -22,10 +22,24 @@ pub struct Scene {
 pub const SAMPLES: u32 = 4;
 
 /// A regular and a chaotic one.
-pub const SCENES: [Scene; 2] =
-    [Scene { name: "regular", angle: 0.5, duration: 10 }, Scene { name: "chaotic", angle: 2.0, duration: 5 }];
+pub const SCENES: [Scene; 2] = [
+    Scene {
+        name: "regular",
+        angle: 0.5,
+        duration: 10,
+    },
+    Scene {
+        name: "chaotic",
+        angle: 2.0,
+        duration: 5,
+    },
+];
 /// The regular motion for ten times as long.
-pub const LONG: Scene = Scene { name: "regular-long", angle: 0.5, duration: 100 };
+pub const LONG: Scene = Scene {
+    name: "regular-long",
+    angle: 0.5,
+    duration: 100,
+};
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Error {
@@ -36,18 +50,31 @@ pub struct Error {
 }
 
 /// Of a motion that has left the finite numbers.
-const LOST: Error = Error { angle: f64::INFINITY, pixels: f64::INFINITY };
+const LOST: Error = Error {
+    angle: f64::INFINITY,
+    pixels: f64::INFINITY,
+};
 
 /// The exact motion, a1 and a2, after each of `steps` equal steps through a scene.
 pub fn exact(scene: &Scene, steps: u32) -> Vec<[f64; 2]> {
-    let Request { parameters, angles: [a1, a2], .. } = request(Method::Rk4F64, scene, 1);
+    let Request {
+        parameters,
+        angles: [a1, a2],
+        ..
+    } = request(Method::Rk4F64, scene, 1);
     let times = (1..=steps).map(|step| f64::from(step * scene.duration) / f64::from(steps));
-    taylor::states(&parameters, &Motion::at_rest(a1, a2), times).iter().map(State::angles).collect()
+    taylor::states(&parameters, &Motion::at_rest(a1, a2), times)
+        .iter()
+        .map(State::angles)
+        .collect()
 }
 
 /// How many states of a motion with `rate` steps a second are compared in each: as many as fall on whole steps.
 fn samples(rate: u32) -> u32 {
-    [SAMPLES, SAMPLES / 2].into_iter().find(|samples| rate.is_multiple_of(*samples)).unwrap_or(1)
+    [SAMPLES, SAMPLES / 2]
+        .into_iter()
+        .find(|samples| rate.is_multiple_of(*samples))
+        .unwrap_or(1)
 }
 
 /// The request for `method` through `scene` with `rate` steps a second.
@@ -69,21 +96,31 @@ pub fn usual_rate(method: Method) -> u32 {
 }
 
 /// A few steps a second, for high orders and for low ones.
-const HIGH: [u32; 21] = [4, 5, 6, 7, 8, 9, 10, 11, 12, 14, 16, 18, 20, 24, 28, 32, 40, 48, 64, 80, 96];
+const HIGH: [u32; 21] = [
+    4, 5, 6, 7, 8, 9, 10, 11, 12, 14, 16, 18, 20, 24, 28, 32, 40, 48, 64, 80, 96,
+];
 const LOW: [u32; 3] = [16, 32, 64];
 
 /// Steps a second that `method` is tried with through a scene: a few, and all powers of two beyond; through the long one as many as
 /// are usual.
 pub fn rates(method: Method, scene: &Scene, finest: u32) -> impl Iterator<Item = u32> {
     let few: &[u32] = if method.order() > 4 { &HIGH } else { &LOW };
-    let all = few.iter().copied().chain((7..=finest).map(|halvings| 1 << halvings));
+    let all = few
+        .iter()
+        .copied()
+        .chain((7..=finest).map(|halvings| 1 << halvings));
     all.filter(move |&rate| scene != &LONG || rate == usual_rate(method))
 }
 
 /// The error of `method` in `steps` equal steps through the scene, compared after each; a second need not be a whole number of them.
 pub fn error_after(method: Method, scene: &Scene, steps: u32) -> Option<Error> {
     let dt = f64::from(scene.duration) / f64::from(steps);
-    let request = Request { dt, stride: 1, samples: steps, ..request(method, scene, 1) };
+    let request = Request {
+        dt,
+        stride: 1,
+        samples: steps,
+        ..request(method, scene, 1)
+    };
     error(&request, &exact(scene, steps))
 }
 
@@ -103,17 +140,30 @@ pub fn error(request: &Request, exact: &[[f64; 2]]) -> Option<Error> {
 
 /// The largest error of the angles a1, a2, at as many moments of the scene as there are; `exact` has them and more.
 pub fn worst(parameters: &Parameters<f64>, angles: &[[f64; 2]], exact: &[[f64; 2]]) -> Error {
-    let Ok(pendulum) = Pendulum::new(parameters) else { return LOST };
+    let Ok(pendulum) = Pendulum::new(parameters) else {
+        return LOST;
+    };
     let scale = f64::from(REACH) / (parameters.l1 + parameters.l2);
-    let mut worst = Error { angle: 0.0, pixels: 0.0 };
+    let mut worst = Error {
+        angle: 0.0,
+        pixels: 0.0,
+    };
     let apart_by = (exact.len() / angles.len().max(1)).max(1);
-    for (&angles, &exact) in angles.iter().zip(exact.iter().skip(apart_by - 1).step_by(apart_by)) {
+    for (&angles, &exact) in angles
+        .iter()
+        .zip(exact.iter().skip(apart_by - 1).step_by(apart_by))
+    {
         let angle = apart(angles[0], exact[0]).max(apart(angles[1], exact[1]));
         worst.angle = worst.angle.max(angle);
         let [drawn, right] = [angles, exact].map(|angles| pendulum.positions(angles));
-        let off = |bob: usize| libm::hypot(drawn[bob].x - right[bob].x, drawn[bob].y - right[bob].y);
+        let off =
+            |bob: usize| libm::hypot(drawn[bob].x - right[bob].x, drawn[bob].y - right[bob].y);
         let pixels = scale * off(0).max(off(1));
-        worst.pixels = worst.pixels.max(if angle.is_finite() { pixels } else { f64::INFINITY });
+        worst.pixels = worst.pixels.max(if angle.is_finite() {
+            pixels
+        } else {
+            f64::INFINITY
+        });
     }
     worst
 }

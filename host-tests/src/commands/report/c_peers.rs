@@ -18,8 +18,10 @@ use crate::emulator::process;
 use crate::emulator::toolchain::{Toolchain, workspace};
 
 /// What each program takes its sine and cosine from: its name in tables, and the functions.
-pub const PROGRAMS: [(&str, [&str; 2]); 2] =
-    [("C with newlib", ["sinf", "cosf"]), ("C with CMSIS-DSP", ["arm_sin_f32", "arm_cos_f32"])];
+pub const PROGRAMS: [(&str, [&str; 2]); 2] = [
+    ("C with newlib", ["sinf", "cosf"]),
+    ("C with CMSIS-DSP", ["arm_sin_f32", "arm_cos_f32"]),
+];
 /// For compiling, and for fetching 2 MB and what pip wants for it.
 const LIMIT: Duration = Duration::from_secs(180);
 
@@ -34,7 +36,9 @@ pub fn points(
     scenes: &[(&'static Scene, Vec<[f64; 2]>)],
 ) -> Result<(Vec<Point>, Vec<String>)> {
     let (mut points, mut absent) = (Vec::new(), Vec::new());
-    let each = PROGRAMS.into_iter().flat_map(|program| targets.iter().map(move |target| (program, target.board)));
+    let each = PROGRAMS
+        .into_iter()
+        .flat_map(|program| targets.iter().map(move |target| (program, target.board)));
     for ((name, sine), board) in each {
         let target = match elf(sine, board) {
             Ok(elf) => Target::of(toolchain, board, elf)?,
@@ -43,11 +47,21 @@ pub fn points(
                 continue;
             }
         };
-        let step = affordable_cost(&target, &request(TEXTBOOK, &SCENES[0], usual_rate(TEXTBOOK)))?;
+        let step = affordable_cost(
+            &target,
+            &request(TEXTBOOK, &SCENES[0], usual_rate(TEXTBOOK)),
+        )?;
         for &(scene, ref exact) in scenes {
             for rate in rates(TEXTBOOK, scene, 8) {
                 let error = error(&target, scene, rate, exact).context(name)?;
-                points.push(Point { name, scene, board, rate, step, error });
+                points.push(Point {
+                    name,
+                    scene,
+                    board,
+                    rate,
+                    step,
+                    error,
+                });
             }
         }
     }
@@ -63,7 +77,16 @@ fn elf(sine: [&str; 2], board: &Board) -> Result<PathBuf> {
         build.args(["-mfloat-abi=hard", "-mfpu=fpv4-sp-d16"]);
     }
     let output = process::run(&mut build, LIMIT)?;
-    ensure!(output.status.success(), "{}", output.stderr.trim().lines().next().unwrap_or("it cannot be built"));
+    ensure!(
+        output.status.success(),
+        "{}",
+        output
+            .stderr
+            .trim()
+            .lines()
+            .next()
+            .unwrap_or("it cannot be built")
+    );
     Ok(workspace().join("target/peers-c").join(elf))
 }
 
@@ -72,7 +95,9 @@ fn error(target: &Target, scene: &Scene, rate: u32, exact: &[[f64; 2]]) -> Resul
     let request = request(TEXTBOOK, scene, rate);
     let printed = target.output(&request)?;
     let state = |line: &str| {
-        let mut bits = line.split_ascii_whitespace().map_while(|word| u64::from_str_radix(word, 16).ok());
+        let mut bits = line
+            .split_ascii_whitespace()
+            .map_while(|word| u64::from_str_radix(word, 16).ok());
         Some([bits.next()?, bits.next()?].map(f64::from_bits))
     };
     let states: Vec<_> = printed.lines().filter_map(state).collect();

@@ -19,8 +19,11 @@ const ERRORS: Range<f64> = 1e-15..0.1;
 /// A finer step is worth its cycles if it makes the error at least so much smaller.
 const WORTH: f64 = 0.9;
 /// An error of both angles that is half a pixel of the panel, and what people ask of digits, rad.
-const MARKS: [(f64, &str); 3] =
-    [(0.5 / REACH as f64, "half a pixel: 60 fps on the panel"), (1e-9, "1e-9"), (1e-12, "1e-12")];
+const MARKS: [(f64, &str); 3] = [
+    (0.5 / REACH as f64, "half a pixel: 60 fps on the panel"),
+    (1e-9, "1e-9"),
+    (1e-12, "1e-12"),
+];
 /// Lines with a name: the programs in C, which are what people do today, and methods that are the best of something.
 const NAMED: usize = 7;
 /// Colours that anybody can tell apart.
@@ -41,9 +44,17 @@ const LETTER: (i32, i32) = (7, 15);
 
 /// Each contestant with its points from the coarsest step on, those that a finer step makes better. The programs in C come first, then
 /// those with the most points that nothing else is as good as in both; before its name, their number.
-fn lines<'a>(points: &'a [Point], scene: &Scene, board: &Board) -> Vec<(usize, &'static str, Vec<&'a Point>)> {
-    let shown = points.iter().filter(|point| point.scene == scene && point.board == board);
-    let shown: Vec<_> = shown.filter(|point| ERRORS.contains(&point.error.angle)).collect();
+fn lines<'a>(
+    points: &'a [Point],
+    scene: &Scene,
+    board: &Board,
+) -> Vec<(usize, &'static str, Vec<&'a Point>)> {
+    let shown = points
+        .iter()
+        .filter(|point| point.scene == scene && point.board == board);
+    let shown: Vec<_> = shown
+        .filter(|point| ERRORS.contains(&point.error.angle))
+        .collect();
     let line = |all: &[&'a Point]| {
         let mut least = f64::INFINITY;
         let is_better = |point: &&Point| {
@@ -51,9 +62,15 @@ fn lines<'a>(points: &'a [Point], scene: &Scene, board: &Board) -> Vec<(usize, &
             least = least.min(point.error.angle);
             is_it
         };
-        let (name, line) = (all[0].name, all.iter().copied().filter(is_better).collect::<Vec<_>>());
+        let (name, line) = (
+            all[0].name,
+            all.iter().copied().filter(is_better).collect::<Vec<_>>(),
+        );
         let is_peer = PROGRAMS.iter().any(|(program, _)| *program == name);
-        let best = line.iter().filter(|point| !point.is_dominated(points)).count();
+        let best = line
+            .iter()
+            .filter(|point| !point.is_dominated(points))
+            .count();
         (if is_peer { usize::MAX } else { best }, name, line)
     };
     let mut lines: Vec<_> = shown.chunk_by(|a, b| a.name == b.name).map(line).collect();
@@ -66,20 +83,35 @@ pub fn speed_against_error(points: &[Point], scene: &Scene, board: &Board) -> Re
     let lines = lines(points, scene, board);
     let best = lines.iter().take_while(|(best, ..)| *best > 0).count();
     let (named, others) = lines.split_at(best.min(NAMED));
-    let cycles = lines.iter().flat_map(|(.., points)| points).map(|point| point.cycles());
-    let (least, most) = cycles.fold((f64::INFINITY, 1.0_f64), |(least, most), next| (least.min(next), most.max(next)));
+    let cycles = lines
+        .iter()
+        .flat_map(|(.., points)| points)
+        .map(|point| point.cycles());
+    let (least, most) = cycles.fold((f64::INFINITY, 1.0_f64), |(least, most), next| {
+        (least.min(next), most.max(next))
+    });
     let mut svg = String::new();
     {
         let area = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
         area.fill(&WHITE)?;
-        let Scene { name, angle, duration } = scene;
-        let title = format!("{}: {name}: {angle}/{angle} rad, {duration} s", board.core().name());
+        let Scene {
+            name,
+            angle,
+            duration,
+        } = scene;
+        let title = format!(
+            "{}: {name}: {angle}/{angle} rad, {duration} s",
+            board.core().name()
+        );
         let mut chart = ChartBuilder::on(&area)
             .caption(title, (FONT, 17).into_font().color(&TEXT))
             .margin(10)
             .x_label_area_size(42)
             .y_label_area_size(66)
-            .build_cartesian_2d((ERRORS.end..ERRORS.start).log_scale(), (least / 2.0..most * 2.0).log_scale())?;
+            .build_cartesian_2d(
+                (ERRORS.end..ERRORS.start).log_scale(),
+                (least / 2.0..most * 2.0).log_scale(),
+            )?;
         chart
             .configure_mesh()
             .x_desc("largest error of an angle, rad: better to the right")
@@ -93,30 +125,53 @@ pub fn speed_against_error(points: &[Point], scene: &Scene, board: &Board) -> Re
             .draw()?;
         let small = TextStyle::from((FONT, 12)).color(&TEXT);
         for (error, meaning) in MARKS {
-            chart.draw_series([PathElement::new([(error, least / 2.0), (error, most * 2.0)], TEXT.stroke_width(1))])?;
-            let top = EmptyElement::at((error, most * 2.0)) + Text::new(meaning, (4, 2), small.clone());
+            chart.draw_series([PathElement::new(
+                [(error, least / 2.0), (error, most * 2.0)],
+                TEXT.stroke_width(1),
+            )])?;
+            let top =
+                EmptyElement::at((error, most * 2.0)) + Text::new(meaning, (4, 2), small.clone());
             chart.draw_series([top])?;
         }
         let place = |point: &&Point| (point.error.angle, point.cycles());
         for (.., points) in others {
-            chart.draw_series(LineSeries::new(points.iter().map(place), GREY.stroke_width(1)))?;
+            chart.draw_series(LineSeries::new(
+                points.iter().map(place),
+                GREY.stroke_width(1),
+            ))?;
         }
         let mut taken: Vec<[i32; 3]> = Vec::new();
         for ((_, name, points), colour) in named.iter().zip(COLOURS) {
-            chart.draw_series(LineSeries::new(points.iter().map(place), colour.stroke_width(2)))?;
-            chart.draw_series(points.iter().map(|point| Circle::new(place(point), 3, colour.filled())))?;
+            chart.draw_series(LineSeries::new(
+                points.iter().map(place),
+                colour.stroke_width(2),
+            ))?;
+            chart.draw_series(
+                points
+                    .iter()
+                    .map(|point| Circle::new(place(point), 3, colour.filled())),
+            )?;
             let Some(end) = points.last() else { continue };
             let (x, mut y) = chart.backend_coord(&place(end));
             let width = LETTER.0 * name.len() as i32;
             // Right of the line's end, or left of it where the frame is near; and where no other name is.
-            let left = if x + 10 + width < SIZE.0 as i32 { x + 10 } else { x - 10 - width };
-            let overlaps =
-                |y: i32| taken.iter().any(|&[a, b, at]| left < b && a < left + width && (y - at).abs() < LETTER.1);
+            let left = if x + 10 + width < SIZE.0 as i32 {
+                x + 10
+            } else {
+                x - 10 - width
+            };
+            let overlaps = |y: i32| {
+                taken
+                    .iter()
+                    .any(|&[a, b, at]| left < b && a < left + width && (y - at).abs() < LETTER.1)
+            };
             while overlaps(y) {
                 y -= 1;
             }
             taken.push([left, left + width, y]);
-            let style = TextStyle::from((FONT, 13)).color(&colour).pos(Pos::new(HPos::Left, VPos::Center));
+            let style = TextStyle::from((FONT, 13))
+                .color(&colour)
+                .pos(Pos::new(HPos::Left, VPos::Center));
             area.draw(&Text::new(*name, (left, y), style))?;
         }
         area.present()?;
@@ -133,14 +188,34 @@ mod tests {
 
     #[test]
     fn seven_lines_at_most_have_names_and_the_programs_in_c_do() -> Result<()> {
-        let names = ["a", "b", "c", "d", "e", "f", "g", "h", PROGRAMS[0].0, PROGRAMS[1].0];
-        let each = |(i, name): (usize, &&'static str)| point(name, 10_f64.powi(i as i32), 0.1_f64.powi(i as i32 + 1));
+        let names = [
+            "a",
+            "b",
+            "c",
+            "d",
+            "e",
+            "f",
+            "g",
+            "h",
+            PROGRAMS[0].0,
+            PROGRAMS[1].0,
+        ];
+        let each = |(i, name): (usize, &&'static str)| {
+            point(name, 10_f64.powi(i as i32), 0.1_f64.powi(i as i32 + 1))
+        };
         let mut points: Vec<_> = names.iter().enumerate().map(each).collect();
         points.insert(0, point("worse than all others", 1e12, 0.5));
         let svg = speed_against_error(&points, &SCENES[0], &BOARDS[0])?;
         let named = |name: &str| svg.lines().any(|line| line.trim() == name);
-        assert_eq!(names.iter().filter(|name| named(name)).count(), NAMED, "{svg}");
-        assert!(PROGRAMS.iter().all(|(name, _)| named(name)) && !named("worse than all others"), "{svg}");
+        assert_eq!(
+            names.iter().filter(|name| named(name)).count(),
+            NAMED,
+            "{svg}"
+        );
+        assert!(
+            PROGRAMS.iter().all(|(name, _)| named(name)) && !named("worse than all others"),
+            "{svg}"
+        );
         assert!(MARKS.iter().all(|(_, meaning)| named(meaning)), "{svg}");
         Ok(())
     }

@@ -36,10 +36,14 @@ impl Point {
     /// Whether another point of the scene and board has neither more cycles nor a larger error, and less of one.
     pub fn is_dominated(&self, points: &[Self]) -> bool {
         let (error, cycles) = (self.error.angle, self.cycles());
-        let mut others = points.iter().filter(|other| other.board == self.board && other.scene == self.scene);
+        let mut others = points
+            .iter()
+            .filter(|other| other.board == self.board && other.scene == self.scene);
         others.any(|other| {
             let (other_error, other_cycles) = (other.error.angle, other.cycles());
-            other_cycles <= cycles && other_error <= error && (other_cycles < cycles || other_error < error)
+            other_cycles <= cycles
+                && other_error <= error
+                && (other_cycles < cycles || other_error < error)
         })
     }
 }
@@ -47,20 +51,37 @@ impl Point {
 /// Every method but the closed forms, whose errors are those of their equations, and every program in C through the scenes on all
 /// targets; the long scene with as many steps as are usual. Also says what had to be left out, a line each.
 pub fn join(toolchain: &Toolchain, targets: &[Target]) -> Result<(Vec<Point>, Vec<String>)> {
-    let scenes = [&SCENES[0], &SCENES[1], &LONG].map(|scene| (scene, accuracy::exact(scene, SAMPLES * scene.duration)));
-    let methods = Method::ALL.iter().copied().filter(|method| method.integrator() != Integrator::ClosedForm);
+    let scenes = [&SCENES[0], &SCENES[1], &LONG]
+        .map(|scene| (scene, accuracy::exact(scene, SAMPLES * scene.duration)));
+    let methods = Method::ALL
+        .iter()
+        .copied()
+        .filter(|method| method.integrator() != Integrator::ClosedForm);
     let methods: Vec<_> = methods.collect();
     let bar = Progress::of("comparing and counting", methods.len() as u64);
     let points = methods.par_iter().map(|&method| {
         // The pendulum is the same in all scenes, and so is the code that steps it.
-        let cost = |target| affordable_cost(target, &request(method, &SCENES[0], usual_rate(method)));
-        let costs = targets.iter().map(|target| Ok((target.board, cost(target)?))).collect::<Result<Vec<_>>>()?;
+        let cost =
+            |target| affordable_cost(target, &request(method, &SCENES[0], usual_rate(method)));
+        let costs = targets
+            .iter()
+            .map(|target| Ok((target.board, cost(target)?)))
+            .collect::<Result<Vec<_>>>()?;
         let mut points = Vec::new();
         for &(scene, ref exact) in &scenes {
             for rate in rates(method, scene, FINEST) {
-                let Some(error) = accuracy::error(&request(method, scene, rate), exact) else { continue };
+                let Some(error) = accuracy::error(&request(method, scene, rate), exact) else {
+                    continue;
+                };
                 let name = method.name();
-                let point = |&(board, step)| Point { name, scene, board, rate, step, error };
+                let point = |&(board, step)| Point {
+                    name,
+                    scene,
+                    board,
+                    rate,
+                    step,
+                    error,
+                };
                 points.extend(costs.iter().map(point));
             }
         }
@@ -75,22 +96,42 @@ pub fn join(toolchain: &Toolchain, targets: &[Target]) -> Result<(Vec<Point>, Ve
 
 pub fn table(points: &[Point]) -> Table {
     let row = |point: &Point| {
-        let Point { name, scene, board, rate, step, error } = *point;
+        let Point {
+            name,
+            scene,
+            board,
+            rate,
+            step,
+            error,
+        } = *point;
         let mut row = [scene.name, board.cpu, name].map(str::to_owned).to_vec();
         row.push(format!("1/{rate}"));
-        row.extend([step.instructions, step.cycles, step.stalls].map(|count| format!("{count:.0}")));
-        row.extend([step.hot_bytes, step.code_bytes, step.stack_bytes].map(|bytes| bytes.to_string()));
+        row.extend(
+            [step.instructions, step.cycles, step.stalls].map(|count| format!("{count:.0}")),
+        );
+        row.extend(
+            [step.hot_bytes, step.code_bytes, step.stack_bytes].map(|bytes| bytes.to_string()),
+        );
         row.push(format!("{:.0}", point.cycles()));
         row.extend([error.angle, error.pixels].map(small));
         let request = request(Method::Rk4F64, scene, rate);
-        let is_resolved = request.admissible_step().is_some_and(|longest| request.dt <= longest);
+        let is_resolved = request
+            .admissible_step()
+            .is_some_and(|longest| request.dt <= longest);
         row.push(String::from(if is_resolved { "yes" } else { "no" }));
-        row.push(String::from(if point.is_dominated(points) { "dominated" } else { "best" }));
+        row.push(String::from(if point.is_dominated(points) {
+            "dominated"
+        } else {
+            "best"
+        }));
         row
     };
     const COLUMNS: &str = "scene,processor,method,step (s),instructions of a step,cycles of a step (estimate),stalls,hot bytes,\
                            code bytes,stack bytes,cycles per s (estimate),error (rad),error (pixels),resolved,verdict";
-    Table { columns: COLUMNS.split(',').collect(), rows: points.iter().map(row).collect() }
+    Table {
+        columns: COLUMNS.split(',').collect(),
+        rows: points.iter().map(row).collect(),
+    }
 }
 
 #[cfg(test)]
@@ -100,9 +141,22 @@ pub(super) mod tests {
 
     /// A method's point in the regular scene on the first board.
     pub fn point(name: &'static str, cycles: f64, angle: f64) -> Point {
-        let step = StepCost { cycles: cycles / 64.0, ..StepCost::default() };
-        let error = Error { angle, pixels: 10.0 * angle };
-        Point { name, scene: &SCENES[0], board: &BOARDS[0], rate: 64, step, error }
+        let step = StepCost {
+            cycles: cycles / 64.0,
+            ..StepCost::default()
+        };
+        let error = Error {
+            angle,
+            pixels: 10.0 * angle,
+        };
+        Point {
+            name,
+            scene: &SCENES[0],
+            board: &BOARDS[0],
+            rate: 64,
+            step,
+            error,
+        }
     }
 
     #[test]
@@ -112,7 +166,10 @@ pub(super) mod tests {
         assert!(one(1.0, 2.0).is_dominated(&[one(1.0, 1.0)]));
         assert!(!one(1.0, 1.0).is_dominated(&[one(1.0, 1.0)]));
         assert!(!one(2.0, 1.0).is_dominated(&[one(1.0, 2.0)]));
-        let elsewhere = Point { board: &BOARDS[1], ..one(0.0, 0.0) };
+        let elsewhere = Point {
+            board: &BOARDS[1],
+            ..one(0.0, 0.0)
+        };
         assert!(!one(1.0, 1.0).is_dominated(&[elsewhere]));
     }
 }

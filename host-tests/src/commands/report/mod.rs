@@ -28,7 +28,10 @@ use join::Point;
 
 /// Measures every method's cost on the target and its error, and writes them as CSV and as charts.
 #[derive(Debug, Parser)]
-#[command(name = "cargo write-report", after_help = "Example: cargo write-report --out /tmp/report")]
+#[command(
+    name = "cargo write-report",
+    after_help = "Example: cargo write-report --out /tmp/report"
+)]
 pub struct ReportOptions {
     /// Puts what to take, the main table and the charts into the READMEs
     #[arg(long)]
@@ -40,13 +43,22 @@ pub struct ReportOptions {
 
 pub fn run(options: &ReportOptions) -> Result<()> {
     let toolchain = toolchain::set_up()?;
-    let folder = options.out.clone().unwrap_or_else(|| workspace().join("host-tests/report"));
+    let folder = options
+        .out
+        .clone()
+        .unwrap_or_else(|| workspace().join("host-tests/report"));
     fs::create_dir_all(&folder).map_err(|error| unwritable("--out", &folder, &error))?;
     let targets = Target::build_all(&toolchain)?;
     let (points, absent) = join::join(&toolchain, &targets)?;
-    write(&folder.join("speed-against-error.csv"), join::table(&points).csv())?;
+    write(
+        &folder.join("speed-against-error.csv"),
+        join::table(&points).csv(),
+    )?;
     let is_shown = options.readme && absent.is_empty();
-    for (scene, target) in SCENES.iter().flat_map(|scene| targets.iter().map(move |target| (scene, target))) {
+    for (scene, target) in SCENES
+        .iter()
+        .flat_map(|scene| targets.iter().map(move |target| (scene, target)))
+    {
         let svg = chart::speed_against_error(&points, scene, target.board)?;
         let name = format!("{}-{}.svg", scene.name, target.board.cpu);
         write(&folder.join(&name), &svg)?;
@@ -58,8 +70,13 @@ pub fn run(options: &ReportOptions) -> Result<()> {
     absent.iter().chain(&advice).try_for_each(say)?;
     let pages = pages(&advice, &points)?;
     if options.readme {
-        ensure!(absent.is_empty(), "the READMEs keep their figures: some are missing in these");
-        pages.iter().try_for_each(|(path, [_, made])| fs::write(path, made))?;
+        ensure!(
+            absent.is_empty(),
+            "the READMEs keep their figures: some are missing in these"
+        );
+        pages
+            .iter()
+            .try_for_each(|(path, [_, made])| fs::write(path, made))?;
     } else if pages.iter().any(|(_, [page, made])| page != made) {
         say("the READMEs show other figures; cargo write-report --readme puts these there")?;
     }
@@ -69,7 +86,10 @@ pub fn run(options: &ReportOptions) -> Result<()> {
 /// Where they show the charts from, in the workspace.
 const CHARTS: &str = "host-tests/pictures/report";
 /// What stands before and after a README's block.
-const MARKS: [&str; 2] = ["<!-- made by cargo write-report --readme -->\n", "<!-- so far -->\n"];
+const MARKS: [&str; 2] = [
+    "<!-- made by cargo write-report --readme -->\n",
+    "<!-- so far -->\n",
+];
 /// The READMEs, and how many of the rows they show.
 const READMES: [(&str, usize); 2] = [("README.md", 5), ("host-tests/README.md", 8)];
 /// The rows: what exists, what the page prints, and what to take; those of the first page first.
@@ -87,38 +107,69 @@ const ROWS: [&str; 8] = [
 /// What one may want to compute a motion for, in words before the cycles.
 type Purpose = (&'static str, fn(&Point) -> bool);
 const PURPOSES: [Purpose; 3] = [
-    ("draws at 60 fps", |point| point.rate >= 60 && point.error.pixels <= f64::from(HALF_PIXEL)),
+    ("draws at 60 fps", |point| {
+        point.rate >= 60 && point.error.pixels <= f64::from(HALF_PIXEL)
+    }),
     ("keeps 1e-9 rad", |point| point.error.angle <= 1e-9),
     ("keeps 1e-12 rad", |point| point.error.angle <= 1e-12),
 ];
 
 /// The READMEs, each as it is and with its block: the advice as a list, and as many rows of the table as it shows.
 fn pages(advice: &[String], points: &[Point]) -> Result<Vec<(PathBuf, [String; 2])>> {
-    let items: String = advice.iter().map(|sentence| format!("- {sentence}\n")).collect();
+    let items: String = advice
+        .iter()
+        .map(|sentence| format!("- {sentence}\n"))
+        .collect();
     let page = |(file, rows): (&str, usize)| {
         let path = workspace().join(file);
         let page = fs::read_to_string(&path).with_context(|| format!("no {file}"))?;
-        let made = between(&page, MARKS, &format!("\n{items}\n{}\n", table(points, &ROWS[..rows]).markdown()));
-        Ok((path, [page, made.with_context(|| format!("{file} has no place for it"))?]))
+        let made = between(
+            &page,
+            MARKS,
+            &format!("\n{items}\n{}\n", table(points, &ROWS[..rows]).markdown()),
+        );
+        Ok((
+            path,
+            [
+                page,
+                made.with_context(|| format!("{file} has no place for it"))?,
+            ],
+        ))
     };
     READMES.into_iter().map(page).collect()
 }
 
 /// What to take on each core through a regular and a chaotic motion, a sentence each, in Markdown.
 fn advice(points: &[Point]) -> Vec<String> {
-    let boards = BOARDS.iter().filter(|board| points.iter().any(|point| point.board == *board));
+    let boards = BOARDS
+        .iter()
+        .filter(|board| points.iter().any(|point| point.board == *board));
     let sentence = |board: &Board, scene: &Scene| {
-        let of = points.iter().filter(|point| point.scene == scene && point.board == board);
+        let of = points
+            .iter()
+            .filter(|point| point.scene == scene && point.board == board);
         let parts = PURPOSES.map(|(words, serves)| {
-            let cheapest = of.clone().filter(|point| serves(point)).min_by(|a, b| a.cycles().total_cmp(&b.cycles()));
+            let cheapest = of
+                .clone()
+                .filter(|point| serves(point))
+                .min_by(|a, b| a.cycles().total_cmp(&b.cycles()));
             match cheapest {
-                Some(point) => format!("`{}` {words} for {}", point.name, thousands(point.cycles())),
+                Some(point) => {
+                    format!("`{}` {words} for {}", point.name, thousands(point.cycles()))
+                }
                 None => format!("nothing {words}"),
             }
         });
-        format!("{}, {} motion, cycles a second: {}.", board.core().name(), scene.name, parts.join("; "))
+        format!(
+            "{}, {} motion, cycles a second: {}.",
+            board.core().name(),
+            scene.name,
+            parts.join("; ")
+        )
     };
-    boards.flat_map(|board| [&SCENES[0], &SCENES[1]].map(|scene| sentence(board, scene))).collect()
+    boards
+        .flat_map(|board| [&SCENES[0], &SCENES[1]].map(|scene| sentence(board, scene)))
+        .collect()
 }
 
 /// To three digits, in thousands.
@@ -133,18 +184,35 @@ fn thousands(cycles: f64) -> String {
 /// Cycles of a step and errors through the regular scene and the long one.
 fn table(points: &[Point], names: &[&str]) -> Table {
     let row = |&name: &&str| {
-        let long = points.iter().find(|point| point.name == name && point.scene == &LONG)?;
-        let same = points.iter().filter(|point| point.name == name && point.rate == long.rate);
+        let long = points
+            .iter()
+            .find(|point| point.name == name && point.scene == &LONG)?;
+        let same = points
+            .iter()
+            .filter(|point| point.name == name && point.rate == long.rate);
         let short = same.clone().find(|point| point.scene == &SCENES[0])?;
-        let on = |cpu: &str| same.clone().find(|point| point.board.cpu == cpu && point.scene == &SCENES[0]);
-        let cycles = ["cortex-m4", "cortex-m3", "cortex-m0"]
-            .map(|cpu| on(cpu).map_or_else(String::new, |point| format!("{:.0}", point.step.cycles)));
+        let on = |cpu: &str| {
+            same.clone()
+                .find(|point| point.board.cpu == cpu && point.scene == &SCENES[0])
+        };
+        let cycles = ["cortex-m4", "cortex-m3", "cortex-m0"].map(|cpu| {
+            on(cpu).map_or_else(String::new, |point| format!("{:.0}", point.step.cycles))
+        });
         let errors = [short, long].map(|point| small(point.error.angle));
-        Some([vec![name.to_owned(), long.rate.to_string()], cycles.to_vec(), errors.to_vec()].concat())
+        Some(
+            [
+                vec![name.to_owned(), long.rate.to_string()],
+                cycles.to_vec(),
+                errors.to_vec(),
+            ]
+            .concat(),
+        )
     };
-    const COLUMNS: &str =
-        "method,steps a second,M4F cycles a step,M3 cycles,M0+ cycles,error in 10 s (rad),error in 100 s (rad)";
-    Table { columns: COLUMNS.split(',').collect(), rows: names.iter().filter_map(row).collect() }
+    const COLUMNS: &str = "method,steps a second,M4F cycles a step,M3 cycles,M0+ cycles,error in 10 s (rad),error in 100 s (rad)";
+    Table {
+        columns: COLUMNS.split(',').collect(),
+        rows: names.iter().filter_map(row).collect(),
+    }
 }
 
 #[cfg(test)]
@@ -160,7 +228,12 @@ mod tests {
             point("extrapolation12-fixed64", 2e6, 1e-13),
         ];
         let advice = advice(&points);
-        assert!(advice.iter().all(|sentence| sentence.split_whitespace().count() <= 25), "{advice:?}");
+        assert!(
+            advice
+                .iter()
+                .all(|sentence| sentence.split_whitespace().count() <= 25),
+            "{advice:?}"
+        );
         let expected = "`rk4-fixed32` draws at 60 fps for 44k; `extrapolation12-fixed64` keeps 1e-9 rad for 2.0M;";
         assert!(advice[0].contains(expected), "{advice:?}");
     }

@@ -71,8 +71,16 @@ fn on_board(
 ) -> anyhow::Result<()> {
     let toolchain = toolchain::set_up()?;
     let elf = toolchain.build_for(board)?;
-    let limit = OVERHEAD.saturating_add(PER_STEP.saturating_mul(request.stride.saturating_mul(request.samples)));
-    let settings = Settings { qemu: &toolchain.qemu, board, elf: &elf, clock: Clock::Real, debugger: true, limit };
+    let limit = OVERHEAD
+        .saturating_add(PER_STEP.saturating_mul(request.stride.saturating_mul(request.samples)));
+    let settings = Settings {
+        qemu: &toolchain.qemu,
+        board,
+        elf: &elf,
+        clock: Clock::Real,
+        debugger: true,
+        limit,
+    };
     let mut machine = Machine::start(&settings)?;
     // Its first frame says that it listens.
     machine.next_frame().context(board.name)?;
@@ -80,9 +88,17 @@ fn on_board(
     let mut expected = 0;
     while expected <= request.samples {
         match machine.next_answer().context(board.name)? {
-            (_, Answer::Refused(field)) => bail!("{}: the board refuses the request: {}", board.name, refusal(field)),
+            (_, Answer::Refused(field)) => bail!(
+                "{}: the board refuses the request: {}",
+                board.name,
+                refusal(field)
+            ),
             (_, Answer::Sample { index, reading }) => {
-                ensure!(index == expected, "{}: row {expected} was lost on the way", board.name);
+                ensure!(
+                    index == expected,
+                    "{}: row {expected} was lost on the way",
+                    board.name
+                );
                 row(&reading)?;
                 expected += 1;
             }
@@ -93,53 +109,102 @@ fn on_board(
 }
 
 /// Every column there is, and its unit; x to the right and y upwards from the pivot.
-const NAMES: [&str; 12] = ["t", "a1", "a2", "p1", "p2", "w1", "w2", "energy", "x1", "y1", "x2", "y2"];
-const UNITS: [&str; 12] = ["s", "rad", "rad", "kg m^2/s", "kg m^2/s", "rad/s", "rad/s", "J", "m", "m", "m", "m"];
+const NAMES: [&str; 12] = [
+    "t", "a1", "a2", "p1", "p2", "w1", "w2", "energy", "x1", "y1", "x2", "y2",
+];
+const UNITS: [&str; 12] = [
+    "s", "rad", "rad", "kg m^2/s", "kg m^2/s", "rad/s", "rad/s", "J", "m", "m", "m", "m",
+];
 
 fn header(options: &SimulateOptions) -> String {
     let name = |&column: &usize| match options.units {
         true => format!("{} [{}]", NAMES[column], UNITS[column]),
         false => NAMES[column].to_owned(),
     };
-    let bits = NAMES[1..5].iter().filter(|_| options.bits).map(|name| format!("{name}_bits"));
-    options.columns.iter().map(name).chain(bits).collect::<Vec<_>>().join(",")
+    let bits = NAMES[1..5]
+        .iter()
+        .filter(|_| options.bits)
+        .map(|name| format!("{name}_bits"));
+    options
+        .columns
+        .iter()
+        .map(name)
+        .chain(bits)
+        .collect::<Vec<_>>()
+        .join(",")
 }
 
 fn row(plan: &Plan, options: &SimulateOptions, number: u64, reading: &Reading) -> String {
-    let Reading { state: [a1, a2, p1, p2], velocities: [w1, w2], energy } = *reading;
+    let Reading {
+        state: [a1, a2, p1, p2],
+        velocities: [w1, w2],
+        energy,
+    } = *reading;
     let pendulum = Pendulum::<f64>::new(&plan.request.parameters);
     let bobs = pendulum.map(|pendulum| pendulum.positions([a1, a2]).map(|bob| [bob.x, bob.y]));
     let [[x1, y1], [x2, y2]] = bobs.unwrap_or([[f64::NAN; 2]; 2]);
-    let numbers = [plan.every.times(number), a1, a2, p1, p2, w1, w2, energy, x1, y1, x2, y2];
+    let numbers = [
+        plan.every.times(number),
+        a1,
+        a2,
+        p1,
+        p2,
+        w1,
+        w2,
+        energy,
+        x1,
+        y1,
+        x2,
+        y2,
+    ];
     // whether numbers have the digits of an f32
     let is_single = plan.request.method.numbers() == Numbers::F32;
     let numbers = options.columns.iter().map(|&column| match numbers[column] {
         number if is_single && column != 0 => shortest(number as f32),
         number => shortest(number),
     });
-    let bits = reading.state.iter().filter(|_| options.bits).map(|&number| match is_single {
-        true => format!("{:08x}", (number as f32).to_bits()),
-        false => format!("{:016x}", number.to_bits()),
-    });
+    let bits = reading
+        .state
+        .iter()
+        .filter(|_| options.bits)
+        .map(|&number| match is_single {
+            true => format!("{:08x}", (number as f32).to_bits()),
+            false => format!("{:016x}", number.to_bits()),
+        });
     numbers.chain(bits).collect::<Vec<_>>().join(",")
 }
 
 /// The fewest digits that read back as the same number; in exponent form where that is shorter.
 fn shortest(number: impl Display + LowerExp) -> String {
     let (plain, exponent) = (number.to_string(), format!("{number:e}"));
-    if exponent.len() < plain.len() { exponent } else { plain }
+    if exponent.len() < plain.len() {
+        exponent
+    } else {
+        plain
+    }
 }
 
 /// A line for each method: name, equations, numbers, integrator, order, and where it runs.
 fn list() -> String {
-    const HEAD: &str = "method                   equations   numbers         integrator     order  runs on";
+    const HEAD: &str =
+        "method                   equations   numbers         integrator     order  runs on";
     let line = |method: &Method| {
         let (name, order) = (method.name(), method.order());
         let (equations, numbers) = (method.equations().to_string(), method.numbers().to_string());
         let integrator = method.integrator().to_string();
-        let boards = if ON_BOARDS.contains(method) { ", boards" } else { "" };
-        let scenes = if Method::DRAWN.contains(method) { ", scenes" } else { "" };
-        format!("\n{name:24} {equations:11} {numbers:15} {integrator:14} {order:>5}  host{boards}{scenes}")
+        let boards = if ON_BOARDS.contains(method) {
+            ", boards"
+        } else {
+            ""
+        };
+        let scenes = if Method::DRAWN.contains(method) {
+            ", scenes"
+        } else {
+            ""
+        };
+        format!(
+            "\n{name:24} {equations:11} {numbers:15} {integrator:14} {order:>5}  host{boards}{scenes}"
+        )
     };
     HEAD.to_owned() + &Method::ALL.iter().map(line).collect::<String>()
 }

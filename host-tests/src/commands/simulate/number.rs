@@ -43,20 +43,28 @@ impl Number {
 
     /// One of so many equal parts of it.
     pub fn divided_by(&self, parts: u32) -> Number {
-        let fraction = self.fraction.and_then(|fraction| quotient(fraction, (parts.into(), 1)));
+        let fraction = self
+            .fraction
+            .and_then(|fraction| quotient(fraction, (parts.into(), 1)));
         let value = fraction.map_or(self.value / f64::from(parts), nearest);
         let text = match fraction {
             Some((whole, 1)) => whole.to_string(),
             Some((above, below)) => format!("{above}/{below}"),
             None => value.to_string(),
         };
-        Self { text, value, fraction }
+        Self {
+            text,
+            value,
+            fraction,
+        }
     }
 
     /// The `f64` nearest to `count` times it.
     pub fn times(&self, count: u64) -> f64 {
         let count = count as f64;
-        self.fraction.map_or(self.value * count, |(above, below)| above as f64 * count / below as f64)
+        self.fraction.map_or(self.value * count, |(above, below)| {
+            above as f64 * count / below as f64
+        })
     }
 }
 
@@ -75,10 +83,22 @@ impl FromStr for Number {
         if denominator == 0.0 {
             return Err(ZERO_DENOMINATOR);
         }
-        let fraction = above.zip(below).and_then(|(above, below)| quotient(above, below));
+        let fraction = above
+            .zip(below)
+            .and_then(|(above, below)| quotient(above, below));
         let is_decimal = !text.contains('/');
-        let value = fraction.filter(|_| !is_decimal).map_or(numerator / denominator, nearest);
-        if value.is_finite() { Ok(Self { text: text.to_owned(), value, fraction }) } else { Err(NOT_FINITE) }
+        let value = fraction
+            .filter(|_| !is_decimal)
+            .map_or(numerator / denominator, nearest);
+        if value.is_finite() {
+            Ok(Self {
+                text: text.to_owned(),
+                value,
+                fraction,
+            })
+        } else {
+            Err(NOT_FINITE)
+        }
     }
 }
 
@@ -92,9 +112,16 @@ fn decimal(text: &str) -> Result<(f64, Option<Fraction>), &'static str> {
     let (whole, places) = mantissa.split_once('.').unwrap_or((mantissa, ""));
     let exact = || {
         let digits: i64 = format!("{whole}{places}").parse().ok()?;
-        let exponent = exponent.parse::<i32>().ok()?.checked_sub(places.len().try_into().ok()?)?;
+        let exponent = exponent
+            .parse::<i32>()
+            .ok()?
+            .checked_sub(places.len().try_into().ok()?)?;
         let power = 10_i64.checked_pow(exponent.unsigned_abs())?;
-        if exponent < 0 { quotient((digits, 1), (power, 1)) } else { Some((digits.checked_mul(power)?, 1)) }
+        if exponent < 0 {
+            quotient((digits, 1), (power, 1))
+        } else {
+            Some((digits.checked_mul(power)?, 1))
+        }
     };
     Ok((value, exact()))
 }
@@ -107,7 +134,10 @@ fn quotient((a, b): Fraction, (c, d): Fraction) -> Option<Fraction> {
         (common, rest) = (rest, common % rest);
     }
     let divisor = common * below.signum();
-    Some((above.checked_div(divisor)?.try_into().ok()?, below.checked_div(divisor)?.try_into().ok()?))
+    Some((
+        above.checked_div(divisor)?.try_into().ok()?,
+        below.checked_div(divisor)?.try_into().ok()?,
+    ))
 }
 
 /// The `f64` nearest to a fraction, if neither of its numbers has more than 53 bits.
@@ -136,8 +166,14 @@ impl FromStr for Pair {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let (first, second) = text.split_once(',').ok_or("write two numbers with a comma between them")?;
-        let number = |text: &str| text.trim().parse().map_err(|error| format!("'{text}': {error}"));
+        let (first, second) = text
+            .split_once(',')
+            .ok_or("write two numbers with a comma between them")?;
+        let number = |text: &str| {
+            text.trim()
+                .parse()
+                .map_err(|error| format!("'{text}': {error}"))
+        };
         Ok(Pair(number(first)?, number(second)?))
     }
 }
@@ -164,7 +200,11 @@ mod tests {
             ("1e300/1e-300", Err(NOT_FINITE)),
             ("1/0", Err(ZERO_DENOMINATOR)),
         ] {
-            assert_eq!(text.parse().map(|number: Number| number.value()), value, "{text}");
+            assert_eq!(
+                text.parse().map(|number: Number| number.value()),
+                value,
+                "{text}"
+            );
         }
     }
 
@@ -178,13 +218,23 @@ mod tests {
             ("-1", "0.5", None),
             ("1", "0", None),
         ] {
-            assert_eq!(time.parse::<Number>()?.whole_multiple_of(&step.parse()?), count, "{time} of {step}");
+            assert_eq!(
+                time.parse::<Number>()?.whole_multiple_of(&step.parse()?),
+                count,
+                "{time} of {step}"
+            );
         }
-        for (one, parts, part, times) in
-            [("0.1", 3, "1/30", 0.3), ("3", 3, "1", 9.0), ("1e-30", 2, "0.0000000000000000000000000000005", 2e-30)]
-        {
+        for (one, parts, part, times) in [
+            ("0.1", 3, "1/30", 0.3),
+            ("3", 3, "1", 9.0),
+            ("1e-30", 2, "0.0000000000000000000000000000005", 2e-30),
+        ] {
             let one = one.parse::<Number>()?;
-            assert_eq!((one.divided_by(parts).to_string(), one.times(parts.into())), (part.to_owned(), times), "{one}");
+            assert_eq!(
+                (one.divided_by(parts).to_string(), one.times(parts.into())),
+                (part.to_owned(), times),
+                "{one}"
+            );
         }
         Ok(())
     }

@@ -39,14 +39,29 @@ pub struct SimulateOptions {
     #[command(flatten)]
     pub start: StartOptions,
     /// Step size, s; a warning says when it is too long to resolve every motion of this energy
-    #[arg(long, value_name = "DT", default_value = "1/1024", allow_hyphen_values = true)]
+    #[arg(
+        long,
+        value_name = "DT",
+        default_value = "1/1024",
+        allow_hyphen_values = true
+    )]
     pub step: Number,
     /// Instead of a step: the error, rad, that no angle of any row may exceed; the cheapest method and step that keep it,
     /// by the reference, are found and taken
-    #[arg(long, value_name = "E", conflicts_with = "step", allow_hyphen_values = true)]
+    #[arg(
+        long,
+        value_name = "E",
+        conflicts_with = "step",
+        allow_hyphen_values = true
+    )]
     pub tolerance: Option<Number>,
     /// Time of the last row, s
-    #[arg(long, value_name = "T", default_value = "10", allow_hyphen_values = true)]
+    #[arg(
+        long,
+        value_name = "T",
+        default_value = "10",
+        allow_hyphen_values = true
+    )]
     pub until: Number,
     /// Time from row to row, s; if not given one step, with --tolerance a hundredth of --until
     #[arg(long, value_name = "T", allow_hyphen_values = true)]
@@ -78,10 +93,20 @@ pub struct SimulateOptions {
 #[derive(Args, Clone, Debug)]
 pub struct StartOptions {
     /// Masses of the bobs, kg
-    #[arg(long, value_name = "M1,M2", default_value = "1,1", allow_hyphen_values = true)]
+    #[arg(
+        long,
+        value_name = "M1,M2",
+        default_value = "1,1",
+        allow_hyphen_values = true
+    )]
     masses: Pair,
     /// Lengths of the rods, m
-    #[arg(long, value_name = "L1,L2", default_value = "1,1", allow_hyphen_values = true)]
+    #[arg(
+        long,
+        value_name = "L1,L2",
+        default_value = "1,1",
+        allow_hyphen_values = true
+    )]
     lengths: Pair,
     #[arg(long, value_name = "G", allow_hyphen_values = true,
           help = format!("Gravitational acceleration, m/s^2 [default: {GRAVITY}]"))]
@@ -90,7 +115,12 @@ pub struct StartOptions {
           help = format!("Angles at the start from hanging, rad (see --degrees) [default: {FIRST_ANGLE} degrees both]"))]
     angles: Option<Pair>,
     /// Angular velocities at the start, rad/s (see --degrees)
-    #[arg(long, value_name = "W1,W2", default_value = "0,0", allow_hyphen_values = true)]
+    #[arg(
+        long,
+        value_name = "W1,W2",
+        default_value = "0,0",
+        allow_hyphen_values = true
+    )]
     pub velocities: Pair,
     /// Read angles in degrees and velocities in degrees per second; what is printed stays in radians
     #[arg(long)]
@@ -100,27 +130,62 @@ pub struct StartOptions {
 impl StartOptions {
     pub fn parameters(&self) -> Parameters<f64> {
         let [[m1, m2], [l1, l2]] = [&self.masses, &self.lengths].map(Pair::values);
-        Parameters { m1, m2, l1, l2, g: self.gravity.as_ref().map_or(GRAVITY, Number::value) }
+        Parameters {
+            m1,
+            m2,
+            l1,
+            l2,
+            g: self.gravity.as_ref().map_or(GRAVITY, Number::value),
+        }
     }
 
     pub fn motion(&self) -> Motion<f64> {
-        let radians = |angle: f64| if self.degrees { angle.to_radians() } else { angle };
+        let radians = |angle: f64| {
+            if self.degrees {
+                angle.to_radians()
+            } else {
+                angle
+            }
+        };
         let first = [f64::from(FIRST_ANGLE).to_radians(); 2];
-        let [a1, a2] = self.angles.as_ref().map_or(first, |angles| angles.values().map(radians));
+        let [a1, a2] = self
+            .angles
+            .as_ref()
+            .map_or(first, |angles| angles.values().map(radians));
         let [w1, w2] = self.velocities.values().map(radians);
         Motion { a1, a2, w1, w2 }
     }
 
     /// All of it to the last digit given; `None` if a number has too many.
     pub fn exact(&self) -> Option<Exact> {
-        let [gravity, first] = [GRAVITY.to_string(), FIRST_ANGLE.to_string()].map(|text| text.parse::<Number>().ok());
+        let [gravity, first] =
+            [GRAVITY.to_string(), FIRST_ANGLE.to_string()].map(|text| text.parse::<Number>().ok());
         let first = first?;
         let angles = self.angles.clone().unwrap_or(Pair(first.clone(), first));
         let degrees = [self.degrees || self.angles.is_none(), self.degrees];
         let [m, l, a, w] = [&self.masses, &self.lengths, &angles, &self.velocities];
-        let numbers = [&a.0, &a.1, &w.0, &w.1, &m.0, &m.1, &l.0, &l.1, self.gravity.as_ref().or(gravity.as_ref())?];
-        let fractions = numbers.into_iter().map(Number::exact).collect::<Option<Vec<_>>>()?.try_into().ok()?;
-        Some(Exact { about: (self.parameters(), self.motion()), fractions: Some(fractions), degrees })
+        let numbers = [
+            &a.0,
+            &a.1,
+            &w.0,
+            &w.1,
+            &m.0,
+            &m.1,
+            &l.0,
+            &l.1,
+            self.gravity.as_ref().or(gravity.as_ref())?,
+        ];
+        let fractions = numbers
+            .into_iter()
+            .map(Number::exact)
+            .collect::<Option<Vec<_>>>()?
+            .try_into()
+            .ok()?;
+        Some(Exact {
+            about: (self.parameters(), self.motion()),
+            fractions: Some(fractions),
+            degrees,
+        })
     }
 }
 

@@ -26,12 +26,24 @@ const ROWS: u32 = 100;
 /// is one line that names the option and the value.
 pub fn choose(options: &SimulateOptions, tolerance: &Number) -> anyhow::Result<(Plan, f64)> {
     let SimulateOptions { until, every, .. } = options;
-    ensure!(tolerance.is_positive(), "--tolerance {tolerance}: must be greater than zero");
-    ensure!(until.is_positive(), "--until {until}: must be greater than zero with --tolerance");
+    ensure!(
+        tolerance.is_positive(),
+        "--tolerance {tolerance}: must be greater than zero"
+    );
+    ensure!(
+        until.is_positive(),
+        "--until {until}: must be greater than zero with --tolerance"
+    );
     let every = every.clone().unwrap_or_else(|| until.divided_by(ROWS));
-    ensure!(every.is_positive(), "--every {every}: must be greater than zero");
+    ensure!(
+        every.is_positive(),
+        "--every {every}: must be greater than zero"
+    );
     let samples = count(("--until", until), ("--every", &every))?;
-    ensure!(samples < MOST_ROWS, "--every {every}: more than {MOST_ROWS} rows with --tolerance");
+    ensure!(
+        samples < MOST_ROWS,
+        "--every {every}: more than {MOST_ROWS} rows with --tolerance"
+    );
     // The motion in this many steps from row to row, and the step.
     let in_parts = |method, parts| {
         let step = every.divided_by(parts);
@@ -39,10 +51,15 @@ pub fn choose(options: &SimulateOptions, tolerance: &Number) -> anyhow::Result<(
     };
     // What the kernel refuses, it refuses in the finest steps.
     let asked = method(options)?;
-    accepted(options, &in_parts(asked, divisions(asked, samples).last().unwrap_or(1)).0)?;
+    accepted(
+        options,
+        &in_parts(asked, divisions(asked, samples).last().unwrap_or(1)).0,
+    )?;
 
     let bar = Progress::of("reference, rows", samples.into());
-    let times = (0..=samples.into()).map(|row| every.times(row)).inspect(|_| bar.advance(1));
+    let times = (0..=samples.into())
+        .map(|row| every.times(row))
+        .inspect(|_| bar.advance(1));
     let exact = taylor::states(&options.start.parameters(), &options.start.motion(), times);
     drop(bar);
     let (unit, methods) = candidates(options);
@@ -63,7 +80,14 @@ pub fn choose(options: &SimulateOptions, tolerance: &Number) -> anyhow::Result<(
                 "takes {method} in steps of {step} s, {price:.0} {unit} a simulated second: \
                  off by {worst} rad at most, by the double-double reference"
             );
-            return Ok((Plan { request, every, note: Some(note) }, error));
+            return Ok((
+                Plan {
+                    request,
+                    every,
+                    note: Some(note),
+                },
+                error,
+            ));
         }
         reached = reached.max(rows);
     }
@@ -73,9 +97,15 @@ pub fn choose(options: &SimulateOptions, tolerance: &Number) -> anyhow::Result<(
 
 /// The numbers of steps from row to row that are tried: 1, 2, 3, 4, 6, 8, 12 and so on; the closed form needs none.
 fn divisions(method: Method, samples: u32) -> impl Iterator<Item = u32> {
-    let most = if method.integrator() == Integrator::ClosedForm { 1 } else { MOST_STEPS / samples };
+    let most = if method.integrator() == Integrator::ClosedForm {
+        1
+    } else {
+        MOST_STEPS / samples
+    };
     let powers = (0..u32::BITS - 2).map(|exponent| 1_u32 << exponent);
-    let all = powers.flat_map(|power| [power, power / 2 * 3]).filter(|parts| *parts > 0);
+    let all = powers
+        .flat_map(|power| [power, power / 2 * 3])
+        .filter(|parts| *parts > 0);
     all.take_while(move |parts| *parts <= most)
 }
 
@@ -100,16 +130,33 @@ fn candidates(options: &SimulateOptions) -> (&'static str, Vec<(Method, f64)>) {
     const EVALUATIONS: &str = "evaluations of the equations";
     let left = methods(options.place).iter().copied();
     let left = left.filter(|method| options.method.is_none_or(|asked| asked == *method));
-    let price = |method| options.place.map_or(on_host(method), |board| on_board(method, &board.processor()));
-    let priced: Vec<_> = left.clone().filter_map(|method| Some((method, price(method)?))).collect();
+    let price = |method| {
+        options.place.map_or(on_host(method), |board| {
+            on_board(method, &board.processor())
+        })
+    };
+    let priced: Vec<_> = left
+        .clone()
+        .filter_map(|method| Some((method, price(method)?)))
+        .collect();
     match priced.is_empty() {
-        true => (EVALUATIONS, left.map(|method| (method, evaluations(method))).collect()),
-        false => (options.place.map_or(EVALUATIONS, |_| "cycles (estimate)"), priced),
+        true => (
+            EVALUATIONS,
+            left.map(|method| (method, evaluations(method))).collect(),
+        ),
+        false => (
+            options.place.map_or(EVALUATIONS, |_| "cycles (estimate)"),
+            priced,
+        ),
     }
 }
 
 pub(super) fn methods(place: Place) -> &'static [Method] {
-    if place.is_none() { Method::ALL } else { ON_BOARDS }
+    if place.is_none() {
+        Method::ALL
+    } else {
+        ON_BOARDS
+    }
 }
 
 /// A processor of the host computes in `f64` as fast as in anything else: the evaluations count. `None` of what is no frontier:
@@ -117,7 +164,10 @@ pub(super) fn methods(place: Place) -> &'static [Method] {
 fn on_host(method: Method) -> Option<f64> {
     use Equations::{Directions, Linear};
     use Numbers::{CompensatedF64, F64};
-    let is_fast = matches!((method.equations(), method.numbers()), (Directions, F64 | CompensatedF64) | (Linear, F64));
+    let is_fast = matches!(
+        (method.equations(), method.numbers()),
+        (Directions, F64 | CompensatedF64) | (Linear, F64)
+    );
     is_fast.then(|| evaluations(method))
 }
 

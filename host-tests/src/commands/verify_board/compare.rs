@@ -22,22 +22,48 @@ const MOTIONS: [(&str, f64, f64); 2] = [("regular", 1.0, 0.5), ("chaotic", 2.75,
 
 /// A motion as a request of the board: 2 s in steps of 1/256 s. A chaotic one has by then made thousands of one wrong bit.
 fn request(method: Method, (_, m2, angle): (&str, f64, f64)) -> Request {
-    let parameters = Parameters { m1: 1.0, m2, l1: 1.0, l2: 1.0, g: GRAVITY };
+    let parameters = Parameters {
+        m1: 1.0,
+        m2,
+        l1: 1.0,
+        l2: 1.0,
+        g: GRAVITY,
+    };
     let (angles, velocities) = ([angle; 2], [0.0; 2]);
-    Request { method, parameters, angles, velocities, dt: 1.0 / 256.0, stride: 32, samples: 16 }
+    Request {
+        method,
+        parameters,
+        angles,
+        velocities,
+        dt: 1.0 / 256.0,
+        stride: 32,
+        samples: 16,
+    }
 }
 
 /// Every method of the boards, in both motions.
 pub fn methods(talk: &mut Talk) -> anyhow::Result<Section> {
     let note = "Motions from rest in steps of 1/256 s, computed by the board on request.";
     let mut section = Section::new("Bits", note, &["method", "motion", "steps", "bits"]);
-    let all = ON_BOARDS.iter().flat_map(|&method| MOTIONS.map(|motion| (method, motion)));
+    let all = ON_BOARDS
+        .iter()
+        .flat_map(|&method| MOTIONS.map(|motion| (method, motion)));
     for (number, (method, motion)) in (0..).zip(all) {
         let request = request(method, motion);
         let difference = difference(talk, &request, number)?;
         let steps = (request.stride * request.samples).to_string();
-        let fault = difference.as_ref().map(|difference| format!("{method}, {}: {difference}", motion.0));
-        section.add(vec![method.to_string(), motion.0.into(), steps, verdict(difference)], fault);
+        let fault = difference
+            .as_ref()
+            .map(|difference| format!("{method}, {}: {difference}", motion.0));
+        section.add(
+            vec![
+                method.to_string(),
+                motion.0.into(),
+                steps,
+                verdict(difference),
+            ],
+            fault,
+        );
     }
     Ok(section)
 }
@@ -45,19 +71,26 @@ pub fn methods(talk: &mut Talk) -> anyhow::Result<Section> {
 /// The first number of the board's that is not the host's.
 fn difference(talk: &mut Talk, request: &Request, number: u16) -> anyhow::Result<Option<String>> {
     const NAMES: [&str; 7] = ["a1", "a2", "p1", "p2", "w1", "w2", "energy"];
-    let bits = |&Reading { state: [a1, a2, p1, p2], velocities: [w1, w2], energy }: &Reading| {
-        [a1, a2, p1, p2, w1, w2, energy].map(f64::to_bits)
-    };
+    let bits = |&Reading {
+                    state: [a1, a2, p1, p2],
+                    velocities: [w1, w2],
+                    energy,
+                }: &Reading| { [a1, a2, p1, p2, w1, w2, energy].map(f64::to_bits) };
     talk.port.send(number, Command::Simulate(*request));
     let (mut difference, mut index) = (None, 0);
     request.readings::<anyhow::Error>(|reading| {
         let (given, sample) = sample(talk, number)?;
         ensure!(given == index, "sample {index} was lost on the way");
         let (board, host) = (bits(&sample), bits(reading));
-        let differs = NAMES.iter().zip(board.iter().zip(&host)).find(|(_, (board, host))| board != host);
+        let differs = NAMES
+            .iter()
+            .zip(board.iter().zip(&host))
+            .find(|(_, (board, host))| board != host);
         if let Some((name, (board, host))) = differs {
             let step = index * request.stride;
-            difference.get_or_insert(format!("step {step}: {name} is {board:#018x}, the host's {host:#018x}"));
+            difference.get_or_insert(format!(
+                "step {step}: {name} is {board:#018x}, the host's {host:#018x}"
+            ));
         }
         index += 1;
         Ok(())
@@ -67,19 +100,23 @@ fn difference(talk: &mut Talk, request: &Request, number: u16) -> anyhow::Result
 
 /// The next of the samples that were asked for by this number.
 fn sample(talk: &mut Talk, number: u16) -> anyhow::Result<(u32, Reading)> {
-    talk.answer(
-        number,
-        |answer| {
-            if let Answer::Sample { index, reading } = answer { Some((index, reading)) } else { None }
-        },
-    )
+    talk.answer(number, |answer| {
+        if let Answer::Sample { index, reading } = answer {
+            Some((index, reading))
+        } else {
+            None
+        }
+    })
 }
 
 const REQUEST: u16 = u16::MAX;
 
 /// The cycles of a step of every method, on average over the first second from rest: from flash and from RAM.
 pub fn measured(talk: &mut Talk) -> anyhow::Result<Vec<[Option<f64>; 2]>> {
-    ON_BOARDS.iter().map(|&method| Ok([step(talk, method, false)?, step(talk, method, true)?])).collect()
+    ON_BOARDS
+        .iter()
+        .map(|&method| Ok([step(talk, method, false)?, step(talk, method, true)?]))
+        .collect()
 }
 
 /// The same beside the estimate, as `cargo count` counts them. Instructions are counted in QEMU, on a board with the same processor.
@@ -87,31 +124,64 @@ pub fn cycles(measured: &[[Option<f64>; 2]], board: Option<&Board>) -> anyhow::R
     let note = "Measured by the processor's cycle counter, interrupts off, over 256 steps of the regular motion, by the code in \
                 flash and, where there is one, by its copy in RAM (constants are read from flash by both); estimated for memory \
                 without wait states, over as many steps or, of the expensive ones, fewer.";
-    let mut section = Section::new("Cycles of a step", note, &["method", "from flash", "from RAM", "estimated"]);
-    let board = board.and_then(|board| BOARDS.iter().find(|counted| counted.target == board.target));
+    let mut section = Section::new(
+        "Cycles of a step",
+        note,
+        &["method", "from flash", "from RAM", "estimated"],
+    );
+    let board =
+        board.and_then(|board| BOARDS.iter().find(|counted| counted.target == board.target));
     let board = board.filter(|_| measured.iter().any(|[flash, _]| flash.is_some()));
-    let target = board.map(|board| Target::build(&toolchain::ready()?, board)).transpose()?;
+    let target = board
+        .map(|board| Target::build(&toolchain::ready()?, board))
+        .transpose()?;
     let bar = Progress::of("estimating cycles, methods", measured.len() as u64);
     for (&method, &[flash, ram]) in ON_BOARDS.iter().zip(measured).inspect(|_| bar.advance(1)) {
         let target = target.as_ref().filter(|_| flash.is_some());
-        let estimated = target.map(|target| affordable_cost(target, &request(method, MOTIONS[0]))).transpose()?;
-        let cell = |cycles: Option<f64>, none: &str| cycles.map_or(none.to_owned(), |cycles| format!("{cycles:.1}"));
+        let estimated = target
+            .map(|target| affordable_cost(target, &request(method, MOTIONS[0])))
+            .transpose()?;
+        let cell = |cycles: Option<f64>, none: &str| {
+            cycles.map_or(none.to_owned(), |cycles| format!("{cycles:.1}"))
+        };
         let none = "no cycle counter";
-        let (ram, estimated) = (cell(ram, flash.map_or(none, |_| "-")), cell(estimated.map(|cost| cost.cycles), "-"));
-        section.add(vec![method.to_string(), cell(flash, none), ram, estimated], None);
+        let (ram, estimated) = (
+            cell(ram, flash.map_or(none, |_| "-")),
+            cell(estimated.map(|cost| cost.cycles), "-"),
+        );
+        section.add(
+            vec![method.to_string(), cell(flash, none), ram, estimated],
+            None,
+        );
     }
     Ok(section)
 }
 
 /// The cycles of a step; `None` where the board counts none, or has no copy in RAM.
 fn step(talk: &mut Talk, method: Method, in_ram: bool) -> anyhow::Result<Option<f64>> {
-    talk.port.send(REQUEST, Command::Simulate(Request { samples: 0, ..request(method, MOTIONS[0]) }));
+    talk.port.send(
+        REQUEST,
+        Command::Simulate(Request {
+            samples: 0,
+            ..request(method, MOTIONS[0])
+        }),
+    );
     sample(talk, REQUEST)?;
     let (mut steps, mut cycles) = (0, 0.0);
     while steps < FULL_CYCLE {
-        let (made, taken) = talk.ask(Command::Measure { steps: MOST_MEASURED_STEPS, in_ram }, |answer| {
-            if let Answer::Measured { steps, cycles } = answer { Some((steps, cycles)) } else { None }
-        })?;
+        let (made, taken) = talk.ask(
+            Command::Measure {
+                steps: MOST_MEASURED_STEPS,
+                in_ram,
+            },
+            |answer| {
+                if let Answer::Measured { steps, cycles } = answer {
+                    Some((steps, cycles))
+                } else {
+                    None
+                }
+            },
+        )?;
         if taken == 0 || made == 0 {
             return Ok(None);
         }
@@ -127,9 +197,22 @@ const PATIENCE: usize = 10 * FRAMES as usize;
 
 /// Plays every scene on the board, whose processor has a clock of `hertz`.
 pub fn scenes(talk: &mut Talk, hertz: u32) -> anyhow::Result<Section> {
-    let columns = &["scene", "frames", "bits", "dropped", "moving and drawing (ms)", "with panel and link (ms)"];
-    let mut section = Section::new("Scenes", "The longest of a second's frames, by the board's tick clock.", columns);
-    SceneName::ALL.iter().try_for_each(|&scene| play(talk, scene, hertz, &mut section))?;
+    let columns = &[
+        "scene",
+        "frames",
+        "bits",
+        "dropped",
+        "moving and drawing (ms)",
+        "with panel and link (ms)",
+    ];
+    let mut section = Section::new(
+        "Scenes",
+        "The longest of a second's frames, by the board's tick clock.",
+        columns,
+    );
+    SceneName::ALL
+        .iter()
+        .try_for_each(|&scene| play(talk, scene, hertz, &mut section))?;
     Ok(section)
 }
 
@@ -146,7 +229,12 @@ fn play(talk: &mut Talk, name: SceneName, hertz: u32, section: &mut Section) -> 
             _ => continue,
         };
         frames.push(frame);
-        ensure!(frames.len() < PATIENCE, "{}: of {} frames {compared} could be compared", name.name(), frames.len());
+        ensure!(
+            frames.len() < PATIENCE,
+            "{}: of {} frames {compared} could be compared",
+            name.name(),
+            frames.len()
+        );
         if comparison.frame(&frame) {
             talk.port.send(0, Command::Ask);
         }
@@ -154,15 +242,35 @@ fn play(talk: &mut Talk, name: SceneName, hertz: u32, section: &mut Section) -> 
             compared += 1;
         }
     }
-    let difference = comparison.difference().map(|difference| difference.to_string());
-    let fault = difference.as_ref().map(|difference| format!("{}: {difference}", name.name()));
-    let dropped = frames[frames.len() - 1].dropped.wrapping_sub(frames[0].dropped);
-    let longest =
-        |cycles: Option<u32>| format!("{:.2}", 1e3 * f64::from(cycles.unwrap_or(0)) / f64::from(hertz.max(1)));
+    let difference = comparison
+        .difference()
+        .map(|difference| difference.to_string());
+    let fault = difference
+        .as_ref()
+        .map(|difference| format!("{}: {difference}", name.name()));
+    let dropped = frames[frames.len() - 1]
+        .dropped
+        .wrapping_sub(frames[0].dropped);
+    let longest = |cycles: Option<u32>| {
+        format!(
+            "{:.2}",
+            1e3 * f64::from(cycles.unwrap_or(0)) / f64::from(hertz.max(1))
+        )
+    };
     let computing = longest(frames.iter().map(|frame| frame.scene_cycles).max());
     // It is told of the frame before, which is another scene's at first.
     let whole = longest(frames[1..].iter().map(|frame| frame.busy_cycles).max());
     let (compared, dropped) = (compared.to_string(), dropped.to_string());
-    section.add(vec![name.name().into(), compared, verdict(difference), dropped, computing, whole], fault);
+    section.add(
+        vec![
+            name.name().into(),
+            compared,
+            verdict(difference),
+            dropped,
+            computing,
+            whole,
+        ],
+        fault,
+    );
     Ok(())
 }

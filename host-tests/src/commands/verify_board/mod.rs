@@ -26,7 +26,10 @@ use talk::Talk;
 /// Verifies a board at a serial port: the bits of every method and scene beside the host's, the cycles of every method, the
 /// times of the scenes, its buttons and its panel; and writes a report.
 #[derive(Clone, Debug, Parser)]
-#[command(name = "cargo verify-board", after_help = "Example: cargo verify-board --port auto --report feather")]
+#[command(
+    name = "cargo verify-board",
+    after_help = "Example: cargo verify-board --port auto --report feather"
+)]
 pub struct VerifyOptions {
     /// The serial port; `auto` is the only one over USB
     #[arg(long, value_name = "PATH")]
@@ -49,7 +52,14 @@ struct Section {
 
 impl Section {
     fn new(title: &'static str, note: &'static str, columns: &'static [&'static str]) -> Self {
-        Self { head: [title, note], table: Table { columns: columns.to_vec(), rows: Vec::new() }, faults: Vec::new() }
+        Self {
+            head: [title, note],
+            table: Table {
+                columns: columns.to_vec(),
+                rows: Vec::new(),
+            },
+            faults: Vec::new(),
+        }
     }
 
     fn add(&mut self, row: Vec<String>, fault: Option<String>) {
@@ -66,33 +76,68 @@ fn verdict(difference: Option<String>) -> String {
 pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
     let mut talk = Talk::new(demo::port(&options.port)?)?;
     let identity = talk.ask(protocol::Command::Identify, |answer| {
-        if let Answer::Identity(identity) = answer { Some(identity) } else { None }
+        if let Answer::Identity(identity) = answer {
+            Some(identity)
+        } else {
+            None
+        }
     })?;
     let name = identity.board.name();
     let board = every_board().find(|board| board.name == name);
     let progress = Progress::start(&format!("verifying {name} at {}", talk.port.name));
-    let (methods, scenes) = (compare::methods(&mut talk)?, compare::scenes(&mut talk, identity.hertz)?);
+    let (methods, scenes) = (
+        compare::methods(&mut talk)?,
+        compare::scenes(&mut talk, identity.hertz)?,
+    );
     let measured = compare::measured(&mut talk)?;
     drop(progress);
-    let asked = if options.no_questions { Section::default() } else { talk::ask_person(&mut talk, name)? };
+    let asked = if options.no_questions {
+        Section::default()
+    } else {
+        talk::ask_person(&mut talk, name)?
+    };
     // The board, which goes on sending, has told all before anything is built.
-    let (cycles, program) = (compare::cycles(&measured, board)?, program(board, &identity)?);
+    let (cycles, program) = (
+        compare::cycles(&measured, board)?,
+        program(board, &identity)?,
+    );
     let sections = [methods, cycles, scenes, asked];
 
-    let faults: Vec<&String> = sections.iter().flat_map(|section| &section.faults).collect();
-    let verdict = if faults.is_empty() { "every bit the host's".into() } else { format!("{} not well", faults.len()) };
+    let faults: Vec<&String> = sections
+        .iter()
+        .flat_map(|section| &section.faults)
+        .collect();
+    let verdict = if faults.is_empty() {
+        "every bit the host's".into()
+    } else {
+        format!("{} not well", faults.len())
+    };
     let [motions, methods, scenes, _] = sections.each_ref().map(|section| section.table.rows.len());
-    let headline = format!("{name}: {motions} motions of {methods} methods, {scenes} scenes: {verdict}");
+    let headline =
+        format!("{name}: {motions} motions of {methods} methods, {scenes} scenes: {verdict}");
     let chip = identity.chip.map(|word| format!("{word:08x}")).join(" ");
     let mut text = format!("# {name}\n\n{headline}.\n\n");
-    text += &format!("- chip {chip}, processor {:08x}, {} Hz\n- {program}\n", identity.processor, identity.hertz);
-    let told = sections.iter().filter(|section| !section.table.rows.is_empty());
-    told.for_each(|Section { head: [title, note], table, .. }| {
-        text += &format!("\n## {title}\n\n{note}\n\n{}", table.markdown());
-    });
+    text += &format!(
+        "- chip {chip}, processor {:08x}, {} Hz\n- {program}\n",
+        identity.processor, identity.hertz
+    );
+    let told = sections
+        .iter()
+        .filter(|section| !section.table.rows.is_empty());
+    told.for_each(
+        |Section {
+             head: [title, note],
+             table,
+             ..
+         }| {
+            text += &format!("\n## {title}\n\n{note}\n\n{}", table.markdown());
+        },
+    );
     let path = options.report.with_extension("md");
     fs::write(&path, text).with_context(|| path.display().to_string())?;
-    faults.iter().for_each(|fault| complain(format_args!("not well: {fault}")));
+    faults
+        .iter()
+        .for_each(|fault| complain(format_args!("not well: {fault}")));
     say(format_args!("{headline}\nreport: {}", path.display()))?;
     Ok(faults.is_empty())
 }
@@ -101,19 +146,38 @@ pub fn run(options: &VerifyOptions) -> anyhow::Result<bool> {
 /// in a line.
 fn program(board: Option<&Board>, identity: &Identity) -> anyhow::Result<String> {
     let said = |program: &str, arguments: &[&str]| {
-        let output = process::run(Command::new(program).args(arguments).current_dir(workspace()), QUICK);
-        output.map_or_else(|_| "unknown".to_owned(), |output| output.stdout.trim().to_owned())
+        let output = process::run(
+            Command::new(program)
+                .args(arguments)
+                .current_dir(workspace()),
+            QUICK,
+        );
+        output.map_or_else(
+            |_| "unknown".to_owned(),
+            |output| output.stdout.trim().to_owned(),
+        )
     };
     // With a plus where files have been changed since.
-    let changed = if said("git", &["status", "--porcelain"]).is_empty() { "" } else { "+" };
-    let (commit, compiler) = (said("git", &["rev-parse", "--short=12", "HEAD"]), said("rustc", &["--version"]));
-    let Identity { image, image_bytes, .. } = *identity;
+    let changed = if said("git", &["status", "--porcelain"]).is_empty() {
+        ""
+    } else {
+        "+"
+    };
+    let (commit, compiler) = (
+        said("git", &["rev-parse", "--short=12", "HEAD"]),
+        said("rustc", &["--version"]),
+    );
+    let Identity {
+        image, image_bytes, ..
+    } = *identity;
     let whose = if board.map_or(Ok(false), |board| is_built(board, identity))? {
         format!("built from commit {commit}{changed} by {compiler}")
     } else {
         format!("not the one that commit {commit}{changed} and {compiler} build")
     };
-    Ok(format!("program of {image_bytes} bytes, CRC {image:08x}: {whose}"))
+    Ok(format!(
+        "program of {image_bytes} bytes, CRC {image:08x}: {whose}"
+    ))
 }
 
 /// Whether what is built here for `board` is, from its vectors to its constants, what the board says of itself.
@@ -121,14 +185,21 @@ fn is_built(board: &Board, identity: &Identity) -> anyhow::Result<bool> {
     let elf = fs::read(toolchain::ready()?.build_for(board)?)?;
     let file = object::File::parse(&*elf)?;
     let address = |name: &str| {
-        let symbol = file.symbols().find(|symbol| symbol.name() == Ok(name)).context("a program without its names")?;
+        let symbol = file
+            .symbols()
+            .find(|symbol| symbol.name() == Ok(name))
+            .context("a program without its names")?;
         anyhow::Ok(symbol.address() as usize)
     };
     let (start, end) = (address("__vector_table")?, address("__erodata")?);
     let is_at = |unused: u8| {
         let (first, flash) = flash_image_over(&elf, unused)?;
-        let image = flash.get(start - first as usize..end - first as usize).context("a program beside its flash")?;
-        anyhow::Ok((CRC.checksum(image), image.len() as u32) == (identity.image, identity.image_bytes))
+        let image = flash
+            .get(start - first as usize..end - first as usize)
+            .context("a program beside its flash")?;
+        anyhow::Ok(
+            (CRC.checksum(image), image.len() as u32) == (identity.image, identity.image_bytes),
+        )
     };
     Ok(is_at(ERASED)? || is_at(0)?)
 }

@@ -25,7 +25,10 @@ pub struct Talk {
 
 impl Talk {
     pub fn new(port: Port) -> anyhow::Result<Self> {
-        let mut talk = Self { port, arrived: Vec::new().into_iter() };
+        let mut talk = Self {
+            port,
+            arrived: Vec::new().into_iter(),
+        };
         talk.next_frame()?;
         Ok(talk)
     }
@@ -33,7 +36,11 @@ impl Talk {
     /// The next message of one kind; others on the way to it are passed over, but not a refusal.
     pub fn next<M>(&mut self, kind: impl Fn(ToHost) -> Option<M>) -> anyhow::Result<M> {
         let (since, mut told) = (Instant::now(), None);
-        let mut silence = format!("{}: no message for {} s", self.port.name, PATIENCE.as_secs());
+        let mut silence = format!(
+            "{}: no message for {} s",
+            self.port.name,
+            PATIENCE.as_secs()
+        );
         while since.elapsed() < PATIENCE {
             for message in self.arrived.by_ref() {
                 if let ToHost::Answer(_, Answer::Refused(field)) = message {
@@ -42,7 +49,10 @@ impl Talk {
                 if let Some(wanted) = kind(message) {
                     return Ok(wanted);
                 }
-                silence = format!("{}: the board plays, and does not answer; flash it anew", self.port.name);
+                silence = format!(
+                    "{}: the board plays, and does not answer; flash it anew",
+                    self.port.name
+                );
             }
             self.arrived = self.port.messages().into_iter();
             told = self.port.notices.drain(..).next_back().or(told);
@@ -56,11 +66,24 @@ impl Talk {
     }
 
     /// The next answer of one kind to the command of this number.
-    pub fn answer<A>(&mut self, request: u16, kind: impl Fn(Answer) -> Option<A>) -> anyhow::Result<A> {
-        self.next(|message| message.answer().filter(|(to, _)| *to == request).and_then(|(_, answer)| kind(answer)))
+    pub fn answer<A>(
+        &mut self,
+        request: u16,
+        kind: impl Fn(Answer) -> Option<A>,
+    ) -> anyhow::Result<A> {
+        self.next(|message| {
+            message
+                .answer()
+                .filter(|(to, _)| *to == request)
+                .and_then(|(_, answer)| kind(answer))
+        })
     }
 
-    pub fn ask<A>(&mut self, command: Command, kind: impl Fn(Answer) -> Option<A>) -> anyhow::Result<A> {
+    pub fn ask<A>(
+        &mut self,
+        command: Command,
+        kind: impl Fn(Answer) -> Option<A>,
+    ) -> anyhow::Result<A> {
         self.port.send(0, command);
         self.answer(0, kind)
     }
@@ -76,8 +99,14 @@ pub fn ask_person(talk: &mut Talk, name: &str) -> anyhow::Result<Section> {
         "stm32f405" => (true, &[Key::Select]),
         _ => (false, &[]),
     };
-    talk.ask(Command::Choose(SceneName::Page), |answer| (answer == Answer::Done).then_some(()))?;
-    let mut section = Section::new("Seen and pressed", "By the person at the board.", &["what", "is so"]);
+    talk.ask(Command::Choose(SceneName::Page), |answer| {
+        (answer == Answer::Done).then_some(())
+    })?;
+    let mut section = Section::new(
+        "Seen and pressed",
+        "By the person at the board.",
+        &["what", "is so"],
+    );
     let mut note = |what: String, is_so: Option<bool>| {
         let answer = is_so.map_or("not answered", |is_so| if is_so { "yes" } else { "no" });
         let fault = (is_so == Some(false)).then(|| format!("not so: {what}"));
@@ -97,7 +126,10 @@ pub fn ask_person(talk: &mut Talk, name: &str) -> anyhow::Result<Section> {
         let question = format!("tap the button '{key}', then press enter [n: there is none]");
         let (answer, restarted) = entered(talk, &question)?;
         let is_tapped = !matches!(answer.trim(), "n" | "no") && !answer.is_empty();
-        note(format!("a tap on the button '{key}' starts the motion again"), is_tapped.then_some(restarted));
+        note(
+            format!("a tap on the button '{key}' starts the motion again"),
+            is_tapped.then_some(restarted),
+        );
     }
     Ok(section)
 }

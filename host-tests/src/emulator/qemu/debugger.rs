@@ -52,9 +52,15 @@ pub(super) struct Places {
 impl Machine {
     /// Starts a board with its clock counted, even if `settings` say otherwise; it stands still at its first instruction.
     pub fn halted(settings: &Settings) -> anyhow::Result<Self> {
-        let mut machine = Self::boot(&Settings { clock: Clock::Counted, ..*settings })?;
+        let mut machine = Self::boot(&Settings {
+            clock: Clock::Counted,
+            ..*settings
+        })?;
         let words = Image::read(settings.elf)?.words().into_iter();
-        machine.places.sleeps = words.filter(|(_, first, _)| *first == WFI).map(|(address, ..)| address).collect();
+        machine.places.sleeps = words
+            .filter(|(_, first, _)| *first == WFI)
+            .map(|(address, ..)| address)
+            .collect();
         Ok(machine)
     }
 
@@ -82,10 +88,14 @@ impl Machine {
         drop(both);
         thread::scope(|scope| {
             let reader = scope.spawn(|| read(pipe));
-            let frame = self.log(&path, "cpu,nochain", "on").and_then(|()| self.run_to_frame());
+            let frame = self
+                .log(&path, "cpu,nochain", "on")
+                .and_then(|()| self.run_to_frame());
             let ended = self.log(Path::new("/dev/null"), "none", "off");
             drop(writer);
-            let read = reader.join().unwrap_or_else(|panic| panic::resume_unwind(panic));
+            let read = reader
+                .join()
+                .unwrap_or_else(|panic| panic::resume_unwind(panic));
             frame.and(ended).and(read)
         })
     }
@@ -112,17 +122,26 @@ impl Machine {
     pub fn stop(&mut self) -> anyhow::Result<()> {
         self.debugger.sender.write_all(b"\x03")?;
         let reply = self.hear()?;
-        if reply.starts_with("T02") { Ok(()) } else { Err(unexpected("an interrupt", &reply)) }
+        if reply.starts_with("T02") {
+            Ok(())
+        } else {
+            Err(unexpected("an interrupt", &reply))
+        }
     }
 
     /// Makes the processor go on elsewhere: the values of some registers.
     pub fn divert(&mut self, registers: &[(Register, u32)]) -> anyhow::Result<()> {
         self.places.here = None;
-        registers.iter().try_for_each(|(register, value)| self.set(*register, *value))
+        registers
+            .iter()
+            .try_for_each(|(register, value)| self.set(*register, *value))
     }
 
     pub fn write(&mut self, address: u32, bytes: &[u8]) -> anyhow::Result<()> {
-        for (start, piece) in (address..).step_by(PIECE as usize).zip(bytes.chunks(PIECE as usize)) {
+        for (start, piece) in (address..)
+            .step_by(PIECE as usize)
+            .zip(bytes.chunks(PIECE as usize))
+        {
             let digits: String = piece.iter().map(|byte| format!("{byte:02x}")).collect();
             self.expect(&format!("M{start:x},{:x}:{digits}", piece.len()), "OK")?;
         }
@@ -159,13 +178,20 @@ impl Machine {
     }
 
     fn set(&mut self, register: Register, value: u32) -> anyhow::Result<()> {
-        self.expect(&format!("P{:x}={:08x}", register as u32, value.swap_bytes()), "OK")
+        self.expect(
+            &format!("P{:x}={:08x}", register as u32, value.swap_bytes()),
+            "OK",
+        )
     }
 
     /// Sends a packet whose answer must begin with `answer`.
     fn expect(&mut self, packet: &str, answer: &str) -> anyhow::Result<()> {
         let reply = self.ask(packet)?;
-        if reply.starts_with(answer) { Ok(()) } else { Err(unexpected(packet, &reply)) }
+        if reply.starts_with(answer) {
+            Ok(())
+        } else {
+            Err(unexpected(packet, &reply))
+        }
     }
 
     pub(super) fn ask(&mut self, packet: &str) -> anyhow::Result<String> {

@@ -17,7 +17,11 @@ pub struct LogLine {
 
 impl LogLine {
     pub(super) fn plain(text: &str) -> Self {
-        Self { level: None, text: text.to_owned(), place: String::new() }
+        Self {
+            level: None,
+            text: text.to_owned(),
+            place: String::new(),
+        }
     }
 
     /// Whether something went wrong: a defmt error, or a crash report or complaint in plain text.
@@ -28,7 +32,10 @@ impl LogLine {
 
 impl fmt::Display for LogLine {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let level = self.level.as_ref().map_or(String::new(), |level| format!("{level:5} "));
+        let level = self
+            .level
+            .as_ref()
+            .map_or(String::new(), |level| format!("{level:5} "));
         write!(f, "{level}{}{}", self.text, self.place)
     }
 }
@@ -47,17 +54,28 @@ impl LogDecoder {
     pub fn new(elf: &Path) -> anyhow::Result<Self> {
         let program = std::fs::read(elf).with_context(|| elf.display().to_string())?;
         let Some(table) = Table::parse(&program)?.map(Box::new) else {
-            return Ok(Self { stream: None, can_recover: false, locations: Locations::new() });
+            return Ok(Self {
+                stream: None,
+                can_recover: false,
+                locations: Locations::new(),
+            });
         };
-        let (locations, table): (_, &'static Table) = (table.get_locations(&program)?, Box::leak(table));
+        let (locations, table): (_, &'static Table) =
+            (table.get_locations(&program)?, Box::leak(table));
         let can_recover = table.encoding().can_recover();
-        Ok(Self { stream: Some(table.new_stream_decoder()), can_recover, locations })
+        Ok(Self {
+            stream: Some(table.new_stream_decoder()),
+            can_recover,
+            locations,
+        })
     }
 
     /// Takes the next bytes; the lines that they complete.
     pub fn take(&mut self, bytes: &[u8]) -> Vec<LogLine> {
         let mut lines = Vec::new();
-        let Some(stream) = &mut self.stream else { return lines };
+        let Some(stream) = &mut self.stream else {
+            return lines;
+        };
         stream.received(bytes);
         loop {
             match stream.decode() {
@@ -76,9 +94,19 @@ impl LogDecoder {
 }
 
 fn line(frame: &Frame, locations: &Locations) -> LogLine {
-    let place = locations
-        .get(&frame.index())
-        .and_then(|location| Some(format!(" [{}:{}]", location.file.file_name()?.display(), location.line)));
-    let level = frame.level().map_or_else(|| "print".to_owned(), |level| level.as_str().to_owned());
-    LogLine { level: Some(level), text: frame.display_message().to_string(), place: place.unwrap_or_default() }
+    let place = locations.get(&frame.index()).and_then(|location| {
+        Some(format!(
+            " [{}:{}]",
+            location.file.file_name()?.display(),
+            location.line
+        ))
+    });
+    let level = frame
+        .level()
+        .map_or_else(|| "print".to_owned(), |level| level.as_str().to_owned());
+    LogLine {
+        level: Some(level),
+        text: frame.display_message().to_string(),
+        place: place.unwrap_or_default(),
+    }
 }

@@ -72,30 +72,61 @@ impl Machine {
 
     /// Starts a board that stands still at its first instruction.
     pub(super) fn boot(settings: &Settings) -> anyhow::Result<Self> {
-        let elf = settings.elf.canonicalize().with_context(|| settings.elf.display().to_string())?;
-        let folder = tempfile::Builder::new().prefix("double-pendulum-").tempdir()?;
+        let elf = settings
+            .elf
+            .canonicalize()
+            .with_context(|| settings.elf.display().to_string())?;
+        let folder = tempfile::Builder::new()
+            .prefix("double-pendulum-")
+            .tempdir()?;
         remove_on_interrupt(folder.path());
         let mut command = Command::new(settings.qemu);
         command.current_dir(folder.path());
-        command.args(["-machine", settings.board.machine, "-cpu", settings.board.cpu]).arg("-kernel").arg(elf);
+        command
+            .args([
+                "-machine",
+                settings.board.machine,
+                "-cpu",
+                settings.board.cpu,
+            ])
+            .arg("-kernel")
+            .arg(elf);
         let mut channel = |name: &str| {
             command.args(["-chardev", &format!("pipe,id={name},path={name}")]);
             Channel::make(&folder.path().join(name))
         };
-        let (monitor, debugger, serial) = (channel("monitor")?, channel("debugger")?, channel("serial")?);
-        command.args(["-display", "none", "-mon", "chardev=monitor,mode=control", "-gdb", "chardev:debugger", "-S"]);
-        command.args(["-serial", "null"].repeat(settings.board.serial_port)).args(["-serial", "chardev:serial"]);
+        let (monitor, debugger, serial) = (
+            channel("monitor")?,
+            channel("debugger")?,
+            channel("serial")?,
+        );
+        command.args([
+            "-display",
+            "none",
+            "-mon",
+            "chardev=monitor,mode=control",
+            "-gdb",
+            "chardev:debugger",
+            "-S",
+        ]);
+        command
+            .args(["-serial", "null"].repeat(settings.board.serial_port))
+            .args(["-serial", "chardev:serial"]);
         if settings.debugger {
             command.args(["-semihosting-config", "enable=on,target=native"]);
         }
         match settings.clock {
-            Clock::Counted => {
-                command.arg("-icount").arg(format!("shift={},sleep=off", settings.board.instruction_shift()))
-            }
+            Clock::Counted => command.arg("-icount").arg(format!(
+                "shift={},sleep=off",
+                settings.board.instruction_shift()
+            )),
             // A host that holds QEMU up for seconds is no reason for the board to start again.
             Clock::Real => command.args(["-action", "watchdog=none"]),
         };
-        command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        command
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped());
 
         let decoder = LogDecoder::new(settings.elf)?;
         let mut process = process::spawn(&mut command, settings.limit)?;
@@ -123,15 +154,31 @@ impl Machine {
     fn take_in(&mut self) -> anyhow::Result<()> {
         // What was said before the end is all there then.
         let ended = self.process.ended(&self.log)?;
-        let Self { monitor, debugger, serial, log, .. } = self;
-        let serial = if self.listens { Some(&mut serial.stream) } else { None };
-        for stream in [&mut monitor.stream, &mut debugger.stream].into_iter().chain(log).chain(serial) {
+        let Self {
+            monitor,
+            debugger,
+            serial,
+            log,
+            ..
+        } = self;
+        let serial = if self.listens {
+            Some(&mut serial.stream)
+        } else {
+            None
+        };
+        for stream in [&mut monitor.stream, &mut debugger.stream]
+            .into_iter()
+            .chain(log)
+            .chain(serial)
+        {
             stream.take_in();
         }
         let received = self.serial.stream.bytes.drain(..);
-        self.messages.extend(received.filter_map(|byte| self.inbox.take(byte)));
+        self.messages
+            .extend(received.filter_map(|byte| self.inbox.take(byte)));
         let [firmware, plain] = &mut self.log;
-        self.lines.extend(self.decoder.take(&std::mem::take(&mut firmware.bytes)));
+        self.lines
+            .extend(self.decoder.take(&std::mem::take(&mut firmware.bytes)));
         while let Some(line) = plain.line() {
             if !CHATTER.iter().any(|chatter| line.contains(chatter)) {
                 self.lines.push(LogLine::plain(&line));
@@ -139,18 +186,26 @@ impl Machine {
         }
         let Some(status) = ended else { return Ok(()) };
         let last = &self.lines[self.lines.len().saturating_sub(4)..];
-        Err(last.iter().fold(anyhow!("QEMU ended ({status})"), |said, line| anyhow!("{said}\n{line}")))
+        Err(last
+            .iter()
+            .fold(anyhow!("QEMU ended ({status})"), |said, line| {
+                anyhow!("{said}\n{line}")
+            }))
     }
 
     /// Waits until `found` finds something in what has come; the error tells how QEMU has ended.
-    pub(super) fn wait_until<T>(&mut self, mut found: impl FnMut(&mut Self) -> Option<T>) -> anyhow::Result<T> {
+    pub(super) fn wait_until<T>(
+        &mut self,
+        mut found: impl FnMut(&mut Self) -> Option<T>,
+    ) -> anyhow::Result<T> {
         loop {
             let goes_on = self.take_in();
             if let Some(found) = found(self) {
                 return Ok(found);
             }
             goes_on?;
-            let channels = [&self.monitor, &self.debugger, &self.serial].map(|channel| &channel.stream);
+            let channels =
+                [&self.monitor, &self.debugger, &self.serial].map(|channel| &channel.stream);
             stream::wait(channels.into_iter().chain(&self.log));
         }
     }
@@ -161,7 +216,9 @@ impl Machine {
 
     /// The next message of one kind; others on the way to it are passed over.
     pub fn wait_for<M>(&mut self, kind: impl Fn(ToHost) -> Option<M>) -> anyhow::Result<M> {
-        self.wait_until(|machine| std::iter::from_fn(|| machine.messages.pop_front()).find_map(&kind))
+        self.wait_until(|machine| {
+            std::iter::from_fn(|| machine.messages.pop_front()).find_map(&kind)
+        })
     }
 
     pub fn next_frame(&mut self) -> anyhow::Result<Frame> {
@@ -203,7 +260,10 @@ impl Machine {
     }
 
     pub fn said(&mut self) -> String {
-        self.lines().iter().map(|line| format!("{line}\n")).collect()
+        self.lines()
+            .iter()
+            .map(|line| format!("{line}\n"))
+            .collect()
     }
 
     pub fn id(&self) -> u32 {

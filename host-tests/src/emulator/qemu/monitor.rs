@@ -24,7 +24,8 @@ impl Machine {
 
     /// What is in memory.
     pub fn read(&mut self, addresses: Range<u32>) -> anyhow::Result<Vec<u8>> {
-        let range = json!({ "val": addresses.start, "size": addresses.len(), "filename": "memory" });
+        let range =
+            json!({ "val": addresses.start, "size": addresses.len(), "filename": "memory" });
         self.execute("memsave", range)?;
         Ok(std::fs::read(self.folder.path().join("memory"))?)
     }
@@ -32,15 +33,24 @@ impl Machine {
     /// Presses a button, or lets go of it. Lost while the machine stands still.
     pub fn set_key(&mut self, key: Key, down: bool) -> anyhow::Result<()> {
         // QEMU knows the board's select as the left control key.
-        let code = if key == Key::Select { "ctrl" } else { key.name() };
+        let code = if key == Key::Select {
+            "ctrl"
+        } else {
+            key.name()
+        };
         let event = json!({ "type": "key", "data": { "down": down, "key": { "type": "qcode", "data": code } } });
-        self.execute("input-send-event", json!({ "events": [event] })).map(drop)
+        self.execute("input-send-event", json!({ "events": [event] }))
+            .map(drop)
     }
 
     /// Presses and lets go of every button once, too early for the firmware to take it for a command: only then does
     /// this board's emulated hardware tell a released button from a pressed one.
     pub fn wake_keys(&mut self) -> anyhow::Result<()> {
-        Key::ALL.iter().try_for_each(|&key| [true, false].into_iter().try_for_each(|down| self.set_key(key, down)))
+        Key::ALL.iter().try_for_each(|&key| {
+            [true, false]
+                .into_iter()
+                .try_for_each(|down| self.set_key(key, down))
+        })
     }
 
     /// Switches QEMU's running of one instruction after the other `on` or `off`.
@@ -53,11 +63,19 @@ impl Machine {
     pub(super) fn console(&mut self, line: &str) -> anyhow::Result<()> {
         let said = self.execute("human-monitor-command", json!({ "command-line": line }))?;
         let reason = said.as_str().unwrap_or_default().trim();
-        if reason.is_empty() { Ok(()) } else { bail!("QEMU refuses console: {reason}") }
+        if reason.is_empty() {
+            Ok(())
+        } else {
+            bail!("QEMU refuses console: {reason}")
+        }
     }
 
     pub(super) fn execute(&mut self, command: &str, arguments: Value) -> anyhow::Result<Value> {
-        writeln!(self.monitor.sender, "{}", json!({ "execute": command, "arguments": arguments }))?;
+        writeln!(
+            self.monitor.sender,
+            "{}",
+            json!({ "execute": command, "arguments": arguments })
+        )?;
         loop {
             let line = self.wait_until(|machine| machine.monitor.stream.line())?;
             let mut answer: Value = serde_json::from_str(&line)?;

@@ -20,7 +20,10 @@ pub struct Screenshot {
 impl std::fmt::Debug for Screenshot {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         for row in self.greys.chunks(WIDTH) {
-            let line: String = row.iter().map(|&grey| b" .:-=+*#%@"[usize::from(grey) * 9 / 15] as char).collect();
+            let line: String = row
+                .iter()
+                .map(|&grey| b" .:-=+*#%@"[usize::from(grey) * 9 / 15] as char)
+                .collect();
             writeln!(f, "|{line}|")?;
         }
         Ok(())
@@ -30,20 +33,34 @@ impl std::fmt::Debug for Screenshot {
 impl Screenshot {
     /// Of the grey of each pixel, `x` from the left and `y` from the top.
     fn drawn(grey: impl Fn(usize, usize) -> u8) -> Self {
-        Self { greys: (0..WIDTH * HEIGHT).map(|index| grey(index % WIDTH, index / WIDTH)).collect() }
+        Self {
+            greys: (0..WIDTH * HEIGHT)
+                .map(|index| grey(index % WIDTH, index / WIDTH))
+                .collect(),
+        }
     }
 
     pub(super) fn from_ppm(file: &[u8]) -> anyhow::Result<Self> {
-        let pixels = file.strip_prefix(HEADER).context("the panel's screenshot is no PPM file of 512 x 256 pixels")?;
-        let index = |x: usize, y: usize| 3 * ((MAGNIFIED * y + 1) * MAGNIFIED * WIDTH + MAGNIFIED * x + 1);
-        ensure!(index(WIDTH - 1, HEIGHT - 1) < pixels.len(), "the panel's screenshot is cut short");
+        let pixels = file
+            .strip_prefix(HEADER)
+            .context("the panel's screenshot is no PPM file of 512 x 256 pixels")?;
+        let index =
+            |x: usize, y: usize| 3 * ((MAGNIFIED * y + 1) * MAGNIFIED * WIDTH + MAGNIFIED * x + 1);
+        ensure!(
+            index(WIDTH - 1, HEIGHT - 1) < pixels.len(),
+            "the panel's screenshot is cut short"
+        );
         Ok(Self::drawn(|x, y| pixels[index(x, y)] / GREY_UNIT))
     }
 
     /// Out of the memory of a one-colour panel, pages of eight rows from the top, a byte for every column of each; black where
     /// there is none.
     pub fn from_pages(memory: &[u8]) -> Self {
-        let is_lit = |x: usize, y: usize| memory.get(y / 8 * WIDTH + x).is_some_and(|byte| byte >> (y % 8) & 1 != 0);
+        let is_lit = |x: usize, y: usize| {
+            memory
+                .get(y / 8 * WIDTH + x)
+                .is_some_and(|byte| byte >> (y % 8) & 1 != 0)
+        };
         Self::drawn(|x, y| if is_lit(x, y) { 15 } else { 0 })
     }
 }
@@ -58,7 +75,9 @@ impl From<&Canvas> for Screenshot {
 #[test]
 fn what_is_no_whole_dump_of_the_panel_is_refused() {
     let whole = [HEADER, &[0xFF; 3 * 512 * 256]].concat();
-    assert!(Screenshot::from_ppm(&whole).is_ok_and(|panel| panel.greys.iter().all(|grey| *grey == 15)));
+    assert!(
+        Screenshot::from_ppm(&whole).is_ok_and(|panel| panel.greys.iter().all(|grey| *grey == 15))
+    );
     let cut_short = Screenshot::from_ppm(&whole[..whole.len() - 4 * 512 * 3]);
     assert!(cut_short.is_err() && Screenshot::from_ppm(b"P6\n720 400\n255\n").is_err());
 }

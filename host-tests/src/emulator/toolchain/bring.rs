@@ -20,8 +20,12 @@ pub(super) const INSTALL: Duration = Duration::from_secs(1200);
 
 /// Waits for our turn at a set-up; it ends when this is dropped or the process ends, however it ends.
 pub(super) fn turn() -> Result<Flock<File>, Refused> {
-    let refuse = |error: io::Error| Refused::because(format_args!("cannot lock {}: {error}", target().display()));
-    let folder = fs::create_dir_all(target()).and_then(|()| File::open(target())).map_err(refuse)?;
+    let refuse = |error: io::Error| {
+        Refused::because(format_args!("cannot lock {}: {error}", target().display()))
+    };
+    let folder = fs::create_dir_all(target())
+        .and_then(|()| File::open(target()))
+        .map_err(refuse)?;
     Flock::lock(folder, FlockArg::LockExclusive).map_err(|(_, error)| refuse(error.into()))
 }
 
@@ -29,7 +33,11 @@ pub(super) fn turn() -> Result<Flock<File>, Refused> {
 pub(super) type Way<'a> = (String, &'a dyn Fn() -> Result<(), String>);
 
 /// What `find` finds, else, if it `installs`, what the first of the `ways` brings that does; or why each fails.
-pub(super) fn bring<T>(installs: bool, find: impl Fn() -> Result<T, String>, ways: &[Way]) -> Result<T, String> {
+pub(super) fn bring<T>(
+    installs: bool,
+    find: impl Fn() -> Result<T, String>,
+    ways: &[Way],
+) -> Result<T, String> {
     let mut failures = match find() {
         Ok(found) => return Ok(found),
         Err(why) => vec![why],
@@ -37,7 +45,10 @@ pub(super) fn bring<T>(installs: bool, find: impl Fn() -> Result<T, String>, way
     for (done, way) in ways.iter().filter(|_| installs) {
         match way().and_then(|()| find()) {
             Ok(found) => {
-                complain(format_args!("done: {done}, because {}", failures.join("; ")));
+                complain(format_args!(
+                    "done: {done}, because {}",
+                    failures.join("; ")
+                ));
                 return Ok(found);
             }
             Err(failure) if failures.contains(&failure) => {}
@@ -50,27 +61,46 @@ pub(super) fn bring<T>(installs: bool, find: impl Fn() -> Result<T, String>, way
 /// Installs packages of Debian's, by its newest lists: old ones may name packages that are gone.
 pub(super) fn install_packages(packages: &[&str]) -> Result<(), String> {
     if find("apt-get").is_none() {
-        return Err("this system has no apt-get, the only package manager this command runs".to_owned());
+        return Err(
+            "this system has no apt-get, the only package manager this command runs".to_owned(),
+        );
     }
     if !nix::unistd::geteuid().is_root() {
         return Err("only root may install packages".to_owned());
     }
-    let updated = attempt(&mut apt_get("update"), INSTALL, "apt-get fetches the lists of packages");
+    let updated = attempt(
+        &mut apt_get("update"),
+        INSTALL,
+        "apt-get fetches the lists of packages",
+    );
     let mut install = apt_get("install");
-    install.args(["--no-install-recommends", "--no-remove", "--reinstall"]).args(packages);
+    install
+        .args(["--no-install-recommends", "--no-remove", "--reinstall"])
+        .args(packages);
     // One bad source of many does not stop the install; where it fails too, the lists are the cause.
-    attempt(&mut install, INSTALL, &format!("apt-get installs {}", packages.join(", ")))
-        .map_err(|failure| updated.err().unwrap_or(failure))
+    attempt(
+        &mut install,
+        INSTALL,
+        &format!("apt-get installs {}", packages.join(", ")),
+    )
+    .map_err(|failure| updated.err().unwrap_or(failure))
 }
 
 /// `apt-get` that asks nothing, waits its turn and does not wait for a dead network.
 fn apt_get(action: &str) -> Command {
     let mut command = Command::new("apt-get");
     command.args([action, "--yes", "--quiet"]);
-    for option in ["DPkg::Lock::Timeout=120", "Dpkg::Use-Pty=0", "Acquire::http::Timeout=30", "Acquire::Retries=1"] {
+    for option in [
+        "DPkg::Lock::Timeout=120",
+        "Dpkg::Use-Pty=0",
+        "Acquire::http::Timeout=30",
+        "Acquire::Retries=1",
+    ] {
         command.args(["-o", option]);
     }
-    command.env("DEBIAN_FRONTEND", "noninteractive").env("LC_ALL", "C");
+    command
+        .env("DEBIAN_FRONTEND", "noninteractive")
+        .env("LC_ALL", "C");
     command
 }
 
@@ -91,7 +121,10 @@ pub(super) fn says(command: &mut Command) -> Result<String, String> {
 }
 
 /// What a command has said, or why it failed: the line in which it says so.
-fn said(command: &mut Command, run: impl FnOnce(&mut Command) -> io::Result<Output>) -> Result<String, String> {
+fn said(
+    command: &mut Command,
+    run: impl FnOnce(&mut Command) -> io::Result<Output>,
+) -> Result<String, String> {
     let output = run(command).map_err(|error| error.to_string())?;
     if output.status.success() {
         return Ok(output.stdout);
@@ -100,6 +133,13 @@ fn said(command: &mut Command, run: impl FnOnce(&mut Command) -> io::Result<Outp
     let marked = |mark: &&str| lines().find(|line| line.contains(*mark));
     let marks = ["No space left on device", "E: ", "error: ", "npm "];
     let line = marks.iter().find_map(marked).or_else(|| lines().last());
-    let line: String = line.unwrap_or("it fails without a word").chars().take(200).collect();
-    Err(format!("{}: {line}", command.get_program().to_string_lossy()))
+    let line: String = line
+        .unwrap_or("it fails without a word")
+        .chars()
+        .take(200)
+        .collect();
+    Err(format!(
+        "{}: {line}",
+        command.get_program().to_string_lossy()
+    ))
 }

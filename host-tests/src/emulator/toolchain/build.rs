@@ -27,19 +27,34 @@ const LIMIT: Duration = Duration::from_secs(1800);
 /// none of it may reach the firmware's build, ...
 const FOREIGN: [&str; 5] = ["CARGO", "RUST", "LD_LIBRARY_PATH", "DYLD_", "OUT_DIR"];
 /// ... but what says where cargo is at home and how it reaches the network.
-const OURS: [&str; 5] = ["CARGO_HOME", "CARGO_HTTP_", "CARGO_NET_", "CARGO_REGISTR", "RUSTUP_"];
+const OURS: [&str; 5] = [
+    "CARGO_HOME",
+    "CARGO_HTTP_",
+    "CARGO_NET_",
+    "CARGO_REGISTR",
+    "RUSTUP_",
+];
 
 impl Toolchain {
     /// Cargo as it builds for a chip, in the workspace's folder.
     fn cargo(&self) -> Command {
-        let mut command = Command::new(if self.linker.is_some() { DEBIAN_CARGO } else { "cargo" });
+        let mut command = Command::new(if self.linker.is_some() {
+            DEBIAN_CARGO
+        } else {
+            "cargo"
+        });
         for (name, _) in env::vars_os().filter(|(name, _)| is_foreign(name)) {
             command.env_remove(name);
         }
-        command.current_dir(workspace()).env("RUSTUP_AUTO_INSTALL", "0");
+        command
+            .current_dir(workspace())
+            .env("RUSTUP_AUTO_INSTALL", "0");
         if let Some(linker) = &self.linker {
             // Debian's cargo is a stable one; building core is still called unstable.
-            command.env("RUSTC", DEBIAN_RUSTC).env("RUSTC_BOOTSTRAP", "1").env("CARGO_UNSTABLE_BUILD_STD", "core");
+            command
+                .env("RUSTC", DEBIAN_RUSTC)
+                .env("RUSTC_BOOTSTRAP", "1")
+                .env("CARGO_UNSTABLE_BUILD_STD", "core");
             command.env("PATH", path_with(linker.clone()));
         }
         command
@@ -61,11 +76,16 @@ impl Toolchain {
         let elf = Self::folder().join(target).join("release").join(binary);
         let this = (binary.to_owned(), target.to_owned());
         if !BUILT.lock().is_ok_and(|built| built.contains(&this)) {
-            let feature = every_board().find(|board| board.binary == binary).map_or("", |board| board.feature);
+            let feature = every_board()
+                .find(|board| board.binary == binary)
+                .map_or("", |board| board.feature);
             let mut command = self.for_targets("build", &[target]);
             command.args(["--bin", binary, "--features", feature]);
             self.finish(command, &format!("building {binary} for {target}"))?;
-            BUILT.lock().into_iter().for_each(|mut built| built.push(this.clone()));
+            BUILT
+                .lock()
+                .into_iter()
+                .for_each(|mut built| built.push(this.clone()));
         }
         Ok(elf)
     }
@@ -75,13 +95,18 @@ impl Toolchain {
         let mut command = self.for_targets("build", &[target]);
         // Both kinds come out under one name.
         let folder = double.map_or_else(Self::folder, |cpu| Self::folder().join(cpu));
-        command.args(["--bin", "cores", "--features", "cores"]).env("CARGO_TARGET_DIR", &folder);
+        command
+            .args(["--bin", "cores", "--features", "cores"])
+            .env("CARGO_TARGET_DIR", &folder);
         if let Some(cpu) = double {
             // In place of the flags of the configuration, which are those of a Cortex-M4F.
             command.args(["--features", "double-pendulum-kernel/double-fpu"]);
             command.env("RUSTFLAGS", format!("-Ctarget-cpu={cpu}"));
         }
-        self.finish(command, &format!("building cores for {}", double.unwrap_or(target)))?;
+        self.finish(
+            command,
+            &format!("building cores for {}", double.unwrap_or(target)),
+        )?;
         Ok(folder.join(target).join("release/cores"))
     }
 
@@ -97,10 +122,13 @@ impl Toolchain {
     /// clippy too where the compiler has it.
     pub fn check(&self) -> anyhow::Result<()> {
         for target in TARGETS {
-            let features = every_board().filter(|board| board.target == target).map(|board| board.feature);
+            let features = every_board()
+                .filter(|board| board.target == target)
+                .map(|board| board.feature);
             let features = features.collect::<Vec<_>>().join(",");
             let is_ready_made = self.linker.is_none();
-            let mut command = self.for_targets(if is_ready_made { "clippy" } else { "check" }, &[target]);
+            let mut command =
+                self.for_targets(if is_ready_made { "clippy" } else { "check" }, &[target]);
             command.args(["--bins", "--example", "embassy", "--features", &features]);
             if features.contains(PICO.feature) {
                 command.args(["--example", "colour_panel", "--features", "colour-panel"]);
@@ -118,14 +146,20 @@ impl Toolchain {
     /// What cargo is to do with the optimised firmware for some targets.
     fn for_targets(&self, what: &str, targets: &[&str]) -> Command {
         let mut command = self.cargo();
-        command.args([what, "--release", "--package", "firmware"]).env("CARGO_TARGET_DIR", Self::folder());
+        command
+            .args([what, "--release", "--package", "firmware"])
+            .env("CARGO_TARGET_DIR", Self::folder());
         command.args(targets.iter().flat_map(|target| ["--target", target]));
         command
     }
 
     fn finish(&self, mut command: Command, doing: &str) -> anyhow::Result<()> {
         let output = run_shown(&mut command, LIMIT, doing)?;
-        ensure!(output.status.success(), "the firmware does not build\n{}", output.stderr);
+        ensure!(
+            output.status.success(),
+            "the firmware does not build\n{}",
+            output.stderr
+        );
         Ok(())
     }
 }

@@ -27,22 +27,40 @@ pub(super) struct Emulator {
     folder: &'static str,
 }
 
-pub(super) const QEMU: Emulator = Emulator { program: "qemu-system-arm", package: "qemu-system-arm", folder: "qemu" };
-pub(super) const QEMU_RISCV: Emulator = Emulator { program: "qemu-riscv32", package: "qemu-user", folder: "qemu-user" };
+pub(super) const QEMU: Emulator = Emulator {
+    program: "qemu-system-arm",
+    package: "qemu-system-arm",
+    folder: "qemu",
+};
+pub(super) const QEMU_RISCV: Emulator = Emulator {
+    program: "qemu-riscv32",
+    package: "qemu-user",
+    folder: "qemu-user",
+};
 
 /// The core library for these targets: ready-made by rustup beside the compiler in use, else Debian's sources and their compiler,
 /// with a linker.
 pub(super) fn core(installs: bool, targets: &[&str]) -> Result<Option<PathBuf>, String> {
     let rustup = || {
         let mut rustup = Command::new("rustup");
-        rustup.args(["target", "add"]).args(targets).current_dir(workspace()).env("RUSTUP_AUTO_INSTALL", "0");
-        let doing = format!("rustup fetches the core library, for at most {} s", RUSTUP.as_secs());
+        rustup
+            .args(["target", "add"])
+            .args(targets)
+            .current_dir(workspace())
+            .env("RUSTUP_AUTO_INSTALL", "0");
+        let doing = format!(
+            "rustup fetches the core library, for at most {} s",
+            RUSTUP.as_secs()
+        );
         attempt(&mut rustup, RUSTUP, &doing)
     };
     let debian = || linker().and_then(|_| install_packages(&CORE_PACKAGES));
     let ways: [Way; 2] = [
         (format!("rustup added {}", targets.join(", ")), &rustup),
-        (format!("apt-get installed {}", CORE_PACKAGES.join(", ")), &debian),
+        (
+            format!("apt-get installed {}", CORE_PACKAGES.join(", ")),
+            &debian,
+        ),
     ];
     bring(installs, || find_core(targets), &ways)
 }
@@ -50,15 +68,22 @@ pub(super) fn core(installs: bool, targets: &[&str]) -> Result<Option<PathBuf>, 
 fn find_core(targets: &[&str]) -> Result<Option<PathBuf>, String> {
     let (in_use, _) = libraries("rustc")?;
     let has_core = |target: &&str| {
-        let mut files = fs::read_dir(in_use.join(target).join("lib")).into_iter().flatten().flatten();
+        let mut files = fs::read_dir(in_use.join(target).join("lib"))
+            .into_iter()
+            .flatten()
+            .flatten();
         files.any(|file| file.file_name().as_encoded_bytes().starts_with(b"libcore-"))
     };
     if targets.iter().all(has_core) {
         return Ok(None);
     }
-    let (debians, _) = libraries(DEBIAN_RUSTC).map_err(|_| "neither rustup nor Debian has brought one")?;
+    let (debians, _) =
+        libraries(DEBIAN_RUSTC).map_err(|_| "neither rustup nor Debian has brought one")?;
     if !debians.join("src/rust/library/core").is_dir() || !Path::new(DEBIAN_CARGO).is_file() {
-        return Err(format!("of Debian's {} not all are installed", CORE_PACKAGES.join(", ")));
+        return Err(format!(
+            "of Debian's {} not all are installed",
+            CORE_PACKAGES.join(", ")
+        ));
     }
     let version = says(Command::new(DEBIAN_RUSTC).arg("--version"))?;
     let least = env!("CARGO_PKG_RUST_VERSION");
@@ -75,31 +100,53 @@ fn linker() -> Result<PathBuf, String> {
     if folder.join("rust-lld").is_file() {
         return Ok(folder);
     }
-    Err(format!("there is no rust-lld in {}; the compiler of rustup.rs has one", folder.display()))
+    Err(format!(
+        "there is no rust-lld in {}; the compiler of rustup.rs has one",
+        folder.display()
+    ))
 }
 
 /// Where a compiler has its libraries, and its name of the host.
 fn libraries(rustc: &str) -> Result<(PathBuf, String), String> {
     let mut command = Command::new(rustc);
-    command.args(["--print", "sysroot", "--print", "host-tuple"]).current_dir(workspace());
+    command
+        .args(["--print", "sysroot", "--print", "host-tuple"])
+        .current_dir(workspace());
     let said = says(command.env("RUSTUP_AUTO_INSTALL", "0"))?;
-    let (sysroot, host) = said.split_once('\n').ok_or("rustc does not say where its libraries are")?;
-    Ok((Path::new(sysroot).join("lib/rustlib"), host.trim().to_owned()))
+    let (sysroot, host) = said
+        .split_once('\n')
+        .ok_or("rustc does not say where its libraries are")?;
+    Ok((
+        Path::new(sysroot).join("lib/rustlib"),
+        host.trim().to_owned(),
+    ))
 }
 
 /// A number in a version; part 0 is the first.
 fn number(version: &str, part: usize) -> Option<u32> {
-    version.split('.').nth(part)?.trim_matches(|c: char| !c.is_ascii_digit()).parse().ok()
+    version
+        .split('.')
+        .nth(part)?
+        .trim_matches(|c: char| !c.is_ascii_digit())
+        .parse()
+        .ok()
 }
 
 /// An emulator from Debian's packages, installed, or unpacked for this project alone where they cannot be: where that would cost the
 /// user another package, or another may do it. The first that runs: the system's, else this project's own.
 pub(super) fn qemu(installs: bool, emulator: &Emulator) -> Result<PathBuf, String> {
-    let Emulator { program, package, folder } = *emulator;
+    let Emulator {
+        program,
+        package,
+        folder,
+    } = *emulator;
     let folder = target().join(folder);
     let find = || {
         let mut why = "there is no such program".to_owned();
-        for path in find(program).into_iter().chain(executable(folder.join(program))) {
+        for path in find(program)
+            .into_iter()
+            .chain(executable(folder.join(program)))
+        {
             match says(Command::new(&path).arg("--version")) {
                 Ok(_) => return Ok(path),
                 Err(reason) => why = reason,
@@ -109,12 +156,25 @@ pub(super) fn qemu(installs: bool, emulator: &Emulator) -> Result<PathBuf, Strin
     };
     let unpack = || {
         let mut unpack = Command::new("sh");
-        unpack.arg(workspace().join(UNPACK_QEMU)).arg(&folder).args([package, program]).env("LC_ALL", "C");
-        attempt(&mut unpack, INSTALL, "unpacking QEMU, which cannot be installed")
+        unpack
+            .arg(workspace().join(UNPACK_QEMU))
+            .arg(&folder)
+            .args([package, program])
+            .env("LC_ALL", "C");
+        attempt(
+            &mut unpack,
+            INSTALL,
+            "unpacking QEMU, which cannot be installed",
+        )
     };
     let ways: [Way; 2] = [
-        (format!("apt-get installed {package}"), &|| install_packages(&[package])),
-        (format!("{package} unpacked into {}", folder.display()), &unpack),
+        (format!("apt-get installed {package}"), &|| {
+            install_packages(&[package])
+        }),
+        (
+            format!("{package} unpacked into {}", folder.display()),
+            &unpack,
+        ),
     ];
     bring(installs, find, &ways)
 }
@@ -125,7 +185,9 @@ pub fn find(program: &str) -> Option<PathBuf> {
 }
 
 fn executable(path: PathBuf) -> Option<PathBuf> {
-    fs::metadata(&path).is_ok_and(|file| file.is_file() && file.permissions().mode() & 0o111 != 0).then_some(path)
+    fs::metadata(&path)
+        .is_ok_and(|file| file.is_file() && file.permissions().mode() & 0o111 != 0)
+        .then_some(path)
 }
 
 const NPM: Duration = Duration::from_secs(120);
@@ -141,26 +203,62 @@ pub(super) fn rp2040js(installs: bool) -> Result<PathBuf, Refused> {
         let node = find("node").ok_or("there is no Node.js")?;
         let version = says(Command::new(&node).arg("--version"))?;
         let is_new = number(&version, 0).is_some_and(|number| number >= LEAST_NODE);
-        if is_new { Ok(node) } else { Err(format!("Node.js {} is older than {LEAST_NODE}", version.trim())) }
+        if is_new {
+            Ok(node)
+        } else {
+            Err(format!(
+                "Node.js {} is older than {LEAST_NODE}",
+                version.trim()
+            ))
+        }
     };
     let packages = || install_packages(&["nodejs", "npm"]);
-    let node = bring(installs, find_node, &[("apt-get installed nodejs, npm".to_owned(), &packages)])
-        .map_err(|why| missing(installs, "Node.js, of 18 or newer", &why, "this system's packages nodejs and npm"))?;
+    let node = bring(
+        installs,
+        find_node,
+        &[("apt-get installed nodejs, npm".to_owned(), &packages)],
+    )
+    .map_err(|why| {
+        missing(
+            installs,
+            "Node.js, of 18 or newer",
+            &why,
+            "this system's packages nodejs and npm",
+        )
+    })?;
     let folder = workspace().join("host-tests/rp2040");
     let fetched = || {
-        let asked = says(Command::new(&node).args(["--eval", ASK]).current_dir(&folder));
-        asked.map(drop).map_err(|_| "npm has not fetched the version that is wanted".to_owned())
+        let asked = says(
+            Command::new(&node)
+                .args(["--eval", ASK])
+                .current_dir(&folder),
+        );
+        asked
+            .map(drop)
+            .map_err(|_| "npm has not fetched the version that is wanted".to_owned())
     };
     let npm = || {
         if find("npm").is_none() {
             install_packages(&["npm"])?;
         }
         let mut npm = Command::new("npm");
-        npm.args(["ci", "--ignore-scripts", "--no-audit", "--no-fund"]).current_dir(&folder);
-        attempt(&mut npm, NPM, "npm fetches the emulator of the Raspberry Pi Pico")
+        npm.args(["ci", "--ignore-scripts", "--no-audit", "--no-fund"])
+            .current_dir(&folder);
+        attempt(
+            &mut npm,
+            NPM,
+            "npm fetches the emulator of the Raspberry Pi Pico",
+        )
     };
-    let (what, by_hand) = ("the emulator of the Raspberry Pi Pico", "npm ci --prefix host-tests/rp2040");
-    bring(installs, fetched, &[("npm fetched rp2040js".to_owned(), &npm)])
-        .map_err(|why| missing(installs, what, &why, by_hand))?;
+    let (what, by_hand) = (
+        "the emulator of the Raspberry Pi Pico",
+        "npm ci --prefix host-tests/rp2040",
+    );
+    bring(
+        installs,
+        fetched,
+        &[("npm fetched rp2040js".to_owned(), &npm)],
+    )
+    .map_err(|why| missing(installs, what, &why, by_hand))?;
     Ok(node)
 }

@@ -16,13 +16,25 @@ use crate::support::code::Code;
 
 /// The code that may contain a panic, by how its name begins, and why none ever begins there.
 const PERMITTED: [(&str, &str); 17] = [
-    ("lm3s6965evb::__cortex_m_rt_main", "start-up: the board is taken once"),
+    (
+        "lm3s6965evb::__cortex_m_rt_main",
+        "start-up: the board is taken once",
+    ),
     ("mps2_an386::__cortex_m_rt_main", "as above"),
     ("stm32f405::__cortex_m_rt_main", "as above"),
     ("pico::__cortex_m_rt_main", "as above"),
-    ("firmware::board::main_loop::application", "start-up: the default settings are a pendulum"),
-    ("stm32f4xx_hal::rcc::", "start-up: the clock is set up with constant numbers"),
-    ("stm32f4xx_hal::i2c::", "start-up: the bus is set up with constant numbers"),
+    (
+        "firmware::board::main_loop::application",
+        "start-up: the default settings are a pendulum",
+    ),
+    (
+        "stm32f4xx_hal::rcc::",
+        "start-up: the clock is set up with constant numbers",
+    ),
+    (
+        "stm32f4xx_hal::i2c::",
+        "start-up: the bus is set up with constant numbers",
+    ),
     (
         "usb_device::",
         "the USB device is set up with constant numbers; if a host could lead it astray, the board would restart",
@@ -31,11 +43,26 @@ const PERMITTED: [(&str, &str); 17] = [
     ("rp2040_hal::usb::", "as above"),
     ("rp2040_pac::usbctrl_dpram::", "as above"),
     ("firmware::board::pico::usb::", "the same, inlined"),
-    ("firmware::board::log::into_memory", "start-up: the log's memory is taken once"),
-    ("defmt_semihosting::", "a line of the log within a line: interrupts are off from its start to its end"),
-    ("semihosting::fd::", "a console that could not be opened: then there is no log, and nothing is written"),
-    ("core::fmt::float::", "digits of numbers as text: only `measure` prints, and it is no application"),
-    ("core::num::", "as above; one version of the core library keeps it in `flt2dec`, the next in `imp::flt2dec`"),
+    (
+        "firmware::board::log::into_memory",
+        "start-up: the log's memory is taken once",
+    ),
+    (
+        "defmt_semihosting::",
+        "a line of the log within a line: interrupts are off from its start to its end",
+    ),
+    (
+        "semihosting::fd::",
+        "a console that could not be opened: then there is no log, and nothing is written",
+    ),
+    (
+        "core::fmt::float::",
+        "digits of numbers as text: only `measure` prints, and it is no application",
+    ),
+    (
+        "core::num::",
+        "as above; one version of the core library keeps it in `flt2dec`, the next in `imp::flt2dec`",
+    ),
 ];
 
 /// A place where a panic may begin: functions and lines, the innermost first; the function that holds the place last.
@@ -43,21 +70,30 @@ type Frames = Vec<(String, String)>;
 
 /// The innermost function that is not of the core library.
 fn owner(frames: &Frames) -> &str {
-    let is_core = |name: &&str| name.starts_with("core::") || name.contains(" core::") || name.starts_with("<core::");
+    let is_core = |name: &&str| {
+        name.starts_with("core::") || name.contains(" core::") || name.starts_with("<core::")
+    };
     let mut names = frames.iter().map(|(name, _)| name.as_str());
-    names.clone().find(|name| !is_core(name)).or(names.next_back()).unwrap_or_default()
+    names
+        .clone()
+        .find(|name| !is_core(name))
+        .or(names.next_back())
+        .unwrap_or_default()
 }
 
 /// The helper functions by which the core library panics.
 fn is_helper(name: &str) -> bool {
-    name.starts_with("core::") && (name.contains("panic") || name.ends_with("_fail") || name.ends_with("_failed"))
+    name.starts_with("core::")
+        && (name.contains("panic") || name.ends_with("_fail") || name.ends_with("_failed"))
 }
 
 /// The places outside of the core library's helpers where a panic begins, by address.
 fn places(elf: &Path) -> BTreeMap<u32, Frames> {
     let code = Code::read(elf).unwrap_or_else(|error| panic!("{}: {error}", elf.display()));
     let lines = lines(elf).unwrap_or_else(|error| panic!("{}: {error}", elf.display()));
-    let mut panicking: Vec<_> = code.functions_named(|name| name.ends_with("rust_begin_unwind")).collect();
+    let mut panicking: Vec<_> = code
+        .functions_named(|name| name.ends_with("rust_begin_unwind"))
+        .collect();
     assert_eq!(panicking.len(), 1, "one panic handler in {}", elf.display());
     let mut places = BTreeMap::new();
     let mut seen = 0;
@@ -87,7 +123,9 @@ type Lines = Context<EndianSlice<'static, LittleEndian>>;
 fn lines(elf: &Path) -> anyhow::Result<Lines> {
     let file = object::File::parse(&*std::fs::read(elf)?.leak())?;
     let section = |id: SectionId| {
-        let data = file.section_by_name(id.name()).and_then(|section| section.data().ok());
+        let data = file
+            .section_by_name(id.name())
+            .and_then(|section| section.data().ok());
         Ok::<_, gimli::Error>(EndianSlice::new(data.unwrap_or_default(), LittleEndian))
     };
     Ok(Context::from_dwarf(Dwarf::load(section)?)?)
@@ -97,9 +135,18 @@ fn frames(lines: &Lines, address: u32) -> Frames {
     let mut frames = Vec::new();
     let found = lines.find_frames(address.into()).skip_all_loads();
     let mut found = found.unwrap_or_else(|error| panic!("{address:#x}: {error}"));
-    while let Some(frame) = found.next().unwrap_or_else(|error| panic!("{address:#x}: {error}")) {
-        let name = frame.function.and_then(|function| Some(function.demangle().ok()?.into_owned())).unwrap_or_default();
-        let line = frame.location.and_then(|at| Some(format!("{}:{}", at.file?, at.line?))).unwrap_or_default();
+    while let Some(frame) = found
+        .next()
+        .unwrap_or_else(|error| panic!("{address:#x}: {error}"))
+    {
+        let name = frame
+            .function
+            .and_then(|function| Some(function.demangle().ok()?.into_owned()))
+            .unwrap_or_default();
+        let line = frame
+            .location
+            .and_then(|at| Some(format!("{}:{}", at.file?, at.line?)))
+            .unwrap_or_default();
         frames.push((name, line));
     }
     frames
@@ -108,8 +155,15 @@ fn frames(lines: &Lines, address: u32) -> Frames {
 /// The images of all boards, and the one with every arithmetic.
 fn images() -> BTreeSet<PathBuf> {
     let toolchain = crate::support::toolchain();
-    let build = |(binary, target)| toolchain.build(binary, target).unwrap_or_else(|error| panic!("{error}"));
-    every_board().flat_map(|board| [(board.binary, board.target), ("measure", board.target)]).map(build).collect()
+    let build = |(binary, target)| {
+        toolchain
+            .build(binary, target)
+            .unwrap_or_else(|error| panic!("{error}"))
+    };
+    every_board()
+        .flat_map(|board| [(board.binary, board.target), ("measure", board.target)])
+        .map(build)
+        .collect()
 }
 
 #[test]
@@ -119,15 +173,28 @@ fn only_permitted_code_can_panic() {
     for elf in images() {
         for (address, frames) in places(&elf) {
             let owner = owner(&frames);
-            match PERMITTED.iter().position(|(name, _)| owner.trim_start_matches('<').starts_with(name)) {
+            match PERMITTED
+                .iter()
+                .position(|(name, _)| owner.trim_start_matches('<').starts_with(name))
+            {
                 Some(row) => drop(used.insert(row)),
-                None => refused.push(format!("{} {address:#x} {owner} {frames:#?}", elf.display())),
+                None => refused.push(format!(
+                    "{} {address:#x} {owner} {frames:#?}",
+                    elf.display()
+                )),
             }
         }
     }
-    assert!(refused.is_empty(), "these can panic:\n{}", refused.join("\n"));
+    assert!(
+        refused.is_empty(),
+        "these can panic:\n{}",
+        refused.join("\n")
+    );
     for (row, (name, _)) in PERMITTED.iter().enumerate() {
-        assert!(used.contains(&row), "nothing of {name} can panic any more: strike it off the list");
+        assert!(
+            used.contains(&row),
+            "nothing of {name} can panic any more: strike it off the list"
+        );
     }
 }
 
@@ -135,7 +202,14 @@ fn only_permitted_code_can_panic() {
 #[test]
 fn an_injected_panic_is_found() {
     let toolchain = crate::support::toolchain();
-    let elf = toolchain.build("inject-panic", BOARDS[0].target).unwrap_or_else(|error| panic!("{error}"));
+    let elf = toolchain
+        .build("inject-panic", BOARDS[0].target)
+        .unwrap_or_else(|error| panic!("{error}"));
     let found = places(&elf);
-    assert!(found.values().any(|frames| owner(frames).starts_with("inject_panic::")), "{found:#?}");
+    assert!(
+        found
+            .values()
+            .any(|frames| owner(frames).starts_with("inject_panic::")),
+        "{found:#?}"
+    );
 }

@@ -39,10 +39,22 @@ impl Line {
 
     /// Lets the time of `bits` bits pass on the bus.
     pub fn run(&mut self, bits: u32) {
-        self.time = if self.hangs { 0 } else { self.time.saturating_add(bits) };
-        let Self { outbox, panel, message, .. } = self;
+        self.time = if self.hangs {
+            0
+        } else {
+            self.time.saturating_add(bits)
+        };
+        let Self {
+            outbox,
+            panel,
+            message,
+            ..
+        } = self;
         while outbox.sent.is_none() {
-            let needed = match (outbox.is_within_message(), outbox.is_empty() && !outbox.asks) {
+            let needed = match (
+                outbox.is_within_message(),
+                outbox.is_empty() && !outbox.asks,
+            ) {
                 (true, _) => BYTE,
                 (false, true) => 1,
                 (false, false) => 1 + 2 * BYTE,
@@ -62,7 +74,12 @@ impl Line {
                     message.clear();
                 }
             } else if outbox.asks {
-                outbox.sent = Some(panel.status().map(|status| outbox.status = status).ok_or(SILENCE));
+                outbox.sent = Some(
+                    panel
+                        .status()
+                        .map(|status| outbox.status = status)
+                        .ok_or(SILENCE),
+                );
             } else {
                 outbox.sent = Some(Ok(()));
             }
@@ -114,10 +131,18 @@ pub const SSD1306: Kind = Kind {
     own: &[(0x20, 1), (0x2E, 0), (0x8D, 1)],
     needed: &[&[0x20, 2], &[0x8D, 0x14]],
 };
-pub const SH1106: Kind =
-    Kind { status: Some(0x08), columns: WIDTH + 4, left: 2, own: &[(0xAD, 1)], needed: &[&[0xAD, 0x8B]] };
+pub const SH1106: Kind = Kind {
+    status: Some(0x08),
+    columns: WIDTH + 4,
+    left: 2,
+    own: &[(0xAD, 1)],
+    needed: &[&[0xAD, 0x8B]],
+};
 /// As SSD1306s that tell nothing.
-pub const SILENT: Kind = Kind { status: None, ..SSD1306 };
+pub const SILENT: Kind = Kind {
+    status: None,
+    ..SSD1306
+};
 
 /// How many arguments a command of both takes, from the data sheets' command tables; they follow it in the same message.
 fn arguments(command: u8) -> Option<usize> {
@@ -144,7 +169,16 @@ pub struct Controller {
 impl Controller {
     pub fn new(kind: Kind, address: u8) -> Self {
         let memory = vec![None; kind.columns * HEIGHT / 8];
-        Self { kind, address, plugged_in: true, column: 0, page: 0, memory, given: Vec::new(), on: false }
+        Self {
+            kind,
+            address,
+            plugged_in: true,
+            column: 0,
+            page: 0,
+            memory,
+            given: Vec::new(),
+            on: false,
+        }
     }
 
     pub fn plugged(self, plugged_in: bool) -> Self {
@@ -158,12 +192,22 @@ impl Controller {
 
     fn commands(&mut self, mut bytes: &[u8]) {
         while let [command, rest @ ..] = bytes {
-            let own = || self.kind.own.iter().find(|(own, _)| own == command).map(|(_, count)| *count);
-            let count = arguments(*command).or_else(own).unwrap_or_else(|| panic!("unknown command {command:#04x}"));
+            let own = || {
+                self.kind
+                    .own
+                    .iter()
+                    .find(|(own, _)| own == command)
+                    .map(|(_, count)| *count)
+            };
+            let count = arguments(*command)
+                .or_else(own)
+                .unwrap_or_else(|| panic!("unknown command {command:#04x}"));
             assert!(rest.len() >= count, "all arguments in one message");
             match *command {
                 low @ 0x00..=0x0F => self.column = self.column & 0xF0 | usize::from(low),
-                high @ 0x10..=0x1F => self.column = self.column & 0x0F | usize::from(high & 0x0F) << 4,
+                high @ 0x10..=0x1F => {
+                    self.column = self.column & 0x0F | usize::from(high & 0x0F) << 4
+                }
                 page @ 0xB0..=0xB7 => self.page = usize::from(page & 7),
                 0xAE => self.on = false,
                 0xAF => self.on = true,
@@ -189,9 +233,22 @@ impl Controller {
     }
 
     pub fn shows(&self, frame: &Bitmap) -> bool {
-        let Kind { columns, left, needed, .. } = self.kind;
+        let Kind {
+            columns,
+            left,
+            needed,
+            ..
+        } = self.kind;
         let seen = |page: &[Option<u8>], new: &[u8; WIDTH]| page[left..][..WIDTH] == new.map(Some);
-        let is_set = needed.iter().all(|needed| self.given.iter().any(|given| given == needed));
-        self.on && is_set && self.memory.chunks(columns).zip(&frame.pages).all(|(page, new)| seen(page, new))
+        let is_set = needed
+            .iter()
+            .all(|needed| self.given.iter().any(|given| given == needed));
+        self.on
+            && is_set
+            && self
+                .memory
+                .chunks(columns)
+                .zip(&frame.pages)
+                .all(|(page, new)| seen(page, new))
     }
 }

@@ -27,7 +27,10 @@ impl<R: Scalar<Gravity = R, Slope = R, Torque = R>> Stage<R> {
     #[inline(always)]
     fn first(coefficients: &Coefficients<R>, start: &Point<R>) -> Self {
         let k1 = increments(&start.z, start.rates(coefficients));
-        Self { at: start.ahead(&k1, start), sum: k1 }
+        Self {
+            at: start.ahead(&k1, start),
+            sum: k1,
+        }
     }
 
     /// After k2.
@@ -42,7 +45,10 @@ impl<R: Scalar<Gravity = R, Slope = R, Torque = R>> Stage<R> {
     #[inline(always)]
     fn third(&mut self, coefficients: &Coefficients<R>, start: &Point<R>) {
         let Rates { angles, momenta } = self.at.rates(coefficients);
-        let doubled = Rates { angles: angles.map(R::twice), momenta: momenta.map(R::twice) };
+        let doubled = Rates {
+            angles: angles.map(R::twice),
+            momenta: momenta.map(R::twice),
+        };
         let twice_k3 = increments(&self.at.z, doubled);
         self.sum = with(&self.sum, &twice_k3, R::add);
         self.at = start.ahead(&twice_k3, &self.at);
@@ -53,14 +59,20 @@ impl<R: Scalar<Gravity = R, Slope = R, Torque = R>> Stage<R> {
     /// r = 1/(m + S^2) there by one Newton step from that of k4, which is off by the third power of the step. A step that changes r
     /// by a third or more makes no sense with it, nor with RK4.
     #[inline(always)]
-    fn last(&self, coefficients: &Coefficients<R>, start: &mut Point<R>, sums: &mut [impl Sum<R>; 6]) {
+    fn last(
+        &self,
+        coefficients: &Coefficients<R>,
+        start: &mut Point<R>,
+        sums: &mut [impl Sum<R>; 6],
+    ) {
         let k4 = increments(&self.at.z, self.at.rates(coefficients));
         let (sum, last) = (with(&self.sum, &k4, R::add), self.at.inverse);
         for i in 0..6 {
             start.z[i] = sums[i].add(start.z[i], sum[i] * R::from_f64(1.0 / 3.0));
         }
         let s = start.z[2];
-        start.inverse = last + last * ((R::from_f64(1.0) - coefficients.inertia * last) - (s * last) * s);
+        start.inverse =
+            last + last * ((R::from_f64(1.0) - coefficients.inertia * last) - (s * last) * s);
     }
 }
 
@@ -83,13 +95,24 @@ impl<R: Scalar<Gravity = R, Slope = R, Torque = R>> Point<R> {
     fn ahead(&self, k: &[R; 6], from: &Self) -> Self {
         let z = with(&self.z, k, R::add);
         let fall = k[2].twice() * (from.z[2] * from.inverse) * from.inverse;
-        Self { z, inverse: self.inverse - fall }
+        Self {
+            z,
+            inverse: self.inverse - fall,
+        }
     }
 
     /// Makes sin^2 a1 + cos^2 a1 = 1 and S^2 + C^2 = nu^2 again, to first order in what they miss; nu is `norm`.
     #[inline(always)]
-    pub fn restore_lengths(&mut self, norm: R, half_inverse_square: R, sums: &mut [impl Sum<R>; 6]) {
-        for (i, length, gain) in [(0, R::from_f64(1.0), R::from_f64(0.5)), (2, norm, half_inverse_square)] {
+    pub fn restore_lengths(
+        &mut self,
+        norm: R,
+        half_inverse_square: R,
+        sums: &mut [impl Sum<R>; 6],
+    ) {
+        for (i, length, gain) in [
+            (0, R::from_f64(1.0), R::from_f64(0.5)),
+            (2, norm, half_inverse_square),
+        ] {
             let [s, c] = [self.z[i], self.z[i + 1]];
             let lost = s * sums[i].lost() + c * sums[i + 1].lost();
             let missing = gain * (((length - c) * (length + c) - s * s) - (lost + lost));
@@ -127,34 +150,52 @@ impl<R: Real, const N: usize, const ROWS: usize> DirectionLanes<R, N, ROWS> {
     #[inline(always)]
     pub fn new(motion: &DirectionForm<R, Plain>) -> Self {
         let coefficients = motion.coefficients.splat();
-        let start = Point { z: motion.at.z.map(Lanes::splat), inverse: Lanes::splat(motion.at.inverse) };
+        let start = Point {
+            z: motion.at.z.map(Lanes::splat),
+            inverse: Lanes::splat(motion.at.inverse),
+        };
         let rows = [(start, Stage::first(&coefficients, &start)); ROWS];
-        Self { coefficients, half_inverse_square: Lanes::splat(motion.half_inverse_square), rows }
+        Self {
+            coefficients,
+            half_inverse_square: Lanes::splat(motion.half_inverse_square),
+            rows,
+        }
     }
 
     /// The numbers of a motion by its lane, counted through all rows; none of one that there is not.
     #[inline(always)]
     fn lane(&mut self, lane: usize) -> impl Iterator<Item = &mut R> {
-        let row = self.rows.get_mut(lane / N).map(|(start, _)| start.z.iter_mut().chain([&mut start.inverse]));
-        row.into_iter().flatten().map(move |number| &mut number.0[lane % N])
+        let row = self
+            .rows
+            .get_mut(lane / N)
+            .map(|(start, _)| start.z.iter_mut().chain([&mut start.inverse]));
+        row.into_iter()
+            .flatten()
+            .map(move |number| &mut number.0[lane % N])
     }
 
     /// Puts another motion into a lane.
     #[inline(always)]
     pub fn put(&mut self, lane: usize, motion: &DirectionForm<R, Plain>) {
         let Point { z, inverse } = motion.at;
-        self.lane(lane).zip(z.into_iter().chain([inverse])).for_each(|(place, number)| *place = number);
+        self.lane(lane)
+            .zip(z.into_iter().chain([inverse]))
+            .for_each(|(place, number)| *place = number);
     }
 
     /// Takes a lane back to what it was in `before`.
     #[inline(always)]
     pub fn keep(&mut self, lane: usize, before: &mut Self) {
-        self.lane(lane).zip(before.lane(lane)).for_each(|(place, number)| *place = *number);
+        self.lane(lane)
+            .zip(before.lane(lane))
+            .for_each(|(place, number)| *place = *number);
     }
 
     #[inline(always)]
     pub fn step(&mut self) {
-        let Self { coefficients, rows, .. } = self;
+        let Self {
+            coefficients, rows, ..
+        } = self;
         for (start, stage) in &mut *rows {
             *stage = Stage::first(coefficients, start);
         }
@@ -172,7 +213,11 @@ impl<R: Real, const N: usize, const ROWS: usize> DirectionLanes<R, N, ROWS> {
     #[inline(always)]
     pub fn restore_lengths(&mut self) {
         for (start, _) in &mut self.rows {
-            start.restore_lengths(self.coefficients.norm, self.half_inverse_square, &mut [Plain; 6]);
+            start.restore_lengths(
+                self.coefficients.norm,
+                self.half_inverse_square,
+                &mut [Plain; 6],
+            );
         }
     }
 

@@ -40,13 +40,30 @@ pub(crate) fn prepare<R: Real>(
     let wished = unit * unit * g / l1;
     let gravity2 = factor_above::<R>(wished, total);
     let gravity = [R::from_f64(total * gravity2.to_f64()), gravity2];
-    let time = if g == 0.0 { unit } else { unit * libm::sqrt(gravity2.to_f64() / wished) };
+    let time = if g == 0.0 {
+        unit
+    } else {
+        unit * libm::sqrt(gravity2.to_f64() / wished)
+    };
 
-    let coefficients = Coefficients { norm: R::from_f64(norm), inertia: R::from_f64(inertia), gravity };
-    let scale = Scale { time, momentum: time / (m2 * l2 * l2), step, lead: Lead::new(time * step, dt) };
+    let coefficients = Coefficients {
+        norm: R::from_f64(norm),
+        inertia: R::from_f64(inertia),
+        gravity,
+    };
+    let scale = Scale {
+        time,
+        momentum: time / (m2 * l2 * l2),
+        step,
+        lead: Lead::new(time * step, dt),
+    };
     let in_range = |constant: R| constant.is_normal() && (R::ONE / constant).is_normal();
     let gravity_in_range = g == 0.0 || coefficients.gravity.into_iter().all(R::is_normal);
-    if [coefficients.norm, coefficients.inertia, R::from_f64(total)].into_iter().all(in_range) && gravity_in_range {
+    if [coefficients.norm, coefficients.inertia, R::from_f64(total)]
+        .into_iter()
+        .all(in_range)
+        && gravity_in_range
+    {
         Ok((coefficients, scale))
     } else {
         Err(parameters.out_of_range())
@@ -64,11 +81,17 @@ fn factor_above<R: Real>(value: f64, factor: f64) -> R {
     };
     let nearest = R::from_f64(value);
     let ulp = nearest * R::EPSILON;
-    let least = if nearest.to_f64() < value { nearest + ulp } else { nearest };
+    let least = if nearest.to_f64() < value {
+        nearest + ulp
+    } else {
+        nearest
+    };
     let candidates = (0..32_i32).map(|i| least + R::from_f64(f64::from(i)) * ulp);
     let (best, _) = candidates
         .map(|candidate| (candidate, lost(candidate)))
-        .fold((least, f64::INFINITY), |best, other| if other.1 < best.1 { other } else { best });
+        .fold((least, f64::INFINITY), |best, other| {
+            if other.1 < best.1 { other } else { best }
+        });
     best
 }
 
@@ -76,8 +99,15 @@ impl Scale {
     /// Refuses momenta that are too large for `R` in these units.
     pub fn check<R: Real>(&self, momenta: [f64; 2]) -> Result<(), Error> {
         let is_too_large = |(_, p): &(Parameter, f64)| !R::from_f64(*p).is_finite();
-        match [Parameter::P1, Parameter::P2].into_iter().zip(momenta).find(is_too_large) {
-            Some((parameter, p)) => Err(Error::OutOfRange { parameter, value: p / self.momentum }),
+        match [Parameter::P1, Parameter::P2]
+            .into_iter()
+            .zip(momenta)
+            .find(is_too_large)
+        {
+            Some((parameter, p)) => Err(Error::OutOfRange {
+                parameter,
+                value: p / self.momentum,
+            }),
             None => Ok(()),
         }
     }
@@ -88,7 +118,13 @@ impl Scale {
     /// from the slope of the one before: of order 4 in small oscillations and of order 2 in others.
     #[must_use]
     #[inline(never)] // cold, and never inlined, to avoid a second copy
-    pub fn state<R: Real>(&self, coefficients: &Coefficients<R>, z: &[R; 6], lost: [R; 6], count: u64) -> State<f64> {
+    pub fn state<R: Real>(
+        &self,
+        coefficients: &Coefficients<R>,
+        z: &[R; 6],
+        lost: [R; 6],
+        count: u64,
+    ) -> State<f64> {
         let span = R::from_f64(-self.lead.ahead(count) * self.step);
         let mut change = [R::ZERO; 6];
         for share in [0.25, 1.0 / 3.0, 0.5, 1.0] {
@@ -124,13 +160,19 @@ const STEP: f64 = (1_u128 << 64) as f64;
 impl Lead {
     /// Of steps of `step` instead of `dt`, in any unit; none where rounding leaves the step a little short.
     pub fn new(step: f64, dt: f64) -> Self {
-        Self { each: ((step - dt) / step * STEP) as u64 }
+        Self {
+            each: ((step - dt) / step * STEP) as u64,
+        }
     }
 
     /// How many steps to make for the next `steps`, with which the count becomes `count`; not beyond the end of a block.
     #[inline(always)]
     pub fn made(self, steps: u32, count: u64) -> u32 {
-        if count as u32 % BLOCK == 0 { steps - u32::from(self.is_left_out(count)) } else { steps }
+        if count as u32 % BLOCK == 0 {
+            steps - u32::from(self.is_left_out(count))
+        } else {
+            steps
+        }
     }
 
     /// Whether the last step of the block that ends at `count` is left out: within the block the lead exceeded half a step.
@@ -164,8 +206,14 @@ mod tests {
                 count += u64::from(steps);
                 made += u64::from(lead.made(steps, count));
                 let ahead = (made as f64 * step - count as f64) / step;
-                assert!((ahead - lead.ahead(count)).abs() < 1e-9, "{longer} after {count}: {ahead}");
-                assert!(ahead.abs() <= 0.5 + f64::from(BLOCK) * longer, "{longer} after {count}: {ahead}");
+                assert!(
+                    (ahead - lead.ahead(count)).abs() < 1e-9,
+                    "{longer} after {count}: {ahead}"
+                );
+                assert!(
+                    ahead.abs() <= 0.5 + f64::from(BLOCK) * longer,
+                    "{longer} after {count}: {ahead}"
+                );
             }
             assert_eq!(made < count, longer > 1e-6, "{longer}");
         }

@@ -46,7 +46,12 @@ impl Units<Numbers> for Pace {
 
 impl<'a> Rows<'a> {
     fn new(z: &'a [f64; 6], step: &'a Coefficients<f64>) -> Self {
-        Self { z, step, paced: step.splat(), pace: Pace(Lanes::splat(1.0)) }
+        Self {
+            z,
+            step,
+            paced: step.splat(),
+            pace: Pace(Lanes::splat(1.0)),
+        }
     }
 }
 
@@ -56,13 +61,21 @@ impl System<f64, LANES, 6> for Rows<'_> {
         const SHARES: [f64; ROWS] = [1.0, 0.5, 1.0 / 3.0, 0.25, 0.2, 1.0 / 6.0, 1.0 / 7.0, 0.125];
         let shares = Lanes(rows.map(|row| SHARES[row % ROWS]));
         self.pace = Pace(shares);
-        self.paced.gravity = self.step.gravity.map(|gravity| Lanes::splat(gravity) * shares);
+        self.paced.gravity = self
+            .step
+            .gravity
+            .map(|gravity| Lanes::splat(gravity) * shares);
     }
 
     #[inline(always)]
     fn slope(&mut self, at: &[Numbers; 6]) -> [Numbers; 6] {
         let z: [Numbers; 6] = core::array::from_fn(|i| Lanes::splat(self.z[i]) + at[i]);
-        let inverse = Lanes(self.paced.denominator(z[2]).0.map(|denominator| 1.0 / denominator));
+        let inverse = Lanes(
+            self.paced
+                .denominator(z[2])
+                .0
+                .map(|denominator| 1.0 / denominator),
+        );
         increments(&z, self.paced.rates(&self.pace, &z, inverse))
     }
 }
@@ -76,11 +89,17 @@ impl<const ORDER: u32> Form for ExtrapolationF64<ORDER> {
 
     fn new(parameters: &Parameters<f64>, start: &State<f64>, dt: f64) -> Result<Self, Error> {
         let direction = DirectionF64::with_step(parameters, start, dt, 1.0)?;
-        Ok(Self { direction, method: Extrapolation::new(ORDER)? })
+        Ok(Self {
+            direction,
+            method: Extrapolation::new(ORDER)?,
+        })
     }
 
     fn started(&self, start: &State<f64>) -> Result<Self, Error> {
-        Ok(Self { direction: self.direction.started(start)?, ..*self })
+        Ok(Self {
+            direction: self.direction.started(start)?,
+            ..*self
+        })
     }
 
     // A call is nothing beside such a step: never inlined, to avoid a second copy.
@@ -88,7 +107,10 @@ impl<const ORDER: u32> Form for ExtrapolationF64<ORDER> {
     fn advance(&mut self, steps: u32) {
         let Self { direction, method } = self;
         for _ in 0..steps {
-            let change = method.end(&mut Rows::new(&direction.at.z, &direction.coefficients), &[0.0; 6]);
+            let change = method.end(
+                &mut Rows::new(&direction.at.z, &direction.coefficients),
+                &[0.0; 6],
+            );
             for (n, change) in change.into_iter().enumerate() {
                 direction.at.z[n] = direction.sums[n].add(direction.at.z[n], change);
             }

@@ -50,10 +50,22 @@ impl<R: Real + Side, S: Sum<R>> Form for DirectionForm<R, S> {
     fn started(&self, start: &State<f64>) -> Result<Self, Error> {
         let start = start.cast::<R>();
         start.check()?;
-        let z = quantities(&start.cast(), self.coefficients.norm.to_f64(), [self.scale.momentum; 2]);
+        let z = quantities(
+            &start.cast(),
+            self.coefficients.norm.to_f64(),
+            [self.scale.momentum; 2],
+        );
         self.scale.check::<R>([z[4], z[5]])?;
         let inverse = R::ONE / self.coefficients.denominator(R::from_f64(z[2]));
-        Ok(Self { at: Point { z: z.map(R::from_f64), inverse }, sums: z.map(S::new), steps: 0, ..*self })
+        Ok(Self {
+            at: Point {
+                z: z.map(R::from_f64),
+                inverse,
+            },
+            sums: z.map(S::new),
+            steps: 0,
+            ..*self
+        })
     }
 
     #[inline(never)]
@@ -74,10 +86,17 @@ impl<R: Real + Side, S: Sum<R>> Form for DirectionForm<R, S> {
     fn check(&self) -> Result<(), Error> {
         let [sin1, cos1, s, c, p1, p2] = self.at.z;
         let [_, [sin2, cos2]] = self.directions::<R>();
-        let rods = [(Parameter::A1, [sin1, cos1]), (Parameter::A2, [s, c]), (Parameter::A2, [sin2, cos2])];
-        let rods = rods.into_iter().flat_map(|(parameter, numbers)| numbers.map(|number| (parameter, number)));
+        let rods = [
+            (Parameter::A1, [sin1, cos1]),
+            (Parameter::A2, [s, c]),
+            (Parameter::A2, [sin2, cos2]),
+        ];
+        let rods = rods
+            .into_iter()
+            .flat_map(|(parameter, numbers)| numbers.map(|number| (parameter, number)));
         let unit = R::from_f64(self.scale.momentum);
-        check_finite(rods.chain([(Parameter::P1, p1 / unit), (Parameter::P2, p2 / unit)])).map_err(Error::diverged)
+        check_finite(rods.chain([(Parameter::P1, p1 / unit), (Parameter::P2, p2 / unit)]))
+            .map_err(Error::diverged)
     }
 
     #[inline(always)]
@@ -94,7 +113,12 @@ impl<R: Real + Side, S: Sum<R>> Form for DirectionForm<R, S> {
     }
 
     fn state(&self) -> State<f64> {
-        self.scale.state(&self.coefficients, &self.at.z, self.sums.map(|sum| sum.lost()), self.steps)
+        self.scale.state(
+            &self.coefficients,
+            &self.at.z,
+            self.sums.map(|sum| sum.lost()),
+            self.steps,
+        )
     }
 
     fn bits(&self, mut feed: impl FnMut(u64)) {
@@ -107,11 +131,27 @@ impl<R: Real + Side, S: Sum<R>> Form for DirectionForm<R, S> {
 
 impl<R: Real + Side, S: Sum<R>> DirectionForm<R, S> {
     /// The step of `dt` s goes `step` tau.
-    fn with_step(parameters: &Parameters<f64>, start: &State<f64>, dt: f64, step: f64) -> Result<Self, Error> {
+    fn with_step(
+        parameters: &Parameters<f64>,
+        start: &State<f64>,
+        dt: f64,
+        step: f64,
+    ) -> Result<Self, Error> {
         let (coefficients, scale) = prepare(&parameters.cast(), dt, step)?;
         let half_inverse_square = R::HALF / (coefficients.norm * coefficients.norm);
-        let at = Point { z: [R::ZERO; 6], inverse: R::ZERO };
-        Self { coefficients, scale, half_inverse_square, at, sums: [S::new(0.0); 6], steps: 0 }.started(start)
+        let at = Point {
+            z: [R::ZERO; 6],
+            inverse: R::ZERO,
+        };
+        Self {
+            coefficients,
+            scale,
+            half_inverse_square,
+            at,
+            sums: [S::new(0.0); 6],
+            steps: 0,
+        }
+        .started(start)
     }
 
     /// Whether the step that ends at `count` is left out, the last of a block.
@@ -140,7 +180,11 @@ impl<R: Real + Side, S: Sum<R>> DirectionForm<R, S> {
 
     #[inline(always)]
     fn restore_lengths(&mut self) {
-        self.at.restore_lengths(self.coefficients.norm, self.half_inverse_square, &mut self.sums);
+        self.at.restore_lengths(
+            self.coefficients.norm,
+            self.half_inverse_square,
+            &mut self.sums,
+        );
     }
 }
 

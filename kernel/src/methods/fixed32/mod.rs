@@ -82,7 +82,10 @@ impl Form for Fixed32 {
         let pendulum = Pendulum::new(parameters)?;
         check_step::<f64>(dt)?;
         start.check()?;
-        Ok(Self::of(Setting::new(parameters, pendulum.energy_above_rest(start), dt)?, start))
+        Ok(Self::of(
+            Setting::new(parameters, pendulum.energy_above_rest(start), dt)?,
+            start,
+        ))
     }
 
     fn started(&self, start: &State<f64>) -> Result<Self, Error> {
@@ -116,17 +119,29 @@ impl Form for Fixed32 {
     }
 
     fn directions<R: Real>(&self) -> [Direction<R>; 2] {
-        directions(&self.z.map(|z| R::from_f64(value(z))), R::from_f64(self.units.scaling.norm))
+        directions(
+            &self.z.map(|z| R::from_f64(value(z))),
+            R::from_f64(self.units.scaling.norm),
+        )
     }
 
     fn momenta<R: Real>(&self) -> [R; 2] {
         let ([.., p1, p2], [unit1, unit2]) = (self.z.map(value), self.units.scaling.momenta);
-        if self.lost { [f64::NAN; 2] } else { [p1 / unit1, p2 / unit2] }.map(R::from_f64)
+        if self.lost {
+            [f64::NAN; 2]
+        } else {
+            [p1 / unit1, p2 / unit2]
+        }
+        .map(R::from_f64)
     }
 
     #[inline(never)]
     fn state(&self) -> State<f64> {
-        let known = if self.lost { [f64::NAN; 6] } else { self.z.map(value) };
+        let known = if self.lost {
+            [f64::NAN; 6]
+        } else {
+            self.z.map(value)
+        };
         state_of(known, self.units.scaling.momenta)
     }
 
@@ -142,11 +157,19 @@ impl Fixed32 {
     /// The motion that starts from `state`, of the energy that the units are for or less.
     fn of(units: Setting, state: &State<f64>) -> Self {
         let z = quantities(state, units.scaling.norm, units.scaling.momenta);
-        let Scaling { inertia, shifts, .. } = units.scaling;
+        let Scaling {
+            inertia, shifts, ..
+        } = units.scaling;
         let square = scaled(z[2] * z[2], shifts.inverse as i32 - shifts.momentum as i32);
         let inverse = Q30::from_f64(1.0 / (inertia + square));
         let z = z.map(|z| nearest(z * ONE) as i64 + OFFSET);
-        Self { units, z, inverse, lost: false, steps: 0 }
+        Self {
+            units,
+            z,
+            inverse,
+            lost: false,
+            steps: 0,
+        }
     }
 
     /// sin a1, cos a1, S, C, P1, P2, rounded.

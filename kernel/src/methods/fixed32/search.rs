@@ -30,7 +30,15 @@ impl Candidate {
     fn random(rng: &mut Rng) -> Self {
         let mut most = |most: f64| most * symmetric(rng);
         let [mass, length] = [most(1.0), most(1.0)].map(|x| 11.0 * x * x * x);
-        Self([mass, length, most(3.2), most(3.2), most(3.2), most(6.0), most(0.5) + 0.5])
+        Self([
+            mass,
+            length,
+            most(3.2),
+            most(3.2),
+            most(3.2),
+            most(6.0),
+            most(0.5) + 0.5,
+        ])
     }
 
     fn near(self, rng: &mut Rng, distance: f64) -> Self {
@@ -39,7 +47,13 @@ impl Candidate {
 
     fn parameters(&self) -> Parameters<f64> {
         let [mass, length, ..] = self.0.map(|power| libm::exp2(power.clamp(-11.0, 11.0)));
-        Parameters { m1: 1.0, m2: mass, l1: 1.0, l2: length, g: 9.81 }
+        Parameters {
+            m1: 1.0,
+            m2: mass,
+            l1: 1.0,
+            l2: length,
+            g: 9.81,
+        }
     }
 
     /// A state of the candidate's energy, most of it kinetic where that is large, and the motion from it in steps as coarse as
@@ -51,13 +65,24 @@ impl Candidate {
         let still = State::at_rest(a1, a2);
         let (sin, cos) = libm::sincos(direction);
         let scale = parameters.m2 * parameters.l2;
-        let moving = State { p1: cos * scale, p2: sin * scale * parameters.l2, ..still };
+        let moving = State {
+            p1: cos * scale,
+            p2: sin * scale * parameters.l2,
+            ..still
+        };
         let unit = pendulum.energy_above_rest(&moving) - pendulum.energy_above_rest(&still);
-        let times = libm::sqrt(libm::exp2(energy.clamp(-6.0, 6.0)) * parameters.m2 * parameters.l2 / unit);
-        let state = State { p1: moving.p1 * times, p2: moving.p2 * times, ..still };
+        let times =
+            libm::sqrt(libm::exp2(energy.clamp(-6.0, 6.0)) * parameters.m2 * parameters.l2 / unit);
+        let state = State {
+            p1: moving.p1 * times,
+            p2: moving.p2 * times,
+            ..still
+        };
         let energy = pendulum.energy_above_rest(&state);
         let dt = match Setting::new(&parameters, energy, 1e6) {
-            Err(Error::TooLarge { limit, .. }) => 0.999_999 * limit * libm::exp2(-shorter.clamp(0.0, 1.0)),
+            Err(Error::TooLarge { limit, .. }) => {
+                0.999_999 * limit * libm::exp2(-shorter.clamp(0.0, 1.0))
+            }
             other => return Err(other.map_or_else(|error| error, |_| parameters.out_of_range())),
         };
         Fixed32::new(&parameters, &state, dt)
@@ -73,7 +98,8 @@ impl Candidate {
         let mut still = motion;
         still.z[4..].fill(OFFSET);
         let (potential, most) = (still.energy(), motion.units.most_energy);
-        let more = libm::sqrt((most - potential) as f64 / (motion.energy() - potential).max(1) as f64);
+        let more =
+            libm::sqrt((most - potential) as f64 / (motion.energy() - potential).max(1) as f64);
         speed_up(&mut motion, more);
         Ok(watch::largest(|| {
             motion.make(RENORMALISE_EVERY);
@@ -103,7 +129,10 @@ fn the_motion_that_leads_furthest_stays_in_range() -> Result<(), Error> {
             furthest = (reach, candidate);
         }
     }
-    assert!((0.6..0.8).contains(&furthest.0), "as large as can be, and in range: {furthest:?}");
+    assert!(
+        (0.6..0.8).contains(&furthest.0),
+        "as large as can be, and in range: {furthest:?}"
+    );
     Ok(())
 }
 
@@ -111,13 +140,26 @@ fn the_motion_that_leads_furthest_stays_in_range() -> Result<(), Error> {
 #[test]
 fn too_much_energy_is_noticed() -> Result<(), Error> {
     let parameters = Parameters::equal_rods(1.0, 1.0, 9.81);
-    let motion = Fixed32::new(&parameters, &State { a1: 0.0, a2: 0.0, p1: 4.0, p2: 2.0 }, 1.0 / 240.0)?;
+    let motion = Fixed32::new(
+        &parameters,
+        &State {
+            a1: 0.0,
+            a2: 0.0,
+            p1: 4.0,
+            p2: 2.0,
+        },
+        1.0 / 240.0,
+    )?;
     for (more, lost) in [(1.0, false), (1.2, true)] {
         let mut motion = motion;
         motion.advance(RENORMALISE_EVERY);
         speed_up(&mut motion, more);
         motion.advance(RENORMALISE_EVERY);
-        assert_eq!((motion.lost, motion.state().a1.is_nan()), (lost, lost), "momenta times {more}");
+        assert_eq!(
+            (motion.lost, motion.state().a1.is_nan()),
+            (lost, lost),
+            "momenta times {more}"
+        );
     }
     Ok(())
 }
@@ -128,9 +170,16 @@ fn the_energy_of_the_words_is_that_of_the_motion() -> Result<(), Error> {
     let mut rng = Rng::with_seed(2);
     for _ in 0..200 {
         let candidate = Candidate::random(&mut rng);
-        let Ok(motion) = candidate.motion() else { continue };
+        let Ok(motion) = candidate.motion() else {
+            continue;
+        };
         let energy = Pendulum::new(&candidate.parameters())?.energy_above_rest(&motion.state());
-        let Scaling { momenta: [_, unit2], time, shifts, .. } = motion.units.scaling;
+        let Scaling {
+            momenta: [_, unit2],
+            time,
+            shifts,
+            ..
+        } = motion.units.scaling;
         let down = (shifts.momentum + shifts.upper) as i32;
         let exact = libm::scalbn(energy * unit2 * time, 60 - down);
         // from far masses and rods few bits are left of it

@@ -58,12 +58,17 @@ impl Setting {
             libm::sqrt(TORQUE / (force + seconds.gravity.into_iter().fold(0.0, f64::max))),
         );
 
-        let elbow = Bounds::new(parameters, energy).elbow * libm::sqrt(1.0 + parameters.m2 / parameters.m1);
+        let elbow =
+            Bounds::new(parameters, energy).elbow * libm::sqrt(1.0 + parameters.m2 / parameters.m1);
         let limit = libm::fmin(COARSEST * longest, RESOLVED / elbow);
         let sixth = dt / 6.0;
         let fit = libm::floor(libm::log2(longest / libm::fabs(sixth)));
         if fit.is_nan() || libm::fabs(dt) > limit {
-            return Err(Error::TooLarge { parameter: Parameter::Dt, value: dt, limit });
+            return Err(Error::TooLarge {
+                parameter: Parameter::Dt,
+                value: dt,
+                limit,
+            });
         }
         let halvings = libm::fmin(fit, f64::from(FINEST)) as u32;
         let scaling = seconds.in_unit(scaled(sixth, halvings as i32));
@@ -71,13 +76,23 @@ impl Setting {
         let run = scaled(f64::from(6 * RENORMALISE_EVERY), 60 - halvings as i32);
         let missed = |i: usize| nearest(gravity[i].missed(scaling.gravity[i]) * run) as i32;
         let norm = scaling.norm;
-        let coefficients = Coefficients { norm: Q30::from_f64(norm), inertia: Q30::from_f64(scaling.inertia), gravity };
-        let energy_unit = scaled(1.0, 60 - (scaling.shifts.momentum + scaling.shifts.upper) as i32)
-            / scaled(1.0, scaling.shifts.lower as i32);
-        let most_energy = (1.0 + GROWTH) * kinetic * scaling.time * scaling.time + ROOM * RATE * RATE / (2.0 * sum);
+        let coefficients = Coefficients {
+            norm: Q30::from_f64(norm),
+            inertia: Q30::from_f64(scaling.inertia),
+            gravity,
+        };
+        let energy_unit = scaled(
+            1.0,
+            60 - (scaling.shifts.momentum + scaling.shifts.upper) as i32,
+        ) / scaled(1.0, scaling.shifts.lower as i32);
+        let most_energy = (1.0 + GROWTH) * kinetic * scaling.time * scaling.time
+            + ROOM * RATE * RATE / (2.0 * sum);
         Ok(Self {
             coefficients,
-            reverse: Coefficients { gravity: coefficients.gravity.map(|gravity| -gravity), ..coefficients },
+            reverse: Coefficients {
+                gravity: coefficients.gravity.map(|gravity| -gravity),
+                ..coefficients
+            },
             halvings,
             missed: [0, 1].map(missed),
             square: [

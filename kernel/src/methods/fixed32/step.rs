@@ -55,7 +55,11 @@ impl Fixed32 {
 
     #[inline(always)]
     fn step(&mut self, units: Shifts, halvings: u32) {
-        let Setting { coefficients, reverse, .. } = &self.units;
+        let Setting {
+            coefficients,
+            reverse,
+            ..
+        } = &self.units;
         let z = self.quantities();
         let inverse = self.inverse;
         let slopes = |z: &[Q30; 6], rates: Rates<Q30>| (turning(z, rates.angles), rates.momenta);
@@ -68,15 +72,27 @@ impl Fixed32 {
         // Half of -r' = 2 S S' r^2. S r is 2^(i/2) at most where r is 2^i, so half of i goes where there is room for it, the
         // rest to what r changes in half a step.
         let half_up = units.inverse / 2;
-        let half_fall =
-            |s_rate: Slope, s: Q30, r: Q30| (s_rate.number() * (s * r)).up(half_up).down(units.momentum).slope(r);
+        let half_fall = |s_rate: Slope, s: Q30, r: Q30| {
+            (s_rate.number() * (s * r))
+                .up(half_up)
+                .down(units.momentum)
+                .slope(r)
+        };
         let fallen = |k: Slope| Q30((k + k + k).0 >> (halvings - 3)).up(units.inverse - half_up);
 
         // All is rounded down. Every second slope is taken backwards in time, with reversed momenta, so that as much is
         // rounded up.
-        let (turns1, torques1) = slopes(&z, coefficients.rates(&Paced::<false>(units), &z, inverse));
+        let (turns1, torques1) =
+            slopes(&z, coefficients.rates(&Paced::<false>(units), &z, inverse));
         let [sin1, cos1, s, c, p1, p2] = moved(turns1, torques1, halvings);
-        let z2 = [z[0] + sin1, z[1] + cos1, z[2] + s, z[3] + c, -z[4] - p1, -z[5] - p2];
+        let z2 = [
+            z[0] + sin1,
+            z[1] + cos1,
+            z[2] + s,
+            z[3] + c,
+            -z[4] - p1,
+            -z[5] - p2,
+        ];
         let fall1 = half_fall(turns1[2], z[2], inverse);
         let r2 = inverse - fallen(fall1);
 
@@ -90,7 +106,14 @@ impl Fixed32 {
         let middle: [Slope; 4] = core::array::from_fn(|i| turns3[i] - turns2[i]);
         let middle_torques: [Torque; 2] = core::array::from_fn(|i| torques3[i] - torques2[i]);
         let [sin1, cos1, s, c, p1, p2] = moved(turns3, torques3, halvings - 1);
-        let z4 = [z[0] + sin1, z[1] + cos1, z[2] + s, z[3] + c, -z[4] - p1, -z[5] - p2];
+        let z4 = [
+            z[0] + sin1,
+            z[1] + cos1,
+            z[2] + s,
+            z[3] + c,
+            -z[4] - p1,
+            -z[5] - p2,
+        ];
         let fall3 = half_fall(turns3[2], z3[2], r3);
         let r4 = inverse - fallen(fall3).twice();
 
@@ -151,8 +174,10 @@ impl Fixed32 {
         let product = |a: i32, b: i32| i64::from(a) * i64::from(b);
         let [gravity1, gravity2] = coefficients.gravity.map(|gravity| gravity.0);
         // up to 2, which is too much for a word
-        let heights =
-            [(1 << 30) - i64::from(cos1.0), i64::from(coefficients.norm.0) - i64::from((c * cos1 + s * sin1).0)];
+        let heights = [
+            (1 << 30) - i64::from(cos1.0),
+            i64::from(coefficients.norm.0) - i64::from((c * cos1 + s * sin1).0),
+        ];
         let (upper, lower) = (shifts.momentum + shifts.upper, shifts.lower);
         (product(momentum.0, u.0) >> (1 + shifts.upper + lower))
             + (product(p2.0, p2.0) >> (1 + upper + lower))

@@ -107,8 +107,13 @@ impl<const ORDER: u32> Form for Fixed64<ORDER> {
     fn momenta<R: Real>(&self) -> [R; 2] {
         let ([.., p1, p2], [unit1, unit2]) = (self.0.z, self.0.momenta);
         let lost = self.0.lost;
-        let momentum =
-            |p: Q64, unit: f64| if lost { R::from_f64(f64::NAN) } else { p.over::<R>(1.0) / R::from_f64(unit) };
+        let momentum = |p: Q64, unit: f64| {
+            if lost {
+                R::from_f64(f64::NAN)
+            } else {
+                p.over::<R>(1.0) / R::from_f64(unit)
+            }
+        };
         [momentum(p1, unit1), momentum(p2, unit2)]
     }
 
@@ -124,7 +129,12 @@ impl<const ORDER: u32> Form for Fixed64<ORDER> {
 
 impl Fixed64State {
     #[inline(never)]
-    fn new(parameters: &Parameters<f64>, start: &State<f64>, dt: f64, order: u32) -> Result<Self, Error> {
+    fn new(
+        parameters: &Parameters<f64>,
+        start: &State<f64>,
+        dt: f64,
+        order: u32,
+    ) -> Result<Self, Error> {
         let pendulum = Pendulum::new(parameters)?;
         check_step::<f64>(dt)?;
         start.check()?;
@@ -134,7 +144,11 @@ impl Fixed64State {
         let longest = libm::fmin(by_rates, by_torques);
         let limit = libm::fmin(STEP * longest, TURN / RATE * by_rates);
         if libm::fabs(dt) > limit {
-            return Err(Error::TooLarge { parameter: Parameter::Dt, value: dt, limit });
+            return Err(Error::TooLarge {
+                parameter: Parameter::Dt,
+                value: dt,
+                limit,
+            });
         }
         let scaling = seconds.in_unit(unit_of_time(longest, dt));
         let rows = Rows::new(order, &scaling, dt)?;
@@ -154,7 +168,11 @@ impl Fixed64State {
     fn started(&self, start: &State<f64>) -> Self {
         let [sin1, cos1, s, c, p1, p2] = quantities(start, self.norm, self.momenta);
         let [sin1, cos1, s, c] = [sin1, cos1, s, c].map(|direction| direction * EIGHTH);
-        Self { z: [sin1, cos1, s, c, p1, p2].map(Q64::from_f64), lost: false, ..*self }
+        Self {
+            z: [sin1, cos1, s, c, p1, p2].map(Q64::from_f64),
+            lost: false,
+            ..*self
+        }
     }
 
     #[inline(never)]
@@ -168,7 +186,8 @@ impl Fixed64State {
         let reach = Cell::new(0);
         let end = self.rows.end(&self.z, &reach);
         // Half of 2^-64 is rounded as the last digit has it, which is as often 1 as 0.
-        let unfloored = |z: Q64, floored: i16| Q64(z.0.wrapping_add((i64::from(floored) + (z.0 & 1)) >> 1));
+        let unfloored =
+            |z: Q64, floored: i16| Q64(z.0.wrapping_add((i64::from(floored) + (z.0 & 1)) >> 1));
         let [of_p1, others] = self.floored;
         let [sin1, cos1, s, c, _, p2] = end.map(|z| unfloored(z, others));
         let p1 = unfloored(end[4], of_p1);
@@ -176,13 +195,26 @@ impl Fixed64State {
         let ([sin1, cos1], missing1) = restored([sin1, cos1], ONE, HALF);
         let ([s, c], missing2) = restored([s, c], norm * norm, self.half_inverse_square);
         self.z = [sin1, cos1, s, c, p1, p2];
-        let reach = self.z.iter().fold(reach.get(), |reach, z| reach | z.reach(2));
-        self.lost |= reach != 0 || [missing1, missing2].into_iter().any(|missing| missing.0.unsigned_abs() > LENGTH);
+        let reach = self
+            .z
+            .iter()
+            .fold(reach.get(), |reach, z| reach | z.reach(2));
+        self.lost |= reach != 0
+            || [missing1, missing2]
+                .into_iter()
+                .any(|missing| missing.0.unsigned_abs() > LENGTH);
     }
 
     #[inline(never)]
     fn state(&self) -> State<f64> {
-        state_of(if self.lost { [f64::NAN; 6] } else { self.z.map(Q64::value) }, self.momenta)
+        state_of(
+            if self.lost {
+                [f64::NAN; 6]
+            } else {
+                self.z.map(Q64::value)
+            },
+            self.momenta,
+        )
     }
 }
 

@@ -47,19 +47,34 @@ struct Row {
 
 impl Rows {
     pub fn new(order: u32, scaling: &Scaling, dt: f64) -> Result<Self, Error> {
-        let Scaling { norm, inertia, gravity: [gravity1, gravity2], shifts, time, .. } = *scaling;
+        let Scaling {
+            norm,
+            inertia,
+            gravity: [gravity1, gravity2],
+            shifts,
+            time,
+            ..
+        } = *scaling;
         let step = dt / time;
         let share = nearest(step * SHARE) as i64;
-        let whole = [8.0 * step * gravity1, 4.0 * step * gravity2].map(|gravity| Q64::from_f64(gravity).0);
+        let whole =
+            [8.0 * step * gravity1, 4.0 * step * gravity2].map(|gravity| Q64::from_f64(gravity).0);
         let method = Extrapolation::<Q64>::new(order)?;
-        let mut rows = [Row { share: 0, gravity: [Q64(0); 2] }; ROWS];
+        let mut rows = [Row {
+            share: 0,
+            gravity: [Q64(0); 2],
+        }; ROWS];
         let mut errors = [0.0; 2];
         for (index, row) in rows.iter_mut().enumerate().take(order as usize / 2).rev() {
             let (parts, slopes) = (index as i64 + 1, method.slopes(index));
             row.share = (share / parts) as i32;
             for ((whole, gravity), error) in whole.iter().zip(&mut row.gravity).zip(&mut errors) {
                 let exact = whole.rem_euclid(parts) as f64 / parts as f64;
-                let rounded = nearest(if libm::fabs(slopes) > LEAST { exact - *error / slopes } else { exact });
+                let rounded = nearest(if libm::fabs(slopes) > LEAST {
+                    exact - *error / slopes
+                } else {
+                    exact
+                });
                 *error += slopes * (rounded - exact);
                 *gravity = Q64(whole.div_euclid(parts) + rounded as i64);
             }
@@ -83,7 +98,9 @@ impl Rows {
     /// products are made the middle of what they may have been. Small as these are, they would add up from step to step.
     pub fn floored(&self) -> [i16; 2] {
         let differences = self.method.rows as i16 - 1;
-        let slopes: f64 = (0..self.method.rows).map(|row| self.method.slopes(row)).sum();
+        let slopes: f64 = (0..self.method.rows)
+            .map(|row| self.method.slopes(row))
+            .sum();
         [differences - nearest(slopes) as i16, differences]
     }
 
@@ -95,16 +112,36 @@ impl Rows {
     pub fn end(&self, z: &[Q64; 6], reach: &Cell<u32>) -> [Q64; 6] {
         match self.shifts {
             Shifts::NONE => self.end_in::<false, false>(z, reach),
-            Shifts { momentum: 0, inverse: _, upper: 0, lower: 0 } => self.end_in::<false, true>(z, reach),
+            Shifts {
+                momentum: 0,
+                inverse: _,
+                upper: 0,
+                lower: 0,
+            } => self.end_in::<false, true>(z, reach),
             _ => self.end_in::<true, true>(z, reach),
         }
     }
 
     // one copy
     #[inline(never)]
-    fn end_in<const UNLIKE: bool, const INVERSE: bool>(&self, z: &[Q64; 6], reach: &Cell<u32>) -> [Q64; 6] {
-        let units = Fractions::<UNLIKE, INVERSE> { shifts: self.shifts, share: 0, reach };
-        self.method.end(&mut Stage { rows: self, coefficients: self.coefficients, units }, z)
+    fn end_in<const UNLIKE: bool, const INVERSE: bool>(
+        &self,
+        z: &[Q64; 6],
+        reach: &Cell<u32>,
+    ) -> [Q64; 6] {
+        let units = Fractions::<UNLIKE, INVERSE> {
+            shifts: self.shifts,
+            share: 0,
+            reach,
+        };
+        self.method.end(
+            &mut Stage {
+                rows: self,
+                coefficients: self.coefficients,
+                units,
+            },
+            z,
+        )
     }
 }
 
@@ -128,7 +165,8 @@ impl<const UNLIKE: bool, const INVERSE: bool> System<Q64, 1, 6> for Stage<'_, UN
         // sines and cosines below 2, momenta below 1/4
         z.into_iter().for_each(|z| self.units.guard(z, 2));
         let inverse = self.units.inverse(self.coefficients.inertia, z[2] * z[2]);
-        increments(&z, self.coefficients.rates(&self.units, &z, inverse)).map(|slope| Lanes([slope]))
+        increments(&z, self.coefficients.rates(&self.units, &z, inverse))
+            .map(|slope| Lanes([slope]))
     }
 }
 
@@ -170,8 +208,13 @@ impl<const UNLIKE: bool, const INVERSE: bool> Fractions<'_, UNLIKE, INVERSE> {
         let denominator = inertia + self.down(square, self.shifts.momentum);
         if INVERSE {
             // from 2^-`inverse` on: made 1 to 8
-            let more = self.shifts.inverse.min(denominator.0.leading_zeros().saturating_sub(4));
-            Q64(denominator.0 << more).inverse().down(self.shifts.inverse - more)
+            let more = self
+                .shifts
+                .inverse
+                .min(denominator.0.leading_zeros().saturating_sub(4));
+            Q64(denominator.0 << more)
+                .inverse()
+                .down(self.shifts.inverse - more)
         } else {
             denominator.inverse()
         }
@@ -208,14 +251,29 @@ impl<const UNLIKE: bool, const INVERSE: bool> Units<Q64> for Fractions<'_, UNLIK
     #[inline(always)]
     fn turns(&self, [u, v]: [Q64; 2]) -> [Q64; 2] {
         // Where rod 2 is long, v by the step is in range only as the rate of a2 that it stands for.
-        let (v, lower) = (v.times_word(self.share), if UNLIKE { self.shifts.lower } else { 0 });
-        [self.down(u, self.shifts.upper), if lower < 3 { self.up(v, 3 - lower, 2) } else { v.down(lower - 3) }]
+        let (v, lower) = (
+            v.times_word(self.share),
+            if UNLIKE { self.shifts.lower } else { 0 },
+        );
+        [
+            self.down(u, self.shifts.upper),
+            if lower < 3 {
+                self.up(v, 3 - lower, 2)
+            } else {
+                v.down(lower - 3)
+            },
+        ]
     }
     /// Below 1/8, as is the other torque on each momentum: together with that, which was below 1/4, below 1/2.
     #[inline(always)]
     fn forces(&self, force: Q64) -> [Q64; 2] {
         let force = self.up(force, 1, 3);
-        let Shifts { upper, momentum, lower, .. } = self.shifts;
+        let Shifts {
+            upper,
+            momentum,
+            lower,
+            ..
+        } = self.shifts;
         [self.down(force, upper + momentum), self.down(force, lower)]
     }
     #[inline(always)]
@@ -254,7 +312,14 @@ mod tests {
     #[test]
     fn every_quantity_that_leaves_its_range_is_noted() -> Result<(), Error> {
         assert!(!leaves([0.0, 0.125, 0.0, 0.125, 0.1, 0.1])?);
-        for (i, beyond) in [(0, 0.26), (1, -0.26), (2, 0.26), (3, -0.26), (4, 0.26), (5, -0.26)] {
+        for (i, beyond) in [
+            (0, 0.26),
+            (1, -0.26),
+            (2, 0.26),
+            (3, -0.26),
+            (4, 0.26),
+            (5, -0.26),
+        ] {
             let mut z = [0.0, 0.125, 0.0, 0.125, 0.0, 0.0];
             z[i] = beyond;
             assert!(leaves(z)?, "{i}");
@@ -269,9 +334,22 @@ mod tests {
     /// v counts 32 times, and more than a radian of it in a step is no more than 1/32.
     #[test]
     fn a_light_bob_on_a_long_rod_is_in_range() -> Result<(), Error> {
-        let parameters = Parameters { m1: 1.0, m2: 0.017, l1: 1.0, l2: 33.0, g: 9.81 };
-        let start = Motion { a1: 0.8, a2: 1.1, w1: 9.2, w2: 3.8 };
+        let parameters = Parameters {
+            m1: 1.0,
+            m2: 0.017,
+            l1: 1.0,
+            l2: 33.0,
+            g: 9.81,
+        };
+        let start = Motion {
+            a1: 0.8,
+            a2: 1.1,
+            w1: 9.2,
+            w2: 3.8,
+        };
         let pendulum = Pendulum::new(&parameters)?;
-        pendulum.run::<Fixed64<10>>(&pendulum.to_state(&start), 1.0 / 120.0)?.advance(240)
+        pendulum
+            .run::<Fixed64<10>>(&pendulum.to_state(&start), 1.0 / 120.0)?
+            .advance(240)
     }
 }

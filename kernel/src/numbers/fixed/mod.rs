@@ -53,7 +53,11 @@ pub(crate) fn nearest(value: f64) -> f64 {
 
 /// Whether the processor has no product of two words: the Cortex-M0 and M0+, which are known by what else they lack, an exchange
 /// of words in one go. The compiler's library has one, at twice the price.
-pub(crate) const IN_HALVES: bool = cfg!(all(target_arch = "arm", target_os = "none", not(target_has_atomic = "32")));
+pub(crate) const IN_HALVES: bool = cfg!(all(
+    target_arch = "arm",
+    target_os = "none",
+    not(target_has_atomic = "32")
+));
 
 /// The upper word of a product, which elsewhere is the instruction's second register: rounded down.
 #[inline(always)]
@@ -64,7 +68,11 @@ pub(crate) fn upper(a: i32, b: i32) -> i32 {
 /// The product of two words.
 #[inline(always)]
 pub(crate) fn product(a: i32, b: i32) -> i64 {
-    if IN_HALVES { product_of_halves(a, b) } else { i64::from(a) * i64::from(b) }
+    if IN_HALVES {
+        product_of_halves(a, b)
+    } else {
+        i64::from(a) * i64::from(b)
+    }
 }
 
 /// The same by four products of half words; no sum on the way is carried out of its word.
@@ -85,12 +93,29 @@ mod tests {
 
     #[test]
     fn halves_give_what_the_whole_gives() {
-        let ends = [0, 1, -1, 0x7fff, 0x8000, 0xffff, 0x1_0000, -0x8000, -0x1_0000, i32::MAX, i32::MIN, i32::MIN + 1];
+        let ends = [
+            0,
+            1,
+            -1,
+            0x7fff,
+            0x8000,
+            0xffff,
+            0x1_0000,
+            -0x8000,
+            -0x1_0000,
+            i32::MAX,
+            i32::MIN,
+            i32::MIN + 1,
+        ];
         let mut rng = fastrand::Rng::with_seed(1);
         let drawn: [i32; 64] = core::array::from_fn(|_| rng.i32(..) >> rng.u8(..16));
         for a in ends.into_iter().chain(drawn) {
             for b in ends.into_iter().chain(drawn) {
-                assert_eq!(product_of_halves(a, b), i64::from(a) * i64::from(b), "{a:#x} {b:#x}");
+                assert_eq!(
+                    product_of_halves(a, b),
+                    i64::from(a) * i64::from(b),
+                    "{a:#x} {b:#x}"
+                );
             }
         }
     }

@@ -35,7 +35,10 @@ impl Q64 {
     #[inline(always)]
     fn words(self) -> [i32; 2] {
         let lower = self.0 as i32;
-        [((self.0 >> 32) as i32).wrapping_add((lower as u32 >> 31) as i32), lower]
+        [
+            ((self.0 >> 32) as i32).wrapping_add((lower as u32 >> 31) as i32),
+            lower,
+        ]
     }
 
     /// The product with `factor` 2^-32, rounded down.
@@ -140,18 +143,26 @@ mod tests {
     /// Every product of some numbers of all sizes, the largest among them, by all 128 bits.
     #[test]
     fn products_are_right_to_the_last_step() {
-        let numbers = (0..64)
-            .flat_map(|bits| [1, -1, 3, -5, 0x1234_5678_9abc_def1, -0x0fed_cba9_8765_4321].map(|x: i64| x >> bits));
+        let numbers = (0..64).flat_map(|bits| {
+            [1, -1, 3, -5, 0x1234_5678_9abc_def1, -0x0fed_cba9_8765_4321].map(|x: i64| x >> bits)
+        });
         let numbers = numbers.chain([i64::MIN, 1 - (1 << 62), 1 << 62, i64::MAX / 3]);
         for a in numbers.clone() {
             for b in numbers.clone() {
                 let exact = (i128::from(a) * i128::from(b)) as f64 / UNIT;
                 // a floor and a quarter, and what the `f64` here rounds
                 let error = (Q64(a) * Q64(b)).0 as f64 - exact;
-                assert!((-1.25..=0.25).contains(&error) || error.abs() < exact.abs() * 1e-15, "{a:#x} {b:#x}: {error}");
+                assert!(
+                    (-1.25..=0.25).contains(&error) || error.abs() < exact.abs() * 1e-15,
+                    "{a:#x} {b:#x}: {error}"
+                );
                 let word = (b >> 32) as i32;
                 let exact = (i128::from(a) * i128::from(word)) >> 32;
-                assert_eq!(i128::from(Q64(a).times_word(word).0), exact, "{a:#x} {word:#x}");
+                assert_eq!(
+                    i128::from(Q64(a).times_word(word).0),
+                    exact,
+                    "{a:#x} {word:#x}"
+                );
             }
         }
     }
@@ -161,7 +172,10 @@ mod tests {
         let mut d = 1.0;
         while d < 8.0 {
             let inverse = Q64::from_f64(d / 64.0).inverse().value() * 4.0;
-            assert!((inverse * d - 1.0).abs() <= 0.6 * f64::EPSILON * 2.0, "{d}: {inverse:e}");
+            assert!(
+                (inverse * d - 1.0).abs() <= 0.6 * f64::EPSILON * 2.0,
+                "{d}: {inverse:e}"
+            );
             d *= 1.000_123;
         }
     }
