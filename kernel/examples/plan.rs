@@ -16,23 +16,19 @@ fn main() -> Result<(), Box<dyn Error>> {
         rate: 60,
     };
     // A Cortex-M4F at 168 MHz.
-    let (direction_plain, direction, fixed32, fixed64) = (160.0, 205.0, 622.0, 13.9e3);
     let costs = Costs {
         closed_form: 1680.0,
-        direction_plain,
-        direction,
-        fixed32,
-        fixed64,
+        direction_plain: 160.0,
+        direction: 205.0,
+        fixed32: 622.0,
+        fixed64: 13.9e3,
         preparation: 154e3,
     };
-    let plan = Plan::search(
-        &scene,
-        &costs,
-        &Budget {
-            frame: 400e3,
-            planning: 1e9,
-        },
-    )?;
+    let budget = Budget {
+        frame: 400e3,
+        planning: 1e9,
+    };
+    let plan = Plan::search(&scene, &costs, &budget)?;
     println!(
         "{}, {} steps a frame: right for {:.1} s",
         plan.method, plan.steps, plan.horizon

@@ -64,9 +64,9 @@ impl<'a> Player<'a> {
         };
         let height = self.scene.start(name, &settings, &resources)?;
         (self.name, self.settings, self.stopped, self.next) = (name, settings, false, None);
-        let begun = self.scene.report(0).stepping;
-        let is_tied = self.method.is_some() || self.scene.planned().is_none();
-        self.planner.start(&settings, height, begun, is_tied);
+        let initial = self.scene.report(0).stepping;
+        let is_fixed = self.method.is_some() || self.scene.planned().is_none();
+        self.planner.start(&settings, height, initial, is_fixed);
         *self.ink = FadeLayer::NONE;
         self.report = self.now();
         Ok(())
@@ -120,7 +120,7 @@ impl<'a> Player<'a> {
         for _ in 0..self.pace.tick() {
             self.scene.tick(self.planner.ticks + 1, self.ink);
             if let Some(next) = &mut self.next {
-                self.planner.rest();
+                self.planner.skip_tick();
                 if self.scene.planned().is_none_or(|motion| next.tick(motion)) {
                     self.next = None;
                     if let Some(stepping) = self
@@ -158,7 +158,7 @@ impl<'a> Player<'a> {
     }
 
     pub fn plan(&self) -> Option<Planned> {
-        self.planner.answer()
+        self.planner.planned()
     }
 
     /// Cycles of a frame that is computed so.
@@ -169,12 +169,12 @@ impl<'a> Player<'a> {
     /// The scene in numbers, with what the planner knows of it.
     fn now(&self) -> Report {
         let report = self.scene.report(self.planner.ticks);
-        let Some(stepping) = report.stepping.filter(|_| self.planner.task.is_some()) else {
+        let Some(stepping) = report.stepping.filter(|_| self.planner.has_task()) else {
             return report;
         };
         Report {
             horizon: self.planner.horizon(stepping) as f32,
-            is_looking: self.planner.is_looking(),
+            is_looking: self.planner.is_searching(),
             ..report
         }
     }

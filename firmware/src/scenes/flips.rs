@@ -28,10 +28,6 @@ const COARSEST: usize = 8;
 const ROWS: usize = HEIGHT / 2;
 
 /// The search, in the processor's own numbers, and the motion that it follows.
-#[cfg_attr(
-    not(target_os = "none"),
-    expect(clippy::large_enum_variant, reason = "the host has the room")
-)]
 #[derive(Clone, Debug)]
 enum Searching {
     Float(Search<Float>, Option<Falling<Float>>),

@@ -64,8 +64,8 @@ fn every_dependency_has_its_reason() {
     assert_eq!(named.collect::<BTreeSet<_>>(), rows.collect());
 }
 
-/// No more lines of the kernel's examples, nor names that each imports from it.
-const LINES: usize = 25;
+/// The most lines of an example of the kernel, a page, and the most names that each imports.
+const LINES: usize = 50;
 const NAMES: usize = 6;
 
 #[test]

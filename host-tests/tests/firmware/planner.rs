@@ -32,9 +32,9 @@ fn nothing_is_looked_at_before_the_start_has_settled() {
     }
     planner.tick();
     assert!(
-        planner.is_looking()
+        planner.is_searching()
             && planner
-                .answer()
+                .planned()
                 .is_some_and(|answer| answer.found.is_none())
     );
     assert!((0..PATIENCE).any(|_| planner.tick().is_some() || planner.horizon(LASTING) > 0.0));
@@ -61,17 +61,17 @@ fn what_is_found_in_a_tick_does_not_depend_on_when_the_work_is_done() {
 #[test]
 fn there_is_nothing_to_do_without_a_motion_or_when_all_is_found() {
     let mut still = Planner::new(CORTEX_M3);
-    assert!(still.tick().is_none() && !still.work_ahead() && !still.is_looking());
+    assert!(still.tick().is_none() && !still.work_ahead() && !still.is_searching());
     still.start(&Settings::default(), None, None, false);
-    assert!(still.tick().is_none() && !still.work_ahead() && !still.is_looking());
+    assert!(still.tick().is_none() && !still.work_ahead() && !still.is_searching());
 
     let mut planner = planner(STM32F405, &Settings::default());
-    while planner.is_looking() {
+    while planner.is_searching() {
         planner.tick();
     }
     assert!(
         planner
-            .answer()
+            .planned()
             .is_some_and(|answer| answer.found.is_some())
     );
     assert!(
@@ -87,7 +87,7 @@ fn there_is_nothing_to_do_without_a_motion_or_when_all_is_found() {
     );
     assert_eq!(
         (
-            planner.answer().map(|answer| answer.found),
+            planner.planned().map(|answer| answer.found),
             planner.horizon(LASTING)
         ),
         (Some(None), 0.0),
@@ -134,7 +134,7 @@ fn only_steps_that_resolve_a_motion_are_right_wherever_others_are() {
 fn a_calm_motion_is_looked_at_for_as_long_as_it_is_played() {
     let (mut planner, mut told) = (planner(STM32F405, &Settings::equal_rods(1.0, 20.0)), 1);
     while planner
-        .answer()
+        .planned()
         .is_some_and(|answer| answer.found.is_none())
     {
         assert!(planner.tick().is_none());
@@ -148,7 +148,7 @@ fn a_calm_motion_is_looked_at_for_as_long_as_it_is_played() {
         if tick > 600 {
             let ahead = planner.horizon(LASTING) - tick as f64 / 60.0;
             assert!(
-                planner.is_looking() && (ahead - PLANNED).abs() < 0.1,
+                planner.is_searching() && (ahead - PLANNED).abs() < 0.1,
                 "tick {tick}: {ahead}"
             );
         }
@@ -180,7 +180,7 @@ fn where_nothing_holds_that_is_what_is_told() {
         matches!(found, Some(Err(PlanError::NoMethod { .. }))),
         "{found:?}"
     );
-    let answer = planner.answer().expect("a motion");
+    let answer = planner.planned().expect("a motion");
     assert_eq!(answer.found, found);
     assert_eq!(
         (answer.duration, answer.height, answer.frame),

@@ -2,9 +2,8 @@
 
 use crate::bounds::Bounds;
 use crate::error::{Error, Parameter};
-use crate::numbers::fixed::{Q30, Torque, scaled};
+use crate::numbers::fixed::scaled;
 use crate::pendulum::Parameters;
-use crate::pendulum::directions::Units;
 
 /// The most a quantity may be shifted: masses and rods of a ratio beyond some 1000 are refused.
 const MOST: i32 = 12;
@@ -135,31 +134,4 @@ impl Shifts {
         upper: 0,
         lower: 0,
     };
-}
-
-/// The units of 32 bits, where time and momenta are reversed if `BACK`; gravity is to be reversed with them.
-#[derive(Clone, Copy)]
-pub(super) struct Paced<const BACK: bool>(pub Shifts);
-
-impl<const BACK: bool> Units<Q30> for Paced<BACK> {
-    #[inline(always)]
-    fn momentum(&self, product: Q30) -> Q30 {
-        product.down(self.0.momentum)
-    }
-    #[inline(always)]
-    fn rate(&self, momentum: Q30, inverse: Q30) -> Q30 {
-        momentum.product_up(inverse, self.0.inverse)
-    }
-    #[inline(always)]
-    fn paced(&self, u: Q30) -> Q30 {
-        if BACK { -u } else { u }
-    }
-    #[inline(always)]
-    fn turns(&self, [u, v]: [Q30; 2]) -> [Q30; 2] {
-        [self.paced(u).down(self.0.upper), v.down(self.0.lower)]
-    }
-    #[inline(always)]
-    fn forces(&self, Torque(force): Torque) -> [Torque; 2] {
-        [self.0.upper + self.0.momentum, self.0.lower].map(|by| Torque(force >> by))
-    }
 }

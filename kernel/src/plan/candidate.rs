@@ -13,11 +13,11 @@ const WORTH: f64 = 1.1;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Candidate {
     pub stepping: Stepping,
-    /// Frames it was right in, from the start on.
-    pub right: u32,
+    /// The number of frames from the start that are accurate to the tolerance.
+    pub accurate_frames: u32,
     /// The largest error measured in them, over the tolerance.
     pub error: f32,
-    /// Whether it has been wrong, or is not looked at.
+    /// True if a frame was inaccurate, or if the candidate is excluded.
     pub failed: bool,
 }
 
@@ -25,7 +25,7 @@ impl Candidate {
     pub fn new(stepping: Stepping) -> Self {
         Self {
             stepping,
-            right: 0,
+            accurate_frames: 0,
             error: 0.0,
             failed: false,
         }
@@ -33,7 +33,7 @@ impl Candidate {
 
     /// Whether it is right for so much longer than `other` that it is worth more.
     pub fn has_longer_horizon(&self, other: &Self) -> bool {
-        f64::from(self.right) > WORTH * f64::from(other.right)
+        f64::from(self.accurate_frames) > WORTH * f64::from(other.accurate_frames)
     }
 
     /// Takes note of a frame with an error of about `error`, and hardly ever more than `bound`. NaN is wrong.
@@ -45,7 +45,7 @@ impl Candidate {
             } else {
                 self.error
             };
-            self.right += 1;
+            self.accurate_frames += 1;
         } else {
             self.failed = true;
         }

@@ -46,10 +46,10 @@
 mod candidate;
 mod cost;
 mod error;
-mod pass;
 mod problem;
 mod run;
 mod search;
+mod trial;
 
 use crate::error::Error;
 use crate::table::Method;

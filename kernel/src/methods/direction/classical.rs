@@ -3,7 +3,8 @@
 //!
 //! Loops and functions rather than array methods and closures, which are not always inlined in code for a processor's vectors.
 
-use super::{DirectionForm, Plain, Sum};
+use super::{Plain, Sum};
+use crate::methods::rk4_direction::Rk4Direction;
 use crate::numbers::{Lanes, Real, Scalar};
 use crate::pendulum::Direction;
 use crate::pendulum::directions::{Coefficients, Rates, Same, increments, rod_directions};
@@ -145,23 +146,35 @@ pub(crate) struct DirectionLanes<R, const N: usize, const ROWS: usize> {
 /// Motions at the start of a step, and within it.
 type Row<R> = (Point<R>, Stage<R>);
 
-impl<R: Real, const N: usize, const ROWS: usize> DirectionLanes<R, N, ROWS> {
+impl<const N: usize, const ROWS: usize> DirectionLanes<f32, N, ROWS> {
     /// All of them as `motion`.
     #[inline(always)]
-    pub fn new(motion: &DirectionForm<R, Plain>) -> Self {
-        let coefficients = motion.coefficients.splat();
+    pub fn new(motion: &Rk4Direction<false>) -> Self {
+        let (coefficients, half_inverse_square, z, inverse) = motion.parts();
+        let coefficients = coefficients.splat();
         let start = Point {
-            z: motion.at.z.map(Lanes::splat),
-            inverse: Lanes::splat(motion.at.inverse),
+            z: z.map(Lanes::splat),
+            inverse: Lanes::splat(inverse),
         };
         let rows = [(start, Stage::first(&coefficients, &start)); ROWS];
         Self {
             coefficients,
-            half_inverse_square: Lanes::splat(motion.half_inverse_square),
+            half_inverse_square: Lanes::splat(half_inverse_square),
             rows,
         }
     }
 
+    /// Puts another motion into a lane.
+    #[inline(always)]
+    pub fn put(&mut self, lane: usize, motion: &Rk4Direction<false>) {
+        let (_, _, z, inverse) = motion.parts();
+        self.lane(lane)
+            .zip(z.into_iter().chain([inverse]))
+            .for_each(|(place, number)| *place = number);
+    }
+}
+
+impl<R: Real, const N: usize, const ROWS: usize> DirectionLanes<R, N, ROWS> {
     /// The numbers of a motion by its lane, counted through all rows; none of one that there is not.
     #[inline(always)]
     fn lane(&mut self, lane: usize) -> impl Iterator<Item = &mut R> {
@@ -172,15 +185,6 @@ impl<R: Real, const N: usize, const ROWS: usize> DirectionLanes<R, N, ROWS> {
         row.into_iter()
             .flatten()
             .map(move |number| &mut number.0[lane % N])
-    }
-
-    /// Puts another motion into a lane.
-    #[inline(always)]
-    pub fn put(&mut self, lane: usize, motion: &DirectionForm<R, Plain>) {
-        let Point { z, inverse } = motion.at;
-        self.lane(lane)
-            .zip(z.into_iter().chain([inverse]))
-            .for_each(|(place, number)| *place = number);
     }
 
     /// Takes a lane back to what it was in `before`.

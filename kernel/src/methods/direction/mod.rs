@@ -5,7 +5,9 @@ mod coefficients;
 mod extrapolated;
 
 pub(crate) use classical::DirectionLanes;
-pub(crate) use coefficients::BLOCK;
+#[cfg(test)]
+pub(crate) use coefficients::Lead;
+pub(crate) use coefficients::{BLOCK, Scale, classical_step, prepare};
 pub use extrapolated::ExtrapolationF64;
 
 use core::fmt::Debug;
@@ -16,7 +18,6 @@ use crate::numbers::{Real, Scalar, Sealed};
 use crate::pendulum::directions::{Coefficients, directions, quantities, rod_directions};
 use crate::pendulum::{Direction, Parameters, State};
 use classical::Point;
-use coefficients::{Scale, classical_step, prepare};
 
 /// The directions of the rods themselves are stepped: what a drawing needs, and no angle anywhere.
 ///
@@ -152,18 +153,6 @@ impl<R: Real + Side, S: Sum<R>> DirectionForm<R, S> {
             steps: 0,
         }
         .started(start)
-    }
-
-    /// Whether the step that ends at `count` is left out, the last of a block.
-    pub(crate) fn leaves_out(&self, count: u64) -> bool {
-        self.scale.lead.is_left_out(count)
-    }
-
-    /// As this, but every hundredth step is left out.
-    #[cfg(test)]
-    pub(crate) fn leaving_out_more(mut self) -> Self {
-        self.scale.lead = coefficients::Lead::new(1.0, 0.99);
-        self
     }
 
     /// Steps, at most to the end of a block, where the lengths are restored.

@@ -1,4 +1,4 @@
-//! Step sizes tried side by side, frame by frame.
+//! One trial: several methods and step counts, run side by side and compared frame by frame.
 
 use super::candidate::{Candidate, distance, greater};
 use super::cost::{Costs, Stepping};
@@ -90,15 +90,15 @@ fn tried(stepping: Stepping) -> [Stepping; 3] {
     })
 }
 
-/// Step sizes tried side by side.
+/// Several methods and step counts, run side by side and compared frame by frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Pass {
+pub(super) struct Trial {
     /// In 32 bits, the first three candidates and the run in 64 bits that all are compared with. Or a single candidate and three
     /// that it is compared with: in finer steps, their given numbers off by about as much as rounding may make them, each run's
     /// in a way of its own. The last is plain `f32`.
     runs: [Run; 5],
-    /// If not, the bounds are rough.
-    pub is_beside_64_bits: bool,
+    /// True if the last run is a reference in 64 bits; otherwise the error bounds are rough.
+    pub has_reference: bool,
     closed: Option<SmallOscillations<f32>>,
     /// The rods' lengths over the tolerance: so measured, a bob may be off by 1.
     rods: [f32; 2],
@@ -108,18 +108,19 @@ pub(super) struct Pass {
     by_rounding: bool,
 }
 
-impl Pass {
-    /// By this `stepping`, beside a run in 64 bits, if one is given.
-    pub fn new(stepping: Stepping, problem: &Problem, beside: Option<Stepping>) -> Self {
+impl Trial {
+    /// Creates a trial of `stepping`, compared with a run in 64 bits if a `reference` is given.
+    pub fn new(stepping: Stepping, problem: &Problem, reference: Option<Stepping>) -> Self {
         let tried = tried(stepping);
-        let [beside2, beside3, judge] = match beside {
-            Some(beside) => [tried[1], tried[2], beside],
+        let [second, third, judge] = match reference {
+            Some(reference) => [tried[1], tried[2], reference],
             None => steps_beside(stepping).map(|steps| Stepping { steps, ..stepping }),
         };
         let [plain, closed] = [Method::Rk4F32DirectionPlain, Method::ClosedFormF32]
             .map(|method| Stepping { method, ..stepping });
         let mut candidates = [tried[0], tried[1], tried[2], plain, closed].map(Candidate::new);
-        (candidates[1].failed, candidates[2].failed) = (beside.is_none(), beside.is_none());
+        candidates[1].failed = reference.is_none();
+        candidates[2].failed = reference.is_none();
         candidates[3].failed = stepping.method != Method::Rk4F32Direction;
         let Problem {
             pendulum,
@@ -131,12 +132,12 @@ impl Pass {
         let closed =
             start.and_then(|start| ClosedFormF32::new(pendulum, &start, 1.0 / f64::from(*rate)));
         Self {
-            runs: [stepping, beside2, beside3, judge, plain].map(|stepping| Run {
+            runs: [stepping, second, third, judge, plain].map(|stepping| Run {
                 stepping,
                 made: 0,
                 motion: None,
             }),
-            is_beside_64_bits: beside.is_some(),
+            has_reference: reference.is_some(),
             closed: closed.ok().map(|closed| closed.oscillations),
             rods: [pendulum.l1, pendulum.l2].map(|l| (l / problem.tolerance) as f32),
             candidates,
@@ -144,21 +145,19 @@ impl Pass {
         }
     }
 
-    /// What one costs that goes to the end, beside a run in 64 bits.
-    pub fn cost_beside(costs: &Costs, stepping: Stepping, beside: Stepping) -> f32 {
+    /// Returns the cost of a frame of a trial that is compared with the run `reference` in 64 bits.
+    pub fn cost_with_reference(costs: &Costs, stepping: Stepping, reference: Stepping) -> f32 {
         tried(stepping)
             .into_iter()
-            .fold(costs.of_frame(beside), |sum, stepping| {
+            .fold(costs.of_frame(reference), |sum, stepping| {
                 sum + costs.of_frame(stepping)
             })
     }
 
     /// The runs that are still needed, by their places.
     fn runs(&mut self) -> impl Iterator<Item = (usize, &mut Run)> {
-        let (all, [own, second, third, plain, _]) = (
-            !self.is_beside_64_bits,
-            self.candidates.map(|one| !one.failed),
-        );
+        let (all, [own, second, third, plain, _]) =
+            (!self.has_reference, self.candidates.map(|one| !one.failed));
         let needed = [all || own, all || second, all || third, true, plain];
         self.runs
             .iter_mut()
@@ -168,18 +167,19 @@ impl Pass {
             .map(|(run, _)| run)
     }
 
-    /// Prepares one motion; whether there was one to prepare.
+    /// Prepares one motion. Returns false if all motions are prepared.
     ///
-    /// What a method takes ends somewhere: a run just within may have its neighbour on one side beyond.
+    /// If the method refuses the perturbed start, the opposite perturbation is tried, because a start
+    /// just within the range of a method may have its neighbour on one side outside.
     #[inline(never)]
     pub fn prepare(&mut self, problem: &Problem) -> Result<bool, Error> {
-        let is_beside_64_bits = self.is_beside_64_bits;
+        let has_reference = self.has_reference;
         let Some((place, run)) = self.runs().find(|(_, run)| run.motion.is_none()) else {
             return Ok(false);
         };
         let by = PERTURBATIONS
             .get(place.wrapping_sub(1))
-            .filter(|_| !is_beside_64_bits)
+            .filter(|_| !has_reference)
             .copied()
             .unwrap_or(NONE);
         let Stepping { method, steps } = run.stepping;
@@ -192,8 +192,9 @@ impl Pass {
         Ok(true)
     }
 
-    /// Makes steps of one motion towards the next frame, as many as `cost` pays for and one at least. What they cost; 0 if
-    /// there is nothing left to do.
+    /// Makes steps of one motion towards the next frame, as many as `cost` pays for and at least one.
+    ///
+    /// Returns their cost; 0 if every motion has reached the frame.
     pub fn advance(&mut self, costs: &Costs, cost: f32) -> f32 {
         self.runs()
             .map(|(_, run)| run.advance(costs, cost))
@@ -205,7 +206,7 @@ impl Pass {
     /// than the tolerance.
     pub fn compare(&mut self, t: f64) {
         let [own, second, third, last, plain] = self.runs.each_mut().map(Run::frame);
-        let (judge, margin, error, bound) = if self.is_beside_64_bits {
+        let (judge, margin, error, bound) = if self.has_reference {
             (last, BESIDE_64_BITS, 0.0, 0.0)
         } else {
             let others = [second, third, last].map(|other| distance(self.rods, &own, &other));
@@ -233,7 +234,7 @@ impl Pass {
         }
     }
 
-    /// Looks no more at what is not `wanted`.
+    /// Excludes the candidates that are not `wanted`.
     pub fn retain(&mut self, wanted: impl Fn(&Candidate) -> bool) {
         self.candidates
             .iter_mut()
@@ -241,10 +242,11 @@ impl Pass {
             .for_each(|candidate| candidate.failed = true);
     }
 
-    /// Whether it was roundings that made all of them wrong, and finer steps do not help; else how many times as many to try.
-    pub fn finer(&self) -> Option<u32> {
+    /// Returns the factor by which to multiply the step count in the next trial, or `None` if finer
+    /// steps do not help because rounding is the larger error.
+    pub fn refinement(&self) -> Option<u32> {
         let [_, second, third, ..] = &self.candidates;
-        let (helps, times) = if self.is_beside_64_bits {
+        let (helps, times) = if self.has_reference {
             (third.has_longer_horizon(second), 8)
         } else {
             (!self.by_rounding, 2)
@@ -252,8 +254,8 @@ impl Pass {
         helps.then_some(times)
     }
 
-    /// What a frame costs.
-    pub fn cost(&mut self, costs: &Costs) -> f32 {
+    /// Returns the cost of a frame of all runs that are still needed.
+    pub fn frame_cost(&mut self, costs: &Costs) -> f32 {
         let [.., closed] = &self.candidates;
         let closed = if closed.failed {
             0.0
