@@ -7,7 +7,7 @@ use std::hint::black_box;
 use std::iter::successors;
 use std::time::Instant;
 
-use double_pendulum::parts::{DirectionF64, DirectionForm, Plain};
+use double_pendulum::parts::{DirectionF64, Rk4Direction};
 use double_pendulum::{ExtrapolationF64, Form};
 use double_pendulum::{Motion, Parameters};
 use host_tests::oracle::trials::largest_difference;
@@ -54,7 +54,7 @@ const CLASSICAL: &[Contestant] = &[
             .fold(scene.start.into(), |state, _| pendulum.step(&state, dt))
             .into()
     }),
-    (DIRECTION, 8192, form::<DirectionForm<f64, Plain>>),
+    (DIRECTION, 8192, form::<Rk4Direction<f64, false>>),
     (
         "double-pendulum, direction form compensated",
         8192,

@@ -96,7 +96,7 @@ pub use table::{Equations, Integrator, Method, Numbers};
 /// What the methods are made of, for tools and tests; it may change at any time.
 #[doc(hidden)]
 pub mod parts {
-    pub use crate::methods::{Canonical, Derivatives, DirectionF64, DirectionForm, Plain, Turns};
+    pub use crate::methods::{Canonical, Derivatives, DirectionF64, Rk4Direction, Turns};
 }
 
 /// The README's examples, as tests.

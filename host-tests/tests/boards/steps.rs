@@ -84,7 +84,7 @@ fn reached(code: &Code, form: &str) -> BTreeSet<String> {
 fn steps_in_fixed_point_reach_no_soft_float() -> anyhow::Result<()> {
     let code = Code::read(&application(&PICO))?;
     let is_soft = |name: &String| name.starts_with("__aeabi_f") || name.starts_with("__aeabi_d");
-    let [fixed, float] = ["Fixed32 as", "DirectionForm<"].map(|form| reached(&code, form));
+    let [fixed, float] = ["Fixed32 as", "Rk4Direction<"].map(|form| reached(&code, form));
     assert!(float.iter().any(is_soft), "{float:#?}");
     assert!(
         !fixed.is_empty() && !fixed.iter().any(is_soft),

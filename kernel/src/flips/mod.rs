@@ -16,13 +16,14 @@
 //! # Ok::<(), double_pendulum::Error>(())
 //! ```
 
+mod lanes;
 mod side_by_side;
 
 use crate::error::Error;
+use crate::methods::Form;
 use crate::methods::run::turns_over;
-use crate::methods::{Form, Side};
-use crate::numbers::{Real, Scalar};
-use crate::pendulum::{Direction, Parameters, Pendulum, State};
+use crate::numbers::Real;
+use crate::pendulum::{Parameters, Pendulum, State};
 
 /// When a rod first turns over.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,7 +55,8 @@ pub struct Flips<F: Form> {
 #[doc(hidden)]
 pub struct Falling<F: Form> {
     motion: F,
-    rod_directions: [Direction<F::Side>; 2],
+    /// The sides of the rods after the last step ([`Form::sides`]).
+    sides: [[i32; 2]; 2],
     #[doc(hidden)]
     pub steps: u32,
 }
@@ -106,7 +108,7 @@ impl<F: Form> Flips<F> {
         let motion = self.highest.started(&state.cast())?;
         Ok(Some(Falling {
             motion,
-            rod_directions: motion.rod_directions(),
+            sides: motion.sides(),
             steps: 0,
         }))
     }
@@ -120,10 +122,9 @@ impl<F: Form> Flips<F> {
                 return Some(Flip::Later);
             }
             falling.motion.advance_one();
-            let before =
-                core::mem::replace(&mut falling.rod_directions, falling.motion.rod_directions());
-            if passes(&before, &falling.rod_directions) < 0 {
-                return Some(self.passage(falling.steps, before, falling.rod_directions));
+            let before = core::mem::replace(&mut falling.sides, falling.motion.sides());
+            if passes(&before, &falling.sides) < 0 {
+                return Some(self.passage(falling.steps, before, falling.sides));
             }
             falling.steps += 1;
         }
@@ -140,36 +141,32 @@ impl<F: Form> Flips<F> {
         Ok(self.advance(&mut falling, u32::MAX).unwrap_or(Flip::Later))
     }
 
-    /// When it was, after `steps` steps and within the next.
-    fn passage(
-        &self,
-        steps: u32,
-        before: [Direction<F::Side>; 2],
-        after: [Direction<F::Side>; 2],
-    ) -> Flip<F::Real> {
-        let share = |[from, _]: Direction<F::Side>, [to, cos]: Direction<F::Side>| {
-            if turns_over([from, to, cos].map(Side::sign)) < 0 {
-                let [before, after] = [from, to].map(|sine| F::Real::from_f64(sine.into()));
-                before / (before - after)
+    /// Returns the time of the passage between the sides `before` and `after`, of which `before` are
+    /// those after `steps` steps.
+    fn passage(&self, steps: u32, before: [[i32; 2]; 2], after: [[i32; 2]; 2]) -> Flip<F::Real> {
+        // The share of the step until a rod passes, by linear interpolation of its sine.
+        let share = |rod: usize| {
+            let [from, _] = before[rod];
+            let [to, cos] = after[rod];
+            if turns_over([from, to, cos]) < 0 {
+                let [from, to] = [from, to].map(F::side_value);
+                from / (from - to)
             } else {
                 F::Real::ONE
             }
         };
-        let ([upper_before, lower_before], [upper_after, lower_after]) = (before, after);
-        let (upper, lower) = (
-            share(upper_before, upper_after),
-            share(lower_before, lower_after),
-        );
+        let upper = share(0);
+        let lower = share(1);
         let share = if lower < upper { lower } else { upper };
         Flip::After((F::Real::from_f64(steps.into()) + share) * self.dt)
     }
 }
 
-/// Negative if a rod has come through straight up between the two.
+/// Returns a negative number if a rod has passed straight up between the two.
 #[inline(always)]
-fn passes<S: Side>(before: &[Direction<S>; 2], after: &[Direction<S>; 2]) -> i32 {
-    let signs =
-        |[from, _]: Direction<S>, [to, cos]: Direction<S>| turns_over([from, to, cos].map(S::sign));
-    let ([upper_before, lower_before], [upper_after, lower_after]) = (*before, *after);
-    signs(upper_before, upper_after) | signs(lower_before, lower_after)
+fn passes(before: &[[i32; 2]; 2], after: &[[i32; 2]; 2]) -> i32 {
+    let [[upper_before, _], [lower_before, _]] = *before;
+    let [[upper_after, upper_cos], [lower_after, lower_cos]] = *after;
+    turns_over([upper_before, upper_after, upper_cos])
+        | turns_over([lower_before, lower_after, lower_cos])
 }

@@ -2,16 +2,17 @@
 
 use core::array::from_fn;
 
+use super::lanes::{DirectionLanes, Numbers};
 use super::{Falling, Flip, Flips, passes};
 use crate::error::Error;
-use crate::methods::direction::{BLOCK, DirectionLanes};
+use crate::methods::direction::BLOCK;
 use crate::methods::run::turns_over;
-use crate::methods::{DirectionF32Plain, Form, Side};
-use crate::numbers::Lanes;
+use crate::methods::{DirectionF32Plain, Form};
+use crate::numbers::Real;
 use crate::pendulum::{Direction, State};
 
-type Motions<const N: usize> = DirectionLanes<f32, N, ROWS>;
-type LaneDirections<const N: usize> = [Direction<Lanes<f32, N>>; 2];
+type Motions<const N: usize> = DirectionLanes<N, ROWS>;
+type LaneDirections<const N: usize> = [Direction<Numbers<N>>; 2];
 
 /// Rows of lanes: enough to keep a processor busy; with more the compiler no longer finds the vectors of 4.
 const ROWS: usize = 3;
@@ -85,7 +86,7 @@ impl Flips<DirectionF32Plain> {
         lanes: &mut [[Option<Lane>; N]; ROWS],
         give: &mut impl FnMut(usize, Flip<f32>),
     ) {
-        let mut before: [LaneDirections<N>; ROWS] = from_fn(|row| motions.rod_directions(row));
+        let mut before: [LaneDirections<N>; ROWS] = from_fn(|row| motions.rods(row));
         for step in 0..BLOCK {
             let kept = (step + 1 == BLOCK).then_some(*motions);
             motions.step();
@@ -104,13 +105,14 @@ impl Flips<DirectionF32Plain> {
                 motions.restore_lengths();
             }
             for (row, before) in before.iter_mut().enumerate() {
-                let rod_directions = motions.rod_directions(row);
-                if any_turns_over(before, &rod_directions) {
+                let rods = motions.rods(row);
+                if any_turns_over(before, &rods) {
                     for (place, lane) in lanes[row].iter_mut().enumerate() {
-                        let at = |rod_directions: &LaneDirections<N>| {
-                            rod_directions.map(|direction| direction.map(|part| part.0[place]))
+                        let at = |rods: &LaneDirections<N>| {
+                            rods.map(|direction| direction.map(|part| part.0[place].side()))
                         };
-                        let (before, after) = (at(before), at(&rod_directions));
+                        let before = at(before);
+                        let after = at(&rods);
                         let passes =
                             |lane: &mut Lane| step < lane.left && passes(&before, &after) < 0;
                         if let Some(Lane { start, left }) = lane.take_if(passes) {
@@ -118,7 +120,7 @@ impl Flips<DirectionF32Plain> {
                         }
                     }
                 }
-                *before = rod_directions;
+                *before = rods;
             }
         }
         lanes
@@ -136,7 +138,7 @@ fn any_turns_over<const N: usize>(before: &LaneDirections<N>, after: &LaneDirect
     for (rod, any) in any.iter_mut().enumerate() {
         let ([from, _], [to, cos]) = (before[rod], after[rod]);
         for place in 0..N {
-            *any |= turns_over([from, to, cos].map(|part| part.0[place].sign()));
+            *any |= turns_over([from, to, cos].map(|part| part.0[place].side()));
         }
     }
     any[0] | any[1] < 0

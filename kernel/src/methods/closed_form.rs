@@ -1,7 +1,7 @@
 //! The motion of small oscillations in closed form: both angles at any time without a step; and read step by step.
 
+use super::Form;
 use super::scaling::lost;
-use super::{Form, Side};
 use crate::bounds::check_step;
 use crate::error::{Error, Parameter};
 use crate::numbers::{Real, Sealed};
@@ -166,9 +166,8 @@ impl<R: Real> ClosedForm<R> {
 impl<R> Sealed for ClosedForm<R> {}
 
 #[doc(hidden)]
-impl<R: Real + Side> Form for ClosedForm<R> {
+impl<R: Real> Form for ClosedForm<R> {
     type Real = R;
-    type Side = R;
     const HAS_TURNS: bool = true;
 
     fn new(parameters: &Parameters<f64>, start: &State<f64>, dt: f64) -> Result<Self, Error> {
@@ -224,13 +223,16 @@ impl<R: Real + Side> Form for ClosedForm<R> {
         self.state().check().map_err(Error::diverged)
     }
 
-    fn rod_directions(&self) -> [Direction<R>; 2] {
-        self.directions
+    fn sides(&self) -> [[i32; 2]; 2] {
+        self.directions.map(|direction| direction.map(R::side))
+    }
+
+    fn side_value(side: i32) -> R {
+        R::from_side(side)
     }
 
     fn directions<Q: Real>(&self) -> [Direction<Q>; 2] {
-        self.rod_directions()
-            .map(|direction| direction.map(R::cast))
+        self.directions.map(|direction| direction.map(R::cast))
     }
 
     fn momenta<Q: Real>(&self) -> [Q; 2] {
@@ -245,7 +247,7 @@ impl<R: Real + Side> Form for ClosedForm<R> {
     }
 
     fn bits(&self, mut feed: impl FnMut(u64)) {
-        self.rod_directions()
+        self.directions
             .iter()
             .flatten()
             .for_each(|x| feed(x.bits()));

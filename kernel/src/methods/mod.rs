@@ -3,7 +3,8 @@
 mod closed_form;
 pub(crate) mod direction;
 pub mod extrapolation;
-mod fixed64;
+mod extrapolation_f64;
+mod extrapolation_fixed64;
 pub mod rk4;
 mod rk4_direction;
 mod rk4_fixed32;
@@ -11,12 +12,12 @@ pub(crate) mod run;
 mod scaling;
 
 pub use closed_form::{ClosedForm, Oscillation, SmallOscillations};
-pub use direction::{DirectionForm, ExtrapolationF64, Plain};
-pub use fixed64::Fixed64;
+pub use extrapolation_f64::ExtrapolationF64;
+pub use extrapolation_fixed64::Fixed64;
 pub use rk4::{Canonical, Derivatives};
 pub use rk4_direction::Rk4Direction;
 pub use rk4_fixed32::Fixed32;
-pub use run::{Run, Side, Turns};
+pub use run::{Run, Turns};
 
 use core::fmt::Debug;
 
@@ -30,11 +31,11 @@ pub type HamiltonF32 = Canonical<f32>;
 pub type HamiltonF64 = Canonical<f64>;
 /// Directions of the rods, RK4, `f32` with compensated sums: `rk4-f32-direction`. On a Cortex-M4F 205 cycles a step; within
 /// 4e-8 rad in 10 s of regular motion (0.5 rad, 256 steps a second), root mean square over neighbouring starts.
-pub type DirectionF32 = Rk4Direction<true>;
+pub type DirectionF32 = Rk4Direction<f32, true>;
 /// The same in plain sums: `rk4-f32-direction-plain`. 160 cycles, within 3e-6 rad.
-pub type DirectionF32Plain = Rk4Direction<false>;
+pub type DirectionF32Plain = Rk4Direction<f32, false>;
 /// The same in `f64`, compensated.
-pub type DirectionF64 = DirectionForm<f64>;
+pub type DirectionF64 = Rk4Direction<f64, true>;
 /// Small oscillations at any time without a step, in `f32`: `closed-form-f32`.
 pub type ClosedFormF32 = ClosedForm<f32>;
 /// The same in `f64`.
@@ -52,9 +53,6 @@ pub trait Form: Sealed + Copy + Debug + PartialEq + 'static {
     /// What [`Run::directions`] and [`Run::angles`] are told in.
     #[doc(hidden)]
     type Real: Real;
-    /// What [`rod_directions`](Self::rod_directions) are made of.
-    #[doc(hidden)]
-    type Side: Side;
 
     /// Checks the parameters and prepares the motion from `start` in steps of `dt` seconds; a negative one runs backwards.
     #[doc(hidden)]
@@ -79,17 +77,14 @@ pub trait Form: Sealed + Copy + Debug + PartialEq + 'static {
     #[doc(hidden)]
     fn check(&self) -> Result<(), Error>;
 
-    /// Directions as they are carried, each as long as it likes: their signs tell when a rod turns over.
+    /// Returns sine and cosine of both rods as words with the sign in the highest bit. The signs
+    /// show when a rod turns over; the other bits are those of the method's numbers.
     #[doc(hidden)]
-    fn rod_directions(&self) -> [Direction<Self::Side>; 2];
+    fn sides(&self) -> [[i32; 2]; 2];
 
-    /// The signs of the directions.
+    /// Returns the number of a word of [`sides`](Self::sides), in any unit.
     #[doc(hidden)]
-    #[inline]
-    fn sides(&self) -> [[i32; 2]; 2] {
-        self.rod_directions()
-            .map(|direction| direction.map(Side::sign))
-    }
+    fn side_value(side: i32) -> Self::Real;
 
     /// The directions of both rods, in `Q`; no trigonometry where they are what is carried.
     #[doc(hidden)]

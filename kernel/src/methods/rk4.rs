@@ -77,9 +77,8 @@ pub struct Canonical<R, E = Pendulum<R>> {
 impl<R, E> Sealed for Canonical<R, E> {}
 
 #[doc(hidden)]
-impl<R: Real + super::Side, E: Derivatives<R>> Form for Canonical<R, E> {
+impl<R: Real, E: Derivatives<R>> Form for Canonical<R, E> {
     type Real = R;
-    type Side = R;
     const HAS_TURNS: bool = true;
 
     fn new(parameters: &Parameters<f64>, start: &State<f64>, dt: f64) -> Result<Self, Error> {
@@ -115,13 +114,20 @@ impl<R: Real + super::Side, E: Derivatives<R>> Form for Canonical<R, E> {
         self.state.finite().map(drop)
     }
 
-    fn rod_directions(&self) -> [Direction<R>; 2] {
-        self.state.angles().map(|angle| angle.own_sin_cos().into())
+    fn sides(&self) -> [[i32; 2]; 2] {
+        self.directions::<R>()
+            .map(|direction| direction.map(R::side))
+    }
+
+    fn side_value(side: i32) -> R {
+        R::from_side(side)
     }
 
     fn directions<Q: Real>(&self) -> [Direction<Q>; 2] {
-        self.rod_directions()
-            .map(|direction| direction.map(R::cast))
+        self.state.angles().map(|angle| {
+            let (sin, cos) = angle.own_sin_cos();
+            [sin.cast(), cos.cast()]
+        })
     }
 
     fn momenta<Q: Real>(&self) -> [Q; 2] {

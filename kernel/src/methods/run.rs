@@ -2,7 +2,7 @@
 
 use super::{Fixed32, Form};
 use crate::error::{Error, Parameter};
-use crate::numbers::{Real, Sealed};
+use crate::numbers::Real;
 use crate::pendulum::{Direction, Pendulum, State};
 
 /// A motion by the method that `F` is: made by [`Pendulum::run`].
@@ -121,30 +121,8 @@ impl Run<Fixed32> {
     }
 }
 
-/// A sine or cosine, of which the sign tells the side; sealed.
-pub trait Side: Sealed + Copy + core::fmt::Debug + PartialEq + Into<f64> + 'static {
-    /// All bits where it is negative; 0 where not. A negative zero is.
-    fn sign(self) -> i32;
-}
-
-macro_rules! side {
-    ($number:ident, $sign:expr) => {
-        impl Side for $number {
-            #[inline(always)]
-            fn sign(self) -> i32 {
-                $sign(self)
-            }
-        }
-    };
-}
-
-side!(f32, |part: f32| (part.to_bits() as i32) >> 31);
-side!(f64, |part: f64| ((part.to_bits() >> 32) as i32) >> 31);
-side!(i32, |part: i32| part >> 31);
-
-impl Sealed for i32 {}
-
-/// Negative if the sine's sign, first before and then after, has changed, and the cosine's is negative.
+/// Returns a negative number if the sine, before and after, has changed its sign and the cosine is
+/// negative.
 #[inline(always)]
 pub(crate) fn turns_over([from, to, cos]: [i32; 3]) -> i32 {
     (from ^ to) & cos

@@ -9,7 +9,7 @@ use crate::pendulum::Parameters;
 const MOST: i32 = 12;
 
 /// Units for a pendulum's motion of some energy: constants and momenta as the equations
-/// ([`Coefficients`](crate::pendulum::directions::Coefficients)) have them, but
+/// ([`Coefficients`](crate::methods::direction::Coefficients)) have them, but
 ///
 /// - time in a unit T such that no rate that the energy allows ([`Bounds`]) exceeds some limit, nor any torque,
 /// - (S, C) over the power of two sigma that leaves nu/sigma in (1/2, 1], and u or v, whichever is smaller, as many times

@@ -1,20 +1,27 @@
 //! The two floating-point types the kernel computes in.
 
-use core::fmt::Display;
-use core::ops::Div;
+use core::fmt::{Debug, Display};
+use core::ops::{Add, Div, Mul, Neg, Sub};
 
-use crate::numbers::{Scalar, Sealed, sine};
+use crate::numbers::{Sealed, sine};
 
 /// `f32` or `f64`, and no other type: the few operations the formulas need, one row each.
 ///
 /// Every operation is either IEEE 754 arithmetic or a pure-Rust routine built on it, so that a result is
 /// bit-identical on every machine.
 pub trait Real:
-    Scalar<Gravity = Self, Slope = Self, Torque = Self>
+    Sealed
+    + Copy
+    + Debug
     + Default
-    + PartialOrd
     + Display
+    + PartialOrd
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
     + Div<Output = Self>
+    + Neg<Output = Self>
+    + 'static
 {
     #[doc(hidden)]
     const ZERO: Self;
@@ -30,6 +37,9 @@ pub trait Real:
     #[doc(hidden)]
     const EPSILON: Self;
 
+    /// Returns the number nearest to `value`.
+    #[doc(hidden)]
+    fn from_f64(value: f64) -> Self;
     #[doc(hidden)]
     fn to_f64(self) -> f64;
     #[doc(hidden)]
@@ -42,6 +52,17 @@ pub trait Real:
     #[doc(hidden)]
     #[must_use]
     fn abs(self) -> Self;
+    /// Returns twice the number. Where an addition is a call of a library, the exponent is increased
+    /// instead, with the same bits as the sum.
+    #[doc(hidden)]
+    #[must_use]
+    fn twice(self) -> Self;
+    /// Returns a word with the number's sign in its highest bit, from which
+    /// [`from_side`](Self::from_side) returns the number; the fraction of an `f64` is cut to 20 bits.
+    #[doc(hidden)]
+    fn side(self) -> i32;
+    #[doc(hidden)]
+    fn from_side(side: i32) -> Self;
     /// The square root, correctly rounded; NaN below 0.
     #[doc(hidden)]
     #[must_use]
@@ -98,13 +119,21 @@ twice_by_bits!(twice_single, f32);
 twice_by_bits!(twice_double, f64);
 
 macro_rules! real {
-    ($float:ident, $twice:ident in software if $software:meta, $sqrt:path, $atan2:path, $own:ident) => {
+    (
+        $float:ident, $twice:ident in software if $software:meta,
+        $side:expr, $from_side:expr, $sqrt:path, $atan2:path, $own:ident
+    ) => {
         impl Sealed for $float {}
 
-        impl Scalar for $float {
-            type Slope = Self;
-            type Gravity = Self;
-            type Torque = Self;
+        #[doc(hidden)]
+        impl Real for $float {
+            const ZERO: Self = 0.0;
+            const ONE: Self = 1.0;
+            const TWO: Self = 2.0;
+            const HALF: Self = 0.5;
+            const PI: Self = core::$float::consts::PI;
+            const EPSILON: Self = $float::EPSILON;
+
             #[inline(always)]
             fn from_f64(value: f64) -> Self {
                 value as $float
@@ -118,32 +147,13 @@ macro_rules! real {
                 }
             }
             #[inline(always)]
-            fn half(self) -> Self {
-                0.5 * self
+            fn side(self) -> i32 {
+                $side(self)
             }
             #[inline(always)]
-            fn slope(self, factor: Self) -> Self {
-                self * factor
+            fn from_side(side: i32) -> Self {
+                $from_side(side)
             }
-            #[inline(always)]
-            fn torque(self, rate: Self, direction: Self) -> Self {
-                self * rate * direction
-            }
-            #[inline(always)]
-            fn weight(gravity: Self, direction: Self) -> Self {
-                gravity * direction
-            }
-        }
-
-        #[doc(hidden)]
-        impl Real for $float {
-            const ZERO: Self = 0.0;
-            const ONE: Self = 1.0;
-            const TWO: Self = 2.0;
-            const HALF: Self = 0.5;
-            const PI: Self = core::$float::consts::PI;
-            const EPSILON: Self = $float::EPSILON;
-
             #[inline(always)]
             fn to_f64(self) -> f64 {
                 self as f64
@@ -185,8 +195,23 @@ macro_rules! real {
     };
 }
 
-real!(f32, twice_single in software if all(target_arch = "arm", target_abi = "eabi"), libm::sqrtf, libm::atan2f, single);
-real!(f64, twice_double in software if all(target_arch = "arm", any(target_abi = "eabi", target_os = "none"), not(feature = "double-fpu")), libm::sqrt, libm::atan2, double);
+real!(
+    f32, twice_single in software if all(target_arch = "arm", target_abi = "eabi"),
+    |number: f32| number.to_bits() as i32,
+    |side: i32| f32::from_bits(side as u32),
+    libm::sqrtf, libm::atan2f, single
+);
+real!(
+    f64, twice_double in software
+        if all(
+            target_arch = "arm",
+            any(target_abi = "eabi", target_os = "none"),
+            not(feature = "double-fpu")
+        ),
+    |number: f64| (number.to_bits() >> 32) as i32,
+    |side: i32| f64::from_bits(u64::from(side as u32) << 32),
+    libm::sqrt, libm::atan2, double
+);
 
 #[cfg(test)]
 mod tests {

@@ -1,11 +1,12 @@
 //! The pendulum and its equations of motion, each as the book has it.
 
-pub(crate) mod directions;
 mod hamiltonian;
 mod inputs;
 mod lagrangian;
 
-pub use directions::Direction;
 pub use hamiltonian::Pendulum;
 pub use inputs::{Motion, Parameters, State};
 pub use lagrangian::Vector;
+
+/// (sin, cos) of an angle from the downward vertical.
+pub type Direction<R> = [R; 2];

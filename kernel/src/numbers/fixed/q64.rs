@@ -3,7 +3,7 @@
 use core::ops::Mul;
 
 use super::{nearest, product};
-use crate::numbers::{Real, Scalar, Sealed};
+use crate::numbers::Real;
 
 fixed_point! {
     /// A number from -1/2 to below 1/2 in 64 bits, in steps of 2^-64: no shift follows a product.
@@ -86,50 +86,33 @@ impl Mul for Q64 {
     }
 }
 
-impl Sealed for Q64 {}
-
-impl Scalar for Q64 {
-    type Slope = Self;
-    type Gravity = Self;
-    type Torque = Self;
+impl Q64 {
+    /// Returns the number nearest to `value`.
     #[inline(never)]
-    fn from_f64(value: f64) -> Self {
+    pub fn from_f64(value: f64) -> Self {
         Self(nearest(value * UNIT) as i64)
     }
+
+    /// Returns half the number, rounded down.
     #[inline(always)]
-    fn half(self) -> Self {
+    pub fn half(self) -> Self {
         Self(self.0 >> 1)
     }
-    /// Four times the product.
+
+    /// Returns the product with a whole number.
     #[inline(always)]
-    fn slope(self, factor: Self) -> Self {
-        (self * factor).up(2)
-    }
-    #[inline(always)]
-    fn torque(self, rate: Self, direction: Self) -> Self {
-        self * rate * direction
-    }
-    #[inline(always)]
-    fn weight(gravity: Self, direction: Self) -> Self {
-        gravity * direction
-    }
-    fn split(value: f64) -> (i32, Self) {
-        let whole = libm::floor(value + 0.5); // the rest may be -1/2, but not 1/2
-        (whole as i32, Self::from_f64(value - whole))
-    }
-    #[inline(always)]
-    fn times(self, whole: i32) -> Self {
+    pub fn times(self, whole: i32) -> Self {
         Self(self.0.wrapping_mul(i64::from(whole)))
     }
-}
 
-impl Q64 {
-    /// Rounded to nearest.
+    /// Returns the number over 2^`by`, rounded to nearest.
     #[inline(always)]
     pub fn down(self, by: u32) -> Self {
         Self(self.0.wrapping_add(i64::from(1_u32 << by >> 1)) >> by)
     }
-    /// Made the middle of what it may have been before it was rounded down: no bias is left. `by` is 1 or more.
+
+    /// Returns the number times 2^`by`, moved to the middle of the values that it may have had before
+    /// it was rounded down, so that no bias is left. `by` is at least 1.
     #[inline(always)]
     pub fn up(self, by: u32) -> Self {
         Self(self.0 << by | 1 << (by - 1))

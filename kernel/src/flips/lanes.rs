@@ -1,0 +1,229 @@
+//! RK4 in the direction form for many motions of one pendulum at once, in the processor's vectors.
+//!
+//! The result of each lane is bit-identical to that of [`Rk4Direction`](crate::methods::Rk4Direction)
+//! in plain `f32`, whose page explains the equations and the step.
+//!
+//! The code uses loops and functions instead of array methods and closures, which are not always
+//! inlined in code for a processor's vectors.
+
+use crate::methods::DirectionF32Plain;
+use crate::numbers::Lanes;
+
+/// A number of `N` motions.
+pub(super) type Numbers<const N: usize> = Lanes<f32, N>;
+
+/// The six quantities sin a1, cos a1, S, C, P1 and P2 of `N` motions, and r = 1/(m + S^2).
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Point<const N: usize> {
+    z: [Numbers<N>; 6],
+    inverse: Numbers<N>,
+}
+
+/// The constants of the equations.
+#[derive(Clone, Copy, Debug)]
+struct Constants<const N: usize> {
+    norm: Numbers<N>,
+    inertia: Numbers<N>,
+    gravity: [Numbers<N>; 2],
+    half_inverse_square: Numbers<N>,
+}
+
+/// A step in progress: the point of the next stage, and the weighted sum of the stages so far.
+#[derive(Clone, Copy, Debug)]
+struct Stage<const N: usize> {
+    at: Point<N>,
+    sum: [Numbers<N>; 6],
+}
+
+/// `ROWS` times `N` motions of one pendulum.
+///
+/// Each stage is computed for all rows before the next stage of any row, because a stage has to
+/// wait for the one before it, and meanwhile the processor computes the other rows. The caller
+/// restores the lengths and leaves out steps when each motion would do so alone.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct DirectionLanes<const N: usize, const ROWS: usize> {
+    constants: Constants<N>,
+    /// The motions at the start of a step, and within it.
+    rows: [(Point<N>, Stage<N>); ROWS],
+}
+
+impl<const N: usize, const ROWS: usize> DirectionLanes<N, ROWS> {
+    /// Returns lanes that all follow `motion`.
+    #[inline(always)]
+    pub fn new(motion: &DirectionF32Plain) -> Self {
+        let (coefficients, half_inverse_square, z, inverse) = motion.parts();
+        let constants = Constants {
+            norm: Lanes::splat(coefficients.norm),
+            inertia: Lanes::splat(coefficients.inertia),
+            gravity: coefficients.gravity.map(Lanes::splat),
+            half_inverse_square: Lanes::splat(half_inverse_square),
+        };
+        let start = Point {
+            z: z.map(Lanes::splat),
+            inverse: Lanes::splat(inverse),
+        };
+        let rows = [(start, constants.first_stage(&start)); ROWS];
+        Self { constants, rows }
+    }
+
+    /// Puts another motion into a lane, counted through all rows. Ignores a lane that does not
+    /// exist.
+    #[inline(always)]
+    pub fn put(&mut self, lane: usize, motion: &DirectionF32Plain) {
+        let (_, _, z, inverse) = motion.parts();
+        let numbers = z.into_iter().chain([inverse]);
+        for (place, number) in self.lane(lane).zip(numbers) {
+            *place = number;
+        }
+    }
+
+    /// Resets a lane to its motion in `before`.
+    #[inline(always)]
+    pub fn keep(&mut self, lane: usize, before: &mut Self) {
+        for (place, number) in self.lane(lane).zip(before.lane(lane)) {
+            *place = *number;
+        }
+    }
+
+    /// Advances all motions by one step of RK4.
+    #[inline(always)]
+    pub fn step(&mut self) {
+        let constants = &self.constants;
+        for (start, stage) in &mut self.rows {
+            *stage = constants.first_stage(start);
+        }
+        for (start, stage) in &mut self.rows {
+            constants.second_stage(start, stage);
+        }
+        for (start, stage) in &mut self.rows {
+            constants.third_stage(start, stage);
+        }
+        for (start, stage) in &mut self.rows {
+            constants.last_stage(start, stage);
+        }
+    }
+
+    /// Restores the lengths of all directions.
+    #[inline(always)]
+    pub fn restore_lengths(&mut self) {
+        for (start, _) in &mut self.rows {
+            self.constants.restore_lengths(start);
+        }
+    }
+
+    /// Returns (sin, cos) of both rods in the lanes of a row; those of rod 2 are nu times as long.
+    #[inline(always)]
+    pub fn rods(&self, row: usize) -> [[Numbers<N>; 2]; 2] {
+        let [sin1, cos1, s, c, ..] = self.rows[row].0.z;
+        [[sin1, cos1], [sin1 * c - cos1 * s, cos1 * c + sin1 * s]]
+    }
+
+    /// Returns the numbers of one motion; none if the lane does not exist.
+    #[inline(always)]
+    fn lane(&mut self, lane: usize) -> impl Iterator<Item = &mut f32> {
+        let row = self
+            .rows
+            .get_mut(lane / N)
+            .map(|(start, _)| start.z.iter_mut().chain([&mut start.inverse]));
+        row.into_iter()
+            .flatten()
+            .map(move |number| &mut number.0[lane % N])
+    }
+}
+
+impl<const N: usize> Constants<N> {
+    #[inline(always)]
+    fn first_stage(&self, start: &Point<N>) -> Stage<N> {
+        let k1 = changes(&start.z, self.rates(start));
+        Stage {
+            at: start.ahead(&k1, start),
+            sum: k1,
+        }
+    }
+
+    #[inline(always)]
+    fn second_stage(&self, start: &Point<N>, stage: &mut Stage<N>) {
+        let k2 = changes(&stage.at.z, self.rates(&stage.at));
+        for i in 0..6 {
+            stage.sum[i] = stage.sum[i] + k2[i].twice();
+        }
+        stage.at = start.ahead(&k2, &stage.at);
+    }
+
+    #[inline(always)]
+    fn third_stage(&self, start: &Point<N>, stage: &mut Stage<N>) {
+        let [u, v, p1, p2] = self.rates(&stage.at);
+        let twice_rates = [u.twice(), v.twice(), p1.twice(), p2.twice()];
+        let twice_k3 = changes(&stage.at.z, twice_rates);
+        for i in 0..6 {
+            stage.sum[i] = stage.sum[i] + twice_k3[i];
+        }
+        stage.at = start.ahead(&twice_k3, &stage.at);
+    }
+
+    #[inline(always)]
+    fn last_stage(&self, start: &mut Point<N>, stage: &Stage<N>) {
+        let k4 = changes(&stage.at.z, self.rates(&stage.at));
+        let third = Lanes::splat(1.0 / 3.0);
+        for i in 0..6 {
+            start.z[i] = start.z[i] + (stage.sum[i] + k4[i]) * third;
+        }
+
+        let one = Lanes::splat(1.0);
+        let s = start.z[2];
+        let r4 = stage.at.inverse;
+        start.inverse = r4 + r4 * ((one - self.inertia * r4) - (s * r4) * s);
+    }
+
+    /// Returns u, v, P1' and P2'.
+    #[inline(always)]
+    fn rates(&self, at: &Point<N>) -> [Numbers<N>; 4] {
+        let [sin1, cos1, s, c, p1, p2] = at.z;
+        let [gravity1, gravity2] = self.gravity;
+        let u = (p1 - c * p2) * at.inverse;
+        let v = p2 - c * u;
+        let force = u * v * s;
+        let nu_sin2 = sin1 * c - cos1 * s;
+        [u, v, -(gravity1 * sin1) - force, force - gravity2 * nu_sin2]
+    }
+
+    #[inline(always)]
+    fn restore_lengths(&self, point: &mut Point<N>) {
+        let one = Lanes::splat(1.0);
+        let half = Lanes::splat(0.5);
+        for (i, length, gain) in [(0, one, half), (2, self.norm, self.half_inverse_square)] {
+            let s = point.z[i];
+            let c = point.z[i + 1];
+            let missing = gain * ((length - c) * (length + c) - s * s);
+            point.z[i] = s + s * missing;
+            point.z[i + 1] = c + c * missing;
+        }
+    }
+}
+
+impl<const N: usize> Point<N> {
+    /// Returns the point that is further by `k`, the change that was computed at `from`.
+    #[inline(always)]
+    fn ahead(&self, k: &[Numbers<N>; 6], from: &Self) -> Self {
+        let mut z = self.z;
+        for i in 0..6 {
+            z[i] = z[i] + k[i];
+        }
+        let fall = k[2].twice() * (from.z[2] * from.inverse) * from.inverse;
+        Self {
+            z,
+            inverse: self.inverse - fall,
+        }
+    }
+}
+
+/// Returns the rates of change of the six quantities at `z`, where u, v, P1' and P2' are known.
+#[inline(always)]
+fn changes<const N: usize>(
+    z: &[Numbers<N>; 6],
+    [u, v, p1, p2]: [Numbers<N>; 4],
+) -> [Numbers<N>; 6] {
+    let [sin1, cos1, s, c, ..] = *z;
+    let w = u - v;
+    [cos1 * u, -(sin1 * u), c * w, -(s * w), p1, p2]
+}

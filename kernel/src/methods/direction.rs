@@ -1,0 +1,316 @@
+//! The direction form of Hamilton's equations, in which the fast methods compute.
+//!
+//! # Equations
+//!
+//! The equations of motion contain the angles only as sines and cosines. The direction form
+//! therefore carries sines and cosines instead of angles, and a step needs no trigonometry:
+//!
+//! - sin a1 and cos a1, the direction of rod 1;
+//! - S = nu sin (a1 - a2) and C = nu cos (a1 - a2), where nu = l1/l2;
+//! - P1 and P2, the momenta p1 and p2 times tau/(m2 l2^2), where tau is the unit of time.
+//!
+//! With m = (m1/m2) nu^2, G2 = tau^2 g/l1 and G1 = (m + nu^2) G2, the equations are:
+//!
+//! ```text
+//! r = 1/(m + S^2)      u = a1' = (P1 - C P2) r      v = a2' = P2 - C u      F = u v S
+//!
+//! (sin a1)' = u cos a1      S' = (u - v) C       P1' = -G1 sin a1 - F
+//! (cos a1)' = -u sin a1     C' = -(u - v) S      P2' = -G2 (C sin a1 - S cos a1) + F
+//! ```
+//!
+//! Each method has its own copy of these equations, in its own numbers. The unit test
+//! `every_form_is_that_of_hamiltons_equations` compares each copy with Hamilton's equations.
+//!
+//! # What this file contains
+//!
+//! - the conversion between these six quantities and a [`State`]: [`quantities`], [`state_of`];
+//! - the constants of the equations in floating point: [`Coefficients`], [`prepare`];
+//! - the bookkeeping of a step that is not exactly dt, because its constants are rounded:
+//!   [`Scale`], [`Lead`].
+
+use crate::bounds::check_step;
+use crate::error::{Error, Parameter};
+use crate::numbers::Real;
+use crate::pendulum::{Direction, Parameters, State};
+
+/// Returns sin a1, cos a1, S, C, P1 and P2 of a state.
+///
+/// nu is `norm`. The two units convert the momenta: P1 = p1 `unit1`, P2 = p2 `unit2`.
+#[inline(never)] // Not inlined, to save flash.
+pub(crate) fn quantities(state: &State<f64>, norm: f64, [unit1, unit2]: [f64; 2]) -> [f64; 6] {
+    let (sin1, cos1) = state.a1.own_sin_cos();
+    let (sin_d, cos_d) = (state.a1 - state.a2).own_sin_cos();
+    [
+        sin1,
+        cos1,
+        norm * sin_d,
+        norm * cos_d,
+        state.p1 * unit1,
+        state.p2 * unit2,
+    ]
+}
+
+/// Returns the state of the six quantities, with angles in (-pi, pi].
+///
+/// The inverse of [`quantities`], apart from whole turns.
+#[inline(never)] // Not inlined, to save flash.
+pub(crate) fn state_of(z: [f64; 6], [unit1, unit2]: [f64; 2]) -> State<f64> {
+    let [sin1, cos1, s, c, p1, p2] = z;
+    let sin2 = sin1 * c - cos1 * s;
+    let cos2 = cos1 * c + sin1 * s;
+    State {
+        a1: libm::atan2(sin1, cos1),
+        a2: libm::atan2(sin2, cos2),
+        p1: p1 / unit1,
+        p2: p2 / unit2,
+    }
+}
+
+/// Returns the directions of both rods, each of length 1, where nu is `norm`.
+#[inline]
+pub(crate) fn directions<R: Real>(z: &[R; 6], norm: R) -> [Direction<R>; 2] {
+    let [sin1, cos1, s, c, ..] = *z;
+    let inverse = R::ONE / norm;
+    let sin2 = sin1 * c - cos1 * s;
+    let cos2 = cos1 * c + sin1 * s;
+    [[sin1, cos1], [sin2 * inverse, cos2 * inverse]]
+}
+
+/// The constants of the equations.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Coefficients<R> {
+    /// nu.
+    pub norm: R,
+    /// m.
+    pub inertia: R,
+    /// G1 and G2.
+    pub gravity: [R; 2],
+}
+
+/// The units of a motion in floating point, in SI units. Used at input and output only.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Scale {
+    /// P1/p1 and P2/p2, s/(kg m^2).
+    pub momentum: f64,
+    /// The length of a step in the unit of time tau.
+    step: f64,
+    /// The amount by which a step is longer than dt.
+    pub lead: Lead,
+}
+
+/// Returns the constants for steps of `dt` seconds that are `step` units of time long.
+///
+/// A negative `dt` runs backwards. The unit of time is chosen so that the products of the rounded
+/// constants are as exact as possible; it can be up to 32 ulp of G2 longer than dt/`step`.
+pub(crate) fn prepare<R: Real>(
+    parameters: &Parameters<R>,
+    dt: f64,
+    step: f64,
+) -> Result<(Coefficients<R>, Scale), Error> {
+    parameters.check()?;
+    check_step::<R>(dt)?;
+    let Parameters { m1, m2, l1, l2, g } = parameters.cast::<f64>();
+    let norm = l1 / l2;
+    let [inertia, total] = [m1, m1 + m2].map(|mass| mass / m2 * norm * norm);
+
+    // The unit of time follows from G2 as it is rounded.
+    let unit = dt / libm::rint(step);
+    let wanted = unit * unit * g / l1;
+    let gravity2 = factor_above::<R>(wanted, total);
+    let gravity1 = R::from_f64(total * gravity2.to_f64());
+    let time = if g == 0.0 {
+        unit
+    } else {
+        unit * libm::sqrt(gravity2.to_f64() / wanted)
+    };
+
+    let coefficients = Coefficients {
+        norm: R::from_f64(norm),
+        inertia: R::from_f64(inertia),
+        gravity: [gravity1, gravity2],
+    };
+    let scale = Scale {
+        momentum: time / (m2 * l2 * l2),
+        step,
+        lead: Lead::new(time * step, dt),
+    };
+
+    let in_range = |constant: R| constant.is_normal() && (R::ONE / constant).is_normal();
+    let constants = [coefficients.norm, coefficients.inertia, R::from_f64(total)];
+    let gravity_in_range = g == 0.0 || coefficients.gravity.into_iter().all(R::is_normal);
+    if constants.into_iter().all(in_range) && gravity_in_range {
+        Ok((coefficients, scale))
+    } else {
+        Err(parameters.out_of_range())
+    }
+}
+
+/// Returns the best of the first 32 numbers from `value` upwards: the one whose product with
+/// `factor` loses least by rounding.
+///
+/// G2 may be a little too large, because that only lengthens the unit of time, which is known. The
+/// ratio G1/G2 must be exact: where bob 1 is light, the frequency of the fast oscillation depends
+/// on the small difference G1 - nu^2 G2.
+fn factor_above<R: Real>(value: f64, factor: f64) -> R {
+    let lost = |candidate: R| {
+        let exact = candidate.to_f64() * factor;
+        (R::from_f64(exact).to_f64() - exact).abs()
+    };
+
+    let nearest = R::from_f64(value);
+    let ulp = nearest * R::EPSILON;
+    let least = if nearest.to_f64() < value {
+        nearest + ulp
+    } else {
+        nearest
+    };
+
+    let mut best = least;
+    let mut least_lost = f64::INFINITY;
+    for i in 0..32_i32 {
+        let candidate = least + R::from_f64(f64::from(i)) * ulp;
+        if lost(candidate) < least_lost {
+            best = candidate;
+            least_lost = lost(candidate);
+        }
+    }
+    best
+}
+
+impl Scale {
+    /// Refuses momenta P1 and P2 that are too large for `R`.
+    pub fn check<R: Real>(&self, momenta: [f64; 2]) -> Result<(), Error> {
+        for (parameter, p) in [Parameter::P1, Parameter::P2].into_iter().zip(momenta) {
+            if !R::from_f64(p).is_finite() {
+                return Err(Error::OutOfRange {
+                    parameter,
+                    value: p / self.momentum,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Returns the state at the time of `count` steps of dt, in SI units, with angles in (-pi, pi].
+    ///
+    /// The motion is at `z`, plus `lost` by which `z` was rounded. `rates` returns the rates of
+    /// change at a point, per unit of time.
+    ///
+    /// The motion can be up to half a step ahead of that time. Four stages take it back, each from
+    /// the slope of the one before: of order 4 in small oscillations and of order 2 in others.
+    #[must_use]
+    #[inline(never)] // Not inlined, to save flash.
+    pub fn state<R: Real>(
+        &self,
+        rates: impl Fn(&[R; 6]) -> [R; 6],
+        z: &[R; 6],
+        lost: [R; 6],
+        count: u64,
+    ) -> State<f64> {
+        let span = R::from_f64(-self.lead.ahead(count) * self.step);
+        let mut change = [R::ZERO; 6];
+        for share in [0.25, 1.0 / 3.0, 0.5, 1.0] {
+            let at = core::array::from_fn(|i| z[i] + change[i]);
+            change = rates(&at).map(|rate| rate * (span * R::from_f64(share)));
+        }
+
+        // A motion that is about to leave the finite numbers is not taken back.
+        if !change.into_iter().all(R::is_finite) {
+            change = [R::ZERO; 6];
+        }
+
+        let exact = core::array::from_fn(|i| z[i].to_f64() + (lost[i] + change[i]).to_f64());
+        state_of(exact, [self.momentum; 2])
+    }
+}
+
+/// The number of steps after which the lead is compared with half a step.
+///
+/// The lengths of the directions are restored at the same interval.
+pub(crate) const BLOCK: u32 = 32;
+
+/// The amount by which a step is longer than dt, because the constants of the equations are
+/// rounded.
+///
+/// When a motion would be more than half a step ahead of the time, the last step of a block is left
+/// out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Lead {
+    /// The lead of each step in multiples of 2^-64 of a step.
+    ///
+    /// A wrapping product with the number of steps is the lead beyond whole steps.
+    each: u64,
+}
+
+/// A step in the unit of [`Lead::each`].
+const STEP: f64 = (1_u128 << 64) as f64;
+
+impl Lead {
+    /// Returns the lead of steps of length `step` instead of `dt`, in any unit.
+    ///
+    /// A step that is too short, by a rounding, has no lead.
+    pub fn new(step: f64, dt: f64) -> Self {
+        Self {
+            each: ((step - dt) / step * STEP) as u64,
+        }
+    }
+
+    /// Returns the number of steps to compute for the next `steps` steps, after which the count is
+    /// `count`. They must not go beyond the end of a block.
+    #[inline(always)]
+    pub fn made(self, steps: u32, count: u64) -> u32 {
+        if count as u32 % BLOCK == 0 {
+            steps - u32::from(self.is_left_out(count))
+        } else {
+            steps
+        }
+    }
+
+    /// Returns true if the last step of the block that ends at `count` is left out, because the
+    /// lead exceeded half a step within the block.
+    #[inline(always)]
+    pub fn is_left_out(self, count: u64) -> bool {
+        let after = count.wrapping_mul(self.each) as i64;
+        after < i64::MIN + (self.each * u64::from(BLOCK)) as i64
+    }
+
+    /// Returns the number of steps by which the motion is ahead at `count`: at most half a step,
+    /// plus the lead of one block.
+    #[inline(never)] // Not inlined, to save flash.
+    pub fn ahead(self, count: u64) -> f64 {
+        let within = count % u64::from(BLOCK);
+        let before = (count - within).wrapping_mul(self.each) as i64;
+        (before as f64 + within as f64 * self.each as f64) / STEP
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Compares the lead with sums over the steps that a method computes.
+    #[test]
+    fn motion_is_at_most_half_a_step_ahead() {
+        for longer in [-f64::EPSILON, 0.0, 1e-16, 1.9e-6, 3e-4, 0.01] {
+            let step = 1.0 + longer;
+            let lead = Lead::new(step, 1.0);
+            let mut count = 0_u64;
+            let mut made = 0_u64;
+            for call in 0..200_000_u32 {
+                let steps = (call % 7 + 1).min(BLOCK - count as u32 % BLOCK);
+                count += u64::from(steps);
+                made += u64::from(lead.made(steps, count));
+                let ahead = (made as f64 * step - count as f64) / step;
+                assert!(
+                    (ahead - lead.ahead(count)).abs() < 1e-9,
+                    "{longer} after {count}: {ahead}"
+                );
+                assert!(
+                    ahead.abs() <= 0.5 + f64::from(BLOCK) * longer,
+                    "{longer} after {count}: {ahead}"
+                );
+            }
+            assert_eq!(made < count, longer > 1e-6, "{longer}");
+        }
+    }
+}

@@ -1,0 +1,367 @@
+//! Extrapolation in the direction form, in `f64`: the motion to almost the last digit of an `f64`.
+//!
+//! # Equations
+//!
+//! With the quantities of the [direction form](crate::methods::direction) and a whole step as the
+//! unit of time, the slope that a row of n substeps adds is the change over 2 h = 2/n:
+//!
+//! ```text
+//! r = 1/(m + S^2)      u = a1' = (P1 - C P2) r      v = a2' = P2 - C u      F = u v S
+//!
+//! (sin a1)' = u cos a1      S' = (u - v) C       P1' = -G1 sin a1 - F
+//! (cos a1)' = -u sin a1     C' = -(u - v) S      P2' = -G2 (C sin a1 - S cos a1) + F
+//! ```
+//!
+//! # Order of computation
+//!
+//! The [rows](crate::methods::extrapolation) of a step do not depend on each other. Four of them are
+//! computed side by side, in the vectors of processors that have them. A lane that has finished its
+//! row takes the next one. The sum of the ends is taken in the order in which the rows end, which is
+//! the same on every machine.
+
+use crate::error::{Error, Parameter, check_finite};
+use crate::methods::Form;
+use crate::methods::direction::{Coefficients, Scale, directions, prepare, quantities};
+use crate::methods::extrapolation::{Extrapolation, ROWS};
+use crate::numbers::{Lanes, Real, Sealed};
+use crate::pendulum::{Direction, Parameters, State};
+
+/// The number of rows that are computed side by side. Two vectors of SSE2 hide each other's latency.
+const LANES: usize = 4;
+
+type Numbers = Lanes<f64, LANES>;
+
+/// A motion in the direction form, stepped by [`Extrapolation`] of order `ORDER`, 2, 4 .. 16, in
+/// `f64`.
+///
+/// The sums of the state are compensated, as in [`DirectionF32`](crate::DirectionF32), and the
+/// lengths of the directions are restored after every step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ExtrapolationF64<const ORDER: u32> {
+    coefficients: Coefficients<f64>,
+    /// 1/(2 nu^2).
+    half_inverse_square: f64,
+    scale: Scale,
+    method: Extrapolation<f64>,
+    /// sin a1, cos a1, S, C, P1 and P2.
+    z: [f64; 6],
+    /// The amounts by which `z` was rounded in its last addition.
+    lost: [f64; 6],
+    /// r = 1/(m + S^2).
+    inverse: f64,
+    /// The number of steps since the start.
+    steps: u64,
+}
+
+/// The work of a lane.
+#[derive(Clone, Copy, PartialEq)]
+enum Work {
+    /// The slope at the start of the step.
+    FirstSlope,
+    /// A row, counted from 0.
+    Row(usize),
+    Done,
+}
+
+impl Work {
+    /// Returns the number of slopes that the work takes.
+    fn slopes(self) -> usize {
+        match self {
+            Work::FirstSlope => 1,
+            Work::Row(row) => 2 * row + 1,
+            Work::Done => usize::MAX,
+        }
+    }
+}
+
+/// The constants of the equations for the rows that the lanes compute.
+struct Pace {
+    /// The share 2/n of the step in each lane.
+    share: Numbers,
+    /// G1 and G2 times that share.
+    gravity: [Numbers; 2],
+}
+
+impl<const ORDER: u32> ExtrapolationF64<ORDER> {
+    /// Advances the motion by one step.
+    fn step(&mut self) {
+        let change = self.change();
+        for (i, change) in change.into_iter().enumerate() {
+            self.add(i, change);
+        }
+        self.restore_lengths();
+    }
+
+    /// Returns the change of the six quantities over one step.
+    #[inline(always)]
+    fn change(&self) -> [f64; 6] {
+        let (shares, weights, _) = self.method.parts();
+        let mut first = [0.0; 6];
+        let mut sum = [0.0; 6];
+        let mut reference = [0.0; 6];
+        let mut is_first_end = true;
+
+        // Each lane's work, the number of rows that it has taken, and the slopes left in its work.
+        let mut work = [Work::FirstSlope; LANES];
+        let mut taken = [0; LANES];
+        let mut left = [1; LANES];
+
+        // The last midpoint of each lane and the one before, as changes from the start of the step.
+        let mut even = [Numbers::splat(0.0); 6];
+        let mut odd = even;
+        let mut before = &mut even;
+        let mut last = &mut odd;
+
+        let mut pace = self.pace([0; LANES]);
+        while work.iter().any(|&work| work != Work::Done) {
+            // Advance all lanes until the first of them is done with its work.
+            let slopes = left.iter().fold(usize::MAX, |least, &left| least.min(left));
+            for _ in 0..slopes {
+                let slope = self.slope(&pace, last);
+                for i in 0..6 {
+                    before[i] = before[i] + slope[i];
+                }
+                core::mem::swap(&mut before, &mut last);
+            }
+
+            for lane in 0..LANES {
+                left[lane] -= slopes;
+                if left[lane] > 0 {
+                    continue;
+                }
+
+                // Use the result.
+                let end: [f64; 6] = core::array::from_fn(|i| last[i].0[lane]);
+                match work[lane] {
+                    Work::FirstSlope if lane == 0 => first = end,
+                    Work::FirstSlope | Work::Done => {}
+                    Work::Row(_) if is_first_end => {
+                        is_first_end = false;
+                        sum = end;
+                        reference = end;
+                    }
+                    // All weights sum to 1, so that the small differences from the first end can be
+                    // weighted instead of the ends themselves.
+                    Work::Row(row) => {
+                        for i in 0..6 {
+                            sum[i] += (end[i] - reference[i]) * weights[row % ROWS];
+                        }
+                    }
+                }
+
+                // Take the next row.
+                work[lane] = self.next_work(lane, taken[lane]);
+                taken[lane] += 1;
+                left[lane] = work[lane].slopes();
+                if let Work::Row(row) = work[lane] {
+                    for i in 0..6 {
+                        before[i].0[lane] = 0.0;
+                        last[i].0[lane] = 0.5 * (first[i] * shares[row % ROWS]);
+                    }
+                }
+            }
+            pace = self.pace(work.map(|work| match work {
+                Work::Row(row) => row,
+                Work::FirstSlope | Work::Done => 0,
+            }));
+        }
+        sum
+    }
+
+    /// Returns the row that `lane` computes after it has `taken` others.
+    ///
+    /// Long rows come first. The lanes take them in alternating directions, so that all end at about
+    /// the same time.
+    fn next_work(&self, lane: usize, taken: usize) -> Work {
+        let (_, _, rows) = self.method.parts();
+        let place = if taken % 2 == 0 {
+            lane
+        } else {
+            LANES - 1 - lane
+        };
+        match rows.checked_sub(1 + taken * LANES + place) {
+            Some(row) => Work::Row(row),
+            None => Work::Done,
+        }
+    }
+
+    /// Returns the constants where the lanes compute `rows`.
+    #[inline(always)]
+    fn pace(&self, rows: [usize; LANES]) -> Pace {
+        let (shares, _, _) = self.method.parts();
+        let share = Lanes(rows.map(|row| shares[row % ROWS]));
+        Pace {
+            share,
+            gravity: self
+                .coefficients
+                .gravity
+                .map(|gravity| Numbers::splat(gravity) * share),
+        }
+    }
+
+    /// Returns the change over 2 h at the points that are `change` away from the start of the step.
+    #[inline(always)]
+    fn slope(&self, pace: &Pace, change: &[Numbers; 6]) -> [Numbers; 6] {
+        let z: [Numbers; 6] = core::array::from_fn(|i| Numbers::splat(self.z[i]) + change[i]);
+        let [sin1, cos1, s, c, p1, p2] = z;
+        let [gravity1, gravity2] = pace.gravity;
+
+        let denominator = Numbers::splat(self.coefficients.inertia) + s * s;
+        let r = Lanes(denominator.0.map(|denominator| 1.0 / denominator));
+        let u = (p1 - c * p2) * r;
+        let v = p2 - c * u;
+
+        // From here on, u and v are angles over 2 h.
+        let u = pace.share * u;
+        let force = u * v * s;
+        let v = pace.share * v;
+        let w = u - v;
+        let nu_sin2 = sin1 * c - cos1 * s;
+        [
+            cos1 * u,
+            -(sin1 * u),
+            c * w,
+            -(s * w),
+            -(gravity1 * sin1) - force,
+            force - gravity2 * nu_sin2,
+        ]
+    }
+
+    /// Returns the rates of change at `z`, per step.
+    fn rates(&self, z: &[f64; 6]) -> [f64; 6] {
+        let [sin1, cos1, s, c, p1, p2] = *z;
+        let [gravity1, gravity2] = self.coefficients.gravity;
+        let u = (p1 - c * p2) * self.inverse_at(s);
+        let v = p2 - c * u;
+        let force = u * v * s;
+        let w = u - v;
+        let nu_sin2 = sin1 * c - cos1 * s;
+        [
+            cos1 * u,
+            -(sin1 * u),
+            c * w,
+            -(s * w),
+            -(gravity1 * sin1) - force,
+            force - gravity2 * nu_sin2,
+        ]
+    }
+
+    /// Returns r = 1/(m + S^2) where S is `s`.
+    fn inverse_at(&self, s: f64) -> f64 {
+        1.0 / (self.coefficients.inertia + s * s)
+    }
+
+    /// Adds `increment` to component `i` of the state, with compensation.
+    fn add(&mut self, i: usize, increment: f64) {
+        let wanted = increment + self.lost[i];
+        let sum = self.z[i] + wanted;
+        self.lost[i] = wanted - (sum - self.z[i]);
+        self.z[i] = sum;
+    }
+
+    /// Restores sin^2 a1 + cos^2 a1 = 1 and S^2 + C^2 = nu^2, to first order in the error.
+    fn restore_lengths(&mut self) {
+        let nu = self.coefficients.norm;
+        for (i, length, gain) in [(0, 1.0, 0.5), (2, nu, self.half_inverse_square)] {
+            let [s, c] = [self.z[i], self.z[i + 1]];
+            let lost = s * self.lost[i] + c * self.lost[i + 1];
+            let missing = gain * (((length - c) * (length + c) - s * s) - (lost + lost));
+            self.add(i, s * missing);
+            self.add(i + 1, c * missing);
+        }
+    }
+}
+
+impl<const ORDER: u32> Sealed for ExtrapolationF64<ORDER> {}
+
+#[doc(hidden)]
+impl<const ORDER: u32> Form for ExtrapolationF64<ORDER> {
+    type Real = f64;
+
+    fn new(parameters: &Parameters<f64>, start: &State<f64>, dt: f64) -> Result<Self, Error> {
+        let (coefficients, scale) = prepare(parameters, dt, 1.0)?;
+        let motion = Self {
+            coefficients,
+            half_inverse_square: 0.5 / (coefficients.norm * coefficients.norm),
+            scale,
+            method: Extrapolation::new(ORDER)?,
+            z: [0.0; 6],
+            lost: [0.0; 6],
+            inverse: 0.0,
+            steps: 0,
+        };
+        motion.started(start)
+    }
+
+    fn started(&self, start: &State<f64>) -> Result<Self, Error> {
+        start.check()?;
+        let z = quantities(start, self.coefficients.norm, [self.scale.momentum; 2]);
+        self.scale.check::<f64>([z[4], z[5]])?;
+        Ok(Self {
+            z,
+            lost: [0.0; 6],
+            inverse: self.inverse_at(z[2]),
+            steps: 0,
+            ..*self
+        })
+    }
+
+    // Never inlined, because a call costs little compared with a step and the step is large.
+    #[inline(never)]
+    fn advance(&mut self, steps: u32) {
+        for _ in 0..steps {
+            self.step();
+        }
+        self.inverse = self.inverse_at(self.z[2]);
+        self.steps += u64::from(steps);
+    }
+
+    fn check(&self) -> Result<(), Error> {
+        let [sin1, cos1, s, c, p1, p2] = self.z;
+        let [_, [sin2, cos2]] = self.directions::<f64>();
+        let unit = self.scale.momentum;
+        let numbers = [
+            (Parameter::A1, sin1),
+            (Parameter::A1, cos1),
+            (Parameter::A2, s),
+            (Parameter::A2, c),
+            (Parameter::A2, sin2),
+            (Parameter::A2, cos2),
+            (Parameter::P1, p1 / unit),
+            (Parameter::P2, p2 / unit),
+        ];
+        check_finite(numbers).map_err(Error::diverged)
+    }
+
+    fn sides(&self) -> [[i32; 2]; 2] {
+        let [sin1, cos1, s, c, ..] = self.z;
+        let sin2 = sin1 * c - cos1 * s;
+        let cos2 = cos1 * c + sin1 * s;
+        [[sin1.side(), cos1.side()], [sin2.side(), cos2.side()]]
+    }
+
+    fn side_value(side: i32) -> f64 {
+        f64::from_side(side)
+    }
+
+    fn directions<Q: Real>(&self) -> [Direction<Q>; 2] {
+        directions(&self.z, self.coefficients.norm).map(|direction| direction.map(f64::cast))
+    }
+
+    fn momenta<Q: Real>(&self) -> [Q; 2] {
+        let [.., p1, p2] = self.z;
+        [p1, p2].map(|p| (p / self.scale.momentum).cast())
+    }
+
+    fn state(&self) -> State<f64> {
+        self.scale
+            .state(|z| self.rates(z), &self.z, self.lost, self.steps)
+    }
+
+    fn bits(&self, mut feed: impl FnMut(u64)) {
+        self.z.iter().for_each(|z| feed(z.to_bits()));
+        self.lost.iter().for_each(|lost| feed(lost.to_bits()));
+        feed(self.inverse.to_bits());
+        feed(self.steps);
+    }
+}

@@ -1,0 +1,279 @@
+//! Extrapolation in the direction form, in 64-bit fixed point: many digits on processors that
+//! compute `f64` in software.
+//!
+//! # Number formats
+//!
+//! All numbers are [`Q64`]: fractions from -1/2 to below 1/2, in multiples of 2^-64. The unit of time
+//! T is chosen from the energy of the motion such that the [bounds](crate::Bounds) of that energy
+//! hold in these fractions:
+//!
+//! | quantity                              | at most | stored as       |
+//! |---------------------------------------|---------|-----------------|
+//! | sin a1, cos a1, S, C                  | 1       | an eighth of it |
+//! | angular rates u, v and momenta P1, P2 | 1/8     | itself          |
+//! | torques of gravity                    | 1/256   | itself          |
+//!
+//! Products of such fractions need no shift for their point, and few shifts for their units.
+//!
+//! # Range
+//!
+//! Within a step every quantity may overshoot by a factor of 2. Each stage checks this, and given
+//! that, no sum and no product leaves its 64 bits; the reason is stated at each in
+//! [`rows`](self::rows). If a quantity ever exceeded its range, because the steps were too coarse
+//! and the energy grew, the motion is *lost*: its state is NaN and
+//! [`Run::advance`](crate::Run::advance) returns an error. Nothing is clamped.
+//!
+//! # Rounding
+//!
+//! Products round down. A bias in one direction would add up over all steps, so that each result is
+//! moved to the middle of the values it may have had before rounding, and the step corrects what is
+//! left ([`Rows::rounded_down`]).
+
+mod rows;
+
+use core::cell::Cell;
+
+use crate::bounds::check_step;
+use crate::error::{Error, Parameter};
+use crate::methods::Form;
+use crate::methods::direction::{quantities, state_of};
+use crate::methods::scaling::{Scaling, lost};
+use crate::numbers::fixed::Q64;
+use crate::numbers::{Real, Sealed};
+use crate::pendulum::{Direction, Parameters, Pendulum, State};
+use rows::{EIGHTH, Rows, unit_of_time};
+
+/// A motion in the direction form, stepped by extrapolation of order `ORDER`, 2, 4 .. 16, in 64-bit
+/// fixed point.
+///
+/// The method accepts any start, and any masses and rods whose scaled ratios are below about 4,000.
+/// Others are refused with an error that names the parameter. It also refuses a step of more than 15
+/// of its units of time, or one in which the fastest rate would turn a rod by more than 1.5 rad; the
+/// error contains the longest possible step.
+///
+/// # Accuracy
+///
+/// The error in 10 s of regular motion (0.5 rad, rods of 1 m) by order 12 is below 1e-12 rad with 12
+/// steps a second. In chaotic motion it is that of `f64` with the same steps, or 1e-12 rad after 5 s
+/// (2 rad) with steps so short that only roundings are left. The tests of the repository assert
+/// both. However short the steps, roundings alone amount to 2e-13 rad by order 8, 7e-13 by order 12
+/// and 3e-12 by order 16, and to about 1e-13 in `f64`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fixed64<const ORDER: u32>(Fixed64State);
+
+/// A motion by any order. The code is compiled once for all orders.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Fixed64State {
+    rows: Rows,
+    /// P1/p1 and P2/p2, s/(kg m^2).
+    momenta: [f64; 2],
+    /// An eighth of 1/(2 nu^2).
+    half_inverse_square: Q64,
+    /// An eighth of sin a1, cos a1, S and C; P1 and P2.
+    z: [Q64; 6],
+    /// Whether a quantity was ever out of range.
+    lost: bool,
+    /// nu and 1/nu.
+    norm: f64,
+    inverse_norm: f64,
+    /// The amounts that a step loses by rounding down ([`Rows::rounded_down`]).
+    rounded_down: [i16; 2],
+}
+
+/// The largest angular rate, in the unit of time of the motion.
+const RATE: f64 = 0.125;
+/// The largest torque of gravity.
+const TORQUE: f64 = 1.0 / 256.0;
+/// The longest step, in units of time.
+const STEP: f64 = 15.0;
+/// The largest angle by which a rod may turn in a step, rad.
+const TURN: f64 = 1.5;
+
+/// The square of the length 1, over 64.
+const ONE: Q64 = Q64(1 << 58);
+/// An eighth of 1/2.
+const HALF: Q64 = Q64(1 << 60);
+/// The largest change 2^-8 of a squared length in one step, over 64.
+const LENGTH: u64 = 1 << 50;
+
+impl Fixed64State {
+    #[inline(never)]
+    fn new(
+        parameters: &Parameters<f64>,
+        start: &State<f64>,
+        dt: f64,
+        order: u32,
+    ) -> Result<Self, Error> {
+        let pendulum = Pendulum::new(parameters)?;
+        check_step::<f64>(dt)?;
+        start.check()?;
+
+        // The unit of time follows from the bounds of the energy, the longest step from the unit.
+        let bounds = pendulum.bounds(start);
+        let seconds = Scaling::in_seconds(parameters)?;
+        let [by_rates, by_torques] = seconds.longest(&bounds, [RATE, TORQUE]);
+        let longest = libm::fmin(by_rates, by_torques);
+        let limit = libm::fmin(STEP * longest, TURN / RATE * by_rates);
+        if libm::fabs(dt) > limit {
+            return Err(Error::TooLarge {
+                parameter: Parameter::Dt,
+                value: dt,
+                limit,
+            });
+        }
+
+        let scaling = seconds.in_unit(unit_of_time(longest, dt));
+        let rows = Rows::new(order, &scaling, dt)?;
+        let motion = Self {
+            rounded_down: rows.rounded_down(),
+            rows,
+            momenta: scaling.momenta,
+            norm: scaling.norm,
+            half_inverse_square: Q64::from_f64(0.5 / (scaling.norm * scaling.norm) * EIGHTH),
+            z: [Q64(0); 6],
+            inverse_norm: 1.0 / scaling.norm,
+            lost: false,
+        };
+        Ok(motion.started(start))
+    }
+
+    fn started(&self, start: &State<f64>) -> Self {
+        let [sin1, cos1, s, c, p1, p2] = quantities(start, self.norm, self.momenta);
+        let [sin1, cos1, s, c] = [sin1, cos1, s, c].map(|direction| direction * EIGHTH);
+        Self {
+            z: [sin1, cos1, s, c, p1, p2].map(Q64::from_f64),
+            lost: false,
+            ..*self
+        }
+    }
+
+    #[inline(never)]
+    fn advance(&mut self, steps: u32) {
+        for _ in 0..steps {
+            self.step();
+        }
+    }
+
+    /// Advances the motion by one step.
+    fn step(&mut self) {
+        let reach = Cell::new(0);
+        let end = self.rows.end(&self.z, &reach);
+
+        // Give back what rounding down took. Half of the last digit is rounded up if that digit is
+        // odd, which it is as often as not.
+        let corrected = |z: Q64, rounded_down: i16| {
+            Q64(z.0.wrapping_add((i64::from(rounded_down) + (z.0 & 1)) >> 1))
+        };
+        let [of_p1, of_others] = self.rounded_down;
+        let [sin1, cos1, s, c, _, p2] = end.map(|z| corrected(z, of_others));
+        let p1 = corrected(end[4], of_p1);
+
+        // Restore the lengths.
+        let norm = self.rows.norm();
+        let ([sin1, cos1], missing1) = restored([sin1, cos1], ONE, HALF);
+        let ([s, c], missing2) = restored([s, c], norm * norm, self.half_inverse_square);
+        self.z = [sin1, cos1, s, c, p1, p2];
+
+        // Check the range.
+        let mut reach = reach.get();
+        for z in &self.z {
+            reach |= z.reach(2);
+        }
+        self.lost |= reach != 0;
+        self.lost |= missing1.0.unsigned_abs() > LENGTH;
+        self.lost |= missing2.0.unsigned_abs() > LENGTH;
+    }
+
+    /// Returns an eighth of (sin, cos) of rod 1, and a 64th of nu (sin, cos) of rod 2.
+    fn rods(&self) -> [Direction<Q64>; 2] {
+        let [sin1, cos1, s, c, ..] = self.z;
+        [[sin1, cos1], [sin1 * c - cos1 * s, cos1 * c + sin1 * s]]
+    }
+
+    #[inline(never)]
+    fn state(&self) -> State<f64> {
+        let z = if self.lost {
+            [f64::NAN; 6]
+        } else {
+            self.z.map(Q64::value)
+        };
+        state_of(z, self.momenta)
+    }
+}
+
+/// Returns a direction with its length restored to first order in the error of its square, and that
+/// error. `gain` is half of 1/`square`.
+#[inline(always)]
+fn restored([s, c]: [Q64; 2], square: Q64, gain: Q64) -> ([Q64; 2], Q64) {
+    let missing = square - s * s - c * c;
+    let relative = missing.up(7) * gain;
+    let restored = |x: Q64| x + (x * relative).up(2);
+    ([restored(s), restored(c)], missing)
+}
+
+impl<const ORDER: u32> Sealed for Fixed64<ORDER> {}
+
+#[doc(hidden)]
+impl<const ORDER: u32> Form for Fixed64<ORDER> {
+    type Real = f32;
+
+    fn new(parameters: &Parameters<f64>, start: &State<f64>, dt: f64) -> Result<Self, Error> {
+        Fixed64State::new(parameters, start, dt, ORDER).map(Self)
+    }
+
+    fn started(&self, start: &State<f64>) -> Result<Self, Error> {
+        start.check()?;
+        Ok(Self(self.0.started(start)))
+    }
+
+    #[inline]
+    fn advance(&mut self, steps: u32) {
+        self.0.advance(steps);
+    }
+
+    fn check(&self) -> Result<(), Error> {
+        lost(self.0.lost)
+    }
+
+    fn sides(&self) -> [[i32; 2]; 2] {
+        self.0
+            .rods()
+            .map(|direction| direction.map(|x| (x.0 >> 32) as i32))
+    }
+
+    fn side_value(side: i32) -> f32 {
+        side as f32
+    }
+
+    fn directions<R: Real>(&self) -> [Direction<R>; 2] {
+        let [upper, lower] = self.0.rods();
+        let inverse = R::from_f64(self.0.inverse_norm);
+        [
+            upper.map(|z| z.over(EIGHTH)),
+            lower.map(|z| z.over::<R>(EIGHTH * EIGHTH) * inverse),
+        ]
+    }
+
+    #[inline(never)] // Not inlined, to save flash.
+    fn momenta<R: Real>(&self) -> [R; 2] {
+        let [.., p1, p2] = self.0.z;
+        let [unit1, unit2] = self.0.momenta;
+        let momentum = |p: Q64, unit: f64| {
+            if self.0.lost {
+                R::from_f64(f64::NAN)
+            } else {
+                p.over::<R>(1.0) / R::from_f64(unit)
+            }
+        };
+        [momentum(p1, unit1), momentum(p2, unit2)]
+    }
+
+    fn state(&self) -> State<f64> {
+        self.0.state()
+    }
+
+    fn bits(&self, mut feed: impl FnMut(u64)) {
+        self.0.z.iter().for_each(|&z| feed(z.0 as u64));
+        feed(u64::from(self.0.lost));
+    }
+}
