@@ -1,124 +1,309 @@
-//! The one table of methods.
+//! The table of methods: one row of plain data per method.
+//!
+//! To add a method, add a variant to [`Method`], its row and its place in [`Method::ALL`]. The
+//! compiler then asks for the type that computes it.
 
 use core::fmt;
 
-macro_rules! named {
-    ($(#[$doc:meta])* $type:ident { $($variant:ident $name:literal $means:literal;)* }) => {
-        $(#[$doc])*
-        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-        #[doc(hidden)]
-        pub enum $type { $(#[doc = $means] $variant,)* }
-
-        impl fmt::Display for $type {
-            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.pad(match self { $(Self::$variant => $name),* })
-            }
-        }
-    };
+/// The equations that a method integrates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Equations {
+    /// Hamilton's equations in angles and momenta: [`Pendulum::derivatives`](crate::Pendulum::derivatives).
+    Hamilton,
+    /// Hamilton's equations in directions of the rods and momenta, without sines.
+    Directions,
+    /// Hamilton's equations as `[math24]` prints them, not simplified: for comparison.
+    Textbook,
+    /// The linear equations of small oscillations: [`SmallOscillations`](crate::SmallOscillations).
+    Linear,
 }
 
-named! {
-    /// What is integrated.
-    Equations {
-        Hamilton "Hamilton" "Hamilton's equations in angles and momenta: [`Pendulum::derivatives`](crate::Pendulum::derivatives).";
-        Directions "directions" "Hamilton's equations in rod directions and momenta: no sines.";
-        Textbook "textbook" "Hamilton's equations as `[math24]` prints them, nothing simplified: for comparison.";
-        Linear "linear" "The linear equations of small oscillations: [`SmallOscillations`](crate::SmallOscillations).";
+impl fmt::Display for Equations {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Equations::Hamilton => "Hamilton",
+            Equations::Directions => "directions",
+            Equations::Textbook => "textbook",
+            Equations::Linear => "linear",
+        })
     }
 }
 
-named! {
-    /// What is computed in.
-    Numbers {
-        F32 "f32" "Single precision.";
-        CompensatedF32 "compensated f32" "Single precision; the rounding error of each sum is carried into the next.";
-        F64 "f64" "Double precision.";
-        CompensatedF64 "compensated f64" "Double precision, likewise.";
-        Fixed32 "fixed32" "Fixed point in 32 bits.";
-        Fixed64 "fixed64" "Fixed point in 64 bits.";
+/// The numbers that a method computes in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Numbers {
+    /// Single precision.
+    F32,
+    /// Single precision. The rounding error of each sum is carried into the next.
+    CompensatedF32,
+    /// Double precision.
+    F64,
+    /// Double precision. The rounding error of each sum is carried into the next.
+    CompensatedF64,
+    /// Fixed point of 32 bits.
+    Fixed32,
+    /// Fixed point of 64 bits.
+    Fixed64,
+}
+
+impl fmt::Display for Numbers {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Numbers::F32 => "f32",
+            Numbers::CompensatedF32 => "compensated f32",
+            Numbers::F64 => "f64",
+            Numbers::CompensatedF64 => "compensated f64",
+            Numbers::Fixed32 => "fixed32",
+            Numbers::Fixed64 => "fixed64",
+        })
     }
 }
 
-named! {
-    /// How a step is made.
-    Integrator {
-        Rk4 "RK4" "The classical Runge-Kutta method.";
-        Extrapolation "extrapolation" "W. B. Gragg's extrapolation, of any even order.";
-        ClosedForm "closed form" "The solution at any time at once, without steps.";
+/// The integrator that computes a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Integrator {
+    /// The classical Runge-Kutta method.
+    Rk4,
+    /// W. B. Gragg's extrapolation, of any even order.
+    Extrapolation,
+    /// The solution at any time, without steps.
+    ClosedForm,
+}
+
+impl fmt::Display for Integrator {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Integrator::Rk4 => "RK4",
+            Integrator::Extrapolation => "extrapolation",
+            Integrator::ClosedForm => "closed form",
+        })
     }
 }
 
-macro_rules! drawn {
-    ($method:ident drawn) => {
-        Method::$method
-    };
+/// The ways to compute a motion.
+///
+/// | name | equations | numbers | integrator | order | scenes are drawn by it |
+/// |---|---|---|---|---|---|
+/// | `rk4-f64` | Hamilton | F64 | Rk4 | 4 |  |
+/// | `rk4-f32` | Hamilton | F32 | Rk4 | 4 |  |
+/// | `rk4-f32-direction` | Directions | CompensatedF32 | Rk4 | 4 | yes |
+/// | `rk4-f32-direction-plain` | Directions | F32 | Rk4 | 4 | yes |
+/// | `rk4-fixed32` | Directions | Fixed32 | Rk4 | 4 | yes |
+/// | `extrapolation8-fixed64` | Directions | Fixed64 | Extrapolation | 8 |  |
+/// | `extrapolation10-fixed64` | Directions | Fixed64 | Extrapolation | 10 | yes |
+/// | `extrapolation12-fixed64` | Directions | Fixed64 | Extrapolation | 12 |  |
+/// | `extrapolation16-fixed64` | Directions | Fixed64 | Extrapolation | 16 |  |
+/// | `extrapolation12-f64` | Directions | CompensatedF64 | Extrapolation | 12 |  |
+/// | `extrapolation16-f64` | Directions | CompensatedF64 | Extrapolation | 16 |  |
+/// | `closed-form-f64` | Linear | F64 | ClosedForm | 0 |  |
+/// | `closed-form-f32` | Linear | F32 | ClosedForm | 0 | yes |
+/// | `rk4-f32-micromath` | Hamilton | F32 | Rk4 | 4 |  |
+/// | `textbook-f32` | Textbook | F32 | Rk4 | 4 |  |
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Method {
+    /// `rk4-f64`
+    Rk4F64,
+    /// `rk4-f32`
+    Rk4F32,
+    /// `rk4-f32-direction`
+    Rk4F32Direction,
+    /// `rk4-f32-direction-plain`
+    Rk4F32DirectionPlain,
+    /// `rk4-fixed32`
+    Rk4Fixed32,
+    /// `extrapolation8-fixed64`
+    Extrapolation8Fixed64,
+    /// `extrapolation10-fixed64`
+    Extrapolation10Fixed64,
+    /// `extrapolation12-fixed64`
+    Extrapolation12Fixed64,
+    /// `extrapolation16-fixed64`
+    Extrapolation16Fixed64,
+    /// `extrapolation12-f64`
+    Extrapolation12F64,
+    /// `extrapolation16-f64`
+    Extrapolation16F64,
+    /// `closed-form-f64`
+    ClosedFormF64,
+    /// `closed-form-f32`
+    ClosedFormF32,
+    /// `rk4-f32-micromath`
+    Rk4F32Micromath,
+    /// `textbook-f32`
+    TextbookF32,
+    /// `rk4-f64-lagrange`, which the unit tests add.
+    #[cfg(test)]
+    Rk4F64Lagrange,
 }
 
-macro_rules! methods {
-    ($($(#[cfg($when:meta)])? $method:ident $name:literal $equations:ident $numbers:ident $integrator:ident $order:literal $($drawn:ident)?;)*) => {
-        /// Every way to compute a motion: equations, numbers, integrator and its order, and whether scenes are drawn by it.
-        ///
-        /// | name | equations | numbers | integrator | order | |
-        /// |---|---|---|---|---|---|
-        $(#[cfg_attr(all($($when)?), doc = concat!(
-            "| `", $name, "` | ", stringify!($equations), " | ", stringify!($numbers), " | ", stringify!($integrator), " | ", $order, " | ", $(stringify!($drawn),)? " |"
-        ))])*
-        ///
-        /// To add one: a row here, and its type in the firmware's `job::table`.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-        #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-        #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-        pub enum Method { $($(#[cfg($when)])? #[doc = concat!("`", $name, "`")] $method,)* }
-
-        const ALL: &[Method] = &[$($(#[cfg($when)])? Method::$method,)*];
-        const DRAWN: &[Method] = &[$($(drawn!($method $drawn),)?)*];
-
-        impl Method {
-            const fn row(self) -> (&'static str, Equations, Numbers, Integrator, u32) {
-                match self {
-                    $($(#[cfg($when)])? Method::$method => {
-                        ($name, Equations::$equations, Numbers::$numbers, Integrator::$integrator, $order)
-                    })*
-                }
-            }
-        }
-    };
-}
-
-#[rustfmt::skip]
-methods! {
-    Rk4F64                "rk4-f64"                 Hamilton   F64            Rk4           4;
-    Rk4F32                "rk4-f32"                 Hamilton   F32            Rk4           4;
-    Rk4F32Direction       "rk4-f32-direction"       Directions CompensatedF32 Rk4           4 drawn;
-    Rk4F32DirectionPlain  "rk4-f32-direction-plain" Directions F32            Rk4           4 drawn;
-    Rk4Fixed32            "rk4-fixed32"             Directions Fixed32        Rk4           4 drawn;
-    Extrapolation8Fixed64  "extrapolation8-fixed64"  Directions Fixed64        Extrapolation 8;
-    Extrapolation10Fixed64 "extrapolation10-fixed64" Directions Fixed64        Extrapolation 10 drawn;
-    Extrapolation12Fixed64 "extrapolation12-fixed64" Directions Fixed64        Extrapolation 12;
-    Extrapolation16Fixed64 "extrapolation16-fixed64" Directions Fixed64        Extrapolation 16;
-    Extrapolation12F64    "extrapolation12-f64"     Directions CompensatedF64 Extrapolation 12;
-    Extrapolation16F64    "extrapolation16-f64"     Directions CompensatedF64 Extrapolation 16;
-    ClosedFormF64         "closed-form-f64"         Linear     F64            ClosedForm    0;
-    ClosedFormF32         "closed-form-f32"         Linear     F32            ClosedForm    0 drawn;
-    Rk4F32Micromath       "rk4-f32-micromath"       Hamilton   F32            Rk4           4;
-    TextbookF32           "textbook-f32"            Textbook   F32            Rk4           4;
-    #[cfg(test)] Rk4F64Lagrange "rk4-f64-lagrange"  Hamilton   F64            Rk4           4;
+/// The properties of a method.
+struct Row {
+    name: &'static str,
+    equations: Equations,
+    numbers: Numbers,
+    integrator: Integrator,
+    /// The order of its steps; 0 for the closed form.
+    order: u32,
 }
 
 impl Method {
-    /// Every method.
-    pub const ALL: &[Method] = ALL;
+    /// All methods, in the order of the table.
+    pub const ALL: &[Method] = &[
+        Method::Rk4F64,
+        Method::Rk4F32,
+        Method::Rk4F32Direction,
+        Method::Rk4F32DirectionPlain,
+        Method::Rk4Fixed32,
+        Method::Extrapolation8Fixed64,
+        Method::Extrapolation10Fixed64,
+        Method::Extrapolation12Fixed64,
+        Method::Extrapolation16Fixed64,
+        Method::Extrapolation12F64,
+        Method::Extrapolation16F64,
+        Method::ClosedFormF64,
+        Method::ClosedFormF32,
+        Method::Rk4F32Micromath,
+        Method::TextbookF32,
+        #[cfg(test)]
+        Method::Rk4F64Lagrange,
+    ];
 
-    /// What a [plan](crate::plan) chooses from.
-    pub const DRAWN: &[Method] = DRAWN;
+    /// The methods that scenes are drawn by, from which a [plan](crate::plan) chooses.
+    pub const DRAWN: &[Method] = &[
+        Method::Rk4F32Direction,
+        Method::Rk4F32DirectionPlain,
+        Method::Rk4Fixed32,
+        Method::Extrapolation10Fixed64,
+        Method::ClosedFormF32,
+    ];
 
-    /// Its name: integrator, numbers, equations.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        self.row().0
+    const fn row(self) -> Row {
+        match self {
+            Method::Rk4F64 => Row {
+                name: "rk4-f64",
+                equations: Equations::Hamilton,
+                numbers: Numbers::F64,
+                integrator: Integrator::Rk4,
+                order: 4,
+            },
+            Method::Rk4F32 => Row {
+                name: "rk4-f32",
+                equations: Equations::Hamilton,
+                numbers: Numbers::F32,
+                integrator: Integrator::Rk4,
+                order: 4,
+            },
+            Method::Rk4F32Direction => Row {
+                name: "rk4-f32-direction",
+                equations: Equations::Directions,
+                numbers: Numbers::CompensatedF32,
+                integrator: Integrator::Rk4,
+                order: 4,
+            },
+            Method::Rk4F32DirectionPlain => Row {
+                name: "rk4-f32-direction-plain",
+                equations: Equations::Directions,
+                numbers: Numbers::F32,
+                integrator: Integrator::Rk4,
+                order: 4,
+            },
+            Method::Rk4Fixed32 => Row {
+                name: "rk4-fixed32",
+                equations: Equations::Directions,
+                numbers: Numbers::Fixed32,
+                integrator: Integrator::Rk4,
+                order: 4,
+            },
+            Method::Extrapolation8Fixed64 => Row {
+                name: "extrapolation8-fixed64",
+                equations: Equations::Directions,
+                numbers: Numbers::Fixed64,
+                integrator: Integrator::Extrapolation,
+                order: 8,
+            },
+            Method::Extrapolation10Fixed64 => Row {
+                name: "extrapolation10-fixed64",
+                equations: Equations::Directions,
+                numbers: Numbers::Fixed64,
+                integrator: Integrator::Extrapolation,
+                order: 10,
+            },
+            Method::Extrapolation12Fixed64 => Row {
+                name: "extrapolation12-fixed64",
+                equations: Equations::Directions,
+                numbers: Numbers::Fixed64,
+                integrator: Integrator::Extrapolation,
+                order: 12,
+            },
+            Method::Extrapolation16Fixed64 => Row {
+                name: "extrapolation16-fixed64",
+                equations: Equations::Directions,
+                numbers: Numbers::Fixed64,
+                integrator: Integrator::Extrapolation,
+                order: 16,
+            },
+            Method::Extrapolation12F64 => Row {
+                name: "extrapolation12-f64",
+                equations: Equations::Directions,
+                numbers: Numbers::CompensatedF64,
+                integrator: Integrator::Extrapolation,
+                order: 12,
+            },
+            Method::Extrapolation16F64 => Row {
+                name: "extrapolation16-f64",
+                equations: Equations::Directions,
+                numbers: Numbers::CompensatedF64,
+                integrator: Integrator::Extrapolation,
+                order: 16,
+            },
+            Method::ClosedFormF64 => Row {
+                name: "closed-form-f64",
+                equations: Equations::Linear,
+                numbers: Numbers::F64,
+                integrator: Integrator::ClosedForm,
+                order: 0,
+            },
+            Method::ClosedFormF32 => Row {
+                name: "closed-form-f32",
+                equations: Equations::Linear,
+                numbers: Numbers::F32,
+                integrator: Integrator::ClosedForm,
+                order: 0,
+            },
+            Method::Rk4F32Micromath => Row {
+                name: "rk4-f32-micromath",
+                equations: Equations::Hamilton,
+                numbers: Numbers::F32,
+                integrator: Integrator::Rk4,
+                order: 4,
+            },
+            Method::TextbookF32 => Row {
+                name: "textbook-f32",
+                equations: Equations::Textbook,
+                numbers: Numbers::F32,
+                integrator: Integrator::Rk4,
+                order: 4,
+            },
+            #[cfg(test)]
+            Method::Rk4F64Lagrange => Row {
+                name: "rk4-f64-lagrange",
+                equations: Equations::Hamilton,
+                numbers: Numbers::F64,
+                integrator: Integrator::Rk4,
+                order: 4,
+            },
+        }
     }
 
-    /// The method of this name.
+    /// Returns the name: integrator, numbers, equations.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        self.row().name
+    }
+
+    /// Returns the method of this name; `None` if there is no such method.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL
@@ -126,38 +311,38 @@ impl Method {
             .copied()
             .find(|method| method.name() == name)
     }
-}
 
-#[doc(hidden)]
-impl Method {
+    /// Returns the equations that the method integrates.
     #[must_use]
     pub const fn equations(self) -> Equations {
-        self.row().1
+        self.row().equations
     }
 
+    /// Returns the numbers that the method computes in.
     #[must_use]
     pub const fn numbers(self) -> Numbers {
-        self.row().2
+        self.row().numbers
     }
 
+    /// Returns the integrator that computes the steps.
     #[must_use]
     pub const fn integrator(self) -> Integrator {
-        self.row().3
+        self.row().integrator
     }
 
-    /// The order of its steps; 0 for the closed form.
+    /// Returns the order of the steps; 0 for the closed form.
     #[must_use]
     pub const fn order(self) -> u32 {
-        self.row().4
+        self.row().order
     }
 
-    /// Whether its numbers are those of an `f32`.
+    /// Returns true if the numbers are those of an `f32`.
     #[must_use]
     pub const fn is_single(self) -> bool {
         matches!(self.numbers(), Numbers::F32 | Numbers::CompensatedF32)
     }
 
-    /// Whether its numbers are integers.
+    /// Returns true if the numbers are integers.
     #[must_use]
     pub const fn is_fixed_point(self) -> bool {
         matches!(self.numbers(), Numbers::Fixed32 | Numbers::Fixed64)
@@ -169,3 +354,15 @@ impl fmt::Display for Method {
         f.pad(self.name())
     }
 }
+
+// The order of `Method::ALL` is that of the variants.
+const _: () = {
+    let mut i = 0;
+    while i < Method::ALL.len() {
+        assert!(
+            Method::ALL[i] as usize == i,
+            "a method is missing in Method::ALL"
+        );
+        i += 1;
+    }
+};

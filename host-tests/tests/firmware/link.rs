@@ -215,6 +215,14 @@ fn numbers_mean_the_same_as_long_as_the_version_does() -> Result<(), String> {
         + &variants(read::<Field>);
     let plans =
         variants(read::<PlanResult>) + &variants(read::<PlanError>) + &variants(read::<Error>);
+    assert_eq!(
+        variants(read::<Method>)
+            .lines()
+            .filter(|line| !line.is_empty())
+            .count(),
+        Method::ALL.len(),
+        "a method is missing in Method::ALL"
+    );
     let values = variants(read::<Method>)
         + &variants(read::<SceneName>)
         + &variants(read::<BoardName>)

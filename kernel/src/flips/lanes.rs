@@ -144,8 +144,8 @@ impl<const N: usize> Constants<N> {
     #[inline(always)]
     fn second_stage(&self, start: &Point<N>, stage: &mut Stage<N>) {
         let k2 = changes(&stage.at.z, self.rates(&stage.at));
-        for i in 0..6 {
-            stage.sum[i] = stage.sum[i] + k2[i].twice();
+        for (sum, k2) in stage.sum.iter_mut().zip(&k2) {
+            *sum = *sum + k2.twice();
         }
         stage.at = start.ahead(&k2, &stage.at);
     }
@@ -155,8 +155,8 @@ impl<const N: usize> Constants<N> {
         let [u, v, p1, p2] = self.rates(&stage.at);
         let twice_rates = [u.twice(), v.twice(), p1.twice(), p2.twice()];
         let twice_k3 = changes(&stage.at.z, twice_rates);
-        for i in 0..6 {
-            stage.sum[i] = stage.sum[i] + twice_k3[i];
+        for (sum, twice_k3) in stage.sum.iter_mut().zip(&twice_k3) {
+            *sum = *sum + *twice_k3;
         }
         stage.at = start.ahead(&twice_k3, &stage.at);
     }
@@ -165,8 +165,8 @@ impl<const N: usize> Constants<N> {
     fn last_stage(&self, start: &mut Point<N>, stage: &Stage<N>) {
         let k4 = changes(&stage.at.z, self.rates(&stage.at));
         let third = Lanes::splat(1.0 / 3.0);
-        for i in 0..6 {
-            start.z[i] = start.z[i] + (stage.sum[i] + k4[i]) * third;
+        for ((z, sum), k4) in start.z.iter_mut().zip(&stage.sum).zip(&k4) {
+            *z = *z + (*sum + *k4) * third;
         }
 
         let one = Lanes::splat(1.0);

@@ -1,12 +1,14 @@
 //! The pendulum and its equations of motion, each as the book has it.
 
 mod hamiltonian;
-mod inputs;
 mod lagrangian;
+mod parameters;
+mod state;
 
 pub use hamiltonian::Pendulum;
-pub use inputs::{Motion, Parameters, State};
 pub use lagrangian::Vector;
+pub use parameters::Parameters;
+pub use state::{Motion, State};
 
 /// (sin, cos) of an angle from the downward vertical.
 pub type Direction<R> = [R; 2];

@@ -1,0 +1,103 @@
+//! The constants of a pendulum, as the caller gives them.
+
+use crate::error::{Error, Parameter};
+use crate::numbers::Real;
+
+/// The five constants of a double pendulum, SI units, as the caller gives them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Parameters<R> {
+    /// Mass of bob 1, kg.
+    pub m1: R,
+    /// Mass of bob 2, kg.
+    pub m2: R,
+    /// Length of rod 1, m.
+    pub l1: R,
+    /// Length of rod 2, m.
+    pub l2: R,
+    /// Gravitational acceleration, m/s^2; zero is allowed.
+    pub g: R,
+}
+
+impl<R: Real> Parameters<R> {
+    /// Equal rods of length `l` and a bob 1 of 1 kg, so that only the mass ratio mu = m2/m1 is left to choose.
+    ///
+    /// With `l` and `g` of 1 the equations are the book's dimensionless ones for equal rods: time is counted in sqrt(l/g),
+    /// momenta in m1 l^2 sqrt(g/l), energy in m1 g l.
+    #[must_use]
+    pub fn equal_rods(mu: R, l: R, g: R) -> Self {
+        Self {
+            m1: R::ONE,
+            m2: mu,
+            l1: l,
+            l2: l,
+            g,
+        }
+    }
+
+    /// The mass ratio mu = m2/m1.
+    #[must_use]
+    pub fn mass_ratio(&self) -> R {
+        self.m2 / self.m1
+    }
+
+    /// The same numbers in the arithmetic `S`, each rounded once; exact from `f32` to `f64`.
+    ///
+    /// Check them there: what is large in `f64` may be infinite in `f32`.
+    #[must_use]
+    pub fn cast<S: Real>(self) -> Parameters<S> {
+        let Self { m1, m2, l1, l2, g } = self;
+        let [m1, m2, l1, l2, g] = [m1, m2, l1, l2, g].map(R::cast);
+        Parameters { m1, m2, l1, l2, g }
+    }
+
+    /// Refuses what no formula could use: NaN, infinite, zero or negative masses and lengths, negative gravity.
+    #[inline(never)] // cold, and never inlined, to avoid a second copy
+    pub(crate) fn check(&self) -> Result<(), Error> {
+        for (parameter, value) in self.named() {
+            if !value.is_finite() {
+                return Err(Error::NotFinite { parameter, value });
+            }
+            if value < 0.0 && parameter == Parameter::G {
+                return Err(Error::TooSmall {
+                    parameter,
+                    value,
+                    limit: 0.0,
+                });
+            }
+            if value <= 0.0 && parameter != Parameter::G {
+                return Err(Error::NotPositive { parameter, value });
+            }
+        }
+        Ok(())
+    }
+
+    /// The error for parameters whose products overflow or underflow: it names the value farthest from 1.
+    #[inline(never)] // cold, and never inlined, to avoid a second copy
+    pub(crate) fn out_of_range(&self) -> Error {
+        let distance = |value: f64| if value < 1.0 { 1.0 / value } else { value };
+        let [first, rest @ ..] = self.named();
+        let (parameter, value) =
+            rest.into_iter()
+                .filter(|(_, value)| *value != 0.0)
+                .fold(first, |worst, next| {
+                    if distance(next.1) > distance(worst.1) {
+                        next
+                    } else {
+                        worst
+                    }
+                });
+        Error::OutOfRange { parameter, value }
+    }
+
+    fn named(&self) -> [(Parameter, f64); 5] {
+        [
+            (Parameter::M1, self.m1.to_f64()),
+            (Parameter::M2, self.m2.to_f64()),
+            (Parameter::L1, self.l1.to_f64()),
+            (Parameter::L2, self.l2.to_f64()),
+            (Parameter::G, self.g.to_f64()),
+        ]
+    }
+}

@@ -1,0 +1,166 @@
+//! Position and motion of a pendulum: angles with momenta, or angles with velocities.
+
+use crate::error::{Error, Parameter, check_finite};
+use crate::numbers::Real;
+
+/// Angles and canonical momenta: a point of the phase space.
+///
+/// Angles are measured from the downward vertical, positive counter-clockwise, and are not wrapped.
+/// [`Pendulum::to_motion`](crate::Pendulum::to_motion) converts to angular velocities.
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct State<R> {
+    /// Angle of rod 1, rad.
+    pub a1: R,
+    /// Angle of rod 2, rad.
+    pub a2: R,
+    /// Momentum conjugate to `a1`, kg m^2/s.
+    pub p1: R,
+    /// Momentum conjugate to `a2`, kg m^2/s.
+    pub p2: R,
+}
+
+impl<R: Real> State<R> {
+    /// Returns a pendulum that is held still at the angles `a1`, `a2`, rad.
+    #[must_use]
+    pub fn at_rest(a1: R, a2: R) -> Self {
+        Self {
+            a1,
+            a2,
+            p1: R::ZERO,
+            p2: R::ZERO,
+        }
+    }
+
+    /// Returns both angles, rad.
+    #[must_use]
+    pub fn angles(&self) -> [R; 2] {
+        [self.a1, self.a2]
+    }
+
+    /// Returns the same numbers in the arithmetic `S`, each rounded once. Exact from `f32` to `f64`.
+    #[must_use]
+    pub fn cast<S: Real>(self) -> State<S> {
+        <[R; 4]>::from(self).map(R::cast).into()
+    }
+
+    /// Refuses NaN and infinite values.
+    #[inline(never)] // Not inlined, to save flash.
+    #[doc(hidden)]
+    pub fn check(&self) -> Result<(), Error> {
+        check_finite([
+            (Parameter::A1, self.a1),
+            (Parameter::A2, self.a2),
+            (Parameter::P1, self.p1),
+            (Parameter::P2, self.p2),
+        ])
+    }
+}
+
+/// Converts from the order of `[math24]`, angles first.
+impl<R> From<[R; 4]> for State<R> {
+    fn from([a1, a2, p1, p2]: [R; 4]) -> Self {
+        Self { a1, a2, p1, p2 }
+    }
+}
+
+/// Converts to the order of `[math24]`, angles first.
+impl<R> From<State<R>> for [R; 4] {
+    fn from(point: State<R>) -> Self {
+        [point.a1, point.a2, point.p1, point.p2]
+    }
+}
+
+impl<R: Real> State<R> {
+    /// The state itself if all its numbers are finite, else [`Error::Diverged`]: to be asked after a step.
+    ///
+    /// A step from a good state is finite whenever it resolves the motion; one too long for it may lead anywhere
+    /// ([`Modes::step_limit`](crate::Modes::step_limit) holds for small motions only). Once a number is not finite none
+    /// ever is again, so it is enough to ask before the state is used.
+    ///
+    /// ```
+    /// use double_pendulum::{Error, Parameters, Pendulum, State};
+    ///
+    /// let pendulum = Pendulum::new(&Parameters { m1: 1.0, m2: 1.0, l1: 1.0, l2: 1.0, g: 9.8 })?;
+    /// let mut state = State::at_rest(3.0, 1.0);
+    /// let stopped = loop {
+    ///     match pendulum.step(&state, 1e3).finite() {
+    ///         Ok(next) => state = next,
+    ///         Err(error) => break error, // and `state` is the last good one
+    ///     }
+    /// };
+    /// assert!(matches!(stopped, Error::Diverged { .. }) && state.check().is_ok());
+    /// # Ok::<(), Error>(())
+    /// ```
+    pub fn finite(self) -> Result<Self, Error> {
+        self.check().map(|()| self).map_err(Error::diverged)
+    }
+}
+
+/// Angles and angular velocities: the variables of the Lagrangian, with w = da/dt.
+///
+/// Angles are those of [`State`]. [`Pendulum::to_state`](crate::Pendulum::to_state) converts to
+/// canonical momenta.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Motion<R> {
+    /// Angle of rod 1, rad.
+    pub a1: R,
+    /// Angle of rod 2, rad.
+    pub a2: R,
+    /// Angular velocity of rod 1, rad/s.
+    pub w1: R,
+    /// Angular velocity of rod 2, rad/s.
+    pub w2: R,
+}
+
+impl<R: Real> Motion<R> {
+    /// Returns a pendulum that is held still at the angles `a1`, `a2`, rad.
+    #[must_use]
+    pub fn at_rest(a1: R, a2: R) -> Self {
+        Self {
+            a1,
+            a2,
+            w1: R::ZERO,
+            w2: R::ZERO,
+        }
+    }
+
+    /// Returns both angles, rad.
+    #[must_use]
+    pub fn angles(&self) -> [R; 2] {
+        [self.a1, self.a2]
+    }
+
+    /// Returns the same numbers in the arithmetic `S`, each rounded once. Exact from `f32` to `f64`.
+    #[must_use]
+    pub fn cast<S: Real>(self) -> Motion<S> {
+        <[R; 4]>::from(self).map(R::cast).into()
+    }
+
+    /// Refuses NaN and infinite values.
+    #[inline(never)] // Not inlined, to save flash.
+    #[doc(hidden)]
+    pub fn check(&self) -> Result<(), Error> {
+        check_finite([
+            (Parameter::A1, self.a1),
+            (Parameter::A2, self.a2),
+            (Parameter::W1, self.w1),
+            (Parameter::W2, self.w2),
+        ])
+    }
+}
+
+/// Converts from the order of `[math24]`, angles first.
+impl<R> From<[R; 4]> for Motion<R> {
+    fn from([a1, a2, w1, w2]: [R; 4]) -> Self {
+        Self { a1, a2, w1, w2 }
+    }
+}
+
+/// Converts to the order of `[math24]`, angles first.
+impl<R> From<Motion<R>> for [R; 4] {
+    fn from(point: Motion<R>) -> Self {
+        [point.a1, point.a2, point.w1, point.w2]
+    }
+}
