@@ -1,22 +1,23 @@
-//! Bounds that hold for every motion, from its energy alone.
+//! Bounds that follow from the energy of a motion, and the step sizes that follow from the bounds.
 
 use crate::error::{Error, Parameter};
 use crate::numbers::Real;
 use crate::pendulum::{Parameters, Pendulum, State};
 use crate::small::Modes;
 
-/// The greatest magnitudes that a motion of given energy can reach; each is reached by some motion of that energy.
+/// The largest magnitudes that a motion of a given energy can reach.
 ///
-/// With K the energy above hanging rest (J), all of it kinetic at best: T >= m1 v1^2/2, T >= m2 v2^2/2, and by completing
-/// squares in T the same for each w and p alone. Exact up to the rounding of K.
+/// Each is reached by some motion of that energy. K is the energy above hanging at rest, J. The
+/// bounds follow from T <= K, T >= m1 v1^2/2 and T >= m2 v2^2/2, and from completing squares in T
+/// for each w and p alone. They are exact up to the rounding of K.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds<R> {
     /// |w1| <= sqrt(2 K/m1)/l1, rad/s.
     pub w1: R,
     /// |w2| <= sqrt(2 K (m1 + m2)/(m1 m2))/l2, rad/s.
     pub w2: R,
-    /// |w1 - w2| <= sqrt(2 K (l1^2/m2 + (l1 + l2)^2/m1))/(l1 l2), the rate at which the elbow bends, rad/s; the largest
-    /// of the three rates.
+    /// |w1 - w2| <= sqrt(2 K (l1^2/m2 + (l1 + l2)^2/m1))/(l1 l2), the rate at which the elbow bends,
+    /// rad/s. The largest of the three rates.
     pub elbow: R,
     /// |p1| <= l1 sqrt(2 (m1 + m2) K), kg m^2/s.
     pub p1: R,
@@ -48,16 +49,17 @@ impl<R: Real> Bounds<R> {
 }
 
 impl<R: Real> Modes<R> {
-    /// The longest step with which RK4 is stable on the fast mode, s: 2 sqrt(2)/w1 (`[Hairer II]`, section IV.2).
+    /// Returns the longest step with which RK4 is stable on the fast mode, s: 2 sqrt(2)/w1.
     ///
-    /// A limit, not advice: the phase is useless long before it.
+    /// This is a limit, not advice: much shorter steps already give a wrong phase. Source:
+    /// `[Hairer II]`, section IV.2.
     #[must_use]
     pub fn step_limit(&self) -> R {
         R::from_f64(8.0).sqrt() / self.fast.frequency
     }
 
-    /// Refuses a step `dt` (s) that is NaN, infinite, zero, negative, out of the range of `R`, or above
-    /// [`step_limit`](Self::step_limit).
+    /// Refuses a step `dt` (s) that is NaN, infinite, zero, negative, out of the range of `R`, or
+    /// longer than [`step_limit`](Self::step_limit).
     pub fn check_step(&self, dt: f64) -> Result<(), Error> {
         check_forward::<R>(dt)?;
         let limit = self.step_limit().to_f64();
@@ -73,31 +75,35 @@ impl<R: Real> Modes<R> {
 }
 
 impl<R: Real> Pendulum<R> {
-    /// The bounds of the motion through `state`.
+    /// Returns the bounds of the motion through `state`.
     #[must_use]
     pub fn bounds(&self, state: &State<R>) -> Bounds<R> {
         Bounds::new(self.parameters(), self.energy_above_rest(state))
     }
 
-    /// The least energy above rest with which a rod can turn over, J: 2 g min((m1 + m2) l1, m2 l2).
+    /// Returns the least energy above rest with which a rod can turn over, J:
+    /// 2 g min((m1 + m2) l1, m2 l2).
     ///
-    /// It is the lower of the two saddles V(pi, 0) and V(0, pi), above min V.
+    /// It is the height of the lower of the two saddles V(pi, 0) and V(0, pi) above min V.
     #[must_use]
     pub fn turnover_energy(&self) -> R {
         let [torque1, torque2] = self.torque;
         R::TWO * if torque1 < torque2 { torque1 } else { torque2 }
     }
 
-    /// Whether it is certain that neither rod ever turns over: K below [`turnover_energy`](Self::turnover_energy).
+    /// Returns true if neither rod can ever turn over: if K is below
+    /// [`turnover_energy`](Self::turnover_energy).
     ///
-    /// `false` says nothing. Energies within 16 roundings of the limit are not certified.
+    /// `false` means that a rod may turn over or not. The result is also `false` for energies within
+    /// 16 roundings of the limit.
     #[must_use]
     pub fn cannot_turn_over(&self, state: &State<R>) -> bool {
         let margin = R::ONE + R::from_f64(ROUNDING_MARGIN) * R::EPSILON;
         self.energy_above_rest(state) * margin < self.turnover_energy()
     }
 
-    /// As [`Modes::check_step`]; without gravity there are no modes and every step forward is accepted.
+    /// Refuses the steps that [`Modes::check_step`] refuses. Without gravity, where no modes exist, any
+    /// step forward is accepted.
     pub fn check_step(&self, dt: f64) -> Result<(), Error> {
         if self.parameters().g == R::ZERO {
             check_forward::<R>(dt)
@@ -106,11 +112,12 @@ impl<R: Real> Pendulum<R> {
         }
     }
 
-    /// The fastest rate, 1/s, at which anything changes in a motion of the energy of `state`:
-    /// W = sqrt(w1^2 + (1 + m2/m1) d^2), w1 being the fast normal frequency and d [`Bounds::elbow`].
+    /// Returns the fastest rate, 1/s, at which a quantity can change in a motion of the energy of
+    /// `state`: W = sqrt(w1^2 + (1 + m2/m1) d^2), where w1 is the fast normal frequency (0 without
+    /// gravity) and d is [`Bounds::elbow`].
     ///
-    /// What the rods do to each other goes with 1/(m1 + m2 sin^2 D), which doubles within sin D = sqrt(m1/m2): an elbow
-    /// that bends at the rate d is through a light bob 1's peak in sqrt(m1/m2)/d. Without gravity w1 is 0.
+    /// The forces between the rods contain 1/(m1 + m2 sin^2 D), which doubles within
+    /// sin D = sqrt(m1/m2). An elbow that bends at the rate d passes this peak in sqrt(m1/m2)/d.
     ///
     /// Refuses parameters whose modes are out of range.
     #[doc(hidden)]
@@ -125,13 +132,16 @@ impl<R: Real> Pendulum<R> {
         Ok((normal * normal + elbow * elbow).sqrt())
     }
 
-    /// The longest step, s, with which RK4 resolves every motion of the energy of `state`: 1/(4 W), W being the
-    /// [`fastest_rate`](Self::fastest_rate). Infinite where nothing can move.
+    /// Returns the longest step, s, with which RK4 resolves every motion of the energy of `state`:
+    /// 1/(4 W), where W is the [`fastest_rate`](Self::fastest_rate). Infinite if nothing can move.
     ///
-    /// Up to it a step errs by at most 3e-5 W dt rad in each angle (0.0072 (W dt)^5, at any masses and lengths),
-    /// and by as much of W in each velocity; the direction form by 8e-5. Half the step errs 16 times less.
-    /// It is sharp for the motion of that energy with the fastest changes. A regular one, and one with a light bob 2 that never gathers
-    /// all of the energy, may do with much longer steps, up to [`Modes::step_limit`].
+    /// The error of such a step is at most 3e-5 W dt rad in each angle (0.0072 (W dt)^5, for any
+    /// masses and lengths), and at most the same share of W in each velocity; in the direction form
+    /// 8e-5. Half the step has a 16 times smaller error.
+    ///
+    /// The step is the longest for the fastest motion of that energy. Much longer steps, up to
+    /// [`Modes::step_limit`], can be enough for regular motions, and for those with a light bob 2
+    /// that never has all of the energy.
     ///
     /// ```
     /// use double_pendulum::{Parameters, Pendulum, State};
@@ -141,7 +151,7 @@ impl<R: Real> Pendulum<R> {
     ///     pendulum.admissible_step(&State::at_rest(2.0, 2.0))
     /// };
     /// assert!((1.0 / step(1.0)? - 117.8).abs() < 0.1);
-    /// assert!(step(1000.0)? < 1.0 / 50_000.0); // a light elbow snaps through the straight position
+    /// assert!(step(1000.0)? < 1.0 / 50_000.0); // A light elbow snaps through.
     /// # Ok::<(), double_pendulum::Error>(())
     /// ```
     pub fn admissible_step(&self, state: &State<R>) -> Result<R, Error> {
@@ -149,10 +159,10 @@ impl<R: Real> Pendulum<R> {
     }
 }
 
-/// W dt of the longest step that resolves a motion whose fastest rate is W.
+/// The product W dt for the longest step that resolves a motion whose fastest rate is W.
 const RESOLVED: f64 = 0.25;
 
-/// As [`check_step`], and refuses a step backwards.
+/// Refuses the steps that [`check_step`] refuses, and steps backwards.
 fn check_forward<R: Real>(dt: f64) -> Result<(), Error> {
     if dt.is_finite() && dt <= 0.0 {
         return Err(Error::NotPositive {
@@ -164,9 +174,10 @@ fn check_forward<R: Real>(dt: f64) -> Result<(), Error> {
 }
 
 /// Refuses a step of `dt` s that is NaN, infinite, zero or out of the range of `R`.
-#[inline(never)] // one copy
+#[inline(never)] // Not inlined, to save flash.
 pub(crate) fn check_step<R: Real>(dt: f64) -> Result<(), Error> {
-    let (parameter, value) = (Parameter::Dt, dt);
+    let parameter = Parameter::Dt;
+    let value = dt;
     if !dt.is_finite() {
         Err(Error::NotFinite { parameter, value })
     } else if !R::from_f64(dt).is_normal() {
@@ -176,6 +187,6 @@ pub(crate) fn check_step<R: Real>(dt: f64) -> Result<(), Error> {
     }
 }
 
-/// How many roundings, relative to K, a certificate keeps clear of its limit: more than the evaluation of K makes
-/// when no kinetic term cancels.
+/// The distance from the limit, in roundings of K, within which no certificate is given. It is more
+/// than the rounding error of K when no kinetic term cancels.
 const ROUNDING_MARGIN: f64 = 16.0;

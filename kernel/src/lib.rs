@@ -1,63 +1,118 @@
-//! The planar double pendulum: Hamilton's equations, stepped by the classical Runge-Kutta method.
+//! The planar double pendulum: its equations, and fast and exact ways to compute its motion.
 //!
-//! Bob 1 hangs on rod 1 from a fixed pivot, bob 2 on rod 2 from bob 1; rods are rigid and massless, pivots frictionless.
-//! Angles are measured from the downward vertical, counter-clockwise positive; y points up; SI units throughout.
+//! Bob 1 hangs on rod 1 from a fixed pivot, bob 2 on rod 2 from bob 1. The rods are rigid and have no
+//! mass; the pivots have no friction. Angles are measured from the downward vertical, positive
+//! counter-clockwise. The y axis points up. All units are SI units.
 //!
-//! | the book says | here | the test that fails when it is wrong |
-//! |---|---|---|
-//! | Lagrange's equations | [`Pendulum::lagrangian`], [`Pendulum::accelerations`] | `tests::lagrange` |
-//! | Legendre transformation | [`Pendulum::to_state`], [`Pendulum::to_motion`] | `tests::lagrange` |
-//! | Hamilton's equations, H | [`Pendulum::derivatives`], [`Pendulum::energy`]; equal rods: [`Parameters::equal_rods`] | `tests::hamilton` |
-//! | Runge-Kutta method | [`Pendulum::step`], [`rk4::step`] | `tests::added_method`; host: `methods` |
-//! | small oscillations | [`Modes`], [`SmallOscillations`] | `tests::small_oscillations` |
-//! | coordinates | [`Pendulum::positions`], [`Pendulum::velocities`] | `tests::lagrange` |
-//! | (not in the book) bounds from the energy | [`Bounds`], [`Pendulum::cannot_turn_over`], [`Pendulum::admissible_step`], [`Modes::step_limit`] | host: `bounds`, `limits` |
-//! | (not in the book) when a rod first turns over | [`flips`] | host: `flips` |
-//! | (not in the book) every way to compute a motion | [`Method`]; [`Pendulum::run`] with [`HamiltonF64`], [`DirectionF32`], [`Fixed32`], [`Fixed64`], [`ExtrapolationF64`], [`ClosedFormF32`] | host: `known_answers`, `hard_cases`, `methods` |
-//! | (not in the book) the cheapest method that keeps to a tolerance | [`plan`](mod@plan) | host: `plan`, `plan_study` |
+//! The equations are generic over `f32` and `f64` ([`Real`]). The methods compute in these or in fixed
+//! point. The crate needs no heap, does not panic, and gives the same bits on every machine.
 //!
-//! Tests of this crate, and of the repository's host-tests (`--test kernel`).
+//! # Example
 //!
-//! The equations are generic over `f32` and `f64` ([`Real`]); methods compute in these or in fixed point. No heap, no panics,
-//! and the same bits on every machine.
-//!
-//! A motion is a [`Run`] of a pendulum by one method; only that method is linked:
+//! A motion is a [`Run`] of a pendulum by one method. Only that method is linked.
 //!
 //! ```
 //! use double_pendulum::{DirectionF32, Parameters, Pendulum, State};
 //!
 //! let pendulum = Pendulum::new(&Parameters { m1: 1.0, m2: 2.0, l1: 1.0, l2: 0.5, g: 9.81 })?;
 //! let mut run = pendulum.run::<DirectionF32>(&State::at_rest(0.5, 1.0), 1.0 / 240.0)?;
-//! run.advance(240)?; // all or nothing: a motion that leaves the finite numbers is an error
-//! let [[_sin1, _cos1], [_sin2, _cos2]] = run.directions(); // enough to draw both rods
-//! let [a1, a2] = run.angles(); // with all their turns
+//! run.advance(240)?; // All or nothing: a motion that leaves the finite numbers is an error.
+//! let [[_sin1, _cos1], [_sin2, _cos2]] = run.directions(); // Enough to draw both rods.
+//! let [a1, a2] = run.angles(); // With all their turns.
 //! assert!(a1.abs() < 1.0 && a2.abs() < 3.0 && run.time() == 1.0);
 //! assert!((f64::from(run.energy()) - pendulum.energy(&run.state())).abs() < 1e-4);
 //! # Ok::<(), double_pendulum::Error>(())
 //! ```
 //!
-//! Accuracy figures here and below are asserted by the tests of the repository.
+//! # From the book to the code
+//!
+//! The book is `[math24]`, see below. The last column names the test that fails if the item is wrong:
+//! a module of this crate's tests or, after "host", of the repository's `--test kernel`.
+//!
+//! | in the book | here | test |
+//! |---|---|---|
+//! | Lagrange's equations | [`Pendulum::lagrangian`], [`Pendulum::accelerations`] | `lagrange` |
+//! | Legendre transformation | [`Pendulum::to_state`], [`Pendulum::to_motion`] | `lagrange` |
+//! | Hamilton's equations, H | [`Pendulum::derivatives`], [`Pendulum::energy`] | `hamilton` |
+//! | equal rods | [`Parameters::equal_rods`] | `hamilton` |
+//! | Runge-Kutta method | [`Pendulum::step`], [`rk4::step`] | `added_method`; host: `methods` |
+//! | small oscillations | [`Modes`], [`SmallOscillations`] | `small_oscillations` |
+//! | coordinates | [`Pendulum::positions`], [`Pendulum::velocities`] | `lagrange` |
+//!
+//! | not in the book | here | test |
+//! |---|---|---|
+//! | bounds from the energy | [`Bounds`], [`Pendulum::cannot_turn_over`] | host: `bounds` |
+//! | step sizes | [`Pendulum::admissible_step`], [`Modes::step_limit`] | host: `limits` |
+//! | the time of the first flip | [`flips`] | host: `flips` |
+//! | all methods | [`Method`], [`Pendulum::run`] | host: `known_answers`, `hard_cases` |
+//! | the cheapest accurate method | [`plan`](mod@plan) | host: `plan`, `plan_study` |
+//!
+//! Accuracy figures in this documentation are asserted by the tests of the repository.
+//!
+//! # Glossary
+//!
+//! Physics:
+//!
+//! - **bob, rod**: the masses m1, m2 and the lengths l1, l2 of the [`Parameters`].
+//! - **mass ratio**: mu = m2/m1.
+//! - **canonical momentum**: p1, p2, conjugate to the angles a1, a2; the numbers of a [`State`].
+//! - **motion**: angles and angular velocities ([`Motion`]), or the course of a pendulum in time.
+//! - **energy above rest**: the energy H above that of hanging at rest, K = H - min V.
+//! - **normal mode**: one of the two oscillations with a fixed ratio of the angles ([`Modes`]).
+//! - **flip**: a rod turns over, when its angle passes plus or minus pi.
+//! - **turn**: a whole revolution of a rod since the start.
+//! - **elbow**: the joint between the rods; its angle is D = a1 - a2.
+//! - **regular, chaotic**: a motion whose errors grow slowly, or exponentially.
+//!
+//! Numerics:
+//!
+//! - **method**: equations, numbers and an integrator: a row of the table [`Method`].
+//! - **form**: a type that implements a method; the argument of [`Pendulum::run`].
+//! - **direction**: (sin, cos) of an angle.
+//! - **direction form**: Hamilton's equations with directions instead of angles.
+//! - **closed form**: the solution of the linear equations at any time, without steps.
+//! - **compensated**: the rounding error of each sum is carried into the next.
+//! - **fixed point**: numbers that are integers times a power of two.
+//! - **unit of time**: the time in which a method counts, chosen so that its numbers are in range.
+//! - **stage**: one evaluation of the equations within a step.
+//! - **order**: the power of the step size with which the error falls.
+//! - **admissible step**: the longest step that resolves every motion of an energy.
+//! - **diverged, lost**: a motion that has left the finite numbers or the range of its method.
+//! - **bit-identical**: all bits of all numbers are equal.
+//! - **golden bits**: the bits of a method that are stored in a file.
+//!
+//! Plans:
+//!
+//! - **frame**: a picture of the motion, at a fixed rate.
+//! - **tolerance**: the largest allowed distance of a bob from its exact position.
+//! - **accurate**: within the tolerance of the exact motion.
+//! - **accuracy horizon**: the time until which all frames are accurate.
+//! - **stepping**: a method and its number of steps per frame.
+//! - **price list**: the cost of a step by each method, usually in cycles.
+//! - **budget**: the largest cost of a frame, or of planning.
 //!
 //! # Versions
 //!
-//! Semantic versioning. [`Error`] and [`Parameter`] may get new variants, and the traits are sealed,
-//! so that they may get new methods; both are minor versions, as is a higher least Rust (1.85 now). What is hidden from the
-//! documentation may change at any time.
+//! Semantic versioning. [`Error`] and [`Parameter`] may get new variants, and the traits are sealed and
+//! may get new methods; both are minor versions, as is a higher least Rust version (1.85 now). Items
+//! that are hidden from the documentation may change at any time.
 //!
-//! A change of any bit of a step is a major version. Steps use IEEE 754 arithmetic alone (and `sqrt` and `rint`, which are
-//! correctly rounded) for angles up to 12,867 rad in `f32` and 1,647,098 rad in `f64`. The sines of larger ones and the
-//! `atan2` in [`Run::state`] are those of the `libm` crate that your lock file names (0.2.16 or later): to compare
-//! machines, build both with the same.
+//! A change of any bit of a step is a major version. Steps use only IEEE 754 arithmetic, and the
+//! correctly rounded `sqrt` and `rint`, for angles up to 12,867 rad in `f32` and 1,647,098 rad in
+//! `f64`. The sines of larger angles and the `atan2` in [`Run::state`] are those of the `libm` crate in
+//! your lock file (0.2.16 or later). To compare machines, build for both with the same `libm`.
 //!
 //! # References
 //!
-//! - `[math24]` "Double Pendulum", math24.net, 23 August 2021: the book of this crate. Three of its formulas are
-//!   misprinted and corrected here: p2's second term ([`Pendulum::to_state`]), the sign of the quadratic Lagrangian's last
-//!   term, and the equal-rod form's second equation, which lacks the factor mu in its denominator.
+//! - `[math24]` "Double Pendulum", math24.net, 23 August 2021: the book of this crate. Three of its
+//!   formulas are misprinted and corrected here: the second term of p2 ([`Pendulum::to_state`]), the
+//!   sign of the last term of the quadratic Lagrangian, and the second equation of equal rods, whose
+//!   denominator lacks the factor mu.
 //! - `[Landau]` L. D. Landau, E. M. Lifshitz, *Mechanics*, 3rd ed., Pergamon 1976.
-//! - `[Hairer I]` E. Hairer, S. P. Norsett, G. Wanner, *Solving Ordinary Differential Equations I*, 2nd ed.,
-//!   Springer 1993.
-//! - `[Hairer II]` E. Hairer, G. Wanner, *Solving Ordinary Differential Equations II*, 2nd ed., Springer 1996.
+//! - `[Hairer I]` E. Hairer, S. P. Norsett, G. Wanner, *Solving Ordinary Differential Equations I*,
+//!   2nd ed., Springer 1993.
+//! - `[Hairer II]` E. Hairer, G. Wanner, *Solving Ordinary Differential Equations II*, 2nd ed.,
+//!   Springer 1996.
 #![no_std]
 #![forbid(unsafe_code)]
 #![warn(missing_copy_implementations, missing_debug_implementations)]
@@ -93,13 +148,13 @@ pub use pendulum::{Direction, Motion, Parameters, Pendulum, State, Vector};
 pub use small::{Mode, Modes, periodic_mass_ratio};
 pub use table::{Equations, Integrator, Method, Numbers};
 
-/// What the methods are made of, for tools and tests; it may change at any time.
+/// Parts of the methods, for tools and tests. They may change at any time.
 #[doc(hidden)]
 pub mod parts {
     pub use crate::methods::{Canonical, Derivatives, DirectionF64, Rk4Direction, Turns};
 }
 
-/// The README's examples, as tests.
+/// The examples of the README, as tests.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

@@ -1,4 +1,4 @@
-//! The normal modes: small oscillations about hanging at rest, for any masses and lengths.
+//! The normal modes of small oscillations about hanging at rest, for any masses and lengths.
 
 use crate::error::{Error, Parameter};
 use crate::numbers::Real;
@@ -9,7 +9,7 @@ use crate::pendulum::{Parameters, Pendulum};
 pub struct Mode<R> {
     /// Angular frequency, rad/s.
     pub frequency: R,
-    /// The mode's shape, r = H2/H1: the angle of rod 2 when that of rod 1 is 1.
+    /// The shape r = H2/H1 of the mode: the angle of rod 2 when that of rod 1 is 1.
     pub shape: R,
 }
 
@@ -18,26 +18,32 @@ pub struct Mode<R> {
 /// M is [`Pendulum::mass_matrix`] for parallel rods and K is [`Pendulum::stiffness`]. The frequencies solve
 /// det(K - w^2 M) = 0, that is (m1 + m2) g^2 - w^2 (m1 + m2)(l1 + l2) g + w^4 m1 l1 l2 = 0.
 ///
-/// The same two numbers are the growth rates about the inverted rest (pi, pi), where K changes its sign.
+/// The same two numbers are the growth rates about the inverted position (pi, pi), where K changes
+/// its sign.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Modes<R> {
-    /// w1, the faster: the rods swing against each other, its shape is negative.
+    /// The mode of w1, in which the rods swing against each other. Its shape is negative.
     pub fast: Mode<R>,
-    /// w2, the slower: the rods swing together, its shape is positive.
+    /// The mode of w2, in which the rods swing together. Its shape is positive.
     pub slow: Mode<R>,
-    /// w1 - w2, computed without cancellation.
+    /// w1 - w2, computed without cancellation, rad/s.
     exchange: R,
 }
 
 impl<R: Real> Modes<R> {
-    /// The modes of a pendulum. With M = m1 + m2, s = l1 + l2, d = l1 - l2 and c = sqrt((m1 d^2 + m2 s^2)/M),
+    /// Returns the modes of a pendulum.
+    ///
+    /// With M = m1 + m2, s = l1 + l2, d = l1 - l2 and c = sqrt((m1 d^2 + m2 s^2)/M):
     ///
     /// - w1^2 = g M (s + c) / (2 m1 l1 l2) and w2^2 = 2 g / (s + c)
     /// - shape of w1: -M (c + d) / (2 m2 l2); shape of w2: 2 l1 / (c + d)
     ///
-    /// (for d < 0 with c + d = 4 m2 l1 l2 / (M (c - d))): nothing is subtracted but l1 - l2, so nothing cancels.
+    /// For d < 0 the sum is c + d = 4 m2 l1 l2 / (M (c - d)). The only subtraction is l1 - l2, so that
+    /// nothing cancels.
     ///
-    /// Both frequencies are within 4 ulp in either precision for m2/m1 in 1e-7..1e7 and l1/l2 in 1e-3..1e3. Refuses what [`Pendulum::new`] refuses, zero gravity, and results out of range.
+    /// Both frequencies are within 4 ulp, in `f32` and `f64`, for m2/m1 from 1e-7 to 1e7 and l1/l2
+    /// from 1e-3 to 1e3. Refuses the parameters that [`Pendulum::new`] refuses, zero gravity, and
+    /// results out of range.
     pub fn new(parameters: &Parameters<R>) -> Result<Self, Error> {
         parameters.check()?;
         let &Parameters { m1, m2, l1, l2, g } = parameters;
@@ -55,7 +61,8 @@ impl<R: Real> Modes<R> {
         let fast = (g * total * (sum + root) / (R::TWO * m1 * l1 * l2)).sqrt();
         let slow = (R::TWO * g / (sum + root)).sqrt();
         let reach = root + difference.abs();
-        let (short, long) = (R::TWO * l1 / reach, total * reach / (R::TWO * m2 * l2));
+        let short = R::TWO * l1 / reach;
+        let long = total * reach / (R::TWO * m2 * l2);
         let (slow_shape, fast_shape) = if difference < R::ZERO {
             (long, -short)
         } else {
@@ -83,20 +90,21 @@ impl<R: Real> Modes<R> {
         }
     }
 
-    /// The carrier frequency (w1 + w2)/2, rad/s: the fast swing inside the envelope.
+    /// Returns the carrier frequency (w1 + w2)/2, rad/s, of the fast swing inside the envelope.
     #[must_use]
     pub fn carrier(&self) -> R {
         R::HALF * (self.fast.frequency + self.slow.frequency)
     }
 
-    /// The modulation frequency (w1 - w2)/2, rad/s: each amplitude's slow cosine. (`[math24]` calls it "beat frequency".)
+    /// Returns the modulation frequency (w1 - w2)/2, rad/s, of the slow cosine of each amplitude.
+    /// `[math24]` calls it "beat frequency".
     #[must_use]
     pub fn modulation(&self) -> R {
         R::HALF * self.exchange
     }
 
-    /// The exchange frequency w1 - w2, rad/s: the envelope, which has no sign, repeats at this rate, and with it the
-    /// energy goes from rod to rod and back.
+    /// Returns the exchange frequency w1 - w2, rad/s. The envelope, which has no sign, repeats at this
+    /// rate: the energy moves from rod to rod and back.
     #[must_use]
     pub fn exchange(&self) -> R {
         self.exchange
@@ -104,27 +112,32 @@ impl<R: Real> Modes<R> {
 }
 
 impl<R: Real> Pendulum<R> {
-    /// The stiffness matrix K of small oscillations, N m/rad, row by row: diag((m1 + m2) g l1, m2 g l2).
+    /// Returns the stiffness matrix K of small oscillations, N m/rad, row by row:
+    /// diag((m1 + m2) g l1, m2 g l2).
     #[must_use]
     pub fn stiffness(&self) -> [[R; 2]; 2] {
         let [k1, k2] = self.torque;
         [[k1, R::ZERO], [R::ZERO, k2]]
     }
 
-    /// The normal modes; refuses zero gravity.
+    /// Returns the normal modes. Refuses zero gravity.
     pub fn modes(&self) -> Result<Modes<R>, Error> {
         Modes::new(self.parameters())
     }
 }
 
-/// The mass ratio m2/m1 at which small oscillations are exactly periodic with w1/w2 = `fast`/`slow`.
+/// Returns the mass ratio m2/m1 at which small oscillations are exactly periodic with
+/// w1/w2 = `fast`/`slow`.
 ///
-/// mu = (p^2 l1 - q^2 l2)(p^2 l2 - q^2 l1) / (p q (l1 + l2))^2 with p = `fast`, q = `slow` and the `lengths` [l1, l2] in m:
-/// from (w1/w2 + w2/w1)^2 = (1 + mu)(l1 + l2)^2/(l1 l2). Equal rods: mu = ((r^2 - 1)/(2r))^2 with r = p/q.
-/// The common period is then 2 pi p/w1 = 2 pi q/w2.
+/// With p = `fast`, q = `slow` and the `lengths` [l1, l2] in m,
 ///
-/// Refuses lengths that are not positive, a `slow` of 0, and any ratio p/q not above sqrt of the longer over the shorter
-/// rod, which no masses can give.
+/// mu = (p^2 l1 - q^2 l2)(p^2 l2 - q^2 l1) / (p q (l1 + l2))^2,
+///
+/// which follows from (w1/w2 + w2/w1)^2 = (1 + mu)(l1 + l2)^2/(l1 l2). For equal rods it is
+/// mu = ((r^2 - 1)/(2r))^2 with r = p/q. The common period is 2 pi p/w1 = 2 pi q/w2.
+///
+/// Refuses lengths that are not positive, a `slow` of 0, and a ratio p/q that is not above the square
+/// root of the longer over the shorter rod, which no masses can give.
 pub fn periodic_mass_ratio<R: Real>(fast: u16, slow: u16, lengths: [R; 2]) -> Result<R, Error> {
     let [l1, l2] = lengths;
     Parameters {

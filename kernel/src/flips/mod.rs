@@ -1,8 +1,9 @@
-//! When a rod first turns over: the map of flips.
+//! The map of flips: the time at which a rod first turns over, for all starts from rest.
 //!
-//! A start from rest is two angles, so all starts of a pendulum are a square, and the time of the first turn-over is a
-//! picture of it (J. S. Heyl, "The double pendulum fractal", 2008). A rod turns over when its angle passes plus or minus pi.
-//! Where the energy forbids that ([`Pendulum::cannot_turn_over`]) no step is made.
+//! A start from rest is given by two angles. All starts of a pendulum therefore fill a square, and the
+//! time of the first flip is a picture of this square (J. S. Heyl, "The double pendulum fractal",
+//! 2008). A rod turns over, or *flips*, when its angle passes plus or minus pi. Where the energy
+//! forbids that ([`Pendulum::cannot_turn_over`]), no step is computed.
 //!
 //! ```
 //! use double_pendulum::{DirectionF32Plain, Parameters};
@@ -25,32 +26,33 @@ use crate::methods::run::turns_over;
 use crate::numbers::Real;
 use crate::pendulum::{Parameters, Pendulum, State};
 
-/// When a rod first turns over.
+/// The time of the first flip.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Flip<R> {
-    /// Never: there is not the energy for it.
+    /// No rod ever flips, because the energy is too low.
     Never,
-    /// So long after the start, s.
+    /// A rod flips at this time after the start, s.
     After(R),
-    /// Not within the time it was waited for.
+    /// No rod flips within the time that is computed.
     Later,
 }
 
-/// A pendulum, a step and how many of them to wait for: configuration for any number of starts.
+/// A pendulum, a step size and a number of steps, for any number of starts.
 ///
-/// The passage is seen by the signs of sine and cosine after each step, its time is interpolated between two steps,
-/// linearly in the sine. The cost is that of the form's step and some 15 operations. How many starts are judged right with steps of
-/// [`step_size`] the repository's tests assert: of equal rods and bobs 99.9 % within 10 sqrt(l/g), in any arithmetic.
+/// A flip is detected by the signs of sine and cosine after each step. Its time is interpolated
+/// between two steps, linearly in the sine. This costs about 15 operations per step. With steps of
+/// [`step_size`], 99.9 % of the starts of equal rods and bobs are right within 10 sqrt(l/g), in any
+/// arithmetic; the tests of the repository assert it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flips<F: Form> {
     pendulum: Pendulum<F::Real>,
-    /// The motion from straight up, which has the most energy.
+    /// The motion from straight up, which has the largest energy.
     highest: F,
     dt: F::Real,
     steps: u32,
 }
 
-/// A motion that has not turned over yet.
+/// A motion without a flip so far.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct Falling<F: Form> {
@@ -61,14 +63,18 @@ pub struct Falling<F: Form> {
     pub steps: u32,
 }
 
-/// The longest step, s, that resolves what a pendulum does wherever it is let go: twice the
-/// [admissible](Pendulum::admissible_step) one from straight up, and with a light bob 2 what [`Fixed32`] takes.
+/// Returns the longest step, s, that resolves the motions from all starts at rest.
 ///
-/// Refuses what [`Pendulum::new`] refuses, and no gravity, with which nothing moves.
+/// It is twice the [admissible step](Pendulum::admissible_step) from straight up. With a light bob 2
+/// it is shorter, so that [`Fixed32`] accepts it.
+///
+/// Refuses the parameters that [`Pendulum::new`] refuses, and zero gravity, without which nothing
+/// moves.
 ///
 /// [`Fixed32`]: crate::Fixed32
 pub fn step_size<R: Real>(parameters: &Parameters<R>) -> Result<f64, Error> {
-    /// Half a turn of the elbow's greatest rate takes nine such steps.
+    /// The angle, rad, by which the elbow bends in a step at its largest rate: half a turn takes nine
+    /// steps.
     const BEND: f64 = 0.36;
     let pendulum = Pendulum::new(parameters)?;
     let highest = State::at_rest(R::PI, R::PI);
@@ -78,9 +84,10 @@ pub fn step_size<R: Real>(parameters: &Parameters<R>) -> Result<f64, Error> {
 }
 
 impl<F: Form> Flips<F> {
-    /// With steps of `dt` s, at most `steps` of them for each start.
+    /// Creates a map with steps of `dt` s and at most `steps` steps for each start.
     ///
-    /// Refuses what the form refuses, of parameters, steps and the energy of the highest start.
+    /// Refuses the parameters, steps and energies (that of the highest start) that the method `F`
+    /// refuses.
     pub fn new(parameters: &Parameters<F::Real>, dt: f64, steps: u32) -> Result<Self, Error> {
         let highest = F::new(
             &parameters.cast(),
@@ -95,7 +102,7 @@ impl<F: Form> Flips<F> {
         })
     }
 
-    /// The motion let go at the angles `a1`, `a2`, rad; none if it never turns over.
+    /// Returns the motion that is released at the angles `a1`, `a2`, rad; `None` if it never flips.
     ///
     /// Refuses angles that are not finite.
     #[doc(hidden)]
@@ -113,7 +120,7 @@ impl<F: Form> Flips<F> {
         }))
     }
 
-    /// Makes at most `steps` steps; what is known after them.
+    /// Computes at most `steps` steps. Returns the result once it is known.
     #[inline]
     #[doc(hidden)]
     pub fn advance(&self, falling: &mut Falling<F>, steps: u32) -> Option<Flip<F::Real>> {
@@ -131,7 +138,7 @@ impl<F: Form> Flips<F> {
         None
     }
 
-    /// What becomes of the motion let go at the angles `a1`, `a2`, rad.
+    /// Returns the first flip of the motion that is released at the angles `a1`, `a2`, rad.
     ///
     /// Refuses angles that are not finite.
     pub fn of(&self, a1: F::Real, a2: F::Real) -> Result<Flip<F::Real>, Error> {

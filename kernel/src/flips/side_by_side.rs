@@ -1,4 +1,4 @@
-//! Many starts at once, in the lanes of the processor's vectors.
+//! The map of flips for many starts at once, in the processor's vectors.
 
 use core::array::from_fn;
 
@@ -14,10 +14,11 @@ use crate::pendulum::{Direction, State};
 type Motions<const N: usize> = DirectionLanes<N, ROWS>;
 type LaneDirections<const N: usize> = [Direction<Numbers<N>>; 2];
 
-/// Rows of lanes: enough to keep a processor busy; with more the compiler no longer finds the vectors of 4.
+/// The number of rows of lanes. Three keep a processor busy; with more, the compiler no longer uses
+/// vectors of 4.
 const ROWS: usize = 3;
 
-/// Which start a lane follows, and for how many steps yet.
+/// The start that a lane follows, and the number of steps left.
 #[derive(Clone, Copy)]
 struct Lane {
     start: usize,
@@ -25,12 +26,15 @@ struct Lane {
 }
 
 impl Flips<DirectionF32Plain> {
-    /// What becomes of each of `starts`, the angles a1 and a2, rad: as [`of`](Self::of), bit-identical, three times `N` at a time.
+    /// Computes the first flip of each of `starts`, the angles a1 and a2, rad, and passes it to `give`
+    /// with the index of the start.
     ///
-    /// A lane whose motion has turned over takes the next start. 8 lanes suit processors with vectors of 4 and of 8. Inlined
-    /// wherever it is called, so that it is compiled for the processor its caller is compiled for.
+    /// The results are bit-identical to those of [`of`](Self::of). Three times `N` starts are computed
+    /// at a time; a lane whose motion has flipped takes the next start. 8 lanes suit processors with
+    /// vectors of 4 and of 8. The function is inlined into its caller, so that it is compiled for the
+    /// processor that the caller is compiled for.
     ///
-    /// Refuses angles that are not finite, having given the flips of those before.
+    /// Refuses angles that are not finite, after the flips of all starts before.
     #[inline(always)]
     #[doc(hidden)]
     pub fn of_each<const N: usize>(
@@ -63,7 +67,7 @@ impl Flips<DirectionF32Plain> {
         }
     }
 
-    /// The next start that may turn over.
+    /// Returns the next start that may flip.
     fn next(
         &self,
         starts: &mut impl Iterator<Item = (usize, [f32; 2])>,
@@ -78,7 +82,7 @@ impl Flips<DirectionF32Plain> {
         Ok(None)
     }
 
-    /// Makes a block of steps, of which a lane may leave out the last, and restores the lengths.
+    /// Computes a block of steps and restores the lengths. A lane may leave out the last step.
     #[inline(always)]
     fn follow<const N: usize>(
         &self,
@@ -131,7 +135,9 @@ impl Flips<DirectionF32Plain> {
     }
 }
 
-/// Whether a rod in any lane has come through straight up between the two. Rod by rod, for the compiler to find the vectors.
+/// Returns true if a rod in any lane has passed straight up between the two.
+///
+/// The loop goes rod by rod, so that the compiler uses vectors.
 #[inline(always)]
 fn any_turns_over<const N: usize>(before: &LaneDirections<N>, after: &LaneDirections<N>) -> bool {
     let mut any = [0; 2];
@@ -153,22 +159,23 @@ mod tests {
     use std::vec::Vec;
 
     const LIMIT: f64 = 30.0;
-    /// Enough for rods that turn over in the very step after which lengths are restored.
+    /// The side of the square of starts: enough for flips in the step after which lengths are restored.
     const SIDE: usize = 91;
 
-    /// A square of starts, all turns.
+    /// Returns a square of starts over a whole turn.
     fn starts(side: usize) -> impl Iterator<Item = [f32; 2]> + Clone {
         let angle = move |i: usize| ((i as f64 + 0.5) / side as f64 * 6.4 - 3.2) as f32;
         (0..side * side).map(move |i| [angle(i % side), angle(i / side)])
     }
 
-    /// Steps that are no multiple of those from one restoring to the next; starts that are no multiple of the lanes.
+    /// Returns a map whose number of steps is no multiple of a block, and whose number of starts is no
+    /// multiple of the lanes.
     fn flips(parameters: &Parameters<f32>) -> Result<Flips<DirectionF32Plain>, Error> {
         let dt = step_size(parameters)?;
         Flips::new(parameters, dt, (LIMIT / dt) as u32 | 1)
     }
 
-    /// The flips of all starts, in vectors as this processor has them or as any has.
+    /// Returns the flips of all starts, in the widest vectors of this processor.
     #[multiversion::multiversion(targets("x86_64+avx2+fma"))]
     fn all(flips: &Flips<DirectionF32Plain>) -> Result<Vec<Option<Flip<f32>>>, Error> {
         any(flips)
@@ -184,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn every_lane_is_what_one_motion_gives() -> Result<(), Error> {
+    fn lanes_equal_single_motions() -> Result<(), Error> {
         for parameters in [
             Parameters::equal_rods(1.0, 1.0, 1.0),
             Parameters {
@@ -216,7 +223,7 @@ mod tests {
     }
 
     #[test]
-    fn fixed_point_finds_the_same_but_for_chaos() -> Result<(), Error> {
+    fn fixed_point_agrees_except_in_chaos() -> Result<(), Error> {
         for mass_ratio in [0.01, 0.1, 1.0, 3.0] {
             let parameters = Parameters::equal_rods(mass_ratio, 1.0, 1.0);
             let dt = step_size(&parameters)?;

@@ -1,27 +1,32 @@
-//! The units in which every quantity of a motion is small and none is needlessly so.
+//! The units of fixed point: in them every quantity of a motion fits its format, and none is
+//! needlessly small.
 
 use crate::bounds::Bounds;
 use crate::error::{Error, Parameter};
 use crate::numbers::fixed::scaled;
 use crate::pendulum::Parameters;
 
-/// The most a quantity may be shifted: masses and rods of a ratio beyond some 1000 are refused.
+/// The largest shift of a quantity. Scaled ratios of masses and rods above 4,000 are refused.
 const MOST: i32 = 12;
 
-/// Units for a pendulum's motion of some energy: constants and momenta as the equations
-/// ([`Coefficients`](crate::methods::direction::Coefficients)) have them, but
+/// The units of a motion, and the constants of the equations in these units.
 ///
-/// - time in a unit T such that no rate that the energy allows ([`Bounds`]) exceeds some limit, nor any torque,
-/// - (S, C) over the power of two sigma that leaves nu/sigma in (1/2, 1], and u or v, whichever is smaller, as many times
-///   larger as makes both alike,
-/// - r in the power of two that makes it at most 1, and P1 in what leaves u = (P1 - C P2) r.
+/// The constants and momenta are those of the [direction form](crate::methods::direction), with these
+/// changes of units:
+///
+/// - The unit of time T is so short that no rate and no torque that the energy allows ([`Bounds`])
+///   exceeds a limit.
+/// - (S, C) is divided by sigma, the power of two that leaves nu/sigma in (1/2, 1]. The smaller one of
+///   u and v is multiplied by a power of two, so that both are of about the same size.
+/// - r is divided by the power of two that makes it at most 1, and P1 is scaled such that
+///   u = (P1 - C P2) r still holds.
 ///
 /// For equal rods and masses all shifts are 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Scaling {
-    /// T, s; negative where time runs backwards.
+    /// T, s. Negative if time runs backwards.
     pub time: f64,
-    /// P1 and P2 to a kg m^2/s.
+    /// P1/p1 and P2/p2, s/(kg m^2).
     pub momenta: [f64; 2],
     /// nu/sigma.
     pub norm: f64,
@@ -29,24 +34,24 @@ pub(crate) struct Scaling {
     pub inertia: f64,
     /// G1 and G2.
     pub gravity: [f64; 2],
-    /// What the quantities' units differ by.
+    /// The differences between the units of the quantities.
     pub shifts: Shifts,
 }
 
-/// What the quantities' units differ by, as powers of two.
+/// The differences between the units of the quantities, as powers of two.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Shifts {
-    /// C P2 is so many times less as a part of P1.
+    /// The shift to the right of C P2 in P1 - C P2.
     pub momentum: u32,
-    /// r is so many times more than its number.
+    /// The shift to the left of products with r.
     pub inverse: u32,
-    /// u is so many times less as a rate of a1, ...
+    /// The shift to the right from u to the rate of a1.
     pub upper: u32,
-    /// ... and v of a2.
+    /// The shift to the right from v to the rate of a2.
     pub lower: u32,
 }
 
-/// What [`Form::check`](super::Form::check) says of a motion in fixed point.
+/// Returns the error of a motion in fixed point that `is_lost`.
 pub(super) fn lost(is_lost: bool) -> Result<(), Error> {
     if is_lost {
         Err(Error::Diverged {
@@ -59,7 +64,7 @@ pub(super) fn lost(is_lost: bool) -> Result<(), Error> {
 }
 
 impl Scaling {
-    /// The same in another unit of time, `time` of this one's.
+    /// Returns the same scaling with a unit of time that is `time` times as long.
     #[must_use]
     pub fn in_unit(self, time: f64) -> Self {
         Self {
@@ -70,19 +75,21 @@ impl Scaling {
         }
     }
 
-    /// With T = 1 s.
+    /// Returns the scaling with T = 1 s. Refuses ratios that need too large shifts.
     #[inline(never)]
     pub fn in_seconds(parameters: &Parameters<f64>) -> Result<Self, Error> {
         let &Parameters { m1, m2, l1, l2, g } = parameters;
         let nu = l1 / l2;
-        // one more than there may be is enough to refuse it
+        // One more than allowed is enough to be refused below.
         let places = |places: f64| (places as i32).clamp(-MOST - 1, MOST + 1);
         let sigma = places(libm::ceil(libm::log2(nu)));
         let norm = scaled(nu, -sigma);
-        let (upper, lower) = (sigma.max(0), (-sigma).max(0));
+        let upper = sigma.max(0);
+        let lower = (-sigma).max(0);
         let ratio = m1 / m2 * norm * norm;
         let parts = places(libm::floor(libm::log2(ratio)));
-        let (momentum, inverse) = (parts.max(0), (-parts).max(0));
+        let momentum = parts.max(0);
+        let inverse = (-parts).max(0);
         if upper.max(lower).max(momentum).max(inverse) > MOST {
             return Err(parameters.out_of_range());
         }
@@ -106,8 +113,8 @@ impl Scaling {
         })
     }
 
-    /// The longest T in which no rate of a motion within `bounds` exceeds `rate`, and that in which no torque of gravity
-    /// exceeds `torque`.
+    /// Returns the longest T in which no rate of a motion within `bounds` exceeds `rate`, and the
+    /// longest in which no torque of gravity exceeds `torque`.
     pub fn longest(&self, bounds: &Bounds<f64>, [rate, torque]: [f64; 2]) -> [f64; 2] {
         let [momentum1, momentum2] = self.momenta;
         let rates = [
@@ -127,7 +134,7 @@ impl Scaling {
 }
 
 impl Shifts {
-    /// Rods and masses that are about equal.
+    /// The shifts of rods and masses that are about equal.
     pub const NONE: Self = Self {
         momentum: 0,
         inverse: 0,

@@ -1,27 +1,28 @@
-//! The kernel's own sines and cosines, by adds and multiplies only, few of them: in software each is a call.
+//! Sines and cosines from few additions and multiplications, because each is a call in software.
 //!
-//! The argument less the nearest multiple of pi/2 (Cody-Waite reduction), then minimax polynomials. The constants are made by
-//! `host-tests/generate/sine_polynomials.py`.
+//! The argument is reduced by the nearest multiple of pi/2 (Cody-Waite reduction), then minimax
+//! polynomials are used. `host-tests/generate/sine_polynomials.py` computes the constants.
 
 use core::ops::Neg;
 
 use super::Real;
 
-/// (sin `x`, cos `x`) of an `f32`.
+/// Returns (sin x, cos x) of an `f32`.
 #[inline]
 pub(super) fn single(x: f32) -> (f32, f32) {
-    /// In three parts. The first two hold 11 bits each, so that k times them is exact for every k up to 2^13.
+    /// pi/2 in three parts. The first two have 11 bits each, so that their products with k are exact
+    /// for every k up to 2^13.
     const PI_OVER_TWO: [f32; 3] = [1.5703125, 0.0004837513, 0.0000000754979];
-    /// Up to here, rad, k stays below 2^13.
+    /// The largest argument, rad, for which k is below 2^13.
     const LARGEST: f32 = 12_867.0;
-    /// Adding this, 3 * 2^22, rounds to a whole number, which then stands in the low bits of the sum.
+    /// 3 * 2^22. Adding it rounds to a whole number, which is then in the low bits of the sum.
     const ROUNDER: f32 = 12_582_912.0;
     /// (sin r - r)/r^3 in powers of r^2, for abs r <= pi/4; error of the fit 2.0e-9.
     const SINE: [f32; 3] = [-0.1666665, 0.008331901, -0.00019485931];
     /// (cos r - 1 + r^2/2)/r^4 in powers of r^2, for abs r <= pi/4; error of the fit 1.1e-10.
     const COSINE: [f32; 3] = [0.041666646, -0.0013887301, 0.00002443067];
 
-    /// Beyond the range of the reduction, by that of double precision; also NaN.
+    /// Computes arguments beyond the range of the reduction, and NaN, in double precision.
     #[cold]
     #[inline(never)]
     fn huge(x: f32) -> (f32, f32) {
@@ -38,20 +39,21 @@ pub(super) fn single(x: f32) -> (f32, f32) {
     }
 }
 
-/// The same of an `f64`.
+/// Returns (sin x, cos x) of an `f64`.
 #[inline]
 pub(super) fn double(x: f64) -> (f64, f64) {
-    /// In three parts. The first two hold 33 bits each, so that k times them is exact for every k up to 2^20.
+    /// pi/2 in three parts. The first two have 33 bits each, so that their products with k are exact
+    /// for every k up to 2^20.
     const PI_OVER_TWO: [f64; 3] = [
         1.5707963267341256,
         6.077100506303966e-11,
         2.0222662487959506e-21,
     ];
-    /// Up to here, rad, k stays below 2^20.
+    /// The largest argument, rad, for which k is below 2^20.
     const LARGEST: f64 = 1_647_098.0;
-    /// 3 * 2^51.
+    /// 3 * 2^51, which rounds to a whole number as above.
     const ROUNDER: f64 = 6_755_399_441_055_744.0;
-    /// Error of the fit 4.0e-18 of sin r.
+    /// The same series as above. The error of the fit is 4.0e-18 of sin r.
     const SINE: [f64; 6] = [
         -0.16666666666666627,
         0.008333333333321079,
@@ -60,7 +62,7 @@ pub(super) fn double(x: f64) -> (f64, f64) {
         -2.505069457811957e-8,
         1.589303094330697e-10,
     ];
-    /// Error of the fit 5.8e-20.
+    /// The same series as above. The error of the fit is 5.8e-20.
     const COSINE: [f64; 6] = [
         0.04166666666666659,
         -0.0013888888888872056,
@@ -70,7 +72,7 @@ pub(super) fn double(x: f64) -> (f64, f64) {
         -1.1356709826679715e-11,
     ];
 
-    /// Beyond the range of the reduction; also NaN.
+    /// Computes arguments beyond the range of the reduction, and NaN.
     #[cold]
     #[inline(never)]
     fn huge(x: f64) -> (f64, f64) {
@@ -79,7 +81,7 @@ pub(super) fn double(x: f64) -> (f64, f64) {
     if x.abs() <= LARGEST {
         let rounded = x * core::f64::consts::FRAC_2_PI + ROUNDER;
         let k = rounded - ROUNDER;
-        // rounded once
+        // The rest of the argument is rounded only once.
         let coarse = x - k * PI_OVER_TWO[0];
         let middle = k * PI_OVER_TWO[1];
         let rough = coarse - middle;
@@ -93,7 +95,7 @@ pub(super) fn double(x: f64) -> (f64, f64) {
     }
 }
 
-/// (sin `r`, cos `r`) for abs r <= pi/4, and a hair beyond.
+/// Returns (sin r, cos r) for |r| up to slightly more than pi/4.
 #[inline(always)]
 fn first_octant<R: Real, const N: usize>(r: R, sine: [R; N], cosine: [R; N]) -> (R, R) {
     let z = r * r;
@@ -108,7 +110,8 @@ fn first_octant<R: Real, const N: usize>(r: R, sine: [R; N], cosine: [R; N]) -> 
     )
 }
 
-/// The direction (sin, cos) turned by `quarters` quarter turns; only the two lowest bits of `quarters` count.
+/// Returns the direction (sin, cos) turned by `quarters` quarter turns. Only the two lowest bits of
+/// `quarters` are used.
 #[inline]
 fn by_quarters<R: Neg<Output = R>>((sine, cosine): (R, R), quarters: u32) -> (R, R) {
     let (sine, cosine) = if quarters & 1 == 0 {

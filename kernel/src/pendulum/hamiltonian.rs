@@ -4,9 +4,9 @@ use crate::error::Error;
 use crate::numbers::Real;
 use crate::pendulum::{Parameters, State};
 
-/// A double pendulum: validated parameters and the products of them that the equations use.
+/// A double pendulum: validated parameters, and the products of them that the equations use.
 ///
-/// It is configuration only and drives any number of [`State`]s.
+/// It is configuration only. One pendulum serves any number of [`State`]s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pendulum<R> {
     parameters: Parameters<R>,
@@ -16,15 +16,15 @@ pub struct Pendulum<R> {
     total_over_m2: R,
     /// m2 l1 l2.
     coupling: R,
-    /// (m1 + m2) g l1 and m2 g l2: the greatest torque of gravity on each joint, N m.
+    /// The largest torques of gravity on the joints, (m1 + m2) g l1 and m2 g l2, N m.
     pub(crate) torque: [R; 2],
 }
 
 impl<R: Real> Pendulum<R> {
     /// Checks the parameters and prepares the equations.
     ///
-    /// Refuses NaN, infinite, zero or negative masses and lengths, negative gravity, and combinations whose products
-    /// leave the range of `R`; the [`Error`] names the parameter and its value.
+    /// Refuses NaN, infinite, zero or negative masses and lengths, negative gravity, and combinations
+    /// whose products leave the range of `R`. The [`Error`] names the parameter and its value.
     pub fn new(parameters: &Parameters<R>) -> Result<Self, Error> {
         parameters.check()?;
         let &Parameters { m1, m2, l1, l2, g } = parameters;
@@ -36,7 +36,7 @@ impl<R: Real> Pendulum<R> {
             torque: [(m1 + m2) * g * l1, m2 * g * l2],
         };
         let [inverse_l1, inverse_l2] = pendulum.inverse_length;
-        // 1/m1 is the greatest that 1/den becomes.
+        // 1/m1 is the largest value of 1/den.
         let products = [
             R::ONE / m1,
             m1 + m2,
@@ -55,24 +55,25 @@ impl<R: Real> Pendulum<R> {
         }
     }
 
-    /// The parameters it was made from.
+    /// Returns the parameters.
     #[must_use]
     pub fn parameters(&self) -> &Parameters<R> {
         &self.parameters
     }
 
-    /// Hamilton's equations: the time derivatives of (a1, a2, p1, p2), in rad/s and N m, in that order.
+    /// Returns the time derivatives of (a1, a2, p1, p2) by Hamilton's equations, in rad/s and N m.
     ///
-    /// With D = a1 - a2 and den = m1 + m2 sin^2 D,
+    /// With D = a1 - a2 and den = m1 + m2 sin^2 D:
     ///
     /// - w1 = (p1 l2 - p2 l1 cos D) / (l1^2 l2 den)
     /// - w2 = (p2 (m1 + m2) l1 - p1 m2 l2 cos D) / (m2 l1 l2^2 den)
     /// - p1' = -(m1 + m2) g l1 sin a1 - F
     /// - p2' = -m2 g l2 sin a2 + F
     ///
-    /// where F = m2 l1 l2 w1 w2 sin D is what the book (`[math24]`) calls A1 - A2. Two sincos and one division.
+    /// Here F = m2 l1 l2 w1 w2 sin D; `[math24]` calls it A1 - A2. Costs two sincos and one division.
     ///
-    /// Each is within 1e-13 (`f64`) or 2e-6 (`f32`) of its largest term of the book's own form.
+    /// The difference from the form of `[math24]` is at most 1e-13 (`f64`) or 2e-6 (`f32`) of the
+    /// largest term.
     #[must_use]
     #[inline]
     pub fn derivatives(&self, z: &[R; 4]) -> [R; 4] {
@@ -80,7 +81,8 @@ impl<R: Real> Pendulum<R> {
         self.derivatives_at([a1.own_sin_cos(), a2.own_sin_cos()], [p1, p2])
     }
 
-    /// As [`derivatives`](Self::derivatives), where rods 1 and 2 point to (sin, cos): the trigonometry is the caller's.
+    /// Returns the [`derivatives`](Self::derivatives) where the directions (sin, cos) of both rods are
+    /// known.
     #[doc(hidden)]
     #[inline]
     pub fn derivatives_at(
@@ -105,13 +107,14 @@ impl<R: Real> Pendulum<R> {
         [w1, w2, -torque1 * sin1 - force, -torque2 * sin2 + force]
     }
 
-    /// The Hamiltonian H = T + V, J, as a function of the canonical state; zero where both bobs are level with the pivot.
+    /// Returns the Hamiltonian H = T + V of the canonical state, J. It is zero where both bobs are
+    /// level with the pivot.
     ///
     /// H = (q1 - q2 cos D)^2 / (2 den) + q2^2 / (2 m2) - (m1 + m2) g l1 cos a1 - m2 g l2 cos a2
     ///
-    /// with q1 = p1/l1, q2 = p2/l2 and D, den as in [`derivatives`](Self::derivatives): the kinetic energy as a sum of
-    /// squares, so that it cannot come out negative. It is kept by the exact motion ([`least_energy`](Self::least_energy)
-    /// is its minimum). Costs three sincos and two divisions.
+    /// with q1 = p1/l1, q2 = p2/l2 and the D and den of [`derivatives`](Self::derivatives). The kinetic
+    /// energy is a sum of squares, so that it cannot be negative. The exact motion conserves H; its
+    /// minimum is [`least_energy`](Self::least_energy). Costs three sincos and two divisions.
     #[must_use]
     pub fn energy(&self, state: &State<R>) -> R {
         let (_, cos1) = state.a1.own_sin_cos();
@@ -121,19 +124,21 @@ impl<R: Real> Pendulum<R> {
             - self.torque[1] * cos2
     }
 
-    /// As [`energy`](Self::energy), where rods 1 and 2 point to (sin, cos) and the momenta are (p1, p2), kg m^2/s: without
-    /// trigonometry.
+    /// Returns the [`energy`](Self::energy) where the directions (sin, cos) of both rods and the momenta
+    /// (p1, p2), kg m^2/s, are known. Needs no trigonometry.
     #[must_use]
-    #[inline(never)] // one copy
+    #[inline(never)] // Not inlined, to save flash.
     pub fn energy_at(&self, [[sin1, cos1], [sin2, cos2]]: [[R; 2]; 2], momenta: [R; 2]) -> R {
         let elbow = (sin1 * cos2 - cos1 * sin2, cos1 * cos2 + sin1 * sin2);
         self.kinetic_energy_of(elbow, momenta) - self.torque[0] * cos1 - self.torque[1] * cos2
     }
 
-    /// The energy above rest, K = H - min V, J: what the motion can spend.
+    /// Returns the energy above rest, K = H - min V, J.
     ///
-    /// K = T + (m1 + m2) g l1 (1 - cos a1) + m2 g l2 (1 - cos a2), a sum of terms none of which is negative, so that
-    /// it keeps its relative precision down to the smallest motions, where H and min V nearly cancel.
+    /// K = T + (m1 + m2) g l1 (1 - cos a1) + m2 g l2 (1 - cos a2)
+    ///
+    /// No term is negative, so that K keeps its relative precision down to the smallest motions, where
+    /// H and min V nearly cancel.
     #[must_use]
     pub fn energy_above_rest(&self, state: &State<R>) -> R {
         let height1 = one_minus_cos(state.a1.own_sin_cos());
@@ -143,14 +148,15 @@ impl<R: Real> Pendulum<R> {
             + self.torque[1] * height2
     }
 
-    /// The potential energy hanging at rest, min V = -(m1 + m2) g l1 - m2 g l2, J: the least energy there is.
+    /// Returns the least possible energy, that of hanging at rest, J:
+    /// min V = -(m1 + m2) g l1 - m2 g l2.
     #[must_use]
     pub fn least_energy(&self) -> R {
         -(self.torque[0] + self.torque[1])
     }
 
-    /// T as a function of (sin D, cos D) and the momenta.
-    #[inline(never)] // one copy
+    /// Returns T from (sin D, cos D) and the momenta.
+    #[inline(never)] // Not inlined, to save flash.
     fn kinetic_energy_of(&self, (sin_d, cos_d): (R, R), [p1, p2]: [R; 2]) -> R {
         let Parameters { m1, m2, .. } = self.parameters;
         let q1 = p1 * self.inverse_length[0];
@@ -161,7 +167,7 @@ impl<R: Real> Pendulum<R> {
     }
 }
 
-/// 1 - cos a from (sin a, cos a), without cancellation for small a: sin^2 a / (1 + cos a) while cos a > 0.
+/// Returns 1 - cos a, without cancellation for small a: sin^2 a / (1 + cos a) if cos a > 0.
 fn one_minus_cos<R: Real>((sin, cos): (R, R)) -> R {
     if cos > R::ZERO {
         sin * sin / (R::ONE + cos)

@@ -1,7 +1,8 @@
-//! The form in angles and angular velocities: places, the Lagrangian and the second-order equations; and the Legendre
-//! transformation to canonical momenta and back.
+//! The equations in angles and angular velocities: positions, the Lagrangian, Lagrange's equations,
+//! and the Legendre transformation to canonical momenta and back.
 //!
-//! The former shares no formula with [`hamiltonian`](crate::Pendulum::derivatives), which makes each a check of the other.
+//! Apart from the transformation they share no formula with
+//! [Hamilton's equations](crate::Pendulum::derivatives), so that each form is a check of the other.
 
 use crate::numbers::Real;
 use crate::pendulum::{Motion, Parameters, Pendulum, State};
@@ -25,7 +26,7 @@ impl<R: Real> Vector<R> {
 }
 
 impl<R: Real> Pendulum<R> {
-    /// The positions of bob 1 and bob 2 where both rods are at their `angles` (a1, a2), rad; in m.
+    /// Returns the positions of bob 1 and bob 2, m, for the angles (a1, a2), rad.
     ///
     /// x1 = l1 sin a1, y1 = -l1 cos a1, x2 = x1 + l2 sin a2, y2 = y1 - l2 cos a2 (`[math24]`)
     #[must_use]
@@ -41,7 +42,8 @@ impl<R: Real> Pendulum<R> {
         [bob1, bob1.plus(rod(self.parameters().l2, a2))]
     }
 
-    /// The velocities of bob 1 and bob 2, m/s: the time derivatives of [`positions`](Self::positions).
+    /// Returns the velocities of bob 1 and bob 2, m/s: the time derivatives of
+    /// [`positions`](Self::positions).
     ///
     /// x1' = l1 w1 cos a1, y1' = l1 w1 sin a1, x2' = x1' + l2 w2 cos a2, y2' = y1' + l2 w2 sin a2 (`[math24]`)
     #[must_use]
@@ -60,7 +62,7 @@ impl<R: Real> Pendulum<R> {
         ]
     }
 
-    /// The kinetic energy, J (`[math24]`, "Lagrange equations").
+    /// Returns the kinetic energy, J (`[math24]`, "Lagrange equations").
     ///
     /// T = (m1 + m2)/2 l1^2 w1^2 + m2/2 l2^2 w2^2 + m2 l1 l2 w1 w2 cos(a1 - a2)
     #[must_use]
@@ -73,7 +75,8 @@ impl<R: Real> Pendulum<R> {
         R::HALF * (m1 + m2) * v1 * v1 + R::HALF * m2 * v2 * v2 + m2 * v1 * v2 * cos_d
     }
 
-    /// The potential energy where both rods are at their `angles` (a1, a2), rad; in J, zero where both bobs are level with the pivot.
+    /// Returns the potential energy, J, for the angles (a1, a2), rad. It is zero where both bobs are
+    /// level with the pivot.
     ///
     /// V = -(m1 + m2) g l1 cos a1 - m2 g l2 cos a2 (`[math24]`)
     #[must_use]
@@ -84,20 +87,20 @@ impl<R: Real> Pendulum<R> {
         -(m1 + m2) * g * l1 * cos1 - m2 * g * l2 * cos2
     }
 
-    /// The Lagrangian L = T - V, J.
+    /// Returns the Lagrangian L = T - V, J.
     #[must_use]
     pub fn lagrangian(&self, motion: &Motion<R>) -> R {
         self.kinetic_energy(motion) - self.potential_energy(motion.angles())
     }
 
-    /// The angular accelerations (w1', w2'), rad/s^2: Lagrange's two equations solved for them.
+    /// Returns the angular accelerations (w1', w2'), rad/s^2: the solution of Lagrange's equations.
     ///
-    /// With D = a1 - a2 the equations are (`[math24]`)
+    /// With D = a1 - a2 the equations are (`[math24]`):
     ///
     /// - (m1 + m2) l1 w1' + m2 l2 w2' cos D = -m2 l2 w2^2 sin D - (m1 + m2) g sin a1
     /// - l1 w1' cos D + l2 w2' = l1 w1^2 sin D - g sin a2
     ///
-    /// and their determinant is l1 l2 (m1 + m2 sin^2 D), never zero.
+    /// Their determinant is l1 l2 (m1 + m2 sin^2 D), which is never zero.
     #[must_use]
     pub fn accelerations(&self, motion: &Motion<R>) -> [R; 2] {
         let &Motion { a1, a2, w1, w2 } = motion;
@@ -116,7 +119,7 @@ impl<R: Real> Pendulum<R> {
         ]
     }
 
-    /// The mass matrix M at the angle D = a1 - a2 between the rods, kg m^2, row by row; `cos_d` is cos D.
+    /// Returns the mass matrix M, kg m^2, row by row, where `cos_d` is cos(a1 - a2).
     ///
     /// M = [[(m1 + m2) l1^2, m2 l1 l2 cos D], [m2 l1 l2 cos D, m2 l2^2]], so that T = w.M w/2 and p = M w.
     #[must_use]
@@ -126,12 +129,12 @@ impl<R: Real> Pendulum<R> {
         [[(m1 + m2) * l1 * l1, coupling], [coupling, m2 * l2 * l2]]
     }
 
-    /// Velocities to momenta, p_i = dL/dw_i.
+    /// Converts velocities to momenta, p_i = dL/dw_i.
     ///
     /// - p1 = (m1 + m2) l1^2 w1 + m2 l1 l2 w2 cos D
     /// - p2 = m2 l2^2 w2 + m2 l1 l2 w1 cos D
     ///
-    /// (`[math24]`, where the second term of p2 is misprinted with w2.)
+    /// In `[math24]` the second term of p2 is misprinted with w2.
     #[must_use]
     pub fn to_state(&self, motion: &Motion<R>) -> State<R> {
         let &Motion { a1, a2, w1, w2 } = motion;
@@ -145,10 +148,11 @@ impl<R: Real> Pendulum<R> {
         }
     }
 
-    /// Momenta to velocities, w = M^-1 p: the first pair of Hamilton's equations.
+    /// Converts momenta to velocities, w = M^-1 p: the first pair of Hamilton's equations.
     ///
-    /// With m2 much greater than m1 and parallel rods p1 l2 and p2 l1 nearly cancel: the relative error of w1 is then
-    /// up to m2/m1 roundings in any formula, because the momenta themselves are given to one rounding only.
+    /// If m2 is much larger than m1 and the rods are parallel, p1 l2 and p2 l1 nearly cancel. The
+    /// relative error of w1 is then up to m2/m1 roundings by any formula, because the momenta
+    /// themselves are rounded.
     #[must_use]
     pub fn to_motion(&self, state: &State<R>) -> Motion<R> {
         let &State { a1, a2, .. } = state;

@@ -1,4 +1,4 @@
-//! The pendulum and its equations of motion, each as the book has it.
+//! The pendulum and its equations of motion, as in `[math24]`.
 
 mod hamiltonian;
 mod lagrangian;

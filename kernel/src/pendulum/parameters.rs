@@ -21,10 +21,10 @@ pub struct Parameters<R> {
 }
 
 impl<R: Real> Parameters<R> {
-    /// Equal rods of length `l` and a bob 1 of 1 kg, so that only the mass ratio mu = m2/m1 is left to choose.
+    /// Returns equal rods of length `l`, a bob 1 of 1 kg, and a bob 2 of `mu` kg: mu = m2/m1.
     ///
-    /// With `l` and `g` of 1 the equations are the book's dimensionless ones for equal rods: time is counted in sqrt(l/g),
-    /// momenta in m1 l^2 sqrt(g/l), energy in m1 g l.
+    /// If `l` and `g` are 1, the equations are the dimensionless ones of `[math24]` for equal rods:
+    /// the unit of time is sqrt(l/g), that of momenta m1 l^2 sqrt(g/l), that of energy m1 g l.
     #[must_use]
     pub fn equal_rods(mu: R, l: R, g: R) -> Self {
         Self {
@@ -36,15 +36,15 @@ impl<R: Real> Parameters<R> {
         }
     }
 
-    /// The mass ratio mu = m2/m1.
+    /// Returns the mass ratio mu = m2/m1.
     #[must_use]
     pub fn mass_ratio(&self) -> R {
         self.m2 / self.m1
     }
 
-    /// The same numbers in the arithmetic `S`, each rounded once; exact from `f32` to `f64`.
+    /// Returns the same numbers in the arithmetic `S`, each rounded once. Exact from `f32` to `f64`.
     ///
-    /// Check them there: what is large in `f64` may be infinite in `f32`.
+    /// The result is not checked: a large number in `f64` can be infinite in `f32`.
     #[must_use]
     pub fn cast<S: Real>(self) -> Parameters<S> {
         let Self { m1, m2, l1, l2, g } = self;
@@ -52,8 +52,9 @@ impl<R: Real> Parameters<R> {
         Parameters { m1, m2, l1, l2, g }
     }
 
-    /// Refuses what no formula could use: NaN, infinite, zero or negative masses and lengths, negative gravity.
-    #[inline(never)] // cold, and never inlined, to avoid a second copy
+    /// Refuses NaN, infinite, zero or negative masses and lengths, and NaN, infinite or negative
+    /// gravity.
+    #[inline(never)] // Not inlined, to save flash.
     pub(crate) fn check(&self) -> Result<(), Error> {
         for (parameter, value) in self.named() {
             if !value.is_finite() {
@@ -73,8 +74,9 @@ impl<R: Real> Parameters<R> {
         Ok(())
     }
 
-    /// The error for parameters whose products overflow or underflow: it names the value farthest from 1.
-    #[inline(never)] // cold, and never inlined, to avoid a second copy
+    /// Returns the error for parameters whose products overflow or underflow. It names the value that
+    /// is farthest from 1.
+    #[inline(never)] // Not inlined, to save flash.
     pub(crate) fn out_of_range(&self) -> Error {
         let distance = |value: f64| if value < 1.0 { 1.0 / value } else { value };
         let [first, rest @ ..] = self.named();

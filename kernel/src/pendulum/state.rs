@@ -73,11 +73,12 @@ impl<R> From<State<R>> for [R; 4] {
 }
 
 impl<R: Real> State<R> {
-    /// The state itself if all its numbers are finite, else [`Error::Diverged`]: to be asked after a step.
+    /// Returns the state if all its numbers are finite, and [`Error::Diverged`] otherwise.
     ///
-    /// A step from a good state is finite whenever it resolves the motion; one too long for it may lead anywhere
-    /// ([`Modes::step_limit`](crate::Modes::step_limit) holds for small motions only). Once a number is not finite none
-    /// ever is again, so it is enough to ask before the state is used.
+    /// A step that resolves the motion leads from a finite state to a finite state. A longer one can
+    /// lead anywhere ([`Modes::step_limit`](crate::Modes::step_limit) is valid for small motions only).
+    /// Once a number is not finite, none becomes finite again, so that it is enough to check before
+    /// the state is used.
     ///
     /// ```
     /// use double_pendulum::{Error, Parameters, Pendulum, State};
@@ -87,7 +88,7 @@ impl<R: Real> State<R> {
     /// let stopped = loop {
     ///     match pendulum.step(&state, 1e3).finite() {
     ///         Ok(next) => state = next,
-    ///         Err(error) => break error, // and `state` is the last good one
+    ///         Err(error) => break error, // `state` is the last finite one
     ///     }
     /// };
     /// assert!(matches!(stopped, Error::Diverged { .. }) && state.check().is_ok());

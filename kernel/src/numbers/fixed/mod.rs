@@ -1,6 +1,7 @@
-//! Fixed point: numbers of 32 and 64 bits that hold one motion, in units that its energy chooses.
+//! Fixed-point numbers of 32 and 64 bits.
 
-/// A number whose sums are those of its words, of which `$narrowed` puts what is twice as wide back into a word.
+/// Defines a number that adds like its word. `$narrowed` converts a sum, which is twice as wide, back
+/// to a word.
 macro_rules! fixed_point {
     ($(#[$doc:meta])* $type:ident($word:ident), $narrowed:ident($wide:ident)) => {
         $(#[$doc])*
@@ -39,33 +40,34 @@ pub(crate) use q30::watch;
 pub(crate) use q30::{Gravity, Q30, Slope, Torque, word};
 pub(crate) use q64::Q64;
 
-/// `value` times 2^`exponent`; one copy, as is [`nearest`].
-#[inline(never)]
+/// Returns `value` times 2^`exponent`.
+#[inline(never)] // Not inlined, to save flash.
 pub(crate) fn scaled(value: f64, exponent: i32) -> f64 {
     libm::scalbn(value, exponent)
 }
 
-/// The nearest whole number.
-#[inline(never)]
+/// Returns the whole number nearest to `value`.
+#[inline(never)] // Not inlined, to save flash.
 pub(crate) fn nearest(value: f64) -> f64 {
     libm::rint(value)
 }
 
-/// Whether the processor has no product of two words: the Cortex-M0 and M0+, which are known by what else they lack, an exchange
-/// of words in one go. The compiler's library has one, at twice the price.
+/// True if the processor has no instruction for the 64-bit product of two words, as the Cortex-M0 and
+/// M0+. They are recognised by the lack of atomic exchange. The function in the compiler's library
+/// takes twice as long as [`product_of_halves`].
 pub(crate) const IN_HALVES: bool = cfg!(all(
     target_arch = "arm",
     target_os = "none",
     not(target_has_atomic = "32")
 ));
 
-/// The upper word of a product, which elsewhere is the instruction's second register: rounded down.
+/// Returns the upper word of a product, rounded down.
 #[inline(always)]
 pub(crate) fn upper(a: i32, b: i32) -> i32 {
     (product(a, b) >> 32) as i32
 }
 
-/// The product of two words.
+/// Returns the product of two words.
 #[inline(always)]
 pub(crate) fn product(a: i32, b: i32) -> i64 {
     if IN_HALVES {
@@ -75,14 +77,16 @@ pub(crate) fn product(a: i32, b: i32) -> i64 {
     }
 }
 
-/// The same by four products of half words; no sum on the way is carried out of its word.
+/// Returns the product of two words from four products of half words. No intermediate sum overflows.
 #[inline(always)]
 fn product_of_halves(a: i32, b: i32) -> i64 {
     let halves = |word: i32| (word & 0xffff, word >> 16);
-    let ((a0, a1), (b0, b1)) = (halves(a), halves(b));
+    let (a0, a1) = halves(a);
+    let (b0, b1) = halves(b);
     let lowest = a0.wrapping_mul(b0) as u32;
     let (middle, carried) = halves(a1 * b0 + (lowest >> 16) as i32);
-    let (upper, middle) = (a1 * b1 + carried, a0 * b1 + middle);
+    let upper = a1 * b1 + carried;
+    let middle = a0 * b1 + middle;
     let lower = lowest & 0xffff | (middle as u32) << 16;
     i64::from(upper + (middle >> 16)) << 32 | i64::from(lower)
 }
@@ -92,7 +96,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn halves_give_what_the_whole_gives() {
+    fn product_of_halves_is_the_product() {
         let ends = [
             0,
             1,

@@ -1,4 +1,4 @@
-//! Fractions of 64 bits: the digits of an `f64` at a fraction of its price where that is software.
+//! Fractions of 64 bits: more digits than an `f64`, and much faster where `f64` is software.
 
 use core::ops::Mul;
 
@@ -6,9 +6,9 @@ use super::{nearest, product};
 use crate::numbers::Real;
 
 fixed_point! {
-    /// A number from -1/2 to below 1/2 in 64 bits, in steps of 2^-64: no shift follows a product.
+    /// A number from -1/2 to below 1/2, in multiples of 2^-64. A product needs no shift.
     ///
-    /// A sum that has no room wraps; [`reach`](Self::reach) is what tells whether it can.
+    /// A sum that does not fit wraps. The caller checks the range with [`reach`](Self::reach).
     Q64(i64), wrapped(i128)
 }
 
@@ -21,17 +21,17 @@ fn wrapped(sum: i128) -> i64 {
 const UNIT: f64 = 18_446_744_073_709_551_616.0;
 
 impl Q64 {
-    /// As an `f64`.
+    /// Returns the number as an `f64`.
     pub fn value(self) -> f64 {
         self.over(1.0)
     }
 
-    /// The number over a power of two, rounded once.
+    /// Returns the number over `divisor`, a power of two, rounded once.
     pub fn over<R: Real>(self, divisor: f64) -> R {
         R::from_i64(self.0) * R::from_f64(1.0 / (UNIT * divisor))
     }
 
-    /// The upper word, rounded to nearest, and the lower one, with its sign.
+    /// Returns the upper word, rounded to nearest, and the lower one as a signed number.
     #[inline(always)]
     fn words(self) -> [i32; 2] {
         let lower = self.0 as i32;
@@ -41,22 +41,23 @@ impl Q64 {
         ]
     }
 
-    /// The product with `factor` 2^-32, rounded down.
+    /// Returns the product with `factor` 2^-32, rounded down.
     #[inline(always)]
     pub fn times_word(self, factor: i32) -> Self {
         let [upper, lower] = self.words().map(|word| product(word, factor));
         Self(upper + (lower >> 32))
     }
 
-    /// Zero if the number is below 2^-`places`, else not.
+    /// Returns zero if the magnitude is below 2^-`places`, and another number otherwise.
     #[inline(always)]
     pub fn reach(self, places: u32) -> u32 {
         (((self.0 >> 32) as u32).wrapping_add(1 << (32 - places))) >> (33 - places)
     }
 
-    /// 2^-8/d of d = 2^6 `self`, within 2^-56 of itself: d from 1 to 8.
+    /// Returns 2^-8/d, where d = 2^6 `self` is from 1 to 8, with a relative error of at most 2^-56.
     ///
-    /// A quotient of words, one step of Newton's on words and one of third order, whose residue 1 - d r is kept in 32 bits.
+    /// A quotient of words is improved by one step of Newton's method on words and one step of third
+    /// order, whose residue 1 - d r has 32 bits.
     #[inline(always)]
     pub fn inverse(self) -> Self {
         let divisor = self.0 as u64;
@@ -75,8 +76,10 @@ impl Q64 {
     }
 }
 
-/// Rounded down; the product of the lower words, which is left out, is as often below zero as above, and less than 1/4 of a
-/// step.
+/// Returns the product, rounded down.
+///
+/// The product of the lower words is left out. It is negative as often as positive, and below 1/4 of
+/// the last digit.
 impl Mul for Q64 {
     type Output = Self;
     #[inline(always)]
@@ -123,9 +126,9 @@ impl Q64 {
 mod tests {
     use super::*;
 
-    /// Every product of some numbers of all sizes, the largest among them, by all 128 bits.
+    /// Compares products of numbers of all sizes with products of 128 bits.
     #[test]
-    fn products_are_right_to_the_last_step() {
+    fn products_are_exact_to_the_last_digit() {
         let numbers = (0..64).flat_map(|bits| {
             [1, -1, 3, -5, 0x1234_5678_9abc_def1, -0x0fed_cba9_8765_4321].map(|x: i64| x >> bits)
         });
@@ -133,7 +136,7 @@ mod tests {
         for a in numbers.clone() {
             for b in numbers.clone() {
                 let exact = (i128::from(a) * i128::from(b)) as f64 / UNIT;
-                // a floor and a quarter, and what the `f64` here rounds
+                // Rounding down takes 1, the lower words 1/4, and the `f64` of the test rounds, too.
                 let error = (Q64(a) * Q64(b)).0 as f64 - exact;
                 assert!(
                     (-1.25..=0.25).contains(&error) || error.abs() < exact.abs() * 1e-15,
@@ -151,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn inverses_are_within_their_bound() {
+    fn inverses_are_within_two_ulp() {
         let mut d = 1.0;
         while d < 8.0 {
             let inverse = Q64::from_f64(d / 64.0).inverse().value() * 4.0;
